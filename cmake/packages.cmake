@@ -1,0 +1,19 @@
+# The Debian packages behind these names are listed in tools/packages.txt.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(GTest REQUIRED)
+find_package(benchmark REQUIRED)
+
+find_package(embree 3 QUIET)
+if(NOT embree_FOUND)
+  find_package(embree 4 REQUIRED)
+endif()
+pkg_check_modules(Bullet REQUIRED IMPORTED_TARGET bullet-float64)
+# OpenEXR by pkg-config: the CMake files of Debian 12 ask for Python parts of Imath that the package does not bring.
+pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)
+pkg_check_modules(SQLite REQUIRED IMPORTED_TARGET sqlite3)
+pkg_check_modules(Tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace twinbench {
+
+/// One parameter of an effect. In a scenario its key is `name` + "_" + `unit` ("roll_mrad"; just `name` if the unit
+/// is "1"); inside it is SI.
+struct EffectParameter {
+  std::string name;
+  std::string unit;       // "1", "mrad", "arcsec", "um", "nm", "s", "Hz", "per_m2", "nm_per_K", ...
+  double to_SI;           // factor from `unit` to SI
+  double default_SI;      // plausible size, used when the block leaves the key out
+  double lower_SI, upper_SI;
+  std::string meaning;
+};
+
+/// One cause of formats.md, with the places where it can act.
+struct EffectEntry {
+  std::string name;
+  std::string title;                 // one line, what it is
+  std::vector<std::string> places;   // allowed `where`; empty: none may be given
+  std::vector<EffectParameter> parameters;
+};
+
+/// Every effect of the rotary bench.
+const std::vector<EffectEntry>& EffectCatalogue();
+
+/// @return the entry, or nullptr.
+const EffectEntry* FindEffect(const std::string& name);
+
+}  // namespace twinbench

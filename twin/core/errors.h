@@ -1,0 +1,30 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace twinbench {
+
+/// Somebody's file or command line is wrong. `main` prints it and exits with code 2.
+class InputError : public std::runtime_error {
+ public:
+  /// @param where     "file.toml:12", "readings.csv:7" or "--set".
+  /// @param what      What was found there.
+  /// @param expected  What would have been right.
+  InputError(const std::string& where, const std::string& what, const std::string& expected)
+      : std::runtime_error(where + ": " + what + "; expected " + expected) {}
+};
+
+/// The world failed: a device, a disk, a table that does not settle. `main` exits with code 1.
+class BenchError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Our own mistake: a precondition that a caller inside the program broke.
+/// @throws std::logic_error with `message` unless `condition` holds.
+inline void Require(bool condition, const char* message) {
+  if (!condition) throw std::logic_error(message);
+}
+
+}  // namespace twinbench

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <iosfwd>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "twin/core/time.h"
+
+namespace twinbench {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Channels of the rotary bench in the order of the A/D scan list.
+enum class Channel { kPsdAX, kPsdAY, kPsdBX, kPsdBY };
+inline constexpr int kChannels = 4;
+inline constexpr std::array<const char*, kChannels> kChannelNames = {"psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"};
+
+enum class Phase { kCalibration, kFullCircle, kStability, kVerification };
+const char* PhaseName(Phase phase);  // "calibration", "full_circle", "stability", "verification"
+
+/// Why a reading carries no numbers. Anything but kOk leaves its voltages NaN.
+enum class ReadingStatus { kOk, kSaturated, kNoLight, kClippedSpot, kOverrun, kMissing };
+const char* ReadingStatusName(ReadingStatus status);  // "ok", "saturated", "no_light", "clipped_spot", ...
+
+/// One stop of the bench: the commanded angles and the mean and scatter of one block of A/D samples.
+struct Reading {
+  int reading = 0;    // running number
+  Time time{};        // start of the block
+  int setup = 0;      // changes whenever something was re-mounted
+  int pass = 0;       // one sweep through the positions
+  int direction = 1;  // +1: target angle increases; -1
+  int position = 0;   // index of the stop
+  Phase phase = Phase::kFullCircle;
+  ReadingStatus status = ReadingStatus::kOk;
+
+  double target_rad = kNaN;     // commanded, unwrapped
+  double reference_rad = kNaN;  // commanded, unwrapped
+  std::array<double, kChannels> mean_V = {kNaN, kNaN, kNaN, kNaN};
+  std::array<double, kChannels> std_V = {kNaN, kNaN, kNaN, kNaN};  // of one sample, not of the mean
+  int n_samples = 0;                                               // per channel; 0 if not known
+  double dwell_s = kNaN;                                           // settled -> start of the block
+  double temperature_degC = kNaN;
+  double autocollimator_yaw_rad = kNaN;  // calibration and verification only
+  double autocollimator_tilt_rad = kNaN;
+
+  std::map<std::string, std::string> extra;  // columns of an imported file that we do not know, kept as text
+};
+
+/// Writes readings.csv of formats.md: units in the header, empty = not available, time order.
+void WriteReadingsCsv(const std::vector<Reading>& readings, std::ostream& out);
+void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& path);
+
+/// Reads readings.csv of the rotary bench. Column order is free, `#` lines are comments, unknown columns are kept.
+/// @throws InputError with file:line for a missing required column (named), a field that is no number, a wrong
+///         number of fields or an unknown phase.
+std::vector<Reading> ReadReadingsCsv(const std::string& path);
+std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name);
+
+}  // namespace twinbench

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "twin/core/devices.h"
+#include "twin/core/reading.h"
+
+namespace twinbench {
+
+/// Where a run came from; written once, when the record is made.
+struct Provenance {
+  std::string program_version;
+  std::string bench;        // "twin", "iio:...", "import"
+  std::uint64_t seed = 0;
+  std::string clock_origin_utc;  // ISO 8601 of Time 0; empty for the twin
+};
+
+struct RawBlock {
+  int reading = 0;
+  int channels = 0;
+  std::vector<std::int16_t> samples;  // scan by scan
+};
+
+/// The record of a run in DIR/record.sqlite: insert-only, one transaction a reading, WAL with synchronous FULL, so
+/// that it opens after kill -9 or power loss with every reading that Append returned for.
+class RunRecord : public ReadingSink {
+ public:
+  /// Makes DIR and an empty record in it.
+  /// @throws InputError if DIR already holds a record; BenchError if the disk refuses.
+  static std::unique_ptr<RunRecord> Create(const std::string& directory, const Provenance& provenance);
+  /// @throws InputError if there is no record, or it is not one of ours.
+  static std::unique_ptr<RunRecord> Open(const std::string& directory);
+
+  ~RunRecord() override;
+  void Append(const Reading& reading, const std::vector<std::int16_t>& raw) override;
+  /// Device events and operator notes, in time order.
+  void AppendEvent(Time time, const std::string& device, const std::string& text);
+  /// Marks the run complete; without it the run is known to be unfinished.
+  void Finish();
+
+  bool finished() const;
+  Provenance provenance() const;
+  std::vector<Reading> Readings() const;
+  std::vector<RawBlock> RawBlocks() const;
+
+ private:
+  struct Database;
+  explicit RunRecord(std::unique_ptr<Database> database);
+  std::unique_ptr<Database> database_;
+};
+
+}  // namespace twinbench

@@ -1,0 +1,201 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/core/frames.h"
+#include "twin/core/table_errors.h"
+#include "twin/core/units.h"
+
+/// A scenario: one measurement on one bench, everything in SI. The structs below are the file format (see
+/// scenario_schema.cc for keys, units and bounds); the defaults are the reference rotary bench of formats.md.
+namespace twinbench {
+
+enum class BeamModel { kChiefRay, kGaussian, kProfile };
+
+struct LaserSettings {                               // [laser]
+  double wavelength_m = 650.0 * units::nm;           // in air
+  double power_W = 5.0 * units::mW;
+  Vector3 position_m{0.0, 0.2, 0.0};                 // in L
+  double yaw_rad = 0.0;                              // pointing error of the beam about z ...
+  double pitch_rad = 0.0;                            // ... and upwards; it shines along -y
+  BeamModel beam = BeamModel::kChiefRay;
+  double beam_radius_m = 0.5 * units::mm;            // 1/e^2 of the irradiance, at the waist (= laser exit)
+  double divergence_rad = 0.5 * units::mrad;         // 1/e^2 half angle
+  std::string profile_file;                          // OpenEXR of the measured beam, for BeamModel::kProfile
+  double wavelength_per_kelvin_m = 0.0;              // against environment.reference_degC
+  double pointing_yaw_per_kelvin_rad = 0.0;
+  double pointing_pitch_per_kelvin_rad = 0.0;
+};
+
+struct GratingSettings {                             // [grating]
+  double lines_per_m = 600e3;
+  double width_m = 25.0 * units::mm;                 // across the grooves
+  double height_m = 25.0 * units::mm;
+  /// Relative power of orders -2..+2 (scalar lamellar grating of phase depth pi would be {0, .405, 0, .405, 0}).
+  std::array<double, 5> efficiency = {0.1, 0.339, 0.1, 0.339, 0.1};
+  Vector3 point_m{0.0, 0.030, 0.050};                // of the spot, from the reference table's origin
+};
+
+struct PsdSettings {                                 // [psd_a], [psd_b]
+  double distance_m = 0.120;                         // spot on the grating -> centre
+  double roll_rad = 0.0;                             // about the nominal order, right-handed towards the light
+  double tilt_u_rad = 0.0;                           // about its u axis
+  double tilt_v_rad = 0.0;                           // about its v axis
+  double sensitivity_V_m = 2000.0;
+  double width_m = 10.0 * units::mm;
+  double height_m = 10.0 * units::mm;
+  double cubic_per_m2 = 0.0;                         // u -> u (1 + cubic r^2), electrode non-linearity
+  double stray_fraction = 0.0;                       // uniform stray light / signal
+  bool window = false;
+  double window_thickness_m = 1.0 * units::mm;
+  double window_index = 1.51;
+  double window_gap_m = 1.0 * units::mm;             // window back -> silicon
+  double window_reflectance = 0.042;                 // of one surface
+  double window_wedge_rad = 0.0;
+  bool window_coherent = false;                      // interference between the window's faces (etalon)
+  double silicon_reflectance = 0.0;                  // > 0 switches the PSD -> grating -> PSD ghosts on
+};
+
+struct AmplifierSettings {                           // [amplifier]
+  std::array<double, 4> offset_V{};    // one a channel
+  std::array<double, 4> gain_error{};
+  double noise_V = 6.0 * units::mV;                  // one sample, white, standard deviation
+  double hum_V = 0.0;                                // amplitude of the mains hum, on all channels
+  double hum_Hz = 50.0;
+  double low_light_fraction = 0.02;                  // below this share of the nominal power: no light
+};
+
+struct AdcSettings {                                 // [adc]
+  int bits = 16;
+  double range_V = 10.0;                             // +- range
+  double rate_Hz = 250e3;                            // conversions a second, all channels together
+  int fifo_samples = 0;                              // 0: the computer always keeps up
+  double drain_rate_Hz = 1e6;                        // at which it empties the FIFO
+  int samples = 100;                                 // scans a reading
+  bool every_sample = true;                          // false: draw mean and deviation directly (same distribution)
+};
+
+struct HarmonicSettings {
+  Component component = Component::kEz;
+  double order = 1.0;
+  double amplitude = 0.0;                            // rad or m: amplitude * cos(order * angle + phase)
+  double phase_rad = 0.0;
+};
+
+struct TableSettings {                               // [target], [reference]
+  std::vector<HarmonicSettings> harmonics;           // the reference's in its rotor frame, like every error of it
+  std::string errors_file;                           // values per position, relative to the scenario's folder
+  std::optional<TableErrors> errors;                 // the file's content (or --errors); filled by the loader
+  std::array<double, kComponents> random_rms{};      // random smooth errors: rms of each component [rad, m]
+  int random_orders = 12;                            // ... with harmonics 1..random_orders, falling as 1/order
+  std::array<double, kComponents> seating_sd{};      // scatter of the pose at every mounting
+  std::array<double, kComponents> repeatability_sd{};// scatter of the pose at every stop
+  double half_frequency_order = 0.5;                 // bearing motion once per about two turns of the unwrapped angle
+  double half_frequency_tilt_rad = 0.0;
+  double half_frequency_radial_m = 0.0;
+  double backlash_rad = 0.0;                         // full width, of the servo's encoder against the rotor
+  double speed_rad_s = 30.0 * units::deg;
+  double move_time_s = 0.6;                          // of one step (quintic profile); longer moves keep the speed
+  double settle_s = 0.4;                             // in-position window after the profile
+};
+
+struct MechanicsSettings {                           // [mechanics]
+  std::string fidelity = "kinematic";                // kinematic | linear | bullet
+  double payload_mass_kg = 0.0;                      // on the reference rotor
+  double payload_radius_m = 0.0;                     // eccentricity ...
+  double payload_azimuth_rad = 0.0;                  // ... on the rotor
+  double payload_height_m = 0.05;
+  std::array<double, 2> axial_stiffness_N_m = {200e6, 120e6};   // target, reference
+  std::array<double, 2> radial_stiffness_N_m = {100e6, 60e6};
+  std::array<double, 2> tilt_stiffness_Nm_rad = {0.60e6, 0.25e6};
+  double damping_ratio = 0.03;
+  std::array<double, 2> servo_Hz = {30.0, 40.0};
+  std::array<double, 2> friction_Nm = {0.0, 0.0};    // Coulomb level of a LuGre friction
+  double step_s = 250.0 * units::us;
+};
+
+struct EnvironmentSettings {                         // [environment]
+  double temperature_degC = 20.0;
+  double reference_degC = 20.0;                      // at which wavelength and lengths are nominal
+  double drift_K_h = 0.0;
+  double swing_K = 0.0;                              // amplitude of a periodic swing
+  double swing_period_s = 1800.0;
+  double random_walk_K_sqrt_h = 0.0;
+  std::string temperature_file;                      // time_s, temperature_degC
+  double sensor_noise_K = 0.001;
+};
+
+struct AutocollimatorSettings {                      // [autocollimator]
+  double noise_rad = 0.02 * units::arcsec;
+  double range_rad = 410.0 * units::arcsec;
+  double gain_error = 0.0;
+};
+
+struct ProcedureSettings {                           // [procedure]
+  std::vector<std::string> phases = {"calibration", "full_circle"};  // of calibration, stability, verification, full_circle
+  int positions = 36;
+  std::vector<int> shifts = {0, 1, 7, 11};           // in steps
+  std::vector<int> passes = {1, -1, -1, 1};          // directions
+  std::string clamping = "reseat";                   // reclamp | reseat
+  std::vector<double> dwell_s = {1.0};               // drawn at random from this list at every stop
+  double remount_s = 600.0;                          // time a set-up takes
+  double sweep_rad = 300.0 * units::arcsec;          // calibration: +- this, in yaw and in tilt
+  int sweep_points = 13;
+  double stability_s = 3600.0;
+  double stability_interval_s = 10.0;
+  int verification_points = 7;                       // within the sweep, at angles the calibration did not use
+  bool keep_raw = false;
+};
+
+/// One cause that the bench has and the nominal bench has not: an [[effect]] block.
+struct EffectSettings {
+  std::string name;                                  // of EffectCatalogue()
+  std::string where;                                 // channel, PSD or axis; empty where the effect has only one place
+  std::map<std::string, double> parameters;          // SI, by key without its unit: "gain_error", "roll"
+  std::string location;                              // "file.toml:31", for messages
+};
+
+struct Scenario {
+  std::string bench = "rotary_4dof";
+  std::string title;
+  std::uint64_t seed = 1;
+  bool noise_free = false;                           // no random contribution and no quantisation
+  LaserSettings laser;
+  GratingSettings grating;
+  PsdSettings psd_a;
+  PsdSettings psd_b;
+  AmplifierSettings amplifier;
+  AdcSettings adc;
+  TableSettings target;
+  TableSettings reference;
+  double reference_height_m = 0.080;                 // reference table's origin above the target's
+  Eigen::Vector2d centring_m = Eigen::Vector2d::Zero();    // of the reference's body on the target rotor
+  Eigen::Vector2d mount_tilt_rad = Eigen::Vector2d::Zero();
+  MechanicsSettings mechanics;
+  EnvironmentSettings environment;
+  AutocollimatorSettings autocollimator;
+  ProcedureSettings procedure;
+  std::vector<EffectSettings> effects;
+};
+
+/// Reads a scenario and applies `overrides` ("procedure.positions=12", in TOML syntax).
+///
+/// @throws InputError with file:line for a syntax error, an unknown key (naming the nearest known one), a value out
+///         of bounds or of the wrong type, an effect, place or parameter that is not in the catalogue, a file that
+///         cannot be read. Overrides are reported as "--set key=value".
+Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides = {});
+Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& folder,
+                       const std::vector<std::string>& overrides = {});
+
+/// The scenario as TOML with every key written out, units in the keys; LoadScenario reads it back to the same bits.
+std::string WriteScenario(const Scenario& scenario);
+
+/// Every key with unit, default, bounds and meaning, for `twinbench help scenario` and docs.
+std::string DescribeScenarioKeys();
+
+}  // namespace twinbench
