@@ -143,6 +143,7 @@ struct ProcedureSettings {                           // [procedure]
   std::vector<int> passes = {1, -1, -1, 1};          // directions
   std::string clamping = "reseat";                   // reclamp | reseat
   std::vector<double> dwell_s = {1.0};               // drawn at random from this list at every stop
+  double run_up_steps = 0.5;                         // every pass approaches its first stop from this far behind
   double remount_s = 600.0;                          // time a set-up takes
   double sweep_rad = 300.0 * units::arcsec;          // calibration: +- this, in yaw and in tilt
   int sweep_points = 13;

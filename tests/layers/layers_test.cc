@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Include {
+  std::string file, target;
+};
+
+/// Rooms in the order of docs/architecture: a longer name wins over its parent ("twin/core" over "twin").
+const std::vector<std::string> kRooms = {"optics",         "mechanics",     "twin/core",     "twin/sim",
+                                         "twin/procedure", "twin/measure",  "twin/separate", "twin/diagnose",
+                                         "twin/plan",      "twin/campaign", "twin/report",   "hw_bridge"};
+
+/// The room table: which of our rooms each may include, besides itself.
+const std::map<std::string, std::set<std::string>> kMayInclude = {
+    {"optics", {}},
+    {"mechanics", {}},
+    {"twin/core", {}},
+    {"twin/sim", {"twin/core", "optics", "mechanics"}},
+    {"twin/procedure", {"twin/core"}},
+    {"twin/measure", {"twin/core"}},
+    {"twin/separate", {"twin/core", "twin/measure"}},
+    {"twin/diagnose", {"twin/core", "twin/measure", "twin/separate"}},
+    {"twin/plan", {"twin/core", "twin/separate", "twin/diagnose"}},
+    {"twin/campaign",
+     {"twin/core", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan"}},
+    {"twin/report", {"twin/core", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan", "twin/campaign"}},
+    {"hw_bridge", {"twin/core"}}};
+
+/// Third-party headers that only some rooms may see, by how their path begins.
+const std::map<std::string, std::set<std::string>> kOwners = {
+    {"embree", {"optics"}},      {"OpenEXR/", {"optics"}},          {"Imf", {"optics"}},
+    {"Imath", {"optics"}},       {"BulletDynamics", {"mechanics"}}, {"LinearMath/", {"mechanics"}},
+    {"btBullet", {"mechanics"}}, {"sqlite3", {"twin/core"}},        {"toml++", {"twin/core"}}};
+
+std::string RoomOf(const std::string& path) {
+  for (const std::string& room : kRooms) {
+    if (path.starts_with(room + "/")) return room;
+  }
+  return {};
+}
+
+std::vector<Include> AllIncludes() {
+  std::vector<Include> includes;
+  const fs::path root = TWINBENCH_SOURCE_DIR;
+  const std::regex directive(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  for (const char* top : {"optics", "mechanics", "twin", "hw_bridge"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cc") continue;
+      std::ifstream in(entry.path());
+      std::smatch match;
+      for (std::string line; std::getline(in, line);) {
+        if (!std::regex_search(line, match, directive)) continue;
+        includes.push_back({fs::relative(entry.path(), root).string(), match[1]});
+      }
+    }
+  }
+  return includes;
+}
+
+TEST(Layers, EveryIncludeIsAllowedByTheRoomTable) {
+  for (const Include& include : AllIncludes()) {
+    const std::string from = RoomOf(include.file);
+    ASSERT_FALSE(from.empty()) << include.file << " is in no room";
+    const std::string to = RoomOf(include.target);
+    if (to.empty() || to == from) continue;
+    EXPECT_TRUE(kMayInclude.at(from).contains(to)) << include.file << " includes " << include.target;
+  }
+}
+
+TEST(Layers, TheReaderSeesTheIncludesThatAreThere) {
+  // Guards the two tests above against passing because nothing was read.
+  const std::vector<Include> includes = AllIncludes();
+  const auto is_known = [](const Include& i) {
+    return i.file == "twin/core/devices.h" && i.target == "twin/core/reading.h";
+  };
+  EXPECT_TRUE(std::any_of(includes.begin(), includes.end(), is_known));
+  EXPECT_GT(includes.size(), 100u);
+}
+
+TEST(Layers, ThirdPartyHeadersStayInTheRoomThatOwnsThem) {
+  for (const Include& include : AllIncludes()) {
+    for (const auto& [prefix, owners] : kOwners) {
+      if (!include.target.starts_with(prefix)) continue;
+      EXPECT_TRUE(owners.contains(RoomOf(include.file))) << include.file << " includes " << include.target;
+    }
+  }
+}
+
+TEST(Layers, EmbreeAndBulletStayOutOfHeaders) {
+  for (const Include& include : AllIncludes()) {
+    if (!include.file.ends_with(".h")) continue;
+    for (const char* prefix : {"embree", "Bullet", "LinearMath/", "btBullet"}) {
+      EXPECT_FALSE(include.target.starts_with(prefix)) << include.file << " includes " << include.target;
+    }
+  }
+}
+
+TEST(Layers, FoldersFormNoCircle) {
+  std::map<std::string, std::set<std::string>> edges;
+  for (const Include& include : AllIncludes()) {
+    const std::string from = RoomOf(include.file), to = RoomOf(include.target);
+    if (!to.empty() && to != from) edges[from].insert(to);
+  }
+  std::set<std::string> done, open;
+  const std::function<void(const std::string&)> visit = [&](const std::string& room) {
+    ASSERT_FALSE(open.contains(room)) << "a circle of folders goes through " << room;
+    if (done.contains(room)) return;
+    open.insert(room);
+    for (const std::string& next : edges[room]) visit(next);
+    open.erase(room);
+    done.insert(room);
+  };
+  for (const std::string& room : kRooms) visit(room);
+}
+
+}  // namespace
