@@ -9,22 +9,27 @@ namespace twinbench {
 /// is "1"); inside it is SI.
 struct EffectParameter {
   std::string name;
-  std::string unit;       // "1", "mrad", "arcsec", "um", "nm", "s", "Hz", "per_m2", "nm_per_K", ...
-  double to_SI;           // factor from `unit` to SI
-  double default_SI;      // plausible size, used when the block leaves the key out
+  std::string unit;   // "1", "mrad", "arcsec", "um", "nm", "s", "Hz", "per_m2", "nm_per_K", ...
+  double to_SI;       // factor from `unit` to SI
+  double default_SI;  // plausible size, used when the block leaves the key out
   double lower_SI, upper_SI;
   std::string meaning;
+  std::vector<std::string> only_at = {};  // the places it belongs to; empty: to all
+
+  std::string Key() const { return unit == "1" ? name : name + "_" + unit; }
+  bool BelongsTo(const std::string& place) const;
 };
 
 /// One cause of formats.md, with the places where it can act.
 struct EffectEntry {
   std::string name;
-  std::string title;                 // one line, what it is
-  std::vector<std::string> places;   // allowed `where`; empty: none may be given
+  std::string title;                // one line, what it is
+  std::vector<std::string> places;  // allowed `where`; empty: none may be given
   std::vector<EffectParameter> parameters;
+  std::string default_place = {};  // if `where` is left out; empty: it must be given (where there are places)
 };
 
-/// Every effect of the rotary bench.
+/// Every effect of the rotary bench, in the order of formats.md.
 const std::vector<EffectEntry>& EffectCatalogue();
 
 /// @return the entry, or nullptr.

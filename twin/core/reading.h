@@ -4,7 +4,9 @@
 #include <iosfwd>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "twin/core/time.h"
@@ -18,12 +20,17 @@ enum class Channel { kPsdAX, kPsdAY, kPsdBX, kPsdBY };
 inline constexpr int kChannels = 4;
 inline constexpr std::array<const char*, kChannels> kChannelNames = {"psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"};
 
+inline constexpr int kPhases = 4;
 enum class Phase { kCalibration, kFullCircle, kStability, kVerification };
 const char* PhaseName(Phase phase);  // "calibration", "full_circle", "stability", "verification"
 
 /// Why a reading carries no numbers. Anything but kOk leaves its voltages NaN.
+inline constexpr int kReadingStatuses = 6;
 enum class ReadingStatus { kOk, kSaturated, kNoLight, kClippedSpot, kOverrun, kMissing };
 const char* ReadingStatusName(ReadingStatus status);  // "ok", "saturated", "no_light", "clipped_spot", ...
+/// @return the value with that name, or nothing.
+std::optional<Phase> PhaseOf(std::string_view name);
+std::optional<ReadingStatus> ReadingStatusOf(std::string_view name);
 
 /// One stop of the bench: the commanded angles and the mean and scatter of one block of A/D samples.
 struct Reading {
@@ -49,13 +56,17 @@ struct Reading {
   std::map<std::string, std::string> extra;  // columns of an imported file that we do not know, kept as text
 };
 
-/// Writes readings.csv of formats.md: units in the header, empty = not available, time order.
+/// Writes readings.csv of formats.md: units in the header, empty = not available, `readings` in time order. A
+/// column `status` is added if any reading is not kOk. ReadReadingsCsv gives back the same bits.
+/// @throws BenchError if `path` cannot be written.
 void WriteReadingsCsv(const std::vector<Reading>& readings, std::ostream& out);
 void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& path);
 
 /// Reads readings.csv of the rotary bench. Column order is free, `#` lines are comments, unknown columns are kept.
-/// @throws InputError with file:line for a missing required column (named), a field that is no number, a wrong
-///         number of fields or an unknown phase.
+/// A reading with an empty voltage and no other status becomes kMissing.
+/// @throws InputError with file:line for missing required columns (all are named), a field that is no number, a
+///         wrong number of fields, an unknown phase or status, a reading number that comes twice or a time that
+///         goes back.
 std::vector<Reading> ReadReadingsCsv(const std::string& path);
 std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name);
 

@@ -13,7 +13,7 @@ namespace twinbench {
 /// Where a run came from; written once, when the record is made.
 struct Provenance {
   std::string program_version;
-  std::string bench;        // "twin", "iio:...", "import"
+  std::string bench;  // "twin", "iio:...", "import"
   std::uint64_t seed = 0;
   std::string clock_origin_utc;  // ISO 8601 of Time 0; empty for the twin
 };
@@ -24,6 +24,12 @@ struct RawBlock {
   std::vector<std::int16_t> samples;  // scan by scan
 };
 
+struct RecordedEvent {
+  Time time{};
+  std::string device;
+  std::string text;
+};
+
 /// The record of a run in DIR/record.sqlite: insert-only, one transaction a reading, WAL with synchronous FULL, so
 /// that it opens after kill -9 or power loss with every reading that Append returned for.
 class RunRecord : public ReadingSink {
@@ -31,20 +37,25 @@ class RunRecord : public ReadingSink {
   /// Makes DIR and an empty record in it.
   /// @throws InputError if DIR already holds a record; BenchError if the disk refuses.
   static std::unique_ptr<RunRecord> Create(const std::string& directory, const Provenance& provenance);
-  /// @throws InputError if there is no record, or it is not one of ours.
+  /// Opens a record to be read or continued, also one that another program is still writing.
+  /// @throws InputError if there is no record, it is not one of ours, or it is damaged.
   static std::unique_ptr<RunRecord> Open(const std::string& directory);
 
   ~RunRecord() override;
+  /// @param raw  Scans x channels, or empty.
+  /// @throws BenchError if the disk refuses or the reading's number is taken; the record is then as it was before.
   void Append(const Reading& reading, const std::vector<std::int16_t>& raw) override;
-  /// Device events and operator notes, in time order.
+  /// Keeps what a device did or an operator noted.
   void AppendEvent(Time time, const std::string& device, const std::string& text);
   /// Marks the run complete; without it the run is known to be unfinished.
   void Finish();
 
   bool finished() const;
   Provenance provenance() const;
+  /// In the order in which they were appended, to the same bits (but -0.0, which comes back as 0.0).
   std::vector<Reading> Readings() const;
   std::vector<RawBlock> RawBlocks() const;
+  std::vector<RecordedEvent> Events() const;
 
  private:
   struct Database;

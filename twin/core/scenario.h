@@ -13,6 +13,7 @@
 
 /// A scenario: one measurement on one bench, everything in SI. The structs below are the file format (see
 /// scenario_schema.cc for keys, units and bounds); the defaults are the reference rotary bench of formats.md.
+/// A key is a field's name with the unit of the file: wavelength_m is `wavelength_nm`.
 namespace twinbench {
 
 enum class BeamModel { kChiefRay, kGaussian, kProfile };
@@ -26,7 +27,8 @@ struct LaserSettings {                               // [laser]
   BeamModel beam = BeamModel::kChiefRay;
   double beam_radius_m = 0.5 * units::mm;            // 1/e^2 of the irradiance, at the waist (= laser exit)
   double divergence_rad = 0.5 * units::mrad;         // 1/e^2 half angle
-  std::string profile_file;                          // OpenEXR of the measured beam, for BeamModel::kProfile
+  std::string profile_file;                          // OpenEXR of the measured beam, for BeamModel::kProfile;
+                                                     // absolute once loaded
   double wavelength_per_kelvin_m = 0.0;              // against environment.reference_degC
   double pointing_yaw_per_kelvin_rad = 0.0;
   double pointing_pitch_per_kelvin_rad = 0.0;
@@ -88,13 +90,16 @@ struct HarmonicSettings {
 };
 
 struct TableSettings {                               // [target], [reference]
+  /// `harmonics = [{ component = "ez", order = 1, amplitude_arcsec = 5.0, phase_deg = 30.0 }, ...]`; amplitude_um for
+  /// dx, dy, dz.
   std::vector<HarmonicSettings> harmonics;           // the reference's in its rotor frame, like every error of it
-  std::string errors_file;                           // values per position, relative to the scenario's folder
-  std::optional<TableErrors> errors;                 // the file's content (or --errors); filled by the loader
-  std::array<double, kComponents> random_rms{};      // random smooth errors: rms of each component [rad, m]
-  int random_orders = 12;                            // ... with harmonics 1..random_orders, falling as 1/order
-  std::array<double, kComponents> seating_sd{};      // scatter of the pose at every mounting
-  std::array<double, kComponents> repeatability_sd{};// scatter of the pose at every stop
+  std::string errors_file;                           // relative to the scenario's folder; the loader moves its
+                                                     // content to `errors` and leaves this empty
+  std::optional<TableErrors> errors;                 // values per position: [target.errors] position_deg = [...], ...
+  std::array<double, kComponents> random_rms{};      // [target.random] ex_arcsec ... dz_um: random smooth errors, rms
+  int random_orders = 12;                            // ... orders: harmonics 1..orders, falling as 1/order
+  std::array<double, kComponents> seating_sd{};      // [target.seating]: scatter of the pose at every mounting
+  std::array<double, kComponents> repeatability_sd{};// [target.repeatability]: scatter of the pose at every stop
   double half_frequency_order = 0.5;                 // bearing motion once per about two turns of the unwrapped angle
   double half_frequency_tilt_rad = 0.0;
   double half_frequency_radial_m = 0.0;
@@ -126,7 +131,7 @@ struct EnvironmentSettings {                         // [environment]
   double swing_K = 0.0;                              // amplitude of a periodic swing
   double swing_period_s = 1800.0;
   double random_walk_K_sqrt_h = 0.0;
-  std::string temperature_file;                      // time_s, temperature_degC
+  std::string temperature_file;                      // time_s, temperature_degC; absolute once loaded
   double sensor_noise_K = 0.001;
 };
 
@@ -157,7 +162,7 @@ struct ProcedureSettings {                           // [procedure]
 struct EffectSettings {
   std::string name;                                  // of EffectCatalogue()
   std::string where;                                 // channel, PSD or axis; empty where the effect has only one place
-  std::map<std::string, double> parameters;          // SI, by key without its unit: "gain_error", "roll"
+  std::map<std::string, double> parameters;          // SI, by name without unit ("roll"); all that the catalogue has
   std::string location;                              // "file.toml:31", for messages
 };
 
@@ -174,9 +179,9 @@ struct Scenario {
   AdcSettings adc;
   TableSettings target;
   TableSettings reference;
-  double reference_height_m = 0.080;                 // reference table's origin above the target's
-  Eigen::Vector2d centring_m = Eigen::Vector2d::Zero();    // of the reference's body on the target rotor
-  Eigen::Vector2d mount_tilt_rad = Eigen::Vector2d::Zero();
+  double reference_height_m = 0.080;                 // [reference] height_mm: its origin above the target's
+  Eigen::Vector2d centring_m = Eigen::Vector2d::Zero();      // [reference] centring_um: its body on the target rotor
+  Eigen::Vector2d mount_tilt_rad = Eigen::Vector2d::Zero();  // [reference] mount_tilt_arcsec: about x and y
   MechanicsSettings mechanics;
   EnvironmentSettings environment;
   AutocollimatorSettings autocollimator;
@@ -184,7 +189,8 @@ struct Scenario {
   std::vector<EffectSettings> effects;
 };
 
-/// Reads a scenario and applies `overrides` ("procedure.positions=12", in TOML syntax).
+/// Reads a scenario and applies `overrides`: "procedure.positions=12", in TOML syntax, where a single word needs no
+/// quotes. A later override wins. A list or [[effect]] blocks are replaced as a whole.
 ///
 /// @throws InputError with file:line for a syntax error, an unknown key (naming the nearest known one), a value out
 ///         of bounds or of the wrong type, an effect, place or parameter that is not in the catalogue, a file that
@@ -194,6 +200,8 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
                        const std::vector<std::string>& overrides = {});
 
 /// The scenario as TOML with every key written out, units in the keys; LoadScenario reads it back to the same bits.
+/// It stands alone: errors of the tables are in it, and other files are named by absolute paths.
+/// @throws std::logic_error if a number is not finite.
 std::string WriteScenario(const Scenario& scenario);
 
 /// Every key with unit, default, bounds and meaning, for `twinbench help scenario` and docs.

@@ -1,0 +1,103 @@
+#include "mechanics/drives.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace twinbench::mechanics {
+namespace {
+
+constexpr double kQuiet_rad = 0.01 / 3600.0 * std::numbers::pi / 180.0;  // 0.01 arcsec
+constexpr Nanoseconds kQuiet = 10'000'000;
+
+}  // namespace
+
+Nanoseconds ToNanoseconds(double time_s) {
+  if (!(time_s >= 0.0)) throw std::invalid_argument("plant: time only passes forwards");
+  return std::llround(time_s * 1e9);
+}
+
+void Commands::Start(Axis axis, double to_rad, double duration_s, Nanoseconds now) {
+  const std::size_t i = Index(axis);
+  if (!Ended(i, now)) throw std::logic_error("plant: a move cannot start while the axis' last profile runs");
+  profile_[i] = QuinticProfile(profile_[i].to_rad(), to_rad, duration_s);
+  start_[i] = now;
+}
+
+double Commands::Left_s(Nanoseconds now) const {
+  double left_s = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    // Rounded up, so that the profile has ended then.
+    const auto end = start_[i] + static_cast<Nanoseconds>(std::ceil(profile_[i].duration_s() * 1e9));
+    left_s = std::max(left_s, ToSeconds(end - now));
+  }
+  return left_s;
+}
+
+PeriodCommand Commands::Period(Nanoseconds time, Nanoseconds period) const {
+  PeriodCommand command;
+  Eigen::Vector2d speed;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    command.Set(k, At(i, time), At(i, time + period), ToSeconds(period));
+    speed[k] = At(i, time + period / 2).velocity_rad_s;
+  }
+  command.speed_products << speed[0] * speed[0], speed[0] * speed[1], speed[1] * speed[1];
+  return command;
+}
+
+DrivenPlant::DrivenPlant(const StackParameters& parameters)
+    : parameters_((Check(parameters), parameters)),
+      backlash_{Backlash(parameters.table[0].backlash_rad), Backlash(parameters.table[1].backlash_rad)},
+      period_(ToNanoseconds(parameters.servo_period_s)) {}
+
+void DrivenPlant::StartMove(Axis axis, double to_rad, double duration_s) {
+  commands_.Start(axis, to_rad, duration_s, now_);
+  if (asleep_) stepped_ = now_;
+  asleep_ = false;
+  quiet_ = 0;
+  OnStart();
+}
+
+void DrivenPlant::Advance(double dt_s) {
+  now_ += ToNanoseconds(dt_s);
+  while (!asleep_ && stepped_ + period_ <= now_) Tick();
+}
+
+void DrivenPlant::Tick() {
+  Step(stepped_);
+  stepped_ += period_;
+  if (backlash_[0].active() || backlash_[1].active()) FollowBacklash();
+  if (!commands_.Ended(stepped_)) return;
+  quiet_ = Deviation_rad().cwiseAbs().maxCoeff() < kQuiet_rad ? quiet_ + period_ : 0;
+  asleep_ = quiet_ >= kQuiet;
+}
+
+void DrivenPlant::FollowBacklash() {
+  const Eigen::Vector2d deviation = Deviation_rad();
+  for (std::size_t i = 0; i < 2; ++i) {
+    backlash_[i].Follow(commands_.At(i, stepped_).position_rad + deviation[static_cast<Eigen::Index>(i)]);
+  }
+}
+
+StackState DrivenPlant::State() const {
+  const Eigen::Vector2d deviation = Deviation_rad();
+  StackState state;
+  state.target_encoder_rad = commands_.At(0, now_).position_rad + deviation[0];
+  state.reference_encoder_rad = commands_.At(1, now_).position_rad + deviation[1];
+  state.target_rad = Backlash(backlash_[0]).Follow(state.target_encoder_rad);
+  state.reference_rad = Backlash(backlash_[1]).Follow(state.reference_encoder_rad);
+  const std::array<BearingPose, 2> bearings = Bearings(state.target_rad, state.reference_rad);
+  state.target_bearing = bearings[0];
+  state.reference_bearing = bearings[1];
+  return state;
+}
+
+void DrivenPlant::Mount(const ChainGeometry& geometry) {
+  if (!asleep_) throw std::logic_error("plant: mounting needs tables at rest");
+  parameters_.geometry = geometry;
+  OnMount();
+}
+
+}  // namespace twinbench::mechanics

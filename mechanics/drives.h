@@ -1,0 +1,96 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "mechanics/linear_model.h"
+#include "mechanics/plant.h"
+#include "mechanics/profile.h"
+#include "mechanics/servo.h"
+
+/// What the plants share: commanded motions of two axes, and the rhythm of their controllers.
+namespace twinbench::mechanics {
+
+/// Time since the plant was made, counted so that sums of pieces are exact [ns].
+using Nanoseconds = std::int64_t;
+
+/// @throws std::invalid_argument for a negative time.
+Nanoseconds ToNanoseconds(double time_s);
+inline double ToSeconds(Nanoseconds time) {
+  return static_cast<double>(time) / 1e9;
+}
+
+inline std::size_t Index(Axis axis) {
+  return axis == Axis::kTarget ? 0 : 1;
+}
+
+/// Commanded motions of both axes.
+class Commands {
+ public:
+  void Start(Axis axis, double to_rad, double duration_s, Nanoseconds now);
+  ProfilePoint At(std::size_t axis, Nanoseconds time) const {
+    return profile_[axis].At(ToSeconds(time - start_[axis]));
+  }
+  bool Ended(std::size_t axis, Nanoseconds time) const {
+    return ToSeconds(time - start_[axis]) >= profile_[axis].duration_s();
+  }
+  bool Ended(Nanoseconds time) const { return Ended(0, time) && Ended(1, time); }
+  Nanoseconds start(std::size_t axis) const { return start_[axis]; }
+  const QuinticProfile& profile(std::size_t axis) const { return profile_[axis]; }
+  /// Until both have ended.
+  double Left_s(Nanoseconds now) const;
+  /// What the controllers are told for the period that begins at `time`.
+  PeriodCommand Period(Nanoseconds time, Nanoseconds period) const;
+
+ private:
+  std::array<QuinticProfile, 2> profile_ = {QuinticProfile(0.0), QuinticProfile(0.0)};
+  std::array<Nanoseconds, 2> start_ = {0, 0};
+};
+
+/// A plant that lives from servo period to servo period. A sleeping plant begins its periods anew at the next move.
+class DrivenPlant : public Plant {
+ public:
+  explicit DrivenPlant(const StackParameters& parameters);
+
+  void StartMove(Axis axis, double to_rad, double duration_s) final;
+  void Advance(double dt_s) final;
+  bool Settled() const final { return asleep_; }
+  StackState State() const final;
+  void Mount(const ChainGeometry& geometry) final;
+
+ protected:
+  double ProfileLeft_s() const final { return commands_.Left_s(now_); }
+  /// Moves the stack through the period that begins at `time`.
+  virtual void Step(Nanoseconds time) = 0;
+  /// Encoders minus commands at the end of the last period.
+  virtual Eigen::Vector2d Deviation_rad() const = 0;
+  /// Bearings for rotors at these angles.
+  virtual std::array<BearingPose, 2> Bearings(double target_rad, double reference_rad) const = 0;
+  virtual void OnStart() {}
+  virtual void OnMount() {}
+
+  const StackParameters& parameters() const { return parameters_; }
+  const Commands& commands() const { return commands_; }
+  Nanoseconds period() const { return period_; }
+
+ private:
+  void Tick();
+  void FollowBacklash();
+
+  StackParameters parameters_;
+  Commands commands_;
+  std::array<Backlash, 2> backlash_;
+  Nanoseconds period_;
+  Nanoseconds now_ = 0;
+  Nanoseconds stepped_ = 0;  // up to when the periods are done
+  Nanoseconds quiet_ = 0;    // for how long the encoders have been near their commands
+  bool asleep_ = true;
+};
+
+/// Makers behind MakePlant.
+std::unique_ptr<Plant> MakeKinematicPlant(const StackParameters& parameters);
+std::unique_ptr<Plant> MakeLinearPlant(const StackParameters& parameters);
+std::unique_ptr<Plant> MakeBulletPlant(const StackParameters& parameters);
+
+}  // namespace twinbench::mechanics

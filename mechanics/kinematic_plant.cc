@@ -1,0 +1,65 @@
+#include <optional>
+#include <stdexcept>
+
+#include "mechanics/drives.h"
+#include "mechanics/sag.h"
+
+namespace twinbench::mechanics {
+namespace {
+
+class KinematicPlant : public Plant {
+ public:
+  explicit KinematicPlant(const StackParameters& parameters)
+      : parameters_((Check(parameters), parameters)),
+        backlash_{Backlash(parameters.table[0].backlash_rad), Backlash(parameters.table[1].backlash_rad)} {
+    Mount(parameters.geometry);
+  }
+
+  void StartMove(Axis axis, double to_rad, double duration_s) override {
+    commands_.Start(axis, to_rad, duration_s, now_);
+  }
+
+  void Advance(double dt_s) override {
+    now_ += ToNanoseconds(dt_s);
+    for (std::size_t i = 0; i < 2; ++i) backlash_[i].Follow(commands_.At(i, now_).position_rad);
+  }
+
+  bool Settled() const override { return commands_.Ended(now_); }
+
+  StackState State() const override {
+    StackState state;
+    state.target_rad = backlash_[0].rotor_rad();
+    state.reference_rad = backlash_[1].rotor_rad();
+    state.target_encoder_rad = commands_.At(0, now_).position_rad;
+    state.reference_encoder_rad = commands_.At(1, now_).position_rad;
+    const Vector12 q =
+        constant_sag_ ? *constant_sag_ : StaticDeflection(parameters_, state.target_rad, state.reference_rad);
+    state.target_bearing = BearingOf(q, 0);
+    state.reference_bearing = BearingOf(q, 1);
+    return state;
+  }
+
+  void Mount(const ChainGeometry& geometry) override {
+    if (!Settled()) throw std::logic_error("plant: mounting needs tables at rest");
+    parameters_.geometry = geometry;
+    constant_sag_.reset();
+    if (SagIsConstant(parameters_)) constant_sag_ = StaticDeflection(parameters_, 0.0, 0.0);
+  }
+
+ private:
+  double ProfileLeft_s() const override { return commands_.Left_s(now_); }
+
+  StackParameters parameters_;
+  Commands commands_;
+  std::array<Backlash, 2> backlash_;
+  std::optional<Vector12> constant_sag_;
+  Nanoseconds now_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Plant> MakeKinematicPlant(const StackParameters& parameters) {
+  return std::make_unique<KinematicPlant>(parameters);
+}
+
+}  // namespace twinbench::mechanics

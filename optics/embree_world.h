@@ -1,0 +1,65 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "optics/mesh.h"
+#include "optics/ray.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+struct RTCGeometryTy;
+
+/// Embree 3 or 4 behind plain types: triangles in float, packets of rays.
+namespace twinbench::optics {
+
+inline constexpr int kMaxPacket = 16;
+
+/// One packet's bounds and answers, a lane for each ray.
+struct alignas(64) Lanes {
+  int valid[kMaxPacket];  // -1 traced, 0 not
+  float near_m[kMaxPacket];
+  float far_m[kMaxPacket];
+  int triangle[kMaxPacket];  // of the proxies; kNothing or kFixture
+  float t_m[kMaxPacket];
+};
+
+class EmbreeWorld {
+ public:
+  EmbreeWorld();
+  ~EmbreeWorld();
+  EmbreeWorld(const EmbreeWorld&) = delete;
+  EmbreeWorld& operator=(const EmbreeWorld&) = delete;
+
+  /// Each mesh in a scene of its own, so that a new pose does not rebuild its tree.
+  void AddMesh(const TriangleMesh& mesh);
+  void SetMeshPose(int index, const Eigen::Isometry3d& X_WM);
+
+  /// All proxies as one geometry. With `same_topology` the triangles are as before and only the vertices moved.
+  void SetProxies(const TriangleMesh& proxies, bool same_topology);
+
+  void Commit();
+
+  int packet_width() const { return packet_width_; }
+  RTCSceneTy* scene() const { return scene_; }
+
+  /// Nearest triangle for `n` <= packet_width() rays from `begin` on.
+  void Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Lanes& lanes) const;
+
+  /// Whether a mesh is in the way (proxies do not count): triangle becomes kFixture or kNothing.
+  void Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Lanes& lanes) const;
+
+ private:
+  struct Instance {
+    RTCSceneTy* scene;
+    RTCGeometryTy* geometry;
+  };
+  RTCDeviceTy* device_ = nullptr;
+  RTCSceneTy* scene_ = nullptr;     // proxies and meshes
+  RTCSceneTy* fixtures_ = nullptr;  // meshes alone, for shadow rays
+  RTCGeometryTy* proxies_ = nullptr;
+  std::vector<Instance> instances_;
+  int packet_width_ = kMaxPacket;
+};
+
+}  // namespace twinbench::optics

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "optics/surface.h"
+
+/// The arithmetic shared by every path through a scene: one formula, so one and many rays give the same bits.
+namespace twinbench::optics {
+
+/// A surface as plain numbers: origin, axes (rows of R_SW), shape and aperture.
+struct Frame {
+  double cx, cy, cz;
+  double xx, xy, xz;
+  double yx, yy, yz;
+  double zx, zy, zz;
+  double curvature, one_plus_conic;
+  double half_x, half_y, radius2;
+};
+
+Frame MakeFrame(const Surface& surface);
+
+/// Where a ray meets the plane z_S = 0, as (t, x, y).
+///
+/// x and y come from t d - (c - o), not from o + t d - c: differences first keeps the last digits.
+[[gnu::always_inline]] inline void MeetPlane(const Frame& f, double ox, double oy, double oz, double dx, double dy,
+                                             double dz, double& t, double& x, double& y) {
+  const double rx = f.cx - ox, ry = f.cy - oy, rz = f.cz - oz;
+  t = (rx * f.zx + ry * f.zy + rz * f.zz) / (dx * f.zx + dy * f.zy + dz * f.zz);
+  const double px = t * dx - rx, py = t * dy - ry, pz = t * dz - rz;
+  x = px * f.xx + py * f.xy + pz * f.xz;
+  y = px * f.yx + py * f.yy + pz * f.yz;
+}
+
+/// Roots of A t^2 + 2 B t + C = 0 without cancellation; the first stays finite when A -> 0 (collimated on a
+/// paraboloid).
+[[gnu::always_inline]] inline void StableRoots(double a, double b, double c, double& t1, double& t2) {
+  const double root = std::sqrt(b * b - a * c);
+  const double w = -(b + std::copysign(root, b));
+  t1 = c / w;
+  t2 = w / a;
+}
+
+/// Where a ray meets the sheet of a conic that carries the vertex; t is infinite for none.
+[[gnu::always_inline]] inline void MeetConic(const Frame& f, double t_min, double ox, double oy, double oz,
+                                             double dx, double dy, double dz, double& t, double& x, double& y) {
+  const double rx = ox - f.cx, ry = oy - f.cy, rz = oz - f.cz;
+  const double px = rx * f.xx + ry * f.xy + rz * f.xz, qx = dx * f.xx + dy * f.xy + dz * f.xz;
+  const double py = rx * f.yx + ry * f.yy + rz * f.yz, qy = dx * f.yx + dy * f.yy + dz * f.yz;
+  const double pz = rx * f.zx + ry * f.zy + rz * f.zz, qz = dx * f.zx + dy * f.zy + dz * f.zz;
+  const double c = f.curvature, k = f.one_plus_conic;
+  double t1, t2;
+  StableRoots(c * (qx * qx + qy * qy + k * qz * qz), c * (px * qx + py * qy + k * pz * qz) - qz,
+              c * (px * px + py * py + k * pz * pz) - 2.0 * pz, t1, t2);
+  const double none = std::numeric_limits<double>::infinity();
+  // Beyond the equator 1 - (1 + k) c z changes sign: that is the other half of the ellipsoid or the other sheet.
+  const bool good1 = (t1 > t_min) & (k * c * (pz + t1 * qz) < 1.0);
+  const bool good2 = (t2 > t_min) & (k * c * (pz + t2 * qz) < 1.0);
+  t1 = good1 ? t1 : none;
+  t2 = good2 ? t2 : none;
+  t = t1 < t2 ? t1 : t2;
+  x = px + t * qx;
+  y = py + t * qy;
+}
+
+[[gnu::always_inline]] inline bool InAperture(const Frame& f, double x, double y) {
+  // Named first: no branches, so that the loops over rays become vector code.
+  const bool in_x = std::abs(x) <= f.half_x, in_y = std::abs(y) <= f.half_y, in_circle = x * x + y * y <= f.radius2;
+  return in_x & in_y & in_circle;
+}
+
+/// Takes surface `id` into the running nearest hit of `n` rays; of equal distances the lower id wins.
+void TakeNearest(const Frame& frame, int id, const RayBatch& rays, std::size_t begin, std::size_t n, double t_min,
+                 HitBatch& hits);
+
+/// `n` rays from `begin` on as floats, into six arrays: origin x, y, z, direction x, y, z.
+void ToFloat(const RayBatch& rays, std::size_t begin, std::size_t n, const std::array<float*, 6>& to);
+
+/// One order of a plane grating on to a plane, for all rays; u, v are NaN where the ray misses the grating's
+/// aperture or the order is evanescent. The fixed sequence laser -> grating -> detector plane.
+///
+/// @param order_lambda_rho  m * wavelength * groove density; grooves along the frame's y, orders along +x.
+void TraceSequence(const Frame& grating, double order_lambda_rho, const Frame& plane, const RayBatch& rays,
+                   double* u_m, double* v_m);
+
+}  // namespace twinbench::optics

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+/// Light as straight rays, in metres. Directions are unit vectors.
+namespace twinbench::optics {
+
+struct Ray {
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+};
+
+/// Many rays as separate arrays, all of one length, the way the vector units want them.
+struct RayBatch {
+  std::vector<double> ox, oy, oz;  // origin [m]
+  std::vector<double> dx, dy, dz;  // unit direction
+
+  std::size_t size() const { return ox.size(); }
+  void Add(const Ray& ray);
+  Ray At(std::size_t i) const { return {{ox[i], oy[i], oz[i]}, {dx[i], dy[i], dz[i]}}; }
+};
+
+/// kCoherent for beams, whose neighbours travel together; kScattered for stray light in all directions.
+enum class RayOrder { kCoherent, kScattered };
+
+/// What is not an optical surface in HitBatch::surface.
+inline constexpr int kNothing = -1;
+inline constexpr int kFixture = -2;  // a mesh: absorbed
+
+/// The first thing each ray meets.
+struct HitBatch {
+  std::vector<int> surface;  // index of the surface, kNothing or kFixture
+  std::vector<double> t_m;   // path length; infinite for kNothing
+  std::vector<double> x_m;   // in the surface's frame; undefined unless a surface was hit
+  std::vector<double> y_m;
+
+  void Reset(std::size_t size);
+};
+
+}  // namespace twinbench::optics

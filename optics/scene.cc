@@ -1,0 +1,281 @@
+#include "optics/scene.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "optics/embree_world.h"
+#include "optics/kernels.h"
+
+namespace twinbench::optics {
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+/// Distance along a ray below which float cannot tell two things apart, for a scene of this extent.
+double FloatBlur(double extent_m) {
+  return 1e-6 + 1e-6 * extent_m;
+}
+
+Eigen::AlignedBox3d BoundsOf(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& vertex : mesh.vertices_m) box.extend(vertex);
+  return box;
+}
+
+void Append(const TriangleMesh& from, TriangleMesh& to) {
+  const auto offset = static_cast<std::uint32_t>(to.vertices_m.size());
+  to.vertices_m.insert(to.vertices_m.end(), from.vertices_m.begin(), from.vertices_m.end());
+  for (const auto& [a, b, c] : from.triangles) to.triangles.push_back({a + offset, b + offset, c + offset});
+}
+
+/// Few small numbers, each once.
+struct SmallSet {
+  std::array<int, kMaxPacket> item;
+  int size = 0;
+
+  bool Insert(int value) {
+    for (int i = 0; i < size; ++i) {
+      if (item[static_cast<std::size_t>(i)] == value) return false;
+    }
+    item[static_cast<std::size_t>(size++)] = value;
+    return true;
+  }
+};
+
+}  // namespace
+
+struct Scene::Impl {
+  std::vector<Surface> surfaces;
+  std::vector<Frame> frames;
+  std::vector<int> surface_of_triangle;
+  std::vector<std::vector<int>> neighbours;  // of each surface: those whose proxies' boxes touch its own
+  std::vector<TriangleMesh> meshes;
+  std::vector<Eigen::Isometry3d> mesh_poses;
+  EmbreeWorld world;
+  float blur_m = 0.0f;
+  bool committed = false;
+  bool same_topology = false;
+
+  void CommitProxies();
+  void FindNeighbours(const std::vector<Eigen::AlignedBox3d>& boxes);
+  double Extent() const;
+  void TracePacket(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, HitBatch& hits) const;
+  void Refine(const RayBatch& rays, std::size_t begin, std::size_t n, const Lanes& lanes, HitBatch& hits) const;
+  bool Continue(std::size_t begin, std::size_t n, Lanes& lanes, HitBatch& hits) const;
+  void TakeSurfaces(const RayBatch& rays, HitBatch& hits) const;
+  void Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, HitBatch& hits) const;
+};
+
+double Scene::Impl::Extent() const {
+  double extent = 0.0;
+  for (const Surface& s : surfaces) {
+    extent = std::max(extent, s.X_WS.translation().norm() + std::hypot(s.half_x_m, s.half_y_m));
+  }
+  return extent;
+}
+
+void Scene::Impl::CommitProxies() {
+  blur_m = static_cast<float>(FloatBlur(Extent()));
+  TriangleMesh proxies;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  surface_of_triangle.clear();
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const TriangleMesh proxy = ProxyOf(surfaces[i], 5.0 * blur_m);
+    boxes.push_back(BoundsOf(proxy));
+    surface_of_triangle.resize(surface_of_triangle.size() + proxy.triangles.size(), static_cast<int>(i));
+    Append(proxy, proxies);
+  }
+  world.SetProxies(proxies, same_topology);
+  same_topology = true;
+  FindNeighbours(boxes);
+}
+
+void Scene::Impl::FindNeighbours(const std::vector<Eigen::AlignedBox3d>& boxes) {
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(2.0 * blur_m);
+  neighbours.assign(boxes.size(), {});
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Eigen::AlignedBox3d wide(boxes[i].min() - margin, boxes[i].max() + margin);
+    for (std::size_t j = 0; j < boxes.size(); ++j) {
+      if (i != j && wide.intersects(boxes[j])) neighbours[i].push_back(static_cast<int>(j));
+    }
+  }
+}
+
+/// Recomputes in double every surface that Embree named, and those too close to it to be told apart in float.
+/// Testing a surface against all rays of the packet is harmless: the nearest true hit wins.
+void Scene::Impl::Refine(const RayBatch& rays, std::size_t begin, std::size_t n, const Lanes& lanes,
+                         HitBatch& hits) const {
+  SmallSet done;
+  int last = kNothing;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!lanes.valid[i] || lanes.triangle[i] < 0) continue;
+    const int surface = surface_of_triangle[static_cast<std::size_t>(lanes.triangle[i])];
+    if (surface == last || !done.Insert(surface)) continue;
+    last = surface;
+    TakeNearest(frames[static_cast<std::size_t>(surface)], surface, rays, begin, n, t_min_m, hits);
+    for (const int other : neighbours[static_cast<std::size_t>(surface)]) {
+      TakeNearest(frames[static_cast<std::size_t>(other)], other, rays, begin, n, t_min_m, hits);
+    }
+  }
+}
+
+/// Settles the lanes whose answer is final; the others go on behind the proxy that deceived them.
+bool Scene::Impl::Continue(std::size_t begin, std::size_t n, Lanes& lanes, HitBatch& hits) const {
+  bool any = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!lanes.valid[i]) continue;
+    const double t = lanes.t_m[i];
+    double& best = hits.t_m[begin + i];
+    if (lanes.triangle[i] == kFixture && t < best) {
+      hits.surface[begin + i] = kFixture;
+      best = t;
+    }
+    const bool settled = lanes.triangle[i] < 0 || best <= t + blur_m;
+    lanes.valid[i] = settled ? 0 : -1;
+    // At least a few float steps, or a far proxy would be found again and again.
+    lanes.near_m[i] = lanes.t_m[i] * (1.0f + 4.0f * std::numeric_limits<float>::epsilon()) + blur_m;
+    lanes.far_m[i] = static_cast<float>(best) + blur_m;
+    any |= !settled;
+  }
+  return any;
+}
+
+void Scene::Impl::TracePacket(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
+                              HitBatch& hits) const {
+  Lanes lanes;
+  for (std::size_t i = 0; i < kMaxPacket; ++i) {
+    lanes.valid[i] = i < n ? -1 : 0;
+    lanes.near_m[i] = static_cast<float>(0.5 * t_min_m);
+    lanes.far_m[i] = kFar;
+  }
+  do {
+    world.Intersect(rays, begin, n, order, lanes);
+    Refine(rays, begin, n, lanes, hits);
+  } while (Continue(begin, n, lanes, hits));
+}
+
+void Scene::Impl::TakeSurfaces(const RayBatch& rays, HitBatch& hits) const {
+  constexpr std::size_t kTile = 256;  // stays in the first-level cache while every surface passes over it
+  for (std::size_t begin = 0; begin < rays.size(); begin += kTile) {
+    const std::size_t n = std::min(kTile, rays.size() - begin);
+    for (std::size_t s = 0; s < frames.size(); ++s) {
+      TakeNearest(frames[s], static_cast<int>(s), rays, begin, n, t_min_m, hits);
+    }
+  }
+}
+
+void Scene::Impl::Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
+                         HitBatch& hits) const {
+  Lanes lanes;
+  for (std::size_t i = 0; i < kMaxPacket; ++i) {
+    lanes.valid[i] = i < n ? -1 : 0;
+    lanes.near_m[i] = static_cast<float>(t_min_m);
+    lanes.far_m[i] = i < n ? static_cast<float>(hits.t_m[begin + i]) : 0.0f;
+  }
+  world.Occluded(rays, begin, n, order, lanes);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (lanes.triangle[i] != kFixture) continue;
+    hits.surface[begin + i] = kFixture;
+    hits.t_m[begin + i] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+Scene::Scene() : impl_(std::make_unique<Impl>()) {}
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+int Scene::AddSurface(const Surface& surface) {
+  Validate(surface);
+  impl_->surfaces.push_back(surface);
+  impl_->frames.push_back(MakeFrame(surface));
+  impl_->committed = impl_->same_topology = false;
+  return static_cast<int>(impl_->surfaces.size()) - 1;
+}
+
+int Scene::AddMesh(const TriangleMesh& mesh, const Eigen::Isometry3d& X_WM) {
+  Validate(mesh);
+  impl_->meshes.push_back(mesh);
+  impl_->mesh_poses.push_back(X_WM);
+  impl_->world.AddMesh(mesh);
+  const int index = static_cast<int>(impl_->meshes.size()) - 1;
+  SetMeshPose(index, X_WM);
+  return index;
+}
+
+void Scene::SetSurfacePose(int index, const Eigen::Isometry3d& X_WS) {
+  Surface& surface = impl_->surfaces.at(static_cast<std::size_t>(index));
+  surface.X_WS = X_WS;
+  Validate(surface);
+  impl_->frames[static_cast<std::size_t>(index)] = MakeFrame(surface);
+  impl_->committed = false;
+}
+
+void Scene::SetMeshPose(int index, const Eigen::Isometry3d& X_WM) {
+  impl_->mesh_poses.at(static_cast<std::size_t>(index)) = X_WM;
+  impl_->world.SetMeshPose(index, X_WM);
+  impl_->committed = false;
+}
+
+void Scene::Commit() {
+  impl_->CommitProxies();
+  impl_->world.Commit();
+  impl_->committed = true;
+}
+
+const std::vector<Surface>& Scene::surfaces() const {
+  return impl_->surfaces;
+}
+int Scene::packet_width() const {
+  return impl_->world.packet_width();
+}
+RTCSceneTy* Scene::embree_scene() const {
+  return impl_->world.scene();
+}
+
+void Scene::Intersect(const RayBatch& rays, HitBatch& hits, RayOrder order) const {
+  if (!impl_->committed) throw std::logic_error("Scene::Intersect before Commit");
+  hits.Reset(rays.size());
+  const auto width = static_cast<std::size_t>(packet_width());
+  for (std::size_t begin = 0; begin < rays.size(); begin += width) {
+    impl_->TracePacket(rays, begin, std::min(width, rays.size() - begin), order, hits);
+  }
+}
+
+void Scene::IntersectAnalytic(const RayBatch& rays, HitBatch& hits) const {
+  hits.Reset(rays.size());
+  impl_->TakeSurfaces(rays, hits);
+  for (std::size_t m = 0; m < impl_->meshes.size(); ++m) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const double t = MeetMesh(impl_->meshes[m], impl_->mesh_poses[m], rays.At(i), t_min_m);
+      if (!(t < hits.t_m[i])) continue;
+      hits.surface[i] = kFixture;
+      hits.t_m[i] = t;
+    }
+  }
+}
+
+void Scene::IntersectHybrid(const RayBatch& rays, HitBatch& hits, RayOrder order) const {
+  if (!impl_->committed) throw std::logic_error("Scene::IntersectHybrid before Commit");
+  hits.Reset(rays.size());
+  impl_->TakeSurfaces(rays, hits);
+  if (impl_->meshes.empty()) return;
+  const auto width = static_cast<std::size_t>(packet_width());
+  for (std::size_t begin = 0; begin < rays.size(); begin += width) {
+    impl_->Shadow(rays, begin, std::min(width, rays.size() - begin), order, hits);
+  }
+}
+
+bool Scene::Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const {
+  RayBatch ray;
+  ray.Add({from_m, (to_m - from_m).normalized()});
+  HitBatch hits;
+  hits.Reset(1);
+  hits.t_m[0] = (to_m - from_m).norm() - t_min_m;
+  impl_->Shadow(ray, 0, 1, RayOrder::kCoherent, hits);
+  return hits.surface[0] == kFixture;
+}
+
+}  // namespace twinbench::optics

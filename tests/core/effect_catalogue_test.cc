@@ -1,0 +1,68 @@
+#include "twin/core/effect_catalogue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "twin/core/units.h"
+
+namespace twinbench {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(EffectCatalogue, HasTheEffectsOfTheRotaryBench) {
+  std::vector<std::string> names;
+  for (const EffectEntry& entry : EffectCatalogue()) names.push_back(entry.name);
+  EXPECT_THAT(names,
+              testing::UnorderedElementsAre("psd_gain", "psd_roll", "psd_nonlinearity", "stray_light",
+                                            "psd_distance", "wavelength_offset", "wavelength_temperature",
+                                            "incidence_offset", "laser_drift", "mount_creep", "thermal_tilt",
+                                            "backlash", "settling", "reclamp_frame", "bearing_half_frequency",
+                                            "tone", "slip", "adc_step", "crosstalk", "outliers", "convention"));
+}
+
+TEST(EffectCatalogue, SaysWhereAnEffectCanAct) {
+  EXPECT_THAT(FindEffect("psd_gain")->places, ElementsAre("psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"));
+  EXPECT_THAT(FindEffect("laser_drift")->places, ElementsAre("yaw", "pitch"));
+  EXPECT_THAT(FindEffect("slip")->places, ElementsAre("yaw", "tilt", "lateral"));
+  EXPECT_TRUE(FindEffect("wavelength_offset")->places.empty());
+  EXPECT_EQ(FindEffect("backlash")->default_place, "target");
+  EXPECT_EQ(FindEffect("no_such_effect"), nullptr);
+}
+
+TEST(EffectCatalogue, HasDefaultsWithinBoundsAndPlacesThatExist) {
+  for (const EffectEntry& entry : EffectCatalogue()) {
+    const std::set<std::string> places(entry.places.begin(), entry.places.end());
+    EXPECT_FALSE(entry.title.empty()) << entry.name;
+    EXPECT_TRUE(entry.default_place.empty() || places.contains(entry.default_place)) << entry.name;
+    for (const EffectParameter& parameter : entry.parameters) {
+      EXPECT_TRUE(std::isfinite(parameter.default_SI)) << entry.name << " " << parameter.name;
+      EXPECT_LE(parameter.lower_SI, parameter.default_SI) << entry.name << " " << parameter.name;
+      EXPECT_GE(parameter.upper_SI, parameter.default_SI) << entry.name << " " << parameter.name;
+      for (const std::string& place : parameter.only_at) EXPECT_TRUE(places.contains(place)) << entry.name;
+    }
+  }
+}
+
+TEST(EffectCatalogue, GivesKeysTheirUnitAndValuesInSI) {
+  const EffectParameter& roll = FindEffect("psd_roll")->parameters.front();
+  EXPECT_EQ(roll.Key(), "roll_mrad");
+  EXPECT_EQ(roll.default_SI, 5.0 * units::mrad);
+  EXPECT_EQ(FindEffect("psd_gain")->parameters.front().Key(), "gain_error");
+  const EffectParameter& drift = FindEffect("laser_drift")->parameters.front();
+  EXPECT_EQ(drift.Key(), "drift_urad_per_h");
+  EXPECT_DOUBLE_EQ(drift.default_SI, 20e-6 / 3600.0);
+}
+
+TEST(EffectCatalogue, KnowsWhichParameterBelongsToAPlace) {
+  const auto& parameters = FindEffect("slip")->parameters;
+  EXPECT_TRUE(parameters[0].BelongsTo("yaw"));
+  EXPECT_FALSE(parameters[0].BelongsTo("lateral"));
+  EXPECT_TRUE(parameters[2].BelongsTo("lateral"));
+}
+
+}  // namespace
+}  // namespace twinbench

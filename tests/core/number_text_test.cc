@@ -1,0 +1,87 @@
+#include "twin/core/number_text.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "twin/core/units.h"
+
+namespace twinbench {
+namespace {
+
+TEST(ParseNumber, TakesTheWholeTextOrNothing) {
+  EXPECT_EQ(ParseNumber(" 1.5e3 "), 1500.0);
+  EXPECT_EQ(ParseNumber("+2"), 2.0);
+  EXPECT_EQ(ParseNumber("1.5x"), std::nullopt);
+  EXPECT_EQ(ParseNumber("1,5"), std::nullopt);
+  EXPECT_EQ(ParseNumber(""), std::nullopt);
+  EXPECT_EQ(ParseNumber("+-2"), std::nullopt);
+}
+
+TEST(ParseNumber, RefusesWhatIsNotFinite) {
+  EXPECT_EQ(ParseNumber("nan"), std::nullopt);
+  EXPECT_EQ(ParseNumber("inf"), std::nullopt);
+  EXPECT_EQ(ParseNumber("1e999"), std::nullopt);
+}
+
+TEST(ParseWholeNumber, RefusesFractions) {
+  EXPECT_EQ(ParseWholeNumber("-12"), -12);
+  EXPECT_EQ(ParseWholeNumber("1.0"), std::nullopt);
+  EXPECT_EQ(ParseWholeNumber("99999999999999999999"), std::nullopt);
+}
+
+TEST(ParseSeed, GoesToTheLargestOfSixtyFourBits) {
+  EXPECT_EQ(ParseSeed("18446744073709551615"), std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(ParseSeed("-1"), std::nullopt);
+}
+
+TEST(ParseInUnit, GivesTheProductThatTheSourceCodeGives) {
+  EXPECT_EQ(ParseInUnit("0.02", units::arcsec), 0.02 * units::arcsec);
+  EXPECT_EQ(ParseInUnit("650", units::nm), 650.0 * units::nm);
+}
+
+TEST(PrintInUnit, WritesWhatAPersonWouldWrite) {
+  EXPECT_EQ(PrintInUnit(650.0 * units::nm, units::nm), "650");
+  EXPECT_EQ(PrintInUnit(0.02 * units::arcsec, units::arcsec), "0.02");
+  EXPECT_EQ(PrintInUnit(-0.1, 1.0), "-0.1");
+}
+
+TEST(PrintInUnit, RefusesWhatIsNotFinite) {
+  EXPECT_THROW(PrintInUnit(std::nan(""), 1.0), std::logic_error);
+  EXPECT_THROW(PrintInUnit(std::numeric_limits<double>::infinity(), 1.0), std::logic_error);
+}
+
+/// Any finite number: random bits.
+double AnyFinite(std::mt19937_64& random) {
+  for (;;) {
+    const double value = std::bit_cast<double>(random());
+    // Outside, value / factor or the extended product leaves the normal doubles; no length or angle is there.
+    if (std::abs(value) > 1e-280 && std::abs(value) < 1e280) return value;
+  }
+}
+
+TEST(PrintInUnit, IsReadBackToTheSameBitsWithEveryFactor) {
+  std::mt19937_64 random(1);
+  for (const double to_SI : {1.0, units::deg, units::arcsec, units::mrad, units::um, units::nm, units::mm, 1e6,
+                             units::urad / units::hour}) {
+    for (int i = 0; i < 2000; ++i) {
+      const double value = AnyFinite(random);
+      const std::string text = PrintInUnit(value, to_SI);
+      const auto read = ParseInUnit(text, to_SI);
+      ASSERT_TRUE(read) << text;
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(*read), std::bit_cast<std::uint64_t>(value)) << text << " * " << to_SI;
+    }
+  }
+}
+
+TEST(PrintInUnit, KeepsTheSignOfZero) {
+  const auto read = ParseInUnit(PrintInUnit(-0.0, units::mm), units::mm);
+  EXPECT_EQ(*read, 0.0);
+  EXPECT_TRUE(std::signbit(*read));
+}
+
+}  // namespace
+}  // namespace twinbench

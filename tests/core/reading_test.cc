@@ -1,0 +1,203 @@
+#include "twin/core/reading.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include "tests/core/input_error.h"
+#include "twin/core/units.h"
+
+namespace twinbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kHeader =
+    "reading,time_s,setup,pass,direction,position,phase,target_deg,reference_deg,psd_a_x_V,psd_a_y_V,psd_b_x_V,"
+    "psd_b_y_V";
+
+std::vector<Reading> Parse(const std::string& text) {
+  std::istringstream in(text);
+  return ParseReadingsCsv(in, "r.csv");
+}
+
+std::string Write(const std::vector<Reading>& readings) {
+  std::ostringstream out;
+  WriteReadingsCsv(readings, out);
+  return out.str();
+}
+
+/// The message about one row under kHeader.
+std::string RowError(const std::string& row) {
+  return MessageOf([&] { Parse(std::string(kHeader) + "\n" + row + "\n"); });
+}
+
+Reading AnyReading(int number, std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  Reading r;
+  r.reading = number;
+  r.time = Time(Duration(1'000'000'000'000'000'001LL + number));  // 31 years: a double of seconds would lose these
+  r.setup = number % 4;
+  r.pass = number % 3;
+  r.direction = number % 2 ? 1 : -1;
+  r.position = number % 36;
+  r.phase = static_cast<Phase>(number % kPhases);
+  r.n_samples = number % 5 ? 100 : 0;
+  for (double* value : {&r.target_rad, &r.reference_rad, &r.dwell_s, &r.temperature_degC, &r.autocollimator_yaw_rad,
+                        &r.autocollimator_tilt_rad})
+    *value = normal(random);
+  for (double& mean_V : r.mean_V) mean_V = normal(random);
+  for (double& std_V : r.std_V) std_V = std::abs(normal(random));
+  return r;
+}
+
+void ExpectSame(const Reading& a, const Reading& b) {
+  EXPECT_EQ(a.reading, b.reading);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.setup, b.setup);
+  EXPECT_EQ(a.pass, b.pass);
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.phase, b.phase);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.n_samples, b.n_samples);
+  EXPECT_EQ(a.target_rad, b.target_rad);
+  EXPECT_EQ(a.reference_rad, b.reference_rad);
+  EXPECT_EQ(a.mean_V, b.mean_V);
+  EXPECT_EQ(a.std_V, b.std_V);
+  EXPECT_EQ(a.dwell_s, b.dwell_s);
+  EXPECT_EQ(a.temperature_degC, b.temperature_degC);
+  EXPECT_EQ(a.autocollimator_yaw_rad, b.autocollimator_yaw_rad);
+  EXPECT_EQ(a.autocollimator_tilt_rad, b.autocollimator_tilt_rad);
+  EXPECT_EQ(a.extra, b.extra);
+}
+
+TEST(ReadingsCsv, AreReadBackToTheSameBits) {
+  std::mt19937_64 random(3);
+  std::vector<Reading> readings;
+  for (int i = 0; i < 300; ++i) readings.push_back(AnyReading(i, random));
+  readings[7].extra = {{"operator", "A, B"}, {"humidity_percent", "41"}};
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (i != 7) readings[i].extra = {{"operator", ""}, {"humidity_percent", ""}};
+  }
+  const auto read = Parse(Write(readings));
+  ASSERT_EQ(read.size(), readings.size());
+  for (std::size_t i = 0; i < read.size(); ++i) ExpectSame(read[i], readings[i]);
+}
+
+TEST(ReadingsCsv, KeepTimesToTheNanosecond) {
+  for (const std::int64_t ns : {std::int64_t{0}, std::int64_t{1}, std::int64_t{-1}, std::int64_t{883'000'000'000},
+                                std::int64_t{9'199'999'999'999'999'999}}) {
+    Reading reading;
+    reading.time = Time(Duration(ns));
+    reading.target_rad = reading.reference_rad = 0.0;
+    reading.mean_V.fill(0.0);
+    EXPECT_EQ(Parse(Write({reading})).front().time.time_since_epoch().count(), ns);
+  }
+}
+
+TEST(ReadingsCsv, OfTheOracleHaveNoOptionalColumns) {
+  const auto readings = ReadReadingsCsv(TWINBENCH_TEST_DATA "/oracle/full_circle_reseat.csv");
+  ASSERT_EQ(readings.size(), 144u);     // 36 positions, 4 set-ups
+  const Reading& second = readings[1];  // 1,full_circle,0,0,1,1,887.00,10.0,-10.0,-0.045273009,-0.012127348,...
+  EXPECT_EQ(second.reading, 1);
+  EXPECT_EQ(second.phase, Phase::kFullCircle);
+  EXPECT_EQ(second.time, Time(Duration(887'000'000'000)));
+  EXPECT_EQ(second.target_rad, 10.0 * units::deg);
+  EXPECT_EQ(second.reference_rad, -10.0 * units::deg);
+  EXPECT_EQ(second.mean_V[0], -0.045273009);
+  EXPECT_EQ(second.mean_V[1], -0.012127348);
+  EXPECT_TRUE(std::isnan(second.std_V[0]));
+  EXPECT_TRUE(std::isnan(second.temperature_degC));
+  EXPECT_EQ(second.n_samples, 0);
+}
+
+TEST(ReadingsCsv, KeepColumnsThatWeDoNotKnow) {
+  const std::string header = "gripper," + std::string(kHeader) + ",\"air, top\"";
+  const auto readings = Parse(header + "\nG7,0,0,0,0,1,0,full_circle,0,0,1,2,3,4,calm\n");
+  EXPECT_EQ(readings[0].extra, (std::map<std::string, std::string>{{"air, top", "calm"}, {"gripper", "G7"}}));
+  EXPECT_EQ(Parse(Write(readings))[0].extra, readings[0].extra);
+}
+
+TEST(ReadingsCsv, HaveAStatusOnlyIfSomethingWentWrong) {
+  std::mt19937_64 random(4);
+  std::vector<Reading> readings = {AnyReading(0, random), AnyReading(1, random)};
+  EXPECT_THAT(Write(readings), Not(HasSubstr("status")));
+  readings[1].status = ReadingStatus::kSaturated;
+  readings[1].mean_V.fill(kNaN);
+  readings[1].std_V.fill(kNaN);
+  const auto read = Parse(Write(readings));
+  EXPECT_EQ(read[0].status, ReadingStatus::kOk);
+  EXPECT_EQ(read[1].status, ReadingStatus::kSaturated);
+  EXPECT_TRUE(std::isnan(read[1].mean_V[0]));
+}
+
+TEST(ReadingsCsv, CallAReadingWithAnEmptyVoltageMissing) {
+  const auto readings = Parse(std::string(kHeader) + "\n0,0,0,0,1,0,full_circle,0,0,1,,3,4\n");
+  EXPECT_EQ(readings[0].status, ReadingStatus::kMissing);
+  for (const double mean_V : readings[0].mean_V) EXPECT_TRUE(std::isnan(mean_V));
+}
+
+TEST(ReadingsCsv, NameEveryMissingColumnAtOnce) {
+  EXPECT_EQ(
+      MessageOf(
+          [] { Parse("# exported\nreading,time_s,setup,pass,position,phase,target_deg,psd_a_x_V,psd_a_y_V\n"); }),
+      "r.csv:2: required columns are missing: direction, reference_deg, psd_b_x_V, psd_b_y_V; expected readings "
+      "of the bench rotary_4dof");
+}
+
+TEST(ReadingsCsv, NameLineColumnAndFaultOfABadField) {
+  EXPECT_EQ(RowError("0,0,0,0,1,0,full_circle,0,0,1,x,3,4"),
+            "r.csv:2: psd_a_y_V is \"x\"; expected a finite number of V, or nothing");
+  EXPECT_EQ(RowError("0,0,0,0,1,0,full_circle,,0,1,2,3,4"),
+            "r.csv:2: target_deg is \"\"; expected a finite number");
+  EXPECT_EQ(RowError("0,0,0,0,1,0,full_circle,inf,0,1,2,3,4"),
+            "r.csv:2: target_deg is \"inf\"; expected a finite number");
+  EXPECT_EQ(RowError("0,0,0,0,1,0,fullcircle,0,0,1,2,3,4"),
+            "r.csv:2: phase is \"fullcircle\"; expected calibration, full_circle, stability or verification");
+  EXPECT_EQ(RowError("0,0,0,0,2,0,full_circle,0,0,1,2,3,4"), "r.csv:2: direction is \"2\"; expected 1 or -1");
+  EXPECT_EQ(RowError("-1,0,0,0,1,0,full_circle,0,0,1,2,3,4"),
+            "r.csv:2: reading is \"-1\"; expected a whole number, 0 or more");
+  EXPECT_EQ(RowError("0,0,0.5,0,1,0,full_circle,0,0,1,2,3,4"),
+            "r.csv:2: setup is \"0.5\"; expected a whole number, 0 or more");
+  EXPECT_EQ(RowError("0,soon,0,0,1,0,full_circle,0,0,1,2,3,4"),
+            "r.csv:2: time_s is \"soon\"; expected seconds since the start of the run");
+  EXPECT_EQ(RowError("0,1e10,0,0,1,0,full_circle,0,0,1,2,3,4"),
+            "r.csv:2: time_s is \"1e10\"; expected seconds since the start of the run");
+  EXPECT_EQ(RowError("0,0,0,0,1,0,full_circle,0,0,1,2,3"), "r.csv:2: 12 fields; expected 13, as in the header");
+}
+
+TEST(ReadingsCsv, NameAStatusThatDoesNotExist) {
+  EXPECT_EQ(MessageOf([] { Parse(std::string(kHeader) + ",status\n0,0,0,0,1,0,full_circle,0,0,1,2,3,4,fine\n"); }),
+            "r.csv:2: status is \"fine\"; expected ok, saturated, no_light, clipped_spot, overrun or missing");
+}
+
+TEST(ReadingsCsv, RefuseReadingsOutOfOrder) {
+  const std::string first = "0,5,0,0,1,0,full_circle,0,0,1,2,3,4\n";
+  EXPECT_EQ(RowError(first + "0,6,0,0,1,0,full_circle,0,0,1,2,3,4"),
+            "r.csv:3: reading 0 comes twice; expected every number once");
+  EXPECT_EQ(RowError(first + "1,4.5,0,0,1,0,full_circle,0,0,1,2,3,4"),
+            "r.csv:3: time_s goes back to 4.5; expected time order");
+}
+
+TEST(ReadingsCsv, SayWhenTheDiskRefuses) {
+  EXPECT_THROW(WriteReadingsCsv({}, "/no/such/folder/r.csv"), BenchError);
+  EXPECT_EQ(MessageOf([] { ReadReadingsCsv("no_such.csv"); }),
+            "no_such.csv: the file cannot be opened; expected a readable readings.csv");
+}
+
+TEST(ReadingNames, LeadBackToTheirValues) {
+  for (int i = 0; i < kPhases; ++i) EXPECT_EQ(PhaseOf(PhaseName(static_cast<Phase>(i))), static_cast<Phase>(i));
+  for (int i = 0; i < kReadingStatuses; ++i) {
+    const auto status = static_cast<ReadingStatus>(i);
+    EXPECT_EQ(ReadingStatusOf(ReadingStatusName(status)), status);
+  }
+  EXPECT_EQ(PhaseOf("idle"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace twinbench

@@ -1,0 +1,291 @@
+#include "twin/core/run_record.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "tests/core/input_error.h"
+
+namespace twinbench {
+namespace {
+
+using testing::HasSubstr;
+
+Provenance AnyProvenance() {
+  return {"0.1.0", "twin", 18446744073709551615u, "2026-01-02T03:04:05Z"};
+}
+
+/// A reading that follows from its number, so that the one that comes back can be checked.
+Reading ReadingOf(int number) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(number));
+  std::normal_distribution<double> normal;
+  Reading r;
+  r.reading = number;
+  r.time = Time(Duration(1'000'000'000'000'000'001LL + number));
+  r.setup = number % 4;
+  r.pass = number % 3;
+  r.direction = number % 2 ? 1 : -1;
+  r.position = number % 36;
+  r.phase = static_cast<Phase>(number % kPhases);
+  r.n_samples = 100;
+  for (double* value : {&r.target_rad, &r.reference_rad, &r.dwell_s, &r.temperature_degC}) *value = normal(random);
+  for (double& mean_V : r.mean_V) mean_V = normal(random);
+  for (double& std_V : r.std_V) std_V = normal(random);
+  if (number % 5 == 0) r.extra = {{"note", "a \"quoted\" \xC3\xA9"}};
+  return r;
+}
+
+bool SameNumber(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+template <std::size_t kCount>
+bool SameNumbers(const std::array<double, kCount>& a, const std::array<double, kCount>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), SameNumber);
+}
+
+void ExpectSame(const Reading& a, const Reading& b) {
+  EXPECT_EQ(a.reading, b.reading);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.setup, b.setup);
+  EXPECT_EQ(a.pass, b.pass);
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.phase, b.phase);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.n_samples, b.n_samples);
+  EXPECT_TRUE(SameNumbers(a.mean_V, b.mean_V));
+  EXPECT_TRUE(SameNumbers(a.std_V, b.std_V));
+  EXPECT_TRUE(SameNumber(a.target_rad, b.target_rad));
+  EXPECT_TRUE(SameNumber(a.reference_rad, b.reference_rad));
+  EXPECT_TRUE(SameNumber(a.dwell_s, b.dwell_s));
+  EXPECT_TRUE(SameNumber(a.temperature_degC, b.temperature_degC));
+  EXPECT_TRUE(SameNumber(a.autocollimator_yaw_rad, b.autocollimator_yaw_rad));
+  EXPECT_TRUE(SameNumber(a.autocollimator_tilt_rad, b.autocollimator_tilt_rad));
+  EXPECT_EQ(a.extra, b.extra);
+}
+
+/// Carries out SQL on a record behind its back.
+std::string Sql(const std::string& directory, const char* sql) {
+  sqlite3* handle = nullptr;
+  sqlite3_open((directory + "/record.sqlite").c_str(), &handle);
+  const int code = sqlite3_exec(handle, sql, nullptr, nullptr, nullptr);
+  const std::string message = code == SQLITE_OK ? "" : sqlite3_errmsg(handle);
+  sqlite3_close(handle);
+  return message;
+}
+
+std::string OpenError(const std::string& directory) {
+  return MessageOf([&] { RunRecord::Open(directory); });
+}
+
+TEST(RunRecord, GivesBackWhatItWasGiven) {
+  const TemporaryFolder folder;
+  const std::string directory = folder.File("runs/first");
+  {
+    const auto record = RunRecord::Create(directory, AnyProvenance());
+    for (int i = 0; i < 40; ++i) record->Append(ReadingOf(i), {});
+    EXPECT_EQ(record->Readings().size(), 40u);
+  }
+  const auto record = RunRecord::Open(directory);
+  const auto readings = record->Readings();
+  ASSERT_EQ(readings.size(), 40u);
+  for (int i = 0; i < 40; ++i) ExpectSame(readings[static_cast<std::size_t>(i)], ReadingOf(i));
+  EXPECT_EQ(record->provenance().seed, AnyProvenance().seed);
+  EXPECT_EQ(record->provenance().program_version, "0.1.0");
+  EXPECT_EQ(record->provenance().bench, "twin");
+  EXPECT_EQ(record->provenance().clock_origin_utc, "2026-01-02T03:04:05Z");
+}
+
+TEST(RunRecord, KeepsAReadingWithoutNumbers) {
+  const TemporaryFolder folder;
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  Reading reading = ReadingOf(3);
+  reading.status = ReadingStatus::kClippedSpot;
+  reading.mean_V.fill(kNaN);
+  reading.std_V.fill(kNaN);
+  record->Append(reading, {});
+  ExpectSame(record->Readings().front(), reading);
+}
+
+TEST(RunRecord, KeepsRawBlocksAndEvents) {
+  const TemporaryFolder folder;
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  record->Append(ReadingOf(4), {});
+  record->Append(ReadingOf(5), {1, -2, 32767, -32768});
+  record->AppendEvent(Time(Duration(20)), "target", "in position");
+  record->AppendEvent(Time(Duration(10)), "operator", "lamp off");
+  const auto blocks = record->RawBlocks();
+  ASSERT_EQ(blocks.size(), 1u);
+  EXPECT_EQ(blocks[0].reading, 5);
+  EXPECT_EQ(blocks[0].channels, kChannels);
+  EXPECT_THAT(blocks[0].samples, testing::ElementsAre(1, -2, 32767, -32768));
+  const auto events = record->Events();
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].device, "operator");
+  EXPECT_EQ(events[1].text, "in position");
+  EXPECT_EQ(events[1].time, Time(Duration(20)));
+}
+
+TEST(RunRecord, IsUnfinishedUntilItIsFinished) {
+  const TemporaryFolder folder;
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  EXPECT_FALSE(record->finished());
+  record->Finish();
+  record->Finish();
+  EXPECT_TRUE(record->finished());
+  EXPECT_TRUE(RunRecord::Open(folder.path())->finished());
+}
+
+TEST(RunRecord, CanBeContinued) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), AnyProvenance())->Append(ReadingOf(0), {});
+  RunRecord::Open(folder.path())->Append(ReadingOf(1), {});
+  EXPECT_EQ(RunRecord::Open(folder.path())->Readings().size(), 2u);
+}
+
+TEST(RunRecord, RefusesAReadingTwiceAndStaysAsItWas) {
+  const TemporaryFolder folder;
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  record->Append(ReadingOf(0), {});
+  EXPECT_THROW(record->Append(ReadingOf(0), {1, 2, 3, 4}), BenchError);
+  record->Append(ReadingOf(1), {});
+  EXPECT_EQ(record->Readings().size(), 2u);
+  EXPECT_TRUE(record->RawBlocks().empty());
+}
+
+TEST(RunRecord, CannotBeChangedAfterwards) {
+  const TemporaryFolder folder;
+  {
+    const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+    record->Append(ReadingOf(0), {1, 2, 3, 4});
+    record->AppendEvent(Time{}, "target", "home");
+    record->Finish();
+  }
+  for (const char* sql :
+       {"UPDATE readings SET psd_a_x_V = 0", "DELETE FROM readings", "DELETE FROM raw_blocks",
+        "UPDATE events SET text = ''", "UPDATE provenance SET seed = '1'", "DELETE FROM finished"})
+    EXPECT_EQ(Sql(folder.path(), sql), "a run record is insert-only") << sql;
+  EXPECT_EQ(RunRecord::Open(folder.path())->Readings().size(), 1u);
+}
+
+TEST(RunRecord, IsNotMadeOverAnother) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), AnyProvenance());
+  EXPECT_EQ(MessageOf([&] { RunRecord::Create(folder.path(), AnyProvenance()); }),
+            folder.File("record.sqlite") + ": there is a record already; expected a folder without one");
+}
+
+TEST(RunRecord, SaysWhenTheDiskRefuses) {
+  const TemporaryFolder folder;
+  folder.Write("file", "x");
+  EXPECT_THROW(RunRecord::Create(folder.File("file"), AnyProvenance()), BenchError);
+  EXPECT_THROW(RunRecord::Create(folder.File("file/inside"), AnyProvenance()), BenchError);
+}
+
+TEST(RunRecord, MustBeThereToBeOpened) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(OpenError(folder.path()), folder.path() + ": there is no record.sqlite; expected the folder of a run");
+}
+
+TEST(RunRecord, OfAnotherProgramIsRefused) {
+  const TemporaryFolder folder;
+  folder.Write("record.sqlite", "");
+  EXPECT_THAT(OpenError(folder.path()), HasSubstr("a database of another program, or its making was interrupted"));
+  Sql(folder.path(), "CREATE TABLE readings(x)");
+  EXPECT_THAT(OpenError(folder.path()), HasSubstr("a database of another program, or its making was interrupted"));
+  folder.Write("record.sqlite", "reading,time_s,setup\n0,1,2\n");
+  EXPECT_THAT(OpenError(folder.path()), HasSubstr("the record cannot be opened (" + folder.File("record.sqlite") +
+                                                  ": file is not a database); expected an undamaged record"));
+}
+
+TEST(RunRecord, OfAnotherVersionIsRefused) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), AnyProvenance());
+  Sql(folder.path(), "PRAGMA user_version = 99");
+  EXPECT_EQ(OpenError(folder.path()),
+            folder.File("record.sqlite") + ": the record has version 99; expected version 1");
+}
+
+void FillRecord(const std::string& directory) {
+  const auto record = RunRecord::Create(directory, AnyProvenance());
+  for (int i = 0; i < 100; ++i) record->Append(ReadingOf(i), std::vector<std::int16_t>(400, 7));
+}
+
+TEST(RunRecord, ThatWasCutOffIsRefused) {
+  const TemporaryFolder folder;
+  FillRecord(folder.path());
+  const std::string path = folder.File("record.sqlite");
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  EXPECT_THAT(OpenError(folder.path()), testing::AllOf(testing::StartsWith(path + ": the record "),
+                                                       testing::Not(HasSubstr("no InputError"))));
+}
+
+TEST(RunRecord, ThatWasOverwrittenIsRefused) {
+  const TemporaryFolder folder;
+  FillRecord(folder.path());
+  const std::string path = folder.File("record.sqlite");
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(path) / 2));
+  file << std::string(20000, '\xAA');
+  file.close();
+  EXPECT_THAT(OpenError(folder.path()), testing::StartsWith(path + ": the record "));
+}
+
+/// Appends for ever and tells every reading that Append returned for.
+[[noreturn]] void AppendUntilKilled(const std::string& directory, int acknowledge) {
+  const auto record = RunRecord::Create(directory, AnyProvenance());
+  for (int i = 0;; ++i) {
+    record->Append(ReadingOf(i), std::vector<std::int16_t>(400, static_cast<std::int16_t>(i % 1000)));
+    if (write(acknowledge, &i, sizeof i) != sizeof i) _exit(1);
+  }
+}
+
+/// Starts a child that appends, kills it some time after `count` readings, and
+/// @return the number of the last reading that it acknowledged.
+int KillWhileAppending(const std::string& directory, int count) {
+  int ends[2];
+  if (pipe(ends) != 0) throw BenchError("no pipe");
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    AppendUntilKilled(directory, ends[1]);
+  }
+  close(ends[1]);
+  int last = -1;
+  while (last < count && read(ends[0], &last, sizeof last) == sizeof last) {
+  }
+  usleep(static_cast<useconds_t>(137 * count));  // anywhere within an append
+  kill(child, SIGKILL);
+  for (int number = 0; read(ends[0], &number, sizeof number) == sizeof number;) last = number;
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  return last;
+}
+
+TEST(RunRecord, HasEveryAcknowledgedReadingAfterKill) {
+  for (const int count : {0, 1, 5, 17, 60}) {
+    const TemporaryFolder folder;
+    const int last = KillWhileAppending(folder.path(), count);
+    ASSERT_GE(last, count);
+    const auto record = RunRecord::Open(folder.path());
+    const auto readings = record->Readings();
+    // The one after the last may be in as well: it was safe when the kill came before its acknowledgement.
+    ASSERT_GE(readings.size(), static_cast<std::size_t>(last + 1));
+    ASSERT_LE(readings.size(), static_cast<std::size_t>(last + 2));
+    for (std::size_t i = 0; i < readings.size(); ++i) ExpectSame(readings[i], ReadingOf(static_cast<int>(i)));
+    EXPECT_EQ(record->RawBlocks().size(), readings.size());
+    EXPECT_FALSE(record->finished());
+    record->Append(ReadingOf(static_cast<int>(readings.size())), {});
+  }
+}
+
+}  // namespace
+}  // namespace twinbench

@@ -1,0 +1,192 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include "tests/core/input_error.h"
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/scenario.h"
+#include "twin/core/scenario_schema.h"
+
+namespace twinbench {
+namespace {
+
+using Random = std::mt19937_64;
+
+/// Within the bounds of a key, in SI; not the bounds themselves.
+double AnyNumber(const Bounds& bounds, double to_SI, Random& random) {
+  const double lower = std::max(bounds.lower, -1e12), upper = std::min(bounds.upper, 1e12);
+  return std::uniform_real_distribution<double>(lower, upper)(random) * to_SI;
+}
+
+int AnyWholeNumber(const Bounds& bounds, Random& random) {
+  return std::uniform_int_distribution<int>(static_cast<int>(bounds.lower), static_cast<int>(bounds.upper))(random);
+}
+
+TableErrors AnyErrors(Random& random) {
+  TableErrors errors;
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 12; ++i) {
+    errors.position_rad.push_back(normal(random));
+    for (auto& column : errors.value) column.push_back(1e-5 * normal(random));
+  }
+  return errors;
+}
+
+/// Gives every place a random value that the key allows: one overload a type.
+struct Randomise {
+  const ScenarioKey& key;
+  Random& random;
+  const std::string& file;  // that exists
+
+  void operator()(double* field) const { *field = AnyNumber(key.bounds, key.unit.to_SI, random); }
+  void operator()(int* field) const { *field = AnyWholeNumber(key.bounds, random); }
+  void operator()(std::uint64_t* field) const { *field = random(); }
+  void operator()(bool* field) const { *field = random() % 2 == 0; }
+  void operator()(std::string* field) const {
+    if (!key.choices.empty()) *field = key.choices[random() % key.choices.size()];
+    if (key.name == "title") *field = "a \"b\" \\ c\n\t\x01 \xC3\xA9 # [x] = 1";
+    if (key.name == "profile_file" || key.name == "temperature_file") *field = file;
+  }
+  void operator()(BeamModel* field) const { *field = static_cast<BeamModel>(random() % 3); }
+  void operator()(std::span<double> field) const {
+    for (double& entry : field) (*this)(&entry);
+  }
+  void operator()(std::vector<double>* field) const {
+    field->resize(1 + random() % 5);
+    (*this)(std::span<double>(*field));
+  }
+  void operator()(std::vector<int>* field) const {
+    if (key.name == "passes") *field = {-1, 1, 1};
+    if (key.name == "shifts") *field = {1, 0};
+  }
+  void operator()(std::vector<std::string>* field) const {
+    *field = {key.choices[random() % key.choices.size()], key.choices[0]};
+  }
+  void operator()(std::vector<HarmonicSettings>* field) const {
+    for (int i = 0; i < 4; ++i)
+      field->push_back({static_cast<Component>(random() % kComponents), 0.1 * i,
+                        AnyNumber({-1e-4, 1e-4}, 1, random), AnyNumber({-7, 7}, 1, random)});
+  }
+  void operator()(std::optional<TableErrors>* field) const { *field = AnyErrors(random); }
+};
+
+/// Every bit of a place, as a list of words and texts.
+struct Bits {
+  std::vector<std::uint64_t> words;
+  std::vector<std::string> texts;
+  bool operator==(const Bits&) const = default;
+
+  void operator()(const double* field) { words.push_back(std::bit_cast<std::uint64_t>(*field)); }
+  void operator()(const int* field) { words.push_back(static_cast<std::uint64_t>(*field)); }
+  void operator()(const std::uint64_t* field) { words.push_back(*field); }
+  void operator()(const bool* field) { words.push_back(*field ? 1 : 0); }
+  void operator()(const std::string* field) { texts.push_back(*field); }
+  void operator()(const BeamModel* field) { words.push_back(static_cast<std::uint64_t>(*field)); }
+  void operator()(std::span<double> field) { Add(field); }
+  void operator()(const std::vector<double>* field) { Add(*field); }
+  void operator()(const std::vector<int>* field) { Add(*field); }
+  void operator()(const std::vector<std::string>* field) { Add(*field); }
+  void operator()(const std::vector<HarmonicSettings>* field) {
+    for (const HarmonicSettings& h : *field) {
+      words.push_back(static_cast<std::uint64_t>(h.component));
+      for (const double value : {h.order, h.amplitude, h.phase_rad}) (*this)(&value);
+    }
+  }
+  void operator()(const std::optional<TableErrors>* field) {
+    if (!field->has_value()) return;
+    Add((*field)->position_rad);
+    for (const auto& column : (*field)->value) Add(column);
+  }
+
+ private:
+  template <class List>
+  void Add(const List& list) {
+    words.push_back(list.size());
+    for (const auto& entry : list) (*this)(&entry);
+  }
+};
+
+void ExpectSameBits(Scenario a, Scenario b) {
+  const auto keys_a = KeysOf(a), keys_b = KeysOf(b);
+  for (std::size_t i = 0; i < keys_a.size(); ++i) {
+    Bits bits_a, bits_b;
+    std::visit(bits_a, keys_a[i].field);
+    std::visit(bits_b, keys_b[i].field);
+    EXPECT_TRUE(bits_a == bits_b) << keys_a[i].Path();
+  }
+  ASSERT_EQ(a.effects.size(), b.effects.size());
+  for (std::size_t i = 0; i < a.effects.size(); ++i) {
+    EXPECT_EQ(a.effects[i].name, b.effects[i].name);
+    EXPECT_EQ(a.effects[i].where, b.effects[i].where);
+    EXPECT_EQ(a.effects[i].parameters, b.effects[i].parameters) << a.effects[i].name;
+  }
+}
+
+EffectSettings AnyEffect(const EffectEntry& entry, Random& random) {
+  EffectSettings effect;
+  effect.name = entry.name;
+  if (!entry.places.empty()) effect.where = entry.places[random() % entry.places.size()];
+  for (const EffectParameter& p : entry.parameters)
+    effect.parameters[p.name] =
+        p.BelongsTo(effect.where) ? AnyNumber({p.lower_SI, p.upper_SI}, 1.0, random) : p.default_SI;
+  return effect;
+}
+
+Scenario AnyScenario(Random& random, const std::string& file) {
+  Scenario scenario;
+  for (const ScenarioKey& key : KeysOf(scenario)) std::visit(Randomise{key, random, file}, key.field);
+  for (const EffectEntry& entry : EffectCatalogue()) scenario.effects.push_back(AnyEffect(entry, random));
+  return scenario;
+}
+
+TEST(WriteScenario, IsReadBackToTheSameBitsForEveryKey) {
+  const TemporaryFolder folder;
+  const std::string file = folder.Write("exists.txt", "x");
+  Random random(5);
+  for (int run = 0; run < 30; ++run) {
+    const Scenario scenario = AnyScenario(random, file);
+    ExpectSameBits(ParseScenario(WriteScenario(scenario), "resolved.toml", "/elsewhere"), scenario);
+  }
+}
+
+TEST(WriteScenario, OfTheDefaultsIsReadBackAndReadsWell) {
+  const std::string text = WriteScenario(Scenario{});
+  EXPECT_THAT(text,
+              testing::StartsWith("bench = \"rotary_4dof\"\ntitle = \"\"\nseed = 1\nnoise_free = false\n\n[laser]\n"
+                                  "wavelength_nm = 650.0\npower_mW = 5.0\n"));
+  EXPECT_THAT(text, testing::HasSubstr("sweep_arcsec = 300.0\n"));
+  ExpectSameBits(ParseScenario(text, "resolved.toml", "."), Scenario{});
+  EXPECT_EQ(WriteScenario(ParseScenario(text, "resolved.toml", ".")), text);
+}
+
+TEST(WriteScenario, WritesEveryKeyOfTheDescription) {
+  Scenario scenario;
+  scenario.target.errors = scenario.reference.errors = TableErrors{{0.0}, {{{0}, {0}, {0}, {0}, {0}, {0}}}};
+  const std::string text = "\n" + WriteScenario(scenario);
+  for (const ScenarioKey& key : KeysOf(scenario)) {
+    const bool has_table = key.name == "errors";
+    EXPECT_THAT(text, testing::HasSubstr(has_table ? "\n[" + key.Path() + "]\n" : "\n" + key.Name() + " = "));
+  }
+}
+
+TEST(WriteScenario, StandsAloneWithoutTheErrorsFile) {
+  const TemporaryFolder folder;
+  folder.Write("t.csv", "position_deg,ez_arcsec\n0,0.1\n180,-0.3\n");
+  const std::string text = "bench = \"rotary_4dof\"\n[reference]\nerrors_file = \"t.csv\"\n";
+  const Scenario scenario = ParseScenario(text, "s.toml", folder.path());
+  ExpectSameBits(ParseScenario(WriteScenario(scenario), "resolved.toml", "/elsewhere"), scenario);
+  EXPECT_THAT(WriteScenario(scenario), testing::HasSubstr("[reference.errors]\nposition_deg = [0.0, 180.0]\n"));
+  EXPECT_THAT(WriteScenario(scenario), testing::HasSubstr("ez_arcsec = [0.1, -0.3]\n"));
+}
+
+TEST(WriteScenario, RefusesANumberThatIsNotFinite) {
+  Scenario scenario;
+  scenario.psd_a.roll_rad = std::nan("");
+  EXPECT_THROW(WriteScenario(scenario), std::logic_error);
+}
+
+}  // namespace
+}  // namespace twinbench

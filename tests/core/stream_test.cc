@@ -1,0 +1,302 @@
+#include "twin/core/stream.h"
+
+#include <Random123/philox.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "twin/core/stream_kernel_math.h"
+
+namespace twinbench {
+namespace {
+
+PhiloxBlock FromRandom123(const PhiloxBlock& counter, const PhiloxKey& key) {
+  const r123::Philox4x32::ctr_type c = {{counter[0], counter[1], counter[2], counter[3]}};
+  const r123::Philox4x32::key_type k = {{key[0], key[1]}};
+  const auto words = r123::Philox4x32{}(c, k);
+  return {words[0], words[1], words[2], words[3]};
+}
+
+std::vector<float> Normals(Stream stream, std::size_t n) {
+  std::vector<float> out(n);
+  stream.FillNormals(out);
+  return out;
+}
+
+bool SameBits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+double MeanOfPower(const std::vector<float>& values, int power) {
+  double sum = 0.0;
+  for (const float v : values) sum += std::pow(static_cast<double>(v), power);
+  return sum / static_cast<double>(values.size());
+}
+
+double NormalDistribution(double x) {
+  return 0.5 * std::erfc(-x / std::sqrt(2.0));
+}
+
+/// Largest distance between the empirical distribution and the normal one, times sqrt(n).
+double KolmogorovStatistic(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto n = static_cast<double>(values.size());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double f = NormalDistribution(values[i]), k = static_cast<double>(i);
+    distance = std::max({distance, f - k / n, (k + 1.0) / n - f});
+  }
+  return distance * std::sqrt(n);
+}
+
+double Correlation(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += static_cast<double>(a[i]) * b[i];
+  return sum / static_cast<double>(a.size());
+}
+
+TEST(Philox, GivesThePublishedAnswers) {
+  // The three vectors that Salmon et al. publish with their library for philox4x32, 10 rounds.
+  EXPECT_EQ(Philox({0, 0, 0, 0}, {0, 0}), (PhiloxBlock{0x6627E8D5, 0xE169C58D, 0xBC57AC4C, 0x9B00DBD8}));
+  EXPECT_EQ(Philox({~0u, ~0u, ~0u, ~0u}, {~0u, ~0u}),
+            (PhiloxBlock{0x408F276D, 0x41C83B0E, 0xA20BC7C6, 0x6D5451FD}));
+  EXPECT_EQ(Philox({0x243F6A88, 0x85A308D3, 0x13198A2E, 0x03707344}, {0xA4093822, 0x299F31D0}),
+            (PhiloxBlock{0xD16CFE09, 0x94FDCCEB, 0x5001E420, 0x24126EA1}));
+}
+
+TEST(Philox, AgreesWithRandom123OnAnyCounterAndKey) {
+  PhiloxBlock counter = {1, 2, 3, 4};
+  PhiloxKey key = {5, 6};
+  for (int i = 0; i < 10000; ++i) {
+    const PhiloxBlock words = Philox(counter, key);
+    ASSERT_EQ(words, FromRandom123(counter, key));
+    key = {counter[1], words[2]};
+    counter = words;
+  }
+}
+
+TEST(Stream, DependsOnSeedAndNameOnly) {
+  EXPECT_EQ(Stream(1, "psd_a.noise").Word(), Stream(1, "psd_a.noise").Word());
+  EXPECT_NE(Stream(1, "psd_a.noise").Word(), Stream(2, "psd_a.noise").Word());
+  EXPECT_NE(Stream(1, "psd_a.noise").Word(), Stream(1, "psd_b.noise").Word());
+  EXPECT_NE(Stream(0, "").Word(), Stream(1, "").Word());
+}
+
+TEST(Stream, KeepsItsFirstNumbersFromVersionToVersion) {
+  // Golden: records made by an earlier version must stay reproducible. Change only with a new record version.
+  Stream stream(20250101, "golden");
+  EXPECT_EQ(stream.Word(), 0xDD5D269Du);
+  stream.Seek(3);
+  EXPECT_EQ(stream.Normal(), 0x1.a70553af77067p-2);
+  EXPECT_EQ(stream.ChiSquared(99.0), 0x1.b90a1a14be892p+6);
+  EXPECT_EQ(Normals(stream, 3)[2], 0x1.f4115cp-2f);
+}
+
+TEST(Stream, CanBeEnteredAtAnyBlock) {
+  Stream through(7, "seek"), jumped(7, "seek");
+  for (int i = 0; i < 4 * 1000; ++i) through.Word();
+  jumped.Seek(1000);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(through.Word(), jumped.Word());
+}
+
+TEST(Stream, CountsBlocksBeyondThirtyTwoBits) {
+  const std::uint64_t edge = (std::uint64_t{1} << 32) - 2;
+  Stream stream(7, "wrap");
+  stream.Seek(edge);
+  const std::vector<float> across = Normals(stream, 64);
+  stream.Seek(edge + 2);
+  const std::vector<float> after = Normals(stream, 56);
+  EXPECT_TRUE(SameBits({across.begin() + 8, across.end()}, after));
+  stream.Seek(0);
+  EXPECT_FALSE(SameBits(Normals(stream, 56), after));
+}
+
+TEST(Stream, UniformsFillTheUnitIntervalEvenly) {
+  Stream stream(3, "uniform");
+  std::array<int, 100> count{};
+  for (int i = 0; i < 200000; ++i) ++count[static_cast<std::size_t>(stream.Uniform() * 100.0)];
+  double chi2 = 0.0;
+  for (const int n : count) chi2 += (n - 2000.0) * (n - 2000.0) / 2000.0;
+  // 99 degrees of freedom: mean 99, standard deviation 14.1; five of them either way.
+  EXPECT_NEAR(chi2, 99.0, 70.0);
+}
+
+TEST(Stream, NormalsInDoublePassKolmogorov) {
+  Stream stream(4, "normal");
+  std::vector<double> values(100000);
+  for (double& v : values) v = stream.Normal();
+  EXPECT_LT(KolmogorovStatistic(values), 1.95);  // exceeded with probability 1e-3
+}
+
+TEST(FillNormals, PassesKolmogorov) {
+  const std::vector<float> values = Normals(Stream(5, "fill"), 200000);
+  EXPECT_LT(KolmogorovStatistic({values.begin(), values.end()}), 1.95);  // exceeded with probability 1e-3
+}
+
+TEST(FillNormals, HasTheMomentsOfANormal) {
+  constexpr int kN = 4000000;
+  const std::vector<float> values = Normals(Stream(6, "moments"), kN);
+  // Variance of the mean of x^k is (E x^2k - (E x^k)^2) / n: 1, 2, 15, 96, 10170 for k = 1, 2, 3, 4, 6.
+  const double root_n = std::sqrt(kN);
+  EXPECT_NEAR(MeanOfPower(values, 1), 0.0, 4.0 * std::sqrt(1.0) / root_n);
+  EXPECT_NEAR(MeanOfPower(values, 2), 1.0, 4.0 * std::sqrt(2.0) / root_n);
+  EXPECT_NEAR(MeanOfPower(values, 3), 0.0, 4.0 * std::sqrt(15.0) / root_n);
+  EXPECT_NEAR(MeanOfPower(values, 4), 3.0, 4.0 * std::sqrt(96.0) / root_n);
+  EXPECT_NEAR(MeanOfPower(values, 6), 15.0, 4.0 * std::sqrt(10170.0) / root_n);
+}
+
+TEST(FillNormals, HasTheTailsOfANormal) {
+  constexpr int kChunks = 20, kChunk = 1 << 20;
+  std::array<double, 3> beyond{};
+  Stream stream(8, "tails");
+  std::vector<float> values(kChunk);
+  for (int chunk = 0; chunk < kChunks; ++chunk) {
+    stream.FillNormals(values);
+    for (const float v : values) {
+      for (std::size_t k = 0; k < 3; ++k) beyond[k] += std::abs(v) > 3.0f + static_cast<float>(k) ? 1.0 : 0.0;
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double expected = 2.0 * NormalDistribution(-3.0 - static_cast<double>(k)) * kChunks * kChunk;
+    // A Poisson count (56 600, 1330 and 12 expected): four standard deviations.
+    EXPECT_NEAR(beyond[k], expected, 4.0 * std::sqrt(expected)) << "beyond " << 3 + k << " sigma";
+  }
+}
+
+TEST(FillNormals, GivesIndependentNeighboursAndStreams) {
+  constexpr std::size_t kN = 1000000;
+  const std::vector<float> a = Normals(Stream(9, "psd_a.noise"), kN), b = Normals(Stream(9, "psd_b.noise"), kN);
+  const std::vector<float> c = Normals(Stream(10, "psd_a.noise"), kN);
+  const double bound = 4.0 / std::sqrt(static_cast<double>(kN));  // a correlation's sd is 1 / sqrt(n)
+  EXPECT_NEAR(Correlation(a, b), 0.0, bound);
+  EXPECT_NEAR(Correlation(a, c), 0.0, bound);
+  for (const int lag : {1, 2, 3, 4, 16, 64}) {
+    EXPECT_NEAR(Correlation({a.begin(), a.end() - lag}, {a.begin() + lag, a.end()}), 0.0, bound) << "lag " << lag;
+  }
+}
+
+TEST(FillNormals, MakesSquaresThatAreIndependentToo) {
+  // Both members of a Box-Muller pair share a radius: if the angle were poor, their squares would correlate.
+  std::vector<float> x = Normals(Stream(11, "squares"), 2000000), even, odd;
+  for (std::size_t i = 0; i < x.size(); i += 2) {
+    even.push_back(x[i] * x[i] - 1.0f);
+    odd.push_back(x[i + 1] * x[i + 1] - 1.0f);
+  }
+  EXPECT_NEAR(Correlation(even, odd), 0.0, 4.0 * 2.0 / std::sqrt(1e6));  // sd of a product of squares: 2
+}
+
+TEST(FillNormals, EqualsItselfCutIntoBlocks) {
+  const std::vector<float> whole = Normals(Stream(12, "cut"), 4000);
+  Stream stream(12, "cut");
+  std::vector<float> pieces(4000);
+  std::size_t at = 0;
+  for (const std::size_t n : {4u, 64u, 12u, 1000u, 2u * 1000u, 920u}) {
+    stream.FillNormals(std::span(pieces).subspan(at, n));
+    at += n;
+  }
+  ASSERT_EQ(at, 4000u);
+  EXPECT_TRUE(SameBits(pieces, whole));
+}
+
+TEST(FillNormals, LeavesTheStreamAtABlockBoundary) {
+  Stream stream(13, "boundary");
+  stream.Word();
+  const std::vector<float> whole = Normals(stream, 16);  // starts with block 1
+  std::vector<float> few(6);
+  stream.FillNormals(few);  // blocks 1 and 2
+  EXPECT_EQ(stream.NextBlock(), 3u);
+  EXPECT_TRUE(SameBits(few, {whole.begin(), whole.begin() + 6}));
+  EXPECT_EQ(Normals(stream, 4)[0], whole[8]);
+  stream.FillNormals({});
+  EXPECT_EQ(stream.NextBlock(), 3u);
+}
+
+TEST(FillNormals, HasTheSameBitsOnEveryInstructionSet) {
+  for (const std::size_t n : {4u, 28u, 64u, 4092u, 400000u}) {
+    std::vector<std::vector<float>> results;
+    for (const Simd simd : kAllSimd) {
+      if (!SimdRuns(simd)) continue;
+      results.emplace_back(n);
+      FillNormalBlocks(simd, {0xDEADBEEF, 17}, 0xFFFFFFF0u, results.back());
+    }
+    for (const auto& result : results) EXPECT_TRUE(SameBits(result, results.front())) << n;
+  }
+}
+
+TEST(FillNormals, IsBoxMullerOfThePhiloxWords) {
+  const PhiloxKey key = {21, 22};
+  std::vector<float> fast(40000);
+  FillNormalBlocks(BestSimd(), key, 0, fast);
+  for (std::uint32_t block = 0; block < 10000; ++block) {
+    const PhiloxBlock w = FromRandom123({block, 0, 0, 0}, key);
+    for (std::size_t pair = 0; pair < 2; ++pair) {
+      const double radius = std::sqrt(-2.0 * std::log((std::floor(w[2 * pair] / 2.0) + 0.5) / 2147483648.0));
+      const double x = fast[4 * block + 2 * pair], y = fast[4 * block + 2 * pair + 1];
+      // Float arithmetic: a few units of 6e-8 on values up to 6.66, and u = exp(-r^2 / 2) near 1 in steps of 6e-8.
+      const double tolerance = 1e-6 + 6e-8 / radius;
+      ASSERT_NEAR(std::hypot(x, y), radius, tolerance);
+      const double angle = static_cast<std::int32_t>(w[2 * pair + 1] << 2) * (portable::kPi / 4.0 / 2147483648.0);
+      const bool swapped = (w[2 * pair + 1] >> 30) & 1, mirrored = w[2 * pair + 1] >> 31;
+      ASSERT_NEAR(swapped ? y : x, radius * std::cos(angle) * (mirrored ? -1.0 : 1.0), tolerance);
+      ASSERT_NEAR(swapped ? x : y, radius * std::sin(angle), tolerance);
+    }
+  }
+}
+
+TEST(ChiSquared, HasItsMeanAndVariance) {
+  constexpr int kN = 40000;
+  for (const double degrees : {0.5, 1.0, 2.0, 3.0, 99.0, 999.0}) {
+    Stream stream(14, "chi");
+    double sum = 0.0, squares = 0.0;
+    for (int i = 0; i < kN; ++i) {
+      const double x = stream.ChiSquared(degrees) - degrees;
+      sum += x;
+      squares += x * x;
+    }
+    // Mean k, variance 2k, fourth central moment 12k(k + 4): four standard deviations each.
+    const double u_mean = std::sqrt(2.0 * degrees / kN);
+    const double u_variance = std::sqrt((12.0 * degrees * (degrees + 4.0) - 4.0 * degrees * degrees) / kN);
+    EXPECT_NEAR(sum / kN, 0.0, 4.0 * u_mean) << degrees;
+    EXPECT_NEAR(squares / kN, 2.0 * degrees, 4.0 * u_variance) << degrees;
+  }
+}
+
+TEST(ChiSquared, FollowsItsDistribution) {
+  // Two degrees of freedom: 1 - exp(-x / 2) is uniform, so its normal quantile's distribution can be tested.
+  Stream stream(15, "chi2");
+  std::vector<double> u(50000);
+  for (double& v : u) v = 1.0 - std::exp(-0.5 * stream.ChiSquared(2.0));
+  std::sort(u.begin(), u.end());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    distance = std::max(distance, std::abs(u[i] - (static_cast<double>(i) + 0.5) / 50000.0));
+  }
+  EXPECT_LT(distance * std::sqrt(50000.0), 1.95);  // Kolmogorov, exceeded with probability 1e-3
+}
+
+TEST(ChiSquared, RefusesDegreesThatAreNotPositive) {
+  Stream stream(1, "bad");
+  EXPECT_THROW(stream.ChiSquared(0.0), std::logic_error);
+  EXPECT_THROW(stream.ChiSquared(-1.0), std::logic_error);
+  EXPECT_THROW(stream.ChiSquared(std::nan("")), std::logic_error);
+}
+
+TEST(PortableMath, AgreesWithTheLibraryToItsStatedAccuracy) {
+  Stream stream(16, "math");
+  for (int i = 0; i < 20000; ++i) {
+    const double x = std::ldexp(1.0 - stream.Uniform(), static_cast<int>(stream.Word() % 100) - 60);
+    EXPECT_NEAR(portable::Log(x), std::log(x), 1e-15 * std::abs(std::log(x)) + 1e-300);
+    const double power = 100.0 * (stream.Uniform() - 0.5);
+    EXPECT_NEAR(portable::Exp(power), std::exp(power), 1e-15 * (1.0 + std::abs(power)) * std::exp(power));
+    const double turns = 20.0 * (stream.Uniform() - 0.5);
+    const portable::Rotation r = portable::Turn(turns);
+    EXPECT_NEAR(r.cosine, std::cos(2.0 * portable::kPi * turns), 1e-15 * (1.0 + 6.3 * std::abs(turns)));
+    EXPECT_NEAR(r.sine, std::sin(2.0 * portable::kPi * turns), 1e-15 * (1.0 + 6.3 * std::abs(turns)));
+  }
+}
+
+}  // namespace
+}  // namespace twinbench

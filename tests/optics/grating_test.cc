@@ -1,0 +1,264 @@
+#include "optics/grating.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace twinbench::optics {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kPi = std::numbers::pi;
+
+Vector3d RandomUnit(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  return Vector3d(normal(random), normal(random), normal(random)).normalized();
+}
+
+/// A random grating frame and light that meets it from the side of its normal.
+struct Case {
+  Vector3d normal, across, along, d;
+};
+
+Case RandomCase(std::mt19937_64& random) {
+  Case c;
+  c.normal = RandomUnit(random);
+  c.across = c.normal.cross(RandomUnit(random)).normalized();
+  c.along = c.across.cross(c.normal);
+  c.d = RandomUnit(random);
+  if (c.d.dot(c.normal) > 0.0) c.d = -c.d;
+  return c;
+}
+
+/// The reference set-up of the RAY-UI comparison tables: grating and image plane, all in mm.
+struct RayUi {
+  Vector3d grating_normal, grooves_normal, image_centre, image_x, image_y, image_normal;
+};
+
+struct RayUiRow {
+  int ray;
+  double ox, oy, dx, dy, dz;
+};
+
+/// Matrix source 0.065 x 0.04 mm, 1 x 1 mrad, 4 x 4 rays.
+Ray RayUiSource(int i) {
+  const int column = i % 4, row = i / 4;
+  const double phi = -0.5e-3 + 1e-3 / 3.0 * column, psi = 0.5e-3 - 1e-3 / 3.0 * row;
+  return {{-0.0325 + 0.065 / 3.0 * column, -0.02 + 0.04 / 3.0 * row, 0.0},
+          {std::cos(psi) * std::sin(phi), std::sin(psi), std::cos(psi) * std::cos(phi)}};
+}
+
+void ExpectRayUi(const RayUi& setup, const RayUiRow& row) {
+  const Ray ray = RayUiSource(row.ray);
+  const double wavelength_mm = 1239.841984332002622 / 100.0 * 1e-6, lines_per_mm = 1000.0;
+  Eigen::Isometry3d X_WS = Eigen::Isometry3d::Identity();
+  X_WS.translation() = Vector3d(0, 0, 10000);
+  X_WS.linear() << setup.grooves_normal.cross(-setup.grating_normal), setup.grooves_normal, setup.grating_normal;
+  const SurfaceHit hit = Meet(RectangularPlane(X_WS, 1e6, 1e6), ray, 0.0);
+  const Vector3d point = ray.origin_m + hit.t_m * ray.direction;
+  const OrderDirection out =
+      Diffract(ray.direction, setup.grating_normal, setup.grooves_normal, -wavelength_mm * lines_per_mm);
+  ASSERT_EQ(out.status, OrderStatus::kOk);
+  const double t = (setup.image_centre - point).dot(setup.image_normal) / out.direction.dot(setup.image_normal);
+  const Vector3d on_image = point + t * out.direction - setup.image_centre;
+  // 1e-9 mm over 11 m of path is 1e-13 relative; the published table itself has 15 digits.
+  EXPECT_NEAR(on_image.dot(setup.image_x), row.ox, 1e-9);
+  EXPECT_NEAR(on_image.dot(setup.image_y), row.oy, 1e-9);
+  // 15 printed digits of numbers up to one.
+  EXPECT_NEAR(out.direction.dot(setup.image_x), row.dx, 2e-15);
+  EXPECT_NEAR(out.direction.dot(setup.image_y), row.dy, 2e-15);
+  EXPECT_NEAR(out.direction.dot(setup.image_normal), row.dz, 2e-15);
+}
+
+TEST(Diffract, AgreesWithRayUiInPlane) {
+  const RayUi setup{{0, 0.09335326512785988, -0.9956330488136518},    {0, 0.9956330488136518, 0.09335326512785988},
+                    {0, 173.6481776669305077, 9015.1922469877918047}, {1, 0, 0},
+                    {0, -0.9848077530122080, -0.1736481776669305},    {0, 0.1736481776669305, -0.9848077530122080}};
+  for (const RayUiRow& row :
+       std::initializer_list<RayUiRow>{{0, -5.53253146713303, -5.48491095785322, -0.000499999916666671,
+                                        -0.000499452700558831, 0.99999975027351},
+                                       {1, -1.84417701990672, -5.48491172782582, -0.000166666645061729,
+                                        -0.000499454082753384, 0.999999861383915},
+                                       {4, -5.53251079430642, -1.82829583392418, -0.000499999972222223,
+                                        -0.000166483553543206, 0.999999861141618},
+                                       {8, -5.53249012265316, 1.82829229813978, -0.000499999972222223,
+                                        0.000166487013798289, 0.999999861141041}}) {
+    ExpectRayUi(setup, row);
+  }
+}
+
+TEST(Diffract, AgreesWithRayUiForConicalIncidence) {
+  const RayUi setup{{-0.0121850462284485, 0.0925546150034836, -0.9956330488136518},
+                    {-0.1299561907100867, 0.9871152700602351, 0.0933532651278599},
+                    {-22.6656354168154408, 172.1625934348047053, 9015.1922469877918047},
+                    {0.9661846579205290, 0.2568530236733497, 0.0226656354168154},
+                    {0.2568530236733498, -0.9509924109327369, -0.1721625934348047},
+                    {-0.0226656354168154, 0.1721625934348047, -0.9848077530122080}};
+  for (const RayUiRow& row : std::initializer_list<RayUiRow>{
+           {0, -3.92496552781674, -6.73066866932713, -0.000353633413471921, -0.000611763989440052,
+            0.999999750344084},
+           {1, -0.362342158002859, -5.77562338542598, -3.16518362643767e-05, -0.000525539310034621,
+            0.999999861403288},
+           {2, 3.20027728515205, -4.82057837601166, 0.000290329578373872, -0.000439313255130701, 0.99999986135629},
+           {3, 6.76289358871801, -3.86553342995404, 0.000612310794669029, -0.00035308583432352,
+            0.999999750202911}}) {
+    ExpectRayUi(setup, row);
+  }
+}
+
+TEST(Diffract, AgreesWithLensDesignNumbersInTransmission) {
+  const double shift = -0.587 / 5.0;  // order -1, 0.587 um, pitch 5 um
+  const auto field = [](double x_deg, double y_deg) {
+    return Vector3d(std::tan(x_deg * kPi / 180), std::tan(y_deg * kPi / 180), 1.0).normalized();
+  };
+  const auto through = [&](const Vector3d& d) {
+    return Diffract(d, Vector3d::UnitZ(), Vector3d::UnitY(), shift, Side::kTransmitted).direction;
+  };
+  // Ten printed digits.
+  EXPECT_LT((through(field(0, 0)) - Vector3d(0, -0.1174, 0.9930847094)).norm(), 1e-10);
+  EXPECT_LT((through(field(2, 8)) - Vector3d(0.0345602649, 0.0216899611, 0.9991672201)).norm(), 1e-10);
+}
+
+TEST(Diffract, KeepsTheComponentAlongTheGroovesAndTheLength) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const Case c = RandomCase(random);
+    const OrderDirection out = Diffract(c.d, c.normal, c.across, 0.3);
+    if (out.status != OrderStatus::kOk) continue;
+    EXPECT_NEAR(out.direction.dot(c.along), c.d.dot(c.along), 4e-16);  // a few roundings of numbers below one
+    EXPECT_NEAR(out.direction.norm(), 1.0, 1e-15);
+    EXPECT_GT(out.direction.dot(c.normal), 0.0);
+  }
+}
+
+TEST(Diffract, SendsPositiveOrdersTowardsAcross) {
+  const OrderDirection out = Diffract({0, -1, 0}, Vector3d::UnitY(), Vector3d::UnitX(), 0.39);
+  EXPECT_NEAR(out.direction.x(), 0.39, 1e-16);
+  EXPECT_NEAR(out.direction.y(), std::sqrt(1 - 0.39 * 0.39), 2e-16);
+}
+
+TEST(Diffract, MirrorsOrderMAndMinusM) {
+  std::mt19937_64 random(2);
+  for (int i = 0; i < 1000; ++i) {
+    const Case c = RandomCase(random);
+    const Vector3d mirrored = c.d - 2.0 * c.d.dot(c.across) * c.across;
+    const OrderDirection plus = Diffract(c.d, c.normal, c.across, 0.39);
+    const OrderDirection minus = Diffract(mirrored, c.normal, c.across, -0.39);
+    ASSERT_EQ(plus.status, minus.status);
+    if (plus.status != OrderStatus::kOk) continue;
+    const Vector3d back = minus.direction - 2.0 * minus.direction.dot(c.across) * c.across;
+    EXPECT_LT((plus.direction - back).norm(), 2e-15 / plus.direction.dot(c.normal));  // sqrt(q) near grazing
+  }
+}
+
+TEST(Diffract, IsReciprocal) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const Case c = RandomCase(random);
+    const OrderDirection out = Diffract(c.d, c.normal, c.across, 0.39);
+    if (out.status != OrderStatus::kOk) continue;
+    // Light sent back along the order returns along the incident ray, in the same order.
+    const OrderDirection back = Diffract(-out.direction, c.normal, c.across, 0.39);
+    ASSERT_EQ(back.status, OrderStatus::kOk);
+    EXPECT_LT((back.direction + c.d).norm(), 4e-15 / std::abs(c.d.dot(c.normal)));
+  }
+}
+
+TEST(Diffract, TurnsWithTheGrating) {
+  std::mt19937_64 random(4);
+  for (int i = 0; i < 1000; ++i) {
+    const Case c = RandomCase(random);
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.1 * i, RandomUnit(random)).toRotationMatrix();
+    const OrderDirection out = Diffract(c.d, c.normal, c.across, 0.39);
+    const OrderDirection turned = Diffract(turn * c.d, turn * c.normal, turn * c.across, 0.39);
+    if (out.status != OrderStatus::kOk || turned.status != OrderStatus::kOk) continue;
+    EXPECT_LT((turn * out.direction - turned.direction).norm(), 1e-14 / out.direction.dot(c.normal));
+  }
+}
+
+TEST(Diffract, CallsAnOrderBeyondGrazingEvanescent) {
+  // Normal incidence, 600 l/mm, 650 nm: order 2 leaves at 51.3 deg, order 3 cannot (3 * 0.39 > 1).
+  EXPECT_EQ(Diffract({0, -1, 0}, Vector3d::UnitY(), Vector3d::UnitX(), 2 * 0.39).status, OrderStatus::kOk);
+  const OrderDirection third = Diffract({0, -1, 0}, Vector3d::UnitY(), Vector3d::UnitX(), 3 * 0.39);
+  EXPECT_EQ(third.status, OrderStatus::kEvanescent);
+  EXPECT_TRUE(std::isnan(third.direction.x()));
+}
+
+TEST(Diffract, DoesNotCareWhichWayTheNormalPoints) {
+  const Vector3d d = Vector3d(0.1, -1, 0.2).normalized();
+  const OrderDirection a = Diffract(d, Vector3d::UnitY(), Vector3d::UnitX(), 0.39);
+  const OrderDirection b = Diffract(d, -Vector3d::UnitY(), Vector3d::UnitX(), 0.39);
+  EXPECT_EQ(a.direction, b.direction);
+}
+
+Grating Example() {
+  return {.lines_per_m = 600e3,
+          .width_m = 0.025,
+          .height_m = 0.025,
+          .reflectance = 0.9,
+          .table = {{0.0, SinusoidalEfficiencies(1.84, 2)}}};
+}
+
+TEST(Efficiencies, OfASinusoidAreSquaredBesselFunctions) {
+  const OrderEfficiencies orders = SinusoidalEfficiencies(1.84, 8);
+  // J0 and J1 at 1.84: 0.3158 and 0.5819 (tables).
+  EXPECT_NEAR(orders.Of(0), 0.3158 * 0.3158, 2e-4);
+  EXPECT_NEAR(orders.Of(1), 0.5819 * 0.5819, 2e-4);
+  EXPECT_EQ(orders.Of(-3), orders.Of(3));
+  EXPECT_NEAR(orders.Sum(), 1.0, 1e-12);  // a phase grating loses nothing; orders beyond 8 hold 1e-14
+}
+
+TEST(Efficiencies, OfAHalfAndHalfLamellarGratingHaveNoEvenOrders) {
+  const OrderEfficiencies orders = LamellarEfficiencies(kPi, 0.5, 4);
+  EXPECT_NEAR(orders.Of(1), 4.0 / (kPi * kPi), 1e-15);
+  EXPECT_NEAR(orders.Of(-3), 4.0 / (9.0 * kPi * kPi), 1e-15);
+  EXPECT_NEAR(orders.Of(0), 0.0, 1e-30);
+  EXPECT_NEAR(orders.Of(2), 0.0, 1e-30);
+  EXPECT_NEAR(LamellarEfficiencies(1.0, 0.3, 4000).Sum(), 1.0, 1e-4);  // the tail falls as 1/m
+}
+
+TEST(Efficiencies, NeverExceedTheReflectanceAndVanishForEvanescentOrders) {
+  const Grating grating = Example();
+  std::mt19937_64 random(5);
+  for (int i = 0; i < 300; ++i) {
+    Vector3d d_G = RandomUnit(random);
+    d_G.y() = -std::abs(d_G.y());
+    const OrderEfficiencies orders = EfficienciesAt(grating, 650e-9, d_G);
+    EXPECT_LE(orders.Sum(), 0.9 + 1e-15);
+    for (int m = -2; m <= 2; ++m) {
+      const bool exists = Diffract(d_G, Vector3d::UnitY(), Vector3d::UnitX(), m * 0.39).status == OrderStatus::kOk;
+      EXPECT_EQ(orders.Of(m) > 0.0, exists);
+      EXPECT_DOUBLE_EQ(orders.Of(m), EfficiencyOf(grating, 650e-9, d_G, m));
+    }
+  }
+}
+
+TEST(Efficiencies, GiveThePowerOfAnEvanescentOrderToTheOthers) {
+  const Grating grating = Example();
+  const double tabulated = grating.table[0].orders.Sum();
+  const Vector3d oblique(std::sin(kPi / 6), -std::cos(kPi / 6), 0.0);  // order 2 gone: 0.5 + 0.78 > 1
+  const OrderEfficiencies orders = EfficienciesAt(grating, 650e-9, oblique);
+  EXPECT_EQ(orders.Of(2), 0.0);
+  EXPECT_NEAR(orders.Sum(), 0.9 * tabulated, 1e-15);
+}
+
+TEST(Efficiencies, FollowTheTableInIncidence) {
+  Grating grating = Example();
+  grating.reflectance = 1.0;
+  grating.table = {{-0.1, {-1, {0.2, 0.1, 0.4}}}, {0.1, {-1, {0.4, 0.1, 0.2}}}};
+  const Vector3d d_G(0.05, -std::sqrt(1 - 0.05 * 0.05), 0.0);
+  EXPECT_NEAR(EfficiencyOf(grating, 650e-9, d_G, -1), 0.35, 1e-15);  // three quarters of the way
+  EXPECT_NEAR(EfficiencyOf(grating, 650e-9, {-0.5, -std::sqrt(0.75), 0}, 1), 0.4, 1e-15);  // held beyond the ends
+}
+
+TEST(Grating, RefusesWhatIsMissing) {
+  EXPECT_THROW(Validate(Grating{}), std::invalid_argument);
+  Grating grating = Example();
+  grating.table[0].orders.share[0] = -0.1;
+  EXPECT_THROW(Validate(grating), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace twinbench::optics

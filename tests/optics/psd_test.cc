@@ -1,0 +1,132 @@
+#include "optics/psd.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/optics/example_bench.h"
+
+namespace twinbench::optics {
+namespace {
+
+Spot Gaussian(double u_m, double v_m, double sigma_m) {
+  return {.u_m = u_m, .v_m = v_m, .power_W = 1.0, .cov_m2 = sigma_m * sigma_m * Eigen::Matrix2d::Identity()};
+}
+
+/// Centroid and power of a Gaussian with any covariance on a rectangle, by brute force on a fine grid.
+Spot Integrate(const Spot& spot, double width_m, double height_m) {
+  const int n = 1500;
+  const Eigen::Matrix2d precision = spot.cov_m2.inverse();
+  double sum = 0.0;
+  Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const Eigen::Vector2d p(((i + 0.5) / n - 0.5) * width_m, ((j + 0.5) / n - 0.5) * height_m);
+      const Eigen::Vector2d r = p - Eigen::Vector2d(spot.u_m, spot.v_m);
+      const double density = std::exp(-0.5 * r.dot(precision * r));
+      sum += density;
+      moment += density * p;
+    }
+  }
+  const double cell = width_m * height_m / (n * n);
+  const double norm = 2.0 * std::numbers::pi * std::sqrt(spot.cov_m2.determinant());
+  return {.u_m = moment.x() / sum, .v_m = moment.y() / sum, .power_W = spot.power_W * sum * cell / norm};
+}
+
+TEST(Truncate, HasTheTextbookShiftsOfASpotNearAnEdge) {
+  // sigma 0.25 mm, edge at k sigma: -sigma phi / Phi.
+  const struct {
+    double k, shift_um, tolerance_um;  // half the last digit that is given
+  } rows[] = {{3.0, -1.11, 0.005}, {3.5, -0.22, 0.005}, {4.0, -0.033, 0.0005}, {5.0, -3.7e-4, 0.05e-4}};
+  for (const auto& row : rows) {
+    const double u = 5e-3 - row.k * 0.25e-3;
+    EXPECT_NEAR((Truncate(Gaussian(u, 0.0, 0.25e-3), 0.01, 0.01).u_m - u) * 1e6, row.shift_um, row.tolerance_um);
+  }
+}
+
+TEST(Truncate, AgreesWithNumericalIntegration) {
+  for (const double u : {0.0, 4.2e-3, 5.0e-3, 5.4e-3, -4.8e-3}) {
+    const Spot spot = Gaussian(u, 0.3e-3, 0.4e-3);
+    const Spot exact = Integrate(spot, 0.01, 0.01), cut = Truncate(spot, 0.01, 0.01);
+    EXPECT_NEAR(cut.u_m, exact.u_m, 2e-9);  // midpoint rule with 7 um cells
+    EXPECT_NEAR(cut.v_m, exact.v_m, 2e-9);
+    EXPECT_NEAR(cut.power_W, exact.power_W, 2e-6);
+  }
+}
+
+TEST(Truncate, IsExactForAnInclinedEllipseOverOneEdge) {
+  Spot spot = Gaussian(4.8e-3, 0.0, 0.3e-3);
+  spot.cov_m2 << 9e-8, 3e-8, 3e-8, 5e-8;
+  const Spot exact = Integrate(spot, 0.01, 0.01), cut = Truncate(spot, 0.01, 0.01);
+  EXPECT_NEAR(cut.u_m, exact.u_m, 3e-9);
+  EXPECT_NEAR(cut.v_m, exact.v_m, 3e-9);
+}
+
+TEST(Respond, CallsASpotOverTheEdgeClippedAndOneBesideMissed) {
+  const PsdParameters psd = ExamplePsd();
+  const auto status = [&](double u_m) {
+    const Spot spot = Gaussian(u_m, 0.0, 0.25e-3);
+    return Respond(psd, {&spot, 1}).status;
+  };
+  EXPECT_EQ(status(0.0), PsdStatus::kOk);
+  EXPECT_EQ(status(4.5e-3), PsdStatus::kClipped);  // 2 sigma from the edge
+  EXPECT_EQ(status(8.0e-3), PsdStatus::kMissed);
+  const Spot dark{};
+  EXPECT_EQ(Respond(psd, {&dark, 1}).status, PsdStatus::kNoLight);
+  EXPECT_TRUE(std::isnan(Respond(psd, {&dark, 1}).u_m));
+}
+
+TEST(Respond, StretchesByTheCubeOfTheDistance) {
+  PsdParameters psd = ExamplePsd();
+  psd.cubic_per_m2 = 100.0;
+  const PsdSignal signal = RespondToPoint(psd, 3e-3, 4e-3, 1.0);
+  EXPECT_NEAR(signal.u_m, 3e-3 * (1.0 + 100.0 * 25e-6), 1e-17);
+  EXPECT_NEAR(signal.v_m, 4e-3 * (1.0 + 100.0 * 25e-6), 1e-17);
+}
+
+TEST(Respond, StrayLightPullsToTheCentreAndAddsPower) {
+  PsdParameters psd = ExamplePsd();
+  psd.stray_fraction = 0.02;
+  const Spot spot = Gaussian(1e-3, -2e-3, 0.1e-3);
+  const PsdSignal signal = Respond(psd, {&spot, 1});
+  EXPECT_NEAR(signal.u_m, 1e-3 / 1.02, 1e-17);
+  EXPECT_NEAR(signal.v_m, -2e-3 / 1.02, 1e-17);
+  EXPECT_NEAR(signal.power_W, 1.02, 1e-15);
+}
+
+TEST(Respond, WeighsPatchesWithTheirPower) {
+  const Spot spots[] = {{.u_m = 1e-3, .v_m = 0.0, .power_W = 3.0}, {.u_m = -1e-3, .v_m = 2e-3, .power_W = 1.0}};
+  const PsdSignal signal = Respond(ExamplePsd(), spots);
+  EXPECT_NEAR(signal.u_m, 0.5e-3, 1e-18);
+  EXPECT_NEAR(signal.v_m, 0.5e-3, 1e-18);
+}
+
+TEST(Respond, PointAndPatchAgree) {
+  PsdParameters psd = ExamplePsd();
+  psd.cubic_per_m2 = 50.0;
+  psd.stray_fraction = 0.01;
+  const Spot spot{.u_m = 2e-3, .v_m = 1e-3, .power_W = 0.5};
+  const PsdSignal a = RespondToPoint(psd, 2e-3, 1e-3, 0.5), b = Respond(psd, {&spot, 1});
+  EXPECT_EQ(a.u_m, b.u_m);
+  EXPECT_EQ(a.power_W, b.power_W);
+}
+
+TEST(PsdPose, IsTheBenchFrameOfFormats) {
+  const double angle = std::asin(0.39);
+  const Eigen::Isometry3d b = PsdPose(ExamplePsd(), -angle);
+  EXPECT_NEAR(b.translation().x(), -0.12 * 0.39, 1e-17);
+  EXPECT_LT((b.linear().col(0) - Eigen::Vector3d(std::cos(angle), std::sin(angle), 0)).norm(), 1e-16);
+  EXPECT_LT((b.linear().col(2) + b.translation() / 0.12).norm(), 1e-15);  // looks at the grating
+  EXPECT_NEAR(b.linear().determinant(), 1.0, 1e-15);
+}
+
+TEST(Psd, RefusesMissingParameters) {
+  EXPECT_THROW(Validate(PsdParameters{}), std::invalid_argument);
+  PsdParameters psd = ExamplePsd();
+  psd.window = Window{};
+  EXPECT_THROW(Validate(psd), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace twinbench::optics

@@ -1,0 +1,268 @@
+#include "optics/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "optics/kernels.h"
+
+namespace twinbench::optics {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double kSame_m = 1e-12;  // 1e-9 mm, the accuracy demanded of every path through a scene
+
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : random_(seed) {}
+  double Uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  Vector3d Cube(double half) { return {Uniform(-half, half), Uniform(-half, half), Uniform(-half, half)}; }
+  Vector3d Unit() { return (Cube(1.0) + Vector3d(0, 0, 1e-9)).normalized(); }
+  Isometry3d Pose(double half) {
+    Isometry3d X(Eigen::AngleAxisd(Uniform(0.0, 3.1), Unit()));
+    X.translation() = Cube(half);
+    return X;
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+/// Planes and curved mirrors of all kinds, anywhere, also through each other.
+Scene RandomScene(Dice& dice, int surfaces) {
+  Scene scene;
+  for (int i = 0; i < surfaces; ++i) {
+    const Isometry3d X = dice.Pose(0.2);
+    const double size = dice.Uniform(0.01, 0.1);
+    if (i % 4 == 0) scene.AddSurface(RectangularPlane(X, size, 2.0 * size));
+    if (i % 4 == 1) scene.AddSurface(CircularPlane(X, size));
+    if (i % 4 == 2) scene.AddSurface(Sphere(X, i % 8 < 4 ? 0.2 : -0.15, size));
+    if (i % 4 == 3) scene.AddSurface(Paraboloid(X, 0.1, size));
+  }
+  scene.Commit();
+  return scene;
+}
+
+RayBatch RaysAt(Dice& dice, const Scene& scene, int count) {
+  RayBatch rays;
+  for (int i = 0; i < count; ++i) {
+    const Surface& s = scene.surfaces()[static_cast<std::size_t>(i) % scene.surfaces().size()];
+    const Vector3d from = dice.Cube(0.4);
+    const Vector3d to = s.X_WS * Vector3d(dice.Uniform(-0.1, 0.1), dice.Uniform(-0.1, 0.1), 0.0);
+    rays.Add({from, (to - from).normalized()});
+  }
+  return rays;
+}
+
+/// Rays that pass an aperture's edge at `miss_m` or less, inside or outside.
+RayBatch RaysAtEdges(Dice& dice, const Scene& scene, int count, double miss_m) {
+  RayBatch rays;
+  for (int i = 0; i < count; ++i) {
+    const Surface& s = scene.surfaces()[static_cast<std::size_t>(i) % scene.surfaces().size()];
+    const double off = dice.Uniform(-miss_m, miss_m);
+    double x = s.half_x_m + off, y = dice.Uniform(-s.half_y_m, s.half_y_m);
+    if (std::isfinite(s.radius_m)) {
+      const double angle = dice.Uniform(0.0, 6.2);
+      x = (s.radius_m + off) * std::cos(angle);
+      y = (s.radius_m + off) * std::sin(angle);
+    }
+    const Vector3d to = Point(s, x, y);
+    const Vector3d from = to + 0.3 * (Normal(s, x, y) + 0.5 * dice.Cube(1.0)).normalized();
+    rays.Add({from, (to - from).normalized()});
+  }
+  return rays;
+}
+
+int ExpectSame(const HitBatch& a, const HitBatch& b) {
+  int hits = 0;
+  for (std::size_t i = 0; i < a.surface.size(); ++i) {
+    EXPECT_EQ(a.surface[i], b.surface[i]) << "ray " << i << " t " << a.t_m[i] << " " << b.t_m[i];
+    if (a.surface[i] < 0 || a.surface[i] != b.surface[i]) continue;
+    ++hits;
+    EXPECT_NEAR(a.t_m[i], b.t_m[i], kSame_m);
+    EXPECT_NEAR(a.x_m[i], b.x_m[i], kSame_m);
+    EXPECT_NEAR(a.y_m[i], b.y_m[i], kSame_m);
+  }
+  return hits;
+}
+
+void ExpectEveryPathAgrees(const Scene& scene, const RayBatch& rays, int least_hits) {
+  HitBatch embree, analytic, hybrid;
+  scene.Intersect(rays, embree);
+  scene.IntersectAnalytic(rays, analytic);
+  scene.IntersectHybrid(rays, hybrid);
+  EXPECT_GE(ExpectSame(embree, analytic), least_hits);
+  ExpectSame(hybrid, analytic);
+}
+
+TEST(Scene, EmbreeAndAnalyticPathsAgreeInRandomScenes) {
+  for (const int surfaces : {1, 3, 5, 8, 20}) {
+    Dice dice(static_cast<unsigned>(surfaces));
+    const Scene scene = RandomScene(dice, surfaces);
+    ExpectEveryPathAgrees(scene, RaysAt(dice, scene, 5003), 1000);
+  }
+}
+
+TEST(Scene, EmbreeAndAnalyticPathsAgreeAtApertureEdges) {
+  for (const double miss_m : {10e-6, 0.1e-6, 1e-9}) {
+    Dice dice(7);
+    const Scene scene = RandomScene(dice, 12);
+    ExpectEveryPathAgrees(scene, RaysAtEdges(dice, scene, 8000, miss_m), 3000);
+  }
+}
+
+TEST(Scene, TellsSurfacesApartThatFloatCannot) {
+  // Two plates 10 nm apart, and one that crosses both.
+  Scene scene;
+  Isometry3d X = Isometry3d::Identity();
+  scene.AddSurface(RectangularPlane(X, 0.1, 0.1));
+  X.translation().z() = 10e-9;
+  scene.AddSurface(RectangularPlane(X, 0.1, 0.1));
+  scene.AddSurface(RectangularPlane(Isometry3d(Eigen::AngleAxisd(0.3, Vector3d::UnitX())), 0.1, 0.1));
+  scene.Commit();
+  Dice dice(8);
+  RayBatch rays;
+  for (int i = 0; i < 4000; ++i) {
+    const Vector3d to(dice.Uniform(-0.04, 0.04), dice.Uniform(-1e-7, 1e-7), 0.0);
+    rays.Add({{0, 0, i % 2 ? 0.3 : -0.3}, (to - Vector3d(0, 0, i % 2 ? 0.3 : -0.3)).normalized()});
+  }
+  ExpectEveryPathAgrees(scene, rays, 4000);
+}
+
+TEST(Scene, NoRaySlipsThroughTheDiagonalOfAProxy) {
+  Scene scene;
+  scene.AddSurface(RectangularPlane(Isometry3d(Eigen::AngleAxisd(0.4, Vector3d(1, 2, 3).normalized())), 0.1, 0.06));
+  scene.Commit();
+  const Surface& s = scene.surfaces()[0];
+  Dice dice(9);
+  RayBatch rays;
+  for (int i = 0; i < 100000; ++i) {
+    const double along = dice.Uniform(-0.99, 0.99), off = dice.Uniform(-30e-9, 30e-9);
+    const Vector3d to = s.X_WS * Vector3d(0.05 * along, 0.03 * along + off, 0.0);
+    const Vector3d from = s.X_WS * Vector3d(0.02, 0.01, 0.3);
+    rays.Add({from, (to - from).normalized()});
+  }
+  HitBatch hits;
+  scene.Intersect(rays, hits);
+  EXPECT_EQ(std::count(hits.surface.begin(), hits.surface.end(), 0), 100000);
+}
+
+TEST(Scene, RaysThatStartOnASurfaceDoNotMeetItAgain) {
+  Dice dice(10);
+  const Scene scene = RandomScene(dice, 6);
+  RayBatch rays;
+  for (int i = 0; i < 3000; ++i) {
+    const Surface& s = scene.surfaces()[static_cast<std::size_t>(i) % 4 == 1 ? 1 : 0];  // planes
+    const Vector3d from = s.X_WS * Vector3d(0.3 * s.half_x_m, dice.Uniform(-0.5, 0.5) * s.half_y_m, 0.0);
+    rays.Add({from, (s.X_WS.linear().col(2) + 0.8 * dice.Cube(1.0)).normalized()});
+  }
+  HitBatch hits;
+  scene.Intersect(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_NE(hits.surface[i], i % 4 == 1 ? 1 : 0);
+  ExpectEveryPathAgrees(scene, rays, 1);
+}
+
+TEST(Scene, AMeshBlocksWhatIsBehindIt) {
+  Scene scene;
+  scene.AddSurface(RectangularPlane(Isometry3d::Identity(), 0.2, 0.2));
+  Isometry3d X_WM = Isometry3d::Identity();
+  X_WM.translation() = Vector3d(0.05, 0, 0.1);
+  const int box = scene.AddMesh(BoxMesh({-0.02, -0.02, -0.01}, {0.02, 0.02, 0.01}), X_WM);
+  scene.Commit();
+  RayBatch rays;
+  rays.Add({{0.05, 0.0, 0.3}, {0, 0, -1}});   // onto the box
+  rays.Add({{-0.05, 0.0, 0.3}, {0, 0, -1}});  // beside it
+  rays.Add({{0.05, 0.0, 0.05}, {0, 0, -1}});  // starts below it
+  HitBatch hits;
+  scene.Intersect(rays, hits);
+  EXPECT_EQ(hits.surface, (std::vector<int>{kFixture, 0, 0}));
+  EXPECT_NEAR(hits.t_m[0], 0.19, 1e-7);  // float
+  ExpectEveryPathAgrees(scene, rays, 2);
+  EXPECT_TRUE(scene.Occluded({0.05, 0, 0.3}, {0.05, 0, 0.0}));
+  EXPECT_FALSE(scene.Occluded({0.05, 0, 0.3}, {0.05, 0, 0.12}));
+
+  X_WM.translation() = Vector3d(-0.05, 0, 0.1);
+  scene.SetMeshPose(box, X_WM);
+  EXPECT_THROW(scene.Intersect(rays, hits), std::logic_error);  // not committed
+  scene.Commit();
+  scene.Intersect(rays, hits);
+  EXPECT_EQ(hits.surface, (std::vector<int>{0, kFixture, 0}));
+}
+
+TEST(Scene, PathsAgreeWithMeshesInTheScene) {
+  Dice dice(11);
+  Scene scene = RandomScene(dice, 10);
+  for (int i = 0; i < 4; ++i) scene.AddMesh(BoxMesh({-0.02, -0.03, -0.01}, {0.02, 0.03, 0.01}), dice.Pose(0.2));
+  scene.Commit();
+  const RayBatch rays = RaysAt(dice, scene, 5000);
+  HitBatch embree, analytic;
+  scene.Intersect(rays, embree);
+  scene.IntersectAnalytic(rays, analytic);
+  EXPECT_GT(std::count(embree.surface.begin(), embree.surface.end(), kFixture), 100);
+  ExpectEveryPathAgrees(scene, rays, 500);
+}
+
+TEST(Scene, ANewPoseIsAsGoodAsANewScene) {
+  Dice dice(12);
+  Scene moved = RandomScene(dice, 9);
+  Scene fresh;
+  for (int i = 0; i < 9; ++i) {
+    Surface s = moved.surfaces()[static_cast<std::size_t>(i)];
+    s.X_WS = dice.Pose(0.2);
+    moved.SetSurfacePose(i, s.X_WS);
+    fresh.AddSurface(s);
+  }
+  moved.Commit();
+  fresh.Commit();
+  const RayBatch rays = RaysAt(dice, fresh, 3000);
+  HitBatch a, b;
+  moved.Intersect(rays, a);
+  fresh.Intersect(rays, b);
+  EXPECT_EQ(a.surface, b.surface);
+  EXPECT_EQ(a.t_m, b.t_m);
+  ExpectEveryPathAgrees(moved, rays, 500);
+}
+
+TEST(Scene, ScatteredOrderChangesNothingButSpeed) {
+  Dice dice(13);
+  const Scene scene = RandomScene(dice, 8);
+  const RayBatch rays = RaysAt(dice, scene, 2000);
+  HitBatch a, b;
+  scene.Intersect(rays, a, RayOrder::kCoherent);
+  scene.Intersect(rays, b, RayOrder::kScattered);
+  EXPECT_EQ(a.surface, b.surface);
+}
+
+TEST(Scene, OneRayAndManyRaysGiveTheSameBits) {
+  Dice dice(14);
+  const Scene scene = RandomScene(dice, 8);
+  const RayBatch rays = RaysAt(dice, scene, 1000);
+  HitBatch hits;
+  scene.IntersectAnalytic(rays, hits);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const NearestHit one = Nearest(scene.surfaces(), rays.At(i), Scene::t_min_m);
+    ASSERT_EQ(one.index, hits.surface[i]);
+    EXPECT_EQ(one.hit.t_m, hits.t_m[i]);  // no contraction, one formula: equal, not near
+  }
+}
+
+TEST(Scene, AnEmptySceneIsDark) {
+  Scene scene;
+  scene.Commit();
+  RayBatch rays;
+  rays.Add({});
+  HitBatch hits;
+  scene.Intersect(rays, hits);
+  EXPECT_EQ(hits.surface[0], kNothing);
+}
+
+TEST(Scene, RefusesABrokenMesh) {
+  Scene scene;
+  EXPECT_THROW(scene.AddMesh({{{0, 0, 0}}, {{0, 1, 2}}}, Isometry3d::Identity()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace twinbench::optics

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "twin/core/reading.h"
+#include "twin/core/stream.h"
+#include "twin/measure/measure.h"
+#include "twin/separate/separator.h"
+
+/// What the tests of this room share: the reference bench, designs, motions made straight from table errors.
+namespace twinbench::separate {
+
+inline BenchGeometry Bench() { return measure::NominalGeometry(Scenario{}); }
+
+/// Without Abbe levers: dy has nothing to do with the wobble.
+inline BenchGeometry FlatBench() {
+  BenchGeometry flat = Bench();
+  flat.grating_point_m.z() = flat.reference_height_m = 0.0;
+  return flat;
+}
+
+inline LayoutOptions Layouts(int n, Clamping clamping) { return {n, clamping, {}}; }
+
+inline SeparateOptions Options(int n, Clamping clamping,
+                               measure::Estimator estimator = measure::Estimator::kRigorous) {
+  SeparateOptions options;
+  options.estimator = estimator;
+  options.layout = Layouts(n, clamping);
+  return options;
+}
+
+/// Errors of both tables at their n positions, ascending own angle.
+struct Truth {
+  TableErrors target;
+  TableErrors reference;
+};
+
+inline TableErrors ZeroErrors(int n) {
+  TableErrors e;
+  for (int i = 0; i < n; ++i) e.position_rad.push_back(i * 2.0 * units::kPi / n);
+  for (auto& column : e.value) column.assign(static_cast<std::size_t>(n), 0.0);
+  return e;
+}
+
+/// White errors of about 5 arcsec and 3 um.
+inline TableErrors RandomErrors(int n, Stream& stream) {
+  TableErrors e = ZeroErrors(n);
+  for (int c = 0; c < kComponents; ++c) {
+    const double unit = IsAngle(static_cast<Component>(c)) ? 5.0 * units::arcsec : 3.0 * units::um;
+    for (double& v : e.value[static_cast<std::size_t>(c)]) v = unit * stream.Normal();
+  }
+  return e;
+}
+
+inline Truth RandomTruth(int n, Stream& stream) { return {RandomErrors(n, stream), RandomErrors(n, stream)}; }
+
+/// Full circles of motions with zero values: every shift is a set-up, every pass goes through all stops.
+inline std::vector<Motion> EmptyMotions(int n, const std::vector<int>& shifts, int passes, const Matrix4& cov) {
+  std::vector<Motion> motions;
+  const double step_rad = 2.0 * units::kPi / n;
+  for (std::size_t s = 0; s < shifts.size(); ++s) {
+    for (int k = 0; k < passes * n; ++k) {
+      Motion m;
+      m.reading = static_cast<int>(motions.size());
+      m.setup = static_cast<int>(s);
+      m.pass = k / n;
+      m.position = k % n;
+      m.target_rad = m.position * step_rad;
+      m.reference_rad = shifts[s] * step_rad - m.target_rad;
+      m.status = ReadingStatus::kOk;
+      m.SetValues(Vector4::Zero());
+      m.cov = cov;
+      m.cov_systematic.setZero();
+      m.d_calibration.setZero();
+      m.covariance_known = true;
+      motions.push_back(m);
+    }
+  }
+  return motions;
+}
+
+/// 0.3 um on every PSD axis.
+inline Matrix4 ReadingCovariance() {
+  return Vector4(1.7e-6, 0.9e-6, 4.5e-6, 0.54e-6).cwiseAbs2().asDiagonal();
+}
+
+inline Vector6 ErrorsAt(const TableErrors& e, int position) {
+  Vector6 v;
+  for (int c = 0; c < kComponents; ++c) v[c] = e.value[static_cast<std::size_t>(c)][static_cast<std::size_t>(position)];
+  return v;
+}
+
+/// Sets each motion to what the exact chain gives.
+inline void FillExact(std::vector<Motion>& motions, const Truth& truth, const LayoutOptions& options,
+                      const BenchGeometry& geometry) {
+  const Layout layout = FindLayout(motions, geometry, options);
+  for (const Sample& sample : layout.samples) {
+    const SetUp& setup = layout.design.setups[static_cast<std::size_t>(sample.setup)];
+    PoseErrors errors;
+    errors.target = ErrorsAt(truth.target, sample.target);
+    errors.reference = ErrorsAt(truth.reference, sample.reference);
+    motions[sample.motion].SetValues(MotionOf(GratingPose(layout.design.StopAt(setup, sample.target), errors, geometry)));
+  }
+}
+
+/// rms of a - b over the positions where both are finite; NaN if there are none.
+inline double RmsDifference(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!std::isfinite(a[i]) || !std::isfinite(b[i])) continue;
+    sum += (a[i] - b[i]) * (a[i] - b[i]);
+    ++count;
+  }
+  return std::sqrt(sum / count);
+}
+
+/// The entries of one table that contain a component.
+inline std::vector<NotSeparable> LossesOf(const std::vector<NotSeparable>& lost, Table table, Component component) {
+  std::vector<NotSeparable> found;
+  for (const NotSeparable& e : lost) {
+    bool has = false;
+    for (const Component c : e.components) has = has || c == component;
+    if (e.table == table && has) found.push_back(e);
+  }
+  return found;
+}
+
+/// Orders lost of one component, sorted; {-999} stands for all.
+inline std::vector<int> LostOrders(const std::vector<NotSeparable>& lost, Table table, Component component) {
+  std::vector<int> orders;
+  for (const NotSeparable& e : LossesOf(lost, table, component)) {
+    if (e.all) return {-999};
+    orders.insert(orders.end(), e.orders.begin(), e.orders.end());
+  }
+  std::sort(orders.begin(), orders.end());
+  return orders;
+}
+
+inline Design MakeDesign(int n, const std::vector<int>& shifts, Clamping clamping, const BenchGeometry& geometry) {
+  return FindLayout(EmptyMotions(n, shifts, 1, Matrix4::Identity()), geometry, Layouts(n, clamping)).design;
+}
+
+}  // namespace twinbench::separate

@@ -1,0 +1,103 @@
+#include "twin/separate/chain.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/separate/bench.h"
+#include "twin/measure/grating_model.h"
+
+namespace twinbench::separate {
+namespace {
+
+struct Row {
+  std::string mode;
+  std::vector<double> v;
+};
+
+std::vector<Row> OraclePoses() {
+  std::ifstream in(std::string(TWINBENCH_TEST_DATA) + "/oracle/poses.csv");
+  std::string line, field;
+  std::getline(in, line);
+  std::vector<Row> rows;
+  while (std::getline(in, line)) {
+    std::istringstream fields(line);
+    Row row;
+    std::getline(fields, row.mode, ',');
+    while (std::getline(fields, field, ',')) row.v.push_back(std::stod(field));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// The oracle gives the reference's error in the rotor frame.
+Vector6 PoseFrom(const double* v) {
+  Vector6 e;
+  e << v[0] * units::arcsec, v[1] * units::arcsec, v[2] * units::arcsec, v[3] * units::um, v[4] * units::um,
+      v[5] * units::um;
+  return e;
+}
+
+Stop StopFrom(const Row& row) {
+  const double shift_rad = row.v[2] * units::deg;
+  const bool reclamp = row.mode == "reclamp";
+  return {row.v[0] * units::deg, row.v[1] * units::deg, reclamp ? 0.0 : -shift_rad, reclamp ? shift_rad : 0.0};
+}
+
+TEST(GratingPose, PutsTheSpotsWhereTheIndependentOraclePutsThem) {
+  const auto rows = OraclePoses();
+  ASSERT_GE(rows.size(), 100u);
+  for (const Row& row : rows) {
+    PoseErrors errors;
+    errors.target = PoseFrom(&row.v[3]);
+    errors.reference = PoseFrom(&row.v[9]);
+    const Vector4 motion = MotionOf(GratingPose(StopFrom(row), errors, Bench()));
+    const Vector4 spots_m = measure::PredictSpots(motion, Bench());
+    const Vector4 expected_m = units::um * Vector4(row.v[15], row.v[16], row.v[17], row.v[18]);
+    // The oracle prints nine digits of a micrometre.
+    EXPECT_LT((spots_m - expected_m).cwiseAbs().maxCoeff(), 2e-15) << row.mode;
+  }
+}
+
+/// Exact chain of one stop as a function of the columns of its first-order model.
+Vector4 ChainAt(const Design& design, int setup, int target, const Eigen::VectorXd& x) {
+  const bool reseat = design.setups[static_cast<std::size_t>(setup)].clamping == Clamping::kReseat;
+  PoseErrors errors;
+  errors.target << x[0], x[1], x[2], 0.0, kLengthUnit_m * x[3], 0.0;
+  errors.reference << x[4], x[5], x[6], kLengthUnit_m * x[7], kLengthUnit_m * x[8], 0.0;
+  errors.mount << x[10], x[11], x[9], 0.0, kLengthUnit_m * x[12], 0.0;
+  if (reseat) errors.seat << x[13], x[14], 0.0, kLengthUnit_m * x[15], kLengthUnit_m * x[16], 0.0;
+  const Stop stop = design.StopAt(design.setups[static_cast<std::size_t>(setup)], target);
+  Vector4 motion = MotionOf(GratingPose(stop, errors, Bench()));
+  motion[3] /= kLengthUnit_m;
+  return motion;
+}
+
+TEST(ModelStop, IsTheDerivativeOfTheExactChain) {
+  constexpr double kStep = 1e-5;
+  for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
+    const Design design = MakeDesign(12, {0, 1, 5}, clamping, Bench());
+    for (int setup = 0; setup < 3; ++setup) {
+      for (int target = 0; target < 12; ++target) {
+        const StopModel model = ModelStop(design, setup, target);
+        for (int c = 0; c < model.columns; ++c) {
+          const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(StopModel::kMost, c);
+          const Vector4 difference = ChainAt(design, setup, target, step) - ChainAt(design, setup, target, -step);
+          // Third derivatives are of order 1: step^2 = 1e-10.
+          EXPECT_LT((difference / (2 * kStep) - model.d.col(c)).cwiseAbs().maxCoeff(), 1e-9) << c;
+        }
+      }
+    }
+  }
+}
+
+TEST(MotionOf, ReturnsTheAnglesAndTheShiftOfAMount) {
+  PoseErrors errors;
+  errors.mount << 1e-4, -2e-4, 3e-4, 0.0, 5e-5, 0.0;
+  const Vector4 motion = MotionOf(GratingPose({0, 0, 0, 0}, errors, Bench()));
+  EXPECT_LT((motion - Vector4(3e-4, 1e-4, -2e-4, 5e-5)).cwiseAbs().maxCoeff(), 1e-15);  // rounding
+}
+
+}  // namespace
+}  // namespace twinbench::separate

@@ -1,0 +1,138 @@
+#include "twin/separate/separability.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/separate/bench.h"
+
+namespace twinbench::separate {
+namespace {
+
+using testing::ElementsAre;
+constexpr int kAll = -999;
+
+std::vector<NotSeparable> Lost(int n, const std::vector<int>& shifts, Clamping clamping) {
+  return FindSeparability(MakeDesign(n, shifts, clamping, Bench())).lost;
+}
+
+TEST(FindSeparability, FindsVectorsThatChangeNoReading) {
+  for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
+    for (const int n : {12, 15}) {
+      const Design design = MakeDesign(n, {0, 3}, clamping, Bench());
+      const Eigen::MatrixXd null = FindSeparability(design).null_space;
+      ASSERT_GT(null.cols(), 0);
+      const auto identity = Eigen::MatrixXd::Identity(null.cols(), null.cols());
+      EXPECT_LT((null.transpose() * null - identity).cwiseAbs().maxCoeff(), 1e-12);  // rounding
+      for (int setup = 0; setup < 2; ++setup) {
+        for (int target = 0; target < n; ++target) {
+          const StopModel model = ModelStop(design, setup, target);
+          Eigen::MatrixXd reading = Eigen::MatrixXd::Zero(4, null.cols());
+          for (int c = 0; c < model.columns; ++c) reading += model.d.col(c) * null.row(model.column[c]);
+          EXPECT_LT(reading.cwiseAbs().maxCoeff(), 1e-12);
+        }
+      }
+    }
+  }
+}
+
+TEST(FindSeparability, LosesOnlyTheDefinitionalOrdersOfAGoodReclampSet) {
+  const auto lost = Lost(36, {0, 1, 7, 11}, Clamping::kReclamp);
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEx), ElementsAre(0, 1));
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEx), ElementsAre(-1, 0));  // retrograde for the target
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEz), ElementsAre(0));
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEz), ElementsAre(0));
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDy), ElementsAre(0, 1));
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kDx), ElementsAre(-1, 0));
+}
+
+TEST(FindSeparability, LosesTheLateralMotionOfTheReferenceWhenItsBodyIsReseated) {
+  const auto lost = Lost(36, {0, 1, 7, 11}, Clamping::kReseat);
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kDx), ElementsAre(kAll));
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kDy), ElementsAre(0, 1));
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDy), ElementsAre(0, 1));
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEx), ElementsAre(0, 1));
+}
+
+TEST(FindSeparability, ListsWhatNobodyReads) {
+  const auto lost = Lost(36, {0, 1, 7, 11}, Clamping::kReclamp);
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDx), ElementsAre(kAll));
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDz), ElementsAre(kAll));
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kDz), ElementsAre(kAll));
+}
+
+TEST(FindSeparability, LosesMultiplesOfTheOrderThatAllShiftsShare) {
+  // gcd(4, 12) = 4 steps: orders that repeat three times a turn look alike in all set-ups (section 2.2).
+  const auto lost = Lost(12, {0, 4, 8}, Clamping::kReseat);
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEz), ElementsAre(0, 3, 6));
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEz), ElementsAre(0, 3, 6));
+}
+
+TEST(FindSeparability, SaysItInWords) {
+  const auto lost = Lost(12, {0, 1, 4}, Clamping::kReclamp);
+  const auto wobble = LossesOf(lost, Table::kTarget, Component::kEx);
+  ASSERT_EQ(wobble.size(), 2u);
+  EXPECT_EQ(wobble[0].what, "target ex,ey order 0");
+  EXPECT_EQ(wobble[1].what, "target ex,ey order +1");
+  EXPECT_FALSE(wobble[1].why.empty());
+}
+
+struct RankCase {
+  const char* name;
+  std::vector<int> shifts;  // n/4 and n/2 are written as -4 and -2
+  Clamping clamping;
+  bool solvable;
+};
+
+/// Rows of the table in knowledge/metrology 3.4 for the radial error of the target.
+TEST(FindSeparability, AgreesWithTheRankTableForOneRadialComponent) {
+  const std::vector<RankCase> cases = {{"A{0,1}", {0, 1}, Clamping::kReclamp, false},
+                                       {"B{0,1}", {0, 1}, Clamping::kReseat, true},
+                                       {"B{0,1,4}", {0, 1, 4}, Clamping::kReseat, true},
+                                       {"A{0,1,n/4}", {0, 1, -4}, Clamping::kReclamp, true},
+                                       {"A{0,1,2}", {0, 1, 2}, Clamping::kReclamp, true},
+                                       {"A{0,1,n/2}", {0, 1, -2}, Clamping::kReclamp, false}};
+  for (const int n : {12, 36}) {
+    for (const RankCase& c : cases) {
+      std::vector<int> shifts = c.shifts;
+      for (int& s : shifts) s = s < 0 ? n / -s : s;
+      const auto orders = LostOrders(Lost(n, shifts, c.clamping), Table::kTarget, Component::kDy);
+      const bool only_definitional = orders == std::vector<int>{0, 1};
+      EXPECT_EQ(only_definitional, c.solvable) << c.name << " n=" << n;
+    }
+  }
+}
+
+TEST(FindSeparability, LosesEveryOrderOfTheRadialErrorWithTwoReclampedSetUps) {
+  for (const int n : {12, 36}) {
+    const auto lost = Lost(n, {0, 1}, Clamping::kReclamp);
+    EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDy), ElementsAre(kAll));
+    EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEx), ElementsAre(0, 1));  // the wobble is not touched
+  }
+}
+
+TEST(FindSeparability, IsCuredByOneReseatedRun) {
+  const auto motions = EmptyMotions(36, {0, 1, 1}, 1, Matrix4::Identity());
+  const LayoutOptions options{36, Clamping::kReclamp, {{2, Clamping::kReseat}}};
+  const auto lost = FindSeparability(FindLayout(motions, Bench(), options).design).lost;
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDy), ElementsAre(0, 1));
+}
+
+TEST(RemoveNotSeparable, TakesTheLostOrdersAndLeavesTheOthers) {
+  const int n = 12;
+  const auto lost = Lost(n, {0, 1, 4}, Clamping::kReclamp);
+  TableErrors e = ZeroErrors(n);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const double a = e.position_rad[i];
+    e[Component::kEx][i] = 1.0 + std::cos(a + 0.3) + std::cos(a);  // constant, forward and backward once per turn
+    e[Component::kEy][i] = 2.0 + std::sin(a + 0.3) - std::sin(a);
+  }
+  const TableErrors left = RemoveNotSeparable(e, Table::kTarget, lost);
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_NEAR(left[Component::kEx][i], std::cos(e.position_rad[i]), 1e-14);  // rounding
+    EXPECT_NEAR(left[Component::kEy][i], -std::sin(e.position_rad[i]), 1e-14);
+    EXPECT_TRUE(std::isnan(left[Component::kDz][i]));
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::separate

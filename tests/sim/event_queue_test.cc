@@ -1,0 +1,234 @@
+#include "twin/sim/event_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "twin/core/stream.h"
+
+namespace twinbench::sim {
+namespace {
+
+Time At(std::int64_t ns) {
+  return Time(Duration(ns));
+}
+
+TEST(EventQueue, RunsEventsInTheOrderOfTheirTime) {
+  EventQueue queue;
+  std::vector<std::int64_t> seen;
+  for (const std::int64_t ns : {30, 10, 20})
+    queue.At(At(ns), [&] { seen.push_back(queue.Now().time_since_epoch().count()); });
+  while (queue.RunOne()) continue;
+  EXPECT_EQ(seen, (std::vector<std::int64_t>{10, 20, 30}));
+}
+
+TEST(EventQueue, KeepsTheOrderOfAdditionAtEqualTimes) {
+  EventQueue queue;
+  std::vector<int> seen;
+  for (int i = 0; i < 1000; ++i) queue.At(At(5), [&seen, i] { seen.push_back(i); });
+  queue.RunUntil(At(5));
+  ASSERT_EQ(seen.size(), 1000u);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(seen[static_cast<std::size_t>(i)], i);
+}
+
+TEST(EventQueue, RunsAnEventThatIsAddedForNowAfterThoseThatWait) {
+  EventQueue queue;
+  std::string seen;
+  queue.At(At(5), [&] {
+    seen += 'a';
+    queue.After(Duration(0), [&] { seen += 'c'; });
+  });
+  queue.At(At(5), [&] { seen += 'b'; });
+  queue.RunUntil(At(5));
+  EXPECT_EQ(seen, "abc");
+}
+
+TEST(EventQueue, StopsTheClockWhereItIsTold) {
+  EventQueue queue;
+  int n = 0;
+  queue.At(At(10), [&] { ++n; });
+  queue.At(At(11), [&] { ++n; });
+  queue.RunUntil(At(10));
+  EXPECT_EQ(n, 1);
+  EXPECT_EQ(queue.Now(), At(10));
+  EXPECT_EQ(queue.Pending(), 1u);
+  queue.RunUntil(At(1000));
+  EXPECT_EQ(n, 2);
+  EXPECT_EQ(queue.Now(), At(1000));
+}
+
+TEST(EventQueue, RefusesThePast) {
+  EventQueue queue;
+  queue.RunUntil(At(100));
+  EXPECT_THROW(queue.At(At(99), [] {}), std::logic_error);
+  EXPECT_THROW(queue.After(Duration(-1), [] {}), std::logic_error);
+  EXPECT_THROW(queue.After(Duration::max(), [] {}), std::logic_error);
+  EXPECT_THROW(queue.RunUntil(At(99)), std::logic_error);
+  EXPECT_EQ(queue.Pending(), 0u);
+}
+
+TEST(EventQueue, DoesNotRunACancelledEvent) {
+  EventQueue queue;
+  int n = 0;
+  const EventId id = queue.At(At(10), [&] { ++n; });
+  EXPECT_TRUE(queue.Cancel(id));
+  EXPECT_EQ(queue.Pending(), 0u);
+  EXPECT_FALSE(queue.Cancel(id));
+  EXPECT_FALSE(queue.RunOne());
+  EXPECT_EQ(n, 0);
+  EXPECT_EQ(queue.Now(), At(0));
+}
+
+TEST(EventQueue, DoesNotMistakeANewEventForAnOldOneInTheSameSlot) {
+  EventQueue queue;
+  int n = 0;
+  const EventId old_id = queue.At(At(10), [] {});
+  queue.RunOne();
+  const EventId new_id = queue.At(At(20), [&] { ++n; });
+  ASSERT_EQ(old_id.slot, new_id.slot);
+  EXPECT_FALSE(queue.Cancel(old_id));
+  EXPECT_FALSE(queue.Cancel(EventId{}));
+  queue.RunOne();
+  EXPECT_EQ(n, 1);
+}
+
+TEST(EventQueue, CannotCancelTheEventThatIsRunning) {
+  EventQueue queue;
+  EventId id;
+  bool cancelled = true;
+  id = queue.At(At(1), [&] { cancelled = queue.Cancel(id); });
+  queue.RunOne();
+  EXPECT_FALSE(cancelled);
+}
+
+TEST(EventQueue, GoesOnAfterAnExceptionInACallback) {
+  EventQueue queue;
+  int n = 0;
+  queue.At(At(1), [] { throw std::runtime_error("device lost"); });
+  queue.At(At(2), [&] { ++n; });
+  EXPECT_THROW(queue.RunUntil(At(5)), std::runtime_error);
+  EXPECT_EQ(queue.Now(), At(1));
+  EXPECT_EQ(queue.Pending(), 1u);
+  queue.RunUntil(At(5));
+  EXPECT_EQ(n, 1);
+}
+
+TEST(EventQueue, RunsUntilAConditionFailsOrNothingIsLeft) {
+  EventQueue queue;
+  int n = 0;
+  for (int i = 1; i <= 5; ++i) queue.At(At(i), [&] { ++n; });
+  EXPECT_TRUE(queue.RunWhile([&] { return n < 3; }));
+  EXPECT_EQ(queue.Now(), At(3));
+  EXPECT_FALSE(queue.RunWhile([&] { return n < 9; }));
+  EXPECT_EQ(n, 5);
+}
+
+TEST(EventQueue, MayBeRunFromInsideAnEvent) {
+  EventQueue queue;
+  std::string seen;
+  queue.At(At(1), [&] {
+    seen += 'a';
+    queue.RunUntil(At(20));
+    seen += 'c';
+  });
+  queue.At(At(15), [&] { seen += 'b'; });
+  queue.RunUntil(At(10));
+  EXPECT_EQ(seen, "abc");
+  EXPECT_EQ(queue.Now(), At(20));  // never back to 10
+}
+
+TEST(EventQueue, DestroysCapturesWhenTheyAreNoLongerNeeded) {
+  const auto token = std::make_shared<int>(0);
+  {
+    EventQueue queue;
+    const EventId cancelled = queue.At(At(1), [token] {});
+    queue.At(At(2), [token] {});
+    queue.At(At(3), [token] {});
+    EXPECT_EQ(token.use_count(), 4);
+    queue.Cancel(cancelled);
+    EXPECT_EQ(token.use_count(), 3);
+    queue.RunOne();
+    EXPECT_EQ(token.use_count(), 2);
+  }
+  EXPECT_EQ(token.use_count(), 1);
+}
+
+TEST(EventQueue, TakesMoveOnlyAndLargeCaptures) {
+  EventQueue queue;
+  int sum = 0;
+  std::array<int, 100> large{};
+  large[99] = 7;
+  queue.After(Duration(1), [&sum, p = std::make_unique<int>(5)] { sum += *p; });
+  queue.After(Duration(1), [&sum, large] { sum += large[99]; });
+  queue.RunUntil(At(1));
+  EXPECT_EQ(sum, 12);
+}
+
+TEST(Callback, KeepsSmallCapturesInside) {
+  const std::array<char, Callback::kInside> small{};
+  const std::array<char, Callback::kInside + 1> large{};
+  const auto f = [small] { static_cast<void>(small); };
+  const auto g = [large] { static_cast<void>(large); };
+  EXPECT_TRUE(Callback::FitsInside<decltype(f)>());
+  EXPECT_FALSE(Callback::FitsInside<decltype(g)>());
+}
+
+/// The same life in a std::multimap, which keeps equal keys in the order of their insertion.
+class EventQueueModel {
+ public:
+  using Events = std::multimap<Time, int>;
+  void Add(Time when, int label) { place_[label] = events_.insert({when, label}); }
+  bool Cancel(int label) {
+    const auto found = place_.find(label);
+    if (found == place_.end()) return false;
+    events_.erase(found->second);
+    place_.erase(found);
+    return true;
+  }
+  int Next() {  // -1 if there is none
+    if (events_.empty()) return -1;
+    const int label = events_.begin()->second;
+    Cancel(label);
+    return label;
+  }
+  std::size_t size() const { return events_.size(); }
+
+ private:
+  Events events_;
+  std::map<int, Events::iterator> place_;
+};
+
+TEST(EventQueue, BehavesLikeASortedListInARandomLife) {
+  Stream random(2025, "event_queue.life");
+  EventQueue queue;
+  EventQueueModel model;
+  std::vector<EventId> ids;
+  int ran = -1;
+  for (int step = 0; step < 60000; ++step) {
+    // Phases of growth, cancelling and draining, so that the sweep of cancelled events comes into play too.
+    const std::uint32_t choice = random.Word() % 10, phase = static_cast<std::uint32_t>(step / 1000 % 3);
+    if (choice < (phase == 0 ? 7u : 3u)) {
+      const Time when = queue.Now() + Duration(random.Word() % 50);  // many equal times
+      const int label = static_cast<int>(ids.size());
+      ids.push_back(queue.At(when, [&ran, label] { ran = label; }));
+      model.Add(when, label);
+    } else if (choice < (phase == 1 ? 9u : 7u) && !ids.empty()) {
+      const std::size_t label = ids.size() - 1 - random.Word() % std::min<std::size_t>(ids.size(), 400);
+      ASSERT_EQ(queue.Cancel(ids[label]), model.Cancel(static_cast<int>(label)));
+    } else {
+      ran = -1;
+      queue.RunOne();
+      ASSERT_EQ(ran, model.Next());
+    }
+    ASSERT_EQ(queue.Pending(), model.size());
+  }
+  EXPECT_GT(ids.size(), 20000u);
+}
+
+}  // namespace
+}  // namespace twinbench::sim

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+/// The commands of `twinbench`, one file each. Every Add... hangs a command with its options and its action under
+/// `app`; the action throws InputError, BenchError or std::exception, and main turns that into an exit code.
+namespace twinbench::tools {
+
+void AddRun(CLI::App& app);
+void AddExport(CLI::App& app);
+void AddImport(CLI::App& app);
+void AddSeparate(CLI::App& app);
+void AddScore(CLI::App& app);
+void AddHelp(CLI::App& app);
+
+}  // namespace twinbench::tools

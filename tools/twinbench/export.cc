@@ -1,0 +1,34 @@
+#include <fmt/core.h>
+
+#include <iostream>
+
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/run_folder.h"
+#include "twin/core/run_record.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct Options {
+  std::string folder;
+  std::string readings = "-";
+};
+
+void Export(const Options& options) {
+  const auto readings = RunRecord::Open(options.folder)->Readings();
+  if (options.readings == "-") return WriteReadingsCsv(readings, std::cout);
+  WriteReadingsCsv(readings, options.readings);
+  fmt::print(stderr, "{} readings written to {}\n", readings.size(), options.readings);
+}
+
+}  // namespace
+
+void AddExport(CLI::App& app) {
+  auto* command = app.add_subcommand("export", "Write the readings of a run as readings.csv");
+  auto options = std::make_shared<Options>();
+  command->add_option("run", options->folder, "folder of the run")->required();
+  command->add_option("--readings", options->readings, "file to write, - for stdout")->capture_default_str();
+  command->callback([options] { Export(*options); });
+}
+
+}  // namespace twinbench::tools

@@ -1,0 +1,44 @@
+#include <fmt/core.h>
+
+#include "tools/twinbench/commands.h"
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::tools {
+namespace {
+
+constexpr const char* kSeparator = ", ";
+
+std::string Join(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : kSeparator) + word;
+  return text;
+}
+
+void PrintEffects() {
+  fmt::print("An [[effect]] block hides one of these in the bench: name, where, and any of the parameters.\n\n");
+  for (const EffectEntry& effect : EffectCatalogue()) {
+    fmt::print("{}: {}\n", effect.name, effect.title);
+    if (!effect.places.empty()) fmt::print("    where = {}\n", Join(effect.places));
+    for (const EffectParameter& p : effect.parameters) {
+      const std::string key = p.unit == "1" ? p.name : p.name + "_" + p.unit;
+      fmt::print("    {} = {:g}   {}\n", key, p.default_SI / p.to_SI, p.meaning);
+    }
+  }
+}
+
+void PrintHelp(const std::string& topic) {
+  if (topic == "effects") return PrintEffects();
+  fmt::print("{}", DescribeScenarioKeys());
+}
+
+}  // namespace
+
+void AddHelp(CLI::App& app) {
+  auto* command = app.add_subcommand("help", "Explain scenario keys or effects");
+  auto topic = std::make_shared<std::string>("scenario");
+  command->add_option("topic", *topic, "scenario or effects")->check(CLI::IsMember({"scenario", "effects"}));
+  command->callback([topic] { PrintHelp(*topic); });
+}
+
+}  // namespace twinbench::tools

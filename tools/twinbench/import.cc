@@ -1,0 +1,48 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "tools/twinbench/analysis.h"
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/tables.h"
+#include "twin/core/run_record.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct Options {
+  std::string readings, scenario, folder;
+  std::vector<std::string> overrides;
+};
+
+void Import(const Options& options) {
+  const Scenario scenario = LoadScenario(options.scenario, options.overrides);
+  const std::vector<Reading> readings = ReadReadingsCsv(options.readings);
+  // Evaluated first: a file that cannot be evaluated leaves no folder behind.
+  const Analysis analysis = Analyse(scenario, readings, measure::Estimator::kRigorous);
+  const RunFolder folder{options.folder};
+  {
+    const auto record =
+        RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.readings, scenario.seed, ""});
+    for (const Reading& reading : readings) record->Append(reading, {});
+    record->Finish();
+  }
+  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
+  WriteJson(folder.results(), ToJson(analysis));
+  fmt::print("{}", Summary(analysis));
+}
+
+}  // namespace
+
+void AddImport(CLI::App& app) {
+  auto* command = app.add_subcommand("import", "Make a run folder from anybody's readings.csv");
+  auto options = std::make_shared<Options>();
+  command->add_option("readings", options->readings, "readings.csv")->required();
+  command->add_option("--scenario", options->scenario, "the bench that made them")->required();
+  command->add_option("-o,--output", options->folder, "folder of the new run")->required();
+  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12");
+  command->callback([options] { Import(*options); });
+}
+
+}  // namespace twinbench::tools

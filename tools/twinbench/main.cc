@@ -1,0 +1,55 @@
+#include <fmt/core.h>
+
+#include <exception>
+
+#include "tools/twinbench/commands.h"
+#include "twin/core/errors.h"
+
+namespace {
+
+enum ExitCode { kDone = 0, kWorldFailed = 1, kBadInput = 2 };
+
+constexpr const char* kAbout =
+    "A virtual test bench for precision rotary tables: a scenario file goes in, the virtual bench carries out the\n"
+    "measurement, and the same pipeline that evaluates a real bench returns the errors of both tables.";
+
+constexpr const char* kExamples =
+    "A first session:\n"
+    "  twinbench run scenarios/rotary_4dof.toml -o runs/first     carry out, measure, separate\n"
+    "  twinbench score runs/first                                 compare with the truth\n"
+    "  twinbench export runs/first --readings readings.csv        hand the readings to somebody else\n"
+    "  twinbench separate readings.csv --scenario scenarios/rotary_4dof.toml --json - --estimator published\n"
+    "\n"
+    "  twinbench help scenario     every key of a scenario file with unit, default and bounds\n"
+    "  twinbench help effects      every error that can be hidden in the bench\n"
+    "\n"
+    "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong.";
+
+int Run(int argc, char** argv) {
+  CLI::App app(kAbout, "twinbench");
+  app.footer(kExamples);
+  app.set_version_flag("--version", std::string(TWINBENCH_VERSION));
+  app.require_subcommand(1);
+  using namespace twinbench::tools;
+  for (const auto add : {AddRun, AddExport, AddImport, AddSeparate, AddScore, AddHelp}) add(app);
+  try {
+    app.parse(argc, argv);
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kBadInput;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run(argc, argv);
+  } catch (const twinbench::InputError& error) {
+    fmt::print(stderr, "twinbench: {}\n", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "twinbench: {}\n", error.what());
+    return kWorldFailed;
+  }
+}

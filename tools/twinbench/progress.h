@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "twin/core/reading.h"
+
+namespace twinbench::tools {
+
+/// One line on stderr that says how far a run has come and how long it will still take. On a terminal the line is
+/// rewritten in place; into a file or a pipe a line is written for every tenth of the run.
+class ProgressLine {
+ public:
+  ProgressLine();
+  ~ProgressLine();
+  void Show(int done, int planned, Phase phase, Time bench_time);
+
+ private:
+  std::string Text(int done, int planned, Phase phase, Time bench_time) const;
+
+  using WallClock = std::chrono::steady_clock;
+  bool on_terminal_;
+  WallClock::time_point started_;
+  WallClock::time_point shown_{};
+  int shown_tenth_ = 0;
+  bool line_open_ = false;
+};
+
+}  // namespace twinbench::tools

@@ -1,0 +1,98 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "tools/twinbench/analysis.h"
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/progress.h"
+#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/tables.h"
+#include "twin/core/errors.h"
+#include "twin/core/run_record.h"
+#include "twin/procedure/procedure.h"
+#include "twin/sim/twin.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct Options {
+  std::string scenario, folder;
+  std::optional<std::uint64_t> seed;
+  bool noise_free = false;
+  bool images = false;
+  std::string fidelity;
+  std::vector<std::string> errors;     // "target=T.csv"
+  std::vector<std::string> overrides;  // "procedure.positions=12"
+};
+
+/// The errors of a file take the place of every repeatable error the scenario gives that table.
+void ReplaceErrors(Scenario& scenario, const std::string& option) {
+  const std::size_t equals = option.find('=');
+  const std::string table = option.substr(0, equals);
+  if (equals == std::string::npos || (table != "target" && table != "reference")) {
+    throw InputError("--errors " + option, "names no table", "target=FILE.csv or reference=FILE.csv");
+  }
+  TableSettings& settings = table == "target" ? scenario.target : scenario.reference;
+  settings.errors = ReadTableErrors(option.substr(equals + 1));
+  settings.harmonics.clear();
+  settings.random_rms = {};
+}
+
+Scenario ScenarioOf(const Options& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  if (!options.fidelity.empty()) overrides.push_back(fmt::format("mechanics.fidelity=\"{}\"", options.fidelity));
+  if (options.noise_free) overrides.push_back("noise_free=true");
+  Scenario scenario = LoadScenario(options.scenario, overrides);
+  for (const std::string& errors : options.errors) ReplaceErrors(scenario, errors);
+  return scenario;
+}
+
+void CarryOutOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
+  sim::Twin twin(scenario);
+  const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "twin", scenario.seed, ""});
+  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
+  WriteJson(folder.truth(), ToJson(twin.TheTruth()));
+  RotaryBench bench = twin.Bench();
+  ProgressLine progress;
+  procedure::CarryOut(bench, scenario, *record, [&](const procedure::Progress& p) {
+    progress.Show(p.readings_done, p.readings_planned, p.phase, p.bench_time);
+  });
+  record->Finish();
+  if (!images) return;
+  std::filesystem::create_directories(folder.images());
+  twin.WriteIrradiance(folder.images() + "/irradiance.exr");
+}
+
+void Run(const Options& options) {
+  const Scenario scenario = ScenarioOf(options);
+  const RunFolder folder{options.folder};
+  CarryOutOnTwin(scenario, folder, options.images);
+  // Evaluated from the record, as any later look at this run will be.
+  const Analysis analysis =
+      Analyse(scenario, RunRecord::Open(folder.path)->Readings(), measure::Estimator::kRigorous);
+  WriteJson(folder.results(), ToJson(analysis));
+  fmt::print("{}", Summary(analysis));
+  if (analysis.separation) fmt::print("compare with the truth: twinbench score {}\n", folder.path);
+}
+
+}  // namespace
+
+void AddRun(CLI::App& app) {
+  auto* command = app.add_subcommand("run", "Carry out a scenario on the twin, then measure and separate");
+  auto options = std::make_shared<Options>();
+  command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
+  command->add_option("-o,--output", options->folder, "folder of the run, made by the command")->required();
+  command->add_option("--seed", options->seed, "instead of the scenario's seed");
+  command->add_flag("--noise-free", options->noise_free, "no random contribution and no quantisation");
+  command->add_option("--fidelity", options->fidelity, "of the mechanics: kinematic, linear or bullet")
+      ->check(CLI::IsMember({"kinematic", "linear", "bullet"}));
+  command->add_option("--errors", options->errors,
+                      "target=FILE.csv or reference=FILE.csv: that table's true errors");
+  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12");
+  command->add_flag("--images", options->images, "write the irradiance on the PSDs as OpenEXR");
+  command->callback([options] { Run(*options); });
+}
+
+}  // namespace twinbench::tools

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::tools {
+
+/// The files of one run (architecture.md, "Run record").
+struct RunFolder {
+  std::string path;
+  std::string scenario() const { return path + "/scenario.toml"; }
+  std::string record() const { return path + "/record.sqlite"; }
+  std::string truth() const { return path + "/truth.json"; }
+  std::string results() const { return path + "/results.json"; }
+  std::string images() const { return path + "/images"; }
+};
+
+/// Writes beside the file and renames, so that a reader sees the old file or the new one, never half of one.
+/// @throws BenchError if the disk refuses.
+void WriteFileAtOnce(const std::string& path, const std::string& text);
+
+/// "-" is stdout.
+void WriteJson(const std::string& path, const nlohmann::json& json);
+
+/// @throws InputError if the file is missing or no JSON.
+nlohmann::json ReadJson(const std::string& path);
+
+/// Readings and the scenario that describes them: of a run folder, or of a CSV file with --scenario.
+struct RecordedRun {
+  Scenario scenario;
+  std::vector<Reading> readings;
+};
+
+/// @param source         A run folder or a readings file.
+/// @param scenario_path  Empty: the folder's own scenario.toml.
+/// @throws InputError    if a file source comes without a scenario, or anything cannot be read.
+RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenario_path,
+                            const std::vector<std::string>& overrides);
+
+}  // namespace twinbench::tools

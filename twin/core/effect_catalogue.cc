@@ -1,0 +1,234 @@
+#include "twin/core/effect_catalogue.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "twin/core/errors.h"
+#include "twin/core/reading.h"
+#include "twin/core/units.h"
+
+namespace twinbench {
+namespace {
+
+using units::arcsec;
+using units::deg;
+using units::mm;
+using units::mrad;
+using units::mV;
+using units::nm;
+using units::um;
+using units::urad;
+
+double FactorOf(const std::string& unit) {
+  const std::map<std::string, double> factors = {{"1", 1.0},
+                                                 {"mm", mm},
+                                                 {"um", um},
+                                                 {"nm", nm},
+                                                 {"mrad", mrad},
+                                                 {"arcsec", arcsec},
+                                                 {"deg", deg},
+                                                 {"mV", mV},
+                                                 {"V", 1.0},
+                                                 {"s", 1.0},
+                                                 {"Hz", 1.0},
+                                                 {"per_m2", 1.0},
+                                                 {"nm_per_K", nm},
+                                                 {"arcsec_per_K", arcsec},
+                                                 {"urad_per_h", urad / units::hour}};
+  const auto found = factors.find(unit);
+  Require(found != factors.end(), "a parameter of the effect catalogue has an unknown unit");
+  return found->second;
+}
+
+/// A parameter whose default and bounds are given in `unit`.
+EffectParameter Parameter(const std::string& name, const std::string& unit, double value, double lower,
+                          double upper, const std::string& meaning, std::vector<std::string> only_at = {}) {
+  const double f = FactorOf(unit);
+  return {name, unit, f, value * f, lower * f, upper * f, meaning, std::move(only_at)};
+}
+
+/// A parameter that may have either sign.
+EffectParameter Signed(const std::string& name, const std::string& unit, double value, double limit,
+                       const std::string& meaning, std::vector<std::string> only_at = {}) {
+  return Parameter(name, unit, value, -limit, limit, meaning, std::move(only_at));
+}
+
+std::vector<std::string> ChannelPlaces() {
+  return {kChannelNames.begin(), kChannelNames.end()};
+}
+
+std::vector<std::string> TonePlaces() {
+  std::vector<std::string> places = ChannelPlaces();
+  places.insert(places.end(), {"yaw", "tilt", "all"});
+  return places;
+}
+
+// Sizes: knowledge/diagnosis.md 3.1. The numbers of its rows stand beside the entries.
+std::vector<EffectEntry> DetectorEffects() {
+  const std::vector<std::string> psds = {"psd_a", "psd_b"};
+  return {
+      // 3: 0.1-2 %
+      {"psd_gain",
+       "gain of one PSD axis and its amplifier",
+       ChannelPlaces(),
+       {Signed("gain_error", "1", 0.005, 0.5, "relative error of the gain")}},
+      // 6: 0.1-1 deg
+      {"psd_roll",
+       "PSD turned about its nominal order",
+       psds,
+       {Signed("roll", "mrad", 5.0, 500.0, "angle, right-handed towards the light")}},
+      // 9: 0.1-3 % of the range at the edge; 180000 /m^2 is 0.45 % at 5 mm
+      {"psd_nonlinearity",
+       "pincushion of a PSD",
+       psds,
+       {Signed("cubic", "per_m2", 180000.0, 1e7, "u -> u (1 + cubic r^2)")}},
+      // 12: 0.01-1 %
+      {"stray_light",
+       "uniform stray light that pulls the spot to the centre",
+       psds,
+       {Parameter("fraction", "1", 0.01, 0.0, 0.9, "stray light / signal")}},
+      // 5: 0.1-1 %; 1 mm of 120 mm is 0.8 %.
+      {"psd_distance",
+       "distance from the grating to one PSD",
+       psds,
+       {Signed("distance_error", "mm", 1.0, 50.0, "actual - nominal")}},
+  };
+}
+
+std::vector<EffectEntry> LightEffects() {
+  return {
+      // 2: 0-15 nm
+      {"wavelength_offset",
+       "wavelength other than stated",
+       {},
+       {Signed("wavelength_error", "nm", 2.0, 100.0, "actual - nominal")}},
+      // 16: 0.2-0.3 nm/K
+      {"wavelength_temperature",
+       "wavelength that follows the temperature",
+       {},
+       {Signed("wavelength_per_kelvin", "nm_per_K", 0.25, 10.0, "against environment.reference_degC")}},
+      // 18: 0.1-1 deg
+      {"incidence_offset",
+       "laser that does not meet the grating at right angles",
+       {},
+       {Signed("incidence", "mrad", 5.0, 500.0, "angle of the beam about z")}},
+      // 14, 15: 1-50 urad/h
+      {"laser_drift",
+       "pointing of the laser that drifts with time",
+       {"yaw", "pitch"},
+       {Signed("drift", "urad_per_h", 20.0, 10000.0, "mean rate over the run"),
+        Signed("curvature", "1", 0.0, 1.0, "share of a part that grows with the square of time")}},
+  };
+}
+
+std::vector<EffectEntry> BodyEffects() {
+  const std::vector<std::string> axes = {"yaw", "tilt"};
+  return {
+      // 21: 0.2-5"
+      {"mount_creep",
+       "creep of the grating after every mounting",
+       axes,
+       {Signed("amplitude", "arcsec", 3.0, 1000.0, "amplitude * log(1 + t / time_constant)"),
+        Parameter("time_constant", "s", 600.0, 1e-3, 1e6, "of the logarithm; t restarts at every mounting")}},
+      // 19, 20: 0.5-5"/K, 10-60 min
+      {"thermal_tilt",
+       "grating that turns with the temperature",
+       axes,
+       {Signed("tilt_per_kelvin", "arcsec_per_K", 5.0, 1000.0, "against environment.reference_degC"),
+        Parameter("lag", "s", 900.0, 0.0, 1e6, "time constant of a first-order lag")}},
+      // 23: 0.1-20"
+      {"backlash",
+       "rotor that stays behind its encoder on reversal",
+       {"target", "reference"},
+       {Parameter("half_width", "arcsec", 1.0, 0.0, 3600.0, "half of the lost motion")},
+       "target"},
+      // 25: 0.05-1"; larger because it decays within a dwell
+      {"settling",
+       "table still on its way when the block starts",
+       {},
+       {Signed("amplitude", "arcsec", 5.0, 3600.0, "at the end of the move, behind the motion"),
+        Parameter("time_constant", "s", 1.0, 1e-3, 1e4, "of the exponential approach")}},
+      // 27
+      {"reclamp_frame", "grating re-clamped on the rotor though the scenario says reseat", {}, {}},
+      // 32: 0.4-0.5 per turn, 0.05-1"
+      {"bearing_half_frequency",
+       "bearing motion once in about two turns",
+       {},
+       {Parameter("order", "1", 0.498, 0.3, 0.7, "periods a turn of the unwrapped angle"),
+        Signed("tilt", "arcsec", 1.5, 1000.0, "amplitude")}},
+  };
+}
+
+std::vector<EffectEntry> TimeEffects() {
+  return {
+      // 36, 37: 0.05-2.5 um
+      {"tone",
+       "periodic disturbance in time",
+       TonePlaces(),
+       {Parameter("frequency", "Hz", 0.0169, 1e-6, 1e6, "of the disturbance, before it is aliased"),
+        Signed("amplitude", "um", 0.5, 1000.0, "on a PSD"), Signed("phase", "deg", 0.0, 360.0, "at time 0")},
+       "all"},
+      // 22: 0.2-50"
+      {"slip",
+       "sudden step of the grating's pose",
+       {"yaw", "tilt", "lateral"},
+       {Signed("angle", "arcsec", 3.0, 3600.0, "size of the step", {"yaw", "tilt"}),
+        Signed("shift", "um", 5.0, 1000.0, "size of the step", {"lateral"}),
+        Parameter("at_reading", "1", 200.0, 0.0, 1e9, "first reading behind the step")}},
+  };
+}
+
+std::vector<EffectEntry> ElectronicEffects() {
+  const std::vector<std::string> swaps = {"swap_xy_a",         "swap_xy_b",      "swap_psds",      "negate_psd_a_x",
+                                          "negate_psd_a_y",    "negate_psd_b_x", "negate_psd_b_y", "reverse_target",
+                                          "reverse_reference", "index_offset"};
+  return {
+      // 39: 0.5-2 LSB = 0.1-0.3 um; 5 mV are 2.5 um, a damaged code
+      {"adc_step",
+       "step in the characteristic of the A/D converter",
+       ChannelPlaces(),
+       {Signed("step", "mV", 5.0, 1000.0, "added above the voltage"),
+        Signed("at_voltage", "V", 0.0, 10.0, "where the step lies")}},
+      // 40: 0.01-0.5 %
+      {"crosstalk",
+       "channel that keeps some of the one scanned before it",
+       ChannelPlaces(),
+       {Signed("fraction", "1", 0.01, 0.5, "of the previous channel of the scan")}},
+      // 41
+      {"outliers",
+       "readings that are disturbed for no lasting reason",
+       {},
+       {Parameter("fraction", "1", 0.01, 0.0, 0.5, "share of the readings"),
+        Parameter("size", "um", 10.0, 0.0, 5000.0, "standard deviation on a PSD")}},
+      // 42
+      {"convention", "swap, sign or index blunder", swaps, {}},
+  };
+}
+
+std::vector<EffectEntry> MakeCatalogue() {
+  std::vector<EffectEntry> catalogue;
+  for (const auto& part : {DetectorEffects(), LightEffects(), BodyEffects(), TimeEffects(), ElectronicEffects()})
+    catalogue.insert(catalogue.end(), part.begin(), part.end());
+  return catalogue;
+}
+
+}  // namespace
+
+bool EffectParameter::BelongsTo(const std::string& place) const {
+  return only_at.empty() || std::find(only_at.begin(), only_at.end(), place) != only_at.end();
+}
+
+const std::vector<EffectEntry>& EffectCatalogue() {
+  static const std::vector<EffectEntry> catalogue = MakeCatalogue();  // a constant, made at the first call
+  return catalogue;
+}
+
+const EffectEntry* FindEffect(const std::string& name) {
+  for (const EffectEntry& entry : EffectCatalogue()) {
+    if (entry.name == name) return &entry;
+  }
+  return nullptr;
+}
+
+}  // namespace twinbench

@@ -1,0 +1,272 @@
+#include "twin/core/scenario_schema.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace twinbench {
+namespace {
+
+using Keys = std::vector<ScenarioKey>;
+
+constexpr Unit kPure{};
+constexpr Unit kMm{"mm", units::mm}, kUm{"um", units::um}, kNm{"nm", units::nm};
+constexpr Unit kDeg{"deg", units::deg}, kArcsec{"arcsec", units::arcsec}, kMrad{"mrad", units::mrad};
+constexpr Unit kUrad{"urad", units::urad};
+constexpr Unit kMillivolt{"mV", units::mV}, kVolt{"V"}, kMw{"mW", units::mW};
+constexpr Unit kSecond{"s"}, kMicrosecond{"us", units::us}, kHz{"Hz"}, kKilohertz{"kHz", units::kHz};
+constexpr Unit kMillikelvin{"mK", 1e-3}, kCelsius{"degC"};
+
+constexpr double kHuge = 1e9;  // of pure numbers that need no closer bound
+
+Bounds Within(double limit) {
+  return {-limit, limit};
+}
+Bounds UpTo(double upper) {
+  return {0.0, upper};
+}
+Bounds Positive(double upper) {
+  return {0.0, upper, true};
+}
+
+/// Adds keys to one table.
+class Table {
+ public:
+  Table(Keys& keys, std::string name) : keys_(keys), name_(std::move(name)) {}
+
+  void Add(const std::string& name, const Unit& unit, const Bounds& bounds, Field field,
+           const std::string& meaning) {
+    keys_.push_back({name_, name, unit, bounds, {}, field, meaning});
+  }
+  void Flag(const std::string& name, bool& field, const std::string& meaning) {
+    keys_.push_back({name_, name, {}, {}, {}, &field, meaning});
+  }
+  void Text(const std::string& name, Field field, std::vector<std::string> choices, const std::string& meaning) {
+    keys_.push_back({name_, name, {}, {}, std::move(choices), field, meaning});
+  }
+
+ private:
+  Keys& keys_;
+  std::string name_;
+};
+
+template <std::size_t kCount>
+std::span<double> List(std::array<double, kCount>& array) {
+  return {array.data(), kCount};
+}
+template <int kRows>
+std::span<double> List(Eigen::Matrix<double, kRows, 1>& vector) {
+  return {vector.data(), static_cast<std::size_t>(kRows)};
+}
+
+void AddTop(Keys& keys, Scenario& s) {
+  Table t(keys, "");
+  t.Text("bench", &s.bench, SupportedBenches(), "kind of bench");
+  t.Text("title", &s.title, {}, "one line for reports");
+  t.Add("seed", kPure, {}, &s.seed, "of every random stream");
+  t.Flag("noise_free", s.noise_free, "no random contribution and no quantisation");
+}
+
+void AddLaser(Keys& keys, LaserSettings& s) {
+  Table t(keys, "laser");
+  t.Add("wavelength", kNm, {200, 2000}, &s.wavelength_m, "in air");
+  t.Add("power", kMw, Positive(10000), &s.power_W, "of the beam");
+  t.Add("position", kMm, Within(5000), List(s.position_m), "of the laser's exit in L: x, y, z");
+  t.Add("yaw", kMrad, Within(500), &s.yaw_rad, "pointing error of the beam about z");
+  t.Add("pitch", kMrad, Within(500), &s.pitch_rad, "pointing error of the beam, upwards");
+  t.Text("beam", &s.beam, {"chief_ray", "gaussian", "profile"}, "how the beam is carried to the PSDs");
+  t.Add("beam_radius", kMm, Positive(50), &s.beam_radius_m, "1/e^2 of the irradiance, at the waist");
+  t.Add("divergence", kMrad, UpTo(100), &s.divergence_rad, "1/e^2 half angle");
+  t.Text("profile_file", &s.profile_file, {}, "OpenEXR of the measured beam, for beam = \"profile\"");
+  t.Add("wavelength_per_kelvin", kNm, Within(10), &s.wavelength_per_kelvin_m, "against environment.reference_degC");
+  t.Add("pointing_yaw_per_kelvin", kUrad, Within(10000), &s.pointing_yaw_per_kelvin_rad, "likewise");
+  t.Add("pointing_pitch_per_kelvin", kUrad, Within(10000), &s.pointing_pitch_per_kelvin_rad, "likewise");
+}
+
+void AddGrating(Keys& keys, GratingSettings& s) {
+  Table t(keys, "grating");
+  t.Add("lines", {"per_mm", 1e3}, Positive(10000), &s.lines_per_m, "grooves a length");
+  t.Add("width", kMm, Positive(1000), &s.width_m, "across the grooves");
+  t.Add("height", kMm, Positive(1000), &s.height_m, "along the grooves");
+  t.Add("efficiency", kPure, UpTo(1), List(s.efficiency), "power share of the orders -2, -1, 0, 1, 2");
+  t.Add("point", kMm, Within(5000), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
+}
+
+void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
+  Table t(keys, table);
+  t.Add("distance", kMm, Positive(10000), &s.distance_m, "from the spot on the grating to the centre");
+  t.Add("roll", kMrad, Within(3200), &s.roll_rad, "about the nominal order, right-handed towards the light");
+  t.Add("tilt_u", kMrad, Within(1000), &s.tilt_u_rad, "about its u axis");
+  t.Add("tilt_v", kMrad, Within(1000), &s.tilt_v_rad, "about its v axis");
+  t.Add("sensitivity", {"V_m"}, Positive(1e6), &s.sensitivity_V_m, "of the output to the spot's place [V/m]");
+  t.Add("width", kMm, Positive(100), &s.width_m, "of the active area, along u");
+  t.Add("height", kMm, Positive(100), &s.height_m, "of the active area, along v");
+  t.Add("cubic", {"per_m2"}, Within(1e7), &s.cubic_per_m2, "non-linearity: u -> u (1 + cubic r^2)");
+  t.Add("stray_fraction", kPure, UpTo(0.9), &s.stray_fraction, "uniform stray light / signal");
+  t.Flag("window", s.window, "a window in front of the silicon");
+  t.Add("window_thickness", kMm, Positive(20), &s.window_thickness_m, "of the glass");
+  t.Add("window_index", kPure, {1, 4}, &s.window_index, "refractive index of the glass");
+  t.Add("window_gap", kMm, UpTo(50), &s.window_gap_m, "from the window's back to the silicon");
+  t.Add("window_reflectance", kPure, UpTo(0.99), &s.window_reflectance, "of one surface");
+  t.Add("window_wedge", kMrad, Within(200), &s.window_wedge_rad, "between the faces");
+  t.Flag("window_coherent", s.window_coherent, "interference between the window's faces");
+  t.Add("silicon_reflectance", kPure, UpTo(0.99), &s.silicon_reflectance, "above 0: ghosts by way of the grating");
+}
+
+void AddAmplifier(Keys& keys, AmplifierSettings& s) {
+  Table t(keys, "amplifier");
+  t.Add("offset", kMillivolt, Within(20000), List(s.offset_V), "psd_a_x, psd_a_y, psd_b_x, psd_b_y");
+  t.Add("gain_error", kPure, Within(0.9), List(s.gain_error), "of the same channels");
+  t.Add("noise", kMillivolt, UpTo(10000), &s.noise_V, "of one sample, white, standard deviation");
+  t.Add("hum", kMillivolt, UpTo(10000), &s.hum_V, "amplitude of the mains hum, on all channels");
+  t.Add("hum_frequency", kHz, Positive(1e6), &s.hum_Hz, "of the hum");
+  t.Add("low_light_fraction", kPure, UpTo(1), &s.low_light_fraction, "of the nominal power; below: no light");
+}
+
+void AddAdc(Keys& keys, AdcSettings& s) {
+  Table t(keys, "adc");
+  t.Add("bits", kPure, {4, 16}, &s.bits, "of one conversion");
+  t.Add("range", kVolt, Positive(1000), &s.range_V, "+- this voltage");
+  t.Add("rate", kKilohertz, Positive(1e6), &s.rate_Hz, "conversions, all channels together");
+  t.Add("fifo_samples", kPure, UpTo(kHuge), &s.fifo_samples, "0: the computer always keeps up");
+  t.Add("drain_rate", kKilohertz, Positive(1e6), &s.drain_rate_Hz, "at which the computer empties the FIFO");
+  t.Add("samples", kPure, {1, 1e7}, &s.samples, "scans a reading");
+  t.Flag("every_sample", s.every_sample, "false: draw mean and deviation of a block at once");
+}
+
+void AddComponents(Keys& keys, const std::string& table, std::array<double, kComponents>& values,
+                   const std::string& meaning) {
+  Table t(keys, table);
+  for (std::size_t i = 0; i < kComponents; ++i) {
+    const bool angle = IsAngle(static_cast<Component>(i));
+    t.Add(kComponentNames[i], angle ? kArcsec : kUm, UpTo(angle ? 3600 : 10000), &values[i], meaning);
+  }
+}
+
+void AddMotion(Table& t, TableSettings& s) {
+  t.Add("half_frequency_order", kPure, {0.3, 0.7}, &s.half_frequency_order, "of the bearing, periods a turn");
+  t.Add("half_frequency_tilt", kArcsec, UpTo(3600), &s.half_frequency_tilt_rad, "amplitude");
+  t.Add("half_frequency_radial", kUm, UpTo(10000), &s.half_frequency_radial_m, "amplitude");
+  t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "full width, of the servo's encoder against the rotor");
+  t.Add("speed", {"deg_s", units::deg}, Positive(3600), &s.speed_rad_s, "of long moves");
+  t.Add("move_time", kSecond, Positive(3600), &s.move_time_s, "of one step");
+  t.Add("settle", kSecond, UpTo(3600), &s.settle_s, "in-position window after the profile");
+}
+
+void AddReferenceMounting(Keys& keys, Scenario& s) {
+  Table t(keys, "reference");
+  t.Add("height", kMm, Within(5000), &s.reference_height_m, "of its origin above the target's");
+  t.Add("centring", kUm, Within(50000), List(s.centring_m), "of its body on the target rotor: x, y");
+  t.Add("mount_tilt", kArcsec, Within(36000), List(s.mount_tilt_rad),
+        "of its body on the target rotor: about x, y");
+}
+
+/// @param frame  In which the table's errors are given.
+void AddTable(Keys& keys, const std::string& table, const std::string& frame, TableSettings& s) {
+  Table t(keys, table);
+  t.Add("harmonics", kPure, {}, &s.harmonics,
+        "systematic errors " + frame + ", amplitude * cos(order * angle + phase)");
+  t.Text("errors_file", &s.errors_file, {}, "CSV of the errors " + frame + ", from the scenario's folder");
+  AddMotion(t, s);
+  AddComponents(keys, table + ".random", s.random_rms, "rms of random smooth errors");
+  Table random(keys, table + ".random");
+  random.Add("orders", kPure, {1, 1000}, &s.random_orders, "they have harmonics 1..orders, falling as 1/order");
+  AddComponents(keys, table + ".seating", s.seating_sd, "scatter of the pose at every mounting");
+  AddComponents(keys, table + ".repeatability", s.repeatability_sd, "scatter of the pose at every stop");
+  Table(keys, table)
+      .Add("errors", kPure, {}, &s.errors, "the content of errors_file: position_deg, ex_arcsec, ...");
+}
+
+void AddMechanics(Keys& keys, MechanicsSettings& s) {
+  Table t(keys, "mechanics");
+  t.Text("fidelity", &s.fidelity, {"kinematic", "linear", "bullet"}, "how the bodies move");
+  t.Add("payload_mass", {"kg"}, UpTo(10000), &s.payload_mass_kg, "on the reference rotor");
+  t.Add("payload_radius", kMm, UpTo(10000), &s.payload_radius_m, "eccentricity of its centre of mass");
+  t.Add("payload_azimuth", kDeg, Within(360), &s.payload_azimuth_rad, "of it on the rotor");
+  t.Add("payload_height", kMm, Within(10000), &s.payload_height_m, "of its centre of mass");
+  t.Add("axial_stiffness", {"N_um", 1e6}, Positive(1e6), List(s.axial_stiffness_N_m), "target, reference");
+  t.Add("radial_stiffness", {"N_um", 1e6}, Positive(1e6), List(s.radial_stiffness_N_m), "target, reference");
+  t.Add("tilt_stiffness", {"Nm_mrad", 1e3}, Positive(1e9), List(s.tilt_stiffness_Nm_rad), "target, reference");
+  t.Add("damping_ratio", kPure, UpTo(2), &s.damping_ratio, "of the bearings");
+  t.Add("servo", kHz, Positive(10000), List(s.servo_Hz), "bandwidth: target, reference");
+  t.Add("friction", {"Nm"}, UpTo(10000), List(s.friction_Nm), "Coulomb level: target, reference");
+  t.Add("step", kMicrosecond, Positive(100000), &s.step_s, "of the integration");
+}
+
+void AddEnvironment(Keys& keys, EnvironmentSettings& s) {
+  Table t(keys, "environment");
+  t.Add("temperature", kCelsius, {-50, 100}, &s.temperature_degC, "at the start");
+  t.Add("reference", kCelsius, {-50, 100}, &s.reference_degC, "at which wavelength and lengths are nominal");
+  t.Add("drift", {"K_h"}, Within(100), &s.drift_K_h, "of the temperature [K/h]");
+  t.Add("swing", kMillikelvin, UpTo(50000), &s.swing_K, "amplitude of a periodic swing");
+  t.Add("swing_period", kSecond, Positive(1e7), &s.swing_period_s, "of the swing");
+  t.Add("random_walk", {"K_sqrt_h"}, UpTo(50), &s.random_walk_K_sqrt_h, "standard deviation after an hour");
+  t.Text("temperature_file", &s.temperature_file, {}, "CSV of time_s, temperature_degC");
+  t.Add("sensor_noise", kMillikelvin, UpTo(10000), &s.sensor_noise_K, "of the thermometer, standard deviation");
+}
+
+void AddAutocollimator(Keys& keys, AutocollimatorSettings& s) {
+  Table t(keys, "autocollimator");
+  t.Add("noise", kArcsec, UpTo(100), &s.noise_rad, "of one reading, standard deviation");
+  t.Add("range", kArcsec, Positive(36000), &s.range_rad, "+- this angle");
+  t.Add("gain_error", kPure, Within(0.5), &s.gain_error, "of both axes");
+}
+
+void AddPlan(Table& t, ProcedureSettings& s) {
+  t.Text("phases", &s.phases, {"calibration", "stability", "verification", "full_circle"},
+         "in the order of the run");
+  t.Add("positions", kPure, {2, 100000}, &s.positions, "stops of the full circle");
+  t.Add("shifts", kPure, UpTo(99999), &s.shifts, "of the reference at every set-up, in steps");
+  t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1");
+  t.Text("clamping", &s.clamping, {"reseat", "reclamp"}, "how the grating comes back to the PSDs after a shift");
+  t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every stop");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+}
+
+void AddProcedure(Keys& keys, ProcedureSettings& s) {
+  Table t(keys, "procedure");
+  AddPlan(t, s);
+  t.Add("sweep", kArcsec, Positive(36000), &s.sweep_rad, "calibration: +- this, in yaw and in tilt");
+  t.Add("sweep_points", kPure, {3, 10000}, &s.sweep_points, "of each sweep");
+  t.Add("stability", kSecond, UpTo(1e8), &s.stability_s, "how long the bench is watched at rest");
+  t.Add("stability_interval", kSecond, Positive(1e7), &s.stability_interval_s, "between its readings");
+  t.Add("verification_points", kPure, {1, 10000}, &s.verification_points, "within the sweep, at other angles");
+  t.Flag("keep_raw", s.keep_raw, "store every sample");
+}
+
+}  // namespace
+
+bool Bounds::Contain(double value) const {
+  return value <= upper && (above_lower ? value > lower : value >= lower);
+}
+
+std::string Bounds::Text() const {
+  if (lower == Bounds{}.lower && upper == Bounds{}.upper) return "";
+  if (above_lower) return fmt::format(" above {} and up to {}", lower, upper);
+  return fmt::format(" from {} to {}", lower, upper);
+}
+
+std::vector<std::string> SupportedBenches() {
+  return {"rotary_4dof"};
+}
+
+std::vector<ScenarioKey> KeysOf(Scenario& s) {
+  Keys keys;
+  AddTop(keys, s);
+  AddLaser(keys, s.laser);
+  AddGrating(keys, s.grating);
+  AddPsd(keys, "psd_a", s.psd_a);
+  AddPsd(keys, "psd_b", s.psd_b);
+  AddAmplifier(keys, s.amplifier);
+  AddAdc(keys, s.adc);
+  AddTable(keys, "target", "in L", s.target);
+  AddReferenceMounting(keys, s);
+  AddTable(keys, "reference", "in its rotor frame", s.reference);
+  AddMechanics(keys, s.mechanics);
+  AddEnvironment(keys, s.environment);
+  AddAutocollimator(keys, s.autocollimator);
+  AddProcedure(keys, s.procedure);
+  return keys;
+}
+
+}  // namespace twinbench

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "twin/core/scenario.h"
+
+namespace twinbench {
+
+/// The ending of a key and what it means.
+struct Unit {
+  std::string_view suffix;  // "nm"; empty for a pure number
+  double to_SI = 1.0;
+};
+
+/// Bounds of a number as the user writes it, in the unit of its key.
+struct Bounds {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool above_lower = false;  // the lower bound itself is excluded
+
+  bool Contain(double value) const;
+  std::string Text() const;  // " from 0 to 10", " above 0", "" without bounds
+};
+
+/// Where a value of a scenario lives. A span is a list of fixed length, a vector one of at least one entry.
+using Field = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, BeamModel*, std::span<double>,
+                           std::vector<double>*, std::vector<int>*, std::vector<std::string>*,
+                           std::vector<HarmonicSettings>*, std::optional<TableErrors>*>;
+
+/// One key of the file format, bound to the scenario that it was asked for.
+struct ScenarioKey {
+  std::string table;  // "laser", "target.random"; empty at the top
+  std::string name;   // without its unit
+  Unit unit;
+  Bounds bounds;                     // of every number
+  std::vector<std::string> choices;  // allowed texts; for BeamModel in its order; empty: any
+  Field field;
+  std::string meaning;
+
+  std::string Name() const { return unit.suffix.empty() ? name : name + "_" + std::string(unit.suffix); }
+  std::string Path() const { return table.empty() ? Name() : table + "." + Name(); }
+};
+
+/// The description of the file format: every key of a scenario but the [[effect]] blocks, in the order of the file,
+/// the keys of a table before those of the tables inside it. Reading, writing, help and --set all go through it.
+std::vector<ScenarioKey> KeysOf(Scenario& scenario);
+
+/// Scenarios of these benches can be read.
+std::vector<std::string> SupportedBenches();
+
+}  // namespace twinbench

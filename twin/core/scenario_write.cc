@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/errors.h"
+#include "twin/core/number_text.h"
+#include "twin/core/scenario.h"
+#include "twin/core/scenario_schema.h"
+
+namespace twinbench {
+namespace {
+
+/// A TOML number with a point or an exponent, so that it stays one of floating point (and -0 keeps its sign).
+std::string Float(double value_SI, double to_SI) {
+  const std::string text = PrintInUnit(value_SI, to_SI);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+std::string Quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    const bool control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    if (control) {
+      quoted += fmt::format("\\u{:04x}", static_cast<int>(c));
+    } else {
+      quoted += (c == '"' || c == '\\') ? std::string("\\") + c : std::string(1, c);
+    }
+  }
+  return quoted + '"';
+}
+
+/// `[a, b, c]`, each entry printed by `print`.
+template <class List, class Print>
+std::string Bracketed(const List& list, Print print) {
+  std::string text;
+  for (const auto& entry : list) text += (text.empty() ? "" : ", ") + print(entry);
+  return "[" + text + "]";
+}
+
+std::string Floats(std::span<const double> values_SI, double to_SI) {
+  return Bracketed(values_SI, [=](double value_SI) { return Float(value_SI, to_SI); });
+}
+
+std::string PrintHarmonic(const HarmonicSettings& h) {
+  const bool angle = IsAngle(h.component);
+  return fmt::format("  {{ component = \"{}\", order = {}, amplitude_{} = {}, phase_deg = {} }},\n",
+                     kComponentNames[static_cast<std::size_t>(h.component)], Float(h.order, 1.0),
+                     angle ? "arcsec" : "um", Float(h.amplitude, angle ? units::arcsec : units::um),
+                     Float(h.phase_rad, units::deg));
+}
+
+/// Prints the value of a key: one overload a type.
+struct ValuePrinter {
+  const ScenarioKey& key;
+
+  std::string operator()(const double* field) const { return Float(*field, key.unit.to_SI); }
+  std::string operator()(const int* field) const { return fmt::format("{}", *field); }
+  std::string operator()(const std::uint64_t* field) const {
+    const bool fits = *field <= static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+    return fits ? fmt::format("{}", *field) : fmt::format("\"{}\"", *field);
+  }
+  std::string operator()(const bool* field) const { return *field ? "true" : "false"; }
+  std::string operator()(const std::string* field) const { return Quoted(*field); }
+  std::string operator()(const BeamModel* field) const {
+    return Quoted(key.choices[static_cast<std::size_t>(*field)]);
+  }
+  std::string operator()(std::span<double> field) const { return Floats(field, key.unit.to_SI); }
+  std::string operator()(const std::vector<double>* field) const { return Floats(*field, key.unit.to_SI); }
+  std::string operator()(const std::vector<int>* field) const {
+    return Bracketed(*field, [](int number) { return fmt::format("{}", number); });
+  }
+  std::string operator()(const std::vector<std::string>* field) const { return Bracketed(*field, Quoted); }
+  std::string operator()(const std::vector<HarmonicSettings>* field) const {
+    std::string text;
+    for (const HarmonicSettings& harmonic : *field) text += PrintHarmonic(harmonic);
+    return text.empty() ? "[]" : "[\n" + text + "]";
+  }
+  std::string operator()(const std::optional<TableErrors>*) const { return ""; }  // has a table of its own
+};
+
+std::string PrintErrors(const std::string& table, const TableErrors& errors) {
+  const auto line = [](const ErrorColumn& column, const std::vector<double>& values) {
+    return fmt::format("{} = {}\n", column.name, Floats(values, column.to_SI));
+  };
+  std::string text = fmt::format("\n[{}]\n{}", table, line(PositionColumn(), errors.position_rad));
+  for (int c = 0; c < kComponents; ++c) {
+    const auto component = static_cast<Component>(c);
+    text += line(ColumnOf(component), errors[component]);
+  }
+  return text;
+}
+
+std::string PrintKey(const ScenarioKey& key) {
+  if (const auto* const* errors = std::get_if<std::optional<TableErrors>*>(&key.field))
+    return (*errors)->has_value() ? PrintErrors(key.Path(), ***errors) : "";
+  return fmt::format("{} = {}\n", key.Name(), std::visit(ValuePrinter{key}, key.field));
+}
+
+std::string PrintEffect(const EffectSettings& effect) {
+  const EffectEntry* entry = FindEffect(effect.name);
+  Require(entry != nullptr, "an effect to be written must be in the catalogue");
+  std::string text = fmt::format("\n[[effect]]\nname = {}\n", Quoted(effect.name));
+  if (!effect.where.empty()) text += fmt::format("where = {}\n", Quoted(effect.where));
+  for (const EffectParameter& parameter : entry->parameters) {
+    const auto value = effect.parameters.find(parameter.name);
+    if (value == effect.parameters.end() || !parameter.BelongsTo(effect.where)) continue;
+    text += fmt::format("{} = {}\n", parameter.Key(), Float(value->second, parameter.to_SI));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string WriteScenario(const Scenario& scenario) {
+  Scenario copy = scenario;  // the description binds to a scenario that may be changed
+  std::string text, table;
+  for (const ScenarioKey& key : KeysOf(copy)) {
+    const bool own_table = std::holds_alternative<std::optional<TableErrors>*>(key.field);
+    if (!own_table && key.table != table) text += fmt::format("\n[{}]\n", key.table);
+    if (!own_table) table = key.table;
+    text += PrintKey(key);
+  }
+  for (const EffectSettings& effect : scenario.effects) text += PrintEffect(effect);
+  return text;
+}
+
+}  // namespace twinbench

@@ -1,0 +1,91 @@
+#include "twin/core/table_errors.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "twin/core/csv.h"
+#include "twin/core/errors.h"
+#include "twin/core/number_text.h"
+#include "twin/core/units.h"
+
+namespace twinbench {
+namespace {
+
+std::vector<double> ReadColumn(const CsvTable& table, const ErrorColumn& column) {
+  const auto index = table.Column(column.name);
+  std::vector<double> values(table.rows.size(), 0.0);
+  for (std::size_t i = 0; index && i < values.size(); ++i)
+    values[i] = CsvNumber(table, table.rows[i], *index, column.to_SI);
+  return values;
+}
+
+std::vector<ErrorColumn> Columns() {
+  std::vector<ErrorColumn> columns = {PositionColumn()};
+  for (int c = 0; c < kComponents; ++c) columns.push_back(ColumnOf(static_cast<Component>(c)));
+  return columns;
+}
+
+std::string HeaderLine() {
+  std::string line;
+  for (const ErrorColumn& column : Columns()) line += (line.empty() ? "" : ",") + column.name;
+  return line;
+}
+
+void CheckColumns(const CsvTable& table) {
+  for (const std::string& found : table.columns) {
+    bool known = false;
+    for (const ErrorColumn& column : Columns()) known = known || column.name == found;
+    if (!known)
+      throw InputError(table.WhereHeader(), fmt::format("unknown column {}", found), "any of " + HeaderLine());
+  }
+  if (!table.Column(PositionColumn().name))
+    throw InputError(table.WhereHeader(), "the column position_deg is missing", HeaderLine());
+  if (table.rows.empty()) throw InputError(table.WhereHeader(), "no rows follow the header", "one row a position");
+}
+
+void RequireEqualLengths(const TableErrors& errors) {
+  for (const auto& column : errors.value)
+    Require(column.size() == errors.position_rad.size(), "table errors need one value a position");
+}
+
+}  // namespace
+
+ErrorColumn ColumnOf(Component component) {
+  const std::string name = kComponentNames[static_cast<std::size_t>(component)];
+  if (IsAngle(component)) return {name + "_arcsec", units::arcsec};
+  return {name + "_um", units::um};
+}
+
+ErrorColumn PositionColumn() {
+  return {"position_deg", units::deg};
+}
+
+TableErrors ReadTableErrors(const std::string& path) {
+  const CsvTable table = ReadCsv(path);
+  CheckColumns(table);
+  TableErrors errors;
+  errors.position_rad = ReadColumn(table, PositionColumn());
+  for (int c = 0; c < kComponents; ++c) {
+    const auto component = static_cast<Component>(c);
+    errors[component] = ReadColumn(table, ColumnOf(component));
+  }
+  return errors;
+}
+
+void WriteTableErrors(const TableErrors& errors, const std::string& path) {
+  RequireEqualLengths(errors);
+  std::ofstream out(path);
+  out << HeaderLine() << '\n';
+  for (std::size_t i = 0; i < errors.position_rad.size(); ++i) {
+    out << PrintInUnit(errors.position_rad[i], PositionColumn().to_SI);
+    for (int c = 0; c < kComponents; ++c) {
+      const auto component = static_cast<Component>(c);
+      out << ',' << PrintInUnit(errors[component][i], ColumnOf(component).to_SI);
+    }
+    out << '\n';
+  }
+  if (!out.flush()) throw BenchError(path + ": the file cannot be written");
+}
+
+}  // namespace twinbench

@@ -1,0 +1,98 @@
+#include "twin/sim/axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/errors.h"
+
+namespace twinbench::sim {
+namespace {
+
+constexpr Duration kSettleLimit = std::chrono::seconds(60);
+constexpr Duration kSettleCheck = std::chrono::milliseconds(1);
+
+mechanics::StackParameters StackOf(const Scenario& actual) {
+  mechanics::StackParameters stack;
+  const MechanicsSettings& m = actual.mechanics;
+  const std::array<const TableSettings*, 2> tables = {&actual.target, &actual.reference};
+  for (std::size_t k = 0; k < 2; ++k) {
+    mechanics::TableParameters& table = stack.table[k];
+    table.axial_stiffness_N_m = m.axial_stiffness_N_m[k];
+    table.radial_stiffness_N_m = m.radial_stiffness_N_m[k];
+    table.tilt_stiffness_Nm_rad = m.tilt_stiffness_Nm_rad[k];
+    table.servo_Hz = m.servo_Hz[k];
+    table.backlash_rad = tables[k]->backlash_rad;
+    table.friction.coulomb_Nm = m.friction_Nm[k];
+  }
+  stack.payload.mass_kg = m.payload_mass_kg;
+  stack.payload.radius_m = m.payload_radius_m;
+  stack.payload.azimuth_rad = m.payload_azimuth_rad;
+  stack.payload.height_m = m.payload_height_m;
+  stack.damping_ratio = m.damping_ratio;
+  stack.step_s = m.step_s;
+  stack.geometry.p_RG_m = actual.grating.point_m;
+  stack.geometry.reference_height_m = actual.reference_height_m;
+  stack.geometry.centring_m = actual.centring_m;
+  stack.geometry.mount_tilt_rad = actual.mount_tilt_rad;
+  return stack;
+}
+
+}  // namespace
+
+Axes::Axes(const Scenario& actual, EventQueue& queue)
+    : queue_(queue),
+      plant_(mechanics::MakePlant(mechanics::FidelityFromName(actual.mechanics.fidelity), StackOf(actual))) {
+  const std::array<const TableSettings*, 2> tables = {&actual.target, &actual.reference};
+  for (std::size_t k = 0; k < 2; ++k) {
+    drives_[k].move_time_s = tables[k]->move_time_s;
+    drives_[k].speed_rad_s = tables[k]->speed_rad_s;
+    drives_[k].settle_s = tables[k]->settle_s;
+  }
+}
+
+bool Axes::StartMove(mechanics::Axis axis, double to_rad) {
+  Drive& d = drive(axis);
+  const double travel_rad = to_rad - d.commanded_rad;
+  if (travel_rad == 0.0) return false;
+  const double duration_s = std::max(d.move_time_s, std::abs(travel_rad) / d.speed_rad_s);
+  CatchUp();
+  plant_->StartMove(axis, to_rad, duration_s);
+  d.commanded_rad = to_rad;
+  d.direction = travel_rad > 0.0 ? 1 : -1;
+  d.arrival = queue_.Now() + FromSeconds(duration_s);
+  last_arrival_ = std::max(last_arrival_, d.arrival);
+  return true;
+}
+
+void Axes::WaitSettled(mechanics::Axis axis) {
+  const Drive& d = drive(axis);
+  const Time window_end = d.arrival + FromSeconds(d.settle_s);
+  if (queue_.Now() < window_end) queue_.RunUntil(window_end);
+  CatchUp();
+  while (!plant_->Settled()) {
+    if (queue_.Now() > d.arrival + kSettleLimit) {
+      throw BenchError("table: not in position 60 s after its move; is the servo stable with this payload?");
+    }
+    queue_.RunUntil(queue_.Now() + kSettleCheck);
+    CatchUp();
+  }
+}
+
+void Axes::Mount(const mechanics::ChainGeometry& geometry) {
+  CatchUp();
+  plant_->Mount(geometry);
+}
+
+mechanics::StackState Axes::Look() {
+  CatchUp();
+  return plant_->State();
+}
+
+void Axes::CatchUp() {
+  const Time now = queue_.Now();
+  if (now == plant_time_) return;
+  plant_->Advance(ToSeconds(now - plant_time_));
+  plant_time_ = now;
+}
+
+}  // namespace twinbench::sim

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "mechanics/plant.h"
+#include "twin/core/scenario.h"
+#include "twin/sim/event_queue.h"
+
+namespace twinbench::sim {
+
+/// The drives of both tables on the clock of the queue: moves take their time, and in-position is reported after
+/// it.
+class Axes {
+ public:
+  Axes(const Scenario& actual, EventQueue& queue);
+
+  /// Starts a move; one to where the axis already stands is over at once and counts as none.
+  /// @return true if the axis moves.
+  bool StartMove(mechanics::Axis axis, double to_rad);
+
+  /// Runs the queue until the move has ended, the in-position window has passed and the servo is quiet.
+  /// @throws BenchError if it is not quiet within kSettleLimit.
+  void WaitSettled(mechanics::Axis axis);
+
+  void Mount(const mechanics::ChainGeometry& geometry);
+
+  /// Angles and deflections at the queue's time.
+  mechanics::StackState Look();
+
+  int Direction(mechanics::Axis axis) const { return drive(axis).direction; }
+  Time LastArrival() const { return last_arrival_; }
+
+ private:
+  struct Drive {
+    double commanded_rad = 0.0;
+    int direction = 1;
+    Time arrival{};
+    double move_time_s, speed_rad_s, settle_s;
+  };
+  Drive& drive(mechanics::Axis axis) { return drives_[static_cast<std::size_t>(axis)]; }
+  const Drive& drive(mechanics::Axis axis) const { return drives_[static_cast<std::size_t>(axis)]; }
+  void CatchUp();
+
+  EventQueue& queue_;
+  std::unique_ptr<mechanics::Plant> plant_;
+  std::array<Drive, 2> drives_;
+  Time plant_time_{};
+  Time last_arrival_{};
+};
+
+}  // namespace twinbench::sim

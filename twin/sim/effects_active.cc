@@ -1,0 +1,71 @@
+#include "twin/sim/effects_active.h"
+
+namespace twinbench::sim {
+namespace {
+
+void SilenceTable(TableSettings& table) {
+  table.seating_sd = {};
+  table.repeatability_sd = {};
+}
+
+/// Everything that is drawn at random from reading to reading; random table errors stay, they are errors.
+void Silence(Scenario& scenario) {
+  scenario.amplifier.noise_V = 0.0;
+  scenario.autocollimator.noise_rad = 0.0;
+  scenario.environment.sensor_noise_K = 0.0;
+  scenario.environment.random_walk_K_sqrt_h = 0.0;
+  SilenceTable(scenario.target);
+  SilenceTable(scenario.reference);
+}
+
+}  // namespace
+
+ActiveEffects::ActiveEffects(const Scenario& scenario) {
+  for (const EffectSettings& settings : scenario.effects) effects_.push_back(MakeEffect(settings, scenario));
+}
+
+Scenario ActiveEffects::ActualBench(const Scenario& nominal) const {
+  Scenario actual = nominal;
+  for (const auto& effect : effects_) effect->AlterBench(actual);
+  if (actual.noise_free) Silence(actual);
+  return actual;
+}
+
+void ActiveEffects::Advance(const Moment& moment) {
+  for (const auto& effect : effects_) effect->Advance(moment);
+}
+
+Mounting ActiveEffects::Actual(Mounting nominal) const {
+  for (const auto& effect : effects_) effect->AlterMounting(nominal);
+  return nominal;
+}
+
+PoseState ActiveEffects::Pose(const Moment& moment) const {
+  PoseState pose;
+  for (const auto& effect : effects_) effect->AlterPose(moment, pose);
+  return pose;
+}
+
+void ActiveEffects::AlterLabels(double& target_rad, double& reference_rad) const {
+  for (const auto& effect : effects_) effect->AlterLabels(target_rad, reference_rad);
+}
+
+void ActiveEffects::AlterLight(const Moment& moment, LightState& light) const {
+  for (const auto& effect : effects_) effect->AlterLight(moment, light);
+}
+
+void ActiveEffects::AlterSignal(const Moment& moment, std::array<double, kChannels>& signal_V) {
+  for (const auto& effect : effects_) effect->AlterSignal(moment, signal_V);
+}
+
+SamplingState ActiveEffects::Sampling() const {
+  SamplingState sampling;
+  for (const auto& effect : effects_) effect->AlterSampling(sampling);
+  return sampling;
+}
+
+void ActiveEffects::AlterReadout(Acquisition& block) const {
+  for (const auto& effect : effects_) effect->AlterReadout(block);
+}
+
+}  // namespace twinbench::sim

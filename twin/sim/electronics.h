@@ -1,0 +1,34 @@
+#pragma once
+
+#include "twin/core/scenario.h"
+#include "twin/core/stream.h"
+#include "twin/sim/ad_sampler.h"
+#include "twin/sim/effect.h"
+
+namespace twinbench::sim {
+
+/// From spots to A/D blocks: amplifiers with gain, offset, noise and hum, then the multiplexed converter.
+class Electronics {
+ public:
+  Electronics(const Scenario& actual, const SamplingState& sampling);
+
+  /// Amplifier outputs for spot coordinates [m] in channel order.
+  std::array<double, kChannels> Amplify(const std::array<double, kChannels>& spots_m) const;
+
+  /// Converts one block of steady voltages. `reading` enters the noise stream, so that a reading's noise does not
+  /// depend on how many samples the readings before it took.
+  Acquisition Convert(const std::array<double, kChannels>& signal_V, Time start, int reading, int n_samples,
+                      bool keep_raw);
+
+  Duration BlockTime(int n_samples) const;
+
+ private:
+  AdcSettings adc_;
+  AmplifierSettings amplifier_;
+  std::array<double, kChannels> sensitivity_V_m_;
+  SamplingState sampling_;
+  bool noise_free_;
+  Stream noise_;
+};
+
+}  // namespace twinbench::sim

@@ -1,0 +1,120 @@
+#include "twin/sim/light.h"
+
+#include "twin/core/errors.h"
+
+namespace twinbench::sim {
+namespace {
+
+/// Of the pictures that Twin::WriteIrradiance makes: 20 um pixels on a 10 mm detector.
+constexpr int kIrradiancePixels = 500;
+
+optics::PsdParameters PsdOf(const PsdSettings& s) {
+  optics::PsdParameters psd;
+  psd.distance_m = s.distance_m;
+  psd.roll_rad = s.roll_rad;
+  psd.tilt_u_rad = s.tilt_u_rad;
+  psd.tilt_v_rad = s.tilt_v_rad;
+  psd.width_m = s.width_m;
+  psd.height_m = s.height_m;
+  psd.cubic_per_m2 = s.cubic_per_m2;
+  psd.stray_fraction = s.stray_fraction;
+  psd.silicon_reflectance = s.silicon_reflectance;
+  if (s.window) {
+    psd.window = optics::Window{s.window_thickness_m, s.window_index,     s.window_gap_m,
+                                s.window_reflectance, s.window_wedge_rad, s.window_coherent};
+  }
+  return psd;
+}
+
+optics::Grating GratingOf(const GratingSettings& s) {
+  optics::Grating grating;
+  grating.lines_per_m = s.lines_per_m;
+  grating.width_m = s.width_m;
+  grating.height_m = s.height_m;
+  grating.table = {{0.0, {-2, {s.efficiency.begin(), s.efficiency.end()}}}};
+  return grating;
+}
+
+optics::BeamParameters BeamOf(const LaserSettings& s) {
+  optics::BeamParameters beam;
+  beam.radius_m = s.beam_radius_m;
+  beam.divergence_rad = s.divergence_rad;
+  if (s.beam == BeamModel::kGaussian) beam.kind = optics::BeamKind::kGaussian;
+  if (s.beam != BeamModel::kProfile) return beam;
+  beam.kind = optics::BeamKind::kProfile;
+  try {
+    beam.profile = optics::ReadIrradianceMaps(s.profile_file).at(0);
+  } catch (const std::exception& error) {
+    throw InputError("laser.profile_file", error.what(), "an OpenEXR file with a channel Y and a pixel pitch");
+  }
+  return beam;
+}
+
+optics::RotaryOptics OpticsOf(const Scenario& actual, double nominal_wavelength_m) {
+  optics::RotaryOpticsParameters parameters;
+  parameters.nominal_wavelength_m = nominal_wavelength_m;
+  parameters.laser_position_m = actual.laser.position_m;
+  parameters.grating = GratingOf(actual.grating);
+  parameters.psd_a = PsdOf(actual.psd_a);
+  parameters.psd_b = PsdOf(actual.psd_b);
+  parameters.beam = BeamOf(actual.laser);
+  return optics::RotaryOptics(parameters);
+}
+
+ReadingStatus StatusOf(optics::PsdStatus status) {
+  switch (status) {
+    case optics::PsdStatus::kOk:
+      return ReadingStatus::kOk;
+    case optics::PsdStatus::kClipped:
+      return ReadingStatus::kClippedSpot;
+    case optics::PsdStatus::kMissed:
+    case optics::PsdStatus::kNoLight:
+      return ReadingStatus::kNoLight;
+  }
+  return ReadingStatus::kMissing;
+}
+
+}  // namespace
+
+Light::Light(const Scenario& actual, double nominal_wavelength_m)
+    : laser_(actual.laser),
+      low_light_fraction_(actual.amplifier.low_light_fraction),
+      optics_(OpticsOf(actual, nominal_wavelength_m)) {
+  const optics::PsdSignals nominal = Signals(Pose::Identity(), Nominal(0.0));
+  nominal_power_W_ = {nominal.a.power_W, nominal.b.power_W};
+}
+
+LightState Light::Nominal(double temperature_K) const {
+  return {laser_.wavelength_m + laser_.wavelength_per_kelvin_m * temperature_K,
+          laser_.yaw_rad + laser_.pointing_yaw_per_kelvin_rad * temperature_K,
+          laser_.pitch_rad + laser_.pointing_pitch_per_kelvin_rad * temperature_K};
+}
+
+optics::PsdSignals Light::Signals(const Pose& X_LG, const LightState& light) const {
+  return optics_.Trace(X_LG, {light.wavelength_m, light.yaw_rad, light.pitch_rad, laser_.power_W});
+}
+
+Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
+  const optics::PsdSignals signals = Signals(X_LG, light);
+  const std::array<const optics::PsdSignal*, 2> psd = {&signals.a, &signals.b};
+  Spots spots;
+  for (std::size_t p = 0; p < 2; ++p) {
+    spots.uv_m[2 * p] = psd[p]->u_m;
+    spots.uv_m[2 * p + 1] = psd[p]->v_m;
+    const bool dark = psd[p]->power_W < low_light_fraction_ * nominal_power_W_[p];
+    const ReadingStatus status = dark ? ReadingStatus::kNoLight : StatusOf(psd[p]->status);
+    if (spots.status == ReadingStatus::kOk) spots.status = status;
+  }
+  return spots;
+}
+
+void Light::WriteIrradiance(const std::string& path, const Pose& X_LG, const LightState& light) const {
+  const optics::SourceState source{light.wavelength_m, light.yaw_rad, light.pitch_rad, laser_.power_W};
+  try {
+    optics::WriteIrradianceMaps(path, optics_.Irradiance(X_LG, source, kIrradiancePixels));
+  } catch (const std::runtime_error& error) {
+    throw BenchError(error.what());
+  }
+}
+
+}  // namespace twinbench::sim

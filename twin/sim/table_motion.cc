@@ -1,0 +1,70 @@
+#include "twin/sim/table_motion.h"
+
+#include <algorithm>
+
+namespace twinbench::sim {
+namespace {
+
+std::vector<mechanics::Harmonic> Harmonics(const TableSettings& settings, std::uint64_t seed,
+                                           const std::string& name) {
+  std::vector<mechanics::Harmonic> harmonics;
+  for (const HarmonicSettings& h : settings.harmonics) {
+    harmonics.push_back({static_cast<int>(h.component), h.order, h.amplitude, h.phase_rad});
+  }
+  const bool random =
+      std::any_of(settings.random_rms.begin(), settings.random_rms.end(), [](double r) { return r > 0.0; });
+  if (random) {
+    Stream stream(seed, name + ".errors");
+    const auto drawn = mechanics::MakeRandomHarmonics(settings.random_rms, settings.random_orders,
+                                                      [&] { return stream.Normal(); });
+    harmonics.insert(harmonics.end(), drawn.begin(), drawn.end());
+  }
+  return harmonics;
+}
+
+mechanics::ErrorTable Table(const TableSettings& settings) {
+  if (!settings.errors) return {};
+  return {settings.errors->position_rad, settings.errors->value};
+}
+
+bool AnyPositive(const std::array<double, kComponents>& sd) {
+  return std::any_of(sd.begin(), sd.end(), [](double s) { return s > 0.0; });
+}
+
+}  // namespace
+
+TableMotion::TableMotion(const TableSettings& settings, std::uint64_t seed, const std::string& name)
+    : settings_(settings),
+      seating_stream_(seed, name + ".seating"),
+      stop_stream_(seed, name + ".repeatability"),
+      scatters_(AnyPositive(settings.repeatability_sd)) {
+  const auto harmonics = Harmonics(settings, seed, name);
+  const auto table = Table(settings);
+  repeatable_ = mechanics::ErrorMotion(harmonics, table);
+  all_ = mechanics::ErrorMotion(
+      harmonics, table,
+      {settings.half_frequency_order, settings.half_frequency_tilt_rad, settings.half_frequency_radial_m});
+}
+
+mechanics::PoseError TableMotion::At(double label_rad) const {
+  return all_.Evaluate(label_rad) + stop_;
+}
+
+TableErrors TableMotion::Repeatable(int positions) const {
+  TableErrors errors;
+  for (int k = 0; k < positions; ++k) {
+    const double angle_rad = 2.0 * units::kPi * k / positions;
+    const auto value = repeatable_.Evaluate(angle_rad).Array();
+    errors.position_rad.push_back(angle_rad);
+    for (int c = 0; c < kComponents; ++c) errors.value[c].push_back(value[c]);
+  }
+  return errors;
+}
+
+mechanics::PoseError TableMotion::Draw(const std::array<double, kComponents>& sd, Stream& stream) {
+  std::array<double, kComponents> drawn{};
+  for (int c = 0; c < kComponents; ++c) drawn[c] = sd[c] * stream.Normal();
+  return mechanics::PoseError::FromArray(drawn);
+}
+
+}  // namespace twinbench::sim

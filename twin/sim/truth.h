@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "twin/core/scenario.h"
+
+namespace twinbench::sim {
+
+/// What the twin knows and the measurement may not: opened only by `twinbench score` and tests.
+struct Truth {
+  TableErrors target;     // repeatable errors at the stops, in L
+  TableErrors reference;  // the same in its rotor frame, at its own angles
+  std::vector<EffectSettings> effects;
+  std::uint64_t seed = 0;
+};
+
+/// {"target": {"position_deg": [...], "ex_arcsec": [...], ...}, "reference": {...}, "effects": [...], "seed": n}
+nlohmann::json ToJson(const Truth& truth);
+
+}  // namespace twinbench::sim

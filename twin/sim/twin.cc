@@ -1,0 +1,135 @@
+#include "twin/sim/twin.h"
+
+#include "twin/sim/world.h"
+
+namespace twinbench::sim {
+namespace {
+
+using mechanics::Axis;
+
+class TwinClock : public Clock {
+ public:
+  explicit TwinClock(World& world) : world_(world) {}
+  Time Now() const override { return world_.queue().Now(); }
+  void Wait(Duration duration) override { world_.queue().RunUntil(Now() + duration); }
+
+ private:
+  World& world_;
+};
+
+class TwinTable : public RotaryTable {
+ public:
+  TwinTable(World& world, Axis axis) : world_(world), axis_(axis) {}
+  void StartMove(double angle_rad) override { world_.StartMove(axis_, angle_rad); }
+  void WaitSettled() override { world_.WaitSettled(axis_); }
+  double EncoderAngle_rad() override {
+    const mechanics::StackState state = world_.LookAtAxes();
+    return axis_ == Axis::kTarget ? state.target_encoder_rad : state.reference_encoder_rad;
+  }
+
+ private:
+  World& world_;
+  Axis axis_;
+};
+
+class TwinAdc : public AdConverter {
+ public:
+  explicit TwinAdc(World& world) : world_(world) {}
+  Acquisition Acquire(int n_samples, bool keep_raw) override { return world_.Acquire(n_samples, keep_raw); }
+
+ private:
+  World& world_;
+};
+
+/// Looks at the grating's normal; out of its range it shows nothing.
+class TwinAutocollimator : public Autocollimator {
+ public:
+  explicit TwinAutocollimator(World& world)
+      : world_(world),
+        settings_(world.actual().autocollimator),
+        noise_(world.actual().seed, "autocollimator.noise") {}
+
+  AutocollimatorReading Read() override {
+    const Vector3 normal_L = world_.GratingPose().linear().col(1);
+    const double yaw_rad = Show(std::atan2(-normal_L.x(), normal_L.y()));
+    const double tilt_rad = Show(std::atan2(normal_L.z(), std::hypot(normal_L.x(), normal_L.y())));
+    return {yaw_rad, tilt_rad};
+  }
+
+ private:
+  double Show(double angle_rad) {
+    const double noise_rad = settings_.noise_rad > 0.0 ? settings_.noise_rad * noise_.Normal() : 0.0;
+    const double shown_rad = (1.0 + settings_.gain_error) * angle_rad + noise_rad;
+    return std::abs(shown_rad) <= settings_.range_rad ? shown_rad : kNaN;
+  }
+
+  World& world_;
+  AutocollimatorSettings settings_;
+  Stream noise_;
+};
+
+class TwinThermometer : public Thermometer {
+ public:
+  explicit TwinThermometer(World& world) : world_(world) {}
+  double Read_degC() override { return world_.environment().Measure_degC(world_.queue().Now()); }
+
+ private:
+  World& world_;
+};
+
+class TwinGoniometer : public Goniometer {
+ public:
+  explicit TwinGoniometer(World& world) : world_(world) {}
+  void MoveTo(double yaw_rad, double tilt_rad) override { world_.SetGoniometer(yaw_rad, tilt_rad); }
+
+ private:
+  World& world_;
+};
+
+class TwinFixture : public Fixture {
+ public:
+  explicit TwinFixture(World& world) : world_(world) {}
+  void Mount(int setup, double clamp_rad, double reseat_rad) override {
+    world_.Mount(setup, clamp_rad, reseat_rad);
+  }
+
+ private:
+  World& world_;
+};
+
+}  // namespace
+
+struct Twin::Devices {
+  explicit Devices(const Scenario& scenario) : world(scenario) {}
+
+  World world;
+  TwinClock clock{world};
+  TwinTable target{world, Axis::kTarget};
+  TwinTable reference{world, Axis::kReference};
+  TwinAdc adc{world};
+  TwinAutocollimator autocollimator{world};
+  TwinThermometer thermometer{world};
+  TwinGoniometer goniometer{world};
+  TwinFixture fixture{world};
+};
+
+Twin::Twin(const Scenario& scenario) : scenario_(scenario), devices_(std::make_unique<Devices>(scenario)) {}
+Twin::~Twin() = default;
+
+RotaryBench Twin::Bench() {
+  Devices& d = *devices_;
+  return {d.clock, d.target, d.reference, d.adc, d.autocollimator, d.thermometer, d.goniometer, d.fixture};
+}
+
+Truth Twin::TheTruth() const {
+  const Stand& stand = devices_->world.stand();
+  const int positions = scenario_.procedure.positions;
+  return {stand.target().Repeatable(positions), stand.reference().Repeatable(positions), scenario_.effects,
+          scenario_.seed};
+}
+
+void Twin::WriteIrradiance(const std::string& path) {
+  devices_->world.WriteIrradiance(path);
+}
+
+}  // namespace twinbench::sim

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "twin/core/devices.h"
+#include "twin/core/scenario.h"
+#include "twin/sim/truth.h"
+
+namespace twinbench::sim {
+
+/// The virtual rotary bench: devices that a procedure can drive, and the truth that it may not see.
+///
+/// Same scenario, same bits: every random number comes from Stream(scenario.seed, name of its cause).
+/// Instances share nothing, so that many may run in as many threads.
+class Twin {
+ public:
+  /// @throws InputError if a file that the scenario names cannot be read or does not fit.
+  explicit Twin(const Scenario& scenario);
+  ~Twin();
+
+  /// Valid as long as the twin.
+  RotaryBench Bench();
+
+  /// What the errors of both tables are at the stops of the scenario's procedure.
+  Truth TheTruth() const;
+
+  /// Writes the irradiance on both PSDs at this moment as one multi-part OpenEXR.
+  void WriteIrradiance(const std::string& path);
+
+ private:
+  struct Devices;
+  Scenario scenario_;
+  std::unique_ptr<Devices> devices_;
+};
+
+}  // namespace twinbench::sim

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "twin/sim/axes.h"
+#include "twin/sim/effects_active.h"
+#include "twin/sim/electronics.h"
+#include "twin/sim/environment.h"
+#include "twin/sim/light.h"
+#include "twin/sim/stand.h"
+
+namespace twinbench::sim {
+
+/// The whole bench at the time of its event queue. Devices are thin: they ask and change this.
+class World {
+ public:
+  explicit World(const Scenario& nominal);
+
+  EventQueue& queue() { return queue_; }
+  Environment& environment() { return environment_; }
+  const Scenario& actual() const { return actual_; }
+
+  void StartMove(mechanics::Axis axis, double to_rad);
+  void WaitSettled(mechanics::Axis axis) { axes_.WaitSettled(axis); }
+  mechanics::StackState LookAtAxes() { return axes_.Look(); }
+  void Mount(int setup, double clamp_rad, double reseat_rad);
+  void SetGoniometer(double yaw_rad, double tilt_rad) { stand_.SetGoniometer(yaw_rad, tilt_rad); }
+
+  /// X_LG now, effects included.
+  Pose GratingPose();
+
+  /// Takes one block: the light as it falls at its start, converted while the clock runs to its end.
+  Acquisition Acquire(int n_samples, bool keep_raw);
+
+  /// Pictures of both PSDs as the light falls now.
+  void WriteIrradiance(const std::string& path);
+
+  const Stand& stand() const { return stand_; }
+
+ private:
+  Moment Look(const mechanics::StackState& axes);
+  LightState LookAtLight(const Moment& moment) const;
+  Pose GratingPose(const Moment& moment, const mechanics::StackState& axes) const;
+
+  EventQueue queue_;
+  ActiveEffects effects_;
+  Scenario actual_;
+  Environment environment_;
+  Axes axes_;
+  Stand stand_;
+  Light light_;
+  Electronics electronics_;
+  Time mounted_{};
+  int setup_ = 0;
+  int next_reading_ = 0;
+};
+
+}  // namespace twinbench::sim
