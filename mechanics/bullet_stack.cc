@@ -1,5 +1,7 @@
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 
+#include <cmath>
+
 #include "mechanics/stack.h"
 
 // A float build of Bullet would add 0.02 arcsec of noise, and mixing the two corrupts memory.

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "mechanics/drives.h"
 #include "mechanics/sag.h"

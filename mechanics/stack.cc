@@ -1,8 +1,10 @@
 #include "mechanics/stack.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace twinbench::mechanics {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <memory>
 
 #include "mechanics/chain.h"
@@ -34,19 +35,19 @@ struct FrictionParameters {
 
 /// A rigid body with its axis of symmetry along z.
 struct SymmetricBody {
-  double mass_kg = 0.0;
-  double height_m = 0.0;                  // of the centre of mass above the origin of its table
-  double transverse_inertia_kg_m2 = 0.0;  // about the centre of mass
-  double axial_inertia_kg_m2 = 0.0;
+  double mass_kg = std::numeric_limits<double>::quiet_NaN();
+  double height_m = 0.0;  // of the centre of mass above the origin of its table
+  double transverse_inertia_kg_m2 = std::numeric_limits<double>::quiet_NaN();  // about the centre of mass
+  double axial_inertia_kg_m2 = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct TableParameters {
   SymmetricBody rotor;
-  double axial_stiffness_N_m = 0.0;
-  double radial_stiffness_N_m = 0.0;
-  double tilt_stiffness_Nm_rad = 0.0;
-  double servo_Hz = 0.0;
-  double torque_limit_Nm = 0.0;
+  double axial_stiffness_N_m = std::numeric_limits<double>::quiet_NaN();
+  double radial_stiffness_N_m = std::numeric_limits<double>::quiet_NaN();
+  double tilt_stiffness_Nm_rad = std::numeric_limits<double>::quiet_NaN();
+  double servo_Hz = std::numeric_limits<double>::quiet_NaN();
+  double torque_limit_Nm = std::numeric_limits<double>::quiet_NaN();
   double backlash_rad = 0.0;  // full width, of the encoder against the rotor
   FrictionParameters friction;
 };

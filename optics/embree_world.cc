@@ -6,6 +6,8 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 
@@ -70,7 +72,10 @@ RTCRay8& RayPart(RTCRay8& packet) {
 template <int kWidth, class Packet>
 void Fill(const RayBatch& rays, std::size_t begin, std::size_t n, const Lanes& lanes, Packet& packet) {
   auto& ray = RayPart(packet);
-  ToFloat(rays, begin, n, {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z});
+  const std::array<float*, 6> lines{ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z};
+  ToFloat(rays, begin, n, lines);
+  // Inactive lanes copy the first one: what they hold by chance (NaN) is none of Embree's business.
+  for (float* line : lines) std::fill(line + n, line + kWidth, line[0]);
   for (int i = 0; i < kWidth; ++i) {
     ray.tnear[i] = lanes.near_m[i];
     ray.tfar[i] = lanes.far_m[i];
@@ -100,11 +105,11 @@ void IntersectPacket(RTCScene scene, const RayBatch& rays, std::size_t begin, st
 }
 
 template <int kWidth, class Packet>
-void OccludedPacket(RTCScene scene, const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
-                    Lanes& lanes) {
+void OccludedPacket(RTCScene scene, const RayBatch& rays, std::size_t begin, std::size_t n, Lanes& lanes) {
   Packet packet;
   Fill<kWidth>(rays, begin, n, lanes, packet);
-  Query(order).Run(lanes.valid, scene, packet);
+  // Never coherent: Embree 3.13's coherent shadow packets can loop for ever on axis-parallel rays.
+  Query(RayOrder::kScattered).Run(lanes.valid, scene, packet);
   for (int i = 0; i < kWidth; ++i) lanes.triangle[i] = packet.tfar[i] < 0.0f ? kFixture : kNothing;
 }
 
@@ -198,10 +203,9 @@ void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t
   trace(scene_, rays, begin, n, order, lanes);
 }
 
-void EmbreeWorld::Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
-                           Lanes& lanes) const {
+void EmbreeWorld::Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, Lanes& lanes) const {
   const auto trace = packet_width_ == 16 ? OccludedPacket<16, RTCRay16> : OccludedPacket<8, RTCRay8>;
-  trace(fixtures_, rays, begin, n, order, lanes);
+  trace(fixtures_, rays, begin, n, lanes);
 }
 
 }  // namespace twinbench::optics

@@ -47,7 +47,7 @@ class EmbreeWorld {
   void Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Lanes& lanes) const;
 
   /// Whether a mesh is in the way (proxies do not count): triangle becomes kFixture or kNothing.
-  void Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Lanes& lanes) const;
+  void Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, Lanes& lanes) const;
 
  private:
   struct Instance {

@@ -59,15 +59,27 @@ void TakeNearest(const Frame& frame, int id, const RayBatch& rays, std::size_t b
   kernel(frame, id, r, n, t_min, best);
 }
 
-[[gnu::target_clones("avx512f", "avx2", "default")]] void ToFloatArray(const double* __restrict from, std::size_t n,
-                                                                       float* __restrict to) {
-  for (std::size_t i = 0; i < n; ++i) to[i] = static_cast<float>(from[i]);
+struct FloatRays {
+  float* __restrict ox, * __restrict oy, * __restrict oz, * __restrict dx, * __restrict dy, * __restrict dz;
+};
+
+[[gnu::target_clones("avx512f", "avx2", "default")]] void ToFloatArrays(ConstRays from, std::size_t n,
+                                                                        FloatRays to) {
+  // + 0 turns -0 into +0, so that the sign of a zero never sends a ray to another octant of Embree's packets.
+  for (std::size_t i = 0; i < n; ++i) {
+    to.ox[i] = static_cast<float>(from.ox[i]);
+    to.oy[i] = static_cast<float>(from.oy[i]);
+    to.oz[i] = static_cast<float>(from.oz[i]);
+    to.dx[i] = static_cast<float>(from.dx[i]) + 0.0f;
+    to.dy[i] = static_cast<float>(from.dy[i]) + 0.0f;
+    to.dz[i] = static_cast<float>(from.dz[i]) + 0.0f;
+  }
 }
 
 void ToFloat(const RayBatch& rays, std::size_t begin, std::size_t n, const std::array<float*, 6>& to) {
-  const std::array<const double*, 6> from{rays.ox.data(), rays.oy.data(), rays.oz.data(),
-                                          rays.dx.data(), rays.dy.data(), rays.dz.data()};
-  for (std::size_t i = 0; i < from.size(); ++i) ToFloatArray(from[i] + begin, n, to[i]);
+  const ConstRays from{rays.ox.data() + begin, rays.oy.data() + begin, rays.oz.data() + begin,
+                       rays.dx.data() + begin, rays.dy.data() + begin, rays.dz.data() + begin};
+  ToFloatArrays(from, n, {to[0], to[1], to[2], to[3], to[4], to[5]});
 }
 
 [[gnu::target_clones("avx512f", "avx2", "default")]] void TraceSequenceArrays(const Frame& grating, double shift,
@@ -90,8 +102,9 @@ void ToFloat(const RayBatch& rays, std::size_t begin, std::size_t n, const std::
     double t2, u2, v2;
     MeetPlane(p, r.ox[i] + t * r.dx[i], r.oy[i] + t * r.dy[i], r.oz[i] + t * r.dz[i], kx + out * g.zx,
               ky + out * g.zy, kz + out * g.zz, t2, u2, v2);
-    u[i] = good & (t2 > 0.0) ? u2 : nan;
-    v[i] = good & (t2 > 0.0) ? v2 : nan;
+    const bool arrives = good & (t2 > 0.0);
+    u[i] = arrives ? u2 : nan;
+    v[i] = arrives ? v2 : nan;
   }
 }
 

@@ -65,7 +65,7 @@ struct Scene::Impl {
   void Refine(const RayBatch& rays, std::size_t begin, std::size_t n, const Lanes& lanes, HitBatch& hits) const;
   bool Continue(std::size_t begin, std::size_t n, Lanes& lanes, HitBatch& hits) const;
   void TakeSurfaces(const RayBatch& rays, HitBatch& hits) const;
-  void Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, HitBatch& hits) const;
+  void Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, HitBatch& hits) const;
 };
 
 double Scene::Impl::Extent() const {
@@ -110,7 +110,9 @@ void Scene::Impl::Refine(const RayBatch& rays, std::size_t begin, std::size_t n,
   SmallSet done;
   int last = kNothing;
   for (std::size_t i = 0; i < n; ++i) {
-    if (!lanes.valid[i] || lanes.triangle[i] < 0) continue;
+    if (!lanes.valid[i] || lanes.triangle[i] < 0 ||
+        (i > 0 && lanes.triangle[i] == lanes.triangle[i - 1] && lanes.valid[i - 1]))
+      continue;
     const int surface = surface_of_triangle[static_cast<std::size_t>(lanes.triangle[i])];
     if (surface == last || !done.Insert(surface)) continue;
     last = surface;
@@ -123,6 +125,10 @@ void Scene::Impl::Refine(const RayBatch& rays, std::size_t begin, std::size_t n,
 
 /// Settles the lanes whose answer is final; the others go on behind the proxy that deceived them.
 bool Scene::Impl::Continue(std::size_t begin, std::size_t n, Lanes& lanes, HitBatch& hits) const {
+  // The usual case without a branch per lane: every ray of the packet is on the surface that Embree named.
+  bool open = false;
+  for (std::size_t i = 0; i < n; ++i) open |= !(hits.t_m[begin + i] <= lanes.t_m[i] + blur_m);
+  if (!open) return false;
   bool any = false;
   for (std::size_t i = 0; i < n; ++i) {
     if (!lanes.valid[i]) continue;
@@ -166,15 +172,14 @@ void Scene::Impl::TakeSurfaces(const RayBatch& rays, HitBatch& hits) const {
   }
 }
 
-void Scene::Impl::Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
-                         HitBatch& hits) const {
+void Scene::Impl::Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, HitBatch& hits) const {
   Lanes lanes;
   for (std::size_t i = 0; i < kMaxPacket; ++i) {
     lanes.valid[i] = i < n ? -1 : 0;
     lanes.near_m[i] = static_cast<float>(t_min_m);
-    lanes.far_m[i] = i < n ? static_cast<float>(hits.t_m[begin + i]) : 0.0f;
+    lanes.far_m[i] = i < n ? static_cast<float>(hits.t_m[begin + i]) : kFar;
   }
-  world.Occluded(rays, begin, n, order, lanes);
+  world.Occluded(rays, begin, n, lanes);
   for (std::size_t i = 0; i < n; ++i) {
     if (lanes.triangle[i] != kFixture) continue;
     hits.surface[begin + i] = kFixture;
@@ -257,14 +262,14 @@ void Scene::IntersectAnalytic(const RayBatch& rays, HitBatch& hits) const {
   }
 }
 
-void Scene::IntersectHybrid(const RayBatch& rays, HitBatch& hits, RayOrder order) const {
+void Scene::IntersectHybrid(const RayBatch& rays, HitBatch& hits) const {
   if (!impl_->committed) throw std::logic_error("Scene::IntersectHybrid before Commit");
   hits.Reset(rays.size());
   impl_->TakeSurfaces(rays, hits);
   if (impl_->meshes.empty()) return;
   const auto width = static_cast<std::size_t>(packet_width());
   for (std::size_t begin = 0; begin < rays.size(); begin += width) {
-    impl_->Shadow(rays, begin, std::min(width, rays.size() - begin), order, hits);
+    impl_->Shadow(rays, begin, std::min(width, rays.size() - begin), hits);
   }
 }
 
@@ -274,7 +279,7 @@ bool Scene::Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m)
   HitBatch hits;
   hits.Reset(1);
   hits.t_m[0] = (to_m - from_m).norm() - t_min_m;
-  impl_->Shadow(ray, 0, 1, RayOrder::kCoherent, hits);
+  impl_->Shadow(ray, 0, 1, hits);
   return hits.surface[0] == kFixture;
 }
 

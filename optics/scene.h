@@ -48,7 +48,7 @@ class Scene {
 
   /// Surfaces as in IntersectAnalytic, meshes by Embree shadow rays (t_m of kFixture is NaN): best for few
   /// surfaces.
-  void IntersectHybrid(const RayBatch& rays, HitBatch& hits, RayOrder order = RayOrder::kCoherent) const;
+  void IntersectHybrid(const RayBatch& rays, HitBatch& hits) const;
 
   /// Does a mesh stand between two points?
   bool Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;

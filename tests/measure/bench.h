@@ -9,7 +9,9 @@
 /// What the tests of this room share: the reference bench, and readings made straight from motions.
 namespace twinbench::measure {
 
-inline BenchGeometry Bench() { return NominalGeometry(Scenario{}); }
+inline BenchGeometry Bench() {
+  return NominalGeometry(Scenario{});
+}
 
 /// Imperfections of the detectors that a calibration should find.
 struct Detectors {
@@ -37,8 +39,9 @@ inline std::vector<Reading> CalibrationSweeps(const Detectors& detectors, const 
   for (int k = 0; k < 52; ++k) {
     const double angle_rad = 50.0 * units::arcsec * (k % 26 < 13 ? k % 26 - 6 : 18 - k % 26);
     const double yaw_rad = k < 26 ? angle_rad : 0.0, tilt_rad = k < 26 ? 0.0 : angle_rad;
-    const Matrix3 turn = (Eigen::AngleAxisd(yaw_rad, Vector3::UnitZ()) *
-                          Eigen::AngleAxisd(tilt_rad, Vector3::UnitX())).toRotationMatrix();
+    const Matrix3 turn =
+        (Eigen::AngleAxisd(yaw_rad, Vector3::UnitZ()) * Eigen::AngleAxisd(tilt_rad, Vector3::UnitX()))
+            .toRotationMatrix();
     Reading r = ReadingOf(PredictSpots(turn * MotionRotation(mount), mount[3], Bench()), detectors, noise);
     r.phase = Phase::kCalibration;
     r.autocollimator_yaw_rad = yaw_rad;

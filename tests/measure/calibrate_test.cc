@@ -1,7 +1,8 @@
 #include "twin/measure/calibrate.h"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+
+#include <Eigen/LU>
 
 #include "tests/measure/bench.h"
 
@@ -22,7 +23,8 @@ TEST(Calibrate, FindsGainsAndRollsOfANoiseFreeSweep) {
   const Detectors truth = Imperfect(0.0);
   const Calibration found = Calibrate(CalibrationSweeps(truth, kMount, nullptr), Bench());
   ASSERT_TRUE(found.measured);
-  // The prior of 2 % and 20 mrad, weighed against the assumed 0.3 um, pulls by (3e-4 / 0.02)^2 = 2e-4 of a deviation.
+  // The prior of 2 % and 20 mrad, weighed against the assumed 0.3 um, pulls by (3e-4 / 0.02)^2 = 2e-4 of a
+  // deviation.
   EXPECT_LT((found.gain - truth.gain).cwiseAbs().maxCoeff(), 3e-6);
   EXPECT_LT((found.roll_rad - truth.roll_rad).cwiseAbs().maxCoeff(), 3e-6);
   EXPECT_LT(found.residual_rms_m.maxCoeff(), 1e-9);
@@ -91,7 +93,8 @@ TEST(SpotCalibrationJacobian, AgreesWithDifferences) {
     Calibration more = at, less = at;
     (p < 4 ? more.gain[p] : more.roll_rad[p - 4]) += kStep;
     (p < 4 ? less.gain[p] : less.roll_rad[p - 4]) -= kStep;
-    const Vector4 difference = (SpotsFromVoltages(mean_V, Bench(), more) - SpotsFromVoltages(mean_V, Bench(), less));
+    const Vector4 difference =
+        (SpotsFromVoltages(mean_V, Bench(), more) - SpotsFromVoltages(mean_V, Bench(), less));
     EXPECT_LT((jacobian.col(p) - difference / (2 * kStep)).norm(), 1e-12);  // 1e-4 m, step^2 = 1e-12 and rounding
   }
 }

@@ -19,10 +19,10 @@ TEST(PredictSpots, AreAtTheCentresForANominalGrating) {
 TEST(SpotJacobian, HasTheClosedFormSensitivitiesOfAPerpendicularPsd) {
   const Matrix4 d = SpotJacobian(Vector4::Zero(), Bench());
   const double c = std::cos(kTheta), s = std::sin(kTheta);
-  Matrix4 expected;  // rows a_u, a_v, b_u, b_v; columns ez, ex, ey, dy
-  expected << -kL1_m * (1 + 1 / c), 0, 0, -s,           //
-      0, kL1_m * (1 + c), -kL1_m * s, 0,                //
-      -kL1_m * (1 + 1 / c), 0, 0, s,                    //
+  Matrix4 expected;                            // rows a_u, a_v, b_u, b_v; columns ez, ex, ey, dy
+  expected << -kL1_m * (1 + 1 / c), 0, 0, -s,  //
+      0, kL1_m * (1 + c), -kL1_m * s, 0,       //
+      -kL1_m * (1 + 1 / c), 0, 0, s,           //
       0, kL1_m * (1 + c), kL1_m * s, 0;
   // Central differences of step 1e-5: third derivatives give 1e-10 of the length.
   EXPECT_LT((d - expected).cwiseAbs().maxCoeff(), 1e-10);

@@ -1,8 +1,8 @@
 #include "twin/measure/measure.h"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "tests/measure/bench.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -28,8 +29,8 @@ std::vector<std::string> Split(const std::string& line) {
   return cells;
 }
 
-std::vector<OracleRow> ReadOracle() {
-  std::ifstream file(TWINBENCH_TEST_DATA "/oracle/poses.csv");
+std::vector<OracleRow> ReadOracle(const std::string& path) {
+  std::ifstream file(path);
   std::string line;
   std::getline(file, line);
   const std::vector<std::string> names = Split(line);
@@ -38,7 +39,9 @@ std::vector<OracleRow> ReadOracle() {
     const std::vector<std::string> cells = Split(line);
     OracleRow row;
     row.reclamp = cells[0] == "reclamp";
-    for (std::size_t i = 1; i < cells.size(); ++i) row.value[names[i]] = std::stod(cells[i]);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (names[i] != "mode" && names[i] != "phase") row.value[names[i]] = std::stod(cells[i]);
+    }
     rows.push_back(row);
   }
   return rows;
@@ -84,7 +87,7 @@ Eigen::Vector2d Spot(const Pose& X_LG, double side) {
 
 TEST(Chain, AgreesWithTheIndependentSpotsToANanometre) {
   int n_other = 0;
-  for (const OracleRow& row : ReadOracle()) {
+  for (const OracleRow& row : ReadOracle(TWINBENCH_TEST_DATA "/oracle/poses.csv")) {
     const Pose X_LG = OraclePose(row, ErrorFrame::kBase);
     const Eigen::Vector2d a = Spot(X_LG, 1.0) / kMicrometre;
     const Eigen::Vector2d b = Spot(X_LG, -1.0) / kMicrometre;
@@ -96,6 +99,58 @@ TEST(Chain, AgreesWithTheIndependentSpotsToANanometre) {
     n_other += (Spot(OraclePose(row, ErrorFrame::kRotor), 1.0) / kMicrometre - a).norm() > 1e-3;
   }
   EXPECT_GT(n_other, 250);  // the other reading of the reference's frame would be seen in nearly every row
+}
+
+std::vector<PoseError> Errors(const nlohmann::json& rows) {
+  std::vector<PoseError> errors;
+  for (const auto& e : rows) {
+    errors.push_back({e.at(0).get<double>() * kArcsec, e.at(1).get<double>() * kArcsec,
+                      e.at(2).get<double>() * kArcsec, e.at(3).get<double>() * kMicrometre,
+                      e.at(4).get<double>() * kMicrometre, e.at(5).get<double>() * kMicrometre});
+  }
+  return errors;
+}
+
+std::size_t Position(double angle_deg, std::size_t n) {
+  const long step = std::lround(angle_deg / 360.0 * static_cast<double>(n));
+  const long count = static_cast<long>(n);
+  return static_cast<std::size_t>(((step % count) + count) % count);
+}
+
+/// Largest difference [um] between the spots of an oracle run and the chain's.
+double WorstOfFullCircle(const std::string& mode, ErrorFrame frame) {
+  const std::string folder = TWINBENCH_TEST_DATA "/oracle/full_circle_";
+  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(folder + mode + "_truth.json"));
+  const std::vector<PoseError> target = Errors(truth.at("target"));
+  const std::vector<PoseError> reference = Errors(truth.at("reference_rotor_frame"));
+  double worst_um = 0.0;
+  for (const OracleRow& row : ReadOracle(folder + mode + ".csv")) {
+    const double target_deg = row.value.at("target_deg");
+    const double reference_deg = row.value.at("reference_deg");
+    const double shift_rad = (target_deg + reference_deg) * kDegree;
+    ChainGeometry geometry;
+    (mode == "reclamp" ? geometry.clamp_rad : geometry.reseat_rad) = mode == "reclamp" ? shift_rad : -shift_rad;
+    ChainState state;
+    state.target_rad = target_deg * kDegree;
+    state.reference_rad = reference_deg * kDegree;
+    state.target_error = target[Position(target_deg, target.size())];
+    state.reference_error = reference[Position(-reference_deg, reference.size())];
+    state.reference_frame = frame;
+    const Pose X_LG = Chain(geometry).GratingPose(state);
+    Eigen::Vector4d spots;
+    spots << Spot(X_LG, 1.0), Spot(X_LG, -1.0);
+    const Eigen::Vector4d volts(row.value.at("psd_a_x_V"), row.value.at("psd_a_y_V"), row.value.at("psd_b_x_V"),
+                                row.value.at("psd_b_y_V"));
+    worst_um = std::max(worst_um, (spots - volts / 2000.0).cwiseAbs().maxCoeff() / kMicrometre);
+  }
+  return worst_um;
+}
+
+TEST(Chain, TakesTheReferencesErrorsInItsRotorFrame) {
+  for (const char* mode : {"reclamp", "reseat"}) {
+    EXPECT_LT(WorstOfFullCircle(mode, ErrorFrame::kRotor), 1e-6);  // the file prints 1e-9 V = 5e-7 um
+    EXPECT_GT(WorstOfFullCircle(mode, ErrorFrame::kBase), 1.0);    // the other reading would be seen
+  }
 }
 
 TEST(Chain, BringsTheGratingToTheOriginWhenNothingIsWrong) {

@@ -14,7 +14,9 @@
 /// What the tests of this room share: the reference bench, designs, motions made straight from table errors.
 namespace twinbench::separate {
 
-inline BenchGeometry Bench() { return measure::NominalGeometry(Scenario{}); }
+inline BenchGeometry Bench() {
+  return measure::NominalGeometry(Scenario{});
+}
 
 /// Without Abbe levers: dy has nothing to do with the wobble.
 inline BenchGeometry FlatBench() {
@@ -23,7 +25,9 @@ inline BenchGeometry FlatBench() {
   return flat;
 }
 
-inline LayoutOptions Layouts(int n, Clamping clamping) { return {n, clamping, {}}; }
+inline LayoutOptions Layouts(int n, Clamping clamping) {
+  return {n, clamping, {}};
+}
 
 inline SeparateOptions Options(int n, Clamping clamping,
                                measure::Estimator estimator = measure::Estimator::kRigorous) {
@@ -56,7 +60,9 @@ inline TableErrors RandomErrors(int n, Stream& stream) {
   return e;
 }
 
-inline Truth RandomTruth(int n, Stream& stream) { return {RandomErrors(n, stream), RandomErrors(n, stream)}; }
+inline Truth RandomTruth(int n, Stream& stream) {
+  return {RandomErrors(n, stream), RandomErrors(n, stream)};
+}
 
 /// Full circles of motions with zero values: every shift is a set-up, every pass goes through all stops.
 inline std::vector<Motion> EmptyMotions(int n, const std::vector<int>& shifts, int passes, const Matrix4& cov) {
@@ -90,7 +96,8 @@ inline Matrix4 ReadingCovariance() {
 
 inline Vector6 ErrorsAt(const TableErrors& e, int position) {
   Vector6 v;
-  for (int c = 0; c < kComponents; ++c) v[c] = e.value[static_cast<std::size_t>(c)][static_cast<std::size_t>(position)];
+  for (int c = 0; c < kComponents; ++c)
+    v[c] = e.value[static_cast<std::size_t>(c)][static_cast<std::size_t>(position)];
   return v;
 }
 
@@ -103,7 +110,8 @@ inline void FillExact(std::vector<Motion>& motions, const Truth& truth, const La
     PoseErrors errors;
     errors.target = ErrorsAt(truth.target, sample.target);
     errors.reference = ErrorsAt(truth.reference, sample.reference);
-    motions[sample.motion].SetValues(MotionOf(GratingPose(layout.design.StopAt(setup, sample.target), errors, geometry)));
+    motions[sample.motion].SetValues(
+        MotionOf(GratingPose(layout.design.StopAt(setup, sample.target), errors, geometry)));
   }
 }
 

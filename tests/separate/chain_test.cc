@@ -31,11 +31,18 @@ std::vector<Row> OraclePoses() {
   return rows;
 }
 
-/// The oracle gives the reference's error in the rotor frame.
 Vector6 PoseFrom(const double* v) {
   Vector6 e;
   e << v[0] * units::arcsec, v[1] * units::arcsec, v[2] * units::arcsec, v[3] * units::um, v[4] * units::um,
       v[5] * units::um;
+  return e;
+}
+
+/// The oracle's poses give the reference's error in its base frame.
+Vector6 ToRotorFrame(Vector6 e, double reference_rad) {
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(-reference_rad).toRotationMatrix();
+  e.head<2>() = turn * e.head<2>();
+  e.segment<2>(3) = turn * e.segment<2>(3);
   return e;
 }
 
@@ -51,8 +58,9 @@ TEST(GratingPose, PutsTheSpotsWhereTheIndependentOraclePutsThem) {
   for (const Row& row : rows) {
     PoseErrors errors;
     errors.target = PoseFrom(&row.v[3]);
-    errors.reference = PoseFrom(&row.v[9]);
-    const Vector4 motion = MotionOf(GratingPose(StopFrom(row), errors, Bench()));
+    const Stop stop = StopFrom(row);
+    errors.reference = ToRotorFrame(PoseFrom(&row.v[9]), stop.reference_rad);
+    const Vector4 motion = MotionOf(GratingPose(stop, errors, Bench()));
     const Vector4 spots_m = measure::PredictSpots(motion, Bench());
     const Vector4 expected_m = units::um * Vector4(row.v[15], row.v[16], row.v[17], row.v[18]);
     // The oracle prints nine digits of a micrometre.

@@ -27,7 +27,8 @@ void ExpectTruth(const Separation& found, const Case& c) {
   const TableErrors target = RemoveNotSeparable(c.truth.target, Table::kTarget, found.not_separable);
   const TableErrors reference = RemoveNotSeparable(c.truth.reference, Table::kReference, found.not_separable);
   for (const Component k : {Component::kEx, Component::kEy, Component::kEz}) {
-    // The chain's dz and the unseen dx enter in second order: 3 um / 0.1 m * 5 arcsec = 1e-4 arcsec, amplified by 30.
+    // The chain's dz and the unseen dx enter in second order: 3 um / 0.1 m * 5 arcsec = 1e-4 arcsec, amplified
+    // by 30.
     EXPECT_LT(RmsDifference(found.target.value[k], target[k]), 0.005 * units::arcsec);
     EXPECT_LT(RmsDifference(found.reference.value[k], reference[k]), 0.005 * units::arcsec);
   }

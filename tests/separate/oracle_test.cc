@@ -25,13 +25,14 @@ TableErrors OracleErrors(const json& rows, bool reference) {
 
 Truth OracleTruth(const std::string& mode) {
   const json truth = json::parse(std::ifstream(kOracle + mode + "_truth.json"));
-  return {OracleErrors(truth["target"], false), OracleErrors(truth["reference"], true)};
+  return {OracleErrors(truth["target"], false), OracleErrors(truth["reference_rotor_frame"], true)};
 }
 
 Separation SeparateOracle(const std::string& mode, measure::Estimator estimator = measure::Estimator::kRigorous) {
   const auto readings = ReadReadingsCsv(kOracle + mode + ".csv");
   const auto motions = measure::Measure(readings, Bench(), measure::Calibration{}, estimator);
-  return Separate(motions, Bench(), Options(36, mode == "reclamp" ? Clamping::kReclamp : Clamping::kReseat, estimator));
+  return Separate(motions, Bench(),
+                  Options(36, mode == "reclamp" ? Clamping::kReclamp : Clamping::kReseat, estimator));
 }
 
 void ExpectSame(const TableEstimate& estimate, Table table, const TableErrors& truth,
@@ -40,7 +41,8 @@ void ExpectSame(const TableEstimate& estimate, Table table, const TableErrors& t
   for (const Component c : estimate.components) {
     // The acceptance limit of the bench; what is left is third order and the nine digits of the files.
     const double limit = IsAngle(c) ? 0.02 * units::arcsec : 0.02 * units::um;
-    EXPECT_LT(RmsDifference(estimate.value[c], visible[c]), limit) << TableName(table) << ' ' << kComponentNames[static_cast<std::size_t>(c)];
+    EXPECT_LT(RmsDifference(estimate.value[c], visible[c]), limit)
+        << TableName(table) << ' ' << kComponentNames[static_cast<std::size_t>(c)];
   }
 }
 
@@ -76,8 +78,8 @@ TEST(OracleRuns, OfReclampGivesBothRadialComponentsOfTheReferenceAndReseatOnlyOn
 }
 
 TEST(OracleRuns, ShowsWhatThePublishedEquationsMissWhenTheGratingIsReclamped) {
-  // Same tables, same readings: the scalar equations are right in `reseat` up to order one, wrong in `reclamp` by the
-  // full wobble of the reference (knowledge/metrology 3.2: 1.5 arcsec of 2).
+  // Same tables, same readings: the scalar equations are right in `reseat` up to order one, wrong in `reclamp` by
+  // the full wobble of the reference (knowledge/metrology 3.2: 1.5 arcsec of 2).
   const Separation reclamp = SeparateOracle("reclamp", measure::Estimator::kPublished);
   const Truth truth = OracleTruth("reclamp");
   const TableErrors visible = RemoveNotSeparable(truth.target, Table::kTarget, reclamp.not_separable);

@@ -12,7 +12,9 @@ using Complex = std::complex<double>;
 constexpr double kSigma_rad = 1e-6;
 
 /// Equal, independent noise on ez, ex, ey [rad] and, in units of 1 m, on dy.
-Matrix4 EqualNoise() { return kSigma_rad * kSigma_rad * Matrix4::Identity(); }
+Matrix4 EqualNoise() {
+  return kSigma_rad * kSigma_rad * Matrix4::Identity();
+}
 
 TableEstimate TargetOf(int n, const std::vector<int>& shifts, Clamping clamping, const BenchGeometry& geometry) {
   const auto motions = EmptyMotions(n, shifts, 1, EqualNoise());
@@ -62,8 +64,9 @@ struct GainCase {
 };
 
 TEST(Separator, HasTheNoiseGainsOfTheShiftTables) {
-  const std::vector<GainCase> cases = {{12, {0, 1}, 1.409},        {36, {0, 1}, 2.449},          {72, {0, 1}, 3.464},
-                                       {12, {0, 1, 4}, 0.674},     {12, {0, 1, 4, 6}, 0.531},    {36, {0, 1, 6}, 0.781},
+  const std::vector<GainCase> cases = {{12, {0, 1}, 1.409},        {36, {0, 1}, 2.449},
+                                       {72, {0, 1}, 3.464},        {12, {0, 1, 4}, 0.674},
+                                       {12, {0, 1, 4, 6}, 0.531},  {36, {0, 1, 6}, 0.781},
                                        {36, {0, 1, 7, 11}, 0.579}, {36, {0, 1, 9, 11, 15}, 0.491}};
   for (const GainCase& c : cases) {
     const TableEstimate target = TargetOf(c.n, c.shifts, Clamping::kReseat, Bench());
@@ -80,12 +83,10 @@ struct RadialCase {
 
 TEST(Separator, HasTheNoiseGainsOfOneRadialComponent) {
   // knowledge/metrology 3.4, without levers; two digits are printed.
-  const std::vector<RadialCase> cases = {{12, {0, 1}, Clamping::kReseat, 0.86},
-                                         {36, {0, 1}, Clamping::kReseat, 1.53},
-                                         {12, {0, 1, 4}, Clamping::kReseat, 0.60},
-                                         {36, {0, 1, 9}, Clamping::kReclamp, 1.46},
-                                         {36, {0, 1, 2}, Clamping::kReclamp, 7.0},
-                                         {36, {0, 1, 4, 12}, Clamping::kReclamp, 0.69}};
+  const std::vector<RadialCase> cases = {
+      {12, {0, 1}, Clamping::kReseat, 0.86},    {36, {0, 1}, Clamping::kReseat, 1.53},
+      {12, {0, 1, 4}, Clamping::kReseat, 0.60}, {36, {0, 1, 9}, Clamping::kReclamp, 1.46},
+      {36, {0, 1, 2}, Clamping::kReclamp, 7.0}, {36, {0, 1, 4, 12}, Clamping::kReclamp, 0.69}};
   for (const RadialCase& c : cases) {
     const TableEstimate target = TargetOf(c.n, c.shifts, c.clamping, FlatBench());
     EXPECT_NEAR(Gain(BlockOf(target, Component::kDy, c.n)), c.gain, c.gain > 2 ? 0.06 : 0.006) << c.n;

@@ -1,7 +1,8 @@
 #include "twin/separate/published.h"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+
+#include <Eigen/LU>
 
 #include "tests/separate/bench.h"
 #include "twin/core/errors.h"

@@ -38,7 +38,8 @@ TEST(FindSeparability, FindsVectorsThatChangeNoReading) {
 TEST(FindSeparability, LosesOnlyTheDefinitionalOrdersOfAGoodReclampSet) {
   const auto lost = Lost(36, {0, 1, 7, 11}, Clamping::kReclamp);
   EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEx), ElementsAre(0, 1));
-  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEx), ElementsAre(-1, 0));  // retrograde for the target
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEx),
+              ElementsAre(-1, 0));  // retrograde for the target
   EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEz), ElementsAre(0));
   EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEz), ElementsAre(0));
   EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDy), ElementsAre(0, 1));
@@ -85,12 +86,10 @@ struct RankCase {
 
 /// Rows of the table in knowledge/metrology 3.4 for the radial error of the target.
 TEST(FindSeparability, AgreesWithTheRankTableForOneRadialComponent) {
-  const std::vector<RankCase> cases = {{"A{0,1}", {0, 1}, Clamping::kReclamp, false},
-                                       {"B{0,1}", {0, 1}, Clamping::kReseat, true},
-                                       {"B{0,1,4}", {0, 1, 4}, Clamping::kReseat, true},
-                                       {"A{0,1,n/4}", {0, 1, -4}, Clamping::kReclamp, true},
-                                       {"A{0,1,2}", {0, 1, 2}, Clamping::kReclamp, true},
-                                       {"A{0,1,n/2}", {0, 1, -2}, Clamping::kReclamp, false}};
+  const std::vector<RankCase> cases = {
+      {"A{0,1}", {0, 1}, Clamping::kReclamp, false},     {"B{0,1}", {0, 1}, Clamping::kReseat, true},
+      {"B{0,1,4}", {0, 1, 4}, Clamping::kReseat, true},  {"A{0,1,n/4}", {0, 1, -4}, Clamping::kReclamp, true},
+      {"A{0,1,2}", {0, 1, 2}, Clamping::kReclamp, true}, {"A{0,1,n/2}", {0, 1, -2}, Clamping::kReclamp, false}};
   for (const int n : {12, 36}) {
     for (const RankCase& c : cases) {
       std::vector<int> shifts = c.shifts;

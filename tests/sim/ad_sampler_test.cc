@@ -415,6 +415,9 @@ TEST(TakeBlock, RefusesWhatMakesNoSense) {
   AdInput negative = good;
   negative.channel[1].noise_V = -1.0;
   EXPECT_THROW(Take(negative, {.n_samples = 1}), std::logic_error);
+  AdInput hooked = good;
+  hooked.channel[1].extra_V = [](double t) { return std::log(t - 1.0); };
+  EXPECT_THROW(Take(hooked, {.n_samples = 1}), std::logic_error);
   AdcSettings adc;
   adc.bits = 17;
   EXPECT_THROW(Take(good, {.n_samples = 1}, 0, adc), std::logic_error);

@@ -112,13 +112,13 @@ std::vector<EffectEntry> LightEffects() {
       {"incidence_offset",
        "laser that does not meet the grating at right angles",
        {},
-       {Signed("incidence", "mrad", 5.0, 500.0, "angle of the beam about z")}},
+       {Signed("incidence", "mrad", 5.0, 500.0, "angle in the plane of dispersion, positive from +x")}},
       // 14, 15: 1-50 urad/h
       {"laser_drift",
        "pointing of the laser that drifts with time",
        {"yaw", "pitch"},
-       {Signed("drift", "urad_per_h", 20.0, 10000.0, "mean rate over the run"),
-        Signed("curvature", "1", 0.0, 1.0, "share of a part that grows with the square of time")}},
+       {Signed("drift", "urad_per_h", 20.0, 10000.0, "mean rate over the first hour"),
+        Signed("curvature", "1", 0.0, 1.0, "share of a quadratic part, zero at 0 and 1 h")}},
   };
 }
 
@@ -147,7 +147,7 @@ std::vector<EffectEntry> BodyEffects() {
       {"settling",
        "table still on its way when the block starts",
        {},
-       {Signed("amplitude", "arcsec", 5.0, 3600.0, "at the end of the move, behind the motion"),
+       {Signed("amplitude", "arcsec", 5.0, 3600.0, "still to go when the move has ended"),
         Parameter("time_constant", "s", 1.0, 1e-3, 1e4, "of the exponential approach")}},
       // 27
       {"reclamp_frame", "grating re-clamped on the rotor though the scenario says reseat", {}, {}},
@@ -200,7 +200,7 @@ std::vector<EffectEntry> ElectronicEffects() {
        "readings that are disturbed for no lasting reason",
        {},
        {Parameter("fraction", "1", 0.01, 0.0, 0.5, "share of the readings"),
-        Parameter("size", "um", 10.0, 0.0, 5000.0, "standard deviation on a PSD")}},
+        Parameter("size", "um", 10.0, 0.0, 5000.0, "typical size on one PSD axis")}},
       // 42
       {"convention", "swap, sign or index blunder", swaps, {}},
   };

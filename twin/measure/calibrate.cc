@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kUnknowns = kCalibrationParameters + kDofs;  // gains, rolls, mounting constants
 constexpr int kMostSteps = 8;
-constexpr double kAssumedNoise_m = 0.3e-6;                 // only its constancy matters: it is rescaled by residuals
+constexpr double kAssumedNoise_m = 0.3e-6;  // only its constancy matters: it is rescaled by residuals
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using Block = Eigen::Matrix<double, kChannels, kUnknowns>;
@@ -37,7 +37,8 @@ Vector4 Divided(const std::array<double, kChannels>& V, const BenchGeometry& geo
   return {V[0] / s[0], V[1] / s[0], V[2] / s[1], V[3] / s[1]};
 }
 
-/// The autocollimator's noise as spot noise; first-order lengths l1 (1 + 1/cos) and l1 (1 + cos) are ample for that.
+/// The autocollimator's noise as spot noise; first-order lengths l1 (1 + 1/cos) and l1 (1 + cos) are ample for
+/// that.
 Vector4 AutocollimatorVariances(const BenchGeometry& geometry) {
   const double cos_theta = std::sqrt(1.0 - std::pow(geometry.SinTheta(), 2));
   const double u_rad = geometry.autocollimator_noise_rad;
@@ -70,8 +71,9 @@ Sweep CollectSweep(const std::vector<Reading>& readings, const BenchGeometry& ge
 
 Vector4 Predict(const Unknowns& x, const SweepPoint& point, const BenchGeometry& geometry) {
   const Vector4 mount = x.tail<kDofs>();
-  const Matrix3 turn = (Eigen::AngleAxisd(point.yaw_rad, Vector3::UnitZ()) *
-                        Eigen::AngleAxisd(point.tilt_rad, Vector3::UnitX())).toRotationMatrix();
+  const Matrix3 turn =
+      (Eigen::AngleAxisd(point.yaw_rad, Vector3::UnitZ()) * Eigen::AngleAxisd(point.tilt_rad, Vector3::UnitX()))
+          .toRotationMatrix();
   const Vector4 spots_m = PredictSpots(turn * MotionRotation(mount), mount[3], geometry);
   return ShownSpots(spots_m, x.head<4>(), x.segment<2>(4));
 }
@@ -153,11 +155,14 @@ Calibration Summary(const Sweep& sweep, const SweepFit& fit) {
   const double scale = sweep.noise_known || c.dof < 1 ? 1.0 : fit.chi2 / c.dof;
   c.cov = scale * fit.cov.topLeftCorner<kCalibrationParameters, kCalibrationParameters>();
   if (sweep.noise_known) c.chi2 = fit.chi2;
-  if (!sweep.noise_known) c.notes.push_back("calibration: noise of the readings not known, scaled by the residuals");
+  if (!sweep.noise_known)
+    c.notes.push_back("calibration: noise of the readings not known, scaled by the residuals");
   return c;
 }
 
-Eigen::Matrix2d Turn(double roll_rad) { return Eigen::Rotation2Dd(roll_rad).toRotationMatrix(); }
+Eigen::Matrix2d Turn(double roll_rad) {
+  return Eigen::Rotation2Dd(roll_rad).toRotationMatrix();
+}
 
 }  // namespace
 

@@ -18,15 +18,15 @@ inline constexpr double kPriorRoll_rad = 0.02;
 /// Roll is right-handed about the PSD's normal that points to the light.
 struct Calibration {
   bool measured = false;  // false: no usable calibration readings, the values are the prior
-  Eigen::Vector4d gain = Eigen::Vector4d::Ones();         // channels in scan order
-  Eigen::Vector2d roll_rad = Eigen::Vector2d::Zero();     // PSD A, B
-  Matrix6 cov = PriorCovariance();                        // of [gain, roll]
-  Vector4 mount = Vector4::Constant(kNaN);                // constants of the calibration phase [ez, ex, ey, dy]
-  int readings = 0;                                       // used
+  Eigen::Vector4d gain = Eigen::Vector4d::Ones();      // channels in scan order
+  Eigen::Vector2d roll_rad = Eigen::Vector2d::Zero();  // PSD A, B
+  Matrix6 cov = PriorCovariance();                     // of [gain, roll]
+  Vector4 mount = Vector4::Constant(kNaN);             // constants of the calibration phase [ez, ex, ey, dy]
+  int readings = 0;                                    // used
   int dof = 0;
-  double chi2 = kNaN;                                     // against the stated noise; NaN if that is not known
-  Vector4 residual_rms_m = Vector4::Constant(kNaN);       // by channel, referred to the PSD's surface
-  std::optional<double> published_l1_m;                   // eq. 7 of the paper, from the yaw sweep
+  double chi2 = kNaN;                                // against the stated noise; NaN if that is not known
+  Vector4 residual_rms_m = Vector4::Constant(kNaN);  // by channel, referred to the PSD's surface
+  std::optional<double> published_l1_m;              // eq. 7 of the paper, from the yaw sweep
   std::vector<std::string> notes;
 
   static Matrix6 PriorCovariance();
@@ -34,12 +34,13 @@ struct Calibration {
 
 /// Fits gains, rolls and mounting constants to the autocollimator sweeps on the exact grating model.
 ///
-/// @param readings  Any; used are those of the calibration phase with status ok, four voltages and both autocollimator
+/// @param readings  Any; used are those of the calibration phase with status ok, four voltages and both
+/// autocollimator
 ///                  angles. The sweeps turn the grating about the laser spot by Rz(yaw) Rx(tilt) in L, in front of
 ///                  constants that are the calibration's own.
 /// @return the fit with covariance (Gauss-Newton; weights from noise of readings and autocollimator, else residual
-///         scatter). The prior enters as six observations, so a sweep in one axis only is no failure. Without at least
-///         three usable readings: the prior, and a note.
+///         scatter). The prior enters as six observations, so a sweep in one axis only is no failure. Without at
+///         least three usable readings: the prior, and a note.
 Calibration Calibrate(const std::vector<Reading>& readings, const BenchGeometry& geometry);
 
 /// True spot coordinates [m] from voltages: divides by sensitivity and gain, turns the axes back.

@@ -28,7 +28,8 @@ struct BenchGeometry {
 };
 
 /// The design values in a scenario.
-/// @throws std::logic_error if the nominal order does not exist (wavelength * lines >= 1) or a length is not positive.
+/// @throws std::logic_error if the nominal order does not exist (wavelength * lines >= 1) or a length is not
+/// positive.
 BenchGeometry NominalGeometry(const Scenario& scenario);
 
 }  // namespace twinbench::measure

@@ -64,8 +64,9 @@ Matrix4 SpotJacobian(const Vector4& motion, const BenchGeometry& geometry) {
   Matrix4 jacobian;
   for (int d = 0; d < kDofs; ++d) {
     const Vector4 step = kStep * Vector4::Unit(d);
-    jacobian.col(d) = (PredictSpots(Vector4(motion + step), geometry) -
-                       PredictSpots(Vector4(motion - step), geometry)) / (2.0 * kStep);
+    jacobian.col(d) =
+        (PredictSpots(Vector4(motion + step), geometry) - PredictSpots(Vector4(motion - step), geometry)) /
+        (2.0 * kStep);
   }
   return jacobian;
 }

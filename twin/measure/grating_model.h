@@ -8,12 +8,13 @@ namespace twinbench::measure {
 /// Predicts where orders +1 and -1 meet the two PSDs, from the conical grating equation.
 ///
 /// Written here a second time on purpose: this room must not share the formula with the simulated bench.
-/// Each order leaves with unit wave vector k = t + sqrt(1 - |t|^2) N, where t = d - (d.N) N + m lambda rho g holds the
-/// components along the grating (d incident direction, N normal, g across the grooves, rho lines per metre).
+/// Each order leaves with unit wave vector k = t + sqrt(1 - |t|^2) N, where t = d - (d.N) N + m lambda rho g holds
+/// the components along the grating (d incident direction, N normal, g across the grooves, rho lines per metre).
 ///
 /// @param rotation_LG  Rotation of the grating frame G in L.
 /// @param dy_m         Where the laser beam (along -y through the origin of L) meets the grating.
-/// @return [a_u, a_v, b_u, b_v], spot coordinates on the two PSDs in m; NaN if an order is evanescent or leaves away
+/// @return [a_u, a_v, b_u, b_v], spot coordinates on the two PSDs in m; NaN if an order is evanescent or leaves
+/// away
 ///         from its PSD.
 Vector4 PredictSpots(const Matrix3& rotation_LG, double dy_m, const BenchGeometry& geometry);
 

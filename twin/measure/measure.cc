@@ -29,8 +29,9 @@ Estimate Published(const Vector4& spots_m, const BenchGeometry& geometry, double
   Estimate estimate{PublishedMotion(spots_m, l1_m, geometry), {}};
   for (int c = 0; c < kChannels; ++c) {
     const Vector4 step_m = kStep_m * Vector4::Unit(c);
-    estimate.d_spots.col(c) = (PublishedMotion(spots_m + step_m, l1_m, geometry) -
-                               PublishedMotion(spots_m - step_m, l1_m, geometry)) / (2.0 * kStep_m);
+    estimate.d_spots.col(c) =
+        (PublishedMotion(spots_m + step_m, l1_m, geometry) - PublishedMotion(spots_m - step_m, l1_m, geometry)) /
+        (2.0 * kStep_m);
   }
   return estimate;
 }
@@ -69,7 +70,9 @@ void FillSystematic(Motion& motion, const Matrix46& d_calibration, const Matrix6
 }
 
 /// The uncalibrated detectors of the paper: gains 1, rolls 0.
-Calibration Untouched() { return {}; }
+Calibration Untouched() {
+  return {};
+}
 
 Motion MeasureOne(const Reading& reading, const BenchGeometry& geometry, const Calibration& calibration,
                   Estimator estimator) {

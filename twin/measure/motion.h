@@ -42,10 +42,11 @@ struct Motion {
   double ey_rad = kNaN;
   double dy_m = kNaN;
 
-  bool covariance_known = false;                       // false: estimate it from residuals
-  Matrix4 cov = Matrix4::Constant(kNaN);               // random part: noise of the block, quantisation
-  Matrix4 cov_systematic = Matrix4::Constant(kNaN);    // of the calibration: common to all readings, kept apart
-  Matrix46 d_calibration = Matrix46::Constant(kNaN);   // d motion / d (gains, rolls): correlates the systematic parts
+  bool covariance_known = false;                     // false: estimate it from residuals
+  Matrix4 cov = Matrix4::Constant(kNaN);             // random part: noise of the block, quantisation
+  Matrix4 cov_systematic = Matrix4::Constant(kNaN);  // of the calibration: common to all readings, kept apart
+  Matrix46 d_calibration =
+      Matrix46::Constant(kNaN);  // d motion / d (gains, rolls): correlates the systematic parts
 
   Vector4 Values() const { return {ez_rad, ex_rad, ey_rad, dy_m}; }
   void SetValues(const Vector4& v);

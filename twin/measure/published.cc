@@ -7,7 +7,9 @@
 namespace twinbench::measure {
 namespace {
 
-double CosTheta(const BenchGeometry& geometry) { return std::sqrt(1.0 - std::pow(geometry.SinTheta(), 2)); }
+double CosTheta(const BenchGeometry& geometry) {
+  return std::sqrt(1.0 - std::pow(geometry.SinTheta(), 2));
+}
 
 /// Eq. 7 asks for the slope of P_Ax + P_Bx against 2 cos(theta) sin(2 ez).
 struct Slope {
@@ -35,12 +37,12 @@ Vector4 PublishedMotion(const Vector4& spots_m, double l1_m, const BenchGeometry
   const double cos_theta = CosTheta(geometry);
   const double ax = spots_m[0], ay = spots_m[1], bx = spots_m[2], by = spots_m[3];
   const double h0_m = geometry.SpotFromTarget().z();
-  const double ez_p = 0.5 * std::asin((ax + bx) / (2.0 * l1_m * cos_theta));                              // (6)
+  const double ez_p = 0.5 * std::asin((ax + bx) / (2.0 * l1_m * cos_theta));  // (6)
   const double returned_m = l1_m * (sin_theta - sin_theta * std::cos(2 * ez_p) + cos_theta * std::sin(2 * ez_p));
-  const double dy_p = (returned_m - bx) * cos_theta / sin_theta;                                          // (8)
-  const double ey_p = std::atan((ay - by) / (2.0 * l1_m * sin_theta));                                    // (10)
+  const double dy_p = (returned_m - bx) * cos_theta / sin_theta;        // (8)
+  const double ey_p = std::atan((ay - by) / (2.0 * l1_m * sin_theta));  // (10)
   const double lever_m = 2.0 * h0_m * std::sin(ey_p) * std::tan(ey_p);
-  const double ex_p = 0.5 * std::atan((ay + by - lever_m) / (2.0 * l1_m));                                // (12)
+  const double ex_p = 0.5 * std::atan((ay + by - lever_m) / (2.0 * l1_m));  // (12)
   return {-ez_p, ex_p, -ey_p, -dy_p};
 }
 

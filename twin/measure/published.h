@@ -6,12 +6,13 @@
 #include "twin/measure/geometry.h"
 #include "twin/measure/motion.h"
 
-/// Equations 1-12 of Jywe et al., Int. J. Mach. Tools Manuf. 47 (2007) 1978-1987, signs recovered from their algebra.
+/// Equations 1-12 of Jywe et al., Int. J. Mach. Tools Manuf. 47 (2007) 1978-1987, signs recovered from their
+/// algebra.
 ///
-/// The one place where the paper's frame meets ours. The paper's P_Ax grows with its yaw and its shift, P_Ay with its
-/// tilts; on the exact model P_Ax falls with ez and dy of L, P_Ay falls with ey and grows with ex. So the paper's frame
-/// is L turned by 180 degrees about x with the PSD axes kept: ex_p = ex, ey_p = -ey, ez_p = -ez, dy_p = -dy (a test
-/// checks the four signs against the exact model).
+/// The one place where the paper's frame meets ours. The paper's P_Ax grows with its yaw and its shift, P_Ay with
+/// its tilts; on the exact model P_Ax falls with ez and dy of L, P_Ay falls with ey and grows with ex. So the
+/// paper's frame is L turned by 180 degrees about x with the PSD axes kept: ex_p = ex, ey_p = -ey, ez_p = -ez, dy_p
+/// = -dy (a test checks the four signs against the exact model).
 ///
 /// The equations turn the diffracted orders by twice the angle, as a mirror would: ez is over-read by
 /// (1 + sec)/(2 cos) = 1.133, ex under-read by (1 + cos)/2 = 0.960, dy under-read by cos = 0.921; ey is exact. The

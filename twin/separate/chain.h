@@ -4,7 +4,8 @@
 #include "twin/measure/geometry.h"
 #include "twin/measure/motion.h"
 
-/// The exact chain of the two stacked tables as homogeneous transforms, for the second-order terms of the separation.
+/// The exact chain of the two stacked tables as homogeneous transforms, for the second-order terms of the
+/// separation.
 ///
 ///   X_LG = X(-spot from target) X_err(target) Rz(phi) X(height) X_err(seat) Rz(beta) X_err(reference, base frame)
 ///          Rz(psi) Rz(-clamp) X(grating point) X_err(mount)

@@ -19,12 +19,15 @@ double Wrapped(double angle_rad, double period_rad) {
   return rest < 0.0 ? rest + period_rad : rest;
 }
 
-bool IsUsable(const Motion& m) { return m.phase == Phase::kFullCircle && m.status == ReadingStatus::kOk; }
+bool IsUsable(const Motion& m) {
+  return m.phase == Phase::kFullCircle && m.status == ReadingStatus::kOk;
+}
 
 int CountPositions(const std::vector<Motion>& motions) {
   std::set<long long> distinct;
   for (const Motion& m : motions) {
-    if (m.phase == Phase::kFullCircle) distinct.insert(std::llround(Wrapped(m.target_rad, kTurn) / kTurn * 1e6) % 1000000);
+    if (m.phase == Phase::kFullCircle)
+      distinct.insert(std::llround(Wrapped(m.target_rad, kTurn) / kTurn * 1e6) % 1000000);
   }
   return static_cast<int>(distinct.size());
 }
@@ -54,8 +57,9 @@ int FindSetUp(Design& design, const Motion& motion, int shift, const LayoutOptio
   for (std::size_t s = 0; s < design.setups.size(); ++s) {
     if (design.setups[s].label != motion.setup) continue;
     if (design.setups[s].shift == shift) return static_cast<int>(s);
-    throw InputError("reading " + std::to_string(motion.reading), "target + reference angle differs inside set-up " +
-                     std::to_string(motion.setup), "a reference that turns back by the target's step");
+    throw InputError("reading " + std::to_string(motion.reading),
+                     "target + reference angle differs inside set-up " + std::to_string(motion.setup),
+                     "a reference that turns back by the target's step");
   }
   const Clamping clamping = ClampingOf(motion.setup, options);
   const double sum_rad = shift * design.Step_rad() + design.target_offset_rad + design.reference_offset_rad;
@@ -63,7 +67,8 @@ int FindSetUp(Design& design, const Motion& motion, int shift, const LayoutOptio
   return static_cast<int>(design.setups.size()) - 1;
 }
 
-Design EmptyDesign(const std::vector<Motion>& motions, const BenchGeometry& geometry, const LayoutOptions& options) {
+Design EmptyDesign(const std::vector<Motion>& motions, const BenchGeometry& geometry,
+                   const LayoutOptions& options) {
   Design design;
   design.n = options.positions > 0 ? options.positions : CountPositions(motions);
   if (design.n < kFewestPositions) throw InputError("readings", "fewer than 3 positions", "a full circle");
@@ -74,7 +79,9 @@ Design EmptyDesign(const std::vector<Motion>& motions, const BenchGeometry& geom
 
 }  // namespace
 
-double Design::Step_rad() const { return kTurn / n; }
+double Design::Step_rad() const {
+  return kTurn / n;
+}
 
 int Design::Column(Series series, int position) const {
   const int s = static_cast<int>(series);
@@ -82,7 +89,9 @@ int Design::Column(Series series, int position) const {
                            : kTargetSeries * n + (kSeries - kTargetSeries) * position + s - kTargetSeries;
 }
 
-int Design::MountColumn(int setup) const { return kSeries * n + kMountUnknowns * setup; }
+int Design::MountColumn(int setup) const {
+  return kSeries * n + kMountUnknowns * setup;
+}
 
 int Design::SeatColumn(int setup) const {
   int column = kSeries * n + kMountUnknowns * static_cast<int>(setups.size());
@@ -92,7 +101,9 @@ int Design::SeatColumn(int setup) const {
   return column;
 }
 
-int Design::Unknowns() const { return SeatColumn(static_cast<int>(setups.size())); }
+int Design::Unknowns() const {
+  return SeatColumn(static_cast<int>(setups.size()));
+}
 
 Stop Design::StopAt(const SetUp& setup, int target) const {
   const double target_rad = TargetAngle_rad(target);

@@ -23,8 +23,8 @@ enum class Clamping {
 
 /// One set-up. rho is the lab azimuth of the reference's rotor, the same at every stop.
 struct SetUp {
-  int label = 0;      // Reading::setup
-  int shift = 0;      // (target index + reference index) mod n
+  int label = 0;  // Reading::setup
+  int shift = 0;  // (target index + reference index) mod n
   double rho_rad = kNaN;
   Clamping clamping = Clamping::kReseat;
 };
@@ -34,19 +34,20 @@ enum class Series { kTargetEx, kTargetEy, kTargetEz, kTargetDy, kRefEx, kRefEy, 
 inline constexpr int kSeries = 9;
 inline constexpr int kTargetSeries = 4;
 inline constexpr int kMountUnknowns = 4;  // per set-up: constants of ez, ex, ey, dy
-inline constexpr int kSeatUnknowns = 4;   // per reseat set-up: tilt x, y and eccentricity x, y of the reference's body
+inline constexpr int kSeatUnknowns =
+    4;  // per reseat set-up: tilt x, y and eccentricity x, y of the reference's body
 
 /// Lengths inside the fits are in this unit, so that they stand beside radians without hurting the conditioning.
 inline constexpr double kLengthUnit_m = 0.1;
 
 /// Which set-ups there are, on which grid, with which levers: all that the linear model needs to know.
 struct Design {
-  int n = 0;                          // positions of a full circle, at least 3
-  double target_offset_rad = 0.0;     // own angle of position 0, in [0, 2 pi / n)
+  int n = 0;                       // positions of a full circle, at least 3
+  double target_offset_rad = 0.0;  // own angle of position 0, in [0, 2 pi / n)
   double reference_offset_rad = 0.0;
   std::vector<SetUp> setups;
-  double target_height_m = kNaN;      // laser spot above the target table's origin (0.130)
-  double reference_height_m = kNaN;   // and above the reference's (0.050)
+  double target_height_m = kNaN;     // laser spot above the target table's origin (0.130)
+  double reference_height_m = kNaN;  // and above the reference's (0.050)
 
   double Step_rad() const;
   double TargetAngle_rad(int position) const { return target_offset_rad + position * Step_rad(); }
@@ -92,9 +93,9 @@ struct Layout {
 
 /// How to read the commanded angles.
 struct LayoutOptions {
-  int positions = 0;                             // 0: count the distinct target positions
-  Clamping clamping = Clamping::kReseat;         // of all set-ups ...
-  std::map<int, Clamping> clamping_of_setup;     // ... but these, by Reading::setup
+  int positions = 0;                          // 0: count the distinct target positions
+  Clamping clamping = Clamping::kReseat;      // of all set-ups ...
+  std::map<int, Clamping> clamping_of_setup;  // ... but these, by Reading::setup
 };
 
 /// Finds grid and set-ups in the commanded angles.

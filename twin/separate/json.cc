@@ -9,10 +9,13 @@ namespace {
 
 using nlohmann::json;
 
-double FileUnit(Component component) { return IsAngle(component) ? units::arcsec : units::um; }
+double FileUnit(Component component) {
+  return IsAngle(component) ? units::arcsec : units::um;
+}
 
 std::string Key(Component component) {
-  return std::string(kComponentNames[static_cast<std::size_t>(component)]) + (IsAngle(component) ? "_arcsec" : "_um");
+  return std::string(kComponentNames[static_cast<std::size_t>(component)]) +
+         (IsAngle(component) ? "_arcsec" : "_um");
 }
 
 json Column(const std::vector<double>& values, double unit) {

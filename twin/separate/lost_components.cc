@@ -11,12 +11,14 @@ constexpr double kTouch = 1e-6;  // part of a unit vector in the null space that
 
 constexpr const char* kNotRead = "no detector of the bench reads this direction";
 constexpr const char* kOneAzimuth =
-    "the set-ups show the reference's rotor in one azimuth only (or opposite ones), and only motion along y is read";
+    "the set-ups show the reference's rotor in one azimuth only (or opposite ones), and only motion along y is "
+    "read";
 constexpr const char* kConstant = "a constant of a table looks like the mounting constants of the set-ups";
 constexpr const char* kSeat =
     "tilt or eccentricity of the reference's body on the target's rotor turns with the target in the same way";
 constexpr const char* kShifts =
-    "the set-ups do not tell it from the same order of other components: some combination of them changes no reading";
+    "the set-ups do not tell it from the same order of other components: some combination of them changes no "
+    "reading";
 
 /// One table's component, or pair of components, with the series it is made of.
 struct Group {
@@ -67,9 +69,9 @@ std::string Name(const Group& group) {
 
 std::string OrdersText(const Group& group, const std::vector<int>& orders) {
   std::string text = orders.size() == 1 ? " order" : " orders";
-  for (const int k : orders) {
-    text += (&k == &orders.front() ? " " : ", ");
-    text += (group.IsPair() && k > 0 ? "+" : "") + std::to_string(k);
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    text += i == 0 ? " " : ", ";
+    text += (group.IsPair() && orders[i] > 0 ? "+" : "") + std::to_string(orders[i]);
   }
   return text;
 }
@@ -134,8 +136,8 @@ Eigen::Index StackedAt(const std::vector<Component>& series, Component component
 }
 
 /// Two columns for one order of an entry: X = 1 and X = j, or cos and sin.
-void FillColumns(const NotSeparable& lost, int order, const ComponentIndex& at, const std::vector<double>& position_rad,
-                 Eigen::Ref<Eigen::MatrixXd> columns) {
+void FillColumns(const NotSeparable& lost, int order, const ComponentIndex& at,
+                 const std::vector<double>& position_rad, Eigen::Ref<Eigen::MatrixXd> columns) {
   for (std::size_t i = 0; i < position_rad.size(); ++i) {
     const double c = std::cos(order * position_rad[i]), s = std::sin(order * position_rad[i]);
     const auto row = static_cast<Eigen::Index>(i);
@@ -146,7 +148,9 @@ void FillColumns(const NotSeparable& lost, int order, const ComponentIndex& at, 
 
 }  // namespace
 
-const char* TableName(Table table) { return table == Table::kTarget ? "target" : "reference"; }
+const char* TableName(Table table) {
+  return table == Table::kTarget ? "target" : "reference";
+}
 
 std::vector<NotSeparable> ListLostComponents(const std::vector<OrderNull>& nulls) {
   const bool radial_pair = !IsLostInAllOrders(nulls, Series::kRefDx);

@@ -19,7 +19,9 @@ struct Test {
 };
 
 /// The paper's target turns clockwise.
-int PaperStop(int target, int n) { return (n - target) % n; }
+int PaperStop(int target, int n) {
+  return (n - target) % n;
+}
 
 Test MeanTest(const std::vector<Motion>& motions, const Layout& layout, int setup) {
   const int n = layout.design.n;
@@ -78,7 +80,8 @@ Eigen::MatrixXd RightHandSide(const Eigen::MatrixXd& test_1, const Eigen::Matrix
   return right;
 }
 
-/// The linear map from the stacked readings [m1; m2] to [t; r], mean-free, for position values or by way of sectors.
+/// The linear map from the stacked readings [m1; m2] to [t; r], mean-free, for position values or by way of
+/// sectors.
 Eigen::MatrixXd ReadingsToErrors(int n, bool sectors) {
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(n, n), Zero = Eigen::MatrixXd::Zero(n, n);
   const Eigen::MatrixXd in = sectors ? SectorMatrix(n) : Centring(n);
@@ -112,8 +115,8 @@ std::size_t BlockOf(const TableEstimate& estimate, Component component) {
 }
 
 /// Puts stop-ordered values and their covariance where the table's own angle ascends.
-void Place(const Eigen::VectorXd& value, const Eigen::MatrixXd& cov, const std::vector<int>& place, Component component,
-           TableEstimate& estimate) {
+void Place(const Eigen::VectorXd& value, const Eigen::MatrixXd& cov, const std::vector<int>& place,
+           Component component, TableEstimate& estimate) {
   const auto n = static_cast<int>(place.size());
   const int first = n * static_cast<int>(BlockOf(estimate, component));
   for (int i = 0; i < n; ++i) {
@@ -159,7 +162,8 @@ std::vector<NotSeparable> PublishedLosses() {
 }
 
 /// What the two-test solution leaves of the readings: nothing but the closing difference of the dropped row.
-void AddResiduals(const Eigen::MatrixXd& errors, const Test& test_1, const Test& test_2, int d, Separation& result) {
+void AddResiduals(const Eigen::MatrixXd& errors, const Test& test_1, const Test& test_2, int d,
+                  Separation& result) {
   const Eigen::Index n = test_1.mean.rows();
   double squares = 0.0;
   for (Eigen::Index i = 0; i < n; ++i) {

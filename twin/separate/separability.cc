@@ -93,7 +93,8 @@ Eigen::MatrixXd NullSpace(const Eigen::MatrixXd& d) {
 }
 
 /// Null vectors of one order, spread over the positions and put into the columns of the design.
-Eigen::MatrixXd Spread(const Design& design, const OrderBasis& basis, const Block& block, const Eigen::MatrixXd& null) {
+Eigen::MatrixXd Spread(const Design& design, const OrderBasis& basis, const Block& block,
+                       const Eigen::MatrixXd& null) {
   Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(design.Unknowns(), null.cols());
   for (int i = 0; i < design.n; ++i) {
     const double angle_rad = basis.order * i * design.Step_rad();

@@ -15,7 +15,7 @@ namespace twinbench::separate {
 namespace {
 
 constexpr double kTooUnlikely = 0.001;
-constexpr double kLeastDof = 0.5;   // less is none: dof_of is a sum of rounding errors then
+constexpr double kLeastDof = 0.5;  // less is none: dof_of is a sum of rounding errors then
 constexpr double kLeastScale = 1e-9;
 
 /// Mean motion by position (all passes), for each set-up.
@@ -44,14 +44,16 @@ Vector4 ResidualScale(const Separation& result, bool covariance_known) {
 
 void NoteScale(const Vector4& scale, bool covariance_known, Separation& result) {
   if (!covariance_known) {
-    result.notes.push_back(result.dof > 0 ? "noise of the readings not known: uncertainties are from the residuals"
-                                          : "noise of the readings not known and no residuals: 0.3 um a PSD axis taken");
+    result.notes.push_back(result.dof > 0
+                               ? "noise of the readings not known: uncertainties are from the residuals"
+                               : "noise of the readings not known and no residuals: 0.3 um a PSD axis taken");
     return;
   }
   for (int d = 0; d < measure::kDofs; ++d) {
     if (scale[d] == 1.0) continue;
-    result.notes.push_back(fmt::format("{}: residuals exceed the stated noise (p < 0.001), its uncertainty is scaled by {:.2f}",
-                                       measure::kDofNames[static_cast<std::size_t>(d)], scale[d]));
+    result.notes.push_back(
+        fmt::format("{}: residuals exceed the stated noise (p < 0.001), its uncertainty is scaled by {:.2f}",
+                    measure::kDofNames[static_cast<std::size_t>(d)], scale[d]));
   }
 }
 
@@ -59,7 +61,8 @@ void NoteMissing(const TableEstimate& estimate, const char* name, Separation& re
   for (const Component c : estimate.components) {
     std::string lost;
     for (std::size_t i = 0; i < estimate.value.position_rad.size(); ++i) {
-      if (std::isnan(estimate.value[c][i])) lost += fmt::format(" {:.4g}", estimate.value.position_rad[i] / units::deg);
+      if (std::isnan(estimate.value[c][i]))
+        lost += fmt::format(" {:.4g}", estimate.value.position_rad[i] / units::deg);
     }
     if (lost.empty()) continue;
     result.notes.push_back(fmt::format("{} {}: not determined by the readings left, at{} deg", name,

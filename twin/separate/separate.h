@@ -32,12 +32,12 @@ struct TableEstimate {
   TableErrors value;                  // dx, dy, dz that are not determined: NaN
   TableErrors u;                      // standard uncertainty: random and systematic together
   std::vector<Component> components;  // determined ones, in the order of the blocks of both matrices
-  Eigen::MatrixXd cov;                // random part; row s * n + i is components[s] at position i [rad^2, rad m, m^2]
-  Eigen::MatrixXd cov_systematic;     // of the calibration
+  Eigen::MatrixXd cov;             // random part; row s * n + i is components[s] at position i [rad^2, rad m, m^2]
+  Eigen::MatrixXd cov_systematic;  // of the calibration
 };
 
-/// Mean motion of a set-up over its positions minus that of the first: zero if nothing was re-mounted differently and
-/// all is scalar (eq. 19 of the paper); in `reclamp` it holds (e^{j Delta} - 1) W_0 as well.
+/// Mean motion of a set-up over its positions minus that of the first: zero if nothing was re-mounted differently
+/// and all is scalar (eq. 19 of the paper); in `reclamp` it holds (e^{j Delta} - 1) W_0 as well.
 struct Closure {
   int setup = 0;
   Vector4 difference = Vector4::Constant(kNaN);  // [ez, ex, ey, dy]
@@ -51,14 +51,14 @@ struct Separation {
 
   // By motion [ez, ex, ey, dy]:
   Vector4 residual_rms = Vector4::Constant(kNaN);
-  Vector4 chi2 = Vector4::Constant(kNaN);             // against the stated covariances
-  Vector4 dof_of = Vector4::Constant(kNaN);           // degrees of freedom of each; they sum up to dof
-  Vector4 scale = Vector4::Ones();                    // applied to the readings' standard uncertainties
-  int dof = 0;                                        // readings - rank
-  int readings = 0;                                   // used
-  std::vector<Vector4> residuals;                     // one a motion handed in; NaN if not used
+  Vector4 chi2 = Vector4::Constant(kNaN);    // against the stated covariances
+  Vector4 dof_of = Vector4::Constant(kNaN);  // degrees of freedom of each; they sum up to dof
+  Vector4 scale = Vector4::Ones();           // applied to the readings' standard uncertainties
+  int dof = 0;                               // readings - rank
+  int readings = 0;                          // used
+  std::vector<Vector4> residuals;            // one a motion handed in; NaN if not used
   std::vector<Closure> closure;
-  std::vector<Vector4> mount;                         // constants of each set-up; defined up to what cannot be separated
+  std::vector<Vector4> mount;  // constants of each set-up; defined up to what cannot be separated
   std::vector<std::string> notes;
 };
 
@@ -73,13 +73,14 @@ struct Separation {
 ///                 (Birge) and a note says so.
 /// @throws InputError if the angles do not lie on a grid or contradict each other (FindLayout).
 ///
-/// Uncertainty: first-order propagation of readings and calibration. Not included: drift, effects that are not of the
-/// form target + reference; they show in chi2 when there are more than two set-ups.
-/// Reference: knowledge/metrology 2.2, 3.3, 3.4.
-Separation Separate(const std::vector<Motion>& motions, const BenchGeometry& geometry, const SeparateOptions& options);
+/// Uncertainty: first-order propagation of readings and calibration. Not included: drift, effects that are not of
+/// the form target + reference; they show in chi2 when there are more than two set-ups. Reference:
+/// knowledge/metrology 2.2, 3.3, 3.4.
+Separation Separate(const std::vector<Motion>& motions, const BenchGeometry& geometry,
+                    const SeparateOptions& options);
 
-/// `separation.json` of formats.md, with estimator and notes besides. Components that are not determined are left out
-/// and listed; a single position that is lost is null.
+/// `separation.json` of formats.md, with estimator and notes besides. Components that are not determined are left
+/// out and listed; a single position that is lost is null.
 nlohmann::json ToJson(const Separation& separation);
 
 }  // namespace twinbench::separate

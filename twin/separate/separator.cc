@@ -17,10 +17,12 @@ constexpr double kAssumedSpotNoise_m = 0.3e-6;  // starting weights if no noise 
 constexpr double kDefective = 1e-11;            // pivot or eigenvalue, relative to the largest
 constexpr double kLost = 1e-6;                  // part of a value's functional in a null direction
 constexpr int kMostRounds = 4;
-constexpr double kLastStep = 1e-12;             // 0.2 microarcsec, 0.1 pm
+constexpr double kLastStep = 1e-12;  // 0.2 microarcsec, 0.1 pm
 
 /// Lengths to kLengthUnit_m in a motion vector.
-Vector4 UnitScale() { return {1.0, 1.0, 1.0, 1.0 / kLengthUnit_m}; }
+Vector4 UnitScale() {
+  return {1.0, 1.0, 1.0, 1.0 / kLengthUnit_m};
+}
 
 Matrix4 ScaledCovariance(const Matrix4& cov, const Vector4& scale) {
   const Vector4 s = UnitScale().cwiseProduct(scale);
@@ -55,7 +57,8 @@ bool AllKnown(const std::vector<Motion>& motions, const Layout& layout) {
 }
 
 std::vector<Component> ComponentsOf(Table table, const std::vector<NotSeparable>& lost) {
-  std::vector<Component> components = {Component::kEx, Component::kEy, Component::kEz, Component::kDx, Component::kDy};
+  std::vector<Component> components = {Component::kEx, Component::kEy, Component::kEz, Component::kDx,
+                                       Component::kDy};
   for (const NotSeparable& entry : lost) {
     if (entry.table != table || !entry.all) continue;
     for (const Component c : entry.components) std::erase(components, c);
@@ -66,15 +69,22 @@ std::vector<Component> ComponentsOf(Table table, const std::vector<NotSeparable>
 Series SeriesOf(Table table, Component component) {
   const bool target = table == Table::kTarget;
   switch (component) {
-    case Component::kEx: return target ? Series::kTargetEx : Series::kRefEx;
-    case Component::kEy: return target ? Series::kTargetEy : Series::kRefEy;
-    case Component::kEz: return target ? Series::kTargetEz : Series::kRefEz;
-    case Component::kDx: return Series::kRefDx;
-    default: return target ? Series::kTargetDy : Series::kRefDy;
+    case Component::kEx:
+      return target ? Series::kTargetEx : Series::kRefEx;
+    case Component::kEy:
+      return target ? Series::kTargetEy : Series::kRefEy;
+    case Component::kEz:
+      return target ? Series::kTargetEz : Series::kRefEz;
+    case Component::kDx:
+      return Series::kRefDx;
+    default:
+      return target ? Series::kTargetDy : Series::kRefDy;
   }
 }
 
-double Unit(Component component) { return IsAngle(component) ? 1.0 : kLengthUnit_m; }
+double Unit(Component component) {
+  return IsAngle(component) ? 1.0 : kLengthUnit_m;
+}
 
 std::vector<double> Positions(const Design& design, Table table) {
   std::vector<double> position_rad;
@@ -146,8 +156,8 @@ void Separator::Factorise() {
       for (int b = 0; b < model.columns; ++b) normal(model.column[a], model.column[b]) += block(a, b);
     }
   }
-  // Positions nobody visited are pinned; what no complete circle can see is pinned by its null vectors, and both pins
-  // are taken out of the inverse again: what is left is the minimum-norm solution.
+  // Positions nobody visited are pinned; what no complete circle can see is pinned by its null vectors, and both
+  // pins are taken out of the inverse again: what is left is the minimum-norm solution.
   const double pin = normal.trace() / unknowns;
   const std::vector<bool> supported = SupportedColumns();
   Eigen::MatrixXd null = separability_.null_space;

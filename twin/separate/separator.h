@@ -14,8 +14,8 @@ struct Cell {
   Matrix4 weight = Matrix4::Zero();  // inverse covariance, lengths in kLengthUnit_m
 };
 
-/// The factorised least-squares problem of one layout and one set of weights. A campaign makes it once and uses it for
-/// every run that has the same stops and noise; a solution is then a product of a matrix and a vector.
+/// The factorised least-squares problem of one layout and one set of weights. A campaign makes it once and uses it
+/// for every run that has the same stops and noise; a solution is then a product of a matrix and a vector.
 class Separator {
  public:
   /// Reads grid, set-ups and weights from the motions and factorises. Cost: (9 n + 8 set-ups)^3.
@@ -40,10 +40,10 @@ class Separator {
   struct TablePart {
     std::vector<Component> components;
     std::vector<Series> series;
-    std::vector<int> columns;   // of Design, stacked by component
-    std::vector<bool> usable;   // false: no reading determines this value
-    Eigen::MatrixXd removed;    // orthonormal, see LostBasis
-    Eigen::MatrixXd cov;        // after removal, lengths in kLengthUnit_m
+    std::vector<int> columns;  // of Design, stacked by component
+    std::vector<bool> usable;  // false: no reading determines this value
+    Eigen::MatrixXd removed;   // orthonormal, see LostBasis
+    Eigen::MatrixXd cov;       // after removal, lengths in kLengthUnit_m
   };
 
   void CollectCells(const std::vector<Motion>& motions, const Vector4& scale);
@@ -61,7 +61,8 @@ class Separator {
   Eigen::MatrixXd SystematicColumns(const std::vector<Motion>& motions) const;
   TableEstimate Estimate(const TablePart& part, Table table, const Eigen::VectorXd& x,
                          const Eigen::MatrixXd& systematic) const;
-  void AddResiduals(const std::vector<Motion>& motions, const std::vector<Vector4>& predicted, Separation& result) const;
+  void AddResiduals(const std::vector<Motion>& motions, const std::vector<Vector4>& predicted,
+                    Separation& result) const;
   Vector4 DegreesOfFreedom() const;
 
   BenchGeometry geometry_;
@@ -69,12 +70,12 @@ class Separator {
   Layout layout_;
   Separability separability_;
   bool covariance_known_ = true;
-  std::vector<Matrix4> sample_cov_;      // of each sample, as weighted
-  std::vector<std::size_t> cell_of_;     // of each sample
+  std::vector<Matrix4> sample_cov_;   // of each sample, as weighted
+  std::vector<std::size_t> cell_of_;  // of each sample
   std::vector<Cell> cells_;
-  std::vector<StopModel> models_;        // of each cell
-  Eigen::MatrixXd inverse_;              // pseudo-inverse of the normal matrix
-  Eigen::MatrixXd extra_null_;           // directions lost because readings are missing
+  std::vector<StopModel> models_;  // of each cell
+  Eigen::MatrixXd inverse_;        // pseudo-inverse of the normal matrix
+  Eigen::MatrixXd extra_null_;     // directions lost because readings are missing
   TablePart target_;
   TablePart reference_;
 };

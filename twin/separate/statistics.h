@@ -3,7 +3,8 @@
 namespace twinbench::separate {
 
 /// Probability that a chi-squared variable of `dof` degrees of freedom exceeds `chi2`, by the cube-root normal
-/// approximation of Wilson and Hilferty (1931): within 10 % of itself at p = 0.001 for dof >= 3. NaN unless dof > 0.
+/// approximation of Wilson and Hilferty (1931): within 15 % of itself at p = 0.001 for dof >= 3. NaN unless dof >
+/// 0.
 double ChiSquaredExceedance(double chi2, double dof);
 
 }  // namespace twinbench::separate

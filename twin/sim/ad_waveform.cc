@@ -1,11 +1,24 @@
 #include "twin/sim/ad_waveform.h"
 
+#include <cmath>
+
+#include "twin/core/errors.h"
+
 // As in stream_kernel.cc: loops that only pay when vectorised.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O3")
 #endif
 
 namespace twinbench::sim {
+namespace {
+
+double Extra(const ChannelInput& channel, double t_s) {
+  const double extra_V = channel.extra_V ? channel.extra_V(t_s) : 0.0;
+  Require(std::isfinite(extra_V), "an A/D channel's extra voltage is finite");
+  return extra_V;
+}
+
+}  // namespace
 
 Waveform::Waveform(const AdcSettings& adc, const AdInput& input) : input_(input), dt_s_(1.0 / adc.rate_Hz) {
   bool has_slope = false;
@@ -30,7 +43,7 @@ double Waveform::BeforeScan(std::int64_t first) const {
   const ChannelInput& last = input_.channel[kChannels - 1];
   const double t_s = static_cast<double>(first - 1) * dt_s_;
   const double hum_V = input_.hum.amplitude_V == 0.0 ? 0.0 : input_.hum.amplitude_V * HumAt(first - 1).sine;
-  return last.level_V + last.slope_V_s * t_s + hum_V + (last.extra_V ? last.extra_V(t_s) : 0.0);
+  return last.level_V + last.slope_V_s * t_s + hum_V + Extra(last, t_s);
 }
 
 void Waveform::FillRamps(std::int64_t first, std::span<double> v_V) const {
@@ -63,9 +76,8 @@ void Waveform::AddHum(std::int64_t first, std::span<double> v_V) const {
 
 void Waveform::AddExtra(std::int64_t first, std::span<double> v_V) const {
   for (std::size_t i = 0; i < v_V.size(); ++i) {
-    const ChannelInput& channel = input_.channel[i % kChannels];
-    if (channel.extra_V)
-      v_V[i] += channel.extra_V(static_cast<double>(first + static_cast<std::int64_t>(i)) * dt_s_);
+    const double t_s = static_cast<double>(first + static_cast<std::int64_t>(i)) * dt_s_;
+    v_V[i] += Extra(input_.channel[i % kChannels], t_s);
   }
 }
 

@@ -1,0 +1,107 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "tests/support/twin_run.h"
+
+namespace twinbench {
+namespace {
+
+using separate::Separation;
+using separate::Table;
+
+/// Root mean square of estimate - truth over the positions, what cannot be separated left out of both.
+double RmsError(const Separation& separation, Table table, const TableErrors& truth, Component c) {
+  const TableErrors separable = separate::RemoveNotSeparable(truth, table, separation.not_separable);
+  const auto& estimate = table == Table::kTarget ? separation.target : separation.reference;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < separable[c].size(); ++k) sum += std::pow(estimate.value[c][k] - separable[c][k], 2);
+  return std::sqrt(sum / static_cast<double>(separable[c].size()));
+}
+
+void ExpectErrorsReturn(const test::TwinRun& run, double angle_rad, double length_m) {
+  const Separation separation = test::Evaluate(run);
+  for (const Table table : {Table::kTarget, Table::kReference}) {
+    const bool is_target = table == Table::kTarget;
+    const auto& estimate = is_target ? separation.target : separation.reference;
+    EXPECT_GE(estimate.components.size(), 4u) << "ex, ey, ez and dy are read";
+    for (const Component c : estimate.components) {
+      const double limit = IsAngle(c) ? angle_rad : length_m;
+      const TableErrors& truth = is_target ? run.truth.target : run.truth.reference;
+      EXPECT_LT(RmsError(separation, table, truth, c), limit)
+          << separate::TableName(table) << " " << kComponentNames[static_cast<std::size_t>(c)];
+    }
+  }
+}
+
+Scenario RandomTables(const std::string& clamping, std::uint64_t seed) {
+  Scenario scenario;
+  scenario.noise_free = true;
+  scenario.seed = seed;
+  scenario.procedure.clamping = clamping;
+  const double as = units::arcsec, um = units::um;
+  scenario.target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
+  scenario.reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
+  return scenario;
+}
+
+class NoiseFree : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
+
+TEST_P(NoiseFree, TheRigorousEstimatorReturnsTheInjectedErrors) {
+  const Scenario scenario =
+      RandomTables(std::get<0>(GetParam()), static_cast<std::uint64_t>(std::get<1>(GetParam())));
+  // The issue of this project: 0.02 arcsec and 0.02 um rms. Second-order terms alone would be 0.001 arcsec.
+  ExpectErrorsReturn(test::RunTwin(scenario), 0.02 * units::arcsec, 0.02 * units::um);
+}
+
+TEST_P(NoiseFree, ErrorsReturnAlsoBehindRealisticMountings) {
+  Scenario scenario = RandomTables(std::get<0>(GetParam()), static_cast<std::uint64_t>(std::get<1>(GetParam())));
+  // Not random from reading to reading, so noise_free does not take it: the mounting of the body, 30 arcsec and 20
+  // um.
+  scenario.mount_tilt_rad = {30.0 * units::arcsec, -20.0 * units::arcsec};
+  scenario.centring_m = {20.0 * units::um, -15.0 * units::um};
+  ExpectErrorsReturn(test::RunTwin(scenario), 0.02 * units::arcsec, 0.02 * units::um);
+}
+
+INSTANTIATE_TEST_SUITE_P(ClampingsAndSeeds, NoiseFree,
+                         ::testing::Combine(::testing::Values("reclamp", "reseat"), ::testing::Values(1, 2, 3)));
+
+/// The signed order k of the target's wobble error that the published equations leave, per unit of the reference's.
+double PublishedError(int k) {
+  Scenario scenario;
+  scenario.noise_free = true;
+  scenario.procedure.phases = {"full_circle"};
+  scenario.procedure.clamping = "reclamp";
+  scenario.procedure.shifts = {0, 1};
+  scenario.procedure.passes = {1};
+  const double amplitude = 5.0 * units::arcsec;
+  // ex + j ey = a exp(j m psi) in the reference's rotor frame; in set-up 0 the rotor stands still in the laboratory
+  // and psi = -phi, so that the laboratory sees order k = -m of the position index.
+  const double m = -k;
+  scenario.reference.harmonics = {{Component::kEx, m, amplitude, 0.0},
+                                  {Component::kEy, m, amplitude, -0.5 * units::kPi}};
+  const test::TwinRun run = test::RunTwin(scenario);
+  const Separation separation = test::Evaluate(run, measure::Estimator::kPublished);
+  // The target has no wobble at all: what the equations report for it is their error.
+  double sum = 0.0;
+  const auto& value = separation.target.value;
+  const std::size_t n = value.position_rad.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    sum += std::norm(std::complex<double>(value[Component::kEx][i], value[Component::kEy][i]));
+  }
+  return std::sqrt(sum / static_cast<double>(n)) / amplitude;
+}
+
+TEST(PublishedEquations, LeaveAWobbleErrorOfOneOverTheOrderWhenTheGratingIsReclamped) {
+  // sin(pi / n) / |sin(pi k / n)|, n = 36 (knowledge of the frame question, metrology 3.2). 6 %: the published
+  // sensitivities of ex and ey are themselves wrong by 4 % in one sense and the mean of the row dropped adds 1/n.
+  for (const int k : {2, 3, 5, 10}) {
+    const double predicted = std::sin(units::kPi / 36.0) / std::sin(units::kPi * k / 36.0);
+    EXPECT_NEAR(PublishedError(k) / predicted, 1.0, 0.06) << "order " << k;
+    EXPECT_NEAR(PublishedError(-k) / predicted, 1.0, 0.06) << "order " << -k;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <complex>
+
+#include "tests/support/twin_run.h"
+
+namespace twinbench {
+namespace {
+
+using separate::Separation;
+using separate::Table;
+
+constexpr int kSeeds = 200;
+
+Scenario NoisyScenario(const std::string& clamping) {
+  Scenario scenario;
+  const double as = units::arcsec, um = units::um;
+  scenario.target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
+  scenario.reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
+  scenario.procedure.clamping = clamping;
+  scenario.procedure.phases = {"full_circle"};  // gains are exact here, so that only the readings scatter
+  scenario.procedure.positions = 12;
+  scenario.procedure.shifts = {0, 1, 4, 6};
+  scenario.procedure.passes = {1, -1};
+  scenario.adc.every_sample = false;
+  return scenario;
+}
+
+/// Values of the components in one vector, in the order of TableEstimate::cov.
+Eigen::VectorXd Stack(const TableErrors& errors, const std::vector<Component>& components) {
+  const std::size_t n = errors.position_rad.size();
+  Eigen::VectorXd stacked(static_cast<Eigen::Index>(components.size() * n));
+  for (std::size_t s = 0; s < components.size(); ++s) {
+    for (std::size_t i = 0; i < n; ++i) stacked[static_cast<Eigen::Index>(s * n + i)] = errors[components[s]][i];
+  }
+  return stacked;
+}
+
+/// error' cov^-1 error in the directions that the covariance knows, and how many these are.
+std::pair<double, int> ChiSquared(const Eigen::VectorXd& error, const Eigen::MatrixXd& cov) {
+  // Angles and lengths are brought to one scale before ranks are counted.
+  const Eigen::VectorXd sd = cov.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * cov * sd.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+  const Eigen::VectorXd scores = solver.eigenvectors().transpose() * error.cwiseQuotient(sd);
+  double sum = 0.0;
+  int rank = 0;
+  for (Eigen::Index k = 0; k < scores.size(); ++k) {
+    if (solver.eigenvalues()[k] < 1e-9 * solver.eigenvalues().maxCoeff()) continue;
+    sum += scores[k] * scores[k] / solver.eigenvalues()[k];
+    ++rank;
+  }
+  return {sum, rank};
+}
+
+class Scatter : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Scatter, MatchesTheStatedUncertaintyOver200Seeds) {
+  double chi2 = 0.0, dof = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Scenario scenario = NoisyScenario(GetParam());
+    scenario.seed = static_cast<std::uint64_t>(seed);
+    const test::TwinRun run = test::RunTwin(scenario);
+    const Separation s = test::Evaluate(run);
+    for (const bool target : {true, false}) {
+      const auto& estimate = target ? s.target : s.reference;
+      const TableErrors truth =
+          separate::RemoveNotSeparable(target ? run.truth.target : run.truth.reference,
+                                       target ? Table::kTarget : Table::kReference, s.not_separable);
+      const Eigen::VectorXd error = Stack(estimate.value, estimate.components) - Stack(truth, estimate.components);
+      const auto [sum, rank] = ChiSquared(error, estimate.cov);
+      chi2 += sum;
+      dof += rank;
+    }
+  }
+  // chi2 has mean dof and standard deviation sqrt(2 dof) if the two tables were independent; they share readings,
+  // which at most doubles its variance. Four of these deviations.
+  EXPECT_NEAR(chi2, dof, 4.0 * std::sqrt(4.0 * dof));
+  EXPECT_GT(dof, 200 * 60);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothClampings, Scatter, ::testing::Values("reclamp", "reseat"));
+
+/// |X_k|^2 of the DFT with 1/n in front.
+double Power(const std::vector<double>& x, int k) {
+  std::complex<double> sum = 0.0;
+  const double n = static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum += x[i] * std::polar(1.0, -2.0 * units::kPi * k * static_cast<double>(i) / n);
+  return std::norm(sum / n);
+}
+
+TEST(IndexError, ScattersByHarmonicAsTheVarianceFormulaSays) {
+  Scenario scenario;
+  scenario.noise_free = false;
+  scenario.procedure.phases = {"full_circle"};
+  scenario.procedure.shifts = {0, 1, 7, 11};
+  scenario.procedure.passes = {1};
+  scenario.adc.every_sample = false;
+  const int n = scenario.procedure.positions, p = 4;
+  constexpr int kRuns = 200;
+  std::vector<double> power(static_cast<std::size_t>(n / 2), 0.0);
+  double variance = 0.0;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    scenario.seed = static_cast<std::uint64_t>(seed);
+    const test::TwinRun run = test::RunTwin(scenario);
+    const auto motions =
+        measure::Measure(run.readings, measure::NominalGeometry(scenario), {}, measure::Estimator::kRigorous);
+    variance += motions[0].cov(0, 0) / kRuns;
+    const Separation s = test::Evaluate(run);
+    for (int k = 1; k < n / 2; ++k)
+      power[static_cast<std::size_t>(k)] += Power(s.target.value[Component::kEz], k) / kRuns;
+  }
+  double ratio = 0.0;
+  for (int k = 1; k < n / 2; ++k) {
+    std::complex<double> A = 0.0;
+    for (const int shift : scenario.procedure.shifts) A += std::polar(1.0, 2.0 * units::kPi * k * shift / n);
+    const double predicted = variance / n * p / (p * p - std::norm(A));
+    // A mean of 200 exponential variables: relative deviation 1 / sqrt(200) = 0.07; 4 of them.
+    EXPECT_NEAR(power[static_cast<std::size_t>(k)] / predicted, 1.0, 0.28) << "order " << k;
+    ratio += power[static_cast<std::size_t>(k)] / predicted / (n / 2 - 1);
+  }
+  // 17 orders of 200 runs: 0.017; 4 of them.
+  EXPECT_NEAR(ratio, 1.0, 0.07);
+}
+
+}  // namespace
+}  // namespace twinbench

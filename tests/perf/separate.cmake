@@ -1,0 +1,2 @@
+add_executable(bench_separate separate_bench.cc)
+target_link_libraries(bench_separate PRIVATE twinbench_separate benchmark::benchmark)

@@ -1,0 +1,361 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/support/twin_run.h"
+#include "twin/core/effect_catalogue.h"
+#include "twin/sim/effect.h"
+
+namespace twinbench::sim {
+namespace {
+
+using Volts = std::array<double, kChannels>;
+
+constexpr double kL1_m = 0.12;
+constexpr double kSinTheta = 0.39;
+const double kCosTheta = std::sqrt(1.0 - kSinTheta * kSinTheta);
+/// Spot motion per radian of yaw and of tilt, and volts per metre.
+const double kYaw_m = kL1_m * (1.0 + 1.0 / kCosTheta);
+const double kTilt_m = kL1_m * (1.0 + kCosTheta);
+constexpr double kV_m = 2000.0;
+
+Scenario Quiet() {
+  Scenario scenario;
+  scenario.noise_free = true;
+  return scenario;
+}
+
+/// An effect block as the loader would fill it: the catalogue's defaults with these values on top.
+EffectSettings Effect(const std::string& name, const std::string& where, std::map<std::string, double> values) {
+  EffectSettings effect{name, where, {}, "test"};
+  for (const EffectParameter& p : FindEffect(name)->parameters) effect.parameters[p.name] = p.default_SI;
+  for (const auto& [key, value] : values) effect.parameters.at(key) = value;
+  return effect;
+}
+
+Volts Read(Twin& twin, int samples = 1) {
+  const Acquisition block = twin.Bench().adc.Acquire(samples, false);
+  EXPECT_EQ(block.status, ReadingStatus::kOk);
+  Volts volts;
+  for (int c = 0; c < kChannels; ++c) volts[c] = block.channel[c].mean_V;
+  return volts;
+}
+
+/// Drives a bench with this effect and one without through the same actions; the difference is what the effect did.
+struct Pair {
+  explicit Pair(const EffectSettings& effect, Scenario scenario = Quiet())
+      : without(scenario), with(Add(scenario, effect)) {}
+  static Scenario Add(Scenario scenario, const EffectSettings& effect) {
+    scenario.effects.push_back(effect);
+    return scenario;
+  }
+  void Do(const std::function<void(RotaryBench)>& action) {
+    action(without.Bench());
+    action(with.Bench());
+  }
+  Volts Difference() {
+    const Volts a = Read(without), b = Read(with);
+    Volts d;
+    for (int c = 0; c < kChannels; ++c) d[c] = b[c] - a[c];
+    return d;
+  }
+  Twin without, with;
+};
+
+const auto kTurnGrating = [](RotaryBench bench) {
+  bench.goniometer.MoveTo(300.0 * units::arcsec, -200.0 * units::arcsec);
+};
+
+void MoveBoth(RotaryBench bench, double target_rad) {
+  bench.target.StartMove(target_rad);
+  bench.reference.StartMove(-target_rad);
+  bench.target.WaitSettled();
+  bench.reference.WaitSettled();
+}
+
+TEST(Effects, TheTwinHasEveryEffectOfTheCatalogueAtEveryPlace) {
+  for (const EffectEntry& entry : EffectCatalogue()) {
+    const std::vector<std::string> places = entry.places.empty() ? std::vector<std::string>{""} : entry.places;
+    for (const std::string& place : places) {
+      EXPECT_NE(MakeEffect(Effect(entry.name, place, {}), Quiet()), nullptr) << entry.name << " " << place;
+    }
+  }
+}
+
+TEST(Effects, CalibrationFindsTheGainAndTheRollThatWereHidden) {
+  Scenario scenario = Quiet();
+  scenario.procedure.phases = {"calibration"};
+  scenario.effects = {Effect("psd_gain", "psd_b_x", {{"gain_error", 0.01}}),
+                      Effect("psd_roll", "psd_a", {{"roll", 0.005}})};
+  const test::TwinRun run = test::RunTwin(scenario);
+  const auto found = measure::Calibrate(run.readings, measure::NominalGeometry(scenario));
+  // Its prior of 2 % pulls by (u / 0.02)^2, with u about 1e-5 for a stated autocollimator noise of 0.02 arcsec.
+  EXPECT_NEAR(found.gain[2], 1.01, 1e-5);
+  EXPECT_NEAR(found.gain[0], 1.00, 1e-5);
+  EXPECT_NEAR(found.roll_rad[0], 0.005, 1e-5);
+  EXPECT_NEAR(found.roll_rad[1], 0.0, 1e-5);
+}
+
+TEST(Effects, NonlinearityGrowsWithTheCubeOfTheDistance) {
+  Pair pair(Effect("psd_nonlinearity", "psd_a", {{"cubic", 180000.0}}));
+  pair.Do(kTurnGrating);
+  const Volts plain = Read(pair.without), bent = Read(pair.with);
+  const double r2_m2 = (plain[0] * plain[0] + plain[1] * plain[1]) / (kV_m * kV_m);
+  EXPECT_NEAR(bent[0] / plain[0] - 1.0, 180000.0 * r2_m2, 1e-12);
+  EXPECT_NEAR(bent[1] / plain[1] - 1.0, 180000.0 * r2_m2, 1e-12);
+  EXPECT_EQ(bent[2], plain[2]);
+}
+
+TEST(Effects, StrayLightPullsTheSpotToTheCentre) {
+  Pair pair(Effect("stray_light", "psd_b", {{"fraction", 0.01}}));
+  pair.Do(kTurnGrating);
+  const Volts plain = Read(pair.without), pulled = Read(pair.with);
+  EXPECT_NEAR(pulled[2] / plain[2], 1.0 / 1.01, 1e-12);
+  EXPECT_NEAR(pulled[3] / plain[3], 1.0 / 1.01, 1e-12);
+  EXPECT_EQ(pulled[0], plain[0]);
+}
+
+TEST(Effects, AFartherPsdSeesLargerMotions) {
+  Pair pair(Effect("psd_distance", "psd_a", {{"distance_error", 0.001}}));
+  pair.Do(kTurnGrating);
+  const Volts plain = Read(pair.without), farther = Read(pair.with);
+  // The ray's angle is the same, so both coordinates grow with the distance; the offset of the spot on the grating
+  // is zero, for it turns about the spot.
+  EXPECT_NEAR(farther[0] / plain[0], 121.0 / 120.0, 1e-9);
+  EXPECT_NEAR(farther[1] / plain[1], 121.0 / 120.0, 1e-9);
+}
+
+/// u of PSD A for light that leaves the grating's place x with this sine of its angle.
+double SpotA_m(double x_m, double sine) {
+  const Eigen::Vector2d centre = kL1_m * Eigen::Vector2d(kSinTheta, kCosTheta);
+  const Eigen::Vector2d direction(sine, std::sqrt(1.0 - sine * sine)), normal(kSinTheta, kCosTheta);
+  const Eigen::Vector2d from(x_m, 0.0);
+  const Eigen::Vector2d hit = from + direction * (centre - from).dot(normal) / direction.dot(normal);
+  return (hit - centre).dot(Eigen::Vector2d(kCosTheta, -kSinTheta));
+}
+
+TEST(Effects, AnotherWavelengthMovesTheOrdersApart) {
+  Pair pair(Effect("wavelength_offset", "", {{"wavelength_error", 2e-9}}));
+  const Volts d = pair.Difference();
+  EXPECT_NEAR(d[0], kV_m * SpotA_m(0.0, kSinTheta + 600e3 * 2e-9), 1e-9);
+  EXPECT_NEAR(d[2], -d[0], 1e-9);
+}
+
+TEST(Effects, TheWavelengthFollowsTheRoom) {
+  Scenario warm = Quiet();
+  warm.environment.temperature_degC = 22.0;
+  Pair pair(Effect("wavelength_temperature", "", {{"wavelength_per_kelvin", 0.25e-9}}), warm);
+  EXPECT_NEAR(pair.Difference()[0], kV_m * SpotA_m(0.0, kSinTheta + 600e3 * 0.5e-9), 1e-9);
+}
+
+TEST(Effects, AnIncidenceOffsetKeepsTheSpotAndTurnsTheOrders) {
+  Pair pair(Effect("incidence_offset", "", {{"incidence", 0.002}}));
+  const Volts d = pair.Difference();
+  EXPECT_NEAR(d[0], kV_m * SpotA_m(0.0, kSinTheta - std::sin(0.002)), 1e-9);
+  EXPECT_NEAR(d[1], 0.0, 1e-9);
+}
+
+TEST(Effects, TheLaserDriftsAboutItsOwnPlace) {
+  Pair pair(Effect("laser_drift", "yaw", {{"drift", 20e-6 / 3600.0}}));
+  pair.Do([](RotaryBench bench) { bench.clock.Wait(std::chrono::hours(1)); });
+  const Volts d = pair.Difference();
+  // 0.2 m from the grating the beam walks as well.
+  EXPECT_NEAR(d[0], kV_m * SpotA_m(0.2 * std::tan(20e-6), kSinTheta + std::sin(20e-6)), 1e-9);
+  EXPECT_NEAR(d[1], 0.0, 1e-9);
+}
+
+TEST(Effects, PitchDriftMovesTheSpotsUpTogether) {
+  Pair pair(Effect("laser_drift", "pitch", {{"drift", 20e-6 / 3600.0}}));
+  pair.Do([](RotaryBench bench) { bench.clock.Wait(std::chrono::hours(1)); });
+  const Volts d = pair.Difference();
+  // 0.2 m to the grating and l1 on: the component along the grooves is kept.
+  EXPECT_NEAR(d[1], kV_m * 20e-6 * (0.2 + kL1_m), 1e-6);
+  EXPECT_NEAR(d[3], d[1], 1e-9);
+}
+
+TEST(Effects, AMountCreepsAfterEveryMounting) {
+  const double a = 3.0 * units::arcsec;
+  Pair pair(Effect("mount_creep", "tilt", {{"amplitude", a}, {"time_constant", 600.0}}));
+  for (int mounting = 0; mounting < 2; ++mounting) {
+    pair.Do([](RotaryBench bench) {
+      bench.fixture.Mount(0, 0.0, 0.0);
+      bench.clock.Wait(std::chrono::seconds(600));
+    });
+    EXPECT_NEAR(pair.Difference()[1], kV_m * kTilt_m * a * std::log(2.0), 1e-7);
+  }
+}
+
+TEST(Effects, AThermalTiltFollowsTheRoomWithItsLag) {
+  Scenario warming = Quiet();
+  warming.environment.drift_K_h = 1.0;
+  const double per_kelvin = 5.0 * units::arcsec, lag_s = 900.0;
+  Pair pair(Effect("thermal_tilt", "yaw", {{"tilt_per_kelvin", per_kelvin}, {"lag", lag_s}}), warming);
+  EXPECT_NEAR(pair.Difference()[0], 0.0, 1e-12);
+  pair.Do(
+      [](RotaryBench bench) { bench.clock.Wait(std::chrono::hours(1) - bench.clock.Now().time_since_epoch()); });
+  // Answer of a first-order lag to a ramp from rest: slope (t - lag (1 - exp(-t / lag))).
+  const double lagged_K = (3600.0 - lag_s * (1.0 - std::exp(-3600.0 / lag_s))) / 3600.0;
+  EXPECT_NEAR(pair.Difference()[0] / (-kV_m * kYaw_m * per_kelvin * lagged_K), 1.0, 1e-3);
+}
+
+TEST(Effects, BacklashLeavesTheRotorBehindOnEitherSide) {
+  const double half = 1.0 * units::arcsec;
+  for (const char* table : {"target", "reference"}) {
+    Pair pair(Effect("backlash", table, {{"half_width", half}}));
+    pair.Do([](RotaryBench bench) { MoveBoth(bench, 10.0 * units::deg); });
+    const double forward_V = pair.Difference()[0];
+    pair.Do([](RotaryBench bench) { MoveBoth(bench, 0.0); });
+    const double back_V = pair.Difference()[0];
+    // Behind means -half on the target going up; the reference goes the other way. Yaw is negative on x.
+    const double sign = table == std::string("target") ? 1.0 : -1.0;
+    EXPECT_NEAR(forward_V, sign * kV_m * kYaw_m * half, 1e-6) << table;
+    EXPECT_NEAR(back_V, -sign * kV_m * kYaw_m * half, 1e-6) << table;
+  }
+}
+
+TEST(Effects, SettlingDecaysWithTheDwell) {
+  const double a = 5.0 * units::arcsec;
+  Pair pair(Effect("settling", "", {{"amplitude", a}, {"time_constant", 1.0}}));
+  pair.Do([](RotaryBench bench) { MoveBoth(bench, 10.0 * units::deg); });
+  // The in-position window of 0.4 s has passed when the move returns.
+  EXPECT_NEAR(pair.Difference()[0], kV_m * kYaw_m * a * std::exp(-0.4), 1e-5);
+}
+
+TEST(Effects, ReclampFrameMakesAReseatRunReadLikeAReclampRun) {
+  Scenario scenario = Quiet();
+  scenario.procedure.phases = {"full_circle"};
+  scenario.procedure.positions = 12;
+  scenario.procedure.shifts = {0, 4};
+  scenario.reference.random_rms[0] = 5.0 * units::arcsec;
+  Scenario reclamp = scenario, hidden = scenario;
+  reclamp.procedure.clamping = "reclamp";
+  hidden.effects = {Effect("reclamp_frame", "", {})};
+  const auto expected = test::RunTwin(reclamp).readings, shown = test::RunTwin(hidden).readings;
+  const auto honest = test::RunTwin(scenario).readings;
+  double differs_V = 0.0;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    for (int c = 0; c < kChannels; ++c) {
+      EXPECT_NEAR(shown[k].mean_V[c], expected[k].mean_V[c], 1e-12);
+      differs_V = std::max(differs_V, std::abs(shown[k].mean_V[c] - honest[k].mean_V[c]));
+    }
+  }
+  EXPECT_GT(differs_V, 1e-3);
+}
+
+TEST(Effects, ABearingAtHalfFrequencyTellsOneTurnFromTheNext) {
+  const double tilt = 1.5 * units::arcsec;
+  Pair pair(Effect("bearing_half_frequency", "", {{"order", 0.5}, {"tilt", tilt}}));
+  const Volts first = pair.Difference();
+  pair.Do([](RotaryBench bench) { MoveBoth(bench, 2.0 * units::kPi); });
+  const Volts next = pair.Difference();
+  // Half a turn of the tilt's direction: its sum over both PSDs' y changes sign.
+  EXPECT_NEAR(first[1] + first[3], -(next[1] + next[3]), 1e-7);
+  EXPECT_GT(std::hypot(first[1] + first[3], first[1] - first[3]), 1e-4);
+}
+
+TEST(Effects, AToneIsASineInTime) {
+  Pair pair(Effect("tone", "yaw", {{"frequency", 0.01}, {"amplitude", 0.5e-6}}));
+  pair.Do([](RotaryBench bench) { bench.clock.Wait(std::chrono::seconds(25)); });
+  const Volts d = pair.Difference();
+  EXPECT_NEAR(d[0], 0.5e-6 * kV_m, 1e-9);
+  EXPECT_NEAR(d[2], 0.5e-6 * kV_m, 1e-9);
+  EXPECT_NEAR(d[1], 0.0, 1e-12);
+}
+
+TEST(Effects, ASlipComesAtItsReadingAndStays) {
+  Pair pair(Effect("slip", "lateral", {{"shift", 5e-6}, {"at_reading", 2.0}}));
+  EXPECT_NEAR(pair.Difference()[0], 0.0, 1e-12);
+  EXPECT_NEAR(pair.Difference()[0], 0.0, 1e-12);
+  for (int k = 0; k < 2; ++k) {
+    const Volts d = pair.Difference();
+    // Towards the laser both orders meet their PSDs nearer to the normal: -sin theta per metre on A, + on B.
+    EXPECT_NEAR(d[0], -kV_m * 5e-6 * kSinTheta, 1e-9);
+    EXPECT_NEAR(d[2], kV_m * 5e-6 * kSinTheta, 1e-9);
+  }
+}
+
+TEST(Effects, TheConverterStepsAtItsVoltage) {
+  Pair pair(Effect("adc_step", "psd_a_x", {{"step", 5e-3}, {"at_voltage", 0.0}}));
+  const auto turn_to = [](double yaw_rad) {
+    return [yaw_rad](RotaryBench bench) { bench.goniometer.MoveTo(yaw_rad, 0.0); };
+  };
+  pair.Do(turn_to(-100.0 * units::arcsec));
+  EXPECT_NEAR(pair.Difference()[0], 5e-3, 1e-9);
+  pair.Do(turn_to(100.0 * units::arcsec));
+  EXPECT_NEAR(pair.Difference()[0], 0.0, 1e-9);
+}
+
+TEST(Effects, CrosstalkBringsTheChannelBefore) {
+  Pair pair(Effect("crosstalk", "psd_a_y", {{"fraction", 0.02}}));
+  pair.Do(kTurnGrating);
+  const Volts plain = Read(pair.without), mixed = Read(pair.with);
+  EXPECT_NEAR(mixed[1], plain[1] + 0.02 * plain[0], 1e-12);
+  EXPECT_EQ(mixed[0], plain[0]);
+}
+
+TEST(Effects, OutliersHitTheirShareOfReadings) {
+  Scenario scenario = Quiet();
+  scenario.effects = {Effect("outliers", "", {{"fraction", 0.1}, {"size", 10e-6}})};
+  Twin twin(scenario);
+  int hits = 0;
+  constexpr int kReadings = 2000;
+  for (int k = 0; k < kReadings; ++k) {
+    const Volts v = Read(twin);
+    hits +=
+        std::any_of(v.begin(), v.end(), [](double x) { return std::abs(x) > 0.5 * 10e-6 * kV_m * 0.99; }) ? 1 : 0;
+  }
+  // Binomial: 200 +- sqrt(180) = 13; 4 of them.
+  EXPECT_NEAR(hits, 200, 54);
+}
+
+TEST(Effects, ConventionsExchangeAndInvertChannels) {
+  const auto shown = [](const char* what) {
+    Pair pair(Effect("convention", what, {}));
+    pair.Do(kTurnGrating);
+    return std::pair(Read(pair.without), Read(pair.with));
+  };
+  const auto [plain, swapped] = shown("swap_xy_a");
+  EXPECT_EQ(swapped, (Volts{plain[1], plain[0], plain[2], plain[3]}));
+  EXPECT_EQ(shown("swap_psds").second, (Volts{plain[2], plain[3], plain[0], plain[1]}));
+  EXPECT_EQ(shown("negate_psd_b_y").second, (Volts{plain[0], plain[1], plain[2], -plain[3]}));
+}
+
+TEST(Effects, AReversedScaleReadsTheMirroredError) {
+  Scenario scenario = Quiet();
+  scenario.target.harmonics = {{Component::kEz, 1.0, 10.0 * units::arcsec, 0.5 * units::kPi}};  // -sin(angle)
+  const auto at = [&](const char* what) {
+    Pair pair(Effect("convention", what, {}), scenario);
+    pair.Do([](RotaryBench bench) { MoveBoth(bench, 90.0 * units::deg); });
+    return std::pair(Read(pair.without)[0], Read(pair.with)[0]);
+  };
+  const auto [honest_V, reversed_V] = at("reverse_target");
+  EXPECT_NEAR(reversed_V, -honest_V, 1e-5);
+  // One step of 10 deg later: cos(10 deg) of it.
+  EXPECT_NEAR(at("index_offset").second, honest_V * std::cos(10.0 * units::deg), 1e-5);
+}
+
+TEST(Effects, EachChangesSomethingAndOnlyWhenItIsOn) {
+  for (const EffectEntry& entry : EffectCatalogue()) {
+    Scenario scenario = Quiet();
+    scenario.noise_free = true;
+    scenario.environment.drift_K_h = 1.0;
+    scenario.procedure.positions = 12;
+    scenario.procedure.shifts = {0, 4};
+    scenario.target.random_rms[2] = scenario.reference.random_rms[0] = 5.0 * units::arcsec;
+    const auto honest = test::RunTwin(scenario).readings;
+    scenario.effects = {Effect(entry.name, entry.places.empty() ? "" : entry.places.front(), {})};
+    if (entry.name == "slip") scenario.effects[0].parameters["at_reading"] = 60.0;
+    if (entry.name == "outliers") scenario.effects[0].parameters["fraction"] = 0.2;
+    const auto hidden = test::RunTwin(scenario).readings;
+    double differs_V = 0.0;
+    for (std::size_t k = 0; k < honest.size(); ++k) {
+      for (int c = 0; c < kChannels; ++c)
+        differs_V = std::max(differs_V, std::abs(hidden[k].mean_V[c] - honest[k].mean_V[c]));
+    }
+    EXPECT_GT(differs_V, 1e-4) << entry.name;  // 50 nm on the PSD
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::sim

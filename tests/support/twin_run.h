@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/measure/measure.h"
+#include "twin/procedure/procedure.h"
+#include "twin/separate/separate.h"
+#include "twin/sim/twin.h"
+
+/// Runs of the twin without a disk: what the closure, scenario and hidden tests have in common.
+namespace twinbench::test {
+
+/// Keeps readings in memory.
+class MemorySink : public ReadingSink {
+ public:
+  void Append(const Reading& reading, const std::vector<std::int16_t>& /*raw*/) override {
+    readings.push_back(reading);
+  }
+  std::vector<Reading> readings;
+};
+
+struct TwinRun {
+  Scenario scenario;
+  std::vector<Reading> readings;
+  sim::Truth truth;
+};
+
+inline TwinRun RunTwin(const Scenario& scenario) {
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  MemorySink sink;
+  procedure::CarryOut(bench, scenario, sink);
+  return {scenario, sink.readings, twin.TheTruth()};
+}
+
+/// Readings -> calibration -> motions -> errors of both tables, as `twinbench separate` does it.
+inline separate::Separation Evaluate(const TwinRun& run,
+                                     measure::Estimator estimator = measure::Estimator::kRigorous) {
+  const measure::BenchGeometry geometry = measure::NominalGeometry(run.scenario);
+  const measure::Calibration calibration = measure::Calibrate(run.readings, geometry);
+  separate::SeparateOptions options = separate::OptionsFrom(run.scenario);
+  options.estimator = estimator;
+  options.cov_calibration = calibration.cov;
+  return separate::Separate(measure::Measure(run.readings, geometry, calibration, estimator), geometry, options);
+}
+
+inline std::string DataPath(const std::string& name) {
+  return std::string(TWINBENCH_TEST_DATA) + "/" + name;
+}
+inline std::string ScenarioPath(const std::string& name) {
+  return std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/" + name;
+}
+
+}  // namespace twinbench::test
