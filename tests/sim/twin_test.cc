@@ -157,6 +157,7 @@ TEST(Twin, AllFidelitiesAgreeOnceTheTablesRest) {
     scenario.mechanics.fidelity = fidelities[f];
     scenario.mechanics.payload_mass_kg = 1.5;
     scenario.mechanics.payload_radius_m = 0.040;
+    scenario.mechanics.payload_azimuth_rad = 0.5 * units::kPi;  // a tilt about x, which both PSDs read well
     Twin twin(scenario);
     RotaryBench bench = twin.Bench();
     bench.target.StartMove(10.0 * units::deg);

@@ -37,6 +37,7 @@ Stream::Stream(std::uint64_t seed, std::string_view name) {
 void Stream::Seek(std::uint64_t block) {
   block_ = block;
   used_ = 4;
+  has_spare_ = false;
 }
 
 std::uint32_t Stream::Word() {
@@ -53,8 +54,15 @@ double Stream::Uniform() {
 }
 
 double Stream::Normal() {
+  if (has_spare_) {
+    has_spare_ = false;
+    return spare_;
+  }
   const double radius = std::sqrt(-2.0 * portable::Log(1.0 - Uniform()));
-  return radius * portable::Turn(Uniform()).cosine;
+  const portable::Rotation angle = portable::Turn(Uniform());
+  spare_ = radius * angle.sine;
+  has_spare_ = true;
+  return radius * angle.cosine;
 }
 
 /// G. Marsaglia and W. W. Tsang, A simple method for generating gamma variables, ACM TOMS 26 (2000) 363-372:
@@ -65,10 +73,11 @@ double Stream::Gamma(double shape) {
   while (true) {
     const double x = Normal();
     const double base = 1.0 + c * x;
-    const double log_u = portable::Log(1.0 - Uniform());
+    const double u = 1.0 - Uniform();
     if (base <= 0.0) continue;
     const double v = base * base * base;
-    if (log_u < 0.5 * x * x + d - d * v + d * portable::Log(v)) return d * v;
+    if (u < 1.0 - 0.0331 * (x * x) * (x * x)) return d * v;  // their squeeze: spares both logarithms nearly always
+    if (portable::Log(u) < 0.5 * x * x + d - d * v + d * portable::Log(v)) return d * v;
   }
 }
 

@@ -26,7 +26,8 @@ class Stream {
 
   std::uint32_t Word();
   double Uniform();  // [0, 1), 53 bits, two words
-  /// Mean 0, standard deviation 1, four words (Box-Muller, double).
+  /// Mean 0, standard deviation 1 (Box-Muller, double): four words give two of them, the second on the next call.
+  /// Seek and FillNormals drop one that waits.
   double Normal();
   /// Chi-squared with `degrees` > 0 degrees of freedom (Marsaglia-Tsang); takes a random number of words.
   /// @throws std::logic_error unless `degrees` is positive and finite.
@@ -47,6 +48,8 @@ class Stream {
   std::uint64_t block_ = 0;
   PhiloxBlock words_{};
   int used_ = 4;
+  double spare_ = 0.0;
+  bool has_spare_ = false;
   Simd simd_ = BestSimd();
 };
 

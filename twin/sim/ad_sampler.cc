@@ -179,7 +179,7 @@ double ScansUntilOverrun(const AdcSettings& adc) {
 }  // namespace
 
 double LsbOf(const AdcSettings& adc) {
-  return std::ldexp(adc.range_V, 1 - adc.bits);
+  return adc.range_V / static_cast<double>(1 << (adc.bits - 1));
 }
 
 Acquisition AdBlock::ToAcquisition(Time start) const {

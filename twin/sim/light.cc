@@ -1,5 +1,6 @@
 #include "twin/sim/light.h"
 
+#include "optics/stl.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::sim {
@@ -50,6 +51,23 @@ optics::BeamParameters BeamOf(const LaserSettings& s) {
   return beam;
 }
 
+optics::TriangleMesh MeshOf(const FixtureSettings& s) {
+  if (s.mesh_file.empty()) return optics::BoxMesh(-0.5 * s.box_m, 0.5 * s.box_m);
+  try {
+    return optics::ReadStl(s.mesh_file, s.mesh_unit_m);
+  } catch (const std::runtime_error& error) {
+    throw InputError(s.location.empty() ? "fixture " + s.name : s.location,
+                     std::string("fixture.mesh_file: ") + error.what(), "an STL file, binary or text");
+  }
+}
+
+optics::Blocker BlockerOf(const FixtureSettings& s) {
+  Pose pose = Pose::Identity();
+  pose.translation() = s.position_m;
+  pose.rotate(Eigen::AngleAxisd(s.yaw_rad, Vector3::UnitZ()));
+  return {MeshOf(s), pose, s.rides_on_grating};
+}
+
 optics::RotaryOptics OpticsOf(const Scenario& actual, double nominal_wavelength_m) {
   optics::RotaryOpticsParameters parameters;
   parameters.nominal_wavelength_m = nominal_wavelength_m;
@@ -58,6 +76,7 @@ optics::RotaryOptics OpticsOf(const Scenario& actual, double nominal_wavelength_
   parameters.psd_a = PsdOf(actual.psd_a);
   parameters.psd_b = PsdOf(actual.psd_b);
   parameters.beam = BeamOf(actual.laser);
+  for (const FixtureSettings& fixture : actual.fixtures) parameters.blockers.push_back(BlockerOf(fixture));
   return optics::RotaryOptics(parameters);
 }
 
@@ -80,7 +99,11 @@ Light::Light(const Scenario& actual, double nominal_wavelength_m)
     : laser_(actual.laser),
       low_light_fraction_(actual.amplifier.low_light_fraction),
       optics_(OpticsOf(actual, nominal_wavelength_m)) {
-  const optics::PsdSignals nominal = Signals(Pose::Identity(), Nominal(0.0));
+  // Without fixtures: what they take away is missing from the nominal power.
+  optics::RotaryOpticsParameters unobstructed = optics_.parameters();
+  unobstructed.blockers.clear();
+  const optics::PsdSignals nominal =
+      optics::RotaryOptics(unobstructed).Trace(Pose::Identity(), SourceOf(Nominal(0.0)));
   nominal_power_W_ = {nominal.a.power_W, nominal.b.power_W};
 }
 
@@ -90,12 +113,12 @@ LightState Light::Nominal(double temperature_K) const {
           laser_.pitch_rad + laser_.pointing_pitch_per_kelvin_rad * temperature_K};
 }
 
-optics::PsdSignals Light::Signals(const Pose& X_LG, const LightState& light) const {
-  return optics_.Trace(X_LG, {light.wavelength_m, light.yaw_rad, light.pitch_rad, laser_.power_W});
+optics::SourceState Light::SourceOf(const LightState& light) const {
+  return {light.wavelength_m, light.yaw_rad, light.pitch_rad, laser_.power_W};
 }
 
 Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
-  const optics::PsdSignals signals = Signals(X_LG, light);
+  const optics::PsdSignals signals = optics_.Trace(X_LG, SourceOf(light));
   const std::array<const optics::PsdSignal*, 2> psd = {&signals.a, &signals.b};
   Spots spots;
   for (std::size_t p = 0; p < 2; ++p) {
@@ -109,9 +132,8 @@ Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
 }
 
 void Light::WriteIrradiance(const std::string& path, const Pose& X_LG, const LightState& light) const {
-  const optics::SourceState source{light.wavelength_m, light.yaw_rad, light.pitch_rad, laser_.power_W};
   try {
-    optics::WriteIrradianceMaps(path, optics_.Irradiance(X_LG, source, kIrradiancePixels));
+    optics::WriteIrradianceMaps(path, optics_.Irradiance(X_LG, SourceOf(light), kIrradiancePixels));
   } catch (const std::runtime_error& error) {
     throw BenchError(error.what());
   }

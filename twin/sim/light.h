@@ -16,7 +16,7 @@ struct Spots {
 class Light {
  public:
   /// @param nominal_wavelength_m  For which the PSDs were placed.
-  /// @throws InputError if the beam's profile cannot be read.
+  /// @throws InputError if the beam's profile or the mesh of a fixture cannot be read.
   Light(const Scenario& actual, double nominal_wavelength_m);
 
   /// Wavelength and pointing at this temperature above the reference.
@@ -28,7 +28,7 @@ class Light {
   void WriteIrradiance(const std::string& path, const Pose& X_LG, const LightState& light) const;
 
  private:
-  optics::PsdSignals Signals(const Pose& X_LG, const LightState& light) const;
+  optics::SourceState SourceOf(const LightState& light) const;
 
   LaserSettings laser_;
   double low_light_fraction_;

@@ -1,0 +1,68 @@
+// How many full-circle tests a second can one core carry out?
+//
+// One test is the paper's: 2 set-ups x 36 positions x 4 channels x 1000 samples through procedure, event queue,
+// devices, chain, light and A/D, readings kept in memory; building the twin is part of it. The counter
+// `tests_per_s` is per second of CPU time, `of_goal` the ratio to what the project asks for.
+//
+//   build/tests/perf/bench_full_circle --benchmark_counters_tabular=true
+#include <benchmark/benchmark.h>
+
+#include "twin/core/scenario.h"
+#include "twin/procedure/procedure.h"
+#include "twin/sim/twin.h"
+
+namespace twinbench {
+namespace {
+
+class CountingSink : public ReadingSink {
+ public:
+  void Append(const Reading& reading, const std::vector<std::int16_t>& /*raw*/) override {
+    if (reading.status == ReadingStatus::kOk) ++valid;
+  }
+  int valid = 0;
+};
+
+Scenario PaperTest(const std::string& fidelity, bool every_sample) {
+  Scenario scenario;
+  scenario.mechanics.fidelity = fidelity;
+  scenario.adc.samples = 1000;
+  scenario.adc.every_sample = every_sample;
+  scenario.procedure.phases = {"full_circle"};
+  scenario.procedure.shifts = {0, 1};
+  scenario.procedure.passes = {1};
+  const double as = units::arcsec, um = units::um;
+  scenario.target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
+  scenario.reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
+  return scenario;
+}
+
+void CarryOutFullCircles(benchmark::State& state, const std::string& fidelity, bool every_sample, double goal) {
+  Scenario scenario = PaperTest(fidelity, every_sample);
+  int valid = 0;
+  for (auto _ : state) {
+    ++scenario.seed;
+    sim::Twin twin(scenario);
+    RotaryBench bench = twin.Bench();
+    CountingSink sink;
+    procedure::CarryOut(bench, scenario, sink);
+    valid += sink.valid;
+  }
+  if (valid != 72 * state.iterations()) state.SkipWithError("a reading is not valid");
+  const double tests = static_cast<double>(state.iterations());
+  state.counters["tests_per_s"] = benchmark::Counter(tests, benchmark::Counter::kIsRate);
+  state.counters["of_goal"] = benchmark::Counter(tests / goal, benchmark::Counter::kIsRate);
+}
+
+BENCHMARK_CAPTURE(CarryOutFullCircles, kinematic_every_sample, "kinematic", true, 600.0)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(CarryOutFullCircles, kinematic_sufficient_statistics, "kinematic", false, 10000.0)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(CarryOutFullCircles, linear_every_sample, "linear", true, 60.0)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(CarryOutFullCircles, bullet_every_sample, "bullet", true, 0.4)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(2);
+
+}  // namespace
+}  // namespace twinbench
+
+BENCHMARK_MAIN();

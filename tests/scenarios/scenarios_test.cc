@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/twin_run.h"
+#include "twin/measure/stability.h"
+#include "twin/measure/verification.h"
+
+// Every file in scenarios/ opens with a question and the answer expected; here the answers are checked.
+namespace twinbench {
+namespace {
+
+using separate::Separation;
+using separate::Table;
+
+std::vector<std::string> ScenarioNames() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(test::ScenarioPath(""))) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().filename());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class EveryScenario : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryScenario, OpensWithItsQuestionAndTheAnswerExpected) {
+  std::ifstream in(test::ScenarioPath(GetParam()));
+  std::string head(600, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  EXPECT_EQ(head.rfind("# Question: ", 0), 0u);
+  EXPECT_NE(head.find("\n# Answer:"), std::string::npos);
+}
+
+TEST_P(EveryScenario, RunsWithEveryReadingValid) {
+  const test::TwinRun run = test::RunTwin(LoadScenario(test::ScenarioPath(GetParam())));
+  EXPECT_EQ(static_cast<int>(run.readings.size()), procedure::PlannedReadings(run.scenario.procedure));
+  for (const Reading& reading : run.readings) EXPECT_EQ(reading.status, ReadingStatus::kOk) << reading.reading;
+}
+
+TEST_P(EveryScenario, ReadsTheSameFromItsResolvedForm) {
+  const Scenario scenario = LoadScenario(test::ScenarioPath(GetParam()));
+  const std::string resolved = WriteScenario(scenario);
+  EXPECT_EQ(WriteScenario(ParseScenario(resolved, "resolved", "")), resolved);
+}
+
+INSTANTIATE_TEST_SUITE_P(InFolder, EveryScenario, ::testing::ValuesIn(ScenarioNames()), [](const auto& param_info) {
+  return param_info.param.substr(0, param_info.param.find('.'));
+});
+
+struct Deviation {
+  double rms_error = 0.0;  // rad or m
+  double rms_truth = 0.0;
+  double mean_chi2 = 0.0;  // (error / u)^2
+  double largest_u = 0.0;
+};
+
+Deviation Compare(const test::TwinRun& run, const Separation& s, Table table, Component c) {
+  const bool target = table == Table::kTarget;
+  const auto& estimate = target ? s.target : s.reference;
+  const TableErrors truth =
+      separate::RemoveNotSeparable(target ? run.truth.target : run.truth.reference, table, s.not_separable);
+  Deviation d;
+  const double n = static_cast<double>(truth[c].size());
+  for (std::size_t k = 0; k < truth[c].size(); ++k) {
+    const double error = estimate.value[c][k] - truth[c][k];
+    d.rms_error += error * error / n;
+    d.rms_truth += truth[c][k] * truth[c][k] / n;
+    d.mean_chi2 += std::pow(error / estimate.u[c][k], 2) / n;
+    d.largest_u = std::max(d.largest_u, estimate.u[c][k]);
+  }
+  d.rms_error = std::sqrt(d.rms_error);
+  d.rms_truth = std::sqrt(d.rms_truth);
+  return d;
+}
+
+void ExpectWithinUncertainty(const test::TwinRun& run, const Separation& s) {
+  for (const Table table : {Table::kTarget, Table::kReference}) {
+    for (const Component c : (table == Table::kTarget ? s.target : s.reference).components) {
+      const Deviation d = Compare(run, s, table, c);
+      // About 30 values, half of them independent: mean 1, deviation sqrt(2 / 15) = 0.37; three of these.
+      EXPECT_GT(d.mean_chi2, 0.2) << separate::TableName(table) << " " << static_cast<int>(c);
+      EXPECT_LT(d.mean_chi2, 2.1) << separate::TableName(table) << " " << static_cast<int>(c);
+    }
+  }
+}
+
+bool Lists(const Separation& s, Table table, Component component, int order) {
+  return std::any_of(s.not_separable.begin(), s.not_separable.end(), [&](const separate::NotSeparable& lost) {
+    const auto& c = lost.components;
+    const bool names = lost.table == table && std::find(c.begin(), c.end(), component) != c.end();
+    return names && (lost.all || std::find(lost.orders.begin(), lost.orders.end(), order) != lost.orders.end());
+  });
+}
+
+TEST(Rotary4Dof, ReturnsEverySeparableErrorWithinItsStatedUncertainty) {
+  const test::TwinRun run = test::RunTwin(LoadScenario(test::ScenarioPath("rotary_4dof.toml")));
+  const Separation s = test::Evaluate(run);
+  ExpectWithinUncertainty(run, s);
+  EXPECT_LT(Compare(run, s, Table::kTarget, Component::kEz).largest_u, 0.06 * units::arcsec);
+  EXPECT_LT(Compare(run, s, Table::kTarget, Component::kEx).largest_u, 0.08 * units::arcsec);
+  EXPECT_LT(Compare(run, s, Table::kTarget, Component::kEy).largest_u, 0.30 * units::arcsec);
+  EXPECT_LT(Compare(run, s, Table::kTarget, Component::kDy).largest_u, 0.18 * units::um);
+  EXPECT_TRUE(Lists(s, Table::kTarget, Component::kEx, 1));
+  EXPECT_TRUE(Lists(s, Table::kReference, Component::kDx, 0));
+}
+
+TEST(FourShiftsReclamp, ReadsBothRadialErrorsOfTheReferenceAndKeepsTheRetrogradeWobble) {
+  const test::TwinRun run = test::RunTwin(LoadScenario(test::ScenarioPath("four_shifts_reclamp.toml")));
+  const Separation s = test::Evaluate(run);
+  ExpectWithinUncertainty(run, s);
+  EXPECT_EQ(s.reference.components.size(), 5u);
+  EXPECT_TRUE(Lists(s, Table::kTarget, Component::kEx, 1));
+  EXPECT_FALSE(Lists(s, Table::kTarget, Component::kEx, -1));
+}
+
+TEST(PaperTwoShifts, GivesTheIndexErrorRightAndTheWobbleWrong) {
+  const test::TwinRun run = test::RunTwin(LoadScenario(test::ScenarioPath("paper_two_shifts.toml")));
+  const Separation published = test::Evaluate(run, measure::Estimator::kPublished);
+  const Deviation ez = Compare(run, published, Table::kTarget, Component::kEz);
+  const Deviation ex = Compare(run, published, Table::kTarget, Component::kEx);
+  EXPECT_LT(ez.rms_error, 0.1 * ez.rms_truth);
+  EXPECT_GT(ex.rms_error, 0.5 * ex.rms_truth);
+  const Separation rigorous = test::Evaluate(run);
+  EXPECT_LT(Compare(run, rigorous, Table::kTarget, Component::kEx).rms_error, 0.1 * ex.rms_truth);
+  EXPECT_LE(rigorous.dof, 2) << "8n data for 8n unknowns: no residual can show anything";
+}
+
+measure::Stability RunStability(const Scenario& scenario) {
+  const test::TwinRun run = test::RunTwin(scenario);
+  const auto geometry = measure::NominalGeometry(scenario);
+  const auto calibration = measure::Calibrate(run.readings, geometry);
+  return measure::SummariseStability(
+      measure::Measure(run.readings, geometry, calibration, measure::Estimator::kRigorous), geometry);
+}
+
+TEST(Stability, StaysUnderThePapersFiguresOnlyInASteadyRoom) {
+  Scenario scenario = LoadScenario(test::ScenarioPath("stability.toml"));
+  const measure::Stability steady = RunStability(scenario);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_LT(steady.range[axis], 2.0 * units::arcsec);
+  EXPECT_LT(steady.range[3], 1.2 * units::um);
+  // 1.2 um is 6 pm: l1 rho / (cos theta sin theta) = 0.2005 um/pm.
+  EXPECT_NEAR(1.2 * units::um / std::abs(measure::DisplacementPerWavelength(measure::NominalGeometry(scenario))),
+              5.99 * units::pm, 0.01 * units::pm);
+  scenario.environment.swing_K *= 10.0;
+  const measure::Stability restless = RunStability(scenario);
+  EXPECT_GT(restless.range[3], 5.0 * units::um);
+  for (int axis = 0; axis < 3; ++axis) EXPECT_LT(restless.range[axis], 2.0 * units::arcsec);
+}
+
+TEST(OneOfEverything, SaysThatItsResidualsExceedTheStatedNoise) {
+  const test::TwinRun run = test::RunTwin(LoadScenario(test::ScenarioPath("one_of_everything.toml")));
+  const Separation s = test::Evaluate(run);
+  EXPECT_GT(s.scale.maxCoeff(), 1.5);
+  EXPECT_FALSE(s.notes.empty());
+  EXPECT_LT(Compare(run, s, Table::kReference, Component::kEz).rms_error, 1.0 * units::arcsec);
+}
+
+}  // namespace
+}  // namespace twinbench
