@@ -38,16 +38,16 @@ TableMotion::TableMotion(const TableSettings& settings, std::uint64_t seed, cons
       seating_stream_(seed, name + ".seating"),
       stop_stream_(seed, name + ".repeatability"),
       scatters_(AnyPositive(settings.repeatability_sd)) {
-  const auto harmonics = Harmonics(settings, seed, name);
-  const auto table = Table(settings);
-  repeatable_ = mechanics::ErrorMotion(harmonics, table);
-  all_ = mechanics::ErrorMotion(
-      harmonics, table,
-      {settings.half_frequency_order, settings.half_frequency_tilt_rad, settings.half_frequency_radial_m});
+  repeatable_ = mechanics::ErrorMotion(Harmonics(settings, seed, name), Table(settings));
+  if (settings.half_frequency_tilt_rad == 0.0 && settings.half_frequency_radial_m == 0.0) return;
+  const mechanics::HalfFrequencyMotion half = {settings.half_frequency_order, settings.half_frequency_tilt_rad,
+                                               settings.half_frequency_radial_m};
+  half_frequency_ = mechanics::ErrorMotion({}, {}, half);
 }
 
 mechanics::PoseError TableMotion::At(double label_rad) const {
-  return all_.Evaluate(label_rad) + stop_;
+  const mechanics::PoseError error = repeatable_.Evaluate(label_rad) + stop_;
+  return half_frequency_ ? error + half_frequency_->Evaluate(label_rad) : error;
 }
 
 TableErrors TableMotion::Repeatable(int positions) const {

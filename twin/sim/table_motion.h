@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "mechanics/error_motion.h"
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"
@@ -30,7 +32,7 @@ class TableMotion {
 
   TableSettings settings_;
   mechanics::ErrorMotion repeatable_;
-  mechanics::ErrorMotion all_;  // with the half-frequency motion
+  std::optional<mechanics::ErrorMotion> half_frequency_;
   Stream seating_stream_, stop_stream_;
   bool scatters_;
   mechanics::PoseError stop_;
