@@ -8,9 +8,9 @@ find_package(nlohmann_json REQUIRED)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 
-find_package(embree 3 QUIET)
+find_package(embree 4 QUIET)  # the headers are chosen in the same order
 if(NOT embree_FOUND)
-  find_package(embree 4 REQUIRED)
+  find_package(embree 3 REQUIRED)
 endif()
 pkg_check_modules(Bullet REQUIRED IMPORTED_TARGET bullet-float64)
 # OpenEXR by pkg-config: the CMake files of Debian 12 ask for Python parts of Imath that the package does not bring.

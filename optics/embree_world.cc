@@ -7,11 +7,10 @@
 #endif
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
-
-#include "optics/kernels.h"
 
 namespace twinbench::optics {
 namespace {
@@ -56,61 +55,136 @@ struct Query {
 };
 #endif
 
-RTCRay16& RayPart(RTCRayHit16& packet) {
-  return packet.ray;
-}
-RTCRay8& RayPart(RTCRayHit8& packet) {
-  return packet.ray;
-}
-RTCRay16& RayPart(RTCRay16& packet) {
-  return packet;
-}
-RTCRay8& RayPart(RTCRay8& packet) {
-  return packet;
+template <std::size_t kWidth>
+[[gnu::always_inline]] inline void ToFloat(const double* __restrict from, float* __restrict to) {
+  // + 0 turns -0 into +0, so that the sign of a zero never sends a ray to another octant of Embree's packets.
+  for (std::size_t i = 0; i < kWidth; ++i) to[i] = static_cast<float>(from[i]) + 0.0f;
 }
 
-template <int kWidth, class Packet>
-void Fill(const RayBatch& rays, std::size_t begin, std::size_t n, const Lanes& lanes, Packet& packet) {
-  auto& ray = RayPart(packet);
-  const std::array<float*, 6> lines{ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z};
-  ToFloat(rays, begin, n, lines);
-  // Inactive lanes copy the first one: what they hold by chance (NaN) is none of Embree's business.
-  for (float* line : lines) std::fill(line + n, line + kWidth, line[0]);
-  for (int i = 0; i < kWidth; ++i) {
-    ray.tnear[i] = lanes.near_m[i];
-    ray.tfar[i] = lanes.far_m[i];
-    ray.time[i] = 0.0f;
-    ray.mask[i] = ~0u;
-    ray.id[i] = 0;
-    ray.flags[i] = 0;
+template <std::size_t kWidth, class RayPacket>
+[[gnu::always_inline]] inline void ToFloat(ConstRays from, RayPacket& ray) {
+  ToFloat<kWidth>(from.ox, ray.org_x);
+  ToFloat<kWidth>(from.oy, ray.org_y);
+  ToFloat<kWidth>(from.oz, ray.org_z);
+  ToFloat<kWidth>(from.dx, ray.dir_x);
+  ToFloat<kWidth>(from.dy, ray.dir_y);
+  ToFloat<kWidth>(from.dz, ray.dir_z);
+}
+
+/// Embree must not see a ray that is not finite: some builds of it stop the program. Valid is -1, not valid 0.
+template <std::size_t kWidth, class RayPacket>
+[[gnu::always_inline]] inline void FindFinite(const RayPacket& ray, int* __restrict valid) {
+  constexpr float kFar_m = 1e18f;  // Embree's own limit is a little above
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    const float size = std::abs(ray.org_x[i]) + std::abs(ray.org_y[i]) + std::abs(ray.org_z[i]) +
+                       std::abs(ray.dir_x[i]) + std::abs(ray.dir_y[i]) + std::abs(ray.dir_z[i]);
+    valid[i] = -static_cast<int>(size < kFar_m);
   }
 }
 
-template <int kWidth, class Packet>
+/// What is the same for every ray.
+template <std::size_t kWidth, class RayPacket>
+[[gnu::always_inline]] inline void Prepare(RayPacket& ray) {
+  std::fill_n(ray.time, kWidth, 0.0f);
+  std::fill_n(ray.mask, kWidth, ~0u);
+  std::fill_n(ray.id, kWidth, 0u);
+  std::fill_n(ray.flags, kWidth, 0u);
+}
+
+template <std::size_t kWidth, class HitPacket>
+[[gnu::always_inline]] inline void Forget(HitPacket& hit) {
+  std::fill_n(hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
+  std::fill_n(hit.instID[0], kWidth, RTC_INVALID_GEOMETRY_ID);
+}
+
+template <std::size_t kWidth, class RayHitPacket>
+[[gnu::always_inline]] inline void Read(const RayHitPacket& packet, Answers answers) {
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    // Every load before any choice: no branches, so that this becomes vector code.
+    const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
+    const int primitive = static_cast<int>(packet.hit.primID[i]);
+    const int triangle = instance == RTC_INVALID_GEOMETRY_ID ? primitive : kFixture;
+    answers.triangle[i] = geometry == RTC_INVALID_GEOMETRY_ID ? kNothing : triangle;
+    answers.t_m[i] = packet.ray.tfar[i];
+  }
+}
+
+}  // namespace
+
+// All packets are filled, then traced, then read: so no load waits for the store of a moment ago.
+template <std::size_t kWidth, class Packet>
+[[gnu::always_inline]] inline void IntersectPackets(RTCScene scene, Query& query, ConstRays r, float near_m,
+                                                    Answers answers, std::size_t count) {
+  alignas(64) int valid[kTilePackets][kWidth];
+  Packet packets[kTilePackets];
+  for (std::size_t p = 0; p < count; ++p) {
+    ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray);
+    Prepare<kWidth>(packets[p].ray);
+    std::fill_n(packets[p].ray.tnear, kWidth, near_m);
+    std::fill_n(packets[p].ray.tfar, kWidth, std::numeric_limits<float>::infinity());
+    Forget<kWidth>(packets[p].hit);
+  }
+  for (std::size_t p = 0; p < count; ++p) FindFinite<kWidth>(packets[p].ray, valid[p]);
+  for (std::size_t p = 0; p < count; ++p) query.Run(valid[p], scene, packets[p]);
+  for (std::size_t p = 0; p < count; ++p) Read<kWidth>(packets[p], answers.From(p * kWidth));
+}
+
+[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets16(RTCScene scene, Query& query,
+                                                                             ConstRays r, float near_m,
+                                                                             Answers answers, std::size_t count) {
+  IntersectPackets<16, RTCRayHit16>(scene, query, r, near_m, answers, count);
+}
+
+[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets8(RTCScene scene, Query& query,
+                                                                            ConstRays r, float near_m,
+                                                                            Answers answers, std::size_t count) {
+  IntersectPackets<8, RTCRayHit8>(scene, query, r, near_m, answers, count);
+}
+
+namespace {
+
+template <std::size_t kWidth, class RayPacket>
+void Fill(const RayBatch& rays, std::size_t begin, std::size_t n, const Bounds& bounds, RayPacket& ray,
+          int* valid) {
+  const ConstRays from = From(rays, begin);
+  for (std::size_t lane = 0; lane < kWidth; ++lane) {
+    // Lanes without a ray copy the first one: what they hold by chance (NaN) is none of Embree's business.
+    const std::size_t i = lane < n ? lane : 0;
+    ray.org_x[lane] = static_cast<float>(from.ox[i]) + 0.0f;
+    ray.org_y[lane] = static_cast<float>(from.oy[i]) + 0.0f;
+    ray.org_z[lane] = static_cast<float>(from.oz[i]) + 0.0f;
+    ray.dir_x[lane] = static_cast<float>(from.dx[i]) + 0.0f;
+    ray.dir_y[lane] = static_cast<float>(from.dy[i]) + 0.0f;
+    ray.dir_z[lane] = static_cast<float>(from.dz[i]) + 0.0f;
+  }
+  Prepare<kWidth>(ray);
+  std::copy_n(bounds.near_m, kWidth, ray.tnear);
+  std::copy_n(bounds.far_m, kWidth, ray.tfar);
+  FindFinite<kWidth>(ray, valid);
+  for (std::size_t lane = 0; lane < kWidth; ++lane) valid[lane] &= bounds.valid[lane];
+}
+
+template <std::size_t kWidth, class Packet>
 void IntersectPacket(RTCScene scene, const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
-                     Lanes& lanes) {
+                     const Bounds& bounds, Answers answers) {
   Packet packet;
-  Fill<kWidth>(rays, begin, n, lanes, packet);
-  for (int i = 0; i < kWidth; ++i) {
-    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-  }
-  Query(order).Run(lanes.valid, scene, packet);
-  for (int i = 0; i < kWidth; ++i) {
-    const bool fixture = packet.hit.instID[0][i] != RTC_INVALID_GEOMETRY_ID;
-    const int triangle = fixture ? kFixture : static_cast<int>(packet.hit.primID[i]);
-    lanes.triangle[i] = packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID ? kNothing : triangle;
-    lanes.t_m[i] = packet.ray.tfar[i];
-  }
+  alignas(64) int valid[kWidth];
+  Fill<kWidth>(rays, begin, n, bounds, packet.ray, valid);
+  Forget<kWidth>(packet.hit);
+  Query(order).Run(valid, scene, packet);
+  Read<kWidth>(packet, answers);
 }
 
-template <int kWidth, class Packet>
-void OccludedPacket(RTCScene scene, const RayBatch& rays, std::size_t begin, std::size_t n, Lanes& lanes) {
+template <std::size_t kWidth, class Packet>
+void OccludedPacket(RTCScene scene, const RayBatch& rays, std::size_t begin, std::size_t n, const Bounds& bounds,
+                    Answers answers) {
   Packet packet;
-  Fill<kWidth>(rays, begin, n, lanes, packet);
-  // Never coherent: Embree 3.13's coherent shadow packets can loop for ever on axis-parallel rays.
-  Query(RayOrder::kScattered).Run(lanes.valid, scene, packet);
-  for (int i = 0; i < kWidth; ++i) lanes.triangle[i] = packet.tfar[i] < 0.0f ? kFixture : kNothing;
+  alignas(64) int valid[kWidth];
+  Fill<kWidth>(rays, begin, n, bounds, packet, valid);
+  // Never coherent: Embree 3.13's coherent shadow packets can loop for ever on axis-parallel rays. One packet, bit
+  // by bit the same and every lane of it filled, hangs in one run of a program and not in the next.
+  Query(RayOrder::kScattered).Run(valid, scene, packet);
+  for (std::size_t i = 0; i < kWidth; ++i) answers.triangle[i] = packet.tfar[i] < 0.0f ? kFixture : kNothing;
 }
 
 /// Copies a mesh into buffers that Embree owns and pads.
@@ -139,7 +213,8 @@ RTCGeometry MakeTriangles(RTCDevice device, const TriangleMesh& mesh) {
 
 }  // namespace
 
-EmbreeWorld::EmbreeWorld() : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+EmbreeWorld::EmbreeWorld(const std::string& options)
+    : device_(rtcNewDevice(("threads=1,set_affinity=0," + options).c_str())) {
   if (!device_)
     throw std::runtime_error("Embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
   scene_ = rtcNewScene(device_);
@@ -197,15 +272,23 @@ void EmbreeWorld::Commit() {
   if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree: error " + std::to_string(error) + " in a scene");
 }
 
-void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
-                            Lanes& lanes) const {
-  const auto trace = packet_width_ == 16 ? IntersectPacket<16, RTCRayHit16> : IntersectPacket<8, RTCRayHit8>;
-  trace(scene_, rays, begin, n, order, lanes);
+void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t packets, float near_m,
+                            RayOrder order, Answers answers) const {
+  Query query(order);
+  const auto trace = packet_width_ == 16 ? IntersectPackets16 : IntersectPackets8;
+  trace(scene_, query, From(rays, begin), near_m, answers, packets);
 }
 
-void EmbreeWorld::Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, Lanes& lanes) const {
+void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
+                            const Bounds& bounds, Answers answers) const {
+  const auto trace = packet_width_ == 16 ? IntersectPacket<16, RTCRayHit16> : IntersectPacket<8, RTCRayHit8>;
+  trace(scene_, rays, begin, n, order, bounds, answers);
+}
+
+void EmbreeWorld::Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, const Bounds& bounds,
+                           Answers answers) const {
   const auto trace = packet_width_ == 16 ? OccludedPacket<16, RTCRay16> : OccludedPacket<8, RTCRay8>;
-  trace(fixtures_, rays, begin, n, lanes);
+  trace(fixtures_, rays, begin, n, bounds, answers);
 }
 
 }  // namespace twinbench::optics

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <span>
+#include <string>
 #include <vector>
 
+#include "optics/kernels.h"
 #include "optics/mesh.h"
 #include "optics/ray.h"
 
@@ -13,20 +14,20 @@ struct RTCGeometryTy;
 /// Embree 3 or 4 behind plain types: triangles in float, packets of rays.
 namespace twinbench::optics {
 
-inline constexpr int kMaxPacket = 16;
+/// Packets traced by turns: so many stay in the first-level cache together with their rays.
+inline constexpr std::size_t kTilePackets = 8;
 
-/// One packet's bounds and answers, a lane for each ray.
-struct alignas(64) Lanes {
+/// One packet's bounds, a lane for each ray.
+struct alignas(64) Bounds {
   int valid[kMaxPacket];  // -1 traced, 0 not
   float near_m[kMaxPacket];
   float far_m[kMaxPacket];
-  int triangle[kMaxPacket];  // of the proxies; kNothing or kFixture
-  float t_m[kMaxPacket];
 };
 
 class EmbreeWorld {
  public:
-  EmbreeWorld();
+  /// @param options  Embree's own, for instance "max_isa=avx2".
+  explicit EmbreeWorld(const std::string& options);
   ~EmbreeWorld();
   EmbreeWorld(const EmbreeWorld&) = delete;
   EmbreeWorld& operator=(const EmbreeWorld&) = delete;
@@ -43,11 +44,18 @@ class EmbreeWorld {
   int packet_width() const { return packet_width_; }
   RTCSceneTy* scene() const { return scene_; }
 
-  /// Nearest triangle for `n` <= packet_width() rays from `begin` on.
-  void Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Lanes& lanes) const;
+  /// Nearest triangle beyond `near_m` for `packets` <= kTilePackets whole packets of packet_width() rays from
+  /// `begin` on.
+  void Intersect(const RayBatch& rays, std::size_t begin, std::size_t packets, float near_m, RayOrder order,
+                 Answers answers) const;
+
+  /// Nearest triangle for one packet of `n` <= packet_width() rays, where its bounds allow.
+  void Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, const Bounds& bounds,
+                 Answers answers) const;
 
   /// Whether a mesh is in the way (proxies do not count): triangle becomes kFixture or kNothing.
-  void Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, Lanes& lanes) const;
+  void Occluded(const RayBatch& rays, std::size_t begin, std::size_t n, const Bounds& bounds,
+                Answers answers) const;
 
  private:
   struct Instance {

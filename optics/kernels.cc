@@ -1,18 +1,20 @@
 #include "optics/kernels.h"
 
+#include <algorithm>
+
 // Each kernel is compiled for three instruction sets and one is chosen when the program is loaded. Contraction is
 // off (cmake/compiler.cmake), so all of them give the same bits.
 
 namespace twinbench::optics {
 
-struct ConstRays {
-  const double* __restrict ox, * __restrict oy, * __restrict oz, * __restrict dx, * __restrict dy, * __restrict dz;
-};
-
 struct BestHits {
   int* __restrict surface;
   double* __restrict t, * __restrict x, * __restrict y;
 };
+
+BestHits From(HitBatch& hits, std::size_t begin) {
+  return {hits.surface.data() + begin, hits.t_m.data() + begin, hits.x_m.data() + begin, hits.y_m.data() + begin};
+}
 
 [[gnu::target_clones("avx512f", "avx2", "default")]] void TakeNearestPlane(const Frame& frame, int id, ConstRays r,
                                                                            std::size_t n, double t_min,
@@ -51,35 +53,76 @@ struct BestHits {
 
 void TakeNearest(const Frame& frame, int id, const RayBatch& rays, std::size_t begin, std::size_t n, double t_min,
                  HitBatch& hits) {
-  const ConstRays r{rays.ox.data() + begin, rays.oy.data() + begin, rays.oz.data() + begin,
-                    rays.dx.data() + begin, rays.dy.data() + begin, rays.dz.data() + begin};
-  const BestHits best{hits.surface.data() + begin, hits.t_m.data() + begin, hits.x_m.data() + begin,
-                      hits.y_m.data() + begin};
   const auto kernel = frame.curvature == 0.0 ? TakeNearestPlane : TakeNearestConic;
-  kernel(frame, id, r, n, t_min, best);
+  kernel(frame, id, From(rays, begin), n, t_min, From(hits, begin));
 }
 
-struct FloatRays {
-  float* __restrict ox, * __restrict oy, * __restrict oz, * __restrict dx, * __restrict dy, * __restrict dz;
-};
-
-[[gnu::target_clones("avx512f", "avx2", "default")]] void ToFloatArrays(ConstRays from, std::size_t n,
-                                                                        FloatRays to) {
-  // + 0 turns -0 into +0, so that the sign of a zero never sends a ray to another octant of Embree's packets.
+/// Rays that all seem to meet one plane.
+/// @return Whether each names one of its triangles and meets it no later than Embree says.
+[[gnu::target_clones("avx512f", "avx2", "default")]] bool MeetLonePlane(const Target& target, int surface,
+                                                                        float blur_m, ConstRays r, std::size_t n,
+                                                                        Answers answers, double t_min,
+                                                                        BestHits best) {
+  const Frame f = target.frame;
+  const TriangleRange triangles = target.triangles;
+  int other = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    to.ox[i] = static_cast<float>(from.ox[i]);
-    to.oy[i] = static_cast<float>(from.oy[i]);
-    to.oz[i] = static_cast<float>(from.oz[i]);
-    to.dx[i] = static_cast<float>(from.dx[i]) + 0.0f;
-    to.dy[i] = static_cast<float>(from.dy[i]) + 0.0f;
-    to.dz[i] = static_cast<float>(from.dz[i]) + 0.0f;
+    best.surface[i] = surface;
+    other |= (answers.triangle[i] < triangles.first) | (answers.triangle[i] >= triangles.end);
   }
+  std::int64_t open = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    double t, x, y;
+    MeetPlane(f, r.ox[i], r.oy[i], r.oz[i], r.dx[i], r.dy[i], r.dz[i], t, x, y);
+    const double t_embree = static_cast<double>(answers.t_m[i]) + blur_m;
+    const bool met = InAperture(f, x, y) & (t > t_min) & (t <= t_embree);
+    best.t[i] = t;
+    best.x[i] = x;
+    best.y[i] = y;
+    open |= met ? 0 : 1;
+  }
+  return other == 0 && open == 0;
 }
 
-void ToFloat(const RayBatch& rays, std::size_t begin, std::size_t n, const std::array<float*, 6>& to) {
-  const ConstRays from{rays.ox.data() + begin, rays.oy.data() + begin, rays.oz.data() + begin,
-                       rays.dx.data() + begin, rays.dy.data() + begin, rays.dz.data() + begin};
-  ToFloatArrays(from, n, {to[0], to[1], to[2], to[3], to[4], to[5]});
+[[gnu::target_clones("avx512f", "avx2", "default")]] bool CompareArrays(Answers answers, float blur_m,
+                                                                        std::size_t n, BestHits best) {
+  int open = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = answers.t_m[i];
+    const bool fixture = (answers.triangle[i] == kFixture) & (t < best.t[i]);
+    best.surface[i] = fixture ? kFixture : best.surface[i];
+    best.t[i] = fixture ? t : best.t[i];
+    open |= !(best.t[i] <= t + blur_m);
+  }
+  return open != 0;
+}
+
+bool Compare(Answers answers, float blur_m, std::size_t begin, std::size_t n, HitBatch& hits) {
+  return CompareArrays(answers, blur_m, n, From(hits, begin));
+}
+
+std::uint32_t SettlePlanes(const Targets& targets, const RayBatch& rays, std::size_t begin, std::size_t n,
+                           std::size_t width, Answers answers, double t_min, HitBatch& hits) {
+  const auto named = [&](std::size_t i) {
+    return answers.triangle[i] < 0 ? kNothing : targets.surface_of_triangle[answers.triangle[i]];
+  };
+  const auto meet = [&](int surface, std::size_t from, std::size_t to) {
+    return MeetLonePlane(targets.surfaces[surface], surface, targets.blur_m, From(rays, begin + from), to - from,
+                         answers.From(from), t_min, From(hits, begin + from));
+  };
+  std::uint32_t unsettled = 0;
+  for (std::size_t from = 0, to; from < n; from = to) {
+    // Packets in a row on one surface, as those of a beam are: one call for all.
+    const int surface = named(from);
+    for (to = from + width; to < n && named(to) == surface;) to += width;
+    const bool hopeful = surface != kNothing && targets.surfaces[surface].alone;
+    if (hopeful && meet(surface, from, to)) continue;
+    for (std::size_t i = from; i < to; i += width) {
+      const bool settled = hopeful && to - from > width && meet(surface, i, i + width);
+      unsettled |= static_cast<std::uint32_t>(!settled) << (i / width);
+    }
+  }
+  return unsettled;
 }
 
 [[gnu::target_clones("avx512f", "avx2", "default")]] void TraceSequenceArrays(const Frame& grating, double shift,
@@ -110,8 +153,7 @@ void ToFloat(const RayBatch& rays, std::size_t begin, std::size_t n, const std::
 
 void TraceSequence(const Frame& grating, double order_lambda_rho, const Frame& plane, const RayBatch& rays,
                    double* u_m, double* v_m) {
-  const ConstRays r{rays.ox.data(), rays.oy.data(), rays.oz.data(), rays.dx.data(), rays.dy.data(), rays.dz.data()};
-  TraceSequenceArrays(grating, order_lambda_rho, plane, r, rays.size(), u_m, v_m);
+  TraceSequenceArrays(grating, order_lambda_rho, plane, From(rays, 0), rays.size(), u_m, v_m);
 }
 
 }  // namespace twinbench::optics

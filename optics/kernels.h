@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "optics/surface.h"
@@ -21,6 +21,18 @@ struct Frame {
 };
 
 Frame MakeFrame(const Surface& surface);
+
+/// The arrays of a RayBatch from some ray on.
+struct ConstRays {
+  const double* __restrict ox, * __restrict oy, * __restrict oz, * __restrict dx, * __restrict dy, * __restrict dz;
+
+  ConstRays From(std::size_t i) const { return {ox + i, oy + i, oz + i, dx + i, dy + i, dz + i}; }
+};
+
+inline ConstRays From(const RayBatch& rays, std::size_t begin) {
+  return {rays.ox.data() + begin, rays.oy.data() + begin, rays.oz.data() + begin,
+          rays.dx.data() + begin, rays.dy.data() + begin, rays.dz.data() + begin};
+}
 
 /// Where a ray meets the plane z_S = 0, as (t, x, y).
 ///
@@ -71,12 +83,47 @@ Frame MakeFrame(const Surface& surface);
   return in_x & in_y & in_circle;
 }
 
+/// Sixteen rays at most are traced together.
+inline constexpr int kMaxPacket = 16;
+
+/// What Embree says of some rays.
+struct Answers {
+  int* __restrict triangle;  // of the proxies; kNothing or kFixture
+  float* __restrict t_m;     // infinite for kNothing
+
+  Answers From(std::size_t i) const { return {triangle + i, t_m + i}; }
+};
+
+struct TriangleRange {
+  int first = 0, end = 0;
+};
+
+/// One surface among the proxies.
+struct Target {
+  Frame frame;
+  TriangleRange triangles;
+  bool alone;  // a plane whose proxy no other proxy touches: where Embree names it, no other surface can be meant
+};
+
+/// The surfaces as Embree's triangle numbers find them.
+struct Targets {
+  const Target* surfaces;
+  const int* surface_of_triangle;
+  float blur_m;  // distance that float cannot resolve
+};
+
+/// Recomputes in double `n` rays, whole packets of `width`, as far as all rays of a packet meet one lone plane.
+/// @return A bit for each of at most 32 packets, set where that is not so; the hits of such packets are undefined.
+std::uint32_t SettlePlanes(const Targets& targets, const RayBatch& rays, std::size_t begin, std::size_t n,
+                           std::size_t width, Answers answers, double t_min, HitBatch& hits);
+
+/// Puts the meshes that Embree found in front of what `n` rays have met so far.
+/// @return Whether some ray has met nothing as near as Embree says: it passed through the padding and must go on.
+bool Compare(Answers answers, float blur_m, std::size_t begin, std::size_t n, HitBatch& hits);
+
 /// Takes surface `id` into the running nearest hit of `n` rays; of equal distances the lower id wins.
 void TakeNearest(const Frame& frame, int id, const RayBatch& rays, std::size_t begin, std::size_t n, double t_min,
                  HitBatch& hits);
-
-/// `n` rays from `begin` on as floats, into six arrays: origin x, y, z, direction x, y, z.
-void ToFloat(const RayBatch& rays, std::size_t begin, std::size_t n, const std::array<float*, 6>& to);
 
 /// One order of a plane grating on to a plane, for all rays; u, v are NaN where the ray misses the grating's
 /// aperture or the order is evanescent. The fixed sequence laser -> grating -> detector plane.

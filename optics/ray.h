@@ -36,6 +36,9 @@ struct HitBatch {
   std::vector<double> x_m;   // in the surface's frame; undefined unless a surface was hit
   std::vector<double> y_m;
 
+  void Resize(std::size_t size);
+  /// `n` rays from `begin` on meet nothing.
+  void Clear(std::size_t begin, std::size_t n);
   void Reset(std::size_t size);
 };
 

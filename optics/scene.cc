@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -11,7 +13,24 @@
 namespace twinbench::optics {
 namespace {
 
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kNear = static_cast<float>(0.5 * Scene::t_min_m);
+
+template <std::size_t kPackets>
+struct alignas(64) Storage {
+  int triangle[kPackets * kMaxPacket];
+  float t_m[kPackets * kMaxPacket];
+
+  Answers View() { return {triangle, t_m}; }
+};
+
+Bounds WholeRays(std::size_t n) {
+  Bounds bounds;
+  std::fill_n(bounds.valid, n, -1);
+  std::fill(bounds.valid + n, bounds.valid + kMaxPacket, 0);
+  std::fill_n(bounds.near_m, kMaxPacket, kNear);
+  std::fill_n(bounds.far_m, kMaxPacket, std::numeric_limits<float>::infinity());
+  return bounds;
+}
 
 /// Distance along a ray below which float cannot tell two things apart, for a scene of this extent.
 double FloatBlur(double extent_m) {
@@ -47,8 +66,10 @@ struct SmallSet {
 }  // namespace
 
 struct Scene::Impl {
+  explicit Impl(const std::string& embree_options) : world(embree_options) {}
+
   std::vector<Surface> surfaces;
-  std::vector<Frame> frames;
+  std::vector<Target> targets;  // as many
   std::vector<int> surface_of_triangle;
   std::vector<std::vector<int>> neighbours;  // of each surface: those whose proxies' boxes touch its own
   std::vector<TriangleMesh> meshes;
@@ -61,9 +82,13 @@ struct Scene::Impl {
   void CommitProxies();
   void FindNeighbours(const std::vector<Eigen::AlignedBox3d>& boxes);
   double Extent() const;
-  void TracePacket(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, HitBatch& hits) const;
-  void Refine(const RayBatch& rays, std::size_t begin, std::size_t n, const Lanes& lanes, HitBatch& hits) const;
-  bool Continue(std::size_t begin, std::size_t n, Lanes& lanes, HitBatch& hits) const;
+  void IntersectPackets(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order,
+                        HitBatch& hits) const;
+  void IntersectLast(const RayBatch& rays, std::size_t begin, RayOrder order, HitBatch& hits) const;
+  void Pursue(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Answers answers,
+              HitBatch& hits) const;
+  void Refine(const RayBatch& rays, std::size_t begin, std::size_t n, Answers answers, HitBatch& hits) const;
+  bool Continue(std::size_t begin, std::size_t n, Answers answers, const HitBatch& hits, Bounds& bounds) const;
   void TakeSurfaces(const RayBatch& rays, HitBatch& hits) const;
   void Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, HitBatch& hits) const;
 };
@@ -84,7 +109,9 @@ void Scene::Impl::CommitProxies() {
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const TriangleMesh proxy = ProxyOf(surfaces[i], 5.0 * blur_m);
     boxes.push_back(BoundsOf(proxy));
+    targets[i].triangles.first = static_cast<int>(surface_of_triangle.size());
     surface_of_triangle.resize(surface_of_triangle.size() + proxy.triangles.size(), static_cast<int>(i));
+    targets[i].triangles.end = static_cast<int>(surface_of_triangle.size());
     Append(proxy, proxies);
   }
   world.SetProxies(proxies, same_topology);
@@ -100,94 +127,109 @@ void Scene::Impl::FindNeighbours(const std::vector<Eigen::AlignedBox3d>& boxes) 
     for (std::size_t j = 0; j < boxes.size(); ++j) {
       if (i != j && wide.intersects(boxes[j])) neighbours[i].push_back(static_cast<int>(j));
     }
+    targets[i].alone = surfaces[i].curvature_per_m == 0.0 && neighbours[i].empty();
   }
 }
 
 /// Recomputes in double every surface that Embree named, and those too close to it to be told apart in float.
 /// Testing a surface against all rays of the packet is harmless: the nearest true hit wins.
-void Scene::Impl::Refine(const RayBatch& rays, std::size_t begin, std::size_t n, const Lanes& lanes,
+void Scene::Impl::Refine(const RayBatch& rays, std::size_t begin, std::size_t n, Answers answers,
                          HitBatch& hits) const {
   SmallSet done;
   int last = kNothing;
   for (std::size_t i = 0; i < n; ++i) {
-    if (!lanes.valid[i] || lanes.triangle[i] < 0 ||
-        (i > 0 && lanes.triangle[i] == lanes.triangle[i - 1] && lanes.valid[i - 1]))
-      continue;
-    const int surface = surface_of_triangle[static_cast<std::size_t>(lanes.triangle[i])];
-    if (surface == last || !done.Insert(surface)) continue;
-    last = surface;
-    TakeNearest(frames[static_cast<std::size_t>(surface)], surface, rays, begin, n, t_min_m, hits);
+    const int triangle = answers.triangle[i];
+    if (triangle < 0 || triangle == last) continue;
+    last = triangle;
+    const int surface = surface_of_triangle[static_cast<std::size_t>(triangle)];
+    if (!done.Insert(surface)) continue;
+    TakeNearest(targets[static_cast<std::size_t>(surface)].frame, surface, rays, begin, n, t_min_m, hits);
     for (const int other : neighbours[static_cast<std::size_t>(surface)]) {
-      TakeNearest(frames[static_cast<std::size_t>(other)], other, rays, begin, n, t_min_m, hits);
+      TakeNearest(targets[static_cast<std::size_t>(other)].frame, other, rays, begin, n, t_min_m, hits);
     }
   }
 }
 
-/// Settles the lanes whose answer is final; the others go on behind the proxy that deceived them.
-bool Scene::Impl::Continue(std::size_t begin, std::size_t n, Lanes& lanes, HitBatch& hits) const {
-  // The usual case without a branch per lane: every ray of the packet is on the surface that Embree named.
-  bool open = false;
-  for (std::size_t i = 0; i < n; ++i) open |= !(hits.t_m[begin + i] <= lanes.t_m[i] + blur_m);
-  if (!open) return false;
+/// Closes the lanes whose answer is final; the others go on behind the proxy that deceived them.
+bool Scene::Impl::Continue(std::size_t begin, std::size_t n, Answers answers, const HitBatch& hits,
+                           Bounds& bounds) const {
   bool any = false;
   for (std::size_t i = 0; i < n; ++i) {
-    if (!lanes.valid[i]) continue;
-    const double t = lanes.t_m[i];
-    double& best = hits.t_m[begin + i];
-    if (lanes.triangle[i] == kFixture && t < best) {
-      hits.surface[begin + i] = kFixture;
-      best = t;
-    }
-    const bool settled = lanes.triangle[i] < 0 || best <= t + blur_m;
-    lanes.valid[i] = settled ? 0 : -1;
+    const float t = answers.t_m[i];
+    const double best = hits.t_m[begin + i];
+    const bool settled = !bounds.valid[i] || answers.triangle[i] < 0 || best <= static_cast<double>(t) + blur_m;
+    bounds.valid[i] = settled ? 0 : -1;
     // At least a few float steps, or a far proxy would be found again and again.
-    lanes.near_m[i] = lanes.t_m[i] * (1.0f + 4.0f * std::numeric_limits<float>::epsilon()) + blur_m;
-    lanes.far_m[i] = static_cast<float>(best) + blur_m;
+    bounds.near_m[i] = t * (1.0f + 4.0f * std::numeric_limits<float>::epsilon()) + blur_m;
+    bounds.far_m[i] = static_cast<float>(best) + blur_m;
     any |= !settled;
   }
   return any;
 }
 
-void Scene::Impl::TracePacket(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,
-                              HitBatch& hits) const {
-  Lanes lanes;
-  for (std::size_t i = 0; i < kMaxPacket; ++i) {
-    lanes.valid[i] = i < n ? -1 : 0;
-    lanes.near_m[i] = static_cast<float>(0.5 * t_min_m);
-    lanes.far_m[i] = kFar;
+/// Decides one packet from Embree's first answers, however many surfaces it takes.
+void Scene::Impl::Pursue(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Answers answers,
+                         HitBatch& hits) const {
+  hits.Clear(begin, n);
+  Refine(rays, begin, n, answers, hits);
+  if (!Compare(answers, blur_m, begin, n, hits)) return;
+  Bounds bounds = WholeRays(n);
+  while (Continue(begin, n, answers, hits, bounds)) {
+    world.Intersect(rays, begin, n, order, bounds, answers);
+    Refine(rays, begin, n, answers, hits);
+    Compare(answers, blur_m, begin, n, hits);
   }
-  do {
-    world.Intersect(rays, begin, n, order, lanes);
-    Refine(rays, begin, n, lanes, hits);
-  } while (Continue(begin, n, lanes, hits));
+}
+
+/// Whole packets, at most kTilePackets: those on one lone plane together, for there beams are; the others one by
+/// one.
+void Scene::Impl::IntersectPackets(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order,
+                                   HitBatch& hits) const {
+  Storage<kTilePackets> storage;
+  const Answers answers = storage.View();
+  const auto width = static_cast<std::size_t>(world.packet_width());
+  world.Intersect(rays, begin, packets, kNear, order, answers);
+  const Targets table{targets.data(), surface_of_triangle.data(), blur_m};
+  std::uint32_t unsettled = SettlePlanes(table, rays, begin, packets * width, width, answers, t_min_m, hits);
+  for (; unsettled != 0; unsettled &= unsettled - 1) {
+    const std::size_t i = static_cast<std::size_t>(std::countr_zero(unsettled)) * width;
+    Pursue(rays, begin + i, width, order, answers.From(i), hits);
+  }
+}
+
+/// The rest, less than a packet.
+void Scene::Impl::IntersectLast(const RayBatch& rays, std::size_t begin, RayOrder order, HitBatch& hits) const {
+  const std::size_t n = rays.size() - begin;
+  Storage<1> storage;
+  world.Intersect(rays, begin, n, order, WholeRays(n), storage.View());
+  Pursue(rays, begin, n, order, storage.View(), hits);
 }
 
 void Scene::Impl::TakeSurfaces(const RayBatch& rays, HitBatch& hits) const {
   constexpr std::size_t kTile = 256;  // stays in the first-level cache while every surface passes over it
   for (std::size_t begin = 0; begin < rays.size(); begin += kTile) {
     const std::size_t n = std::min(kTile, rays.size() - begin);
-    for (std::size_t s = 0; s < frames.size(); ++s) {
-      TakeNearest(frames[s], static_cast<int>(s), rays, begin, n, t_min_m, hits);
+    for (std::size_t s = 0; s < targets.size(); ++s) {
+      TakeNearest(targets[s].frame, static_cast<int>(s), rays, begin, n, t_min_m, hits);
     }
   }
 }
 
 void Scene::Impl::Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, HitBatch& hits) const {
-  Lanes lanes;
-  for (std::size_t i = 0; i < kMaxPacket; ++i) {
-    lanes.valid[i] = i < n ? -1 : 0;
-    lanes.near_m[i] = static_cast<float>(t_min_m);
-    lanes.far_m[i] = i < n ? static_cast<float>(hits.t_m[begin + i]) : kFar;
-  }
-  world.Occluded(rays, begin, n, lanes);
+  Bounds bounds = WholeRays(n);
+  std::fill_n(bounds.near_m, n, static_cast<float>(t_min_m));
+  for (std::size_t i = 0; i < n; ++i) bounds.far_m[i] = static_cast<float>(hits.t_m[begin + i]);
+  Storage<1> storage;
+  const Answers answers = storage.View();
+  world.Occluded(rays, begin, n, bounds, answers);
   for (std::size_t i = 0; i < n; ++i) {
-    if (lanes.triangle[i] != kFixture) continue;
+    if (answers.triangle[i] != kFixture) continue;
     hits.surface[begin + i] = kFixture;
     hits.t_m[begin + i] = std::numeric_limits<double>::quiet_NaN();
   }
 }
 
-Scene::Scene() : impl_(std::make_unique<Impl>()) {}
+Scene::Scene(const std::string& embree_options) : impl_(std::make_unique<Impl>(embree_options)) {}
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
@@ -195,7 +237,7 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 int Scene::AddSurface(const Surface& surface) {
   Validate(surface);
   impl_->surfaces.push_back(surface);
-  impl_->frames.push_back(MakeFrame(surface));
+  impl_->targets.push_back({MakeFrame(surface), {}, false});
   impl_->committed = impl_->same_topology = false;
   return static_cast<int>(impl_->surfaces.size()) - 1;
 }
@@ -214,7 +256,7 @@ void Scene::SetSurfacePose(int index, const Eigen::Isometry3d& X_WS) {
   Surface& surface = impl_->surfaces.at(static_cast<std::size_t>(index));
   surface.X_WS = X_WS;
   Validate(surface);
-  impl_->frames[static_cast<std::size_t>(index)] = MakeFrame(surface);
+  impl_->targets[static_cast<std::size_t>(index)].frame = MakeFrame(surface);
   impl_->committed = false;
 }
 
@@ -242,11 +284,14 @@ RTCSceneTy* Scene::embree_scene() const {
 
 void Scene::Intersect(const RayBatch& rays, HitBatch& hits, RayOrder order) const {
   if (!impl_->committed) throw std::logic_error("Scene::Intersect before Commit");
-  hits.Reset(rays.size());
+  hits.Resize(rays.size());
   const auto width = static_cast<std::size_t>(packet_width());
-  for (std::size_t begin = 0; begin < rays.size(); begin += width) {
-    impl_->TracePacket(rays, begin, std::min(width, rays.size() - begin), order, hits);
+  std::size_t begin = 0;
+  while (const std::size_t packets = std::min(kTilePackets, (rays.size() - begin) / width)) {
+    impl_->IntersectPackets(rays, begin, packets, order, hits);
+    begin += packets * width;
   }
+  if (begin < rays.size()) impl_->IntersectLast(rays, begin, order, hits);
 }
 
 void Scene::IntersectAnalytic(const RayBatch& rays, HitBatch& hits) const {

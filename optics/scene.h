@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "optics/mesh.h"
@@ -20,7 +21,8 @@ namespace twinbench::optics {
 /// Changing a pose is cheap (each mesh lives in a scene of its own). Const members may run in several threads.
 class Scene {
  public:
-  Scene();
+  /// @param embree_options  For tests: how Embree sets itself up, for instance "max_isa=avx2".
+  explicit Scene(const std::string& embree_options = "");
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;

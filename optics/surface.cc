@@ -1,5 +1,6 @@
 #include "optics/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -16,11 +17,21 @@ void RayBatch::Add(const Ray& ray) {
   dz.push_back(ray.direction.z());
 }
 
-void HitBatch::Reset(std::size_t size) {
-  surface.assign(size, kNothing);
-  t_m.assign(size, std::numeric_limits<double>::infinity());
+void HitBatch::Resize(std::size_t size) {
+  surface.resize(size);
+  t_m.resize(size);
   x_m.resize(size);
   y_m.resize(size);
+}
+
+void HitBatch::Clear(std::size_t begin, std::size_t n) {
+  std::fill_n(surface.data() + begin, n, kNothing);
+  std::fill_n(t_m.data() + begin, n, std::numeric_limits<double>::infinity());
+}
+
+void HitBatch::Reset(std::size_t size) {
+  Resize(size);
+  Clear(0, size);
 }
 
 Surface RectangularPlane(const Eigen::Isometry3d& X_WS, double width_m, double height_m) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <random>
@@ -48,7 +49,7 @@ struct Randomise {
   void operator()(std::string* field) const {
     if (!key.choices.empty()) *field = key.choices[random() % key.choices.size()];
     if (key.name == "title") *field = "a \"b\" \\ c\n\t\x01 \xC3\xA9 # [x] = 1";
-    if (key.name == "profile_file" || key.name == "temperature_file") *field = file;
+    if (key.name.ends_with("_file") && key.name != "errors_file") *field = file;
   }
   void operator()(BeamModel* field) const { *field = static_cast<BeamModel>(random() % 3); }
   void operator()(std::span<double> field) const {
@@ -63,6 +64,10 @@ struct Randomise {
     if (key.name == "shifts") *field = {1, 0};
   }
   void operator()(std::vector<std::string>* field) const {
+    if (key.name == "scan_list") {
+      std::shuffle(field->begin(), field->end(), random);
+      return;
+    }
     *field = {key.choices[random() % key.choices.size()], key.choices[0]};
   }
   void operator()(std::vector<HarmonicSettings>* field) const {
@@ -109,14 +114,20 @@ struct Bits {
   }
 };
 
-void ExpectSameBits(Scenario a, Scenario b) {
-  const auto keys_a = KeysOf(a), keys_b = KeysOf(b);
+/// Of all places that the keys of a description are bound to.
+void ExpectSameBits(const std::vector<ScenarioKey>& keys_a, const std::vector<ScenarioKey>& keys_b) {
   for (std::size_t i = 0; i < keys_a.size(); ++i) {
     Bits bits_a, bits_b;
     std::visit(bits_a, keys_a[i].field);
     std::visit(bits_b, keys_b[i].field);
     EXPECT_TRUE(bits_a == bits_b) << keys_a[i].Path();
   }
+}
+
+void ExpectSameBits(Scenario a, Scenario b) {
+  ExpectSameBits(KeysOf(a), KeysOf(b));
+  ASSERT_EQ(a.fixtures.size(), b.fixtures.size());
+  for (std::size_t i = 0; i < a.fixtures.size(); ++i) ExpectSameBits(KeysOf(a.fixtures[i]), KeysOf(b.fixtures[i]));
   ASSERT_EQ(a.effects.size(), b.effects.size());
   for (std::size_t i = 0; i < a.effects.size(); ++i) {
     EXPECT_EQ(a.effects[i].name, b.effects[i].name);
@@ -135,9 +146,23 @@ EffectSettings AnyEffect(const EffectEntry& entry, Random& random) {
   return effect;
 }
 
+FixtureSettings AnyFixture(bool is_box, Random& random, const std::string& file) {
+  FixtureSettings fixture;
+  for (const ScenarioKey& key : KeysOf(fixture)) std::visit(Randomise{key, random, file}, key.field);
+  fixture.name = "\"a\" housing";
+  if (is_box) {
+    fixture.mesh_file.clear();
+    fixture.mesh_unit_m = FixtureSettings{}.mesh_unit_m;
+  } else {
+    fixture.box_m = FixtureSettings{}.box_m;
+  }
+  return fixture;
+}
+
 Scenario AnyScenario(Random& random, const std::string& file) {
   Scenario scenario;
   for (const ScenarioKey& key : KeysOf(scenario)) std::visit(Randomise{key, random, file}, key.field);
+  for (const bool is_box : {true, false}) scenario.fixtures.push_back(AnyFixture(is_box, random, file));
   for (const EffectEntry& entry : EffectCatalogue()) scenario.effects.push_back(AnyEffect(entry, random));
   return scenario;
 }

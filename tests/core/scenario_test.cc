@@ -188,7 +188,7 @@ TEST(ScenarioOverride, OfAnErrorsFileReplacesErrorsOfTheFile) {
 
 TEST(ScenarioOverride, IsNamedWhenItIsWrong) {
   EXPECT_EQ(OverrideError("procedure.positions=1"),
-            "--set procedure.positions=1: procedure.positions is 1; expected a whole number from 2 to 100000");
+            "--set procedure.positions=1: procedure.positions is 1; expected a whole number from 3 to 100000");
   EXPECT_EQ(OverrideError("procedure.positons=12"),
             "--set procedure.positons=12: unknown key procedure.positons; expected a known one; the nearest is "
             "procedure.positions");
@@ -256,7 +256,7 @@ TEST(ScenarioError, NamesTypeAndBoundsAsTheUserWritesThem) {
   EXPECT_EQ(ErrorOf("title = 5\n"), "s.toml:2: title is 5; expected a text in quotes");
   EXPECT_EQ(ErrorOf("seed = -1\n"), "s.toml:2: seed is -1; expected a whole number, 0 or more");
   EXPECT_EQ(ErrorOf("[procedure]\npositions = 36.0\n"),
-            "s.toml:3: procedure.positions is 36.0; expected a whole number from 2 to 100000");
+            "s.toml:3: procedure.positions is 36.0; expected a whole number from 3 to 100000");
 }
 
 TEST(ScenarioError, RefusesNumbersThatAreNotFinite) {
@@ -384,6 +384,58 @@ TEST(ScenarioEffectError, ChecksBoundsInTheUnitOfTheKey) {
             "s.toml:5: laser_drift: drift_urad_per_h is inf; expected a number of urad_per_h from -10000 to 10000");
 }
 
+// --- fixtures ---
+
+TEST(Scenario, TakesFixturesAsBoxesAndMeshFiles) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.Write("housing.stl", "solid");
+  const std::string text = std::string(kBench) + R"([[fixture]]
+name = "plate"
+box_mm = [40, 2, 30]
+position_mm = [10, 20, 30]
+yaw_deg = -15
+[[fixture]]
+name = "housing"
+mesh_file = "housing.stl"
+mesh_unit_mm = 25.4
+rides_on_grating = true
+)";
+  const Scenario s = ParseScenario(text, "s.toml", folder.path());
+  ASSERT_EQ(s.fixtures.size(), 2u);
+  EXPECT_EQ(s.fixtures[0].box_m, Vector3(40.0 * units::mm, 2.0 * units::mm, 30.0 * units::mm));
+  EXPECT_EQ(s.fixtures[0].position_m.z(), 30.0 * units::mm);
+  EXPECT_EQ(s.fixtures[0].yaw_rad, -15.0 * units::deg);
+  EXPECT_FALSE(s.fixtures[0].rides_on_grating);
+  EXPECT_EQ(s.fixtures[0].location, "s.toml:2");
+  EXPECT_EQ(s.fixtures[1].mesh_file, mesh);
+  EXPECT_EQ(s.fixtures[1].mesh_unit_m, 25.4 * units::mm);
+  EXPECT_TRUE(s.fixtures[1].rides_on_grating);
+  EXPECT_TRUE(ParseScenario(text, "s.toml", folder.path(), {"fixture=[]"}).fixtures.empty());
+}
+
+TEST(ScenarioFixtureError, SaysWhatIsWrongWithAFixture) {
+  const auto error = [](const std::string& lines) { return ErrorOf("[[fixture]]\n" + lines); };
+  EXPECT_EQ(error("box_mm = [1, 1, 1]\n"), "s.toml:2: the fixture has no name; expected name = \"housing\"");
+  EXPECT_EQ(error("name = \"plate\"\n"),
+            "s.toml:2: the fixture plate has neither box_mm nor mesh_file; expected one of them");
+  EXPECT_EQ(error("name = \"plate\"\nbox_mm = [1, 1, 1]\nmesh_file = \"a.stl\"\n"),
+            "s.toml:2: the fixture plate has both box_mm and mesh_file; expected one of them");
+  EXPECT_EQ(error("name = \"plate\"\nbox_mm = [1, 0, 1]\n"),
+            "s.toml:4: fixture.box_mm is 0; expected a number of mm above 0 and up to 5000");
+  EXPECT_EQ(error("name = \"plate\"\nbox_mm = [1, 1]\n"),
+            "s.toml:4: fixture.box_mm has 2 entries; expected a list of 3, each a number of mm above 0 and up to "
+            "5000");
+  EXPECT_EQ(error("name = \"plate\"\nbox_um = [1, 1, 1]\n"),
+            "s.toml:4: the key fixture.box_um has the wrong unit; expected fixture.box_mm");
+  EXPECT_EQ(error("name = \"plate\"\npositon_mm = [1, 1, 1]\n"),
+            "s.toml:4: unknown key fixture.positon_mm; expected a known one; the nearest is fixture.position_mm");
+  EXPECT_THAT(
+      error("name = \"plate\"\nmesh_file = \"none.stl\"\n"),
+      testing::MatchesRegex("s.toml:2: fixture.mesh_file: the file /.*none.stl cannot be read; expected .*"));
+  EXPECT_EQ(ErrorOf("[fixture]\nname = \"plate\"\n"), "s.toml:2: fixture is a table; expected [[fixture]] blocks");
+  EXPECT_EQ(ErrorOf("fixture = [1]\n"), "s.toml:2: fixture is 1; expected [[fixture]] blocks");
+}
+
 // --- help ---
 
 TEST(ScenarioHelp, HasEveryKeyWithUnitDefaultBoundsAndMeaning) {
@@ -392,6 +444,7 @@ TEST(ScenarioHelp, HasEveryKeyWithUnitDefaultBoundsAndMeaning) {
   EXPECT_THAT(help, HasSubstr("\n[target.random]\nex_arcsec = 0\n"));
   EXPECT_THAT(help, HasSubstr("name = \"psd_roll\"\nwhere\n    \"psd_a\" or \"psd_b\"\nroll_mrad = 5\n"));
   EXPECT_THAT(help, HasSubstr("shifts = [0, 1, 7, 11]\n"));
+  EXPECT_THAT(help, HasSubstr("box_mm = [20, 20, 20]\n    edges of a box, centred on its position; a list of 3, "));
 }
 
 TEST(EditDistance, CountsASwapOfNeighboursOnce) {

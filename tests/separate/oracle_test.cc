@@ -57,6 +57,30 @@ TEST_P(Oracle, ComesBackFromTheRigorousSeparation) {
   EXPECT_LT(found.residual_rms.head<3>().maxCoeff(), 0.01 * units::arcsec);
 }
 
+/// rms of estimate - truth over rms of the stated uncertainty, largest of the table's components.
+double LargestErrorOverU(const TableEstimate& estimate, Table table, const TableErrors& truth,
+                         const std::vector<NotSeparable>& lost) {
+  const TableErrors visible = RemoveNotSeparable(truth, table, lost);
+  double largest = 0.0;
+  for (const Component c : estimate.components) {
+    const std::vector<double> zero(visible[c].size(), 0.0);
+    const double error = RmsDifference(estimate.value[c], visible[c]), u = RmsDifference(estimate.u[c], zero);
+    largest = std::max(largest, error / u);
+  }
+  return largest;
+}
+
+TEST_P(Oracle, IsMissedByNoMoreThanTheUncertaintyOfARunWithoutNoise) {
+  const Separation found = SeparateOracle(GetParam());
+  const Truth truth = OracleTruth(GetParam());
+  const double target = LargestErrorOverU(found.target, Table::kTarget, truth.target, found.not_separable);
+  const double reference =
+      LargestErrorOverU(found.reference, Table::kReference, truth.reference, found.not_separable);
+  // The second-order terms nobody reads are known by size only: of order 1, within three.
+  EXPECT_LT(std::max(target, reference), 3.0);
+  EXPECT_GT(std::max(target, reference), 0.1);
+}
+
 TEST_P(Oracle, ValuesHaveZeroMean) {
   const Separation found = SeparateOracle(GetParam());
   for (const TableEstimate* table : {&found.target, &found.reference}) {

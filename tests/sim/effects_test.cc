@@ -294,6 +294,16 @@ TEST(Effects, CrosstalkBringsTheChannelBefore) {
   EXPECT_EQ(mixed[0], plain[0]);
 }
 
+TEST(Effects, CrosstalkFollowsTheScanList) {
+  Scenario scenario = Quiet();
+  scenario.adc.scan_list = {"psd_b_y", "psd_a_y", "psd_b_x", "psd_a_x"};
+  Pair pair(Effect("crosstalk", "psd_a_y", {{"fraction", 0.02}}), scenario);
+  pair.Do(kTurnGrating);
+  const Volts plain = Read(pair.without), mixed = Read(pair.with);
+  EXPECT_NEAR(mixed[1], plain[1] + 0.02 * plain[3], 1e-12);
+  EXPECT_EQ(mixed[2], plain[2]);
+}
+
 TEST(Effects, OutliersHitTheirShareOfReadings) {
   Scenario scenario = Quiet();
   scenario.effects = {Effect("outliers", "", {{"fraction", 0.1}, {"size", 10e-6}})};

@@ -8,9 +8,10 @@ namespace {
 
 using measure::Vector4;
 
-bool HasFullCircle(const std::vector<Reading>& readings) {
-  return std::any_of(readings.begin(), readings.end(),
-                     [](const Reading& r) { return r.phase == Phase::kFullCircle; });
+bool HasFullCircle(const std::vector<measure::Motion>& motions) {
+  return std::any_of(motions.begin(), motions.end(), [](const measure::Motion& m) {
+    return m.phase == Phase::kFullCircle && m.status == ReadingStatus::kOk;
+  });
 }
 
 /// [ez, ex, ey, dy] with the units of files.
@@ -73,8 +74,8 @@ Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings,
   analysis.motions = measure::Measure(readings, geometry, analysis.calibration, estimator);
   analysis.stability = measure::SummariseStability(analysis.motions, geometry);
   analysis.verification = measure::SummariseVerification(analysis.motions, readings);
-  if (!HasFullCircle(readings)) {
-    analysis.not_separated = "there are no full-circle readings";
+  if (!HasFullCircle(analysis.motions)) {
+    analysis.not_separated = "there are no usable full-circle readings";
     return analysis;
   }
   separate::SeparateOptions options = separate::OptionsFrom(scenario);

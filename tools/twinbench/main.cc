@@ -25,11 +25,31 @@ constexpr const char* kExamples =
     "\n"
     "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong.";
 
+std::string Names(const std::vector<const CLI::App*>& commands) {
+  std::string text;
+  for (const CLI::App* command : commands) text += (text.empty() ? "" : ", ") + command->get_name();
+  return text;
+}
+
+/// A wrong command line in one line, like any other bad input.
+std::string Complaint(const CLI::App* app, const CLI::Error& error) {
+  const std::vector<CLI::App*> chosen = app->get_subcommands();
+  if (chosen.empty()) {
+    const std::vector<std::string> words = app->remaining();
+    return fmt::format("twinbench: {}; expected one of {}\n",
+                       words.empty() ? "there is no command" : "unknown command " + words.front(),
+                       Names(app->get_subcommands([](const CLI::App*) { return true; })));
+  }
+  const std::string command = "twinbench " + chosen.front()->get_name();
+  return fmt::format("{}: {}; expected what {} --help lists\n", command, error.what(), command);
+}
+
 int Run(int argc, char** argv) {
   CLI::App app(kAbout, "twinbench");
   app.footer(kExamples);
   app.set_version_flag("--version", std::string(TWINBENCH_VERSION));
   app.require_subcommand(1);
+  app.failure_message(Complaint);
   using namespace twinbench::tools;
   for (const auto add : {AddRun, AddExport, AddImport, AddSeparate, AddScore, AddHelp}) add(app);
   try {

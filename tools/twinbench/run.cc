@@ -9,6 +9,7 @@
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/tables.h"
 #include "twin/core/errors.h"
+#include "twin/core/number_text.h"
 #include "twin/core/run_record.h"
 #include "twin/procedure/procedure.h"
 #include "twin/sim/twin.h"
@@ -18,7 +19,7 @@ namespace {
 
 struct Options {
   std::string scenario, folder;
-  std::optional<std::uint64_t> seed;
+  std::optional<std::string> seed;
   bool noise_free = false;
   bool images = false;
   std::string fidelity;
@@ -39,9 +40,14 @@ void ReplaceErrors(Scenario& scenario, const std::string& option) {
   settings.random_rms = {};
 }
 
+std::string SeedOverride(const std::string& seed) {
+  if (!ParseSeed(seed)) throw InputError("--seed " + seed, "this is no seed", "a whole number from 0 to 2^64 - 1");
+  return "seed=\"" + seed + "\"";
+}
+
 Scenario ScenarioOf(const Options& options) {
   std::vector<std::string> overrides = options.overrides;
-  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  if (options.seed) overrides.push_back(SeedOverride(*options.seed));
   if (!options.fidelity.empty()) overrides.push_back(fmt::format("mechanics.fidelity=\"{}\"", options.fidelity));
   if (options.noise_free) overrides.push_back("noise_free=true");
   Scenario scenario = LoadScenario(options.scenario, overrides);

@@ -14,12 +14,20 @@ struct Options {
   std::vector<std::string> overrides;
 };
 
+/// What others script against (formats.md); results.json of a run has the rest.
+nlohmann::json SeparationJson(const separate::Separation& separation) {
+  const nlohmann::json all = separate::ToJson(separation);
+  nlohmann::json agreed;
+  for (const char* key : {"target", "reference", "not_separable", "residual_rms", "dof"}) agreed[key] = all.at(key);
+  return agreed;
+}
+
 void Separate(const Options& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   const Analysis analysis = Analyse(run.scenario, run.readings, EstimatorOf(options.estimator));
   if (!analysis.separation)
     throw InputError(options.source, analysis.not_separated, "readings of a full-circle test");
-  if (!options.json.empty()) WriteJson(options.json, separate::ToJson(*analysis.separation));
+  if (!options.json.empty()) WriteJson(options.json, SeparationJson(*analysis.separation));
   if (options.json != "-") fmt::print("{}", Summary(analysis));
 }
 

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/number_text.h"
+#include "twin/core/reading.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_text.h"
 #include "twin/core/scenario_values.h"
@@ -19,11 +22,11 @@ namespace twinbench {
 namespace {
 
 constexpr const char* kEffectTable = "effect";
+constexpr const char* kFixtureTable = "fixture";
 
 std::vector<KnownKey> KnownKeys(const std::vector<ScenarioKey>& keys) {
   std::vector<KnownKey> known;
   for (const ScenarioKey& key : keys) known.push_back({key.table, key.name, std::string(key.unit.suffix)});
-  known.push_back({"", kEffectTable, ""});
   return known;
 }
 
@@ -39,7 +42,9 @@ std::vector<std::string> KnownTables(const std::vector<ScenarioKey>& keys) {
 class KeyCheck {
  public:
   KeyCheck(const TomlSource& source, const std::vector<ScenarioKey>& keys)
-      : source_(source), known_(KnownKeys(keys)), tables_(KnownTables(keys)) {}
+      : source_(source), known_(KnownKeys(keys)), tables_(KnownTables(keys)) {
+    for (const char* blocks : {kFixtureTable, kEffectTable}) known_.push_back({"", blocks, ""});
+  }
 
   void Check() const { CheckTable(source_.root, ""); }
 
@@ -76,6 +81,44 @@ class KeyCheck {
   std::vector<KnownKey> known_;
   std::vector<std::string> tables_;  // the first is the top, ""
 };
+
+/// Reads every [[table]] block of the text with `read(block)`.
+template <class Block, class Read>
+std::vector<Block> ReadBlocks(const ScenarioText& text, const std::string& table, Read read) {
+  const auto value = text.Find(table);
+  if (!value) return {};
+  const auto refuse = [&](const TomlValue& found) {
+    throw InputError(found.Where(), fmt::format("{} is {}", table, found.Found()),
+                     fmt::format("[[{}]] blocks", table));
+  };
+  if (!value->node().is_array()) refuse(*value);
+  std::vector<Block> blocks;
+  for (const toml::node& node : *value->node().as_array()) {
+    if (!node.is_table()) refuse(value->With(node));
+    blocks.push_back(read(value->With(node)));
+  }
+  return blocks;
+}
+
+// --- [[fixture]] ---
+
+FixtureSettings ReadFixture(const TomlValue& block) {
+  FixtureSettings fixture;
+  fixture.location = block.Where();
+  const std::vector<ScenarioKey> keys = KeysOf(fixture);
+  RefuseUnknown(block, kFixtureTable, KnownKeys(keys));
+  for (const ScenarioKey& key : keys) {
+    if (const auto value = Inside(block, key.Name())) ReadKey(key, *value);
+  }
+  if (fixture.name.empty()) throw InputError(block.Where(), "the fixture has no name", "name = \"housing\"");
+  if (std::isnan(fixture.box_m.x()) == fixture.mesh_file.empty())
+    throw InputError(
+        block.Where(),
+        fmt::format("the fixture {} has {} box_mm {} mesh_file", fixture.name,
+                    fixture.mesh_file.empty() ? "neither" : "both", fixture.mesh_file.empty() ? "nor" : "and"),
+        "one of them");
+  return fixture;
+}
 
 // --- [[effect]] ---
 
@@ -141,27 +184,16 @@ double ReadParameter(const TomlValue& block, const toml::table& table, const Eff
 }
 
 EffectSettings ReadEffect(const TomlValue& block) {
-  const toml::table* table = block.node().as_table();
-  if (!table) throw InputError(block.Where(), "effect is " + block.Found(), "[[effect]] blocks");
-  const EffectEntry& entry = EntryOf(block, *table);
+  const toml::table& table = *block.node().as_table();
+  const EffectEntry& entry = EntryOf(block, table);
   EffectSettings effect;
   effect.name = entry.name;
-  effect.where = ReadPlace(block, *table, entry);
+  effect.where = ReadPlace(block, table, entry);
   effect.location = block.Where();
-  CheckEffectKeys(block, *table, entry, effect.where);
+  CheckEffectKeys(block, table, entry, effect.where);
   for (const EffectParameter& parameter : entry.parameters)
-    effect.parameters[parameter.name] = ReadParameter(block, *table, parameter, entry.name);
+    effect.parameters[parameter.name] = ReadParameter(block, table, parameter, entry.name);
   return effect;
-}
-
-std::vector<EffectSettings> ReadEffects(const ScenarioText& text) {
-  const auto value = text.Find(kEffectTable);
-  if (!value) return {};
-  const toml::array* blocks = value->node().as_array();
-  if (!blocks) throw InputError(value->Where(), "effect is " + value->Found(), "[[effect]] blocks");
-  std::vector<EffectSettings> effects;
-  for (const toml::node& node : *blocks) effects.push_back(ReadEffect(value->With(node)));
-  return effects;
 }
 
 // --- what keys say together ---
@@ -169,6 +201,15 @@ std::vector<EffectSettings> ReadEffects(const ScenarioText& text) {
 void CheckBench(const ScenarioText& text) {
   if (!text.Find("bench"))
     throw InputError(text.name() + ":1", "bench is missing", "bench = " + Alternatives(SupportedBenches()));
+}
+
+void CheckScanList(const ScenarioText& text, const AdcSettings& adc) {
+  const std::set<std::string> once(adc.scan_list.begin(), adc.scan_list.end());
+  if (once.size() == kChannelNames.size() && adc.scan_list.size() == kChannelNames.size()) return;
+  throw InputError(text.Where("adc.scan_list", text.name() + ":1"),
+                   fmt::format("adc.scan_list names {} of the {} channels in {} entries", once.size(),
+                               kChannelNames.size(), adc.scan_list.size()),
+                   "every channel once");
 }
 
 void CheckShifts(const ScenarioText& text, const ProcedureSettings& procedure) {
@@ -204,16 +245,17 @@ std::string AbsolutePath(const std::string& folder, const std::string& file) {
 }
 
 /// @return the absolute path of the file that `key` names.
-std::string NamedFile(const ScenarioText& text, const std::string& key, const std::string& folder,
+/// @param where  The key stands there.
+std::string NamedFile(const std::string& where, const std::string& key, const std::string& folder,
                       const std::string& file) {
   const std::string path = AbsolutePath(folder, file);
   if (std::filesystem::is_regular_file(path) && std::ifstream(path)) return path;
-  throw InputError(text.Where(key, text.name() + ":1"), fmt::format("{}: the file {} cannot be read", key, path),
+  throw InputError(where, fmt::format("{}: the file {} cannot be read", key, path),
                    "a readable file, named from the scenario's folder");
 }
 
 void FindFile(const ScenarioText& text, const std::string& key, const std::string& folder, std::string& file) {
-  if (!file.empty()) file = NamedFile(text, key, folder, file);
+  if (!file.empty()) file = NamedFile(text.Where(key, text.name() + ":1"), key, folder, file);
 }
 
 /// Moves the content of errors_file to `errors`. Where both are given the later source counts.
@@ -225,7 +267,7 @@ void LoadErrors(const ScenarioText& text, const std::string& table, const std::s
   if (block && &block->source() == &file->source())
     throw InputError(file->Where(), fmt::format("{} is given beside a table {}.errors", key, table), "one of them");
   const bool file_is_later = !block || &file->source() > &block->source();
-  if (file_is_later) s.errors = ReadTableErrors(NamedFile(text, key, folder, s.errors_file));
+  if (file_is_later) s.errors = ReadTableErrors(NamedFile(file->Where(), key, folder, s.errors_file));
   s.errors_file.clear();
 }
 
@@ -234,6 +276,9 @@ void LoadFiles(const ScenarioText& text, const std::string& folder, Scenario& sc
   FindFile(text, "environment.temperature_file", folder, scenario.environment.temperature_file);
   LoadErrors(text, "target", folder, scenario.target);
   LoadErrors(text, "reference", folder, scenario.reference);
+  for (FixtureSettings& f : scenario.fixtures) {
+    if (!f.mesh_file.empty()) f.mesh_file = NamedFile(f.location, "fixture.mesh_file", folder, f.mesh_file);
+  }
 }
 
 }  // namespace
@@ -248,7 +293,9 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
   for (const ScenarioKey& key : keys) {
     if (const auto value = sources.Find(key.Path())) ReadKey(key, *value);
   }
-  scenario.effects = ReadEffects(sources);
+  scenario.fixtures = ReadBlocks<FixtureSettings>(sources, kFixtureTable, ReadFixture);
+  scenario.effects = ReadBlocks<EffectSettings>(sources, kEffectTable, ReadEffect);
+  CheckScanList(sources, scenario.adc);
   CheckShifts(sources, scenario.procedure);
   CheckPasses(sources, scenario.procedure);
   CheckProfile(sources, scenario.laser);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -73,6 +74,8 @@ struct AmplifierSettings {                           // [amplifier]
 };
 
 struct AdcSettings {                                 // [adc]
+  /// Order in which the multiplexer takes the channels; each once. Readings and raw blocks stay in channel order.
+  std::vector<std::string> scan_list = {"psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"};
   int bits = 16;
   double range_V = 10.0;                             // +- range
   double rate_Hz = 250e3;                            // conversions a second, all channels together
@@ -158,6 +161,18 @@ struct ProcedureSettings {                           // [procedure]
   bool keep_raw = false;
 };
 
+/// Something opaque in the way of the light: a box, or a triangle mesh from a file. A [[fixture]] block.
+struct FixtureSettings {
+  std::string name;
+  Vector3 box_m = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());  // edges; NaN: a mesh
+  std::string mesh_file;                             // STL; absolute once loaded; empty: a box
+  double mesh_unit_m = 1.0 * units::mm;              // what the number 1 in it means
+  Vector3 position_m = Vector3::Zero();              // of the box's centre or the mesh's origin, in L ...
+  double yaw_rad = 0.0;                              // about z
+  bool rides_on_grating = false;                     // ... or in G, and it moves with the grating
+  std::string location;                              // "file.toml:31", for messages
+};
+
 /// One cause that the bench has and the nominal bench has not: an [[effect]] block.
 struct EffectSettings {
   std::string name;                                  // of EffectCatalogue()
@@ -186,11 +201,12 @@ struct Scenario {
   EnvironmentSettings environment;
   AutocollimatorSettings autocollimator;
   ProcedureSettings procedure;
+  std::vector<FixtureSettings> fixtures;
   std::vector<EffectSettings> effects;
 };
 
 /// Reads a scenario and applies `overrides`: "procedure.positions=12", in TOML syntax, where a single word needs no
-/// quotes. A later override wins. A list or [[effect]] blocks are replaced as a whole.
+/// quotes. A later override wins. A list, or all blocks of [[fixture]] or [[effect]], are replaced as a whole.
 ///
 /// @throws InputError with file:line for a syntax error, an unknown key (naming the nearest known one), a value out
 ///         of bounds or of the wrong type, an effect, place or parameter that is not in the catalogue, a file that

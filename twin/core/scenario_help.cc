@@ -58,6 +58,15 @@ std::string DescribeParameter(const EffectParameter& p) {
                      Short(p.upper_SI, p.to_SI));
 }
 
+std::string DescribeFixture() {
+  FixtureSettings example;
+  example.name = "housing";
+  example.box_m = Vector3::Constant(20.0 * units::mm);
+  std::string text = "\n[[fixture]]  # something opaque in the way of the light: a box or a mesh\n";
+  for (const ScenarioKey& key : KeysOf(example)) text += DescribeKey(key);
+  return text;
+}
+
 std::string DescribeEffect(const EffectEntry& entry) {
   std::string text = fmt::format("\n[[effect]]  # {}\nname = \"{}\"\n", entry.title, entry.name);
   if (!entry.places.empty()) {
@@ -79,6 +88,7 @@ std::string DescribeScenarioKeys() {
     table = key.table;
     text += DescribeKey(key);
   }
+  text += DescribeFixture();
   for (const EffectEntry& entry : EffectCatalogue()) text += DescribeEffect(entry);
   return text;
 }

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "twin/core/reading.h"
+
 namespace twinbench {
 namespace {
 
@@ -125,6 +127,7 @@ void AddAmplifier(Keys& keys, AmplifierSettings& s) {
 
 void AddAdc(Keys& keys, AdcSettings& s) {
   Table t(keys, "adc");
+  t.Text("scan_list", &s.scan_list, {kChannelNames.begin(), kChannelNames.end()}, "order of conversion, each once");
   t.Add("bits", kPure, {4, 16}, &s.bits, "of one conversion");
   t.Add("range", kVolt, Positive(1000), &s.range_V, "+- this voltage");
   t.Add("rate", kKilohertz, Positive(1e6), &s.rate_Hz, "conversions, all channels together");
@@ -215,11 +218,12 @@ void AddAutocollimator(Keys& keys, AutocollimatorSettings& s) {
 void AddPlan(Table& t, ProcedureSettings& s) {
   t.Text("phases", &s.phases, {"calibration", "stability", "verification", "full_circle"},
          "in the order of the run");
-  t.Add("positions", kPure, {2, 100000}, &s.positions, "stops of the full circle");
+  t.Add("positions", kPure, {3, 100000}, &s.positions, "stops of the full circle");
   t.Add("shifts", kPure, UpTo(99999), &s.shifts, "of the reference at every set-up, in steps");
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1");
   t.Text("clamping", &s.clamping, {"reseat", "reclamp"}, "how the grating comes back to the PSDs after a shift");
   t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every stop");
+  t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first stop from this far");
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
 }
 
@@ -266,6 +270,19 @@ std::vector<ScenarioKey> KeysOf(Scenario& s) {
   AddEnvironment(keys, s.environment);
   AddAutocollimator(keys, s.autocollimator);
   AddProcedure(keys, s.procedure);
+  return keys;
+}
+
+std::vector<ScenarioKey> KeysOf(FixtureSettings& s) {
+  Keys keys;
+  Table t(keys, "fixture");
+  t.Text("name", &s.name, {}, "for messages");
+  t.Add("box", kMm, Positive(5000), List(s.box_m), "edges of a box, centred on its position");
+  t.Text("mesh_file", &s.mesh_file, {}, "or an STL file, from the scenario's folder");
+  t.Add("mesh_unit", kMm, Positive(1e6), &s.mesh_unit_m, "what the number 1 in the file means");
+  t.Add("position", kMm, Within(5000), List(s.position_m), "of the box's centre or the file's origin: x, y, z");
+  t.Add("yaw", kDeg, Within(360), &s.yaw_rad, "about z");
+  t.Flag("rides_on_grating", s.rides_on_grating, "fixed to the grating, its place given in G; else in L");
   return keys;
 }
 

@@ -60,25 +60,10 @@ std::vector<std::string> ComponentNames() {
   return {kComponentNames.begin(), kComponentNames.end()};
 }
 
-/// The value of `key` inside a table that stands in the text.
-std::optional<TomlValue> Inside(const TomlValue& table, const std::string& key) {
-  const toml::node* node = table.node().as_table()->get(key);
-  if (!node) return std::nullopt;
-  return table.With(*node);
-}
-
 TomlValue Demand(const TomlValue& table, const std::string& key, const std::string& what,
                  const std::string& expected) {
   if (const auto value = Inside(table, key)) return *value;
   throw InputError(table.Where(), fmt::format("{} has no {}", what, key), expected);
-}
-
-void RefuseUnknown(const TomlValue& table, const std::string& path, const std::vector<KnownKey>& known) {
-  for (const auto& [key, node] : *table.node().as_table()) {
-    const std::string name(key.str());
-    const bool is_known = std::any_of(known.begin(), known.end(), [&](const auto& k) { return k.Key() == name; });
-    if (!is_known) throw UnknownKey(table.With(node).Where(), path, name, known);
-  }
 }
 
 constexpr const char* kHarmonicForm = "{ component = \"ez\", order = 1, amplitude_arcsec = 5.0, phase_deg = 30.0 }";
@@ -216,6 +201,20 @@ struct FieldText {
 };
 
 }  // namespace
+
+std::optional<TomlValue> Inside(const TomlValue& table, const std::string& key) {
+  const toml::node* node = table.node().as_table()->get(key);
+  if (!node) return std::nullopt;
+  return table.With(*node);
+}
+
+void RefuseUnknown(const TomlValue& table, const std::string& path, const std::vector<KnownKey>& known) {
+  for (const auto& [key, node] : *table.node().as_table()) {
+    const std::string name(key.str());
+    const bool is_known = std::any_of(known.begin(), known.end(), [&](const auto& k) { return k.Key() == name; });
+    if (!is_known) throw UnknownKey(table.With(node).Where(), path, name, known);
+  }
+}
 
 double ReadNumber(const TomlValue& value, const std::string& key, const Unit& unit, const Bounds& bounds) {
   const std::string expected = ExpectedNumber(unit, bounds);

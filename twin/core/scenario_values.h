@@ -14,6 +14,13 @@ double ReadNumber(const TomlValue& value, const std::string& key, const Unit& un
 /// @throws InputError if it is no text, or none of `choices` where there are any.
 std::string ReadText(const TomlValue& value, const std::string& key, const std::vector<std::string>& choices);
 
+/// @return the value of `key` in a table that stands in the text, or nothing.
+std::optional<TomlValue> Inside(const TomlValue& table, const std::string& key);
+
+/// @param path  Of the table, for messages.
+/// @throws InputError, naming the nearest of `known`, if the table has another key.
+void RefuseUnknown(const TomlValue& table, const std::string& path, const std::vector<KnownKey>& known);
+
 /// Puts `value` where `key` is bound to.
 /// @throws InputError if its type, a bound, a choice or the length of a list does not fit.
 void ReadKey(const ScenarioKey& key, const TomlValue& value);

@@ -95,6 +95,16 @@ std::string PrintKey(const ScenarioKey& key) {
   return fmt::format("{} = {}\n", key.Name(), std::visit(ValuePrinter{key}, key.field));
 }
 
+std::string PrintFixture(FixtureSettings fixture) {
+  std::string text = "\n[[fixture]]\n";
+  for (const ScenarioKey& key : KeysOf(fixture)) {
+    const bool of_a_mesh = key.name == "mesh_file" || key.name == "mesh_unit";
+    if (fixture.mesh_file.empty() ? of_a_mesh : key.name == "box") continue;
+    text += PrintKey(key);
+  }
+  return text;
+}
+
 std::string PrintEffect(const EffectSettings& effect) {
   const EffectEntry* entry = FindEffect(effect.name);
   Require(entry != nullptr, "an effect to be written must be in the catalogue");
@@ -119,6 +129,7 @@ std::string WriteScenario(const Scenario& scenario) {
     if (!own_table) table = key.table;
     text += PrintKey(key);
   }
+  for (const FixtureSettings& fixture : scenario.fixtures) text += PrintFixture(fixture);
   for (const EffectSettings& effect : scenario.effects) text += PrintEffect(effect);
   return text;
 }

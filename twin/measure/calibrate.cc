@@ -32,11 +32,6 @@ bool IsUsable(const Reading& reading) {
   return std::isfinite(reading.autocollimator_yaw_rad) && std::isfinite(reading.autocollimator_tilt_rad);
 }
 
-Vector4 Divided(const std::array<double, kChannels>& V, const BenchGeometry& geometry) {
-  const auto& s = geometry.sensitivity_V_m;
-  return {V[0] / s[0], V[1] / s[0], V[2] / s[1], V[3] / s[1]};
-}
-
 /// The autocollimator's noise as spot noise; first-order lengths l1 (1 + 1/cos) and l1 (1 + cos) are ample for
 /// that.
 Vector4 AutocollimatorVariances(const BenchGeometry& geometry) {
@@ -63,7 +58,7 @@ Sweep CollectSweep(const std::vector<Reading>& readings, const BenchGeometry& ge
     const auto noise_m2 = SpotVariances(r, geometry);
     sweep.noise_known = sweep.noise_known && noise_m2.has_value();
     const Vector4 variance_m2 = noise_m2.value_or(Vector4::Constant(kAssumedNoise_m * kAssumedNoise_m));
-    sweep.points.push_back({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad, Divided(r.mean_V, geometry),
+    sweep.points.push_back({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad, OnSurface(r.mean_V, geometry),
                             variance_m2 + autocollimator_m2});
   }
   return sweep;
@@ -160,10 +155,6 @@ Calibration Summary(const Sweep& sweep, const SweepFit& fit) {
   return c;
 }
 
-Eigen::Matrix2d Turn(double roll_rad) {
-  return Eigen::Rotation2Dd(roll_rad).toRotationMatrix();
-}
-
 }  // namespace
 
 Matrix6 Calibration::PriorCovariance() {
@@ -182,51 +173,6 @@ Calibration Calibrate(const std::vector<Reading>& readings, const BenchGeometry&
   }
   calibration.published_l1_m = PublishedDistance(readings, geometry);
   return calibration;
-}
-
-Vector4 ShownSpots(const Vector4& spots_m, const Eigen::Vector4d& gain, const Eigen::Vector2d& roll_rad) {
-  Vector4 shown_m;
-  for (int p = 0; p < 2; ++p) {
-    shown_m.segment<2>(2 * p) = Turn(-roll_rad[p]) * spots_m.segment<2>(2 * p);
-  }
-  return shown_m.cwiseProduct(gain);
-}
-
-Vector4 SpotsFromVoltages(const std::array<double, kChannels>& mean_V, const BenchGeometry& geometry,
-                          const Calibration& calibration) {
-  const Vector4 shown_m = Divided(mean_V, geometry).cwiseQuotient(calibration.gain);
-  Vector4 spots_m;
-  for (int p = 0; p < 2; ++p) {
-    spots_m.segment<2>(2 * p) = Turn(calibration.roll_rad[p]) * shown_m.segment<2>(2 * p);
-  }
-  return spots_m;
-}
-
-Matrix46 SpotCalibrationJacobian(const Vector4& spots_m, const Calibration& calibration) {
-  Matrix46 jacobian = Matrix46::Zero();
-  for (int p = 0; p < 2; ++p) {
-    const Eigen::Matrix2d turn = Turn(calibration.roll_rad[p]);
-    const Eigen::Vector2d spot_m = spots_m.segment<2>(2 * p);
-    const Eigen::Vector2d unturned_m = turn.transpose() * spot_m;
-    const Eigen::Vector2d relative = unturned_m.cwiseQuotient(calibration.gain.segment<2>(2 * p));
-    jacobian.block<2, 2>(2 * p, 2 * p) = -turn * relative.asDiagonal();
-    jacobian.block<2, 1>(2 * p, 4 + p) << -spot_m.y(), spot_m.x();
-  }
-  return jacobian;
-}
-
-std::optional<Vector4> SpotVariances(const Reading& reading, const BenchGeometry& geometry) {
-  Vector4 variance_m2;
-  for (int c = 0; c < kChannels; ++c) {
-    const double std_V = reading.std_V[static_cast<std::size_t>(c)];
-    if (!std::isfinite(std_V) || reading.n_samples < 1) return std::nullopt;
-    // Noise above one step dithers the converter, and std contains its share; below, averaging does not help.
-    const double step_V = std_V < geometry.adc_step_V ? geometry.adc_step_V : 0.0;
-    const double variance_V2 = std_V * std_V / reading.n_samples + step_V * step_V / 12.0;
-    if (!(variance_V2 > 0.0)) return std::nullopt;
-    variance_m2[c] = variance_V2 / std::pow(geometry.sensitivity_V_m[static_cast<std::size_t>(c / 2)], 2);
-  }
-  return variance_m2;
 }
 
 }  // namespace twinbench::measure

@@ -43,6 +43,9 @@ struct Calibration {
 ///         least three usable readings: the prior, and a note.
 Calibration Calibrate(const std::vector<Reading>& readings, const BenchGeometry& geometry);
 
+/// The four channels on the PSDs' surfaces [m]: voltages over sensitivities, nothing else.
+Vector4 OnSurface(const std::array<double, kChannels>& mean_V, const BenchGeometry& geometry);
+
 /// True spot coordinates [m] from voltages: divides by sensitivity and gain, turns the axes back.
 Vector4 SpotsFromVoltages(const std::array<double, kChannels>& mean_V, const BenchGeometry& geometry,
                           const Calibration& calibration);

@@ -8,15 +8,11 @@
 
 #include "twin/core/errors.h"
 #include "twin/separate/published.h"
+#include "twin/separate/residuals.h"
 #include "twin/separate/separator.h"
-#include "twin/separate/statistics.h"
 
 namespace twinbench::separate {
 namespace {
-
-constexpr double kTooUnlikely = 0.001;
-constexpr double kLeastDof = 0.5;  // less is none: dof_of is a sum of rounding errors then
-constexpr double kLeastScale = 1e-9;
 
 /// Mean motion by position (all passes), for each set-up.
 std::map<int, std::map<int, std::pair<Vector4, int>>> SumsByPosition(const std::vector<Motion>& motions,
@@ -28,18 +24,6 @@ std::map<int, std::map<int, std::pair<Vector4, int>>> SumsByPosition(const std::
     ++sum.second;
   }
   return sums;
-}
-
-/// Factors on the stated uncertainties that the residuals ask for.
-Vector4 ResidualScale(const Separation& result, bool covariance_known) {
-  Vector4 scale = Vector4::Ones();
-  for (int d = 0; d < measure::kDofs; ++d) {
-    if (result.dof_of[d] < kLeastDof) continue;
-    const bool unlikely = ChiSquaredExceedance(result.chi2[d], result.dof_of[d]) < kTooUnlikely;
-    const double ratio = std::sqrt(result.chi2[d] / result.dof_of[d]);
-    if (!covariance_known || unlikely) scale[d] = std::max(ratio, kLeastScale);
-  }
-  return scale;
 }
 
 void NoteScale(const Vector4& scale, bool covariance_known, Separation& result) {
@@ -89,15 +73,16 @@ std::vector<Closure> FindClosure(const std::vector<Motion>& motions, const Layou
 
 Separation SeparateRigorous(const std::vector<Motion>& motions, const BenchGeometry& geometry,
                             const SeparateOptions& options) {
-  const Separator separator(motions, geometry, options);
+  Separator separator(motions, geometry, options);
   Separation first = separator.Separate(motions);
-  const Vector4 scale = ResidualScale(first, separator.covariance_known());
-  NoteScale(scale, separator.covariance_known(), first);
+  const bool known = separator.covariance_known();
+  const Vector4 scale = known ? StatedNoiseScale(first) : AssumedNoiseScale(first, geometry);
+  NoteScale(scale, known, first);
   if (scale == Vector4::Ones()) return first;
-  Separation result = Separator(motions, geometry, options, scale).Separate(motions);
-  result.scale = scale;
+  separator.Rescale(motions, scale);
+  Separation result = separator.Separate(motions);
   result.notes = first.notes;
-  if (separator.covariance_known()) result.chi2 = first.chi2;  // the test was against the stated noise
+  if (known) result.chi2 = first.chi2;  // the test was against the stated noise
   return result;
 }
 

@@ -33,7 +33,7 @@ struct TableEstimate {
   TableErrors u;                      // standard uncertainty: random and systematic together
   std::vector<Component> components;  // determined ones, in the order of the blocks of both matrices
   Eigen::MatrixXd cov;             // random part; row s * n + i is components[s] at position i [rad^2, rad m, m^2]
-  Eigen::MatrixXd cov_systematic;  // of the calibration
+  Eigen::MatrixXd cov_systematic;  // of the calibration, and of the model's second order
 };
 
 /// Mean motion of a set-up over its positions minus that of the first: zero if nothing was re-mounted differently
@@ -51,12 +51,13 @@ struct Separation {
 
   // By motion [ez, ex, ey, dy]:
   Vector4 residual_rms = Vector4::Constant(kNaN);
-  Vector4 chi2 = Vector4::Constant(kNaN);    // against the stated covariances
-  Vector4 dof_of = Vector4::Constant(kNaN);  // degrees of freedom of each; they sum up to dof
-  Vector4 scale = Vector4::Ones();           // applied to the readings' standard uncertainties
-  int dof = 0;                               // readings - rank
-  int readings = 0;                          // used
-  std::vector<Vector4> residuals;            // one a motion handed in; NaN if not used
+  Vector4 chi2 = Vector4::Constant(kNaN);          // against the stated covariances
+  Vector4 dof_of = Vector4::Constant(kNaN);        // degrees of freedom of each; they sum up to dof
+  Vector4 scale = Vector4::Ones();                 // applied to the readings' standard uncertainties
+  Vector4 second_order = Vector4::Constant(kNaN);  // what the model may miss of a motion (UnreadSecondOrder)
+  int dof = 0;                                     // readings - rank
+  int readings = 0;                                // used
+  std::vector<Vector4> residuals;                  // one a motion handed in; NaN if not used
   std::vector<Closure> closure;
   std::vector<Vector4> mount;  // constants of each set-up; defined up to what cannot be separated
   std::vector<std::string> notes;
@@ -68,14 +69,16 @@ struct Separation {
 /// iteration on the exact chain; any shift set, missing readings allowed. kPublished: see published.h.
 ///
 /// @param motions  From measure::Measure(); only full-circle motions with status ok are used. Weights are the mean
-///                 covariance of each pass of a set-up; if covariances are not known, the residual scatter. If the
-///                 residuals of a motion exceed its stated covariance (p < 0.001), its uncertainty is scaled up
+///                 covariance of each pass of a set-up. If covariances are not known, equal noise on the PSD axes
+///                 is assumed and scaled, motion by motion, to the residual scatter (but see AssumedNoiseScale). If
+///                 the residuals of a motion exceed its stated covariance (p < 0.001), its uncertainty is scaled up
 ///                 (Birge) and a note says so.
 /// @throws InputError if the angles do not lie on a grid or contradict each other (FindLayout).
 ///
-/// Uncertainty: first-order propagation of readings and calibration. Not included: drift, effects that are not of
-/// the form target + reference; they show in chi2 when there are more than two set-ups. Reference:
-/// knowledge/metrology 2.2, 3.3, 3.4.
+/// Uncertainty: first-order propagation of readings and calibration, and a floor for products of errors with what
+/// the bench does not read (UnreadSecondOrder, about 1 milliarcsec): far below real noise, all there is without
+/// noise. Not included: drift, effects that are not of the form target + reference; they show in chi2 when there
+/// are more than two set-ups. Reference: knowledge/metrology 2.2, 3.3, 3.4.
 Separation Separate(const std::vector<Motion>& motions, const BenchGeometry& geometry,
                     const SeparateOptions& options);
 

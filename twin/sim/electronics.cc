@@ -1,8 +1,25 @@
 #include "twin/sim/electronics.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "twin/core/errors.h"
+
 namespace twinbench::sim {
+namespace {
+
+std::array<std::size_t, kChannels> ScanOf(const std::vector<std::string>& scan_list) {
+  std::array<std::size_t, kChannels> scan{};
+  Require(scan_list.size() == kChannels, "the scan list names every channel once");
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    const auto found = std::find(kChannelNames.begin(), kChannelNames.end(), scan_list[place]);
+    Require(found != kChannelNames.end(), "the scan list names a channel that does not exist");
+    scan[place] = static_cast<std::size_t>(found - kChannelNames.begin());
+  }
+  return scan;
+}
+
+}  // namespace
 
 Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
     : adc_(actual.adc),
@@ -10,6 +27,7 @@ Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
       sensitivity_V_m_{actual.psd_a.sensitivity_V_m, actual.psd_a.sensitivity_V_m, actual.psd_b.sensitivity_V_m,
                        actual.psd_b.sensitivity_V_m},
       sampling_(sampling),
+      scan_(ScanOf(actual.adc.scan_list)),
       noise_free_(actual.noise_free),
       noise_(actual.seed, "amplifier.noise") {}
 
@@ -21,11 +39,11 @@ std::array<double, kChannels> Electronics::Amplify(const std::array<double, kCha
   return signal_V;
 }
 
-Acquisition Electronics::Convert(const std::array<double, kChannels>& signal_V, Time start, int reading,
-                                 int n_samples, bool keep_raw) {
+AdInput Electronics::InScanOrder(const std::array<double, kChannels>& signal_V, Time start) const {
   AdInput input;
-  for (int c = 0; c < kChannels; ++c) {
-    ChannelInput& channel = input.channel[c];
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    const std::size_t c = scan_[place];
+    ChannelInput& channel = input.channel[place];
     channel.level_V = signal_V[c];
     channel.noise_V = amplifier_.noise_V;
     channel.crosstalk = sampling_.crosstalk[c];
@@ -35,8 +53,25 @@ Acquisition Electronics::Convert(const std::array<double, kChannels>& signal_V, 
   // Whole turns are taken off before the sine sees them, so that the phase keeps its digits after hours.
   const double turns = amplifier_.hum_Hz * ToSeconds(start);
   input.hum = {amplifier_.hum_V, amplifier_.hum_Hz, 2.0 * units::kPi * (turns - std::floor(turns))};
+  return input;
+}
+
+Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
+  Acquisition block = scanned;
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    block.channel[scan_[place]] = scanned.channel[place];
+    for (std::size_t scan = 0; scan + kChannels <= block.raw.size(); scan += kChannels) {
+      block.raw[scan + scan_[place]] = scanned.raw[scan + place];
+    }
+  }
+  return block;
+}
+
+Acquisition Electronics::Convert(const std::array<double, kChannels>& signal_V, Time start, int reading,
+                                 int n_samples, bool keep_raw) {
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
-  return TakeBlock(adc_, input, {n_samples, adc_.every_sample, keep_raw, noise_free_}, noise_).ToAcquisition(start);
+  const AdRequest request{n_samples, adc_.every_sample, keep_raw, noise_free_};
+  return InChannelOrder(TakeBlock(adc_, InScanOrder(signal_V, start), request, noise_).ToAcquisition(start));
 }
 
 Duration Electronics::BlockTime(int n_samples) const {

@@ -23,10 +23,14 @@ class Electronics {
   Duration BlockTime(int n_samples) const;
 
  private:
+  AdInput InScanOrder(const std::array<double, kChannels>& signal_V, Time start) const;
+  Acquisition InChannelOrder(const Acquisition& scanned) const;
+
   AdcSettings adc_;
   AmplifierSettings amplifier_;
   std::array<double, kChannels> sensitivity_V_m_;
   SamplingState sampling_;
+  std::array<std::size_t, kChannels> scan_;  // channel of each place in the scan
   bool noise_free_;
   Stream noise_;
 };

@@ -77,6 +77,9 @@ optics::RotaryOptics OpticsOf(const Scenario& actual, double nominal_wavelength_
   parameters.psd_b = PsdOf(actual.psd_b);
   parameters.beam = BeamOf(actual.laser);
   for (const FixtureSettings& fixture : actual.fixtures) parameters.blockers.push_back(BlockerOf(fixture));
+  if (nominal_wavelength_m * actual.grating.lines_per_m >= 1.0)
+    throw InputError("laser.wavelength_nm, grating.lines_per_mm", "the orders +1 and -1 cannot leave the grating",
+                     "a wavelength below the distance of two grooves");
   return optics::RotaryOptics(parameters);
 }
 

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "twin/core/devices.h"
+#include "twin/core/scenario.h"
+
+/// What a backend must bring to be put through the contract of the device interfaces.
+namespace twinbench::test {
+
+/// A bench that is up, with whatever keeps it alive.
+class LivingBench {
+ public:
+  virtual ~LivingBench() = default;
+  virtual RotaryBench Bench() = 0;
+};
+
+/// One backend. `make` sets up a new bench; a real one goes to its rest position.
+struct BenchBackend {
+  std::string name;  // letters and digits, of the test
+  std::function<std::unique_ptr<LivingBench>(const Scenario&)> make;
+  bool repeats_its_bits = false;  // a twin or a replay: same scenario, same numbers
+
+  friend void PrintTo(const BenchBackend& backend, std::ostream* out) { *out << backend.name; }
+};
+
+}  // namespace twinbench::test

@@ -1,0 +1,135 @@
+#include <gmock/gmock.h>
+
+#include "tests/tools/program.h"
+
+namespace twinbench::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<std::string> KeysOf(const nlohmann::json& json) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  return keys;
+}
+
+/// A run in the folder `run`, its readings in `readings.csv`.
+class Evaluate : public Program {
+ protected:
+  Evaluate() {
+    Write("small.toml", kSmall);
+    MakeRun("run");
+    Succeed({"export", "run", "--readings", "readings.csv"});
+  }
+};
+
+TEST_F(Evaluate, ExportToAFileAndToStdoutIsTheSame) {
+  EXPECT_EQ(Read("readings.csv"), Succeed({"export", "run", "--readings", "-"}));
+  EXPECT_EQ(Call({"export", "run", "--readings", "again.csv"}).out, "");
+}
+
+TEST_F(Evaluate, SeparateRepeatsTheSeparationOfTheRun) {
+  const auto results = nlohmann::json::parse(Read("run/results.json"));
+  const auto again = Json({"separate", "run", "--json", "-"});
+  for (const auto& [key, value] : again.items()) EXPECT_EQ(value, results.at("separation").at(key)) << key;
+}
+
+TEST_F(Evaluate, AnImportedRunSeparatesToTheSameNumbers) {
+  Succeed({"import", "readings.csv", "--scenario", "small.toml", "-o", "imported"});
+  EXPECT_EQ(Json({"separate", "imported", "--json", "-"}), Json({"separate", "run", "--json", "-"}));
+  EXPECT_EQ(ReadingsOf("imported"), Read("readings.csv"));
+}
+
+TEST_F(Evaluate, AReadingsFileWithAScenarioSeparatesLikeTheFolder) {
+  for (const char* estimator : {"rigorous", "published"}) {
+    const auto from_file =
+        Json({"separate", "readings.csv", "--scenario", "small.toml", "--json", "-", "--estimator", estimator});
+    EXPECT_EQ(from_file, Json({"separate", "run", "--json", "-", "--estimator", estimator})) << estimator;
+  }
+}
+
+TEST_F(Evaluate, SeparateWritesAFileAndPrintsForAPerson) {
+  const std::string text = Succeed({"separate", "run", "--json", "s.json"});
+  EXPECT_THAT(text, HasSubstr("separation by the rigorous estimator"));
+  EXPECT_EQ(nlohmann::json::parse(Read("s.json")), Json({"separate", "run", "--json", "-"}));
+}
+
+TEST_F(Evaluate, ThePublishedEstimatorGivesOtherNumbers) {
+  EXPECT_THAT(Succeed({"separate", "run", "--estimator", "published"}),
+              HasSubstr("separation by the published estimator"));
+  EXPECT_NE(Json({"separate", "run", "--json", "-", "--estimator", "published"}).at("target").at("ex_arcsec"),
+            Json({"separate", "run", "--json", "-"}).at("target").at("ex_arcsec"));
+}
+
+TEST_F(Evaluate, SeparateTakesOverrides) {
+  // Who believes in PSDs at half the distance reads angles of about twice the size.
+  const auto honest = Json({"separate", "run", "--json", "-"});
+  const auto near =
+      Json({"separate", "run", "--json", "-", "--set", "psd_a.distance_mm=100", "--set", "psd_b.distance_mm=100"});
+  EXPECT_NE(honest.at("target").at("ez_arcsec"), near.at("target").at("ez_arcsec"));
+}
+
+TEST_F(Evaluate, SeparationJsonHasTheAgreedKeys) {
+  const auto json = Json({"separate", "run", "--json", "-"});
+  EXPECT_THAT(KeysOf(json), ElementsAre("dof", "not_separable", "reference", "residual_rms", "target"));
+  for (const char* table : {"target", "reference"}) {
+    const auto& estimate = json.at(table);
+    EXPECT_EQ(estimate.at("position_deg").size(), 12u);
+    for (const char* column : {"ex_arcsec", "ey_arcsec", "ez_arcsec", "dy_um"}) {
+      EXPECT_EQ(estimate.at(column).size(), 12u) << column;
+      EXPECT_EQ(estimate.at(std::string("u_") + column).size(), 12u) << column;
+    }
+  }
+  ASSERT_FALSE(json.at("not_separable").empty());
+  for (const auto& lost : json.at("not_separable")) EXPECT_THAT(KeysOf(lost), ElementsAre("what", "why"));
+  EXPECT_TRUE(json.at("dof").is_number_integer());
+  EXPECT_TRUE(json.at("residual_rms").is_object());
+}
+
+TEST_F(Evaluate, EstimatesHaveZeroMeanAndPositionsOfACircle) {
+  const auto target = Json({"separate", "run", "--json", "-"}).at("target");
+  double sum_arcsec = 0.0;
+  for (std::size_t k = 0; k < 12; ++k) {
+    EXPECT_NEAR(target.at("position_deg")[k], 30.0 * static_cast<double>(k), 1e-9);
+    sum_arcsec += target.at("ez_arcsec")[k].get<double>();
+    EXPECT_GT(target.at("u_ez_arcsec")[k].get<double>(), 0.0);
+  }
+  EXPECT_NEAR(sum_arcsec, 0.0, 1e-6);  // values of 10 arcsec, doubles
+}
+
+TEST_F(Evaluate, ScorePrintsEveryComponentAndIsWithinItsUncertainty) {
+  const std::string text = Succeed({"score", "run"});
+  const auto json = Json({"score", "run", "--json", "-"});
+  for (const char* table : {"target", "reference"}) {
+    for (const char* component : {"ex", "ey", "ez", "dy"}) {
+      EXPECT_THAT(text, testing::ContainsRegex(std::string("\n") + table + " +" + component + " ")) << component;
+      const auto& row = json.at(table).at(component);
+      EXPECT_EQ(row.at("positions"), 12);
+      // Mean of 12 correlated squares: 1 if the uncertainty is right; 5 would be a defect.
+      EXPECT_LT(row.at("mean_chi2"), 5.0) << table << component;
+    }
+  }
+  EXPECT_THAT(Succeed({"score", "run", "--positions"}), HasSubstr("position_deg"));
+}
+
+TEST_F(Evaluate, ScoreNeedsATruth) {
+  Succeed({"import", "readings.csv", "--scenario", "small.toml", "-o", "imported"});
+  const Outcome outcome = Call({"score", "imported"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("imported/truth.json"));
+}
+
+TEST_F(Evaluate, AMessageOfTheFileSystemIsCodeOne) {
+  EXPECT_EQ(Call({"export", "run", "--readings", "no/such/folder.csv"}).exit_code, 1);
+  EXPECT_EQ(Call({"separate", "run", "--json", "no/such/folder.json"}).exit_code, 1);
+}
+
+TEST_F(Evaluate, HelpListsKeysAndEffects) {
+  EXPECT_THAT(Succeed({"help", "scenario"}), HasSubstr("[[fixture]]"));
+  EXPECT_THAT(Succeed({"help", "effects"}), HasSubstr("psd_gain"));
+  EXPECT_THAT(Succeed({"--help"}), HasSubstr("Exit codes"));
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,94 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "tests/tools/program.h"
+
+namespace twinbench::test {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::steady_clock;
+
+/// Runs that are killed in the middle.
+class KilledRun : public Program {
+ protected:
+  KilledRun() {
+    // 2 * 13 + 2 * 13 + 4 * 4 * 72 = 1204 readings, one transaction each.
+    Write("long.toml", "bench = \"rotary_4dof\"\n[procedure]\npositions = 72\n");
+    const auto start = steady_clock::now();
+    Succeed({"run", "long.toml", "-o", "undisturbed"});
+    duration_ = steady_clock::now() - start;
+    readings_ = ReadingsOf("undisturbed");
+  }
+
+  /// Kills a run into `name` that long after its start, or after `file` has appeared in it.
+  void KillAfter(duration<double> delay, const std::string& name, const std::string& file = "") {
+    Process run(At(""), {"run", "long.toml", "-o", name});
+    while (!file.empty() && !Exists(name + "/" + file) && run.Runs()) std::this_thread::yield();
+    std::this_thread::sleep_for(delay);
+    if (run.Runs()) run.Kill();
+  }
+
+  /// @return how many lines `text` has, all of them whole lines at the beginning of the undisturbed readings.
+  std::ptrdiff_t ExpectPrefix(const std::string& text) const {
+    EXPECT_EQ(text, readings_.substr(0, text.size()));
+    EXPECT_TRUE(text.ends_with('\n'));
+    return std::count(text.begin(), text.end(), '\n');
+  }
+
+  duration<double> duration_{};
+  std::string readings_;
+  std::mt19937_64 random_{2007};
+};
+
+TEST_F(KilledRun, HoldsAPrefixOfTheUndisturbedRunByteForByte) {
+  int cut_short = 0;
+  std::set<std::ptrdiff_t> lengths;
+  for (int moment = 0; moment < 14; ++moment) {
+    const std::string name = "killed" + std::to_string(moment);
+    // One moment in every fourteenth of the undisturbed run.
+    const double share = (moment + std::uniform_real_distribution<>()(random_)) / 14.0;
+    KillAfter(share * duration_, name, "truth.json");
+    const std::ptrdiff_t lines = ExpectPrefix(Succeed({"export", name}));
+    lengths.insert(lines);
+    if (lines < std::count(readings_.begin(), readings_.end(), '\n')) ++cut_short;
+  }
+  EXPECT_GE(cut_short, 5) << "the kills came too late to show anything";
+  EXPECT_GE(lengths.size(), 5u);
+}
+
+TEST_F(KilledRun, AtItsVeryStartHasNoRecordOrAGoodOne) {
+  for (int moment = 0; moment < 10; ++moment) {
+    const std::string name = "killed" + std::to_string(moment);
+    KillAfter(std::chrono::milliseconds(2 * moment), name);
+    const Outcome outcome = Call({"export", name});
+    if (outcome.exit_code == 0) {
+      ExpectPrefix(outcome.out);
+    } else {
+      // Said in one line, as bad input: no record, or its making was interrupted.
+      EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+      EXPECT_THAT(outcome.err, testing::HasSubstr(name));
+    }
+  }
+}
+
+TEST_F(KilledRun, CanStillBeEvaluatedAsFarAsItGot) {
+  KillAfter(0.7 * duration_, "killed", "truth.json");
+  const Outcome outcome = Call({"separate", "killed", "--json", "-"});
+  EXPECT_TRUE(outcome.exit_code == 0 || outcome.err.find("; expected ") != std::string::npos) << outcome.err;
+  EXPECT_TRUE(Exists("killed/scenario.toml"));
+}
+
+TEST_F(KilledRun, IsNotOverwrittenByTheNext) {
+  KillAfter(0.3 * duration_, "killed", "truth.json");
+  const std::string kept = ReadingsOf("killed");
+  EXPECT_EQ(Call({"run", "long.toml", "-o", "killed"}).exit_code, 2);
+  EXPECT_EQ(ReadingsOf("killed"), kept);
+}
+
+}  // namespace
+}  // namespace twinbench::test

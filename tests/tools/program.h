@@ -1,0 +1,143 @@
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/core/input_error.h"
+
+/// The program `twinbench` as its users meet it: a process in a folder.
+namespace twinbench::test {
+
+inline std::string Contents(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out, err;
+};
+
+/// A running twinbench. One that was not waited for is killed.
+class Process {
+ public:
+  /// @param folder  Working directory; what the process says goes to files beside it.
+  Process(const std::string& folder, const std::vector<std::string>& arguments)
+      : out_(folder + ".out"), err_(folder + ".err") {
+    std::vector<std::string> words = {TWINBENCH_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+    for (const auto& [descriptor, path] : {std::pair{1, out_}, std::pair{2, err_}})
+      posix_spawn_file_actions_addopen(&actions, descriptor, path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (posix_spawn(&id_, TWINBENCH_PROGRAM, &actions, nullptr, argv.data(), environ) != 0)
+      throw BenchError("the program cannot be started");
+    posix_spawn_file_actions_destroy(&actions);
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  ~Process() {
+    if (id_ > 0) Kill();
+    std::filesystem::remove(out_);
+    std::filesystem::remove(err_);
+  }
+
+  bool Runs() { return id_ > 0 && waitpid(id_, &status_, WNOHANG) == 0 ? true : (id_ = 0, false); }
+
+  void Kill() {
+    kill(id_, SIGKILL);
+    Wait();
+  }
+  Outcome Wait() {
+    if (id_ > 0) waitpid(id_, &status_, 0);
+    id_ = 0;
+    return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -1, Contents(out_), Contents(err_)};
+  }
+
+ private:
+  std::string out_, err_;
+  pid_t id_ = 0;
+  int status_ = 0;
+};
+
+/// A working directory with a small scenario, gone at the end of the test.
+class Program : public ::testing::Test {
+ protected:
+  Program() { std::filesystem::create_directory(folder_); }
+
+  Outcome Call(const std::vector<std::string>& arguments) { return Process(folder_, arguments).Wait(); }
+
+  /// Calls what must succeed. @return what it printed to stdout.
+  std::string Succeed(const std::vector<std::string>& arguments) {
+    const Outcome outcome = Call(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.out;
+  }
+  nlohmann::json Json(const std::vector<std::string>& arguments) {
+    return nlohmann::json::parse(Succeed(arguments));
+  }
+
+  std::string At(const std::string& name) const { return folder_ + "/" + name; }
+  std::string Read(const std::string& name) const { return Contents(At(name)); }
+  void Write(const std::string& name, const std::string& text) const {
+    std::ofstream(At(name), std::ios::binary) << text;
+  }
+  bool Exists(const std::string& name) const { return std::filesystem::exists(At(name)); }
+
+  /// Everything in the folder with its content, by name.
+  std::map<std::string, std::string> Snapshot() const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_))
+      files[entry.path()] = entry.is_regular_file() ? Contents(entry.path()) : "";
+    return files;
+  }
+
+  /// Runs the small scenario into `name`.
+  void MakeRun(const std::string& name, const std::vector<std::string>& options = {}) {
+    std::vector<std::string> arguments = {"run", "small.toml", "-o", name};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    Succeed(arguments);
+  }
+  std::string ReadingsOf(const std::string& run) { return Succeed({"export", run}); }
+
+  static constexpr const char* kSmall = R"(bench = "rotary_4dof"
+seed = 5
+[target.random]
+ex_arcsec = 4.0
+ez_arcsec = 5.0
+dy_um = 2.0
+[reference.random]
+ey_arcsec = 5.0
+ez_arcsec = 12.0
+dy_um = 2.0
+[reference.seating]
+ez_arcsec = 20.0
+[procedure]
+positions = 12
+shifts = [0, 1, 5]
+passes = [1, -1]
+)";
+
+ private:
+  TemporaryFolder temporary_;
+  std::string folder_ = temporary_.File("work");
+};
+
+}  // namespace twinbench::test

@@ -1,0 +1,132 @@
+#include <gmock/gmock.h>
+
+#include "tests/tools/program.h"
+
+namespace twinbench::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class Run : public Program {
+ protected:
+  Run() { Write("small.toml", kSmall); }
+};
+
+TEST_F(Run, LeavesScenarioRecordTruthAndResults) {
+  const Outcome outcome = Call({"run", "small.toml", "-o", "a/b"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* file : {"scenario.toml", "record.sqlite", "truth.json", "results.json"})
+    EXPECT_TRUE(Exists(std::string("a/b/") + file)) << file;
+  const auto results = nlohmann::json::parse(Read("a/b/results.json"));
+  EXPECT_EQ(results.at("readings_by_status").at("ok"), 2 * 2 * 13 + 3 * 2 * 12);  // sweeps, then circles
+  EXPECT_TRUE(results.at("separation").contains("target"));
+}
+
+TEST_F(Run, PrintsResultsToStdoutAndProgressToStderr) {
+  const Outcome outcome = Call({"run", "small.toml", "-o", "a"});
+  EXPECT_THAT(outcome.out, StartsWith("124 readings\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("target table (laboratory frame)\n"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("bench time")));
+  EXPECT_THAT(outcome.err, HasSubstr("124 of 124 readings, full_circle, bench time"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("target table")));
+}
+
+TEST_F(Run, GivesTheSameBytesForTheSameSeedOnly) {
+  MakeRun("a");
+  MakeRun("b");
+  MakeRun("c", {"--seed", "6"});
+  MakeRun("d", {"--set", "seed=6"});
+  EXPECT_EQ(ReadingsOf("a"), ReadingsOf("b"));
+  EXPECT_NE(ReadingsOf("a"), ReadingsOf("c"));
+  EXPECT_EQ(ReadingsOf("c"), ReadingsOf("d"));
+}
+
+TEST_F(Run, TakesEverySeedOf64Bits) {
+  MakeRun("a", {"--seed", "18446744073709551615"});
+  EXPECT_THAT(Read("a/scenario.toml"), HasSubstr("seed = \"18446744073709551615\"\n"));
+  EXPECT_EQ(Call({"run", "a/scenario.toml", "-o", "b"}).exit_code, 0);
+  EXPECT_EQ(ReadingsOf("a"), ReadingsOf("b"));
+}
+
+TEST_F(Run, OfItsOwnResolvedScenarioGivesTheSameBytes) {
+  Write("t.csv", "position_deg,ez_arcsec,dy_um\n0,1.1,0.3\n120,-3.3,0.1\n240,2.2,-0.4\n");
+  MakeRun("a", {"--errors", "target=t.csv", "--fidelity", "linear", "--set", "mechanics.payload_mass_kg=1.3"});
+  std::filesystem::remove(At("t.csv"));  // the resolved scenario stands alone
+  Succeed({"run", "a/scenario.toml", "-o", "b"});
+  EXPECT_EQ(ReadingsOf("a"), ReadingsOf("b"));
+  EXPECT_EQ(Read("a/scenario.toml"), Read("b/scenario.toml"));
+  EXPECT_EQ(Read("a/truth.json"), Read("b/truth.json"));
+  EXPECT_EQ(Read("a/results.json"), Read("b/results.json"));
+}
+
+TEST_F(Run, TakesOverridesFidelityAndNoiseFree) {
+  MakeRun("a", {"--set", "procedure.positions=8", "--set", "procedure.shifts=[0,3]", "--fidelity", "bullet",
+                "--noise-free"});
+  const std::string scenario = Read("a/scenario.toml");
+  for (const char* line :
+       {"positions = 8\n", "shifts = [0, 3]\n", "fidelity = \"bullet\"\n", "noise_free = true\n"})
+    EXPECT_THAT(scenario, HasSubstr(line));
+  MakeRun("b", {"--set", "procedure.positions=8", "--set", "procedure.shifts=[0,3]", "--fidelity", "bullet",
+                "--noise-free", "--seed", "5"});
+  EXPECT_EQ(ReadingsOf("a"), ReadingsOf("b"));
+}
+
+TEST_F(Run, WithoutNoiseIsTheSameReadingOnEveryVisit) {
+  // Two passes over the same stops, nothing random: the columns of the voltages agree to every digit.
+  MakeRun("a", {"--noise-free", "--set", "procedure.phases=[\"full_circle\"]", "--set", "procedure.passes=[1,1]",
+                "--set", "procedure.shifts=[0]"});
+  const nlohmann::json results = nlohmann::json::parse(Read("a/results.json"));
+  std::istringstream lines(ReadingsOf("a"));
+  std::vector<std::string> voltages;
+  std::string header;
+  std::getline(lines, header);
+  const auto column_of = [&](const std::string& name) {
+    const std::string before = header.substr(0, header.find(name));
+    return std::count(before.begin(), before.end(), ',');
+  };
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    std::string field;
+    for (auto c = column_of("psd_a_x_V"); c >= 0; --c) std::getline(fields, field, ',');
+    voltages.push_back(field);
+  }
+  ASSERT_EQ(voltages.size(), 24u);
+  for (std::size_t k = 0; k < 12; ++k) EXPECT_NEAR(std::stod(voltages[k]), std::stod(voltages[12 + k]), 1e-9);
+}
+
+TEST_F(Run, TakesTheErrorsOfATableFromAFile) {
+  Write("t.csv", "position_deg,ez_arcsec\n0,7.25\n90,-1\n180,2\n270,-3\n");
+  MakeRun("a", {"--errors", "target=t.csv", "--errors", "reference=t.csv"});
+  const auto truth = nlohmann::json::parse(Read("a/truth.json"));
+  for (const char* table : {"target", "reference"}) {
+    // The file's angle 0 is the truth's first position; the scenario's own random errors are gone.
+    EXPECT_NEAR(truth.at(table).at("ez_arcsec")[0], 7.25, 1e-9) << table;
+    EXPECT_NEAR(truth.at(table).at("dy_um")[0], 0.0, 1e-12) << table;
+  }
+}
+
+TEST_F(Run, WithoutUsableReadingsSaysSoAndSucceeds) {
+  MakeRun("a", {"--set", "amplifier.offset_mV=[20000, 0, 0, 0]"});
+  const auto results = nlohmann::json::parse(Read("a/results.json"));
+  EXPECT_EQ(results.at("not_separated"), "there are no usable full-circle readings");
+  EXPECT_EQ(results.at("readings_by_status").at("saturated"), 124);
+}
+
+TEST_F(Run, WritesImagesOnDemand) {
+  MakeRun("a", {"--images", "--set", "laser.beam=gaussian"});
+  EXPECT_TRUE(Exists("a/images/irradiance.exr"));
+}
+
+TEST_F(Run, SeesAFixtureInTheLight) {
+  Write("small.toml", std::string(kSmall) +
+                          "[[fixture]]\nname = \"plate\"\nbox_mm = [10, 10, 10]\n"
+                          "position_mm = [23.4, 55.2, 0]\n");
+  MakeRun("a");
+  const auto results = nlohmann::json::parse(Read("a/results.json"));
+  EXPECT_EQ(results.at("readings_by_status"), (nlohmann::json{{"no_light", 124}}));
+}
+
+}  // namespace
+}  // namespace twinbench::test
