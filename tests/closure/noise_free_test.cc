@@ -94,7 +94,7 @@ double PublishedError(int k) {
 }
 
 TEST(PublishedEquations, LeaveAWobbleErrorOfOneOverTheOrderWhenTheGratingIsReclamped) {
-  // sin(pi / n) / |sin(pi k / n)|, n = 36 (knowledge of the frame question, metrology 3.2). 6 %: the published
+  // sin(pi / n) / |sin(pi k / n)|, n = 36 (docs/theory.md 3.1). 6 %: the published
   // sensitivities of ex and ey are themselves wrong by 4 % in one sense and the mean of the row dropped adds 1/n.
   for (const int k : {2, 3, 5, 10}) {
     const double predicted = std::sin(units::kPi / 36.0) / std::sin(units::kPi * k / 36.0);

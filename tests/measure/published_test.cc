@@ -27,7 +27,7 @@ TEST(PublishedMotion, HasTheSignsOfTheLaboratoryFrame) {
 TEST(PublishedMotion, ReadsWrongByTheFactorsOfTheMirrorPicture) {
   const double tolerance = 1e-5;  // second order of the step, times 1/sin(theta)
   EXPECT_NEAR(Response(Dof::kEz)[0], (1 + 1 / kCos) / (2 * kCos), tolerance);
-  EXPECT_NEAR(Response(Dof::kEz)[0], 1.1327, 1e-4);  // the number of knowledge/metrology 1.1
+  EXPECT_NEAR(Response(Dof::kEz)[0], 1.1327, 1e-4);  // docs/theory.md 1
   EXPECT_NEAR(Response(Dof::kEx)[1], (1 + kCos) / 2, tolerance);
   EXPECT_NEAR(Response(Dof::kEy)[2], 1.0, tolerance);
   EXPECT_NEAR(Response(Dof::kDy)[3], kCos, tolerance);
@@ -46,7 +46,7 @@ TEST(PublishedMotion, IsTheInverseOfEquationsOneToFive) {
 
 TEST(PublishedDistance, TakesTheMirrorPictureIntoItsDistance) {
   const auto sweeps = CalibrationSweeps({}, Vector4(2e-5, -3e-5, 1e-5, 0.0), nullptr);
-  // 1.1327 l1 (knowledge/metrology 1.1); the sweep's third order, (300 arcsec)^2 = 2e-6, stays below the tolerance.
+  // 1.1327 l1 (docs/theory.md 1); the sweep's third order, (300 arcsec)^2 = 2e-6, stays below the tolerance.
   EXPECT_NEAR(PublishedDistance(sweeps, Bench()).value(), 0.120 * (1 + 1 / kCos) / (2 * kCos), 1e-6);
   EXPECT_FALSE(PublishedDistance({}, Bench()).has_value());
 }

@@ -103,7 +103,7 @@ TEST(OracleRuns, OfReclampGivesBothRadialComponentsOfTheReferenceAndReseatOnlyOn
 
 TEST(OracleRuns, ShowsWhatThePublishedEquationsMissWhenTheGratingIsReclamped) {
   // Same tables, same readings: the scalar equations are right in `reseat` up to order one, wrong in `reclamp` by
-  // the full wobble of the reference (knowledge/metrology 3.2: 1.5 arcsec of 2).
+  // the full wobble of the reference (docs/theory.md 3.1: 1.5 arcsec of 2).
   const Separation reclamp = SeparateOracle("reclamp", measure::Estimator::kPublished);
   const Truth truth = OracleTruth("reclamp");
   const TableErrors visible = RemoveNotSeparable(truth.target, Table::kTarget, reclamp.not_separable);

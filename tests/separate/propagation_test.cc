@@ -39,7 +39,7 @@ double HarmonicVariance(const Eigen::MatrixXd& cov, int k) {
   return (f.adjoint() * cov.cast<Complex>() * f)(0, 0).real();
 }
 
-/// Formula (V) of knowledge/metrology 2.2.
+/// Formula (V) of docs/theory.md 2.
 double ClosedForm(int n, const std::vector<int>& shifts, int k) {
   Complex a = 0.0;
   for (const int s : shifts) a += std::polar(1.0, 2 * units::kPi * k * s / n);
@@ -82,7 +82,7 @@ struct RadialCase {
 };
 
 TEST(Separator, HasTheNoiseGainsOfOneRadialComponent) {
-  // knowledge/metrology 3.4, without levers; two digits are printed.
+  // Noise gains of an independent study, without levers; two digits are printed.
   const std::vector<RadialCase> cases = {
       {12, {0, 1}, Clamping::kReseat, 0.86},    {36, {0, 1}, Clamping::kReseat, 1.53},
       {12, {0, 1, 4}, Clamping::kReseat, 0.60}, {36, {0, 1, 9}, Clamping::kReclamp, 1.46},

@@ -31,7 +31,7 @@ TEST(SolvePublished, RecoversScalarErrorsOfZeroSum) {
 
 TEST(SolvePublished, IsRootTwoNoisierThanLeastSquares) {
   for (const int n : {12, 36}) {
-    // The dropped row is the closing difference of a random walk (knowledge/metrology 2.2).
+    // The dropped row is the closing difference of a random walk (docs/theory.md 2).
     EXPECT_NEAR(TargetGain(n, false) / TargetGain(n, true), std::sqrt(2.0), 1e-9) << n;
     EXPECT_NEAR(TargetGain(n, true), std::sqrt((n * n - 1.0) / (6.0 * n)), 1e-9) << n;
   }
@@ -64,7 +64,7 @@ TEST(SeparatePublished, GetsReferenceWobbleWrongByOneOverItsOrderAfterReclamping
   const std::vector<std::pair<int, double>> expected = {{1, 1.00}, {2, 0.502}, {3, 0.337}, {5, 0.206}, {10, 0.114}};
   for (const auto& [k, relative] : expected) {
     for (const int sign : {1, -1}) {
-      // Three printed digits (knowledge/metrology 3.2); wobble of 1e-7 rad keeps second order away.
+      // Three printed digits (docs/theory.md 3.1); wobble of 1e-7 rad keeps second order away.
       EXPECT_NEAR(WobbleError(36, sign * k, Clamping::kReclamp), relative, 6e-4) << sign * k;
     }
   }

@@ -102,7 +102,7 @@ struct RankCase {
   bool solvable;
 };
 
-/// Rows of the table in knowledge/metrology 3.4 for the radial error of the target.
+/// Ranks found by an independent study for the radial error of the target.
 TEST(FindSeparability, AgreesWithTheRankTableForOneRadialComponent) {
   const std::vector<RankCase> cases = {
       {"A{0,1}", {0, 1}, Clamping::kReclamp, false},     {"B{0,1}", {0, 1}, Clamping::kReseat, true},

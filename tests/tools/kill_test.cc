@@ -69,7 +69,8 @@ TEST_F(KilledRun, AtItsVeryStartHasNoRecordOrAGoodOne) {
     if (outcome.exit_code == 0) {
       ExpectPrefix(outcome.out);
     } else {
-      // Said in one line, as bad input: no record, or its making was interrupted.
+      // A record appears whole or not at all; without one that is said in one line, as bad input.
+      EXPECT_FALSE(Exists(name + "/record.sqlite"));
       EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
       EXPECT_THAT(outcome.err, testing::HasSubstr(name));
     }

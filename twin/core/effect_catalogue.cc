@@ -64,31 +64,31 @@ std::vector<std::string> TonePlaces() {
   return places;
 }
 
-// Sizes: knowledge/diagnosis.md 3.1. The numbers of its rows stand beside the entries.
+// Defaults are sizes that are plausible before checking; the ranges stand beside the entries.
 std::vector<EffectEntry> DetectorEffects() {
   const std::vector<std::string> psds = {"psd_a", "psd_b"};
   return {
-      // 3: 0.1-2 %
+      // 0.1-2 %
       {"psd_gain",
        "gain of one PSD axis and its amplifier",
        ChannelPlaces(),
        {Signed("gain_error", "1", 0.005, 0.5, "relative error of the gain")}},
-      // 6: 0.1-1 deg
+      // 0.1-1 deg
       {"psd_roll",
        "PSD turned about its nominal order",
        psds,
        {Signed("roll", "mrad", 5.0, 500.0, "angle, right-handed towards the light")}},
-      // 9: 0.1-3 % of the range at the edge; 180000 /m^2 is 0.45 % at 5 mm
+      // 0.1-3 % of the range at the edge; 180000 /m^2 is 0.45 % at 5 mm
       {"psd_nonlinearity",
        "pincushion of a PSD",
        psds,
        {Signed("cubic", "per_m2", 180000.0, 1e7, "u -> u (1 + cubic r^2)")}},
-      // 12: 0.01-1 %
+      // 0.01-1 %
       {"stray_light",
        "uniform stray light that pulls the spot to the centre",
        psds,
        {Parameter("fraction", "1", 0.01, 0.0, 0.9, "stray light / signal")}},
-      // 5: 0.1-1 %; 1 mm of 120 mm is 0.8 %.
+      // 0.1-1 %; 1 mm of 120 mm is 0.8 %.
       {"psd_distance",
        "distance from the grating to one PSD",
        psds,
@@ -98,22 +98,22 @@ std::vector<EffectEntry> DetectorEffects() {
 
 std::vector<EffectEntry> LightEffects() {
   return {
-      // 2: 0-15 nm
+      // 0-15 nm
       {"wavelength_offset",
        "wavelength other than stated",
        {},
        {Signed("wavelength_error", "nm", 2.0, 100.0, "actual - nominal")}},
-      // 16: 0.2-0.3 nm/K
+      // 0.2-0.3 nm/K
       {"wavelength_temperature",
        "wavelength that follows the temperature",
        {},
        {Signed("wavelength_per_kelvin", "nm_per_K", 0.25, 10.0, "against environment.reference_degC")}},
-      // 18: 0.1-1 deg
+      // 0.1-1 deg
       {"incidence_offset",
        "laser that does not meet the grating at right angles",
        {},
        {Signed("incidence", "mrad", 5.0, 500.0, "angle in the plane of dispersion, positive from +x")}},
-      // 14, 15: 1-50 urad/h
+      // 1-50 urad/h
       {"laser_drift",
        "pointing of the laser that drifts with time",
        {"yaw", "pitch"},
@@ -125,33 +125,32 @@ std::vector<EffectEntry> LightEffects() {
 std::vector<EffectEntry> BodyEffects() {
   const std::vector<std::string> axes = {"yaw", "tilt"};
   return {
-      // 21: 0.2-5"
+      // 0.2-5"
       {"mount_creep",
        "creep of the grating after every mounting",
        axes,
        {Signed("amplitude", "arcsec", 3.0, 1000.0, "amplitude * log(1 + t / time_constant)"),
         Parameter("time_constant", "s", 600.0, 1e-3, 1e6, "of the logarithm; t restarts at every mounting")}},
-      // 19, 20: 0.5-5"/K, 10-60 min
+      // 0.5-5"/K, 10-60 min
       {"thermal_tilt",
        "grating that turns with the temperature",
        axes,
        {Signed("tilt_per_kelvin", "arcsec_per_K", 5.0, 1000.0, "against environment.reference_degC"),
         Parameter("lag", "s", 900.0, 0.0, 1e6, "time constant of a first-order lag")}},
-      // 23: 0.1-20"
+      // 0.1-20"
       {"backlash",
        "rotor that stays behind its encoder on reversal",
        {"target", "reference"},
        {Parameter("half_width", "arcsec", 1.0, 0.0, 3600.0, "half of the lost motion")},
        "target"},
-      // 25: 0.05-1"; larger because it decays within a dwell
+      // 0.05-1"; larger because it decays within a dwell
       {"settling",
        "table still on its way when the block starts",
        {},
        {Signed("amplitude", "arcsec", 5.0, 3600.0, "still to go when the move has ended"),
         Parameter("time_constant", "s", 1.0, 1e-3, 1e4, "of the exponential approach")}},
-      // 27
       {"reclamp_frame", "grating re-clamped on the rotor though the scenario says reseat", {}, {}},
-      // 32: 0.4-0.5 per turn, 0.05-1"
+      // 0.4-0.5 per turn, 0.05-1"
       {"bearing_half_frequency",
        "bearing motion once in about two turns",
        {},
@@ -162,14 +161,14 @@ std::vector<EffectEntry> BodyEffects() {
 
 std::vector<EffectEntry> TimeEffects() {
   return {
-      // 36, 37: 0.05-2.5 um
+      // 0.05-2.5 um
       {"tone",
        "periodic disturbance in time",
        TonePlaces(),
        {Parameter("frequency", "Hz", 0.0169, 1e-6, 1e6, "of the disturbance, before it is aliased"),
         Signed("amplitude", "um", 0.5, 1000.0, "on a PSD"), Signed("phase", "deg", 0.0, 360.0, "at time 0")},
        "all"},
-      // 22: 0.2-50"
+      // 0.2-50"
       {"slip",
        "sudden step of the grating's pose",
        {"yaw", "tilt", "lateral"},
@@ -184,24 +183,22 @@ std::vector<EffectEntry> ElectronicEffects() {
                                           "negate_psd_a_y",    "negate_psd_b_x", "negate_psd_b_y", "reverse_target",
                                           "reverse_reference", "index_offset"};
   return {
-      // 39: 0.5-2 LSB = 0.1-0.3 um; 5 mV are 2.5 um, a damaged code
+      // 0.5-2 LSB = 0.1-0.3 um; 5 mV are 2.5 um, a damaged code
       {"adc_step",
        "step in the characteristic of the A/D converter",
        ChannelPlaces(),
        {Signed("step", "mV", 5.0, 1000.0, "added above the voltage"),
         Signed("at_voltage", "V", 0.0, 10.0, "where the step lies")}},
-      // 40: 0.01-0.5 %
+      // 0.01-0.5 %
       {"crosstalk",
        "channel that keeps some of the one scanned before it",
        ChannelPlaces(),
        {Signed("fraction", "1", 0.01, 0.5, "of the previous channel of the scan")}},
-      // 41
       {"outliers",
        "readings that are disturbed for no lasting reason",
        {},
        {Parameter("fraction", "1", 0.01, 0.0, 0.5, "share of the readings"),
         Parameter("size", "um", 10.0, 0.0, 5000.0, "typical size on one PSD axis")}},
-      // 42
       {"convention", "swap, sign or index blunder", swaps, {}},
   };
 }

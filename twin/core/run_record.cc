@@ -172,14 +172,22 @@ std::unique_ptr<RunRecord> RunRecord::Create(const std::string& directory, const
   const std::string path = RecordPath(directory);
   std::error_code error;
   std::filesystem::create_directories(directory, error);
+  if (std::filesystem::exists(directory) && !std::filesystem::is_directory(directory))
+    throw InputError(directory, "this is a file", "a folder, or a name that is not taken");
   if (error) throw BenchError(fmt::format("{}: the folder cannot be made: {}", directory, error.message()));
   if (std::filesystem::exists(path)) throw InputError(path, "there is a record already", "a folder without one");
-  auto database = std::make_unique<Database>(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-  MakeSafe(*database);
-  MakeTables(*database, provenance);
+  // Made beside its place and renamed when whole: a record that is there can be opened, whenever the power fails.
+  const std::string beside = path + ".part";
+  for (const char* ending : {"", "-wal", "-shm"}) std::filesystem::remove(beside + ending, error);
+  {
+    Database made(beside, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    MakeSafe(made);
+    MakeTables(made, provenance);
+  }
+  std::filesystem::rename(beside, path, error);
+  if (error) throw BenchError(fmt::format("{}: the record cannot be made: {}", path, error.message()));
   SyncDirectory(directory);
-  database->Prepare();
-  return std::unique_ptr<RunRecord>(new RunRecord(std::move(database)));
+  return Open(directory);
 }
 
 std::unique_ptr<RunRecord> RunRecord::Open(const std::string& directory) {

@@ -19,7 +19,7 @@ inline bool IsAngle(Component component) {
 
 /// Error motions of one table at given angles of that table, [rad] for ex..ez and [m] for dx..dz.
 /// The target's are in the laboratory frame; the reference's in its own rotor frame
-/// (knowledge/metrology 3.1). All columns have one entry a position.
+/// (docs/theory.md 3). All columns have one entry a position.
 struct TableErrors {
   std::vector<double> position_rad;
   std::array<std::vector<double>, kComponents> value;

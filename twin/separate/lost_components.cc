@@ -1,5 +1,7 @@
 #include "twin/separate/lost_components.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -68,9 +70,9 @@ std::string Name(const Group& group) {
 
 std::string OrdersText(const Group& group, const std::vector<int>& orders) {
   std::string text = orders.size() == 1 ? " order" : " orders";
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    text += i == 0 ? " " : ", ";
-    text += (group.IsPair() && orders[i] > 0 ? "+" : "") + std::to_string(orders[i]);
+  for (const int order : orders) {
+    const bool shows_sign = group.IsPair() && order > 0;
+    text += fmt::format("{} {}{}", &order == orders.data() ? "" : ",", shows_sign ? "+" : "", order);
   }
   return text;
 }

@@ -20,7 +20,7 @@
 ///
 /// What is wrong with it, on purpose: for `reclamp` the wobble and radial equations neglect that the reference has
 /// another azimuth in the second test; a lab-frame harmonic k of the reference comes out wrong by about 1/|k| of
-/// its amplitude (knowledge/metrology 3.2). Dropping a row costs sqrt 2 in noise against least squares (2.2).
+/// its amplitude (docs/theory.md 3.1). Dropping a row costs sqrt 2 in noise against least squares (2).
 namespace twinbench::separate {
 
 /// The printed system (21): n equations t_i + r_i = m1_i, then t_i + r_{i+1} = m2_i without the last one, which

@@ -37,7 +37,7 @@ struct Separability {
 /// On an even grid with a constant shift a set-up couples only equal orders of the unknown series, so the design
 /// falls into small real blocks (9 series x cos, sin; 4 motions x set-ups), plus the mounting constants at order 0
 /// and the seats at order 1. The null space of each block comes from a singular value decomposition; a component is
-/// lost if its unit vector has a part in it. Reference: knowledge/metrology 3.3, 3.4.
+/// lost if its unit vector has a part in it. Reference: docs/theory.md 3, 4.
 Separability FindSeparability(const Design& design);
 
 /// Takes out of `errors` what cannot be separated: least squares over the finite positions of each series, so that

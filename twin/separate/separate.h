@@ -78,7 +78,7 @@ struct Separation {
 /// Uncertainty: first-order propagation of readings and calibration, and a floor for products of errors with what
 /// the bench does not read (UnreadSecondOrder, about 1 milliarcsec): far below real noise, all there is without
 /// noise. Not included: drift, effects that are not of the form target + reference; they show in chi2 when there
-/// are more than two set-ups. Reference: knowledge/metrology 2.2, 3.3, 3.4.
+/// are more than two set-ups. Reference: docs/theory.md 2-4.
 Separation Separate(const std::vector<Motion>& motions, const BenchGeometry& geometry,
                     const SeparateOptions& options);
 

@@ -4,7 +4,7 @@ namespace twinbench::sim {
 namespace {
 
 /// The scenario says `reseat`, but the grating was re-clamped on the reference rotor: the reference's wobble then
-/// turns with the set-up (knowledge/metrology 3.1, scheme A instead of B).
+/// turns with the set-up (docs/theory.md 3).
 class ReclampFrame : public Effect {
  public:
   explicit ReclampFrame(const EffectSettings&) {}
