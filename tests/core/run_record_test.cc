@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <filesystem>
 #include <signal.h>
 #include <sqlite3.h>
 #include <sys/wait.h>
@@ -186,8 +188,16 @@ TEST(RunRecord, IsNotMadeOverAnother) {
 TEST(RunRecord, SaysWhenTheDiskRefuses) {
   const TemporaryFolder folder;
   folder.Write("file", "x");
-  EXPECT_THROW(RunRecord::Create(folder.File("file"), AnyProvenance()), BenchError);
+  EXPECT_THROW(RunRecord::Create(folder.File("file"), AnyProvenance()), InputError);  // a wrong name, not a bad disk
   EXPECT_THROW(RunRecord::Create(folder.File("file/inside"), AnyProvenance()), BenchError);
+}
+
+TEST(RunRecord, IsMadeOverTheRestsOfACreationThatWasKilled) {
+  const TemporaryFolder folder;
+  folder.Write("record.sqlite.part", "half a file");
+  RunRecord::Create(folder.path(), AnyProvenance())->Finish();
+  EXPECT_TRUE(RunRecord::Open(folder.path())->finished());
+  EXPECT_FALSE(std::filesystem::exists(folder.File("record.sqlite.part")));
 }
 
 TEST(RunRecord, MustBeThereToBeOpened) {

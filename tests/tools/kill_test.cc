@@ -25,11 +25,18 @@ class KilledRun : public Program {
     readings_ = ReadingsOf("undisturbed");
   }
 
-  /// Kills a run into `name` that long after its start, or after `file` has appeared in it.
-  void KillAfter(duration<double> delay, const std::string& name, const std::string& file = "") {
+  /// Kills a run into `name` that long after its start.
+  void KillAfter(duration<double> delay, const std::string& name) {
     Process run(At(""), {"run", "long.toml", "-o", name});
-    while (!file.empty() && !Exists(name + "/" + file) && run.Runs()) std::this_thread::yield();
     std::this_thread::sleep_for(delay);
+    if (run.Runs()) run.Kill();
+  }
+
+  /// Kills a run after so many of the ten lines of progress that it writes, and some moments later.
+  void KillAfterTenths(int tenths, const std::string& name) {
+    Process run(At(""), {"run", "long.toml", "-o", name});
+    while (run.Runs() && run.ProgressLines() < tenths) std::this_thread::yield();
+    std::this_thread::sleep_for(std::uniform_real_distribution<>(0.0, 0.05)(random_) * duration_);
     if (run.Runs()) run.Kill();
   }
 
@@ -50,15 +57,14 @@ TEST_F(KilledRun, HoldsAPrefixOfTheUndisturbedRunByteForByte) {
   std::set<std::ptrdiff_t> lengths;
   for (int moment = 0; moment < 14; ++moment) {
     const std::string name = "killed" + std::to_string(moment);
-    // One moment in every fourteenth of the undisturbed run.
-    const double share = (moment + std::uniform_real_distribution<>()(random_)) / 14.0;
-    KillAfter(share * duration_, name, "truth.json");
+    KillAfterTenths(1 + moment % 7, name);
     const std::ptrdiff_t lines = ExpectPrefix(Succeed({"export", name}));
     lengths.insert(lines);
     if (lines < std::count(readings_.begin(), readings_.end(), '\n')) ++cut_short;
   }
-  EXPECT_GE(cut_short, 5) << "the kills came too late to show anything";
-  EXPECT_GE(lengths.size(), 5u);
+  // On a busy machine a kill may come late, but not most of them.
+  EXPECT_GE(cut_short, 8) << "the kills came too late to show anything";
+  EXPECT_GE(lengths.size(), 8u);
 }
 
 TEST_F(KilledRun, AtItsVeryStartHasNoRecordOrAGoodOne) {
@@ -78,14 +84,14 @@ TEST_F(KilledRun, AtItsVeryStartHasNoRecordOrAGoodOne) {
 }
 
 TEST_F(KilledRun, CanStillBeEvaluatedAsFarAsItGot) {
-  KillAfter(0.7 * duration_, "killed", "truth.json");
+  KillAfterTenths(7, "killed");
   const Outcome outcome = Call({"separate", "killed", "--json", "-"});
   EXPECT_TRUE(outcome.exit_code == 0 || outcome.err.find("; expected ") != std::string::npos) << outcome.err;
   EXPECT_TRUE(Exists("killed/scenario.toml"));
 }
 
 TEST_F(KilledRun, IsNotOverwrittenByTheNext) {
-  KillAfter(0.3 * duration_, "killed", "truth.json");
+  KillAfterTenths(3, "killed");
   const std::string kept = ReadingsOf("killed");
   EXPECT_EQ(Call({"run", "long.toml", "-o", "killed"}).exit_code, 2);
   EXPECT_EQ(ReadingsOf("killed"), kept);

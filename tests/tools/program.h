@@ -5,6 +5,7 @@
 #include <spawn.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -60,6 +61,12 @@ class Process {
   }
 
   bool Runs() { return id_ > 0 && waitpid(id_, &status_, WNOHANG) == 0 ? true : (id_ = 0, false); }
+
+  /// Whole lines that it has written to stderr up to now; its progress, while it runs.
+  std::ptrdiff_t ProgressLines() const {
+    const std::string text = Contents(err_);
+    return std::count(text.begin(), text.end(), '\n');
+  }
 
   void Kill() {
     kill(id_, SIGKILL);

@@ -69,12 +69,11 @@ std::string Name(const Group& group) {
 }
 
 std::string OrdersText(const Group& group, const std::vector<int>& orders) {
-  std::string text = orders.size() == 1 ? " order" : " orders";
+  std::vector<std::string> names;
   for (const int order : orders) {
-    const bool shows_sign = group.IsPair() && order > 0;
-    text += fmt::format("{} {}{}", &order == orders.data() ? "" : ",", shows_sign ? "+" : "", order);
+    names.push_back(fmt::format("{}{}", group.IsPair() && order > 0 ? "+" : "", order));
   }
-  return text;
+  return fmt::format(" {} {}", orders.size() == 1 ? "order" : "orders", fmt::join(names, ", "));
 }
 
 /// Adds an order to the entry of its reason.
