@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/tools/program.h"
+#include "twin/core/run_record.h"
 
 namespace twinbench::test {
 namespace {
@@ -126,6 +127,19 @@ TEST_F(Run, SeesAFixtureInTheLight) {
   MakeRun("a");
   const auto results = nlohmann::json::parse(Read("a/results.json"));
   EXPECT_EQ(results.at("readings_by_status"), (nlohmann::json{{"no_light", 124}}));
+}
+
+TEST_F(Run, EntersItsMountingsInTheRecord) {
+  MakeRun("run");
+  const auto events = RunRecord::Open(At("run"))->Events();
+  ASSERT_EQ(events.size(), 4u);  // calibration and three set-ups
+  EXPECT_EQ(events[3].device, "fixture");
+  EXPECT_EQ(events[3].text, "mounted set-up 2: grating clamped at 0 deg, body seated at -150 deg");
+}
+
+TEST_F(Run, TakesOptionsInFrontOfTheScenario) {
+  Succeed({"run", "--set", "procedure.passes=[1]", "--set", "seed=3", "small.toml", "-o", "run"});
+  EXPECT_TRUE(Exists("run/results.json"));
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ void AddImport(CLI::App& app) {
   command->add_option("readings", options->readings, "readings.csv")->required();
   command->add_option("--scenario", options->scenario, "the bench that made them")->required();
   command->add_option("-o,--output", options->folder, "folder of the new run")->required();
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12");
+  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
+      ->allow_extra_args(false);
   command->callback([options] { Import(*options); });
 }
 

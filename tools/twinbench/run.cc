@@ -55,12 +55,33 @@ Scenario ScenarioOf(const Options& options) {
   return scenario;
 }
 
+/// A fixture whose mountings are entered in the record, where a reader of the readings will look for them.
+class RecordedFixture : public Fixture {
+ public:
+  RecordedFixture(Fixture& fixture, const Clock& clock, RunRecord& record)
+      : fixture_(fixture), clock_(clock), record_(record) {}
+  void Mount(int setup, double clamp_rad, double reseat_rad) override {
+    fixture_.Mount(setup, clamp_rad, reseat_rad);
+    record_.AppendEvent(clock_.Now(), "fixture",
+                        fmt::format("mounted set-up {}: grating clamped at {:.6g} deg, body seated at {:.6g} deg",
+                                    setup, clamp_rad / units::deg, reseat_rad / units::deg));
+  }
+
+ private:
+  Fixture& fixture_;
+  const Clock& clock_;
+  RunRecord& record_;
+};
+
 void CarryOutOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
   sim::Twin twin(scenario);
   const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "twin", scenario.seed, ""});
   WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
   WriteJson(folder.truth(), ToJson(twin.TheTruth()));
-  RotaryBench bench = twin.Bench();
+  const RotaryBench devices = twin.Bench();
+  RecordedFixture fixture(devices.fixture, devices.clock, *record);
+  RotaryBench bench = {devices.clock,          devices.target,      devices.reference,  devices.adc,
+                       devices.autocollimator, devices.thermometer, devices.goniometer, fixture};
   ProgressLine progress;
   procedure::CarryOut(bench, scenario, *record, [&](const procedure::Progress& p) {
     progress.Show(p.readings_done, p.readings_planned, p.phase, p.bench_time);
@@ -94,9 +115,11 @@ void AddRun(CLI::App& app) {
   command->add_flag("--noise-free", options->noise_free, "no random contribution and no quantisation");
   command->add_option("--fidelity", options->fidelity, "of the mechanics: kinematic, linear or bullet")
       ->check(CLI::IsMember({"kinematic", "linear", "bullet"}));
-  command->add_option("--errors", options->errors,
-                      "target=FILE.csv or reference=FILE.csv: that table's true errors");
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12");
+  command
+      ->add_option("--errors", options->errors, "target=FILE.csv or reference=FILE.csv: that table's true errors")
+      ->allow_extra_args(false);
+  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
+      ->allow_extra_args(false);
   command->add_flag("--images", options->images, "write the irradiance on the PSDs as OpenEXR");
   command->callback([options] { Run(*options); });
 }

@@ -42,7 +42,8 @@ void AddSeparate(CLI::App& app) {
   command->add_option("--estimator", options->estimator, "published: the paper's equations; rigorous: ours")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();
-  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12");
+  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
+      ->allow_extra_args(false);
   command->callback([options] { Separate(*options); });
 }
 
