@@ -292,6 +292,11 @@ TEST(ScenarioError, NamesTheChoices) {
       "\"full_circle\"");
 }
 
+TEST(ScenarioError, WantsEveryChannelOnceInTheScanList) {
+  EXPECT_EQ(ErrorOf("[adc]\nscan_list = [\"psd_a_x\", \"psd_a_x\", \"psd_b_x\", \"psd_b_y\"]\n"),
+            "s.toml:3: adc.scan_list names 3 of the 4 channels in 4 entries; expected every channel once");
+}
+
 TEST(ScenarioError, ChecksShiftsAndPasses) {
   EXPECT_EQ(ErrorOf("[procedure]\nshifts = [0, 36]\n"),
             "s.toml:3: procedure.shifts has 36; expected shifts from 0 to 35 (positions - 1)");

@@ -95,6 +95,23 @@ TEST(Stream, KeepsItsFirstNumbersFromVersionToVersion) {
   EXPECT_EQ(Normals(stream, 3)[2], -0x1.fa468ap-1f);
 }
 
+TEST(Stream, GivesNormalsThatDoNotKnowTheirNeighbours) {
+  // Both normals of a pair come from one block, so neighbours are the place to look.
+  constexpr int kCount = 40000;
+  Stream stream(11, "neighbours");
+  std::vector<double> x;
+  for (int i = 0; i < kCount; ++i) x.push_back(stream.Normal());
+  for (const int lag : {1, 2, 3}) {
+    double product = 0.0, squares = 0.0;
+    for (int i = 0; i + lag < kCount; ++i) {
+      product += x[i] * x[i + lag];
+      squares += (x[i] * x[i] - 1.0) * (x[i + lag] * x[i + lag] - 1.0);
+    }
+    EXPECT_NEAR(product / kCount, 0.0, 4.0 / std::sqrt(kCount)) << lag;        // standard deviation 1 / sqrt(n)
+    EXPECT_NEAR(squares / kCount, 0.0, 4.0 * 2.0 / std::sqrt(kCount)) << lag;  // of (x^2 - 1): variance 2 each
+  }
+}
+
 TEST(Stream, GivesTwoNormalsForOneBlockAndForgetsTheSecondOnSeek) {
   Stream stream(3, "pairs");
   const double first = stream.Normal();
