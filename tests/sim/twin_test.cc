@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "optics/irradiance.h"
 #include "twin/core/errors.h"
@@ -184,6 +185,42 @@ TEST(Twin, WritesAPictureOfBothPsds) {
   const auto maps = optics::ReadIrradianceMaps(path);
   ASSERT_EQ(maps.size(), 2u);
   EXPECT_NEAR(optics::Centroid(maps[0]).u_m, 0.0, 20e-9);  // a 2.4 nm shift by divergence, float pixels of 20 um
+}
+
+std::string WriteEfficiencies(const std::string& rows) {
+  const std::string path = ::testing::TempDir() + "efficiency.csv";
+  std::ofstream(path) << "sin_incidence,m-2,m-1,m0,m+1,m+2\n" << rows;
+  return path;
+}
+
+TEST(Twin, AnEfficiencyTableSharesThePowerOutByIncidence) {
+  Scenario scenario = Quiet();
+  scenario.laser.beam = BeamModel::kGaussian;
+  scenario.grating.efficiency_file = WriteEfficiencies("-0.01,0.1,0.2,0.2,0.4,0.1\n0.01,0.1,0.4,0.2,0.2,0.1\n");
+  Twin twin(scenario);
+  const std::string path = ::testing::TempDir() + "shared.exr";
+  twin.WriteIrradiance(path);
+  const auto maps = optics::ReadIrradianceMaps(path);
+  // Half way between the rows both orders carry 0.3 of 5 mW; the picture's pixels lose 1e-4 of a spot at most.
+  EXPECT_NEAR(optics::Centroid(maps[0]).power_W, 1.5e-3, 1e-6);
+  EXPECT_NEAR(optics::Centroid(maps[1]).power_W, 1.5e-3, 1e-6);
+}
+
+TEST(Twin, NamesTheLineOfABadEfficiencyTable) {
+  const auto error_of = [](const std::string& rows) -> std::string {
+    Scenario scenario = Quiet();
+    scenario.grating.efficiency_file = WriteEfficiencies(rows);
+    try {
+      Twin twin(scenario);
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_NE(error_of("0,0.1,0.3,0.1,0.3,0.1\n0,0.1,0.3,0.1,0.3,0.1\n").find("efficiency.csv:3"), std::string::npos);
+  EXPECT_NE(error_of("0,0.5,0.5,0.1,0.3,0.1\n").find("efficiency.csv:2: the orders carry more"), std::string::npos);
+  EXPECT_NE(error_of("0,-0.1,0.3,0.1,0.3,0.1\n").find("m-2 is negative"), std::string::npos);
+  EXPECT_NE(error_of("").find("holds no rows"), std::string::npos);
 }
 
 TEST(Twin, AProfileThatIsNotThereIsAnInputError) {

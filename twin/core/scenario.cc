@@ -273,6 +273,7 @@ void LoadErrors(const ScenarioText& text, const std::string& table, const std::s
 
 void LoadFiles(const ScenarioText& text, const std::string& folder, Scenario& scenario) {
   FindFile(text, "laser.profile_file", folder, scenario.laser.profile_file);
+  FindFile(text, "grating.efficiency_file", folder, scenario.grating.efficiency_file);
   FindFile(text, "environment.temperature_file", folder, scenario.environment.temperature_file);
   LoadErrors(text, "target", folder, scenario.target);
   LoadErrors(text, "reference", folder, scenario.reference);

@@ -41,6 +41,8 @@ struct GratingSettings {                             // [grating]
   double height_m = 25.0 * units::mm;
   /// Relative power of orders -2..+2 (scalar lamellar grating of phase depth pi would be {0, .405, 0, .405, 0}).
   std::array<double, 5> efficiency = {0.1, 0.339, 0.1, 0.339, 0.1};
+  std::string efficiency_file;                       // the same by incidence: CSV of sin_incidence, m-2, m-1, m0, m+1,
+                                                     // m+2; absolute once loaded
   Vector3 point_m{0.0, 0.030, 0.050};                // of the spot, from the reference table's origin
 };
 

@@ -91,6 +91,7 @@ void AddGrating(Keys& keys, GratingSettings& s) {
   t.Add("width", kMm, Positive(1000), &s.width_m, "across the grooves");
   t.Add("height", kMm, Positive(1000), &s.height_m, "along the grooves");
   t.Add("efficiency", kPure, UpTo(1), List(s.efficiency), "power share of the orders -2, -1, 0, 1, 2");
+  t.Text("efficiency_file", &s.efficiency_file, {}, "instead, by incidence: CSV of sin_incidence, m-2, m-1, m0, m+1, m+2");
   t.Add("point", kMm, Within(5000), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
 }
 

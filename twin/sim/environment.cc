@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "twin/core/errors.h"
 
@@ -20,26 +18,21 @@ double Interpolate(double left, double right, double share) {
 
 Environment::Environment(const EnvironmentSettings& settings, std::uint64_t seed)
     : settings_(settings), walk_steps_(seed, "environment.walk"), sensor_noise_(seed, "environment.sensor") {
-  if (settings_.temperature_file.empty()) return;
-  std::ifstream in(settings_.temperature_file);
-  if (!in) throw InputError(settings_.temperature_file, "cannot be opened", "a file with time_s,temperature_degC");
-  int number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    if (line.empty() || line[0] == '#' || line.starts_with("time_s")) continue;
-    std::istringstream fields(line);
-    double t_s = 0.0, value_degC = 0.0;
-    char comma = 0;
-    const std::string where = settings_.temperature_file + ":" + std::to_string(number);
-    if (!(fields >> t_s >> comma >> value_degC) || comma != ',')
-      throw InputError(where, line, "time_s,temperature_degC");
+  if (!settings_.temperature_file.empty()) ReadRecord(ReadCsv(settings_.temperature_file));
+}
+
+void Environment::ReadRecord(const CsvTable& table) {
+  const auto time = table.Column("time_s"), temperature = table.Column("temperature_degC");
+  if (!time || !temperature)
+    throw InputError(table.WhereHeader(), "a column is missing", "columns time_s and temperature_degC");
+  for (const CsvTable::Row& row : table.rows) {
+    const double t_s = CsvNumber(table, row, *time, 1.0);
     if (!record_s_.empty() && t_s <= record_s_.back())
-      throw InputError(where, "time does not increase", "rows in time order");
+      throw InputError(table.Where(row), "time does not increase", "rows in time order");
     record_s_.push_back(t_s);
-    record_K_.push_back(value_degC);
+    record_K_.push_back(CsvNumber(table, row, *temperature, 1.0));
   }
-  if (record_s_.empty())
-    throw InputError(settings_.temperature_file, "holds no rows", "rows of time_s,temperature_degC");
+  if (record_s_.empty()) throw InputError(table.name, "holds no rows", "rows of time_s and temperature_degC");
 }
 
 double Environment::Temperature_degC(Time now) {

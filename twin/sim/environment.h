@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "twin/core/csv.h"
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"
 #include "twin/core/time.h"
@@ -21,6 +22,7 @@ class Environment {
   double AboveReference_K(Time now) { return Temperature_degC(now) - settings_.reference_degC; }
 
  private:
+  void ReadRecord(const CsvTable& table);
   double RandomWalk_K(double t_s);
   double Recorded_K(double t_s) const;
 

@@ -1,6 +1,7 @@
 #include "twin/sim/light.h"
 
 #include "optics/stl.h"
+#include "twin/core/csv.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::sim {
@@ -27,12 +28,48 @@ optics::PsdParameters PsdOf(const PsdSettings& s) {
   return psd;
 }
 
+constexpr std::array<const char*, 5> kOrderColumns = {"m-2", "m-1", "m0", "m+1", "m+2"};
+
+std::size_t NeededColumn(const CsvTable& table, const char* name) {
+  const auto column = table.Column(name);
+  if (!column)
+    throw InputError(table.WhereHeader(), std::string("there is no column ") + name,
+                     "sin_incidence,m-2,m-1,m0,m+1,m+2");
+  return *column;
+}
+
+optics::EfficiencyRow EfficiencyRowOf(const CsvTable& table, const CsvTable::Row& row) {
+  optics::EfficiencyRow efficiency{CsvNumber(table, row, NeededColumn(table, "sin_incidence"), 1.0), {-2, {}}};
+  for (const char* order : kOrderColumns) {
+    efficiency.orders.share.push_back(CsvNumber(table, row, NeededColumn(table, order), 1.0));
+    if (efficiency.orders.share.back() < 0.0)
+      throw InputError(table.Where(row), std::string(order) + " is negative", "shares of the power from 0 to 1");
+  }
+  if (efficiency.orders.Sum() > 1.0)
+    throw InputError(table.Where(row), "the orders carry more than the light", "shares that sum up to 1 at most");
+  return efficiency;
+}
+
+std::vector<optics::EfficiencyRow> EfficienciesFrom(const std::string& path) {
+  const CsvTable table = ReadCsv(path);
+  std::vector<optics::EfficiencyRow> efficiencies;
+  for (const CsvTable::Row& row : table.rows) {
+    efficiencies.push_back(EfficiencyRowOf(table, row));
+    const std::size_t n = efficiencies.size();
+    if (n > 1 && efficiencies[n - 1].sin_incidence <= efficiencies[n - 2].sin_incidence)
+      throw InputError(table.Where(row), "sin_incidence does not increase", "rows in its order");
+  }
+  if (efficiencies.empty()) throw InputError(path, "holds no rows", "a row for each incidence");
+  return efficiencies;
+}
+
 optics::Grating GratingOf(const GratingSettings& s) {
   optics::Grating grating;
   grating.lines_per_m = s.lines_per_m;
   grating.width_m = s.width_m;
   grating.height_m = s.height_m;
   grating.table = {{0.0, {-2, {s.efficiency.begin(), s.efficiency.end()}}}};
+  if (!s.efficiency_file.empty()) grating.table = EfficienciesFrom(s.efficiency_file);
   return grating;
 }
 
