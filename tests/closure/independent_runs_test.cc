@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "tests/support/truth_rows.h"
 #include "tests/support/twin_run.h"
 
 // Noisy runs of the reference bench without any hidden effect, made by an implementation that shares nothing with
@@ -13,20 +12,6 @@ namespace {
 
 using separate::Separation;
 using separate::Table;
-
-TableErrors TruthOf(const nlohmann::json& rows, bool reference) {
-  TableErrors errors;
-  const std::size_t n = rows.size();
-  for (std::size_t row = 0; row < n; ++row) {
-    const std::size_t at = reference ? (n - row) % n : row;  // the reference's row is its own angle
-    errors.position_rad.push_back(2.0 * units::kPi * static_cast<double>(row) / static_cast<double>(n));
-    for (int c = 0; c < kComponents; ++c) {
-      const double unit = IsAngle(static_cast<Component>(c)) ? units::arcsec : units::um;
-      errors.value[c].push_back(rows.at(at).at(static_cast<std::size_t>(c)).get<double>() * unit);
-    }
-  }
-  return errors;
-}
 
 double MeanChi2(const Separation& s, Table table, const TableErrors& all, Component c) {
   const TableErrors truth = separate::RemoveNotSeparable(all, table, s.not_separable);
@@ -44,11 +29,10 @@ TEST_P(IndependentRun, IsSeparatedWithinTheStatedUncertainties) {
   test::TwinRun run;
   run.scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
   run.readings = ReadReadingsCsv(folder + "/readings.csv");
-  std::ifstream in(folder + "/truth.json");
-  const nlohmann::json tables = nlohmann::json::parse(in).at("tables");
+  const nlohmann::json tables = test::ReadTruthFile(folder + "/truth.json").at("tables");
   const Separation s = test::Evaluate(run);
-  const TableErrors target = TruthOf(tables.at("target"), false);
-  const TableErrors reference = TruthOf(tables.at("reference_rotor_frame"), true);
+  const TableErrors target = test::ErrorsOfRows(tables.at("target"), false);
+  const TableErrors reference = test::ErrorsOfRows(tables.at("reference_rotor_frame"), true);
   for (const Component c : {Component::kEx, Component::kEy, Component::kEz, Component::kDy}) {
     // 36 values, correlated over positions: mean 1, deviation about sqrt(2 / 18) = 0.33; three and a half of these.
     for (const double chi2 :

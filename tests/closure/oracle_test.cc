@@ -1,37 +1,18 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
-
+#include "tests/support/truth_rows.h"
 #include "tests/support/twin_run.h"
 
 namespace twinbench {
 namespace {
 
-/// Errors of tests/data/oracle: rows are positions; the reference's row j is its own angle -j steps, in its rotor
-/// frame.
-TableErrors OracleErrors(const nlohmann::json& rows, bool reference) {
-  TableErrors errors;
-  const int n = static_cast<int>(rows.size());
-  for (int row = 0; row < n; ++row) {
-    const int step = reference ? (n - row) % n : row;
-    errors.position_rad.push_back(step * 2.0 * units::kPi / n);
-    for (int c = 0; c < kComponents; ++c) {
-      const double unit = IsAngle(static_cast<Component>(c)) ? units::arcsec : units::um;
-      errors.value[c].push_back(rows.at(row).at(c).get<double>() * unit);
-    }
-  }
-  return errors;
-}
-
 Scenario OracleScenario(const std::string& clamping) {
-  std::ifstream in(test::DataPath("oracle/full_circle_" + clamping + "_truth.json"));
-  const nlohmann::json truth = nlohmann::json::parse(in);
+  const nlohmann::json truth =
+      test::ReadTruthFile(test::DataPath("oracle/full_circle_" + clamping + "_truth.json"));
   Scenario scenario;
   scenario.noise_free = true;
-  scenario.target.errors = OracleErrors(truth.at("target"), false);
-  scenario.reference.errors = OracleErrors(truth.at("reference_rotor_frame"), true);
+  scenario.target.errors = test::ErrorsOfRows(truth.at("target"), false);
+  scenario.reference.errors = test::ErrorsOfRows(truth.at("reference_rotor_frame"), true);
   scenario.procedure.phases = {"full_circle"};
   scenario.procedure.passes = {1};
   scenario.procedure.clamping = clamping;

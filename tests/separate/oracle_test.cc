@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/bench.h"
+#include "tests/support/truth_rows.h"
 
 namespace twinbench::separate {
 namespace {
@@ -9,23 +10,10 @@ using nlohmann::json;
 
 const std::string kOracle = std::string(TWINBENCH_TEST_DATA) + "/oracle/full_circle_";
 
-/// `rows`: [position][component] in arcsec and um; the reference's row j is at the angle -j * 10 deg.
-TableErrors OracleErrors(const json& rows, bool reference) {
-  const int n = static_cast<int>(rows.size());
-  TableErrors e = ZeroErrors(n);
-  for (int j = 0; j < n; ++j) {
-    const auto position = static_cast<std::size_t>(reference ? (n - j) % n : j);
-    for (std::size_t c = 0; c < kComponents; ++c) {
-      const double unit = IsAngle(static_cast<Component>(c)) ? units::arcsec : units::um;
-      e.value[c][position] = rows[static_cast<std::size_t>(j)][c].get<double>() * unit;
-    }
-  }
-  return e;
-}
-
 Truth OracleTruth(const std::string& mode) {
-  const json truth = json::parse(std::ifstream(kOracle + mode + "_truth.json"));
-  return {OracleErrors(truth["target"], false), OracleErrors(truth["reference_rotor_frame"], true)};
+  const json truth = test::ReadTruthFile(kOracle + mode + "_truth.json");
+  return {test::ErrorsOfRows(truth.at("target"), false),
+          test::ErrorsOfRows(truth.at("reference_rotor_frame"), true)};
 }
 
 Separation SeparateOracle(const std::string& mode, measure::Estimator estimator = measure::Estimator::kRigorous) {
