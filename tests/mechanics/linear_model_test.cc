@@ -5,17 +5,11 @@
 #include <cmath>
 
 #include "mechanics/profile.h"
+#include "tests/mechanics/eccentric_stack.h"
 #include "tests/mechanics/test_units.h"
 
 namespace twinbench::mechanics {
 namespace {
-
-StackParameters EccentricStack() {
-  StackParameters p;
-  p.payload.mass_kg = 1.5;
-  p.payload.radius_m = 0.040;
-  return p;
-}
 
 TEST(LinearModel, FollowsBulletsVibrationOfADisplacedBearing) {
   StackParameters p = EccentricStack();

@@ -4,17 +4,11 @@
 
 #include <cmath>
 
+#include "tests/mechanics/eccentric_stack.h"
 #include "tests/mechanics/test_units.h"
 
 namespace twinbench::mechanics {
 namespace {
-
-StackParameters EccentricStack() {
-  StackParameters p;
-  p.payload.mass_kg = 1.5;
-  p.payload.radius_m = 0.040;
-  return p;
-}
 
 double Tilt(const Vector12& q, int table) {
   return q.segment<2>(kPerTable * table + 3).norm();

@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <filesystem>
-
 #include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/run_folder.h"
