@@ -7,6 +7,7 @@ find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
+find_package(Ceres REQUIRED)
 
 find_package(embree 4 QUIET)  # the headers are chosen in the same order
 if(NOT embree_FOUND)

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+#include "twin/diagnose/diagnosis.h"
+#include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/linear_run.h"
+#include "twin/diagnose/engine/noise_model.h"
+#include "twin/measure/measure.h"
+
+/// Front door of the room: given readings and the scenario that is believed to describe the bench, finds what the
+/// model gets wrong, names it and measures what the extended model gains.
+namespace twinbench::diagnose {
+
+struct DiagnoseOptions {
+  measure::Estimator model = measure::Estimator::kRigorous;  // rotary bench: sensitivities that are believed
+  std::vector<std::string> struck;  // effects taken out of the catalogue (leave-one-cause-out tests)
+  int null_runs = 1000;             // simulated runs without effect, for thresholds and p-values
+  std::string cache_folder;         // calibrations are kept here by design; empty: nowhere
+};
+
+/// A cause in the model after the search, with its signature at the fitted shape.
+struct Accepted {
+  Family family;
+  int grid_point = 0;
+  Eigen::VectorXd amplitudes;      // SI
+  Eigen::MatrixXd cov_amplitudes;  // SI
+  Eigen::MatrixXd columns;         // rows x amplitudes, SI, not whitened
+};
+
+/// All that the pages, the gain and the screen need besides the verdict.
+struct DiagnosisRun {
+  Diagnosis diagnosis;
+  LinearRun run;
+  NoiseModel noise;
+  std::vector<Accepted> accepted;  // named causes and empirical terms, in order of acceptance
+};
+
+/// @param readings  Of the scenario's bench, any phases; unusable ones are left out and counted.
+/// @throws InputError if the design has no redundancy (with the smallest addition that would help) or the readings do
+///         not fit the scenario's procedure at all.
+DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
+                      const DiagnoseOptions& options = {});
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <string>
+#include <vector>
+
+#include "twin/core/reading.h"
+
+/// A run as the engine sees it: no bench, only readings x channels, what the model predicted, and which directions
+/// of the data the free unknowns can absorb.
+namespace twinbench::diagnose {
+
+/// Under which circumstances each used reading was taken; one entry a reading, NaN where it was not recorded.
+struct Schedule {
+  std::vector<int> reading;  // running number in the file
+  std::vector<int> setup, pass, direction, position;
+  std::vector<Phase> phase;
+  Eigen::VectorXd time_s, dwell_s, temperature_degC;
+  Eigen::VectorXd target_rad, reference_rad;  // unwrapped; an angle bench has only the reference
+  Eigen::VectorXd velocity_rad_s;             // angle bench in motion
+
+  int Readings() const { return static_cast<int>(reading.size()); }
+};
+
+/// A way in which a body's motion shows in all channels of one reading: yaw of the grating, lateral shift, ...
+struct Pattern {
+  std::string name;         // "yaw", "tilt", "roll", "lateral"; or a channel's name
+  Eigen::VectorXd weight;   // one a channel: shown there per SI unit of the pattern
+};
+
+/// Unknowns that are always free: table errors, mounting constants, calibrated parameters with priors.
+///
+/// The first `blocks` x `block_size` unknowns are local: no reading touches two blocks, so they are eliminated by
+/// Schur complement. Every unknown has a prior precision (a weak one keeps gauge directions finite).
+struct Nuisance {
+  Eigen::SparseMatrix<double, Eigen::RowMajor> jacobian;  // rows x unknowns, as raw as the residual
+  Eigen::VectorXd prior_precision;                        // 1 / sd^2, one an unknown, all positive
+  int blocks = 0;
+  int block_size = 0;
+};
+
+/// Row of reading i (of the schedule) and channel c: i * channels + c.
+struct LinearRun {
+  Schedule schedule;
+  std::vector<std::string> channels;    // "psd_a_x", ...; "angle" on an angle bench
+  std::string unit;                     // of values in reports: "um", "arcsec", "deg"
+  double to_SI = 1.0;                   // factor from `unit` to SI
+  Eigen::VectorXd observed;             // SI, by row
+  Eigen::VectorXd residual;             // observed - best prediction without further effects, SI
+  Eigen::VectorXd sigma;                // stated standard uncertainty of each row, SI
+  bool sigma_stated = true;             // false: sigma is an estimate from the data itself
+  Nuisance nuisance;
+  std::vector<Pattern> patterns;
+
+  int Rows() const { return static_cast<int>(residual.size()); }
+  int Channels() const { return static_cast<int>(channels.size()); }
+  int ReadingOf(int row) const { return row / Channels(); }
+  int ChannelOf(int row) const { return row % Channels(); }
+};
+
+}  // namespace twinbench::diagnose
