@@ -24,6 +24,17 @@ TEST(EffectCatalogue, HasTheEffectsOfTheRotaryBench) {
                                             "tone", "slip", "adc_step", "crosstalk", "outliers", "convention"));
 }
 
+TEST(EffectCatalogue, HasTheEffectsOfTheAngleComparison) {
+  std::vector<std::string> names;
+  for (const EffectEntry& entry : EffectCatalogue("encoder_comparison")) names.push_back(entry.name);
+  EXPECT_THAT(names, testing::UnorderedElementsAre(
+                         "eccentricity", "ellipticity", "signal_offset", "amplitude_mismatch", "quadrature_error",
+                         "signal_clipping", "interpolation", "latency", "backlash", "hysteresis", "scale", "drift",
+                         "slip", "periodic", "gear_mesh", "reference_fault", "outliers"));
+  EXPECT_EQ(FindEffect("psd_gain", "encoder_comparison"), nullptr);
+  EXPECT_THROW(EffectCatalogue("lathe"), std::logic_error);
+}
+
 TEST(EffectCatalogue, SaysWhereAnEffectCanAct) {
   EXPECT_THAT(FindEffect("psd_gain")->places, ElementsAre("psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"));
   EXPECT_THAT(FindEffect("laser_drift")->places, ElementsAre("yaw", "pitch"));
@@ -33,8 +44,10 @@ TEST(EffectCatalogue, SaysWhereAnEffectCanAct) {
   EXPECT_EQ(FindEffect("no_such_effect"), nullptr);
 }
 
-TEST(EffectCatalogue, HasDefaultsWithinBoundsAndPlacesThatExist) {
-  for (const EffectEntry& entry : EffectCatalogue()) {
+class EveryBench : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryBench, HasDefaultsWithinBoundsAndPlacesThatExist) {
+  for (const EffectEntry& entry : EffectCatalogue(GetParam())) {
     const std::set<std::string> places(entry.places.begin(), entry.places.end());
     EXPECT_FALSE(entry.title.empty()) << entry.name;
     EXPECT_TRUE(entry.default_place.empty() || places.contains(entry.default_place)) << entry.name;
@@ -46,6 +59,8 @@ TEST(EffectCatalogue, HasDefaultsWithinBoundsAndPlacesThatExist) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(EffectCatalogue, EveryBench, testing::Values("rotary_4dof", "encoder_comparison"));
 
 TEST(EffectCatalogue, GivesKeysTheirUnitAndValuesInSI) {
   const EffectParameter& roll = FindEffect("psd_roll")->parameters.front();

@@ -199,5 +199,52 @@ TEST(ReadingNames, LeadBackToTheirValues) {
   EXPECT_EQ(PhaseOf("idle"), std::nullopt);
 }
 
+// --- encoder_comparison ---
+
+constexpr const char* kAngles = "reading,phase,setup,pass,direction,position,time_s,reference_deg,measured_deg";
+
+TEST(AngleReadings, AreKnownByTheirColumns) {
+  const auto readings = Parse(std::string(kAngles) + ",velocity_deg_s\n0,full_circle,0,0,0,0,0.08,360.5,0.75,-36\n");
+  ASSERT_EQ(readings.size(), 1u);
+  EXPECT_EQ(readings[0].direction, 0) << "at rest";
+  EXPECT_DOUBLE_EQ(readings[0].reference_rad, 360.5 * units::deg);
+  EXPECT_DOUBLE_EQ(readings[0].measured_rad, 0.75 * units::deg);
+  EXPECT_DOUBLE_EQ(readings[0].velocity_rad_s, -36.0 * units::deg);
+  EXPECT_EQ(readings[0].status, ReadingStatus::kOk);
+}
+
+TEST(AngleReadings, NeedNoVelocityAndMayLackAValue) {
+  const auto readings = Parse(std::string(kAngles) + "\n0,full_circle,0,0,1,0,0,1.5,\n");
+  EXPECT_EQ(readings[0].status, ReadingStatus::kMissing);
+  EXPECT_TRUE(std::isnan(readings[0].velocity_rad_s));
+}
+
+TEST(AngleReadings, NameAllMissingColumns) {
+  std::istringstream in("reading,time_s,setup,pass,direction,position,phase,velocity_deg_s\n");
+  EXPECT_EQ(MessageOf([&] { ParseReadingsCsv(in, "r.csv", "encoder_comparison"); }),
+            "r.csv:1: required columns are missing: reference_deg, measured_deg; expected readings of the bench "
+            "encoder_comparison");
+}
+
+TEST(AngleReadings, ComeBackToTheSameBits) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  std::vector<Reading> readings(20);
+  for (int i = 0; i < 20; ++i) {
+    readings[i].reading = i;
+    readings[i].direction = i % 3 - 1;
+    for (double* value : {&readings[i].reference_rad, &readings[i].measured_rad, &readings[i].velocity_rad_s})
+      *value = normal(random);
+  }
+  const auto again = Parse(Write(readings));
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(again[i].direction, readings[i].direction);
+    EXPECT_EQ(again[i].reference_rad, readings[i].reference_rad);
+    EXPECT_EQ(again[i].measured_rad, readings[i].measured_rad);
+    EXPECT_EQ(again[i].velocity_rad_s, readings[i].velocity_rad_s);
+  }
+  EXPECT_THAT(Write(readings), Not(HasSubstr("psd_a_x_V")));
+}
+
 }  // namespace
 }  // namespace twinbench

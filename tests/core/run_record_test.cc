@@ -37,7 +37,9 @@ Reading ReadingOf(int number) {
   r.position = number % 36;
   r.phase = static_cast<Phase>(number % kPhases);
   r.n_samples = 100;
-  for (double* value : {&r.target_rad, &r.reference_rad, &r.dwell_s, &r.temperature_degC}) *value = normal(random);
+  for (double* value : {&r.target_rad, &r.reference_rad, &r.dwell_s, &r.temperature_degC, &r.measured_rad,
+                        &r.velocity_rad_s})
+    *value = normal(random);
   for (double& mean_V : r.mean_V) mean_V = normal(random);
   for (double& std_V : r.std_V) std_V = normal(random);
   if (number % 5 == 0) r.extra = {{"note", "a \"quoted\" \xC3\xA9"}};
@@ -71,6 +73,8 @@ void ExpectSame(const Reading& a, const Reading& b) {
   EXPECT_TRUE(SameNumber(a.temperature_degC, b.temperature_degC));
   EXPECT_TRUE(SameNumber(a.autocollimator_yaw_rad, b.autocollimator_yaw_rad));
   EXPECT_TRUE(SameNumber(a.autocollimator_tilt_rad, b.autocollimator_tilt_rad));
+  EXPECT_TRUE(SameNumber(a.measured_rad, b.measured_rad));
+  EXPECT_TRUE(SameNumber(a.velocity_rad_s, b.velocity_rad_s));
   EXPECT_EQ(a.extra, b.extra);
 }
 
@@ -221,7 +225,18 @@ TEST(RunRecord, OfAnotherVersionIsRefused) {
   RunRecord::Create(folder.path(), AnyProvenance());
   Sql(folder.path(), "PRAGMA user_version = 99");
   EXPECT_EQ(OpenError(folder.path()),
-            folder.File("record.sqlite") + ": the record has version 99; expected version 1");
+            folder.File("record.sqlite") + ": the record has version 99; expected version 2");
+}
+
+TEST(RunRecord, OfTheVersionWithoutAngleComparisonsIsBroughtUpToDate) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), AnyProvenance());
+  for (const char* column : {"measured_rad", "velocity_rad_s"})
+    Sql(folder.path(), ("ALTER TABLE readings DROP COLUMN " + std::string(column)).c_str());
+  Sql(folder.path(), "PRAGMA user_version = 1");
+  const auto record = RunRecord::Open(folder.path());
+  record->Append(ReadingOf(0), {});
+  ExpectSame(record->Readings().at(0), ReadingOf(0));
 }
 
 void FillRecord(const std::string& directory) {

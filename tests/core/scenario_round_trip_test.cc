@@ -8,6 +8,7 @@
 
 #include "tests/core/input_error.h"
 #include "twin/core/effect_catalogue.h"
+#include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/core/scenario_schema.h"
 
@@ -47,7 +48,7 @@ struct Randomise {
   void operator()(std::uint64_t* field) const { *field = random(); }
   void operator()(bool* field) const { *field = random() % 2 == 0; }
   void operator()(std::string* field) const {
-    if (!key.choices.empty()) *field = key.choices[random() % key.choices.size()];
+    if (!key.choices.empty() && key.name != "bench") *field = key.choices[random() % key.choices.size()];
     if (key.name == "title") *field = "a \"b\" \\ c\n\t\x01 \xC3\xA9 # [x] = 1";
     if (key.name.ends_with("_file") && key.name != "errors_file") *field = file;
   }
@@ -124,6 +125,13 @@ void ExpectSameBits(const std::vector<ScenarioKey>& keys_a, const std::vector<Sc
   }
 }
 
+void ExpectSameFinding(const EffectFinding& a, const EffectFinding& b) {
+  EXPECT_EQ(a.u, b.u);
+  EXPECT_EQ(a.provenance, b.provenance);
+  for (const auto& [one, other] : {std::pair{a.log_evidence, b.log_evidence}, {a.probability, b.probability}})
+    EXPECT_TRUE(one == other || (std::isnan(one) && std::isnan(other)));
+}
+
 void ExpectSameBits(Scenario a, Scenario b) {
   ExpectSameBits(KeysOf(a), KeysOf(b));
   ASSERT_EQ(a.fixtures.size(), b.fixtures.size());
@@ -133,7 +141,20 @@ void ExpectSameBits(Scenario a, Scenario b) {
     EXPECT_EQ(a.effects[i].name, b.effects[i].name);
     EXPECT_EQ(a.effects[i].where, b.effects[i].where);
     EXPECT_EQ(a.effects[i].parameters, b.effects[i].parameters) << a.effects[i].name;
+    ExpectSameFinding(a.effects[i].finding, b.effects[i].finding);
   }
+  ASSERT_EQ(a.empiricals.size(), b.empiricals.size());
+  for (std::size_t i = 0; i < a.empiricals.size(); ++i)
+    ExpectSameBits(KeysOf(a.empiricals[i]), KeysOf(b.empiricals[i]));
+}
+
+EffectFinding AnyFinding(const EffectEntry& entry, Random& random) {
+  EffectFinding finding;
+  for (const EffectParameter& p : entry.parameters) finding.u[p.name] = AnyNumber({0.0, p.upper_SI}, 1.0, random);
+  finding.log_evidence = AnyNumber({-50, 1000}, 1.0, random);
+  finding.probability = AnyNumber({0, 1}, 1.0, random);
+  finding.provenance = "run \"a\"";
+  return finding;
 }
 
 EffectSettings AnyEffect(const EffectEntry& entry, Random& random) {
@@ -143,7 +164,21 @@ EffectSettings AnyEffect(const EffectEntry& entry, Random& random) {
   for (const EffectParameter& p : entry.parameters)
     effect.parameters[p.name] =
         p.BelongsTo(effect.where) ? AnyNumber({p.lower_SI, p.upper_SI}, 1.0, random) : p.default_SI;
+  if (random() % 2 == 0) effect.finding = AnyFinding(entry, random);
   return effect;
+}
+
+EmpiricalSettings AnyEmpirical(const std::string& bench, Random& random) {
+  EmpiricalSettings empirical;
+  empirical.signature = "order 7 locked to the \"reference\" angle";
+  const bool is_rotary = bench == "rotary_4dof";
+  empirical.channel = is_rotary ? kChannelNames[random() % kChannels] : "angle";
+  for (int i = 0; i < 5; ++i) {
+    empirical.reading.push_back(3 * i);
+    (is_rotary ? empirical.value_m : empirical.value_rad).push_back(AnyNumber({-1e-5, 1e-5}, 1.0, random));
+  }
+  empirical.provenance = "a run";
+  return empirical;
 }
 
 FixtureSettings AnyFixture(bool is_box, Random& random, const std::string& file) {
@@ -159,11 +194,15 @@ FixtureSettings AnyFixture(bool is_box, Random& random, const std::string& file)
   return fixture;
 }
 
-Scenario AnyScenario(Random& random, const std::string& file) {
+Scenario AnyScenario(const std::string& bench, Random& random, const std::string& file) {
   Scenario scenario;
+  scenario.bench = bench;
   for (const ScenarioKey& key : KeysOf(scenario)) std::visit(Randomise{key, random, file}, key.field);
-  for (const bool is_box : {true, false}) scenario.fixtures.push_back(AnyFixture(is_box, random, file));
-  for (const EffectEntry& entry : EffectCatalogue()) scenario.effects.push_back(AnyEffect(entry, random));
+  for (const bool is_box : {true, false}) {
+    if (bench == kRotaryBench) scenario.fixtures.push_back(AnyFixture(is_box, random, file));
+  }
+  for (const EffectEntry& entry : EffectCatalogue(bench)) scenario.effects.push_back(AnyEffect(entry, random));
+  for (int i = 0; i < 2; ++i) scenario.empiricals.push_back(AnyEmpirical(scenario.bench, random));
   return scenario;
 }
 
@@ -172,7 +211,7 @@ TEST(WriteScenario, IsReadBackToTheSameBitsForEveryKey) {
   const std::string file = folder.Write("exists.txt", "x");
   Random random(5);
   for (int run = 0; run < 30; ++run) {
-    const Scenario scenario = AnyScenario(random, file);
+    const Scenario scenario = AnyScenario(run % 2 == 0 ? kRotaryBench : kEncoderBench, random, file);
     ExpectSameBits(ParseScenario(WriteScenario(scenario), "resolved.toml", "/elsewhere"), scenario);
   }
 }
@@ -185,6 +224,15 @@ TEST(WriteScenario, OfTheDefaultsIsReadBackAndReadsWell) {
   EXPECT_THAT(text, testing::HasSubstr("sweep_arcsec = 300.0\n"));
   ExpectSameBits(ParseScenario(text, "resolved.toml", "."), Scenario{});
   EXPECT_EQ(WriteScenario(ParseScenario(text, "resolved.toml", ".")), text);
+}
+
+TEST(WriteScenario, OfAnAngleComparisonHasNoKeyOfTheRotaryBench) {
+  Scenario scenario;
+  scenario.bench = kEncoderBench;
+  const std::string text = WriteScenario(scenario);
+  EXPECT_THAT(text, testing::HasSubstr("\n[encoder_procedure]\nkind = \"stops\"\n"));
+  for (const char* table : {"[laser]", "[target]", "[environment]", "[procedure]"})
+    EXPECT_THAT(text, testing::Not(testing::HasSubstr(table)));
 }
 
 TEST(WriteScenario, WritesEveryKeyOfTheDescription) {

@@ -205,9 +205,33 @@ TEST(ScenarioOverride, IsNamedWhenItIsWrong) {
 
 TEST(ScenarioError, NamesTheSupportedBenches) {
   EXPECT_EQ(MessageOf([] { ParseScenario("seed = 1\n", "s.toml", ".", {}); }),
-            "s.toml:1: bench is missing; expected bench = \"rotary_4dof\"");
+            "s.toml:1: bench is missing; expected bench = \"rotary_4dof\" or \"encoder_comparison\"");
   EXPECT_EQ(MessageOf([] { ParseScenario("\nbench = \"lathe\"\n", "s.toml", ".", {}); }),
-            "s.toml:2: bench is \"lathe\"; expected \"rotary_4dof\"");
+            "s.toml:2: bench is \"lathe\"; expected \"rotary_4dof\" or \"encoder_comparison\"");
+}
+
+TEST(ScenarioError, NamesTheBenchThatAKeyBelongsTo) {
+  const auto encoder = [](const std::string& text) {
+    return MessageOf([&] { ParseScenario("bench = \"encoder_comparison\"\n" + text, "s.toml", ".", {}); });
+  };
+  EXPECT_EQ(encoder("[laser]\nwavelength_nm = 650\n"),
+            "s.toml:2: laser belongs to the bench rotary_4dof; expected keys of encoder_comparison");
+  EXPECT_EQ(encoder("[[fixture]]\nname = \"plate\"\n"),
+            "s.toml:2: fixture belongs to the bench rotary_4dof; expected keys of encoder_comparison");
+  EXPECT_EQ(ErrorOf("[device]\nnoise_deg = 0.1\n"),
+            "s.toml:2: device belongs to the bench encoder_comparison; expected keys of rotary_4dof");
+  EXPECT_THAT(encoder("[[effect]]\nname = \"psd_gain\"\n"),
+              StartsWith("s.toml:3: the effect psd_gain belongs to the bench rotary_4dof; expected \"eccentricity\""));
+  EXPECT_EQ(encoder("[device]\nnoise_dg = 0.1\n"),
+            "s.toml:3: unknown key device.noise_dg; expected a known one; the nearest is device.noise_deg");
+  EXPECT_EQ(encoder("[encoder_procedure]\npasses = [1, 0]\n"),
+            "s.toml:3: encoder_procedure.passes has 0; expected directions 1 or -1");
+}
+
+TEST(Scenario, TakesTheEffectsOfItsOwnBench) {
+  const Scenario s = ParseScenario(
+      "bench = \"encoder_comparison\"\n[[effect]]\nname = \"backlash\"\nwidth_deg = 0.5\n", "s.toml", ".", {});
+  EXPECT_EQ(s.effects.at(0).parameters.at("width"), 0.5 * units::deg);  // the rotary bench's has a half_width_arcsec
 }
 
 TEST(ScenarioError, GivesTheLineOfASyntaxError) {

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/support/twin_run.h"
+#include "twin/measure/angle_comparison.h"
 #include "twin/measure/stability.h"
 #include "twin/measure/verification.h"
 
@@ -36,8 +37,12 @@ TEST_P(EveryScenario, OpensWithItsQuestionAndTheAnswerExpected) {
 }
 
 TEST_P(EveryScenario, RunsWithEveryReadingValid) {
-  const test::TwinRun run = test::RunTwin(LoadScenario(test::ScenarioPath(GetParam())));
-  EXPECT_EQ(static_cast<int>(run.readings.size()), procedure::PlannedReadings(run.scenario.procedure));
+  const Scenario scenario = LoadScenario(test::ScenarioPath(GetParam()));
+  const bool encoder = scenario.bench == kEncoderBench;
+  const test::TwinRun run = encoder ? test::RunEncoderTwin(scenario) : test::RunTwin(scenario);
+  const int planned = encoder ? static_cast<int>(procedure::AngleSchedule(scenario.encoder_procedure).size())
+                              : procedure::PlannedReadings(scenario.procedure);
+  EXPECT_EQ(static_cast<int>(run.readings.size()), planned);
   for (const Reading& reading : run.readings) EXPECT_EQ(reading.status, ReadingStatus::kOk) << reading.reading;
 }
 
@@ -149,6 +154,18 @@ TEST(Stability, StaysUnderThePapersFiguresOnlyInASteadyRoom) {
   const measure::Stability restless = RunStability(scenario);
   EXPECT_GT(restless.range[3], 5.0 * units::um);
   for (int axis = 0; axis < 3; ++axis) EXPECT_LT(restless.range[axis], 2.0 * units::arcsec);
+}
+
+TEST(EncoderComparison, ShowsNothingButTheNoiseOfItsDevice) {
+  Scenario scenario = LoadScenario(test::ScenarioPath("encoder_comparison.toml"));
+  for (const char* kind : {"stops", "sweep"}) {
+    scenario.encoder_procedure.kind = kind;
+    const auto comparison = measure::CompareAngles(test::RunEncoderTwin(scenario).readings);
+    // 576 readings and more: the deviation is known to 1 / sqrt(2 * 576) = 3 %; three of these.
+    EXPECT_NEAR(comparison.rms_rad / scenario.device.noise_rad, 1.0, 0.09) << kind;
+    // Each mean of at least 288 readings has u = noise / sqrt(288); three of these.
+    EXPECT_NEAR(comparison.mean_forward_rad, 0.0, 3.0 * scenario.device.noise_rad / std::sqrt(288.0)) << kind;
+  }
 }
 
 TEST(OneOfEverything, SaysThatItsResidualsExceedTheStatedNoise) {

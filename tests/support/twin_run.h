@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "twin/measure/measure.h"
+#include "twin/procedure/angle_comparison.h"
 #include "twin/procedure/procedure.h"
 #include "twin/separate/separate.h"
+#include "twin/sim/encoder/twin.h"
 #include "twin/sim/twin.h"
 
 /// Runs of the twin without a disk: what the closure, scenario and hidden tests have in common.
@@ -32,6 +34,17 @@ inline TwinRun RunTwin(const Scenario& scenario) {
   MemorySink sink;
   procedure::CarryOut(bench, scenario, sink);
   return {scenario, sink.readings, twin.TheTruth()};
+}
+
+/// The same of the bench encoder_comparison; its truth is that of the scenario's effects.
+inline TwinRun RunEncoderTwin(const Scenario& scenario) {
+  sim::EncoderTwin twin(scenario);
+  MemorySink sink;
+  procedure::CarryOut(twin, scenario, sink);
+  sim::Truth truth;
+  truth.effects = scenario.effects;
+  truth.seed = scenario.seed;
+  return {scenario, sink.readings, truth};
 }
 
 /// Readings -> calibration -> motions -> errors of both tables, as `twinbench separate` does it.

@@ -10,6 +10,7 @@ void AddRun(CLI::App& app);
 void AddExport(CLI::App& app);
 void AddImport(CLI::App& app);
 void AddSeparate(CLI::App& app);
+void AddDiagnose(CLI::App& app);
 void AddScore(CLI::App& app);
 void AddHelp(CLI::App& app);
 

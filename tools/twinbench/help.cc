@@ -15,9 +15,9 @@ std::string Join(const std::vector<std::string>& words) {
   return text;
 }
 
-void PrintEffects() {
-  fmt::print("An [[effect]] block hides one of these in the bench: name, where, and any of the parameters.\n\n");
-  for (const EffectEntry& effect : EffectCatalogue()) {
+void PrintEffects(const std::string& bench) {
+  fmt::print("\nBench {}\n\n", bench);
+  for (const EffectEntry& effect : EffectCatalogue(bench)) {
     fmt::print("{}: {}\n", effect.name, effect.title);
     if (!effect.places.empty()) fmt::print("    where = {}\n", Join(effect.places));
     for (const EffectParameter& p : effect.parameters) {
@@ -27,8 +27,13 @@ void PrintEffects() {
   }
 }
 
+void PrintAllEffects() {
+  fmt::print("An [[effect]] block hides one of these in the bench: name, where, and any of the parameters.\n");
+  for (const char* bench : {kRotaryBench, kEncoderBench}) PrintEffects(bench);
+}
+
 void PrintHelp(const std::string& topic) {
-  if (topic == "effects") return PrintEffects();
+  if (topic == "effects") return PrintAllEffects();
   fmt::print("{}", DescribeScenarioKeys());
 }
 

@@ -17,6 +17,7 @@ constexpr const char* kExamples =
     "A first session:\n"
     "  twinbench run scenarios/rotary_4dof.toml -o runs/first     carry out, measure, separate\n"
     "  twinbench score runs/first                                 compare with the truth\n"
+    "  twinbench diagnose runs/first                              does the scenario describe the bench?\n"
     "  twinbench export runs/first --readings readings.csv        hand the readings to somebody else\n"
     "  twinbench separate readings.csv --scenario scenarios/rotary_4dof.toml --json - --estimator published\n"
     "\n"
@@ -51,7 +52,7 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(Complaint);
   using namespace twinbench::tools;
-  for (const auto add : {AddRun, AddExport, AddImport, AddSeparate, AddScore, AddHelp}) add(app);
+  for (const auto add : {AddRun, AddExport, AddImport, AddSeparate, AddDiagnose, AddScore, AddHelp}) add(app);
   try {
     app.parse(argc, argv);
     return kDone;

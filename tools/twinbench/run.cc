@@ -5,13 +5,16 @@
 
 #include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/comparison.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/tables.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
 #include "twin/core/run_record.h"
+#include "twin/procedure/angle_comparison.h"
 #include "twin/procedure/procedure.h"
+#include "twin/sim/encoder/twin.h"
 #include "twin/sim/twin.h"
 
 namespace twinbench::tools {
@@ -29,6 +32,8 @@ struct Options {
 
 /// The errors of a file take the place of every repeatable error the scenario gives that table.
 void ReplaceErrors(Scenario& scenario, const std::string& option) {
+  if (scenario.bench != kRotaryBench)
+    throw InputError("--errors " + option, "the bench " + scenario.bench + " has no such table", "no --errors");
   const std::size_t equals = option.find('=');
   const std::string table = option.substr(0, equals);
   if (equals == std::string::npos || (table != "target" && table != "reference")) {
@@ -73,28 +78,51 @@ class RecordedFixture : public Fixture {
   RunRecord& record_;
 };
 
+/// Makes the folder of a run of the twin, with an empty record.
+std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& folder, const nlohmann::json& truth) {
+  auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "twin", scenario.seed, ""});
+  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
+  WriteJson(folder.truth(), truth);
+  return record;
+}
+
+procedure::ProgressCallback ShownOn(ProgressLine& line) {
+  return [&line](const procedure::Progress& p) {
+    line.Show(p.readings_done, p.readings_planned, p.phase, p.bench_time);
+  };
+}
+
 void CarryOutOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
   sim::Twin twin(scenario);
-  const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "twin", scenario.seed, ""});
-  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
-  WriteJson(folder.truth(), ToJson(twin.TheTruth()));
+  const auto record = Begin(scenario, folder, ToJson(twin.TheTruth()));
   const RotaryBench devices = twin.Bench();
   RecordedFixture fixture(devices.fixture, devices.clock, *record);
   RotaryBench bench = {devices.clock,          devices.target,      devices.reference,  devices.adc,
                        devices.autocollimator, devices.thermometer, devices.goniometer, fixture};
   ProgressLine progress;
-  procedure::CarryOut(bench, scenario, *record, [&](const procedure::Progress& p) {
-    progress.Show(p.readings_done, p.readings_planned, p.phase, p.bench_time);
-  });
+  procedure::CarryOut(bench, scenario, *record, ShownOn(progress));
   record->Finish();
   if (!images) return;
   std::filesystem::create_directories(folder.images());
   twin.WriteIrradiance(folder.images() + "/irradiance.exr");
 }
 
+void RunAngleComparison(const Scenario& scenario, const RunFolder& folder, bool images) {
+  if (images) throw InputError("--images", "the bench " + scenario.bench + " has no light", "a run without images");
+  sim::EncoderTwin twin(scenario);
+  const auto record = Begin(scenario, folder, twin.Truth());
+  ProgressLine progress;
+  procedure::CarryOut(twin, scenario, *record, ShownOn(progress));
+  record->Finish();
+  const auto comparison = measure::CompareAngles(RunRecord::Open(folder.path)->Readings());
+  WriteJson(folder.results(), ToJson(comparison));
+  fmt::print("{}", Summary(comparison));
+}
+
 void Run(const Options& options) {
   const Scenario scenario = ScenarioOf(options);
   const RunFolder folder{options.folder};
+  if (scenario.bench == kEncoderBench) return RunAngleComparison(scenario, folder, options.images);
   CarryOutOnTwin(scenario, folder, options.images);
   // Evaluated from the record, as any later look at this run will be.
   const Analysis analysis =

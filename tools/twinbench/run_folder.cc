@@ -54,7 +54,7 @@ RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenar
   }
   RecordedRun run;
   run.scenario = LoadScenario(scenario_path.empty() ? RunFolder{source}.scenario() : scenario_path, overrides);
-  run.readings = folder ? RunRecord::Open(source)->Readings() : ReadReadingsCsv(source);
+  run.readings = folder ? RunRecord::Open(source)->Readings() : ReadReadingsCsv(source, run.scenario.bench);
   return run;
 }
 

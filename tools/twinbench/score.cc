@@ -31,6 +31,7 @@ void PrintScore(const Options& options) {
   const RunFolder folder{options.folder};
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadRecordedRun(folder.path, "", {});
+  RequireTables(run.scenario);
   const Analysis analysis = Analyse(run.scenario, run.readings, EstimatorOf(options.estimator));
   if (!analysis.separation) throw InputError(folder.path, analysis.not_separated, "a run with a full-circle test");
   const Score score =

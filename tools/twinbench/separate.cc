@@ -24,6 +24,7 @@ nlohmann::json SeparationJson(const separate::Separation& separation) {
 
 void Separate(const Options& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
+  RequireTables(run.scenario);
   const Analysis analysis = Analyse(run.scenario, run.readings, EstimatorOf(options.estimator));
   if (!analysis.separation)
     throw InputError(options.source, analysis.not_separated, "readings of a full-circle test");

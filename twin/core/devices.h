@@ -97,6 +97,15 @@ struct RotaryBench {
   Fixture& fixture;
 };
 
+/// An angle device under test and the reference that it is compared with, on one shaft.
+class AngleComparator {
+ public:
+  virtual ~AngleComparator() = default;
+  /// Brings the shaft to the angle, speed and time that `reading` states (a stop is approached in its direction) and
+  /// enters what both devices show at that instant.
+  virtual void Take(Reading& reading) = 0;
+};
+
 /// Takes readings as they are made. `Append` returns only when the reading is as safe as the sink can make it.
 class ReadingSink {
  public:

@@ -4,8 +4,10 @@
 #include <map>
 #include <utility>
 
+#include "twin/core/effect_entries.h"
 #include "twin/core/errors.h"
 #include "twin/core/reading.h"
+#include "twin/core/scenario.h"
 #include "twin/core/units.h"
 
 namespace twinbench {
@@ -35,24 +37,27 @@ double FactorOf(const std::string& unit) {
                                                  {"per_m2", 1.0},
                                                  {"nm_per_K", nm},
                                                  {"arcsec_per_K", arcsec},
-                                                 {"urad_per_h", urad / units::hour}};
+                                                 {"urad_per_h", urad / units::hour},
+                                                 {"deg_per_h", deg / units::hour}};
   const auto found = factors.find(unit);
   Require(found != factors.end(), "a parameter of the effect catalogue has an unknown unit");
   return found->second;
 }
 
-/// A parameter whose default and bounds are given in `unit`.
+}  // namespace
+
 EffectParameter Parameter(const std::string& name, const std::string& unit, double value, double lower,
-                          double upper, const std::string& meaning, std::vector<std::string> only_at = {}) {
+                          double upper, const std::string& meaning, std::vector<std::string> only_at) {
   const double f = FactorOf(unit);
   return {name, unit, f, value * f, lower * f, upper * f, meaning, std::move(only_at)};
 }
 
-/// A parameter that may have either sign.
 EffectParameter Signed(const std::string& name, const std::string& unit, double value, double limit,
-                       const std::string& meaning, std::vector<std::string> only_at = {}) {
+                       const std::string& meaning, std::vector<std::string> only_at) {
   return Parameter(name, unit, value, -limit, limit, meaning, std::move(only_at));
 }
+
+namespace {
 
 std::vector<std::string> ChannelPlaces() {
   return {kChannelNames.begin(), kChannelNames.end()};
@@ -203,7 +208,7 @@ std::vector<EffectEntry> ElectronicEffects() {
   };
 }
 
-std::vector<EffectEntry> MakeCatalogue() {
+std::vector<EffectEntry> RotaryEffects() {
   std::vector<EffectEntry> catalogue;
   for (const auto& part : {DetectorEffects(), LightEffects(), BodyEffects(), TimeEffects(), ElectronicEffects()})
     catalogue.insert(catalogue.end(), part.begin(), part.end());
@@ -216,13 +221,16 @@ bool EffectParameter::BelongsTo(const std::string& place) const {
   return only_at.empty() || std::find(only_at.begin(), only_at.end(), place) != only_at.end();
 }
 
-const std::vector<EffectEntry>& EffectCatalogue() {
-  static const std::vector<EffectEntry> catalogue = MakeCatalogue();  // a constant, made at the first call
-  return catalogue;
+const std::vector<EffectEntry>& EffectCatalogue(const std::string& bench) {
+  static const std::map<std::string, std::vector<EffectEntry>> catalogues = {
+      {kRotaryBench, RotaryEffects()}, {kEncoderBench, EncoderEffects()}};  // constants, made at the first call
+  const auto found = catalogues.find(bench);
+  Require(found != catalogues.end(), "there is no such bench");
+  return found->second;
 }
 
-const EffectEntry* FindEffect(const std::string& name) {
-  for (const EffectEntry& entry : EffectCatalogue()) {
+const EffectEntry* FindEffect(const std::string& name, const std::string& bench) {
+  for (const EffectEntry& entry : EffectCatalogue(bench)) {
     if (entry.name == name) return &entry;
   }
   return nullptr;

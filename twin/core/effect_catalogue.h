@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+/// The causes that a scenario can switch on and a diagnosis can name. The name of an effect is unique on its bench.
 namespace twinbench {
 
 /// One parameter of an effect. In a scenario its key is `name` + "_" + `unit` ("roll_mrad"; just `name` if the unit
@@ -17,6 +18,7 @@ struct EffectParameter {
   std::vector<std::string> only_at = {};  // the places it belongs to; empty: to all
 
   std::string Key() const { return unit == "1" ? name : name + "_" + unit; }
+  std::string UncertaintyKey() const { return "u_" + Key(); }  // of a value that a diagnosis fitted
   bool BelongsTo(const std::string& place) const;
 };
 
@@ -29,10 +31,11 @@ struct EffectEntry {
   std::string default_place = {};  // if `where` is left out; empty: it must be given (where there are places)
 };
 
-/// Every effect of the rotary bench, in the order of formats.md.
-const std::vector<EffectEntry>& EffectCatalogue();
+/// Every effect of a bench, in the order of formats.md.
+/// @throws std::logic_error if there is no such bench.
+const std::vector<EffectEntry>& EffectCatalogue(const std::string& bench = "rotary_4dof");
 
 /// @return the entry, or nullptr.
-const EffectEntry* FindEffect(const std::string& name);
+const EffectEntry* FindEffect(const std::string& name, const std::string& bench = "rotary_4dof");
 
 }  // namespace twinbench

@@ -32,19 +32,20 @@ const char* ReadingStatusName(ReadingStatus status);  // "ok", "saturated", "no_
 std::optional<Phase> PhaseOf(std::string_view name);
 std::optional<ReadingStatus> ReadingStatusOf(std::string_view name);
 
-/// One stop of the bench: the commanded angles and the mean and scatter of one block of A/D samples.
+/// One stop of a bench. Rotary bench: the commanded angles and the mean and scatter of one block of A/D samples.
+/// Angle comparison: the angles that reference and device showed at the same instant. The rest stays NaN.
 struct Reading {
   int reading = 0;    // running number
   Time time{};        // start of the block
   int setup = 0;      // changes whenever something was re-mounted
   int pass = 0;       // one sweep through the positions
-  int direction = 1;  // +1: target angle increases; -1
+  int direction = 1;  // +1: target (or reference) angle increases; -1; 0: at rest, angle comparison only
   int position = 0;   // index of the stop
   Phase phase = Phase::kFullCircle;
   ReadingStatus status = ReadingStatus::kOk;
 
   double target_rad = kNaN;     // commanded, unwrapped
-  double reference_rad = kNaN;  // commanded, unwrapped
+  double reference_rad = kNaN;  // commanded, unwrapped; angle comparison: as the reference showed it
   std::array<double, kChannels> mean_V = {kNaN, kNaN, kNaN, kNaN};
   std::array<double, kChannels> std_V = {kNaN, kNaN, kNaN, kNaN};  // of one sample, not of the mean
   int n_samples = 0;                                               // per channel; 0 if not known
@@ -52,22 +53,30 @@ struct Reading {
   double temperature_degC = kNaN;
   double autocollimator_yaw_rad = kNaN;  // calibration and verification only
   double autocollimator_tilt_rad = kNaN;
+  double measured_rad = kNaN;    // angle comparison: what the device under test showed; some wrap it at a turn
+  double velocity_rad_s = kNaN;  // angle comparison: of the reference
 
   std::map<std::string, std::string> extra;  // columns of an imported file that we do not know, kept as text
 };
 
 /// Writes readings.csv of formats.md: units in the header, empty = not available, `readings` in time order. A
-/// column `status` is added if any reading is not kOk. ReadReadingsCsv gives back the same bits.
+/// column `status` is added if any reading is not kOk. The columns are those of the bench that BenchOf finds.
+/// ReadReadingsCsv gives back the same bits.
 /// @throws BenchError if `path` cannot be written.
 void WriteReadingsCsv(const std::vector<Reading>& readings, std::ostream& out);
 void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& path);
 
-/// Reads readings.csv of the rotary bench. Column order is free, `#` lines are comments, unknown columns are kept.
-/// A reading with an empty voltage and no other status becomes kMissing.
+/// Reads readings.csv. Column order is free, `#` lines are comments, unknown columns are kept. A reading with an empty
+/// voltage (or measured angle) and no other status becomes kMissing.
+/// @param bench  "rotary_4dof" or "encoder_comparison"; empty: the one that the columns speak of (`measured_deg`
+///               without `target_deg` is an angle comparison).
 /// @throws InputError with file:line for missing required columns (all are named), a field that is no number, a
 ///         wrong number of fields, an unknown phase or status, a reading number that comes twice or a time that
 ///         goes back.
-std::vector<Reading> ReadReadingsCsv(const std::string& path);
-std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name);
+std::vector<Reading> ReadReadingsCsv(const std::string& path, const std::string& bench = "");
+std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name, const std::string& bench = "");
+
+/// The bench whose readings these are: "encoder_comparison" if there are angles of a reference and none of a target.
+std::string BenchOf(const std::vector<Reading>& readings);
 
 }  // namespace twinbench

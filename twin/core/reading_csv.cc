@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -10,20 +11,23 @@
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
 #include "twin/core/reading.h"
+#include "twin/core/scenario.h"
 #include "twin/core/units.h"
 
 namespace twinbench {
 namespace {
 
 constexpr const char* kStatusColumn = "status";
+constexpr const char* kMeasuredColumn = "measured_deg";
 
 /// One column of readings.csv, for both ways.
 struct ReadingColumn {
   std::string name;
-  bool required = false;
+  bool required = false;       // the column must be there ...
   std::function<std::string(const Reading&)> print;              // empty: not available
   std::function<bool(Reading&, const std::string&)> parse = {};  // false: not what is expected
   std::string expected;
+  bool may_be_empty = false;  // ... but a reading's status may say why it has no value
 };
 
 /// @param field  Gives the number's place in a reading, as in `[](auto& r) -> auto& { return r.dwell_s; }`.
@@ -69,11 +73,16 @@ bool ParseTime(Time& time, const std::string& text) {
   return true;
 }
 
-bool ParseDirection(Reading& reading, const std::string& text) {
-  const auto direction = ParseWholeNumber(text);
-  if (!direction || (*direction != 1 && *direction != -1)) return false;
-  reading.direction = static_cast<int>(*direction);
-  return true;
+/// @param rest  0, at rest, is a direction too.
+ReadingColumn Direction(bool rest) {
+  const auto parse = [rest](Reading& reading, const std::string& text) {
+    const auto direction = ParseWholeNumber(text);
+    if (!direction || *direction < -1 || *direction > 1 || (*direction == 0 && !rest)) return false;
+    reading.direction = static_cast<int>(*direction);
+    return true;
+  };
+  return {"direction", true, [](const Reading& r) { return fmt::format("{}", r.direction); }, parse,
+          rest ? "1, -1 or 0 (at rest)" : "1 or -1"};
 }
 
 /// Takes over the value of a name that has been looked up; false if there was none.
@@ -83,7 +92,7 @@ bool Assign(Value& field, const std::optional<Value>& found) {
   return found.has_value();
 }
 
-void AddCommonColumns(std::vector<ReadingColumn>& columns) {
+void AddCommonColumns(std::vector<ReadingColumn>& columns, bool rest) {
   columns.push_back(WholeNumber(
       "reading", true, 0, [](auto& r) -> auto& { return r.reading; }));
   columns.push_back({"time_s", true, [](const Reading& r) { return PrintTime(r.time); },
@@ -93,8 +102,7 @@ void AddCommonColumns(std::vector<ReadingColumn>& columns) {
       "setup", true, 0, [](auto& r) -> auto& { return r.setup; }));
   columns.push_back(WholeNumber(
       "pass", true, 0, [](auto& r) -> auto& { return r.pass; }));
-  columns.push_back({"direction", true, [](const Reading& r) { return fmt::format("{}", r.direction); },
-                     ParseDirection, "1 or -1"});
+  columns.push_back(Direction(rest));
   columns.push_back(WholeNumber(
       "position", true, 0, [](auto& r) -> auto& { return r.position; }));
   columns.push_back({"phase", true, [](const Reading& r) { return std::string(PhaseName(r.phase)); },
@@ -111,10 +119,11 @@ ReadingColumn Voltage(const std::string& channel, std::size_t i) {
   ReadingColumn column = Number(
       channel + "_V", 1.0, true, [i](auto& r) -> auto& { return r.mean_V[i]; });
   column.expected = "a finite number of V, or nothing";
+  column.may_be_empty = true;
   return column;
 }
 
-void AddBenchColumns(std::vector<ReadingColumn>& columns) {
+void AddRotaryColumns(std::vector<ReadingColumn>& columns) {
   columns.push_back(Number(
       "target_deg", units::deg, true, [](auto& r) -> auto& { return r.target_rad; }));
   columns.push_back(Number(
@@ -127,6 +136,18 @@ void AddBenchColumns(std::vector<ReadingColumn>& columns) {
   }
 }
 
+void AddEncoderColumns(std::vector<ReadingColumn>& columns) {
+  columns.push_back(Number(
+      "reference_deg", units::deg, true, [](auto& r) -> auto& { return r.reference_rad; }));
+  ReadingColumn measured = Number(
+      kMeasuredColumn, units::deg, true, [](auto& r) -> auto& { return r.measured_rad; });
+  measured.may_be_empty = true;
+  measured.expected = "a finite number of deg, or nothing";
+  columns.push_back(measured);
+  columns.push_back(Number(
+      "velocity_deg_s", units::deg, false, [](auto& r) -> auto& { return r.velocity_rad_s; }));
+}
+
 void AddConditionColumns(std::vector<ReadingColumn>& columns) {
   ReadingColumn samples = WholeNumber(
       "n_samples", false, 0, [](auto& r) -> auto& { return r.n_samples; });
@@ -136,6 +157,9 @@ void AddConditionColumns(std::vector<ReadingColumn>& columns) {
       "dwell_s", 1.0, false, [](auto& r) -> auto& { return r.dwell_s; }));
   columns.push_back(Number(
       "temperature_degC", 1.0, false, [](auto& r) -> auto& { return r.temperature_degC; }));
+}
+
+void AddAutocollimatorColumns(std::vector<ReadingColumn>& columns) {
   columns.push_back(Number(
       "autocollimator_yaw_arcsec", units::arcsec, false,
       [](auto& r) -> auto& { return r.autocollimator_yaw_rad; }));
@@ -144,35 +168,33 @@ void AddConditionColumns(std::vector<ReadingColumn>& columns) {
       [](auto& r) -> auto& { return r.autocollimator_tilt_rad; }));
 }
 
-std::vector<ReadingColumn> Columns() {
+std::vector<ReadingColumn> Columns(const std::string& bench) {
+  const bool encoder = bench == kEncoderBench;
   std::vector<ReadingColumn> columns;
-  AddCommonColumns(columns);
-  AddBenchColumns(columns);
+  AddCommonColumns(columns, encoder);
+  encoder ? AddEncoderColumns(columns) : AddRotaryColumns(columns);
   AddConditionColumns(columns);
+  if (!encoder) AddAutocollimatorColumns(columns);
   return columns;
 }
 
-bool IsVoltage(const ReadingColumn& column) {
-  for (const char* channel : kChannelNames) {
-    if (column.name == std::string(channel) + "_V") return true;
-  }
-  return false;
+std::string BenchOfColumns(const CsvTable& table) {
+  return table.Column(kMeasuredColumn) && !table.Column("target_deg") ? kEncoderBench : kRotaryBench;
 }
 
-void RequireColumns(const CsvTable& table, const std::vector<ReadingColumn>& columns) {
+void RequireColumns(const CsvTable& table, const std::vector<ReadingColumn>& columns, const std::string& bench) {
   std::string missing;
   for (const ReadingColumn& column : columns) {
     if (column.required && !table.Column(column.name)) missing += (missing.empty() ? "" : ", ") + column.name;
   }
   if (!missing.empty())
     throw InputError(table.WhereHeader(), "required columns are missing: " + missing,
-                     "readings of the bench rotary_4dof");
+                     "readings of the bench " + bench);
 }
 
 void ParseField(const CsvTable& table, const CsvTable::Row& row, const ReadingColumn& column, Reading& reading) {
   const std::string& field = row.fields[*table.Column(column.name)];
-  const bool may_be_empty = !column.required || IsVoltage(column);
-  if (field.empty() && may_be_empty) return;
+  if (field.empty() && (!column.required || column.may_be_empty)) return;
   if (column.parse(reading, field)) return;
   throw InputError(table.Where(row), fmt::format("{} is \"{}\"", column.name, field), column.expected);
 }
@@ -184,15 +206,18 @@ bool HasAllVoltages(const Reading& reading) {
   return true;
 }
 
-/// A reading either is kOk with all its voltages or has none.
-void Harmonise(Reading& reading) {
-  if (reading.status == ReadingStatus::kOk && !HasAllVoltages(reading)) reading.status = ReadingStatus::kMissing;
+/// A reading either is kOk with all its values or has none.
+void Harmonise(Reading& reading, const std::string& bench) {
+  const bool complete = bench == kEncoderBench ? std::isfinite(reading.measured_rad) : HasAllVoltages(reading);
+  if (reading.status == ReadingStatus::kOk && !complete) reading.status = ReadingStatus::kMissing;
   if (reading.status == ReadingStatus::kOk) return;
+  reading.measured_rad = kNaN;
   reading.mean_V.fill(kNaN);
   reading.std_V.fill(kNaN);
 }
 
-Reading ParseRow(const CsvTable& table, const CsvTable::Row& row, const std::vector<ReadingColumn>& columns) {
+Reading ParseRow(const CsvTable& table, const CsvTable::Row& row, const std::vector<ReadingColumn>& columns,
+                 const std::string& bench) {
   Reading reading;
   std::set<std::string> known;
   for (const ReadingColumn& column : columns) {
@@ -202,7 +227,7 @@ Reading ParseRow(const CsvTable& table, const CsvTable::Row& row, const std::vec
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     if (!known.contains(table.columns[i])) reading.extra[table.columns[i]] = row.fields[i];
   }
-  Harmonise(reading);
+  Harmonise(reading, bench);
   return reading;
 }
 
@@ -220,7 +245,7 @@ void CheckOrder(const CsvTable& table, const CsvTable::Row& row, const Reading& 
 std::vector<ReadingColumn> ColumnsFor(const std::vector<Reading>& readings) {
   bool all_ok = true;
   for (const Reading& reading : readings) all_ok = all_ok && reading.status == ReadingStatus::kOk;
-  std::vector<ReadingColumn> columns = Columns();
+  std::vector<ReadingColumn> columns = Columns(BenchOf(readings));
   if (all_ok) std::erase_if(columns, [](const ReadingColumn& column) { return column.name == kStatusColumn; });
   return columns;
 }
@@ -264,24 +289,34 @@ void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& p
   if (!out.flush()) throw BenchError(path + ": the file cannot be written");
 }
 
-std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name) {
+std::string BenchOf(const std::vector<Reading>& readings) {
+  const auto has = [&](double Reading::*angle_rad) {
+    return std::any_of(readings.begin(), readings.end(),
+                       [&](const Reading& reading) { return std::isfinite(reading.*angle_rad); });
+  };
+  const bool two_tables = has(&Reading::target_rad);
+  return !two_tables && has(&Reading::reference_rad) ? kEncoderBench : kRotaryBench;
+}
+
+std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name, const std::string& stated_bench) {
   const CsvTable table = ParseCsv(in, name);
-  const std::vector<ReadingColumn> columns = Columns();
-  RequireColumns(table, columns);
+  const std::string bench = stated_bench.empty() ? BenchOfColumns(table) : stated_bench;
+  const std::vector<ReadingColumn> columns = Columns(bench);
+  RequireColumns(table, columns, bench);
   std::vector<Reading> readings;
   std::set<int> numbers;
   for (const CsvTable::Row& row : table.rows) {
-    const Reading reading = ParseRow(table, row, columns);
+    const Reading reading = ParseRow(table, row, columns, bench);
     CheckOrder(table, row, reading, readings.empty() ? Time::min() : readings.back().time, numbers);
     readings.push_back(reading);
   }
   return readings;
 }
 
-std::vector<Reading> ReadReadingsCsv(const std::string& path) {
+std::vector<Reading> ReadReadingsCsv(const std::string& path, const std::string& bench) {
   std::ifstream in(path);
   if (!in) throw InputError(path, "the file cannot be opened", "a readable readings.csv");
-  return ParseReadingsCsv(in, path);
+  return ParseReadingsCsv(in, path, bench);
 }
 
 }  // namespace twinbench

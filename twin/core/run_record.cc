@@ -17,7 +17,7 @@ namespace twinbench {
 namespace {
 
 constexpr int kApplicationId = 0x54574E42;  // "TWNB"
-constexpr int kVersion = 1;                 // of the tables below
+constexpr int kVersion = 2;                 // of the tables below
 
 constexpr const char* kTables = R"sql(
 CREATE TABLE provenance(program_version TEXT, bench TEXT, seed TEXT, clock_origin_utc TEXT);
@@ -28,14 +28,15 @@ CREATE TABLE readings(
   psd_a_x_V REAL, psd_a_y_V REAL, psd_b_x_V REAL, psd_b_y_V REAL,
   psd_a_x_std_V REAL, psd_a_y_std_V REAL, psd_b_x_std_V REAL, psd_b_y_std_V REAL,
   n_samples INTEGER, dwell_s REAL, temperature_degC REAL,
-  autocollimator_yaw_rad REAL, autocollimator_tilt_rad REAL, extra TEXT);
+  autocollimator_yaw_rad REAL, autocollimator_tilt_rad REAL, extra TEXT,
+  measured_rad REAL, velocity_rad_s REAL);
 CREATE TABLE raw_blocks(reading INTEGER PRIMARY KEY REFERENCES readings(reading), channels INTEGER, samples BLOB);
 CREATE TABLE events(id INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, device TEXT, text TEXT);
 CREATE TABLE finished(id INTEGER PRIMARY KEY CHECK(id = 1));
 )sql";
 
 constexpr const char* kInsertReading =
-    "INSERT INTO readings VALUES(NULL, ?,?,?,?,?,?,?,?, ?,?, ?,?,?,?, ?,?,?,?, ?,?,?, ?,?, ?)";
+    "INSERT INTO readings VALUES(NULL, ?,?,?,?,?,?,?,?, ?,?, ?,?,?,?, ?,?,?,?, ?,?,?, ?,?, ?, ?,?)";
 
 std::string RecordPath(const std::string& directory) {
   return (std::filesystem::path(directory) / "record.sqlite").string();
@@ -87,12 +88,23 @@ void MakeTables(SqliteDatabase& database, const Provenance& provenance) {
   transaction.Commit();
 }
 
+/// Version 1 knew the rotary bench only: the columns of the angle comparison are added, empty.
+void BringUpToDate(SqliteDatabase& database) {
+  if (database.Ask("PRAGMA user_version") != "1") return;
+  SqliteTransaction transaction(database);
+  for (const char* column : {"measured_rad", "velocity_rad_s"})
+    database.Execute(fmt::format("ALTER TABLE readings ADD COLUMN {} REAL", column).c_str());
+  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
+  transaction.Commit();
+}
+
 /// @throws InputError unless the file is a whole record of a version that we know.
 void CheckRecord(SqliteDatabase& database) {
   const std::string expected = "a record.sqlite made by twinbench";
   if (database.Ask("PRAGMA application_id") != fmt::format("{}", kApplicationId))
     throw InputError(database.path(), "this is a database of another program, or its making was interrupted",
                      expected);
+  BringUpToDate(database);
   const std::string version = database.Ask("PRAGMA user_version");
   if (version != fmt::format("{}", kVersion))
     throw InputError(database.path(), "the record has version " + version, fmt::format("version {}", kVersion));
@@ -122,6 +134,7 @@ void BindReading(SqliteStatement& insert, const Reading& r) {
   for (const double value : {r.dwell_s, r.temperature_degC, r.autocollimator_yaw_rad, r.autocollimator_tilt_rad})
     bind(value);
   bind(ExtraText(r));
+  for (const double value : {r.measured_rad, r.velocity_rad_s}) bind(value);
 }
 
 /// @throws InputError if a name or the JSON in a row is none of ours.
@@ -141,8 +154,10 @@ Reading TakeReading(const SqliteStatement& row, const std::string& path) {
   r.n_samples = take_integer();
   for (double* value : {&r.dwell_s, &r.temperature_degC, &r.autocollimator_yaw_rad, &r.autocollimator_tilt_rad})
     *value = take_real();
-  const auto extra = nlohmann::json::parse(row.Text(column), nullptr, false);
-  if (!phase || !status || (extra.is_discarded() && !row.Text(column).empty()))
+  const std::string extra_text = row.Text(column++);
+  for (double* value : {&r.measured_rad, &r.velocity_rad_s}) *value = take_real();
+  const auto extra = nlohmann::json::parse(extra_text, nullptr, false);
+  if (!phase || !status || (extra.is_discarded() && !extra_text.empty()))
     throw InputError(path, fmt::format("reading {} of the record is damaged", r.reading), "names and JSON of ours");
   r.phase = *phase;
   r.status = *status;

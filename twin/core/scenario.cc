@@ -23,6 +23,7 @@ namespace {
 
 constexpr const char* kEffectTable = "effect";
 constexpr const char* kFixtureTable = "fixture";
+constexpr const char* kEmpiricalTable = "empirical";
 
 std::vector<KnownKey> KnownKeys(const std::vector<ScenarioKey>& keys) {
   std::vector<KnownKey> known;
@@ -38,12 +39,25 @@ std::vector<std::string> KnownTables(const std::vector<ScenarioKey>& keys) {
   return tables;
 }
 
+/// The bench that has the key or the table `path` where this one has not; empty if there is none.
+std::string BenchThatHas(const std::string& path) {
+  for (const std::string& bench : SupportedBenches()) {
+    Scenario scenario;
+    scenario.bench = bench;
+    for (const ScenarioKey& key : KeysOf(scenario)) {
+      if (key.Path() == path || key.table == path) return bench;
+    }
+  }
+  return path == kFixtureTable ? kRotaryBench : "";
+}
+
 /// Refuses what is not in the description, in one source of the text.
 class KeyCheck {
  public:
-  KeyCheck(const TomlSource& source, const std::vector<ScenarioKey>& keys)
-      : source_(source), known_(KnownKeys(keys)), tables_(KnownTables(keys)) {
-    for (const char* blocks : {kFixtureTable, kEffectTable}) known_.push_back({"", blocks, ""});
+  KeyCheck(const TomlSource& source, const std::vector<ScenarioKey>& keys, const std::string& bench)
+      : source_(source), bench_(bench), known_(KnownKeys(keys)), tables_(KnownTables(keys)) {
+    for (const char* blocks : {kEffectTable, kEmpiricalTable}) known_.push_back({"", blocks, ""});
+    if (bench == kRotaryBench) known_.push_back({"", kFixtureTable, ""});
   }
 
   void Check() const { CheckTable(source_.root, ""); }
@@ -72,12 +86,21 @@ class KeyCheck {
       CheckTable(*value.node().as_table(), path);
       return;
     }
+    RefuseOtherBench(path, value);
     if (!value.node().is_table()) throw UnknownKey(value.Where(), table, key, known_);
     throw InputError(value.Where(), fmt::format("unknown table {}", path),
                      fmt::format("a known one; the nearest is {}", Nearest(path, tables_)));
   }
 
+  void RefuseOtherBench(const std::string& path, const TomlValue& value) const {
+    const std::string other = BenchThatHas(path);
+    if (!other.empty())
+      throw InputError(value.Where(), fmt::format("{} belongs to the bench {}", path, other),
+                       fmt::format("keys of {}", bench_));
+  }
+
   const TomlSource& source_;
+  std::string bench_;
   std::vector<KnownKey> known_;
   std::vector<std::string> tables_;  // the first is the top, ""
 };
@@ -122,9 +145,9 @@ FixtureSettings ReadFixture(const TomlValue& block) {
 
 // --- [[effect]] ---
 
-std::vector<std::string> EffectNames() {
+std::vector<std::string> EffectNames(const std::string& bench) {
   std::vector<std::string> names;
-  for (const EffectEntry& entry : EffectCatalogue()) names.push_back(entry.name);
+  for (const EffectEntry& entry : EffectCatalogue(bench)) names.push_back(entry.name);
   return names;
 }
 
@@ -136,14 +159,24 @@ std::string EffectForm(const EffectEntry& entry) {
   return form;
 }
 
-const EffectEntry& EntryOf(const TomlValue& block, const toml::table& table) {
+/// @throws InputError, naming the other bench if the effect is one of its.
+[[noreturn]] void RefuseEffect(const TomlValue& value, const std::string& name, const std::string& bench) {
+  for (const std::string& other : SupportedBenches()) {
+    if (FindEffect(name, other))
+      throw InputError(value.Where(), fmt::format("the effect {} belongs to the bench {}", name, other),
+                       Alternatives(EffectNames(bench)));
+  }
+  throw InputError(value.Where(), fmt::format("unknown effect \"{}\"", name),
+                   fmt::format("a known one; the nearest is \"{}\"", Nearest(name, EffectNames(bench))));
+}
+
+const EffectEntry& EntryOf(const TomlValue& block, const toml::table& table, const std::string& bench) {
   const toml::node* node = table.get("name");
-  if (!node) throw InputError(block.Where(), "the effect has no name", Alternatives(EffectNames()));
+  if (!node) throw InputError(block.Where(), "the effect has no name", Alternatives(EffectNames(bench)));
   const TomlValue value = block.With(*node);
   const std::string name = ReadText(value, "effect.name", {});
-  if (const EffectEntry* entry = FindEffect(name)) return *entry;
-  throw InputError(value.Where(), fmt::format("unknown effect \"{}\"", name),
-                   fmt::format("a known one; the nearest is \"{}\"", Nearest(name, EffectNames())));
+  if (const EffectEntry* entry = FindEffect(name, bench)) return *entry;
+  RefuseEffect(value, name, bench);
 }
 
 std::string ReadPlace(const TomlValue& block, const toml::table& table, const EffectEntry& entry) {
@@ -157,6 +190,17 @@ std::string ReadPlace(const TomlValue& block, const toml::table& table, const Ef
   throw InputError(block.Where(), key + " is missing", Alternatives(entry.places));
 }
 
+constexpr const char* kLogEvidence = "log_evidence";
+constexpr const char* kProbability = "probability";
+constexpr const char* kProvenance = "provenance";
+
+/// What a diagnosis may have written beside the parameters of an effect.
+bool IsFindingKey(const std::string& key, const EffectEntry& entry) {
+  const bool is_uncertainty = std::any_of(entry.parameters.begin(), entry.parameters.end(),
+                                          [&](const EffectParameter& p) { return p.UncertaintyKey() == key; });
+  return is_uncertainty || key == kLogEvidence || key == kProbability || key == kProvenance;
+}
+
 void CheckEffectKeys(const TomlValue& block, const toml::table& table, const EffectEntry& entry,
                      const std::string& place) {
   for (const auto& [key, node] : table) {
@@ -165,6 +209,7 @@ void CheckEffectKeys(const TomlValue& block, const toml::table& table, const Eff
                                         [&](const EffectParameter& p) { return p.Key() == name; });
     const bool known = parameter != entry.parameters.end();
     if (name == "name" || name == "where" || (known && parameter->BelongsTo(place))) continue;
+    if (IsFindingKey(name, entry)) continue;
     const std::string what = known ? fmt::format("the effect {} has no {} at {}", entry.name, name, place)
                                    : fmt::format("the effect {} has no {}", entry.name, name);
     throw InputError(block.With(node).Where(), what, EffectForm(entry));
@@ -183,9 +228,26 @@ double ReadParameter(const TomlValue& block, const toml::table& table, const Eff
   return ReadNumber(block.With(*node), effect + ": " + p.Key(), unit, {in_unit(p.lower_SI), in_unit(p.upper_SI)});
 }
 
-EffectSettings ReadEffect(const TomlValue& block) {
+EffectFinding ReadFinding(const TomlValue& block, const EffectEntry& entry) {
+  EffectFinding finding;
+  const auto number = [&](const std::string& key, const Unit& unit, const Bounds& bounds, double& place) {
+    if (const auto value = Inside(block, key)) place = ReadNumber(*value, entry.name + ": " + key, unit, bounds);
+  };
+  for (const EffectParameter& p : entry.parameters) {
+    double u = kNaN;
+    number(p.UncertaintyKey(), {p.unit == "1" ? "" : std::string_view(p.unit), p.to_SI}, {0.0}, u);
+    if (!std::isnan(u)) finding.u[p.name] = u;
+  }
+  number(kLogEvidence, {}, {}, finding.log_evidence);
+  number(kProbability, {}, {0.0, 1.0}, finding.probability);
+  if (const auto value = Inside(block, kProvenance))
+    finding.provenance = ReadText(*value, entry.name + ": " + kProvenance, {});
+  return finding;
+}
+
+EffectSettings ReadEffect(const TomlValue& block, const std::string& bench) {
   const toml::table& table = *block.node().as_table();
-  const EffectEntry& entry = EntryOf(block, table);
+  const EffectEntry& entry = EntryOf(block, table, bench);
   EffectSettings effect;
   effect.name = entry.name;
   effect.where = ReadPlace(block, table, entry);
@@ -193,14 +255,48 @@ EffectSettings ReadEffect(const TomlValue& block) {
   CheckEffectKeys(block, table, entry, effect.where);
   for (const EffectParameter& parameter : entry.parameters)
     effect.parameters[parameter.name] = ReadParameter(block, table, parameter, entry.name);
+  effect.finding = ReadFinding(block, entry);
   return effect;
+}
+
+// --- [[empirical]] ---
+
+void RequireEmpirical(const EmpiricalSettings& empirical, const std::string& bench) {
+  const auto require = [&](bool condition, const std::string& what, const std::string& expected) {
+    if (!condition) throw InputError(empirical.location, what, expected);
+  };
+  const bool is_angle = bench != "rotary_4dof";
+  require((empirical.channel == "angle") == is_angle,
+          fmt::format("the empirical signal is for the channel \"{}\"", empirical.channel),
+          "a channel of the bench " + bench);
+  const std::vector<double>& values = is_angle ? empirical.value_rad : empirical.value_m;
+  const std::string key = is_angle ? "value_deg" : "value_um";
+  const std::vector<double>& others = is_angle ? empirical.value_m : empirical.value_rad;
+  require(others.empty(), "the empirical signal has values of another kind of channel", key);
+  require(!values.empty() && values.size() == empirical.reading.size(),
+          fmt::format("the empirical signal has {} readings and {} values", empirical.reading.size(), values.size()),
+          fmt::format("one {} for each reading", key));
+  const std::set<int> once(empirical.reading.begin(), empirical.reading.end());
+  require(once.size() == values.size(), "the empirical signal names a reading twice", "every reading once");
+}
+
+EmpiricalSettings ReadEmpirical(const TomlValue& block, const std::string& bench) {
+  EmpiricalSettings empirical;
+  empirical.location = block.Where();
+  const std::vector<ScenarioKey> keys = KeysOf(empirical);
+  RefuseUnknown(block, kEmpiricalTable, KnownKeys(keys));
+  for (const ScenarioKey& key : keys) {
+    if (const auto value = Inside(block, key.Name())) ReadKey(key, *value);
+  }
+  RequireEmpirical(empirical, bench);
+  return empirical;
 }
 
 // --- what keys say together ---
 
-void CheckBench(const ScenarioText& text) {
-  if (!text.Find("bench"))
-    throw InputError(text.name() + ":1", "bench is missing", "bench = " + Alternatives(SupportedBenches()));
+std::string ReadBench(const ScenarioText& text) {
+  if (const auto bench = text.Find("bench")) return ReadText(*bench, "bench", SupportedBenches());
+  throw InputError(text.name() + ":1", "bench is missing", "bench = " + Alternatives(SupportedBenches()));
 }
 
 void CheckScanList(const ScenarioText& text, const AdcSettings& adc) {
@@ -224,12 +320,9 @@ void CheckShifts(const ScenarioText& text, const ProcedureSettings& procedure) {
   }
 }
 
-void CheckPasses(const ScenarioText& text, const ProcedureSettings& procedure) {
-  for (const int direction : procedure.passes) {
-    if (direction == 0)
-      throw InputError(text.Where("procedure.passes", text.name() + ":1"), "procedure.passes has 0",
-                       "directions 1 or -1");
-  }
+void CheckPasses(const ScenarioText& text, const std::string& key, const std::vector<int>& passes) {
+  if (std::find(passes.begin(), passes.end(), 0) != passes.end())
+    throw InputError(text.Where(key, text.name() + ":1"), key + " has 0", "directions 1 or -1");
 }
 
 void CheckProfile(const ScenarioText& text, const LaserSettings& laser) {
@@ -288,17 +381,22 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
                        const std::vector<std::string>& overrides) {
   const ScenarioText sources(text, name, overrides);
   Scenario scenario;
+  scenario.bench = ReadBench(sources);
   const std::vector<ScenarioKey> keys = KeysOf(scenario);
-  CheckBench(sources);
-  for (const TomlSource& source : sources.sources()) KeyCheck(source, keys).Check();
+  for (const TomlSource& source : sources.sources()) KeyCheck(source, keys, scenario.bench).Check();
   for (const ScenarioKey& key : keys) {
     if (const auto value = sources.Find(key.Path())) ReadKey(key, *value);
   }
   scenario.fixtures = ReadBlocks<FixtureSettings>(sources, kFixtureTable, ReadFixture);
-  scenario.effects = ReadBlocks<EffectSettings>(sources, kEffectTable, ReadEffect);
+  scenario.effects = ReadBlocks<EffectSettings>(sources, kEffectTable, [&](const TomlValue& block) {
+    return ReadEffect(block, scenario.bench);
+  });
+  scenario.empiricals = ReadBlocks<EmpiricalSettings>(
+      sources, kEmpiricalTable, [&](const TomlValue& block) { return ReadEmpirical(block, scenario.bench); });
   CheckScanList(sources, scenario.adc);
   CheckShifts(sources, scenario.procedure);
-  CheckPasses(sources, scenario.procedure);
+  CheckPasses(sources, "procedure.passes", scenario.procedure.passes);
+  CheckPasses(sources, "encoder_procedure.passes", scenario.encoder_procedure.passes);
   CheckProfile(sources, scenario.laser);
   LoadFiles(sources, folder, scenario);
   return scenario;

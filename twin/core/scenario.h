@@ -17,6 +17,9 @@
 /// A key is a field's name with the unit of the file: wavelength_m is `wavelength_nm`.
 namespace twinbench {
 
+inline constexpr const char* kRotaryBench = "rotary_4dof";
+inline constexpr const char* kEncoderBench = "encoder_comparison";
+
 enum class BeamModel { kChiefRay, kGaussian, kProfile };
 
 struct LaserSettings {                               // [laser]
@@ -163,6 +166,33 @@ struct ProcedureSettings {                           // [procedure]
   bool keep_raw = false;
 };
 
+/// The angle device under test, of the bench encoder_comparison.
+struct DeviceSettings {                              // [device]
+  double noise_rad = 0.002 * units::deg;             // one reading, white, standard deviation
+  bool noise_known = false;                          // false: whoever evaluates readings estimates it from them
+  double resolution_rad = 0.0;                       // least step of the reading; 0: none
+  int lines = 0;                                     // [device] lines_per_turn; 0: not known
+  int teeth = 0;                                     // of a gear between reference and device; 0: none known
+  int signal_periods = 1;                            // of its sine and cosine signals a turn
+  double signal_zero_rad = 0.0;                      // angle of the device at which the sine signal rises through zero
+  bool signal_zero_known = false;                    // false: the evaluation leaves the phase of signal faults free
+};
+
+struct EncoderProcedureSettings {                    // [encoder_procedure]
+  std::string kind = "stops";                        // stops | sweep
+  double turns = 2.0;                                // of a pass
+  double start_rad = 0.0;                            // where the first pass begins
+  std::vector<int> passes = {1, -1, -1, 1};          // directions; a sweep does them at each speed
+  std::vector<double> mounting_rad = {0.0};          // device angle where the reference shows 0, one a set-up
+  double remount_s = 600.0;                          // time a set-up takes
+  int stops = 72;                                    // stops: [encoder_procedure] stops_per_turn
+  double stop_interval_s = 4.0;
+  std::vector<double> speeds_rad_s = {36.0 * units::deg, 12.0 * units::deg};  // sweep
+  double ramp_s = 0.6;                               // at constant acceleration, up and down
+  double rest_s = 2.0;                               // behind every pass
+  double interval_s = 0.08;                          // between readings
+};
+
 /// Something opaque in the way of the light: a box, or a triangle mesh from a file. A [[fixture]] block.
 struct FixtureSettings {
   std::string name;
@@ -175,16 +205,38 @@ struct FixtureSettings {
   std::string location;                              // "file.toml:31", for messages
 };
 
+/// What a diagnosis said about the effect that it added to a scenario. The twin does not look at it.
+struct EffectFinding {
+  std::map<std::string, double> u;                   // SI, by parameter: `u_roll_mrad`; those that are known
+  double log_evidence = std::numeric_limits<double>::quiet_NaN();
+  double probability = std::numeric_limits<double>::quiet_NaN();
+  std::string provenance;                            // which run said so, and when
+};
+
 /// One cause that the bench has and the nominal bench has not: an [[effect]] block.
 struct EffectSettings {
-  std::string name;                                  // of EffectCatalogue()
+  std::string name;                                  // of EffectCatalogue(bench)
   std::string where;                                 // channel, PSD or axis; empty where the effect has only one place
   std::map<std::string, double> parameters;          // SI, by name without unit ("roll"); all that the catalogue has
   std::string location;                              // "file.toml:31", for messages
+  EffectFinding finding = {};                        // if a diagnosis added it
 };
 
+/// Structure without a name: a signal tabulated by the readings that showed it. An [[empirical]] block. It repeats
+/// what one run had and predicts no other.
+struct EmpiricalSettings {
+  std::string signature;                             // what it looks like, in words
+  std::string channel;                               // to which the signal is added
+  std::vector<int> reading;                          // running numbers, each once; elsewhere the signal is zero
+  std::vector<double> value_m;                       // one a reading, on a channel that reads a position ...
+  std::vector<double> value_rad;                     // ... or an angle; the other list is empty
+  std::string provenance;
+  std::string location;                              // "file.toml:31", for messages
+};
+
+/// The keys of other benches keep their defaults.
 struct Scenario {
-  std::string bench = "rotary_4dof";
+  std::string bench = kRotaryBench;
   std::string title;
   std::uint64_t seed = 1;
   bool noise_free = false;                           // no random contribution and no quantisation
@@ -203,21 +255,25 @@ struct Scenario {
   EnvironmentSettings environment;
   AutocollimatorSettings autocollimator;
   ProcedureSettings procedure;
+  DeviceSettings device;                             // these two: bench encoder_comparison
+  EncoderProcedureSettings encoder_procedure;
   std::vector<FixtureSettings> fixtures;
   std::vector<EffectSettings> effects;
+  std::vector<EmpiricalSettings> empiricals;
 };
 
-/// Reads a scenario and applies `overrides`: "procedure.positions=12", in TOML syntax, where a single word needs no
-/// quotes. A later override wins. A list, or all blocks of [[fixture]] or [[effect]], are replaced as a whole.
+/// Reads a scenario of any supported bench and applies `overrides`: "procedure.positions=12", in TOML syntax, where a single word needs no
+/// quotes. A later override wins. A list, or all blocks of [[fixture]],
+/// [[effect]] or [[empirical]], are replaced as a whole.
 ///
 /// @throws InputError with file:line for a syntax error, an unknown key (naming the nearest known one), a value out
-///         of bounds or of the wrong type, an effect, place or parameter that is not in the catalogue, a file that
-///         cannot be read. Overrides are reported as "--set key=value".
+///         of bounds or of the wrong type, a key of another bench, an effect, place or parameter that is not in the
+///         bench's catalogue, a file that cannot be read. Overrides are reported as "--set key=value".
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides = {});
 Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& folder,
                        const std::vector<std::string>& overrides = {});
 
-/// The scenario as TOML with every key written out, units in the keys; LoadScenario reads it back to the same bits.
+/// The scenario as TOML with every key of its bench written out, units in the keys; LoadScenario reads it back to the same bits.
 /// It stands alone: errors of the tables are in it, and other files are named by absolute paths.
 /// @throws std::logic_error if a number is not finite.
 std::string WriteScenario(const Scenario& scenario);

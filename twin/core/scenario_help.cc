@@ -67,6 +67,21 @@ std::string DescribeFixture() {
   return text;
 }
 
+std::string DescribeEmpirical() {
+  EmpiricalSettings example;
+  example.signature = "order 7 locked to the reference angle";
+  example.channel = "psd_a_y";
+  std::string text = "\n[[empirical]]  # structure without a name, tabulated; a diagnosis writes it\n";
+  for (const ScenarioKey& key : KeysOf(example)) text += DescribeKey(key);
+  return text;
+}
+
+constexpr const char* kFinding =
+    "\nIn every [[effect]] that a diagnosis has added, and without influence on the bench:\n"
+    "u_PARAMETER\n    standard uncertainty of PARAMETER, in its unit\n"
+    "log_evidence, probability\n    how sure the diagnosis was\n"
+    "provenance\n    which run said so, and when\n";
+
 std::string DescribeEffect(const EffectEntry& entry) {
   std::string text = fmt::format("\n[[effect]]  # {}\nname = \"{}\"\n", entry.title, entry.name);
   if (!entry.places.empty()) {
@@ -78,19 +93,26 @@ std::string DescribeEffect(const EffectEntry& entry) {
   return text;
 }
 
-}  // namespace
-
-std::string DescribeScenarioKeys() {
+std::string DescribeBench(const std::string& bench) {
   Scenario defaults;
-  std::string text, table;
+  defaults.bench = bench;
+  std::string text = fmt::format("\n# ---- bench {} ----\n", bench), table;
   for (const ScenarioKey& key : KeysOf(defaults)) {
     if (key.table != table) text += fmt::format("\n[{}]\n", key.table);
     table = key.table;
     text += DescribeKey(key);
   }
-  text += DescribeFixture();
-  for (const EffectEntry& entry : EffectCatalogue()) text += DescribeEffect(entry);
+  if (bench == kRotaryBench) text += DescribeFixture();
+  for (const EffectEntry& entry : EffectCatalogue(bench)) text += DescribeEffect(entry);
   return text;
+}
+
+}  // namespace
+
+std::string DescribeScenarioKeys() {
+  std::string text;
+  for (const std::string& bench : SupportedBenches()) text += DescribeBench(bench);
+  return text + kFinding + DescribeEmpirical();
 }
 
 }  // namespace twinbench

@@ -239,25 +239,35 @@ void AddProcedure(Keys& keys, ProcedureSettings& s) {
   t.Flag("keep_raw", s.keep_raw, "store every sample");
 }
 
-}  // namespace
-
-bool Bounds::Contain(double value) const {
-  return value <= upper && (above_lower ? value > lower : value >= lower);
+void AddDevice(Keys& keys, DeviceSettings& s) {
+  Table t(keys, "device");
+  t.Add("noise", kDeg, UpTo(10), &s.noise_rad, "of one reading, white, standard deviation");
+  t.Flag("noise_known", s.noise_known, "false: an evaluation estimates it from the readings");
+  t.Add("resolution", kDeg, UpTo(10), &s.resolution_rad, "least step of the reading; 0: none");
+  t.Add("lines_per_turn", kPure, UpTo(10000000), &s.lines, "of its scale; 0: not known");
+  t.Add("teeth", kPure, UpTo(100000), &s.teeth, "of a gear between reference and device; 0: none known");
+  t.Add("signal_periods", kPure, {1, 100000}, &s.signal_periods, "of its sine and cosine signals a turn");
+  t.Add("signal_zero", kDeg, Within(360), &s.signal_zero_rad, "device angle where the sine rises through zero");
+  t.Flag("signal_zero_known", s.signal_zero_known, "false: the phase of signal faults is left free");
 }
 
-std::string Bounds::Text() const {
-  if (lower == Bounds{}.lower && upper == Bounds{}.upper) return "";
-  if (above_lower) return fmt::format(" above {} and up to {}", lower, upper);
-  return fmt::format(" from {} to {}", lower, upper);
+void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
+  Table t(keys, "encoder_procedure");
+  t.Text("kind", &s.kind, {"stops", "sweep"}, "readings at rest, or in motion");
+  t.Add("turns", kPure, Positive(1000), &s.turns, "of a pass");
+  t.Add("start", kDeg, Within(360000), &s.start_rad, "where the first pass begins");
+  t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1; a sweep does them at each speed");
+  t.Add("mounting", kDeg, Within(360), &s.mounting_rad, "device angle where the reference shows 0, one a set-up");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("stops_per_turn", kPure, {3, 100000}, &s.stops, "stops: evenly spaced");
+  t.Add("stop_interval", kSecond, Positive(86400), &s.stop_interval_s, "stops: between readings");
+  t.Add("speeds", {"deg_s", units::deg}, Positive(36000), &s.speeds_rad_s, "sweep: one after the other");
+  t.Add("ramp", kSecond, Positive(3600), &s.ramp_s, "sweep: to reach the speed and to stop");
+  t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "sweep: behind every pass");
+  t.Add("interval", kSecond, Positive(3600), &s.interval_s, "sweep: between readings");
 }
 
-std::vector<std::string> SupportedBenches() {
-  return {"rotary_4dof"};
-}
-
-std::vector<ScenarioKey> KeysOf(Scenario& s) {
-  Keys keys;
-  AddTop(keys, s);
+void AddRotaryBench(Keys& keys, Scenario& s) {
   AddLaser(keys, s.laser);
   AddGrating(keys, s.grating);
   AddPsd(keys, "psd_a", s.psd_a);
@@ -271,6 +281,33 @@ std::vector<ScenarioKey> KeysOf(Scenario& s) {
   AddEnvironment(keys, s.environment);
   AddAutocollimator(keys, s.autocollimator);
   AddProcedure(keys, s.procedure);
+}
+
+void AddEncoderBench(Keys& keys, Scenario& s) {
+  AddDevice(keys, s.device);
+  AddEncoderProcedure(keys, s.encoder_procedure);
+}
+
+}  // namespace
+
+bool Bounds::Contain(double value) const {
+  return value <= upper && (above_lower ? value > lower : value >= lower);
+}
+
+std::string Bounds::Text() const {
+  if (lower == Bounds{}.lower && upper == Bounds{}.upper) return "";
+  if (above_lower) return fmt::format(" above {} and up to {}", lower, upper);
+  return fmt::format(" from {} to {}", lower, upper);
+}
+
+std::vector<std::string> SupportedBenches() {
+  return {kRotaryBench, kEncoderBench};
+}
+
+std::vector<ScenarioKey> KeysOf(Scenario& s) {
+  Keys keys;
+  AddTop(keys, s);
+  s.bench == kEncoderBench ? AddEncoderBench(keys, s) : AddRotaryBench(keys, s);
   return keys;
 }
 
@@ -284,6 +321,20 @@ std::vector<ScenarioKey> KeysOf(FixtureSettings& s) {
   t.Add("position", kMm, Within(5000), List(s.position_m), "of the box's centre or the file's origin: x, y, z");
   t.Add("yaw", kDeg, Within(360), &s.yaw_rad, "about z");
   t.Flag("rides_on_grating", s.rides_on_grating, "fixed to the grating, its place given in G; else in L");
+  return keys;
+}
+
+std::vector<ScenarioKey> KeysOf(EmpiricalSettings& s) {
+  Keys keys;
+  Table t(keys, "empirical");
+  std::vector<std::string> channels(kChannelNames.begin(), kChannelNames.end());
+  channels.push_back("angle");
+  t.Text("signature", &s.signature, {}, "what the signal looks like, in words");
+  t.Text("channel", &s.channel, std::move(channels), "to which it is added");
+  t.Add("reading", kPure, UpTo(kHuge), &s.reading, "running numbers of the readings that have it, each once");
+  t.Add("value", kUm, Within(1e6), &s.value_m, "the signal at these readings, on a PSD");
+  t.Add("value", kDeg, Within(360), &s.value_rad, "the same of the angle of encoder_comparison");
+  t.Text("provenance", &s.provenance, {}, "which run showed it, and when it was diagnosed");
   return keys;
 }
 

@@ -46,13 +46,14 @@ struct ScenarioKey {
   std::string Path() const { return table.empty() ? Name() : table + "." + Name(); }
 };
 
-/// The description of the file format: every key of a scenario but the [[fixture]] and [[effect]] blocks, in the
+/// The description of the file format: every key of a scenario of its bench but those of its [[...]] blocks, in the
 /// order of the file, the keys of a table before those of the tables inside it. Reading, writing, help and --set
 /// all go through it.
 std::vector<ScenarioKey> KeysOf(Scenario& scenario);
 
-/// The same of one [[fixture]] block.
+/// The same of one [[fixture]] block, and of one [[empirical]] block.
 std::vector<ScenarioKey> KeysOf(FixtureSettings& fixture);
+std::vector<ScenarioKey> KeysOf(EmpiricalSettings& empirical);
 
 /// Scenarios of these benches can be read.
 std::vector<std::string> SupportedBenches();

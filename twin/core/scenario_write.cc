@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
@@ -105,8 +107,30 @@ std::string PrintFixture(FixtureSettings fixture) {
   return text;
 }
 
-std::string PrintEffect(const EffectSettings& effect) {
-  const EffectEntry* entry = FindEffect(effect.name);
+std::string PrintEmpirical(EmpiricalSettings empirical) {
+  std::string text = "\n[[empirical]]\n";
+  for (const ScenarioKey& key : KeysOf(empirical)) {
+    const auto* const* values = std::get_if<std::vector<double>*>(&key.field);
+    const bool of_another_bench = values && (*values)->empty();
+    if (!of_another_bench) text += PrintKey(key);
+  }
+  return text;
+}
+
+std::string PrintFinding(const EffectFinding& finding, const EffectEntry& entry) {
+  std::string text;
+  for (const EffectParameter& p : entry.parameters) {
+    if (const auto u = finding.u.find(p.name); u != finding.u.end())
+      text += fmt::format("{} = {}\n", p.UncertaintyKey(), Float(u->second, p.to_SI));
+  }
+  if (!std::isnan(finding.log_evidence)) text += fmt::format("log_evidence = {}\n", Float(finding.log_evidence, 1.0));
+  if (!std::isnan(finding.probability)) text += fmt::format("probability = {}\n", Float(finding.probability, 1.0));
+  if (!finding.provenance.empty()) text += fmt::format("provenance = {}\n", Quoted(finding.provenance));
+  return text;
+}
+
+std::string PrintEffect(const EffectSettings& effect, const std::string& bench) {
+  const EffectEntry* entry = FindEffect(effect.name, bench);
   Require(entry != nullptr, "an effect to be written must be in the catalogue");
   std::string text = fmt::format("\n[[effect]]\nname = {}\n", Quoted(effect.name));
   if (!effect.where.empty()) text += fmt::format("where = {}\n", Quoted(effect.where));
@@ -115,7 +139,7 @@ std::string PrintEffect(const EffectSettings& effect) {
     if (value == effect.parameters.end() || !parameter.BelongsTo(effect.where)) continue;
     text += fmt::format("{} = {}\n", parameter.Key(), Float(value->second, parameter.to_SI));
   }
-  return text;
+  return text + PrintFinding(effect.finding, *entry);
 }
 
 }  // namespace
@@ -130,7 +154,8 @@ std::string WriteScenario(const Scenario& scenario) {
     text += PrintKey(key);
   }
   for (const FixtureSettings& fixture : scenario.fixtures) text += PrintFixture(fixture);
-  for (const EffectSettings& effect : scenario.effects) text += PrintEffect(effect);
+  for (const EffectSettings& effect : scenario.effects) text += PrintEffect(effect, scenario.bench);
+  for (const EmpiricalSettings& empirical : scenario.empiricals) text += PrintEmpirical(empirical);
   return text;
 }
 

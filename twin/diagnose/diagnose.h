@@ -19,7 +19,7 @@ namespace twinbench::diagnose {
 struct DiagnoseOptions {
   measure::Estimator model = measure::Estimator::kRigorous;  // rotary bench: sensitivities that are believed
   std::vector<std::string> struck;  // effects taken out of the catalogue (leave-one-cause-out tests)
-  int null_runs = 1000;             // simulated runs without effect, for thresholds and p-values
+  int null_runs = 500;              // simulated runs without effect, for thresholds and p-values
   std::string cache_folder;         // calibrations are kept here by design; empty: nowhere
 };
 

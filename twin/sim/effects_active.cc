@@ -1,5 +1,7 @@
 #include "twin/sim/effects_active.h"
 
+#include "twin/sim/effects/effects.h"
+
 namespace twinbench::sim {
 namespace {
 
@@ -22,6 +24,8 @@ void Silence(Scenario& scenario) {
 
 ActiveEffects::ActiveEffects(const Scenario& scenario) {
   for (const EffectSettings& settings : scenario.effects) effects_.push_back(MakeEffect(settings, scenario));
+  for (const EmpiricalSettings& settings : scenario.empiricals)
+    effects_.push_back(MakeEmpirical(settings, scenario));
 }
 
 Scenario ActiveEffects::ActualBench(const Scenario& nominal) const {

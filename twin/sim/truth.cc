@@ -14,13 +14,13 @@ nlohmann::json ToJson(const TableErrors& errors) {
   return json;
 }
 
+}  // namespace
+
 nlohmann::json ToJson(const EffectSettings& effect) {
   nlohmann::json json = {{"effect", effect.name}, {"parameters_SI", effect.parameters}};
   if (!effect.where.empty()) json["where"] = effect.where;
   return json;
 }
-
-}  // namespace
 
 nlohmann::json ToJson(const Truth& truth) {
   nlohmann::json json = {{"target", ToJson(truth.target)},

@@ -14,6 +14,9 @@ struct Truth {
   std::uint64_t seed = 0;
 };
 
+/// {"effect": name, "where": place, "parameters_SI": {...}}
+nlohmann::json ToJson(const EffectSettings& effect);
+
 /// {"target": {"position_deg": [...], "ex_arcsec": [...], ...}, "reference": {...}, "effects": [...], "seed": n}
 nlohmann::json ToJson(const Truth& truth);
 

@@ -2,8 +2,12 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "twin/diagnose/diagnosis.h"
 
 /// Candidates of the search: families of signatures, one a cause and place, or a generic shape for the unknown.
 namespace twinbench::diagnose {
@@ -16,7 +20,9 @@ struct Amplitude {
   std::string unit;
   double to_SI = 1.0;
   double prior_sd = 1.0;  // SI: plausible before checking
-  double lower, upper;    // SI, physical bounds
+  double lower = -kInfinity, upper = kInfinity;  // SI, physical bounds
+
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 };
 
 /// A parameter in which it is not: time constant, frequency, onset. One value a grid point.
@@ -28,19 +34,49 @@ struct Shape {
   std::vector<double> value;  // SI
 };
 
+/// Signatures that several families are combinations of: the same series in time on each of the channels, say.
+struct Base {
+  int grid = 1;
+  std::function<Eigen::MatrixXd(int grid_point)> columns;  // rows x base columns
+};
+
 struct Family {
   Kind kind = Kind::kNamed;
   std::string effect, where;    // unknown: name of the shape and what it shows on
   std::string group;            // families of one group share one prior mass: the effect, or the sort of unknown
+  double prior_weight = 1.0;    // within the group
   std::vector<Amplitude> amplitudes;
   std::vector<Shape> shapes;    // all of equal length; empty: one grid point
   int grid = 1;                 // number of grid points
 
   /// Signature at a grid point: rows x amplitudes, SI of the readings per SI of the amplitude, not whitened.
-  std::function<Eigen::MatrixXd(int)> columns;
+  std::function<Eigen::MatrixXd(int grid_point)> columns;
+
+  /// Or, cheaper where families share it: columns = base columns * map.
+  std::shared_ptr<const Base> base;
+  Eigen::MatrixXd map;
+
+  /// The signature at any shape (one value a Shape), to refine what the grid found; empty: the grid is all there is.
+  std::function<Eigen::MatrixXd(const Eigen::VectorXd& shape)> at;
+
+  /// The catalogue's parameters from fitted amplitudes; empty: amplitudes and shapes are these parameters.
+  std::function<std::vector<ParameterEstimate>(const Eigen::VectorXd& shape, const Eigen::VectorXd& amplitudes,
+                                               const Eigen::MatrixXd& cov)>
+      parameters;
 
   /// Describes a fitted member of an unknown family in the grammar of docs/diagnosis.md.
   std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;
+
+  Eigen::MatrixXd ColumnsAt(int grid_point) const { return base ? base->columns(grid_point) * map : columns(grid_point); }
+  Eigen::VectorXd ShapeAt(int grid_point) const;
 };
+
+inline Eigen::VectorXd Family::ShapeAt(int grid_point) const {
+  Eigen::VectorXd shape(std::ssize(shapes));
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    shape[static_cast<Eigen::Index>(k)] = shapes[k].value[static_cast<std::size_t>(grid_point)];
+  }
+  return shape;
+}
 
 }  // namespace twinbench::diagnose

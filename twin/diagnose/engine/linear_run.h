@@ -53,6 +53,8 @@ struct LinearRun {
   Nuisance nuisance;
   std::vector<Pattern> patterns;
 
+  /// Best prediction, SI. Regress on this, never on `observed`: that has the residual in it.
+  Eigen::VectorXd Predicted() const { return observed - residual; }
   int Rows() const { return static_cast<int>(residual.size()); }
   int Channels() const { return static_cast<int>(channels.size()); }
   int ReadingOf(int row) const { return row / Channels(); }

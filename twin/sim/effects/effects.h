@@ -30,6 +30,7 @@ EffectPointer MakeAdcStep(const EffectSettings&, const Scenario&);
 EffectPointer MakeCrosstalk(const EffectSettings&, const Scenario&);
 EffectPointer MakeOutliers(const EffectSettings&, const Scenario&);
 EffectPointer MakeConvention(const EffectSettings&, const Scenario&);
+EffectPointer MakeEmpirical(const EmpiricalSettings&, const Scenario&);  // an [[empirical]] block
 
 /// Value of a parameter of the catalogue. @throws std::logic_error if the loader did not fill it.
 double Parameter(const EffectSettings& effect, const char* name);

@@ -1,0 +1,80 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/core/input_error.h"
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+
+/// What a diagnosis adds to a scenario: findings in [[effect]] blocks, and [[empirical]] blocks.
+namespace twinbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Scenario Parse(const std::string& text) {
+  return ParseScenario("bench = \"rotary_4dof\"\n" + text, "s.toml", ".");
+}
+std::string ErrorOf(const std::string& text) {
+  return MessageOf([&] { Parse(text); });
+}
+
+TEST(ScenarioFinding, TakesUncertaintiesToSIAndKeepsTheRest) {
+  const Scenario s = Parse(
+      "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\nroll_mrad = 2\nu_roll_mrad = 0.1\n"
+      "log_evidence = 31.5\nprobability = 0.97\nprovenance = \"run 7\"\n");
+  const EffectFinding& finding = s.effects.at(0).finding;
+  EXPECT_EQ(finding.u.at("roll"), 0.1 * units::mrad);
+  EXPECT_EQ(finding.log_evidence, 31.5);
+  EXPECT_EQ(finding.probability, 0.97);
+  EXPECT_EQ(finding.provenance, "run 7");
+}
+
+TEST(ScenarioFinding, IsNotNeeded) {
+  const EffectFinding& finding =
+      Parse("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n").effects.at(0).finding;
+  EXPECT_TRUE(finding.u.empty());
+  EXPECT_TRUE(std::isnan(finding.probability));
+}
+
+TEST(ScenarioFinding, RefusesWhatCannotBe) {
+  const auto error = [](const std::string& line) {
+    return ErrorOf("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n" + line);
+  };
+  EXPECT_THAT(error("u_roll_mrad = -1\n"), HasSubstr("s.toml:5: psd_roll: u_roll_mrad is -1"));
+  EXPECT_THAT(error("probability = 1.5\n"), HasSubstr("s.toml:5: psd_roll: probability is 1.5"));
+  EXPECT_THAT(error("u_gain_error = 1\n"), HasSubstr("the effect psd_roll has no u_gain_error"));
+}
+
+constexpr const char* kEmpirical =
+    "[[empirical]]\nsignature = \"order 7\"\nchannel = \"psd_b_y\"\nreading = [3, 5]\nvalue_um = [0.5, -0.25]\n";
+
+TEST(ScenarioEmpirical, IsTabulatedByReading) {
+  const EmpiricalSettings empirical = Parse(kEmpirical).empiricals.at(0);
+  EXPECT_EQ(empirical.signature, "order 7");
+  EXPECT_EQ(empirical.channel, "psd_b_y");
+  EXPECT_THAT(empirical.reading, ElementsAre(3, 5));
+  EXPECT_THAT(empirical.value_m, ElementsAre(0.5 * units::um, -0.25 * units::um));
+}
+
+TEST(ScenarioEmpirical, RefusesATableThatDoesNotFit) {
+  const auto error = [](const std::string& lines) { return ErrorOf("[[empirical]]\n" + lines); };
+  EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 2]\nvalue_um = [1.0]\n"),
+              HasSubstr("s.toml:2: the empirical signal has 2 readings and 1 values"));
+  EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 1]\nvalue_um = [1.0, 2.0]\n"),
+              HasSubstr("names a reading twice"));
+  EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1]\nvalue_deg = [1.0]\n"),
+              HasSubstr("values of another kind of channel; expected value_um"));
+  EXPECT_THAT(error("channel = \"angle\"\nreading = [1]\nvalue_deg = [1.0]\n"),
+              HasSubstr("expected a channel of the bench rotary_4dof"));
+  EXPECT_THAT(error("chanel = \"psd_a_x\"\n"), HasSubstr("empirical.chanel"));
+}
+
+TEST(ScenarioEmpirical, StandsInTheHelp) {
+  EXPECT_THAT(DescribeScenarioKeys(), HasSubstr("[[empirical]]"));
+}
+
+}  // namespace
+}  // namespace twinbench

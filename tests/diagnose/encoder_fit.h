@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/QR>
+#include <string>
+#include <vector>
+
+#include "tests/sim/encoder_run.h"
+#include "twin/diagnose/encoder/families.h"
+
+/// Fits single families to noise-free runs of the twin: what each leaves of the effect that it is made for.
+namespace twinbench::diagnose::test {
+
+using twinbench::test::EncoderEffect;
+using twinbench::test::EncoderScenario;
+using twinbench::test::ReadingsWith;
+
+struct Fit {
+  int grid_point = 0;
+  Eigen::VectorXd amplitudes;
+  double left = 1.0;  // share of the signal's rms that stays
+};
+
+/// Least squares of one grid point's columns and the offsets of the set-ups.
+inline Fit FitAt(const Family& family, int g, const LinearRun& run) {
+  const Eigen::MatrixXd columns = family.ColumnsAt(g), offsets = run.nuisance.jacobian.toDense();
+  Eigen::MatrixXd all(columns.rows(), columns.cols() + offsets.cols());
+  all << columns, offsets;
+  const Eigen::VectorXd x = all.completeOrthogonalDecomposition().solve(run.residual);
+  return {g, x.head(columns.cols()), (run.residual - all * x).norm() / run.residual.norm()};
+}
+
+/// The best grid point.
+inline Fit BestFit(const Family& family, const LinearRun& run) {
+  Fit best;
+  for (int g = 0; g < family.grid; ++g) {
+    const Fit fit = FitAt(family, g, run);
+    if (fit.left < best.left || g == 0) best = fit;
+  }
+  return best;
+}
+
+inline const Family& FamilyOf(const std::vector<Family>& families, const std::string& effect) {
+  for (const Family& family : families) {
+    if (family.effect == effect) return family;
+  }
+  throw std::runtime_error("there is no family " + effect);
+}
+
+inline bool HasFamily(const std::vector<Family>& families, const std::string& effect) {
+  for (const Family& family : families) {
+    if (family.effect == effect) return true;
+  }
+  return false;
+}
+
+/// The catalogue's parameters as fitted; without cov they have no uncertainty.
+inline std::map<std::string, double> ParametersOf(const Family& family, const Fit& fit) {
+  std::map<std::string, double> values;
+  const Eigen::VectorXd shape = family.ShapeAt(fit.grid_point);
+  const Eigen::Index n = fit.amplitudes.size();
+  if (family.parameters) {
+    for (const ParameterEstimate& p : family.parameters(shape, fit.amplitudes, Eigen::MatrixXd::Identity(n, n)))
+      values[p.name] = p.value;
+    return values;
+  }
+  for (Eigen::Index j = 0; j < n; ++j) values[family.amplitudes[j].name] = fit.amplitudes[j];
+  for (Eigen::Index k = 0; k < shape.size(); ++k) values[family.shapes[k].name] = shape[k];
+  return values;
+}
+
+}  // namespace twinbench::diagnose::test

@@ -1,0 +1,125 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/diagnose/encoder_fit.h"
+
+// The generic families for what the catalogue has not.
+namespace twinbench::diagnose {
+namespace {
+
+using encoder::BuildRun;
+using encoder::EncoderRun;
+using encoder::Families;
+using test::EncoderScenario;
+using testing::HasSubstr;
+using units::deg;
+
+/// Readings of an ideal device with a signal on them, as a function of the reading [rad].
+template <class Signal>
+EncoderRun RunWith(const std::string& kind, Signal signal) {
+  const Scenario scenario = EncoderScenario(kind);
+  auto readings = twinbench::test::RunEncoderTwin(scenario).readings;
+  for (Reading& r : readings) r.measured_rad += signal(r);
+  return BuildRun(readings, scenario);
+}
+
+/// What the best family of a sort leaves, and its words for it.
+std::pair<double, std::string> BestOfSort(const EncoderRun& encoder, const std::string& sort,
+                                          const std::vector<std::string>& struck = {}) {
+  double left = 2.0;
+  std::string words;
+  for (const Family& family : Families(encoder, struck)) {
+    if (family.group != sort) continue;
+    const test::Fit fit = test::BestFit(family, encoder.run);
+    if (fit.left >= left) continue;
+    left = fit.left;
+    words = family.describe(fit.grid_point, fit.amplitudes);
+  }
+  return {left, words};
+}
+
+TEST(EncoderUnknown, FindsALineBetweenTheOrders) {
+  const EncoderRun encoder =
+      RunWith("stops", [](const Reading& r) { return 1e-4 * std::cos(4.508 * r.reference_rad); });
+  const auto [left, words] = BestOfSort(encoder, "line");
+  EXPECT_LT(left, 0.15);  // the next grid point is at most 0.025 away: 0.3 rad of phase at the ends of two turns
+  EXPECT_THAT(words,
+              testing::MatchesRegex("line at 4[.](49|50|51|52)[0-9] per turn locked to reference angle, .*deg"));
+}
+
+TEST(EncoderUnknown, FindsAMapThatChangesSignWithTheDirection) {
+  for (const char* kind : {"stops", "sweep"}) {
+    const EncoderRun encoder =
+        RunWith(kind, [](const Reading& r) { return 1e-4 * r.direction * std::sin(3.0 * r.reference_rad); });
+    const auto [left, words] = BestOfSort(encoder, "direction harmonic");
+    EXPECT_LT(left, 1e-6) << kind;
+    EXPECT_THAT(words, HasSubstr("direction times order 3 locked to reference angle, odd in direction, on angle, "
+                                 "amplitude 0.0057 deg"));
+  }
+}
+
+TEST(EncoderUnknown, FindsATone) {
+  const EncoderRun encoder = RunWith(
+      "stops", [](const Reading& r) { return 1e-4 * std::cos(2.0 * units::kPi * 0.0313 * ToSeconds(r.time)); });
+  const auto [left, words] = BestOfSort(encoder, "tone");
+  EXPECT_LT(left, 0.5);  // up to a quarter of the resolution away; the engine refines it
+  EXPECT_THAT(words, HasSubstr("Hz locked to time"));
+}
+
+TEST(EncoderUnknown, FindsWanderPassesAndErrorsThatGrowWithTimeOrSpeed) {
+  const auto left = [](const char* kind, const char* sort, auto signal) {
+    return BestOfSort(RunWith(kind, signal), sort).first;
+  };
+  EXPECT_LT(left("stops", "wander",
+                 [](const Reading& r) { return 1e-4 * std::cos(2.0 * units::kPi * r.reading / 575.0); }),
+            0.01);
+  EXPECT_LT(left("stops", "pass", [](const Reading& r) { return r.pass == 2 ? 1e-4 : 0.0; }), 1e-6);
+  EXPECT_LT(left("stops", "pass harmonic",
+                 [](const Reading& r) { return r.pass == 1 ? 1e-4 * std::cos(r.reference_rad) : 0.0; }),
+            1e-6);
+  EXPECT_LT(left("stops", "growing harmonic",
+                 [](const Reading& r) { return 1e-7 * r.reading * std::cos(5.0 * r.reference_rad); }),
+            1e-6);
+  EXPECT_LT(left("sweep", "speed", [](const Reading& r) { return 1e-4 * std::abs(r.velocity_rad_s); }), 1e-6);
+  EXPECT_LT(left("sweep", "speed harmonic",
+                 [](const Reading& r) { return 1e-4 * r.velocity_rad_s * std::sin(4.0 * r.reference_rad); }),
+            1e-6);
+}
+
+TEST(EncoderUnknown, HasTheShapesOfTheCatalogueOnlyWhereTheyAreStruck) {
+  const EncoderRun encoder =
+      RunWith("sweep", [](const Reading& r) { return 1e-4 * std::cos(7.0 * r.reference_rad); });
+  EXPECT_FALSE(test::HasFamily(Families(encoder), "harmonic"));
+  EXPECT_FALSE(test::HasFamily(Families(encoder), "step"));
+  EXPECT_FALSE(test::HasFamily(Families(encoder), "trend"));
+  const auto [left, words] = BestOfSort(encoder, "harmonic", {"periodic"});
+  EXPECT_LT(left, 1e-3);
+  EXPECT_THAT(words, HasSubstr("harmonic of order 7 locked to reference angle, same in both directions"));
+  const auto families = Families(encoder, {"backlash", "slip", "drift", "scale", "latency"});
+  for (const char* name : {"direction offset", "step", "trend", "speed"})
+    EXPECT_TRUE(test::HasFamily(families, name)) << name;
+  for (const char* name : {"backlash", "slip", "drift", "scale", "latency"})
+    EXPECT_FALSE(test::HasFamily(families, name)) << name;
+}
+
+TEST(EncoderUnknown, HasNoShapesInTimeWhereTimeFollowsTheAngle) {
+  Scenario scenario = EncoderScenario("stops");
+  scenario.encoder_procedure.passes = {1};
+  scenario.encoder_procedure.turns = 1.0;
+  const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
+  for (const char* name : {"wander", "tone", "growing harmonic", "direction harmonic", "backlash", "hysteresis"})
+    EXPECT_FALSE(test::HasFamily(families, name)) << name;
+  for (const char* name : {"eccentricity", "periodic", "scale", "drift", "line"})
+    EXPECT_TRUE(test::HasFamily(families, name)) << name;
+}
+
+TEST(EncoderUnknown, LooksForOrdersThatTheSpacingCanShow) {
+  // Stops every 5 deg: orders below 36. Readings every 0.96 deg at the lower speed: 187, more than is looked for.
+  EXPECT_EQ(encoder::LargestOrder(RunWith("stops", [](const Reading&) { return 0.0; }).context), 35);
+  EXPECT_EQ(encoder::LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 120);
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose

@@ -1,0 +1,138 @@
+#include "twin/diagnose/extend.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/twin_run.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+using testing::HasSubstr;
+using twinbench::test::RunTwin;
+
+Scenario Small() {
+  Scenario scenario;
+  scenario.noise_free = true;
+  scenario.procedure.positions = 12;
+  scenario.procedure.shifts = {0, 4};
+  return scenario;
+}
+
+/// A diagnosis that found a gain on PSD A x.
+DiagnosisRun FoundGain(double gain_error) {
+  DiagnosisRun run;
+  Cause cause;
+  cause.effect = "psd_gain";
+  cause.where = "psd_a_x";
+  cause.probability = 0.97;
+  cause.log_evidence = 44.0;
+  cause.parameters = {{"gain_error", "1", 1.0, gain_error, 2e-4, -0.5, 0.5}};
+  run.diagnosis.verdict = Verdict::kNamed;
+  run.diagnosis.causes = {cause};
+  Accepted accepted;
+  accepted.family.kind = Kind::kNamed;
+  accepted.family.effect = cause.effect;
+  accepted.family.where = cause.where;
+  run.accepted = {accepted};
+  return run;
+}
+
+/// One that found structure on PSD B y alone, at `readings` of a run.
+DiagnosisRun FoundStructure(const std::vector<int>& readings, double size_m) {
+  DiagnosisRun run;
+  run.diagnosis.verdict = Verdict::kUnknown;
+  run.run.channels = {kChannelNames.begin(), kChannelNames.end()};
+  run.run.schedule.reading = readings;
+  Accepted accepted;
+  accepted.family.kind = Kind::kUnknown;
+  accepted.family.amplitudes = {{"size", "um", 1e-6, 1e-6, -1.0, 1.0}};
+  run.diagnosis.unknown.signature = "a bump on psd_b_y";
+  accepted.amplitudes = Eigen::VectorXd::Constant(1, size_m);
+  accepted.columns = Eigen::MatrixXd::Zero(kChannels * static_cast<Eigen::Index>(readings.size()), 1);
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    accepted.columns(kChannels * static_cast<Eigen::Index>(i) + 3, 0) = 1.0;
+  run.accepted = {accepted};
+  return run;
+}
+
+Scenario Reload(const std::string& toml) {
+  return ParseScenario(toml, "extended.toml", "/elsewhere");
+}
+
+TEST(Extend, AddsTheEffectWithValueUncertaintyEvidenceAndProvenance) {
+  const Scenario extended = Reload(ExtendedToml(Small(), FoundGain(0.0031), "run 7 of May"));
+  ASSERT_EQ(extended.effects.size(), 1u);
+  const EffectSettings& effect = extended.effects[0];
+  EXPECT_EQ(effect.name, "psd_gain");
+  EXPECT_EQ(effect.where, "psd_a_x");
+  EXPECT_EQ(effect.parameters.at("gain_error"), 0.0031);
+  EXPECT_EQ(effect.finding.u.at("gain_error"), 2e-4);
+  EXPECT_EQ(effect.finding.log_evidence, 44.0);
+  EXPECT_EQ(effect.finding.probability, 0.97);
+  EXPECT_EQ(effect.finding.provenance, "run 7 of May");
+}
+
+TEST(Extend, TakesOfATieTheMemberThatTheSearchTookIn) {
+  DiagnosisRun run = FoundGain(0.001);
+  Cause rival = run.diagnosis.causes[0];
+  rival.effect = "stray_light";
+  rival.where = "psd_a";
+  rival.parameters.clear();
+  run.diagnosis.causes.insert(run.diagnosis.causes.begin(), rival);
+  run.diagnosis.verdict = Verdict::kTie;
+  const Scenario extended = Extend(Small(), run, "");
+  ASSERT_EQ(extended.effects.size(), 1u);
+  EXPECT_EQ(extended.effects[0].name, "psd_gain");
+}
+
+TEST(Extend, TakesACauseWithoutASignatureToo) {
+  DiagnosisRun run = FoundGain(0.001);
+  run.accepted.clear();  // as for swapped channels or outliers, which are no columns
+  EXPECT_EQ(Extend(Small(), run, "").effects.size(), 1u);
+}
+
+TEST(Extend, KeepsTheEffectsThatTheScenarioHad) {
+  const Scenario once = Extend(Small(), FoundGain(0.001), "first");
+  const Scenario twice = Extend(once, FoundGain(0.002), "second");
+  ASSERT_EQ(twice.effects.size(), 2u);
+  EXPECT_EQ(twice.effects[0].finding.provenance, "first");
+}
+
+TEST(Extend, OfACleanRunIsTheScenarioItself) {
+  const std::string toml = ExtendedToml(Small(), DiagnosisRun{}, "a run");
+  EXPECT_THAT(toml, HasSubstr("nothing was added"));
+  EXPECT_EQ(WriteScenario(Reload(toml)), WriteScenario(Small()));
+}
+
+TEST(Extend, MovesAnImpossibleValueToItsBound) {
+  EXPECT_EQ(Extend(Small(), FoundGain(3.0), "").effects.at(0).parameters.at("gain_error"), 0.5);
+}
+
+TEST(Extend, IsRunByTheTwinWithTheEffectOn) {
+  const Scenario extended = Reload(ExtendedToml(Small(), FoundGain(0.01), "r"));
+  const auto plain = RunTwin(Small()).readings, with = RunTwin(extended).readings;
+  ASSERT_EQ(plain.size(), with.size());
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    EXPECT_NEAR(with[k].mean_V[0], 1.01 * plain[k].mean_V[0], 1e-12);
+    EXPECT_EQ(with[k].mean_V[1], plain[k].mean_V[1]);
+  }
+}
+
+TEST(Extend, TabulatesStructureWithoutANameAndTheTwinShowsIt) {
+  const std::string toml = ExtendedToml(Small(), FoundStructure({40, 41, 70}, 0.8e-6), "r\nx");
+  EXPECT_THAT(toml, HasSubstr("# r x\n# added: empirical signal on psd_b_y: a bump on psd_b_y\n"));
+  const Scenario extended = Reload(toml);
+  ASSERT_EQ(extended.empiricals.size(), 1u);
+  const auto plain = RunTwin(Small()).readings, with = RunTwin(extended).readings;
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    const int reading = plain[k].reading;
+    const double expected_m = reading == 40 || reading == 41 || reading == 70 ? 0.8e-6 : 0.0;
+    // 2000 V/m; values are rounded to 10 pm.
+    EXPECT_NEAR(with[k].mean_V[3] - plain[k].mean_V[3], 2000.0 * expected_m, 2000.0 * 1e-11);
+    EXPECT_EQ(with[k].mean_V[0], plain[k].mean_V[0]);
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose

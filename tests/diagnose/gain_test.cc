@@ -1,0 +1,176 @@
+#include "twin/diagnose/gain.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/diagnose/ring_run.h"
+#include "twin/separate/design.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+using namespace test;
+
+LinearRun NoisyRing(std::uint64_t seed, double amplitude_m, const RingShape& shape = {}) {
+  LinearRun run = MakeRing(shape);
+  AddUnknowns(run, seed);
+  AddNoise(run, seed);
+  run.residual += amplitude_m * Direction(run).columns.col(0);
+  return run;
+}
+
+TEST(Folds, LeaveOutOnePassOfEverySetUpAndBlocksOfTheCalibration) {
+  const LinearRun run = MakeRing();
+  const Folds folds = MakeFolds(run.schedule);
+  EXPECT_EQ(folds.count, 4);
+  for (int i = 0; i < run.schedule.Readings(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const bool calibration = run.schedule.phase[k] == Phase::kCalibration;
+    EXPECT_EQ(folds.of_reading[k], calibration ? i / 6 : run.schedule.pass[k]);
+  }
+}
+
+TEST(Folds, OfASinglePassAreBlocksOfTime) {
+  const LinearRun run = MakeRing({24, {0}, {1}, 0});
+  const Folds folds = MakeFolds(run.schedule);
+  EXPECT_EQ(std::set<int>(folds.of_reading.begin(), folds.of_reading.end()), (std::set<int>{0, 1, 2, 3}));
+  EXPECT_EQ(folds.of_reading[0], folds.of_reading[5]);
+  EXPECT_NE(folds.of_reading[5], folds.of_reading[6]);
+}
+
+TEST(MeasureGain, WithoutCausesIsNothing) {
+  const LinearRun run = NoisyRing(1, 0.0);
+  const Gain gain = MeasureGain(run, WhiteNoise(run), {});
+  EXPECT_EQ(gain.folds, 0);
+  EXPECT_FALSE(gain.positive);
+}
+
+/// Held-out prediction of a reading, by dense least squares on the other passes; no blocks, no tricks.
+double DenseHeldOutSquares(const LinearRun& run, int pass) {
+  std::vector<int> train, held;
+  for (int k = 0; k < run.Rows(); ++k) {
+    const auto i = static_cast<std::size_t>(run.ReadingOf(k));
+    const bool out = run.schedule.phase[i] == Phase::kFullCircle && run.schedule.pass[i] == pass;
+    (out ? held : train).push_back(k);
+  }
+  const Eigen::MatrixXd J = run.nuisance.jacobian;
+  const Eigen::MatrixXd J_train = J(train, Eigen::all);
+  const Eigen::VectorXd x = J_train.completeOrthogonalDecomposition().solve(Eigen::VectorXd(run.residual(train)));
+  return (run.residual(held) - J(held, Eigen::all) * x).squaredNorm();
+}
+
+TEST(MeasureGain, BeforeIsTheErrorOfADenseFitToTheOtherPasses) {
+  const LinearRun run = NoisyRing(3, 1e-6, {12, {0, 1, 5}, {1, -1, -1, 1}, 0});
+  double mean = 0.0;
+  for (int pass = 0; pass < 4; ++pass) mean += DenseHeldOutSquares(run, pass) / run.Rows();
+  // The weak prior and the traces of held-out rows count 1e-8.
+  EXPECT_NEAR(MeasureGain(run, WhiteNoise(run), {Direction(run)}).before_m, std::sqrt(mean),
+              1e-6 * std::sqrt(mean));
+}
+
+TEST(MeasureGain, OfTheTrueCauseRemovesTheWholeRemovableVariance) {
+  constexpr int kRuns = 40;
+  double fraction = 0.0, floor = 0.0, after = 0.0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    const LinearRun run = NoisyRing(seed, 1e-6);
+    const Gain gain = MeasureGain(run, WhiteNoise(run), {Direction(run)});
+    EXPECT_TRUE(gain.positive) << seed;
+    EXPECT_EQ(gain.folds, 4);
+    fraction += gain.fraction_removed / kRuns;
+    floor += std::pow(gain.noise_floor_m, 2) / kRuns;
+    after += std::pow(gain.after_m, 2) / kRuns;
+  }
+  // 288 rows a run, 40 runs: the mean square of the noise scatters by sqrt(2 / 11520) = 1.3 %; the amplitude's own
+  // uncertainty adds 1 / 108 on half of the rows.
+  EXPECT_NEAR(after / floor, 1.0, 0.05);
+  // A direction of 1 um on one of two channels, of which held-out passes see 4/3: removable 8 times the floor.
+  EXPECT_NEAR(fraction, 1.0, 0.02);
+}
+
+TEST(MeasureGain, OfHalfTheCauseRemovesItsShare) {
+  // Two signatures of equal strength, of which one is accepted: half of the removable variance.
+  double fraction = 0.0;
+  constexpr int kRuns = 40;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    LinearRun run = NoisyRing(seed, 1e-6);
+    const Eigen::VectorXd other = Direction(run).columns.col(0);
+    for (int k = 0; k + 1 < run.Rows(); k += 2) run.residual[k + 1] += 1e-6 * other[k];  // the same on channel b
+    fraction += MeasureGain(run, WhiteNoise(run), {Direction(run)}).fraction_removed / kRuns;
+  }
+  EXPECT_NEAR(fraction, 0.5, 0.02);
+}
+
+TEST(MeasureGain, CountsACauseThatOnlyTheCalibrationShows) {
+  // A scale error of channel b in a sweep of +-300 um; the full circles do not see it at all.
+  int positive = 0;
+  constexpr int kRuns = 20;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    LinearRun run = MakeRing({12, {0, 1, 5}, {1, -1, -1, 1}, 26});
+    AddUnknowns(run, seed);
+    AddNoise(run, seed);
+    Accepted scale;
+    scale.family.amplitudes = {{"gain_error", "1", 1.0, 0.01, -1.0, 1.0}};
+    scale.columns = Eigen::MatrixXd::Zero(run.Rows(), 1);
+    for (int i = 0; i < 26; ++i) scale.columns(kRingChannels * i + 1, 0) = 50e-6 * (i % 13 - 6);
+    run.residual += 0.003 * scale.columns.col(0);  // 0.9 um at the ends
+    positive += MeasureGain(run, WhiteNoise(run), {scale}).positive ? 1 : 0;
+  }
+  EXPECT_GE(positive, kRuns - 1);
+}
+
+TEST(MeasureGain, OfACauseThatIsNotThereIsHardlyEverPositive) {
+  constexpr int kRuns = 400;
+  int positive = 0, above_zero = 0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    const LinearRun run = NoisyRing(1000 + seed, 0.0);
+    const Gain gain = MeasureGain(run, WhiteNoise(run), {Direction(run)});
+    positive += gain.positive ? 1 : 0;
+    above_zero += gain.interval95[0] > 0.0 ? 1 : 0;
+  }
+  EXPECT_LE(positive, kRuns / 20);
+  EXPECT_LE(above_zero, kRuns / 20);
+}
+
+TEST(MeasureGain, SaysThatTheFloorIsTheNoiseAndThePrediction) {
+  // Two passes and one set-up: a held-out reading is the other reading's value, so its error has twice the
+  // variance.
+  LinearRun run = NoisyRing(5, 0.0, {12, {0}, {1, -1}, 0});
+  const Gain gain = MeasureGain(run, WhiteNoise(run), {Direction(run)});
+  EXPECT_NEAR(gain.noise_floor_m, std::sqrt(2.0) * kRingSigma_m, 1e-6 * kRingSigma_m);
+}
+
+TEST(ChangeOfTables, IsTheMoveOfEachSeries) {
+  // A cause that looks like 2 um on the target's dy and 1 arcsec on the reference's ez and is fitted away again.
+  constexpr int kPositions = 3;
+  separate::Design design;
+  design.n = kPositions;
+  LinearRun run;
+  run.channels = {"c"};
+  const int unknowns = separate::kSeries * kPositions;
+  // Each unknown is read twice, once with the cause on it.
+  run.schedule.reading.resize(static_cast<std::size_t>(2 * unknowns));
+  run.nuisance.jacobian.resize(2 * unknowns, unknowns);
+  Accepted cause;
+  cause.family.amplitudes = {{"size", "1", 1.0, 1e6, -1e9, 1e9}};
+  cause.columns = Eigen::MatrixXd::Zero(2 * unknowns, 1);
+  for (int k = 0; k < unknowns; ++k) {
+    for (const int row : {k, unknowns + k}) run.nuisance.jacobian.insert(row, k) = 1.0;
+  }
+  using separate::Series;
+  for (int i = 0; i < kPositions; ++i) {
+    cause.columns(unknowns + design.Column(Series::kTargetDy, i), 0) = 2.0 * 2e-6 / separate::kLengthUnit_m;
+    cause.columns(unknowns + design.Column(Series::kRefEz, i), 0) = 2.0 * units::arcsec;
+  }
+  run.nuisance.prior_precision = Eigen::VectorXd::Constant(unknowns, 1e-12);
+  run.residual = cause.columns.col(0);
+  run.sigma = Eigen::VectorXd::Constant(2 * unknowns, 1e-9);
+  const ChangeOfUnknowns change = ChangeOfTables(run, {run.sigma, 0.0}, {cause}, kPositions);
+  EXPECT_NEAR(change.target_rms[static_cast<std::size_t>(Component::kDy)], 2e-6, 1e-12);
+  EXPECT_NEAR(change.reference_rms[static_cast<std::size_t>(Component::kEz)], units::arcsec, 1e-12);
+  EXPECT_NEAR(change.target_rms[static_cast<std::size_t>(Component::kEx)], 0.0, 1e-15);
+  EXPECT_TRUE(std::isnan(change.target_rms[static_cast<std::size_t>(Component::kDz)]));
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose

@@ -1,0 +1,170 @@
+#include "tests/diagnose/support/synthetic_run.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "twin/core/stream.h"
+#include "twin/core/units.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr int kAxes = 4;
+constexpr double kWeak = 1e-3;  // prior deviation of free unknowns, m: thousands of times the noise
+
+void Resize(Schedule& s, int readings) {
+  const auto n = static_cast<std::size_t>(readings);
+  s.reading.resize(n), s.setup.assign(n, 0), s.pass.assign(n, 0), s.direction.assign(n, 1), s.position.assign(n, 0);
+  s.phase.assign(n, Phase::kFullCircle);
+  for (Eigen::VectorXd* v :
+       {&s.time_s, &s.dwell_s, &s.temperature_degC, &s.target_rad, &s.reference_rad, &s.velocity_rad_s}) {
+    v->setConstant(readings, kNaN);
+  }
+}
+
+struct Stop {
+  int setup, pass, direction, position;
+};
+
+std::vector<Stop> StopsOf(const SyntheticDesign& design) {
+  std::vector<Stop> stops;
+  int pass = 0;
+  for (int setup = 0; setup < static_cast<int>(design.shifts.size()); ++setup) {
+    for (int direction : design.passes) {
+      for (int k = 0; k < design.positions; ++k) {
+        stops.push_back({setup, pass, direction, direction > 0 ? k : design.positions - 1 - k});
+      }
+      ++pass;
+    }
+  }
+  return stops;
+}
+
+Schedule ScheduleOf(const SyntheticDesign& design) {
+  constexpr std::array<double, 4> kDwells_s = {0.5, 1.0, 2.0, 4.0};
+  const std::vector<Stop> stops = StopsOf(design);
+  Stream stream(7, "synthetic.schedule");
+  Schedule s;
+  Resize(s, static_cast<int>(stops.size()));
+  const double step_rad = 2.0 * units::kPi / design.positions;
+  for (std::size_t k = 0; k < stops.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const auto [setup, pass, direction, position] = stops[k];
+    s.reading[k] = static_cast<int>(k);
+    s.setup[k] = setup, s.pass[k] = pass, s.direction[k] = direction, s.position[k] = position;
+    s.dwell_s[i] = kDwells_s[stream.Word() % 4];
+    s.time_s[i] = (i > 0 ? s.time_s[i - 1] : 0.0) + 6.0 + s.dwell_s[i] + (k % 48 == 0 ? 120.0 : 0.0);
+    s.temperature_degC[i] = 20.0 + 0.5 * std::sin(s.time_s[i] / 170.0) + 0.3 * std::sin(s.time_s[i] / 61.0);
+    s.target_rad[i] = position * step_rad;
+    s.reference_rad[i] = (design.shifts[static_cast<std::size_t>(setup)] - position) * step_rad;
+  }
+  return s;
+}
+
+/// Local unknowns: the channels at one target position. Core: the same by reference position, then by set-up.
+Nuisance NuisanceOf(const SyntheticDesign& design, const Schedule& s) {
+  const int n = design.positions, tables = design.free_tables ? 2 * n : 0;
+  const int unknowns = kAxes * (tables + static_cast<int>(design.shifts.size()));
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < s.Readings(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const int setup = s.setup[k], target = s.position[k];
+    const int reference = ((design.shifts[static_cast<std::size_t>(setup)] - target) % n + n) % n;
+    for (int c = 0; c < kAxes; ++c) {
+      entries.emplace_back(i * kAxes + c, (tables + setup) * kAxes + c, 1.0);
+      if (!design.free_tables) continue;
+      entries.emplace_back(i * kAxes + c, target * kAxes + c, 1.0);
+      entries.emplace_back(i * kAxes + c, (n + reference) * kAxes + c, 1.0);
+    }
+  }
+  Nuisance nuisance;
+  nuisance.jacobian.resize(s.Readings() * kAxes, unknowns);
+  nuisance.jacobian.setFromTriplets(entries.begin(), entries.end());
+  nuisance.prior_precision = Eigen::VectorXd::Constant(unknowns, 1.0 / (kWeak * kWeak));
+  nuisance.blocks = design.free_tables ? n : 0;
+  nuisance.block_size = design.free_tables ? kAxes : 0;
+  return nuisance;
+}
+
+std::vector<Pattern> RotaryPatterns() {
+  return {{"yaw", 0.2 * Eigen::Vector4d(1, 0, 1, 0)},
+          {"tilt", 0.2 * Eigen::Vector4d(0, 1, 0, 1)},
+          {"roll", 0.04 * Eigen::Vector4d(0, 1, 0, -1)},
+          {"lateral", 0.42 * Eigen::Vector4d(1, 0, -1, 0)}};
+}
+
+}  // namespace
+
+LinearRun SyntheticRun(const SyntheticDesign& design) {
+  LinearRun run;
+  run.schedule = ScheduleOf(design);
+  run.channels = {"psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"};
+  run.unit = "um";
+  run.to_SI = units::um;
+  const int rows = run.schedule.Readings() * kAxes;
+  Stream stream(7, "synthetic.spots");
+  run.observed.resize(rows);
+  for (double& u : run.observed) u = 300.0 * units::um * (stream.Uniform() - 0.5);
+  run.residual = Eigen::VectorXd::Zero(rows);
+  run.sigma = Eigen::VectorXd::Constant(rows, design.sigma_m);
+  run.nuisance = NuisanceOf(design, run.schedule);
+  run.patterns = RotaryPatterns();
+  return run;
+}
+
+void AddNoise(LinearRun& run, std::uint64_t seed) {
+  Stream stream(seed, "synthetic.noise");
+  for (int k = 0; k < run.Rows(); ++k) {
+    const double noise = run.sigma[k] * stream.Normal();
+    run.residual[k] += noise;
+    run.observed[k] += noise;
+  }
+}
+
+void AddEffect(LinearRun& run, const Eigen::VectorXd& weight, const std::function<double(int)>& f) {
+  for (int k = 0; k < run.Rows(); ++k) {
+    const double effect = weight[run.ChannelOf(k)] * f(run.ReadingOf(k));
+    run.residual[k] += effect;
+    run.observed[k] += effect;
+  }
+}
+
+LinearRun SyntheticSweep(int readings) {
+  LinearRun run;
+  Schedule& s = run.schedule;
+  Resize(s, readings);
+  const int sweep = readings / 4;
+  for (int i = 0; i < readings; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const int which = std::min(3, i / sweep);
+    s.reading[k] = i, s.position[k] = i, s.pass[k] = which;
+    s.direction[k] = which % 2 == 0 ? 1 : -1;
+    s.time_s[i] = 0.1 * i;
+    s.velocity_rad_s[i] = s.direction[k] * (which < 2 ? 0.1 : 0.3);
+    s.reference_rad[i] = i == 0 ? 0.0 : s.reference_rad[i - 1] + 0.1 * s.velocity_rad_s[i];
+  }
+  run.channels = {"angle"};
+  run.unit = "arcsec";
+  run.to_SI = units::arcsec;
+  run.observed = s.reference_rad;
+  run.residual = Eigen::VectorXd::Zero(readings);
+  run.sigma = Eigen::VectorXd::Constant(readings, units::arcsec);
+  run.nuisance.jacobian = Eigen::MatrixXd::Ones(readings, 1).sparseView();
+  run.nuisance.prior_precision = Eigen::VectorXd::Constant(1, 1.0);
+  return run;
+}
+
+std::vector<ScreenTest> ScreenAsStated(const LinearRun& run, int null_runs, std::uint64_t seed) {
+  const NoiseModel noise{run.sigma, 0.0};
+  return Screen(run, noise, Projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance), null_runs, seed);
+}
+
+const ScreenTest* Find(const std::vector<ScreenTest>& tests, const std::string& name) {
+  for (const ScreenTest& t : tests) {
+    if (t.name == name) return &t;
+  }
+  return nullptr;
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/hidden/hidden_case.h"
+#include "twin/core/stream.h"
+#include "twin/diagnose/engine/projector.h"
+
+/// Runs of the twin that differ in everything that may differ without being wrong.
+namespace twinbench::hidden {
+
+/// The designs that cases are made with.
+enum class Design {
+  kRotary,         // rotary_4dof, re-seated
+  kStops, kSweep,  // encoder_comparison
+  kStopsAllKnown,  // the same with two mountings of the device, and its lines and teeth stated
+  kSweepAllKnown
+};
+
+/// What is believed of the bench.
+Scenario Believed(Design design);
+
+/// The bench of one case: tables, mountings, room and dwells drawn from `seed`, as believed otherwise.
+Scenario Drawn(Design design, std::uint64_t seed);
+
+/// Carries the scenario out on the twin of its bench.
+std::vector<Reading> TakeReadings(const Scenario& actual);
+
+/// Measures signatures in units of noise after projection.
+class SignatureScale {
+ public:
+  /// @param cache_folder  Of calibrated thresholds.
+  SignatureScale(Design design, const std::string& cache_folder);
+
+  /// Length of what two runs of the same schedule differ by.
+  double Rho(const std::vector<Reading>& with, const std::vector<Reading>& without) const;
+
+ private:
+  diagnose::LinearRun run_;
+  diagnose::NoiseModel noise_;
+  std::unique_ptr<diagnose::Projector> projector_;
+};
+
+double UniformIn(Stream& stream, double lower, double upper);
+double LogUniformIn(Stream& stream, double lower, double upper);
+
+}  // namespace twinbench::hidden

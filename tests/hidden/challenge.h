@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/hidden/hidden_case.h"
+
+/// Cases of the independent generators: folders NNN with readings.csv and truth.json.
+namespace twinbench::hidden {
+
+/// @param bench  "rotary_4dof" or "encoder_comparison": decides the scenario that is believed.
+/// @param struck  Effects taken out of the catalogue.
+/// @return one plan a folder, in the order of their names.
+/// @throws InputError if there is no such folder or no case in it.
+std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& bench,
+                                 const std::vector<std::string>& struck = {});
+
+}  // namespace twinbench::hidden

@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include "tests/hidden/challenge.h"
+#include "tests/hidden/reduced.h"
+#include "tests/support/twin_run.h"
+
+// The cases of the independent generators, whose shapes are those of no library of ours.
+namespace twinbench::hidden {
+namespace {
+
+bool IsListed(const Outcome& o) {
+  return !o.hidden.causes.empty();
+}
+bool IsUnlisted(const Outcome& o) {
+  return !o.hidden.unlisted.empty();
+}
+bool IsClean(const Outcome& o) {
+  return o.hidden.IsClean();
+}
+bool IsRight(const Outcome& o) {
+  return o.RightOrTie() || o.grade == Grade::kUnknown || o.grade == Grade::kQuiet;
+}
+
+class Challenge : public ::testing::TestWithParam<const char*> {
+ protected:
+  /// Diagnosed once for all tests of a bench.
+  static const std::vector<Outcome>& Outcomes() {
+    static std::map<std::string, std::vector<Outcome>> outcomes;
+    std::vector<Outcome>& mine = outcomes[GetParam()];
+    const std::string folder = std::string(GetParam()) == kRotaryBench ? "challenge" : "challenge_encoder";
+    if (mine.empty()) mine = RunReduced(ChallengePlans(test::DataPath(folder), GetParam()));
+    return mine;
+  }
+  static std::vector<Outcome> Only(bool (*test)(const Outcome&)) {
+    std::vector<Outcome> kept;
+    std::ranges::copy_if(Outcomes(), std::back_inserter(kept), test);
+    return kept;
+  }
+};
+
+TEST_P(Challenge, ListedCausesGetTheirNameOrATieOfThreeThatHasIt) {
+  const auto listed = Only(IsListed);
+  EXPECT_TRUE(IsNotBelow(CountOf(listed, IsRight), listed.size(), 0.95)) << Others(listed, IsRight);
+}
+
+TEST_P(Challenge, UnlistedCausesAreUnknownWithTheirLockAndChannels) {
+  const auto unlisted = Only(IsUnlisted);
+  EXPECT_TRUE(IsNotBelow(CountOf(unlisted, IsRight), unlisted.size(), 0.90)) << Others(unlisted, IsRight);
+}
+
+TEST_P(Challenge, UnlistedCausesAreNeverNamedWithConfidence) {
+  for (const Outcome& o : Only(IsUnlisted)) EXPECT_FALSE(o.confident_wrong) << o.name << ": " << o.answer;
+}
+
+TEST_P(Challenge, CleanRunsRaiseNoAlarm) {
+  const auto clean = Only(IsClean);
+  EXPECT_TRUE(IsNotBelow(CountOf(clean, IsRight), clean.size(), 0.99)) << Others(clean, IsRight);
+}
+
+TEST_P(Challenge, NamedCausesPredictPassesThatWereNotUsed) {
+  std::vector<Outcome> gained = Only([](const Outcome& o) { return o.RightOrTie() && std::isfinite(o.gain); });
+  const auto enough = [](const Outcome& o) { return o.gain >= 0.9; };
+  EXPECT_TRUE(IsNotBelow(CountOf(gained, enough), gained.size(), 0.9)) << Others(gained, enough);
+}
+
+INSTANTIATE_TEST_SUITE_P(BothBenches, Challenge, ::testing::Values(kRotaryBench, kEncoderBench),
+                         [](const auto& of) { return std::string(of.param); });
+
+}  // namespace
+}  // namespace twinbench::hidden

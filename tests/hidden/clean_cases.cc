@@ -1,0 +1,111 @@
+#include "tests/hidden/clean_cases.h"
+
+#include <array>
+#include <cmath>
+
+namespace twinbench::hidden {
+namespace {
+
+/// What a noise does: distribution, correlation from reading to reading, and how much of its size is stated.
+struct NoiseShape {
+  const char* name;
+  bool student = false;
+  double correlation = 0.0;
+  double stated = 1.0;  // stated / actual standard deviation
+};
+
+NoiseShape ShapeOf(Noise noise) {
+  switch (noise) {
+    case Noise::kGaussian: return {"Gaussian"};
+    case Noise::kStudent5: return {"Student t, 5 dof", true};
+    case Noise::kCorrelated2: return {"AR(1) 0.2", false, 0.2};
+    case Noise::kCorrelated3: return {"AR(1) 0.3", false, 0.3};
+    case Noise::kUnderstated: return {"25 % larger than stated", false, 0.0, 1.0 / 1.25};
+    case Noise::kOverstated: return {"25 % smaller than stated", false, 0.0, 1.0 / 0.75};
+    case Noise::kMixture: return {"t5, AR(1) 0.2, 25 % larger than stated", true, 0.2, 1.0 / 1.25};
+  }
+  return {""};
+}
+
+/// A series of unit variance in the order of the readings.
+class Series {
+ public:
+  Series(NoiseShape shape, std::uint64_t seed, const std::string& channel)
+      : shape_(shape), stream_(seed, "hidden.noise." + channel), last_(Innovation()) {}
+  double Next() {
+    last_ = shape_.correlation * last_ + std::sqrt(1.0 - shape_.correlation * shape_.correlation) * Innovation();
+    return last_;
+  }
+
+ private:
+  double Innovation() {
+    constexpr double kDegrees = 5.0;
+    const double normal = stream_.Normal();
+    if (!shape_.student) return normal;
+    // Student's t has variance dof / (dof - 2).
+    return normal / std::sqrt(stream_.ChiSquared(kDegrees) / kDegrees) * std::sqrt((kDegrees - 2.0) / kDegrees);
+  }
+
+  NoiseShape shape_;
+  Stream stream_;
+  double last_;
+};
+
+/// Noise on the means, and blocks that state a deviation with the scatter that so many samples give it.
+void AddToVoltages(const NoiseShape& shape, double sample_noise_V, std::uint64_t seed, std::vector<Reading>& readings) {
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    Series series(shape, seed, kChannelNames[c]);
+    Stream blocks(seed, std::string("hidden.blocks.") + kChannelNames[c]);
+    for (Reading& r : readings) {
+      const double n = r.n_samples;
+      r.mean_V[c] += sample_noise_V / std::sqrt(n) * series.Next();
+      r.std_V[c] = shape.stated * sample_noise_V * std::sqrt(blocks.ChiSquared(n - 1.0) / (n - 1.0));
+    }
+  }
+}
+
+void AddToAngles(const NoiseShape& shape, double noise_rad, std::uint64_t seed, std::vector<Reading>& readings) {
+  Series series(shape, seed, "angle");
+  for (Reading& r : readings) r.measured_rad += noise_rad * series.Next();
+}
+
+}  // namespace
+
+const char* NoiseName(Noise noise) {
+  return ShapeOf(noise).name;
+}
+
+Case MakeClean(Design design, Noise noise, std::uint64_t seed) {
+  const NoiseShape shape = ShapeOf(noise);
+  Case clean;
+  clean.hidden.noise = shape.name;
+  clean.scenario = Believed(design);
+  Scenario actual = Drawn(design, seed);
+  const double sample_noise_V = actual.amplifier.noise_V, noise_rad = actual.device.noise_rad;
+  actual.amplifier.noise_V = 0.0;
+  actual.device.noise_rad = 0.0;
+  clean.readings = TakeReadings(actual);
+  if (design == Design::kRotary) {
+    AddToVoltages(shape, sample_noise_V, seed, clean.readings);
+    return clean;
+  }
+  AddToAngles(shape, noise_rad, seed, clean.readings);
+  if (shape.stated != 1.0) clean.scenario.device.noise_known = true;
+  clean.scenario.device.noise_rad = shape.stated * noise_rad;
+  return clean;
+}
+
+std::vector<Plan> CleanPlans(const std::string& bench, int count, std::uint64_t first_seed) {
+  const bool rotary = bench == kRotaryBench;
+  const std::vector<Design> designs = rotary ? std::vector{Design::kRotary} : std::vector{Design::kStops, Design::kSweep};
+  std::vector<Plan> plans;
+  for (int k = 0; k < count; ++k) {
+    const auto noise = static_cast<Noise>(k % kNoises);
+    const Design design = designs[static_cast<std::size_t>(k / kNoises) % designs.size()];
+    const std::uint64_t seed = 300000 + first_seed + static_cast<std::uint64_t>(k);
+    plans.push_back({"clean " + bench, std::to_string(seed), [=] { return MakeClean(design, noise, seed); }});
+  }
+  return plans;
+}
+
+}  // namespace twinbench::hidden

@@ -1,0 +1,189 @@
+#include "tests/hidden/judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "twin/core/errors.h"
+
+namespace twinbench::hidden {
+namespace {
+
+using diagnose::Cause;
+using diagnose::Diagnosis;
+using diagnose::Verdict;
+
+constexpr double kConfident = 0.9;
+constexpr int kLargestTie = 3;
+
+bool Matches(const Cause& cause, const Part& part) {
+  return cause.effect == part.effect && (part.where.empty() || cause.where.empty() || cause.where == part.where);
+}
+
+bool IsThere(const Cause& cause, const Hidden& hidden) {
+  return std::ranges::any_of(hidden.causes, [&](const Part& part) { return Matches(cause, part); });
+}
+
+bool IsAlike(const Cause& cause, const Hidden& hidden) {
+  return std::ranges::find(hidden.alike, cause.effect) != hidden.alike.end();
+}
+
+const Cause* CauseFor(const Part& part, const Diagnosis& d) {
+  const auto found = std::ranges::find_if(d.causes, [&](const Cause& cause) { return Matches(cause, part); });
+  return found == d.causes.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> Split(const std::string& text, const std::string& separator) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, at), text.size());
+    parts.push_back(text.substr(at, end - at));
+    at = end + separator.size();
+  }
+  return parts;
+}
+
+/// One part of the signature has the lock, and itself or one of its alternatives names exactly the channels.
+bool HasSignature(const Hidden& hidden, const std::string& signature) {
+  return std::ranges::any_of(Split(signature, " | "), [&](const std::string& part) {
+    if (std::ranges::none_of(hidden.locks, [&](const std::string& lock) { return part.find(lock) != std::string::npos; }))
+      return false;
+    if (hidden.channels.empty()) return true;
+    const std::size_t others = part.find("; or the same on ");
+    if (ChannelsIn(part.substr(0, others)) == hidden.channels) return true;
+    if (others == std::string::npos) return false;
+    return std::ranges::any_of(Split(part.substr(others + 17), ", "),
+                               [&](const std::string& place) { return ChannelsIn(place) == hidden.channels; });
+  });
+}
+
+Grade GradeUnlisted(const Hidden& hidden, const Diagnosis& d) {
+  if (d.verdict == Verdict::kNone) return Grade::kMissed;
+  if (d.verdict != Verdict::kUnknown) return Grade::kWrong;
+  return HasSignature(hidden, d.unknown.signature) ? Grade::kUnknown : Grade::kUnknownMisplaced;
+}
+
+Grade GradeListed(const Hidden& hidden, const Diagnosis& d) {
+  if (d.verdict == Verdict::kNone) return hidden.invisible ? Grade::kQuiet : Grade::kMissed;
+  if (d.verdict == Verdict::kUnknown) return Grade::kAnsweredUnknown;
+  const auto found = std::ranges::count_if(hidden.causes, [&](const Part& part) { return CauseFor(part, d); });
+  if (found == 0) return Grade::kWrong;
+  if (found < std::ssize(hidden.causes)) return Grade::kPartly;
+  if (d.verdict == Verdict::kTie) return std::ssize(d.causes) <= kLargestTie ? Grade::kTie : Grade::kLargeTie;
+  const bool more = std::ranges::any_of(d.causes, [&](const Cause& cause) { return !IsThere(cause, hidden); });
+  return more ? Grade::kRightAndMore : Grade::kRight;
+}
+
+Grade GradeOf(const Hidden& hidden, const Diagnosis& d) {
+  if (hidden.IsClean()) return d.verdict == Verdict::kNone ? Grade::kQuiet : Grade::kFalseAlarm;
+  return hidden.unlisted.empty() ? GradeListed(hidden, d) : GradeUnlisted(hidden, d);
+}
+
+bool Names(const Diagnosis& d) {
+  return d.verdict == Verdict::kNamed || d.verdict == Verdict::kTie;
+}
+
+void AddStated(const Diagnosis& d, Outcome& outcome) {
+  if (Names(d)) {
+    for (const Cause& cause : d.causes) outcome.stated.push_back({cause.probability, IsThere(cause, outcome.hidden)});
+  }
+  if (d.verdict == Verdict::kUnknown)
+    outcome.stated.push_back({d.unknown.probability, !outcome.hidden.unlisted.empty()});
+}
+
+void AddConfidence(const Diagnosis& d, Outcome& outcome) {
+  if (!Names(d)) return;
+  for (const Cause& cause : d.causes) {
+    if (cause.probability < kConfident || IsThere(cause, outcome.hidden)) continue;
+    outcome.confident_wrong = true;
+    outcome.confident_alike = IsAlike(cause, outcome.hidden);
+  }
+}
+
+void AddParameters(const Diagnosis& d, Outcome& outcome) {
+  if (!Names(d)) return;
+  for (const Part& part : outcome.hidden.causes) {
+    const Cause* cause = CauseFor(part, d);
+    if (!cause) continue;
+    for (const diagnose::ParameterEstimate& p : cause->parameters) {
+      const auto truth = part.parameters.find(p.name);
+      if (truth != part.parameters.end()) outcome.parameters.push_back({p.name, p.value, p.u, truth->second});
+    }
+  }
+}
+
+std::string AnswerOf(const Diagnosis& d) {
+  std::string text = diagnose::VerdictName(d.verdict);
+  for (const Cause& cause : d.causes) {
+    text += fmt::format(" [{}{}{} {:.2f}]", cause.effect, cause.where.empty() ? "" : " ", cause.where, cause.probability);
+  }
+  if (d.verdict == Verdict::kUnknown) text += fmt::format(" {:.2f}: {}", d.unknown.probability, d.unknown.signature);
+  return text;
+}
+
+double TopProbability(const Diagnosis& d) {
+  double top = d.verdict == Verdict::kUnknown ? d.unknown.probability : 0.0;
+  for (const Cause& cause : d.causes) top = std::max(top, cause.probability);
+  return top;
+}
+
+}  // namespace
+
+std::string InWords(const Hidden& hidden) {
+  if (!hidden.unlisted.empty()) return "unlisted " + hidden.unlisted;
+  std::string text;
+  for (const Part& part : hidden.causes)
+    text += (text.empty() ? "" : " + ") + part.effect + (part.where.empty() ? "" : " " + part.where);
+  return text.empty() ? "none" : text;
+}
+
+const char* GradeName(Grade grade) {
+  constexpr std::array<const char*, 13> kNames = {
+      "quiet",  "false alarm",      "missed",  "right",                    "right and more", "tie",    "large tie",
+      "partly", "answered unknown", "unknown", "unknown, other signature", "wrong",          "refused"};
+  return kNames[static_cast<std::size_t>(grade)];
+}
+
+bool ParameterCheck::Covers() const {
+  return std::abs(value - truth) <= 1.96 * u;
+}
+
+std::vector<std::string> ChannelsIn(const std::string& signature) {
+  const std::map<std::string, std::vector<std::string>> patterns = {
+      {"yaw", {"psd_a_x", "psd_b_x"}},     {"tilt", {"psd_a_y", "psd_b_y"}},
+      {"roll", {"psd_a_y", "psd_b_y"}},    {"lateral", {"psd_a_x", "psd_b_x"}},
+      {"all", {"psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"}}};
+  std::set<std::string> channels;
+  for (const char* channel : kChannelNames) {
+    if (signature.find(channel) != std::string::npos) channels.insert(channel);
+  }
+  if (channels.empty()) {
+    for (const auto& [pattern, members] : patterns) {
+      if (signature.find(pattern) != std::string::npos) channels.insert(members.begin(), members.end());
+    }
+  }
+  return {channels.begin(), channels.end()};
+}
+
+Outcome Judge(const Hidden& hidden, const Diagnosis& diagnosis) {
+  Outcome outcome;
+  outcome.hidden = hidden;
+  outcome.grade = GradeOf(hidden, diagnosis);
+  outcome.verdict = diagnosis.verdict;
+  outcome.answer = AnswerOf(diagnosis);
+  outcome.members = static_cast<int>(std::ssize(diagnosis.causes));
+  outcome.probability = TopProbability(diagnosis);
+  outcome.alarm_p = diagnosis.alarm_p;
+  outcome.gain = diagnosis.gain.fraction_removed;
+  if (!diagnosis.causes.empty()) outcome.rho = diagnosis.causes.front().rho;
+  AddStated(diagnosis, outcome);
+  AddConfidence(diagnosis, outcome);
+  AddParameters(diagnosis, outcome);
+  return outcome;
+}
+
+}  // namespace twinbench::hidden

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/hidden/hidden_case.h"
+
+namespace twinbench::hidden {
+
+enum class Grade {
+  kQuiet,             // nothing hidden or nothing to be seen of it, nothing found
+  kFalseAlarm,        // nothing hidden, something found
+  kMissed,            // something hidden, nothing found
+  kRight,             // all that is hidden, and nothing else, by name and place
+  kRightAndMore,      // the hidden cause and another one that is not there
+  kTie,               // a tie that contains the truth, of at most three members
+  kLargeTie,          // the same with more members
+  kPartly,            // one of a pair
+  kAnsweredUnknown,   // a listed cause, answered `unknown`
+  kUnknown,           // an unlisted cause, answered `unknown` with its lock and channels
+  kUnknownMisplaced,  // the same with another lock or other channels
+  kWrong,             // another name
+  kRefused            // no answer: the design or the file was refused
+};
+const char* GradeName(Grade grade);
+
+/// A probability that was stated, and whether what it was stated of is so.
+struct Stated {
+  double probability = kNaN;
+  bool is_so = false;
+};
+
+/// A parameter of a cause that was named rightly, against its truth.
+struct ParameterCheck {
+  std::string name;
+  double value = kNaN, u = kNaN, truth = kNaN;
+  bool Covers() const;  // truth within 1.96 standard uncertainties
+};
+
+/// One diagnosis against what was hidden.
+struct Outcome {
+  std::string set, name;
+  Hidden hidden;
+  Grade grade = Grade::kRefused;
+  diagnose::Verdict verdict = diagnose::Verdict::kNone;
+  std::string answer;                   // causes with their probabilities and signature of the unknown, in words
+  int members = 0;                      // causes in the answer
+  double probability = 0.0;             // of the most probable cause or the unknown
+  double alarm_p = kNaN, rho = kNaN, gain = kNaN;
+  bool confident_wrong = false;         // a name that is not there, stated at 0.9 or more
+  bool confident_alike = false;         // ... but these readings cannot tell it from the truth
+  std::vector<Stated> stated;
+  std::vector<ParameterCheck> parameters;
+  double seconds = 0.0;
+
+  bool Detected() const { return verdict != diagnose::Verdict::kNone; }
+  bool RightOrTie() const { return grade == Grade::kRight || grade == Grade::kTie; }
+};
+
+Outcome Judge(const Hidden& hidden, const diagnose::Diagnosis& diagnosis);
+
+/// Channels that a signature speaks of, also by the name of a pattern ("tilt": both y channels).
+std::vector<std::string> ChannelsIn(const std::string& signature);
+
+}  // namespace twinbench::hidden

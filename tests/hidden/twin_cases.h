@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/hidden/bench_runs.h"
+#include "twin/core/effect_catalogue.h"
+
+/// Cases made by the twin with effects of the catalogue on, diagnosed with the scenario that lacks them.
+namespace twinbench::hidden {
+
+struct TwinOptions {
+  int magnitudes = 3;         // sizes an effect and place, spread over rho_from to rho_to in equal ratios
+  int seeds = 2;              // of each size
+  std::uint64_t first_seed = 1;
+  double rho_from = 5.0, rho_to = 30.0;
+  std::string cache_folder;
+};
+
+/// One effect at a time: every name, every place; on the angle bench at stops and in motion.
+std::vector<Plan> SinglePlans(const std::string& bench, const TwinOptions& options);
+
+/// Two different effects at once, rho of each between 10 and `rho_to`.
+std::vector<Plan> PairPlans(int count, const TwinOptions& options);
+
+/// One effect at rho 20 that the catalogue is made to lack: `seeds` cases an effect and place.
+std::vector<Plan> LeaveOneOutPlans(const std::string& bench, const TwinOptions& options);
+
+/// Effects of the catalogue that leave a trace proportional to a size; the others (a swap, a frame) are there or not.
+bool HasSize(const std::string& effect);
+
+}  // namespace twinbench::hidden

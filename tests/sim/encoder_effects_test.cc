@@ -1,0 +1,205 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "tests/core/input_error.h"
+#include "tests/sim/encoder_run.h"
+
+// Each effect of the bench encoder_comparison against its closed form.
+namespace twinbench {
+namespace {
+
+using test::EncoderEffect;
+using test::EncoderScenario;
+using test::ReadingsWith;
+using units::deg;
+
+constexpr double kTiny_rad = 1e-11;  // rounding of angles of some turns
+
+double Error_rad(const Reading& reading) {
+  return reading.measured_rad - reading.reference_rad;
+}
+
+TEST(EncoderEffects, AllOfTheCatalogueActOnTheReadings) {
+  Scenario scenario = EncoderScenario("sweep");
+  scenario.device.lines = 90;
+  for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
+    double largest_rad = 0.0;
+    for (const Reading& r : ReadingsWith(scenario, EncoderEffect(entry.name)))
+      largest_rad = std::max(largest_rad, std::abs(Error_rad(r)));
+    EXPECT_GT(largest_rad, 1e-4 * deg) << entry.name;
+  }
+}
+
+TEST(EncoderEffects, HarmonicsFollowTheAngleOfTheDevicesScale) {
+  Scenario scenario = EncoderScenario();
+  scenario.encoder_procedure.mounting_rad = {50.0 * deg};
+  scenario.device.lines = 90;
+  const std::map<std::string, double> size = {{"amplitude", 0.01}, {"phase", 0.5}};
+  const auto expect = [&](const EffectSettings& effect, double order) {
+    for (const Reading& r : ReadingsWith(scenario, effect)) {
+      const double device_rad = r.reference_rad + 50.0 * deg;
+      EXPECT_NEAR(r.measured_rad - device_rad, 0.01 * std::cos(order * device_rad + 0.5), 1e-10) << effect.name;
+    }
+  };
+  const auto with = [&](const std::string& name, std::map<std::string, double> more = {}) {
+    more.insert(size.begin(), size.end());
+    return EncoderEffect(name, more);
+  };
+  expect(with("eccentricity"), 1.0);
+  expect(with("ellipticity"), 2.0);
+  expect(with("periodic", {{"order", 5.0}}), 5.0);
+  expect(with("gear_mesh", {{"teeth", 11.0}}), 11.0);
+  expect(with("interpolation", {{"order", 2.0}}), 180.0);
+}
+
+TEST(EncoderEffects, InterpolationNeedsTheLinesOfTheScale) {
+  EXPECT_EQ(MessageOf([] { ReadingsWith(EncoderScenario(), EncoderEffect("interpolation")); }),
+            ": the effect interpolation needs the lines of the scale; expected device.lines_per_turn above 0");
+}
+
+TEST(EncoderEffects, AFaultyReferenceIsLockedToItsOwnAngle) {
+  Scenario scenario = EncoderScenario();
+  scenario.encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
+  const auto fault = EncoderEffect("reference_fault", {{"order", 1.0}, {"amplitude", 0.01}});
+  const auto readings = ReadingsWith(scenario, fault);
+  for (int i = 0; i < 576; ++i) {
+    const double shaft_rad = readings[i].measured_rad;
+    EXPECT_NEAR(Error_rad(readings[i]), -0.01 * std::cos(shaft_rad), kTiny_rad);
+    EXPECT_NEAR(Error_rad(readings[576 + i]), 90.0 * deg - 0.01 * std::cos(shaft_rad), kTiny_rad);
+  }
+}
+
+// --- sine and cosine: angle of (x + f, y + g) is the phase plus (g cos - f sin) to first order ---
+
+/// Largest deviation of the error from `expected(phase)`, with `periods` of the signals a turn.
+template <class Expected>
+double WorstMisfit_rad(const EffectSettings& effect, int periods, Expected expected) {
+  Scenario scenario = EncoderScenario();
+  scenario.device.signal_periods = periods;
+  scenario.device.signal_zero_rad = 20.0 * deg;
+  double worst_rad = 0.0;
+  for (const Reading& r : ReadingsWith(scenario, effect)) {
+    const double phase_rad = periods * (r.reference_rad - 20.0 * deg);
+    worst_rad = std::max(worst_rad, std::abs(Error_rad(r) - expected(phase_rad) / periods));
+  }
+  return worst_rad;
+}
+
+TEST(EncoderEffects, SignalOffsetRepeatsOnceAPeriod) {
+  const auto effect = EncoderEffect("signal_offset", {{"offset_sin", 1e-4}, {"offset_cos", 3e-4}});
+  for (const int periods : {1, 10}) {
+    EXPECT_LT(WorstMisfit_rad(effect, periods, [](double p) { return 1e-4 * std::cos(p) - 3e-4 * std::sin(p); }),
+              1e-7);  // the square of the offsets
+  }
+}
+
+TEST(EncoderEffects, AmplitudeMismatchIsASineOfTwicePerPeriod) {
+  const auto effect = EncoderEffect("amplitude_mismatch", {{"ratio", 1e-3}});
+  // (1 + r) sin against cos: r sin cos = r/2 sin 2p.
+  EXPECT_LT(WorstMisfit_rad(effect, 1, [](double p) { return 0.5e-3 * std::sin(2.0 * p); }), 1e-6);
+}
+
+TEST(EncoderEffects, QuadratureErrorIsACosineOfTwicePerPeriodAndAnOffset) {
+  const auto effect = EncoderEffect("quadrature_error", {{"angle", 1e-3}});
+  // sin(p + q) = sin + q cos: q cos^2 = q/2 (1 + cos 2p).
+  EXPECT_LT(WorstMisfit_rad(effect, 1, [](double p) { return 0.5e-3 * (1.0 + std::cos(2.0 * p)); }), 1e-6);
+}
+
+TEST(EncoderEffects, ClippingActsOnlyWhereASignalExceedsTheLevel) {
+  const double level = 0.95;
+  for (const Reading& r : ReadingsWith(EncoderScenario(), EncoderEffect("signal_clipping", {{"level", level}}))) {
+    const double s = std::sin(r.reference_rad), c = std::cos(r.reference_rad);
+    if (std::max(std::abs(s), std::abs(c)) < level) {
+      EXPECT_NEAR(Error_rad(r), 0.0, kTiny_rad);
+    } else if (s > level) {
+      EXPECT_NEAR(c * std::sin(r.measured_rad), level * std::cos(r.measured_rad), kTiny_rad);  // atan2(level, c)
+    }
+  }
+}
+
+// --- motion ---
+
+TEST(EncoderEffects, LatencyIsProportionalToTheSpeed) {
+  for (const Reading& r : ReadingsWith(EncoderScenario("sweep"), EncoderEffect("latency", {{"delay", 0.002}})))
+    EXPECT_NEAR(Error_rad(r), -0.002 * r.velocity_rad_s, kTiny_rad);
+}
+
+TEST(EncoderEffects, BacklashAtStopsIsHalfTheGapBehindTheMotion) {
+  for (const Reading& r : ReadingsWith(EncoderScenario(), EncoderEffect("backlash", {{"width", 0.02}})))
+    EXPECT_NEAR(Error_rad(r), -r.direction * 0.01, kTiny_rad);
+  for (const Reading& r : ReadingsWith(EncoderScenario(), EncoderEffect("backlash", {{"width", -0.02}})))
+    EXPECT_NEAR(Error_rad(r), r.direction * 0.01, kTiny_rad);
+}
+
+TEST(EncoderEffects, BacklashInASweepIsCrossedOverItsWidthOfTravel) {
+  const double width_rad = 2.0 * deg;
+  Scenario scenario = EncoderScenario("sweep");
+  scenario.encoder_procedure.passes = {1, -1};
+  const auto readings = ReadingsWith(scenario, EncoderEffect("backlash", {{"width", width_rad}}));
+  double turned_at_rad = 0.0;
+  for (const Reading& r : readings) {
+    if (r.pass == 0) turned_at_rad = r.reference_rad;
+    if (r.pass != 1) continue;
+    const double way_rad = turned_at_rad - r.reference_rad;
+    EXPECT_NEAR(Error_rad(r), std::min(way_rad, width_rad) - 0.5 * width_rad, kTiny_rad);
+  }
+}
+
+TEST(EncoderEffects, HysteresisSettlesExponentiallyWithTravelAfterAReversal) {
+  Scenario scenario = EncoderScenario("sweep");
+  scenario.encoder_procedure.passes = {1, -1};
+  const auto readings =
+      ReadingsWith(scenario, EncoderEffect("hysteresis", {{"lag", 0.01}, {"settles_over", 20.0 * deg}}));
+  double turned_at_rad = 0.0;
+  for (const Reading& r : readings) {
+    if (r.pass == 0) {
+      turned_at_rad = r.reference_rad;
+      EXPECT_NEAR(Error_rad(r), -0.01 * (1.0 - std::exp(-r.reference_rad / (20.0 * deg))), kTiny_rad);
+    }
+    if (r.pass != 1) continue;
+    const double left = std::exp(-(turned_at_rad - r.reference_rad) / (20.0 * deg));
+    EXPECT_NEAR(Error_rad(r), 0.01 * (1.0 - 2.0 * left), kTiny_rad);  // 37 settling ways forth: exp(-37) is left
+  }
+}
+
+TEST(EncoderEffects, ScaleGrowsWithTheTurns) {
+  for (const Reading& r : ReadingsWith(EncoderScenario(), EncoderEffect("scale", {{"ratio", 1e-4}})))
+    EXPECT_NEAR(Error_rad(r), 1e-4 * r.reference_rad, kTiny_rad);
+}
+
+// --- time and single readings ---
+
+TEST(EncoderEffects, DriftIsLinearWithAQuadraticShare) {
+  const double rate_rad_s = 1e-6;
+  for (const Reading& r :
+       ReadingsWith(EncoderScenario(), EncoderEffect("drift", {{"rate", rate_rad_s}, {"curvature", 0.5}}))) {
+    const double t_s = ToSeconds(r.time);
+    EXPECT_NEAR(Error_rad(r), rate_rad_s * t_s * (1.0 + 0.5 * (1.0 - t_s / 3600.0)), kTiny_rad);
+  }
+}
+
+TEST(EncoderEffects, SlipIsAStepAtItsReading) {
+  for (const Reading& r :
+       ReadingsWith(EncoderScenario(), EncoderEffect("slip", {{"step", 0.01}, {"at_reading", 200.0}})))
+    EXPECT_NEAR(Error_rad(r), r.reading < 200 ? 0.0 : 0.01, kTiny_rad);
+}
+
+TEST(EncoderEffects, OutliersHitTheirShareOfTheReadings) {
+  int hits = 0;
+  const auto readings =
+      ReadingsWith(EncoderScenario("sweep"), EncoderEffect("outliers", {{"fraction", 0.1}, {"size", 0.02}}));
+  for (const Reading& r : readings) {
+    const double size_rad = std::abs(Error_rad(r));
+    if (size_rad < kTiny_rad) continue;
+    ++hits;
+    EXPECT_GE(size_rad, 0.5 * 0.02 - kTiny_rad);
+    EXPECT_LE(size_rad, 1.5 * 0.02 + kTiny_rad);
+  }
+  // Binomial: deviation sqrt(0.1 * 0.9 / 4320) = 0.0046; three of these.
+  EXPECT_NEAR(hits / static_cast<double>(readings.size()), 0.1, 0.014);
+}
+
+}  // namespace
+}  // namespace twinbench

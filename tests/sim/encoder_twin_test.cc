@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/sim/encoder_run.h"
+#include "twin/sim/encoder/twin.h"
+
+namespace twinbench {
+namespace {
+
+using test::EncoderScenario;
+using test::RunEncoderTwin;
+using units::deg;
+
+TEST(AngleSchedule, GoesThroughTheSameStopsInBothDirections) {
+  const auto readings = procedure::AngleSchedule(EncoderScenario().encoder_procedure);
+  ASSERT_EQ(readings.size(), 4u * 144u);
+  EXPECT_EQ(readings[143].reference_rad, readings[144].reference_rad);
+  EXPECT_NEAR(readings[143].reference_rad, 715.0 * deg, 1e-12);
+  EXPECT_EQ(readings[144].direction, -1);
+  EXPECT_EQ(readings[288].pass, 2);
+  EXPECT_EQ(ToSeconds(readings[575].time), 575 * 4.0);
+}
+
+TEST(AngleSchedule, OfASweepIsTheMotionOfATableWithConstantAcceleration) {
+  Scenario scenario = EncoderScenario("sweep");
+  scenario.encoder_procedure.passes = {1, -1};
+  const auto readings = procedure::AngleSchedule(scenario.encoder_procedure);
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    const Reading &a = readings[i - 1], &b = readings[i];
+    const double step_s = ToSeconds(b.time - a.time);
+    // The trapezium rule is exact but where the acceleration changes within the step: 60 deg/s^2 / 8 * (80 ms)^2.
+    EXPECT_NEAR(b.reference_rad - a.reference_rad, 0.5 * step_s * (a.velocity_rad_s + b.velocity_rad_s),
+                0.05 * deg);
+    EXPECT_LE(std::abs(b.velocity_rad_s), 36.0 * deg * (1.0 + 1e-12));
+    EXPECT_EQ(b.direction, b.velocity_rad_s > 0.0 ? 1 : b.velocity_rad_s < 0.0 ? -1 : 0);
+  }
+  EXPECT_NEAR(readings.back().reference_rad, 0.0, 1e-9) << "forth and back at each speed";
+  // 20 s + 2 * 0.6 s + 2 s every 80 ms, and 60 s + ... at the lower speed, forth and back.
+  EXPECT_EQ(readings.size(), 2u * 290u + 2u * 790u);
+}
+
+TEST(AngleSchedule, TurnsTheDeviceOnTheShaftAtEverySetUp) {
+  Scenario scenario = EncoderScenario();
+  scenario.encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
+  const auto readings = RunEncoderTwin(scenario).readings;
+  ASSERT_EQ(readings.size(), 2u * 576u);
+  EXPECT_EQ(readings[576].setup, 1);
+  EXPECT_NEAR(readings[576].measured_rad - readings[576].reference_rad, 90.0 * deg, 1e-12);
+  EXPECT_EQ(ToSeconds(readings[576].time - readings[575].time), 4.0 + 600.0);
+}
+
+TEST(EncoderTwin, WithoutNoiseAndEffectsShowsTheReferencesAngle) {
+  for (const char* kind : {"stops", "sweep"}) {
+    for (const Reading& r : RunEncoderTwin(EncoderScenario(kind)).readings)
+      EXPECT_NEAR(r.measured_rad, r.reference_rad, 1e-12);
+  }
+}
+
+TEST(EncoderTwin, DrawsTheNoiseOfAReadingFromItsNumberAlone) {
+  Scenario scenario = EncoderScenario();
+  scenario.noise_free = false;
+  const auto all = RunEncoderTwin(scenario).readings;
+  sim::EncoderTwin twin(scenario);
+  Reading alone = procedure::AngleSchedule(scenario.encoder_procedure)[77];
+  twin.Take(alone);
+  EXPECT_EQ(alone.measured_rad, all[77].measured_rad);
+}
+
+TEST(EncoderTwin, ReadsInStepsOfItsResolution) {
+  Scenario scenario = EncoderScenario();
+  scenario.noise_free = false;
+  scenario.device.resolution_rad = 0.1 * deg;
+  for (const Reading& r : RunEncoderTwin(scenario).readings) {
+    const double steps = r.measured_rad / scenario.device.resolution_rad;
+    EXPECT_NEAR(steps, std::round(steps), 1e-9);
+  }
+}
+
+TEST(EncoderTwin, AddsAnEmpiricalSignalToTheReadingsItNames) {
+  Scenario scenario = EncoderScenario();
+  EmpiricalSettings signal;
+  signal.channel = "angle";
+  signal.reading = {5};
+  signal.value_rad = {0.25};
+  scenario.empiricals.push_back(signal);
+  const auto readings = RunEncoderTwin(scenario).readings;
+  EXPECT_NEAR(readings[5].measured_rad - readings[5].reference_rad, 0.25, 1e-12);
+  EXPECT_NEAR(readings[6].measured_rad - readings[6].reference_rad, 0.0, 1e-12);
+}
+
+TEST(EncoderTwin, TellsItsTruth) {
+  Scenario scenario = EncoderScenario();
+  scenario.effects.push_back(test::EncoderEffect("latency"));
+  const nlohmann::json truth = sim::EncoderTwin(scenario).Truth();
+  EXPECT_EQ(truth.at("effects").at(0).at("effect"), "latency");
+  EXPECT_EQ(truth.at("effects").at(0).at("parameters_SI").at("delay"), 0.001);
+}
+
+}  // namespace
+}  // namespace twinbench

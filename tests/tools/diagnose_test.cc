@@ -1,0 +1,135 @@
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "tests/tools/program.h"
+#include "twin/core/run_record.h"
+
+namespace twinbench::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// The small scenario as believed, and a run of it on a bench with a gain error of 1 % on PSD A x.
+class Diagnose : public Program {
+ protected:
+  Diagnose() {
+    Write("small.toml", kSmall);
+    MakeRun("run", {"--set", "effect=[{name=\"psd_gain\", where=\"psd_a_x\", gain_error=0.01}]"});
+    Succeed({"export", "run", "--readings", "readings.csv"});
+  }
+  std::vector<std::string> Arguments(const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {"diagnose", "readings.csv", "--scenario", "small.toml", "--cache", "cache"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+};
+
+TEST_F(Diagnose, NamesTheHiddenCauseAndExtendsTheScenario) {
+  const auto json = Json(Arguments({"--json", "-", "-o", "extended.toml"}));
+  EXPECT_EQ(json.at("verdict"), "named") << json.dump(1);
+  const auto& cause = json.at("causes").at(0);
+  EXPECT_EQ(cause.at("effect"), "psd_gain");
+  EXPECT_EQ(cause.at("where"), "psd_a_x");
+  const auto& gain = cause.at("parameters").at("gain_error");
+  EXPECT_NEAR(gain.at("value"), 0.01, 4.0 * gain.at("u").get<double>());
+  EXPECT_EQ(json.at("extended_scenario"), "extended.toml");
+  EXPECT_TRUE(json.at("gain").at("positive"));
+  // The extended scenario runs on the twin, and explains the readings.
+  Succeed({"run", "extended.toml", "-o", "again"});
+  const auto again =
+      Json({"diagnose", "readings.csv", "--scenario", "extended.toml", "--cache", "cache", "--json", "-"});
+  EXPECT_EQ(again.at("verdict"), "none") << again.dump(1);
+}
+
+TEST_F(Diagnose, OfAFolderPutsPlotsAndWordsIntoItsResults) {
+  const auto before = nlohmann::json::parse(Read("run/results.json"));
+  const std::string text =
+      Succeed({"diagnose", "run", "--scenario", "small.toml", "--cache", "cache", "--json", "d.json"});
+  EXPECT_THAT(text, HasSubstr("psd_gain at psd_a_x"));
+  auto results = nlohmann::json::parse(Read("run/results.json"));
+  const auto diagnosis = results.at("diagnosis");
+  EXPECT_EQ(diagnosis.at("causes"), nlohmann::json::parse(Read("d.json")).at("causes"));
+  EXPECT_TRUE(diagnosis.at("plots").at("against").contains("time_s"));
+  EXPECT_EQ(diagnosis.at("in_words"), text);
+  results.erase("diagnosis");
+  EXPECT_EQ(results, before);
+}
+
+TEST_F(Diagnose, OfARunWithItsOwnScenarioFindsNothing) {
+  // The folder's scenario holds the effect: readings and belief agree.
+  EXPECT_EQ(Json({"diagnose", "run", "--cache", "cache", "--json", "-"}).at("verdict"), "none");
+}
+
+TEST_F(Diagnose, DoesNotNameAnEffectThatIsStruck) {
+  for (const auto& cause : Json(Arguments({"--json", "-", "--strike", "psd_gain"})).at("causes"))
+    EXPECT_NE(cause.at("effect"), "psd_gain");
+}
+
+TEST_F(Diagnose, DoesWithoutACache) {
+  Write("file", "in the way");
+  std::vector<std::string> arguments = Arguments({"--json", "-"});
+  arguments[5] = "file/cache";
+  const Outcome outcome = Call(arguments);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("calibrations are not kept"));
+}
+
+TEST_F(Diagnose, RefusesBadInput) {
+  const auto refusal = [&](const std::vector<std::string>& arguments) {
+    const Outcome outcome = Call(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    return outcome.err;
+  };
+  EXPECT_THAT(refusal(Arguments({"--strike", "psd_gian"})), HasSubstr("the nearest is \"psd_gain\""));
+  EXPECT_THAT(refusal({"diagnose", "readings.csv"}), HasSubstr("--scenario"));
+  EXPECT_THAT(refusal(Arguments({"--follow"})), HasSubstr("not the folder of a run"));
+  EXPECT_THAT(refusal({"diagnose", "run", "--follow", "--false-alarm-rate", "2"}), HasSubstr("between 0 and 1"));
+}
+
+TEST_F(Diagnose, RefusesADesignWithoutRedundancy) {
+  MakeRun("two", {"--set", "procedure.shifts=[0, 1]", "--set", "procedure.passes=[1]"});
+  const Outcome outcome = Call({"diagnose", "two", "--cache", "cache"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("2 set-ups with 1 pass each leave 0 degrees of freedom"),
+                                 HasSubstr("a third set-up")));
+}
+
+TEST_F(Diagnose, FollowsACompleteRunToItsEnd) {
+  const auto clean = Json({"diagnose", "run", "--follow", "--json", "-"});
+  EXPECT_TRUE(clean.at("complete"));
+  EXPECT_TRUE(clean.at("alarms").empty()) << clean.dump(1);
+  const auto json = Json({"diagnose", "run", "--follow", "--scenario", "small.toml", "--json", "-"});
+  ASSERT_FALSE(json.at("alarms").empty());
+  EXPECT_EQ(json.at("alarms").at(0).at("series"), "psd_a_x");
+}
+
+/// Copies the readings of `from` into a new record, one after the other, as a bench would.
+void Replay(const std::string& from, const std::string& to) {
+  const auto source = RunRecord::Open(from);
+  const auto record = RunRecord::Create(to, source->provenance());
+  std::filesystem::copy(from + "/scenario.toml", to + "/scenario.toml");
+  const std::vector<Reading> readings = source->Readings();
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    record->Append(readings[k], {});
+    if (k % 20 == 19) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  record->Finish();
+}
+
+TEST_F(Diagnose, FollowsARunWhileItIsRecordedAndAlarmsBeforeItsEnd) {
+  MakeRun("slip", {"--set", "effect=[{name=\"slip\", where=\"tilt\", angle_arcsec=20.0, at_reading=75}]"});
+  std::filesystem::create_directory(At("live"));
+  std::thread bench([&] { Replay(At("slip"), At("live")); });
+  while (!Exists("live/scenario.toml")) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  Process watch(At(""), {"diagnose", "live", "--follow", "--scenario", "small.toml"});
+  const Outcome outcome = watch.Wait();
+  bench.join();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("alarm at reading 7"), HasSubstr(", complete; ")));
+}
+
+}  // namespace
+}  // namespace twinbench::test

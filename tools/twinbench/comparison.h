@@ -1,0 +1,16 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "twin/measure/angle_comparison.h"
+
+namespace twinbench::tools {
+
+/// What an angle comparison found before anything is diagnosed, as text for a person.
+std::string Summary(const measure::AngleComparison& comparison);
+
+/// results.json.
+nlohmann::json ToJson(const measure::AngleComparison& comparison);
+
+}  // namespace twinbench::tools

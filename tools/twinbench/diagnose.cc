@@ -1,0 +1,131 @@
+#include "twin/diagnose/diagnose.h"
+
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+#include "tools/twinbench/analysis.h"
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/follow.h"
+#include "tools/twinbench/run_folder.h"
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/errors.h"
+#include "twin/core/nearest_key.h"
+#include "twin/diagnose/extend.h"
+#include "twin/diagnose/gain.h"
+#include "twin/diagnose/json.h"
+#include "twin/diagnose/words.h"
+
+namespace twinbench::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string source, scenario, json, extended, cache, model = "rigorous";
+  std::vector<std::string> overrides, struck;
+  bool follow = false;
+  double false_alarm_rate = 0.01;
+};
+
+std::string DefaultCache() {
+  if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
+    return std::string(folder) + "/twinbench";
+  if (const char* home = std::getenv("HOME"); home && *home) return std::string(home) + "/.cache/twinbench";
+  return "";
+}
+
+/// The folder of the calibrations, made if it is not there; nothing, with a note, where that cannot be.
+std::string CacheFolder(const std::string& asked) {
+  const std::string folder = asked.empty() ? DefaultCache() : asked;
+  if (folder.empty()) return "";
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error && fs::is_directory(folder)) return folder;
+  fmt::print(stderr, "calibrations are not kept: {} cannot be made\n", folder);
+  return "";
+}
+
+void CheckStruck(const std::vector<std::string>& struck, const std::string& bench) {
+  std::vector<std::string> names;
+  for (const EffectEntry& entry : EffectCatalogue(bench)) names.push_back(entry.name);
+  for (const std::string& name : struck) {
+    if (!FindEffect(name, bench))
+      throw InputError("--strike " + name, "there is no such effect",
+                       fmt::format("a known one; the nearest is \"{}\"", Nearest(name, names)));
+  }
+}
+
+std::string Provenance(const std::string& source, std::size_t readings) {
+  return fmt::format("twinbench {} diagnosed {} ({} readings) on {:%Y-%m-%d}", TWINBENCH_VERSION, source, readings,
+                     fmt::gmtime(std::chrono::system_clock::now()));
+}
+
+/// diagnosis.json, with what the accepted causes change in the separated errors.
+nlohmann::json JsonOf(const diagnose::DiagnosisRun& found, const Scenario& scenario, const std::string& extended) {
+  nlohmann::json json = diagnose::ToJson(found, extended);
+  if (scenario.bench == kRotaryBench && !found.accepted.empty()) {
+    json["gain"]["change_of_tables"] = diagnose::ToJson(
+        diagnose::ChangeOfTables(found.run, found.noise, found.accepted, scenario.procedure.positions));
+  }
+  return json;
+}
+
+/// Puts the diagnosis into the run's results.json, beside what is there.
+void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const diagnose::DiagnosisRun& found) {
+  nlohmann::json results = fs::exists(path) ? ReadJson(path) : nlohmann::json::object();
+  diagnosis["plots"] = diagnose::PlotsJson(found);
+  diagnosis["in_words"] = diagnose::InWords(found);
+  results["diagnosis"] = std::move(diagnosis);
+  WriteJson(path, results);
+}
+
+void DiagnoseRun(const Options& options) {
+  const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
+  CheckStruck(options.struck, run.scenario.bench);
+  diagnose::DiagnoseOptions how;
+  how.model = EstimatorOf(options.model);
+  how.struck = options.struck;
+  how.cache_folder = CacheFolder(options.cache);
+  const diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
+  if (!options.extended.empty()) {
+    WriteFileAtOnce(options.extended,
+                    diagnose::ExtendedToml(run.scenario, found, Provenance(options.source, run.readings.size())));
+  }
+  const nlohmann::json json = JsonOf(found, run.scenario, options.extended);
+  if (!options.json.empty()) WriteJson(options.json, json);
+  if (fs::is_directory(options.source)) MergeIntoResults(RunFolder{options.source}.results(), json, found);
+  if (options.json != "-") fmt::print("{}", diagnose::InWords(found));
+}
+
+void Diagnose(const Options& options) {
+  if (!options.follow) return DiagnoseRun(options);
+  Follow({options.source, options.scenario, options.json, options.overrides, options.false_alarm_rate,
+          EstimatorOf(options.model) == measure::Estimator::kPublished});
+}
+
+}  // namespace
+
+void AddDiagnose(CLI::App& app) {
+  auto* command = app.add_subcommand("diagnose", "Find what a scenario gets wrong about the readings, and name it");
+  auto options = std::make_shared<Options>();
+  command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
+  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
+  command->add_option("--json", options->json, "write diagnosis.json here, - for stdout");
+  command->add_option("-o,--output", options->extended, "write the scenario extended by what was found");
+  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
+      ->allow_extra_args(false);
+  command->add_option("--model", options->model, "sensitivities believed: published equations, or rigorous")
+      ->check(CLI::IsMember({"published", "rigorous"}))
+      ->capture_default_str();
+  command->add_option("--strike", options->struck, "take an effect out of the catalogue")->allow_extra_args(false);
+  command->add_option("--cache", options->cache, "folder that keeps calibrated thresholds; else the user's cache");
+  command->add_flag("--follow", options->follow, "watch a run while it is recorded and raise alarms");
+  command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, a run")->capture_default_str();
+  command->callback([options] { Diagnose(*options); });
+}
+
+}  // namespace twinbench::tools

@@ -1,0 +1,175 @@
+#include "tools/twinbench/follow.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "tools/twinbench/run_folder.h"
+#include "twin/core/errors.h"
+#include "twin/core/run_record.h"
+#include "twin/diagnose/encoder/encoder_run.h"
+#include "twin/diagnose/rotary/rotary_run.h"
+#include "twin/diagnose/watch.h"
+#include "twin/procedure/angle_comparison.h"
+#include "twin/procedure/procedure.h"
+
+namespace twinbench::tools {
+namespace {
+
+using std::chrono::duration;
+using WallClock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kPause{200};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void Interrupt(int /*signal*/) {
+  interrupted = 1;
+}
+
+/// SIGINT ends the watch in good order while this lives.
+class InterruptGuard {
+ public:
+  InterruptGuard() : before_(std::signal(SIGINT, Interrupt)) {}
+  ~InterruptGuard() { std::signal(SIGINT, before_); }
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
+diagnose::LinearRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
+  return scenario.bench == kEncoderBench ? diagnose::encoder::BuildRun(readings, scenario).run
+                                         : diagnose::rotary::BuildRun(readings, scenario, published).run;
+}
+
+int PlannedReadings(const Scenario& scenario) {
+  return scenario.bench == kEncoderBench
+             ? static_cast<int>(procedure::AngleSchedule(scenario.encoder_procedure).size())
+             : procedure::PlannedReadings(scenario.procedure);
+}
+
+/// The state of a watch after some readings.
+struct Watched {
+  diagnose::WatchReport report;
+  std::string unit;
+  double to_SI = 1.0;
+};
+
+void PrintAlarm(const diagnose::Alarm& alarm, const Watched& watched, std::FILE* to) {
+  const std::string since = alarm.lasting ? fmt::format("since reading {}", alarm.since) : "in this reading";
+  fmt::print(to, "alarm at reading {}: {} deviates by {:.3g} +- {:.2g} {}, {} (statistic {:.1f}, limit {:.1f})\n",
+             alarm.reading, alarm.series, alarm.size / watched.to_SI, alarm.u_size / watched.to_SI, watched.unit,
+             since, alarm.z, alarm.limit);
+  std::fflush(to);
+}
+
+nlohmann::json ToJson(const diagnose::Alarm& alarm, const Watched& watched) {
+  return {{"reading", alarm.reading},
+          {"since", alarm.since},
+          {"series", alarm.series},
+          {"lasting", alarm.lasting},
+          {"size_" + watched.unit, alarm.size / watched.to_SI},
+          {"u_size_" + watched.unit, alarm.u_size / watched.to_SI},
+          {"statistic", alarm.z},
+          {"limit", alarm.limit}};
+}
+
+nlohmann::json ToJson(const Watched& watched, const FollowOptions& options, std::size_t readings, bool complete) {
+  nlohmann::json json = {{"readings", readings},
+                         {"judged", watched.report.judged},
+                         {"complete", complete},
+                         {"false_alarm_rate", options.false_alarm_rate},
+                         {"noise_scale", watched.report.noise_scale},
+                         {"alarms", nlohmann::json::array()}};
+  for (const diagnose::Alarm& alarm : watched.report.alarms) json["alarms"].push_back(ToJson(alarm, watched));
+  return json;
+}
+
+/// Follows one record.
+class Follower {
+ public:
+  explicit Follower(const FollowOptions& options)
+      : options_(options),
+        record_(RunRecord::Open(options.folder)),
+        scenario_(LoadScenario(options.scenario.empty() ? RunFolder{options.folder}.scenario() : options.scenario,
+                               options.overrides)) {}
+
+  void Run() {
+    fmt::print(stderr, "watching {} with a false-alarm rate of {:g} % a run\n", options_.folder,
+               100.0 * options_.false_alarm_rate);
+    while (!complete_ && interrupted == 0) {
+      const auto before = WallClock::now();
+      complete_ = record_->finished();  // asked first: readings that come after are looked at in the next round
+      Look();
+      if (!complete_) Pause(WallClock::now() - before);
+    }
+    Close();
+  }
+
+ private:
+  void Look() {
+    const std::vector<Reading> readings = record_->Readings();
+    if (readings.size() == seen_ && !complete_) return;
+    seen_ = readings.size();
+    const auto watched = Judge(readings);
+    if (!watched) return;
+    last_ = *watched;
+    for (; alarms_ < last_.report.alarms.size(); ++alarms_) PrintAlarm(last_.report.alarms[alarms_], last_, options_.json == "-" ? stderr : stdout);
+  }
+
+  /// Nothing while there are too few readings to predict from.
+  std::optional<Watched> Judge(const std::vector<Reading>& readings) const {
+    try {
+      const diagnose::LinearRun run = BuildRun(readings, scenario_, options_.published);
+      const diagnose::WatchOptions how{options_.false_alarm_rate, PlannedReadings(scenario_)};
+      return Watched{diagnose::Watch(run, how), run.unit, run.to_SI};
+    } catch (const InputError&) {
+      if (complete_) throw;
+      return std::nullopt;
+    }
+  }
+
+  /// Longer where a look takes long, so that following costs at most a quarter of a core.
+  static void Pause(WallClock::duration look) {
+    const auto until = WallClock::now() + std::max<WallClock::duration>(kPause, 3 * look);
+    while (interrupted == 0 && WallClock::now() < until) std::this_thread::sleep_for(kPause / 4);
+  }
+
+  void Close() const {
+    if (!options_.json.empty()) WriteJson(options_.json, ToJson(last_, options_, seen_, complete_));
+    if (options_.json == "-") return;
+    fmt::print("{} readings, {}; {} judged by those before them; {} at a false-alarm rate of {:g} % a run\n", seen_,
+               complete_ ? "complete" : "not complete", last_.report.judged,
+               alarms_ == 0 ? "no alarm" : fmt::format("{} alarm{}", alarms_, alarms_ == 1 ? "" : "s"),
+               100.0 * options_.false_alarm_rate);
+  }
+
+  FollowOptions options_;
+  std::unique_ptr<RunRecord> record_;
+  Scenario scenario_;
+  std::size_t seen_ = 0, alarms_ = 0;
+  bool complete_ = false;
+  Watched last_;
+};
+
+}  // namespace
+
+void Follow(const FollowOptions& options) {
+  if (!(options.false_alarm_rate > 0.0 && options.false_alarm_rate < 1.0))
+    throw InputError("--false-alarm-rate", fmt::format("{:g}", options.false_alarm_rate),
+                     "a number between 0 and 1");
+  if (!std::filesystem::is_directory(options.folder))
+    throw InputError(options.folder, "this is not the folder of a run", "one with a record.sqlite");
+  const InterruptGuard guard;
+  Follower(options).Run();
+}
+
+}  // namespace twinbench::tools

@@ -1,0 +1,124 @@
+#include "twin/diagnose/encoder/encoder_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "twin/core/errors.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/encoder/noise_estimate.h"
+#include "twin/measure/angle_comparison.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+constexpr int kFewest = 12;
+constexpr double kOffsetPrior_rad = 2.0 * units::kPi;  // free
+
+Schedule ScheduleOf(const std::vector<Reading>& readings, const std::vector<int>& used) {
+  Schedule s;
+  const auto n = std::ssize(used);
+  for (Eigen::VectorXd* v :
+       {&s.time_s, &s.dwell_s, &s.temperature_degC, &s.target_rad, &s.reference_rad, &s.velocity_rad_s})
+    v->resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Reading& r = readings[used[i]];
+    s.reading.push_back(r.reading);
+    s.setup.push_back(r.setup);
+    s.pass.push_back(r.pass);
+    s.direction.push_back(r.direction);
+    s.position.push_back(r.position);
+    s.phase.push_back(r.phase);
+    s.time_s[i] = ToSeconds(r.time);
+    s.dwell_s[i] = r.dwell_s;
+    s.temperature_degC[i] = r.temperature_degC;
+    s.target_rad[i] = kNaN;
+    s.reference_rad[i] = r.reference_rad;
+    s.velocity_rad_s[i] = r.velocity_rad_s;
+  }
+  return s;
+}
+
+/// Fills in velocities that were not recorded, from the readings before and behind of the same pass.
+void DeriveVelocities(Schedule& s) {
+  if (s.velocity_rad_s.array().isFinite().any()) return;
+  const int last = s.Readings() - 1;
+  for (int i = 0; i <= last; ++i) {
+    const int a = i > 0 && s.pass[i - 1] == s.pass[i] ? i - 1 : i;
+    const int b = i < last && s.pass[i + 1] == s.pass[i] ? i + 1 : i;
+    const double step_s = s.time_s[b] - s.time_s[a];
+    s.velocity_rad_s[i] = step_s > 0.0 ? (s.reference_rad[b] - s.reference_rad[a]) / step_s : 0.0;
+  }
+}
+
+/// Offsets of the set-ups: rows x set-ups.
+Eigen::SparseMatrix<double, Eigen::RowMajor> SetUpIndicators(const std::vector<int>& setup) {
+  std::map<int, int> column;
+  for (const int s : setup) column.try_emplace(s, static_cast<int>(column.size()));
+  Eigen::SparseMatrix<double, Eigen::RowMajor> indicators(std::ssize(setup), std::ssize(column));
+  for (std::size_t i = 0; i < setup.size(); ++i) indicators.insert(static_cast<int>(i), column.at(setup[i])) = 1.0;
+  return indicators;
+}
+
+/// Means by set-up, one entry a row.
+Eigen::VectorXd SetUpMeans(const Eigen::SparseMatrix<double, Eigen::RowMajor>& indicators,
+                           const Eigen::VectorXd& y) {
+  const Eigen::VectorXd count = indicators.transpose() * Eigen::VectorXd::Ones(y.size());
+  const Eigen::VectorXd sum = indicators.transpose() * y;
+  return indicators * Eigen::VectorXd(sum.array() / count.array());
+}
+
+/// Signal of what the scenario knows already.
+Eigen::VectorXd KnownSignal_rad(const Scenario& scenario, const SignalContext& context) {
+  Eigen::VectorXd known_rad = Eigen::VectorXd::Zero(context.Readings());
+  for (const EffectSettings& effect : scenario.effects) known_rad += EffectSignal_rad(effect, context);
+  for (const EmpiricalSettings& signal : scenario.empiricals) {
+    std::map<int, double> by_reading;
+    for (std::size_t k = 0; k < signal.reading.size(); ++k) by_reading[signal.reading[k]] = signal.value_rad[k];
+    for (Eigen::Index i = 0; i < known_rad.size(); ++i) {
+      const auto found = by_reading.find(context.reading[i]);
+      if (found != by_reading.end()) known_rad[i] += found->second;
+    }
+  }
+  return known_rad;
+}
+
+void SetNoise(LinearRun& run, const DeviceSettings& device) {
+  run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
+  const double sigma_rad = run.sigma_stated ? std::hypot(device.noise_rad, device.resolution_rad / std::sqrt(12.0))
+                                            : EstimateNoise_rad(run.schedule, run.residual);
+  run.sigma = Eigen::VectorXd::Constant(run.residual.size(), sigma_rad);
+}
+
+}  // namespace
+
+EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario) {
+  const measure::AngleComparison comparison = measure::CompareAngles(readings);
+  if (std::ssize(comparison.used) < kFewest)
+    throw InputError("readings", fmt::format("{} of {} have a value", comparison.used.size(), readings.size()),
+                     fmt::format("at least {}", kFewest));
+  EncoderRun encoder;
+  encoder.left_out = comparison.left_out;
+  LinearRun& run = encoder.run;
+  run.schedule = ScheduleOf(readings, comparison.used);
+  if (scenario.encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);
+  run.channels = {"angle"};
+  run.unit = "deg";
+  run.to_SI = units::deg;
+  run.patterns = {{"angle", Eigen::VectorXd::Ones(1)}};
+  run.nuisance.jacobian = SetUpIndicators(run.schedule.setup);
+  run.nuisance.prior_precision =
+      Eigen::VectorXd::Constant(run.nuisance.jacobian.cols(), 1.0 / (kOffsetPrior_rad * kOffsetPrior_rad));
+  const Eigen::VectorXd offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
+  encoder.context = ContextOf(run.schedule, run.schedule.reference_rad + offset_rad, scenario.device);
+  run.observed = run.schedule.reference_rad + comparison.error_rad;
+  run.residual = comparison.error_rad - KnownSignal_rad(scenario, encoder.context);
+  run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
+  SetNoise(run, scenario.device);
+  return encoder;
+}
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,89 @@
+#include "twin/diagnose/engine/analysis.h"
+
+#include <algorithm>
+
+#include "twin/diagnose/engine/prior.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr int kMostRepairs = 4;
+constexpr double kRefuted = 8.0;    // log Bayes factor from which a noise model is not used any more
+constexpr double kDisturbed = 4.0;  // the same for single values: in white noise less than one run in a thousand
+
+void Prepare(const LinearRun& run, const std::vector<Family>& families, Analysis& analysis) {
+  analysis.projector = std::make_unique<Projector>(analysis.noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  analysis.scanner = std::make_unique<Scanner>(run, analysis.noise, *analysis.projector, families);
+}
+
+/// What the noise alone would explain, before and after the picks.
+struct NoiseView {
+  std::vector<NoiseCause> before, after;
+};
+
+NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
+  const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
+  const Remainder picks(*analysis.projector, WhitenedPicks(run, analysis.noise, analysis.found.picks));
+  const Eigen::VectorXd redundancy = analysis.projector->Redundancy();
+  const auto look = [&](const Remainder& remainder) {
+    return FindNoiseCauses(run, analysis.noise, Project(*analysis.projector, remainder, white).rows.col(0), redundancy);
+  };
+  NoiseView view{look({}), look(picks)};
+  // A cause that shows on one channel makes that channel look noisy: only what remains can say so.
+  std::erase_if(view.before, [](const NoiseCause& c) { return c.kind == NoiseCause::Kind::kChannelScale; });
+  return view;
+}
+
+/// The repair that has to come before any cause is believed, if there is one.
+const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
+  const bool picked = !analysis.found.picks.empty();
+  if (picked && !view.before.empty() && view.before.front().log_bayes > analysis.found.joint_evidence) return &view.before.front();
+  for (const NoiseCause& cause : view.after) {
+    // Single disturbed values are an effect of their own; other faults of the noise matter only if something was chosen.
+    const bool single = cause.kind == NoiseCause::Kind::kOutliers;
+    if (single ? cause.log_bayes > kDisturbed : picked && cause.log_bayes > kRefuted) return &cause;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Eigen::MatrixXd WhitenedPicks(const LinearRun& run, const NoiseModel& noise, const std::vector<Pick>& picks) {
+  Eigen::Index width = 0;
+  for (const Pick& pick : picks) width += pick.columns.cols();
+  Eigen::MatrixXd columns(run.Rows(), width);
+  Eigen::Index at = 0;
+  for (const Pick& pick : picks) {
+    columns.middleCols(at, pick.columns.cols()) = pick.columns;
+    at += pick.columns.cols();
+  }
+  return width > 0 ? noise.Whiten(run, columns) : columns;
+}
+
+Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, const AnalysisOptions& options) {
+  Analysis analysis;
+  analysis.noise = {run.sigma, 0.0};
+  const Eigen::VectorXd log_priors = LogPriors(families);
+  for (int repairs = 0;; ++repairs) {
+    Prepare(run, families, analysis);
+    if (repairs == 0) {
+      analysis.null = options.null ? *options.null
+                                   : CalibrateCached(*analysis.scanner, *analysis.projector, log_priors, options.null_runs,
+                                                     options.cache_folder, DesignKey(run, families, options.null_runs));
+      analysis.threshold = analysis.null.Threshold(kAlarmProbability);
+      const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
+      analysis.power = Project(*analysis.projector, {}, white).power[0];
+    }
+    analysis.found = Search(run, analysis.noise, *analysis.projector, *analysis.scanner, log_priors, analysis.threshold);
+    const NoiseView view = LookAtNoise(run, analysis);
+    const NoiseCause* repair = repairs < kMostRepairs ? NextRepair(analysis, view) : nullptr;
+    if (!repair) {
+      analysis.observations = view.after;
+      return analysis;
+    }
+    analysis.noise = repair->repaired;
+    analysis.repairs.push_back(*repair);
+  }
+}
+
+}  // namespace twinbench::diagnose

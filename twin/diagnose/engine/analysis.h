@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "twin/diagnose/engine/naming.h"
+#include "twin/diagnose/engine/noise_causes.h"
+#include "twin/diagnose/engine/search.h"
+
+namespace twinbench::diagnose {
+
+struct AnalysisOptions {
+  int null_runs = 500;
+  std::string cache_folder;
+  const NullCalibration* null = nullptr;  // of a design that is the same but for its unknowns; else simulated
+};
+
+/// A run searched with a noise model that its own residuals do not refute.
+struct Analysis {
+  NoiseModel noise;
+  std::unique_ptr<Projector> projector;
+  std::unique_ptr<Scanner> scanner;
+  NullCalibration null;
+  double threshold = 0.0;
+  SearchResult found;
+  double power = 0.0;                   // y'Wy before any cause
+  std::vector<NoiseCause> repairs;      // in order
+  std::vector<NoiseCause> observations; // noted only: nothing was chosen on this noise model
+};
+
+/// Searches; where the noise alone explains more than what was picked, or what remains is no longer white, repairs the
+/// noise model and searches again, at most four times.
+/// @param run, families  Must outlive the analysis.
+Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, const AnalysisOptions& options);
+
+/// Signatures of the picks side by side, whitened.
+Eigen::MatrixXd WhitenedPicks(const LinearRun& run, const NoiseModel& noise, const std::vector<Pick>& picks);
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "twin/diagnose/engine/noise_model.h"
+#include "twin/diagnose/engine/projector.h"
+#include "twin/diagnose/engine/scanner.h"
+
+/// Explanations by the noise alone: heavy tails, single disturbed readings, correlation from reading to reading,
+/// channels that are noisier than stated. A physical cause is never chosen with a noise model that the data refute.
+namespace twinbench::diagnose {
+
+/// One refuted property of the noise and how to repair it.
+struct NoiseCause {
+  enum class Kind { kTails, kOutliers, kCorrelation, kChannelScale };
+  Kind kind = Kind::kTails;
+  double log_bayes = 0.0;      // against white Gaussian noise of the stated deviations
+  std::string words;           // "tails like Student's t with 5 degrees of freedom"
+  NoiseModel repaired;
+  std::vector<int> outliers;   // rows; kOutliers only
+  double outlier_size = 0.0;   // rms, in units of noise
+};
+
+/// Looks for refuted properties in what is left of the data.
+///
+/// @param rows        W y with accepted causes taken out, whitened with `noise`.
+/// @param redundancy  Diagonal of W by row.
+/// @return best first; only those with a log Bayes factor above 3.
+std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Eigen::VectorXd& rows,
+                                        const Eigen::VectorXd& redundancy);
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,131 @@
+#include "twin/diagnose/engine/null_calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+
+#include "twin/core/stream.h"
+#include "twin/diagnose/engine/prior.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBatch = 100;  // runs at a time, to bound the memory
+constexpr int kVersion = 2;  // of what the key does not see: raise it when the statistic changes
+
+Eigen::MatrixXd WhiteRuns(Stream& stream, Eigen::Index rows, Eigen::Index runs) {
+  Eigen::MatrixXd noise(rows, runs);
+  for (Eigen::Index k = 0; k < noise.size(); ++k) noise.data()[k] = stream.Normal();
+  return noise;
+}
+
+/// Number of top values that the tail is fitted to, and their mean excess over the one below.
+struct Tail {
+  std::size_t count;
+  double start, mean_excess;
+};
+
+Tail FitTail(const std::vector<double>& sorted) {
+  const std::size_t count = std::max<std::size_t>(1, sorted.size() / 10);
+  const double start = sorted[sorted.size() - count - 1];
+  const double sum = std::accumulate(sorted.end() - static_cast<std::ptrdiff_t>(count), sorted.end(), 0.0);
+  // A slope of 1 is the steepest that odds can have on average; a luckily short sample must not beat it.
+  return {count, start, std::max(1.0, sum / static_cast<double>(count) - start)};
+}
+
+std::vector<double> ReadValues(const fs::path& path) {
+  std::ifstream in(path);
+  std::vector<double> values;
+  for (double value; in >> value;) values.push_back(value);
+  return values;
+}
+
+/// By way of a temporary name, so that no reader meets half a file.
+void WriteValues(const std::vector<double>& values, const fs::path& path) {
+  std::error_code ignored;
+  fs::create_directories(path.parent_path(), ignored);
+  const fs::path partial = path.string() + ".part";
+  {
+    std::ofstream out(partial);
+    for (const double value : values) out << fmt::format("{:.17g}\n", value);
+  }
+  fs::rename(partial, path, ignored);
+}
+
+/// FNV-1a.
+struct Hash {
+  std::uint64_t value = 14695981039346656037ULL;
+  void Add(const std::string& text) {
+    for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    value = (value ^ 255U) * 1099511628211ULL;
+  }
+};
+
+}  // namespace
+
+double NullCalibration::Threshold(double probability) const {
+  const double n = static_cast<double>(sorted.size());
+  const Tail tail = FitTail(sorted);
+  const double in_tail = static_cast<double>(tail.count) / n;
+  if (probability < in_tail) return tail.start + tail.mean_excess * std::log(in_tail / probability);
+  return sorted[static_cast<std::size_t>(std::clamp((1.0 - probability) * n, 0.0, n - 1.0))];
+}
+
+double NullCalibration::PValue(double statistic) const {
+  const double n = static_cast<double>(sorted.size());
+  const Tail tail = FitTail(sorted);
+  if (statistic > tail.start) {
+    return static_cast<double>(tail.count) / n * std::exp(-(statistic - tail.start) / tail.mean_excess);
+  }
+  const auto above = sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), statistic);
+  return static_cast<double>(above) / n;
+}
+
+NullCalibration Calibrate(const Scanner& scanner, const Projector& projector, const Eigen::VectorXd& log_priors,
+                          int runs) {
+  Stream stream(1, "diagnose.null");
+  NullCalibration calibration;
+  for (int done = 0; done < runs; done += kBatch) {
+    const Eigen::MatrixXd white = WhiteRuns(stream, projector.Jacobian().rows(), std::min(kBatch, runs - done));
+    const Evidence evidence = scanner.Scan(Project(projector, {}, white), {});
+    const Eigen::VectorXd statistic = AlarmStatistic(evidence.log_bayes, log_priors);
+    calibration.sorted.insert(calibration.sorted.end(), statistic.begin(), statistic.end());
+  }
+  std::sort(calibration.sorted.begin(), calibration.sorted.end());
+  return calibration;
+}
+
+NullCalibration CalibrateCached(const Scanner& scanner, const Projector& projector, const Eigen::VectorXd& log_priors,
+                                int runs, const std::string& folder, const std::string& key) {
+  if (folder.empty()) return Calibrate(scanner, projector, log_priors, runs);
+  const fs::path path = fs::path(folder) / ("null-" + key + ".txt");
+  NullCalibration calibration{ReadValues(path)};
+  if (std::ssize(calibration.sorted) == runs && std::is_sorted(calibration.sorted.begin(), calibration.sorted.end())) {
+    return calibration;
+  }
+  calibration = Calibrate(scanner, projector, log_priors, runs);
+  WriteValues(calibration.sorted, path);
+  return calibration;
+}
+
+std::string DesignKey(const LinearRun& run, const std::vector<Family>& families, int runs) {
+  Hash hash;
+  hash.Add(fmt::format("{} {} {} {}", kVersion, runs, run.sigma_stated, run.nuisance.jacobian.cols()));
+  const Schedule& s = run.schedule;
+  for (std::size_t i = 0; i < s.reading.size(); ++i) {
+    hash.Add(fmt::format("{} {} {} {} {}", s.setup[i], s.pass[i], s.direction[i], s.position[i], static_cast<int>(s.phase[i])));
+  }
+  for (const Family& f : families) {
+    hash.Add(fmt::format("{} {} {}", f.effect, f.where, f.amplitudes.size()));
+  }
+  return fmt::format("{:016x}", hash.value);
+}
+
+}  // namespace twinbench::diagnose

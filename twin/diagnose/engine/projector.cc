@@ -1,0 +1,109 @@
+#include "twin/diagnose/engine/projector.h"
+
+#include <utility>
+
+#include "twin/core/errors.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// J'J + D, dense: a few hundred unknowns.
+Eigen::MatrixXd Normal(const Sparse& jacobian, const Eigen::VectorXd& precision) {
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  for (int k = 0; k < jacobian.rows(); ++k) {
+    for (Sparse::InnerIterator a(jacobian, k); a; ++a) {
+      for (Sparse::InnerIterator b(jacobian, k); b; ++b) normal(a.col(), b.col()) += a.value() * b.value();
+    }
+  }
+  normal.diagonal() += precision;
+  return normal;
+}
+
+/// J' S. Most signatures are zero on most rows (other channels, before a step): those cost nothing here.
+Eigen::MatrixXd Gather(const Sparse& jacobian, const Eigen::MatrixXd& S) {
+  Eigen::MatrixXd gathered = Eigen::MatrixXd::Zero(jacobian.cols(), S.cols());
+  const auto* const start = jacobian.outerIndexPtr();
+  const auto* const column = jacobian.innerIndexPtr();
+  const double* const value = jacobian.valuePtr();
+  for (Eigen::Index j = 0; j < S.cols(); ++j) {
+    double* const sum = gathered.col(j).data();
+    for (Eigen::Index row = 0; row < S.rows(); ++row) {
+      const double s = S(row, j);
+      if (s == 0.0) continue;
+      for (auto k = start[row]; k < start[row + 1]; ++k) sum[column[k]] += value[k] * s;
+    }
+  }
+  return gathered;
+}
+
+Eigen::MatrixXd Factor(const Eigen::MatrixXd& positive) {
+  const Eigen::LLT<Eigen::MatrixXd> llt(positive);
+  Require(llt.info() == Eigen::Success, "the normal matrix of the free unknowns is not positive definite");
+  return llt.matrixL();
+}
+
+}  // namespace
+
+Projector::Projector(Sparse jacobian, const Nuisance& nuisance)
+    : jacobian_(std::move(jacobian)), blocks_(nuisance.blocks), size_(nuisance.block_size) {
+  Require(nuisance.prior_precision.size() == jacobian_.cols() && (nuisance.prior_precision.array() > 0.0).all(),
+          "every free unknown needs a positive prior precision");
+  const Eigen::MatrixXd normal = Normal(jacobian_, nuisance.prior_precision);
+  const int local = blocks_ * size_, core = static_cast<int>(normal.cols()) - local;
+  coupling_.resize(core, local);
+  for (int i = 0; i < blocks_; ++i) {
+    const int at = i * size_;
+    local_.push_back(Factor(normal.block(at, at, size_, size_)));
+    coupling_.middleCols(at, size_) = local_.back()
+                                          .triangularView<Eigen::Lower>()
+                                          .solve(normal.block(at, local, size_, core))
+                                          .transpose();
+  }
+  core_ = Factor(normal.bottomRightCorner(core, core) - coupling_ * coupling_.transpose());
+  degrees_of_freedom_ = Redundancy().sum();
+}
+
+Eigen::MatrixXd Projector::Forward(Eigen::MatrixXd b) const {
+  for (int i = 0; i < blocks_; ++i) {
+    auto rows = b.middleRows(i * size_, size_);
+    local_[static_cast<std::size_t>(i)].triangularView<Eigen::Lower>().solveInPlace(rows);
+  }
+  const Eigen::Index local = coupling_.cols();
+  auto rest = b.bottomRows(coupling_.rows());
+  rest.noalias() -= coupling_ * b.topRows(local);
+  core_.triangularView<Eigen::Lower>().solveInPlace(rest);
+  return b;
+}
+
+Eigen::MatrixXd Projector::Backward(Eigen::MatrixXd h) const {
+  const Eigen::Index local = coupling_.cols();
+  auto rest = h.bottomRows(coupling_.rows());
+  core_.triangularView<Eigen::Lower>().transpose().solveInPlace(rest);
+  h.topRows(local).noalias() -= coupling_.transpose() * rest;
+  for (int i = 0; i < blocks_; ++i) {
+    auto rows = h.middleRows(i * size_, size_);
+    local_[static_cast<std::size_t>(i)].triangularView<Eigen::Lower>().transpose().solveInPlace(rows);
+  }
+  return h;
+}
+
+Eigen::MatrixXd Projector::Absorbed(const Eigen::MatrixXd& S) const {
+  return Forward(Gather(jacobian_, S));
+}
+
+Eigen::MatrixXd Projector::Solve(const Eigen::MatrixXd& Y) const {
+  return Backward(Absorbed(Y));
+}
+
+Eigen::MatrixXd Projector::Apply(const Eigen::MatrixXd& Y) const {
+  return Y - jacobian_ * Solve(Y);
+}
+
+Eigen::VectorXd Projector::Redundancy() const {
+  const Eigen::MatrixXd half = Forward(Eigen::MatrixXd(jacobian_.transpose()));
+  return Eigen::VectorXd::Ones(jacobian_.rows()) - half.colwise().squaredNorm().transpose();
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,114 @@
+#include "twin/diagnose/engine/refine.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "twin/diagnose/engine/search.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+/// Bounds of one shape parameter around a grid point: the nearest other grid values, within the physical bounds.
+struct Range {
+  double lower, upper;
+};
+
+Range Around(const Shape& shape, double value) {
+  Range range{shape.lower, shape.upper};
+  double below = shape.lower, above = shape.upper;
+  for (const double v : shape.value) {
+    if (v < value) below = std::max(below, v);
+    if (v > value) above = std::min(above, v);
+  }
+  range.lower = std::min(below, value);
+  range.upper = std::max(above, value);
+  return range;
+}
+
+/// A family's signature at one shape, projected, with its best amplitudes.
+struct Explained {
+  Eigen::MatrixXd projected;
+  Eigen::VectorXd amplitudes;
+  double power = 0.0;  // of the data that it explains
+};
+
+Explained Explain(const Family& family, const Eigen::VectorXd& shape, const LinearRun& run, const NoiseModel& noise,
+                  const Projector& projector, const Remainder& others, const Eigen::VectorXd& data) {
+  const Eigen::MatrixXd S = noise.Whiten(run, family.at(shape));
+  Explained e;
+  e.projected = others.Apply(projector.Apply(S));
+  const Eigen::VectorXd products = S.transpose() * data;
+  e.amplitudes = (S.transpose() * e.projected).completeOrthogonalDecomposition().solve(products);
+  e.power = products.dot(e.amplitudes);
+  return e;
+}
+
+/// What is left of the data when a family with this shape has explained its share.
+struct ShapeResidual {
+  const Family& family;
+  const LinearRun& run;
+  const NoiseModel& noise;
+  const Projector& projector;
+  const Remainder& others;
+  const Eigen::VectorXd& data;
+
+  bool operator()(double const* const* parameters, double* residuals) const {
+    const Eigen::VectorXd shape = Eigen::Map<const Eigen::VectorXd>(parameters[0], std::ssize(family.shapes));
+    const Explained e = Explain(family, shape, run, noise, projector, others, data);
+    Eigen::Map<Eigen::VectorXd>(residuals, data.size()) = data - e.projected * e.amplitudes;
+    return e.projected.allFinite();
+  }
+};
+
+ceres::Solver::Options SolverOptions() {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 12;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  return options;
+}
+
+}  // namespace
+
+Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, const NoiseModel& noise,
+                    const Projector& projector, const Remainder& others, const Projected& data) {
+  const Eigen::VectorXd start = family.ShapeAt(grid_point), rows = data.rows.col(0);
+  Eigen::VectorXd shape = start;
+  using Cost = ceres::DynamicNumericDiffCostFunction<ShapeResidual, ceres::CENTRAL>;
+  auto* cost = new Cost(new ShapeResidual{family, run, noise, projector, others, rows});  // Ceres takes ownership
+  cost->AddParameterBlock(static_cast<int>(shape.size()));
+  cost->SetNumResiduals(run.Rows());
+  ceres::Problem problem;
+  problem.AddResidualBlock(cost, nullptr, shape.data());
+  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
+    const Range range = Around(family.shapes[k], shape[static_cast<Eigen::Index>(k)]);
+    problem.SetParameterLowerBound(shape.data(), static_cast<int>(k), range.lower);
+    problem.SetParameterUpperBound(shape.data(), static_cast<int>(k), range.upper);
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(SolverOptions(), &problem, &summary);
+  if (!summary.IsSolutionUsable()) shape = start;
+  return {shape, Explain(family, shape, run, noise, projector, others, rows).power};
+}
+
+Eigen::MatrixXd WithShapeSlopes(const Family& family, const Pick& pick, const LinearRun& run, const NoiseModel& noise,
+                                const Projector& projector, const Eigen::MatrixXd& white) {
+  if (!family.at || pick.shape.size() == 0) return pick.columns;
+  const Remainder alone(projector, noise.Whiten(run, pick.columns));
+  const Eigen::VectorXd amplitudes = alone.Amplitudes(projector.Apply(white));
+  Eigen::MatrixXd columns(pick.columns.rows(), pick.columns.cols() + pick.shape.size());
+  columns.leftCols(pick.columns.cols()) = pick.columns;
+  for (Eigen::Index k = 0; k < pick.shape.size(); ++k) {
+    const Shape& s = family.shapes[static_cast<std::size_t>(k)];
+    const double step = 1e-4 * std::max(std::abs(pick.shape[k]), 1e-3 * (s.upper - s.lower));
+    const Eigen::VectorXd moved = pick.shape + step * Eigen::VectorXd::Unit(pick.shape.size(), k);
+    columns.col(pick.columns.cols() + k) = (family.at(moved) - pick.columns) * amplitudes / step;
+  }
+  return columns;
+}
+
+}  // namespace twinbench::diagnose

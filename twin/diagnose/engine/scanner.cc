@@ -1,0 +1,219 @@
+#include "twin/diagnose/engine/scanner.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr int kChunkColumns = 128;  // stays in the cache
+constexpr std::array<double, 3> kPriorScales = {0.25, 1.0, 4.0};
+constexpr double kPseudoDegrees = 20.0;      // trust in a stated noise figure: 20 works, 200 is too trusting
+constexpr double kPseudoEstimated = 2.0;     // in one that was estimated from the same data
+constexpr double kDependent = 1e-6;          // share of a signature's power that must survive projection
+
+/// Running log of a mean of exponentials over a grid that arrives piece by piece.
+struct LogMean {
+  Eigen::ArrayXd top, sum;
+  int count = 0;
+
+  void Add(const Eigen::ArrayXd& values) {
+    if (count++ == 0) {
+      top = values;
+      sum = Eigen::ArrayXd::Ones(values.size());
+      return;
+    }
+    const Eigen::ArrayXd higher = top.max(values);
+    sum = sum * (top - higher).exp() + (values - higher).exp();
+    top = higher;
+  }
+  Eigen::ArrayXd Value() const { return top + (sum / count).log(); }
+};
+
+Eigen::VectorXd PriorSds(const Family& family) {
+  Eigen::VectorXd sd(std::ssize(family.amplitudes));
+  std::transform(family.amplitudes.begin(), family.amplitudes.end(), sd.begin(),
+                 [](const Amplitude& a) { return a.prior_sd; });
+  return sd;
+}
+
+/// A prior that allows one sign only doubles the evidence where the estimate has it and removes most where it has
+/// not: log 2 Phi(t), t the posterior mean over its deviation.
+Eigen::ArrayXd OneSided(const Family& family, const Eigen::RowVectorXd& products, double d2, double prior_scale) {
+  const Amplitude& a = family.amplitudes.front();
+  if (family.amplitudes.size() != 1 || (a.lower < 0.0 && a.upper > 0.0)) return Eigen::ArrayXd::Zero(products.size());
+  const double side = a.lower >= 0.0 ? 1.0 : -1.0;
+  const Eigen::ArrayXd t = side * prior_scale * products.transpose().array() / std::sqrt(1.0 + prior_scale * prior_scale * d2);
+  return t.unaryExpr([](double x) { return std::log(std::max(std::erfc(-x / std::sqrt(2.0)), 1e-300)); });
+}
+
+/// Squared singular values of prior-scaled signatures and the squared coefficients of the data along them.
+struct Spectrum {
+  Eigen::ArrayXd d2;   // size p
+  Eigen::ArrayXXd c2;  // p x runs
+};
+
+/// @param gram   S'WS of the member, prior-scaled;  @param products  S'Wy, prior-scaled.
+Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+  Spectrum s;
+  s.d2 = eigen.eigenvalues().array().max(0.0);
+  const double least = 1e-10 * std::max(s.d2.maxCoeff(), 1e-300);
+  s.c2 = (eigen.eigenvectors().transpose() * products).array().square();
+  for (Eigen::Index i = 0; i < s.d2.size(); ++i) {
+    if (s.d2[i] > least) {
+      s.c2.row(i) /= s.d2[i];
+    } else {
+      s.d2[i] = 0.0;
+      s.c2.row(i).setZero();
+    }
+  }
+  return s;
+}
+
+}  // namespace
+
+Remainder::Remainder(const Projector& projector, const Eigen::MatrixXd& columns) {
+  if (columns.cols() == 0) return;
+  const Eigen::MatrixXd projected = projector.Apply(columns);
+  const Eigen::MatrixXd gram = columns.transpose() * projected;
+  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
+  const auto kept = static_cast<int>((eigen.eigenvalues().array() > kDependent).count());
+  const Eigen::MatrixXd transform = scale.asDiagonal() * eigen.eigenvectors().rightCols(kept) *
+                                    eigen.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+  basis_ = projected * transform;
+  dual_ = columns * transform;
+  solve_ = transform * dual_.transpose();
+  covariance_ = transform * transform.transpose();
+}
+
+Eigen::MatrixXd Remainder::Apply(const Eigen::MatrixXd& projected) const {
+  if (Rank() == 0) return projected;
+  return projected - basis_ * (dual_.transpose() * projected);
+}
+
+Projected Project(const Projector& projector, const Remainder& remainder, const Eigen::MatrixXd& white) {
+  Projected data;
+  data.rows = remainder.Apply(projector.Apply(white));
+  data.power = white.cwiseProduct(data.rows).colwise().sum();
+  return data;
+}
+
+Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+                 const std::vector<Family>& families)
+    : run_(run), noise_(noise), projector_(projector), families_(families) {
+  std::vector<const Base*> bases;
+  for (int k = 0; k < std::ssize(families_); ++k) {
+    const Family& family = families_[static_cast<std::size_t>(k)];
+    const auto known = std::find(bases.begin(), bases.end(), family.base.get());
+    if (family.base && known != bases.end()) {
+      bundles_[static_cast<std::size_t>(known - bases.begin())].members.push_back(k);
+      continue;
+    }
+    bases.push_back(family.base.get());
+    bundles_.push_back({{k}, family.base ? family.base->grid : family.grid, 0, {}});
+  }
+  for (Bundle& bundle : bundles_) Prepare(bundle);
+}
+
+Eigen::MatrixXd Scanner::Columns(const Bundle& bundle, int first, int last) const {
+  const Family& family = families_[static_cast<std::size_t>(bundle.members.front())];
+  const auto one = [&family](int g) { return family.base ? family.base->columns(g) : family.columns(g); };
+  Eigen::MatrixXd columns = one(first);
+  const Eigen::Index width = columns.cols();
+  columns.conservativeResize(Eigen::NoChange, width * (last - first));
+  for (int g = first + 1; g < last; ++g) columns.middleCols(width * (g - first), width) = one(g);
+  return noise_.Whiten(run_, columns);
+}
+
+void Scanner::Prepare(Bundle& bundle) const {
+  const Family& family = families_[static_cast<std::size_t>(bundle.members.front())];
+  bundle.columns = static_cast<int>(family.base ? family.map.rows() : std::ssize(family.amplitudes));
+  const int step = std::max(1, kChunkColumns / std::max(1, bundle.columns));
+  for (int first = 0; first < bundle.grid; first += step) {
+    const int last = std::min(first + step, bundle.grid);
+    const Eigen::MatrixXd S = Columns(bundle, first, last), H = projector_.Absorbed(S);
+    for (int g = 0; g < last - first; ++g) {
+      const auto s = S.middleCols(g * bundle.columns, bundle.columns), h = H.middleCols(g * bundle.columns, bundle.columns);
+      bundle.gram.push_back(s.transpose() * s - h.transpose() * h);
+    }
+  }
+}
+
+void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Remainder& remainder,
+                         Evidence& out) const {
+  const Eigen::Index runs = data.rows.cols();
+  const double nu = run_.sigma_stated ? kPseudoDegrees : kPseudoEstimated;
+  const double half = 0.5 * (nu + projector_.DegreesOfFreedom() - remainder.Rank());
+  const Eigen::ArrayXd power = nu + data.power.array();
+  std::vector<LogMean> mean(bundle.members.size());
+  std::vector<Eigen::ArrayXd> top(bundle.members.size(), Eigen::ArrayXd::Constant(runs, -1.0));
+  const int step = std::max(1, kChunkColumns / std::max(1, bundle.columns));
+  for (int g = 0; g < bundle.grid; ++g) {
+    static thread_local Eigen::MatrixXd products, removed;  // of the present chunk
+    if (g % step == 0) {
+      const Eigen::MatrixXd S = Columns(bundle, g, std::min(g + step, bundle.grid));
+      products.noalias() = S.transpose() * data.rows;
+      if (remainder.Rank() > 0) removed.noalias() = S.transpose() * remainder.Basis();
+    }
+    const Eigen::Index at = (g % step) * bundle.columns;
+    Eigen::MatrixXd gram = bundle.gram[static_cast<std::size_t>(g)];
+    if (remainder.Rank() > 0) {
+      const auto r = removed.middleRows(at, bundle.columns);
+      gram.noalias() -= r * r.transpose();
+    }
+    for (std::size_t m = 0; m < bundle.members.size(); ++m) {
+      const Family& family = families_[static_cast<std::size_t>(bundle.members[m])];
+      const Eigen::VectorXd sd = PriorSds(family);
+      Eigen::MatrixXd scaled = sd.asDiagonal();
+      if (family.base) scaled = family.map * sd.asDiagonal();
+      const Eigen::MatrixXd product = scaled.transpose() * products.middleRows(at, bundle.columns);
+      const Spectrum s = SpectrumOf(scaled.transpose() * gram * scaled, product);
+      const Eigen::ArrayXd explained = s.c2.colwise().sum().transpose();
+      const auto row = static_cast<Eigen::Index>(bundle.members[m]);
+      for (Eigen::Index k = 0; k < runs; ++k) {
+        if (explained[k] <= top[m][k]) continue;
+        top[m][k] = explained[k];
+        out.grid_point(row, k) = g;
+        out.explained(row, k) = explained[k];
+      }
+      for (const double f : kPriorScales) {
+        const Eigen::ArrayXd d2 = f * f * s.d2;
+        const Eigen::ArrayXd shrunk = (s.c2.colwise() * (d2 / (1.0 + d2))).colwise().sum().transpose();
+        const double occam = 0.5 * (1.0 + d2).log().sum();
+        const Eigen::ArrayXd left = (1.0 - shrunk / power).max(1e-12);
+        mean[m].Add(-occam - half * left.log() + OneSided(family, product.row(0), s.d2[0], f));
+      }
+    }
+  }
+  for (std::size_t m = 0; m < bundle.members.size(); ++m) {
+    out.log_bayes.row(bundle.members[m]) = mean[m].Value().transpose();
+  }
+}
+
+double Scanner::Information(int family) const {
+  double most = 0.0;
+  for (const Bundle& bundle : bundles_) {
+    if (std::ranges::find(bundle.members, family) == bundle.members.end()) continue;
+    const Family& f = families_[static_cast<std::size_t>(family)];
+    for (const Eigen::MatrixXd& gram : bundle.gram) {
+      most = std::max(most, f.base ? f.map.col(0).dot(gram * f.map.col(0)) : gram(0, 0));
+    }
+  }
+  return most;
+}
+
+Evidence Scanner::Scan(const Projected& data, const Remainder& remainder) const {
+  Evidence out;
+  out.log_bayes.resize(std::ssize(families_), data.rows.cols());
+  out.explained.setZero(std::ssize(families_), data.rows.cols());
+  out.grid_point.setZero(std::ssize(families_), data.rows.cols());
+  for (const Bundle& bundle : bundles_) ScanBundle(bundle, data, remainder, out);
+  return out;
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/linear_run.h"
+#include "twin/diagnose/engine/noise_model.h"
+#include "twin/diagnose/engine/projector.h"
+
+namespace twinbench::diagnose {
+
+/// Causes that are already in the model, as a further projection: W2 = W - B B' with B = W S R^-1, R'R = S'WS.
+class Remainder {
+ public:
+  Remainder() = default;
+  /// @param columns  Whitened signatures of the accepted causes, rows x any; dependent ones are dropped.
+  Remainder(const Projector& projector, const Eigen::MatrixXd& columns);
+
+  const Eigen::MatrixXd& Basis() const { return basis_; }  // rows x independent columns
+  /// Takes the causes out of data that were projected with W.
+  Eigen::MatrixXd Apply(const Eigen::MatrixXd& projected) const;
+  /// Coefficients of the causes in projected data, and their covariance for unit noise.
+  Eigen::MatrixXd Amplitudes(const Eigen::MatrixXd& projected) const { return solve_ * projected; }
+  const Eigen::MatrixXd& Covariance() const { return covariance_; }
+  int Rank() const { return static_cast<int>(basis_.cols()); }
+
+ private:
+  Eigen::MatrixXd basis_, dual_, solve_, covariance_;
+};
+
+/// Data that the free unknowns have had their share of.
+struct Projected {
+  Eigen::MatrixXd rows;   // W y, rows x runs
+  Eigen::VectorXd power;  // y' W y, one a run
+};
+Projected Project(const Projector& projector, const Remainder& remainder, const Eigen::MatrixXd& white);
+
+/// What the scan says of each family (rows) in each run (columns).
+struct Evidence {
+  Eigen::MatrixXd log_bayes;   // log Bayes factor against no effect, averaged over grid and prior scale
+  Eigen::MatrixXi grid_point;  // best one
+  Eigen::MatrixXd explained;   // its share of y'Wy, free amplitudes
+};
+
+/// Scores all families on the same design.
+///
+/// At each grid point, with prior-scaled and projected signatures of singular values d and coefficients c,
+///     log BF = -1/2 sum log(1 + d^2) - (nu0 + m)/2 log[(nu0 + y'Wy - sum c^2 d^2 / (1 + d^2)) / (nu0 + y'Wy)],
+/// which leaves the noise scale free within nu0 pseudo degrees of freedom of what is stated. The mean over grid
+/// points and prior scales is the look-elsewhere correction (Bayer & Seljak 2020).
+class Scanner {
+ public:
+  /// Keeps references: run, noise and projector must outlive the scanner.
+  Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+          const std::vector<Family>& families);
+
+  Evidence Scan(const Projected& data, const Remainder& remainder) const;
+
+  const std::vector<Family>& Families() const { return families_; }
+
+  /// Squared length of a family's projected signature per unit of its first amplitude [1 / SI^2]: the largest over the
+  /// grid.
+  double Information(int family) const;
+
+ private:
+  /// Families that share their columns, with what depends on the design only.
+  struct Bundle {
+    std::vector<int> members;
+    int grid = 1;
+    int columns = 0;                    // a grid point
+    std::vector<Eigen::MatrixXd> gram;  // S'WS, one a grid point
+  };
+  Eigen::MatrixXd Columns(const Bundle& bundle, int first, int last) const;  // whitened
+  void Prepare(Bundle& bundle) const;
+  void ScanBundle(const Bundle& bundle, const Projected& data, const Remainder& remainder, Evidence& sums) const;
+
+  const LinearRun& run_;
+  const NoiseModel& noise_;
+  const Projector& projector_;
+  const std::vector<Family>& families_;
+  std::vector<Bundle> bundles_;
+};
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "twin/diagnose/engine/null_calibration.h"
+#include "twin/diagnose/engine/scanner.h"
+
+namespace twinbench::diagnose {
+
+inline constexpr int kMostCauses = 4;
+/// Probability of an alarm on a run without effect. Half of what is promised: noise is never as clean as simulated.
+inline constexpr double kAlarmProbability = 0.005;
+
+/// One cause that the search holds responsible.
+struct Pick {
+  int family = 0;
+  int grid_point = 0;
+  Eigen::VectorXd shape;    // refined; empty without shapes
+  Eigen::MatrixXd columns;  // signature at that shape: rows x amplitudes, not whitened
+  Eigen::VectorXd log_posterior;  // of every family in this place, the others accepted; last: none
+  double statistic = 0.0;         // alarm statistic in this place, the others accepted
+};
+
+struct SearchResult {
+  std::vector<Pick> picks;
+  double first_statistic = 0.0;  // alarm statistic of the whole run
+  double last_statistic = 0.0;   // of what remains
+  double joint_evidence = 0.0;   // of all picks together: each given those before it
+  Eigen::VectorXd amplitudes;    // of all picks, one after the other, SI
+  Eigen::MatrixXd cov;
+  Evidence alone;                // the first scan
+};
+
+/// Finds up to four simultaneous causes: scan, take the most probable, refine its shape, scan what remains; then put
+/// every pick to the vote again with the others accepted (swaps), and drop those that are not needed any more.
+SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector, const Scanner& scanner,
+                    const Eigen::VectorXd& log_priors, double threshold);
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,118 @@
+#include "twin/diagnose/extend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr double kSmallest_SI = 1e-9;
+constexpr double kRounding_SI = 1e-11;
+constexpr const char* kAngleChannel = "angle";
+
+/// Causes of a verdict "named" are all at work. Of a tie or beside the unknown it is those that the search took in.
+bool IsAtWork(const Cause& cause, const DiagnosisRun& run) {
+  return run.diagnosis.verdict == Verdict::kNamed ||
+         std::any_of(run.accepted.begin(), run.accepted.end(), [&](const Accepted& accepted) {
+           return accepted.family.effect == cause.effect && accepted.family.where == cause.where;
+         });
+}
+
+/// What the cause says of itself where the catalogue has a word for it.
+void TakeEstimates(const Cause& cause, const EffectEntry& entry, EffectSettings& effect) {
+  for (const ParameterEstimate& estimate : cause.parameters) {
+    const auto parameter = std::find_if(entry.parameters.begin(), entry.parameters.end(),
+                                        [&](const EffectParameter& p) { return p.name == estimate.name; });
+    if (parameter == entry.parameters.end() || !std::isfinite(estimate.value)) continue;
+    effect.parameters[estimate.name] = std::clamp(estimate.value, parameter->lower_SI, parameter->upper_SI);
+    if (std::isfinite(estimate.u)) effect.finding.u[estimate.name] = estimate.u;
+  }
+  effect.finding.log_evidence = cause.log_evidence;
+  effect.finding.probability = cause.probability;
+}
+
+EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std::string& provenance) {
+  const EffectEntry* entry = FindEffect(cause.effect, bench);
+  Require(entry != nullptr, "a named cause is an effect of the bench");
+  EffectSettings effect;
+  effect.name = cause.effect;
+  effect.where = cause.where;
+  effect.finding.provenance = provenance;
+  for (const EffectParameter& parameter : entry->parameters)
+    effect.parameters[parameter.name] = parameter.default_SI;
+  TakeEstimates(cause, *entry, effect);
+  return effect;
+}
+
+/// The signal of an unnamed structure on one channel; nothing if it does not show there.
+std::vector<EmpiricalSettings> EmpiricalOn(int channel, const LinearRun& run, const Eigen::VectorXd& signal) {
+  EmpiricalSettings empirical;
+  empirical.channel = run.channels[static_cast<std::size_t>(channel)];
+  std::vector<double>& values = empirical.channel == kAngleChannel ? empirical.value_rad : empirical.value_m;
+  double largest = 0.0;
+  for (int i = 0; i < run.schedule.Readings(); ++i) {
+    const double value = signal[i * run.Channels() + channel];
+    largest = std::max(largest, std::abs(value));
+    empirical.reading.push_back(run.schedule.reading[static_cast<std::size_t>(i)]);
+    values.push_back(std::round(value / kRounding_SI) * kRounding_SI);
+  }
+  if (largest < kSmallest_SI) return {};
+  return {empirical};
+}
+
+void AddEmpirical(const Accepted& accepted, const DiagnosisRun& run, const std::string& provenance,
+                  Scenario& scenario) {
+  const Eigen::VectorXd signal = accepted.columns * accepted.amplitudes;
+  for (int channel = 0; channel < run.run.Channels(); ++channel) {
+    for (EmpiricalSettings& empirical : EmpiricalOn(channel, run.run, signal)) {
+      empirical.signature = run.diagnosis.unknown.signature;
+      empirical.provenance = provenance;
+      scenario.empiricals.push_back(std::move(empirical));
+    }
+  }
+}
+
+std::string What(const Scenario& scenario, const Scenario& extended) {
+  std::string text;
+  for (std::size_t i = scenario.effects.size(); i < extended.effects.size(); ++i) {
+    const EffectSettings& effect = extended.effects[i];
+    text += fmt::format("# added: effect {}{}{}\n", effect.name, effect.where.empty() ? "" : " at ", effect.where);
+  }
+  for (std::size_t i = scenario.empiricals.size(); i < extended.empiricals.size(); ++i) {
+    const EmpiricalSettings& empirical = extended.empiricals[i];
+    text += fmt::format("# added: empirical signal on {}: {}\n", empirical.channel, empirical.signature);
+  }
+  return text.empty() ? "# nothing was added: the readings agree with the scenario\n" : text;
+}
+
+/// A comment must stay on its line.
+std::string OneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return text;
+}
+
+}  // namespace
+
+Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance) {
+  Scenario extended = scenario;
+  for (const Cause& cause : run.diagnosis.causes) {
+    if (IsAtWork(cause, run)) extended.effects.push_back(EffectOf(cause, scenario.bench, provenance));
+  }
+  for (const Accepted& accepted : run.accepted) {
+    if (accepted.family.kind == Kind::kUnknown) AddEmpirical(accepted, run, provenance, extended);
+  }
+  return extended;
+}
+
+std::string ExtendedToml(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance) {
+  const Scenario extended = Extend(scenario, run, provenance);
+  return fmt::format("# {}\n{}\n{}", OneLine(provenance), What(scenario, extended), WriteScenario(extended));
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "twin/diagnose/diagnose.h"
+
+namespace twinbench::diagnose {
+
+/// The scenario with what the diagnosis found: an [[effect]] block for every cause at work, with value,
+/// uncertainty, evidence and `provenance` (of a tie the one that the search took in); for structure without a name
+/// an [[empirical]] block a channel. The twin runs it.
+///
+/// Values are those of the cause in the diagnosis. A value outside the catalogue's bounds is moved to the bound, so
+/// that the scenario can be read; the diagnosis itself keeps what was fitted. Empirical signals below a nanometre
+/// (or a nanoradian) everywhere on a channel are left out, others are rounded to a hundredth of that.
+///
+/// @param provenance  Which run said so, and when.
+Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance);
+
+/// Extend() as TOML, below a comment that says in a line or two what was added.
+std::string ExtendedToml(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance);
+
+}  // namespace twinbench::diagnose

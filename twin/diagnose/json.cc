@@ -1,0 +1,119 @@
+#include "twin/diagnose/json.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/core/units.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+using nlohmann::json;
+
+json Number(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
+
+json ToJson(const ParameterEstimate& p) {
+  return {{"value", Number(p.value / p.to_SI)},
+          {"u", Number(p.u / p.to_SI)},
+          {"unit", p.unit},
+          {"lower", Number(p.lower / p.to_SI)},
+          {"upper", Number(p.upper / p.to_SI)}};
+}
+
+json ToJson(const Cause& cause) {
+  json out = {{"effect", cause.effect},
+              {"where", cause.where},
+              {"probability", Number(cause.probability)},
+              {"log_evidence", Number(cause.log_evidence)},
+              {"rho", Number(cause.rho)},
+              {"parameters", json::object()},
+              {"indistinguishable_from", json::array()},
+              {"next_measurement", cause.next_measurement}};
+  for (const ParameterEstimate& p : cause.parameters) out["parameters"][p.name] = ToJson(p);
+  for (const Rival& rival : cause.indistinguishable_from) {
+    out["indistinguishable_from"].push_back(
+        {{"effect", rival.effect}, {"where", rival.where}, {"overlap", Number(rival.overlap)}});
+  }
+  return out;
+}
+
+json ToJson(const Invisible& invisible) {
+  return {{"effect", invisible.effect}, {"where", invisible.where}, {"could_bias", invisible.could_bias}};
+}
+
+json ToJson(const Detectable& detectable) {
+  return {{"effect", detectable.effect},
+          {"where", detectable.where},
+          {"parameter", detectable.smallest.name},
+          {"smallest", Number(detectable.smallest.value / detectable.smallest.to_SI)},
+          {"unit", detectable.smallest.unit}};
+}
+
+template <class List>
+json ArrayOf(const List& list) {
+  json out = json::array();
+  for (const auto& entry : list) out.push_back(ToJson(entry));
+  return out;
+}
+
+/// Metres on the PSD that one radian of the grating's yaw makes, at most; 1 on a bench that reads angles.
+double ShownByYaw(const LinearRun& run) {
+  for (const Pattern& pattern : run.patterns) {
+    if (pattern.name == "yaw") return pattern.weight.cwiseAbs().maxCoeff();
+  }
+  return run.unit == "um" ? kNaN : 1.0;
+}
+
+json GainJson(const Gain& gain, const LinearRun& run) {
+  json out = {{"fraction_removed", Number(gain.fraction_removed)},
+              {"interval95", {Number(gain.interval95[0]), Number(gain.interval95[1])}},
+              {"positive", gain.positive},
+              {"folds", gain.folds}};
+  const bool is_length = run.unit == "um";
+  const auto add = [&](const std::string& key, double value_SI) {
+    out[key + "_um"] = is_length ? Number(value_SI / units::um) : json(nullptr);
+    out[key + "_arcsec"] = Number(value_SI / ShownByYaw(run) / units::arcsec);
+  };
+  add("heldout_rms_before", gain.before_m);
+  add("heldout_rms_after", gain.after_m);
+  add("noise_floor", gain.noise_floor_m);
+  return out;
+}
+
+json ToJson(const std::array<double, kComponents>& rms) {
+  json out = json::object();
+  for (int c = 0; c < kComponents; ++c) {
+    const bool angle = IsAngle(static_cast<Component>(c));
+    const double value = rms[static_cast<std::size_t>(c)];
+    const std::string key = std::string(kComponentNames[static_cast<std::size_t>(c)]) + (angle ? "_arcsec" : "_um");
+    if (std::isfinite(value)) out[key] = value / (angle ? units::arcsec : units::um);
+  }
+  return out;
+}
+
+}  // namespace
+
+json ToJson(const ChangeOfUnknowns& change) {
+  return {{"target", ToJson(change.target_rms)}, {"reference", ToJson(change.reference_rms)}};
+}
+
+json ToJson(const DiagnosisRun& run, const std::string& extended_scenario) {
+  const Diagnosis& d = run.diagnosis;
+  return {{"verdict", VerdictName(d.verdict)},
+          {"alarm_p", Number(d.alarm_p)},
+          {"causes", ArrayOf(d.causes)},
+          {"unknown", {{"probability", Number(d.unknown.probability)}, {"signature", d.unknown.signature}}},
+          {"gain", GainJson(d.gain, run.run)},
+          {"invisible", ArrayOf(d.invisible)},
+          {"detectable", ArrayOf(d.detectable)},
+          {"noise", d.noise},
+          {"notes", d.notes},
+          {"readings", d.readings},
+          {"left_out", d.left_out},
+          {"extended_scenario", extended_scenario.empty() ? json(nullptr) : json(extended_scenario)}};
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "twin/core/units.h"
+#include "twin/diagnose/accepted_columns.h"
+#include "twin/diagnose/json.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kBins = 24;                // of a variable that takes many values ...
+constexpr std::size_t kMostValues = 48;  // ... which is more than this
+
+std::size_t At(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Four digits are enough for a plot.
+json Short(double value) {
+  return std::isfinite(value) ? json(std::stod(fmt::format("{:.4g}", value))) : json(nullptr);
+}
+
+/// One curve's data, one entry a reading, in the run's unit.
+struct Series {
+  std::string name;
+  Eigen::VectorXd before, after, sigma;
+  Eigen::VectorXd spot_um;  // of a channel; empty for a pattern
+};
+
+/// Projects the channels of each reading on `weight`, whose largest entry is 1.
+Eigen::VectorXd Project(const LinearRun& run, const Eigen::VectorXd& rows, const Eigen::VectorXd& weight) {
+  const Eigen::Map<const Eigen::MatrixXd> by_reading(rows.data(), run.Channels(), run.schedule.Readings());
+  return by_reading.transpose() * weight / (weight.squaredNorm() * run.to_SI);
+}
+
+Series MakeSeries(const LinearRun& run, const LeftOver& left, const std::string& name,
+                  const Eigen::VectorXd& weight) {
+  const Eigen::VectorXd w = weight / weight.cwiseAbs().maxCoeff();
+  const Eigen::VectorXd variance = Project(run, run.sigma.cwiseAbs2(), w.cwiseAbs2());
+  const double scale = w.cwiseAbs2().squaredNorm() / std::pow(w.squaredNorm(), 2) / run.to_SI;
+  return {name, Project(run, left.before, w), Project(run, left.after, w), (variance * scale).cwiseSqrt(), {}};
+}
+
+std::vector<Series> AllSeries(const LinearRun& run, const LeftOver& left) {
+  std::vector<Series> all;
+  for (int c = 0; c < run.Channels(); ++c) {
+    const Eigen::VectorXd weight = Eigen::VectorXd::Unit(run.Channels(), c);
+    all.push_back(MakeSeries(run, left, run.channels[At(c)], weight));
+    if (run.unit == "um") all.back().spot_um = Project(run, run.Predicted(), weight);
+  }
+  for (const Pattern& pattern : run.patterns) {
+    if (pattern.weight.size() == run.Channels() && run.Channels() > 1)
+      all.push_back(MakeSeries(run, left, pattern.name, pattern.weight));
+  }
+  return all;
+}
+
+/// In one turn, without -0 and 360 for the same place.
+Eigen::VectorXd Wrapped_deg(const Eigen::VectorXd& angle_rad) {
+  return angle_rad.unaryExpr([](double rad) {
+    const double turn = std::fmod(std::round(rad / units::deg * 1e6) / 1e6, 360.0);
+    return turn < 0.0 ? turn + 360.0 : turn;
+  });
+}
+
+std::vector<std::pair<std::string, Eigen::VectorXd>> Variables(const Schedule& s) {
+  Eigen::VectorXd direction(s.Readings());
+  for (int i = 0; i < s.Readings(); ++i)
+    direction[i] = s.phase[At(i)] == Phase::kFullCircle ? s.direction[At(i)] : kNaN;
+  return {{"time_s", s.time_s},
+          {"target_deg", Wrapped_deg(s.target_rad)},
+          {"reference_deg", Wrapped_deg(s.reference_rad)},
+          {"direction", direction},
+          {"temperature_degC", s.temperature_degC},
+          {"dwell_s", s.dwell_s},
+          {"velocity_deg_s", s.velocity_rad_s / units::deg}};
+}
+
+/// Bin of each reading; -1 where the variable is not known. Few values: one bin each; else bins of equal width.
+struct Bins {
+  std::vector<int> of_reading;
+  std::vector<double> centre;
+};
+
+Bins MakeBins(const Eigen::VectorXd& x) {
+  std::set<double> values;
+  for (const double v : x) {
+    if (std::isfinite(v)) values.insert(v);
+  }
+  Bins bins;
+  if (values.size() <= kMostValues) {
+    bins.centre.assign(values.begin(), values.end());
+    for (const double v : x)
+      bins.of_reading.push_back(std::isfinite(v) ? static_cast<int>(std::distance(values.begin(), values.find(v)))
+                                                 : -1);
+    return bins;
+  }
+  const double lowest = *values.begin(), width = (*values.rbegin() - lowest) / kBins;
+  for (int b = 0; b < kBins; ++b) bins.centre.push_back(lowest + (b + 0.5) * width);
+  for (const double v : x)
+    bins.of_reading.push_back(std::isfinite(v) ? std::min(static_cast<int>((v - lowest) / width), kBins - 1) : -1);
+  return bins;
+}
+
+/// Means of a series in each bin that has readings.
+json Curve(const Bins& bins, const Series& series) {
+  struct Sum {
+    int n = 0;
+    double before = 0.0, after = 0.0, variance = 0.0;
+  };
+  std::vector<Sum> sums(bins.centre.size());
+  for (std::size_t i = 0; i < bins.of_reading.size(); ++i) {
+    if (bins.of_reading[i] < 0) continue;
+    const auto k = static_cast<Eigen::Index>(i);
+    Sum& sum = sums[At(bins.of_reading[i])];
+    ++sum.n;
+    sum.before += series.before[k];
+    sum.after += series.after[k];
+    sum.variance += std::pow(series.sigma[k], 2);
+  }
+  json curve = {{"x", json::array()},
+                {"n", json::array()},
+                {"before", json::array()},
+                {"after", json::array()},
+                {"u", json::array()}};
+  for (std::size_t b = 0; b < sums.size(); ++b) {
+    const Sum& sum = sums[b];
+    if (sum.n == 0) continue;
+    curve["x"].push_back(Short(bins.centre[b]));
+    curve["n"].push_back(sum.n);
+    curve["before"].push_back(Short(sum.before / sum.n));
+    curve["after"].push_back(Short(sum.after / sum.n));
+    curve["u"].push_back(Short(std::sqrt(sum.variance) / sum.n));
+  }
+  return curve;
+}
+
+/// Mean over passes by set-up (rows) and position (columns).
+json Map(const Schedule& s, const Series& series) {
+  std::map<int, std::map<int, std::array<double, 3>>> cells;
+  std::set<int> positions;
+  for (int i = 0; i < s.Readings(); ++i) {
+    if (s.phase[At(i)] != Phase::kFullCircle) continue;
+    positions.insert(s.position[At(i)]);
+    auto& cell = cells[s.setup[At(i)]][s.position[At(i)]];
+    cell[0] += 1.0;
+    cell[1] += series.before[i];
+    cell[2] += series.after[i];
+  }
+  json map = {
+      {"setup", json::array()}, {"position", positions}, {"before", json::array()}, {"after", json::array()}};
+  for (const auto& [setup, row] : cells) {
+    map["setup"].push_back(setup);
+    json before = json::array(), after = json::array();
+    for (const int position : positions) {
+      const auto cell = row.find(position);
+      before.push_back(cell == row.end() ? json(nullptr) : Short(cell->second[1] / cell->second[0]));
+      after.push_back(cell == row.end() ? json(nullptr) : Short(cell->second[2] / cell->second[0]));
+    }
+    map["before"].push_back(before);
+    map["after"].push_back(after);
+  }
+  return map;
+}
+
+void AddCurve(const std::string& name, const Eigen::VectorXd& variable, const Series& series, json& against) {
+  if (variable.size() != series.before.size()) return;
+  const Bins bins = MakeBins(variable);
+  if (bins.centre.size() > 1) against[name][series.name] = Curve(bins, series);
+}
+
+}  // namespace
+
+json PlotsJson(const DiagnosisRun& run) {
+  const LeftOver left = FitAll(run.run, run.noise, run.accepted);
+  json plots = {{"unit", run.run.unit}, {"against", json::object()}, {"maps", json::object()}};
+  for (const Series& series : AllSeries(run.run, left)) {
+    for (const auto& [name, variable] : Variables(run.run.schedule))
+      AddCurve(name, variable, series, plots["against"]);
+    AddCurve("spot_um", series.spot_um, series, plots["against"]);
+    plots["maps"][series.name] = Map(run.run.schedule, series);
+  }
+  return plots;
+}
+
+}  // namespace twinbench::diagnose

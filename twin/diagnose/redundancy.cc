@@ -1,0 +1,62 @@
+#include "twin/diagnose/redundancy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "twin/core/errors.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr double kFewestShare = 0.01;
+
+std::string Count(int count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+/// The cheapest that gives every motion something to be compared with. One more set-up costs one pass; a second
+/// pass in every set-up costs as many as there are set-ups, but shows what depends on time and direction.
+std::string SmallestAddition(const DesignCount& design) {
+  const std::string passes =
+      "passes + - - + in every set-up (procedure.passes = [1, -1, -1, 1]), which also show drift and backlash";
+  if (design.setups >= 3) return passes;
+  const char* next = design.setups == 1 ? "second" : "third";
+  return fmt::format("at least a {} set-up with another shift, as in procedure.shifts = {}; better, {}", next,
+                     design.setups == 1 ? "[0, 1]" : "[0, 1, 7]", passes);
+}
+
+}  // namespace
+
+DesignCount CountDesign(const LinearRun& run, const Eigen::VectorXd& redundancy) {
+  Require(redundancy.size() == run.Rows(), "there is a redundancy for every row");
+  DesignCount design;
+  std::map<int, std::set<int>> passes;
+  for (int k = 0; k < run.Rows(); ++k) {
+    const auto i = static_cast<std::size_t>(run.ReadingOf(k));
+    if (run.schedule.phase[i] != Phase::kFullCircle) continue;
+    passes[run.schedule.setup[i]].insert(run.schedule.pass[i]);
+    ++design.rows;
+    design.redundancy += redundancy[k];
+  }
+  design.setups = static_cast<int>(passes.size());
+  for (const auto& [setup, of_setup] : passes)
+    design.passes = std::max(design.passes, static_cast<int>(of_setup.size()));
+  return design;
+}
+
+void RefuseWithoutRedundancy(const LinearRun& run, const Eigen::VectorXd& redundancy) {
+  const DesignCount design = CountDesign(run, redundancy);
+  if (design.rows == 0 || design.redundancy >= kFewestShare * design.rows) return;
+  throw InputError(
+      "readings",
+      fmt::format("{} with {} each leave {:.0f} degrees of freedom in {} values: whatever is wrong goes "
+                  "into the separated errors and nothing can be found",
+                  Count(design.setups, "set-up", "set-ups"), Count(design.passes, "pass", "passes"),
+                  std::max(design.redundancy, 0.0), design.rows),
+      SmallestAddition(design));
+}
+
+}  // namespace twinbench::diagnose

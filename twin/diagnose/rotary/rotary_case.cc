@@ -1,0 +1,83 @@
+#include "twin/diagnose/rotary/rotary_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "twin/core/units.h"
+
+namespace twinbench::diagnose::rotary {
+namespace {
+
+struct ComponentName {
+  separate::Series series;
+  const char* name;
+};
+
+constexpr ComponentName kComponentNames[] = {
+    {separate::Series::kTargetEx, "target ex"}, {separate::Series::kTargetEy, "target ey"}, {separate::Series::kTargetEz, "target ez"},
+    {separate::Series::kTargetDy, "target dy"}, {separate::Series::kRefEx, "reference ex"}, {separate::Series::kRefEy, "reference ey"},
+    {separate::Series::kRefEz, "reference ez"}};
+
+/// Scatter about the mean: a constant is a mounting, no error of a table.
+double ScatterOf(const separate::Design& design, separate::Series series, const Eigen::VectorXd& x) {
+  double sum = 0.0, sum2 = 0.0;
+  for (int i = 0; i < design.n; ++i) {
+    const double v = x[design.Column(series, i)];
+    sum += v;
+    sum2 += v * v;
+  }
+  return std::sqrt(std::max(0.0, sum2 / design.n - std::pow(sum / design.n, 2)));
+}
+
+}  // namespace
+
+RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, bool published,
+                       const std::vector<std::string>& struck)
+    : rotary_(BuildRun(readings, scenario, published)), context_(ContextOf(rotary_, scenario, rotary_.run.Predicted())) {
+  const SharedSeries series = MakeSharedSeries(rotary_);
+  families_ = NamedFamilies(rotary_, context_, scenario, series);
+  if (published) {
+    std::vector<Family> model = ModelFamilies(rotary_);
+    std::ranges::move(model, std::back_inserter(families_));
+  }
+  std::erase_if(families_, [&struck](const Family& f) { return std::ranges::find(struck, f.effect) != struck.end(); });
+  std::vector<Family> unknown = UnknownFamilies(rotary_, context_, series);
+  std::ranges::move(unknown, std::back_inserter(families_));
+}
+
+std::string BiasInWords(const separate::Design& design, const Eigen::VectorXd& unknowns) {
+  std::string worst = "nothing";
+  double most = 0.0;
+  for (const auto& [series, name] : kComponentNames) {
+    const bool length = series == separate::Series::kTargetDy;
+    const double rms = ScatterOf(design, series, unknowns);
+    const double in_unit = length ? rms * separate::kLengthUnit_m / units::um : rms / units::arcsec;
+    if (in_unit <= most) continue;
+    most = in_unit;
+    worst = fmt::format("{} up to {:.2g} {} rms", name, in_unit, length ? "um" : "arcsec");
+  }
+  return worst;
+}
+
+std::string NextMeasurement(const std::string& effect, const std::string& rival) {
+  using Pair = std::pair<std::string, std::string>;
+  static const std::map<Pair, std::string> known = {
+      {{"psd_distance", "stray_light"}, "a reading with the laser off: stray light shows as a signal, a distance does not"},
+      {{"psd_distance", "psd_gain"}, "a tilt sweep as well as a yaw sweep: a distance scales both axes"},
+      {{"psd_gain", "stray_light"}, "a tilt sweep as well as a yaw sweep: stray light scales both axes"},
+      {{"incidence_offset", "wavelength_offset"}, "a tilt sweep and a lateral shift of the grating"},
+      {{"backlash", "settling"}, "stops with dwells from 0.5 to 20 s"},
+      {{"laser_drift", "mount_creep"}, "an hour of idle readings without re-mounting"},
+      {{"laser_drift", "thermal_tilt"}, "a warm-up run with the temperature changed by 1 K"},
+      {{"mount_creep", "thermal_tilt"}, "a warm-up run with the temperature changed by 1 K"},
+      {{"mount_creep", "slip"}, "a repeat of the set-up without re-mounting"},
+      {{"backlash", "backlash"}, "a reversal of the target alone"}};
+  const auto found = known.find(std::minmax(effect, rival));
+  return found == known.end() ? "" : found->second;
+}
+
+}  // namespace twinbench::diagnose::rotary

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/diagnose/diagnosis.h"
+#include "twin/diagnose/rotary/families.h"
+#include "twin/diagnose/rotary/rotary_run.h"
+
+namespace twinbench::diagnose::rotary {
+
+/// A run of the rotary bench with its candidates. Families point into it, so it does not move.
+class RotaryCase {
+ public:
+  RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, bool published,
+             const std::vector<std::string>& struck);
+  RotaryCase(const RotaryCase&) = delete;
+  RotaryCase& operator=(const RotaryCase&) = delete;
+
+  const RotaryRun& Rotary() const { return rotary_; }
+  const std::vector<Family>& Families() const { return families_; }
+
+ private:
+  RotaryRun rotary_;
+  SignalContext context_;
+  std::vector<Family> families_;
+};
+
+/// Which separated error moves most if a signature of this size hides in the data: "target ez up to 0.4 arcsec rms".
+/// @param unknowns  Change of the unknowns.
+std::string BiasInWords(const separate::Design& design, const Eigen::VectorXd& unknowns);
+
+/// The measurement that tells two causes apart; empty if none is known.
+std::string NextMeasurement(const std::string& effect, const std::string& rival);
+
+}  // namespace twinbench::diagnose::rotary

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+#include "twin/diagnose/engine/linear_run.h"
+#include "twin/diagnose/rotary/known_effects.h"
+#include "twin/diagnose/rotary/optical_bench.h"
+#include "twin/separate/design.h"
+
+/// The forward model of the rotary bench as a function: scenario and schedule -> what every reading should show, and
+/// the directions in which the free unknowns may move it.
+namespace twinbench::diagnose::rotary {
+
+/// Believed of calibrated parameters once a bench has been set up; they stay this uncertain in the model.
+struct CalibrationPriors {
+  double gain = 1e-4;
+  double roll_rad = 1e-4;
+  double distance_m = 10e-6;
+  double wavelength_m = 0.05e-9;
+  double incidence_rad = 1e-4;
+};
+
+struct RotaryRun {
+  LinearRun run;
+  OpticalBench bench;
+  separate::Design design;
+  std::vector<Vector4> motion;      // fitted, one a used reading
+  Eigen::Matrix4d shown_by_motion;  // d shown / d motion at rest
+  std::vector<int> shifts;          // of the set-ups, in steps
+  std::vector<int> scanned_before;  // of each channel, the one that is converted just before it
+  double sample_noise_V = 0.0;      // of one A/D sample
+  int left_out = 0;
+};
+
+/// Fits table errors and mounting constants to the readings (Gauss-Newton on the exact chain and grating equation)
+/// and linearises there. Effects that the scenario already holds are part of the model.
+///
+/// Unknowns: per position and table as separate::Design orders them (angles in rad, lengths in its length unit), the
+/// mounting constants of the calibration phase, then gains, rolls, distances, wavelength and incidence with
+/// CalibrationPriors. Noise: the blocks' standard deviations pooled by channel, else what the scenario states.
+///
+/// @throws InputError if the commanded angles are on no grid or hardly any reading is usable.
+RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published = false);
+
+/// What additive effects need to know about the run; keeps references into it.
+/// @param shown_m  What the channels show, by row, for effects that depend on it: the prediction, or the readings.
+SignalContext ContextOf(const RotaryRun& rotary, const Scenario& scenario, const Eigen::VectorXd& shown_m);
+
+/// True if the reading has four voltages, its angles, and in the calibration phase the autocollimator's.
+bool IsUsable(const Reading& reading);
+
+}  // namespace twinbench::diagnose::rotary

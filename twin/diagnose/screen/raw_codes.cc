@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "twin/core/stream.h"
+#include "twin/diagnose/screen/raw_blocks.h"
+#include "twin/diagnose/screen/sample.h"
+
+namespace twinbench::diagnose::screen {
+namespace {
+
+constexpr int kCodes = 65536, kReach = 4;
+constexpr double kLeastCount = 16.0;   // expected; below, square roots of counts are no longer normal
+constexpr double kLeastScatter = 4.0;  // codes; below, the density bends within kReach
+
+/// What the four codes on either side say of the code between: the parabola of least variance through them,
+/// w = a + b h^2 with 2 sum w = 1 and 2 sum w h^2 = 0. Its variance is `kVariance` of one count's.
+constexpr std::array<double, kReach> kWeights = {0.313953, 0.226744, 0.081395, -0.122093};
+constexpr double kVariance = 0.343023;
+
+template <typename At>
+double FromNeighbours(const At& at, int code) {
+  double sum = 0.0;
+  for (int h = 1; h <= kReach; ++h)
+    sum += kWeights[static_cast<std::size_t>(h - 1)] * (at(code - h) + at(code + h));
+  return sum;
+}
+
+/// How often each code came, shifted so that the lowest has index 0; and the scatter within blocks.
+struct Density {
+  std::vector<double> count = std::vector<double>(kCodes, 0.0);
+  double scatter = 0.0;
+};
+
+Density DensityOf(const std::vector<RawBlock>& blocks, int channel) {
+  Density density;
+  double squares = 0.0, total = 0.0;
+  for (const RawBlock& b : blocks) {
+    double sum = 0.0, sum_squares = 0.0, n = 0.0;
+    for (std::size_t i = static_cast<std::size_t>(channel); i < b.samples.size();
+         i += static_cast<std::size_t>(b.channels)) {
+      const double code = b.samples[i];
+      density.count[static_cast<std::size_t>(b.samples[i] + kCodes / 2)] += 1.0;
+      sum += code, sum_squares += code * code, n += 1.0;
+    }
+    if (n > 0.0) squares += sum_squares - sum * sum / n;
+    total += n;
+  }
+  density.scatter = total > 0.0 ? std::sqrt(squares / total) : 0.0;
+  return density;
+}
+
+struct CodeScore {
+  int channel = 0, code = 0;
+  double count = 0.0, expected = 0.0;
+  double score = 0.0;
+};
+
+void ScoreCodes(const Density& density, int channel, std::vector<CodeScore>& scores) {
+  const auto at = [&](int index) { return density.count[static_cast<std::size_t>(index)]; };
+  for (int k = kReach; k < kCodes - kReach; ++k) {
+    const double expected = FromNeighbours(at, k);
+    if (expected < kLeastCount) continue;
+    const double difference = 2.0 * (std::sqrt(at(k) + 0.375) - std::sqrt(expected + 0.375));
+    scores.push_back({channel, k - kCodes / 2, at(k), expected, std::abs(difference) / std::sqrt(1.0 + kVariance)});
+  }
+}
+
+/// Largest score of as many codes in a row without fault.
+double NullMaximum(Stream& stream, std::size_t codes) {
+  std::vector<float> g((codes + 2 * kReach + 3) / 4 * 4);
+  stream.FillNormals(g);
+  const auto at = [&](int index) { return static_cast<double>(g[static_cast<std::size_t>(index)]); };
+  double largest = 0.0;
+  for (int k = kReach; k < static_cast<int>(codes) + kReach; ++k) {
+    largest = std::max(largest, std::abs(at(k) - FromNeighbours(at, k)) / std::sqrt(1.0 + kVariance));
+  }
+  return largest;
+}
+
+std::string CodeWords(const CodeScore& s, const RawScale& scale) {
+  return fmt::format("code {} of {}: came {:.0f} times instead of {:.0f}{}", s.code,
+                     scale.channels[static_cast<std::size_t>(s.channel)], s.count, s.expected,
+                     s.count == 0.0 ? " (missing)" : "");
+}
+
+}  // namespace
+
+/// Code density: a code's width is how often it comes, compared with its neighbours.
+Tests TestCodes(const std::vector<RawBlock>& blocks, const RawScale& scale, int null_runs, std::uint64_t seed) {
+  std::vector<CodeScore> scores;
+  for (int c = 0; c < static_cast<int>(scale.channels.size()); ++c) {
+    const Density density = DensityOf(blocks, c);
+    if (density.scatter >= kLeastScatter) ScoreCodes(density, c, scores);
+  }
+  if (scores.empty()) return {};
+  Eigen::VectorXd statistic(1 + null_runs);
+  Stream stream(seed, "screen.raw.codes");
+  for (int j = 1; j <= null_runs; ++j) statistic[j] = NullMaximum(stream, scores.size());
+  std::sort(scores.begin(), scores.end(), [](const CodeScore& a, const CodeScore& b) { return a.score > b.score; });
+  const CodeScore& worst = scores.front();
+  statistic[0] = worst.score;
+  ScreenTest test;
+  test.name = "raw: code density";
+  test.statistic = worst.score;
+  test.p = PValue(statistic);
+  test.effect_m = scale.code_SI * std::abs(worst.count / worst.expected - 1.0);
+  test.reading = CodeWords(worst, scale) + ": a converter whose steps are not equal";
+  for (std::size_t k = 0; k < 8 && k < scores.size(); ++k) test.tables.push_back(CodeWords(scores[k], scale));
+  return {std::move(test)};
+}
+
+}  // namespace twinbench::diagnose::screen

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+
+#include "twin/core/scenario.h"
+#include "twin/core/time.h"
+
+namespace twinbench::sim {
+
+/// What the twin of an angle comparison knows at the instant of a reading.
+struct AngleMoment {
+  Time now{};
+  int setup = 0;
+  int reading = 0;
+  double shaft_rad = 0.0;       // true angle of the shaft, unwrapped
+  double velocity_rad_s = 0.0;  // of the shaft
+  double approach_rad = 0.0;    // last leg of the way to a stop, signed; 0 in motion
+};
+
+/// The device's sine and cosine before they are turned into an angle:
+/// clip((1 + ratio) sin(p + quadrature) + offset_sin), clip(cos p + offset_cos), with phase p.
+struct SignalState {
+  double offset_sin = 0.0, offset_cos = 0.0;  // share of the amplitude
+  double ratio = 0.0;                         // sine over cosine, - 1
+  double quadrature_rad = 0.0;
+  double clip_level = std::numeric_limits<double>::infinity();  // share of the amplitude
+};
+
+/// One cause on the bench encoder_comparison. Errors of different effects add; no effect looks at another one.
+class AngleEffect {
+ public:
+  virtual ~AngleEffect() = default;
+
+  /// Once before each reading, with the time running forwards.
+  virtual void Advance(const AngleMoment& /*moment*/) {}
+  /// Of the device's shaft, against that of the reference.
+  virtual double ShaftError_rad(const AngleMoment& /*moment*/) const { return 0.0; }
+  virtual void AlterSignals(SignalState& /*signals*/) const {}
+  /// Of the reading; `device_rad` is the angle of the device's scale.
+  virtual double DeviceError_rad(const AngleMoment& /*moment*/, double /*device_rad*/) const { return 0.0; }
+  /// Of what the reference shows.
+  virtual double ReferenceError_rad(const AngleMoment& /*moment*/) const { return 0.0; }
+};
+
+/// @param effect  Checked against the catalogue by the scenario loader.
+/// @throws InputError if the scenario does not state what the effect needs; std::logic_error if the catalogue has
+/// an
+///         effect that the twin has not.
+std::unique_ptr<AngleEffect> MakeAngleEffect(const EffectSettings& effect, const Scenario& scenario);
+
+/// Angle that the signals of `state` give at phase `phase_rad`, minus that phase; within half a period.
+double SignalError_rad(const SignalState& state, double phase_rad);
+
+}  // namespace twinbench::sim

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <memory>
+
+#include "twin/sim/effects/effects.h"
+#include "twin/sim/encoder/effect.h"
+
+/// One file a cause; errors that repeat with the angle share one, and so do faults of the signals.
+namespace twinbench::sim {
+
+using AngleEffectPointer = std::unique_ptr<AngleEffect>;
+
+AngleEffectPointer MakeHarmonic(const EffectSettings&, double order);  // locked to the device's angle
+AngleEffectPointer MakeSignalFault(const EffectSettings&);
+AngleEffectPointer MakeLatency(const EffectSettings&);
+AngleEffectPointer MakeGap(const EffectSettings&);  // backlash of the device's shaft
+AngleEffectPointer MakeHysteresis(const EffectSettings&);
+AngleEffectPointer MakeScale(const EffectSettings&);
+AngleEffectPointer MakeZeroDrift(const EffectSettings&);
+AngleEffectPointer MakeZeroSlip(const EffectSettings&);
+AngleEffectPointer MakeReferenceFault(const EffectSettings&);
+AngleEffectPointer MakeAngleOutliers(const EffectSettings&, const Scenario&);
+
+}  // namespace twinbench::sim
