@@ -88,31 +88,41 @@ TEST(EncoderUnknown, FindsWanderPassesAndErrorsThatGrowWithTimeOrSpeed) {
             1e-6);
 }
 
-TEST(EncoderUnknown, HasTheShapesOfTheCatalogueOnlyWhereTheyAreStruck) {
+TEST(EncoderUnknown, HasTheSameShapesWhateverIsStruck) {
   const EncoderRun encoder =
       RunWith("sweep", [](const Reading& r) { return 1e-4 * std::cos(7.0 * r.reference_rad); });
-  EXPECT_FALSE(test::HasFamily(Families(encoder), "harmonic"));
-  EXPECT_FALSE(test::HasFamily(Families(encoder), "step"));
-  EXPECT_FALSE(test::HasFamily(Families(encoder), "trend"));
-  const auto [left, words] = BestOfSort(encoder, "harmonic", {"periodic"});
+  const auto [left, words] = BestOfSort(encoder, "harmonic");
   EXPECT_LT(left, 1e-3);
   EXPECT_THAT(words, HasSubstr("harmonic of order 7 locked to reference angle, same in both directions"));
-  const auto families = Families(encoder, {"backlash", "slip", "drift", "scale", "latency"});
-  for (const char* name : {"direction offset", "step", "trend", "speed"})
-    EXPECT_TRUE(test::HasFamily(families, name)) << name;
+  const auto whole = Families(encoder), struck = Families(encoder, {"backlash", "slip", "drift", "scale", "latency"});
+  for (const char* name : {"direction offset", "step", "trend", "speed", "harmonic"}) {
+    EXPECT_TRUE(test::HasFamily(whole, name)) << name;
+    EXPECT_TRUE(test::HasFamily(struck, name)) << name;
+  }
   for (const char* name : {"backlash", "slip", "drift", "scale", "latency"})
-    EXPECT_FALSE(test::HasFamily(families, name)) << name;
+    EXPECT_FALSE(test::HasFamily(struck, name)) << name;
 }
 
-TEST(EncoderUnknown, HasNoShapesInTimeWhereTimeFollowsTheAngle) {
+TEST(EncoderUnknown, CountsLessWhereACauseOfTheCatalogueHasTheSameShape) {
+  for (const Family& family : Families(RunWith("sweep", [](const Reading&) { return 0.0; }))) {
+    const bool same = family.effect == "harmonic" || family.effect == "step" || family.effect == "direction offset";
+    const bool own = family.kind == Kind::kNamed || family.effect == "line";
+    EXPECT_TRUE(!own || family.prior_weight == 1.0) << family.effect;
+    EXPECT_TRUE(!same || family.prior_weight < 1.0) << family.effect;
+  }
+}
+
+TEST(EncoderUnknown, HasNoShapesInTimeNorLinesInOneTurn) {
   Scenario scenario = EncoderScenario("stops");
   scenario.encoder_procedure.passes = {1};
   scenario.encoder_procedure.turns = 1.0;
   const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
   for (const char* name : {"wander", "tone", "growing harmonic", "direction harmonic", "backlash", "hysteresis"})
     EXPECT_FALSE(test::HasFamily(families, name)) << name;
-  for (const char* name : {"eccentricity", "periodic", "scale", "drift", "line"})
+  for (const char* name : {"eccentricity", "periodic", "scale", "drift"})
     EXPECT_TRUE(test::HasFamily(families, name)) << name;
+  // In one turn whole orders imitate every line between them.
+  EXPECT_FALSE(test::HasFamily(families, "line"));
 }
 
 TEST(EncoderUnknown, LooksForOrdersThatTheSpacingCanShow) {

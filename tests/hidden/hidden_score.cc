@@ -1,6 +1,8 @@
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 
@@ -53,11 +55,34 @@ std::vector<Plan> PlansOf(const std::string& set, const Options& options) {
                    "challenge=DIR, challenge_encoder=DIR, twin, pairs=N, unlisted, clean=N or leave-one-out");
 }
 
+/// What made this score; where it was written to is no part of it.
+std::string CommandOf(const Options& options) {
+  std::string command = "hidden_score";
+  for (const std::string& set : options.sets) command += " --set " + set;
+  for (const std::string& effect : options.struck) command += " --strike " + effect;
+  return command + fmt::format(" --magnitudes {} --seeds {} --first-seed {}", options.twin.magnitudes,
+                               options.twin.seeds, options.twin.first_seed);
+}
+
+/// Thresholds of this run only: those of another version of the engine would be wrong.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() { std::filesystem::create_directories(path_); }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::string Path() const { return path_; }
+
+ private:
+  std::filesystem::path path_ =
+      std::filesystem::temp_directory_path() / fmt::format("twinbench-hidden-score-{}", ::getpid());
+};
+
 void WriteTo(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;
 }
 
-void Score(const Options& options, const std::string& command) {
+void Score(const Options& options) {
   std::vector<Plan> plans;
   for (const std::string& set : options.sets) {
     const std::vector<Plan> more = PlansOf(set, options);
@@ -68,7 +93,8 @@ void Score(const Options& options, const std::string& command) {
                GradeName(o.grade), o.answer.substr(0, 120), o.seconds);
   };
   const std::vector<Outcome> outcomes = RunCases(plans, {options.threads, options.twin.cache_folder, show});
-  const std::string table = fmt::format("# Score of the diagnosis\n\nMade by `{}`.\n\n{}", command, ScoreTable(outcomes));
+  const std::string table = fmt::format("# Score of the diagnosis\n\nMade by `{}` from the top folder; do not edit.\n\n{}", CommandOf(options),
+                                        ScoreTable(outcomes));
   if (!options.cases.empty()) WriteTo(options.cases, CasesCsv(outcomes));
   if (!options.out.empty()) WriteTo(options.out, table);
   if (options.out.empty()) fmt::print("{}", table);
@@ -87,15 +113,15 @@ int main(int argc, char** argv) {
   app.add_option("--seeds", options.twin.seeds, "cases of each effect, place and size");
   app.add_option("--magnitudes", options.twin.magnitudes, "sizes of each effect, from rho 5 to 30");
   app.add_option("--first-seed", options.twin.first_seed, "other seeds, other cases");
-  app.add_option("--cache", options.twin.cache_folder, "folder that keeps calibrated thresholds");
+  app.add_option("--cache", options.twin.cache_folder, "folder that keeps calibrated thresholds; else they are made anew");
   app.add_option("--out", options.out, "write the score here instead of stdout");
   app.add_option("--cases", options.cases, "write one row a case here");
   app.add_option("--strike", options.struck, "take an effect out of the catalogue")->allow_extra_args(false);
   CLI11_PARSE(app, argc, argv);
-  std::string command = "hidden_score";
-  for (int k = 1; k < argc; ++k) command += std::string(" ") + argv[k];
+  const twinbench::hidden::TemporaryFolder cache;
+  if (options.twin.cache_folder.empty()) options.twin.cache_folder = cache.Path();
   try {
-    twinbench::hidden::Score(options, command);
+    twinbench::hidden::Score(options);
   } catch (const twinbench::InputError& refusal) {
     fmt::print(stderr, "{}\n", refusal.what());
     return 1;

@@ -183,8 +183,8 @@ std::string LeaveOneOutTable(const Outcomes& all) {
 std::string ReliabilityTable(const Outcomes& all) {
   const std::vector<double> edges = {0.5, 0.8, 0.9, 0.95, 0.99, 1.0001};
   std::string text =
-      "## Calibration of the stated probabilities\n\nEvery probability of an answer, leave-one-out apart. No stated "
-      "probability exceeds a cap.\n\n| stated | answers | mean stated | so it is |\n|---|---|---|---|\n";
+      "## Calibration of the stated probabilities\n\nEvery probability of an answer, leave-one-out apart. The "
+      "probability of a name is capped.\n\n| stated | answers | mean stated | so it is |\n|---|---|---|---|\n";
   std::vector<Stated> stated;
   for (const Outcome* o : all) {
     if (!IsLeaveOneOut(*o)) stated.insert(stated.end(), o->stated.begin(), o->stated.end());

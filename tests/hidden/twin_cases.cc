@@ -133,6 +133,7 @@ Part PartOf(const EffectSettings& effect) {
 std::vector<std::string> AlikeOf(const std::string& effect) {
   const std::vector<std::vector<std::string>> sets = {{"psd_distance", "stray_light"},
                                                       {"eccentricity", "signal_offset"},
+                                                      {"interpolation", "gear_mesh", "periodic"},
                                                       {"ellipticity", "amplitude_mismatch", "quadrature_error"}};
   for (const auto& set : sets) {
     if (std::ranges::find(set, effect) != set.end()) return set;
@@ -187,6 +188,11 @@ const char* NameOf(Design design) {
   return "";
 }
 
+/// "rotary:psd_gain:psd_a_x:17": unique, and says what to expect before the case is made.
+std::string CaseName(Design design, const Wanted& wanted, std::uint64_t seed) {
+  return fmt::format("{}:{}:{}:{}", NameOf(design), wanted.effect, wanted.where, seed);
+}
+
 /// Scales of the designs that were asked for, each made once.
 class Scales {
  public:
@@ -233,7 +239,7 @@ std::vector<Plan> SinglePlans(const std::string& bench, const TwinOptions& optio
     for (int k = 0; k < sizes * options.seeds; ++k) {
       const Wanted wanted{effect, place, RhoOf(k / options.seeds, options)};
       ++seed;
-      plans.push_back({"twin " + bench, fmt::format("{}:{}", NameOf(design), seed),
+      plans.push_back({"twin " + bench, CaseName(design, wanted, seed),
                        [=] { return MakeCase(design, seed, {wanted}, scale); }});
     }
   });
@@ -272,8 +278,9 @@ std::vector<Plan> LeaveOneOutPlans(const std::string& bench, const TwinOptions& 
     const SharedScale scale = scales.Of(design);
     for (int k = 0; k < options.seeds; ++k) {
       ++seed;
-      plans.push_back({"leave-one-out", fmt::format("{}:{}", NameOf(design), seed), [=] {
-                         Case made = MakeCase(design, seed, {{effect, place, kRho}}, scale);
+      const Wanted wanted{effect, place, kRho};
+      plans.push_back({"leave-one-out", CaseName(design, wanted, seed), [=] {
+                         Case made = MakeCase(design, seed, {wanted}, scale);
                          made.options.struck = {effect};
                          made.options.null_runs = kNullRuns;
                          return made;

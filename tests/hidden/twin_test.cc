@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <set>
+#include <algorithm>
 
 #include "tests/hidden/clean_cases.h"
 #include "tests/hidden/reduced.h"
@@ -30,22 +30,34 @@ TwinOptions OneSize() {
   return options;
 }
 
-/// Every `step`-th plan: neighbours are places of the same effect.
-std::vector<Plan> EveryNth(const std::vector<Plan>& plans, std::size_t step, std::size_t first = 0) {
+/// One plan of each effect; which place or design differs from effect to effect.
+std::vector<Plan> OneOfEachEffect(const std::string& bench, const std::vector<Plan>& plans) {
   std::vector<Plan> kept;
-  for (std::size_t k = first; k < plans.size(); k += step) kept.push_back(plans[k]);
+  for (const EffectEntry& entry : EffectCatalogue(bench)) {
+    std::vector<Plan> of_effect;
+    std::ranges::copy_if(plans, std::back_inserter(of_effect), [&](const Plan& plan) {
+      return plan.name.find(":" + entry.name + ":") != std::string::npos;
+    });
+    if (!of_effect.empty()) kept.push_back(of_effect[kept.size() % of_effect.size()]);
+  }
+  return kept;
+}
+
+std::vector<Plan> EveryFifth(const std::vector<Plan>& plans) {
+  std::vector<Plan> kept;
+  for (std::size_t k = 0; k < plans.size(); k += 5) kept.push_back(plans[k]);
   return kept;
 }
 
 class Twin : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Twin, EffectsOfTheCatalogueGetTheirNameOrATieThatHasIt) {
-  const auto outcomes = RunReduced(EveryNth(SinglePlans(GetParam(), OneSize()), 2));
+  const auto outcomes = RunReduced(OneOfEachEffect(GetParam(), SinglePlans(GetParam(), OneSize())));
   EXPECT_TRUE(IsNotBelow(CountOf(outcomes, IsRight), outcomes.size(), 0.95)) << Others(outcomes, IsRight);
 }
 
 TEST_P(Twin, CleanRunsRaiseAlarmsInOneCaseOfAHundredWhateverTheirNoise) {
-  const auto outcomes = RunReduced(CleanPlans(GetParam(), 3 * kNoises, 1));
+  const auto outcomes = RunReduced(CleanPlans(GetParam(), 2 * kNoises, 1));
   EXPECT_TRUE(IsNotBelow(CountOf(outcomes, IsRight), outcomes.size(), 0.99)) << Others(outcomes, IsRight);
 }
 
@@ -59,9 +71,10 @@ TEST_P(Twin, CausesThatNoCatalogueListsAreUnknown) {
 
 TEST_P(Twin, WithoutItsCauseTheCatalogueSeldomNamesAnother) {
   // Every design without an effect needs a calibration of its own, so this is a small sample.
-  const auto outcomes = RunReduced(EveryNth(LeaveOneOutPlans(GetParam(), OneSize()), 6, 1));
-  EXPECT_TRUE(IsNotAbove(CountOf(outcomes, IsConfidentlyWrong), outcomes.size(), 0.10))
-      << Others(outcomes, IsNotConfidentlyWrong);
+  const auto outcomes = RunReduced(EveryFifth(OneOfEachEffect(GetParam(), LeaveOneOutPlans(GetParam(), OneSize()))));
+  // A name that these readings cannot tell from the truth is no fault of the answer.
+  const auto is_wrong = [](const Outcome& o) { return o.confident_wrong && !o.confident_alike; };
+  EXPECT_TRUE(IsNotAbove(CountOf(outcomes, is_wrong), outcomes.size(), 0.10)) << Others(outcomes, IsNotConfidentlyWrong);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothBenches, Twin, ::testing::Values(kRotaryBench, kEncoderBench),
@@ -69,15 +82,13 @@ INSTANTIATE_TEST_SUITE_P(BothBenches, Twin, ::testing::Values(kRotaryBench, kEnc
 
 TEST(HiddenCases, CoverEveryEffectOfBothCatalogues) {
   for (const std::string bench : {kRotaryBench, kEncoderBench}) {
-    std::set<std::string> hidden;
-    for (const Plan& plan : SinglePlans(bench, OneSize())) hidden.insert(plan.make().hidden.causes.at(0).effect);
-    for (const EffectEntry& entry : EffectCatalogue(bench)) EXPECT_TRUE(hidden.contains(entry.name)) << entry.name;
+    const auto plans = OneOfEachEffect(bench, SinglePlans(bench, OneSize()));
+    EXPECT_EQ(plans.size(), EffectCatalogue(bench).size()) << bench;
   }
 }
 
 TEST(HiddenCases, AreTheSameForTheSameSeed) {
-  const auto once = SinglePlans(kRotaryBench, OneSize()).front().make();
-  const auto again = SinglePlans(kRotaryBench, OneSize()).front().make();
+  const Case once = MakeClean(Design::kRotary, Noise::kMixture, 5), again = MakeClean(Design::kRotary, Noise::kMixture, 5);
   ASSERT_EQ(once.readings.size(), again.readings.size());
   for (std::size_t i = 0; i < once.readings.size(); ++i) EXPECT_EQ(once.readings[i].mean_V, again.readings[i].mean_V);
 }

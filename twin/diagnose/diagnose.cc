@@ -11,6 +11,7 @@
 #include "twin/core/errors.h"
 #include "twin/diagnose/encoder/encoder_run.h"
 #include "twin/diagnose/encoder/families.h"
+#include "twin/diagnose/encoder/harmonic_table.h"
 #include "twin/diagnose/engine/analysis.h"
 #include "twin/diagnose/gain.h"
 #include "twin/diagnose/missing.h"
@@ -115,7 +116,7 @@ void AddNextMeasurements(const BenchWords& words, std::vector<Cause>& causes) {
 /// Names what the analysis found, with what was decided before it.
 Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, const std::vector<Discrete>& discrete) {
   Diagnosis diagnosis;
-  Naming naming = Name(analysis.found, analysis.scanner->Families(), analysis.threshold);
+  Naming naming = Name(analysis.found, analysis.scanner->Families(), analysis.threshold, run.noise_free);
   diagnosis.verdict = naming.verdict;
   diagnosis.causes = std::move(naming.causes);
   diagnosis.unknown = std::move(naming.unknown);
@@ -126,7 +127,10 @@ Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, const std:
     diagnosis.noise.push_back(repair.words);
     if (repair.kind == NoiseCause::Kind::kOutliers) first.push_back(OutlierCause(repair, run));
   }
-  for (const NoiseCause& seen : analysis.observations) diagnosis.noise.push_back(seen.words);
+  constexpr double kWorthTelling = 3.0;
+  for (const NoiseCause& seen : analysis.observations) {
+    if (seen.log_bayes > kWorthTelling) diagnosis.noise.push_back(seen.words);
+  }
   for (const Cause& cause : first) diagnosis.alarm_p = std::min(diagnosis.alarm_p, std::exp(-cause.log_evidence));
   if (!first.empty() && diagnosis.verdict == Verdict::kNone) diagnosis.verdict = Verdict::kNamed;
   diagnosis.causes.insert(diagnosis.causes.begin(), first.begin(), first.end());
@@ -148,6 +152,7 @@ void JudgeByGain(DiagnosisRun& result) {
 DiagnosisRun Finish(const LinearRun& run, const Analysis& analysis, const std::vector<Discrete>& discrete,
                     const BenchWords& words) {
   DiagnosisRun result;
+  RefuseWithoutRedundancy(run, analysis.projector->Redundancy());
   result.diagnosis = DiagnosisOf(run, analysis, discrete);
   result.run = run;
   result.noise = analysis.noise;
@@ -159,21 +164,17 @@ DiagnosisRun Finish(const LinearRun& run, const Analysis& analysis, const std::v
 }
 
 AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options) {
-  return {options.null_runs, options.cache_folder, nullptr};
+  return {options.null_runs, options.cache_folder, 4, nullptr};
 }
 
 bool IsStruck(const DiagnoseOptions& options, const std::string& effect) {
   return std::ranges::find(options.struck, effect) != options.struck.end();
 }
 
-/// How much better the free model fits if the reference's wobble turns with the set-up, as a log Bayes factor with free
-/// noise scale. The re-clamped model has fewer unknowns; that is not counted in its favour.
-double FrameEvidence(const Analysis& as_stated, const rotary::RotaryCase& other) {
-  const LinearRun& run = other.Rotary().run;
+double FreePower(const LinearRun& run) {
   const NoiseModel noise{run.sigma, 0.0};
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
-  const double power = Project(projector, {}, noise.Whiten(run, Eigen::MatrixXd(run.residual))).power[0];
-  return 0.5 * as_stated.projector->DegreesOfFreedom() * std::log(as_stated.power / power);
+  return Project(projector, {}, noise.Whiten(run, Eigen::MatrixXd(run.residual))).power[0];
 }
 
 Scenario WithFrame(Scenario scenario) {
@@ -188,46 +189,74 @@ BenchWords RotaryWords(const rotary::RotaryCase& rotary) {
           rotary::NextMeasurement};
 }
 
-DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario& scenario, const DiagnoseOptions& options) {
-  constexpr double kFrameWorthTrying = 10.0;
-  const bool published = options.model == measure::Estimator::kPublished;
+/// A model of the bench with what the search found in it.
+struct Searched {
+  std::unique_ptr<rotary::RotaryCase> rotary;
+  Analysis analysis;
   std::vector<Discrete> discrete;
+};
+
+bool IsReseated(const rotary::RotaryCase& rotary) {
+  return std::ranges::any_of(rotary.Rotary().design.setups,
+                             [](const separate::SetUp& s) { return s.clamping == separate::Clamping::kReseat; });
+}
+
+/// The bench as stated, or with the reference's wobble turning with the set-up where that explains more. The log Bayes
+/// factor of the frame leaves the noise scale free; that it has fewer unknowns is not counted in its favour.
+Searched SearchFrames(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options) {
+  constexpr double kWorthTrying = 10.0;
+  const bool published = options.model == measure::Estimator::kPublished;
+  const auto case_of = [&](const Scenario& s) {
+    return std::make_unique<rotary::RotaryCase>(readings, s, published, options.struck);
+  };
+  const auto analyse = [&](const rotary::RotaryCase& rotary) {
+    return Analyse(rotary.Rotary().run, rotary.Families(), AnalysisOptionsOf(options));
+  };
+  Searched stated{case_of(scenario), {}, {}};
+  if (!IsReseated(*stated.rotary) || IsStruck(options, "reclamp_frame")) {
+    stated.analysis = analyse(*stated.rotary);
+    return stated;
+  }
+  Searched turned{case_of(WithFrame(scenario)), {}, {}};
+  const LinearRun& run = stated.rotary->Rotary().run;
+  const double evidence = 0.5 * run.Rows() * std::log(FreePower(run) / FreePower(turned.rotary->Rotary().run));
+  if (evidence > kWorthTrying) {
+    turned.analysis = analyse(*turned.rotary);
+    turned.discrete.push_back({"reclamp_frame", "", evidence});
+    if (turned.analysis.found.picks.empty()) return turned;
+  }
+  stated.analysis = analyse(*stated.rotary);
+  const bool turns = evidence > kWorthTrying &&
+                     evidence + turned.analysis.found.joint_evidence > stated.analysis.found.joint_evidence;
+  return turns ? std::move(turned) : std::move(stated);
+}
+
+DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario& scenario, const DiagnoseOptions& options) {
+  const bool published = options.model == measure::Estimator::kPublished;
   rotary::ConventionResult convention{"", 0.0, as_read};
   if (!IsStruck(options, "convention")) convention = rotary::ScreenConventions(as_read, scenario, published);
-  if (!convention.where.empty()) discrete.push_back({"convention", convention.where, convention.log_evidence});
-  auto rotary = std::make_unique<rotary::RotaryCase>(convention.readings, scenario, published, options.struck);
-  Analysis analysis = Analyse(rotary->Rotary().run, rotary->Families(), AnalysisOptionsOf(options));
-  RefuseWithoutRedundancy(rotary->Rotary().run, analysis.projector->Redundancy());
-  const bool reseated = std::ranges::any_of(rotary->Rotary().design.setups, [](const separate::SetUp& s) {
-    return s.clamping == separate::Clamping::kReseat;
-  });
-  if (reseated && !analysis.found.picks.empty() && !IsStruck(options, "reclamp_frame")) {
-    auto other = std::make_unique<rotary::RotaryCase>(convention.readings, WithFrame(scenario), published, options.struck);
-    const double evidence = FrameEvidence(analysis, *other);
-    if (evidence > std::max(kFrameWorthTrying, analysis.found.joint_evidence)) {
-      discrete.push_back({"reclamp_frame", "", evidence});
-      AnalysisOptions same_null = AnalysisOptionsOf(options);
-      same_null.null = &analysis.null;
-      analysis = Analyse(other->Rotary().run, other->Families(), same_null);
-      rotary = std::move(other);
-    }
-  }
-  DiagnosisRun result = Finish(rotary->Rotary().run, analysis, discrete, RotaryWords(*rotary));
+  Searched searched = SearchFrames(convention.readings, scenario, options);
+  if (!convention.where.empty()) searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
+  const rotary::RotaryCase& rotary = *searched.rotary;
+  DiagnosisRun result = Finish(rotary.Rotary().run, searched.analysis, searched.discrete, RotaryWords(rotary));
   for (const char* where : {"reverse_target", "reverse_reference", "index_offset"}) {
     result.diagnosis.invisible.push_back({"convention", where, "the positions that the separated errors belong to"});
   }
-  result.diagnosis.left_out = rotary->Rotary().left_out;
+  result.diagnosis.left_out = rotary.Rotary().left_out;
   return result;
 }
 
 DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options) {
   const encoder::EncoderRun encoder = encoder::BuildRun(readings, scenario);
   const std::vector<Family> families = encoder::Families(encoder, options.struck);
-  const Analysis analysis = Analyse(encoder.run, families, AnalysisOptionsOf(options));
+  AnalysisOptions how = AnalysisOptionsOf(options);
+  how.most_causes = 8;  // an angle device may well have an error of many orders
+  const Analysis analysis = Analyse(encoder.run, families, how);
   const BenchWords words{[](const Eigen::VectorXd&) { return std::string("nothing but the device's offset"); },
                          [](const std::string&, const std::string&) { return std::string(); }};
   DiagnosisRun result = Finish(encoder.run, analysis, {}, words);
   result.diagnosis.left_out = encoder.left_out;
+  result.diagnosis.harmonics = encoder::HarmonicTable(encoder, analysis.noise);
   return result;
 }
 

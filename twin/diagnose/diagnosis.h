@@ -67,6 +67,14 @@ struct Detectable {
   ParameterEstimate smallest;  // `value` only
 };
 
+/// One order of an angle device's error, all orders fitted together.
+struct Harmonic {
+  int order = 0;
+  double amplitude_rad = kNaN, u_amplitude_rad = kNaN;
+  double phase_rad = kNaN, u_phase_rad = kNaN;  // of amplitude * cos(order * angle + phase)
+  std::string meaning;                          // what an order of this kind can and cannot mean
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::kNone;
   double alarm_p = kNaN;
@@ -76,6 +84,7 @@ struct Diagnosis {
   Gain gain;
   std::vector<Invisible> invisible;
   std::vector<Detectable> detectable;
+  std::vector<Harmonic> harmonics;  // angle devices only, ascending order
   int readings = 0;                 // used
   int left_out = 0;                 // NaN, saturated, no light, ...
   std::vector<std::string> notes;   // missing columns and what cannot be named without them, and the like

@@ -44,6 +44,15 @@ json ToJson(const Invisible& invisible) {
   return {{"effect", invisible.effect}, {"where", invisible.where}, {"could_bias", invisible.could_bias}};
 }
 
+json ToJson(const Harmonic& h) {
+  return {{"order", h.order},
+          {"amplitude_deg", Number(h.amplitude_rad / units::deg)},
+          {"u_amplitude_deg", Number(h.u_amplitude_rad / units::deg)},
+          {"phase_deg", Number(h.phase_rad / units::deg)},
+          {"u_phase_deg", Number(h.u_phase_rad / units::deg)},
+          {"meaning", h.meaning}};
+}
+
 json ToJson(const Detectable& detectable) {
   return {{"effect", detectable.effect},
           {"where", detectable.where},
@@ -96,6 +105,20 @@ json ToJson(const std::array<double, kComponents>& rms) {
 
 }  // namespace
 
+json ToJson(const std::vector<ScreenTest>& screen) {
+  json list = json::array();
+  for (const ScreenTest& test : screen) {
+    list.push_back({{"test", test.name},
+                    {"statistic", Number(test.statistic)},
+                    {"p", Number(test.p)},
+                    {"effect_um", Number(test.effect_m / units::um)},
+                    {"effect_arcsec", Number(test.effect_rad / units::arcsec)},
+                    {"reading", test.reading},
+                    {"items", test.tables}});
+  }
+  return list;
+}
+
 json ToJson(const ChangeOfUnknowns& change) {
   return {{"target", ToJson(change.target_rms)}, {"reference", ToJson(change.reference_rms)}};
 }
@@ -109,6 +132,7 @@ json ToJson(const DiagnosisRun& run, const std::string& extended_scenario) {
           {"gain", GainJson(d.gain, run.run)},
           {"invisible", ArrayOf(d.invisible)},
           {"detectable", ArrayOf(d.detectable)},
+          {"harmonics", ArrayOf(d.harmonics)},
           {"noise", d.noise},
           {"notes", d.notes},
           {"readings", d.readings},

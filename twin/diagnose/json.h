@@ -5,6 +5,7 @@
 
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/gain.h"
+#include "twin/diagnose/screen/screen.h"
 
 namespace twinbench::diagnose {
 
@@ -20,6 +21,9 @@ nlohmann::json ToJson(const DiagnosisRun& run, const std::string& extended_scena
 /// `gain.change_of_tables`: {"target": {"ex_arcsec": rms, ...}, "reference": {...}}; components that nobody reads
 /// are left out.
 nlohmann::json ToJson(const ChangeOfUnknowns& change);
+
+/// The screen of residual tests: `diagnosis.screen` of results.json.
+nlohmann::json ToJson(const std::vector<ScreenTest>& screen);
 
 /// What the simulation gets wrong, for plots: `diagnosis.plots` of results.json.
 ///

@@ -39,12 +39,14 @@ void AddHarmonics(Collector& collect) {
 }
 
 /// Lines between the whole orders, a tenth of the resolution apart. Nearer to a whole order than the run can tell
-/// there are none; two neighbouring orders of a single turn imitate any line between them.
+/// there are none; and none at all in a single turn, where neighbouring whole orders imitate any line between them.
 void AddLines(Collector& collect) {
+  constexpr double kFewestTurns = 1.5;
   const SignalContext& c = collect.context();
+  if (Turns(c) < kFewestTurns) return;
   const double last = std::min(60.0, LargestOrder(c) + 0.5);
   const double turns = Turns(c), step = std::clamp(0.1 / turns, 0.01, 0.2);
-  const double nearest = std::clamp((turns < 1.5 ? 0.45 : 0.2) / turns, 0.01, 0.45);
+  const double nearest = std::clamp(0.2 / turns, 0.01, 0.45);
   Shape order{"order", "1", 1.0, 0.3, std::max(last, 0.4), {}};
   for (double k = 0.3; k <= last; k += step) {
     if (std::abs(k - std::round(k)) > nearest) order.value.push_back(k);

@@ -9,7 +9,9 @@ namespace {
 
 constexpr int kMostRepairs = 4;
 constexpr double kRefuted = 8.0;    // log Bayes factor from which a noise model is not used any more
-constexpr double kDisturbed = 4.0;  // the same for single values: in white noise less than one run in a thousand
+constexpr double kDisturbed = 6.0;  // the same for single values: in white noise less than one run in a thousand
+/// The same for what is left of a correlation that was taken out before: projection makes the first estimate too small.
+constexpr double kLeftCorrelated = 1.5;
 
 void Prepare(const LinearRun& run, const std::vector<Family>& families, Analysis& analysis) {
   analysis.projector = std::make_unique<Projector>(analysis.noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
@@ -37,11 +39,17 @@ NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
 /// The repair that has to come before any cause is believed, if there is one.
 const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
   const bool picked = !analysis.found.picks.empty();
-  if (picked && !view.before.empty() && view.before.front().log_bayes > analysis.found.joint_evidence) return &view.before.front();
+  // A cause that leaves clean noise behind needs no other explanation; one that does not may be noise itself.
+  const bool clean = view.after.empty() || view.after.front().log_bayes < kRefuted;
+  if (picked && !clean && !view.before.empty() && view.before.front().log_bayes > analysis.found.joint_evidence) {
+    return &view.before.front();
+  }
   for (const NoiseCause& cause : view.after) {
     // Single disturbed values are an effect of their own; other faults of the noise matter only if something was chosen.
     const bool single = cause.kind == NoiseCause::Kind::kOutliers;
-    if (single ? cause.log_bayes > kDisturbed : picked && cause.log_bayes > kRefuted) return &cause;
+    const bool again = cause.kind == NoiseCause::Kind::kCorrelation && analysis.noise.rho > 0.0;
+    const double limit = single ? kDisturbed : again ? kLeftCorrelated : kRefuted;
+    if ((single || picked) && cause.log_bayes > limit) return &cause;
   }
   return nullptr;
 }
@@ -74,7 +82,8 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
       const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
       analysis.power = Project(*analysis.projector, {}, white).power[0];
     }
-    analysis.found = Search(run, analysis.noise, *analysis.projector, *analysis.scanner, log_priors, analysis.threshold);
+    analysis.found = Search(run, analysis.noise, *analysis.projector, *analysis.scanner, log_priors, analysis.threshold,
+                            options.most_causes);
     const NoiseView view = LookAtNoise(run, analysis);
     const NoiseCause* repair = repairs < kMostRepairs ? NextRepair(analysis, view) : nullptr;
     if (!repair) {

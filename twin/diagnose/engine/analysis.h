@@ -13,6 +13,7 @@ namespace twinbench::diagnose {
 struct AnalysisOptions {
   int null_runs = 500;
   std::string cache_folder;
+  int most_causes = 4;
   const NullCalibration* null = nullptr;  // of a design that is the same but for its unknowns; else simulated
 };
 

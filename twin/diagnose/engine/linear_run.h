@@ -50,6 +50,7 @@ struct LinearRun {
   Eigen::VectorXd residual;             // observed - best prediction without further effects, SI
   Eigen::VectorXd sigma;                // stated standard uncertainty of each row, SI
   bool sigma_stated = true;             // false: sigma is an estimate from the data itself
+  bool noise_free = false;              // a simulation without noise: its residuals say nothing about sigma
   Nuisance nuisance;
   std::vector<Pattern> patterns;
 

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "twin/diagnose/engine/prior.h"
+
 namespace twinbench::diagnose {
 namespace {
 
@@ -101,7 +103,7 @@ struct Answer {
   std::vector<Cause> causes;  // empty: structure without a name
   double unknown = 0.0;
   std::string signature;
-  double weight = 0.0;        // share of the explained power
+  double weight = 0.0;        // power that nothing else explains
 };
 
 /// Places where the same shape explains the data nearly as well: the fit cannot tell which body or channel it is.
@@ -153,7 +155,7 @@ Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Fami
   const Ballot ballot = Count(found.picks[k], families);
   Answer answer;
   answer.unknown = ballot.unknown;
-  answer.weight = found.picks[k].statistic;
+  answer.weight = found.picks[k].explained;
   if (ballot.best_unknown >= 0) answer.signature = SignatureOf(found, k, families, ballot);
   if (ballot.unknown > 0.5) return answer;
   const auto ranked = Ranked(ballot);
@@ -162,6 +164,17 @@ Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Fami
   for (const auto& [key, probability] : set) answer.causes.push_back(CauseOf(found, k, families, key, probability));
   AddRivals(found, families, answer.causes);
   return answer;
+}
+
+/// Several named causes together against one generic shape alone, which needs no coincidence.
+double ChanceOfOneUnknown(const SearchResult& found, const std::vector<Family>& families, const Eigen::VectorXd& log_priors) {
+  if (found.picks.size() < 2) return 0.0;
+  double best = -1e300;
+  for (int k = 0; k < std::ssize(families); ++k) {
+    if (families[static_cast<std::size_t>(k)].kind != Kind::kUnknown) continue;
+    best = std::max(best, found.alone.log_bayes(k, 0) + log_priors[k] - std::log(kPriorNone));
+  }
+  return 1.0 / (1.0 + std::exp(found.joint_evidence - best));
 }
 
 bool AlreadyThere(const std::vector<Cause>& causes, const Cause& cause) {
@@ -186,8 +199,8 @@ std::vector<ParameterEstimate> ParametersOf(const Family& family, const Eigen::V
   return parameters;
 }
 
-Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold) {
-  // A shape that no formula hits exactly leaves a rest; up to this share of all that was explained it is no news.
+Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold, bool noise_free) {
+  // A shape that no formula hits exactly leaves a rest; up to this share of the explained power it is no news.
   constexpr double kSmallRest = 0.015;
   Naming naming;
   if (found.picks.empty()) return naming;
@@ -197,10 +210,10 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
     answers.push_back(AnswerOf(found, k, families));
     weight += std::max(0.0, answers.back().weight);
   }
-  bool tie = false, unexplained = found.last_statistic > std::max(threshold, kSmallRest * weight);
+  bool tie = false, unexplained = found.last_statistic > std::max(threshold, 0.5 * kSmallRest * weight);
   for (const Answer& answer : answers) {
-    naming.lead.push_back(-1);
     const bool small = answer.weight < kSmallRest * weight;
+    if (noise_free && small) continue;
     if (answer.causes.empty()) {
       unexplained = unexplained || !small;
       naming.unknown.signature += (naming.unknown.signature.empty() ? "" : " | ") + answer.signature;
@@ -209,16 +222,25 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
     }
     naming.unknown.probability = std::max(naming.unknown.probability, small ? 0.0 : answer.unknown);
     tie = tie || answer.causes.size() > 1;
-    naming.lead.back() = static_cast<int>(naming.causes.size());
     for (const Cause& cause : answer.causes) {
       if (!AlreadyThere(naming.causes, cause)) naming.causes.push_back(cause);
     }
   }
+  const double one_unknown = ChanceOfOneUnknown(found, families, LogPriors(families));
+  naming.unknown.probability = std::max(naming.unknown.probability, one_unknown);
+  for (Cause& cause : naming.causes) cause.probability = std::min(cause.probability, 1.0 - one_unknown);
+  unexplained = unexplained || one_unknown > 0.5;
   const bool possible = std::ranges::all_of(naming.causes, IsPlausible);
   if (unexplained || !possible) {
     naming.verdict = Verdict::kUnknown;
-    naming.unknown.probability = std::max(naming.unknown.probability, 0.5);
-    for (Cause& cause : naming.causes) cause.probability = std::min(cause.probability, 1.0 - naming.unknown.probability);
+    naming.unknown.probability = std::clamp(naming.unknown.probability, 0.5, 1.0);
+    if (naming.unknown.signature.empty()) {
+      naming.unknown.signature = possible ? "structure that the causes named here do not explain"
+                                          : "as the cause named here, in a size that is not possible for it";
+    }
+    for (Cause& cause : naming.causes) {
+      cause.probability = std::clamp(1.0 - naming.unknown.probability, 0.0, cause.probability);
+    }
     return naming;
   }
   naming.verdict = naming.causes.empty() ? Verdict::kUnknown : tie ? Verdict::kTie : Verdict::kNamed;

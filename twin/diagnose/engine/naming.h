@@ -19,10 +19,12 @@ struct Naming {
   Verdict verdict = Verdict::kNone;
   std::vector<Cause> causes;
   UnknownPart unknown;
-  std::vector<int> lead;  // for each pick of the search the cause that stands for it, -1: structure without a name
 };
-/// @param threshold  Of the alarm statistic: what remains above it is structure that the causes do not explain.
-Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold);
+/// @param noise_free  Readings of a simulation without noise show the last digit of every formula: a small rest of any
+///                    kind is then no cause.
+/// @param threshold   Of the alarm statistic: what remains above it is structure that the causes do not explain.
+Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold,
+            bool noise_free = false);
 
 /// Parameters of a family's fitted member.
 std::vector<ParameterEstimate> ParametersOf(const Family& family, const Eigen::VectorXd& shape,

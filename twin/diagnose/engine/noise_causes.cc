@@ -12,7 +12,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr double kWorthTelling = 3.0;
+constexpr double kWorthTelling = 1.0;  // log Bayes factor
 constexpr double kLeastRedundancy = 0.05;  // rows below it say nothing about their own noise
 
 /// What is left of each row in units of its own expected scatter, and the rows that can be judged.
@@ -100,7 +100,7 @@ NoiseCause Tails(const NoiseModel& noise, const Standardised& s) {
 /// A few rows far outside while the rest is normal: each pays for being chosen, and for a size that may be anything up
 /// to the largest.
 NoiseCause Outliers(const NoiseModel& noise, const Standardised& s) {
-  constexpr double kFar = 4.7;          // one in 400 000 rows by chance
+  constexpr double kFar = 5.0;            // one in two million rows by chance
   constexpr double kMostOutlying = 0.05;  // of the rows; more are no exceptions
   NoiseCause cause{NoiseCause::Kind::kOutliers, -1e300, "", noise, {}, 0.0};
   Standardised rest = s;
@@ -119,7 +119,7 @@ NoiseCause Outliers(const NoiseModel& noise, const Standardised& s) {
   const double mixture = NormalLikelihood(rest) - count * std::log(2.0 * top) - chosen;
   // Merely heavy-tailed noise has far values, too: then they are no exceptions.
   const double tails = FitStudent(s).log_likelihood - std::log(10.0 * 14.0);
-  if (mixture > tails + kWorthTelling) cause.log_bayes = mixture - NormalLikelihood(s);
+  if (mixture > tails + 3.0) cause.log_bayes = mixture - NormalLikelihood(s);
   cause.words = fmt::format("{} value{} far outside the noise, left out", cause.outliers.size(), count == 1.0 ? "" : "s");
   for (const int row : cause.outliers) cause.repaired.sigma[row] *= 1e4;
   return cause;
@@ -174,7 +174,7 @@ NoiseCause ChannelScale(const LinearRun& run, const NoiseModel& noise, const Sta
 std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Eigen::VectorXd& rows,
                                         const Eigen::VectorXd& redundancy) {
   const Standardised s = Standardise(rows, redundancy);
-  if (s.rows.empty()) return {};
+  if (s.rows.empty() || run.noise_free) return {};
   std::vector<NoiseCause> causes = {Outliers(noise, s), Tails(noise, s), Correlation(run, noise, s)};
   if (run.Channels() > 1) causes.push_back(ChannelScale(run, noise, s));
   std::erase_if(causes, [](const NoiseCause& cause) { return !(cause.log_bayes > kWorthTelling); });

@@ -27,7 +27,7 @@ struct NoiseCause {
 ///
 /// @param rows        W y with accepted causes taken out, whitened with `noise`.
 /// @param redundancy  Diagonal of W by row.
-/// @return best first; only those with a log Bayes factor above 3.
+/// @return best first; only those with a log Bayes factor above 1.
 std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Eigen::VectorXd& rows,
                                         const Eigen::VectorXd& redundancy);
 

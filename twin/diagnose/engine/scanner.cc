@@ -13,7 +13,8 @@ constexpr int kChunkColumns = 128;  // stays in the cache
 constexpr std::array<double, 3> kPriorScales = {0.25, 1.0, 4.0};
 constexpr double kPseudoDegrees = 20.0;      // trust in a stated noise figure: 20 works, 200 is too trusting
 constexpr double kPseudoEstimated = 2.0;     // in one that was estimated from the same data
-constexpr double kDependent = 1e-6;          // share of a signature's power that must survive projection
+constexpr double kAbsorbed = 1e-10;          // share of a signature's power below which only priors and rounding are left
+constexpr double kDependent = 1e-4;          // share of a signature's power that must survive projection
 
 /// Running log of a mean of exponentials over a grid that arrives piece by piece.
 struct LogMean {
@@ -56,12 +57,14 @@ struct Spectrum {
   Eigen::ArrayXXd c2;  // p x runs
 };
 
-/// @param gram   S'WS of the member, prior-scaled;  @param products  S'Wy, prior-scaled.
-Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products) {
+/// @param gram      S'WS of the member, prior-scaled.
+/// @param products  S'Wy, prior-scaled.
+/// @param raw       Trace of S'S: less than a 1e-10 of it is no signal any more.
+Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products, double raw) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
   Spectrum s;
   s.d2 = eigen.eigenvalues().array().max(0.0);
-  const double least = 1e-10 * std::max(s.d2.maxCoeff(), 1e-300);
+  const double least = std::max(1e-10 * s.d2.maxCoeff(), kAbsorbed * raw);
   s.c2 = (eigen.eigenvectors().transpose() * products).array().square();
   for (Eigen::Index i = 0; i < s.d2.size(); ++i) {
     if (s.d2[i] > least) {
@@ -115,7 +118,7 @@ Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector&
       continue;
     }
     bases.push_back(family.base.get());
-    bundles_.push_back({{k}, family.base ? family.base->grid : family.grid, 0, {}});
+    bundles_.push_back({{k}, family.base ? family.base->grid : family.grid, 0, {}, {}});
   }
   for (Bundle& bundle : bundles_) Prepare(bundle);
 }
@@ -139,7 +142,8 @@ void Scanner::Prepare(Bundle& bundle) const {
     const Eigen::MatrixXd S = Columns(bundle, first, last), H = projector_.Absorbed(S);
     for (int g = 0; g < last - first; ++g) {
       const auto s = S.middleCols(g * bundle.columns, bundle.columns), h = H.middleCols(g * bundle.columns, bundle.columns);
-      bundle.gram.push_back(s.transpose() * s - h.transpose() * h);
+      bundle.raw.push_back(s.transpose() * s);
+      bundle.gram.push_back(bundle.raw.back() - h.transpose() * h);
     }
   }
 }
@@ -172,7 +176,8 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Rema
       Eigen::MatrixXd scaled = sd.asDiagonal();
       if (family.base) scaled = family.map * sd.asDiagonal();
       const Eigen::MatrixXd product = scaled.transpose() * products.middleRows(at, bundle.columns);
-      const Spectrum s = SpectrumOf(scaled.transpose() * gram * scaled, product);
+      const double raw = (scaled.transpose() * bundle.raw[static_cast<std::size_t>(g)] * scaled).trace();
+      const Spectrum s = SpectrumOf(scaled.transpose() * gram * scaled, product, raw);
       const Eigen::ArrayXd explained = s.c2.colwise().sum().transpose();
       const auto row = static_cast<Eigen::Index>(bundle.members[m]);
       for (Eigen::Index k = 0; k < runs; ++k) {

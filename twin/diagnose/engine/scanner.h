@@ -70,6 +70,7 @@ class Scanner {
     int grid = 1;
     int columns = 0;                    // a grid point
     std::vector<Eigen::MatrixXd> gram;  // S'WS, one a grid point
+    std::vector<Eigen::MatrixXd> raw;   // S'S
   };
   Eigen::MatrixXd Columns(const Bundle& bundle, int first, int last) const;  // whitened
   void Prepare(Bundle& bundle) const;

@@ -18,6 +18,7 @@ struct Problem {
   const Scanner& scanner;
   const Eigen::VectorXd& log_priors;
   double threshold;
+  int most_causes;
   Eigen::MatrixXd white;  // the residual, rows x 1
 };
 
@@ -112,7 +113,7 @@ void Forward(const Problem& problem, SearchResult& result) {
       result.first_statistic = pick.statistic;
       result.alone = evidence;
     }
-    if (pick.statistic < problem.threshold || std::ssize(result.picks) == kMostCauses) return;
+    if (pick.statistic < problem.threshold || std::ssize(result.picks) == problem.most_causes) return;
     result.joint_evidence += pick.statistic;
     result.picks.push_back(pick);
   }
@@ -140,6 +141,17 @@ void Revise(const Problem& problem, SearchResult& result) {
   if (picks.size() == 1) VoteAgain(problem, picks, 0);
 }
 
+/// What each pick explains that the others cannot.
+void MeasureShares(const Problem& problem, std::vector<Pick>& picks) {
+  const auto power_with = [&problem](const Eigen::MatrixXd& columns) {
+    return Project(problem.projector, Remainder(problem.projector, columns), problem.white).power[0];
+  };
+  const double left = power_with(ColumnsWithout(problem, picks, -1));
+  for (int k = 0; k < std::ssize(picks); ++k) {
+    picks[static_cast<std::size_t>(k)].explained = power_with(ColumnsWithout(problem, picks, k)) - left;
+  }
+}
+
 void FitAmplitudes(const Problem& problem, SearchResult& result) {
   Eigen::MatrixXd columns(problem.run.Rows(), 0);
   for (const Pick& pick : result.picks) columns = Beside(columns, pick.columns);
@@ -152,8 +164,8 @@ void FitAmplitudes(const Problem& problem, SearchResult& result) {
 }  // namespace
 
 SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector, const Scanner& scanner,
-                    const Eigen::VectorXd& log_priors, double threshold) {
-  const Problem problem{run, noise, projector, scanner, log_priors, threshold, noise.Whiten(run, run.residual)};
+                    const Eigen::VectorXd& log_priors, double threshold, int most_causes) {
+  const Problem problem{run, noise, projector, scanner, log_priors, threshold, most_causes, noise.Whiten(run, run.residual)};
   SearchResult result;
   Forward(problem, result);
   const std::size_t before = result.picks.size();
@@ -162,6 +174,7 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
     Forward(problem, result);
     Revise(problem, result);
   }
+  MeasureShares(problem, result.picks);
   FitAmplitudes(problem, result);
   return result;
 }

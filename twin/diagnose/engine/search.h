@@ -7,7 +7,6 @@
 
 namespace twinbench::diagnose {
 
-inline constexpr int kMostCauses = 4;
 /// Probability of an alarm on a run without effect. Half of what is promised: noise is never as clean as simulated.
 inline constexpr double kAlarmProbability = 0.005;
 
@@ -19,6 +18,7 @@ struct Pick {
   Eigen::MatrixXd columns;  // signature at that shape: rows x amplitudes, not whitened
   Eigen::VectorXd log_posterior;  // of every family in this place, the others accepted; last: none
   double statistic = 0.0;         // alarm statistic in this place, the others accepted
+  double explained = 0.0;         // of the whitened power, beyond what the other picks explain
 };
 
 struct SearchResult {
@@ -31,9 +31,9 @@ struct SearchResult {
   Evidence alone;                // the first scan
 };
 
-/// Finds up to four simultaneous causes: scan, take the most probable, refine its shape, scan what remains; then put
+/// Finds up to `most_causes` simultaneous causes: scan, take the most probable, refine its shape, scan what remains; then put
 /// every pick to the vote again with the others accepted (swaps), and drop those that are not needed any more.
 SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector, const Scanner& scanner,
-                    const Eigen::VectorXd& log_priors, double threshold);
+                    const Eigen::VectorXd& log_priors, double threshold, int most_causes);
 
 }  // namespace twinbench::diagnose

@@ -427,21 +427,28 @@ std::vector<Family> NamedFamilies(const RotaryRun& rotary, const SignalContext& 
   return families;
 }
 
-std::vector<Family> ModelFamilies(const RotaryRun& rotary) {
-  std::vector<Family> families;
-  const char* const names[] = {"yaw", "tilt"};
-  for (int k = 0; k < 2; ++k) {
-    Family family = Named("published_sensitivity", names[k], {{"scale_error", "1", 1.0, 0.05, -0.5, 0.5}});
-    const int dof = k;
-    family.columns = [&rotary, dof](int) {
-      Eigen::MatrixXd column(rotary.run.Rows(), 1);
-      for (std::size_t i = 0; i < rotary.motion.size(); ++i) {
-        column.block<4, 1>(4 * static_cast<Eigen::Index>(i), 0) = rotary.shown_by_motion.col(dof) * rotary.motion[i][dof];
-      }
-      return column;
-    };
-    families.push_back(std::move(family));
+namespace {
+
+/// What a wrong sensitivity to one motion adds: the motion itself, as it shows.
+Eigen::VectorXd SensitivityColumn(const RotaryRun& rotary, int dof) {
+  Eigen::VectorXd column(rotary.run.Rows());
+  for (std::size_t i = 0; i < rotary.motion.size(); ++i) {
+    column.segment<4>(4 * static_cast<Eigen::Index>(i)) = rotary.shown_by_motion.col(dof) * rotary.motion[i][dof];
   }
+  return column;
+}
+
+}  // namespace
+
+std::vector<Family> ModelFamilies(const RotaryRun& rotary) {
+  Eigen::MatrixXd both(rotary.run.Rows(), 2);
+  both << SensitivityColumn(rotary, 0), SensitivityColumn(rotary, 1);
+  const Amplitude yaw = {"yaw_scale_error", "1", 1.0, 0.1, -0.5, 0.5}, tilt = {"tilt_scale_error", "1", 1.0, 0.1, -0.5, 0.5};
+  std::vector<Family> families = {Named("published_sensitivity", "yaw", {yaw}), Named("published_sensitivity", "tilt", {tilt}),
+                                  Named("published_sensitivity", "yaw, tilt", {yaw, tilt})};
+  families[0].columns = [both](int) { return Eigen::MatrixXd(both.leftCols(1)); };
+  families[1].columns = [both](int) { return Eigen::MatrixXd(both.rightCols(1)); };
+  families[2].columns = [both](int) { return both; };
   return families;
 }
 

@@ -105,6 +105,13 @@ double StatedSigma_m(const std::vector<Reading>& used, int channel, const Scenar
   return mean_V / geometry.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
 }
 
+/// Real samples always scatter; only a simulation states deviations of nothing.
+bool IsNoiseFree(const std::vector<Reading>& used) {
+  return std::ranges::all_of(used, [](const Reading& r) {
+    return std::ranges::all_of(r.std_V, [](double V) { return V == 0.0; });
+  });
+}
+
 /// Median deviation of one sample over all channels, else what the scenario states.
 double SampleNoise_V(const std::vector<Reading>& used, const Scenario& scenario) {
   std::vector<double> stds_V;
@@ -378,6 +385,7 @@ RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenari
   run.observed = ObservedOf(used, result.bench.nominal);
   run.residual = run.observed;
   run.sigma = SigmaOf(used, scenario, result.bench);
+  run.noise_free = IsNoiseFree(used);
   result.sample_noise_V = SampleNoise_V(used, scenario);
   result.scanned_before = ScannedBefore(scenario.adc.scan_list);
   FindSamples(used, scenario, fit);

@@ -46,6 +46,18 @@ struct Collector {
     for (const Place& place : places) Add(sort, place.name, base, PatternMap(place.weight, k), describe);
     Add(sort, "all", base, Eigen::MatrixXd::Identity(kChannels * k, kChannels * k), describe);
   }
+  /// A random walk by its cosine modes, amplitudes falling as 1 / k; the generic form of any slow wander.
+  void AddRandomWalk(const Eigen::VectorXd& phase) const {
+    constexpr int kModes = 24;
+    Eigen::MatrixXd modes(phase.size(), kModes);
+    for (int k = 0; k < kModes; ++k) modes.col(k) = ((k + 1) * phase.array()).cos() / (k + 1);
+    auto base = std::make_shared<Base>();
+    base->columns = [modes](int) { return OnEachChannel(modes, kChannels); };
+    for (const Place& place : places) {
+      Add("wander", place.name, base, PatternMap(place.weight, kModes),
+          [](int) { return std::string("random wander locked to time"); });
+    }
+  }
   void Add(const std::string& sort, const std::string& where, const std::shared_ptr<const Base>& base,
            const Eigen::MatrixXd& map, const Describe& describe) const {
     Family family;
@@ -125,7 +137,7 @@ void AddInteractions(const Schedule& s, const Collector& add) {
   std::vector<std::pair<int, int>> orders;
   for (int a = 1; a <= kMost; ++a) {
     for (int b = -kMost; b <= kMost; ++b) {
-      if (b != 0) orders.emplace_back(a, b);
+      if (b != 0 && b != a) orders.emplace_back(a, b);  // a = b is a constant of the set-up
     }
   }
   const Eigen::VectorXd in = InCircle(s);
@@ -165,7 +177,7 @@ void AddTimes(const Schedule& s, const SignalContext& context, const Collector& 
   for (int k = 0; k < 6; ++k) together.col(k) = ((k + 1) * phase.array()).cos();
   add.Add("wander", 1, 6, [together](int) { return together; },
           [](int) { return std::string("slow wander locked to time"); });
-  const std::set<int> setups(s.setup.begin(), s.setup.end());
+  add.AddRandomWalk(phase);
   Eigen::MatrixXd slopes = Indicators(s.setup, InCircle(s)).array().colwise() * phase.array();
   add.Add("wander", 1, static_cast<int>(slopes.cols()), [slopes](int) { return slopes; },
           [](int) { return std::string("drift that differs from set-up to set-up, locked to time"); });

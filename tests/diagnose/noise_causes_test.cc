@@ -1,0 +1,65 @@
+#include "twin/diagnose/engine/noise_causes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/diagnose/ring_run.h"
+#include "twin/core/stream.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+using test::WhiteNoise;
+
+LinearRun Noisy(std::uint64_t seed) {
+  LinearRun run = test::MakeRing();
+  test::AddNoise(run, seed);
+  return run;
+}
+
+/// A run of white noise of the stated size, altered row by row.
+template <class Alter>
+std::vector<NoiseCause> CausesOf(std::uint64_t seed, const Alter& alter) {
+  LinearRun run = Noisy(seed);
+  alter(run);
+  const NoiseModel noise = WhiteNoise(run);
+  const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  const Eigen::VectorXd rows = projector.Apply(noise.Whiten(run, Eigen::MatrixXd(run.residual))).col(0);
+  return FindNoiseCauses(run, noise, rows, projector.Redundancy());
+}
+
+int CountAbove(const std::vector<NoiseCause>& causes, double log_bayes) {
+  int count = 0;
+  for (const NoiseCause& cause : causes) count += cause.log_bayes > log_bayes ? 1 : 0;
+  return count;
+}
+
+TEST(FindNoiseCauses, HardlyEverRefutesWhiteNoise) {
+  int refuted = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) refuted += CountAbove(CausesOf(seed, [](LinearRun&) {}), 6.0) > 0;
+  EXPECT_LE(refuted, 1);
+}
+
+TEST(FindNoiseCauses, TakesAFewFarValuesForOutliersAndLeavesThemOut) {
+  const auto causes = CausesOf(3, [](LinearRun& run) {
+    for (const int row : {11, 47, 90}) run.residual[row] += 15.0 * run.sigma[row];
+  });
+  ASSERT_FALSE(causes.empty());
+  EXPECT_EQ(causes.front().kind, NoiseCause::Kind::kOutliers);
+  EXPECT_EQ(causes.front().outliers, (std::vector<int>{11, 47, 90}));
+}
+
+TEST(FindNoiseCauses, TakesManyModeratelyFarValuesForTails) {
+  const auto causes = CausesOf(4, [](LinearRun& run) {
+    Stream stream(5, "tails");
+    for (Eigen::Index k = 0; k < run.residual.size(); ++k) {
+      run.residual[k] = run.sigma[k] * stream.Normal() / std::sqrt(stream.ChiSquared(3.0) / 3.0);
+    }
+  });
+  ASSERT_FALSE(causes.empty());
+  EXPECT_EQ(causes.front().kind, NoiseCause::Kind::kTails);
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose
