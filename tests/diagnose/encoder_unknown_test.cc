@@ -94,7 +94,8 @@ TEST(EncoderUnknown, HasTheSameShapesWhateverIsStruck) {
   const auto [left, words] = BestOfSort(encoder, "harmonic");
   EXPECT_LT(left, 1e-3);
   EXPECT_THAT(words, HasSubstr("harmonic of order 7 locked to reference angle, same in both directions"));
-  const auto whole = Families(encoder), struck = Families(encoder, {"backlash", "slip", "drift", "scale", "latency"});
+  const auto whole = Families(encoder),
+             struck = Families(encoder, {"backlash", "slip", "drift", "scale", "latency"});
   for (const char* name : {"direction offset", "step", "trend", "speed", "harmonic"}) {
     EXPECT_TRUE(test::HasFamily(whole, name)) << name;
     EXPECT_TRUE(test::HasFamily(struck, name)) << name;

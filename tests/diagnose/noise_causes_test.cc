@@ -37,7 +37,8 @@ int CountAbove(const std::vector<NoiseCause>& causes, double log_bayes) {
 
 TEST(FindNoiseCauses, HardlyEverRefutesWhiteNoise) {
   int refuted = 0;
-  for (std::uint64_t seed = 0; seed < 100; ++seed) refuted += CountAbove(CausesOf(seed, [](LinearRun&) {}), 6.0) > 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed)
+    refuted += CountAbove(CausesOf(seed, [](LinearRun&) {}), 6.0) > 0;
   EXPECT_LE(refuted, 1);
 }
 

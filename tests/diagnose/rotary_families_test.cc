@@ -34,7 +34,7 @@ Scenario BenchOf(const std::string& effect, const std::string& where) {
 }
 
 struct Match {
-  double cosine2 = 0.0;     // share of the twin's signature that the family has
+  double cosine2 = 0.0;  // share of the twin's signature that the family has
   Eigen::VectorXd amplitudes;
 };
 

@@ -67,7 +67,8 @@ TEST(Scanner, GivesTheBayesFactorOfOneColumnInClosedForm) {
   const Eigen::MatrixXd white = noise.Whiten(c.run, Eigen::MatrixXd(c.run.residual));
   const Evidence evidence = scanner.Scan(Project(projector, {}, white), {});
   const Eigen::MatrixXd s = noise.Whiten(c.run, Eigen::MatrixXd(Drift(c.run)));
-  const double gram = s.col(0).dot(projector.Apply(s).col(0)), product = s.col(0).dot(projector.Apply(white).col(0));
+  const double gram = s.col(0).dot(projector.Apply(s).col(0)),
+               product = s.col(0).dot(projector.Apply(white).col(0));
   const double power = 20.0 + white.col(0).dot(projector.Apply(white).col(0));
   const double half = 0.5 * (20.0 + projector.DegreesOfFreedom());
   double mean = 0.0;

@@ -79,7 +79,8 @@ std::vector<Reading> TakeReadings(const Scenario& actual) {
 SignatureScale::SignatureScale(Design design, const std::string& cache_folder) {
   diagnose::DiagnoseOptions options;
   options.cache_folder = cache_folder;
-  const diagnose::DiagnosisRun clean = diagnose::Diagnose(TakeReadings(Drawn(design, 1)), Believed(design), options);
+  const diagnose::DiagnosisRun clean =
+      diagnose::Diagnose(TakeReadings(Drawn(design, 1)), Believed(design), options);
   run_ = clean.run;
   noise_ = clean.noise;
   projector_ = std::make_unique<diagnose::Projector>(noise_.Whiten(run_, run_.nuisance.jacobian), run_.nuisance);
@@ -91,7 +92,8 @@ double SignatureScale::Rho(const std::vector<Reading>& with, const std::vector<R
   Eigen::MatrixXd signature(run_.Rows(), 1);
   for (int row = 0; row < run_.Rows(); ++row) {
     const int channel = run_.ChannelOf(row);
-    const auto number = static_cast<std::size_t>(run_.schedule.reading[static_cast<std::size_t>(run_.ReadingOf(row))]);
+    const auto number =
+        static_cast<std::size_t>(run_.schedule.reading[static_cast<std::size_t>(run_.ReadingOf(row))]);
     const double difference = Shown(with[number], channel, run_.Channels(), bench) -
                               Shown(without[number], channel, run_.Channels(), bench);
     signature(row, 0) = std::isfinite(difference) ? difference : 0.0;

@@ -14,8 +14,9 @@ namespace twinbench::hidden {
 
 /// The designs that cases are made with.
 enum class Design {
-  kRotary,         // rotary_4dof, re-seated
-  kStops, kSweep,  // encoder_comparison
+  kRotary,  // rotary_4dof, re-seated
+  kStops,
+  kSweep,          // encoder_comparison
   kStopsAllKnown,  // the same with two mountings of the device, and its lines and teeth stated
   kSweepAllKnown
 };

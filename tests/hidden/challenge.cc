@@ -56,8 +56,8 @@ Part PartOf(const json& truth) {
 /// What a signature has to say, from the generator's words for it.
 std::string LockOf(const std::string& signature) {
   const std::vector<std::pair<std::string, std::string>> locks = {
-      {"per pass", "pass"},       {"temperature", "temperature"}, {"direction", "direction"}, {"spot", "spot"},
-      {"reference,", "both angles"}, {"per turn", "per turn"}};
+      {"per pass", "pass"}, {"temperature", "temperature"}, {"direction", "direction"},
+      {"spot", "spot"},     {"reference,", "both angles"},  {"per turn", "per turn"}};
   for (const auto& [theirs, ours] : locks) {
     if (signature.find(theirs) != std::string::npos) return ours;
   }

@@ -1,6 +1,7 @@
+#include "tests/hidden/challenge.h"
+
 #include <gtest/gtest.h>
 
-#include "tests/hidden/challenge.h"
 #include "tests/hidden/reduced.h"
 #include "tests/support/twin_run.h"
 

@@ -16,13 +16,20 @@ struct NoiseShape {
 
 NoiseShape ShapeOf(Noise noise) {
   switch (noise) {
-    case Noise::kGaussian: return {"Gaussian"};
-    case Noise::kStudent5: return {"Student t, 5 dof", true};
-    case Noise::kCorrelated2: return {"AR(1) 0.2", false, 0.2};
-    case Noise::kCorrelated3: return {"AR(1) 0.3", false, 0.3};
-    case Noise::kUnderstated: return {"25 % larger than stated", false, 0.0, 1.0 / 1.25};
-    case Noise::kOverstated: return {"25 % smaller than stated", false, 0.0, 1.0 / 0.75};
-    case Noise::kMixture: return {"t5, AR(1) 0.2, 25 % larger than stated", true, 0.2, 1.0 / 1.25};
+    case Noise::kGaussian:
+      return {"Gaussian"};
+    case Noise::kStudent5:
+      return {"Student t, 5 dof", true};
+    case Noise::kCorrelated2:
+      return {"AR(1) 0.2", false, 0.2};
+    case Noise::kCorrelated3:
+      return {"AR(1) 0.3", false, 0.3};
+    case Noise::kUnderstated:
+      return {"25 % larger than stated", false, 0.0, 1.0 / 1.25};
+    case Noise::kOverstated:
+      return {"25 % smaller than stated", false, 0.0, 1.0 / 0.75};
+    case Noise::kMixture:
+      return {"t5, AR(1) 0.2, 25 % larger than stated", true, 0.2, 1.0 / 1.25};
   }
   return {""};
 }
@@ -52,7 +59,8 @@ class Series {
 };
 
 /// Noise on the means, and blocks that state a deviation with the scatter that so many samples give it.
-void AddToVoltages(const NoiseShape& shape, double sample_noise_V, std::uint64_t seed, std::vector<Reading>& readings) {
+void AddToVoltages(const NoiseShape& shape, double sample_noise_V, std::uint64_t seed,
+                   std::vector<Reading>& readings) {
   for (std::size_t c = 0; c < kChannels; ++c) {
     Series series(shape, seed, kChannelNames[c]);
     Stream blocks(seed, std::string("hidden.blocks.") + kChannelNames[c]);
@@ -97,7 +105,8 @@ Case MakeClean(Design design, Noise noise, std::uint64_t seed) {
 
 std::vector<Plan> CleanPlans(const std::string& bench, int count, std::uint64_t first_seed) {
   const bool rotary = bench == kRotaryBench;
-  const std::vector<Design> designs = rotary ? std::vector{Design::kRotary} : std::vector{Design::kStops, Design::kSweep};
+  const std::vector<Design> designs =
+      rotary ? std::vector{Design::kRotary} : std::vector{Design::kStops, Design::kSweep};
   std::vector<Plan> plans;
   for (int k = 0; k < count; ++k) {
     const auto noise = static_cast<Noise>(k % kNoises);

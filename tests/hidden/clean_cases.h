@@ -12,8 +12,8 @@ enum class Noise { kGaussian, kStudent5, kCorrelated2, kCorrelated3, kUnderstate
 inline constexpr int kNoises = 7;
 const char* NoiseName(Noise noise);
 
-/// `count` runs, the noises in turn. On the angle bench, where the noise is not stated but estimated, that of a wrong
-/// size is Gaussian noise of a device whose noise is stated.
+/// `count` runs, the noises in turn. On the angle bench, where the noise is not stated but estimated, that of a
+/// wrong size is Gaussian noise of a device whose noise is stated.
 std::vector<Plan> CleanPlans(const std::string& bench, int count, std::uint64_t first_seed);
 
 /// One clean run.

@@ -17,7 +17,8 @@ using units::arcsec;
 
 constexpr std::uint64_t kSeed = 71;
 
-EffectSettings Effect(const std::string& name, const std::string& where, const std::map<std::string, double>& parameters) {
+EffectSettings Effect(const std::string& name, const std::string& where,
+                      const std::map<std::string, double>& parameters) {
   EffectSettings effect;
   effect.name = name;
   effect.where = where;
@@ -43,7 +44,8 @@ Diagnosis Diagnosed(const std::vector<Reading>& readings, const Scenario& believ
 }
 
 const Cause* Find(const Diagnosis& d, const std::string& effect, const std::string& where) {
-  const auto found = std::ranges::find_if(d.causes, [&](const Cause& c) { return c.effect == effect && c.where == where; });
+  const auto found =
+      std::ranges::find_if(d.causes, [&](const Cause& c) { return c.effect == effect && c.where == where; });
   return found == d.causes.end() ? nullptr : &*found;
 }
 
@@ -56,7 +58,8 @@ template <class Field>
 std::vector<Reading> Shuffled(std::vector<Reading> readings, Field Reading::*field) {
   Stream stream(kSeed, "hidden.shuffle");
   for (std::size_t i = readings.size(); i > 1; --i)
-    std::swap(readings[i - 1].*field, readings[static_cast<std::size_t>(stream.Uniform() * static_cast<double>(i))].*field);
+    std::swap(readings[i - 1].*field,
+              readings[static_cast<std::size_t>(stream.Uniform() * static_cast<double>(i))].*field);
   return readings;
 }
 

@@ -44,8 +44,10 @@ std::vector<Plan> PlansOf(const std::string& set, const Options& options) {
   if (name == "challenge_encoder") return ChallengePlans(value, kEncoderBench, options.struck);
   if (name == "twin") return OfBothBenches([&](const auto& bench) { return SinglePlans(bench, options.twin); });
   if (name == "pairs") return PairPlans(CountOf(value, 60), options.twin);
-  if (name == "unlisted") return OfBothBenches([&](const auto& bench) { return UnlistedPlans(bench, options.twin); });
-  if (name == "leave-one-out") return OfBothBenches([&](const auto& bench) { return LeaveOneOutPlans(bench, options.twin); });
+  if (name == "unlisted")
+    return OfBothBenches([&](const auto& bench) { return UnlistedPlans(bench, options.twin); });
+  if (name == "leave-one-out")
+    return OfBothBenches([&](const auto& bench) { return LeaveOneOutPlans(bench, options.twin); });
   if (name == "clean") {
     return OfBothBenches([&](const std::string& bench) {
       return CleanPlans(bench, CountOf(value, 400) / (bench == kRotaryBench ? 1 : 4), options.twin.first_seed);
@@ -93,8 +95,9 @@ void Score(const Options& options) {
                GradeName(o.grade), o.answer.substr(0, 120), o.seconds);
   };
   const std::vector<Outcome> outcomes = RunCases(plans, {options.threads, options.twin.cache_folder, show});
-  const std::string table = fmt::format("# Score of the diagnosis\n\nMade by `{}` from the top folder; do not edit.\n\n{}", CommandOf(options),
-                                        ScoreTable(outcomes));
+  const std::string table =
+      fmt::format("# Score of the diagnosis\n\nMade by `{}` from the top folder; do not edit.\n\n{}",
+                  CommandOf(options), ScoreTable(outcomes));
   if (!options.cases.empty()) WriteTo(options.cases, CasesCsv(outcomes));
   if (!options.out.empty()) WriteTo(options.out, table);
   if (options.out.empty()) fmt::print("{}", table);
@@ -106,14 +109,16 @@ void Score(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app("Hides causes in readings, has them diagnosed, and scores the answers");
   twinbench::hidden::Options options;
-  app.add_option("--set", options.sets, "challenge=DIR, challenge_encoder=DIR, twin, pairs=N, unlisted, clean=N, leave-one-out")
+  app.add_option("--set", options.sets,
+                 "challenge=DIR, challenge_encoder=DIR, twin, pairs=N, unlisted, clean=N, leave-one-out")
       ->required()
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "cases at a time")->check(CLI::Range(1, 64));
   app.add_option("--seeds", options.twin.seeds, "cases of each effect, place and size");
   app.add_option("--magnitudes", options.twin.magnitudes, "sizes of each effect, from rho 5 to 30");
   app.add_option("--first-seed", options.twin.first_seed, "other seeds, other cases");
-  app.add_option("--cache", options.twin.cache_folder, "folder that keeps calibrated thresholds; else they are made anew");
+  app.add_option("--cache", options.twin.cache_folder,
+                 "folder that keeps calibrated thresholds; else they are made anew");
   app.add_option("--out", options.out, "write the score here instead of stdout");
   app.add_option("--cases", options.cases, "write one row a case here");
   app.add_option("--strike", options.struck, "take an effect out of the catalogue")->allow_extra_args(false);

@@ -50,7 +50,8 @@ std::vector<std::string> Split(const std::string& text, const std::string& separ
 /// One part of the signature has the lock, and itself or one of its alternatives names exactly the channels.
 bool HasSignature(const Hidden& hidden, const std::string& signature) {
   return std::ranges::any_of(Split(signature, " | "), [&](const std::string& part) {
-    if (std::ranges::none_of(hidden.locks, [&](const std::string& lock) { return part.find(lock) != std::string::npos; }))
+    if (std::ranges::none_of(hidden.locks,
+                             [&](const std::string& lock) { return part.find(lock) != std::string::npos; }))
       return false;
     if (hidden.channels.empty()) return true;
     const std::size_t others = part.find("; or the same on ");
@@ -89,7 +90,8 @@ bool Names(const Diagnosis& d) {
 
 void AddStated(const Diagnosis& d, Outcome& outcome) {
   if (Names(d)) {
-    for (const Cause& cause : d.causes) outcome.stated.push_back({cause.probability, IsThere(cause, outcome.hidden)});
+    for (const Cause& cause : d.causes)
+      outcome.stated.push_back({cause.probability, IsThere(cause, outcome.hidden)});
   }
   if (d.verdict == Verdict::kUnknown)
     outcome.stated.push_back({d.unknown.probability, !outcome.hidden.unlisted.empty()});
@@ -119,9 +121,11 @@ void AddParameters(const Diagnosis& d, Outcome& outcome) {
 std::string AnswerOf(const Diagnosis& d) {
   std::string text = diagnose::VerdictName(d.verdict);
   for (const Cause& cause : d.causes) {
-    text += fmt::format(" [{}{}{} {:.2f}]", cause.effect, cause.where.empty() ? "" : " ", cause.where, cause.probability);
+    text += fmt::format(" [{}{}{} {:.2f}]", cause.effect, cause.where.empty() ? "" : " ", cause.where,
+                        cause.probability);
   }
-  if (d.verdict == Verdict::kUnknown) text += fmt::format(" {:.2f}: {}", d.unknown.probability, d.unknown.signature);
+  if (d.verdict == Verdict::kUnknown)
+    text += fmt::format(" {:.2f}: {}", d.unknown.probability, d.unknown.signature);
   return text;
 }
 
@@ -143,8 +147,9 @@ std::string InWords(const Hidden& hidden) {
 
 const char* GradeName(Grade grade) {
   constexpr std::array<const char*, 13> kNames = {
-      "quiet",  "false alarm",      "missed",  "right",                    "right and more", "tie",    "large tie",
-      "partly", "answered unknown", "unknown", "unknown, other signature", "wrong",          "refused"};
+      "quiet",     "false alarm", "missed",           "right",   "right and more",           "tie",
+      "large tie", "partly",      "answered unknown", "unknown", "unknown, other signature", "wrong",
+      "refused"};
   return kNames[static_cast<std::size_t>(grade)];
 }
 
@@ -154,8 +159,10 @@ bool ParameterCheck::Covers() const {
 
 std::vector<std::string> ChannelsIn(const std::string& signature) {
   const std::map<std::string, std::vector<std::string>> patterns = {
-      {"yaw", {"psd_a_x", "psd_b_x"}},     {"tilt", {"psd_a_y", "psd_b_y"}},
-      {"roll", {"psd_a_y", "psd_b_y"}},    {"lateral", {"psd_a_x", "psd_b_x"}},
+      {"yaw", {"psd_a_x", "psd_b_x"}},
+      {"tilt", {"psd_a_y", "psd_b_y"}},
+      {"roll", {"psd_a_y", "psd_b_y"}},
+      {"lateral", {"psd_a_x", "psd_b_x"}},
       {"all", {"psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"}}};
   std::set<std::string> channels;
   for (const char* channel : kChannelNames) {

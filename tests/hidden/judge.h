@@ -43,12 +43,12 @@ struct Outcome {
   Hidden hidden;
   Grade grade = Grade::kRefused;
   diagnose::Verdict verdict = diagnose::Verdict::kNone;
-  std::string answer;                   // causes with their probabilities and signature of the unknown, in words
-  int members = 0;                      // causes in the answer
-  double probability = 0.0;             // of the most probable cause or the unknown
+  std::string answer;        // causes with their probabilities and signature of the unknown, in words
+  int members = 0;           // causes in the answer
+  double probability = 0.0;  // of the most probable cause or the unknown
   double alarm_p = kNaN, rho = kNaN, gain = kNaN;
-  bool confident_wrong = false;         // a name that is not there, stated at 0.9 or more
-  bool confident_alike = false;         // ... but these readings cannot tell it from the truth
+  bool confident_wrong = false;  // a name that is not there, stated at 0.9 or more
+  bool confident_alike = false;  // ... but these readings cannot tell it from the truth
   std::vector<Stated> stated;
   std::vector<ParameterCheck> parameters;
   double seconds = 0.0;

@@ -17,7 +17,8 @@ Hidden Listed(const std::string& effect, const std::string& where = "") {
   return hidden;
 }
 
-Diagnosis Answer(Verdict verdict, const std::vector<std::array<std::string, 2>>& causes, double probability = 0.95) {
+Diagnosis Answer(Verdict verdict, const std::vector<std::array<std::string, 2>>& causes,
+                 double probability = 0.95) {
   Diagnosis d;
   d.verdict = verdict;
   for (const auto& [effect, where] : causes) {
@@ -41,7 +42,8 @@ TEST(Judge, ANameIsRightOnlyWithItsPlace) {
   const Hidden hidden = Listed("psd_gain", "psd_a_x");
   EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"psd_gain", "psd_a_x"}})).grade, Grade::kRight);
   EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"psd_gain", "psd_a_y"}})).grade, Grade::kWrong);
-  EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"psd_gain", "psd_a_x"}, {"tone", "all"}})).grade, Grade::kRightAndMore);
+  EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"psd_gain", "psd_a_x"}, {"tone", "all"}})).grade,
+            Grade::kRightAndMore);
   EXPECT_EQ(Judge(Listed("backlash"), Answer(Verdict::kNamed, {{"backlash", "target"}})).grade, Grade::kRight);
 }
 
@@ -68,8 +70,9 @@ TEST(Judge, AnUnknownNeedsItsLockAndExactlyItsChannels) {
   EXPECT_EQ(Judge(hidden, AnswerUnknown("periodic, locked to spot, on psd_b_x")).grade, Grade::kUnknown);
   EXPECT_EQ(Judge(hidden, AnswerUnknown("wander | periodic, locked to spot, on psd_b_x")).grade, Grade::kUnknown);
   EXPECT_EQ(Judge(hidden, AnswerUnknown("periodic, locked to spot, on psd_b_y")).grade, Grade::kUnknownMisplaced);
-  EXPECT_EQ(Judge(hidden, AnswerUnknown("periodic, locked to spot, on psd_b_y; or the same on psd_a_x, psd_b_x")).grade,
-            Grade::kUnknown);
+  EXPECT_EQ(
+      Judge(hidden, AnswerUnknown("periodic, locked to spot, on psd_b_y; or the same on psd_a_x, psd_b_x")).grade,
+      Grade::kUnknown);
   EXPECT_EQ(Judge(hidden, AnswerUnknown("slow wander locked to time, on psd_b_x")).grade, Grade::kUnknownMisplaced);
   EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "psd_b_x"}})).grade, Grade::kWrong);
 }

@@ -15,9 +15,7 @@ namespace fs = std::filesystem;
 
 class Cache : public ::testing::Environment {
  public:
-  static std::string Path() {
-    return fs::temp_directory_path() / fmt::format("twinbench-hidden-{}", ::getpid());
-  }
+  static std::string Path() { return fs::temp_directory_path() / fmt::format("twinbench-hidden-{}", ::getpid()); }
   void SetUp() override { fs::create_directories(Path()); }
   void TearDown() override { fs::remove_all(Path()); }
 };
@@ -54,7 +52,8 @@ std::string Others(const std::vector<Outcome>& outcomes, bool (*right)(const Out
   std::string text;
   for (const Outcome& o : outcomes) {
     if (right(o)) continue;
-    text += fmt::format("\n  {} {} hides {} (rho {:.0f}): {}", o.set, o.name, InWords(o.hidden), o.hidden.rho, o.answer);
+    text += fmt::format("\n  {} {} hides {} (rho {:.0f}): {}", o.set, o.name, InWords(o.hidden), o.hidden.rho,
+                        o.answer);
   }
   return text;
 }

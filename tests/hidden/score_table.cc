@@ -28,7 +28,8 @@ Test Graded(Grade grade) {
   return [grade](const Outcome& o) { return o.grade == grade; };
 }
 
-std::map<std::string, Outcomes> By(const Outcomes& outcomes, const std::function<std::string(const Outcome&)>& key) {
+std::map<std::string, Outcomes> By(const Outcomes& outcomes,
+                                   const std::function<std::string(const Outcome&)>& key) {
   std::map<std::string, Outcomes> groups;
   for (const Outcome* o : outcomes) groups[key(*o)].push_back(o);
   return groups;
@@ -82,10 +83,11 @@ std::string SetTable(const Outcomes& all) {
                         WithInterval(count([](const Outcome& o) { return o.confident_wrong; }), group.size()));
   }
   std::vector<double> sizes;
-  for (const Outcome* o : Only(all, [](const Outcome& c) { return IsListed(c) && c.verdict == diagnose::Verdict::kTie; }))
+  for (const Outcome* o :
+       Only(all, [](const Outcome& c) { return IsListed(c) && c.verdict == diagnose::Verdict::kTie; }))
     sizes.push_back(o->members);
-  return text + fmt::format("\nTies: {}, median size {:.0f}, largest {:.0f}.\n\n", sizes.size(), Quantile(sizes, 0.5),
-                            Quantile(sizes, 1.0));
+  return text + fmt::format("\nTies: {}, median size {:.0f}, largest {:.0f}.\n\n", sizes.size(),
+                            Quantile(sizes, 0.5), Quantile(sizes, 1.0));
 }
 
 std::string Effects(const Outcome& o) {
@@ -96,11 +98,13 @@ std::string Effects(const Outcome& o) {
 
 std::string EffectTable(const Outcomes& all) {
   std::string text =
-      "## Answers by cause\n\n| set | cause | cases | detected | right | right and more | tie | large tie | partly | "
+      "## Answers by cause\n\n| set | cause | cases | detected | right | right and more | tie | large tie | partly "
+      "| "
       "answered unknown | wrong | missed |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   const Outcomes single = Only(all, [](const Outcome& o) { return IsListed(o) && o.hidden.causes.size() == 1; });
   for (const auto& [key, group] : By(single, [](const Outcome& o) { return o.set + " | " + Effects(o); })) {
-    text += fmt::format("| {} | {} | {}", key, group.size(), Percent(Count(group, &Outcome::Detected), group.size()));
+    text +=
+        fmt::format("| {} | {} | {}", key, group.size(), Percent(Count(group, &Outcome::Detected), group.size()));
     for (const Grade g : {Grade::kRight, Grade::kRightAndMore, Grade::kTie, Grade::kLargeTie, Grade::kPartly,
                           Grade::kAnsweredUnknown, Grade::kWrong, Grade::kMissed})
       text += fmt::format(" | {}", Count(group, Graded(g)));
@@ -147,7 +151,8 @@ std::string UnlistedTable(const Outcomes& all) {
 }
 
 std::string AlarmTable(const Outcomes& all) {
-  std::string text = "## False alarms\n\n| set | noise | clean runs | alarms (95 % interval) |\n|---|---|---|---|\n";
+  std::string text =
+      "## False alarms\n\n| set | noise | clean runs | alarms (95 % interval) |\n|---|---|---|---|\n";
   const Outcomes clean = Only(all, [](const Outcome& o) { return o.hidden.IsClean(); });
   const auto row = [&](const std::string& key, const Outcomes& group) {
     text += fmt::format("| {} | {} | {} |\n", key, group.size(),
@@ -161,8 +166,10 @@ std::string AlarmTable(const Outcomes& all) {
 
 std::string LeaveOneOutTable(const Outcomes& all) {
   std::string text =
-      "## Leave one cause out\n\nThe true cause is struck from the catalogue; every name is wrong. `structural`: wrong "
-      "names that these readings cannot tell from the truth.\n\n| cause | cases | named above 0.9 | of these structural "
+      "## Leave one cause out\n\nThe true cause is struck from the catalogue; every name is wrong. `structural`: "
+      "wrong "
+      "names that these readings cannot tell from the truth.\n\n| cause | cases | named above 0.9 | of these "
+      "structural "
       "| unknown | tie | none |\n|---|---|---|---|---|---|---|\n";
   const Outcomes struck = Only(all, IsLeaveOneOut);
   const auto row = [&](const std::string& key, const Outcomes& group) {
@@ -199,7 +206,8 @@ std::string ReliabilityTable(const Outcomes& all) {
       sum += s.probability;
     }
     text += fmt::format("| {:.2f}-{:.2f} | {} | {} | {} |\n", edges[k], edges[k + 1], count,
-                        count ? fmt::format("{:.3f}", sum / count) : "-", WithInterval(so, static_cast<std::size_t>(count)));
+                        count ? fmt::format("{:.3f}", sum / count) : "-",
+                        WithInterval(so, static_cast<std::size_t>(count)));
   }
   return text + "\n";
 }
@@ -215,7 +223,8 @@ std::string ParameterTable(const Outcomes& all) {
     }
   }
   std::string text =
-      "## Sizes of the causes found\n\n| set | parameter | values | truth within 95 % interval | median value/truth "
+      "## Sizes of the causes found\n\n| set | parameter | values | truth within 95 % interval | median "
+      "value/truth "
       "|\n|---|---|---|---|---|\n";
   for (const auto& [key, checks] : by) {
     std::vector<double> ratios;
@@ -229,7 +238,8 @@ std::string ParameterTable(const Outcomes& all) {
 
 std::string GainTable(const Outcomes& all) {
   std::string text =
-      "## Held-out gain\n\nOf rightly named causes: share of the removable variance of passes that were not used.\n\n"
+      "## Held-out gain\n\nOf rightly named causes: share of the removable variance of passes that were not "
+      "used.\n\n"
       "| set | named | at least 0.9 removed | median | 10th percentile |\n|---|---|---|---|---|\n";
   const Outcomes named = Only(all, [](const Outcome& o) {
     return IsListed(o) && (o.grade == Grade::kRight || o.grade == Grade::kTie) && std::isfinite(o.gain);
@@ -245,7 +255,8 @@ std::string GainTable(const Outcomes& all) {
 }
 
 std::string TimeTable(const Outcomes& all) {
-  std::string text = "## Time of one diagnosis\n\n| set | median [s] | 95th percentile [s] | longest [s] |\n|---|---|---|---|\n";
+  std::string text =
+      "## Time of one diagnosis\n\n| set | median [s] | 95th percentile [s] | longest [s] |\n|---|---|---|---|\n";
   for (const auto& [set, group] : By(all, [](const Outcome& o) { return o.set; })) {
     std::vector<double> seconds;
     for (const Outcome* o : group) seconds.push_back(o->seconds);
@@ -261,7 +272,9 @@ bool IsSatisfactory(const Outcome& o) {
 }
 
 std::string FailureList(const Outcomes& all) {
-  std::string text = "## Answers that are not right\n\n| set | case | hidden | rho | grade | answer |\n|---|---|---|---|---|---|\n";
+  std::string text =
+      "## Answers that are not right\n\n| set | case | hidden | rho | grade | answer "
+      "|\n|---|---|---|---|---|---|\n";
   for (const Outcome* o : all) {
     if (IsSatisfactory(*o)) continue;
     std::string answer = o->answer.substr(0, 160);
@@ -298,20 +311,22 @@ std::array<double, 2> Share::Interval95() const {
 std::string ScoreTable(const std::vector<Outcome>& outcomes) {
   Outcomes all;
   for (const Outcome& o : outcomes) all.push_back(&o);
-  return SetTable(all) + EffectTable(all) + RhoTable(all) + UnlistedTable(all) + AlarmTable(all) + LeaveOneOutTable(all) +
-         ReliabilityTable(all) + ParameterTable(all) + GainTable(all) + TimeTable(all) + FailureList(all);
+  return SetTable(all) + EffectTable(all) + RhoTable(all) + UnlistedTable(all) + AlarmTable(all) +
+         LeaveOneOutTable(all) + ReliabilityTable(all) + ParameterTable(all) + GainTable(all) + TimeTable(all) +
+         FailureList(all);
 }
 
 std::string CasesCsv(const std::vector<Outcome>& outcomes) {
   std::string text =
-      "set,case,hidden,noise,rho,grade,answer,probability,confident_wrong,alarm_p,fitted_rho,parameter,value,u,truth,gain,"
+      "set,case,hidden,noise,rho,grade,answer,probability,confident_wrong,alarm_p,fitted_rho,parameter,value,u,"
+      "truth,gain,"
       "seconds\n";
   for (const Outcome& o : outcomes) {
     const ParameterCheck p = o.parameters.empty() ? ParameterCheck{} : o.parameters.front();
-    text += fmt::format("{},{},{},{},{:.3g},{},{},{:.4f},{:d},{:.3g},{:.3g},{},{:.5g},{:.3g},{:.5g},{:.3f},{:.2f}\n", o.set,
-                        o.name, Quoted(InWords(o.hidden)), Quoted(o.hidden.noise), o.hidden.rho, GradeName(o.grade),
-                        Quoted(o.answer), o.probability, o.confident_wrong, o.alarm_p, o.rho, p.name, p.value, p.u,
-                        p.truth, o.gain, o.seconds);
+    text += fmt::format(
+        "{},{},{},{},{:.3g},{},{},{:.4f},{:d},{:.3g},{:.3g},{},{:.5g},{:.3g},{:.5g},{:.3f},{:.2f}\n", o.set, o.name,
+        Quoted(InWords(o.hidden)), Quoted(o.hidden.noise), o.hidden.rho, GradeName(o.grade), Quoted(o.answer),
+        o.probability, o.confident_wrong, o.alarm_p, o.rho, p.name, p.value, p.u, p.truth, o.gain, o.seconds);
   }
   return text;
 }

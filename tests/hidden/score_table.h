@@ -19,11 +19,12 @@ struct Share {
   std::array<double, 2> Interval95() const;
 };
 
-/// The score in Markdown: by set, by cause, unlisted causes, false alarms by noise, leave-one-out, calibration of the
-/// stated probabilities, parameters, gain, times, and a list of the answers that are not right.
+/// The score in Markdown: by set, by cause, unlisted causes, false alarms by noise, leave-one-out, calibration of
+/// the stated probabilities, parameters, gain, times, and a list of the answers that are not right.
 std::string ScoreTable(const std::vector<Outcome>& outcomes);
 
-/// One row a case: set, case, truth, rho, grade, answer, probability, alarm_p, value, u, truth value, gain, seconds.
+/// One row a case: set, case, truth, rho, grade, answer, probability, alarm_p, value, u, truth value, gain,
+/// seconds.
 std::string CasesCsv(const std::vector<Outcome>& outcomes);
 
 }  // namespace twinbench::hidden

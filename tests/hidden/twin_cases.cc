@@ -19,22 +19,36 @@ struct Wanted {
 
 /// The parameter that an effect's signature grows with.
 std::string SizeOf(const std::string& effect, const std::string& where) {
-  static const std::map<std::string, std::string> sizes = {
-      {"psd_gain", "gain_error"},          {"psd_roll", "roll"},
-      {"psd_nonlinearity", "cubic"},       {"stray_light", "fraction"},
-      {"psd_distance", "distance_error"},  {"wavelength_offset", "wavelength_error"},
-      {"incidence_offset", "incidence"},   {"wavelength_temperature", "wavelength_per_kelvin"},
-      {"laser_drift", "drift"},            {"mount_creep", "amplitude"},
-      {"thermal_tilt", "tilt_per_kelvin"}, {"settling", "amplitude"},
-      {"tone", "amplitude"},               {"bearing_half_frequency", "tilt"},
-      {"adc_step", "step"},                {"crosstalk", "fraction"},
-      {"eccentricity", "amplitude"},       {"ellipticity", "amplitude"},
-      {"signal_offset", "offset_sin"},     {"amplitude_mismatch", "ratio"},
-      {"quadrature_error", "angle"},       {"signal_clipping", "level"},
-      {"interpolation", "amplitude"},      {"latency", "delay"},
-      {"hysteresis", "lag"},               {"scale", "ratio"},
-      {"drift", "rate"},                   {"periodic", "amplitude"},
-      {"gear_mesh", "amplitude"},          {"reference_fault", "amplitude"}};
+  static const std::map<std::string, std::string> sizes = {{"psd_gain", "gain_error"},
+                                                           {"psd_roll", "roll"},
+                                                           {"psd_nonlinearity", "cubic"},
+                                                           {"stray_light", "fraction"},
+                                                           {"psd_distance", "distance_error"},
+                                                           {"wavelength_offset", "wavelength_error"},
+                                                           {"incidence_offset", "incidence"},
+                                                           {"wavelength_temperature", "wavelength_per_kelvin"},
+                                                           {"laser_drift", "drift"},
+                                                           {"mount_creep", "amplitude"},
+                                                           {"thermal_tilt", "tilt_per_kelvin"},
+                                                           {"settling", "amplitude"},
+                                                           {"tone", "amplitude"},
+                                                           {"bearing_half_frequency", "tilt"},
+                                                           {"adc_step", "step"},
+                                                           {"crosstalk", "fraction"},
+                                                           {"eccentricity", "amplitude"},
+                                                           {"ellipticity", "amplitude"},
+                                                           {"signal_offset", "offset_sin"},
+                                                           {"amplitude_mismatch", "ratio"},
+                                                           {"quadrature_error", "angle"},
+                                                           {"signal_clipping", "level"},
+                                                           {"interpolation", "amplitude"},
+                                                           {"latency", "delay"},
+                                                           {"hysteresis", "lag"},
+                                                           {"scale", "ratio"},
+                                                           {"drift", "rate"},
+                                                           {"periodic", "amplitude"},
+                                                           {"gear_mesh", "amplitude"},
+                                                           {"reference_fault", "amplitude"}};
   if (effect == "slip") return where == "lateral" ? "shift" : where.empty() ? "step" : "angle";
   if (effect == "backlash") return where.empty() ? "width" : "half_width";
   const auto found = sizes.find(effect);
@@ -53,7 +67,8 @@ void DrawShape(Stream& stream, const Scenario& scenario, EffectSettings& effect)
   set("at_voltage", UniformIn(stream, -0.01, 0.01));
   set("frequency", LogUniformIn(stream, 0.003, 0.06));
   set("settles_over", LogUniformIn(stream, 10.0, 60.0) * deg);
-  set("time_constant", effect.name == "settling" ? UniformIn(stream, 0.5, 2.0) : LogUniformIn(stream, 200.0, 2000.0));
+  set("time_constant",
+      effect.name == "settling" ? UniformIn(stream, 0.5, 2.0) : LogUniformIn(stream, 200.0, 2000.0));
   set("at_reading", std::round(UniformIn(stream, rotary ? 80.0 : 40.0, rotary ? 560.0 : 500.0)));
   if (effect.name == "thermal_tilt") set("lag", LogUniformIn(stream, 300.0, 2700.0));
   if (effect.name == "bearing_half_frequency") set("order", UniformIn(stream, 0.42, 0.499));
@@ -72,7 +87,8 @@ const EffectParameter& ParameterOf(const std::string& bench, const std::string& 
   return *std::ranges::find(all, name, &EffectParameter::name);
 }
 
-EffectSettings DrawEffect(const std::string& name, const std::string& where, const Scenario& scenario, Stream& stream) {
+EffectSettings DrawEffect(const std::string& name, const std::string& where, const Scenario& scenario,
+                          Stream& stream) {
   EffectSettings effect;
   effect.name = name;
   effect.where = where;
@@ -84,7 +100,8 @@ EffectSettings DrawEffect(const std::string& name, const std::string& where, con
   if (size.empty()) return effect;
   const bool is_signed = ParameterOf(scenario.bench, name, size).lower_SI < 0.0;
   if (is_signed && stream.Uniform() < 0.5) effect.parameters[size] *= -1.0;
-  if (name == "signal_offset") effect.parameters["offset_cos"] = UniformIn(stream, -2.0, 2.0) * effect.parameters[size];
+  if (name == "signal_offset")
+    effect.parameters["offset_cos"] = UniformIn(stream, -2.0, 2.0) * effect.parameters[size];
   return effect;
 }
 
@@ -179,11 +196,16 @@ std::vector<Design> DesignsFor(const std::string& effect, const std::string& ben
 
 const char* NameOf(Design design) {
   switch (design) {
-    case Design::kRotary: return "rotary";
-    case Design::kStops: return "stops";
-    case Design::kSweep: return "sweep";
-    case Design::kStopsAllKnown: return "stops+";
-    case Design::kSweepAllKnown: return "sweep+";
+    case Design::kRotary:
+      return "rotary";
+    case Design::kStops:
+      return "stops";
+    case Design::kSweep:
+      return "sweep";
+    case Design::kStopsAllKnown:
+      return "stops+";
+    case Design::kSweepAllKnown:
+      return "sweep+";
   }
   return "";
 }
@@ -256,13 +278,17 @@ std::vector<Plan> PairPlans(int count, const TwinOptions& options) {
   });
   Stream stream(options.first_seed, "hidden.pairs");
   while (std::ssize(plans) < count) {
-    const auto draw = [&] { return all[static_cast<std::size_t>(stream.Uniform() * static_cast<double>(all.size()))]; };
+    const auto draw = [&] {
+      return all[static_cast<std::size_t>(stream.Uniform() * static_cast<double>(all.size()))];
+    };
     Wanted a = draw(), b = draw();
     if (a.effect == b.effect) continue;
     a.rho = LogUniformIn(stream, 10.0, options.rho_to);
     b.rho = LogUniformIn(stream, 10.0, options.rho_to);
     const std::uint64_t seed = 100000 + options.first_seed + plans.size();
-    plans.push_back({"pairs", std::to_string(seed), [=] { return MakeCase(Design::kRotary, seed, {a, b}, scale); }});
+    plans.push_back({"pairs", std::to_string(seed), [=] {
+                       return MakeCase(Design::kRotary, seed, {a, b}, scale);
+                     }});
   }
   return plans;
 }

@@ -11,8 +11,8 @@
 namespace twinbench::hidden {
 
 struct TwinOptions {
-  int magnitudes = 3;         // sizes an effect and place, spread over rho_from to rho_to in equal ratios
-  int seeds = 2;              // of each size
+  int magnitudes = 3;  // sizes an effect and place, spread over rho_from to rho_to in equal ratios
+  int seeds = 2;       // of each size
   std::uint64_t first_seed = 1;
   double rho_from = 5.0, rho_to = 30.0;
   std::string cache_folder;
@@ -27,7 +27,8 @@ std::vector<Plan> PairPlans(int count, const TwinOptions& options);
 /// One effect at rho 20 that the catalogue is made to lack: `seeds` cases an effect and place.
 std::vector<Plan> LeaveOneOutPlans(const std::string& bench, const TwinOptions& options);
 
-/// Effects of the catalogue that leave a trace proportional to a size; the others (a swap, a frame) are there or not.
+/// Effects of the catalogue that leave a trace proportional to a size; the others (a swap, a frame) are there or
+/// not.
 bool HasSize(const std::string& effect);
 
 }  // namespace twinbench::hidden

@@ -71,10 +71,12 @@ TEST_P(Twin, CausesThatNoCatalogueListsAreUnknown) {
 
 TEST_P(Twin, WithoutItsCauseTheCatalogueSeldomNamesAnother) {
   // Every design without an effect needs a calibration of its own, so this is a small sample.
-  const auto outcomes = RunReduced(EveryFifth(OneOfEachEffect(GetParam(), LeaveOneOutPlans(GetParam(), OneSize()))));
+  const auto outcomes =
+      RunReduced(EveryFifth(OneOfEachEffect(GetParam(), LeaveOneOutPlans(GetParam(), OneSize()))));
   // A name that these readings cannot tell from the truth is no fault of the answer.
   const auto is_wrong = [](const Outcome& o) { return o.confident_wrong && !o.confident_alike; };
-  EXPECT_TRUE(IsNotAbove(CountOf(outcomes, is_wrong), outcomes.size(), 0.10)) << Others(outcomes, IsNotConfidentlyWrong);
+  EXPECT_TRUE(IsNotAbove(CountOf(outcomes, is_wrong), outcomes.size(), 0.10))
+      << Others(outcomes, IsNotConfidentlyWrong);
 }
 
 INSTANTIATE_TEST_SUITE_P(BothBenches, Twin, ::testing::Values(kRotaryBench, kEncoderBench),
@@ -88,9 +90,11 @@ TEST(HiddenCases, CoverEveryEffectOfBothCatalogues) {
 }
 
 TEST(HiddenCases, AreTheSameForTheSameSeed) {
-  const Case once = MakeClean(Design::kRotary, Noise::kMixture, 5), again = MakeClean(Design::kRotary, Noise::kMixture, 5);
+  const Case once = MakeClean(Design::kRotary, Noise::kMixture, 5),
+             again = MakeClean(Design::kRotary, Noise::kMixture, 5);
   ASSERT_EQ(once.readings.size(), again.readings.size());
-  for (std::size_t i = 0; i < once.readings.size(); ++i) EXPECT_EQ(once.readings[i].mean_V, again.readings[i].mean_V);
+  for (std::size_t i = 0; i < once.readings.size(); ++i)
+    EXPECT_EQ(once.readings[i].mean_V, again.readings[i].mean_V);
 }
 
 }  // namespace

@@ -80,11 +80,14 @@ std::vector<Accepted> AcceptedOf(const Analysis& analysis) {
 }
 
 /// What this run would have shown of each cause, and what it would not.
-void AddDetectability(const LinearRun& run, const Analysis& analysis, const BenchWords& words, Diagnosis& diagnosis) {
+void AddDetectability(const LinearRun& run, const Analysis& analysis, const BenchWords& words,
+                      Diagnosis& diagnosis) {
   const std::vector<Family>& families = analysis.scanner->Families();
   for (int k = 0; k < std::ssize(families); ++k) {
     const Family& family = families[static_cast<std::size_t>(k)];
-    const auto same = [&family](const auto& entry) { return entry.effect == family.effect && entry.where == family.where; };
+    const auto same = [&family](const auto& entry) {
+      return entry.effect == family.effect && entry.where == family.where;
+    };
     if (family.kind != Kind::kNamed || std::ranges::any_of(diagnosis.detectable, same) ||
         std::ranges::any_of(diagnosis.invisible, same)) {
       continue;
@@ -93,7 +96,8 @@ void AddDetectability(const LinearRun& run, const Analysis& analysis, const Benc
     const double information = analysis.scanner->Information(k), top = kPlausibleTop * a.prior_sd;
     if (top * std::sqrt(information) >= kBaarda) {
       const double smallest = kBaarda / std::sqrt(information);
-      diagnosis.detectable.push_back({family.effect, family.where, {a.name, a.unit, a.to_SI, smallest, kNaN, a.lower, a.upper}});
+      diagnosis.detectable.push_back(
+          {family.effect, family.where, {a.name, a.unit, a.to_SI, smallest, kNaN, a.lower, a.upper}});
       continue;
     }
     const Eigen::MatrixXd column = top * family.ColumnsAt(family.grid / 2).leftCols(1);
@@ -105,7 +109,8 @@ void AddDetectability(const LinearRun& run, const Analysis& analysis, const Benc
 void AddNextMeasurements(const BenchWords& words, std::vector<Cause>& causes) {
   for (Cause& cause : causes) {
     for (const Rival& rival : cause.indistinguishable_from) {
-      if (cause.next_measurement.empty()) cause.next_measurement = words.next_measurement(cause.effect, rival.effect);
+      if (cause.next_measurement.empty())
+        cause.next_measurement = words.next_measurement(cause.effect, rival.effect);
     }
     if (cause.next_measurement.empty() && !cause.indistinguishable_from.empty()) {
       cause.next_measurement = "more passes in both directions, with different dwells, and sweeps in yaw and tilt";
@@ -146,7 +151,8 @@ void JudgeByGain(DiagnosisRun& result) {
   if (!named || result.accepted.empty() || d.gain.folds == 0 || d.gain.positive) return;
   constexpr double kNotProven = 0.6;
   for (Cause& cause : d.causes) cause.probability = std::min(cause.probability, kNotProven);
-  d.notes.push_back("the gain on held-out passes is not above zero at 95 %: the cause is a proposal, not part of the model");
+  d.notes.push_back(
+      "the gain on held-out passes is not above zero at 95 %: the cause is a proposal, not part of the model");
 }
 
 DiagnosisRun Finish(const LinearRun& run, const Analysis& analysis, const std::vector<Discrete>& discrete,
@@ -201,9 +207,10 @@ bool IsReseated(const rotary::RotaryCase& rotary) {
                              [](const separate::SetUp& s) { return s.clamping == separate::Clamping::kReseat; });
 }
 
-/// The bench as stated, or with the reference's wobble turning with the set-up where that explains more. The log Bayes
-/// factor of the frame leaves the noise scale free; that it has fewer unknowns is not counted in its favour.
-Searched SearchFrames(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options) {
+/// The bench as stated, or with the reference's wobble turning with the set-up where that explains more. The log
+/// Bayes factor of the frame leaves the noise scale free; that it has fewer unknowns is not counted in its favour.
+Searched SearchFrames(const std::vector<Reading>& readings, const Scenario& scenario,
+                      const DiagnoseOptions& options) {
   constexpr double kWorthTrying = 10.0;
   const bool published = options.model == measure::Estimator::kPublished;
   const auto case_of = [&](const Scenario& s) {
@@ -231,22 +238,26 @@ Searched SearchFrames(const std::vector<Reading>& readings, const Scenario& scen
   return turns ? std::move(turned) : std::move(stated);
 }
 
-DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario& scenario, const DiagnoseOptions& options) {
+DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario& scenario,
+                            const DiagnoseOptions& options) {
   const bool published = options.model == measure::Estimator::kPublished;
   rotary::ConventionResult convention{"", 0.0, as_read};
   if (!IsStruck(options, "convention")) convention = rotary::ScreenConventions(as_read, scenario, published);
   Searched searched = SearchFrames(convention.readings, scenario, options);
-  if (!convention.where.empty()) searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
+  if (!convention.where.empty())
+    searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
   const rotary::RotaryCase& rotary = *searched.rotary;
   DiagnosisRun result = Finish(rotary.Rotary().run, searched.analysis, searched.discrete, RotaryWords(rotary));
   for (const char* where : {"reverse_target", "reverse_reference", "index_offset"}) {
-    result.diagnosis.invisible.push_back({"convention", where, "the positions that the separated errors belong to"});
+    result.diagnosis.invisible.push_back(
+        {"convention", where, "the positions that the separated errors belong to"});
   }
   result.diagnosis.left_out = rotary.Rotary().left_out;
   return result;
 }
 
-DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options) {
+DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenario& scenario,
+                             const DiagnoseOptions& options) {
   const encoder::EncoderRun encoder = encoder::BuildRun(readings, scenario);
   const std::vector<Family> families = encoder::Families(encoder, options.struck);
   AnalysisOptions how = AnalysisOptionsOf(options);
@@ -262,7 +273,8 @@ DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenari
 
 }  // namespace
 
-DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options) {
+DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
+                      const DiagnoseOptions& options) {
   DiagnosisRun result = scenario.bench == kRotaryBench ? DiagnoseRotary(readings, scenario, options)
                                                        : DiagnoseEncoder(readings, scenario, options);
   const std::vector<std::string> missing = MissingColumns(readings, scenario.bench);

@@ -41,7 +41,8 @@ struct DiagnosisRun {
 };
 
 /// @param readings  Of the scenario's bench, any phases; unusable ones are left out and counted.
-/// @throws InputError if the design has no redundancy (with the smallest addition that would help) or the readings do
+/// @throws InputError if the design has no redundancy (with the smallest addition that would help) or the readings
+/// do
 ///         not fit the scenario's procedure at all.
 DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                       const DiagnoseOptions& options = {});

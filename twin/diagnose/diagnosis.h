@@ -14,12 +14,12 @@ const char* VerdictName(Verdict verdict);  // "none", "named", "tie", "unknown"
 
 /// One parameter of a cause as fitted.
 struct ParameterEstimate {
-  std::string name;      // as in the effect catalogue: "gain_error"
-  std::string unit;      // "1", "mrad", ...
-  double to_SI = 1.0;    // factor from `unit` to SI
-  double value = kNaN;   // SI
-  double u = kNaN;       // standard uncertainty, SI; NaN where a grid only brackets it
-  double lower = kNaN;   // physical bounds, SI
+  std::string name;     // as in the effect catalogue: "gain_error"
+  std::string unit;     // "1", "mrad", ...
+  double to_SI = 1.0;   // factor from `unit` to SI
+  double value = kNaN;  // SI
+  double u = kNaN;      // standard uncertainty, SI; NaN where a grid only brackets it
+  double lower = kNaN;  // physical bounds, SI
   double upper = kNaN;
 };
 
@@ -31,9 +31,9 @@ struct Rival {
 
 struct Cause {
   std::string effect, where;
-  double probability = kNaN;    // capped (see naming.h)
-  double log_evidence = kNaN;   // log Bayes factor against its absence
-  double rho = kNaN;            // length of its fitted signature after projection, in units of noise
+  double probability = kNaN;   // capped (see naming.h)
+  double log_evidence = kNaN;  // log Bayes factor against its absence
+  double rho = kNaN;           // length of its fitted signature after projection, in units of noise
   std::vector<ParameterEstimate> parameters;
   std::vector<Rival> indistinguishable_from;
   std::string next_measurement;  // what would tell it from its rivals; empty if nothing is needed
@@ -47,11 +47,11 @@ struct UnknownPart {
 
 /// How much better the extended model predicts passes that it was not fitted to.
 struct Gain {
-  double before_m = kNaN, after_m = kNaN;          // rms of prediction errors on held-out passes; rad for an angle bench
-  double noise_floor_m = kNaN;                     // what a perfect model would leave
-  double fraction_removed = kNaN;                  // of the removable variance
-  std::array<double, 2> interval95 = {kNaN, kNaN}; // of fraction_removed, bootstrap over blocks
-  bool positive = false;                           // the gain is above zero at 95 %
+  double before_m = kNaN, after_m = kNaN;  // rms of prediction errors on held-out passes; rad for an angle bench
+  double noise_floor_m = kNaN;             // what a perfect model would leave
+  double fraction_removed = kNaN;          // of the removable variance
+  std::array<double, 2> interval95 = {kNaN, kNaN};  // of fraction_removed, bootstrap over blocks
+  bool positive = false;                            // the gain is above zero at 95 %
   int folds = 0;
 };
 
@@ -78,7 +78,8 @@ struct Harmonic {
 struct Diagnosis {
   Verdict verdict = Verdict::kNone;
   double alarm_p = kNaN;
-  std::vector<Cause> causes;  // most probable first; a tie lists all its members; simultaneous causes follow each other
+  std::vector<Cause>
+      causes;  // most probable first; a tie lists all its members; simultaneous causes follow each other
   UnknownPart unknown;
   std::vector<std::string> noise;  // repairs of the noise model, in words: "tails like Student's t with 5 dof"
   Gain gain;

@@ -114,7 +114,13 @@ std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::s
   std::vector<Family> unknown = WeighedUnknown(context, families);
   std::erase_if(families, [&](const Family& family) { return Has(struck, family.effect); });
   std::ranges::move(unknown, std::back_inserter(families));
-  for (Family& family : families) SetPriors(family, plausible_rad);
+  // One mounting cannot tell a fault of the device from the same order of the reference.
+  const std::vector<std::string> doubled = {"eccentricity",     "signal_offset", "ellipticity", "amplitude_mismatch",
+                                            "quadrature_error", "periodic"};
+  for (Family& family : families) {
+    SetPriors(family, plausible_rad);
+    if (Has(doubled, family.effect)) family.most_probable = kMostProbableDoubled;
+  }
   return families;
 }
 

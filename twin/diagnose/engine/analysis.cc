@@ -10,7 +10,8 @@ namespace {
 constexpr int kMostRepairs = 4;
 constexpr double kRefuted = 8.0;    // log Bayes factor from which a noise model is not used any more
 constexpr double kDisturbed = 6.0;  // the same for single values: in white noise less than one run in a thousand
-/// The same for what is left of a correlation that was taken out before: projection makes the first estimate too small.
+/// The same for what is left of a correlation that was taken out before: projection makes the first estimate too
+/// small.
 constexpr double kLeftCorrelated = 1.5;
 
 void Prepare(const LinearRun& run, const std::vector<Family>& families, Analysis& analysis) {
@@ -28,7 +29,8 @@ NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
   const Remainder picks(*analysis.projector, WhitenedPicks(run, analysis.noise, analysis.found.picks));
   const Eigen::VectorXd redundancy = analysis.projector->Redundancy();
   const auto look = [&](const Remainder& remainder) {
-    return FindNoiseCauses(run, analysis.noise, Project(*analysis.projector, remainder, white).rows.col(0), redundancy);
+    return FindNoiseCauses(run, analysis.noise, Project(*analysis.projector, remainder, white).rows.col(0),
+                           redundancy);
   };
   NoiseView view{look({}), look(picks)};
   // A cause that shows on one channel makes that channel look noisy: only what remains can say so.
@@ -45,7 +47,8 @@ const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
     return &view.before.front();
   }
   for (const NoiseCause& cause : view.after) {
-    // Single disturbed values are an effect of their own; other faults of the noise matter only if something was chosen.
+    // Single disturbed values are an effect of their own; other faults of the noise matter only if something was
+    // chosen.
     const bool single = cause.kind == NoiseCause::Kind::kOutliers;
     const bool again = cause.kind == NoiseCause::Kind::kCorrelation && analysis.noise.rho > 0.0;
     const double limit = single ? kDisturbed : again ? kLeftCorrelated : kRefuted;
@@ -75,15 +78,16 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
   for (int repairs = 0;; ++repairs) {
     Prepare(run, families, analysis);
     if (repairs == 0) {
-      analysis.null = options.null ? *options.null
-                                   : CalibrateCached(*analysis.scanner, *analysis.projector, log_priors, options.null_runs,
-                                                     options.cache_folder, DesignKey(run, families, options.null_runs));
+      analysis.null = options.null
+                          ? *options.null
+                          : CalibrateCached(*analysis.scanner, *analysis.projector, log_priors, options.null_runs,
+                                            options.cache_folder, DesignKey(run, families, options.null_runs));
       analysis.threshold = analysis.null.Threshold(kAlarmProbability);
       const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
       analysis.power = Project(*analysis.projector, {}, white).power[0];
     }
-    analysis.found = Search(run, analysis.noise, *analysis.projector, *analysis.scanner, log_priors, analysis.threshold,
-                            options.most_causes);
+    analysis.found = Search(run, analysis.noise, *analysis.projector, *analysis.scanner, log_priors,
+                            analysis.threshold, options.most_causes);
     const NoiseView view = LookAtNoise(run, analysis);
     const NoiseCause* repair = repairs < kMostRepairs ? NextRepair(analysis, view) : nullptr;
     if (!repair) {

@@ -25,13 +25,13 @@ struct Analysis {
   NullCalibration null;
   double threshold = 0.0;
   SearchResult found;
-  double power = 0.0;                   // y'Wy before any cause
-  std::vector<NoiseCause> repairs;      // in order
-  std::vector<NoiseCause> observations; // noted only: nothing was chosen on this noise model
+  double power = 0.0;                    // y'Wy before any cause
+  std::vector<NoiseCause> repairs;       // in order
+  std::vector<NoiseCause> observations;  // noted only: nothing was chosen on this noise model
 };
 
-/// Searches; where the noise alone explains more than what was picked, or what remains is no longer white, repairs the
-/// noise model and searches again, at most four times.
+/// Searches; where the noise alone explains more than what was picked, or what remains is no longer white, repairs
+/// the noise model and searches again, at most four times.
 /// @param run, families  Must outlive the analysis.
 Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, const AnalysisOptions& options);
 

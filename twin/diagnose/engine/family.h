@@ -19,7 +19,7 @@ struct Amplitude {
   std::string name;  // of the effect catalogue
   std::string unit;
   double to_SI = 1.0;
-  double prior_sd = 1.0;  // SI: plausible before checking
+  double prior_sd = 1.0;                         // SI: plausible before checking
   double lower = -kInfinity, upper = kInfinity;  // SI, physical bounds
 
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -40,14 +40,22 @@ struct Base {
   std::function<Eigen::MatrixXd(int grid_point)> columns;  // rows x base columns
 };
 
+/// The general cap of stated probabilities, and that of causes with a double outside the catalogue.
+inline constexpr double kMostProbable = 0.97;
+inline constexpr double kMostProbableDoubled = 0.85;
+
 struct Family {
   Kind kind = Kind::kNamed;
-  std::string effect, where;    // unknown: name of the shape and what it shows on
-  std::string group;            // families of one group share one prior mass: the effect, or the sort of unknown
-  double prior_weight = 1.0;    // within the group
+  std::string effect, where;  // unknown: name of the shape and what it shows on
+  std::string group;          // families of one group share one prior mass: the effect, or the sort of unknown
+  double prior_weight = 1.0;  // within the group
+  /// No stated probability of this cause exceeds it. Less than the general cap where something that no catalogue of
+  /// ours lists looks exactly the same: a wrong scale of a whole PSD like its distance, a reference off centre like a
+  /// device off centre.
+  double most_probable = kMostProbable;
   std::vector<Amplitude> amplitudes;
-  std::vector<Shape> shapes;    // all of equal length; empty: one grid point
-  int grid = 1;                 // number of grid points
+  std::vector<Shape> shapes;  // all of equal length; empty: one grid point
+  int grid = 1;               // number of grid points
 
   /// Signature at a grid point: rows x amplitudes, SI of the readings per SI of the amplitude, not whitened.
   std::function<Eigen::MatrixXd(int grid_point)> columns;
@@ -56,7 +64,8 @@ struct Family {
   std::shared_ptr<const Base> base;
   Eigen::MatrixXd map;
 
-  /// The signature at any shape (one value a Shape), to refine what the grid found; empty: the grid is all there is.
+  /// The signature at any shape (one value a Shape), to refine what the grid found; empty: the grid is all there
+  /// is.
   std::function<Eigen::MatrixXd(const Eigen::VectorXd& shape)> at;
 
   /// The catalogue's parameters from fitted amplitudes; empty: amplitudes and shapes are these parameters.
@@ -67,7 +76,9 @@ struct Family {
   /// Describes a fitted member of an unknown family in the grammar of docs/diagnosis.md.
   std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;
 
-  Eigen::MatrixXd ColumnsAt(int grid_point) const { return base ? base->columns(grid_point) * map : columns(grid_point); }
+  Eigen::MatrixXd ColumnsAt(int grid_point) const {
+    return base ? base->columns(grid_point) * map : columns(grid_point);
+  }
   Eigen::VectorXd ShapeAt(int grid_point) const;
 };
 

@@ -25,8 +25,8 @@ struct Schedule {
 
 /// A way in which a body's motion shows in all channels of one reading: yaw of the grating, lateral shift, ...
 struct Pattern {
-  std::string name;         // "yaw", "tilt", "roll", "lateral"; or a channel's name
-  Eigen::VectorXd weight;   // one a channel: shown there per SI unit of the pattern
+  std::string name;        // "yaw", "tilt", "roll", "lateral"; or a channel's name
+  Eigen::VectorXd weight;  // one a channel: shown there per SI unit of the pattern
 };
 
 /// Unknowns that are always free: table errors, mounting constants, calibrated parameters with priors.
@@ -43,14 +43,14 @@ struct Nuisance {
 /// Row of reading i (of the schedule) and channel c: i * channels + c.
 struct LinearRun {
   Schedule schedule;
-  std::vector<std::string> channels;    // "psd_a_x", ...; "angle" on an angle bench
-  std::string unit;                     // of values in reports: "um", "arcsec", "deg"
-  double to_SI = 1.0;                   // factor from `unit` to SI
-  Eigen::VectorXd observed;             // SI, by row
-  Eigen::VectorXd residual;             // observed - best prediction without further effects, SI
-  Eigen::VectorXd sigma;                // stated standard uncertainty of each row, SI
-  bool sigma_stated = true;             // false: sigma is an estimate from the data itself
-  bool noise_free = false;              // a simulation without noise: its residuals say nothing about sigma
+  std::vector<std::string> channels;  // "psd_a_x", ...; "angle" on an angle bench
+  std::string unit;                   // of values in reports: "um", "arcsec", "deg"
+  double to_SI = 1.0;                 // factor from `unit` to SI
+  Eigen::VectorXd observed;           // SI, by row
+  Eigen::VectorXd residual;           // observed - best prediction without further effects, SI
+  Eigen::VectorXd sigma;              // stated standard uncertainty of each row, SI
+  bool sigma_stated = true;           // false: sigma is an estimate from the data itself
+  bool noise_free = false;            // a simulation without noise: its residuals say nothing about sigma
   Nuisance nuisance;
   std::vector<Pattern> patterns;
 

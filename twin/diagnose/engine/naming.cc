@@ -19,8 +19,8 @@ constexpr double kWorthListing = 0.02;
 
 /// One place of the search: what each cause and each unknown shape is worth there.
 struct Ballot {
-  std::map<Key, double> named;          // posterior by effect and place
-  std::map<Key, int> best_family;       // the variant that stands for it
+  std::map<Key, double> named;     // posterior by effect and place
+  std::map<Key, int> best_family;  // the variant that stands for it
   double unknown = 0.0;
   int best_unknown = -1;
 };
@@ -32,7 +32,8 @@ Ballot Count(const Pick& pick, const std::vector<Family>& families) {
     const double p = std::exp(pick.log_posterior[k]);
     if (family.kind == Kind::kUnknown) {
       ballot.unknown += p;
-      if (ballot.best_unknown < 0 || pick.log_posterior[k] > pick.log_posterior[ballot.best_unknown]) ballot.best_unknown = k;
+      if (ballot.best_unknown < 0 || pick.log_posterior[k] > pick.log_posterior[ballot.best_unknown])
+        ballot.best_unknown = k;
       continue;
     }
     const Key key{family.effect, family.where};
@@ -67,6 +68,13 @@ bool IsPlausible(const Cause& cause) {
   });
 }
 
+double CapOf(const std::vector<Family>& families, const Key& key) {
+  for (const Family& f : families) {
+    if (Key{f.effect, f.where} == key) return f.most_probable;
+  }
+  return kMostProbable;
+}
+
 Cause CauseOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families, const Key& key,
               double probability) {
   const Pick& pick = found.picks[k];
@@ -74,7 +82,7 @@ Cause CauseOf(const SearchResult& found, std::size_t k, const std::vector<Family
   Cause cause;
   cause.effect = key.first;
   cause.where = key.second;
-  cause.probability = std::min(probability, kMostProbable);
+  cause.probability = std::min(probability, CapOf(families, key));
   cause.log_evidence = pick.statistic;
   if (Key{family.effect, family.where} != key) return cause;
   const Slice s = SliceOf(found, k);
@@ -103,7 +111,7 @@ struct Answer {
   std::vector<Cause> causes;  // empty: structure without a name
   double unknown = 0.0;
   std::string signature;
-  double weight = 0.0;        // power that nothing else explains
+  double weight = 0.0;  // power that nothing else explains
 };
 
 /// Places where the same shape explains the data nearly as well: the fit cannot tell which body or channel it is.
@@ -120,7 +128,8 @@ std::string OtherPlaces(const Pick& pick, const std::vector<Family>& families, i
   return places.empty() ? "" : "; or the same on " + places;
 }
 
-std::string SignatureOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families, const Ballot& ballot) {
+std::string SignatureOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families,
+                        const Ballot& ballot) {
   const Pick& pick = found.picks[k];
   const Family& family = families[static_cast<std::size_t>(pick.family)];
   if (family.kind != Kind::kUnknown || !family.describe) {
@@ -167,7 +176,8 @@ Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Fami
 }
 
 /// Several named causes together against one generic shape alone, which needs no coincidence.
-double ChanceOfOneUnknown(const SearchResult& found, const std::vector<Family>& families, const Eigen::VectorXd& log_priors) {
+double ChanceOfOneUnknown(const SearchResult& found, const std::vector<Family>& families,
+                          const Eigen::VectorXd& log_priors) {
   if (found.picks.size() < 2) return 0.0;
   double best = -1e300;
   for (int k = 0; k < std::ssize(families); ++k) {
@@ -178,7 +188,8 @@ double ChanceOfOneUnknown(const SearchResult& found, const std::vector<Family>& 
 }
 
 bool AlreadyThere(const std::vector<Cause>& causes, const Cause& cause) {
-  return std::ranges::any_of(causes, [&](const Cause& c) { return c.effect == cause.effect && c.where == cause.where; });
+  return std::ranges::any_of(causes,
+                             [&](const Cause& c) { return c.effect == cause.effect && c.where == cause.where; });
 }
 
 }  // namespace

@@ -8,9 +8,6 @@
 
 namespace twinbench::diagnose {
 
-/// No stated probability exceeds this: what no catalogue lists remains possible. Measured by leave-one-cause-out
-/// (docs/diagnosis.md).
-inline constexpr double kMostProbable = 0.97;
 inline constexpr double kNamedFrom = 0.8;
 inline constexpr double kTieFrom = 0.95;
 
@@ -20,7 +17,8 @@ struct Naming {
   std::vector<Cause> causes;
   UnknownPart unknown;
 };
-/// @param noise_free  Readings of a simulation without noise show the last digit of every formula: a small rest of any
+/// @param noise_free  Readings of a simulation without noise show the last digit of every formula: a small rest of
+/// any
 ///                    kind is then no cause.
 /// @param threshold   Of the alarm statistic: what remains above it is structure that the causes do not explain.
 Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold,

@@ -12,7 +12,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr double kWorthTelling = 1.0;  // log Bayes factor
+constexpr double kWorthTelling = 1.0;      // log Bayes factor
 constexpr double kLeastRedundancy = 0.05;  // rows below it say nothing about their own noise
 
 /// What is left of each row in units of its own expected scatter, and the rows that can be judged.
@@ -62,7 +62,8 @@ double SumOver(const Standardised& s, const Density& density) {
 }
 
 double RmsOf(const Standardised& s) {
-  return std::sqrt(SumOver(s, [](double z) { return z * z; }) / static_cast<double>(std::max<std::size_t>(1, s.rows.size())));
+  return std::sqrt(SumOver(s, [](double z) { return z * z; }) /
+                   static_cast<double>(std::max<std::size_t>(1, s.rows.size())));
 }
 
 double NormalLikelihood(const Standardised& s) {
@@ -88,8 +89,12 @@ StudentFit FitStudent(const Standardised& s) {
 /// Each row's deviation grows with its own distance, as the scale mixture behind Student's t would have it.
 NoiseCause Tails(const NoiseModel& noise, const Standardised& s) {
   const StudentFit fit = FitStudent(s);
-  NoiseCause cause{NoiseCause::Kind::kTails, fit.log_likelihood - NormalLikelihood(s) - std::log(10.0 * 14.0),
-                   fmt::format("tails like Student's t with {:.3g} degrees of freedom", fit.nu), noise, {}, 0.0};
+  NoiseCause cause{NoiseCause::Kind::kTails,
+                   fit.log_likelihood - NormalLikelihood(s) - std::log(10.0 * 14.0),
+                   fmt::format("tails like Student's t with {:.3g} degrees of freedom", fit.nu),
+                   noise,
+                   {},
+                   0.0};
   for (const int row : s.rows) {
     const double z2 = std::pow(s.z[row] / fit.width, 2);
     cause.repaired.sigma[row] *= std::sqrt(std::max(1.0, (fit.nu + z2) / (fit.nu + 1.0)));
@@ -97,8 +102,8 @@ NoiseCause Tails(const NoiseModel& noise, const Standardised& s) {
   return cause;
 }
 
-/// A few rows far outside while the rest is normal: each pays for being chosen, and for a size that may be anything up
-/// to the largest.
+/// A few rows far outside while the rest is normal: each pays for being chosen, and for a size that may be anything
+/// up to the largest.
 NoiseCause Outliers(const NoiseModel& noise, const Standardised& s) {
   constexpr double kFar = 5.0;            // one in two million rows by chance
   constexpr double kMostOutlying = 0.05;  // of the rows; more are no exceptions
@@ -115,12 +120,14 @@ NoiseCause Outliers(const NoiseModel& noise, const Standardised& s) {
   double sum2 = 0.0;
   for (const int row : cause.outliers) sum2 += s.z[row] * s.z[row];
   cause.outlier_size = std::sqrt(sum2 / count);
-  const double chosen = std::lgamma(all + 1) - std::lgamma(count + 1) - std::lgamma(all - count + 1) + std::log1p(count);
+  const double chosen =
+      std::lgamma(all + 1) - std::lgamma(count + 1) - std::lgamma(all - count + 1) + std::log1p(count);
   const double mixture = NormalLikelihood(rest) - count * std::log(2.0 * top) - chosen;
   // Merely heavy-tailed noise has far values, too: then they are no exceptions.
   const double tails = FitStudent(s).log_likelihood - std::log(10.0 * 14.0);
   if (mixture > tails + 3.0) cause.log_bayes = mixture - NormalLikelihood(s);
-  cause.words = fmt::format("{} value{} far outside the noise, left out", cause.outliers.size(), count == 1.0 ? "" : "s");
+  cause.words =
+      fmt::format("{} value{} far outside the noise, left out", cause.outliers.size(), count == 1.0 ? "" : "s");
   for (const int row : cause.outliers) cause.repaired.sigma[row] *= 1e4;
   return cause;
 }
@@ -129,8 +136,8 @@ bool SamePass(const Schedule& s, std::size_t i) {
   return s.setup[i] == s.setup[i - 1] && s.pass[i] == s.pass[i - 1] && s.phase[i] == s.phase[i - 1];
 }
 
-/// First-order correlation along each pass. Projection makes white residuals look anticorrelated; the expected product
-/// is taken from the redundancies (a lower bound), so only a positive excess counts.
+/// First-order correlation along each pass. Projection makes white residuals look anticorrelated; the expected
+/// product is taken from the redundancies (a lower bound), so only a positive excess counts.
 NoiseCause Correlation(const LinearRun& run, const NoiseModel& noise, const Standardised& s) {
   const int channels = run.Channels();
   double products = 0.0, squares = 0.0;
@@ -143,8 +150,12 @@ NoiseCause Correlation(const LinearRun& run, const NoiseModel& noise, const Stan
     ++pairs;
   }
   const double rho = squares > 0.0 ? std::clamp(products / squares, 0.0, 0.95) : 0.0;
-  NoiseCause cause{NoiseCause::Kind::kCorrelation, -0.5 * pairs * std::log1p(-rho * rho) - 0.5 * std::log(std::max(1, pairs)),
-                   fmt::format("neighbouring readings are correlated by {:.2f}", rho), noise, {}, 0.0};
+  NoiseCause cause{NoiseCause::Kind::kCorrelation,
+                   -0.5 * pairs * std::log1p(-rho * rho) - 0.5 * std::log(std::max(1, pairs)),
+                   fmt::format("neighbouring readings are correlated by {:.2f}", rho),
+                   noise,
+                   {},
+                   0.0};
   cause.repaired.rho = 1.0 - (1.0 - noise.rho) * (1.0 - rho);
   return cause;
 }
@@ -157,7 +168,12 @@ NoiseCause ChannelScale(const LinearRun& run, const NoiseModel& noise, const Sta
     count[run.ChannelOf(row)] += 1.0;
   }
   const double all2 = squares.sum() / std::max(1.0, count.sum());
-  NoiseCause cause{NoiseCause::Kind::kChannelScale, -0.5 * (channels - 1) * std::log(std::max(1.0, count.sum())), "", noise, {}, 0.0};
+  NoiseCause cause{NoiseCause::Kind::kChannelScale,
+                   -0.5 * (channels - 1) * std::log(std::max(1.0, count.sum())),
+                   "",
+                   noise,
+                   {},
+                   0.0};
   for (int c = 0; c < channels; ++c) {
     const double own2 = squares[c] / std::max(1.0, count[c]);
     if (!(own2 > 0.0)) continue;

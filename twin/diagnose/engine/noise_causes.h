@@ -16,11 +16,11 @@ namespace twinbench::diagnose {
 struct NoiseCause {
   enum class Kind { kTails, kOutliers, kCorrelation, kChannelScale };
   Kind kind = Kind::kTails;
-  double log_bayes = 0.0;      // against white Gaussian noise of the stated deviations
-  std::string words;           // "tails like Student's t with 5 degrees of freedom"
+  double log_bayes = 0.0;  // against white Gaussian noise of the stated deviations
+  std::string words;       // "tails like Student's t with 5 degrees of freedom"
   NoiseModel repaired;
-  std::vector<int> outliers;   // rows; kOutliers only
-  double outlier_size = 0.0;   // rms, in units of noise
+  std::vector<int> outliers;  // rows; kOutliers only
+  double outlier_size = 0.0;  // rms, in units of noise
 };
 
 /// Looks for refuted properties in what is left of the data.

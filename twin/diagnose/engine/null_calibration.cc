@@ -102,12 +102,14 @@ NullCalibration Calibrate(const Scanner& scanner, const Projector& projector, co
   return calibration;
 }
 
-NullCalibration CalibrateCached(const Scanner& scanner, const Projector& projector, const Eigen::VectorXd& log_priors,
-                                int runs, const std::string& folder, const std::string& key) {
+NullCalibration CalibrateCached(const Scanner& scanner, const Projector& projector,
+                                const Eigen::VectorXd& log_priors, int runs, const std::string& folder,
+                                const std::string& key) {
   if (folder.empty()) return Calibrate(scanner, projector, log_priors, runs);
   const fs::path path = fs::path(folder) / ("null-" + key + ".txt");
   NullCalibration calibration{ReadValues(path)};
-  if (std::ssize(calibration.sorted) == runs && std::is_sorted(calibration.sorted.begin(), calibration.sorted.end())) {
+  if (std::ssize(calibration.sorted) == runs &&
+      std::is_sorted(calibration.sorted.begin(), calibration.sorted.end())) {
     return calibration;
   }
   calibration = Calibrate(scanner, projector, log_priors, runs);
@@ -120,7 +122,8 @@ std::string DesignKey(const LinearRun& run, const std::vector<Family>& families,
   hash.Add(fmt::format("{} {} {} {}", kVersion, runs, run.sigma_stated, run.nuisance.jacobian.cols()));
   const Schedule& s = run.schedule;
   for (std::size_t i = 0; i < s.reading.size(); ++i) {
-    hash.Add(fmt::format("{} {} {} {} {}", s.setup[i], s.pass[i], s.direction[i], s.position[i], static_cast<int>(s.phase[i])));
+    hash.Add(fmt::format("{} {} {} {} {}", s.setup[i], s.pass[i], s.direction[i], s.position[i],
+                         static_cast<int>(s.phase[i])));
   }
   for (const Family& f : families) {
     hash.Add(fmt::format("{} {} {}", f.effect, f.where, f.amplitudes.size()));

@@ -16,7 +16,8 @@ Eigen::VectorXd LogPriors(const std::vector<Family>& families) {
   for (std::size_t k = 0; k < families.size(); ++k) {
     const Family& f = families[k];
     const double share = f.kind == Kind::kNamed ? kPriorNamed : kPriorUnknown;
-    log_priors[static_cast<Eigen::Index>(k)] = std::log(share * f.prior_weight / groups[f.kind] / members[{f.kind, f.group}]);
+    log_priors[static_cast<Eigen::Index>(k)] =
+        std::log(share * f.prior_weight / groups[f.kind] / members[{f.kind, f.group}]);
   }
   return log_priors;
 }

@@ -17,7 +17,9 @@ Eigen::MatrixXd Normal(const Sparse& jacobian, const Eigen::VectorXd& precision)
       for (Sparse::InnerIterator b(jacobian, k); b; ++b) normal(a.col(), b.col()) += a.value() * b.value();
     }
   }
-  normal.diagonal() += precision;
+  // A prior wider than a million times what the data resolve is no knowledge, but it would cost the factor its sign.
+  constexpr double kLeastShare = 1e-12;
+  normal.diagonal() = (normal.diagonal() + precision).cwiseMax(normal.diagonal() * (1.0 + kLeastShare));
   return normal;
 }
 
@@ -56,10 +58,8 @@ Projector::Projector(Sparse jacobian, const Nuisance& nuisance)
   for (int i = 0; i < blocks_; ++i) {
     const int at = i * size_;
     local_.push_back(Factor(normal.block(at, at, size_, size_)));
-    coupling_.middleCols(at, size_) = local_.back()
-                                          .triangularView<Eigen::Lower>()
-                                          .solve(normal.block(at, local, size_, core))
-                                          .transpose();
+    coupling_.middleCols(at, size_) =
+        local_.back().triangularView<Eigen::Lower>().solve(normal.block(at, local, size_, core)).transpose();
   }
   core_ = Factor(normal.bottomRightCorner(core, core) - coupling_ * coupling_.transpose());
   degrees_of_freedom_ = Redundancy().sum();

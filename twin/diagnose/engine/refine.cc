@@ -95,8 +95,8 @@ Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, 
   return {shape, Explain(family, shape, run, noise, projector, others, rows).power};
 }
 
-Eigen::MatrixXd WithShapeSlopes(const Family& family, const Pick& pick, const LinearRun& run, const NoiseModel& noise,
-                                const Projector& projector, const Eigen::MatrixXd& white) {
+Eigen::MatrixXd WithShapeSlopes(const Family& family, const Pick& pick, const LinearRun& run,
+                                const NoiseModel& noise, const Projector& projector, const Eigen::MatrixXd& white) {
   if (!family.at || pick.shape.size() == 0) return pick.columns;
   const Remainder alone(projector, noise.Whiten(run, pick.columns));
   const Eigen::VectorXd amplitudes = alone.Amplitudes(projector.Apply(white));

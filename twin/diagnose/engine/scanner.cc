@@ -11,10 +11,10 @@ namespace {
 
 constexpr int kChunkColumns = 128;  // stays in the cache
 constexpr std::array<double, 3> kPriorScales = {0.25, 1.0, 4.0};
-constexpr double kPseudoDegrees = 20.0;      // trust in a stated noise figure: 20 works, 200 is too trusting
-constexpr double kPseudoEstimated = 2.0;     // in one that was estimated from the same data
-constexpr double kAbsorbed = 1e-10;          // share of a signature's power below which only priors and rounding are left
-constexpr double kDependent = 1e-4;          // share of a signature's power that must survive projection
+constexpr double kPseudoDegrees = 20.0;   // trust in a stated noise figure: 20 works, 200 is too trusting
+constexpr double kPseudoEstimated = 2.0;  // in one that was estimated from the same data
+constexpr double kAbsorbed = 1e-10;  // share of a signature's power below which only priors and rounding are left
+constexpr double kDependent = 1e-4;  // share of a signature's power that must survive projection
 
 /// Running log of a mean of exponentials over a grid that arrives piece by piece.
 struct LogMean {
@@ -45,9 +45,11 @@ Eigen::VectorXd PriorSds(const Family& family) {
 /// not: log 2 Phi(t), t the posterior mean over its deviation.
 Eigen::ArrayXd OneSided(const Family& family, const Eigen::RowVectorXd& products, double d2, double prior_scale) {
   const Amplitude& a = family.amplitudes.front();
-  if (family.amplitudes.size() != 1 || (a.lower < 0.0 && a.upper > 0.0)) return Eigen::ArrayXd::Zero(products.size());
+  if (family.amplitudes.size() != 1 || (a.lower < 0.0 && a.upper > 0.0))
+    return Eigen::ArrayXd::Zero(products.size());
   const double side = a.lower >= 0.0 ? 1.0 : -1.0;
-  const Eigen::ArrayXd t = side * prior_scale * products.transpose().array() / std::sqrt(1.0 + prior_scale * prior_scale * d2);
+  const Eigen::ArrayXd t =
+      side * prior_scale * products.transpose().array() / std::sqrt(1.0 + prior_scale * prior_scale * d2);
   return t.unaryExpr([](double x) { return std::log(std::max(std::erfc(-x / std::sqrt(2.0)), 1e-300)); });
 }
 
@@ -141,7 +143,8 @@ void Scanner::Prepare(Bundle& bundle) const {
     const int last = std::min(first + step, bundle.grid);
     const Eigen::MatrixXd S = Columns(bundle, first, last), H = projector_.Absorbed(S);
     for (int g = 0; g < last - first; ++g) {
-      const auto s = S.middleCols(g * bundle.columns, bundle.columns), h = H.middleCols(g * bundle.columns, bundle.columns);
+      const auto s = S.middleCols(g * bundle.columns, bundle.columns),
+                 h = H.middleCols(g * bundle.columns, bundle.columns);
       bundle.raw.push_back(s.transpose() * s);
       bundle.gram.push_back(bundle.raw.back() - h.transpose() * h);
     }

@@ -59,8 +59,8 @@ class Scanner {
 
   const std::vector<Family>& Families() const { return families_; }
 
-  /// Squared length of a family's projected signature per unit of its first amplitude [1 / SI^2]: the largest over the
-  /// grid.
+  /// Squared length of a family's projected signature per unit of its first amplitude [1 / SI^2]: the largest over
+  /// the grid.
   double Information(int family) const;
 
  private:

@@ -37,13 +37,15 @@ Eigen::MatrixXd ColumnsWithout(const Problem& problem, const std::vector<Pick>& 
     if (k == left_out) continue;
     const Pick& pick = picks[static_cast<std::size_t>(k)];
     const Family& family = problem.scanner.Families()[static_cast<std::size_t>(pick.family)];
-    columns = Beside(columns, WithShapeSlopes(family, pick, problem.run, problem.noise, problem.projector, problem.white));
+    columns = Beside(columns,
+                     WithShapeSlopes(family, pick, problem.run, problem.noise, problem.projector, problem.white));
   }
   return columns.cols() > 0 ? problem.noise.Whiten(problem.run, columns) : columns;
 }
 
-/// A grid may be too coarse for a strong effect. Families that explain nearly as much as the best are therefore moved
-/// to their best shape before they are compared; what the fit gains is paid for by the narrower shape it needs.
+/// A grid may be too coarse for a strong effect. Families that explain nearly as much as the best are therefore
+/// moved to their best shape before they are compared; what the fit gains is paid for by the narrower shape it
+/// needs.
 void RefineLeaders(const Problem& problem, const Remainder& others, const Projected& data, Evidence& evidence,
                    std::map<int, Eigen::VectorXd>& shapes) {
   constexpr double kNearlyAsMuch = 0.6;
@@ -59,8 +61,8 @@ void RefineLeaders(const Problem& problem, const Remainder& others, const Projec
   leaders.resize(std::min<std::size_t>(leaders.size(), kMostLeaders));
   const double half = 0.5 * problem.projector.DegreesOfFreedom(), power = data.power[0];
   for (const int k : leaders) {
-    const Refined refined = RefineShape(families[static_cast<std::size_t>(k)], evidence.grid_point(k, 0), problem.run,
-                                        problem.noise, problem.projector, others, data);
+    const Refined refined = RefineShape(families[static_cast<std::size_t>(k)], evidence.grid_point(k, 0),
+                                        problem.run, problem.noise, problem.projector, others, data);
     shapes[k] = refined.shape;
     const double gained = half * std::log((power - evidence.explained(k, 0)) / (power - refined.explained));
     const auto count = static_cast<double>(refined.shape.size());
@@ -163,9 +165,10 @@ void FitAmplitudes(const Problem& problem, SearchResult& result) {
 
 }  // namespace
 
-SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector, const Scanner& scanner,
-                    const Eigen::VectorXd& log_priors, double threshold, int most_causes) {
-  const Problem problem{run, noise, projector, scanner, log_priors, threshold, most_causes, noise.Whiten(run, run.residual)};
+SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes) {
+  const Problem problem{run,        noise,     projector,   scanner,
+                        log_priors, threshold, most_causes, noise.Whiten(run, run.residual)};
   SearchResult result;
   Forward(problem, result);
   const std::size_t before = result.picks.size();

@@ -14,8 +14,8 @@ inline constexpr double kAlarmProbability = 0.005;
 struct Pick {
   int family = 0;
   int grid_point = 0;
-  Eigen::VectorXd shape;    // refined; empty without shapes
-  Eigen::MatrixXd columns;  // signature at that shape: rows x amplitudes, not whitened
+  Eigen::VectorXd shape;          // refined; empty without shapes
+  Eigen::MatrixXd columns;        // signature at that shape: rows x amplitudes, not whitened
   Eigen::VectorXd log_posterior;  // of every family in this place, the others accepted; last: none
   double statistic = 0.0;         // alarm statistic in this place, the others accepted
   double explained = 0.0;         // of the whitened power, beyond what the other picks explain
@@ -28,12 +28,13 @@ struct SearchResult {
   double joint_evidence = 0.0;   // of all picks together: each given those before it
   Eigen::VectorXd amplitudes;    // of all picks, one after the other, SI
   Eigen::MatrixXd cov;
-  Evidence alone;                // the first scan
+  Evidence alone;  // the first scan
 };
 
-/// Finds up to `most_causes` simultaneous causes: scan, take the most probable, refine its shape, scan what remains; then put
-/// every pick to the vote again with the others accepted (swaps), and drop those that are not needed any more.
-SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector, const Scanner& scanner,
-                    const Eigen::VectorXd& log_priors, double threshold, int most_causes);
+/// Finds up to `most_causes` simultaneous causes: scan, take the most probable, refine its shape, scan what
+/// remains; then put every pick to the vote again with the others accepted (swaps), and drop those that are not
+/// needed any more.
+SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+                    const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes);
 
 }  // namespace twinbench::diagnose

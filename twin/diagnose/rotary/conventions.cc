@@ -74,7 +74,8 @@ int IndexOffset(const std::vector<Reading>& readings, const Scenario& scenario) 
   bool first = true;
   for (const Reading& r : readings) {
     if (r.phase != Phase::kFullCircle || r.setup < 0 || r.setup >= std::ssize(shifts)) continue;
-    const double steps = (r.target_rad + r.reference_rad) / kTurn_rad * n - shifts[static_cast<std::size_t>(r.setup)];
+    const double steps =
+        (r.target_rad + r.reference_rad) / kTurn_rad * n - shifts[static_cast<std::size_t>(r.setup)];
     const int found = static_cast<int>(((std::lround(steps) % n) + n) % n);
     if (first) offset = found;
     first = false;
@@ -86,7 +87,8 @@ int IndexOffset(const std::vector<Reading>& readings, const Scenario& scenario) 
 /// Which label is wrong, by bookkeeping alone.
 std::string LabelBlunder(const std::vector<Reading>& readings, const Scenario& scenario) {
   const double step_rad = kTurn_rad / scenario.procedure.positions;
-  if (SumSpread_rad(readings) > 0.1 * step_rad) return SenseOf(readings) < 0.5 ? "reverse_target" : "reverse_reference";
+  if (SumSpread_rad(readings) > 0.1 * step_rad)
+    return SenseOf(readings) < 0.5 ? "reverse_target" : "reverse_reference";
   return IndexOffset(readings, scenario) == 1 ? "index_offset" : "";
 }
 
@@ -113,13 +115,14 @@ ConventionResult ScreenConventions(const std::vector<Reading>& readings, const S
   const Misfit as_is = MisfitOf(readings, scenario, published);
   if (as_is.power < kGross * as_is.degrees) return {"", 0.0, readings};
   ConventionResult best{"", 0.0, readings};
-  for (const char* where : {"swap_xy_a", "swap_xy_b", "swap_psds", "negate_psd_a_x", "negate_psd_a_y", "negate_psd_b_x",
-                            "negate_psd_b_y"}) {
+  for (const char* where : {"swap_xy_a", "swap_xy_b", "swap_psds", "negate_psd_a_x", "negate_psd_a_y",
+                            "negate_psd_b_x", "negate_psd_b_y"}) {
     std::vector<Reading> undone = Undone(where, scenario, readings);
     const Misfit misfit = MisfitOf(undone, scenario, published);
     // The noise scale is free: only the ratio of the misfits counts.
     const double log_evidence = 0.5 * as_is.degrees * std::log(as_is.power / misfit.power);
-    if (log_evidence > best.log_evidence && misfit.power < 0.1 * as_is.power) best = {where, log_evidence, std::move(undone)};
+    if (log_evidence > best.log_evidence && misfit.power < 0.1 * as_is.power)
+      best = {where, log_evidence, std::move(undone)};
   }
   return best;
 }

@@ -15,8 +15,9 @@ struct ConventionResult {
   std::vector<Reading> readings;  // as they should have been
 };
 
-/// Tries each swap, sign and index blunder of the catalogue on the readings and compares how well the free model fits.
-/// Index and sense are judged by the commanded angles, the scenario's shifts and the direction of travel alone.
+/// Tries each swap, sign and index blunder of the catalogue on the readings and compares how well the free model
+/// fits. Index and sense are judged by the commanded angles, the scenario's shifts and the direction of travel
+/// alone.
 ConventionResult ScreenConventions(const std::vector<Reading>& readings, const Scenario& scenario, bool published);
 
 }  // namespace twinbench::diagnose::rotary

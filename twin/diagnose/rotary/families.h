@@ -20,7 +20,8 @@ SharedSeries MakeSharedSeries(const RotaryRun& rotary);
 /// Families keep references to `rotary` and `context`, which must outlive them.
 std::vector<Family> NamedFamilies(const RotaryRun& rotary, const SignalContext& context, const Scenario& scenario,
                                   const SharedSeries& series);
-std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext& context, const SharedSeries& series);
+std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext& context,
+                                    const SharedSeries& series);
 
 /// With the published equations as the model: which of their sensitivities are off (yaw, tilt).
 std::vector<Family> ModelFamilies(const RotaryRun& rotary);

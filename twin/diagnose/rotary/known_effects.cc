@@ -58,7 +58,8 @@ Eigen::VectorXd AmplitudesOf(const EffectSettings& e) {
   if (e.name == "adc_step") return Eigen::VectorXd::Constant(1, value("step"));
   if (e.name == "crosstalk") return Eigen::VectorXd::Constant(1, value("fraction"));
   if (e.name == "bearing_half_frequency") return Eigen::Vector2d(value("tilt"), 0.0);
-  if (e.name == "tone") return value("amplitude") * Eigen::Vector2d(std::cos(value("phase")), std::sin(value("phase")));
+  if (e.name == "tone")
+    return value("amplitude") * Eigen::Vector2d(std::cos(value("phase")), std::sin(value("phase")));
   return {};
 }
 
@@ -81,21 +82,24 @@ Eigen::MatrixXd HalfFrequencySignal(double order, const Whirling& whirling, cons
 }
 
 bool AltersBench(const std::string& effect) {
-  static const std::vector<std::string> names = {"psd_gain",     "psd_roll",          "psd_nonlinearity",       "stray_light",
-                                                 "psd_distance", "wavelength_offset", "wavelength_temperature", "incidence_offset"};
+  static const std::vector<std::string> names = {
+      "psd_gain",     "psd_roll",          "psd_nonlinearity",       "stray_light",
+      "psd_distance", "wavelength_offset", "wavelength_temperature", "incidence_offset"};
   return std::find(names.begin(), names.end(), effect) != names.end();
 }
 
 void AlterBench(const std::string& effect, const std::string& where, const Parameters& parameters, double above_K,
                 OpticalBench& bench) {
   const std::size_t psd = where.starts_with("psd_b") ? 1 : 0;
-  if (effect == "psd_gain") bench.gain_error[static_cast<std::size_t>(ChannelIndex(where))] += Value(parameters, "gain_error");
+  if (effect == "psd_gain")
+    bench.gain_error[static_cast<std::size_t>(ChannelIndex(where))] += Value(parameters, "gain_error");
   if (effect == "psd_roll") bench.roll_rad[psd] += Value(parameters, "roll");
   if (effect == "psd_nonlinearity") bench.cubic_per_m2[psd] += Value(parameters, "cubic");
   if (effect == "stray_light") bench.stray_fraction[psd] += Value(parameters, "fraction");
   if (effect == "psd_distance") bench.distance_error_m[psd] += Value(parameters, "distance_error");
   if (effect == "wavelength_offset") bench.wavelength_error_m += Value(parameters, "wavelength_error");
-  if (effect == "wavelength_temperature") bench.wavelength_error_m += Value(parameters, "wavelength_per_kelvin") * above_K;
+  if (effect == "wavelength_temperature")
+    bench.wavelength_error_m += Value(parameters, "wavelength_per_kelvin") * above_K;
   if (effect == "incidence_offset") bench.incidence_rad += Value(parameters, "incidence");
 }
 
@@ -122,7 +126,8 @@ Eigen::MatrixXd EffectSignal(const std::string& effect, const std::string& where
     return OnChannels(signal, WeightOf(where, context.shown_by_motion));
   };
   if (effect == "laser_drift") {
-    return OnChannels(DriftSignal(s, Value(shape, "curvature")), context.shown_by_laser.col(where == "yaw" ? 0 : 1));
+    return OnChannels(DriftSignal(s, Value(shape, "curvature")),
+                      context.shown_by_laser.col(where == "yaw" ? 0 : 1));
   }
   if (effect == "mount_creep") return moved(CreepSignal(s, Value(shape, "time_constant")));
   if (effect == "thermal_tilt") return moved(LaggedTemperature(s, context.reference_degC, Value(shape, "lag")));
@@ -137,7 +142,8 @@ Eigen::MatrixXd EffectSignal(const std::string& effect, const std::string& where
   }
   if (effect == "tone") return OnChannels(ToneSignal(s, Value(shape, "frequency")), ToneWeight(where));
   if (effect == "adc_step") {
-    return AdcStepSignal(ChannelIndex(where), Value(shape, "at_voltage"), std::max(context.sample_noise_V, 1e-6), context);
+    return AdcStepSignal(ChannelIndex(where), Value(shape, "at_voltage"), std::max(context.sample_noise_V, 1e-6),
+                         context);
   }
   if (effect == "crosstalk") return CrosstalkRows(ChannelIndex(where), context);
   Require(false, "an effect without a signal was asked for one");

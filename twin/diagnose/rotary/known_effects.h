@@ -35,25 +35,25 @@ struct SignalContext {
   double target_height_m = 0.13;               // spot above the target table's origin
   double reference_degC = 20.0;
   std::array<double, 2> sensitivity_V_m{};
-  std::vector<int> scanned_before;             // of each channel, the one converted just before
-  Eigen::VectorXd shown_m;                     // what the channels show, by row
-  double sample_noise_V = 0.0;                 // standard deviation of one A/D sample
+  std::vector<int> scanned_before;  // of each channel, the one converted just before
+  Eigen::VectorXd shown_m;          // what the channels show, by row
+  double sample_noise_V = 0.0;      // standard deviation of one A/D sample
 };
 
 /// Signal of an additive effect at unit amplitude, rows x amplitudes (SI per SI).
 ///
-/// Amplitudes: laser_drift drift; mount_creep amplitude; thermal_tilt tilt_per_kelvin; backlash half_width; settling
-/// amplitude; bearing_half_frequency tilt x (cos, sin); tone amplitude x (cos, sin) of its phase; slip angle or shift;
-/// adc_step step, smoothed by the samples' noise; crosstalk fraction.
+/// Amplitudes: laser_drift drift; mount_creep amplitude; thermal_tilt tilt_per_kelvin; backlash half_width;
+/// settling amplitude; bearing_half_frequency tilt x (cos, sin); tone amplitude x (cos, sin) of its phase; slip
+/// angle or shift; adc_step step, smoothed by the samples' noise; crosstalk fraction.
 Eigen::MatrixXd EffectSignal(const std::string& effect, const std::string& where, const Parameters& shape,
                              const SignalContext& context);
 
-/// How the turns of the target are counted where a record has been rewound: within a set-up, through all set-ups, or
-/// as the way travelled whatever its direction.
+/// How the turns of the target are counted where a record has been rewound: within a set-up, through all set-ups,
+/// or as the way travelled whatever its direction.
 enum class Turning { kContinued, kThroughSetups, kTravelled };
 
-/// How a bearing's motion goes about: counting of turns, height of the spot above the point that it tilts about, and
-/// whether it whirls with the angle (+1) or against it (-1).
+/// How a bearing's motion goes about: counting of turns, height of the spot above the point that it tilts about,
+/// and whether it whirls with the angle (+1) or against it (-1).
 struct Whirling {
   Turning turning = Turning::kContinued;
   double lever_m = 0.0;

@@ -21,7 +21,8 @@ Ray LaserRay(const OpticalBench& bench) {
   return {aside * Vector3(0.0, bench.laser_distance_m, 0.0), aside * (yaw * (pitch * Vector3(0.0, -1.0, 0.0)))};
 }
 
-/// Conical diffraction: the component of the wave vector along the grating grows by m lambda rho across the grooves.
+/// Conical diffraction: the component of the wave vector along the grating grows by m lambda rho across the
+/// grooves.
 Vector3 Diffract(const Vector3& incident, const Matrix3& rotation_LG, double order_sine) {
   const Vector3 normal = rotation_LG.col(1);
   const Vector3 along = incident - incident.dot(normal) * normal + order_sine * rotation_LG.col(0);
@@ -73,7 +74,8 @@ Eigen::Vector2d Detect(const OpticalBench& bench, int p, const Eigen::Vector2d& 
   const auto at = static_cast<std::size_t>(p);
   const Eigen::Vector2d own = Eigen::Rotation2Dd(-bench.roll_rad[at]) * spot_m;
   const double pulled = (1.0 + bench.cubic_per_m2[at] * own.squaredNorm()) / (1.0 + bench.stray_fraction[at]);
-  return {own.x() * pulled * (1.0 + bench.gain_error[2 * at]), own.y() * pulled * (1.0 + bench.gain_error[2 * at + 1])};
+  return {own.x() * pulled * (1.0 + bench.gain_error[2 * at]),
+          own.y() * pulled * (1.0 + bench.gain_error[2 * at + 1])};
 }
 
 }  // namespace

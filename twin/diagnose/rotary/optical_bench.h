@@ -18,12 +18,12 @@ struct OpticalBench {
   bool published = false;  // true: equations 1-12 of Jywe et al. (2007), which know no deviations of the light
 
   double wavelength_error_m = 0.0;
-  double incidence_rad = 0.0;         // laser stands aside and still hits the nominal spot; positive from +x
-  double laser_distance_m = 0.2;      // exit to nominal spot: the lever of its pointing
-  double laser_yaw_rad = 0.0;         // pointing about z ...
-  double laser_pitch_rad = 0.0;       // ... and upwards
+  double incidence_rad = 0.0;     // laser stands aside and still hits the nominal spot; positive from +x
+  double laser_distance_m = 0.2;  // exit to nominal spot: the lever of its pointing
+  double laser_yaw_rad = 0.0;     // pointing about z ...
+  double laser_pitch_rad = 0.0;   // ... and upwards
   std::array<double, 2> distance_error_m{};
-  std::array<double, 2> roll_rad{};   // right-handed towards the light
+  std::array<double, 2> roll_rad{};  // right-handed towards the light
   std::array<double, 2> cubic_per_m2{};
   std::array<double, 2> stray_fraction{};
   std::array<double, 4> gain_error{};

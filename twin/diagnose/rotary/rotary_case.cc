@@ -18,8 +18,9 @@ struct ComponentName {
 };
 
 constexpr ComponentName kComponentNames[] = {
-    {separate::Series::kTargetEx, "target ex"}, {separate::Series::kTargetEy, "target ey"}, {separate::Series::kTargetEz, "target ez"},
-    {separate::Series::kTargetDy, "target dy"}, {separate::Series::kRefEx, "reference ex"}, {separate::Series::kRefEy, "reference ey"},
+    {separate::Series::kTargetEx, "target ex"}, {separate::Series::kTargetEy, "target ey"},
+    {separate::Series::kTargetEz, "target ez"}, {separate::Series::kTargetDy, "target dy"},
+    {separate::Series::kRefEx, "reference ex"}, {separate::Series::kRefEy, "reference ey"},
     {separate::Series::kRefEz, "reference ez"}};
 
 /// Scatter about the mean: a constant is a mounting, no error of a table.
@@ -37,14 +38,16 @@ double ScatterOf(const separate::Design& design, separate::Series series, const 
 
 RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, bool published,
                        const std::vector<std::string>& struck)
-    : rotary_(BuildRun(readings, scenario, published)), context_(ContextOf(rotary_, scenario, rotary_.run.Predicted())) {
+    : rotary_(BuildRun(readings, scenario, published)),
+      context_(ContextOf(rotary_, scenario, rotary_.run.Predicted())) {
   const SharedSeries series = MakeSharedSeries(rotary_);
   families_ = NamedFamilies(rotary_, context_, scenario, series);
   if (published) {
     std::vector<Family> model = ModelFamilies(rotary_);
     std::ranges::move(model, std::back_inserter(families_));
   }
-  std::erase_if(families_, [&struck](const Family& f) { return std::ranges::find(struck, f.effect) != struck.end(); });
+  std::erase_if(families_,
+                [&struck](const Family& f) { return std::ranges::find(struck, f.effect) != struck.end(); });
   std::vector<Family> unknown = UnknownFamilies(rotary_, context_, series);
   std::ranges::move(unknown, std::back_inserter(families_));
 }
@@ -66,7 +69,8 @@ std::string BiasInWords(const separate::Design& design, const Eigen::VectorXd& u
 std::string NextMeasurement(const std::string& effect, const std::string& rival) {
   using Pair = std::pair<std::string, std::string>;
   static const std::map<Pair, std::string> known = {
-      {{"psd_distance", "stray_light"}, "a reading with the laser off: stray light shows as a signal, a distance does not"},
+      {{"psd_distance", "stray_light"},
+       "a reading with the laser off: stray light shows as a signal, a distance does not"},
       {{"psd_distance", "psd_gain"}, "a tilt sweep as well as a yaw sweep: a distance scales both axes"},
       {{"psd_gain", "stray_light"}, "a tilt sweep as well as a yaw sweep: stray light scales both axes"},
       {{"incidence_offset", "wavelength_offset"}, "a tilt sweep and a lateral shift of the grating"},

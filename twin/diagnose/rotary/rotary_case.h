@@ -26,7 +26,8 @@ class RotaryCase {
   std::vector<Family> families_;
 };
 
-/// Which separated error moves most if a signature of this size hides in the data: "target ez up to 0.4 arcsec rms".
+/// Which separated error moves most if a signature of this size hides in the data: "target ez up to 0.4 arcsec
+/// rms".
 /// @param unknowns  Change of the unknowns.
 std::string BiasInWords(const separate::Design& design, const Eigen::VectorXd& unknowns);
 

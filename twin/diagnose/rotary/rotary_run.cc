@@ -7,6 +7,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/rotary/known_effects.h"
+#include "twin/diagnose/rotary/rotary_readings.h"
 #include "twin/measure/calibrate.h"
 #include "twin/measure/grating_model.h"
 #include "twin/separate/prediction.h"
@@ -40,107 +41,6 @@ struct Fit {
   Eigen::VectorXd known;  // effects that the scenario already holds, by row
 };
 
-void AddReading(const Reading& r, Schedule& s) {
-  s.reading.push_back(r.reading);
-  s.setup.push_back(r.setup);
-  s.pass.push_back(r.pass);
-  s.direction.push_back(r.direction);
-  s.position.push_back(r.position);
-  s.phase.push_back(r.phase);
-}
-
-Eigen::VectorXd Column(const std::vector<Reading>& readings, double (*value)(const Reading&)) {
-  Eigen::VectorXd column(std::ssize(readings));
-  std::transform(readings.begin(), readings.end(), column.begin(), value);
-  return column;
-}
-
-Schedule ScheduleOf(const std::vector<Reading>& used) {
-  Schedule s;
-  for (const Reading& r : used) AddReading(r, s);
-  s.time_s = Column(used, [](const Reading& r) { return ToSeconds(r.time); });
-  s.dwell_s = Column(used, [](const Reading& r) { return r.dwell_s; });
-  s.temperature_degC = Column(used, [](const Reading& r) { return r.temperature_degC; });
-  s.target_rad = Column(used, [](const Reading& r) { return r.target_rad; });
-  s.reference_rad = Column(used, [](const Reading& r) { return r.reference_rad; });
-  s.velocity_rad_s = Eigen::VectorXd::Constant(std::ssize(used), kNaN);
-  return s;
-}
-
-Eigen::VectorXd ObservedOf(const std::vector<Reading>& used, const measure::BenchGeometry& geometry) {
-  Eigen::VectorXd observed(kChannels * std::ssize(used));
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    observed.segment<4>(kChannels * static_cast<Eigen::Index>(i)) = measure::OnSurface(used[i].mean_V, geometry);
-  }
-  return observed;
-}
-
-/// The channel converted just before each, in the scan list's order; the first follows the last of the scan before.
-std::vector<int> ScannedBefore(const std::vector<std::string>& scan_list) {
-  std::vector<int> before(kChannels);
-  for (int k = 0; k < kChannels; ++k) {
-    const auto index = [&scan_list](int at) {
-      const auto name = scan_list[static_cast<std::size_t>((at + kChannels) % kChannels)];
-      return static_cast<int>(std::find(kChannelNames.begin(), kChannelNames.end(), name) - kChannelNames.begin());
-    };
-    before[static_cast<std::size_t>(index(k))] = index(k - 1);
-  }
-  return before;
-}
-
-/// Stated standard uncertainty of a mean on one channel: pooled over all blocks, else from the scenario.
-double StatedSigma_m(const std::vector<Reading>& used, int channel, const Scenario& scenario,
-                     const measure::BenchGeometry& geometry) {
-  double sum_m2 = 0.0;
-  int count = 0;
-  for (const Reading& r : used) {
-    const auto variances = measure::SpotVariances(r, geometry);
-    if (!variances) continue;
-    sum_m2 += (*variances)[channel];
-    ++count;
-  }
-  if (2 * count > std::ssize(used)) return std::sqrt(sum_m2 / count);
-  const double mean_V = std::hypot(scenario.amplifier.noise_V / std::sqrt(scenario.adc.samples),
-                                   geometry.adc_step_V / std::sqrt(12.0 * scenario.adc.samples));
-  return mean_V / geometry.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
-}
-
-/// Real samples always scatter; only a simulation states deviations of nothing.
-bool IsNoiseFree(const std::vector<Reading>& used) {
-  return std::ranges::all_of(used, [](const Reading& r) {
-    return std::ranges::all_of(r.std_V, [](double V) { return V == 0.0; });
-  });
-}
-
-/// Median deviation of one sample over all channels, else what the scenario states.
-double SampleNoise_V(const std::vector<Reading>& used, const Scenario& scenario) {
-  std::vector<double> stds_V;
-  for (const Reading& r : used) {
-    for (const double V : r.std_V) {
-      if (std::isfinite(V)) stds_V.push_back(V);
-    }
-  }
-  if (stds_V.empty()) return scenario.amplifier.noise_V;
-  const auto middle = stds_V.begin() + std::ssize(stds_V) / 2;
-  std::nth_element(stds_V.begin(), middle, stds_V.end());
-  return *middle;
-}
-
-Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario, const OpticalBench& bench) {
-  Eigen::Vector4d noise_m;
-  for (int c = 0; c < kChannels; ++c) noise_m[c] = StatedSigma_m(used, c, scenario, bench.nominal);
-  const Eigen::Matrix4d K = ShownJacobian(bench, Vector4::Zero());
-  const double u_rad = bench.nominal.autocollimator_noise_rad;
-  const Eigen::Vector4d sweep_m = (K.col(0).cwiseAbs2() + K.col(1).cwiseAbs2()).cwiseSqrt() * u_rad;
-  Eigen::VectorXd sigma(kChannels * std::ssize(used));
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    const bool swept = used[i].phase == Phase::kCalibration;
-    const Eigen::Vector4d u_m = swept ? (noise_m.cwiseAbs2() + sweep_m.cwiseAbs2()).cwiseSqrt() : noise_m;
-    sigma.segment<4>(kChannels * static_cast<Eigen::Index>(i)) = u_m;
-  }
-  return sigma;
-}
-
 /// Only what FindLayout looks at.
 measure::Motion LabelOf(const Reading& r) {
   measure::Motion m;
@@ -167,7 +67,8 @@ separate::LayoutOptions LayoutOf(const Scenario& scenario, bool published) {
 void FindSamples(const std::vector<Reading>& used, const Scenario& scenario, Fit& fit) {
   std::vector<measure::Motion> labels;
   std::transform(used.begin(), used.end(), std::back_inserter(labels), LabelOf);
-  separate::Layout layout = separate::FindLayout(labels, fit.result.bench.nominal, LayoutOf(scenario, fit.result.bench.published));
+  separate::Layout layout =
+      separate::FindLayout(labels, fit.result.bench.nominal, LayoutOf(scenario, fit.result.bench.published));
   fit.sample.assign(used.size(), {0, -1, 0, 0});
   for (const separate::Sample& s : layout.samples) fit.sample[s.motion] = s;
   for (const separate::SetUp& s : layout.design.setups) fit.result.shifts.push_back(s.shift);
@@ -250,7 +151,8 @@ void AddMotionColumns(const Fit& fit, std::size_t i, const Eigen::Matrix4d& K, s
     for (int k = 0; k < separate::kMountUnknowns; ++k) add(MountAt(fit) + k, Vector4::Unit(k));
     return;
   }
-  const separate::StopModel stop = separate::ModelStop(fit.result.design, fit.sample[i].setup, fit.sample[i].target);
+  const separate::StopModel stop =
+      separate::ModelStop(fit.result.design, fit.sample[i].setup, fit.sample[i].target);
   for (int k = 0; k < stop.columns; ++k) add(stop.column[static_cast<std::size_t>(k)], stop.d.col(k));
 }
 
@@ -277,8 +179,8 @@ void Linearise(const Scenario& scenario, Fit& fit) {
   for (std::size_t i = 0; i < fit.sample.size(); ++i) {
     const OpticalBench bench = BenchAt(fit, i, scenario);
     const auto rows = kChannels * static_cast<Eigen::Index>(i);
-    run.residual.segment<4>(rows) = run.observed.segment<4>(rows) - ShownSpots(bench, fit.result.motion[i]) -
-                                    fit.known.segment<4>(rows);
+    run.residual.segment<4>(rows) =
+        run.observed.segment<4>(rows) - ShownSpots(bench, fit.result.motion[i]) - fit.known.segment<4>(rows);
     AddMotionColumns(fit, i, ShownJacobian(bench, fit.result.motion[i]), entries);
     if (!bench.published) AddCalibrationColumns(fit, i, bench, entries);
   }
@@ -351,22 +253,13 @@ SignalContext ContextOf(const RotaryRun& rotary, const Scenario& scenario, const
   return context;
 }
 
-bool IsUsable(const Reading& r) {
-  if (r.status != ReadingStatus::kOk) return false;
-  if (r.phase != Phase::kCalibration && r.phase != Phase::kFullCircle) return false;
-  const auto finite = [](double v) { return std::isfinite(v); };
-  if (!std::all_of(r.mean_V.begin(), r.mean_V.end(), finite)) return false;
-  if (r.phase == Phase::kFullCircle) return finite(r.target_rad) && finite(r.reference_rad);
-  return finite(r.autocollimator_yaw_rad) && finite(r.autocollimator_tilt_rad);
-}
-
 RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
   std::vector<Reading> used;
   std::copy_if(readings.begin(), readings.end(), std::back_inserter(used), IsUsable);
   if (std::ssize(used) < kFewestReadings) {
-    throw InputError("readings", std::to_string(used.size()) + " usable readings",
-                     "calibration and full-circle readings with four voltages, at least " +
-                         std::to_string(kFewestReadings));
+    throw InputError(
+        "readings", std::to_string(used.size()) + " usable readings",
+        "calibration and full-circle readings with four voltages, at least " + std::to_string(kFewestReadings));
   }
   Fit fit;
   RotaryRun& result = fit.result;

@@ -10,8 +10,8 @@
 #include "twin/diagnose/rotary/optical_bench.h"
 #include "twin/separate/design.h"
 
-/// The forward model of the rotary bench as a function: scenario and schedule -> what every reading should show, and
-/// the directions in which the free unknowns may move it.
+/// The forward model of the rotary bench as a function: scenario and schedule -> what every reading should show,
+/// and the directions in which the free unknowns may move it.
 namespace twinbench::diagnose::rotary {
 
 /// Believed of calibrated parameters once a bench has been set up; they stay this uncertain in the model.
@@ -38,8 +38,8 @@ struct RotaryRun {
 /// Fits table errors and mounting constants to the readings (Gauss-Newton on the exact chain and grating equation)
 /// and linearises there. Effects that the scenario already holds are part of the model.
 ///
-/// Unknowns: per position and table as separate::Design orders them (angles in rad, lengths in its length unit), the
-/// mounting constants of the calibration phase, then gains, rolls, distances, wavelength and incidence with
+/// Unknowns: per position and table as separate::Design orders them (angles in rad, lengths in its length unit),
+/// the mounting constants of the calibration phase, then gains, rolls, distances, wavelength and incidence with
 /// CalibrationPriors. Noise: the blocks' standard deviations pooled by channel, else what the scenario states.
 ///
 /// @throws InputError if the commanded angles are on no grid or hardly any reading is usable.
@@ -48,8 +48,5 @@ RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenari
 /// What additive effects need to know about the run; keeps references into it.
 /// @param shown_m  What the channels show, by row, for effects that depend on it: the prediction, or the readings.
 SignalContext ContextOf(const RotaryRun& rotary, const Scenario& scenario, const Eigen::VectorXd& shown_m);
-
-/// True if the reading has four voltages, its angles, and in the calibration phase the autocollimator's.
-bool IsUsable(const Reading& reading);
 
 }  // namespace twinbench::diagnose::rotary

@@ -81,7 +81,8 @@ Eigen::MatrixXd ToneSignal(const Schedule& s, double frequency_Hz) {
 
 Eigen::VectorXd StepSignal(const Schedule& s, int onset) {
   Eigen::VectorXd step(s.Readings());
-  for (Eigen::Index i = 0; i < step.size(); ++i) step[i] = s.reading[static_cast<std::size_t>(i)] >= onset ? 1.0 : 0.0;
+  for (Eigen::Index i = 0; i < step.size(); ++i)
+    step[i] = s.reading[static_cast<std::size_t>(i)] >= onset ? 1.0 : 0.0;
   return step;
 }
 
@@ -92,8 +93,8 @@ Eigen::VectorXd ContinuedTarget_rad(const Schedule& s, bool through_setups) {
     const auto at = static_cast<std::size_t>(i);
     if (s.setup[at] != s.setup[at - 1] && !through_setups) offset_rad = 0.0;
     const double moved_rad = s.target_rad[i] - s.target_rad[i - 1];
-    const bool rewound = s.direction[at] == s.direction[at - 1] && IsCircle(s, i) &&
-                         moved_rad * s.direction[at] < -units::kPi;
+    const bool rewound =
+        s.direction[at] == s.direction[at - 1] && IsCircle(s, i) && moved_rad * s.direction[at] < -units::kPi;
     if (rewound && s.setup[at] == s.setup[at - 1]) {
       offset_rad += s.direction[at] * 2.0 * units::kPi * std::ceil(std::abs(moved_rad) / (2.0 * units::kPi));
     }
@@ -125,7 +126,8 @@ Eigen::MatrixXd OnChannels(const Eigen::MatrixXd& signals, const Eigen::VectorXd
 Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& signals, int channels) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(signals.rows() * channels, signals.cols() * channels);
   for (Eigen::Index i = 0; i < signals.rows(); ++i) {
-    for (int c = 0; c < channels; ++c) rows.row(i * channels + c).segment(c * signals.cols(), signals.cols()) = signals.row(i);
+    for (int c = 0; c < channels; ++c)
+      rows.row(i * channels + c).segment(c * signals.cols(), signals.cols()) = signals.row(i);
   }
   return rows;
 }

@@ -13,8 +13,8 @@ namespace {
 
 using units::um;
 
-constexpr double kPlausible_m = 0.5 * um;   // of a disturbance on a PSD
-constexpr double kPlausibleShare = 0.005;   // of a wrong scale
+constexpr double kPlausible_m = 0.5 * um;  // of a disturbance on a PSD
+constexpr double kPlausibleShare = 0.005;  // of a wrong scale
 
 /// "psd_b_y" or "psd_a_y, psd_b_y (tilt pattern)".
 std::string OnWhat(const std::string& place) {
@@ -76,7 +76,8 @@ struct Collector {
 };
 
 Eigen::VectorXd Unit(Eigen::VectorXd signal) {
-  const double rms = std::sqrt(signal.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, signal.size())));
+  const double rms =
+      std::sqrt(signal.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, signal.size())));
   return rms > 0.0 ? Eigen::VectorXd(signal / rms) : signal;
 }
 
@@ -104,31 +105,38 @@ Eigen::MatrixXd Wave(const Eigen::VectorXd& angle, const Eigen::VectorXd& factor
 void AddPasses(const Schedule& s, const Collector& add) {
   const Eigen::VectorXd in = InCircle(s);
   const Eigen::MatrixXd passes = Indicators(s.pass, in);
-  add.Add("pass offset", 1, static_cast<int>(passes.cols()), [passes](int) { return passes; },
-          [](int) { return std::string("offset per pass, locked to the pass (time)"); });
+  add.Add(
+      "pass offset", 1, static_cast<int>(passes.cols()), [passes](int) { return passes; },
+      [](int) { return std::string("offset per pass, locked to the pass (time)"); });
   std::vector<int> both;
   for (std::size_t i = 0; i < s.pass.size(); ++i) both.push_back(1000 * s.setup[i] + s.pass[i]);
   const Eigen::MatrixXd visits = Indicators(both, in);
-  add.Add("pass offset", 1, static_cast<int>(visits.cols()), [visits](int) { return visits; },
-          [](int) { return std::string("offset per pass of each set-up, locked to the pass (time)"); });
+  add.Add(
+      "pass offset", 1, static_cast<int>(visits.cols()), [visits](int) { return visits; },
+      [](int) { return std::string("offset per pass of each set-up, locked to the pass (time)"); });
   for (int h = 1; h <= 3; ++h) {
     Eigen::MatrixXd waves(s.Readings(), 2 * passes.cols());
-    for (Eigen::Index p = 0; p < passes.cols(); ++p) waves.middleCols(2 * p, 2) = Wave(h * s.target_rad, passes.col(p));
-    add.Add("pass harmonic", 1, static_cast<int>(waves.cols()), [waves](int) { return waves; }, [h](int) {
-      return fmt::format("order {} of the target angle that differs from pass to pass", h);
-    });
+    for (Eigen::Index p = 0; p < passes.cols(); ++p)
+      waves.middleCols(2 * p, 2) = Wave(h * s.target_rad, passes.col(p));
+    add.Add(
+        "pass harmonic", 1, static_cast<int>(waves.cols()), [waves](int) { return waves; },
+        [h](int) { return fmt::format("order {} of the target angle that differs from pass to pass", h); });
   }
 }
 
 void AddDirections(const Schedule& s, const Collector& add) {
   constexpr int kOrders = 12;
   const Eigen::VectorXd direction = DirectionSignal(s);
-  add.Add("direction offset", 1, 1, [direction](int) { return Eigen::MatrixXd(direction); },
-          [](int) { return std::string("offset locked to direction (odd)"); });
-  add.Add("direction harmonic", kOrders, 2, [&s, direction](int g) { return Wave((g + 1) * s.target_rad, direction); },
-          [](int g) { return fmt::format("direction times order {} of target angle, odd in direction", g + 1); });
-  add.Add("direction harmonic", kOrders, 2, [&s, direction](int g) { return Wave((g + 1) * s.reference_rad, direction); },
-          [](int g) { return fmt::format("direction times order {} of reference angle, odd in direction", g + 1); });
+  add.Add(
+      "direction offset", 1, 1, [direction](int) { return Eigen::MatrixXd(direction); },
+      [](int) { return std::string("offset locked to direction (odd)"); });
+  add.Add(
+      "direction harmonic", kOrders, 2, [&s, direction](int g) { return Wave((g + 1) * s.target_rad, direction); },
+      [](int g) { return fmt::format("direction times order {} of target angle, odd in direction", g + 1); });
+  add.Add(
+      "direction harmonic", kOrders, 2,
+      [&s, direction](int g) { return Wave((g + 1) * s.reference_rad, direction); },
+      [](int g) { return fmt::format("direction times order {} of reference angle, odd in direction", g + 1); });
 }
 
 /// Orders a of the target and b of the reference together; pure orders of either are in the tables.
@@ -141,16 +149,18 @@ void AddInteractions(const Schedule& s, const Collector& add) {
     }
   }
   const Eigen::VectorXd in = InCircle(s);
-  add.Add("interaction", static_cast<int>(std::ssize(orders)), 2,
-          [&s, in, orders](int g) {
-            const auto [a, b] = orders[static_cast<std::size_t>(g)];
-            return Wave(a * s.target_rad + b * s.reference_rad, in);
-          },
-          [orders](int g) {
-            const auto [a, b] = orders[static_cast<std::size_t>(g)];
-            return fmt::format("order {} target {} {} reference, locked to both angles (interaction), same in both directions", a,
-                               b > 0 ? '+' : '-', std::abs(b));
-          });
+  add.Add(
+      "interaction", static_cast<int>(std::ssize(orders)), 2,
+      [&s, in, orders](int g) {
+        const auto [a, b] = orders[static_cast<std::size_t>(g)];
+        return Wave(a * s.target_rad + b * s.reference_rad, in);
+      },
+      [orders](int g) {
+        const auto [a, b] = orders[static_cast<std::size_t>(g)];
+        return fmt::format(
+            "order {} target {} {} reference, locked to both angles (interaction), same in both directions", a,
+            b > 0 ? '+' : '-', std::abs(b));
+      });
 }
 
 void AddLines(const Schedule& s, const Collector& add) {
@@ -159,41 +169,53 @@ void AddLines(const Schedule& s, const Collector& add) {
     if (k % 20 != 0) orders.push_back(0.05 * k);
   }
   const Eigen::VectorXd angle = ContinuedTarget_rad(s, false), in = InCircle(s);
-  add.Add("line", static_cast<int>(std::ssize(orders)), 2,
-          [angle, in, orders](int g) { return Wave(orders[static_cast<std::size_t>(g)] * angle, in); },
-          [orders](int g) {
-            return fmt::format("line at {:.3g} per turn, locked to the continued target angle", orders[static_cast<std::size_t>(g)]);
-          });
+  add.Add(
+      "line", static_cast<int>(std::ssize(orders)), 2,
+      [angle, in, orders](int g) { return Wave(orders[static_cast<std::size_t>(g)] * angle, in); },
+      [orders](int g) {
+        return fmt::format("line at {:.3g} per turn, locked to the continued target angle",
+                           orders[static_cast<std::size_t>(g)]);
+      });
 }
 
 void AddTimes(const Schedule& s, const SignalContext& context, const Collector& add) {
   constexpr int kOrders = 10;
   const double begin_s = s.time_s.minCoeff(), duration_s = std::max(1.0, s.time_s.maxCoeff() - begin_s);
   const Eigen::VectorXd phase = units::kPi * (s.time_s.array() - begin_s) / duration_s;
-  add.Add("wander", kOrders, 1,
-          [phase](int g) { return Eigen::MatrixXd(((g + 1) * phase.array()).cos().matrix()); },
-          [](int g) { return fmt::format("slow wander locked to time, {} half periods a run", g + 1); });
+  add.Add(
+      "wander", kOrders, 1, [phase](int g) { return Eigen::MatrixXd(((g + 1) * phase.array()).cos().matrix()); },
+      [](int g) { return fmt::format("slow wander locked to time, {} half periods a run", g + 1); });
   Eigen::MatrixXd together(s.Readings(), 6);
   for (int k = 0; k < 6; ++k) together.col(k) = ((k + 1) * phase.array()).cos();
-  add.Add("wander", 1, 6, [together](int) { return together; },
-          [](int) { return std::string("slow wander locked to time"); });
+  add.Add(
+      "wander", 1, 6, [together](int) { return together; },
+      [](int) { return std::string("slow wander locked to time"); });
   add.AddRandomWalk(phase);
   Eigen::MatrixXd slopes = Indicators(s.setup, InCircle(s)).array().colwise() * phase.array();
-  add.Add("wander", 1, static_cast<int>(slopes.cols()), [slopes](int) { return slopes; },
-          [](int) { return std::string("drift that differs from set-up to set-up, locked to time"); });
+  add.Add(
+      "wander", 1, static_cast<int>(slopes.cols()), [slopes](int) { return slopes; },
+      [](int) { return std::string("drift that differs from set-up to set-up, locked to time"); });
   const std::vector<double> restarts_s = {10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0};
-  add.Add("restart", static_cast<int>(std::ssize(restarts_s)), 1,
-          [&s, restarts_s](int g) { return Eigen::MatrixXd(Unit(CreepSignal(s, restarts_s[static_cast<std::size_t>(g)]))); },
-          [restarts_s](int g) {
-            return fmt::format("creep that restarts with every set-up, about {:.0f} s, locked to time", restarts_s[static_cast<std::size_t>(g)]);
-          });
+  add.Add(
+      "restart", static_cast<int>(std::ssize(restarts_s)), 1,
+      [&s, restarts_s](int g) {
+        return Eigen::MatrixXd(Unit(CreepSignal(s, restarts_s[static_cast<std::size_t>(g)])));
+      },
+      [restarts_s](int g) {
+        return fmt::format("creep that restarts with every set-up, about {:.0f} s, locked to time",
+                           restarts_s[static_cast<std::size_t>(g)]);
+      });
   if (!s.temperature_degC.array().isFinite().any()) return;
   const std::vector<double> lags_s = {0.0, 300.0, 900.0, 2700.0};
-  add.Add("temperature", static_cast<int>(std::ssize(lags_s)), 1,
-          [&s, &context, lags_s](int g) {
-            return Eigen::MatrixXd(Unit(LaggedTemperature(s, context.reference_degC, lags_s[static_cast<std::size_t>(g)])));
-          },
-          [lags_s](int g) { return fmt::format("locked to temperature with a lag of {:.0f} s", lags_s[static_cast<std::size_t>(g)]); });
+  add.Add(
+      "temperature", static_cast<int>(std::ssize(lags_s)), 1,
+      [&s, &context, lags_s](int g) {
+        return Eigen::MatrixXd(
+            Unit(LaggedTemperature(s, context.reference_degC, lags_s[static_cast<std::size_t>(g)])));
+      },
+      [lags_s](int g) {
+        return fmt::format("locked to temperature with a lag of {:.0f} s", lags_s[static_cast<std::size_t>(g)]);
+      });
 }
 
 void AddDwells(const Schedule& s, const Collector& add) {
@@ -209,10 +231,12 @@ void AddDwells(const Schedule& s, const Collector& add) {
     if (found != levels.end()) by_level(i, std::distance(levels.begin(), found)) = 1.0;
   }
   const auto k = static_cast<int>(by_level.cols());
-  add.Add("dwell", 1, k, [by_level](int) { return by_level; }, [](int) { return std::string("depends on the dwell"); });
+  add.Add(
+      "dwell", 1, k, [by_level](int) { return by_level; }, [](int) { return std::string("depends on the dwell"); });
   const Eigen::MatrixXd directed = by_level.array().colwise() * direction.array();
-  add.Add("dwell", 1, k, [directed](int) { return directed; },
-          [](int) { return std::string("direction times a function of the dwell, odd in direction"); });
+  add.Add(
+      "dwell", 1, k, [directed](int) { return directed; },
+      [](int) { return std::string("direction times a function of the dwell, odd in direction"); });
 }
 
 /// A scale of each channel that follows a signal.
@@ -264,13 +288,15 @@ Eigen::MatrixXd Powers(const Eigen::VectorXd& u, const Eigen::VectorXd& v) {
   Eigen::MatrixXd p(u.size(), 9);
   const auto a = u.array(), b = v.array();
   p << a.square().matrix(), (a * b).matrix(), b.square().matrix(), a.cube().matrix(), (a.square() * b).matrix(),
-      (a * b.square()).matrix(), b.cube().matrix(), a.square().square().matrix(), (a.square().square() * a).matrix();
+      (a * b.square()).matrix(), b.cube().matrix(), a.square().square().matrix(),
+      (a.square().square() * a).matrix();
   return p;
 }
 
 /// Families of one channel only: rows of the others are zero.
 void AddOnChannel(const std::string& sort, int channel, int grid, int k, double plausible,
-                  const std::function<Eigen::MatrixXd(int)>& signals, const Describe& describe, std::vector<Family>& families) {
+                  const std::function<Eigen::MatrixXd(int)>& signals, const Describe& describe,
+                  std::vector<Family>& families) {
   Family family;
   family.kind = Kind::kUnknown;
   family.effect = family.group = sort;
@@ -291,31 +317,35 @@ void AddSpots(const RotaryRun& rotary, std::vector<Family>& families) {
     const Eigen::VectorXd u = spots.col(c), v = spots.col(c ^ 1);
     const std::string name = kChannelNames[static_cast<std::size_t>(c)];
     const Eigen::MatrixXd powers = Powers(u / range_m, v / range_m);
-    AddOnChannel("spot", c, 1, 9, 2.0 * kPlausible_m, [powers](int) { return powers; },
-                 [name](int) { return "smooth function of the spot position of " + name + ", locked to spot"; }, families);
+    AddOnChannel(
+        "spot", c, 1, 9, 2.0 * kPlausible_m, [powers](int) { return powers; },
+        [name](int) { return "smooth function of the spot position of " + name + ", locked to spot"; }, families);
     const Eigen::MatrixXd linear = spots / range_m;
-    AddOnChannel("linear map", c, 1, 4, kPlausibleShare * range_m, [linear](int) { return linear; },
-                 [name](int) { return "proportional to the spot positions, locked to spot, on " + name; }, families);
+    AddOnChannel(
+        "linear map", c, 1, 4, kPlausibleShare * range_m, [linear](int) { return linear; },
+        [name](int) { return "proportional to the spot positions, locked to spot, on " + name; }, families);
     // Half a cycle of phase between the ends of the range from one period to the next.
     const double span_m = u.maxCoeff() - u.minCoeff();
     const double longest_m = std::max(span_m / 2.0, 20.0 * um), shortest_m = 12.0 * um;
     const double step_per_m = 0.4 / std::max(span_m, 40.0 * um);
     const int grid = std::clamp(static_cast<int>((1.0 / shortest_m - 1.0 / longest_m) / step_per_m), 1, 400);
     const auto wave_number = [=](int g) { return 2.0 * units::kPi * (1.0 / longest_m + g * step_per_m); };
-    AddOnChannel("spot fringes", c, grid, 2, kPlausible_m,
-                 [u, wave_number](int g) { return Wave(wave_number(g) * u, Eigen::VectorXd::Ones(u.size())); },
-                 [name, wave_number](int g) {
-                   return fmt::format("periodic in spot position of {}, period {:.1f} um, locked to spot", name,
-                                      2.0 * units::kPi / wave_number(g) / um);
-                 },
-                 families);
+    AddOnChannel(
+        "spot fringes", c, grid, 2, kPlausible_m,
+        [u, wave_number](int g) { return Wave(wave_number(g) * u, Eigen::VectorXd::Ones(u.size())); },
+        [name, wave_number](int g) {
+          return fmt::format("periodic in spot position of {}, period {:.1f} um, locked to spot", name,
+                             2.0 * units::kPi / wave_number(g) / um);
+        },
+        families);
   }
 }
 
 /// Wrong scales and turned axes of several channels at once.
 void AddLinearMaps(const RotaryRun& rotary, std::vector<Family>& families) {
   const Eigen::MatrixXd spots = SpotSeries(rotary);
-  const auto add = [&](const std::string& where, const std::string& text, const std::function<Eigen::MatrixXd()>& columns) {
+  const auto add = [&](const std::string& where, const std::string& text,
+                       const std::function<Eigen::MatrixXd()>& columns) {
     Family family;
     family.kind = Kind::kUnknown;
     family.effect = family.group = "linear map";
@@ -350,7 +380,8 @@ void AddSharedSeries(const SharedSeries& series, const Collector& collect) {
   };
   const int tone = 2 * kChannels;
   collect.Add("tone of another pattern", "all", series.tone, Eigen::MatrixXd::Identity(tone, tone), frequency);
-  collect.Add("step of another pattern", "all", series.step, Eigen::MatrixXd::Identity(kChannels, kChannels), onset);
+  collect.Add("step of another pattern", "all", series.step, Eigen::MatrixXd::Identity(kChannels, kChannels),
+              onset);
   for (const Place& place : collect.places) {
     if (place.name == "roll" || place.name == "lateral") {
       collect.Add("tone of another pattern", place.name, series.tone, PatternMap(place.weight, 2), frequency);
@@ -363,7 +394,8 @@ void AddSharedSeries(const SharedSeries& series, const Collector& collect) {
 
 }  // namespace
 
-std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext& context, const SharedSeries& series) {
+std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext& context,
+                                    const SharedSeries& series) {
   const std::vector<Place> places = PlacesOf(rotary.shown_by_motion);
   std::vector<Family> families;
   const Collector collect{places, families};

@@ -1,0 +1,119 @@
+#include "twin/diagnose/rotary/rotary_readings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/measure/calibrate.h"
+
+namespace twinbench::diagnose::rotary {
+namespace {
+
+void AddReading(const Reading& r, Schedule& s) {
+  s.reading.push_back(r.reading);
+  s.setup.push_back(r.setup);
+  s.pass.push_back(r.pass);
+  s.direction.push_back(r.direction);
+  s.position.push_back(r.position);
+  s.phase.push_back(r.phase);
+}
+
+Eigen::VectorXd Column(const std::vector<Reading>& readings, double (*value)(const Reading&)) {
+  Eigen::VectorXd column(std::ssize(readings));
+  std::transform(readings.begin(), readings.end(), column.begin(), value);
+  return column;
+}
+
+/// Stated standard uncertainty of a mean on one channel: pooled over all blocks, else from the scenario.
+double StatedSigma_m(const std::vector<Reading>& used, int channel, const Scenario& scenario,
+                     const measure::BenchGeometry& geometry) {
+  double sum_m2 = 0.0;
+  int count = 0;
+  for (const Reading& r : used) {
+    const auto variances = measure::SpotVariances(r, geometry);
+    if (!variances) continue;
+    sum_m2 += (*variances)[channel];
+    ++count;
+  }
+  if (2 * count > std::ssize(used)) return std::sqrt(sum_m2 / count);
+  const double mean_V = std::hypot(scenario.amplifier.noise_V / std::sqrt(scenario.adc.samples),
+                                   geometry.adc_step_V / std::sqrt(12.0 * scenario.adc.samples));
+  return mean_V / geometry.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
+}
+
+}  // namespace
+
+bool IsUsable(const Reading& r) {
+  if (r.status != ReadingStatus::kOk) return false;
+  if (r.phase != Phase::kCalibration && r.phase != Phase::kFullCircle) return false;
+  const auto finite = [](double v) { return std::isfinite(v); };
+  if (!std::all_of(r.mean_V.begin(), r.mean_V.end(), finite)) return false;
+  if (r.phase == Phase::kFullCircle) return finite(r.target_rad) && finite(r.reference_rad);
+  return finite(r.autocollimator_yaw_rad) && finite(r.autocollimator_tilt_rad);
+}
+
+Schedule ScheduleOf(const std::vector<Reading>& used) {
+  Schedule s;
+  for (const Reading& r : used) AddReading(r, s);
+  s.time_s = Column(used, [](const Reading& r) { return ToSeconds(r.time); });
+  s.dwell_s = Column(used, [](const Reading& r) { return r.dwell_s; });
+  s.temperature_degC = Column(used, [](const Reading& r) { return r.temperature_degC; });
+  s.target_rad = Column(used, [](const Reading& r) { return r.target_rad; });
+  s.reference_rad = Column(used, [](const Reading& r) { return r.reference_rad; });
+  s.velocity_rad_s = Eigen::VectorXd::Constant(std::ssize(used), kNaN);
+  return s;
+}
+
+Eigen::VectorXd ObservedOf(const std::vector<Reading>& used, const measure::BenchGeometry& geometry) {
+  Eigen::VectorXd observed(kChannels * std::ssize(used));
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    observed.segment<4>(kChannels * static_cast<Eigen::Index>(i)) = measure::OnSurface(used[i].mean_V, geometry);
+  }
+  return observed;
+}
+
+std::vector<int> ScannedBefore(const std::vector<std::string>& scan_list) {
+  std::vector<int> before(kChannels);
+  for (int k = 0; k < kChannels; ++k) {
+    const auto index = [&scan_list](int at) {
+      const auto name = scan_list[static_cast<std::size_t>((at + kChannels) % kChannels)];
+      return static_cast<int>(std::find(kChannelNames.begin(), kChannelNames.end(), name) - kChannelNames.begin());
+    };
+    before[static_cast<std::size_t>(index(k))] = index(k - 1);
+  }
+  return before;
+}
+
+bool IsNoiseFree(const std::vector<Reading>& used) {
+  return std::ranges::all_of(
+      used, [](const Reading& r) { return std::ranges::all_of(r.std_V, [](double V) { return V == 0.0; }); });
+}
+
+double SampleNoise_V(const std::vector<Reading>& used, const Scenario& scenario) {
+  std::vector<double> stds_V;
+  for (const Reading& r : used) {
+    for (const double V : r.std_V) {
+      if (std::isfinite(V)) stds_V.push_back(V);
+    }
+  }
+  if (stds_V.empty()) return scenario.amplifier.noise_V;
+  const auto middle = stds_V.begin() + std::ssize(stds_V) / 2;
+  std::nth_element(stds_V.begin(), middle, stds_V.end());
+  return *middle;
+}
+
+Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario, const OpticalBench& bench) {
+  Eigen::Vector4d noise_m;
+  for (int c = 0; c < kChannels; ++c) noise_m[c] = StatedSigma_m(used, c, scenario, bench.nominal);
+  const Eigen::Matrix4d K = ShownJacobian(bench, Vector4::Zero());
+  const double u_rad = bench.nominal.autocollimator_noise_rad;
+  const Eigen::Vector4d sweep_m = (K.col(0).cwiseAbs2() + K.col(1).cwiseAbs2()).cwiseSqrt() * u_rad;
+  Eigen::VectorXd sigma(kChannels * std::ssize(used));
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const bool swept = used[i].phase == Phase::kCalibration;
+    const Eigen::Vector4d u_m = swept ? (noise_m.cwiseAbs2() + sweep_m.cwiseAbs2()).cwiseSqrt() : noise_m;
+    sigma.segment<4>(kChannels * static_cast<Eigen::Index>(i)) = u_m;
+  }
+  return sigma;
+}
+
+}  // namespace twinbench::diagnose::rotary
