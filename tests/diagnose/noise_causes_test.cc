@@ -10,18 +10,13 @@
 namespace twinbench::diagnose {
 namespace {
 
+using test::NoisyRing;
 using test::WhiteNoise;
-
-LinearRun Noisy(std::uint64_t seed) {
-  LinearRun run = test::MakeRing();
-  test::AddNoise(run, seed);
-  return run;
-}
 
 /// A run of white noise of the stated size, altered row by row.
 template <class Alter>
 std::vector<NoiseCause> CausesOf(std::uint64_t seed, const Alter& alter) {
-  LinearRun run = Noisy(seed);
+  LinearRun run = NoisyRing(seed);
   alter(run);
   const NoiseModel noise = WhiteNoise(run);
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);

@@ -94,6 +94,13 @@ inline void AddNoise(LinearRun& run, std::uint64_t seed, double size = 1.0) {
   for (int k = 0; k < run.Rows(); ++k) run.residual[k] += size * run.sigma[k] * stream.Normal();
 }
 
+/// A ring with nothing but white noise of the stated size.
+inline LinearRun NoisyRing(std::uint64_t seed) {
+  LinearRun run = MakeRing();
+  AddNoise(run, seed);
+  return run;
+}
+
 /// Gives the unknowns values of some micrometres.
 inline void AddUnknowns(LinearRun& run, std::uint64_t seed) {
   Stream stream(seed, "ring.unknowns");

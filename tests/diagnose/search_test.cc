@@ -11,13 +11,8 @@
 namespace twinbench::diagnose {
 namespace {
 
+using test::NoisyRing;
 using test::WhiteNoise;
-
-LinearRun Noisy(std::uint64_t seed) {
-  LinearRun run = test::MakeRing();
-  test::AddNoise(run, seed);
-  return run;
-}
 
 Family Fixed(const std::string& name, const Eigen::MatrixXd& columns, double prior_sd) {
   Family family;
@@ -41,7 +36,7 @@ Eigen::VectorXd OneChannel(const LinearRun& run, const Eigen::VectorXd& rows, in
 
 /// A run with a few causes to choose from.
 struct Case {
-  explicit Case(std::uint64_t seed) : run(Noisy(seed)) {
+  explicit Case(std::uint64_t seed) : run(NoisyRing(seed)) {
     const Eigen::VectorXd drift = Drift(run);
     families = {Fixed("drift", drift, units::um), Fixed("drift of one", OneChannel(run, drift, 0), units::um),
                 Fixed("bow", drift.cwiseAbs2(), units::um)};

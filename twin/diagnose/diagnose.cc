@@ -177,12 +177,6 @@ bool IsStruck(const DiagnoseOptions& options, const std::string& effect) {
   return std::ranges::find(options.struck, effect) != options.struck.end();
 }
 
-double FreePower(const LinearRun& run) {
-  const NoiseModel noise{run.sigma, 0.0};
-  const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
-  return Project(projector, {}, noise.Whiten(run, Eigen::MatrixXd(run.residual))).power[0];
-}
-
 Scenario WithFrame(Scenario scenario) {
   EffectSettings frame;
   frame.name = "reclamp_frame";
@@ -226,7 +220,8 @@ Searched SearchFrames(const std::vector<Reading>& readings, const Scenario& scen
   }
   Searched turned{case_of(WithFrame(scenario)), {}, {}};
   const LinearRun& run = stated.rotary->Rotary().run;
-  const double evidence = 0.5 * run.Rows() * std::log(FreePower(run) / FreePower(turned.rotary->Rotary().run));
+  const double evidence =
+      0.5 * run.Rows() * std::log(FreeMisfit(run).power / FreeMisfit(turned.rotary->Rotary().run).power);
   if (evidence > kWorthTrying) {
     turned.analysis = analyse(*turned.rotary);
     turned.discrete.push_back({"reclamp_frame", "", evidence});

@@ -108,6 +108,13 @@ Projected Project(const Projector& projector, const Remainder& remainder, const 
   return data;
 }
 
+Misfit FreeMisfit(const LinearRun& run) {
+  const NoiseModel noise{run.sigma, 0.0};
+  const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  const Eigen::MatrixXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual));
+  return {Project(projector, {}, white).power[0], projector.DegreesOfFreedom()};
+}
+
 Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
                  const std::vector<Family>& families)
     : run_(run), noise_(noise), projector_(projector), families_(families) {

@@ -36,6 +36,13 @@ struct Projected {
 };
 Projected Project(const Projector& projector, const Remainder& remainder, const Eigen::MatrixXd& white);
 
+/// How badly the model with all its free unknowns, and no cause, fits: y' W y with the stated deviations.
+struct Misfit {
+  double power = 0.0;
+  double degrees_of_freedom = 1.0;
+};
+Misfit FreeMisfit(const LinearRun& run);
+
 /// What the scan says of each family (rows) in each run (columns).
 struct Evidence {
   Eigen::MatrixXd log_bayes;   // log Bayes factor against no effect, averaged over grid and prior scale

@@ -6,8 +6,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/engine/noise_model.h"
-#include "twin/diagnose/engine/projector.h"
+#include "twin/diagnose/engine/scanner.h"
 #include "twin/diagnose/rotary/rotary_run.h"
 
 namespace twinbench::diagnose::rotary {
@@ -92,19 +91,6 @@ std::string LabelBlunder(const std::vector<Reading>& readings, const Scenario& s
   return IndexOffset(readings, scenario) == 1 ? "index_offset" : "";
 }
 
-/// y'Wy and the rows that count, for the free model.
-struct Misfit {
-  double power = 0.0, degrees = 1.0;
-};
-
-Misfit MisfitOf(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
-  const RotaryRun rotary = BuildRun(readings, scenario, published);
-  const NoiseModel noise{rotary.run.sigma, 0.0};
-  const Projector projector(noise.Whiten(rotary.run, rotary.run.nuisance.jacobian), rotary.run.nuisance);
-  const Eigen::VectorXd white = noise.Whiten(rotary.run, Eigen::MatrixXd(rotary.run.residual)).col(0);
-  return {white.dot(projector.Apply(white).col(0)), projector.DegreesOfFreedom()};
-}
-
 }  // namespace
 
 ConventionResult ScreenConventions(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
@@ -112,15 +98,18 @@ ConventionResult ScreenConventions(const std::vector<Reading>& readings, const S
   constexpr double kCertain = 1e4;
   const std::string label = LabelBlunder(readings, scenario);
   if (!label.empty()) return {label, kCertain, Undone(label, scenario, readings)};
-  const Misfit as_is = MisfitOf(readings, scenario, published);
-  if (as_is.power < kGross * as_is.degrees) return {"", 0.0, readings};
+  const auto misfit_of = [&](const std::vector<Reading>& tried) {
+    return FreeMisfit(BuildRun(tried, scenario, published).run);
+  };
+  const Misfit as_is = misfit_of(readings);
+  if (as_is.power < kGross * as_is.degrees_of_freedom) return {"", 0.0, readings};
   ConventionResult best{"", 0.0, readings};
   for (const char* where : {"swap_xy_a", "swap_xy_b", "swap_psds", "negate_psd_a_x", "negate_psd_a_y",
                             "negate_psd_b_x", "negate_psd_b_y"}) {
     std::vector<Reading> undone = Undone(where, scenario, readings);
-    const Misfit misfit = MisfitOf(undone, scenario, published);
+    const Misfit misfit = misfit_of(undone);
     // The noise scale is free: only the ratio of the misfits counts.
-    const double log_evidence = 0.5 * as_is.degrees * std::log(as_is.power / misfit.power);
+    const double log_evidence = 0.5 * as_is.degrees_of_freedom * std::log(as_is.power / misfit.power);
     if (log_evidence > best.log_evidence && misfit.power < 0.1 * as_is.power)
       best = {where, log_evidence, std::move(undone)};
   }
