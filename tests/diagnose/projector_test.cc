@@ -53,6 +53,18 @@ TEST(Projector, AgreesWithAnOrthogonalFactorisationOfAllUnknowns) {
   EXPECT_LT((projector.Apply(Y) - ApplyDense(nuisance, Y)).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+/// Taking each row's neighbour out, as noise that is correlated from reading to reading asks for, joins the blocks.
+TEST(Projector, AgreesWithTheOrthogonalFactorisationWhereRowsTouchTwoBlocks) {
+  Nuisance nuisance = ArrowNuisance();
+  const Eigen::MatrixXd J = nuisance.jacobian;
+  Eigen::MatrixXd joined = J;
+  joined.bottomRows(kRows - 1) -= 0.4 * J.topRows(kRows - 1);
+  nuisance.jacobian = joined.sparseView();
+  const Projector projector(nuisance.jacobian, nuisance);
+  const Eigen::MatrixXd Y = RandomMatrix("data", kRows, 5);
+  EXPECT_LT((projector.Apply(Y) - ApplyDense(nuisance, Y)).cwiseAbs().maxCoeff(), 1e-9);
+}
+
 TEST(Projector, GivesTheQuadraticFormWithoutFormingTheProjection) {
   const Nuisance nuisance = ArrowNuisance();
   const Projector projector(nuisance.jacobian, nuisance);

@@ -23,6 +23,16 @@ Eigen::MatrixXd Normal(const Sparse& jacobian, const Eigen::VectorXd& precision)
   return normal;
 }
 
+/// True if no entry of the normal matrix joins two of the local blocks. Noise that is correlated from reading to
+/// reading joins neighbours when it is whitened.
+bool AreSeparate(const Eigen::MatrixXd& normal, int blocks, int size) {
+  for (int i = 0; i < blocks; ++i) {
+    const auto before = normal.block(i * size, 0, size, i * size);
+    if ((before.array() != 0.0).any()) return false;
+  }
+  return true;
+}
+
 /// J' S. Most signatures are zero on most rows (other channels, before a step): those cost nothing here.
 Eigen::MatrixXd Gather(const Sparse& jacobian, const Eigen::MatrixXd& S) {
   Eigen::MatrixXd gathered = Eigen::MatrixXd::Zero(jacobian.cols(), S.cols());
@@ -53,6 +63,7 @@ Projector::Projector(Sparse jacobian, const Nuisance& nuisance)
   Require(nuisance.prior_precision.size() == jacobian_.cols() && (nuisance.prior_precision.array() > 0.0).all(),
           "every free unknown needs a positive prior precision");
   const Eigen::MatrixXd normal = Normal(jacobian_, nuisance.prior_precision);
+  if (!AreSeparate(normal, blocks_, size_)) blocks_ = 0;
   const int local = blocks_ * size_, core = static_cast<int>(normal.cols()) - local;
   coupling_.resize(core, local);
   for (int i = 0; i < blocks_; ++i) {

@@ -12,7 +12,8 @@ namespace twinbench::diagnose {
 /// What is left of whitened data once the free unknowns have taken their share:
 ///     W = I - J (J'J + D)^-1 J',   D the prior precisions.
 ///
-/// W is never formed. Local blocks are eliminated by Schur complement; the core is dense.
+/// W is never formed. Local blocks are eliminated by Schur complement; the core is dense. Blocks that the whitening of
+/// correlated noise has joined are part of the core.
 class Projector {
  public:
   /// @param jacobian  Whitened, rows x unknowns.
