@@ -199,6 +199,18 @@ TEST(Effects, AThermalTiltFollowsTheRoomWithItsLag) {
   EXPECT_NEAR(pair.Difference()[0] / (-kV_m * kYaw_m * per_kelvin * lagged_K), 1.0, 1e-3);
 }
 
+TEST(Effects, TheAutocollimatorSeesTheSameThermalTiltAsTheDetectors) {
+  Scenario warming = Quiet();
+  warming.environment.drift_K_h = 1.0;
+  const double per_kelvin = 5.0 * units::arcsec, lag_s = 900.0;
+  Pair pair(Effect("thermal_tilt", "tilt", {{"tilt_per_kelvin", per_kelvin}, {"lag", lag_s}}), warming);
+  pair.Difference();
+  pair.Do([](RotaryBench bench) { bench.clock.Wait(std::chrono::hours(1)); });
+  const double seen = pair.with.Bench().autocollimator.Read().tilt_rad,
+               without = pair.without.Bench().autocollimator.Read().tilt_rad;
+  EXPECT_NEAR((seen - without) / (pair.Difference()[1] / (kV_m * kTilt_m)), 1.0, 1e-2);
+}
+
 TEST(Effects, BacklashLeavesTheRotorBehindOnEitherSide) {
   const double half = 1.0 * units::arcsec;
   for (const char* table : {"target", "reference"}) {

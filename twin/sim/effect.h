@@ -61,7 +61,7 @@ class Effect {
 
   /// Before anything is built: constants of the bench that are not what the scenario says.
   virtual void AlterBench(Scenario& /*actual*/) const {}
-  /// Once before each A/D block, with the time running forwards.
+  /// Before each look at the bench, be it a block, an autocollimator or a picture, with the time running forwards.
   virtual void Advance(const Moment& /*moment*/) {}
   virtual void AlterMounting(Mounting& /*mounting*/) const {}
   /// The angles at which the tables' scales are read, when they are not those of the rotors.

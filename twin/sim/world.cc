@@ -37,6 +37,7 @@ Moment World::Look(const mechanics::StackState& axes) {
   moment.reference_direction = axes_.Direction(Axis::kReference);
   moment.setup = setup_;
   moment.reading = next_reading_;
+  effects_.Advance(moment);
   return moment;
 }
 
@@ -67,7 +68,6 @@ void World::WriteIrradiance(const std::string& path) {
 Acquisition World::Acquire(int n_samples, bool keep_raw) {
   const mechanics::StackState axes = axes_.Look();
   const Moment moment = Look(axes);
-  effects_.Advance(moment);
   const Spots spots = light_.Trace(GratingPose(moment, axes), LookAtLight(moment));
 
   Acquisition block;
