@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/diagnose/encoder_fit.h"
+#include "twin/diagnose/encoder/next_measurement.h"
 
 // Each named family against the twin's effect: two implementations that share no code.
 namespace twinbench::diagnose {
@@ -46,6 +47,20 @@ TEST(EncoderFamilies, RecoverErrorsThatRepeatWithTheAngle) {
       if (found == effect.parameters.end()) continue;
       EXPECT_EQ(r.parameters.at(order), found->second) << name;
     }
+  }
+}
+
+TEST(EncoderFamilies, ReportOfTheManyAmplitudesAndPhasesOfAWaveThePositiveOne) {
+  const Scenario scenario = EncoderScenario();
+  for (const double phase_rad : {-3.0, -0.3, 0.4, 2.9}) {
+    const Recovered negative =
+        Recover(scenario, EncoderEffect("eccentricity", {{"amplitude", -1e-5}, {"phase", phase_rad}}));
+    EXPECT_NEAR(negative.parameters.at("amplitude"), 1e-5, 1e-9);
+    EXPECT_NEAR(negative.parameters.at("phase"), phase_rad + units::kPi, 1e-3);
+    const Recovered positive =
+        Recover(scenario, EncoderEffect("periodic", {{"amplitude", 1e-5}, {"phase", phase_rad}}));
+    EXPECT_NEAR(positive.parameters.at("amplitude"), 1e-5, 1e-9);
+    EXPECT_NEAR(positive.parameters.at("phase"), phase_rad < 0.0 ? phase_rad + 2.0 * units::kPi : phase_rad, 1e-3);
   }
 }
 
@@ -195,6 +210,20 @@ TEST(EncoderFamilies, GiveCausesOfOneOrderTheSameColumnsAndPriors) {
   expect_same("ellipticity", "quadrature_error");
 }
 
+TEST(EncoderNextMeasurement, SplitsWhatOneRunCannot) {
+  using encoder::NextMeasurement;
+  EXPECT_THAT(NextMeasurement("signal_offset", "eccentricity"), testing::HasSubstr("raw sine and cosine"));
+  EXPECT_THAT(NextMeasurement("hysteresis", "backlash"), testing::HasSubstr("behind a reversal"));
+  EXPECT_THAT(NextMeasurement("backlash", "latency"), testing::HasSubstr("speed"));
+  EXPECT_THAT(NextMeasurement("eccentricity", "reference_fault"), testing::HasSubstr("turned on the shaft"));
+  for (const EffectEntry& a : EffectCatalogue(kEncoderBench)) {
+    for (const EffectEntry& b : EffectCatalogue(kEncoderBench)) {
+      EXPECT_FALSE(NextMeasurement(a.name, b.name).empty());
+      EXPECT_EQ(NextMeasurement(a.name, b.name), NextMeasurement(b.name, a.name));
+    }
+  }
+}
+
 TEST(EncoderFamilies, HaveUniqueGroupsByEffectAndBoundsOfTheCatalogue) {
   Scenario scenario = EncoderScenario("sweep");
   scenario.device.lines = 20;
@@ -206,6 +235,32 @@ TEST(EncoderFamilies, HaveUniqueGroupsByEffectAndBoundsOfTheCatalogue) {
     for (const Amplitude& a : family.amplitudes) EXPECT_GT(a.prior_sd, 0.0) << family.effect;
     for (const Shape& s : family.shapes) EXPECT_EQ(std::ssize(s.value), family.grid) << family.effect;
   }
+}
+
+TEST(EncoderFamilies, GiveTheStateThatHysteresisBeginsWithThePriorOfItsLag) {
+  const Scenario scenario = EncoderScenario();
+  const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
+  const Family& family = test::FamilyOf(families, "hysteresis");
+  EXPECT_EQ(family.amplitudes[1].prior_sd, family.amplitudes[0].prior_sd);
+  // In steady motion the lag is the trace in the readings.
+  EXPECT_NEAR(family.amplitudes[0].prior_sd, test::FamilyOf(families, "backlash").amplitudes[0].prior_sd / 2.0,
+              1e-9);
+}
+
+TEST(EncoderFamilies, StateUncertaintiesOfShapesWhereTheCovarianceHasThem) {
+  const Scenario scenario = EncoderScenario();
+  const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
+  const Eigen::Vector4d sd(1e-6, 1e-6, 0.2, 0.1);  // lag, start, settles_over, run_up
+  const Eigen::MatrixXd cov = sd.array().square().matrix().asDiagonal();
+  const Family& family = test::FamilyOf(families, "hysteresis");
+  const Eigen::Vector2d shape(0.5, 0.04), x(1e-4, 0.0);
+  EXPECT_NEAR(family.parameters(shape, x, cov)[1].u, 0.2, 1e-12);
+  EXPECT_TRUE(std::isnan(family.parameters(shape, x, cov.topLeftCorner<2, 2>())[1].u)) << "held fixed";
+  const Family& clipping = test::FamilyOf(families, "signal_clipping");
+  const Eigen::Vector3d sd_clipping(0.1, 2e-4, 0.01);  // strength, level, zero
+  const Eigen::MatrixXd cov_clipping = sd_clipping.array().square().matrix().asDiagonal();
+  EXPECT_NEAR(clipping.parameters(Eigen::Vector2d(0.98, 0.0), Eigen::VectorXd::Ones(1), cov_clipping)[0].u, 2e-4,
+              1e-12);
 }
 
 TEST(EncoderFamilies, StateUncertaintiesThatFollowFromTheCovariance) {

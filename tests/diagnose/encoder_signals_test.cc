@@ -4,6 +4,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/signals.h"
+#include "twin/diagnose/encoder/wave_grid.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -59,6 +60,15 @@ SignalContext Steps(const std::vector<double>& angle_deg, const std::vector<int>
   return ContextOf(s, s.reference_rad, {});
 }
 
+TEST(WaveGrid, IsTheWaveOfEachGridPoint) {
+  const Eigen::VectorXd phase = Eigen::VectorXd::LinSpaced(50, -3.0, 125.0);  // twenty turns
+  constexpr int kCount = 5972;
+  const WaveGrid grid(phase, 0.3, 0.01, kCount);
+  for (const int g : {0, 1, 77, 78, 79, 3000, kCount - 1})
+    EXPECT_LT((grid.At(g) - Wave((0.3 + 0.01 * g) * phase)).cwiseAbs().maxCoeff(), 1e-11) << g;
+  EXPECT_LT((WaveGrid(phase, 2.0, 1.0, 1).At(0) - Wave(2.0 * phase)).norm(), 1e-12);
+}
+
 TEST(Sense, IsThatOfTheLastMotionWhereItHoldsAtRest) {
   const SignalContext c = Steps({0, 1, 1, 0, 0}, {0, 1, 0, -1, 0});
   EXPECT_EQ(Sense(c, true), (Eigen::VectorXd(5) << 1, 1, 1, -1, -1).finished());
@@ -72,6 +82,17 @@ TEST(Senses, AreThoseThatDifferOnTheSchedule) {
   EXPECT_EQ(senses[0], (Eigen::VectorXd(4) << 1, 1, -1, -1).finished());
   EXPECT_EQ(senses[1], (Eigen::VectorXd(4) << 1, 1, 1, -1).finished()) << "at the turning stop nothing has moved";
   EXPECT_EQ(Senses(Steps({0, 1, 2}, {1, 1, 1})).size(), 1u);
+}
+
+TEST(Travel, BeginsAnewWhereTheShaftWentBack) {
+  SignalContext c = Steps({0, 10, 20, 10, 0, 0, -10}, {1, 1, 1, -1, -1, -1, -1});
+  c.pass = {0, 0, 0, 1, 1, 2, 2};
+  EXPECT_TRUE(
+      TravelSinceReversal_rad(c).isApprox(deg * (Eigen::VectorXd(7) << 0, 10, 20, 0, 10, 10, 20).finished()))
+      << "the third pass goes on where the second one ended";
+  SignalContext returned = Steps({20, 10, 0, 20, 10}, {-1, -1, -1, -1, -1});
+  EXPECT_TRUE(TravelSinceReversal_rad(returned).isApprox(deg * (Eigen::VectorXd(5) << 0, 10, 20, 0, 10).finished()))
+      << "on the way back to 20 it was driven the other way";
 }
 
 TEST(Relaxation, GoesOverToTheSenseExponentially) {

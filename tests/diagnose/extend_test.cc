@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/diagnose/found_causes.h"
+#include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
 
 namespace twinbench::diagnose {
@@ -10,26 +12,13 @@ namespace {
 
 using testing::HasSubstr;
 using twinbench::test::RunTwin;
-
-Scenario Small() {
-  Scenario scenario;
-  scenario.noise_free = true;
-  scenario.procedure.positions = 12;
-  scenario.procedure.shifts = {0, 4};
-  return scenario;
-}
+using twinbench::test::SmallNoiseFree;
 
 /// A diagnosis that found a gain on PSD A x.
 DiagnosisRun FoundGain(double gain_error) {
-  DiagnosisRun run;
-  Cause cause;
-  cause.effect = "psd_gain";
-  cause.where = "psd_a_x";
-  cause.probability = 0.97;
+  Cause cause = test::FoundPsdGain(gain_error);
   cause.log_evidence = 44.0;
-  cause.parameters = {{"gain_error", "1", 1.0, gain_error, 2e-4, -0.5, 0.5}};
-  run.diagnosis.verdict = Verdict::kNamed;
-  run.diagnosis.causes = {cause};
+  DiagnosisRun run = test::NamedRun(cause);
   Accepted accepted;
   accepted.family.kind = Kind::kNamed;
   accepted.family.effect = cause.effect;
@@ -61,7 +50,7 @@ Scenario Reload(const std::string& toml) {
 }
 
 TEST(Extend, AddsTheEffectWithValueUncertaintyEvidenceAndProvenance) {
-  const Scenario extended = Reload(ExtendedToml(Small(), FoundGain(0.0031), "run 7 of May"));
+  const Scenario extended = Reload(ExtendedToml(SmallNoiseFree(), FoundGain(0.0031), "run 7 of May"));
   ASSERT_EQ(extended.effects.size(), 1u);
   const EffectSettings& effect = extended.effects[0];
   EXPECT_EQ(effect.name, "psd_gain");
@@ -81,7 +70,7 @@ TEST(Extend, TakesOfATieTheMemberThatTheSearchTookIn) {
   rival.parameters.clear();
   run.diagnosis.causes.insert(run.diagnosis.causes.begin(), rival);
   run.diagnosis.verdict = Verdict::kTie;
-  const Scenario extended = Extend(Small(), run, "");
+  const Scenario extended = Extend(SmallNoiseFree(), run, "");
   ASSERT_EQ(extended.effects.size(), 1u);
   EXPECT_EQ(extended.effects[0].name, "psd_gain");
 }
@@ -89,29 +78,29 @@ TEST(Extend, TakesOfATieTheMemberThatTheSearchTookIn) {
 TEST(Extend, TakesACauseWithoutASignatureToo) {
   DiagnosisRun run = FoundGain(0.001);
   run.accepted.clear();  // as for swapped channels or outliers, which are no columns
-  EXPECT_EQ(Extend(Small(), run, "").effects.size(), 1u);
+  EXPECT_EQ(Extend(SmallNoiseFree(), run, "").effects.size(), 1u);
 }
 
 TEST(Extend, KeepsTheEffectsThatTheScenarioHad) {
-  const Scenario once = Extend(Small(), FoundGain(0.001), "first");
+  const Scenario once = Extend(SmallNoiseFree(), FoundGain(0.001), "first");
   const Scenario twice = Extend(once, FoundGain(0.002), "second");
   ASSERT_EQ(twice.effects.size(), 2u);
   EXPECT_EQ(twice.effects[0].finding.provenance, "first");
 }
 
 TEST(Extend, OfACleanRunIsTheScenarioItself) {
-  const std::string toml = ExtendedToml(Small(), DiagnosisRun{}, "a run");
+  const std::string toml = ExtendedToml(SmallNoiseFree(), DiagnosisRun{}, "a run");
   EXPECT_THAT(toml, HasSubstr("nothing was added"));
-  EXPECT_EQ(WriteScenario(Reload(toml)), WriteScenario(Small()));
+  EXPECT_EQ(WriteScenario(Reload(toml)), WriteScenario(SmallNoiseFree()));
 }
 
 TEST(Extend, MovesAnImpossibleValueToItsBound) {
-  EXPECT_EQ(Extend(Small(), FoundGain(3.0), "").effects.at(0).parameters.at("gain_error"), 0.5);
+  EXPECT_EQ(Extend(SmallNoiseFree(), FoundGain(3.0), "").effects.at(0).parameters.at("gain_error"), 0.5);
 }
 
 TEST(Extend, IsRunByTheTwinWithTheEffectOn) {
-  const Scenario extended = Reload(ExtendedToml(Small(), FoundGain(0.01), "r"));
-  const auto plain = RunTwin(Small()).readings, with = RunTwin(extended).readings;
+  const Scenario extended = Reload(ExtendedToml(SmallNoiseFree(), FoundGain(0.01), "r"));
+  const auto plain = RunTwin(SmallNoiseFree()).readings, with = RunTwin(extended).readings;
   ASSERT_EQ(plain.size(), with.size());
   for (std::size_t k = 0; k < plain.size(); ++k) {
     EXPECT_NEAR(with[k].mean_V[0], 1.01 * plain[k].mean_V[0], 1e-12);
@@ -120,11 +109,11 @@ TEST(Extend, IsRunByTheTwinWithTheEffectOn) {
 }
 
 TEST(Extend, TabulatesStructureWithoutANameAndTheTwinShowsIt) {
-  const std::string toml = ExtendedToml(Small(), FoundStructure({40, 41, 70}, 0.8e-6), "r\nx");
+  const std::string toml = ExtendedToml(SmallNoiseFree(), FoundStructure({40, 41, 70}, 0.8e-6), "r\nx");
   EXPECT_THAT(toml, HasSubstr("# r x\n# added: empirical signal on psd_b_y: a bump on psd_b_y\n"));
   const Scenario extended = Reload(toml);
   ASSERT_EQ(extended.empiricals.size(), 1u);
-  const auto plain = RunTwin(Small()).readings, with = RunTwin(extended).readings;
+  const auto plain = RunTwin(SmallNoiseFree()).readings, with = RunTwin(extended).readings;
   for (std::size_t k = 0; k < plain.size(); ++k) {
     const int reading = plain[k].reading;
     const double expected_m = reading == 40 || reading == 41 || reading == 70 ? 0.8e-6 : 0.0;

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/ring_run.h"
 
 namespace twinbench::diagnose {
@@ -23,30 +24,14 @@ std::vector<std::string> KeysOf(const json& object) {
 
 /// A diagnosis with every field filled: the example of formats.md.
 DiagnosisRun Example() {
-  DiagnosisRun run;
-  run.run.unit = "um";
-  run.run.to_SI = 1e-6;
-  run.run.patterns = {{"yaw", Eigen::Vector4d(0.25, 0.0, 0.25, 0.0)}};  // metres per radian
-  Diagnosis& d = run.diagnosis;
-  d.verdict = Verdict::kNamed;
-  d.alarm_p = 0.0004;
-  Cause cause;
-  cause.effect = "psd_roll";
-  cause.where = "psd_a";
-  cause.probability = 0.97;
-  cause.parameters = {{"roll", "mrad", 1e-3, 3.1e-3, 2e-4, -0.5, 0.5}};
+  Cause cause = FoundCause("psd_roll", "psd_a", {"roll", "mrad", 1e-3, 3.1e-3, 2e-4, -0.5, 0.5});
   cause.indistinguishable_from = {{"psd_gain", "psd_a_y", 0.99}};
   cause.next_measurement = "a tilt sweep";
-  d.causes = {cause};
-  d.unknown = {0.02, "order 7"};
-  d.gain.before_m = 0.71e-6;
-  d.gain.after_m = 0.31e-6;
-  d.gain.noise_floor_m = 0.30e-6;
-  d.gain.fraction_removed = 0.97;
-  d.gain.interval95 = {0.95, 0.99};
-  d.gain.positive = true;
-  d.gain.folds = 4;
-  d.invisible = {{"backlash", "target", "target ez up to 0.4 arcsec rms"}};
+  DiagnosisRun run = NamedRun(cause);
+  run.run.patterns = {{"yaw", Eigen::Vector4d(0.25, 0.0, 0.25, 0.0)}};  // metres per radian
+  run.diagnosis.alarm_p = 0.0004;
+  run.diagnosis.unknown = {0.02, "order 7"};
+  run.diagnosis.invisible = {{"backlash", "target", "target ez up to 0.4 arcsec rms"}};
   return run;
 }
 

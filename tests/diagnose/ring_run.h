@@ -122,7 +122,6 @@ inline Accepted Direction(const LinearRun& run) {
       accepted.columns(kRingChannels * i, 0) = run.schedule.direction[static_cast<std::size_t>(i)];
   }
   accepted.amplitudes = Eigen::VectorXd::Zero(1);
-  accepted.cov_amplitudes = Eigen::MatrixXd::Zero(1, 1);
   return accepted;
 }
 

@@ -81,7 +81,7 @@ TEST(Search, PicksTheCauseThatIsThereWithItsSize) {
   const SearchResult found = c.Find(3.0);
   ASSERT_EQ(found.picks.size(), 1U);
   EXPECT_EQ(c.families[static_cast<std::size_t>(found.picks[0].family)].effect, "drift");
-  EXPECT_NEAR(found.amplitudes[0], 3.0 * units::um, 4.0 * std::sqrt(found.cov(0, 0)));
+  EXPECT_NEAR(found.picks[0].amplitudes[0], 3.0 * units::um, 4.0 * std::sqrt(found.picks[0].cov(0, 0)));
 }
 
 TEST(Search, PicksTwoCausesAtOnce) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "tests/diagnose/found_causes.h"
+
 namespace twinbench::diagnose {
 namespace {
 
@@ -21,26 +23,9 @@ std::string Flat(const DiagnosisRun& run) {
 }
 
 DiagnosisRun Named() {
-  DiagnosisRun run;
-  run.run.unit = "um";
-  run.run.to_SI = 1e-6;
-  Diagnosis& d = run.diagnosis;
-  d.verdict = Verdict::kNamed;
-  d.alarm_p = 1e-5;
-  d.readings = 624;
-  Cause cause;
-  cause.effect = "psd_gain";
-  cause.where = "psd_a_x";
-  cause.probability = 0.97;
-  cause.parameters = {{"gain_error", "1", 1.0, 0.00312, 0.0002, -0.5, 0.5}};
-  d.causes = {cause};
-  d.gain.before_m = 0.71e-6;
-  d.gain.after_m = 0.31e-6;
-  d.gain.noise_floor_m = 0.30e-6;
-  d.gain.fraction_removed = 0.97;
-  d.gain.interval95 = {0.95, 0.99};
-  d.gain.positive = true;
-  d.gain.folds = 4;
+  DiagnosisRun run = test::NamedRun(test::FoundPsdGain(0.00312));
+  run.diagnosis.alarm_p = 1e-5;
+  run.diagnosis.readings = 624;
   return run;
 }
 

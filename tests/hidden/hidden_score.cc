@@ -20,16 +20,22 @@ namespace {
 
 struct Options {
   std::vector<std::string> sets;
+  std::string bench;  // empty: both
+  std::string only;   // part of the names of the cases; empty: all
   std::string out, cases;
   int threads = 2;
   std::vector<std::string> struck;
   TwinOptions twin;
 };
 
-std::vector<Plan> OfBothBenches(const std::function<std::vector<Plan>(const std::string& bench)>& make) {
-  std::vector<Plan> plans = make(kRotaryBench);
-  const std::vector<Plan> more = make(kEncoderBench);
-  plans.insert(plans.end(), more.begin(), more.end());
+std::vector<Plan> OfBenches(const Options& options,
+                            const std::function<std::vector<Plan>(const std::string& bench)>& make) {
+  std::vector<Plan> plans;
+  for (const char* bench : {kRotaryBench, kEncoderBench}) {
+    if (!options.bench.empty() && options.bench != bench) continue;
+    const std::vector<Plan> more = make(bench);
+    plans.insert(plans.end(), more.begin(), more.end());
+  }
   return plans;
 }
 
@@ -42,14 +48,15 @@ std::vector<Plan> PlansOf(const std::string& set, const Options& options) {
   const std::string name = set.substr(0, equals), value = equals == std::string::npos ? "" : set.substr(equals + 1);
   if (name == "challenge") return ChallengePlans(value, kRotaryBench, options.struck);
   if (name == "challenge_encoder") return ChallengePlans(value, kEncoderBench, options.struck);
-  if (name == "twin") return OfBothBenches([&](const auto& bench) { return SinglePlans(bench, options.twin); });
+  if (name == "twin")
+    return OfBenches(options, [&](const auto& bench) { return SinglePlans(bench, options.twin); });
   if (name == "pairs") return PairPlans(CountOf(value, 60), options.twin);
   if (name == "unlisted")
-    return OfBothBenches([&](const auto& bench) { return UnlistedPlans(bench, options.twin); });
+    return OfBenches(options, [&](const auto& bench) { return UnlistedPlans(bench, options.twin); });
   if (name == "leave-one-out")
-    return OfBothBenches([&](const auto& bench) { return LeaveOneOutPlans(bench, options.twin); });
+    return OfBenches(options, [&](const auto& bench) { return LeaveOneOutPlans(bench, options.twin); });
   if (name == "clean") {
-    return OfBothBenches([&](const std::string& bench) {
+    return OfBenches(options, [&](const std::string& bench) {
       return CleanPlans(bench, CountOf(value, 400) / (bench == kRotaryBench ? 1 : 4), options.twin.first_seed);
     });
   }
@@ -62,6 +69,8 @@ std::string CommandOf(const Options& options) {
   std::string command = "hidden_score";
   for (const std::string& set : options.sets) command += " --set " + set;
   for (const std::string& effect : options.struck) command += " --strike " + effect;
+  if (!options.only.empty()) command += " --only " + options.only;
+  if (!options.bench.empty()) command += " --bench " + options.bench;
   return command + fmt::format(" --magnitudes {} --seeds {} --first-seed {}", options.twin.magnitudes,
                                options.twin.seeds, options.twin.first_seed);
 }
@@ -90,6 +99,7 @@ void Score(const Options& options) {
     const std::vector<Plan> more = PlansOf(set, options);
     plans.insert(plans.end(), more.begin(), more.end());
   }
+  std::erase_if(plans, [&](const Plan& plan) { return plan.name.find(options.only) == std::string::npos; });
   const auto show = [](int done, int planned, const Outcome& o) {
     fmt::print(stderr, "{}/{} {} {} [{}] {}: {} {:.1f} s\n", done, planned, o.set, o.name, InWords(o.hidden),
                GradeName(o.grade), o.answer.substr(0, 120), o.seconds);
@@ -113,6 +123,9 @@ int main(int argc, char** argv) {
                  "challenge=DIR, challenge_encoder=DIR, twin, pairs=N, unlisted, clean=N, leave-one-out")
       ->required()
       ->allow_extra_args(false);
+  app.add_option("--bench", options.bench, "of the sets made by the twin, only this bench")
+      ->check(CLI::IsMember({twinbench::kRotaryBench, twinbench::kEncoderBench}));
+  app.add_option("--only", options.only, "only cases with this in their name");
   app.add_option("--threads", options.threads, "cases at a time")->check(CLI::Range(1, 64));
   app.add_option("--seeds", options.twin.seeds, "cases of each effect, place and size");
   app.add_option("--magnitudes", options.twin.magnitudes, "sizes of each effect, from rho 5 to 30");

@@ -113,7 +113,9 @@ void AddParameters(const Diagnosis& d, Outcome& outcome) {
     if (!cause) continue;
     for (const diagnose::ParameterEstimate& p : cause->parameters) {
       const auto truth = part.parameters.find(p.name);
-      if (truth != part.parameters.end()) outcome.parameters.push_back({p.name, p.value, p.u, truth->second});
+      if (truth == part.parameters.end()) continue;
+      outcome.parameters.push_back(
+          {p.name, p.value, p.u, truth->second, p.name == "phase" ? 2.0 * units::kPi : 0.0});
     }
   }
 }
@@ -153,8 +155,12 @@ const char* GradeName(Grade grade) {
   return kNames[static_cast<std::size_t>(grade)];
 }
 
+double ParameterCheck::Error() const {
+  return period > 0.0 ? std::remainder(value - truth, period) : value - truth;
+}
+
 bool ParameterCheck::Covers() const {
-  return std::abs(value - truth) <= 1.96 * u;
+  return std::abs(Error()) <= 1.96 * u;
 }
 
 std::vector<std::string> ChannelsIn(const std::string& signature) {
@@ -186,6 +192,7 @@ Outcome Judge(const Hidden& hidden, const Diagnosis& diagnosis) {
   outcome.probability = TopProbability(diagnosis);
   outcome.alarm_p = diagnosis.alarm_p;
   outcome.gain = diagnosis.gain.fraction_removed;
+  outcome.gain_interval95 = diagnosis.gain.interval95;
   if (!diagnosis.causes.empty()) outcome.rho = diagnosis.causes.front().rho;
   AddStated(diagnosis, outcome);
   AddConfidence(diagnosis, outcome);

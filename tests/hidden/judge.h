@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct Stated {
 struct ParameterCheck {
   std::string name;
   double value = kNaN, u = kNaN, truth = kNaN;
+  double period = 0.0;  // of a phase: it is compared modulo this; 0: as it stands
+  double Error() const;
   bool Covers() const;  // truth within 1.96 standard uncertainties
 };
 
@@ -46,7 +49,9 @@ struct Outcome {
   std::string answer;        // causes with their probabilities and signature of the unknown, in words
   int members = 0;           // causes in the answer
   double probability = 0.0;  // of the most probable cause or the unknown
-  double alarm_p = kNaN, rho = kNaN, gain = kNaN;
+  double alarm_p = kNaN, rho = kNaN;
+  double gain = kNaN;                               // share of the removable variance of held-out readings
+  std::array<double, 2> gain_interval95 = {kNaN, kNaN};
   bool confident_wrong = false;  // a name that is not there, stated at 0.9 or more
   bool confident_alike = false;  // ... but these readings cannot tell it from the truth
   std::vector<Stated> stated;

@@ -1,5 +1,6 @@
 #include "tests/hidden/judge.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/hidden/score_table.h"
@@ -83,6 +84,34 @@ TEST(Judge, SizesAreComparedWithTheirTruth) {
   EXPECT_FALSE(Judge(Listed("tone"), d).parameters.at(0).Covers());
   d.causes[0].parameters[0].u = 0.2;
   EXPECT_TRUE(Judge(Listed("tone"), d).parameters.at(0).Covers());
+}
+
+TEST(Judge, PhasesAreComparedModuloAFullTurn) {
+  Hidden hidden = Listed("tone");
+  hidden.causes[0].parameters = {{"phase", 0.05}};
+  Diagnosis d = Answer(Verdict::kNamed, {{"tone", "all"}});
+  d.causes[0].parameters = {{"phase", "deg", units::deg, 2.0 * units::kPi - 0.05, 0.06}};
+  EXPECT_NEAR(Judge(hidden, d).parameters.at(0).Error(), -0.1, 1e-12);
+  EXPECT_TRUE(Judge(hidden, d).parameters.at(0).Covers());
+  d.causes[0].parameters[0].u = 0.05;
+  EXPECT_FALSE(Judge(hidden, d).parameters.at(0).Covers());
+}
+
+/// An answer whose cause removes `fraction` of the removable variance, within the interval.
+Outcome WithGain(double fraction, double lower, double upper) {
+  Diagnosis d = Answer(Verdict::kNamed, {{"tone", "all"}});
+  d.gain.fraction_removed = fraction;
+  d.gain.interval95 = {lower, upper};
+  Outcome outcome = Judge(Listed("tone"), d);
+  outcome.set = "twin";
+  return outcome;
+}
+
+TEST(Score, AGainReachesNineTenthsUnlessItsIntervalLiesBelow) {
+  const std::string table =
+      ScoreTable({WithGain(0.97, 0.95, 1.0), WithGain(0.8, 0.5, 1.1), WithGain(0.6, 0.4, 0.8)});
+  // Mean 0.79, scatter 0.185 / sqrt(3).
+  EXPECT_THAT(table, testing::HasSubstr("| twin | 3 | 2/3 = 66.7 % (9.4 to 99.2) | 1 | 0.790 +- 0.107 |"));
 }
 
 TEST(Share, HasTheIntervalOfClopperAndPearson) {

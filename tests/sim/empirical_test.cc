@@ -1,21 +1,13 @@
 #include <gtest/gtest.h>
 
+#include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
 
 namespace twinbench::sim {
 namespace {
 
-/// A noise-free run of 12 positions.
-Scenario Small() {
-  Scenario scenario;
-  scenario.noise_free = true;
-  scenario.procedure.positions = 12;
-  scenario.procedure.shifts = {0, 4};
-  return scenario;
-}
-
 TEST(Empirical, AddsItsValuesAtItsReadingsAndNothingElse) {
-  Scenario scenario = Small();
+  Scenario scenario = test::SmallNoiseFree();
   const auto plain = test::RunTwin(scenario).readings;
   EmpiricalSettings empirical;
   empirical.channel = "psd_b_y";

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "tests/tools/program.h"
@@ -10,6 +11,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// The small scenario as believed, and a run of it on a bench with a gain error of 1 % on PSD A x.
 class Diagnose : public Program {
@@ -55,6 +57,28 @@ TEST_F(Diagnose, OfAFolderPutsPlotsAndWordsIntoItsResults) {
   EXPECT_EQ(diagnosis.at("in_words"), text);
   results.erase("diagnosis");
   EXPECT_EQ(results, before);
+}
+
+TEST_F(Diagnose, OfAFolderWithRawBlocksFindsTheHumInThem) {
+  // 2500 scans at 62.5 kHz: 40 ms, two periods of the mains.
+  const std::vector<std::string> raw = {"--set", "procedure.keep_raw=true", "--set", "adc.samples=2500"};
+  std::vector<std::string> humming = raw;
+  humming.insert(humming.end(), {"--set", "amplifier.hum_mV=0.5"});
+  MakeRun("silent", raw);
+  MakeRun("humming", humming);
+  const auto told = [&](const std::string& run) {
+    std::vector<std::string> arguments = {"diagnose", run, "--scenario", "small.toml", "--cache", "cache"};
+    arguments.insert(arguments.end(), raw.begin(), raw.end());
+    return Succeed(arguments);
+  };
+  EXPECT_THAT(told("humming"), HasSubstr("a wave of 50 Hz"));
+  EXPECT_THAT(told("silent"), Not(HasSubstr("50 Hz")));
+  const auto screen = nlohmann::json::parse(Read("humming/results.json")).at("diagnosis").at("screen");
+  const auto hum = std::ranges::find_if(screen, [](const auto& test) { return test.at("test") == "raw: hum"; });
+  ASSERT_NE(hum, screen.end());
+  EXPECT_LT(hum->at("p"), 1e-6);
+  // 0.5 mV at 2000 V/m, to 1 % in some 100 blocks of 2500 samples of 6 mV.
+  EXPECT_NEAR(hum->at("effect_um"), 0.25, 0.03);
 }
 
 TEST_F(Diagnose, OfARunWithItsOwnScenarioFindsNothing) {

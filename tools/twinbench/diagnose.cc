@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
@@ -14,6 +16,7 @@
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
+#include "twin/core/run_record.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/gain.h"
 #include "twin/diagnose/json.h"
@@ -75,18 +78,45 @@ nlohmann::json JsonOf(const diagnose::DiagnosisRun& found, const Scenario& scena
   return json;
 }
 
-/// The residual tests of the model as it was believed, before any cause was added.
-std::vector<diagnose::ScreenTest> ScreenOf(const diagnose::DiagnosisRun& found) {
-  const diagnose::Projector projector(found.noise.Whiten(found.run, found.run.nuisance.jacobian), found.run.nuisance);
-  return diagnose::Screen(found.run, found.noise, projector);
+/// The residual tests of the model as it was believed, before any cause was added; with a paragraph on them.
+struct Screened {
+  std::vector<diagnose::ScreenTest> tests;
+  std::string in_words;
+};
+
+/// Raw blocks of the readings that have numbers.
+std::vector<RawBlock> RawBlocksOf(const std::string& folder, const std::vector<Reading>& readings) {
+  std::set<int> good;
+  for (const Reading& reading : readings) {
+    if (reading.status == ReadingStatus::kOk) good.insert(reading.reading);
+  }
+  std::vector<RawBlock> blocks = RunRecord::Open(folder)->RawBlocks();
+  std::erase_if(blocks, [&good](const RawBlock& block) { return !good.contains(block.reading); });
+  return blocks;
+}
+
+Screened ScreenOf(const std::string& folder, const RecordedRun& run, const diagnose::DiagnosisRun& found) {
+  const diagnose::Projector projector(found.noise.Whiten(found.run, found.run.nuisance.jacobian),
+                                      found.run.nuisance);
+  Screened screened{diagnose::Screen(found.run, found.noise, projector), ""};
+  const std::vector<RawBlock> blocks = RawBlocksOf(folder, run.readings);
+  std::string limits;
+  if (!blocks.empty()) {
+    const diagnose::RawScale scale = diagnose::RawScaleOf(run.scenario, found.run);
+    for (diagnose::ScreenTest& test : diagnose::ScreenRaw(blocks, scale)) screened.tests.push_back(std::move(test));
+    limits = diagnose::RawLimitsInWords(blocks, scale);
+  }
+  screened.in_words = diagnose::Wrapped(diagnose::ScreenInWords(screened.tests) + " " + limits);
+  return screened;
 }
 
 /// Puts the diagnosis into the run's results.json, beside what is there.
-void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const diagnose::DiagnosisRun& found) {
+void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const diagnose::DiagnosisRun& found,
+                      const Screened& screened, const std::string& in_words) {
   nlohmann::json results = fs::exists(path) ? ReadJson(path) : nlohmann::json::object();
   diagnosis["plots"] = diagnose::PlotsJson(found);
-  diagnosis["in_words"] = diagnose::InWords(found);
-  diagnosis["screen"] = diagnose::ToJson(ScreenOf(found));
+  diagnosis["in_words"] = in_words;
+  diagnosis["screen"] = diagnose::ToJson(screened.tests);
   results["diagnosis"] = std::move(diagnosis);
   WriteJson(path, results);
 }
@@ -105,8 +135,13 @@ void DiagnoseRun(const Options& options) {
   }
   const nlohmann::json json = JsonOf(found, run.scenario, options.extended);
   if (!options.json.empty()) WriteJson(options.json, json);
-  if (fs::is_directory(options.source)) MergeIntoResults(RunFolder{options.source}.results(), json, found);
-  if (options.json != "-") fmt::print("{}", diagnose::InWords(found));
+  std::string in_words = diagnose::InWords(found);
+  if (fs::is_directory(options.source)) {
+    const Screened screened = ScreenOf(options.source, run, found);
+    in_words += screened.in_words;
+    MergeIntoResults(RunFolder{options.source}.results(), json, found, screened, in_words);
+  }
+  if (options.json != "-") fmt::print("{}", in_words);
 }
 
 void Diagnose(const Options& options) {

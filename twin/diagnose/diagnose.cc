@@ -68,13 +68,9 @@ Family Detached(Family family) {
 
 std::vector<Accepted> AcceptedOf(const Analysis& analysis) {
   std::vector<Accepted> accepted;
-  Eigen::Index at = 0;
   for (const Pick& pick : analysis.found.picks) {
-    const Eigen::Index count = pick.columns.cols();
     const Family& family = analysis.scanner->Families()[static_cast<std::size_t>(pick.family)];
-    accepted.push_back({Detached(family), pick.grid_point, analysis.found.amplitudes.segment(at, count),
-                        analysis.found.cov.block(at, at, count, count), pick.columns});
-    at += count;
+    accepted.push_back({Detached(family), pick.grid_point, pick.amplitudes, pick.columns});
   }
   return accepted;
 }
@@ -158,7 +154,7 @@ void JudgeByGain(DiagnosisRun& result) {
 DiagnosisRun Finish(const LinearRun& run, const Analysis& analysis, const std::vector<Discrete>& discrete,
                     const BenchWords& words) {
   DiagnosisRun result;
-  RefuseWithoutRedundancy(run, analysis.projector->Redundancy());
+  RefuseWithoutRedundancy(run, analysis.redundancy);
   result.diagnosis = DiagnosisOf(run, analysis, discrete);
   result.run = run;
   result.noise = analysis.noise;
@@ -218,11 +214,12 @@ Searched SearchFrames(const std::vector<Reading>& readings, const Scenario& scen
     stated.analysis = analyse(*stated.rotary);
     return stated;
   }
-  Searched turned{case_of(WithFrame(scenario)), {}, {}};
   const LinearRun& run = stated.rotary->Rotary().run;
-  const double evidence =
-      0.5 * run.Rows() * std::log(FreeMisfit(run).power / FreeMisfit(turned.rotary->Rotary().run).power);
+  const LinearRun turned_run = rotary::BuildRun(readings, WithFrame(scenario), published).run;
+  const double evidence = 0.5 * run.Rows() * std::log(FreeMisfit(run).power / FreeMisfit(turned_run).power);
+  Searched turned;
   if (evidence > kWorthTrying) {
+    turned.rotary = case_of(WithFrame(scenario));
     turned.analysis = analyse(*turned.rotary);
     turned.discrete.push_back({"reclamp_frame", "", evidence});
     if (turned.analysis.found.picks.empty()) return turned;

@@ -27,9 +27,8 @@ struct DiagnoseOptions {
 struct Accepted {
   Family family;
   int grid_point = 0;
-  Eigen::VectorXd amplitudes;      // SI
-  Eigen::MatrixXd cov_amplitudes;  // SI
-  Eigen::MatrixXd columns;         // rows x amplitudes, SI, not whitened
+  Eigen::VectorXd amplitudes;  // SI
+  Eigen::MatrixXd columns;     // rows x amplitudes, SI, not whitened
 };
 
 /// All that the pages, the gain and the screen need besides the verdict.

@@ -31,7 +31,7 @@ struct Rival {
 
 struct Cause {
   std::string effect, where;
-  double probability = kNaN;   // capped (see naming.h)
+  double probability = kNaN;   // capped (see engine/family.h)
   double log_evidence = kNaN;  // log Bayes factor against its absence
   double rho = kNaN;           // length of its fitted signature after projection, in units of noise
   std::vector<ParameterEstimate> parameters;

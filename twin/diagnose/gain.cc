@@ -1,26 +1,24 @@
 #include "twin/diagnose/gain.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <utility>
 
 #include "twin/core/errors.h"
-#include "twin/core/stream.h"
 #include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/engine/projector.h"
+#include "twin/diagnose/folds.h"
+#include "twin/diagnose/held_out.h"
 
 namespace twinbench::diagnose {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-constexpr int kBlockReadings = 6;
-constexpr int kDraws = 1000;
-constexpr int kTimeFolds = 4;  // of a run without repeated passes
 /// Held-out rows stay in the fit with this weight: it moves the fit by 1e-8 of their noise and lets their leverage
 /// tell how well the other rows predict them.
 constexpr double kTrace = 1e-4;
-constexpr double kNoise = 2.0;  // standard deviations of the noise that a remainder must exceed to count
+constexpr double kLeastInformation = 0.3;  // on an amplitude; four passes leave 0.75, or 0.67 of one direction
 constexpr double kDeterminedVariance =
     100.0;  // of a prediction, in units of the row's noise; else it is not scored
 
@@ -28,36 +26,11 @@ std::size_t At(int i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Sums over held-out rows, in units of the noise.
-struct Sums {
-  double before = 0.0, after = 0.0, floor = 0.0;
-  double scatter = 0.0;  // variance of `after` by noise alone
-  double weight = 0.0;   // sum of 1 / sigma^2 [1/m^2]
-
-  Sums& operator+=(const Sums& other) {
-    before += other.before;
-    after += other.after;
-    floor += other.floor;
-    scatter += other.scatter;
-    weight += other.weight;
-    return *this;
-  }
-  double Removed() const { return before - after; }
-  /// What `after` has above the floor, as far as it is not within `deviations` of the noise.
-  double Remaining(double deviations) const {
-    return after - floor > deviations * std::sqrt(scatter) ? after - floor : 0.0;
-  }
-  double Fraction(double deviations) const {
-    if (Removed() > 0.0) return Removed() / (Removed() + Remaining(deviations));
-    return before > floor ? Removed() / (before - floor) : 0.0;  // nothing to remove, and nothing removed
-  }
-  double Rms(double sum) const { return std::sqrt(sum / weight); }
-};
-
 /// Errors of the predictions of one fold's rows, before and after, in SI; NaN for rows that are not scored.
 struct FoldErrors {
   Eigen::VectorXd before, after;
-  Eigen::VectorXd variance;  // of the prediction, in units of the row's noise
+  Eigen::VectorXd variance;   // of the prediction, in units of the row's noise
+  Eigen::VectorXd amplitude;  // relative variances of the amplitudes that it was predicted with
 };
 
 /// Rows that are held out keep `kTrace` of themselves; J and S unwhitened, so that their variance is that of the
@@ -82,54 +55,35 @@ FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Colu
   errors.before = run.residual - run.nuisance.jacobian * fit.Solve(train_y);
   errors.after =
       run.residual - columns.S * amplitudes - run.nuisance.jacobian * fit.Solve(train_y - S * amplitudes);
+  errors.amplitude = RelativeVariances(fit, S, columns.prior_precision);
   errors.variance = (1.0 - fit.Redundancy().array()) / (kTrace * kTrace);
+  for (int k = 0; k < run.Rows(); ++k) {
+    if (held[k] == 0.0 || !(errors.variance[k] < kDeterminedVariance)) errors.before[k] = errors.after[k] = kNaN;
+  }
   return errors;
 }
 
-/// One number a block of consecutive readings of a set-up, phase and pass.
-std::vector<int> BlockOfReading(const Schedule& s) {
-  std::map<std::pair<int, int>, int> seen;  // readings of a set-up and pass so far
-  std::map<std::pair<std::pair<int, int>, int>, int> number;
-  std::vector<int> block(At(s.Readings()));
-  for (int i = 0; i < s.Readings(); ++i) {
-    const std::pair<int, int> sweep = {s.setup[At(i)], s.pass[At(i)]};
-    const int in_sweep = seen[sweep]++ / kBlockReadings;
-    block[At(i)] = number.try_emplace({sweep, in_sweep}, static_cast<int>(number.size())).first->second;
-  }
-  return block;
+/// True if the next reading follows in the same pass.
+bool HasNext(const Schedule& s, int i) {
+  const std::size_t a = At(i), b = a + 1;
+  return i + 1 < s.Readings() && s.setup[a] == s.setup[b] && s.pass[a] == s.pass[b] && s.phase[a] == s.phase[b];
 }
 
-void AddFold(const LinearRun& run, const NoiseModel& noise, const FoldErrors& errors, const Eigen::VectorXd& held,
-             const std::vector<int>& block_of, std::vector<Sums>& blocks) {
+/// The blocks' sums; rows that are not scored have no error.
+void AddFold(const LinearRun& run, const NoiseModel& noise, const FoldErrors& errors,
+             const std::vector<int>& block_of, std::vector<HeldOutSums>& blocks) {
+  const auto squared = [](double x) { return x * x; };
   for (int k = 0; k < run.Rows(); ++k) {
-    if (held[k] == 0.0 || !(errors.variance[k] < kDeterminedVariance)) continue;
-    const double weight = 1.0 / (noise.sigma[k] * noise.sigma[k]);
-    const auto squared = [](double x) { return x * x; };
-    const double floor = 1.0 + errors.variance[k];
-    blocks[At(block_of[At(run.ReadingOf(k))])] +=
-        {weight * squared(errors.before[k]), weight * squared(errors.after[k]), floor, 2.0 * floor * floor, weight};
+    if (std::isnan(errors.after[k])) continue;
+    const int reading = run.ReadingOf(k), next = k + run.Channels();
+    const double sigma = noise.sigma[k];
+    HeldOutSums& block = blocks[At(block_of[At(reading)])];
+    block += {squared(errors.before[k] / sigma), squared(errors.after[k] / sigma), 1.0 + errors.variance[k],
+              1.0 / squared(sigma)};
+    if (!HasNext(run.schedule, reading) || std::isnan(errors.after[next])) continue;
+    block +=
+        {.steps = 0.5 * squared(errors.after[next] / noise.sigma[next] - errors.after[k] / sigma), .pairs = 1.0};
   }
-}
-
-double Quantile(const std::vector<double>& sorted, double q) {
-  return sorted.empty() ? kNaN : sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5)];
-}
-
-/// Draws blocks with replacement and fills what follows from the draws.
-void Bootstrap(const std::vector<Sums>& blocks, Gain& gain) {
-  Stream stream(1, "diagnose.gain");
-  std::vector<double> fractions, removed;
-  for (int draw = 0; draw < kDraws; ++draw) {
-    Sums sum;
-    for (std::size_t b = 0; b < blocks.size(); ++b)
-      sum += blocks[static_cast<std::size_t>(stream.Uniform() * static_cast<double>(blocks.size()))];
-    removed.push_back(sum.Removed());
-    if (const double fraction = sum.Fraction(0.0); std::isfinite(fraction)) fractions.push_back(fraction);
-  }
-  std::sort(fractions.begin(), fractions.end());
-  std::sort(removed.begin(), removed.end());
-  gain.interval95 = {Quantile(fractions, 0.025), Quantile(fractions, 0.975)};
-  gain.positive = Quantile(removed, 0.025) > 0.0;
 }
 
 /// Whether each row belongs to a fold, as 1 or 0.
@@ -139,66 +93,43 @@ Eigen::VectorXd HeldRows(const LinearRun& run, const Folds& folds, int fold) {
   return held;
 }
 
-/// The full-circle passes of each set-up in the order of their first readings.
-std::map<int, std::vector<int>> PassesOfSetups(const Schedule& s) {
-  std::map<int, std::vector<int>> passes;
-  for (int i = 0; i < s.Readings(); ++i) {
-    if (s.phase[At(i)] != Phase::kFullCircle) continue;
-    std::vector<int>& known = passes[s.setup[At(i)]];
-    if (std::find(known.begin(), known.end(), s.pass[At(i)]) == known.end()) known.push_back(s.pass[At(i)]);
-  }
-  return passes;
-}
+/// A run predicted fold by fold.
+struct Predicted {
+  int folds = 0;
+  std::vector<HeldOutSums> blocks;
+  double least_information = 1.0;  // share that a fold has left of what all readings say of an amplitude
+};
 
-/// Folds by blocks of time for all readings that have none.
-void AddFoldsOfTime(Folds& folds) {
-  int in_turn = 0;
-  for (int& fold : folds.of_reading) {
-    if (fold < 0) fold = in_turn++ / kBlockReadings % folds.count;
+Predicted Predict(const LinearRun& run, const NoiseModel& noise, const Columns& columns, const Folds& folds) {
+  const std::vector<int> block_of = BlocksOfReadings(run.schedule);
+  const Projector all(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  const Eigen::VectorXd full = RelativeVariances(all, noise.Whiten(run, columns.S), columns.prior_precision);
+  Predicted predicted{folds.count, {}, 1.0};
+  predicted.blocks.resize(At(1 + *std::max_element(block_of.begin(), block_of.end())));
+  for (int fold = 0; fold < folds.count; ++fold) {
+    const FoldErrors errors = PredictFold(run, noise, columns, HeldRows(run, folds, fold));
+    AddFold(run, noise, errors, block_of, predicted.blocks);
+    predicted.least_information =
+        std::min(predicted.least_information, full.cwiseQuotient(errors.amplitude).minCoeff());
   }
+  std::erase_if(predicted.blocks, [](const HeldOutSums& block) { return block.weight == 0.0; });
+  return predicted;
 }
 
 }  // namespace
-
-Folds MakeFolds(const Schedule& s) {
-  const auto passes = PassesOfSetups(s);
-  Folds folds{std::vector<int>(At(s.Readings()), -1), 0};
-  for (int i = 0; i < s.Readings(); ++i) {
-    if (s.phase[At(i)] != Phase::kFullCircle) continue;
-    const std::vector<int>& known = passes.at(s.setup[At(i)]);
-    if (known.size() < 2) continue;
-    const auto place = std::find(known.begin(), known.end(), s.pass[At(i)]) - known.begin();
-    folds.of_reading[At(i)] = static_cast<int>(place);
-    folds.count = std::max(folds.count, static_cast<int>(place) + 1);
-  }
-  if (folds.count == 0) folds.count = kTimeFolds;
-  AddFoldsOfTime(folds);
-  return folds;
-}
 
 Gain MeasureGain(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted) {
   Gain gain;
   if (accepted.empty()) return gain;
   const Columns columns = ColumnsOf(accepted, run.Rows());
-  const Folds folds = MakeFolds(run.schedule);
-  const std::vector<int> block_of = BlockOfReading(run.schedule);
-  std::vector<Sums> blocks(At(1 + *std::max_element(block_of.begin(), block_of.end())));
-  for (int fold = 0; fold < folds.count; ++fold) {
-    const Eigen::VectorXd held = HeldRows(run, folds, fold);
-    AddFold(run, noise, PredictFold(run, noise, columns, held), held, block_of, blocks);
+  Predicted predicted = Predict(run, noise, columns, MakeFolds(run.schedule));
+  if (predicted.least_information < kLeastInformation) {
+    Predicted by_time = Predict(run, noise, columns, FoldsOfTime(run.schedule));
+    if (by_time.least_information > predicted.least_information) predicted = std::move(by_time);
   }
-  std::erase_if(blocks, [](const Sums& block) { return block.weight == 0.0; });
-  if (blocks.empty()) return gain;
-  Sums all;
-  for (const Sums& block : blocks) all += block;
-  gain.folds = folds.count;
-  gain.before_m = all.Rms(all.before);
-  gain.after_m = all.Rms(all.after);
-  gain.noise_floor_m = all.Rms(all.floor);
-  Bootstrap(blocks, gain);
-  gain.fraction_removed =
-      gain.positive ? all.Fraction(kNoise) : all.Removed() / std::max(all.before - all.floor, 0.0);
-  if (!std::isfinite(gain.fraction_removed)) gain.fraction_removed = kNaN;
+  if (predicted.blocks.empty()) return gain;
+  gain.folds = predicted.folds;
+  FillGain(predicted.blocks, run.sigma_stated, noise.rho, gain);
   return gain;
 }
 

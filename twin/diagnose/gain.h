@@ -11,18 +11,6 @@
 /// separated errors.
 namespace twinbench::diagnose {
 
-/// Which readings are predicted together from all others.
-///
-/// Fold k leaves out the k-th full-circle pass of every set-up that has more than one, so that tables and mountings
-/// stay determined and neighbours, which share their drift, stay together. Of the other phases, and of full circles
-/// where no set-up has a second pass, it leaves out every fourth (n-th, of n folds) block of six consecutive
-/// readings: what a sweep shows is predicted from the rest of the sweeps.
-struct Folds {
-  std::vector<int> of_reading;  // one a reading; -1: always in the fit
-  int count = 0;
-};
-Folds MakeFolds(const Schedule& schedule);
-
 /// Predicts held-out passes from the others, with and without the accepted causes.
 ///
 /// In every fold the free unknowns (with their priors) and the amplitudes (prior_sd as prior) are fitted to the
@@ -30,12 +18,11 @@ Folds MakeFolds(const Schedule& schedule);
 /// are left out. noise_floor is what a model that knows the causes exactly would leave: the rows' noise and the
 /// uncertainty of the unknowns.
 ///
-/// fraction_removed = removed / (removed + remaining) with removed = MSE before - MSE after and remaining = MSE
-/// after - floor^2; a remainder within two standard deviations of what noise alone would scatter counts as zero,
-/// because nobody could remove it. Without a positive gain it is removed / (MSE before - floor^2), NaN where that
-/// is not above zero. The interval is a paired bootstrap over blocks of six consecutive readings of a set-up and
-/// pass, 1000 draws from Stream(1, "diagnose.gain"), in which any positive remainder counts: its lower end is the
-/// cautious figure. `positive` says that `removed` is above zero in 97.5 % of the draws.
+/// Where a fold leaves an amplitude less than 0.3 of its information, because the cause shows in one pass only (a step
+/// near the end, a direction that was driven once), no other pass can tell of it: the run is then predicted by
+/// blocks of time instead (FoldsOfTime), if they leave more.
+///
+/// How before, after and floor become fraction_removed and its interval: held_out.h.
 ///
 /// @return folds = 0 and NaN if nothing was accepted or nothing can be held out.
 /// Not included: that the causes were chosen, and their shapes fitted, on all readings.

@@ -15,19 +15,6 @@ namespace {
 constexpr std::size_t kWidth = 100;
 constexpr std::size_t kMostExamples = 6;  // of a list; the file has all of it
 
-std::string Wrapped(const std::string& text) {
-  std::istringstream in(text);
-  std::string wrapped, line;
-  for (std::string word; in >> word;) {
-    if (!line.empty() && line.size() + 1 + word.size() > kWidth) {
-      wrapped += line + '\n';
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  return wrapped + line + '\n';
-}
-
 /// The bench whose channels these are.
 std::string BenchOf(const LinearRun& run) {
   return run.channels == std::vector<std::string>{"angle"} ? kEncoderBench : kRotaryBench;
@@ -156,6 +143,19 @@ std::string Unseen(const Diagnosis& d) {
 }
 
 }  // namespace
+
+std::string Wrapped(const std::string& text) {
+  std::istringstream in(text);
+  std::string wrapped, line;
+  for (std::string word; in >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > kWidth) {
+      wrapped += line + '\n';
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return wrapped + line + '\n';
+}
 
 std::string WithUncertainty(const ParameterEstimate& p) {
   const double value = p.value / p.to_SI, u = p.u / p.to_SI;

@@ -30,11 +30,12 @@ void Collector::Add(const std::string& sort, const Eigen::MatrixXd& columns, con
       sort, 1, [columns](int) { return columns; }, [words](int) { return words; });
 }
 
-void Collector::AddOver(const std::string& sort, const Shape& shape, const ColumnsAt& at, const Words& words) {
-  const auto columns = [at, values = shape.value](int g) {
+void Collector::AddOver(const std::string& sort, const Shape& shape, const ColumnsAt& at, const Words& words,
+                        const Columns& columns) {
+  const auto on_grid = [at, values = shape.value](int g) {
     return at(Eigen::VectorXd::Constant(1, values[static_cast<std::size_t>(g)]));
   };
-  Family& family = Add(sort, static_cast<int>(shape.value.size()), columns, words);
+  Family& family = Add(sort, static_cast<int>(shape.value.size()), columns ? columns : on_grid, words);
   family.shapes = {shape};
   family.at = at;
 }

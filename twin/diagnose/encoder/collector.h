@@ -26,7 +26,9 @@ class Collector {
   /// One family without a grid.
   void Add(const std::string& sort, const Eigen::MatrixXd& columns, const std::string& words);
   /// A grid over one continuous shape.
-  void AddOver(const std::string& sort, const Shape& shape, const ColumnsAt& at, const Words& words);
+  /// @param columns  The same as `at` on the grid, where there is a quicker way to them.
+  void AddOver(const std::string& sort, const Shape& shape, const ColumnsAt& at, const Words& words,
+               const Columns& columns = {});
 
   std::vector<Family> Take() { return std::move(families_); }
 

@@ -10,6 +10,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/noise_estimate.h"
+#include "twin/diagnose/engine/schedule.h"
 #include "twin/measure/angle_comparison.h"
 
 namespace twinbench::diagnose::encoder {
@@ -18,28 +19,10 @@ namespace {
 constexpr int kFewest = 12;
 constexpr double kOffsetPrior_rad = 2.0 * units::kPi;  // free
 
-Schedule ScheduleOf(const std::vector<Reading>& readings, const std::vector<int>& used) {
-  Schedule s;
-  const auto n = std::ssize(used);
-  for (Eigen::VectorXd* v :
-       {&s.time_s, &s.dwell_s, &s.temperature_degC, &s.target_rad, &s.reference_rad, &s.velocity_rad_s})
-    v->resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Reading& r = readings[used[i]];
-    s.reading.push_back(r.reading);
-    s.setup.push_back(r.setup);
-    s.pass.push_back(r.pass);
-    s.direction.push_back(r.direction);
-    s.position.push_back(r.position);
-    s.phase.push_back(r.phase);
-    s.time_s[i] = ToSeconds(r.time);
-    s.dwell_s[i] = r.dwell_s;
-    s.temperature_degC[i] = r.temperature_degC;
-    s.target_rad[i] = kNaN;
-    s.reference_rad[i] = r.reference_rad;
-    s.velocity_rad_s[i] = r.velocity_rad_s;
-  }
-  return s;
+std::vector<Reading> Chosen(const std::vector<Reading>& readings, const std::vector<int>& used) {
+  std::vector<Reading> chosen;
+  for (const int k : used) chosen.push_back(readings[static_cast<std::size_t>(k)]);
+  return chosen;
 }
 
 /// Fills in velocities that were not recorded, from the readings before and behind of the same pass.
@@ -103,7 +86,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   EncoderRun encoder;
   encoder.left_out = comparison.left_out;
   LinearRun& run = encoder.run;
-  run.schedule = ScheduleOf(readings, comparison.used);
+  run.schedule = ScheduleOf(Chosen(readings, comparison.used));
   if (scenario.encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);
   run.channels = {"angle"};
   run.unit = "deg";

@@ -15,8 +15,7 @@ struct EncoderRun {
 };
 
 /// `observed` is the device's angle with the turns that it does not count put back. Where the noise is not known it
-/// is estimated from neighbouring readings, which slow structure does not reach: from second differences within a
-/// pass and from differences between passes over the same stops, the smaller of both, by medians. Velocities that
+/// is estimated from neighbouring readings, which slow structure does not reach (noise_estimate.h). Velocities that
 /// were not recorded are taken from the angles if the scenario says sweep.
 ///
 /// @throws InputError if fewer than 12 readings have a value.

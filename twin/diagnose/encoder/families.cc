@@ -93,11 +93,13 @@ Eigen::MatrixXd Times(const Eigen::MatrixXd& columns, const Eigen::VectorXd& fac
 namespace {
 
 /// Generic shapes. One that a named cause has exactly is less likely to be something else: it counts less.
-std::vector<Family> WeighedUnknown(const std::shared_ptr<const SignalContext>& context, const std::vector<Family>& named) {
+std::vector<Family> WeighedUnknown(const std::shared_ptr<const SignalContext>& context,
+                                   const std::vector<Family>& named) {
   constexpr double kSameShape = 0.2;
   std::set<std::string> names, of_their_own;
   for (const Family& family : named) names.insert(family.effect);
-  for (const Family& family : UnknownFamilies(context, {names.begin(), names.end()})) of_their_own.insert(family.effect);
+  for (const Family& family : UnknownFamilies(context, {names.begin(), names.end()}))
+    of_their_own.insert(family.effect);
   std::vector<Family> families = UnknownFamilies(context, {});
   for (Family& family : families) {
     if (!of_their_own.contains(family.effect)) family.prior_weight = kSameShape;
@@ -115,8 +117,8 @@ std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::s
   std::erase_if(families, [&](const Family& family) { return Has(struck, family.effect); });
   std::ranges::move(unknown, std::back_inserter(families));
   // One mounting cannot tell a fault of the device from the same order of the reference.
-  const std::vector<std::string> doubled = {"eccentricity",     "signal_offset", "ellipticity", "amplitude_mismatch",
-                                            "quadrature_error", "periodic"};
+  const std::vector<std::string> doubled = {"eccentricity",       "signal_offset",    "ellipticity",
+                                            "amplitude_mismatch", "quadrature_error", "periodic"};
   for (Family& family : families) {
     SetPriors(family, plausible_rad);
     if (Has(doubled, family.effect)) family.most_probable = kMostProbableDoubled;

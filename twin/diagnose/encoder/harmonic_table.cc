@@ -17,13 +17,16 @@ constexpr int kMostOrders = 12;
 std::string MeaningOf(int order) {
   switch (order) {
     case 1:
-      return "scale or magnet off centre, or an offset of the sine and cosine signals; also a reference that is off "
+      return "scale or magnet off centre, or an offset of the sine and cosine signals; also a reference that is "
+             "off "
              "centre. One mounting cannot tell them apart: turn the device on the shaft";
     case 2:
-      return "scale or magnet tilted or out of round, or sine and cosine signals of unequal size or not a quarter period "
+      return "scale or magnet tilted or out of round, or sine and cosine signals of unequal size or not a quarter "
+             "period "
              "apart; cannot be told apart at one mounting";
     case 4:
-      return "saturated or clipped signals (then orders 8 and 12 come along in fixed ratios), a nonlinear sensor, or four "
+      return "saturated or clipped signals (then orders 8 and 12 come along in fixed ratios), a nonlinear sensor, "
+             "or four "
              "screws or poles";
     case 8:
     case 12:
@@ -47,7 +50,8 @@ Harmonic OrderOf(int order, const Eigen::Vector2d& x, const Eigen::Matrix2d& cov
   const Eigen::Vector2d along = amplitude > 0.0 ? Eigen::Vector2d(x / amplitude) : Eigen::Vector2d(1.0, 0.0);
   const Eigen::Vector2d across(-along.y(), along.x());
   const double u_phase = std::sqrt(across.dot(cov * across)) / std::max(amplitude, 1e-300);
-  return {order, amplitude, std::sqrt(along.dot(cov * along)), std::atan2(-x.y(), x.x()), u_phase, MeaningOf(order)};
+  return {order,   amplitude,       std::sqrt(along.dot(cov * along)), std::atan2(-x.y(), x.x()),
+          u_phase, MeaningOf(order)};
 }
 
 }  // namespace

@@ -20,10 +20,12 @@ Family Backlash(const Context& context) {
   return family;
 }
 
-/// The lag in steady motion, and what is left of an unknown state at the beginning.
-Family Hysteresis(const Context& context) {
+/// The lag in steady motion, and what is left of an unknown state at the beginning: that is no larger than the lag.
+Family Hysteresis(const Context& context, double plausible_rad) {
   Family family = Named("hysteresis");
-  Amplitude lag = AmplitudeOf("hysteresis", "lag"), start = lag;
+  Amplitude lag = AmplitudeOf("hysteresis", "lag");
+  lag.prior_sd = plausible_rad;
+  Amplitude start = lag;
   start.name = "start";
   family.amplitudes = {lag, start};
   Shape settles = ShapeOf("hysteresis", "settles_over", {});
@@ -51,13 +53,13 @@ Family Hysteresis(const Context& context) {
 
 }  // namespace
 
-void AddMotion(const Context& context, std::vector<Family>& families) {
+void AddMotion(const Context& context, double plausible_rad, std::vector<Family>& families) {
   const SignalContext& c = *context;
   const Eigen::VectorXd sense = Sense(c, true);
   if (c.Moves()) families.push_back(Linear("latency", {"delay"}, -c.velocity_rad_s));
   if (sense.size() > 0 && sense.maxCoeff() > sense.minCoeff()) {
     families.push_back(Backlash(context));
-    families.push_back(Hysteresis(context));
+    families.push_back(Hysteresis(context, plausible_rad));
   }
   families.push_back(Linear("scale", {"ratio"}, c.reference_rad));
 }

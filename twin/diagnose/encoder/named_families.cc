@@ -6,7 +6,7 @@ std::vector<Family> NamedFamilies(const Context& context, double plausible_rad) 
   std::vector<Family> families;
   AddPeriodic(*context, families);
   AddSignals(context, plausible_rad, families);
-  AddMotion(context, families);
+  AddMotion(context, plausible_rad, families);
   AddTime(context, families);
   return families;
 }

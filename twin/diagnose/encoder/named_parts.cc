@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "twin/core/errors.h"
+#include "twin/core/units.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -62,13 +63,20 @@ Polar PolarOf(const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
   const double size = x.head<2>().norm(), safe = std::max(size, 1e-300);
   const Eigen::Vector2d along = x.head<2>() / safe, across(-along[1], along[0]);
   const Eigen::Matrix2d c = cov.topLeftCorner<2, 2>();
-  return {size, -std::atan2(x[1], x[0]), std::sqrt(along.dot(c * along)), std::sqrt(across.dot(c * across)) / safe};
+  const double phase_rad = -std::atan2(x[1], x[0]);
+  return {size, phase_rad < 0.0 ? phase_rad + 2.0 * units::kPi : phase_rad, std::sqrt(along.dot(c * along)),
+          std::sqrt(across.dot(c * across)) / safe};
+}
+
+double DeviationAt(const Eigen::MatrixXd& cov, Eigen::Index at) {
+  return at < cov.cols() ? std::sqrt(cov(at, at)) : kNaN;
 }
 
 Parameters ReportOnly(const std::string& effect, const std::string& amplitude, const std::string& shape_name) {
   return [=](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     std::vector<ParameterEstimate> estimates = {Estimate(effect, amplitude, x[0], std::sqrt(cov(0, 0)))};
-    if (!shape_name.empty()) estimates.push_back(Estimate(effect, shape_name, shape[0], kNaN));
+    if (!shape_name.empty())
+      estimates.push_back(Estimate(effect, shape_name, shape[0], DeviationAt(cov, x.size())));
     return estimates;
   };
 }

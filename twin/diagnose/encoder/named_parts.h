@@ -24,11 +24,15 @@ Family Named(const std::string& effect);
 Family Linear(const std::string& effect, const std::vector<std::string>& parameters,
               const Eigen::MatrixXd& columns);
 
-/// Of a cos + b sin = size cos(angle + phase): size, phase and their standard uncertainties.
+/// Of a cos + b sin = size cos(angle + phase): size, phase and their standard uncertainties. The same wave has many
+/// sizes and phases; this is the one with size >= 0 and 0 <= phase <= 2 pi.
 struct Polar {
   double size, phase_rad, u_size, u_phase_rad;
 };
 Polar PolarOf(const Eigen::VectorXd& x, const Eigen::MatrixXd& cov);
+
+/// Of a parameter whose place in `cov` (amplitudes, then shapes) is `at`; NaN if it has none there.
+double DeviationAt(const Eigen::MatrixXd& cov, Eigen::Index at);
 
 /// Reports the first amplitude and the first shape (if named), which are the catalogue's; the others are not.
 Parameters ReportOnly(const std::string& effect, const std::string& amplitude, const std::string& shape_name = "");
@@ -36,7 +40,7 @@ Parameters ReportOnly(const std::string& effect, const std::string& amplitude, c
 // Families of one kind of cause each; `families` grows.
 void AddPeriodic(const SignalContext& context, std::vector<Family>& families);
 void AddSignals(const Context& context, double plausible_rad, std::vector<Family>& families);
-void AddMotion(const Context& context, std::vector<Family>& families);
+void AddMotion(const Context& context, double plausible_rad, std::vector<Family>& families);
 void AddTime(const Context& context, std::vector<Family>& families);
 
 }  // namespace twinbench::diagnose::encoder

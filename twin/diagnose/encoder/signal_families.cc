@@ -29,15 +29,6 @@ Family TwicePerPeriod(const SignalContext& c, const std::string& effect, const s
   return family;
 }
 
-/// How fast the clipping's signal grows as the level falls, relative to its size.
-double RelativeSlope(double level) {
-  const Eigen::VectorXd phase = Eigen::VectorXd::LinSpaced(3600, 0.0, 2.0 * units::kPi);
-  const double step = std::min(1e-3, 0.5 * (1.0 - level));
-  const double low = ClippingError_rad(phase, level - step).norm(),
-               high = ClippingError_rad(phase, level + step).norm();
-  return (low - high) / (step * (low + high));
-}
-
 /// The least depth, 1 - level, whose signal has a tenth of the plausible size: shallower ones are no candidates.
 double LeastDepth(const SignalContext& c, double plausible_rad, double deepest) {
   const Eigen::VectorXd phase = Eigen::VectorXd::LinSpaced(3600, 0.0, 2.0 * units::kPi);
@@ -79,9 +70,8 @@ Family Clipping(const Context& context, double plausible_rad) {
     for (std::size_t k = 0; k < shapes.size(); ++k) shape[k] = shapes[k].value[static_cast<std::size_t>(g)];
     return at(shape);
   };
-  family.parameters = [](const Eigen::VectorXd& shape, const Eigen::VectorXd&, const Eigen::MatrixXd& cov) {
-    const double u_level = std::sqrt(cov(0, 0)) / RelativeSlope(shape[0]);
-    return std::vector{Estimate("signal_clipping", "level", shape[0], u_level)};
+  family.parameters = [](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
+    return std::vector{Estimate("signal_clipping", "level", shape[0], DeviationAt(cov, x.size()))};
   };
   return family;
 }

@@ -5,6 +5,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/collector.h"
+#include "twin/diagnose/encoder/wave_grid.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -47,20 +48,51 @@ void AddLines(Collector& collect) {
   const double last = std::min(60.0, LargestOrder(c) + 0.5);
   const double turns = Turns(c), step = std::clamp(0.1 / turns, 0.01, 0.2);
   const double nearest = std::clamp(0.2 / turns, 0.01, 0.45);
-  Shape order{"order", "1", 1.0, 0.3, std::max(last, 0.4), {}};
-  for (double k = 0.3; k <= last; k += step) {
-    if (std::abs(k - std::round(k)) > nearest) order.value.push_back(k);
+  constexpr double kFirst = 0.3;
+  Shape order{"order", "1", 1.0, kFirst, std::max(last, 0.4), {}};
+  std::vector<int> place;  // of each value among all steps
+  for (int j = 0; kFirst + j * step <= last; ++j) {
+    const double k = kFirst + j * step;
+    if (std::abs(k - std::round(k)) <= nearest) continue;
+    order.value.push_back(k);
+    place.push_back(j);
   }
-  if (order.value.empty()) return;
+  if (place.empty()) return;
+  const auto waves = std::make_shared<const WaveGrid>(c.device_rad, kFirst, step, place.back() + 1);
   collect.AddOver(
       "line", order, [angle_rad = c.device_rad](const Eigen::VectorXd& k) { return Wave(k[0] * angle_rad); },
       [values = order.value](int g) {
         return fmt::format("line at {:.3f} per turn locked to reference angle, same in both directions",
                            values[static_cast<std::size_t>(g)]);
-      });
+      },
+      [waves, place](int g) { return waves->At(place[static_cast<std::size_t>(g)]); });
 }
 
 // --- direction ---
+
+/// What dies out behind each reversal, alone and beside an offset that stays: a hysteresis of another form.
+void AddBehindReversals(Collector& collect, const Eigen::VectorXd& held) {
+  const Eigen::VectorXd travel_rad = TravelSinceReversal_rad(collect.context());
+  Shape decay{"decays_over", "deg", deg, 1.0 * deg, 720.0 * deg, Ratios(2.0 * deg, 360.0 * deg, 14)};
+  const auto left = [=](const Eigen::VectorXd& way_rad) -> Eigen::VectorXd {
+    return held.array() * (-travel_rad.array() / way_rad[0]).exp();
+  };
+  const auto words = [values = decay.value](const char* what) {
+    return [=](int g) { return fmt::format(fmt::runtime(what), values[static_cast<std::size_t>(g)] / deg); };
+  };
+  collect.AddOver(
+      "reversal", decay, [=](const Eigen::VectorXd& way_rad) { return Eigen::MatrixXd(left(way_rad)); },
+      words("direction times a decay over {:.3g} deg behind each reversal, odd in direction"));
+  if (collect.Covered("hysteresis")) return;
+  collect.AddOver(
+      "transition", decay,
+      [=](const Eigen::VectorXd& way_rad) {
+        Eigen::MatrixXd columns(held.size(), 2);
+        columns << held, left(way_rad);
+        return columns;
+      },
+      words("offset locked to direction that is reached over {:.3g} deg behind each reversal, odd in direction"));
+}
 
 void AddDirections(Collector& collect) {
   const SignalContext& c = collect.context();
@@ -72,18 +104,7 @@ void AddDirections(Collector& collect) {
   const int last = std::min(24, LargestOrder(c));
   const std::string words = "direction times order {} locked to reference angle, odd in direction";
   for (const Eigen::VectorXd& sense : senses) AddModulated(collect, "direction harmonic", last, sense, words);
-  const Eigen::VectorXd travel_rad = TravelSinceReversal_rad(c);
-  Shape decay{"decays_over", "deg", deg, 1.0 * deg, 720.0 * deg, Ratios(2.0 * deg, 360.0 * deg, 14)};
-  collect.AddOver(
-      "reversal", decay,
-      [=](const Eigen::VectorXd& way_rad) {
-        const Eigen::VectorXd left = (-travel_rad.array() / way_rad[0]).exp();
-        return Eigen::MatrixXd(held.cwiseProduct(left));
-      },
-      [values = decay.value](int g) {
-        return fmt::format("direction times a decay over {:.3g} deg behind each reversal, odd in direction",
-                           values[static_cast<std::size_t>(g)] / deg);
-      });
+  AddBehindReversals(collect, held);
 }
 
 }  // namespace

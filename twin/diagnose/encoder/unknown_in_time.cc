@@ -5,6 +5,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/collector.h"
+#include "twin/diagnose/encoder/wave_grid.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -28,13 +29,16 @@ void AddTones(Collector& collect) {
   // From two periods a run; slower ones are a wander. Half the resolution apart, or as close as can be afforded.
   const double first_Hz = 2.0 / duration_s, step_Hz = std::max(0.5 / duration_s, (last_Hz - first_Hz) / kMost);
   Shape frequency{"frequency", "Hz", 1.0, first_Hz, last_Hz, {}};
-  for (double f_Hz = first_Hz; f_Hz < last_Hz; f_Hz += step_Hz) frequency.value.push_back(f_Hz);
+  for (int k = 0; first_Hz + k * step_Hz < last_Hz; ++k) frequency.value.push_back(first_Hz + k * step_Hz);
+  const auto waves = std::make_shared<const WaveGrid>(2.0 * units::kPi * c.time_s, first_Hz, step_Hz,
+                                                      static_cast<int>(frequency.value.size()));
   collect.AddOver(
       "tone", frequency,
       [time_s = c.time_s](const Eigen::VectorXd& f_Hz) { return Wave(2.0 * units::kPi * f_Hz[0] * time_s); },
       [values = frequency.value](int g) {
         return fmt::format("tone at {:.4g} Hz locked to time", values[static_cast<std::size_t>(g)]);
-      });
+      },
+      [waves](int g) { return waves->At(g); });
 }
 
 void AddStep(Collector& collect) {

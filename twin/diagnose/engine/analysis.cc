@@ -16,6 +16,7 @@ constexpr double kLeftCorrelated = 1.5;
 
 void Prepare(const LinearRun& run, const std::vector<Family>& families, Analysis& analysis) {
   analysis.projector = std::make_unique<Projector>(analysis.noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  analysis.redundancy = analysis.projector->Redundancy();
   analysis.scanner = std::make_unique<Scanner>(run, analysis.noise, *analysis.projector, families);
 }
 
@@ -27,10 +28,9 @@ struct NoiseView {
 NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
   const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
   const Remainder picks(*analysis.projector, WhitenedPicks(run, analysis.noise, analysis.found.picks));
-  const Eigen::VectorXd redundancy = analysis.projector->Redundancy();
   const auto look = [&](const Remainder& remainder) {
     return FindNoiseCauses(run, analysis.noise, Project(*analysis.projector, remainder, white).rows.col(0),
-                           redundancy);
+                           analysis.redundancy);
   };
   NoiseView view{look({}), look(picks)};
   // A cause that shows on one channel makes that channel look noisy: only what remains can say so.

@@ -21,6 +21,7 @@ struct AnalysisOptions {
 struct Analysis {
   NoiseModel noise;
   std::unique_ptr<Projector> projector;
+  Eigen::VectorXd redundancy;  // of every row
   std::unique_ptr<Scanner> scanner;
   NullCalibration null;
   double threshold = 0.0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -69,6 +70,7 @@ struct Family {
   std::function<Eigen::MatrixXd(const Eigen::VectorXd& shape)> at;
 
   /// The catalogue's parameters from fitted amplitudes; empty: amplitudes and shapes are these parameters.
+  /// @param cov  Of the amplitudes, and of the shape after them.
   std::function<std::vector<ParameterEstimate>(const Eigen::VectorXd& shape, const Eigen::VectorXd& amplitudes,
                                                const Eigen::MatrixXd& cov)>
       parameters;
@@ -81,6 +83,12 @@ struct Family {
   }
   Eigen::VectorXd ShapeAt(int grid_point) const;
 };
+
+/// Standard deviation of a shape parameter from the `cov` that Family::parameters gets; NaN if it has none.
+inline double ShapeDeviation(const Family& family, std::size_t k, const Eigen::MatrixXd& cov) {
+  const auto at = static_cast<Eigen::Index>(family.amplitudes.size() + k);
+  return at < cov.cols() ? std::sqrt(cov(at, at)) : std::numeric_limits<double>::quiet_NaN();
+}
 
 inline Eigen::VectorXd Family::ShapeAt(int grid_point) const {
   Eigen::VectorXd shape(std::ssize(shapes));

@@ -8,9 +8,6 @@
 
 namespace twinbench::diagnose {
 
-inline constexpr double kNamedFrom = 0.8;
-inline constexpr double kTieFrom = 0.95;
-
 /// From what the search found to the four kinds of answer.
 struct Naming {
   Verdict verdict = Verdict::kNone;
@@ -18,14 +15,9 @@ struct Naming {
   UnknownPart unknown;
 };
 /// @param noise_free  Readings of a simulation without noise show the last digit of every formula: a small rest of
-/// any
-///                    kind is then no cause.
+///                    any kind is then no cause.
 /// @param threshold   Of the alarm statistic: what remains above it is structure that the causes do not explain.
 Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold,
             bool noise_free = false);
-
-/// Parameters of a family's fitted member.
-std::vector<ParameterEstimate> ParametersOf(const Family& family, const Eigen::VectorXd& shape,
-                                            const Eigen::VectorXd& amplitudes, const Eigen::MatrixXd& cov);
 
 }  // namespace twinbench::diagnose

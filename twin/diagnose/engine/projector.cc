@@ -9,18 +9,21 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// J'J + D, dense: a few hundred unknowns.
-Eigen::MatrixXd Normal(const Sparse& jacobian, const Eigen::VectorXd& precision) {
+/// J'J, dense: a few hundred unknowns.
+Eigen::MatrixXd Gram(const Sparse& jacobian) {
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   for (int k = 0; k < jacobian.rows(); ++k) {
     for (Sparse::InnerIterator a(jacobian, k); a; ++a) {
       for (Sparse::InnerIterator b(jacobian, k); b; ++b) normal(a.col(), b.col()) += a.value() * b.value();
     }
   }
-  // A prior wider than a million times what the data resolve is no knowledge, but it would cost the factor its sign.
-  constexpr double kLeastShare = 1e-12;
-  normal.diagonal() = (normal.diagonal() + precision).cwiseMax(normal.diagonal() * (1.0 + kLeastShare));
   return normal;
+}
+
+/// D. A prior wider than a million times what the data resolve is no knowledge, but it would cost the factor its sign.
+Eigen::VectorXd PrecisionOf(const Eigen::MatrixXd& gram, const Eigen::VectorXd& prior_precision) {
+  constexpr double kLeastShare = 1e-12;
+  return prior_precision.cwiseMax(kLeastShare * gram.diagonal());
 }
 
 /// True if no entry of the normal matrix joins two of the local blocks. Noise that is correlated from reading to
@@ -62,7 +65,9 @@ Projector::Projector(Sparse jacobian, const Nuisance& nuisance)
     : jacobian_(std::move(jacobian)), blocks_(nuisance.blocks), size_(nuisance.block_size) {
   Require(nuisance.prior_precision.size() == jacobian_.cols() && (nuisance.prior_precision.array() > 0.0).all(),
           "every free unknown needs a positive prior precision");
-  const Eigen::MatrixXd normal = Normal(jacobian_, nuisance.prior_precision);
+  Eigen::MatrixXd normal = Gram(jacobian_);
+  const Eigen::VectorXd precision = PrecisionOf(normal, nuisance.prior_precision);
+  normal.diagonal() += precision;
   if (!AreSeparate(normal, blocks_, size_)) blocks_ = 0;
   const int local = blocks_ * size_, core = static_cast<int>(normal.cols()) - local;
   coupling_.resize(core, local);
@@ -73,7 +78,9 @@ Projector::Projector(Sparse jacobian, const Nuisance& nuisance)
         local_.back().triangularView<Eigen::Lower>().solve(normal.block(at, local, size_, core)).transpose();
   }
   core_ = Factor(normal.bottomRightCorner(core, core) - coupling_ * coupling_.transpose());
-  degrees_of_freedom_ = Redundancy().sum();
+  // tr W = rows - tr (J'J + D)^-1 J'J = rows - unknowns + tr (J'J + D)^-1 D
+  const Eigen::MatrixXd weak = Forward(precision.cwiseSqrt().asDiagonal());
+  degrees_of_freedom_ = static_cast<double>(jacobian_.rows() - jacobian_.cols()) + weak.squaredNorm();
 }
 
 Eigen::MatrixXd Projector::Forward(Eigen::MatrixXd b) const {

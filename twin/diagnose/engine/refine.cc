@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/diagnose/engine/search.h"
-
 namespace twinbench::diagnose {
 namespace {
 
@@ -95,20 +93,18 @@ Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, 
   return {shape, Explain(family, shape, run, noise, projector, others, rows).power};
 }
 
-Eigen::MatrixXd WithShapeSlopes(const Family& family, const Pick& pick, const LinearRun& run,
-                                const NoiseModel& noise, const Projector& projector, const Eigen::MatrixXd& white) {
-  if (!family.at || pick.shape.size() == 0) return pick.columns;
-  const Remainder alone(projector, noise.Whiten(run, pick.columns));
-  const Eigen::VectorXd amplitudes = alone.Amplitudes(projector.Apply(white));
-  Eigen::MatrixXd columns(pick.columns.rows(), pick.columns.cols() + pick.shape.size());
-  columns.leftCols(pick.columns.cols()) = pick.columns;
-  for (Eigen::Index k = 0; k < pick.shape.size(); ++k) {
+Eigen::MatrixXd WithShapeSlopes(const Family& family, const Eigen::VectorXd& shape, const Eigen::MatrixXd& columns,
+                                const Eigen::VectorXd& amplitudes) {
+  if (!family.at || shape.size() == 0) return columns;
+  Eigen::MatrixXd all(columns.rows(), columns.cols() + shape.size());
+  all.leftCols(columns.cols()) = columns;
+  for (Eigen::Index k = 0; k < shape.size(); ++k) {
     const Shape& s = family.shapes[static_cast<std::size_t>(k)];
-    const double step = 1e-4 * std::max(std::abs(pick.shape[k]), 1e-3 * (s.upper - s.lower));
-    const Eigen::VectorXd moved = pick.shape + step * Eigen::VectorXd::Unit(pick.shape.size(), k);
-    columns.col(pick.columns.cols() + k) = (family.at(moved) - pick.columns) * amplitudes / step;
+    const double step = 1e-4 * std::max(std::abs(shape[k]), 1e-3 * (s.upper - s.lower));
+    const Eigen::VectorXd moved = shape + step * Eigen::VectorXd::Unit(shape.size(), k);
+    all.col(columns.cols() + k) = (family.at(moved) - columns) * amplitudes / step;
   }
-  return columns;
+  return all;
 }
 
 }  // namespace twinbench::diagnose

@@ -6,8 +6,6 @@
 
 namespace twinbench::diagnose {
 
-struct Pick;
-
 /// Moves the shape of a family (time constants, frequencies) from a grid point to where it explains most, within
 /// its bounds and no farther than the neighbouring grid points. Amplitudes and free unknowns are eliminated
 /// (variable projection, Golub & Pereyra 1973), so Ceres sees only the shape. The family must have `at`.
@@ -20,8 +18,10 @@ struct Refined {
 Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, const NoiseModel& noise,
                     const Projector& projector, const Remainder& others, const Projected& data);
 
-/// The pick's signature and how the fitted signature changes with each shape parameter: rows x any, not whitened.
-Eigen::MatrixXd WithShapeSlopes(const Family& family, const Pick& pick, const LinearRun& run,
-                                const NoiseModel& noise, const Projector& projector, const Eigen::MatrixXd& white);
+/// A signature and how its sum, weighted with the fitted amplitudes, changes with each shape parameter: rows x
+/// amplitudes and shapes, not whitened. Without slopes if the family has no `at`.
+/// @param columns  The signature at `shape`.
+Eigen::MatrixXd WithShapeSlopes(const Family& family, const Eigen::VectorXd& shape, const Eigen::MatrixXd& columns,
+                                const Eigen::VectorXd& amplitudes);
 
 }  // namespace twinbench::diagnose

@@ -9,7 +9,8 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr int kChunkColumns = 128;  // stays in the cache
+constexpr int kChunkColumns = 128;                     // stays in the cache
+constexpr Eigen::Index kMostKeptValues = 40'000'000;  // of whitened signatures: 320 MB
 constexpr std::array<double, 3> kPriorScales = {0.25, 1.0, 4.0};
 constexpr double kPseudoDegrees = 20.0;   // trust in a stated noise figure: 20 works, 200 is too trusting
 constexpr double kPseudoEstimated = 2.0;  // in one that was estimated from the same data
@@ -81,6 +82,10 @@ Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products
 
 }  // namespace
 
+double PseudoDegrees(const LinearRun& run) {
+  return run.sigma_stated ? kPseudoDegrees : kPseudoEstimated;
+}
+
 Remainder::Remainder(const Projector& projector, const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0) return;
   const Eigen::MatrixXd projected = projector.Apply(columns);
@@ -127,54 +132,58 @@ Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector&
       continue;
     }
     bases.push_back(family.base.get());
-    bundles_.push_back({{k}, family.base ? family.base->grid : family.grid, 0, {}, {}});
+    bundles_.push_back({{k}, family.base ? family.base->grid : family.grid, 0, 1, {}, {}, {}});
   }
   for (Bundle& bundle : bundles_) Prepare(bundle);
 }
 
-Eigen::MatrixXd Scanner::Columns(const Bundle& bundle, int first, int last) const {
+Eigen::MatrixXd Scanner::Columns(const Bundle& bundle, int chunk) const {
   const Family& family = families_[static_cast<std::size_t>(bundle.members.front())];
   const auto one = [&family](int g) { return family.base ? family.base->columns(g) : family.columns(g); };
-  Eigen::MatrixXd columns = one(first);
-  const Eigen::Index width = columns.cols();
-  columns.conservativeResize(Eigen::NoChange, width * (last - first));
-  for (int g = first + 1; g < last; ++g) columns.middleCols(width * (g - first), width) = one(g);
+  const int first = chunk * bundle.step, last = std::min(first + bundle.step, bundle.grid);
+  Eigen::MatrixXd columns(run_.Rows(), bundle.columns * (last - first));
+  for (int g = first; g < last; ++g) columns.middleCols(bundle.columns * (g - first), bundle.columns) = one(g);
   return noise_.Whiten(run_, columns);
 }
 
-void Scanner::Prepare(Bundle& bundle) const {
+void Scanner::Prepare(Bundle& bundle) {
   const Family& family = families_[static_cast<std::size_t>(bundle.members.front())];
   bundle.columns = static_cast<int>(family.base ? family.map.rows() : std::ssize(family.amplitudes));
-  const int step = std::max(1, kChunkColumns / std::max(1, bundle.columns));
-  for (int first = 0; first < bundle.grid; first += step) {
-    const int last = std::min(first + step, bundle.grid);
-    const Eigen::MatrixXd S = Columns(bundle, first, last), H = projector_.Absorbed(S);
-    for (int g = 0; g < last - first; ++g) {
-      const auto s = S.middleCols(g * bundle.columns, bundle.columns),
-                 h = H.middleCols(g * bundle.columns, bundle.columns);
+  bundle.step = std::max(1, kChunkColumns / std::max(1, bundle.columns));
+  for (int chunk = 0; chunk * bundle.step < bundle.grid; ++chunk) {
+    Eigen::MatrixXd S = Columns(bundle, chunk);
+    const Eigen::MatrixXd H = projector_.Absorbed(S);
+    for (Eigen::Index at = 0; at < S.cols(); at += bundle.columns) {
+      const auto s = S.middleCols(at, bundle.columns);
+      const auto h = H.middleCols(at, bundle.columns);
       bundle.raw.push_back(s.transpose() * s);
       bundle.gram.push_back(bundle.raw.back() - h.transpose() * h);
     }
+    if (std::ssize(bundle.kept) < chunk || kept_values_ + S.size() > kMostKeptValues) continue;
+    kept_values_ += S.size();
+    bundle.kept.push_back(std::move(S));
   }
 }
 
 void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Remainder& remainder,
                          Evidence& out) const {
   const Eigen::Index runs = data.rows.cols();
-  const double nu = run_.sigma_stated ? kPseudoDegrees : kPseudoEstimated;
+  const double nu = PseudoDegrees(run_);
   const double half = 0.5 * (nu + projector_.DegreesOfFreedom() - remainder.Rank());
   const Eigen::ArrayXd power = nu + data.power.array();
   std::vector<LogMean> mean(bundle.members.size());
   std::vector<Eigen::ArrayXd> top(bundle.members.size(), Eigen::ArrayXd::Constant(runs, -1.0));
-  const int step = std::max(1, kChunkColumns / std::max(1, bundle.columns));
+  Eigen::MatrixXd products, removed, made;  // of the present chunk
   for (int g = 0; g < bundle.grid; ++g) {
-    static thread_local Eigen::MatrixXd products, removed;  // of the present chunk
-    if (g % step == 0) {
-      const Eigen::MatrixXd S = Columns(bundle, g, std::min(g + step, bundle.grid));
+    if (g % bundle.step == 0) {
+      const auto chunk = static_cast<std::size_t>(g / bundle.step);
+      const bool kept = chunk < bundle.kept.size();
+      if (!kept) made = Columns(bundle, static_cast<int>(chunk));
+      const Eigen::MatrixXd& S = kept ? bundle.kept[chunk] : made;
       products.noalias() = S.transpose() * data.rows;
       if (remainder.Rank() > 0) removed.noalias() = S.transpose() * remainder.Basis();
     }
-    const Eigen::Index at = (g % step) * bundle.columns;
+    const Eigen::Index at = (g % bundle.step) * bundle.columns;
     Eigen::MatrixXd gram = bundle.gram[static_cast<std::size_t>(g)];
     if (remainder.Rank() > 0) {
       const auto r = removed.middleRows(at, bundle.columns);

@@ -50,6 +50,9 @@ struct Evidence {
   Eigen::MatrixXd explained;   // its share of y'Wy, free amplitudes
 };
 
+/// Trust in the stated noise figure, in degrees of freedom that stand beside those of the data.
+double PseudoDegrees(const LinearRun& run);
+
 /// Scores all families on the same design.
 ///
 /// At each grid point, with prior-scaled and projected signatures of singular values d and coefficients c,
@@ -76,11 +79,13 @@ class Scanner {
     std::vector<int> members;
     int grid = 1;
     int columns = 0;                    // a grid point
+    int step = 1;                       // grid points a chunk
     std::vector<Eigen::MatrixXd> gram;  // S'WS, one a grid point
     std::vector<Eigen::MatrixXd> raw;   // S'S
+    std::vector<Eigen::MatrixXd> kept;  // S of the first chunks, as far as the memory is granted
   };
-  Eigen::MatrixXd Columns(const Bundle& bundle, int first, int last) const;  // whitened
-  void Prepare(Bundle& bundle) const;
+  Eigen::MatrixXd Columns(const Bundle& bundle, int chunk) const;  // whitened
+  void Prepare(Bundle& bundle);
   void ScanBundle(const Bundle& bundle, const Projected& data, const Remainder& remainder, Evidence& sums) const;
 
   const LinearRun& run_;
@@ -88,6 +93,7 @@ class Scanner {
   const Projector& projector_;
   const std::vector<Family>& families_;
   std::vector<Bundle> bundles_;
+  Eigen::Index kept_values_ = 0;
 };
 
 }  // namespace twinbench::diagnose

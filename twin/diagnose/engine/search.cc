@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/engine/refine.h"
 
@@ -37,8 +38,9 @@ Eigen::MatrixXd ColumnsWithout(const Problem& problem, const std::vector<Pick>& 
     if (k == left_out) continue;
     const Pick& pick = picks[static_cast<std::size_t>(k)];
     const Family& family = problem.scanner.Families()[static_cast<std::size_t>(pick.family)];
-    columns = Beside(columns,
-                     WithShapeSlopes(family, pick, problem.run, problem.noise, problem.projector, problem.white));
+    const Remainder alone(problem.projector, problem.noise.Whiten(problem.run, pick.columns));
+    const Eigen::VectorXd amplitudes = alone.Amplitudes(problem.projector.Apply(problem.white));
+    columns = Beside(columns, WithShapeSlopes(family, pick.shape, pick.columns, amplitudes));
   }
   return columns.cols() > 0 ? problem.noise.Whiten(problem.run, columns) : columns;
 }
@@ -154,15 +156,6 @@ void MeasureShares(const Problem& problem, std::vector<Pick>& picks) {
   }
 }
 
-void FitAmplitudes(const Problem& problem, SearchResult& result) {
-  Eigen::MatrixXd columns(problem.run.Rows(), 0);
-  for (const Pick& pick : result.picks) columns = Beside(columns, pick.columns);
-  if (columns.cols() == 0) return;
-  const Remainder causes(problem.projector, problem.noise.Whiten(problem.run, columns));
-  result.amplitudes = causes.Amplitudes(problem.projector.Apply(problem.white));
-  result.cov = causes.Covariance();
-}
-
 }  // namespace
 
 SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
@@ -178,7 +171,7 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
     Revise(problem, result);
   }
   MeasureShares(problem, result.picks);
-  FitAmplitudes(problem, result);
+  EstimatePicks(run, noise, projector, scanner.Families(), problem.white, result.picks);
   return result;
 }
 

@@ -19,6 +19,8 @@ struct Pick {
   Eigen::VectorXd log_posterior;  // of every family in this place, the others accepted; last: none
   double statistic = 0.0;         // alarm statistic in this place, the others accepted
   double explained = 0.0;         // of the whitened power, beyond what the other picks explain
+  Eigen::VectorXd amplitudes;     // fitted together with those of the other picks, SI
+  Eigen::MatrixXd cov;            // of the amplitudes and the shape parameters after them
 };
 
 struct SearchResult {
@@ -26,8 +28,6 @@ struct SearchResult {
   double first_statistic = 0.0;  // alarm statistic of the whole run
   double last_statistic = 0.0;   // of what remains
   double joint_evidence = 0.0;   // of all picks together: each given those before it
-  Eigen::VectorXd amplitudes;    // of all picks, one after the other, SI
-  Eigen::MatrixXd cov;
   Evidence alone;  // the first scan
 };
 

@@ -109,14 +109,14 @@ Family SignalFamily(const std::string& effect, const std::string& where, std::ve
   return family;
 }
 
-ParameterEstimate LengthOf(const Amplitude& a, const Eigen::Vector2d& pair, const Eigen::Matrix2d& cov) {
+ParameterEstimate LengthOf(const Amplitude& a, const Eigen::Vector2d& pair, const Eigen::MatrixXd& cov) {
   const double length = pair.norm();
   const Eigen::Vector2d along = length > 0.0 ? Eigen::Vector2d(pair / length) : Eigen::Vector2d(1.0, 0.0);
-  return {a.name, a.unit, a.to_SI, length, std::sqrt(along.dot(cov * along)), 0.0, a.upper};
+  return {a.name, a.unit, a.to_SI, length, std::sqrt(along.dot(cov.topLeftCorner<2, 2>() * along)), 0.0, a.upper};
 }
 
-ParameterEstimate Plain(const Shape& shape, double value) {
-  return {shape.name, shape.unit, shape.to_SI, value, kNaN, shape.lower, shape.upper};
+ParameterEstimate Plain(const Shape& shape, double value, double u) {
+  return {shape.name, shape.unit, shape.to_SI, value, u, shape.lower, shape.upper};
 }
 
 }  // namespace twinbench::diagnose::rotary

@@ -27,9 +27,10 @@ Family SignalFamily(const std::string& effect, const std::string& where, std::ve
                     std::vector<Shape> shapes, const SignalContext& context);
 
 /// Amplitude of a pair of columns (amplitude x cos, amplitude x sin of the phase).
-ParameterEstimate LengthOf(const Amplitude& a, const Eigen::Vector2d& pair, const Eigen::Matrix2d& cov);
+/// @param cov  Of the pair, and of any others after it.
+ParameterEstimate LengthOf(const Amplitude& a, const Eigen::Vector2d& pair, const Eigen::MatrixXd& cov);
 /// A shape parameter as it stands.
-ParameterEstimate Plain(const Shape& shape, double value);
+ParameterEstimate Plain(const Shape& shape, double value, double u);
 
 /// Causes that are a wrong property of the bench; causes that are heard on top of any signal.
 void AddBenchFamilies(const RotaryRun& rotary, const Scenario& scenario, std::vector<Family>& families);

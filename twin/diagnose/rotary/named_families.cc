@@ -37,7 +37,7 @@ Family HalfFrequency(const SignalContext& context, const Whirling& whirling) {
   });
   half.parameters = [a = half.amplitudes[0], o = half.shapes[0]](
                         const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
-    return std::vector<ParameterEstimate>{Plain(o, shape[0]), LengthOf(a, x, cov)};
+    return std::vector<ParameterEstimate>{Plain(o, shape[0], std::sqrt(cov(2, 2))), LengthOf(a, x, cov)};
   };
   return half;
 }

@@ -8,21 +8,6 @@
 namespace twinbench::diagnose::rotary {
 namespace {
 
-void AddReading(const Reading& r, Schedule& s) {
-  s.reading.push_back(r.reading);
-  s.setup.push_back(r.setup);
-  s.pass.push_back(r.pass);
-  s.direction.push_back(r.direction);
-  s.position.push_back(r.position);
-  s.phase.push_back(r.phase);
-}
-
-Eigen::VectorXd Column(const std::vector<Reading>& readings, double (*value)(const Reading&)) {
-  Eigen::VectorXd column(std::ssize(readings));
-  std::transform(readings.begin(), readings.end(), column.begin(), value);
-  return column;
-}
-
 /// Stated standard uncertainty of a mean on one channel: pooled over all blocks, else from the scenario.
 double StatedSigma_m(const std::vector<Reading>& used, int channel, const Scenario& scenario,
                      const measure::BenchGeometry& geometry) {
@@ -49,18 +34,6 @@ bool IsUsable(const Reading& r) {
   if (!std::all_of(r.mean_V.begin(), r.mean_V.end(), finite)) return false;
   if (r.phase == Phase::kFullCircle) return finite(r.target_rad) && finite(r.reference_rad);
   return finite(r.autocollimator_yaw_rad) && finite(r.autocollimator_tilt_rad);
-}
-
-Schedule ScheduleOf(const std::vector<Reading>& used) {
-  Schedule s;
-  for (const Reading& r : used) AddReading(r, s);
-  s.time_s = Column(used, [](const Reading& r) { return ToSeconds(r.time); });
-  s.dwell_s = Column(used, [](const Reading& r) { return r.dwell_s; });
-  s.temperature_degC = Column(used, [](const Reading& r) { return r.temperature_degC; });
-  s.target_rad = Column(used, [](const Reading& r) { return r.target_rad; });
-  s.reference_rad = Column(used, [](const Reading& r) { return r.reference_rad; });
-  s.velocity_rad_s = Eigen::VectorXd::Constant(std::ssize(used), kNaN);
-  return s;
 }
 
 Eigen::VectorXd ObservedOf(const std::vector<Reading>& used, const measure::BenchGeometry& geometry) {

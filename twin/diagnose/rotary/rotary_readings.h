@@ -6,7 +6,6 @@
 
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
-#include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/rotary/optical_bench.h"
 
 /// What the readings of the rotary bench say before any model is fitted.
@@ -14,8 +13,6 @@ namespace twinbench::diagnose::rotary {
 
 /// True if the reading has four voltages, its angles, and in the calibration phase the autocollimator's.
 bool IsUsable(const Reading& reading);
-
-Schedule ScheduleOf(const std::vector<Reading>& used);
 
 /// The four channels referred to the PSDs' surfaces, by row [m].
 Eigen::VectorXd ObservedOf(const std::vector<Reading>& used, const measure::BenchGeometry& geometry);

@@ -14,15 +14,6 @@
 /// and the directions in which the free unknowns may move it.
 namespace twinbench::diagnose::rotary {
 
-/// Believed of calibrated parameters once a bench has been set up; they stay this uncertain in the model.
-struct CalibrationPriors {
-  double gain = 1e-4;
-  double roll_rad = 1e-4;
-  double distance_m = 10e-6;
-  double wavelength_m = 0.05e-9;
-  double incidence_rad = 1e-4;
-};
-
 struct RotaryRun {
   LinearRun run;
   OpticalBench bench;
@@ -38,9 +29,8 @@ struct RotaryRun {
 /// Fits table errors and mounting constants to the readings (Gauss-Newton on the exact chain and grating equation)
 /// and linearises there. Effects that the scenario already holds are part of the model.
 ///
-/// Unknowns: per position and table as separate::Design orders them (angles in rad, lengths in its length unit),
-/// the mounting constants of the calibration phase, then gains, rolls, distances, wavelength and incidence with
-/// CalibrationPriors. Noise: the blocks' standard deviations pooled by channel, else what the scenario states.
+/// Unknowns and their priors: free_parameters.h. Noise: the blocks' standard deviations pooled by channel, else
+/// what the scenario states.
 ///
 /// @throws InputError if the commanded angles are on no grid or hardly any reading is usable.
 RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published = false);

@@ -24,9 +24,10 @@ Family FreeTone(const RotaryRun& rotary, const SharedSeries& series) {
   };
   family.parameters = [amplitude, f = family.shapes[0]](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
                                                         const Eigen::MatrixXd& cov) {
+    const Eigen::Index last = x.size();
     const double rms = x.norm() / std::sqrt(static_cast<double>(kChannels)),
-                 u = std::sqrt(cov.trace() / (2.0 * kChannels));
-    return std::vector<ParameterEstimate>{Plain(f, shape[0]),
+                 u = std::sqrt(x.dot(cov.topLeftCorner(last, last) * x) / (x.squaredNorm() * kChannels));
+    return std::vector<ParameterEstimate>{Plain(f, shape[0], std::sqrt(cov(last, last))),
                                           {"amplitude", "um", um, rms, u, 0.0, amplitude.upper}};
   };
   return family;
@@ -110,9 +111,12 @@ void AddTones(const RotaryRun& rotary, const SharedSeries& series, std::vector<F
     };
     family.parameters = [amplitude, f = family.shapes[0]](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
                                                           const Eigen::MatrixXd& cov) {
-      return std::vector<ParameterEstimate>{Plain(f, shape[0]),
-                                            LengthOf(amplitude, x, cov),
-                                            {"phase", "deg", units::deg, std::atan2(x[1], x[0]), kNaN, kNaN, kNaN}};
+      const Eigen::Vector2d across = Eigen::Vector2d(-x[1], x[0]) / x.squaredNorm();
+      const double u_phase = std::sqrt(across.dot(cov.topLeftCorner<2, 2>() * across));
+      return std::vector<ParameterEstimate>{
+          Plain(f, shape[0], std::sqrt(cov(2, 2))),
+          LengthOf(amplitude, x, cov),
+          {"phase", "deg", units::deg, std::atan2(x[1], x[0]), u_phase, kNaN, kNaN}};
     };
     families.push_back(std::move(family));
   };

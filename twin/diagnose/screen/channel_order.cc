@@ -22,7 +22,8 @@ Tests TestChannelOrder(const Sample& sample) {
   for (int c = 0; c < channels; ++c) {
     const int before = (c + channels - 1) % channels;
     scan.shapes[static_cast<std::size_t>(c)].col(c) = Normalised(Predicted(run, before));
-    words.items.push_back(fmt::format("{} in {}", run.channels[static_cast<std::size_t>(before)],
+    words.items.push_back(fmt::format("what {} showed just before {}",
+                                      run.channels[static_cast<std::size_t>(before)],
                                       run.channels[static_cast<std::size_t>(c)]));
   }
   Tests tests;

@@ -22,7 +22,7 @@ void TestStatedNoise(const Sample& s, Tests& tests) {
   auto found = TestMoments(values, {"all readings"}, "fit to stated noise", Sides::kBoth);
   if (!found) return;
   const double ratio = std::exp(0.5 * values(0, 0));
-  SetEffect(s.run, MeanSigma(s.run) * std::sqrt(std::abs(ratio * ratio - 1.0)), found->test);
+  SetEffect(s.run, AnyChannel(s.run), MeanSigma(s.run) * std::sqrt(std::abs(ratio * ratio - 1.0)), found->test);
   found->test.reading = fmt::format("residuals are {:.3f} times the stated noise: {}", ratio,
                                     ratio > 1.0 ? "something is not modelled, or the noise figure is too small"
                                                 : "the noise figure is too large");
@@ -72,7 +72,7 @@ void TestRepeats(const Sample& s, Tests& tests) {
   auto found = TestMoments(values, {"places visited again"}, "fit to repeats", Sides::kUpper);
   if (!found) return;
   const double common = std::max(0.0, std::expm1(found->excess));
-  SetEffect(s.run, MeanSigma(s.run) * std::sqrt(common), found->test);
+  SetEffect(s.run, AnyChannel(s.run), MeanSigma(s.run) * std::sqrt(common), found->test);
   found->test.reading = fmt::format(
       "the part of the residual that comes back at each visit is {:.2f} times what "
       "noise gives (variance): {}",

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "twin/diagnose/screen/circumstances.h"
 #include "twin/diagnose/screen/tests.h"
+#include "twin/diagnose/screen/variance_components.h"
 #include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose::screen {
@@ -33,8 +35,7 @@ std::vector<Sorting> SortingsOf(const Schedule& s) {
           {"place", "an error of position that no free table error explains", Numbered(place)}};
 }
 
-/// Sums of the whitened residual by group: groups x columns. `share` receives what a unit offset of the group
-/// leaves of its sum on average, that is the information S'WS.
+/// Sums of the whitened residual by group: groups x columns.
 Eigen::MatrixXd GroupSums(const Sample& s, const std::vector<int>& group, int channel, int groups) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(groups, s.Columns());
   for (std::size_t i = 0; i < group.size(); ++i) {
@@ -43,43 +44,90 @@ Eigen::MatrixXd GroupSums(const Sample& s, const std::vector<int>& group, int ch
   return sums;
 }
 
-/// Variance of the groups' offsets by the method of moments, in units of the noise: the excess of the sum of
-/// squares over what it would be for a unit variance, trace (Z'WZ)^2, with the nulls' covariance of the sums as
-/// Z'WZ.
-double Variance(const Eigen::MatrixXd& sums, double excess) {
-  const Eigen::MatrixXd nulls = sums.rightCols(sums.cols() - 1);
-  const double diagonal = (nulls.rowwise().squaredNorm() / static_cast<double>(nulls.cols())).squaredNorm();
-  return diagonal > 0.0 ? std::max(0.0, excess / diagonal) : 0.0;
+int GroupsIn(const std::vector<int>& group) {
+  return *std::max_element(group.begin(), group.end()) + 1;
 }
 
-void TestSorting(const Sample& s, const Sorting& sorting, Tests& tests) {
-  const int groups = *std::max_element(sorting.group.begin(), sorting.group.end()) + 1;
-  const int readings = static_cast<int>(sorting.group.size());
-  if (groups < 2 || groups == readings) return;
-  const int channels = s.run.Channels();
+/// Sortings that sort: more than one group, and groups of more than one reading.
+std::vector<Sorting> UsefulSortings(const Schedule& schedule) {
+  std::vector<Sorting> useful;
+  for (Sorting& sorting : SortingsOf(schedule)) {
+    const int groups = GroupsIn(sorting.group);
+    if (groups > 1 && groups < schedule.Readings()) useful.push_back(std::move(sorting));
+  }
+  return useful;
+}
+
+/// Sums of squares of the groups' sums, channels x columns: the slope of the restricted likelihood where all
+/// components are zero, but for a constant, and so the most powerful statistic against small ones.
+Eigen::MatrixXd SlopesAtZero(const Sample& s, const Sorting& sorting) {
+  const int channels = s.run.Channels(), readings = s.run.schedule.Readings(), groups = GroupsIn(sorting.group);
   Eigen::MatrixXd values(channels, s.Columns());
-  std::vector<Eigen::MatrixXd> sums;
   for (int c = 0; c < channels; ++c) {
-    sums.push_back(GroupSums(s, sorting.group, c, groups));
-    values.row(c) = sums.back().colwise().squaredNorm();
+    values.row(c) = GroupSums(s, sorting.group, c, groups).colwise().squaredNorm();
     // Groups whose offsets are free unknowns: nothing is left but rounding and the width of the priors.
     if (values.row(c).tail(s.Columns() - 1).mean() < 1e-3 * readings) values.row(c).setZero();
   }
-  auto found = TestMoments(values, s.run.channels, "offsets by " + sorting.name, Sides::kUpper);
-  if (!found) return;
-  const auto c = static_cast<std::size_t>(found->item);
-  const double size = std::sqrt(Variance(sums[c], found->excess));
-  SetEffect(s.run, size * s.level[found->item] * TypicalSigma(s.run, found->item), found->test);
-  found->test.reading = fmt::format("each {} has an offset of its own on {}, {} rms: {}", sorting.name,
-                                    s.run.channels[c], Amount(s.run, found->test.effect_m), sorting.causes);
-  tests.push_back(std::move(found->test));
+  return values;
 }
+
+/// The components of one channel in words, and as deviations in SI.
+class Components {
+ public:
+  Components(const Sample& s, const std::vector<Sorting>& sortings, int channel)
+      : run_(s.run), channel_(channel), sortings_(sortings) {
+    std::vector<std::vector<int>> groups;
+    for (const Sorting& sorting : sortings) groups.push_back(sorting.group);
+    fit_ = FitVarianceComponents(s, groups, channel);
+  }
+  double Deviation_SI(std::size_t sorting) const { return InSI(fit_.variance[static_cast<Eigen::Index>(sorting)]); }
+
+  std::vector<std::string> Lines() const {
+    const std::string& on = run_.channels[static_cast<std::size_t>(channel_)];
+    std::vector<std::string> lines;
+    for (std::size_t k = 0; k < sortings_.size(); ++k) {
+      const double variance = fit_.variance[static_cast<Eigen::Index>(k)],
+                   u = fit_.u_variance[static_cast<Eigen::Index>(k)];
+      lines.push_back(std::isnan(u)
+                          ? fmt::format("{}, by {}: part of the free unknowns", on, sortings_[k].name)
+                          : fmt::format("{}, by {}: {} rms, at most {}", on, sortings_[k].name,
+                                        Amount(run_, InSI(variance)), Amount(run_, InSI(variance + 2.0 * u))));
+    }
+    lines.push_back(fmt::format("{}, single readings: {} rms, stated {}", on, Amount(run_, InSI(fit_.repeat)),
+                                Amount(run_, InSI(1.0))));
+    return lines;
+  }
+
+ private:
+  double InSI(double variance) const { return TypicalSigma(run_, channel_) * std::sqrt(variance); }
+
+  const LinearRun& run_;
+  int channel_;
+  const std::vector<Sorting>& sortings_;
+  VarianceComponents fit_;
+};
 
 }  // namespace
 
+/// Variance components: offsets that differ from set-up to set-up, pass to pass, place to place. Found by the slope
+/// of the restricted likelihood at zero, with its nulls; sized by its maximum, all components together.
 Tests TestGroups(const Sample& sample) {
+  const LinearRun& run = sample.run;
+  const std::vector<Sorting> sortings = UsefulSortings(run.schedule);
+  std::map<int, Components> fitted;  // by channel
   Tests tests;
-  for (const Sorting& sorting : SortingsOf(sample.run.schedule)) TestSorting(sample, sorting, tests);
+  for (std::size_t k = 0; k < sortings.size(); ++k) {
+    auto found = TestMoments(SlopesAtZero(sample, sortings[k]), run.channels, "offsets by " + sortings[k].name,
+                             Sides::kUpper);
+    if (!found) continue;
+    const int channel = found->item;
+    const Components& components = fitted.try_emplace(channel, sample, sortings, channel).first->second;
+    SetEffect(run, channel, components.Deviation_SI(k), found->test);
+    found->test.reading = fmt::format("each {} has an offset of its own on {}: {}", sortings[k].name,
+                                      run.channels[static_cast<std::size_t>(channel)], sortings[k].causes);
+    for (std::string& line : components.Lines()) found->test.tables.push_back(std::move(line));
+    tests.push_back(std::move(found->test));
+  }
   return tests;
 }
 

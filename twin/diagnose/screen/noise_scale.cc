@@ -25,7 +25,8 @@ void TestChannels(const Sample& s, const Eigen::MatrixXd& level, Tests& tests) {
   auto found = TestMoments(level, s.run.channels, "noise of the channels", Sides::kBoth);
   if (!found) return;
   const double ratio = std::exp(0.5 * found->excess);
-  SetEffect(s.run, TypicalSigma(s.run, found->item) * std::sqrt(std::abs(ratio * ratio - 1.0)), found->test);
+  SetEffect(s.run, found->item, TypicalSigma(s.run, found->item) * std::sqrt(std::abs(ratio * ratio - 1.0)),
+            found->test);
   found->test.reading = fmt::format(
       "residual of {} is {:.3f} times that of the channels together: noisy channel, or a cause that "
       "shows there only",
@@ -45,7 +46,7 @@ void TestSpots(const Sample& s, const Eigen::MatrixXd& level, const std::vector<
   if (!found) return;
   const double ratio = std::exp(0.5 * found->excess);
   const int channel = spots[static_cast<std::size_t>(found->item)].x;
-  SetEffect(s.run, TypicalSigma(s.run, channel) * std::sqrt(std::abs(ratio * ratio - 1.0)), found->test);
+  SetEffect(s.run, channel, TypicalSigma(s.run, channel) * std::sqrt(std::abs(ratio * ratio - 1.0)), found->test);
   found->test.reading = fmt::format(
       "residual of {} is {:.3f} times that of the detectors together: its electronics, "
       "its distance, or light that reaches it alone",
@@ -90,7 +91,8 @@ void TestRadius(const Sample& s, const std::vector<Spot>& spots, Tests& tests) {
   if (!found) return;
   const auto item = static_cast<std::size_t>(found->item);
   const double slope = found->excess / information[item];
-  SetEffect(s.run, TypicalSigma(s.run, spots[item].x) * std::sqrt(std::abs(2.0 * slope)), found->test);
+  SetEffect(s.run, spots[item].x, TypicalSigma(s.run, spots[item].x) * std::sqrt(std::abs(2.0 * slope)),
+            found->test);
   found->test.reading = fmt::format(
       "scatter on {} {} with the distance of the spot from the centre: speckle, spot shape, stray light, "
       "or a detector that is not linear",

@@ -44,8 +44,10 @@ Tests TestPatterns(const Sample& s) {
   const auto item = static_cast<std::size_t>(found->item);
   const double variance = std::max(0.0, found->excess) / s.run.schedule.Readings() / weights[item].squaredNorm();
   const double amplitude = s.level.mean() * std::sqrt(variance);
-  SetEffect(s.run, amplitude * s.run.patterns[item].weight.cwiseAbs().maxCoeff(), found->test);
-  if (names[item] == "yaw" || names[item] == "tilt" || names[item] == "roll") found->test.effect_rad = amplitude;
+  Eigen::Index channel = 0;
+  const double shown = s.run.patterns[item].weight.cwiseAbs().maxCoeff(&channel);
+  SetEffect(s.run, static_cast<int>(channel), amplitude * shown, found->test);
+  if (IsAngle(names[item])) found->test.effect_rad = amplitude;
   found->test.reading = fmt::format(
       "channels move together as in {} more than noise does: a body moves that way, or "
       "its model is wrong",

@@ -11,8 +11,8 @@
 namespace twinbench::diagnose::screen {
 namespace {
 
-constexpr int kCodes = 65536, kReach = 4;
-constexpr double kLeastCount = 16.0;   // expected; below, square roots of counts are no longer normal
+constexpr int kCodes = 65536, kReach = 4, kAround = 12;
+constexpr double kLeastCount = 25.0;   // around a code; below, square roots of counts are no longer normal
 constexpr double kLeastScatter = 4.0;  // codes; below, the density bends within kReach
 
 /// What the four codes on either side say of the code between: the parabola of least variance through them,
@@ -26,6 +26,15 @@ double FromNeighbours(const At& at, int code) {
   for (int h = 1; h <= kReach; ++h)
     sum += kWeights[static_cast<std::size_t>(h - 1)] * (at(code - h) + at(code + h));
   return sum;
+}
+
+/// Typical count of the codes beyond those that FromNeighbours looks at: a code is judged where this is large enough,
+/// and so not because its own neighbours happened to come often.
+template <typename At>
+double Around(const At& at, int code) {
+  double sum = 0.0;
+  for (int h = kReach + 1; h <= kAround; ++h) sum += at(code - h) + at(code + h);
+  return 0.5 * sum / (kAround - kReach);
 }
 
 /// How often each code came, shifted so that the lowest has index 0; and the scatter within blocks.
@@ -60,9 +69,9 @@ struct CodeScore {
 
 void ScoreCodes(const Density& density, int channel, std::vector<CodeScore>& scores) {
   const auto at = [&](int index) { return density.count[static_cast<std::size_t>(index)]; };
-  for (int k = kReach; k < kCodes - kReach; ++k) {
-    const double expected = FromNeighbours(at, k);
-    if (expected < kLeastCount) continue;
+  for (int k = kAround; k < kCodes - kAround; ++k) {
+    if (Around(at, k) < kLeastCount) continue;
+    const double expected = std::max(0.0, FromNeighbours(at, k));
     const double difference = 2.0 * (std::sqrt(at(k) + 0.375) - std::sqrt(expected + 0.375));
     scores.push_back({channel, k - kCodes / 2, at(k), expected, std::abs(difference) / std::sqrt(1.0 + kVariance)});
   }
@@ -82,7 +91,7 @@ double NullMaximum(Stream& stream, std::size_t codes) {
 
 std::string CodeWords(const CodeScore& s, const RawScale& scale) {
   return fmt::format("code {} of {}: came {:.0f} times instead of {:.0f}{}", s.code,
-                     scale.channels[static_cast<std::size_t>(s.channel)], s.count, s.expected,
+                     scale.channels[static_cast<std::size_t>(s.channel)].name, s.count, s.expected,
                      s.count == 0.0 ? " (missing)" : "");
 }
 
@@ -106,7 +115,8 @@ Tests TestCodes(const std::vector<RawBlock>& blocks, const RawScale& scale, int 
   test.name = "raw: code density";
   test.statistic = worst.score;
   test.p = PValue(statistic);
-  test.effect_m = scale.code_SI * std::abs(worst.count / worst.expected - 1.0);
+  SetRawEffect(scale.channels[static_cast<std::size_t>(worst.channel)],
+               std::abs(worst.count / std::max(worst.expected, 1.0) - 1.0), test);
   test.reading = CodeWords(worst, scale) + ": a converter whose steps are not equal";
   for (std::size_t k = 0; k < 8 && k < scores.size(); ++k) test.tables.push_back(CodeWords(scores[k], scale));
   return {std::move(test)};

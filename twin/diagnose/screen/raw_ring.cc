@@ -25,25 +25,25 @@ Tests TestRingDown(const ThinnedBlocks& blocks, const RawScale& scale, int null_
   const Eigen::Index half = blocks.Samples() / 2;
   const int lines = static_cast<int>(std::min<Eigen::Index>(kMostLines, half / 4));
   if (lines < 2) return {};
-  const double half_s = static_cast<double>(half) / blocks.rate_hz, count = static_cast<double>(blocks.Blocks());
-  std::vector<double> frequency_hz;
-  for (int k = 1; k <= lines; ++k) frequency_hz.push_back(k / half_s);
+  const double half_s = static_cast<double>(half) / blocks.rate_Hz, count = static_cast<double>(blocks.Blocks());
+  std::vector<double> frequency_Hz;
+  for (int k = 1; k <= lines; ++k) frequency_Hz.push_back(k / half_s);
   ScreenTest test;
   test.name = "raw: ring-down";
   test.statistic = -1e300;
   for (std::size_t c = 0; c < scale.channels.size(); ++c) {
-    const Eigen::VectorXd first = Power(blocks.channel[c], 0, half, frequency_hz, blocks.rate_hz);
-    const Eigen::VectorXd second = Power(blocks.channel[c], half, half, frequency_hz, blocks.rate_hz);
+    const Eigen::VectorXd first = Power(blocks.channel[c], 0, half, frequency_Hz, blocks.rate_Hz);
+    const Eigen::VectorXd second = Power(blocks.channel[c], half, half, frequency_Hz, blocks.rate_Hz);
     Eigen::Index at = 0;
     const double ratio = LogRatio(first, second).maxCoeff(&at);
     const std::string words =
-        fmt::format("{} at {:.4g} Hz, time constant {:.3g} s", scale.channels[c],
-                    frequency_hz[static_cast<std::size_t>(at)], 2.0 * half_s / std::max(ratio, 1e-9));
+        fmt::format("{} at {:.4g} Hz, time constant {:.3g} s", scale.channels[c].name,
+                    frequency_Hz[static_cast<std::size_t>(at)], 2.0 * half_s / std::max(ratio, 1e-9));
     test.tables.push_back(words);
     if (!(ratio > test.statistic)) continue;
     test.statistic = ratio;
-    test.effect_m = scale.code_SI *
-                    std::sqrt(2.0 * std::max(0.0, first[at] - second[at]) / (count * static_cast<double>(half)));
+    const double mean_square = std::max(0.0, first[at] - second[at]) / (count * static_cast<double>(half));
+    SetRawEffect(scale.channels[c], std::sqrt(2.0 * mean_square), test);
     test.reading =
         "vibration dies out within the blocks, loudest on " + words + ": dwell too short for a resonance";
   }

@@ -11,10 +11,24 @@
 namespace twinbench::diagnose::screen {
 namespace {
 
-Eigen::SparseMatrix<double, Eigen::RowMajor> WhiteningMatrix(const LinearRun& run, const NoiseModel& noise) {
-  Eigen::SparseMatrix<double, Eigen::RowMajor> identity(run.Rows(), run.Rows());
+std::vector<Whitening> WhiteningByChannel(const LinearRun& run, const NoiseModel& noise) {
+  Whitening identity(run.Rows(), run.Rows());
   identity.setIdentity();
-  return noise.Whiten(run, identity);
+  const Whitening all = noise.Whiten(run, identity);
+  std::vector<std::vector<Eigen::Triplet<double>>> entries(run.channels.size());
+  for (int row = 0; row < run.Rows(); ++row) {
+    for (Whitening::InnerIterator it(all, row); it; ++it) {
+      const auto from = static_cast<int>(it.col());
+      Require(run.ChannelOf(from) == run.ChannelOf(row), "whitening keeps channels apart");
+      entries[static_cast<std::size_t>(run.ChannelOf(row))].emplace_back(run.ReadingOf(row), run.ReadingOf(from),
+                                                                         it.value());
+    }
+  }
+  std::vector<Whitening> whitening(run.channels.size(),
+                                   Whitening(run.schedule.Readings(), run.schedule.Readings()));
+  for (std::size_t c = 0; c < entries.size(); ++c)
+    whitening[c].setFromTriplets(entries[c].begin(), entries[c].end());
+  return whitening;
 }
 
 Eigen::MatrixXd Normals(std::uint64_t seed, const char* name, Eigen::Index rows, int columns) {
@@ -62,9 +76,9 @@ void LevelChannels(Sample& s) {
 
 void FillAdjoint(Sample& s) {
   const int channels = s.run.Channels(), readings = s.run.schedule.Readings();
-  const Eigen::MatrixXd rows = s.whitening.transpose() * s.levelled;
   for (int c = 0; c < channels; ++c) {
-    s.adjoint.emplace_back(rows(Eigen::seqN(c, readings, channels), Eigen::all));
+    const Eigen::MatrixXd rows = s.levelled(Eigen::seqN(c, readings, channels), Eigen::all);
+    s.adjoint.emplace_back(s.whitening[static_cast<std::size_t>(c)].transpose() * rows);
   }
 }
 
@@ -74,12 +88,12 @@ Sample Simulate(const LinearRun& run, const NoiseModel& noise, const Projector& 
                 std::uint64_t seed) {
   Require(null_runs >= 50, "the screen needs at least 50 null runs");
   Require(run.Rows() == run.schedule.Readings() * run.Channels(), "a run has one row a reading and channel");
-  Sample s{run, projector, WhiteningMatrix(run, noise), projector.Redundancy(), {}, {}, {}, {}};
+  Sample s{run, projector, WhiteningByChannel(run, noise), projector.Redundancy(), {}, {}, {}, {}};
   Eigen::MatrixXd white(run.Rows(), 1 + null_runs);
   const Eigen::MatrixXd unknowns =
       UsefulPriors(projector, run.nuisance).asDiagonal() *
       Normals(seed, "screen.null.unknowns", run.nuisance.prior_precision.size(), null_runs);
-  white.col(0) = s.whitening * run.residual;
+  white.col(0) = noise.Whiten(run, Eigen::MatrixXd(run.residual));
   white.rightCols(null_runs) =
       Normals(seed, "screen.null.noise", run.Rows(), null_runs) + projector.Jacobian() * unknowns;
   s.residual = projector.Apply(white);

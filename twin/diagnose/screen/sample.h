@@ -11,14 +11,17 @@
 
 namespace twinbench::diagnose::screen {
 
+/// Readings x readings: noise has no memory across channels.
+using Whitening = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
 /// The residual of a run beside those of simulated runs without effect on the same design. Column 0 is the run, the
 /// others are nulls; every statistic is computed for all columns by the same code, and the nulls give its p-value.
 struct Sample {
   const LinearRun& run;
   const Projector& projector;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> whitening;  // rows x rows
-  Eigen::VectorXd redundancy;                              // by row: what projection leaves of the variance
-  Eigen::MatrixXd residual;                                // rows x columns, whitened and projected
+  std::vector<Whitening> whitening;      // one a channel
+  Eigen::VectorXd redundancy;            // by row: what projection leaves of the variance
+  Eigen::MatrixXd residual;              // rows x columns, whitened and projected
   Eigen::MatrixXd levelled;              // the same, each channel of each column divided by its rms
   Eigen::VectorXd level;                 // rms of the run's channels in units of the stated noise
   std::vector<Eigen::MatrixXd> adjoint;  // one a channel, readings x columns: transposed whitening of levelled

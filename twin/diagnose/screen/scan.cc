@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace twinbench::diagnose::screen {
 namespace {
@@ -18,20 +19,6 @@ Eigen::MatrixXd SurvivingRoot(const Eigen::MatrixXd& information, const Eigen::V
          eigen.eigenvalues().tail(dof).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
-/// Columns of items [first, first + items) as rows of the run, not whitened.
-Eigen::MatrixXd Columns(const Sample& s, const Scan& scan, int first, int items) {
-  const int channels = s.run.Channels(), width = scan.width;
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(s.run.Rows(), items * channels * width);
-  for (int e = 0; e < items; ++e) {
-    for (int c = 0; c < channels; ++c) {
-      const auto rows = Eigen::seqN(c, s.run.schedule.Readings(), channels);
-      columns(rows, Eigen::seqN((e * channels + c) * width, width)) =
-          scan.ShapesOf(c).middleCols((first + e) * width, width);
-    }
-  }
-  return columns;
-}
-
 void Solve(Fit& fit) {
   const Eigen::MatrixXd root = SurvivingRoot(fit.information, fit.before);
   const Eigen::VectorXd score = root.transpose() * fit.gradient;
@@ -41,20 +28,43 @@ void Solve(Fit& fit) {
   fit.cov = root * root.transpose();
 }
 
+/// Information of some items before projection; it does not mix channels.
+struct Before {
+  std::vector<Eigen::MatrixXd> information;  // one an item
+  Eigen::MatrixXd white;                     // rows x (items * channels * width)
+};
+
+Before BeforeProjection(const Sample& s, const Scan& scan, int first, int items) {
+  const int channels = s.run.Channels(), width = scan.width, size = channels * width;
+  Before before{std::vector(static_cast<std::size_t>(items), Eigen::MatrixXd(Eigen::MatrixXd::Zero(size, size))),
+                Eigen::MatrixXd::Zero(s.run.Rows(), items * size)};
+  for (int c = 0; c < channels; ++c) {
+    const Eigen::MatrixXd white =
+        s.whitening[static_cast<std::size_t>(c)] * scan.ShapesOf(c).middleCols(first * width, items * width);
+    const auto rows = Eigen::seqN(c, s.run.schedule.Readings(), channels);
+    for (int e = 0; e < items; ++e) {
+      const auto item = white.middleCols(e * width, width);
+      before.white(rows, Eigen::seqN((e * channels + c) * width, width)) = item;
+      before.information[static_cast<std::size_t>(e)].block(c * width, c * width, width, width) =
+          item.transpose() * item;
+    }
+  }
+  return before;
+}
+
 /// Information of each of the items [first, first + items); `before` receives the diagonals before projection.
 std::vector<Eigen::MatrixXd> Information(const Sample& s, const Scan& scan, int first, int items,
                                          std::vector<Eigen::VectorXd>& before) {
-  const Eigen::MatrixXd white = s.whitening * Columns(s, scan, first, items);
-  const Eigen::MatrixXd absorbed = s.projector.Absorbed(white);
+  Before all = BeforeProjection(s, scan, first, items);
+  const Eigen::MatrixXd absorbed = s.projector.Absorbed(all.white);
   const int size = s.run.Channels() * scan.width;
-  std::vector<Eigen::MatrixXd> information;
   for (int e = 0; e < items; ++e) {
-    const auto w = white.middleCols(e * size, size);
+    Eigen::MatrixXd& information = all.information[static_cast<std::size_t>(e)];
+    before.emplace_back(information.diagonal());
     const auto h = absorbed.middleCols(e * size, size);
-    information.emplace_back(w.transpose() * w - h.transpose() * h);
-    before.emplace_back(w.colwise().squaredNorm().transpose());
+    information.noalias() -= h.transpose() * h;
   }
-  return information;
+  return std::move(all.information);
 }
 
 /// S' W y of every item in one channel: (items * width) x columns.
@@ -74,13 +84,12 @@ Eigen::MatrixXd GradientOf(const std::vector<Eigen::MatrixXd>& gradients, int it
   return gradient;
 }
 
-/// Standard normal deviate as improbable as chi2 of `dof` degrees of freedom.
+}  // namespace
+
 double NormalScore(double chi2, int dof) {
   const double variance = 2.0 / (9.0 * dof);
   return (std::cbrt(chi2 / dof) - 1.0 + variance) / std::sqrt(variance);
 }
-
-}  // namespace
 
 Fit Fit::Constrained(const Eigen::MatrixXd& constraint, int new_width) const {
   Fit fit;
@@ -109,7 +118,7 @@ Fit FitItem(const Sample& sample, const Scan& scan, int item) {
 }
 
 Eigen::MatrixXd Scores(const Sample& sample, const Scan& scan) {
-  const int items = scan.Items(), size = sample.run.Channels() * scan.width, chunk = std::max(1, 256 / size);
+  const int items = scan.Items(), size = sample.run.Channels() * scan.width, chunk = std::max(1, 64 / size);
   const std::vector<Eigen::MatrixXd> gradients = Gradients(sample, scan);
   Eigen::MatrixXd scores(items, sample.Columns());
   for (int first = 0; first < items; first += chunk) {

@@ -39,7 +39,10 @@ struct Fit {
 /// Fits item `item` to the run itself.
 Fit FitItem(const Sample& sample, const Scan& scan, int item);
 
-/// Normal score (Wilson and Hilferty 1931) of what each item explains in each column: items x columns. An item of
+/// Standard normal deviate as improbable as chi2 of `dof` degrees of freedom (Wilson and Hilferty 1931).
+double NormalScore(double chi2, int dof);
+
+/// Normal score of what each item explains in each column: items x columns. An item of
 /// which the free unknowns leave less than 1e-3 in every direction scores -infinity.
 Eigen::MatrixXd Scores(const Sample& sample, const Scan& scan);
 

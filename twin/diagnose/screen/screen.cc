@@ -3,21 +3,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "twin/diagnose/screen/moderated.h"
 #include "twin/diagnose/screen/sample.h"
 #include "twin/diagnose/screen/tests.h"
 
 namespace twinbench::diagnose {
 namespace {
 
-/// Words that claim something are kept for what noise alone seldom does.
-ScreenTest Moderated(ScreenTest test) {
-  constexpr double kSeldom = 0.05;
-  if (test.p > kSeldom) test.reading = "not beyond noise; loudest: " + test.reading;
-  return test;
-}
-
 int EnoughNullRuns(int rows) {
-  return std::clamp(900000 / std::max(rows, 1), 100, 300);
+  return std::clamp(2000000 / std::max(rows, 1), 150, 300);
 }
 
 }  // namespace
@@ -27,11 +21,12 @@ std::vector<ScreenTest> Screen(const LinearRun& run, const NoiseModel& noise, co
   const screen::Sample sample =
       screen::Simulate(run, noise, projector, null_runs > 0 ? null_runs : EnoughNullRuns(run.Rows()), seed);
   std::vector<ScreenTest> all;
-  for (const auto test : {screen::TestFit, screen::TestNoiseScale, screen::TestTails, screen::TestWhiteness,
-                          screen::TestTime, screen::TestSteps, screen::TestTones, screen::TestHarmonics,
-                          screen::TestLock, screen::TestDirection, screen::TestGroups, screen::TestTemperature,
-                          screen::TestSpot, screen::TestPatterns, screen::TestChannelOrder}) {
-    for (ScreenTest& found : test(sample)) all.push_back(Moderated(std::move(found)));
+  for (const auto test :
+       {screen::TestFit, screen::TestNoiseScale, screen::TestTails, screen::TestWhiteness, screen::TestTime,
+        screen::TestSteps, screen::TestCusum, screen::TestTones, screen::TestAveraging, screen::TestHarmonics,
+        screen::TestLock, screen::TestDirection, screen::TestGroups, screen::TestTemperature, screen::TestSpot,
+        screen::TestSpotMap, screen::TestPatterns, screen::TestChannelOrder}) {
+    for (ScreenTest& found : test(sample)) all.push_back(screen::Moderated(std::move(found)));
   }
   return all;
 }

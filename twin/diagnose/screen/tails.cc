@@ -116,8 +116,9 @@ void TestOutliers(const Sample& s, Tests& tests) {
   test.name = "outliers";
   test.statistic = w.col(0).maxCoeff(&row);
   test.p = PValue(w.colwise().maxCoeff().transpose());
-  SetEffect(s.run, s.residual.col(0).cwiseAbs()[row] * weight[row] * weight[row] * s.run.sigma[row], test);
-  test.reading = "loudest single reading: " + RowWords(s, static_cast<int>(row), test.statistic);
+  SetEffect(s.run, s.run.ChannelOf(static_cast<int>(row)),
+            s.residual.col(0).cwiseAbs()[row] * weight[row] * weight[row] * s.run.sigma[row], test);
+  test.reading = "one reading stands apart: " + RowWords(s, static_cast<int>(row), test.statistic);
   std::vector<std::pair<double, int>> order;
   for (int k = 0; k < s.run.Rows(); ++k) order.emplace_back(-w(k, 0), k);
   std::partial_sort(order.begin(), order.begin() + std::min<std::ptrdiff_t>(5, s.run.Rows()), order.end());

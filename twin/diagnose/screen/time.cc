@@ -27,7 +27,7 @@ void TestWander(const Sample& s, const Eigen::VectorXd& part, Tests& tests) {
 }
 
 void TestDrift(const Sample& s, const Eigen::VectorXd& part, Tests& tests) {
-  const ScanWords words{"time: drift", {"time"}, "steady drift of the source, a detector or a mounting"};
+  const ScanWords words{"time: drift", {"the time"}, "steady drift of the source, a detector or a mounting"};
   Keep(TestScan(s, {{part}, 1}, words), tests);
 }
 

@@ -41,8 +41,8 @@ Tests TestWhiteness(const Sample& s) {
   auto found = TestMoments(values, names, "whiteness within a pass", Sides::kBoth);
   if (!found) return {};
   const double correlation = found->excess / (s.redundancy.mean() * pairs[static_cast<std::size_t>(found->item)]);
-  SetEffect(s.run, s.level.mean() * TypicalSigma(s.run, 0) * std::sqrt(std::min(1.0, std::abs(correlation))),
-            found->test);
+  SetEffect(s.run, AnyChannel(s.run),
+            s.level.mean() * TypicalSigma(s.run, 0) * std::sqrt(std::min(1.0, std::abs(correlation))), found->test);
   found->test.reading = fmt::format(
       "readings {} apart are correlated by {:+.3f} beyond what the fit causes: {}", found->item + 1, correlation,
       correlation > 0.0 ? "correlated noise, drift or slow dynamics that are not modelled"

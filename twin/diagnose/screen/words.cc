@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace twinbench::diagnose::screen {
 namespace {
@@ -20,16 +21,19 @@ Eigen::MatrixXd CommonAmplitude(const Eigen::VectorXd& weight, int width) {
   return constraint;
 }
 
-bool IsAngle(const std::string& pattern) {
-  return pattern == "yaw" || pattern == "tilt" || pattern == "roll";
-}
-
-double LargestAmplitude(const Fit& fit) {
-  double largest = 0.0;
-  for (Eigen::Index c = 0; c * fit.width < fit.amplitude.size(); ++c) {
-    largest = std::max(largest, fit.amplitude.segment(c * fit.width, fit.width).norm());
+/// The channel with the largest amplitude, and that amplitude.
+std::pair<int, double> LargestAmplitude(const Fit& fit) {
+  std::pair<int, double> largest{0, 0.0};
+  for (int c = 0; c * fit.width < fit.amplitude.size(); ++c) {
+    const double size = fit.amplitude.segment(c * fit.width, fit.width).norm();
+    if (size > largest.second) largest = {c, size};
   }
   return largest;
+}
+
+void SetSize(const LinearRun& run, int channel, double size_SI, Place& place) {
+  place.effect_m = ReadsAngles(run) ? kNaN : size_SI;
+  place.effect_rad = AsAngle(run, channel, size_SI);
 }
 
 /// What a place must explain to be named: 3/4 of what exceeds the expectation of noise, and half of all.
@@ -37,15 +41,18 @@ double LeastToName(const Fit& fit) {
   return std::max(fit.width + 0.75 * (fit.chi2 - fit.dof), 0.5 * fit.chi2);
 }
 
-/// What a pattern of `weight` explains, offered to the best so far.
-void Offer(const Fit& fit, const Eigen::VectorXd& weight, const std::string& words, bool angle, double& best,
+/// What a pattern of `weight` explains, offered to the best so far. Its size is that of the channel that shows it
+/// most; if it is a rotation, its own.
+void Offer(const LinearRun& run, const Fit& fit, const Pattern& pattern, const std::string& words, double& best,
            Place& place) {
-  const Fit common = fit.Constrained(CommonAmplitude(weight, fit.width), fit.width);
+  const Fit common = fit.Constrained(CommonAmplitude(pattern.weight, fit.width), fit.width);
   if (!(common.chi2 > best)) return;
   best = common.chi2;
   place.words = words;
-  place.effect_m = weight.cwiseAbs().maxCoeff() * common.amplitude.norm();
-  place.effect_rad = angle ? common.amplitude.norm() : kNaN;
+  Eigen::Index channel = 0;
+  const double weight = pattern.weight.cwiseAbs().maxCoeff(&channel);
+  SetSize(run, static_cast<int>(channel), weight * common.amplitude.norm(), place);
+  if (IsAngle(pattern.name)) place.effect_rad = common.amplitude.norm();
 }
 
 std::vector<std::string> Loudest(const Eigen::VectorXd& scores, const std::vector<std::string>& items) {
@@ -60,27 +67,8 @@ std::vector<std::string> Loudest(const Eigen::VectorXd& scores, const std::vecto
   return lines;
 }
 
-}  // namespace
-
-Place PlaceOf(const LinearRun& run, const Fit& fit, bool patterns) {
-  if (run.Channels() == 1) {
-    const double size = fit.amplitude.norm();
-    return {"on " + run.channels.front(), size, ReadsAngles(run) ? size : kNaN};
-  }
-  double best = LeastToName(fit);
-  Place place{"on several channels", LargestAmplitude(fit), kNaN};
-  if (patterns) {
-    for (const Pattern& p : run.patterns) Offer(fit, p.weight, "in " + p.name, IsAngle(p.name), best, place);
-  }
-  for (int c = 0; c < run.Channels(); ++c) {
-    const std::string& channel = run.channels[static_cast<std::size_t>(c)];
-    Offer(fit, Eigen::VectorXd::Unit(run.Channels(), c), "on " + channel, ReadsAngles(run), best, place);
-  }
-  return place;
-}
-
-std::optional<ScanTest> TestScan(const Sample& sample, const Scan& scan, const ScanWords& words) {
-  const Eigen::MatrixXd scores = Scores(sample, scan);
+std::optional<ScanTest> Described(const Sample& sample, const Eigen::MatrixXd& scores,
+                                  const std::function<Fit(int item)>& fit, bool patterns, const ScanWords& words) {
   Eigen::Index best = 0;
   ScanTest result;
   ScreenTest& test = result.test;
@@ -89,14 +77,43 @@ std::optional<ScanTest> TestScan(const Sample& sample, const Scan& scan, const S
   if (!std::isfinite(test.statistic)) return std::nullopt;
   test.p = PValue(scores.colwise().maxCoeff().transpose());
   result.item = static_cast<int>(best);
-  result.fit = FitItem(sample, scan, result.item);
-  const Place place = PlaceOf(sample.run, result.fit, scan.shapes.size() == 1);
+  result.fit = fit(result.item);
+  const Place place = PlaceOf(sample.run, result.fit, patterns);
   test.effect_m = place.effect_m;
   test.effect_rad = place.effect_rad;
   test.reading = fmt::format("residual follows {} {}: {}", words.items[static_cast<std::size_t>(best)], place.words,
                              words.causes);
   test.tables = Loudest(scores.col(0), words.items);
   return result;
+}
+
+}  // namespace
+
+Place PlaceOf(const LinearRun& run, const Fit& fit, bool patterns) {
+  const auto [largest, size] = LargestAmplitude(fit);
+  Place place{run.Channels() == 1 ? "on " + run.channels.front() : "on several channels", kNaN, kNaN};
+  SetSize(run, largest, size, place);
+  if (run.Channels() == 1) return place;
+  double best = LeastToName(fit);
+  if (patterns) {
+    for (const Pattern& p : run.patterns) Offer(run, fit, p, "in " + p.name, best, place);
+  }
+  for (int c = 0; c < run.Channels(); ++c) {
+    const std::string& channel = run.channels[static_cast<std::size_t>(c)];
+    Offer(run, fit, {channel, Eigen::VectorXd::Unit(run.Channels(), c)}, "on " + channel, best, place);
+  }
+  return place;
+}
+
+std::optional<ScanTest> TestScan(const Sample& sample, const Scan& scan, const ScanWords& words) {
+  return Described(
+      sample, Scores(sample, scan), [&](int item) { return FitItem(sample, scan, item); }, scan.shapes.size() == 1,
+      words);
+}
+
+std::optional<ScanTest> FromScores(const Sample& sample, const Eigen::MatrixXd& scores,
+                                   const std::function<Fit(int item)>& fit, const ScanWords& words) {
+  return Described(sample, scores, fit, true, words);
 }
 
 void Keep(std::optional<ScanTest> found, std::vector<ScreenTest>& tests) {
@@ -123,13 +140,34 @@ std::string Amount(const LinearRun& run, double value_SI) {
   return fmt::format("{:.3g} {}", value_SI / run.to_SI, run.unit);
 }
 
+bool IsAngle(const std::string& pattern) {
+  return pattern == "yaw" || pattern == "tilt" || pattern == "roll";
+}
+
 bool ReadsAngles(const LinearRun& run) {
   return run.unit == "arcsec" || run.unit == "deg" || run.unit == "rad";
 }
 
-void SetEffect(const LinearRun& run, double size_SI, ScreenTest& test) {
-  test.effect_m = size_SI;
-  if (ReadsAngles(run)) test.effect_rad = size_SI;
+double AsAngle(const LinearRun& run, int channel, double size_SI) {
+  if (ReadsAngles(run)) return size_SI;
+  double shown = 0.0;
+  for (const Pattern& p : run.patterns) {
+    if (IsAngle(p.name)) shown = std::max(shown, std::abs(p.weight[channel]));
+  }
+  return shown > 0.0 ? size_SI / shown : kNaN;
+}
+
+void SetEffect(const LinearRun& run, int channel, double size_SI, ScreenTest& test) {
+  test.effect_m = ReadsAngles(run) ? kNaN : size_SI;
+  test.effect_rad = AsAngle(run, channel, size_SI);
+}
+
+int AnyChannel(const LinearRun& run) {
+  int most = 0;
+  for (int c = 1; c < run.Channels(); ++c) {
+    if (AsAngle(run, c, 1.0) > AsAngle(run, most, 1.0)) most = c;
+  }
+  return most;
 }
 
 double TypicalSigma(const LinearRun& run, int channel) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,8 +16,8 @@ namespace twinbench::diagnose::screen {
 /// Where a fitted shape shows: in a pattern of the run, on one channel, or on several without a known pattern.
 struct Place {
   std::string words;         // "in yaw", "on psd_a_x", "on several channels"
-  double effect_m = kNaN;    // largest amplitude of a channel, SI of a reading
-  double effect_rad = kNaN;  // amplitude of the pattern if that is an angle
+  double effect_m = kNaN;    // largest amplitude of a channel; NaN where readings are angles
+  double effect_rad = kNaN;  // amplitude of the pattern if that is an angle, else the channel's (AsAngle)
 };
 
 /// A pattern or channel is named if it alone explains most of what free amplitudes in all channels explain beyond
@@ -40,6 +41,11 @@ struct ScanTest {
 /// @return nothing if the free unknowns absorb every item.
 std::optional<ScanTest> TestScan(const Sample& sample, const Scan& scan, const ScanWords& words);
 
+/// The same of scores (items x columns) that were computed elsewhere.
+/// @param fit  Fit of an item to the run, all channels sharing its shape.
+std::optional<ScanTest> FromScores(const Sample& sample, const Eigen::MatrixXd& scores,
+                                   const std::function<Fit(int item)>& fit, const ScanWords& words);
+
 /// Adds what applies.
 void Keep(std::optional<ScanTest> found, std::vector<ScreenTest>& tests);
 
@@ -59,11 +65,21 @@ std::optional<MomentTest> TestMoments(const Eigen::MatrixXd& values, const std::
 /// "0.42 um": a value of the readings in the run's unit.
 std::string Amount(const LinearRun& run, double value_SI);
 
+/// True for the patterns that are rotations: yaw, tilt, roll.
+bool IsAngle(const std::string& pattern);
+
 /// True if the readings are angles themselves.
 bool ReadsAngles(const LinearRun& run);
 
-/// A size of the readings, also as an angle where the readings are angles.
-void SetEffect(const LinearRun& run, double size_SI, ScreenTest& test);
+/// What a size on one channel amounts to as an angle: of the rotation that moves that channel most, or the size
+/// itself where readings are angles; NaN if there is neither.
+double AsAngle(const LinearRun& run, int channel, double size_SI);
+
+/// A size on one channel, as a length and as an angle.
+void SetEffect(const LinearRun& run, int channel, double size_SI, ScreenTest& test);
+
+/// The channel of which a unit of noise is most as an angle: for sizes that belong to no channel.
+int AnyChannel(const LinearRun& run);
 
 /// Typical standard uncertainty of a channel's readings, SI.
 double TypicalSigma(const LinearRun& run, int channel);

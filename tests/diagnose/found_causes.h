@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+
+#include "twin/diagnose/diagnose.h"
+
+/// Diagnoses as a search may leave them, for the tests of what becomes of them: file, words, extended scenario.
+namespace twinbench::diagnose::test {
+
+/// As sure as a diagnosis ever is, with one fitted parameter.
+inline Cause FoundCause(const std::string& effect, const std::string& where, const ParameterEstimate& parameter) {
+  Cause cause;
+  cause.effect = effect;
+  cause.where = where;
+  cause.probability = 0.97;
+  cause.parameters = {parameter};
+  return cause;
+}
+
+inline Cause FoundPsdGain(double gain_error) {
+  return FoundCause("psd_gain", "psd_a_x", {"gain_error", "1", 1.0, gain_error, 2e-4, -0.5, 0.5});
+}
+
+/// A model that predicts held-out passes nearly as well as their noise allows.
+inline Gain ClearGain() {
+  Gain gain;
+  gain.before_m = 0.71e-6;
+  gain.after_m = 0.31e-6;
+  gain.noise_floor_m = 0.30e-6;
+  gain.fraction_removed = 0.97;
+  gain.interval95 = {0.95, 0.99};
+  gain.positive = true;
+  gain.folds = 4;
+  return gain;
+}
+
+/// A run of the rotary bench with one named cause.
+inline DiagnosisRun NamedRun(const Cause& cause) {
+  DiagnosisRun run;
+  run.run.unit = "um";
+  run.run.to_SI = 1e-6;
+  run.diagnosis.verdict = Verdict::kNamed;
+  run.diagnosis.causes = {cause};
+  run.diagnosis.gain = ClearGain();
+  return run;
+}
+
+}  // namespace twinbench::diagnose::test

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "twin/core/scenario.h"
+
+namespace twinbench::test {
+
+/// A run of the rotary bench without noise, short enough for every test: 12 positions, 2 set-ups.
+inline Scenario SmallNoiseFree() {
+  Scenario scenario;
+  scenario.noise_free = true;
+  scenario.procedure.positions = 12;
+  scenario.procedure.shifts = {0, 4};
+  return scenario;
+}
+
+}  // namespace twinbench::test

@@ -1,0 +1,50 @@
+#include "twin/diagnose/encoder/next_measurement.h"
+
+#include <map>
+#include <vector>
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+struct Split {
+  std::vector<std::string> effects;  // any two of them
+  std::string words;
+};
+
+/// The first that has both counts.
+const std::vector<Split>& Splits() {
+  static const std::vector<Split> splits = {
+      {{"eccentricity", "signal_offset"},
+       "the raw sine and cosine signals, whose offsets are their means; or a second reading head opposite the "
+       "first, "
+       "which sees the eccentricity with the other sign"},
+      {{"ellipticity", "amplitude_mismatch", "quadrature_error"},
+       "the raw sine and cosine signals: their sizes and phase are read directly"},
+      {{"backlash", "hysteresis"},
+       "readings close behind a reversal, every tenth of the way over which the difference builds up"},
+      {{"backlash", "latency", "hysteresis"}, "the same passes at half and at twice the speed, and stops at rest"},
+      {{"interpolation", "gear_mesh", "periodic"}, "the same run with the gear taken out"},
+      {{"drift", "slip", "outliers"}, "a quarter of an hour at rest at one angle, and the same passes again"},
+      {{"drift", "scale", "backlash"}, "several turns in both directions, with a return to the first angle"}};
+  return splits;
+}
+
+bool Has(const Split& split, const std::string& effect) {
+  for (const std::string& e : split.effects) {
+    if (e == effect) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string NextMeasurement(const std::string& effect, const std::string& rival) {
+  if (effect == "reference_fault" || rival == "reference_fault")
+    return "a further set-up with the device turned on the shaft: what turns along is the device's";
+  for (const Split& split : Splits()) {
+    if (Has(split, effect) && Has(split, rival)) return split.words;
+  }
+  return "more turns in both directions, at two speeds, at closer angles";
+}
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,116 @@
+#include "twin/diagnose/engine/answer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/diagnose/engine/ballot.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+CauseKey KeyOf(const Family& family) {
+  return {family.effect, family.where};
+}
+
+/// The amplitudes and shapes themselves.
+std::vector<ParameterEstimate> PlainParameters(const Family& family, const Pick& pick) {
+  std::vector<ParameterEstimate> parameters;
+  for (std::size_t k = 0; k < family.amplitudes.size(); ++k) {
+    const Amplitude& a = family.amplitudes[k];
+    const auto at = static_cast<Eigen::Index>(k);
+    const double u = std::sqrt(pick.cov(at, at));
+    parameters.push_back({a.name, a.unit, a.to_SI, pick.amplitudes[at], u, a.lower, a.upper});
+  }
+  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
+    const Shape& s = family.shapes[k];
+    const double value = pick.shape[static_cast<Eigen::Index>(k)], u = ShapeDeviation(family, k, pick.cov);
+    parameters.push_back({s.name, s.unit, s.to_SI, value, u, s.lower, s.upper});
+  }
+  return parameters;
+}
+
+double CapOf(const std::vector<Family>& families, const CauseKey& key) {
+  const auto family = std::ranges::find(families, key, KeyOf);
+  return family == families.end() ? kMostProbable : family->most_probable;
+}
+
+/// @return with parameters only if it is what the search took: the rivals were not fitted.
+Cause CauseOf(const Pick& pick, const std::vector<Family>& families, const Share& share) {
+  const Family& family = families[static_cast<std::size_t>(pick.family)];
+  const auto& [key, probability] = share;
+  Cause cause;
+  cause.effect = key.first;
+  cause.where = key.second;
+  cause.probability = std::min(probability, CapOf(families, key));
+  cause.log_evidence = pick.statistic;
+  if (KeyOf(family) != key) return cause;
+  cause.parameters =
+      family.parameters ? family.parameters(pick.shape, pick.amplitudes, pick.cov) : PlainParameters(family, pick);
+  cause.rho = std::sqrt(std::max(0.0, pick.explained));
+  return cause;
+}
+
+/// Places where the same shape explains the data nearly as well: the fit cannot tell which body or channel it is.
+std::string OtherPlaces(const Pick& pick, const std::vector<Family>& families) {
+  constexpr double kNearlyAsLikely = 1.6;  // in log
+  const Family& chosen = families[static_cast<std::size_t>(pick.family)];
+  std::string places;
+  for (int k = 0; k < std::ssize(families); ++k) {
+    const Family& f = families[static_cast<std::size_t>(k)];
+    if (k == pick.family || f.kind != Kind::kUnknown || f.effect != chosen.effect || f.where == chosen.where)
+      continue;
+    if (pick.log_posterior[k] < pick.log_posterior[pick.family] - kNearlyAsLikely) continue;
+    places += (places.empty() ? "" : ", ") + f.where;
+  }
+  return places.empty() ? "" : "; or the same on " + places;
+}
+
+/// In full if the search took a shape without a name, else the name of the nearest one.
+std::string SignatureOf(const Pick& pick, const std::vector<Family>& families, const Ballot& ballot) {
+  if (ballot.best_unknown < 0) return "";
+  const Family& family = families[static_cast<std::size_t>(pick.family)];
+  if (family.kind == Kind::kUnknown && family.describe)
+    return family.describe(pick.grid_point, pick.amplitudes) + OtherPlaces(pick, families);
+  const Family& rival = families[static_cast<std::size_t>(ballot.best_unknown)];
+  return rival.effect + " on " + rival.where;
+}
+
+/// The most that a cause explains of the whole run alone.
+double ExplainedAlone(const Cause& cause, const SearchResult& found, const std::vector<Family>& families) {
+  double most = 0.0;
+  for (int k = 0; k < std::ssize(families); ++k) {
+    const Family& f = families[static_cast<std::size_t>(k)];
+    if (f.effect == cause.effect && f.where == cause.where) most = std::max(most, found.alone.explained(k, 0));
+  }
+  return most;
+}
+
+/// How much of what each cause explains the others explain alone.
+void AddRivals(const SearchResult& found, const std::vector<Family>& families, std::vector<Cause>& causes) {
+  constexpr double kNothing = 1e-12;
+  for (Cause& cause : causes) {
+    const double explained = std::max(ExplainedAlone(cause, found, families), kNothing);
+    for (const Cause& other : causes) {
+      if (&other == &cause) continue;
+      const double overlap = std::min(1.0, ExplainedAlone(other, found, families) / explained);
+      cause.indistinguishable_from.push_back({other.effect, other.where, overlap});
+    }
+  }
+}
+
+}  // namespace
+
+Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families) {
+  const Pick& pick = found.picks[k];
+  const Ballot ballot = CountVotes(pick, families);
+  Answer answer;
+  answer.unknown = ballot.unknown;
+  answer.weight = pick.explained;
+  answer.signature = SignatureOf(pick, families, ballot);
+  if (ballot.unknown > 0.5) return answer;
+  for (const Share& share : Winners(ballot)) answer.causes.push_back(CauseOf(pick, families, share));
+  AddRivals(found, families, answer.causes);
+  return answer;
+}
+
+}  // namespace twinbench::diagnose

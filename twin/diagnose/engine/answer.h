@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/diagnose/diagnosis.h"
+#include "twin/diagnose/engine/search.h"
+
+namespace twinbench::diagnose {
+
+/// What the search holds responsible in one place, in words and numbers.
+struct Answer {
+  std::vector<Cause> causes;  // several share the place; empty: structure without a name
+  double unknown = 0.0;       // probability of all shapes without a name
+  std::string signature;      // of the most probable of them
+  double weight = 0.0;        // power that nothing else explains
+};
+
+/// @param k  Which of the picks.
+Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families);
+
+}  // namespace twinbench::diagnose

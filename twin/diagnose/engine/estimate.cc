@@ -1,0 +1,121 @@
+#include "twin/diagnose/engine/estimate.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "twin/diagnose/engine/refine.h"
+#include "twin/diagnose/engine/shape_spread.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// Signatures of the picks side by side, but for one, SI, not whitened.
+Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Pick>& picks, std::size_t left_out = kNone) {
+  Eigen::MatrixXd all(run.Rows(), 0);
+  for (std::size_t k = 0; k < picks.size(); ++k) {
+    const Pick& pick = picks[k];
+    if (k == left_out) continue;
+    all.conservativeResize(Eigen::NoChange, all.cols() + pick.columns.cols());
+    all.rightCols(pick.columns.cols()) = pick.columns;
+  }
+  return all;
+}
+
+/// Precision of what is known beforehand of each column of WithShapeSlopes: amplitudes may be as large as four
+/// prior deviations, as in the evidence; shapes lie anywhere in their range.
+Eigen::VectorXd PriorPrecision(const Family& family, Eigen::Index columns) {
+  constexpr double kWidestPrior = 4.0;
+  Eigen::VectorXd precision(columns);
+  const auto amplitudes = std::ssize(family.amplitudes);
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    if (k < amplitudes) {
+      precision[k] = std::pow(kWidestPrior * family.amplitudes[static_cast<std::size_t>(k)].prior_sd, -2.0);
+    } else {
+      const Shape& s = family.shapes[static_cast<std::size_t>(k - amplitudes)];
+      precision[k] = 12.0 / std::pow(s.upper - s.lower, 2.0);
+    }
+  }
+  return precision;
+}
+
+/// The slopes of all picks with their priors.
+struct Slopes {
+  Eigen::MatrixXd columns;
+  Eigen::VectorXd precision;
+  std::vector<Eigen::Index> start;  // of each pick
+};
+
+Slopes AllSlopes(const LinearRun& run, const std::vector<Family>& families, const std::vector<Pick>& picks) {
+  Slopes all;
+  all.columns.resize(run.Rows(), 0);
+  for (const Pick& pick : picks) {
+    const Family& family = families[static_cast<std::size_t>(pick.family)];
+    const Eigen::MatrixXd own = WithShapeSlopes(family, pick.shape, pick.columns, pick.amplitudes);
+    const Eigen::Index at = all.columns.cols();
+    all.start.push_back(at);
+    all.columns.conservativeResize(Eigen::NoChange, at + own.cols());
+    all.columns.rightCols(own.cols()) = own;
+    all.precision.conservativeResize(at + own.cols());
+    all.precision.tail(own.cols()) = PriorPrecision(family, own.cols());
+  }
+  return all;
+}
+
+/// Lets the shape spread as far as the points of its grid say, where that is farther than its slopes say.
+void Widen(const Eigen::VectorXd& spread, Eigen::Index amplitudes, Eigen::MatrixXd& cov) {
+  const Eigen::Index all = amplitudes + spread.size(), had = cov.cols();
+  cov.conservativeResize(all, all);
+  if (had < all) {
+    cov.rightCols(all - had).setZero();
+    cov.bottomRows(all - had).setZero();
+  }
+  for (Eigen::Index k = 0; k < spread.size(); ++k) {
+    double& variance = cov(amplitudes + k, amplitudes + k);
+    variance = std::max(variance, spread[k] * spread[k]);
+  }
+}
+
+/// (S'WS + D)^-1, computed in units in which its diagonal is one.
+Eigen::MatrixXd CovarianceOf(const Projector& projector, const Eigen::MatrixXd& S, const Eigen::VectorXd& precision) {
+  const Eigen::MatrixXd H = projector.Absorbed(S);
+  Eigen::MatrixXd normal = S.transpose() * S - H.transpose() * H;
+  normal.diagonal() = normal.diagonal().cwiseMax(0.0) + precision;
+  const Eigen::VectorXd unit = normal.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = unit.asDiagonal() * normal * unit.asDiagonal();
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(S.cols(), S.cols());
+  return unit.asDiagonal() * scaled.ldlt().solve(one) * unit.asDiagonal();
+}
+
+}  // namespace
+
+void EstimatePicks(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+                   const std::vector<Family>& families, const Eigen::MatrixXd& white, std::vector<Pick>& picks) {
+  if (picks.empty()) return;
+  const Remainder causes(projector, noise.Whiten(run, Signatures(run, picks)));
+  const Projected left = Project(projector, causes, white);
+  const Eigen::VectorXd amplitudes = causes.Amplitudes(projector.Apply(white));
+  Eigen::Index at = 0;
+  for (Pick& pick : picks) {
+    pick.amplitudes = amplitudes.segment(at, pick.columns.cols());
+    at += pick.columns.cols();
+  }
+  const Slopes slopes = AllSlopes(run, families, picks);
+  const double trust = PseudoDegrees(run);
+  const double variance =
+      (trust + left.power[0]) / (trust + projector.DegreesOfFreedom() - static_cast<double>(slopes.columns.cols()));
+  const Eigen::MatrixXd cov =
+      variance * CovarianceOf(projector, noise.Whiten(run, slopes.columns), slopes.precision);
+  for (std::size_t k = 0; k < picks.size(); ++k) {
+    const Eigen::Index first = slopes.start[k];
+    const Eigen::Index end = k + 1 < picks.size() ? slopes.start[k + 1] : cov.cols();
+    picks[k].cov = cov.block(first, first, end - first, end - first);
+    const Remainder others(projector, noise.Whiten(run, Signatures(run, picks, k)));
+    Widen(ShapeSpread(families[static_cast<std::size_t>(picks[k].family)], picks[k], run, noise, projector, others,
+                      Project(projector, others, white), variance),
+          picks[k].columns.cols(), picks[k].cov);
+  }
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,55 @@
+#include "twin/diagnose/engine/shape_spread.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr Eigen::Index kMostColumns = 1024;  // a few hundredths of a second
+
+/// What a signature explains of projected data.
+double ExplainedBy(const Eigen::MatrixXd& S, const Projector& projector, const Remainder& others,
+                   const Projected& data) {
+  const Eigen::MatrixXd gram = S.transpose() * others.Apply(projector.Apply(S));
+  const Eigen::VectorXd products = S.transpose() * data.rows.col(0);
+  return products.dot(gram.completeOrthogonalDecomposition().solve(products));
+}
+
+/// Mean distance of a value to its neighbours on the grid: all that is known between them.
+double SpacingAt(const Shape& shape, double value) {
+  double below = shape.lower, above = shape.upper;
+  for (const double v : shape.value) {
+    if (v < value) below = std::max(below, v);
+    if (v > value) above = std::min(above, v);
+  }
+  return 0.5 * (above - below);
+}
+
+}  // namespace
+
+Eigen::VectorXd ShapeSpread(const Family& family, const Pick& pick, const LinearRun& run, const NoiseModel& noise,
+                            const Projector& projector, const Remainder& others, const Projected& data,
+                            double variance) {
+  Eigen::VectorXd spread2 = Eigen::VectorXd::Zero(pick.shape.size());
+  if (pick.shape.size() == 0 || family.grid * pick.columns.cols() > kMostColumns) return spread2;
+  const auto explained = [&](const Eigen::MatrixXd& columns) {
+    return ExplainedBy(noise.Whiten(run, columns), projector, others, data);
+  };
+  const double best = explained(pick.columns);
+  double sum = 1.0;  // the fitted shape itself
+  for (int g = 0; g < family.grid; ++g) {
+    const double weight = std::exp(std::min(0.0, 0.5 * (explained(family.ColumnsAt(g)) - best) / variance));
+    spread2 += weight * (family.ShapeAt(g) - pick.shape).cwiseAbs2();
+    sum += weight;
+  }
+  spread2 /= sum;
+  if (!family.at) {
+    for (Eigen::Index k = 0; k < spread2.size(); ++k)
+      spread2[k] += std::pow(SpacingAt(family.shapes[static_cast<std::size_t>(k)], pick.shape[k]), 2) / 12.0;
+  }
+  return spread2.cwiseSqrt();
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "twin/diagnose/engine/search.h"
+
+namespace twinbench::diagnose {
+
+/// Standard deviation of each shape parameter by what the points of the grid explain: exp(explained / 2 variance)
+/// weighs them against the fitted shape. Holds where slopes fail: a level between two readings, an onset, a second
+/// maximum. Zero if the grid is too coarse to have a second likely point. Too long grids are not walked: zero.
+///
+/// @param others    The other picks.
+/// @param data      The residual, projected, with `others` taken out.
+/// @param variance  Of the whitened noise.
+Eigen::VectorXd ShapeSpread(const Family& family, const Pick& pick, const LinearRun& run, const NoiseModel& noise,
+                            const Projector& projector, const Remainder& others, const Projected& data,
+                            double variance);
+
+}  // namespace twinbench::diagnose

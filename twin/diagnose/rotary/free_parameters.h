@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "twin/diagnose/rotary/optical_bench.h"
+#include "twin/separate/design.h"
+
+/// The free unknowns of the fit, in this order: table errors, mounting constants and seats as separate::Design
+/// orders them (angles in rad, lengths in its length unit); the mounting constants of the calibration phase (ez,
+/// ex, ey, dy); the calibrated parameters of the bench (SI).
+namespace twinbench::diagnose::rotary {
+
+/// Four gains, two rolls, two distances, wavelength, incidence.
+inline constexpr int kCalibrated = 10;
+
+int CalibrationMountColumn(const separate::Design& design);  // first of four
+int CalibratedColumn(const separate::Design& design);        // first of kCalibrated
+int UnknownsOf(const separate::Design& design);
+
+/// One calibrated parameter of the bench, and how far it may be off.
+double& CalibratedParameter(OpticalBench& bench, int k);
+double CalibratedSd(int k);
+
+/// 1 / sd^2 of every unknown.
+Eigen::VectorXd PriorPrecision(const separate::Design& design);
+
+}  // namespace twinbench::diagnose::rotary

@@ -1,0 +1,54 @@
+#include "twin/diagnose/rotary/stance.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "twin/separate/separate.h"
+
+namespace twinbench::diagnose::rotary {
+namespace {
+
+/// Only what FindLayout looks at.
+measure::Motion LabelOf(const Reading& r) {
+  measure::Motion m;
+  m.reading = r.reading;
+  m.setup = r.setup;
+  m.phase = r.phase;
+  m.target_rad = r.target_rad;
+  m.reference_rad = r.reference_rad;
+  m.status = ReadingStatus::kOk;
+  return m;
+}
+
+separate::LayoutOptions OptionsOf(const Scenario& scenario, bool published) {
+  separate::LayoutOptions layout = separate::OptionsFrom(scenario).layout;
+  if (published) layout.clamping = separate::Clamping::kReseat;
+  const auto reclamped = [](const EffectSettings& e) { return e.name == "reclamp_frame"; };
+  if (std::ranges::any_of(scenario.effects, reclamped)) layout.clamping = separate::Clamping::kReclamp;
+  return layout;
+}
+
+Stance StanceOf(const Reading& r) {
+  Stance stance;
+  if (r.phase != Phase::kCalibration) return stance;
+  stance.swept_yaw_rad = r.autocollimator_yaw_rad;
+  stance.swept_tilt_rad = r.autocollimator_tilt_rad;
+  return stance;
+}
+
+}  // namespace
+
+Stances FindStances(const std::vector<Reading>& used, const Scenario& scenario, const OpticalBench& bench) {
+  std::vector<measure::Motion> labels;
+  std::ranges::transform(used, std::back_inserter(labels), LabelOf);
+  separate::Layout layout = separate::FindLayout(labels, bench.nominal, OptionsOf(scenario, bench.published));
+  Stances stances{std::move(layout.design), {}};
+  std::ranges::transform(used, std::back_inserter(stances.of_reading), StanceOf);
+  for (const separate::Sample& s : layout.samples) {
+    stances.of_reading[s.motion].setup = s.setup;
+    stances.of_reading[s.motion].target = s.target;
+  }
+  return stances;
+}
+
+}  // namespace twinbench::diagnose::rotary

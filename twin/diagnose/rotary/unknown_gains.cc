@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "twin/diagnose/rotary/signals.h"
+#include "twin/diagnose/rotary/unknown_collector.h"
+
+namespace twinbench::diagnose::rotary {
+namespace {
+
+/// Name and time course of something that a gain may follow.
+using Followed = std::pair<std::string, Eigen::VectorXd>;
+
+std::vector<Followed> WhatIsFollowed(const Schedule& s, double reference_degC) {
+  std::vector<Followed> followed = {{"time", Unit((s.time_s.array() - s.time_s.mean()).matrix())},
+                                    {"direction", DirectionSignal(s)}};
+  if (!s.temperature_degC.array().isFinite().any()) return followed;
+  const Eigen::VectorXd T = LaggedTemperature(s, reference_degC, 0.0);
+  followed.emplace_back("temperature", Unit((T.array() - T.mean()).matrix()));
+  followed.emplace_back("temperature", Unit(T));  // nothing at the reference temperature
+  return followed;
+}
+
+/// The channels with a gain of their own, with a common one on each PSD, or with four at once.
+std::vector<std::pair<std::string, Eigen::MatrixXd>> MapsOfGains(const Eigen::Matrix4d& shown_by_motion) {
+  std::vector<std::pair<std::string, Eigen::MatrixXd>> maps;
+  for (int c = 0; c < kChannels; ++c) {
+    maps.emplace_back(kChannelNames[static_cast<std::size_t>(c)], Eigen::Vector4d::Unit(c));
+  }
+  for (const char* psd : {"psd_a", "psd_b"}) maps.emplace_back(psd, WeightOf(psd, shown_by_motion));
+  maps.emplace_back("all", Eigen::MatrixXd::Identity(kChannels, kChannels));
+  return maps;
+}
+
+/// What each channel shows, times the signal.
+std::shared_ptr<const Base> ScaledBy(const Eigen::VectorXd& signal, const Eigen::VectorXd& shown_m) {
+  const auto base = std::make_shared<Base>();
+  base->columns = [signal, shown_m](int) {
+    const Eigen::MatrixXd rows = OnEachChannel(signal, kChannels);
+    return Eigen::MatrixXd(rows.array().colwise() * shown_m.array());
+  };
+  return base;
+}
+
+void AddGain(Collector& collect, const std::string& where, const std::string& what,
+             const std::shared_ptr<const Base>& base, const Eigen::MatrixXd& map) {
+  Family& family = collect.New(where, "gain follows " + what, {"scale", "1", 1.0, kPlausibleShare}, map.cols());
+  family.group = "gain changes";  // whatever it follows
+  family.base = base;
+  family.map = map;
+  family.describe = [where, what](int, const Eigen::VectorXd& x) {
+    return fmt::format("gain of {} follows {}, locked to {} and spot, {:.2g} rms", where, what, what, x.norm());
+  };
+}
+
+}  // namespace
+
+void AddGains(Collector& collect) {
+  const SignalContext& context = collect.context();
+  const auto maps = MapsOfGains(context.shown_by_motion);
+  for (const auto& [what, signal] : WhatIsFollowed(collect.schedule(), context.reference_degC)) {
+    const auto base = ScaledBy(signal, context.shown_m);
+    for (const auto& [where, map] : maps) AddGain(collect, where, what, base, map);
+  }
+}
+
+}  // namespace twinbench::diagnose::rotary
