@@ -50,7 +50,7 @@ struct Outcome {
   int members = 0;           // causes in the answer
   double probability = 0.0;  // of the most probable cause or the unknown
   double alarm_p = kNaN, rho = kNaN;
-  double gain = kNaN;                               // share of the removable variance of held-out readings
+  double gain = kNaN;  // share of the removable variance of held-out readings
   std::array<double, 2> gain_interval95 = {kNaN, kNaN};
   bool confident_wrong = false;  // a name that is not there, stated at 0.9 or more
   bool confident_alike = false;  // ... but these readings cannot tell it from the truth

@@ -23,8 +23,8 @@ struct Share {
 /// the stated probabilities, parameters, gain, times, and a list of the answers that are not right.
 std::string ScoreTable(const std::vector<Outcome>& outcomes);
 
-/// One row a case: set, case, truth, rho, grade, answer, probability, alarm_p, parameters with their truth, gain with
-/// its interval, seconds.
+/// One row a case: set, case, truth, rho, grade, answer, probability, alarm_p, parameters with their truth, gain
+/// with its interval, seconds.
 std::string CasesCsv(const std::vector<Outcome>& outcomes);
 
 }  // namespace twinbench::hidden

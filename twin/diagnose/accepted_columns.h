@@ -20,7 +20,8 @@ Columns ColumnsOf(const std::vector<Accepted>& accepted, int rows);
 Eigen::VectorXd FitAmplitudes(const Projector& projector, const Eigen::MatrixXd& S, const Eigen::MatrixXd& y,
                               const Eigen::VectorXd& prior_precision);
 
-/// Posterior variances of these amplitudes for unit noise, over their prior variances: 1 where the data say nothing.
+/// Posterior variances of these amplitudes for unit noise, over their prior variances: 1 where the data say
+/// nothing.
 Eigen::VectorXd RelativeVariances(const Projector& projector, const Eigen::MatrixXd& S,
                                   const Eigen::VectorXd& prior_precision);
 

@@ -12,6 +12,7 @@
 #include "twin/diagnose/encoder/encoder_run.h"
 #include "twin/diagnose/encoder/families.h"
 #include "twin/diagnose/encoder/harmonic_table.h"
+#include "twin/diagnose/encoder/next_measurement.h"
 #include "twin/diagnose/engine/analysis.h"
 #include "twin/diagnose/gain.h"
 #include "twin/diagnose/missing.h"
@@ -256,7 +257,7 @@ DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenari
   how.most_causes = 8;  // an angle device may well have an error of many orders
   const Analysis analysis = Analyse(encoder.run, families, how);
   const BenchWords words{[](const Eigen::VectorXd&) { return std::string("nothing but the device's offset"); },
-                         [](const std::string&, const std::string&) { return std::string(); }};
+                         encoder::NextMeasurement};
   DiagnosisRun result = Finish(encoder.run, analysis, {}, words);
   result.diagnosis.left_out = encoder.left_out;
   result.diagnosis.harmonics = encoder::HarmonicTable(encoder, analysis.noise);

@@ -43,6 +43,17 @@ Matrix Mixed(const LinearRun& run, const NoiseModel& noise, const Eigen::VectorX
   return white + Matrix(trace.asDiagonal() * rows);
 }
 
+/// Variance of the prediction of every held-out row, in units of its noise; NaN for the others.
+Eigen::VectorXd VarianceOfHeld(const Projector& fit, const Eigen::VectorXd& held) {
+  std::vector<int> rows;
+  for (int k = 0; k < held.size(); ++k) {
+    if (held[k] != 0.0) rows.push_back(k);
+  }
+  Eigen::VectorXd variance = Eigen::VectorXd::Constant(held.size(), kNaN);
+  variance(rows) = (1.0 - fit.Redundancy(rows).array()) / (kTrace * kTrace);
+  return variance;
+}
+
 /// Fits the rows where `held` is 0 and predicts those where it is 1.
 FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Columns& columns,
                        const Eigen::VectorXd& held) {
@@ -56,9 +67,9 @@ FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Colu
   errors.after =
       run.residual - columns.S * amplitudes - run.nuisance.jacobian * fit.Solve(train_y - S * amplitudes);
   errors.amplitude = RelativeVariances(fit, S, columns.prior_precision);
-  errors.variance = (1.0 - fit.Redundancy().array()) / (kTrace * kTrace);
+  errors.variance = VarianceOfHeld(fit, held);
   for (int k = 0; k < run.Rows(); ++k) {
-    if (held[k] == 0.0 || !(errors.variance[k] < kDeterminedVariance)) errors.before[k] = errors.after[k] = kNaN;
+    if (!(errors.variance[k] < kDeterminedVariance)) errors.before[k] = errors.after[k] = kNaN;
   }
   return errors;
 }

@@ -18,8 +18,8 @@ namespace twinbench::diagnose {
 /// are left out. noise_floor is what a model that knows the causes exactly would leave: the rows' noise and the
 /// uncertainty of the unknowns.
 ///
-/// Where a fold leaves an amplitude less than 0.3 of its information, because the cause shows in one pass only (a step
-/// near the end, a direction that was driven once), no other pass can tell of it: the run is then predicted by
+/// Where a fold leaves an amplitude less than 0.3 of its information, because the cause shows in one pass only (a
+/// step near the end, a direction that was driven once), no other pass can tell of it: the run is then predicted by
 /// blocks of time instead (FoldsOfTime), if they leave more.
 ///
 /// How before, after and floor become fraction_removed and its interval: held_out.h.

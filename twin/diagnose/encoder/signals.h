@@ -41,8 +41,8 @@ Eigen::VectorXd Sense(const SignalContext& context, bool holds_at_rest);
 /// the first stop behind a reversal, if nothing moved, still has the old one.
 std::vector<Eigen::VectorXd> Senses(const SignalContext& context);
 
-/// Travel since the last reversal, in rad; the way to the first reading is taken as none. Passes of one direction that
-/// follow each other without a way back between them are one travel.
+/// Travel since the last reversal, in rad; the way to the first reading is taken as none. Passes of one direction
+/// that follow each other without a way back between them are one travel.
 Eigen::VectorXd TravelSinceReversal_rad(const SignalContext& context);
 
 /// State of a hysteresis that goes over to the sense of the motion with the way travelled,

@@ -82,7 +82,8 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
                           ? *options.null
                           : CalibrateCached(*analysis.scanner, *analysis.projector, log_priors, options.null_runs,
                                             options.cache_folder, DesignKey(run, families, options.null_runs));
-      analysis.threshold = analysis.null.Threshold(kAlarmProbability);
+      // Nothing that is less likely than no cause at all is claimed, however rare it may be in noise.
+      analysis.threshold = std::max(0.0, analysis.null.Threshold(kAlarmProbability));
       const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
       analysis.power = Project(*analysis.projector, {}, white).power[0];
     }

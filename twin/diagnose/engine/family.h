@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "twin/diagnose/diagnosis.h"
+#include "twin/diagnose/engine/base.h"
 
 /// Candidates of the search: families of signatures, one a cause and place, or a generic shape for the unknown.
 namespace twinbench::diagnose {
@@ -35,12 +36,6 @@ struct Shape {
   std::vector<double> value;  // SI
 };
 
-/// Signatures that several families are combinations of: the same series in time on each of the channels, say.
-struct Base {
-  int grid = 1;
-  std::function<Eigen::MatrixXd(int grid_point)> columns;  // rows x base columns
-};
-
 /// The general cap of stated probabilities, and that of causes with a double outside the catalogue.
 inline constexpr double kMostProbable = 0.97;
 inline constexpr double kMostProbableDoubled = 0.85;
@@ -51,8 +46,8 @@ struct Family {
   std::string group;          // families of one group share one prior mass: the effect, or the sort of unknown
   double prior_weight = 1.0;  // within the group
   /// No stated probability of this cause exceeds it. Less than the general cap where something that no catalogue of
-  /// ours lists looks exactly the same: a wrong scale of a whole PSD like its distance, a reference off centre like a
-  /// device off centre.
+  /// ours lists looks exactly the same: a wrong scale of a whole PSD like its distance, a reference off centre like
+  /// a device off centre.
   double most_probable = kMostProbable;
   std::vector<Amplitude> amplitudes;
   std::vector<Shape> shapes;  // all of equal length; empty: one grid point
@@ -79,7 +74,7 @@ struct Family {
   std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;
 
   Eigen::MatrixXd ColumnsAt(int grid_point) const {
-    return base ? base->columns(grid_point) * map : columns(grid_point);
+    return base ? base->Columns(grid_point) * map : columns(grid_point);
   }
   Eigen::VectorXd ShapeAt(int grid_point) const;
 };

@@ -48,6 +48,18 @@ Eigen::MatrixXd NoiseModel::Whiten(const LinearRun& run, const Eigen::MatrixXd& 
   return white;
 }
 
+Eigen::MatrixXd NoiseModel::WhitenTransposed(const LinearRun& run, const Eigen::MatrixXd& white) const {
+  if (rho == 0.0) return sigma.cwiseInverse().asDiagonal() * white;
+  const std::vector<Filter> filters = FiltersOf(run, *this);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(white.rows(), white.cols());
+  for (int k = 0; k < run.Rows(); ++k) {
+    const Filter& f = filters[static_cast<std::size_t>(k)];
+    rows.row(k) += f.own * white.row(k);
+    if (f.before != 0.0) rows.row(k - run.Channels()) += f.before * white.row(k);
+  }
+  return rows;
+}
+
 Eigen::SparseMatrix<double, Eigen::RowMajor> NoiseModel::Whiten(
     const LinearRun& run, const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows) const {
   const std::vector<Filter> filters = FiltersOf(run, *this);

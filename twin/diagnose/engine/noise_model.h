@@ -15,6 +15,8 @@ struct NoiseModel {
   double rho = 0.0;       // correlation of neighbouring readings of a pass
 
   Eigen::MatrixXd Whiten(const LinearRun& run, const Eigen::MatrixXd& rows) const;
+  /// The transpose of that map.
+  Eigen::MatrixXd WhitenTransposed(const LinearRun& run, const Eigen::MatrixXd& white) const;
   Eigen::SparseMatrix<double, Eigen::RowMajor> Whiten(
       const LinearRun& run, const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows) const;
 };

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kBatch = 100;  // runs at a time, to bound the memory
-constexpr int kVersion = 3;  // of what the key does not see: raise it when the statistic changes
+constexpr int kVersion = 4;  // of what the key does not see: raise it when the statistic changes
 
 Eigen::MatrixXd WhiteRuns(Stream& stream, Eigen::Index rows, Eigen::Index runs) {
   Eigen::MatrixXd noise(rows, runs);

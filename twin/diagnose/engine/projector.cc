@@ -1,5 +1,7 @@
 #include "twin/diagnose/engine/projector.h"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "twin/core/errors.h"
@@ -20,7 +22,8 @@ Eigen::MatrixXd Gram(const Sparse& jacobian) {
   return normal;
 }
 
-/// D. A prior wider than a million times what the data resolve is no knowledge, but it would cost the factor its sign.
+/// D. A prior wider than a million times what the data resolve is no knowledge, but it would cost the factor its
+/// sign.
 Eigen::VectorXd PrecisionOf(const Eigen::MatrixXd& gram, const Eigen::VectorXd& prior_precision) {
   constexpr double kLeastShare = 1e-12;
   return prior_precision.cwiseMax(kLeastShare * gram.diagonal());
@@ -119,9 +122,46 @@ Eigen::MatrixXd Projector::Apply(const Eigen::MatrixXd& Y) const {
   return Y - jacobian_ * Solve(Y);
 }
 
+/// Splits L^-1 of one row of the Jacobian: `core` (zero before) gets the right-hand side of the core unknowns.
+/// @return the squared length of the local part; a row touches one block at most.
+double Projector::EliminateLocal(int row, Eigen::Ref<Eigen::VectorXd> core) const {
+  const Eigen::Index local = coupling_.cols();
+  Eigen::VectorXd own = Eigen::VectorXd::Zero(size_);
+  int block = -1;
+  for (Sparse::InnerIterator it(jacobian_, row); it; ++it) {
+    if (it.col() >= local) {
+      core[it.col() - local] = it.value();
+    } else {
+      block = static_cast<int>(it.col()) / size_;
+      own[it.col() % size_] = it.value();
+    }
+  }
+  if (block < 0) return 0.0;
+  local_[static_cast<std::size_t>(block)].triangularView<Eigen::Lower>().solveInPlace(own);
+  core.noalias() -= coupling_.middleCols(block * size_, size_) * own;
+  return own.squaredNorm();
+}
+
+Eigen::VectorXd Projector::Redundancy(const std::vector<int>& rows) const {
+  constexpr Eigen::Index kChunk = 256;  // the core's solve is a matrix product, in the cache
+  const auto count = std::ssize(rows);
+  Eigen::VectorXd leverage(count);
+  for (Eigen::Index first = 0; first < count; first += kChunk) {
+    const Eigen::Index now = std::min<Eigen::Index>(kChunk, count - first);
+    Eigen::MatrixXd core = Eigen::MatrixXd::Zero(coupling_.rows(), now);
+    for (Eigen::Index k = 0; k < now; ++k) {
+      leverage[first + k] = EliminateLocal(rows[static_cast<std::size_t>(first + k)], core.col(k));
+    }
+    core_.triangularView<Eigen::Lower>().solveInPlace(core);
+    leverage.segment(first, now) += core.colwise().squaredNorm().transpose();
+  }
+  return 1.0 - leverage.array();
+}
+
 Eigen::VectorXd Projector::Redundancy() const {
-  const Eigen::MatrixXd half = Forward(Eigen::MatrixXd(jacobian_.transpose()));
-  return Eigen::VectorXd::Ones(jacobian_.rows()) - half.colwise().squaredNorm().transpose();
+  std::vector<int> rows(static_cast<std::size_t>(jacobian_.rows()));
+  std::iota(rows.begin(), rows.end(), 0);
+  return Redundancy(rows);
 }
 
 }  // namespace twinbench::diagnose

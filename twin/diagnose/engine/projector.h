@@ -12,8 +12,8 @@ namespace twinbench::diagnose {
 /// What is left of whitened data once the free unknowns have taken their share:
 ///     W = I - J (J'J + D)^-1 J',   D the prior precisions.
 ///
-/// W is never formed. Local blocks are eliminated by Schur complement; the core is dense. Blocks that the whitening of
-/// correlated noise has joined are part of the core.
+/// W is never formed. Local blocks are eliminated by Schur complement; the core is dense. Blocks that the whitening
+/// of correlated noise has joined are part of the core.
 class Projector {
  public:
   /// @param jacobian  Whitened, rows x unknowns.
@@ -32,12 +32,15 @@ class Projector {
   /// Rows minus the unknowns that the data determine: the trace of W.
   double DegreesOfFreedom() const { return degrees_of_freedom_; }
 
-  /// Diagonal of W: 1 - leverage, by row. Costs as much as projecting a quarter of all rows: keep it.
+  /// Diagonal of W: 1 - leverage, by row.
   Eigen::VectorXd Redundancy() const;
+  /// The same of some rows only, in their order.
+  Eigen::VectorXd Redundancy(const std::vector<int>& rows) const;
 
   const Eigen::SparseMatrix<double, Eigen::RowMajor>& Jacobian() const { return jacobian_; }
 
  private:
+  double EliminateLocal(int row, Eigen::Ref<Eigen::VectorXd> core) const;
   Eigen::MatrixXd Forward(Eigen::MatrixXd b) const;   // L^-1 b
   Eigen::MatrixXd Backward(Eigen::MatrixXd h) const;  // L^-T h
 

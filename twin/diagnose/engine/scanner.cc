@@ -9,8 +9,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr int kChunkColumns = 128;                     // stays in the cache
-constexpr Eigen::Index kMostKeptValues = 40'000'000;  // of whitened signatures: 320 MB
+constexpr Eigen::Index kMostKeptValues = 40'000'000;  // of signatures: 320 MB
 constexpr std::array<double, 3> kPriorScales = {0.25, 1.0, 4.0};
 constexpr double kPseudoDegrees = 20.0;   // trust in a stated noise figure: 20 works, 200 is too trusting
 constexpr double kPseudoEstimated = 2.0;  // in one that was estimated from the same data
@@ -124,81 +123,54 @@ Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector&
                  const std::vector<Family>& families)
     : run_(run), noise_(noise), projector_(projector), families_(families) {
   std::vector<const Base*> bases;
+  std::vector<std::vector<int>> sharing;
   for (int k = 0; k < std::ssize(families_); ++k) {
-    const Family& family = families_[static_cast<std::size_t>(k)];
-    const auto known = std::find(bases.begin(), bases.end(), family.base.get());
-    if (family.base && known != bases.end()) {
-      bundles_[static_cast<std::size_t>(known - bases.begin())].members.push_back(k);
+    const Base* const base = families_[static_cast<std::size_t>(k)].base.get();
+    const auto known = base ? std::find(bases.begin(), bases.end(), base) : bases.end();
+    if (known != bases.end()) {
+      sharing[static_cast<std::size_t>(known - bases.begin())].push_back(k);
       continue;
     }
-    bases.push_back(family.base.get());
-    bundles_.push_back({{k}, family.base ? family.base->grid : family.grid, 0, 1, {}, {}, {}});
+    bases.push_back(base);
+    sharing.push_back({k});
   }
-  for (Bundle& bundle : bundles_) Prepare(bundle);
-}
-
-Eigen::MatrixXd Scanner::Columns(const Bundle& bundle, int chunk) const {
-  const Family& family = families_[static_cast<std::size_t>(bundle.members.front())];
-  const auto one = [&family](int g) { return family.base ? family.base->columns(g) : family.columns(g); };
-  const int first = chunk * bundle.step, last = std::min(first + bundle.step, bundle.grid);
-  Eigen::MatrixXd columns(run_.Rows(), bundle.columns * (last - first));
-  for (int g = first; g < last; ++g) columns.middleCols(bundle.columns * (g - first), bundle.columns) = one(g);
-  return noise_.Whiten(run_, columns);
-}
-
-void Scanner::Prepare(Bundle& bundle) {
-  const Family& family = families_[static_cast<std::size_t>(bundle.members.front())];
-  bundle.columns = static_cast<int>(family.base ? family.map.rows() : std::ssize(family.amplitudes));
-  bundle.step = std::max(1, kChunkColumns / std::max(1, bundle.columns));
-  for (int chunk = 0; chunk * bundle.step < bundle.grid; ++chunk) {
-    Eigen::MatrixXd S = Columns(bundle, chunk);
-    const Eigen::MatrixXd H = projector_.Absorbed(S);
-    for (Eigen::Index at = 0; at < S.cols(); at += bundle.columns) {
-      const auto s = S.middleCols(at, bundle.columns);
-      const auto h = H.middleCols(at, bundle.columns);
-      bundle.raw.push_back(s.transpose() * s);
-      bundle.gram.push_back(bundle.raw.back() - h.transpose() * h);
-    }
-    if (std::ssize(bundle.kept) < chunk || kept_values_ + S.size() > kMostKeptValues) continue;
-    kept_values_ += S.size();
-    bundle.kept.push_back(std::move(S));
+  Eigen::Index kept_left = kMostKeptValues;
+  for (std::vector<int>& members : sharing) {
+    bundles_.emplace_back(run, noise, projector, families, std::move(members), kept_left);
   }
 }
 
-void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Remainder& remainder,
-                         Evidence& out) const {
+void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows,
+                         const Remainder& remainder, const Unwhitened& removed_rows, Evidence& out) const {
   const Eigen::Index runs = data.rows.cols();
   const double nu = PseudoDegrees(run_);
   const double half = 0.5 * (nu + projector_.DegreesOfFreedom() - remainder.Rank());
   const Eigen::ArrayXd power = nu + data.power.array();
-  std::vector<LogMean> mean(bundle.members.size());
-  std::vector<Eigen::ArrayXd> top(bundle.members.size(), Eigen::ArrayXd::Constant(runs, -1.0));
-  Eigen::MatrixXd products, removed, made;  // of the present chunk
-  for (int g = 0; g < bundle.grid; ++g) {
-    if (g % bundle.step == 0) {
-      const auto chunk = static_cast<std::size_t>(g / bundle.step);
-      const bool kept = chunk < bundle.kept.size();
-      if (!kept) made = Columns(bundle, static_cast<int>(chunk));
-      const Eigen::MatrixXd& S = kept ? bundle.kept[chunk] : made;
-      products.noalias() = S.transpose() * data.rows;
-      if (remainder.Rank() > 0) removed.noalias() = S.transpose() * remainder.Basis();
+  const std::vector<int>& members = bundle.Members();
+  std::vector<LogMean> mean(members.size());
+  std::vector<Eigen::ArrayXd> top(members.size(), Eigen::ArrayXd::Constant(runs, -1.0));
+  Eigen::MatrixXd products, removed;  // of the present chunk
+  for (int g = 0; g < bundle.Grid(); ++g) {
+    if (g % bundle.Step() == 0) {
+      products = bundle.Products(g / bundle.Step(), rows);
+      if (remainder.Rank() > 0) removed = bundle.Products(g / bundle.Step(), removed_rows);
     }
-    const Eigen::Index at = (g % bundle.step) * bundle.columns;
-    Eigen::MatrixXd gram = bundle.gram[static_cast<std::size_t>(g)];
+    const Eigen::Index at = (g % bundle.Step()) * bundle.Columns();
+    Eigen::MatrixXd gram = bundle.Gram(g);
     if (remainder.Rank() > 0) {
-      const auto r = removed.middleRows(at, bundle.columns);
+      const auto r = removed.middleRows(at, bundle.Columns());
       gram.noalias() -= r * r.transpose();
     }
-    for (std::size_t m = 0; m < bundle.members.size(); ++m) {
-      const Family& family = families_[static_cast<std::size_t>(bundle.members[m])];
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      const Family& family = families_[static_cast<std::size_t>(members[m])];
       const Eigen::VectorXd sd = PriorSds(family);
       Eigen::MatrixXd scaled = sd.asDiagonal();
       if (family.base) scaled = family.map * sd.asDiagonal();
-      const Eigen::MatrixXd product = scaled.transpose() * products.middleRows(at, bundle.columns);
-      const double raw = (scaled.transpose() * bundle.raw[static_cast<std::size_t>(g)] * scaled).trace();
+      const Eigen::MatrixXd product = scaled.transpose() * products.middleRows(at, bundle.Columns());
+      const double raw = (scaled.transpose() * bundle.Raw(g) * scaled).trace();
       const Spectrum s = SpectrumOf(scaled.transpose() * gram * scaled, product, raw);
       const Eigen::ArrayXd explained = s.c2.colwise().sum().transpose();
-      const auto row = static_cast<Eigen::Index>(bundle.members[m]);
+      const auto row = static_cast<Eigen::Index>(members[m]);
       for (Eigen::Index k = 0; k < runs; ++k) {
         if (explained[k] <= top[m][k]) continue;
         top[m][k] = explained[k];
@@ -214,17 +186,18 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Rema
       }
     }
   }
-  for (std::size_t m = 0; m < bundle.members.size(); ++m) {
-    out.log_bayes.row(bundle.members[m]) = mean[m].Value().transpose();
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    out.log_bayes.row(members[m]) = mean[m].Value().transpose();
   }
 }
 
 double Scanner::Information(int family) const {
   double most = 0.0;
   for (const Bundle& bundle : bundles_) {
-    if (std::ranges::find(bundle.members, family) == bundle.members.end()) continue;
+    if (std::ranges::find(bundle.Members(), family) == bundle.Members().end()) continue;
     const Family& f = families_[static_cast<std::size_t>(family)];
-    for (const Eigen::MatrixXd& gram : bundle.gram) {
+    for (int g = 0; g < bundle.Grid(); ++g) {
+      const Eigen::MatrixXd& gram = bundle.Gram(g);
       most = std::max(most, f.base ? f.map.col(0).dot(gram * f.map.col(0)) : gram(0, 0));
     }
   }
@@ -236,7 +209,10 @@ Evidence Scanner::Scan(const Projected& data, const Remainder& remainder) const 
   out.log_bayes.resize(std::ssize(families_), data.rows.cols());
   out.explained.setZero(std::ssize(families_), data.rows.cols());
   out.grid_point.setZero(std::ssize(families_), data.rows.cols());
-  for (const Bundle& bundle : bundles_) ScanBundle(bundle, data, remainder, out);
+  const Unwhitened rows(run_, noise_, data.rows);
+  const bool any = remainder.Rank() > 0;
+  const Unwhitened removed(run_, noise_, any ? remainder.Basis() : Eigen::MatrixXd(data.rows.rows(), 0));
+  for (const Bundle& bundle : bundles_) ScanBundle(bundle, data, rows, remainder, removed, out);
   return out;
 }
 

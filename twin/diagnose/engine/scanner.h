@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "twin/diagnose/engine/bundle.h"
 #include "twin/diagnose/engine/family.h"
 #include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/engine/noise_model.h"
@@ -74,26 +75,14 @@ class Scanner {
   double Information(int family) const;
 
  private:
-  /// Families that share their columns, with what depends on the design only.
-  struct Bundle {
-    std::vector<int> members;
-    int grid = 1;
-    int columns = 0;                    // a grid point
-    int step = 1;                       // grid points a chunk
-    std::vector<Eigen::MatrixXd> gram;  // S'WS, one a grid point
-    std::vector<Eigen::MatrixXd> raw;   // S'S
-    std::vector<Eigen::MatrixXd> kept;  // S of the first chunks, as far as the memory is granted
-  };
-  Eigen::MatrixXd Columns(const Bundle& bundle, int chunk) const;  // whitened
-  void Prepare(Bundle& bundle);
-  void ScanBundle(const Bundle& bundle, const Projected& data, const Remainder& remainder, Evidence& sums) const;
+  void ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows, const Remainder& remainder,
+                  const Unwhitened& removed, Evidence& sums) const;
 
   const LinearRun& run_;
   const NoiseModel& noise_;
   const Projector& projector_;
   const std::vector<Family>& families_;
   std::vector<Bundle> bundles_;
-  Eigen::Index kept_values_ = 0;
 };
 
 }  // namespace twinbench::diagnose

@@ -6,7 +6,8 @@ namespace twinbench::diagnose {
 
 /// Standard deviation of each shape parameter by what the points of the grid explain: exp(explained / 2 variance)
 /// weighs them against the fitted shape. Holds where slopes fail: a level between two readings, an onset, a second
-/// maximum. Zero if the grid is too coarse to have a second likely point. Too long grids are not walked: zero.
+/// maximum. Zero if the grid is too coarse to have a second likely point. Of a long grid only the part about the
+/// fitted shape is walked.
 ///
 /// @param others    The other picks.
 /// @param data      The residual, projected, with `others` taken out.

@@ -65,14 +65,14 @@ SharedSeries MakeSharedSeries(const RotaryRun& rotary) {
   }
   auto tone = std::make_shared<Base>();
   tone->grid = static_cast<int>(std::ssize(series.frequency_Hz));
-  tone->columns = [&s, f = series.frequency_Hz](int g) {
-    return OnEachChannel(ToneSignal(s, f[static_cast<std::size_t>(g)]), kChannels);
-  };
+  tone->channels = kChannels;
+  tone->series = [&s, f = series.frequency_Hz](int g) { return ToneSignal(s, f[static_cast<std::size_t>(g)]); };
   series.tone = tone;
   auto step = std::make_shared<Base>();
   step->grid = static_cast<int>(std::ssize(series.onset));
-  step->columns = [&s, onset = series.onset](int g) {
-    return OnEachChannel(StepSignal(s, onset[static_cast<std::size_t>(g)]), kChannels);
+  step->channels = kChannels;
+  step->series = [&s, onset = series.onset](int g) {
+    return Eigen::MatrixXd(StepSignal(s, onset[static_cast<std::size_t>(g)]));
   };
   series.step = step;
   return series;

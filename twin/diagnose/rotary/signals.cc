@@ -123,13 +123,4 @@ Eigen::MatrixXd OnChannels(const Eigen::MatrixXd& signals, const Eigen::VectorXd
   return rows;
 }
 
-Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& signals, int channels) {
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(signals.rows() * channels, signals.cols() * channels);
-  for (Eigen::Index i = 0; i < signals.rows(); ++i) {
-    for (int c = 0; c < channels; ++c)
-      rows.row(i * channels + c).segment(c * signals.cols(), signals.cols()) = signals.row(i);
-  }
-  return rows;
-}
-
 }  // namespace twinbench::diagnose::rotary

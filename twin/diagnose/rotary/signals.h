@@ -42,7 +42,4 @@ Eigen::VectorXd InCircle(const Schedule& s);
 /// Rows of a pattern: weight of each channel times the signals (readings x k -> rows x k).
 Eigen::MatrixXd OnChannels(const Eigen::MatrixXd& signals, const Eigen::VectorXd& weight);
 
-/// Each signal on each channel alone: rows x (channels k), the k signals of a channel side by side.
-Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& signals, int channels);
-
 }  // namespace twinbench::diagnose::rotary

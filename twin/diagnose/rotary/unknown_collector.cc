@@ -58,7 +58,8 @@ std::shared_ptr<const Base> Collector::AddOnPlaces(const std::string& sort, int 
                                                    const Words& words) {
   const auto base = std::make_shared<Base>();
   base->grid = grid;
-  base->columns = [signals](int g) { return OnEachChannel(signals(g), kChannels); };
+  base->channels = kChannels;
+  base->series = signals;
   const auto k = static_cast<int>(signals(0).cols());
   for (const Place& place : places_) AddAt(place.name, sort, base, PatternMap(place.weight, k), words);
   return base;

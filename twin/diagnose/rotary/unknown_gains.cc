@@ -33,21 +33,16 @@ std::vector<std::pair<std::string, Eigen::MatrixXd>> MapsOfGains(const Eigen::Ma
 }
 
 /// What each channel shows, times the signal.
-std::shared_ptr<const Base> ScaledBy(const Eigen::VectorXd& signal, const Eigen::VectorXd& shown_m) {
-  const auto base = std::make_shared<Base>();
-  base->columns = [signal, shown_m](int) {
-    const Eigen::MatrixXd rows = OnEachChannel(signal, kChannels);
-    return Eigen::MatrixXd(rows.array().colwise() * shown_m.array());
-  };
-  return base;
+Eigen::MatrixXd ScaledBy(const Eigen::VectorXd& signal, const Eigen::VectorXd& shown_m) {
+  const Eigen::MatrixXd rows = OnEachChannel(signal, kChannels);
+  return rows.array().colwise() * shown_m.array();
 }
 
 void AddGain(Collector& collect, const std::string& where, const std::string& what,
-             const std::shared_ptr<const Base>& base, const Eigen::MatrixXd& map) {
-  Family& family = collect.New(where, "gain follows " + what, {"scale", "1", 1.0, kPlausibleShare}, map.cols());
+             const Eigen::MatrixXd& columns) {
+  Family& family = collect.New(where, "gain follows " + what, {"scale", "1", 1.0, kPlausibleShare}, columns.cols());
   family.group = "gain changes";  // whatever it follows
-  family.base = base;
-  family.map = map;
+  family.columns = [columns](int) { return columns; };
   family.describe = [where, what](int, const Eigen::VectorXd& x) {
     return fmt::format("gain of {} follows {}, locked to {} and spot, {:.2g} rms", where, what, what, x.norm());
   };
@@ -59,8 +54,8 @@ void AddGains(Collector& collect) {
   const SignalContext& context = collect.context();
   const auto maps = MapsOfGains(context.shown_by_motion);
   for (const auto& [what, signal] : WhatIsFollowed(collect.schedule(), context.reference_degC)) {
-    const auto base = ScaledBy(signal, context.shown_m);
-    for (const auto& [where, map] : maps) AddGain(collect, where, what, base, map);
+    const Eigen::MatrixXd scaled = ScaledBy(signal, context.shown_m);
+    for (const auto& [where, map] : maps) AddGain(collect, where, what, scaled * map);
   }
 }
 

@@ -71,28 +71,43 @@ Eigen::MatrixXd SlopesAtZero(const Sample& s, const Sorting& sorting) {
   return values;
 }
 
-/// The components of one channel in words, and as deviations in SI.
+/// Groups of the first sortings that together are few enough for a dense likelihood.
+std::vector<std::vector<int>> FewGroups(const std::vector<Sorting>& sortings) {
+  constexpr int kMostGroups = 600;
+  std::vector<std::vector<int>> few;
+  int groups = 0;
+  for (const Sorting& sorting : sortings) {
+    groups += GroupsIn(sorting.group);
+    if (groups > kMostGroups) break;
+    few.push_back(sorting.group);
+  }
+  return few;
+}
+
+/// The components of one channel in words, and as deviations in SI: NaN for sortings of too many groups.
 class Components {
  public:
   Components(const Sample& s, const std::vector<Sorting>& sortings, int channel)
       : run_(s.run), channel_(channel), sortings_(sortings) {
-    std::vector<std::vector<int>> groups;
-    for (const Sorting& sorting : sortings) groups.push_back(sorting.group);
-    fit_ = FitVarianceComponents(s, groups, channel);
+    const std::vector<std::vector<int>> few = FewGroups(sortings);
+    if (!few.empty()) fit_ = FitVarianceComponents(s, few, channel);
   }
-  double Deviation_SI(std::size_t sorting) const { return InSI(fit_.variance[static_cast<Eigen::Index>(sorting)]); }
+  double Deviation_SI(std::size_t sorting) const {
+    const auto k = static_cast<Eigen::Index>(sorting);
+    return k < fit_.variance.size() ? InSI(fit_.variance[k]) : kNaN;
+  }
 
   std::vector<std::string> Lines() const {
     const std::string& on = run_.channels[static_cast<std::size_t>(channel_)];
     std::vector<std::string> lines;
-    for (std::size_t k = 0; k < sortings_.size(); ++k) {
-      const double variance = fit_.variance[static_cast<Eigen::Index>(k)],
-                   u = fit_.u_variance[static_cast<Eigen::Index>(k)];
-      lines.push_back(std::isnan(u)
-                          ? fmt::format("{}, by {}: part of the free unknowns", on, sortings_[k].name)
-                          : fmt::format("{}, by {}: {} rms, at most {}", on, sortings_[k].name,
-                                        Amount(run_, InSI(variance)), Amount(run_, InSI(variance + 2.0 * u))));
+    for (Eigen::Index k = 0; k < fit_.variance.size(); ++k) {
+      const double variance = fit_.variance[k], u = fit_.u_variance[k];
+      const std::string by = fmt::format("{}, by {}: ", on, sortings_[static_cast<std::size_t>(k)].name);
+      lines.push_back(by + (std::isnan(u) ? "part of the free unknowns"
+                                          : fmt::format("{} rms, at most {}", Amount(run_, InSI(variance)),
+                                                        Amount(run_, InSI(variance + 2.0 * u)))));
     }
+    if (lines.empty()) return lines;
     lines.push_back(fmt::format("{}, single readings: {} rms, stated {}", on, Amount(run_, InSI(fit_.repeat)),
                                 Amount(run_, InSI(1.0))));
     return lines;

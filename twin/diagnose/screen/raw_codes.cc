@@ -20,6 +20,10 @@ constexpr double kLeastScatter = 4.0;  // codes; below, the density bends within
 constexpr std::array<double, kReach> kWeights = {0.313953, 0.226744, 0.081395, -0.122093};
 constexpr double kVariance = 0.343023;
 
+/// Roots of Poisson counts have unit variance and, with the second constant for the quieter mean of neighbours, the
+/// same expectation (Anscombe, Biometrika 35 (1948) 246-254).
+constexpr double kAnscombe = 0.375, kAnscombeOfMean = kAnscombe - 0.25 * (1.0 - kVariance);
+
 template <typename At>
 double FromNeighbours(const At& at, int code) {
   double sum = 0.0;
@@ -28,8 +32,8 @@ double FromNeighbours(const At& at, int code) {
   return sum;
 }
 
-/// Typical count of the codes beyond those that FromNeighbours looks at: a code is judged where this is large enough,
-/// and so not because its own neighbours happened to come often.
+/// Typical count of the codes beyond those that FromNeighbours looks at: a code is judged where this is large
+/// enough, and so not because its own neighbours happened to come often.
 template <typename At>
 double Around(const At& at, int code) {
   double sum = 0.0;
@@ -72,7 +76,7 @@ void ScoreCodes(const Density& density, int channel, std::vector<CodeScore>& sco
   for (int k = kAround; k < kCodes - kAround; ++k) {
     if (Around(at, k) < kLeastCount) continue;
     const double expected = std::max(0.0, FromNeighbours(at, k));
-    const double difference = 2.0 * (std::sqrt(at(k) + 0.375) - std::sqrt(expected + 0.375));
+    const double difference = 2.0 * (std::sqrt(at(k) + kAnscombe) - std::sqrt(expected + kAnscombeOfMean));
     scores.push_back({channel, k - kCodes / 2, at(k), expected, std::abs(difference) / std::sqrt(1.0 + kVariance)});
   }
 }

@@ -3,7 +3,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/diagnose/screen/screen.h"
-#include "twin/diagnose/screen/words.h"
+#include "twin/diagnose/screen/sizes.h"
 
 namespace twinbench::diagnose {
 namespace {

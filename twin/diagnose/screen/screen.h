@@ -37,8 +37,8 @@ struct ScreenTest {
 /// @param noise      As repaired so far; its sigma whitens the run.
 /// @param projector  Made from the run's nuisance, whitened by `noise`.
 /// @param null_runs  Simulated runs of white noise on the design, at least 50; 0: 300, down to 150 in runs of more
-///                   than 6700 rows, whose cost is rows x null_runs. p below a tenth comes from an exponential fitted
-///                   to the largest of them.
+///                   than 6700 rows, whose cost is rows x null_runs. p below a tenth comes from an exponential
+///                   fitted to the largest of them.
 /// @return tests in the order: fit, noise, time, angles, direction, groups, temperature, spot, channels.
 std::vector<ScreenTest> Screen(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
                                int null_runs = 0, std::uint64_t seed = 1);

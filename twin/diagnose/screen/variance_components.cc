@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/diagnose/screen/words.h"
+#include "twin/diagnose/screen/sizes.h"
 
 namespace twinbench::diagnose::screen {
 namespace {

@@ -9,6 +9,7 @@
 #include "twin/diagnose/screen/sample.h"
 #include "twin/diagnose/screen/scan.h"
 #include "twin/diagnose/screen/screen.h"
+#include "twin/diagnose/screen/sizes.h"
 
 /// From scores to a ScreenTest: p-value, size, place and words.
 namespace twinbench::diagnose::screen {
@@ -61,27 +62,5 @@ struct MomentTest {
 /// @return nothing if no item varies between the nulls.
 std::optional<MomentTest> TestMoments(const Eigen::MatrixXd& values, const std::vector<std::string>& items,
                                       const std::string& name, Sides sides);
-
-/// "0.42 um": a value of the readings in the run's unit.
-std::string Amount(const LinearRun& run, double value_SI);
-
-/// True for the patterns that are rotations: yaw, tilt, roll.
-bool IsAngle(const std::string& pattern);
-
-/// True if the readings are angles themselves.
-bool ReadsAngles(const LinearRun& run);
-
-/// What a size on one channel amounts to as an angle: of the rotation that moves that channel most, or the size
-/// itself where readings are angles; NaN if there is neither.
-double AsAngle(const LinearRun& run, int channel, double size_SI);
-
-/// A size on one channel, as a length and as an angle.
-void SetEffect(const LinearRun& run, int channel, double size_SI, ScreenTest& test);
-
-/// The channel of which a unit of noise is most as an angle: for sizes that belong to no channel.
-int AnyChannel(const LinearRun& run);
-
-/// Typical standard uncertainty of a channel's readings, SI.
-double TypicalSigma(const LinearRun& run, int channel);
 
 }  // namespace twinbench::diagnose::screen

@@ -1,0 +1,30 @@
+#include "twin/diagnose/rotary/rotary_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/twin_run.h"
+#include "twin/diagnose/rotary/free_parameters.h"
+
+namespace twinbench::diagnose::rotary {
+namespace {
+
+/// What is left of the readings pulls at no free unknown, in units of that unknown's own uncertainty: the normal
+/// equations hold.
+TEST(RotaryRun, PredictsWhatTheFreeUnknownsFitBest) {
+  const Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
+  const RotaryRun rotary = BuildRun(test::RunTwin(scenario).readings, scenario);
+  const LinearRun& run = rotary.run;
+  const Eigen::VectorXd weight = run.sigma.cwiseInverse();
+  const Eigen::SparseMatrix<double> white = weight.asDiagonal() * run.nuisance.jacobian;
+  const Eigen::VectorXd pull = white.transpose() * weight.cwiseProduct(run.residual);
+  for (int k = 0; k < CalibratedColumn(rotary.design); ++k) {
+    const double length = white.col(k).norm();
+    // The wide priors pull at a constant that several unknowns share by some 1e-4 of its uncertainty.
+    EXPECT_LT(std::abs(pull[k]), 1e-2 * std::max(length, 1.0)) << "unknown " << k;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose::rotary

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+namespace twinbench::diagnose {
+
+/// Every column of `series` (readings x k) on each of the channels alone: rows x channels k, the columns of channel
+/// 0 first.
+Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& series, int channels);
+
+/// Signatures that several families are combinations of: the same series in time on each of the channels.
+struct Base {
+  int grid = 1;
+  int channels = 1;
+  std::function<Eigen::MatrixXd(int grid_point)> series;  // readings x k
+
+  Eigen::MatrixXd Columns(int grid_point) const { return OnEachChannel(series(grid_point), channels); }
+};
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,83 @@
+#include "twin/diagnose/engine/bundle.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr int kChunkColumns = 128;
+
+}  // namespace
+
+Unwhitened::Unwhitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& white)
+    : rows_(noise.WhitenTransposed(run, white)) {
+  const Eigen::Index readings = run.schedule.Readings(), channels = run.Channels();
+  using Stride = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    channel_.emplace_back(Eigen::Map<const Eigen::MatrixXd, 0, Stride>(rows_.data() + c, readings, rows_.cols(),
+                                                                       Stride(rows_.rows(), channels)));
+  }
+}
+
+Bundle::Bundle(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+               const std::vector<Family>& families, std::vector<int> members, Eigen::Index& kept_left)
+    : family_(families[static_cast<std::size_t>(members.front())]), members_(std::move(members)) {
+  grid_ = family_.base ? family_.base->grid : family_.grid;
+  columns_ = static_cast<int>(family_.base ? family_.map.rows() : std::ssize(family_.amplitudes));
+  step_ = std::max(1, kChunkColumns / std::max(1, columns_));
+  for (int chunk = 0; chunk * step_ < grid_; ++chunk) {
+    Eigen::MatrixXd made = Make(chunk);
+    const Eigen::MatrixXd S = Whitened(run, noise, made);
+    const Eigen::MatrixXd H = projector.Absorbed(S);
+    for (Eigen::Index at = 0; at < S.cols(); at += columns_) {
+      const auto s = S.middleCols(at, columns_);
+      const auto h = H.middleCols(at, columns_);
+      raw_.push_back(s.transpose() * s);
+      gram_.push_back(raw_.back() - h.transpose() * h);
+    }
+    if (std::ssize(kept_) < chunk || made.size() > kept_left) continue;
+    kept_left -= made.size();
+    kept_.push_back(std::move(made));
+  }
+}
+
+Eigen::MatrixXd Bundle::Make(int chunk) const {
+  const auto one = [this](int g) { return family_.base ? family_.base->series(g) : family_.columns(g); };
+  const int first = chunk * step_, last = std::min(first + step_, grid_);
+  Eigen::MatrixXd all = one(first);
+  const Eigen::Index width = all.cols();
+  all.conservativeResize(Eigen::NoChange, width * (last - first));
+  for (int g = first + 1; g < last; ++g) all.middleCols(width * (g - first), width) = one(g);
+  return all;
+}
+
+Eigen::MatrixXd Bundle::Whitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& made) const {
+  if (!family_.base) return noise.Whiten(run, made);
+  const int channels = family_.base->channels;
+  const Eigen::Index series = columns_ / channels;
+  Eigen::MatrixXd rows(run.Rows(), made.cols() * channels);
+  for (Eigen::Index at = 0; at < made.cols(); at += series) {
+    rows.middleCols(at * channels, columns_) = OnEachChannel(made.middleCols(at, series), channels);
+  }
+  return noise.Whiten(run, rows);
+}
+
+Eigen::MatrixXd Bundle::Products(int chunk, const Unwhitened& Y) const {
+  const bool is_kept = chunk < std::ssize(kept_);
+  const Eigen::MatrixXd again = is_kept ? Eigen::MatrixXd() : Make(chunk);
+  const Eigen::MatrixXd& made = is_kept ? kept_[static_cast<std::size_t>(chunk)] : again;
+  if (!family_.base) return made.transpose() * Y.Rows();
+  const int channels = family_.base->channels;
+  const Eigen::Index series = columns_ / channels;
+  Eigen::MatrixXd products(made.cols() * channels, Y.Rows().cols());
+  for (int c = 0; c < channels; ++c) {
+    const Eigen::MatrixXd of_channel = made.transpose() * Y.Channel(c);
+    for (Eigen::Index at = 0; at < made.cols(); at += series) {
+      products.middleRows(at * channels + c * series, series) = of_channel.middleRows(at, series);
+    }
+  }
+  return products;
+}
+
+}  // namespace twinbench::diagnose

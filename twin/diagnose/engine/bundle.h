@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/linear_run.h"
+#include "twin/diagnose/engine/noise_model.h"
+#include "twin/diagnose/engine/projector.h"
+
+namespace twinbench::diagnose {
+
+/// Whitened rows x any as unwhitened signatures meet them: S'Y = raw' F'Y with F the whitening. So signatures need
+/// not be whitened for every scan, and a series that shows on each channel need not be written out four times.
+class Unwhitened {
+ public:
+  Unwhitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& white);
+
+  const Eigen::MatrixXd& Rows() const { return rows_; }                                          // F'Y
+  const Eigen::MatrixXd& Channel(int c) const { return channel_[static_cast<std::size_t>(c)]; }  // readings x any
+
+ private:
+  Eigen::MatrixXd rows_;
+  std::vector<Eigen::MatrixXd> channel_;
+};
+
+/// Families that share their columns, with what depends on the design only. Grid points come in chunks that fit
+/// into the processor's cache.
+class Bundle {
+ public:
+  /// @param members    Indices of the families.
+  /// @param kept_left  How many values may still be kept instead of made again at each scan; lowered by those that
+  /// are.
+  Bundle(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+         const std::vector<Family>& families, std::vector<int> members, Eigen::Index& kept_left);
+
+  const std::vector<int>& Members() const { return members_; }
+  int Grid() const { return grid_; }
+  int Columns() const { return columns_; }                                                 // a grid point
+  int Step() const { return step_; }                                                       // grid points a chunk
+  const Eigen::MatrixXd& Gram(int g) const { return gram_[static_cast<std::size_t>(g)]; }  // S'WS
+  const Eigen::MatrixXd& Raw(int g) const { return raw_[static_cast<std::size_t>(g)]; }    // S'S
+
+  /// S'Y of all grid points of one chunk: their columns one after the other x columns of Y.
+  Eigen::MatrixXd Products(int chunk, const Unwhitened& Y) const;
+
+ private:
+  Eigen::MatrixXd Make(int chunk) const;  // series, or signatures of a family of its own, not whitened
+  Eigen::MatrixXd Whitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& made) const;
+
+  const Family& family_;  // one of the members
+  std::vector<int> members_;
+  int grid_, columns_, step_;
+  std::vector<Eigen::MatrixXd> gram_, raw_;
+  std::vector<Eigen::MatrixXd> kept_;  // of the first chunks
+};
+
+}  // namespace twinbench::diagnose
