@@ -2,10 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "twin/diagnose/encoder/families.h"
+#include "twin/diagnose/encoder/named_parts.h"
 #include "twin/diagnose/engine/projector.h"
 
 namespace twinbench::diagnose::encoder {
@@ -46,12 +46,8 @@ Eigen::MatrixXd Waves(const Eigen::VectorXd& angle_rad, int orders) {
 }
 
 Harmonic OrderOf(int order, const Eigen::Vector2d& x, const Eigen::Matrix2d& cov) {
-  const double amplitude = x.norm();
-  const Eigen::Vector2d along = amplitude > 0.0 ? Eigen::Vector2d(x / amplitude) : Eigen::Vector2d(1.0, 0.0);
-  const Eigen::Vector2d across(-along.y(), along.x());
-  const double u_phase = std::sqrt(across.dot(cov * across)) / std::max(amplitude, 1e-300);
-  return {order,   amplitude,       std::sqrt(along.dot(cov * along)), std::atan2(-x.y(), x.x()),
-          u_phase, MeaningOf(order)};
+  const Polar polar = PolarOf(x, cov);
+  return {order, polar.size, polar.u_size, polar.phase_rad, polar.u_phase_rad, MeaningOf(order)};
 }
 
 }  // namespace

@@ -63,22 +63,23 @@ Slopes AllSlopes(const LinearRun& run, const std::vector<Family>& families, cons
   return all;
 }
 
-/// Lets the shape spread as far as the points of its grid say, where that is farther than its slopes say.
-void Widen(const Eigen::VectorXd& spread, Eigen::Index amplitudes, Eigen::MatrixXd& cov) {
-  const Eigen::Index all = amplitudes + spread.size(), had = cov.cols();
-  cov.conservativeResize(all, all);
-  if (had < all) {
-    cov.rightCols(all - had).setZero();
-    cov.bottomRows(all - had).setZero();
+/// Lets amplitudes and shape spread as far as the points of the grid say, where that is farther than the slopes
+/// say.
+void Widen(const Spread& spread, Eigen::MatrixXd& cov) {
+  Eigen::VectorXd all(spread.amplitudes.size() + spread.shape.size());
+  all << spread.amplitudes, spread.shape;
+  const Eigen::Index had = cov.cols();
+  cov.conservativeResize(all.size(), all.size());
+  if (had < all.size()) {
+    cov.rightCols(all.size() - had).setZero();
+    cov.bottomRows(all.size() - had).setZero();
   }
-  for (Eigen::Index k = 0; k < spread.size(); ++k) {
-    double& variance = cov(amplitudes + k, amplitudes + k);
-    variance = std::max(variance, spread[k] * spread[k]);
-  }
+  cov.diagonal() = cov.diagonal().cwiseMax(all.cwiseAbs2());
 }
 
 /// (S'WS + D)^-1, computed in units in which its diagonal is one.
-Eigen::MatrixXd CovarianceOf(const Projector& projector, const Eigen::MatrixXd& S, const Eigen::VectorXd& precision) {
+Eigen::MatrixXd CovarianceOf(const Projector& projector, const Eigen::MatrixXd& S,
+                             const Eigen::VectorXd& precision) {
   const Eigen::MatrixXd H = projector.Absorbed(S);
   Eigen::MatrixXd normal = S.transpose() * S - H.transpose() * H;
   normal.diagonal() = normal.diagonal().cwiseMax(0.0) + precision;
@@ -112,9 +113,9 @@ void EstimatePicks(const LinearRun& run, const NoiseModel& noise, const Projecto
     const Eigen::Index end = k + 1 < picks.size() ? slopes.start[k + 1] : cov.cols();
     picks[k].cov = cov.block(first, first, end - first, end - first);
     const Remainder others(projector, noise.Whiten(run, Signatures(run, picks, k)));
-    Widen(ShapeSpread(families[static_cast<std::size_t>(picks[k].family)], picks[k], run, noise, projector, others,
-                      Project(projector, others, white), variance),
-          picks[k].columns.cols(), picks[k].cov);
+    Widen(SpreadOverGrid(families[static_cast<std::size_t>(picks[k].family)], picks[k], run, noise, projector,
+                         others, Project(projector, others, white), variance),
+          picks[k].cov);
   }
 }
 

@@ -9,8 +9,9 @@ namespace twinbench::diagnose {
 /// Fits the amplitudes of all picks together and fills their `amplitudes` and `cov`.
 ///
 /// The amplitudes are free; their covariance lets every shape move as well (its slopes stand beside the amplitudes,
-/// with the catalogue's range as prior; the grid widens it, shape_spread.h), and scales with the noise that is left, as far as the stated noise is not
-/// trusted. Columns of the picks must not be dependent: directions that the data do not resolve are left at zero.
+/// with the catalogue's range as prior; the grid widens it, shape_spread.h), and scales with the noise that is
+/// left, as far as the stated noise is not trusted. Columns of the picks must not be dependent: directions that the
+/// data do not resolve are left at zero.
 /// @param white  The residual, whitened, rows x 1.
 void EstimatePicks(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
                    const std::vector<Family>& families, const Eigen::MatrixXd& white, std::vector<Pick>& picks);

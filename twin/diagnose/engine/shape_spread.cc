@@ -9,12 +9,18 @@ namespace {
 
 constexpr int kMostColumns = 512;  // of signatures to look at: a few hundredths of a second
 
-/// What a signature explains of projected data.
-double ExplainedBy(const Eigen::MatrixXd& S, const Projector& projector, const Remainder& others,
-                   const Projected& data) {
+/// A signature's best amplitudes in projected data, and what it explains of them.
+struct Fit {
+  Eigen::VectorXd amplitudes;
+  double explained = 0.0;
+};
+
+Fit FitOf(const Eigen::MatrixXd& S, const Projector& projector, const Remainder& others, const Projected& data) {
   const Eigen::MatrixXd gram = S.transpose() * others.Apply(projector.Apply(S));
   const Eigen::VectorXd products = S.transpose() * data.rows.col(0);
-  return products.dot(gram.completeOrthogonalDecomposition().solve(products));
+  Fit fit{gram.completeOrthogonalDecomposition().solve(products), 0.0};
+  fit.explained = products.dot(fit.amplitudes);
+  return fit;
 }
 
 /// Mean distance of a value to its neighbours on the grid: all that is known between them.
@@ -29,29 +35,32 @@ double SpacingAt(const Shape& shape, double value) {
 
 }  // namespace
 
-Eigen::VectorXd ShapeSpread(const Family& family, const Pick& pick, const LinearRun& run, const NoiseModel& noise,
-                            const Projector& projector, const Remainder& others, const Projected& data,
-                            double variance) {
-  Eigen::VectorXd spread2 = Eigen::VectorXd::Zero(pick.shape.size());
-  if (pick.shape.size() == 0) return spread2;
-  const auto explained = [&](const Eigen::MatrixXd& columns) {
-    return ExplainedBy(noise.Whiten(run, columns), projector, others, data);
+Spread SpreadOverGrid(const Family& family, const Pick& pick, const LinearRun& run, const NoiseModel& noise,
+                      const Projector& projector, const Remainder& others, const Projected& data, double variance) {
+  Spread spread{Eigen::VectorXd::Zero(pick.columns.cols()), Eigen::VectorXd::Zero(pick.shape.size())};
+  if (pick.shape.size() == 0) return spread;
+  const auto fit = [&](const Eigen::MatrixXd& columns) {
+    return FitOf(noise.Whiten(run, columns), projector, others, data);
   };
-  const double best = explained(pick.columns);
+  const Fit best = fit(pick.columns);
   double sum = 1.0;  // the fitted shape itself
   const int reach = std::max(1, kMostColumns / 2 / static_cast<int>(pick.columns.cols()));
   const int first = std::max(0, pick.grid_point - reach), last = std::min(family.grid - 1, pick.grid_point + reach);
   for (int g = first; g <= last; ++g) {
-    const double weight = std::exp(std::min(0.0, 0.5 * (explained(family.ColumnsAt(g)) - best) / variance));
-    spread2 += weight * (family.ShapeAt(g) - pick.shape).cwiseAbs2();
+    const Fit other = fit(family.ColumnsAt(g));
+    const double weight = std::exp(std::min(0.0, 0.5 * (other.explained - best.explained) / variance));
+    spread.amplitudes += weight * (other.amplitudes - best.amplitudes).cwiseAbs2();
+    spread.shape += weight * (family.ShapeAt(g) - pick.shape).cwiseAbs2();
     sum += weight;
   }
-  spread2 /= sum;
+  spread.amplitudes = (spread.amplitudes / sum).cwiseSqrt();
+  spread.shape /= sum;
   if (!family.at) {
-    for (Eigen::Index k = 0; k < spread2.size(); ++k)
-      spread2[k] += std::pow(SpacingAt(family.shapes[static_cast<std::size_t>(k)], pick.shape[k]), 2) / 12.0;
+    for (Eigen::Index k = 0; k < spread.shape.size(); ++k)
+      spread.shape[k] += std::pow(SpacingAt(family.shapes[static_cast<std::size_t>(k)], pick.shape[k]), 2) / 12.0;
   }
-  return spread2.cwiseSqrt();
+  spread.shape = spread.shape.cwiseSqrt();
+  return spread;
 }
 
 }  // namespace twinbench::diagnose

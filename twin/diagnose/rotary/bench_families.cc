@@ -107,7 +107,8 @@ void AddBenchFamilies(const RotaryRun& rotary, const Scenario& scenario, std::ve
   AddNonlinearities(rotary, families);
   for (Family& family : families) {
     // A wrong sensitivity of both axes of a PSD looks the same.
-    if (family.effect == "stray_light" || family.effect == "psd_distance") family.most_probable = kMostProbableDoubled;
+    if (family.effect == "stray_light" || family.effect == "psd_distance")
+      family.most_probable = kMostProbableDoubled;
   }
 }
 

@@ -136,7 +136,8 @@ Eigen::MatrixXd EffectSignal(const std::string& effect, const std::string& where
   const double side = where == "reference" ? 1.0 : -1.0;
   const Eigen::Vector4d yaw = context.shown_by_motion.col(0);
   if (effect == "backlash") return OnChannels(side * DirectionSignal(s), yaw);
-  if (effect == "settling") return OnChannels(-SettlingSignal(s, Value(shape, "time_constant")), yaw);
+  if (effect == "settling")
+    return OnChannels(-SettlingSignal(s, context.settle_s, Value(shape, "time_constant")), yaw);
   if (effect == "bearing_half_frequency") {
     return HalfFrequencySignal(Value(shape, "order"), {Turning::kContinued, context.target_height_m, 1.0}, context);
   }

@@ -38,6 +38,7 @@ struct SignalContext {
   std::vector<int> scanned_before;  // of each channel, the one converted just before
   Eigen::VectorXd shown_m;          // what the channels show, by row
   double sample_noise_V = 0.0;      // standard deviation of one A/D sample
+  double settle_s = 0.0;            // in-position window of the tables: from a move's end to the dwell's beginning
 };
 
 /// Signal of an additive effect at unit amplitude, rows x amplitudes (SI per SI).

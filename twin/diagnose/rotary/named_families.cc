@@ -37,7 +37,10 @@ Family HalfFrequency(const SignalContext& context, const Whirling& whirling) {
   });
   half.parameters = [a = half.amplitudes[0], o = half.shapes[0]](
                         const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
-    return std::vector<ParameterEstimate>{Plain(o, shape[0], std::sqrt(cov(2, 2))), LengthOf(a, x, cov)};
+    ParameterEstimate size = LengthOf(a, x, cov);  // the catalogue's has no phase, but a sign
+    size.value = std::copysign(size.value, x[0]);
+    size.lower = a.lower;
+    return std::vector<ParameterEstimate>{Plain(o, shape[0], std::sqrt(cov(2, 2))), size};
   };
   return half;
 }

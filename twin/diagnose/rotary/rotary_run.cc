@@ -64,9 +64,9 @@ void SetUnknowns(separate::Design design, RotaryRun& rotary) {
   nuisance.prior_precision = PriorPrecision(rotary.design);
 }
 
-/// One Gauss-Newton step from x. The calibrated parameters are held at what is believed, and the others are the best
-/// beside that: what every reading should show must not be off by what a parameter has taken up and then lost. Only
-/// the linear run lets them move.
+/// One Gauss-Newton step from x. The calibrated parameters are held at what is believed, and the others are the
+/// best beside that: what every reading should show must not be off by what a parameter has taken up and then lost.
+/// Only the linear run lets them move.
 Eigen::VectorXd Improved(const Eigen::VectorXd& x, const LinearRun& run) {
   constexpr double kHeld = 1e12;  // times the prior precision
   Nuisance nuisance = run.nuisance;
@@ -102,7 +102,8 @@ SignalContext ContextOf(const RotaryRun& rotary, const Scenario& scenario, const
                         rotary.bench.nominal.sensitivity_V_m,
                         rotary.scanned_before,
                         shown_m,
-                        rotary.sample_noise_V};
+                        rotary.sample_noise_V,
+                        std::max(scenario.target.settle_s, scenario.reference.settle_s)};
   for (int k = 0; k < 2; ++k) {
     OpticalBench turned = rotary.bench;
     (k == 0 ? turned.laser_yaw_rad : turned.laser_pitch_rad) += kStep_rad;

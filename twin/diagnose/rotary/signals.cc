@@ -66,9 +66,9 @@ Eigen::VectorXd DirectionSignal(const Schedule& s) {
   return direction;
 }
 
-Eigen::VectorXd SettlingSignal(const Schedule& s, double time_constant_s) {
+Eigen::VectorXd SettlingSignal(const Schedule& s, double settle_s, double time_constant_s) {
   const Eigen::ArrayXd dwell_s = s.dwell_s.array().isFinite().select(s.dwell_s.array(), 0.0);
-  return DirectionSignal(s).array() * (-dwell_s / time_constant_s).exp();
+  return DirectionSignal(s).array() * (-(settle_s + dwell_s) / time_constant_s).exp();
 }
 
 Eigen::MatrixXd ToneSignal(const Schedule& s, double frequency_Hz) {

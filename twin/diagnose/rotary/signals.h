@@ -20,8 +20,8 @@ Eigen::VectorXd LaggedTemperature(const Schedule& s, double reference_degC, doub
 /// Direction of travel in full circles, 0 elsewhere: a goniometer's sweep does not turn the tables.
 Eigen::VectorXd DirectionSignal(const Schedule& s);
 
-/// Direction times exp(-dwell / tau).
-Eigen::VectorXd SettlingSignal(const Schedule& s, double time_constant_s);
+/// Direction times exp(-t / tau), t the time since the move ended: the in-position window and the dwell.
+Eigen::VectorXd SettlingSignal(const Schedule& s, double settle_s, double time_constant_s);
 
 /// sin and cos of 2 pi f t, readings x 2.
 Eigen::MatrixXd ToneSignal(const Schedule& s, double frequency_Hz);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "twin/diagnose/rotary/signals.h"
@@ -11,12 +12,32 @@ namespace {
 /// Name and time course of something that a gain may follow.
 using Followed = std::pair<std::string, Eigen::VectorXd>;
 
+/// Above its mean in the calibration: the gains were right there, whatever they followed. Of a run without one:
+/// above its first value.
+Eigen::VectorXd SinceCalibration(const Schedule& s, const Eigen::VectorXd& signal) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < s.phase.size(); ++i) {
+    if (s.phase[i] != Phase::kCalibration) continue;
+    sum += signal[static_cast<Eigen::Index>(i)];
+    ++count;
+  }
+  return Unit((signal.array() - (count > 0 ? sum / count : signal[0])).matrix());
+}
+
 std::vector<Followed> WhatIsFollowed(const Schedule& s, double reference_degC) {
-  std::vector<Followed> followed = {{"time", Unit((s.time_s.array() - s.time_s.mean()).matrix())},
+  constexpr double kWarmUps = 3.0;  // time constants in a run, of something that warms up and stays
+  const Eigen::VectorXd time =
+      (s.time_s.array() - s.time_s.minCoeff()) / std::max(1.0, s.time_s.maxCoeff() - s.time_s.minCoeff());
+  const Eigen::VectorXd warm = 1.0 - (-kWarmUps * time.array()).exp();
+  std::vector<Followed> followed = {{"time", Unit((time.array() - time.mean()).matrix())},
+                                    {"time", SinceCalibration(s, time)},
+                                    {"time", SinceCalibration(s, warm)},
                                     {"direction", DirectionSignal(s)}};
   if (!s.temperature_degC.array().isFinite().any()) return followed;
   const Eigen::VectorXd T = LaggedTemperature(s, reference_degC, 0.0);
   followed.emplace_back("temperature", Unit((T.array() - T.mean()).matrix()));
+  followed.emplace_back("temperature", SinceCalibration(s, T));
   followed.emplace_back("temperature", Unit(T));  // nothing at the reference temperature
   return followed;
 }
