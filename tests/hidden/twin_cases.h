@@ -16,19 +16,18 @@ struct TwinOptions {
   std::uint64_t first_seed = 1;
   double rho_from = 5.0, rho_to = 30.0;
   std::string cache_folder;
+
+  /// The size of the k-th of magnitudes x seeds cases.
+  double RhoOf(int k) const;
 };
 
 /// One effect at a time: every name, every place; on the angle bench at stops and in motion.
 std::vector<Plan> SinglePlans(const std::string& bench, const TwinOptions& options);
 
-/// Two different effects at once, rho of each between 10 and `rho_to`.
+/// Two different effects of the rotary bench at once, rho of each between 10 and `rho_to`.
 std::vector<Plan> PairPlans(int count, const TwinOptions& options);
 
 /// One effect at rho 20 that the catalogue is made to lack: `seeds` cases an effect and place.
 std::vector<Plan> LeaveOneOutPlans(const std::string& bench, const TwinOptions& options);
-
-/// Effects of the catalogue that leave a trace proportional to a size; the others (a swap, a frame) are there or
-/// not.
-bool HasSize(const std::string& effect);
 
 }  // namespace twinbench::hidden

@@ -19,18 +19,13 @@
 #include "twin/diagnose/redundancy.h"
 #include "twin/diagnose/rotary/conventions.h"
 #include "twin/diagnose/rotary/rotary_case.h"
+#include "twin/diagnose/rotary_search.h"
 
 namespace twinbench::diagnose {
 namespace {
 
 constexpr double kBaarda = 4.13;       // non-centrality: found in 80 % of cases at a test of 0.1 %
 constexpr double kPlausibleTop = 3.0;  // prior deviations: about the largest size that anybody expects
-
-/// Causes that are decided before the search because they change the model itself, not its signals.
-struct Discrete {
-  std::string effect, where;
-  double log_evidence = 0.0;
-};
 
 /// What the reports need from a bench.
 struct BenchWords {
@@ -166,69 +161,9 @@ DiagnosisRun Finish(const LinearRun& run, const Analysis& analysis, const std::v
   return result;
 }
 
-AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options) {
-  return {options.null_runs, options.cache_folder, 4, nullptr};
-}
-
-bool IsStruck(const DiagnoseOptions& options, const std::string& effect) {
-  return std::ranges::find(options.struck, effect) != options.struck.end();
-}
-
-Scenario WithFrame(Scenario scenario) {
-  EffectSettings frame;
-  frame.name = "reclamp_frame";
-  scenario.effects.push_back(frame);
-  return scenario;
-}
-
 BenchWords RotaryWords(const rotary::RotaryCase& rotary) {
   return {[design = rotary.Rotary().design](const Eigen::VectorXd& x) { return rotary::BiasInWords(design, x); },
           rotary::NextMeasurement};
-}
-
-/// A model of the bench with what the search found in it.
-struct Searched {
-  std::unique_ptr<rotary::RotaryCase> rotary;
-  Analysis analysis;
-  std::vector<Discrete> discrete;
-};
-
-bool IsReseated(const rotary::RotaryCase& rotary) {
-  return std::ranges::any_of(rotary.Rotary().design.setups,
-                             [](const separate::SetUp& s) { return s.clamping == separate::Clamping::kReseat; });
-}
-
-/// The bench as stated, or with the reference's wobble turning with the set-up where that explains more. The log
-/// Bayes factor of the frame leaves the noise scale free; that it has fewer unknowns is not counted in its favour.
-Searched SearchFrames(const std::vector<Reading>& readings, const Scenario& scenario,
-                      const DiagnoseOptions& options) {
-  constexpr double kWorthTrying = 10.0;
-  const bool published = options.model == measure::Estimator::kPublished;
-  const auto case_of = [&](const Scenario& s) {
-    return std::make_unique<rotary::RotaryCase>(readings, s, published, options.struck);
-  };
-  const auto analyse = [&](const rotary::RotaryCase& rotary) {
-    return Analyse(rotary.Rotary().run, rotary.Families(), AnalysisOptionsOf(options));
-  };
-  Searched stated{case_of(scenario), {}, {}};
-  if (!IsReseated(*stated.rotary) || IsStruck(options, "reclamp_frame")) {
-    stated.analysis = analyse(*stated.rotary);
-    return stated;
-  }
-  const LinearRun& run = stated.rotary->Rotary().run;
-  const LinearRun turned_run = rotary::BuildRun(readings, WithFrame(scenario), published).run;
-  const double evidence = 0.5 * run.Rows() * std::log(FreeMisfit(run).power / FreeMisfit(turned_run).power);
-  Searched turned;
-  if (evidence > kWorthTrying) {
-    turned.rotary = case_of(WithFrame(scenario));
-    turned.analysis = analyse(*turned.rotary);
-    turned.discrete.push_back({"reclamp_frame", "", evidence});
-    if (turned.analysis.found.picks.empty()) return turned;
-  }
-  stated.analysis = analyse(*stated.rotary);
-  const bool turns = evidence > kWorthTrying &&
-                     evidence + turned.analysis.found.joint_evidence > stated.analysis.found.joint_evidence;
-  return turns ? std::move(turned) : std::move(stated);
 }
 
 DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario& scenario,
@@ -236,7 +171,7 @@ DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario&
   const bool published = options.model == measure::Estimator::kPublished;
   rotary::ConventionResult convention{"", 0.0, as_read};
   if (!IsStruck(options, "convention")) convention = rotary::ScreenConventions(as_read, scenario, published);
-  Searched searched = SearchFrames(convention.readings, scenario, options);
+  SearchedRotary searched = SearchRotary(convention.readings, scenario, options);
   if (!convention.where.empty())
     searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
   const rotary::RotaryCase& rotary = *searched.rotary;

@@ -9,16 +9,16 @@
 namespace twinbench::diagnose::rotary {
 namespace {
 
-/// How the readings change with one property of the bench, by central differences.
-Eigen::VectorXd BenchColumn(const RotaryRun& rotary, const std::string& effect, const std::string& where,
-                            const Parameters& step, double reference_degC) {
-  const Eigen::VectorXd above_K = LaggedTemperature(rotary.run.schedule, reference_degC, 0.0);
+/// How the readings change with one property of the bench as it is believed, by central differences.
+Eigen::VectorXd BenchColumn(const RotaryRun& rotary, const Scenario& scenario, const std::string& effect,
+                            const std::string& where, const Parameters& step) {
+  const Eigen::VectorXd above_K = LaggedTemperature(rotary.run.schedule, scenario.environment.reference_degC, 0.0);
   Parameters back = step;
   for (auto& parameter : back) parameter.second = -parameter.second;
   Eigen::VectorXd column(rotary.run.Rows());
   for (std::size_t i = 0; i < rotary.motion.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    OpticalBench more = rotary.bench, less = rotary.bench;
+    OpticalBench more = WithKnownEffects(rotary.bench, scenario, above_K[at]), less = more;
     AlterBench(effect, where, step, above_K[at], more);
     AlterBench(effect, where, back, above_K[at], less);
     column.segment<4>(4 * at) = (ShownSpots(more, rotary.motion[i]) - ShownSpots(less, rotary.motion[i])) / 2.0;
@@ -27,10 +27,10 @@ Eigen::VectorXd BenchColumn(const RotaryRun& rotary, const std::string& effect, 
 }
 
 Family BenchFamily(const std::string& effect, const std::string& where, const std::string& parameter,
-                   const RotaryRun& rotary, double reference_degC) {
+                   const RotaryRun& rotary, const Scenario& scenario) {
   Family family = Named(effect, where, {AmplitudeOf(effect, parameter)});
   const double step = 0.01 * family.amplitudes[0].prior_sd;
-  const Eigen::MatrixXd column = BenchColumn(rotary, effect, where, {{parameter, step}}, reference_degC) / step;
+  const Eigen::MatrixXd column = BenchColumn(rotary, scenario, effect, where, {{parameter, step}}) / step;
   family.columns = [column](int) { return column; };
   return family;
 }
@@ -101,7 +101,7 @@ void AddBenchFamilies(const RotaryRun& rotary, const Scenario& scenario, std::ve
     std::vector<std::string> places = FindEffect(effect)->places;
     if (places.empty()) places = {""};
     for (const std::string& where : places) {
-      families.push_back(BenchFamily(effect, where, parameter, rotary, scenario.environment.reference_degC));
+      families.push_back(BenchFamily(effect, where, parameter, rotary, scenario));
     }
   }
   AddNonlinearities(rotary, families);

@@ -34,14 +34,19 @@ double ScatterOf(const separate::Design& design, separate::Series series, const 
   return std::sqrt(std::max(0.0, sum2 / design.n - std::pow(sum / design.n, 2)));
 }
 
+Scenario With(Scenario scenario, const std::vector<EffectSettings>& effects) {
+  scenario.effects.insert(scenario.effects.end(), effects.begin(), effects.end());
+  return scenario;
+}
+
 }  // namespace
 
 RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, bool published,
-                       const std::vector<std::string>& struck)
-    : rotary_(BuildRun(readings, scenario, published)),
+                       const std::vector<std::string>& struck, const std::vector<EffectSettings>& about)
+    : rotary_(BuildRun(readings, With(scenario, about), published)),
       context_(ContextOf(rotary_, scenario, rotary_.run.Predicted())) {
   const SharedSeries series = MakeSharedSeries(rotary_);
-  families_ = NamedFamilies(rotary_, context_, scenario, series);
+  families_ = NamedFamilies(rotary_, context_, With(scenario, about), series);
   if (published) {
     std::vector<Family> model = ModelFamilies(rotary_);
     std::ranges::move(model, std::back_inserter(families_));
@@ -50,6 +55,15 @@ RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& sce
                 [&struck](const Family& f) { return std::ranges::find(struck, f.effect) != struck.end(); });
   std::vector<Family> unknown = UnknownFamilies(rotary_, context_, series);
   std::ranges::move(unknown, std::back_inserter(families_));
+  for (const EffectSettings& effect : about) TakeOut(effect);
+}
+
+void RotaryCase::TakeOut(const EffectSettings& effect) {
+  for (const Family& family : families_) {
+    if (family.kind != Kind::kNamed || family.effect != effect.name || family.where != effect.where) continue;
+    rotary_.run.residual += family.ColumnsAt(0).col(0) * effect.parameters.at(family.amplitudes.front().name);
+    return;
+  }
 }
 
 std::string BiasInWords(const separate::Design& design, const Eigen::VectorXd& unknowns) {

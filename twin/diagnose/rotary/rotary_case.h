@@ -12,8 +12,11 @@ namespace twinbench::diagnose::rotary {
 /// A run of the rotary bench with its candidates. Families point into it, so it does not move.
 class RotaryCase {
  public:
+  /// @param about  Effects of known bench properties, one parameter each: the run and its candidates are linearised
+  ///               with them in the model, and the residual is what their tangents there leave without them. So an
+  ///               amplitude of theirs still counts from zero, however much the model bends on the way.
   RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, bool published,
-             const std::vector<std::string>& struck);
+             const std::vector<std::string>& struck, const std::vector<EffectSettings>& about = {});
   RotaryCase(const RotaryCase&) = delete;
   RotaryCase& operator=(const RotaryCase&) = delete;
 
@@ -21,6 +24,8 @@ class RotaryCase {
   const std::vector<Family>& Families() const { return families_; }
 
  private:
+  void TakeOut(const EffectSettings& effect);
+
   RotaryRun rotary_;
   SignalContext context_;
   std::vector<Family> families_;

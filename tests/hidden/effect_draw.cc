@@ -1,0 +1,78 @@
+#include "tests/hidden/effect_draw.h"
+
+#include <cmath>
+
+#include "tests/hidden/bench_runs.h"
+#include "tests/hidden/effect_size.h"
+
+namespace twinbench::hidden {
+namespace {
+
+using units::deg;
+
+EffectSettings WithDefaults(const std::string& name, const std::string& where, const std::string& bench) {
+  EffectSettings effect;
+  effect.name = name;
+  effect.where = where;
+  for (const EffectParameter& p : FindEffect(name, bench)->parameters) {
+    if (p.BelongsTo(where)) effect.parameters[p.name] = p.default_SI;
+  }
+  return effect;
+}
+
+/// Of effects that have such a parameter.
+void Set(EffectSettings& effect, const std::string& name, double value) {
+  const auto found = effect.parameters.find(name);
+  if (found != effect.parameters.end()) found->second = value;
+}
+
+/// Shapes that several effects share. All are drawn for each: what an effect gets does not depend on its
+/// parameters.
+void DrawShape(Stream& stream, bool rotary, EffectSettings& effect) {
+  const bool settles = effect.name == "settling";
+  Set(effect, "phase", UniformIn(stream, 0.0, 360.0) * deg);
+  Set(effect, "curvature", UniformIn(stream, -0.3, 0.3));
+  Set(effect, "at_voltage", UniformIn(stream, -0.01, 0.01));
+  Set(effect, "frequency", LogUniformIn(stream, 0.003, 0.06));
+  Set(effect, "settles_over", LogUniformIn(stream, 10.0, 60.0) * deg);
+  Set(effect, "time_constant", settles ? UniformIn(stream, 0.5, 2.0) : LogUniformIn(stream, 200.0, 2000.0));
+  Set(effect, "at_reading", std::round(UniformIn(stream, rotary ? 80.0 : 40.0, rotary ? 560.0 : 500.0)));
+}
+
+void DrawOwnShape(Stream& stream, const Scenario& scenario, EffectSettings& effect) {
+  if (effect.name == "thermal_tilt") Set(effect, "lag", LogUniformIn(stream, 300.0, 2700.0));
+  if (effect.name == "bearing_half_frequency") Set(effect, "order", UniformIn(stream, 0.42, 0.499));
+  if (effect.name == "periodic") Set(effect, "order", std::floor(UniformIn(stream, 5.0, 30.0)));
+  if (effect.name == "reference_fault") Set(effect, "order", std::floor(UniformIn(stream, 1.0, 6.0)));
+  if (effect.name == "gear_mesh") Set(effect, "teeth", scenario.device.teeth);
+}
+
+void DrawOutliers(Stream& stream, double sigma, EffectSettings& effect) {
+  Set(effect, "fraction", LogUniformIn(stream, 0.005, 0.03));
+  Set(effect, "size", UniformIn(stream, 8.0, 20.0) * sigma);
+}
+
+void DrawSign(Stream& stream, const std::string& bench, EffectSettings& effect) {
+  const std::string size = SizeParameter(effect.name, effect.where);
+  // A negative amplitude is a positive one at the opposite phase: only one of the two is drawn.
+  const bool is_signed =
+      CatalogueParameter(bench, effect.name, size).lower_SI < 0.0 && !effect.parameters.contains("phase");
+  if (is_signed && stream.Uniform() < 0.5) effect.parameters.at(size) *= -1.0;
+}
+
+}  // namespace
+
+EffectSettings DrawEffect(const std::string& name, const std::string& where, const Scenario& scenario,
+                          Stream& stream) {
+  const bool rotary = scenario.bench == kRotaryBench;
+  EffectSettings effect = WithDefaults(name, where, scenario.bench);
+  DrawShape(stream, rotary, effect);
+  DrawOwnShape(stream, scenario, effect);
+  if (name == "outliers") DrawOutliers(stream, rotary ? 0.3 * units::um : scenario.device.noise_rad, effect);
+  if (HasSize(name)) DrawSign(stream, scenario.bench, effect);
+  if (name == "signal_offset")
+    effect.parameters["offset_cos"] = UniformIn(stream, -2.0, 2.0) * effect.parameters.at("offset_sin");
+  return effect;
+}
+
+}  // namespace twinbench::hidden

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/hidden/bench_runs.h"
+#include "twin/core/effect_catalogue.h"
+
+/// How large an effect is: the parameter that says so, and the length of its signature in units of noise.
+namespace twinbench::hidden {
+
+/// The parameter that an effect's signature grows with; empty if the effect has no size.
+std::string SizeParameter(const std::string& effect, const std::string& where);
+
+/// Effects that leave a trace proportional to a size; the others (a swap, a frame) are there or not, or, as
+/// outliers, come with a size of their own.
+bool HasSize(const std::string& effect);
+
+/// @param name  One of the effect's parameters.
+const EffectParameter& CatalogueParameter(const std::string& bench, const std::string& effect,
+                                          const std::string& name);
+
+/// Readings of the bench without noise and with nothing but these effects.
+std::vector<Reading> NoiseFree(Scenario scenario, const std::vector<EffectSettings>& effects);
+
+/// The effect with its signature brought to the length `rho`, or to what the catalogue's bounds allow of it.
+///
+/// @param effect  With a size.
+/// @param drawn   The bench of the case.
+EffectSettings SizedTo(double rho, EffectSettings effect, const Scenario& drawn, const SignatureScale& scale);
+
+}  // namespace twinbench::hidden

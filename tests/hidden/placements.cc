@@ -1,0 +1,58 @@
+#include "tests/hidden/placements.h"
+
+#include <fmt/format.h>
+
+#include "twin/core/effect_catalogue.h"
+
+namespace twinbench::hidden {
+namespace {
+
+std::vector<std::string> PlacesOf(const EffectEntry& entry) {
+  return entry.places.empty() ? std::vector<std::string>{""} : entry.places;
+}
+
+bool NeedsAllKnown(const std::string& effect) {
+  return effect == "interpolation" || effect == "gear_mesh" || effect == "reference_fault";
+}
+
+/// Designs that can show an effect at all: a device at rest has no latency.
+std::vector<Design> DesignsFor(const std::string& effect, const std::string& bench) {
+  if (bench == kRotaryBench) return {Design::kRotary};
+  if (effect == "latency") return {Design::kSweep};
+  if (NeedsAllKnown(effect)) return {Design::kStopsAllKnown, Design::kSweepAllKnown};
+  return {Design::kStops, Design::kSweep};
+}
+
+const char* NameOf(Design design) {
+  switch (design) {
+    case Design::kRotary:
+      return "rotary";
+    case Design::kStops:
+      return "stops";
+    case Design::kSweep:
+      return "sweep";
+    case Design::kStopsAllKnown:
+      return "stops+";
+    case Design::kSweepAllKnown:
+      return "sweep+";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<Placement> Placements(const std::string& bench) {
+  std::vector<Placement> placements;
+  for (const EffectEntry& entry : EffectCatalogue(bench)) {
+    for (const std::string& place : PlacesOf(entry)) {
+      for (const Design design : DesignsFor(entry.name, bench)) placements.push_back({entry.name, place, design});
+    }
+  }
+  return placements;
+}
+
+std::string CaseName(const Placement& placement, std::uint64_t seed) {
+  return fmt::format("{}:{}:{}:{}", NameOf(placement.design), placement.effect, placement.where, seed);
+}
+
+}  // namespace twinbench::hidden

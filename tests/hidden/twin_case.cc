@@ -1,0 +1,44 @@
+#include "tests/hidden/twin_case.h"
+
+#include "tests/hidden/alike.h"
+#include "tests/hidden/effect_draw.h"
+#include "tests/hidden/effect_size.h"
+
+namespace twinbench::hidden {
+namespace {
+
+std::vector<EffectSettings> DrawEffects(const std::vector<Wanted>& wanted, const Scenario& drawn,
+                                        const SignatureScale& scale) {
+  Stream stream(drawn.seed, "hidden.effect");
+  std::vector<EffectSettings> effects;
+  for (const Wanted& w : wanted) {
+    const EffectSettings effect = DrawEffect(w.effect, w.where, drawn, stream);
+    effects.push_back(HasSize(w.effect) ? SizedTo(w.rho, effect, drawn, scale) : effect);
+  }
+  return effects;
+}
+
+Hidden TruthOf(const std::vector<EffectSettings>& effects) {
+  Hidden hidden;
+  for (const EffectSettings& e : effects) hidden.causes.push_back({e.name, e.where, e.parameters});
+  hidden.invisible = OnlyRelabels(effects.front().where);
+  return hidden;
+}
+
+}  // namespace
+
+Case MakeTwinCase(Design design, std::uint64_t seed, const std::vector<Wanted>& wanted,
+                  const SignatureScale& scale) {
+  const Scenario drawn = Drawn(design, seed);
+  Scenario actual = drawn;
+  actual.effects = DrawEffects(wanted, drawn, scale);
+  Case made;
+  made.scenario = Believed(design);
+  made.readings = TakeReadings(actual);
+  made.hidden = TruthOf(actual.effects);
+  made.hidden.alike = AlikeOf(actual.effects.front(), drawn, scale);
+  if (wanted.size() == 1 && HasSize(wanted.front().effect)) made.hidden.rho = wanted.front().rho;
+  return made;
+}
+
+}  // namespace twinbench::hidden

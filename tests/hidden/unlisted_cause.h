@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/hidden/bench_runs.h"
+
+/// What causes that the catalogue lacks write into the readings of a run that is otherwise clean.
+namespace twinbench::hidden {
+
+inline constexpr double kSensitivity_V_m = 2000.0;
+
+/// What an unlisted cause adds to each reading and channel [m or rad], up to its size.
+struct UnlistedSignal {
+  std::vector<std::string> locks;     // a right signature has one of these words
+  std::vector<std::string> channels;  // that it acts on; of the angle bench none
+  Eigen::MatrixXd signal;             // readings x channels
+};
+
+/// Readings with the random stream of one case.
+struct Draw {
+  const std::vector<Reading>& readings;
+  Stream& stream;
+
+  int Whole(int first, int last) const { return first + static_cast<int>(stream.Uniform() * (last - first + 1)); }
+  double Phase() const { return 2.0 * units::kPi * stream.Uniform(); }
+  std::size_t Channel() const { return static_cast<std::size_t>(Whole(0, kChannels - 1)); }
+
+  double Hours(std::size_t i) const;      // since the first reading
+  double StepHours(std::size_t i) const;  // since the reading before; of the first: 0
+  double Spot_m(std::size_t i, std::size_t channel) const;
+
+  /// value(i) of each reading, in their order.
+  using Value = std::function<double(std::size_t i)>;
+  Eigen::VectorXd Series(const Value& value) const;
+  Eigen::VectorXd FullCircleSeries(const Value& value) const;  // 0 in the other phases
+};
+
+/// Of the rotary bench.
+/// @param pattern  "yaw", "tilt", "roll" or the name of a channel.
+UnlistedSignal OnPattern(const std::string& pattern, const std::vector<std::string>& locks,
+                         const Eigen::VectorXd& series);
+UnlistedSignal OnChannel(std::size_t channel, const std::vector<std::string>& locks, const Eigen::VectorXd& series);
+
+/// Of the angle bench.
+UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series);
+
+struct UnlistedCause {
+  std::string name;
+  UnlistedSignal (*draw)(const Draw& draw);
+};
+const std::vector<UnlistedCause>& RotaryUnlistedCauses();
+const std::vector<UnlistedCause>& EncoderUnlistedCauses();
+
+}  // namespace twinbench::hidden
