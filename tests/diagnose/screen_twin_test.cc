@@ -68,12 +68,8 @@ TEST(ScreenOfTheTwin, FindsAMissingCodeOfTheConverter) {
   Scenario actual = SmallBench(1);
   actual.adc.samples = 1000;
   const Scenario believed = actual;
-  EffectSettings step;
-  step.name = "adc_step";
-  step.where = "psd_a_y";
   const double code_V = 20.0 / 65536.0;
-  step.parameters = {{"step", code_V}, {"at_voltage", 20.5 * code_V}};
-  actual.effects.push_back(step);
+  actual.effects.push_back({"adc_step", "psd_a_y", {{"step", code_V}, {"at_voltage", 20.5 * code_V}}, "test"});
   const auto tests = ScreenOf(actual, believed);
   const ScreenTest* codes = Find(tests, "raw: code density");
   ASSERT_NE(codes, nullptr);
@@ -86,11 +82,7 @@ TEST(ScreenOfTheTwin, FindsTheGhostOfTheChannelScannedBefore) {
   Scenario actual = SmallBench(1);
   actual.adc.samples = 1000;
   const Scenario believed = actual;
-  EffectSettings ghost;
-  ghost.name = "crosstalk";
-  ghost.where = "psd_b_x";
-  ghost.parameters = {{"fraction", 0.05}};
-  actual.effects.push_back(ghost);
+  actual.effects.push_back({"crosstalk", "psd_b_x", {{"fraction", 0.05}}, "test"});
   const auto tests = ScreenOf(actual, believed);
   const ScreenTest* settling = Find(tests, "raw: settling");
   ASSERT_NE(settling, nullptr);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/prior.h"
 
 namespace twinbench::diagnose {
@@ -27,7 +28,7 @@ struct NoiseView {
 
 NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
   const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
-  const Remainder picks(*analysis.projector, WhitenedPicks(run, analysis.noise, analysis.found.picks));
+  const Remainder picks(*analysis.projector, analysis.noise.Whiten(run, Signatures(run, analysis.found.picks)));
   const auto look = [&](const Remainder& remainder) {
     return FindNoiseCauses(run, analysis.noise, Project(*analysis.projector, remainder, white).rows.col(0),
                            analysis.redundancy);
@@ -58,18 +59,6 @@ const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
 }
 
 }  // namespace
-
-Eigen::MatrixXd WhitenedPicks(const LinearRun& run, const NoiseModel& noise, const std::vector<Pick>& picks) {
-  Eigen::Index width = 0;
-  for (const Pick& pick : picks) width += pick.columns.cols();
-  Eigen::MatrixXd columns(run.Rows(), width);
-  Eigen::Index at = 0;
-  for (const Pick& pick : picks) {
-    columns.middleCols(at, pick.columns.cols()) = pick.columns;
-    at += pick.columns.cols();
-  }
-  return width > 0 ? noise.Whiten(run, columns) : columns;
-}
 
 Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, const AnalysisOptions& options) {
   Analysis analysis;

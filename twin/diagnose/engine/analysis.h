@@ -36,7 +36,4 @@ struct Analysis {
 /// @param run, families  Must outlive the analysis.
 Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, const AnalysisOptions& options);
 
-/// Signatures of the picks side by side, whitened.
-Eigen::MatrixXd WhitenedPicks(const LinearRun& run, const NoiseModel& noise, const std::vector<Pick>& picks);
-
 }  // namespace twinbench::diagnose

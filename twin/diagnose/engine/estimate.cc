@@ -9,20 +9,6 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-
-/// Signatures of the picks side by side, but for one, SI, not whitened.
-Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Pick>& picks, std::size_t left_out = kNone) {
-  Eigen::MatrixXd all(run.Rows(), 0);
-  for (std::size_t k = 0; k < picks.size(); ++k) {
-    const Pick& pick = picks[k];
-    if (k == left_out) continue;
-    all.conservativeResize(Eigen::NoChange, all.cols() + pick.columns.cols());
-    all.rightCols(pick.columns.cols()) = pick.columns;
-  }
-  return all;
-}
-
 /// Precision of what is known beforehand of each column of WithShapeSlopes: amplitudes may be as large as four
 /// prior deviations, as in the evidence; shapes lie anywhere in their range.
 Eigen::VectorXd PriorPrecision(const Family& family, Eigen::Index columns) {
@@ -90,6 +76,17 @@ Eigen::MatrixXd CovarianceOf(const Projector& projector, const Eigen::MatrixXd& 
 }
 
 }  // namespace
+
+Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Pick>& picks, std::size_t left_out) {
+  Eigen::MatrixXd all(run.Rows(), 0);
+  for (std::size_t k = 0; k < picks.size(); ++k) {
+    const Pick& pick = picks[k];
+    if (k == left_out) continue;
+    all.conservativeResize(Eigen::NoChange, all.cols() + pick.columns.cols());
+    all.rightCols(pick.columns.cols()) = pick.columns;
+  }
+  return all;
+}
 
 void EstimatePicks(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
                    const std::vector<Family>& families, const Eigen::MatrixXd& white, std::vector<Pick>& picks) {

@@ -6,6 +6,11 @@
 
 namespace twinbench::diagnose {
 
+inline constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// Signatures of the picks side by side, but for one: rows x amplitudes, SI, not whitened.
+Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Pick>& picks, std::size_t left_out = kNone);
+
 /// Fits the amplitudes of all picks together and fills their `amplitudes` and `cov`.
 ///
 /// The amplitudes are free; their covariance lets every shape move as well (its slopes stand beside the amplitudes,

@@ -9,41 +9,6 @@
 namespace twinbench::diagnose {
 namespace {
 
-/// Bounds of one shape parameter around a grid point: the nearest other grid values, within the physical bounds.
-struct Range {
-  double lower, upper;
-};
-
-Range Around(const Shape& shape, double value) {
-  Range range{shape.lower, shape.upper};
-  double below = shape.lower, above = shape.upper;
-  for (const double v : shape.value) {
-    if (v < value) below = std::max(below, v);
-    if (v > value) above = std::min(above, v);
-  }
-  range.lower = std::min(below, value);
-  range.upper = std::max(above, value);
-  return range;
-}
-
-/// A family's signature at one shape, projected, with its best amplitudes.
-struct Explained {
-  Eigen::MatrixXd projected;
-  Eigen::VectorXd amplitudes;
-  double power = 0.0;  // of the data that it explains
-};
-
-Explained Explain(const Family& family, const Eigen::VectorXd& shape, const LinearRun& run, const NoiseModel& noise,
-                  const Projector& projector, const Remainder& others, const Eigen::VectorXd& data) {
-  const Eigen::MatrixXd S = noise.Whiten(run, family.at(shape));
-  Explained e;
-  e.projected = others.Apply(projector.Apply(S));
-  const Eigen::VectorXd products = S.transpose() * data;
-  e.amplitudes = (S.transpose() * e.projected).completeOrthogonalDecomposition().solve(products);
-  e.power = products.dot(e.amplitudes);
-  return e;
-}
-
 /// What is left of the data when a family with this shape has explained its share.
 struct ShapeResidual {
   const Family& family;
@@ -55,7 +20,7 @@ struct ShapeResidual {
 
   bool operator()(double const* const* parameters, double* residuals) const {
     const Eigen::VectorXd shape = Eigen::Map<const Eigen::VectorXd>(parameters[0], std::ssize(family.shapes));
-    const Explained e = Explain(family, shape, run, noise, projector, others, data);
+    const Explained e = Explain(noise.Whiten(run, family.at(shape)), projector, others, data);
     Eigen::Map<Eigen::VectorXd>(residuals, data.size()) = data - e.projected * e.amplitudes;
     return e.projected.allFinite();
   }
@@ -71,6 +36,25 @@ ceres::Solver::Options SolverOptions() {
 }
 
 }  // namespace
+
+Range Around(const Shape& shape, double value) {
+  double below = shape.lower, above = shape.upper;
+  for (const double v : shape.value) {
+    if (v < value) below = std::max(below, v);
+    if (v > value) above = std::min(above, v);
+  }
+  return {std::min(below, value), std::max(above, value)};
+}
+
+Explained Explain(const Eigen::MatrixXd& white, const Projector& projector, const Remainder& others,
+                  const Eigen::VectorXd& data) {
+  Explained e;
+  e.projected = others.Apply(projector.Apply(white));
+  const Eigen::VectorXd products = white.transpose() * data;
+  e.amplitudes = (white.transpose() * e.projected).completeOrthogonalDecomposition().solve(products);
+  e.power = products.dot(e.amplitudes);
+  return e;
+}
 
 Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, const NoiseModel& noise,
                     const Projector& projector, const Remainder& others, const Projected& data) {
@@ -90,7 +74,7 @@ Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, 
   ceres::Solver::Summary summary;
   ceres::Solve(SolverOptions(), &problem, &summary);
   if (!summary.IsSolutionUsable()) shape = start;
-  return {shape, Explain(family, shape, run, noise, projector, others, rows).power};
+  return {shape, Explain(noise.Whiten(run, family.at(shape)), projector, others, rows).power};
 }
 
 Eigen::MatrixXd WithShapeSlopes(const Family& family, const Eigen::VectorXd& shape, const Eigen::MatrixXd& columns,

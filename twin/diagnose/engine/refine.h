@@ -6,6 +6,23 @@
 
 namespace twinbench::diagnose {
 
+/// Bounds of one shape parameter around a value: the nearest other grid values, within the physical bounds.
+struct Range {
+  double lower, upper;
+};
+Range Around(const Shape& shape, double value);
+
+/// A signature, projected, with its best amplitudes.
+struct Explained {
+  Eigen::MatrixXd projected;
+  Eigen::VectorXd amplitudes;
+  double power = 0.0;  // of the data that it explains
+};
+/// @param white  The signature, whitened.
+/// @param data   One run, projected, with `others` taken out.
+Explained Explain(const Eigen::MatrixXd& white, const Projector& projector, const Remainder& others,
+                  const Eigen::VectorXd& data);
+
 /// Moves the shape of a family (time constants, frequencies) from a grid point to where it explains most, within
 /// its bounds and no farther than the neighbouring grid points. Amplitudes and free unknowns are eliminated
 /// (variable projection, Golub & Pereyra 1973), so Ceres sees only the shape. The family must have `at`.
