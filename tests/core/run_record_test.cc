@@ -46,6 +46,12 @@ Reading ReadingOf(int number) {
   return r;
 }
 
+Acquisition BlockOf(std::vector<std::int16_t> raw) {
+  Acquisition block;
+  block.raw = std::move(raw);
+  return block;
+}
+
 bool SameNumber(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
@@ -125,7 +131,7 @@ TEST(RunRecord, KeepsRawBlocksAndEvents) {
   const TemporaryFolder folder;
   const auto record = RunRecord::Create(folder.path(), AnyProvenance());
   record->Append(ReadingOf(4), {});
-  record->Append(ReadingOf(5), {1, -2, 32767, -32768});
+  record->Append(ReadingOf(5), BlockOf({1, -2, 32767, -32768}));
   record->AppendEvent(Time(Duration(20)), "target", "in position");
   record->AppendEvent(Time(Duration(10)), "operator", "lamp off");
   const auto blocks = record->RawBlocks();
@@ -161,7 +167,7 @@ TEST(RunRecord, RefusesAReadingTwiceAndStaysAsItWas) {
   const TemporaryFolder folder;
   const auto record = RunRecord::Create(folder.path(), AnyProvenance());
   record->Append(ReadingOf(0), {});
-  EXPECT_THROW(record->Append(ReadingOf(0), {1, 2, 3, 4}), BenchError);
+  EXPECT_THROW(record->Append(ReadingOf(0), BlockOf({1, 2, 3, 4})), BenchError);
   record->Append(ReadingOf(1), {});
   EXPECT_EQ(record->Readings().size(), 2u);
   EXPECT_TRUE(record->RawBlocks().empty());
@@ -171,7 +177,7 @@ TEST(RunRecord, CannotBeChangedAfterwards) {
   const TemporaryFolder folder;
   {
     const auto record = RunRecord::Create(folder.path(), AnyProvenance());
-    record->Append(ReadingOf(0), {1, 2, 3, 4});
+    record->Append(ReadingOf(0), BlockOf({1, 2, 3, 4}));
     record->AppendEvent(Time{}, "target", "home");
     record->Finish();
   }
@@ -241,7 +247,7 @@ TEST(RunRecord, OfTheVersionWithoutAngleComparisonsIsBroughtUpToDate) {
 
 void FillRecord(const std::string& directory) {
   const auto record = RunRecord::Create(directory, AnyProvenance());
-  for (int i = 0; i < 100; ++i) record->Append(ReadingOf(i), std::vector<std::int16_t>(400, 7));
+  for (int i = 0; i < 100; ++i) record->Append(ReadingOf(i), BlockOf(std::vector<std::int16_t>(400, 7)));
 }
 
 TEST(RunRecord, ThatWasCutOffIsRefused) {
@@ -268,7 +274,7 @@ TEST(RunRecord, ThatWasOverwrittenIsRefused) {
 [[noreturn]] void AppendUntilKilled(const std::string& directory, int acknowledge) {
   const auto record = RunRecord::Create(directory, AnyProvenance());
   for (int i = 0;; ++i) {
-    record->Append(ReadingOf(i), std::vector<std::int16_t>(400, static_cast<std::int16_t>(i % 1000)));
+    record->Append(ReadingOf(i), BlockOf(std::vector<std::int16_t>(400, static_cast<std::int16_t>(i % 1000))));
     if (write(acknowledge, &i, sizeof i) != sizeof i) _exit(1);
   }
 }

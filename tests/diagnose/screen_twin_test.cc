@@ -16,9 +16,9 @@ using testing::HasSubstr;
 
 class RawSink : public ReadingSink {
  public:
-  void Append(const Reading& reading, const std::vector<std::int16_t>& raw) override {
+  void Append(const Reading& reading, const Acquisition& block) override {
     readings.push_back(reading);
-    if (!raw.empty()) blocks.push_back({reading.reading, kChannels, raw});
+    if (!block.raw.empty()) blocks.push_back({reading.reading, kChannels, block.raw});
   }
   std::vector<Reading> readings;
   std::vector<RawBlock> blocks;

@@ -16,7 +16,7 @@ namespace {
 
 class CountingSink : public ReadingSink {
  public:
-  void Append(const Reading& reading, const std::vector<std::int16_t>& /*raw*/) override {
+  void Append(const Reading& reading, const Acquisition& /*block*/) override {
     if (reading.status == ReadingStatus::kOk) ++valid;
   }
   int valid = 0;

@@ -25,10 +25,17 @@ class LogBench : public Clock,
  public:
   struct Table : RotaryTable {
     void StartMove(double angle_rad) override { moves_deg.push_back(angle_rad / kDegree); }
-    void WaitSettled() override { ++settled; }
-    double EncoderAngle_rad() override { return moves_deg.back() * kDegree; }
+    bool Settles(Duration) override { return ++settled > 0; }
+    TableState State() override {
+      TableState state;
+      state.commanded_rad = state.encoder_rad = moves_deg.empty() ? 0.0 : moves_deg.back() * kDegree;
+      state.in_position = true;
+      return state;
+    }
+    void Stop() override { ++stops; }
+    void Home() override {}
     std::vector<double> moves_deg;
-    int settled = 0;
+    int settled = 0, stops = 0;
   };
   struct Mounting {
     int setup;
@@ -53,9 +60,9 @@ class LogBench : public Clock,
   void Mount(int setup, double clamp_rad, double reseat_rad) override {
     mountings.push_back({setup, clamp_rad / kDegree, reseat_rad / kDegree});
   }
-  void Append(const Reading& reading, const std::vector<std::int16_t>& raw) override {
+  void Append(const Reading& reading, const Acquisition& block) override {
     readings.push_back(reading);
-    raw_sizes.push_back(raw.size());
+    raw_sizes.push_back(block.raw.size());
   }
 
   RotaryBench Bench() { return {*this, target, reference, *this, *this, *this, *this, *this}; }

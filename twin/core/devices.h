@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "twin/core/reading.h"
@@ -9,7 +10,7 @@
 
 /// What a procedure may ask of a bench. Calls block, as a bench engineer would write them: the twin's devices run
 /// the event queue until the condition holds, the hardware's wait in real time, the replayed ones look it up.
-/// Every call may throw BenchError.
+/// Every call may throw BenchError; a DeviceFault where the device failed in a way that can be told.
 namespace twinbench {
 
 class Clock {
@@ -19,14 +20,35 @@ class Clock {
   virtual void Wait(Duration duration) = 0;
 };
 
+/// What the controller of a table says about it.
+struct TableState {
+  double commanded_rad = kNaN;  // as the controller understood it
+  double encoder_rad = kNaN;
+  bool moving = false;
+  bool in_position = false;
+  bool referenced = true;  // false: it has lost its origin (switched on, restarted); angles mean nothing
+  int limit = 0;           // -1, +1: stands on the lower, upper limit switch
+  std::string fault;       // in the controller's words; empty: none
+};
+
 class RotaryTable {
  public:
   virtual ~RotaryTable() = default;
   /// Starts a move to an unwrapped angle, counter-clockwise positive seen from above; returns at once.
   virtual void StartMove(double angle_rad) = 0;
-  /// Returns when the profile has ended and the controller reports in-position.
-  virtual void WaitSettled() = 0;
-  virtual double EncoderAngle_rad() = 0;
+  /// Lets at most `within` pass.
+  /// @return true as soon as the profile has ended and the controller reports in-position, false if it did not.
+  virtual bool Settles(Duration within) = 0;
+  virtual TableState State() = 0;
+  /// Brings the table to rest where it is; returns at once.
+  virtual void Stop() = 0;
+  /// Finds the origin again; returns when it has.
+  virtual void Home() = 0;
+
+  /// Returns when the table has settled.
+  /// @throws BenchError if it has not within a minute.
+  void WaitSettled();
+  double EncoderAngle_rad() { return State().encoder_rad; }
 };
 
 /// What one block of samples of one channel came to.
@@ -37,12 +59,22 @@ struct ChannelBlock {
   double max_V = kNaN;
 };
 
+/// Where a block stands in the converter's own count, and what the computer's clocks showed when it came.
+struct BlockStamp {
+  std::int64_t first_scan = -1;  // number of its first scan since the converter was started; -1: not counted
+  std::int64_t device_ns = -1;   // the converter's time stamp of that scan
+  std::int64_t host_ns = -1;     // steady clock of the computer
+  std::int64_t utc_ns = -1;      // label only: it may jump
+};
+
 struct Acquisition {
   Time start{};
   ReadingStatus status = ReadingStatus::kOk;
   int n_samples = 0;
   std::array<ChannelBlock, kChannels> channel{};
-  std::vector<std::int16_t> raw;  // scans x channels, only if asked for
+  std::vector<std::int16_t> raw;  // scans x channels, two's complement; if asked for, or if the device always has them
+  BlockStamp stamp;
+  int saturated_mask = 0;  // bit k: some sample of channel k was an end code
 };
 
 class AdConverter {
@@ -85,6 +117,16 @@ class Fixture {
   virtual void Mount(int setup, double clamp_rad, double reseat_rad) = 0;
 };
 
+/// What only a simulated bench can do: begin again as it was, and pass its time without taking any.
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+  /// Puts every device back to how the bench was set up, at Time 0.
+  virtual void Restart() = 0;
+  /// false: waits and moves cost no real time from now on; true: as the bench was told.
+  virtual void SetPaced(bool paced) = 0;
+};
+
 /// The devices of a rotary bench. Does not own them.
 struct RotaryBench {
   Clock& clock;
@@ -95,6 +137,7 @@ struct RotaryBench {
   Thermometer& thermometer;
   Goniometer& goniometer;
   Fixture& fixture;
+  Simulation* simulation = nullptr;  // none on a real bench
 };
 
 /// An angle device under test and the reference that it is compared with, on one shaft.
@@ -110,7 +153,8 @@ class AngleComparator {
 class ReadingSink {
  public:
   virtual ~ReadingSink() = default;
-  virtual void Append(const Reading& reading, const std::vector<std::int16_t>& raw) = 0;
+  /// @param block  What the converter delivered for it; without raw counts where it has none.
+  virtual void Append(const Reading& reading, const Acquisition& block) = 0;
 };
 
 }  // namespace twinbench

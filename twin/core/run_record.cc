@@ -220,16 +220,16 @@ std::unique_ptr<RunRecord> RunRecord::Open(const std::string& directory) {
   }
 }
 
-void RunRecord::Append(const Reading& reading, const std::vector<std::int16_t>& raw) {
+void RunRecord::Append(const Reading& reading, const Acquisition& taken) {
   SqliteTransaction transaction(*database_);
   SqliteStatement& insert = *database_->insert_reading;
   BindReading(insert, reading);
   insert.Run();
-  if (!raw.empty()) {
+  if (!taken.raw.empty()) {
     SqliteStatement& block = *database_->insert_block;
     block.Bind(0, static_cast<std::int64_t>(reading.reading));
     block.Bind(1, static_cast<std::int64_t>(kChannels));
-    block.Bind(2, std::span<const std::int16_t>(raw));
+    block.Bind(2, std::span<const std::int16_t>(taken.raw));
     block.Run();
   }
   transaction.Commit();

@@ -42,9 +42,8 @@ class RunRecord : public ReadingSink {
   static std::unique_ptr<RunRecord> Open(const std::string& directory);
 
   ~RunRecord() override;
-  /// @param raw  Scans x channels, or empty.
   /// @throws BenchError if the disk refuses or the reading's number is taken; the record is then as it was before.
-  void Append(const Reading& reading, const std::vector<std::int16_t>& raw) override;
+  void Append(const Reading& reading, const Acquisition& taken) override;
   /// Keeps what a device did or an operator noted.
   void AppendEvent(Time time, const std::string& device, const std::string& text);
   /// Marks the run complete; without it the run is known to be unfinished.

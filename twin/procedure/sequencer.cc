@@ -55,7 +55,7 @@ void Sequencer::TakeAfter(Reading stop, double dwell_s, bool with_autocollimator
       stop.std_V[c] = block.channel[c].std_V;
     }
   }
-  sink_.Append(stop, block.raw);
+  sink_.Append(stop, block);
   if (progress_) progress_({next_reading_, planned_, stop.phase, bench_.clock.Now()});
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "twin/core/block_statistics.h"
 #include "twin/core/errors.h"
 #include "twin/sim/ad_sampler_direct.h"
 #include "twin/sim/ad_sampler_kernel.h"
@@ -99,12 +100,13 @@ CodeSums CountEverySample(const AdcSettings& adc, const AdInput& input, const Ad
 }
 
 ChannelBlock BlockOf(const CodeSums& sums, std::size_t k, std::int32_t base, int n_samples, double lsb_V) {
-  const double n = n_samples, sum = static_cast<double>(sums.deviation[k]);
-  const double squares = static_cast<double>(sums.square[k]) - sum * (sum / n);
-  return {.mean_V = lsb_V * (base + sum / n),
-          .std_V = n_samples < 2 ? kNaN : lsb_V * std::sqrt(std::max(squares, 0.0) / (n - 1.0)),
-          .min_V = lsb_V * sums.lowest[k],
-          .max_V = lsb_V * sums.highest[k]};
+  const CodeMoments moments = {.n = n_samples,
+                               .base = base,
+                               .deviation = sums.deviation[k],
+                               .square = sums.square[k],
+                               .lowest = sums.lowest[k],
+                               .highest = sums.highest[k]};
+  return StatisticsOf(moments, lsb_V);
 }
 
 void TakeEverySample(const AdcSettings& adc, const AdInput& input, const AdRequest& request, Stream& noise,
@@ -183,7 +185,14 @@ double LsbOf(const AdcSettings& adc) {
 }
 
 Acquisition AdBlock::ToAcquisition(Time start) const {
-  return {.start = start, .status = status, .n_samples = n_samples, .channel = channel, .raw = raw};
+  Acquisition block;
+  block.start = start;
+  block.status = status;
+  block.n_samples = n_samples;
+  block.channel = channel;
+  block.raw = raw;
+  for (std::size_t k = 0; k < kChannels; ++k) block.saturated_mask |= saturated[k] ? 1 << k : 0;
+  return block;
 }
 
 AdBlock TakeBlock(const AdcSettings& adc, const AdInput& input, const AdRequest& request, Stream& noise) {

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/core/errors.h"
-
 namespace twinbench::sim {
 namespace {
 
-constexpr Duration kSettleLimit = std::chrono::seconds(60);
+constexpr double kStop_s = 0.1;
 constexpr Duration kSettleCheck = std::chrono::milliseconds(1);
 
 mechanics::StackParameters StackOf(const Scenario& actual) {
@@ -64,18 +62,29 @@ bool Axes::StartMove(mechanics::Axis axis, double to_rad) {
   return true;
 }
 
-void Axes::WaitSettled(mechanics::Axis axis) {
-  const Drive& d = drive(axis);
-  const Time window_end = d.arrival + FromSeconds(d.settle_s);
-  if (queue_.Now() < window_end) queue_.RunUntil(window_end);
+bool Axes::Settles(mechanics::Axis axis, Duration within) {
+  const Time window_end = drive(axis).arrival + FromSeconds(drive(axis).settle_s);
+  const Time patience_end = queue_.Now() + within;
+  if (queue_.Now() < window_end) queue_.RunUntil(std::min(window_end, patience_end));
+  if (queue_.Now() < window_end) return false;
   CatchUp();
   while (!plant_->Settled()) {
-    if (queue_.Now() > d.arrival + kSettleLimit) {
-      throw BenchError("table: not in position 60 s after its move; is the servo stable with this payload?");
-    }
-    queue_.RunUntil(queue_.Now() + kSettleCheck);
+    if (queue_.Now() >= patience_end) return false;
+    queue_.RunUntil(std::min(queue_.Now() + kSettleCheck, patience_end));
     CatchUp();
   }
+  return true;
+}
+
+void Axes::Stop(mechanics::Axis axis) {
+  if (!Moving(axis)) return;
+  const mechanics::StackState state = Look();
+  const double here_rad = axis == mechanics::Axis::kTarget ? state.target_rad : state.reference_rad;
+  Drive& d = drive(axis);
+  plant_->StartMove(axis, here_rad, kStop_s);
+  d.commanded_rad = here_rad;
+  d.arrival = queue_.Now() + FromSeconds(kStop_s);
+  last_arrival_ = d.arrival;
 }
 
 void Axes::Mount(const mechanics::ChainGeometry& geometry) {

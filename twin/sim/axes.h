@@ -19,9 +19,13 @@ class Axes {
   /// @return true if the axis moves.
   bool StartMove(mechanics::Axis axis, double to_rad);
 
-  /// Runs the queue until the move has ended, the in-position window has passed and the servo is quiet.
-  /// @throws BenchError if it is not quiet within kSettleLimit.
-  void WaitSettled(mechanics::Axis axis);
+  /// Runs the queue until the move has ended, the in-position window has passed and the servo is quiet, but for no
+  /// longer than `within`. @return whether it got there.
+  bool Settles(mechanics::Axis axis, Duration within);
+  /// Brings the axis to rest from where it is.
+  void Stop(mechanics::Axis axis);
+  bool Moving(mechanics::Axis axis) const { return queue_.Now() < drive(axis).arrival; }
+  double Commanded_rad(mechanics::Axis axis) const { return drive(axis).commanded_rad; }
 
   void Mount(const mechanics::ChainGeometry& geometry);
 

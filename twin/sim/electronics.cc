@@ -58,8 +58,10 @@ AdInput Electronics::InScanOrder(const std::array<double, kChannels>& signal_V, 
 
 Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
   Acquisition block = scanned;
+  block.saturated_mask = 0;
   for (std::size_t place = 0; place < kChannels; ++place) {
     block.channel[scan_[place]] = scanned.channel[place];
+    if ((scanned.saturated_mask >> place & 1) != 0) block.saturated_mask |= 1 << scan_[place];
     for (std::size_t scan = 0; scan + kChannels <= block.raw.size(); scan += kChannels) {
       block.raw[scan + scan_[place]] = scanned.raw[scan + place];
     }

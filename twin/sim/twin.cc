@@ -21,11 +21,10 @@ class TwinTable : public RotaryTable {
  public:
   TwinTable(World& world, Axis axis) : world_(world), axis_(axis) {}
   void StartMove(double angle_rad) override { world_.StartMove(axis_, angle_rad); }
-  void WaitSettled() override { world_.WaitSettled(axis_); }
-  double EncoderAngle_rad() override {
-    const mechanics::StackState state = world_.LookAtAxes();
-    return axis_ == Axis::kTarget ? state.target_encoder_rad : state.reference_encoder_rad;
-  }
+  bool Settles(Duration within) override { return world_.Settles(axis_, within); }
+  TableState State() override { return world_.StateOf(axis_); }
+  void Stop() override { world_.Stop(axis_); }
+  void Home() override {}  // it never loses its origin
 
  private:
   World& world_;

@@ -18,6 +18,16 @@ void World::StartMove(Axis axis, double to_rad) {
   axis == Axis::kTarget ? stand_.BeginTargetStop() : stand_.BeginReferenceStop();
 }
 
+TableState World::StateOf(Axis axis) {
+  const mechanics::StackState axes = axes_.Look();
+  TableState state;
+  state.commanded_rad = axes_.Commanded_rad(axis);
+  state.encoder_rad = axis == Axis::kTarget ? axes.target_encoder_rad : axes.reference_encoder_rad;
+  state.moving = axes_.Moving(axis);
+  state.in_position = axes_.Settles(axis, Duration(0));
+  return state;
+}
+
 void World::Mount(int setup, double clamp_rad, double reseat_rad) {
   const bool reseats = actual_.procedure.clamping == "reseat";
   axes_.Mount(stand_.Mount(effects_.Actual({clamp_rad, reseat_rad, reseats})));

@@ -19,7 +19,9 @@ class World {
   const Scenario& actual() const { return actual_; }
 
   void StartMove(mechanics::Axis axis, double to_rad);
-  void WaitSettled(mechanics::Axis axis) { axes_.WaitSettled(axis); }
+  bool Settles(mechanics::Axis axis, Duration within) { return axes_.Settles(axis, within); }
+  void Stop(mechanics::Axis axis) { axes_.Stop(axis); }
+  TableState StateOf(mechanics::Axis axis);
   mechanics::StackState LookAtAxes() { return axes_.Look(); }
   void Mount(int setup, double clamp_rad, double reseat_rad);
   void SetGoniometer(double yaw_rad, double tilt_rad) { stand_.SetGoniometer(yaw_rad, tilt_rad); }

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/core/scenario.h"
+
+/// bench.toml: which devices stand on the table and how they are reached. docs/hardware.md lists every key.
+namespace twinbench::hw {
+
+struct AdSettings {                          // [adc]
+  std::string kind;                          // iio | comedi
+  std::string uri = "ip:127.0.0.1";          // iio: as libiio takes it
+  std::string device;                        // iio: "psd-adc16"; comedi: "/dev/comedi0"
+  std::vector<std::string> channels;         // of psd_a_x, psd_a_y, psd_b_x, psd_b_y: "voltage0" or "0"
+  int subdevice = -1;                        // comedi: -1 looks for the first analogue input
+  std::string reference = "ground";          // ground | common | differential
+  std::string light;                         // where "ok" | "no_light" | "clipped_spot" is told: an attribute (iio), a
+                                             // digital input subdevice (comedi); empty: not wired
+  std::string serial;                        // expected; empty: any
+  std::string calibration_file;              // comedi softcal; empty: nominal
+  double timeout_s = 2.0;                    // for a block, beyond its own length
+  double rate_tolerance = 1e-6;              // relative; a card that is further off is refused
+  double mains_Hz = 50.0;
+};
+
+struct ControlSettings {                     // [target], [reference], [autocollimator], [thermometer], ...
+  std::string kind;                          // scpi | esp | console | none
+  std::string address;                       // "tcp:HOST:PORT", "serial:/dev/ttyUSB0:19200"
+  int axis = 1;
+  std::string identity;                      // what *IDN? or VE? must begin with; empty: any, but the same all along
+  double timeout_s = 2.0;                    // of one answer
+  int decimals = -1;                         // digits behind the point in commands; -1: all that matter
+};
+
+/// What a table may be asked to do, and what counts as wrong.
+struct TableLimits {
+  double lower_rad = -1e9, upper_rad = 1e9;  // soft limits
+  double in_position_rad = 1.0 * units::arcsec;  // encoder against command when settled
+  double following_rad = 1e9;                // encoder against the way to the target while moving
+  double stall_s = 5.0;                      // a moving table whose encoder stands still that long
+  double move_timeout_s = 120.0;
+};
+
+struct BenchFile {
+  std::string path;                          // for messages
+  std::string kind = "hardware";             // hardware | twin | replay
+  std::string name;                          // for the record
+  std::string record;                        // replay: folder of the run
+  int attempts = 3;                          // at one reading, before the run stops
+  AdSettings adc;
+  ControlSettings target, reference, autocollimator, thermometer, goniometer, fixture;
+  ControlSettings clock;                     // kind "host" or "scpi"
+  TableLimits target_limits, reference_limits;
+};
+
+/// @throws InputError with file:line for a syntax error, an unknown key (naming the nearest), a missing device, a value
+///         out of bounds, a backend that this build does not have.
+BenchFile LoadBenchFile(const std::string& path);
+
+/// The bench file that drives what `twinbench serve` shows at these ports.
+struct ServedAddresses {
+  std::string host = "127.0.0.1";
+  int iiod_port = 0, scpi_port = 0, esp_port = 0;
+  std::string pty;                           // empty: none
+};
+std::string WriteServedBenchFile(const ServedAddresses& addresses, const std::string& tables);  // tables: "scpi" | "esp"
+
+}  // namespace twinbench::hw

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "hw_bridge/bench_file.h"
+#include "twin/core/devices.h"
+
+namespace twinbench::hw {
+
+/// The devices of a bench file, connected, identified and configured; closed when this goes.
+class HardwareBench {
+ public:
+  virtual ~HardwareBench() = default;
+  virtual RotaryBench Bench() = 0;
+  /// Who answered, with versions and serial numbers; the record keeps it.
+  virtual std::string Identity() const = 0;
+};
+
+/// Opens a bench of kind "hardware".
+/// @param scenario  Says which rate, range, resolution and block length the A/D must give.
+/// @param elapsed   Time 0 of the run was so long ago (a resumed run); 0 for a new one.
+/// @throws DeviceFault if a device does not answer, is not the one named or cannot do what is asked.
+std::unique_ptr<HardwareBench> OpenBench(const BenchFile& file, const Scenario& scenario, Duration elapsed = {});
+
+}  // namespace twinbench::hw
