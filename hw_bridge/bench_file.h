@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/core/scenario.h"
+#include "twin/core/table_limits.h"
 
 /// bench.toml: which devices stand on the table and how they are reached. docs/hardware.md lists every key.
 namespace twinbench::hw {
@@ -34,14 +35,8 @@ struct ControlSettings {                     // [target], [reference], [autocoll
   int decimals = -1;                         // digits behind the point in commands; -1: all that matter
 };
 
-/// What a table may be asked to do, and what counts as wrong.
-struct TableLimits {
-  double lower_rad = -1e9, upper_rad = 1e9;  // soft limits
-  double in_position_rad = 1.0 * units::arcsec;  // encoder against command when settled
-  double following_rad = 1e9;                // encoder against the way to the target while moving
-  double stall_s = 5.0;                      // a moving table whose encoder stands still that long
-  double move_timeout_s = 120.0;
-};
+/// What is asked of a real table unless the file says otherwise.
+inline constexpr TableLimits kHardwareLimits = {.in_position_rad = 1.0 * units::arcsec};
 
 struct BenchFile {
   std::string path;                          // for messages
@@ -52,7 +47,7 @@ struct BenchFile {
   AdSettings adc;
   ControlSettings target, reference, autocollimator, thermometer, goniometer, fixture;
   ControlSettings clock;                     // kind "host" or "scpi"
-  TableLimits target_limits, reference_limits;
+  TableLimits target_limits = kHardwareLimits, reference_limits = kHardwareLimits;
 };
 
 /// @throws InputError with file:line for a syntax error, an unknown key (naming the nearest), a missing device, a value

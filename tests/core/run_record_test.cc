@@ -231,18 +231,90 @@ TEST(RunRecord, OfAnotherVersionIsRefused) {
   RunRecord::Create(folder.path(), AnyProvenance());
   Sql(folder.path(), "PRAGMA user_version = 99");
   EXPECT_EQ(OpenError(folder.path()),
-            folder.File("record.sqlite") + ": the record has version 99; expected version 2");
+            folder.File("record.sqlite") + ": the record has version 99; expected version 3");
+}
+
+/// Takes from a record what version 3 brought.
+void MakeVersion2(const std::string& folder) {
+  for (const char* column : {"first_scan", "device_ns", "host_ns", "utc_ns", "saturated_mask"})
+    Sql(folder, ("ALTER TABLE raw_blocks DROP COLUMN " + std::string(column)).c_str());
+  for (const char* table : {"calls", "attempts"}) Sql(folder, ("DROP TABLE " + std::string(table)).c_str());
+  Sql(folder, "PRAGMA user_version = 2");
+}
+
+TEST(RunRecord, OfTheVersionWithoutCallsAndAttemptsIsBroughtUpToDate) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), AnyProvenance())->Append(ReadingOf(0), BlockOf({1, 2, 3, 4}));
+  MakeVersion2(folder.path());
+  const auto record = RunRecord::Continue(folder.path());
+  EXPECT_EQ(record->RawBlocks().at(0).stamp.first_scan, -1) << "not known then";
+  record->AttemptFailed(1, Time{}, "gap", "3 scans");
+  EXPECT_EQ(record->FailedAttempts().size(), 1u);
+  EXPECT_EQ(Sql(folder.path(), "DELETE FROM attempts"), "a run record is insert-only");
 }
 
 TEST(RunRecord, OfTheVersionWithoutAngleComparisonsIsBroughtUpToDate) {
   const TemporaryFolder folder;
   RunRecord::Create(folder.path(), AnyProvenance());
+  MakeVersion2(folder.path());
   for (const char* column : {"measured_rad", "velocity_rad_s"})
     Sql(folder.path(), ("ALTER TABLE readings DROP COLUMN " + std::string(column)).c_str());
   Sql(folder.path(), "PRAGMA user_version = 1");
   const auto record = RunRecord::Open(folder.path());
   record->Append(ReadingOf(0), {});
   ExpectSame(record->Readings().at(0), ReadingOf(0));
+}
+
+TEST(RunRecord, KeepsCallsWithTheReadingThatTheyLedTo) {
+  const TemporaryFolder folder;
+  const DeviceCall move{Time(Duration(7)), "target", "move 0.1", ""}, look{Time(Duration(9)), "target", "state", "0.1 0.1"};
+  {
+    const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+    record->Called(move);
+    record->Append(ReadingOf(0), {});
+    record->Called(look);
+    record->ForgetCalls();  // an attempt that failed
+    record->Called(look);
+    record->Append(ReadingOf(1), {});
+    record->Called(move);  // no reading came of it
+  }
+  EXPECT_EQ(RunRecord::Open(folder.path())->Calls(), (std::vector<DeviceCall>{move, look}));
+}
+
+TEST(RunRecord, NumbersTheAttemptsOfEachReadingAndUsesNoneTwice) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), AnyProvenance())->AttemptFailed(4, Time{}, "gap", "a");
+  const auto record = RunRecord::Continue(folder.path());
+  record->AttemptFailed(4, Time{}, "timeout", "b");
+  record->AttemptFailed(5, Time{}, "gap", "c");
+  std::vector<std::pair<int, int>> numbers;
+  for (const FailedAttempt& attempt : record->FailedAttempts()) numbers.emplace_back(attempt.reading, attempt.attempt);
+  EXPECT_EQ(numbers, (std::vector<std::pair<int, int>>{{4, 1}, {4, 2}, {5, 1}}));
+}
+
+TEST(RunRecord, KeepsWhereABlockStoodInTheConvertersCount) {
+  const TemporaryFolder folder;
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  Acquisition block = BlockOf({1, 2, 3, 4});
+  block.stamp = {11, 22, 33, 44};
+  block.saturated_mask = 5;
+  record->Append(ReadingOf(0), block);
+  const RawBlock kept = record->RawBlocks().at(0);
+  EXPECT_EQ(kept.stamp.first_scan, 11);
+  EXPECT_EQ(kept.stamp.device_ns, 22);
+  EXPECT_EQ(kept.stamp.host_ns, 33);
+  EXPECT_EQ(kept.stamp.utc_ns, 44);
+  EXPECT_EQ(kept.saturated_mask, 5);
+}
+
+TEST(RunRecord, HasOneWriter) {
+  const TemporaryFolder folder;
+  auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  EXPECT_THROW(RunRecord::Continue(folder.path()), InputError);
+  EXPECT_NO_THROW(RunRecord::Open(folder.path())) << "whoever only reads may";
+  record.reset();
+  record = RunRecord::Continue(folder.path());
+  EXPECT_THROW(RunRecord::Continue(folder.path()), InputError);
 }
 
 void FillRecord(const std::string& directory) {

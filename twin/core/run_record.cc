@@ -2,58 +2,61 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "twin/core/errors.h"
+#include "twin/core/device_fault.h"
 #include "twin/core/number_text.h"
+#include "twin/core/record_rows.h"
+#include "twin/core/record_schema.h"
 #include "twin/core/sqlite_database.h"
 
 namespace twinbench {
 namespace {
 
-constexpr int kApplicationId = 0x54574E42;  // "TWNB"
-constexpr int kVersion = 2;                 // of the tables below
-
-constexpr const char* kTables = R"sql(
-CREATE TABLE provenance(program_version TEXT, bench TEXT, seed TEXT, clock_origin_utc TEXT);
-CREATE TABLE readings(
-  id INTEGER PRIMARY KEY, reading INTEGER NOT NULL UNIQUE, time_ns INTEGER NOT NULL, setup INTEGER, pass INTEGER,
-  direction INTEGER, position INTEGER, phase TEXT NOT NULL, status TEXT NOT NULL,
-  target_rad REAL, reference_rad REAL,
-  psd_a_x_V REAL, psd_a_y_V REAL, psd_b_x_V REAL, psd_b_y_V REAL,
-  psd_a_x_std_V REAL, psd_a_y_std_V REAL, psd_b_x_std_V REAL, psd_b_y_std_V REAL,
-  n_samples INTEGER, dwell_s REAL, temperature_degC REAL,
-  autocollimator_yaw_rad REAL, autocollimator_tilt_rad REAL, extra TEXT,
-  measured_rad REAL, velocity_rad_s REAL);
-CREATE TABLE raw_blocks(reading INTEGER PRIMARY KEY REFERENCES readings(reading), channels INTEGER, samples BLOB);
-CREATE TABLE events(id INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, device TEXT, text TEXT);
-CREATE TABLE finished(id INTEGER PRIMARY KEY CHECK(id = 1));
-)sql";
-
 constexpr const char* kInsertReading =
     "INSERT INTO readings VALUES(NULL, ?,?,?,?,?,?,?,?, ?,?, ?,?,?,?, ?,?,?,?, ?,?,?, ?,?, ?, ?,?)";
+constexpr const char* kInsertBlock =
+    "INSERT INTO raw_blocks(reading, channels, samples, first_scan, device_ns, host_ns, utc_ns, saturated_mask) "
+    "VALUES(?,?,?, ?,?,?,?, ?)";
+constexpr const char* kInsertCall =
+    "INSERT INTO calls(reading, time_ns, device, request, answer) VALUES(?,?,?,?,?)";
+constexpr const char* kInsertAttempt =
+    "INSERT INTO attempts(reading, attempt, time_ns, fault, text) VALUES(?1, "
+    "(SELECT coalesce(max(attempt), 0) + 1 FROM attempts WHERE reading = ?1), ?2, ?3, ?4)";
+constexpr std::uint64_t kReserve_B = 4 << 20;
 
 std::string RecordPath(const std::string& directory) {
   return (std::filesystem::path(directory) / "record.sqlite").string();
 }
 
-/// Nothing of a record may be changed or taken away once it is in.
-void ForbidChanges(SqliteDatabase& database) {
-  for (const char* table : {"provenance", "readings", "raw_blocks", "events", "finished"}) {
-    for (const char* change : {"UPDATE", "DELETE"}) {
-      const std::string sql = fmt::format(
-          "CREATE TRIGGER no_{0}_{1} BEFORE {0} ON {1} BEGIN SELECT RAISE(ABORT, 'a run record is insert-only'); "
-          "END",
-          change, table);
-      database.Execute(sql.c_str());
-    }
+/// Says that a program writes this record. The system takes it away when the program ends, however it ends.
+class WriterLock {
+ public:
+  explicit WriterLock(const std::string& directory) {
+    const std::string path = (std::filesystem::path(directory) / "record.lock").string();
+    handle_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (handle_ < 0) throw BenchError(path + ": cannot be made");
+    if (flock(handle_, LOCK_EX | LOCK_NB) == 0) return;
+    close(handle_);
+    throw InputError(directory, "another program is writing this record", "one program for one run");
   }
-}
+  ~WriterLock() {
+    if (handle_ >= 0) close(handle_);
+  }
+  WriterLock(WriterLock&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
+  WriterLock& operator=(WriterLock&&) = delete;
+
+ private:
+  int handle_ = -1;
+};
 
 /// Write-ahead log, and the disk has it before a commit returns.
 void MakeSafe(SqliteDatabase& database) {
@@ -69,102 +72,6 @@ void SyncDirectory(const std::string& directory) {
   if (!synced) throw BenchError(directory + ": the disk does not confirm the new record");
 }
 
-void WriteProvenance(SqliteDatabase& database, const Provenance& provenance) {
-  SqliteStatement insert(database, "INSERT INTO provenance VALUES(?, ?, ?, ?)");
-  insert.Bind(0, provenance.program_version);
-  insert.Bind(1, provenance.bench);
-  insert.Bind(2, fmt::format("{}", provenance.seed));
-  insert.Bind(3, provenance.clock_origin_utc);
-  insert.Run();
-}
-
-void MakeTables(SqliteDatabase& database, const Provenance& provenance) {
-  SqliteTransaction transaction(database);
-  database.Execute(kTables);
-  ForbidChanges(database);
-  WriteProvenance(database, provenance);
-  database.Execute(fmt::format("PRAGMA application_id = {}", kApplicationId).c_str());
-  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
-  transaction.Commit();
-}
-
-/// Version 1 knew the rotary bench only: the columns of the angle comparison are added, empty.
-void BringUpToDate(SqliteDatabase& database) {
-  if (database.Ask("PRAGMA user_version") != "1") return;
-  SqliteTransaction transaction(database);
-  for (const char* column : {"measured_rad", "velocity_rad_s"})
-    database.Execute(fmt::format("ALTER TABLE readings ADD COLUMN {} REAL", column).c_str());
-  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
-  transaction.Commit();
-}
-
-/// @throws InputError unless the file is a whole record of a version that we know.
-void CheckRecord(SqliteDatabase& database) {
-  const std::string expected = "a record.sqlite made by twinbench";
-  if (database.Ask("PRAGMA application_id") != fmt::format("{}", kApplicationId))
-    throw InputError(database.path(), "this is a database of another program, or its making was interrupted",
-                     expected);
-  BringUpToDate(database);
-  const std::string version = database.Ask("PRAGMA user_version");
-  if (version != fmt::format("{}", kVersion))
-    throw InputError(database.path(), "the record has version " + version, fmt::format("version {}", kVersion));
-  const std::string check = database.Ask("PRAGMA quick_check(1)");
-  if (check != "ok") throw InputError(database.path(), "the record is damaged: " + check, expected);
-}
-
-/// Text that is no UTF-8 (from an imported file) keeps its place, not its odd bytes.
-std::string ExtraText(const Reading& reading) {
-  if (reading.extra.empty()) return "";
-  return nlohmann::json(reading.extra).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-void BindReading(SqliteStatement& insert, const Reading& r) {
-  int index = 0;
-  const auto bind = [&](const auto& value) { insert.Bind(index++, value); };
-  const auto bind_integer = [&](std::int64_t value) { insert.Bind(index++, value); };
-  bind_integer(r.reading);
-  bind_integer(r.time.time_since_epoch().count());
-  for (const int number : {r.setup, r.pass, r.direction, r.position}) bind_integer(number);
-  bind(std::string(PhaseName(r.phase)));
-  bind(std::string(ReadingStatusName(r.status)));
-  for (const double angle_rad : {r.target_rad, r.reference_rad}) bind(angle_rad);
-  for (const double mean_V : r.mean_V) bind(mean_V);
-  for (const double std_V : r.std_V) bind(std_V);
-  bind_integer(r.n_samples);
-  for (const double value : {r.dwell_s, r.temperature_degC, r.autocollimator_yaw_rad, r.autocollimator_tilt_rad})
-    bind(value);
-  bind(ExtraText(r));
-  for (const double value : {r.measured_rad, r.velocity_rad_s}) bind(value);
-}
-
-/// @throws InputError if a name or the JSON in a row is none of ours.
-Reading TakeReading(const SqliteStatement& row, const std::string& path) {
-  Reading r;
-  int column = 1;  // behind the id
-  const auto take_integer = [&] { return static_cast<int>(row.Integer(column++)); };
-  const auto take_real = [&] { return row.Real(column++); };
-  r.reading = take_integer();
-  r.time = Time(Duration(row.Integer(column++)));
-  for (int* number : {&r.setup, &r.pass, &r.direction, &r.position}) *number = take_integer();
-  const auto phase = PhaseOf(row.Text(column++));
-  const auto status = ReadingStatusOf(row.Text(column++));
-  for (double* angle_rad : {&r.target_rad, &r.reference_rad}) *angle_rad = take_real();
-  for (double& mean_V : r.mean_V) mean_V = take_real();
-  for (double& std_V : r.std_V) std_V = take_real();
-  r.n_samples = take_integer();
-  for (double* value : {&r.dwell_s, &r.temperature_degC, &r.autocollimator_yaw_rad, &r.autocollimator_tilt_rad})
-    *value = take_real();
-  const std::string extra_text = row.Text(column++);
-  for (double* value : {&r.measured_rad, &r.velocity_rad_s}) *value = take_real();
-  const auto extra = nlohmann::json::parse(extra_text, nullptr, false);
-  if (!phase || !status || (extra.is_discarded() && !extra_text.empty()))
-    throw InputError(path, fmt::format("reading {} of the record is damaged", r.reading), "names and JSON of ours");
-  r.phase = *phase;
-  r.status = *status;
-  if (extra.is_object()) r.extra = extra.get<std::map<std::string, std::string>>();
-  return r;
-}
-
 }  // namespace
 
 /// The open file, with the statements that every reading needs.
@@ -173,10 +80,36 @@ struct RunRecord::Database : SqliteDatabase {
 
   void Prepare() {
     insert_reading.emplace(*this, kInsertReading);
-    insert_block.emplace(*this, "INSERT INTO raw_blocks VALUES(?, ?, ?)");
+    insert_block.emplace(*this, kInsertBlock);
+    insert_call.emplace(*this, kInsertCall);
+  }
+  void AppendBlock(int reading, const Acquisition& taken) {
+    largest_block_B = std::max<std::uint64_t>(largest_block_B, taken.raw.size() * sizeof(std::int16_t));
+    insert_block->Bind(0, std::int64_t{reading});
+    insert_block->Bind(1, std::int64_t{kChannels});
+    insert_block->Bind(2, std::span<const std::int16_t>(taken.raw));
+    const BlockStamp& stamp = taken.stamp;
+    int column = 3;
+    for (const std::int64_t number : {stamp.first_scan, stamp.device_ns, stamp.host_ns, stamp.utc_ns})
+      insert_block->Bind(column++, number);
+    insert_block->Bind(column, std::int64_t{taken.saturated_mask});
+    insert_block->Run();
+  }
+  void AppendCalls(int reading) {
+    for (const DeviceCall& call : calls) {
+      insert_call->Bind(0, std::int64_t{reading});
+      insert_call->Bind(1, std::int64_t{call.time.time_since_epoch().count()});
+      insert_call->Bind(2, call.device);
+      insert_call->Bind(3, call.request);
+      insert_call->Bind(4, call.answer);
+      insert_call->Run();
+    }
   }
   std::optional<SqliteStatement> insert_reading;  // as members they go before the base closes the file
-  std::optional<SqliteStatement> insert_block;
+  std::optional<SqliteStatement> insert_block, insert_call;
+  std::optional<WriterLock> lock;
+  std::vector<DeviceCall> calls;     // since the last reading
+  std::uint64_t largest_block_B = 0;
 };
 
 RunRecord::RunRecord(std::unique_ptr<Database> database) : database_(std::move(database)) {}
@@ -192,6 +125,7 @@ std::unique_ptr<RunRecord> RunRecord::Create(const std::string& directory, const
   if (error) throw BenchError(fmt::format("{}: the folder cannot be made: {}", directory, error.message()));
   if (std::filesystem::exists(path)) throw InputError(path, "there is a record already", "a folder without one");
   // Made beside its place and renamed when whole: a record that is there can be opened, whenever the power fails.
+  WriterLock making(directory);
   const std::string beside = path + ".part";
   for (const char* ending : {"", "-wal", "-shm"}) std::filesystem::remove(beside + ending, error);
   {
@@ -202,7 +136,9 @@ std::unique_ptr<RunRecord> RunRecord::Create(const std::string& directory, const
   std::filesystem::rename(beside, path, error);
   if (error) throw BenchError(fmt::format("{}: the record cannot be made: {}", path, error.message()));
   SyncDirectory(directory);
-  return Open(directory);
+  auto record = Open(directory);
+  record->database_->lock.emplace(std::move(making));
+  return record;
 }
 
 std::unique_ptr<RunRecord> RunRecord::Open(const std::string& directory) {
@@ -220,19 +156,48 @@ std::unique_ptr<RunRecord> RunRecord::Open(const std::string& directory) {
   }
 }
 
+std::unique_ptr<RunRecord> RunRecord::Continue(const std::string& directory) {
+  auto record = Open(directory);
+  record->database_->lock.emplace(directory);
+  return record;
+}
+
 void RunRecord::Append(const Reading& reading, const Acquisition& taken) {
   SqliteTransaction transaction(*database_);
   SqliteStatement& insert = *database_->insert_reading;
   BindReading(insert, reading);
   insert.Run();
-  if (!taken.raw.empty()) {
-    SqliteStatement& block = *database_->insert_block;
-    block.Bind(0, static_cast<std::int64_t>(reading.reading));
-    block.Bind(1, static_cast<std::int64_t>(kChannels));
-    block.Bind(2, std::span<const std::int16_t>(taken.raw));
-    block.Run();
-  }
+  if (!taken.raw.empty()) database_->AppendBlock(reading.reading, taken);
+  database_->AppendCalls(reading.reading);
   transaction.Commit();
+  database_->calls.clear();
+}
+
+void RunRecord::Called(const DeviceCall& call) {
+  database_->calls.push_back(call);
+}
+
+void RunRecord::ForgetCalls() {
+  database_->calls.clear();
+}
+
+void RunRecord::AttemptFailed(int reading, Time time, const std::string& fault, const std::string& text) {
+  SqliteStatement insert(*database_, kInsertAttempt);
+  insert.Bind(0, std::int64_t{reading});
+  insert.Bind(1, std::int64_t{time.time_since_epoch().count()});
+  insert.Bind(2, fault);
+  insert.Bind(3, text);
+  insert.Run();
+}
+
+void RunRecord::RequireRoom() {
+  struct statvfs disk {};
+  if (statvfs(database_->path().c_str(), &disk) != 0) return;  // a file system that does not tell
+  const std::uint64_t free_B = std::uint64_t{disk.f_bavail} * disk.f_frsize;
+  if (free_B >= kReserve_B + 2 * database_->largest_block_B) return;
+  throw DeviceFault(FaultKind::kDisk, database_->path(),
+                    fmt::format("{:.1f} MB are left on the disk; the run pauses before a reading is lost",
+                                static_cast<double>(free_B) / 1e6));
 }
 
 void RunRecord::AppendEvent(Time time, const std::string& device, const std::string& text) {
@@ -244,7 +209,11 @@ void RunRecord::AppendEvent(Time time, const std::string& device, const std::str
 }
 
 void RunRecord::Finish() {
+  SqliteTransaction transaction(*database_);
+  database_->AppendCalls(-1);  // behind the last reading
   database_->Execute("INSERT OR IGNORE INTO finished VALUES(1)");
+  transaction.Commit();
+  database_->calls.clear();
 }
 
 bool RunRecord::finished() const {
@@ -267,14 +236,36 @@ std::vector<Reading> RunRecord::Readings() const {
 }
 
 std::vector<RawBlock> RunRecord::RawBlocks() const {
-  SqliteStatement select(*database_, "SELECT reading, channels, samples FROM raw_blocks ORDER BY rowid");
+  SqliteStatement select(*database_,
+                         "SELECT reading, channels, samples, coalesce(first_scan, -1), coalesce(device_ns, -1), "
+                         "coalesce(host_ns, -1), coalesce(utc_ns, -1), coalesce(saturated_mask, 0) "
+                         "FROM raw_blocks ORDER BY rowid");
   std::vector<RawBlock> blocks;
   while (select.Step()) {
     const auto words = select.Words(2);
-    blocks.push_back(
-        {static_cast<int>(select.Integer(0)), static_cast<int>(select.Integer(1)), {words.begin(), words.end()}});
+    const auto integer = [&](int column) { return static_cast<int>(select.Integer(column)); };
+    blocks.push_back({integer(0), integer(1), {words.begin(), words.end()},
+                      {select.Integer(3), select.Integer(4), select.Integer(5), select.Integer(6)}, integer(7)});
   }
   return blocks;
+}
+
+std::vector<DeviceCall> RunRecord::Calls() const {
+  SqliteStatement select(*database_, "SELECT time_ns, device, request, answer FROM calls ORDER BY id");
+  std::vector<DeviceCall> calls;
+  while (select.Step())
+    calls.push_back({Time(Duration(select.Integer(0))), select.Text(1), select.Text(2), select.Text(3)});
+  return calls;
+}
+
+std::vector<FailedAttempt> RunRecord::FailedAttempts() const {
+  SqliteStatement select(*database_, "SELECT reading, attempt, time_ns, fault, text FROM attempts ORDER BY id");
+  std::vector<FailedAttempt> attempts;
+  while (select.Step()) {
+    attempts.push_back({static_cast<int>(select.Integer(0)), static_cast<int>(select.Integer(1)),
+                        Time(Duration(select.Integer(2))), select.Text(3), select.Text(4)});
+  }
+  return attempts;
 }
 
 std::vector<RecordedEvent> RunRecord::Events() const {

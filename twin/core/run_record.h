@@ -7,6 +7,7 @@
 
 #include "twin/core/devices.h"
 #include "twin/core/reading.h"
+#include "twin/core/run_log.h"
 
 namespace twinbench {
 
@@ -22,6 +23,16 @@ struct RawBlock {
   int reading = 0;
   int channels = 0;
   std::vector<std::int16_t> samples;  // scan by scan
+  BlockStamp stamp;
+  int saturated_mask = 0;
+};
+
+/// An attempt at a reading that came to nothing.
+struct FailedAttempt {
+  int reading = 0;
+  int attempt = 0;  // of this reading, from 1
+  Time time{};
+  std::string fault, text;
 };
 
 struct RecordedEvent {
@@ -32,20 +43,29 @@ struct RecordedEvent {
 
 /// The record of a run in DIR/record.sqlite: insert-only, one transaction a reading, WAL with synchronous FULL, so
 /// that it opens after kill -9 or power loss with every reading that Append returned for.
-class RunRecord : public ReadingSink {
+class RunRecord : public ReadingSink, public RunLog {
  public:
   /// Makes DIR and an empty record in it.
+  /// The record is this program's to write, until it goes.
   /// @throws InputError if DIR already holds a record; BenchError if the disk refuses.
   static std::unique_ptr<RunRecord> Create(const std::string& directory, const Provenance& provenance);
-  /// Opens a record to be read or continued, also one that another program is still writing.
+  /// Opens a record to be read, also one that another program is still writing.
   /// @throws InputError if there is no record, it is not one of ours, or it is damaged.
   static std::unique_ptr<RunRecord> Open(const std::string& directory);
+  /// Opens a record to be written on.
+  /// @throws InputError as Open, and if another program is writing it.
+  static std::unique_ptr<RunRecord> Continue(const std::string& directory);
 
   ~RunRecord() override;
   /// @throws BenchError if the disk refuses or the reading's number is taken; the record is then as it was before.
   void Append(const Reading& reading, const Acquisition& taken) override;
+  void Called(const DeviceCall& call) override;
+  void ForgetCalls() override;
+  void AttemptFailed(int reading, Time time, const std::string& fault, const std::string& text) override;
   /// Keeps what a device did or an operator noted.
-  void AppendEvent(Time time, const std::string& device, const std::string& text);
+  void AppendEvent(Time time, const std::string& device, const std::string& text) override;
+  /// Room for kReserve_B and twice the largest block: the write-ahead log holds everything a second time.
+  void RequireRoom() override;
   /// Marks the run complete; without it the run is known to be unfinished.
   void Finish();
 
@@ -55,6 +75,9 @@ class RunRecord : public ReadingSink {
   std::vector<Reading> Readings() const;
   std::vector<RawBlock> RawBlocks() const;
   std::vector<RecordedEvent> Events() const;
+  /// What was asked of the devices on the way to the readings that are kept, in order.
+  std::vector<DeviceCall> Calls() const;
+  std::vector<FailedAttempt> FailedAttempts() const;
 
  private:
   struct Database;

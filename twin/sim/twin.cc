@@ -1,5 +1,7 @@
 #include "twin/sim/twin.h"
 
+#include <optional>
+
 #include "twin/sim/world.h"
 
 namespace twinbench::sim {
@@ -96,9 +98,7 @@ class TwinFixture : public Fixture {
   World& world_;
 };
 
-}  // namespace
-
-struct Twin::Devices {
+struct Devices {
   explicit Devices(const Scenario& scenario) : world(scenario) {}
 
   World world;
@@ -112,23 +112,37 @@ struct Twin::Devices {
   TwinFixture fixture{world};
 };
 
-Twin::Twin(const Scenario& scenario) : scenario_(scenario), devices_(std::make_unique<Devices>(scenario)) {}
+}  // namespace
+
+/// The devices are rebuilt in their place: whoever holds them keeps them over a restart.
+struct Twin::Impl : public Simulation {
+  explicit Impl(const Scenario& its_scenario) : scenario(its_scenario) { devices.emplace(scenario); }
+  void Restart() override { devices.emplace(scenario); }
+  void SetPaced(bool) override {}  // in a program's own twin no time is ever waited for
+
+  Scenario scenario;
+  std::optional<Devices> devices;
+};
+
+Twin::Twin(const Scenario& scenario) : impl_(std::make_unique<Impl>(scenario)) {}
 Twin::~Twin() = default;
 
 RotaryBench Twin::Bench() {
-  Devices& d = *devices_;
-  return {d.clock, d.target, d.reference, d.adc, d.autocollimator, d.thermometer, d.goniometer, d.fixture};
+  Devices& d = *impl_->devices;
+  return {d.clock,       d.target,     d.reference, d.adc,    d.autocollimator,
+          d.thermometer, d.goniometer, d.fixture,   impl_.get()};
 }
 
 Truth Twin::TheTruth() const {
-  const Stand& stand = devices_->world.stand();
-  const int positions = scenario_.procedure.positions;
-  return {stand.target().Repeatable(positions), stand.reference().Repeatable(positions), scenario_.effects,
-          scenario_.seed};
+  const Stand& stand = impl_->devices->world.stand();
+  const Scenario& scenario = impl_->scenario;
+  const int positions = scenario.procedure.positions;
+  return {stand.target().Repeatable(positions), stand.reference().Repeatable(positions), scenario.effects,
+          scenario.seed};
 }
 
 void Twin::WriteIrradiance(const std::string& path) {
-  devices_->world.WriteIrradiance(path);
+  impl_->devices->world.WriteIrradiance(path);
 }
 
 }  // namespace twinbench::sim

@@ -18,7 +18,7 @@ class Twin {
   explicit Twin(const Scenario& scenario);
   ~Twin();
 
-  /// Valid as long as the twin.
+  /// Valid as long as the twin, over restarts too.
   RotaryBench Bench();
 
   /// What the errors of both tables are at the stops of the scenario's procedure.
@@ -28,9 +28,8 @@ class Twin {
   void WriteIrradiance(const std::string& path);
 
  private:
-  struct Devices;
-  Scenario scenario_;
-  std::unique_ptr<Devices> devices_;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace twinbench::sim

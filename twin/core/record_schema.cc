@@ -1,0 +1,112 @@
+#include "twin/core/record_schema.h"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+
+#include "twin/core/errors.h"
+
+namespace twinbench {
+namespace {
+
+constexpr int kApplicationId = 0x54574E42;  // "TWNB"
+constexpr int kVersion = 3;                 // of the tables below
+
+constexpr const char* kTables = R"sql(
+CREATE TABLE provenance(program_version TEXT, bench TEXT, seed TEXT, clock_origin_utc TEXT);
+CREATE TABLE readings(
+  id INTEGER PRIMARY KEY, reading INTEGER NOT NULL UNIQUE, time_ns INTEGER NOT NULL, setup INTEGER, pass INTEGER,
+  direction INTEGER, position INTEGER, phase TEXT NOT NULL, status TEXT NOT NULL,
+  target_rad REAL, reference_rad REAL,
+  psd_a_x_V REAL, psd_a_y_V REAL, psd_b_x_V REAL, psd_b_y_V REAL,
+  psd_a_x_std_V REAL, psd_a_y_std_V REAL, psd_b_x_std_V REAL, psd_b_y_std_V REAL,
+  n_samples INTEGER, dwell_s REAL, temperature_degC REAL,
+  autocollimator_yaw_rad REAL, autocollimator_tilt_rad REAL, extra TEXT,
+  measured_rad REAL, velocity_rad_s REAL);
+CREATE TABLE raw_blocks(reading INTEGER PRIMARY KEY REFERENCES readings(reading), channels INTEGER, samples BLOB,
+  first_scan INTEGER, device_ns INTEGER, host_ns INTEGER, utc_ns INTEGER, saturated_mask INTEGER);
+CREATE TABLE events(id INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, device TEXT, text TEXT);
+CREATE TABLE finished(id INTEGER PRIMARY KEY CHECK(id = 1));
+)sql";
+
+/// Since version 3: what was asked of the devices on the way to each reading, and attempts that came to nothing.
+constexpr const char* kJournalTables = R"sql(
+CREATE TABLE calls(id INTEGER PRIMARY KEY, reading INTEGER NOT NULL, time_ns INTEGER NOT NULL, device TEXT NOT NULL,
+  request TEXT NOT NULL, answer TEXT);
+CREATE TABLE attempts(id INTEGER PRIMARY KEY, reading INTEGER NOT NULL, attempt INTEGER NOT NULL, time_ns INTEGER,
+  fault TEXT, text TEXT, UNIQUE(reading, attempt));
+)sql";
+
+/// Nothing of a record may be changed or taken away once it is in.
+void ForbidChanges(SqliteDatabase& database, std::initializer_list<const char*> tables) {
+  for (const char* table : tables) {
+    for (const char* change : {"UPDATE", "DELETE"}) {
+      const std::string sql = fmt::format(
+          "CREATE TRIGGER no_{0}_{1} BEFORE {0} ON {1} BEGIN SELECT RAISE(ABORT, 'a run record is insert-only'); "
+          "END",
+          change, table);
+      database.Execute(sql.c_str());
+    }
+  }
+}
+
+void WriteProvenance(SqliteDatabase& database, const Provenance& provenance) {
+  SqliteStatement insert(database, "INSERT INTO provenance VALUES(?, ?, ?, ?)");
+  insert.Bind(0, provenance.program_version);
+  insert.Bind(1, provenance.bench);
+  insert.Bind(2, fmt::format("{}", provenance.seed));
+  insert.Bind(3, provenance.clock_origin_utc);
+  insert.Run();
+}
+
+/// Version 1 knew the rotary bench only: the columns of the angle comparison are added, empty.
+void FromVersion1(SqliteDatabase& database) {
+  for (const char* column : {"measured_rad", "velocity_rad_s"})
+    database.Execute(fmt::format("ALTER TABLE readings ADD COLUMN {} REAL", column).c_str());
+}
+
+/// Version 2 kept no calls, attempts and stamps of blocks.
+void FromVersion2(SqliteDatabase& database) {
+  for (const char* column : {"first_scan", "device_ns", "host_ns", "utc_ns", "saturated_mask"})
+    database.Execute(fmt::format("ALTER TABLE raw_blocks ADD COLUMN {} INTEGER", column).c_str());
+  database.Execute(kJournalTables);
+  ForbidChanges(database, {"calls", "attempts"});
+}
+
+void BringUpToDate(SqliteDatabase& database) {
+  const std::string version = database.Ask("PRAGMA user_version");
+  if (version != "1" && version != "2") return;
+  SqliteTransaction transaction(database);
+  if (version == "1") FromVersion1(database);
+  FromVersion2(database);
+  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
+  transaction.Commit();
+}
+
+}  // namespace
+
+void MakeTables(SqliteDatabase& database, const Provenance& provenance) {
+  SqliteTransaction transaction(database);
+  database.Execute(kTables);
+  database.Execute(kJournalTables);
+  ForbidChanges(database, {"provenance", "readings", "raw_blocks", "events", "finished", "calls", "attempts"});
+  WriteProvenance(database, provenance);
+  database.Execute(fmt::format("PRAGMA application_id = {}", kApplicationId).c_str());
+  database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
+  transaction.Commit();
+}
+
+void CheckRecord(SqliteDatabase& database) {
+  const std::string expected = "a record.sqlite made by twinbench";
+  if (database.Ask("PRAGMA application_id") != fmt::format("{}", kApplicationId))
+    throw InputError(database.path(), "this is a database of another program, or its making was interrupted",
+                     expected);
+  BringUpToDate(database);
+  const std::string version = database.Ask("PRAGMA user_version");
+  if (version != fmt::format("{}", kVersion))
+    throw InputError(database.path(), "the record has version " + version, fmt::format("version {}", kVersion));
+  const std::string check = database.Ask("PRAGMA quick_check(1)");
+  if (check != "ok") throw InputError(database.path(), "the record is damaged: " + check, expected);
+}
+
+}  // namespace twinbench
