@@ -25,6 +25,15 @@ void Commands::Start(Axis axis, double to_rad, double duration_s, Nanoseconds no
   start_[i] = now;
 }
 
+bool Commands::Stop(Axis axis, double duration_s, Nanoseconds now) {
+  const std::size_t i = Index(axis);
+  if (Ended(i, now)) return false;
+  const ProfilePoint here = At(i, now);
+  profile_[i] = QuinticProfile(here, here.position_rad + 0.5 * here.velocity_rad_s * duration_s, duration_s);
+  start_[i] = now;
+  return true;
+}
+
 double Commands::Left_s(Nanoseconds now) const {
   double left_s = 0.0;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -56,6 +65,12 @@ void DrivenPlant::StartMove(Axis axis, double to_rad, double duration_s) {
   commands_.Start(axis, to_rad, duration_s, now_);
   if (asleep_) stepped_ = now_;
   asleep_ = false;
+  quiet_ = 0;
+  OnStart();
+}
+
+void DrivenPlant::Stop(Axis axis) {
+  if (!commands_.Stop(axis, kBraking_s, now_)) return;
   quiet_ = 0;
   OnStart();
 }

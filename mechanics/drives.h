@@ -29,6 +29,8 @@ inline std::size_t Index(Axis axis) {
 class Commands {
  public:
   void Start(Axis axis, double to_rad, double duration_s, Nanoseconds now);
+  /// @return whether there was a motion to be brought to rest.
+  bool Stop(Axis axis, double duration_s, Nanoseconds now);
   ProfilePoint At(std::size_t axis, Nanoseconds time) const {
     return profile_[axis].At(ToSeconds(time - start_[axis]));
   }
@@ -54,6 +56,8 @@ class DrivenPlant : public Plant {
   explicit DrivenPlant(const StackParameters& parameters);
 
   void StartMove(Axis axis, double to_rad, double duration_s) final;
+  void Stop(Axis axis) final;
+  double CommandedEnd_rad(Axis axis) const final { return commands_.profile(Index(axis)).to_rad(); }
   void Advance(double dt_s) final;
   bool Settled() const final { return asleep_; }
   StackState State() const final;

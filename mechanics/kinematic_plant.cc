@@ -19,6 +19,9 @@ class KinematicPlant : public Plant {
     commands_.Start(axis, to_rad, duration_s, now_);
   }
 
+  void Stop(Axis axis) override { commands_.Stop(axis, kBraking_s, now_); }
+  double CommandedEnd_rad(Axis axis) const override { return commands_.profile(Index(axis)).to_rad(); }
+
   void Advance(double dt_s) override {
     now_ += ToNanoseconds(dt_s);
     for (std::size_t i = 0; i < 2; ++i) backlash_[i].Follow(commands_.At(i, now_).position_rad);

@@ -86,6 +86,7 @@ class LinearPlant : public DrivenPlant {
     for (std::size_t i = 0; i < 2; ++i) {
       if (commands().Ended(i, time)) continue;
       const double own_s = commands().profile(i).duration_s();
+      if (!commands().profile(i).from_rest()) return std::nullopt;
       if (!StartsAt(i, time) || own_s > kLongestKept_s || own_s != duration_s.value_or(own_s)) return std::nullopt;
       duration_s = own_s;
     }

@@ -44,6 +44,13 @@ class Plant {
   ///         not positive or an angle that is not finite.
   virtual void StartMove(Axis axis, double to_rad, double duration_s) = 0;
 
+  /// Breaks a running move off: the command comes to rest within kBraking_s. Nothing if none runs.
+  virtual void Stop(Axis axis) = 0;
+  static constexpr double kBraking_s = 0.2;
+
+  /// Where the axis was last commanded to end up.
+  virtual double CommandedEnd_rad(Axis axis) const = 0;
+
   /// Lets time pass; any non-negative amount, rounded to a nanosecond.
   /// @throws std::invalid_argument for a negative one.
   virtual void Advance(double dt_s) = 0;

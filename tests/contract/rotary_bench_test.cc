@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "twin/core/errors.h"
 #include "twin/sim/twin.h"
 
 /// The contract of twin/core/devices.h. Every backend of a rotary bench goes through the same tests; a new one adds
@@ -137,6 +138,66 @@ TEST_P(RotaryBenchContract, AMoveDuringAMoveIsRefusedOrReplacesItButNeverLost) {
   bench.target.StartMove(-5.0 * units::deg);
   bench.target.WaitSettled();
   EXPECT_NEAR(bench.target.EncoderAngle_rad(), -5.0 * units::deg, kInPosition_rad);
+}
+
+TEST_P(RotaryBenchContract, AStopBringsATableToRestOnItsWayAndTheNextMoveGoesOn) {
+  RotaryBench bench = NewBench();
+  bench.target.StartMove(90.0 * units::deg);
+  bench.clock.Wait(milliseconds(1500));
+  bench.target.Stop();
+  bench.target.WaitSettled();
+  const double rest_deg = bench.target.EncoderAngle_rad() / units::deg;
+  EXPECT_GT(rest_deg, 5.0);
+  EXPECT_LT(rest_deg, 85.0);
+  bench.clock.Wait(seconds(2));
+  EXPECT_NEAR(bench.target.EncoderAngle_rad() / units::deg, rest_deg, kInPosition_rad / units::deg);
+  bench.target.StartMove(90.0 * units::deg);
+  bench.target.WaitSettled();
+  EXPECT_NEAR(bench.target.EncoderAngle_rad(), 90.0 * units::deg, kInPosition_rad);
+}
+
+TEST_P(RotaryBenchContract, StateTellsOfMotionAndRest) {
+  RotaryBench bench = NewBench();
+  EXPECT_TRUE(bench.target.State().in_position);
+  EXPECT_TRUE(bench.target.State().referenced);
+  bench.target.StartMove(90.0 * units::deg);
+  bench.clock.Wait(milliseconds(500));
+  const TableState state = bench.target.State();
+  EXPECT_TRUE(state.moving);
+  EXPECT_FALSE(state.in_position);
+  EXPECT_NEAR(state.commanded_rad, 90.0 * units::deg, 1e-12);
+  EXPECT_LT(state.encoder_rad, 60.0 * units::deg);
+  EXPECT_FALSE(bench.target.Settles(milliseconds(1)));
+  bench.target.WaitSettled();
+  EXPECT_FALSE(bench.target.State().moving);
+  EXPECT_TRUE(bench.target.State().in_position);
+}
+
+TEST_P(RotaryBenchContract, NothingIsMountedWhileATableMoves) {
+  RotaryBench bench = NewBench();
+  bench.target.StartMove(20.0 * units::deg);
+  bench.clock.Wait(milliseconds(300));
+  EXPECT_THROW(bench.fixture.Mount(1, 0.0, 0.0), BenchError);
+  bench.target.WaitSettled();
+  EXPECT_NO_THROW(bench.fixture.Mount(1, 0.0, 0.0));
+}
+
+TEST_P(RotaryBenchContract, ASimulatedBenchStartsAgainAsItWas) {
+  RotaryBench bench = NewBench();
+  if (!bench.simulation) GTEST_SKIP() << "a real bench does not";
+  const auto session = [&] {
+    GoTo(bench, 0.3, -0.3);
+    const double yaw_rad = bench.autocollimator.Read().yaw_rad, room_degC = bench.thermometer.Read_degC();
+    const Acquisition block = bench.adc.Acquire(kSamples, false);
+    return std::array<double, 5>{block.channel[0].mean_V, block.channel[3].std_V, yaw_rad, room_degC,
+                                 ToSeconds(block.start)};
+  };
+  bench.simulation->Restart();
+  const auto first = session();
+  bench.target.StartMove(1.0);  // left in the middle of something
+  bench.simulation->Restart();
+  EXPECT_EQ(bench.clock.Now(), Time{});
+  EXPECT_EQ(session(), first);
 }
 
 TEST_P(RotaryBenchContract, TheClockNeverGoesBackAndWaitsExactly) {

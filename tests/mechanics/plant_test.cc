@@ -410,5 +410,37 @@ TEST(Plant, RefusesAMoveOnAMovingAxis) {
   }
 }
 
+TEST(Plant, BreaksAMoveOffAndGoesOnFromThere) {
+  for (const Fidelity fidelity : kAll) {
+    const auto plant = MakePlant(fidelity, EccentricStack());
+    StartCounterRotation(*plant, 3);
+    plant->Advance(0.3);  // half of the way, at full speed
+    plant->Stop(Axis::kTarget);
+    const double end_rad = plant->CommandedEnd_rad(Axis::kTarget);
+    // Mean speed while braking is about half of the peak, 1.875 x 30 deg / 0.6 s.
+    EXPECT_NEAR(end_rad, 15.0 * kDegree + 0.5 * 93.75 * kDegree * Plant::kBraking_s, 1e-9);
+    plant->AdvanceUntilSettled(10.0);
+    ASSERT_TRUE(plant->Settled()) << static_cast<int>(fidelity);
+    EXPECT_NEAR(plant->State().target_encoder_rad, end_rad, 0.02 * kDegree / 3600.0);
+    EXPECT_NEAR(plant->State().reference_encoder_rad, -30.0 * kDegree, 0.02 * kDegree / 3600.0) << "went on";
+    plant->StartMove(Axis::kTarget, 40.0 * kDegree, 0.6);
+    plant->AdvanceUntilSettled(10.0);
+    EXPECT_NEAR(plant->State().target_encoder_rad, 40.0 * kDegree, 0.02 * kDegree / 3600.0);
+  }
+}
+
+TEST(Plant, AStopAtRestChangesNothing) {
+  for (const Fidelity fidelity : kAll) {
+    const auto plant = MakePlant(fidelity, EccentricStack());
+    StartCounterRotation(*plant, 1);
+    plant->AdvanceUntilSettled(10.0);
+    const auto before = Numbers(plant->State());
+    plant->Stop(Axis::kTarget);
+    plant->Advance(1.0);
+    EXPECT_EQ(Numbers(plant->State()), before);
+    EXPECT_TRUE(plant->Settled());
+  }
+}
+
 }  // namespace
 }  // namespace twinbench::mechanics

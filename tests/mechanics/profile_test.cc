@@ -50,6 +50,29 @@ TEST(QuinticProfile, PeaksAreThoseOfTheFifthDegree) {
   EXPECT_NEAR(acceleration, 10.0 / std::sqrt(3.0) * 2.0 / 0.25, 1e-5);
 }
 
+TEST(QuinticProfile, TakesAMotionUpWithItsSpeedAndBendAndBringsItToRest) {
+  const QuinticProfile move(0.2, 2.0, 0.5);
+  const ProfilePoint cut = move.At(0.2);
+  const QuinticProfile stop(cut, cut.position_rad + 0.1, 0.3);
+  EXPECT_FALSE(stop.from_rest());
+  const ProfilePoint first = stop.At(0.0), last = stop.At(0.3);
+  EXPECT_DOUBLE_EQ(first.position_rad, cut.position_rad);
+  EXPECT_DOUBLE_EQ(first.velocity_rad_s, cut.velocity_rad_s);
+  EXPECT_DOUBLE_EQ(first.acceleration_rad_s2, cut.acceleration_rad_s2);
+  EXPECT_EQ(last.position_rad, cut.position_rad + 0.1);
+  // Just before its end it is as good as there: speed and bend vanish with the square and the first power of what is
+  // left, which is a millionth of the duration.
+  EXPECT_NEAR(stop.At(0.3 * (1.0 - 1e-6)).velocity_rad_s, 0.0, 1e-9);
+  EXPECT_NEAR(stop.At(0.3 * (1.0 - 1e-6)).acceleration_rad_s2, 0.0, 1e-2);
+  const double h = 1e-6;  // differences of the position are the speed, to the square of the step
+  for (const double t : {0.05, 0.15, 0.25}) {
+    const double slope = (stop.At(t + h).position_rad - stop.At(t - h).position_rad) / (2.0 * h);
+    EXPECT_NEAR(slope, stop.At(t).velocity_rad_s, 1e-8);
+    const double bend = (stop.At(t + h).velocity_rad_s - stop.At(t - h).velocity_rad_s) / (2.0 * h);
+    EXPECT_NEAR(bend, stop.At(t).acceleration_rad_s2, 1e-6);
+  }
+}
+
 TEST(QuinticProfile, RefusesADurationThatIsNotPositive) {
   EXPECT_THROW(QuinticProfile(0.0, 1.0, 0.0), std::invalid_argument);
   EXPECT_THROW(QuinticProfile(0.0, 1.0, -1.0), std::invalid_argument);

@@ -19,8 +19,7 @@ void SweepOnce(Sequencer& sequencer, Sweep axis, int pass, int direction) {
   for (int k = 0; k < points; ++k) {
     const int index = direction > 0 ? k : points - 1 - k;
     const double angle_rad = SweepAngle_rad(sequencer.settings(), index);
-    sequencer.bench().goniometer.MoveTo(axis == Sweep::kYaw ? angle_rad : 0.0,
-                                        axis == Sweep::kTilt ? angle_rad : 0.0);
+    sequencer.Tilt(axis == Sweep::kYaw ? angle_rad : 0.0, axis == Sweep::kTilt ? angle_rad : 0.0);
     Reading stop;
     stop.phase = Phase::kCalibration;
     stop.pass = pass;
@@ -40,7 +39,7 @@ void Calibrate(Sequencer& sequencer) {
     SweepOnce(sequencer, axis, 0, +1);
     SweepOnce(sequencer, axis, 1, -1);
   }
-  sequencer.bench().goniometer.MoveTo(0.0, 0.0);
+  sequencer.Tilt(0.0, 0.0);
 }
 
 int CalibrationReadings(const ProcedureSettings& procedure) {

@@ -9,14 +9,13 @@ void Verify(Sequencer& sequencer) {
   const int points = sequencer.settings().verification_points;
   for (int k = 0; k < points; ++k) {
     const double share = (2.0 * k + 1.0) / points - 1.0;  // -1 < share < 1, never an end of the sweep
-    sequencer.bench().goniometer.MoveTo(share * sequencer.settings().sweep_rad,
-                                        -share * sequencer.settings().sweep_rad);
+    sequencer.Tilt(share * sequencer.settings().sweep_rad, -share * sequencer.settings().sweep_rad);
     Reading stop;
     stop.phase = Phase::kVerification;
     stop.position = k;
     sequencer.Take(stop, true);
   }
-  sequencer.bench().goniometer.MoveTo(0.0, 0.0);
+  sequencer.Tilt(0.0, 0.0);
 }
 
 int VerificationReadings(const ProcedureSettings& procedure) {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/device_fault.h"
+
 namespace twinbench::sim {
 namespace {
 
-constexpr double kStop_s = 0.1;
 constexpr Duration kSettleCheck = std::chrono::milliseconds(1);
 
 mechanics::StackParameters StackOf(const Scenario& actual) {
@@ -45,6 +46,7 @@ Axes::Axes(const Scenario& actual, EventQueue& queue)
     drives_[k].move_time_s = tables[k]->move_time_s;
     drives_[k].speed_rad_s = tables[k]->speed_rad_s;
     drives_[k].settle_s = tables[k]->settle_s;
+    drives_[k].arrival = Time{} - FromSeconds(tables[k]->settle_s);  // long there
   }
 }
 
@@ -52,6 +54,7 @@ bool Axes::StartMove(mechanics::Axis axis, double to_rad) {
   Drive& d = drive(axis);
   const double travel_rad = to_rad - d.commanded_rad;
   if (travel_rad == 0.0) return false;
+  if (Moving(axis)) throw DeviceFault(FaultKind::kRefused, "table", "a move was asked for while another one runs");
   const double duration_s = std::max(d.move_time_s, std::abs(travel_rad) / d.speed_rad_s);
   CatchUp();
   plant_->StartMove(axis, to_rad, duration_s);
@@ -78,13 +81,17 @@ bool Axes::Settles(mechanics::Axis axis, Duration within) {
 
 void Axes::Stop(mechanics::Axis axis) {
   if (!Moving(axis)) return;
-  const mechanics::StackState state = Look();
-  const double here_rad = axis == mechanics::Axis::kTarget ? state.target_rad : state.reference_rad;
+  CatchUp();
+  plant_->Stop(axis);
   Drive& d = drive(axis);
-  plant_->StartMove(axis, here_rad, kStop_s);
-  d.commanded_rad = here_rad;
-  d.arrival = queue_.Now() + FromSeconds(kStop_s);
-  last_arrival_ = d.arrival;
+  d.commanded_rad = plant_->CommandedEnd_rad(axis);
+  d.arrival = queue_.Now() + FromSeconds(mechanics::Plant::kBraking_s);
+  last_arrival_ = std::max(last_arrival_, d.arrival);
+}
+
+bool Axes::AtRest() {
+  CatchUp();
+  return plant_->Settled();
 }
 
 void Axes::Mount(const mechanics::ChainGeometry& geometry) {

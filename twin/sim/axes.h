@@ -27,6 +27,7 @@ class Axes {
   bool Moving(mechanics::Axis axis) const { return queue_.Now() < drive(axis).arrival; }
   double Commanded_rad(mechanics::Axis axis) const { return drive(axis).commanded_rad; }
 
+  bool AtRest();
   void Mount(const mechanics::ChainGeometry& geometry);
 
   /// Angles and deflections at the queue's time.

@@ -1,5 +1,7 @@
 #include "twin/sim/world.h"
 
+#include "twin/core/device_fault.h"
+
 namespace twinbench::sim {
 
 using mechanics::Axis;
@@ -29,6 +31,7 @@ TableState World::StateOf(Axis axis) {
 }
 
 void World::Mount(int setup, double clamp_rad, double reseat_rad) {
+  if (!axes_.AtRest()) throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while a table moves");
   const bool reseats = actual_.procedure.clamping == "reseat";
   axes_.Mount(stand_.Mount(effects_.Actual({clamp_rad, reseat_rad, reseats})));
   mounted_ = queue_.Now();

@@ -1,0 +1,67 @@
+#include "hw_bridge/replay/replay_bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "twin/core/errors.h"
+
+namespace twinbench::hw {
+
+ReplayBench::ReplayBench(const std::string& record_folder) : folder_(record_folder) {
+  const auto record = RunRecord::Open(record_folder);
+  calls_ = record->Calls();
+  readings_ = record->Readings();
+  blocks_ = record->RawBlocks();
+  if (calls_.empty())
+    throw InputError(record_folder, "the record does not say what was asked of the devices",
+                     "a run that twinbench carried out, not an imported file");
+  asked_ = std::make_unique<AskedBench>(
+      [this](const std::string& device, const std::string& request) { return Answer(device, request); },
+      [this] { return now_; }, this);
+}
+
+ReplayBench::~ReplayBench() = default;
+
+RotaryBench ReplayBench::Bench() {
+  return asked_->Bench();
+}
+
+void ReplayBench::Restart() {
+  next_ = next_reading_ = 0;
+  now_ = Time{};
+}
+
+const DeviceCall& ReplayBench::Next(const std::string& device, const std::string& request) {
+  const std::string asked = fmt::format("\"{}: {}\"", device, request);
+  if (next_ == calls_.size())
+    throw BenchError(fmt::format("{}: the recording ends before {}", folder_, asked));
+  const DeviceCall& call = calls_[next_];
+  if (call.device != device || call.request != request)
+    throw BenchError(fmt::format("{}: {} is not in the recording at this place, \"{}: {}\" is (call {})", folder_,
+                                 asked, call.device, call.request, next_));
+  ++next_;
+  return call;
+}
+
+CallAnswer ReplayBench::Answer(const std::string& device, const std::string& request) {
+  const DeviceCall& call = Next(device, request);
+  now_ = call.time;
+  return {call.answer, device == "adc" ? BlockOf(call) : Acquisition{}};
+}
+
+/// Every block that was kept belongs to a reading, and they come in the same order.
+Acquisition ReplayBench::BlockOf(const DeviceCall& call) {
+  Acquisition block = ParseBlock(call.answer);
+  if (next_reading_ >= readings_.size())
+    throw InputError(folder_, "the record holds more blocks than readings", "an undamaged record");
+  const int reading = readings_[next_reading_++].reading;
+  const auto raw = std::ranges::find(blocks_, reading, &RawBlock::reading);
+  if (raw != blocks_.end()) {
+    block.raw = raw->samples;
+    block.stamp = raw->stamp;
+  }
+  return block;
+}
+
+}  // namespace twinbench::hw

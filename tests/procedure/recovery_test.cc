@@ -1,0 +1,223 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/memory_log.h"
+#include "tests/support/small_scenario.h"
+#include "tests/support/troubled_bench.h"
+#include "twin/core/device_fault.h"
+#include "twin/procedure/procedure.h"
+#include "twin/sim/twin.h"
+
+/// Faults, stops and resumed runs on the twin: whatever happens on the way, the readings are those of a run without.
+namespace twinbench::procedure {
+namespace {
+
+using test::MemoryLog;
+using test::TroubledBench;
+
+/// Noise, drift, seating and wear of every kind, so that a state that is not restored shows in the numbers.
+Scenario Restless() {
+  Scenario scenario;
+  scenario.seed = 11;
+  scenario.procedure.positions = 6;
+  scenario.procedure.shifts = {0, 1};
+  scenario.procedure.passes = {1, -1};
+  scenario.procedure.sweep_points = 3;
+  scenario.procedure.dwell_s = {1.0, 2.0, 7.0};
+  scenario.environment.drift_K_h = 2.0;
+  scenario.environment.random_walk_K_sqrt_h = 0.1;
+  scenario.laser.pointing_yaw_per_kelvin_rad = 1e-5;
+  scenario.reference.seating_sd[2] = 20.0 * units::arcsec;
+  scenario.target.repeatability_sd[0] = 1.0 * units::arcsec;
+  scenario.amplifier.hum_V = 0.01;
+  return scenario;
+}
+
+std::vector<Reading> Undisturbed(const Scenario& scenario) {
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  MemoryLog log;
+  CarryOut(bench, scenario, log);
+  return log.readings;
+}
+
+/// Text keeps every bit of the numbers, and NaN equals NaN in it.
+std::string TextOf(const std::vector<Reading>& readings) {
+  std::ostringstream text;
+  WriteReadingsCsv(readings, text);
+  return text.str();
+}
+
+TEST(Recovery, AFaultAtAnyCallCostsAnAttemptAndChangesNoBit) {
+  const Scenario scenario = Restless();
+  const std::string undisturbed = TextOf(Undisturbed(scenario));
+  const std::vector<FaultKind> kinds = {FaultKind::kTimeout, FaultKind::kDropped, FaultKind::kGap,
+                                        FaultKind::kNotInPosition, FaultKind::kRestarted};
+  int calls_in_all = 1000000;
+  for (int at = 0, k = 0; at < calls_in_all; at += 7, ++k) {
+    sim::Twin twin(scenario);
+    int calls = 0;
+    bool failed = false;
+    TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
+      if (calls++ != at || failed) return;
+      failed = true;
+      throw DeviceFault(kinds[static_cast<std::size_t>(k) % kinds.size()], device, "as asked for");
+    });
+    RotaryBench bench = troubled.Bench();
+    MemoryLog log;
+    Options options;
+    options.log = &log;
+    CarryOut(bench, scenario, log, {}, options);
+    if (k == 0) calls_in_all = calls;
+    ASSERT_EQ(TextOf(log.readings), undisturbed) << "fault at call " << at;
+    ASSERT_EQ(log.attempts.size(), failed ? 1u : 0u);
+  }
+  EXPECT_GT(calls_in_all, 300);
+}
+
+TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
+  for (const char* fidelity : {"kinematic", "linear", "bullet"}) {
+    Scenario scenario = Restless();
+    scenario.mechanics.fidelity = fidelity;
+    const std::vector<Reading> undisturbed = Undisturbed(scenario);
+    for (const std::size_t kept : {std::size_t{1}, std::size_t{11}, std::size_t{12}, std::size_t{13},
+                                   undisturbed.size() - 1}) {
+      MemoryLog log;
+      {
+        sim::Twin twin(scenario);
+        RotaryBench bench = twin.Bench();
+        Options options;
+        options.log = &log;
+        options.stop_requested = [&] { return log.readings.size() >= kept; };
+        EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
+        ASSERT_EQ(log.readings.size(), kept);
+      }
+      sim::Twin twin(scenario);
+      RotaryBench bench = twin.Bench();
+      Options options;
+      options.log = &log;
+      options.readings_done = static_cast<int>(kept);
+      options.calls_done = log.calls;
+      CarryOut(bench, scenario, log, {}, options);
+      EXPECT_EQ(TextOf(log.readings), TextOf(undisturbed)) << fidelity << ", taken up behind " << kept;
+    }
+  }
+}
+
+TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
+  Scenario scenario = Restless();
+  MemoryLog log;
+  {
+    sim::Twin twin(scenario);
+    RotaryBench bench = twin.Bench();
+    Options options;
+    options.log = &log;
+    CarryOut(bench, scenario, log, {}, options);
+  }
+  scenario.seed = 12;
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  Options options;
+  options.readings_done = 5;
+  options.calls_done = log.calls;
+  EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), InputError);
+}
+
+TEST(Recovery, AttemptsAreCountedForEachReadingAndEnd) {
+  const Scenario scenario = Restless();
+  sim::Twin twin(scenario);
+  MemoryLog log;
+  TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
+    if (device == "adc" && log.readings.size() == 4) throw DeviceFault(FaultKind::kGap, "adc", "3 scans are missing");
+  });
+  RotaryBench bench = troubled.Bench();
+  Options options;
+  options.log = &log;
+  options.attempts = 3;
+  EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
+  EXPECT_EQ(log.readings.size(), 4u);
+  ASSERT_EQ(log.attempts.size(), 3u);
+  EXPECT_EQ(log.attempts[2].attempt, 3);
+  EXPECT_EQ(log.attempts[2].fault, "gap");
+  EXPECT_EQ(log.attempts[2].reading, 4);
+}
+
+TEST(Recovery, WhatNeedsAHandStopsTheTablesAtOnce) {
+  for (const FaultKind kind : {FaultKind::kStalled, FaultKind::kFollowing, FaultKind::kLimit, FaultKind::kImplausible,
+                               FaultKind::kSignalLost, FaultKind::kStopped, FaultKind::kIdentity}) {
+    const Scenario scenario = Restless();
+    sim::Twin twin(scenario);
+    int stops = 0;
+    TroubledBench troubled(twin.Bench(), [&](const std::string&, const std::string& request, CallAnswer&) {
+      if (request == "stop") ++stops;
+      if (request.starts_with("acquire")) throw DeviceFault(kind, "bench", "as asked for");
+    });
+    RotaryBench bench = troubled.Bench();
+    MemoryLog log;
+    Options options;
+    options.log = &log;
+    EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault) << FaultName(kind);
+    EXPECT_EQ(stops, 2) << FaultName(kind);
+    EXPECT_EQ(log.attempts.size(), 1u) << FaultName(kind);
+  }
+}
+
+TEST(Recovery, AnImplausibleRoomOrAJumpOfTheSpotStopsTheRun) {
+  const Scenario scenario = Restless();
+  const auto fault_of = [&](const TroubledBench::Trouble& after, const Options& options) {
+    sim::Twin twin(scenario);
+    TroubledBench troubled(twin.Bench(), {}, after);
+    RotaryBench bench = troubled.Bench();
+    MemoryLog log;
+    try {
+      CarryOut(bench, scenario, log, {}, options);
+    } catch (const DeviceFault& fault) {
+      return std::string(FaultName(fault.kind())) + " of " + fault.device();
+    }
+    return std::string("none");
+  };
+  Options options;
+  options.hottest_degC = 60.0;
+  options.jump_V = 0.5;
+  EXPECT_EQ(fault_of({}, options), "none");
+  const auto hot = [](const std::string& device, const std::string&, CallAnswer& answer) {
+    if (device == "thermometer") answer.text = "850";
+  };
+  EXPECT_EQ(fault_of(hot, options), "implausible of thermometer");
+  int blocks = 0;
+  const auto slipped = [&](const std::string& device, const std::string&, CallAnswer& answer) {
+    if (device == "adc" && ++blocks > 20) answer.block.channel[2].mean_V += 0.6;
+  };
+  EXPECT_EQ(fault_of(slipped, options), "implausible of psd_b_x");
+}
+
+TEST(Recovery, ABlockFromAnotherTimeIsTakenAgain) {
+  const Scenario scenario = Restless();
+  sim::Twin twin(scenario);
+  int blocks = 0;
+  TroubledBench troubled(twin.Bench(), {}, [&](const std::string& device, const std::string&, CallAnswer& answer) {
+    if (device == "adc" && ++blocks == 9) answer.block.start += std::chrono::seconds(1);
+  });
+  RotaryBench bench = troubled.Bench();
+  MemoryLog log;
+  Options options;
+  options.log = &log;
+  CarryOut(bench, scenario, log, {}, options);
+  EXPECT_EQ(TextOf(log.readings), TextOf(Undisturbed(scenario)));
+  ASSERT_EQ(log.attempts.size(), 1u);
+  EXPECT_EQ(log.attempts[0].fault, "clock");
+}
+
+TEST(Recovery, TheOperatorIsHeardWhileAMountingComesToRest) {
+  const Scenario scenario = Restless();  // remount_s is 600 s
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  MemoryLog log;
+  Options options;
+  options.stop_requested = [&] { return bench.clock.Now() > Time(std::chrono::seconds(20)); };
+  EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
+  EXPECT_LT(bench.clock.Now(), Time(std::chrono::seconds(30)));
+}
+
+}  // namespace
+}  // namespace twinbench::procedure

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+
+#include "twin/core/device_call.h"
+
+namespace twinbench::test {
+
+/// A bench between which and its user somebody sits who may throw, or answer something else.
+class TroubledBench {
+ public:
+  using Trouble = std::function<void(const std::string& device, const std::string& request, CallAnswer& answer)>;
+  /// @param before  Called before the bench is asked, `after` when it has answered; either may be empty.
+  TroubledBench(RotaryBench inner, Trouble before, Trouble after = {})
+      : inner_(inner),
+        before_(std::move(before)),
+        after_(std::move(after)),
+        asked_([this](const std::string& device, const std::string& request) { return Ask(device, request); },
+               [this] { return inner_.clock.Now(); }, inner.simulation) {}
+  RotaryBench Bench() { return asked_.Bench(); }
+
+ private:
+  CallAnswer Ask(const std::string& device, const std::string& request) {
+    CallAnswer answer;
+    if (before_) before_(device, request, answer);
+    answer = Perform(inner_, device, request);
+    if (after_) after_(device, request, answer);
+    return answer;
+  }
+
+  RotaryBench inner_;
+  Trouble before_, after_;
+  AskedBench asked_;
+};
+
+}  // namespace twinbench::test

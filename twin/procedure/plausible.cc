@@ -1,0 +1,45 @@
+#include "twin/procedure/plausible.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "twin/core/device_fault.h"
+
+namespace twinbench::procedure {
+namespace {
+
+constexpr Duration kClockTolerance = std::chrono::milliseconds(100);  // of two clocks that were just compared
+
+bool NeighboursOfOnePass(const Reading& a, const Reading& b) {
+  return a.phase == b.phase && a.setup == b.setup && a.pass == b.pass && a.phase == Phase::kFullCircle;
+}
+
+}  // namespace
+
+void RequirePlausible(const Reading& reading, const Reading& before, const Options& options) {
+  const double room_degC = reading.temperature_degC;
+  if (room_degC < options.coldest_degC || room_degC > options.hottest_degC) {
+    throw DeviceFault(FaultKind::kImplausible, "thermometer",
+                      fmt::format("{:.4g} degC; no bench is measured in such a room", room_degC));
+  }
+  if (!NeighboursOfOnePass(reading, before)) return;
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const double jump_V = std::abs(reading.mean_V[c] - before.mean_V[c]);
+    if (!(jump_V > options.jump_V)) continue;
+    throw DeviceFault(FaultKind::kImplausible, kChannelNames[c],
+                      fmt::format("jumped by {:.4g} V from one stop to the next, {:.4g} V are allowed; did a table "
+                                  "or the grating slip?",
+                                  jump_V, options.jump_V));
+  }
+}
+
+void RequireTimely(const Acquisition& block, Time asked, Time answered) {
+  if (block.start >= asked - kClockTolerance && block.start <= answered + kClockTolerance) return;
+  throw DeviceFault(FaultKind::kClock, "adc",
+                    fmt::format("a block is stamped {:.6f} s but was asked for at {:.6f} s; the clocks of converter "
+                                "and bench part",
+                                ToSeconds(block.start), ToSeconds(asked)));
+}
+
+}  // namespace twinbench::procedure

@@ -1,0 +1,131 @@
+#include "twin/procedure/watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/device_fault.h"
+
+namespace twinbench::procedure {
+namespace {
+
+constexpr Duration kLook = std::chrono::seconds(1);
+constexpr Duration kSlice = std::chrono::seconds(5);
+constexpr double kStandsStill_rad = 1e-9;  // less than any encoder shows
+
+/// One table on its way.
+class Watched {
+ public:
+  Watched(RotaryTable& table, const char* name, const TableLimits& limits, double to_rad)
+      : table_(table), name_(name), limits_(limits), to_rad_(to_rad) {}
+
+  /// Whatever speaks against this move, before it begins.
+  void Check() {
+    if (to_rad_ < limits_.lower_rad || to_rad_ > limits_.upper_rad) {
+      Fail(FaultKind::kLimit, fmt::format("{:.6g} deg lies outside the soft limits {:.6g} to {:.6g} deg",
+                                          Deg(to_rad_), Deg(limits_.lower_rad), Deg(limits_.upper_rad)));
+    }
+    const TableState state = table_.State();
+    CheckHealth(state);
+    last_rad_ = state.encoder_rad;
+    nearest_rad_ = std::abs(to_rad_ - state.encoder_rad);
+    const bool further = state.limit * (to_rad_ - state.encoder_rad) > 0.0;
+    if (further) Fail(FaultKind::kLimit, "stands on a limit switch and would be driven further onto it");
+  }
+
+  void Start() { table_.StartMove(to_rad_); }
+
+  bool Arrives() { return table_.Settles(kLook); }
+
+  /// What it looks like after another second on the way.
+  void Look() {
+    looked_s_ += ToSeconds(kLook);
+    const TableState state = table_.State();
+    CheckHealth(state);
+    if (state.limit != 0) Fail(FaultKind::kLimit, "ran onto a limit switch");
+    CheckWay(state.encoder_rad);
+    if (looked_s_ > limits_.move_timeout_s)
+      Fail(FaultKind::kNotInPosition, fmt::format("not in position after {:.0f} s", looked_s_));
+  }
+
+  void CheckArrival() {
+    const TableState state = table_.State();
+    CheckHealth(state);
+    const double off_rad = state.encoder_rad - to_rad_;
+    if (std::abs(off_rad) <= limits_.in_position_rad || std::isnan(off_rad)) return;
+    Fail(FaultKind::kNotInPosition, fmt::format("was sent to {:.6f} deg and stands at {:.6f} deg, {:.3g} arcsec off",
+                                                Deg(to_rad_), Deg(state.encoder_rad), off_rad / units::arcsec));
+  }
+
+ private:
+  static double Deg(double angle_rad) { return angle_rad / units::deg; }
+
+  [[noreturn]] void Fail(FaultKind kind, const std::string& what) const { throw DeviceFault(kind, name_, what); }
+
+  void CheckHealth(const TableState& state) const {
+    if (!state.referenced) Fail(FaultKind::kRestarted, "has lost its origin; its angles mean nothing");
+    if (!state.fault.empty()) Fail(FaultKind::kRefused, "reports " + state.fault);
+  }
+
+  void CheckWay(double encoder_rad) {
+    const double left_rad = std::abs(to_rad_ - encoder_rad);
+    if (left_rad > nearest_rad_ + limits_.following_rad)
+      Fail(FaultKind::kFollowing, fmt::format("is {:.6f} deg away from its target and getting further", Deg(left_rad)));
+    nearest_rad_ = std::min(nearest_rad_, left_rad);
+    still_s_ = std::abs(encoder_rad - last_rad_) < kStandsStill_rad ? still_s_ + ToSeconds(kLook) : 0.0;
+    last_rad_ = encoder_rad;
+    if (still_s_ >= limits_.stall_s)
+      Fail(FaultKind::kStalled, fmt::format("has stood still at {:.6f} deg for {:.0f} s on its way to {:.6f} deg",
+                                            Deg(encoder_rad), still_s_, Deg(to_rad_)));
+  }
+
+  RotaryTable& table_;
+  const char* name_;
+  const TableLimits& limits_;
+  double to_rad_;
+  double last_rad_ = kNaN, nearest_rad_ = kNaN;
+  double still_s_ = 0.0, looked_s_ = 0.0;
+};
+
+}  // namespace
+
+void HearOperator(const Options& options) {
+  if (options.stop_requested && options.stop_requested())
+    throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
+}
+
+void MoveBoth(RotaryBench& bench, double target_rad, double reference_rad, const Options& options) {
+  HearOperator(options);
+  Watched target(bench.target, "target", options.target, target_rad);
+  Watched reference(bench.reference, "reference", options.reference, reference_rad);
+  for (Watched* table : {&target, &reference}) table->Check();
+  for (Watched* table : {&target, &reference}) table->Start();
+  for (Watched* table : {&target, &reference}) {
+    while (!table->Arrives()) {
+      HearOperator(options);
+      table->Look();
+    }
+  }
+  for (Watched* table : {&target, &reference}) table->CheckArrival();
+}
+
+void WaitFor(RotaryBench& bench, Duration duration, const Options& options) {
+  while (duration > kSlice) {
+    bench.clock.Wait(kSlice);
+    duration -= kSlice;
+    HearOperator(options);
+  }
+  bench.clock.Wait(duration);
+}
+
+void StopBoth(RotaryBench& bench) {
+  for (RotaryTable* table : {&bench.target, &bench.reference}) {
+    try {
+      table->Stop();
+    } catch (const BenchError&) {  // it is the fault that is being dealt with, or will be told as the next
+    }
+  }
+}
+
+}  // namespace twinbench::procedure
