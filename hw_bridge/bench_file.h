@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "twin/core/scenario.h"
+#include "twin/core/scenario_schema.h"
 #include "twin/core/table_limits.h"
 
 /// bench.toml: which devices stand on the table and how they are reached. docs/hardware.md lists every key.
@@ -20,7 +20,7 @@ struct AdSettings {                          // [adc]
   std::string light;                         // where "ok" | "no_light" | "clipped_spot" is told: an attribute (iio), a
                                              // digital input subdevice (comedi); empty: not wired
   std::string serial;                        // expected; empty: any
-  std::string calibration_file;              // comedi softcal; empty: nominal
+  std::string calibration_file;              // comedi softcal; empty: nominal; absolute once loaded
   double timeout_s = 2.0;                    // for a block, beyond its own length
   double rate_tolerance = 1e-6;              // relative; a card that is further off is refused
   double mains_Hz = 50.0;
@@ -28,9 +28,9 @@ struct AdSettings {                          // [adc]
 
 struct ControlSettings {                     // [target], [reference], [autocollimator], [thermometer], ...
   std::string kind;                          // scpi | esp | console | none
-  std::string address;                       // "tcp:HOST:PORT", "serial:/dev/ttyUSB0:19200"
+  std::string address = "";                  // "tcp:HOST:PORT", "serial:/dev/ttyUSB0:19200"
   int axis = 1;
-  std::string identity;                      // what *IDN? or VE? must begin with; empty: any, but the same all along
+  std::string identity = "";                 // what *IDN? or VE? must begin with; empty: any, but the same all along
   double timeout_s = 2.0;                    // of one answer
   int decimals = -1;                         // digits behind the point in commands; -1: all that matter
 };
@@ -42,17 +42,28 @@ struct BenchFile {
   std::string path;                          // for messages
   std::string kind = "hardware";             // hardware | twin | replay
   std::string name;                          // for the record
-  std::string record;                        // replay: folder of the run
+  std::string record;                        // replay: folder of the run; absolute once loaded
+  double jump_V = std::numeric_limits<double>::infinity();  // of a channel between neighbouring stops; more is implausible
   int attempts = 3;                          // at one reading, before the run stops
   AdSettings adc;
-  ControlSettings target, reference, autocollimator, thermometer, goniometer, fixture;
-  ControlSettings clock;                     // kind "host" or "scpi"
+  ControlSettings target, reference;         // kind scpi | esp
+  ControlSettings autocollimator{"none"};    // scpi | none
+  ControlSettings thermometer{"none"};       // scpi | none
+  ControlSettings goniometer{"none"};        // scpi | console | none
+  ControlSettings fixture{"console"};        // scpi | console
+  ControlSettings clock{"host"};             // host | scpi
   TableLimits target_limits = kHardwareLimits, reference_limits = kHardwareLimits;
 };
 
+/// Every key of the file format, bound to `file`: units, bounds, choices, meaning.
+std::vector<ScenarioKey> KeysOf(BenchFile& file);
+
 /// @throws InputError with file:line for a syntax error, an unknown key (naming the nearest), a missing device, a value
-///         out of bounds, a backend that this build does not have.
+///         out of bounds, settings that do not go together, a backend that this build does not have.
 BenchFile LoadBenchFile(const std::string& path);
+/// @param name    Of the file, for messages.
+/// @param folder  From which the files that it names are found.
+BenchFile ParseBenchFile(const std::string& text, const std::string& name, const std::string& folder);
 
 /// The bench file that drives what `twinbench serve` shows at these ports.
 struct ServedAddresses {
@@ -60,6 +71,7 @@ struct ServedAddresses {
   int iiod_port = 0, scpi_port = 0, esp_port = 0;
   std::string pty;                           // empty: none
 };
-std::string WriteServedBenchFile(const ServedAddresses& addresses, const std::string& tables);  // tables: "scpi" | "esp"
+/// @param tables  How the tables are driven: "scpi", "esp" (over TCP) or "pty" (ESP over the pseudo-terminal).
+std::string WriteServedBenchFile(const ServedAddresses& addresses, const std::string& tables);
 
 }  // namespace twinbench::hw

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "hw_bridge/bench_file.h"
 #include "twin/core/devices.h"
@@ -14,6 +16,10 @@ class HardwareBench {
   virtual RotaryBench Bench() = 0;
   /// Who answered, with versions and serial numbers; the record keeps it.
   virtual std::string Identity() const = 0;
+  /// What the A/D card agreed to, one line a channel; the record keeps it.
+  virtual std::vector<std::string> Configuration() const = 0;
+  /// What was noticed during the run without being a fault: mains hum.
+  virtual std::vector<std::string> Notices() const = 0;
 };
 
 /// Opens a bench of kind "hardware".

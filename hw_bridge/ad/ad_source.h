@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "hw_bridge/bench_file.h"
 #include "twin/core/devices.h"
 
 /// What the bridge asks of any A/D card: the union of what libiio and comedilib need, with nothing of either in it.
@@ -21,8 +22,7 @@ struct ScanChannel {
 struct ScanSpec {
   std::vector<ScanChannel> channels;  // in scan order
   double scan_rate_Hz = 62.5e3;
-  int scans = 0;                      // of one block
-  Duration deadline{};                // for a block, beyond its own length
+  Duration deadline{};                // for a block, beyond its own length; for an answer
 };
 
 /// volts = sum_k c_k (code - origin)^k
@@ -37,8 +37,9 @@ struct Negotiated {
   std::vector<double> skew_s;                      // of each channel against the first
   int bits = 16;
   std::vector<CalibrationPolynomial> calibration;  // one a channel, of two's complement codes
-  std::string identity, serial, firmware;
-  bool counts_scans = false;  // stamps come from the card's own counter
+  bool calibrated = false;    // false: the polynomials only say what range and bits say
+  std::string identity, serial, firmware;  // empty: the driver does not tell
+  bool stamps_scans = false;  // every scan has a time stamp, so that a lost one shows
 };
 
 /// A block as it came off the card, in two's complement whatever the driver's coding is.
@@ -46,11 +47,11 @@ struct AdBlock {
   std::vector<std::int16_t> raw;  // scans x channels, scan order
   BlockStamp stamp;
   Time start{};               // device time of the first scan, where the card tells; otherwise host
-  std::int64_t gap_scans = 0; // scans that are missing before or inside this block
   std::string light = "ok";   // "ok", "no_light", "clipped_spot": what the PSD amplifiers' status lines say, if wired
 };
 
-/// One A/D card. Every call may throw DeviceFault; after one, the next Take opens the card again.
+/// One A/D card. Every call may throw DeviceFault; after one, the next Take opens the card again and asks it to be
+/// what it was.
 class AdSource {
  public:
   virtual ~AdSource() = default;
@@ -61,5 +62,12 @@ class AdSource {
   /// @throws DeviceFault kTimeout, kDropped, kGap, kOverrun, kProtocol. A partial block is never returned.
   virtual AdBlock Take(int scans) = 0;
 };
+
+/// Whether this build has the driver "iio" or "comedi".
+bool HasAdDriver(const std::string& kind);
+
+/// @throws InputError for a kind that does not exist or that this build does not have, and for settings that the
+///         driver has no use for.
+std::unique_ptr<AdSource> MakeAdSource(const AdSettings& settings);
 
 }  // namespace twinbench::hw

@@ -18,7 +18,7 @@ ReplayBench::ReplayBench(const std::string& record_folder) : folder_(record_fold
                      "a run that twinbench carried out, not an imported file");
   asked_ = std::make_unique<AskedBench>(
       [this](const std::string& device, const std::string& request) { return Answer(device, request); },
-      [this] { return now_; }, this);
+      [this] { return now_; }, static_cast<Simulation*>(this));
 }
 
 ReplayBench::~ReplayBench() = default;

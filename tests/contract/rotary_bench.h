@@ -23,6 +23,7 @@ struct BenchBackend {
   std::string name;  // letters and digits, of the test
   std::function<std::unique_ptr<LivingBench>(const Scenario&)> make;
   bool repeats_its_bits = false;  // a twin or a replay: same scenario, same numbers
+  bool always_has_raw = false;    // counts come with every block, asked for or not
 
   friend void PrintTo(const BenchBackend& backend, std::ostream* out) { *out << backend.name; }
 };

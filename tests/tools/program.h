@@ -36,8 +36,9 @@ struct Outcome {
 class Process {
  public:
   /// @param folder  Working directory; what the process says goes to files beside it.
-  Process(const std::string& folder, const std::vector<std::string>& arguments)
-      : out_(folder + ".out"), err_(folder + ".err") {
+  /// @param name    Of those files: one for each process that runs at the same time.
+  Process(const std::string& folder, const std::vector<std::string>& arguments, const std::string& name = "")
+      : out_(folder + name + ".out"), err_(folder + name + ".err") {
     std::vector<std::string> words = {TWINBENCH_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
@@ -72,6 +73,7 @@ class Process {
     kill(id_, SIGKILL);
     Wait();
   }
+  void Signal(int signal) { kill(id_, signal); }
   Outcome Wait() {
     if (id_ > 0) waitpid(id_, &status_, 0);
     id_ = 0;
@@ -101,7 +103,8 @@ class Program : public ::testing::Test {
     return nlohmann::json::parse(Succeed(arguments));
   }
 
-  std::string At(const std::string& name) const { return folder_ + "/" + name; }
+  /// The working directory for "".
+  std::string At(const std::string& name) const { return name.empty() ? folder_ : folder_ + "/" + name; }
   std::string Read(const std::string& name) const { return Contents(At(name)); }
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(At(name), std::ios::binary) << text;

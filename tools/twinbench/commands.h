@@ -7,6 +7,8 @@
 namespace twinbench::tools {
 
 void AddRun(CLI::App& app);
+void AddMeasure(CLI::App& app);
+void AddServe(CLI::App& app);
 void AddExport(CLI::App& app);
 void AddImport(CLI::App& app);
 void AddSeparate(CLI::App& app);

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/comparison.h"
+#include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/tables.h"
@@ -60,24 +60,6 @@ Scenario ScenarioOf(const Options& options) {
   return scenario;
 }
 
-/// A fixture whose mountings are entered in the record, where a reader of the readings will look for them.
-class RecordedFixture : public Fixture {
- public:
-  RecordedFixture(Fixture& fixture, const Clock& clock, RunRecord& record)
-      : fixture_(fixture), clock_(clock), record_(record) {}
-  void Mount(int setup, double clamp_rad, double reseat_rad) override {
-    fixture_.Mount(setup, clamp_rad, reseat_rad);
-    record_.AppendEvent(clock_.Now(), "fixture",
-                        fmt::format("mounted set-up {}: grating clamped at {:.6g} deg, body seated at {:.6g} deg",
-                                    setup, clamp_rad / units::deg, reseat_rad / units::deg));
-  }
-
- private:
-  Fixture& fixture_;
-  const Clock& clock_;
-  RunRecord& record_;
-};
-
 /// Makes the folder of a run of the twin, with an empty record.
 std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& folder, const nlohmann::json& truth) {
   auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "twin", scenario.seed, ""});
@@ -95,12 +77,11 @@ procedure::ProgressCallback ShownOn(ProgressLine& line) {
 void CarryOutOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
   sim::Twin twin(scenario);
   const auto record = Begin(scenario, folder, ToJson(twin.TheTruth()));
-  const RotaryBench devices = twin.Bench();
-  RecordedFixture fixture(devices.fixture, devices.clock, *record);
-  RotaryBench bench = {devices.clock,          devices.target,      devices.reference,  devices.adc,
-                       devices.autocollimator, devices.thermometer, devices.goniometer, fixture};
+  RotaryBench bench = twin.Bench();
   ProgressLine progress;
-  procedure::CarryOut(bench, scenario, *record, ShownOn(progress));
+  procedure::Options options;
+  options.log = record.get();
+  procedure::CarryOut(bench, scenario, *record, ShownOn(progress), options);
   record->Finish();
   if (!images) return;
   std::filesystem::create_directories(folder.images());
@@ -124,12 +105,7 @@ void Run(const Options& options) {
   const RunFolder folder{options.folder};
   if (scenario.bench == kEncoderBench) return RunAngleComparison(scenario, folder, options.images);
   CarryOutOnTwin(scenario, folder, options.images);
-  // Evaluated from the record, as any later look at this run will be.
-  const Analysis analysis =
-      Analyse(scenario, RunRecord::Open(folder.path)->Readings(), measure::Estimator::kRigorous);
-  WriteJson(folder.results(), ToJson(analysis));
-  fmt::print("{}", Summary(analysis));
-  if (analysis.separation) fmt::print("compare with the truth: twinbench score {}\n", folder.path);
+  if (EvaluateRun(scenario, folder.path)) fmt::print("compare with the truth: twinbench score {}\n", folder.path);
 }
 
 }  // namespace

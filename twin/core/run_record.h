@@ -23,7 +23,7 @@ struct RawBlock {
   int reading = 0;
   int channels = 0;
   std::vector<std::int16_t> samples;  // scan by scan
-  BlockStamp stamp;
+  BlockStamp stamp = {};
   int saturated_mask = 0;
 };
 

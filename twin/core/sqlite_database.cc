@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "twin/core/errors.h"
+#include "twin/core/device_fault.h"
 #include "twin/core/reading.h"
 
 namespace twinbench {
@@ -24,7 +24,7 @@ SqliteDatabase::~SqliteDatabase() {
 }
 
 void SqliteDatabase::Fail() const {
-  throw BenchError(fmt::format("{}: {}", path_, sqlite3_errmsg(handle_)));
+  throw DeviceFault(FaultKind::kDisk, path_, sqlite3_errmsg(handle_));
 }
 
 void SqliteDatabase::Execute(const char* sql) {

@@ -8,7 +8,7 @@
 
 namespace twinbench {
 
-/// An SQLite file, closed at the end. Every failure is a BenchError with SQLite's own words.
+/// An SQLite file, closed at the end. Every failure is a DeviceFault kDisk with SQLite's own words.
 class SqliteDatabase {
  public:
   /// @param flags  SQLITE_OPEN_...

@@ -34,9 +34,11 @@ class TableReader {
     const bool is_table = std::any_of(keys_.begin(), keys_.end(), [&](const auto& k) { return k.table == name; });
     if (name.empty() || !is_table) return ReadEntry("", name, value);
     if (!value.node().is_table())
-      throw InputError(value.Where(), fmt::format("{} is {}", name, value.Found()), fmt::format("a table [{}]", name));
+      throw InputError(value.Where(), fmt::format("{} is {}", name, value.Found()),
+                       fmt::format("a table [{}]", name));
     places_[name] = value.Where();
-    for (const auto& [key, node] : *value.node().as_table()) ReadEntry(name, std::string(key.str()), value.With(node));
+    for (const auto& [key, node] : *value.node().as_table())
+      ReadEntry(name, std::string(key.str()), value.With(node));
   }
 
   void ReadEntry(const std::string& table, const std::string& name, const TomlValue& value) {

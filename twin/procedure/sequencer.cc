@@ -123,7 +123,8 @@ void Sequencer::RepeatCalls() {
   bench.simulation->SetPaced(false);
   for (const DeviceCall& call : journal_.done()) {
     const std::string answer = Perform(bench, call.device, call.request).text;
-    if (answer == call.answer && bench.clock.Now() == call.time) continue;
+    // What a controller says about its motion may depend on what it was asked before; what is measured may not.
+    if ((answer == call.answer || call.request == "state") && bench.clock.Now() == call.time) continue;
     throw InputError("record", call.device + " answered \"" + answer + "\" to \"" + call.request + "\" and not \"" +
                                    call.answer + "\" as before",
                      "the bench, scenario, seed and version that made the record");

@@ -52,6 +52,8 @@ class Watched {
   void CheckArrival() {
     const TableState state = table_.State();
     CheckHealth(state);
+    if (state.limit != 0 && limits_.in_position_rad < std::abs(state.encoder_rad - to_rad_))
+      Fail(FaultKind::kLimit, "ran onto a limit switch");
     const double off_rad = state.encoder_rad - to_rad_;
     if (std::abs(off_rad) <= limits_.in_position_rad || std::isnan(off_rad)) return;
     Fail(FaultKind::kNotInPosition, fmt::format("was sent to {:.6f} deg and stands at {:.6f} deg, {:.3g} arcsec off",
@@ -65,7 +67,7 @@ class Watched {
 
   void CheckHealth(const TableState& state) const {
     if (!state.referenced) Fail(FaultKind::kRestarted, "has lost its origin; its angles mean nothing");
-    if (!state.fault.empty()) Fail(FaultKind::kRefused, "reports " + state.fault);
+    if (!state.fault.empty() && state.limit == 0) Fail(FaultKind::kRefused, "reports " + state.fault);
   }
 
   void CheckWay(double encoder_rad) {

@@ -66,17 +66,33 @@ bool Axes::StartMove(mechanics::Axis axis, double to_rad) {
 }
 
 bool Axes::Settles(mechanics::Axis axis, Duration within) {
-  const Time window_end = drive(axis).arrival + FromSeconds(drive(axis).settle_s);
+  Drive& d = drive(axis);
+  const Time window_end = d.arrival + FromSeconds(d.settle_s);
   const Time patience_end = queue_.Now() + within;
   if (queue_.Now() < window_end) queue_.RunUntil(std::min(window_end, patience_end));
   if (queue_.Now() < window_end) return false;
   CatchUp();
-  while (!plant_->Settled()) {
-    if (queue_.Now() >= patience_end) return false;
-    queue_.RunUntil(std::min(queue_.Now() + kSettleCheck, patience_end));
-    CatchUp();
+  const bool goes_on = d.given_up == queue_.Now();  // the same looks, however they are cut into calls
+  if (!goes_on) {
+    if (plant_->Settled()) return true;
+    d.watched_from = queue_.Now();
   }
-  return true;
+  for (;;) {
+    const auto looks = (queue_.Now() - d.watched_from) / kSettleCheck;
+    const Time next = d.watched_from + (looks + 1) * kSettleCheck;
+    if (next > patience_end) break;
+    queue_.RunUntil(next);
+    CatchUp();
+    if (plant_->Settled()) return true;
+  }
+  queue_.RunUntil(patience_end);
+  d.given_up = patience_end;
+  return false;
+}
+
+bool Axes::InPosition(mechanics::Axis axis) {
+  CatchUp();
+  return queue_.Now() >= drive(axis).arrival + FromSeconds(drive(axis).settle_s) && plant_->Settled();
 }
 
 void Axes::Stop(mechanics::Axis axis) {

@@ -24,6 +24,8 @@ class Axes {
   bool Settles(mechanics::Axis axis, Duration within);
   /// Brings the axis to rest from where it is.
   void Stop(mechanics::Axis axis);
+  /// Whether Settles would return at once.
+  bool InPosition(mechanics::Axis axis);
   bool Moving(mechanics::Axis axis) const { return queue_.Now() < drive(axis).arrival; }
   double Commanded_rad(mechanics::Axis axis) const { return drive(axis).commanded_rad; }
 
@@ -41,6 +43,7 @@ class Axes {
     double commanded_rad = 0.0;
     int direction = 1;
     Time arrival{};
+    Time watched_from{}, given_up = Time::min();  // a look for quietness, and when it ended in vain
     double move_time_s, speed_rad_s, settle_s;
   };
   Drive& drive(mechanics::Axis axis) { return drives_[static_cast<std::size_t>(axis)]; }

@@ -26,7 +26,7 @@ TableState World::StateOf(Axis axis) {
   state.commanded_rad = axes_.Commanded_rad(axis);
   state.encoder_rad = axis == Axis::kTarget ? axes.target_encoder_rad : axes.reference_encoder_rad;
   state.moving = axes_.Moving(axis);
-  state.in_position = axes_.Settles(axis, Duration(0));
+  state.in_position = axes_.InPosition(axis);
   return state;
 }
 

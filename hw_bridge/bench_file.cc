@@ -1,0 +1,171 @@
+#include "hw_bridge/bench_file.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "hw_bridge/ad/ad_source.h"
+#include "hw_bridge/control/address.h"
+#include "twin/core/errors.h"
+#include "twin/core/reading.h"
+#include "twin/core/toml_reader.h"
+
+namespace twinbench::hw {
+namespace {
+
+bool HasConnection(const std::string& kind) {
+  return kind == "scpi" || kind == "esp";
+}
+
+/// What keys say together.
+class FileCheck {
+ public:
+  FileCheck(const BenchFile& file, const KeyPlaces& places) : file_(file), places_(places) {}
+
+  void Check() const {
+    if (file_.kind != "hardware") RefuseDevices();
+    if (file_.kind == "replay" && file_.record.empty())
+      throw InputError(Where("kind"), "kind is \"replay\" without a record", "record = \"folder of the run\"");
+    if (file_.kind != "replay" && !file_.record.empty())
+      throw InputError(Where("record"), "there is a record in a bench of another kind", "kind = \"replay\"");
+    if (file_.kind == "hardware") CheckDevices();
+  }
+
+ private:
+  /// Where the key stands, or else its table, or else the file.
+  std::string Where(const std::string& path) const {
+    if (const auto key = places_.find(path); key != places_.end()) return key->second;
+    if (const auto table = places_.find(path.substr(0, path.find('.'))); table != places_.end())
+      return table->second;
+    return file_.path + ":1";
+  }
+
+  void RefuseDevices() const {
+    static const std::set<std::string> kNotDevices = {"kind", "name", "record", "attempts"};
+    for (const auto& [path, where] : places_) {
+      if (!kNotDevices.contains(path))
+        throw InputError(where, fmt::format("{} in a bench of kind \"{}\"", path, file_.kind),
+                         "kind = \"hardware\"");
+    }
+  }
+
+  void CheckDevices() const {
+    CheckAd();
+    CheckTable("target", file_.target, file_.target_limits);
+    CheckTable("reference", file_.reference, file_.reference_limits);
+    CheckConnection("autocollimator", file_.autocollimator);
+    CheckConnection("thermometer", file_.thermometer);
+    CheckConnection("goniometer", file_.goniometer);
+    CheckConnection("fixture", file_.fixture);
+    CheckConnection("clock", file_.clock);
+    CheckShared();
+  }
+
+  void CheckAd() const {
+    const AdSettings& adc = file_.adc;
+    Demand("adc", adc.kind, "kind = \"iio\" or \"comedi\"");
+    if (!HasAdDriver(adc.kind))
+      throw InputError(Where("adc.kind"), fmt::format("this build was made without the driver \"{}\"", adc.kind),
+                       "another kind, or a build with it");
+    if (adc.device.empty()) throw InputError(Where("adc.device"), "adc.device is missing", "the name of the card");
+    const std::set<std::string> once(adc.channels.begin(), adc.channels.end());
+    if (adc.channels.size() != kChannels || once.size() != kChannels)
+      throw InputError(Where("adc.channels"), fmt::format("adc.channels names {} inputs", once.size()),
+                       "four different ones: psd_a_x, psd_a_y, psd_b_x, psd_b_y");
+    if (adc.kind == "iio") RefuseAd({"subdevice", "reference", "calibration_file"});
+    if (adc.kind == "comedi") RefuseAd({"uri"});
+  }
+
+  void RefuseAd(const std::vector<std::string>& names) const {
+    for (const std::string& name : names) {
+      if (places_.contains("adc." + name))
+        throw InputError(Where("adc." + name), fmt::format("adc.{} with kind = \"{}\"", name, file_.adc.kind),
+                         "keys of that driver");
+    }
+  }
+
+  void Demand(const std::string& table, const std::string& kind, const std::string& expected) const {
+    if (!places_.contains(table))
+      throw InputError(file_.path + ":1", fmt::format("there is no [{}]", table), expected);
+    if (kind.empty()) throw InputError(Where(table), fmt::format("{}.kind is missing", table), expected);
+  }
+
+  void CheckTable(const std::string& table, const ControlSettings& s, const TableLimits& limits) const {
+    Demand(table, s.kind, "kind = \"scpi\" or \"esp\"");
+    CheckConnection(table, s);
+    if (limits.lower_rad >= limits.upper_rad)
+      throw InputError(Where(table + ".upper_deg"), fmt::format("{}.upper_deg is not above lower_deg", table),
+                       "a range to move in");
+  }
+
+  void CheckConnection(const std::string& table, const ControlSettings& s) const {
+    const std::string key = table + ".address";
+    if (!HasConnection(s.kind) && !s.address.empty())
+      throw InputError(Where(key), fmt::format("{} with kind = \"{}\"", key, s.kind),
+                       "an address of \"scpi\" or \"esp\"");
+    if (HasConnection(s.kind) && !ParseAddress(s.address))
+      throw InputError(Where(key), fmt::format("{} is \"{}\"", key, s.address), kAddressForm);
+  }
+
+  /// Who shares an address shares a connection: one language, one identity. The clock has its own.
+  void CheckShared() const {
+    const std::vector<std::pair<std::string, const ControlSettings*>> devices = {
+        {"target", &file_.target},
+        {"reference", &file_.reference},
+        {"autocollimator", &file_.autocollimator},
+        {"thermometer", &file_.thermometer},
+        {"goniometer", &file_.goniometer},
+        {"fixture", &file_.fixture}};
+    for (auto a = devices.begin(); a != devices.end(); ++a) {
+      for (auto b = a + 1; b != devices.end(); ++b) CheckPair(a->first, *a->second, b->first, *b->second);
+      const bool takes_clock = file_.clock.kind == "scpi" && file_.clock.address == a->second->address;
+      if (takes_clock && file_.clock.address.starts_with("serial:"))
+        throw InputError(Where("clock.address"), fmt::format("the clock shares a serial line with {}", a->first),
+                         "a connection of its own");
+    }
+    const bool same_axis =
+        file_.target.address == file_.reference.address && file_.target.axis == file_.reference.axis;
+    if (same_axis) throw InputError(Where("reference.axis"), "target and reference are the same axis", "two axes");
+  }
+
+  void CheckPair(const std::string& name_a, const ControlSettings& a, const std::string& name_b,
+                 const ControlSettings& b) const {
+    if (a.address.empty() || a.address != b.address) return;
+    if (a.kind == b.kind && a.identity == b.identity) return;
+    throw InputError(Where(name_b + ".address"), fmt::format("{} shares the address of {}", name_b, name_a),
+                     "the same kind and identity, then");
+  }
+
+  const BenchFile& file_;
+  const KeyPlaces& places_;
+};
+
+void MakeAbsolute(const std::string& folder, std::string& path) {
+  if (!path.empty())
+    path = std::filesystem::absolute(std::filesystem::path(folder) / path).lexically_normal().string();
+}
+
+}  // namespace
+
+BenchFile ParseBenchFile(const std::string& text, const std::string& name, const std::string& folder) {
+  BenchFile file;
+  file.path = name;
+  const KeyPlaces places = ReadToml(text, name, KeysOf(file));
+  FileCheck(file, places).Check();
+  MakeAbsolute(folder, file.record);
+  MakeAbsolute(folder, file.adc.calibration_file);
+  return file;
+}
+
+BenchFile LoadBenchFile(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf()))
+    throw InputError(path, "the file cannot be read or is empty", "a bench file in TOML");
+  return ParseBenchFile(text.str(), path, std::filesystem::path(path).parent_path().string());
+}
+
+}  // namespace twinbench::hw

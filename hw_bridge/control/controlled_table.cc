@@ -1,0 +1,108 @@
+#include "hw_bridge/control/controlled_table.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "twin/core/number_text.h"
+#include "twin/core/units.h"
+
+namespace twinbench::hw {
+namespace {
+
+constexpr Duration kLook = std::chrono::seconds(1);  // between two looks at a table that finds its origin
+constexpr double kAllDigits_deg = 1e-9;              // 4 microarcsec: what decimal text may lose on its way
+
+/// As far as a controller that was told all digits, or so many decimals, may be from what was meant.
+double Understood_rad(int decimals) {
+  const double half_decimal_deg = 0.5 * std::pow(10.0, -decimals);
+  return (decimals < 0 ? 0.0 : half_decimal_deg) * units::deg + kAllDigits_deg * units::deg;
+}
+
+std::string AngleText(double angle_rad, int decimals) {
+  if (decimals < 0) return PrintInUnit(angle_rad, units::deg);
+  return fmt::format("{:.{}f}", angle_rad / units::deg, decimals);
+}
+
+}  // namespace
+
+ControlledTable::ControlledTable(DeviceLine line, const TableLimits& limits, int decimals)
+    : line_(std::move(line)), limits_(limits), decimals_(decimals) {}
+
+void ControlledTable::StartMove(double angle_rad) {
+  RequireWithinLimits(angle_rad);
+  RequireOrigin(State());
+  SendMove(AngleText(angle_rad, decimals_));
+  RequireUnderstood(angle_rad, State());
+}
+
+void ControlledTable::RequireWithinLimits(double angle_rad) const {
+  if (angle_rad >= limits_.lower_rad && angle_rad <= limits_.upper_rad) return;
+  line_.Fail(FaultKind::kLimit,
+             fmt::format("a move to {:.6f} deg was not sent: its limits are {:.6f} and {:.6f} deg",
+                         angle_rad / units::deg, limits_.lower_rad / units::deg, limits_.upper_rad / units::deg));
+}
+
+void ControlledTable::RequireOrigin(const TableState& now) const {
+  if (!now.referenced)
+    line_.Fail(FaultKind::kRestarted, "the controller has lost its origin; its angles mean nothing");
+}
+
+void ControlledTable::RequireUnderstood(double angle_rad, const TableState& now) {
+  if (!now.referenced) StopAndFail(FaultKind::kRestarted, "the controller lost its origin as the move began");
+  const double off_rad = std::abs(now.commanded_rad - angle_rad);
+  if (off_rad <= Understood_rad(decimals_)) return;
+  StopAndFail(
+      FaultKind::kRefused,
+      fmt::format("was told {} deg and understood {} deg, {:.4g} arcsec off", AngleText(angle_rad, decimals_),
+                  PrintInUnit(now.commanded_rad, units::deg), off_rad / units::arcsec));
+}
+
+bool ControlledTable::Settles(Duration within) {
+  if (!AwaitSettled(within)) return false;
+  RequireOrigin(State());
+  return true;
+}
+
+TableState ControlledTable::State() {
+  TableState state = ReadState();
+  if (!state.referenced) state.commanded_rad = state.encoder_rad = kNaN;
+  return state;
+}
+
+void ControlledTable::Home() {
+  SendHome();
+  const auto end = FromSeconds(limits_.move_timeout_s);
+  Duration passed{};
+  while (!AwaitSettled(kLook)) {
+    passed += kLook;
+    if (passed >= end)
+      StopAndFail(FaultKind::kNotInPosition, fmt::format("no origin found in {:.0f} s", ToSeconds(passed)));
+  }
+  if (!State().referenced)
+    line_.Fail(FaultKind::kRestarted, "the controller has no origin after it looked for one");
+}
+
+void ControlledTable::AgreeOnLimits() {
+  const double lower_rad = ReadLowerLimit_rad(), upper_rad = ReadUpperLimit_rad();
+  if (std::isinf(limits_.lower_rad)) limits_.lower_rad = lower_rad;
+  if (std::isinf(limits_.upper_rad)) limits_.upper_rad = upper_rad;
+  const double slack_rad = Understood_rad(decimals_);
+  if (limits_.lower_rad >= lower_rad - slack_rad && limits_.upper_rad <= upper_rad + slack_rad) return;
+  line_.Fail(FaultKind::kRefused,
+             fmt::format("the controller allows {:.6f} to {:.6f} deg; the bench file {:.6f} to {:.6f} deg",
+                         lower_rad / units::deg, upper_rad / units::deg, limits_.lower_rad / units::deg,
+                         limits_.upper_rad / units::deg));
+}
+
+/// Why it was stopped is what must be told, also when the table cannot be reached any more.
+void ControlledTable::StopAndFail(FaultKind kind, const std::string& why) {
+  try {
+    SendStop();
+  } catch (const DeviceFault& fault) {
+    line_.Fail(kind, fmt::format("{}; it could not be stopped: {}", why, fault.what()));
+  }
+  line_.Fail(kind, why);
+}
+
+}  // namespace twinbench::hw

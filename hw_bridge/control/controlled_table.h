@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+
+#include "hw_bridge/control/device_line.h"
+#include "twin/core/devices.h"
+#include "twin/core/table_limits.h"
+
+namespace twinbench::hw {
+
+/// A table behind a controller, whatever its language.
+///
+/// A move beyond the soft limits sends nothing. A controller that understood another angle than it was told is
+/// stopped. One that has lost its origin is not moved before Home, its angles are NaN and it never settles:
+/// kRestarted.
+class ControlledTable : public RotaryTable {
+ public:
+  /// @param decimals  Digits behind the point of an angle [deg] in a command; -1: all that matter.
+  ControlledTable(DeviceLine line, const TableLimits& limits, int decimals);
+
+  void StartMove(double angle_rad) override;
+  bool Settles(Duration within) override;
+  TableState State() override;
+  void Stop() override { SendStop(); }
+  void Home() override;
+
+  /// Takes over the controller's own limits where the bench file gives none.
+  /// @throws DeviceFault kRefused if the controller allows less than the bench file.
+  void AgreeOnLimits();
+
+ protected:
+  DeviceLine& line() { return line_; }
+
+ private:
+  virtual void SendMove(const std::string& angle_deg) = 0;
+  /// Lets at most `within` of bench time pass. @return true as soon as the controller says that it has settled.
+  virtual bool AwaitSettled(Duration within) = 0;
+  virtual TableState ReadState() = 0;
+  virtual void SendStop() = 0;
+  virtual void SendHome() = 0;
+  virtual double ReadLowerLimit_rad() = 0;
+  virtual double ReadUpperLimit_rad() = 0;
+
+  void RequireWithinLimits(double angle_rad) const;
+  void RequireOrigin(const TableState& now) const;
+  void RequireUnderstood(double angle_rad, const TableState& now);
+  [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why);
+
+  DeviceLine line_;
+  TableLimits limits_;
+  int decimals_;
+};
+
+}  // namespace twinbench::hw

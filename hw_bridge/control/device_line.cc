@@ -1,0 +1,41 @@
+#include "hw_bridge/control/device_line.h"
+
+#include <fmt/format.h>
+
+#include "twin/core/number_text.h"
+
+namespace twinbench::hw {
+
+std::string DeviceLine::Ask(const std::string& query, Duration beyond) {
+  return dialogue_->Ask(device_, query + "\n", timeout_ + beyond);
+}
+
+double DeviceLine::AskNumber(const std::string& query, double to_SI) {
+  const std::string answer = Ask(query);
+  const auto number_SI = ParseInUnit(answer, to_SI);
+  if (!number_SI) FailProtocol(query, answer, "a number");
+  return *number_SI;
+}
+
+long long DeviceLine::AskWholeNumber(const std::string& query, Duration beyond) {
+  const std::string answer = Ask(query, beyond);
+  const auto number = ParseWholeNumber(answer);
+  if (!number) FailProtocol(query, answer, "a whole number");
+  return *number;
+}
+
+int DeviceLine::Openings() {
+  dialogue_->Open(device_, timeout_);
+  return dialogue_->openings();
+}
+
+void DeviceLine::Fail(FaultKind kind, const std::string& why) const {
+  throw DeviceFault(kind, device_, fmt::format("{} ({})", why, dialogue_->address().Text()));
+}
+
+void DeviceLine::FailProtocol(const std::string& query, const std::string& answer, const std::string& expected) {
+  dialogue_->Close();
+  Fail(FaultKind::kProtocol, fmt::format("\"{}\" is answered \"{}\"; expected {}", query, answer, expected));
+}
+
+}  // namespace twinbench::hw

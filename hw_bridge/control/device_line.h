@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hw_bridge/control/dialogue.h"
+
+namespace twinbench::hw {
+
+/// One device's part in a conversation: its name in every message, its deadline, its answers strictly read. Does
+/// not own the dialogue.
+class DeviceLine {
+ public:
+  DeviceLine(Dialogue& dialogue, std::string device, Duration timeout)
+      : dialogue_(&dialogue), device_(std::move(device)), timeout_(timeout) {}
+
+  /// @param beyond  The answer may take so much longer than the timeout.
+  /// @throws DeviceFault as Dialogue::Ask.
+  std::string Ask(const std::string& query, Duration beyond = {});
+  /// @throws DeviceFault kProtocol too, unless the whole answer is the number.
+  double AskNumber(const std::string& query, double to_SI);
+  long long AskWholeNumber(const std::string& query, Duration beyond = {});
+  std::string NextLine() { return dialogue_->NextLine(device_, timeout_); }
+
+  /// Makes sure of the connection. @return how many times it has been opened.
+  int Openings();
+  const std::string& device() const { return device_; }
+  const std::string& identity() const { return dialogue_->identity(); }
+
+  [[noreturn]] void Fail(FaultKind kind, const std::string& why) const;
+  /// `answer` is none to `query`: whatever else comes on this connection cannot be trusted, so it is closed.
+  [[noreturn]] void FailProtocol(const std::string& query, const std::string& answer, const std::string& expected);
+
+ private:
+  Dialogue* dialogue_;
+  std::string device_;
+  Duration timeout_;
+};
+
+}  // namespace twinbench::hw

@@ -1,0 +1,93 @@
+#include "hw_bridge/control/dialogue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace twinbench::hw {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr Duration kFirstPause = std::chrono::milliseconds(20);
+constexpr Duration kLongestPause = std::chrono::milliseconds(500);
+/// A serial controller that answers at all has begun to within this time.
+constexpr Duration kQuiet = std::chrono::milliseconds(100);
+
+}  // namespace
+
+Dialogue::Dialogue(Address address, std::string identity_query, std::string identity)
+    : address_(std::move(address)), identity_query_(std::move(identity_query)), identity_(std::move(identity)) {}
+
+void Dialogue::Fail(FaultKind kind, const std::string& device, const std::string& why) {
+  Close();
+  throw DeviceFault(kind, device, fmt::format("{} ({})", why, address_.Text()));
+}
+
+void Dialogue::Connect(const std::string& device, Duration patience) {
+  const auto end = SteadyClock::now() + patience;
+  for (Duration pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
+    OpenedLink opened = OpenLink(address_, patience);
+    link_ = std::move(opened.link);
+    if (link_) return;
+    if (SteadyClock::now() + pause > end) Fail(*opened.failure, device, opened.why);
+    std::this_thread::sleep_for(pause);
+  }
+}
+
+void Dialogue::Open(const std::string& device, Duration patience) {
+  if (link_) return;
+  Connect(device, patience);
+  Identify(device, patience);
+  ++openings_;
+}
+
+bool Dialogue::IsExpected(const std::string& answer) const {
+  return identity_known_ ? answer == identity_ : !answer.empty() && answer.starts_with(identity_);
+}
+
+void Dialogue::Identify(const std::string& device, Duration patience) {
+  if (IsSerial()) link_->ReadAway(kQuiet, patience);
+  Send(device, identity_query_ + "\n", patience);
+  const std::string answer = AwaitIdentity(device, patience);
+  if (!IsExpected(answer))
+    Fail(FaultKind::kIdentity, device,
+         fmt::format("\"{}\" answers; expected {}\"{}\"", answer,
+                     identity_known_ ? "as before " : "what begins with ", identity_));
+  if (IsSerial()) link_->ReadAway(kQuiet, patience);  // the answer may have been that to an older query
+  identity_ = answer;
+  identity_known_ = true;
+}
+
+/// The first line; on a serial line the first that is the identity, or else the last.
+std::string Dialogue::AwaitIdentity(const std::string& device, Duration patience) {
+  const auto end = SteadyClock::now() + patience;
+  std::string answer = NextLine(device, patience);
+  while (IsSerial() && !IsExpected(answer)) {
+    const LinkResult next = link_->ReadLine(std::max<Duration>(end - SteadyClock::now(), Duration(0)));
+    if (next.failure) break;
+    answer = next.line;
+  }
+  return answer;
+}
+
+void Dialogue::Send(const std::string& device, const std::string& text, Duration patience) {
+  const LinkResult sent = link_->Send(text, patience);
+  if (sent.failure) Fail(*sent.failure, device, sent.why);
+}
+
+std::string Dialogue::NextLine(const std::string& device, Duration patience) {
+  LinkResult answer = link_->ReadLine(patience);
+  if (answer.failure) Fail(*answer.failure, device, answer.why);
+  return std::move(answer.line);
+}
+
+std::string Dialogue::Ask(const std::string& device, const std::string& text, Duration patience) {
+  Open(device, patience);
+  if (link_->HasUnread()) Fail(FaultKind::kProtocol, device, "an answer came that nobody had asked for");
+  Send(device, text, patience);
+  return NextLine(device, patience);
+}
+
+}  // namespace twinbench::hw

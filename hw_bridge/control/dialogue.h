@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hw_bridge/control/line_link.h"
+
+namespace twinbench::hw {
+
+/// The conversation with one controller; several devices may take part in it.
+///
+/// After any failure the connection is closed, so that a late answer can never be taken for another. The next call
+/// opens it again, waiting longer and longer between attempts up to its patience, and asks who is there: it must be
+/// the one from before. On a serial line, which outlives its connections, old answers are read away first.
+class Dialogue {
+ public:
+  /// @param identity_query  "*IDN?", "VE?".
+  /// @param identity        What its answer must begin with.
+  Dialogue(Address address, std::string identity_query, std::string identity);
+
+  /// Opens the connection unless it is open.
+  /// @param device  Whose call it is, for messages.
+  /// @throws DeviceFault kTimeout, kDropped, kIdentity.
+  void Open(const std::string& device, Duration patience);
+
+  /// Sends `text`, lines with their ends, and returns the line that comes back.
+  /// @throws DeviceFault kTimeout, kDropped, kProtocol, and what Open throws.
+  std::string Ask(const std::string& device, const std::string& text, Duration patience);
+  /// Takes one more line, of an answer that has several.
+  std::string NextLine(const std::string& device, Duration patience);
+
+  void Close() { link_.reset(); }
+  /// How many times the connection was opened: what a device had set may be gone when it has grown.
+  int openings() const { return openings_; }
+  /// The full answer to the identity query.
+  const std::string& identity() const { return identity_; }
+  const Address& address() const { return address_; }
+
+ private:
+  void Connect(const std::string& device, Duration patience);
+  void Identify(const std::string& device, Duration patience);
+  std::string AwaitIdentity(const std::string& device, Duration patience);
+  void Send(const std::string& device, const std::string& text, Duration patience);
+  [[noreturn]] void Fail(FaultKind kind, const std::string& device, const std::string& why);
+  bool IsSerial() const { return address_.kind == Address::Kind::kSerial; }
+  bool IsExpected(const std::string& answer) const;
+
+  Address address_;
+  std::string identity_query_;
+  std::string identity_;         // as much as is known of it
+  bool identity_known_ = false;  // all of it
+  std::unique_ptr<LineLink> link_;
+  int openings_ = 0;
+};
+
+}  // namespace twinbench::hw

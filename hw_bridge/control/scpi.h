@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hw_bridge/control/device_line.h"
+
+/// The manners of SCPI-99 (docs/protocols.md).
+namespace twinbench::hw {
+
+inline constexpr const char* kScpiIdentity = "*IDN?";
+
+/// Sends a command and asks the error queue how it went.
+/// @throws DeviceFault kLimit for -222, kRefused for another error; what DeviceLine throws.
+void TellScpi(DeviceLine& line, const std::string& command, Duration beyond = {});
+
+/// The number in `text` times `to_SI`; NaN for 9.91E37, which is SCPI's "not a number".
+/// @return nothing if there is anything else in it.
+std::optional<double> ParseScpiNumber(const std::string& text, double to_SI);
+
+/// The fields of an answer: separated by commas that do not stand in quotes; a text loses its quotes.
+/// @return nothing if a quote is not closed.
+std::optional<std::vector<std::string>> SplitScpi(const std::string& answer);
+
+}  // namespace twinbench::hw

@@ -1,0 +1,40 @@
+#include "hw_bridge/control/scpi_instruments.h"
+
+#include <fmt/format.h>
+
+#include "hw_bridge/control/scpi.h"
+#include "twin/core/number_text.h"
+#include "twin/core/units.h"
+
+namespace twinbench::hw {
+
+AutocollimatorReading ScpiAutocollimator::Read() {
+  const std::string query = "AUT:READ?";
+  const std::string answer = line_.Ask(query);
+  const auto fields = SplitScpi(answer);
+  const bool is_pair = fields && fields->size() == 2;
+  const auto yaw_rad = is_pair ? ParseScpiNumber((*fields)[0], units::arcsec) : std::nullopt;
+  const auto tilt_rad = is_pair ? ParseScpiNumber((*fields)[1], units::arcsec) : std::nullopt;
+  if (!yaw_rad || !tilt_rad) line_.FailProtocol(query, answer, "<yaw arcsec>,<tilt arcsec>");
+  return {*yaw_rad, *tilt_rad};
+}
+
+double ScpiThermometer::Read_degC() {
+  const std::string query = "TEMP?";
+  const std::string answer = line_.Ask(query);
+  const auto temperature_degC = ParseScpiNumber(answer, 1.0);
+  if (!temperature_degC) line_.FailProtocol(query, answer, "a number of degC");
+  return *temperature_degC;
+}
+
+void ScpiGoniometer::MoveTo(double yaw_rad, double tilt_rad) {
+  TellScpi(line_, fmt::format("GON:MOVE {},{}", PrintInUnit(yaw_rad, units::arcsec),
+                              PrintInUnit(tilt_rad, units::arcsec)));
+}
+
+void ScpiFixture::Mount(int setup, double clamp_rad, double reseat_rad) {
+  TellScpi(line_, fmt::format("FIXT:MOUN {},{},{}", setup, PrintInUnit(clamp_rad, units::deg),
+                              PrintInUnit(reseat_rad, units::deg)));
+}
+
+}  // namespace twinbench::hw

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "hw_bridge/control/device_line.h"
+#include "twin/core/devices.h"
+
+/// The instruments beside the tables that speak SCPI (docs/protocols.md). Calls throw DeviceFault.
+namespace twinbench::hw {
+
+class ScpiAutocollimator : public Autocollimator {
+ public:
+  explicit ScpiAutocollimator(DeviceLine line) : line_(std::move(line)) {}
+  /// NaN where the mirror is out of range.
+  AutocollimatorReading Read() override;
+
+ private:
+  DeviceLine line_;
+};
+
+class ScpiThermometer : public Thermometer {
+ public:
+  explicit ScpiThermometer(DeviceLine line) : line_(std::move(line)) {}
+  double Read_degC() override;
+
+ private:
+  DeviceLine line_;
+};
+
+class ScpiGoniometer : public Goniometer {
+ public:
+  explicit ScpiGoniometer(DeviceLine line) : line_(std::move(line)) {}
+  void MoveTo(double yaw_rad, double tilt_rad) override;
+
+ private:
+  DeviceLine line_;
+};
+
+class ScpiFixture : public Fixture {
+ public:
+  explicit ScpiFixture(DeviceLine line) : line_(std::move(line)) {}
+  void Mount(int setup, double clamp_rad, double reseat_rad) override;
+
+ private:
+  DeviceLine line_;
+};
+
+}  // namespace twinbench::hw

@@ -1,0 +1,151 @@
+#include "hw_bridge/open_bench.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <set>
+
+#include "hw_bridge/ad/ad_converter.h"
+#include "hw_bridge/ad/negotiation.h"
+#include "hw_bridge/control/absent.h"
+#include "hw_bridge/control/esp_table.h"
+#include "hw_bridge/control/host_clock.h"
+#include "hw_bridge/control/operator_devices.h"
+#include "hw_bridge/control/scpi.h"
+#include "hw_bridge/control/scpi_instruments.h"
+#include "hw_bridge/control/scpi_table.h"
+#include "hw_bridge/control/served_clock.h"
+
+namespace twinbench::hw {
+namespace {
+
+/// One conversation for every address.
+class Conversations {
+ public:
+  /// The part of `device` in it, connected and identified.
+  DeviceLine LineOf(const std::string& device, const ControlSettings& settings) {
+    const std::string query = settings.kind == "esp" ? kEspIdentity : kScpiIdentity;
+    const auto found =
+        by_address_.try_emplace(settings.address, ParseAddress(settings.address).value(), query, settings.identity);
+    DeviceLine line(found.first->second, device, FromSeconds(settings.timeout_s));
+    line.Openings();
+    return line;
+  }
+  std::set<std::string> Identities() const {
+    std::set<std::string> identities;
+    for (const auto& [address, dialogue] : by_address_) identities.insert(dialogue.identity());
+    return identities;
+  }
+
+ private:
+  std::map<std::string, Dialogue> by_address_;
+};
+
+void TellOperator(const std::string& notice) {
+  fmt::print(stderr, "twinbench: {}\n", notice);
+}
+
+class OpenedBench : public HardwareBench {
+ public:
+  OpenedBench(const BenchFile& file, const Scenario& scenario, Duration elapsed)
+      : file_(file), hands_(std::cin, std::cerr) {
+    OpenClock(elapsed);  // first: a served twin's time stands still from here on
+    target_ = OpenTable("target", file.target, file.target_limits);
+    reference_ = OpenTable("reference", file.reference, file.reference_limits);
+    OpenInstruments();
+    adc_ = MakeAdConverter(file.adc, scenario.adc, *clock_, scenario.noise_free ? 0.0 : scenario.amplifier.noise_V);
+  }
+
+  RotaryBench Bench() override {
+    return {*clock_,      *target_,  *reference_,      *adc_, *autocollimator_, *thermometer_,
+            *goniometer_, *fixture_, simulation_.get()};
+  }
+
+  std::string Identity() const override {
+    std::string text = file_.name.empty() ? "" : file_.name + ": ";
+    for (const std::string& identity : conversations_.Identities()) text += identity + "; ";
+    return text + adc_->Identity();
+  }
+
+  std::vector<std::string> Configuration() const override { return DescribeChannels(adc_->Actual()); }
+
+  std::vector<std::string> Notices() const override {
+    std::vector<std::string> notices;
+    const auto& mains_V = adc_->LargestMains_V();
+    for (std::size_t k = 0; k < kChannels; ++k) {
+      if (std::isnan(mains_V[k])) continue;
+      notices.push_back(fmt::format("{}: mains hum of at most {:.3g} mV at {} Hz", kChannelNames[k], 1e3 * mains_V[k],
+                                    file_.adc.mains_Hz));
+    }
+    return notices;
+  }
+
+ private:
+  void OpenClock(Duration elapsed) {
+    if (file_.clock.kind != "scpi") {
+      clock_ = std::make_unique<HostClock>(elapsed, TellOperator);
+      return;
+    }
+    auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", file_.clock));
+    clock->Open();
+    if (clock->IsTwin()) simulation_ = std::make_unique<ScpiSimulation>(*clock);
+    clock_ = std::move(clock);
+  }
+
+  std::unique_ptr<ControlledTable> OpenTable(const std::string& name, const ControlSettings& s,
+                                             const TableLimits& limits) {
+    const bool clock_is_held = file_.clock.kind == "scpi";
+    std::unique_ptr<ControlledTable> table;
+    DeviceLine line = conversations_.LineOf(name, s);
+    if (s.kind == "esp") {
+      table = std::make_unique<EspTable>(std::move(line), s.axis, limits, s.decimals, clock_is_held);
+    } else {
+      table = std::make_unique<ScpiTable>(std::move(line), s.axis, limits, s.decimals);
+    }
+    table->AgreeOnLimits();
+    return table;
+  }
+
+  void OpenInstruments() {
+    autocollimator_ =
+        Open<Autocollimator, ScpiAutocollimator, NoAutocollimator>("autocollimator", file_.autocollimator);
+    thermometer_ = Open<Thermometer, ScpiThermometer, NoThermometer>("thermometer", file_.thermometer);
+    goniometer_ = Open<Goniometer, ScpiGoniometer, NoGoniometer>("goniometer", file_.goniometer);
+    if (file_.goniometer.kind == "console") goniometer_ = std::make_unique<ConsoleGoniometer>(hands_);
+    if (file_.fixture.kind == "console")
+      fixture_ = std::make_unique<ConsoleFixture>(hands_);
+    else
+      fixture_ = std::make_unique<ScpiFixture>(conversations_.LineOf("fixture", file_.fixture));
+  }
+
+  template <class Device, class Scpi, class None>
+  std::unique_ptr<Device> Open(const std::string& name, const ControlSettings& s) {
+    if (s.kind == "scpi") return std::make_unique<Scpi>(conversations_.LineOf(name, s));
+    return std::make_unique<None>();
+  }
+
+  BenchFile file_;
+  Operator hands_;
+  Conversations own_conversation_;  // the clock's
+  Conversations conversations_;
+  std::unique_ptr<Clock> clock_;
+  std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<ControlledTable> target_, reference_;
+  std::unique_ptr<AdFrontEnd> adc_;
+  std::unique_ptr<Autocollimator> autocollimator_;
+  std::unique_ptr<Thermometer> thermometer_;
+  std::unique_ptr<Goniometer> goniometer_;
+  std::unique_ptr<Fixture> fixture_;
+};
+
+}  // namespace
+
+std::unique_ptr<HardwareBench> OpenBench(const BenchFile& file, const Scenario& scenario, Duration elapsed) {
+  Require(file.kind == "hardware", "only a bench of hardware is opened");
+  return std::make_unique<OpenedBench>(file, scenario, elapsed);
+}
+
+}  // namespace twinbench::hw

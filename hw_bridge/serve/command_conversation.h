@@ -1,0 +1,56 @@
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/serve/conversation.h"
+#include "hw_bridge/serve/served_bench.h"
+
+namespace twinbench::hw {
+
+/// What came of one command: an answer (empty: none), or an operation that will have one.
+struct Outcome {
+  std::string answer;
+  Poll poll;
+};
+
+/// A line-oriented instrument dialect: commands on a line, separated by `;`, done one after the other; the answers
+/// go out when all are done and the wall clock has caught up with the bench.
+class CommandConversation : public Conversation {
+ public:
+  static constexpr std::size_t kLongestLine = 4096;
+
+  explicit CommandConversation(ServedBench& served) : served_(served) {}
+  ~CommandConversation() override { served_.paced.Leave(this); }
+  Step Next(InputBuffer& input) override;
+
+ protected:
+  virtual Outcome Execute(const std::string& command) = 0;
+  /// A command threw a BenchError.
+  virtual void Failed(const std::string& what) = 0;
+  virtual std::string Join(const std::vector<std::string>& answers) const = 0;
+  virtual std::string LineTooLong() = 0;
+  ServedBench& served() { return served_; }
+  /// Faults of the controller strike the line in which a query of `table` stands.
+  void Asks(const ShownTable& table);
+
+ private:
+  enum class State { kIdle, kRunning, kReplying };
+  Step Begin(InputBuffer& input);
+  void RunCommands();
+  void Take(Outcome outcome);
+  void Prepare();
+  Step Reply();
+
+  ServedBench& served_;
+  State state_ = State::kIdle;
+  std::deque<std::string> commands_;
+  std::vector<std::string> answers_;
+  Poll poll_;
+  Injected fault_ = Injected::kNone;
+  Time line_began_{};
+  WallClock::time_point reply_at_{};
+};
+
+}  // namespace twinbench::hw

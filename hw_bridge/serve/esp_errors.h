@@ -1,0 +1,20 @@
+#pragma once
+
+/// Error numbers of the Newport ESP300/301, as its manual and PyMeasure's driver have them.
+namespace twinbench::hw {
+
+struct EspError {
+  int number;
+  bool of_axis = false;  // reported as axis * 100 + number
+};
+
+inline constexpr int kEspBenchFailed = 1, kEspUnknownCommand = 6, kEspOutOfRange = 7, kEspAxisOutOfRange = 9,
+                     kEspNotAllowed = 27, kEspAxisMissing = 37, kEspParameterMissing = 38;
+
+/// Of an axis. Limits: of the positive side; those of the negative side are one more.
+inline constexpr int kEspAxisParameter = 1, kEspHardwareLimit = 4, kEspSoftLimit = 6, kEspMotorOff = 13;
+
+/// @param number  As reported: 206 is of axis 2.
+const char* EspErrorText(int number);
+
+}  // namespace twinbench::hw

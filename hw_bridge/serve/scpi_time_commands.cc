@@ -1,0 +1,72 @@
+#include "hw_bridge/serve/scpi_commands.h"
+#include "hw_bridge/serve/scpi_parameters.h"
+
+/// The clock of the bench, and what only a simulated bench can do.
+namespace twinbench::hw {
+namespace {
+
+constexpr long long kLongestWait_ns = 10'000'000'000'000'000;
+
+std::string NowText(ServedBench& served) {
+  return std::to_string(served.bench().clock.Now().time_since_epoch().count());
+}
+
+Outcome Now(const ScpiCall& call) {
+  call.served.paced.CatchUp();
+  return {NowText(call.served), nullptr};
+}
+
+Outcome Hold(const ScpiCall& call) {
+  call.served.paced.Hold(&call.client, ScpiSwitch(call.parameters[0]));
+  return {};
+}
+
+Outcome Pass(const ScpiCall& call) {
+  const Duration duration(ScpiWholeNumber(call.parameters[0], 0, kLongestWait_ns));
+  const Poll pass = call.served.paced.Pass(duration);
+  return {"", [pass, &served = call.served]() -> std::optional<std::string> {
+            return pass() ? std::optional(NowText(served)) : std::nullopt;
+          }};
+}
+
+Outcome Restart(const ScpiCall& call) {
+  if (!call.served.bench().simulation) throw ScpiError{-241, ""};
+  call.served.Restart();
+  return {};
+}
+
+Outcome SetPaced(const ScpiCall& call) {
+  call.served.paced.SetPaced(&call.client, ScpiSwitch(call.parameters[0]));
+  return {};
+}
+
+Outcome Fault(const ScpiCall& call) {
+  const bool counted = call.parameters.size() == 3;
+  const long long count = counted ? ScpiWholeNumber(call.parameters[2], 1, 1'000'000) : 1;
+  if (!call.served.faults.Add(call.parameters[0], call.parameters[1], count)) throw ScpiError{-224, ""};
+  return {};
+}
+
+Outcome Faults(const ScpiCall& call) {
+  return {'"' + call.served.faults.Waiting() + '"', nullptr};
+}
+
+// clang-format off
+constexpr ScpiCommand kCommands[] = {
+    {"CLOCk:NOW", true, 0, 0, Now},
+    {"CLOCk:HOLD", false, 1, 0, Hold},
+    {"CLOCk:WAIT", true, 1, 0, Pass},
+    {"SIMulation:RESTart", false, 0, 0, Restart},
+    {"SIMulation:PACE", false, 1, 0, SetPaced},
+    {"SIMulation:FAULt", false, 2, 1, Fault},
+    {"SIMulation:FAULt", true, 0, 0, Faults},
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const ScpiCommand> ScpiTimeCommands() {
+  return kCommands;
+}
+
+}  // namespace twinbench::hw

@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include "hw_bridge/bench_file.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::hw {
+namespace {
+
+constexpr const char* kScpiIdentity = "twinbench,rotary-bench,";
+constexpr const char* kEspIdentity = "ESP301 twinbench ";
+
+std::string TableText(const std::string& table, int axis, const ServedAddresses& a, const std::string& language) {
+  const std::string kind = language == "scpi" ? "scpi" : "esp";
+  const std::string address = language == "scpi"  ? fmt::format("tcp:{}:{}", a.host, a.scpi_port)
+                              : language == "esp" ? fmt::format("tcp:{}:{}", a.host, a.esp_port)
+                                                  : "serial:" + a.pty;
+  return fmt::format("\n[{}]\nkind = \"{}\"\naddress = \"{}\"\nidentity = \"{}\"\naxis = {}\n", table, kind,
+                     address, kind == "scpi" ? kScpiIdentity : kEspIdentity, axis);
+}
+
+std::string InstrumentText(const std::string& table, const ServedAddresses& a) {
+  return fmt::format("\n[{}]\nkind = \"scpi\"\naddress = \"tcp:{}:{}\"\nidentity = \"{}\"\n", table, a.host,
+                     a.scpi_port, kScpiIdentity);
+}
+
+}  // namespace
+
+std::string WriteServedBenchFile(const ServedAddresses& addresses, const std::string& tables) {
+  Require(tables == "scpi" || tables == "esp" || tables == "pty", "tables are driven by scpi, esp or pty");
+  Require(tables != "pty" || !addresses.pty.empty(), "there is no pseudo-terminal");
+  std::string text = fmt::format(
+      "# What `twinbench serve` shows, as `twinbench measure --bench` takes it.\n"
+      "kind = \"hardware\"\nname = \"served twin\"\n\n"
+      "[adc]\nkind = \"iio\"\nuri = \"ip:{}:{}\"\ndevice = \"psd-adc16\"\n"
+      "channels = [\"voltage0\", \"voltage1\", \"voltage2\", \"voltage3\"]\nlight = \"light\"\n",
+      addresses.host, addresses.iiod_port);
+  text += TableText("target", 1, addresses, tables) + TableText("reference", 2, addresses, tables);
+  for (const char* table : {"autocollimator", "thermometer", "goniometer", "fixture", "clock"})
+    text += InstrumentText(table, addresses);
+  return text;
+}
+
+}  // namespace twinbench::hw

@@ -1,0 +1,210 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include "tests/bridge/served_run.h"
+
+/// Faults of real benches, each struck on a served twin while the real procedure drives it through the real backends.
+/// Where trying again is the answer, the readings are those of a run without any fault, to the bit.
+namespace twinbench::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kAt = 14;  // readings kept when the fault strikes: in the middle of the first full circle
+
+// --- what is tried again ---
+
+struct TriedAgain {
+  const char* name;
+  const char* injected;
+  std::vector<std::string> noticed_as;  // any of these is the right name
+  const char* tables = "scpi";
+  std::size_t attempts = 1;
+  friend void PrintTo(const TriedAgain& row, std::ostream* out) { *out << row.name; }
+};
+
+class FaultThatIsTriedAgain : public ::testing::TestWithParam<TriedAgain> {};
+
+TEST_P(FaultThatIsTriedAgain, CostsOneAttemptAndNoBit) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.tables = GetParam().tables;
+  options.faults[kAt] = GetParam().injected;
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, "") << run.said;
+  EXPECT_EQ(run.Readings(), InProcess(scenario));
+  ASSERT_FALSE(run.log.attempts.empty()) << "the log shows it";
+  EXPECT_LE(run.log.attempts.size(), GetParam().attempts);
+  EXPECT_EQ(run.log.attempts[0].reading, kAt);
+  EXPECT_THAT(GetParam().noticed_as, testing::Contains(run.log.attempts[0].fault)) << run.log.attempts[0].text;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Matrix, FaultThatIsTriedAgain,
+    ::testing::Values(TriedAgain{"ScansLostInABlock", "adc,gap", {"gap"}},
+                      TriedAgain{"ChannelSlip", "adc,slip", {"channel_slip"}},
+                      TriedAgain{"StuckChannel", "adc,stuck", {"stuck"}},
+                      TriedAgain{"ConnectionDroppedInABlock", "adc,drop", {"dropped"}},
+                      TriedAgain{"BlockThatStalls", "adc,stall", {"timeout"}},
+                      TriedAgain{"ShortBlock", "adc,short", {"dropped", "protocol"}},
+                      TriedAgain{"ErrorInABlock", "adc,error", {"dropped", "protocol"}},
+                      TriedAgain{"ConverterClockThatJumps", "clock,step", {"clock"}},
+                      TriedAgain{"MuteController", "target,mute", {"timeout"}},
+                      TriedAgain{"LateAnswer", "reference,late", {"timeout"}},
+                      TriedAgain{"HalfAnAnswer", "target,partial", {"timeout", "dropped", "protocol"}},
+                      TriedAgain{"ControllerThatHangsUp", "target,disconnect", {"dropped"}},
+                      TriedAgain{"ControllerRestarted", "target,restart", {"restarted"}},
+                      TriedAgain{"LostStep", "reference,lost_step", {"not_in_position"}},
+                      TriedAgain{"MuteEsp", "target,mute", {"timeout"}, "esp"},
+                      TriedAgain{"LateEsp", "target,late", {"timeout"}, "esp"},
+                      TriedAgain{"HalfAnAnswerOfEsp", "reference,partial", {"timeout", "dropped", "protocol"}, "esp"},
+                      TriedAgain{"RestartedEsp", "reference,restart", {"restarted"}, "esp"},
+                      TriedAgain{"LostStepOfEsp", "target,lost_step", {"not_in_position"}, "esp"},
+                      TriedAgain{"MuteSerialLine", "target,mute", {"timeout"}, "pty"},
+                      // Behind 3 s of silence on a line that cannot be opened anew, the next question is late too.
+                      TriedAgain{"LateOnASerialLine", "target,late", {"timeout"}, "pty", 2},
+                      TriedAgain{"HalfAnAnswerOnASerialLine", "target,partial", {"timeout", "dropped", "protocol"},
+                                 "pty"}),
+    [](const auto& row) { return row.param.name; });
+
+TEST(FaultMatrix, AtTheVeryFirstReadingTheRunBeginsAgain) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[0] = "adc,drop";
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.Readings(), InProcess(scenario)) << run.said;
+  EXPECT_EQ(run.log.attempts.size(), 1u);
+}
+
+TEST(FaultMatrix, AFaultThatStaysUsesUpTheAttemptsAndTheRunCanBeResumed) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = "adc,gap,3";
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, "gap");
+  EXPECT_EQ(run.log.attempts.size(), 3u);
+  ASSERT_EQ(run.log.readings.size(), static_cast<std::size_t>(kAt));
+  const ServedRun resumed = RunServed(served, scenario, {}, &run);
+  EXPECT_EQ(resumed.Readings(), InProcess(scenario)) << resumed.said;
+}
+
+// --- what ends the run until a hand has helped ---
+
+struct NeedsAHand {
+  const char* name;
+  const char* injected;
+  const char* stopped_by;
+  friend void PrintTo(const NeedsAHand& row, std::ostream* out) { *out << row.name; }
+};
+
+class FaultThatNeedsAHand : public ::testing::TestWithParam<NeedsAHand> {};
+
+TEST_P(FaultThatNeedsAHand, StopsTheRunWhichGoesOnAfterwards) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = GetParam().injected;
+  options.alter = [](hw::BenchFile& file) { file.target_limits.stall_s = 3.0; };
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, GetParam().stopped_by) << run.said;
+  EXPECT_EQ(run.log.readings.size(), static_cast<std::size_t>(kAt));
+  EXPECT_EQ(run.log.attempts.size(), 1u);
+  const ServedRun resumed = RunServed(served, scenario, {}, &run);
+  EXPECT_EQ(resumed.Readings(), InProcess(scenario)) << resumed.said;
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, FaultThatNeedsAHand,
+                         ::testing::Values(NeedsAHand{"CableOff", "adc,float", "signal_lost"},
+                                           NeedsAHand{"LimitSwitch", "target,limit", "limit"},
+                                           NeedsAHand{"TableThatStandsStill", "target,stall", "stalled"}),
+                         [](const auto& row) { return row.param.name; });
+
+// --- what is measured all the same ---
+
+TEST(FaultMatrix, ASaturatedBlockIsFlaggedAndNeverAveraged) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = "adc,saturate";
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, "") << run.said;
+  const Reading& hit = run.log.readings.at(kAt);
+  EXPECT_EQ(hit.status, ReadingStatus::kSaturated);
+  for (const double mean_V : hit.mean_V) EXPECT_TRUE(std::isnan(mean_V));
+  EXPECT_EQ(run.log.readings.at(kAt + 1).status, ReadingStatus::kOk);
+}
+
+TEST(FaultMatrix, ABlockedBeamIsNoPosition) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = "adc,no_light";
+  const ServedRun run = RunServed(served, scenario, options);
+  const Reading& hit = run.log.readings.at(kAt);
+  EXPECT_EQ(hit.status, ReadingStatus::kNoLight);
+  for (const double mean_V : hit.mean_V) EXPECT_TRUE(std::isnan(mean_V));
+}
+
+TEST(FaultMatrix, HumIsMeasuredAllTheSame) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = "adc,hum";
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, "") << run.said;
+  EXPECT_EQ(run.log.readings.at(kAt).status, ReadingStatus::kOk);
+  EXPECT_TRUE(run.log.attempts.empty());
+}
+
+// --- what is refused before anything moves ---
+
+TEST(FaultMatrix, ATravelBeyondTheSoftLimitsIsRefusedBeforeTheMove) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.alter = [](hw::BenchFile& file) { file.target_limits.upper_rad = 200.0 * units::deg; };
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, "limit");
+  EXPECT_THAT(run.said, HasSubstr("240"));
+  EXPECT_GT(run.log.readings.size(), 12u) << "up to there it was allowed";
+}
+
+TEST(FaultMatrix, ACardWithAnotherRateIsRefusedAndBothAreNamed) {
+  Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  scenario.adc.rate_Hz = 100e3;
+  const ServedRun run = RunServed(served, scenario);
+  EXPECT_EQ(run.stopped_by, "refused");
+  EXPECT_THAT(run.said, HasSubstr("62500"));
+  EXPECT_THAT(run.said, HasSubstr("25000"));
+}
+
+TEST(FaultMatrix, ACardWithAnotherSerialNumberIsRefused) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.alter = [](hw::BenchFile& file) { file.adc.serial = "1716-0042"; };
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, "identity");
+  EXPECT_THAT(run.said, HasSubstr("1716-0042"));
+}
+
+TEST(FaultMatrix, AnotherControllerAtTheAddressIsRefused) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.alter = [](hw::BenchFile& file) {
+    for (hw::ControlSettings* device : {&file.target, &file.reference, &file.autocollimator, &file.thermometer,
+                                        &file.goniometer, &file.fixture})
+      device->identity = "SmarAct";
+  };
+  EXPECT_EQ(RunServed(served, scenario, options).stopped_by, "identity");
+}
+
+}  // namespace
+}  // namespace twinbench::test

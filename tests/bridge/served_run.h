@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include "hw_bridge/bench_file.h"
+#include "tests/support/memory_log.h"
+#include "tests/support/served_twin.h"
+#include "twin/procedure/procedure.h"
+
+/// Runs of the real procedure on a served twin, through the real backends, with faults on the way.
+namespace twinbench::test {
+
+/// Small, but with everything in it that must come back to the same bits.
+Scenario RestlessBench();
+
+/// Asks the served twin to suffer: "adc,drop", "target,lost_step,2".
+void Inject(const ServedTwin& served, const std::string& fault);
+
+struct ServedRun {
+  MemoryLog log;
+  std::string stopped_by;  // name of the fault that ended it; empty: it was carried out
+  std::string said;
+  std::string Readings() const;  // as readings.csv
+};
+
+struct RunOptions {
+  std::string tables = "scpi";          // scpi | esp | pty
+  std::map<int, std::string> faults;    // injected when so many readings are kept
+  std::function<void(hw::BenchFile&)> alter;
+};
+
+/// A run from its beginning, or going on behind what `before` has kept.
+ServedRun RunServed(const ServedTwin& served, const Scenario& scenario, const RunOptions& options = {},
+                    const ServedRun* before = nullptr);
+
+/// The same scenario on the twin inside this program: readings.csv.
+std::string InProcess(const Scenario& scenario);
+
+}  // namespace twinbench::test

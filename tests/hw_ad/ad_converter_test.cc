@@ -1,0 +1,177 @@
+#include "hw_bridge/ad/ad_converter.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/hw_ad/blocks.h"
+#include "tests/hw_ad/same_block.h"
+#include "tests/hw_ad/scripted_source.h"
+#include "twin/core/device_fault.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::hw {
+namespace {
+
+using test::ExpectSameBlock;
+using test::ScriptedSource;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double kNoise_V = 6e-3;
+
+class AdConverterTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<AdFrontEnd> Make() {
+    return MakeAdConverter(std::make_unique<ScriptedSource>(script_), settings_, adc_, clock_, kNoise_V);
+  }
+  /// The fault that making the converter ends in.
+  DeviceFault Refusal() {
+    try {
+      Make();
+    } catch (const DeviceFault& fault) {
+      return fault;
+    }
+    return {FaultKind::kDisk, "nobody", "was not refused"};
+  }
+  FaultKind FaultOfBlock(const std::vector<std::int16_t>& raw) {
+    script_.block.raw = raw;
+    try {
+      Make()->Acquire(static_cast<int>(raw.size() / kChannels), true);
+    } catch (const DeviceFault& fault) {
+      return fault.kind();
+    }
+    return FaultKind::kDisk;  // none
+  }
+
+  AdSettings settings_ = [] {
+    AdSettings settings;
+    settings.kind = "iio";
+    settings.channels = {"a", "b", "c", "d"};
+    return settings;
+  }();
+  AdcSettings adc_;
+  ScriptedSource::Script script_;
+  test::StandingClock clock_;
+};
+
+TEST_F(AdConverterTest, GivesTheTwinsBitsForTheTwinsCodes) {
+  for (const double level_V : {0.4, 9.99, -12.0}) {
+    sim::AdInput input = test::FourLevels(kNoise_V);
+    input.channel[1].level_V = level_V;  // within the range, now and then at its end, beyond it
+    Stream noise(7, "test.block");
+    clock_.now = Time(std::chrono::seconds(3));
+    const Acquisition twin =
+        sim::TakeBlock(adc_, input, {.n_samples = 500, .keep_raw = true}, noise).ToAcquisition(clock_.now);
+    script_.block.raw = twin.raw;
+    ExpectSameBlock(Make()->Acquire(500, false), twin);
+  }
+}
+
+TEST_F(AdConverterTest, AsksForTheChannelsInScanOrderAndGivesThemInChannelOrder) {
+  adc_.scan_list = {"psd_b_x", "psd_a_x", "psd_b_y", "psd_a_y"};
+  script_.block.raw = {30, 10, 40, 20, 31, 11, 41, 21};
+  const Acquisition block = Make()->Acquire(2, false);
+  std::vector<std::string> asked;
+  for (const ScanChannel& channel : script_.asked.channels) asked.push_back(channel.id);
+  EXPECT_EQ(asked, (std::vector<std::string>{"c", "a", "d", "b"}));
+  EXPECT_EQ(block.raw, (std::vector<std::int16_t>{10, 20, 30, 40, 11, 21, 31, 41}));
+}
+
+TEST_F(AdConverterTest, HasNoNumbersWithoutLightButKeepsTheCounts) {
+  script_.block.raw.assign(400, 0);
+  for (const auto& [light, status] : {std::pair{"no_light", ReadingStatus::kNoLight},
+                                      std::pair{"clipped_spot", ReadingStatus::kClippedSpot}}) {
+    script_.block.light = light;
+    const Acquisition block = Make()->Acquire(100, false);
+    EXPECT_EQ(block.status, status);
+    EXPECT_EQ(block.n_samples, 0) << "as the twin has it";
+    EXPECT_EQ(block.raw.size(), 400u);
+    for (const ChannelBlock& channel : block.channel) EXPECT_TRUE(std::isnan(channel.mean_V) && std::isnan(channel.max_V));
+  }
+}
+
+TEST_F(AdConverterTest, FaultsASlipAFloatingAndAStuckChannel) {
+  const auto clean = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
+  EXPECT_EQ(FaultOfBlock(clean), FaultKind::kDisk) << "none";
+  auto slipped = clean;
+  test::LoseAWord(slipped, 200);
+  EXPECT_EQ(FaultOfBlock(slipped), FaultKind::kChannelSlip);
+  auto stuck = clean, floating = clean;
+  for (std::size_t scan = 0; scan < 100; ++scan) {
+    stuck[4 * scan] = 77;
+    floating[4 * scan] = static_cast<std::int16_t>(30000 + 9 * scan);
+  }
+  EXPECT_EQ(FaultOfBlock(stuck), FaultKind::kStuck);
+  EXPECT_EQ(FaultOfBlock(floating), FaultKind::kSignalLost);
+}
+
+TEST_F(AdConverterTest, PassesOnWhatTheSourceThrowsAndWorksAgain) {
+  auto converter = Make();
+  script_.block.raw = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
+  script_.fault = FaultKind::kGap;
+  EXPECT_THROW(converter->Acquire(100, false), DeviceFault);
+  script_.fault.reset();
+  EXPECT_EQ(converter->Acquire(100, false).status, ReadingStatus::kOk);
+}
+
+TEST_F(AdConverterTest, FaultsACardWhoseClockJumps) {
+  auto converter = Make();
+  script_.block.raw = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
+  script_.block.stamp.device_ns = 1000;
+  converter->Acquire(100, false);
+  clock_.Wait(std::chrono::seconds(1));
+  script_.block.stamp.device_ns = 2'000'000'000;
+  EXPECT_THROW(converter->Acquire(100, false), DeviceFault);
+}
+
+TEST_F(AdConverterTest, RefusesAnotherRateNamingBoth) {
+  script_.rate_Hz = 62.4e3;
+  const DeviceFault fault = Refusal();
+  EXPECT_EQ(fault.kind(), FaultKind::kRefused);
+  EXPECT_THAT(fault.what(), AllOf(HasSubstr("62400"), HasSubstr("62500")));
+  settings_.rate_tolerance = 2e-3;
+  EXPECT_EQ(Make()->Actual().actual.scan_rate_Hz, 62.4e3) << "within the tolerance: taken, and told";
+}
+
+TEST_F(AdConverterTest, RefusesAnotherResolutionRangeOrZeroNamingBoth) {
+  script_.bits = 12;
+  EXPECT_THAT(Refusal().what(), AllOf(HasSubstr("12 bits"), HasSubstr("16 bits")));
+  script_.bits = 16;
+  script_.range_V = 5.0;
+  EXPECT_THAT(Refusal().what(), AllOf(HasSubstr("+-5 V"), HasSubstr("+-10 V")));
+  script_.range_V.reset();
+  script_.zero_V = 0.1;
+  EXPECT_THAT(Refusal().what(), HasSubstr("0.1 V"));
+}
+
+TEST_F(AdConverterTest, RefusesAnotherCardOrOneThatDoesNotSay) {
+  settings_.serial = "S2";
+  EXPECT_EQ(Refusal().kind(), FaultKind::kIdentity);
+  EXPECT_THAT(Refusal().what(), AllOf(HasSubstr("S1"), HasSubstr("S2")));
+  script_.serial = "";
+  EXPECT_EQ(Refusal().kind(), FaultKind::kIdentity);
+  script_.serial = "S2";
+  EXPECT_THAT(Make()->Identity(), HasSubstr("S2"));
+}
+
+TEST_F(AdConverterTest, MeasuresWithTheCalibrationOfTheCard) {
+  script_.range_V = 10.001;  // what is nominal does not count then
+  script_.calibration = CalibrationPolynomial{100.0, {0.5, 1e-3}};
+  script_.block.raw = {100, 200, 300, 400, 102, 202, 302, 402};
+  const Acquisition block = Make()->Acquire(2, false);
+  EXPECT_NEAR(block.channel[1].mean_V, 0.5 + 0.101, 1e-15);
+  EXPECT_NEAR(block.channel[3].std_V, 1e-3 * std::sqrt(2.0), 1e-15);
+}
+
+TEST(MakeAdConverter, RefusesABackendThatThereIsNot) {
+  AdSettings settings;
+  settings.kind = "telepathy";
+  settings.channels = {"a", "b", "c", "d"};
+  test::StandingClock clock;
+  EXPECT_THROW(MakeAdConverter(settings, {}, clock), InputError);
+}
+
+}  // namespace
+}  // namespace twinbench::hw

@@ -1,0 +1,173 @@
+#include "hw_bridge/ad/block_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "hw_bridge/ad/mains_hum.h"
+#include "tests/hw_ad/blocks.h"
+
+namespace twinbench::hw {
+namespace {
+
+using test::FourLevels;
+using test::RawBlock;
+
+constexpr double kNoise_V = 6e-3;
+const double kLsb_V = sim::LsbOf({});
+
+CheckSettings Known(double noise_V) {
+  return {.noise_lsb = noise_V / kLsb_V};
+}
+
+int Alarms(const BlockFindings& found) {
+  return (found.stuck_mask != 0) + (found.floating_mask != 0) + (found.slip.scan >= 0);
+}
+
+/// Blocks of honest noise that raise an alarm, by whether the noise is known beforehand.
+int FalseAlarms(const sim::AdInput& input, int scans, int blocks, double noise_V, const AdcSettings& adc = {}) {
+  int alarms = 0;
+  CheckSettings known{.bits = adc.bits, .noise_lsb = noise_V / sim::LsbOf(adc)}, unknown{.bits = adc.bits};
+  for (int k = 0; k < blocks; ++k) {
+    const auto raw = RawBlock(input, scans, static_cast<std::uint64_t>(k), adc);
+    alarms += Alarms(CheckBlock(raw, known)) + Alarms(CheckBlock(raw, unknown));
+  }
+  return alarms;
+}
+
+// The stated rate is 1e-9 a block and check: not one alarm is expected in all of the following blocks together.
+
+TEST(BlockChecks, PassAHundredThousandCleanBlocksOfTheReferenceBench) {
+  EXPECT_EQ(FalseAlarms(FourLevels(kNoise_V), 100, 100000, kNoise_V), 0);
+}
+
+TEST(BlockChecks, PassBlocksOfAnyLength) {
+  for (const int scans : {1, 2, 3, 7, 8, 10, 30, 1000}) {
+    EXPECT_EQ(FalseAlarms(FourLevels(kNoise_V), scans, 2000, kNoise_V), 0) << scans;
+  }
+}
+
+TEST(BlockChecks, PassHonestBlocksThatShowFewCodes) {
+  // From one code without noise at all to a handful; in 0.05 LSB most blocks have channels of one and of two codes.
+  for (const double noise_lsb : {0.0, 0.02, 0.05, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5}) {
+    for (const int scans : {100, 2000}) {
+      sim::AdInput input = FourLevels(noise_lsb * kLsb_V);
+      // On a boundary between codes, near one, and amid them.
+      for (std::size_t k = 0; k < kChannels; ++k) {
+        input.channel[k].level_V = (1000.0 * static_cast<double>(k) + 0.5 - 0.17 * static_cast<double>(k)) * kLsb_V;
+      }
+      EXPECT_EQ(FalseAlarms(input, scans, 1000, noise_lsb * kLsb_V), 0) << noise_lsb << " LSB, " << scans;
+    }
+  }
+}
+
+TEST(BlockChecks, DoNotTakeThreeFlickeringChannelsForNoiseThatTheFourthMustShow) {
+  // 0.05 LSB: whoever stands on a boundary between codes shows two of them, whoever stands amid one shows that.
+  sim::AdInput input = FourLevels(0.05 * kLsb_V);
+  for (std::size_t k = 0; k < kChannels; ++k) input.channel[k].level_V = (1000.0 + (k < 3 ? 0.5 : 0.0)) * kLsb_V;
+  EXPECT_EQ(CheckBlock(RawBlock(input, 2000, 1), {}).stuck_mask, 0);
+}
+
+TEST(BlockChecks, PassHumCrosstalkDriftAndEqualLevels) {
+  for (const double hum_V : {0.0, 5e-3, 0.1, 1.0}) {
+    for (const double slope_V_s : {0.0, 5.0, 60.0}) {
+      for (const bool equal : {false, true}) {
+        sim::AdInput input = FourLevels(kNoise_V);
+        input.hum = {hum_V, 50.0, 0.3};
+        for (std::size_t k = 0; k < kChannels; ++k) {
+          input.channel[k].crosstalk = 0.01;
+          input.channel[k].slope_V_s = k % 2 == 0 ? slope_V_s : 0.3 * slope_V_s;
+          if (equal) input.channel[k].level_V = 0.3;
+        }
+        EXPECT_EQ(FalseAlarms(input, 100, 1000, kNoise_V), 0) << hum_V << " V, " << slope_V_s << " V/s, " << equal;
+        EXPECT_EQ(FalseAlarms(input, 5000, 20, kNoise_V), 0) << hum_V << " V, " << slope_V_s << " V/s, " << equal;
+      }
+    }
+  }
+}
+
+TEST(BlockChecks, PassTwelveBitsAndLevelsNearTheRail) {
+  sim::AdInput input = FourLevels(kNoise_V);
+  input.channel[1].level_V = 9.8;
+  input.channel[3].level_V = -9.8;
+  AdcSettings adc;
+  EXPECT_EQ(FalseAlarms(input, 100, 5000, kNoise_V, adc), 0);
+  adc.bits = 12;  // 1.2 LSB of noise
+  EXPECT_EQ(FalseAlarms(input, 100, 5000, kNoise_V, adc), 0);
+}
+
+TEST(BlockChecks, FindAStuckChannelWhetherTheNoiseIsKnownOrNot) {
+  for (const double noise_lsb : {0.0, kNoise_V / kLsb_V}) {
+    auto raw = RawBlock(FourLevels(kNoise_V), 100, 1);
+    for (std::size_t scan = 0; scan < 100; ++scan) raw[4 * scan + 2] = 321;
+    EXPECT_EQ(CheckBlock(raw, {.noise_lsb = noise_lsb}).stuck_mask, 1 << 2);
+  }
+}
+
+TEST(BlockChecks, FindAChannelThatSticksHalfWay) {
+  auto raw = RawBlock(FourLevels(kNoise_V), 100, 1);
+  for (std::size_t scan = 50; scan < 100; ++scan) raw[4 * scan] = raw[4 * 49];
+  EXPECT_EQ(CheckBlock(raw, Known(kNoise_V)).stuck_mask, 1);
+}
+
+TEST(BlockChecks, DoNotCallTwoEqualScansStuck) {
+  const std::vector<std::int16_t> raw = {1, 2, 3, 4, 1, 2, 3, 4};
+  EXPECT_EQ(CheckBlock(raw, Known(kNoise_V)).stuck_mask, 0);
+}
+
+TEST(BlockChecks, CallAChannelAtAnEndCodeSaturatedAndNotStuck) {
+  sim::AdInput input = FourLevels(kNoise_V);
+  input.channel[1].level_V = 11.0;
+  input.channel[3].level_V = -11.0;
+  const BlockFindings found = CheckBlock(RawBlock(input, 100, 1), Known(kNoise_V));
+  EXPECT_EQ(found.saturated_mask, 0b1010);
+  EXPECT_EQ(Alarms(found), 0);
+}
+
+TEST(BlockChecks, FindOpenInputsAtEveryPhaseOfTheMains) {
+  // Near the rail, with pick-up of 5 % of the range and a charge that creeps; in 1.6 ms the mains is but a slope.
+  for (int phase_deg = 0; phase_deg < 360; phase_deg += 5) {
+    auto raw = RawBlock(FourLevels(kNoise_V), 100, static_cast<std::uint64_t>(phase_deg));
+    for (const std::size_t k : {0, 1}) {
+      for (std::size_t scan = 0; scan < 100; ++scan) {
+        const double t_s = static_cast<double>(scan) * 16e-6;
+        const double level = 0.9 + 0.01 * t_s / 1.6e-3 + 0.05 * std::sin(314.16 * t_s + phase_deg * units::deg);
+        raw[4 * scan + k] = static_cast<std::int16_t>(level * 32767.0);
+      }
+    }
+    const BlockFindings found = CheckBlock(raw, Known(kNoise_V));
+    EXPECT_EQ(found.floating_mask, 0b0011) << phase_deg << " deg";
+  }
+}
+
+TEST(BlockChecks, ReportTheMainsOfALongBlockAndDoNotRejectIt) {
+  sim::AdInput input = FourLevels(kNoise_V);
+  input.hum = {0.05, 50.0, 1.0};
+  const BlockFindings found = CheckBlock(RawBlock(input, 6250, 1), Known(kNoise_V));  // 0.1 s: 5 periods
+  EXPECT_EQ(Alarms(found), 0);
+  // Amplitude from n samples of noise s: standard uncertainty s sqrt(2 / n) = 0.35 LSB; five of them.
+  for (const double mains_lsb : found.mains_lsb) EXPECT_NEAR(mains_lsb, 0.05 / kLsb_V, 1.8);
+}
+
+TEST(BlockChecks, DoNotStateAMainsAmplitudeOfLessThanAPeriod) {
+  for (const double mains_lsb : CheckBlock(RawBlock(FourLevels(kNoise_V), 1249, 1), {}).mains_lsb) {
+    EXPECT_TRUE(std::isnan(mains_lsb));
+  }
+}
+
+TEST(BlockChecks, EstimateTheNoiseUnderDrift) {
+  sim::AdInput input = FourLevels(kNoise_V);
+  for (auto& channel : input.channel) channel.slope_V_s = 5.0;
+  for (const double noise_lsb : CheckBlock(RawBlock(input, 10000, 1), {}).noise_lsb) {
+    // Relative uncertainty sqrt(3 / 4n) = 0.9 %; five of them. The slope adds 80 uV a scan: 0.01 %.
+    EXPECT_NEAR(noise_lsb / (kNoise_V / kLsb_V), 1.0, 0.045);
+  }
+}
+
+TEST(BlockChecks, NameChannels) {
+  EXPECT_EQ(ChannelsIn(0b1001), "psd_a_x and psd_b_y");
+}
+
+}  // namespace
+}  // namespace twinbench::hw

@@ -1,0 +1,101 @@
+#include "hw_bridge/open_bench.h"
+
+#include <gmock/gmock.h>
+
+#include "hw_bridge/ad/ad_source.h"
+#include "tests/hw_control/fake_controller.h"
+#include "tests/hw_control/faults.h"
+#include "tests/hw_control/served_twin.h"
+#include "twin/sim/twin.h"
+
+namespace twinbench::hw {
+namespace {
+
+using test::KindOf;
+using test::ServedTwin;
+using testing::HasSubstr;
+
+BenchFile FileOf(const ServedTwin& served, const std::string& tables) {
+  return ParseBenchFile(WriteServedBenchFile(served.Addresses(), tables), "served.toml", "/");
+}
+
+Scenario Noisy() {
+  Scenario scenario;
+  scenario.environment.drift_K_h = 1.0;
+  return scenario;
+}
+
+/// A stop as the procedure makes it: both tables move, settle, dwell, and a block is taken.
+Acquisition TakeAt(RotaryBench bench, double angle_rad) {
+  bench.target.StartMove(angle_rad);
+  bench.reference.StartMove(-angle_rad);
+  bench.target.WaitSettled();
+  bench.reference.WaitSettled();
+  bench.clock.Wait(std::chrono::seconds(1));
+  return bench.adc.Acquire(100, true);
+}
+
+class OpenedBench : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (!HasAdDriver("iio")) GTEST_SKIP() << "this build has no libiio";
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Tables, OpenedBench, testing::Values("scpi", "esp", "pty"),
+                         [](const auto& tables) { return std::string(tables.param); });
+
+TEST_P(OpenedBench, TakesTheBlocksThatTheTwinTakesInTheProgramItself) {
+  const Scenario scenario = Noisy();
+  ServedTwin served(scenario);
+  const auto opened = OpenBench(FileOf(served, GetParam()), scenario);
+  const RotaryBench bench = opened->Bench();
+  bench.simulation->Restart();
+  sim::Twin twin(scenario);
+  for (const double angle_rad : {0.1, 0.2, -1.0 / 3.0}) {
+    const Acquisition got = TakeAt(bench, angle_rad), expected = TakeAt(twin.Bench(), angle_rad);
+    EXPECT_EQ(got.start, expected.start);
+    EXPECT_EQ(got.raw, expected.raw);
+    for (int c = 0; c < kChannels; ++c) {
+      EXPECT_EQ(got.channel[c].mean_V, expected.channel[c].mean_V);
+      EXPECT_EQ(got.channel[c].std_V, expected.channel[c].std_V);
+    }
+    EXPECT_EQ(bench.thermometer.Read_degC(), twin.Bench().thermometer.Read_degC());
+  }
+}
+
+TEST_P(OpenedBench, SaysWhoAnsweredTheSameAtEveryOpening) {
+  ServedTwin served(Noisy());
+  const BenchFile file = FileOf(served, GetParam());
+  std::string identity = OpenBench(file, Noisy())->Identity();
+  EXPECT_THAT(identity, HasSubstr("served twin: "));
+  EXPECT_THAT(identity, HasSubstr("twinbench,rotary-bench,"));
+  EXPECT_EQ(OpenBench(file, Noisy())->Identity(), identity);
+}
+
+TEST_P(OpenedBench, RefusesAnotherDeviceThanTheFileNames) {
+  ServedTwin served(Noisy());
+  BenchFile file = FileOf(served, GetParam());
+  file.target.identity = file.reference.identity = "somebody else";
+  if (std::string(GetParam()) == "scpi") file.thermometer.identity = "somebody else";
+  EXPECT_EQ(KindOf([&] { OpenBench(file, Noisy()); }), FaultKind::kIdentity);
+}
+
+TEST_P(OpenedBench, RefusesSoftLimitsThatTheControllerDoesNotAllow) {
+  ServedTwin served(Noisy());
+  BenchFile file = FileOf(served, GetParam());
+  file.target_limits.upper_rad = 1.1e4;  // the served one stops at 1e4
+  EXPECT_EQ(KindOf([&] { OpenBench(file, Noisy()); }), FaultKind::kRefused);
+}
+
+TEST(OpenBench, WithNobodyThereIsAFaultThatNamesTheDevice) {
+  const test::ReservedPort port;
+  BenchFile file;
+  file.target = file.reference = {"scpi", port.Address()};
+  file.target.timeout_s = 0.1;
+  const auto open = [&] { OpenBench(file, Noisy()); };
+  EXPECT_EQ(KindOf(open), FaultKind::kDropped);
+  EXPECT_THAT(test::TextOf(open), HasSubstr("target: cannot be reached"));
+}
+
+}  // namespace
+}  // namespace twinbench::hw

@@ -1,0 +1,152 @@
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "hw_bridge/control/esp_table.h"
+#include "hw_bridge/control/scpi.h"
+#include "hw_bridge/control/scpi_table.h"
+#include "hw_bridge/control/served_clock.h"
+#include "tests/hw_control/faults.h"
+#include "tests/hw_control/served_twin.h"
+#include "twin/core/units.h"
+
+namespace twinbench::hw {
+namespace {
+
+using test::KindOf;
+using test::ServedTwin;
+
+constexpr Duration kTimeout = std::chrono::milliseconds(500);
+
+/// The target of a served twin whose clock is held, and how to spoil it.
+class FaultyTable {
+ public:
+  FaultyTable(const ServedTwin& served, const std::string& language)
+      : clock_talk_(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, ""),
+        talk_(ParseAddress(language == "scpi" ? served.ScpiAddress() : served.EspAddress()).value(),
+              language == "scpi" ? kScpiIdentity : kEspIdentity, ""),
+        clock_({clock_talk_, "clock", kTimeout}) {
+    clock_.Open();
+    const DeviceLine line(talk_, "target", kTimeout);
+    if (language == "scpi")
+      table_ = std::make_unique<ScpiTable>(line, 1, TableLimits{});
+    else
+      table_ = std::make_unique<EspTable>(line, 1, TableLimits{}, -1, true);
+  }
+
+  RotaryTable& table() { return *table_; }
+  ScpiClock& clock() { return clock_; }
+  void Restart() { ScpiSimulation(clock_).Restart(); }
+  void Inject(const std::string& kind) {
+    DeviceLine line(clock_talk_, "simulation", kTimeout);
+    TellScpi(line, "SIM:FAUL target," + kind);
+  }
+
+ private:
+  Dialogue clock_talk_, talk_;
+  ScpiClock clock_;
+  std::unique_ptr<ControlledTable> table_;
+};
+
+struct Case {
+  std::string language, fault;
+  FaultKind kind;
+};
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.language << " " << c.fault;
+}
+
+class FaultOf : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(
+    Answers, FaultOf,
+    testing::Values(Case{"scpi", "mute", FaultKind::kTimeout}, Case{"scpi", "late", FaultKind::kTimeout},
+                    Case{"scpi", "partial", FaultKind::kTimeout}, Case{"scpi", "disconnect", FaultKind::kDropped},
+                    Case{"scpi", "restart", FaultKind::kRestarted}, Case{"esp", "mute", FaultKind::kTimeout},
+                    Case{"esp", "late", FaultKind::kTimeout}, Case{"esp", "partial", FaultKind::kTimeout},
+                    Case{"esp", "disconnect", FaultKind::kDropped}, Case{"esp", "restart", FaultKind::kRestarted}),
+    [](const auto& c) { return c.param.language + "_" + c.param.fault; });
+
+TEST_P(FaultOf, AControllerEndsTheCallInItsNameAndTheNextCallsWork) {
+  ServedTwin served(Scenario{});
+  FaultyTable faulty(served, GetParam().language);
+  faulty.table().StartMove(0.5);
+  faulty.table().WaitSettled();
+  faulty.Inject(GetParam().fault);
+  EXPECT_EQ(KindOf([&] { faulty.table().StartMove(0.6); }), GetParam().kind);
+  if (GetParam().kind == FaultKind::kRestarted) {
+    EXPECT_EQ(KindOf([&] { faulty.table().WaitSettled(); }), FaultKind::kRestarted);
+    EXPECT_TRUE(std::isnan(faulty.table().EncoderAngle_rad()));
+    faulty.table().Home();
+  }
+  faulty.table().StartMove(0.7);
+  faulty.table().WaitSettled();
+  EXPECT_EQ(faulty.table().State().encoder_rad, 0.7);  // the kinematic twin follows its command exactly
+}
+
+TEST_P(FaultOf, AControllerIsUndoneByStartingTheTwinAgain) {
+  ServedTwin served(Scenario{});
+  FaultyTable faulty(served, GetParam().language);
+  const auto drive = [&faulty] {
+    faulty.table().StartMove(0.3);
+    faulty.table().WaitSettled();
+    return std::pair{faulty.table().State().encoder_rad, faulty.clock().Now()};
+  };
+  faulty.Restart();
+  const auto undisturbed = drive();
+  faulty.Inject(GetParam().fault);
+  EXPECT_EQ(KindOf([&] { faulty.table().StartMove(0.9); }), GetParam().kind);
+  faulty.Restart();
+  EXPECT_EQ(drive(), undisturbed);
+}
+
+TEST(ServedTables, RefuseWhatLiesBeyondTheControllersLimits) {
+  for (const char* language : {"scpi", "esp"}) {
+    ServedTwin served(Scenario{});
+    FaultyTable faulty(served, language);
+    EXPECT_EQ(KindOf([&] { faulty.table().StartMove(2e4); }), FaultKind::kLimit) << language;  // its own: 1e4 rad
+    EXPECT_EQ(faulty.table().State().encoder_rad, 0.0) << language;
+  }
+}
+
+/// How much bench time passes by itself in 20 ms.
+Duration Drift(const ScpiClock& clock) {
+  const Time before = clock.Now();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  return clock.Now() - before;
+}
+
+TEST(ServedClock, IsHeldAgainWhereItsConnectionHadToBeOpenedAgain) {
+  constexpr double kRealTime = 1.0;
+  ServedTwin served(Scenario{}, kRealTime);
+  Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
+  ScpiClock clock({talk, "clock", kTimeout});
+  EXPECT_EQ(Drift(clock), Duration(0));
+  talk.Close();
+  EXPECT_EQ(Drift(clock), Duration(0));
+}
+
+TEST(ServedClock, WaitsWhatItIsToldAndTakesNoRealTimeUnpaced) {
+  constexpr double kRealTime = 1.0;
+  ServedTwin served(Scenario{}, kRealTime);
+  Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
+  ScpiClock clock({talk, "clock", kTimeout});
+  ScpiSimulation(clock).SetPaced(false);
+  const Time before = clock.Now();
+  clock.Wait(std::chrono::hours(10));  // far beyond what this test may take
+  EXPECT_EQ(clock.Now() - before, std::chrono::hours(10));
+  ScpiSimulation(clock).SetPaced(true);
+  const auto begin = std::chrono::steady_clock::now();
+  clock.Wait(std::chrono::milliseconds(50));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(50));
+}
+
+TEST(ServedClock, KnowsATwinByItsName) {
+  ServedTwin served(Scenario{});
+  Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "");
+  ScpiClock clock({talk, "clock", kTimeout});
+  clock.Open();
+  EXPECT_TRUE(clock.IsTwin());
+}
+
+}  // namespace
+}  // namespace twinbench::hw

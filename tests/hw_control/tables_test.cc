@@ -1,0 +1,314 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+#include <mutex>
+
+#include "hw_bridge/control/esp_table.h"
+#include "hw_bridge/control/scpi.h"
+#include "hw_bridge/control/scpi_table.h"
+#include "tests/hw_control/fake_controller.h"
+#include "tests/hw_control/faults.h"
+#include "twin/core/number_text.h"
+#include "twin/core/units.h"
+
+namespace twinbench::hw {
+namespace {
+
+using test::FakeController;
+using test::KindOf;
+using test::TextOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using Reply = FakeController::Reply;
+
+constexpr Duration kTimeout = std::chrono::milliseconds(300);
+constexpr Duration kSecond = std::chrono::seconds(1);
+
+/// What a controller knows of one axis; moves are over at once.
+struct AxisModel {
+  double commanded_deg = 0.0, encoder_deg = 0.0;
+  bool referenced = true, motor_on = true;
+  double lower_deg = -200.0, upper_deg = 200.0;
+};
+
+/// A SCPI controller of two axes that can be spoiled. One thread answers, another asks: hence the lock.
+struct ScpiModel {
+  std::mutex mutex;
+  std::map<int, AxisModel> axis;
+  double resolution_deg = 0.0;  // of what it understands; 0: all
+  std::string move_error = "0,\"No error\"";
+  bool restarts_at_move = false;
+  std::string error = "0,\"No error\"";
+
+  Reply operator()(const std::string& line) {
+    const std::lock_guard lock(mutex);
+    if (line == "*IDN?") return {"maker,two-axes,7,1.0\n"};
+    if (line == "SYST:ERR?") return {std::exchange(error, "0,\"No error\"") + "\n"};
+    AxisModel& a = axis[line[3] - '0'];
+    const std::string verb = line.substr(5);
+    if (verb.starts_with("ANGL ")) Move(a, verb.substr(5));
+    if (verb == "HOME") a = AxisModel{};
+    if (verb == "STAT?")
+      return {fmt::format("{},{},0,1,{:d},0,\"\"\n", a.commanded_deg, a.encoder_deg, a.referenced)};
+    if (verb.starts_with("SETT?")) return {"1\n"};
+    if (verb == "LIM:LOW?") return {fmt::format("{}\n", a.lower_deg)};
+    if (verb == "LIM:UPP?") return {fmt::format("{}\n", a.upper_deg)};
+    return {};
+  }
+
+  void Move(AxisModel& a, const std::string& text) {
+    error = move_error;
+    if (!error.starts_with("0,")) return;
+    if (restarts_at_move) a = AxisModel{.referenced = false};
+    const double to_deg = ParseNumber(text).value();
+    a.commanded_deg = resolution_deg > 0.0 ? std::trunc(to_deg / resolution_deg) * resolution_deg : to_deg;
+    a.encoder_deg = a.commanded_deg;
+  }
+};
+
+/// The same in the ESP language; without MS?, as the ESP301, unless told otherwise.
+struct EspModel {
+  std::mutex mutex;
+  std::map<int, AxisModel> axis;
+  bool knows_status = false;
+  int unit = 7, error = 0;
+  int polls_until_done = 0;
+
+  Reply operator()(const std::string& line) {
+    const std::lock_guard lock(mutex);
+    if (line == "VE?") return {"ESP301 Version 3.0.1\r\n"};
+    if (line == "TB?") return {fmt::format("{}, 100, {}\r\n", std::exchange(error, 0), "text")};
+    if (line == "TS?") return {polls_until_done > 0 ? "Q\r\n" : "P\r\n"};
+    AxisModel& a = axis[line[0] - '0'];
+    const std::string verb = line.substr(1);
+    if (verb == "MS?" && knows_status) return {a.referenced ? "1\r\n" : "0\r\n"};
+    if (verb == "SN?") return {fmt::format("{}\r\n", unit)};
+    if (verb == "MO?") return {a.motor_on ? "1\r\n" : "0\r\n"};
+    if (verb == "MD?") return {polls_until_done-- > 0 ? "0\r\n" : "1\r\n"};
+    if (verb == "TP?") return {fmt::format("{}\r\n", a.encoder_deg)};
+    if (verb == "PA?") return {fmt::format("{}\r\n", a.commanded_deg)};
+    if (verb == "SL?") return {fmt::format("{}\r\n", a.lower_deg)};
+    if (verb == "SR?") return {fmt::format("{}\r\n", a.upper_deg)};
+    Obey(a, verb);
+    return {};
+  }
+
+  void Obey(AxisModel& a, const std::string& verb) {
+    if (verb == "MO")
+      a.motor_on = true;
+    else if (verb.starts_with("SN"))
+      unit = 7;
+    else if (verb.starts_with("PA") && !a.motor_on)
+      error = 113;
+    else if (verb.starts_with("PA"))
+      a.commanded_deg = a.encoder_deg = ParseNumber(verb.substr(2)).value();
+    else if (verb != "OR" && verb != "ST")
+      error = 6;
+  }
+};
+
+class ScpiTables : public testing::Test {
+ protected:
+  ScpiTable Table(int axis, const TableLimits& limits = {}, int decimals = -1) {
+    return {DeviceLine(dialogue_, axis == 1 ? "target" : "reference", kTimeout), axis, limits, decimals};
+  }
+  ScpiModel model_;
+  FakeController controller_{[this](const std::string& line) { return model_(line); }};
+  Dialogue dialogue_{ParseAddress(controller_.Address()).value(), kScpiIdentity, "maker"};
+};
+
+TEST_F(ScpiTables, TwoAxesOfOneControllerShareOneConnectionAndKeepTheirAngles) {
+  ScpiTable target = Table(1), reference = Table(2);
+  target.StartMove(0.5);
+  reference.StartMove(-0.25);
+  EXPECT_TRUE(target.Settles(kSecond));
+  EXPECT_NEAR(target.State().encoder_rad, 0.5, 1e-15);  // 17 digits of text: at most one rounding off
+  EXPECT_NEAR(reference.State().encoder_rad, -0.25, 1e-15);
+  EXPECT_EQ(controller_.Connections(), 1);
+}
+
+TEST_F(ScpiTables, ASoftLimitRefusesBeforeAnythingIsSent) {
+  ScpiTable table = Table(1, {.lower_rad = -1.0, .upper_rad = 1.0});
+  for (const double beyond_rad : {1.0000001, -1.0000001, kNaN}) {
+    EXPECT_EQ(KindOf([&] { table.StartMove(beyond_rad); }), FaultKind::kLimit);
+  }
+  EXPECT_EQ(controller_.Connections(), 0);
+  table.StartMove(1.0);  // the limit itself is allowed
+  EXPECT_THAT(controller_.Lines(), Contains(StartsWith("ROT1:ANGL ")));
+}
+
+TEST_F(ScpiTables, TheControllersOwnLimitsHoldWhereTheFileGivesNone) {
+  ScpiTable table = Table(1);
+  table.AgreeOnLimits();
+  EXPECT_EQ(KindOf([&] { table.StartMove(200.1 * units::deg); }), FaultKind::kLimit);
+  EXPECT_THAT(controller_.Lines(), Not(Contains(HasSubstr("ANGL"))));
+}
+
+TEST_F(ScpiTables, AFileThatAllowsMoreThanTheControllerIsRefused) {
+  ScpiTable table = Table(1, {.lower_rad = -3.0, .upper_rad = 201.0 * units::deg});
+  EXPECT_EQ(KindOf([&] { table.AgreeOnLimits(); }), FaultKind::kRefused);
+  ScpiTable narrower = Table(1, {.lower_rad = -3.0, .upper_rad = 3.0});
+  EXPECT_EQ(KindOf([&] { narrower.AgreeOnLimits(); }), std::nullopt);
+}
+
+// PyMeasure sends 30.123456 deg as 30.1235; a controller that drops digits does the same.
+TEST_F(ScpiTables, AControllerThatUnderstoodAnotherAngleIsStoppedAndTheDifferenceTold) {
+  model_.resolution_deg = 1e-4;
+  ScpiTable table = Table(1);
+  const auto move = [&] { table.StartMove(30.123456 * units::deg); };
+  EXPECT_EQ(KindOf(move), FaultKind::kRefused);
+  EXPECT_THAT(TextOf(move), HasSubstr("0.2016 arcsec off"));  // 0.000056 deg
+  EXPECT_THAT(controller_.Lines(), Contains("ROT1:STOP"));
+}
+
+TEST_F(ScpiTables, AControllerWhoseDecimalsAreKnownIsToldNoMoreOfThem) {
+  ScpiTable table = Table(1, {}, 4);
+  table.StartMove(30.123456 * units::deg);
+  EXPECT_THAT(controller_.Lines(), Contains("ROT1:ANGL 30.1235"));
+  EXPECT_NEAR(table.State().commanded_rad, 30.1235 * units::deg, 1e-15);
+}
+
+TEST_F(ScpiTables, ARefusalOfTheControllerIsTold) {
+  ScpiTable table = Table(1);
+  model_.move_error = "-222,\"Data out of range\"";
+  EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), FaultKind::kLimit);
+  model_.move_error = "-113,\"Undefined header\"";
+  EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), FaultKind::kRefused);
+  EXPECT_THAT(TextOf([&] { table.StartMove(0.1); }), HasSubstr("Undefined header"));
+}
+
+TEST_F(ScpiTables, AControllerWithoutOriginGivesNoAnglesAndIsNotMoved) {
+  model_.axis[1] = {.commanded_deg = 0.0, .encoder_deg = 0.0, .referenced = false};
+  ScpiTable table = Table(1);
+  EXPECT_FALSE(table.State().referenced);
+  EXPECT_TRUE(std::isnan(table.EncoderAngle_rad()));
+  EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), FaultKind::kRestarted);
+  EXPECT_EQ(KindOf([&] { table.Settles(kSecond); }), FaultKind::kRestarted);
+  EXPECT_THAT(controller_.Lines(), Not(Contains(HasSubstr("ANGL"))));
+  table.Home();
+  EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), std::nullopt);
+}
+
+TEST_F(ScpiTables, AControllerThatRestartsAsTheMoveBeginsIsStopped) {
+  model_.restarts_at_move = true;
+  ScpiTable table = Table(1);
+  EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), FaultKind::kRestarted);
+  EXPECT_THAT(controller_.Lines(), Contains("ROT1:STOP"));
+}
+
+TEST(ScpiState, IsReadWithTheQuotesAndCommasOfItsFault) {
+  const auto state = ParseScpiState("180,90,1,0,1,-1,\"following error, axis 1\"");
+  ASSERT_TRUE(state);
+  EXPECT_DOUBLE_EQ(state->commanded_rad, units::kPi);
+  EXPECT_DOUBLE_EQ(state->encoder_rad, units::kPi / 2);
+  EXPECT_TRUE(state->moving && !state->in_position && state->referenced);
+  EXPECT_EQ(state->limit, -1);
+  EXPECT_EQ(state->fault, "following error, axis 1");
+}
+
+TEST(ScpiState, IsRefusedIfAnythingIsMissingOrStrange) {
+  for (const char* text :
+       {"", "1", "1,1,0,1,1,0", "1,1,0,1,1,0,\"", "1,1,0,1,1,0,\"\",1", "1,,0,1,1,0,\"\"", "1x,1,0,1,1,0,\"\"",
+        "1,1,2,1,1,0,\"\"", "1,1,0,-1,1,0,\"\"", "1,1,0,1,1,2,\"\"", "1,1,0,1,1,0.5,\"\""})
+    EXPECT_FALSE(ParseScpiState(text)) << text;
+}
+
+TEST(ScpiNumber, KnowsNotANumber) {
+  EXPECT_TRUE(std::isnan(ParseScpiNumber("9.91E37", units::arcsec).value()));
+  EXPECT_DOUBLE_EQ(ParseScpiNumber("3600", units::arcsec).value(), units::deg);
+  EXPECT_FALSE(ParseScpiNumber("nan", 1.0));
+}
+
+class EspTables : public testing::Test {
+ protected:
+  EspTable Table(int axis, bool polls_pass_time = false) {
+    return {DeviceLine(dialogue_, axis == 1 ? "target" : "reference", kTimeout), axis, TableLimits{}, -1,
+            polls_pass_time};
+  }
+  long Polls() const {
+    const auto lines = controller_.Lines();
+    return std::count(lines.begin(), lines.end(), "1MD?");
+  }
+  EspModel model_;
+  FakeController controller_{[this](const std::string& line) { return model_(line); }};
+  Dialogue dialogue_{ParseAddress(controller_.Address()).value(), kEspIdentity, "ESP301"};
+};
+
+TEST_F(EspTables, TwoAxesOfOneControllerShareOneConnectionAndKeepTheirAngles) {
+  EspTable target = Table(1), reference = Table(2);
+  target.StartMove(0.5);
+  reference.StartMove(-0.25);
+  EXPECT_NEAR(target.State().encoder_rad, 0.5, 1e-15);
+  EXPECT_NEAR(reference.State().encoder_rad, -0.25, 1e-15);
+  EXPECT_EQ(controller_.Connections(), 1);
+}
+
+TEST_F(EspTables, AnAxisIsDrivenInDegrees) {
+  model_.unit = 9;  // radian
+  EspTable table = Table(1);
+  table.StartMove(30.0 * units::deg);
+  EXPECT_THAT(controller_.Lines(), testing::IsSupersetOf({"1SN7", "1PA30"}));
+}
+
+TEST_F(EspTables, AMotorThatGoesOffWithoutMsQueryMeansThatTheOriginIsLost) {
+  EspTable table = Table(1);
+  table.StartMove(0.1);
+  {
+    const std::lock_guard lock(model_.mutex);
+    model_.axis[1] = {.motor_on = false};  // switched off and on
+  }
+  EXPECT_FALSE(table.State().referenced);
+  EXPECT_TRUE(std::isnan(table.EncoderAngle_rad()));
+  EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), FaultKind::kRestarted);
+  table.Home();
+  EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), std::nullopt);
+}
+
+TEST_F(EspTables, AControllerWithMsQueryTellsOfItsOriginItself) {
+  model_.knows_status = true;
+  model_.axis[1] = {.referenced = false, .motor_on = false};
+  EspTable table = Table(1);
+  EXPECT_FALSE(table.State().referenced);
+  EXPECT_EQ(KindOf([&] { table.StartMove(0.1); }), FaultKind::kRestarted);
+}
+
+TEST_F(EspTables, ErrorsOfTheAxisAreTold) {
+  EspTable table = Table(1);
+  table.StartMove(0.0);
+  for (const auto& [error, kind] : {std::pair{104, FaultKind::kLimit}, std::pair{207, FaultKind::kLimit},
+                                    std::pair{113, FaultKind::kRefused}, std::pair{6, FaultKind::kRefused}}) {
+    {
+      const std::lock_guard lock(model_.mutex);
+      model_.error = error;
+    }
+    EXPECT_EQ(KindOf([&] { table.StartMove(0.0); }), kind) << error;
+  }
+}
+
+TEST_F(EspTables, WithAHeldClockSoManyPollsAreMadeAsPassTheTime) {
+  EspTable table = Table(1, true);
+  table.StartMove(0.1);
+  model_.polls_until_done = 1000;
+  EXPECT_FALSE(table.Settles(kSecond));
+  EXPECT_EQ(Polls(), 20);  // of 50 ms each
+  EXPECT_FALSE(table.Settles(Duration(0)));
+  EXPECT_EQ(Polls(), 21);  // one look at least
+}
+
+TEST_F(EspTables, WithARunningClockItIsPolledForSoLong) {
+  EspTable table = Table(1);
+  table.StartMove(0.1);
+  model_.polls_until_done = 1'000'000;
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(table.Settles(std::chrono::milliseconds(200)));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(200));
+  model_.polls_until_done = 3;
+  EXPECT_TRUE(table.Settles(std::chrono::seconds(20)));
+}
+
+}  // namespace
+}  // namespace twinbench::hw

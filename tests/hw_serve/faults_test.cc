@@ -1,0 +1,245 @@
+#include "hw_bridge/serve/faults.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "tests/hw_serve/serving.h"
+
+namespace twinbench::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// A held bench at no cost, an open buffer, and what an undisturbed block looks like.
+class OnDemand : public testing::Test {
+ protected:
+  static constexpr int kScans = 400;
+  OnDemand() {
+    scpi.Ask("CLOC:HOLD ON;*OPC?");
+    clean = adc.Read(kScans);
+    Again();
+  }
+  void Again() { scpi.Ask("SIM:REST;*OPC?"); }
+  void Demand(const std::string& fault) { scpi.Ask("SIM:FAUL " + fault + ";*OPC?"); }
+  Scans Spoilt(const std::string& fault) {
+    Demand("adc," + fault);
+    return adc.Read(kScans);
+  }
+  std::int16_t Of(const Scans& scans, int scan, int channel) const { return scans.raw[scan * kChannels + channel]; }
+
+  ServedTwin served{Options(kAtOnce)};
+  TcpClient scpi{served.at().scpi_port}, esp{served.at().esp_port};
+  BufferClient adc{served.at().iiod_port, kScans};
+  Scans clean;
+};
+
+TEST_F(OnDemand, WhatIsNoFaultIsRefused) {
+  hw::Faults faults;
+  EXPECT_FALSE(faults.Add("adc", "mute", 1));
+  EXPECT_FALSE(faults.Add("target", "slip", 1));
+  EXPECT_FALSE(faults.Add("moon", "drop", 1));
+  EXPECT_FALSE(faults.Add("adc", "drop", 0));
+  EXPECT_FALSE(faults.Add("adc", "drop,many"));
+  for (int k = 0; k < 1000; ++k) faults.Add("adc", "drop,2");
+  EXPECT_LE(faults.Waiting().size(), 10'000u);
+}
+
+TEST_F(OnDemand, AFaultStrikesAsOftenAsToldAndSurvivesARestart) {
+  Demand("adc,no_light,2");
+  Again();
+  EXPECT_EQ(scpi.Ask("SIM:FAUL?"), "\"adc,no_light,2\"");
+  const std::vector<std::int16_t> dark(kScans * kChannels, 0);
+  EXPECT_EQ(adc.Read(kScans).raw, dark);
+  EXPECT_EQ(adc.Read(kScans).raw, dark);
+  EXPECT_NE(adc.Read(kScans).raw, dark);
+}
+
+TEST_F(OnDemand, ASpoiltBlockWasTakenAllTheSame) {
+  const Scans second = (adc.Read(kScans), adc.Read(kScans));
+  Again();
+  Spoilt("stuck");
+  EXPECT_EQ(adc.Read(kScans).raw, second.raw);
+  Again();
+  EXPECT_EQ(adc.Read(kScans).raw, clean.raw);
+}
+
+TEST_F(OnDemand, AGapIsAStepInTheTimeStamps) {
+  const Scans scans = Spoilt("gap");
+  EXPECT_EQ(scans.stamps_ns[199], clean.stamps_ns[199]);
+  EXPECT_EQ(scans.stamps_ns[200] - scans.stamps_ns[199], 17 * 16000);
+}
+
+TEST_F(OnDemand, ASaturatedChannelStandsOnItsEndCode) {
+  const Scans scans = Spoilt("saturate");
+  EXPECT_EQ(Of(scans, kScans - 1, 0), 32767);
+  EXPECT_EQ(Of(scans, 0, 0), Of(clean, 0, 0));
+}
+
+TEST_F(OnDemand, AFloatingChannelIsNearTheRailWithHum) {
+  const Scans scans = Spoilt("float");
+  int least = 32767, most = -32768;
+  for (int s = 0; s < kScans; ++s) {
+    least = std::min<int>(least, Of(scans, s, 1));
+    most = std::max<int>(most, Of(scans, s, 1));
+  }
+  EXPECT_GT(least, 0.8 * 32767);
+  EXPECT_LT(most, 32767);
+  EXPECT_GT(most - least, 1000);
+}
+
+TEST_F(OnDemand, AStuckChannelHasNoNoise) {
+  const Scans scans = Spoilt("stuck");
+  for (int s = 0; s < kScans; ++s) EXPECT_EQ(Of(scans, s, 2), Of(clean, 0, 2));
+}
+
+TEST_F(OnDemand, HumIsATenthOfAVoltOnAllChannels) {
+  const Scans scans = Spoilt("hum");
+  for (int k = 0; k < kScans * kChannels; ++k) {
+    EXPECT_LE(std::abs(scans.raw[k] - clean.raw[k]), 328);  // 0.1 V of 32768 codes per 10 V
+  }
+  // After 5 ms, a quarter of a period, it is at its crest: scan 312.5.
+  EXPECT_NEAR(Of(scans, 312, 0) - Of(clean, 312, 0), 328, 1);
+}
+
+TEST_F(OnDemand, ASlipTurnsTheChannelsFromTheMiddleOn) {
+  const Scans scans = Spoilt("slip");
+  const std::size_t middle = kScans / 2 * kChannels;
+  EXPECT_TRUE(std::equal(clean.raw.begin(), clean.raw.begin() + middle, scans.raw.begin()));
+  EXPECT_TRUE(std::equal(clean.raw.begin() + middle + 1, clean.raw.end(), scans.raw.begin() + middle));
+}
+
+TEST_F(OnDemand, AClockThatSteppedIsASecondOff) {
+  Demand("clock,step");
+  EXPECT_EQ(adc.Read(kScans).stamps_ns[7], clean.stamps_ns[7] + 1'000'000'000);
+}
+
+TEST_F(OnDemand, AClockThatRunsFastIsAheadByItsShare) {
+  scpi.Ask("CLOC:WAIT? 1000000000");
+  Demand("clock,ppm");
+  EXPECT_EQ(adc.Read(kScans).stamps_ns[0], 1'000'050'000);
+}
+
+TEST_F(OnDemand, ADroppedBlockEndsInTheMiddle) {
+  Demand("adc,drop");
+  TcpClient& iiod = adc.socket();
+  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 6400"), "6400");
+  iiod.Line();
+  iiod.Bytes(3200);
+  EXPECT_TRUE(iiod.Ends());
+}
+
+TEST_F(OnDemand, AStalledBlockNeverGoesOn) {
+  Demand("adc,stall");
+  TcpClient& iiod = adc.socket();
+  iiod.Ask("READBUF psd-adc16 6400");
+  iiod.Line();
+  iiod.Bytes(3200);
+  EXPECT_TRUE(iiod.Silent(std::chrono::milliseconds(200)));
+}
+
+TEST_F(OnDemand, AShortBlockIsHalfAndThenNothing) {
+  TcpClient& iiod = adc.socket();
+  Demand("adc,short");
+  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 6400"), "3200");
+  iiod.Line();
+  iiod.Bytes(3200);
+  EXPECT_EQ(iiod.Line(), "0");
+  Demand("adc,error");
+  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 6400"), "3200");
+  iiod.Line();
+  iiod.Bytes(3200);
+  EXPECT_EQ(iiod.Line(), "-5");
+  EXPECT_EQ(iiod.Ask("CLOSE psd-adc16"), "0");  // the connection is in step
+}
+
+TEST_F(OnDemand, ADebugAttributeDemandsFaultsOfTheConverter) {
+  TcpClient iiod(served.at().iiod_port);
+  iiod.Send("WRITE psd-adc16 DEBUG fault 7\r\nstuck,3");
+  EXPECT_EQ(iiod.Line(), "7");
+  iiod.Send("WRITE psd-adc16 DEBUG fault 4\r\nmute");
+  EXPECT_EQ(iiod.Line(), "-22");
+  EXPECT_EQ(scpi.Ask("SIM:FAUL?"), "\"adc,stuck,3\"");
+}
+
+TEST_F(OnDemand, AMuteTableAnswersNothingOnce) {
+  Demand("target,mute");
+  EXPECT_EQ(scpi.Ask("ROT2:ANGL?"), "0");  // not that one
+  scpi.Send("ROT1:ANGL?\n");
+  EXPECT_TRUE(scpi.Silent(std::chrono::milliseconds(200)));
+  EXPECT_EQ(scpi.Ask("ROT1:ANGL?"), "0");
+}
+
+TEST_F(OnDemand, ALateAnswerComesAfterThreeSeconds) {
+  Demand("controller,late");
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_EQ(scpi.Ask("ROT1:ANGL?"), "0");
+  EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::seconds(3));
+}
+
+TEST_F(OnDemand, APartialAnswerHasNoEnd) {
+  scpi.Ask("ROT1:ANGL 12.5;SETT? 60");
+  Demand("target,partial");
+  esp.Send("1TP\n");
+  EXPECT_EQ(esp.Bytes(3), "12.");
+  EXPECT_TRUE(esp.Silent(std::chrono::milliseconds(100)));
+}
+
+TEST_F(OnDemand, ADisconnectTakesThePlaceOfAnAnswer) {
+  Demand("controller,disconnect");
+  esp.Send("2TP\n");
+  EXPECT_TRUE(esp.Ends());
+}
+
+TEST_F(OnDemand, ARestartedControllerShowsZeroAndHasNoOriginUntilItIsHomed) {
+  scpi.Ask("ROT1:ANGL 40;SETT? 60");
+  Demand("target,restart");
+  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,0,0,\"\"");
+  EXPECT_EQ(scpi.Ask("ROT1:HOME;SETT? 60;ANGL?"), "1;40");
+  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "40,40,0,1,1,0,\"\"");
+}
+
+TEST_F(OnDemand, ABenchThatIsStartedAgainHasSufferedNothing) {
+  Demand("controller,restart");
+  scpi.Ask("ROT1:STAT?");
+  Again();
+  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,1,0,\"\"");
+}
+
+TEST_F(OnDemand, ALostStepShowsBetweenCommandAndEncoder) {
+  Demand("reference,lost_step");
+  EXPECT_EQ(scpi.Ask("ROT2:ANGL 5;SETT? 60"), "1");
+  EXPECT_EQ(std::stod(scpi.Ask("ROT2:ANGL:COMM?")), 5.0);
+  EXPECT_NEAR(std::stod(scpi.Ask("ROT2:ANGL?")), 4.99, 1e-9);
+}
+
+TEST_F(OnDemand, ATableThatMissesItsWindowNeverSettles) {
+  Demand("target,not_in_position");
+  EXPECT_EQ(scpi.Ask("ROT1:ANGL 5;SETT? 30"), "0");
+  EXPECT_THAT(scpi.Ask("ROT1:STAT?"), HasSubstr(",0,0,1,0,"));
+  EXPECT_EQ(scpi.Ask("ROT1:ANGL 6;SETT? 30"), "1");
+}
+
+TEST_F(OnDemand, ALimitSwitchOnTheWayLetsTheTableOnlyGoBack) {
+  Demand("target,limit");
+  EXPECT_EQ(scpi.Ask("ROT1:ANGL 10;SETT? 30"), "0");
+  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "10,5,0,0,1,1,\"limit switch\"");
+  EXPECT_THAT(scpi.Ask("ROT1:ANGL 6;:SYST:ERR?"), StartsWith("-222,"));
+  EXPECT_EQ(esp.Ask("1MS?"), "5");
+  EXPECT_EQ(esp.Ask("1PA6;TE?"), "104");
+  EXPECT_EQ(scpi.Ask("ROT1:ANGL 4;SETT? 30"), "1");
+  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "4,4,0,1,1,0,\"\"");
+}
+
+TEST_F(OnDemand, AStallIsAMovingTableWhoseEncoderStands) {
+  Demand("target,stall");
+  EXPECT_EQ(scpi.Ask("ROT1:ANGL 10;SETT? 30"), "0");
+  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "10,0,1,0,1,0,\"\"");
+  EXPECT_EQ(scpi.Ask("ROT1:STOP;SETT? 30"), "1");
+}
+
+}  // namespace
+}  // namespace twinbench::test

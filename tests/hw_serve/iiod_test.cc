@@ -1,0 +1,161 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/hw_serve/serving.h"
+#include "twin/core/number_text.h"
+
+namespace twinbench::test {
+namespace {
+
+class Iiod : public testing::Test {
+ protected:
+  ServedTwin served{Options(kAtOnce)};
+  TcpClient iiod{served.at().iiod_port};
+
+  std::string Value(const std::string& command) {
+    const long long length = iiod.AskNumber(command);
+    if (length < 0) return std::to_string(length);
+    const std::string bytes = iiod.Bytes(static_cast<std::size_t>(length) + 1);
+    EXPECT_EQ(bytes.back(), '\n');
+    EXPECT_EQ(bytes[bytes.size() - 2], '\0');  // counted, as iiod does
+    return bytes.substr(0, bytes.size() - 2);
+  }
+  long long Write(const std::string& what, const std::string& value) {
+    iiod.Send("WRITE " + what + " " + std::to_string(value.size()) + "\r\n" + value);
+    return std::stoll(iiod.Line());
+  }
+};
+
+TEST_F(Iiod, ItIsVersion024WithATagOfSevenCharacters) {
+  EXPECT_EQ(iiod.Ask("VERSION"), "0.24.v0.24  ");
+}
+
+TEST_F(Iiod, WhatItDoesNotKnowIsAnInvalidArgument) {
+  for (const char* text : {"ZPRINT", "BINARY", "NONSENSE", "READBUFF", "TIMEOUT", "TIMEOUT -5", "\x01\x02"}) {
+    EXPECT_EQ(iiod.Ask(text), "-22") << text;
+  }
+  EXPECT_EQ(iiod.Ask("READ nothing serial"), "-19");
+  EXPECT_EQ(iiod.Ask("READ psd-adc16 nothing"), "-2");
+}
+
+TEST_F(Iiod, EmptyLinesAnswerNothingAndBothLineEndsAreTaken) {
+  iiod.Send("\r\n\n\r\n");
+  EXPECT_EQ(iiod.Ask("TIMEOUT 2500\r"), "0");
+  EXPECT_EQ(iiod.Ask("timeout 2500"), "0");
+}
+
+TEST_F(Iiod, TheContextIsValidByItsOwnDtd) {
+  if (std::system("xmllint --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "xmllint is not installed";
+  const long long length = iiod.AskNumber("PRINT");
+  const std::string xml = iiod.Bytes(static_cast<std::size_t>(length) + 1);
+  const std::string path = testing::TempDir() + "twinbench_context.xml";
+  std::ofstream(path) << xml;
+  EXPECT_EQ(std::system(("xmllint --noout --valid '" + path + "'").c_str()), 0);
+  EXPECT_THAT(xml, testing::HasSubstr("version-git="));
+  std::remove(path.c_str());
+}
+
+TEST_F(Iiod, DevicesAnswerToIdAndName) {
+  EXPECT_EQ(Value("READ iio:device0 serial"), Value("READ psd-adc16 serial"));
+  EXPECT_EQ(Value("read psd-adc16 input voltage2 scale"),
+            Value("READ iio:device0 INPUT psd_b_x in_voltage2_scale"));
+}
+
+TEST_F(Iiod, NumbersHaveAllTheirBits) {
+  const Scenario scenario;
+  EXPECT_EQ(ParseInUnit(Value("READ psd-adc16 INPUT voltage0 scale"), 1e-3), scenario.adc.range_V / 32768.0);
+  EXPECT_EQ(ParseNumber(Value("READ psd-adc16 range_V")), scenario.adc.range_V);
+  EXPECT_EQ(ParseNumber(Value("READ psd-adc16 sampling_frequency")), scenario.adc.rate_Hz / kChannels);
+}
+
+TEST_F(Iiod, AttributesThatAreFixedTakeOnlyWhatTheyAre) {
+  EXPECT_EQ(Write("psd-adc16 sampling_frequency", "62500"), 5);
+  EXPECT_EQ(Write("psd-adc16 sampling_frequency", "1e9"), -22);
+  EXPECT_EQ(Write("psd-adc16 serial", "mine"), -13);
+  EXPECT_EQ(Write("psd-adc16 nothing", "mine"), -2);
+  EXPECT_EQ(Write("nothing serial", "mine"), -19);
+  EXPECT_EQ(Write("psd-adc16 INPUT voltage9 scale", "1"), -6);
+  EXPECT_EQ(iiod.Ask("VERSION"), "0.24.v0.24  ");  // the values were taken off the line all the same
+}
+
+TEST_F(Iiod, ATableMovesByItsAttribute) {
+  EXPECT_EQ(Write("rotary-target angle_deg", std::string("12.5\0", 5)), 5);
+  EXPECT_EQ(Value("READ rotary-target commanded_deg"), "12.5");
+  EXPECT_EQ(Value("READ rotary-target in_position"), "0");
+  EXPECT_EQ(Write("rotary-target angle_deg", "1e9"), -22);
+}
+
+TEST_F(Iiod, AllAttributesOfADeviceComeAsOnePaddedBlob) {
+  const long long length = iiod.AskNumber("READ rotary-target");
+  const std::string blob = iiod.Bytes(static_cast<std::size_t>(length));
+  EXPECT_EQ(iiod.Bytes(1), "\n");
+  // angle_deg "0", commanded_deg "0", in_position "1", moving "0": each 4 bytes of length, 2 of value, 2 of
+  // padding.
+  EXPECT_EQ(blob, std::string("\0\0\0\2"
+                              "0\0\0\0"
+                              "\0\0\0\2"
+                              "0\0\0\0"
+                              "\0\0\0\2"
+                              "1\0\0\0"
+                              "\0\0\0\2"
+                              "0\0\0\0",
+                              32));
+}
+
+TEST_F(Iiod, TheConverterHasTheTriggerOfItsScanClock) {
+  EXPECT_EQ(iiod.Ask("GETTRIG psd-adc16"), "10");
+  EXPECT_EQ(iiod.Line(), "scan-clock");
+  EXPECT_EQ(iiod.Ask("GETTRIG rotary-target"), "-2");
+  EXPECT_EQ(iiod.Ask("SETTRIG psd-adc16 scan-clock"), "0");
+  EXPECT_EQ(iiod.Ask("SETTRIG psd-adc16"), "0");
+  EXPECT_EQ(iiod.Ask("SETTRIG psd-adc16 other"), "-2");
+  EXPECT_EQ(iiod.Ask("SET psd-adc16 BUFFERS_COUNT 4"), "0");
+}
+
+TEST_F(Iiod, ABufferOpensWithAMaskOfItsChannels) {
+  for (const char* mask : {"1f", "00000000", "0000003f", "000000010000001f", "0000001g"}) {
+    EXPECT_EQ(iiod.Ask(std::string("OPEN psd-adc16 100 ") + mask), "-22") << mask;
+  }
+  EXPECT_EQ(iiod.Ask("OPEN rotary-target 100 00000001"), "-22");
+  EXPECT_EQ(iiod.Ask("OPEN psd-adc16 0 0000001f"), "-22");
+  EXPECT_EQ(iiod.Ask("OPEN psd-adc16 2000000000 0000001f"), "-12");
+  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 1600"), "-9");
+  EXPECT_EQ(iiod.Ask("CLOSE psd-adc16"), "-6");
+  EXPECT_EQ(iiod.Ask("OPEN psd-adc16 100 0000001F"), "0");
+  EXPECT_EQ(iiod.Ask("CLOSE psd-adc16"), "0");
+}
+
+TEST_F(Iiod, AScanIsItsChannelsAndTheAlignedTimeStamp) {
+  // Bytes of a scan: 2 a channel; with the time stamp padded to 8 and 8 more.
+  const std::pair<const char*, int> masks[] = {
+      {"00000001", 2}, {"0000000f", 8}, {"00000010", 8}, {"00000011", 16}, {"0000001f", 16}};
+  for (const auto& [mask, scan_bytes] : masks) {
+    TcpClient client(served.at().iiod_port);
+    ASSERT_EQ(client.Ask(std::string("OPEN psd-adc16 10 ") + mask), "0");
+    const std::string bytes = std::to_string(10 * scan_bytes);
+    EXPECT_EQ(client.Ask("READBUF psd-adc16 " + bytes), bytes) << mask;
+    EXPECT_EQ(client.Line(), mask);
+    client.Bytes(static_cast<std::size_t>(10 * scan_bytes));
+    EXPECT_EQ(client.Ask("CLOSE psd-adc16"), "0");
+  }
+}
+
+TEST_F(Iiod, ARequestThatEndsInsideAScanIsServedShort) {
+  ASSERT_EQ(iiod.Ask("OPEN psd-adc16 10 0000001f"), "0");
+  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 167"), "160");
+  iiod.Line();
+  iiod.Bytes(160);
+  EXPECT_EQ(iiod.Line(), "0");
+  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 15"), "-22");
+}
+
+TEST_F(Iiod, ExitClosesTheConnection) {
+  iiod.Send("EXIT\r\n");
+  EXPECT_TRUE(iiod.Ends());
+}
+
+}  // namespace
+}  // namespace twinbench::test

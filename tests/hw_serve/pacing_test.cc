@@ -1,0 +1,153 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+
+#include "tests/hw_serve/serving.h"
+
+/// Bench time against the wall clock. The machine that tests run on may stand still for a while: lower bounds are
+/// sharp, upper bounds are generous.
+namespace twinbench::test {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+double Elapsed_s(WallClock::time_point since) {
+  return std::chrono::duration<double>(WallClock::now() - since).count();
+}
+
+TEST(Pacing, ARunningBenchFollowsTheWallClockAtItsSpeed) {
+  ServedTwin served(Options(10.0));
+  TcpClient scpi(served.at().scpi_port);
+  const auto began = WallClock::now();
+  const long long before_ns = scpi.AskNumber("CLOC:NOW?");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const double inside_s = Elapsed_s(began);
+  const double passed_s = 1e-9 * static_cast<double>(scpi.AskNumber("CLOC:NOW?") - before_ns);
+  EXPECT_GE(passed_s, 2.0);
+  EXPECT_LE(passed_s, 10.0 * (inside_s + 0.5));
+}
+
+TEST(Pacing, ASettlingTableTakesItsTime) {
+  ServedTwin served(Options(4.0));
+  TcpClient scpi(served.at().scpi_port);
+  const auto began = WallClock::now();
+  EXPECT_EQ(scpi.Ask("ROT1:ANGL 30;SETT? 60"), "1");
+  EXPECT_GE(Elapsed_s(began), 1.4 / 4.0);  // 30 deg at 30 deg/s, and the window of 0.4 s
+}
+
+TEST(Pacing, AnEmergencyStopIsServedWhileAnotherClientWaits) {
+  ServedTwin served(Options(1.0));
+  TcpClient waiting(served.at().scpi_port), stopping(served.at().scpi_port);
+  const auto began = WallClock::now();
+  waiting.Send("ROT1:ANGL 300;SETT? 60\n");  // ten seconds
+  while (stopping.Ask("ROT1:STAT?").find(",1,0,1,") == std::string::npos) {
+    ASSERT_LT(Elapsed_s(began), 5.0) << "the table does not start";
+  }
+  stopping.Send("ABOR\n");
+  EXPECT_EQ(waiting.Line(), "1");  // settled, where it was stopped
+  EXPECT_LT(Elapsed_s(began), 5.0);
+  EXPECT_LT(std::stod(stopping.Ask("ROT1:ANGL?")), 150.0);
+}
+
+TEST(Pacing, HeldTimeIsPaidForByTheReply) {
+  ServedTwin served(Options(10.0));
+  TcpClient scpi(served.at().scpi_port);
+  scpi.Ask("CLOC:HOLD ON;*OPC?");
+  const auto began = WallClock::now();
+  scpi.Ask("CLOC:WAIT? 3000000000");
+  EXPECT_GE(Elapsed_s(began), 0.299);
+}
+
+TEST(Pacing, HeldTimeIsFreeWithoutPacing) {
+  ServedTwin served(Options(1.0));
+  TcpClient scpi(served.at().scpi_port);
+  scpi.Ask("CLOC:HOLD ON;:SIM:PACE OFF;*OPC?");
+  const auto began = WallClock::now();
+  scpi.Ask("CLOC:WAIT? 3600000000000");
+  EXPECT_LT(Elapsed_s(began), 10.0);
+}
+
+TEST(Pacing, AHoldEndsWithItsConnection) {
+  ServedTwin served(Options(1.0));
+  TcpClient other(served.at().scpi_port);
+  {
+    TcpClient holding(served.at().scpi_port);
+    holding.Ask("CLOC:HOLD ON;*OPC?");
+    const long long now = other.AskNumber("CLOC:NOW?");
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_EQ(other.AskNumber("CLOC:NOW?"), now);
+  }
+  const auto began = WallClock::now();
+  const long long now = other.AskNumber("CLOC:NOW?");
+  while (other.AskNumber("CLOC:NOW?") == now && Elapsed_s(began) < 5.0) {
+  }
+  EXPECT_GT(other.AskNumber("CLOC:NOW?"), now);
+}
+
+TEST(Pacing, AHeldEspTableGetsOnByPolling) {
+  ServedTwin served(Options(kAtOnce));
+  TcpClient scpi(served.at().scpi_port), esp(served.at().esp_port);
+  scpi.Ask("CLOC:HOLD ON;*OPC?");
+  esp.Send("1PA30\n");
+  EXPECT_EQ(esp.Ask("1TP"), "0");  // looking alone takes no time
+  EXPECT_EQ(esp.Ask("1MD?"), "0");
+  EXPECT_EQ(scpi.AskNumber("CLOC:NOW?"), 50'000'000);
+  while (esp.Ask("1MD?") == "0") {
+  }
+  EXPECT_EQ(scpi.AskNumber("CLOC:NOW?"), 1'400'000'000);  // to the instant: 1 s and the window of 0.4 s
+}
+
+TEST(Pacing, ScansOfARunningConverterFollowOneAnother) {
+  for (const double speed : {1.0, kAtOnce}) {
+    ServedTwin served(Options(speed));
+    BufferClient adc(served.at().iiod_port, 2000);
+    Scans scans;
+    for (int block = 0; block < 5; ++block) {
+      const Scans next = adc.Read(2000);
+      scans.stamps_ns.insert(scans.stamps_ns.end(), next.stamps_ns.begin(), next.stamps_ns.end());
+    }
+    for (std::size_t s = 1; s < scans.stamps_ns.size(); ++s) {
+      ASSERT_EQ(scans.stamps_ns[s] - scans.stamps_ns[s - 1], 16000) << s << " at speed " << speed;
+    }
+  }
+}
+
+TEST(Pacing, ARunningConverterKeepsItsRate) {
+  ServedTwin served(Options(1.0));
+  BufferClient adc(served.at().iiod_port, 6250);
+  adc.Read(6250);
+  const auto began = WallClock::now();
+  for (int block = 0; block < 5; ++block) adc.Read(6250);  // a tenth of a second each
+  // The first block may come up to one step of the converter (4 ms) early.
+  EXPECT_GE(Elapsed_s(began), 0.49);
+}
+
+TEST(Pacing, ScansThatASlowClientMissesAreCountedAndSeenInTheTimeStamps) {
+  ServedTwin served(Options(20.0));
+  BufferClient adc(served.at().iiod_port, 100);
+  TcpClient iiod(served.at().iiod_port);
+  const Scans before = adc.Read(100);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // 6 s of bench time; the server keeps one
+  const Scans after = adc.Read(100);
+  const std::int64_t missed = (after.stamps_ns.front() - before.stamps_ns.back()) / 16000 - 1;
+  EXPECT_GT(missed, 4 * 62500);
+  iiod.Send("READ psd-adc16 overruns\n");
+  iiod.Line();
+  EXPECT_NEAR(static_cast<double>(std::stoll(iiod.Line())), static_cast<double>(missed), 1.0);  // both are rounded
+}
+
+TEST(Pacing, TwoClientsOfTheConverterSeeTheSameScans) {
+  ServedTwin served(Options(1.0));
+  BufferClient one(served.at().iiod_port, 1000), other(served.at().iiod_port, 1000);
+  const Scans a = one.Read(4000), b = other.Read(4000);
+  const auto start = std::find(a.stamps_ns.begin(), a.stamps_ns.end(), b.stamps_ns.front());
+  ASSERT_NE(start, a.stamps_ns.end());
+  const auto shift = start - a.stamps_ns.begin();
+  for (int k = 0; k < kChannels * (4000 - shift); ++k) ASSERT_EQ(a.raw[k + kChannels * shift], b.raw[k]);
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,230 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <random>
+
+#include "tests/hw_serve/serving.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+hw::ServeOptions Strict() {
+  hw::ServeOptions options = Options(kAtOnce);
+  options.max_connections = 4;
+  options.idle_limit = milliseconds(400);
+  options.write_limit = milliseconds(400);
+  return options;
+}
+
+/// Answers others as if nothing had happened.
+void ExpectAlive(const ServedTwin& served) {
+  EXPECT_EQ(TcpClient(served.at().iiod_port).Ask("VERSION"), "0.24.v0.24  ");
+  EXPECT_EQ(TcpClient(served.at().scpi_port).Ask("SYST:ERR?"), "0,\"No error\"");
+  EXPECT_EQ(TcpClient(served.at().esp_port).Ask("TE?"), "0");
+}
+
+TEST(Robustness, ALineThatIsTooLongIsAnErrorAndTheEnd) {
+  ServedTwin served(Options(kAtOnce));
+  for (const int port : {served.at().iiod_port, served.at().scpi_port, served.at().esp_port}) {
+    for (const char* end : {"", "\n"}) {
+      TcpClient client(port);
+      client.Send(std::string(8000, 'A') + end);
+      EXPECT_TRUE(client.Ends());
+    }
+  }
+  TcpClient scpi(served.at().scpi_port);
+  scpi.Send(std::string(100'000, 'A'));
+  EXPECT_EQ(scpi.Line(), "-363,\"Input buffer overrun\"");
+  ExpectAlive(served);
+}
+
+TEST(Robustness, APayloadThatIsTooLongIsAnErrorAndTheEnd) {
+  ServedTwin served(Options(kAtOnce));
+  TcpClient iiod(served.at().iiod_port);
+  EXPECT_EQ(iiod.Ask("WRITE psd-adc16 serial 500000000"), "-7");
+  EXPECT_TRUE(iiod.Ends());
+  ExpectAlive(served);
+}
+
+TEST(Robustness, RandomBytesHarmNobody) {
+  ServedTwin served(Options(kAtOnce));
+  std::mt19937 random(20240611);
+  for (int round = 0; round < 60; ++round) {
+    for (const int port : {served.at().iiod_port, served.at().scpi_port, served.at().esp_port}) {
+      std::string bytes(random() % 3000, '\0');
+      for (char& c : bytes) c = static_cast<char>(random() % 8 == 0 ? "\n;:?* \r"[random() % 7] : random());
+      TcpClient client(port);
+      client.Send(bytes);
+    }
+  }
+  ExpectAlive(served);
+}
+
+TEST(Robustness, RandomWordsOfTheProtocolsHarmNobody) {
+  ServedTwin served(Options(kAtOnce));
+  const std::vector<std::string> words = {"OPEN",
+                                          "READBUF",
+                                          "CLOSE",
+                                          "READ",
+                                          "WRITE",
+                                          "SET",
+                                          "PRINT",
+                                          "psd-adc16",
+                                          "rotary-target",
+                                          "trigger0",
+                                          "DEBUG",
+                                          "INPUT",
+                                          "BUFFER",
+                                          "fault",
+                                          "voltage0",
+                                          "scale",
+                                          "0",
+                                          "-1",
+                                          "100",
+                                          "1600",
+                                          "\n",
+                                          "\r\n",
+                                          "\n",
+                                          "\n",
+                                          "0000001f",
+                                          "ffffffff",
+                                          "BUFFERS_COUNT",
+                                          "99999999999999999999",
+                                          "1PA",
+                                          "1e308",
+                                          "ROT1:ANGL",
+                                          "ROT2:SETT?",
+                                          "ROT1:LIM:UPP",
+                                          "CLOC:HOLD ON",
+                                          "SIM:REST",
+                                          "SIM:FAUL target,limit",
+                                          "1WS",
+                                          "2OR",
+                                          ";",
+                                          ","};
+  std::mt19937 random(7);
+  for (int round = 0; round < 150; ++round) {
+    std::string text;
+    for (int k = 0; k < 60; ++k) text += words[random() % words.size()] + (random() % 5 != 0 ? " " : "");
+    TcpClient(served.at().iiod_port).Send(text + "\n");
+    TcpClient(served.at().scpi_port).Send(text + "\n");
+    TcpClient(served.at().esp_port).Send(text + "\n");
+  }
+  EXPECT_EQ(TcpClient(served.at().iiod_port).Ask("VERSION"), "0.24.v0.24  ");
+}
+
+TEST(Robustness, AClientThatSaysNothingIsLeft) {
+  ServedTwin served(Strict());
+  TcpClient silent(served.at().scpi_port), half(served.at().iiod_port);
+  half.Send("WRITE psd-adc16 serial 100\nonly a few");
+  EXPECT_TRUE(silent.Ends());
+  EXPECT_TRUE(half.Ends());
+}
+
+TEST(Robustness, AClientThatTakesNothingIsLeftAndDelaysNobody) {
+  ServedTwin served(Strict());
+  TcpClient slow(served.at().iiod_port, 4096);
+  ASSERT_EQ(slow.Ask("OPEN psd-adc16 100000 0000001f"), "0");
+  for (int k = 0; k < 200; ++k) slow.Send("READBUF psd-adc16 1600000\n");
+  TcpClient scpi(served.at().scpi_port);
+  const auto began = std::chrono::steady_clock::now();
+  for (int k = 0; k < 100; ++k) scpi.Ask("ROT1:ANGL?");
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
+  std::this_thread::sleep_for(milliseconds(1500));
+  EXPECT_FALSE(slow.Send(std::string(1'000'000, '\n')));
+}
+
+TEST(Robustness, WhenAllPlacesAreTakenTheOneSilentLongestGivesWay) {
+  hw::ServeOptions options = Options(kAtOnce);
+  options.max_connections = 3;
+  ServedTwin served(options);
+  TcpClient first(served.at().scpi_port), second(served.at().scpi_port), third(served.at().scpi_port);
+  for (TcpClient* client : {&first, &second, &third, &first}) client->Ask("*OPC?");
+  TcpClient fourth(served.at().scpi_port);
+  EXPECT_EQ(fourth.Ask("*OPC?"), "1");
+  EXPECT_TRUE(second.Ends());
+  EXPECT_EQ(first.Ask("*OPC?"), "1");
+  EXPECT_EQ(third.Ask("*OPC?"), "1");
+}
+
+TEST(Robustness, AClientThatIsBeingServedKeepsItsPlace) {
+  hw::ServeOptions options = Options(1.0);
+  options.max_connections = 1;
+  ServedTwin served(options);
+  TcpClient waiting(served.at().scpi_port);
+  waiting.Send("ROT1:ANGL 75;SETT? 60\n");  // three seconds; nobody waits for a place longer than one
+  std::this_thread::sleep_for(milliseconds(100));
+  TcpClient late(served.at().scpi_port);
+  EXPECT_TRUE(late.Ends());
+  EXPECT_EQ(waiting.Line(), "1");
+}
+
+TEST(Robustness, AClientThatFindsAllPlacesTakenWaitsForOne) {
+  hw::ServeOptions options = Options(1.0);
+  options.max_connections = 1;
+  ServedTwin served(options);
+  auto waiting = std::make_unique<TcpClient>(served.at().scpi_port);
+  waiting->Send("ROT1:ANGL 100;SETT? 60\n");
+  std::this_thread::sleep_for(milliseconds(100));
+  TcpClient late(served.at().scpi_port);
+  late.Send("*OPC\nSYST:ERR?\n");
+  EXPECT_TRUE(late.Silent(milliseconds(200)));
+  waiting.reset();
+  EXPECT_EQ(late.Line(), "0,\"No error\"");
+}
+
+TEST(Robustness, AThousandClientsLeaveNothingBehind) {
+  const auto open_files = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
+                         std::filesystem::directory_iterator{});
+  };
+  ServedTwin served(Options(kAtOnce));
+  ExpectAlive(served);
+  std::this_thread::sleep_for(milliseconds(100));
+  const auto before = open_files();
+  for (int k = 0; k < 1000; ++k) TcpClient(served.at().esp_port).Send("1TP?");
+  ExpectAlive(served);
+  std::this_thread::sleep_for(milliseconds(200));
+  EXPECT_LE(open_files(), before + 2);
+}
+
+TEST(Robustness, AServerThatNobodyReadsFromStaysSmall) {
+  ServedTwin served(Options(50.0));
+  BufferClient adc(served.at().iiod_port, 1000);
+  TcpClient scpi(served.at().scpi_port);
+  const auto heap = [] { return static_cast<double>(mallinfo2().uordblks); };
+  for (int k = 0; k < 20; ++k) scpi.Ask("CLOC:NOW?");
+  std::this_thread::sleep_for(milliseconds(100));
+  scpi.Ask("CLOC:NOW?");
+  const double before = heap();
+  for (int k = 0; k < 20; ++k) {  // half a minute of bench time: 15 MB of scans
+    std::this_thread::sleep_for(milliseconds(30));
+    scpi.Ask("CLOC:NOW?");
+  }
+  EXPECT_LT(heap() - before, 3e6);  // a second of scans with their stamps is 1 MB
+}
+
+TEST(Robustness, APortThatIsTakenIsAnErrorOfTheBench) {
+  ServedTwin served(Options(1.0));
+  hw::ServeOptions options = Options(1.0);
+  options.scpi_port = served.at().scpi_port;
+  sim::Twin twin{Scenario{}};
+  EXPECT_THROW(hw::Server(twin.Bench(), Scenario{}, options), BenchError);
+}
+
+TEST(Robustness, ABenchWithoutCountsCannotBeServed) {
+  Scenario scenario;
+  scenario.noise_free = true;
+  sim::Twin twin(scenario);
+  EXPECT_THROW(hw::Server(twin.Bench(), scenario, Options(1.0)), InputError);
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/core/input_error.h"
+#include "tests/power_cut/numbered.h"
+#include "tests/power_cut/write_log.h"
+
+namespace twinbench::test {
+namespace {
+
+constexpr int kReadings = 250;
+
+/// Runs the writer with every change of its files written down, once for all tests here.
+const std::vector<FileChange>& WritersChanges() {
+  static const std::vector<FileChange> changes = [] {
+    const TemporaryFolder folder;
+    const std::string command = "TWINBENCH_DISK_ROOT=" + folder.File("run") + " TWINBENCH_DISK_LOG=" +
+                                folder.File("log") + " LD_PRELOAD=" POWER_CUT_DISK " " POWER_CUT_WRITER " " +
+                                folder.File("run") + " " + std::to_string(kReadings);
+    if (std::system(command.c_str()) != 0) throw BenchError("the writer failed: " + command);
+    return ReadWriteLog(folder.File("log"));
+  }();
+  return changes;
+}
+
+std::string NameOf(const std::string& path) {
+  return std::filesystem::path(path).filename();
+}
+
+/// Lays a disk's files into a folder; the shared memory of the log does not outlive a power cut.
+void LayOut(const std::map<std::string, std::string>& files, const TemporaryFolder& folder) {
+  for (const auto& [path, content] : files) {
+    if (path.ends_with("-shm") || NameOf(path) == "acknowledged") continue;
+    std::ofstream(folder.File(NameOf(path)), std::ios::binary) << content;
+  }
+}
+
+/// @return how many readings the record in `folder` holds; each must be whole and the ones before it there.
+int IntactReadings(const TemporaryFolder& folder) {
+  if (!std::filesystem::exists(folder.File("record.sqlite"))) return 0;
+  const auto record = RunRecord::Open(folder.path());
+  const std::vector<Reading> readings = record->Readings();
+  const std::vector<RawBlock> blocks = record->RawBlocks();
+  const std::vector<DeviceCall> calls = record->Calls();
+  EXPECT_EQ(blocks.size(), readings.size()) << "a reading without its block";
+  EXPECT_EQ(calls.size(), readings.size()) << "a reading without its calls";
+  for (int k = 0; k < static_cast<int>(readings.size()); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const Reading expected = NumberedReading(k);
+    EXPECT_EQ(readings[at].reading, k);
+    EXPECT_EQ(readings[at].mean_V, expected.mean_V);
+    EXPECT_EQ(readings[at].time, expected.time);
+    EXPECT_EQ(blocks[at].samples, NumberedBlock(k).raw);
+    EXPECT_EQ(calls[at].answer, std::to_string(k));
+  }
+  return static_cast<int>(readings.size());
+}
+
+class PowerCut : public ::testing::TestWithParam<ForgetfulDisk::Left> {};
+
+TEST_P(PowerCut, AtAnyMomentLosesNothingThatWasAcknowledged) {
+  const std::vector<FileChange>& changes = WritersChanges();
+  std::mt19937_64 random(2007);
+  std::vector<std::size_t> moments(300);
+  for (std::size_t& moment : moments)
+    moment = std::uniform_int_distribution<std::size_t>(0, changes.size())(random);
+  std::sort(moments.begin(), moments.end());
+
+  ForgetfulDisk disk;
+  std::size_t done = 0;
+  int acknowledged = 0, with_readings = 0;
+  for (const std::size_t moment : moments) {
+    for (; done < moment; ++done) {
+      if (NameOf(changes[done].path) == "acknowledged" && changes[done].what == 'w') ++acknowledged;
+      disk.Apply(changes[done]);
+    }
+    const TemporaryFolder folder;
+    LayOut(disk.AfterPowerCut(GetParam(), random), folder);
+    const int intact = IntactReadings(folder);
+    ASSERT_GE(intact, acknowledged) << "power cut after change " << moment;
+    ASSERT_LE(intact, acknowledged + 1) << "at most the one that was being kept";
+    if (intact > 0) ++with_readings;
+  }
+  EXPECT_GT(with_readings, 250) << "nearly all moments lie within the run";
+}
+
+INSTANTIATE_TEST_SUITE_P(Disk, PowerCut,
+                         ::testing::Values(ForgetfulDisk::Left::kPrefix, ForgetfulDisk::Left::kTornSubset),
+                         [](const auto& instance) {
+                           return instance.param == ForgetfulDisk::Left::kPrefix ? "KeepsAPrefix" : "KeepsATornSubset";
+                         });
+
+TEST(ForgetfulDisk, KeepsWhatWasSyncedAndForgetsTheRest) {
+  // Guards the tests above: a disk that keeps everything would pass them.
+  ForgetfulDisk disk;
+  for (const FileChange& change : std::vector<FileChange>{{'c', "/d/f", 0, ""},
+                                                          {'w', "/d/f", 0, "kept"},
+                                                          {'s', "/d/f", 0, ""},
+                                                          {'s', "/d", 0, ""},
+                                                          {'w', "/d/f", 0, "lost"},
+                                                          {'c', "/d/g", 0, ""}})
+    disk.Apply(change);
+  std::mt19937_64 random(1);
+  int old_content = 0, second_file = 0;
+  for (int k = 0; k < 200; ++k) {
+    const auto files = disk.AfterPowerCut(ForgetfulDisk::Left::kPrefix, random);
+    ASSERT_TRUE(files.contains("/d/f"));
+    if (files.at("/d/f") == "kept") ++old_content;
+    if (files.contains("/d/g")) ++second_file;
+  }
+  EXPECT_NEAR(old_content, 100, 40);  // 200 throws of a coin: 7 standard deviations are 50
+  EXPECT_NEAR(second_file, 100, 40);
+}
+
+TEST(WriteLog, SawTheWriterSyncEveryReading) {
+  int syncs = 0;
+  bool checkpointed = false;
+  for (const FileChange& change : WritersChanges()) {
+    if (change.what == 's' && change.path.ends_with("-wal")) ++syncs;
+    if (change.what == 'w' && change.path.ends_with("record.sqlite")) checkpointed = true;
+  }
+  EXPECT_GE(syncs, kReadings);
+  EXPECT_TRUE(checkpointed) << "the log was never folded into the database";
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,183 @@
+#include "tests/support/comedi_device/card.h"
+
+#include <sys/ioctl.h>
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <utility>
+
+namespace twinbench::test {
+namespace {
+
+constexpr unsigned kSubdevices = 2, kAnalogue = 0, kDigital = 1;
+constexpr unsigned kWanted = 1;  // of the ranges below; the samples are of this one
+constexpr unsigned kRanges = 3;
+
+/// Twice the range, the range, and half of it from 0 up.
+std::array<comedi_krange, kRanges> RangesOf(double range_V) {
+  const int range_uV = static_cast<int>(std::lround(range_V * 1e6));
+  return {{{-2 * range_uV, 2 * range_uV, UNIT_volt}, {-range_uV, range_uV, UNIT_volt}, {0, range_uV, UNIT_volt}}};
+}
+
+bool Mask(unsigned& source, unsigned supported) {
+  return (source &= supported) != 0;
+}
+
+bool Set(unsigned& argument, unsigned value) {
+  return std::exchange(argument, value) == value;
+}
+
+bool AtLeast(unsigned& argument, unsigned least) {
+  if (argument >= least) return true;
+  argument = least;
+  return false;
+}
+
+/// Stage 1: sources that the card has.
+bool HasSources(comedi_cmd& c) {
+  const comedi_cmd asked = c;
+  bool good = Mask(c.start_src, TRIG_NOW);
+  good = Mask(c.scan_begin_src, TRIG_FOLLOW) && good;
+  good = Mask(c.convert_src, TRIG_TIMER) && good;
+  good = Mask(c.scan_end_src, TRIG_COUNT) && good;
+  good = Mask(c.stop_src, TRIG_COUNT | TRIG_NONE) && good;
+  return good && asked.start_src == c.start_src && asked.scan_begin_src == c.scan_begin_src &&
+         asked.convert_src == c.convert_src && asked.scan_end_src == c.scan_end_src && asked.stop_src == c.stop_src;
+}
+
+/// Stage 3: arguments within bounds.
+bool HasArguments(comedi_cmd& c, unsigned least_convert_ns) {
+  bool good = Set(c.start_arg, 0);
+  good = Set(c.scan_begin_arg, 0) && good;
+  good = AtLeast(c.convert_arg, least_convert_ns) && good;
+  good = Set(c.scan_end_arg, c.chanlist_len) && good;
+  return (c.stop_src == TRIG_COUNT ? AtLeast(c.stop_arg, 1) : Set(c.stop_arg, 0)) && good;
+}
+
+/// Stage 5: the inputs from 0 on, all in the range that there are samples of.
+bool HasChannels(const comedi_cmd& c) {
+  if (c.chanlist == nullptr) return true;
+  bool good = c.chanlist_len == kInputs;
+  for (unsigned k = 0; k < c.chanlist_len; ++k) {
+    good = CR_CHAN(c.chanlist[k]) == k && CR_RANGE(c.chanlist[k]) == kWanted && good;
+  }
+  return good;
+}
+
+}  // namespace
+
+Card::Card(int descriptor) : descriptor_(descriptor), traits_(MakeSampleSource()->Traits()) {}
+
+int Card::Control(unsigned long request, void* argument) {
+  switch (request) {
+    case COMEDI_DEVINFO: return DeviceInfo(*static_cast<comedi_devinfo*>(argument));
+    case COMEDI_SUBDINFO: return SubdeviceInfo(static_cast<comedi_subdinfo*>(argument));
+    case COMEDI_RANGEINFO: return RangeInfo(*static_cast<const comedi_rangeinfo*>(argument));
+    case COMEDI_INSN: return Instruct(*static_cast<const comedi_insn*>(argument));
+    case COMEDI_INSNLIST: return Instruct(*static_cast<const comedi_insnlist*>(argument));
+    case COMEDI_CMDTEST: return Test(*static_cast<comedi_cmd*>(argument));
+    case COMEDI_CMD: return Start(*static_cast<comedi_cmd*>(argument));
+    case COMEDI_CANCEL: command_.reset(); return 0;
+    case COMEDI_BUFCONFIG: {
+      auto& config = *static_cast<comedi_bufconfig*>(argument);
+      config.size = config.maximum_size = 1 << 16;
+      return 0;
+    }
+    case COMEDI_CHANINFO:  // nothing differs from channel to channel
+    case COMEDI_LOCK:
+    case COMEDI_UNLOCK:
+    case COMEDI_POLL: return 0;
+    default: return -ENOTTY;
+  }
+}
+
+int Card::DeviceInfo(comedi_devinfo& info) const {
+  info = {};
+  info.version_code = 0x000764;  // 0.7.100
+  info.n_subdevs = kSubdevices;
+  std::strcpy(info.driver_name, "twinbench");
+  std::strcpy(info.board_name, "preloaded-ai16");
+  info.read_subdevice = kAnalogue;
+  info.write_subdevice = -1;
+  return 0;
+}
+
+int Card::SubdeviceInfo(comedi_subdinfo* info) const {
+  info[kAnalogue] = {};
+  info[kAnalogue].type = COMEDI_SUBD_AI;
+  info[kAnalogue].n_chan = info[kAnalogue].len_chanlist = kInputs;
+  info[kAnalogue].subd_flags = SDF_READABLE | SDF_GROUND | SDF_DIFF | SDF_CMD_READ | SDF_SOFT_CALIBRATED;
+  info[kAnalogue].maxdata = (1u << traits_.bits) - 1;
+  info[kAnalogue].range_type = kAnalogue << 24 | kRanges;
+  info[kDigital] = {};
+  info[kDigital].type = COMEDI_SUBD_DI;
+  info[kDigital].n_chan = 3;
+  info[kDigital].subd_flags = SDF_READABLE;
+  info[kDigital].maxdata = 1;
+  info[kDigital].range_type = kDigital << 24 | 1;
+  info[kDigital].insn_bits_support = COMEDI_SUPPORTED;
+  return 0;
+}
+
+int Card::RangeInfo(const comedi_rangeinfo& info) const {
+  auto* ranges = static_cast<comedi_krange*>(info.range_ptr);
+  if ((info.range_type >> 24 & 0xf) == kDigital) {
+    ranges[0] = {0, 1000000, UNIT_none};
+    return 0;
+  }
+  const auto analogue = RangesOf(traits_.range_V);
+  std::memcpy(ranges, analogue.data(), sizeof analogue);
+  return 0;
+}
+
+int Card::Instruct(const comedi_insn& instruction) {
+  if (instruction.subdev == kDigital && instruction.insn == INSN_BITS && instruction.n == 2) {
+    instruction.data[1] = MakeSampleSource()->Lines();
+    return 2;
+  }
+  if (instruction.insn == INSN_GTOD && instruction.n == 2) {  // with which libcomedi tries whether there are instructions
+    instruction.data[0] = static_cast<lsampl_t>(std::time(nullptr));
+    instruction.data[1] = 0;
+    return 2;
+  }
+  const unsigned channel = CR_CHAN(instruction.chanspec);
+  if (instruction.subdev != kAnalogue || instruction.insn != INSN_READ || channel >= kInputs) return -EINVAL;
+  unsigned n = 0;
+  MakeSampleSource()->Acquire(static_cast<int>(instruction.n), [&](std::span<const std::int16_t, kInputs> codes) {
+    instruction.data[n++] = static_cast<lsampl_t>(codes[channel] + (1 << (traits_.bits - 1)));
+  });
+  return static_cast<int>(n);
+}
+
+int Card::Instruct(const comedi_insnlist& list) {
+  for (unsigned k = 0; k < list.n_insns; ++k) {
+    if (const int result = Instruct(list.insns[k]); result < 0) return result;
+  }
+  return static_cast<int>(list.n_insns);
+}
+
+unsigned Card::ConvertPeriod_ns() const {
+  return static_cast<unsigned>(std::lround(1e9 / traits_.conversions_Hz));
+}
+
+int Card::Test(comedi_cmd& command) const {
+  if (command.subdev != kAnalogue) return -EINVAL;
+  if (!HasSources(command)) return 1;
+  if ((command.stop_src & (command.stop_src - 1)) != 0) return 2;
+  if (!HasArguments(command, ConvertPeriod_ns())) return 3;
+  if (!Set(command.convert_arg, ConvertPeriod_ns())) return 4;
+  return HasChannels(command) ? 0 : 5;
+}
+
+int Card::Start(comedi_cmd& command) {
+  if (command_ && !command_->failed()) return -EBUSY;
+  if (Test(command) != 0) return -EINVAL;
+  command_.reset();
+  command_ = std::make_unique<Command>(MakeSampleSource(), descriptor_, static_cast<int>(command.stop_arg), traits_.bits);
+  return 0;
+}
+
+}  // namespace twinbench::test

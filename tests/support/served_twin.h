@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <thread>
+
+#include "hw_bridge/serve/server.h"
+#include "twin/sim/twin.h"
+
+namespace twinbench::test {
+
+/// On free ports of this machine.
+inline hw::ServeOptions OnFreePorts(double speed = std::numeric_limits<double>::infinity()) {
+  hw::ServeOptions options;
+  options.iiod_port = options.scpi_port = options.esp_port = 0;
+  options.speed = speed;
+  return options;
+}
+
+/// A twin that is served from a thread, until this goes.
+class ServedTwin {
+ public:
+  explicit ServedTwin(const Scenario& scenario, const hw::ServeOptions& options = OnFreePorts())
+      : twin_(scenario), server_(twin_.Bench(), scenario, options), thread_([this] { server_.Run(); }) {}
+  ~ServedTwin() {
+    server_.Stop();
+    thread_.join();
+  }
+  ServedTwin(const ServedTwin&) = delete;
+  ServedTwin& operator=(const ServedTwin&) = delete;
+
+  hw::ServedAddresses at() const { return server_.Addresses(); }
+  std::string ScpiAddress() const { return "tcp:" + at().host + ":" + std::to_string(at().scpi_port); }
+  std::string EspAddress() const { return "tcp:" + at().host + ":" + std::to_string(at().esp_port); }
+  std::string TerminalAddress() const { return "serial:" + at().pty; }
+
+ private:
+  sim::Twin twin_;
+  hw::Server server_;
+  std::thread thread_;
+};
+
+}  // namespace twinbench::test

@@ -1,0 +1,153 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "tests/tools/program.h"
+#include "twin/core/run_record.h"
+
+/// Runs that are broken off at any moment and taken up again by another process.
+namespace twinbench::test {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::steady_clock;
+
+class ResumedRun : public Program {
+ protected:
+  ResumedRun() {
+    Write("own.toml", "kind = \"twin\"\n");
+    // Everything random, so that a state that is not restored shows: 2 * 2 * 13 + 4 * 4 * 72 = 1204 readings.
+    Write("long.toml",
+          "bench = \"rotary_4dof\"\nseed = 77\n[procedure]\npositions = 72\n[target.repeatability]\nex_arcsec = 1.0\n"
+          "[reference.seating]\nez_arcsec = 20.0\n[environment]\ndrift_K_h = 1.0\nrandom_walk_K_sqrt_h = 0.1\n");
+    const auto start = steady_clock::now();
+    Succeed(Measure("undisturbed"));
+    duration_ = steady_clock::now() - start;
+    readings_ = ReadingsOf("undisturbed");
+  }
+
+  static std::vector<std::string> Measure(const std::string& name) {
+    return {"measure", "long.toml", "--bench", "own.toml", "-o", name, "--resume"};
+  }
+
+  /// Starts or takes up a run and kills it at a random moment.
+  /// @return whether it was killed before it was done.
+  bool KillOnce(const std::string& name) {
+    Process run(At(""), Measure(name));
+    std::this_thread::sleep_for(std::uniform_real_distribution<>(0.0, 0.6)(random_) * duration_);
+    if (!run.Runs()) return false;
+    run.Kill();
+    return true;
+  }
+
+  std::size_t Kept(const std::string& name) const {
+    return Exists(name + "/record.sqlite") ? RunRecord::Open(At(name))->Readings().size() : 0;
+  }
+
+  duration<double> duration_{};
+  std::string readings_;
+  std::mt19937_64 random_{2007};
+};
+
+/// More of them by hand: TWINBENCH_KILLS=500.
+int KillsWanted() {
+  const char* wanted = std::getenv("TWINBENCH_KILLS");
+  return wanted ? std::atoi(wanted) : 40;
+}
+
+TEST_F(ResumedRun, IsTheUndisturbedOneHoweverOftenItIsKilled) {
+  int kills = 0, runs = 0;
+  std::set<std::size_t> moments;
+  while (kills < KillsWanted()) {
+    const std::string name = "killed" + std::to_string(runs++);
+    std::size_t kept = 0;
+    while (KillOnce(name)) {
+      ++kills;
+      const std::size_t now = Kept(name);
+      ASSERT_GE(now, kept) << "what was kept once stays";
+      kept = now;
+      moments.insert(kept);
+    }
+    Succeed(Measure(name));
+    ASSERT_EQ(ReadingsOf(name), readings_) << "after kill " << kills;
+    ASSERT_EQ(Read(name + "/results.json"), Read("undisturbed/results.json"));
+  }
+  EXPECT_GE(moments.size(), static_cast<std::size_t>(kills / 4)) << "they should come at different moments";
+}
+
+TEST_F(ResumedRun, CountsAnAttemptAtTheReadingThatWasUnderWay) {
+  Process run(At(""), Measure("killed"));
+  while (run.Runs() && run.ProgressLines() < 4) std::this_thread::yield();
+  run.Kill();
+  const auto kept = static_cast<int>(Kept("killed"));
+  ASSERT_GT(kept, 0);
+  ASSERT_LT(kept, 1204);
+  Succeed(Measure("killed"));
+  const auto attempts = RunRecord::Open(At("killed"))->FailedAttempts();
+  ASSERT_EQ(attempts.size(), 1u);
+  EXPECT_EQ(attempts[0].reading, kept);
+  EXPECT_EQ(attempts[0].attempt, 1);
+  EXPECT_EQ(attempts[0].fault, "interrupted");
+}
+
+TEST_F(ResumedRun, AfterCtrlCGoesOnWhereItWasStopped) {
+  {
+    Process run(At(""), Measure("stopped"));
+    while (run.Runs() && run.ProgressLines() < 4) std::this_thread::yield();
+    run.Signal(SIGINT);
+    const Outcome outcome = run.Wait();
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, testing::HasSubstr("stopped"));
+    EXPECT_THAT(outcome.err, testing::HasSubstr("--resume"));
+  }
+  EXPECT_LT(Kept("stopped"), 1204u);
+  EXPECT_EQ(RunRecord::Open(At("stopped"))->FailedAttempts().back().fault, "stopped");
+  Succeed(Measure("stopped"));
+  EXPECT_EQ(ReadingsOf("stopped"), readings_);
+}
+
+TEST_F(ResumedRun, OfAnotherScenarioIsRefused) {
+  KillOnce("killed");
+  auto words = Measure("undisturbed");
+  words.insert(words.end(), {"--set", "procedure.positions=36"});
+  const Outcome outcome = Call(words);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, testing::HasSubstr("another scenario"));
+  EXPECT_EQ(ReadingsOf("undisturbed"), readings_);
+}
+
+TEST_F(ResumedRun, IsNeverWrittenByTwo) {
+  Process first(At(""), Measure("shared"));
+  while (first.Runs() && first.ProgressLines() < 1) std::this_thread::yield();
+  const Outcome second = Call(Measure("shared"));
+  if (first.Runs()) {
+    EXPECT_EQ(second.exit_code, 2);
+    EXPECT_THAT(second.err, testing::HasSubstr("another program is writing"));
+  }
+  first.Wait();
+  EXPECT_EQ(ReadingsOf("shared"), readings_);
+}
+
+TEST_F(ResumedRun, WithoutResumeAFolderThatHoldsARunIsNotTouched) {
+  auto words = Measure("undisturbed");
+  words.pop_back();
+  EXPECT_EQ(Call(words).exit_code, 2);
+  EXPECT_EQ(ReadingsOf("undisturbed"), readings_);
+}
+
+TEST_F(ResumedRun, PlaysARecordingBackToTheSameReadings) {
+  Write("replay.toml", "kind = \"replay\"\nrecord = \"undisturbed\"\n");
+  Succeed({"measure", "long.toml", "--bench", "replay.toml", "-o", "played"});
+  EXPECT_EQ(ReadingsOf("played"), readings_);
+  const Outcome other = Call({"measure", "long.toml", "--bench", "replay.toml", "-o", "other", "--set",
+                              "procedure.dwell_s=[3.0]"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, testing::HasSubstr("is not in the recording"));
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,156 @@
+#include <gmock/gmock.h>
+
+#include <random>
+#include <thread>
+
+#include "tests/tools/program.h"
+#include "twin/core/run_record.h"
+
+/// `twinbench serve` and `twinbench measure` as two programs that only share a network.
+namespace twinbench::test {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+class Served : public Program {
+ protected:
+  Served() {
+    Write("small.toml", kSmall);
+    Succeed({"run", "small.toml", "-o", "run"});
+    readings_ = ReadingsOf("run");
+  }
+
+  /// Starts a server and waits until it has said where it is.
+  std::unique_ptr<Process> Serve(const std::vector<std::string>& options = {"--speed", "max"}) {
+    std::vector<std::string> words = {"serve",      "small.toml", "--iiod-port", "0", "--scpi-port",
+                                      "0",          "--esp-port", "0",           "--write-bench", "bench.toml"};
+    words.insert(words.end(), options.begin(), options.end());
+    std::filesystem::remove(At("bench.toml"));
+    auto server = std::make_unique<Process>(At(""), words, "server");
+    for (int k = 0; k < 500 && !Exists("bench.toml"); ++k) std::this_thread::sleep_for(milliseconds(20));
+    EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
+    return server;
+  }
+
+  static std::vector<std::string> Measure(const std::string& name) {
+    return {"measure", "small.toml", "--bench", "bench.toml", "-o", name, "--resume"};
+  }
+
+  std::string readings_;
+};
+
+TEST_F(Served, MeasuresTheReadingsThatRunMakesBitForBit) {
+  for (const char* tables : {"scpi", "esp", "pty"}) {
+    const auto server = Serve({"--speed", "max", "--tables", tables});
+    Succeed(Measure(tables));
+    EXPECT_EQ(ReadingsOf(tables), readings_) << tables;
+    EXPECT_EQ(Read(std::string(tables) + "/results.json"), Read("run/results.json"));
+    EXPECT_FALSE(Exists(std::string(tables) + "/truth.json")) << "nobody at a real bench knows the truth";
+  }
+}
+
+TEST_F(Served, KeepsTheRawCountsAndSaysWhoAnswered) {
+  const auto server = Serve();
+  Succeed(Measure("measured"));
+  const auto record = RunRecord::Open(At("measured"));
+  EXPECT_EQ(record->RawBlocks().size(), record->Readings().size());
+  EXPECT_THAT(record->provenance().bench, HasSubstr("twinbench,rotary-bench"));
+  EXPECT_THAT(record->provenance().bench, HasSubstr("psd-adc16"));
+  const auto events = record->Events();
+  EXPECT_THAT(events, testing::Contains(testing::Field(&RecordedEvent::text, HasSubstr("62500 scans/s"))));
+}
+
+TEST_F(Served, AKilledMeasurementGoesOnToTheSameReadings) {
+  const auto server = Serve();
+  std::mt19937_64 random(7);
+  int kills = 0;
+  for (int k = 0; k < 4; ++k) {
+    const std::string name = "killed" + std::to_string(k);
+    Process run(At(""), Measure(name));
+    std::this_thread::sleep_for(milliseconds(std::uniform_int_distribution<>(50, 400)(random)));
+    if (run.Runs()) ++kills, run.Kill();
+    Succeed(Measure(name));
+    EXPECT_EQ(ReadingsOf(name), readings_);
+  }
+  EXPECT_GE(kills, 2);
+}
+
+TEST_F(Served, APowerFailureOfTheServerIsGoneOnFromWithANewOne) {
+  auto server = Serve({"--speed", "2000"});
+  Process run(At(""), Measure("cut"));
+  while (run.Runs() && run.ProgressLines() < 3) std::this_thread::sleep_for(milliseconds(5));
+  server->Kill();
+  const Outcome outcome = run.Wait();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("--resume"));
+  const std::size_t kept = RunRecord::Open(At("cut"))->Readings().size();
+  EXPECT_GT(kept, 0u);
+  server = Serve();
+  Succeed(Measure("cut"));
+  EXPECT_EQ(ReadingsOf("cut"), readings_);
+}
+
+TEST_F(Served, CtrlCStopsTheTablesAndTheRunCanBeResumed) {
+  const auto server = Serve({"--speed", "2000"});
+  {
+    Process run(At(""), Measure("stopped"));
+    while (run.Runs() && run.ProgressLines() < 3) std::this_thread::sleep_for(milliseconds(5));
+    run.Signal(SIGINT);
+    const Outcome outcome = run.Wait();
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("tables were brought to rest"));
+  }
+  Succeed(Measure("stopped"));
+  EXPECT_EQ(ReadingsOf("stopped"), readings_);
+}
+
+TEST_F(Served, ABenchThatDoesNotAnswerIsNamed) {
+  auto server = Serve();
+  server->Signal(SIGTERM);
+  EXPECT_EQ(server->Wait().exit_code, 0) << "asked to stop, it ends well";
+  const Outcome outcome = Call(Measure("none"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("127.0.0.1"));
+  EXPECT_FALSE(Exists("none")) << "nothing was begun";
+}
+
+TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
+  Write("bench.toml", "kind = \"twin\"\n");
+  const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_THAT(fine.err, HasSubstr("124 readings"));
+  const Outcome off = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "off", "--set",
+                            "psd_a.width_mm=0.2"});
+  EXPECT_EQ(off.exit_code, 1);
+  EXPECT_THAT(off.err, HasSubstr("PROBLEM"));
+  EXPECT_FALSE(Exists("off"));
+  const auto server = Serve();
+  Write("narrow.toml", Read("bench.toml") + "\n");
+  std::string text = Read("bench.toml");
+  text.replace(text.find("axis = 1"), 8, "axis = 1\nlower_deg = -10.0\nupper_deg = 200.0");
+  Write("bench.toml", text);
+  const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "narrow"});
+  EXPECT_EQ(narrow.exit_code, 1);
+  EXPECT_THAT(narrow.err, HasSubstr("target would travel"));
+  EXPECT_FALSE(Exists("narrow"));
+}
+
+TEST_F(Served, WithoutNoiseItIsRefusedForThereAreNoCounts) {
+  const Outcome outcome = Call({"serve", "small.toml", "--set", "noise_free=true"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("noise"));
+}
+
+TEST_F(Served, ATakenPortIsNamed) {
+  const auto server = Serve();
+  const std::string told = Contents(At("") + "server.out");
+  const std::size_t colon = told.find(':');
+  const std::string port = told.substr(colon + 1, told.find('\n') - colon - 1);
+  const Outcome outcome = Call({"serve", "small.toml", "--iiod-port", port, "--scpi-port", "0", "--esp-port", "0"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr(port));
+}
+
+}  // namespace
+}  // namespace twinbench::test

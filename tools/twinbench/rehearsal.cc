@@ -1,0 +1,123 @@
+#include "tools/twinbench/rehearsal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/call_text.h"
+#include "twin/core/errors.h"
+#include "twin/sim/twin.h"
+
+namespace twinbench::tools {
+namespace {
+
+constexpr double kNearTheEdge = 0.8;  // of half the width: a PSD is not linear out there
+
+/// Watches what the tables are told and where the spots fall.
+class Watcher : public ReadingSink, public RunLog {
+ public:
+  Watcher(const Scenario& scenario, Rehearsal& rehearsal) : scenario_(scenario), r_(rehearsal) {}
+
+  void Append(const Reading& reading, const Acquisition&) override {
+    ++r_.readings;
+    if (reading.status != ReadingStatus::kOk) ++r_.not_ok;
+    for (std::size_t c = 0; c < kChannels; ++c) NoteSpot(c, reading.mean_V[c]);
+  }
+  void Called(const DeviceCall& call) override {
+    r_.duration_s = ToSeconds(call.time);
+    if (call.device != "target" && call.device != "reference") return;
+    CallReader words(call.request);
+    if (words.Word() != "move") return;
+    Rehearsal::Travel& travel = call.device == "target" ? r_.target : r_.reference;
+    const double to_rad = words.Number();
+    travel.lowest_rad = std::min(travel.lowest_rad, to_rad);
+    travel.highest_rad = std::max(travel.highest_rad, to_rad);
+  }
+  void ForgetCalls() override {}
+  void AttemptFailed(int, Time, const std::string&, const std::string&) override {}
+  void AppendEvent(Time, const std::string&, const std::string&) override {}
+  void RequireRoom() override {}
+
+ private:
+  void NoteSpot(std::size_t channel, double mean_V) {
+    const PsdSettings& psd = channel < 2 ? scenario_.psd_a : scenario_.psd_b;
+    const double half_m = 0.5 * (channel % 2 == 0 ? psd.width_m : psd.height_m);
+    const double share = std::abs(mean_V) / psd.sensitivity_V_m / half_m;
+    double& widest = r_.widest_share[channel / 2];
+    if (share > widest) widest = share;
+  }
+
+  const Scenario& scenario_;
+  Rehearsal& r_;
+};
+
+void JudgeTravel(const char* table, const Rehearsal::Travel& travel, const TableLimits& limits,
+                 std::vector<std::string>& problems) {
+  if (travel.lowest_rad >= limits.lower_rad && travel.highest_rad <= limits.upper_rad) return;
+  problems.push_back(fmt::format("{} would travel from {:.6g} to {:.6g} deg; its soft limits are {:.6g} to {:.6g} deg",
+                                 table, travel.lowest_rad / units::deg, travel.highest_rad / units::deg,
+                                 limits.lower_rad / units::deg, limits.upper_rad / units::deg));
+}
+
+void JudgeLight(const Rehearsal& r, std::vector<std::string>& problems) {
+  if (r.not_ok > 0)
+    problems.push_back(fmt::format("{} of {} readings would have no numbers: no light, a clipped spot or a saturated "
+                                   "channel",
+                                   r.not_ok, r.readings));
+  for (int psd = 0; psd < 2; ++psd) {
+    if (r.widest_share[psd] <= kNearTheEdge) continue;
+    problems.push_back(fmt::format("the spot on psd_{} would come to {:.0f} % of half the PSD's width", "ab"[psd],
+                                   100.0 * r.widest_share[psd]));
+  }
+}
+
+/// Hum averages out over whole periods only.
+void JudgeMains(const Scenario& scenario, double mains_Hz, std::vector<std::string>& hints) {
+  const double periods = scenario.adc.samples * kChannels / scenario.adc.rate_Hz * mains_Hz;
+  if (periods > 0.5 && std::abs(periods - std::round(periods)) < 0.01) return;
+  hints.push_back(fmt::format("a block lasts {:.3g} periods of the mains at {:.4g} Hz; hum is averaged out by whole ones: "
+                              "adc.samples = {:.0f}",
+                              periods, mains_Hz, scenario.adc.rate_Hz / kChannels / mains_Hz));
+}
+
+std::string TravelLine(const char* table, const Rehearsal::Travel& travel, const TableLimits& limits) {
+  return fmt::format("  {:<10}{:>10.3f} to {:>10.3f} deg   soft limits {} to {} deg\n", table,
+                     travel.lowest_rad / units::deg, travel.highest_rad / units::deg, limits.lower_rad / units::deg,
+                     limits.upper_rad / units::deg);
+}
+
+std::string HoursMinutes(double duration_s) {
+  const long minutes = std::lround(duration_s / 60.0);
+  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+}  // namespace
+
+Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, double mains_Hz) {
+  Rehearsal rehearsal;
+  Watcher watcher(scenario, rehearsal);
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  procedure::Options options;
+  options.log = &watcher;
+  procedure::CarryOut(bench, scenario, watcher, {}, options);
+  JudgeTravel("target", rehearsal.target, limits.target, rehearsal.problems);
+  JudgeTravel("reference", rehearsal.reference, limits.reference, rehearsal.problems);
+  JudgeLight(rehearsal, rehearsal.problems);
+  JudgeMains(scenario, mains_Hz, rehearsal.hints);
+  return rehearsal;
+}
+
+std::string Summary(const Rehearsal& r, const procedure::Options& limits) {
+  std::string text = fmt::format("rehearsal on the twin: {} readings, {}\n", r.readings, HoursMinutes(r.duration_s));
+  text += TravelLine("target", r.target, limits.target);
+  text += TravelLine("reference", r.reference, limits.reference);
+  text += fmt::format("  spots       {:>9.0f} % of half the width of psd_a, {:.0f} % of psd_b at most\n",
+                      100.0 * r.widest_share[0], 100.0 * r.widest_share[1]);
+  for (const std::string& hint : r.hints) text += "  note: " + hint + "\n";
+  for (const std::string& problem : r.problems) text += "  PROBLEM: " + problem + "\n";
+  return text;
+}
+
+}  // namespace twinbench::tools

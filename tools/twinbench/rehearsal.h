@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/core/scenario.h"
+#include "twin/procedure/procedure.h"
+
+namespace twinbench::tools {
+
+/// What a run will ask of the bench, found by carrying it out on the twin first.
+struct Rehearsal {
+  struct Travel {
+    double lowest_rad = 0.0, highest_rad = 0.0;
+  };
+  Travel target, reference;
+  int readings = 0;
+  int not_ok = 0;                // readings without numbers
+  double duration_s = 0.0;
+  double widest_share[2] = {};   // of half the active width, the spot that came nearest to the edge of PSD a and b
+  std::vector<std::string> hints, problems;
+};
+
+/// @param limits  Soft limits of the real tables; a command beyond them is a problem, not an exception.
+Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, double mains_Hz);
+
+/// A table for people, one problem a line at its end.
+std::string Summary(const Rehearsal& rehearsal, const procedure::Options& limits);
+
+}  // namespace twinbench::tools

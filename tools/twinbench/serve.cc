@@ -1,0 +1,87 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include "hw_bridge/serve/server.h"
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/stop_signal.h"
+#include "twin/core/errors.h"
+#include "twin/core/number_text.h"
+#include "twin/sim/twin.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct ServeArguments {
+  std::string scenario, bench_file, tables = "scpi", speed = "1";
+  std::vector<std::string> overrides;
+  hw::ServeOptions serve;
+  bool no_pty = false;
+};
+
+double SpeedOf(const std::string& text) {
+  if (text == "max") return INFINITY;
+  const auto speed = ParseNumber(text);
+  if (!speed || *speed <= 0.0) throw InputError("--speed " + text, "this is no speed", "a positive number, or max");
+  return *speed;
+}
+
+std::string Told(const hw::ServedAddresses& at) {
+  std::string text = fmt::format("iiod {}:{}\nscpi {}:{}\nesp  {}:{}\n", at.host, at.iiod_port, at.host, at.scpi_port,
+                                 at.host, at.esp_port);
+  return at.pty.empty() ? text : text + fmt::format("esp  {}\n", at.pty);
+}
+
+/// Runs until Ctrl-C.
+void ServeUntilStopped(hw::Server& server) {
+  ListenForStop();
+  std::jthread watch([&server](std::stop_token ended) {
+    while (!StopWasAsked() && !ended.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    server.Stop();
+  });
+  server.Run();
+}
+
+void Serve(ServeArguments a) {
+  const Scenario scenario = LoadScenario(a.scenario, a.overrides);
+  if (scenario.bench != kRotaryBench)
+    throw InputError(a.scenario, "the bench " + scenario.bench + " cannot be served", std::string("bench ") + kRotaryBench);
+  a.serve.speed = SpeedOf(a.speed);
+  a.serve.pty = !a.no_pty;
+  sim::Twin twin(scenario);
+  hw::Server server(twin.Bench(), scenario, a.serve);
+  const hw::ServedAddresses addresses = server.Addresses();
+  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, hw::WriteServedBenchFile(addresses, a.tables));
+  fmt::print("{}", Told(addresses));
+  std::fflush(stdout);
+  ServeUntilStopped(server);
+}
+
+void AddPort(CLI::App& command, const char* name, int& port, const char* what) {
+  command.add_option(name, port, what)->check(CLI::Range(0, 65535))->capture_default_str();
+}
+
+}  // namespace
+
+void AddServe(CLI::App& app) {
+  auto* command = app.add_subcommand("serve", "Show the twin as hardware on the network, until Ctrl-C");
+  auto arguments = std::make_shared<ServeArguments>();
+  command->add_option("scenario", arguments->scenario, "scenario file (TOML)")->required();
+  command->add_option("--set", arguments->overrides, "override a key of the scenario: procedure.positions=12")
+      ->allow_extra_args(false);
+  command->add_option("--speed", arguments->speed, "bench seconds a real second, or max")->capture_default_str();
+  command->add_option("--bind", arguments->serve.bind, "address to be reached at")->capture_default_str();
+  AddPort(*command, "--iiod-port", arguments->serve.iiod_port, "A/D converter, IIOD; 0: any free port");
+  AddPort(*command, "--scpi-port", arguments->serve.scpi_port, "tables and instruments, SCPI");
+  AddPort(*command, "--esp-port", arguments->serve.esp_port, "tables, Newport ESP");
+  command->add_flag("--no-pty", arguments->no_pty, "no pseudo-terminal with ESP");
+  command->add_option("--write-bench", arguments->bench_file, "write the bench file that drives what is served");
+  command->add_option("--tables", arguments->tables, "what that bench file drives the tables by: scpi, esp or pty")
+      ->check(CLI::IsMember({"scpi", "esp", "pty"}));
+  command->callback([arguments] { Serve(*arguments); });
+}
+
+}  // namespace twinbench::tools
