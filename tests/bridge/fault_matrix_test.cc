@@ -3,7 +3,7 @@
 
 #include <ostream>
 
-#include "tests/bridge/served_run.h"
+#include "tests/support/served_run.h"
 
 /// Faults of real benches, each struck on a served twin while the real procedure drives it through the real backends.
 /// Where trying again is the answer, the readings are those of a run without any fault, to the bit.

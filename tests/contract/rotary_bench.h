@@ -4,6 +4,7 @@
 #include <memory>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "twin/core/devices.h"
 #include "twin/core/scenario.h"
@@ -25,7 +26,12 @@ struct BenchBackend {
   bool repeats_its_bits = false;  // a twin or a replay: same scenario, same numbers
   bool always_has_raw = false;    // counts come with every block, asked for or not
 
+  std::string missing = {};       // why it cannot be tried here
+
   friend void PrintTo(const BenchBackend& backend, std::ostream* out) { *out << backend.name; }
 };
+
+/// The twin at its three fidelities, served twins reached as real benches are, and recordings.
+std::vector<BenchBackend> Backends();
 
 }  // namespace twinbench::test

@@ -7,7 +7,7 @@
 
 #include "hw_bridge/ad/ad_converter.h"
 #include "tests/hw_ad/same_block.h"
-#include "tests/hw_ad/served_twin.h"
+#include "tests/hw_ad/held_twin.h"
 #include "twin/core/device_fault.h"
 
 namespace twinbench::test {
@@ -23,7 +23,7 @@ std::string FaultIn(const Call& call) {
   return "none";
 }
 
-inline hw::AdSettings IioSettings(const ServedTwin& served) {
+inline hw::AdSettings IioSettings(const HeldTwin& served) {
   hw::AdSettings settings;
   settings.kind = "iio";
   settings.uri = "ip:127.0.0.1:" + std::to_string(served.iiod_port());
@@ -34,7 +34,7 @@ inline hw::AdSettings IioSettings(const ServedTwin& served) {
   return settings;
 }
 
-inline hw::AdSettings ComediSettings(const ServedTwin& served) {
+inline hw::AdSettings ComediSettings(const HeldTwin& served) {
   setenv("TWINBENCH_COMEDI_TWIN", ("127.0.0.1:" + std::to_string(served.iiod_port())).c_str(), 1);
   hw::AdSettings settings;
   settings.kind = "comedi";
@@ -46,7 +46,7 @@ inline hw::AdSettings ComediSettings(const ServedTwin& served) {
 }
 
 /// The same acquisitions, at the same bench times, on a twin in this process and through a backend.
-inline void ExpectTheTwinsOwnBlocks(AdConverter& card, ServedTwin& served, const Scenario& scenario) {
+inline void ExpectTheTwinsOwnBlocks(AdConverter& card, HeldTwin& served, const Scenario& scenario) {
   sim::Twin twin(scenario);
   RotaryBench bench = twin.Bench();
   for (const int scans : {100, 1, 2, 1000, 20000}) {

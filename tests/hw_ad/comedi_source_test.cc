@@ -19,7 +19,7 @@ namespace {
 
 using test::ComediSettings;
 using test::FaultIn;
-using test::ServedTwin;
+using test::HeldTwin;
 using Stopwatch = std::chrono::steady_clock;
 
 class ComediSourceTest : public ::testing::Test {
@@ -31,7 +31,7 @@ class ComediSourceTest : public ::testing::Test {
     unsetenv("TWINBENCH_COMEDI_TWIN");
     unsetenv("TWINBENCH_COMEDI_FAULT");
   }
-  static std::unique_ptr<AdFrontEnd> Open(const ServedTwin& served, const Scenario& scenario,
+  static std::unique_ptr<AdFrontEnd> Open(const HeldTwin& served, const Scenario& scenario,
                                           const AdSettings& settings) {
     return MakeAdConverter(settings, scenario.adc, served, scenario.amplifier.noise_V);
   }
@@ -39,7 +39,7 @@ class ComediSourceTest : public ::testing::Test {
 
 TEST_F(ComediSourceTest, GivesTheServedTwinsOwnBlocks) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
 }
@@ -50,14 +50,14 @@ TEST_F(ComediSourceTest, GivesTheTwinsBlocksInAnotherRangeAndResolution) {
   scenario.adc.range_V = 5.0;
   scenario.adc.bits = 12;
   scenario.amplifier.offset_V[2] = -6.0;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
 }
 
 TEST_F(ComediSourceTest, TellsWhatTheCardIs) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const Negotiated actual = Open(served, scenario, ComediSettings(served))->Actual();
   EXPECT_EQ(actual.bits, 16);
   EXPECT_DOUBLE_EQ(actual.actual.scan_rate_Hz, 62.5e3);
@@ -69,7 +69,7 @@ TEST_F(ComediSourceTest, TellsWhatTheCardIs) {
 
 TEST_F(ComediSourceTest, LosesTheLightAsTheTwinDoes) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   served.Ask("GON:MOVE 10800,0;*OPC?");
   sim::Twin twin(scenario);
@@ -92,7 +92,7 @@ class ComediFault : public ComediSourceTest, public ::testing::WithParamInterfac
 
 TEST_P(ComediFault, IsNamedAndTheNextBlockIsWhole) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   served.Ask("GON:MOVE 150,80;*OPC?");
   card->Acquire(100, true);
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Every, ComediFault,
 
 TEST_F(ComediSourceTest, StartsAgainAfterAFullFifo) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   setenv("TWINBENCH_COMEDI_FAULT", "fifo_full", 1);
   try {
@@ -133,7 +133,7 @@ TEST_F(ComediSourceTest, StartsAgainAfterAFullFifo) {
 
 TEST_F(ComediSourceTest, RefusesWhatTheCardHasNot) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const AdSettings good = ComediSettings(served);
   AdSettings settings = good;
   settings.device = "/dev/comedi7";
@@ -157,7 +157,7 @@ TEST_F(ComediSourceTest, RefusesWhatTheCardHasNot) {
 
 TEST_F(ComediSourceTest, RefusesARateThatTheCardTurnsIntoAnother) {
   Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   scenario.adc.rate_Hz = 977517.0;  // 1023 ns a conversion; the card does 4000 ns
   try {
     Open(served, scenario, ComediSettings(served));
@@ -187,7 +187,7 @@ class CalibrationFile {
 
 TEST_F(ComediSourceTest, MeasuresWithTheCalibrationOfTheFile) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const CalibrationFile file("preloaded-ai16");
   AdSettings settings = ComediSettings(served);
   settings.calibration_file = file.path();
@@ -206,7 +206,7 @@ TEST_F(ComediSourceTest, MeasuresWithTheCalibrationOfTheFile) {
 
 TEST_F(ComediSourceTest, RefusesACalibrationThatIsMissingOrOfAnotherBoard) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   AdSettings settings = ComediSettings(served);
   settings.calibration_file = "/nowhere/card.cal";
   EXPECT_EQ(FaultIn([&] { Open(served, scenario, settings); }), "refused");

@@ -13,20 +13,20 @@ namespace {
 
 using test::FaultIn;
 using test::IioSettings;
-using test::ServedTwin;
+using test::HeldTwin;
 using Stopwatch = std::chrono::steady_clock;
 
 double SecondsSince(Stopwatch::time_point start) {
   return std::chrono::duration<double>(Stopwatch::now() - start).count();
 }
 
-std::unique_ptr<AdFrontEnd> Open(const ServedTwin& served, const Scenario& scenario, const AdSettings& settings) {
+std::unique_ptr<AdFrontEnd> Open(const HeldTwin& served, const Scenario& scenario, const AdSettings& settings) {
   return MakeAdConverter(settings, scenario.adc, served, scenario.amplifier.noise_V);
 }
 
 TEST(IioSource, GivesTheServedTwinsOwnBlocks) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
 }
@@ -36,7 +36,7 @@ TEST(IioSource, GivesTheTwinsBlocksAtAnotherRateRangeAndResolution) {
   scenario.adc.rate_Hz = 192e3;  // a scan takes 20833.3 ns
   scenario.adc.range_V = 5.0;
   scenario.adc.bits = 12;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
 }
@@ -44,7 +44,7 @@ TEST(IioSource, GivesTheTwinsBlocksAtAnotherRateRangeAndResolution) {
 TEST(IioSource, SaturatesAndLosesTheLightAsTheTwinDoes) {
   Scenario scenario;
   scenario.amplifier.offset_V[1] = 11.0;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
   served.Ask("GON:MOVE 10800,0;*OPC?");  // 13 mm on PSDs that reach 5 mm
@@ -55,7 +55,7 @@ TEST(IioSource, SaturatesAndLosesTheLightAsTheTwinDoes) {
 
 TEST(IioSource, TellsWhatTheCardIs) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   EXPECT_EQ(card->Actual().bits, 16);
   EXPECT_EQ(card->Actual().actual.scan_rate_Hz, 62.5e3);
@@ -76,7 +76,7 @@ class IioFault : public ::testing::TestWithParam<Struck> {};
 
 TEST_P(IioFault, IsNamedAndTheNextBlockIsWhole) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   served.Ask("GON:MOVE 150,80;*OPC?");
   card->Acquire(100, true);
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Every, IioFault,
 
 TEST(IioSource, HasAStatusForSaturationAndDarknessAndMeasuresUnderHum) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   served.Inject("saturate");
   const Acquisition saturated = card->Acquire(100, true);
@@ -121,7 +121,7 @@ TEST(IioSource, HasAStatusForSaturationAndDarknessAndMeasuresUnderHum) {
 
 TEST(IioSource, NoticesThatTheClockOfTheCardJumps) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   card->Acquire(100, true);
   served.Ask("SIM:FAUL clock,step;*OPC?");
@@ -131,18 +131,18 @@ TEST(IioSource, NoticesThatTheClockOfTheCardJumps) {
 
 TEST(IioSource, ComesBackToACardThatWasSwitchedOffAndOn) {
   Scenario scenario;
-  auto served = std::make_unique<ServedTwin>(scenario);
+  auto served = std::make_unique<HeldTwin>(scenario);
   const int port = served->iiod_port();
-  ServedTwin clock(scenario);
+  HeldTwin clock(scenario);
   const auto card = MakeAdConverter(IioSettings(*served), scenario.adc, clock, scenario.amplifier.noise_V);
   served.reset();
   EXPECT_EQ(FaultIn([&] { card->Acquire(100, true); }), "dropped");
   EXPECT_EQ(FaultIn([&] { card->Acquire(100, true); }), "dropped") << "still off";
-  served = std::make_unique<ServedTwin>(scenario, port);
+  served = std::make_unique<HeldTwin>(scenario, port);
   EXPECT_EQ(card->Acquire(100, true).status, ReadingStatus::kOk);
   served.reset();
   scenario.seed = 2;
-  served = std::make_unique<ServedTwin>(scenario, port);
+  served = std::make_unique<HeldTwin>(scenario, port);
   EXPECT_EQ(FaultIn([&] { card->Acquire(100, true); }), "dropped");
   EXPECT_EQ(FaultIn([&] { card->Acquire(100, true); }), "identity") << "another serial number is another card";
 }
@@ -151,7 +151,7 @@ TEST(IioSource, ComesBackToACardThatWasSwitchedOffAndOn) {
 
 TEST(IioSource, RefusesADeviceAChannelOrALightThatThereIsNot) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   AdSettings settings = IioSettings(served);
   settings.device = "ad7606";
   EXPECT_EQ(FaultIn([&] { Open(served, scenario, settings); }), "identity");
@@ -168,7 +168,7 @@ TEST(IioSource, RefusesADeviceAChannelOrALightThatThereIsNot) {
 
 TEST(IioSource, RefusesARateThatTheCardCannotDo) {
   Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   scenario.adc.rate_Hz = 200e3;
   try {
     Open(served, scenario, IioSettings(served));
@@ -183,7 +183,7 @@ TEST(IioSource, GivesUpAServerThatTakesCallsAndSaysNothing) {
   asio::io_context io;
   asio::ip::tcp::acceptor silent(io, {asio::ip::make_address("127.0.0.1"), 0});
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   AdSettings settings = IioSettings(served);
   settings.uri = "ip:127.0.0.1:" + std::to_string(silent.local_endpoint().port());
   const auto start = Stopwatch::now();
@@ -193,7 +193,7 @@ TEST(IioSource, GivesUpAServerThatTakesCallsAndSaysNothing) {
 
 TEST(IioSource, CannotBeOpenedWhereNobodyListens) {
   const Scenario scenario;
-  ServedTwin served(scenario);
+  HeldTwin served(scenario);
   AdSettings settings = IioSettings(served);
   settings.uri = "ip:127.0.0.1:1";
   EXPECT_EQ(FaultIn([&] { Open(served, scenario, settings); }), "dropped");

@@ -5,7 +5,7 @@
 #include "hw_bridge/ad/ad_source.h"
 #include "tests/hw_control/fake_controller.h"
 #include "tests/hw_control/faults.h"
-#include "tests/hw_control/served_twin.h"
+#include "tests/support/served_twin.h"
 #include "twin/sim/twin.h"
 
 namespace twinbench::hw {
@@ -16,7 +16,7 @@ using test::ServedTwin;
 using testing::HasSubstr;
 
 BenchFile FileOf(const ServedTwin& served, const std::string& tables) {
-  return ParseBenchFile(WriteServedBenchFile(served.Addresses(), tables), "served.toml", "/");
+  return ParseBenchFile(WriteServedBenchFile(served.at(), tables), "served.toml", "/");
 }
 
 Scenario Noisy() {

@@ -6,7 +6,7 @@
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/control/served_clock.h"
-#include "tests/hw_control/served_twin.h"
+#include "tests/support/served_twin.h"
 #include "twin/core/units.h"
 #include "twin/sim/twin.h"
 

@@ -7,7 +7,7 @@
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/control/served_clock.h"
 #include "tests/hw_control/faults.h"
-#include "tests/hw_control/served_twin.h"
+#include "tests/support/served_twin.h"
 #include "twin/core/units.h"
 
 namespace twinbench::hw {

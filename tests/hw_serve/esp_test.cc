@@ -12,7 +12,7 @@ namespace {
 
 class Esp : public testing::Test {
  protected:
-  ServedTwin served{Options(kAtOnce)};
+  ServedTwin served{OnFreePorts(kAtOnce)};
   TcpClient esp{served.at().esp_port};
 };
 

@@ -31,7 +31,7 @@ class OnDemand : public testing::Test {
   }
   std::int16_t Of(const Scans& scans, int scan, int channel) const { return scans.raw[scan * kChannels + channel]; }
 
-  ServedTwin served{Options(kAtOnce)};
+  ServedTwin served{OnFreePorts(kAtOnce)};
   TcpClient scpi{served.at().scpi_port}, esp{served.at().esp_port};
   BufferClient adc{served.at().iiod_port, kScans};
   Scans clean;

@@ -30,7 +30,7 @@ class HeldClock : public testing::TestWithParam<const char*> {
   }
   HeldClock() { scpi.Ask("CLOC:HOLD ON;:SIM:PACE OFF;REST;*OPC?"); }
 
-  ServedTwin served{Options(1.0), Its()};
+  ServedTwin served{OnFreePorts(1.0), Its()};
   TcpClient scpi{served.at().scpi_port};
   BufferClient adc{served.at().iiod_port, 500};
   sim::Twin twin{Its()};
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, HeldClock, testing::Values("kinematic", "li
 TEST(HeldClockOfTheBench, ScansAreStampedAtTheirInstants) {
   Scenario scenario;
   scenario.adc.rate_Hz = 3e5;  // 75 kHz a channel: 13333.3 ns from scan to scan
-  ServedTwin served(Options(kAtOnce), scenario);
+  ServedTwin served(OnFreePorts(kAtOnce), scenario);
   TcpClient scpi(served.at().scpi_port);
   EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;WAIT? 1000"), "1000");
   const Scans scans = BufferClient(served.at().iiod_port, 100).Read(100);
@@ -98,7 +98,7 @@ TEST(HeldClockOfTheBench, ScansAreStampedAtTheirInstants) {
 }
 
 TEST(HeldClockOfTheBench, ABlockWithoutLightIsZerosAndSaysSo) {
-  ServedTwin served(Options(kAtOnce));
+  ServedTwin served(OnFreePorts(kAtOnce));
   TcpClient scpi(served.at().scpi_port), iiod(served.at().iiod_port);
   BufferClient adc(served.at().iiod_port, 10);
   EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;:GON:MOVE 7200,0;*OPC?"), "1");  // 2 deg: both spots are beside the PSDs
@@ -114,7 +114,7 @@ TEST(HeldClockOfTheBench, AFifoThatRunsFullLeavesAStepInTheTimeStamps) {
   Scenario scenario;
   scenario.adc.fifo_samples = 1024;
   scenario.adc.drain_rate_Hz = 125e3;  // half of what comes: full after 2048 conversions, 512 scans
-  ServedTwin served(Options(kAtOnce), scenario);
+  ServedTwin served(OnFreePorts(kAtOnce), scenario);
   TcpClient scpi(served.at().scpi_port), iiod(served.at().iiod_port);
   EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;*OPC?"), "1");
   const Scans scans = BufferClient(served.at().iiod_port, 600).Read(600);

@@ -12,7 +12,7 @@ namespace {
 
 class Iiod : public testing::Test {
  protected:
-  ServedTwin served{Options(kAtOnce)};
+  ServedTwin served{OnFreePorts(kAtOnce)};
   TcpClient iiod{served.at().iiod_port};
 
   std::string Value(const std::string& command) {

@@ -19,7 +19,7 @@ double Elapsed_s(WallClock::time_point since) {
 }
 
 TEST(Pacing, ARunningBenchFollowsTheWallClockAtItsSpeed) {
-  ServedTwin served(Options(10.0));
+  ServedTwin served(OnFreePorts(10.0));
   TcpClient scpi(served.at().scpi_port);
   const auto began = WallClock::now();
   const long long before_ns = scpi.AskNumber("CLOC:NOW?");
@@ -31,7 +31,7 @@ TEST(Pacing, ARunningBenchFollowsTheWallClockAtItsSpeed) {
 }
 
 TEST(Pacing, ASettlingTableTakesItsTime) {
-  ServedTwin served(Options(4.0));
+  ServedTwin served(OnFreePorts(4.0));
   TcpClient scpi(served.at().scpi_port);
   const auto began = WallClock::now();
   EXPECT_EQ(scpi.Ask("ROT1:ANGL 30;SETT? 60"), "1");
@@ -39,7 +39,7 @@ TEST(Pacing, ASettlingTableTakesItsTime) {
 }
 
 TEST(Pacing, AnEmergencyStopIsServedWhileAnotherClientWaits) {
-  ServedTwin served(Options(1.0));
+  ServedTwin served(OnFreePorts(1.0));
   TcpClient waiting(served.at().scpi_port), stopping(served.at().scpi_port);
   const auto began = WallClock::now();
   waiting.Send("ROT1:ANGL 300;SETT? 60\n");  // ten seconds
@@ -53,7 +53,7 @@ TEST(Pacing, AnEmergencyStopIsServedWhileAnotherClientWaits) {
 }
 
 TEST(Pacing, HeldTimeIsPaidForByTheReply) {
-  ServedTwin served(Options(10.0));
+  ServedTwin served(OnFreePorts(10.0));
   TcpClient scpi(served.at().scpi_port);
   scpi.Ask("CLOC:HOLD ON;*OPC?");
   const auto began = WallClock::now();
@@ -62,7 +62,7 @@ TEST(Pacing, HeldTimeIsPaidForByTheReply) {
 }
 
 TEST(Pacing, HeldTimeIsFreeWithoutPacing) {
-  ServedTwin served(Options(1.0));
+  ServedTwin served(OnFreePorts(1.0));
   TcpClient scpi(served.at().scpi_port);
   scpi.Ask("CLOC:HOLD ON;:SIM:PACE OFF;*OPC?");
   const auto began = WallClock::now();
@@ -71,7 +71,7 @@ TEST(Pacing, HeldTimeIsFreeWithoutPacing) {
 }
 
 TEST(Pacing, AHoldEndsWithItsConnection) {
-  ServedTwin served(Options(1.0));
+  ServedTwin served(OnFreePorts(1.0));
   TcpClient other(served.at().scpi_port);
   {
     TcpClient holding(served.at().scpi_port);
@@ -88,7 +88,7 @@ TEST(Pacing, AHoldEndsWithItsConnection) {
 }
 
 TEST(Pacing, AHeldEspTableGetsOnByPolling) {
-  ServedTwin served(Options(kAtOnce));
+  ServedTwin served(OnFreePorts(kAtOnce));
   TcpClient scpi(served.at().scpi_port), esp(served.at().esp_port);
   scpi.Ask("CLOC:HOLD ON;*OPC?");
   esp.Send("1PA30\n");
@@ -102,7 +102,7 @@ TEST(Pacing, AHeldEspTableGetsOnByPolling) {
 
 TEST(Pacing, ScansOfARunningConverterFollowOneAnother) {
   for (const double speed : {1.0, kAtOnce}) {
-    ServedTwin served(Options(speed));
+    ServedTwin served(OnFreePorts(speed));
     BufferClient adc(served.at().iiod_port, 2000);
     Scans scans;
     for (int block = 0; block < 5; ++block) {
@@ -116,7 +116,7 @@ TEST(Pacing, ScansOfARunningConverterFollowOneAnother) {
 }
 
 TEST(Pacing, ARunningConverterKeepsItsRate) {
-  ServedTwin served(Options(1.0));
+  ServedTwin served(OnFreePorts(1.0));
   BufferClient adc(served.at().iiod_port, 6250);
   adc.Read(6250);
   const auto began = WallClock::now();
@@ -126,7 +126,7 @@ TEST(Pacing, ARunningConverterKeepsItsRate) {
 }
 
 TEST(Pacing, ScansThatASlowClientMissesAreCountedAndSeenInTheTimeStamps) {
-  ServedTwin served(Options(20.0));
+  ServedTwin served(OnFreePorts(20.0));
   BufferClient adc(served.at().iiod_port, 100);
   TcpClient iiod(served.at().iiod_port);
   const Scans before = adc.Read(100);
@@ -140,7 +140,7 @@ TEST(Pacing, ScansThatASlowClientMissesAreCountedAndSeenInTheTimeStamps) {
 }
 
 TEST(Pacing, TwoClientsOfTheConverterSeeTheSameScans) {
-  ServedTwin served(Options(1.0));
+  ServedTwin served(OnFreePorts(1.0));
   BufferClient one(served.at().iiod_port, 1000), other(served.at().iiod_port, 1000);
   const Scans a = one.Read(4000), b = other.Read(4000);
   const auto start = std::find(a.stamps_ns.begin(), a.stamps_ns.end(), b.stamps_ns.front());

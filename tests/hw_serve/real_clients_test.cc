@@ -104,7 +104,7 @@ class Reserving {
 
 class RealClients : public testing::Test {
  protected:
-  ServedTwin served{Options(kAtOnce)};
+  ServedTwin served{OnFreePorts(kAtOnce)};
   std::string iiod = Uri(served.at().iiod_port);
   std::string scpi_port = std::to_string(served.at().scpi_port);
 };

@@ -16,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 
 hw::ServeOptions Strict() {
-  hw::ServeOptions options = Options(kAtOnce);
+  hw::ServeOptions options = OnFreePorts(kAtOnce);
   options.max_connections = 4;
   options.idle_limit = milliseconds(400);
   options.write_limit = milliseconds(400);
@@ -31,7 +31,7 @@ void ExpectAlive(const ServedTwin& served) {
 }
 
 TEST(Robustness, ALineThatIsTooLongIsAnErrorAndTheEnd) {
-  ServedTwin served(Options(kAtOnce));
+  ServedTwin served(OnFreePorts(kAtOnce));
   for (const int port : {served.at().iiod_port, served.at().scpi_port, served.at().esp_port}) {
     for (const char* end : {"", "\n"}) {
       TcpClient client(port);
@@ -46,7 +46,7 @@ TEST(Robustness, ALineThatIsTooLongIsAnErrorAndTheEnd) {
 }
 
 TEST(Robustness, APayloadThatIsTooLongIsAnErrorAndTheEnd) {
-  ServedTwin served(Options(kAtOnce));
+  ServedTwin served(OnFreePorts(kAtOnce));
   TcpClient iiod(served.at().iiod_port);
   EXPECT_EQ(iiod.Ask("WRITE psd-adc16 serial 500000000"), "-7");
   EXPECT_TRUE(iiod.Ends());
@@ -54,7 +54,7 @@ TEST(Robustness, APayloadThatIsTooLongIsAnErrorAndTheEnd) {
 }
 
 TEST(Robustness, RandomBytesHarmNobody) {
-  ServedTwin served(Options(kAtOnce));
+  ServedTwin served(OnFreePorts(kAtOnce));
   std::mt19937 random(20240611);
   for (int round = 0; round < 60; ++round) {
     for (const int port : {served.at().iiod_port, served.at().scpi_port, served.at().esp_port}) {
@@ -68,7 +68,7 @@ TEST(Robustness, RandomBytesHarmNobody) {
 }
 
 TEST(Robustness, RandomWordsOfTheProtocolsHarmNobody) {
-  ServedTwin served(Options(kAtOnce));
+  ServedTwin served(OnFreePorts(kAtOnce));
   const std::vector<std::string> words = {"OPEN",
                                           "READBUF",
                                           "CLOSE",
@@ -142,7 +142,7 @@ TEST(Robustness, AClientThatTakesNothingIsLeftAndDelaysNobody) {
 }
 
 TEST(Robustness, WhenAllPlacesAreTakenTheOneSilentLongestGivesWay) {
-  hw::ServeOptions options = Options(kAtOnce);
+  hw::ServeOptions options = OnFreePorts(kAtOnce);
   options.max_connections = 3;
   ServedTwin served(options);
   TcpClient first(served.at().scpi_port), second(served.at().scpi_port), third(served.at().scpi_port);
@@ -155,7 +155,7 @@ TEST(Robustness, WhenAllPlacesAreTakenTheOneSilentLongestGivesWay) {
 }
 
 TEST(Robustness, AClientThatIsBeingServedKeepsItsPlace) {
-  hw::ServeOptions options = Options(1.0);
+  hw::ServeOptions options = OnFreePorts(1.0);
   options.max_connections = 1;
   ServedTwin served(options);
   TcpClient waiting(served.at().scpi_port);
@@ -167,7 +167,7 @@ TEST(Robustness, AClientThatIsBeingServedKeepsItsPlace) {
 }
 
 TEST(Robustness, AClientThatFindsAllPlacesTakenWaitsForOne) {
-  hw::ServeOptions options = Options(1.0);
+  hw::ServeOptions options = OnFreePorts(1.0);
   options.max_connections = 1;
   ServedTwin served(options);
   auto waiting = std::make_unique<TcpClient>(served.at().scpi_port);
@@ -185,7 +185,7 @@ TEST(Robustness, AThousandClientsLeaveNothingBehind) {
     return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
                          std::filesystem::directory_iterator{});
   };
-  ServedTwin served(Options(kAtOnce));
+  ServedTwin served(OnFreePorts(kAtOnce));
   ExpectAlive(served);
   std::this_thread::sleep_for(milliseconds(100));
   const auto before = open_files();
@@ -196,7 +196,7 @@ TEST(Robustness, AThousandClientsLeaveNothingBehind) {
 }
 
 TEST(Robustness, AServerThatNobodyReadsFromStaysSmall) {
-  ServedTwin served(Options(50.0));
+  ServedTwin served(OnFreePorts(50.0));
   BufferClient adc(served.at().iiod_port, 1000);
   TcpClient scpi(served.at().scpi_port);
   const auto heap = [] { return static_cast<double>(mallinfo2().uordblks); };
@@ -212,8 +212,8 @@ TEST(Robustness, AServerThatNobodyReadsFromStaysSmall) {
 }
 
 TEST(Robustness, APortThatIsTakenIsAnErrorOfTheBench) {
-  ServedTwin served(Options(1.0));
-  hw::ServeOptions options = Options(1.0);
+  ServedTwin served(OnFreePorts(1.0));
+  hw::ServeOptions options = OnFreePorts(1.0);
   options.scpi_port = served.at().scpi_port;
   sim::Twin twin{Scenario{}};
   EXPECT_THROW(hw::Server(twin.Bench(), Scenario{}, options), BenchError);
@@ -223,7 +223,7 @@ TEST(Robustness, ABenchWithoutCountsCannotBeServed) {
   Scenario scenario;
   scenario.noise_free = true;
   sim::Twin twin(scenario);
-  EXPECT_THROW(hw::Server(twin.Bench(), scenario, Options(1.0)), InputError);
+  EXPECT_THROW(hw::Server(twin.Bench(), scenario, OnFreePorts(1.0)), InputError);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ using testing::StartsWith;
 
 class Scpi : public testing::Test {
  protected:
-  ServedTwin served{Options(kAtOnce)};
+  ServedTwin served{OnFreePorts(kAtOnce)};
   TcpClient scpi{served.at().scpi_port};
 
   std::string Error() { return scpi.Ask("SYST:ERR?"); }
@@ -24,8 +24,8 @@ TEST_F(Scpi, TheBenchNamesItselfBySerialNumberOfItsScenario) {
   EXPECT_THAT(name, testing::MatchesRegex("twinbench,rotary-bench,[0-9A-F]{16},[0-9.]+"));
   Scenario other;
   other.seed = 2;
-  EXPECT_EQ(TcpClient(ServedTwin(Options(kAtOnce)).at().scpi_port, 0).Ask("*IDN?"), name);
-  ServedTwin second(Options(kAtOnce), other);
+  EXPECT_EQ(TcpClient(ServedTwin(OnFreePorts(kAtOnce)).at().scpi_port, 0).Ask("*IDN?"), name);
+  ServedTwin second(OnFreePorts(kAtOnce), other);
   EXPECT_NE(TcpClient(second.at().scpi_port).Ask("*IDN?"), name);
 }
 
@@ -85,7 +85,7 @@ TEST_F(Scpi, TheEventRegisterTellsCommandFromExecutionErrors) {
 TEST_F(Scpi, TheGoniometerMovesWhatTheAutocollimatorSees) {
   Scenario scenario;
   scenario.autocollimator.noise_rad = 0.0;
-  ServedTwin quiet(Options(kAtOnce), scenario);
+  ServedTwin quiet(OnFreePorts(kAtOnce), scenario);
   TcpClient client(quiet.at().scpi_port);
   const std::string shown = client.Ask("GON:MOVE 120,-60;:AUT:READ?");
   EXPECT_NEAR(std::stod(shown), 120.0, 1e-6);

@@ -16,14 +16,6 @@ constexpr auto kPatience = std::chrono::seconds(20);
 
 }  // namespace
 
-ServedTwin::ServedTwin(const hw::ServeOptions& options, const Scenario& scenario)
-    : twin_(scenario), server_(twin_.Bench(), scenario, options), thread_([this] { server_.Run(); }) {}
-
-ServedTwin::~ServedTwin() {
-  server_.Stop();
-  thread_.join();
-}
-
 TcpClient::TcpClient(int port, int receive_buffer) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
   if (receive_buffer > 0) setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
   sockaddr_in address{};

@@ -3,37 +3,15 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "hw_bridge/serve/server.h"
-#include "twin/sim/twin.h"
+#include "tests/support/served_twin.h"
 
-/// A served twin in a thread, and clients that are nothing but a socket.
+/// Clients of a served twin that are nothing but a socket.
 namespace twinbench::test {
 
 inline constexpr double kAtOnce = std::numeric_limits<double>::infinity();
-
-inline hw::ServeOptions Options(double speed) {
-  hw::ServeOptions options;
-  options.iiod_port = options.scpi_port = options.esp_port = 0;
-  options.speed = speed;
-  return options;
-}
-
-class ServedTwin {
- public:
-  explicit ServedTwin(const hw::ServeOptions& options, const Scenario& scenario = {});
-  ~ServedTwin();
-  hw::ServedAddresses at() const { return server_.Addresses(); }
-
- private:
-  sim::Twin twin_;
-  hw::Server server_;
-  std::thread thread_;
-};
 
 /// Every wait ends after some seconds with an exception, so that a test cannot hang.
 class TcpClient {

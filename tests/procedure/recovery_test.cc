@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/memory_log.h"
-#include "tests/support/small_scenario.h"
+#include "tests/support/restless_bench.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/core/device_fault.h"
 #include "twin/procedure/procedure.h"
@@ -13,25 +13,8 @@ namespace twinbench::procedure {
 namespace {
 
 using test::MemoryLog;
+using test::TextOf;
 using test::TroubledBench;
-
-/// Noise, drift, seating and wear of every kind, so that a state that is not restored shows in the numbers.
-Scenario Restless() {
-  Scenario scenario;
-  scenario.seed = 11;
-  scenario.procedure.positions = 6;
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {1, -1};
-  scenario.procedure.sweep_points = 3;
-  scenario.procedure.dwell_s = {1.0, 2.0, 7.0};
-  scenario.environment.drift_K_h = 2.0;
-  scenario.environment.random_walk_K_sqrt_h = 0.1;
-  scenario.laser.pointing_yaw_per_kelvin_rad = 1e-5;
-  scenario.reference.seating_sd[2] = 20.0 * units::arcsec;
-  scenario.target.repeatability_sd[0] = 1.0 * units::arcsec;
-  scenario.amplifier.hum_V = 0.01;
-  return scenario;
-}
 
 std::vector<Reading> Undisturbed(const Scenario& scenario) {
   sim::Twin twin(scenario);
@@ -41,15 +24,8 @@ std::vector<Reading> Undisturbed(const Scenario& scenario) {
   return log.readings;
 }
 
-/// Text keeps every bit of the numbers, and NaN equals NaN in it.
-std::string TextOf(const std::vector<Reading>& readings) {
-  std::ostringstream text;
-  WriteReadingsCsv(readings, text);
-  return text.str();
-}
-
 TEST(Recovery, AFaultAtAnyCallCostsAnAttemptAndChangesNoBit) {
-  const Scenario scenario = Restless();
+  const Scenario scenario = test::RestlessBench();
   const std::string undisturbed = TextOf(Undisturbed(scenario));
   const std::vector<FaultKind> kinds = {FaultKind::kTimeout, FaultKind::kDropped, FaultKind::kGap,
                                         FaultKind::kNotInPosition, FaultKind::kRestarted};
@@ -77,7 +53,7 @@ TEST(Recovery, AFaultAtAnyCallCostsAnAttemptAndChangesNoBit) {
 
 TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
   for (const char* fidelity : {"kinematic", "linear", "bullet"}) {
-    Scenario scenario = Restless();
+    Scenario scenario = test::RestlessBench();
     scenario.mechanics.fidelity = fidelity;
     const std::vector<Reading> undisturbed = Undisturbed(scenario);
     for (const std::size_t kept : {std::size_t{1}, std::size_t{11}, std::size_t{12}, std::size_t{13},
@@ -105,7 +81,7 @@ TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
 }
 
 TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
-  Scenario scenario = Restless();
+  Scenario scenario = test::RestlessBench();
   MemoryLog log;
   {
     sim::Twin twin(scenario);
@@ -124,7 +100,7 @@ TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
 }
 
 TEST(Recovery, AttemptsAreCountedForEachReadingAndEnd) {
-  const Scenario scenario = Restless();
+  const Scenario scenario = test::RestlessBench();
   sim::Twin twin(scenario);
   MemoryLog log;
   TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
@@ -145,7 +121,7 @@ TEST(Recovery, AttemptsAreCountedForEachReadingAndEnd) {
 TEST(Recovery, WhatNeedsAHandStopsTheTablesAtOnce) {
   for (const FaultKind kind : {FaultKind::kStalled, FaultKind::kFollowing, FaultKind::kLimit, FaultKind::kImplausible,
                                FaultKind::kSignalLost, FaultKind::kStopped, FaultKind::kIdentity}) {
-    const Scenario scenario = Restless();
+    const Scenario scenario = test::RestlessBench();
     sim::Twin twin(scenario);
     int stops = 0;
     TroubledBench troubled(twin.Bench(), [&](const std::string&, const std::string& request, CallAnswer&) {
@@ -163,7 +139,7 @@ TEST(Recovery, WhatNeedsAHandStopsTheTablesAtOnce) {
 }
 
 TEST(Recovery, AnImplausibleRoomOrAJumpOfTheSpotStopsTheRun) {
-  const Scenario scenario = Restless();
+  const Scenario scenario = test::RestlessBench();
   const auto fault_of = [&](const TroubledBench::Trouble& after, const Options& options) {
     sim::Twin twin(scenario);
     TroubledBench troubled(twin.Bench(), {}, after);
@@ -192,7 +168,7 @@ TEST(Recovery, AnImplausibleRoomOrAJumpOfTheSpotStopsTheRun) {
 }
 
 TEST(Recovery, ABlockFromAnotherTimeIsTakenAgain) {
-  const Scenario scenario = Restless();
+  const Scenario scenario = test::RestlessBench();
   sim::Twin twin(scenario);
   int blocks = 0;
   TroubledBench troubled(twin.Bench(), {}, [&](const std::string& device, const std::string&, CallAnswer& answer) {
@@ -209,7 +185,7 @@ TEST(Recovery, ABlockFromAnotherTimeIsTakenAgain) {
 }
 
 TEST(Recovery, TheOperatorIsHeardWhileAMountingComesToRest) {
-  const Scenario scenario = Restless();  // remount_s is 600 s
+  const Scenario scenario = test::RestlessBench();  // remount_s is 60 s
   sim::Twin twin(scenario);
   RotaryBench bench = twin.Bench();
   MemoryLog log;

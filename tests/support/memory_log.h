@@ -1,6 +1,8 @@
 #pragma once
 
 #include <map>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "twin/core/run_record.h"
@@ -34,5 +36,12 @@ class MemoryLog : public ReadingSink, public RunLog {
   std::vector<DeviceCall> pending_;
   std::map<int, int> attempts_at_;
 };
+
+/// readings.csv: text keeps every bit of the numbers, and NaN equals NaN in it.
+inline std::string TextOf(const std::vector<Reading>& readings) {
+  std::ostringstream text;
+  WriteReadingsCsv(readings, text);
+  return text.str();
+}
 
 }  // namespace twinbench::test

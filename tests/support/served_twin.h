@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <thread>
 
@@ -19,8 +20,10 @@ inline hw::ServeOptions OnFreePorts(double speed = std::numeric_limits<double>::
 /// A twin that is served from a thread, until this goes.
 class ServedTwin {
  public:
-  explicit ServedTwin(const Scenario& scenario, const hw::ServeOptions& options = OnFreePorts())
+  explicit ServedTwin(const hw::ServeOptions& options, const Scenario& scenario = {})
       : twin_(scenario), server_(twin_.Bench(), scenario, options), thread_([this] { server_.Run(); }) {}
+  explicit ServedTwin(const Scenario& scenario, double speed = std::numeric_limits<double>::infinity())
+      : ServedTwin(OnFreePorts(speed), scenario) {}
   ~ServedTwin() {
     server_.Stop();
     thread_.join();

@@ -1,31 +1,24 @@
-#include "tests/hw_ad/served_twin.h"
+#include "tests/hw_ad/held_twin.h"
 
 namespace twinbench::test {
 namespace {
 
 hw::ServeOptions At(int iiod_port) {
-  hw::ServeOptions options;
+  hw::ServeOptions options = OnFreePorts(1.0);
   options.iiod_port = iiod_port;
-  options.scpi_port = options.esp_port = 0;
   options.pty = false;
   return options;
 }
 
 }  // namespace
 
-ServedTwin::ServedTwin(const Scenario& scenario, int iiod_port)
-    : twin_(scenario), server_(twin_.Bench(), scenario, At(iiod_port)), thread_([this] { server_.Run(); }) {
-  scpi_.connect({asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(server_.Addresses().scpi_port)});
+HeldTwin::HeldTwin(const Scenario& scenario, int iiod_port) : served_(At(iiod_port), scenario) {
+  scpi_.connect({asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(served_.at().scpi_port)});
   scpi_.set_option(asio::ip::tcp::no_delay(true));
   Ask("CLOC:HOLD ON;:SIM:PACE OFF;:SIM:REST;*OPC?");
 }
 
-ServedTwin::~ServedTwin() {
-  server_.Stop();
-  thread_.join();
-}
-
-std::string ServedTwin::Ask(const std::string& line) const {
+std::string HeldTwin::Ask(const std::string& line) const {
   asio::write(scpi_, asio::buffer(line + "\n"));
   if (line.back() != '?') return "";
   std::string answer;
@@ -33,15 +26,15 @@ std::string ServedTwin::Ask(const std::string& line) const {
   return answer.substr(0, answer.size() - 1);
 }
 
-void ServedTwin::Inject(const std::string& kind, int count) const {
+void HeldTwin::Inject(const std::string& kind, int count) const {
   Ask("SIM:FAUL adc," + kind + "," + std::to_string(count) + ";*OPC?");
 }
 
-Time ServedTwin::Now() const {
+Time HeldTwin::Now() const {
   return Time(Duration(std::stoll(Ask("CLOC:NOW?"))));
 }
 
-void ServedTwin::Wait(Duration duration) {
+void HeldTwin::Wait(Duration duration) {
   Ask("CLOC:WAIT? " + std::to_string(duration.count()) + ";*OPC?");
 }
 

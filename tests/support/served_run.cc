@@ -1,32 +1,22 @@
-#include "tests/bridge/served_run.h"
+#include "tests/support/served_run.h"
 
-#include <fstream>
-#include <sstream>
+#include <cstdlib>
 
+#include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/control/line_link.h"
 #include "hw_bridge/open_bench.h"
-#include "tests/core/input_error.h"
 #include "twin/core/device_fault.h"
 
 namespace twinbench::test {
 namespace {
 
-std::string TextOf(const std::vector<Reading>& readings) {
-  std::ostringstream text;
-  WriteReadingsCsv(readings, text);
-  return text.str();
-}
-
-hw::BenchFile BenchFileOf(const ServedTwin& served, const RunOptions& options) {
-  const TemporaryFolder folder;
-  folder.Write("bench.toml", hw::WriteServedBenchFile(served.at(), options.tables));
-  hw::BenchFile file = hw::LoadBenchFile(folder.File("bench.toml"));
-  file.adc.timeout_s = 0.5;
-  for (hw::ControlSettings* device : {&file.target, &file.reference, &file.autocollimator, &file.thermometer,
-                                      &file.goniometer, &file.fixture, &file.clock})
-    device->timeout_s = 0.5;
-  if (options.alter) options.alter(file);
-  return file;
+/// The card that the preloaded library shows, with this twin's counts.
+void UseComedi(const ServedTwin& served, hw::AdSettings& adc) {
+  setenv("TWINBENCH_COMEDI_TWIN", (served.at().host + ":" + std::to_string(served.at().iiod_port)).c_str(), 1);
+  adc.kind = "comedi";
+  adc.device = "/dev/comedi0";
+  adc.channels = {"0", "1", "2", "3"};
+  adc.light = "1";
 }
 
 /// Asks for faults at their readings, once each.
@@ -69,23 +59,22 @@ procedure::Options CarefulOptions(const hw::BenchFile& file, ServedRun& run, con
 
 }  // namespace
 
-Scenario RestlessBench() {
-  Scenario scenario;
-  scenario.seed = 23;
-  scenario.procedure.positions = 6;
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {1, -1};
-  scenario.procedure.sweep_points = 3;
-  scenario.procedure.dwell_s = {1.0, 2.0, 7.0};
-  scenario.procedure.remount_s = 60.0;
-  scenario.environment.drift_K_h = 2.0;
-  scenario.environment.random_walk_K_sqrt_h = 0.1;
-  scenario.laser.pointing_yaw_per_kelvin_rad = 1e-5;
-  scenario.reference.seating_sd[2] = 20.0 * units::arcsec;
-  scenario.reference.seating_sd[0] = 20.0 * units::arcsec;
-  scenario.target.repeatability_sd[0] = 1.0 * units::arcsec;
-  scenario.target.random_rms = {4e-5, 4e-5, 4e-5, 2e-6, 2e-6, 1e-6};
-  return scenario;
+std::string MissingComedi() {
+  if (!hw::HasAdDriver("comedi")) return "this build has no comedi";
+  const char* preloaded = std::getenv("LD_PRELOAD");
+  return preloaded ? "" : "needs the preloaded card; ctest brings it";
+}
+
+hw::BenchFile BenchFileOf(const ServedTwin& served, const RunOptions& options) {
+  hw::BenchFile file =
+      hw::ParseBenchFile(hw::WriteServedBenchFile(served.at(), options.tables), "served.toml", "/");
+  if (options.converter == "comedi") UseComedi(served, file.adc);
+  file.adc.timeout_s = 0.5;
+  for (hw::ControlSettings* device : {&file.target, &file.reference, &file.autocollimator, &file.thermometer,
+                                      &file.goniometer, &file.fixture, &file.clock})
+    device->timeout_s = 0.5;
+  if (options.alter) options.alter(file);
+  return file;
 }
 
 void Inject(const ServedTwin& served, const std::string& fault) {

@@ -2,22 +2,19 @@
 
 #include <asio.hpp>
 #include <string>
-#include <thread>
 
-#include "hw_bridge/serve/server.h"
+#include "tests/support/served_twin.h"
 #include "twin/core/devices.h"
-#include "twin/sim/twin.h"
 
-/// A twin behind its network servers, in this process, and the clock of a client that holds its time.
+/// A served twin whose time a client holds, and that client's clock.
 namespace twinbench::test {
 
-class ServedTwin : public Clock {
+class HeldTwin : public Clock {
  public:
   /// @param iiod_port  0: any that is free.
-  explicit ServedTwin(const Scenario& scenario, int iiod_port = 0);
-  ~ServedTwin() override;
+  explicit HeldTwin(const Scenario& scenario, int iiod_port = 0);
 
-  int iiod_port() const { return server_.Addresses().iiod_port; }
+  int iiod_port() const { return served_.at().iiod_port; }
   /// Sends one SCPI line; returns the answer if it ends in a question mark.
   std::string Ask(const std::string& line) const;
   /// The next blocks suffer `kind`.
@@ -27,9 +24,7 @@ class ServedTwin : public Clock {
   void Wait(Duration duration) override;
 
  private:
-  sim::Twin twin_;
-  hw::Server server_;
-  std::thread thread_;
+  ServedTwin served_;
   mutable asio::io_context io_;
   mutable asio::ip::tcp::socket scpi_{io_};
 };

@@ -6,14 +6,12 @@
 
 #include "hw_bridge/bench_file.h"
 #include "tests/support/memory_log.h"
+#include "tests/support/restless_bench.h"
 #include "tests/support/served_twin.h"
 #include "twin/procedure/procedure.h"
 
 /// Runs of the real procedure on a served twin, through the real backends, with faults on the way.
 namespace twinbench::test {
-
-/// Small, but with everything in it that must come back to the same bits.
-Scenario RestlessBench();
 
 /// Asks the served twin to suffer: "adc,drop", "target,lost_step,2".
 void Inject(const ServedTwin& served, const std::string& fault);
@@ -26,10 +24,17 @@ struct ServedRun {
 };
 
 struct RunOptions {
+  std::string converter = "iio";        // iio | comedi
   std::string tables = "scpi";          // scpi | esp | pty
   std::map<int, std::string> faults;    // injected when so many readings are kept
   std::function<void(hw::BenchFile&)> alter;
 };
+
+/// Why comedi cannot be tried here; empty if it can.
+std::string MissingComedi();
+
+/// The bench file that reaches a served twin; every answer is awaited for half a second.
+hw::BenchFile BenchFileOf(const ServedTwin& served, const RunOptions& options);
 
 /// A run from its beginning, or going on behind what `before` has kept.
 ServedRun RunServed(const ServedTwin& served, const Scenario& scenario, const RunOptions& options = {},

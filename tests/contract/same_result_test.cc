@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include "hw_bridge/replay/replay_bench.h"
+#include "tests/core/input_error.h"
+#include "tests/support/served_run.h"
+#include "twin/core/run_record.h"
+#include "twin/sim/twin.h"
+
+/// Same scenario, same seed, same result, whatever the bench is reached by.
+namespace twinbench::test {
+namespace {
+
+struct Way {
+  const char* converter;
+  const char* tables;
+  friend void PrintTo(const Way& way, std::ostream* out) { *out << way.converter << ' ' << way.tables; }
+};
+
+class SameResult : public ::testing::TestWithParam<Way> {
+ protected:
+  void SetUp() override {
+    options_.converter = GetParam().converter;
+    options_.tables = GetParam().tables;
+    const bool comedi = options_.converter == "comedi";
+    if (comedi && !MissingComedi().empty()) GTEST_SKIP() << MissingComedi();
+  }
+  RunOptions options_;
+};
+
+TEST_P(SameResult, ThroughTheRealBackendsAsInThisProgram) {
+  for (const char* fidelity : {"kinematic", "linear", "bullet"}) {
+    Scenario scenario = RestlessBench();
+    scenario.mechanics.fidelity = fidelity;
+    const ServedTwin served(scenario);
+    const ServedRun run = RunServed(served, scenario, options_);
+    EXPECT_EQ(run.stopped_by, "") << run.said;
+    EXPECT_EQ(run.Readings(), InProcess(scenario)) << fidelity;
+    EXPECT_TRUE(run.log.attempts.empty());
+  }
+}
+
+TEST_P(SameResult, ASecondTimeOnTheSameServer) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  const std::string first = RunServed(served, scenario, options_).Readings();
+  EXPECT_EQ(RunServed(served, scenario, options_).Readings(), first);
+}
+
+TEST_P(SameResult, WithServosThatSettleSlowly) {
+  // 6 Hz ring on long behind the in-position window: when the tables are quiet is found by looking.
+  Scenario scenario = RestlessBench();
+  scenario.mechanics.fidelity = "linear";
+  scenario.mechanics.servo_Hz = {6.0, 6.0};
+  const ServedTwin served(scenario);
+  EXPECT_EQ(RunServed(served, scenario, options_).Readings(), InProcess(scenario));
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, SameResult,
+                         ::testing::Values(Way{"iio", "scpi"}, Way{"iio", "esp"}, Way{"iio", "pty"},
+                                           Way{"comedi", "scpi"}),
+                         [](const auto& way) {
+                           return std::string(way.param.converter) + "_" + way.param.tables;
+                         });
+
+TEST(SameResult, OfARecording) {
+  const Scenario scenario = RestlessBench();
+  const TemporaryFolder folder;
+  {
+    sim::Twin twin(scenario);
+    RotaryBench bench = twin.Bench();
+    const auto record = RunRecord::Create(folder.path(), {"test", "twin", scenario.seed, ""});
+    procedure::Options options;
+    options.log = record.get();
+    procedure::CarryOut(bench, scenario, *record, {}, options);
+    record->Finish();
+  }
+  hw::ReplayBench replay(folder.path());
+  RotaryBench bench = replay.Bench();
+  MemoryLog log;
+  procedure::CarryOut(bench, scenario, log);
+  EXPECT_EQ(TextOf(log.readings), InProcess(scenario));
+}
+
+TEST(SameResult, AFullFifoOfTheCardCostsOneAttemptAndNoBit) {
+  if (!MissingComedi().empty()) GTEST_SKIP() << MissingComedi();
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.converter = "comedi";
+  options.faults[9] = "adc,drop";  // of the card's source: its FIFO runs dry and the command ends with EPIPE
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.Readings(), InProcess(scenario)) << run.said;
+  ASSERT_EQ(run.log.attempts.size(), 1u);
+  EXPECT_EQ(run.log.attempts[0].fault, "overrun");
+}
+
+TEST(SameResult, InRealTimeAsWithoutAnyTime) {
+  // 25 readings, two minutes of bench time; at 200 times real time the pacing waits for every step.
+  Scenario scenario = RestlessBench();
+  scenario.procedure.phases = {"full_circle"};
+  const ServedTwin served(scenario, 200.0);
+  const ServedRun run = RunServed(served, scenario);
+  EXPECT_EQ(run.stopped_by, "") << run.said;
+  EXPECT_EQ(run.Readings(), InProcess(scenario));
+}
+
+TEST(SameResult, WithReadingsThatHaveNoNumbers) {
+  Scenario scenario = RestlessBench();
+  scenario.amplifier.offset_V[2] = 9.99;  // saturates at some stops
+  const ServedTwin served(scenario);
+  const std::string expected = InProcess(scenario);
+  EXPECT_NE(expected.find("saturated"), std::string::npos);
+  EXPECT_EQ(RunServed(served, scenario).Readings(), expected);
+
+  scenario = RestlessBench();
+  scenario.psd_a.width_m = 0.2e-3;  // the calibration sweep takes the spot off the PSD
+  const ServedTwin clipped(scenario);
+  const std::string dark = InProcess(scenario);
+  EXPECT_NE(dark.find("no_light"), std::string::npos);
+  EXPECT_EQ(RunServed(clipped, scenario).Readings(), dark);
+}
+
+}  // namespace
+}  // namespace twinbench::test

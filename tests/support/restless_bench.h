@@ -1,0 +1,29 @@
+#pragma once
+
+#include "twin/core/scenario.h"
+
+namespace twinbench::test {
+
+/// A short run of a bench on which everything changes: noise, drift, seating, repeatability, hum. Whatever state of it
+/// is not restored after a fault shows in the readings.
+inline Scenario RestlessBench() {
+  Scenario scenario;
+  scenario.seed = 23;
+  scenario.procedure.positions = 6;
+  scenario.procedure.shifts = {0, 1};
+  scenario.procedure.passes = {1, -1};
+  scenario.procedure.sweep_points = 3;
+  scenario.procedure.dwell_s = {1.0, 2.0, 7.0};
+  scenario.procedure.remount_s = 60.0;
+  scenario.environment.drift_K_h = 2.0;
+  scenario.environment.random_walk_K_sqrt_h = 0.1;
+  scenario.laser.pointing_yaw_per_kelvin_rad = 1e-5;
+  scenario.reference.seating_sd[2] = 20.0 * units::arcsec;
+  scenario.reference.seating_sd[0] = 20.0 * units::arcsec;
+  scenario.amplifier.hum_V = 0.01;
+  scenario.target.repeatability_sd[0] = 1.0 * units::arcsec;
+  scenario.target.random_rms = {4e-5, 4e-5, 4e-5, 2e-6, 2e-6, 1e-6};
+  return scenario;
+}
+
+}  // namespace twinbench::test
