@@ -18,7 +18,7 @@ class HardwareBench {
   virtual std::string Identity() const = 0;
   /// What the A/D card agreed to, one line a channel; the record keeps it.
   virtual std::vector<std::string> Configuration() const = 0;
-  /// What was noticed during the run without being a fault: mains hum.
+  /// What was noticed during the run without being a fault: drift of the card's clock, mains hum.
   virtual std::vector<std::string> Notices() const = 0;
 };
 

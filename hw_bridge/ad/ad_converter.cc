@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "hw_bridge/ad/clock_watch.h"
 #include "hw_bridge/ad/negotiation.h"
 #include "hw_bridge/ad/volts.h"
 #include "twin/core/block_statistics.h"
@@ -62,6 +61,7 @@ class CardConverter : public AdFrontEnd {
     Acquisition block;
     block.start = start;
     block.stamp = taken.stamp;
+    block.stamp.first_scan = CountScans(taken.stamp.device_ns, n_samples);
     block.status = StatusOfLight(taken.light);
     block.raw = InChannelOrder(std::move(taken.raw));
     if (block.status == ReadingStatus::kOk) Judge(block, n_samples);
@@ -72,6 +72,7 @@ class CardConverter : public AdFrontEnd {
   std::string Identity() const override { return Describe(actual_); }
   const BlockFindings& Findings() const override { return found_; }
   const std::array<double, kChannels>& LargestMains_V() const override { return mains_V_; }
+  ClockWatch::Drift ClockDrift() const override { return watch_.DriftSoFar(); }
 
  private:
   AdBlock Take(int n_samples) {
@@ -86,6 +87,14 @@ class CardConverter : public AdFrontEnd {
   void CompareClocks(std::int64_t card_ns, Time start, int n_samples) {
     const Duration length = FromSeconds(n_samples / actual_.actual.scan_rate_Hz);
     watch_.Compare(card_ns, start, std::max(clock_.Now() - start - length, Duration(0)));
+  }
+
+  /// Number of a block's first scan since the first block: by the card's clock where every scan is stamped, so that
+  /// those between blocks count; otherwise only those that were taken count. A bench that starts again counts anew.
+  std::int64_t CountScans(std::int64_t card_ns, int n_samples) {
+    if (card_ns < 0) return std::exchange(scans_, scans_ + n_samples);
+    if (origin_ns_ < 0 || card_ns < origin_ns_) origin_ns_ = card_ns;
+    return std::llround(static_cast<double>(card_ns - origin_ns_) * 1e-9 * actual_.actual.scan_rate_Hz);
   }
 
   std::vector<std::int16_t> InChannelOrder(std::vector<std::int16_t> scanned) const {
@@ -125,6 +134,8 @@ class CardConverter : public AdFrontEnd {
   BlockFindings found_;
   std::array<double, kChannels> mains_V_ = {kNaN, kNaN, kNaN, kNaN};
   ClockWatch watch_;
+  std::int64_t origin_ns_ = -1;  // of the card's clock, at the first block
+  std::int64_t scans_ = 0;       // taken
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/ad/block_checks.h"
+#include "hw_bridge/ad/clock_watch.h"
 #include "twin/core/devices.h"
 #include "twin/core/scenario.h"
 
@@ -21,6 +22,8 @@ class AdFrontEnd : public AdConverter {
   virtual const BlockFindings& Findings() const = 0;
   /// Largest mains amplitude of each channel so far [V]; NaN: no block was as long as a period.
   virtual const std::array<double, kChannels>& LargestMains_V() const = 0;
+  /// Of the card's clock against the bench's.
+  virtual ClockWatch::Drift ClockDrift() const = 0;
 };
 
 /// Opens and configures the card of a bench file. Its blocks have the bits that the twin's have for the same codes:

@@ -10,17 +10,24 @@ namespace twinbench::hw {
 
 void ClockWatch::Compare(std::int64_t card_ns, Time bench, Duration latency) {
   const bool compares = std::exchange(known_, false);
-  const double card_s = static_cast<double>(card_ns - card_ns_) * 1e-9, bench_s = ToSeconds(bench - bench_);
-  const double allowed_s = 1e-4 * std::abs(bench_s) + ToSeconds(latency_ + latency) + 1e-3;
+  const double card_s = static_cast<double>(card_ns - last_.card_ns) * 1e-9, bench_s = ToSeconds(bench - last_.bench);
+  const double allowed_s = 1e-4 * std::abs(bench_s) + ToSeconds(last_.latency + latency) + 1e-3;
   if (compares && std::abs(card_s - bench_s) > allowed_s) {
     throw DeviceFault(FaultKind::kClock, "adc",
                       "since the block before " + std::to_string(card_s) + " s have passed on the card and " +
                           std::to_string(bench_s) + " s on the bench");
   }
   known_ = true;
-  card_ns_ = card_ns;
-  bench_ = bench;
-  latency_ = latency;
+  last_ = {card_ns, bench, latency};
+  if (!compares || bench < first_.bench) first_ = last_;  // either clock has begun anew
+}
+
+ClockWatch::Drift ClockWatch::DriftSoFar() const {
+  const double bench_s = ToSeconds(last_.bench - first_.bench);
+  if (!known_ || bench_s <= 0.0) return {};
+  const double card_s = static_cast<double>(last_.card_ns - first_.card_ns) * 1e-9;
+  const double latencies_s = std::hypot(ToSeconds(first_.latency), ToSeconds(last_.latency));
+  return {1e6 * (card_s - bench_s) / bench_s, 1e6 * latencies_s / std::sqrt(12.0) / bench_s};
 }
 
 }  // namespace twinbench::hw

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "twin/core/reading.h"
 #include "twin/core/time.h"
 
 namespace twinbench::hw {
@@ -17,11 +18,22 @@ class ClockWatch {
   void Compare(std::int64_t card_ns, Time bench, Duration latency);
   void Forget() { known_ = false; }
 
+  /// How much faster the card's clock has gone than the bench's since both were last started, and the standard
+  /// uncertainty that the latencies leave (rectangular); NaN before a second block.
+  struct Drift {
+    double ppm = kNaN, u_ppm = kNaN;
+  };
+  Drift DriftSoFar() const;
+
  private:
+  struct Meeting {
+    std::int64_t card_ns = 0;
+    Time bench{};
+    Duration latency{};
+  };
   bool known_ = false;
-  std::int64_t card_ns_ = 0;  // of the block before
-  Time bench_{};
-  Duration latency_{};
+  Meeting first_;
+  Meeting last_;  // of the block before
 };
 
 }  // namespace twinbench::hw

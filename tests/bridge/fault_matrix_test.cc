@@ -58,6 +58,8 @@ INSTANTIATE_TEST_SUITE_P(
                       TriedAgain{"ControllerThatHangsUp", "target,disconnect", {"dropped"}},
                       TriedAgain{"ControllerRestarted", "target,restart", {"restarted"}},
                       TriedAgain{"LostStep", "reference,lost_step", {"not_in_position"}},
+                      TriedAgain{"TableThatNeverSettles", "target,not_in_position", {"not_in_position"}},
+                      TriedAgain{"NeverSettlesByEsp", "reference,not_in_position", {"not_in_position"}, "esp"},
                       TriedAgain{"MuteEsp", "target,mute", {"timeout"}, "esp"},
                       TriedAgain{"LateEsp", "target,late", {"timeout"}, "esp"},
                       TriedAgain{"HalfAnAnswerOfEsp", "reference,partial", {"timeout", "dropped", "protocol"}, "esp"},

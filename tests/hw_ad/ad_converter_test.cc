@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "hw_bridge/ad/negotiation.h"
 #include "tests/hw_ad/blocks.h"
 #include "tests/hw_ad/same_block.h"
 #include "tests/hw_ad/scripted_source.h"
@@ -124,6 +125,29 @@ TEST_F(AdConverterTest, FaultsACardWhoseClockJumps) {
   clock_.Wait(std::chrono::seconds(1));
   script_.block.stamp.device_ns = 2'000'000'000;
   EXPECT_THROW(converter->Acquire(100, false), DeviceFault);
+}
+
+TEST_F(AdConverterTest, CountsScansByTheCardsClockWithThoseBetweenTheBlocks) {
+  auto converter = Make();
+  script_.block.raw = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
+  script_.block.stamp.device_ns = 5'000'000'000;
+  EXPECT_EQ(converter->Acquire(100, false).stamp.first_scan, 0);
+  clock_.Wait(std::chrono::seconds(2));
+  script_.block.stamp.device_ns = 7'000'000'000;
+  EXPECT_EQ(converter->Acquire(100, false).stamp.first_scan, 125000);  // 2 s of 62 500 scans/s
+}
+
+TEST_F(AdConverterTest, CountsTheScansThatWereTakenIfTheCardStampsNone) {
+  auto converter = Make();
+  script_.block.raw = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
+  EXPECT_EQ(converter->Acquire(100, false).stamp.first_scan, 0);
+  EXPECT_EQ(converter->Acquire(100, false).stamp.first_scan, 100);
+}
+
+TEST_F(AdConverterTest, DescribesEveryChannelForTheRecord) {
+  const auto lines = DescribeChannels(Make()->Actual());
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_THAT(lines[2], AllOf(HasSubstr("c: +-10 V"), HasSubstr("ground"), HasSubstr("0, 1"))) << lines[2];
 }
 
 TEST_F(AdConverterTest, RefusesAnotherRateNamingBoth) {

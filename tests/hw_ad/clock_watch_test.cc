@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "twin/core/device_fault.h"
 
 namespace twinbench::hw {
@@ -33,6 +35,20 @@ TEST(ClockWatch, AllowsForTheTimeThatAsksTake) {
   ClockWatch watch;
   watch.Compare(0, Time(seconds(0)), milliseconds(300));
   watch.Compare(kSecond_ns + kSecond_ns / 4, Time(seconds(1)), milliseconds(1));
+}
+
+TEST(ClockWatch, TellsHowFastTheCardsClockGoes) {
+  ClockWatch watch;
+  EXPECT_TRUE(std::isnan(watch.DriftSoFar().ppm));
+  for (int k = 0; k <= 60; ++k)  // 25 ppm fast: 1.5 ms a minute
+    watch.Compare(k * (60 * kSecond_ns + 1'500'000), Time(seconds(60 * k)), milliseconds(12));
+  const ClockWatch::Drift drift = watch.DriftSoFar();
+  EXPECT_NEAR(drift.ppm, 25.0, 1e-9);
+  // Two latencies of up to 12 ms, each rectangular, over an hour.
+  EXPECT_NEAR(drift.u_ppm, 1e6 * std::sqrt(2.0) * 12e-3 / std::sqrt(12.0) / 3600.0, 1e-9);
+  watch.Forget();
+  watch.Compare(0, Time(seconds(4000)), {});
+  EXPECT_TRUE(std::isnan(watch.DriftSoFar().ppm)) << "a card that came back begins anew";
 }
 
 TEST(ClockWatch, FollowsABenchThatStartsAgain) {

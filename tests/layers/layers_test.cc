@@ -111,6 +111,17 @@ TEST(Layers, EmbreeAndBulletStayOutOfHeaders) {
   }
 }
 
+TEST(Layers, TheServerHasNoMeansToTouchFiles) {
+  // No request of a client may read or write a file; what cannot open one cannot be made to.
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(TWINBENCH_SOURCE_DIR) / "hw_bridge/serve")) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream in(entry.path());
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    for (const char* means : {"fstream", "filesystem", "fopen", "std::FILE", "popen", "system(", "dlopen", " ::open("})
+      EXPECT_EQ(text.find(means), std::string::npos) << entry.path() << " has " << means;
+  }
+}
+
 TEST(Layers, FoldersFormNoCircle) {
   std::map<std::string, std::set<std::string>> edges;
   for (const Include& include : AllIncludes()) {

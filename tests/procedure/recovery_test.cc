@@ -138,6 +138,20 @@ TEST(Recovery, WhatNeedsAHandStopsTheTablesAtOnce) {
   }
 }
 
+TEST(Recovery, WhateverIsThrownTheTablesAreStopped) {
+  const Scenario scenario = test::RestlessBench();
+  sim::Twin twin(scenario);
+  int stops = 0;
+  TroubledBench troubled(twin.Bench(), [&](const std::string&, const std::string& request, CallAnswer&) {
+    if (request == "stop") ++stops;
+    if (request.starts_with("acquire")) throw std::runtime_error("something else");
+  });
+  RotaryBench bench = troubled.Bench();
+  MemoryLog log;
+  EXPECT_THROW(CarryOut(bench, scenario, log), std::runtime_error);
+  EXPECT_EQ(stops, 2);
+}
+
 TEST(Recovery, AnImplausibleRoomOrAJumpOfTheSpotStopsTheRun) {
   const Scenario scenario = test::RestlessBench();
   const auto fault_of = [&](const TroubledBench::Trouble& after, const Options& options) {

@@ -104,6 +104,15 @@ TEST(Watch, NoticesATableThatStandsStill) {
   EXPECT_LE(bench.reference.seconds, 5);
 }
 
+TEST(Watch, TellsATableThatNeverSettlesFromOneThatStandsStillOnItsWay) {
+  ScriptedBench bench;
+  bench.target.settles_after_s = 1000;  // there at once, but the controller never says so
+  Options options;
+  options.target.in_position_rad = 1.0 * units::arcsec;
+  EXPECT_EQ(FaultOf(bench, 10.0, options), "not_in_position of target");
+  EXPECT_LE(bench.target.seconds, 6);
+}
+
 TEST(Watch, NoticesATableThatGoesTheWrongWay) {
   ScriptedBench bench;
   bench.target.obeys = false;

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 
@@ -45,11 +46,13 @@ std::string UtcText(std::time_t now) {
   return text;
 }
 
-/// How long ago the run began; the wall clock is all that outlives a power failure.
-Duration SinceBegin(const Provenance& provenance) {
+/// How long ago the run began. The wall clock is all that outlives a power failure; if it was set back meanwhile, the
+/// run still goes on behind its last reading.
+Duration SinceBegin(const Provenance& provenance, const std::vector<Reading>& readings) {
+  const Duration last = readings.empty() ? Duration{} : readings.back().time.time_since_epoch();
   std::tm utc{};
-  if (!strptime(provenance.clock_origin_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &utc)) return {};
-  return std::chrono::seconds(std::time(nullptr) - timegm(&utc));
+  if (!strptime(provenance.clock_origin_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &utc)) return last;
+  return std::max<Duration>(last, std::chrono::seconds(std::time(nullptr) - timegm(&utc)));
 }
 
 /// @throws BenchError if the twin finds that the bench could not do it.
@@ -116,7 +119,7 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
 void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::BenchFile& file, Begun begun,
                  procedure::Options options) {
   const bool resumed = begun.record != nullptr;
-  const Duration elapsed = resumed ? SinceBegin(begun.record->provenance()) : Duration{};
+  const Duration elapsed = resumed ? SinceBegin(begun.record->provenance(), begun.readings) : Duration{};
   const auto bench = OpenMeasuredBench(file, scenario, elapsed);
   if (resumed) TakeUp(begun, bench->Identity(), options);
   const auto record =

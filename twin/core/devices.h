@@ -61,7 +61,7 @@ struct ChannelBlock {
 
 /// Where a block stands in the converter's own count, and what the computer's clocks showed when it came.
 struct BlockStamp {
-  std::int64_t first_scan = -1;  // number of its first scan since the converter was started; -1: not counted
+  std::int64_t first_scan = -1;  // number of its first scan since the first block; -1: not counted
   std::int64_t device_ns = -1;   // the converter's time stamp of that scan
   std::int64_t host_ns = -1;     // steady clock of the computer
   std::int64_t utc_ns = -1;      // label only: it may jump

@@ -92,6 +92,9 @@ void CarryOut(RotaryBench& bench, const Scenario& scenario, ReadingSink& sink, c
       state.disturbed = true;
       NoteFailure(options.log, state.kept, bench.clock.Now(), fault);
       if (!IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(state.kept)) throw;
+    } catch (...) {  // whatever it is, no table goes on moving
+      StopBoth(bench);
+      throw;
     }
   }
 }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr Duration kLook = std::chrono::seconds(1);
 constexpr Duration kSlice = std::chrono::seconds(5);
+constexpr double kThere_rad = 1.0 * units::arcsec;  // even where no tolerance was given
 constexpr double kStandsStill_rad = 1e-9;  // less than any encoder shows
 
 /// One table on its way.
@@ -77,6 +78,8 @@ class Watched {
     nearest_rad_ = std::min(nearest_rad_, left_rad);
     still_s_ = std::abs(encoder_rad - last_rad_) < kStandsStill_rad ? still_s_ + ToSeconds(kLook) : 0.0;
     last_rad_ = encoder_rad;
+    if (still_s_ >= limits_.stall_s && left_rad <= std::min(limits_.in_position_rad, kThere_rad))
+      Fail(FaultKind::kNotInPosition, "stands where it was sent, but its controller does not say so");
     if (still_s_ >= limits_.stall_s)
       Fail(FaultKind::kStalled, fmt::format("has stood still at {:.6f} deg for {:.0f} s on its way to {:.6f} deg",
                                             Deg(encoder_rad), still_s_, Deg(to_rad_)));
