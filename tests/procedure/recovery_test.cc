@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/support/memory_log.h"
 #include "tests/support/restless_bench.h"
 #include "tests/support/troubled_bench.h"
@@ -49,6 +51,27 @@ TEST(Recovery, AFaultAtAnyCallCostsAnAttemptAndChangesNoBit) {
     ASSERT_EQ(log.attempts.size(), failed ? 1u : 0u);
   }
   EXPECT_GT(calls_in_all, 300);
+}
+
+TEST(Recovery, TheCallsThatAreKeptAreThoseOfARunWithoutFaults) {
+  // They restore a simulated bench after the next fault, and play the run back.
+  const Scenario scenario = test::RestlessBench();
+  const auto calls_with_faults_at = [&](const std::set<int>& faults) {
+    sim::Twin twin(scenario);
+    int calls = 0;
+    TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
+      if (faults.contains(calls++)) throw DeviceFault(FaultKind::kTimeout, device, "as asked for");
+    });
+    RotaryBench bench = troubled.Bench();
+    MemoryLog log;
+    Options options;
+    options.log = &log;
+    CarryOut(bench, scenario, log, {}, options);
+    EXPECT_EQ(log.attempts.size(), faults.size());
+    return log.calls;
+  };
+  const std::vector<DeviceCall> undisturbed = calls_with_faults_at({});
+  EXPECT_EQ(calls_with_faults_at({100, 150, 250, 333}), undisturbed);
 }
 
 TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {

@@ -133,9 +133,10 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
     CarryOutOn(bench->Bench(), scenario, *record, options);
     note(bench->Notices());
   } catch (const DeviceFault& fault) {
-    throw BenchError(fmt::format("stopped: {} ({}). The tables were brought to rest; every reading so far is kept. "
-                                 "Go on with --resume",
-                                 fault.what(), FaultName(fault.kind())));
+    const std::string why = fault.kind() == FaultKind::kStopped
+                                ? "stopped by the operator"
+                                : fmt::format("stopped: {} ({})", fault.what(), FaultName(fault.kind()));
+    throw BenchError(why + ". The tables were brought to rest; every reading so far is kept. Go on with --resume");
   }
 }
 

@@ -82,9 +82,12 @@ void JudgeMains(const Scenario& scenario, double mains_Hz, std::vector<std::stri
 }
 
 std::string TravelLine(const char* table, const Rehearsal::Travel& travel, const TableLimits& limits) {
-  return fmt::format("  {:<10}{:>10.3f} to {:>10.3f} deg   soft limits {} to {} deg\n", table,
-                     travel.lowest_rad / units::deg, travel.highest_rad / units::deg, limits.lower_rad / units::deg,
-                     limits.upper_rad / units::deg);
+  const bool limited = std::isfinite(limits.lower_rad) || std::isfinite(limits.upper_rad);
+  return fmt::format("  {:<10}{:>10.3f} to {:>10.3f} deg   {}\n", table, travel.lowest_rad / units::deg,
+                     travel.highest_rad / units::deg,
+                     limited ? fmt::format("soft limits {} to {} deg", limits.lower_rad / units::deg,
+                                           limits.upper_rad / units::deg)
+                             : "no soft limits in the bench file");
 }
 
 std::string HoursMinutes(double duration_s) {
