@@ -66,6 +66,7 @@ TEST(Recovery, TheCallsThatAreKeptAreThoseOfARunWithoutFaults) {
     MemoryLog log;
     Options options;
     options.log = &log;
+    options.attempts = 10;
     CarryOut(bench, scenario, log, {}, options);
     EXPECT_EQ(log.attempts.size(), faults.size());
     return log.calls;
