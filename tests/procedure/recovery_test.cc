@@ -205,6 +205,21 @@ TEST(Recovery, AnImplausibleRoomOrAJumpOfTheSpotStopsTheRun) {
   EXPECT_EQ(fault_of(slipped, options), "implausible of psd_b_x");
 }
 
+TEST(Recovery, AFifoThatIsTooSmallEndsTheRunInsteadOfLosingEveryReading) {
+  Scenario scenario = test::RestlessBench();
+  scenario.adc.fifo_samples = 64;
+  scenario.adc.drain_rate_Hz = 100e3;  // slower than the converter
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  MemoryLog log;
+  Options options;
+  options.log = &log;
+  EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
+  EXPECT_TRUE(log.readings.empty());
+  ASSERT_EQ(log.attempts.size(), 3u);
+  EXPECT_EQ(log.attempts[2].fault, "overrun");
+}
+
 TEST(Recovery, ABlockFromAnotherTimeIsTakenAgain) {
   const Scenario scenario = test::RestlessBench();
   sim::Twin twin(scenario);

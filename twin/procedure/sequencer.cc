@@ -94,6 +94,10 @@ Acquisition Sequencer::Measure(Reading& stop, double dwell_s, bool with_autocoll
   const Time asked = bench().clock.Now();
   Acquisition block = bench().adc.Acquire(scenario_.adc.samples, settings().keep_raw);
   RequireTimely(block, asked, bench().clock.Now());
+  if (block.status == ReadingStatus::kOverrun) {
+    throw DeviceFault(FaultKind::kOverrun, "adc",
+                      fmt::format("its FIFO ran full after {} of {} scans", block.n_samples, scenario_.adc.samples));
+  }
   stop.time = block.start;
   stop.status = block.status;
   stop.n_samples = block.n_samples;
