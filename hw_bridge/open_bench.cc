@@ -48,7 +48,7 @@ void TellOperator(const std::string& notice) {
   fmt::print(stderr, "twinbench: {}\n", notice);
 }
 
-class OpenedBench : public HardwareBench {
+class OpenedBench : public OpenBench {
  public:
   OpenedBench(const BenchFile& file, const Scenario& scenario, Duration elapsed)
       : file_(file), hands_(std::cin, std::cerr) {
@@ -148,7 +148,7 @@ class OpenedBench : public HardwareBench {
 
 }  // namespace
 
-std::unique_ptr<HardwareBench> OpenBench(const BenchFile& file, const Scenario& scenario, Duration elapsed) {
+std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const Scenario& scenario, Duration elapsed) {
   Require(file.kind == "hardware", "only a bench of hardware is opened");
   return std::make_unique<OpenedBench>(file, scenario, elapsed);
 }

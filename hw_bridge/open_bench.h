@@ -9,23 +9,23 @@
 
 namespace twinbench::hw {
 
-/// The devices of a bench file, connected, identified and configured; closed when this goes.
-class HardwareBench {
+/// The devices of a bench, connected, identified and configured; closed when this goes.
+class OpenBench {
  public:
-  virtual ~HardwareBench() = default;
+  virtual ~OpenBench() = default;
   virtual RotaryBench Bench() = 0;
   /// Who answered, with versions and serial numbers; the record keeps it.
   virtual std::string Identity() const = 0;
   /// What the A/D card agreed to, one line a channel; the record keeps it.
-  virtual std::vector<std::string> Configuration() const = 0;
+  virtual std::vector<std::string> Configuration() const { return {}; }
   /// What was noticed during the run without being a fault: drift of the card's clock, mains hum.
-  virtual std::vector<std::string> Notices() const = 0;
+  virtual std::vector<std::string> Notices() const { return {}; }
 };
 
 /// Opens a bench of kind "hardware".
 /// @param scenario  Says which rate, range, resolution and block length the A/D must give.
 /// @param elapsed   Time 0 of the run was so long ago (a resumed run); 0 for a new one.
 /// @throws DeviceFault if a device does not answer, is not the one named or cannot do what is asked.
-std::unique_ptr<HardwareBench> OpenBench(const BenchFile& file, const Scenario& scenario, Duration elapsed = {});
+std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const Scenario& scenario, Duration elapsed = {});
 
 }  // namespace twinbench::hw

@@ -32,14 +32,14 @@ BenchBackend TwinOf(const std::string& fidelity) {
 class LivingHardware : public LivingBench {
  public:
   LivingHardware(const Scenario& scenario, const RunOptions& options) : served_(scenario) {
-    opened_ = hw::OpenBench(BenchFileOf(served_, options), scenario);
+    opened_ = hw::OpenHardware(BenchFileOf(served_, options), scenario);
     opened_->Bench().simulation->Restart();  // its time ran until now
   }
   RotaryBench Bench() override { return opened_->Bench(); }
 
  private:
   ServedTwin served_;
-  std::unique_ptr<hw::HardwareBench> opened_;
+  std::unique_ptr<hw::OpenBench> opened_;
 };
 
 BenchBackend HardwareBy(const std::string& converter, const std::string& tables) {

@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(Tables, OpenedBench, testing::Values("scpi", "esp", "pt
 TEST_P(OpenedBench, TakesTheBlocksThatTheTwinTakesInTheProgramItself) {
   const Scenario scenario = Noisy();
   ServedTwin served(scenario);
-  const auto opened = OpenBench(FileOf(served, GetParam()), scenario);
+  const auto opened = OpenHardware(FileOf(served, GetParam()), scenario);
   const RotaryBench bench = opened->Bench();
   bench.simulation->Restart();
   sim::Twin twin(scenario);
@@ -66,10 +66,10 @@ TEST_P(OpenedBench, TakesTheBlocksThatTheTwinTakesInTheProgramItself) {
 TEST_P(OpenedBench, SaysWhoAnsweredTheSameAtEveryOpening) {
   ServedTwin served(Noisy());
   const BenchFile file = FileOf(served, GetParam());
-  std::string identity = OpenBench(file, Noisy())->Identity();
+  std::string identity = OpenHardware(file, Noisy())->Identity();
   EXPECT_THAT(identity, HasSubstr("served twin: "));
   EXPECT_THAT(identity, HasSubstr("twinbench,rotary-bench,"));
-  EXPECT_EQ(OpenBench(file, Noisy())->Identity(), identity);
+  EXPECT_EQ(OpenHardware(file, Noisy())->Identity(), identity);
 }
 
 TEST_P(OpenedBench, RefusesAnotherDeviceThanTheFileNames) {
@@ -77,14 +77,14 @@ TEST_P(OpenedBench, RefusesAnotherDeviceThanTheFileNames) {
   BenchFile file = FileOf(served, GetParam());
   file.target.identity = file.reference.identity = "somebody else";
   if (std::string(GetParam()) == "scpi") file.thermometer.identity = "somebody else";
-  EXPECT_EQ(KindOf([&] { OpenBench(file, Noisy()); }), FaultKind::kIdentity);
+  EXPECT_EQ(KindOf([&] { OpenHardware(file, Noisy()); }), FaultKind::kIdentity);
 }
 
 TEST_P(OpenedBench, RefusesSoftLimitsThatTheControllerDoesNotAllow) {
   ServedTwin served(Noisy());
   BenchFile file = FileOf(served, GetParam());
   file.target_limits.upper_rad = 1.1e4;  // the served one stops at 1e4
-  EXPECT_EQ(KindOf([&] { OpenBench(file, Noisy()); }), FaultKind::kRefused);
+  EXPECT_EQ(KindOf([&] { OpenHardware(file, Noisy()); }), FaultKind::kRefused);
 }
 
 TEST(OpenBench, WithNobodyThereIsAFaultThatNamesTheDevice) {
@@ -92,7 +92,7 @@ TEST(OpenBench, WithNobodyThereIsAFaultThatNamesTheDevice) {
   BenchFile file;
   file.target = file.reference = {"scpi", port.Address()};
   file.target.timeout_s = 0.1;
-  const auto open = [&] { OpenBench(file, Noisy()); };
+  const auto open = [&] { OpenHardware(file, Noisy()); };
   EXPECT_EQ(KindOf(open), FaultKind::kDropped);
   EXPECT_THAT(test::TextOf(open), HasSubstr("target: cannot be reached"));
 }

@@ -136,6 +136,12 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
   EXPECT_FALSE(Exists("narrow"));
 }
 
+TEST_F(Served, TheKeysOfABenchFileAreExplained) {
+  const std::string text = Succeed({"help", "bench"});
+  for (const char* key : {"[adc]", "[goniometer]", "in_position_arcsec", "timeout_s", "attempts = 3"})
+    EXPECT_THAT(text, HasSubstr(key));
+}
+
 TEST_F(Served, WithoutNoiseItIsRefusedForThereAreNoCounts) {
   const Outcome outcome = Call({"serve", "small.toml", "--set", "noise_free=true"});
   EXPECT_EQ(outcome.exit_code, 2);

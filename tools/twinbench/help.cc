@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include "hw_bridge/bench_file.h"
 #include "tools/twinbench/commands.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/scenario.h"
@@ -32,17 +33,24 @@ void PrintAllEffects() {
   for (const char* bench : {kRotaryBench, kEncoderBench}) PrintEffects(bench);
 }
 
+void PrintBenchKeys() {
+  fmt::print("bench.toml: which devices stand on the table and how they are reached (docs/hardware.md)\n\n");
+  hw::BenchFile defaults;
+  fmt::print("{}", DescribeKeys(hw::KeysOf(defaults)));
+}
+
 void PrintHelp(const std::string& topic) {
   if (topic == "effects") return PrintAllEffects();
+  if (topic == "bench") return PrintBenchKeys();
   fmt::print("{}", DescribeScenarioKeys());
 }
 
 }  // namespace
 
 void AddHelp(CLI::App& app) {
-  auto* command = app.add_subcommand("help", "Explain scenario keys or effects");
+  auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects or bench files");
   auto topic = std::make_shared<std::string>("scenario");
-  command->add_option("topic", *topic, "scenario or effects")->check(CLI::IsMember({"scenario", "effects"}));
+  command->add_option("topic", *topic, "scenario, effects or bench")->check(CLI::IsMember({"scenario", "effects", "bench"}));
   command->callback([topic] { PrintHelp(*topic); });
 }
 

@@ -25,8 +25,13 @@ constexpr const char* kExamples =
     "  twinbench export runs/first --readings readings.csv        hand the readings to somebody else\n"
     "  twinbench separate readings.csv --scenario scenarios/rotary_4dof.toml --json - --estimator published\n"
     "\n"
+    "With a bench, or with the twin shown as one:\n"
+    "  twinbench serve scenarios/rotary_4dof.toml --speed max --write-bench bench.toml\n"
+    "  twinbench measure scenarios/rotary_4dof.toml --bench bench.toml --rehearse -o runs/monday\n"
+    "\n"
     "  twinbench help scenario     every key of a scenario file with unit, default and bounds\n"
     "  twinbench help effects      every error that can be hidden in the bench\n"
+    "  twinbench help bench        every key of a bench file\n"
     "\n"
     "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong.";
 

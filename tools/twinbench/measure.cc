@@ -120,7 +120,7 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
                  procedure::Options options) {
   const bool resumed = begun.record != nullptr;
   const Duration elapsed = resumed ? SinceBegin(begun.record->provenance(), begun.readings) : Duration{};
-  const auto bench = OpenMeasuredBench(file, scenario, elapsed);
+  const auto bench = OpenAnyBench(file, scenario, elapsed);
   if (resumed) TakeUp(begun, bench->Identity(), options);
   const auto record =
       resumed ? std::move(begun.record) : Begin(scenario, folder, file, bench->Identity());

@@ -96,18 +96,23 @@ std::string DescribeEffect(const EffectEntry& entry) {
 std::string DescribeBench(const std::string& bench) {
   Scenario defaults;
   defaults.bench = bench;
-  std::string text = fmt::format("\n# ---- bench {} ----\n", bench), table;
-  for (const ScenarioKey& key : KeysOf(defaults)) {
-    if (key.table != table) text += fmt::format("\n[{}]\n", key.table);
-    table = key.table;
-    text += DescribeKey(key);
-  }
+  std::string text = fmt::format("\n# ---- bench {} ----\n", bench) + DescribeKeys(KeysOf(defaults));
   if (bench == kRotaryBench) text += DescribeFixture();
   for (const EffectEntry& entry : EffectCatalogue(bench)) text += DescribeEffect(entry);
   return text;
 }
 
 }  // namespace
+
+std::string DescribeKeys(const std::vector<ScenarioKey>& keys) {
+  std::string text, table;
+  for (const ScenarioKey& key : keys) {
+    if (key.table != table) text += fmt::format("\n[{}]\n", key.table);
+    table = key.table;
+    text += DescribeKey(key);
+  }
+  return text;
+}
 
 std::string DescribeScenarioKeys() {
   std::string text;

@@ -55,6 +55,9 @@ std::vector<ScenarioKey> KeysOf(Scenario& scenario);
 std::vector<ScenarioKey> KeysOf(FixtureSettings& fixture);
 std::vector<ScenarioKey> KeysOf(EmpiricalSettings& empirical);
 
+/// Keys with their defaults, meanings and bounds, a heading for each table; for people.
+std::string DescribeKeys(const std::vector<ScenarioKey>& keys);
+
 /// Scenarios of these benches can be read.
 std::vector<std::string> SupportedBenches();
 
