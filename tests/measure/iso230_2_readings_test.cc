@@ -1,0 +1,197 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "twin/core/units.h"
+#include "twin/measure/iso230_2.h"
+
+namespace twinbench::measure {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kTurn_rad = 2.0 * units::kPi;
+
+/// One pass through `stops` stops of a turn, the device ahead by position + 10 pass + half the direction [arcsec].
+void AddPass(int stops, int pass, int direction, std::vector<Reading>& readings, int setup = 0) {
+  for (int k = 0; k < stops; ++k) {
+    Reading r;
+    r.reading = static_cast<int>(readings.size());
+    r.setup = setup;
+    r.pass = pass;
+    r.direction = direction;
+    r.position = direction > 0 ? k : stops - 1 - k;
+    r.reference_rad = kTurn_rad * r.position / stops;
+    r.measured_rad = r.reference_rad + (r.position + 10.0 * pass + 0.5 * direction) * units::arcsec;
+    r.velocity_rad_s = 0.0;
+    readings.push_back(r);
+  }
+}
+
+std::vector<Reading> Stops() {
+  std::vector<Reading> readings;
+  for (int pass = 0; pass < 4; ++pass) AddPass(8, pass, pass % 2 == 0 ? 1 : -1, readings);
+  return readings;
+}
+
+void ExpectRuns(const std::vector<double>& runs_rad, const std::vector<double>& expected_arcsec) {
+  ASSERT_EQ(runs_rad.size(), expected_arcsec.size());
+  for (std::size_t i = 0; i < runs_rad.size(); ++i)  // a turn in rad rounds at 1e-15, 2e-10 arcsec
+    EXPECT_NEAR(runs_rad[i] / units::arcsec, expected_arcsec[i], 1e-9);
+}
+
+TEST(PositioningOf, TakesARunFromEachPassAtEachStop) {
+  const PositioningStops stops = PositioningOf(Stops(), 0);
+  ASSERT_EQ(stops.targets.size(), 8u);
+  EXPECT_EQ(stops.left_out, 0);
+  EXPECT_THAT(stops.notes, IsEmpty());
+  EXPECT_DOUBLE_EQ(stops.targets[3].position, 3.0 * kTurn_rad / 8.0);
+  ExpectRuns(stops.targets[3].forward, {3.5, 23.5});
+  ExpectRuns(stops.targets[3].backward, {12.5, 32.5});
+}
+
+TEST(PositioningOf, PutsTheTargetWhereTheReferenceStoodInTheMean) {
+  std::vector<Reading> readings = Stops();
+  for (Reading& r : readings) r.reference_rad += r.pass * units::arcsec;  // 0, 1, 2, 3
+  const PositioningStops stops = PositioningOf(readings, 0);
+  EXPECT_NEAR(stops.targets[2].position, kTurn_rad / 4.0 + 1.5 * units::arcsec, 1e-15);  // rounding
+  EXPECT_THAT(stops.notes, IsEmpty());
+}
+
+TEST(PositioningOf, OrdersTargetsByAngle) {
+  std::vector<Reading> readings = Stops();
+  for (Reading& r : readings) r.position = 7 - r.position;
+  const PositioningStops stops = PositioningOf(readings, 0);
+  EXPECT_DOUBLE_EQ(stops.targets[1].position, kTurn_rad / 8.0);
+  ExpectRuns(stops.targets[1].forward, {1.5, 21.5});
+}
+
+TEST(PositioningOf, FindsTheTargetsIfPositionIsARunningNumber) {
+  std::vector<Reading> readings = Stops();
+  for (Reading& r : readings) r.position = r.reading;
+  const PositioningStops stops = PositioningOf(readings, 0);
+  ASSERT_EQ(stops.targets.size(), 8u);
+  EXPECT_THAT(stops.notes, IsEmpty());
+  ExpectRuns(stops.targets[3].forward, {3.5, 23.5});
+  ExpectRuns(stops.targets[3].backward, {12.5, 32.5});
+}
+
+TEST(PositioningOf, DoesNotMindADeviceThatLosesItsTurns) {
+  std::vector<Reading> readings = Stops();
+  for (Reading& r : readings) r.measured_rad = std::fmod(r.measured_rad + 0.25 * kTurn_rad, kTurn_rad);
+  const PositioningStops stops = PositioningOf(readings, 0);
+  const double quarter_arcsec = 0.25 * kTurn_rad / units::arcsec;
+  for (int i : {0, 7})
+    ExpectRuns(stops.targets[static_cast<std::size_t>(i)].forward,
+               {quarter_arcsec + i + 0.5, quarter_arcsec + i + 20.5});
+}
+
+TEST(PositioningOf, DoesNotMindAReferenceThatBeginsAgainAtATurn) {
+  std::vector<Reading> readings = Stops();
+  readings.back().reference_rad += kTurn_rad;  // position 0, last pass: 360 deg instead of 0
+  const PositioningStops stops = PositioningOf(readings, 0);
+  EXPECT_THAT(stops.notes, IsEmpty());
+  EXPECT_NEAR(stops.targets[0].position, 0.0, 1e-15);
+  ExpectRuns(stops.targets[0].backward, {9.5, 29.5});
+}
+
+TEST(PositioningOf, LeavesOutWhatIsNoStopAndCountsIt) {
+  std::vector<Reading> readings = Stops();
+  readings[1].status = ReadingStatus::kMissing;
+  readings[2].velocity_rad_s = -0.1;
+  readings[3].direction = 0;
+  readings[4].velocity_rad_s = kNaN;  // not known: taken
+  const PositioningStops stops = PositioningOf(readings, 0);
+  EXPECT_EQ(stops.left_out, 3);
+  for (std::size_t i : {1u, 2u, 3u}) EXPECT_EQ(stops.targets[i].forward.size(), 1u);
+  EXPECT_EQ(stops.targets[4].forward.size(), 2u);
+}
+
+TEST(PositioningOf, KeepsToOneSetUp) {
+  std::vector<Reading> readings = Stops();
+  AddPass(8, 7, 1, readings, 1);
+  readings.back().status = ReadingStatus::kMissing;
+  EXPECT_EQ(PositioningOf(readings, 0).targets[0].forward.size(), 2u);
+  const PositioningStops second = PositioningOf(readings, 1);
+  EXPECT_EQ(second.targets.size(), 7u);
+  EXPECT_EQ(second.left_out, 1);
+  ExpectRuns(second.targets[0].forward, {70.5});
+  EXPECT_THAT(PositioningOf(readings, 2).targets, IsEmpty());
+}
+
+TEST(PositioningOf, TakesTheMeanOfSeveralReadingsInOnePass) {
+  std::vector<Reading> readings = Stops();
+  readings.push_back(readings[16]);  // pass 2, position 0
+  readings.back().measured_rad += 4.0 * units::arcsec;
+  ExpectRuns(PositioningOf(readings, 0).targets[0].forward, {0.5, 22.5});
+}
+
+TEST(PositioningOf, NotesReadingsThatAreNotAtOneTarget) {
+  std::vector<Reading> readings = Stops();
+  readings[2].reference_rad += 0.6 * kTurn_rad / 8.0;
+  readings[2].measured_rad += 0.6 * kTurn_rad / 8.0;
+  EXPECT_THAT(PositioningOf(readings, 0).notes,
+              ElementsAre("readings of position 2 lie up to 27 deg apart: not stops at one target"));
+}
+
+TEST(PositioningOf, FeedsTheEvaluation) {
+  // Forward runs of a target lie 20 arcsec apart, s = sqrt(200); backward ones too and 9 further on, B_i = -9.
+  const auto p = EvaluatePositioning(PositioningOf(Stops(), 0).targets, {.replicas = 0});
+  EXPECT_NEAR(p[AxisValue::kB].value / units::arcsec, 9.0, 1e-9);
+  EXPECT_NEAR(p[AxisValue::kEForward].value / units::arcsec, 7.0, 1e-9);
+  EXPECT_NEAR(p[AxisValue::kR].value / units::arcsec, 4.0 * std::sqrt(200.0) + 9.0, 1e-9);
+}
+
+std::vector<PositioningTarget> TestOf(int targets, int forward, int backward) {
+  const PositioningTarget target{0.0, std::vector<double>(static_cast<std::size_t>(forward)),
+                                 std::vector<double>(static_cast<std::size_t>(backward))};
+  return std::vector<PositioningTarget>(static_cast<std::size_t>(targets), target);
+}
+
+TEST(MissingForRotaryAxis, WantsMoreTargetsForMoreTravel) {
+  for (const auto& [travel_deg, targets] :
+       {std::pair{30.0, 3}, {90.0, 3}, {90.0 + 1e-13, 3}, {90.1, 5}, {180.0, 5}, {180.1, 8}, {360.0, 8}}) {
+    EXPECT_THAT(MissingForRotaryAxis(TestOf(targets, 5, 5), travel_deg * units::deg), IsEmpty());
+    EXPECT_THAT(MissingForRotaryAxis(TestOf(targets - 1, 5, 5), travel_deg * units::deg),
+                ElementsAre(HasSubstr(" targets for ")));
+  }
+  EXPECT_THAT(MissingForRotaryAxis(TestOf(7, 5, 5), kTurn_rad),
+              ElementsAre("7 targets for 360 deg of travel; ISO 230-2 wants 8"));
+}
+
+TEST(MissingForRotaryAxis, WantsFiveRunsFromBothSides) {
+  auto test = TestOf(8, 5, 6);
+  EXPECT_THAT(MissingForRotaryAxis(test, kTurn_rad), IsEmpty());
+  test[2].position = 0.5 * units::kPi;
+  test[2].forward.pop_back();
+  for (PositioningTarget& target : test) target.backward.clear();
+  EXPECT_THAT(MissingForRotaryAxis(test, kTurn_rad),
+              ElementsAre("4 forward runs to the target at 90 deg; ISO 230-2 wants 5",
+                          "0 backward runs to the target at 0 deg; ISO 230-2 wants 5"));
+}
+
+TEST(PositioningText, PrintsArcsecAndADashForWhatIsNotThere) {
+  const double s = 1.0 / std::sqrt(2.0);
+  std::vector<PositioningTarget> test = {{0.0, {10 - s, 10 + s}, {4 - 2 * s, 4 + 2 * s}},
+                                         {0.5 * units::kPi, {-5 - 3 * s, -5 + 3 * s}, {1.0}}};
+  for (PositioningTarget& target : test) {
+    for (double& x : target.forward) x *= units::arcsec;
+    for (double& x : target.backward) x *= units::arcsec;
+  }
+  const std::string text = PositioningText(EvaluatePositioning(test, {.replicas = 0}));
+  EXPECT_THAT(text,
+              HasSubstr("target_deg   n+   n-    mean+    mean-     mean       s+       s-      B_i     R_i+     "
+                        "R_i-      R_i\n"
+                        "    0.0000    2    2   10.000    4.000    7.000    1.000    2.000    6.000    4.000    "
+                        "8.000   12.000\n"
+                        "   90.0000    2    1   -5.000    1.000   -2.000    3.000        -   -6.000   12.000    "
+                        "    -        -\n"));
+  EXPECT_THAT(text, HasSubstr("B           6.000        -        -\n"));
+  EXPECT_THAT(text, HasSubstr("A               -        -        -\n"));
+}
+
+}  // namespace
+}  // namespace twinbench::measure
