@@ -1,0 +1,243 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/separate/hob_bench.h"
+#include "twin/core/errors.h"
+#include "twin/separate/hob/transmission_error.h"
+
+namespace twinbench::separate::hob {
+namespace {
+
+using testing::ElementsAre;
+
+/// Angles are taken at the encoder's reading, off by psi: order 44 of 1 arcsec moves by 44 x 1 x 1e-5 at 2 arcsec.
+constexpr double kSecondOrder_arcsec = 2e-3;
+
+HobMachine Machine() {
+  return {.transmission = {{1, 10.0, 0.5}, {2, 1.0, 1.0}, {22, 2.0, -1.0}, {44, 1.0, 2.0}},
+          .encoder = {{1, 1.5, 2.72}, {3, 0.5, 0.2}}};
+}
+
+/// Equation 1 in orders: e_T + psi exp(-j k head).
+Complex Expected(const HobMachine& machine, int order, double head_deg) {
+  return CoefficientOf(machine.transmission, order) +
+         CoefficientOf(machine.encoder, order) * std::polar(1.0, -order * head_deg * units::deg);
+}
+
+void ExpectOrders(const PositionError& position, const HobMachine& machine, double head_deg,
+                  double tolerance_arcsec) {
+  ASSERT_EQ(position.status, PositionStatus::kOk);
+  for (int k = 1; k <= position.series.Highest(); ++k) {
+    EXPECT_LT(DistanceArcsec(position.series.At(k).value, Expected(machine, k, head_deg)), tolerance_arcsec)
+        << "order " << k << " set-up " << position.setup << " direction " << position.direction;
+  }
+}
+
+TEST(MeasurePositions, FindsTheOrdersOfEachSetUpAndDirection) {
+  const std::vector<Mounting> setups = {
+      {0, 20.0, 1, 0, 3}, {0, 20.0, -1, 1, 3}, {1, 200.0, 1, 0, 3}, {1, 200.0, -1, 1, 3}};
+  const auto positions = MeasurePositions(Samples(Machine(), setups), OrdersUpTo(60));
+  ASSERT_EQ(positions.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(positions[i].setup, setups[i].setup);
+    EXPECT_EQ(positions[i].direction, setups[i].direction);
+    EXPECT_EQ(positions[i].turns, 3);
+    ExpectOrders(positions[i], Machine(), setups[i].head_deg, kSecondOrder_arcsec);
+  }
+}
+
+TEST(MeasurePositions, IsNotBiasedByMissingSamplesJitterOrSpeed) {
+  HobMachine machine = Machine();
+  machine.samples_per_turn = 400;
+  machine.encoder.clear();  // so that nothing but the sampling is left
+  for (const auto& [missing, jitter, speed] :
+       std::vector<std::array<double, 3>>{{0.1, 0, 0}, {0, 0.4, 0}, {0, 0, 0.1}, {0.1, 0.3, 0.1}}) {
+    machine.missing = missing;
+    machine.jitter = jitter;
+    machine.speed_change = speed;
+    const auto positions = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(60));
+    ExpectOrders(positions.at(0), machine, 0.0, 1e-6);  // rounding of the hob's 600 rad: 1e-13 rad = 2e-8 arcsec
+    EXPECT_EQ(positions.at(0).turns, 4);
+  }
+}
+
+TEST(MeasurePositions, SkipsSamplesWithoutAngle) {
+  std::vector<HobSample> samples = Samples(Machine(), Heads({0.0}));
+  for (std::size_t i = 5; i < samples.size(); i += 11)
+    (i % 2 ? samples[i].hob_encoder_rad : samples[i].table_encoder_rad) = kNaN;
+  const auto positions = MeasurePositions(samples, OrdersUpTo(60));
+  ExpectOrders(positions.at(0), Machine(), 0.0, kSecondOrder_arcsec);
+  EXPECT_EQ(positions.at(0).samples, 4 * 1440 - 524);  // 5 + 11 i < 5760
+}
+
+TEST(MeasurePositions, LeavesOutTurnsWithAWideGap) {
+  std::vector<HobSample> samples = Samples(Machine(), Heads({0.0}));
+  samples.erase(samples.begin() + 1440 + 300, samples.begin() + 1440 + 400);  // 25 deg of the second turn
+  const auto positions = MeasurePositions(samples, OrdersUpTo(60));
+  EXPECT_EQ(positions.at(0).turns, 3);
+  EXPECT_EQ(positions.at(0).turns_left_out, 1);
+  ExpectOrders(positions.at(0), Machine(), 0.0, kSecondOrder_arcsec);
+}
+
+TEST(MeasurePositions, LeavesOutTheTurnThatWasNotFinished) {
+  const auto positions = MeasurePositions(Samples(Machine(), Heads({0.0}, 2.6)), OrdersUpTo(60));
+  EXPECT_EQ(positions.at(0).turns, 2);
+  EXPECT_EQ(positions.at(0).turns_left_out, 1);
+  const auto none = MeasurePositions(Samples(Machine(), Heads({0.0}, 0.6)), OrdersUpTo(60));
+  EXPECT_EQ(none.at(0).status, PositionStatus::kNoTurn);
+}
+
+TEST(MeasurePositions, StatesTheScatterOfTheMeanOfItsTurns) {
+  HobMachine machine = Machine();
+  machine.encoder.clear();
+  machine.noise_arcsec = 0.5;
+  machine.samples_per_turn = 720;
+  constexpr int kRuns = 60, kOrders = 60;
+  const double u_arcsec = 0.5 * std::sqrt(2.0 / (4 * 720));  // white noise, 4 turns
+  double sum_pull2 = 0.0, sum_variance = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto positions = MeasurePositions(Samples(machine, Heads({0.0}), 100 + run), OrdersUpTo(kOrders));
+    EXPECT_EQ(positions.at(0).scatter, ScatterSource::kBetweenTurns);
+    EXPECT_NEAR(positions.at(0).residual_rms_rad / kArcsec, 0.5, 0.05);  // of 2400 samples: 1.4 %, seven times that
+    for (int k = 1; k <= kOrders; ++k) {
+      sum_pull2 += Pull2(positions.at(0).series.At(k), CoefficientOf(machine.transmission, k));
+      sum_variance += 0.5 * positions.at(0).series.At(k).cov.trace();
+    }
+  }
+  // Mean variance: 3600 coefficients with 54 degrees of freedom each, neighbours pooled: 1 %. The drift adds to low
+  // orders.
+  EXPECT_NEAR(std::sqrt(sum_variance / (kRuns * kOrders)) / (u_arcsec * kArcsec), 1.0, 0.03);
+  // F(2, 54): mean of the pull 2 x 54 / 52 = 2.08, standard deviation of the mean of 3600 about 2.1 / 60 = 0.035.
+  EXPECT_NEAR(sum_pull2 / (kRuns * kOrders), 2.08, 0.12);
+}
+
+TEST(MeasurePositions, TakesTheScatterWithinASingleTurn) {
+  HobMachine machine = Machine();
+  machine.noise_arcsec = 0.5;
+  const auto positions = MeasurePositions(Samples(machine, Heads({0.0}, 1.0)), OrdersUpTo(60));
+  EXPECT_EQ(positions.at(0).scatter, ScatterSource::kWithinTurn);
+  const double u_arcsec = 0.5 * std::sqrt(2.0 / 1440);
+  // 1319 degrees of freedom: 2 %, four times that.
+  EXPECT_NEAR(LargestUncertainty(positions.at(0).series.At(22)) / (u_arcsec * kArcsec), 1.0, 0.08);
+}
+
+TEST(MeasurePositions, TakesASteadyDriftOut) {
+  HobMachine machine = Machine();
+  machine.encoder.clear();
+  machine.drift_arcsec_per_turn = 3.0;
+  for (const int direction : {1, -1}) {
+    const auto three = MeasurePositions(Samples(machine, {{0, 0.0, direction, 0, 3.0}}), OrdersUpTo(60));
+    EXPECT_NEAR(three.at(0).drift_rad_per_turn / kArcsec, 3.0, 1e-6);  // rounding
+    ExpectOrders(three.at(0), machine, 0.0, 1e-6);
+    // Two turns do not tell a drift; it stays with the amplitude drift / (pi k).
+    const auto two = MeasurePositions(Samples(machine, {{0, 0.0, direction, 0, 2.0}}), OrdersUpTo(60));
+    EXPECT_TRUE(std::isnan(two.at(0).drift_rad_per_turn));
+    const double left_arcsec = DistanceArcsec(two.at(0).series.At(1).value, CoefficientOf(machine.transmission, 1));
+    EXPECT_NEAR(left_arcsec, 3.0 / units::kPi, 0.01);  // orders above 60, sampled: 1 / 1440
+  }
+}
+
+/// Moves the hob's reading of each turn by a constant of its own: what a drift cannot be told from.
+void ShiftTurns(std::vector<HobSample>& samples, int per_turn, double sd_arcsec, Stream& stream) {
+  double shift_rad = 0.0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (i % static_cast<std::size_t>(per_turn) == 0) shift_rad = sd_arcsec * kArcsec * stream.Normal();
+    samples[i].hob_encoder_rad -= shift_rad / kTestRatio;
+  }
+}
+
+TEST(MeasurePositions, CountsTheUncertaintyOfTheDrift) {
+  const HobMachine machine{.transmission = {{1, 10.0, 0.5}}, .noise_arcsec = 0.05, .samples_per_turn = 200};
+  constexpr int kRuns = 400;
+  Stream stream(9, "shifts");
+  double sum2 = 0.0, stated = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    std::vector<HobSample> samples = Samples(machine, Heads({0.0}), 500 + run);
+    ShiftTurns(samples, 200, 1.0, stream);
+    const auto positions = MeasurePositions(samples, OrdersUpTo(10));
+    sum2 += std::norm(positions.at(0).series.At(1).value - CoefficientOf(machine.transmission, 1));
+    stated += positions.at(0).series.At(1).cov.trace();
+  }
+  // The slope over four turns has the uncertainty 1 / sqrt(5) arcsec a turn, 1 / pi of it in order 1.
+  EXPECT_NEAR(std::sqrt(sum2 / kRuns) / kArcsec, 1.0 / (std::sqrt(5.0) * units::kPi), 0.02);
+  // 400 squares over 400 estimates with two degrees of freedom: 7 and 5 %, three times that.
+  EXPECT_NEAR(sum2 / stated, 1.0, 0.26);
+}
+
+TEST(MeasurePositions, CountsFromTheReferenceMarkIfTold) {
+  HobMachine machine = Machine();
+  std::vector<HobSample> samples = Samples(machine, Heads({37.0}));
+  for (HobSample& s : samples) s.table_encoder_rad -= 37.0 * units::deg;  // zero where the mark passes the head
+  TransmissionOptions options = OrdersUpTo(60);
+  options.zero = EncoderZero::kReferenceMark;
+  ExpectOrders(MeasurePositions(samples, options).at(0), machine, 37.0, kSecondOrder_arcsec);
+}
+
+TEST(MeasurePositions, ResamplesTheMeanAtRegularAngles) {
+  HobMachine machine = Machine();
+  machine.encoder.clear();
+  machine.missing = 0.1;
+  const auto positions = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(60));
+  const Eigen::VectorXd mean_rad = Resample(positions.at(0).series, 360);
+  for (int i = 0; i < 360; ++i)
+    EXPECT_NEAR(mean_rad[i] / kArcsec, ValueOf(machine.transmission, i * units::deg) / kArcsec, 1e-5);  // rounding
+}
+
+TEST(ResampledUncertainty, IsTheRootOfTheOrdersVariances) {
+  HobMachine machine = Machine();
+  machine.noise_arcsec = 0.5;
+  const auto positions = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(60));
+  const Eigen::VectorXd u_rad = ResampledUncertainty(positions.at(0).series, 36);
+  // 60 orders of variance 2 sigma^2 / (4 x 1440) each, whatever the angle; scatter known to some per cent.
+  EXPECT_NEAR(u_rad.mean() / kArcsec, 0.5 * std::sqrt(60 * 2.0 / (4 * 1440)), 0.01);
+}
+
+TEST(FindLines, ListsTheLinesOfTheTransmissionAndNoOthers) {
+  HobMachine machine = Machine();
+  machine.noise_arcsec = 0.5;  // u = 0.009 arcsec an order
+  const auto positions = MeasurePositions(Samples(machine, Heads({20.0})), OrdersUpTo(60));
+  EXPECT_THAT(FindLines(positions.at(0).series), ElementsAre(1, 2, 3, 22, 44));
+}
+
+TEST(FindLines, RaisesFalseAlarmsAsOftenAsAsked) {
+  HobMachine machine{.noise_arcsec = 0.5, .samples_per_turn = 300};
+  int alarms = 0;
+  for (int run = 0; run < 200; ++run) {
+    const auto positions = MeasurePositions(Samples(machine, Heads({0.0}), 900 + run), OrdersUpTo(40));
+    alarms += static_cast<int>(FindLines(positions.at(0).series, 0.2).size());
+  }
+  EXPECT_NEAR(alarms, 40, 25);  // 0.2 x 200, standard deviation 6; orders at the ends have fewer neighbours
+}
+
+std::string Refusal(const std::vector<HobSample>& samples, const TransmissionOptions& options = {}) {
+  try {
+    MeasurePositions(samples, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MeasurePositions, RefusesAnglesThatWrapAndWrongRatios) {
+  std::vector<HobSample> samples = Samples(Machine(), Heads({0.0}));
+  TransmissionOptions wrong;
+  wrong.table_turns_per_hob_turn = 2.0 / 43.0;
+  EXPECT_THAT(Refusal(samples, wrong), testing::HasSubstr("the ratio that was geared"));
+  for (HobSample& s : samples) s.table_encoder_rad = std::fmod(s.table_encoder_rad, kTestTurn_rad);
+  EXPECT_THAT(Refusal(samples), testing::HasSubstr("unwrapped angles"));
+}
+
+TEST(MeasurePositions, RefusesAHeadThatMovesOrIsMissingAndADirectionThatIsNone) {
+  std::vector<HobSample> samples = Samples(Machine(), {{0, 10.0, 1, 0, 1}, {0, 11.0, -1, 1, 1}});
+  EXPECT_THAT(Refusal(samples), testing::HasSubstr("set-up 0: the head angle changes between passes"));
+  samples = Samples(Machine(), Heads({10.0}, 1.0));
+  samples[7].head_rad += 1e-3;
+  EXPECT_THAT(Refusal(samples), testing::HasSubstr("the head angle changes; expected one"));
+  samples[7].head_rad = kNaN;
+  EXPECT_THAT(Refusal(samples), testing::HasSubstr("the head angle is missing"));
+  samples = Samples(Machine(), {{0, 10.0, 0, 0, 1}});
+  EXPECT_THAT(Refusal(samples), testing::HasSubstr("direction is 0; expected +1 or -1"));
+}
+
+}  // namespace
+}  // namespace twinbench::separate::hob

@@ -1,0 +1,342 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <complex>
+#include <utility>
+
+#include "tests/separate/turntable_run.h"
+#include "twin/core/errors.h"
+#include "twin/separate/turntable/indexing.h"
+#include "twin/separate/turntable/lost_harmonics.h"
+
+namespace twinbench::separate::turntable {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using Complex = std::complex<double>;
+
+/// Seats at these shifts [steps of 360 deg / n], tilts of 60, 80, 100 ... arcsec in several directions.
+std::vector<Seat> Seats(int n, const std::vector<int>& shifts) {
+  std::vector<Seat> seats;
+  for (const int shift : shifts) {
+    const auto k = static_cast<double>(seats.size());
+    seats.push_back({shift * 360.0 / n, (60.0 + 20.0 * k) * arcsec, 0.4 + 1.7 * k});
+  }
+  return seats;
+}
+
+IndexingOptions Options(double u_rad, double gamma_rad = 0.0) {
+  IndexingOptions options;
+  options.noise = Stated(u_rad);
+  options.roll = Roll{RollStatus::kGiven, gamma_rad, 0.0};
+  return options;
+}
+
+Eigen::VectorXd WithoutMean(const Eigen::VectorXd& values) {
+  return values.array() - values.mean();
+}
+
+Eigen::VectorXd TrueTurntable(const TrueBench& bench, int n) {
+  Eigen::VectorXd truth(n);
+  for (int i = 0; i < n; ++i) truth[i] = bench.turntable.At(i * 360.0 / n * deg);
+  return WithoutMean(truth);
+}
+
+Eigen::VectorXd TrueTeeth(const TrueBench& bench, const AngleSeries& series) {
+  Eigen::VectorXd truth(std::ssize(series.position_rad));
+  for (Eigen::Index i = 0; i < truth.size(); ++i)
+    truth[i] = bench.Tooth(series.position_rad[static_cast<std::size_t>(i)] / deg);
+  return WithoutMean(truth);
+}
+
+TEST(SeparateIndexing, FindsBothTablesExactlyWithoutNoise) {
+  for (const int n : {36, 72}) {
+    Stream stream(1, "test.turntable");
+    const TrueBench bench = PublishedBench(0.0, stream);
+    IndexingOptions options;
+    options.noise = Stated(0.0);
+    const auto found = SeparateIndexing(ReadCircles(bench, Seats(n, {0, 1, 7, 11}), n, stream), options);
+    EXPECT_EQ(found.status, IndexingStatus::kSeparated);
+    EXPECT_TRUE(found.lost_harmonics.empty());
+    EXPECT_NEAR(found.roll.gamma_rad, 0.6 * deg, 1e-12);  // rounding, here and below
+    EXPECT_LT((found.turntable.value_rad - TrueTurntable(bench, n)).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_LT((found.multitooth.value_rad - TrueTeeth(bench, found.multitooth)).cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
+double Gain(int n, const std::vector<int>& shifts) {
+  Stream stream(2, "test.turntable");
+  const auto stops = ReadCircles({}, Seats(n, shifts), n, stream);
+  const auto found = SeparateIndexing(stops, Options(1e-6));
+  EXPECT_NEAR(found.multitooth.cov_rad2.trace() / found.turntable.cov_rad2.trace(), 1.0, 1e-9);
+  return std::sqrt(found.turntable.cov_rad2.trace() / n) / 1e-6;
+}
+
+TEST(SeparateIndexing, HasTheNoiseGainsOfTheShiftTables) {
+  EXPECT_NEAR(Gain(36, {0, 1}), std::sqrt((36.0 * 36 - 1) / (6 * 36)), 1e-9);  // closed form
+  EXPECT_NEAR(Gain(72, {0, 1}), std::sqrt((72.0 * 72 - 1) / (6 * 72)), 1e-9);
+  EXPECT_NEAR(Gain(36, {0, 1, 6}), 0.781, 6e-4);  // three printed digits, here and below
+  EXPECT_NEAR(Gain(36, {0, 1, 7, 11}), 0.579, 6e-4);
+  EXPECT_NEAR(Gain(36, {0, 1, 9, 11, 15}), 0.491, 6e-4);
+  EXPECT_NEAR(Gain(36, {0, 1, 4, 10, 15, 17}), 0.436, 6e-4);
+  EXPECT_NEAR(Gain(72, {0, 1, 9}), 0.840, 6e-4);
+  EXPECT_NEAR(Gain(72, {0, 3, 5, 19}), 0.599, 6e-4);
+  EXPECT_NEAR(Gain(72, {0, 1, 12, 17, 26}), 0.503, 6e-4);
+  EXPECT_NEAR(Gain(72, {0, 1, 4, 12, 25, 31}), 0.445, 6e-4);
+}
+
+/// Formula (V) of docs/theory.md 2, for readings of variance 1.
+double ClosedForm(int n, const std::vector<int>& shifts, int k) {
+  Complex a = 0.0;
+  for (const int s : shifts) a += std::polar(1.0, 2 * units::kPi * k * s / n);
+  const auto p = static_cast<double>(shifts.size());
+  return p / (p * p - std::norm(a)) / n;
+}
+
+TEST(SeparateIndexing, PropagatesTheNoiseOfEveryHarmonicAsTheClosedFormSays) {
+  const std::vector<int> shifts = {0, 1, 7, 11};
+  Stream stream(3, "test.turntable");
+  const auto found = SeparateIndexing(ReadCircles({}, Seats(36, shifts), 36, stream), Options(1e-6));
+  for (int k = 1; k < 36; ++k) {
+    Eigen::VectorXcd f(36);
+    for (int i = 0; i < 36; ++i) f[i] = std::polar(1.0 / 36, 2 * units::kPi * k * i / 36);
+    const double variance = (f.adjoint() * found.turntable.cov_rad2.cast<Complex>() * f)(0, 0).real() / 1e-12;
+    EXPECT_NEAR(variance / ClosedForm(36, shifts, k), 1.0, 1e-9) << k;  // rounding
+  }
+}
+
+TEST(LostHarmonics, AreTheMultiplesThatAllShiftsShare) {
+  EXPECT_THAT(LostHarmonics(12, CommonSteps(12, {0, 6})), ElementsAre(2, 4, 6));
+  EXPECT_THAT(LostHarmonics(12, CommonSteps(12, {0, 4, 8})), ElementsAre(3, 6));
+  EXPECT_THAT(LostHarmonics(12, CommonSteps(12, {1, 5, 7})), ElementsAre(6));
+  EXPECT_THAT(LostHarmonics(12, CommonSteps(12, {3})), ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_TRUE(LostHarmonics(72, CommonSteps(72, {0, 3, 5, 19})).empty());
+  std::vector<int> even;
+  for (int k = 2; k <= 36; k += 2) even.push_back(k);
+  EXPECT_EQ(LostHarmonics(72, CommonSteps(72, {0, 36})), even);
+}
+
+/// Amplitude of order k in a series of n values.
+double Amplitude(const Eigen::VectorXd& values, int k) {
+  Complex sum = 0.0;
+  const auto n = static_cast<double>(values.size());
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    sum += values[i] * std::polar(1.0, -2 * units::kPi * k * static_cast<double>(i) / n);
+  return std::abs(sum) * (2 * k == values.size() ? 1.0 : 2.0) / n;
+}
+
+TEST(SeparateIndexing, CountsExactlyTheLostHarmonicsOfTheTeethAsTheTurntables) {
+  for (const auto& shifts : std::vector<std::vector<int>>{{0, 18}, {0, 12, 24}, {0, 4, 10}, {2, 11}}) {
+    for (int k = 1; k <= 18; ++k) {
+      TrueBench bench;
+      for (int j = 0; j < 360; ++j) bench.tooth_rad[static_cast<std::size_t>(j)] = 1e-6 * std::cos(k * j * deg);
+      Stream stream(4, "test.turntable");
+      const auto found = SeparateIndexing(ReadCircles(bench, Seats(36, shifts), 36, stream), Options(1e-6));
+      EXPECT_EQ(found.status, IndexingStatus::kHarmonicsLost);
+      const bool lost = testing::Value(found.lost_harmonics, testing::Contains(k));
+      EXPECT_NEAR(Amplitude(found.turntable.value_rad, k), lost ? 1e-6 : 0.0, 1e-15) << k;
+      EXPECT_NEAR(Amplitude(found.multitooth.value_rad, k), lost ? 0.0 : 1e-6, 1e-15) << k;
+    }
+  }
+}
+
+TEST(SeparateIndexing, ReturnsTheSumForOneShiftAndSaysSo) {
+  Stream stream(5, "test.turntable");
+  const TrueBench bench = PublishedBench(0.0, stream);
+  IndexingOptions options;
+  options.noise = Stated(0.2 * arcsec);
+  const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream), options);
+  EXPECT_EQ(found.status, IndexingStatus::kSumOnly);
+  EXPECT_EQ(found.lost_harmonics.size(), 36u);
+  EXPECT_TRUE(found.multitooth.position_rad.empty());
+  ASSERT_EQ(found.notes.size(), 1u);
+  EXPECT_THAT(found.notes[0], HasSubstr("do not separate"));
+  Eigen::VectorXd sum(72);
+  for (int i = 0; i < 72; ++i) sum[i] = bench.Index(5.0 * i, 0.0);
+  // The noise stated is not there: 8e-6 of the roll is taken off, 3e-5 * 0.0105 of 100 arcsec.
+  EXPECT_LT((found.turntable.value_rad - WithoutMean(sum)).cwiseAbs().maxCoeff(), 1e-4 * arcsec);
+}
+
+TEST(SeparateIndexing, AddsTheTeethToTheUncertaintyOfASum) {
+  Stream stream(6, "test.turntable");
+  IndexingOptions options = Options(0.2 * arcsec);
+  options.u_multitooth_rad = 0.3 * arcsec;
+  const auto one = SeparateIndexing(ReadCircles({}, Seats(72, {0}), 72, stream), options);
+  // Both are independent from position to position, their mean is taken away.
+  EXPECT_NEAR(one.turntable.U_rad(5) / arcsec, std::sqrt((0.04 + 0.09) * 71 / 72), 1e-9);
+  const auto none = SeparateIndexing(ReadCircles({}, Seats(72, {0, 1, 9}), 72, stream), options);
+  EXPECT_NEAR(none.turntable.U_rad(5) / arcsec, 0.2 * 0.840, 2e-4);  // separated: no part of the teeth's
+  const auto half = SeparateIndexing(ReadCircles({}, Seats(72, {0, 36}), 72, stream), options);
+  Eigen::VectorXcd f(72);
+  for (int i = 0; i < 72; ++i) f[i] = std::polar(1.0 / 72, 2 * units::kPi * 2 * i / 72);
+  const double order_2 = (f.adjoint() * half.turntable.cov_rad2.cast<Complex>() * f)(0, 0).real();
+  EXPECT_NEAR(order_2 / (arcsec * arcsec), (0.04 / 2 + 0.09) / 72, 1e-9);  // mean of two readings, and the teeth
+}
+
+TEST(SeparateIndexing, AveragesOverTeethBetweenTheSteps) {
+  Stream stream(7, "test.turntable");
+  TrueBench bench = PublishedBench(0.0, stream);
+  bench.gamma_rad = 0.0;
+  IndexingOptions options = Options(0.0);
+  options.u_multitooth_rad = 0.3 * arcsec;
+  const std::vector<Seat> rows = {{0, 0, 0}, {6, 0, 0}, {12, 0, 0}};  // degrees on a grid of 5
+  const auto found = SeparateIndexing(ReadCircles(bench, rows, 72, stream), options);
+  EXPECT_EQ(found.status, IndexingStatus::kSumOnly);
+  Eigen::VectorXd mean(72);
+  for (int i = 0; i < 72; ++i)
+    mean[i] = (bench.Index(5.0 * i, 0) + bench.Index(5.0 * i, 6) + bench.Index(5.0 * i, 12)) / 3.0;
+  EXPECT_LT((found.turntable.value_rad - WithoutMean(mean)).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_NEAR(found.turntable.U_rad(0) / arcsec, 0.3 / std::sqrt(3.0) * std::sqrt(71.0 / 72), 1e-9);
+}
+
+/// chi2 of a series against its covariance without the mean, which is zero in both.
+double ChiSquared(const AngleSeries& series, const Eigen::VectorXd& truth_rad) {
+  const auto n = truth_rad.size();
+  const Eigen::MatrixXd whole =
+      series.cov_rad2 + Eigen::MatrixXd::Constant(n, n, series.cov_rad2.trace() / static_cast<double>(n * n));
+  const Eigen::VectorXd error = series.value_rad - truth_rad;
+  return error.dot(whole.ldlt().solve(error));
+}
+
+TEST(SeparateIndexing, StatesUncertaintiesThatMatchItsScatter) {
+  constexpr int kRuns = 60;
+  double turntable = 0.0, multitooth = 0.0, residual = 0.0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    Stream stream(seed, "test.turntable");
+    const TrueBench bench = PublishedBench(0.5 * arcsec, stream);
+    IndexingOptions options;
+    options.noise = Stated(0.5 * arcsec);
+    const auto found = SeparateIndexing(ReadCircles(bench, Seats(72, {0, 3, 5, 19}), 72, stream), options);
+    turntable += ChiSquared(found.turntable, TrueTurntable(bench, 72)) / kRuns;
+    multitooth += ChiSquared(found.multitooth, TrueTeeth(bench, found.multitooth)) / kRuns;
+    residual += found.chi2 / kRuns;
+    EXPECT_NEAR(found.dof, 141.0, 1e-9);
+  }
+  // 71 degrees of freedom a run: standard deviation of the mean sqrt(2 * 71 / 60) = 1.5.
+  EXPECT_NEAR(turntable, 71.0, 5.0);
+  EXPECT_NEAR(multitooth, 71.0, 5.0);
+  // 4 * 72 readings less 71 + 71 values, 4 constants and the roll: 141; sqrt(2 * 141 / 60) = 2.2.
+  EXPECT_NEAR(residual, 141.0, 7.0);
+}
+
+TEST(SeparateIndexing, StatesTheUncertaintyOfASumWithTheTeethInIt) {
+  constexpr int kRuns = 60;
+  double chi2 = 0.0;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    Stream stream(seed, "test.turntable");
+    const TrueBench bench = PublishedBench(0.2 * arcsec, stream);
+    IndexingOptions options;
+    options.u_multitooth_rad = 0.3 * arcsec;  // noise from the repeats of two passes
+    const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream, 2), options);
+    EXPECT_NEAR(found.noise.u_x_rad, 0.2 * arcsec, 5 * 0.2 * arcsec / std::sqrt(2 * 144));
+    EXPECT_EQ(found.noise.dof, 144);
+    chi2 += ChiSquared(found.turntable, TrueTurntable(bench, 72)) / kRuns;
+  }
+  EXPECT_NEAR(chi2, 71.0, 5.0);  // as above
+}
+
+TEST(SeparateIndexing, TakesTheNoiseFromTheResidualsIfNothingWasReadTwice) {
+  Stream stream(8, "test.turntable");
+  const TrueBench bench = PublishedBench(0.4 * arcsec, stream);
+  const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream));
+  EXPECT_EQ(found.noise.dof, 70);  // 144 readings, 71 + 2 constants + the roll
+  EXPECT_NEAR(found.noise.u_x_rad, 0.4 * arcsec, 4 * 0.4 * arcsec / std::sqrt(2 * 70));
+  EXPECT_TRUE(std::isnan(found.chi2));
+}
+
+TEST(SeparateIndexing, ScalesANoiseThatIsStatedTooSmall) {
+  Stream stream(9, "test.turntable");
+  const TrueBench bench = PublishedBench(0.4 * arcsec, stream);
+  IndexingOptions options;
+  options.noise = Stated(0.2 * arcsec);
+  const auto found = SeparateIndexing(ReadCircles(bench, Seats(72, {0, 3, 5, 19}), 72, stream), options);
+  EXPECT_NEAR(found.scale, 2.0, 4 * 2.0 / std::sqrt(2 * 141));
+  EXPECT_THAT(found.notes, ElementsAre(HasSubstr("scaled")));
+  options.noise = Stated(0.2 * found.scale * arcsec);
+  const auto right = SeparateIndexing(ReadCircles(bench, Seats(72, {0, 3, 5, 19}), 72, stream), options);
+  EXPECT_NEAR(found.turntable.U_rad(0) / right.turntable.U_rad(0), 1.0, 0.01);  // the tilts are read anew
+  EXPECT_NEAR(found.roll.u_gamma_rad / right.roll.u_gamma_rad, 1.0, 0.01);
+}
+
+TEST(SeparateIndexing, BearsMissingStopsWhereTheOthersAreEnough) {
+  Stream stream(10, "test.turntable");
+  const TrueBench bench = PublishedBench(0.0, stream);
+  auto four = ReadCircles(bench, Seats(36, {0, 1, 7, 11}), 36, stream);
+  four[3].x_rad = four[80].y_rad = kNaN;
+  const auto found = SeparateIndexing(four, Options(1e-6, 0.6 * deg));
+  EXPECT_EQ(found.status, IndexingStatus::kSeparated);
+  EXPECT_NEAR(found.dof, 142.0 - 35 - 35 - 4, 1e-9);
+  EXPECT_TRUE(std::isnan(found.residual_rad[3]));
+  EXPECT_LT((found.turntable.value_rad - TrueTurntable(bench, 36)).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(SeparateIndexing, SaysWhenMissingStopsLoseMoreThanTheShifts) {
+  // Two shifts have one reading more than unknowns but for the constants: without any one stop a ramp is free.
+  Stream stream(11, "test.turntable");
+  for (const int n : {12, 36}) {
+    auto two = ReadCircles({}, Seats(n, {0, 1}), n, stream);
+    IndexingOptions options = Options(1e-6);
+    options.positions = n;
+    EXPECT_EQ(SeparateIndexing(two, options).status, IndexingStatus::kSeparated);
+    for (auto& stop : two) {
+      const double x_rad = std::exchange(stop.x_rad, kNaN);
+      const auto found = SeparateIndexing(two, options);
+      EXPECT_EQ(found.status, IndexingStatus::kUndetermined);
+      EXPECT_TRUE(found.turntable.value_rad.array().isNaN().all());
+      EXPECT_THAT(found.notes, ElementsAre(HasSubstr("missing")));
+      stop.x_rad = x_rad;
+    }
+  }
+}
+
+TEST(SeparateIndexing, LeavesOutPositionsThatWereNeverRead) {
+  Stream stream(12, "test.turntable");
+  const TrueBench bench = PublishedBench(0.0, stream);
+  auto stops = ReadCircles(bench, TwoTilts(), 72, stream);
+  stops[10].x_rad = stops[82].x_rad = kNaN;
+  const auto found = SeparateIndexing(stops, Options(1e-6, 0.6 * deg));
+  ASSERT_EQ(found.turntable.position_rad.size(), 71u);
+  EXPECT_NEAR(found.turntable.position_rad[10], 55.0 * deg, 1e-12);
+  EXPECT_NEAR(found.turntable.value_rad.mean(), 0.0, 1e-15);
+}
+
+TEST(SeparateIndexing, TellsWhatAnUnknownRollCouldDo) {
+  Stream stream(13, "test.turntable");
+  const auto found = SeparateIndexing(ReadCircles({}, {{0, 100 * arcsec, 0.4}}, 72, stream));
+  EXPECT_EQ(found.roll.status, RollStatus::kTiltsAlike);
+  ASSERT_EQ(found.notes.size(), 2u);
+  EXPECT_THAT(found.notes[1], HasSubstr("up to 1.74"));  // 100 arcsec * pi / 180 = 1.745, at most at a position
+}
+
+TEST(SeparateIndexing, CarriesTheUncertaintyOfAGivenRoll) {
+  Stream stream(15, "test.turntable");
+  IndexingOptions options = Options(0.0);
+  options.roll->u_gamma_rad = 0.1 * deg;
+  const auto found = SeparateIndexing(ReadCircles({}, {{0, 100 * arcsec, 0.0}}, 72, stream), options);
+  for (const int i : {0, 5, 30}) {
+    const double u_rad = 0.1 * deg * 100 * arcsec * std::abs(std::cos(5.0 * i * deg));
+    EXPECT_NEAR(found.turntable.U_rad(i), u_rad, 1e-15);  // rounding
+  }
+}
+
+TEST(SeparateIndexing, RefusesAnglesThatContradictEachOther) {
+  Stream stream(14, "test.turntable");
+  auto stops = ReadCircles({}, TwoTilts(), 36, stream);
+  stops[40].multitooth_rad += 10 * deg;
+  EXPECT_THROW(SeparateIndexing(stops), InputError);
+  stops[40].multitooth_rad = kNaN;
+  EXPECT_THROW(SeparateIndexing(stops), InputError);
+  stops = ReadCircles({}, TwoTilts(), 36, stream);
+  stops[40].turntable_rad += 1 * deg;
+  const IndexingOptions of_36{.positions = 36};
+  EXPECT_THROW(SeparateIndexing(stops, of_36), InputError);
+  EXPECT_THROW(SeparateIndexing(stops), InputError);
+  stops[40].setup = 7;  // a set-up of its own, off the grid
+  EXPECT_THROW(SeparateIndexing(stops, of_36), InputError);
+  EXPECT_THROW(SeparateIndexing({}), InputError);
+}
+
+}  // namespace
+}  // namespace twinbench::separate::turntable
