@@ -142,6 +142,19 @@ TEST(Recovery, AttemptsAreCountedForEachReadingAndEnd) {
   EXPECT_EQ(log.attempts[2].reading, 4);
 }
 
+TEST(Recovery, ARunThatNobodyWritesDownEndsWithItsFirstFault) {
+  const Scenario scenario = test::RestlessBench();
+  sim::Twin twin(scenario);
+  int blocks = 0;
+  TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
+    if (device == "adc" && ++blocks == 5) throw DeviceFault(FaultKind::kGap, "adc", "3 scans are missing");
+  });
+  RotaryBench bench = troubled.Bench();
+  MemoryLog log;
+  EXPECT_THROW(CarryOut(bench, scenario, log), DeviceFault) << "there are no calls to come back by";
+  EXPECT_EQ(log.readings.size(), 4u);
+}
+
 TEST(Recovery, WhatNeedsAHandStopsTheTablesAtOnce) {
   for (const FaultKind kind : {FaultKind::kStalled, FaultKind::kFollowing, FaultKind::kLimit, FaultKind::kImplausible,
                                FaultKind::kSignalLost, FaultKind::kStopped, FaultKind::kIdentity}) {
@@ -243,6 +256,7 @@ TEST(Recovery, TheOperatorIsHeardWhileAMountingComesToRest) {
   RotaryBench bench = twin.Bench();
   MemoryLog log;
   Options options;
+  options.log = &log;
   options.stop_requested = [&] { return bench.clock.Now() > Time(std::chrono::seconds(20)); };
   EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
   EXPECT_LT(bench.clock.Now(), Time(std::chrono::seconds(30)));

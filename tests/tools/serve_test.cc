@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <random>
 #include <thread>
 
 #include "tests/tools/program.h"
@@ -63,12 +62,11 @@ TEST_F(Served, KeepsTheRawCountsAndSaysWhoAnswered) {
 
 TEST_F(Served, AKilledMeasurementGoesOnToTheSameReadings) {
   const auto server = Serve();
-  std::mt19937_64 random(7);
   int kills = 0;
   for (int k = 0; k < 4; ++k) {
     const std::string name = "killed" + std::to_string(k);
     Process run(At(""), Measure(name));
-    std::this_thread::sleep_for(milliseconds(std::uniform_int_distribution<>(50, 400)(random)));
+    while (run.Runs() && run.ProgressLines() < 1 + 2 * k) std::this_thread::sleep_for(milliseconds(1));
     if (run.Runs()) ++kills, run.Kill();
     Succeed(Measure(name));
     EXPECT_EQ(ReadingsOf(name), readings_);

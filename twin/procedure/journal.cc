@@ -12,7 +12,7 @@ Journal::Journal(RotaryBench inner, RunLog* log, std::vector<DeviceCall> done)
 CallAnswer Journal::AskInner(const std::string& device, const std::string& request) {
   CallAnswer answer = Perform(inner_, device, request);
   const DeviceCall call{inner_.clock.Now(), device, request, answer.text};
-  if (log_) log_->Called(call);
+  log_->Called(call);
   if (inner_.simulation) pending_.push_back(call);
   return answer;
 }

@@ -91,7 +91,8 @@ void CarryOut(RotaryBench& bench, const Scenario& scenario, ReadingSink& sink, c
       journal.Forget();
       state.disturbed = true;
       NoteFailure(options.log, state.kept, bench.clock.Now(), fault);
-      if (!IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(state.kept)) throw;
+      const bool knows_the_way = journal.kept();
+      if (!knows_the_way || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(state.kept)) throw;
     } catch (...) {  // whatever it is, no table goes on moving
       StopBoth(bench);
       throw;

@@ -27,7 +27,7 @@ struct Options {
   double jump_V = std::numeric_limits<double>::infinity();  // between neighbouring stops of a pass; more: implausible
   double coldest_degC = -std::numeric_limits<double>::infinity();  // a thermometer beyond these is broken
   double hottest_degC = std::numeric_limits<double>::infinity();
-  RunLog* log = nullptr;                   // none: only readings are kept
+  RunLog* log = nullptr;                   // none: only readings are kept, and the first fault ends the run
   std::function<bool()> stop_requested;    // asked between moves, waits and readings
 
   int readings_done = 0;                   // a resumed run begins behind these ...
