@@ -76,14 +76,15 @@ class OpenedBench : public OpenBench {
     std::vector<std::string> notices;
     const ClockWatch::Drift drift = adc_->ClockDrift();
     if (!std::isnan(drift.ppm)) {
-      notices.push_back(fmt::format("the card's clock went {:+.2g} ppm against the bench's, standard uncertainty {:.2g}",
-                                    drift.ppm, drift.u_ppm));
+      notices.push_back(
+          fmt::format("the card's clock went {:+.2g} ppm against the bench's, standard uncertainty {:.2g}",
+                      drift.ppm, drift.u_ppm));
     }
     const auto& mains_V = adc_->LargestMains_V();
     for (std::size_t k = 0; k < kChannels; ++k) {
       if (std::isnan(mains_V[k])) continue;
-      notices.push_back(fmt::format("{}: mains hum of at most {:.3g} mV at {} Hz", kChannelNames[k], 1e3 * mains_V[k],
-                                    file_.adc.mains_Hz));
+      notices.push_back(fmt::format("{}: mains hum of at most {:.3g} mV at {} Hz", kChannelNames[k],
+                                    1e3 * mains_V[k], file_.adc.mains_Hz));
     }
     return notices;
   }

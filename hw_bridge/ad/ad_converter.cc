@@ -19,7 +19,8 @@ ReadingStatus StatusOfLight(const std::string& light) {
   return light == "clipped_spot" ? ReadingStatus::kClippedSpot : ReadingStatus::kOk;
 }
 
-/// @throws DeviceFault for what makes a block worthless. A lost word turns every channel behind it, so that one is first.
+/// @throws DeviceFault for what makes a block worthless. A lost word turns every channel behind it, so that one is
+/// first.
 void ThrowIfSpoiled(const BlockFindings& found, double noise_lsb) {
   if (found.slip.scan >= 0) {
     throw DeviceFault(FaultKind::kChannelSlip, kDevice,
@@ -106,7 +107,8 @@ class CardConverter : public AdFrontEnd {
   }
 
   ChannelBlock StatisticsOfChannel(const Acquisition& block, std::size_t channel) const {
-    if (!actual_.calibrated) return StatisticsOf(MomentsOf(block.raw, kChannels, static_cast<int>(channel)), lsb_V_);
+    if (!actual_.calibrated)
+      return StatisticsOf(MomentsOf(block.raw, kChannels, static_cast<int>(channel)), lsb_V_);
     const auto place = std::find(order_.begin(), order_.end(), channel) - order_.begin();
     return CalibratedStatistics(block.raw, channel, actual_.calibration[static_cast<std::size_t>(place)]);
   }

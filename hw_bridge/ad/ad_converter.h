@@ -27,24 +27,27 @@ class AdFrontEnd : public AdConverter {
 };
 
 /// Opens and configures the card of a bench file. Its blocks have the bits that the twin's have for the same codes:
-/// channel order, code * range / 2^(bits - 1), saturated channels without mean and deviation, no numbers at all without
-/// light. The raw counts always come along. A calibration file replaces range and bits by its polynomials. A block
-/// starts when it is asked for, by the bench's clock; the card's own time is in its stamp.
+/// channel order, code * range / 2^(bits - 1), saturated channels without mean and deviation, no numbers at all
+/// without light. The raw counts always come along. A calibration file replaces range and bits by its polynomials.
+/// A block starts when it is asked for, by the bench's clock; the card's own time is in its stamp.
 ///
-/// Acquire throws DeviceFault for whatever the source throws, and kChannelSlip, kSignalLost, kStuck, kClock from the
-/// block itself; the call after a fault starts afresh.
+/// Acquire throws DeviceFault for whatever the source throws, and kChannelSlip, kSignalLost, kStuck, kClock from
+/// the block itself; the call after a fault starts afresh.
 ///
 /// @param clock    Of the bench; must outlive the converter.
-/// @param noise_V  To expect of one sample, standard deviation; 0: not known. Tells a stuck channel from a quiet one.
+/// @param noise_V  To expect of one sample, standard deviation; 0: not known. Tells a stuck channel from a quiet
+/// one.
 /// @throws InputError  if this build has no such driver.
-/// @throws DeviceFault kRefused if rate (beyond rate_tolerance), range or resolution is not that of the scenario, naming
-///                     both, or if the calibration file does not fit; kIdentity for another serial number; kTimeout,
-///                     kDropped if it does not answer.
+/// @throws DeviceFault kRefused if rate (beyond rate_tolerance), range or resolution is not that of the scenario,
+/// naming
+///                     both, or if the calibration file does not fit; kIdentity for another serial number;
+///                     kTimeout, kDropped if it does not answer.
 std::unique_ptr<AdFrontEnd> MakeAdConverter(const AdSettings& settings, const AdcSettings& scenario_adc,
                                             const Clock& clock, double noise_V = 0.0);
 
 /// The same over any source.
 std::unique_ptr<AdFrontEnd> MakeAdConverter(std::unique_ptr<AdSource> source, const AdSettings& settings,
-                                            const AdcSettings& scenario_adc, const Clock& clock, double noise_V = 0.0);
+                                            const AdcSettings& scenario_adc, const Clock& clock,
+                                            double noise_V = 0.0);
 
 }  // namespace twinbench::hw

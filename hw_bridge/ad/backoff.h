@@ -4,8 +4,8 @@
 
 namespace twinbench::hw {
 
-/// How long to leave a device alone that does not open: nothing at first, then 50 ms doubled at every failure, up to
-/// 1.6 s.
+/// How long to leave a device alone that does not open: nothing at first, then 50 ms doubled at every failure, up
+/// to 1.6 s.
 class Backoff {
  public:
   /// Sleeps as long as the failures so far ask for, and counts the attempt that follows as a failure.

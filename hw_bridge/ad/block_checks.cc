@@ -46,7 +46,8 @@ double NeighbourNoise_lsb(Raw raw, std::size_t k) {
 double Drift_lsb(Raw raw, std::size_t k, double mean_lsb) {
   const double n = ScansIn(raw), middle = 0.5 * (n - 1.0);
   double weighted = 0.0, scan = 0.0;
-  for (std::size_t i = k; i < raw.size(); i += kChannels, scan += 1.0) weighted += (scan - middle) * (raw[i] - mean_lsb);
+  for (std::size_t i = k; i < raw.size(); i += kChannels, scan += 1.0)
+    weighted += (scan - middle) * (raw[i] - mean_lsb);
   return n < 2.0 ? 0.0 : weighted / (n * (n * n - 1.0) / 12.0) * n;
 }
 
@@ -119,7 +120,8 @@ int FloatingMask(const Views& views, const PerChannel& mains_lsb, double scans, 
   constexpr double kFarAbove = 5.0, kFarBelow = 0.25, kEnoughScans = 30.0;
   int mask = 0;
   if (scans < kEnoughScans) return mask;
-  const double usual = std::max({SecondSmallest(Each(views, &ChannelView::std_lsb)), expected_lsb, kRoundingNoise_lsb});
+  const double usual =
+      std::max({SecondSmallest(Each(views, &ChannelView::std_lsb)), expected_lsb, kRoundingNoise_lsb});
   // Noise shows as an amplitude too.
   const double usual_mains = SecondSmallest(mains_lsb) + 10.0 * usual * std::sqrt(2.0 / scans);
   for (std::size_t k = 0; k < kChannels; ++k) {

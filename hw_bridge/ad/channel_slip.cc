@@ -95,8 +95,8 @@ Change Judge(const Block& block, int group, int places) {
   const double unchanged = SquaresOver(Added(before, after), n);
   const PerChannel all = Added(before, TurnedBack(after, places));
   Change change{SquaresOver(all, n) - unchanged, 0.0, 0.0};
-  change.free_gain = SquaresOver(before, stride * group) +
-                     SquaresOver(after, stride * (block.groups() - group - 1)) - unchanged;
+  change.free_gain =
+      SquaresOver(before, stride * group) + SquaresOver(after, stride * (block.groups() - group - 1)) - unchanged;
   for (int c = 0; c < kChannels; ++c) {
     const double difference = (all[c] - all[(c + places) % kChannels]) / n;
     change.exchanged = std::max(change.exchanged, std::abs(difference));
@@ -124,8 +124,8 @@ ChannelSlip FindChannelSlip(std::span<const std::int16_t> raw, const std::array<
   constexpr double kAnyChange = 40.0;  // chi-squared of 4: exceeded in 4e-8 of all slips
   const Block block(raw, scan_order);
   const double variance = noise_lsb * noise_lsb;
-  const Needed needed{2.0 * std::log((kChannels - 1.0) * block.groups() / false_alarms) * variance, block.RampGain(),
-                      kAnyChange * variance};
+  const Needed needed{2.0 * std::log((kChannels - 1.0) * block.groups() / false_alarms) * variance,
+                      block.RampGain(), kAnyChange * variance};
   ChannelSlip found;
   double most = 0.0;
   for (int group = kLeast; group + 1 + kLeast <= block.groups(); ++group) {

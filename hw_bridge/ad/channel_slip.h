@@ -17,11 +17,12 @@ struct ChannelSlip {
 /// Looks for words that were lost inside a block: a multiplexed card without channel tags goes on with the channels
 /// turned.
 ///
-/// Three descriptions of the block are held against each other by their sums of squares over the noise: no change (a
-/// mean a channel), a change at a scan after which the means are those before turned by some places, and one after
-/// which they are anything. What all channels have in common (hum, supply) is taken off first: a turn leaves it as it
-/// is. A slip is reported if
-/// - turned beats unchanged by 2 ln(scans * turns / false_alarms): for a given scan and turn the likelihood ratio of a
+/// Three descriptions of the block are held against each other by their sums of squares over the noise: no change
+/// (a mean a channel), a change at a scan after which the means are those before turned by some places, and one
+/// after which they are anything. What all channels have in common (hum, supply) is taken off first: a turn leaves
+/// it as it is. A slip is reported if
+/// - turned beats unchanged by 2 ln(scans * turns / false_alarms): for a given scan and turn the likelihood ratio
+/// of a
 ///   block without a change exceeds x with a probability below 1 / x, and there are scans * turns of them;
 /// - turned beats a ramp of every channel by as much, so that drift is none;
 /// - turned is as good as any change (chi-squared of 4), so that the step of one channel is none;

@@ -10,7 +10,8 @@ namespace twinbench::hw {
 
 void ClockWatch::Compare(std::int64_t card_ns, Time bench, Duration latency) {
   const bool compares = std::exchange(known_, false);
-  const double card_s = static_cast<double>(card_ns - last_.card_ns) * 1e-9, bench_s = ToSeconds(bench - last_.bench);
+  const double card_s = static_cast<double>(card_ns - last_.card_ns) * 1e-9,
+               bench_s = ToSeconds(bench - last_.bench);
   const double allowed_s = 1e-4 * std::abs(bench_s) + ToSeconds(last_.latency + latency) + 1e-3;
   if (compares && std::abs(card_s - bench_s) > allowed_s) {
     throw DeviceFault(FaultKind::kClock, "adc",

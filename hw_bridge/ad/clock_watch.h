@@ -7,13 +7,14 @@
 
 namespace twinbench::hw {
 
-/// Holds a card's clock against the bench's from block to block. Two clocks of different make part slowly; a jump means
-/// that one of them cannot be trusted. A twin that is started again takes both back, which is none.
+/// Holds a card's clock against the bench's from block to block. Two clocks of different make part slowly; a jump
+/// means that one of them cannot be trusted. A twin that is started again takes both back, which is none.
 class ClockWatch {
  public:
   /// @param card_ns  The card's time of a block's first scan.
   /// @param bench    Bench time when the block was asked for; the scan came at most `latency` later.
-  /// @throws DeviceFault kClock if the times passed since the block before differ by more than 100 ppm, both latencies
+  /// @throws DeviceFault kClock if the times passed since the block before differ by more than 100 ppm, both
+  /// latencies
   ///         and 1 ms. The next block is then the first.
   void Compare(std::int64_t card_ns, Time bench, Duration latency);
   void Forget() { known_ = false; }

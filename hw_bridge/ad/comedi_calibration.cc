@@ -17,15 +17,15 @@ using Calibration = std::unique_ptr<comedi_calibration_t, CalibrationCloser>;
 void RequireSameBoard(comedi_t* card, const comedi_calibration_t& calibration, const std::string& file) {
   const std::string board = comedi_get_board_name(card), driver = comedi_get_driver_name(card);
   if (calibration.board_name == board && calibration.driver_name == driver) return;
-  Refuse(file, std::string("calibrates the board ") + calibration.board_name + " of driver " + calibration.driver_name +
-                   ", the card is " + board + " of driver " + driver);
+  Refuse(file, std::string("calibrates the board ") + calibration.board_name + " of driver " +
+                   calibration.driver_name + ", the card is " + board + " of driver " + driver);
 }
 
-CalibrationPolynomial PolynomialOf(const comedi_calibration_t& calibration, const ComediInputs& inputs, unsigned packed,
-                                   const std::string& file) {
+CalibrationPolynomial PolynomialOf(const comedi_calibration_t& calibration, const ComediInputs& inputs,
+                                   unsigned packed, const std::string& file) {
   comedi_polynomial_t polynomial{};
-  if (comedi_get_softcal_converter(inputs.subdevice, CR_CHAN(packed), CR_RANGE(packed), COMEDI_TO_PHYSICAL, &calibration,
-                                   &polynomial) < 0) {
+  if (comedi_get_softcal_converter(inputs.subdevice, CR_CHAN(packed), CR_RANGE(packed), COMEDI_TO_PHYSICAL,
+                                   &calibration, &polynomial) < 0) {
     Refuse(file, "says nothing of channel " + std::to_string(CR_CHAN(packed)) + " in range " +
                      std::to_string(CR_RANGE(packed)));
   }
@@ -35,7 +35,8 @@ CalibrationPolynomial PolynomialOf(const comedi_calibration_t& calibration, cons
   return result;
 }
 
-void Trim(comedi_t* card, const ComediInputs& inputs, const comedi_calibration_t& calibration, const std::string& file) {
+void Trim(comedi_t* card, const ComediInputs& inputs, const comedi_calibration_t& calibration,
+          const std::string& file) {
   for (const unsigned packed : inputs.chanlist) {
     if (comedi_apply_parsed_calibration(card, inputs.subdevice, CR_CHAN(packed), CR_RANGE(packed), CR_AREF(packed),
                                         &calibration) < 0) {
@@ -55,7 +56,8 @@ std::vector<CalibrationPolynomial> NominalCalibration(const ComediInputs& inputs
   return nominal;
 }
 
-std::vector<CalibrationPolynomial> ReadCalibration(comedi_t* card, const ComediInputs& inputs, const std::string& file) {
+std::vector<CalibrationPolynomial> ReadCalibration(comedi_t* card, const ComediInputs& inputs,
+                                                   const std::string& file) {
   const Calibration calibration(comedi_parse_calibration_file(file.c_str()));
   if (!calibration) ThrowComedi(FaultKind::kRefused, file, "cannot be read as a calibration");
   RequireSameBoard(card, *calibration, file);
@@ -64,7 +66,8 @@ std::vector<CalibrationPolynomial> ReadCalibration(comedi_t* card, const ComediI
     return NominalCalibration(inputs);
   }
   std::vector<CalibrationPolynomial> polynomials;
-  for (const unsigned packed : inputs.chanlist) polynomials.push_back(PolynomialOf(*calibration, inputs, packed, file));
+  for (const unsigned packed : inputs.chanlist)
+    polynomials.push_back(PolynomialOf(*calibration, inputs, packed, file));
   return polynomials;
 }
 

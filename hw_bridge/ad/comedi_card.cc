@@ -44,7 +44,8 @@ unsigned ChannelOf(comedi_t* card, const std::string& name, unsigned subdevice, 
   const auto number = ParseWholeNumber(id);
   const int channels = comedi_get_n_channels(card, subdevice);
   if (!number || *number < 0 || *number >= channels) {
-    Refuse(name, "has no channel \"" + id + "\"; its " + std::to_string(channels) + " channels are numbered from 0");
+    Refuse(name,
+           "has no channel \"" + id + "\"; its " + std::to_string(channels) + " channels are numbered from 0");
   }
   return static_cast<unsigned>(*number);
 }
@@ -129,7 +130,8 @@ ComediTiming SettleCommand(comedi_t* card, ComediInputs& inputs, double scan_rat
   const auto channels = static_cast<unsigned>(inputs.chanlist.size());
   const auto scan_ns = static_cast<unsigned>(std::lround(1e9 / scan_rate_Hz));
   if (comedi_get_cmd_generic_timed(card, inputs.subdevice, &command, channels, scan_ns) < 0) {
-    ThrowComedi(FaultKind::kRefused, inputs.name, "cannot scan " + std::to_string(channels) + " channels by itself");
+    ThrowComedi(FaultKind::kRefused, inputs.name,
+                "cannot scan " + std::to_string(channels) + " channels by itself");
   }
   command.chanlist = inputs.chanlist.data();
   command.chanlist_len = command.scan_end_arg = channels;
@@ -145,7 +147,8 @@ ComediTiming SettleCommand(comedi_t* card, ComediInputs& inputs, double scan_rat
     if (stage == 0) return TimingOf(command);
     if (stage < 0) ThrowComedi(FaultKind::kRefused, inputs.name, "testing a command");
   }
-  Refuse(inputs.name, "does not come to accept a command; it stops at stage " + std::to_string(stage) + " of the test");
+  Refuse(inputs.name,
+         "does not come to accept a command; it stops at stage " + std::to_string(stage) + " of the test");
 }
 
 }  // namespace twinbench::hw

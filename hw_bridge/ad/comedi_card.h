@@ -19,19 +19,19 @@ using ComediCard = std::unique_ptr<comedi_t, ComediCloser>;
 
 /// The analogue inputs as they will be used.
 struct ComediInputs {
-  std::string name;                     // of the card, for messages
+  std::string name;  // of the card, for messages
   unsigned subdevice = 0;
   int bits = 0;
-  bool wide = false;                    // samples of 32 bits
-  std::vector<unsigned> chanlist;       // packed channel, range and reference; scan order
-  std::vector<comedi_range> range;      // of each
+  bool wide = false;                // samples of 32 bits
+  std::vector<unsigned> chanlist;   // packed channel, range and reference; scan order
+  std::vector<comedi_range> range;  // of each
 };
 
 /// A command and what it amounts to. The scan list is that of ComediInputs.
 struct ComediTiming {
   comedi_cmd command{};
   double scan_rate_Hz = 0.0;
-  double skew_s = 0.0;                  // from a channel to the next
+  double skew_s = 0.0;  // from a channel to the next
 };
 
 [[noreturn]] void ThrowComedi(FaultKind kind, const std::string& card, const std::string& doing);

@@ -101,9 +101,9 @@ Negotiated ComediSource::Ask() {
 void ComediSource::Reopen() {
   const Negotiated now = Open();
   if (now.identity == negotiated_.identity && now.actual.scan_rate_Hz == negotiated_.actual.scan_rate_Hz) return;
-  throw DeviceFault(FaultKind::kIdentity, settings_.device,
-                    "was \"" + negotiated_.identity + "\", opened again it is \"" + now.identity +
-                        "\" or has another rate");
+  throw DeviceFault(
+      FaultKind::kIdentity, settings_.device,
+      "was \"" + negotiated_.identity + "\", opened again it is \"" + now.identity + "\" or has another rate");
 }
 
 void ComediSource::Close() {
@@ -185,11 +185,13 @@ AdBlock ComediSource::TakeOpen(int scans) {
   AdBlock block;
   block.stamp = HostStamp();
   const Deadline deadline = std::chrono::steady_clock::now() + length + asked_.deadline;
-  if (comedi_command(card_.get(), &timing.command) < 0) ThrowComedi(FaultKind::kRefused, settings_.device, "starting");
+  if (comedi_command(card_.get(), &timing.command) < 0)
+    ThrowComedi(FaultKind::kRefused, settings_.device, "starting");
   const std::size_t width = inputs_.wide ? sizeof(lsampl_t) : sizeof(sampl_t);
   block.raw = CodesOf(ReadBlock(static_cast<std::size_t>(scans) * inputs_.chanlist.size() * width, deadline));
   // The driver is busy until told that nobody wants more.
-  if (comedi_cancel(card_.get(), inputs_.subdevice) < 0) ThrowComedi(FaultKind::kDropped, settings_.device, "stopping");
+  if (comedi_cancel(card_.get(), inputs_.subdevice) < 0)
+    ThrowComedi(FaultKind::kDropped, settings_.device, "stopping");
   block.light = Light();
   return block;
 }

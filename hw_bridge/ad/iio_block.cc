@@ -105,12 +105,18 @@ void PutChannel(iio_channel* channel, iio_buffer* buffer, int scans, std::size_t
                 std::vector<std::int16_t>& raw) {
   const iio_data_format& format = *iio_channel_get_data_format(channel);
   switch (format.is_signed ? -static_cast<int>(format.length) : static_cast<int>(format.length)) {
-    case -8: return Put<std::int8_t>(channel, buffer, scans, place, step, raw);
-    case 8: return Put<std::uint8_t>(channel, buffer, scans, place, step, raw);
-    case -16: return Put<std::int16_t>(channel, buffer, scans, place, step, raw);
-    case 16: return Put<std::uint16_t>(channel, buffer, scans, place, step, raw);
-    case -32: return Put<std::int32_t>(channel, buffer, scans, place, step, raw);
-    default: return Put<std::uint32_t>(channel, buffer, scans, place, step, raw);
+    case -8:
+      return Put<std::int8_t>(channel, buffer, scans, place, step, raw);
+    case 8:
+      return Put<std::uint8_t>(channel, buffer, scans, place, step, raw);
+    case -16:
+      return Put<std::int16_t>(channel, buffer, scans, place, step, raw);
+    case 16:
+      return Put<std::uint16_t>(channel, buffer, scans, place, step, raw);
+    case -32:
+      return Put<std::int32_t>(channel, buffer, scans, place, step, raw);
+    default:
+      return Put<std::uint32_t>(channel, buffer, scans, place, step, raw);
   }
 }
 

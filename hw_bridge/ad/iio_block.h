@@ -12,15 +12,15 @@ namespace twinbench::hw {
 
 /// A device's channels as the bridge uses them.
 struct IioChannels {
-  std::string name;                         // of the device, for messages
+  std::string name;  // of the device, for messages
   iio_device* device = nullptr;
-  std::vector<iio_channel*> channels;       // in the order asked for
-  iio_channel* timestamp = nullptr;         // may be missing
+  std::vector<iio_channel*> channels;  // in the order asked for
+  iio_channel* timestamp = nullptr;    // may be missing
 };
 
 struct IioBlock {
-  std::vector<std::int16_t> raw;            // scans x channels, two's complement
-  std::vector<std::int64_t> stamps_ns;      // one a scan; empty without `timestamp`
+  std::vector<std::int16_t> raw;        // scans x channels, two's complement
+  std::vector<std::int64_t> stamps_ns;  // one a scan; empty without `timestamp`
 };
 
 /// Number of significant bits if a code fits into 16, else 0.

@@ -21,8 +21,9 @@ using IioContext = std::unique_ptr<iio_context, IioContextCloser>;
 FaultKind FaultOf(int error);
 [[noreturn]] void ThrowErrno(const std::string& device, const std::string& doing, int error);
 
-/// Opens "ip:HOST[:PORT]", "usb:...", "local:", "xml:FILE". libiio may take 5 s for every answer of a server that has
-/// gone silent; this gives up at the deadline. From the first call on SIGPIPE is ignored, unless somebody handles it.
+/// Opens "ip:HOST[:PORT]", "usb:...", "local:", "xml:FILE". libiio may take 5 s for every answer of a server that
+/// has gone silent; this gives up at the deadline. From the first call on SIGPIPE is ignored, unless somebody
+/// handles it.
 /// @throws DeviceFault kTimeout, kDropped, kRefused.
 IioContext OpenIioContext(const std::string& uri, Duration deadline);
 

@@ -182,8 +182,9 @@ Negotiated IioSource::Ask() const {
 void IioSource::JudgeGaps(const IioBlock& block) const {
   const StampFindings found = JudgeStamps(block.stamps_ns, negotiated_.actual.scan_rate_Hz);
   if (found.first_back >= 0) {
-    throw DeviceFault(FaultKind::kClock, open_.name,
-                      "the time stamp of scan " + std::to_string(found.first_back) + " is not later than the one before");
+    throw DeviceFault(
+        FaultKind::kClock, open_.name,
+        "the time stamp of scan " + std::to_string(found.first_back) + " is not later than the one before");
   }
   if (found.lost_scans > 0) {
     throw DeviceFault(FaultKind::kGap, open_.name,
@@ -196,8 +197,9 @@ std::string IioSource::Light() const {
   if (settings_.light.empty()) return "ok";
   const auto light = DeviceText(open_.device, settings_.light);
   if (light == "ok" || light == "no_light" || light == "clipped_spot") return *light;
-  throw DeviceFault(FaultKind::kProtocol, open_.name,
-                    settings_.light + " is \"" + light.value_or("missing") + "\", not ok, no_light or clipped_spot");
+  throw DeviceFault(
+      FaultKind::kProtocol, open_.name,
+      settings_.light + " is \"" + light.value_or("missing") + "\", not ok, no_light or clipped_spot");
 }
 
 AdBlock IioSource::TakeOpen(int scans) {

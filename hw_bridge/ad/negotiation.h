@@ -21,7 +21,8 @@ void RequireAsAsked(const Negotiated& actual, const AdSettings& settings, const 
 /// One line for the record.
 std::string Describe(const Negotiated& actual);
 
-/// Every channel in full, one line each: input, range, wiring, skew against the first, polynomial from codes to volts.
+/// Every channel in full, one line each: input, range, wiring, skew against the first, polynomial from codes to
+/// volts.
 std::vector<std::string> DescribeChannels(const Negotiated& actual);
 
 }  // namespace twinbench::hw

@@ -12,8 +12,9 @@ struct StampFindings {
   std::int64_t first_back = -1;  // scan whose stamp is not later than the one before
 };
 
-/// Looks at every step from stamp to stamp. One that is off by half a scan period or more is a gap of the nearest whole
-/// number of periods: neither jitter nor a clock that is some ppm off can do that, since only single steps are judged.
+/// Looks at every step from stamp to stamp. One that is off by half a scan period or more is a gap of the nearest
+/// whole number of periods: neither jitter nor a clock that is some ppm off can do that, since only single steps
+/// are judged.
 /// @param stamps_ns     One a scan.
 /// @param scan_rate_Hz  Positive.
 StampFindings JudgeStamps(std::span<const std::int64_t> stamps_ns, double scan_rate_Hz);

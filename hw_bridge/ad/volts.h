@@ -10,8 +10,8 @@ namespace twinbench::hw {
 
 double VoltsOf(double code, const CalibrationPolynomial& calibration);
 
-/// Mean, sample standard deviation (n - 1; NaN for one sample) and extremes of one channel, every code by itself through
-/// its polynomial.
+/// Mean, sample standard deviation (n - 1; NaN for one sample) and extremes of one channel, every code by itself
+/// through its polynomial.
 /// @param raw  Scans x kChannels; at least one scan.
 ChannelBlock CalibratedStatistics(std::span<const std::int16_t> raw, std::size_t channel,
                                   const CalibrationPolynomial& calibration);

@@ -34,8 +34,7 @@ void ReplayBench::Restart() {
 
 const DeviceCall& ReplayBench::Next(const std::string& device, const std::string& request) {
   const std::string asked = fmt::format("\"{}: {}\"", device, request);
-  if (next_ == calls_.size())
-    throw BenchError(fmt::format("{}: the recording ends before {}", folder_, asked));
+  if (next_ == calls_.size()) throw BenchError(fmt::format("{}: the recording ends before {}", folder_, asked));
   const DeviceCall& call = calls_[next_];
   if (call.device != device || call.request != request)
     throw BenchError(fmt::format("{}: {} is not in the recording at this place, \"{}: {}\" is (call {})", folder_,

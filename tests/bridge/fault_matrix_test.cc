@@ -5,8 +5,8 @@
 
 #include "tests/support/served_run.h"
 
-/// Faults of real benches, each struck on a served twin while the real procedure drives it through the real backends.
-/// Where trying again is the answer, the readings are those of a run without any fault, to the bit.
+/// Faults of real benches, each struck on a served twin while the real procedure drives it through the real
+/// backends. Where trying again is the answer, the readings are those of a run without any fault, to the bit.
 namespace twinbench::test {
 namespace {
 
@@ -44,32 +44,31 @@ TEST_P(FaultThatIsTriedAgain, CostsOneAttemptAndNoBit) {
 
 INSTANTIATE_TEST_SUITE_P(
     Matrix, FaultThatIsTriedAgain,
-    ::testing::Values(TriedAgain{"ScansLostInABlock", "adc,gap", {"gap"}},
-                      TriedAgain{"ChannelSlip", "adc,slip", {"channel_slip"}},
-                      TriedAgain{"StuckChannel", "adc,stuck", {"stuck"}},
-                      TriedAgain{"ConnectionDroppedInABlock", "adc,drop", {"dropped"}},
-                      TriedAgain{"BlockThatStalls", "adc,stall", {"timeout"}},
-                      TriedAgain{"ShortBlock", "adc,short", {"dropped", "protocol"}},
-                      TriedAgain{"ErrorInABlock", "adc,error", {"dropped", "protocol"}},
-                      TriedAgain{"ConverterClockThatJumps", "clock,step", {"clock"}},
-                      TriedAgain{"MuteController", "target,mute", {"timeout"}},
-                      TriedAgain{"LateAnswer", "reference,late", {"timeout"}},
-                      TriedAgain{"HalfAnAnswer", "target,partial", {"timeout", "dropped", "protocol"}},
-                      TriedAgain{"ControllerThatHangsUp", "target,disconnect", {"dropped"}},
-                      TriedAgain{"ControllerRestarted", "target,restart", {"restarted"}},
-                      TriedAgain{"LostStep", "reference,lost_step", {"not_in_position"}},
-                      TriedAgain{"TableThatNeverSettles", "target,not_in_position", {"not_in_position"}},
-                      TriedAgain{"NeverSettlesByEsp", "reference,not_in_position", {"not_in_position"}, "esp"},
-                      TriedAgain{"MuteEsp", "target,mute", {"timeout"}, "esp"},
-                      TriedAgain{"LateEsp", "target,late", {"timeout"}, "esp"},
-                      TriedAgain{"HalfAnAnswerOfEsp", "reference,partial", {"timeout", "dropped", "protocol"}, "esp"},
-                      TriedAgain{"RestartedEsp", "reference,restart", {"restarted"}, "esp"},
-                      TriedAgain{"LostStepOfEsp", "target,lost_step", {"not_in_position"}, "esp"},
-                      TriedAgain{"MuteSerialLine", "target,mute", {"timeout"}, "pty"},
-                      // Behind 3 s of silence on a line that cannot be opened anew, the next question is late too.
-                      TriedAgain{"LateOnASerialLine", "target,late", {"timeout"}, "pty", 2},
-                      TriedAgain{"HalfAnAnswerOnASerialLine", "target,partial", {"timeout", "dropped", "protocol"},
-                                 "pty"}),
+    ::testing::Values(
+        TriedAgain{"ScansLostInABlock", "adc,gap", {"gap"}},
+        TriedAgain{"ChannelSlip", "adc,slip", {"channel_slip"}}, TriedAgain{"StuckChannel", "adc,stuck", {"stuck"}},
+        TriedAgain{"ConnectionDroppedInABlock", "adc,drop", {"dropped"}},
+        TriedAgain{"BlockThatStalls", "adc,stall", {"timeout"}},
+        TriedAgain{"ShortBlock", "adc,short", {"dropped", "protocol"}},
+        TriedAgain{"ErrorInABlock", "adc,error", {"dropped", "protocol"}},
+        TriedAgain{"ConverterClockThatJumps", "clock,step", {"clock"}},
+        TriedAgain{"MuteController", "target,mute", {"timeout"}},
+        TriedAgain{"LateAnswer", "reference,late", {"timeout"}},
+        TriedAgain{"HalfAnAnswer", "target,partial", {"timeout", "dropped", "protocol"}},
+        TriedAgain{"ControllerThatHangsUp", "target,disconnect", {"dropped"}},
+        TriedAgain{"ControllerRestarted", "target,restart", {"restarted"}},
+        TriedAgain{"LostStep", "reference,lost_step", {"not_in_position"}},
+        TriedAgain{"TableThatNeverSettles", "target,not_in_position", {"not_in_position"}},
+        TriedAgain{"NeverSettlesByEsp", "reference,not_in_position", {"not_in_position"}, "esp"},
+        TriedAgain{"MuteEsp", "target,mute", {"timeout"}, "esp"},
+        TriedAgain{"LateEsp", "target,late", {"timeout"}, "esp"},
+        TriedAgain{"HalfAnAnswerOfEsp", "reference,partial", {"timeout", "dropped", "protocol"}, "esp"},
+        TriedAgain{"RestartedEsp", "reference,restart", {"restarted"}, "esp"},
+        TriedAgain{"LostStepOfEsp", "target,lost_step", {"not_in_position"}, "esp"},
+        TriedAgain{"MuteSerialLine", "target,mute", {"timeout"}, "pty"},
+        // Behind 3 s of silence on a line that cannot be opened anew, the next question is late too.
+        TriedAgain{"LateOnASerialLine", "target,late", {"timeout"}, "pty", 2},
+        TriedAgain{"HalfAnAnswerOnASerialLine", "target,partial", {"timeout", "dropped", "protocol"}, "pty"}),
     [](const auto& row) { return row.param.name; });
 
 TEST(FaultMatrix, AtTheVeryFirstReadingTheRunBeginsAgain) {
@@ -201,8 +200,8 @@ TEST(FaultMatrix, AnotherControllerAtTheAddressIsRefused) {
   const ServedTwin served(scenario);
   RunOptions options;
   options.alter = [](hw::BenchFile& file) {
-    for (hw::ControlSettings* device : {&file.target, &file.reference, &file.autocollimator, &file.thermometer,
-                                        &file.goniometer, &file.fixture})
+    for (hw::ControlSettings* device :
+         {&file.target, &file.reference, &file.autocollimator, &file.thermometer, &file.goniometer, &file.fixture})
       device->identity = "SmarAct";
   };
   EXPECT_EQ(RunServed(served, scenario, options).stopped_by, "identity");

@@ -108,9 +108,14 @@ std::vector<BenchBackend> Backends() {
   const auto recorded = [](const Scenario& scenario) -> std::unique_ptr<LivingBench> {
     return std::make_unique<RecordedAndReplayed>(scenario);
   };
-  return {TwinOf("kinematic"),        TwinOf("linear"),          TwinOf("bullet"),
-          HardwareBy("iio", "scpi"),  HardwareBy("iio", "esp"),  HardwareBy("iio", "pty"),
-          HardwareBy("comedi", "scpi"), BenchBackend{"Replay", recorded, true}};
+  return {TwinOf("kinematic"),
+          TwinOf("linear"),
+          TwinOf("bullet"),
+          HardwareBy("iio", "scpi"),
+          HardwareBy("iio", "esp"),
+          HardwareBy("iio", "pty"),
+          HardwareBy("comedi", "scpi"),
+          BenchBackend{"Replay", recorded, true}};
 }
 
 }  // namespace twinbench::test

@@ -26,7 +26,7 @@ struct BenchBackend {
   bool repeats_its_bits = false;  // a twin or a replay: same scenario, same numbers
   bool always_has_raw = false;    // counts come with every block, asked for or not
 
-  std::string missing = {};       // why it cannot be tried here
+  std::string missing = {};  // why it cannot be tried here
 
   friend void PrintTo(const BenchBackend& backend, std::ostream* out) { *out << backend.name; }
 };

@@ -60,9 +60,7 @@ TEST_P(SameResult, WithServosThatSettleSlowly) {
 INSTANTIATE_TEST_SUITE_P(Backends, SameResult,
                          ::testing::Values(Way{"iio", "scpi"}, Way{"iio", "esp"}, Way{"iio", "pty"},
                                            Way{"comedi", "scpi"}),
-                         [](const auto& way) {
-                           return std::string(way.param.converter) + "_" + way.param.tables;
-                         });
+                         [](const auto& way) { return std::string(way.param.converter) + "_" + way.param.tables; });
 
 TEST(SameResult, OfARecording) {
   const Scenario scenario = RestlessBench();

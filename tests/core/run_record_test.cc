@@ -2,14 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <filesystem>
 #include <signal.h>
 #include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <random>
 
@@ -37,8 +36,8 @@ Reading ReadingOf(int number) {
   r.position = number % 36;
   r.phase = static_cast<Phase>(number % kPhases);
   r.n_samples = 100;
-  for (double* value : {&r.target_rad, &r.reference_rad, &r.dwell_s, &r.temperature_degC, &r.measured_rad,
-                        &r.velocity_rad_s})
+  for (double* value :
+       {&r.target_rad, &r.reference_rad, &r.dwell_s, &r.temperature_degC, &r.measured_rad, &r.velocity_rad_s})
     *value = normal(random);
   for (double& mean_V : r.mean_V) mean_V = normal(random);
   for (double& std_V : r.std_V) std_V = normal(random);
@@ -198,7 +197,8 @@ TEST(RunRecord, IsNotMadeOverAnother) {
 TEST(RunRecord, SaysWhenTheDiskRefuses) {
   const TemporaryFolder folder;
   folder.Write("file", "x");
-  EXPECT_THROW(RunRecord::Create(folder.File("file"), AnyProvenance()), InputError);  // a wrong name, not a bad disk
+  EXPECT_THROW(RunRecord::Create(folder.File("file"), AnyProvenance()),
+               InputError);  // a wrong name, not a bad disk
   EXPECT_THROW(RunRecord::Create(folder.File("file/inside"), AnyProvenance()), BenchError);
 }
 
@@ -267,7 +267,8 @@ TEST(RunRecord, OfTheVersionWithoutAngleComparisonsIsBroughtUpToDate) {
 
 TEST(RunRecord, KeepsCallsWithTheReadingThatTheyLedTo) {
   const TemporaryFolder folder;
-  const DeviceCall move{Time(Duration(7)), "target", "move 0.1", ""}, look{Time(Duration(9)), "target", "state", "0.1 0.1"};
+  const DeviceCall move{Time(Duration(7)), "target", "move 0.1", ""},
+      look{Time(Duration(9)), "target", "state", "0.1 0.1"};
   {
     const auto record = RunRecord::Create(folder.path(), AnyProvenance());
     record->Called(move);
@@ -288,7 +289,8 @@ TEST(RunRecord, NumbersTheAttemptsOfEachReadingAndUsesNoneTwice) {
   record->AttemptFailed(4, Time{}, "timeout", "b");
   record->AttemptFailed(5, Time{}, "gap", "c");
   std::vector<std::pair<int, int>> numbers;
-  for (const FailedAttempt& attempt : record->FailedAttempts()) numbers.emplace_back(attempt.reading, attempt.attempt);
+  for (const FailedAttempt& attempt : record->FailedAttempts())
+    numbers.emplace_back(attempt.reading, attempt.attempt);
   EXPECT_EQ(numbers, (std::vector<std::pair<int, int>>{{4, 1}, {4, 2}, {5, 1}}));
 }
 

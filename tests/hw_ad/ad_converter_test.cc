@@ -82,14 +82,15 @@ TEST_F(AdConverterTest, AsksForTheChannelsInScanOrderAndGivesThemInChannelOrder)
 
 TEST_F(AdConverterTest, HasNoNumbersWithoutLightButKeepsTheCounts) {
   script_.block.raw.assign(400, 0);
-  for (const auto& [light, status] : {std::pair{"no_light", ReadingStatus::kNoLight},
-                                      std::pair{"clipped_spot", ReadingStatus::kClippedSpot}}) {
+  for (const auto& [light, status] :
+       {std::pair{"no_light", ReadingStatus::kNoLight}, std::pair{"clipped_spot", ReadingStatus::kClippedSpot}}) {
     script_.block.light = light;
     const Acquisition block = Make()->Acquire(100, false);
     EXPECT_EQ(block.status, status);
     EXPECT_EQ(block.n_samples, 0) << "as the twin has it";
     EXPECT_EQ(block.raw.size(), 400u);
-    for (const ChannelBlock& channel : block.channel) EXPECT_TRUE(std::isnan(channel.mean_V) && std::isnan(channel.max_V));
+    for (const ChannelBlock& channel : block.channel)
+      EXPECT_TRUE(std::isnan(channel.mean_V) && std::isnan(channel.max_V));
   }
 }
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "hw_bridge/ad/ad_converter.h"
-#include "tests/hw_ad/same_block.h"
 #include "tests/hw_ad/held_twin.h"
+#include "tests/hw_ad/same_block.h"
 #include "twin/core/device_fault.h"
 
 namespace twinbench::test {

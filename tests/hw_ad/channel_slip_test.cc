@@ -51,7 +51,8 @@ TEST(ChannelSlip, IsFoundForEveryNumberOfLostWords) {
 }
 
 TEST(ChannelSlip, IsFoundBetweenLevelsThatDifferByLessThanTheNoise) {
-  // Steps of 10 codes under 20 codes of noise, 1000 scans: the likelihood ratio is 2000 against the 59 that are needed.
+  // Steps of 10 codes under 20 codes of noise, 1000 scans: the likelihood ratio is 2000 against the 59 that are
+  // needed.
   sim::AdInput input = FourLevels(kNoise_V);
   for (std::size_t k = 0; k < kChannels; ++k) input.channel[k].level_V = 10.0 * static_cast<double>(k) * kLsb_V;
   int found = 0;

@@ -16,7 +16,8 @@ constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
 TEST(ClockWatch, LetsClocksDriftApartByAHundredPpm) {
   ClockWatch watch;
-  for (int k = 0; k < 100; ++k) watch.Compare(7 * kSecond_ns + k * (60 * kSecond_ns + 3'000'000), Time(seconds(60 * k)), {});
+  for (int k = 0; k < 100; ++k)
+    watch.Compare(7 * kSecond_ns + k * (60 * kSecond_ns + 3'000'000), Time(seconds(60 * k)), {});
 }
 
 TEST(ClockWatch, CallsAStepOfASecondAFaultAndThenStartsAgain) {

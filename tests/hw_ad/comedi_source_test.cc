@@ -12,8 +12,8 @@
 
 #include "tests/hw_ad/backend_test.h"
 
-/// On libcomedi itself. Run with the library of tests/support/comedi_device preloaded, as ctest does: it answers for
-/// /dev/comedi0 with the counts of a served twin.
+/// On libcomedi itself. Run with the library of tests/support/comedi_device preloaded, as ctest does: it answers
+/// for /dev/comedi0 with the counts of a served twin.
 namespace twinbench::hw {
 namespace {
 
@@ -61,7 +61,8 @@ TEST_F(ComediSourceTest, TellsWhatTheCardIs) {
   const Negotiated actual = Open(served, scenario, ComediSettings(served))->Actual();
   EXPECT_EQ(actual.bits, 16);
   EXPECT_DOUBLE_EQ(actual.actual.scan_rate_Hz, 62.5e3);
-  EXPECT_DOUBLE_EQ(actual.actual.channels[0].range_V, 10.0) << "the smallest that covers it, of 20 V, 10 V and 0 to 10 V";
+  EXPECT_DOUBLE_EQ(actual.actual.channels[0].range_V, 10.0)
+      << "the smallest that covers it, of 20 V, 10 V and 0 to 10 V";
   EXPECT_DOUBLE_EQ(actual.skew_s[3], 12e-6);
   EXPECT_FALSE(actual.stamps_scans);
   EXPECT_THAT(actual.identity, ::testing::HasSubstr("preloaded-ai16"));
@@ -173,16 +174,18 @@ TEST_F(ComediSourceTest, RefusesARateThatTheCardTurnsIntoAnother) {
 class CalibrationFile {
  public:
   explicit CalibrationFile(const std::string& board) {
-    std::ofstream(path_) << "{\n driver_name => \"twinbench\",\n board_name => \"" << board
-                         << "\",\n calibrations =>\n [\n  {\n   subdevice => 0,\n   channels => [],\n   ranges => [1],\n"
-                            "   arefs => [],\n   caldacs => [],\n   softcal_to_phys =>\n   {\n    expansion_origin => "
-                            "32770.0,\n    coefficients => [0.001, 0.000305, 1e-12]\n   },\n  },\n ]\n}\n";
+    std::ofstream(path_)
+        << "{\n driver_name => \"twinbench\",\n board_name => \"" << board
+        << "\",\n calibrations =>\n [\n  {\n   subdevice => 0,\n   channels => [],\n   ranges => [1],\n"
+           "   arefs => [],\n   caldacs => [],\n   softcal_to_phys =>\n   {\n    expansion_origin => "
+           "32770.0,\n    coefficients => [0.001, 0.000305, 1e-12]\n   },\n  },\n ]\n}\n";
   }
   ~CalibrationFile() { std::filesystem::remove(path_); }
   const std::string& path() const { return path_; }
 
  private:
-  std::string path_ = (std::filesystem::temp_directory_path() / ("card" + std::to_string(getpid()) + ".cal")).string();
+  std::string path_ =
+      (std::filesystem::temp_directory_path() / ("card" + std::to_string(getpid()) + ".cal")).string();
 };
 
 TEST_F(ComediSourceTest, MeasuresWithTheCalibrationOfTheFile) {

@@ -1,3 +1,5 @@
+#include "hw_bridge/ad/iio_source.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -5,15 +7,14 @@
 #include <chrono>
 #include <thread>
 
-#include "hw_bridge/ad/iio_source.h"
 #include "tests/hw_ad/backend_test.h"
 
 namespace twinbench::hw {
 namespace {
 
 using test::FaultIn;
-using test::IioSettings;
 using test::HeldTwin;
+using test::IioSettings;
 using Stopwatch = std::chrono::steady_clock;
 
 double SecondsSince(Stopwatch::time_point start) {

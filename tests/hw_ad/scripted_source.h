@@ -12,8 +12,8 @@ namespace twinbench::test {
 class ScriptedSource : public hw::AdSource {
  public:
   struct Script {
-    hw::ScanSpec asked;                   // what Configure got
-    std::optional<double> rate_Hz;        // answers instead of what was asked
+    hw::ScanSpec asked;             // what Configure got
+    std::optional<double> rate_Hz;  // answers instead of what was asked
     int bits = 16;
     std::optional<double> range_V;
     double zero_V = 0.0;

@@ -40,12 +40,19 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"hw_bridge", {"twin/core"}}};
 
 /// Third-party headers that only some rooms may see, by how their path begins.
-const std::map<std::string, std::set<std::string>> kOwners = {
-    {"embree", {"optics"}},      {"OpenEXR/", {"optics"}},          {"Imf", {"optics"}},
-    {"Imath", {"optics"}},       {"BulletDynamics", {"mechanics"}}, {"LinearMath/", {"mechanics"}},
-    {"btBullet", {"mechanics"}}, {"sqlite3", {"twin/core"}},        {"toml++", {"twin/core"}},
-    {"asio", {"hw_bridge"}},     {"iio", {"hw_bridge"}},            {"comedi", {"hw_bridge"}},
-    {"pugi", {"hw_bridge"}}};
+const std::map<std::string, std::set<std::string>> kOwners = {{"embree", {"optics"}},
+                                                              {"OpenEXR/", {"optics"}},
+                                                              {"Imf", {"optics"}},
+                                                              {"Imath", {"optics"}},
+                                                              {"BulletDynamics", {"mechanics"}},
+                                                              {"LinearMath/", {"mechanics"}},
+                                                              {"btBullet", {"mechanics"}},
+                                                              {"sqlite3", {"twin/core"}},
+                                                              {"toml++", {"twin/core"}},
+                                                              {"asio", {"hw_bridge"}},
+                                                              {"iio", {"hw_bridge"}},
+                                                              {"comedi", {"hw_bridge"}},
+                                                              {"pugi", {"hw_bridge"}}};
 
 std::string RoomOf(const std::string& path) {
   for (const std::string& room : kRooms) {
@@ -117,7 +124,8 @@ TEST(Layers, TheServerHasNoMeansToTouchFiles) {
     if (!entry.is_regular_file()) continue;
     std::ifstream in(entry.path());
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    for (const char* means : {"fstream", "filesystem", "fopen", "std::FILE", "popen", "system(", "dlopen", " ::open("})
+    for (const char* means :
+         {"fstream", "filesystem", "fopen", "std::FILE", "popen", "system(", "dlopen", " ::open("})
       EXPECT_EQ(text.find(means), std::string::npos) << entry.path() << " has " << means;
   }
 }

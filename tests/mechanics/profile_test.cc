@@ -60,8 +60,8 @@ TEST(QuinticProfile, TakesAMotionUpWithItsSpeedAndBendAndBringsItToRest) {
   EXPECT_DOUBLE_EQ(first.velocity_rad_s, cut.velocity_rad_s);
   EXPECT_DOUBLE_EQ(first.acceleration_rad_s2, cut.acceleration_rad_s2);
   EXPECT_EQ(last.position_rad, cut.position_rad + 0.1);
-  // Just before its end it is as good as there: speed and bend vanish with the square and the first power of what is
-  // left, which is a millionth of the duration.
+  // Just before its end it is as good as there: speed and bend vanish with the square and the first power of what
+  // is left, which is a millionth of the duration.
   EXPECT_NEAR(stop.At(0.3 * (1.0 - 1e-6)).velocity_rad_s, 0.0, 1e-9);
   EXPECT_NEAR(stop.At(0.3 * (1.0 - 1e-6)).acceleration_rad_s2, 0.0, 1e-2);
   const double h = 1e-6;  // differences of the position are the speed, to the square of the step

@@ -1,8 +1,8 @@
 // Does the served twin keep up with the fastest card, for as long as it takes?
 //
-// A server process shows the twin at 250 000 scans/s of 4 channels in real time; a libiio client reads it and looks at
-// the time stamp of every scan. Then the same without pacing: how fast it could go, beside the limits that the machine
-// sets: bytes through the loopback, and blocks of the sampler without any network.
+// A server process shows the twin at 250 000 scans/s of 4 channels in real time; a libiio client reads it and looks
+// at the time stamp of every scan. Then the same without pacing: how fast it could go, beside the limits that the
+// machine sets: bytes through the loopback, and blocks of the sampler without any network.
 //
 //   build/tests/perf/bench_bridge [seconds = 60]
 #include <fmt/core.h>
@@ -135,10 +135,10 @@ void StreamInRealTime(double seconds) {
     if (Now_s() - begin_s < 0.1 * seconds) after_a_tenth_kB = largest_kB;
   }
   const double took_s = Now_s() - begin_s;
-  fmt::print("real time: {:.1f} s, {} scans of 4 channels, {:.0f} scans/s ({:.4f} of asked), {} lost\n", took_s, scans,
-             static_cast<double>(scans) / took_s, static_cast<double>(scans) / took_s / kScanRate_Hz, lost);
-  fmt::print("server memory: {} kB at most in the first tenth, {} kB at most in all, {} kB at last\n", after_a_tenth_kB,
-             largest_kB, server.Memory_kB());
+  fmt::print("real time: {:.1f} s, {} scans of 4 channels, {:.0f} scans/s ({:.4f} of asked), {} lost\n", took_s,
+             scans, static_cast<double>(scans) / took_s, static_cast<double>(scans) / took_s / kScanRate_Hz, lost);
+  fmt::print("server memory: {} kB at most in the first tenth, {} kB at most in all, {} kB at last\n",
+             after_a_tenth_kB, largest_kB, server.Memory_kB());
 }
 
 double UnpacedScansPerSecond(double seconds) {
@@ -191,9 +191,9 @@ int main(int argc, char** argv) {
   StreamInRealTime(seconds);
   const double unpaced = UnpacedScansPerSecond(3.0);
   const double sampler = SamplerScansPerSecond(2.0), loopback = LoopbackScansPerSecond(2.0);
-  fmt::print("unpaced: {:.2f} M scans/s = {:.1f} x asked, {:.2f} of the sampler alone ({:.2f} M), {:.2f} of a socket "
-             "pair ({:.2f} M)\n",
-             unpaced / 1e6, unpaced / kScanRate_Hz, unpaced / sampler, sampler / 1e6, unpaced / loopback,
-             loopback / 1e6);
+  fmt::print(
+      "unpaced: {:.2f} M scans/s = {:.1f} x asked, {:.2f} of the sampler alone ({:.2f} M), {:.2f} of a socket "
+      "pair ({:.2f} M)\n",
+      unpaced / 1e6, unpaced / kScanRate_Hz, unpaced / sampler, sampler / 1e6, unpaced / loopback, loopback / 1e6);
   return 0;
 }

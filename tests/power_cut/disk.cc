@@ -64,7 +64,8 @@ void Log(char what, const std::string& path, std::uint64_t at, const void* data,
   const State& state = TheState();
   if (state.log < 0) return;
   const auto put = [&](const void* bytes, std::size_t n) {
-    if (Real<ssize_t(int, const void*, size_t)>("write")(state.log, bytes, n) != static_cast<ssize_t>(n)) std::abort();
+    if (Real<ssize_t(int, const void*, size_t)>("write")(state.log, bytes, n) != static_cast<ssize_t>(n))
+      std::abort();
   };
   const std::uint32_t length = static_cast<std::uint32_t>(path.size());
   put(&what, 1);

@@ -27,7 +27,8 @@ class FullDisk : public Program {
     setenv("TWINBENCH_DISK_TELLS", tells ? "1" : "0", 1);
     setenv("LD_PRELOAD", POWER_CUT_DISK, 1);
     const Outcome outcome = Call(Measure(name));
-    for (const char* name_of : {"LD_PRELOAD", "TWINBENCH_DISK_ROOT", "TWINBENCH_DISK_ROOM_B", "TWINBENCH_DISK_TELLS"})
+    for (const char* name_of :
+         {"LD_PRELOAD", "TWINBENCH_DISK_ROOT", "TWINBENCH_DISK_ROOM_B", "TWINBENCH_DISK_TELLS"})
       unsetenv(name_of);
     return outcome;
   }

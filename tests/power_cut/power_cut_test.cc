@@ -17,9 +17,10 @@ constexpr int kReadings = 250;
 const std::vector<FileChange>& WritersChanges() {
   static const std::vector<FileChange> changes = [] {
     const TemporaryFolder folder;
-    const std::string command = "TWINBENCH_DISK_ROOT=" + folder.File("run") + " TWINBENCH_DISK_LOG=" +
-                                folder.File("log") + " LD_PRELOAD=" POWER_CUT_DISK " " POWER_CUT_WRITER " " +
-                                folder.File("run") + " " + std::to_string(kReadings);
+    const std::string command = "TWINBENCH_DISK_ROOT=" + folder.File("run") +
+                                " TWINBENCH_DISK_LOG=" + folder.File("log") +
+                                " LD_PRELOAD=" POWER_CUT_DISK " " POWER_CUT_WRITER " " + folder.File("run") + " " +
+                                std::to_string(kReadings);
     if (std::system(command.c_str()) != 0) throw BenchError("the writer failed: " + command);
     return ReadWriteLog(folder.File("log"));
   }();
@@ -90,7 +91,8 @@ TEST_P(PowerCut, AtAnyMomentLosesNothingThatWasAcknowledged) {
 INSTANTIATE_TEST_SUITE_P(Disk, PowerCut,
                          ::testing::Values(ForgetfulDisk::Left::kPrefix, ForgetfulDisk::Left::kTornSubset),
                          [](const auto& instance) {
-                           return instance.param == ForgetfulDisk::Left::kPrefix ? "KeepsAPrefix" : "KeepsATornSubset";
+                           return instance.param == ForgetfulDisk::Left::kPrefix ? "KeepsAPrefix"
+                                                                                 : "KeepsATornSubset";
                          });
 
 TEST(ForgetfulDisk, KeepsWhatWasSyncedAndForgetsTheRest) {

@@ -98,7 +98,8 @@ std::map<std::string, std::string> ForgetfulDisk::AfterPowerCut(Left left, std::
   const std::size_t kept = std::uniform_int_distribution<std::size_t>(0, pending_names_.size())(random);
   for (std::size_t k = 0; k < kept; ++k) ChangeNames(pending_names_[k].first, pending_names_[k].second, names);
   std::map<std::string, std::string> files;
-  for (const auto& [path, file] : names) files[path] = ContentAfter(files_[static_cast<std::size_t>(file)], left, random);
+  for (const auto& [path, file] : names)
+    files[path] = ContentAfter(files_[static_cast<std::size_t>(file)], left, random);
   return files;
 }
 

@@ -10,7 +10,8 @@
 #include "twin/procedure/procedure.h"
 #include "twin/sim/twin.h"
 
-/// Faults, stops and resumed runs on the twin: whatever happens on the way, the readings are those of a run without.
+/// Faults, stops and resumed runs on the twin: whatever happens on the way, the readings are those of a run
+/// without.
 namespace twinbench::procedure {
 namespace {
 
@@ -80,8 +81,8 @@ TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
     Scenario scenario = test::RestlessBench();
     scenario.mechanics.fidelity = fidelity;
     const std::vector<Reading> undisturbed = Undisturbed(scenario);
-    for (const std::size_t kept : {std::size_t{1}, std::size_t{11}, std::size_t{12}, std::size_t{13},
-                                   undisturbed.size() - 1}) {
+    for (const std::size_t kept :
+         {std::size_t{1}, std::size_t{11}, std::size_t{12}, std::size_t{13}, undisturbed.size() - 1}) {
       MemoryLog log;
       {
         sim::Twin twin(scenario);
@@ -128,7 +129,8 @@ TEST(Recovery, AttemptsAreCountedForEachReadingAndEnd) {
   sim::Twin twin(scenario);
   MemoryLog log;
   TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
-    if (device == "adc" && log.readings.size() == 4) throw DeviceFault(FaultKind::kGap, "adc", "3 scans are missing");
+    if (device == "adc" && log.readings.size() == 4)
+      throw DeviceFault(FaultKind::kGap, "adc", "3 scans are missing");
   });
   RotaryBench bench = troubled.Bench();
   Options options;
@@ -156,8 +158,9 @@ TEST(Recovery, ARunThatNobodyWritesDownEndsWithItsFirstFault) {
 }
 
 TEST(Recovery, WhatNeedsAHandStopsTheTablesAtOnce) {
-  for (const FaultKind kind : {FaultKind::kStalled, FaultKind::kFollowing, FaultKind::kLimit, FaultKind::kImplausible,
-                               FaultKind::kSignalLost, FaultKind::kStopped, FaultKind::kIdentity}) {
+  for (const FaultKind kind :
+       {FaultKind::kStalled, FaultKind::kFollowing, FaultKind::kLimit, FaultKind::kImplausible,
+        FaultKind::kSignalLost, FaultKind::kStopped, FaultKind::kIdentity}) {
     const Scenario scenario = test::RestlessBench();
     sim::Twin twin(scenario);
     int stops = 0;

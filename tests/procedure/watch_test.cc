@@ -1,10 +1,11 @@
+#include "twin/procedure/watch.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/support/memory_log.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/core/device_fault.h"
 #include "twin/procedure/procedure.h"
-#include "twin/procedure/watch.h"
 #include "twin/sim/twin.h"
 
 /// What is noticed while tables move, with tables that lie, and how a real bench is brought back.
@@ -42,7 +43,8 @@ struct ScriptedTable : RotaryTable {
 struct ScriptedBench {
   RotaryBench Bench() {
     const RotaryBench rest = twin.Bench();
-    return {rest.clock, target, reference, rest.adc, rest.autocollimator, rest.thermometer, rest.goniometer, fixture};
+    return {rest.clock,          target,           reference,       rest.adc,
+            rest.autocollimator, rest.thermometer, rest.goniometer, fixture};
   }
   struct Hand : Fixture {
     void Mount(int setup, double, double) override { setups.push_back(setup); }

@@ -4,8 +4,8 @@
 
 namespace twinbench::test {
 
-/// A short run of a bench on which everything changes: noise, drift, seating, repeatability, hum. Whatever state of it
-/// is not restored after a fault shows in the readings.
+/// A short run of a bench on which everything changes: noise, drift, seating, repeatability, hum. Whatever state of
+/// it is not restored after a fault shows in the readings.
 inline Scenario RestlessBench() {
   Scenario scenario;
   scenario.seed = 23;

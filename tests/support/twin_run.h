@@ -16,9 +16,7 @@ namespace twinbench::test {
 /// Keeps readings in memory.
 class MemorySink : public ReadingSink {
  public:
-  void Append(const Reading& reading, const Acquisition& /*block*/) override {
-    readings.push_back(reading);
-  }
+  void Append(const Reading& reading, const Acquisition& /*block*/) override { readings.push_back(reading); }
   std::vector<Reading> readings;
 };
 

@@ -22,8 +22,8 @@ class Served : public Program {
 
   /// Starts a server and waits until it has said where it is.
   std::unique_ptr<Process> Serve(const std::vector<std::string>& options = {"--speed", "max"}) {
-    std::vector<std::string> words = {"serve",      "small.toml", "--iiod-port", "0", "--scpi-port",
-                                      "0",          "--esp-port", "0",           "--write-bench", "bench.toml"};
+    std::vector<std::string> words = {"serve",      "small.toml", "--iiod-port",   "0",         "--scpi-port", "0",
+                                      "--esp-port", "0",          "--write-bench", "bench.toml"};
     words.insert(words.end(), options.begin(), options.end());
     std::filesystem::remove(At("bench.toml"));
     auto server = std::make_unique<Process>(At(""), words, "server");
@@ -118,8 +118,8 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
   const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
   EXPECT_THAT(fine.err, HasSubstr("124 readings"));
-  const Outcome off = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "off", "--set",
-                            "psd_a.width_mm=0.2"});
+  const Outcome off = Call(
+      {"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "off", "--set", "psd_a.width_mm=0.2"});
   EXPECT_EQ(off.exit_code, 1);
   EXPECT_THAT(off.err, HasSubstr("PROBLEM"));
   EXPECT_FALSE(Exists("off"));

@@ -50,7 +50,8 @@ void PrintHelp(const std::string& topic) {
 void AddHelp(CLI::App& app) {
   auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects or bench files");
   auto topic = std::make_shared<std::string>("scenario");
-  command->add_option("topic", *topic, "scenario, effects or bench")->check(CLI::IsMember({"scenario", "effects", "bench"}));
+  command->add_option("topic", *topic, "scenario, effects or bench")
+      ->check(CLI::IsMember({"scenario", "effects", "bench"}));
   command->callback([topic] { PrintHelp(*topic); });
 }
 

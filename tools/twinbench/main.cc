@@ -61,7 +61,9 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(Complaint);
   using namespace twinbench::tools;
-  for (const auto add : {AddRun, AddMeasure, AddServe, AddExport, AddImport, AddSeparate, AddDiagnose, AddScore, AddHelp}) add(app);
+  for (const auto add :
+       {AddRun, AddMeasure, AddServe, AddExport, AddImport, AddSeparate, AddDiagnose, AddScore, AddHelp})
+    add(app);
   try {
     app.parse(argc, argv);
     return kDone;

@@ -46,8 +46,8 @@ std::string UtcText(std::time_t now) {
   return text;
 }
 
-/// How long ago the run began. The wall clock is all that outlives a power failure; if it was set back meanwhile, the
-/// run still goes on behind its last reading.
+/// How long ago the run began. The wall clock is all that outlives a power failure; if it was set back meanwhile,
+/// the run still goes on behind its last reading.
 Duration SinceBegin(const Provenance& provenance, const std::vector<Reading>& readings) {
   const Duration last = readings.empty() ? Duration{} : readings.back().time.time_since_epoch();
   std::tm utc{};
@@ -96,8 +96,8 @@ std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& fold
 void TakeUp(const Begun& begun, const std::string& identity, procedure::Options& options) {
   const RunRecord& record = *begun.record;
   if (record.provenance().bench != identity)
-    throw BenchError(fmt::format("the run was begun on \"{}\" and this is \"{}\"", record.provenance().bench,
-                                 identity));
+    throw BenchError(
+        fmt::format("the run was begun on \"{}\" and this is \"{}\"", record.provenance().bench, identity));
   options.readings_done = static_cast<int>(begun.readings.size());
   options.calls_done = record.Calls();
   const Time last = begun.readings.empty() ? Time{} : begun.readings.back().time;
@@ -122,8 +122,7 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
   const Duration elapsed = resumed ? SinceBegin(begun.record->provenance(), begun.readings) : Duration{};
   const auto bench = OpenAnyBench(file, scenario, elapsed);
   if (resumed) TakeUp(begun, bench->Identity(), options);
-  const auto record =
-      resumed ? std::move(begun.record) : Begin(scenario, folder, file, bench->Identity());
+  const auto record = resumed ? std::move(begun.record) : Begin(scenario, folder, file, bench->Identity());
   const auto note = [&](const std::vector<std::string>& lines) {
     for (const std::string& line : lines) record->AppendEvent(bench->Bench().clock.Now(), "adc", line);
   };
@@ -143,7 +142,8 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
 void Measure(const MeasureOptions& o) {
   const Scenario scenario = LoadScenario(o.scenario, o.overrides);
   if (scenario.bench != kRotaryBench)
-    throw InputError(o.scenario, "no controllers for the bench " + scenario.bench, std::string("bench ") + kRotaryBench);
+    throw InputError(o.scenario, "no controllers for the bench " + scenario.bench,
+                     std::string("bench ") + kRotaryBench);
   const hw::BenchFile file = hw::LoadBenchFile(o.bench);
   const procedure::Options options = Carefulness(file);
   if (o.rehearse || o.rehearse_only) RehearseFirst(scenario, options, file.adc.mains_Hz);
@@ -160,15 +160,18 @@ void Measure(const MeasureOptions& o) {
 }  // namespace
 
 void AddMeasure(CLI::App& app) {
-  auto* command = app.add_subcommand("measure", "Carry out a scenario on a real bench, a served one or a recording");
+  auto* command =
+      app.add_subcommand("measure", "Carry out a scenario on a real bench, a served one or a recording");
   auto options = std::make_shared<MeasureOptions>();
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
-  command->add_option("--bench", options->bench, "bench file (TOML): the devices and how they are reached")->required();
+  command->add_option("--bench", options->bench, "bench file (TOML): the devices and how they are reached")
+      ->required();
   command->add_option("-o,--output", options->folder, "folder of the run, made by the command");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
   command->add_flag("--resume", options->resume, "go on behind the last reading that is kept");
-  command->add_flag("--rehearse", options->rehearse, "first on the twin: travel, spots on the PSDs, time it will take");
+  command->add_flag("--rehearse", options->rehearse,
+                    "first on the twin: travel, spots on the PSDs, time it will take");
   command->add_flag("--rehearse-only", options->rehearse_only, "nothing but that");
   command->callback([options] { Measure(*options); });
 }

@@ -55,16 +55,18 @@ class Watcher : public ReadingSink, public RunLog {
 void JudgeTravel(const char* table, const Rehearsal::Travel& travel, const TableLimits& limits,
                  std::vector<std::string>& problems) {
   if (travel.lowest_rad >= limits.lower_rad && travel.highest_rad <= limits.upper_rad) return;
-  problems.push_back(fmt::format("{} would travel from {:.6g} to {:.6g} deg; its soft limits are {:.6g} to {:.6g} deg",
-                                 table, travel.lowest_rad / units::deg, travel.highest_rad / units::deg,
-                                 limits.lower_rad / units::deg, limits.upper_rad / units::deg));
+  problems.push_back(
+      fmt::format("{} would travel from {:.6g} to {:.6g} deg; its soft limits are {:.6g} to {:.6g} deg", table,
+                  travel.lowest_rad / units::deg, travel.highest_rad / units::deg, limits.lower_rad / units::deg,
+                  limits.upper_rad / units::deg));
 }
 
 void JudgeLight(const Rehearsal& r, std::vector<std::string>& problems) {
   if (r.not_ok > 0)
-    problems.push_back(fmt::format("{} of {} readings would have no numbers: no light, a clipped spot or a saturated "
-                                   "channel",
-                                   r.not_ok, r.readings));
+    problems.push_back(
+        fmt::format("{} of {} readings would have no numbers: no light, a clipped spot or a saturated "
+                    "channel",
+                    r.not_ok, r.readings));
   for (int psd = 0; psd < 2; ++psd) {
     if (r.widest_share[psd] <= kNearTheEdge) continue;
     problems.push_back(fmt::format("the spot on psd_{} would come to {:.0f} % of half the PSD's width", "ab"[psd],
@@ -76,9 +78,10 @@ void JudgeLight(const Rehearsal& r, std::vector<std::string>& problems) {
 void JudgeMains(const Scenario& scenario, double mains_Hz, std::vector<std::string>& hints) {
   const double periods = scenario.adc.samples * kChannels / scenario.adc.rate_Hz * mains_Hz;
   if (periods > 0.5 && std::abs(periods - std::round(periods)) < 0.01) return;
-  hints.push_back(fmt::format("a block lasts {:.3g} periods of the mains at {:.4g} Hz; hum is averaged out by whole ones: "
-                              "adc.samples = {:.0f}",
-                              periods, mains_Hz, scenario.adc.rate_Hz / kChannels / mains_Hz));
+  hints.push_back(
+      fmt::format("a block lasts {:.3g} periods of the mains at {:.4g} Hz; hum is averaged out by whole ones: "
+                  "adc.samples = {:.0f}",
+                  periods, mains_Hz, scenario.adc.rate_Hz / kChannels / mains_Hz));
 }
 
 std::string TravelLine(const char* table, const Rehearsal::Travel& travel, const TableLimits& limits) {
@@ -113,7 +116,8 @@ Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, d
 }
 
 std::string Summary(const Rehearsal& r, const procedure::Options& limits) {
-  std::string text = fmt::format("rehearsal on the twin: {} readings, {}\n", r.readings, HoursMinutes(r.duration_s));
+  std::string text =
+      fmt::format("rehearsal on the twin: {} readings, {}\n", r.readings, HoursMinutes(r.duration_s));
   text += TravelLine("target", r.target, limits.target);
   text += TravelLine("reference", r.reference, limits.reference);
   text += fmt::format("  spots       {:>9.0f} % of half the width of psd_a, {:.0f} % of psd_b at most\n",

@@ -15,9 +15,9 @@ struct Rehearsal {
   };
   Travel target, reference;
   int readings = 0;
-  int not_ok = 0;                // readings without numbers
+  int not_ok = 0;  // readings without numbers
   double duration_s = 0.0;
-  double widest_share[2] = {};   // of half the active width, the spot that came nearest to the edge of PSD a and b
+  double widest_share[2] = {};  // of half the active width, the spot that came nearest to the edge of PSD a and b
   std::vector<std::string> hints, problems;
 };
 

@@ -30,8 +30,8 @@ double SpeedOf(const std::string& text) {
 }
 
 std::string Told(const hw::ServedAddresses& at) {
-  std::string text = fmt::format("iiod {}:{}\nscpi {}:{}\nesp  {}:{}\n", at.host, at.iiod_port, at.host, at.scpi_port,
-                                 at.host, at.esp_port);
+  std::string text = fmt::format("iiod {}:{}\nscpi {}:{}\nesp  {}:{}\n", at.host, at.iiod_port, at.host,
+                                 at.scpi_port, at.host, at.esp_port);
   return at.pty.empty() ? text : text + fmt::format("esp  {}\n", at.pty);
 }
 
@@ -48,7 +48,8 @@ void ServeUntilStopped(hw::Server& server) {
 void Serve(ServeArguments a) {
   const Scenario scenario = LoadScenario(a.scenario, a.overrides);
   if (scenario.bench != kRotaryBench)
-    throw InputError(a.scenario, "the bench " + scenario.bench + " cannot be served", std::string("bench ") + kRotaryBench);
+    throw InputError(a.scenario, "the bench " + scenario.bench + " cannot be served",
+                     std::string("bench ") + kRotaryBench);
   a.serve.speed = SpeedOf(a.speed);
   a.serve.pty = !a.no_pty;
   sim::Twin twin(scenario);

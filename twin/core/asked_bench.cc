@@ -116,7 +116,8 @@ AskedBench::~AskedBench() = default;
 
 RotaryBench AskedBench::Bench() {
   Devices& d = *devices_;
-  return {d.clock, d.target, d.reference, d.adc, d.autocollimator, d.thermometer, d.goniometer, d.fixture, simulation_};
+  return {d.clock,       d.target,     d.reference, d.adc,      d.autocollimator,
+          d.thermometer, d.goniometer, d.fixture,   simulation_};
 }
 
 }  // namespace twinbench

@@ -10,9 +10,9 @@ namespace twinbench {
 /// Exact sums over the codes of one channel, counted from any base code.
 struct CodeMoments {
   std::int64_t n = 0;
-  std::int64_t base = 0;       // code
-  std::int64_t deviation = 0;  // sum of (code - base)
-  std::int64_t square = 0;     // sum of its squares
+  std::int64_t base = 0;                 // code
+  std::int64_t deviation = 0;            // sum of (code - base)
+  std::int64_t square = 0;               // sum of its squares
   std::int64_t lowest = 0, highest = 0;  // code
 };
 

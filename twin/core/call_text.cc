@@ -16,7 +16,8 @@ Number Parsed(const std::string& word, const std::string& text) {
   Number number{};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (error != std::errc() || end != word.data() + word.size())
-    throw InputError("device call \"" + text + "\"", "\"" + word + "\" is no number", "a call as a record keeps it");
+    throw InputError("device call \"" + text + "\"", "\"" + word + "\" is no number",
+                     "a call as a record keeps it");
   return number;
 }
 
@@ -39,7 +40,8 @@ CallReader::CallReader(const std::string& text) : text_(text) {}
 
 std::string CallReader::Word() {
   const std::size_t end = std::min(text_.find(' ', at_), text_.size());
-  if (end <= at_) throw InputError("device call \"" + text_ + "\"", "it ends too early", "a call as a record keeps it");
+  if (end <= at_)
+    throw InputError("device call \"" + text_ + "\"", "it ends too early", "a call as a record keeps it");
   const std::string word = text_.substr(at_, end - at_);
   at_ = end + 1;
   return word;
@@ -92,7 +94,8 @@ Acquisition ParseBlock(const std::string& answer) {
   Acquisition block;
   block.start = Time(Duration(reader.Integer()));
   const auto status = ReadingStatusOf(reader.Word());
-  if (!status) throw InputError("device call \"" + answer + "\"", "it has no status", "a call as a record keeps it");
+  if (!status)
+    throw InputError("device call \"" + answer + "\"", "it has no status", "a call as a record keeps it");
   block.status = *status;
   block.n_samples = static_cast<int>(reader.Integer());
   block.saturated_mask = static_cast<int>(reader.Integer());

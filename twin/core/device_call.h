@@ -7,13 +7,14 @@
 
 #include "twin/core/devices.h"
 
-/// What was asked of a bench and what it answered, as text that keeps every bit. A list of calls is enough to bring a
-/// simulated bench to where it was, and to play a run back without any bench.
+/// What was asked of a bench and what it answered, as text that keeps every bit. A list of calls is enough to bring
+/// a simulated bench to where it was, and to play a run back without any bench.
 namespace twinbench {
 
 struct DeviceCall {
-  Time time{};          // of the bench, when it had answered
-  std::string device;   // "clock", "target", "reference", "adc", "autocollimator", "thermometer", "goniometer", "fixture"
+  Time time{};  // of the bench, when it had answered
+  std::string
+      device;  // "clock", "target", "reference", "adc", "autocollimator", "thermometer", "goniometer", "fixture"
   std::string request;  // "move 0.17453292519943295"
   std::string answer;   // empty where there is none
 

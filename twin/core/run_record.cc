@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "twin/core/errors.h"
 #include "twin/core/device_fault.h"
+#include "twin/core/errors.h"
 #include "twin/core/number_text.h"
 #include "twin/core/record_rows.h"
 #include "twin/core/record_schema.h"
@@ -108,7 +108,7 @@ struct RunRecord::Database : SqliteDatabase {
   std::optional<SqliteStatement> insert_reading;  // as members they go before the base closes the file
   std::optional<SqliteStatement> insert_block, insert_call;
   std::optional<WriterLock> lock;
-  std::vector<DeviceCall> calls;     // since the last reading
+  std::vector<DeviceCall> calls;  // since the last reading
   std::uint64_t largest_block_B = 0;
 };
 
@@ -244,8 +244,11 @@ std::vector<RawBlock> RunRecord::RawBlocks() const {
   while (select.Step()) {
     const auto words = select.Words(2);
     const auto integer = [&](int column) { return static_cast<int>(select.Integer(column)); };
-    blocks.push_back({integer(0), integer(1), {words.begin(), words.end()},
-                      {select.Integer(3), select.Integer(4), select.Integer(5), select.Integer(6)}, integer(7)});
+    blocks.push_back({integer(0),
+                      integer(1),
+                      {words.begin(), words.end()},
+                      {select.Integer(3), select.Integer(4), select.Integer(5), select.Integer(6)},
+                      integer(7)});
   }
   return blocks;
 }

@@ -36,10 +36,11 @@ void RequirePlausible(const Reading& reading, const Reading& before, const Optio
 
 void RequireTimely(const Acquisition& block, Time asked, Time answered) {
   if (block.start >= asked - kClockTolerance && block.start <= answered + kClockTolerance) return;
-  throw DeviceFault(FaultKind::kClock, "adc",
-                    fmt::format("a block is stamped {:.6f} s but was asked for at {:.6f} s; the clocks of converter "
-                                "and bench part",
-                                ToSeconds(block.start), ToSeconds(asked)));
+  throw DeviceFault(
+      FaultKind::kClock, "adc",
+      fmt::format("a block is stamped {:.6f} s but was asked for at {:.6f} s; the clocks of converter "
+                  "and bench part",
+                  ToSeconds(block.start), ToSeconds(asked)));
 }
 
 }  // namespace twinbench::procedure

@@ -2,7 +2,9 @@
 
 namespace twinbench::procedure {
 
-QuietBench::QuietBench() : asked_(Answer, [] { return Time{}; }, nullptr) {}
+QuietBench::QuietBench()
+    : asked_(
+          Answer, [] { return Time{}; }, nullptr) {}
 
 /// Tables are always there; everything else shows nothing.
 CallAnswer QuietBench::Answer(const std::string& device, const std::string& request) {

@@ -42,9 +42,10 @@ void Sequencer::Mount(int setup, int shift_steps) {
 
 void Sequencer::NoteMounting(int setup, double clamp_rad, double reseat_rad) {
   if (!options_.log) return;
-  options_.log->AppendEvent(bench().clock.Now(), "fixture",
-                            fmt::format("mounted set-up {}: grating clamped at {:.6g} deg, body seated at {:.6g} deg",
-                                        setup, clamp_rad / units::deg, reseat_rad / units::deg));
+  options_.log->AppendEvent(
+      bench().clock.Now(), "fixture",
+      fmt::format("mounted set-up {}: grating clamped at {:.6g} deg, body seated at {:.6g} deg", setup,
+                  clamp_rad / units::deg, reseat_rad / units::deg));
 }
 
 void Sequencer::GoTo(double target_rad) {
@@ -95,8 +96,9 @@ Acquisition Sequencer::Measure(Reading& stop, double dwell_s, bool with_autocoll
   Acquisition block = bench().adc.Acquire(scenario_.adc.samples, settings().keep_raw);
   RequireTimely(block, asked, bench().clock.Now());
   if (block.status == ReadingStatus::kOverrun) {
-    throw DeviceFault(FaultKind::kOverrun, "adc",
-                      fmt::format("its FIFO ran full after {} of {} scans", block.n_samples, scenario_.adc.samples));
+    throw DeviceFault(
+        FaultKind::kOverrun, "adc",
+        fmt::format("its FIFO ran full after {} of {} scans", block.n_samples, scenario_.adc.samples));
   }
   stop.time = block.start;
   stop.status = block.status;
@@ -129,8 +131,9 @@ void Sequencer::RepeatCalls() {
     const std::string answer = Perform(bench, call.device, call.request).text;
     // What a controller says about its motion may depend on what it was asked before; what is measured may not.
     if ((answer == call.answer || call.request == "state") && bench.clock.Now() == call.time) continue;
-    throw InputError("record", call.device + " answered \"" + answer + "\" to \"" + call.request + "\" and not \"" +
-                                   call.answer + "\" as before",
+    throw InputError("record",
+                     call.device + " answered \"" + answer + "\" to \"" + call.request + "\" and not \"" +
+                         call.answer + "\" as before",
                      "the bench, scenario, seed and version that made the record");
   }
   bench.simulation->SetPaced(true);

@@ -11,9 +11,9 @@ namespace twinbench::procedure {
 
 /// How far a run has come, over all attempts.
 struct RunState {
-  int kept = 0;                     // readings
-  std::optional<int> mounted_for;   // reading before which a hand has mounted the grating on a real bench
-  bool disturbed = false;           // the bench is not where the last kept reading left it
+  int kept = 0;                    // readings
+  std::optional<int> mounted_for;  // reading before which a hand has mounted the grating on a real bench
+  bool disturbed = false;          // the bench is not where the last kept reading left it
 };
 
 /// The steps that all phases share: mount, go somewhere, dwell, take one reading.

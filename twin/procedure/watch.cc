@@ -13,7 +13,7 @@ namespace {
 constexpr Duration kLook = std::chrono::seconds(1);
 constexpr Duration kSlice = std::chrono::seconds(5);
 constexpr double kThere_rad = 1.0 * units::arcsec;  // even where no tolerance was given
-constexpr double kStandsStill_rad = 1e-9;  // less than any encoder shows
+constexpr double kStandsStill_rad = 1e-9;           // less than any encoder shows
 
 /// One table on its way.
 class Watched {
@@ -57,8 +57,9 @@ class Watched {
       Fail(FaultKind::kLimit, "ran onto a limit switch");
     const double off_rad = state.encoder_rad - to_rad_;
     if (std::abs(off_rad) <= limits_.in_position_rad || std::isnan(off_rad)) return;
-    Fail(FaultKind::kNotInPosition, fmt::format("was sent to {:.6f} deg and stands at {:.6f} deg, {:.3g} arcsec off",
-                                                Deg(to_rad_), Deg(state.encoder_rad), off_rad / units::arcsec));
+    Fail(FaultKind::kNotInPosition,
+         fmt::format("was sent to {:.6f} deg and stands at {:.6f} deg, {:.3g} arcsec off", Deg(to_rad_),
+                     Deg(state.encoder_rad), off_rad / units::arcsec));
   }
 
  private:
@@ -74,7 +75,8 @@ class Watched {
   void CheckWay(double encoder_rad) {
     const double left_rad = std::abs(to_rad_ - encoder_rad);
     if (left_rad > nearest_rad_ + limits_.following_rad)
-      Fail(FaultKind::kFollowing, fmt::format("is {:.6f} deg away from its target and getting further", Deg(left_rad)));
+      Fail(FaultKind::kFollowing,
+           fmt::format("is {:.6f} deg away from its target and getting further", Deg(left_rad)));
     nearest_rad_ = std::min(nearest_rad_, left_rad);
     still_s_ = std::abs(encoder_rad - last_rad_) < kStandsStill_rad ? still_s_ + ToSeconds(kLook) : 0.0;
     last_rad_ = encoder_rad;

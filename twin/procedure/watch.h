@@ -6,7 +6,8 @@ namespace twinbench::procedure {
 
 /// Moves both tables together and returns when they have arrived.
 ///
-/// @throws DeviceFault before any motion if a target lies outside its soft limits or a table stands on a limit switch
+/// @throws DeviceFault before any motion if a target lies outside its soft limits or a table stands on a limit
+/// switch
 ///         and would be driven further (kLimit), or has lost its origin (kRestarted); during it if a table stands
 ///         still (kStalled), goes the wrong way (kFollowing), reports a fault (kRefused) or takes too long
 ///         (kNotInPosition); after it if the encoder is not where it was sent (kNotInPosition); kStopped if

@@ -129,7 +129,7 @@ Twin::~Twin() = default;
 
 RotaryBench Twin::Bench() {
   Devices& d = *impl_->devices;
-  return {d.clock,       d.target,     d.reference, d.adc,    d.autocollimator,
+  return {d.clock,       d.target,     d.reference, d.adc,      d.autocollimator,
           d.thermometer, d.goniometer, d.fixture,   impl_.get()};
 }
 

@@ -31,7 +31,8 @@ TableState World::StateOf(Axis axis) {
 }
 
 void World::Mount(int setup, double clamp_rad, double reseat_rad) {
-  if (!axes_.AtRest()) throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while a table moves");
+  if (!axes_.AtRest())
+    throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while a table moves");
   const bool reseats = actual_.procedure.clamping == "reseat";
   axes_.Mount(stand_.Mount(effects_.Actual({clamp_rad, reseat_rad, reseats})));
   mounted_ = queue_.Now();

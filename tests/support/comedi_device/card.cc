@@ -73,14 +73,23 @@ Card::Card(int descriptor) : descriptor_(descriptor), traits_(MakeSampleSource()
 
 int Card::Control(unsigned long request, void* argument) {
   switch (request) {
-    case COMEDI_DEVINFO: return DeviceInfo(*static_cast<comedi_devinfo*>(argument));
-    case COMEDI_SUBDINFO: return SubdeviceInfo(static_cast<comedi_subdinfo*>(argument));
-    case COMEDI_RANGEINFO: return RangeInfo(*static_cast<const comedi_rangeinfo*>(argument));
-    case COMEDI_INSN: return Instruct(*static_cast<const comedi_insn*>(argument));
-    case COMEDI_INSNLIST: return Instruct(*static_cast<const comedi_insnlist*>(argument));
-    case COMEDI_CMDTEST: return Test(*static_cast<comedi_cmd*>(argument));
-    case COMEDI_CMD: return Start(*static_cast<comedi_cmd*>(argument));
-    case COMEDI_CANCEL: command_.reset(); return 0;
+    case COMEDI_DEVINFO:
+      return DeviceInfo(*static_cast<comedi_devinfo*>(argument));
+    case COMEDI_SUBDINFO:
+      return SubdeviceInfo(static_cast<comedi_subdinfo*>(argument));
+    case COMEDI_RANGEINFO:
+      return RangeInfo(*static_cast<const comedi_rangeinfo*>(argument));
+    case COMEDI_INSN:
+      return Instruct(*static_cast<const comedi_insn*>(argument));
+    case COMEDI_INSNLIST:
+      return Instruct(*static_cast<const comedi_insnlist*>(argument));
+    case COMEDI_CMDTEST:
+      return Test(*static_cast<comedi_cmd*>(argument));
+    case COMEDI_CMD:
+      return Start(*static_cast<comedi_cmd*>(argument));
+    case COMEDI_CANCEL:
+      command_.reset();
+      return 0;
     case COMEDI_BUFCONFIG: {
       auto& config = *static_cast<comedi_bufconfig*>(argument);
       config.size = config.maximum_size = 1 << 16;
@@ -89,8 +98,10 @@ int Card::Control(unsigned long request, void* argument) {
     case COMEDI_CHANINFO:  // nothing differs from channel to channel
     case COMEDI_LOCK:
     case COMEDI_UNLOCK:
-    case COMEDI_POLL: return 0;
-    default: return -ENOTTY;
+    case COMEDI_POLL:
+      return 0;
+    default:
+      return -ENOTTY;
   }
 }
 
@@ -138,7 +149,8 @@ int Card::Instruct(const comedi_insn& instruction) {
     instruction.data[1] = MakeSampleSource()->Lines();
     return 2;
   }
-  if (instruction.insn == INSN_GTOD && instruction.n == 2) {  // with which libcomedi tries whether there are instructions
+  if (instruction.insn == INSN_GTOD &&
+      instruction.n == 2) {  // with which libcomedi tries whether there are instructions
     instruction.data[0] = static_cast<lsampl_t>(std::time(nullptr));
     instruction.data[1] = 0;
     return 2;
@@ -176,7 +188,8 @@ int Card::Start(comedi_cmd& command) {
   if (command_ && !command_->failed()) return -EBUSY;
   if (Test(command) != 0) return -EINVAL;
   command_.reset();
-  command_ = std::make_unique<Command>(MakeSampleSource(), descriptor_, static_cast<int>(command.stop_arg), traits_.bits);
+  command_ =
+      std::make_unique<Command>(MakeSampleSource(), descriptor_, static_cast<int>(command.stop_arg), traits_.bits);
   return 0;
 }
 

@@ -86,7 +86,8 @@ class Scans {
 
  private:
   bool Follows(std::int64_t stamp_ns) {
-    const bool follows = !any_ || std::abs(static_cast<double>(stamp_ns - last_ns_) - period_ns_) < 0.5 * period_ns_;
+    const bool follows =
+        !any_ || std::abs(static_cast<double>(stamp_ns - last_ns_) - period_ns_) < 0.5 * period_ns_;
     any_ = true;
     last_ns_ = stamp_ns;
     return follows;
@@ -110,7 +111,8 @@ std::string IiodTwin::Attribute(const std::string& name) {
 }
 
 CardTraits IiodTwin::Traits() {
-  return {std::stoi(Attribute("bits")), std::stod(Attribute("conversion_frequency")), std::stod(Attribute("range_V"))};
+  return {std::stoi(Attribute("bits")), std::stod(Attribute("conversion_frequency")),
+          std::stod(Attribute("range_V"))};
 }
 
 unsigned IiodTwin::Lines() {

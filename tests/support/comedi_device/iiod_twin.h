@@ -7,8 +7,8 @@
 
 namespace twinbench::test {
 
-/// A served twin's A/D over the IIOD text protocol: an acquisition is one OPEN and READBUF of as many scans, so that the
-/// card shows the twin's own counts.
+/// A served twin's A/D over the IIOD text protocol: an acquisition is one OPEN and READBUF of as many scans, so
+/// that the card shows the twin's own counts.
 class IiodTwin : public SampleSource {
  public:
   /// @param address  "HOST:PORT", numeric.
@@ -16,8 +16,8 @@ class IiodTwin : public SampleSource {
 
   CardTraits Traits() override;
   unsigned Lines() override;
-  /// A real card's FIFO fills up when the driver does not come: so a gap or an error of the twin shows as that, and a
-  /// block that ends early as a command that does.
+  /// A real card's FIFO fills up when the driver does not come: so a gap or an error of the twin shows as that, and
+  /// a block that ends early as a command that does.
   Ending Acquire(int scans, const std::function<void(std::span<const std::int16_t, kInputs>)>& take) override;
   void Abort() override;
 

@@ -85,7 +85,7 @@ int ioctl(int descriptor, unsigned long request, ...) noexcept {
   int result = -EIO;
   try {
     result = card->Control(static_cast<unsigned>(request), argument);  // libcomedi's came through an int
-  } catch (const std::exception&) {  // the twin does not answer: the bus does not
+  } catch (const std::exception&) {                                    // the twin does not answer: the bus does not
   }
   if (result >= 0) return result;
   errno = -result;

@@ -33,7 +33,8 @@ class SampleSource {
   virtual void Abort() = 0;
 };
 
-/// The twin that $TWINBENCH_COMEDI_TWIN names as HOST:PORT of its IIOD; without it, four steady voltages with noise.
+/// The twin that $TWINBENCH_COMEDI_TWIN names as HOST:PORT of its IIOD; without it, four steady voltages with
+/// noise.
 std::unique_ptr<SampleSource> MakeSampleSource();
 
 }  // namespace twinbench::test
