@@ -109,10 +109,7 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
   ProgressLine line;
   options.log = &record;
   if (bench.simulation) bench.simulation->Restart();
-  const auto show = [&line](const procedure::Progress& p) {
-    line.Show(p.readings_done, p.readings_planned, p.phase, p.bench_time);
-  };
-  procedure::CarryOut(bench, scenario, record, show, options);
+  procedure::CarryOut(bench, scenario, record, ShownOn(line), options);
   record.Finish();
 }
 

@@ -45,4 +45,10 @@ std::string ProgressLine::Text(int done, int planned, Phase phase, Time bench_ti
                      Clock(ToSeconds(bench_time)), Clock(remaining_s));
 }
 
+procedure::ProgressCallback ShownOn(ProgressLine& line) {
+  return [&line](const procedure::Progress& p) {
+    line.Show(p.readings_done, p.readings_planned, p.phase, p.bench_time);
+  };
+}
+
 }  // namespace twinbench::tools

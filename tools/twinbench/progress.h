@@ -4,6 +4,7 @@
 #include <string>
 
 #include "twin/core/reading.h"
+#include "twin/procedure/procedure.h"
 
 namespace twinbench::tools {
 
@@ -25,5 +26,8 @@ class ProgressLine {
   int shown_tenth_ = 0;
   bool line_open_ = false;
 };
+
+/// What a procedure calls to be shown on `line`, which must outlive it.
+procedure::ProgressCallback ShownOn(ProgressLine& line);
 
 }  // namespace twinbench::tools

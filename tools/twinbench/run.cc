@@ -68,12 +68,6 @@ std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& fold
   return record;
 }
 
-procedure::ProgressCallback ShownOn(ProgressLine& line) {
-  return [&line](const procedure::Progress& p) {
-    line.Show(p.readings_done, p.readings_planned, p.phase, p.bench_time);
-  };
-}
-
 void CarryOutOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
   sim::Twin twin(scenario);
   const auto record = Begin(scenario, folder, ToJson(twin.TheTruth()));

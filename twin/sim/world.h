@@ -22,7 +22,6 @@ class World {
   bool Settles(mechanics::Axis axis, Duration within) { return axes_.Settles(axis, within); }
   void Stop(mechanics::Axis axis) { axes_.Stop(axis); }
   TableState StateOf(mechanics::Axis axis);
-  mechanics::StackState LookAtAxes() { return axes_.Look(); }
   void Mount(int setup, double clamp_rad, double reseat_rad);
   void SetGoniometer(double yaw_rad, double tilt_rad) { stand_.SetGoniometer(yaw_rad, tilt_rad); }
 
