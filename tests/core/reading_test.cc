@@ -246,5 +246,47 @@ TEST(AngleReadings, ComeBackToTheSameBits) {
   EXPECT_THAT(Write(readings), Not(HasSubstr("psd_a_x_V")));
 }
 
+constexpr const char* kTurntableHeader =
+    "reading,time_s,setup,pass,direction,position,phase,turntable_deg,multitooth_deg,autocollimator_x_arcsec,"
+    "autocollimator_y_arcsec\n";
+
+TEST(TurntableReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
+  const auto readings = Parse(std::string(kTurntableHeader) + "0,0,0,0,1,0,full_circle,5,-5,1.25,-60\n" +
+                              "1,2,0,0,1,1,full_circle,10,-10,,\n");
+  EXPECT_EQ(BenchOf(readings), "turntable_autocollimator");
+  EXPECT_DOUBLE_EQ(readings[0].target_rad, 5.0 * units::deg);
+  EXPECT_DOUBLE_EQ(readings[0].reference_rad, -5.0 * units::deg);
+  EXPECT_DOUBLE_EQ(readings[0].autocollimator_yaw_rad, 1.25 * units::arcsec);
+  EXPECT_DOUBLE_EQ(readings[0].autocollimator_tilt_rad, -60.0 * units::arcsec);
+  EXPECT_EQ(readings[1].status, ReadingStatus::kMissing) << "the autocollimator showed nothing";
+  const auto again = Parse(Write(readings));
+  EXPECT_EQ(again[0].autocollimator_yaw_rad, readings[0].autocollimator_yaw_rad);
+  EXPECT_EQ(again[1].status, ReadingStatus::kMissing);
+}
+
+constexpr const char* kHobHeader =
+    "reading,time_s,setup,pass,direction,position,phase,table_encoder_deg,hob_encoder_deg,head_deg";
+
+TEST(HobReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
+  const auto readings = Parse(std::string(kHobHeader) + ",interferometer_arcsec\n" +
+                              "0,0,0,0,1,0,full_circle,0.5,11,180,2.5\n1,2,0,0,0,1,full_circle,,22,180,\n");
+  EXPECT_EQ(BenchOf(readings), "hob_transmission");
+  EXPECT_DOUBLE_EQ(readings[0].measured_rad, 0.5 * units::deg);
+  EXPECT_DOUBLE_EQ(readings[0].reference_rad, 11.0 * units::deg);
+  EXPECT_DOUBLE_EQ(readings[0].head_rad, 180.0 * units::deg);
+  EXPECT_DOUBLE_EQ(readings[0].interferometer_rad, 2.5 * units::arcsec);
+  EXPECT_EQ(readings[1].status, ReadingStatus::kMissing);
+  const auto again = Parse(Write(readings));
+  EXPECT_EQ(again[0].measured_rad, readings[0].measured_rad);
+  EXPECT_EQ(again[0].head_rad, readings[0].head_rad);
+  EXPECT_EQ(again[0].interferometer_rad, readings[0].interferometer_rad);
+}
+
+TEST(HobReadings, NeedNoInterferometer) {
+  const auto readings = Parse(std::string(kHobHeader) + "\n0,0,0,0,1,0,full_circle,0.5,11,180\n");
+  EXPECT_EQ(readings[0].status, ReadingStatus::kOk);
+  EXPECT_TRUE(std::isnan(readings[0].interferometer_rad));
+}
+
 }  // namespace
 }  // namespace twinbench

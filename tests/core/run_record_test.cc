@@ -231,15 +231,47 @@ TEST(RunRecord, OfAnotherVersionIsRefused) {
   RunRecord::Create(folder.path(), AnyProvenance());
   Sql(folder.path(), "PRAGMA user_version = 99");
   EXPECT_EQ(OpenError(folder.path()),
-            folder.File("record.sqlite") + ": the record has version 99; expected version 3");
+            folder.File("record.sqlite") + ": the record has version 99; expected version 4");
+}
+
+/// Takes from a record what version 4 brought.
+void MakeVersion3(const std::string& folder) {
+  for (const char* column : {"head_rad", "interferometer_rad"})
+    Sql(folder, ("ALTER TABLE readings DROP COLUMN " + std::string(column)).c_str());
+  Sql(folder, "PRAGMA user_version = 3");
 }
 
 /// Takes from a record what version 3 brought.
 void MakeVersion2(const std::string& folder) {
+  MakeVersion3(folder);
   for (const char* column : {"first_scan", "device_ns", "host_ns", "utc_ns", "saturated_mask"})
     Sql(folder, ("ALTER TABLE raw_blocks DROP COLUMN " + std::string(column)).c_str());
   for (const char* table : {"calls", "attempts"}) Sql(folder, ("DROP TABLE " + std::string(table)).c_str());
   Sql(folder, "PRAGMA user_version = 2");
+}
+
+TEST(RunRecord, OfTheVersionWithoutHobbingMachinesIsBroughtUpToDate) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), AnyProvenance())->Append(ReadingOf(0), {});
+  MakeVersion3(folder.path());
+  Reading hob = ReadingOf(1);
+  hob.head_rad = 2.5;
+  hob.interferometer_rad = 1e-5;
+  const auto record = RunRecord::Continue(folder.path());
+  record->Append(hob, {});
+  EXPECT_TRUE(std::isnan(record->Readings().at(0).head_rad)) << "not known then";
+  EXPECT_EQ(record->Readings().at(1).head_rad, 2.5);
+  EXPECT_EQ(record->Readings().at(1).interferometer_rad, 1e-5);
+}
+
+TEST(RunRecord, KeepsManyReadingsInOneTransactionOrNone) {
+  const TemporaryFolder folder;
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  record->AppendAll({ReadingOf(0), ReadingOf(1)});
+  EXPECT_THROW(record->AppendAll({ReadingOf(2), ReadingOf(1)}), BenchError) << "a number is taken";
+  EXPECT_EQ(record->Readings().size(), 2u);
+  record->AppendAll({ReadingOf(2)});
+  EXPECT_EQ(record->Readings().size(), 3u);
 }
 
 TEST(RunRecord, OfTheVersionWithoutCallsAndAttemptsIsBroughtUpToDate) {

@@ -204,10 +204,12 @@ TEST(ScenarioOverride, IsNamedWhenItIsWrong) {
 // --- bad input: where, what, expected ---
 
 TEST(ScenarioError, NamesTheSupportedBenches) {
+  const std::string benches =
+      "\"rotary_4dof\", \"encoder_comparison\", \"turntable_autocollimator\" or \"hob_transmission\"";
   EXPECT_EQ(MessageOf([] { ParseScenario("seed = 1\n", "s.toml", ".", {}); }),
-            "s.toml:1: bench is missing; expected bench = \"rotary_4dof\" or \"encoder_comparison\"");
+            "s.toml:1: bench is missing; expected bench = " + benches);
   EXPECT_EQ(MessageOf([] { ParseScenario("\nbench = \"lathe\"\n", "s.toml", ".", {}); }),
-            "s.toml:2: bench is \"lathe\"; expected \"rotary_4dof\" or \"encoder_comparison\"");
+            "s.toml:2: bench is \"lathe\"; expected " + benches);
 }
 
 TEST(ScenarioError, NamesTheBenchThatAKeyBelongsTo) {
@@ -338,7 +340,7 @@ TEST(ScenarioError, ChecksHarmonics) {
   const auto error = [](const std::string& entry) { return ErrorOf("[target]\nharmonics = [" + entry + "]\n"); };
   const std::string form = "{ component = \"ez\", order = 1, amplitude_arcsec = 5.0, phase_deg = 30.0 }";
   EXPECT_EQ(error("1"), "s.toml:3: target.harmonics is 1; expected " + form);
-  EXPECT_EQ(error("{ order = 1 }"), "s.toml:3: target.harmonics has no component; expected " + form);
+  EXPECT_EQ(error("{ order = 1 }"), "s.toml:3: target.harmonics has no amplitude_arcsec; expected " + form);
   EXPECT_EQ(error("{ component = \"ez\", order = 1 }"),
             "s.toml:3: target.harmonics has no amplitude_arcsec; expected " + form);
   EXPECT_EQ(error("{ component = \"ez\", order = 1, amplitude_um = 2 }"),
@@ -485,4 +487,46 @@ TEST(EditDistance, CountsASwapOfNeighboursOnce) {
 }
 
 }  // namespace
+std::string ErrorOfTurntable(const std::string& procedure) {
+  const std::string text = "bench = \"turntable_autocollimator\"\n[turntable_procedure]\n" + procedure + "\n";
+  return MessageOf([&] { ParseScenario(text, "s.toml", "."); });
+}
+
+TEST(ScenarioError, WantsTurntablePositionsAWholeNumberOfTeethApart) {
+  EXPECT_EQ(ErrorOfTurntable("positions = 50"),
+            "s.toml:3: 50 positions are no whole number of teeth apart; expected a divisor of the 360 teeth");
+  EXPECT_EQ(ErrorOfTurntable("verification_positions = 300"),
+            "s.toml:3: 300 check positions; expected at most 288: the teeth that are no position");
+  EXPECT_EQ(ErrorOfTurntable("shifts_teeth = [360]"),
+            "s.toml:3: turntable_procedure.shifts_teeth has 360; expected shifts from 0 to 359");
+}
+
+TEST(ScenarioError, WantsOneEntryASetUpOrOneForAll) {
+  EXPECT_EQ(ErrorOfTurntable("tilts_arcsec = [60, 100, 30]\nshifts_teeth = [0, 5]"),
+            "s.toml:4: turntable_procedure.shifts_teeth has 2 entries for 3 set-ups; expected 1 or 3");
+  EXPECT_EQ(ErrorOfTurntable("passes = [1, 0]"), "s.toml:3: turntable_procedure.passes has 0; expected directions 1 or -1");
+}
+
+TEST(ScenarioError, WantsWholeNumbersOfLinesBetweenSamplesOfTheHobbingMachine) {
+  const auto error = [](const std::string& keys) {
+    return MessageOf([&] { ParseScenario("bench = \"hob_transmission\"\n" + keys, "s.toml", "."); });
+  };
+  EXPECT_EQ(error("hob_procedure.samples_per_turn = 700"),
+            "s.toml:2: 700 samples a turn; expected a divisor of the 18000 lines of the table's encoder");
+  EXPECT_EQ(error("transmission.harmonics = [{ component = \"ex\", order = 1, amplitude_arcsec = 1 }]"),
+            "s.toml:2: transmission.harmonics has a harmonic of another component; expected \"ez\"");
+}
+
+TEST(Scenario, OfTheTurntableNamesItsTablesByTheirOwnNames) {
+  const Scenario s = ParseScenario(
+      "bench = \"turntable_autocollimator\"\n"
+      "turntable.harmonics = [{ order = 2, amplitude_arcsec = 3.0 }]\n"
+      "multitooth = { teeth = 720, repeatability.ez_arcsec = 0.05 }\n",
+      "s.toml", ".");
+  EXPECT_EQ(s.target.harmonics.at(0).component, Component::kEz) << "of the index error if nothing is said";
+  EXPECT_DOUBLE_EQ(s.target.harmonics.at(0).amplitude, 3.0 * units::arcsec);
+  EXPECT_EQ(s.multitooth.teeth, 720);
+  EXPECT_DOUBLE_EQ(s.reference.repeatability_sd[static_cast<std::size_t>(Component::kEz)], 0.05 * units::arcsec);
+}
+
 }  // namespace twinbench

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/support/twin_run.h"
+#include "tests/support/angle_benches.h"
 #include "twin/measure/angle_comparison.h"
 #include "twin/measure/stability.h"
 #include "twin/measure/verification.h"
@@ -38,12 +38,9 @@ TEST_P(EveryScenario, OpensWithItsQuestionAndTheAnswerExpected) {
 
 TEST_P(EveryScenario, RunsWithEveryReadingValid) {
   const Scenario scenario = LoadScenario(test::ScenarioPath(GetParam()));
-  const bool encoder = scenario.bench == kEncoderBench;
-  const test::TwinRun run = encoder ? test::RunEncoderTwin(scenario) : test::RunTwin(scenario);
-  const int planned = encoder ? static_cast<int>(procedure::AngleSchedule(scenario.encoder_procedure).size())
-                              : procedure::PlannedReadings(scenario.procedure);
-  EXPECT_EQ(static_cast<int>(run.readings.size()), planned);
-  for (const Reading& reading : run.readings) EXPECT_EQ(reading.status, ReadingStatus::kOk) << reading.reading;
+  const std::vector<Reading> readings = test::ReadingsOf(scenario);
+  EXPECT_EQ(static_cast<int>(readings.size()), test::PlannedReadings(scenario));
+  for (const Reading& reading : readings) EXPECT_EQ(reading.status, ReadingStatus::kOk) << reading.reading;
 }
 
 TEST_P(EveryScenario, ReadsTheSameFromItsResolvedForm) {

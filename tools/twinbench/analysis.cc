@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "twin/core/errors.h"
 
 namespace twinbench::tools {
 namespace {
@@ -85,12 +84,6 @@ Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings,
   options.cov_calibration = analysis.calibration.cov;
   analysis.separation = separate::Separate(analysis.motions, geometry, options);
   return analysis;
-}
-
-void RequireTables(const Scenario& scenario) {
-  if (scenario.bench == kRotaryBench) return;
-  throw InputError("bench " + scenario.bench, "there are no two tables whose errors could be separated",
-                   std::string("a run of ") + kRotaryBench);
 }
 
 nlohmann::json ToJson(const Analysis& analysis) {

@@ -27,9 +27,6 @@ struct Analysis {
 
 Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings, measure::Estimator estimator);
 
-/// @throws InputError for a bench without two tables to separate.
-void RequireTables(const Scenario& scenario);
-
 /// results.json.
 nlohmann::json ToJson(const Analysis& analysis);
 

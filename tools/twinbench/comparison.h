@@ -10,7 +10,7 @@ namespace twinbench::tools {
 /// What an angle comparison found before anything is diagnosed, as text for a person.
 std::string Summary(const measure::AngleComparison& comparison);
 
-/// results.json.
+/// What results.json has of it.
 nlohmann::json ToJson(const measure::AngleComparison& comparison);
 
 }  // namespace twinbench::tools

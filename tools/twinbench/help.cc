@@ -30,7 +30,7 @@ void PrintEffects(const std::string& bench) {
 
 void PrintAllEffects() {
   fmt::print("An [[effect]] block hides one of these in the bench: name, where, and any of the parameters.\n");
-  for (const char* bench : {kRotaryBench, kEncoderBench}) PrintEffects(bench);
+  for (const std::string& bench : SupportedBenches()) PrintEffects(bench);
 }
 
 void PrintBenchKeys() {

@@ -1,10 +1,8 @@
 #include <fmt/core.h>
 
-#include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/comparison.h"
+#include "tools/twinbench/evaluation.h"
 #include "tools/twinbench/run_folder.h"
-#include "tools/twinbench/tables.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::tools {
@@ -15,25 +13,11 @@ struct Options {
   std::vector<std::string> overrides;
 };
 
-struct Evaluation {
-  nlohmann::json results;
-  std::string summary;
-};
-
-Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings) {
-  if (scenario.bench == kEncoderBench) {
-    const auto comparison = measure::CompareAngles(readings);
-    return {ToJson(comparison), Summary(comparison)};
-  }
-  const Analysis analysis = Analyse(scenario, readings, measure::Estimator::kRigorous);
-  return {ToJson(analysis), Summary(analysis)};
-}
-
 void Import(const Options& options) {
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const std::vector<Reading> readings = ReadReadingsCsv(options.readings, scenario.bench);
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
-  const Evaluation evaluation = Evaluate(scenario, readings);
+  const Evaluation evaluation = Evaluate(scenario, readings, measure::Estimator::kRigorous);
   const RunFolder folder{options.folder};
   {
     const auto record =

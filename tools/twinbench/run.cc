@@ -1,21 +1,12 @@
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <optional>
 
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/comparison.h"
 #include "tools/twinbench/evaluated_run.h"
-#include "tools/twinbench/progress.h"
-#include "tools/twinbench/run_folder.h"
-#include "tools/twinbench/tables.h"
+#include "tools/twinbench/twin_run.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
-#include "twin/core/run_record.h"
-#include "twin/procedure/angle_comparison.h"
-#include "twin/procedure/procedure.h"
-#include "twin/sim/encoder/twin.h"
-#include "twin/sim/twin.h"
 
 namespace twinbench::tools {
 namespace {
@@ -32,14 +23,16 @@ struct Options {
 
 /// The errors of a file take the place of every repeatable error the scenario gives that table.
 void ReplaceErrors(Scenario& scenario, const std::string& option) {
-  if (scenario.bench != kRotaryBench)
+  if (scenario.bench != kRotaryBench && scenario.bench != kTurntableBench)
     throw InputError("--errors " + option, "the bench " + scenario.bench + " has no such table", "no --errors");
+  const TableNames names = TableNamesOf(scenario.bench);
   const std::size_t equals = option.find('=');
   const std::string table = option.substr(0, equals);
-  if (equals == std::string::npos || (table != "target" && table != "reference")) {
-    throw InputError("--errors " + option, "names no table", "target=FILE.csv or reference=FILE.csv");
+  if (equals == std::string::npos || (table != names.target && table != names.reference)) {
+    throw InputError("--errors " + option, "names no table",
+                     fmt::format("{}=FILE.csv or {}=FILE.csv", names.target, names.reference));
   }
-  TableSettings& settings = table == "target" ? scenario.target : scenario.reference;
+  TableSettings& settings = table == names.target ? scenario.target : scenario.reference;
   settings.errors = ReadTableErrors(option.substr(equals + 1));
   settings.harmonics.clear();
   settings.random_rms = {};
@@ -60,45 +53,10 @@ Scenario ScenarioOf(const Options& options) {
   return scenario;
 }
 
-/// Makes the folder of a run of the twin, with an empty record.
-std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& folder, const nlohmann::json& truth) {
-  auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "twin", scenario.seed, ""});
-  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
-  WriteJson(folder.truth(), truth);
-  return record;
-}
-
-void CarryOutOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
-  sim::Twin twin(scenario);
-  const auto record = Begin(scenario, folder, ToJson(twin.TheTruth()));
-  RotaryBench bench = twin.Bench();
-  ProgressLine progress;
-  procedure::Options options;
-  options.log = record.get();
-  procedure::CarryOut(bench, scenario, *record, ShownOn(progress), options);
-  record->Finish();
-  if (!images) return;
-  std::filesystem::create_directories(folder.images());
-  twin.WriteIrradiance(folder.images() + "/irradiance.exr");
-}
-
-void RunAngleComparison(const Scenario& scenario, const RunFolder& folder, bool images) {
-  if (images) throw InputError("--images", "the bench " + scenario.bench + " has no light", "a run without images");
-  sim::EncoderTwin twin(scenario);
-  const auto record = Begin(scenario, folder, twin.Truth());
-  ProgressLine progress;
-  procedure::CarryOut(twin, scenario, *record, ShownOn(progress));
-  record->Finish();
-  const auto comparison = measure::CompareAngles(RunRecord::Open(folder.path)->Readings());
-  WriteJson(folder.results(), ToJson(comparison));
-  fmt::print("{}", Summary(comparison));
-}
-
 void Run(const Options& options) {
   const Scenario scenario = ScenarioOf(options);
   const RunFolder folder{options.folder};
-  if (scenario.bench == kEncoderBench) return RunAngleComparison(scenario, folder, options.images);
-  CarryOutOnTwin(scenario, folder, options.images);
+  RunOnTwin(scenario, folder, options.images);
   if (EvaluateRun(scenario, folder.path)) fmt::print("compare with the truth: twinbench score {}\n", folder.path);
 }
 

@@ -2,8 +2,8 @@
 
 #include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/evaluation.h"
 #include "tools/twinbench/run_folder.h"
-#include "tools/twinbench/tables.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::tools {
@@ -14,28 +14,19 @@ struct Options {
   std::vector<std::string> overrides;
 };
 
-/// What others script against (formats.md); results.json of a run has the rest.
-nlohmann::json SeparationJson(const separate::Separation& separation) {
-  const nlohmann::json all = separate::ToJson(separation);
-  nlohmann::json agreed;
-  for (const char* key : {"target", "reference", "not_separable", "residual_rms", "dof"}) agreed[key] = all.at(key);
-  return agreed;
-}
-
 void Separate(const Options& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
-  RequireTables(run.scenario);
-  const Analysis analysis = Analyse(run.scenario, run.readings, EstimatorOf(options.estimator));
-  if (!analysis.separation)
-    throw InputError(options.source, analysis.not_separated, "readings of a full-circle test");
-  if (!options.json.empty()) WriteJson(options.json, SeparationJson(*analysis.separation));
-  if (options.json != "-") fmt::print("{}", Summary(analysis));
+  const Evaluation evaluation = Evaluate(run.scenario, run.readings, EstimatorOf(options.estimator));
+  if (!evaluation.Separated())
+    throw InputError(options.source, evaluation.not_separated, "readings of a full-circle test");
+  if (!options.json.empty()) WriteJson(options.json, evaluation.separation);
+  if (options.json != "-") fmt::print("{}", evaluation.summary);
 }
 
 }  // namespace
 
 void AddSeparate(CLI::App& app) {
-  auto* command = app.add_subcommand("separate", "Separate readings into the errors of both tables");
+  auto* command = app.add_subcommand("separate", "Separate readings into the errors of what was measured and of what it was measured with");
   auto options = std::make_shared<Options>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");

@@ -87,6 +87,7 @@ class AdConverter {
 struct AutocollimatorReading {
   double yaw_rad = kNaN;   // about z, counter-clockwise positive
   double tilt_rad = kNaN;  // about x, normal upwards positive
+  ReadingStatus status = ReadingStatus::kOk;  // else both are NaN
 };
 
 class Autocollimator {
@@ -149,12 +150,93 @@ class AngleComparator {
   virtual void Take(Reading& reading) = 0;
 };
 
+/// A table whose rings of face teeth mesh: it is lifted, turned by whole teeth and seated again.
+class IndexingTable {
+ public:
+  virtual ~IndexingTable() = default;
+  /// Returns when it is seated; counter-clockwise positive seen from above, unwrapped.
+  virtual void IndexTo(int tooth) = 0;
+};
+
+/// What a hand does between set-ups of the turntable bench.
+class TurntableFixture {
+ public:
+  virtual ~TurntableFixture() = default;
+  /// Sets the multi-tooth table up anew on the turntable: its axis leans by `tilt_rad` towards `azimuth_rad` and
+  /// stands off by `eccentricity_m` in the same direction, both on the turntable; then turns the mirror on it so that
+  /// the autocollimator sees it with the turntable at 0 and the multi-tooth table at `shift_teeth`.
+  virtual void Mount(int setup, double tilt_rad, double azimuth_rad, double eccentricity_m, int shift_teeth) = 0;
+};
+
+/// The devices of the bench turntable_autocollimator. Does not own them.
+struct TurntableBench {
+  Clock& clock;
+  RotaryTable& turntable;
+  IndexingTable& multitooth;
+  Autocollimator& autocollimator;
+  Thermometer& thermometer;
+  TurntableFixture& fixture;
+};
+
+/// Both counters of a hobbing machine at one edge of the table's encoder.
+struct CounterSample {
+  Time time{};
+  double table_encoder_rad = kNaN;  // unwrapped since the mounting
+  double hob_encoder_rad = kNaN;
+  double velocity_rad_s = kNaN;  // of the table, as the drive was told
+  double interferometer_rad = kNaN;
+};
+
+/// What a counter card's FIFO held.
+struct CounterSamples {
+  std::vector<CounterSample> samples;  // in order
+  bool overrun = false;                // it ran full: samples behind these are lost
+};
+
+/// The card that keeps the counts of both encoders at edges of the table's, in a FIFO.
+class CounterCard {
+ public:
+  virtual ~CounterCard() = default;
+  /// Empties the FIFO; the next `samples` samples are kept, one at every `edges`-th line of the table's encoder.
+  virtual void Arm(int edges, int samples) = 0;
+  virtual CounterSamples Read() = 0;
+};
+
+/// The drive of hob spindle and, by the electronic gearbox, of the table.
+class HobDrive {
+ public:
+  virtual ~HobDrive() = default;
+  /// Goes over to a speed of the hob within `ramp`; returns at once. Negative turns the table backwards.
+  virtual void Run(double hob_speed_rad_s, Duration ramp) = 0;
+};
+
+/// What a hand does between set-ups of the hobbing machine.
+class HobFixture {
+ public:
+  virtual ~HobFixture() = default;
+  /// Sets ring and reading head of the table's encoder up so that the ring's mark passes the head when the table
+  /// stands at `head_rad` from its origin.
+  virtual void Mount(int setup, double head_rad) = 0;
+};
+
+/// The devices of the bench hob_transmission. Does not own them.
+struct HobBench {
+  Clock& clock;
+  HobDrive& drive;
+  CounterCard& counters;
+  HobFixture& fixture;
+};
+
 /// Takes readings as they are made. `Append` returns only when the reading is as safe as the sink can make it.
 class ReadingSink {
  public:
   virtual ~ReadingSink() = default;
   /// @param block  What the converter delivered for it; without raw counts where it has none.
   virtual void Append(const Reading& reading, const Acquisition& block) = 0;
+  /// Readings without raw counts that came together, as from one look into a FIFO: all are safe or none.
+  virtual void AppendAll(const std::vector<Reading>& readings) {
+    for (const Reading& reading : readings) Append(reading, {});
+  }
 };
 
 }  // namespace twinbench

@@ -37,6 +37,7 @@ double FactorOf(const std::string& unit) {
                                                  {"per_m2", 1.0},
                                                  {"nm_per_K", nm},
                                                  {"arcsec_per_K", arcsec},
+                                                 {"arcsec_per_h", arcsec / units::hour},
                                                  {"urad_per_h", urad / units::hour},
                                                  {"deg_per_h", deg / units::hour}};
   const auto found = factors.find(unit);
@@ -223,7 +224,10 @@ bool EffectParameter::BelongsTo(const std::string& place) const {
 
 const std::vector<EffectEntry>& EffectCatalogue(const std::string& bench) {
   static const std::map<std::string, std::vector<EffectEntry>> catalogues = {
-      {kRotaryBench, RotaryEffects()}, {kEncoderBench, EncoderEffects()}};  // constants, made at the first call
+      {kRotaryBench, RotaryEffects()},
+      {kEncoderBench, EncoderEffects()},
+      {kTurntableBench, TurntableEffects()},
+      {kHobBench, HobEffects()}};  // constants, made at the first call
   const auto found = catalogues.find(bench);
   Require(found != catalogues.end(), "there is no such bench");
   return found->second;

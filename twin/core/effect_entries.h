@@ -13,7 +13,9 @@ EffectParameter Parameter(const std::string& name, const std::string& unit, doub
 EffectParameter Signed(const std::string& name, const std::string& unit, double value, double limit,
                        const std::string& meaning, std::vector<std::string> only_at = {});
 
-/// Effects of the bench encoder_comparison.
+/// Effects of the benches encoder_comparison, turntable_autocollimator and hob_transmission.
 std::vector<EffectEntry> EncoderEffects();
+std::vector<EffectEntry> TurntableEffects();
+std::vector<EffectEntry> HobEffects();
 
 }  // namespace twinbench

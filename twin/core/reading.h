@@ -33,7 +33,9 @@ std::optional<Phase> PhaseOf(std::string_view name);
 std::optional<ReadingStatus> ReadingStatusOf(std::string_view name);
 
 /// One stop of a bench. Rotary bench: the commanded angles and the mean and scatter of one block of A/D samples.
-/// Angle comparison: the angles that reference and device showed at the same instant. The rest stays NaN.
+/// Angle comparison: the angles that reference and device showed at the same instant. Turntable: target and reference
+/// are the nominal angles of turntable and multi-tooth table, yaw and tilt what the autocollimator showed as x and y.
+/// Hob: measured and reference are what the ring encoders of table and hob showed. The rest stays NaN.
 struct Reading {
   int reading = 0;    // running number
   Time time{};        // start of the block
@@ -51,10 +53,12 @@ struct Reading {
   int n_samples = 0;                                               // per channel; 0 if not known
   double dwell_s = kNaN;                                           // settled -> start of the block
   double temperature_degC = kNaN;
-  double autocollimator_yaw_rad = kNaN;  // calibration and verification only
+  double autocollimator_yaw_rad = kNaN;  // rotary bench: calibration and verification only
   double autocollimator_tilt_rad = kNaN;
   double measured_rad = kNaN;    // angle comparison: what the device under test showed; some wrap it at a turn
   double velocity_rad_s = kNaN;  // angle comparison: of the reference
+  double head_rad = kNaN;            // hob: reading head of the table's encoder from the table's origin
+  double interferometer_rad = kNaN;  // hob, optional: transmission error as the interferometer saw it
 
   std::map<std::string, std::string> extra;  // columns of an imported file that we do not know, kept as text
 };
@@ -67,16 +71,15 @@ void WriteReadingsCsv(const std::vector<Reading>& readings, std::ostream& out);
 void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& path);
 
 /// Reads readings.csv. Column order is free, `#` lines are comments, unknown columns are kept. A reading with an empty
-/// voltage (or measured angle) and no other status becomes kMissing.
-/// @param bench  "rotary_4dof" or "encoder_comparison"; empty: the one that the columns speak of (`measured_deg`
-///               without `target_deg` is an angle comparison).
+/// voltage (or angle that was read) and no other status becomes kMissing.
+/// @param bench  Its name; empty: the one that the columns speak of.
 /// @throws InputError with file:line for missing required columns (all are named), a field that is no number, a
 ///         wrong number of fields, an unknown phase or status, a reading number that comes twice or a time that
 ///         goes back.
 std::vector<Reading> ReadReadingsCsv(const std::string& path, const std::string& bench = "");
 std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name, const std::string& bench = "");
 
-/// The bench whose readings these are: "encoder_comparison" if there are angles of a reference and none of a target.
+/// The bench whose readings these are, from the values that they have; "rotary_4dof" if they have none.
 std::string BenchOf(const std::vector<Reading>& readings);
 
 }  // namespace twinbench

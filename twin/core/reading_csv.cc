@@ -19,6 +19,8 @@ namespace {
 
 constexpr const char* kStatusColumn = "status";
 constexpr const char* kMeasuredColumn = "measured_deg";
+constexpr const char* kMultitoothColumn = "multitooth_deg";
+constexpr const char* kHeadColumn = "head_deg";
 
 /// One column of readings.csv, for both ways.
 struct ReadingColumn {
@@ -136,14 +138,45 @@ void AddRotaryColumns(std::vector<ReadingColumn>& columns) {
   }
 }
 
+/// A number that a required column may lack: the reading's status says why.
+template <class Field>
+ReadingColumn Shown(const std::string& name, double to_SI, const std::string& unit, Field field) {
+  ReadingColumn column = Number(name, to_SI, true, field);
+  column.may_be_empty = true;
+  column.expected = "a finite number of " + unit + ", or nothing";
+  return column;
+}
+
 void AddEncoderColumns(std::vector<ReadingColumn>& columns) {
   columns.push_back(Number(
       "reference_deg", units::deg, true, [](auto& r) -> auto& { return r.reference_rad; }));
-  ReadingColumn measured = Number(
-      kMeasuredColumn, units::deg, true, [](auto& r) -> auto& { return r.measured_rad; });
-  measured.may_be_empty = true;
-  measured.expected = "a finite number of deg, or nothing";
-  columns.push_back(measured);
+  columns.push_back(Shown(
+      kMeasuredColumn, units::deg, "deg", [](auto& r) -> auto& { return r.measured_rad; }));
+  columns.push_back(Number(
+      "velocity_deg_s", units::deg, false, [](auto& r) -> auto& { return r.velocity_rad_s; }));
+}
+
+void AddTurntableColumns(std::vector<ReadingColumn>& columns) {
+  columns.push_back(Number(
+      "turntable_deg", units::deg, true, [](auto& r) -> auto& { return r.target_rad; }));
+  columns.push_back(Number(
+      kMultitoothColumn, units::deg, true, [](auto& r) -> auto& { return r.reference_rad; }));
+  columns.push_back(Shown(
+      "autocollimator_x_arcsec", units::arcsec, "arcsec", [](auto& r) -> auto& { return r.autocollimator_yaw_rad; }));
+  columns.push_back(Shown(
+      "autocollimator_y_arcsec", units::arcsec, "arcsec",
+      [](auto& r) -> auto& { return r.autocollimator_tilt_rad; }));
+}
+
+void AddHobColumns(std::vector<ReadingColumn>& columns) {
+  columns.push_back(Shown(
+      "table_encoder_deg", units::deg, "deg", [](auto& r) -> auto& { return r.measured_rad; }));
+  columns.push_back(Shown(
+      "hob_encoder_deg", units::deg, "deg", [](auto& r) -> auto& { return r.reference_rad; }));
+  columns.push_back(Number(
+      kHeadColumn, units::deg, true, [](auto& r) -> auto& { return r.head_rad; }));
+  columns.push_back(Number(
+      "interferometer_arcsec", units::arcsec, false, [](auto& r) -> auto& { return r.interferometer_rad; }));
   columns.push_back(Number(
       "velocity_deg_s", units::deg, false, [](auto& r) -> auto& { return r.velocity_rad_s; }));
 }
@@ -169,16 +202,20 @@ void AddAutocollimatorColumns(std::vector<ReadingColumn>& columns) {
 }
 
 std::vector<ReadingColumn> Columns(const std::string& bench) {
-  const bool encoder = bench == kEncoderBench;
   std::vector<ReadingColumn> columns;
-  AddCommonColumns(columns, encoder);
-  encoder ? AddEncoderColumns(columns) : AddRotaryColumns(columns);
+  AddCommonColumns(columns, bench == kEncoderBench || bench == kHobBench);
+  if (bench == kEncoderBench) AddEncoderColumns(columns);
+  if (bench == kTurntableBench) AddTurntableColumns(columns);
+  if (bench == kHobBench) AddHobColumns(columns);
+  if (bench == kRotaryBench) AddRotaryColumns(columns);
   AddConditionColumns(columns);
-  if (!encoder) AddAutocollimatorColumns(columns);
+  if (bench == kRotaryBench) AddAutocollimatorColumns(columns);
   return columns;
 }
 
 std::string BenchOfColumns(const CsvTable& table) {
+  if (table.Column(kMultitoothColumn)) return kTurntableBench;
+  if (table.Column(kHeadColumn)) return kHobBench;
   return table.Column(kMeasuredColumn) && !table.Column("target_deg") ? kEncoderBench : kRotaryBench;
 }
 
@@ -206,14 +243,23 @@ bool HasAllVoltages(const Reading& reading) {
   return true;
 }
 
+bool IsComplete(const Reading& r, const std::string& bench) {
+  if (bench == kEncoderBench) return std::isfinite(r.measured_rad);
+  if (bench == kTurntableBench) return std::isfinite(r.autocollimator_yaw_rad + r.autocollimator_tilt_rad);
+  if (bench == kHobBench) return std::isfinite(r.measured_rad + r.reference_rad);
+  return HasAllVoltages(r);
+}
+
 /// A reading either is kOk with all its values or has none.
 void Harmonise(Reading& reading, const std::string& bench) {
-  const bool complete = bench == kEncoderBench ? std::isfinite(reading.measured_rad) : HasAllVoltages(reading);
+  const bool complete = IsComplete(reading, bench);
   if (reading.status == ReadingStatus::kOk && !complete) reading.status = ReadingStatus::kMissing;
   if (reading.status == ReadingStatus::kOk) return;
   reading.measured_rad = kNaN;
   reading.mean_V.fill(kNaN);
   reading.std_V.fill(kNaN);
+  if (bench == kHobBench) reading.reference_rad = reading.interferometer_rad = kNaN;
+  if (bench == kTurntableBench) reading.autocollimator_yaw_rad = reading.autocollimator_tilt_rad = kNaN;
 }
 
 Reading ParseRow(const CsvTable& table, const CsvTable::Row& row, const std::vector<ReadingColumn>& columns,
@@ -290,12 +336,17 @@ void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& p
 }
 
 std::string BenchOf(const std::vector<Reading>& readings) {
-  const auto has = [&](double Reading::*angle_rad) {
+  const auto has = [&](const auto& value) {
     return std::any_of(readings.begin(), readings.end(),
-                       [&](const Reading& reading) { return std::isfinite(reading.*angle_rad); });
+                       [&](const Reading& reading) { return std::isfinite(value(reading)); });
   };
-  const bool two_tables = has(&Reading::target_rad);
-  return !two_tables && has(&Reading::reference_rad) ? kEncoderBench : kRotaryBench;
+  if (has([](const Reading& r) { return r.head_rad; })) return kHobBench;
+  const bool two_tables = has([](const Reading& r) { return r.target_rad; });
+  if (!two_tables) return has([](const Reading& r) { return r.reference_rad; }) ? kEncoderBench : kRotaryBench;
+  // The autocollimator of the rotary bench is read beside the PSDs.
+  const bool turntable = has([](const Reading& r) { return r.autocollimator_yaw_rad; }) &&
+                         !has([](const Reading& r) { return r.mean_V[0]; });
+  return turntable ? kTurntableBench : kRotaryBench;
 }
 
 std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name, const std::string& stated_bench) {

@@ -33,7 +33,7 @@ void BindReading(SqliteStatement& insert, const Reading& r) {
   for (const double value : {r.dwell_s, r.temperature_degC, r.autocollimator_yaw_rad, r.autocollimator_tilt_rad})
     bind(value);
   bind(ExtraText(r));
-  for (const double value : {r.measured_rad, r.velocity_rad_s}) bind(value);
+  for (const double value : {r.measured_rad, r.velocity_rad_s, r.head_rad, r.interferometer_rad}) bind(value);
 }
 
 Reading TakeReading(const SqliteStatement& row, const std::string& path) {
@@ -53,7 +53,8 @@ Reading TakeReading(const SqliteStatement& row, const std::string& path) {
   for (double* value : {&r.dwell_s, &r.temperature_degC, &r.autocollimator_yaw_rad, &r.autocollimator_tilt_rad})
     *value = take_real();
   const std::string extra_text = row.Text(column++);
-  for (double* value : {&r.measured_rad, &r.velocity_rad_s}) *value = take_real();
+  for (double* value : {&r.measured_rad, &r.velocity_rad_s, &r.head_rad, &r.interferometer_rad})
+    *value = take_real();
   const auto extra = nlohmann::json::parse(extra_text, nullptr, false);
   if (!phase || !status || (extra.is_discarded() && !extra_text.empty()))
     throw InputError(path, fmt::format("reading {} of the record is damaged", r.reading), "names and JSON of ours");

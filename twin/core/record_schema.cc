@@ -10,7 +10,7 @@ namespace twinbench {
 namespace {
 
 constexpr int kApplicationId = 0x54574E42;  // "TWNB"
-constexpr int kVersion = 3;                 // of the tables below
+constexpr int kVersion = 4;                 // of the tables below
 
 constexpr const char* kTables = R"sql(
 CREATE TABLE provenance(program_version TEXT, bench TEXT, seed TEXT, clock_origin_utc TEXT);
@@ -22,7 +22,7 @@ CREATE TABLE readings(
   psd_a_x_std_V REAL, psd_a_y_std_V REAL, psd_b_x_std_V REAL, psd_b_y_std_V REAL,
   n_samples INTEGER, dwell_s REAL, temperature_degC REAL,
   autocollimator_yaw_rad REAL, autocollimator_tilt_rad REAL, extra TEXT,
-  measured_rad REAL, velocity_rad_s REAL);
+  measured_rad REAL, velocity_rad_s REAL, head_rad REAL, interferometer_rad REAL);
 CREATE TABLE raw_blocks(reading INTEGER PRIMARY KEY REFERENCES readings(reading), channels INTEGER, samples BLOB,
   first_scan INTEGER, device_ns INTEGER, host_ns INTEGER, utc_ns INTEGER, saturated_mask INTEGER);
 CREATE TABLE events(id INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, device TEXT, text TEXT);
@@ -59,26 +59,37 @@ void WriteProvenance(SqliteDatabase& database, const Provenance& provenance) {
   insert.Run();
 }
 
+void AddColumns(SqliteDatabase& database, const char* table, const char* type,
+                std::initializer_list<const char*> columns) {
+  for (const char* column : columns)
+    database.Execute(fmt::format("ALTER TABLE {} ADD COLUMN {} {}", table, column, type).c_str());
+}
+
 /// Version 1 knew the rotary bench only: the columns of the angle comparison are added, empty.
 void FromVersion1(SqliteDatabase& database) {
-  for (const char* column : {"measured_rad", "velocity_rad_s"})
-    database.Execute(fmt::format("ALTER TABLE readings ADD COLUMN {} REAL", column).c_str());
+  AddColumns(database, "readings", "REAL", {"measured_rad", "velocity_rad_s"});
 }
 
 /// Version 2 kept no calls, attempts and stamps of blocks.
 void FromVersion2(SqliteDatabase& database) {
-  for (const char* column : {"first_scan", "device_ns", "host_ns", "utc_ns", "saturated_mask"})
-    database.Execute(fmt::format("ALTER TABLE raw_blocks ADD COLUMN {} INTEGER", column).c_str());
+  AddColumns(database, "raw_blocks", "INTEGER",
+             {"first_scan", "device_ns", "host_ns", "utc_ns", "saturated_mask"});
   database.Execute(kJournalTables);
   ForbidChanges(database, {"calls", "attempts"});
 }
 
+/// Version 3 knew no hobbing machine.
+void FromVersion3(SqliteDatabase& database) {
+  AddColumns(database, "readings", "REAL", {"head_rad", "interferometer_rad"});
+}
+
 void BringUpToDate(SqliteDatabase& database) {
   const std::string version = database.Ask("PRAGMA user_version");
-  if (version != "1" && version != "2") return;
+  if (version != "1" && version != "2" && version != "3") return;
   SqliteTransaction transaction(database);
   if (version == "1") FromVersion1(database);
-  FromVersion2(database);
+  if (version != "3") FromVersion2(database);
+  FromVersion3(database);
   database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
   transaction.Commit();
 }

@@ -22,7 +22,7 @@ namespace twinbench {
 namespace {
 
 constexpr const char* kInsertReading =
-    "INSERT INTO readings VALUES(NULL, ?,?,?,?,?,?,?,?, ?,?, ?,?,?,?, ?,?,?,?, ?,?,?, ?,?, ?, ?,?)";
+    "INSERT INTO readings VALUES(NULL, ?,?,?,?,?,?,?,?, ?,?, ?,?,?,?, ?,?,?,?, ?,?,?, ?,?, ?, ?,?, ?,?)";
 constexpr const char* kInsertBlock =
     "INSERT INTO raw_blocks(reading, channels, samples, first_scan, device_ns, host_ns, utc_ns, saturated_mask) "
     "VALUES(?,?,?, ?,?,?,?, ?)";
@@ -82,6 +82,10 @@ struct RunRecord::Database : SqliteDatabase {
     insert_reading.emplace(*this, kInsertReading);
     insert_block.emplace(*this, kInsertBlock);
     insert_call.emplace(*this, kInsertCall);
+  }
+  void AppendReading(const Reading& reading) {
+    BindReading(*insert_reading, reading);
+    insert_reading->Run();
   }
   void AppendBlock(int reading, const Acquisition& taken) {
     largest_block_B = std::max<std::uint64_t>(largest_block_B, taken.raw.size() * sizeof(std::int16_t));
@@ -164,13 +168,21 @@ std::unique_ptr<RunRecord> RunRecord::Continue(const std::string& directory) {
 
 void RunRecord::Append(const Reading& reading, const Acquisition& taken) {
   SqliteTransaction transaction(*database_);
-  SqliteStatement& insert = *database_->insert_reading;
-  BindReading(insert, reading);
-  insert.Run();
+  database_->AppendReading(reading);
   if (!taken.raw.empty()) database_->AppendBlock(reading.reading, taken);
   database_->AppendCalls(reading.reading);
   transaction.Commit();
   database_->calls.clear();
+}
+
+void RunRecord::AppendAll(const std::vector<Reading>& readings) {
+  SqliteTransaction transaction(*database_);
+  for (const Reading& reading : readings) {
+    database_->AppendReading(reading);
+    database_->AppendCalls(reading.reading);
+    database_->calls.clear();
+  }
+  transaction.Commit();
 }
 
 void RunRecord::Called(const DeviceCall& call) {

@@ -59,6 +59,7 @@ class RunRecord : public ReadingSink, public RunLog {
   ~RunRecord() override;
   /// @throws BenchError if the disk refuses or the reading's number is taken; the record is then as it was before.
   void Append(const Reading& reading, const Acquisition& taken) override;
+  void AppendAll(const std::vector<Reading>& readings) override;
   void Called(const DeviceCall& call) override;
   void ForgetCalls() override;
   void AttemptFailed(int reading, Time time, const std::string& fault, const std::string& text) override;

@@ -16,6 +16,7 @@
 #include "twin/core/reading.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_text.h"
+#include "twin/core/scenario_together.h"
 #include "twin/core/scenario_values.h"
 
 namespace twinbench {
@@ -261,12 +262,17 @@ EffectSettings ReadEffect(const TomlValue& block, const std::string& bench) {
 
 // --- [[empirical]] ---
 
+bool BelongsTo(const std::string& bench, const std::string& channel) {
+  const std::vector<std::string> channels = EmpiricalChannels(bench);
+  return std::find(channels.begin(), channels.end(), channel) != channels.end();
+}
+
 void RequireEmpirical(const EmpiricalSettings& empirical, const std::string& bench) {
   const auto require = [&](bool condition, const std::string& what, const std::string& expected) {
     if (!condition) throw InputError(empirical.location, what, expected);
   };
-  const bool is_angle = bench != "rotary_4dof";
-  require((empirical.channel == "angle") == is_angle,
+  const bool is_angle = bench != kRotaryBench;
+  require(BelongsTo(bench, empirical.channel),
           fmt::format("the empirical signal is for the channel \"{}\"", empirical.channel),
           "a channel of the bench " + bench);
   const std::vector<double>& values = is_angle ? empirical.value_rad : empirical.value_m;
@@ -292,43 +298,9 @@ EmpiricalSettings ReadEmpirical(const TomlValue& block, const std::string& bench
   return empirical;
 }
 
-// --- what keys say together ---
-
 std::string ReadBench(const ScenarioText& text) {
   if (const auto bench = text.Find("bench")) return ReadText(*bench, "bench", SupportedBenches());
   throw InputError(text.name() + ":1", "bench is missing", "bench = " + Alternatives(SupportedBenches()));
-}
-
-void CheckScanList(const ScenarioText& text, const AdcSettings& adc) {
-  const std::set<std::string> once(adc.scan_list.begin(), adc.scan_list.end());
-  if (once.size() == kChannelNames.size() && adc.scan_list.size() == kChannelNames.size()) return;
-  throw InputError(text.Where("adc.scan_list", text.name() + ":1"),
-                   fmt::format("adc.scan_list names {} of the {} channels in {} entries", once.size(),
-                               kChannelNames.size(), adc.scan_list.size()),
-                   "every channel once");
-}
-
-void CheckShifts(const ScenarioText& text, const ProcedureSettings& procedure) {
-  const std::string where = text.Where("procedure.shifts", text.Where("procedure.positions", text.name() + ":1"));
-  const std::vector<int>& shifts = procedure.shifts;
-  for (const int shift : shifts) {
-    if (shift >= procedure.positions)
-      throw InputError(where, fmt::format("procedure.shifts has {}", shift),
-                       fmt::format("shifts from 0 to {} (positions - 1)", procedure.positions - 1));
-    if (std::count(shifts.begin(), shifts.end(), shift) > 1)
-      throw InputError(where, fmt::format("procedure.shifts has {} twice", shift), "every shift once");
-  }
-}
-
-void CheckPasses(const ScenarioText& text, const std::string& key, const std::vector<int>& passes) {
-  if (std::find(passes.begin(), passes.end(), 0) != passes.end())
-    throw InputError(text.Where(key, text.name() + ":1"), key + " has 0", "directions 1 or -1");
-}
-
-void CheckProfile(const ScenarioText& text, const LaserSettings& laser) {
-  if (laser.beam == BeamModel::kProfile && laser.profile_file.empty())
-    throw InputError(text.Where("laser.beam", text.name() + ":1"), "laser.beam is \"profile\" without a file",
-                     "laser.profile_file = \"beam.exr\"");
 }
 
 // --- files that a scenario names ---
@@ -368,14 +340,26 @@ void LoadFiles(const ScenarioText& text, const std::string& folder, Scenario& sc
   FindFile(text, "laser.profile_file", folder, scenario.laser.profile_file);
   FindFile(text, "grating.efficiency_file", folder, scenario.grating.efficiency_file);
   FindFile(text, "environment.temperature_file", folder, scenario.environment.temperature_file);
-  LoadErrors(text, "target", folder, scenario.target);
-  LoadErrors(text, "reference", folder, scenario.reference);
+  const TableNames tables = TableNamesOf(scenario.bench);
+  LoadErrors(text, tables.target, folder, scenario.target);
+  LoadErrors(text, tables.reference, folder, scenario.reference);
   for (FixtureSettings& f : scenario.fixtures) {
     if (!f.mesh_file.empty()) f.mesh_file = NamedFile(f.location, "fixture.mesh_file", folder, f.mesh_file);
   }
 }
 
 }  // namespace
+
+TableNames TableNamesOf(const std::string& bench) {
+  return bench == kTurntableBench ? TableNames{"turntable", "multitooth"} : TableNames{};
+}
+
+std::vector<std::string> EmpiricalChannels(const std::string& bench) {
+  if (bench == kEncoderBench) return {"angle"};
+  if (bench == kTurntableBench) return {"x", "y"};
+  if (bench == kHobBench) return {"transmission"};
+  return {kChannelNames.begin(), kChannelNames.end()};
+}
 
 Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& folder,
                        const std::vector<std::string>& overrides) {
@@ -393,11 +377,7 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
   });
   scenario.empiricals = ReadBlocks<EmpiricalSettings>(
       sources, kEmpiricalTable, [&](const TomlValue& block) { return ReadEmpirical(block, scenario.bench); });
-  CheckScanList(sources, scenario.adc);
-  CheckShifts(sources, scenario.procedure);
-  CheckPasses(sources, "procedure.passes", scenario.procedure.passes);
-  CheckPasses(sources, "encoder_procedure.passes", scenario.encoder_procedure.passes);
-  CheckProfile(sources, scenario.laser);
+  CheckTogether(sources, scenario);
   LoadFiles(sources, folder, scenario);
   return scenario;
 }

@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "twin/core/frames.h"
+#include "twin/core/harmonic_settings.h"
+#include "twin/core/hob_settings.h"
 #include "twin/core/table_errors.h"
+#include "twin/core/turntable_settings.h"
 #include "twin/core/units.h"
 
 /// A scenario: one measurement on one bench, everything in SI. The structs below are the file format (see
@@ -19,6 +22,8 @@ namespace twinbench {
 
 inline constexpr const char* kRotaryBench = "rotary_4dof";
 inline constexpr const char* kEncoderBench = "encoder_comparison";
+inline constexpr const char* kTurntableBench = "turntable_autocollimator";
+inline constexpr const char* kHobBench = "hob_transmission";
 
 enum class BeamModel { kChiefRay, kGaussian, kProfile };
 
@@ -90,14 +95,7 @@ struct AdcSettings {                                 // [adc]
   bool every_sample = true;                          // false: draw mean and deviation directly (same distribution)
 };
 
-struct HarmonicSettings {
-  Component component = Component::kEz;
-  double order = 1.0;
-  double amplitude = 0.0;                            // rad or m: amplitude * cos(order * angle + phase)
-  double phase_rad = 0.0;
-};
-
-struct TableSettings {                               // [target], [reference]
+struct TableSettings {                               // [target], [reference]; [turntable], [multitooth]
   /// `harmonics = [{ component = "ez", order = 1, amplitude_arcsec = 5.0, phase_deg = 30.0 }, ...]`; amplitude_um for
   /// dx, dy, dz.
   std::vector<HarmonicSettings> harmonics;           // the reference's in its rotor frame, like every error of it
@@ -257,10 +255,29 @@ struct Scenario {
   ProcedureSettings procedure;
   DeviceSettings device;                             // these two: bench encoder_comparison
   EncoderProcedureSettings encoder_procedure;
+  MultitoothSettings multitooth;                     // these four: bench turntable_autocollimator, whose turntable is
+  MirrorSettings mirror;                             // the target and whose multi-tooth table is the reference
+  CollimatorSettings collimator;
+  TurntableProcedureSettings turntable_procedure;
+  TransmissionSettings transmission;                 // these five: bench hob_transmission
+  RingEncoderSettings table_encoder;
+  RingEncoderSettings hob_encoder = {.lines = 9000, .radius_m = 50.0 * units::mm};
+  InterferometerSettings interferometer;
+  HobProcedureSettings hob_procedure;
   std::vector<FixtureSettings> fixtures;
   std::vector<EffectSettings> effects;
   std::vector<EmpiricalSettings> empiricals;
 };
+
+/// What the two tables of a bench are called in its files: "target" and "reference", or "turntable" and "multitooth".
+struct TableNames {
+  std::string target = "target";
+  std::string reference = "reference";
+};
+TableNames TableNamesOf(const std::string& bench);
+
+/// Channels of a bench to which an [[empirical]] signal can be added.
+std::vector<std::string> EmpiricalChannels(const std::string& bench);
 
 /// Reads a scenario of any supported bench and applies `overrides`: "procedure.positions=12", in TOML syntax, where a single word needs no
 /// quotes. A later override wins. A list, or all blocks of [[fixture]],

@@ -2,64 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "twin/core/reading.h"
+#include "twin/core/schema_table.h"
 
 namespace twinbench {
 namespace {
 
-using Keys = std::vector<ScenarioKey>;
-
-constexpr Unit kPure{};
-constexpr Unit kMm{"mm", units::mm}, kUm{"um", units::um}, kNm{"nm", units::nm};
-constexpr Unit kDeg{"deg", units::deg}, kArcsec{"arcsec", units::arcsec}, kMrad{"mrad", units::mrad};
-constexpr Unit kUrad{"urad", units::urad};
-constexpr Unit kMillivolt{"mV", units::mV}, kVolt{"V"}, kMw{"mW", units::mW};
-constexpr Unit kSecond{"s"}, kMicrosecond{"us", units::us}, kHz{"Hz"}, kKilohertz{"kHz", units::kHz};
-constexpr Unit kMillikelvin{"mK", 1e-3}, kCelsius{"degC"};
-
-constexpr double kHuge = 1e9;  // of pure numbers that need no closer bound
-
-Bounds Within(double limit) {
-  return {-limit, limit};
-}
-Bounds UpTo(double upper) {
-  return {0.0, upper};
-}
-Bounds Positive(double upper) {
-  return {0.0, upper, true};
-}
-
-/// Adds keys to one table.
-class Table {
- public:
-  Table(Keys& keys, std::string name) : keys_(keys), name_(std::move(name)) {}
-
-  void Add(const std::string& name, const Unit& unit, const Bounds& bounds, Field field,
-           const std::string& meaning) {
-    keys_.push_back({name_, name, unit, bounds, {}, field, meaning});
-  }
-  void Flag(const std::string& name, bool& field, const std::string& meaning) {
-    keys_.push_back({name_, name, {}, {}, {}, &field, meaning});
-  }
-  void Text(const std::string& name, Field field, std::vector<std::string> choices, const std::string& meaning) {
-    keys_.push_back({name_, name, {}, {}, std::move(choices), field, meaning});
-  }
-
- private:
-  Keys& keys_;
-  std::string name_;
-};
-
-template <std::size_t kCount>
-std::span<double> List(std::array<double, kCount>& array) {
-  return {array.data(), kCount};
-}
-template <int kRows>
-std::span<double> List(Eigen::Matrix<double, kRows, 1>& vector) {
-  return {vector.data(), static_cast<std::size_t>(kRows)};
-}
+using namespace schema;
 
 void AddTop(Keys& keys, Scenario& s) {
   Table t(keys, "");
@@ -138,47 +87,12 @@ void AddAdc(Keys& keys, AdcSettings& s) {
   t.Flag("every_sample", s.every_sample, "false: draw mean and deviation of a block at once");
 }
 
-void AddComponents(Keys& keys, const std::string& table, std::array<double, kComponents>& values,
-                   const std::string& meaning) {
-  Table t(keys, table);
-  for (std::size_t i = 0; i < kComponents; ++i) {
-    const bool angle = IsAngle(static_cast<Component>(i));
-    t.Add(kComponentNames[i], angle ? kArcsec : kUm, UpTo(angle ? 3600 : 10000), &values[i], meaning);
-  }
-}
-
-void AddMotion(Table& t, TableSettings& s) {
-  t.Add("half_frequency_order", kPure, {0.3, 0.7}, &s.half_frequency_order, "of the bearing, periods a turn");
-  t.Add("half_frequency_tilt", kArcsec, UpTo(3600), &s.half_frequency_tilt_rad, "amplitude");
-  t.Add("half_frequency_radial", kUm, UpTo(10000), &s.half_frequency_radial_m, "amplitude");
-  t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "full width, of the servo's encoder against the rotor");
-  t.Add("speed", {"deg_s", units::deg}, Positive(3600), &s.speed_rad_s, "of long moves");
-  t.Add("move_time", kSecond, Positive(3600), &s.move_time_s, "of one step");
-  t.Add("settle", kSecond, UpTo(3600), &s.settle_s, "in-position window after the profile");
-}
-
 void AddReferenceMounting(Keys& keys, Scenario& s) {
   Table t(keys, "reference");
   t.Add("height", kMm, Within(5000), &s.reference_height_m, "of its origin above the target's");
   t.Add("centring", kUm, Within(50000), List(s.centring_m), "of its body on the target rotor: x, y");
   t.Add("mount_tilt", kArcsec, Within(36000), List(s.mount_tilt_rad),
         "of its body on the target rotor: about x, y");
-}
-
-/// @param frame  In which the table's errors are given.
-void AddTable(Keys& keys, const std::string& table, const std::string& frame, TableSettings& s) {
-  Table t(keys, table);
-  t.Add("harmonics", kPure, {}, &s.harmonics,
-        "systematic errors " + frame + ", amplitude * cos(order * angle + phase)");
-  t.Text("errors_file", &s.errors_file, {}, "CSV of the errors " + frame + ", from the scenario's folder");
-  AddMotion(t, s);
-  AddComponents(keys, table + ".random", s.random_rms, "rms of random smooth errors");
-  Table random(keys, table + ".random");
-  random.Add("orders", kPure, {1, 1000}, &s.random_orders, "they have harmonics 1..orders, falling as 1/order");
-  AddComponents(keys, table + ".seating", s.seating_sd, "scatter of the pose at every mounting");
-  AddComponents(keys, table + ".repeatability", s.repeatability_sd, "scatter of the pose at every stop");
-  Table(keys, table)
-      .Add("errors", kPure, {}, &s.errors, "the content of errors_file: position_deg, ex_arcsec, ...");
 }
 
 void AddMechanics(Keys& keys, MechanicsSettings& s) {
@@ -195,25 +109,6 @@ void AddMechanics(Keys& keys, MechanicsSettings& s) {
   t.Add("servo", kHz, Positive(10000), List(s.servo_Hz), "bandwidth: target, reference");
   t.Add("friction", {"Nm"}, UpTo(10000), List(s.friction_Nm), "Coulomb level: target, reference");
   t.Add("step", kMicrosecond, Positive(100000), &s.step_s, "of the integration");
-}
-
-void AddEnvironment(Keys& keys, EnvironmentSettings& s) {
-  Table t(keys, "environment");
-  t.Add("temperature", kCelsius, {-50, 100}, &s.temperature_degC, "at the start");
-  t.Add("reference", kCelsius, {-50, 100}, &s.reference_degC, "at which wavelength and lengths are nominal");
-  t.Add("drift", {"K_h"}, Within(100), &s.drift_K_h, "of the temperature [K/h]");
-  t.Add("swing", kMillikelvin, UpTo(50000), &s.swing_K, "amplitude of a periodic swing");
-  t.Add("swing_period", kSecond, Positive(1e7), &s.swing_period_s, "of the swing");
-  t.Add("random_walk", {"K_sqrt_h"}, UpTo(50), &s.random_walk_K_sqrt_h, "standard deviation after an hour");
-  t.Text("temperature_file", &s.temperature_file, {}, "CSV of time_s, temperature_degC");
-  t.Add("sensor_noise", kMillikelvin, UpTo(10000), &s.sensor_noise_K, "of the thermometer, standard deviation");
-}
-
-void AddAutocollimator(Keys& keys, AutocollimatorSettings& s) {
-  Table t(keys, "autocollimator");
-  t.Add("noise", kArcsec, UpTo(100), &s.noise_rad, "of one reading, standard deviation");
-  t.Add("range", kArcsec, Positive(36000), &s.range_rad, "+- this angle");
-  t.Add("gain_error", kPure, Within(0.5), &s.gain_error, "of both axes");
 }
 
 void AddPlan(Table& t, ProcedureSettings& s) {
@@ -301,13 +196,16 @@ std::string Bounds::Text() const {
 }
 
 std::vector<std::string> SupportedBenches() {
-  return {kRotaryBench, kEncoderBench};
+  return {kRotaryBench, kEncoderBench, kTurntableBench, kHobBench};
 }
 
 std::vector<ScenarioKey> KeysOf(Scenario& s) {
   Keys keys;
   AddTop(keys, s);
-  s.bench == kEncoderBench ? AddEncoderBench(keys, s) : AddRotaryBench(keys, s);
+  if (s.bench == kRotaryBench) AddRotaryBench(keys, s);
+  if (s.bench == kEncoderBench) AddEncoderBench(keys, s);
+  if (s.bench == kTurntableBench) AddTurntableBench(keys, s);
+  if (s.bench == kHobBench) AddHobBench(keys, s);
   return keys;
 }
 
@@ -328,12 +226,12 @@ std::vector<ScenarioKey> KeysOf(EmpiricalSettings& s) {
   Keys keys;
   Table t(keys, "empirical");
   std::vector<std::string> channels(kChannelNames.begin(), kChannelNames.end());
-  channels.push_back("angle");
+  for (const char* angle : {"angle", "x", "y", "transmission"}) channels.push_back(angle);
   t.Text("signature", &s.signature, {}, "what the signal looks like, in words");
   t.Text("channel", &s.channel, std::move(channels), "to which it is added");
   t.Add("reading", kPure, UpTo(kHuge), &s.reading, "running numbers of the readings that have it, each once");
   t.Add("value", kUm, Within(1e6), &s.value_m, "the signal at these readings, on a PSD");
-  t.Add("value", kDeg, Within(360), &s.value_rad, "the same of the angle of encoder_comparison");
+  t.Add("value", kDeg, Within(360), &s.value_rad, "the same of an angle");
   t.Text("provenance", &s.provenance, {}, "which run showed it, and when it was diagnosed");
   return keys;
 }

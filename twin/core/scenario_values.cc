@@ -68,19 +68,20 @@ TomlValue Demand(const TomlValue& table, const std::string& key, const std::stri
 
 constexpr const char* kHarmonicForm = "{ component = \"ez\", order = 1, amplitude_arcsec = 5.0, phase_deg = 30.0 }";
 
-/// One entry of `harmonics`. ex, ey, ez have an amplitude_arcsec, dx, dy, dz an amplitude_um.
+/// One entry of `harmonics`; of ez if no component is named. ex, ey, ez have an amplitude_arcsec, dx, dy, dz an amplitude_um.
 HarmonicSettings ReadHarmonic(const TomlValue& entry, const std::string& key) {
   if (!entry.node().is_table()) Refuse(entry, key, kHarmonicForm);
   RefuseUnknown(entry, "", HarmonicKeys());
   HarmonicSettings harmonic;
-  const TomlValue component = Demand(entry, "component", key, kHarmonicForm);
-  harmonic.component = IndexOf<Component>(ComponentNames(), ReadText(component, "component", ComponentNames()));
+  if (const auto component = Inside(entry, "component"))
+    harmonic.component = IndexOf<Component>(ComponentNames(), ReadText(*component, "component", ComponentNames()));
   harmonic.order = ReadNumber(Demand(entry, "order", key, kHarmonicForm), "order", {}, {0, 100000});
   const bool angle = IsAngle(harmonic.component);
   const Unit unit = angle ? Unit{"arcsec", units::arcsec} : Unit{"um", units::um};
   const std::string amplitude = angle ? "amplitude_arcsec" : "amplitude_um";
   if (const auto other = Inside(entry, angle ? "amplitude_um" : "amplitude_arcsec"))
-    throw InputError(other->Where(), fmt::format("{} has an amplitude of the wrong unit", component.Found()),
+    throw InputError(other->Where(), fmt::format("\"{}\" has an amplitude of the wrong unit",
+                                 kComponentNames[static_cast<std::size_t>(harmonic.component)]),
                      amplitude);
   harmonic.amplitude = ReadNumber(Demand(entry, amplitude, key, kHarmonicForm), amplitude, unit, {-1e6, 1e6});
   if (const auto phase = Inside(entry, "phase_deg"))

@@ -123,5 +123,7 @@ std::vector<std::string> MissingForRotaryAxis(const std::vector<PositioningTarge
 
 /// The evaluation of a rotary axis as a table for people: targets in deg, the rest in arcsec; "-" is not available.
 std::string PositioningText(const AxisPositioning& positioning);
+/// Of it, the values of the axis alone: for a test with very many targets.
+std::string AxisText(const AxisPositioning& positioning);
 
 }  // namespace twinbench::measure

@@ -24,16 +24,20 @@ std::string Row(const TargetPositioning& t) {
 
 }  // namespace
 
-std::string PositioningText(const AxisPositioning& positioning) {
-  std::string text = "ISO 230-2, arcsec; + forward, - backward\n";
-  text += "target_deg   n+   n-    mean+    mean-     mean       s+       s-      B_i     R_i+     R_i-      R_i\n";
-  for (const TargetPositioning& target : positioning.targets) text += Row(target);
-  text += "\naxis        value        u     bias\n";
+std::string AxisText(const AxisPositioning& positioning) {
+  std::string text = "axis        value        u     bias   (ISO 230-2, arcsec)\n";
   for (std::size_t i = 0; i < kAxisValues; ++i) {
     const ScatteredValue& v = positioning.axis[i];
     text += fmt::format("{:<8}", kAxisValueNames[i]) + Arcsec(v.value) + Arcsec(v.u) + Arcsec(v.bias) + "\n";
   }
   return text + "u and bias hold the scatter of the runs only\n";
+}
+
+std::string PositioningText(const AxisPositioning& positioning) {
+  std::string text = "ISO 230-2, arcsec; + forward, - backward\n";
+  text += "target_deg   n+   n-    mean+    mean-     mean       s+       s-      B_i     R_i+     R_i-      R_i\n";
+  for (const TargetPositioning& target : positioning.targets) text += Row(target);
+  return text + "\n" + AxisText(positioning);
 }
 
 }  // namespace twinbench::measure

@@ -1,27 +1,9 @@
 #include "twin/sim/effects_active.h"
 
 #include "twin/sim/effects/effects.h"
+#include "twin/sim/silence.h"
 
 namespace twinbench::sim {
-namespace {
-
-void SilenceTable(TableSettings& table) {
-  table.seating_sd = {};
-  table.repeatability_sd = {};
-}
-
-/// Everything that is drawn at random from reading to reading; random table errors stay, they are errors.
-void Silence(Scenario& scenario) {
-  scenario.amplifier.noise_V = 0.0;
-  scenario.autocollimator.noise_rad = 0.0;
-  scenario.environment.sensor_noise_K = 0.0;
-  scenario.environment.random_walk_K_sqrt_h = 0.0;
-  SilenceTable(scenario.target);
-  SilenceTable(scenario.reference);
-}
-
-}  // namespace
-
 ActiveEffects::ActiveEffects(const Scenario& scenario) {
   for (const EffectSettings& settings : scenario.effects) effects_.push_back(MakeEffect(settings, scenario));
   for (const EmpiricalSettings& settings : scenario.empiricals)

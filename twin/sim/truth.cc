@@ -1,7 +1,6 @@
 #include "twin/sim/truth.h"
 
 namespace twinbench::sim {
-namespace {
 
 nlohmann::json ToJson(const TableErrors& errors) {
   nlohmann::json json;
@@ -13,8 +12,6 @@ nlohmann::json ToJson(const TableErrors& errors) {
   }
   return json;
 }
-
-}  // namespace
 
 nlohmann::json ToJson(const EffectSettings& effect) {
   nlohmann::json json = {{"effect", effect.name}, {"parameters_SI", effect.parameters}};

@@ -14,6 +14,9 @@ struct Truth {
   std::uint64_t seed = 0;
 };
 
+/// {"position_deg": [...], "ex_arcsec": [...], ..., "dz_um": [...]}
+nlohmann::json ToJson(const TableErrors& errors);
+
 /// {"effect": name, "where": place, "parameters_SI": {...}}
 nlohmann::json ToJson(const EffectSettings& effect);
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <limits>
 #include <memory>
 
+#include "mechanics/encoder_signal.h"
 #include "twin/core/scenario.h"
 #include "twin/core/time.h"
 
@@ -18,14 +18,7 @@ struct AngleMoment {
   double approach_rad = 0.0;    // last leg of the way to a stop, signed; 0 in motion
 };
 
-/// The device's sine and cosine before they are turned into an angle:
-/// clip((1 + ratio) sin(p + quadrature) + offset_sin), clip(cos p + offset_cos), with phase p.
-struct SignalState {
-  double offset_sin = 0.0, offset_cos = 0.0;  // share of the amplitude
-  double ratio = 0.0;                         // sine over cosine, - 1
-  double quadrature_rad = 0.0;
-  double clip_level = std::numeric_limits<double>::infinity();  // share of the amplitude
-};
+using mechanics::SignalState;
 
 /// One cause on the bench encoder_comparison. Errors of different effects add; no effect looks at another one.
 class AngleEffect {
@@ -48,8 +41,5 @@ class AngleEffect {
 /// an
 ///         effect that the twin has not.
 std::unique_ptr<AngleEffect> MakeAngleEffect(const EffectSettings& effect, const Scenario& scenario);
-
-/// Angle that the signals of `state` give at phase `phase_rad`, minus that phase; within half a period.
-double SignalError_rad(const SignalState& state, double phase_rad);
 
 }  // namespace twinbench::sim

@@ -1,5 +1,6 @@
 #include "twin/sim/encoder/twin.h"
 
+#include <Eigen/Core>
 #include <cmath>
 
 #include "twin/core/stream.h"
@@ -14,14 +15,23 @@ double Approach_rad(const Reading& reading, const EncoderProcedureSettings& proc
   return reading.direction * units::kPi / procedure.stops;
 }
 
-double Clip(double value, double level) {
-  return std::clamp(value, -level, level);
-}
-
 double Noise(const Scenario& scenario, int reading) {
   Stream stream(scenario.seed, "device.noise");
   stream.Seek(static_cast<std::uint64_t>(reading));
   return scenario.device.noise_rad * stream.Normal();
+}
+
+/// A function of the angle at every degree, its mean taken out.
+template <class Error>
+nlohmann::json CurveOf(Error error_rad) {
+  constexpr int kPositions = 360;
+  Eigen::ArrayXd values(kPositions), positions_deg(kPositions);
+  for (int k = 0; k < kPositions; ++k) {
+    positions_deg[k] = k;
+    values[k] = error_rad(k * units::deg) / units::arcsec;
+  }
+  values -= values.mean();
+  return {{"position_deg", positions_deg}, {"ez_arcsec", values}};
 }
 
 double Quantised(double angle_rad, double step_rad) {
@@ -29,13 +39,6 @@ double Quantised(double angle_rad, double step_rad) {
 }
 
 }  // namespace
-
-double SignalError_rad(const SignalState& state, double phase_rad) {
-  const double sine = (1.0 + state.ratio) * std::sin(phase_rad + state.quadrature_rad) + state.offset_sin;
-  const double cosine = std::cos(phase_rad) + state.offset_cos;
-  const double shown_rad = std::atan2(Clip(sine, state.clip_level), Clip(cosine, state.clip_level));
-  return std::remainder(shown_rad - phase_rad, 2.0 * units::kPi);
-}
 
 EncoderTwin::EncoderTwin(const Scenario& scenario) : scenario_(scenario) {
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
@@ -46,14 +49,25 @@ EncoderTwin::EncoderTwin(const Scenario& scenario) : scenario_(scenario) {
   }
 }
 
-double EncoderTwin::DeviceAngle_rad(const AngleMoment& moment) {
-  const DeviceSettings& device = scenario_.device;
+/// Of the device's shaft, as its scale counts.
+double EncoderTwin::ShaftAngle_rad(const AngleMoment& moment) const {
   double device_rad = moment.shaft_rad + scenario_.encoder_procedure.mounting_rad[moment.setup];
   for (const auto& effect : effects_) device_rad += effect->ShaftError_rad(moment);
+  return device_rad;
+}
+
+double EncoderTwin::DeviceError_rad(const AngleMoment& moment, double device_rad) const {
+  const DeviceSettings& device = scenario_.device;
   double error_rad = 0.0;
   for (const auto& effect : effects_) error_rad += effect->DeviceError_rad(moment, device_rad);
   const double phase_rad = device.signal_periods * (device_rad - device.signal_zero_rad);
-  return device_rad + error_rad + SignalError_rad(signals_, phase_rad) / device.signal_periods;
+  return error_rad + mechanics::SignalError_rad(signals_, phase_rad) / device.signal_periods;
+}
+
+double EncoderTwin::ReferenceError_rad(const AngleMoment& moment) const {
+  double error_rad = 0.0;
+  for (const auto& effect : effects_) error_rad += effect->ReferenceError_rad(moment);
+  return error_rad;
 }
 
 double EncoderTwin::Empirical_rad(int reading) const {
@@ -66,15 +80,24 @@ void EncoderTwin::Take(Reading& reading) {
                            reading.reading,        reading.reference_rad,
                            reading.velocity_rad_s, Approach_rad(reading, scenario_.encoder_procedure)};
   for (const auto& effect : effects_) effect->Advance(moment);
-  for (const auto& effect : effects_) reading.reference_rad += effect->ReferenceError_rad(moment);
-  reading.measured_rad = DeviceAngle_rad(moment) + Empirical_rad(reading.reading);
+  reading.reference_rad += ReferenceError_rad(moment);
+  const double device_rad = ShaftAngle_rad(moment);
+  reading.measured_rad = device_rad + DeviceError_rad(moment, device_rad) + Empirical_rad(reading.reading);
   if (scenario_.noise_free) return;
   reading.measured_rad =
       Quantised(reading.measured_rad + Noise(scenario_, reading.reading), scenario_.device.resolution_rad);
 }
 
 nlohmann::json EncoderTwin::Truth() const {
-  nlohmann::json json = {{"effects", nlohmann::json::array()}, {"seed", scenario_.seed}};
+  // At one instant: what does not follow the angle is the same everywhere then and goes with the mean.
+  nlohmann::json json = {{"device", CurveOf([&](double angle_rad) { return DeviceError_rad({}, angle_rad); })},
+                         {"reference", CurveOf([&](double angle_rad) {
+                            AngleMoment moment;
+                            moment.shaft_rad = angle_rad;
+                            return ReferenceError_rad(moment);
+                          })},
+                         {"effects", nlohmann::json::array()},
+                         {"seed", scenario_.seed}};
   for (const EffectSettings& effect : scenario_.effects) json["effects"].push_back(ToJson(effect));
   return json;
 }

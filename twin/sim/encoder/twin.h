@@ -19,11 +19,14 @@ class EncoderTwin : public AngleComparator {
 
   void Take(Reading& reading) override;
 
-  /// {"effects": [...], "seed": n}: opened only by tests and scores.
+  /// {"device": {"position_deg", "ez_arcsec"}, "reference": same, "effects": [...], "seed": n}: opened only by tests and
+  /// scores. Both curves show too much where positive, each by its own angle at every degree, without their mean.
   nlohmann::json Truth() const;
 
  private:
-  double DeviceAngle_rad(const AngleMoment& moment);
+  double ShaftAngle_rad(const AngleMoment& moment) const;
+  double DeviceError_rad(const AngleMoment& moment, double device_rad) const;
+  double ReferenceError_rad(const AngleMoment& moment) const;
   double Empirical_rad(int reading) const;
 
   Scenario scenario_;

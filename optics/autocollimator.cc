@@ -1,0 +1,158 @@
+#include "optics/autocollimator.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "optics/collimator_pupil.h"
+#include "optics/window.h"
+
+namespace twinbench::optics {
+namespace {
+
+// Surfaces of the scene, in the order they are added.
+constexpr int kMirror = 0;
+constexpr int kObjective = 1;
+
+void Require(bool good, const char* what) {
+  if (!good) throw std::invalid_argument(std::string("autocollimator: ") + what);
+}
+
+bool IsPositive(double value) {
+  return value > 0.0 && std::isfinite(value);
+}
+
+bool IsPose(const Eigen::Isometry3d& X) {
+  const Eigen::Matrix3d& r = X.linear();
+  const double off = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  return off < 1e-9 && r.determinant() > 0.0 && X.translation().allFinite();  // 1e-9 rad is 0.0002 arcsec
+}
+
+void ValidateLens(const AutocollimatorParameters& p) {
+  Require(IsPositive(p.focal_length_m), "focal_length_m must be positive");
+  Require(IsPositive(p.nominal_focal_length_m), "nominal_focal_length_m must be positive");
+  Require(IsPositive(p.aperture_radius_m), "aperture_radius_m must be positive");
+  Require(std::abs(p.defocus_m) < 0.1 * p.focal_length_m, "defocus_m must be below a tenth of focal_length_m");
+  Require(std::isfinite(p.distortion_per_rad2), "distortion_per_rad2 must be finite");
+  Require(p.pupil_rings >= 1 && p.pupil_rings <= 1000, "pupil_rings must be from 1 to 1000");
+}
+
+void ValidateCamera(const AutocollimatorParameters& p) {
+  Require(std::isfinite(p.roll_rad), "roll_rad must be finite");
+  Require(IsPositive(p.pixel_pitch_m), "pixel_pitch_m must be positive");
+  // From 1 / (2 pi) on the read position would run backwards within a pixel.
+  Require(std::abs(p.interpolation_error_px) < 0.5 * std::numbers::inv_pi,
+          "interpolation_error_px must be below 1 / (2 pi)");
+  Require(IsPositive(p.half_field_rad), "half_field_rad must be set and positive");
+  Require(p.low_light_fraction >= 0.0 && p.low_light_fraction <= 1.0,
+          "low_light_fraction must be set, from 0 to 1");
+}
+
+/// The light of a reticle on the axis as it leaves the objective: parallel but for the defocus.
+RayBatch CollimatedBeam(const AutocollimatorParameters& p) {
+  const double slope_per_m = 1.0 / (p.focal_length_m + p.defocus_m) - 1.0 / p.focal_length_m;
+  RayBatch beam;
+  for (const Eigen::Vector2d& at : EqualAreaDisc(p.aperture_radius_m, p.pupil_rings)) {
+    const Eigen::Vector2d slope = slope_per_m * at;
+    beam.Add({{at.x(), at.y(), 0.0}, Eigen::Vector3d(slope.x(), slope.y(), 1.0).normalized()});
+  }
+  return beam;
+}
+
+void Set(RayBatch& rays, std::size_t i, const Ray& ray) {
+  rays.ox[i] = ray.origin_m.x();
+  rays.oy[i] = ray.origin_m.y();
+  rays.oz[i] = ray.origin_m.z();
+  rays.dx[i] = ray.direction.x();
+  rays.dy[i] = ray.direction.y();
+  rays.dz[i] = ray.direction.z();
+}
+
+/// What finding the centre between pixels does to one coordinate.
+double Interpolated(const AutocollimatorParameters& p, double u_m) {
+  const double phase = 2.0 * std::numbers::pi * u_m / p.pixel_pitch_m;
+  return u_m + p.interpolation_error_px * p.pixel_pitch_m * std::sin(phase);
+}
+
+/// Angles that the instrument shows for an image at `image_m` (x to the right, y up).
+Eigen::Vector2d Reading(const AutocollimatorParameters& p, const Eigen::Vector2d& image_m) {
+  const Eigen::Vector2d on_camera = Eigen::Rotation2Dd(-p.roll_rad) * image_m;
+  const Eigen::Vector2d read_m(Interpolated(p, on_camera.x()), Interpolated(p, on_camera.y()));
+  return read_m / (2.0 * p.nominal_focal_length_m);
+}
+
+}  // namespace
+
+AutocollimatorOptics::AutocollimatorOptics(const AutocollimatorParameters& parameters, const Surface& mirror)
+    : parameters_(parameters), X_MS_(mirror.X_WS) {
+  Require(IsPose(parameters_.X_LA), "X_LA must be a right-handed rotation and a finite translation");
+  ValidateLens(parameters_);
+  ValidateCamera(parameters_);
+  scene_.AddSurface(mirror);
+  const double reach_m = Reach(parameters_.aperture_radius_m, parameters_.pupil_rings);
+  scene_.AddSurface(CircularPlane(Eigen::Isometry3d::Identity(), reach_m));
+  outgoing_ = CollimatedBeam(parameters_);
+}
+
+void AutocollimatorOptics::AddFixture(const TriangleMesh& mesh, const Eigen::Isometry3d& X_LF) {
+  scene_.AddMesh(mesh, parameters_.X_LA.inverse() * X_LF);
+}
+
+/// Turns those rays back that met the mirror's face. The others go on as they were: away from the objective.
+void AutocollimatorOptics::ReflectFromMirror() {
+  const Surface& mirror = scene_.surfaces()[kMirror];
+  returning_ = outgoing_;
+  for (std::size_t i = 0; i < outgoing_.size(); ++i) {
+    if (hits_.surface[i] != kMirror) continue;
+    const Eigen::Vector3d normal = Normal(mirror, hits_.x_m[i], hits_.y_m[i]);
+    const Eigen::Vector3d direction = outgoing_.At(i).direction;
+    if (direction.dot(normal) >= 0.0) continue;
+    Set(returning_, i, {Point(mirror, hits_.x_m[i], hits_.y_m[i]), Reflect(direction, normal)});
+  }
+}
+
+/// Where a ray that came back through the objective meets the camera's plane, before the roll.
+Eigen::Vector2d AutocollimatorOptics::ImagePoint(std::size_t ray) const {
+  const AutocollimatorParameters& p = parameters_;
+  const Eigen::Vector3d d = returning_.At(ray).direction;
+  const Eigen::Vector2d slope = d.head<2>() / -d.z();
+  const Eigen::Vector2d at(hits_.x_m[ray], hits_.y_m[ray]);
+  const Eigen::Vector2d u = (p.focal_length_m + p.defocus_m) * slope - p.defocus_m / p.focal_length_m * at;
+  const double enlarged = 1.0 + p.distortion_per_rad2 * u.squaredNorm() / (p.focal_length_m * p.focal_length_m);
+  return enlarged * Eigen::Vector2d(-u.x(), u.y());  // x_A points to the left
+}
+
+AutocollimatorImage AutocollimatorOptics::ReadCamera() const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double returned = 0.0;
+  for (std::size_t i = 0; i < hits_.surface.size(); ++i) {
+    if (hits_.surface[i] != kObjective) continue;
+    const double r_m = std::hypot(hits_.x_m[i], hits_.y_m[i]);
+    const double share = ShareInside(parameters_.aperture_radius_m, parameters_.pupil_rings, r_m);
+    sum += share * ImagePoint(i);
+    returned += share;
+  }
+  AutocollimatorImage image;
+  image.returned_fraction = returned / static_cast<double>(outgoing_.size());
+  if (!(returned > 0.0) || image.returned_fraction < parameters_.low_light_fraction) return image;
+  const Eigen::Vector2d reading = Reading(parameters_, sum / returned);
+  image.status = AutocollimatorStatus::kOutOfRange;
+  if (reading.cwiseAbs().maxCoeff() > parameters_.half_field_rad) return image;
+  image.status = AutocollimatorStatus::kOk;
+  image.x_rad = reading.x();
+  image.y_rad = reading.y();
+  return image;
+}
+
+AutocollimatorImage AutocollimatorOptics::Look(const Eigen::Isometry3d& X_LM) {
+  Require(IsPose(X_LM), "X_LM must be a right-handed rotation and a finite translation");
+  scene_.SetSurfacePose(kMirror, parameters_.X_LA.inverse() * X_LM * X_MS_);
+  scene_.Commit();
+  scene_.Intersect(outgoing_, hits_);
+  ReflectFromMirror();
+  scene_.Intersect(returning_, hits_);
+  return ReadCamera();
+}
+
+}  // namespace twinbench::optics

@@ -1,0 +1,278 @@
+#include "mechanics/gear_train.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/mechanics/gear_train_runs.h"
+
+namespace twinbench::mechanics {
+namespace {
+
+TEST(GearTrain, KinematicTransmissionErrorIsTheSumOfItsGears) {
+  GearTrainParameters p = Frictionless();
+  p.errors = SomeErrors();
+  p.worm_wheel_teeth = 96;
+  p.worm_starts = 2;
+  const auto train = Steady(Fidelity::kKinematic, p);
+  for (int i = 0; i < 100; ++i) {
+    train->Advance(0.31);
+    const GearTrainState s = train->State();
+    const double hob = kHobSpeed_rad_s * (s.time_s - 0.5 * kRamp_s);  // a symmetric ramp costs half its time
+    const double th = hob / 22.0;
+    const double expected_arcsec = 8.0 * std::cos(th + 0.3) + std::cos(2.0 * th - 0.5) +
+                                   2.0 * std::cos(48.0 * th + 0.7) + 0.5 * std::cos(2.0 * 96.0 * th + 2.0) +
+                                   3.0 * std::cos(hob + 1.1);
+    // Angles of 200 rad have 3e-14 rad, ten times 1e-9 arcsec.
+    EXPECT_NEAR(TransmissionError_rad(p, s) / kArcsec, expected_arcsec, 1e-7) << s.time_s;
+    EXPECT_NEAR(s.wheel_rad, s.table_rad, 1e-15);
+  }
+}
+
+TEST(GearTrain, BulletKeepsToTheKinematicTrainAtSlowSpeed) {
+  GearTrainParameters p;
+  p.errors = SomeErrors();
+  const auto kinematic = Steady(Fidelity::kKinematic, p);
+  const auto bullet = Steady(Fidelity::kBullet, p);
+  // The table follows a line of frequency f with the gain 1 / (1 - (f / f0)^2), f0 = sqrt(k / I) / 2 pi = 79.6 Hz:
+  // worm 3.4 Hz, 2 arcsec; mesh 6.8 Hz, 0.5 arcsec. The motor gives way to the reaction, of (f / f0)^2 of the same
+  // and not more than the table has inertia beside it.
+  const double bound_arcsec = 1.3 * (2.0 * 0.00183 + 0.5 * 0.0073);
+  double worst = 0.0, apart = 0.0;
+  for (int i = 0; i < 2640; ++i) {  // one turn
+    kinematic->Advance(0.01);
+    bullet->Advance(0.01);
+    const GearTrainState a = kinematic->State(), b = bullet->State();
+    worst = std::max(worst, std::abs(b.table_rad - a.table_rad) / kArcsec);
+    apart = std::max(apart, std::abs(b.hob_rad - a.hob_rad));
+  }
+  EXPECT_LT(worst, bound_arcsec);
+  EXPECT_LT(apart, 1e-10);  // no force acts on the hob but its servo's
+}
+
+TEST(GearTrain, LagIsProportionalToTheSpeed) {
+  for (const Fidelity fidelity : kBoth) {
+    for (const double feed_forward : {0.0, 0.6, 1.0}) {
+      for (const double speed : {1.0, 5.0, -5.0}) {
+        GearTrainParameters p = Frictionless();
+        p.motor.feed_forward = feed_forward;
+        const auto train = Steady(fidelity, p, speed);
+        const double lag = (1.0 - feed_forward) * p.ratio * speed / (2.0 * kPi * p.motor.servo_Hz);
+        // The integral leaves no error; a millionth of an arcsec is 2e-9 of the largest lag.
+        EXPECT_NEAR(TransmissionError_rad(p, train->State()), -lag, 1e-6 * kArcsec) << speed;
+      }
+    }
+  }
+}
+
+TEST(GearTrain, WindUpAndBacklashFollowTheDirection) {
+  for (const Fidelity fidelity : kBoth) {
+    for (const double backlash : {0.0, 6.0 * kArcsec}) {
+      GearTrainParameters p;
+      p.backlash_rad = backlash;
+      auto train = Steady(fidelity, p);
+      const auto wind_up = [&] { return train->State().wheel_rad - train->State().table_rad; };
+      const double expected = 0.5 * backlash + 100.0 / 5e6;  // torque / stiffness: 4.1 arcsec
+      // exp(-(0.24 rad/s / 1 mrad/s)^2) of the static excess is left: nothing
+      EXPECT_NEAR(wind_up(), expected, 1e-5 * kArcsec) << backlash;
+      train->Run(-kHobSpeed_rad_s, kRamp_s);
+      train->Advance(kRamp_s + 3.0);
+      EXPECT_NEAR(wind_up(), -expected, 1e-5 * kArcsec) << backlash;
+    }
+  }
+}
+
+TEST(GearTrain, WindUpStaysWhenTheTableStops) {
+  for (const Fidelity fidelity : kBoth) {
+    const GearTrainParameters p;
+    auto train = Steady(fidelity, p);
+    train->Run(0.0, kRamp_s);
+    train->Advance(kRamp_s + 3.0);
+    const GearTrainState s = train->State();
+    EXPECT_LT(std::abs(s.table_rad_s), 1e-9);
+    // Bristles share it with the torsion as springs in line and have been at their higher static torque.
+    EXPECT_GT(s.wheel_rad - s.table_rad, 0.0);
+    EXPECT_LT(s.wheel_rad - s.table_rad, 1.2 * 100.0 / 5e6 * (1.0 + 1e-9));
+  }
+}
+
+/// Speeds, a reversal through backlash and friction, and a ramp broken off, with time told in pieces of `piece_s`.
+std::vector<GearTrainState> Story(Fidelity fidelity, double piece_s) {
+  GearTrainParameters p;
+  p.errors = SomeErrors();
+  p.backlash_rad = 5.0 * kArcsec;
+  const auto train = MakeGearTrain(fidelity, p);
+  std::vector<GearTrainState> states;
+  const auto pass = [&](double time_s) {
+    for (long left = std::lround(time_s * 1e9); left > 0;) {
+      const long piece = std::min(left, std::lround(piece_s * 1e9));
+      train->Advance(static_cast<double>(piece) * 1e-9);
+      left -= piece;
+    }
+    states.push_back(train->State());
+  };
+  train->Run(3.0, 0.5);
+  pass(1.0000003);
+  train->Run(-2.0, 0.3);
+  pass(0.2123456);
+  train->Run(1.0, 0.1234);
+  pass(0.7);
+  train->Run(0.0, 0.2);
+  pass(0.5);
+  return states;
+}
+
+TEST(GearTrain, HasTheSameBitsHoweverTimeIsSliced) {
+  for (const Fidelity fidelity : kBoth) {
+    const std::vector<GearTrainState> whole = Story(fidelity, 10.0);
+    for (const double piece_s : {1e-3, 0.37e-3, 2.7182818e-3}) {
+      const std::vector<GearTrainState> sliced = Story(fidelity, piece_s);
+      for (std::size_t i = 0; i < whole.size(); ++i) {
+        EXPECT_EQ(sliced[i].time_s, whole[i].time_s);
+        EXPECT_EQ(sliced[i].hob_rad, whole[i].hob_rad);
+        EXPECT_EQ(sliced[i].table_rad, whole[i].table_rad) << piece_s << " s, state " << i;
+        EXPECT_EQ(sliced[i].table_rad_s, whole[i].table_rad_s);
+        EXPECT_EQ(sliced[i].wheel_rad, whole[i].wheel_rad);
+      }
+    }
+  }
+}
+
+TEST(GearTrain, WithinAServoPeriodInterpolatesBetweenItsEnds) {
+  const auto train = MakeGearTrain(Fidelity::kBullet, {});
+  train->Run(kHobSpeed_rad_s, 0.1);
+  train->Advance(0.05);
+  const GearTrainState before = train->State();
+  train->Advance(0.3e-3);
+  const GearTrainState within = train->State();
+  train->Advance(0.7e-3);
+  const GearTrainState expected = Between(before, train->State(), within.time_s);
+  EXPECT_EQ(within.table_rad, expected.table_rad);
+  EXPECT_EQ(within.hob_rad, expected.hob_rad);
+  EXPECT_EQ(within.wheel_rad_s, expected.wheel_rad_s);
+}
+
+TEST(GearTrain, KinematicPlayKnowsAReversalOfMicroseconds) {
+  GearTrainParameters p;
+  p.hob.feed_forward = p.motor.feed_forward = 1.0;
+  const auto train = Steady(Fidelity::kKinematic, p);
+  const GearTrainState before = train->State();
+  train->Run(-kHobSpeed_rad_s, 1e-5);
+  train->Advance(1e-4);
+  const GearTrainState after = train->State();
+  // 0.24 rad/s: on by less than a quarter of the ramp's way, then back by less than the play of 2 x 20 urad.
+  EXPECT_LT(after.wheel_rad, before.wheel_rad - 20e-6);
+  EXPECT_NEAR(after.table_rad, before.table_rad, 0.25 * before.table_rad_s * 1e-5);
+  EXPECT_EQ(after.table_rad_s, 0.0);
+}
+
+TEST(GearTrain, SpeedsAreTheDerivativesOfTheAngles) {
+  for (const Fidelity fidelity : kBoth) {
+    GearTrainParameters p;
+    p.errors = SomeErrors();
+    p.errors.hob_encoder = {{2.0, 5.0 * kArcsec, 0.0}};
+    const auto train = MakeGearTrain(fidelity, p);
+    train->Run(kHobSpeed_rad_s, kRamp_s);
+    train->Advance(1.2);  // on the ramp
+    for (int i = 0; i < 50; ++i) {
+      const GearTrainState a = train->State();
+      train->Advance(1e-3);
+      const GearTrainState middle = train->State();
+      train->Advance(1e-3);
+      const GearTrainState b = train->State();
+      // Central differences leave h^2 / 6 times the third derivative: the table's is below 20 rad/s^3 x 1e-2 here.
+      EXPECT_NEAR((b.hob_rad - a.hob_rad) / 2e-3, middle.hob_rad_s, 1e-5);
+      EXPECT_NEAR((b.table_rad - a.table_rad) / 2e-3, middle.table_rad_s, 1e-6);
+      EXPECT_NEAR((b.wheel_rad - a.wheel_rad) / 2e-3, middle.wheel_rad_s, 1e-6);
+    }
+  }
+}
+
+GearTrainState OnASine(double time_s) {
+  GearTrainState s;
+  s.time_s = time_s;
+  s.table_rad = 40.0 + 0.3 * time_s + 1e-3 * std::sin(20.0 * time_s);
+  s.table_rad_s = 0.3 + 0.02 * std::cos(20.0 * time_s);
+  s.hob_rad = 22.0 * s.table_rad;
+  s.hob_rad_s = 22.0 * s.table_rad_s;
+  return s;
+}
+
+TEST(GearTrain, StatesBetweenTwoAreGoodToTheFourthOrder) {
+  const double h_s = 0.01;
+  const double bound = std::pow(20.0 * h_s, 4.0) / 384.0 * 1e-3;
+  for (double t = 0.0; t < 0.3; t += h_s) {
+    const GearTrainState middle = Between(OnASine(t), OnASine(t + h_s), t + 0.5 * h_s);
+    EXPECT_NEAR(middle.table_rad, OnASine(t + 0.5 * h_s).table_rad, 1.01 * bound);
+    EXPECT_NEAR(middle.hob_rad, OnASine(t + 0.5 * h_s).hob_rad, 1.01 * 22.0 * bound);
+    EXPECT_NEAR(middle.table_rad_s, OnASine(t + 0.5 * h_s).table_rad_s, 20.0 * bound);
+  }
+}
+
+TEST(GearTrain, EveryAngleIsPassedOnceAndOnTime) {
+  const double h_s = 0.01;
+  for (const double sense : {1.0, -1.0}) {
+    const auto at = [&](int i) {
+      GearTrainState s = OnASine(sense * i * h_s);  // backwards: the film run the other way
+      s.time_s *= sense;
+      s.table_rad_s *= sense;
+      return s;
+    };
+    for (const double angle : {at(3).table_rad, 40.0 + sense * 0.02, 40.0 + sense * 0.05712}) {
+      int found = 0;
+      for (int i = 0; i < 30; ++i) {
+        const auto time_s = PassingTime_s(at(i), at(i + 1), angle);
+        if (!time_s) continue;
+        ++found;
+        // h^4 / 384 of the fourth derivative over the speed: 2e-8 s
+        EXPECT_NEAR(OnASine(sense * *time_s).table_rad, angle, std::pow(20.0 * h_s, 4.0) / 384.0 * 1e-3 * 1.1);
+      }
+      EXPECT_EQ(found, 1) << angle;
+    }
+  }
+}
+
+TEST(GearTrain, RefusesWhatIsNoMachine) {
+  const auto refused = [](const std::function<void(GearTrainParameters&)>& change) {
+    GearTrainParameters p;
+    change(p);
+    EXPECT_THROW(MakeGearTrain(Fidelity::kKinematic, p), std::invalid_argument);
+    EXPECT_THROW(MakeGearTrain(Fidelity::kBullet, p), std::invalid_argument);
+  };
+  refused([](auto& p) { p.ratio = 0.0; });
+  refused([](auto& p) { p.ratio = std::nan(""); });
+  refused([](auto& p) { p.worm_wheel_teeth = 0; });
+  refused([](auto& p) { p.worm_starts = -1; });
+  refused([](auto& p) { p.hob.inertia_kg_m2 = 0.0; });
+  refused([](auto& p) { p.motor.servo_Hz = 0.0; });
+  refused([](auto& p) { p.motor.servo_Hz = 26.0; });  // with a period of 1 ms
+  refused([](auto& p) { p.motor.feed_forward = 1.1; });
+  refused([](auto& p) { p.table_inertia_kg_m2 = -1.0; });
+  refused([](auto& p) { p.stiffness_Nm_rad = HUGE_VAL; });
+  refused([](auto& p) { p.damping_ratio = -0.1; });
+  refused([](auto& p) { p.backlash_rad = std::nan(""); });
+  refused([](auto& p) { p.friction.coulomb_Nm = -1.0; });
+  refused([](auto& p) { p.friction.presliding_rad = 0.0; });
+  refused([](auto& p) { p.servo_period_s = 0.0; });
+  refused([](auto& p) { p.step_s = std::nan(""); });
+  refused([](auto& p) { p.errors.worm = {{1.0, std::nan(""), 0.0}}; });
+  refused([](auto& p) { p.errors.worm = {{1.0, 0.01, 0.0}}; });  // 0.9 of the table's speed
+  EXPECT_THROW(MakeGearTrain(Fidelity::kLinear, {}), std::invalid_argument);
+}
+
+TEST(GearTrain, RefusesTimeThatRunsBackAndRampsThatAreNone) {
+  for (const Fidelity fidelity : kBoth) {
+    const auto train = MakeGearTrain(fidelity, {});
+    EXPECT_THROW(train->Advance(-1e-3), std::invalid_argument);
+    EXPECT_THROW(train->Run(1.0, 0.0), std::invalid_argument);
+    EXPECT_THROW(train->Run(std::nan(""), 1.0), std::invalid_argument);
+    train->Advance(1.0);
+    EXPECT_EQ(train->State().table_rad, 0.0) << "a refused run moved the table";
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::mechanics

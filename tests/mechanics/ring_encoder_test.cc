@@ -1,0 +1,233 @@
+#include "mechanics/ring_encoder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+#include "tests/mechanics/test_units.h"
+
+namespace twinbench::mechanics {
+namespace {
+
+constexpr double kRadius_m = 0.05;
+constexpr double kRounding_rad = 1e-14;  // some operations on angles of a few turns in double
+
+Ring GoodRing() {
+  Ring ring;
+  ring.radius_m = kRadius_m;
+  ring.lines = 18000;
+  return ring;
+}
+
+/// All errors at once, some hundred times what a real ring has.
+Ring BadRing() {
+  Ring ring = GoodRing();
+  ring.eccentricity_m = {120e-6, -70e-6};
+  ring.tilt_rad = {3e-3, -2e-3};
+  ring.mounting_rad = 0.4;
+  ring.ellipticity_m = 90e-6;
+  ring.ellipticity_azimuth_rad = 0.7;
+  ring.graduation = {{1.0, 2e-4, 0.2}, {7.0, 5e-5, -1.0}};
+  return ring;
+}
+
+double Error_rad(const RingEncoder& encoder, double shaft_rad, const Eigen::Vector2d& radial_m = {0.0, 0.0}) {
+  return encoder.Scale_rad(shaft_rad, radial_m) - (shaft_rad - encoder.MarkAtShaft_rad());
+}
+
+/// C of Re C exp(j order th), from 64 angles of a turn; leakage of orders that are missing there is rounding.
+std::complex<double> Coefficient(int order, const std::function<double(double)>& error_rad) {
+  constexpr int kAngles = 64;
+  std::complex<double> sum = 0.0;
+  for (int i = 0; i < kAngles; ++i) {
+    const double th = 2.0 * kPi * i / kAngles;
+    sum += error_rad(th) * std::polar(2.0 / kAngles, -order * th);
+  }
+  return sum;
+}
+
+std::complex<double> Coefficient(int order, const RingEncoder& encoder) {
+  return Coefficient(order, [&](double th) { return Error_rad(encoder, th); });
+}
+
+TEST(RingEncoder, WithoutErrorsShowsTheShaftFromTheMarkOn) {
+  Ring ring = GoodRing();
+  ring.mounting_rad = 0.3;
+  const RingEncoder encoder(ring, {1.1, 0.02, 0.0});
+  EXPECT_DOUBLE_EQ(encoder.MarkAtShaft_rad(), 0.8);
+  for (const double th : {-20.0, -1.0, 0.0, 0.8, 3.9, 50.0})
+    EXPECT_NEAR(encoder.Scale_rad(th), th - 0.8, kRounding_rad) << th;
+}
+
+TEST(RingEncoder, EccentricityFollowsTheSineTheorem) {
+  Ring ring = GoodRing();
+  const double a = 0.08, phi = 0.9;  // 4 mm: an exact formula needs no small error
+  ring.eccentricity_m = a * kRadius_m * Eigen::Vector2d(std::cos(phi), std::sin(phi));
+  const RingEncoder encoder(ring, {0.5, 0.0, 0.0});
+  for (double th = 0.0; th < 13.0; th += 0.37)
+    EXPECT_NEAR(Error_rad(encoder, th), std::asin(a * std::sin(th + phi - 0.5)), kRounding_rad) << th;
+}
+
+TEST(RingEncoder, AMicrometreOfEccentricityOn50mmIsFourArcsec) {
+  Ring ring = GoodRing();
+  ring.eccentricity_m = {1e-6, 0.0};
+  const RingEncoder encoder(ring, {});
+  EXPECT_NEAR(std::abs(Coefficient(1, encoder)), 1e-6 / kRadius_m, 8e-15);  // third order: (a / R)^3
+  EXPECT_NEAR(std::abs(Coefficient(1, encoder)) / kArcsec, 4.125, 0.001);
+  EXPECT_LT(std::abs(Coefficient(2, encoder)), 1e-9 * kArcsec);  // asin is odd: third order and up only
+}
+
+TEST(RingEncoder, TwoHeadsFaceToFaceCancelOddOrders) {
+  const Ring ring = BadRing();
+  const RingEncoder near(ring, {0.2, 0.0, 0.0}), far(ring, {0.2 + kPi, 0.0, 0.0});
+  const auto mean = [&](double th) { return 0.5 * (Error_rad(near, th) + Error_rad(far, th)); };
+  // Errors of 3e-3 act on each other: their products are of even order, those of three 1e-8.
+  for (const int order : {1, 3, 5, 7}) EXPECT_LT(std::abs(Coefficient(order, mean)), 3e-7) << order;
+  EXPECT_GT(std::abs(Coefficient(1, near)), 1e-3);
+  // Order 2 stays: the ellipse's lines, half of 90 um / 50 mm, and tilts and products of 1e-5
+  EXPECT_NEAR(std::abs(Coefficient(2, mean)), 0.5 * 90e-6 / kRadius_m, 2e-5);
+}
+
+TEST(RingEncoder, ATiltMovesTheRingUnderAHeadThatIsHigher) {
+  Ring ring = GoodRing();
+  const double tilt = 1e-4, height_m = 0.01;
+  ring.tilt_rad = {0.0, tilt};
+  const RingEncoder encoder(ring, {0.0, height_m, 0.0});
+  // Tilted about y, the ring's axis stands off by height x tilt along x: sin(th), phase -90 degrees.
+  const std::complex<double> expected = std::polar(height_m * tilt / kRadius_m, -0.5 * kPi);
+  EXPECT_LT(std::abs(Coefficient(1, encoder) - expected), 1e-7 * std::abs(expected));  // next: tilt^2
+}
+
+TEST(RingEncoder, ATiltForeshortensTheRingAtOrderTwo) {
+  Ring ring = GoodRing();
+  const double tilt = 0.05;
+  ring.tilt_rad = {tilt, 0.0};
+  const RingEncoder encoder(ring, {});
+  // About x: what is cos b, sin b in the horizontal plane is cos b, sin b cos(tilt) across the ring's axis.
+  for (double th = -1.5; th < 1.5; th += 0.21)
+    EXPECT_NEAR(encoder.Scale_rad(th), std::atan(std::tan(th) * std::cos(tilt)), kRounding_rad) << th;
+  // tan^2(tilt / 2) of that is order 2: tilt^2 / 4 to a share of tilt^2 / 6
+  EXPECT_NEAR(std::abs(Coefficient(2, encoder)), tilt * tilt / 4.0, tilt * tilt / 4.0 * tilt * tilt / 4.0);
+  EXPECT_LT(std::abs(Coefficient(1, encoder)), kRounding_rad);
+}
+
+TEST(RingEncoder, ABentRingMovesItsLinesByHalfOfWhatItsRadiusGains) {
+  Ring ring = GoodRing();
+  ring.ellipticity_m = 2e-6;
+  ring.ellipticity_azimuth_rad = 0.6;
+  const RingEncoder encoder(ring, {});
+  // A ring that keeps its length has its lines closer in angle where it is wider: the scale counts faster while its
+  // long axis, at shaft angle -azimuth, passes the head. Their products with u / R are left out.
+  const std::complex<double> two = Coefficient(2, encoder);
+  const double amplitude = 0.5 * 2e-6 / kRadius_m;
+  for (double th = 0.0; th < 6.3; th += 0.7)
+    EXPECT_NEAR(Error_rad(encoder, th), amplitude * std::sin(2.0 * (th + 0.6)), 3.0 * amplitude * amplitude);
+  EXPECT_NEAR(std::abs(two), amplitude, amplitude * amplitude);
+}
+
+TEST(RingEncoder, AnEllipsesAxesHaveItsRadii) {
+  Ring ring = GoodRing();
+  ring.ellipticity_m = 0.4e-3;
+  ring.ellipticity_azimuth_rad = 0.6;
+  const double sideways_m = 0.02;
+  const RingEncoder encoder(ring, {0.0, 0.0, sideways_m});
+  // The head looks at the end of the long axis, then of the short one: lines there are where they belong.
+  for (const auto& [angle, radius_m] : {std::pair(0.6, kRadius_m + 0.4e-3), {0.6 + 0.5 * kPi, kRadius_m - 0.4e-3}})
+    EXPECT_NEAR(encoder.Scale_rad(std::asin(sideways_m / radius_m) - angle), -angle, kRounding_rad);
+}
+
+TEST(RingEncoder, ShaftThatMovesAlongTheHeadIsReadAsATurn) {
+  const double head = 0.8, d_m = 2e-6;
+  const RingEncoder encoder(GoodRing(), {head, 0.0, 0.0});
+  const Eigen::Vector2d along(-std::sin(head), std::cos(head)), towards(std::cos(head), std::sin(head));
+  for (const double th : {0.0, 1.0, 4.0}) {  // in the fixed frame: whatever the angle
+    EXPECT_NEAR(Error_rad(encoder, th, d_m * along), std::asin(d_m / kRadius_m), kRounding_rad);
+    EXPECT_NEAR(Error_rad(encoder, th, d_m * towards), 0.0, kRounding_rad);
+  }
+}
+
+TEST(RingEncoder, AHeadOffItsPlaceReadsTheLineThere) {
+  const RingEncoder encoder(GoodRing(), {0.0, 0.0, 0.002});
+  // The sideways head is further on, where lines come earlier that count up later.
+  for (const double th : {0.0, 2.0, 5.0})
+    EXPECT_NEAR(Error_rad(encoder, th), -std::asin(0.002 / kRadius_m), kRounding_rad);
+}
+
+TEST(RingEncoder, GraduationIsAnErrorInTheScalesOwnAngle) {
+  Ring ring = GoodRing();
+  ring.mounting_rad = 0.9;
+  ring.graduation = {{3.0, 5.0 * kArcsec, 0.4}};
+  const RingEncoder encoder(ring, {2.0, 0.0, 0.0});
+  for (double th = 0.0; th < 6.0; th += 0.5)
+    EXPECT_NEAR(Error_rad(encoder, th), 5.0 * kArcsec * std::cos(3.0 * (th - 1.1) + 0.4), kRounding_rad);
+}
+
+TEST(RingEncoder, HeadThatGoesRoundShiftsTheErrorByItsAngle) {
+  const Ring ring = BadRing();
+  for (const double by : {0.7, kPi, -2.1}) {
+    const RingEncoder before(ring, {0.3, 0.004, 1e-4}), after(ring, {0.3 + by, 0.004, 1e-4});
+    for (double th = 0.0; th < 6.3; th += 0.41)
+      EXPECT_NEAR(Error_rad(after, th), Error_rad(before, th - by), kRounding_rad);
+  }
+}
+
+TEST(RingEncoder, RingThatGoesRoundBackwardsDoesTheSameAndBothTogetherNothing) {
+  const Ring ring = BadRing();
+  const ReadingHead head = {0.3, 0.004, 1e-4};
+  const double by = 1.3;
+  const RingEncoder before(ring, head), back(TurnedOnShaft(ring, -by), head);
+  const RingEncoder both(TurnedOnShaft(ring, by), {0.3 + by, 0.004, 1e-4});
+  for (double th = 0.0; th < 6.3; th += 0.41) {
+    EXPECT_NEAR(back.Scale_rad(th), before.Scale_rad(th - by), kRounding_rad);
+    EXPECT_NEAR(both.Scale_rad(th), before.Scale_rad(th), kRounding_rad);
+    // Of a tilted ring the mark's azimuth and so the error's constant are certain to tilt^2 / 2 only.
+    EXPECT_NEAR(Error_rad(back, th), Error_rad(before, th - by), 0.5 * (9e-6 + 4e-6));
+  }
+}
+
+TEST(RingEncoder, StaysContinuousOverManyTurns) {
+  const RingEncoder encoder(BadRing(), {0.3, 0.004, 1e-4});
+  for (double th = -40.0; th < 40.0; th += 0.01) {
+    const double gain = (encoder.Scale_rad(th + 0.01) - encoder.Scale_rad(th)) / 0.01;
+    ASSERT_NEAR(gain, 1.0, 0.01) << th;  // errors' slopes: 2e-3 each
+  }
+}
+
+TEST(RingEncoder, FindsTheShaftThatShowsAnAngle) {
+  const RingEncoder encoder(BadRing(), {0.3, 0.004, 1e-4});
+  const Eigen::Vector2d radial_m(3e-6, -5e-6);
+  for (double th = -30.0; th < 30.0; th += 0.77)
+    EXPECT_NEAR(encoder.Shaft_rad(encoder.Scale_rad(th, radial_m), radial_m), th, kRounding_rad);
+}
+
+TEST(RingEncoder, RefusesWhatIsNoRing) {
+  const auto refused = [](const std::function<void(Ring&, ReadingHead&)>& change) {
+    Ring ring = GoodRing();
+    ReadingHead head;
+    change(ring, head);
+    EXPECT_THROW(RingEncoder(ring, head), std::invalid_argument);
+  };
+  const double nan = std::nan("");
+  EXPECT_THROW(RingEncoder(Ring{}, {}), std::invalid_argument);
+  refused([](Ring& r, ReadingHead&) { r.radius_m = 0.0; });
+  refused([](Ring& r, ReadingHead&) { r.lines = 0; });
+  refused([](Ring& r, ReadingHead&) { r.eccentricity_m.x() = 0.006; });
+  refused([=](Ring& r, ReadingHead&) { r.eccentricity_m.y() = nan; });
+  refused([](Ring& r, ReadingHead&) { r.tilt_rad.x() = 0.2; });
+  refused([](Ring& r, ReadingHead&) { r.ellipticity_m = -0.001; });
+  refused([=](Ring& r, ReadingHead&) { r.mounting_rad = nan; });
+  refused([=](Ring& r, ReadingHead&) { r.ellipticity_azimuth_rad = nan; });
+  refused([=](Ring& r, ReadingHead&) { r.graduation = {{1.0, nan, 0.0}}; });
+  refused([](Ring& r, ReadingHead&) { r.graduation = {{18000.0, 1e-4, 0.0}}; });
+  refused([=](Ring&, ReadingHead& h) { h.azimuth_rad = nan; });
+  refused([=](Ring&, ReadingHead& h) { h.height_m = nan; });
+  refused([](Ring&, ReadingHead& h) { h.tangential_m = 0.03; });
+  refused([](Ring& r, ReadingHead& h) { r.tilt_rad.x() = 0.05, h.height_m = 0.2; });
+}
+
+}  // namespace
+}  // namespace twinbench::mechanics

@@ -1,0 +1,161 @@
+#include "tests/support/angle_benches.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+// The answers that the scenarios of the turntable and the hobbing machine promise.
+namespace twinbench {
+namespace {
+
+using separate::hob::HobAnalysis;
+using separate::hob::OrderStatus;
+using separate::turntable::TurntableAnalysis;
+using units::arcsec;
+
+test::BenchRun Turntable(const std::string& file, const std::vector<std::string>& overrides = {}) {
+  return test::RunTurntable(LoadScenario(test::ScenarioPath(file), overrides));
+}
+
+TurntableAnalysis Analysed(const test::BenchRun& run) {
+  return separate::turntable::AnalyseTurntable(run.readings, run.scenario, measure::Estimator::kRigorous);
+}
+
+/// True index error of a table at its own angle, in arcsec; the truth lists whole degrees.
+double Truth_arcsec(const nlohmann::json& table, double angle_rad) {
+  const auto& ez = table.at("ez_arcsec");
+  const auto k = static_cast<std::size_t>(std::llround(angle_rad / units::deg)) % ez.size();
+  return ez.at(k).get<double>();
+}
+
+/// estimate - truth at each position, the mean taken out.
+std::vector<double> Errors_arcsec(const separate::turntable::AngleSeries& series, const nlohmann::json& table) {
+  std::vector<double> errors;
+  double mean = 0.0;
+  for (std::size_t k = 0; k < series.position_rad.size(); ++k) {
+    errors.push_back(series.value_rad[static_cast<Eigen::Index>(k)] / arcsec -
+                     Truth_arcsec(table, series.position_rad[k]));
+    mean += errors.back() / static_cast<double>(series.position_rad.size());
+  }
+  for (double& error : errors) error -= mean;
+  return errors;
+}
+
+/// Mean of (error / u)^2.
+double MeanChi2(const separate::turntable::AngleSeries& series, const nlohmann::json& table) {
+  const auto errors = Errors_arcsec(series, table);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < errors.size(); ++k)
+    sum += std::pow(errors[k] * arcsec / series.U_rad(static_cast<Eigen::Index>(k)), 2);
+  return sum / static_cast<double>(errors.size());
+}
+
+TEST(TurntableAutocollimator, IsCompensatedToTwoArcsecAtTheCheckPositions) {
+  const TurntableAnalysis a = Analysed(Turntable("turntable_autocollimator.toml"));
+  EXPECT_NEAR(a.before.peak_to_valley_rad / arcsec, 17.82, 0.9) << "the paper's turntable; noise of both ends 0.25";
+  ASSERT_TRUE(a.check);
+  EXPECT_EQ(a.check->after.count, 144);
+  EXPECT_LE(a.check->after.largest_rad / arcsec, 2.0);
+}
+
+TEST(TurntableAutocollimator, FindsTheRollOfTheCrosshair) {
+  const TurntableAnalysis a = Analysed(Turntable("turntable_autocollimator.toml"));
+  EXPECT_NEAR(a.separation->roll.gamma_rad, 10.47e-3, 4.0 * a.separation->roll.u_gamma_rad);
+  EXPECT_LT(a.separation->roll.u_gamma_rad, 1.5e-3) << "0.25 arcsec / (40 arcsec rms over 144 differences)";
+}
+
+TEST(TurntableAutocollimator, ErrsFarLessThanEquation5AtItsPoles) {
+  double worst_pointwise = 0.0, worst_global = 0.0;
+  constexpr int kSeeds = 10;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const test::BenchRun run =
+        Turntable("turntable_autocollimator.toml",
+                  {"seed=" + std::to_string(seed), "turntable_procedure.phases=[\"full_circle\"]"});
+    const TurntableAnalysis a = Analysed(run);
+    const auto& table = run.truth.at("turntable");
+    double largest_pointwise = 0.0, largest_global = 0.0;
+    for (const double error : Errors_arcsec(a.separation->turntable, table))
+      largest_global = std::max(largest_global, std::abs(error));
+    const double start_arcsec = Truth_arcsec(table, 0.0);
+    for (const auto& point : a.pointwise) {
+      if (!std::isfinite(point.value_rad)) continue;
+      const double error = point.value_rad / arcsec - (Truth_arcsec(table, point.turntable_rad) - start_arcsec);
+      largest_pointwise = std::max(largest_pointwise, std::abs(error));
+    }
+    worst_pointwise += largest_pointwise / kSeeds;
+    worst_global += largest_global / kSeeds;
+  }
+  EXPECT_GT(worst_pointwise, 5.0 * worst_global) << worst_pointwise << " against " << worst_global << " arcsec";
+}
+
+TEST(TurntableShifts, SeparateTurntableAndTeethWithinTheirUncertainties) {
+  const test::BenchRun run = Turntable("turntable_shifts.toml");
+  const TurntableAnalysis a = Analysed(run);
+  EXPECT_EQ(a.separation->status, separate::turntable::IndexingStatus::kSeparated);
+  // 36 values: mean 1, deviation sqrt(2 / 36) = 0.24; four of these.
+  EXPECT_NEAR(MeanChi2(a.separation->turntable, run.truth.at("turntable")), 1.0, 0.95);
+  EXPECT_NEAR(MeanChi2(a.separation->multitooth, run.truth.at("multitooth")), 1.0, 0.95);
+}
+
+// --- hobbing machine ---
+
+test::BenchRun Machine(const std::string& file, const std::vector<std::string>& overrides = {}) {
+  return test::RunHob(LoadScenario(test::ScenarioPath(file), overrides));
+}
+
+HobAnalysis Analysed(const test::BenchRun& run, measure::Estimator estimator) {
+  return separate::hob::AnalyseHob(run.readings, run.scenario, estimator);
+}
+
+TEST(HobTransmission, ShowsThirteenAndTenArcsecInTheTwoPositions) {
+  const HobAnalysis a = Analysed(Machine("hob_transmission.toml"), measure::Estimator::kPublished);
+  for (const auto& position : a.positions) {
+    const double expected = position.setup == 0 ? 13.0 : 10.0;
+    EXPECT_NEAR(separate::hob::Amplitude(position.series.At(1)) / arcsec, expected, 0.3) << position.setup;
+  }
+}
+
+TEST(HobTransmission, GivesTheEncodersErrorWithinThreeTenthsOfAnArcsecAndAHundredthOfARadian) {
+  const test::BenchRun run = Machine("hob_transmission.toml");
+  const HobAnalysis a = Analysed(run, measure::Estimator::kPublished);
+  ASSERT_TRUE(a.two_positions);
+  EXPECT_NEAR(separate::hob::Amplitude(a.two_positions->encoder) / arcsec, 5.8, 0.3);
+  EXPECT_NEAR(separate::hob::Phase(a.two_positions->encoder), 2.72, 0.01);
+  const auto& against_interferometer = a.encoder_against_interferometer.front();
+  EXPECT_EQ(against_interferometer.order, 1);
+  EXPECT_LT(std::abs(against_interferometer.amplitude_difference_rad) / arcsec, 0.3);
+  EXPECT_LT(std::abs(against_interferometer.phase_difference_rad), 0.01);
+}
+
+TEST(HobTransmission, HasALineAtOrder22AndTheSameHigherOrdersInBothPositions) {
+  const HobAnalysis a = Analysed(Machine("hob_transmission.toml"), measure::Estimator::kRigorous);
+  for (const auto& direction : a.directions)
+    EXPECT_TRUE(std::ranges::count(direction.lines, 22)) << "once a turn of the hob";
+  for (const auto& order : a.separation->orders) {
+    if (order.order < 2 || order.dof_alike == 0) continue;
+    // With psi = 0: chi-squared of few degrees of freedom; 99 orders, 1e-4 each.
+    EXPECT_LT(order.chi2_alike, 4.0 * order.dof_alike + 20.0) << order.order;
+  }
+}
+
+TEST(HobThreeHeads, TellAllOrdersOfTheEncoderFromThoseOfTheMachine) {
+  const test::BenchRun run = Machine("hob_three_heads.toml");
+  const HobAnalysis a = Analysed(run, measure::Estimator::kRigorous);
+  for (const int order : {1, 2, 6}) {
+    EXPECT_EQ(a.separation->At(order).status, OrderStatus::kSeparated) << order;
+    const auto truth =
+        std::ranges::find_if(run.truth.at("table_encoder"), [&](const auto& h) { return h.at("order") == order; });
+    const std::complex<double> expected =
+        std::polar(truth->at("amplitude_arcsec").get<double>(), truth->at("phase_deg").get<double>() * units::deg);
+    const auto& found = a.encoder.At(order);
+    EXPECT_LT(std::abs(found.value / arcsec - expected),
+              5.0 * separate::hob::LargestUncertainty(found) / arcsec + 0.005)
+        << order;
+  }
+  int sums = 0;
+  for (const auto& order : a.separation->orders) sums += order.status == OrderStatus::kSumOnly;
+  EXPECT_EQ(sums, 0) << "no order is lost";
+}
+
+}  // namespace
+}  // namespace twinbench

@@ -1,0 +1,168 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/angle_benches.h"
+#include "twin/core/device_fault.h"
+#include "twin/core/effect_catalogue.h"
+
+namespace twinbench {
+namespace {
+
+using units::arcsec;
+using units::deg;
+
+/// A machine without errors and noise: one head, one turn each way, 180 samples a turn.
+Scenario QuietMachine() {
+  Scenario s;
+  s.bench = kHobBench;
+  s.noise_free = true;
+  s.hob_procedure.heads_rad = {0.0};
+  s.hob_procedure.turns = 1;
+  s.hob_procedure.samples_per_turn = 180;
+  s.hob_encoder.lines = 8192;  // a whole number of lines between samples would hide what repeats with them
+  return s;
+}
+
+std::vector<Reading> Readings(const Scenario& scenario) {
+  return test::RunHob(scenario).readings;
+}
+
+/// table - ratio x hob, its mean over the readings taken out.
+std::vector<double> Differences_arcsec(const std::vector<Reading>& readings, double ratio) {
+  std::vector<double> m;
+  double mean = 0.0;
+  for (const Reading& r : readings) {
+    m.push_back((r.measured_rad - ratio * r.reference_rad) / arcsec);
+    mean += m.back() / static_cast<double>(readings.size());
+  }
+  for (double& value : m) value -= mean;
+  return m;
+}
+
+TEST(HobTwin, KeepsOneSampleAtEveryHundredthLineOfTheTablesEncoder) {
+  const auto readings = Readings(QuietMachine());
+  ASSERT_EQ(readings.size(), 360u);
+  for (std::size_t i = 1; i < 180; ++i)
+    EXPECT_NEAR(readings[i].measured_rad - readings[i - 1].measured_rad, 2.0 * deg, 1e-12);
+  for (std::size_t i = 181; i < 360; ++i)
+    EXPECT_NEAR(readings[i].measured_rad - readings[i - 1].measured_rad, -2.0 * deg, 1e-12);
+  EXPECT_EQ(readings[0].direction, 1);
+  EXPECT_EQ(readings[200].direction, -1);
+}
+
+TEST(HobTwin, WithoutErrorsBothEncodersKeepTheRatio) {
+  const Scenario s = QuietMachine();
+  for (const double m_arcsec : Differences_arcsec(Readings(s), s.transmission.Ratio()))
+    EXPECT_NEAR(m_arcsec, 0.0, 1e-6);
+}
+
+TEST(HobTwin, ShowsTheTransmissionErrorByTheTablesAngle) {
+  Scenario s = QuietMachine();
+  s.hob_procedure.passes = {1};
+  s.transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
+  const auto readings = Readings(s);
+  const auto m_arcsec = Differences_arcsec(readings, s.transmission.Ratio());
+  for (std::size_t i = 0; i < m_arcsec.size(); ++i)
+    EXPECT_NEAR(m_arcsec[i], 7.0 * std::cos(3.0 * readings[i].measured_rad + 0.5), 1e-3);
+}
+
+TEST(HobTwin, InterferometerSeesTheMachineAndNotTheEncoder) {
+  Scenario s = QuietMachine();
+  s.transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
+  s.table_encoder.eccentricity_m = 3e-6;
+  for (const Reading& r : Readings(s))
+    EXPECT_NEAR(r.interferometer_rad / arcsec, 7.0 * std::cos(3.0 * r.measured_rad + 0.5), 1e-2)
+        << "the encoder's 6 arcsec move the angle, 3 x 7 arcsec x 3e-5";
+}
+
+/// Order 1 of what one head sees.
+std::complex<double> OrderOne_arcsec(const Scenario& s) {
+  const auto readings = Readings(s);
+  const auto m_arcsec = Differences_arcsec(readings, s.transmission.Ratio());
+  std::complex<double> sum = 0.0;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    sum += m_arcsec[i] * std::polar(2.0 / static_cast<double>(readings.size()), -readings[i].measured_rad);
+  return sum;
+}
+
+TEST(HobTwin, EncodersErrorMovesWithItsHead) {
+  Scenario s = QuietMachine();
+  s.table_encoder.eccentricity_m = 2.0e-6;
+  s.table_encoder.eccentricity_azimuth_rad = 70.0 * deg;
+  const double amplitude_arcsec = 2.0e-6 / s.table_encoder.radius_m / arcsec;
+  const std::complex<double> at_zero = OrderOne_arcsec(s);
+  EXPECT_NEAR(std::abs(at_zero), amplitude_arcsec, 1e-3);
+  s.hob_procedure.heads_rad = {50.0 * deg};
+  const std::complex<double> at_50 = OrderOne_arcsec(s);
+  EXPECT_NEAR(std::abs(at_50 - at_zero * std::polar(1.0, -50.0 * deg)), 0.0, 1e-3) << "psi(th - head)";
+}
+
+TEST(HobTwin, CountsFromTheMarkIfToldSo) {
+  Scenario s = QuietMachine();
+  s.hob_procedure.heads_rad = {50.0 * deg};
+  const auto from_origin = Readings(s);
+  s.hob_procedure.encoder_zero = "reference_mark";
+  const auto from_mark = Readings(s);
+  EXPECT_NEAR(from_origin[0].measured_rad - from_mark[0].measured_rad, 50.0 * deg, 1e-12);
+}
+
+TEST(HobTwin, BulletAgreesWithTheKinematicChainOnSlowErrors) {
+  Scenario s = QuietMachine();
+  s.transmission.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.0}, {Component::kEz, 22.0, 2.0 * arcsec, 1.0}};
+  const auto kinematic = Differences_arcsec(Readings(s), s.transmission.Ratio());
+  s.mechanics.fidelity = "bullet";
+  const auto bullet = Differences_arcsec(Readings(s), s.transmission.Ratio());
+  // Order 22 is 0.83 Hz against a torsional mode of 80 Hz: (0.83 / 80)^2 = 1e-4 of 2 arcsec.
+  for (std::size_t i = 0; i < bullet.size(); ++i) EXPECT_NEAR(bullet[i], kinematic[i], 0.02) << i;
+}
+
+TEST(HobTwin, EndsWithAFaultWhenTheFifoRunsFull) {
+  Scenario s = QuietMachine();
+  s.hob_procedure.fifo_samples = 4;
+  s.hob_procedure.poll_s = 2.0;  // 14 samples come meanwhile
+  try {
+    Readings(s);
+    FAIL() << "no fault";
+  } catch (const DeviceFault& fault) {
+    EXPECT_EQ(fault.kind(), FaultKind::kOverrun);
+  }
+}
+
+TEST(HobTwin, GivesTheSameBitsForTheSameSeed) {
+  Scenario s = QuietMachine();
+  s.noise_free = false;
+  s.table_encoder.noise_rad = 0.3 * arcsec;
+  const auto a = Readings(s), b = Readings(s);
+  s.seed = 2;
+  const auto other = Readings(s);
+  int differ = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].measured_rad, b[i].measured_rad);
+    EXPECT_EQ(a[i].reference_rad, b[i].reference_rad);
+    differ += a[i].measured_rad != other[i].measured_rad;
+  }
+  EXPECT_GT(differ, 300);
+}
+
+TEST(HobTwin, HasEveryEffectOfTheCatalogueAndEachChangesTheReadings) {
+  const Scenario s = QuietMachine();
+  const auto clean = Readings(s);
+  for (const EffectEntry& entry : EffectCatalogue(kHobBench)) {
+    Scenario with = s;
+    EffectSettings effect{entry.name, entry.places.empty() ? "" : entry.places.back(), {}, ""};
+    for (const EffectParameter& p : entry.parameters) effect.parameters[p.name] = p.default_SI;
+    if (entry.name == "slip") effect.parameters["at_reading"] = 5.0;
+    if (entry.name == "outliers") effect.parameters["fraction"] = 0.3;
+    with.effects = {effect};
+    const auto disturbed = Readings(with);
+    double largest_rad = 0.0;
+    for (std::size_t i = 0; i < clean.size(); ++i)
+      largest_rad = std::max({largest_rad, std::abs(disturbed[i].measured_rad - clean[i].measured_rad),
+                              std::abs(disturbed[i].reference_rad - clean[i].reference_rad)});
+    EXPECT_GT(largest_rad, 1e-3 * arcsec) << entry.name;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench

@@ -1,0 +1,189 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/angle_benches.h"
+#include "twin/core/effect_catalogue.h"
+
+namespace twinbench {
+namespace {
+
+using units::arcsec;
+using units::deg;
+
+/// A bench without errors and noise: 12 positions, one set-up, one pass.
+Scenario QuietTurntable() {
+  Scenario s;
+  s.bench = kTurntableBench;
+  s.noise_free = true;
+  s.multitooth.tooth_rms_rad = 0.0;
+  s.turntable_procedure.phases = {"full_circle"};
+  s.turntable_procedure.positions = 12;
+  s.turntable_procedure.tilts_rad = {0.0};
+  s.turntable_procedure.eccentricities_m = {0.0};
+  s.turntable_procedure.passes = {1};
+  return s;
+}
+
+std::vector<Reading> Readings(const Scenario& scenario) {
+  return test::RunTurntable(scenario).readings;
+}
+
+double X_arcsec(const Reading& r) {
+  return r.autocollimator_yaw_rad / arcsec;
+}
+double Y_arcsec(const Reading& r) {
+  return r.autocollimator_tilt_rad / arcsec;
+}
+
+// The reading is half the tangent of the doubled angle: at 100 arcsec 3e-5 arcsec more than the angle.
+constexpr double kTangent_arcsec = 1e-4;
+
+TEST(TurntableTwin, ReadsTheIndexErrorOfTheTurntablePlusThatOfTheTooth) {
+  Scenario s = QuietTurntable();
+  s.target.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
+  s.reference.harmonics = {{Component::kEz, 3.0, 2.0 * arcsec, 1.0}};
+  s.turntable_procedure.shifts = {30};  // teeth
+  for (const Reading& r : Readings(s)) {
+    const double turntable_rad = r.position * 30.0 * deg, tooth_rad = 30.0 * deg - turntable_rad;
+    EXPECT_NEAR(r.target_rad, turntable_rad, 1e-12);
+    EXPECT_NEAR(r.reference_rad, tooth_rad, 1e-12);
+    const double sum_arcsec = 5.0 * std::cos(2.0 * turntable_rad + 0.3) + 2.0 * std::cos(3.0 * tooth_rad + 1.0);
+    EXPECT_NEAR(X_arcsec(r), sum_arcsec, kTangent_arcsec) << r.position;
+    EXPECT_NEAR(Y_arcsec(r), 0.0, kTangent_arcsec);
+  }
+}
+
+TEST(TurntableTwin, ShowsATiltOfTheMultitoothTableOnceATurnInY) {
+  Scenario s = QuietTurntable();
+  s.turntable_procedure.tilts_rad = {100.0 * arcsec};
+  s.turntable_procedure.tilt_azimuths_rad = {40.0 * deg};
+  for (const Reading& r : Readings(s)) {
+    // The axis leans towards the azimuth, so the normal of a mirror that faces that way looks down.
+    const double azimuth_rad = 40.0 * deg + r.target_rad;
+    EXPECT_NEAR(Y_arcsec(r), -100.0 * std::sin(azimuth_rad), 2.0 * kTangent_arcsec) << r.position;
+    EXPECT_NEAR(X_arcsec(r), 0.0, 0.03) << "second order: 100 arcsec x 1e-4";
+  }
+}
+
+TEST(TurntableTwin, RolledCrosshairMixesTiltIntoX) {
+  Scenario s = QuietTurntable();
+  s.turntable_procedure.tilts_rad = {100.0 * arcsec};
+  s.collimator.roll_rad = 0.6 * deg;
+  double largest_arcsec = 0.0;
+  for (const Reading& r : Readings(s)) {
+    EXPECT_NEAR(X_arcsec(r), Y_arcsec(r) * std::tan(0.6 * deg), 0.03) << "x' = (x + y' sin g) / cos g";
+    largest_arcsec = std::max(largest_arcsec, std::abs(X_arcsec(r)));
+  }
+  EXPECT_NEAR(largest_arcsec, 1.05, 0.03) << "the paper's figure for 0.6 deg and 100 arcsec";
+}
+
+TEST(TurntableTwin, EccentricityChangesNothingOnAFlatMirror) {
+  Scenario s = QuietTurntable();
+  s.turntable_procedure.eccentricities_m = {1e-3};
+  for (const Reading& r : Readings(s)) EXPECT_NEAR(X_arcsec(r), 0.0, 1e-6);
+}
+
+TEST(TurntableTwin, EccentricityWalksTheBeamOverAMirrorThatIsNotFlat) {
+  Scenario s = QuietTurntable();
+  s.turntable_procedure.eccentricities_m = {1e-3};
+  s.mirror.flatness_m = 79e-9;
+  double largest_arcsec = 0.0;
+  for (const Reading& r : Readings(s)) largest_arcsec = std::max(largest_arcsec, std::abs(X_arcsec(r)));
+  EXPECT_NEAR(largest_arcsec, 0.036, 0.001) << "8 h dL rho / H^2 of the paper";
+}
+
+TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
+  Scenario s = QuietTurntable();
+  s.target.backlash_rad = 3.0 * arcsec;
+  s.turntable_procedure.passes = {1, -1};
+  const auto readings = Readings(s);
+  for (const Reading& forward : readings) {
+    for (const Reading& backward : readings) {
+      if (forward.direction < 0 || backward.direction > 0 || forward.position != backward.position) continue;
+      EXPECT_NEAR(X_arcsec(forward) - X_arcsec(backward), -3.0, 1e-3);
+    }
+  }
+}
+
+TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
+  Scenario s = QuietTurntable();
+  s.turntable_procedure.phases = {"calibration"};
+  s.turntable_procedure.sweep_points = 5;
+  s.autocollimator.gain_error = 0.01;
+  const auto readings = Readings(s);
+  ASSERT_EQ(readings.size(), 5u);
+  for (const Reading& r : readings) {
+    EXPECT_EQ(r.phase, Phase::kCalibration);
+    EXPECT_EQ(r.reference_rad, 0.0);
+    EXPECT_NEAR(X_arcsec(r), 1.01 * r.target_rad / arcsec, 1e-3);
+  }
+  EXPECT_NEAR(readings.front().target_rad, -200.0 * arcsec, 1e-12);
+}
+
+TEST(TurntableTwin, ChecksBetweenThePositionsOnly) {
+  Scenario s = QuietTurntable();
+  s.turntable_procedure.phases = {"verification"};
+  s.turntable_procedure.verification_positions = 20;
+  for (const Reading& r : Readings(s)) {
+    EXPECT_EQ(r.phase, Phase::kVerification);
+    EXPECT_NE(std::lround(r.target_rad / deg) % 30, 0) << "a position of the full circle";
+  }
+}
+
+TEST(CheckTeeth, AreWholeTeethOffTheGridEvenlySpread) {
+  const std::vector<int> teeth = procedure::CheckTeeth(360, 72, 144);
+  EXPECT_EQ(teeth.size(), 144u);
+  EXPECT_EQ(std::vector<int>(teeth.begin(), teeth.begin() + 5), (std::vector<int>{1, 3, 6, 8, 11}));
+}
+
+TEST(TurntableTwin, ShowsNothingBeyondTheRange) {
+  Scenario s = QuietTurntable();
+  s.target.harmonics = {{Component::kEz, 1.0, 500.0 * arcsec, 0.0}};
+  const auto readings = Readings(s);
+  EXPECT_EQ(readings[0].status, ReadingStatus::kClippedSpot) << "500 arcsec at a range of 410";
+  EXPECT_TRUE(std::isnan(readings[0].autocollimator_yaw_rad));
+  EXPECT_EQ(readings[3].status, ReadingStatus::kOk);
+}
+
+TEST(TurntableTwin, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
+  Scenario s = QuietTurntable();
+  s.noise_free = false;
+  s.multitooth.tooth_rms_rad = 0.1 * arcsec;
+  const auto a = Readings(s), b = Readings(s);
+  s.seed = 2;
+  const auto other = Readings(s);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].autocollimator_yaw_rad, b[i].autocollimator_yaw_rad);
+    EXPECT_NE(a[i].autocollimator_yaw_rad, other[i].autocollimator_yaw_rad);
+  }
+}
+
+TEST(TurntableTwin, HasEveryEffectOfTheCatalogueAndEachChangesTheReadings) {
+  Scenario s = QuietTurntable();
+  s.noise_free = false;  // scatter is an effect too
+  s.turntable_procedure.phases = {"calibration", "full_circle"};
+  s.turntable_procedure.tilts_rad = {60.0 * arcsec, 100.0 * arcsec};
+  s.turntable_procedure.passes = {1, -1};
+  s.environment.drift_K_h = 0.5;
+  const auto clean = Readings(s);
+  for (const EffectEntry& entry : EffectCatalogue(kTurntableBench)) {
+    Scenario with = s;
+    EffectSettings effect{entry.name, entry.places.empty() ? "" : entry.places.back(), {}, ""};
+    for (const EffectParameter& p : entry.parameters) effect.parameters[p.name] = p.default_SI;
+    if (entry.name == "slip") effect.parameters["at_reading"] = 5.0;
+    if (entry.name == "outliers") effect.parameters["fraction"] = 0.3;
+    with.effects = {effect};
+    const auto disturbed = Readings(with);
+    double largest_rad = 0.0;
+    for (std::size_t i = 0; i < clean.size(); ++i) {
+      largest_rad =
+          std::max({largest_rad, std::abs(disturbed[i].autocollimator_yaw_rad - clean[i].autocollimator_yaw_rad),
+                    std::abs(disturbed[i].autocollimator_tilt_rad - clean[i].autocollimator_tilt_rad)});
+    }
+    EXPECT_GT(largest_rad, 1e-3 * arcsec) << entry.name;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench

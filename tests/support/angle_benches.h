@@ -1,0 +1,52 @@
+#pragma once
+
+#include "tests/support/twin_run.h"
+#include "twin/procedure/hob.h"
+#include "twin/procedure/turntable.h"
+#include "twin/separate/hob/hob_bench.h"
+#include "twin/separate/turntable/turntable_bench.h"
+#include "twin/sim/hob/twin.h"
+#include "twin/sim/turntable/twin.h"
+
+/// Runs of the turntable's and the hobbing machine's twins without a disk.
+namespace twinbench::test {
+
+struct BenchRun {
+  Scenario scenario;
+  std::vector<Reading> readings;
+  nlohmann::json truth;
+};
+
+template <class Twin>
+BenchRun RunBench(const Scenario& scenario) {
+  Twin twin(scenario);
+  auto bench = twin.Bench();
+  MemorySink sink;
+  procedure::CarryOut(bench, scenario, sink);
+  return {scenario, sink.readings, twin.Truth()};
+}
+
+inline BenchRun RunTurntable(const Scenario& scenario) {
+  return RunBench<sim::TurntableTwin>(scenario);
+}
+inline BenchRun RunHob(const Scenario& scenario) {
+  return RunBench<sim::HobTwin>(scenario);
+}
+
+/// The readings of any bench's twin.
+inline std::vector<Reading> ReadingsOf(const Scenario& scenario) {
+  if (scenario.bench == kEncoderBench) return RunEncoderTwin(scenario).readings;
+  if (scenario.bench == kTurntableBench) return RunTurntable(scenario).readings;
+  if (scenario.bench == kHobBench) return RunHob(scenario).readings;
+  return RunTwin(scenario).readings;
+}
+
+inline int PlannedReadings(const Scenario& scenario) {
+  if (scenario.bench == kEncoderBench)
+    return static_cast<int>(procedure::AngleSchedule(scenario.encoder_procedure).size());
+  if (scenario.bench == kTurntableBench) return procedure::PlannedReadings(scenario.turntable_procedure);
+  if (scenario.bench == kHobBench) return procedure::PlannedReadings(scenario.hob_procedure);
+  return procedure::PlannedReadings(scenario.procedure);
+}
+
+}  // namespace twinbench::test

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "twin/core/scenario_schema.h"
+
+/// How the keys of the file format are written down; only its own files need this.
+namespace twinbench::schema {
+
+using Keys = std::vector<ScenarioKey>;
+
+inline constexpr Unit kPure{};
+inline constexpr Unit kMm{"mm", units::mm}, kUm{"um", units::um}, kNm{"nm", units::nm};
+inline constexpr Unit kDeg{"deg", units::deg}, kArcsec{"arcsec", units::arcsec}, kMrad{"mrad", units::mrad};
+inline constexpr Unit kUrad{"urad", units::urad};
+inline constexpr Unit kMillivolt{"mV", units::mV}, kVolt{"V"}, kMw{"mW", units::mW};
+inline constexpr Unit kSecond{"s"}, kMicrosecond{"us", units::us}, kHz{"Hz"}, kKilohertz{"kHz", units::kHz};
+inline constexpr Unit kMillikelvin{"mK", 1e-3}, kCelsius{"degC"};
+
+inline constexpr double kHuge = 1e9;  // of pure numbers that need no closer bound
+
+inline Bounds Within(double limit) {
+  return {-limit, limit};
+}
+inline Bounds UpTo(double upper) {
+  return {0.0, upper};
+}
+inline Bounds Positive(double upper) {
+  return {0.0, upper, true};
+}
+
+/// Adds keys to one table.
+class Table {
+ public:
+  Table(Keys& keys, std::string name) : keys_(keys), name_(std::move(name)) {}
+
+  void Add(const std::string& name, const Unit& unit, const Bounds& bounds, Field field,
+           const std::string& meaning) {
+    keys_.push_back({name_, name, unit, bounds, {}, field, meaning});
+  }
+  void Flag(const std::string& name, bool& field, const std::string& meaning) {
+    keys_.push_back({name_, name, {}, {}, {}, &field, meaning});
+  }
+  void Text(const std::string& name, Field field, std::vector<std::string> choices, const std::string& meaning) {
+    keys_.push_back({name_, name, {}, {}, std::move(choices), field, meaning});
+  }
+
+ private:
+  Keys& keys_;
+  std::string name_;
+};
+
+template <std::size_t kCount>
+std::span<double> List(std::array<double, kCount>& array) {
+  return {array.data(), kCount};
+}
+template <int kRows>
+std::span<double> List(Eigen::Matrix<double, kRows, 1>& vector) {
+  return {vector.data(), static_cast<std::size_t>(kRows)};
+}
+
+/// Errors and motion of a rotary table.
+/// @param frame  In which the table's errors are given.
+void AddTable(Keys& keys, const std::string& table, const std::string& frame, TableSettings& s);
+void AddEnvironment(Keys& keys, EnvironmentSettings& s);
+void AddAutocollimator(Keys& keys, AutocollimatorSettings& s);
+
+void AddTurntableBench(Keys& keys, Scenario& s);
+void AddHobBench(Keys& keys, Scenario& s);
+
+}  // namespace twinbench::schema

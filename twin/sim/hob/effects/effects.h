@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "twin/sim/effects/effects.h"
+#include "twin/sim/hob/effect.h"
+
+/// Causes of the hobbing machine: those of one kind share a file.
+namespace twinbench::sim {
+
+using HobEffectPointer = std::unique_ptr<HobEffect>;
+
+HobEffectPointer MakeRingError(const EffectSettings&);  // eccentricity, ellipticity, periodic
+HobEffectPointer MakeHobSignalFault(const EffectSettings&);
+HobEffectPointer MakeGearError(const EffectSettings&, const Scenario&);  // hob_runout, worm, gear_mesh
+HobEffectPointer MakeWormBacklash(const EffectSettings&);
+HobEffectPointer MakeWindUp(const EffectSettings&);  // hysteresis
+/// drift, slip, tone, latency
+HobEffectPointer MakeShownError(const EffectSettings&);
+HobEffectPointer MakeCounterOutliers(const EffectSettings&, const Scenario&);
+
+}  // namespace twinbench::sim

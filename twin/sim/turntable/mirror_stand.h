@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "mechanics/chain.h"
+#include "twin/sim/table_motion.h"
+
+namespace twinbench::sim {
+
+/// Turntable, multi-tooth table and mirror on top of each other: from angles to the pose of the mirror.
+///
+/// L: z = turntable's axis, up; the autocollimator looks along -y; origin at the height of the beam. The mirror's
+/// body M has its normal along z_M and y_M up.
+class MirrorStand {
+ public:
+  explicit MirrorStand(const Scenario& actual);
+
+  /// A new mounting, with what it scatters: the mirror faces the autocollimator with the turntable at 0 and the
+  /// multi-tooth table at `shift_rad`.
+  void Mount(double tilt_rad, double azimuth_rad, double eccentricity_m, double shift_rad);
+  void BeginTurntableStop() { turntable_.BeginStop(); }
+  /// Lifts the multi-tooth table and seats it at a tooth.
+  void Seat(int tooth);
+
+  /// @param yaw_rad  Of the turntable, beyond its errors.
+  Pose MirrorPose(double turntable_rad, double yaw_rad, const mechanics::BearingPose& bearing) const;
+
+  const TableMotion& turntable() const { return turntable_; }
+  /// Errors of the multi-tooth table that repeat, at each of its teeth.
+  TableErrors MultitoothErrors() const;
+
+ private:
+  int Wrapped(int tooth) const;
+
+  TableMotion turntable_, multitooth_;
+  std::vector<double> tooth_rad_;  // errors that differ from tooth to tooth
+  double pitch_rad_, mirror_radius_m_;
+  Pose X_TB_ = Pose::Identity();  // base of the multi-tooth table on the turntable's rotor
+  Pose X_RM_ = Pose::Identity();  // mirror on the multi-tooth table's rotor
+  mechanics::PoseError turntable_seat_;
+  int tooth_ = 0;
+};
+
+}  // namespace twinbench::sim

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "twin/core/devices.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::sim {
+
+/// The virtual bench turntable_autocollimator: devices that a procedure can drive, and the truth that it may not
+/// see. The turntable moves as in the rotary bench, the autocollimator traces its beam to the mirror and back.
+///
+/// Same scenario, same bits: every random number comes from Stream(scenario.seed, name of its cause).
+class TurntableTwin {
+ public:
+  /// @throws InputError if a file that the scenario names cannot be read or does not fit, or if the autocollimator
+  ///         cannot be built as it says.
+  explicit TurntableTwin(const Scenario& scenario);
+  ~TurntableTwin();
+
+  /// Valid as long as the twin.
+  TurntableBench Bench();
+
+  /// {"turntable": errors at each tooth angle, "multitooth": errors at its teeth, "effects": [...], "seed": n}
+  nlohmann::json Truth() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace twinbench::sim
