@@ -27,6 +27,7 @@ bool IsLikeAGap(const EffectSettings& effect, const Scenario& drawn, const Signa
   EffectSettings gap;
   gap.name = "backlash";
   gap.parameters["width"] = 2.0 * effect.parameters.at("lag");
+  if (gap.parameters["width"] < CatalogueParameter(drawn.bench, "backlash", "width").lower_SI) return false;
   return scale.Rho(NoiseFree(drawn, {effect}), NoiseFree(drawn, {gap})) < kTellable;
 }
 

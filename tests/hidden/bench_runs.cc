@@ -2,8 +2,10 @@
 
 #include <cmath>
 
-#include "tests/support/twin_run.h"
+#include "tests/support/angle_benches.h"
 #include "twin/core/errors.h"
+#include "twin/diagnose/hob/hob_run.h"
+#include "twin/diagnose/turntable/turntable_run.h"
 
 namespace twinbench::hidden {
 namespace {
@@ -34,14 +36,62 @@ void DrawRoom(Stream& stream, EnvironmentSettings& room) {
   room.random_walk_K_sqrt_h = UniformIn(stream, 0.0, 0.1);
 }
 
-/// What the readings show, by row of the run, SI.
-double Shown(const Reading& reading, int channel, int channels, const Scenario& scenario) {
-  if (channels == 1) return reading.measured_rad;
-  const PsdSettings& psd = channel < 2 ? scenario.psd_a : scenario.psd_b;
-  return reading.mean_V[static_cast<std::size_t>(channel)] / psd.sensitivity_V_m;
+/// What the readings of the rotary and of the encoder bench show, by row of the run, SI.
+double Shown(const Reading& reading, int channel, int channels) {
+  return channels == 1 ? reading.measured_rad : reading.mean_V[static_cast<std::size_t>(channel)] / kSensitivity_V_m;
+}
+
+/// Keys in which the designs of the two newer benches differ from their scenarios.
+std::vector<std::string> OverridesOf(Design design) {
+  if (design == Design::kTurntable) {
+    return {"turntable_procedure.phases=[\"calibration\", \"full_circle\"]",
+            "turntable_procedure.positions=36",
+            "turntable_procedure.passes=[1, -1, -1, 1]",
+            "turntable_procedure.eccentricities_um=[50.0, 1500.0]",
+            "turntable_procedure.dwell_s=[0.5, 2.0, 5.0]"};
+  }
+  if (design == Design::kHob) {
+    return {"mechanics.fidelity=kinematic",
+            "hob_procedure.hob_speeds_rev_min=[50.0, 25.0]",
+            "hob_procedure.turns=1",
+            "hob_procedure.samples_per_turn=360",
+            "hob_procedure.poll_s=10.0"};
+  }
+  return {};
+}
+
+std::string ScenarioOf(Design design) {
+  return BenchOf(design) + ".toml";
+}
+
+void DrawTurntable(Stream& stream, Scenario& scenario) {
+  for (HarmonicSettings& h : scenario.target.harmonics) {
+    h.amplitude *= UniformIn(stream, 0.6, 1.5);
+    h.phase_rad = UniformIn(stream, 0.0, 2.0 * units::kPi);
+  }
+  scenario.target.random_rms[static_cast<std::size_t>(Component::kEz)] = UniformIn(stream, 0.2, 0.6) * arcsec;
+  for (const Component c : {Component::kEx, Component::kEy})
+    scenario.target.random_rms[static_cast<std::size_t>(c)] = UniformIn(stream, 0.5, 2.0) * arcsec;
+}
+
+/// What an evaluation takes as unknown: the transmission's lowest orders.
+void DrawTransmission(Stream& stream, Scenario& scenario) {
+  for (HarmonicSettings& h : scenario.transmission.harmonics) {
+    const double factor = UniformIn(stream, 0.5, 1.5), phase_rad = UniformIn(stream, 0.0, 2.0 * units::kPi);
+    if (h.order > scenario.transmission.free_orders) continue;
+    h.amplitude *= factor;
+    h.phase_rad = phase_rad;
+  }
 }
 
 }  // namespace
+
+const std::string& BenchOf(Design design) {
+  static const std::string rotary = kRotaryBench, encoder = kEncoderBench, turntable = kTurntableBench, hob = kHobBench;
+  if (design == Design::kRotary) return rotary;
+  if (design == Design::kTurntable) return turntable;
+  return design == Design::kHob ? hob : encoder;
+}
 
 double UniformIn(Stream& stream, double lower, double upper) {
   return lower + (upper - lower) * stream.Uniform();
@@ -52,8 +102,7 @@ double LogUniformIn(Stream& stream, double lower, double upper) {
 }
 
 Scenario Believed(Design design) {
-  const bool rotary = design == Design::kRotary;
-  Scenario scenario = LoadScenario(test::ScenarioPath(rotary ? "rotary_4dof.toml" : "encoder_comparison.toml"));
+  Scenario scenario = LoadScenario(test::ScenarioPath(ScenarioOf(design)), OverridesOf(design));
   scenario.adc.every_sample = false;
   if (design == Design::kSweep || design == Design::kSweepAllKnown) scenario.encoder_procedure.kind = "sweep";
   // Two set-ups have twice the readings; half as many a second keep a case as quick as the others.
@@ -66,17 +115,32 @@ Scenario Drawn(Design design, std::uint64_t seed) {
   Scenario scenario = Believed(design);
   scenario.seed = seed;
   Stream stream(seed, "hidden.bench");
-  if (design != Design::kRotary) return scenario;
-  DrawTables(stream, scenario);
-  DrawRoom(stream, scenario.environment);
+  if (design == Design::kRotary) DrawTables(stream, scenario);
+  if (design == Design::kTurntable) DrawTurntable(stream, scenario);
+  if (design == Design::kHob) DrawTransmission(stream, scenario);
+  if (design == Design::kRotary || design == Design::kTurntable) DrawRoom(stream, scenario.environment);
   return scenario;
 }
 
 std::vector<Reading> TakeReadings(const Scenario& actual) {
-  return actual.bench == kRotaryBench ? test::RunTwin(actual).readings : test::RunEncoderTwin(actual).readings;
+  return test::ReadingsOf(actual);
 }
 
-SignatureScale::SignatureScale(Design design, const std::string& cache_folder) {
+void AddTo(std::vector<Reading>& readings, const Eigen::MatrixXd& signal) {
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const Eigen::RowVectorXd values = signal.row(static_cast<Eigen::Index>(i));
+    Reading& r = readings[i];
+    if (values.size() == 1) r.measured_rad += values[0];
+    if (values.size() == 2) {
+      r.autocollimator_yaw_rad += values[0];
+      r.autocollimator_tilt_rad += values[1];
+    }
+    for (Eigen::Index c = 0; values.size() == kChannels && c < kChannels; ++c)
+      r.mean_V[static_cast<std::size_t>(c)] += kSensitivity_V_m * values[c];
+  }
+}
+
+SignatureScale::SignatureScale(Design design, const std::string& cache_folder) : design_(design) {
   diagnose::DiagnoseOptions options;
   options.cache_folder = cache_folder;
   const diagnose::DiagnosisRun clean =
@@ -86,18 +150,25 @@ SignatureScale::SignatureScale(Design design, const std::string& cache_folder) {
   projector_ = std::make_unique<diagnose::Projector>(noise_.Whiten(run_, run_.nuisance.jacobian), run_.nuisance);
 }
 
-double SignatureScale::Rho(const std::vector<Reading>& with, const std::vector<Reading>& without) const {
-  Require(with.size() == without.size(), "two runs of the same schedule");
-  const Scenario bench = Believed(Design::kRotary);
-  Eigen::MatrixXd signature(run_.Rows(), 1);
+/// What the readings show in the rows of the run.
+Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings) const {
+  if (design_ == Design::kTurntable)
+    return diagnose::turntable::BuildRun(readings, Believed(design_)).run.observed;
+  if (design_ == Design::kHob) return diagnose::hob::BuildRun(readings, Believed(design_)).run.observed;
+  Eigen::VectorXd rows(run_.Rows());
   for (int row = 0; row < run_.Rows(); ++row) {
-    const int channel = run_.ChannelOf(row);
     const auto number =
         static_cast<std::size_t>(run_.schedule.reading[static_cast<std::size_t>(run_.ReadingOf(row))]);
-    const double difference = Shown(with[number], channel, run_.Channels(), bench) -
-                              Shown(without[number], channel, run_.Channels(), bench);
-    signature(row, 0) = std::isfinite(difference) ? difference : 0.0;
+    rows[row] = Shown(readings[number], run_.ChannelOf(row), run_.Channels());
   }
+  return rows;
+}
+
+double SignatureScale::Rho(const std::vector<Reading>& with, const std::vector<Reading>& without) const {
+  Require(with.size() == without.size(), "two runs of the same schedule");
+  Eigen::MatrixXd signature = Rows(with) - Rows(without);
+  Require(signature.rows() == run_.Rows(), "a run of the design");
+  signature = signature.array().isFinite().select(signature, 0.0);
   const Eigen::MatrixXd white = noise_.Whiten(run_, signature);
   return std::sqrt(std::max(0.0, white.cwiseProduct(projector_->Apply(white)).sum()));
 }

@@ -12,14 +12,19 @@
 /// Runs of the twin that differ in everything that may differ without being wrong.
 namespace twinbench::hidden {
 
+inline constexpr double kSensitivity_V_m = 2000.0;  // of the rotary bench's PSDs
+
 /// The designs that cases are made with.
 enum class Design {
   kRotary,  // rotary_4dof, re-seated
   kStops,
   kSweep,          // encoder_comparison
   kStopsAllKnown,  // the same with two mountings of the device, and its lines and teeth stated
-  kSweepAllKnown
+  kSweepAllKnown,
+  kTurntable,  // turntable_autocollimator, two tilts and eccentricities, with a sweep
+  kHob         // hob_transmission, two heads and two speeds
 };
+const std::string& BenchOf(Design design);
 
 /// What is believed of the bench.
 Scenario Believed(Design design);
@@ -29,6 +34,10 @@ Scenario Drawn(Design design, std::uint64_t seed);
 
 /// Carries the scenario out on the twin of its bench.
 std::vector<Reading> TakeReadings(const Scenario& actual);
+
+/// Adds a signal to what the readings show: readings x channels, m or rad. Rotary bench: four PSD axes; turntable: x
+/// and y; the others: the angle.
+void AddTo(std::vector<Reading>& readings, const Eigen::MatrixXd& signal);
 
 /// Measures signatures in units of noise after projection.
 class SignatureScale {
@@ -40,6 +49,9 @@ class SignatureScale {
   double Rho(const std::vector<Reading>& with, const std::vector<Reading>& without) const;
 
  private:
+  Eigen::VectorXd Rows(const std::vector<Reading>& readings) const;
+
+  Design design_;
   diagnose::LinearRun run_;
   diagnose::NoiseModel noise_;
   std::unique_ptr<diagnose::Projector> projector_;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "tests/hidden/placements.h"
+
 namespace twinbench::hidden {
 namespace {
 
@@ -77,6 +79,21 @@ void AddToAngles(const NoiseShape& shape, double noise_rad, std::uint64_t seed, 
   for (Reading& r : readings) r.measured_rad += noise_rad * series.Next();
 }
 
+void AddToAutocollimator(const NoiseShape& shape, double noise_rad, std::uint64_t seed,
+                         std::vector<Reading>& readings) {
+  Series x(shape, seed, "x"), y(shape, seed, "y");
+  for (Reading& r : readings) {
+    r.autocollimator_yaw_rad += noise_rad * x.Next();
+    r.autocollimator_tilt_rad += noise_rad * y.Next();
+  }
+}
+
+/// Where a bench states the noise of a reading; none is on it where the twin is to stay silent.
+double& StatedNoise_rad(Scenario& scenario) {
+  if (scenario.bench == kTurntableBench) return scenario.autocollimator.noise_rad;
+  return scenario.bench == kHobBench ? scenario.table_encoder.noise_rad : scenario.device.noise_rad;
+}
+
 }  // namespace
 
 const char* NoiseName(Noise noise) {
@@ -89,24 +106,26 @@ Case MakeClean(Design design, Noise noise, std::uint64_t seed) {
   clean.hidden.noise = shape.name;
   clean.scenario = Believed(design);
   Scenario actual = Drawn(design, seed);
-  const double sample_noise_V = actual.amplifier.noise_V, noise_rad = actual.device.noise_rad;
+  const double sample_noise_V = actual.amplifier.noise_V, noise_rad = StatedNoise_rad(actual);
   actual.amplifier.noise_V = 0.0;
-  actual.device.noise_rad = 0.0;
+  StatedNoise_rad(actual) = 0.0;
   clean.readings = TakeReadings(actual);
   if (design == Design::kRotary) {
     AddToVoltages(shape, sample_noise_V, seed, clean.readings);
     return clean;
   }
-  AddToAngles(shape, noise_rad, seed, clean.readings);
+  if (design == Design::kTurntable) {
+    AddToAutocollimator(shape, noise_rad, seed, clean.readings);
+  } else {
+    AddToAngles(shape, noise_rad, seed, clean.readings);
+  }
   if (shape.stated != 1.0) clean.scenario.device.noise_known = true;
-  clean.scenario.device.noise_rad = shape.stated * noise_rad;
+  StatedNoise_rad(clean.scenario) = shape.stated * noise_rad;
   return clean;
 }
 
 std::vector<Plan> CleanPlans(const std::string& bench, int count, std::uint64_t first_seed) {
-  const bool rotary = bench == kRotaryBench;
-  const std::vector<Design> designs =
-      rotary ? std::vector{Design::kRotary} : std::vector{Design::kStops, Design::kSweep};
+  const std::vector<Design> designs = PlainDesigns(bench);
   std::vector<Plan> plans;
   for (int k = 0; k < count; ++k) {
     const auto noise = static_cast<Noise>(k % kNoises);

@@ -26,30 +26,53 @@ void Set(EffectSettings& effect, const std::string& name, double value) {
   if (found != effect.parameters.end()) found->second = value;
 }
 
+/// What a bench allows of shapes: readings early and late in a run, frequencies that its readings resolve [Hz].
+struct Ranges {
+  double first_reading, last_reading;
+  double lowest_Hz, highest_Hz;
+};
+
+Ranges RangesOf(const std::string& bench) {
+  if (bench == kRotaryBench) return {80.0, 560.0, 0.003, 0.06};
+  if (bench == kTurntableBench) return {40.0, 260.0, 0.001, 0.02};
+  if (bench == kHobBench) return {300.0, 2500.0, 0.05, 1.0};
+  return {40.0, 500.0, 0.003, 0.06};
+}
+
 /// Shapes that several effects share. All are drawn for each: what an effect gets does not depend on its
 /// parameters.
-void DrawShape(Stream& stream, bool rotary, EffectSettings& effect) {
+void DrawShape(Stream& stream, const Ranges& ranges, EffectSettings& effect) {
   const bool settles = effect.name == "settling";
   Set(effect, "phase", UniformIn(stream, 0.0, 360.0) * deg);
   Set(effect, "curvature", UniformIn(stream, -0.3, 0.3));
   Set(effect, "at_voltage", UniformIn(stream, -0.01, 0.01));
-  Set(effect, "frequency", LogUniformIn(stream, 0.003, 0.06));
+  Set(effect, "frequency", LogUniformIn(stream, ranges.lowest_Hz, ranges.highest_Hz));
   Set(effect, "settles_over", LogUniformIn(stream, 10.0, 60.0) * deg);
   Set(effect, "time_constant", settles ? UniformIn(stream, 0.5, 2.0) : LogUniformIn(stream, 200.0, 2000.0));
-  Set(effect, "at_reading", std::round(UniformIn(stream, rotary ? 80.0 : 40.0, rotary ? 560.0 : 500.0)));
+  Set(effect, "at_reading", std::round(UniformIn(stream, ranges.first_reading, ranges.last_reading)));
 }
 
 void DrawOwnShape(Stream& stream, const Scenario& scenario, EffectSettings& effect) {
   if (effect.name == "thermal_tilt") Set(effect, "lag", LogUniformIn(stream, 300.0, 2700.0));
   if (effect.name == "bearing_half_frequency") Set(effect, "order", UniformIn(stream, 0.42, 0.499));
-  if (effect.name == "periodic") Set(effect, "order", std::floor(UniformIn(stream, 5.0, 30.0)));
+  const bool on_hob = effect.where == "hob";  // of its turns the readings resolve few periods
+  if (effect.name == "periodic") Set(effect, "order", std::floor(UniformIn(stream, 5.0, on_hob ? 8.0 : 30.0)));
+  if (effect.name == "autocollimator_periodic") Set(effect, "period", LogUniformIn(stream, 3.0, 40.0) * units::arcsec);
+  if (effect.name == "multitooth_seating") Set(effect, "scatter", UniformIn(stream, 0.4, 0.8) * units::arcsec);
   if (effect.name == "reference_fault") Set(effect, "order", std::floor(UniformIn(stream, 1.0, 6.0)));
-  if (effect.name == "gear_mesh") Set(effect, "teeth", scenario.device.teeth);
+  if (effect.name == "gear_mesh") Set(effect, "teeth", scenario.device.teeth);  // of the encoder bench
 }
 
 void DrawOutliers(Stream& stream, double sigma, EffectSettings& effect) {
   Set(effect, "fraction", LogUniformIn(stream, 0.005, 0.03));
   Set(effect, "size", UniformIn(stream, 8.0, 20.0) * sigma);
+}
+
+/// Noise of one reading of a bench, m or rad.
+double NoiseOf(const Scenario& scenario) {
+  if (scenario.bench == kRotaryBench) return 0.3 * units::um;
+  if (scenario.bench == kTurntableBench) return scenario.autocollimator.noise_rad;
+  return scenario.bench == kHobBench ? scenario.table_encoder.noise_rad : scenario.device.noise_rad;
 }
 
 void DrawSign(Stream& stream, const std::string& bench, EffectSettings& effect) {
@@ -64,11 +87,10 @@ void DrawSign(Stream& stream, const std::string& bench, EffectSettings& effect) 
 
 EffectSettings DrawEffect(const std::string& name, const std::string& where, const Scenario& scenario,
                           Stream& stream) {
-  const bool rotary = scenario.bench == kRotaryBench;
   EffectSettings effect = WithDefaults(name, where, scenario.bench);
-  DrawShape(stream, rotary, effect);
+  DrawShape(stream, RangesOf(scenario.bench), effect);
   DrawOwnShape(stream, scenario, effect);
-  if (name == "outliers") DrawOutliers(stream, rotary ? 0.3 * units::um : scenario.device.noise_rad, effect);
+  if (name == "outliers") DrawOutliers(stream, NoiseOf(scenario), effect);
   if (HasSize(name)) DrawSign(stream, scenario.bench, effect);
   if (name == "signal_offset")
     effect.parameters["offset_cos"] = UniformIn(stream, -2.0, 2.0) * effect.parameters.at("offset_sin");

@@ -25,6 +25,15 @@ const std::map<std::string, std::string>& UsualSizes() {
                                                            {"bearing_half_frequency", "tilt"},
                                                            {"adc_step", "step"},
                                                            {"crosstalk", "fraction"},
+                                                           {"autocollimator_roll", "angle"},
+                                                           {"autocollimator_scale", "gain_error"},
+                                                           {"autocollimator_nonlinearity", "at_edge"},
+                                                           {"autocollimator_periodic", "amplitude"},
+                                                           {"autocollimator_drift", "rate"},
+                                                           {"autocollimator_temperature", "coefficient"},
+                                                           {"mirror_flatness", "sag"},
+                                                           {"hob_runout", "amplitude"},
+                                                           {"worm", "amplitude"},
                                                            {"eccentricity", "amplitude"},
                                                            {"ellipticity", "amplitude"},
                                                            {"signal_offset", "offset_sin"},
@@ -60,7 +69,8 @@ EffectSettings Scaled(EffectSettings effect, double factor, const std::string& b
 }  // namespace
 
 std::string SizeParameter(const std::string& effect, const std::string& where) {
-  if (effect == "slip") return where == "lateral" ? "shift" : where.empty() ? "step" : "angle";
+  if (effect == "slip" && (where == "yaw" || where == "tilt")) return "angle";
+  if (effect == "slip") return where == "lateral" ? "shift" : "step";
   if (effect == "backlash") return where.empty() ? "width" : "half_width";
   const auto found = UsualSizes().find(effect);
   return found == UsualSizes().end() ? "" : found->second;

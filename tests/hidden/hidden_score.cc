@@ -13,6 +13,7 @@
 #include "tests/hidden/twin_cases.h"
 #include "tests/hidden/unlisted.h"
 #include "twin/core/errors.h"
+#include "twin/core/scenario_schema.h"
 
 // Hides causes, has them found, and prints how well that went.
 namespace twinbench::hidden {
@@ -20,7 +21,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> sets;
-  std::string bench;  // empty: both
+  std::string bench;  // empty: all
   std::string only;   // part of the names of the cases; empty: all
   std::string out, cases;
   int threads = 2;
@@ -31,7 +32,7 @@ struct Options {
 std::vector<Plan> OfBenches(const Options& options,
                             const std::function<std::vector<Plan>(const std::string& bench)>& make) {
   std::vector<Plan> plans;
-  for (const char* bench : {kRotaryBench, kEncoderBench}) {
+  for (const std::string& bench : SupportedBenches()) {
     if (!options.bench.empty() && options.bench != bench) continue;
     const std::vector<Plan> more = make(bench);
     plans.insert(plans.end(), more.begin(), more.end());
@@ -124,7 +125,7 @@ int main(int argc, char** argv) {
       ->required()
       ->allow_extra_args(false);
   app.add_option("--bench", options.bench, "of the sets made by the twin, only this bench")
-      ->check(CLI::IsMember({twinbench::kRotaryBench, twinbench::kEncoderBench}));
+      ->check(CLI::IsMember(twinbench::SupportedBenches()));
   app.add_option("--only", options.only, "only cases with this in their name");
   app.add_option("--threads", options.threads, "cases at a time")->check(CLI::Range(1, 64));
   app.add_option("--seeds", options.twin.seeds, "cases of each effect, place and size");

@@ -18,6 +18,8 @@ bool NeedsAllKnown(const std::string& effect) {
 /// Designs that can show an effect at all: a device at rest has no latency.
 std::vector<Design> DesignsFor(const std::string& effect, const std::string& bench) {
   if (bench == kRotaryBench) return {Design::kRotary};
+  if (bench == kTurntableBench) return {Design::kTurntable};
+  if (bench == kHobBench) return {Design::kHob};
   if (effect == "latency") return {Design::kSweep};
   if (NeedsAllKnown(effect)) return {Design::kStopsAllKnown, Design::kSweepAllKnown};
   return {Design::kStops, Design::kSweep};
@@ -35,6 +37,10 @@ const char* NameOf(Design design) {
       return "stops+";
     case Design::kSweepAllKnown:
       return "sweep+";
+    case Design::kTurntable:
+      return "turntable";
+    case Design::kHob:
+      return "hob";
   }
   return "";
 }
@@ -49,6 +55,10 @@ std::vector<Placement> Placements(const std::string& bench) {
     }
   }
   return placements;
+}
+
+std::vector<Design> PlainDesigns(const std::string& bench) {
+  return DesignsFor("", bench);
 }
 
 std::string CaseName(const Placement& placement, std::uint64_t seed) {

@@ -30,7 +30,8 @@ class Scales {
 
 /// How many sizes an effect is hidden with: a swap has but one.
 int MagnitudesOf(const std::string& effect, const TwinOptions& options) {
-  return HasSize(effect) || effect == "outliers" ? options.magnitudes : 1;
+  const bool comes_in_sizes = HasSize(effect) || effect == "outliers" || effect == "multitooth_seating";
+  return comes_in_sizes ? options.magnitudes : 1;
 }
 
 Plan SinglePlan(const std::string& set, const Placement& at, double rho, std::uint64_t seed,

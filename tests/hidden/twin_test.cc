@@ -6,6 +6,7 @@
 #include "tests/hidden/reduced.h"
 #include "tests/hidden/twin_cases.h"
 #include "tests/hidden/unlisted.h"
+#include "twin/core/scenario_schema.h"
 
 // Cases that the twin makes: a sample of what hidden_score runs in full.
 namespace twinbench::hidden {
@@ -79,11 +80,12 @@ TEST_P(Twin, WithoutItsCauseTheCatalogueSeldomNamesAnother) {
       << Others(outcomes, IsNotConfidentlyWrong);
 }
 
-INSTANTIATE_TEST_SUITE_P(BothBenches, Twin, ::testing::Values(kRotaryBench, kEncoderBench),
+INSTANTIATE_TEST_SUITE_P(EveryBench, Twin,
+                         ::testing::Values(kRotaryBench, kEncoderBench, kTurntableBench, kHobBench),
                          [](const auto& of) { return std::string(of.param); });
 
-TEST(HiddenCases, CoverEveryEffectOfBothCatalogues) {
-  for (const std::string bench : {kRotaryBench, kEncoderBench}) {
+TEST(HiddenCases, CoverEveryEffectOfEveryCatalogue) {
+  for (const std::string& bench : SupportedBenches()) {
     const auto plans = OneOfEachEffect(bench, SinglePlans(bench, OneSize()));
     EXPECT_EQ(plans.size(), EffectCatalogue(bench).size()) << bench;
   }

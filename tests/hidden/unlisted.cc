@@ -2,22 +2,11 @@
 
 #include <memory>
 
+#include "tests/hidden/placements.h"
 #include "tests/hidden/unlisted_cause.h"
 
 namespace twinbench::hidden {
 namespace {
-
-void AddTo(std::vector<Reading>& readings, const Eigen::MatrixXd& signal) {
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (signal.cols() == 1) {
-      readings[i].measured_rad += signal(row, 0);
-      continue;
-    }
-    for (Eigen::Index c = 0; c < kChannels; ++c)
-      readings[i].mean_V[static_cast<std::size_t>(c)] += kSensitivity_V_m * signal(row, c);
-  }
-}
 
 /// Adds the signal at the size that gives it the length `rho`.
 void AddWithLength(double rho, const Eigen::MatrixXd& signal, const SignatureScale& scale,
@@ -43,16 +32,20 @@ Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::ui
   return made;
 }
 
+const std::vector<UnlistedCause>& CausesOf(const std::string& bench) {
+  if (bench == kRotaryBench) return RotaryUnlistedCauses();
+  if (bench == kTurntableBench) return TurntableUnlistedCauses();
+  return bench == kHobBench ? HobUnlistedCauses() : EncoderUnlistedCauses();
+}
+
 }  // namespace
 
 std::vector<Plan> UnlistedPlans(const std::string& bench, const TwinOptions& options) {
-  const bool rotary = bench == kRotaryBench;
-  const auto designs = rotary ? std::vector{Design::kRotary} : std::vector{Design::kStops, Design::kSweep};
   std::vector<Plan> plans;
   std::uint64_t seed = 400000 + options.first_seed;
-  for (const Design design : designs) {
+  for (const Design design : PlainDesigns(bench)) {
     const auto scale = std::make_shared<const SignatureScale>(design, options.cache_folder);
-    for (const UnlistedCause& cause : rotary ? RotaryUnlistedCauses() : EncoderUnlistedCauses()) {
+    for (const UnlistedCause& cause : CausesOf(bench)) {
       for (int k = 0; k < options.magnitudes * options.seeds; ++k) {
         ++seed;
         const double rho = options.RhoOf(k);

@@ -9,8 +9,6 @@
 /// What causes that the catalogue lacks write into the readings of a run that is otherwise clean.
 namespace twinbench::hidden {
 
-inline constexpr double kSensitivity_V_m = 2000.0;
-
 /// What an unlisted cause adds to each reading and channel [m or rad], up to its size.
 struct UnlistedSignal {
   std::vector<std::string> locks;     // a right signature has one of these words
@@ -43,7 +41,10 @@ UnlistedSignal OnPattern(const std::string& pattern, const std::vector<std::stri
                          const Eigen::VectorXd& series);
 UnlistedSignal OnChannel(std::size_t channel, const std::vector<std::string>& locks, const Eigen::VectorXd& series);
 
-/// Of the angle bench.
+/// Of the turntable bench: on "x" or "y".
+UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& locks, const Eigen::VectorXd& series);
+
+/// Of the benches that read one angle.
 UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series);
 
 struct UnlistedCause {
@@ -52,5 +53,7 @@ struct UnlistedCause {
 };
 const std::vector<UnlistedCause>& RotaryUnlistedCauses();
 const std::vector<UnlistedCause>& EncoderUnlistedCauses();
+const std::vector<UnlistedCause>& TurntableUnlistedCauses();
+const std::vector<UnlistedCause>& HobUnlistedCauses();
 
 }  // namespace twinbench::hidden

@@ -1,5 +1,6 @@
 #include "tests/support/angle_benches.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,28 +65,43 @@ TEST(TurntableAutocollimator, FindsTheRollOfTheCrosshair) {
   EXPECT_LT(a.separation->roll.u_gamma_rad, 1.5e-3) << "0.25 arcsec / (40 arcsec rms over 144 differences)";
 }
 
-TEST(TurntableAutocollimator, ErrsFarLessThanEquation5AtItsPoles) {
-  double worst_pointwise = 0.0, worst_global = 0.0;
-  constexpr int kSeeds = 10;
+/// The largest error of equation 5 that was not left out, both counted from the start.
+double WorstPointwise_arcsec(const TurntableAnalysis& a, const nlohmann::json& table) {
+  double worst = 0.0;
+  const double start_arcsec = Truth_arcsec(table, 0.0);
+  for (const auto& point : a.pointwise) {
+    if (!std::isfinite(point.value_rad)) continue;
+    const double truth_arcsec = Truth_arcsec(table, point.turntable_rad) - start_arcsec;
+    worst = std::max(worst, std::abs(point.value_rad / arcsec - truth_arcsec));
+  }
+  return worst;
+}
+
+double WorstGlobal_arcsec(const TurntableAnalysis& a, const nlohmann::json& table) {
+  double worst = 0.0;
+  for (const double error : Errors_arcsec(a.separation->turntable, table)) worst = std::max(worst, std::abs(error));
+  return worst;
+}
+
+TEST(TurntableAutocollimator, ErrsFarLessThanEquation5AtItsPolesAndIsCompensatedOver200Seeds) {
+  constexpr int kSeeds = 200;
+  double pointwise = 0.0, global = 0.0, after = 0.0, largest_after = 0.0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const test::BenchRun run =
-        Turntable("turntable_autocollimator.toml",
-                  {"seed=" + std::to_string(seed), "turntable_procedure.phases=[\"full_circle\"]"});
+    const test::BenchRun run = Turntable("turntable_autocollimator.toml", {"seed=" + std::to_string(seed)});
     const TurntableAnalysis a = Analysed(run);
     const auto& table = run.truth.at("turntable");
-    double largest_pointwise = 0.0, largest_global = 0.0;
-    for (const double error : Errors_arcsec(a.separation->turntable, table))
-      largest_global = std::max(largest_global, std::abs(error));
-    const double start_arcsec = Truth_arcsec(table, 0.0);
-    for (const auto& point : a.pointwise) {
-      if (!std::isfinite(point.value_rad)) continue;
-      const double error = point.value_rad / arcsec - (Truth_arcsec(table, point.turntable_rad) - start_arcsec);
-      largest_pointwise = std::max(largest_pointwise, std::abs(error));
-    }
-    worst_pointwise += largest_pointwise / kSeeds;
-    worst_global += largest_global / kSeeds;
+    pointwise += WorstPointwise_arcsec(a, table) / kSeeds;
+    global += WorstGlobal_arcsec(a, table) / kSeeds;
+    after += a.check->after.largest_rad / arcsec / kSeeds;
+    largest_after = std::max(largest_after, a.check->after.largest_rad / arcsec);
   }
-  EXPECT_GT(worst_pointwise, 5.0 * worst_global) << worst_pointwise << " against " << worst_global << " arcsec";
+  const std::string figures = fmt::format(
+      "worst point, mean over seeds: equation 5 {:.2f}, all positions at once {:.2f} arcsec; largest of 144 checks "
+      "{:.2f} on average, {:.2f} at most",
+      pointwise, global, after, largest_after);
+  RecordProperty("figures", figures);
+  EXPECT_GT(pointwise, 5.0 * global) << figures;
+  EXPECT_LE(largest_after, 2.0) << figures;
 }
 
 TEST(TurntableShifts, SeparateTurntableAndTeethWithinTheirUncertainties) {
@@ -125,6 +141,21 @@ TEST(HobTransmission, GivesTheEncodersErrorWithinThreeTenthsOfAnArcsecAndAHundre
   EXPECT_EQ(against_interferometer.order, 1);
   EXPECT_LT(std::abs(against_interferometer.amplitude_difference_rad) / arcsec, 0.3);
   EXPECT_LT(std::abs(against_interferometer.phase_difference_rad), 0.01);
+}
+
+TEST(HobTransmission, StaysWithinThemOver10Seeds) {
+  double worst_arcsec = 0.0, worst_rad = 0.0;
+  for (int seed = 1; seed <= 10; ++seed) {
+    const test::BenchRun run =
+        Machine("hob_transmission.toml", {"seed=" + std::to_string(seed), "mechanics.fidelity=kinematic"});
+    const HobAnalysis a = Analysed(run, measure::Estimator::kPublished);
+    worst_arcsec =
+        std::max(worst_arcsec, std::abs(separate::hob::Amplitude(a.two_positions->encoder) / arcsec - 5.8));
+    worst_rad = std::max(worst_rad, std::abs(separate::hob::Phase(a.two_positions->encoder) - 2.72));
+  }
+  RecordProperty("figures", fmt::format("worst of 10 seeds: {:.3f} arcsec, {:.4f} rad", worst_arcsec, worst_rad));
+  EXPECT_LT(worst_arcsec, 0.3);
+  EXPECT_LT(worst_rad, 0.01);
 }
 
 TEST(HobTransmission, HasALineAtOrder22AndTheSameHigherOrdersInBothPositions) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 
 #include "tests/sim/encoder_run.h"
 #include "twin/sim/encoder/twin.h"
@@ -95,6 +96,34 @@ TEST(EncoderTwin, TellsItsTruth) {
   const nlohmann::json truth = sim::EncoderTwin(scenario).Truth();
   EXPECT_EQ(truth.at("effects").at(0).at("effect"), "latency");
   EXPECT_EQ(truth.at("effects").at(0).at("parameters_SI").at("delay"), 0.001);
+}
+
+/// Amplitude of an order in a curve at every degree.
+double Amplitude_arcsec(const nlohmann::json& curve, int order) {
+  std::complex<double> sum = 0.0;
+  for (int i = 0; i < 360; ++i)
+    sum += curve.at("ez_arcsec").at(static_cast<std::size_t>(i)).get<double>() * std::polar(1.0, -order * i * deg);
+  return 2.0 * std::abs(sum) / 360.0;
+}
+
+TEST(EncoderTwin, TellsWhatRepeatsWithTheAnglesOfDeviceAndReference) {
+  Scenario scenario = EncoderScenario();
+  scenario.effects = {test::EncoderEffect("eccentricity", {{"amplitude", 0.5 * deg}}),
+                      test::EncoderEffect("reference_fault", {{"order", 3.0}, {"amplitude", 0.02 * deg}}),
+                      test::EncoderEffect("signal_offset", {{"offset_sin", 0.0}, {"offset_cos", 0.01}}),
+                      test::EncoderEffect("drift"),
+                      test::EncoderEffect("outliers", {{"fraction", 0.5}}),
+                      test::EncoderEffect("slip", {{"at_reading", 0.0}}),
+                      test::EncoderEffect("backlash")};
+  scenario.device.signal_periods = 4;
+  const nlohmann::json truth = sim::EncoderTwin(scenario).Truth();
+  // What is 1e-9 of 1800 arcsec is rounding.
+  EXPECT_NEAR(Amplitude_arcsec(truth.at("device"), 1), 1800.0, 1e-6);
+  EXPECT_NEAR(Amplitude_arcsec(truth.at("device"), 0), 0.0, 1e-6) << "drift, slip and outliers are no curve";
+  EXPECT_NEAR(Amplitude_arcsec(truth.at("device"), 4), 0.01 / 4 / units::arcsec, 0.1)
+      << "offset over amplitude, a quarter of it on the turn; next term 0.01^2 / 2";
+  EXPECT_NEAR(Amplitude_arcsec(truth.at("reference"), 3), 72.0, 1e-6);
+  EXPECT_NEAR(Amplitude_arcsec(truth.at("reference"), 1), 0.0, 1e-6);
 }
 
 }  // namespace

@@ -76,6 +76,19 @@ TEST(HobTwin, InterferometerSeesTheMachineAndNotTheEncoder) {
         << "the encoder's 6 arcsec move the angle, 3 x 7 arcsec x 3e-5";
 }
 
+TEST(HobTwin, InterferometerSeesWhatTheTableDoesAndNotWhatItsCountersGetWrong) {
+  const Scenario s = QuietMachine();
+  const auto clean = Readings(s);
+  const auto seen_arcsec = [&](const EffectSettings& effect) {
+    Scenario with = s;
+    with.effects = {effect};
+    return (Readings(with).at(100).interferometer_rad - clean.at(100).interferometer_rad) / arcsec;
+  };
+  EXPECT_NEAR(seen_arcsec({"hysteresis", "", {{"lag", 5.0 * arcsec}, {"settles_over", 5.0 * deg}}, ""}), -5.0, 1e-6);
+  EXPECT_NEAR(seen_arcsec({"latency", "", {{"delay", 1e-3}}, ""}), 0.0, 1e-9);
+  EXPECT_NEAR(seen_arcsec({"slip", "table", {{"step", 72.0 * arcsec}, {"at_reading", 5.0}}, ""}), 0.0, 1e-9);
+}
+
 /// Order 1 of what one head sees.
 std::complex<double> OrderOne_arcsec(const Scenario& s) {
   const auto readings = Readings(s);

@@ -12,6 +12,7 @@
 namespace twinbench::tools {
 namespace {
 
+using separate::encoder::AngleMeans;
 using separate::encoder::Curve;
 using separate::encoder::CurveAt;
 using separate::encoder::DeviceError;
@@ -22,8 +23,7 @@ using separate::hob::HarmonicSeries;
 constexpr int kPoints = 360;  // a degree: enough for the highest order there is
 constexpr const char* kNoReference =
     "with one mounting of the device the difference of both is known; it is counted as the device's";
-constexpr const char* kSeenAlike =
-    "all mountings see only the difference of both; it is counted as the device's";
+constexpr const char* kSeenAlike = "all mountings see only the difference of both; it is counted as the device's";
 
 /// NaN, not available, is null in JSON.
 nlohmann::json In(double unit, double value) {
@@ -69,8 +69,8 @@ nlohmann::json HarmonicsJson(const DeviceError& e) {
 nlohmann::json NotSeparable(const DeviceError& e) {
   nlohmann::json lost = nlohmann::json::array();
   if (e.curves.reference.orders.empty()) {
-    lost.push_back({{"what", "device and reference"},
-                    {"why", e.mounting_rad.size() > 1 ? kSeenAlike : kNoReference}});
+    lost.push_back(
+        {{"what", "device and reference"}, {"why", e.mounting_rad.size() > 1 ? kSeenAlike : kNoReference}});
     return lost;
   }
   for (const int order : e.curves.lost)
@@ -91,9 +91,28 @@ nlohmann::json SeparationJson(const DeviceError& e) {
 /// By the device's angle: the mean, and the curve with it.
 nlohmann::json ReversalJson(const DeviceError& e) {
   nlohmann::json json = CurveJson(e.curves.reversal, "reversal");
-  for (auto& value : json["reversal_arcsec"]) value = value.get<double>() + e.reversal_rad / units::arcsec;
-  json["mean_arcsec"] = Arcsec(e.reversal_rad);
-  json["u_mean_arcsec"] = Arcsec(e.u_reversal_rad);
+  for (auto& value : json["reversal_arcsec"]) value = value.get<double>() + e.reversal.value_rad / units::arcsec;
+  json["mean_arcsec"] = Arcsec(e.reversal.value_rad);
+  json["u_mean_arcsec"] = Arcsec(e.reversal.u_rad);
+  return json;
+}
+
+/// What was read, by degrees.
+nlohmann::json ToJson(const AngleMeans& means) {
+  nlohmann::json json;
+  for (std::size_t i = 0; i < means.count.size(); ++i) {
+    json["position_deg"].push_back(means.position_rad[i] / units::deg);
+    json["ez_arcsec"].push_back(Arcsec(means.value_rad[i]));
+    json["u_ez_arcsec"].push_back(Arcsec(means.u_rad[i]));
+    json["readings"].push_back(means.count[i]);
+  }
+  return json;
+}
+
+nlohmann::json MeansJson(const DeviceError& e) {
+  nlohmann::json json = {{"both", ToJson(e.both)}};
+  if (!e.forward.count.empty()) json["forward"] = ToJson(e.forward);
+  if (!e.backward.count.empty()) json["backward"] = ToJson(e.backward);
   return json;
 }
 
@@ -114,6 +133,7 @@ void AddDevice(const DeviceError& e, nlohmann::json& json) {
   }
   json.update(SeparationJson(e));
   if (!e.curves.reversal.orders.empty()) json["reversal"] = ReversalJson(e);
+  json["means"] = MeansJson(e);
   for (const PassResult& pass : e.passes) json["passes"].push_back(ToJson(pass));
   for (const double mounting_rad : e.mounting_rad) json["mounting_deg"].push_back(mounting_rad / units::deg);
   if (std::isfinite(e.lag_s)) json["lag"] = {{"value_s", e.lag_s}, {"u_s", In(1.0, e.u_lag_s)}};
@@ -133,7 +153,8 @@ std::string LinesText(const char* what, const HarmonicSeries& series) {
 
 std::string LostText(const DeviceError& e) {
   if (e.curves.reference.orders.empty())
-    return fmt::format("not told apart from the reference: {}\n", e.mounting_rad.size() > 1 ? kSeenAlike : kNoReference);
+    return fmt::format("not told apart from the reference: {}\n",
+                       e.mounting_rad.size() > 1 ? kSeenAlike : kNoReference);
   std::string orders;
   for (const int order : e.curves.lost) orders += fmt::format(" {}", order);
   return orders.empty() ? "" : fmt::format("not told apart from the reference, orders{}: {}\n", orders, kSeenAlike);
@@ -141,12 +162,17 @@ std::string LostText(const DeviceError& e) {
 
 std::string SummaryOf(const DeviceError& e) {
   if (e.highest_order == 0) return fmt::format("no curve: {}\n", e.not_separated);
-  std::string text = LinesText("device", e.curves.device) + LinesText("reference", e.curves.reference);
+  std::string text = LinesText("device", e.curves.device) + LinesText("reference", e.curves.reference) +
+                     LinesText("reversal", e.curves.reversal);
   if (text.empty()) text = "no order stands out of the noise\n";
-  if (std::isfinite(e.reversal_rad))
-    text += fmt::format("forward - backward     {:10.3f} +- {:.3f} arcsec\n", e.reversal_rad / units::arcsec,
-                        e.u_reversal_rad / units::arcsec);
-  text += fmt::format("a reading repeats to   {:10.3f} arcsec (standard deviation)\n", e.residual_rms_rad / units::arcsec);
+  if (std::isfinite(e.reversal.value_rad))
+    text += fmt::format("forward - backward     {:10.3f} +- {:.3f} arcsec\n", e.reversal.value_rad / units::arcsec,
+                        e.reversal.u_rad / units::arcsec);
+  if (std::abs(e.lag_s) > 3.0 * e.u_lag_s)
+    text +=
+        fmt::format("device behind by       {:10.4f} +- {:.4f} ms\n", e.lag_s / units::ms, e.u_lag_s / units::ms);
+  text += fmt::format("a reading repeats to   {:10.3f} arcsec (standard deviation)\n",
+                      e.residual_rms_rad / units::arcsec);
   text += LostText(e);
   for (const std::string& note : e.notes) text += "note: " + note + "\n";
   return text;
@@ -154,7 +180,11 @@ std::string SummaryOf(const DeviceError& e) {
 
 /// At the positions of the truth.
 CurveScore ScoreOf(const std::string& name, const HarmonicSeries& series, const nlohmann::json& truth) {
-  CurveScore curve{.name = name, .value = "ez_arcsec", .position = truth.at("position_deg"), .estimate = {}, .u = {},
+  CurveScore curve{.name = name,
+                   .value = "ez_arcsec",
+                   .position = truth.at("position_deg"),
+                   .estimate = {},
+                   .u = {},
                    .truth = truth.at("ez_arcsec")};
   const CurveAt at = Curve(series, static_cast<int>(curve.position.size()));
   for (Eigen::Index i = 0; i < at.value_rad.size(); ++i) {
@@ -187,7 +217,8 @@ ScoredRun ScoreEncoder(const std::vector<Reading>& readings, const nlohmann::jso
   std::vector<CurveScore> curves = {ScoreOf("device", device.curves.device, truth.at("device"))};
   if (!device.curves.reference.orders.empty())
     curves.push_back(ScoreOf("reference", device.curves.reference, truth.at("reference")));
-  return {ToJson(curves), "against the truth; means are taken out of both\n" + ScoreTable(curves) + LostText(device),
+  return {ToJson(curves),
+          "against the truth; means are taken out of both\n" + ScoreTable(curves) + LostText(device),
           PositionTable(curves)};
 }
 

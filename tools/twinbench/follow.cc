@@ -14,10 +14,14 @@
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
 #include "twin/diagnose/encoder/encoder_run.h"
+#include "twin/diagnose/hob/hob_run.h"
 #include "twin/diagnose/rotary/rotary_run.h"
+#include "twin/diagnose/turntable/turntable_run.h"
 #include "twin/diagnose/watch.h"
 #include "twin/procedure/angle_comparison.h"
+#include "twin/procedure/hob.h"
 #include "twin/procedure/procedure.h"
+#include "twin/procedure/turntable.h"
 
 namespace twinbench::tools {
 namespace {
@@ -46,14 +50,18 @@ class InterruptGuard {
 };
 
 diagnose::LinearRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
-  return scenario.bench == kEncoderBench ? diagnose::encoder::BuildRun(readings, scenario).run
-                                         : diagnose::rotary::BuildRun(readings, scenario, published).run;
+  if (scenario.bench == kEncoderBench) return diagnose::encoder::BuildRun(readings, scenario).run;
+  if (scenario.bench == kTurntableBench) return diagnose::turntable::BuildRun(readings, scenario).run;
+  if (scenario.bench == kHobBench) return diagnose::hob::BuildRun(readings, scenario).run;
+  return diagnose::rotary::BuildRun(readings, scenario, published).run;
 }
 
 int PlannedReadings(const Scenario& scenario) {
-  return scenario.bench == kEncoderBench
-             ? static_cast<int>(procedure::AngleSchedule(scenario.encoder_procedure).size())
-             : procedure::PlannedReadings(scenario.procedure);
+  if (scenario.bench == kEncoderBench)
+    return static_cast<int>(procedure::AngleSchedule(scenario.encoder_procedure).size());
+  if (scenario.bench == kTurntableBench) return procedure::PlannedReadings(scenario.turntable_procedure);
+  if (scenario.bench == kHobBench) return procedure::PlannedReadings(scenario.hob_procedure);
+  return procedure::PlannedReadings(scenario.procedure);
 }
 
 /// The state of a watch after some readings.

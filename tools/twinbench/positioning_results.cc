@@ -64,7 +64,8 @@ void Append(int setup, const measure::PositioningStops& stops, PositioningResult
                           {"left_out", stops.left_out},
                           {"missing", missing},
                           {"notes", stops.notes}});
-  results.text += fmt::format("set-up {}, {} targets over {:.4g} deg\n", setup, targets.size(), travel_rad / units::deg);
+  results.text +=
+      fmt::format("set-up {}, {} targets over {:.4g} deg\n", setup, targets.size(), travel_rad / units::deg);
   results.text += targets.size() <= kMostRows ? PositioningText(positioning) : AxisText(positioning);
   for (const std::string& what : missing) results.text += "missing: " + what + "\n";
 }

@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <filesystem>
+
 #include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluation.h"
@@ -16,6 +18,8 @@ struct Options {
 
 void PrintScore(const Options& options) {
   const RunFolder folder{options.folder};
+  if (!std::filesystem::exists(folder.truth()))
+    throw InputError(folder.truth(), "is not there", "a run of the twin: what was measured or imported has no truth");
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadRecordedRun(folder.path, "", {});
   const ScoredRun score = ScoreRun(run.scenario, run.readings, truth, EstimatorOf(options.estimator));

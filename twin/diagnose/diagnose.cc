@@ -15,11 +15,18 @@
 #include "twin/diagnose/encoder/next_measurement.h"
 #include "twin/diagnose/engine/analysis.h"
 #include "twin/diagnose/gain.h"
+#include "twin/diagnose/hob/families.h"
+#include "twin/diagnose/hob/hob_answers.h"
+#include "twin/diagnose/hob/next_measurement.h"
 #include "twin/diagnose/missing.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/diagnose/rotary/conventions.h"
 #include "twin/diagnose/rotary/rotary_case.h"
 #include "twin/diagnose/rotary_search.h"
+#include "twin/diagnose/turntable/disturbed.h"
+#include "twin/diagnose/turntable/next_measurement.h"
+#include "twin/diagnose/turntable/seating.h"
+#include "twin/diagnose/turntable/turntable_search.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -29,7 +36,7 @@ constexpr double kPlausibleTop = 3.0;  // prior deviations: about the largest si
 
 /// What the reports need from a bench.
 struct BenchWords {
-  std::function<std::string(const Eigen::VectorXd& unknowns)> bias;
+  std::function<std::string(const std::string& effect, const Eigen::VectorXd& unknowns)> bias;
   std::function<std::string(const std::string&, const std::string&)> next_measurement;
 };
 
@@ -94,7 +101,7 @@ void AddDetectability(const LinearRun& run, const Analysis& analysis, const Benc
     }
     const Eigen::MatrixXd column = top * family.ColumnsAt(family.grid / 2).leftCols(1);
     const Eigen::VectorXd unknowns = analysis.projector->Solve(analysis.noise.Whiten(run, column)).col(0);
-    diagnosis.invisible.push_back({family.effect, family.where, words.bias(unknowns)});
+    diagnosis.invisible.push_back({family.effect, family.where, words.bias(family.effect, unknowns)});
   }
 }
 
@@ -110,16 +117,21 @@ void AddNextMeasurements(const BenchWords& words, std::vector<Cause>& causes) {
   }
 }
 
-/// Names what the analysis found, with what was decided before it.
-Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, const std::vector<Discrete>& discrete) {
+std::vector<Cause> CausesOf(const std::vector<Discrete>& discrete) {
+  std::vector<Cause> causes;
+  for (const Discrete& d : discrete) causes.push_back(CauseOf(d));
+  return causes;
+}
+
+/// Names what the analysis found.
+/// @param first  What was decided without it.
+Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vector<Cause> first) {
   Diagnosis diagnosis;
   Naming naming = Name(analysis.found, analysis.scanner->Families(), analysis.threshold, run.noise_free);
   diagnosis.verdict = naming.verdict;
   diagnosis.causes = std::move(naming.causes);
   diagnosis.unknown = std::move(naming.unknown);
   diagnosis.alarm_p = analysis.null.PValue(analysis.found.first_statistic);
-  std::vector<Cause> first;
-  for (const Discrete& d : discrete) first.push_back(CauseOf(d));
   for (const NoiseCause& repair : analysis.repairs) {
     diagnosis.noise.push_back(repair.words);
     if (repair.kind == NoiseCause::Kind::kOutliers) first.push_back(OutlierCause(repair, run));
@@ -147,11 +159,11 @@ void JudgeByGain(DiagnosisRun& result) {
       "the gain on held-out passes is not above zero at 95 %: the cause is a proposal, not part of the model");
 }
 
-DiagnosisRun Finish(const LinearRun& run, const Analysis& analysis, const std::vector<Discrete>& discrete,
+DiagnosisRun Finish(const LinearRun& run, const Analysis& analysis, const std::vector<Cause>& first,
                     const BenchWords& words) {
   DiagnosisRun result;
   RefuseWithoutRedundancy(run, analysis.redundancy);
-  result.diagnosis = DiagnosisOf(run, analysis, discrete);
+  result.diagnosis = DiagnosisOf(run, analysis, first);
   result.run = run;
   result.noise = analysis.noise;
   result.accepted = AcceptedOf(analysis);
@@ -162,7 +174,9 @@ DiagnosisRun Finish(const LinearRun& run, const Analysis& analysis, const std::v
 }
 
 BenchWords RotaryWords(const rotary::RotaryCase& rotary) {
-  return {[design = rotary.Rotary().design](const Eigen::VectorXd& x) { return rotary::BiasInWords(design, x); },
+  return {[design = rotary.Rotary().design](const std::string&, const Eigen::VectorXd& x) {
+            return rotary::BiasInWords(design, x);
+          },
           rotary::NextMeasurement};
 }
 
@@ -175,7 +189,7 @@ DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario&
   if (!convention.where.empty())
     searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
   const rotary::RotaryCase& rotary = *searched.rotary;
-  DiagnosisRun result = Finish(rotary.Rotary().run, searched.analysis, searched.discrete, RotaryWords(rotary));
+  DiagnosisRun result = Finish(rotary.Rotary().run, searched.analysis, CausesOf(searched.discrete), RotaryWords(rotary));
   for (const char* where : {"reverse_target", "reverse_reference", "index_offset"}) {
     result.diagnosis.invisible.push_back(
         {"convention", where, "the positions that the separated errors belong to"});
@@ -191,7 +205,7 @@ DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenari
   AnalysisOptions how = AnalysisOptionsOf(options);
   how.most_causes = 8;  // an angle device may well have an error of many orders
   const Analysis analysis = Analyse(encoder.run, families, how);
-  const BenchWords words{[](const Eigen::VectorXd&) { return std::string("nothing but the device's offset"); },
+  const BenchWords words{[](const std::string&, const Eigen::VectorXd&) { return std::string("nothing but the device's offset"); },
                          encoder::NextMeasurement};
   DiagnosisRun result = Finish(encoder.run, analysis, {}, words);
   result.diagnosis.left_out = encoder.left_out;
@@ -199,12 +213,61 @@ DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenari
   return result;
 }
 
+BenchWords TurntableWords(const turntable::Places& places) {
+  return {[places](const std::string& effect, const Eigen::VectorXd& unknowns) {
+            const std::string bias = turntable::BiasInWords(places, unknowns);
+            const std::string shown_by = turntable::WhatWouldShow(effect);
+            return shown_by.empty() ? bias : bias + "; would be shown by " + shown_by;
+          },
+          turntable::NextMeasurement};
+}
+
+/// Sizes were measured in the usual deviation of the run.
+Cause DisturbedCause(const NoiseCause& disturbed, LinearRun run) {
+  run.sigma.setConstant(turntable::UsualSigma_rad(run));
+  return OutlierCause(disturbed, run);
+}
+
+DiagnosisRun DiagnoseTurntable(const std::vector<Reading>& readings, const Scenario& scenario,
+                               const DiagnoseOptions& options) {
+  const turntable::SearchedTurntable searched =
+      turntable::SearchTurntable(readings, scenario, options.struck, AnalysisOptionsOf(options));
+  const turntable::TurntableRun& turntable = *searched.turntable;
+  std::vector<Cause> first = searched.first;
+  if (searched.disturbed) first.push_back(DisturbedCause(*searched.disturbed, turntable.run));
+  DiagnosisRun result = Finish(turntable.run, searched.analysis, first, TurntableWords(turntable.places));
+  if (searched.disturbed) result.diagnosis.noise.push_back(searched.disturbed->words);
+  result.diagnosis.left_out = turntable.left_out;
+  if (searched.first.empty() && std::isfinite(searched.smallest_seating_rad))
+    result.diagnosis.detectable.push_back(turntable::DetectableSeating(searched.smallest_seating_rad));
+  return result;
+}
+
+DiagnosisRun DiagnoseHob(const std::vector<Reading>& readings, const Scenario& scenario,
+                         const DiagnoseOptions& options) {
+  const hob::HobRun hob = hob::BuildRun(readings, scenario);
+  const std::vector<Family> families = hob::Families(hob, options.struck);
+  AnalysisOptions how = AnalysisOptionsOf(options);
+  how.null_runs = hob::NullRuns(hob, options.null_runs);
+  how.most_causes = 6;
+  const Analysis analysis = hob::AnalyseToFirstOrder(hob, families, how);
+  const BenchWords words{[orders = scenario.transmission.free_orders](const std::string&, const Eigen::VectorXd& x) {
+                           return hob::BiasInWords(orders, x);
+                         },
+                         hob::NextMeasurement};
+  DiagnosisRun result = Finish(hob.run, analysis, hob::DisturbedCauses(hob, options.struck), words);
+  hob::ToReadings(hob, result);
+  return result;
+}
+
 }  // namespace
 
 DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                       const DiagnoseOptions& options) {
-  DiagnosisRun result = scenario.bench == kRotaryBench ? DiagnoseRotary(readings, scenario, options)
-                                                       : DiagnoseEncoder(readings, scenario, options);
+  DiagnosisRun result = scenario.bench == kRotaryBench      ? DiagnoseRotary(readings, scenario, options)
+                        : scenario.bench == kTurntableBench ? DiagnoseTurntable(readings, scenario, options)
+                        : scenario.bench == kHobBench       ? DiagnoseHob(readings, scenario, options)
+                                                            : DiagnoseEncoder(readings, scenario, options);
   const std::vector<std::string> missing = MissingColumns(readings, scenario.bench);
   result.diagnosis.notes.insert(result.diagnosis.notes.end(), missing.begin(), missing.end());
   return result;

@@ -29,6 +29,9 @@ struct Accepted {
   int grid_point = 0;
   Eigen::VectorXd amplitudes;  // SI
   Eigen::MatrixXd columns;     // rows x amplitudes, SI, not whitened
+  /// Structure without a name, where a row is the mean of several readings: its value at each reading, by number.
+  std::vector<int> readings = {};
+  Eigen::VectorXd at_readings = {};  // SI, on the first channel
 };
 
 /// All that the pages, the gain and the screen need besides the verdict.

@@ -7,13 +7,13 @@
 
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
+#include "twin/diagnose/bench_of.h"
 
 namespace twinbench::diagnose {
 namespace {
 
 constexpr double kSmallest_SI = 1e-9;
 constexpr double kRounding_SI = 1e-11;
-constexpr const char* kAngleChannel = "angle";
 
 /// Causes of a verdict "named" are all at work. Of a tie or beside the unknown it is those that the search took in.
 bool IsAtWork(const Cause& cause, const DiagnosisRun& run) {
@@ -53,7 +53,7 @@ EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std:
 std::vector<EmpiricalSettings> EmpiricalOn(int channel, const LinearRun& run, const Eigen::VectorXd& signal) {
   EmpiricalSettings empirical;
   empirical.channel = run.channels[static_cast<std::size_t>(channel)];
-  std::vector<double>& values = empirical.channel == kAngleChannel ? empirical.value_rad : empirical.value_m;
+  std::vector<double>& values = BenchOf(run) == kRotaryBench ? empirical.value_m : empirical.value_rad;
   double largest = 0.0;
   for (int i = 0; i < run.schedule.Readings(); ++i) {
     const double value = signal[i * run.Channels() + channel];
@@ -65,15 +65,32 @@ std::vector<EmpiricalSettings> EmpiricalOn(int channel, const LinearRun& run, co
   return {empirical};
 }
 
+/// The same where it is known at each reading.
+std::vector<EmpiricalSettings> EmpiricalAt(const Accepted& accepted, const LinearRun& run) {
+  EmpiricalSettings empirical;
+  empirical.channel = run.channels.front();
+  empirical.reading = accepted.readings;
+  for (const double value : accepted.at_readings)
+    empirical.value_rad.push_back(std::round(value / kRounding_SI) * kRounding_SI);
+  if (accepted.at_readings.cwiseAbs().maxCoeff() < kSmallest_SI) return {};
+  return {empirical};
+}
+
+std::vector<EmpiricalSettings> EmpiricalsOf(const Accepted& accepted, const LinearRun& run) {
+  if (!accepted.readings.empty()) return EmpiricalAt(accepted, run);
+  const Eigen::VectorXd signal = accepted.columns * accepted.amplitudes;
+  std::vector<EmpiricalSettings> all;
+  for (int channel = 0; channel < run.Channels(); ++channel)
+    std::ranges::move(EmpiricalOn(channel, run, signal), std::back_inserter(all));
+  return all;
+}
+
 void AddEmpirical(const Accepted& accepted, const DiagnosisRun& run, const std::string& provenance,
                   Scenario& scenario) {
-  const Eigen::VectorXd signal = accepted.columns * accepted.amplitudes;
-  for (int channel = 0; channel < run.run.Channels(); ++channel) {
-    for (EmpiricalSettings& empirical : EmpiricalOn(channel, run.run, signal)) {
-      empirical.signature = run.diagnosis.unknown.signature;
-      empirical.provenance = provenance;
-      scenario.empiricals.push_back(std::move(empirical));
-    }
+  for (EmpiricalSettings& empirical : EmpiricalsOf(accepted, run.run)) {
+    empirical.signature = run.diagnosis.unknown.signature;
+    empirical.provenance = provenance;
+    scenario.empiricals.push_back(std::move(empirical));
   }
 }
 

@@ -1,7 +1,9 @@
 #include "twin/diagnose/folds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 namespace twinbench::diagnose {
@@ -9,6 +11,7 @@ namespace {
 
 constexpr int kBlockReadings = 6;
 constexpr int kTimeFolds = 4;  // of a run without repeated passes
+constexpr int kShortSweep = kTimeFolds * kBlockReadings;
 
 std::size_t At(int i) {
   return static_cast<std::size_t>(i);
@@ -25,11 +28,42 @@ std::map<int, std::vector<int>> PassesOfSetups(const Schedule& s) {
   return passes;
 }
 
-/// Folds by blocks of time for all readings that have none.
-void AddFoldsOfTime(Folds& folds) {
-  int in_turn = 0;
-  for (int& fold : folds.of_reading) {
-    if (fold < 0) fold = in_turn++ / kBlockReadings % folds.count;
+/// A calibration in which the target itself moves, by few steps.
+bool IsShortSweep(const Schedule& s) {
+  int count = 0;
+  double least_rad = kNaN, most_rad = kNaN;
+  for (int i = 0; i < s.Readings(); ++i) {
+    if (s.phase[At(i)] != Phase::kCalibration) continue;
+    ++count;
+    least_rad = std::fmin(least_rad, s.target_rad[i]);
+    most_rad = std::fmax(most_rad, s.target_rad[i]);
+  }
+  return count < kShortSweep && most_rad > least_rad;
+}
+
+/// Readings of a block of the calibration: a short sweep is taken apart reading by reading, or its scale would have
+/// to be predicted from one end of it.
+int CalibrationBlock(const Schedule& s) {
+  return IsShortSweep(s) ? 1 : kBlockReadings;
+}
+
+/// Folds by blocks of time for all readings that have none. Every circle begins with another fold than the one
+/// before: positions that one leaves out are in the others.
+void AddFoldsOfTime(const Schedule& s, Folds& folds) {
+  const int in_calibration = CalibrationBlock(s);
+  int in_turn = 0;                                  // in readings of a usual block
+  std::map<std::pair<int, int>, int> circle, read;  // by set-up and pass
+  for (int i = 0; i < s.Readings(); ++i) {
+    int& fold = folds.of_reading[At(i)];
+    if (fold >= 0) continue;
+    if (s.phase[At(i)] == Phase::kFullCircle) {
+      const std::pair<int, int> of = {s.setup[At(i)], s.pass[At(i)]};
+      const int number = circle.try_emplace(of, static_cast<int>(circle.size())).first->second;
+      fold = (read[of]++ / kBlockReadings + number) % folds.count;
+      continue;
+    }
+    fold = in_turn / kBlockReadings % folds.count;
+    in_turn += s.phase[At(i)] == Phase::kCalibration ? kBlockReadings / in_calibration : 1;
   }
 }
 
@@ -47,23 +81,26 @@ Folds MakeFolds(const Schedule& s) {
     folds.count = std::max(folds.count, static_cast<int>(place) + 1);
   }
   if (folds.count == 0) folds.count = kTimeFolds;
-  AddFoldsOfTime(folds);
+  AddFoldsOfTime(s, folds);
   return folds;
 }
 
 Folds FoldsOfTime(const Schedule& s) {
   Folds folds{std::vector<int>(At(s.Readings()), -1), kTimeFolds};
-  AddFoldsOfTime(folds);
+  AddFoldsOfTime(s, folds);
   return folds;
 }
 
 std::vector<int> BlocksOfReadings(const Schedule& s) {
-  std::map<std::pair<int, int>, int> seen;  // readings of a set-up and pass so far
-  std::map<std::pair<std::pair<int, int>, int>, int> number;
+  using Sweep = std::tuple<int, int, int>;  // set-up, pass, readings of a block
+  std::map<Sweep, int> seen;                // readings so far
+  std::map<std::pair<Sweep, int>, int> number;
   std::vector<int> block(At(s.Readings()));
+  const int in_calibration = CalibrationBlock(s);
   for (int i = 0; i < s.Readings(); ++i) {
-    const std::pair<int, int> sweep = {s.setup[At(i)], s.pass[At(i)]};
-    const int in_sweep = seen[sweep]++ / kBlockReadings;
+    const int length = s.phase[At(i)] == Phase::kCalibration ? in_calibration : kBlockReadings;
+    const Sweep sweep = {s.setup[At(i)], s.pass[At(i)], length};
+    const int in_sweep = seen[sweep]++ / length;
     block[At(i)] = number.try_emplace({sweep, in_sweep}, static_cast<int>(number.size())).first->second;
   }
   return block;

@@ -50,6 +50,31 @@ std::vector<OptionalColumn> EncoderColumns() {
            "a drift cannot be tied to the temperature"}};
 }
 
+std::vector<OptionalColumn> TurntableColumns() {
+  return {{"dwell_s", [](const Reading& r) { return std::isfinite(r.dwell_s); },
+           "settling cannot be named: it looks like backlash"},
+          {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
+           "autocollimator_temperature cannot be named: it looks like autocollimator_drift, mount_creep or unknown "
+           "structure in time"},
+          {"autocollimator_x_arcsec",
+           [](const Reading& r) { return std::isfinite(r.autocollimator_yaw_rad); },
+           "autocollimator_scale and autocollimator_nonlinearity are hidden in the turntable's errors", true}};
+}
+
+std::vector<OptionalColumn> HobColumns() {
+  return {{"velocity_deg_s", [](const Reading& r) { return std::isfinite(r.velocity_rad_s); },
+           "latency is judged by speeds from the table encoder's own angles and times"},
+          {"interferometer_arcsec", [](const Reading& r) { return std::isfinite(r.interferometer_rad); },
+           "hob_runout and gear_mesh look like eccentricity and ellipticity of the hob's encoder, backlash at one "
+           "speed like latency"}};
+}
+
+std::vector<OptionalColumn> ColumnsOf(const std::string& bench) {
+  if (bench == kHobBench) return HobColumns();
+  if (bench == kRotaryBench) return RotaryColumns();
+  return bench == kTurntableBench ? TurntableColumns() : EncoderColumns();
+}
+
 bool HasPhase(const std::vector<Reading>& readings, Phase phase) {
   return std::any_of(readings.begin(), readings.end(), [&](const Reading& r) { return r.phase == phase; });
 }
@@ -64,8 +89,7 @@ bool IsMissing(const OptionalColumn& column, const std::vector<Reading>& reading
 
 std::vector<std::string> MissingColumns(const std::vector<Reading>& readings, const std::string& bench) {
   std::vector<std::string> notes;
-  const bool is_rotary = bench == kRotaryBench;
-  for (const OptionalColumn& column : is_rotary ? RotaryColumns() : EncoderColumns()) {
+  for (const OptionalColumn& column : ColumnsOf(bench)) {
     if (!IsMissing(column, readings)) continue;
     const bool no_phase = column.calibration_only && !HasPhase(readings, Phase::kCalibration);
     notes.push_back((no_phase ? "there are no calibration readings: " : "no column " + column.name + ": ") +

@@ -7,6 +7,8 @@
 #include <set>
 
 #include "twin/core/errors.h"
+#include "twin/core/scenario.h"
+#include "twin/diagnose/bench_of.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -19,7 +21,11 @@ std::string Count(int count, const char* one, const char* many) {
 
 /// The cheapest that gives every motion something to be compared with. One more set-up costs one pass; a second
 /// pass in every set-up costs as many as there are set-ups, but shows what depends on time and direction.
-std::string SmallestAddition(const DesignCount& design) {
+std::string SmallestAddition(const DesignCount& design, const std::string& bench) {
+  if (bench == kTurntableBench)
+    return "a second pass, as in turntable_procedure.passes = [1, -1], which shows drift and backlash; or the circle "
+           "again with another tilt, as in turntable_procedure.tilts_arcsec = [60, 100], which shows the roll of the "
+           "crosshair";
   const std::string passes =
       "passes + - - + in every set-up (procedure.passes = [1, -1, -1, 1]), which also show drift and backlash";
   if (design.setups >= 3) return passes;
@@ -56,7 +62,7 @@ void RefuseWithoutRedundancy(const LinearRun& run, const Eigen::VectorXd& redund
                   "into the separated errors and nothing can be found",
                   Count(design.setups, "set-up", "set-ups"), Count(design.passes, "pass", "passes"),
                   std::max(design.redundancy, 0.0), design.rows),
-      SmallestAddition(design));
+      SmallestAddition(design, BenchOf(run)));
 }
 
 }  // namespace twinbench::diagnose

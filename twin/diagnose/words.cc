@@ -8,17 +8,13 @@
 
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/bench_of.h"
 
 namespace twinbench::diagnose {
 namespace {
 
 constexpr std::size_t kWidth = 100;
 constexpr std::size_t kMostExamples = 6;  // of a list; the file has all of it
-
-/// The bench whose channels these are.
-std::string BenchOf(const LinearRun& run) {
-  return run.channels == std::vector<std::string>{"angle"} ? kEncoderBench : kRotaryBench;
-}
 
 std::string Percent(double share) {
   return std::isfinite(share) ? fmt::format("{:.0f} %", 100.0 * share) : "unknown";

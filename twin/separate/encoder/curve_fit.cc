@@ -87,8 +87,8 @@ Normal NormalOf(const PassGroup& group, const ScaleAngles& th_rad, int highest) 
   return normal;
 }
 
-/// Largest variance of an order's part by unit white noise, over that of as many regular readings (2 / n); infinite if
-/// the orders are not determined.
+/// Largest variance of an order's part by unit white noise, over that of as many regular readings (2 / n); infinite
+/// if the orders are not determined.
 double Inflation(const Normal& normal, int order, int readings) {
   const int before = normal.columns.before_orders, unknowns = before + 2 * order;
   const Eigen::LLT<Eigen::MatrixXd> cholesky(normal.matrix.topLeftCorner(unknowns, unknowns));
@@ -101,7 +101,8 @@ double Inflation(const Normal& normal, int order, int readings) {
 int DistinctAngles(const ScaleAngles& th_rad) {
   std::set<long> seen;
   for (const Eigen::VectorXd& pass : th_rad) {
-    for (const double th : pass) seen.insert(std::lround((th / kTurn_rad - std::floor(th / kTurn_rad)) * 1e4) % 10000);
+    for (const double th : pass)
+      seen.insert(std::lround((th / kTurn_rad - std::floor(th / kTurn_rad)) * 1e4) % 10000);
   }
   return static_cast<int>(seen.size());
 }
@@ -113,7 +114,8 @@ void FillPasses(const Columns& columns, const Eigen::VectorXd& solution, CurveFi
   }
 }
 
-void FillOrders(const Normal& normal, const Eigen::VectorXd& solution, const Eigen::MatrixXd& inverse, CurveFit& fit) {
+void FillOrders(const Normal& normal, const Eigen::VectorXd& solution, const Eigen::MatrixXd& inverse,
+                CurveFit& fit) {
   const int before = normal.columns.before_orders;
   const Eigen::Index orders = (solution.size() - before) / 2;
   fit.value.resize(orders);
@@ -155,7 +157,8 @@ CurveFit FitCurve(const PassGroup& group, const ScaleAngles& th_rad, int highest
     fit.lag_cofactor = inverse(normal.columns.velocity, normal.columns.velocity);
   }
   for (std::size_t p = 0; p < group.passes.size(); ++p)
-    fit.rest_rad.push_back(group.passes[p].error_rad - RowsOf(group, p, normal.columns, th_rad[p], highest) * solution);
+    fit.rest_rad.push_back(group.passes[p].error_rad -
+                           RowsOf(group, p, normal.columns, th_rad[p], highest) * solution);
   const auto passes = std::ssize(group.passes);
   fit.constant_cofactor = inverse.topLeftCorner(passes, passes).mean();
   fit.dof = group.Readings() - static_cast<int>(solution.size());

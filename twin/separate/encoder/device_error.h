@@ -4,17 +4,12 @@
 #include <vector>
 
 #include "twin/core/reading.h"
-#include "twin/separate/encoder/mountings.h"
+#include "twin/separate/encoder/angle_means.h"
+#include "twin/separate/encoder/comparison_fit.h"
+#include "twin/separate/encoder/reversal.h"
 
 /// Front door of the bench encoder_comparison: from readings to the error of the device over its own angle.
 namespace twinbench::separate::encoder {
-
-struct DeviceOptions {
-  int max_order = 64;             // a turn; fewer where the angles read do not determine as many
-  double max_inflation = 4.0;     // HighestOrder
-  double max_noise_factor = 10.0; // SeparateMountings
-  int pooled_orders = 4;          // NoiseOf
-};
 
 /// One pass: where the device stood and how far it moved on against its own curve.
 struct PassResult {
@@ -31,12 +26,13 @@ struct DeviceError {
 
   SeparatedCurves curves;
   std::vector<PassResult> passes;
-  std::vector<double> mounting_rad;  // device angle where the reference shows 0, of each set-up used
-  double reversal_rad = kNaN;        // mean of forward - backward over the turn; NaN with one direction
-  double u_reversal_rad = kNaN;      // from the scatter between passes; NaN if no direction of a set-up has two
-  double lag_s = kNaN, u_lag_s = kNaN;  // of the device behind the reference, from changes of the speed within passes
-  double residual_rms_rad = kNaN;    // of a reading about its fit: noise, and what does not repeat
-  double low_order_scatter = kNaN;   // order 1 scatters so many times more between turns than white noise would
+  std::vector<double> mounting_rad;    // device angle where the reference shows 0, of each set-up used
+  MeanReversal reversal;               // the mean that the curve `reversal` has not
+  AngleMeans both, forward, backward;  // what was read, by degrees
+  double lag_s = kNaN,
+         u_lag_s = kNaN;            // of the device behind the reference, from changes of the speed within passes
+  double residual_rms_rad = kNaN;   // of a reading about its fit: noise, and what does not repeat
+  double low_order_scatter = kNaN;  // order 1 scatters so many times more between turns than white noise would
   double dof = kNaN;
   std::vector<std::string> notes;
 };
@@ -45,16 +41,17 @@ struct DeviceError {
 /// passes: a constant, a steady drift or a wrong scale (slope), a delay (lag).
 ///
 /// A reading belongs to the device's angle th = reference (corrected by its own error where that is separated) +
-/// mounting, the mounting being what the device shows more than the reference in the mean of its set-up: an incremental
-/// device needs its mounting added to `measured` first. Curves are sums of orders without a mean: what is constant over
-/// the turn depends on how the device was set to zero.
+/// mounting, the mounting being what the device shows more than the reference in the mean of its set-up: an
+/// incremental device needs its mounting added to `measured` first. Curves are sums of orders without a mean: what
+/// is constant over the turn depends on how the device was set to zero.
 ///
-/// Readings at rest between sweeps (direction 0) are not used. Positions need not be even and readings may be missing;
-/// both limit the highest order.
+/// Readings at rest between sweeps (direction 0) are not used. Positions need not be even and readings may be
+/// missing; both limit the highest order.
 ///
-/// Uncertainty: scatter of each order between turns, or white noise where there is one turn only. Not included: what
-/// repeats every turn with neither device nor reference (shaft and coupling count as the device), content above the
-/// highest order, quantisation that repeats, the angle at which D is read when the shaft between both gives way.
+/// Uncertainty: scatter of each order between turns, or white noise where there is one turn only. Not included:
+/// what repeats every turn with neither device nor reference (shaft and coupling count as the device), content
+/// above the highest order, quantisation that repeats, the angle at which D is read when the shaft between both
+/// gives way.
 DeviceError SeparateDevice(const std::vector<Reading>& readings, const DeviceOptions& options = {});
 
 /// A curve at 0, 360 / points, ... deg [rad].

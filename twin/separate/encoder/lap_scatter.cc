@@ -15,8 +15,8 @@ struct LapSum {
   int readings = 0;
 };
 
-std::map<int, LapSum> LapsOf(const ComparedPass& pass, const Eigen::VectorXd& th_rad, const Eigen::VectorXd& rest_rad,
-                             int highest) {
+std::map<int, LapSum> LapsOf(const ComparedPass& pass, const Eigen::VectorXd& th_rad,
+                             const Eigen::VectorXd& rest_rad, int highest) {
   std::map<int, LapSum> laps;
   for (Eigen::Index i = 0; i < th_rad.size(); ++i) {
     LapSum& lap = laps[pass.lap[static_cast<std::size_t>(i)]];

@@ -56,8 +56,8 @@ class Separation {
     for (const hob::PositionError* position : seen_) highest_ = std::min(highest_, position->series.Highest());
     for (int order = 1; order <= highest_; ++order) Add(order);
     if (static_cast<int>(curves_.lost.size()) == highest_) curves_.reference = {};
-    for (hob::HarmonicSeries* series : {&curves_.device, &curves_.forward, &curves_.backward, &curves_.reversal,
-                                        &curves_.reference})
+    for (hob::HarmonicSeries* series :
+         {&curves_.device, &curves_.forward, &curves_.backward, &curves_.reversal, &curves_.reference})
       series->dof = seen_.front()->series.dof;
     return curves_;
   }

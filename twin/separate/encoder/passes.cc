@@ -37,7 +37,8 @@ Eigen::VectorXd AsVector(const std::vector<double>& values) {
 /// Half a mean step before the first reading a turn begins, so that its last stop is not the next one's first.
 std::vector<int> LapsOf(const Eigen::VectorXd& phi_rad, int direction) {
   const Eigen::VectorXd way_rad = direction * (phi_rad.array() - phi_rad[0]);
-  const double step_rad = way_rad.tail(1).value() / static_cast<double>(std::max<Eigen::Index>(1, way_rad.size() - 1));
+  const double step_rad =
+      way_rad.tail(1).value() / static_cast<double>(std::max<Eigen::Index>(1, way_rad.size() - 1));
   std::vector<int> laps;
   for (const double way : way_rad)
     laps.push_back(std::max(0, static_cast<int>(std::floor((way + 0.5 * step_rad) / kTurn_rad))));

@@ -7,9 +7,9 @@
 
 /// An angle device compared with a reference on one shaft.
 ///
-/// Everywhere in this folder: phi is the angle that the reference shows, th the angle of the device's own scale, x what
-/// the device shows too much. D(th) is the error of the device, R that of the reference, both as "shows too much", so
-/// that a device mounted at c_s (where the reference shows 0) has
+/// Everywhere in this folder: phi is the angle that the reference shows, th the angle of the device's own scale, x
+/// what the device shows too much. D(th) is the error of the device, R that of the reference, both as "shows too
+/// much", so that a device mounted at c_s (where the reference shows 0) has
 ///
 ///   x = c_s + D(th) - R(shaft),  shaft = phi - R(shaft),  th = shaft + c_s
 ///
@@ -43,8 +43,8 @@ struct SortedPasses {
   int left_out = 0;               // readings at rest in a sweep (direction 0) or without a value
 };
 
-/// Takes measured - reference as CompareAngles does. A reference that wraps at a turn is followed: an angle that goes
-/// back by more than half a turn against the direction of its pass has wrapped.
+/// Takes measured - reference as CompareAngles does. A reference that wraps at a turn is followed: an angle that
+/// goes back by more than half a turn against the direction of its pass has wrapped.
 SortedPasses SortPasses(const std::vector<Reading>& readings);
 
 }  // namespace twinbench::separate::encoder

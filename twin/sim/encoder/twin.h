@@ -19,8 +19,9 @@ class EncoderTwin : public AngleComparator {
 
   void Take(Reading& reading) override;
 
-  /// {"device": {"position_deg", "ez_arcsec"}, "reference": same, "effects": [...], "seed": n}: opened only by tests and
-  /// scores. Both curves show too much where positive, each by its own angle at every degree, without their mean.
+  /// {"device": {"position_deg", "ez_arcsec"}, "reference": same, "effects": [...], "seed": n}: opened only by
+  /// tests and scores. Both curves show too much where positive, each by its own angle at every degree, without
+  /// their mean.
   nlohmann::json Truth() const;
 
  private:

@@ -17,10 +17,12 @@ struct HobMoment {
   double velocity_rad_s = 0.0;  // of the table, as commanded
 };
 
-/// What is added to the angles that both counters show.
+/// What is added to what the counters show, and what the table does beyond its gears: its encoder and the
+/// interferometer see that.
 struct ShownError {
   double table_rad = 0.0;
   double hob_rad = 0.0;
+  double motion_rad = 0.0;
 };
 
 /// One cause on the bench hob_transmission. Errors of different effects add; no effect looks at another one.

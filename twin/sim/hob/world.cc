@@ -134,7 +134,8 @@ CounterSample HobWorld::SampleAt(const mechanics::GearTrainState& at, Time now) 
   const HobMoment moment{sample.time, next_reading_++, at.table_rad, sample.velocity_rad_s};
   for (const auto& effect : effects_) {
     const ShownError error = effect->Shown(moment);
-    sample.table_encoder_rad += error.table_rad;
+    sample.table_encoder_rad += error.table_rad + error.motion_rad;
+    sample.interferometer_rad += error.motion_rad;
     sample.hob_encoder_rad += error.hob_rad;
   }
   sample.table_encoder_rad += Empirical_rad(moment.reading);

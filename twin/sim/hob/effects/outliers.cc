@@ -15,7 +15,7 @@ class CounterOutliers : public HobEffect {
     stream.Seek(2 * static_cast<std::uint64_t>(moment.reading));  // a block has two numbers, we take three
     if (stream.Uniform() >= fraction_) return {};
     const double sign = stream.Uniform() < 0.5 ? -1.0 : 1.0;
-    return {sign * size_rad_ * (0.5 + stream.Uniform()), 0.0};
+    return {.table_rad = sign * size_rad_ * (0.5 + stream.Uniform())};
   }
 
  private:

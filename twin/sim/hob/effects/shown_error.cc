@@ -20,22 +20,22 @@ class CountError : public HobEffect {
 /// Linear plus a quadratic share that is zero at both ends of the first hour.
 ShownError Drift(const EffectSettings& e, const HobMoment& moment) {
   const double t_s = ToSeconds(moment.now);
-  return {Parameter(e, "rate") * t_s * (1.0 + Parameter(e, "curvature") * (1.0 - t_s / units::hour)), 0.0};
+  return {.motion_rad = Parameter(e, "rate") * t_s * (1.0 + Parameter(e, "curvature") * (1.0 - t_s / units::hour))};
 }
 
 ShownError Step(const EffectSettings& e, const HobMoment& moment) {
   if (moment.reading < static_cast<int>(Parameter(e, "at_reading"))) return {};
   const double step_rad = Parameter(e, "step");
-  return e.where == "table" ? ShownError{step_rad, 0.0} : ShownError{0.0, step_rad};
+  return e.where == "table" ? ShownError{.table_rad = step_rad} : ShownError{.hob_rad = step_rad};
 }
 
 ShownError Wave(const EffectSettings& e, const HobMoment& moment) {
   const double turns = Parameter(e, "frequency") * ToSeconds(moment.now);
-  return {Parameter(e, "amplitude") * std::cos(2.0 * units::kPi * turns + Parameter(e, "phase")), 0.0};
+  return {.motion_rad = Parameter(e, "amplitude") * std::cos(2.0 * units::kPi * turns + Parameter(e, "phase"))};
 }
 
 ShownError OldAngle(const EffectSettings& e, const HobMoment& moment) {
-  return {-moment.velocity_rad_s * Parameter(e, "delay"), 0.0};
+  return {.table_rad = -moment.velocity_rad_s * Parameter(e, "delay")};
 }
 
 CountError::Course CourseOf(const std::string& effect) {

@@ -18,7 +18,7 @@ class WindUp : public HobEffect {
       const double sense = way_rad > 0.0 ? 1.0 : -1.0;
       state_ = sense + (state_ - sense) * std::exp(-std::abs(way_rad) / settles_over_rad_);
     }
-    return {-lag_rad_ * state_, 0.0};
+    return {.motion_rad = -lag_rad_ * state_};
   }
 
  private:

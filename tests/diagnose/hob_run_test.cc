@@ -1,0 +1,152 @@
+#include "twin/diagnose/hob/hob_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/diagnose/hob_chain.h"
+#include "twin/core/errors.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/engine/noise_model.h"
+#include "twin/diagnose/engine/projector.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+using test::HobChain;
+using units::arcsec;
+using units::deg;
+
+HobChain Quiet() {
+  HobChain chain;
+  chain.table_noise_arcsec = chain.hob_noise_arcsec = 0.0;
+  chain.hob_steps = false;
+  chain.turns = 1;
+  return chain;
+}
+
+/// Rms that the free unknowns leave.
+double Left_rad(const LinearRun& run) {
+  const Eigen::MatrixXd free = run.nuisance.jacobian.toDense();
+  const Eigen::VectorXd left = run.residual - free * free.completeOrthogonalDecomposition().solve(run.residual);
+  return left.norm() / std::sqrt(static_cast<double>(left.size()));
+}
+
+EffectSettings Effect(const std::string& name, const std::string& where, std::map<std::string, double> values) {
+  return {name, where, std::move(values), ""};
+}
+
+TEST(HobRun, LeavesNothingOfAChainWithoutHiddenCauses) {
+  const HobChain chain = Quiet();
+  const hob::HobRun hob = hob::BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  EXPECT_EQ(hob.left_out, 0);
+  // The table's angle is read 10 arcsec off at most: 10 arcsec times a slope of 1e-4.
+  EXPECT_LT(Left_rad(hob.run), 1e-3 * arcsec);
+}
+
+TEST(HobRun, TakesOffAKnownEffect) {
+  HobChain chain = Quiet();
+  chain.hidden = {{"eccentricity", "table", {{"amplitude", 6.0 * arcsec}, {"phase", 1.0}}},
+                  {"worm", "", {{"amplitude", 2.0 * arcsec}, {"phase", 3.0}}},
+                  {"latency", "", {{"delay", 1e-4}}},
+                  {"slip", "hob", {{"step", 144.0 * arcsec}, {"at_reading", 700.0}}}};
+  Scenario scenario = ScenarioOf(chain);
+  const std::vector<Reading> readings = ReadingsOf(chain);
+  EXPECT_GT(Left_rad(hob::BuildRun(readings, scenario).run), 0.5 * arcsec);
+  for (const test::HiddenCause& hidden : chain.hidden)
+    scenario.effects.push_back(Effect(hidden.name, hidden.where, hidden.value));
+  // The worm's wave is read at an angle that is 6 arcsec off: 90 x 3e-5 of 2 arcsec.
+  EXPECT_LT(Left_rad(hob::BuildRun(readings, scenario).run), 0.01 * arcsec);
+}
+
+/// The ring's geometry: its middle is off by e towards azimuth A on it, where azimuths run against its angle s. The
+/// line under the head then has the azimuth -(s + e / R sin(s + A)): it shows e / R cos(s + A - 90 deg) too much.
+TEST(HobRun, TakesOffTheStatedEccentricityOfTheRing) {
+  const double amplitude_rad = 6.0 * arcsec;
+  HobChain chain = Quiet();
+  chain.hidden = {{"eccentricity", "table", {{"amplitude", amplitude_rad}, {"phase", 40.0 * deg - 90.0 * deg}}}};
+  Scenario scenario = ScenarioOf(chain);
+  scenario.table_encoder.radius_m = 0.1;
+  scenario.table_encoder.eccentricity_m = 0.1 * amplitude_rad;
+  scenario.table_encoder.eccentricity_azimuth_rad = 40.0 * deg;
+  EXPECT_LT(Left_rad(hob::BuildRun(ReadingsOf(chain), scenario).run), 1e-3 * arcsec);
+}
+
+TEST(HobRun, TakesOffAStatedLineOfTheTransmissionAndBacklash) {
+  HobChain chain = Quiet();
+  chain.hidden = {{"unlisted_order", "", {{"order", 7.0}, {"amplitude", 3.0 * arcsec}, {"phase", 2.0}}},
+                  {"backlash", "", {{"width", 4.0 * arcsec}}}};
+  Scenario scenario = ScenarioOf(chain);
+  scenario.transmission.harmonics = {{Component::kEz, 7.0, 3.0 * arcsec, 2.0}};
+  scenario.transmission.backlash_rad = 4.0 * arcsec;
+  EXPECT_LT(Left_rad(hob::BuildRun(ReadingsOf(chain), scenario).run), 1e-3 * arcsec);
+}
+
+TEST(HobRun, TakesOffAnEmpiricalSignal) {
+  const HobChain chain = Quiet();
+  std::vector<Reading> readings = ReadingsOf(chain);
+  Scenario scenario = ScenarioOf(chain);
+  EmpiricalSettings signal;
+  signal.channel = "transmission";
+  for (Reading& r : readings) {
+    const double value_rad = 2.0 * arcsec * std::sin(0.01 * r.reading);
+    r.measured_rad += value_rad;
+    signal.reading.push_back(r.reading);
+    signal.value_rad.push_back(value_rad);
+  }
+  EXPECT_GT(Left_rad(hob::BuildRun(readings, scenario).run), 0.5 * arcsec);
+  scenario.empiricals = {signal};
+  EXPECT_LT(Left_rad(hob::BuildRun(readings, scenario).run), 1e-3 * arcsec);
+}
+
+TEST(HobRun, TakesSamplesTogetherAsFarAsTheWormKeepsItsSize) {
+  HobChain chain;
+  const hob::HobRun hob = hob::BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  // A mean over three of 720 samples leaves sin(3 x) / (3 sin x) = 0.805 of order 90 (x = 22.5 deg); over four
+  // 0.65.
+  EXPECT_EQ(hob.run.Rows(), 2 * 2 * 3 * 240);
+  // Noise of one sample: 0.1 arcsec of the table, 0.5 / 22 of the hob, and the hob's steps of 1.44 / 22 / sqrt(12).
+  EXPECT_NEAR(hob.run.sigma[0] / arcsec,
+              std::hypot(0.1, 0.5 / 22.0, 1.44 / 22.0 / std::sqrt(12.0)) / std::sqrt(3.0), 1e-6);
+  EXPECT_TRUE(hob.run.sigma_stated);
+}
+
+TEST(HobRun, EstimatesANoiseThatNobodyTold) {
+  HobChain chain;
+  chain.noise_told = false;
+  chain.hidden = {{"worm", "", {{"amplitude", 2.0 * arcsec}, {"phase", 3.0}}}};  // repeats from turn to turn
+  const hob::HobRun hob = hob::BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  EXPECT_FALSE(hob.run.sigma_stated);
+  const double truth_rad = std::hypot(0.1, 0.5 / 22.0, 1.44 / 22.0 / std::sqrt(12.0)) * arcsec;
+  // 8640 samples say 1 / sqrt(8640) = 1 %; what repeats of the steps' errors from turn to turn is not seen: 3 %.
+  EXPECT_NEAR(hob.run.sigma[0] * std::sqrt(hob.context.groups.Size(0)) / truth_rad, 1.0, 0.06);
+}
+
+TEST(HobRun, LeavesOutSamplesThatLieFarOutsideButNoStep) {
+  HobChain chain;
+  chain.hidden = {{"outliers", "", {{"fraction", 0.003}, {"size", 10.0 * arcsec}}},
+                  {"slip", "table", {{"step", 72.0 * arcsec}, {"at_reading", 2000.0}}}};
+  const std::vector<Reading> readings = ReadingsOf(chain);
+  chain.hidden.erase(chain.hidden.begin());
+  const std::vector<Reading> without = ReadingsOf(chain);
+  int far = 0;  // beyond ten deviations of the noise of a sample
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    far += std::abs(readings[i].measured_rad - without[i].measured_rad) > 1.0 * arcsec;
+  const hob::HobRun hob = hob::BuildRun(readings, ScenarioOf(chain));
+  EXPECT_GE(std::ssize(hob.disturbed.readings), far);
+  EXPECT_LE(std::ssize(hob.disturbed.readings), far + 3);  // of smaller ones one in twenty is as far
+  for (const int reading : hob.disturbed.readings) {
+    const auto i = static_cast<std::size_t>(reading);
+    EXPECT_NE(readings[i].measured_rad, without[i].measured_rad) << reading;
+  }
+}
+
+TEST(HobRun, NeedsTheHeadOfEverySetUp) {
+  HobChain chain = Quiet();
+  std::vector<Reading> readings = ReadingsOf(chain);
+  readings[20].head_rad = kNaN;
+  EXPECT_THROW(hob::BuildRun(readings, ScenarioOf(chain)), InputError);
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose

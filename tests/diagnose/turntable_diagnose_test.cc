@@ -1,0 +1,237 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/diagnose/turntable_bench.h"
+#include "twin/diagnose/diagnose.h"
+#include "twin/diagnose/extend.h"
+#include "twin/diagnose/words.h"
+
+// Whole diagnoses of readings that the independent bench made, with noise.
+namespace twinbench::diagnose {
+namespace {
+
+using test::BenchReadings;
+using test::CarefulScenario;
+using test::PublishedScenario;
+using test::Wrong;
+using testing::AnyOf;
+using testing::HasSubstr;
+using units::arcsec;
+
+DiagnosisRun DiagnosisOf(const Scenario& scenario, const Wrong& wrong, std::uint64_t seed = 21) {
+  DiagnoseOptions options;
+  options.cache_folder = testing::TempDir() + "turntable_null";  // one calibration a design
+  return Diagnose(BenchReadings(scenario, wrong, seed), scenario, options);
+}
+
+/// The only cause, if there is one and it is this.
+const Cause* OnlyCause(const DiagnosisRun& run, const std::string& effect, const std::string& where = "") {
+  const std::vector<Cause>& causes = run.diagnosis.causes;
+  const bool alone = run.diagnosis.verdict == Verdict::kNamed && causes.size() == 1;
+  return alone && causes[0].effect == effect && causes[0].where == where ? &causes[0] : nullptr;
+}
+
+const ParameterEstimate& ParameterOf(const Cause& cause, const std::string& name) {
+  return *std::ranges::find(cause.parameters, name, &ParameterEstimate::name);
+}
+
+/// Named alone, with the parameter within three of its standard uncertainties.
+void ExpectNamed(const Wrong& wrong, const std::string& effect, const std::string& where,
+                 const std::string& parameter, double value, const Scenario& scenario = CarefulScenario()) {
+  const DiagnosisRun run = DiagnosisOf(scenario, wrong);
+  const Cause* cause = OnlyCause(run, effect, where);
+  ASSERT_TRUE(cause) << effect << " at " << where << "\n" << InWords(run);
+  EXPECT_LE(cause->probability, 0.97);
+  const ParameterEstimate& p = ParameterOf(*cause, parameter);
+  EXPECT_NEAR(p.value, value, 3.0 * p.u) << effect << " at " << where;
+  EXPECT_LT(p.u, 0.3 * std::abs(value)) << effect << " at " << where;
+  EXPECT_GT(run.diagnosis.gain.folds, run.accepted.empty() ? -1 : 0);
+}
+
+TEST(TurntableDiagnosis, NamesEveryFaultOfTheInstrument) {
+  Wrong roll, gain, edge, flat;
+  roll.roll_rad = 3e-3;
+  ExpectNamed(roll, "autocollimator_roll", "", "angle", 3e-3);
+  gain.gain_error = -0.005;
+  ExpectNamed(gain, "autocollimator_scale", "", "gain_error", -0.005);
+  edge.at_edge_rad = 8.0 * arcsec;
+  ExpectNamed(edge, "autocollimator_nonlinearity", "", "at_edge", 8.0 * arcsec);
+  flat.sag_m = 600e-9;
+  Scenario off_centre = CarefulScenario();
+  off_centre.turntable_procedure.eccentricities_m = {5e-3, 0.0};
+  ExpectNamed(flat, "mirror_flatness", "", "sag", 600e-9, off_centre);
+  for (const std::size_t axis : {0u, 1u}) {
+    Wrong ripple;
+    ripple.ripple_rad[axis] = 0.2 * arcsec;
+    ExpectNamed(ripple, "autocollimator_periodic", axis == 0 ? "x" : "y", "amplitude", 0.2 * arcsec);
+  }
+}
+
+TEST(TurntableDiagnosis, NamesWhatMovesTheZeroInTime) {
+  for (const std::size_t axis : {0u, 1u}) {
+    const std::string where = axis == 0 ? "x" : "y";
+    Wrong drift, creep, slip, tone, warm;
+    drift.drift_rad_s[axis] = 3.0 * arcsec / 3600.0;
+    ExpectNamed(drift, "autocollimator_drift", where, "rate", 3.0 * arcsec / 3600.0);
+    creep.creep_rad[axis] = 0.2 * arcsec;
+    ExpectNamed(creep, "mount_creep", where, "amplitude", 0.2 * arcsec);
+    slip.slip_rad[axis] = 0.4 * arcsec;
+    ExpectNamed(slip, "slip", where, "step", 0.4 * arcsec);
+    tone.tone_rad[axis] = 0.2 * arcsec;
+    tone.modulation = 0.1;
+    ExpectNamed(tone, "tone", where, "amplitude", 0.2 * arcsec);
+    warm.kelvin_rad[axis] = 2.0 * arcsec;
+    warm.lag_s = 10.0;
+    ExpectNamed(warm, "autocollimator_temperature", where, "coefficient", 2.0 * arcsec);
+  }
+}
+
+TEST(TurntableDiagnosis, NamesWhatTheTurntableDoes) {
+  Wrong gap, late;
+  gap.backlash_rad = 0.5 * arcsec;
+  ExpectNamed(gap, "backlash", "", "width", 0.5 * arcsec);
+  late.settling_rad = 2.0 * arcsec;
+  late.settling_s = 2.5;
+  ExpectNamed(late, "settling", "", "time_constant", 2.5);
+}
+
+TEST(TurntableDiagnosis, NamesTeethThatSeatDifferentlyAndReadingsThatAreSpoilt) {
+  Wrong seating, spoilt;
+  seating.seating_rad = 0.15 * arcsec;
+  ExpectNamed(seating, "multitooth_seating", "", "scatter", 0.15 * arcsec);
+  spoilt.spoilt = 0.01;
+  EXPECT_TRUE(OnlyCause(DiagnosisOf(CarefulScenario(), spoilt), "outliers"));
+}
+
+TEST(TurntableDiagnosis, TakesALouderAutocollimatorForNoSeating) {
+  Scenario louder = CarefulScenario();
+  louder.autocollimator.noise_rad = 0.13 * arcsec;
+  const DiagnosisRun run = Diagnose(BenchReadings(louder, {}, 21), CarefulScenario());
+  EXPECT_EQ(run.diagnosis.verdict, Verdict::kNone) << InWords(run);
+}
+
+TEST(TurntableDiagnosis, IsQuietOnCleanRuns) {
+  // One in a hundred is promised; two of eighty come by chance in less than one of five times at that rate, three
+  // in one of twenty. Measured: docs/diagnosis.md.
+  int alarms = 0;
+  for (std::uint64_t seed = 100; seed < 140; ++seed) {
+    for (const Scenario& scenario : {CarefulScenario(), PublishedScenario()})
+      alarms += DiagnosisOf(scenario, {}, seed).diagnosis.verdict == Verdict::kNone ? 0 : 1;
+  }
+  EXPECT_LE(alarms, 2);
+}
+
+TEST(TurntableDiagnosis, BelievesTheStatedRoll) {
+  Scenario scenario = CarefulScenario();
+  scenario.collimator.roll_rad = 0.6 * units::deg;
+  EXPECT_EQ(DiagnosisOf(scenario, {}).diagnosis.verdict, Verdict::kNone);
+  Wrong more;
+  more.roll_rad = 3e-3;
+  ExpectNamed(more, "autocollimator_roll", "", "angle", 3e-3, scenario);
+}
+
+TEST(TurntableDiagnosis, FindsTheRollOfThePublishedProcedure) {
+  Wrong roll;
+  roll.roll_rad = 0.6 * units::deg;
+  ExpectNamed(roll, "autocollimator_roll", "", "angle", 0.6 * units::deg, PublishedScenario());
+}
+
+TEST(TurntableDiagnosis, CallsTheRollInvisibleWithOneTiltAndNoSweep) {
+  Scenario scenario = PublishedScenario();
+  scenario.turntable_procedure.tilts_rad = {60 * arcsec};
+  scenario.turntable_procedure.tilt_azimuths_rad = {0.0};
+  scenario.turntable_procedure.passes = {1, -1};
+  Wrong roll;
+  roll.roll_rad = 10e-3;
+  const Diagnosis d = DiagnosisOf(scenario, roll).diagnosis;
+  EXPECT_EQ(d.verdict, Verdict::kNone);
+  for (const char* effect : {"autocollimator_roll", "autocollimator_scale", "mirror_flatness"}) {
+    const auto invisible = std::ranges::find(d.invisible, effect, &Invisible::effect);
+    ASSERT_NE(invisible, d.invisible.end()) << effect;
+    EXPECT_THAT(invisible->could_bias, HasSubstr("turntable ez up to")) << effect;
+    if (invisible->effect == "autocollimator_roll")
+      EXPECT_THAT(invisible->could_bias, HasSubstr("another tilt of the multi-tooth table"));
+  }
+}
+
+TEST(TurntableDiagnosis, TiesBacklashAndSettlingWithOneDwell) {
+  Scenario scenario = CarefulScenario();
+  scenario.turntable_procedure.dwell_s = {1.0};
+  Wrong gap;
+  gap.backlash_rad = 0.6 * arcsec;
+  const Diagnosis d = DiagnosisOf(scenario, gap).diagnosis;
+  ASSERT_EQ(d.verdict, Verdict::kTie);
+  ASSERT_EQ(d.causes.size(), 2u);
+  for (const Cause& cause : d.causes) {
+    EXPECT_THAT(cause.effect, AnyOf("backlash", "settling"));
+    EXPECT_THAT(cause.next_measurement, HasSubstr("dwells from 0.5 to 20 s"));
+  }
+}
+
+TEST(TurntableDiagnosis, FindsStructureWithoutAName) {
+  const auto unknown = [](auto signal) {
+    Wrong wrong;
+    wrong.other = signal;
+    return DiagnosisOf(CarefulScenario(), wrong).diagnosis;
+  };
+  const Diagnosis odd = unknown([](const Reading& r) {
+    return Eigen::Vector2d(0.15 * arcsec * r.direction * std::cos(3.0 * r.target_rad + 0.3), 0.0);
+  });
+  EXPECT_EQ(odd.verdict, Verdict::kUnknown);
+  EXPECT_THAT(odd.unknown.signature,
+              HasSubstr("direction times order 3 locked to target angle, odd in direction, on "
+                        "x"));
+  const Diagnosis growing = unknown([](const Reading& r) {
+    return Eigen::Vector2d(0.0, 0.15 * arcsec * ToSeconds(r.time) / 1000.0 * std::cos(4.0 * r.target_rad));
+  });
+  EXPECT_EQ(growing.verdict, Verdict::kUnknown);
+  EXPECT_THAT(growing.unknown.signature, HasSubstr("order 4 locked to target angle that grows with time, on y"));
+  const Diagnosis by_pass = unknown([](const Reading& r) {
+    const double each[] = {0.3, -1.0, 0.8, -0.4, 0.0};
+    return Eigen::Vector2d(0.3 * arcsec * each[(r.pass + 2 * r.setup) % 5], 0.0);
+  });
+  EXPECT_EQ(by_pass.verdict, Verdict::kUnknown);
+  EXPECT_THAT(by_pass.unknown.signature, HasSubstr("offset of each pass, locked to the pass (time), on x"));
+}
+
+TEST(TurntableDiagnosis, ExtendsTheScenarioSoThatNothingIsLeft) {
+  const Scenario scenario = CarefulScenario();
+  Wrong wrong;
+  wrong.roll_rad = 4e-3;
+  wrong.tone_rad[1] = 0.3 * arcsec;
+  const std::vector<Reading> readings = BenchReadings(scenario, wrong, 21);
+  const DiagnosisRun found = Diagnose(readings, scenario);
+  const Scenario extended = ParseScenario(ExtendedToml(scenario, found, "a test"), "extended.toml", "/elsewhere");
+  ASSERT_EQ(extended.effects.size(), 2u) << InWords(found);
+  EXPECT_EQ(Diagnose(readings, extended).diagnosis.verdict, Verdict::kNone);
+}
+
+TEST(TurntableDiagnosis, KeepsStructureWithoutANameAsASignalOfItsAxis) {
+  const Scenario scenario = CarefulScenario();
+  Wrong wrong;
+  wrong.other = [](const Reading& r) {
+    return Eigen::Vector2d(0.0, 0.3 * arcsec * r.direction * std::cos(2.0 * r.target_rad));
+  };
+  const std::vector<Reading> readings = BenchReadings(scenario, wrong, 21);
+  const DiagnosisRun found = Diagnose(readings, scenario);
+  const Scenario extended = ParseScenario(ExtendedToml(scenario, found, "a test"), "extended.toml", "/elsewhere");
+  ASSERT_EQ(extended.empiricals.size(), 1u) << InWords(found);
+  EXPECT_EQ(extended.empiricals[0].channel, "y");
+  EXPECT_EQ(extended.empiricals[0].value_rad.size(), found.run.schedule.reading.size());
+  EXPECT_EQ(Diagnose(readings, extended).diagnosis.verdict, Verdict::kNone);
+}
+
+TEST(TurntableDiagnosis, SaysWhatMissingColumnsCost) {
+  const Scenario scenario = PublishedScenario();
+  std::vector<Reading> readings = BenchReadings(scenario, {}, 21);
+  for (Reading& r : readings) r.temperature_degC = kNaN;
+  EXPECT_THAT(Diagnose(readings, scenario).diagnosis.notes,
+              testing::ElementsAre(HasSubstr("autocollimator_temperature cannot be named"),
+                                   HasSubstr("there are no calibration readings: autocollimator_scale")));
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose

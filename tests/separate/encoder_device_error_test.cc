@@ -1,0 +1,199 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/separate/encoder_readings.h"
+#include "twin/separate/encoder/device_error.h"
+
+namespace twinbench::separate::encoder {
+namespace {
+
+using test::Comparison;
+using test::ValueOf;
+using test::Wave;
+using units::arcsec;
+using units::deg;
+
+const std::vector<Wave> kDevice = {{1, 900.0, 0.7}, {2, 400.0, -1.2}, {7, 60.0, 2.0}, {12, 20.0, 0.3}};
+const std::vector<Wave> kReference = {{1, 70.0, 1.3}, {3, 25.0, -0.4}, {12, 9.0, 2.2}};
+
+/// Largest difference to a closed form at every degree [arcsec].
+double Worst_arcsec(const hob::HarmonicSeries& series, const std::vector<Wave>& waves) {
+  const Eigen::VectorXd value_rad = Curve(series, 360).value_rad;
+  double worst = 0.0;
+  for (int i = 0; i < 360; ++i) worst = std::max(worst, std::abs(value_rad[i] - ValueOf(waves, i * deg)));
+  return worst / arcsec;
+}
+
+bool HasNote(const DeviceError& e, const std::string& part) {
+  return std::ranges::any_of(e.notes,
+                             [&](const std::string& note) { return note.find(part) != std::string::npos; });
+}
+
+// Without noise only rounding is left: 1e-12 rad of angles up to 15 rad in normal equations is 1e-6 arcsec.
+constexpr double kRounding_arcsec = 1e-5;
+
+TEST(SeparateDevice, GivesBackAKnownCurveFromStopsOfAnyKind) {
+  Comparison bench{.device = kDevice};
+  EXPECT_LT(Worst_arcsec(SeparateDevice(bench.Readings()).curves.device, kDevice), kRounding_arcsec);
+  bench.jitter_rad = [](int k) { return 1.2 * deg * std::sin(1.7 * k); };
+  bench.missing = [](int i) { return i % 11 == 3; };
+  const DeviceError uneven = SeparateDevice(bench.Readings());
+  EXPECT_LT(Worst_arcsec(uneven.curves.device, kDevice), kRounding_arcsec);
+  EXPECT_EQ(uneven.left_out, 53) << "every 11th of 4 x 144";
+  EXPECT_EQ(uneven.used, 523);
+}
+
+TEST(SeparateDevice, UsesAsManyOrdersAsTheStopsCanTellApart) {
+  EXPECT_EQ(SeparateDevice(Comparison{.device = kDevice}.Readings()).highest_order, 35) << "(72 - 1) / 2";
+  const Comparison coarse{.device = {{1, 900.0, 0.7}}, .stops = 8};
+  EXPECT_EQ(SeparateDevice(coarse.Readings()).highest_order, 3);
+  EXPECT_LT(Worst_arcsec(SeparateDevice(coarse.Readings()).curves.device, coarse.device), kRounding_arcsec);
+}
+
+TEST(SeparateDevice, FollowsDeviceAndReferenceThatWrapAtATurn) {
+  const Comparison bench{.device = kDevice};
+  std::vector<Reading> readings = bench.Readings();
+  const auto wrap = [](double angle_rad) {
+    return angle_rad - 2.0 * units::kPi * std::floor(angle_rad / (2.0 * units::kPi));
+  };
+  for (Reading& r : readings) {
+    r.measured_rad = wrap(r.measured_rad);
+    r.reference_rad = wrap(r.reference_rad);
+  }
+  const DeviceError wrapped = SeparateDevice(readings);
+  EXPECT_LT(Worst_arcsec(wrapped.curves.device, kDevice), kRounding_arcsec);
+  EXPECT_NEAR(wrapped.passes.front().turns, 2.0, 0.05) << "one stop short of two turns";
+}
+
+TEST(SeparateDevice, CountsTheReferencesErrorAsTheDevicesWithOneMounting) {
+  const Comparison bench{.device = kDevice, .reference = {{3, 25.0, -0.4}}};
+  const DeviceError e = SeparateDevice(bench.Readings());
+  EXPECT_TRUE(e.curves.reference.orders.empty());
+  EXPECT_EQ(static_cast<int>(e.curves.lost.size()), e.highest_order);
+  std::vector<Wave> difference = kDevice;
+  difference.push_back({3, -25.0, -0.4});
+  // The reference is read off by 25 arcsec: times the device's slope 0.0065 that is 0.17 arcsec.
+  EXPECT_LT(Worst_arcsec(e.curves.device, difference), 0.5);
+}
+
+TEST(SeparateDevice, TellsDeviceFromReferenceByThreeMountings) {
+  const Comparison bench{
+      .device = kDevice, .reference = kReference, .mounting_rad = {0.0, 120.0 * deg, 215.0 * deg}};
+  const DeviceError e = SeparateDevice(bench.Readings());
+  EXPECT_TRUE(e.curves.lost.empty()) << "215 deg is a whole number of periods with 120 deg only from order 72 on";
+  EXPECT_LT(Worst_arcsec(e.curves.device, kDevice), 0.001)
+      << "rounds of the reference's error: 70 arcsec x 0.0065^4";
+  EXPECT_LT(Worst_arcsec(e.curves.reference, kReference), 0.1)
+      << "it follows its reading, off by its error: 70^2 arcsec^2";
+  EXPECT_NEAR(e.mounting_rad[1], 120.0 * deg, 1e-9);
+}
+
+TEST(SeparateDevice, CannotTellEvenOrdersApartByOppositeMountings) {
+  const Comparison bench{.device = {{1, 100.0, 0.7}, {2, 50.0, 0.0}},
+                         .reference = {{1, 70.0, 1.3}, {2, 20.0, 0.0}},
+                         .mounting_rad = {0.0, 180.0 * deg}};
+  const DeviceError e = SeparateDevice(bench.Readings());
+  ASSERT_EQ(e.curves.lost.size(), 17u) << "the even ones up to 35";
+  for (const int order : e.curves.lost) EXPECT_EQ(order % 2, 0);
+  // Second order: error x slope, 100 arcsec x 5e-4.
+  EXPECT_NEAR(hob::Amplitude(e.curves.device.At(1)) / arcsec, 100.0, 0.1);
+  EXPECT_NEAR(hob::Amplitude(e.curves.reference.At(1)) / arcsec, 70.0, 0.1);
+  EXPECT_NEAR(hob::Amplitude(e.curves.device.At(2)) / arcsec, 50.0 - 20.0, 0.1) << "the difference";
+  EXPECT_TRUE(std::isnan(e.curves.reference.At(2).value.real()));
+}
+
+TEST(SeparateDevice, GivesTheReversalAsMeanAndCurve) {
+  const Comparison bench{.device = kDevice, .backward = {{2, 30.0, 0.5}}, .reversal_arcsec = -85.0};
+  const DeviceError e = SeparateDevice(bench.Readings());
+  EXPECT_NEAR(e.reversal.value_rad / arcsec, -85.0, kRounding_arcsec);
+  EXPECT_LT(Worst_arcsec(e.curves.reversal, {{2, -30.0, 0.5}}), kRounding_arcsec);
+  EXPECT_LT(Worst_arcsec(e.curves.forward, kDevice), kRounding_arcsec);
+  std::vector<Wave> mean = kDevice;
+  mean.push_back({2, 15.0, 0.5});
+  EXPECT_LT(Worst_arcsec(e.curves.device, mean), kRounding_arcsec);
+}
+
+TEST(SeparateDevice, GivesMeansByDegreesThatHaveAllOrders) {
+  // Order 71 looks like order 1 at 72 stops and is in the curve; order 36 is no curve's there: alternating signs.
+  const Comparison bench{.device = {{1, 300.0, 0.0}, {36, 10.0, -36 * 0.02}}, .backward = {{2, 30.0, 0.5}}};
+  const DeviceError e = SeparateDevice(bench.Readings());
+  ASSERT_EQ(e.forward.count.size(), 72u);
+  for (std::size_t i = 0; i < 72; ++i) {
+    EXPECT_EQ(e.both.count[i], 8);
+    EXPECT_EQ(e.forward.count[i], 4);
+    const double angle_rad = e.forward.position_rad[i];
+    EXPECT_NEAR(angle_rad, 0.02 + static_cast<double>(i) * 5.0 * deg, 1e-9);
+    EXPECT_NEAR(e.forward.value_rad[i], ValueOf(bench.device, angle_rad), kRounding_arcsec * arcsec);
+    EXPECT_NEAR(e.forward.u_rad[i], 0.0, kRounding_arcsec * arcsec) << "all four are alike";
+    EXPECT_NEAR(e.both.value_rad[i], ValueOf(bench.device, angle_rad) + 0.5 * ValueOf(bench.backward, angle_rad),
+                kRounding_arcsec * arcsec);
+  }
+}
+
+TEST(SeparateDevice, TakesSteadyDriftForSlopesOfThePassesNotForTheCurve) {
+  Comparison bench{.device = kDevice};
+  bench.drift_arcsec = [](int i, int) { return 0.5 * i; };
+  const DeviceError e = SeparateDevice(bench.Readings());
+  EXPECT_LT(Worst_arcsec(e.curves.device, kDevice), 1.7)
+      << "the zero, and with it the mounting, is off by 144 arcsec in the mean, the curve's steepest slope is "
+         "0.0114";
+  ASSERT_EQ(e.passes.size(), 4u);
+  for (const PassResult& pass : e.passes)
+    EXPECT_NEAR(pass.slope_rad_per_turn / arcsec, pass.direction * 36.0, 1e-3) << "72 readings a turn";
+  EXPECT_NEAR(e.reversal.value_rad / arcsec, 0.0, kRounding_arcsec) << "+ - - + has the same mean time both ways";
+}
+
+TEST(SeparateDevice, SaysThatOneTurnDoesNotTellDriftFromTheCurve) {
+  const DeviceError e = SeparateDevice(Comparison{.device = kDevice, .turns = 1.0}.Readings());
+  EXPECT_TRUE(HasNote(e, "does not tell drift"));
+  EXPECT_TRUE(std::isnan(e.passes.front().slope_rad_per_turn));
+  EXPECT_LT(Worst_arcsec(e.curves.device, kDevice), kRounding_arcsec);
+}
+
+TEST(SeparateDevice, HasNoCurveFromAPartOfATurn) {
+  const DeviceError e = SeparateDevice(Comparison{.device = kDevice, .turns = 0.5}.Readings());
+  EXPECT_EQ(e.highest_order, 0);
+  EXPECT_EQ(e.not_separated, "no set-up has a complete turn in one direction");
+  EXPECT_EQ(SeparateDevice({}).highest_order, 0);
+}
+
+TEST(SeparateDevice, LeavesOutASetUpThatWasBrokenOff) {
+  Comparison bench{.device = kDevice, .mounting_rad = {0.0, 100.0 * deg}};
+  bench.missing = [](int i) { return i > 576 + 40; };
+  const DeviceError e = SeparateDevice(bench.Readings());
+  EXPECT_EQ(e.mounting_rad.size(), 1u);
+  EXPECT_TRUE(HasNote(e, "set-up 1, direction +1: too small a part of the turn"));
+  EXPECT_LT(Worst_arcsec(e.curves.device, kDevice), kRounding_arcsec);
+}
+
+TEST(SeparateDevice, FindsADelayFromChangesOfTheSpeed) {
+  Comparison bench{.device = kDevice, .stops = 360, .turns = 4.0};
+  std::vector<Reading> readings = bench.Readings();
+  for (Reading& r : readings) {
+    r.velocity_rad_s = r.direction * (20.0 + 10.0 * std::sin(0.011 * r.reading)) * deg;
+    r.measured_rad -= r.velocity_rad_s * 0.003;
+  }
+  const DeviceError e = SeparateDevice(readings);
+  EXPECT_NEAR(e.lag_s, 0.003, 1e-9);
+  // The mean speeds of both directions differ by 0.1 deg/s: half of it x delay is the mounting's error, x slope
+  // 0.0114.
+  EXPECT_LT(Worst_arcsec(e.curves.device, kDevice), 0.01);
+}
+
+TEST(SeparateDevice, WidensTheUncertaintyOfAnOrderThatChangedWithTheMounting) {
+  // Seated anew, the device has another eccentricity: 30 arcsec more, where noise leaves 0.6 arcsec.
+  Comparison bench{.device = kDevice, .mounting_rad = {0.0, 100.0 * deg, 215.0 * deg}, .noise_arcsec = 7.0};
+  const double before = SeparateDevice(bench.Readings()).curves.device.At(1).cov(0, 0);
+  bench.drift_arcsec = [](int i, int setup) {
+    return setup == 2 ? 30.0 * std::cos(2.0 * units::kPi * (i % 144) / 72.0) : 0.0;
+  };
+  bench.passes = {1, 1, 1, 1};
+  const DeviceError e = SeparateDevice(bench.Readings());
+  EXPECT_TRUE(HasNote(e, "contradict each other in order 1:"));
+  EXPECT_EQ(e.curves.disagreeing, std::vector{1});
+  EXPECT_GT(e.curves.device.At(1).cov(0, 0), 100.0 * before) << "chi2 / dof is about (30 / 1)^2 / 2";
+}
+
+}  // namespace
+}  // namespace twinbench::separate::encoder

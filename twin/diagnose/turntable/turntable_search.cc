@@ -1,0 +1,116 @@
+#include "twin/diagnose/turntable/turntable_search.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/turntable/disturbed.h"
+#include "twin/diagnose/turntable/families.h"
+#include "twin/diagnose/turntable/seating.h"
+
+namespace twinbench::diagnose::turntable {
+namespace {
+
+constexpr const char* kRipple = "autocollimator_periodic";
+
+/// The ripples that were found, as blocks of a scenario.
+std::vector<EffectSettings> RipplesOf(const SearchedTurntable& searched) {
+  std::vector<EffectSettings> ripples;
+  for (const Pick& pick : searched.analysis.found.picks) {
+    const Family& family = (*searched.families)[static_cast<std::size_t>(pick.family)];
+    if (family.effect != kRipple) continue;
+    EffectSettings ripple{.name = family.effect, .where = family.where, .parameters = {}, .location = ""};
+    for (const ParameterEstimate& p : family.parameters(pick.shape, pick.amplitudes, pick.cov))
+      ripple.parameters[p.name] = p.value;
+    ripples.push_back(std::move(ripple));
+  }
+  return ripples;
+}
+
+/// The steepest slope of a ripple: by this share the prediction is shifted where its unknowns absorb the ripple.
+double SteepestSlope(const std::vector<EffectSettings>& ripples) {
+  double steepest = 0.0;
+  for (const EffectSettings& r : ripples)
+    steepest = std::max(steepest, 2.0 * units::kPi * r.parameters.at("amplitude") / r.parameters.at("period"));
+  return steepest;
+}
+
+/// @param options  With the thresholds of a design that is the same but for its unknowns, if they are known.
+void Analyse(std::unique_ptr<TurntableRun> turntable, const std::vector<std::string>& struck,
+             const AnalysisOptions& options, SearchedTurntable& searched) {
+  searched.turntable = std::move(turntable);
+  LinearRun& run = searched.turntable->run;
+  for (const int row : searched.disturbed ? searched.disturbed->outliers : std::vector<int>{})
+    run.sigma[row] = searched.disturbed->repaired.sigma[row];
+  searched.families = std::make_unique<std::vector<Family>>(Families(*searched.turntable, struck));
+  searched.analysis = diagnose::Analyse(run, *searched.families, options);
+}
+
+/// The same with amplitudes that fit best in the exact model: a steep ripple that was found where the prediction
+/// had already followed it is too small or too large.
+std::vector<EffectSettings> Rescaled(const std::vector<EffectSettings>& ripples,
+                                     const std::vector<Reading>& readings, const Scenario& scenario) {
+  std::vector<EffectSettings> best = ripples;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double factor : {0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.45}) {
+    std::vector<EffectSettings> scaled = ripples;
+    for (EffectSettings& ripple : scaled) ripple.parameters.at("amplitude") *= factor;
+    Scenario with_scaled = scenario;
+    with_scaled.effects.insert(with_scaled.effects.end(), scaled.begin(), scaled.end());
+    const double power = FreeMisfit(BuildRun(readings, with_scaled).run).power;
+    if (power >= least) continue;
+    least = power;
+    best = scaled;
+  }
+  return best;
+}
+
+void FollowRipples(const std::vector<Reading>& readings, const Scenario& scenario,
+                   const std::vector<std::string>& struck, const AnalysisOptions& options,
+                   SearchedTurntable& searched) {
+  constexpr double kSlight = 0.1;
+  constexpr int kMostRounds = 3;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::vector<EffectSettings> ripples = RipplesOf(searched);
+    if (SteepestSlope(ripples) < kSlight) return;
+    const std::vector<EffectSettings> rescaled = Rescaled(ripples, readings, scenario);
+    Analyse(std::make_unique<TurntableRun>(LinearisedAbout(rescaled, readings, scenario)), struck, options,
+            searched);
+  }
+}
+
+SearchedTurntable Search(const std::vector<Reading>& readings, const Scenario& scenario,
+                         const std::vector<std::string>& struck, AnalysisOptions options) {
+  const auto is_struck = [&](const char* effect) { return std::ranges::find(struck, effect) != struck.end(); };
+  SearchedTurntable searched;
+  auto first = std::make_unique<TurntableRun>(BuildRun(readings, scenario));
+  if (!is_struck("outliers")) searched.disturbed = FindDisturbed(first->run);
+  Analyse(std::move(first), struck, options, searched);
+  const NullCalibration null = searched.analysis.null;
+  options.null = &null;
+  FollowRipples(readings, scenario, struck, options, searched);
+  const TurntableRun stated = *searched.turntable;
+  const Seating seating = MeasureSeating(stated, searched.analysis);
+  searched.smallest_seating_rad = seating.smallest_rad;
+  // What is not known of the argument of a steep ripple scatters, too.
+  const double by_ripple_rad = SteepestSlope(RipplesOf(searched)) * UsualSigma_rad(stated.run);
+  if (!(seating.log_bayes > kSeated) || seating.scatter_rad < by_ripple_rad || is_struck("multitooth_seating"))
+    return searched;
+  auto louder = std::make_unique<TurntableRun>(stated);
+  louder->run = WithScatter(stated, seating.scatter_rad);
+  Analyse(std::move(louder), struck, options, searched);
+  searched.first = {SeatingCause(MeasureSeating(stated, searched.analysis))};
+  return searched;
+}
+
+}  // namespace
+
+SearchedTurntable SearchTurntable(const std::vector<Reading>& readings, const Scenario& scenario,
+                                  const std::vector<std::string>& struck, const AnalysisOptions& options) {
+  SearchedTurntable searched = Search(readings, scenario, struck, options);
+  if (searched.disturbed) TakeFurther(searched.analysis, *searched.disturbed);
+  return searched;
+}
+
+}  // namespace twinbench::diagnose::turntable

@@ -1,0 +1,16 @@
+#pragma once
+
+namespace twinbench::separate::encoder {
+
+struct Mean {
+  double sum = 0.0;
+  int count = 0;
+
+  void Add(double value) {
+    sum += value;
+    ++count;
+  }
+  double Value() const { return sum / count; }
+};
+
+}  // namespace twinbench::separate::encoder
