@@ -34,6 +34,18 @@ const Family& FamilyAt(const std::vector<Family>& families, const std::string& e
   throw std::runtime_error("there is no family " + effect + " at " + where);
 }
 
+/// A cause may have several: a drift with a bend and one without.
+std::pair<const Family*, Fit> BestOf(const std::vector<Family>& families, const std::string& effect,
+                                     const std::string& where, const LinearRun& run) {
+  std::pair<const Family*, Fit> best{nullptr, {}};
+  for (const Family& family : families) {
+    if (family.effect != effect || family.where != where) continue;
+    const Fit fit = BestFit(family, run);
+    if (!best.first || fit.left < best.second.left) best = {&family, fit};
+  }
+  return best;
+}
+
 struct Trial {
   HiddenCause cause;
   double left = 0.01;     // share of the signal that may stay
@@ -55,14 +67,13 @@ TEST_P(HobFamily, FitsWhatIndependentFormulasMakeOfItsCause) {
   const Scenario scenario = ScenarioOf(chain);
   const hob::HobRun hob = hob::BuildRun(ReadingsOf(chain), scenario);
   const std::vector<Family> families = hob::Families(hob);
-  const Family& family = FamilyAt(families, trial.cause.name, trial.cause.where);
   // What is left without the cause: the free orders, to rounding and the second order of the errors.
   const Eigen::MatrixXd free = hob.run.nuisance.jacobian.toDense();
   const Eigen::VectorXd signal =
       hob.run.residual - free * free.completeOrthogonalDecomposition().solve(hob.run.residual);
-  const Fit fit = BestFit(family, hob.run);
+  const auto [family, fit] = BestOf(families, trial.cause.name, trial.cause.where, hob.run);
   EXPECT_LT(fit.left * hob.run.residual.norm(), trial.left * signal.norm());
-  std::map<std::string, double> found = ParametersOf(family, fit);
+  std::map<std::string, double> found = ParametersOf(*family, fit);
   for (const auto& [name, value] : trial.cause.value) {
     const double error =
         name == "phase" ? std::remainder(found.at(name) - value, 2.0 * units::kPi) : found.at(name) - value;

@@ -4,15 +4,10 @@
 
 #include <cmath>
 
-#include "twin/core/units.h"
+#include "tools/twinbench/json_units.h"
 
 namespace twinbench::tools {
 namespace {
-
-/// NaN, not available, is null in JSON.
-nlohmann::json Degrees(double angle_rad) {
-  return std::isfinite(angle_rad) ? nlohmann::json(angle_rad / units::deg) : nlohmann::json();
-}
 
 std::string DirectionLine(const char* name, double mean_rad) {
   if (!std::isfinite(mean_rad)) return "";
@@ -34,10 +29,10 @@ std::string Summary(const measure::AngleComparison& c) {
 nlohmann::json ToJson(const measure::AngleComparison& c) {
   return {{"readings", c.used.size()},
           {"left_out", c.left_out},
-          {"rms_deg", Degrees(c.rms_rad)},
-          {"range_deg", Degrees(c.range_rad)},
-          {"mean_forward_deg", Degrees(c.mean_forward_rad)},
-          {"mean_backward_deg", Degrees(c.mean_backward_rad)}};
+          {"rms_deg", In(units::deg, c.rms_rad)},
+          {"range_deg", In(units::deg, c.range_rad)},
+          {"mean_forward_deg", In(units::deg, c.mean_forward_rad)},
+          {"mean_backward_deg", In(units::deg, c.mean_backward_rad)}};
 }
 
 }  // namespace twinbench::tools

@@ -5,6 +5,7 @@
 #include "tools/twinbench/bench_results.h"
 #include "tools/twinbench/comparison.h"
 #include "tools/twinbench/curve_score.h"
+#include "tools/twinbench/json_units.h"
 #include "tools/twinbench/positioning_results.h"
 #include "twin/core/errors.h"
 #include "twin/separate/encoder/device_error.h"
@@ -25,13 +26,6 @@ constexpr const char* kNoReference =
     "with one mounting of the device the difference of both is known; it is counted as the device's";
 constexpr const char* kSeenAlike = "all mountings see only the difference of both; it is counted as the device's";
 
-/// NaN, not available, is null in JSON.
-nlohmann::json In(double unit, double value) {
-  return std::isfinite(value) ? nlohmann::json(value / unit) : nlohmann::json();
-}
-nlohmann::json Arcsec(double angle_rad) {
-  return In(units::arcsec, angle_rad);
-}
 
 nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) {
   const CurveAt curve = Curve(series, kPoints);

@@ -6,6 +6,7 @@
 
 #include "tools/twinbench/bench_results.h"
 #include "tools/twinbench/curve_score.h"
+#include "tools/twinbench/json_units.h"
 #include "twin/core/errors.h"
 #include "twin/separate/hob/hob_bench.h"
 
@@ -27,13 +28,6 @@ using separate::hob::PositionError;
 using separate::hob::PositionStatus;
 using separate::hob::SeparatedOrder;
 
-/// NaN, not available, is null in JSON.
-nlohmann::json In(double unit, double value) {
-  return std::isfinite(value) ? nlohmann::json(value / unit) : nlohmann::json();
-}
-nlohmann::json Arcsec(double angle_rad) {
-  return In(units::arcsec, angle_rad);
-}
 
 /// Columns, one entry an order.
 nlohmann::json ToJson(const HarmonicSeries& series) {

@@ -1,4 +1,5 @@
 #include "tools/twinbench/positioning_results.h"
+#include "tools/twinbench/json_units.h"
 
 #include <fmt/core.h>
 
@@ -18,10 +19,6 @@ using measure::TargetPositioning;
 
 constexpr std::size_t kMostRows = 40;  // a table that is still looked at
 
-/// NaN, not available, is null in JSON.
-nlohmann::json Arcsec(double angle_rad) {
-  return std::isfinite(angle_rad) ? nlohmann::json(angle_rad / units::arcsec) : nlohmann::json();
-}
 
 nlohmann::json ToJson(const ScatteredValue& v) {
   return {{"value_arcsec", Arcsec(v.value)}, {"u_arcsec", Arcsec(v.u)}, {"bias_arcsec", Arcsec(v.bias)}};

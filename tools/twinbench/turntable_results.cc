@@ -4,6 +4,7 @@
 
 #include "tools/twinbench/bench_results.h"
 #include "tools/twinbench/curve_score.h"
+#include "tools/twinbench/json_units.h"
 #include "twin/core/errors.h"
 #include "twin/separate/turntable/turntable_bench.h"
 
@@ -23,13 +24,6 @@ using separate::turntable::Roll;
 using separate::turntable::RollStatus;
 using separate::turntable::TurntableAnalysis;
 
-/// NaN, not available, is null in JSON.
-nlohmann::json In(double unit, double value) {
-  return std::isfinite(value) ? nlohmann::json(value / unit) : nlohmann::json();
-}
-nlohmann::json Arcsec(double angle_rad) {
-  return In(units::arcsec, angle_rad);
-}
 
 nlohmann::json ToJson(const AngleSeries& series) {
   nlohmann::json json = {{"position_deg", nlohmann::json::array()},

@@ -189,7 +189,8 @@ DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario&
   if (!convention.where.empty())
     searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
   const rotary::RotaryCase& rotary = *searched.rotary;
-  DiagnosisRun result = Finish(rotary.Rotary().run, searched.analysis, CausesOf(searched.discrete), RotaryWords(rotary));
+  DiagnosisRun result =
+      Finish(rotary.Rotary().run, searched.analysis, CausesOf(searched.discrete), RotaryWords(rotary));
   for (const char* where : {"reverse_target", "reverse_reference", "index_offset"}) {
     result.diagnosis.invisible.push_back(
         {"convention", where, "the positions that the separated errors belong to"});
@@ -205,8 +206,9 @@ DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenari
   AnalysisOptions how = AnalysisOptionsOf(options);
   how.most_causes = 8;  // an angle device may well have an error of many orders
   const Analysis analysis = Analyse(encoder.run, families, how);
-  const BenchWords words{[](const std::string&, const Eigen::VectorXd&) { return std::string("nothing but the device's offset"); },
-                         encoder::NextMeasurement};
+  const BenchWords words{
+      [](const std::string&, const Eigen::VectorXd&) { return std::string("nothing but the device's offset"); },
+      encoder::NextMeasurement};
   DiagnosisRun result = Finish(encoder.run, analysis, {}, words);
   result.diagnosis.left_out = encoder.left_out;
   result.diagnosis.harmonics = encoder::HarmonicTable(encoder, analysis.noise);
@@ -251,9 +253,8 @@ DiagnosisRun DiagnoseHob(const std::vector<Reading>& readings, const Scenario& s
   how.null_runs = hob::NullRuns(hob, options.null_runs);
   how.most_causes = 6;
   const Analysis analysis = hob::AnalyseToFirstOrder(hob, families, how);
-  const BenchWords words{[orders = scenario.transmission.free_orders](const std::string&, const Eigen::VectorXd& x) {
-                           return hob::BiasInWords(orders, x);
-                         },
+  const BenchWords words{[orders = scenario.transmission.free_orders](
+                             const std::string&, const Eigen::VectorXd& x) { return hob::BiasInWords(orders, x); },
                          hob::NextMeasurement};
   DiagnosisRun result = Finish(hob.run, analysis, hob::DisturbedCauses(hob, options.struck), words);
   hob::ToReadings(hob, result);

@@ -103,10 +103,17 @@ std::vector<Reading> AngleSchedule(const EncoderProcedureSettings& procedure) {
 
 void CarryOut(AngleComparator& bench, const Scenario& scenario, ReadingSink& sink,
               const ProgressCallback& progress) {
+  // In motion readings come too fast to be waited for one by one.
+  const std::size_t together = scenario.encoder_procedure.kind == "sweep" ? 256 : 1;
   const std::vector<Reading> schedule = AngleSchedule(scenario.encoder_procedure);
+  std::vector<Reading> taken;
   for (Reading reading : schedule) {
     bench.Take(reading);
-    sink.Append(reading, {});
+    taken.push_back(reading);
+    const bool last = reading.reading + 1 == std::ssize(schedule);
+    if (taken.size() < together && !last) continue;
+    sink.AppendAll(taken);
+    taken.clear();
     if (progress) progress({reading.reading + 1, static_cast<int>(schedule.size()), reading.phase, reading.time});
   }
 }

@@ -14,7 +14,8 @@ namespace twinbench::procedure {
 /// deceleration, a rest (direction 0); each pass begins where the last one ended.
 std::vector<Reading> AngleSchedule(const EncoderProcedureSettings& procedure);
 
-/// Carries out the schedule on any bench; every reading goes to `sink` as soon as it is made.
+/// Carries out the schedule on any bench; every stop goes to `sink` as soon as it is made, readings in motion go in
+/// groups of up to 256.
 /// @throws BenchError from the devices; what was appended before stays in the sink.
 void CarryOut(AngleComparator& bench, const Scenario& scenario, ReadingSink& sink,
               const ProgressCallback& progress = {});

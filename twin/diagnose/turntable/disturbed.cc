@@ -25,21 +25,26 @@ std::string InWords(const NoiseCause& cause) {
   return fmt::format("{} value{} far outside the noise, left out", count, count == 1 ? "" : "s");
 }
 
-/// What is left of every row in units of its own scatter, by a robust estimate of it; zero in a sweep, whose few
+/// What is left of every row in units of its axis' scatter, by a robust estimate of it; zero in a sweep, whose few
 /// ends alone show what bends.
 Eigen::VectorXd Scores(const LinearRun& run, const NoiseModel& noise) {
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
   const Eigen::VectorXd left = projector.Apply(noise.Whiten(run, Eigen::MatrixXd(run.residual))).col(0);
   const Eigen::VectorXd redundancy = projector.Redundancy();
   Eigen::VectorXd z = Eigen::VectorXd::Zero(left.size());
-  std::vector<double> sizes;
+  std::vector<std::vector<double>> sizes(run.channels.size());
   for (Eigen::Index k = 0; k < z.size(); ++k) {
-    const auto reading = static_cast<std::size_t>(run.ReadingOf(static_cast<int>(k)));
+    const int row = static_cast<int>(k);
+    const auto reading = static_cast<std::size_t>(run.ReadingOf(row));
     if (redundancy[k] < kLeastRedundancy || run.schedule.phase[reading] == Phase::kCalibration) continue;
     z[k] = left[k] / std::sqrt(redundancy[k]);
-    sizes.push_back(std::abs(z[k]));
+    sizes[static_cast<std::size_t>(run.ChannelOf(row))].push_back(std::abs(z[k]));
   }
-  return sizes.empty() ? z : Eigen::VectorXd(z / std::max(1.0, Median(std::move(sizes)) / 0.6745));
+  for (int c = 0; c < run.Channels(); ++c) {
+    const auto& of_axis = sizes[static_cast<std::size_t>(c)];
+    if (!of_axis.empty()) z(Eigen::seq(c, Eigen::last, run.Channels())) /= std::max(1.0, Median(of_axis) / 0.6745);
+  }
+  return z;
 }
 
 /// Far outside, and the readings before and behind are not.

@@ -35,7 +35,9 @@ Amplitude AmplitudeOf(const std::string& effect, const std::string& parameter) {
 
 Shape ShapeOf(const std::string& effect, const std::string& parameter, std::vector<double> values_SI) {
   const EffectParameter& p = Entry(effect, parameter);
-  return {parameter, p.unit, p.to_SI, p.lower_SI, p.upper_SI, std::move(values_SI)};
+  const auto [least, most] = std::ranges::minmax(values_SI);
+  return {parameter,           p.unit, p.to_SI, std::max(p.lower_SI, least), std::min(p.upper_SI, most),
+          std::move(values_SI)};
 }
 
 ParameterEstimate Estimate(const std::string& effect, const std::string& parameter, double value, double u) {

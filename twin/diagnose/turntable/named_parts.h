@@ -14,7 +14,7 @@ using Signal = std::function<Eigen::MatrixXd(const Eigen::VectorXd& shape)>;  //
 
 /// An amplitude with unit, bounds and plausible size of the catalogue.
 Amplitude AmplitudeOf(const std::string& effect, const std::string& parameter);
-/// `values` within the catalogue's bounds.
+/// Between the least and the largest of `values`: beyond them it is another cause, or none that this run can show.
 Shape ShapeOf(const std::string& effect, const std::string& parameter, std::vector<double> values_SI);
 /// A parameter of the catalogue as fitted [SI].
 ParameterEstimate Estimate(const std::string& effect, const std::string& parameter, double value, double u);

@@ -8,7 +8,8 @@
 namespace twinbench::separate::encoder {
 namespace {
 
-constexpr int kParts = 360;  // of a turn: degrees
+constexpr int kParts = 360;        // of a turn: degrees
+constexpr double kOffCount = 0.5;  // turns a turn: no error of a device, but its gear or its sense of rotation
 
 void FillPasses(const ComparisonFit& fitted, DeviceError& result) {
   for (const FittedGroup& group : fitted.groups) {
@@ -60,6 +61,28 @@ void AddNotes(const UsableGroups& groups, const ComparisonFit& fitted, DeviceErr
                            ": an error that changed with the mounting; its uncertainty is widened");
 }
 
+/// Turns of the device for one of the reference, by a line through each pass.
+double TurnsOfDevice(const std::vector<PassGroup>& groups) {
+  double product = 0.0, square = 0.0;
+  for (const PassGroup& group : groups) {
+    for (const ComparedPass& pass : group.passes) {
+      const Eigen::ArrayXd way_rad = pass.reference_rad.array() - pass.reference_rad.mean();
+      product += (way_rad * pass.error_rad.array()).sum();
+      square += way_rad.square().sum();
+    }
+  }
+  return square > 0.0 ? 1.0 + product / square : 1.0;
+}
+
+/// Why there is no curve; empty: there is one.
+std::string Obstacle(const std::vector<PassGroup>& groups, int highest_order) {
+  if (groups.empty()) return "no reading has both angles and a direction";
+  const double turns = TurnsOfDevice(groups);
+  if (std::abs(turns - 1.0) > kOffCount)
+    return fmt::format("measured goes through {:.3g} turns for one turn of the reference", turns);
+  return highest_order == 0 ? "no set-up has a complete turn in one direction" : "";
+}
+
 }  // namespace
 
 DeviceError SeparateDevice(const std::vector<Reading>& readings, const DeviceOptions& options) {
@@ -68,10 +91,8 @@ DeviceError SeparateDevice(const std::vector<Reading>& readings, const DeviceOpt
   result.left_out = sorted.left_out;
   result.used = static_cast<int>(readings.size()) - sorted.left_out;
   const UsableGroups groups = PickUsable(sorted.groups, options);
-  if (groups.highest == 0) {
-    result.not_separated = "no set-up has a complete turn in one direction";
-    return result;
-  }
+  result.not_separated = Obstacle(sorted.groups, groups.highest);
+  if (!result.not_separated.empty()) return result;
   const ComparisonFit fitted = FitComparison(groups, options);
   result.highest_order = groups.highest;
   result.curves = fitted.curves;

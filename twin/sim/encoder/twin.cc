@@ -40,13 +40,10 @@ double Quantised(double angle_rad, double step_rad) {
 
 }  // namespace
 
-EncoderTwin::EncoderTwin(const Scenario& scenario) : scenario_(scenario) {
+EncoderTwin::EncoderTwin(const Scenario& scenario)
+    : scenario_(scenario), empirical_(scenario.empiricals, "angle") {
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
   for (const auto& effect : effects_) effect->AlterSignals(signals_);
-  for (const EmpiricalSettings& signal : scenario.empiricals) {
-    for (std::size_t i = 0; i < signal.reading.size(); ++i)
-      empirical_rad_[signal.reading[i]] += signal.value_rad[i];
-  }
 }
 
 /// Of the device's shaft, as its scale counts.
@@ -70,11 +67,6 @@ double EncoderTwin::ReferenceError_rad(const AngleMoment& moment) const {
   return error_rad;
 }
 
-double EncoderTwin::Empirical_rad(int reading) const {
-  const auto found = empirical_rad_.find(reading);
-  return found == empirical_rad_.end() ? 0.0 : found->second;
-}
-
 void EncoderTwin::Take(Reading& reading) {
   const AngleMoment moment{reading.time,           reading.setup,
                            reading.reading,        reading.reference_rad,
@@ -82,7 +74,7 @@ void EncoderTwin::Take(Reading& reading) {
   for (const auto& effect : effects_) effect->Advance(moment);
   reading.reference_rad += ReferenceError_rad(moment);
   const double device_rad = ShaftAngle_rad(moment);
-  reading.measured_rad = device_rad + DeviceError_rad(moment, device_rad) + Empirical_rad(reading.reading);
+  reading.measured_rad = device_rad + DeviceError_rad(moment, device_rad) + empirical_.At_rad(reading.reading);
   if (scenario_.noise_free) return;
   reading.measured_rad =
       Quantised(reading.measured_rad + Noise(scenario_, reading.reading), scenario_.device.resolution_rad);

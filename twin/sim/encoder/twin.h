@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/core/devices.h"
+#include "twin/sim/empirical_signal.h"
 #include "twin/sim/encoder/effect.h"
 
 namespace twinbench::sim {
@@ -28,12 +29,11 @@ class EncoderTwin : public AngleComparator {
   double ShaftAngle_rad(const AngleMoment& moment) const;
   double DeviceError_rad(const AngleMoment& moment, double device_rad) const;
   double ReferenceError_rad(const AngleMoment& moment) const;
-  double Empirical_rad(int reading) const;
 
   Scenario scenario_;
   std::vector<std::unique_ptr<AngleEffect>> effects_;
   SignalState signals_;
-  std::map<int, double> empirical_rad_;  // by reading
+  EmpiricalSignal empirical_;
 };
 
 }  // namespace twinbench::sim

@@ -64,12 +64,8 @@ HobWorld::HobWorld(const Scenario& nominal)
                                       TrainOf(actual_, effects_))),
       counters_(actual_, HobSignals(effects_)),
       interferometer_noise_(actual_.seed, "interferometer.noise"),
-      piece_(PieceOf(actual_)) {
-  for (const EmpiricalSettings& signal : actual_.empiricals) {
-    for (std::size_t i = 0; i < signal.reading.size(); ++i)
-      empirical_rad_[signal.reading[i]] += signal.value_rad[i];
-  }
-}
+      empirical_(actual_.empiricals, "transmission"),
+      piece_(PieceOf(actual_)) {}
 
 void HobWorld::Run(double hob_speed_rad_s, Duration ramp) {
   if (hob_speed_rad_s != 0.0) direction_ = (hob_speed_rad_s > 0.0) == (actual_.transmission.Ratio() > 0.0) ? 1 : -1;
@@ -121,11 +117,6 @@ double HobWorld::Interferometer_rad(const mechanics::GearTrainState& at) {
          (noise_rad > 0.0 ? noise_rad * interferometer_noise_.Normal() : 0.0);
 }
 
-double HobWorld::Empirical_rad(int reading) const {
-  const auto found = empirical_rad_.find(reading);
-  return found == empirical_rad_.end() ? 0.0 : found->second;
-}
-
 CounterSample HobWorld::SampleAt(const mechanics::GearTrainState& at, Time now) {
   CounterSample sample = counters_.Count(at);
   sample.time = now;
@@ -138,7 +129,7 @@ CounterSample HobWorld::SampleAt(const mechanics::GearTrainState& at, Time now) 
     sample.interferometer_rad += error.motion_rad;
     sample.hob_encoder_rad += error.hob_rad;
   }
-  sample.table_encoder_rad += Empirical_rad(moment.reading);
+  sample.table_encoder_rad += empirical_.At_rad(moment.reading);
   return sample;
 }
 

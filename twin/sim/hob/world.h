@@ -1,9 +1,9 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <vector>
 
+#include "twin/sim/empirical_signal.h"
 #include "twin/sim/hob/counters.h"
 
 namespace twinbench::sim {
@@ -32,14 +32,13 @@ class HobWorld {
   CounterSample SampleAt(const mechanics::GearTrainState& at, Time now);
   bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && now_ >= at_rest_; }
   double Interferometer_rad(const mechanics::GearTrainState& at);
-  double Empirical_rad(int reading) const;
 
   std::vector<std::unique_ptr<HobEffect>> effects_;
   Scenario actual_;
   std::unique_ptr<mechanics::GearTrain> train_;
   Counters counters_;
   Stream interferometer_noise_;
-  std::map<int, double> empirical_rad_;  // by reading
+  EmpiricalSignal empirical_;
   Duration piece_;
   Time now_{};
   Time at_rest_{};  // from then on nothing moves, unless the drive is told to

@@ -77,14 +77,9 @@ TurntableWorld::TurntableWorld(const Scenario& nominal)
       axes_(actual_, queue_),
       stand_(actual_),
       optics_(OpticsOf(actual_)),
-      noise_(actual_.seed, "autocollimator.noise") {
-  for (const EmpiricalSettings& signal : actual_.empiricals) {
-    for (std::size_t i = 0; i < signal.reading.size(); ++i) {
-      Eigen::Vector2d& sum_rad = empirical_rad_.try_emplace(signal.reading[i], 0.0, 0.0).first->second;
-      sum_rad[signal.channel == "x" ? 0 : 1] += signal.value_rad[i];
-    }
-  }
-}
+      noise_(actual_.seed, "autocollimator.noise"),
+      empirical_x_(actual_.empiricals, "x"),
+      empirical_y_(actual_.empiricals, "y") {}
 
 void TurntableWorld::StartMove(double to_rad) {
   if (axes_.StartMove(Axis::kTarget, to_rad)) stand_.BeginTurntableStop();
@@ -130,11 +125,6 @@ Eigen::Vector2d TurntableWorld::Noise_rad() {
   return {x_rad, noise_rad * noise_.Normal()};
 }
 
-Eigen::Vector2d TurntableWorld::Empirical_rad(int reading) const {
-  const auto found = empirical_rad_.find(reading);
-  return found == empirical_rad_.end() ? Eigen::Vector2d(0.0, 0.0) : found->second;
-}
-
 AutocollimatorReading TurntableWorld::Look() {
   const TurntableMoment moment = Moment(next_reading_++);
   const mechanics::StackState axes = axes_.Look();
@@ -144,7 +134,8 @@ AutocollimatorReading TurntableWorld::Look() {
   const auto image = optics_.Look(stand_.MirrorPose(axes.target_rad, yaw_rad, axes.target_bearing));
   if (image.status != optics::AutocollimatorStatus::kOk) return {kNaN, kNaN, StatusOf(image.status)};
   const Eigen::Vector2d seen_rad = Eigen::Vector2d(image.x_rad, image.y_rad) + Zero_rad();
-  Eigen::Vector2d shown_rad = seen_rad + noise_rad + Empirical_rad(moment.reading);
+  const Eigen::Vector2d empirical_rad(empirical_x_.At_rad(moment.reading), empirical_y_.At_rad(moment.reading));
+  Eigen::Vector2d shown_rad = seen_rad + noise_rad + empirical_rad;
   for (const auto& effect : effects_) shown_rad += effect->ReadingError_rad(moment, seen_rad);
   return {shown_rad.x(), shown_rad.y(), ReadingStatus::kOk};
 }

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <map>
 #include <vector>
 
 #include "optics/autocollimator.h"
 #include "twin/core/devices.h"
 #include "twin/sim/axes.h"
+#include "twin/sim/empirical_signal.h"
 #include "twin/sim/environment.h"
 #include "twin/sim/turntable/effect.h"
 #include "twin/sim/turntable/mirror_stand.h"
@@ -34,7 +34,6 @@ class TurntableWorld {
   TurntableMoment Moment(int reading);
   Eigen::Vector2d Zero_rad();
   Eigen::Vector2d Noise_rad();
-  Eigen::Vector2d Empirical_rad(int reading) const;
 
   EventQueue queue_;
   std::vector<std::unique_ptr<TurntableEffect>> effects_;
@@ -44,7 +43,7 @@ class TurntableWorld {
   MirrorStand stand_;
   optics::AutocollimatorOptics optics_;
   Stream noise_;
-  std::map<int, Eigen::Vector2d> empirical_rad_;  // by reading
+  EmpiricalSignal empirical_x_, empirical_y_;
   Time mounted_{};
   int setup_ = 0;
   int next_reading_ = 0;

@@ -1,3 +1,4 @@
+#include "twin/sim/courses.h"
 #include "twin/sim/encoder/effects/effects.h"
 
 namespace twinbench::sim {
@@ -6,15 +7,11 @@ namespace {
 /// The device's zero jumps at one reading and stays: a lost line, a coupling that gave way.
 class ZeroSlip : public AngleEffect {
  public:
-  explicit ZeroSlip(const EffectSettings& e)
-      : step_rad_(Parameter(e, "step")), at_reading_(static_cast<int>(Parameter(e, "at_reading"))) {}
-  double DeviceError_rad(const AngleMoment& moment, double) const override {
-    return moment.reading < at_reading_ ? 0.0 : step_rad_;
-  }
+  explicit ZeroSlip(const EffectSettings& e) : effect_(e) {}
+  double DeviceError_rad(const AngleMoment& moment, double) const override { return StepAt(effect_, moment.reading); }
 
  private:
-  double step_rad_;
-  int at_reading_;
+  EffectSettings effect_;
 };
 
 }  // namespace

@@ -1,5 +1,4 @@
-#include <cmath>
-
+#include "twin/sim/courses.h"
 #include "twin/sim/hob/effects/effects.h"
 
 namespace twinbench::sim {
@@ -17,21 +16,17 @@ class CountError : public HobEffect {
   Course course_;
 };
 
-/// Linear plus a quadratic share that is zero at both ends of the first hour.
 ShownError Drift(const EffectSettings& e, const HobMoment& moment) {
-  const double t_s = ToSeconds(moment.now);
-  return {.motion_rad = Parameter(e, "rate") * t_s * (1.0 + Parameter(e, "curvature") * (1.0 - t_s / units::hour))};
+  return {.motion_rad = DriftAt(e, moment.now)};
 }
 
 ShownError Step(const EffectSettings& e, const HobMoment& moment) {
-  if (moment.reading < static_cast<int>(Parameter(e, "at_reading"))) return {};
-  const double step_rad = Parameter(e, "step");
+  const double step_rad = StepAt(e, moment.reading);
   return e.where == "table" ? ShownError{.table_rad = step_rad} : ShownError{.hob_rad = step_rad};
 }
 
 ShownError Wave(const EffectSettings& e, const HobMoment& moment) {
-  const double turns = Parameter(e, "frequency") * ToSeconds(moment.now);
-  return {.motion_rad = Parameter(e, "amplitude") * std::cos(2.0 * units::kPi * turns + Parameter(e, "phase"))};
+  return {.motion_rad = WaveAt(e, moment.now)};
 }
 
 ShownError OldAngle(const EffectSettings& e, const HobMoment& moment) {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "twin/sim/courses.h"
 #include "twin/sim/turntable/effects/effects.h"
 
 namespace twinbench::sim {
@@ -19,10 +20,8 @@ class MovingZero : public TurntableEffect {
   Course course_;
 };
 
-/// Linear plus a quadratic share that is zero at both ends of the first hour.
 double Drift(const EffectSettings& e, const TurntableMoment& moment) {
-  const double t_s = ToSeconds(moment.now);
-  return Parameter(e, "rate") * t_s * (1.0 + Parameter(e, "curvature") * (1.0 - t_s / units::hour));
+  return DriftAt(e, moment.now);
 }
 
 /// The mounting creeps: logarithmic in time since it was made.
@@ -32,12 +31,11 @@ double Creep(const EffectSettings& e, const TurntableMoment& moment) {
 }
 
 double Step(const EffectSettings& e, const TurntableMoment& moment) {
-  return moment.reading < static_cast<int>(Parameter(e, "at_reading")) ? 0.0 : Parameter(e, "step");
+  return StepAt(e, moment.reading);
 }
 
 double Wave(const EffectSettings& e, const TurntableMoment& moment) {
-  const double turns = Parameter(e, "frequency") * ToSeconds(moment.now);
-  return Parameter(e, "amplitude") * std::cos(2.0 * units::kPi * turns + Parameter(e, "phase"));
+  return WaveAt(e, moment.now);
 }
 
 MovingZero::Course CourseOf(const std::string& effect) {

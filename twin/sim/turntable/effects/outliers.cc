@@ -1,27 +1,20 @@
-#include "twin/core/stream.h"
+#include "twin/sim/outlier_draw.h"
 #include "twin/sim/turntable/effects/effects.h"
 
 namespace twinbench::sim {
 namespace {
 
-/// Now and then a reading of one axis is off by 0.5 to 1.5 times the typical size, either way: a draught in the
-/// beam. Which ones, follows from their numbers.
+/// A draught in the beam disturbs one axis.
 class AutocollimatorOutliers : public TurntableEffect {
  public:
-  AutocollimatorOutliers(const EffectSettings& e, const Scenario& scenario)
-      : fraction_(Parameter(e, "fraction")), size_rad_(Parameter(e, "size")), seed_(scenario.seed) {}
+  AutocollimatorOutliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.seed) {}
   Eigen::Vector2d ReadingError_rad(const TurntableMoment& moment, const Eigen::Vector2d&) const override {
-    Stream stream(seed_, "effect.outliers");
-    stream.Seek(2 * static_cast<std::uint64_t>(moment.reading));  // a block has two numbers, we take four
-    if (stream.Uniform() >= fraction_) return Eigen::Vector2d::Zero();
-    const std::string where = stream.Uniform() < 0.5 ? "x" : "y";
-    const double sign = stream.Uniform() < 0.5 ? -1.0 : 1.0;
-    return OnAxis(where, sign * size_rad_ * (0.5 + stream.Uniform()));
+    const OutlierDraw::Drawn drawn = draw_.At(moment.reading);
+    return OnAxis(drawn.uniform < 0.5 ? "x" : "y", drawn.size);
   }
 
  private:
-  double fraction_, size_rad_;
-  std::uint64_t seed_;
+  OutlierDraw draw_;
 };
 
 }  // namespace
