@@ -52,6 +52,7 @@ std::vector<std::string> OverridesOf(Design design) {
   }
   if (design == Design::kHob) {
     return {"mechanics.fidelity=kinematic",
+            "interferometer.noise_arcsec=0.3",  // else it decides at sizes where second orders matter
             "hob_procedure.hob_speeds_rev_min=[50.0, 25.0]",
             "hob_procedure.turns=1",
             "hob_procedure.samples_per_turn=360",

@@ -34,6 +34,8 @@ class HobEffect {
   virtual void AlterBench(Scenario& /*actual*/) const {}
   virtual void AlterGears(mechanics::GearErrors& /*errors*/) const {}
   virtual void AlterHobSignals(mechanics::SignalState& /*signals*/) const {}
+  /// The table has come here without turning round.
+  virtual void Travel(double /*table_rad*/) {}
   /// Once for each sample, with the time running forwards.
   virtual ShownError Shown(const HobMoment& /*moment*/) { return {}; }
 };

@@ -96,7 +96,9 @@ void HobWorld::RunUntil(Time until) {
     const Duration piece = counters_.Armed() ? std::min<Duration>(piece_, end - now_) : end - now_;
     const mechanics::GearTrainState before = train_->State();
     train_->Advance(ToSeconds(piece));
-    if (counters_.Armed()) TakeSamples(before, train_->State());
+    const mechanics::GearTrainState after = train_->State();
+    if (counters_.Armed()) TakeSamples(before, after);
+    for (const auto& effect : effects_) effect->Travel(after.table_rad);
     now_ += piece;
   }
 }
@@ -122,6 +124,7 @@ CounterSample HobWorld::SampleAt(const mechanics::GearTrainState& at, Time now) 
   sample.time = now;
   sample.velocity_rad_s = actual_.transmission.Ratio() * hob_speed_rad_s_;
   sample.interferometer_rad = Interferometer_rad(at);
+  for (const auto& effect : effects_) effect->Travel(at.table_rad);
   const HobMoment moment{sample.time, next_reading_++, at.table_rad, sample.velocity_rad_s};
   for (const auto& effect : effects_) {
     const ShownError error = effect->Shown(moment);

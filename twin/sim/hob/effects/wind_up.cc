@@ -11,15 +11,14 @@ class WindUp : public HobEffect {
  public:
   explicit WindUp(const EffectSettings& e)
       : lag_rad_(Parameter(e, "lag")), settles_over_rad_(Parameter(e, "settles_over")) {}
-  ShownError Shown(const HobMoment& moment) override {
-    const double way_rad = moment.table_rad - last_rad_;
-    last_rad_ = moment.table_rad;
-    if (way_rad != 0.0) {
-      const double sense = way_rad > 0.0 ? 1.0 : -1.0;
-      state_ = sense + (state_ - sense) * std::exp(-std::abs(way_rad) / settles_over_rad_);
-    }
-    return {.motion_rad = -lag_rad_ * state_};
+  void Travel(double table_rad) override {
+    const double way_rad = table_rad - last_rad_;
+    last_rad_ = table_rad;
+    if (way_rad == 0.0) return;
+    const double sense = way_rad > 0.0 ? 1.0 : -1.0;
+    state_ = sense + (state_ - sense) * std::exp(-std::abs(way_rad) / settles_over_rad_);
   }
+  ShownError Shown(const HobMoment&) override { return {.motion_rad = -lag_rad_ * state_}; }
 
  private:
   double lag_rad_, settles_over_rad_;
