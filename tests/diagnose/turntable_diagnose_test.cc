@@ -152,8 +152,9 @@ TEST(TurntableDiagnosis, CallsTheRollInvisibleWithOneTiltAndNoSweep) {
     const auto invisible = std::ranges::find(d.invisible, effect, &Invisible::effect);
     ASSERT_NE(invisible, d.invisible.end()) << effect;
     EXPECT_THAT(invisible->could_bias, HasSubstr("turntable ez up to")) << effect;
-    if (invisible->effect == "autocollimator_roll")
+    if (invisible->effect == "autocollimator_roll") {
       EXPECT_THAT(invisible->could_bias, HasSubstr("another tilt of the multi-tooth table"));
+    }
   }
 }
 
