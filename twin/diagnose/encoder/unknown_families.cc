@@ -60,7 +60,10 @@ void AddLines(Collector& collect) {
   if (place.empty()) return;
   const auto waves = std::make_shared<const WaveGrid>(c.device_rad, kFirst, step, place.back() + 1);
   collect.AddOver(
-      "line", order, [angle_rad = c.device_rad](const Eigen::VectorXd& k) { return Wave(k[0] * angle_rad); },
+      "line", order,
+      [nearest, angle_rad = c.device_rad](const Eigen::VectorXd& k) {
+        return Wave(AwayFromWhole(k[0], nearest) * angle_rad);
+      },
       [values = order.value](int g) {
         return fmt::format("line at {:.3f} per turn locked to reference angle, same in both directions",
                            values[static_cast<std::size_t>(g)]);

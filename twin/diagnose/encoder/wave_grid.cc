@@ -30,4 +30,9 @@ Eigen::MatrixXd WaveGrid::At(int g) const {
   return columns;
 }
 
+double AwayFromWhole(double order, double nearest) {
+  const double whole = std::round(order), off = order - whole;
+  return std::abs(off) >= nearest ? order : whole + std::copysign(nearest, off);
+}
+
 }  // namespace twinbench::diagnose::encoder

@@ -19,4 +19,8 @@ class WaveGrid {
   Eigen::ArrayXXcd coarse_, fine_;  // readings x about sqrt(count)
 };
 
+/// The order itself, or the nearest that is `nearest` away from a whole one: a line between the orders that is
+/// refined must not become one of them, for those have names.
+double AwayFromWhole(double order, double nearest);
+
 }  // namespace twinbench::diagnose::encoder

@@ -52,7 +52,10 @@ void AddLines(Collector& collect) {
   const SharedBase base = BaseOf(collect.common().context, static_cast<int>(place.size()),
                                  [waves, place](int g) { return waves->At(place[static_cast<std::size_t>(g)]); });
   collect.AddOver(
-      {"line"}, order, base, [angle_rad = c.table_rad](const Eigen::VectorXd& k) { return Wave(k[0] * angle_rad); },
+      {"line"}, order, base,
+      [nearest, angle_rad = c.table_rad](const Eigen::VectorXd& k) {
+        return Wave(encoder::AwayFromWhole(k[0], nearest) * angle_rad);
+      },
       [values = order.value](int g) {
         return fmt::format("line at {:.3f} per turn locked to table angle, same in both directions",
                            values[static_cast<std::size_t>(g)]);
