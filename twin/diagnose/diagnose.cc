@@ -134,7 +134,8 @@ Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vecto
   diagnosis.alarm_p = analysis.null.PValue(analysis.found.first_statistic);
   for (const NoiseCause& repair : analysis.repairs) {
     diagnosis.noise.push_back(repair.words);
-    if (repair.kind == NoiseCause::Kind::kOutliers) first.push_back(OutlierCause(repair, run));
+    const bool named_already = std::ranges::count(first, "outliers", &Cause::effect) > 0;
+    if (repair.kind == NoiseCause::Kind::kOutliers && !named_already) first.push_back(OutlierCause(repair, run));
   }
   constexpr double kWorthTelling = 3.0;
   for (const NoiseCause& seen : analysis.observations) {

@@ -102,30 +102,40 @@ NoiseCause Tails(const NoiseModel& noise, const Standardised& s) {
   return cause;
 }
 
-/// A few rows far outside while the rest is normal: each pays for being chosen, and for a size that may be anything
-/// up to the largest.
+/// What single disturbed rows in otherwise normal noise make of the data: each pays for being chosen, and for a size
+/// that may be anything up to the largest.
+double LikelihoodWithout(const std::vector<int>& far, const Standardised& s) {
+  Standardised rest = s;
+  std::erase_if(rest.rows, [&](int row) { return std::ranges::find(far, row) != far.end(); });
+  double top = 1.0;
+  for (const int row : s.rows) top = std::max(top, std::abs(s.z[row]));
+  const auto count = static_cast<double>(far.size()), all = static_cast<double>(s.rows.size());
+  const double chosen =
+      std::lgamma(all + 1) - std::lgamma(count + 1) - std::lgamma(all - count + 1) + std::log1p(count);
+  return NormalLikelihood(rest) - count * std::log(2.0 * top) - chosen;
+}
+
+/// Merely heavy-tailed noise has far values, too: then they are no exceptions.
+bool AreExceptions(double likelihood_without, const Standardised& s) {
+  const double tails = FitStudent(s).log_likelihood - std::log(10.0 * 14.0);
+  return likelihood_without > tails + 3.0;
+}
+
+/// A few rows far outside while the rest is normal.
 NoiseCause Outliers(const NoiseModel& noise, const Standardised& s) {
   constexpr double kFar = 5.0;            // one in two million rows by chance
   constexpr double kMostOutlying = 0.05;  // of the rows; more are no exceptions
   NoiseCause cause{NoiseCause::Kind::kOutliers, -1e300, "", noise, {}, 0.0};
-  Standardised rest = s;
-  rest.rows.clear();
-  double top = 1.0;
   for (const int row : s.rows) {
-    (std::abs(s.z[row]) > kFar ? cause.outliers : rest.rows).push_back(row);
-    top = std::max(top, std::abs(s.z[row]));
+    if (std::abs(s.z[row]) > kFar) cause.outliers.push_back(row);
   }
   const auto count = static_cast<double>(cause.outliers.size()), all = static_cast<double>(s.rows.size());
   if (count == 0.0 || count > kMostOutlying * all) return cause;
   double sum2 = 0.0;
   for (const int row : cause.outliers) sum2 += s.z[row] * s.z[row];
   cause.outlier_size = std::sqrt(sum2 / count);
-  const double chosen =
-      std::lgamma(all + 1) - std::lgamma(count + 1) - std::lgamma(all - count + 1) + std::log1p(count);
-  const double mixture = NormalLikelihood(rest) - count * std::log(2.0 * top) - chosen;
-  // Merely heavy-tailed noise has far values, too: then they are no exceptions.
-  const double tails = FitStudent(s).log_likelihood - std::log(10.0 * 14.0);
-  if (mixture > tails + 3.0) cause.log_bayes = mixture - NormalLikelihood(s);
+  const double mixture = LikelihoodWithout(cause.outliers, s);
+  if (AreExceptions(mixture, s)) cause.log_bayes = mixture - NormalLikelihood(s);
   cause.words =
       fmt::format("{} value{} far outside the noise, left out", cause.outliers.size(), count == 1.0 ? "" : "s");
   for (const int row : cause.outliers) cause.repaired.sigma[row] *= 1e4;
@@ -186,6 +196,15 @@ NoiseCause ChannelScale(const LinearRun& run, const NoiseModel& noise, const Sta
 }
 
 }  // namespace
+
+bool StandOut(const std::vector<int>& far, const Eigen::VectorXd& z) {
+  Standardised s;
+  s.z = z;
+  for (int row = 0; row < z.size(); ++row) {
+    if (z[row] != 0.0) s.rows.push_back(row);
+  }
+  return AreExceptions(LikelihoodWithout(far, s), s);
+}
 
 std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Eigen::VectorXd& rows,
                                         const Eigen::VectorXd& redundancy) {

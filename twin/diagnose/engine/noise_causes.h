@@ -23,6 +23,10 @@ struct NoiseCause {
   double outlier_size = 0.0;  // rms, in units of noise
 };
 
+/// Whether the rows `far` stand out of normal noise, rather than being the tails of noise that has heavy ones.
+/// @param z  By row, in deviations; a row that is exactly zero is not looked at.
+bool StandOut(const std::vector<int>& far, const Eigen::VectorXd& z);
+
 /// Looks for refuted properties in what is left of the data.
 ///
 /// @param rows        W y with accepted causes taken out, whitened with `noise`.

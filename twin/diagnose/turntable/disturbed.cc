@@ -63,18 +63,21 @@ std::optional<NoiseCause> FindDisturbed(const LinearRun& run) {
   NoiseCause cause{NoiseCause::Kind::kOutliers, 0.0, "", {run.sigma, 0.0}, {}, 0.0};
   const Eigen::Index most = run.Rows() / 20;
   double sum2 = 0.0;
+  Eigen::VectorXd found = Eigen::VectorXd::Zero(run.Rows());  // of the rows taken out, as they were
   while (std::ssize(cause.outliers) <= most) {
     const Eigen::VectorXd z = Scores(run, cause.repaired);
     Eigen::Index row = 0;
     z.cwiseAbs().maxCoeff(&row);
     if (!StandsAlone(run, z, row)) break;
     cause.outliers.push_back(static_cast<int>(row));
+    found[row] = z[row];
     cause.repaired.sigma[row] *= kSilent;
     sum2 += z[row] * z[row];
     // Each pays for being chosen and for a size that may be anything up to its own.
     cause.log_bayes += 0.5 * z[row] * z[row] - std::log(run.Rows() * 2.0 * std::abs(z[row]));
   }
   if (cause.outliers.empty() || std::ssize(cause.outliers) > most) return std::nullopt;
+  if (!StandOut(cause.outliers, (found.array() != 0.0).select(found, Scores(run, cause.repaired)))) return std::nullopt;
   cause.outlier_size = std::sqrt(sum2 / static_cast<double>(cause.outliers.size()));
   cause.words = InWords(cause);
   return cause;
