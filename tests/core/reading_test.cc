@@ -264,6 +264,16 @@ TEST(TurntableReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
   EXPECT_EQ(again[1].status, ReadingStatus::kMissing);
 }
 
+TEST(TurntableReadings, MayCountTheWayBackOfTheMultitoothTableAsPositive) {
+  const std::string head = kTurntableHeader;
+  const auto back = Parse(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,15,0,0\n");
+  EXPECT_DOUBLE_EQ(back[1].reference_rad, -15.0 * units::deg);
+  const auto ours = Parse(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,365,0,0\n");
+  EXPECT_DOUBLE_EQ(ours[1].reference_rad, 365.0 * units::deg) << "a turn more is the same tooth";
+  const auto neither = Parse(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,77,0,0\n");
+  EXPECT_DOUBLE_EQ(neither[1].reference_rad, 77.0 * units::deg) << "left for the evaluation to refuse";
+}
+
 constexpr const char* kHobHeader =
     "reading,time_s,setup,pass,direction,position,phase,table_encoder_deg,hob_encoder_deg,head_deg";
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <set>
 
 #include "twin/core/csv.h"
@@ -287,6 +288,27 @@ void CheckOrder(const CsvTable& table, const CsvTable::Row& row, const Reading& 
                      "time order");
 }
 
+/// How far `target + sense x reference` wanders within the set-ups, whole turns apart [rad].
+double Wander_rad(const std::vector<Reading>& readings, double sense) {
+  std::map<int, double> first_rad;
+  double widest_rad = 0.0;
+  for (const Reading& r : readings) {
+    if (r.phase == Phase::kCalibration) continue;  // the turntable moves alone
+    const double sum_rad = r.target_rad + sense * r.reference_rad;
+    const double start_rad = first_rad.try_emplace(r.setup, sum_rad).first->second;
+    widest_rad = std::max(widest_rad, std::abs(std::remainder(sum_rad - start_rad, 2.0 * units::kPi)));
+  }
+  return widest_rad;
+}
+
+/// Some count the multi-tooth table's way back as positive. Here both tables count counter-clockwise, so that their
+/// sum stays.
+void CountBothTheSameWay(std::vector<Reading>& readings) {
+  constexpr double kNothing_rad = 1e-6;
+  if (Wander_rad(readings, 1.0) <= kNothing_rad || Wander_rad(readings, -1.0) > kNothing_rad) return;
+  for (Reading& r : readings) r.reference_rad = -r.reference_rad;
+}
+
 /// The columns to write: the status only if it says something.
 std::vector<ReadingColumn> ColumnsFor(const std::vector<Reading>& readings) {
   bool all_ok = true;
@@ -361,6 +383,7 @@ std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name,
     CheckOrder(table, row, reading, readings.empty() ? Time::min() : readings.back().time, numbers);
     readings.push_back(reading);
   }
+  if (bench == kTurntableBench) CountBothTheSameWay(readings);
   return readings;
 }
 
