@@ -204,7 +204,8 @@ TEST(ReadingNames, LeadBackToTheirValues) {
 constexpr const char* kAngles = "reading,phase,setup,pass,direction,position,time_s,reference_deg,measured_deg";
 
 TEST(AngleReadings, AreKnownByTheirColumns) {
-  const auto readings = Parse(std::string(kAngles) + ",velocity_deg_s\n0,full_circle,0,0,0,0,0.08,360.5,0.75,-36\n");
+  const auto readings =
+      Parse(std::string(kAngles) + ",velocity_deg_s\n0,full_circle,0,0,0,0,0.08,360.5,0.75,-36\n");
   ASSERT_EQ(readings.size(), 1u);
   EXPECT_EQ(readings[0].direction, 0) << "at rest";
   EXPECT_DOUBLE_EQ(readings[0].reference_rad, 360.5 * units::deg);

@@ -38,16 +38,15 @@ void DrawRoom(Stream& stream, EnvironmentSettings& room) {
 
 /// What the readings of the rotary and of the encoder bench show, by row of the run, SI.
 double Shown(const Reading& reading, int channel, int channels) {
-  return channels == 1 ? reading.measured_rad : reading.mean_V[static_cast<std::size_t>(channel)] / kSensitivity_V_m;
+  return channels == 1 ? reading.measured_rad
+                       : reading.mean_V[static_cast<std::size_t>(channel)] / kSensitivity_V_m;
 }
 
 /// Keys in which the designs of the two newer benches differ from their scenarios.
 std::vector<std::string> OverridesOf(Design design) {
   if (design == Design::kTurntable) {
-    return {"turntable_procedure.phases=[\"calibration\", \"full_circle\"]",
-            "turntable_procedure.positions=36",
-            "turntable_procedure.passes=[1, -1, -1, 1]",
-            "turntable_procedure.eccentricities_um=[50.0, 1500.0]",
+    return {"turntable_procedure.phases=[\"calibration\", \"full_circle\"]", "turntable_procedure.positions=36",
+            "turntable_procedure.passes=[1, -1, -1, 1]", "turntable_procedure.eccentricities_um=[50.0, 1500.0]",
             "turntable_procedure.dwell_s=[0.5, 2.0, 5.0]"};
   }
   if (design == Design::kHob) {
@@ -88,7 +87,8 @@ void DrawTransmission(Stream& stream, Scenario& scenario) {
 }  // namespace
 
 const std::string& BenchOf(Design design) {
-  static const std::string rotary = kRotaryBench, encoder = kEncoderBench, turntable = kTurntableBench, hob = kHobBench;
+  static const std::string rotary = kRotaryBench, encoder = kEncoderBench, turntable = kTurntableBench,
+                           hob = kHobBench;
   if (design == Design::kRotary) return rotary;
   if (design == Design::kTurntable) return turntable;
   return design == Design::kHob ? hob : encoder;
@@ -153,8 +153,7 @@ SignatureScale::SignatureScale(Design design, const std::string& cache_folder) :
 
 /// What the readings show in the rows of the run.
 Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings) const {
-  if (design_ == Design::kTurntable)
-    return diagnose::turntable::BuildRun(readings, Believed(design_)).run.observed;
+  if (design_ == Design::kTurntable) return diagnose::turntable::BuildRun(readings, Believed(design_)).run.observed;
   if (design_ == Design::kHob) return diagnose::hob::BuildRun(readings, Believed(design_)).run.observed;
   Eigen::VectorXd rows(run_.Rows());
   for (int row = 0; row < run_.Rows(); ++row) {

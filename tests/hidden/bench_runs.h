@@ -35,8 +35,8 @@ Scenario Drawn(Design design, std::uint64_t seed);
 /// Carries the scenario out on the twin of its bench.
 std::vector<Reading> TakeReadings(const Scenario& actual);
 
-/// Adds a signal to what the readings show: readings x channels, m or rad. Rotary bench: four PSD axes; turntable: x
-/// and y; the others: the angle.
+/// Adds a signal to what the readings show: readings x channels, m or rad. Rotary bench: four PSD axes; turntable:
+/// x and y; the others: the angle.
 void AddTo(std::vector<Reading>& readings, const Eigen::MatrixXd& signal);
 
 /// Measures signatures in units of noise after projection.

@@ -57,7 +57,8 @@ void DrawOwnShape(Stream& stream, const Scenario& scenario, EffectSettings& effe
   if (effect.name == "bearing_half_frequency") Set(effect, "order", UniformIn(stream, 0.42, 0.499));
   const bool on_hob = effect.where == "hob";  // of its turns the readings resolve few periods
   if (effect.name == "periodic") Set(effect, "order", std::floor(UniformIn(stream, 5.0, on_hob ? 8.0 : 30.0)));
-  if (effect.name == "autocollimator_periodic") Set(effect, "period", LogUniformIn(stream, 3.0, 40.0) * units::arcsec);
+  if (effect.name == "autocollimator_periodic")
+    Set(effect, "period", LogUniformIn(stream, 3.0, 40.0) * units::arcsec);
   if (effect.name == "multitooth_seating") Set(effect, "scatter", UniformIn(stream, 0.4, 0.8) * units::arcsec);
   if (effect.name == "reference_fault") Set(effect, "order", std::floor(UniformIn(stream, 1.0, 6.0)));
   if (effect.name == "gear_mesh") Set(effect, "teeth", scenario.device.teeth);  // of the encoder bench

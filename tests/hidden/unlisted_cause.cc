@@ -57,7 +57,8 @@ UnlistedSignal OnChannel(std::size_t channel, const std::vector<std::string>& lo
   return OnPattern(kChannelNames[channel], locks, series);
 }
 
-UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& locks, const Eigen::VectorXd& series) {
+UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& locks,
+                      const Eigen::VectorXd& series) {
   const Eigen::RowVector2d weight = axis == "x" ? Eigen::RowVector2d(1, 0) : Eigen::RowVector2d(0, 1);
   return {locks, {}, series * weight};
 }

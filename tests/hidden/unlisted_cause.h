@@ -42,7 +42,8 @@ UnlistedSignal OnPattern(const std::string& pattern, const std::vector<std::stri
 UnlistedSignal OnChannel(std::size_t channel, const std::vector<std::string>& locks, const Eigen::VectorXd& series);
 
 /// Of the turntable bench: on "x" or "y".
-UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& locks, const Eigen::VectorXd& series);
+UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& locks,
+                      const Eigen::VectorXd& series);
 
 /// Of the benches that read one angle.
 UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series);

@@ -169,11 +169,7 @@ TEST(TurntableTwin, HasEveryEffectOfTheCatalogueAndEachChangesTheReadings) {
   const auto clean = Readings(s);
   for (const EffectEntry& entry : EffectCatalogue(kTurntableBench)) {
     Scenario with = s;
-    EffectSettings effect{entry.name, entry.places.empty() ? "" : entry.places.back(), {}, ""};
-    for (const EffectParameter& p : entry.parameters) effect.parameters[p.name] = p.default_SI;
-    if (entry.name == "slip") effect.parameters["at_reading"] = 5.0;
-    if (entry.name == "outliers") effect.parameters["fraction"] = 0.3;
-    with.effects = {effect};
+    with.effects = {test::PlainEffect(entry)};
     const auto disturbed = Readings(with);
     double largest_rad = 0.0;
     for (std::size_t i = 0; i < clean.size(); ++i) {

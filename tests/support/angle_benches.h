@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tests/support/twin_run.h"
+#include "twin/core/effect_catalogue.h"
 #include "twin/procedure/hob.h"
 #include "twin/procedure/turntable.h"
 #include "twin/separate/hob/hob_bench.h"
@@ -31,6 +32,16 @@ inline BenchRun RunTurntable(const Scenario& scenario) {
 }
 inline BenchRun RunHob(const Scenario& scenario) {
   return RunBench<sim::HobTwin>(scenario);
+}
+
+/// An effect of the catalogue with its default sizes, at its last place. What has an onset or a share gets ones that
+/// a short run shows.
+inline EffectSettings PlainEffect(const EffectEntry& entry) {
+  EffectSettings effect{entry.name, entry.places.empty() ? "" : entry.places.back(), {}, ""};
+  for (const EffectParameter& p : entry.parameters) effect.parameters[p.name] = p.default_SI;
+  if (entry.name == "slip") effect.parameters["at_reading"] = 5.0;
+  if (entry.name == "outliers") effect.parameters["fraction"] = 0.3;
+  return effect;
 }
 
 /// The readings of any bench's twin.

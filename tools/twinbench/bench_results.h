@@ -10,7 +10,8 @@ Evaluation EvaluateEncoder(const Scenario&, const std::vector<Reading>&);
 Evaluation EvaluateTurntable(const Scenario&, const std::vector<Reading>&, measure::Estimator);
 Evaluation EvaluateHob(const Scenario&, const std::vector<Reading>&, measure::Estimator);
 
-ScoredRun ScoreRotary(const Scenario&, const std::vector<Reading>&, const nlohmann::json& truth, measure::Estimator);
+ScoredRun ScoreRotary(const Scenario&, const std::vector<Reading>&, const nlohmann::json& truth,
+                      measure::Estimator);
 ScoredRun ScoreEncoder(const std::vector<Reading>&, const nlohmann::json& truth);
 ScoredRun ScoreTurntable(const Scenario&, const std::vector<Reading>&, const nlohmann::json& truth,
                          measure::Estimator);

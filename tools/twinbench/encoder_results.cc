@@ -26,7 +26,6 @@ constexpr const char* kNoReference =
     "with one mounting of the device the difference of both is known; it is counted as the device's";
 constexpr const char* kSeenAlike = "all mountings see only the difference of both; it is counted as the device's";
 
-
 nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) {
   const CurveAt curve = Curve(series, kPoints);
   nlohmann::json json;

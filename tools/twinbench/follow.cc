@@ -130,7 +130,8 @@ class Follower {
     const auto watched = Judge(readings);
     if (!watched) return;
     last_ = *watched;
-    for (; alarms_ < last_.report.alarms.size(); ++alarms_) PrintAlarm(last_.report.alarms[alarms_], last_, options_.json == "-" ? stderr : stdout);
+    for (; alarms_ < last_.report.alarms.size(); ++alarms_)
+      PrintAlarm(last_.report.alarms[alarms_], last_, options_.json == "-" ? stderr : stdout);
   }
 
   /// Nothing while there are too few readings to predict from.

@@ -28,7 +28,6 @@ using separate::hob::PositionError;
 using separate::hob::PositionStatus;
 using separate::hob::SeparatedOrder;
 
-
 /// Columns, one entry an order.
 nlohmann::json ToJson(const HarmonicSeries& series) {
   nlohmann::json json = {{"form", "sum of amplitude cos(order angle + phase)"}};

@@ -1,11 +1,11 @@
 #include "tools/twinbench/positioning_results.h"
-#include "tools/twinbench/json_units.h"
 
 #include <fmt/core.h>
 
 #include <cmath>
 #include <set>
 
+#include "tools/twinbench/json_units.h"
 #include "twin/core/units.h"
 #include "twin/measure/iso230_2.h"
 
@@ -18,7 +18,6 @@ using measure::ScatteredValue;
 using measure::TargetPositioning;
 
 constexpr std::size_t kMostRows = 40;  // a table that is still looked at
-
 
 nlohmann::json ToJson(const ScatteredValue& v) {
   return {{"value_arcsec", Arcsec(v.value)}, {"u_arcsec", Arcsec(v.u)}, {"bias_arcsec", Arcsec(v.bias)}};

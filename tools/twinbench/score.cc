@@ -19,7 +19,8 @@ struct Options {
 void PrintScore(const Options& options) {
   const RunFolder folder{options.folder};
   if (!std::filesystem::exists(folder.truth()))
-    throw InputError(folder.truth(), "is not there", "a run of the twin: what was measured or imported has no truth");
+    throw InputError(folder.truth(), "is not there",
+                     "a run of the twin: what was measured or imported has no truth");
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadRecordedRun(folder.path, "", {});
   const ScoredRun score = ScoreRun(run.scenario, run.readings, truth, EstimatorOf(options.estimator));

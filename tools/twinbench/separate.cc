@@ -26,7 +26,8 @@ void Separate(const Options& options) {
 }  // namespace
 
 void AddSeparate(CLI::App& app) {
-  auto* command = app.add_subcommand("separate", "Separate readings into the errors of what was measured and of what it was measured with");
+  auto* command = app.add_subcommand(
+      "separate", "Separate readings into the errors of what was measured and of what it was measured with");
   auto options = std::make_shared<Options>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");

@@ -24,7 +24,6 @@ using separate::turntable::Roll;
 using separate::turntable::RollStatus;
 using separate::turntable::TurntableAnalysis;
 
-
 nlohmann::json ToJson(const AngleSeries& series) {
   nlohmann::json json = {{"position_deg", nlohmann::json::array()},
                          {"ez_arcsec", nlohmann::json::array()},

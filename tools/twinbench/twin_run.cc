@@ -61,7 +61,8 @@ void RunBench(const Scenario& scenario, const RunFolder& folder) {
 
 void RunOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
   if (scenario.bench == kRotaryBench) return RunRotary(scenario, folder, images);
-  if (images) throw InputError("--images", "the bench " + scenario.bench + " has no light on PSDs", "a run without images");
+  if (images)
+    throw InputError("--images", "the bench " + scenario.bench + " has no light on PSDs", "a run without images");
   if (scenario.bench == kEncoderBench) return RunEncoder(scenario, folder);
   if (scenario.bench == kTurntableBench) return RunBench<sim::TurntableTwin>(scenario, folder);
   RunBench<sim::HobTwin>(scenario, folder);

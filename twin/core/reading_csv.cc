@@ -26,7 +26,7 @@ constexpr const char* kHeadColumn = "head_deg";
 /// One column of readings.csv, for both ways.
 struct ReadingColumn {
   std::string name;
-  bool required = false;       // the column must be there ...
+  bool required = false;                                         // the column must be there ...
   std::function<std::string(const Reading&)> print;              // empty: not available
   std::function<bool(Reading&, const std::string&)> parse = {};  // false: not what is expected
   std::string expected;
@@ -163,7 +163,8 @@ void AddTurntableColumns(std::vector<ReadingColumn>& columns) {
   columns.push_back(Number(
       kMultitoothColumn, units::deg, true, [](auto& r) -> auto& { return r.reference_rad; }));
   columns.push_back(Shown(
-      "autocollimator_x_arcsec", units::arcsec, "arcsec", [](auto& r) -> auto& { return r.autocollimator_yaw_rad; }));
+      "autocollimator_x_arcsec", units::arcsec, "arcsec",
+      [](auto& r) -> auto& { return r.autocollimator_yaw_rad; }));
   columns.push_back(Shown(
       "autocollimator_y_arcsec", units::arcsec, "arcsec",
       [](auto& r) -> auto& { return r.autocollimator_tilt_rad; }));

@@ -56,8 +56,7 @@ std::vector<OptionalColumn> TurntableColumns() {
           {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
            "autocollimator_temperature cannot be named: it looks like autocollimator_drift, mount_creep or unknown "
            "structure in time"},
-          {"autocollimator_x_arcsec",
-           [](const Reading& r) { return std::isfinite(r.autocollimator_yaw_rad); },
+          {"autocollimator_x_arcsec", [](const Reading& r) { return std::isfinite(r.autocollimator_yaw_rad); },
            "autocollimator_scale and autocollimator_nonlinearity are hidden in the turntable's errors", true}};
 }
 

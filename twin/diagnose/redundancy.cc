@@ -23,8 +23,10 @@ std::string Count(int count, const char* one, const char* many) {
 /// pass in every set-up costs as many as there are set-ups, but shows what depends on time and direction.
 std::string SmallestAddition(const DesignCount& design, const std::string& bench) {
   if (bench == kTurntableBench)
-    return "a second pass, as in turntable_procedure.passes = [1, -1], which shows drift and backlash; or the circle "
-           "again with another tilt, as in turntable_procedure.tilts_arcsec = [60, 100], which shows the roll of the "
+    return "a second pass, as in turntable_procedure.passes = [1, -1], which shows drift and backlash; or the "
+           "circle "
+           "again with another tilt, as in turntable_procedure.tilts_arcsec = [60, 100], which shows the roll of "
+           "the "
            "crosshair";
   const std::string passes =
       "passes + - - + in every set-up (procedure.passes = [1, -1, -1, 1]), which also show drift and backlash";

@@ -5,7 +5,8 @@ namespace twinbench::sim {
 EmpiricalSignal::EmpiricalSignal(const std::vector<EmpiricalSettings>& empiricals, const std::string& channel) {
   for (const EmpiricalSettings& signal : empiricals) {
     if (signal.channel != channel) continue;
-    for (std::size_t i = 0; i < signal.reading.size(); ++i) by_reading_rad_[signal.reading[i]] += signal.value_rad[i];
+    for (std::size_t i = 0; i < signal.reading.size(); ++i)
+      by_reading_rad_[signal.reading[i]] += signal.value_rad[i];
   }
 }
 

@@ -102,8 +102,8 @@ NoiseCause Tails(const NoiseModel& noise, const Standardised& s) {
   return cause;
 }
 
-/// What single disturbed rows in otherwise normal noise make of the data: each pays for being chosen, and for a size
-/// that may be anything up to the largest.
+/// What single disturbed rows in otherwise normal noise make of the data: each pays for being chosen, and for a
+/// size that may be anything up to the largest.
 double LikelihoodWithout(const std::vector<int>& far, const Standardised& s) {
   Standardised rest = s;
   std::erase_if(rest.rows, [&](int row) { return std::ranges::find(far, row) != far.end(); });

@@ -77,7 +77,8 @@ std::optional<NoiseCause> FindDisturbed(const LinearRun& run) {
     cause.log_bayes += 0.5 * z[row] * z[row] - std::log(run.Rows() * 2.0 * std::abs(z[row]));
   }
   if (cause.outliers.empty() || std::ssize(cause.outliers) > most) return std::nullopt;
-  if (!StandOut(cause.outliers, (found.array() != 0.0).select(found, Scores(run, cause.repaired)))) return std::nullopt;
+  if (!StandOut(cause.outliers, (found.array() != 0.0).select(found, Scores(run, cause.repaired))))
+    return std::nullopt;
   cause.outlier_size = std::sqrt(sum2 / static_cast<double>(cause.outliers.size()));
   cause.words = InWords(cause);
   return cause;

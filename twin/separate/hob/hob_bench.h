@@ -19,22 +19,22 @@ std::vector<HobSample> SamplesOf(const std::vector<Reading>& readings);
 /// One direction of travel.
 struct DirectionResult {
   int direction = 1;
-  HarmonicSeries transmission;  // e_T
-  std::vector<int> lines;       // orders that noise would not show
+  HarmonicSeries transmission;                          // e_T
+  std::vector<int> lines;                               // orders that noise would not show
   std::vector<OrderComparison> against_interferometer;  // empty without one
 };
 
 struct HobAnalysis {
   measure::Estimator estimator = measure::Estimator::kRigorous;
   int used = 0, left_out = 0;
-  std::vector<PositionError> positions;         // what each head showed, by direction
-  std::optional<HeadSeparation> separation;     // rigorous
-  std::optional<TwoPositions> two_positions;    // published: the first two heads, in the first direction of both
+  std::vector<PositionError> positions;       // what each head showed, by direction
+  std::optional<HeadSeparation> separation;   // rigorous
+  std::optional<TwoPositions> two_positions;  // published: the first two heads, in the first direction of both
   std::vector<DirectionResult> directions;
-  HarmonicSeries encoder;                       // psi in the encoder's own angle; orders not seen are NaN
-  HarmonicSeries encoder_by_interferometer;     // empty without one
+  HarmonicSeries encoder;                    // psi in the encoder's own angle; orders not seen are NaN
+  HarmonicSeries encoder_by_interferometer;  // empty without one
   std::vector<OrderComparison> encoder_against_interferometer;
-  std::string not_separated;                    // why there is no separation
+  std::string not_separated;  // why there is no separation
 };
 
 /// @throws InputError as MeasurePositions.

@@ -40,8 +40,7 @@ double Quantised(double angle_rad, double step_rad) {
 
 }  // namespace
 
-EncoderTwin::EncoderTwin(const Scenario& scenario)
-    : scenario_(scenario), empirical_(scenario.empiricals, "angle") {
+EncoderTwin::EncoderTwin(const Scenario& scenario) : scenario_(scenario), empirical_(scenario.empiricals, "angle") {
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
   for (const auto& effect : effects_) effect->AlterSignals(signals_);
 }

@@ -8,7 +8,9 @@ namespace {
 class ZeroSlip : public AngleEffect {
  public:
   explicit ZeroSlip(const EffectSettings& e) : effect_(e) {}
-  double DeviceError_rad(const AngleMoment& moment, double) const override { return StepAt(effect_, moment.reading); }
+  double DeviceError_rad(const AngleMoment& moment, double) const override {
+    return StepAt(effect_, moment.reading);
+  }
 
  private:
   EffectSettings effect_;
