@@ -106,6 +106,16 @@ TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
   }
 }
 
+TEST(TurntableTwin, MovedByBulletStandsWhereTheKinematicOneDoes) {
+  Scenario s = QuietTurntable();
+  s.target.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
+  const auto kinematic = Readings(s);
+  s.mechanics.fidelity = "bullet";
+  const auto bullet = Readings(s);
+  for (std::size_t i = 0; i < bullet.size(); ++i)
+    EXPECT_NEAR(X_arcsec(bullet[i]), X_arcsec(kinematic[i]), 0.02) << "settled to 0.01 arcsec";
+}
+
 TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
   Scenario s = QuietTurntable();
   s.turntable_procedure.phases = {"calibration"};

@@ -56,12 +56,18 @@ void AddTurntableProcedure(Keys& keys, TurntableProcedureSettings& s) {
   t.Add("verification_passes", kPure, {-1, 1}, &s.verification_passes, "directions: 1 or -1");
 }
 
+void AddMotionOfTheTurntable(Keys& keys, MechanicsSettings& s) {
+  Table t(keys, "mechanics");
+  t.Text("fidelity", &s.fidelity, {"kinematic", "linear", "bullet"}, "how the turntable moves");
+}
+
 }  // namespace
 
 void AddTurntableBench(Keys& keys, Scenario& s) {
   AddTable(keys, "turntable", "in L", s.target);
   AddMultitooth(keys, s.multitooth);
   AddTable(keys, "multitooth", "in its rotor frame", s.reference);
+  AddMotionOfTheTurntable(keys, s.mechanics);
   AddMirror(keys, s.mirror);
   AddAutocollimator(keys, s.autocollimator);
   AddCollimator(keys, s.collimator);
