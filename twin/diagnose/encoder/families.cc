@@ -59,12 +59,6 @@ int LargestOrder(const SignalContext& context) {
   return std::min(kMostOrders, static_cast<int>(std::ceil(units::kPi / finest_rad - 1e-6)) - 1);
 }
 
-std::vector<double> Ratios(double first, double last, int count) {
-  std::vector<double> values;
-  for (int k = 0; k < count; ++k) values.push_back(first * std::pow(last / first, k / std::max(1.0, count - 1.0)));
-  return values;
-}
-
 std::vector<double> WholeOrders(int first, int last) {
   std::vector<double> orders;
   for (int k = first; k <= last; ++k) orders.push_back(k);

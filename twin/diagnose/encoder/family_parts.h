@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/diagnose/encoder/families.h"
+#include "twin/diagnose/engine/catalogue_parts.h"
 
 /// What the makers of families have in common; only families.cc, named_families.cc and unknown_families.cc need it.
 namespace twinbench::diagnose::encoder {
@@ -23,9 +24,6 @@ std::vector<Family> NamedFamilies(const Context& context, double plausible_rad);
 
 /// @param covered  Named effects in the catalogue, whose shapes are not to come twice.
 std::vector<Family> UnknownFamilies(const Context& context, const std::vector<std::string>& covered);
-
-/// `count` values from `first` to `last` in equal ratios.
-std::vector<double> Ratios(double first, double last, int count);
 
 /// Whole orders from `first` to `last`.
 std::vector<double> WholeOrders(int first, int last);

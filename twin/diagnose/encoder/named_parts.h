@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "twin/core/effect_catalogue.h"
 #include "twin/diagnose/encoder/family_parts.h"
+#include "twin/diagnose/engine/catalogue_parts.h"
 
 /// Building blocks of families that are named after an effect of the catalogue.
 namespace twinbench::diagnose::encoder {
@@ -23,16 +23,6 @@ Family Named(const std::string& effect);
 /// A family without a shape.
 Family Linear(const std::string& effect, const std::vector<std::string>& parameters,
               const Eigen::MatrixXd& columns);
-
-/// Of a cos + b sin = size cos(angle + phase): size, phase and their standard uncertainties. The same wave has many
-/// sizes and phases; this is the one with size >= 0 and 0 <= phase <= 2 pi.
-struct Polar {
-  double size, phase_rad, u_size, u_phase_rad;
-};
-Polar PolarOf(const Eigen::VectorXd& x, const Eigen::MatrixXd& cov);
-
-/// Of a parameter whose place in `cov` (amplitudes, then shapes) is `at`; NaN if it has none there.
-double DeviationAt(const Eigen::MatrixXd& cov, Eigen::Index at);
 
 /// Reports the first amplitude and the first shape (if named), which are the catalogue's; the others are not.
 Parameters ReportOnly(const std::string& effect, const std::string& amplitude, const std::string& shape_name = "");

@@ -3,14 +3,13 @@
 #include <set>
 
 #include "twin/core/units.h"
-#include "twin/diagnose/encoder/named_parts.h"
 #include "twin/diagnose/hob/family_parts.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
 
 Family Line(const Context& context, const std::string& effect, const Eigen::VectorXd& phase_rad) {
-  Family family = Named(effect);
+  Family family = NamedFamily(effect);
   family.amplitudes = WaveAmplitudes(effect);
   Use(context, {BaseOf(context, 1, [wave = Wave(phase_rad)](int) { return wave; }), Seen::kByBoth}, family);
   family.parameters = WaveParameters(effect);
@@ -19,7 +18,7 @@ Family Line(const Context& context, const std::string& effect, const Eigen::Vect
 
 Family Single(const Context& context, const std::string& effect, const std::string& parameter,
               const Eigen::VectorXd& signal, Seen seen) {
-  Family family = Named(effect);
+  Family family = NamedFamily(effect);
   family.amplitudes = {AmplitudeOf(effect, parameter)};
   Use(context, {BaseOf(context, 1, [signal](int) { return Eigen::MatrixXd(signal); }), seen}, family);
   return family;
@@ -29,13 +28,13 @@ Family Single(const Context& context, const std::string& effect, const std::stri
 Parameters LagParameters() {
   return [](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     return std::vector{Estimate("hysteresis", "lag", x[0], std::sqrt(cov(0, 0))),
-                       Estimate("hysteresis", "settles_over", shape[0], encoder::DeviationAt(cov, x.size()))};
+                       Estimate("hysteresis", "settles_over", shape[0], DeviationAt(cov, x.size()))};
   };
 }
 
 /// Whether the table runs out over the ramp of the scenario is not sure for readings of somebody else.
 Family Hysteresis(const Context& context) {
-  Family family = Named("hysteresis");
+  Family family = NamedFamily("hysteresis");
   family.amplitudes = {AmplitudeOf("hysteresis", "lag")};
   Shape settles = ShapeOf("hysteresis", "settles_over", {});
   settles.lower = 1.0 * units::deg;

@@ -3,20 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/core/errors.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/encoder/named_parts.h"
 #include "twin/diagnose/encoder/wave_grid.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
 
 const EffectParameter& Entry(const std::string& effect, const std::string& parameter) {
-  const EffectEntry* entry = FindEffect(effect, kHobBench);
-  Require(entry != nullptr, "a family names an effect that the catalogue has not");
-  const auto found = std::ranges::find(entry->parameters, parameter, &EffectParameter::name);
-  Require(found != entry->parameters.end(), "a family names a parameter that the catalogue has not");
-  return *found;
+  return CatalogueParameter(kHobBench, effect, parameter);
 }
 
 /// Typical way of the table from one sample to the next.
@@ -65,14 +59,6 @@ std::function<Eigen::MatrixXd(const Eigen::VectorXd&)> RowsAt(const Context& con
       [=](const Eigen::VectorXd& shape) -> Eigen::MatrixXd { return factor * AsRows(*context, at(shape), seen); };
 }
 
-Family Named(const std::string& effect, const std::string& where) {
-  Family family;
-  family.kind = Kind::kNamed;
-  family.effect = family.group = effect;
-  family.where = where;
-  return family;
-}
-
 Amplitude AmplitudeOf(const std::string& effect, const std::string& parameter) {
   const EffectParameter& p = Entry(effect, parameter);
   return {parameter, p.unit, p.to_SI, kPriorToBeSet, p.lower_SI, p.upper_SI};
@@ -84,8 +70,7 @@ Shape ShapeOf(const std::string& effect, const std::string& parameter, std::vect
 }
 
 ParameterEstimate Estimate(const std::string& effect, const std::string& parameter, double value, double u) {
-  const EffectParameter& p = Entry(effect, parameter);
-  return {p.name, p.unit, p.to_SI, value, u, p.lower_SI, p.upper_SI};
+  return EstimateOf(Entry(effect, parameter), value, u);
 }
 
 std::vector<Amplitude> WaveAmplitudes(const std::string& effect) {
@@ -97,19 +82,13 @@ std::vector<Amplitude> WaveAmplitudes(const std::string& effect) {
 
 Parameters WaveParameters(const std::string& effect, const std::string& shape_name) {
   return [=](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
-    const encoder::Polar polar = encoder::PolarOf(x, cov);
+    const Polar polar = PolarOf(x, cov);
     std::vector<ParameterEstimate> estimates = {Estimate(effect, "amplitude", polar.size, polar.u_size),
                                                 Estimate(effect, "phase", polar.phase_rad, polar.u_phase_rad)};
     if (!shape_name.empty())
       estimates.insert(estimates.begin(), Estimate(effect, shape_name, shape[0], 0.0));  // whole number
     return estimates;
   };
-}
-
-std::vector<double> Ratios(double first, double last, int count) {
-  std::vector<double> values;
-  for (int k = 0; k < count; ++k) values.push_back(first * std::pow(last / first, k / std::max(1.0, count - 1.0)));
-  return values;
 }
 
 std::vector<double> Onsets(const SignalContext& c) {

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "twin/core/effect_catalogue.h"
-#include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/catalogue_parts.h"
 #include "twin/diagnose/hob/signals.h"
 
 /// What the makers of families have in common; only they need it.
@@ -45,9 +44,6 @@ std::function<Eigen::MatrixXd(const Eigen::VectorXd&)> RowsAt(const Context& con
 
 // --- named after an effect of the catalogue ---
 
-/// Without amplitudes and columns.
-Family Named(const std::string& effect, const std::string& where = "");
-
 /// An amplitude with unit and bounds of the catalogue; its prior is set later.
 Amplitude AmplitudeOf(const std::string& effect, const std::string& parameter);
 Shape ShapeOf(const std::string& effect, const std::string& parameter, std::vector<double> values_SI);
@@ -60,9 +56,6 @@ std::vector<Amplitude> WaveAmplitudes(const std::string& effect);
 
 /// Amplitude and phase of the catalogue from those; before them the shape, if it is named.
 Parameters WaveParameters(const std::string& effect, const std::string& shape_name = "");
-
-/// `count` values from `first` to `last` in equal ratios.
-std::vector<double> Ratios(double first, double last, int count);
 
 /// Columns of a series with amplitudes of their own in every set-up: samples x (series x set-ups).
 Eigen::MatrixXd InEachSetUp(const Eigen::MatrixXd& series, const Eigen::MatrixXd& setups);

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "twin/diagnose/encoder/named_parts.h"
+#include "twin/diagnose/engine/catalogue_parts.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
@@ -64,7 +64,7 @@ std::vector<Harmonic> HarmonicTable(const HobRun& hob, const NoiseModel& noise) 
   at = 0;
   for (const int k : orders) {
     const Eigen::Index first = 2 * at++;
-    const encoder::Polar polar = encoder::PolarOf(x.segment<2>(first), scale2 * inverse.block<2, 2>(first, first));
+    const Polar polar = PolarOf(x.segment<2>(first), scale2 * inverse.block<2, 2>(first, first));
     table.push_back({k, polar.size, polar.u_size, polar.phase_rad, polar.u_phase_rad, MeaningOf(k, c.train)});
   }
   return table;

@@ -22,7 +22,7 @@ SharedBase Only(const SharedBase& orders, int order) {
 }
 
 Family RingWave(const Context& context, const std::string& effect, const RingPlace& ring, int order) {
-  Family family = Named(effect, ring.where);
+  Family family = NamedFamily(effect, ring.where);
   family.amplitudes = WaveAmplitudes(effect);
   Use(context, {Only(ring.orders, order), Seen::kByEncoders, ring.factor}, family);
   family.parameters = WaveParameters(effect);
@@ -32,7 +32,7 @@ Family RingWave(const Context& context, const std::string& effect, const RingPla
 /// Orders that eccentricity and ellipticity have not.
 Family Periodic(const Context& context, const RingPlace& ring) {
   constexpr int kFirst = 3;
-  Family family = Named("periodic", ring.where);
+  Family family = NamedFamily("periodic", ring.where);
   family.amplitudes = WaveAmplitudes("periodic");
   auto higher = std::make_shared<Base>(*ring.orders);
   higher->grid = ring.orders->grid - kFirst + 1;
@@ -68,7 +68,7 @@ void AddHobSignals(const Context& context, std::vector<Family>& families) {
   const double factor = -context->train.Ratio() / context->hob_lines;
   const auto faults = std::make_shared<const Eigen::MatrixXd>(SignalFaults_rad(*context));
   const auto add = [&](const std::string& effect, const std::vector<std::string>& parameters, Eigen::Index first) {
-    Family family = Named(effect);
+    Family family = NamedFamily(effect);
     for (const std::string& parameter : parameters) family.amplitudes.push_back(AmplitudeOf(effect, parameter));
     const auto count = std::ssize(parameters);
     const auto series = [faults, first, count](int) { return Eigen::MatrixXd(faults->middleCols(first, count)); };

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "twin/core/units.h"
-#include "twin/diagnose/encoder/named_parts.h"
 #include "twin/diagnose/hob/family_parts.h"
 
 namespace twinbench::diagnose::hob {
@@ -15,7 +14,7 @@ std::vector<Seen> Ways(const SignalContext& c) {
 
 /// Amplitudes: the rate, and the rate times the share of the quadratic part.
 Family Drift(const Context& context, Seen seen) {
-  Family family = Named("drift");
+  Family family = NamedFamily("drift");
   family.amplitudes.assign(2, AmplitudeOf("drift", "rate"));
   family.amplitudes[1].name = "bend";
   Use(context, {BaseOf(context, 1, [signals = DriftSignals_s(*context)](int) { return signals; }), seen}, family);
@@ -31,7 +30,7 @@ Family Drift(const Context& context, Seen seen) {
 
 /// The same without the quadratic part, which most have not.
 Family SteadyDrift(const Context& context, Seen seen) {
-  Family family = Named("drift");
+  Family family = NamedFamily("drift");
   family.amplitudes = {AmplitudeOf("drift", "rate")};
   const Eigen::MatrixXd time_s = DriftSignals_s(*context).leftCols(1);
   Use(context, {BaseOf(context, 1, [time_s](int) { return time_s; }), seen}, family);
@@ -43,7 +42,7 @@ Family SteadyDrift(const Context& context, Seen seen) {
 }
 
 Family Slip(const Common& common, const std::string& where, double factor) {
-  Family family = Named("slip", where);
+  Family family = NamedFamily("slip", where);
   family.amplitudes = {AmplitudeOf("slip", "step")};
   family.shapes = {ShapeOf("slip", "at_reading", common.onsets)};
   Use(common.context, {common.steps, Seen::kByEncoders, factor}, family);
@@ -53,7 +52,7 @@ Family Slip(const Common& common, const std::string& where, double factor) {
   family.at = RowsAt(common.context, step, Seen::kByEncoders, factor);
   family.parameters = [](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     return std::vector{Estimate("slip", "step", x[0], std::sqrt(cov(0, 0))),
-                       Estimate("slip", "at_reading", std::round(shape[0]), encoder::DeviationAt(cov, 1))};
+                       Estimate("slip", "at_reading", std::round(shape[0]), DeviationAt(cov, 1))};
   };
   return family;
 }
@@ -62,22 +61,22 @@ Family Slip(const Common& common, const std::string& where, double factor) {
 Parameters ToneParameters() {
   return [](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     const Eigen::Index setups = x.size() / 2;
-    const encoder::Polar first = encoder::PolarOf(x.head<2>(), cov.topLeftCorner<2, 2>());
+    const Polar first = PolarOf(x.head<2>(), cov.topLeftCorner<2, 2>());
     double size = 0.0, variance = 0.0;
     for (Eigen::Index k = 0; k < setups; ++k) {
-      const encoder::Polar own = encoder::PolarOf(x.segment<2>(2 * k), cov.block<2, 2>(2 * k, 2 * k));
+      const Polar own = PolarOf(x.segment<2>(2 * k), cov.block<2, 2>(2 * k, 2 * k));
       size += own.size / static_cast<double>(setups);
       variance += std::pow(own.u_size / static_cast<double>(setups), 2);
     }
     return std::vector{Estimate("tone", "amplitude", size, std::sqrt(variance)),
-                       Estimate("tone", "frequency", shape[0], encoder::DeviationAt(cov, x.size())),
+                       Estimate("tone", "frequency", shape[0], DeviationAt(cov, x.size())),
                        Estimate("tone", "phase", first.phase_rad, first.u_phase_rad)};
   };
 }
 
 Family ToneFamily(const Common& common, Seen seen) {
   const Context& context = common.context;
-  Family family = Named("tone");
+  Family family = NamedFamily("tone");
   family.amplitudes.assign(static_cast<std::size_t>(common.tones->series(0).cols()),
                            AmplitudeOf("tone", "amplitude"));
   Shape frequency = ShapeOf("tone", "frequency", common.frequencies_Hz);

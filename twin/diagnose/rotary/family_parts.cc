@@ -6,6 +6,7 @@
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/engine/catalogue_parts.h"
 
 namespace twinbench::diagnose::rotary {
 namespace {
@@ -45,26 +46,16 @@ Plausible PlausibleOf(const std::string& effect, const std::string& parameter) {
 }  // namespace
 
 Amplitude AmplitudeOf(const std::string& effect, const std::string& parameter) {
-  const EffectEntry* entry = FindEffect(effect);
-  for (const EffectParameter& p : entry->parameters) {
-    if (p.name != parameter) continue;
-    const Plausible plausible = PlausibleOf(effect, parameter);
-    return {parameter, p.unit, p.to_SI, plausible.sd, plausible.lower, plausible.upper};
-  }
-  Require(false, "an effect lacks a parameter of the catalogue");
-  return {};
+  const EffectParameter& p = CatalogueParameter(kRotaryBench, effect, parameter);
+  const Plausible plausible = PlausibleOf(effect, parameter);
+  return {parameter, p.unit, p.to_SI, plausible.sd, plausible.lower, plausible.upper};
 }
 
 Shape ShapeOf(const std::string& effect, const std::string& parameter, std::vector<double> values) {
-  const EffectEntry* entry = FindEffect(effect);
-  for (const EffectParameter& p : entry->parameters) {
-    if (p.name != parameter) continue;
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    const double lower = *low, upper = *high;
-    return {parameter, p.unit, p.to_SI, lower, upper, std::move(values)};
-  }
-  Require(false, "an effect lacks a parameter of the catalogue");
-  return {};
+  const EffectParameter& p = CatalogueParameter(kRotaryBench, effect, parameter);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double lower = *low, upper = *high;
+  return {parameter, p.unit, p.to_SI, lower, upper, std::move(values)};
 }
 
 std::vector<double> Logarithmic(double lower, double upper, int count) {

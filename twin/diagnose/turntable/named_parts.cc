@@ -3,27 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/core/effect_catalogue.h"
-#include "twin/core/errors.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/encoder/named_parts.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
 
 const EffectParameter& Entry(const std::string& effect, const std::string& parameter) {
-  const EffectEntry* entry = FindEffect(effect, kTurntableBench);
-  Require(entry != nullptr, "a family names an effect that the catalogue has not");
-  const auto found = std::ranges::find(entry->parameters, parameter, &EffectParameter::name);
-  Require(found != entry->parameters.end(), "a family names a parameter that the catalogue has not");
-  return *found;
-}
-
-Family Named(const std::string& effect, const std::string& where) {
-  Family family;
-  family.effect = family.group = effect;
-  family.where = where;
-  return family;
+  return CatalogueParameter(kTurntableBench, effect, parameter);
 }
 
 }  // namespace
@@ -41,19 +27,12 @@ Shape ShapeOf(const std::string& effect, const std::string& parameter, std::vect
 }
 
 ParameterEstimate Estimate(const std::string& effect, const std::string& parameter, double value, double u) {
-  const EffectParameter& p = Entry(effect, parameter);
-  return {parameter, p.unit, p.to_SI, value, u, p.lower_SI, p.upper_SI};
-}
-
-std::vector<double> Ratios(double first, double last, int count) {
-  std::vector<double> values;
-  for (int k = 0; k < count; ++k) values.push_back(first * std::pow(last / first, k / std::max(1.0, count - 1.0)));
-  return values;
+  return EstimateOf(Entry(effect, parameter), value, u);
 }
 
 Family Linear(const std::string& effect, const std::string& where, const std::string& parameter,
               const Eigen::MatrixXd& rows) {
-  Family family = Named(effect, where);
+  Family family = NamedFamily(effect, where);
   family.amplitudes = {AmplitudeOf(effect, parameter)};
   family.columns = [rows](int) { return rows; };
   return family;
@@ -61,7 +40,7 @@ Family Linear(const std::string& effect, const std::string& where, const std::st
 
 Family Shaped(const std::string& effect, int axis, std::vector<Amplitude> amplitudes, const Shape& shape,
               const Signal& signal) {
-  Family family = Named(effect, kAxisNames[static_cast<std::size_t>(axis)]);
+  Family family = NamedFamily(effect, kAxisNames[static_cast<std::size_t>(axis)]);
   family.amplitudes = std::move(amplitudes);
   family.shapes = {shape};
   family.grid = static_cast<int>(std::ssize(shape.value));
@@ -81,9 +60,9 @@ std::vector<Amplitude> WaveAmplitudes(const std::string& effect) {
 void ReportWave(const std::string& effect, const std::string& shape_name, Family& family) {
   family.parameters = [effect, shape_name](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
                                            const Eigen::MatrixXd& cov) {
-    const encoder::Polar polar = encoder::PolarOf(x, cov);
+    const Polar polar = PolarOf(x, cov);
     return std::vector{Estimate(effect, "amplitude", polar.size, polar.u_size),
-                       Estimate(effect, shape_name, shape[0], encoder::DeviationAt(cov, x.size())),
+                       Estimate(effect, shape_name, shape[0], DeviationAt(cov, x.size())),
                        Estimate(effect, "phase", polar.phase_rad, polar.u_phase_rad)};
   };
 }

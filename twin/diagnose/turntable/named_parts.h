@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/diagnose/engine/catalogue_parts.h"
 #include "twin/diagnose/turntable/families.h"
 
 /// Building blocks of families that are named after an effect of the catalogue.
@@ -18,9 +19,6 @@ Amplitude AmplitudeOf(const std::string& effect, const std::string& parameter);
 Shape ShapeOf(const std::string& effect, const std::string& parameter, std::vector<double> values_SI);
 /// A parameter of the catalogue as fitted [SI].
 ParameterEstimate Estimate(const std::string& effect, const std::string& parameter, double value, double u);
-
-/// `count` values from `first` to `last` in equal ratios.
-std::vector<double> Ratios(double first, double last, int count);
 
 /// A family without a shape.
 Family Linear(const std::string& effect, const std::string& where, const std::string& parameter,
