@@ -10,6 +10,8 @@ namespace {
 
 constexpr Duration kSettleCheck = std::chrono::milliseconds(1);
 
+}  // namespace
+
 mechanics::StackParameters StackOf(const Scenario& actual) {
   mechanics::StackParameters stack;
   const MechanicsSettings& m = actual.mechanics;
@@ -35,8 +37,6 @@ mechanics::StackParameters StackOf(const Scenario& actual) {
   stack.geometry.mount_tilt_rad = actual.mount_tilt_rad;
   return stack;
 }
-
-}  // namespace
 
 Axes::Axes(const Scenario& actual, EventQueue& queue)
     : queue_(queue),

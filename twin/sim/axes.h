@@ -9,6 +9,9 @@
 
 namespace twinbench::sim {
 
+/// The stack of tables that a scenario describes.
+mechanics::StackParameters StackOf(const Scenario& actual);
+
 /// The drives of both tables on the clock of the queue: moves take their time, and in-position is reported after
 /// it.
 class Axes {

@@ -19,6 +19,12 @@ std::array<std::size_t, kChannels> ScanOf(const std::vector<std::string>& scan_l
   return scan;
 }
 
+/// Of samples that scatter about a level.
+double ShareAbove(double threshold_V, double level_V, double noise_V) {
+  if (noise_V <= 0.0) return level_V >= threshold_V ? 1.0 : 0.0;
+  return 0.5 * std::erfc((threshold_V - level_V) / (std::sqrt(2.0) * noise_V));
+}
+
 }  // namespace
 
 Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
@@ -74,6 +80,21 @@ Acquisition Electronics::Convert(const std::array<double, kChannels>& signal_V, 
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
   const AdRequest request{n_samples, adc_.every_sample, keep_raw, noise_free_};
   return InChannelOrder(TakeBlock(adc_, InScanOrder(signal_V, start), request, noise_).ToAcquisition(start));
+}
+
+std::array<double, kChannels> Electronics::Expect(const std::array<double, kChannels>& signal_V, Time start,
+                                                  int n_samples, double noise_V) const {
+  AdInput input = InScanOrder(signal_V, start);
+  for (ChannelInput& channel : input.channel) channel.step_V = 0.0;
+  Stream unused(0, "electronics.expectation");
+  const AdBlock block = TakeBlock(adc_, input, {n_samples, false, false, true}, unused);
+  std::array<double, kChannels> mean_V{};
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    const std::size_t c = scan_[place];
+    const double level_V = block.channel[place].mean_V;
+    mean_V[c] = level_V + sampling_.step_V[c] * ShareAbove(sampling_.step_at_V[c], level_V, noise_V);
+  }
+  return mean_V;
 }
 
 Duration Electronics::BlockTime(int n_samples) const {

@@ -20,6 +20,12 @@ class Electronics {
   Acquisition Convert(const std::array<double, kChannels>& signal_V, Time start, int reading, int n_samples,
                       bool keep_raw);
 
+  /// The mean that such a block would have if it were taken again and again: hum and crosstalk as they fall into
+  /// it, a step of the converter blurred by the samples' noise, no quantisation. NaN at the ends of the range.
+  /// @param noise_V  Standard deviation of one sample.
+  std::array<double, kChannels> Expect(const std::array<double, kChannels>& signal_V, Time start, int n_samples,
+                                       double noise_V) const;
+
   Duration BlockTime(int n_samples) const;
 
  private:

@@ -43,13 +43,14 @@ Pose Stand::GratingPose(const Moment& moment, const PoseState& extra, const std:
   mechanics::ChainState state;
   state.target_rad = moment.target_rad + extra.target_yaw_rad;
   state.reference_rad = moment.reference_rad + extra.reference_yaw_rad;
-  state.target_error = target_.At(labels_rad[0]) + target_seat_;
-  state.reference_error = reference_.At(labels_rad[1]) + grating_seat_;
+  state.target_error = target_.At(labels_rad[0]) + target_seat_ + extra.target_error;
+  state.reference_error = reference_.At(labels_rad[1]) + grating_seat_ + extra.reference_error;
   state.target_bearing = bearings[0];
   state.reference_bearing = bearings[1];
   state.goniometer_yaw_rad = yaw_rad_ + extra.grating_yaw_rad;
   state.goniometer_tilt_rad = tilt_rad_ + extra.grating_tilt_rad;
   Pose X_LG = chain_.GratingPose(state);
+  if (extra.grating_roll_rad != 0.0) X_LG = Pose(mechanics::RotationY(extra.grating_roll_rad)) * X_LG;
   X_LG.translation().y() += extra.grating_shift_m;
   return X_LG;
 }

@@ -7,17 +7,11 @@ namespace twinbench::sim {
 using mechanics::Axis;
 
 World::World(const Scenario& nominal)
-    : effects_(nominal),
-      actual_(effects_.ActualBench(nominal)),
-      environment_(actual_.environment, actual_.seed),
-      axes_(actual_, queue_),
-      stand_(actual_),
-      light_(actual_, nominal.laser.wavelength_m),
-      electronics_(actual_, effects_.Sampling()) {}
+    : path_(nominal), environment_(actual().environment, actual().seed), axes_(actual(), queue_) {}
 
 void World::StartMove(Axis axis, double to_rad) {
   if (!axes_.StartMove(axis, to_rad)) return;
-  axis == Axis::kTarget ? stand_.BeginTargetStop() : stand_.BeginReferenceStop();
+  axis == Axis::kTarget ? path_.stand().BeginTargetStop() : path_.stand().BeginReferenceStop();
 }
 
 TableState World::StateOf(Axis axis) {
@@ -33,8 +27,8 @@ TableState World::StateOf(Axis axis) {
 void World::Mount(int setup, double clamp_rad, double reseat_rad) {
   if (!axes_.AtRest())
     throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while a table moves");
-  const bool reseats = actual_.procedure.clamping == "reseat";
-  axes_.Mount(stand_.Mount(effects_.Actual({clamp_rad, reseat_rad, reseats})));
+  const bool reseats = actual().procedure.clamping == "reseat";
+  axes_.Mount(path_.stand().Mount(path_.effects().Actual({clamp_rad, reseat_rad, reseats})));
   mounted_ = queue_.Now();
   setup_ = setup;
 }
@@ -51,51 +45,38 @@ Moment World::Look(const mechanics::StackState& axes) {
   moment.reference_direction = axes_.Direction(Axis::kReference);
   moment.setup = setup_;
   moment.reading = next_reading_;
-  effects_.Advance(moment);
+  path_.effects().Advance(moment);
   return moment;
-}
-
-Pose World::GratingPose(const Moment& moment, const mechanics::StackState& axes) const {
-  std::array<double, 2> labels_rad = {moment.target_rad, moment.reference_rad};
-  effects_.AlterLabels(labels_rad[0], labels_rad[1]);
-  return stand_.GratingPose(moment, effects_.Pose(moment), labels_rad,
-                            {axes.target_bearing, axes.reference_bearing});
 }
 
 Pose World::GratingPose() {
   const mechanics::StackState axes = axes_.Look();
-  return GratingPose(Look(axes), axes);
-}
-
-LightState World::LookAtLight(const Moment& moment) const {
-  LightState light = light_.Nominal(moment.temperature_K);
-  effects_.AlterLight(moment, light);
-  return light;
+  return path_.GratingPose(Look(axes), axes);
 }
 
 void World::WriteIrradiance(const std::string& path) {
   const mechanics::StackState axes = axes_.Look();
   const Moment moment = Look(axes);
-  light_.WriteIrradiance(path, GratingPose(moment, axes), LookAtLight(moment));
+  path_.light().WriteIrradiance(path, path_.GratingPose(moment, axes), path_.LightAt(moment));
 }
 
 Acquisition World::Acquire(int n_samples, bool keep_raw) {
   const mechanics::StackState axes = axes_.Look();
   const Moment moment = Look(axes);
-  const Spots spots = light_.Trace(GratingPose(moment, axes), LookAtLight(moment));
+  const Spots spots = path_.light().Trace(path_.GratingPose(moment, axes), path_.LightAt(moment));
 
   Acquisition block;
   if (spots.status == ReadingStatus::kOk) {
-    std::array<double, kChannels> signal_V = electronics_.Amplify(spots.uv_m);
-    effects_.AlterSignal(moment, signal_V);
-    block = electronics_.Convert(signal_V, moment.now, next_reading_, n_samples, keep_raw);
-    effects_.AlterReadout(block);
+    std::array<double, kChannels> signal_V = path_.electronics().Amplify(spots.uv_m);
+    path_.effects().AlterSignal(moment, signal_V);
+    block = path_.electronics().Convert(signal_V, moment.now, next_reading_, n_samples, keep_raw);
+    path_.effects().AlterReadout(block);
   } else {
     block.start = moment.now;
     block.status = spots.status;
   }
   ++next_reading_;
-  queue_.RunUntil(moment.now + electronics_.BlockTime(n_samples));
+  queue_.RunUntil(moment.now + path_.electronics().BlockTime(n_samples));
   return block;
 }
 

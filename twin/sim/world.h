@@ -1,11 +1,8 @@
 #pragma once
 
 #include "twin/sim/axes.h"
-#include "twin/sim/effects_active.h"
-#include "twin/sim/electronics.h"
 #include "twin/sim/environment.h"
-#include "twin/sim/light.h"
-#include "twin/sim/stand.h"
+#include "twin/sim/optical_path.h"
 
 namespace twinbench::sim {
 
@@ -16,14 +13,14 @@ class World {
 
   EventQueue& queue() { return queue_; }
   Environment& environment() { return environment_; }
-  const Scenario& actual() const { return actual_; }
+  const Scenario& actual() const { return path_.actual(); }
 
   void StartMove(mechanics::Axis axis, double to_rad);
   bool Settles(mechanics::Axis axis, Duration within) { return axes_.Settles(axis, within); }
   void Stop(mechanics::Axis axis) { axes_.Stop(axis); }
   TableState StateOf(mechanics::Axis axis);
   void Mount(int setup, double clamp_rad, double reseat_rad);
-  void SetGoniometer(double yaw_rad, double tilt_rad) { stand_.SetGoniometer(yaw_rad, tilt_rad); }
+  void SetGoniometer(double yaw_rad, double tilt_rad) { path_.stand().SetGoniometer(yaw_rad, tilt_rad); }
 
   /// X_LG now, effects included.
   Pose GratingPose();
@@ -34,21 +31,15 @@ class World {
   /// Pictures of both PSDs as the light falls now.
   void WriteIrradiance(const std::string& path);
 
-  const Stand& stand() const { return stand_; }
+  const Stand& stand() const { return path_.stand(); }
 
  private:
   Moment Look(const mechanics::StackState& axes);
-  LightState LookAtLight(const Moment& moment) const;
-  Pose GratingPose(const Moment& moment, const mechanics::StackState& axes) const;
 
   EventQueue queue_;
-  ActiveEffects effects_;
-  Scenario actual_;
+  OpticalPath path_;
   Environment environment_;
   Axes axes_;
-  Stand stand_;
-  Light light_;
-  Electronics electronics_;
   Time mounted_{};
   int setup_ = 0;
   int next_reading_ = 0;

@@ -1,0 +1,29 @@
+#include "twin/sim/optical_path.h"
+
+namespace twinbench::sim {
+
+OpticalPath::OpticalPath(const Scenario& nominal)
+    : effects_(nominal),
+      actual_(effects_.ActualBench(nominal)),
+      stand_(actual_),
+      light_(actual_, nominal.laser.wavelength_m),
+      electronics_(actual_, effects_.Sampling()) {}
+
+Pose GratingPose(const Stand& stand, const ActiveEffects& effects, const Moment& moment,
+                 const mechanics::StackState& axes, const PoseState& pose) {
+  std::array<double, 2> labels_rad = {moment.target_rad, moment.reference_rad};
+  effects.AlterLabels(labels_rad[0], labels_rad[1]);
+  return stand.GratingPose(moment, pose, labels_rad, {axes.target_bearing, axes.reference_bearing});
+}
+
+Pose OpticalPath::GratingPose(const Moment& moment, const mechanics::StackState& axes) const {
+  return sim::GratingPose(stand_, effects_, moment, axes, effects_.Pose(moment));
+}
+
+LightState OpticalPath::LightAt(const Moment& moment) const {
+  LightState light = light_.Nominal(moment.temperature_K);
+  effects_.AlterLight(moment, light);
+  return light;
+}
+
+}  // namespace twinbench::sim
