@@ -22,6 +22,7 @@
 #include "twin/procedure/hob.h"
 #include "twin/procedure/procedure.h"
 #include "twin/procedure/turntable.h"
+#include "twin/sim/follow_bench.h"
 
 namespace twinbench::tools {
 namespace {
@@ -50,10 +51,10 @@ class InterruptGuard {
 };
 
 diagnose::LinearRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
-  if (scenario.bench == kEncoderBench) return diagnose::encoder::BuildRun(readings, scenario).run;
+  if (scenario.bench == kEncoderBench) return diagnose::encoder::BuildRun(readings, scenario, sim::FollowBench).run;
   if (scenario.bench == kTurntableBench) return diagnose::turntable::BuildRun(readings, scenario).run;
   if (scenario.bench == kHobBench) return diagnose::hob::BuildRun(readings, scenario).run;
-  return diagnose::rotary::BuildRun(readings, scenario, published).run;
+  return diagnose::rotary::BuildRun(readings, scenario, {published, sim::FollowBench}).run;
 }
 
 int PlannedReadings(const Scenario& scenario) {

@@ -183,9 +183,8 @@ BenchWords RotaryWords(const rotary::RotaryCase& rotary) {
 
 DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario& scenario,
                             const DiagnoseOptions& options) {
-  const bool published = options.model == measure::Estimator::kPublished;
   rotary::ConventionResult convention{"", 0.0, as_read};
-  if (!IsStruck(options, "convention")) convention = rotary::ScreenConventions(as_read, scenario, published);
+  if (!IsStruck(options, "convention")) convention = rotary::ScreenConventions(as_read, scenario, ForwardModelOf(options));
   SearchedRotary searched = SearchRotary(convention.readings, scenario, options);
   if (!convention.where.empty())
     searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
@@ -202,7 +201,7 @@ DiagnosisRun DiagnoseRotary(const std::vector<Reading>& as_read, const Scenario&
 
 DiagnosisRun DiagnoseEncoder(const std::vector<Reading>& readings, const Scenario& scenario,
                              const DiagnoseOptions& options) {
-  const encoder::EncoderRun encoder = encoder::BuildRun(readings, scenario);
+  const encoder::EncoderRun encoder = encoder::BuildRun(readings, scenario, options.follow);
   const std::vector<Family> families = encoder::Families(encoder, options.struck);
   AnalysisOptions how = AnalysisOptionsOf(options);
   how.most_causes = 8;  // an angle device may well have an error of many orders

@@ -14,14 +14,14 @@ namespace {
 class Trial {
  public:
   Trial(const std::vector<Reading>& readings, const DiagnoseOptions& options)
-      : readings_(readings), options_(options), published_(options.model == measure::Estimator::kPublished) {}
+      : readings_(readings), options_(options), model_(ForwardModelOf(options)) {}
 
   std::unique_ptr<rotary::RotaryCase> Case(const Scenario& scenario,
                                            const std::vector<EffectSettings>& about = {}) const {
-    return std::make_unique<rotary::RotaryCase>(readings_, scenario, published_, options_.struck, about);
+    return std::make_unique<rotary::RotaryCase>(readings_, scenario, model_, options_.struck, about);
   }
   rotary::RotaryRun Run(const Scenario& scenario) const {
-    return rotary::BuildRun(readings_, scenario, published_);
+    return rotary::BuildRun(readings_, scenario, model_);
   }
   Analysis Search(const rotary::RotaryCase& rotary) const {
     return Analyse(rotary.Rotary().run, rotary.Families(), AnalysisOptionsOf(options_));
@@ -31,7 +31,7 @@ class Trial {
  private:
   const std::vector<Reading>& readings_;
   const DiagnoseOptions& options_;
-  bool published_;
+  rotary::ForwardModel model_;
 };
 
 Scenario With(Scenario scenario, const EffectSettings& effect) {
@@ -132,6 +132,10 @@ void SearchAboutSuspect(const Trial& trial, const Scenario& scenario, SearchedRo
 }
 
 }  // namespace
+
+rotary::ForwardModel ForwardModelOf(const DiagnoseOptions& options) {
+  return {options.model == measure::Estimator::kPublished, options.follow};
+}
 
 AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options) {
   return {options.null_runs, options.cache_folder, 4, nullptr};

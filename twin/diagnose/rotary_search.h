@@ -28,6 +28,7 @@ struct SearchedRotary {
 SearchedRotary SearchRotary(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options);
 
+rotary::ForwardModel ForwardModelOf(const DiagnoseOptions& options);
 AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options);
 bool IsStruck(const DiagnoseOptions& options, const std::string& effect);
 

@@ -69,6 +69,18 @@ Eigen::VectorXd KnownSignal_rad(const Scenario& scenario, const SignalContext& c
   return known_rad;
 }
 
+/// With the speeds that were derived.
+std::vector<Reading> AsFollowed(std::vector<Reading> used, const Schedule& s) {
+  for (std::size_t i = 0; i < used.size(); ++i)
+    used[i].velocity_rad_s = s.velocity_rad_s[static_cast<Eigen::Index>(i)];
+  return used;
+}
+
+/// What the twin's device shows beside the reference.
+Eigen::VectorXd FollowedError_rad(const Schedule& s, const model::Follow& twin) {
+  return twin.Predict().col(0) - s.reference_rad;
+}
+
 void SetNoise(LinearRun& run, const DeviceSettings& device) {
   run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
   const double sigma_rad = run.sigma_stated ? std::hypot(device.noise_rad, device.resolution_rad / std::sqrt(12.0))
@@ -78,7 +90,8 @@ void SetNoise(LinearRun& run, const DeviceSettings& device) {
 
 }  // namespace
 
-EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario) {
+EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
+                    const model::FollowMaker& follow) {
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
   if (std::ssize(comparison.used) < kFewest)
     throw InputError("readings", fmt::format("{} of {} have a value", comparison.used.size(), readings.size()),
@@ -86,7 +99,8 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   EncoderRun encoder;
   encoder.left_out = comparison.left_out;
   LinearRun& run = encoder.run;
-  run.schedule = ScheduleOf(Chosen(readings, comparison.used));
+  const std::vector<Reading> used = Chosen(readings, comparison.used);
+  run.schedule = ScheduleOf(used);
   if (scenario.encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);
   run.channels = {"angle"};
   run.unit = "deg";
@@ -98,7 +112,8 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   const Eigen::VectorXd offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
   encoder.context = ContextOf(run.schedule, run.schedule.reference_rad + offset_rad, scenario.device);
   run.observed = run.schedule.reference_rad + comparison.error_rad;
-  run.residual = comparison.error_rad - KnownSignal_rad(scenario, encoder.context);
+  run.residual = comparison.error_rad - (follow ? FollowedError_rad(run.schedule, *follow(scenario, AsFollowed(used, run.schedule)))
+                                                : KnownSignal_rad(scenario, encoder.context));
   run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
   SetNoise(run, scenario.device);
   return encoder;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "twin/diagnose/encoder/signals.h"
+#include "twin/model/follow.h"
 
 /// The forward model of an angle comparison: an ideal device, turned on the shaft by an unknown angle at each
 /// set-up, with the effects that the scenario already knows.
@@ -18,7 +19,9 @@ struct EncoderRun {
 /// is estimated from neighbouring readings, which slow structure does not reach (noise_estimate.h). Velocities that
 /// were not recorded are taken from the angles if the scenario says sweep.
 ///
+/// @param follow  The twin that says what readings should have been; empty: closed forms.
 /// @throws InputError if fewer than 12 readings have a value.
-EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario);
+EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
+                    const model::FollowMaker& follow = {});
 
 }  // namespace twinbench::diagnose::encoder

@@ -93,13 +93,14 @@ std::string LabelBlunder(const std::vector<Reading>& readings, const Scenario& s
 
 }  // namespace
 
-ConventionResult ScreenConventions(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
+ConventionResult ScreenConventions(const std::vector<Reading>& readings, const Scenario& scenario,
+                                   const ForwardModel& model) {
   constexpr double kGross = 30.0;  // chi^2 per degree of freedom below which no wire is crossed
   constexpr double kCertain = 1e4;
   const std::string label = LabelBlunder(readings, scenario);
   if (!label.empty()) return {label, kCertain, Undone(label, scenario, readings)};
   const auto misfit_of = [&](const std::vector<Reading>& tried) {
-    return FreeMisfit(BuildRun(tried, scenario, published).run);
+    return FreeMisfit(BuildRun(tried, scenario, model).run);
   };
   const Misfit as_is = misfit_of(readings);
   if (as_is.power < kGross * as_is.degrees_of_freedom) return {"", 0.0, readings};

@@ -5,6 +5,7 @@
 
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
+#include "twin/diagnose/rotary/rotary_run.h"
 
 /// Wires and labels: the first real-life cause of a model that does not fit, and loud enough to drown every other.
 namespace twinbench::diagnose::rotary {
@@ -18,6 +19,7 @@ struct ConventionResult {
 /// Tries each swap, sign and index blunder of the catalogue on the readings and compares how well the free model
 /// fits. Index and sense are judged by the commanded angles, the scenario's shifts and the direction of travel
 /// alone.
-ConventionResult ScreenConventions(const std::vector<Reading>& readings, const Scenario& scenario, bool published);
+ConventionResult ScreenConventions(const std::vector<Reading>& readings, const Scenario& scenario,
+                                   const ForwardModel& model);
 
 }  // namespace twinbench::diagnose::rotary

@@ -5,6 +5,8 @@
 
 #include "twin/diagnose/rotary/free_parameters.h"
 #include "twin/diagnose/rotary/known_effects.h"
+#include "twin/core/errors.h"
+#include "twin/measure/calibrate.h"
 #include "twin/measure/grating_model.h"
 #include "twin/separate/prediction.h"
 
@@ -88,19 +90,52 @@ void AddCalibratedColumns(const Design& design, int row, const OpticalBench& ben
   }
 }
 
+/// What the closed forms say that the readings should have been, by row [m].
+Eigen::VectorXd ModelledSpots(const RotaryRun& rotary, const Scenario& scenario) {
+  Eigen::VectorXd shown_m = KnownSignal(scenario, ContextOf(rotary, scenario, rotary.run.observed));
+  for (std::size_t i = 0; i < rotary.motion.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    shown_m.segment<4>(kChannels * at) += ShownSpots(BenchAt(rotary, at, scenario), rotary.motion[i]);
+  }
+  return shown_m;
+}
+
+/// What the twin says. The free motions come in between the grating and what carries it; in the calibration these
+/// are the mounting's alone, because the twin itself puts the grating where the autocollimator saw it.
+Eigen::VectorXd FollowedSpots(const RotaryRun& rotary, const std::vector<Stance>& stances, const Eigen::VectorXd& x,
+                              const model::Follow& twin) {
+  const Vector4 mount = x.segment<4>(CalibrationMountColumn(rotary.design)).cwiseQuotient(separate::UnitScale());
+  Eigen::MatrixXd free(std::ssize(stances), 4);
+  for (std::size_t i = 0; i < stances.size(); ++i)
+    free.row(static_cast<Eigen::Index>(i)) = stances[i].setup < 0 ? mount : rotary.motion[i];
+  const Eigen::MatrixXd shown_V = twin.Predict({{"mount.ez", free.col(0)},
+                                                {"mount.ex", free.col(1)},
+                                                {"mount.ey", free.col(2)},
+                                                {"mount.dy", free.col(3)}});
+  Eigen::VectorXd shown_m(rotary.run.observed.size());
+  for (Eigen::Index i = 0; i < shown_V.rows(); ++i) {
+    if (!shown_V.row(i).allFinite())
+      throw InputError("reading " + std::to_string(rotary.run.schedule.reading[static_cast<std::size_t>(i)]),
+                       "it has a value where the scenario's bench would show none",
+                       "a scenario of the bench that the readings come from");
+    const std::array<double, kChannels> reading_V = {shown_V(i, 0), shown_V(i, 1), shown_V(i, 2), shown_V(i, 3)};
+    shown_m.segment<4>(kChannels * i) = measure::OnSurface(reading_V, rotary.bench.nominal);
+  }
+  return shown_m;
+}
+
 }  // namespace
 
 void Linearise(const Scenario& scenario, const std::vector<Stance>& stances, const Eigen::VectorXd& x,
-               const Eigen::VectorXd& known_m, RotaryRun& rotary) {
+               const model::Follow* twin, RotaryRun& rotary) {
   LinearRun& run = rotary.run;
   rotary.motion = Motions(rotary, stances, x);
+  run.residual = run.observed - (twin ? FollowedSpots(rotary, stances, x, *twin) : ModelledSpots(rotary, scenario));
   std::vector<Entry> entries;
   for (std::size_t i = 0; i < stances.size(); ++i) {
     const int row = kChannels * static_cast<int>(i);
     const OpticalBench bench = BenchAt(rotary, static_cast<Eigen::Index>(i), scenario);
     const Vector4& motion = rotary.motion[i];
-    run.residual.segment<4>(row) =
-        run.observed.segment<4>(row) - ShownSpots(bench, motion) - known_m.segment<4>(row);
     AddMotionColumns(rotary.design, stances[i], row, ShownJacobian(bench, motion), entries);
     if (!bench.published) AddCalibratedColumns(rotary.design, row, bench, motion, entries);
   }

@@ -15,8 +15,9 @@ namespace twinbench::diagnose::rotary {
 /// @param stances  One a used reading.
 /// @param x        The free unknowns (free_parameters.h); calibrated parameters do not enter: they stay at what is
 ///                 believed, and only have columns.
-/// @param known_m  What effects show that the scenario already holds, by row.
+/// @param twin     Says what every reading should have been; none: the closed forms do.
+/// @throws InputError if the twin would show nothing where a reading has a value.
 void Linearise(const Scenario& scenario, const std::vector<Stance>& stances, const Eigen::VectorXd& x,
-               const Eigen::VectorXd& known_m, RotaryRun& rotary);
+               const model::Follow* twin, RotaryRun& rotary);
 
 }  // namespace twinbench::diagnose::rotary

@@ -41,13 +41,13 @@ Scenario With(Scenario scenario, const std::vector<EffectSettings>& effects) {
 
 }  // namespace
 
-RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, bool published,
+RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, const ForwardModel& model,
                        const std::vector<std::string>& struck, const std::vector<EffectSettings>& about)
-    : rotary_(BuildRun(readings, With(scenario, about), published)),
+    : rotary_(BuildRun(readings, With(scenario, about), model)),
       context_(ContextOf(rotary_, scenario, rotary_.run.Predicted())) {
   const SharedSeries series = MakeSharedSeries(rotary_);
   families_ = NamedFamilies(rotary_, context_, With(scenario, about), series);
-  if (published) {
+  if (model.published) {
     std::vector<Family> model = ModelFamilies(rotary_);
     std::ranges::move(model, std::back_inserter(families_));
   }

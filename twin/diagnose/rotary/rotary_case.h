@@ -15,7 +15,7 @@ class RotaryCase {
   /// @param about  Effects of known bench properties, one parameter each: the run and its candidates are linearised
   ///               with them in the model, and the residual is what their tangents there leave without them. So an
   ///               amplitude of theirs still counts from zero, however much the model bends on the way.
-  RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, bool published,
+  RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, const ForwardModel& model,
              const std::vector<std::string>& struck, const std::vector<EffectSettings>& about = {});
   RotaryCase(const RotaryCase&) = delete;
   RotaryCase& operator=(const RotaryCase&) = delete;

@@ -79,14 +79,13 @@ Eigen::VectorXd Improved(const Eigen::VectorXd& x, const LinearRun& run) {
   return improved;
 }
 
-void Fit(const Scenario& scenario, const std::vector<Stance>& stances, RotaryRun& rotary) {
+void Fit(const Scenario& scenario, const std::vector<Stance>& stances, const model::Follow* twin, RotaryRun& rotary) {
   constexpr int kIterations = 4;  // converges quadratically from zero: 20 arcsec squared is below a nanoradian
-  const Eigen::VectorXd known_m = KnownSignal(scenario, ContextOf(rotary, scenario, rotary.run.observed));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(UnknownsOf(rotary.design));
-  Linearise(scenario, stances, x, known_m, rotary);
+  Linearise(scenario, stances, x, twin, rotary);
   for (int k = 0; k < kIterations; ++k) {
     x = Improved(x, rotary.run);
-    Linearise(scenario, stances, x, known_m, rotary);
+    Linearise(scenario, stances, x, twin, rotary);
   }
 }
 
@@ -113,15 +112,17 @@ SignalContext ContextOf(const RotaryRun& rotary, const Scenario& scenario, const
   return context;
 }
 
-RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
+RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const ForwardModel& model) {
   const std::vector<Reading> used = UsedOf(readings);
   RotaryRun rotary;
   rotary.left_out = LeftOut(readings, used.size());
-  SetBench(scenario, published, rotary);
+  SetBench(scenario, model.published, rotary);
   SetReadings(used, scenario, rotary);
   Stances stances = FindStances(used, scenario, rotary.bench);
   SetUnknowns(std::move(stances.design), rotary);
-  Fit(scenario, stances.of_reading, rotary);
+  std::unique_ptr<model::Follow> twin;
+  if (model.follow && !model.published) twin = model.follow(scenario, used);
+  Fit(scenario, stances.of_reading, twin.get(), rotary);
   return rotary;
 }
 

@@ -8,6 +8,7 @@
 #include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/rotary/known_effects.h"
 #include "twin/diagnose/rotary/optical_bench.h"
+#include "twin/model/follow.h"
 #include "twin/separate/design.h"
 
 /// The forward model of the rotary bench as a function: scenario and schedule -> what every reading should show,
@@ -26,6 +27,12 @@ struct RotaryRun {
   int left_out = 0;
 };
 
+/// What readings are compared with.
+struct ForwardModel {
+  bool published = false;     // equations 1-12 of Jywe et al. (2007)
+  model::FollowMaker follow;  // else the twin that follows the record; empty: the closed forms of optical_bench.h
+};
+
 /// Fits table errors and mounting constants to the readings (Gauss-Newton on the exact chain and grating equation)
 /// and linearises there. Effects that the scenario already holds are part of the model.
 ///
@@ -33,7 +40,8 @@ struct RotaryRun {
 /// what the scenario states.
 ///
 /// @throws InputError if the commanded angles are on no grid or hardly any reading is usable.
-RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published = false);
+RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
+                   const ForwardModel& model = {});
 
 /// What additive effects need to know about the run; keeps references into it.
 /// @param shown_m  What the channels show, by row, for effects that depend on it: the prediction, or the readings.

@@ -15,6 +15,11 @@ double Approach_rad(const Reading& reading, const EncoderProcedureSettings& proc
   return reading.direction * units::kPi / procedure.stops;
 }
 
+AngleMoment MomentOf(const Reading& reading, const Scenario& scenario) {
+  return {reading.time,          reading.setup,          reading.reading,
+          reading.reference_rad, reading.velocity_rad_s, Approach_rad(reading, scenario.encoder_procedure)};
+}
+
 double Noise(const Scenario& scenario, int reading) {
   Stream stream(scenario.seed, "device.noise");
   stream.Seek(static_cast<std::uint64_t>(reading));
@@ -45,9 +50,16 @@ EncoderTwin::EncoderTwin(const Scenario& scenario) : scenario_(scenario), empiri
   for (const auto& effect : effects_) effect->AlterSignals(signals_);
 }
 
+/// A record of somebody else may have more set-ups than the scenario: where the device stood then is unknown.
+double EncoderTwin::MountingOf_rad(int setup) const {
+  const std::vector<double>& mounting_rad = scenario_.encoder_procedure.mounting_rad;
+  const auto at = static_cast<std::size_t>(setup);
+  return at < mounting_rad.size() ? mounting_rad[at] : 0.0;
+}
+
 /// Of the device's shaft, as its scale counts.
 double EncoderTwin::ShaftAngle_rad(const AngleMoment& moment) const {
-  double device_rad = moment.shaft_rad + scenario_.encoder_procedure.mounting_rad[moment.setup];
+  double device_rad = moment.shaft_rad + MountingOf_rad(moment.setup);
   for (const auto& effect : effects_) device_rad += effect->ShaftError_rad(moment);
   return device_rad;
 }
@@ -66,14 +78,26 @@ double EncoderTwin::ReferenceError_rad(const AngleMoment& moment) const {
   return error_rad;
 }
 
+double EncoderTwin::Shown_rad(const AngleMoment& moment) const {
+  const double device_rad = ShaftAngle_rad(moment);
+  return device_rad + DeviceError_rad(moment, device_rad) + empirical_.At_rad(moment.reading);
+}
+
+double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
+  AngleMoment moment = MomentOf(reading, scenario_);
+  // A reference that errs by arcseconds an arcminute: each step leaves a hundredth of what is wrong, or less.
+  constexpr int kSteps = 5;
+  for (int k = 0; k < kSteps; ++k) moment.shaft_rad = reading.reference_rad - ReferenceError_rad(moment);
+  moment.shaft_rad += shaft_rad;
+  for (const auto& effect : effects_) effect->Advance(moment);
+  return Shown_rad(moment);
+}
+
 void EncoderTwin::Take(Reading& reading) {
-  const AngleMoment moment{reading.time,           reading.setup,
-                           reading.reading,        reading.reference_rad,
-                           reading.velocity_rad_s, Approach_rad(reading, scenario_.encoder_procedure)};
+  const AngleMoment moment = MomentOf(reading, scenario_);
   for (const auto& effect : effects_) effect->Advance(moment);
   reading.reference_rad += ReferenceError_rad(moment);
-  const double device_rad = ShaftAngle_rad(moment);
-  reading.measured_rad = device_rad + DeviceError_rad(moment, device_rad) + empirical_.At_rad(reading.reading);
+  reading.measured_rad = Shown_rad(moment);
   if (scenario_.noise_free) return;
   reading.measured_rad =
       Quantised(reading.measured_rad + Noise(scenario_, reading.reading), scenario_.device.resolution_rad);

@@ -20,12 +20,19 @@ class EncoderTwin : public AngleComparator {
 
   void Take(Reading& reading) override;
 
+  /// What the device would show, noise apart, at the instant when the reference showed `reading.reference_rad`.
+  /// Readings are asked for in their order.
+  /// @param shaft_rad  By how much the shaft stands beside where the reference says.
+  double DeviceAt_rad(const Reading& reading, double shaft_rad = 0.0);
+
   /// {"device": {"position_deg", "ez_arcsec"}, "reference": same, "effects": [...], "seed": n}: opened only by
   /// tests and scores. Both curves show too much where positive, each by its own angle at every degree, without
   /// their mean.
   nlohmann::json Truth() const;
 
  private:
+  double MountingOf_rad(int setup) const;
+  double Shown_rad(const AngleMoment& moment) const;
   double ShaftAngle_rad(const AngleMoment& moment) const;
   double DeviceError_rad(const AngleMoment& moment, double device_rad) const;
   double ReferenceError_rad(const AngleMoment& moment) const;

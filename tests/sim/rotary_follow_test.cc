@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/angle_benches.h"
+#include "tests/support/small_scenario.h"
+#include "twin/sim/rotary_follow.h"
+
+namespace twinbench::sim {
+namespace {
+
+using model::Disturbance;
+using units::arcsec;
+
+constexpr double kVolts_per_metre = 2000.0;
+
+/// The errors that the run's tables had at each reading, at the points where they enter.
+std::vector<Disturbance> TablesOf(const test::TwinRun& run) {
+  const char* const names[] = {"ex", "ey", "ez", "dx", "dy", "dz"};
+  const int positions = run.scenario.procedure.positions;
+  const auto row = [positions](double angle_rad) {
+    const long k = std::lround(angle_rad / (2.0 * units::kPi) * positions) % positions;
+    return static_cast<std::size_t>(k < 0 ? k + positions : k);
+  };
+  std::vector<Disturbance> disturbances;
+  for (const bool target : {true, false}) {
+    const TableErrors& errors = target ? run.truth.target : run.truth.reference;
+    for (std::size_t c = 0; c < kComponents; ++c) {
+      Eigen::VectorXd value(std::ssize(run.readings));
+      for (std::size_t i = 0; i < run.readings.size(); ++i) {
+        const Reading& r = run.readings[i];
+        value[static_cast<Eigen::Index>(i)] = errors.value[c][row(target ? r.target_rad : r.reference_rad)];
+      }
+      disturbances.push_back({(target ? "target." : "reference.") + std::string(names[c]), value});
+    }
+  }
+  return disturbances;
+}
+
+/// The largest difference between what the twin showed and what it says that it should have shown.
+double Apart_m(const test::TwinRun& run) {
+  const Eigen::MatrixXd followed_V = FollowRotary(run.scenario, run.readings)->Predict(TablesOf(run));
+  double apart_V = 0.0;
+  for (std::size_t i = 0; i < run.readings.size(); ++i) {
+    if (run.readings[i].status != ReadingStatus::kOk) continue;
+    for (int c = 0; c < kChannels; ++c)
+      apart_V = std::max(apart_V, std::abs(followed_V(static_cast<Eigen::Index>(i), c) - run.readings[i].mean_V[c]));
+  }
+  return apart_V / kVolts_per_metre;
+}
+
+/// A bench of which nothing is at its ideal value.
+Scenario RichBench() {
+  Scenario s = test::SmallNoiseFree();
+  s.target.harmonics = {{Component::kEz, 1, 20.0 * arcsec, 0.3}, {Component::kDy, 2, 3.0 * units::um, 1.0}};
+  s.reference.harmonics = {{Component::kEx, 1, 10.0 * arcsec, 0.1}, {Component::kDx, 1, 2.0 * units::um, 0.0}};
+  s.centring_m = {4e-6, -3e-6};
+  s.mount_tilt_rad = {15.0 * arcsec, -10.0 * arcsec};
+  s.target.half_frequency_tilt_rad = 1.0 * arcsec;
+  s.target.backlash_rad = 2.0 * arcsec;
+  s.laser.position_m.x() = 0.5 * units::mm;
+  s.laser.yaw_rad = 50e-6;
+  s.laser.pointing_yaw_per_kelvin_rad = 20e-6;
+  s.laser.wavelength_per_kelvin_m = 0.1 * units::nm;
+  s.psd_a.tilt_u_rad = 0.02;
+  s.psd_b.tilt_v_rad = 0.03;
+  s.amplifier.hum_V = 0.02;
+  s.amplifier.offset_V = {0.01, -0.02, 0.03, 0.005};
+  s.autocollimator.gain_error = 0.002;
+  s.environment.drift_K_h = 0.4;
+  s.environment.swing_K = 0.2;
+  s.mechanics.payload_mass_kg = 5.0;
+  s.mechanics.payload_radius_m = 0.05;
+  s.procedure.dwell_s = {0.5, 1.0, 4.0};
+  return s;
+}
+
+// The readings were printed with all their bits, angles and times are the record's own: what is left is rounding in
+// the chain and Newton's last step at the autocollimator.
+constexpr double kRounding_m = 1e-12;
+
+TEST(RotaryFollow, SaysWhatThePlainTwinShows) {
+  EXPECT_LT(Apart_m(test::RunTwin(test::SmallNoiseFree())), kRounding_m);
+}
+
+TEST(RotaryFollow, SaysWhatARichTwinShows) {
+  EXPECT_LT(Apart_m(test::RunTwin(RichBench())), kRounding_m);
+}
+
+TEST(RotaryFollow, SaysWhatAReclampedTwinShows) {
+  Scenario s = RichBench();
+  s.procedure.clamping = "reclamp";
+  EXPECT_LT(Apart_m(test::RunTwin(s)), kRounding_m);
+}
+
+TEST(RotaryFollow, KnowsTheDynamicsOfTheLinearStack) {
+  Scenario s = RichBench();
+  s.mechanics.fidelity = "linear";
+  // The record says when a reading was taken, not for how long the servo had rung.
+  EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
+}
+
+class RotaryFollowEffect : public testing::TestWithParam<EffectEntry> {};
+
+TEST_P(RotaryFollowEffect, IsFollowed) {
+  for (const std::string& where : GetParam().places.empty() ? std::vector<std::string>{""} : GetParam().places) {
+    Scenario s = RichBench();
+    EffectSettings effect = test::PlainEffect(GetParam());
+    effect.where = where;
+    s.effects = {effect};
+    // Labels that are not the rotors' angles change which of the tables' errors act; those are free here.
+    if (where.starts_with("reverse") || where == "index_offset") s.target.harmonics = s.reference.harmonics = {};
+    EXPECT_LT(Apart_m(test::RunTwin(s)), kRounding_m) << effect.name << " " << where;
+  }
+}
+
+std::vector<EffectEntry> Foreseeable() {
+  std::vector<EffectEntry> entries = EffectCatalogue(kRotaryBench);
+  std::erase_if(entries, [](const EffectEntry& e) { return e.name == "outliers"; });
+  return entries;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RotaryFollowEffect, testing::ValuesIn(Foreseeable()),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(RotaryFollow, DoesNotForeseeSingleOutliers) {
+  Scenario s = test::SmallNoiseFree();
+  s.effects = {{"outliers", "", {{"fraction", 0.3}, {"size", 50e-6}}, ""}};
+  EXPECT_GT(Apart_m(test::RunTwin(s)), 20e-6);
+}
+
+// d u / d yaw of a fixed beam on a grating is l1 (1 + 1 / cos theta), d v / d tilt is l1 (1 + cos theta); a lateral
+// shift moves the orders by +- tan theta; the laser's pitch moves both by its lever and the way to the PSD.
+TEST(RotaryFollow, HasTheSlopesOfTheClosedForms) {
+  const test::TwinRun run = test::RunTwin(test::SmallNoiseFree());
+  const auto follow = FollowRotary(run.scenario, run.readings);
+  const Eigen::Index stop = std::ssize(run.readings) - 1;
+  const double sine = 0.39, cosine = std::sqrt(1.0 - sine * sine), l1_m = 0.120, lever_m = 0.2;
+  const auto slope = [&](const char* point) {
+    return Eigen::RowVector4d(model::Slope(*follow, model::PointNamed(*follow, point)).row(stop) / kVolts_per_metre);
+  };
+  const double yaw = l1_m * (1.0 + 1.0 / cosine), tilt = l1_m * (1.0 + cosine), pitch = lever_m + l1_m;
+  EXPECT_NEAR(slope("mount.ez")[0] / yaw, 1.0, 1e-6);
+  EXPECT_NEAR(slope("mount.ez")[2] / yaw, 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.tilt")[1] / tilt, 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.tilt")[3] / tilt, 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.roll")[1] / (l1_m * sine), 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.roll")[3] / (-l1_m * sine), 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.lateral")[0] / (sine / cosine), 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.lateral")[2] / (-sine / cosine), 1.0, 1e-6);
+  EXPECT_NEAR(slope("laser.pitch")[1] / pitch, 1.0, 1e-6);
+  EXPECT_NEAR(slope("psd_b_y")[3], 1.0, 1e-9);
+  // Target and grating differ by the height of the spot and by where the axes stand.
+  EXPECT_NEAR(slope("target.ez")[0] / slope("grating.yaw")[0], 1.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace twinbench::sim
