@@ -9,11 +9,9 @@
 #include "tests/sim/encoder_run.h"
 #include "twin/diagnose/engine/projector.h"
 
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::encoder {
 namespace {
 
-using encoder::BuildRun;
-using encoder::EncoderRun;
 using twinbench::test::EncoderEffect;
 using twinbench::test::EncoderScenario;
 using twinbench::test::ReadingsWith;
@@ -150,4 +148,4 @@ TEST(EncoderRun, OfStopsHasNoVelocityWhereTimeIsAnOrderOnly) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::encoder

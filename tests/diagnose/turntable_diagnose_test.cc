@@ -10,7 +10,7 @@
 #include "twin/diagnose/words.h"
 
 // Whole diagnoses of readings that the independent bench made, with noise.
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::turntable {
 namespace {
 
 using test::BenchReadings;
@@ -235,4 +235,4 @@ TEST(TurntableDiagnosis, SaysWhatMissingColumnsCost) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::turntable

@@ -6,16 +6,11 @@
 #include <fstream>
 
 #include "optics/irradiance.h"
+#include "tests/sim/quiet_scenario.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::sim {
 namespace {
-
-Scenario Quiet() {
-  Scenario scenario;
-  scenario.noise_free = true;
-  return scenario;
-}
 
 std::array<double, kChannels> ReadOnce(Twin& twin) {
   RotaryBench bench = twin.Bench();

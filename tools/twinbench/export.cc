@@ -9,12 +9,12 @@
 namespace twinbench::tools {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string folder;
   std::string readings = "-";
 };
 
-void Export(const Options& options) {
+void Export(const ExportOptions& options) {
   const auto readings = RunRecord::Open(options.folder)->Readings();
   if (options.readings == "-") return WriteReadingsCsv(readings, std::cout);
   WriteReadingsCsv(readings, options.readings);
@@ -25,7 +25,7 @@ void Export(const Options& options) {
 
 void AddExport(CLI::App& app) {
   auto* command = app.add_subcommand("export", "Write the readings of a run as readings.csv");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   command->add_option("run", options->folder, "folder of the run")->required();
   command->add_option("--readings", options->readings, "file to write, - for stdout")->capture_default_str();
   command->callback([options] { Export(*options); });
