@@ -59,10 +59,10 @@ void PrintTo(const Case& c, std::ostream* out) {
 class FaultOf : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     Answers, FaultOf,
-    testing::Values(Case{"scpi", "mute", FaultKind::kBeyondFaults}, Case{"scpi", "late", FaultKind::kBeyondFaults},
-                    Case{"scpi", "partial", FaultKind::kBeyondFaults}, Case{"scpi", "disconnect", FaultKind::kDropped},
-                    Case{"scpi", "restart", FaultKind::kRestarted}, Case{"esp", "mute", FaultKind::kBeyondFaults},
-                    Case{"esp", "late", FaultKind::kBeyondFaults}, Case{"esp", "partial", FaultKind::kBeyondFaults},
+    testing::Values(Case{"scpi", "mute", FaultKind::kTimeout}, Case{"scpi", "late", FaultKind::kTimeout},
+                    Case{"scpi", "partial", FaultKind::kTimeout}, Case{"scpi", "disconnect", FaultKind::kDropped},
+                    Case{"scpi", "restart", FaultKind::kRestarted}, Case{"esp", "mute", FaultKind::kTimeout},
+                    Case{"esp", "late", FaultKind::kTimeout}, Case{"esp", "partial", FaultKind::kTimeout},
                     Case{"esp", "disconnect", FaultKind::kDropped}, Case{"esp", "restart", FaultKind::kRestarted}),
     [](const auto& c) { return c.param.language + "_" + c.param.fault; });
 

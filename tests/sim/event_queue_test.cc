@@ -22,7 +22,7 @@ TEST(EventQueue, RunsEventsInTheOrderOfTheirTime) {
   EventQueue queue;
   std::vector<std::int64_t> seen;
   for (const std::int64_t ns : {30, 10, 20})
-    queue.AtNs(AtNs(ns), [&] { seen.push_back(queue.Now().time_since_epoch().count()); });
+    queue.At(AtNs(ns), [&] { seen.push_back(queue.Now().time_since_epoch().count()); });
   while (queue.RunOne()) continue;
   EXPECT_EQ(seen, (std::vector<std::int64_t>{10, 20, 30}));
 }
@@ -30,7 +30,7 @@ TEST(EventQueue, RunsEventsInTheOrderOfTheirTime) {
 TEST(EventQueue, KeepsTheOrderOfAdditionAtEqualTimes) {
   EventQueue queue;
   std::vector<int> seen;
-  for (int i = 0; i < 1000; ++i) queue.AtNs(AtNs(5), [&seen, i] { seen.push_back(i); });
+  for (int i = 0; i < 1000; ++i) queue.At(AtNs(5), [&seen, i] { seen.push_back(i); });
   queue.RunUntil(AtNs(5));
   ASSERT_EQ(seen.size(), 1000u);
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(seen[static_cast<std::size_t>(i)], i);
@@ -39,11 +39,11 @@ TEST(EventQueue, KeepsTheOrderOfAdditionAtEqualTimes) {
 TEST(EventQueue, RunsAnEventThatIsAddedForNowAfterThoseThatWait) {
   EventQueue queue;
   std::string seen;
-  queue.AtNs(AtNs(5), [&] {
+  queue.At(AtNs(5), [&] {
     seen += 'a';
     queue.After(Duration(0), [&] { seen += 'c'; });
   });
-  queue.AtNs(AtNs(5), [&] { seen += 'b'; });
+  queue.At(AtNs(5), [&] { seen += 'b'; });
   queue.RunUntil(AtNs(5));
   EXPECT_EQ(seen, "abc");
 }
@@ -51,8 +51,8 @@ TEST(EventQueue, RunsAnEventThatIsAddedForNowAfterThoseThatWait) {
 TEST(EventQueue, StopsTheClockWhereItIsTold) {
   EventQueue queue;
   int n = 0;
-  queue.AtNs(AtNs(10), [&] { ++n; });
-  queue.AtNs(AtNs(11), [&] { ++n; });
+  queue.At(AtNs(10), [&] { ++n; });
+  queue.At(AtNs(11), [&] { ++n; });
   queue.RunUntil(AtNs(10));
   EXPECT_EQ(n, 1);
   EXPECT_EQ(queue.Now(), AtNs(10));
@@ -65,7 +65,7 @@ TEST(EventQueue, StopsTheClockWhereItIsTold) {
 TEST(EventQueue, RefusesThePast) {
   EventQueue queue;
   queue.RunUntil(AtNs(100));
-  EXPECT_THROW(queue.AtNs(AtNs(99), [] {}), std::logic_error);
+  EXPECT_THROW(queue.At(AtNs(99), [] {}), std::logic_error);
   EXPECT_THROW(queue.After(Duration(-1), [] {}), std::logic_error);
   EXPECT_THROW(queue.After(Duration::max(), [] {}), std::logic_error);
   EXPECT_THROW(queue.RunUntil(AtNs(99)), std::logic_error);
@@ -75,7 +75,7 @@ TEST(EventQueue, RefusesThePast) {
 TEST(EventQueue, DoesNotRunACancelledEvent) {
   EventQueue queue;
   int n = 0;
-  const EventId id = queue.AtNs(AtNs(10), [&] { ++n; });
+  const EventId id = queue.At(AtNs(10), [&] { ++n; });
   EXPECT_TRUE(queue.Cancel(id));
   EXPECT_EQ(queue.Pending(), 0u);
   EXPECT_FALSE(queue.Cancel(id));
@@ -87,9 +87,9 @@ TEST(EventQueue, DoesNotRunACancelledEvent) {
 TEST(EventQueue, DoesNotMistakeANewEventForAnOldOneInTheSameSlot) {
   EventQueue queue;
   int n = 0;
-  const EventId old_id = queue.AtNs(AtNs(10), [] {});
+  const EventId old_id = queue.At(AtNs(10), [] {});
   queue.RunOne();
-  const EventId new_id = queue.AtNs(AtNs(20), [&] { ++n; });
+  const EventId new_id = queue.At(AtNs(20), [&] { ++n; });
   ASSERT_EQ(old_id.slot, new_id.slot);
   EXPECT_FALSE(queue.Cancel(old_id));
   EXPECT_FALSE(queue.Cancel(EventId{}));
@@ -101,7 +101,7 @@ TEST(EventQueue, CannotCancelTheEventThatIsRunning) {
   EventQueue queue;
   EventId id;
   bool cancelled = true;
-  id = queue.AtNs(AtNs(1), [&] { cancelled = queue.Cancel(id); });
+  id = queue.At(AtNs(1), [&] { cancelled = queue.Cancel(id); });
   queue.RunOne();
   EXPECT_FALSE(cancelled);
 }
@@ -109,8 +109,8 @@ TEST(EventQueue, CannotCancelTheEventThatIsRunning) {
 TEST(EventQueue, GoesOnAfterAnExceptionInACallback) {
   EventQueue queue;
   int n = 0;
-  queue.AtNs(AtNs(1), [] { throw std::runtime_error("device lost"); });
-  queue.AtNs(AtNs(2), [&] { ++n; });
+  queue.At(AtNs(1), [] { throw std::runtime_error("device lost"); });
+  queue.At(AtNs(2), [&] { ++n; });
   EXPECT_THROW(queue.RunUntil(AtNs(5)), std::runtime_error);
   EXPECT_EQ(queue.Now(), AtNs(1));
   EXPECT_EQ(queue.Pending(), 1u);
@@ -121,7 +121,7 @@ TEST(EventQueue, GoesOnAfterAnExceptionInACallback) {
 TEST(EventQueue, RunsUntilAConditionFailsOrNothingIsLeft) {
   EventQueue queue;
   int n = 0;
-  for (int i = 1; i <= 5; ++i) queue.AtNs(AtNs(i), [&] { ++n; });
+  for (int i = 1; i <= 5; ++i) queue.At(AtNs(i), [&] { ++n; });
   EXPECT_TRUE(queue.RunWhile([&] { return n < 3; }));
   EXPECT_EQ(queue.Now(), AtNs(3));
   EXPECT_FALSE(queue.RunWhile([&] { return n < 9; }));
@@ -131,12 +131,12 @@ TEST(EventQueue, RunsUntilAConditionFailsOrNothingIsLeft) {
 TEST(EventQueue, MayBeRunFromInsideAnEvent) {
   EventQueue queue;
   std::string seen;
-  queue.AtNs(AtNs(1), [&] {
+  queue.At(AtNs(1), [&] {
     seen += 'a';
     queue.RunUntil(AtNs(20));
     seen += 'c';
   });
-  queue.AtNs(AtNs(15), [&] { seen += 'b'; });
+  queue.At(AtNs(15), [&] { seen += 'b'; });
   queue.RunUntil(AtNs(10));
   EXPECT_EQ(seen, "abc");
   EXPECT_EQ(queue.Now(), AtNs(20));  // never back to 10
@@ -146,9 +146,9 @@ TEST(EventQueue, DestroysCapturesWhenTheyAreNoLongerNeeded) {
   const auto token = std::make_shared<int>(0);
   {
     EventQueue queue;
-    const EventId cancelled = queue.AtNs(AtNs(1), [token] {});
-    queue.AtNs(AtNs(2), [token] {});
-    queue.AtNs(AtNs(3), [token] {});
+    const EventId cancelled = queue.At(AtNs(1), [token] {});
+    queue.At(AtNs(2), [token] {});
+    queue.At(AtNs(3), [token] {});
     EXPECT_EQ(token.use_count(), 4);
     queue.Cancel(cancelled);
     EXPECT_EQ(token.use_count(), 3);
@@ -215,7 +215,7 @@ TEST(EventQueue, BehavesLikeASortedListInARandomLife) {
     if (choice < (phase == 0 ? 7u : 3u)) {
       const Time when = queue.Now() + Duration(random.Word() % 50);  // many equal times
       const int label = static_cast<int>(ids.size());
-      ids.push_back(queue.AtNs(when, [&ran, label] { ran = label; }));
+      ids.push_back(queue.At(when, [&ran, label] { ran = label; }));
       model.Add(when, label);
     } else if (choice < (phase == 1 ? 9u : 7u) && !ids.empty()) {
       const std::size_t label = ids.size() - 1 - random.Word() % std::min<std::size_t>(ids.size(), 400);
