@@ -22,7 +22,7 @@ std::vector<KeyChange> Psd(const std::string& psd) {
           {psd + ".window_index", "1.8", window},
           {psd + ".window_gap_mm", "2.0", window},
           {psd + ".window_reflectance", "0.2", window},
-          {psd + ".window_wedge_mrad", "10.0", window},
+          {psd + ".window_wedge_mrad", "4.0", window},  // more: a ghost without extent jumps over the edge
           {psd + ".window_coherent", "true", window},
           {psd + ".silicon_reflectance", "0.3"}};
 }
@@ -35,7 +35,7 @@ std::vector<KeyChange> Table(const std::string& table) {
       {table + ".half_frequency_tilt_arcsec", "2.0"},
       {table + ".half_frequency_radial_um", "3.0"},
       {table + ".backlash_arcsec", "4.0"},
-      {table + ".speed_deg_s", "5.0"},
+      {table + ".speed_deg_s", "15.0"},
       {table + ".move_time_s", "2.0"},
       {table + ".settle_s", "1.5"},
       {table + ".random.orders", "5"},
@@ -43,7 +43,7 @@ std::vector<KeyChange> Table(const std::string& table) {
   for (const char* component : {"ex_arcsec", "ey_arcsec", "ez_arcsec", "dx_um", "dy_um", "dz_um"}) {
     keys.push_back({table + ".random." + component, "6.0"});
     keys.push_back({table + ".seating." + component, "5.0"});
-    keys.push_back({table + ".repeatability." + component, "0.5"});
+    keys.push_back({table + ".repeatability." + component, "1.5"});
   }
   return keys;
 }

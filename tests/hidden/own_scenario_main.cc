@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
             twinbench::hidden::ChangedBench(bench, change, static_cast<std::uint64_t>(seed)), cache);
         if (d.verdict == twinbench::diagnose::Verdict::kNone) continue;
         ++alarms;
-        std::printf("%s=%s seed %d: p %.2g, %s\n", change.key.c_str(), change.value.c_str(), seed, d.alarm_p,
+        std::printf("%s=%s seed %d (%d readings, %d left out): p %.2g, %s\n", change.key.c_str(), change.value.c_str(), seed, d.readings, d.left_out, d.alarm_p,
                     d.causes.empty() ? d.unknown.signature.c_str()
                                      : (d.causes[0].effect + " " + d.causes[0].where + " " +
                                         std::to_string(d.causes[0].probability))

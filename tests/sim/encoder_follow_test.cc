@@ -35,13 +35,13 @@ TEST_P(EncoderFollowEffect, IsFollowedAtStopsAndInMotion) {
   }
 }
 
-std::vector<EffectEntry> Foreseeable() {
+std::vector<EffectEntry> ForeseeableAngleEffects() {
   std::vector<EffectEntry> entries = EffectCatalogue(kEncoderBench);
   std::erase_if(entries, [](const EffectEntry& e) { return e.name == "outliers"; });
   return entries;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EncoderFollowEffect, testing::ValuesIn(Foreseeable()),
+INSTANTIATE_TEST_SUITE_P(All, EncoderFollowEffect, testing::ValuesIn(ForeseeableAngleEffects()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(EncoderFollow, HasAShaftUnderBothAndADeviceBesideIt) {

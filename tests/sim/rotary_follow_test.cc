@@ -73,22 +73,31 @@ Scenario RichBench() {
   return s;
 }
 
-// The readings were printed with all their bits, angles and times are the record's own: what is left is rounding in
-// the chain and Newton's last step at the autocollimator.
+// What is left is rounding in the chain and Newton's last step at the autocollimator.
 constexpr double kRounding_m = 1e-12;
+// A rotor in its backlash stands an arcsecond beside its stop, where its table errs by 1e-10 rad more or less than at
+// the stop; TablesOf looks at the stop.
+constexpr double kBesideTheStop_m = 2e-10;
 
 TEST(RotaryFollow, SaysWhatThePlainTwinShows) {
   EXPECT_LT(Apart_m(test::RunTwin(test::SmallNoiseFree())), kRounding_m);
 }
 
 TEST(RotaryFollow, SaysWhatARichTwinShows) {
-  EXPECT_LT(Apart_m(test::RunTwin(RichBench())), kRounding_m);
+  EXPECT_LT(Apart_m(test::RunTwin(RichBench())), kBesideTheStop_m);
 }
 
 TEST(RotaryFollow, SaysWhatAReclampedTwinShows) {
   Scenario s = RichBench();
   s.procedure.clamping = "reclamp";
-  EXPECT_LT(Apart_m(test::RunTwin(s)), kRounding_m);
+  EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
+}
+
+TEST(RotaryFollow, SeesThroughAWedgedWindow) {
+  Scenario s = RichBench();
+  s.psd_a.window = true;
+  s.psd_a.window_wedge_rad = 0.010;
+  EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
 }
 
 TEST(RotaryFollow, KnowsTheDynamicsOfTheLinearStack) {
@@ -108,17 +117,17 @@ TEST_P(RotaryFollowEffect, IsFollowed) {
     s.effects = {effect};
     // Labels that are not the rotors' angles change which of the tables' errors act; those are free here.
     if (where.starts_with("reverse") || where == "index_offset") s.target.harmonics = s.reference.harmonics = {};
-    EXPECT_LT(Apart_m(test::RunTwin(s)), kRounding_m) << effect.name << " " << where;
+    EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m) << effect.name << " " << where;
   }
 }
 
-std::vector<EffectEntry> Foreseeable() {
+std::vector<EffectEntry> ForeseeableRotaryEffects() {
   std::vector<EffectEntry> entries = EffectCatalogue(kRotaryBench);
   std::erase_if(entries, [](const EffectEntry& e) { return e.name == "outliers"; });
   return entries;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RotaryFollowEffect, testing::ValuesIn(Foreseeable()),
+INSTANTIATE_TEST_SUITE_P(All, RotaryFollowEffect, testing::ValuesIn(ForeseeableRotaryEffects()),
                          [](const auto& info) { return info.param.name; });
 
 TEST(RotaryFollow, DoesNotForeseeSingleOutliers) {
@@ -127,8 +136,9 @@ TEST(RotaryFollow, DoesNotForeseeSingleOutliers) {
   EXPECT_GT(Apart_m(test::RunTwin(s)), 20e-6);
 }
 
-// d u / d yaw of a fixed beam on a grating is l1 (1 + 1 / cos theta), d v / d tilt is l1 (1 + cos theta); a lateral
-// shift moves the orders by +- tan theta; the laser's pitch moves both by its lever and the way to the PSD.
+// A fixed beam on a grating that yaws by e turns the orders by e (1 + 1 / cos theta), one that tilts by e (1 + cos
+// theta); a lateral shift d moves the orders by d sin theta across themselves; the laser's pitch has its own lever
+// beside the way to the PSD. Signs: formats.md.
 TEST(RotaryFollow, HasTheSlopesOfTheClosedForms) {
   const test::TwinRun run = test::RunTwin(test::SmallNoiseFree());
   const auto follow = FollowRotary(run.scenario, run.readings);
@@ -138,14 +148,14 @@ TEST(RotaryFollow, HasTheSlopesOfTheClosedForms) {
     return Eigen::RowVector4d(model::Slope(*follow, model::PointNamed(*follow, point)).row(stop) / kVolts_per_metre);
   };
   const double yaw = l1_m * (1.0 + 1.0 / cosine), tilt = l1_m * (1.0 + cosine), pitch = lever_m + l1_m;
-  EXPECT_NEAR(slope("mount.ez")[0] / yaw, 1.0, 1e-6);
-  EXPECT_NEAR(slope("mount.ez")[2] / yaw, 1.0, 1e-6);
+  EXPECT_NEAR(slope("mount.ez")[0] / yaw, -1.0, 1e-6);
+  EXPECT_NEAR(slope("mount.ez")[2] / yaw, -1.0, 1e-6);
   EXPECT_NEAR(slope("grating.tilt")[1] / tilt, 1.0, 1e-6);
   EXPECT_NEAR(slope("grating.tilt")[3] / tilt, 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.roll")[1] / (l1_m * sine), 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.roll")[3] / (-l1_m * sine), 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.lateral")[0] / (sine / cosine), 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.lateral")[2] / (-sine / cosine), 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.roll")[1] / (-l1_m * sine), 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.roll")[3] / (l1_m * sine), 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.lateral")[0] / -sine, 1.0, 1e-6);
+  EXPECT_NEAR(slope("grating.lateral")[2] / sine, 1.0, 1e-6);
   EXPECT_NEAR(slope("laser.pitch")[1] / pitch, 1.0, 1e-6);
   EXPECT_NEAR(slope("psd_b_y")[3], 1.0, 1e-9);
   // Target and grating differ by the height of the spot and by where the axes stand.

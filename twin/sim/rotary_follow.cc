@@ -38,7 +38,7 @@ class RotaryFollow : public model::Follow {
  public:
   RotaryFollow(const Scenario& scenario, const std::vector<Reading>& record)
       : scenario_(Foreseeable(scenario)),
-        stated_noise_V_(scenario.amplifier.noise_V),
+        stated_noise_V_(scenario.noise_free ? 0.0 : scenario.amplifier.noise_V),
         record_(record),
         path_(scenario_),
         course_(FollowCourse(record, path_)) {
