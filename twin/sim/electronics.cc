@@ -21,7 +21,6 @@ std::array<std::size_t, kChannels> ScanOf(const std::vector<std::string>& scan_l
 
 /// Of samples that scatter about a level.
 double ShareAbove(double threshold_V, double level_V, double noise_V) {
-  if (noise_V <= 0.0) return level_V >= threshold_V ? 1.0 : 0.0;
   return 0.5 * std::erfc((threshold_V - level_V) / (std::sqrt(2.0) * noise_V));
 }
 
@@ -85,14 +84,16 @@ Acquisition Electronics::Convert(const std::array<double, kChannels>& signal_V, 
 std::array<double, kChannels> Electronics::Expect(const std::array<double, kChannels>& signal_V, Time start,
                                                   int n_samples, double noise_V) const {
   AdInput input = InScanOrder(signal_V, start);
-  for (ChannelInput& channel : input.channel) channel.step_V = 0.0;
+  const bool blurred = noise_V > 0.0;  // else the block itself says where its samples lie
+  for (ChannelInput& channel : input.channel) channel.step_V = blurred ? 0.0 : channel.step_V;
   Stream unused(0, "electronics.expectation");
   const AdBlock block = TakeBlock(adc_, input, {n_samples, false, false, true}, unused);
   std::array<double, kChannels> mean_V{};
   for (std::size_t place = 0; place < kChannels; ++place) {
     const std::size_t c = scan_[place];
     const double level_V = block.channel[place].mean_V;
-    mean_V[c] = level_V + sampling_.step_V[c] * ShareAbove(sampling_.step_at_V[c], level_V, noise_V);
+    mean_V[c] = level_V;
+    if (blurred) mean_V[c] += sampling_.step_V[c] * ShareAbove(sampling_.step_at_V[c], level_V, noise_V);
   }
   return mean_V;
 }

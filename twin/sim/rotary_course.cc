@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/model/local_level.h"
 #include "twin/sim/axes.h"
 #include "twin/sim/environment.h"
 
@@ -22,6 +23,25 @@ double OrZero(double value) {
 
 double Duration_s(const TableSettings& table, double travel_rad) {
   return std::max(table.move_time_s, std::abs(travel_rad) / table.speed_rad_s);
+}
+
+/// The room's temperature behind what the thermometer showed; NaN where it showed nothing.
+Eigen::VectorXd RoomTemperature_degC(const std::vector<Reading>& record, double noise_K) {
+  std::vector<double> time_s, shown_degC;
+  for (const Reading& r : record) {
+    if (!std::isfinite(r.temperature_degC)) continue;
+    time_s.push_back(ToSeconds(r.time));
+    shown_degC.push_back(r.temperature_degC);
+  }
+  const auto n = static_cast<Eigen::Index>(time_s.size());
+  const Eigen::VectorXd smooth_degC = model::Smoothed(Eigen::Map<Eigen::VectorXd>(time_s.data(), n),
+                                                      Eigen::Map<Eigen::VectorXd>(shown_degC.data(), n), noise_K);
+  Eigen::VectorXd room_degC = Eigen::VectorXd::Constant(std::ssize(record), kNaN);
+  Eigen::Index next = 0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (std::isfinite(record[i].temperature_degC)) room_degC[static_cast<Eigen::Index>(i)] = smooth_degC[next++];
+  }
+  return room_degC;
 }
 
 /// The drives as they were sent along a record. Bullet's own rotary results differ by nanometres from the linear
@@ -66,12 +86,13 @@ class RecordedDrives {
 
 class CourseMaker {
  public:
-  CourseMaker(const std::vector<Reading>& record, OpticalPath& path)
+  CourseMaker(const std::vector<Reading>& record, double stated_noise_K, OpticalPath& path)
       : record_(record),
         path_(path),
         drives_(path.actual()),
         room_(path.actual().environment, path.actual().seed),
-        step_rad_(2.0 * units::kPi / std::max(1, path.actual().procedure.positions)) {}
+        step_rad_(2.0 * units::kPi / std::max(1, path.actual().procedure.positions)),
+        room_degC_(RoomTemperature_degC(record, stated_noise_K)) {}
 
   RotaryCourse Make() {
     for (std::size_t i = 0; i < record_.size(); ++i) AddStop(i);
@@ -92,7 +113,7 @@ class CourseMaker {
       drives_.GoTo(behind_rad, Shift_rad(r) - behind_rad);
     }
     drives_.GoTo(OrZero(r.target_rad), OrZero(r.reference_rad));
-    course_.stops.push_back(StopOf(r));
+    course_.stops.push_back(StopOf(r, room_degC_[static_cast<Eigen::Index>(i)]));
   }
 
   static double Shift_rad(const Reading& r) { return OrZero(r.target_rad) + OrZero(r.reference_rad); }
@@ -120,10 +141,10 @@ class CourseMaker {
     return std::max(of(actual().target), of(actual().reference));
   }
 
-  RecordedStop StopOf(const Reading& r) {
+  RecordedStop StopOf(const Reading& r, double room_degC) {
     RecordedStop stop;
     stop.axes = drives_.State();
-    stop.moment = MomentOf(r, stop.axes);
+    stop.moment = MomentOf(r, room_degC, stop.axes);
     stop.mounting = static_cast<int>(course_.stands.size()) - 1;
     stop.n_samples = r.n_samples > 0 ? r.n_samples : actual().adc.samples;
     stop.swept = std::isfinite(r.autocollimator_yaw_rad + r.autocollimator_tilt_rad);
@@ -137,13 +158,13 @@ class CourseMaker {
     return stop;
   }
 
-  Moment MomentOf(const Reading& r, const mechanics::StackState& axes) {
+  Moment MomentOf(const Reading& r, double room_degC, const mechanics::StackState& axes) {
     const double window_s = std::max(actual().target.settle_s, actual().reference.settle_s);
     Moment moment;
     moment.now = r.time;
     moment.mounted = mounted_;
     moment.arrived = r.phase == Phase::kFullCircle ? r.time - FromSeconds(OrZero(r.dwell_s) + window_s) : mounted_;
-    moment.temperature_K = AboveReference_K(r);
+    moment.temperature_K = AboveReference_K(r, room_degC);
     moment.target_rad = axes.target_rad;
     moment.reference_rad = axes.reference_rad;
     moment.target_direction = drives_.Direction(Axis::kTarget);
@@ -153,8 +174,8 @@ class CourseMaker {
     return moment;
   }
 
-  double AboveReference_K(const Reading& r) {
-    if (std::isfinite(r.temperature_degC)) return r.temperature_degC - actual().environment.reference_degC;
+  double AboveReference_K(const Reading& r, double room_degC) {
+    if (std::isfinite(room_degC)) return room_degC - actual().environment.reference_degC;
     without_temperature_ = true;
     return room_.AboveReference_K(r.time);
   }
@@ -169,6 +190,7 @@ class CourseMaker {
   RecordedDrives drives_;
   Environment room_;
   double step_rad_;
+  Eigen::VectorXd room_degC_;
   Time mounted_{};
   bool without_temperature_ = false;
   RotaryCourse course_;
@@ -176,8 +198,8 @@ class CourseMaker {
 
 }  // namespace
 
-RotaryCourse FollowCourse(const std::vector<Reading>& record, OpticalPath& path) {
-  return CourseMaker(record, path).Make();
+RotaryCourse FollowCourse(const std::vector<Reading>& record, double thermometer_noise_K, OpticalPath& path) {
+  return CourseMaker(record, thermometer_noise_K, path).Make();
 }
 
 }  // namespace twinbench::sim

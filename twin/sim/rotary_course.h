@@ -30,7 +30,8 @@ struct RotaryCourse {
   std::vector<std::string> unfixed;  // what the record does not say and what was taken instead
 };
 
-/// @param path  Its effects are led along the course.
-RotaryCourse FollowCourse(const std::vector<Reading>& record, OpticalPath& path);
+/// @param thermometer_noise_K  Standard deviation of a logged temperature.
+/// @param path                 Its effects are led along the course.
+RotaryCourse FollowCourse(const std::vector<Reading>& record, double thermometer_noise_K, OpticalPath& path);
 
 }  // namespace twinbench::sim

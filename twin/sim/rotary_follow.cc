@@ -41,7 +41,7 @@ class RotaryFollow : public model::Follow {
         stated_noise_V_(scenario.noise_free ? 0.0 : scenario.amplifier.noise_V),
         record_(record),
         path_(scenario_),
-        course_(FollowCourse(record, path_)) {
+        course_(FollowCourse(record, scenario.noise_free ? 0.0 : scenario.environment.sensor_noise_K, path_)) {
     for (const RotaryPoint& p : RotaryPoints()) points_.push_back(p.point);
   }
 
