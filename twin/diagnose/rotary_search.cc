@@ -101,7 +101,10 @@ std::optional<Suspect> SuspectOf(const SearchedRotary& searched) {
   Suspect suspect;
   suspect.effect.name = family.effect;
   suspect.effect.where = family.where;
-  suspect.effect.parameters[family.amplitudes[0].name] = alone.Amplitudes(analysis.projector->Apply(white))(0, 0);
+  const Amplitude& a = family.amplitudes[0];
+  const double size = alone.Amplitudes(analysis.projector->Apply(white))(0, 0);
+  if (size < a.lower || size > a.upper) return {};  // no bench can be built that way
+  suspect.effect.parameters[a.name] = size;
   suspect.explained = explained[best];
   return suspect;
 }

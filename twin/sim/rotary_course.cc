@@ -55,9 +55,10 @@ class RecordedDrives {
 
   /// Both tables move at once and settle.
   void GoTo(double target_rad, double reference_rad) {
-    const bool target = Start(Axis::kTarget, target_rad, actual_.target);
-    const bool reference = Start(Axis::kReference, reference_rad, actual_.reference);
-    if (target || reference) plant_->AdvanceUntilSettled(kPatience_s);
+    const double target_s = Start(Axis::kTarget, target_rad, actual_.target);
+    const double reference_s = Start(Axis::kReference, reference_rad, actual_.reference);
+    const double longest_s = std::max(target_s, reference_s);
+    if (longest_s > 0.0) plant_->AdvanceUntilSettled(longest_s + kPatience_s);
   }
 
   mechanics::StackState State() const { return plant_->State(); }
@@ -71,12 +72,14 @@ class RecordedDrives {
     return stated == mechanics::Fidelity::kBullet ? mechanics::Fidelity::kLinear : stated;
   }
 
-  bool Start(Axis axis, double to_rad, const TableSettings& table) {
+  /// @return how long the move takes; 0 if there is nowhere to go.
+  double Start(Axis axis, double to_rad, const TableSettings& table) {
     const double travel_rad = to_rad - plant_->CommandedEnd_rad(axis);
-    if (travel_rad == 0.0) return false;
-    plant_->StartMove(axis, to_rad, Duration_s(table, travel_rad));
+    if (travel_rad == 0.0) return 0.0;
+    const double duration_s = Duration_s(table, travel_rad);
+    plant_->StartMove(axis, to_rad, duration_s);
     direction_[static_cast<std::size_t>(axis)] = travel_rad > 0.0 ? 1 : -1;
-    return true;
+    return duration_s;
   }
 
   const Scenario& actual_;

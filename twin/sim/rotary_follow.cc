@@ -143,7 +143,11 @@ class RotaryFollow : public model::Follow {
 }  // namespace
 
 std::unique_ptr<model::Follow> FollowRotary(const Scenario& scenario, const std::vector<Reading>& record) {
-  return std::make_unique<RotaryFollow>(scenario, record);
+  try {
+    return std::make_unique<RotaryFollow>(scenario, record);
+  } catch (const std::invalid_argument& error) {
+    throw InputError("bench " + scenario.bench, error.what(), "a scenario of parts that can be built");
+  }
 }
 
 }  // namespace twinbench::sim
