@@ -11,6 +11,7 @@
 #include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/measure/measure.h"
+#include "twin/model/follow.h"
 
 /// Front door of the room: given readings and the scenario that is believed to describe the bench, finds what the
 /// model gets wrong, names it and measures what the extended model gains.
@@ -21,6 +22,7 @@ struct DiagnoseOptions {
   std::vector<std::string> struck;  // effects taken out of the catalogue (leave-one-cause-out tests)
   int null_runs = 500;              // simulated runs without effect, for thresholds and p-values
   std::string cache_folder;         // calibrations are kept here by design; empty: nowhere
+  model::FollowMaker follow;  // the twin that is asked what readings should have been; empty: closed forms
 };
 
 /// A cause in the model after the search, with its signature at the fitted shape.
