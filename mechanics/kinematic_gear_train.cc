@@ -1,7 +1,6 @@
 #include <cmath>
 
-#include "mechanics/gear_law.h"
-#include "mechanics/position_loop.h"
+#include "mechanics/steady_gear_train.h"
 
 namespace twinbench::mechanics {
 namespace {
@@ -9,13 +8,9 @@ namespace {
 class KinematicGearTrain : public GearTrain {
  public:
   explicit KinematicGearTrain(const GearTrainParameters& p)
-      : law_(p),
-        hob_lag_s_(LagOf(p.hob, p)),
-        table_lag_s_(LagOf(p.motor, p)),
-        half_play_rad_(0.5 * p.backlash_rad + p.friction.coulomb_Nm / p.stiffness_Nm_rad),
-        viscous_s_(p.friction.viscous_Nm_s / p.stiffness_Nm_rad),
+      : steady_(p),
         grid_(ToNanoseconds(p.servo_period_s)),
-        play_(2.0 * half_play_rad_, Wheel(0).rad) {}
+        play_(2.0 * steady_.half_play_rad(), Wheel(0).rad) {}
 
   void Run(double hob_speed_rad_s, double ramp_s) override {
     SpeedCommand next = command_;
@@ -34,40 +29,22 @@ class KinematicGearTrain : public GearTrain {
   }
 
   GearTrainState State() const override {
-    const Motion hob_motor = HobMotor(now_);
     const Motion wheel = Wheel(now_);
-    const Motion spindle = Along(law_.Spindle(hob_motor.rad), hob_motor);
+    const Motion spindle = steady_.Spindle(HobMotor(now_));
     const double rests_rad = Backlash(play_).Follow(wheel.rad);
     const double pull_rad = wheel.rad - rests_rad;
     constexpr double kRounding_rad = 1e-12;
-    const bool dragged = std::copysign(1.0, wheel.rad_s) * pull_rad >= half_play_rad_ - kRounding_rad;
+    const bool dragged = std::copysign(1.0, wheel.rad_s) * pull_rad >= steady_.half_play_rad() - kRounding_rad;
     const double table_rad_s = dragged ? wheel.rad_s : 0.0;
-    return {ToSeconds(now_), spindle.rad, spindle.rad_s, rests_rad - viscous_s_ * table_rad_s,
+    return {ToSeconds(now_), spindle.rad, spindle.rad_s, rests_rad - steady_.viscous_s() * table_rad_s,
             table_rad_s,     wheel.rad,   wheel.rad_s};
   }
 
  private:
-  static double LagOf(const DriveParameters& drive, const GearTrainParameters& p) {
-    return PositionLoop(drive.inertia_kg_m2, drive.servo_Hz, drive.feed_forward, p.servo_period_s).lag_s();
-  }
+  Motion HobMotor(Nanoseconds time) const { return steady_.HobMotor(command_.At(time)); }
+  Motion Wheel(Nanoseconds time) const { return steady_.Wheel(HobMotor(time)); }
 
-  static Motion Lagging(const Motion& m, double lag_s) {
-    return {m.rad - lag_s * m.rad_s, m.rad_s - lag_s * m.rad_s2, m.rad_s2 - lag_s * m.rad_s3, 0.0};
-  }
-
-  Motion HobMotor(Nanoseconds time) const { return Lagging(command_.At(time), hob_lag_s_); }
-
-  Motion Wheel(Nanoseconds time) const {
-    const Motion hob = HobMotor(time);
-    const Motion nominal = Lagging(Along(law_.Command(hob.rad), hob), table_lag_s_);
-    return Along(law_.Wheel(nominal.rad), nominal);
-  }
-
-  GearLaw law_;
-  double hob_lag_s_;
-  double table_lag_s_;
-  double half_play_rad_;
-  double viscous_s_;
+  SteadyGearTrain steady_;
   Nanoseconds grid_;
   SpeedCommand command_;
   Backlash play_;

@@ -233,7 +233,7 @@ Cause DisturbedCause(const NoiseCause& disturbed, LinearRun run) {
 DiagnosisRun DiagnoseTurntable(const std::vector<Reading>& readings, const Scenario& scenario,
                                const DiagnoseOptions& options) {
   const turntable::SearchedTurntable searched =
-      turntable::SearchTurntable(readings, scenario, options.struck, AnalysisOptionsOf(options));
+      turntable::SearchTurntable(readings, scenario, options.struck, AnalysisOptionsOf(options), options.follow);
   const turntable::TurntableRun& turntable = *searched.turntable;
   std::vector<Cause> first = searched.first;
   if (searched.disturbed) first.push_back(DisturbedCause(*searched.disturbed, turntable.run));
@@ -247,7 +247,7 @@ DiagnosisRun DiagnoseTurntable(const std::vector<Reading>& readings, const Scena
 
 DiagnosisRun DiagnoseHob(const std::vector<Reading>& readings, const Scenario& scenario,
                          const DiagnoseOptions& options) {
-  const hob::HobRun hob = hob::BuildRun(readings, scenario);
+  const hob::HobRun hob = hob::BuildRun(readings, scenario, options.follow);
   const std::vector<Family> families = hob::Families(hob, options.struck);
   AnalysisOptions how = AnalysisOptionsOf(options);
   how.null_runs = hob::NullRuns(hob, options.null_runs);

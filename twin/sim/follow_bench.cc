@@ -4,7 +4,9 @@
 
 #include "twin/core/errors.h"
 #include "twin/sim/encoder/follow.h"
+#include "twin/sim/hob/follow.h"
 #include "twin/sim/rotary_follow.h"
+#include "twin/sim/turntable/follow.h"
 
 namespace twinbench::sim {
 namespace {
@@ -12,7 +14,10 @@ namespace {
 using Maker = std::unique_ptr<model::Follow> (*)(const Scenario&, const std::vector<Reading>&);
 
 const std::map<std::string, Maker>& Makers() {
-  static const std::map<std::string, Maker> makers = {{kRotaryBench, FollowRotary}, {kEncoderBench, FollowEncoder}};
+  static const std::map<std::string, Maker> makers = {{kRotaryBench, FollowRotary},
+                                                     {kEncoderBench, FollowEncoder},
+                                                     {kTurntableBench, FollowTurntable},
+                                                     {kHobBench, FollowHob}};
   return makers;
 }
 

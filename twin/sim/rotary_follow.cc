@@ -10,18 +10,6 @@
 namespace twinbench::sim {
 namespace {
 
-/// Without what a run leaves free, without chance, and without single outliers, which nobody can foresee.
-Scenario Foreseeable(Scenario scenario) {
-  scenario.noise_free = true;
-  for (TableSettings* table : {&scenario.target, &scenario.reference}) {
-    table->harmonics.clear();
-    table->errors.reset();
-    table->random_rms = {};
-  }
-  std::erase_if(scenario.effects, [](const EffectSettings& e) { return e.name == "outliers"; });
-  return scenario;
-}
-
 PoseState Sum(PoseState a, const PoseState& b) {
   a.target_yaw_rad += b.target_yaw_rad;
   a.reference_yaw_rad += b.reference_yaw_rad;
@@ -34,64 +22,38 @@ PoseState Sum(PoseState a, const PoseState& b) {
   return a;
 }
 
-class RotaryFollow : public model::Follow {
- public:
-  RotaryFollow(const Scenario& scenario, const std::vector<Reading>& record)
-      : scenario_(Foreseeable(scenario)),
-        stated_noise_V_(scenario.noise_free ? 0.0 : scenario.amplifier.noise_V),
-        record_(record),
-        path_(scenario_),
-        course_(FollowCourse(record, scenario.noise_free ? 0.0 : scenario.environment.sensor_noise_K, path_)) {
-    for (const RotaryPoint& p : RotaryPoints()) points_.push_back(p.point);
-  }
+double IfNoisy(const Scenario& stated, double noise) {
+  return stated.noise_free ? 0.0 : noise;
+}
 
-  const std::vector<model::Point>& Points() const override { return points_; }
+class RotaryFollow : public PointwiseFollow<RotaryExtra> {
+ public:
+  RotaryFollow(const Scenario& stated, const std::vector<Reading>& record)
+      : PointwiseFollow(Foreseeable(stated), record, RotaryPoints()),
+        noise_V_(IfNoisy(stated, stated.amplifier.noise_V)),
+        thermometer_noise_K_(IfNoisy(stated, stated.environment.sensor_noise_K)),
+        path_(scenario()),
+        course_(FollowCourse(record, thermometer_noise_K_, path_)) {}
+
   std::vector<std::string> Unfixed() const override { return course_.unfixed; }
 
-  Eigen::MatrixXd Predict(const std::vector<model::Disturbance>& disturbances) const override {
-    std::vector<RotaryExtra> extra(record_.size());
-    std::vector<model::Disturbance> of_bench;
-    for (const model::Disturbance& d : disturbances) {
-      Require(d.value.size() == std::ssize(record_), "a disturbance has one value a reading");
-      const RotaryPoint& point = PointOf(d.point);
-      if (!point.of_reading) {
-        of_bench.push_back(d);
-        continue;
-      }
-      for (std::size_t i = 0; i < extra.size(); ++i) point.of_reading(extra[i]) += d.value[static_cast<Eigen::Index>(i)];
-    }
-    Eigen::MatrixXd shown_V(std::ssize(record_), kChannels);
+ protected:
+  Eigen::MatrixXd Shown(const std::vector<RotaryExtra>& extra) const override {
+    Eigen::MatrixXd shown_V(std::ssize(extra), kChannels);
     for (std::size_t i = 0; i < extra.size(); ++i) {
       const std::array<double, kChannels> reading_V = Shown_V(i, extra[i]);
       for (int c = 0; c < kChannels; ++c) shown_V(static_cast<Eigen::Index>(i), c) = reading_V[c];
     }
-    for (const model::Disturbance& d : of_bench) shown_V += OfBench_V(d);
     return shown_V;
   }
 
+  std::unique_ptr<model::Follow> On(const Scenario& changed) const override {
+    Scenario stated = changed;
+    stated.noise_free = noise_V_ == 0.0 && thermometer_noise_K_ == 0.0;
+    return std::make_unique<RotaryFollow>(stated, record());
+  }
+
  private:
-  static const RotaryPoint& PointOf(const std::string& name) {
-    const auto found = std::ranges::find(RotaryPoints(), name, [](const RotaryPoint& p) { return p.point.name; });
-    Require(found != RotaryPoints().end(), "the rotary bench has no point of that name");
-    return *found;
-  }
-
-  /// A constant of the bench, changed from reading to reading: to first order.
-  Eigen::MatrixXd OfBench_V(const model::Disturbance& d) const {
-    return d.value.asDiagonal() * BenchSlope_V(PointOf(d.point));
-  }
-
-  Eigen::MatrixXd BenchSlope_V(const RotaryPoint& point) const {
-    const auto shown = [&](double step) {
-      Scenario changed = scenario_;
-      point.of_bench(changed) += step;
-      changed.amplifier.noise_V = stated_noise_V_;
-      // The PSDs stay where the nominal light would meet them.
-      return RotaryFollow(changed, record_).Predict({});
-    };
-    return (shown(point.point.step) - shown(-point.point.step)) / (2.0 * point.point.step);
-  }
-
   /// X_LG, with the grating on its goniometer where the autocollimator saw it.
   Pose GratingPose(std::size_t i, const RotaryExtra& extra) const {
     const RecordedStop& stop = course_.stops[i];
@@ -119,10 +81,10 @@ class RotaryFollow : public model::Follow {
     if (spots.status != ReadingStatus::kOk) return {kNaN, kNaN, kNaN, kNaN};
     std::array<double, kChannels> signal_V = path_.electronics().Amplify(spots_m);
     for (int c = 0; c < kChannels; ++c) {
-      const double sensitivity_V_m = (c < 2 ? scenario_.psd_a : scenario_.psd_b).sensitivity_V_m;
+      const double sensitivity_V_m = (c < 2 ? scenario().psd_a : scenario().psd_b).sensitivity_V_m;
       signal_V[c] += stop.added_V[c] + sensitivity_V_m * extra.shown_m[c];
     }
-    return ReadOut(path_.electronics().Expect(signal_V, stop.moment.now, stop.n_samples, stated_noise_V_));
+    return ReadOut(path_.electronics().Expect(signal_V, stop.moment.now, stop.n_samples, noise_V_));
   }
 
   std::array<double, kChannels> ReadOut(const std::array<double, kChannels>& mean_V) const {
@@ -132,12 +94,9 @@ class RotaryFollow : public model::Follow {
     return {block.channel[0].mean_V, block.channel[1].mean_V, block.channel[2].mean_V, block.channel[3].mean_V};
   }
 
-  Scenario scenario_;
-  double stated_noise_V_;
-  std::vector<Reading> record_;
+  double noise_V_, thermometer_noise_K_;  // as stated: what a step of the converter, or a log, is blurred by
   OpticalPath path_;
   RotaryCourse course_;
-  std::vector<model::Point> points_;
 };
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "twin/model/follow.h"
 #include "twin/sim/effect.h"
+#include "twin/sim/pointwise_follow.h"
 
 namespace twinbench::sim {
 
@@ -16,12 +16,7 @@ struct RotaryExtra {
   mechanics::PoseError mount;            // of the grating on whatever carries it, unseen by the autocollimator
 };
 
-/// A point of the rotary bench: either it enters a reading, or it is a constant of the bench.
-struct RotaryPoint {
-  model::Point point;
-  double& (*of_reading)(RotaryExtra&) = nullptr;  // this ...
-  double& (*of_bench)(Scenario&) = nullptr;       // ... or this
-};
+using RotaryPoint = BenchPoint<RotaryExtra>;
 
 /// All of them, the points of a reading first.
 const std::vector<RotaryPoint>& RotaryPoints();

@@ -8,6 +8,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/engine/schedule.h"
 #include "twin/diagnose/hob/disturbed.h"
 #include "twin/diagnose/hob/hob_noise.h"
@@ -112,21 +113,62 @@ Grouping ChooseGroups(const SignalContext& c) {
   return groups;
 }
 
-/// What is left of each sample by what is stated, without the constants of the set-ups: samples x channels; NaN
-/// where the interferometer saw nothing.
-Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const Scenario& scenario, const SignalContext& c) {
-  const SampleSignal known = KnownSignal(scenario, c);
-  Eigen::MatrixXd left_rad(c.Samples(), c.channels);
-  left_rad.col(0) = c.table_rad - c.train.Ratio() * c.hob_rad - known.encoders_rad;
-  if (c.channels > 1) left_rad.col(1) = Column(used, &Reading::interferometer_rad) - known.interferometer_rad;
+/// Samples x channels.
+Eigen::MatrixXd AsRead_rad(const std::vector<Reading>& used, const SignalContext& c) {
+  Eigen::MatrixXd read_rad(c.Samples(), c.channels);
+  read_rad.col(0) = c.table_rad - c.train.Ratio() * c.hob_rad;
+  if (c.channels > 1) read_rad.col(1) = Column(used, &Reading::interferometer_rad);
+  return read_rad;
+}
+
+/// Each column without the means of its set-ups.
+Eigen::MatrixXd WithoutConstants(const SignalContext& c, Eigen::MatrixXd left_rad) {
   const Eigen::MatrixXd setups = SetUps(c);
-  for (Eigen::Index k = 0; k < c.channels; ++k) {
+  for (Eigen::Index k = 0; k < left_rad.cols(); ++k) {
     const Eigen::VectorXd there = left_rad.col(k).array().isFinite().cast<double>();
     const Eigen::VectorXd values = left_rad.col(k).array().isFinite().select(left_rad.col(k), 0.0);
     const Eigen::ArrayXd count = (setups.transpose() * there).array().max(1.0);
     left_rad.col(k) -= setups * ((setups.transpose() * values).array() / count).matrix();
   }
   return left_rad;
+}
+
+/// Motion of the table by its free orders.
+struct FreeMotion {
+  Eigen::MatrixXd waves;  // samples x [cosine, sine of each order]
+  Eigen::VectorXd sizes_rad;
+  Eigen::VectorXd Motion_rad() const { return waves * sizes_rad; }
+};
+
+/// Of what both encoders show, by least squares.
+FreeMotion FitFreeOrders(const SignalContext& c, const Eigen::VectorXd& centred_rad) {
+  FreeMotion free{Eigen::MatrixXd(c.Samples(), 2 * c.train.free_orders), {}};
+  for (int k = 1; k <= c.train.free_orders; ++k) free.waves.middleCols(2 * k - 2, 2) = Wave(k * c.table_rad);
+  const Eigen::MatrixXd normal = free.waves.transpose() * free.waves;
+  free.sizes_rad = normal.ldlt().solve(free.waves.transpose() * centred_rad);
+  return free;
+}
+
+/// What is left of each sample by what is stated, without the constants of the set-ups: samples x channels; NaN
+/// where the interferometer saw nothing.
+Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const Scenario& scenario, const SignalContext& c) {
+  const SampleSignal known = KnownSignal(scenario, c);
+  Eigen::MatrixXd left_rad = AsRead_rad(used, c);
+  left_rad.col(0) -= known.encoders_rad;
+  if (c.channels > 1) left_rad.col(1) -= known.interferometer_rad;
+  return WithoutConstants(c, left_rad);
+}
+
+/// The same by the twin that follows the record: it is asked again with the free orders that fit, which are then put
+/// back.
+Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const SignalContext& c, const Followed& twin) {
+  const Eigen::MatrixXd read_rad = AsRead_rad(used, c);
+  const auto left_with = [&](const Eigen::VectorXd& motion_rad) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd told_rad = twin.Predict({{"transmission", motion_rad}}).leftCols(c.channels);
+    return WithoutConstants(c, read_rad - told_rad + motion_rad.replicate(1, c.channels));
+  };
+  const Eigen::MatrixXd first_rad = left_with(Eigen::VectorXd::Zero(c.Samples()));
+  return left_with(FitFreeOrders(c, first_rad.col(0)).Motion_rad());
 }
 
 /// [orders of the table, shared by the channels; constants of set-up and channel].
@@ -163,34 +205,30 @@ double Rms(const Eigen::VectorXd& values) {
 }
 
 double SecondOrder_rad(const SignalContext& c) {
-  const Eigen::VectorXd m_rad = c.table_rad - c.train.Ratio() * c.hob_rad;
-  Eigen::MatrixXd slow(c.Samples(), 2 * c.train.free_orders);
-  for (int k = 1; k <= c.train.free_orders; ++k) slow.middleCols(2 * k - 2, 2) = Wave(k * c.table_rad);
-  const Eigen::MatrixXd setups = SetUps(c);
-  const Eigen::VectorXd of_setups = setups.colwise().sum();
-  const auto centred = [&](const Eigen::VectorXd& y) -> Eigen::VectorXd {
-    return y - setups * ((setups.transpose() * y).array() / of_setups.array()).matrix();
-  };
-  const Eigen::VectorXd all_rad = centred(m_rad);
-  const Eigen::VectorXd x = (slow.transpose() * slow).ldlt().solve(slow.transpose() * all_rad);
+  const Eigen::VectorXd m_rad = WithoutConstants(c, c.table_rad - c.train.Ratio() * c.hob_rad);
+  const Eigen::MatrixXd fast_rad = WithoutConstants(c, m_rad - FitFreeOrders(c, m_rad).Motion_rad());
   const double highest = std::max(c.train.WormOrder(), static_cast<double>(c.train.gear_teeth));
-  return Rms(centred(all_rad - slow * x)) * highest * Rms(all_rad);
+  return Rms(fast_rad.col(0)) * highest * Rms(m_rad);
 }
 
 }  // namespace
 
-HobRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario) {
+HobRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const model::FollowMaker& follow) {
   std::vector<Reading> used = Usable(readings);
   HobRun hob;
+  const auto left_of_used = [&]() -> Eigen::MatrixXd {
+    if (!follow) return Left_rad(used, scenario, hob.context);
+    return Left_rad(used, hob.context, Followed(follow, scenario, readings, used));
+  };
   hob.left_out = static_cast<int>(std::ssize(readings) - std::ssize(used));
   hob.context = ContextOf(used, scenario);
-  Eigen::MatrixXd left_rad = Left_rad(used, scenario, hob.context);
+  Eigen::MatrixXd left_rad = left_of_used();
   hob.disturbed = FindDisturbed(hob.context, left_rad.col(0));
   if (!hob.disturbed.readings.empty()) {
     std::erase_if(used,
                   [&](const Reading& r) { return std::ranges::count(hob.disturbed.readings, r.reading) > 0; });
     hob.context = ContextOf(used, scenario);
-    left_rad = Left_rad(used, scenario, hob.context);
+    left_rad = left_of_used();
   }
   hob.context.groups = ChooseGroups(hob.context);
   hob.run = RunOf(hob.context, left_rad, scenario);

@@ -94,6 +94,11 @@ Instrument BelievedInstrument(const Scenario& scenario) {
   return instrument;
 }
 
+bool IsAddedBehind(const EffectSettings& effect) {
+  constexpr std::array kBehind = {"autocollimator_drift", "mount_creep", "slip", "tone", "autocollimator_periodic"};
+  return std::ranges::count(kBehind, effect.name) > 0;
+}
+
 bool DependsOnReading(const Scenario& scenario) {
   return scenario.collimator.error_at_edge_rad != 0.0 ||
          std::ranges::any_of(scenario.effects, [](const EffectSettings& e) {

@@ -98,6 +98,8 @@ struct KnownSignals {
   Eigen::MatrixXd of_optics_rad;  // steps, gap, beam walk
   Eigen::MatrixXd behind_rad;     // moves of the zero, errors that depend on the reading
 };
+/// True of an effect that is added behind the optics: a moving zero, a ripple.
+bool IsAddedBehind(const EffectSettings& effect);
 /// True if any of it depends on `shown_rad`.
 bool DependsOnReading(const Scenario& scenario);
 KnownSignals KnownSignalsOf(const Eigen::MatrixXd& shown_rad, const Eigen::VectorXd& sweep_rad,

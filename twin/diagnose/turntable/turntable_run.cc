@@ -7,6 +7,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/engine/schedule.h"
@@ -94,7 +95,8 @@ void FitBaseline(const Scenario& scenario, TurntableRun& turntable) {
   LinearRun& run = turntable.run;
   const NoiseModel noise{run.sigma, 0.0};
   const Eigen::VectorXd sweep_rad = SweepSteps_rad(run.schedule, turntable.places);
-  const Nuisance free = FreeUnknowns(turntable.places, BelievedInstrument(scenario), run.schedule);
+  const Slopes slopes = SlopesOf(BelievedInstrument(scenario), run.schedule.Readings());
+  const Nuisance free = FreeUnknowns(turntable.places, slopes, run.schedule);
   Eigen::MatrixXd& shown_rad = turntable.context.shown_rad;
   shown_rad = ByReading(run.observed);
   KnownSignals known = KnownSignalsOf(shown_rad, sweep_rad, scenario, turntable.context);
@@ -111,13 +113,109 @@ void FitBaseline(const Scenario& scenario, TurntableRun& turntable) {
   run.residual = run.observed - optics_rad - AsRows(known.behind_rad);
 }
 
+constexpr double kNoWeight = 1e4;  // times the noise, where the twin shows nothing
+
+/// Turns and tilts of the mirror (readings x axes) at their points of the twin: wherever they come from, the
+/// autocollimator sees no more of them.
+std::vector<model::Disturbance> AtPoints(const Eigen::MatrixXd& body_rad) {
+  return {{"turntable.ez", body_rad.col(kX)}, {"turntable.ex", body_rad.col(kY)}};
+}
+
+Eigen::MatrixXd OrZero(const Eigen::MatrixXd& values) {
+  return values.array().isFinite().select(values, 0.0);
+}
+
+Slopes SlopesAt(const Followed& twin, const Eigen::MatrixXd& body_rad) {
+  const std::vector<model::Disturbance> at = AtPoints(body_rad);
+  return {OrZero(twin.Slope("turntable.ez", at)), OrZero(twin.Slope("turntable.ex", at))};
+}
+
+/// The prediction of the twin where free unknowns put the mirror (Gauss-Newton).
+/// @return slopes there.
+Slopes FitTwin(const Followed& twin, TurntableRun& turntable) {
+  constexpr int kMostRounds = 8;
+  constexpr double kClose_rad = 1e-3 * arcsec;
+  LinearRun& run = turntable.run;
+  const Eigen::Index readings = run.schedule.Readings();
+  const NoiseModel noise{run.sigma, 0.0};
+  // What the mirror does for each unknown, and what is shown of that.
+  const Nuisance moved = FreeUnknowns(turntable.places, SlopesOf({}, readings), run.schedule);
+  Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(moved.jacobian.cols());
+  turntable.body_rad = Eigen::MatrixXd::Zero(readings, kAxes);
+  for (int round = 0;; ++round) {
+    const Slopes slopes = SlopesAt(twin, turntable.body_rad);
+    run.residual = OrZero(run.observed - AsRows(twin.Predict(AtPoints(turntable.body_rad))));
+    if (round == kMostRounds) return slopes;
+    const Nuisance free = FreeUnknowns(turntable.places, slopes, run.schedule);
+    const Projector projector(noise.Whiten(run, free.jacobian), free);
+    const Eigen::VectorXd before = run.residual + free.jacobian * unknowns;
+    unknowns = projector.Solve(noise.Whiten(run, Eigen::MatrixXd(before))).col(0);
+    const Eigen::MatrixXd next_rad = ByReading(moved.jacobian * unknowns);
+    const double step_rad = (next_rad - turntable.body_rad).cwiseAbs().maxCoeff();
+    turntable.body_rad = next_rad;
+    if (step_rad > kClose_rad) continue;
+    run.residual = OrZero(run.observed - AsRows(twin.Predict(AtPoints(next_rad))));
+    return slopes;
+  }
+}
+
+/// The scenario without what is added behind the optics: on what they show, errors of the reading depend.
+Scenario BeforeAdding(Scenario scenario) {
+  scenario.empiricals.clear();
+  std::erase_if(scenario.effects, [](const EffectSettings& e) { return IsAddedBehind(e); });
+  return scenario;
+}
+
+/// Standard uncertainty of each row: everything that is drawn anew at a stop, as the twin shows it.
+Eigen::VectorXd Sigma_rad(const Followed& twin, const Eigen::MatrixXd& body_rad, const Scenario& scenario) {
+  constexpr std::array<const char*, kComponents> kNames = {"ex", "ey", "ez", "dx", "dy", "dz"};
+  const double noise_rad = scenario.autocollimator.noise_rad;
+  Eigen::MatrixXd variance = Eigen::MatrixXd::Constant(body_rad.rows(), kAxes, noise_rad * noise_rad);
+  const auto add = [&](const std::string& point, double sd) {
+    if (sd > 0.0) variance += (sd * OrZero(twin.Slope(point, AtPoints(body_rad)))).cwiseAbs2();
+  };
+  for (std::size_t c = 0; c < kComponents; ++c) {
+    add(std::string("turntable.") + kNames[c], scenario.target.repeatability_sd[c]);
+    add(std::string("multitooth.") + kNames[c], scenario.reference.repeatability_sd[c]);
+  }
+  add("multitooth.ez", SeatingEffect_rad(scenario));
+  add("room.temperature", scenario.environment.sensor_noise_K);
+  return AsRows(variance.cwiseSqrt()).cwiseMax(kLeastNoise_rad);
+}
+
+/// Readings that are told by the twin as it follows the record.
+void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>& used, const Scenario& scenario,
+                const model::FollowMaker& follow, TurntableRun& turntable) {
+  LinearRun& run = turntable.run;
+  const Followed twin(follow, scenario, readings, used);
+  const Slopes slopes = FitTwin(twin, turntable);
+  const Eigen::MatrixXd shown_rad = twin.Predict(AtPoints(turntable.body_rad));
+  run.sigma = Sigma_rad(twin, turntable.body_rad, scenario);
+  run.sigma = AsRows(shown_rad).array().isFinite().select(run.sigma, kNoWeight * run.sigma);
+  const bool nothing_behind = scenario.empiricals.empty() && std::ranges::none_of(scenario.effects, IsAddedBehind);
+  turntable.context.shown_rad =
+      OrZero(nothing_behind ? shown_rad
+                            : Followed(follow, BeforeAdding(scenario), readings, used).Predict(AtPoints(turntable.body_rad)));
+  run.nuisance = AllUnknowns(turntable.places, slopes, turntable.context, scenario);
+}
+
+/// The same by closed forms.
+void Believe(const Scenario& scenario, TurntableRun& turntable) {
+  LinearRun& run = turntable.run;
+  FitBaseline(scenario, turntable);
+  run.nuisance = AllUnknowns(turntable.places, SlopesOf(BelievedInstrument(scenario), run.schedule.Readings()),
+                             turntable.context, scenario);
+  Stretch(SlopesOfReading(turntable.context.shown_rad, scenario, turntable.context), run.nuisance);
+}
+
 double Rms(const Eigen::VectorXd& values) {
   return std::sqrt((values.array() - values.mean()).square().mean());
 }
 
 }  // namespace
 
-TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario) {
+TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
+                      const model::FollowMaker& follow) {
   const std::vector<Reading> used = Usable(readings);
   TurntableRun turntable;
   turntable.left_out = static_cast<int>(std::ssize(readings) - std::ssize(used));
@@ -131,17 +229,24 @@ TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scen
   run.noise_free = scenario.noise_free;
   run.sigma = Sigma_rad(run.schedule.Readings(), scenario);
   run.observed = AsRows(AsRead_rad(used));
-  FitBaseline(scenario, turntable);
-  run.nuisance = AllUnknowns(turntable.places, BelievedInstrument(scenario), turntable.context, scenario);
-  Stretch(SlopesOfReading(turntable.context.shown_rad, scenario, turntable.context), run.nuisance);
+  if (follow) {
+    FollowTwin(readings, used, scenario, follow, turntable);
+  } else {
+    Believe(scenario, turntable);
+  }
   return turntable;
 }
 
 TurntableRun LinearisedAbout(const std::vector<EffectSettings>& found, const std::vector<Reading>& readings,
-                             const Scenario& scenario) {
+                             const Scenario& scenario, const model::FollowMaker& follow) {
   Scenario with_found = scenario;
   with_found.effects.insert(with_found.effects.end(), found.begin(), found.end());
-  TurntableRun turntable = BuildRun(readings, with_found);
+  TurntableRun turntable = BuildRun(readings, with_found, follow);
+  if (follow) {
+    const Followed stated(follow, scenario, readings, Usable(readings));
+    turntable.run.residual = OrZero(turntable.run.observed - AsRows(stated.Predict(AtPoints(turntable.body_rad))));
+    return turntable;
+  }
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(turntable.context.Readings());
   const auto behind_rad = [&](const Scenario& s) {
     return AsRows(KnownSignalsOf(turntable.context.shown_rad, none, s, turntable.context).behind_rad);

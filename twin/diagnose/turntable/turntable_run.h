@@ -6,6 +6,7 @@
 #include "twin/core/reading.h"
 #include "twin/diagnose/turntable/places.h"
 #include "twin/diagnose/turntable/signals.h"
+#include "twin/model/follow.h"
 
 /// The forward model of a turntable that is checked with a multi-tooth table, a mirror and an autocollimator (Guo
 /// et al. 2014), with the effects that the scenario already knows.
@@ -16,6 +17,7 @@ struct TurntableRun {
   SignalContext context;
   Places places;
   int left_out = 0;  // readings without a value
+  Eigen::MatrixXd body_rad;  // readings x axes: turn and tilt of the mirror by the free unknowns; by the twin only
 };
 
 /// x = T(position) + R(tooth) + constant of the set-up; y = tilt of the turntable(position) + constant + wave of
@@ -25,14 +27,17 @@ struct TurntableRun {
 ///
 /// Noise: autocollimator, and the scatter of both tables at a stop; the multi-tooth table is lifted at each.
 ///
+/// @param follow  The twin that is asked what readings should have been, with the errors of tables and mountings that
+///                fit best; empty: closed forms, which know the effects and the keys that they name.
 /// @throws InputError if fewer than 12 readings have both values.
-TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario);
+TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
+                      const model::FollowMaker& follow = {});
 
 /// The run of `scenario`, linearised where effects that were `found` put it: a ripple shifts its own argument, and
 /// what readings show of a small change. The effects themselves are still in the residual.
 /// @param found  Effects that are added behind the optics.
 TurntableRun LinearisedAbout(const std::vector<EffectSettings>& found, const std::vector<Reading>& readings,
-                             const Scenario& scenario);
+                             const Scenario& scenario, const model::FollowMaker& follow = {});
 
 /// What unknowns that follow a cause would do to the results: "turntable ez up to 0.4 arcsec rms".
 std::string BiasInWords(const Places& places, const Eigen::VectorXd& unknowns);

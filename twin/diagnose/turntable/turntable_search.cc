@@ -50,7 +50,8 @@ void Analyse(std::unique_ptr<TurntableRun> turntable, const std::vector<std::str
 /// The same with amplitudes that fit best in the exact model: a steep ripple that was found where the prediction
 /// had already followed it is too small or too large.
 std::vector<EffectSettings> Rescaled(const std::vector<EffectSettings>& ripples,
-                                     const std::vector<Reading>& readings, const Scenario& scenario) {
+                                     const std::vector<Reading>& readings, const Scenario& scenario,
+                                     const model::FollowMaker& follow) {
   std::vector<EffectSettings> best = ripples;
   double least = std::numeric_limits<double>::infinity();
   for (const double factor : {0.35, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.45}) {
@@ -58,7 +59,7 @@ std::vector<EffectSettings> Rescaled(const std::vector<EffectSettings>& ripples,
     for (EffectSettings& ripple : scaled) ripple.parameters.at("amplitude") *= factor;
     Scenario with_scaled = scenario;
     with_scaled.effects.insert(with_scaled.effects.end(), scaled.begin(), scaled.end());
-    const double power = FreeMisfit(BuildRun(readings, with_scaled).run).power;
+    const double power = FreeMisfit(BuildRun(readings, with_scaled, follow).run).power;
     if (power >= least) continue;
     least = power;
     best = scaled;
@@ -67,29 +68,30 @@ std::vector<EffectSettings> Rescaled(const std::vector<EffectSettings>& ripples,
 }
 
 void FollowRipples(const std::vector<Reading>& readings, const Scenario& scenario,
-                   const std::vector<std::string>& struck, const AnalysisOptions& options,
-                   SearchedTurntable& searched) {
+                   const model::FollowMaker& follow, const std::vector<std::string>& struck,
+                   const AnalysisOptions& options, SearchedTurntable& searched) {
   constexpr double kSlight = 0.1;
   constexpr int kMostRounds = 3;
   for (int round = 0; round < kMostRounds; ++round) {
     const std::vector<EffectSettings> ripples = RipplesOf(searched);
     if (SteepestSlope(ripples) < kSlight) return;
-    const std::vector<EffectSettings> rescaled = Rescaled(ripples, readings, scenario);
-    Analyse(std::make_unique<TurntableRun>(LinearisedAbout(rescaled, readings, scenario)), struck, options,
+    const std::vector<EffectSettings> rescaled = Rescaled(ripples, readings, scenario, follow);
+    Analyse(std::make_unique<TurntableRun>(LinearisedAbout(rescaled, readings, scenario, follow)), struck, options,
             searched);
   }
 }
 
 SearchedTurntable Search(const std::vector<Reading>& readings, const Scenario& scenario,
-                         const std::vector<std::string>& struck, AnalysisOptions options) {
+                         const model::FollowMaker& follow, const std::vector<std::string>& struck,
+                         AnalysisOptions options) {
   const auto is_struck = [&](const char* effect) { return std::ranges::find(struck, effect) != struck.end(); };
   SearchedTurntable searched;
-  auto first = std::make_unique<TurntableRun>(BuildRun(readings, scenario));
+  auto first = std::make_unique<TurntableRun>(BuildRun(readings, scenario, follow));
   if (!is_struck("outliers")) searched.disturbed = FindDisturbed(first->run);
   Analyse(std::move(first), struck, options, searched);
   const NullCalibration null = searched.analysis.null;
   options.null = &null;
-  FollowRipples(readings, scenario, struck, options, searched);
+  FollowRipples(readings, scenario, follow, struck, options, searched);
   const TurntableRun stated = *searched.turntable;
   const Seating seating = MeasureSeating(stated, searched.analysis);
   searched.smallest_seating_rad = seating.smallest_rad;
@@ -107,8 +109,9 @@ SearchedTurntable Search(const std::vector<Reading>& readings, const Scenario& s
 }  // namespace
 
 SearchedTurntable SearchTurntable(const std::vector<Reading>& readings, const Scenario& scenario,
-                                  const std::vector<std::string>& struck, const AnalysisOptions& options) {
-  SearchedTurntable searched = Search(readings, scenario, struck, options);
+                                  const std::vector<std::string>& struck, const AnalysisOptions& options,
+                                  const model::FollowMaker& follow) {
+  SearchedTurntable searched = Search(readings, scenario, follow, struck, options);
   if (searched.disturbed) TakeFurther(searched.analysis, *searched.disturbed);
   return searched;
 }

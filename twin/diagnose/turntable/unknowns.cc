@@ -18,14 +18,11 @@ constexpr double kToothTilt_rad = 5.0 * arcsec;    // of a multi-tooth table
 constexpr double kMirrorTilt_rad = 20.0 * arcsec;  // of the mirror against the multi-tooth table's axis
 constexpr double kLeast_rad = 1e-4 * arcsec;       // of a prior: nothing is known better
 
-/// Collects columns. X and Y are turns about the turntable's axis and upwards; the crosshair shows them turned.
+/// Collects columns. X and Y are turns about the turntable's axis and upwards; the instrument shows them by slopes.
 class Columns {
  public:
-  Columns(const Places& places, const Instrument& instrument, const Schedule& schedule)
-      : places_(places),
-        schedule_(schedule),
-        cos_((1.0 + instrument.gain_error) * std::cos(instrument.roll_rad)),
-        sin_((1.0 + instrument.gain_error) * std::sin(instrument.roll_rad)) {
+  Columns(const Places& places, const Slopes& slopes, const Schedule& schedule)
+      : places_(places), schedule_(schedule), slopes_(slopes) {
     precision_.assign(At(kAxes * places.blocks), 1.0 / (kFree_rad * kFree_rad));
   }
 
@@ -39,12 +36,12 @@ class Columns {
     return static_cast<int>(precision_.size()) - 1;
   }
   void ShowX(int reading, int unknown, double value) {
-    Put(kAxes * reading + kX, unknown, cos_ * value);
-    Put(kAxes * reading + kY, unknown, -sin_ * value);
+    Put(kAxes * reading + kX, unknown, slopes_.of_turn(reading, kX) * value);
+    Put(kAxes * reading + kY, unknown, slopes_.of_turn(reading, kY) * value);
   }
   void ShowY(int reading, int unknown, double value) {
-    Put(kAxes * reading + kX, unknown, sin_ * value);
-    Put(kAxes * reading + kY, unknown, cos_ * value);
+    Put(kAxes * reading + kX, unknown, slopes_.of_tilt(reading, kX) * value);
+    Put(kAxes * reading + kY, unknown, slopes_.of_tilt(reading, kY) * value);
   }
   void Put(int row, int unknown, double value) {
     if (value != 0.0) entries_.emplace_back(row, unknown, value);
@@ -64,7 +61,7 @@ class Columns {
  private:
   const Places& places_;
   const Schedule& schedule_;
-  double cos_, sin_;
+  const Slopes& slopes_;
   std::vector<double> precision_;
   std::vector<Eigen::Triplet<double>> entries_;
 };
@@ -172,16 +169,22 @@ void AddInterpolation(Columns& columns, double amplitude_rad, const SignalContex
 
 }  // namespace
 
-Nuisance FreeUnknowns(const Places& places, const Instrument& instrument, const Schedule& schedule) {
-  Columns columns(places, instrument, schedule);
+Slopes SlopesOf(const Instrument& instrument, Eigen::Index readings) {
+  const double scale = 1.0 + instrument.gain_error;
+  const double c = scale * std::cos(instrument.roll_rad), s = scale * std::sin(instrument.roll_rad);
+  return {Eigen::RowVector2d(c, -s).replicate(readings, 1), Eigen::RowVector2d(s, c).replicate(readings, 1)};
+}
+
+Nuisance FreeUnknowns(const Places& places, const Slopes& slopes, const Schedule& schedule) {
+  Columns columns(places, slopes, schedule);
   AddPositions(columns);
   AddSetUps(columns);
   return columns.Take();
 }
 
-Nuisance AllUnknowns(const Places& places, const Instrument& instrument, const SignalContext& context,
+Nuisance AllUnknowns(const Places& places, const Slopes& slopes, const SignalContext& context,
                      const Scenario& scenario) {
-  Columns columns(places, instrument, context.schedule);
+  Columns columns(places, slopes, context.schedule);
   AddPositions(columns);
   AddSetUps(columns);
   AddTeeth(columns, scenario.multitooth.u_tooth_rad);

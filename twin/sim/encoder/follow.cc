@@ -1,53 +1,46 @@
 #include "twin/sim/encoder/follow.h"
 
-#include <cmath>
-
-#include "twin/core/errors.h"
 #include "twin/sim/encoder/twin.h"
+#include "twin/sim/pointwise_follow.h"
 
 namespace twinbench::sim {
 namespace {
 
-/// Without chance, and without single outliers, which nobody can foresee.
-Scenario Foreseeable(Scenario scenario) {
-  scenario.noise_free = true;
-  std::erase_if(scenario.effects, [](const EffectSettings& e) { return e.name == "outliers"; });
-  return scenario;
+/// What disturbances add to one reading.
+struct AngleExtra {
+  double shaft_rad = 0.0, device_rad = 0.0;
+};
+using AnglePoint = BenchPoint<AngleExtra>;
+
+const std::vector<AnglePoint>& AnglePoints() {
+  static const std::vector<AnglePoint> points = {
+      {{"shaft", "deg", units::deg, 1.0 * units::arcsec}, [](AngleExtra& e) -> double& { return e.shaft_rad; }},
+      {{"device", "deg", units::deg, 1.0 * units::arcsec}, [](AngleExtra& e) -> double& { return e.device_rad; }}};
+  return points;
 }
 
-class EncoderFollow : public model::Follow {
+class EncoderFollow : public PointwiseFollow<AngleExtra> {
  public:
-  EncoderFollow(const Scenario& scenario, const std::vector<Reading>& record)
-      : scenario_(Foreseeable(scenario)), record_(record) {
-    for (Reading& r : record_) {
-      if (!std::isfinite(r.velocity_rad_s)) r.velocity_rad_s = 0.0;
-    }
-  }
-
-  const std::vector<model::Point>& Points() const override { return points_; }
-
-  Eigen::MatrixXd Predict(const std::vector<model::Disturbance>& disturbances) const override {
-    Eigen::VectorXd shaft_rad = Eigen::VectorXd::Zero(std::ssize(record_)), device_rad = shaft_rad;
-    for (const model::Disturbance& d : disturbances) {
-      Require(d.point == "shaft" || d.point == "device", "the angle comparison has no point of that name");
-      Require(d.value.size() == shaft_rad.size(), "a disturbance has one value a reading");
-      (d.point == "shaft" ? shaft_rad : device_rad) += d.value;
-    }
-    EncoderTwin twin(scenario_);  // anew: its effects have memories
-    for (Eigen::Index i = 0; i < shaft_rad.size(); ++i)
-      device_rad[i] += twin.DeviceAt_rad(record_[static_cast<std::size_t>(i)], shaft_rad[i]);
-    return device_rad;
-  }
+  EncoderFollow(const Scenario& stated, const std::vector<Reading>& record)
+      : PointwiseFollow(Foreseeable(stated), record, AnglePoints()) {}
 
   std::vector<std::string> Unfixed() const override {
     return {"angles of the device on the shaft: free in every set-up"};
   }
 
- private:
-  Scenario scenario_;
-  std::vector<Reading> record_;
-  std::vector<model::Point> points_ = {{"shaft", "deg", units::deg, 1.0 * units::arcsec},
-                                       {"device", "deg", units::deg, 1.0 * units::arcsec}};
+ protected:
+  Eigen::MatrixXd Shown(const std::vector<AngleExtra>& extra) const override {
+    EncoderTwin twin(scenario());  // anew: its effects have memories
+    Eigen::VectorXd shown_rad(std::ssize(extra));
+    for (std::size_t i = 0; i < extra.size(); ++i)
+      shown_rad[static_cast<Eigen::Index>(i)] =
+          twin.DeviceAt_rad(record()[i], extra[i].shaft_rad) + extra[i].device_rad;
+    return shown_rad;
+  }
+
+  std::unique_ptr<model::Follow> On(const Scenario& changed) const override {
+    return std::make_unique<EncoderFollow>(changed, record());
+  }
 };
 
 }  // namespace

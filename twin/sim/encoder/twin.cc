@@ -16,8 +16,9 @@ double Approach_rad(const Reading& reading, const EncoderProcedureSettings& proc
 }
 
 AngleMoment MomentOf(const Reading& reading, const Scenario& scenario) {
-  return {reading.time,          reading.setup,          reading.reading,
-          reading.reference_rad, reading.velocity_rad_s, Approach_rad(reading, scenario.encoder_procedure)};
+  const double velocity_rad_s = std::isfinite(reading.velocity_rad_s) ? reading.velocity_rad_s : 0.0;
+  return {reading.time,          reading.setup,  reading.reading,
+          reading.reference_rad, velocity_rad_s, Approach_rad(reading, scenario.encoder_procedure)};
 }
 
 double Noise(const Scenario& scenario, int reading) {

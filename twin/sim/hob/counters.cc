@@ -1,22 +1,7 @@
 #include "twin/sim/hob/counters.h"
 
-#include <cmath>
-
 namespace twinbench::sim {
 namespace {
-
-mechanics::Ring RingOf(const RingEncoderSettings& s) {
-  mechanics::Ring ring;
-  ring.radius_m = s.radius_m;
-  ring.lines = s.lines;
-  ring.eccentricity_m = s.eccentricity_m *
-                        Eigen::Vector2d(std::cos(s.eccentricity_azimuth_rad), std::sin(s.eccentricity_azimuth_rad));
-  ring.tilt_rad = s.tilt_rad * Eigen::Vector2d(std::cos(s.tilt_azimuth_rad), std::sin(s.tilt_azimuth_rad));
-  ring.ellipticity_m = s.ellipticity_m;
-  ring.ellipticity_azimuth_rad = s.ellipticity_azimuth_rad;
-  for (const HarmonicSettings& h : s.graduation) ring.graduation.push_back({h.order, h.amplitude, h.phase_rad});
-  return ring;
-}
 
 double Draw(double sd_rad, Stream& stream) {
   return sd_rad > 0.0 ? sd_rad * stream.Normal() : 0.0;
@@ -25,26 +10,19 @@ double Draw(double sd_rad, Stream& stream) {
 }  // namespace
 
 Counters::Counters(const Scenario& actual, const mechanics::SignalState& hob_signals)
-    : table_settings_(actual.table_encoder),
-      from_origin_(actual.hob_procedure.encoder_zero == "table_origin"),
+    : encoders_(actual, hob_signals),
       quantised_(!actual.noise_free),
-      table_ring_(TableRing(0.0)),
-      hob_ring_(RingOf(actual.hob_encoder), {0.0, actual.hob_encoder.head_height_m, 0.0}),
+      table_ring_(encoders_.TableRing(0.0)),
       table_edges_({}, actual.table_encoder.lines, 1),
-      hob_counts_(hob_signals, actual.hob_encoder.lines, actual.hob_encoder.interpolation),
       table_noise_rad_(actual.table_encoder.noise_rad),
       hob_noise_rad_(actual.hob_encoder.noise_rad),
       table_noise_(actual.seed, "table_encoder.noise"),
       hob_noise_(actual.seed, "hob_encoder.noise"),
       capacity_(static_cast<std::size_t>(actual.hob_procedure.fifo_samples)) {}
 
-mechanics::RingEncoder Counters::TableRing(double head_rad) const {
-  return {RingOf(table_settings_), {head_rad, table_settings_.head_height_m, 0.0}};
-}
-
 void Counters::SetHead(double head_rad) {
   head_rad_ = head_rad;
-  table_ring_ = TableRing(head_rad);
+  table_ring_ = encoders_.TableRing(head_rad);
 }
 
 void Counters::Arm(int edges, int samples, double table_rad, int direction) {
@@ -63,13 +41,14 @@ double Counters::NextTableAngle_rad() const {
 
 /// The edge's own place on an ideal scale: the count is exact there.
 double Counters::TableShown_rad() const {
-  return table_edges_.FallingEdge_rad(next_line_, direction_) + (from_origin_ ? head_rad_ : 0.0);
+  return encoders_.TableShown_rad(table_edges_.FallingEdge_rad(next_line_, direction_), head_rad_);
 }
 
 double Counters::HobShown_rad(double hob_rad) {
-  const double scale_rad = hob_ring_.Scale_rad(hob_rad) + Draw(hob_noise_rad_, hob_noise_);
-  if (!quantised_) return hob_counts_.Shown_rad(scale_rad);
-  return (static_cast<double>(hob_counts_.Steps(scale_rad)) + 0.5) * hob_counts_.Step_rad();
+  const double scale_rad = encoders_.hob_ring().Scale_rad(hob_rad) + Draw(hob_noise_rad_, hob_noise_);
+  const mechanics::InterpolatedSignal& signals = encoders_.hob_signals();
+  if (!quantised_) return signals.Shown_rad(scale_rad);
+  return (static_cast<double>(signals.Steps(scale_rad)) + 0.5) * signals.Step_rad();
 }
 
 CounterSample Counters::Count(const mechanics::GearTrainState& at) {

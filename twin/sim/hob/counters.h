@@ -2,12 +2,10 @@
 
 #include <deque>
 
-#include "mechanics/encoder_signal.h"
 #include "mechanics/gear_train.h"
-#include "mechanics/ring_encoder.h"
 #include "twin/core/devices.h"
 #include "twin/core/stream.h"
-#include "twin/sim/hob/effect.h"
+#include "twin/sim/hob/encoders.h"
 
 namespace twinbench::sim {
 
@@ -33,19 +31,17 @@ class Counters {
   CounterSamples Empty();
 
   /// Error of the table's ring in its own angle, where nothing but the ring is wrong.
-  double TableRingError_rad(double ring_rad) const { return TableRing(0.0).Scale_rad(ring_rad) - ring_rad; }
+  double TableRingError_rad(double ring_rad) const { return encoders_.TableRing(0.0).Scale_rad(ring_rad) - ring_rad; }
 
  private:
-  mechanics::RingEncoder TableRing(double head_rad) const;
   double TableShown_rad() const;
   double HobShown_rad(double hob_rad);
 
-  RingEncoderSettings table_settings_;
-  bool from_origin_;
+  HobEncoders encoders_;
   bool quantised_;
   double head_rad_ = 0.0;
-  mechanics::RingEncoder table_ring_, hob_ring_;
-  mechanics::InterpolatedSignal table_edges_, hob_counts_;
+  mechanics::RingEncoder table_ring_;
+  mechanics::InterpolatedSignal table_edges_;
   double table_noise_rad_, hob_noise_rad_;
   Stream table_noise_, hob_noise_;
   int edges_ = 1;

@@ -3,52 +3,9 @@
 #include <algorithm>
 
 #include "twin/core/device_fault.h"
-#include "twin/sim/silence.h"
 
 namespace twinbench::sim {
 namespace {
-
-std::vector<std::unique_ptr<HobEffect>> HobEffectsOf(const Scenario& nominal) {
-  std::vector<std::unique_ptr<HobEffect>> effects;
-  for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeHobEffect(effect, nominal));
-  return effects;
-}
-
-Scenario ActualBench(const Scenario& nominal, const std::vector<std::unique_ptr<HobEffect>>& effects) {
-  Scenario actual = nominal;
-  for (const auto& effect : effects) effect->AlterBench(actual);
-  if (actual.noise_free) Silence(actual);
-  return actual;
-}
-
-mechanics::GearTrainParameters TrainOf(const Scenario& actual,
-                                       const std::vector<std::unique_ptr<HobEffect>>& effects) {
-  const TransmissionSettings& t = actual.transmission;
-  mechanics::GearTrainParameters p;
-  p.ratio = t.Ratio();
-  p.worm_wheel_teeth = t.worm_wheel_teeth;
-  p.worm_starts = t.worm_starts;
-  p.motor.servo_Hz = t.servo_Hz;
-  p.motor.feed_forward = t.feed_forward;
-  p.hob.feed_forward = 1.0;
-  p.table_inertia_kg_m2 = t.table_inertia_kg_m2;
-  p.stiffness_Nm_rad = t.stiffness_Nm_rad;
-  p.damping_ratio = t.damping_ratio;
-  p.friction.coulomb_Nm = t.friction_Nm;
-  p.backlash_rad = t.backlash_rad;
-  constexpr double kStepsAPeriodOfTheServo = 40.0;  // its loop is stable with no fewer
-  const double fastest_Hz = std::max(p.motor.servo_Hz, p.hob.servo_Hz);
-  p.servo_period_s = std::min(p.servo_period_s, 1.0 / (kStepsAPeriodOfTheServo * fastest_Hz));
-  for (const HarmonicSettings& h : t.harmonics) p.errors.worm_wheel.push_back({h.order, h.amplitude, h.phase_rad});
-  for (const auto& effect : effects) effect->AlterGears(p.errors);
-  return p;
-}
-
-mechanics::SignalState HobSignals(const std::vector<std::unique_ptr<HobEffect>>& effects) {
-  mechanics::SignalState signals;
-  for (const auto& effect : effects) effect->AlterHobSignals(signals);
-  return signals;
-}
 
 /// Short enough for the cubic between two states: a line of 10 Hz is met to 1e-6 of its size.
 Duration PieceOf(const Scenario& actual) {
@@ -58,17 +15,14 @@ Duration PieceOf(const Scenario& actual) {
 }  // namespace
 
 HobWorld::HobWorld(const Scenario& nominal)
-    : effects_(HobEffectsOf(nominal)),
-      actual_(ActualBench(nominal, effects_)),
-      train_(mechanics::MakeGearTrain(mechanics::FidelityFromName(actual_.mechanics.fidelity),
-                                      TrainOf(actual_, effects_))),
-      counters_(actual_, HobSignals(effects_)),
-      interferometer_noise_(actual_.seed, "interferometer.noise"),
-      empirical_(actual_.empiricals, "transmission"),
-      piece_(PieceOf(actual_)) {}
+    : path_(nominal),
+      train_(mechanics::MakeGearTrain(mechanics::FidelityFromName(actual().mechanics.fidelity), path_.train())),
+      counters_(actual(), path_.HobSignals()),
+      interferometer_noise_(actual().seed, "interferometer.noise"),
+      piece_(PieceOf(actual())) {}
 
 void HobWorld::Run(double hob_speed_rad_s, Duration ramp) {
-  if (hob_speed_rad_s != 0.0) direction_ = (hob_speed_rad_s > 0.0) == (actual_.transmission.Ratio() > 0.0) ? 1 : -1;
+  if (hob_speed_rad_s != 0.0) direction_ = (hob_speed_rad_s > 0.0) == (actual().transmission.Ratio() > 0.0) ? 1 : -1;
   hob_speed_rad_s_ = hob_speed_rad_s;
   constexpr Duration kRinging = std::chrono::seconds(5);  // 20 Hz servo, torsion with 1 % of damping: long over
   at_rest_ = now_ + ramp + kRinging;
@@ -98,7 +52,7 @@ void HobWorld::RunUntil(Time until) {
     train_->Advance(ToSeconds(piece));
     const mechanics::GearTrainState after = train_->State();
     if (counters_.Armed()) TakeSamples(before, after);
-    for (const auto& effect : effects_) effect->Travel(after.table_rad);
+    path_.Travel(after.table_rad);
     now_ += piece;
   }
 }
@@ -113,39 +67,19 @@ void HobWorld::TakeSamples(const mechanics::GearTrainState& before, const mechan
 }
 
 double HobWorld::Interferometer_rad(const mechanics::GearTrainState& at) {
-  if (!actual_.interferometer.used) return kNaN;
-  const double noise_rad = actual_.interferometer.noise_rad;
-  return at.table_rad - actual_.transmission.Ratio() * at.hob_rad +
-         (noise_rad > 0.0 ? noise_rad * interferometer_noise_.Normal() : 0.0);
+  const double noise_rad = actual().interferometer.noise_rad;
+  return path_.Interferometer_rad(at.table_rad, at.hob_rad) +
+         (actual().interferometer.used && noise_rad > 0.0 ? noise_rad * interferometer_noise_.Normal() : 0.0);
 }
 
 CounterSample HobWorld::SampleAt(const mechanics::GearTrainState& at, Time now) {
   CounterSample sample = counters_.Count(at);
   sample.time = now;
-  sample.velocity_rad_s = actual_.transmission.Ratio() * hob_speed_rad_s_;
+  sample.velocity_rad_s = actual().transmission.Ratio() * hob_speed_rad_s_;
   sample.interferometer_rad = Interferometer_rad(at);
-  for (const auto& effect : effects_) effect->Travel(at.table_rad);
-  const HobMoment moment{sample.time, next_reading_++, at.table_rad, sample.velocity_rad_s};
-  for (const auto& effect : effects_) {
-    const ShownError error = effect->Shown(moment);
-    sample.table_encoder_rad += error.table_rad + error.motion_rad;
-    sample.interferometer_rad += error.motion_rad;
-    sample.hob_encoder_rad += error.hob_rad;
-  }
-  sample.table_encoder_rad += empirical_.At_rad(moment.reading);
+  path_.Travel(at.table_rad);
+  path_.Disturb({sample.time, next_reading_++, at.table_rad, sample.velocity_rad_s}, sample);
   return sample;
-}
-
-std::vector<mechanics::AngleHarmonic> HobWorld::Transmission() const {
-  const mechanics::GearErrors errors = TrainOf(actual_, effects_).errors;
-  std::vector<mechanics::AngleHarmonic> by_table = errors.worm_wheel;
-  const auto add = [&](const std::vector<mechanics::AngleHarmonic>& part, double turns) {
-    for (const mechanics::AngleHarmonic& h : part)
-      by_table.push_back({h.order * turns, h.amplitude_rad, h.phase_rad});
-  };
-  add(errors.worm, actual_.transmission.WormOrder());
-  add(errors.hob_drive, actual_.transmission.HobOrder());
-  return by_table;
 }
 
 }  // namespace twinbench::sim

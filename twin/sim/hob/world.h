@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "twin/sim/empirical_signal.h"
 #include "twin/sim/hob/counters.h"
+#include "twin/sim/hob/path.h"
 
 namespace twinbench::sim {
 
@@ -22,10 +22,10 @@ class HobWorld {
   void Arm(int edges, int samples);
   CounterSamples ReadCounters() { return counters_.Empty(); }
 
-  const Scenario& actual() const { return actual_; }
+  const Scenario& actual() const { return path_.actual(); }
   const Counters& counters() const { return counters_; }
   /// Of the gears, by turns of the table: what the chain would err if it ran infinitely slowly.
-  std::vector<mechanics::AngleHarmonic> Transmission() const;
+  std::vector<mechanics::AngleHarmonic> Transmission() const { return path_.Transmission(); }
 
  private:
   void TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after);
@@ -33,12 +33,10 @@ class HobWorld {
   bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && now_ >= at_rest_; }
   double Interferometer_rad(const mechanics::GearTrainState& at);
 
-  std::vector<std::unique_ptr<HobEffect>> effects_;
-  Scenario actual_;
+  HobPath path_;
   std::unique_ptr<mechanics::GearTrain> train_;
   Counters counters_;
   Stream interferometer_noise_;
-  EmpiricalSignal empirical_;
   Duration piece_;
   Time now_{};
   Time at_rest_{};  // from then on nothing moves, unless the drive is told to

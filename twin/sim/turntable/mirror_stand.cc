@@ -44,8 +44,7 @@ void MirrorStand::Mount(double tilt_rad, double azimuth_rad, double eccentricity
   X_TB_.linear() = Eigen::AngleAxisd(tilt_rad, Vector3::UnitZ().cross(towards)).toRotationMatrix();
   X_TB_.translation() = eccentricity_m * towards;
   turntable_seat_ = turntable_.DrawSeating();
-  X_RM_ = Turned(mechanics::RotationZ(-shift_rad)) * mechanics::ToPose(multitooth_.DrawSeating()) *
-          FacingAlongY(mirror_radius_m_);
+  X_RS_ = Turned(mechanics::RotationZ(-shift_rad)) * mechanics::ToPose(multitooth_.DrawSeating());
 }
 
 void MirrorStand::Seat(int tooth) {
@@ -58,13 +57,16 @@ int MirrorStand::Wrapped(int tooth) const {
   return ((tooth % teeth) + teeth) % teeth;
 }
 
-Pose MirrorStand::MirrorPose(double turntable_rad, double yaw_rad, const mechanics::BearingPose& bearing) const {
+Pose MirrorStand::MirrorPose(double turntable_rad, double yaw_rad, const mechanics::BearingPose& bearing,
+                             const MirrorExtra& extra) const {
   const double multitooth_rad = tooth_ * pitch_rad_;
-  mechanics::PoseError tooth_error = multitooth_.At(multitooth_rad);
+  mechanics::PoseError tooth_error = multitooth_.At(multitooth_rad) + extra.multitooth;
   tooth_error.ez_rad += tooth_rad_[static_cast<std::size_t>(Wrapped(tooth_))];
-  return mechanics::ToPose(bearing) * mechanics::ToPose(turntable_.At(turntable_rad) + turntable_seat_) *
-         Turned(mechanics::RotationZ(turntable_rad + yaw_rad)) * X_TB_ *
-         Turned(mechanics::RotationZ(multitooth_rad)) * mechanics::ToPose(tooth_error) * X_RM_;
+  const mechanics::PoseError turntable_error = turntable_.At(turntable_rad) + turntable_seat_ + extra.turntable;
+  return mechanics::ToPose(bearing) * mechanics::ToPose(turntable_error) *
+         Turned(mechanics::RotationZ(turntable_rad + yaw_rad)) * X_TB_ * mechanics::ToPose(extra.axis) *
+         Turned(mechanics::RotationZ(multitooth_rad)) * mechanics::ToPose(tooth_error) * X_RS_ *
+         mechanics::ToPose(extra.mount) * FacingAlongY(mirror_radius_m_);
 }
 
 TableErrors MirrorStand::MultitoothErrors() const {

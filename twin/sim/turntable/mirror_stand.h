@@ -7,6 +7,14 @@
 
 namespace twinbench::sim {
 
+/// Errors on top of those of the settings.
+struct MirrorExtra {
+  mechanics::PoseError turntable;   // in L
+  mechanics::PoseError axis;        // of the multi-tooth table on the turntable's rotor
+  mechanics::PoseError multitooth;  // in its rotor frame
+  mechanics::PoseError mount;       // of the mirror, facing along y, on its seat
+};
+
 /// Turntable, multi-tooth table and mirror on top of each other: from angles to the pose of the mirror.
 ///
 /// L: z = turntable's axis, up; the autocollimator looks along -y; origin at the height of the beam. The mirror's
@@ -23,7 +31,8 @@ class MirrorStand {
   void Seat(int tooth);
 
   /// @param yaw_rad  Of the turntable, beyond its errors.
-  Pose MirrorPose(double turntable_rad, double yaw_rad, const mechanics::BearingPose& bearing) const;
+  Pose MirrorPose(double turntable_rad, double yaw_rad, const mechanics::BearingPose& bearing,
+                  const MirrorExtra& extra = {}) const;
 
   const TableMotion& turntable() const { return turntable_; }
   /// Errors of the multi-tooth table that repeat, at each of its teeth.
@@ -36,7 +45,7 @@ class MirrorStand {
   std::vector<double> tooth_rad_;  // errors that differ from tooth to tooth
   double pitch_rad_, mirror_radius_m_;
   Pose X_TB_ = Pose::Identity();  // base of the multi-tooth table on the turntable's rotor
-  Pose X_RM_ = Pose::Identity();  // mirror on the multi-tooth table's rotor
+  Pose X_RS_ = Pose::Identity();  // seat of the mirror on the multi-tooth table's rotor
   mechanics::PoseError turntable_seat_;
   int tooth_ = 0;
 };

@@ -1,14 +1,9 @@
 #pragma once
 
-#include <vector>
-
-#include "optics/autocollimator.h"
 #include "twin/core/devices.h"
 #include "twin/sim/axes.h"
-#include "twin/sim/empirical_signal.h"
 #include "twin/sim/environment.h"
-#include "twin/sim/turntable/effect.h"
-#include "twin/sim/turntable/mirror_stand.h"
+#include "twin/sim/turntable/mirror_path.h"
 
 namespace twinbench::sim {
 
@@ -20,8 +15,8 @@ class TurntableWorld {
   EventQueue& queue() { return queue_; }
   Environment& environment() { return environment_; }
   Axes& axes() { return axes_; }
-  const Scenario& actual() const { return actual_; }
-  const MirrorStand& stand() const { return stand_; }
+  const Scenario& actual() const { return path_.actual(); }
+  const MirrorStand& stand() const { return path_.stand(); }
 
   void StartMove(double to_rad);
   TableState TurntableState();
@@ -32,18 +27,13 @@ class TurntableWorld {
 
  private:
   TurntableMoment Moment(int reading);
-  Eigen::Vector2d Zero_rad();
   Eigen::Vector2d Noise_rad();
 
   EventQueue queue_;
-  std::vector<std::unique_ptr<TurntableEffect>> effects_;
-  Scenario actual_;
+  MirrorPath path_;
   Environment environment_;
   Axes axes_;
-  MirrorStand stand_;
-  optics::AutocollimatorOptics optics_;
   Stream noise_;
-  EmpiricalSignal empirical_x_, empirical_y_;
   Time mounted_{};
   int setup_ = 0;
   int next_reading_ = 0;

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/core/scenario.h"
+#include "twin/model/follow.h"
+
+/// Runs of the twin that are diagnosed against their own scenario: whatever it states, nothing is wrong.
+namespace twinbench::test {
+
+/// One key of the schema set to a value that moves the readings, or the reason why no value can matter.
+struct OwnKey {
+  std::string key;
+  std::vector<std::string> settings;  // as for --set: the key, and what it needs beside it
+  std::string reason = {};
+};
+
+/// Keys of the bench's schema that are in no entry, and keys of entries that are in no schema.
+std::vector<std::string> Forgotten(const std::string& bench, const std::vector<OwnKey>& keys);
+
+struct Alarms {
+  int runs = 0;
+  std::vector<std::string> raised;  // key = value: cause, for each
+  std::string InWords() const;
+};
+
+/// @param base    Scenario and settings that every run has.
+/// @param follow  Empty: closed forms.
+/// @param seeds   How many of each.
+Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_settings,
+                const std::vector<OwnKey>& keys, const model::FollowMaker& follow, int seeds);
+
+/// The same for every effect of the bench's catalogue at its default size.
+Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings,
+                       const model::FollowMaker& follow, int seeds);
+
+/// One, or as many as the environment's OWN_SCENARIO_SEEDS says.
+int Seeds();
+/// The twin, or closed forms where the environment has OWN_SCENARIO_CLOSED_FORMS.
+model::FollowMaker Or(const model::FollowMaker& follow);
+
+}  // namespace twinbench::test

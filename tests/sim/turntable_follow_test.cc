@@ -1,0 +1,193 @@
+#include "twin/sim/turntable/follow.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/angle_benches.h"
+#include "twin/sim/table_motion.h"
+
+// The turntable's twin on the course of a record says what the readings should have been.
+namespace twinbench {
+namespace {
+
+using units::arcsec;
+using units::deg;
+
+/// A noise-free run with errors of both tables, two set-ups, all phases.
+Scenario Careful() {
+  Scenario s;
+  s.bench = kTurntableBench;
+  s.noise_free = true;
+  s.target.harmonics = {{Component::kEz, 1.0, 6.0 * arcsec, 0.3}, {Component::kEx, 2.0, 2.0 * arcsec, 1.0}};
+  s.reference.harmonics = {{Component::kEz, 3.0, 1.0 * arcsec, 0.4}};
+  s.collimator.roll_rad = 5e-3;
+  s.turntable_procedure.phases = {"calibration", "full_circle", "verification"};
+  s.turntable_procedure.positions = 12;
+  s.turntable_procedure.tilt_azimuths_rad = {20.0 * deg, 130.0 * deg};
+  s.turntable_procedure.shifts = {0, 30};
+  s.turntable_procedure.dwell_s = {0.5, 2.0, 8.0};
+  s.turntable_procedure.verification_positions = 7;
+  return s;
+}
+
+Eigen::VectorXd Each(const std::vector<Reading>& readings, const std::function<double(const Reading&)>& value) {
+  Eigen::VectorXd values(std::ssize(readings));
+  for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = value(readings[static_cast<std::size_t>(i)]);
+  return values;
+}
+
+/// What the run leaves free, given at its points.
+std::vector<model::Disturbance> OwnErrors(const test::BenchRun& run) {
+  const Scenario& s = run.scenario;
+  const sim::TableMotion multitooth(s.reference, s.seed, "multitooth");
+  const auto teeth = run.truth["multitooth"]["ez_arcsec"].get<std::vector<double>>();
+  const auto tooth_rad = [&](const Reading& r) {
+    const auto n = static_cast<long>(teeth.size());
+    const long tooth = std::lround(r.reference_rad / (2.0 * units::kPi) * static_cast<double>(n));
+    return teeth[static_cast<std::size_t>(((tooth % n) + n) % n)] * arcsec;
+  };
+  // The rotor is where the gap lets it stay.
+  const auto rotor_rad = [&](const Reading& r) { return r.target_rad - 0.5 * r.direction * s.target.backlash_rad; };
+  std::vector<model::Disturbance> errors;
+  const std::array<const char*, kComponents> names = {"ex", "ey", "ez", "dx", "dy", "dz"};
+  for (std::size_t c = 0; c < kComponents; ++c) {
+    const auto of = [c](const mechanics::PoseError& e) { return e.Array()[c]; };
+    const std::string name = names[c];
+    TableSettings repeats = s.target;
+    repeats.half_frequency_tilt_rad = repeats.half_frequency_radial_m = 0.0;  // the twin knows it
+    const sim::TableMotion motion(repeats, s.seed, "turntable");
+    errors.push_back(
+        {"turntable." + name, Each(run.readings, [&](const Reading& r) { return of(motion.At(rotor_rad(r))); })});
+    if (name != "ez")
+      errors.push_back({"multitooth." + name, Each(run.readings, [&](const Reading& r) {
+                          return of(multitooth.At(r.reference_rad));
+                        })});
+  }
+  errors.push_back({"multitooth.ez", Each(run.readings, tooth_rad)});
+  return errors;
+}
+
+/// Largest difference between the run's readings and what its own twin says [arcsec].
+double TurntableOff_arcsec(const Scenario& scenario) {
+  const test::BenchRun run = test::RunTurntable(scenario);
+  const auto follow = sim::FollowTurntable(scenario, run.readings);
+  const Eigen::MatrixXd predicted_rad = follow->Predict(OwnErrors(run));
+  double off_rad = 0.0;
+  for (Eigen::Index i = 0; i < predicted_rad.rows(); ++i) {
+    const Reading& r = run.readings[static_cast<std::size_t>(i)];
+    EXPECT_EQ(r.status, ReadingStatus::kOk);
+    off_rad = std::max({off_rad, std::abs(predicted_rad(i, 0) - r.autocollimator_yaw_rad),
+                        std::abs(predicted_rad(i, 1) - r.autocollimator_tilt_rad)});
+  }
+  return off_rad / arcsec;
+}
+
+constexpr double kSameTurntable_arcsec = 1e-6;
+
+TEST(TurntableFollow, SaysWhatTheRunShowed) {
+  EXPECT_LT(TurntableOff_arcsec(Careful()), kSameTurntable_arcsec);
+}
+
+TEST(TurntableFollow, KnowsEveryEffectOfTheCatalogue) {
+  for (const EffectEntry& entry : EffectCatalogue(kTurntableBench)) {
+    if (entry.name == "outliers") continue;  // nobody can foresee them
+    Scenario s = Careful();
+    s.environment.drift_K_h = 2.0;
+    s.effects = {test::PlainEffect(entry)};
+    EXPECT_LT(TurntableOff_arcsec(s), kSameTurntable_arcsec) << entry.name;
+  }
+}
+
+TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
+  const std::vector<std::pair<const char*, void (*)(Scenario&)>> changes = {
+      {"backlash", [](Scenario& s) { s.target.backlash_rad = 3.0 * arcsec; }},
+      {"half frequency", [](Scenario& s) { s.target.half_frequency_tilt_rad = 2.0 * arcsec; }},
+      {"flatness", [](Scenario& s) { s.mirror.flatness_m = 5e-6; }},
+      {"eccentricities", [](Scenario& s) { s.turntable_procedure.eccentricities_m = {1e-3, 3e-3}; }},
+      {"mirror radius", [](Scenario& s) { s.mirror.radius_m = 0.2; }},
+      {"aperture", [](Scenario& s) { s.collimator.aperture_m = 70e-3; }},
+      {"small mirror", [](Scenario& s) { s.mirror.width_m = 20e-3; }},
+      {"gain error", [](Scenario& s) { s.autocollimator.gain_error = 0.01; }},
+      {"distortion", [](Scenario& s) { s.collimator.error_at_edge_rad = 5.0 * arcsec; }},
+      {"pixels", [](Scenario& s) { s.collimator.interpolation_error_px = 0.1; }},
+      {"zero with temperature",
+       [](Scenario& s) {
+         s.collimator.x_per_kelvin_rad = 2.0 * arcsec;
+         s.environment.swing_K = 0.5;
+         s.environment.swing_period_s = 1000.0;
+       }},
+      {"steep tilts", [](Scenario& s) { s.turntable_procedure.tilts_rad = {200.0 * arcsec, -250.0 * arcsec}; }},
+      {"no run-up", [](Scenario& s) {
+         s.turntable_procedure.run_up_steps = 0.0;
+         s.effects = {{"backlash", "", {{"width", 2.0 * arcsec}}, "", {}}};
+       }},
+      {"slow turntable", [](Scenario& s) {
+         s.target.move_time_s = 6.0;
+         s.effects = {{"settling", "", {{"amplitude", 2.0 * arcsec}, {"time_constant", 1.0}}, "", {}}};
+       }},
+      {"linear drives", [](Scenario& s) { s.mechanics.fidelity = "linear"; }},
+      {"teeth", [](Scenario& s) { s.multitooth.teeth = 720; }},
+      {"order of phases", [](Scenario& s) {
+         s.turntable_procedure.phases = {"verification", "full_circle", "calibration"};
+         s.effects = {{"mount_creep", "x", {{"amplitude", 2.0 * arcsec}, {"time_constant", 60.0}}, "", {}}};
+       }}};
+  for (const auto& [name, change] : changes) {
+    Scenario s = Careful();
+    change(s);
+    EXPECT_LT(TurntableOff_arcsec(s), kSameTurntable_arcsec) << name;
+  }
+}
+
+// Settled means within a hundredth of an arcsecond.
+TEST(TurntableFollow, DiffersFromBulletByLessThanTheServosWindow) {
+  Scenario s = Careful();
+  s.mechanics.fidelity = "bullet";
+  s.turntable_procedure.phases = {"full_circle"};
+  s.turntable_procedure.tilts_rad = {60.0 * arcsec};
+  s.turntable_procedure.shifts = {0};
+  s.turntable_procedure.tilt_azimuths_rad = {0.0};
+  EXPECT_LT(TurntableOff_arcsec(s), 0.02);
+}
+
+/// d reading / d point: readings x 2, at the errors of the run.
+Eigen::MatrixXd SlopeAt(const Scenario& scenario, const char* point) {
+  const test::BenchRun run = test::RunTurntable(scenario);
+  const auto follow = sim::FollowTurntable(scenario, run.readings);
+  return model::Slope(*follow, model::PointNamed(*follow, point), OwnErrors(run));
+}
+
+// A roll g shows x' = x cos g + y sin g, y' = y cos g - x sin g; a scale stretches both.
+TEST(TurntableFollow, SlopesAreThoseOfARolledAndStretchedCrosshair) {
+  Scenario s = Careful();
+  s.autocollimator.gain_error = 0.01;
+  s.turntable_procedure.tilts_rad = {0.0};
+  s.target.harmonics = s.reference.harmonics = {};
+  const double scale = 1.01, g = 5e-3;
+  const Eigen::MatrixXd x = SlopeAt(s, "turntable.ez"), y = SlopeAt(s, "turntable.ex");
+  // In a sweep of 200 arcsec the tangent is steeper than the angle by 4e-6.
+  for (Eigen::Index i = s.turntable_procedure.sweep_points; i < x.rows(); ++i) {
+    EXPECT_NEAR(x(i, 0), scale * std::cos(g), 1e-6);
+    EXPECT_NEAR(x(i, 1), -scale * std::sin(g), 1e-6);
+    EXPECT_NEAR(y(i, 0), scale * std::sin(g), 1e-6);
+    EXPECT_NEAR(y(i, 1), scale * std::cos(g), 1e-6);
+  }
+}
+
+TEST(TurntableFollow, HasPointsForWhatItsErrorsAreMadeOf) {
+  Scenario s = Careful();
+  s.turntable_procedure.tilts_rad = {0.0};
+  s.collimator.roll_rad = 0.0;
+  const test::BenchRun run = test::RunTurntable(s);
+  const auto follow = sim::FollowTurntable(s, run.readings);
+  const Eigen::MatrixXd shown = model::Slope(*follow, model::PointNamed(*follow, "autocollimator.y"));
+  EXPECT_NEAR((shown.col(1).array() - 1.0).abs().maxCoeff(), 0.0, 1e-6);
+  EXPECT_NEAR(shown.col(0).cwiseAbs().maxCoeff(), 0.0, 1e-6);
+  const Eigen::MatrixXd roll = model::Slope(*follow, model::PointNamed(*follow, "autocollimator.roll"));
+  EXPECT_EQ(roll.rows(), std::ssize(run.readings)) << "a constant of the bench is a point, too";
+  EXPECT_THROW(follow->Predict({{"turntable.ez", Eigen::VectorXd::Zero(3)}}), std::logic_error);
+  EXPECT_THROW(model::PointNamed(*follow, "laser.yaw"), std::logic_error);
+}
+
+}  // namespace
+}  // namespace twinbench

@@ -1,0 +1,125 @@
+#include "twin/sim/turntable/follow.h"
+
+#include "twin/sim/pointwise_follow.h"
+#include "twin/sim/turntable/course.h"
+#include "twin/sim/turntable/mirror_path.h"
+
+namespace twinbench::sim {
+namespace {
+
+using units::arcsec, units::mrad, units::nm, units::um;
+using TurntablePoint = BenchPoint<TurntableExtra>;
+
+// Small against the period of a camera's pixels.
+constexpr double kAngleStep_rad = 1e-3 * arcsec, kLengthStep_m = 0.1 * um;
+
+model::Point Angle(const char* name) {
+  return {name, "arcsec", arcsec, kAngleStep_rad};
+}
+model::Point Length(const char* name) {
+  return {name, "um", um, kLengthStep_m};
+}
+
+std::vector<TurntablePoint> OfTables() {
+  using E = TurntableExtra;
+  return {{Angle("turntable.ex"), [](E& e) -> double& { return e.mirror.turntable.ex_rad; }},
+          {Angle("turntable.ey"), [](E& e) -> double& { return e.mirror.turntable.ey_rad; }},
+          {Angle("turntable.ez"), [](E& e) -> double& { return e.mirror.turntable.ez_rad; }},
+          {Length("turntable.dx"), [](E& e) -> double& { return e.mirror.turntable.dx_m; }},
+          {Length("turntable.dy"), [](E& e) -> double& { return e.mirror.turntable.dy_m; }},
+          {Length("turntable.dz"), [](E& e) -> double& { return e.mirror.turntable.dz_m; }},
+          {Angle("multitooth.ex"), [](E& e) -> double& { return e.mirror.multitooth.ex_rad; }},
+          {Angle("multitooth.ey"), [](E& e) -> double& { return e.mirror.multitooth.ey_rad; }},
+          {Angle("multitooth.ez"), [](E& e) -> double& { return e.mirror.multitooth.ez_rad; }},
+          {Length("multitooth.dx"), [](E& e) -> double& { return e.mirror.multitooth.dx_m; }},
+          {Length("multitooth.dy"), [](E& e) -> double& { return e.mirror.multitooth.dy_m; }},
+          {Length("multitooth.dz"), [](E& e) -> double& { return e.mirror.multitooth.dz_m; }},
+          {Angle("turntable.yaw"), [](E& e) -> double& { return e.yaw_rad; }}};
+}
+
+std::vector<TurntablePoint> OfMountings() {
+  using E = TurntableExtra;
+  return {{Angle("axis.ex"), [](E& e) -> double& { return e.mirror.axis.ex_rad; }},
+          {Angle("axis.ey"), [](E& e) -> double& { return e.mirror.axis.ey_rad; }},
+          {Length("axis.dx"), [](E& e) -> double& { return e.mirror.axis.dx_m; }},
+          {Length("axis.dy"), [](E& e) -> double& { return e.mirror.axis.dy_m; }},
+          {Angle("mount.yaw"), [](E& e) -> double& { return e.mirror.mount.ez_rad; }},
+          {Angle("mount.pitch"), [](E& e) -> double& { return e.mirror.mount.ex_rad; }},
+          {Angle("autocollimator.x"), [](E& e) -> double& { return e.shown_rad.x(); }},
+          {Angle("autocollimator.y"), [](E& e) -> double& { return e.shown_rad.y(); }},
+          {{"room.temperature", "K", 1.0, 0.01}, [](E& e) -> double& { return e.warmer_K; }}};
+}
+
+std::vector<TurntablePoint> OfInstrument() {
+  using S = Scenario;
+  return {
+      {{"autocollimator.roll", "mrad", mrad, 1e-4}, nullptr, [](S& s) -> double& { return s.collimator.roll_rad; }},
+      {{"autocollimator.gain", "1", 1.0, 1e-5}, nullptr, [](S& s) -> double& { return s.autocollimator.gain_error; }},
+      {{"autocollimator.at_edge", "arcsec", arcsec, 1e-2 * arcsec},
+       nullptr,
+       [](S& s) -> double& { return s.collimator.error_at_edge_rad; }},
+      {{"mirror.flatness", "nm", nm, 10.0 * nm}, nullptr, [](S& s) -> double& { return s.mirror.flatness_m; }}};
+}
+
+const std::vector<TurntablePoint>& TurntablePoints() {
+  static const std::vector<TurntablePoint> points = [] {
+    std::vector<TurntablePoint> all = OfTables();
+    for (const auto& part : {OfMountings(), OfInstrument()}) all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }();
+  return points;
+}
+
+Scenario WithoutTeeth(Scenario scenario) {
+  scenario.multitooth.tooth_rms_rad = 0.0;
+  return scenario;
+}
+
+class TurntableFollow : public PointwiseFollow<TurntableExtra> {
+ public:
+  TurntableFollow(const Scenario& stated, const std::vector<Reading>& its_record)
+      : PointwiseFollow(WithoutTeeth(Foreseeable(stated)), its_record, TurntablePoints()),
+        path_(std::make_unique<MirrorPath>(scenario(), kFieldShare)),
+        course_(FollowCourse(record(), path_->actual())) {}
+
+  std::vector<std::string> Unfixed() const override { return course_.unfixed; }
+
+ protected:
+  Eigen::MatrixXd Shown(const std::vector<TurntableExtra>& extra) const override {
+    Eigen::MatrixXd shown_rad(std::ssize(extra), 2);
+    for (std::size_t i = 0; i < extra.size(); ++i) shown_rad.row(static_cast<Eigen::Index>(i)) = At(i, extra[i]);
+    return shown_rad;
+  }
+
+  std::unique_ptr<model::Follow> On(const Scenario& changed) const override {
+    return std::make_unique<TurntableFollow>(changed, record());
+  }
+
+ private:
+  static constexpr double kFieldShare = 1.1;
+
+  Eigen::RowVector2d At(std::size_t i, TurntableExtra extra) const {
+    const TurntableStop& stop = course_.stops[i];
+    if (!stop.known) return Eigen::RowVector2d::Constant(kNaN);
+    if (i == 0 || course_.stops[i - 1].mounting != stop.mounting) {
+      const TurntableMounting& m = course_.mountings[stop.mounting];
+      path_->stand().Mount(m.tilt_rad, m.azimuth_rad, m.eccentricity_m, m.shift_rad);
+    }
+    path_->stand().Seat(stop.tooth);
+    extra.mirror.multitooth.ez_rad += stop.beside_tooth_rad;
+    const AutocollimatorReading shown =
+        path_->Look(stop.moment, stop.axes, stop.above_K, Eigen::Vector2d::Zero(), extra);
+    return {shown.yaw_rad, shown.tilt_rad};
+  }
+
+  std::unique_ptr<MirrorPath> path_;  // its mirror moves from reading to reading
+  TurntableCourse course_;
+};
+
+}  // namespace
+
+std::unique_ptr<model::Follow> FollowTurntable(const Scenario& scenario, const std::vector<Reading>& record) {
+  return std::make_unique<TurntableFollow>(scenario, record);
+}
+
+}  // namespace twinbench::sim
