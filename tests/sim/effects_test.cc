@@ -3,7 +3,9 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/sim/effect.h"
 
@@ -21,7 +23,7 @@ const double kTilt_m = kL1_m * (1.0 + kCosTheta);
 constexpr double kV_m = 2000.0;
 
 Scenario Quiet() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   return scenario;
 }
@@ -29,7 +31,7 @@ Scenario Quiet() {
 /// An effect block as the loader would fill it: the catalogue's defaults with these values on top.
 EffectSettings Effect(const std::string& name, const std::string& where, std::map<std::string, double> values) {
   EffectSettings effect{name, where, {}, "test"};
-  for (const EffectParameter& p : FindEffect(name)->parameters) effect.parameters[p.name] = p.default_SI;
+  for (const EffectParameter& p : FindEffect(name, kRotaryBench)->parameters) effect.parameters[p.name] = p.default_SI;
   for (const auto& [key, value] : values) effect.parameters.at(key) = value;
   return effect;
 }
@@ -75,7 +77,7 @@ void MoveBoth(RotaryBench bench, double target_rad) {
 }
 
 TEST(Effects, TheTwinHasEveryEffectOfTheCatalogueAtEveryPlace) {
-  for (const EffectEntry& entry : EffectCatalogue()) {
+  for (const EffectEntry& entry : EffectCatalogue(kRotaryBench)) {
     const std::vector<std::string> places = entry.places.empty() ? std::vector<std::string>{""} : entry.places;
     for (const std::string& place : places) {
       EXPECT_NE(MakeEffect(Effect(entry.name, place, {}), Quiet()), nullptr) << entry.name << " " << place;
@@ -358,7 +360,7 @@ TEST(Effects, AReversedScaleReadsTheMirroredError) {
 }
 
 TEST(Effects, EachChangesSomethingAndOnlyWhenItIsOn) {
-  for (const EffectEntry& entry : EffectCatalogue()) {
+  for (const EffectEntry& entry : EffectCatalogue(kRotaryBench)) {
     Scenario scenario = Quiet();
     scenario.noise_free = true;
     scenario.environment.drift_K_h = 1.0;

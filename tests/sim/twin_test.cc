@@ -6,13 +6,14 @@
 #include <fstream>
 
 #include "optics/irradiance.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::sim {
 namespace {
 
 Scenario Quiet() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   return scenario;
 }
@@ -74,7 +75,7 @@ TEST(Twin, AnAmplifierBeyondTheRangeOfTheConverterIsSaturated) {
 }
 
 TEST(Twin, AFifoThatIsNotDrainedOverruns) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.adc.fifo_samples = 1024;
   scenario.adc.drain_rate_Hz = 100e3;
   Twin twin(scenario);

@@ -28,7 +28,4 @@ struct SearchedRotary {
 SearchedRotary SearchRotary(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options);
 
-AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options);
-bool IsStruck(const DiagnoseOptions& options, const std::string& effect);
-
 }  // namespace twinbench::diagnose

@@ -86,6 +86,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   EncoderRun encoder;
   encoder.left_out = comparison.left_out;
   LinearRun& run = encoder.run;
+  run.bench = scenario.bench;
   run.schedule = ScheduleOf(Chosen(readings, comparison.used));
   if (scenario.encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);
   run.channels = {"angle"};
