@@ -5,8 +5,6 @@ find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
-find_package(GTest REQUIRED)
-find_package(benchmark REQUIRED)
 find_package(Ceres REQUIRED)
 
 find_package(embree 4 QUIET)  # the headers are chosen in the same order
@@ -20,6 +18,11 @@ pkg_check_modules(SQLite REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(Tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 find_package(pugixml REQUIRED)
 find_path(ASIO_INCLUDE asio.hpp REQUIRED)
+
+if(TWINBENCH_TESTS)
+  find_package(GTest REQUIRED)
+  find_package(benchmark REQUIRED)
+endif()
 
 # A/D drivers: a build without one refuses bench files that ask for it.
 option(TWINBENCH_IIO "A/D cards through libiio, if it is installed" ON)

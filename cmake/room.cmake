@@ -1,21 +1,35 @@
-# twinbench_room(<name> SOURCES a.cc ... [ROOMS upstream ...] [LIBRARIES public ...] [PRIVATE_LIBRARIES ...])
+# twinbench_room(<name> SOURCES a.cc ... [KERNELS b.cc ...] [ROOMS upstream ...] [LIBRARIES public ...]
+#                [PRIVATE_LIBRARIES ...])
 #
 # One folder, one static library. ROOMS are the rooms it may include; tests/layers checks that the includes agree.
+# KERNELS are sources whose loops set the pace of a run: compiled at -O3, each by itself.
 function(twinbench_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
-  add_library(twinbench_${name} STATIC ${ROOM_SOURCES})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;KERNELS;ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  add_library(twinbench_${name} STATIC ${ROOM_SOURCES} ${ROOM_KERNELS})
+  set_source_files_properties(${ROOM_KERNELS} PROPERTIES
+    COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   target_include_directories(twinbench_${name} PUBLIC ${PROJECT_SOURCE_DIR})
   foreach(room IN LISTS ROOM_ROOMS)
     target_link_libraries(twinbench_${name} PUBLIC twinbench_${room})
   endforeach()
   target_link_libraries(twinbench_${name} PUBLIC ${ROOM_LIBRARIES} PRIVATE ${ROOM_PRIVATE_LIBRARIES})
+  twinbench_precompile(twinbench_${name})
 endfunction()
 
-# twinbench_test(<name> SOURCES a_test.cc ... ROOMS room ... [LIBRARIES ...])
+# twinbench_precompile(<target> [headers ...]): what nearly every source of the target includes, where the sources are
+# compiled one by one.
+function(twinbench_precompile target)
+  if(NOT TWINBENCH_UNITY)
+    target_precompile_headers(${target} PRIVATE
+      <algorithm> <cmath> <functional> <map> <memory> <optional> <string> <vector> <Eigen/Geometry> ${ARGN})
+  endif()
+endfunction()
+
+# twinbench_test(<name> SOURCES a_test.cc ... ROOMS room ... [LIBRARIES ...] [SHARDS n] [SLOW] [ENVIRONMENT a=b ...])
 #
-# One test program a room; ctest sees every TEST of it.
+# One test program a room. ctest runs it in one process, or in SHARDS processes <name>.1, <name>.2 ... side by side.
 function(twinbench_test name)
-  cmake_parse_arguments(TEST "" "" "SOURCES;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(TEST "SLOW" "SHARDS" "SOURCES;ROOMS;LIBRARIES;ENVIRONMENT" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_compile_definitions(test_${name} PRIVATE
     TWINBENCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TWINBENCH_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
@@ -23,8 +37,33 @@ function(twinbench_test name)
     target_link_libraries(test_${name} PRIVATE twinbench_${room})
   endforeach()
   target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
-  # Values as they print hold addresses where a type has no printer: names would differ from build to build.
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60)
+  twinbench_precompile(test_${name} <gmock/gmock.h>)
+
+  set(slow)
+  if(TEST_SLOW)
+    set(slow SLOW)
+  endif()
+  if(NOT TEST_SHARDS)
+    twinbench_entry(${name} ${slow} COMMAND test_${name} ENVIRONMENT ${TEST_ENVIRONMENT})
+    return()
+  endif()
+  foreach(shard RANGE 1 ${TEST_SHARDS})
+    math(EXPR index "${shard} - 1")
+    twinbench_entry(${name}.${shard} ${slow} COMMAND test_${name}
+      ENVIRONMENT ${TEST_ENVIRONMENT} GTEST_TOTAL_SHARDS=${TEST_SHARDS} GTEST_SHARD_INDEX=${index})
+  endforeach()
 endfunction()
 
-include(GoogleTest)
+# twinbench_entry(<name> [SLOW] COMMAND program arguments ... [ENVIRONMENT a=b ...])
+#
+# One process of ctest. SLOW: above some 20 s; `ctest -L fast` leaves it out. The time limit is for a process that hangs.
+function(twinbench_entry name)
+  cmake_parse_arguments(ENTRY "SLOW" "" "COMMAND;ENVIRONMENT" ${ARGN})
+  add_test(NAME ${name} COMMAND ${ENTRY_COMMAND})
+  if(ENTRY_SLOW)
+    set_tests_properties(${name} PROPERTIES LABELS slow TIMEOUT 1800)
+  else()
+    set_tests_properties(${name} PROPERTIES LABELS fast TIMEOUT 300)
+  endif()
+  set_tests_properties(${name} PROPERTIES ENVIRONMENT "${ENTRY_ENVIRONMENT}")
+endfunction()

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
+
+#include "mechanics/require.h"
 
 namespace twinbench::mechanics {
 namespace {
@@ -12,10 +13,6 @@ constexpr double kPi = std::numbers::pi;
 
 double Clip(double value, double level) {
   return std::clamp(value, -level, level);
-}
-
-void Require(bool holds, const char* what) {
-  if (!holds) throw std::invalid_argument(what);
 }
 
 void CheckState(const SignalState& s) {

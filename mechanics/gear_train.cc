@@ -6,36 +6,25 @@
 #include <string>
 
 #include "mechanics/gear_law.h"
+#include "mechanics/require.h"
 
 namespace twinbench::mechanics {
 namespace {
 
-void Require(bool holds, const char* what) {
-  if (!holds) throw std::invalid_argument(std::string("gear train: ") + what);
-}
-
-void RequirePositive(double value, const char* what) {
-  Require(value > 0.0 && std::isfinite(value), (std::string(what) + " must be positive").c_str());
-}
-
-void RequireNotNegative(double value, const char* what) {
-  Require(value >= 0.0 && std::isfinite(value), (std::string(what) + " must not be negative").c_str());
-}
-
 void CheckDrive(const DriveParameters& drive, double period_s) {
-  RequirePositive(drive.inertia_kg_m2, "inertia_kg_m2 of a drive");
-  RequirePositive(drive.servo_Hz, "servo_Hz");
-  Require(drive.feed_forward >= 0.0 && drive.feed_forward <= 1.0, "feed_forward must be between 0 and 1");
-  Require(40.0 * drive.servo_Hz * period_s <= 1.0, "servo_period_s must be at most 1 / (40 servo_Hz)");
+  RequirePositive(drive.inertia_kg_m2, "gear train: inertia_kg_m2 of a drive");
+  RequirePositive(drive.servo_Hz, "gear train: servo_Hz");
+  Require(drive.feed_forward >= 0.0 && drive.feed_forward <= 1.0, "gear train: feed_forward must be between 0 and 1");
+  Require(40.0 * drive.servo_Hz * period_s <= 1.0, "gear train: servo_period_s must be at most 1 / (40 servo_Hz)");
 }
 
 void CheckFriction(const FrictionParameters& f) {
-  RequireNotNegative(f.coulomb_Nm, "friction.coulomb_Nm");
-  RequireNotNegative(f.viscous_Nm_s, "friction.viscous_Nm_s");
-  RequirePositive(f.static_ratio, "friction.static_ratio");
-  RequirePositive(f.stribeck_rad_s, "friction.stribeck_rad_s");
-  RequirePositive(f.presliding_rad, "friction.presliding_rad");
-  RequireNotNegative(f.bristle_damping_ratio, "friction.bristle_damping_ratio");
+  RequireNotNegative(f.coulomb_Nm, "gear train: friction.coulomb_Nm");
+  RequireNotNegative(f.viscous_Nm_s, "gear train: friction.viscous_Nm_s");
+  RequirePositive(f.static_ratio, "gear train: friction.static_ratio");
+  RequirePositive(f.stribeck_rad_s, "gear train: friction.stribeck_rad_s");
+  RequirePositive(f.presliding_rad, "gear train: friction.presliding_rad");
+  RequireNotNegative(f.bristle_damping_ratio, "gear train: friction.bristle_damping_ratio");
 }
 
 double Steepness(const std::vector<AngleHarmonic>& harmonics, double turns, const char* name) {
@@ -51,7 +40,7 @@ void CheckErrors(const GearTrainParameters& p) {
       Steepness(p.errors.worm_wheel, 1.0, "worm_wheel") + Steepness(p.errors.worm, p.WormRatio(), "worm") +
       Steepness(p.errors.tooth_mesh, p.worm_wheel_teeth, "tooth_mesh") +
       Steepness(p.errors.hob_drive, hob, "hob_drive") + Steepness(p.errors.hob_encoder, hob, "hob_encoder");
-  Require(sum < 0.5, "errors must leave the gears turning forwards");
+  Require(sum < 0.5, "gear train: errors must leave the gears turning forwards");
 }
 
 /// Value and slope of the cubic Hermite polynomial at share s of a piece of length h.
@@ -76,16 +65,16 @@ void Set(const Hermite& piece, double s, double h_s, double& rad, double& rad_s)
 }  // namespace
 
 void Check(const GearTrainParameters& p) {
-  Require(std::isfinite(p.ratio) && p.ratio != 0.0, "ratio must not be zero");
-  Require(p.worm_wheel_teeth > 0 && p.worm_starts > 0, "worm_wheel_teeth and worm_starts must be positive");
-  RequirePositive(p.servo_period_s, "servo_period_s");
-  RequirePositive(p.step_s, "step_s");
+  Require(std::isfinite(p.ratio) && p.ratio != 0.0, "gear train: ratio must not be zero");
+  Require(p.worm_wheel_teeth > 0 && p.worm_starts > 0, "gear train: worm_wheel_teeth and worm_starts must be positive");
+  RequirePositive(p.servo_period_s, "gear train: servo_period_s");
+  RequirePositive(p.step_s, "gear train: step_s");
   CheckDrive(p.hob, p.servo_period_s);
   CheckDrive(p.motor, p.servo_period_s);
-  RequirePositive(p.table_inertia_kg_m2, "table_inertia_kg_m2");
-  RequirePositive(p.stiffness_Nm_rad, "stiffness_Nm_rad");
-  RequireNotNegative(p.damping_ratio, "damping_ratio");
-  RequireNotNegative(p.backlash_rad, "backlash_rad");
+  RequirePositive(p.table_inertia_kg_m2, "gear train: table_inertia_kg_m2");
+  RequirePositive(p.stiffness_Nm_rad, "gear train: stiffness_Nm_rad");
+  RequireNotNegative(p.damping_ratio, "gear train: damping_ratio");
+  RequireNotNegative(p.backlash_rad, "gear train: backlash_rad");
   CheckFriction(p.friction);
   CheckErrors(p);
 }

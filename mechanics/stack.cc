@@ -3,21 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
+
+#include "mechanics/require.h"
 
 namespace twinbench::mechanics {
 namespace {
-
-void RequirePositive(double value, const char* what) {
-  if (!(value > 0.0) || !std::isfinite(value)) throw std::invalid_argument(std::string(what) + " must be positive");
-}
-
-void RequireNotNegative(double value, const char* what) {
-  if (!(value >= 0.0) || !std::isfinite(value)) {
-    throw std::invalid_argument(std::string(what) + " must not be negative");
-  }
-}
 
 void CheckBody(const SymmetricBody& body) {
   RequirePositive(body.mass_kg, "stack: mass_kg");

@@ -10,14 +10,10 @@ struct CalibrationCloser {
 };
 using Calibration = std::unique_ptr<comedi_calibration_t, CalibrationCloser>;
 
-[[noreturn]] void Refuse(const std::string& file, const std::string& what) {
-  throw DeviceFault(FaultKind::kRefused, file, what);
-}
-
 void RequireSameBoard(comedi_t* card, const comedi_calibration_t& calibration, const std::string& file) {
   const std::string board = comedi_get_board_name(card), driver = comedi_get_driver_name(card);
   if (calibration.board_name == board && calibration.driver_name == driver) return;
-  Refuse(file, std::string("calibrates the board ") + calibration.board_name + " of driver " +
+  RefuseCard(file, std::string("calibrates the board ") + calibration.board_name + " of driver " +
                    calibration.driver_name + ", the card is " + board + " of driver " + driver);
 }
 
@@ -26,7 +22,7 @@ CalibrationPolynomial PolynomialOf(const comedi_calibration_t& calibration, cons
   comedi_polynomial_t polynomial{};
   if (comedi_get_softcal_converter(inputs.subdevice, CR_CHAN(packed), CR_RANGE(packed), COMEDI_TO_PHYSICAL,
                                    &calibration, &polynomial) < 0) {
-    Refuse(file, "says nothing of channel " + std::to_string(CR_CHAN(packed)) + " in range " +
+    RefuseCard(file, "says nothing of channel " + std::to_string(CR_CHAN(packed)) + " in range " +
                      std::to_string(CR_RANGE(packed)));
   }
   CalibrationPolynomial result;

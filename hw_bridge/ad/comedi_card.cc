@@ -20,22 +20,18 @@ Reference ReferenceOf(const std::string& name) {
   return {AREF_GROUND, SDF_GROUND};
 }
 
-[[noreturn]] void Refuse(const std::string& card, const std::string& what) {
-  throw DeviceFault(FaultKind::kRefused, card, what);
-}
-
 unsigned SubdeviceOf(comedi_t* card, const std::string& name, int asked) {
   const int found = asked >= 0 ? asked : comedi_find_subdevice_by_type(card, COMEDI_SUBD_AI, 0);
-  if (found < 0) Refuse(name, "has no analogue inputs");
+  if (found < 0) RefuseCard(name, "has no analogue inputs");
   const auto subdevice = static_cast<unsigned>(found);
   if (comedi_get_subdevice_type(card, subdevice) != COMEDI_SUBD_AI) {
-    Refuse(name, "subdevice " + std::to_string(found) + " is no analogue input");
+    RefuseCard(name, "subdevice " + std::to_string(found) + " is no analogue input");
   }
   if ((comedi_get_subdevice_flags(card, subdevice) & SDF_CMD_READ) == 0) {
-    Refuse(name, "its analogue inputs cannot run commands");
+    RefuseCard(name, "its analogue inputs cannot run commands");
   }
   if (comedi_get_read_subdevice(card) != found && comedi_set_read_subdevice(card, subdevice) < 0) {
-    Refuse(name, "subdevice " + std::to_string(found) + " cannot be read from as a stream");
+    RefuseCard(name, "subdevice " + std::to_string(found) + " cannot be read from as a stream");
   }
   return subdevice;
 }
@@ -44,7 +40,7 @@ unsigned ChannelOf(comedi_t* card, const std::string& name, unsigned subdevice, 
   const auto number = ParseWholeNumber(id);
   const int channels = comedi_get_n_channels(card, subdevice);
   if (!number || *number < 0 || *number >= channels) {
-    Refuse(name,
+    RefuseCard(name,
            "has no channel \"" + id + "\"; its " + std::to_string(channels) + " channels are numbered from 0");
   }
   return static_cast<unsigned>(*number);
@@ -67,7 +63,7 @@ unsigned RangeOf(comedi_t* card, const std::string& name, unsigned subdevice, un
     best = k;
     best_V = range->max - range->min;
   }
-  if (!best) Refuse(name, "has no range that covers +-" + std::to_string(range_V) + " V");
+  if (!best) RefuseCard(name, "has no range that covers +-" + std::to_string(range_V) + " V");
   return *best;
 }
 
@@ -75,7 +71,7 @@ int BitsOf(comedi_t* card, const std::string& name, unsigned subdevice, unsigned
   const lsampl_t most = comedi_get_maxdata(card, subdevice, channel);
   const int bits = std::bit_width(most);
   if (bits < 2 || bits > 16 || !std::has_single_bit(std::uint64_t{most} + 1)) {
-    Refuse(name, "its highest code is " + std::to_string(most) + ", not that of 2 to 16 bits");
+    RefuseCard(name, "its highest code is " + std::to_string(most) + ", not that of 2 to 16 bits");
   }
   return bits;
 }
@@ -84,11 +80,11 @@ void AddChannel(comedi_t* card, const ScanChannel& asked, ComediInputs& inputs) 
   const unsigned channel = ChannelOf(card, inputs.name, inputs.subdevice, asked.id);
   const Reference reference = ReferenceOf(asked.reference);
   if ((comedi_get_subdevice_flags(card, inputs.subdevice) & reference.flag) == 0) {
-    Refuse(inputs.name, "cannot measure against \"" + asked.reference + "\"");
+    RefuseCard(inputs.name, "cannot measure against \"" + asked.reference + "\"");
   }
   const unsigned range = RangeOf(card, inputs.name, inputs.subdevice, channel, asked.range_V);
   const int bits = BitsOf(card, inputs.name, inputs.subdevice, channel);
-  if (inputs.bits != 0 && inputs.bits != bits) Refuse(inputs.name, "its channels differ in resolution");
+  if (inputs.bits != 0 && inputs.bits != bits) RefuseCard(inputs.name, "its channels differ in resolution");
   inputs.bits = bits;
   inputs.chanlist.push_back(CR_PACK(channel, range, reference.aref));
   inputs.range.push_back(*comedi_get_range(card, inputs.subdevice, channel, range));
@@ -147,7 +143,7 @@ ComediTiming SettleCommand(comedi_t* card, ComediInputs& inputs, double scan_rat
     if (stage == 0) return TimingOf(command);
     if (stage < 0) ThrowComedi(FaultKind::kRefused, inputs.name, "testing a command");
   }
-  Refuse(inputs.name,
+  RefuseCard(inputs.name,
          "does not come to accept a command; it stops at stage " + std::to_string(stage) + " of the test");
 }
 

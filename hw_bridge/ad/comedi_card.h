@@ -34,6 +34,9 @@ struct ComediTiming {
   double skew_s = 0.0;  // from a channel to the next
 };
 
+[[noreturn]] inline void RefuseCard(const std::string& card_or_file, const std::string& what) {
+  throw DeviceFault(FaultKind::kRefused, card_or_file, what);
+}
 [[noreturn]] void ThrowComedi(FaultKind kind, const std::string& card, const std::string& doing);
 
 /// @throws DeviceFault kDropped if it does not open.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Duration kPoll = std::chrono::milliseconds(20);
 constexpr int kDegrees = 7;
-constexpr const char* kErrorQuery = "TB?";
+constexpr const char* kEspErrorQuery = "TB?";
 constexpr int kStatusAxes = 4;  // that TS? tells of
 constexpr int kReferencedBit = 1, kLowerBit = 2, kUpperBit = 4;
 
@@ -34,10 +34,10 @@ std::string EspTable::Axis(const std::string& command) const {
 
 /// Sends a command and asks for the error that it made.
 void EspTable::Tell(const std::string& command) {
-  const std::string answer = line().Ask(Axis(command) + "\n" + kErrorQuery);
+  const std::string answer = line().Ask(Axis(command) + "\n" + kEspErrorQuery);
   const auto comma = answer.find(',');
   const auto error = ParseWholeNumber(answer.substr(0, comma));
-  if (!error || comma == std::string::npos) line().FailProtocol(kErrorQuery, answer, "<number>, <time>, <text>");
+  if (!error || comma == std::string::npos) line().FailProtocol(kEspErrorQuery, answer, "<number>, <time>, <text>");
   if (*error == 0) return;
   line().Fail(IsLimit(*error) ? FaultKind::kLimit : FaultKind::kRefused,
               fmt::format("\"{}\" was refused: {}", Axis(command), answer));
@@ -59,7 +59,7 @@ void EspTable::Prepare() {
 bool EspTable::KnowsStatus() {
   const std::string answer = line().Ask(Axis("MS?") + "\n" + kEspIdentity);
   if (answer == line().identity()) {
-    line().Ask(kErrorQuery);  // takes the complaint about MS? out of the queue
+    line().Ask(kEspErrorQuery);  // takes the complaint about MS? out of the queue
     return false;
   }
   const std::string identity = line().NextLine();

@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kScpiNotANumber = 9.91e37;
 constexpr long long kDataOutOfRange = -222;
-constexpr const char* kErrorQuery = "SYST:ERR?";
+constexpr const char* kScpiErrorQuery = "SYST:ERR?";
 
 }  // namespace
 
 void TellScpi(DeviceLine& line, const std::string& command, Duration beyond) {
-  const std::string answer = line.Ask(command + "\n" + kErrorQuery, beyond);
+  const std::string answer = line.Ask(command + "\n" + kScpiErrorQuery, beyond);
   const auto comma = answer.find(',');
   const auto code = ParseWholeNumber(answer.substr(0, comma));
-  if (!code || comma == std::string::npos) line.FailProtocol(kErrorQuery, answer, "0,\"No error\"");
+  if (!code || comma == std::string::npos) line.FailProtocol(kScpiErrorQuery, answer, "0,\"No error\"");
   if (*code == 0) return;
   line.Fail(*code == kDataOutOfRange ? FaultKind::kLimit : FaultKind::kRefused,
             fmt::format("\"{}\" was refused: {}", command, answer));

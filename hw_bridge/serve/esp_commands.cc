@@ -206,7 +206,7 @@ Outcome Options(const EspCall&) {
 }
 
 // clang-format off
-constexpr EspEntry kCommands[] = {
+constexpr EspEntry kEspCommands[] = {
     {"PA", false, EspAxis::kNeeded, true, MoveAbsolute},
     {"PA", true, EspAxis::kNeeded, false, Desired},
     {"PR", false, EspAxis::kNeeded, true, MoveRelative},
@@ -245,7 +245,7 @@ constexpr EspEntry kCommands[] = {
 }  // namespace
 
 std::span<const EspEntry> EspCommands() {
-  return kCommands;
+  return kEspCommands;
 }
 
 bool EspOnlyAsks(const std::string& name) {

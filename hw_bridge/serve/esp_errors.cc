@@ -7,30 +7,30 @@
 namespace twinbench::hw {
 namespace {
 
-struct ErrorText {
+struct EspErrorEntry {
   int code;
   const char* text;
 };
-constexpr std::array kErrors = {ErrorText{0, "NO ERROR DETECTED"},
-                                ErrorText{kEspBenchFailed, "PCI COMMUNICATION TIME-OUT"},
-                                ErrorText{kEspUnknownCommand, "COMMAND DOES NOT EXIST"},
-                                ErrorText{kEspOutOfRange, "PARAMETER OUT OF RANGE"},
-                                ErrorText{kEspAxisOutOfRange, "AXIS NUMBER OUT OF RANGE"},
-                                ErrorText{kEspNotAllowed, "COMMAND NOT ALLOWED"},
-                                ErrorText{kEspAxisMissing, "AXIS NUMBER MISSING"},
-                                ErrorText{kEspParameterMissing, "COMMAND PARAMETER MISSING"}};
-constexpr std::array kAxisErrors = {ErrorText{kEspAxisParameter, "PARAMETER OUT OF RANGE"},
-                                    ErrorText{kEspHardwareLimit, "POSITIVE HARDWARE LIMIT DETECTED"},
-                                    ErrorText{kEspHardwareLimit + 1, "NEGATIVE HARDWARE LIMIT DETECTED"},
-                                    ErrorText{kEspSoftLimit, "POSITIVE SOFTWARE LIMIT DETECTED"},
-                                    ErrorText{kEspSoftLimit + 1, "NEGATIVE SOFTWARE LIMIT DETECTED"},
-                                    ErrorText{kEspMotorOff, "MOTOR NOT ENABLED"}};
+constexpr std::array kErrors = {EspErrorEntry{0, "NO ERROR DETECTED"},
+                                EspErrorEntry{kEspBenchFailed, "PCI COMMUNICATION TIME-OUT"},
+                                EspErrorEntry{kEspUnknownCommand, "COMMAND DOES NOT EXIST"},
+                                EspErrorEntry{kEspOutOfRange, "PARAMETER OUT OF RANGE"},
+                                EspErrorEntry{kEspAxisOutOfRange, "AXIS NUMBER OUT OF RANGE"},
+                                EspErrorEntry{kEspNotAllowed, "COMMAND NOT ALLOWED"},
+                                EspErrorEntry{kEspAxisMissing, "AXIS NUMBER MISSING"},
+                                EspErrorEntry{kEspParameterMissing, "COMMAND PARAMETER MISSING"}};
+constexpr std::array kAxisErrors = {EspErrorEntry{kEspAxisParameter, "PARAMETER OUT OF RANGE"},
+                                    EspErrorEntry{kEspHardwareLimit, "POSITIVE HARDWARE LIMIT DETECTED"},
+                                    EspErrorEntry{kEspHardwareLimit + 1, "NEGATIVE HARDWARE LIMIT DETECTED"},
+                                    EspErrorEntry{kEspSoftLimit, "POSITIVE SOFTWARE LIMIT DETECTED"},
+                                    EspErrorEntry{kEspSoftLimit + 1, "NEGATIVE SOFTWARE LIMIT DETECTED"},
+                                    EspErrorEntry{kEspMotorOff, "MOTOR NOT ENABLED"}};
 
 }  // namespace
 
 const char* EspErrorText(int number) {
-  const std::span<const ErrorText> texts = number < 100 ? std::span<const ErrorText>(kErrors) : kAxisErrors;
-  const auto found = std::ranges::find(texts, number % 100, &ErrorText::code);
+  const std::span<const EspErrorEntry> texts = number < 100 ? std::span<const EspErrorEntry>(kErrors) : kAxisErrors;
+  const auto found = std::ranges::find(texts, number % 100, &EspErrorEntry::code);
   return found == texts.end() ? "UNKNOWN" : found->text;
 }
 

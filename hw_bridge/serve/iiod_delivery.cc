@@ -12,10 +12,6 @@ namespace {
 
 constexpr std::size_t kPiece = 65536;  // bytes that go out at a time
 
-Step Number(int number) {
-  return Step::Send(fmt::format("{}\n", number));
-}
-
 bool BreaksOff(Injected fault) {
   return fault == Injected::kDrop || fault == Injected::kStall;
 }
@@ -47,7 +43,7 @@ Step IiodDelivery::Collect() {
     if (!buffer_.Collect()) return Step::Wait(served_.paced.Timeless() ? WallClock::duration::zero() : kPollEvery);
   } catch (const BenchError&) {
     state_ = State::kDone;
-    return Number(-EIO);
+    return NumberLine(-EIO);
   }
   fault_ = buffer_.Suffer();
   if (EndsEarly(fault_)) end_ = scans_ / 2;
@@ -75,8 +71,8 @@ Step IiodDelivery::End() {
   buffer_.Ask(0);
   if (fault_ == Injected::kDrop) return Step::Close();
   if (fault_ == Injected::kStall) return Step::Silence();
-  if (fault_ == Injected::kError) return Number(-EIO);
-  return end_ * scan_bytes_ == asked_bytes_ ? Step::Send({}) : Number(0);
+  if (fault_ == Injected::kError) return NumberLine(-EIO);
+  return end_ * scan_bytes_ == asked_bytes_ ? Step::Send({}) : NumberLine(0);
 }
 
 }  // namespace twinbench::hw

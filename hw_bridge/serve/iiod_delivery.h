@@ -1,9 +1,16 @@
 #pragma once
 
+#include <string>
+
 #include "hw_bridge/serve/conversation.h"
 #include "hw_bridge/serve/iiod_buffer.h"
 
 namespace twinbench::hw {
+
+/// What most commands answer: 0, a count, or an errno below zero.
+inline Step NumberLine(int number) {
+  return Step::Send(std::to_string(number) + "\n");
+}
 
 /// One READBUF: collects its block, waits for the wall clock if time is held, sends it in pieces; with whatever
 /// fault strikes it.

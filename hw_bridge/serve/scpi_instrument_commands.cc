@@ -32,7 +32,7 @@ Outcome Mount(const ScpiCall& call) {
 }
 
 // clang-format off
-constexpr ScpiCommand kCommands[] = {
+constexpr ScpiCommand kInstrumentCommands[] = {
     {"AUTocollimator:READ", true, 0, 0, Autocollimate},
     {"TEMPerature", true, 0, 0, Temperature},
     {"GONiometer:MOVE", false, 2, 0, TurnGoniometer},
@@ -43,7 +43,7 @@ constexpr ScpiCommand kCommands[] = {
 }  // namespace
 
 std::span<const ScpiCommand> ScpiInstrumentCommands() {
-  return kCommands;
+  return kInstrumentCommands;
 }
 
 }  // namespace twinbench::hw

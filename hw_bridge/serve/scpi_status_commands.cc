@@ -75,7 +75,7 @@ Outcome ScpiVersion(const ScpiCall&) {
 }
 
 // clang-format off
-constexpr ScpiCommand kCommands[] = {
+constexpr ScpiCommand kStatusCommands[] = {
     {"*IDN", true, 0, 0, Identify},
     {"*OPC", true, 0, 0, OperationComplete},
     {"*OPC", false, 0, 0, SetOperationComplete},
@@ -98,7 +98,7 @@ constexpr ScpiCommand kCommands[] = {
 }  // namespace
 
 std::span<const ScpiCommand> ScpiStatusCommands() {
-  return kCommands;
+  return kStatusCommands;
 }
 
 }  // namespace twinbench::hw

@@ -110,7 +110,7 @@ Outcome UpperLimit(const ScpiCall& call) {
 }
 
 // clang-format off
-constexpr ScpiCommand kCommands[] = {
+constexpr ScpiCommand kTableCommands[] = {
     {"ROTation#:ANGLe", false, 1, 0, Move},
     {"ROTation#:ANGLe", true, 0, 0, Encoder},
     {"ROTation#:ANGLe:COMMand", true, 0, 0, Commanded},
@@ -129,7 +129,7 @@ constexpr ScpiCommand kCommands[] = {
 }  // namespace
 
 std::span<const ScpiCommand> ScpiTableCommands() {
-  return kCommands;
+  return kTableCommands;
 }
 
 }  // namespace twinbench::hw

@@ -14,22 +14,22 @@ namespace {
 
 constexpr std::size_t kLongestQueue = 20;
 
-struct ErrorText {
+struct ScpiErrorEntry {
   int number;
   const char* text;
 };
-constexpr std::array kErrorTexts = {ErrorText{-102, "Syntax error"},
-                                    ErrorText{-108, "Parameter not allowed"},
-                                    ErrorText{-109, "Missing parameter"},
-                                    ErrorText{-113, "Undefined header"},
-                                    ErrorText{-114, "Header suffix out of range"},
-                                    ErrorText{-120, "Numeric data error"},
-                                    ErrorText{-222, "Data out of range"},
-                                    ErrorText{-224, "Illegal parameter value"},
-                                    ErrorText{-240, "Hardware error"},
-                                    ErrorText{-241, "Hardware missing"},
-                                    ErrorText{-350, "Queue overflow"},
-                                    ErrorText{-363, "Input buffer overrun"}};
+constexpr std::array kErrorTexts = {ScpiErrorEntry{-102, "Syntax error"},
+                                    ScpiErrorEntry{-108, "Parameter not allowed"},
+                                    ScpiErrorEntry{-109, "Missing parameter"},
+                                    ScpiErrorEntry{-113, "Undefined header"},
+                                    ScpiErrorEntry{-114, "Header suffix out of range"},
+                                    ScpiErrorEntry{-120, "Numeric data error"},
+                                    ScpiErrorEntry{-222, "Data out of range"},
+                                    ScpiErrorEntry{-224, "Illegal parameter value"},
+                                    ScpiErrorEntry{-240, "Hardware error"},
+                                    ScpiErrorEntry{-241, "Hardware missing"},
+                                    ScpiErrorEntry{-350, "Queue overflow"},
+                                    ScpiErrorEntry{-363, "Input buffer overrun"}};
 
 bool IsWord(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -89,7 +89,7 @@ std::optional<int> MatchHeader(std::string_view pattern, const std::vector<std::
 }
 
 const char* ScpiErrorText(int number) {
-  const auto found = std::ranges::find(kErrorTexts, number, &ErrorText::number);
+  const auto found = std::ranges::find(kErrorTexts, number, &ScpiErrorEntry::number);
   return found == kErrorTexts.end() ? "Command error" : found->text;
 }
 

@@ -52,7 +52,7 @@ Outcome Faults(const ScpiCall& call) {
 }
 
 // clang-format off
-constexpr ScpiCommand kCommands[] = {
+constexpr ScpiCommand kTimeCommands[] = {
     {"CLOCk:NOW", true, 0, 0, Now},
     {"CLOCk:HOLD", false, 1, 0, Hold},
     {"CLOCk:WAIT", true, 1, 0, Pass},
@@ -66,7 +66,7 @@ constexpr ScpiCommand kCommands[] = {
 }  // namespace
 
 std::span<const ScpiCommand> ScpiTimeCommands() {
-  return kCommands;
+  return kTimeCommands;
 }
 
 }  // namespace twinbench::hw

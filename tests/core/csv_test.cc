@@ -9,24 +9,24 @@
 namespace twinbench {
 namespace {
 
-CsvTable Parse(const std::string& text) {
+CsvTable ParseTable(const std::string& text) {
   std::istringstream in(text);
   return ParseCsv(in, "t.csv");
 }
 
-std::string ErrorOf(const std::string& text) {
-  return MessageOf([&] { Parse(text); });
+std::string TableError(const std::string& text) {
+  return MessageOf([&] { ParseTable(text); });
 }
 
 TEST(Csv, SkipsCommentsAndCountsTheirLines) {
-  const CsvTable table = Parse("# made by hand\na,b\n\n# a comment\n1,2\n");
+  const CsvTable table = ParseTable("# made by hand\na,b\n\n# a comment\n1,2\n");
   ASSERT_EQ(table.rows.size(), 1u);
   EXPECT_EQ(table.WhereHeader(), "t.csv:2");
   EXPECT_EQ(table.Where(table.rows[0]), "t.csv:5");
 }
 
 TEST(Csv, TakesFilesOfOtherSystems) {
-  const CsvTable table = Parse(
+  const CsvTable table = ParseTable(
       "\xEF\xBB\xBF"
       "a,b\r\n 1 ,2\r\n");
   EXPECT_EQ(table.columns, (std::vector<std::string>{"a", "b"}));
@@ -34,28 +34,28 @@ TEST(Csv, TakesFilesOfOtherSystems) {
 }
 
 TEST(Csv, KeepsEmptyFieldsAlsoTheLast) {
-  EXPECT_EQ(Parse("a,b,c\n,,\n").rows[0].fields, (std::vector<std::string>{"", "", ""}));
+  EXPECT_EQ(ParseTable("a,b,c\n,,\n").rows[0].fields, (std::vector<std::string>{"", "", ""}));
 }
 
 TEST(Csv, ReadsWhatItQuotes) {
   for (const std::string text : {"plain", "two, parts", "a \"word\"", " blanks ", "#no comment", ""}) {
-    const CsvTable table = Parse("a,b\n" + QuoteCsv(text) + ",1\n");
+    const CsvTable table = ParseTable("a,b\n" + QuoteCsv(text) + ",1\n");
     EXPECT_EQ(table.rows[0].fields[0], text);
     EXPECT_EQ(table.rows[0].fields[1], "1");
   }
 }
 
 TEST(Csv, NamesLineAndFaultOfABadFile) {
-  EXPECT_EQ(ErrorOf(""), "t.csv:1: the file has no header line; expected names of columns");
-  EXPECT_EQ(ErrorOf("a,,c\n"), "t.csv:1: column 2 has no name; expected a name");
-  EXPECT_EQ(ErrorOf("a,b,a\n"), "t.csv:1: column a comes twice; expected every column once");
-  EXPECT_EQ(ErrorOf("a,b\n1,2\n1,2,3\n"), "t.csv:3: 3 fields; expected 2, as in the header");
-  EXPECT_EQ(ErrorOf("a\n\"open\n"),
+  EXPECT_EQ(TableError(""), "t.csv:1: the file has no header line; expected names of columns");
+  EXPECT_EQ(TableError("a,,c\n"), "t.csv:1: column 2 has no name; expected a name");
+  EXPECT_EQ(TableError("a,b,a\n"), "t.csv:1: column a comes twice; expected every column once");
+  EXPECT_EQ(TableError("a,b\n1,2\n1,2,3\n"), "t.csv:3: 3 fields; expected 2, as in the header");
+  EXPECT_EQ(TableError("a\n\"open\n"),
             "t.csv:2: a quote is opened and not closed; expected a \" at the end of the field");
 }
 
 TEST(Csv, NamesTheColumnOfAFieldThatIsNoNumber) {
-  const CsvTable table = Parse("a,b\n1,x\n");
+  const CsvTable table = ParseTable("a,b\n1,x\n");
   EXPECT_EQ(MessageOf([&] { CsvNumber(table, table.rows[0], 1, 1.0); }),
             "t.csv:2: b is \"x\"; expected a finite number");
 }

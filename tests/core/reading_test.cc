@@ -21,7 +21,7 @@ constexpr const char* kHeader =
     "reading,time_s,setup,pass,direction,position,phase,target_deg,reference_deg,psd_a_x_V,psd_a_y_V,psd_b_x_V,"
     "psd_b_y_V";
 
-std::vector<Reading> Parse(const std::string& text) {
+std::vector<Reading> ParseReadings(const std::string& text) {
   std::istringstream in(text);
   return ParseReadingsCsv(in, "r.csv");
 }
@@ -34,7 +34,7 @@ std::string Write(const std::vector<Reading>& readings, const std::string& bench
 
 /// The message about one row under kHeader.
 std::string RowError(const std::string& row) {
-  return MessageOf([&] { Parse(std::string(kHeader) + "\n" + row + "\n"); });
+  return MessageOf([&] { ParseReadings(std::string(kHeader) + "\n" + row + "\n"); });
 }
 
 Reading AnyReading(int number, std::mt19937_64& random) {
@@ -56,7 +56,7 @@ Reading AnyReading(int number, std::mt19937_64& random) {
   return r;
 }
 
-void ExpectSame(const Reading& a, const Reading& b) {
+void ExpectEqual(const Reading& a, const Reading& b) {
   EXPECT_EQ(a.reading, b.reading);
   EXPECT_EQ(a.time, b.time);
   EXPECT_EQ(a.setup, b.setup);
@@ -85,9 +85,9 @@ TEST(ReadingsCsv, AreReadBackToTheSameBits) {
   for (std::size_t i = 0; i < readings.size(); ++i) {
     if (i != 7) readings[i].extra = {{"operator", ""}, {"humidity_percent", ""}};
   }
-  const auto read = Parse(Write(readings));
+  const auto read = ParseReadings(Write(readings));
   ASSERT_EQ(read.size(), readings.size());
-  for (std::size_t i = 0; i < read.size(); ++i) ExpectSame(read[i], readings[i]);
+  for (std::size_t i = 0; i < read.size(); ++i) ExpectEqual(read[i], readings[i]);
 }
 
 TEST(ReadingsCsv, KeepTimesToTheNanosecond) {
@@ -97,7 +97,7 @@ TEST(ReadingsCsv, KeepTimesToTheNanosecond) {
     reading.time = Time(Duration(ns));
     reading.target_rad = reading.reference_rad = 0.0;
     reading.mean_V.fill(0.0);
-    EXPECT_EQ(Parse(Write({reading})).front().time.time_since_epoch().count(), ns);
+    EXPECT_EQ(ParseReadings(Write({reading})).front().time.time_since_epoch().count(), ns);
   }
 }
 
@@ -119,9 +119,9 @@ TEST(ReadingsCsv, OfTheOracleHaveNoOptionalColumns) {
 
 TEST(ReadingsCsv, KeepColumnsThatWeDoNotKnow) {
   const std::string header = "gripper," + std::string(kHeader) + ",\"air, top\"";
-  const auto readings = Parse(header + "\nG7,0,0,0,0,1,0,full_circle,0,0,1,2,3,4,calm\n");
+  const auto readings = ParseReadings(header + "\nG7,0,0,0,0,1,0,full_circle,0,0,1,2,3,4,calm\n");
   EXPECT_EQ(readings[0].extra, (std::map<std::string, std::string>{{"air, top", "calm"}, {"gripper", "G7"}}));
-  EXPECT_EQ(Parse(Write(readings))[0].extra, readings[0].extra);
+  EXPECT_EQ(ParseReadings(Write(readings))[0].extra, readings[0].extra);
 }
 
 TEST(ReadingsCsv, HaveAStatusOnlyIfSomethingWentWrong) {
@@ -131,14 +131,14 @@ TEST(ReadingsCsv, HaveAStatusOnlyIfSomethingWentWrong) {
   readings[1].status = ReadingStatus::kSaturated;
   readings[1].mean_V.fill(kNaN);
   readings[1].std_V.fill(kNaN);
-  const auto read = Parse(Write(readings));
+  const auto read = ParseReadings(Write(readings));
   EXPECT_EQ(read[0].status, ReadingStatus::kOk);
   EXPECT_EQ(read[1].status, ReadingStatus::kSaturated);
   EXPECT_TRUE(std::isnan(read[1].mean_V[0]));
 }
 
 TEST(ReadingsCsv, CallAReadingWithAnEmptyVoltageMissing) {
-  const auto readings = Parse(std::string(kHeader) + "\n0,0,0,0,1,0,full_circle,0,0,1,,3,4\n");
+  const auto readings = ParseReadings(std::string(kHeader) + "\n0,0,0,0,1,0,full_circle,0,0,1,,3,4\n");
   EXPECT_EQ(readings[0].status, ReadingStatus::kMissing);
   for (const double mean_V : readings[0].mean_V) EXPECT_TRUE(std::isnan(mean_V));
 }
@@ -146,7 +146,7 @@ TEST(ReadingsCsv, CallAReadingWithAnEmptyVoltageMissing) {
 TEST(ReadingsCsv, NameEveryMissingColumnAtOnce) {
   EXPECT_EQ(
       MessageOf(
-          [] { Parse("# exported\nreading,time_s,setup,pass,position,phase,target_deg,psd_a_x_V,psd_a_y_V\n"); }),
+          [] { ParseReadings("# exported\nreading,time_s,setup,pass,position,phase,target_deg,psd_a_x_V,psd_a_y_V\n"); }),
       "r.csv:2: required columns are missing: direction, reference_deg, psd_b_x_V, psd_b_y_V; expected readings "
       "of the bench rotary_4dof");
 }
@@ -161,7 +161,7 @@ TEST(ReadingsCsv, AreOfTheBenchThatIsStated) {
 }
 
 TEST(ReadingsCsv, WithoutAColumnOfAnyBenchAreRefused) {
-  EXPECT_EQ(MessageOf([] { Parse("reading,time_s,setup,pass,direction,position,phase,bar_um\n"); }),
+  EXPECT_EQ(MessageOf([] { ParseReadings("reading,time_s,setup,pass,direction,position,phase,bar_um\n"); }),
             "r.csv:1: the columns are those of no known bench; expected readings of rotary_4dof, "
             "encoder_comparison, turntable_autocollimator, hob_transmission");
 }
@@ -188,7 +188,7 @@ TEST(ReadingsCsv, NameLineColumnAndFaultOfABadField) {
 }
 
 TEST(ReadingsCsv, NameAStatusThatDoesNotExist) {
-  EXPECT_EQ(MessageOf([] { Parse(std::string(kHeader) + ",status\n0,0,0,0,1,0,full_circle,0,0,1,2,3,4,fine\n"); }),
+  EXPECT_EQ(MessageOf([] { ParseReadings(std::string(kHeader) + ",status\n0,0,0,0,1,0,full_circle,0,0,1,2,3,4,fine\n"); }),
             "r.csv:2: status is \"fine\"; expected ok, saturated, no_light, clipped_spot, overrun or missing");
 }
 
@@ -221,7 +221,7 @@ constexpr const char* kAngles = "reading,phase,setup,pass,direction,position,tim
 
 TEST(AngleReadings, AreKnownByTheirColumns) {
   const auto readings =
-      Parse(std::string(kAngles) + ",velocity_deg_s\n0,full_circle,0,0,0,0,0.08,360.5,0.75,-36\n");
+      ParseReadings(std::string(kAngles) + ",velocity_deg_s\n0,full_circle,0,0,0,0,0.08,360.5,0.75,-36\n");
   ASSERT_EQ(readings.size(), 1u);
   EXPECT_EQ(readings[0].direction, 0) << "at rest";
   EXPECT_DOUBLE_EQ(readings[0].reference_rad, 360.5 * units::deg);
@@ -231,7 +231,7 @@ TEST(AngleReadings, AreKnownByTheirColumns) {
 }
 
 TEST(AngleReadings, NeedNoVelocityAndMayLackAValue) {
-  const auto readings = Parse(std::string(kAngles) + "\n0,full_circle,0,0,1,0,0,1.5,\n");
+  const auto readings = ParseReadings(std::string(kAngles) + "\n0,full_circle,0,0,1,0,0,1.5,\n");
   EXPECT_EQ(readings[0].status, ReadingStatus::kMissing);
   EXPECT_TRUE(std::isnan(readings[0].velocity_rad_s));
 }
@@ -253,7 +253,7 @@ TEST(AngleReadings, ComeBackToTheSameBits) {
     for (double* value : {&readings[i].reference_rad, &readings[i].measured_rad, &readings[i].velocity_rad_s})
       *value = normal(random);
   }
-  const auto again = Parse(Write(readings, kEncoderBench));
+  const auto again = ParseReadings(Write(readings, kEncoderBench));
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(again[i].direction, readings[i].direction);
     EXPECT_EQ(again[i].reference_rad, readings[i].reference_rad);
@@ -268,25 +268,25 @@ constexpr const char* kTurntableHeader =
     "autocollimator_y_arcsec\n";
 
 TEST(TurntableReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
-  const auto readings = Parse(std::string(kTurntableHeader) + "0,0,0,0,1,0,full_circle,5,-5,1.25,-60\n" +
+  const auto readings = ParseReadings(std::string(kTurntableHeader) + "0,0,0,0,1,0,full_circle,5,-5,1.25,-60\n" +
                               "1,2,0,0,1,1,full_circle,10,-10,,\n");
   EXPECT_DOUBLE_EQ(readings[0].target_rad, 5.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].reference_rad, -5.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].autocollimator_yaw_rad, 1.25 * units::arcsec);
   EXPECT_DOUBLE_EQ(readings[0].autocollimator_tilt_rad, -60.0 * units::arcsec);
   EXPECT_EQ(readings[1].status, ReadingStatus::kMissing) << "the autocollimator showed nothing";
-  const auto again = Parse(Write(readings, kTurntableBench));
+  const auto again = ParseReadings(Write(readings, kTurntableBench));
   EXPECT_EQ(again[0].autocollimator_yaw_rad, readings[0].autocollimator_yaw_rad);
   EXPECT_EQ(again[1].status, ReadingStatus::kMissing);
 }
 
 TEST(TurntableReadings, MayCountTheWayBackOfTheMultitoothTableAsPositive) {
   const std::string head = kTurntableHeader;
-  const auto back = Parse(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,15,0,0\n");
+  const auto back = ParseReadings(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,15,0,0\n");
   EXPECT_DOUBLE_EQ(back[1].reference_rad, -15.0 * units::deg);
-  const auto ours = Parse(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,365,0,0\n");
+  const auto ours = ParseReadings(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,365,0,0\n");
   EXPECT_DOUBLE_EQ(ours[1].reference_rad, 365.0 * units::deg) << "a turn more is the same tooth";
-  const auto neither = Parse(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,77,0,0\n");
+  const auto neither = ParseReadings(head + "0,0,0,0,1,0,full_circle,0,10,0,0\n1,2,0,0,1,1,full_circle,5,77,0,0\n");
   EXPECT_DOUBLE_EQ(neither[1].reference_rad, 77.0 * units::deg) << "left for the evaluation to refuse";
 }
 
@@ -294,21 +294,21 @@ constexpr const char* kHobHeader =
     "reading,time_s,setup,pass,direction,position,phase,table_encoder_deg,hob_encoder_deg,head_deg";
 
 TEST(HobReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
-  const auto readings = Parse(std::string(kHobHeader) + ",interferometer_arcsec\n" +
+  const auto readings = ParseReadings(std::string(kHobHeader) + ",interferometer_arcsec\n" +
                               "0,0,0,0,1,0,full_circle,0.5,11,180,2.5\n1,2,0,0,0,1,full_circle,,22,180,\n");
   EXPECT_DOUBLE_EQ(readings[0].measured_rad, 0.5 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].reference_rad, 11.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].head_rad, 180.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].interferometer_rad, 2.5 * units::arcsec);
   EXPECT_EQ(readings[1].status, ReadingStatus::kMissing);
-  const auto again = Parse(Write(readings, kHobBench));
+  const auto again = ParseReadings(Write(readings, kHobBench));
   EXPECT_EQ(again[0].measured_rad, readings[0].measured_rad);
   EXPECT_EQ(again[0].head_rad, readings[0].head_rad);
   EXPECT_EQ(again[0].interferometer_rad, readings[0].interferometer_rad);
 }
 
 TEST(HobReadings, NeedNoInterferometer) {
-  const auto readings = Parse(std::string(kHobHeader) + "\n0,0,0,0,1,0,full_circle,0.5,11,180\n");
+  const auto readings = ParseReadings(std::string(kHobHeader) + "\n0,0,0,0,1,0,full_circle,0.5,11,180\n");
   EXPECT_EQ(readings[0].status, ReadingStatus::kOk);
   EXPECT_TRUE(std::isnan(readings[0].interferometer_rad));
 }

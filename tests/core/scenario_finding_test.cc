@@ -14,15 +14,15 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-Scenario Parse(const std::string& text) {
+Scenario ParseFinding(const std::string& text) {
   return ParseScenario("bench = \"rotary_4dof\"\n" + text, "s.toml", ".");
 }
-std::string ErrorOf(const std::string& text) {
-  return MessageOf([&] { Parse(text); });
+std::string FindingError(const std::string& text) {
+  return MessageOf([&] { ParseFinding(text); });
 }
 
 TEST(ScenarioFinding, TakesUncertaintiesToSIAndKeepsTheRest) {
-  const Scenario s = Parse(
+  const Scenario s = ParseFinding(
       "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\nroll_mrad = 2\nu_roll_mrad = 0.1\n"
       "log_evidence = 31.5\nprobability = 0.97\nprovenance = \"run 7\"\n");
   const EffectFinding& finding = s.effects.at(0).finding;
@@ -34,14 +34,14 @@ TEST(ScenarioFinding, TakesUncertaintiesToSIAndKeepsTheRest) {
 
 TEST(ScenarioFinding, IsNotNeeded) {
   const EffectFinding& finding =
-      Parse("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n").effects.at(0).finding;
+      ParseFinding("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n").effects.at(0).finding;
   EXPECT_TRUE(finding.u.empty());
   EXPECT_TRUE(std::isnan(finding.probability));
 }
 
 TEST(ScenarioFinding, RefusesWhatCannotBe) {
   const auto error = [](const std::string& line) {
-    return ErrorOf("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n" + line);
+    return FindingError("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n" + line);
   };
   EXPECT_THAT(error("u_roll_mrad = -1\n"), HasSubstr("s.toml:5: psd_roll: u_roll_mrad is -1"));
   EXPECT_THAT(error("probability = 1.5\n"), HasSubstr("s.toml:5: psd_roll: probability is 1.5"));
@@ -52,7 +52,7 @@ constexpr const char* kEmpirical =
     "[[empirical]]\nsignature = \"order 7\"\nchannel = \"psd_b_y\"\nreading = [3, 5]\nvalue_um = [0.5, -0.25]\n";
 
 TEST(ScenarioEmpirical, IsTabulatedByReading) {
-  const EmpiricalSettings empirical = Parse(kEmpirical).empiricals.at(0);
+  const EmpiricalSettings empirical = ParseFinding(kEmpirical).empiricals.at(0);
   EXPECT_EQ(empirical.signature, "order 7");
   EXPECT_EQ(empirical.channel, "psd_b_y");
   EXPECT_THAT(empirical.reading, ElementsAre(3, 5));
@@ -60,7 +60,7 @@ TEST(ScenarioEmpirical, IsTabulatedByReading) {
 }
 
 TEST(ScenarioEmpirical, RefusesATableThatDoesNotFit) {
-  const auto error = [](const std::string& lines) { return ErrorOf("[[empirical]]\n" + lines); };
+  const auto error = [](const std::string& lines) { return FindingError("[[empirical]]\n" + lines); };
   EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 2]\nvalue_um = [1.0]\n"),
               HasSubstr("s.toml:2: the empirical signal has 2 readings and 1 values"));
   EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 1]\nvalue_um = [1.0, 2.0]\n"),

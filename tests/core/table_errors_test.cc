@@ -10,7 +10,7 @@
 namespace twinbench {
 namespace {
 
-std::string ErrorOf(const std::string& text) {
+std::string FileError(const std::string& text) {
   const TemporaryFolder folder;
   const std::string path = folder.Write("t.csv", text);
   const std::string message = MessageOf([&] { ReadTableErrors(path); });
@@ -44,12 +44,12 @@ TEST(TableErrors, AreReadBackToTheSameBits) {
 
 TEST(TableErrors, NameLineAndFaultOfABadFile) {
   const std::string all = "position_deg,ex_arcsec,ey_arcsec,ez_arcsec,dx_um,dy_um,dz_um";
-  EXPECT_EQ(ErrorOf("ex_arcsec\n1\n"), ":1: the column position_deg is missing; expected " + all);
-  EXPECT_EQ(ErrorOf("#\nposition_deg,ex_urad\n1,2\n"), ":2: unknown column ex_urad; expected any of " + all);
-  EXPECT_EQ(ErrorOf("position_deg,dx_um\n1,2\n2,abc\n"), ":3: dx_um is \"abc\"; expected a finite number");
-  EXPECT_EQ(ErrorOf("position_deg,dx_um\n1,nan\n"), ":2: dx_um is \"nan\"; expected a finite number");
-  EXPECT_EQ(ErrorOf("position_deg,dx_um\n1,\n"), ":2: dx_um is \"\"; expected a finite number");
-  EXPECT_EQ(ErrorOf("position_deg,dx_um\n"), ":1: no rows follow the header; expected one row a position");
+  EXPECT_EQ(FileError("ex_arcsec\n1\n"), ":1: the column position_deg is missing; expected " + all);
+  EXPECT_EQ(FileError("#\nposition_deg,ex_urad\n1,2\n"), ":2: unknown column ex_urad; expected any of " + all);
+  EXPECT_EQ(FileError("position_deg,dx_um\n1,2\n2,abc\n"), ":3: dx_um is \"abc\"; expected a finite number");
+  EXPECT_EQ(FileError("position_deg,dx_um\n1,nan\n"), ":2: dx_um is \"nan\"; expected a finite number");
+  EXPECT_EQ(FileError("position_deg,dx_um\n1,\n"), ":2: dx_um is \"\"; expected a finite number");
+  EXPECT_EQ(FileError("position_deg,dx_um\n"), ":1: no rows follow the header; expected one row a position");
 }
 
 TEST(TableErrors, CannotBeWrittenWithColumnsOfUnequalLength) {

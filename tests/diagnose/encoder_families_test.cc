@@ -8,12 +8,9 @@
 #include "twin/diagnose/encoder/next_measurement.h"
 
 // Each named family against the twin's effect: two implementations that share no code.
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::encoder {
 namespace {
 
-using encoder::BuildRun;
-using encoder::EncoderRun;
-using encoder::Families;
 using test::EncoderEffect;
 using test::EncoderScenario;
 using units::deg;
@@ -212,8 +209,7 @@ TEST(EncoderFamilies, GiveCausesOfOneOrderTheSameColumnsAndPriors) {
 }
 
 TEST(EncoderNextMeasurement, SplitsWhatOneRunCannot) {
-  using encoder::NextMeasurement;
-  EXPECT_THAT(NextMeasurement("signal_offset", "eccentricity"), testing::HasSubstr("raw sine and cosine"));
+    EXPECT_THAT(NextMeasurement("signal_offset", "eccentricity"), testing::HasSubstr("raw sine and cosine"));
   EXPECT_THAT(NextMeasurement("hysteresis", "backlash"), testing::HasSubstr("behind a reversal"));
   EXPECT_THAT(NextMeasurement("backlash", "latency"), testing::HasSubstr("speed"));
   EXPECT_THAT(NextMeasurement("eccentricity", "reference_fault"), testing::HasSubstr("turned on the shaft"));
@@ -278,4 +274,4 @@ TEST(EncoderFamilies, StateUncertaintiesThatFollowFromTheCovariance) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::encoder

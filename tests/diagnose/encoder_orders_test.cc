@@ -9,7 +9,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/diagnose.h"
 
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::encoder {
 namespace {
 
 using units::deg;
@@ -59,4 +59,4 @@ TEST(EncoderDiagnosis, StillFindsALineBetweenTheOrders) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::encoder

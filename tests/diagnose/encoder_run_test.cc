@@ -10,11 +10,9 @@
 #include "twin/benches/names.h"
 #include "twin/diagnose/engine/projector.h"
 
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::encoder {
 namespace {
 
-using encoder::BuildRun;
-using encoder::EncoderRun;
 using twinbench::test::EncoderEffect;
 using twinbench::test::EncoderScenario;
 using twinbench::test::ReadingsWith;
@@ -151,4 +149,4 @@ TEST(EncoderRun, OfStopsHasNoVelocityWhereTimeIsAnOrderOnly) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::encoder

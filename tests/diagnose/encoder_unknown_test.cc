@@ -6,12 +6,9 @@
 #include "tests/diagnose/encoder_fit.h"
 
 // The generic families for what the catalogue has not.
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::encoder {
 namespace {
 
-using encoder::BuildRun;
-using encoder::EncoderRun;
-using encoder::Families;
 using test::EncoderScenario;
 using testing::HasSubstr;
 using units::deg;
@@ -143,9 +140,9 @@ TEST(EncoderUnknown, HasNoShapesInTimeNorLinesInOneTurn) {
 
 TEST(EncoderUnknown, LooksForOrdersThatTheSpacingCanShow) {
   // Stops every 5 deg: orders below 36. Readings every 0.96 deg at the lower speed: 187, more than is looked for.
-  EXPECT_EQ(encoder::LargestOrder(RunWith("stops", [](const Reading&) { return 0.0; }).context), 35);
-  EXPECT_EQ(encoder::LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 120);
+  EXPECT_EQ(LargestOrder(RunWith("stops", [](const Reading&) { return 0.0; }).context), 35);
+  EXPECT_EQ(LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 120);
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::encoder

@@ -12,7 +12,7 @@ namespace twinbench::diagnose {
 namespace {
 
 constexpr double kAmplitude_m = 6.0 * units::um, kLifetime_s = 700.0;
-constexpr int kRuns = 200;
+constexpr int kSeeds = 200;
 constexpr double kAnything = -1e9;  // threshold of the search: size is asked for here, not presence
 
 double DecayAt(const Schedule& s, int reading, double lifetime_s) {
@@ -60,10 +60,10 @@ Coverage CoverageOf95(double noise) {
   AddEffect(run, run.patterns[3].weight,
             [&](int i) { return kAmplitude_m * DecayAt(run.schedule, i, kLifetime_s); });
   Coverage share;
-  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const Pick pick = FindDecay(run, seed, noise);
     const auto covers = [&pick](double value, double truth, int k) {
-      return std::abs(value - truth) <= 1.96 * std::sqrt(pick.cov(k, k)) ? 1.0 / kRuns : 0.0;
+      return std::abs(value - truth) <= 1.96 * std::sqrt(pick.cov(k, k)) ? 1.0 / kSeeds : 0.0;
     };
     share.amplitude += covers(pick.amplitudes[0], kAmplitude_m, 0);
     share.lifetime += covers(pick.shape[0], kLifetime_s, 1);

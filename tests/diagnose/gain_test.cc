@@ -16,7 +16,7 @@ using namespace test;
 LinearRun NoisyRing(std::uint64_t seed, double amplitude_m, const RingShape& shape = {}) {
   LinearRun run = MakeRing(shape);
   AddUnknowns(run, seed);
-  AddNoise(run, seed);
+  AddRingNoise(run, seed);
   run.residual += amplitude_m * Direction(run).columns.col(0);
   return run;
 }
@@ -118,7 +118,7 @@ TEST(MeasureGain, OfACauseThatOnePassAloneShowsIsMeasuredOnBlocksOfThatPass) {
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
     LinearRun run = MakeRing();
     AddUnknowns(run, seed);
-    AddNoise(run, seed);
+    AddRingNoise(run, seed);
     run.residual += 2e-6 * LastStep(run).columns.col(0);
     const Gain gain = MeasureGain(run, WhiteNoise(run), {LastStep(run)});
     EXPECT_TRUE(gain.positive) << seed;
@@ -131,7 +131,7 @@ TEST(MeasureGain, OfACauseThatOnePassAloneShowsIsMeasuredOnBlocksOfThatPass) {
 
 TEST(MeasureGain, OfACauseInADirectionThatWasDrivenOnceIsMeasuredAsWell) {
   LinearRun run = MakeRing({12, {0, 1, 5}, {1, -1}, 0});
-  AddNoise(run, 7);
+  AddRingNoise(run, 7);
   run.residual += 1e-6 * Direction(run).columns.col(0);
   const Gain gain = MeasureGain(run, WhiteNoise(run), {Direction(run)});
   EXPECT_TRUE(gain.positive);
@@ -145,7 +145,7 @@ TEST(MeasureGain, CountsACauseThatOnlyTheCalibrationShows) {
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
     LinearRun run = MakeRing({12, {0, 1, 5}, {1, -1, -1, 1}, 26});
     AddUnknowns(run, seed);
-    AddNoise(run, seed);
+    AddRingNoise(run, seed);
     Accepted scale;
     scale.family.amplitudes = {{"gain_error", "1", 1.0, 0.01, -1.0, 1.0}};
     scale.columns = Eigen::MatrixXd::Zero(run.Rows(), 1);

@@ -13,7 +13,7 @@
 #include "twin/diagnose/words.h"
 
 /// Readings of a chain with a hidden cause (tests/diagnose/hob_chain.cc), and what the diagnosis says of them.
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::hob {
 namespace {
 
 using test::HiddenCause;
@@ -234,4 +234,4 @@ TEST(HobDiagnosis, TabulatesTheLinesOfTheChain) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::hob

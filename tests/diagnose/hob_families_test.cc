@@ -6,7 +6,7 @@
 #include "twin/diagnose/hob/families.h"
 
 /// Each named family against noise-free readings that were made without it (tests/diagnose/hob_chain.cc).
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::hob {
 namespace {
 
 using test::BestFit;
@@ -17,7 +17,7 @@ using test::ParametersOf;
 using units::arcsec;
 using units::deg;
 
-HobChain Quiet() {
+HobChain QuietHeads() {
   HobChain chain;
   chain.table_noise_arcsec = chain.hob_noise_arcsec = chain.interferometer_noise_arcsec = 0.0;
   chain.hob_steps = false;
@@ -46,27 +46,27 @@ std::pair<const Family*, Fit> BestOf(const std::vector<Family>& families, const 
   return best;
 }
 
-struct Trial {
+struct FamilyTrial {
   HiddenCause cause;
   double left = 0.01;     // share of the signal that may stay
   double worst = 0.01;    // relative error of a parameter
   std::string wave = "";  // its parameter that is a phase
 };
 
-void PrintTo(const Trial& trial, std::ostream* out) {
+void PrintTo(const FamilyTrial& trial, std::ostream* out) {
   *out << trial.cause.name << " " << trial.cause.where;
 }
 
-class HobFamily : public ::testing::TestWithParam<Trial> {};
+class HobFamily : public ::testing::TestWithParam<FamilyTrial> {};
 
 /// The free orders and constants are fitted beside it, so that only what they cannot have is compared.
 TEST_P(HobFamily, FitsWhatIndependentFormulasMakeOfItsCause) {
-  const Trial& trial = GetParam();
-  HobChain chain = Quiet();
+  const FamilyTrial& trial = GetParam();
+  HobChain chain = QuietHeads();
   chain.hidden = {trial.cause};
   const Scenario scenario = ScenarioOf(chain);
-  const hob::HobRun hob = hob::BuildRun(ReadingsOf(chain), scenario);
-  const std::vector<Family> families = hob::Families(hob);
+  const HobRun hob = BuildRun(ReadingsOf(chain), scenario);
+  const std::vector<Family> families = Families(hob);
   // What is left without the cause: the free orders, to rounding and the second order of the errors.
   const Eigen::MatrixXd free = hob.run.nuisance.jacobian.toDense();
   const Eigen::VectorXd signal =
@@ -85,33 +85,33 @@ TEST_P(HobFamily, FitsWhatIndependentFormulasMakeOfItsCause) {
 // order.
 INSTANTIATE_TEST_SUITE_P(
     Causes, HobFamily,
-    ::testing::Values(Trial{{"eccentricity", "table", {{"amplitude", 6.0 * arcsec}, {"phase", 1.0}}}},
-                      Trial{{"eccentricity", "hob", {{"amplitude", 40.0 * arcsec}, {"phase", 5.0}}}},
-                      Trial{{"ellipticity", "table", {{"amplitude", 2.0 * arcsec}, {"phase", 2.0}}}},
-                      Trial{{"ellipticity", "hob", {{"amplitude", 20.0 * arcsec}, {"phase", 0.3}}}},
-                      Trial{{"periodic", "table", {{"order", 7.0}, {"amplitude", 1.0 * arcsec}, {"phase", 4.0}}}},
-                      Trial{{"periodic", "hob", {{"order", 3.0}, {"amplitude", 20.0 * arcsec}, {"phase", 4.0}}}},
+    ::testing::Values(FamilyTrial{{"eccentricity", "table", {{"amplitude", 6.0 * arcsec}, {"phase", 1.0}}}},
+                      FamilyTrial{{"eccentricity", "hob", {{"amplitude", 40.0 * arcsec}, {"phase", 5.0}}}},
+                      FamilyTrial{{"ellipticity", "table", {{"amplitude", 2.0 * arcsec}, {"phase", 2.0}}}},
+                      FamilyTrial{{"ellipticity", "hob", {{"amplitude", 20.0 * arcsec}, {"phase", 0.3}}}},
+                      FamilyTrial{{"periodic", "table", {{"order", 7.0}, {"amplitude", 1.0 * arcsec}, {"phase", 4.0}}}},
+                      FamilyTrial{{"periodic", "hob", {{"order", 3.0}, {"amplitude", 20.0 * arcsec}, {"phase", 4.0}}}},
                       // the faults bend as much as they are large: 2 % of an amplitude
-                      Trial{{"signal_offset", "", {{"offset_sin", 0.02}, {"offset_cos", -0.01}}}, 0.05, 0.02},
-                      Trial{{"amplitude_mismatch", "", {{"ratio", 0.04}}}, 0.05, 0.05},
-                      Trial{{"quadrature_error", "", {{"angle", 0.04}}}, 0.05, 0.05},
-                      Trial{{"hob_runout", "", {{"amplitude", 2.0 * arcsec}, {"phase", 6.0}}}},
-                      Trial{{"worm", "", {{"amplitude", 2.0 * arcsec}, {"phase", 2.5}}}},
-                      Trial{{"gear_mesh", "", {{"amplitude", 2.0 * arcsec}, {"phase", 2.5}}}},
-                      Trial{{"backlash", "", {{"width", 5.0 * arcsec}}}},
-                      Trial{{"backlash", "", {{"width", -5.0 * arcsec}}}},
+                      FamilyTrial{{"signal_offset", "", {{"offset_sin", 0.02}, {"offset_cos", -0.01}}}, 0.05, 0.02},
+                      FamilyTrial{{"amplitude_mismatch", "", {{"ratio", 0.04}}}, 0.05, 0.05},
+                      FamilyTrial{{"quadrature_error", "", {{"angle", 0.04}}}, 0.05, 0.05},
+                      FamilyTrial{{"hob_runout", "", {{"amplitude", 2.0 * arcsec}, {"phase", 6.0}}}},
+                      FamilyTrial{{"worm", "", {{"amplitude", 2.0 * arcsec}, {"phase", 2.5}}}},
+                      FamilyTrial{{"gear_mesh", "", {{"amplitude", 2.0 * arcsec}, {"phase", 2.5}}}},
+                      FamilyTrial{{"backlash", "", {{"width", 5.0 * arcsec}}}},
+                      FamilyTrial{{"backlash", "", {{"width", -5.0 * arcsec}}}},
                       // the grid of ways has ratios of 1.44; between its points a tenth of the transition stays
-                      Trial{{"hysteresis", "", {{"lag", 5.0 * arcsec}, {"settles_over", 20.0 * deg}}}, 0.1, 0.25},
-                      Trial{{"latency", "", {{"delay", 1e-4}}}},
-                      Trial{{"drift", "", {{"rate", 20.0 * arcsec / units::hour}, {"curvature", 0.5}}}, 0.01, 0.02},
-                      Trial{{"slip", "table", {{"step", 72.0 * arcsec}, {"at_reading", 4000.0}}}, 0.05, 0.01},
-                      Trial{{"slip", "hob", {{"step", 144.0 * arcsec}, {"at_reading", 1000.0}}}, 0.05, 0.01}));
+                      FamilyTrial{{"hysteresis", "", {{"lag", 5.0 * arcsec}, {"settles_over", 20.0 * deg}}}, 0.1, 0.25},
+                      FamilyTrial{{"latency", "", {{"delay", 1e-4}}}},
+                      FamilyTrial{{"drift", "", {{"rate", 20.0 * arcsec / units::hour}, {"curvature", 0.5}}}, 0.01, 0.02},
+                      FamilyTrial{{"slip", "table", {{"step", 72.0 * arcsec}, {"at_reading", 4000.0}}}, 0.05, 0.01},
+                      FamilyTrial{{"slip", "hob", {{"step", 144.0 * arcsec}, {"at_reading", 1000.0}}}, 0.05, 0.01}));
 
 TEST(HobFamilies, OfATableThatIsNotWatchedHaveTheSameColumnsForDriveAndEncoderOfTheHob) {
-  HobChain chain = Quiet();
+  HobChain chain = QuietHeads();
   chain.interferometer = false;
-  const hob::HobRun hob = hob::BuildRun(ReadingsOf(chain), ScenarioOf(chain));
-  const std::vector<Family> families = hob::Families(hob);
+  const HobRun hob = BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  const std::vector<Family> families = Families(hob);
   const Family& drive = FamilyAt(families, "hob_runout", "");
   const Family& encoder = FamilyAt(families, "eccentricity", "hob");
   // Seen 2 / 44 times, with the other sign.
@@ -120,10 +120,10 @@ TEST(HobFamilies, OfATableThatIsNotWatchedHaveTheSameColumnsForDriveAndEncoderOf
 }
 
 TEST(HobFamilies, OfTheEncodersDoNotShowToTheInterferometer) {
-  const HobChain chain = Quiet();
-  const hob::HobRun hob = hob::BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  const HobChain chain = QuietHeads();
+  const HobRun hob = BuildRun(ReadingsOf(chain), ScenarioOf(chain));
   ASSERT_EQ(hob.run.channels, (std::vector<std::string>{"transmission", "interferometer"}));
-  const std::vector<Family> families = hob::Families(hob);
+  const std::vector<Family> families = Families(hob);
   const auto seen = [&](const char* effect, const char* where) {
     const Eigen::VectorXd column = FamilyAt(families, effect, where).ColumnsAt(0).col(0);
     return Eigen::Map<const Eigen::MatrixXd>(column.data(), 2, column.size() / 2).row(1).cwiseAbs().maxCoeff() >
@@ -139,4 +139,4 @@ TEST(HobFamilies, OfTheEncodersDoNotShowToTheInterferometer) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::hob

@@ -91,7 +91,7 @@ inline NoiseModel WhiteNoise(const LinearRun& run) {
 }
 
 /// White noise of the stated size.
-inline void AddNoise(LinearRun& run, std::uint64_t seed, double size = 1.0) {
+inline void AddRingNoise(LinearRun& run, std::uint64_t seed, double size = 1.0) {
   Stream stream(seed, "ring.noise");
   for (int k = 0; k < run.Rows(); ++k) run.residual[k] += size * run.sigma[k] * stream.Normal();
 }
@@ -99,7 +99,7 @@ inline void AddNoise(LinearRun& run, std::uint64_t seed, double size = 1.0) {
 /// A ring with nothing but white noise of the stated size.
 inline LinearRun NoisyRing(std::uint64_t seed) {
   LinearRun run = MakeRing();
-  AddNoise(run, seed);
+  AddRingNoise(run, seed);
   return run;
 }
 

@@ -16,7 +16,7 @@ namespace twinbench::diagnose::rotary {
 namespace {
 
 Scenario BenchOf(const std::string& effect, const std::string& where) {
-  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
+  Scenario scenario = LoadScenario(twinbench::test::ScenarioPath("rotary_4dof.toml"));
   scenario.noise_free = true;
   scenario.environment.swing_K = 0.4;
   scenario.environment.swing_period_s = 4000.0;
@@ -41,8 +41,8 @@ struct Match {
 
 /// Least squares of the twin's difference on each family of that effect and place, after projection; the best.
 Match BestMatch(const std::string& effect, const std::string& where) {
-  const std::vector<Reading> clean = test::RunTwin(BenchOf("", "")).readings;
-  const std::vector<Reading> with = test::RunTwin(BenchOf(effect, where)).readings;
+  const std::vector<Reading> clean = twinbench::test::RunTwin(BenchOf("", "")).readings;
+  const std::vector<Reading> with = twinbench::test::RunTwin(BenchOf(effect, where)).readings;
   const RotaryCase rotary(clean, BenchOf("", ""), false, {});
   const LinearRun& run = rotary.Rotary().run;
   const NoiseModel noise{run.sigma, 0.0};

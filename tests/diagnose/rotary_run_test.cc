@@ -13,8 +13,8 @@ namespace {
 /// What is left of the readings pulls at no free unknown, in units of that unknown's own uncertainty: the normal
 /// equations hold.
 TEST(RotaryRun, PredictsWhatTheFreeUnknownsFitBest) {
-  const Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
-  const RotaryRun rotary = BuildRun(test::RunTwin(scenario).readings, scenario);
+  const Scenario scenario = LoadScenario(twinbench::test::ScenarioPath("rotary_4dof.toml"));
+  const RotaryRun rotary = BuildRun(twinbench::test::RunTwin(scenario).readings, scenario);
   const LinearRun& run = rotary.run;
   const Eigen::VectorXd weight = run.sigma.cwiseInverse();
   const Eigen::SparseMatrix<double> white = weight.asDiagonal() * run.nuisance.jacobian;

@@ -13,12 +13,12 @@ namespace {
 constexpr double kIncidence_rad = 17e-3;
 
 TEST(RotarySearch, NamesAChangeOfTheBenchThatIsLargeEnoughToBend) {
-  const Scenario believed = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
+  const Scenario believed = LoadScenario(twinbench::test::ScenarioPath("rotary_4dof.toml"));
   Scenario actual = believed;
   actual.effects.push_back({"incidence_offset", "", {{"incidence", kIncidence_rad}}, ""});
   DiagnoseOptions options;
   options.null_runs = 100;
-  const SearchedRotary searched = SearchRotary(test::RunTwin(actual).readings, believed, options);
+  const SearchedRotary searched = SearchRotary(twinbench::test::RunTwin(actual).readings, believed, options);
   const SearchResult& found = searched.analysis.found;
   ASSERT_EQ(found.picks.size(), 1U);
   const Pick& pick = found.picks[0];

@@ -18,7 +18,7 @@ constexpr double kTurn = 2.0 * units::kPi;
 const Vector4d kYaw(1, 0, 1, 0), kTilt(0, 1, 0, 1), kLateral(1, 0, -1, 0), kAX(1, 0, 0, 0), kAY(0, 1, 0, 0);
 
 /// An effect, the test that must see it, and what that test must say.
-struct Case {
+struct EffectCase {
   std::string name;
   std::string test;      // must have p < 0.01
   std::string says;      // part of its reading
@@ -32,12 +32,12 @@ double At(const Eigen::VectorXd& v, int reading) {
   return v[reading];
 }
 
-std::vector<Case> Cases() {
+std::vector<EffectCase> Cases() {
   const auto pattern = [](const Vector4d& weight, double size_m, std::function<double(const Schedule&, int)> f) {
     return [=](LinearRun& run) { AddEffect(run, weight, [&](int i) { return size_m * f(run.schedule, i); }); };
   };
   const auto duration = [](const Schedule& s) { return s.time_s.maxCoeff() - s.time_s[0]; };
-  std::vector<Case> cases;
+  std::vector<EffectCase> cases;
   const double um = units::um;
   cases.push_back(
       {"backlash", "direction: mean", "in yaw: backlash", 0.2 * um, 0.3,
@@ -183,10 +183,10 @@ std::vector<Case> Cases() {
   return cases;
 }
 
-class ScreenEffect : public testing::TestWithParam<Case> {};
+class ScreenEffect : public testing::TestWithParam<EffectCase> {};
 
 TEST_P(ScreenEffect, IsSeenByItsOwnTestAtItsOwnSize) {
-  const Case& c = GetParam();
+  const EffectCase& c = GetParam();
   LinearRun run = SyntheticRun({.free_tables = c.free_tables});
   AddNoise(run, 4);
   c.add(run);
@@ -200,7 +200,7 @@ TEST_P(ScreenEffect, IsSeenByItsOwnTestAtItsOwnSize) {
   }
 }
 
-std::string NameOf(const testing::TestParamInfo<Case>& of) {
+std::string NameOf(const testing::TestParamInfo<EffectCase>& of) {
   std::string name = of.param.name;
   std::replace_if(
       name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
@@ -210,7 +210,7 @@ std::string NameOf(const testing::TestParamInfo<Case>& of) {
 INSTANTIATE_TEST_SUITE_P(Cases, ScreenEffect, testing::ValuesIn(Cases()), NameOf);
 
 /// How many tests other than `own` and those of the overall level are below 0.01.
-int LoudOthers(const Case& c, const std::set<std::string>& own, std::uint64_t seed) {
+int LoudOthers(const EffectCase& c, const std::set<std::string>& own, std::uint64_t seed) {
   const std::set<std::string> of_level = {"fit to stated noise", "fit to repeats", "noise of the channels",
                                           "noise of the detectors", "channel pattern"};
   LinearRun run = SyntheticRun({});
@@ -260,7 +260,7 @@ TEST(Screen, LeavesUnrelatedTestsSilent) {
       {"ghost", {"channel order", "spot: map"}},
       {"spike", {"outliers", "tails"}}};
   constexpr int kSeeds = 10;
-  for (const Case& c : Cases()) {
+  for (const EffectCase& c : Cases()) {
     const auto own = related.find(c.name);
     if (own == related.end()) continue;
     int loud = 0;

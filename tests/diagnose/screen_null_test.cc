@@ -11,7 +11,7 @@ namespace twinbench::diagnose {
 namespace {
 
 constexpr int kSeeds = 200;
-constexpr int kNulls = 99;
+constexpr int kNullRuns = 99;
 
 /// Largest distance of the empirical distribution from the uniform one.
 double Kolmogorov(std::vector<double> p) {
@@ -34,7 +34,7 @@ std::map<std::string, std::vector<double>> NullPValues(int seeds, double scale) 
     AddNoise(run, static_cast<std::uint64_t>(seed));
     run.residual *= scale;
     // Nulls of their own for every run: shared ones would make the 200 p-values depend on each other.
-    for (const ScreenTest& t : ScreenAsStated(run, kNulls, 1000 + static_cast<std::uint64_t>(seed))) {
+    for (const ScreenTest& t : ScreenAsStated(run, kNullRuns, 1000 + static_cast<std::uint64_t>(seed))) {
       p[t.name].push_back(t.p);
     }
   }

@@ -35,8 +35,8 @@ Eigen::VectorXd OneChannel(const LinearRun& run, const Eigen::VectorXd& rows, in
 }
 
 /// A run with a few causes to choose from.
-struct Case {
-  explicit Case(std::uint64_t seed) : run(NoisyRing(seed)) {
+struct SearchCase {
+  explicit SearchCase(std::uint64_t seed) : run(NoisyRing(seed)) {
     const Eigen::VectorXd drift = Drift(run);
     families = {Fixed("drift", drift, units::um), Fixed("drift of one", OneChannel(run, drift, 0), units::um),
                 Fixed("bow", drift.cwiseAbs2(), units::um)};
@@ -54,7 +54,7 @@ struct Case {
 };
 
 TEST(Scanner, GivesTheBayesFactorOfOneColumnInClosedForm) {
-  Case c(1);
+  SearchCase c(1);
   c.run.residual += 0.5 * units::um * Drift(c.run);
   const NoiseModel noise = WhiteNoise(c.run);
   const Projector projector(noise.Whiten(c.run, c.run.nuisance.jacobian), c.run.nuisance);
@@ -76,7 +76,7 @@ TEST(Scanner, GivesTheBayesFactorOfOneColumnInClosedForm) {
 }
 
 TEST(Search, PicksTheCauseThatIsThereWithItsSize) {
-  Case c(2);
+  SearchCase c(2);
   c.run.residual += 3.0 * units::um * Drift(c.run);
   const SearchResult found = c.Find(3.0);
   ASSERT_EQ(found.picks.size(), 1U);
@@ -85,7 +85,7 @@ TEST(Search, PicksTheCauseThatIsThereWithItsSize) {
 }
 
 TEST(Search, PicksTwoCausesAtOnce) {
-  Case c(3);
+  SearchCase c(3);
   c.run.residual += 4.0 * units::um * Drift(c.run) + 3.0 * units::um * OneChannel(c.run, Drift(c.run), 0);
   const SearchResult found = c.Find(3.0);
   ASSERT_EQ(found.picks.size(), 2U);
@@ -95,7 +95,7 @@ TEST(Search, PicksTwoCausesAtOnce) {
 
 TEST(Search, FindsNothingInNoise) {
   int found = 0;
-  for (std::uint64_t seed = 10; seed < 110; ++seed) found += Case(seed).Find(3.0).picks.empty() ? 0 : 1;
+  for (std::uint64_t seed = 10; seed < 110; ++seed) found += SearchCase(seed).Find(3.0).picks.empty() ? 0 : 1;
   // Odds of e^3 = 20 against none: by Markov's inequality at most one in twenty, as a rule far fewer.
   EXPECT_LE(found, 5);
 }

@@ -11,7 +11,7 @@
 #include "twin/diagnose/words.h"
 
 // Whole diagnoses of readings that the independent bench made, with noise.
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::turntable {
 namespace {
 
 using test::BenchReadings;
@@ -236,4 +236,4 @@ TEST(TurntableDiagnosis, SaysWhatMissingColumnsCost) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::turntable

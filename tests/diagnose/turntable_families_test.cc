@@ -9,14 +9,11 @@
 #include "twin/diagnose/turntable/families.h"
 
 // The signatures of the causes against differences of readings of the independent bench.
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::turntable {
 namespace {
 
 using test::BenchReadings;
 using test::Wrong;
-using turntable::BuildRun;
-using turntable::Families;
-using turntable::TurntableRun;
 using units::arcsec;
 using units::deg;
 
@@ -177,4 +174,4 @@ TEST(TurntableFamilies, HaveTheSameShapesWithoutANameWhateverIsStruck) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::turntable

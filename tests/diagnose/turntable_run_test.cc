@@ -10,15 +10,13 @@
 #include "twin/diagnose/engine/projector.h"
 
 // The forward model of the turntable bench: what it predicts, and what its unknowns absorb.
-namespace twinbench::diagnose {
+namespace twinbench::diagnose::turntable {
 namespace {
 
 using test::BenchReadings;
 using test::CarefulScenario;
 using test::PublishedScenario;
 using test::Wrong;
-using turntable::BuildRun;
-using turntable::TurntableRun;
 using units::arcsec;
 using units::deg;
 
@@ -162,4 +160,4 @@ TEST(TurntableRun, IsRefusedWhereOnePassOfOneSetUpLeavesNothingToCompare) {
 }
 
 }  // namespace
-}  // namespace twinbench::diagnose
+}  // namespace twinbench::diagnose::turntable

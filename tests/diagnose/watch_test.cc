@@ -14,7 +14,7 @@ using namespace test;
 LinearRun Clean(std::uint64_t seed, double noise = 1.0) {
   LinearRun run = MakeRing();
   AddUnknowns(run, seed);
-  AddNoise(run, seed, noise);
+  AddRingNoise(run, seed, noise);
   return run;
 }
 

@@ -19,10 +19,6 @@ bool IsUnlisted(const Outcome& o) {
 bool IsClean(const Outcome& o) {
   return o.hidden.IsClean();
 }
-bool IsRight(const Outcome& o) {
-  return o.RightOrTie() || o.grade == Grade::kUnknown || o.grade == Grade::kQuiet;
-}
-
 class Challenge : public ::testing::TestWithParam<const char*> {
  protected:
   /// Diagnosed once for all tests of a bench.

@@ -62,6 +62,11 @@ struct Outcome {
   bool RightOrTie() const { return grade == Grade::kRight || grade == Grade::kTie; }
 };
 
+/// Named with its name or a tie, unlisted and answered so, or nothing there and nothing said.
+inline bool IsRight(const Outcome& o) {
+  return o.RightOrTie() || o.grade == Grade::kUnknown || o.grade == Grade::kQuiet;
+}
+
 Outcome Judge(const Hidden& hidden, const diagnose::Diagnosis& diagnosis);
 
 /// Channels that a signature speaks of, also by the name of a pattern ("tilt": both y channels).

@@ -14,9 +14,6 @@
 namespace twinbench::hidden {
 namespace {
 
-bool IsRight(const Outcome& o) {
-  return o.RightOrTie() || o.grade == Grade::kUnknown || o.grade == Grade::kQuiet;
-}
 bool IsConfidentlyWrong(const Outcome& o) {
   return o.confident_wrong;
 }

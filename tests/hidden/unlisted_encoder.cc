@@ -6,14 +6,14 @@
 namespace twinbench::hidden {
 namespace {
 
-UnlistedSignal NonIntegerLine(const Draw& draw) {
+UnlistedSignal EncoderNonIntegerLine(const Draw& draw) {
   const int whole = draw.Whole(2, 12);
   const double order = whole + UniformIn(draw.stream, 0.3, 0.7), phase = draw.Phase();
   const auto line = [&](std::size_t i) { return std::cos(order * draw.readings[i].reference_rad + phase); };
   return OnAngle({"per turn"}, draw.Series(line));
 }
 
-UnlistedSignal DirectionMap(const Draw& draw) {
+UnlistedSignal EncoderDirectionMap(const Draw& draw) {
   const int order = draw.Whole(2, 6);
   const double phase = draw.Phase();
   const auto map = [&](std::size_t i) {
@@ -34,7 +34,7 @@ UnlistedSignal AngleTone(const Draw& draw) {
 
 const std::vector<UnlistedCause>& EncoderUnlistedCauses() {
   static const std::vector<UnlistedCause> causes = {
-      {"non-integer line", NonIntegerLine}, {"direction times order", DirectionMap}, {"tone in time", AngleTone}};
+      {"non-integer line", EncoderNonIntegerLine}, {"direction times order", EncoderDirectionMap}, {"tone in time", AngleTone}};
   return causes;
 }
 

@@ -7,13 +7,13 @@ namespace twinbench::hidden {
 namespace {
 
 /// A belt or a change gear whose ratio is no whole number.
-UnlistedSignal NonIntegerLine(const Draw& draw) {
+UnlistedSignal HobNonIntegerLine(const Draw& draw) {
   const double order = draw.Whole(7, 19) + UniformIn(draw.stream, 0.3, 0.7), phase = draw.Phase();
   const auto line = [&](std::size_t i) { return std::cos(order * draw.readings[i].measured_rad + phase); };
   return OnAngle({"per turn"}, draw.Series(line));
 }
 
-UnlistedSignal DirectionMap(const Draw& draw) {
+UnlistedSignal HobDirectionMap(const Draw& draw) {
   const int order = draw.Whole(2, 6);
   const double phase = draw.Phase();
   const auto map = [&](std::size_t i) {
@@ -36,7 +36,7 @@ UnlistedSignal Switching(const Draw& draw) {
 
 const std::vector<UnlistedCause>& HobUnlistedCauses() {
   static const std::vector<UnlistedCause> causes = {
-      {"non-integer line", NonIntegerLine}, {"direction times order", DirectionMap}, {"switching pump", Switching}};
+      {"non-integer line", HobNonIntegerLine}, {"direction times order", HobDirectionMap}, {"switching pump", Switching}};
   return causes;
 }
 

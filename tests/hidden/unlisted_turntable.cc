@@ -10,7 +10,7 @@ std::string AnyAxis(const Draw& draw) {
   return draw.Whole(0, 1) == 0 ? "x" : "y";
 }
 
-UnlistedSignal DirectionMap(const Draw& draw) {
+UnlistedSignal TurntableDirectionMap(const Draw& draw) {
   const std::string axis = AnyAxis(draw);
   const int order = draw.Whole(2, 5);
   const double phase = draw.Phase();
@@ -49,7 +49,7 @@ UnlistedSignal OnePassAside(const Draw& draw) {
 
 const std::vector<UnlistedCause>& TurntableUnlistedCauses() {
   static const std::vector<UnlistedCause> causes = {
-      {"direction times order", DirectionMap}, {"slow wander", SlowWander}, {"one pass aside", OnePassAside}};
+      {"direction times order", TurntableDirectionMap}, {"slow wander", SlowWander}, {"one pass aside", OnePassAside}};
   return causes;
 }
 

@@ -17,10 +17,10 @@ namespace {
 
 using test::ExpectSameBlock;
 using test::ScriptedSource;
+using test::kNoise_V;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kNoise_V = 6e-3;
 
 class AdConverterTest : public ::testing::Test {
  protected:

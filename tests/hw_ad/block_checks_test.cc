@@ -13,9 +13,9 @@ namespace {
 
 using test::FourLevels;
 using test::RawBlock;
+using test::kLsb_V;
+using test::kNoise_V;
 
-constexpr double kNoise_V = 6e-3;
-const double kLsb_V = sim::LsbOf({});
 
 CheckSettings Known(double noise_V) {
   return {.noise_lsb = noise_V / kLsb_V};

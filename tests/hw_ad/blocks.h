@@ -9,6 +9,9 @@
 /// Blocks of the twin's converter, for tests of what is looked for in them.
 namespace twinbench::test {
 
+inline constexpr double kNoise_V = 6e-3;  // of the reference bench
+inline const double kLsb_V = sim::LsbOf({});
+
 /// Four channels far enough apart to be told from each other, with the noise of the reference bench.
 inline sim::AdInput FourLevels(double noise_V) {
   sim::AdInput input;

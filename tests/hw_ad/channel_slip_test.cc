@@ -13,11 +13,11 @@ namespace {
 using test::FourLevels;
 using test::LoseAWord;
 using test::RawBlock;
+using test::kLsb_V;
+using test::kNoise_V;
 
-constexpr double kNoise_V = 6e-3;
 constexpr double kFalseAlarms = 1e-9;
 constexpr std::array<std::size_t, kChannels> kInOrder = {0, 1, 2, 3};
-const double kLsb_V = sim::LsbOf({});
 const double kNoise_lsb = kNoise_V / kLsb_V;
 
 ChannelSlip Find(const std::vector<std::int16_t>& raw) {

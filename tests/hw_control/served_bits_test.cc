@@ -17,7 +17,7 @@ namespace {
 using test::ServedTwin;
 using Trace = std::vector<std::string>;
 
-constexpr Duration kTimeout = std::chrono::seconds(5);
+constexpr Duration kPatience = std::chrono::seconds(5);
 
 /// What is driven here: a bench without its A/D converter.
 struct Devices {
@@ -111,12 +111,12 @@ class Driven {
   Driven(const ServedTwin& served, const std::string& tables)
       : scpi_(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,"),
         clock_talk_(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,"),
-        clock_({clock_talk_, "clock", kTimeout}),
+        clock_({clock_talk_, "clock", kPatience}),
         simulation_(clock_),
-        autocollimator_({scpi_, "autocollimator", kTimeout}),
-        thermometer_({scpi_, "thermometer", kTimeout}),
-        goniometer_({scpi_, "goniometer", kTimeout}),
-        fixture_({scpi_, "fixture", kTimeout}) {
+        autocollimator_({scpi_, "autocollimator", kPatience}),
+        thermometer_({scpi_, "thermometer", kPatience}),
+        goniometer_({scpi_, "goniometer", kPatience}),
+        fixture_({scpi_, "fixture", kPatience}) {
     clock_.Open();
     simulation_.Restart();
     if (tables != "scpi") {
@@ -129,12 +129,12 @@ class Driven {
 
   Devices Bench() { return {clock_, *target_, *reference_, autocollimator_, thermometer_, goniometer_, fixture_}; }
   ScpiSimulation& simulation() { return simulation_; }
-  DeviceLine Line(const std::string& device) { return {scpi_, device, kTimeout}; }
+  DeviceLine Line(const std::string& device) { return {scpi_, device, kPatience}; }
 
  private:
   std::unique_ptr<RotaryTable> MakeTable(const std::string& name, int axis) {
-    if (esp_) return std::make_unique<EspTable>(DeviceLine(*esp_, name, kTimeout), axis, TableLimits{}, -1, true);
-    return std::make_unique<ScpiTable>(DeviceLine(scpi_, name, kTimeout), axis, TableLimits{});
+    if (esp_) return std::make_unique<EspTable>(DeviceLine(*esp_, name, kPatience), axis, TableLimits{}, -1, true);
+    return std::make_unique<ScpiTable>(DeviceLine(scpi_, name, kPatience), axis, TableLimits{});
   }
 
   Dialogue scpi_, clock_talk_;

@@ -17,7 +17,7 @@ namespace {
 using test::KindOf;
 using test::ServedTwin;
 
-constexpr Duration kTimeout = std::chrono::milliseconds(500);
+constexpr Duration kBeyondFaults = std::chrono::milliseconds(500);
 
 /// The target of a served twin whose clock is held, and how to spoil it.
 class FaultyTable {
@@ -26,9 +26,9 @@ class FaultyTable {
       : clock_talk_(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, ""),
         talk_(ParseAddress(language == "scpi" ? served.ScpiAddress() : served.EspAddress()).value(),
               language == "scpi" ? kScpiIdentity : kEspIdentity, ""),
-        clock_({clock_talk_, "clock", kTimeout}) {
+        clock_({clock_talk_, "clock", kBeyondFaults}) {
     clock_.Open();
-    const DeviceLine line(talk_, "target", kTimeout);
+    const DeviceLine line(talk_, "target", kBeyondFaults);
     if (language == "scpi")
       table_ = std::make_unique<ScpiTable>(line, 1, TableLimits{});
     else
@@ -39,7 +39,7 @@ class FaultyTable {
   ScpiClock& clock() { return clock_; }
   void Restart() { ScpiSimulation(clock_).Restart(); }
   void Inject(const std::string& kind) {
-    DeviceLine line(clock_talk_, "simulation", kTimeout);
+    DeviceLine line(clock_talk_, "simulation", kBeyondFaults);
     TellScpi(line, "SIM:FAUL target," + kind);
   }
 
@@ -60,10 +60,10 @@ void PrintTo(const Case& c, std::ostream* out) {
 class FaultOf : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     Answers, FaultOf,
-    testing::Values(Case{"scpi", "mute", FaultKind::kTimeout}, Case{"scpi", "late", FaultKind::kTimeout},
-                    Case{"scpi", "partial", FaultKind::kTimeout}, Case{"scpi", "disconnect", FaultKind::kDropped},
-                    Case{"scpi", "restart", FaultKind::kRestarted}, Case{"esp", "mute", FaultKind::kTimeout},
-                    Case{"esp", "late", FaultKind::kTimeout}, Case{"esp", "partial", FaultKind::kTimeout},
+    testing::Values(Case{"scpi", "mute", FaultKind::kBeyondFaults}, Case{"scpi", "late", FaultKind::kBeyondFaults},
+                    Case{"scpi", "partial", FaultKind::kBeyondFaults}, Case{"scpi", "disconnect", FaultKind::kDropped},
+                    Case{"scpi", "restart", FaultKind::kRestarted}, Case{"esp", "mute", FaultKind::kBeyondFaults},
+                    Case{"esp", "late", FaultKind::kBeyondFaults}, Case{"esp", "partial", FaultKind::kBeyondFaults},
                     Case{"esp", "disconnect", FaultKind::kDropped}, Case{"esp", "restart", FaultKind::kRestarted}),
     [](const auto& c) { return c.param.language + "_" + c.param.fault; });
 
@@ -120,7 +120,7 @@ TEST(ServedClock, IsHeldAgainWhereItsConnectionHadToBeOpenedAgain) {
   constexpr double kRealTime = 1.0;
   ServedTwin served(test::RotaryScenario(), kRealTime);
   Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
-  ScpiClock clock({talk, "clock", kTimeout});
+  ScpiClock clock({talk, "clock", kBeyondFaults});
   EXPECT_EQ(Drift(clock), Duration(0));
   talk.Close();
   EXPECT_EQ(Drift(clock), Duration(0));
@@ -130,7 +130,7 @@ TEST(ServedClock, WaitsWhatItIsToldAndTakesNoRealTimeUnpaced) {
   constexpr double kRealTime = 1.0;
   ServedTwin served(test::RotaryScenario(), kRealTime);
   Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
-  ScpiClock clock({talk, "clock", kTimeout});
+  ScpiClock clock({talk, "clock", kBeyondFaults});
   ScpiSimulation(clock).SetPaced(false);
   const Time before = clock.Now();
   clock.Wait(std::chrono::hours(10));  // far beyond what this test may take
@@ -144,7 +144,7 @@ TEST(ServedClock, WaitsWhatItIsToldAndTakesNoRealTimeUnpaced) {
 TEST(ServedClock, KnowsATwinByItsName) {
   ServedTwin served(test::RotaryScenario());
   Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "");
-  ScpiClock clock({talk, "clock", kTimeout});
+  ScpiClock clock({talk, "clock", kBeyondFaults});
   clock.Open();
   EXPECT_TRUE(clock.IsTwin());
 }

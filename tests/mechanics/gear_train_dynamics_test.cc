@@ -27,7 +27,7 @@ Complex Line(GearTrain& train, double f_Hz, double time_s,
 }
 
 /// H of PositionLoop's header.
-Complex Servo(const DriveParameters& drive, double f_Hz) {
+Complex ServoResponse(const DriveParameters& drive, double f_Hz) {
   const double w = 2.0 * kPi * drive.servo_Hz;
   const Complex s(0.0, 2.0 * kPi * f_Hz);
   return 5.0 * w * (s + w) * (w + drive.feed_forward * s) /
@@ -53,7 +53,7 @@ TEST(GearTrain, ServoPassesErrorsOfTheMachinesEncoderByItsTransferFunction) {
       const Complex line =
           Line(*train, f_Hz, 2.0, [&](const GearTrainState& s) { return TransmissionError_rad(p, s) / kArcsec; });
       // The hob's angle is 2 pi (t - ramp / 2): whole turns behind t.
-      const Complex expected = 10.0 * Servo(p.motor, f_Hz) * Torsion(p, f_Hz);
+      const Complex expected = 10.0 * ServoResponse(p.motor, f_Hz) * Torsion(p, f_Hz);
       const double held = 2.0 * kPi * f_Hz * p.servo_period_s;  // commands are held for a period: as if later by it
       EXPECT_LT(std::abs(line - expected), 10.0 * held + 0.002) << f_Hz << " Hz, " << feed_forward;
     }

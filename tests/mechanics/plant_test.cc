@@ -18,7 +18,7 @@ namespace {
 constexpr double kStep = 10.0 * kDegree;
 constexpr std::array<Fidelity, 3> kAll = {Fidelity::kKinematic, Fidelity::kLinear, Fidelity::kBullet};
 
-StackParameters EccentricStack() {
+StackParameters ReseatedStack() {
   StackParameters p;
   p.payload.mass_kg = 1.5;
   p.payload.radius_m = 0.040;
@@ -117,7 +117,7 @@ TEST(KinematicPlant, EqualsTheChainOfItsCommandedAngles) {
 }
 
 TEST(Plant, AllFidelitiesRestAtTheSamePose) {
-  const StackParameters p = EccentricStack();
+  const StackParameters p = ReseatedStack();
   const auto kinematic = MakePlant(Fidelity::kKinematic, p);
   const auto linear = MakePlant(Fidelity::kLinear, p);
   const auto bullet = MakePlant(Fidelity::kBullet, p);
@@ -141,7 +141,7 @@ TEST(Plant, AllFidelitiesRestAtTheSamePose) {
 }
 
 TEST(LinearPlant, FollowsBulletThroughMovesWithinAThousandthOfAnArcsecond) {
-  StackParameters p = EccentricStack();
+  StackParameters p = ReseatedStack();
   p.integrator = Integrator::kRungeKutta4;
   p.step_s = 250e-6;
   const auto linear = MakePlant(Fidelity::kLinear, p);
@@ -165,7 +165,7 @@ TEST(LinearPlant, FollowsBulletThroughMovesWithinAThousandthOfAnArcsecond) {
 }
 
 TEST(LinearPlant, FollowsBulletWhenOneTableMovesAndTheOtherHolds) {
-  StackParameters p = EccentricStack();
+  StackParameters p = ReseatedStack();
   p.integrator = Integrator::kRungeKutta4;
   p.step_s = 250e-6;
   const auto linear = MakePlant(Fidelity::kLinear, p);
@@ -188,7 +188,7 @@ TEST(LinearPlant, FollowsBulletWhenOneTableMovesAndTheOtherHolds) {
 
 TEST(LinearPlant, GivesTheSameForKeptResponsesAndStepByStep) {
   // A friction too small to matter rules superposition out.
-  StackParameters p = EccentricStack();
+  StackParameters p = ReseatedStack();
   const auto kept = MakePlant(Fidelity::kLinear, p);
   p.table[0].friction.viscous_Nm_s = 1e-300;
   const auto stepped = MakePlant(Fidelity::kLinear, p);
@@ -208,7 +208,7 @@ TEST(LinearPlant, GivesTheSameForKeptResponsesAndStepByStep) {
 }
 
 TEST(LinearPlant, CarriesOnWhenAMoveStartsDuringAnother) {
-  StackParameters p = EccentricStack();
+  StackParameters p = ReseatedStack();
   const auto linear = MakePlant(Fidelity::kLinear, p);
   const auto bullet = MakePlant(Fidelity::kBullet, p);
   Difference difference;
@@ -225,7 +225,7 @@ TEST(LinearPlant, CarriesOnWhenAMoveStartsDuringAnother) {
 }
 
 TEST(Plant, CounterRotationKeepsThePayloadsTilt) {
-  const StackParameters p = EccentricStack();
+  const StackParameters p = ReseatedStack();
   for (Fidelity fidelity : {Fidelity::kKinematic, Fidelity::kLinear}) {
     const auto plant = MakePlant(fidelity, p);
     const StackState start = plant->State();
@@ -241,7 +241,7 @@ TEST(Plant, CounterRotationKeepsThePayloadsTilt) {
 }
 
 TEST(Plant, SettlesFasterWithAFasterServo) {
-  StackParameters p = EccentricStack();
+  StackParameters p = ReseatedStack();
   std::vector<double> coarse_s;
   for (double bandwidth_Hz : {15.0, 30.0, 60.0}) {
     p.table[0].servo_Hz = p.table[1].servo_Hz = bandwidth_Hz;
@@ -254,13 +254,13 @@ TEST(Plant, SettlesFasterWithAFasterServo) {
   EXPECT_GT(coarse_s[1], 0.033);
   EXPECT_LT(coarse_s[1], 0.132);
   EXPECT_LT(coarse_s[2], 0.044);
-  const double slow_s = SettleTime(EccentricStack(), Fidelity::kLinear, 0.6, 0.1 * kArcsec);
-  const double fast_s = SettleTime(EccentricStack(), Fidelity::kLinear, 0.3, 0.1 * kArcsec);
+  const double slow_s = SettleTime(ReseatedStack(), Fidelity::kLinear, 0.6, 0.1 * kArcsec);
+  const double fast_s = SettleTime(ReseatedStack(), Fidelity::kLinear, 0.3, 0.1 * kArcsec);
   EXPECT_GT(fast_s, slow_s);  // a shorter move shakes more
 }
 
 TEST(Plant, FrictionSlowsSettling) {
-  StackParameters p = EccentricStack();
+  StackParameters p = ReseatedStack();
   for (Fidelity fidelity : {Fidelity::kLinear, Fidelity::kBullet}) {
     std::vector<double> settle_s;
     for (double coulomb_Nm : {0.0, 0.05, 0.2}) {
@@ -274,7 +274,7 @@ TEST(Plant, FrictionSlowsSettling) {
 }
 
 TEST(Plant, ReactionTorqueTurnsTheTableThatHolds) {
-  StackParameters p = EccentricStack();
+  StackParameters p = ReseatedStack();
   const auto deviation = [&](double duration_s) {
     const auto plant = MakePlant(Fidelity::kBullet, p);
     plant->StartMove(Axis::kReference, kStep, duration_s);
@@ -327,7 +327,7 @@ TEST(Plant, TheSameOverstepOfTheGapIsSeenByLinearAndBullet) {
 }
 
 TEST(Plant, GivesTheSameBitsInWhateverPiecesTimeIsTold) {
-  const StackParameters p = EccentricStack();
+  const StackParameters p = ReseatedStack();
   for (Fidelity fidelity : kAll) {
     std::vector<std::array<double, 14>> found;
     for (int pieces : {1, 9, 100}) {
@@ -345,7 +345,7 @@ TEST(Plant, GivesTheSameBitsInWhateverPiecesTimeIsTold) {
 }
 
 TEST(Plant, GivesTheSameBitsInTwoThreads) {
-  const StackParameters p = EccentricStack();
+  const StackParameters p = ReseatedStack();
   const auto run = [&p](Fidelity fidelity, std::array<double, 14>& out) {
     const auto plant = MakePlant(fidelity, p);
     StartCounterRotation(*plant, 1, 0.3);
@@ -364,7 +364,7 @@ TEST(Plant, GivesTheSameBitsInTwoThreads) {
 
 TEST(Plant, SleepsWhenSettledAndWakesForTheNextMove) {
   for (Fidelity fidelity : kAll) {
-    const auto plant = MakePlant(fidelity, EccentricStack());
+    const auto plant = MakePlant(fidelity, ReseatedStack());
     EXPECT_TRUE(plant->Settled());
     plant->StartMove(Axis::kTarget, kStep, 0.3);
     EXPECT_FALSE(plant->Settled());
@@ -381,7 +381,7 @@ TEST(Plant, SleepsWhenSettledAndWakesForTheNextMove) {
 }
 
 TEST(Plant, TakesOverANewMountingAtRestOnly) {
-  StackParameters p = EccentricStack();
+  StackParameters p = ReseatedStack();
   for (Fidelity fidelity : kAll) {
     const auto plant = MakePlant(fidelity, p);
     StartCounterRotation(*plant, 1);
@@ -412,7 +412,7 @@ TEST(Plant, RefusesAMoveOnAMovingAxis) {
 
 TEST(Plant, BreaksAMoveOffAndGoesOnFromThere) {
   for (const Fidelity fidelity : kAll) {
-    const auto plant = MakePlant(fidelity, EccentricStack());
+    const auto plant = MakePlant(fidelity, ReseatedStack());
     StartCounterRotation(*plant, 3);
     plant->Advance(0.3);  // half of the way, at full speed
     plant->Stop(Axis::kTarget);
@@ -431,7 +431,7 @@ TEST(Plant, BreaksAMoveOffAndGoesOnFromThere) {
 
 TEST(Plant, AStopAtRestChangesNothing) {
   for (const Fidelity fidelity : kAll) {
-    const auto plant = MakePlant(fidelity, EccentricStack());
+    const auto plant = MakePlant(fidelity, ReseatedStack());
     StartCounterRotation(*plant, 1);
     plant->AdvanceUntilSettled(10.0);
     const auto before = Numbers(plant->State());

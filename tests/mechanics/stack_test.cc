@@ -12,7 +12,7 @@
 namespace twinbench::mechanics {
 namespace {
 
-StackParameters EccentricStack() {
+StackParameters OffCentreStack() {
   StackParameters p;
   p.payload.mass_kg = 1.5;
   p.payload.radius_m = 0.040;
@@ -35,7 +35,7 @@ double AngleBetween(const Pose& a, const Pose& b) {
 }
 
 TEST(StackDynamics, BulletPutsItsRotorsWhereTheChainDoes) {
-  const StackParameters p = EccentricStack();
+  const StackParameters p = OffCentreStack();
   StackDynamics dynamics(p);
   for (int i = 0; i < 36; ++i) {
     Vector12 q = Somewhere();
@@ -59,7 +59,7 @@ TEST(StackDynamics, BulletPutsItsRotorsWhereTheChainDoes) {
 
 // Bullet leaves the accelerations in scratch memory; another release could place them elsewhere.
 TEST(StackDynamics, ReadsTheAccelerationsFromTheRightPlace) {
-  StackDynamics dynamics(EccentricStack());
+  StackDynamics dynamics(OffCentreStack());
   const Vector12 q = Somewhere();
   const Vector12 rest = Vector12::Zero();
   const Matrix12 inverse = dynamics.InverseMass(q);  // by another public function
@@ -71,7 +71,7 @@ TEST(StackDynamics, ReadsTheAccelerationsFromTheRightPlace) {
 }
 
 TEST(StackDynamics, MassMatrixHasTheSpinInertiaOfTheBodies) {
-  const StackParameters p = EccentricStack();
+  const StackParameters p = OffCentreStack();
   StackDynamics dynamics(p);
   StackParameters centred = p;
   centred.geometry.centring_m.setZero();
@@ -88,7 +88,7 @@ TEST(StackDynamics, MassMatrixHasTheSpinInertiaOfTheBodies) {
 }
 
 TEST(StackDynamics, RestsWhereTheEnergyIsLeast) {
-  const StackParameters p = EccentricStack();
+  const StackParameters p = OffCentreStack();
   StackDynamics dynamics(p);
   const Vector12 rest = Vector12::Zero();
   const Vector12 k = BearingStiffness(p);
@@ -111,7 +111,7 @@ TEST(StackDynamics, RestsWhereTheEnergyIsLeast) {
 }
 
 TEST(StackDynamics, KeepsItsEnergyWithoutDamping) {
-  StackParameters p = EccentricStack();
+  StackParameters p = OffCentreStack();
   p.damping_ratio = 0.0;
   StackDynamics dynamics(p);
   const auto drift = [&](Integrator integrator, double step_s, double duration_s) {
@@ -144,7 +144,7 @@ TEST(StackDynamics, KeepsItsEnergyWithoutDamping) {
 }
 
 TEST(StackDynamics, DampingOnlyTakesEnergy) {
-  const StackParameters p = EccentricStack();
+  const StackParameters p = OffCentreStack();
   StackDynamics dynamics(p);
   Vector12 q = StaticDeflection(p, 0.0, 0.0);
   const double least = dynamics.Energy(q, Vector12::Zero());

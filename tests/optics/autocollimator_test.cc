@@ -33,7 +33,7 @@ Isometry3d FromColumns(const Vector3d& x, const Vector3d& y, const Vector3d& z) 
 }
 
 /// Looks along +x_L at a mirror near the origin of L, from 400 mm away.
-AutocollimatorParameters Example() {
+AutocollimatorParameters ExampleInstrument() {
   AutocollimatorParameters p;
   p.X_LA = Translation3d(-0.4, 0.05, 0.2) * FromColumns(Vector3d::UnitY(), Vector3d::UnitZ(), Vector3d::UnitX());
   p.half_field_rad = 410.0 * kArcsec;
@@ -99,7 +99,7 @@ TEST(EqualAreaDisc, LeavesTheRightShareOnEachSideOfAChord) {
 }
 
 TEST(AutocollimatorOptics, ReadsHalfTheTangentOfTheDeflectionByAFlatMirror) {
-  AutocollimatorOptics instrument(Example(), Mirror());
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   for (const double yaw : {-300.0, -1.0, 0.0, 0.01, 300.0}) {
     for (const double tilt : {-300.0, 0.0, 0.01, 120.0, 300.0}) {
       const double a = yaw * kArcsec, b = tilt * kArcsec;
@@ -111,12 +111,12 @@ TEST(AutocollimatorOptics, ReadsHalfTheTangentOfTheDeflectionByAFlatMirror) {
 
 TEST(AutocollimatorOptics, ExceedsTheAngleByFourThirdsOfItsCube) {
   const double a = 300.0 * kArcsec;
-  const Vector2d read = ReadingOf(Example(), Mirror(), Pose(a, 0.0));
+  const Vector2d read = ReadingOf(ExampleInstrument(), Mirror(), Pose(a, 0.0));
   EXPECT_NEAR((read.x() - a) / kArcsec, 8.46e-4, 1e-6);  // tan(2a) / 2 = a + 4 a^3 / 3 + ..., three digits
 }
 
 TEST(AutocollimatorOptics, DoesNotSeeAFlatMirrorMove) {
-  AutocollimatorOptics instrument(Example(), Mirror());
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   const double a = 100.0 * kArcsec, b = -200.0 * kArcsec;
   const Vector2d read = Angles(instrument.Look(Pose(a, b)));
   for (const Vector3d& shift_mm :
@@ -127,7 +127,7 @@ TEST(AutocollimatorOptics, DoesNotSeeAFlatMirrorMove) {
 
 TEST(AutocollimatorOptics, IsAsGoodAnywhereInTheLaboratory) {
   const Isometry3d X = Translation3d(0.3, -2.0, 0.7) * AngleAxisd(1.1, Vector3d(1, 2, 3).normalized());
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   const Vector2d here = ReadingOf(p, Mirror(kSag_m), Pose(1e-4, 2e-4));
   p.X_LA = X * p.X_LA;
   const Vector2d there = ReadingOf(p, Mirror(kSag_m), X * Pose(1e-4, 2e-4));
@@ -138,12 +138,12 @@ TEST(AutocollimatorOptics, LooksAtASurfaceWhereverItSitsOnItsBody) {
   Surface mirror = Mirror();
   mirror.X_WS = Pose(0.0, 0.0);  // the body's frame is then parallel to L
   const Isometry3d turn(AngleAxisd(50.0 * kArcsec, Vector3d::UnitZ()));
-  const Vector2d read = ReadingOf(Example(), mirror, turn);
+  const Vector2d read = ReadingOf(ExampleInstrument(), mirror, turn);
   EXPECT_LT((read - HalfTangents(50.0 * kArcsec, 0.0)).norm(), kRounding_rad);
 }
 
 TEST(AutocollimatorOptics, ReadsTheFlatnessOfTheMirrorWhenTheBeamWalks) {
-  AutocollimatorOptics concave(Example(), Mirror(kSag_m)), convex(Example(), Mirror(-kSag_m));
+  AutocollimatorOptics concave(ExampleInstrument(), Mirror(kSag_m)), convex(ExampleInstrument(), Mirror(-kSag_m));
   const double walk_m = 1e-3, expected = 8.0 * kSag_m * walk_m / (kWidth_m * kWidth_m);
   EXPECT_NEAR(expected / kArcsec, 0.036, 0.0005);  // the paper's figure, to its last digit
   // The concave mirror's normals meet in front of it. Moved to the left (+y_L), it shows the beam its right half,
@@ -160,7 +160,7 @@ TEST(AutocollimatorOptics, ReadsTheFlatnessOfTheMirrorWhenTheBeamWalks) {
 }
 
 TEST(AutocollimatorOptics, MixesTiltIntoYawByItsRollAsInEquationOne) {
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   p.roll_rad = 0.6 * kDegree;
   AutocollimatorOptics instrument(p, Mirror());
   const double g = p.roll_rad;
@@ -175,14 +175,14 @@ TEST(AutocollimatorOptics, MixesTiltIntoYawByItsRollAsInEquationOne) {
 }
 
 TEST(AutocollimatorOptics, HasAScaleErrorWhereTheFocalLengthIsNotTheNominalOne) {
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   p.focal_length_m = 1.002 * p.nominal_focal_length_m;
   const Vector2d read = ReadingOf(p, Mirror(), Pose(1e-3, 5e-4));
   EXPECT_LT((read - 1.002 * HalfTangents(1e-3, 5e-4)).norm(), kRounding_rad);
 }
 
 TEST(AutocollimatorOptics, EnlargesTheImageByDistortionWithTheSquareOfTheFieldAngle) {
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   p.distortion_per_rad2 = -20.0;
   const Vector2d ideal = HalfTangents(1.5e-3, -1e-3);
   const Vector2d read = ReadingOf(p, Mirror(), Pose(1.5e-3, -1e-3));
@@ -190,7 +190,7 @@ TEST(AutocollimatorOptics, EnlargesTheImageByDistortionWithTheSquareOfTheFieldAn
 }
 
 TEST(AutocollimatorOptics, OutOfFocusDependsOnTheDistanceOfTheMirror) {
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   p.defocus_m = 0.5e-3;  // so the beam shrinks on its way, by more than it walks aside
   AutocollimatorOptics instrument(p, Mirror());
   const double f = p.focal_length_m, a = 10.0 * kArcsec;
@@ -203,7 +203,7 @@ TEST(AutocollimatorOptics, OutOfFocusDependsOnTheDistanceOfTheMirror) {
 }
 
 TEST(AutocollimatorOptics, LosesWhatMissesASmallFlatMirrorButReadsTheSameAngle) {
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   p.pupil_rings = 40;
   Surface strip = Mirror();
   strip.half_x_m = 5e-3;
@@ -218,9 +218,9 @@ TEST(AutocollimatorOptics, LosesWhatMissesASmallFlatMirrorButReadsTheSameAngle) 
 }
 
 TEST(AutocollimatorOptics, LosesWhatComesBackBesideTheObjective) {
-  AutocollimatorOptics instrument(Example(), Mirror());
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   for (const double yaw : {0.0, 1.0, 100.0, 400.0}) {
-    const double a = yaw * kArcsec, q = 0.4 * std::tan(2.0 * a) / (2.0 * Example().aperture_radius_m);
+    const double a = yaw * kArcsec, q = 0.4 * std::tan(2.0 * a) / (2.0 * ExampleInstrument().aperture_radius_m);
     const double overlap = 2.0 / std::numbers::pi * (std::acos(q) - q * std::sqrt(1.0 - q * q));  // of two discs
     // The edge is in 52 pieces, each taken as the ring's part at its own azimuth.
     EXPECT_NEAR(instrument.Look(Pose(a, 0.0)).returned_fraction, overlap, 0.01 * (1.0 - overlap) + 1e-12) << yaw;
@@ -228,7 +228,7 @@ TEST(AutocollimatorOptics, LosesWhatComesBackBesideTheObjective) {
 }
 
 TEST(AutocollimatorOptics, SeesTheOtherSideOfACurvedMirrorWhenTheObjectiveCutsOffOne) {
-  AutocollimatorOptics instrument(Example(), Mirror(kSag_m));
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror(kSag_m));
   const double curvature = 8.0 * kSag_m / (kWidth_m * kWidth_m);
   for (const double yaw : {-400.0, -50.0, 200.0, 400.0}) {
     const double a = yaw * kArcsec, walk_m = 0.4 * std::tan(2.0 * a);
@@ -246,7 +246,7 @@ void CoverRightHalf(AutocollimatorOptics& instrument) {
 }
 
 TEST(AutocollimatorOptics, ReadsTheMeanNormalOfWhatItSeesOfACurvedMirror) {
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   p.pupil_rings = 40;
   AutocollimatorOptics instrument(p, Mirror(kSag_m));
   EXPECT_NEAR(Angles(instrument.Look(Pose(0.0, 0.0))).x(), 0.0, kRounding_rad);
@@ -260,7 +260,7 @@ TEST(AutocollimatorOptics, ReadsTheMeanNormalOfWhatItSeesOfACurvedMirror) {
 }
 
 TEST(AutocollimatorOptics, OutOfFocusReadsAHalfCoveredFlatMirrorWrong) {
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   p.pupil_rings = 40;
   p.defocus_m = 0.05e-3;
   AutocollimatorOptics instrument(p, Mirror());
@@ -276,9 +276,9 @@ TEST(AutocollimatorOptics, OutOfFocusReadsAHalfCoveredFlatMirrorWrong) {
 }
 
 TEST(AutocollimatorOptics, InterpolatesBetweenPixelsWithThePixelsPeriod) {
-  AutocollimatorParameters p = Example();
+  AutocollimatorParameters p = ExampleInstrument();
   p.interpolation_error_px = 0.03;
-  AutocollimatorOptics instrument(p, Mirror()), ideal(Example(), Mirror());
+  AutocollimatorOptics instrument(p, Mirror()), ideal(ExampleInstrument(), Mirror());
   const double period_rad = p.pixel_pitch_m / (2.0 * p.focal_length_m);
   for (double part = 0.0; part < 3.0; part += 0.125) {
     const Isometry3d X_LM = Pose(part * period_rad, -(part + 0.3) * period_rad);
@@ -291,7 +291,7 @@ TEST(AutocollimatorOptics, InterpolatesBetweenPixelsWithThePixelsPeriod) {
 }
 
 TEST(AutocollimatorOptics, ReadsNothingBeyondItsField) {
-  AutocollimatorOptics instrument(Example(), Mirror());
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   const double inside = 409.9 * kArcsec, outside = 410.1 * kArcsec;
   EXPECT_EQ(instrument.Look(Pose(inside, -inside)).status, AutocollimatorStatus::kOk);
   for (const Isometry3d& X_LM :
@@ -304,7 +304,7 @@ TEST(AutocollimatorOptics, ReadsNothingBeyondItsField) {
 }
 
 TEST(AutocollimatorOptics, ReadsNothingWithoutLight) {
-  AutocollimatorOptics instrument(Example(), Mirror());
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   const Isometry3d away = Pose(5.0 * kDegree, 0.0), back = Pose(std::numbers::pi, 0.0);
   const Isometry3d beside = Pose(0.0, 0.0, {0.0, 0.1, 0.0}), nearly_beside = Pose(0.0, 0.0, {0.0, 0.043, 0.0});
   for (const Isometry3d& X_LM : {away, back, beside, nearly_beside}) {
@@ -318,7 +318,7 @@ TEST(AutocollimatorOptics, ReadsNothingWithoutLight) {
 }
 
 TEST(AutocollimatorOptics, SeesNothingBehindAFixture) {
-  AutocollimatorOptics instrument(Example(), Mirror());
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   instrument.AddFixture(BoxMesh({-0.01, -0.02, -0.02}, {0.0, 0.02, 0.02}),
                         Isometry3d(Translation3d(-0.2, 0.05, 0.2)));
   EXPECT_EQ(instrument.Look(Pose(0.0, 0.0)).returned_fraction, 0.0);
@@ -344,7 +344,7 @@ TEST(AutocollimatorOptics, NamesWhatIsWrongWithItsParameters) {
       {"low_light_fraction", [nan](P& p) { p.low_light_fraction = nan; }},
       {"low_light_fraction", [](P& p) { p.low_light_fraction = 1.1; }}};
   for (const auto& [name, change] : cases) {
-    AutocollimatorParameters p = Example();
+    AutocollimatorParameters p = ExampleInstrument();
     change(p);
     EXPECT_THAT([&p] { AutocollimatorOptics instrument(p, Mirror()); },
                 testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr(name)));
@@ -352,9 +352,9 @@ TEST(AutocollimatorOptics, NamesWhatIsWrongWithItsParameters) {
 }
 
 TEST(AutocollimatorOptics, NamesWhatIsWrongWithTheMirrorOrItsPose) {
-  EXPECT_THAT([] { AutocollimatorOptics instrument(Example(), Surface{}); },
+  EXPECT_THAT([] { AutocollimatorOptics instrument(ExampleInstrument(), Surface{}); },
               testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("aperture")));
-  AutocollimatorOptics instrument(Example(), Mirror());
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   Isometry3d nowhere = Pose(0.0, 0.0);
   nowhere.translation().z() = std::numeric_limits<double>::infinity();
   EXPECT_THAT([&] { instrument.Look(nowhere); },

@@ -17,6 +17,11 @@ inline PsdParameters ExamplePsd() {
   return psd;
 }
 
+/// A detector's window; its faces are parallel unless a wedge is given.
+inline Window Glass(double wedge_rad = 0.0) {
+  return {.thickness_m = 1e-3, .index = 1.5145, .gap_m = 1e-3, .reflectance = 0.042, .wedge_rad = wedge_rad};
+}
+
 /// The reference rotary bench: 650 nm, 600 lines/mm, detectors at 120 mm.
 inline RotaryOpticsParameters ExampleBench() {
   RotaryOpticsParameters p;

@@ -42,10 +42,6 @@ std::vector<Deposit> Select(const std::vector<Deposit>& all, int detector, int o
   return some;
 }
 
-Window Glass() {
-  return {.thickness_m = 1e-3, .index = 1.5145, .gap_m = 1e-3, .reflectance = 0.042, .wedge_rad = 0.0};
-}
-
 TEST(TraceGhosts, WithoutReflectionsLeavesOneDirectSpotPerDetector) {
   const std::vector<Deposit> all = Set().Trace();
   ASSERT_EQ(all.size(), 2u);

@@ -193,7 +193,7 @@ TEST(Diffract, DoesNotCareWhichWayTheNormalPoints) {
   EXPECT_EQ(a.direction, b.direction);
 }
 
-Grating Example() {
+Grating ExampleGrating() {
   return {.lines_per_m = 600e3,
           .width_m = 0.025,
           .height_m = 0.025,
@@ -222,7 +222,7 @@ TEST(Efficiencies, OfAHalfAndHalfLamellarGratingHaveNoEvenOrders) {
 }
 
 TEST(Efficiencies, NeverExceedTheReflectanceAndVanishForEvanescentOrders) {
-  const Grating grating = Example();
+  const Grating grating = ExampleGrating();
   std::mt19937_64 random(5);
   for (int i = 0; i < 300; ++i) {
     Vector3d d_G = RandomUnit(random);
@@ -238,7 +238,7 @@ TEST(Efficiencies, NeverExceedTheReflectanceAndVanishForEvanescentOrders) {
 }
 
 TEST(Efficiencies, GiveThePowerOfAnEvanescentOrderToTheOthers) {
-  const Grating grating = Example();
+  const Grating grating = ExampleGrating();
   const double tabulated = grating.table[0].orders.Sum();
   const Vector3d oblique(std::sin(kPi / 6), -std::cos(kPi / 6), 0.0);  // order 2 gone: 0.5 + 0.78 > 1
   const OrderEfficiencies orders = EfficienciesAt(grating, 650e-9, oblique);
@@ -247,7 +247,7 @@ TEST(Efficiencies, GiveThePowerOfAnEvanescentOrderToTheOthers) {
 }
 
 TEST(Efficiencies, FollowTheTableInIncidence) {
-  Grating grating = Example();
+  Grating grating = ExampleGrating();
   grating.reflectance = 1.0;
   grating.table = {{-0.1, {-1, {0.2, 0.1, 0.4}}}, {0.1, {-1, {0.4, 0.1, 0.2}}}};
   const Vector3d d_G(0.05, -std::sqrt(1 - 0.05 * 0.05), 0.0);
@@ -257,7 +257,7 @@ TEST(Efficiencies, FollowTheTableInIncidence) {
 
 TEST(Grating, RefusesWhatIsMissing) {
   EXPECT_THROW(Validate(Grating{}), std::invalid_argument);
-  Grating grating = Example();
+  Grating grating = ExampleGrating();
   grating.table[0].orders.share[0] = -0.1;
   EXPECT_THROW(Validate(grating), std::invalid_argument);
 }

@@ -16,7 +16,7 @@ std::string TemporaryFile(const std::string& name) {
   return ::testing::TempDir() + "twinbench_optics_" + name;
 }
 
-IrradianceMap Spot(const std::string& name, double u_m, double v_m) {
+IrradianceMap SpotMap(const std::string& name, double u_m, double v_m) {
   IrradianceMap map;
   map.name = name;
   map.width = 200;
@@ -37,7 +37,7 @@ IrradianceMap Spot(const std::string& name, double u_m, double v_m) {
 
 TEST(IrradianceMaps, ComeBackFromTheirFile) {
   const std::string path = TemporaryFile("round_trip.exr");
-  const std::vector<IrradianceMap> written = {Spot("psd.p1", 12e-6, -7e-6), Spot("psd.m1", -100e-6, 30e-6)};
+  const std::vector<IrradianceMap> written = {SpotMap("psd.p1", 12e-6, -7e-6), SpotMap("psd.m1", -100e-6, 30e-6)};
   WriteIrradianceMaps(path, written);
   const std::vector<IrradianceMap> read = ReadIrradianceMaps(path);
   ASSERT_EQ(read.size(), 2u);
@@ -58,7 +58,7 @@ TEST(IrradianceMaps, ComeBackFromTheirFile) {
 }
 
 TEST(IrradianceMaps, HavePositiveVAtTheTop) {
-  const IrradianceMap map = Spot("psd", 0.0, 0.4e-3);
+  const IrradianceMap map = SpotMap("psd", 0.0, 0.4e-3);
   EXPECT_GT(map.At(20, 100), map.At(100, 100));
   EXPECT_NEAR(map.V(0), 0.595e-3, 1e-18);
   EXPECT_GT(Centroid(map).v_m, 0.3e-3);
@@ -83,7 +83,7 @@ TEST(IrradianceMaps, NameTheFileThatCannotBeRead) {
 
 TEST(IrradianceMaps, NameTheFileThatIsCutShort) {
   const std::string path = TemporaryFile("short.exr");
-  WriteIrradianceMaps(path, {Spot("psd", 0, 0)});
+  WriteIrradianceMaps(path, {SpotMap("psd", 0, 0)});
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   EXPECT_THAT(MessageOfReading(path), HasSubstr(path));
   std::filesystem::remove(path);
@@ -91,7 +91,7 @@ TEST(IrradianceMaps, NameTheFileThatIsCutShort) {
 
 TEST(IrradianceMaps, RefuseNegativeLight) {
   const std::string path = TemporaryFile("negative.exr");
-  IrradianceMap map = Spot("psd", 0, 0);
+  IrradianceMap map = SpotMap("psd", 0, 0);
   map.irradiance_W_m2[77] = -1.0f;
   WriteIrradianceMaps(path, {map});
   EXPECT_THAT(MessageOfReading(path), HasSubstr("negative"));
@@ -99,8 +99,8 @@ TEST(IrradianceMaps, RefuseNegativeLight) {
 }
 
 TEST(IrradianceMaps, CannotBeWrittenWhereThereIsNoFolder) {
-  EXPECT_THROW(WriteIrradianceMaps("/nowhere/at/all.exr", {Spot("psd", 0, 0)}), std::runtime_error);
-  EXPECT_THROW(WriteIrradianceMaps(TemporaryFile("x.exr"), {Spot("a", 0, 0), Spot("a", 0, 0)}),
+  EXPECT_THROW(WriteIrradianceMaps("/nowhere/at/all.exr", {SpotMap("psd", 0, 0)}), std::runtime_error);
+  EXPECT_THROW(WriteIrradianceMaps(TemporaryFile("x.exr"), {SpotMap("a", 0, 0), SpotMap("a", 0, 0)}),
                std::invalid_argument);
 }
 

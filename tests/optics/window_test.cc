@@ -14,10 +14,6 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Window Glass(double wedge_rad = 0.0) {
-  return {.thickness_m = 1e-3, .index = 1.5145, .gap_m = 1e-3, .reflectance = 0.042, .wedge_rad = wedge_rad};
-}
-
 /// Largest centroid shift over all phases of the interference.
 double LargestShift_um(double wedge_arcsec, double reflectance, double sigma_m) {
   Window window = Glass(wedge_arcsec * kArcsec);

@@ -49,13 +49,13 @@ Coverage CoverageOf(Comparison bench) {
 }
 
 // Small errors, so that error x slope does not count: 5 arcsec x 5e-5.
-const std::vector<test::Wave> kDevice = {{1, 5.0, 0.4}, {5, 3.0, 1.0}}, kReference = {{1, 4.0, -1.0}};
+const std::vector<test::Wave> kSmallDevice = {{1, 5.0, 0.4}, {5, 3.0, 1.0}}, kSmallReference = {{1, 4.0, -1.0}};
 
 // Of 35 orders' chi-squared over 200 seeds the mean has a standard deviation of 0.02, one order's (2 parts) 0.07.
 // The uncertainty is from 12 degrees of freedom for order 1 with one mounting: 1 / F has the mean 12 / 10 there.
 
 TEST(SeparateDeviceUncertainty, CoversWhiteNoiseWithOneMounting) {
-  const Coverage c = CoverageOf({.device = kDevice, .noise_arcsec = 7.0});
+  const Coverage c = CoverageOf({.device = kSmallDevice, .noise_arcsec = 7.0});
   EXPECT_NEAR(c.device, 1.0, 0.15);
   EXPECT_NEAR(c.first_order, 1.2, 0.35);
   // Pooled from two degrees of freedom, but never below the readings' noise.
@@ -63,8 +63,8 @@ TEST(SeparateDeviceUncertainty, CoversWhiteNoiseWithOneMounting) {
 }
 
 TEST(SeparateDeviceUncertainty, CoversDeviceAndReferenceWithThreeMountings) {
-  const Coverage c = CoverageOf({.device = kDevice,
-                                 .reference = kReference,
+  const Coverage c = CoverageOf({.device = kSmallDevice,
+                                 .reference = kSmallReference,
                                  .mounting_rad = {0.0, 100.0 * deg, 215.0 * deg},
                                  .noise_arcsec = 7.0});
   EXPECT_NEAR(c.device, 1.0, 0.15);
@@ -72,13 +72,13 @@ TEST(SeparateDeviceUncertainty, CoversDeviceAndReferenceWithThreeMountings) {
 }
 
 TEST(SeparateDeviceUncertainty, CoversASingleTurnByTheResidualsOfItsFit) {
-  const Coverage c = CoverageOf({.device = kDevice, .passes = {1, -1}, .turns = 1.0, .noise_arcsec = 7.0});
+  const Coverage c = CoverageOf({.device = kSmallDevice, .passes = {1, -1}, .turns = 1.0, .noise_arcsec = 7.0});
   EXPECT_NEAR(c.device, 1.0, 0.15);
 }
 
 TEST(SeparateDeviceUncertainty, CoversAZeroThatWandersFromReadingToReading) {
   // A random walk of 1 arcsec a reading beside white noise: 12 arcsec in two turns, mostly in the low orders.
-  Comparison bench{.device = kDevice, .noise_arcsec = 1.0};
+  Comparison bench{.device = kSmallDevice, .noise_arcsec = 1.0};
   Stream stream(5, "test.walk");
   std::vector<double> walk;
   bench.drift_arcsec = [&](int i, int) {

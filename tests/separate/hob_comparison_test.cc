@@ -7,7 +7,7 @@
 namespace twinbench::separate::hob {
 namespace {
 
-HobMachine Machine() {
+HobMachine NoisyMachine() {
   return {.transmission = {{1, 10.0, -2.0}, {2, 1.0, 0.5}, {22, 2.0, -1.0}, {44, 0.8, 2.0}},
           .encoder = {{1, 5.8, 2.72}, {2, 0.4, 1.0}},
           .noise_arcsec = 0.5,
@@ -29,7 +29,7 @@ Results Evaluate(const std::vector<HobSample>& samples, int max_order = 60) {
 }
 
 TEST(CompareTransmission, AgreesInTheLinesOfTableAndHob) {
-  const Results r = Evaluate(Samples(Machine(), Heads({0.0, 100.0, 223.0})));
+  const Results r = Evaluate(Samples(NoisyMachine(), Heads({0.0, 100.0, 223.0})));
   const auto lines = CompareTransmission(r.separation, 1, r.transmission);
   ASSERT_EQ(lines.size(), 3u);
   for (const OrderComparison& c : lines) {
@@ -37,14 +37,14 @@ TEST(CompareTransmission, AgreesInTheLinesOfTableAndHob) {
     EXPECT_LT(c.normalised_error, 1.5) << c.order;  // 1 is exceeded once in 20
     EXPECT_NEAR(c.amplitude_difference_rad / c.u_amplitude_difference_rad, 0.0, 3.5);
     EXPECT_NEAR(c.phase_difference_rad / c.u_phase_difference_rad, 0.0, 3.5);
-    EXPECT_LT(DistanceArcsec(c.reference.value, CoefficientOf(Machine().transmission, c.order)), 0.03);  // u: 0.003
+    EXPECT_LT(DistanceArcsec(c.reference.value, CoefficientOf(NoisyMachine().transmission, c.order)), 0.03);  // u: 0.003
   }
   EXPECT_THAT(FindLines(r.transmission), testing::ElementsAre(1, 2, 22, 44));
 }
 
 TEST(CompareEncoder, ShowsTheAmplitudeAndPhaseOfThePapersFigure8) {
   const Results r = Evaluate(
-      Samples(Machine(), {{0, 25.0, 1, 0, 3}, {0, 25.0, -1, 1, 3}, {1, 205.0, 1, 0, 3}, {1, 205.0, -1, 1, 3}}));
+      Samples(NoisyMachine(), {{0, 25.0, 1, 0, 3}, {0, 25.0, -1, 1, 3}, {1, 205.0, 1, 0, 3}, {1, 205.0, -1, 1, 3}}));
   const auto one = CompareEncoder(r.separation, r.encoder);
   ASSERT_EQ(one.size(), 1u);
   EXPECT_NEAR(Amplitude(one[0].reference) / kArcsec, 5.8, 0.03);  // u: 0.5 sqrt(2 / 17280) = 0.005
@@ -53,17 +53,17 @@ TEST(CompareEncoder, ShowsTheAmplitudeAndPhaseOfThePapersFigure8) {
 }
 
 TEST(CompareTransmission, SaysThatASumStillHoldsTheEncodersShare) {
-  const Results r = Evaluate(Samples(Machine(), Heads({0.0, 180.0})));
+  const Results r = Evaluate(Samples(NoisyMachine(), Heads({0.0, 180.0})));
   const auto two = CompareTransmission(r.separation, 1, r.transmission, {2});
   ASSERT_EQ(two.size(), 1u);
   EXPECT_EQ(two[0].status, OrderStatus::kSumOnly);
   EXPECT_GT(two[0].normalised_error, 5.0);  // 0.4 arcsec of the encoder, u = 0.01 arcsec
-  EXPECT_LT(DistanceArcsec(two[0].difference.value, CoefficientOf(Machine().encoder, 2)), 0.05);
+  EXPECT_LT(DistanceArcsec(two[0].difference.value, CoefficientOf(NoisyMachine().encoder, 2)), 0.05);
   EXPECT_THAT(CompareEncoder(r.separation, r.encoder, {2}), testing::IsEmpty());  // nothing to compare with
 }
 
 TEST(CompareOrders, StatesTheScatterOfTheDifferences) {
-  HobMachine machine = Machine();
+  HobMachine machine = NoisyMachine();
   machine.samples_per_turn = 150;
   constexpr int kRuns = 200;
   double amplitude2 = 0.0, phase2 = 0.0;
@@ -79,13 +79,13 @@ TEST(CompareOrders, StatesTheScatterOfTheDifferences) {
 }
 
 TEST(CompareOrders, LeavesOutOrdersThatOneSideDoesNotHave) {
-  const Results r = Evaluate(Samples(Machine(), Heads({0.0, 100.0})));
+  const Results r = Evaluate(Samples(NoisyMachine(), Heads({0.0, 100.0})));
   EXPECT_THAT(CompareTransmission(r.separation, 1, r.transmission, {0, 1, 88}), testing::SizeIs(1));
   EXPECT_THAT(CompareTransmission(r.separation, 1, HarmonicSeries{}), testing::IsEmpty());
 }
 
 TEST(TransmissionByInterferometer, IsEmptyWithoutAnInterferometer) {
-  HobMachine machine = Machine();
+  HobMachine machine = NoisyMachine();
   machine.interferometer = false;
   const auto positions = MeasurePositions(Samples(machine, Heads({0.0})), OrdersUpTo(60), Signal::kInterferometer);
   EXPECT_TRUE(positions.empty());

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "tests/support/rotary_scenario.h"
+#include "tests/sim/quiet_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
@@ -21,12 +21,6 @@ const double kCosTheta = std::sqrt(1.0 - kSinTheta * kSinTheta);
 const double kYaw_m = kL1_m * (1.0 + 1.0 / kCosTheta);
 const double kTilt_m = kL1_m * (1.0 + kCosTheta);
 constexpr double kV_m = 2000.0;
-
-Scenario Quiet() {
-  Scenario scenario = test::RotaryScenario();
-  scenario.noise_free = true;
-  return scenario;
-}
 
 /// An effect block as the loader would fill it: the catalogue's defaults with these values on top.
 EffectSettings Effect(const std::string& name, const std::string& where, std::map<std::string, double> values) {

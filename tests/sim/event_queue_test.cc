@@ -14,7 +14,7 @@
 namespace twinbench::sim {
 namespace {
 
-Time At(std::int64_t ns) {
+Time AtNs(std::int64_t ns) {
   return Time(Duration(ns));
 }
 
@@ -22,7 +22,7 @@ TEST(EventQueue, RunsEventsInTheOrderOfTheirTime) {
   EventQueue queue;
   std::vector<std::int64_t> seen;
   for (const std::int64_t ns : {30, 10, 20})
-    queue.At(At(ns), [&] { seen.push_back(queue.Now().time_since_epoch().count()); });
+    queue.At(AtNs(ns), [&] { seen.push_back(queue.Now().time_since_epoch().count()); });
   while (queue.RunOne()) continue;
   EXPECT_EQ(seen, (std::vector<std::int64_t>{10, 20, 30}));
 }
@@ -30,8 +30,8 @@ TEST(EventQueue, RunsEventsInTheOrderOfTheirTime) {
 TEST(EventQueue, KeepsTheOrderOfAdditionAtEqualTimes) {
   EventQueue queue;
   std::vector<int> seen;
-  for (int i = 0; i < 1000; ++i) queue.At(At(5), [&seen, i] { seen.push_back(i); });
-  queue.RunUntil(At(5));
+  for (int i = 0; i < 1000; ++i) queue.At(AtNs(5), [&seen, i] { seen.push_back(i); });
+  queue.RunUntil(AtNs(5));
   ASSERT_EQ(seen.size(), 1000u);
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(seen[static_cast<std::size_t>(i)], i);
 }
@@ -39,57 +39,57 @@ TEST(EventQueue, KeepsTheOrderOfAdditionAtEqualTimes) {
 TEST(EventQueue, RunsAnEventThatIsAddedForNowAfterThoseThatWait) {
   EventQueue queue;
   std::string seen;
-  queue.At(At(5), [&] {
+  queue.At(AtNs(5), [&] {
     seen += 'a';
     queue.After(Duration(0), [&] { seen += 'c'; });
   });
-  queue.At(At(5), [&] { seen += 'b'; });
-  queue.RunUntil(At(5));
+  queue.At(AtNs(5), [&] { seen += 'b'; });
+  queue.RunUntil(AtNs(5));
   EXPECT_EQ(seen, "abc");
 }
 
 TEST(EventQueue, StopsTheClockWhereItIsTold) {
   EventQueue queue;
   int n = 0;
-  queue.At(At(10), [&] { ++n; });
-  queue.At(At(11), [&] { ++n; });
-  queue.RunUntil(At(10));
+  queue.At(AtNs(10), [&] { ++n; });
+  queue.At(AtNs(11), [&] { ++n; });
+  queue.RunUntil(AtNs(10));
   EXPECT_EQ(n, 1);
-  EXPECT_EQ(queue.Now(), At(10));
+  EXPECT_EQ(queue.Now(), AtNs(10));
   EXPECT_EQ(queue.Pending(), 1u);
-  queue.RunUntil(At(1000));
+  queue.RunUntil(AtNs(1000));
   EXPECT_EQ(n, 2);
-  EXPECT_EQ(queue.Now(), At(1000));
+  EXPECT_EQ(queue.Now(), AtNs(1000));
 }
 
 TEST(EventQueue, RefusesThePast) {
   EventQueue queue;
-  queue.RunUntil(At(100));
-  EXPECT_THROW(queue.At(At(99), [] {}), std::logic_error);
+  queue.RunUntil(AtNs(100));
+  EXPECT_THROW(queue.At(AtNs(99), [] {}), std::logic_error);
   EXPECT_THROW(queue.After(Duration(-1), [] {}), std::logic_error);
   EXPECT_THROW(queue.After(Duration::max(), [] {}), std::logic_error);
-  EXPECT_THROW(queue.RunUntil(At(99)), std::logic_error);
+  EXPECT_THROW(queue.RunUntil(AtNs(99)), std::logic_error);
   EXPECT_EQ(queue.Pending(), 0u);
 }
 
 TEST(EventQueue, DoesNotRunACancelledEvent) {
   EventQueue queue;
   int n = 0;
-  const EventId id = queue.At(At(10), [&] { ++n; });
+  const EventId id = queue.At(AtNs(10), [&] { ++n; });
   EXPECT_TRUE(queue.Cancel(id));
   EXPECT_EQ(queue.Pending(), 0u);
   EXPECT_FALSE(queue.Cancel(id));
   EXPECT_FALSE(queue.RunOne());
   EXPECT_EQ(n, 0);
-  EXPECT_EQ(queue.Now(), At(0));
+  EXPECT_EQ(queue.Now(), AtNs(0));
 }
 
 TEST(EventQueue, DoesNotMistakeANewEventForAnOldOneInTheSameSlot) {
   EventQueue queue;
   int n = 0;
-  const EventId old_id = queue.At(At(10), [] {});
+  const EventId old_id = queue.At(AtNs(10), [] {});
   queue.RunOne();
-  const EventId new_id = queue.At(At(20), [&] { ++n; });
+  const EventId new_id = queue.At(AtNs(20), [&] { ++n; });
   ASSERT_EQ(old_id.slot, new_id.slot);
   EXPECT_FALSE(queue.Cancel(old_id));
   EXPECT_FALSE(queue.Cancel(EventId{}));
@@ -101,7 +101,7 @@ TEST(EventQueue, CannotCancelTheEventThatIsRunning) {
   EventQueue queue;
   EventId id;
   bool cancelled = true;
-  id = queue.At(At(1), [&] { cancelled = queue.Cancel(id); });
+  id = queue.At(AtNs(1), [&] { cancelled = queue.Cancel(id); });
   queue.RunOne();
   EXPECT_FALSE(cancelled);
 }
@@ -109,21 +109,21 @@ TEST(EventQueue, CannotCancelTheEventThatIsRunning) {
 TEST(EventQueue, GoesOnAfterAnExceptionInACallback) {
   EventQueue queue;
   int n = 0;
-  queue.At(At(1), [] { throw std::runtime_error("device lost"); });
-  queue.At(At(2), [&] { ++n; });
-  EXPECT_THROW(queue.RunUntil(At(5)), std::runtime_error);
-  EXPECT_EQ(queue.Now(), At(1));
+  queue.At(AtNs(1), [] { throw std::runtime_error("device lost"); });
+  queue.At(AtNs(2), [&] { ++n; });
+  EXPECT_THROW(queue.RunUntil(AtNs(5)), std::runtime_error);
+  EXPECT_EQ(queue.Now(), AtNs(1));
   EXPECT_EQ(queue.Pending(), 1u);
-  queue.RunUntil(At(5));
+  queue.RunUntil(AtNs(5));
   EXPECT_EQ(n, 1);
 }
 
 TEST(EventQueue, RunsUntilAConditionFailsOrNothingIsLeft) {
   EventQueue queue;
   int n = 0;
-  for (int i = 1; i <= 5; ++i) queue.At(At(i), [&] { ++n; });
+  for (int i = 1; i <= 5; ++i) queue.At(AtNs(i), [&] { ++n; });
   EXPECT_TRUE(queue.RunWhile([&] { return n < 3; }));
-  EXPECT_EQ(queue.Now(), At(3));
+  EXPECT_EQ(queue.Now(), AtNs(3));
   EXPECT_FALSE(queue.RunWhile([&] { return n < 9; }));
   EXPECT_EQ(n, 5);
 }
@@ -131,24 +131,24 @@ TEST(EventQueue, RunsUntilAConditionFailsOrNothingIsLeft) {
 TEST(EventQueue, MayBeRunFromInsideAnEvent) {
   EventQueue queue;
   std::string seen;
-  queue.At(At(1), [&] {
+  queue.At(AtNs(1), [&] {
     seen += 'a';
-    queue.RunUntil(At(20));
+    queue.RunUntil(AtNs(20));
     seen += 'c';
   });
-  queue.At(At(15), [&] { seen += 'b'; });
-  queue.RunUntil(At(10));
+  queue.At(AtNs(15), [&] { seen += 'b'; });
+  queue.RunUntil(AtNs(10));
   EXPECT_EQ(seen, "abc");
-  EXPECT_EQ(queue.Now(), At(20));  // never back to 10
+  EXPECT_EQ(queue.Now(), AtNs(20));  // never back to 10
 }
 
 TEST(EventQueue, DestroysCapturesWhenTheyAreNoLongerNeeded) {
   const auto token = std::make_shared<int>(0);
   {
     EventQueue queue;
-    const EventId cancelled = queue.At(At(1), [token] {});
-    queue.At(At(2), [token] {});
-    queue.At(At(3), [token] {});
+    const EventId cancelled = queue.At(AtNs(1), [token] {});
+    queue.At(AtNs(2), [token] {});
+    queue.At(AtNs(3), [token] {});
     EXPECT_EQ(token.use_count(), 4);
     queue.Cancel(cancelled);
     EXPECT_EQ(token.use_count(), 3);
@@ -165,7 +165,7 @@ TEST(EventQueue, TakesMoveOnlyAndLargeCaptures) {
   large[99] = 7;
   queue.After(Duration(1), [&sum, p = std::make_unique<int>(5)] { sum += *p; });
   queue.After(Duration(1), [&sum, large] { sum += large[99]; });
-  queue.RunUntil(At(1));
+  queue.RunUntil(AtNs(1));
   EXPECT_EQ(sum, 12);
 }
 

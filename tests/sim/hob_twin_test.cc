@@ -25,7 +25,7 @@ Scenario QuietMachine() {
   return s;
 }
 
-std::vector<Reading> Readings(const Scenario& scenario) {
+std::vector<Reading> HobReadings(const Scenario& scenario) {
   return test::RunHob(scenario).readings;
 }
 
@@ -42,7 +42,7 @@ std::vector<double> Differences_arcsec(const std::vector<Reading>& readings, dou
 }
 
 TEST(HobTwin, KeepsOneSampleAtEveryHundredthLineOfTheTablesEncoder) {
-  const auto readings = Readings(QuietMachine());
+  const auto readings = HobReadings(QuietMachine());
   ASSERT_EQ(readings.size(), 360u);
   for (std::size_t i = 1; i < 180; ++i)
     EXPECT_NEAR(readings[i].measured_rad - readings[i - 1].measured_rad, 2.0 * deg, 1e-12);
@@ -54,7 +54,7 @@ TEST(HobTwin, KeepsOneSampleAtEveryHundredthLineOfTheTablesEncoder) {
 
 TEST(HobTwin, WithoutErrorsBothEncodersKeepTheRatio) {
   const Scenario s = QuietMachine();
-  for (const double m_arcsec : Differences_arcsec(Readings(s), s.transmission.Ratio()))
+  for (const double m_arcsec : Differences_arcsec(HobReadings(s), s.transmission.Ratio()))
     EXPECT_NEAR(m_arcsec, 0.0, 1e-6);
 }
 
@@ -62,7 +62,7 @@ TEST(HobTwin, ShowsTheTransmissionErrorByTheTablesAngle) {
   Scenario s = QuietMachine();
   s.hob_procedure.passes = {1};
   s.transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
-  const auto readings = Readings(s);
+  const auto readings = HobReadings(s);
   const auto m_arcsec = Differences_arcsec(readings, s.transmission.Ratio());
   for (std::size_t i = 0; i < m_arcsec.size(); ++i)
     EXPECT_NEAR(m_arcsec[i], 7.0 * std::cos(3.0 * readings[i].measured_rad + 0.5), 1e-3);
@@ -72,18 +72,18 @@ TEST(HobTwin, InterferometerSeesTheMachineAndNotTheEncoder) {
   Scenario s = QuietMachine();
   s.transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
   s.table_encoder.eccentricity_m = 3e-6;
-  for (const Reading& r : Readings(s))
+  for (const Reading& r : HobReadings(s))
     EXPECT_NEAR(r.interferometer_rad / arcsec, 7.0 * std::cos(3.0 * r.measured_rad + 0.5), 1e-2)
         << "the encoder's 6 arcsec move the angle, 3 x 7 arcsec x 3e-5";
 }
 
 TEST(HobTwin, InterferometerSeesWhatTheTableDoesAndNotWhatItsCountersGetWrong) {
   const Scenario s = QuietMachine();
-  const auto clean = Readings(s);
+  const auto clean = HobReadings(s);
   const auto seen_arcsec = [&](const EffectSettings& effect) {
     Scenario with = s;
     with.effects = {effect};
-    return (Readings(with).at(100).interferometer_rad - clean.at(100).interferometer_rad) / arcsec;
+    return (HobReadings(with).at(100).interferometer_rad - clean.at(100).interferometer_rad) / arcsec;
   };
   EXPECT_NEAR(seen_arcsec({"hysteresis", "", {{"lag", 5.0 * arcsec}, {"settles_over", 5.0 * deg}}, ""}), -5.0, 1e-6);
   EXPECT_NEAR(seen_arcsec({"latency", "", {{"delay", 1e-3}}, ""}), 0.0, 1e-9);
@@ -92,7 +92,7 @@ TEST(HobTwin, InterferometerSeesWhatTheTableDoesAndNotWhatItsCountersGetWrong) {
 
 /// Order 1 of what one head sees.
 std::complex<double> OrderOne_arcsec(const Scenario& s) {
-  const auto readings = Readings(s);
+  const auto readings = HobReadings(s);
   const auto m_arcsec = Differences_arcsec(readings, s.transmission.Ratio());
   std::complex<double> sum = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i)
@@ -115,18 +115,18 @@ TEST(HobTwin, EncodersErrorMovesWithItsHead) {
 TEST(HobTwin, CountsFromTheMarkIfToldSo) {
   Scenario s = QuietMachine();
   s.hob_procedure.heads_rad = {50.0 * deg};
-  const auto from_origin = Readings(s);
+  const auto from_origin = HobReadings(s);
   s.hob_procedure.encoder_zero = "reference_mark";
-  const auto from_mark = Readings(s);
+  const auto from_mark = HobReadings(s);
   EXPECT_NEAR(from_origin[0].measured_rad - from_mark[0].measured_rad, 50.0 * deg, 1e-12);
 }
 
 TEST(HobTwin, BulletAgreesWithTheKinematicChainOnSlowErrors) {
   Scenario s = QuietMachine();
   s.transmission.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.0}, {Component::kEz, 22.0, 2.0 * arcsec, 1.0}};
-  const auto kinematic = Differences_arcsec(Readings(s), s.transmission.Ratio());
+  const auto kinematic = Differences_arcsec(HobReadings(s), s.transmission.Ratio());
   s.mechanics.fidelity = "bullet";
-  const auto bullet = Differences_arcsec(Readings(s), s.transmission.Ratio());
+  const auto bullet = Differences_arcsec(HobReadings(s), s.transmission.Ratio());
   // Order 22 is 0.83 Hz against a torsional mode of 80 Hz: (0.83 / 80)^2 = 1e-4 of 2 arcsec.
   for (std::size_t i = 0; i < bullet.size(); ++i) EXPECT_NEAR(bullet[i], kinematic[i], 0.02) << i;
 }
@@ -136,7 +136,7 @@ TEST(HobTwin, EndsWithAFaultWhenTheFifoRunsFull) {
   s.hob_procedure.fifo_samples = 4;
   s.hob_procedure.poll_s = 2.0;  // 14 samples come meanwhile
   try {
-    Readings(s);
+    HobReadings(s);
     FAIL() << "no fault";
   } catch (const DeviceFault& fault) {
     EXPECT_EQ(fault.kind(), FaultKind::kOverrun);
@@ -147,9 +147,9 @@ TEST(HobTwin, GivesTheSameBitsForTheSameSeed) {
   Scenario s = QuietMachine();
   s.noise_free = false;
   s.table_encoder.noise_rad = 0.3 * arcsec;
-  const auto a = Readings(s), b = Readings(s);
+  const auto a = HobReadings(s), b = HobReadings(s);
   s.seed = 2;
-  const auto other = Readings(s);
+  const auto other = HobReadings(s);
   int differ = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].measured_rad, b[i].measured_rad);
@@ -161,11 +161,11 @@ TEST(HobTwin, GivesTheSameBitsForTheSameSeed) {
 
 TEST(HobTwin, HasEveryEffectOfTheCatalogueAndEachChangesTheReadings) {
   const Scenario s = QuietMachine();
-  const auto clean = Readings(s);
+  const auto clean = HobReadings(s);
   for (const EffectEntry& entry : EffectCatalogue(kHobBench)) {
     Scenario with = s;
     with.effects = {test::PlainEffect(entry)};
-    const auto disturbed = Readings(with);
+    const auto disturbed = HobReadings(with);
     double largest_rad = 0.0;
     for (std::size_t i = 0; i < clean.size(); ++i)
       largest_rad = std::max({largest_rad, std::abs(disturbed[i].measured_rad - clean[i].measured_rad),

@@ -26,7 +26,7 @@ Scenario QuietTurntable() {
   return s;
 }
 
-std::vector<Reading> Readings(const Scenario& scenario) {
+std::vector<Reading> TurntableReadings(const Scenario& scenario) {
   return test::RunTurntable(scenario).readings;
 }
 
@@ -45,7 +45,7 @@ TEST(TurntableTwin, ReadsTheIndexErrorOfTheTurntablePlusThatOfTheTooth) {
   s.target.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
   s.reference.harmonics = {{Component::kEz, 3.0, 2.0 * arcsec, 1.0}};
   s.turntable_procedure.shifts = {30};  // teeth
-  for (const Reading& r : Readings(s)) {
+  for (const Reading& r : TurntableReadings(s)) {
     const double turntable_rad = r.position * 30.0 * deg, tooth_rad = 30.0 * deg - turntable_rad;
     EXPECT_NEAR(r.target_rad, turntable_rad, 1e-12);
     EXPECT_NEAR(r.reference_rad, tooth_rad, 1e-12);
@@ -59,7 +59,7 @@ TEST(TurntableTwin, ShowsATiltOfTheMultitoothTableOnceATurnInY) {
   Scenario s = QuietTurntable();
   s.turntable_procedure.tilts_rad = {100.0 * arcsec};
   s.turntable_procedure.tilt_azimuths_rad = {40.0 * deg};
-  for (const Reading& r : Readings(s)) {
+  for (const Reading& r : TurntableReadings(s)) {
     // The axis leans towards the azimuth, so the normal of a mirror that faces that way looks down.
     const double azimuth_rad = 40.0 * deg + r.target_rad;
     EXPECT_NEAR(Y_arcsec(r), -100.0 * std::sin(azimuth_rad), 2.0 * kTangent_arcsec) << r.position;
@@ -72,7 +72,7 @@ TEST(TurntableTwin, RolledCrosshairMixesTiltIntoX) {
   s.turntable_procedure.tilts_rad = {100.0 * arcsec};
   s.collimator.roll_rad = 0.6 * deg;
   double largest_arcsec = 0.0;
-  for (const Reading& r : Readings(s)) {
+  for (const Reading& r : TurntableReadings(s)) {
     EXPECT_NEAR(X_arcsec(r), Y_arcsec(r) * std::tan(0.6 * deg), 0.03) << "x' = (x + y' sin g) / cos g";
     largest_arcsec = std::max(largest_arcsec, std::abs(X_arcsec(r)));
   }
@@ -82,7 +82,7 @@ TEST(TurntableTwin, RolledCrosshairMixesTiltIntoX) {
 TEST(TurntableTwin, EccentricityChangesNothingOnAFlatMirror) {
   Scenario s = QuietTurntable();
   s.turntable_procedure.eccentricities_m = {1e-3};
-  for (const Reading& r : Readings(s)) EXPECT_NEAR(X_arcsec(r), 0.0, 1e-6);
+  for (const Reading& r : TurntableReadings(s)) EXPECT_NEAR(X_arcsec(r), 0.0, 1e-6);
 }
 
 TEST(TurntableTwin, EccentricityWalksTheBeamOverAMirrorThatIsNotFlat) {
@@ -90,7 +90,7 @@ TEST(TurntableTwin, EccentricityWalksTheBeamOverAMirrorThatIsNotFlat) {
   s.turntable_procedure.eccentricities_m = {1e-3};
   s.mirror.flatness_m = 79e-9;
   double largest_arcsec = 0.0;
-  for (const Reading& r : Readings(s)) largest_arcsec = std::max(largest_arcsec, std::abs(X_arcsec(r)));
+  for (const Reading& r : TurntableReadings(s)) largest_arcsec = std::max(largest_arcsec, std::abs(X_arcsec(r)));
   EXPECT_NEAR(largest_arcsec, 0.036, 0.001) << "8 h dL rho / H^2 of the paper";
 }
 
@@ -98,7 +98,7 @@ TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
   Scenario s = QuietTurntable();
   s.target.backlash_rad = 3.0 * arcsec;
   s.turntable_procedure.passes = {1, -1};
-  const auto readings = Readings(s);
+  const auto readings = TurntableReadings(s);
   for (const Reading& forward : readings) {
     for (const Reading& backward : readings) {
       if (forward.direction < 0 || backward.direction > 0 || forward.position != backward.position) continue;
@@ -110,9 +110,9 @@ TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
 TEST(TurntableTwin, MovedByBulletStandsWhereTheKinematicOneDoes) {
   Scenario s = QuietTurntable();
   s.target.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
-  const auto kinematic = Readings(s);
+  const auto kinematic = TurntableReadings(s);
   s.mechanics.fidelity = "bullet";
-  const auto bullet = Readings(s);
+  const auto bullet = TurntableReadings(s);
   for (std::size_t i = 0; i < bullet.size(); ++i)
     EXPECT_NEAR(X_arcsec(bullet[i]), X_arcsec(kinematic[i]), 0.02) << "settled to 0.01 arcsec";
 }
@@ -122,7 +122,7 @@ TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
   s.turntable_procedure.phases = {"calibration"};
   s.turntable_procedure.sweep_points = 5;
   s.autocollimator.gain_error = 0.01;
-  const auto readings = Readings(s);
+  const auto readings = TurntableReadings(s);
   ASSERT_EQ(readings.size(), 5u);
   for (const Reading& r : readings) {
     EXPECT_EQ(r.phase, Phase::kCalibration);
@@ -136,7 +136,7 @@ TEST(TurntableTwin, ChecksBetweenThePositionsOnly) {
   Scenario s = QuietTurntable();
   s.turntable_procedure.phases = {"verification"};
   s.turntable_procedure.verification_positions = 20;
-  for (const Reading& r : Readings(s)) {
+  for (const Reading& r : TurntableReadings(s)) {
     EXPECT_EQ(r.phase, Phase::kVerification);
     EXPECT_NE(std::lround(r.target_rad / deg) % 30, 0) << "a position of the full circle";
   }
@@ -151,7 +151,7 @@ TEST(CheckTeeth, AreWholeTeethOffTheGridEvenlySpread) {
 TEST(TurntableTwin, ShowsNothingBeyondTheRange) {
   Scenario s = QuietTurntable();
   s.target.harmonics = {{Component::kEz, 1.0, 500.0 * arcsec, 0.0}};
-  const auto readings = Readings(s);
+  const auto readings = TurntableReadings(s);
   EXPECT_EQ(readings[0].status, ReadingStatus::kClippedSpot) << "500 arcsec at a range of 410";
   EXPECT_TRUE(std::isnan(readings[0].autocollimator_yaw_rad));
   EXPECT_EQ(readings[3].status, ReadingStatus::kOk);
@@ -161,9 +161,9 @@ TEST(TurntableTwin, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
   Scenario s = QuietTurntable();
   s.noise_free = false;
   s.multitooth.tooth_rms_rad = 0.1 * arcsec;
-  const auto a = Readings(s), b = Readings(s);
+  const auto a = TurntableReadings(s), b = TurntableReadings(s);
   s.seed = 2;
-  const auto other = Readings(s);
+  const auto other = TurntableReadings(s);
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].autocollimator_yaw_rad, b[i].autocollimator_yaw_rad);
     EXPECT_NE(a[i].autocollimator_yaw_rad, other[i].autocollimator_yaw_rad);
@@ -177,11 +177,11 @@ TEST(TurntableTwin, HasEveryEffectOfTheCatalogueAndEachChangesTheReadings) {
   s.turntable_procedure.tilts_rad = {60.0 * arcsec, 100.0 * arcsec};
   s.turntable_procedure.passes = {1, -1};
   s.environment.drift_K_h = 0.5;
-  const auto clean = Readings(s);
+  const auto clean = TurntableReadings(s);
   for (const EffectEntry& entry : EffectCatalogue(kTurntableBench)) {
     Scenario with = s;
     with.effects = {test::PlainEffect(entry)};
-    const auto disturbed = Readings(with);
+    const auto disturbed = TurntableReadings(with);
     double largest_rad = 0.0;
     for (std::size_t i = 0; i < clean.size(); ++i) {
       largest_rad =

@@ -6,17 +6,11 @@
 #include <fstream>
 
 #include "optics/irradiance.h"
-#include "tests/support/rotary_scenario.h"
+#include "tests/sim/quiet_scenario.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::sim {
 namespace {
-
-Scenario Quiet() {
-  Scenario scenario = test::RotaryScenario();
-  scenario.noise_free = true;
-  return scenario;
-}
 
 std::array<double, kChannels> ReadOnce(Twin& twin) {
   RotaryBench bench = twin.Bench();

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct DiagnoseOptions {
   std::string source, scenario, json, extended, cache, model = "rigorous";
   std::vector<std::string> overrides, struck;
   bool follow = false;
@@ -119,7 +119,7 @@ void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const d
   WriteJson(path, results);
 }
 
-void DiagnoseRun(const Options& options) {
+void DiagnoseRun(const DiagnoseOptions& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   CheckStruck(options.struck, run.scenario.bench);
   diagnose::DiagnoseOptions how;
@@ -142,7 +142,7 @@ void DiagnoseRun(const Options& options) {
   if (options.json != "-") fmt::print("{}", in_words);
 }
 
-void Diagnose(const Options& options) {
+void Diagnose(const DiagnoseOptions& options) {
   if (!options.follow) return DiagnoseRun(options);
   Follow({options.source, options.scenario, options.json, options.overrides, options.false_alarm_rate,
           measure::EstimatorNamed(options.model)});
@@ -152,7 +152,7 @@ void Diagnose(const Options& options) {
 
 void AddDiagnose(CLI::App& app) {
   auto* command = app.add_subcommand("diagnose", "Find what a scenario gets wrong about the readings, and name it");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DiagnoseOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   command->add_option("--json", options->json, "write diagnosis.json here, - for stdout");

@@ -9,12 +9,12 @@
 namespace twinbench::tools {
 namespace {
 
-struct Options {
+struct ExportOptions {
   std::string folder;
   std::string readings = "-";
 };
 
-void Export(const Options& options) {
+void Export(const ExportOptions& options) {
   const auto record = RunRecord::Open(options.folder);
   const std::vector<Reading> readings = record->Readings();
   const std::string bench = record->provenance().bench;
@@ -27,7 +27,7 @@ void Export(const Options& options) {
 
 void AddExport(CLI::App& app) {
   auto* command = app.add_subcommand("export", "Write the readings of a run as readings.csv");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportOptions>();
   command->add_option("run", options->folder, "folder of the run")->required();
   command->add_option("--readings", options->readings, "file to write, - for stdout")->capture_default_str();
   command->callback([options] { Export(*options); });

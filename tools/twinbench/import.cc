@@ -10,12 +10,12 @@
 namespace twinbench::tools {
 namespace {
 
-struct Options {
+struct ImportOptions {
   std::string readings, scenario, folder;
   std::vector<std::string> overrides;
 };
 
-void Import(const Options& options) {
+void Import(const ImportOptions& options) {
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const std::vector<Reading> readings = ReadReadingsCsv(options.readings, scenario.bench);
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
@@ -38,7 +38,7 @@ void Import(const Options& options) {
 
 void AddImport(CLI::App& app) {
   auto* command = app.add_subcommand("import", "Make a run folder from anybody's readings.csv");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ImportOptions>();
   command->add_option("readings", options->readings, "readings.csv")->required();
   command->add_option("--scenario", options->scenario, "the bench that made them")->required();
   command->add_option("-o,--output", options->folder, "folder of the new run")->required();

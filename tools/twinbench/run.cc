@@ -12,7 +12,7 @@
 namespace twinbench::tools {
 namespace {
 
-struct Options {
+struct RunOptions {
   std::string scenario, folder;
   std::optional<std::string> seed;
   bool noise_free = false;
@@ -44,7 +44,7 @@ std::string SeedOverride(const std::string& seed) {
   return "seed=\"" + seed + "\"";
 }
 
-Scenario ScenarioOf(const Options& options) {
+Scenario ScenarioOf(const RunOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.seed) overrides.push_back(SeedOverride(*options.seed));
   if (!options.fidelity.empty()) overrides.push_back(fmt::format("mechanics.fidelity=\"{}\"", options.fidelity));
@@ -54,7 +54,7 @@ Scenario ScenarioOf(const Options& options) {
   return scenario;
 }
 
-void Run(const Options& options) {
+void Run(const RunOptions& options) {
   const Scenario scenario = ScenarioOf(options);
   const RunFolder folder{options.folder};
   RunOnTwin(scenario, folder, options.images);
@@ -65,7 +65,7 @@ void Run(const Options& options) {
 
 void AddRun(CLI::App& app) {
   auto* command = app.add_subcommand("run", "Carry out a scenario on the twin, then measure and separate");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   command->add_option("scenario", options->scenario, "scenario file (TOML)")->required();
   command->add_option("-o,--output", options->folder, "folder of the run, made by the command")->required();
   command->add_option("--seed", options->seed, "instead of the scenario's seed");

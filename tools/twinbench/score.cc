@@ -12,12 +12,12 @@
 namespace twinbench::tools {
 namespace {
 
-struct Options {
+struct ScoreOptions {
   std::string folder, json, estimator = "rigorous";
   bool positions = false;
 };
 
-void PrintScore(const Options& options) {
+void PrintScore(const ScoreOptions& options) {
   const RunFolder folder{options.folder};
   if (!std::filesystem::exists(folder.truth()))
     throw InputError(folder.truth(), "is not there",
@@ -36,7 +36,7 @@ void PrintScore(const Options& options) {
 
 void AddScore(CLI::App& app) {
   auto* command = app.add_subcommand("score", "Compare a run of the twin with its truth");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ScoreOptions>();
   command->add_option("run", options->folder, "folder of the run")->required();
   command->add_option("--estimator", options->estimator, "published or rigorous")
       ->check(CLI::IsMember({"published", "rigorous"}))

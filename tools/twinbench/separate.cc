@@ -10,12 +10,12 @@
 namespace twinbench::tools {
 namespace {
 
-struct Options {
+struct SeparateOptions {
   std::string source, scenario, json, estimator = "rigorous";
   std::vector<std::string> overrides;
 };
 
-void Separate(const Options& options) {
+void Separate(const SeparateOptions& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   const report::Evaluation evaluation =
       BenchOf(run.scenario).evaluate(run.scenario, run.readings, measure::EstimatorNamed(options.estimator));
@@ -30,7 +30,7 @@ void Separate(const Options& options) {
 void AddSeparate(CLI::App& app) {
   auto* command = app.add_subcommand(
       "separate", "Separate readings into the errors of what was measured and of what it was measured with");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SeparateOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   command->add_option("--json", options->json, "write separation.json here, - for stdout");

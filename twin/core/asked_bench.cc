@@ -2,7 +2,8 @@
 #include "twin/core/device_call.h"
 
 namespace twinbench {
-namespace {
+
+// Not in the unnamed namespace: a type of the header holds them, and would be local to this file as well.
 
 using Ask = AskedBench::Ask;
 
@@ -93,8 +94,6 @@ class AskedFixture : public Fixture {
  private:
   const Ask& ask_;
 };
-
-}  // namespace
 
 struct AskedBench::Devices {
   Devices(Ask its_ask, std::function<Time()> now) : ask(std::move(its_ask)), clock(ask, std::move(now)) {}

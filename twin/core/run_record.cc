@@ -37,6 +37,22 @@ std::string RecordPath(const std::string& directory) {
   return (std::filesystem::path(directory) / "record.sqlite").string();
 }
 
+/// Write-ahead log, and the disk has it before a commit returns.
+void MakeSafe(SqliteDatabase& database) {
+  database.Execute("PRAGMA journal_mode = WAL");
+  database.Execute("PRAGMA synchronous = FULL");
+}
+
+/// Makes the disk keep that the files are in the directory.
+void SyncDirectory(const std::string& directory) {
+  const int handle = open(directory.c_str(), O_RDONLY | O_DIRECTORY);
+  const bool synced = handle >= 0 && fsync(handle) == 0;
+  if (handle >= 0) close(handle);
+  if (!synced) throw BenchError(directory + ": the disk does not confirm the new record");
+}
+
+}  // namespace
+
 /// Says that a program writes this record. The system takes it away when the program ends, however it ends.
 class WriterLock {
  public:
@@ -57,22 +73,6 @@ class WriterLock {
  private:
   int handle_ = -1;
 };
-
-/// Write-ahead log, and the disk has it before a commit returns.
-void MakeSafe(SqliteDatabase& database) {
-  database.Execute("PRAGMA journal_mode = WAL");
-  database.Execute("PRAGMA synchronous = FULL");
-}
-
-/// Makes the disk keep that the files are in the directory.
-void SyncDirectory(const std::string& directory) {
-  const int handle = open(directory.c_str(), O_RDONLY | O_DIRECTORY);
-  const bool synced = handle >= 0 && fsync(handle) == 0;
-  if (handle >= 0) close(handle);
-  if (!synced) throw BenchError(directory + ": the disk does not confirm the new record");
-}
-
-}  // namespace
 
 /// The open file, with the statements that every reading needs.
 struct RunRecord::Database : SqliteDatabase {

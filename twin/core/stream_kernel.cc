@@ -5,11 +5,6 @@
 
 #include "twin/core/errors.h"
 
-// The loops below only pay when they are vectorised; g++ does that willingly at -O3 only.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("O3")
-#endif
-
 namespace twinbench {
 namespace {
 

@@ -14,6 +14,7 @@ inline constexpr double rad = 1.0;
 inline constexpr double mrad = 1e-3;
 inline constexpr double urad = 1e-6;
 inline constexpr double deg = kPi / 180.0;
+inline constexpr double turn = 2.0 * kPi;
 inline constexpr double arcsec = deg / 3600.0;
 inline constexpr double mV = 1e-3;
 inline constexpr double uV = 1e-6;

@@ -6,16 +6,14 @@
 #include <tuple>
 #include <utility>
 
+#include "twin/diagnose/at.h"
+
 namespace twinbench::diagnose {
 namespace {
 
 constexpr int kBlockReadings = 6;
 constexpr int kTimeFolds = 4;  // of a run without repeated passes
 constexpr int kShortSweep = kTimeFolds * kBlockReadings;
-
-std::size_t At(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The full-circle passes of each set-up in the order of their first readings.
 std::map<int, std::vector<int>> PassesOfSetups(const Schedule& s) {

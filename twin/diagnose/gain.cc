@@ -6,6 +6,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/diagnose/accepted_columns.h"
+#include "twin/diagnose/at.h"
 #include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/folds.h"
 #include "twin/diagnose/held_out.h"
@@ -19,12 +20,6 @@ using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 /// tell how well the other rows predict them.
 constexpr double kTrace = 1e-4;
 constexpr double kLeastInformation = 0.3;  // on an amplitude; four passes leave 0.75, or 0.67 of one direction
-constexpr double kDeterminedVariance =
-    100.0;  // of a prediction, in units of the row's noise; else it is not scored
-
-std::size_t At(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Errors of the predictions of one fold's rows, before and after, in SI; NaN for rows that are not scored.
 struct FoldErrors {

@@ -8,6 +8,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/accepted_columns.h"
+#include "twin/diagnose/at.h"
 #include "twin/diagnose/json.h"
 
 namespace twinbench::diagnose {
@@ -18,17 +19,13 @@ using nlohmann::json;
 constexpr int kBins = 24;                // of a variable that takes many values ...
 constexpr std::size_t kMostValues = 48;  // ... which is more than this
 
-std::size_t At(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Four digits are enough for a plot.
 json Short(double value) {
   return std::isfinite(value) ? json(std::stod(fmt::format("{:.4g}", value))) : json(nullptr);
 }
 
 /// One curve's data, one entry a reading, in the run's unit.
-struct Series {
+struct PlottedSeries {
   std::string name;
   Eigen::VectorXd before, after, sigma;
   Eigen::VectorXd spot_um;  // of a channel; empty for a pattern
@@ -40,7 +37,7 @@ Eigen::VectorXd Project(const LinearRun& run, const Eigen::VectorXd& rows, const
   return by_reading.transpose() * weight / (weight.squaredNorm() * run.to_SI);
 }
 
-Series MakeSeries(const LinearRun& run, const LeftOver& left, const std::string& name,
+PlottedSeries MakeSeries(const LinearRun& run, const LeftOver& left, const std::string& name,
                   const Eigen::VectorXd& weight) {
   const Eigen::VectorXd w = weight / weight.cwiseAbs().maxCoeff();
   const Eigen::VectorXd variance = Project(run, run.sigma.cwiseAbs2(), w.cwiseAbs2());
@@ -48,8 +45,8 @@ Series MakeSeries(const LinearRun& run, const LeftOver& left, const std::string&
   return {name, Project(run, left.before, w), Project(run, left.after, w), (variance * scale).cwiseSqrt(), {}};
 }
 
-std::vector<Series> AllSeries(const LinearRun& run, const LeftOver& left) {
-  std::vector<Series> all;
+std::vector<PlottedSeries> AllSeries(const LinearRun& run, const LeftOver& left) {
+  std::vector<PlottedSeries> all;
   for (int c = 0; c < run.Channels(); ++c) {
     const Eigen::VectorXd weight = Eigen::VectorXd::Unit(run.Channels(), c);
     all.push_back(MakeSeries(run, left, run.channels[At(c)], weight));
@@ -110,7 +107,7 @@ Bins MakeBins(const Eigen::VectorXd& x) {
 }
 
 /// Means of a series in each bin that has readings.
-json Curve(const Bins& bins, const Series& series) {
+json Curve(const Bins& bins, const PlottedSeries& series) {
   struct Sum {
     int n = 0;
     double before = 0.0, after = 0.0, variance = 0.0;
@@ -143,7 +140,7 @@ json Curve(const Bins& bins, const Series& series) {
 }
 
 /// Mean over passes by set-up (rows) and position (columns).
-json Map(const Schedule& s, const Series& series) {
+json Map(const Schedule& s, const PlottedSeries& series) {
   std::map<int, std::map<int, std::array<double, 3>>> cells;
   std::set<int> positions;
   for (int i = 0; i < s.Readings(); ++i) {
@@ -170,7 +167,7 @@ json Map(const Schedule& s, const Series& series) {
   return map;
 }
 
-void AddCurve(const std::string& name, const Eigen::VectorXd& variable, const Series& series, json& against) {
+void AddCurve(const std::string& name, const Eigen::VectorXd& variable, const PlottedSeries& series, json& against) {
   if (variable.size() != series.before.size()) return;
   const Bins bins = MakeBins(variable);
   if (bins.centre.size() > 1) against[name][series.name] = Curve(bins, series);
@@ -181,7 +178,7 @@ void AddCurve(const std::string& name, const Eigen::VectorXd& variable, const Se
 json PlotsJson(const DiagnosisRun& run) {
   const LeftOver left = FitAll(run.run, run.noise, run.accepted);
   json plots = {{"unit", run.run.unit}, {"against", json::object()}, {"maps", json::object()}};
-  for (const Series& series : AllSeries(run.run, left)) {
+  for (const PlottedSeries& series : AllSeries(run.run, left)) {
     for (const auto& [name, variable] : Variables(run.run.schedule))
       AddCurve(name, variable, series, plots["against"]);
     AddCurve("spot_um", series.spot_um, series, plots["against"]);

@@ -12,7 +12,6 @@ namespace twinbench::diagnose {
 namespace {
 
 constexpr double kReference = 0.5;             // of the cumulative sums, in standard deviations
-constexpr double kDeterminedVariance = 100.0;  // of a prediction, in units of the noise
 constexpr double kStatedRows = 30.0;           // that the stated noise counts for
 constexpr double kMostOfOneRow = 9.0;          // an outlier must not widen the limits that should see it ...
 constexpr double kMostOfOneReading = 4.0;      // ... nor be taken for a lasting deviation, in standard deviations
@@ -111,7 +110,7 @@ struct Innovation {
 };
 
 /// Running noise scale: mean square of independent innovations, with the stated figure as a start.
-class NoiseScale {
+class RunningNoiseScale {
  public:
   double value() const { return std::sqrt(sum_ / rows_); }
   void Add(const Innovation& innovation) {
@@ -252,7 +251,7 @@ WatchReport Watch(const LinearRun& run, const WatchOptions& options) {
   const WatchLimits limits = LimitsFor(options.false_alarm_rate, std::max(readings, options.planned_readings),
                                        static_cast<int>(all.size()));
   Predictor predictor(run);
-  NoiseScale scale;
+  RunningNoiseScale scale;
   for (int i = 0; i < readings; ++i) {
     const Innovation innovation = predictor.Predict(i);
     predictor.Learn(innovation, limits.single * scale.value());

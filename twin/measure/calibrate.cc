@@ -10,7 +10,7 @@ namespace twinbench::measure {
 namespace {
 
 constexpr int kUnknowns = kCalibrationParameters + kDofs;  // gains, rolls, mounting constants
-constexpr int kMostSteps = 8;
+constexpr int kMostGaussNewtonSteps = 8;
 constexpr double kAssumedNoise_m = 0.3e-6;  // only its constancy matters: it is rescaled by residuals
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
@@ -129,7 +129,7 @@ void AddResiduals(const Sweep& sweep, const BenchGeometry& geometry, SweepFit& f
 
 SweepFit FitSweep(const Sweep& sweep, const BenchGeometry& geometry) {
   SweepFit fit;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMostGaussNewtonSteps; ++i) {
     const Unknowns before = fit.x;
     Step(sweep, geometry, fit);
     if ((fit.x - before).cwiseAbs().maxCoeff() < 1e-12) break;

@@ -6,9 +6,9 @@
 namespace twinbench::measure {
 namespace {
 
-constexpr double kStep = 1e-5;
-constexpr double kLastStep = 1e-13;
-constexpr int kMostSteps = 20;
+constexpr double kMotionStep = 1e-5;
+constexpr double kLastMotionStep = 1e-13;
+constexpr int kMostNewtonSteps = 20;
 
 /// One PSD: order +1 shines on A (side = +1), order -1 on B (side = -1).
 struct Psd {
@@ -63,10 +63,10 @@ Vector4 PredictSpots(const Vector4& motion, const BenchGeometry& geometry) {
 Matrix4 SpotJacobian(const Vector4& motion, const BenchGeometry& geometry) {
   Matrix4 jacobian;
   for (int d = 0; d < kDofs; ++d) {
-    const Vector4 step = kStep * Vector4::Unit(d);
+    const Vector4 step = kMotionStep * Vector4::Unit(d);
     jacobian.col(d) =
         (PredictSpots(Vector4(motion + step), geometry) - PredictSpots(Vector4(motion - step), geometry)) /
-        (2.0 * kStep);
+        (2.0 * kMotionStep);
   }
   return jacobian;
 }
@@ -74,11 +74,11 @@ Matrix4 SpotJacobian(const Vector4& motion, const BenchGeometry& geometry) {
 MotionFit SolveMotion(const Vector4& spots_m, const BenchGeometry& geometry) {
   MotionFit fit;
   Vector4 motion = Vector4::Zero();
-  for (int i = 0; i < kMostSteps && motion.allFinite() && !fit.converged; ++i) {
+  for (int i = 0; i < kMostNewtonSteps && motion.allFinite() && !fit.converged; ++i) {
     fit.jacobian = SpotJacobian(motion, geometry);
     const Vector4 step = fit.jacobian.partialPivLu().solve(spots_m - PredictSpots(motion, geometry));
     motion += step;
-    fit.converged = step.cwiseAbs().maxCoeff() < kLastStep;
+    fit.converged = step.cwiseAbs().maxCoeff() < kLastMotionStep;
   }
   if (fit.converged) fit.motion = motion;
   return fit;

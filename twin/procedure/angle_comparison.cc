@@ -6,8 +6,6 @@
 namespace twinbench::procedure {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * units::kPi;
-
 /// Where the shaft is during one pass of a sweep, from its start: speed up, keep the speed, slow down, rest.
 struct SweepPass {
   double speed_rad_s, ramp_s, cruise_s;
@@ -61,7 +59,7 @@ class Schedule {
     for (const int direction : s_.passes) {
       for (int k = 0; k < count; ++k) {
         const int position = direction > 0 ? k : count - 1 - k;
-        Add(setup, direction, position, s_.start_rad + position * kTurn_rad / s_.stops, 0.0, time_s_);
+        Add(setup, direction, position, s_.start_rad + position * units::turn / s_.stops, 0.0, time_s_);
         time_s_ += s_.stop_interval_s;
       }
       ++pass_;
@@ -75,7 +73,7 @@ class Schedule {
   }
 
   void AddSweep(int setup, int direction, double speed_rad_s) {
-    const SweepPass pass{speed_rad_s, s_.ramp_s, s_.turns * kTurn_rad / speed_rad_s};
+    const SweepPass pass{speed_rad_s, s_.ramp_s, s_.turns * units::turn / speed_rad_s};
     const int count = static_cast<int>(std::ceil((pass.Motion_s() + s_.rest_s) / s_.interval_s));
     for (int k = 0; k < count; ++k) {
       const double t_s = k * s_.interval_s;

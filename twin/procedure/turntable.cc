@@ -132,7 +132,7 @@ struct TurntablePhase {
   int (*readings)(const TurntableProcedureSettings&);
 };
 
-int FullCircleReadings(const TurntableProcedureSettings& s) {
+int TurntableCircleReadings(const TurntableProcedureSettings& s) {
   return s.SetUps() * s.positions * static_cast<int>(s.passes.size());
 }
 int SweepReadings(const TurntableProcedureSettings& s) {
@@ -145,7 +145,7 @@ int CheckReadings(const TurntableProcedureSettings& s) {
 const TurntablePhase& PhaseNamed(const std::string& name) {
   static const std::map<std::string, TurntablePhase> phases = {
       {"calibration", {SweepTurntable, SweepReadings}},
-      {"full_circle", {MeasureFullCircle, FullCircleReadings}},
+      {"full_circle", {MeasureFullCircle, TurntableCircleReadings}},
       {"verification", {VerifyBetweenPositions, CheckReadings}}};
   const auto found = phases.find(name);
   Require(found != phases.end(), "turntable_procedure.phases holds a phase that does not exist");

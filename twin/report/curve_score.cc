@@ -10,7 +10,7 @@ namespace twinbench::report {
 namespace {
 
 /// Root mean square of the finite values; NaN if there is none.
-double Rms(const std::vector<double>& values) {
+double RmsOfFinite(const std::vector<double>& values) {
   double sum = 0.0;
   int count = 0;
   for (const double value : values) {
@@ -33,7 +33,7 @@ Sizes SizesOf(const CurveScore& curve) {
     normalised.push_back(error.back() / curve.u[k]);
     worst = std::fmax(worst, std::abs(error.back()));
   }
-  return {Rms(curve.truth), Rms(error), worst, Rms(curve.u), std::pow(Rms(normalised), 2)};
+  return {RmsOfFinite(curve.truth), RmsOfFinite(error), worst, RmsOfFinite(curve.u), std::pow(RmsOfFinite(normalised), 2)};
 }
 
 /// "ez_arcsec": "ez" and "_arcsec".

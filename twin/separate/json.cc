@@ -34,9 +34,6 @@ json TableJson(const TableEstimate& estimate) {
   return table;
 }
 
-constexpr std::array<Component, measure::kDofs> kComponentOf = {Component::kEz, Component::kEx, Component::kEy,
-                                                                Component::kDy};
-
 json ByMotion(const Vector4& values, bool with_units) {
   json object;
   for (int d = 0; d < measure::kDofs; ++d) {

@@ -8,8 +8,6 @@
 namespace twinbench::separate {
 namespace {
 
-constexpr std::array<Component, 4> kComponentOf = {Component::kEz, Component::kEx, Component::kEy, Component::kDy};
-
 /// One of the two full circles by the paper's stop number: mean motion of all passes, [ez, ex, ey, dy].
 struct Test {
   Eigen::MatrixXd mean;      // n x 4

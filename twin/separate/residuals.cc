@@ -8,7 +8,6 @@ namespace twinbench::separate {
 namespace {
 
 constexpr double kTooUnlikely = 0.001;
-constexpr double kLeastDof = 0.5;  // less is none: dof_of is a sum of rounding errors then
 constexpr double kBand = 0.01;     // of the largest of the four scales
 constexpr double kLeastScale = 1e-9;
 

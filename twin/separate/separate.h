@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -13,6 +14,10 @@
 
 /// Front door of the room: from motions of the grating to the errors of both tables.
 namespace twinbench::separate {
+
+/// The error motion that each of the four measured motions is, in the order of measure::Dof.
+inline constexpr std::array<Component, measure::kDofs> kComponentOf = {Component::kEz, Component::kEx, Component::kEy,
+                                                                       Component::kDy};
 
 using measure::Matrix6;
 

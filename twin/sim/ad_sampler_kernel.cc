@@ -7,11 +7,6 @@
 
 #include "twin/core/errors.h"
 
-// As in stream_kernel.cc: loops that only pay when vectorised.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("O3")
-#endif
-
 namespace twinbench::sim {
 namespace {
 

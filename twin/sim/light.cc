@@ -10,7 +10,7 @@ namespace {
 /// Of the pictures that Twin::WriteIrradiance makes: 20 um pixels on a 10 mm detector.
 constexpr int kIrradiancePixels = 500;
 
-optics::PsdParameters PsdOf(const PsdSettings& s) {
+optics::PsdParameters OpticalPsd(const PsdSettings& s) {
   optics::PsdParameters psd;
   psd.distance_m = s.distance_m;
   psd.roll_rad = s.roll_rad;
@@ -110,8 +110,8 @@ optics::RotaryOptics OpticsOf(const Scenario& actual, double nominal_wavelength_
   parameters.nominal_wavelength_m = nominal_wavelength_m;
   parameters.laser_position_m = actual.laser.position_m;
   parameters.grating = GratingOf(actual.grating);
-  parameters.psd_a = PsdOf(actual.psd_a);
-  parameters.psd_b = PsdOf(actual.psd_b);
+  parameters.psd_a = OpticalPsd(actual.psd_a);
+  parameters.psd_b = OpticalPsd(actual.psd_b);
   parameters.beam = BeamOf(actual.laser);
   for (const FixtureSettings& fixture : actual.fixtures) parameters.blockers.push_back(BlockerOf(fixture));
   if (nominal_wavelength_m * actual.grating.lines_per_m >= 1.0)

@@ -5,9 +5,10 @@
 #include "twin/sim/world.h"
 
 namespace twinbench::sim {
-namespace {
 
 using mechanics::Axis;
+
+// Not in the unnamed namespace: a type of the header holds them, and would be local to this file as well.
 
 class TwinClock : public Clock {
  public:
@@ -98,24 +99,22 @@ class TwinFixture : public Fixture {
   World& world_;
 };
 
-struct Devices {
-  explicit Devices(const Scenario& scenario) : world(scenario) {}
-
-  World world;
-  TwinClock clock{world};
-  TwinTable target{world, Axis::kTarget};
-  TwinTable reference{world, Axis::kReference};
-  TwinAdc adc{world};
-  TwinAutocollimator autocollimator{world};
-  TwinThermometer thermometer{world};
-  TwinGoniometer goniometer{world};
-  TwinFixture fixture{world};
-};
-
-}  // namespace
-
 /// The devices are rebuilt in their place: whoever holds them keeps them over a restart.
 struct Twin::Impl : public Simulation {
+  struct Devices {
+    explicit Devices(const Scenario& scenario) : world(scenario) {}
+
+    World world;
+    TwinClock clock{world};
+    TwinTable target{world, Axis::kTarget};
+    TwinTable reference{world, Axis::kReference};
+    TwinAdc adc{world};
+    TwinAutocollimator autocollimator{world};
+    TwinThermometer thermometer{world};
+    TwinGoniometer goniometer{world};
+    TwinFixture fixture{world};
+  };
+
   explicit Impl(const Scenario& its_scenario) : scenario(its_scenario) { devices.emplace(scenario); }
   void Restart() override { devices.emplace(scenario); }
   void SetPaced(bool) override {}  // in a program's own twin no time is ever waited for
@@ -128,7 +127,7 @@ Twin::Twin(const Scenario& scenario) : impl_(std::make_unique<Impl>(scenario)) {
 Twin::~Twin() = default;
 
 RotaryBench Twin::Bench() {
-  Devices& d = *impl_->devices;
+  Impl::Devices& d = *impl_->devices;
   return {d.clock,       d.target,     d.reference, d.adc,      d.autocollimator,
           d.thermometer, d.goniometer, d.fixture,   impl_.get()};
 }

@@ -11,7 +11,7 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-constexpr int kMostOrders = 12;
+constexpr int kMostTableOrders = 12;
 
 /// Orders alone name no cause: several faults have the same one.
 std::string MeaningOf(int order) {
@@ -54,7 +54,7 @@ Harmonic OrderOf(int order, const Eigen::Vector2d& x, const Eigen::Matrix2d& cov
 
 std::vector<Harmonic> HarmonicTable(const EncoderRun& encoder, const NoiseModel& noise) {
   const LinearRun& run = encoder.run;
-  const int orders = std::min(kMostOrders, LargestOrder(encoder.context));
+  const int orders = std::min(kMostTableOrders, LargestOrder(encoder.context));
   if (orders < 1) return {};
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
   const Eigen::MatrixXd S = noise.Whiten(run, Waves(encoder.context.device_rad, orders));

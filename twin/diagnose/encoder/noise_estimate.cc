@@ -12,7 +12,7 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-constexpr std::size_t kFewest = 8;  // differences; fewer say nothing
+constexpr std::size_t kFewestDifferences = 8;  // differences; fewer say nothing
 
 /// A standard deviation and the number of differences that it was taken from.
 struct Spread {
@@ -43,7 +43,7 @@ double MedianOfAbsolutes(std::vector<double> values) {
 /// within three deviations, which uses nearly all that the values can say. The plain rms where the median is zero
 /// because the readings have coarse steps.
 Spread SpreadOf(const std::vector<double>& values) {
-  if (values.size() < kFewest) return {};
+  if (values.size() < kFewestDifferences) return {};
   constexpr double kNormal = 1.4826;    // deviation of a normal distribution / its median of absolute values
   constexpr double kWithin3 = 0.98658;  // deviation of a normal distribution within three deviations
   std::size_t kept = 0;

@@ -11,6 +11,9 @@
 /// of the data the free unknowns can absorb.
 namespace twinbench::diagnose {
 
+/// A row whose prediction has a larger variance than this, in units of the row's noise, is not judged by it.
+inline constexpr double kDeterminedVariance = 100.0;
+
 /// Under which circumstances each used reading was taken; one entry a reading, NaN where it was not recorded.
 struct Schedule {
   std::vector<int> reading;  // running number in the file

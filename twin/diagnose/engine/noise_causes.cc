@@ -12,7 +12,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr double kWorthTelling = 1.0;      // log Bayes factor
+constexpr double kLeastLogBayes = 1.0;
 constexpr double kLeastRedundancy = 0.05;  // rows below it say nothing about their own noise
 
 /// What is left of each row in units of its own expected scatter, and the rows that can be judged.
@@ -212,7 +212,7 @@ std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& 
   if (s.rows.empty() || run.noise_free) return {};
   std::vector<NoiseCause> causes = {Outliers(noise, s), Tails(noise, s), Correlation(run, noise, s)};
   if (run.Channels() > 1) causes.push_back(ChannelScale(run, noise, s));
-  std::erase_if(causes, [](const NoiseCause& cause) { return !(cause.log_bayes > kWorthTelling); });
+  std::erase_if(causes, [](const NoiseCause& cause) { return !(cause.log_bayes > kLeastLogBayes); });
   std::ranges::stable_sort(causes, std::greater<>(), &NoiseCause::log_bayes);
   return causes;
 }

@@ -11,8 +11,6 @@
 namespace twinbench::diagnose::hob {
 namespace {
 
-constexpr int kLowOrders = 12;
-
 /// An order alone names no cause.
 std::string MeaningOf(int order, const TransmissionSettings& train) {
   const auto is = [order](double other) { return std::abs(order - other) < 1e-9; };

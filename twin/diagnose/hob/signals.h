@@ -11,6 +11,8 @@
 /// own code is not asked. A signal has one entry a used sample, in rad of m = table encoder - ratio x hob encoder.
 namespace twinbench::diagnose::hob {
 
+inline constexpr int kLowOrders = 12;  // always looked at, whatever the gears have
+
 /// Channels: the encoders' m and, where it was recorded, what the interferometer saw.
 inline constexpr const char* kTransmission = "transmission";
 inline constexpr const char* kInterferometer = "interferometer";

@@ -7,7 +7,6 @@
 namespace twinbench::diagnose::hob {
 namespace {
 
-constexpr int kLowOrders = 12;
 
 /// Samples of one set-up, and a number for each of its passes.
 struct Mounting {

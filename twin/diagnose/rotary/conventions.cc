@@ -12,8 +12,6 @@
 namespace twinbench::diagnose::rotary {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * units::kPi;
-
 void Exchange(Reading& r, std::size_t a, std::size_t b) {
   std::swap(r.mean_V[a], r.mean_V[b]);
   std::swap(r.std_V[a], r.std_V[b]);
@@ -36,7 +34,7 @@ void Undo(const std::string& where, double step_rad, Reading& r) {
 }
 
 std::vector<Reading> Undone(const std::string& where, const Scenario& scenario, std::vector<Reading> readings) {
-  const double step_rad = kTurn_rad / scenario.procedure.positions;
+  const double step_rad = units::turn / scenario.procedure.positions;
   for (Reading& r : readings) Undo(where, step_rad, r);
   return readings;
 }
@@ -60,7 +58,7 @@ double SumSpread_rad(const std::vector<Reading>& readings) {
     const Reading &a = readings[i - 1], &b = readings[i];
     if (a.phase != Phase::kFullCircle || b.phase != Phase::kFullCircle || a.setup != b.setup) continue;
     const double change_rad = b.target_rad + b.reference_rad - a.target_rad - a.reference_rad;
-    spread_rad = std::max(spread_rad, std::abs(std::remainder(change_rad, kTurn_rad)));
+    spread_rad = std::max(spread_rad, std::abs(std::remainder(change_rad, units::turn)));
   }
   return spread_rad;
 }
@@ -74,7 +72,7 @@ int IndexOffset(const std::vector<Reading>& readings, const Scenario& scenario) 
   for (const Reading& r : readings) {
     if (r.phase != Phase::kFullCircle || r.setup < 0 || r.setup >= std::ssize(shifts)) continue;
     const double steps =
-        (r.target_rad + r.reference_rad) / kTurn_rad * n - shifts[static_cast<std::size_t>(r.setup)];
+        (r.target_rad + r.reference_rad) / units::turn * n - shifts[static_cast<std::size_t>(r.setup)];
     const int found = static_cast<int>(((std::lround(steps) % n) + n) % n);
     if (first) offset = found;
     first = false;
@@ -85,7 +83,7 @@ int IndexOffset(const std::vector<Reading>& readings, const Scenario& scenario) 
 
 /// Which label is wrong, by bookkeeping alone.
 std::string LabelBlunder(const std::vector<Reading>& readings, const Scenario& scenario) {
-  const double step_rad = kTurn_rad / scenario.procedure.positions;
+  const double step_rad = units::turn / scenario.procedure.positions;
   if (SumSpread_rad(readings) > 0.1 * step_rad)
     return SenseOf(readings) < 0.5 ? "reverse_target" : "reverse_reference";
   return IndexOffset(readings, scenario) == 1 ? "index_offset" : "";

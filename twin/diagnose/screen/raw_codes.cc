@@ -82,7 +82,7 @@ void ScoreCodes(const Density& density, int channel, std::vector<CodeScore>& sco
 }
 
 /// Largest score of as many codes in a row without fault.
-double NullMaximum(Stream& stream, std::size_t codes) {
+double LargestNullCode(Stream& stream, std::size_t codes) {
   std::vector<float> g((codes + 2 * kReach + 3) / 4 * 4);
   stream.FillNormals(g);
   const auto at = [&](int index) { return static_cast<double>(g[static_cast<std::size_t>(index)]); };
@@ -111,7 +111,7 @@ Tests TestCodes(const std::vector<RawBlock>& blocks, const RawScale& scale, int 
   if (scores.empty()) return {};
   Eigen::VectorXd statistic(1 + null_runs);
   Stream stream(seed, "screen.raw.codes");
-  for (int j = 1; j <= null_runs; ++j) statistic[j] = NullMaximum(stream, scores.size());
+  for (int j = 1; j <= null_runs; ++j) statistic[j] = LargestNullCode(stream, scores.size());
   std::sort(scores.begin(), scores.end(), [](const CodeScore& a, const CodeScore& b) { return a.score > b.score; });
   const CodeScore& worst = scores.front();
   statistic[0] = worst.score;

@@ -106,7 +106,7 @@ std::vector<Trace> TracesOf(const std::vector<RawBlock>& blocks, const RawScale&
   return traces;
 }
 
-double NullMaximum(Stream& stream, std::size_t traces) {
+double LargestNullTrace(Stream& stream, std::size_t traces) {
   double largest = 0.0;
   for (std::size_t k = 0; k < traces; ++k) largest = std::max(largest, std::abs(stream.Normal()));
   return largest;
@@ -122,7 +122,7 @@ Tests TestSettling(const std::vector<RawBlock>& blocks, const RawScale& scale, i
   Eigen::VectorXd statistic(1 + null_runs);
   statistic[0] = std::abs(traces.front().score);
   Stream stream(seed, "screen.raw.settling");
-  for (int j = 1; j <= null_runs; ++j) statistic[j] = NullMaximum(stream, traces.size());
+  for (int j = 1; j <= null_runs; ++j) statistic[j] = LargestNullTrace(stream, traces.size());
   ScreenTest test;
   test.name = "raw: settling";
   test.statistic = statistic[0];

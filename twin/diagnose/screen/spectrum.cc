@@ -12,12 +12,12 @@
 namespace twinbench::diagnose::screen {
 namespace {
 
-constexpr int kReach = 6;  // grid points on either side of a reading: six digits
+constexpr int kSpreadReach = 6;  // grid points on either side of a reading: six digits
 
 /// Where a reading falls on the grid and the share of each grid point around it.
 struct Spread {
   int nearest = 0;
-  std::array<double, 2 * kReach> share{};
+  std::array<double, 2 * kSpreadReach> share{};
 };
 
 struct Grid {
@@ -26,9 +26,9 @@ struct Grid {
 };
 
 Grid GridFor(int count) {
-  const auto size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(4 * count + 4 * kReach)));
+  const auto size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(4 * count + 4 * kSpreadReach)));
   const double modes = 2.0 * count, oversampling = size / modes;
-  return {size, std::numbers::pi * kReach / (modes * modes * oversampling * (oversampling - 0.5))};
+  return {size, std::numbers::pi * kSpreadReach / (modes * modes * oversampling * (oversampling - 0.5))};
 }
 
 std::vector<Spread> SpreadsOf(const Eigen::VectorXd& turns, const Grid& grid) {
@@ -37,8 +37,8 @@ std::vector<Spread> SpreadsOf(const Eigen::VectorXd& turns, const Grid& grid) {
   for (double turn : turns) {
     const double at = (turn - std::floor(turn)) * grid.size;
     Spread spread{static_cast<int>(at), {}};
-    for (int k = 0; k < 2 * kReach; ++k) {
-      const double away = (at - (spread.nearest + k - kReach + 1)) * spacing;
+    for (int k = 0; k < 2 * kSpreadReach; ++k) {
+      const double away = (at - (spread.nearest + k - kSpreadReach + 1)) * spacing;
       spread.share[static_cast<std::size_t>(k)] = std::exp(-away * away / (4.0 * grid.width));
     }
     spreads.push_back(spread);
@@ -50,8 +50,8 @@ void Fill(const std::vector<Spread>& spreads, const double* values, Eigen::Vecto
   grid.setZero();
   const auto size = static_cast<int>(grid.size());
   for (std::size_t i = 0; i < spreads.size(); ++i) {
-    const int first = spreads[i].nearest - kReach + 1 + size;
-    for (int k = 0; k < 2 * kReach; ++k) {
+    const int first = spreads[i].nearest - kSpreadReach + 1 + size;
+    for (int k = 0; k < 2 * kSpreadReach; ++k) {
       grid[(first + k) % size] += values[i] * spreads[i].share[static_cast<std::size_t>(k)];
     }
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "twin/core/units.h"
+#include "twin/diagnose/at.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
@@ -15,10 +16,6 @@ long InTurn(double angle_rad) {
   constexpr long kParts = 1000000;
   const long part = std::lround(angle_rad / (2.0 * units::kPi) * kParts) % kParts;
   return part < 0 ? part + kParts : part;
-}
-
-std::size_t At(int i) {
-  return static_cast<std::size_t>(i);
 }
 
 /// Sweeps by set-up and pass, and their middles.

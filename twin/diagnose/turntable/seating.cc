@@ -10,7 +10,7 @@
 namespace twinbench::diagnose::turntable {
 namespace {
 
-constexpr double kFewest = 12.0;  // degrees of freedom of an axis
+constexpr double kFewestDof = 12.0;  // degrees of freedom of an axis
 
 /// Squares of what is left and the degrees of freedom they have, of x and of y.
 struct Squares {
@@ -87,7 +87,7 @@ double VarianceOfX(const TurntableRun& turntable) {
 Seating MeasureSeating(const TurntableRun& turntable, const Analysis& analysis) {
   Seating seating;
   const Squares s = SquaresOf(turntable, analysis);
-  if (turntable.run.noise_free || s.n_x < kFewest || s.n_y < kFewest) return seating;
+  if (turntable.run.noise_free || s.n_x < kFewestDof || s.n_y < kFewestDof) return seating;
   const double nu = PseudoDegrees(turntable.run), variance = VarianceOfX(turntable);
   const double common = (nu + s.y) / (nu + s.n_y), own = s.x / s.n_x;
   const double u_excess = std::hypot(own * std::sqrt(2.0 / s.n_x), common * std::sqrt(2.0 / (nu + s.n_y)));

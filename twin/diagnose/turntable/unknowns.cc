@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "twin/core/units.h"
+#include "twin/diagnose/at.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
@@ -16,10 +17,6 @@ constexpr double kFree_rad = 360.0 * arcsec;       // the range of an autocollim
 constexpr double kToothTilt_rad = 5.0 * arcsec;    // of a multi-tooth table
 constexpr double kMirrorTilt_rad = 20.0 * arcsec;  // of the mirror against the multi-tooth table's axis
 constexpr double kLeast_rad = 1e-4 * arcsec;       // of a prior: nothing is known better
-
-std::size_t At(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Collects columns. X and Y are turns about the turntable's axis and upwards; the crosshair shows them turned.
 class Columns {

@@ -7,8 +7,6 @@
 namespace twinbench::separate::encoder {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * units::kPi;
-
 struct Part {
   double angle_rad = 0.0, value_rad = 0.0, square_rad2 = 0.0;  // sums
   int count = 0;
@@ -31,9 +29,9 @@ void Add(const FittedGroup& group, const hob::HarmonicSeries& curve, std::vector
   const auto size = static_cast<double>(parts.size());
   for (std::size_t p = 0; p < group.th_rad.size(); ++p) {
     for (Eigen::Index i = 0; i < group.th_rad[p].size(); ++i) {
-      const double turns = group.th_rad[p][i] / kTurn_rad, share = turns - std::floor(turns);
+      const double turns = group.th_rad[p][i] / units::turn, share = turns - std::floor(turns);
       const auto part = std::min(parts.size() - 1, static_cast<std::size_t>(share * size));
-      parts[part].Add(share * kTurn_rad, ValueAt(curve, share * kTurn_rad) + group.fit.rest_rad[p][i]);
+      parts[part].Add(share * units::turn, ValueAt(curve, share * units::turn) + group.fit.rest_rad[p][i]);
     }
   }
 }

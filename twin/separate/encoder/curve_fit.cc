@@ -10,11 +10,10 @@
 namespace twinbench::separate::encoder {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * units::kPi;
 constexpr double kTurnsForSlope = 1.5;  // half a turn seen twice
 
 /// Which columns the model has before the orders: a constant a pass, a slope for some, the velocity.
-struct Columns {
+struct ModelColumns {
   std::vector<int> slope;  // of each pass; -1: none
   int velocity = -1;
   int before_orders = 0;
@@ -31,8 +30,8 @@ bool VelocityVaries(const PassGroup& group) {
   return about_mean > 1e-4 * about_zero;  // 1 % rms
 }
 
-Columns ColumnsOf(const PassGroup& group) {
-  Columns columns;
+ModelColumns ColumnsOf(const PassGroup& group) {
+  ModelColumns columns;
   columns.before_orders = static_cast<int>(group.passes.size());
   for (const ComparedPass& pass : group.passes)
     columns.slope.push_back(pass.Turns() > kTurnsForSlope ? columns.before_orders++ : -1);
@@ -53,13 +52,13 @@ void FillOrders(const Eigen::VectorXd& th_rad, int first_column, Eigen::MatrixXd
   }
 }
 
-Eigen::MatrixXd RowsOf(const PassGroup& group, std::size_t p, const Columns& columns, const Eigen::VectorXd& th_rad,
+Eigen::MatrixXd RowsOf(const PassGroup& group, std::size_t p, const ModelColumns& columns, const Eigen::VectorXd& th_rad,
                        int highest) {
   const ComparedPass& pass = group.passes[p];
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(th_rad.size(), columns.before_orders + 2 * highest);
   rows.col(static_cast<Eigen::Index>(p)).setOnes();
   if (columns.slope[p] >= 0)
-    rows.col(columns.slope[p]) = (pass.reference_rad.array() - pass.Middle_rad()) / kTurn_rad;
+    rows.col(columns.slope[p]) = (pass.reference_rad.array() - pass.Middle_rad()) / units::turn;
   if (columns.velocity >= 0) {
     rows.col(columns.velocity) = pass.velocity_rad_s.array() - pass.velocity_rad_s.mean();
   }
@@ -68,7 +67,7 @@ Eigen::MatrixXd RowsOf(const PassGroup& group, std::size_t p, const Columns& col
 }
 
 struct Normal {
-  Columns columns;
+  ModelColumns columns;
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right;
 };
@@ -102,12 +101,12 @@ int DistinctAngles(const ScaleAngles& th_rad) {
   std::set<long> seen;
   for (const Eigen::VectorXd& pass : th_rad) {
     for (const double th : pass)
-      seen.insert(std::lround((th / kTurn_rad - std::floor(th / kTurn_rad)) * 1e4) % 10000);
+      seen.insert(std::lround((th / units::turn - std::floor(th / units::turn)) * 1e4) % 10000);
   }
   return static_cast<int>(seen.size());
 }
 
-void FillPasses(const Columns& columns, const Eigen::VectorXd& solution, CurveFit& fit) {
+void FillPasses(const ModelColumns& columns, const Eigen::VectorXd& solution, CurveFit& fit) {
   for (std::size_t p = 0; p < columns.slope.size(); ++p) {
     const int slope = columns.slope[p];
     fit.passes.push_back({solution[static_cast<Eigen::Index>(p)], slope >= 0 ? solution[slope] : kNaN});

@@ -10,19 +10,17 @@
 namespace twinbench::separate::encoder {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * units::kPi;
-
-struct Columns {
+struct PassColumns {
   std::vector<double> reference_rad, error_rad, velocity_rad_s;
 };
 
 /// `angle_rad` without a break, `last_rad` having come before.
 double Followed(double angle_rad, double last_rad, int direction) {
-  const double back_turns = -direction * (angle_rad - last_rad) / kTurn_rad;
-  return back_turns > 0.5 ? angle_rad + direction * kTurn_rad * std::round(back_turns) : angle_rad;
+  const double back_turns = -direction * (angle_rad - last_rad) / units::turn;
+  return back_turns > 0.5 ? angle_rad + direction * units::turn * std::round(back_turns) : angle_rad;
 }
 
-void Append(const Reading& reading, double error_rad, Columns& columns) {
+void Append(const Reading& reading, double error_rad, PassColumns& columns) {
   std::vector<double>& phi_rad = columns.reference_rad;
   phi_rad.push_back(phi_rad.empty() ? reading.reference_rad
                                     : Followed(reading.reference_rad, phi_rad.back(), reading.direction));
@@ -41,11 +39,11 @@ std::vector<int> LapsOf(const Eigen::VectorXd& phi_rad, int direction) {
       way_rad.tail(1).value() / static_cast<double>(std::max<Eigen::Index>(1, way_rad.size() - 1));
   std::vector<int> laps;
   for (const double way : way_rad)
-    laps.push_back(std::max(0, static_cast<int>(std::floor((way + 0.5 * step_rad) / kTurn_rad))));
+    laps.push_back(std::max(0, static_cast<int>(std::floor((way + 0.5 * step_rad) / units::turn))));
   return laps;
 }
 
-ComparedPass PassOf(int pass, int direction, const Columns& columns) {
+ComparedPass PassOf(int pass, int direction, const PassColumns& columns) {
   ComparedPass result;
   result.pass = pass;
   result.direction = direction;
@@ -59,7 +57,7 @@ ComparedPass PassOf(int pass, int direction, const Columns& columns) {
 }  // namespace
 
 double ComparedPass::Turns() const {
-  return (reference_rad.maxCoeff() - reference_rad.minCoeff()) / kTurn_rad;
+  return (reference_rad.maxCoeff() - reference_rad.minCoeff()) / units::turn;
 }
 
 double ComparedPass::Middle_rad() const {
@@ -74,7 +72,7 @@ int PassGroup::Readings() const {
 
 SortedPasses SortPasses(const std::vector<Reading>& readings) {
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
-  std::map<std::tuple<int, int, int>, Columns> sorted;  // set-up, - direction, pass
+  std::map<std::tuple<int, int, int>, PassColumns> sorted;  // set-up, - direction, pass
   SortedPasses result;
   result.left_out = comparison.left_out;
   for (std::size_t i = 0; i < comparison.used.size(); ++i) {

@@ -13,7 +13,6 @@
 namespace twinbench::separate::hob {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * units::kPi;
 constexpr double kRunaway_rad = 0.1;  // no gearbox is out by 6 deg; a wrapped angle is by a turn
 
 double ValueOf(const HobSample& s, Signal signal, double ratio) {
@@ -62,7 +61,7 @@ void CheckHeads(const std::vector<Pass>& passes) {
 
 /// Turns since the pass began; a sample that jitters back over the start belongs to the first one.
 int TurnOf(const Pass& pass, double th_rad) {
-  const double turns = pass.direction * (th_rad - pass.th_rad.front()) / kTurn_rad;
+  const double turns = pass.direction * (th_rad - pass.th_rad.front()) / units::turn;
   return std::max(0, static_cast<int>(std::floor(turns)));
 }
 
@@ -94,7 +93,7 @@ std::vector<Turn> CutIntoTurns(const Pass& pass) {
   for (std::size_t i = 0; i < pass.th_rad.size(); ++i) samples_of[TurnOf(pass, pass.th_rad[i])].push_back(i);
   std::vector<Turn> turns;
   for (const auto& [index, picked] : samples_of) {
-    const double middle_rad = pass.th_rad.front() + pass.direction * (index + 0.5) * kTurn_rad;
+    const double middle_rad = pass.th_rad.front() + pass.direction * (index + 0.5) * units::turn;
     turns.push_back({index, middle_rad, Picked(pass.th_rad, picked), Picked(pass.value_rad, picked)});
   }
   return turns;

@@ -13,7 +13,6 @@ namespace twinbench::separate::turntable {
 namespace {
 
 constexpr double kTooUnlikely = 0.001;
-constexpr double kLeastDof = 0.5;  // less is none: dof is a sum of rounding errors then
 
 /// Variance of one reading about the turntable's axis, of readings with roll.
 double Variance(const AutocollimatorNoise& noise, double gamma_rad) {

@@ -3,11 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "twin/separate/statistics.h"
+
 namespace twinbench::separate::turntable {
 namespace {
 
 constexpr double kLeastSignal = 4.0;  // mean square of y over what noise alone leaves
-constexpr double kLeastDof = 0.5;     // less is none: dof is a sum of rounding errors then
 
 /// Equal noise of x and y that scatters the residuals about a line: orthogonal regression.
 AutocollimatorNoise NoiseOfResiduals(const Eigen::VectorXd& x_rad, const Eigen::VectorXd& y_rad, double dof) {

@@ -10,9 +10,7 @@
 namespace twinbench::separate::turntable {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * units::kPi;
 constexpr double kGridTolerance = 1e-3;  // of a step
-constexpr int kFewestPositions = 3;
 
 bool IsUsable(const TurntableStop& stop) {
   return std::isfinite(stop.x_rad) && std::isfinite(stop.y_rad);
@@ -27,7 +25,7 @@ int CountPositions(const std::vector<TurntableStop>& stops) {
   std::set<long long> distinct;  // millionths of a turn
   for (const TurntableStop& stop : stops) {
     if (std::isfinite(stop.turntable_rad))
-      distinct.insert(std::llround(Wrapped(stop.turntable_rad, kTurn_rad) / kTurn_rad * 1e6) % 1000000);
+      distinct.insert(std::llround(Wrapped(stop.turntable_rad, units::turn) / units::turn * 1e6) % 1000000);
   }
   return static_cast<int>(distinct.size());
 }
@@ -88,7 +86,7 @@ void AddStop(StopGrid& grid, const TurntableStop& stop, std::size_t index) {
 }  // namespace
 
 double StopGrid::Step_rad() const {
-  return kTurn_rad / n;
+  return units::turn / n;
 }
 
 double StopGrid::Tooth_rad(int tooth) const {

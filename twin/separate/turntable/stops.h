@@ -21,6 +21,8 @@ struct TurntableStop {
   double y_rad = kNaN;
 };
 
+inline constexpr int kFewestPositions = 3;  // of a full circle
+
 struct SetUp {
   int label = 0;  // TurntableStop::setup
   int row = 0;    // of teeth

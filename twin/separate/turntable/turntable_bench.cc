@@ -6,7 +6,6 @@
 namespace twinbench::separate::turntable {
 namespace {
 
-constexpr int kFewestPositions = 3;
 
 TurntableStop StopOf(const Reading& r) {
   return {r.setup,

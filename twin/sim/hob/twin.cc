@@ -7,7 +7,7 @@
 #include "twin/sim/truth.h"
 
 namespace twinbench::sim {
-namespace {
+// Not in the unnamed namespace: a type of the header holds them, and would be local to this file as well.
 
 class MachineClock : public Clock {
  public:
@@ -46,6 +46,8 @@ class HeadFixture : public HobFixture {
  private:
   HobWorld& world_;
 };
+
+namespace {
 
 nlohmann::json HarmonicJson(double order, double amplitude_rad, double phase_rad) {
   return {

@@ -8,7 +8,7 @@
 namespace twinbench::sim {
 namespace {
 
-std::vector<std::unique_ptr<HobEffect>> EffectsOf(const Scenario& nominal) {
+std::vector<std::unique_ptr<HobEffect>> HobEffectsOf(const Scenario& nominal) {
   std::vector<std::unique_ptr<HobEffect>> effects;
   for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeHobEffect(effect, nominal));
   return effects;
@@ -58,7 +58,7 @@ Duration PieceOf(const Scenario& actual) {
 }  // namespace
 
 HobWorld::HobWorld(const Scenario& nominal)
-    : effects_(EffectsOf(nominal)),
+    : effects_(HobEffectsOf(nominal)),
       actual_(ActualBench(nominal, effects_)),
       train_(mechanics::MakeGearTrain(mechanics::FidelityFromName(actual_.mechanics.fidelity),
                                       TrainOf(actual_, effects_))),

@@ -5,9 +5,10 @@
 #include "twin/sim/turntable/world.h"
 
 namespace twinbench::sim {
-namespace {
 
 using mechanics::Axis;
+
+// Not in the unnamed namespace: a type of the header holds them, and would be local to this file as well.
 
 class TurntableClock : public Clock {
  public:
@@ -69,8 +70,6 @@ class MultitoothFixture : public TurntableFixture {
  private:
   TurntableWorld& world_;
 };
-
-}  // namespace
 
 struct TurntableTwin::Impl {
   explicit Impl(const Scenario& its_scenario) : scenario(its_scenario), world(its_scenario) {}

@@ -8,7 +8,7 @@ namespace {
 
 using mechanics::Axis;
 
-std::vector<std::unique_ptr<TurntableEffect>> EffectsOf(const Scenario& nominal) {
+std::vector<std::unique_ptr<TurntableEffect>> TurntableEffectsOf(const Scenario& nominal) {
   std::vector<std::unique_ptr<TurntableEffect>> effects;
   for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeTurntableEffect(effect, nominal));
   return effects;
@@ -71,7 +71,7 @@ ReadingStatus StatusOf(optics::AutocollimatorStatus status) {
 }  // namespace
 
 TurntableWorld::TurntableWorld(const Scenario& nominal)
-    : effects_(EffectsOf(nominal)),
+    : effects_(TurntableEffectsOf(nominal)),
       actual_(ActualBench(nominal, effects_)),
       environment_(actual_.environment, actual_.seed),
       axes_(actual_, queue_),

@@ -33,7 +33,7 @@ ShownError OldAngle(const EffectSettings& e, const HobMoment& moment) {
   return {.table_rad = -moment.velocity_rad_s * Parameter(e, "delay")};
 }
 
-CountError::Course CourseOf(const std::string& effect) {
+CountError::Course CountErrorCourse(const std::string& effect) {
   if (effect == "drift") return Drift;
   if (effect == "slip") return Step;
   return effect == "tone" ? Wave : OldAngle;
@@ -42,7 +42,7 @@ CountError::Course CourseOf(const std::string& effect) {
 }  // namespace
 
 HobEffectPointer MakeShownError(const EffectSettings& effect) {
-  return std::make_unique<CountError>(effect, CourseOf(effect.name));
+  return std::make_unique<CountError>(effect, CountErrorCourse(effect.name));
 }
 
 }  // namespace twinbench::sim

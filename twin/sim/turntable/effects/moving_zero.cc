@@ -20,34 +20,34 @@ class MovingZero : public TurntableEffect {
   Course course_;
 };
 
-double Drift(const EffectSettings& e, const TurntableMoment& moment) {
+double DriftingZero(const EffectSettings& e, const TurntableMoment& moment) {
   return DriftAt(e, moment.now);
 }
 
 /// The mounting creeps: logarithmic in time since it was made.
-double Creep(const EffectSettings& e, const TurntableMoment& moment) {
+double CreepingZero(const EffectSettings& e, const TurntableMoment& moment) {
   return Parameter(e, "amplitude") *
          std::log1p(ToSeconds(moment.now - moment.mounted) / Parameter(e, "time_constant"));
 }
 
-double Step(const EffectSettings& e, const TurntableMoment& moment) {
+double SteppingZero(const EffectSettings& e, const TurntableMoment& moment) {
   return StepAt(e, moment.reading);
 }
 
-double Wave(const EffectSettings& e, const TurntableMoment& moment) {
+double WavingZero(const EffectSettings& e, const TurntableMoment& moment) {
   return WaveAt(e, moment.now);
 }
 
-MovingZero::Course CourseOf(const std::string& effect) {
-  if (effect == "autocollimator_drift") return Drift;
-  if (effect == "mount_creep") return Creep;
-  return effect == "slip" ? Step : Wave;
+MovingZero::Course MovingZeroCourse(const std::string& effect) {
+  if (effect == "autocollimator_drift") return DriftingZero;
+  if (effect == "mount_creep") return CreepingZero;
+  return effect == "slip" ? SteppingZero : WavingZero;
 }
 
 }  // namespace
 
 TurntableEffectPointer MakeMovingZero(const EffectSettings& effect) {
-  return std::make_unique<MovingZero>(effect, CourseOf(effect.name));
+  return std::make_unique<MovingZero>(effect, MovingZeroCourse(effect.name));
 }
 
 }  // namespace twinbench::sim
