@@ -9,6 +9,7 @@
 
 #include "tests/core/input_error.h"
 #include "twin/benches/names.h"
+#include "twin/core/reading_column.h"
 #include "twin/core/units.h"
 
 namespace twinbench {
@@ -158,6 +159,17 @@ TEST(ReadingsCsv, AreOfTheBenchThatIsStated) {
             "\"turntable_autocollimator\" or \"hob_transmission\"; the nearest is \"rotary_4dof\"");
   std::ostringstream out;
   EXPECT_THROW(WriteReadingsCsv({}, "", out), InputError) << "there is no usual bench";
+}
+
+TEST(ReadingColumns, MayHoldAQuantityWithoutAFieldOfItsOwn) {
+  const ReadingColumn bar = ShownColumn("bar_um", units::um, "um", Quantity{"bar_um"});
+  Reading reading;
+  EXPECT_EQ(bar.print(reading), "") << "not available";
+  EXPECT_TRUE(bar.parse(reading, "1.25"));
+  EXPECT_DOUBLE_EQ(reading.quantities.at("bar_um"), 1.25e-6);
+  EXPECT_EQ(bar.print(reading), "1.25");
+  bar.number(reading) = kNaN;
+  EXPECT_EQ(bar.print(reading), "");
 }
 
 TEST(ReadingsCsv, WithoutAColumnOfAnyBenchAreRefused) {

@@ -239,6 +239,7 @@ TEST(RunRecord, OfAnotherVersionIsRefused) {
 /// Takes from a record what version 5 brought.
 void MakeVersion4(const std::string& folder) {
   Sql(folder, "ALTER TABLE provenance DROP COLUMN bench_name");
+  Sql(folder, "ALTER TABLE readings DROP COLUMN quantities");
   Sql(folder, "PRAGMA user_version = 4");
 }
 
@@ -257,6 +258,15 @@ void MakeVersion2(const std::string& folder) {
     Sql(folder, ("ALTER TABLE raw_blocks DROP COLUMN " + std::string(column)).c_str());
   for (const char* table : {"calls", "attempts"}) Sql(folder, ("DROP TABLE " + std::string(table)).c_str());
   Sql(folder, "PRAGMA user_version = 2");
+}
+
+TEST(RunRecord, KeepsQuantitiesThatHaveNoFieldOfTheirOwn) {
+  const TemporaryFolder folder;
+  Reading reading = ReadingOf(0);
+  reading.quantities = {{"bar_um", 1.0 / 3.0 * 1e-6}, {"feed_mm_min", kNaN}};
+  RunRecord::Create(folder.path(), AnyProvenance())->Append(reading, {});
+  const std::map<std::string, double> kept = {{"bar_um", 1.0 / 3.0 * 1e-6}};
+  EXPECT_EQ(RunRecord::Open(folder.path())->Readings().at(0).quantities, kept) << "to the same bits";
 }
 
 TEST(RunRecord, OfTheVersionWithoutTheBenchTakesItFromTheScenario) {

@@ -60,6 +60,8 @@ struct Reading {
   double head_rad = kNaN;            // hob: reading head of the table's encoder from the table's origin
   double interferometer_rad = kNaN;  // hob, optional: transmission error as the interferometer saw it
 
+  /// What a bench reads that has no field above: SI, by the name of its column (Quantity in reading_column.h).
+  std::map<std::string, double> quantities;
   std::map<std::string, std::string> extra;  // columns of an imported file that we do not know, kept as text
 };
 

@@ -33,7 +33,18 @@ struct ReadingColumn {
   bool IsShown() const { return role == ColumnRole::kShown || role == ColumnRole::kShownToo; }
 };
 
-/// @param field  Gives the number's place in a reading, as in `[](auto& r) -> auto& { return r.dwell_s; }`.
+/// The place of a quantity that has no field of its own in a reading.
+struct Quantity {
+  std::string column;
+  double& operator()(Reading& r) const { return r.quantities.try_emplace(column, kNaN).first->second; }
+  double operator()(const Reading& r) const {
+    const auto found = r.quantities.find(column);
+    return found == r.quantities.end() ? kNaN : found->second;
+  }
+};
+
+/// @param field  Gives the number's place in a reading, as in `[](auto& r) -> auto& { return r.dwell_s; }`, or a
+///               Quantity.
 template <class Field>
 ReadingColumn NumberColumn(const std::string& name, double to_SI, ColumnRole role, Field field) {
   ReadingColumn column;

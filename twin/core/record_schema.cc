@@ -28,7 +28,7 @@ CREATE TABLE readings(
   psd_a_x_std_V REAL, psd_a_y_std_V REAL, psd_b_x_std_V REAL, psd_b_y_std_V REAL,
   n_samples INTEGER, dwell_s REAL, temperature_degC REAL,
   autocollimator_yaw_rad REAL, autocollimator_tilt_rad REAL, extra TEXT,
-  measured_rad REAL, velocity_rad_s REAL, head_rad REAL, interferometer_rad REAL);
+  measured_rad REAL, velocity_rad_s REAL, head_rad REAL, interferometer_rad REAL, quantities TEXT);
 CREATE TABLE raw_blocks(reading INTEGER PRIMARY KEY REFERENCES readings(reading), channels INTEGER, samples BLOB,
   first_scan INTEGER, device_ns INTEGER, host_ns INTEGER, utc_ns INTEGER, saturated_mask INTEGER);
 CREATE TABLE events(id INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, device TEXT, text TEXT);
@@ -110,9 +110,10 @@ std::string BenchOfReadings(SqliteDatabase& database) {
   return format ? format->name : "";
 }
 
-/// Version 4 did not say which bench it was of. Nothing in a record may be changed, but a new column may have a
-/// value for the row that is there.
+/// Version 4 knew the quantities of four benches and did not say of which it was. Nothing in a record may be
+/// changed, but a new column may have a value for the row that is there.
 void FromVersion4(SqliteDatabase& database) {
+  AddColumns(database, "readings", "TEXT", {"quantities"});
   std::string bench = BenchOfScenario(database.path());
   if (bench.empty()) bench = BenchOfReadings(database);
   AddColumns(database, "provenance", fmt::format("TEXT DEFAULT '{}'", bench).c_str(), {"bench_name"});

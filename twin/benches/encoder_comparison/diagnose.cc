@@ -4,7 +4,6 @@
 #include "twin/diagnose/encoder/families.h"
 #include "twin/diagnose/encoder/harmonic_table.h"
 #include "twin/diagnose/encoder/next_measurement.h"
-#include "twin/diagnose/rotary_search.h"
 
 namespace twinbench::benches::encoder {
 

@@ -4,7 +4,6 @@
 #include "twin/diagnose/hob/hob_answers.h"
 #include "twin/diagnose/hob/hob_run.h"
 #include "twin/diagnose/hob/next_measurement.h"
-#include "twin/diagnose/rotary_search.h"
 
 namespace twinbench::benches::hob {
 

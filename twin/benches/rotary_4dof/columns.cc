@@ -52,12 +52,10 @@ std::vector<DesiredColumn> Desired() {
        "settling cannot be named: it looks like backlash"},
       {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
        "wavelength_temperature and thermal_tilt cannot be named: they look like laser_drift, mount_creep or "
-       "unknown "
-       "structure in time"},
+       "unknown structure in time"},
       {"n_samples and psd_..._std_V", HasScatter,
        "the noise of a reading is taken from the scenario, so that a wrong noise figure and small structure "
-       "without a "
-       "name look alike"},
+       "without a name look alike"},
       {"autocollimator_yaw_arcsec and autocollimator_tilt_arcsec",
        [](const Reading& r) {
          return std::isfinite(r.autocollimator_yaw_rad) && std::isfinite(r.autocollimator_tilt_rad);

@@ -2,7 +2,6 @@
 
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/diagnose/conclusion.h"
-#include "twin/diagnose/rotary_search.h"
 #include "twin/diagnose/turntable/disturbed.h"
 #include "twin/diagnose/turntable/next_measurement.h"
 #include "twin/diagnose/turntable/seating.h"
