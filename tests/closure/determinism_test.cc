@@ -5,13 +5,14 @@
 #include <thread>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 
 namespace twinbench {
 namespace {
 
 std::string Text(const Scenario& scenario) {
   std::ostringstream out;
-  WriteReadingsCsv(test::RunTwin(scenario).readings, out);
+  WriteReadingsCsv(test::RunTwin(scenario).readings, kRotaryBench, out);
   return out.str();
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
 
 namespace twinbench {
@@ -36,7 +37,7 @@ void ExpectErrorsReturn(const test::TwinRun& run, double angle_rad, double lengt
 }
 
 Scenario RandomTables(const std::string& clamping, std::uint64_t seed) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   scenario.seed = seed;
   scenario.procedure.clamping = clamping;
@@ -69,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(ClampingsAndSeeds, NoiseFree,
 
 /// The signed order k of the target's wobble error that the published equations leave, per unit of the reference's.
 double PublishedError(int k) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   scenario.procedure.phases = {"full_circle"};
   scenario.procedure.clamping = "reclamp";

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/truth_rows.h"
 #include "tests/support/twin_run.h"
 
@@ -9,7 +10,7 @@ namespace {
 Scenario OracleScenario(const std::string& clamping) {
   const nlohmann::json truth =
       test::ReadTruthFile(test::DataPath("oracle/full_circle_" + clamping + "_truth.json"));
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   scenario.target.errors = test::ErrorsOfRows(truth.at("target"), false);
   scenario.reference.errors = test::ErrorsOfRows(truth.at("reference_rotor_frame"), true);

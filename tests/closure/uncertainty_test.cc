@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
 
 namespace twinbench {
@@ -15,7 +16,7 @@ using separate::Table;
 constexpr int kSeeds = 200;
 
 Scenario NoisyScenario(const std::string& clamping) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   const double as = units::arcsec, um = units::um;
   scenario.target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
   scenario.reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
@@ -93,7 +94,7 @@ double Power(const std::vector<double>& x, int k) {
 }
 
 TEST(IndexError, ScattersByHarmonicAsTheVarianceFormulaSays) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = false;
   scenario.procedure.phases = {"full_circle"};
   scenario.procedure.shifts = {0, 1, 7, 11};

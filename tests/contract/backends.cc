@@ -5,6 +5,7 @@
 #include "tests/contract/rotary_bench.h"
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/run_record.h"
 #include "twin/sim/twin.h"
 
@@ -58,7 +59,7 @@ class RecordedAndReplayed : public LivingBench {
   explicit RecordedAndReplayed(const Scenario& scenario)
       : twin_(scenario),
         devices_(twin_.Bench()),
-        record_(RunRecord::Create(folder_.path(), {"test", "twin", scenario.seed, ""})),
+        record_(RunRecord::Create(folder_.path(), {"test", "twin", scenario.seed, "", kRotaryBench})),
         asked_([this](const std::string& device, const std::string& request) { return Ask(device, request); },
                [this] { return devices_.clock.Now(); }, nullptr) {}
   ~RecordedAndReplayed() override {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/errors.h"
 
 /// The contract of twin/core/devices.h. Every backend of a rotary bench goes through the same tests; a new one adds
@@ -30,7 +31,7 @@ class RotaryBenchContract : public ::testing::TestWithParam<BenchBackend> {
     living_ = GetParam().make(scenario);
     return living_->Bench();
   }
-  RotaryBench NewBench() { return NewBench(Scenario{}); }
+  RotaryBench NewBench() { return NewBench(test::RotaryScenario()); }
 
   static void GoTo(RotaryBench& bench, double target_rad, double reference_rad) {
     bench.target.StartMove(target_rad);
@@ -263,7 +264,7 @@ TEST_P(RotaryBenchContract, ABlockWithoutLightHasAStatusAndNoNumbers) {
 }
 
 TEST_P(RotaryBenchContract, ASaturatedChannelHasNoMeanAndItsBlockAStatus) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.amplifier.offset_V[1] = 11.0;
   RotaryBench bench = NewBench(scenario);
   const Acquisition block = bench.adc.Acquire(kSamples, false);
@@ -294,7 +295,7 @@ TEST_P(RotaryBenchContract, MountedAgainUnchangedReadsTheSame) {
 TEST_P(RotaryBenchContract, AMountingTakesTheShiftBack) {
   // In both ways of clamping the light is back on the PSDs: reference at `shift`, and that taken back by hand.
   for (const bool reseat : {true, false}) {
-    Scenario scenario;
+    Scenario scenario = test::RotaryScenario();
     scenario.procedure.clamping = reseat ? "reseat" : "reclamp";
     RotaryBench bench = NewBench(scenario);
     const Acquisition before = bench.adc.Acquire(kSamples, false);
@@ -337,7 +338,7 @@ TEST_P(RotaryBenchContract, TheThermometerReadsARoom) {
 
 TEST_P(RotaryBenchContract, SameSeedSameBits) {
   if (!GetParam().repeats_its_bits) GTEST_SKIP() << "a real bench has no seed";
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.reference.seating_sd[2] = 5.0 * units::arcsec;
   scenario.target.repeatability_sd[0] = 1.0 * units::arcsec;
   const auto session = [&](std::uint64_t seed) {

@@ -5,6 +5,7 @@
 #include "hw_bridge/replay/replay_bench.h"
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/run_record.h"
 #include "twin/sim/twin.h"
 
@@ -68,7 +69,7 @@ TEST(SameResult, OfARecording) {
   {
     sim::Twin twin(scenario);
     RotaryBench bench = twin.Bench();
-    const auto record = RunRecord::Create(folder.path(), {"test", "twin", scenario.seed, ""});
+    const auto record = RunRecord::Create(folder.path(), {"test", "twin", scenario.seed, "", kRotaryBench});
     procedure::Options options;
     options.log = record.get();
     procedure::CarryOut(bench, scenario, *record, {}, options);

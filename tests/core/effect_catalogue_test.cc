@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "twin/benches/names.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/units.h"
 
 namespace twinbench {
@@ -15,7 +17,7 @@ using testing::ElementsAre;
 
 TEST(EffectCatalogue, HasTheEffectsOfTheRotaryBench) {
   std::vector<std::string> names;
-  for (const EffectEntry& entry : EffectCatalogue()) names.push_back(entry.name);
+  for (const EffectEntry& entry : EffectCatalogue(kRotaryBench)) names.push_back(entry.name);
   EXPECT_THAT(names,
               testing::UnorderedElementsAre("psd_gain", "psd_roll", "psd_nonlinearity", "stray_light",
                                             "psd_distance", "wavelength_offset", "wavelength_temperature",
@@ -32,19 +34,19 @@ TEST(EffectCatalogue, HasTheEffectsOfTheAngleComparison) {
                          "signal_clipping", "interpolation", "latency", "backlash", "hysteresis", "scale", "drift",
                          "slip", "periodic", "gear_mesh", "reference_fault", "outliers"));
   EXPECT_EQ(FindEffect("psd_gain", "encoder_comparison"), nullptr);
-  EXPECT_THROW(EffectCatalogue("lathe"), std::logic_error);
+  EXPECT_THROW(EffectCatalogue("lathe"), InputError);
 }
 
 TEST(EffectCatalogue, SaysWhereAnEffectCanAct) {
-  EXPECT_THAT(FindEffect("psd_gain")->places, ElementsAre("psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"));
-  EXPECT_THAT(FindEffect("laser_drift")->places, ElementsAre("yaw", "pitch"));
-  EXPECT_THAT(FindEffect("slip")->places, ElementsAre("yaw", "tilt", "lateral"));
-  EXPECT_TRUE(FindEffect("wavelength_offset")->places.empty());
-  EXPECT_EQ(FindEffect("backlash")->default_place, "target");
-  EXPECT_EQ(FindEffect("no_such_effect"), nullptr);
+  EXPECT_THAT(FindEffect("psd_gain", kRotaryBench)->places, ElementsAre("psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"));
+  EXPECT_THAT(FindEffect("laser_drift", kRotaryBench)->places, ElementsAre("yaw", "pitch"));
+  EXPECT_THAT(FindEffect("slip", kRotaryBench)->places, ElementsAre("yaw", "tilt", "lateral"));
+  EXPECT_TRUE(FindEffect("wavelength_offset", kRotaryBench)->places.empty());
+  EXPECT_EQ(FindEffect("backlash", kRotaryBench)->default_place, "target");
+  EXPECT_EQ(FindEffect("no_such_effect", kRotaryBench), nullptr);
 }
 
-class EveryBench : public testing::TestWithParam<const char*> {};
+class EveryBench : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryBench, HasDefaultsWithinBoundsAndPlacesThatExist) {
   for (const EffectEntry& entry : EffectCatalogue(GetParam())) {
@@ -60,20 +62,20 @@ TEST_P(EveryBench, HasDefaultsWithinBoundsAndPlacesThatExist) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(EffectCatalogue, EveryBench, testing::Values("rotary_4dof", "encoder_comparison"));
+INSTANTIATE_TEST_SUITE_P(EffectCatalogue, EveryBench, testing::ValuesIn(BenchNames()));
 
 TEST(EffectCatalogue, GivesKeysTheirUnitAndValuesInSI) {
-  const EffectParameter& roll = FindEffect("psd_roll")->parameters.front();
+  const EffectParameter& roll = FindEffect("psd_roll", kRotaryBench)->parameters.front();
   EXPECT_EQ(roll.Key(), "roll_mrad");
   EXPECT_EQ(roll.default_SI, 5.0 * units::mrad);
-  EXPECT_EQ(FindEffect("psd_gain")->parameters.front().Key(), "gain_error");
-  const EffectParameter& drift = FindEffect("laser_drift")->parameters.front();
+  EXPECT_EQ(FindEffect("psd_gain", kRotaryBench)->parameters.front().Key(), "gain_error");
+  const EffectParameter& drift = FindEffect("laser_drift", kRotaryBench)->parameters.front();
   EXPECT_EQ(drift.Key(), "drift_urad_per_h");
   EXPECT_DOUBLE_EQ(drift.default_SI, 20e-6 / 3600.0);
 }
 
 TEST(EffectCatalogue, KnowsWhichParameterBelongsToAPlace) {
-  const auto& parameters = FindEffect("slip")->parameters;
+  const auto& parameters = FindEffect("slip", kRotaryBench)->parameters;
   EXPECT_TRUE(parameters[0].BelongsTo("yaw"));
   EXPECT_FALSE(parameters[0].BelongsTo("lateral"));
   EXPECT_TRUE(parameters[2].BelongsTo("lateral"));

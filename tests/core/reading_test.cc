@@ -8,6 +8,8 @@
 #include <sstream>
 
 #include "tests/core/input_error.h"
+#include "twin/benches/names.h"
+#include "twin/core/reading_column.h"
 #include "twin/core/units.h"
 
 namespace twinbench {
@@ -25,9 +27,9 @@ std::vector<Reading> ParseReadings(const std::string& text) {
   return ParseReadingsCsv(in, "r.csv");
 }
 
-std::string Write(const std::vector<Reading>& readings) {
+std::string Write(const std::vector<Reading>& readings, const std::string& bench = kRotaryBench) {
   std::ostringstream out;
-  WriteReadingsCsv(readings, out);
+  WriteReadingsCsv(readings, bench, out);
   return out.str();
 }
 
@@ -150,6 +152,32 @@ TEST(ReadingsCsv, NameEveryMissingColumnAtOnce) {
       "of the bench rotary_4dof");
 }
 
+TEST(ReadingsCsv, AreOfTheBenchThatIsStated) {
+  std::istringstream in(std::string(kHeader) + "\n");
+  EXPECT_EQ(MessageOf([&] { ParseReadingsCsv(in, "r.csv", "rotary_4df"); }),
+            "r.csv: unknown bench \"rotary_4df\"; expected \"rotary_4dof\", \"encoder_comparison\", "
+            "\"turntable_autocollimator\" or \"hob_transmission\"; the nearest is \"rotary_4dof\"");
+  std::ostringstream out;
+  EXPECT_THROW(WriteReadingsCsv({}, "", out), InputError) << "there is no usual bench";
+}
+
+TEST(ReadingColumns, MayHoldAQuantityWithoutAFieldOfItsOwn) {
+  const ReadingColumn bar = ShownColumn("bar_um", units::um, "um", Quantity{"bar_um"});
+  Reading reading;
+  EXPECT_EQ(bar.print(reading), "") << "not available";
+  EXPECT_TRUE(bar.parse(reading, "1.25"));
+  EXPECT_DOUBLE_EQ(reading.quantities.at("bar_um"), 1.25e-6);
+  EXPECT_EQ(bar.print(reading), "1.25");
+  bar.number(reading) = kNaN;
+  EXPECT_EQ(bar.print(reading), "");
+}
+
+TEST(ReadingsCsv, WithoutAColumnOfAnyBenchAreRefused) {
+  EXPECT_EQ(MessageOf([] { ParseReadings("reading,time_s,setup,pass,direction,position,phase,bar_um\n"); }),
+            "r.csv:1: the columns are those of no known bench; expected readings of rotary_4dof, "
+            "encoder_comparison, turntable_autocollimator, hob_transmission");
+}
+
 TEST(ReadingsCsv, NameLineColumnAndFaultOfABadField) {
   EXPECT_EQ(RowError("0,0,0,0,1,0,full_circle,0,0,1,x,3,4"),
             "r.csv:2: psd_a_y_V is \"x\"; expected a finite number of V, or nothing");
@@ -185,7 +213,7 @@ TEST(ReadingsCsv, RefuseReadingsOutOfOrder) {
 }
 
 TEST(ReadingsCsv, SayWhenTheDiskRefuses) {
-  EXPECT_THROW(WriteReadingsCsv({}, "/no/such/folder/r.csv"), BenchError);
+  EXPECT_THROW(WriteReadingsCsv({}, kRotaryBench, "/no/such/folder/r.csv"), BenchError);
   EXPECT_EQ(MessageOf([] { ReadReadingsCsv("no_such.csv"); }),
             "no_such.csv: the file cannot be opened; expected a readable readings.csv");
 }
@@ -237,14 +265,14 @@ TEST(AngleReadings, ComeBackToTheSameBits) {
     for (double* value : {&readings[i].reference_rad, &readings[i].measured_rad, &readings[i].velocity_rad_s})
       *value = normal(random);
   }
-  const auto again = ParseReadings(Write(readings));
+  const auto again = ParseReadings(Write(readings, kEncoderBench));
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(again[i].direction, readings[i].direction);
     EXPECT_EQ(again[i].reference_rad, readings[i].reference_rad);
     EXPECT_EQ(again[i].measured_rad, readings[i].measured_rad);
     EXPECT_EQ(again[i].velocity_rad_s, readings[i].velocity_rad_s);
   }
-  EXPECT_THAT(Write(readings), Not(HasSubstr("psd_a_x_V")));
+  EXPECT_THAT(Write(readings, kEncoderBench), Not(HasSubstr("psd_a_x_V")));
 }
 
 constexpr const char* kTurntableHeader =
@@ -254,13 +282,12 @@ constexpr const char* kTurntableHeader =
 TEST(TurntableReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
   const auto readings = ParseReadings(std::string(kTurntableHeader) + "0,0,0,0,1,0,full_circle,5,-5,1.25,-60\n" +
                               "1,2,0,0,1,1,full_circle,10,-10,,\n");
-  EXPECT_EQ(BenchOf(readings), "turntable_autocollimator");
   EXPECT_DOUBLE_EQ(readings[0].target_rad, 5.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].reference_rad, -5.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].autocollimator_yaw_rad, 1.25 * units::arcsec);
   EXPECT_DOUBLE_EQ(readings[0].autocollimator_tilt_rad, -60.0 * units::arcsec);
   EXPECT_EQ(readings[1].status, ReadingStatus::kMissing) << "the autocollimator showed nothing";
-  const auto again = ParseReadings(Write(readings));
+  const auto again = ParseReadings(Write(readings, kTurntableBench));
   EXPECT_EQ(again[0].autocollimator_yaw_rad, readings[0].autocollimator_yaw_rad);
   EXPECT_EQ(again[1].status, ReadingStatus::kMissing);
 }
@@ -281,13 +308,12 @@ constexpr const char* kHobHeader =
 TEST(HobReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
   const auto readings = ParseReadings(std::string(kHobHeader) + ",interferometer_arcsec\n" +
                               "0,0,0,0,1,0,full_circle,0.5,11,180,2.5\n1,2,0,0,0,1,full_circle,,22,180,\n");
-  EXPECT_EQ(BenchOf(readings), "hob_transmission");
   EXPECT_DOUBLE_EQ(readings[0].measured_rad, 0.5 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].reference_rad, 11.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].head_rad, 180.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].interferometer_rad, 2.5 * units::arcsec);
   EXPECT_EQ(readings[1].status, ReadingStatus::kMissing);
-  const auto again = ParseReadings(Write(readings));
+  const auto again = ParseReadings(Write(readings, kHobBench));
   EXPECT_EQ(again[0].measured_rad, readings[0].measured_rad);
   EXPECT_EQ(again[0].head_rad, readings[0].head_rad);
   EXPECT_EQ(again[0].interferometer_rad, readings[0].interferometer_rad);

@@ -13,6 +13,7 @@
 #include <random>
 
 #include "tests/core/input_error.h"
+#include "twin/benches/names.h"
 
 namespace twinbench {
 namespace {
@@ -20,7 +21,7 @@ namespace {
 using testing::HasSubstr;
 
 Provenance AnyProvenance() {
-  return {"0.1.0", "twin", 18446744073709551615u, "2026-01-02T03:04:05Z"};
+  return {"0.1.0", "twin", 18446744073709551615u, "2026-01-02T03:04:05Z", kRotaryBench};
 }
 
 /// A reading that follows from its number, so that the one that comes back can be checked.
@@ -111,7 +112,8 @@ TEST(RunRecord, GivesBackWhatItWasGiven) {
   for (int i = 0; i < 40; ++i) ExpectSame(readings[static_cast<std::size_t>(i)], ReadingOf(i));
   EXPECT_EQ(record->provenance().seed, AnyProvenance().seed);
   EXPECT_EQ(record->provenance().program_version, "0.1.0");
-  EXPECT_EQ(record->provenance().bench, "twin");
+  EXPECT_EQ(record->provenance().source, "twin");
+  EXPECT_EQ(record->provenance().bench, kRotaryBench);
   EXPECT_EQ(record->provenance().clock_origin_utc, "2026-01-02T03:04:05Z");
 }
 
@@ -231,11 +233,19 @@ TEST(RunRecord, OfAnotherVersionIsRefused) {
   RunRecord::Create(folder.path(), AnyProvenance());
   Sql(folder.path(), "PRAGMA user_version = 99");
   EXPECT_EQ(OpenError(folder.path()),
-            folder.File("record.sqlite") + ": the record has version 99; expected version 4");
+            folder.File("record.sqlite") + ": the record has version 99; expected version 5");
+}
+
+/// Takes from a record what version 5 brought.
+void MakeVersion4(const std::string& folder) {
+  Sql(folder, "ALTER TABLE provenance DROP COLUMN bench_name");
+  Sql(folder, "ALTER TABLE readings DROP COLUMN quantities");
+  Sql(folder, "PRAGMA user_version = 4");
 }
 
 /// Takes from a record what version 4 brought.
 void MakeVersion3(const std::string& folder) {
+  MakeVersion4(folder);
   for (const char* column : {"head_rad", "interferometer_rad"})
     Sql(folder, ("ALTER TABLE readings DROP COLUMN " + std::string(column)).c_str());
   Sql(folder, "PRAGMA user_version = 3");
@@ -248,6 +258,47 @@ void MakeVersion2(const std::string& folder) {
     Sql(folder, ("ALTER TABLE raw_blocks DROP COLUMN " + std::string(column)).c_str());
   for (const char* table : {"calls", "attempts"}) Sql(folder, ("DROP TABLE " + std::string(table)).c_str());
   Sql(folder, "PRAGMA user_version = 2");
+}
+
+TEST(RunRecord, KeepsQuantitiesThatHaveNoFieldOfTheirOwn) {
+  const TemporaryFolder folder;
+  Reading reading = ReadingOf(0);
+  reading.quantities = {{"bar_um", 1.0 / 3.0 * 1e-6}, {"feed_mm_min", kNaN}};
+  RunRecord::Create(folder.path(), AnyProvenance())->Append(reading, {});
+  const std::map<std::string, double> kept = {{"bar_um", 1.0 / 3.0 * 1e-6}};
+  EXPECT_EQ(RunRecord::Open(folder.path())->Readings().at(0).quantities, kept) << "to the same bits";
+}
+
+TEST(RunRecord, OfTheVersionWithoutTheBenchTakesItFromTheScenario) {
+  const TemporaryFolder folder;
+  RunRecord::Create(folder.path(), AnyProvenance())->Append(ReadingOf(0), {});
+  MakeVersion4(folder.path());
+  folder.Write("scenario.toml", "bench = \"hob_transmission\"\n[laser]  # of a program that is to come\n");
+  EXPECT_EQ(RunRecord::Open(folder.path())->provenance().bench, kHobBench);
+  EXPECT_EQ(RunRecord::Open(folder.path())->provenance().bench, kHobBench) << "kept";
+  EXPECT_EQ(Sql(folder.path(), "UPDATE provenance SET bench_name = 'x'"), "a run record is insert-only");
+}
+
+TEST(RunRecord, OfTheVersionWithoutTheBenchTellsItByItsReadings) {
+  Reading rotary = ReadingOf(1), encoder, hob, turntable;
+  rotary.autocollimator_yaw_rad = rotary.autocollimator_tilt_rad = 1e-5;  // of a calibration
+  encoder.reference_rad = encoder.measured_rad = 1.0;
+  hob = encoder;
+  hob.head_rad = 2.0;
+  turntable.target_rad = turntable.reference_rad = 1.0;
+  turntable.autocollimator_yaw_rad = turntable.autocollimator_tilt_rad = 1e-5;
+  const std::vector<std::pair<Reading, std::string>> cases = {
+      {rotary, kRotaryBench}, {encoder, kEncoderBench}, {turntable, kTurntableBench}, {hob, kHobBench}};
+  for (const auto& [reading, bench] : cases) {
+    const TemporaryFolder folder;
+    RunRecord::Create(folder.path(), AnyProvenance())->Append(reading, {});
+    MakeVersion4(folder.path());
+    EXPECT_EQ(RunRecord::Open(folder.path())->provenance().bench, bench);
+  }
+  const TemporaryFolder empty;
+  RunRecord::Create(empty.path(), AnyProvenance());
+  MakeVersion4(empty.path());
+  EXPECT_EQ(RunRecord::Open(empty.path())->provenance().bench, "") << "there is nothing to tell it by";
 }
 
 TEST(RunRecord, OfTheVersionWithoutHobbingMachinesIsBroughtUpToDate) {

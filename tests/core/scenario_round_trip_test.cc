@@ -8,6 +8,8 @@
 #include <set>
 
 #include "tests/core/input_error.h"
+#include "twin/benches/names.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
@@ -175,8 +177,8 @@ EffectSettings AnyEffect(const EffectEntry& entry, Random& random) {
 EmpiricalSettings AnyEmpirical(const std::string& bench, Random& random) {
   EmpiricalSettings empirical;
   empirical.signature = "order 7 locked to the \"reference\" angle";
-  const bool is_rotary = bench == "rotary_4dof";
-  const std::vector<std::string> channels = EmpiricalChannels(bench);
+  const bool is_rotary = bench == kRotaryBench;
+  const std::vector<std::string>& channels = FormatOf(bench).channels;
   empirical.channel = channels[random() % channels.size()];
   for (int i = 0; i < 5; ++i) {
     empirical.reading.push_back(3 * i);
@@ -225,19 +227,21 @@ TEST(WriteScenario, IsReadBackToTheSameBitsForEveryKey) {
   const std::string file = folder.Write("exists.txt", "x");
   Random random(5);
   for (int run = 0; run < 30; ++run) {
-    const std::vector<std::string> benches = SupportedBenches();
+    const std::vector<std::string> benches = BenchNames();
     const Scenario scenario = AnyScenario(benches[run % benches.size()], random, file);
     ExpectSameBits(ParseScenario(WriteScenario(scenario), "resolved.toml", "/elsewhere"), scenario);
   }
 }
 
 TEST(WriteScenario, OfTheDefaultsIsReadBackAndReadsWell) {
-  const std::string text = WriteScenario(Scenario{});
+  Scenario defaults;
+  defaults.bench = kRotaryBench;
+  const std::string text = WriteScenario(defaults);
   EXPECT_THAT(text,
               testing::StartsWith("bench = \"rotary_4dof\"\ntitle = \"\"\nseed = 1\nnoise_free = false\n\n[laser]\n"
                                   "wavelength_nm = 650.0\npower_mW = 5.0\n"));
   EXPECT_THAT(text, testing::HasSubstr("sweep_arcsec = 300.0\n"));
-  ExpectSameBits(ParseScenario(text, "resolved.toml", "."), Scenario{});
+  ExpectSameBits(ParseScenario(text, "resolved.toml", "."), defaults);
   EXPECT_EQ(WriteScenario(ParseScenario(text, "resolved.toml", ".")), text);
 }
 
@@ -252,6 +256,7 @@ TEST(WriteScenario, OfAnAngleComparisonHasNoKeyOfTheRotaryBench) {
 
 TEST(WriteScenario, WritesEveryKeyOfTheDescription) {
   Scenario scenario;
+  scenario.bench = kRotaryBench;
   scenario.target.errors = scenario.reference.errors = TableErrors{{0.0}, {{{0}, {0}, {0}, {0}, {0}, {0}}}};
   const std::string text = "\n" + WriteScenario(scenario);
   for (const ScenarioKey& key : KeysOf(scenario)) {
@@ -272,6 +277,7 @@ TEST(WriteScenario, StandsAloneWithoutTheErrorsFile) {
 
 TEST(WriteScenario, RefusesANumberThatIsNotFinite) {
   Scenario scenario;
+  scenario.bench = kRotaryBench;
   scenario.psd_a.roll_rad = std::nan("");
   EXPECT_THROW(WriteScenario(scenario), std::logic_error);
 }

@@ -10,6 +10,7 @@ namespace twinbench {
 namespace {
 
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -203,13 +204,16 @@ TEST(ScenarioOverride, IsNamedWhenItIsWrong) {
 
 // --- bad input: where, what, expected ---
 
-TEST(ScenarioError, NamesTheSupportedBenches) {
+TEST(ScenarioError, NamesTheBenchesThatThereAre) {
   const std::string benches =
       "\"rotary_4dof\", \"encoder_comparison\", \"turntable_autocollimator\" or \"hob_transmission\"";
   EXPECT_EQ(MessageOf([] { ParseScenario("seed = 1\n", "s.toml", ".", {}); }),
             "s.toml:1: bench is missing; expected bench = " + benches);
   EXPECT_EQ(MessageOf([] { ParseScenario("\nbench = \"lathe\"\n", "s.toml", ".", {}); }),
-            "s.toml:2: bench is \"lathe\"; expected " + benches);
+            "s.toml:2: unknown bench \"lathe\"; expected " + benches + "; the nearest is \"rotary_4dof\"");
+  EXPECT_THAT(MessageOf([] { ParseScenario("bench = \"hob_transmision\"\n", "s.toml", ".", {}); }),
+              EndsWith("; the nearest is \"hob_transmission\""));
+  EXPECT_THAT(MessageOf([] { WriteScenario(Scenario{}); }), StartsWith("bench: no bench is named; expected "));
 }
 
 TEST(ScenarioError, NamesTheBenchThatAKeyBelongsTo) {

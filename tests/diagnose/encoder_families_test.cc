@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/diagnose/encoder_fit.h"
+#include "twin/benches/names.h"
 #include "twin/diagnose/encoder/next_measurement.h"
 
 // Each named family against the twin's effect: two implementations that share no code.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/diagnose.h"
 

@@ -7,6 +7,7 @@
 
 #include "tests/core/input_error.h"
 #include "tests/sim/encoder_run.h"
+#include "twin/benches/names.h"
 #include "twin/diagnose/engine/projector.h"
 
 namespace twinbench::diagnose::encoder {

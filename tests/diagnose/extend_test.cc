@@ -1,3 +1,4 @@
+#include "twin/benches/names.h"
 #include "twin/diagnose/extend.h"
 
 #include <gmock/gmock.h>
@@ -31,6 +32,7 @@ DiagnosisRun FoundGain(double gain_error) {
 DiagnosisRun FoundStructure(const std::vector<int>& readings, double size_m) {
   DiagnosisRun run;
   run.diagnosis.verdict = Verdict::kUnknown;
+  run.run.bench = kRotaryBench;
   run.run.channels = {kChannelNames.begin(), kChannelNames.end()};
   run.run.schedule.reading = readings;
   Accepted accepted;

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "twin/benches/names.h"
 #include "twin/diagnose/diagnose.h"
 
 /// Diagnoses as a search may leave them, for the tests of what becomes of them: file, words, extended scenario.
@@ -37,6 +38,7 @@ inline Gain ClearGain() {
 /// A run of the rotary bench with one named cause.
 inline DiagnosisRun NamedRun(const Cause& cause) {
   DiagnosisRun run;
+  run.run.bench = kRotaryBench;
   run.run.unit = "um";
   run.run.to_SI = 1e-6;
   run.diagnosis.verdict = Verdict::kNamed;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "twin/benches/names.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tests/diagnose/hob_chain.h"
+#include "twin/benches/registry.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/extend.h"

@@ -5,7 +5,9 @@
 
 #include "tests/core/input_error.h"
 #include "tests/diagnose/ring_run.h"
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 #include "twin/diagnose/missing.h"
 #include "twin/diagnose/rotary/rotary_run.h"
 
@@ -48,7 +50,7 @@ TEST(Redundancy, IsNotAskedOfACalibrationAlone) {
 }
 
 TEST(Redundancy, OfThePublishedDesignOnTheRotaryBenchIsNone) {
-  Scenario scenario;
+  Scenario scenario = twinbench::test::RotaryScenario();
   scenario.procedure.positions = 24;
   scenario.procedure.shifts = {0, 1};
   scenario.procedure.passes = {1};
@@ -72,7 +74,7 @@ TEST(MissingColumns, SaysWhenTheWholeCalibrationIsMissing) {
 }
 
 TEST(MissingColumns, HasNothingToSayOfACompleteRun) {
-  Scenario scenario;
+  Scenario scenario = twinbench::test::RotaryScenario();
   scenario.procedure.positions = 12;
   EXPECT_THAT(MissingColumns(twinbench::test::RunTwin(scenario).readings, kRotaryBench), IsEmpty());
 }

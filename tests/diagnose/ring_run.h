@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "twin/benches/names.h"
 #include "twin/core/stream.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/engine/projector.h"
@@ -24,6 +25,7 @@ inline constexpr int kRingChannels = 2;
 /// the calibration has offsets of its own.
 inline LinearRun MakeRing(const RingShape& shape = {}) {
   LinearRun run;
+  run.bench = kRotaryBench;
   run.channels = {"a", "b"};
   run.unit = "um";
   run.to_SI = 1e-6;

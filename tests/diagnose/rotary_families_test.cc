@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
@@ -23,7 +24,7 @@ Scenario BenchOf(const std::string& effect, const std::string& where) {
   EffectSettings settings;
   settings.name = effect;
   settings.where = where;
-  for (const EffectParameter& p : FindEffect(effect)->parameters) {
+  for (const EffectParameter& p : FindEffect(effect, kRotaryBench)->parameters) {
     if (p.BelongsTo(where)) settings.parameters[p.name] = p.default_SI;
   }
   if (effect == "mount_creep") settings.parameters["time_constant"] = 200.0;

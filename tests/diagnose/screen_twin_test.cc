@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/diagnose/support/synthetic_run.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/scenario.h"
 #include "twin/core/units.h"
@@ -26,7 +27,7 @@ class RawSink : public ReadingSink {
 
 /// A short run that keeps its raw codes. Both tables wobble, so that the spots visit a few hundred codes.
 Scenario SmallBench(std::uint64_t seed) {
-  Scenario scenario;
+  Scenario scenario = twinbench::test::RotaryScenario();
   scenario.seed = seed;
   scenario.procedure.positions = 12;
   scenario.procedure.shifts = {0, 1, 5};

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/benches/names.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/diagnose/turntable_bench.h"
+#include "twin/benches/registry.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/words.h"

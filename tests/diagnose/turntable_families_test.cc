@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tests/diagnose/turntable_bench.h"
+#include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/diagnose/turntable/families.h"
 

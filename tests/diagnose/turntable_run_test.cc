@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/diagnose/turntable_bench.h"
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/engine/projector.h"

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/hob/hob_run.h"
 #include "twin/diagnose/turntable/turntable_run.h"

@@ -7,6 +7,7 @@
 #include "tests/hidden/judge.h"
 #include "tests/support/truth_rows.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::hidden {

@@ -4,6 +4,7 @@
 
 #include "tests/hidden/reduced.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 
 // The cases of the independent generators, whose shapes are those of no library of ours.
 namespace twinbench::hidden {

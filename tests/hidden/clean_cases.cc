@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/hidden/placements.h"
+#include "twin/benches/names.h"
 
 namespace twinbench::hidden {
 namespace {

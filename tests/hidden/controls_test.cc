@@ -5,6 +5,8 @@
 #include "tests/hidden/clean_cases.h"
 #include "tests/hidden/reduced.h"
 #include "tests/hidden/twin_cases.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 
 // Changes of the readings or the model that must change the answer.
@@ -22,7 +24,7 @@ EffectSettings Effect(const std::string& name, const std::string& where,
   EffectSettings effect;
   effect.name = name;
   effect.where = where;
-  for (const EffectParameter& p : FindEffect(name)->parameters) {
+  for (const EffectParameter& p : FindEffect(name, kRotaryBench)->parameters) {
     if (p.BelongsTo(where)) effect.parameters[p.name] = p.default_SI;
   }
   for (const auto& [key, value] : parameters) effect.parameters.at(key) = value;

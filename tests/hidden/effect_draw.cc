@@ -4,6 +4,7 @@
 
 #include "tests/hidden/bench_runs.h"
 #include "tests/hidden/effect_size.h"
+#include "twin/benches/names.h"
 
 namespace twinbench::hidden {
 namespace {

@@ -12,6 +12,8 @@
 #include "tests/hidden/score_table.h"
 #include "tests/hidden/twin_cases.h"
 #include "tests/hidden/unlisted.h"
+#include "twin/benches/names.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
 #include "twin/core/scenario_schema.h"
 
@@ -32,7 +34,7 @@ struct Options {
 std::vector<Plan> OfBenches(const Options& options,
                             const std::function<std::vector<Plan>(const std::string& bench)>& make) {
   std::vector<Plan> plans;
-  for (const std::string& bench : SupportedBenches()) {
+  for (const std::string& bench : BenchNames()) {
     if (!options.bench.empty() && options.bench != bench) continue;
     const std::vector<Plan> more = make(bench);
     plans.insert(plans.end(), more.begin(), more.end());
@@ -125,7 +127,7 @@ int main(int argc, char** argv) {
       ->required()
       ->allow_extra_args(false);
   app.add_option("--bench", options.bench, "of the sets made by the twin, only this bench")
-      ->check(CLI::IsMember(twinbench::SupportedBenches()));
+      ->check(CLI::IsMember(twinbench::BenchNames()));
   app.add_option("--only", options.only, "only cases with this in their name");
   app.add_option("--threads", options.threads, "cases at a time")->check(CLI::Range(1, 64));
   app.add_option("--seeds", options.twin.seeds, "cases of each effect, place and size");

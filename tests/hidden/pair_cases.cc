@@ -4,6 +4,7 @@
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_case.h"
 #include "tests/hidden/twin_cases.h"
+#include "twin/benches/names.h"
 
 // Two causes at once.
 namespace twinbench::hidden {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 
 namespace twinbench::hidden {

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <thread>
 
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/sim/follow_bench.h"
 

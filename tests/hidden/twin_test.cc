@@ -6,6 +6,8 @@
 #include "tests/hidden/reduced.h"
 #include "tests/hidden/twin_cases.h"
 #include "tests/hidden/unlisted.h"
+#include "twin/benches/names.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/scenario_schema.h"
 
 // Cases that the twin makes: a sample of what hidden_score runs in full.
@@ -82,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(EveryBench, Twin,
                          [](const auto& of) { return std::string(of.param); });
 
 TEST(HiddenCases, CoverEveryEffectOfEveryCatalogue) {
-  for (const std::string& bench : SupportedBenches()) {
+  for (const std::string& bench : BenchNames()) {
     const auto plans = OneOfEachEffect(bench, SinglePlans(bench, OneSize()));
     EXPECT_EQ(plans.size(), EffectCatalogue(bench).size()) << bench;
   }

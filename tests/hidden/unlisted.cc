@@ -4,6 +4,7 @@
 
 #include "tests/hidden/placements.h"
 #include "tests/hidden/unlisted_cause.h"
+#include "twin/benches/names.h"
 
 namespace twinbench::hidden {
 namespace {

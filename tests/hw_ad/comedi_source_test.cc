@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "tests/hw_ad/backend_test.h"
+#include "tests/support/rotary_scenario.h"
 
 /// On libcomedi itself. Run with the library of tests/support/comedi_device preloaded, as ctest does: it answers
 /// for /dev/comedi0 with the counts of a served twin.
@@ -38,14 +39,14 @@ class ComediSourceTest : public ::testing::Test {
 };
 
 TEST_F(ComediSourceTest, GivesTheServedTwinsOwnBlocks) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
 }
 
 TEST_F(ComediSourceTest, GivesTheTwinsBlocksInAnotherRangeAndResolution) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.adc.rate_Hz = 100e3;
   scenario.adc.range_V = 5.0;
   scenario.adc.bits = 12;
@@ -56,7 +57,7 @@ TEST_F(ComediSourceTest, GivesTheTwinsBlocksInAnotherRangeAndResolution) {
 }
 
 TEST_F(ComediSourceTest, TellsWhatTheCardIs) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const Negotiated actual = Open(served, scenario, ComediSettings(served))->Actual();
   EXPECT_EQ(actual.bits, 16);
@@ -69,7 +70,7 @@ TEST_F(ComediSourceTest, TellsWhatTheCardIs) {
 }
 
 TEST_F(ComediSourceTest, LosesTheLightAsTheTwinDoes) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   served.Ask("GON:MOVE 10800,0;*OPC?");
@@ -92,7 +93,7 @@ struct Struck {
 class ComediFault : public ComediSourceTest, public ::testing::WithParamInterface<Struck> {};
 
 TEST_P(ComediFault, IsNamedAndTheNextBlockIsWhole) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   served.Ask("GON:MOVE 150,80;*OPC?");
@@ -117,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Every, ComediFault,
                          [](const auto& instance) { return std::string(instance.param.injected); });
 
 TEST_F(ComediSourceTest, StartsAgainAfterAFullFifo) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   setenv("TWINBENCH_COMEDI_FAULT", "fifo_full", 1);
@@ -133,7 +134,7 @@ TEST_F(ComediSourceTest, StartsAgainAfterAFullFifo) {
 }
 
 TEST_F(ComediSourceTest, RefusesWhatTheCardHasNot) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const AdSettings good = ComediSettings(served);
   AdSettings settings = good;
@@ -157,7 +158,7 @@ TEST_F(ComediSourceTest, RefusesWhatTheCardHasNot) {
 }
 
 TEST_F(ComediSourceTest, RefusesARateThatTheCardTurnsIntoAnother) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   scenario.adc.rate_Hz = 977517.0;  // 1023 ns a conversion; the card does 4000 ns
   try {
@@ -189,7 +190,7 @@ class CalibrationFile {
 };
 
 TEST_F(ComediSourceTest, MeasuresWithTheCalibrationOfTheFile) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const CalibrationFile file("preloaded-ai16");
   AdSettings settings = ComediSettings(served);
@@ -208,7 +209,7 @@ TEST_F(ComediSourceTest, MeasuresWithTheCalibrationOfTheFile) {
 }
 
 TEST_F(ComediSourceTest, RefusesACalibrationThatIsMissingOrOfAnotherBoard) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   AdSettings settings = ComediSettings(served);
   settings.calibration_file = "/nowhere/card.cal";

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/hw_ad/backend_test.h"
+#include "tests/support/rotary_scenario.h"
 
 namespace twinbench::hw {
 namespace {
@@ -26,14 +27,14 @@ std::unique_ptr<AdFrontEnd> Open(const HeldTwin& served, const Scenario& scenari
 }
 
 TEST(IioSource, GivesTheServedTwinsOwnBlocks) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
 }
 
 TEST(IioSource, GivesTheTwinsBlocksAtAnotherRateRangeAndResolution) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.adc.rate_Hz = 192e3;  // a scan takes 20833.3 ns
   scenario.adc.range_V = 5.0;
   scenario.adc.bits = 12;
@@ -43,7 +44,7 @@ TEST(IioSource, GivesTheTwinsBlocksAtAnotherRateRangeAndResolution) {
 }
 
 TEST(IioSource, SaturatesAndLosesTheLightAsTheTwinDoes) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.amplifier.offset_V[1] = 11.0;
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
@@ -55,7 +56,7 @@ TEST(IioSource, SaturatesAndLosesTheLightAsTheTwinDoes) {
 }
 
 TEST(IioSource, TellsWhatTheCardIs) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   EXPECT_EQ(card->Actual().bits, 16);
@@ -76,7 +77,7 @@ struct Struck {
 class IioFault : public ::testing::TestWithParam<Struck> {};
 
 TEST_P(IioFault, IsNamedAndTheNextBlockIsWhole) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   served.Ask("GON:MOVE 150,80;*OPC?");
@@ -103,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(Every, IioFault,
                          [](const auto& instance) { return std::string(instance.param.injected); });
 
 TEST(IioSource, HasAStatusForSaturationAndDarknessAndMeasuresUnderHum) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   served.Inject("saturate");
@@ -121,7 +122,7 @@ TEST(IioSource, HasAStatusForSaturationAndDarknessAndMeasuresUnderHum) {
 }
 
 TEST(IioSource, NoticesThatTheClockOfTheCardJumps) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   card->Acquire(100, true);
@@ -131,7 +132,7 @@ TEST(IioSource, NoticesThatTheClockOfTheCardJumps) {
 }
 
 TEST(IioSource, ComesBackToACardThatWasSwitchedOffAndOn) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   auto served = std::make_unique<HeldTwin>(scenario);
   const int port = served->iiod_port();
   HeldTwin clock(scenario);
@@ -151,7 +152,7 @@ TEST(IioSource, ComesBackToACardThatWasSwitchedOffAndOn) {
 // --- what does not answer or is not there ---
 
 TEST(IioSource, RefusesADeviceAChannelOrALightThatThereIsNot) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   AdSettings settings = IioSettings(served);
   settings.device = "ad7606";
@@ -168,7 +169,7 @@ TEST(IioSource, RefusesADeviceAChannelOrALightThatThereIsNot) {
 }
 
 TEST(IioSource, RefusesARateThatTheCardCannotDo) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   scenario.adc.rate_Hz = 200e3;
   try {
@@ -183,7 +184,7 @@ TEST(IioSource, RefusesARateThatTheCardCannotDo) {
 TEST(IioSource, GivesUpAServerThatTakesCallsAndSaysNothing) {
   asio::io_context io;
   asio::ip::tcp::acceptor silent(io, {asio::ip::make_address("127.0.0.1"), 0});
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   AdSettings settings = IioSettings(served);
   settings.uri = "ip:127.0.0.1:" + std::to_string(silent.local_endpoint().port());
@@ -193,7 +194,7 @@ TEST(IioSource, GivesUpAServerThatTakesCallsAndSaysNothing) {
 }
 
 TEST(IioSource, CannotBeOpenedWhereNobodyListens) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
   AdSettings settings = IioSettings(served);
   settings.uri = "ip:127.0.0.1:1";

@@ -5,6 +5,7 @@
 #include "hw_bridge/ad/ad_source.h"
 #include "tests/hw_control/fake_controller.h"
 #include "tests/hw_control/faults.h"
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
 #include "twin/sim/twin.h"
 
@@ -20,7 +21,7 @@ BenchFile FileOf(const ServedTwin& served, const std::string& tables) {
 }
 
 Scenario Noisy() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.environment.drift_K_h = 1.0;
   return scenario;
 }

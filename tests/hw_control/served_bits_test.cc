@@ -6,6 +6,7 @@
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/control/served_clock.h"
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
 #include "twin/core/units.h"
 #include "twin/sim/twin.h"
@@ -93,7 +94,7 @@ void ExpectSame(const Trace& got, const Trace& expected) {
 }
 
 Scenario ScenarioOf(const std::string& fidelity) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   const bool is_slow = fidelity == "slow";  // settles long after its profile
   scenario.mechanics.fidelity = is_slow ? "linear" : fidelity;
   scenario.mechanics.payload_mass_kg = 3.0;

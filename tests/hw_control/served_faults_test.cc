@@ -7,6 +7,7 @@
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/control/served_clock.h"
 #include "tests/hw_control/faults.h"
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
 #include "twin/core/units.h"
 
@@ -67,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& c) { return c.param.language + "_" + c.param.fault; });
 
 TEST_P(FaultOf, AControllerEndsTheCallInItsNameAndTheNextCallsWork) {
-  ServedTwin served(Scenario{});
+  ServedTwin served(test::RotaryScenario());
   FaultyTable faulty(served, GetParam().language);
   faulty.table().StartMove(0.5);
   faulty.table().WaitSettled();
@@ -84,7 +85,7 @@ TEST_P(FaultOf, AControllerEndsTheCallInItsNameAndTheNextCallsWork) {
 }
 
 TEST_P(FaultOf, AControllerIsUndoneByStartingTheTwinAgain) {
-  ServedTwin served(Scenario{});
+  ServedTwin served(test::RotaryScenario());
   FaultyTable faulty(served, GetParam().language);
   const auto drive = [&faulty] {
     faulty.table().StartMove(0.3);
@@ -101,7 +102,7 @@ TEST_P(FaultOf, AControllerIsUndoneByStartingTheTwinAgain) {
 
 TEST(ServedTables, RefuseWhatLiesBeyondTheControllersLimits) {
   for (const char* language : {"scpi", "esp"}) {
-    ServedTwin served(Scenario{});
+    ServedTwin served(test::RotaryScenario());
     FaultyTable faulty(served, language);
     EXPECT_EQ(KindOf([&] { faulty.table().StartMove(2e4); }), FaultKind::kLimit) << language;  // its own: 1e4 rad
     EXPECT_EQ(faulty.table().State().encoder_rad, 0.0) << language;
@@ -117,7 +118,7 @@ Duration Drift(const ScpiClock& clock) {
 
 TEST(ServedClock, IsHeldAgainWhereItsConnectionHadToBeOpenedAgain) {
   constexpr double kRealTime = 1.0;
-  ServedTwin served(Scenario{}, kRealTime);
+  ServedTwin served(test::RotaryScenario(), kRealTime);
   Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
   ScpiClock clock({talk, "clock", kBeyondFaults});
   EXPECT_EQ(Drift(clock), Duration(0));
@@ -127,7 +128,7 @@ TEST(ServedClock, IsHeldAgainWhereItsConnectionHadToBeOpenedAgain) {
 
 TEST(ServedClock, WaitsWhatItIsToldAndTakesNoRealTimeUnpaced) {
   constexpr double kRealTime = 1.0;
-  ServedTwin served(Scenario{}, kRealTime);
+  ServedTwin served(test::RotaryScenario(), kRealTime);
   Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,");
   ScpiClock clock({talk, "clock", kBeyondFaults});
   ScpiSimulation(clock).SetPaced(false);
@@ -141,7 +142,7 @@ TEST(ServedClock, WaitsWhatItIsToldAndTakesNoRealTimeUnpaced) {
 }
 
 TEST(ServedClock, KnowsATwinByItsName) {
-  ServedTwin served(Scenario{});
+  ServedTwin served(test::RotaryScenario());
   Dialogue talk(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "");
   ScpiClock clock({talk, "clock", kBeyondFaults});
   clock.Open();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/hw_serve/serving.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/number_text.h"
 
 /// While a client holds the clock, every request is one call of the bench: the answers are those of the same calls
@@ -12,7 +13,7 @@ namespace twinbench::test {
 namespace {
 
 Scenario Lively() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.amplifier.hum_V = 0.02;
   scenario.environment.drift_K_h = 3.0;
   scenario.target.backlash_rad = 3.0 * units::arcsec;
@@ -88,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, HeldClock, testing::Values("kinematic", "li
                          [](const auto& fidelity) { return std::string(fidelity.param); });
 
 TEST(HeldClockOfTheBench, ScansAreStampedAtTheirInstants) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.adc.rate_Hz = 3e5;  // 75 kHz a channel: 13333.3 ns from scan to scan
   ServedTwin served(OnFreePorts(kAtOnce), scenario);
   TcpClient scpi(served.at().scpi_port);
@@ -111,7 +112,7 @@ TEST(HeldClockOfTheBench, ABlockWithoutLightIsZerosAndSaysSo) {
 }
 
 TEST(HeldClockOfTheBench, AFifoThatRunsFullLeavesAStepInTheTimeStamps) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.adc.fifo_samples = 1024;
   scenario.adc.drain_rate_Hz = 125e3;  // half of what comes: full after 2048 conversions, 512 scans
   ServedTwin served(OnFreePorts(kAtOnce), scenario);

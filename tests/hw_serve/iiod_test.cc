@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "tests/hw_serve/serving.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench::test {
@@ -65,7 +66,7 @@ TEST_F(Iiod, DevicesAnswerToIdAndName) {
 }
 
 TEST_F(Iiod, NumbersHaveAllTheirBits) {
-  const Scenario scenario;
+  const Scenario scenario = test::RotaryScenario();
   EXPECT_EQ(ParseInUnit(Value("READ psd-adc16 INPUT voltage0 scale"), 1e-3), scenario.adc.range_V / 32768.0);
   EXPECT_EQ(ParseNumber(Value("READ psd-adc16 range_V")), scenario.adc.range_V);
   EXPECT_EQ(ParseNumber(Value("READ psd-adc16 sampling_frequency")), scenario.adc.rate_Hz / kChannels);

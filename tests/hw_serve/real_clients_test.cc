@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "tests/hw_serve/serving.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/number_text.h"
 
 extern char** environ;
@@ -45,7 +46,7 @@ std::string Uri(int port) {
 
 /// What the running converter of a new twin delivers, taken here in blocks of 4 ms.
 std::string RawStream(int scans) {
-  sim::Twin twin{Scenario{}};
+  sim::Twin twin{test::RotaryScenario()};
   std::string bytes;
   for (int first = 0; first < scans; first += 250) {
     const Acquisition block = twin.Bench().adc.Acquire(250, true);

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/hw_serve/serving.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::test {
@@ -215,12 +216,12 @@ TEST(Robustness, APortThatIsTakenIsAnErrorOfTheBench) {
   ServedTwin served(OnFreePorts(1.0));
   hw::ServeOptions options = OnFreePorts(1.0);
   options.scpi_port = served.at().scpi_port;
-  sim::Twin twin{Scenario{}};
-  EXPECT_THROW(hw::Server(twin.Bench(), Scenario{}, options), BenchError);
+  sim::Twin twin{test::RotaryScenario()};
+  EXPECT_THROW(hw::Server(twin.Bench(), test::RotaryScenario(), options), BenchError);
 }
 
 TEST(Robustness, ABenchWithoutCountsCannotBeServed) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   sim::Twin twin(scenario);
   EXPECT_THROW(hw::Server(twin.Bench(), scenario, OnFreePorts(1.0)), InputError);

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "tests/hw_serve/serving.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench::test {
@@ -83,7 +84,7 @@ TEST_F(Scpi, TheEventRegisterTellsCommandFromExecutionErrors) {
 }
 
 TEST_F(Scpi, TheGoniometerMovesWhatTheAutocollimatorSees) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.autocollimator.noise_rad = 0.0;
   ServedTwin quiet(OnFreePorts(kAtOnce), scenario);
   TcpClient client(quiet.at().scpi_port);

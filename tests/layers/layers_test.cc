@@ -18,10 +18,16 @@ struct Include {
   std::string file, target;
 };
 
-/// Rooms in the order of docs/architecture: a longer name wins over its parent ("twin/core" over "twin").
-const std::vector<std::string> kRooms = {"optics",         "mechanics",     "twin/core",     "twin/model", "twin/sim",
+/// A bench's folder holds three rooms: its text side, which core alone can link; what is done with its readings;
+/// and below twin/ its simulation, which the second never sees but for the header that makes it.
+constexpr const char* kFormats = "twin/benches (text)";
+constexpr const char* kTwins = "twin/benches (twin)";
+
+/// Rooms; a longer name wins over its parent ("twin/core" over "twin").
+const std::vector<std::string> kRooms = {"optics",         "mechanics",     "twin/core",     "twin/sim",
                                          "twin/procedure", "twin/measure",  "twin/separate", "twin/diagnose",
-                                         "twin/plan",      "twin/campaign", "twin/report",   "hw_bridge"};
+                                         "twin/plan",      "twin/campaign", "twin/report",   "hw_bridge",
+                                         "twin/benches",   kFormats,        kTwins};
 
 /// The room table: which of our rooms each may include, besides itself.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
@@ -33,11 +39,18 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"twin/procedure", {"twin/core"}},
     {"twin/measure", {"twin/core"}},
     {"twin/separate", {"twin/core", "twin/measure"}},
-    {"twin/diagnose", {"twin/core", "twin/model", "twin/measure", "twin/separate"}},
+    // Its folders that are named after a bench look up their effects; they will move to the bench.
+    {"twin/diagnose", {"twin/core", "twin/measure", "twin/separate", kFormats}},
     {"twin/plan", {"twin/core", "twin/separate", "twin/diagnose"}},
     {"twin/campaign",
-     {"twin/core", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan"}},
+     {"twin/core", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan",
+      "twin/benches"}},
     {"twin/report", {"twin/core", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan", "twin/campaign"}},
+    {kFormats, {"twin/core"}},
+    {kTwins, {"twin/core", "twin/sim", "twin/procedure", "optics", "mechanics", kFormats}},
+    {"twin/benches",
+     {"twin/core", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/report", kFormats,
+      kTwins}},
     {"hw_bridge", {"twin/core"}}};
 
 /// Third-party headers that only some rooms may see, by how their path begins.
@@ -56,6 +69,10 @@ const std::map<std::string, std::set<std::string>> kOwners = {{"embree", {"optic
                                                               {"pugi", {"hw_bridge"}}};
 
 std::string RoomOf(const std::string& path) {
+  static const std::regex text(R"(twin/benches/((names|formats)|\w+/(format|settings|columns|effects))\.(h|cc))");
+  static const std::regex twin(R"(twin/benches/\w+/twin/.*)");
+  if (std::regex_match(path, text)) return kFormats;
+  if (std::regex_match(path, twin)) return kTwins;
   for (const std::string& room : kRooms) {
     if (path.starts_with(room + "/")) return room;
   }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/stream.h"
 #include "twin/measure/grating_model.h"
 #include "twin/measure/measure.h"
@@ -10,7 +11,7 @@
 namespace twinbench::measure {
 
 inline BenchGeometry Bench() {
-  return NominalGeometry(Scenario{});
+  return NominalGeometry(test::RotaryScenario());
 }
 
 /// Imperfections of the detectors that a calibration should find.

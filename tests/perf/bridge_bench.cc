@@ -21,6 +21,7 @@
 #include <thread>
 
 #include "hw_bridge/serve/server.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/errors.h"
 #include "twin/sim/twin.h"
 
@@ -36,7 +37,7 @@ double Now_s() {
 }
 
 Scenario FastCard() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.adc.rate_Hz = kScanRate_Hz * kChannels;
   scenario.amplifier.hum_V = 0.01;  // so that no signal is constant
   return scenario;

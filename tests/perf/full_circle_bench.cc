@@ -7,6 +7,7 @@
 //   build/tests/perf/bench_full_circle --benchmark_counters_tabular=true
 #include <benchmark/benchmark.h>
 
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/scenario.h"
 #include "twin/procedure/procedure.h"
 #include "twin/sim/twin.h"
@@ -23,7 +24,7 @@ class CountingSink : public ReadingSink {
 };
 
 Scenario PaperTest(const std::string& fidelity, bool every_sample) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.mechanics.fidelity = fidelity;
   scenario.adc.samples = 1000;
   scenario.adc.every_sample = every_sample;

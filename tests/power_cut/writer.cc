@@ -6,12 +6,13 @@
 #include <string>
 
 #include "tests/power_cut/numbered.h"
+#include "twin/benches/names.h"
 
 int main(int argc, char** argv) {
   using namespace twinbench;
   if (argc != 3) return 2;
   const std::string folder = argv[1];
-  const auto record = RunRecord::Create(folder, {"test", "writer", 1, ""});
+  const auto record = RunRecord::Create(folder, {"test", "writer", 1, "", kRotaryBench});
   const int acknowledged = open((folder + "/acknowledged").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
   for (int k = 0; k < std::atoi(argv[2]); ++k) {
     record->Called({Time{}, "adc", "acquire 3000", std::to_string(k)});

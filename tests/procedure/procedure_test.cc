@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::procedure {
@@ -77,7 +78,7 @@ class LogBench : public Clock,
 };
 
 Scenario FullCircleOnly(int positions, std::vector<int> shifts, std::vector<int> passes) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.procedure.phases = {"full_circle"};
   scenario.procedure.positions = positions;
   scenario.procedure.shifts = std::move(shifts);
@@ -138,7 +139,7 @@ TEST(FullCircle, ReclampTurnsTheGratingAndReseatTurnsTheBody) {
 
 TEST(Calibration, SweepsYawThenTiltThereAndBack) {
   LogBench log;
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.procedure.phases = {"calibration"};
   scenario.procedure.sweep_points = 3;
   const auto readings = CarryOutOn(log, scenario);
@@ -153,7 +154,7 @@ TEST(Calibration, SweepsYawThenTiltThereAndBack) {
 
 TEST(Verification, UsesAnglesTheCalibrationDidNotUse) {
   LogBench log;
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.procedure.phases = {"calibration", "verification"};
   std::vector<double> used;
   for (const Reading& r : CarryOutOn(log, scenario)) {
@@ -165,7 +166,7 @@ TEST(Verification, UsesAnglesTheCalibrationDidNotUse) {
 
 TEST(Stability, ReadsTheRestingBenchAtItsInterval) {
   LogBench log;
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.procedure.phases = {"stability"};
   scenario.procedure.stability_s = 60.0;
   scenario.procedure.stability_interval_s = 10.0;
@@ -185,7 +186,7 @@ TEST(CarryOut, AnInvalidBlockBecomesAReadingWithAReasonAndNoNumbers) {
 
 TEST(CarryOut, PlansAsManyReadingsAsItMakes) {
   LogBench log;
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.procedure.phases = {"calibration", "stability", "verification", "full_circle"};
   EXPECT_EQ(static_cast<int>(CarryOutOn(log, scenario).size()), PlannedReadings(scenario.procedure));
 }

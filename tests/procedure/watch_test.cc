@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/memory_log.h"
+#include "tests/support/rotary_scenario.h"
 #include "tests/support/troubled_bench.h"
 #include "twin/core/device_fault.h"
 #include "twin/procedure/procedure.h"
@@ -51,7 +52,7 @@ struct ScriptedBench {
     std::vector<int> setups;
   };
 
-  sim::Twin twin{Scenario{}};
+  sim::Twin twin{test::RotaryScenario()};
   ScriptedTable target, reference;
   Hand fixture;
 };
@@ -153,7 +154,7 @@ TEST(Watch, NeverTrustsATableThatLostItsOrigin) {
 }
 
 Scenario TwoSetups() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.procedure.phases = {"full_circle"};
   scenario.procedure.positions = 36;
   scenario.procedure.shifts = {0, 1};

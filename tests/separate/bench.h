@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/reading.h"
 #include "twin/core/stream.h"
 #include "twin/measure/measure.h"
@@ -15,7 +16,7 @@
 namespace twinbench::separate {
 
 inline BenchGeometry Bench() {
-  return measure::NominalGeometry(Scenario{});
+  return measure::NominalGeometry(test::RotaryScenario());
 }
 
 /// Without Abbe levers: dy has nothing to do with the wobble.

@@ -5,6 +5,7 @@
 
 #include "tests/sim/quiet_scenario.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/sim/effect.h"
 
@@ -24,7 +25,7 @@ constexpr double kV_m = 2000.0;
 /// An effect block as the loader would fill it: the catalogue's defaults with these values on top.
 EffectSettings Effect(const std::string& name, const std::string& where, std::map<std::string, double> values) {
   EffectSettings effect{name, where, {}, "test"};
-  for (const EffectParameter& p : FindEffect(name)->parameters) effect.parameters[p.name] = p.default_SI;
+  for (const EffectParameter& p : FindEffect(name, kRotaryBench)->parameters) effect.parameters[p.name] = p.default_SI;
   for (const auto& [key, value] : values) effect.parameters.at(key) = value;
   return effect;
 }
@@ -70,7 +71,7 @@ void MoveBoth(RotaryBench bench, double target_rad) {
 }
 
 TEST(Effects, TheTwinHasEveryEffectOfTheCatalogueAtEveryPlace) {
-  for (const EffectEntry& entry : EffectCatalogue()) {
+  for (const EffectEntry& entry : EffectCatalogue(kRotaryBench)) {
     const std::vector<std::string> places = entry.places.empty() ? std::vector<std::string>{""} : entry.places;
     for (const std::string& place : places) {
       EXPECT_NE(MakeEffect(Effect(entry.name, place, {}), Quiet()), nullptr) << entry.name << " " << place;
@@ -353,7 +354,7 @@ TEST(Effects, AReversedScaleReadsTheMirroredError) {
 }
 
 TEST(Effects, EachChangesSomethingAndOnlyWhenItIsOn) {
-  for (const EffectEntry& entry : EffectCatalogue()) {
+  for (const EffectEntry& entry : EffectCatalogue(kRotaryBench)) {
     Scenario scenario = Quiet();
     scenario.noise_free = true;
     scenario.environment.drift_K_h = 1.0;

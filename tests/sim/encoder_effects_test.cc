@@ -5,6 +5,7 @@
 
 #include "tests/core/input_error.h"
 #include "tests/sim/encoder_run.h"
+#include "twin/benches/names.h"
 
 // Each effect of the bench encoder_comparison against its closed form.
 namespace twinbench {

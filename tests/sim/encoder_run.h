@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 
 /// Runs of the angle comparison with single effects, without noise unless asked for.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/errors.h"
 #include "twin/sim/twin.h"
 
@@ -29,7 +30,7 @@ Vector3 BeforePsdA() {
 }
 
 Acquisition ReadWith(const std::vector<FixtureSettings>& fixtures, BeamModel beam = BeamModel::kChiefRay) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.laser.beam = beam;
   scenario.laser.yaw_rad = 0.3 * units::mrad;  // spots out of the centres, so that bits can differ
   scenario.laser.pitch_rad = -0.7 * units::mrad;
@@ -85,7 +86,7 @@ TEST(Fixture, ThatRidesOnTheGratingTurnsWithIt) {
   plate.yaw_rad = -std::asin(kSine);
   for (const bool rides : {false, true}) {
     plate.rides_on_grating = rides;
-    Scenario scenario;
+    Scenario scenario = test::RotaryScenario();
     scenario.fixtures = {plate};
     Twin twin(scenario);
     EXPECT_EQ(twin.Bench().adc.Acquire(2, false).status, ReadingStatus::kOk);
@@ -108,7 +109,7 @@ TEST(Fixture, OfAMeshFileStandsInTheLightLikeABox) {
 }
 
 TEST(Fixture, WithoutAReadableMeshIsAnInputErrorAtItsLine) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   FixtureSettings mesh;
   mesh.name = "housing";
   mesh.mesh_file = "/nowhere/housing.stl";

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "twin/benches/names.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/effect_catalogue.h"
 

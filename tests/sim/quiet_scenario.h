@@ -1,11 +1,11 @@
 #pragma once
 
-#include "twin/core/scenario.h"
+#include "tests/support/rotary_scenario.h"
 
 namespace twinbench::sim {
 
 inline Scenario Quiet() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   return scenario;
 }

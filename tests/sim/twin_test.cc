@@ -69,7 +69,7 @@ TEST(Twin, AnAmplifierBeyondTheRangeOfTheConverterIsSaturated) {
 }
 
 TEST(Twin, AFifoThatIsNotDrainedOverruns) {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.adc.fifo_samples = 1024;
   scenario.adc.drain_rate_Hz = 100e3;
   Twin twin(scenario);

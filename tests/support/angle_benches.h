@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/procedure/hob.h"
 #include "twin/procedure/turntable.h"

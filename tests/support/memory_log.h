@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/benches/names.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::test {
@@ -40,7 +41,7 @@ class MemoryLog : public ReadingSink, public RunLog {
 /// readings.csv: text keeps every bit of the numbers, and NaN equals NaN in it.
 inline std::string TextOf(const std::vector<Reading>& readings) {
   std::ostringstream text;
-  WriteReadingsCsv(readings, text);
+  WriteReadingsCsv(readings, kRotaryBench, text);
   return text.str();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::test {
@@ -7,7 +8,7 @@ namespace twinbench::test {
 /// A short run of a bench on which everything changes: noise, drift, seating, repeatability, hum. Whatever state of
 /// it is not restored after a fault shows in the readings.
 inline Scenario RestlessBench() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.seed = 23;
   scenario.procedure.positions = 6;
   scenario.procedure.shifts = {0, 1};

@@ -1,12 +1,13 @@
 #pragma once
 
+#include "tests/support/rotary_scenario.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::test {
 
 /// A run of the rotary bench without noise, short enough for every test: 12 positions, 2 set-ups.
 inline Scenario SmallNoiseFree() {
-  Scenario scenario;
+  Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   scenario.procedure.positions = 12;
   scenario.procedure.shifts = {0, 4};

@@ -54,8 +54,8 @@ TEST_F(Served, KeepsTheRawCountsAndSaysWhoAnswered) {
   Succeed(Measure("measured"));
   const auto record = RunRecord::Open(At("measured"));
   EXPECT_EQ(record->RawBlocks().size(), record->Readings().size());
-  EXPECT_THAT(record->provenance().bench, HasSubstr("twinbench,rotary-bench"));
-  EXPECT_THAT(record->provenance().bench, HasSubstr("psd-adc16"));
+  EXPECT_THAT(record->provenance().source, HasSubstr("twinbench,rotary-bench"));
+  EXPECT_THAT(record->provenance().source, HasSubstr("psd-adc16"));
   const auto events = record->Events();
   EXPECT_THAT(events, testing::Contains(testing::Field(&RecordedEvent::text, HasSubstr("62500 scans/s"))));
 }

@@ -9,16 +9,15 @@
 #include <set>
 #include <utility>
 
-#include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/follow.h"
 #include "tools/twinbench/run_folder.h"
+#include "twin/benches/registry.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/run_record.h"
 #include "twin/diagnose/extend.h"
-#include "twin/diagnose/gain.h"
 #include "twin/diagnose/json.h"
 #include "twin/diagnose/screen/screen.h"
 #include "twin/diagnose/words.h"
@@ -72,10 +71,9 @@ std::string Provenance(const std::string& source, std::size_t readings) {
 /// diagnosis.json, with what the accepted causes change in the separated errors.
 nlohmann::json JsonOf(const diagnose::DiagnosisRun& found, const Scenario& scenario, const std::string& extended) {
   nlohmann::json json = diagnose::ToJson(found, extended);
-  if (scenario.bench == kRotaryBench && !found.accepted.empty()) {
-    json["gain"]["change_of_tables"] = diagnose::ToJson(
-        diagnose::ChangeOfTables(found.run, found.noise, found.accepted, scenario.procedure.positions));
-  }
+  const auto change_of_tables = BenchOf(scenario).change_of_tables;
+  if (change_of_tables && !found.accepted.empty())
+    json["gain"]["change_of_tables"] = change_of_tables(found, scenario);
   return json;
 }
 
@@ -126,7 +124,7 @@ void DiagnoseRun(const DiagnoseOptions& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   CheckStruck(options.struck, run.scenario.bench);
   diagnose::DiagnoseOptions how;
-  how.model = EstimatorOf(options.model);
+  how.model = measure::EstimatorNamed(options.model);
   how.struck = options.struck;
   how.cache_folder = CacheFolder(options.cache);
   if (sim::CanFollow(run.scenario)) how.follow = sim::FollowBench;
@@ -149,7 +147,7 @@ void DiagnoseRun(const DiagnoseOptions& options) {
 void Diagnose(const DiagnoseOptions& options) {
   if (!options.follow) return DiagnoseRun(options);
   Follow({options.source, options.scenario, options.json, options.overrides, options.false_alarm_rate,
-          EstimatorOf(options.model) == measure::Estimator::kPublished});
+          measure::EstimatorNamed(options.model)});
 }
 
 }  // namespace

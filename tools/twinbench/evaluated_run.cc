@@ -2,16 +2,18 @@
 
 #include <fmt/core.h>
 
-#include "tools/twinbench/evaluation.h"
 #include "tools/twinbench/run_folder.h"
+#include "twin/benches/registry.h"
 #include "twin/core/run_record.h"
+#include "twin/measure/measure.h"
+#include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 
 bool EvaluateRun(const Scenario& scenario, const std::string& folder) {
   const RunFolder run{folder};
-  const Evaluation evaluation =
-      Evaluate(scenario, RunRecord::Open(folder)->Readings(), measure::Estimator::kRigorous);
+  const report::Evaluation evaluation = BenchOf(scenario).evaluate(
+      scenario, RunRecord::Open(folder)->Readings(), measure::Estimator::kRigorous);
   WriteJson(run.results(), evaluation.results);
   fmt::print("{}", evaluation.summary);
   return evaluation.Separated();

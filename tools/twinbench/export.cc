@@ -15,9 +15,11 @@ struct ExportOptions {
 };
 
 void Export(const ExportOptions& options) {
-  const auto readings = RunRecord::Open(options.folder)->Readings();
-  if (options.readings == "-") return WriteReadingsCsv(readings, std::cout);
-  WriteReadingsCsv(readings, options.readings);
+  const auto record = RunRecord::Open(options.folder);
+  const std::vector<Reading> readings = record->Readings();
+  const std::string bench = record->provenance().bench;
+  if (options.readings == "-") return WriteReadingsCsv(readings, bench, std::cout);
+  WriteReadingsCsv(readings, bench, options.readings);
   fmt::print(stderr, "{} readings written to {}\n", readings.size(), options.readings);
 }
 

@@ -11,18 +11,10 @@
 #include <thread>
 
 #include "tools/twinbench/run_folder.h"
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
-#include "twin/diagnose/encoder/encoder_run.h"
-#include "twin/diagnose/hob/hob_run.h"
-#include "twin/diagnose/rotary/rotary_run.h"
-#include "twin/diagnose/turntable/turntable_run.h"
 #include "twin/diagnose/watch.h"
-#include "twin/procedure/angle_comparison.h"
-#include "twin/procedure/hob.h"
-#include "twin/procedure/procedure.h"
-#include "twin/procedure/turntable.h"
-#include "twin/sim/follow_bench.h"
 
 namespace twinbench::tools {
 namespace {
@@ -49,21 +41,6 @@ class InterruptGuard {
  private:
   void (*before_)(int);
 };
-
-diagnose::LinearRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, bool published) {
-  if (scenario.bench == kEncoderBench) return diagnose::encoder::BuildRun(readings, scenario, sim::FollowBench).run;
-  if (scenario.bench == kTurntableBench) return diagnose::turntable::BuildRun(readings, scenario).run;
-  if (scenario.bench == kHobBench) return diagnose::hob::BuildRun(readings, scenario).run;
-  return diagnose::rotary::BuildRun(readings, scenario, {published, sim::FollowBench}).run;
-}
-
-int PlannedReadings(const Scenario& scenario) {
-  if (scenario.bench == kEncoderBench)
-    return static_cast<int>(procedure::AngleSchedule(scenario.encoder_procedure).size());
-  if (scenario.bench == kTurntableBench) return procedure::PlannedReadings(scenario.turntable_procedure);
-  if (scenario.bench == kHobBench) return procedure::PlannedReadings(scenario.hob_procedure);
-  return procedure::PlannedReadings(scenario.procedure);
-}
 
 /// The state of a watch after some readings.
 struct Watched {
@@ -138,8 +115,9 @@ class Follower {
   /// Nothing while there are too few readings to predict from.
   std::optional<Watched> Judge(const std::vector<Reading>& readings) const {
     try {
-      const diagnose::LinearRun run = BuildRun(readings, scenario_, options_.published);
-      const diagnose::WatchOptions how{options_.false_alarm_rate, PlannedReadings(scenario_)};
+      const Bench& bench = BenchOf(scenario_);
+      const diagnose::LinearRun run = bench.linear_run(readings, scenario_, options_.model);
+      const diagnose::WatchOptions how{options_.false_alarm_rate, bench.planned_readings(scenario_)};
       return Watched{diagnose::Watch(run, how), run.unit, run.to_SI};
     } catch (const InputError&) {
       if (complete_) throw;

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "twin/measure/measure.h"
+
 namespace twinbench::tools {
 
 struct FollowOptions {
@@ -11,7 +13,7 @@ struct FollowOptions {
   std::string json;      // report of the watch; empty: none
   std::vector<std::string> overrides;
   double false_alarm_rate = 0.01;  // a run
-  bool published = false;
+  measure::Estimator model = measure::Estimator::kRigorous;  // sensitivities that are believed
 };
 
 /// Watches a run while it is recorded: compares each new reading with what those before it predict, and prints a

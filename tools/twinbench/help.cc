@@ -2,7 +2,7 @@
 
 #include "hw_bridge/bench_file.h"
 #include "tools/twinbench/commands.h"
-#include "twin/core/effect_catalogue.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::tools {
@@ -16,9 +16,9 @@ std::string Join(const std::vector<std::string>& words) {
   return text;
 }
 
-void PrintEffects(const std::string& bench) {
-  fmt::print("\nBench {}\n\n", bench);
-  for (const EffectEntry& effect : EffectCatalogue(bench)) {
+void PrintEffects(const BenchFormat& bench) {
+  fmt::print("\nBench {}\n\n", bench.name);
+  for (const EffectEntry& effect : bench.effects) {
     fmt::print("{}: {}\n", effect.name, effect.title);
     if (!effect.places.empty()) fmt::print("    where = {}\n", Join(effect.places));
     for (const EffectParameter& p : effect.parameters) {
@@ -30,7 +30,7 @@ void PrintEffects(const std::string& bench) {
 
 void PrintAllEffects() {
   fmt::print("An [[effect]] block hides one of these in the bench: name, where, and any of the parameters.\n");
-  for (const std::string& bench : SupportedBenches()) PrintEffects(bench);
+  for (const BenchFormat* bench : BenchFormats()) PrintEffects(*bench);
 }
 
 void PrintBenchKeys() {

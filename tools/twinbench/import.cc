@@ -1,9 +1,11 @@
 #include <fmt/core.h>
 
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/evaluation.h"
 #include "tools/twinbench/run_folder.h"
+#include "twin/benches/registry.h"
 #include "twin/core/run_record.h"
+#include "twin/measure/measure.h"
+#include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 namespace {
@@ -17,11 +19,13 @@ void Import(const ImportOptions& options) {
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const std::vector<Reading> readings = ReadReadingsCsv(options.readings, scenario.bench);
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
-  const Evaluation evaluation = Evaluate(scenario, readings, measure::Estimator::kRigorous);
+  const report::Evaluation evaluation =
+      BenchOf(scenario).evaluate(scenario, readings, measure::Estimator::kRigorous);
   const RunFolder folder{options.folder};
   {
     const auto record =
-        RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.readings, scenario.seed, ""});
+        RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.readings,
+                                                        scenario.seed, "", scenario.bench});
     for (const Reading& reading : readings) record->Append(reading, {});
     record->Finish();
   }

@@ -11,6 +11,7 @@
 #include "tools/twinbench/rehearsal.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
+#include "twin/benches/registry.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/run_record.h"
 #include "twin/procedure/procedure.h"
@@ -87,7 +88,7 @@ Begun Resume(const Scenario& scenario, const RunFolder& folder) {
 std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& folder, const hw::BenchFile& file,
                                  const std::string& identity) {
   const std::string origin = file.kind == "hardware" ? UtcText(std::time(nullptr)) : "";
-  auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, identity, scenario.seed, origin});
+  auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, identity, scenario.seed, origin, scenario.bench});
   WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
   return record;
 }
@@ -95,9 +96,9 @@ std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& fold
 /// What was kept is not measured again; whatever was tried after it counts as an attempt that failed.
 void TakeUp(const Begun& begun, const std::string& identity, procedure::Options& options) {
   const RunRecord& record = *begun.record;
-  if (record.provenance().bench != identity)
+  if (record.provenance().source != identity)
     throw BenchError(
-        fmt::format("the run was begun on \"{}\" and this is \"{}\"", record.provenance().bench, identity));
+        fmt::format("the run was begun on \"{}\" and this is \"{}\"", record.provenance().source, identity));
   options.readings_done = static_cast<int>(begun.readings.size());
   options.calls_done = record.Calls();
   const Time last = begun.readings.empty() ? Time{} : begun.readings.back().time;
@@ -138,9 +139,9 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
 
 void Measure(const MeasureOptions& o) {
   const Scenario scenario = LoadScenario(o.scenario, o.overrides);
-  if (scenario.bench != kRotaryBench)
+  if (!BenchOf(scenario).has_controllers)
     throw InputError(o.scenario, "no controllers for the bench " + scenario.bench,
-                     std::string("bench ") + kRotaryBench);
+                     BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
   const hw::BenchFile file = hw::LoadBenchFile(o.bench);
   const procedure::Options options = Carefulness(file);
   if (o.rehearse || o.rehearse_only) RehearseFirst(scenario, options, file.adc.mains_Hz);

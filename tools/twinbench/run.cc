@@ -5,6 +5,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/twin_run.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
 
@@ -23,16 +24,16 @@ struct RunOptions {
 
 /// The errors of a file take the place of every repeatable error the scenario gives that table.
 void ReplaceErrors(Scenario& scenario, const std::string& option) {
-  if (scenario.bench != kRotaryBench && scenario.bench != kTurntableBench)
+  const std::optional<TableNames>& names = FormatOf(scenario.bench).tables;
+  if (!names)
     throw InputError("--errors " + option, "the bench " + scenario.bench + " has no such table", "no --errors");
-  const TableNames names = TableNamesOf(scenario.bench);
   const std::size_t equals = option.find('=');
   const std::string table = option.substr(0, equals);
-  if (equals == std::string::npos || (table != names.target && table != names.reference)) {
+  if (equals == std::string::npos || (table != names->target && table != names->reference)) {
     throw InputError("--errors " + option, "names no table",
-                     fmt::format("{}=FILE.csv or {}=FILE.csv", names.target, names.reference));
+                     fmt::format("{}=FILE.csv or {}=FILE.csv", names->target, names->reference));
   }
-  TableSettings& settings = table == names.target ? scenario.target : scenario.reference;
+  TableSettings& settings = table == names->target ? scenario.target : scenario.reference;
   settings.errors = ReadTableErrors(option.substr(equals + 1));
   settings.harmonics.clear();
   settings.random_rms = {};

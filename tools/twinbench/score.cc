@@ -2,11 +2,12 @@
 
 #include <filesystem>
 
-#include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/evaluation.h"
 #include "tools/twinbench/run_folder.h"
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
+#include "twin/measure/measure.h"
+#include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 namespace {
@@ -23,7 +24,8 @@ void PrintScore(const ScoreOptions& options) {
                      "a run of the twin: what was measured or imported has no truth");
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadRecordedRun(folder.path, "", {});
-  const ScoredRun score = ScoreRun(run.scenario, run.readings, truth, EstimatorOf(options.estimator));
+  const report::ScoredRun score =
+      BenchOf(run.scenario).score(run.scenario, run.readings, truth, measure::EstimatorNamed(options.estimator));
   if (!options.json.empty()) WriteJson(options.json, score.json);
   if (options.json == "-") return;
   if (options.positions) fmt::print("{}\n", score.positions);

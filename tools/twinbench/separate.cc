@@ -1,10 +1,11 @@
 #include <fmt/core.h>
 
-#include "tools/twinbench/analysis.h"
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/evaluation.h"
 #include "tools/twinbench/run_folder.h"
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
+#include "twin/measure/measure.h"
+#include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 namespace {
@@ -16,7 +17,8 @@ struct SeparateOptions {
 
 void Separate(const SeparateOptions& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
-  const Evaluation evaluation = Evaluate(run.scenario, run.readings, EstimatorOf(options.estimator));
+  const report::Evaluation evaluation =
+      BenchOf(run.scenario).evaluate(run.scenario, run.readings, measure::EstimatorNamed(options.estimator));
   if (!evaluation.Separated())
     throw InputError(options.source, evaluation.not_separated, "readings of a full-circle test");
   if (!options.json.empty()) WriteJson(options.json, evaluation.separation);

@@ -8,6 +8,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
+#include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
 #include "twin/sim/twin.h"
@@ -47,9 +48,9 @@ void ServeUntilStopped(hw::Server& server) {
 
 void Serve(ServeArguments a) {
   const Scenario scenario = LoadScenario(a.scenario, a.overrides);
-  if (scenario.bench != kRotaryBench)
+  if (!BenchOf(scenario).has_controllers)
     throw InputError(a.scenario, "the bench " + scenario.bench + " cannot be served",
-                     std::string("bench ") + kRotaryBench);
+                     BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
   a.serve.speed = SpeedOf(a.speed);
   a.serve.pty = !a.no_pty;
   sim::Twin twin(scenario);

@@ -32,10 +32,10 @@ struct EffectEntry {
 };
 
 /// Every effect of a bench, in the order of formats.md.
-/// @throws std::logic_error if there is no such bench.
-const std::vector<EffectEntry>& EffectCatalogue(const std::string& bench = "rotary_4dof");
+/// @throws InputError if there is no such bench.
+const std::vector<EffectEntry>& EffectCatalogue(const std::string& bench);
 
 /// @return the entry, or nullptr.
-const EffectEntry* FindEffect(const std::string& name, const std::string& bench = "rotary_4dof");
+const EffectEntry* FindEffect(const std::string& name, const std::string& bench);
 
 }  // namespace twinbench

@@ -2,7 +2,7 @@
 
 #include "twin/core/effect_catalogue.h"
 
-/// How the entries of the catalogue are written down; only its own files need this.
+/// How the entries of the catalogue are written down; only the catalogues of the benches need this.
 namespace twinbench {
 
 /// A parameter whose default and bounds are given in `unit`.
@@ -12,10 +12,5 @@ EffectParameter Parameter(const std::string& name, const std::string& unit, doub
 /// A parameter that may have either sign.
 EffectParameter Signed(const std::string& name, const std::string& unit, double value, double limit,
                        const std::string& meaning, std::vector<std::string> only_at = {});
-
-/// Effects of the benches encoder_comparison, turntable_autocollimator and hob_transmission.
-std::vector<EffectEntry> EncoderEffects();
-std::vector<EffectEntry> TurntableEffects();
-std::vector<EffectEntry> HobEffects();
 
 }  // namespace twinbench

@@ -60,26 +60,25 @@ struct Reading {
   double head_rad = kNaN;            // hob: reading head of the table's encoder from the table's origin
   double interferometer_rad = kNaN;  // hob, optional: transmission error as the interferometer saw it
 
+  /// What a bench reads that has no field above: SI, by the name of its column (Quantity in reading_column.h).
+  std::map<std::string, double> quantities;
   std::map<std::string, std::string> extra;  // columns of an imported file that we do not know, kept as text
 };
 
 /// Writes readings.csv of formats.md: units in the header, empty = not available, `readings` in time order. A
-/// column `status` is added if any reading is not kOk. The columns are those of the bench that BenchOf finds.
-/// ReadReadingsCsv gives back the same bits.
-/// @throws BenchError if `path` cannot be written.
-void WriteReadingsCsv(const std::vector<Reading>& readings, std::ostream& out);
-void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& path);
+/// column `status` is added if any reading is not kOk. ReadReadingsCsv gives back the same bits.
+/// @param bench  Its name: it decides the columns.
+/// @throws InputError if there is no such bench; BenchError if `path` cannot be written.
+void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& bench, std::ostream& out);
+void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& bench, const std::string& path);
 
 /// Reads readings.csv. Column order is free, `#` lines are comments, unknown columns are kept. A reading with an empty
 /// voltage (or angle that was read) and no other status becomes kMissing.
-/// @param bench  Its name; empty: the one that the columns speak of.
+/// @param bench  Its name; empty, of a file that comes without a scenario: the one that the columns speak of.
 /// @throws InputError with file:line for missing required columns (all are named), a field that is no number, a
 ///         wrong number of fields, an unknown phase or status, a reading number that comes twice or a time that
 ///         goes back.
 std::vector<Reading> ReadReadingsCsv(const std::string& path, const std::string& bench = "");
 std::vector<Reading> ParseReadingsCsv(std::istream& in, const std::string& name, const std::string& bench = "");
-
-/// The bench whose readings these are, from the values that they have; "rotary_4dof" if they have none.
-std::string BenchOf(const std::vector<Reading>& readings);
 
 }  // namespace twinbench

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "twin/core/errors.h"
@@ -13,6 +14,22 @@ namespace {
 std::string ExtraText(const Reading& reading) {
   if (reading.extra.empty()) return "";
   return nlohmann::json(reading.extra).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// A quantity that is not available is left out: JSON has no NaN.
+std::string QuantitiesText(const Reading& reading) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const auto& [name, value] : reading.quantities) {
+    if (std::isfinite(value)) json[name] = value;
+  }
+  return json.empty() ? "" : json.dump();
+}
+
+/// The object that a text column holds; null if the text is none. An empty text is an empty object.
+nlohmann::json ObjectIn(const std::string& text) {
+  if (text.empty()) return nlohmann::json::object();
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  return json.is_object() ? json : nlohmann::json();
 }
 
 }  // namespace
@@ -34,6 +51,7 @@ void BindReading(SqliteStatement& insert, const Reading& r) {
     bind(value);
   bind(ExtraText(r));
   for (const double value : {r.measured_rad, r.velocity_rad_s, r.head_rad, r.interferometer_rad}) bind(value);
+  bind(QuantitiesText(r));
 }
 
 Reading TakeReading(const SqliteStatement& row, const std::string& path) {
@@ -55,12 +73,13 @@ Reading TakeReading(const SqliteStatement& row, const std::string& path) {
   const std::string extra_text = row.Text(column++);
   for (double* value : {&r.measured_rad, &r.velocity_rad_s, &r.head_rad, &r.interferometer_rad})
     *value = take_real();
-  const auto extra = nlohmann::json::parse(extra_text, nullptr, false);
-  if (!phase || !status || (extra.is_discarded() && !extra_text.empty()))
+  const nlohmann::json extra = ObjectIn(extra_text), quantities = ObjectIn(row.Text(column++));
+  if (!phase || !status || extra.is_null() || quantities.is_null())
     throw InputError(path, fmt::format("reading {} of the record is damaged", r.reading), "names and JSON of ours");
   r.phase = *phase;
   r.status = *status;
-  if (extra.is_object()) r.extra = extra.get<std::map<std::string, std::string>>();
+  r.extra = extra.get<std::map<std::string, std::string>>();
+  r.quantities = quantities.get<std::map<std::string, double>>();
   return r;
 }
 

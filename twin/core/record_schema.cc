@@ -2,18 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <initializer_list>
 
+#include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
+#include "twin/core/number_text.h"
+#include "twin/core/record_rows.h"
+#include "twin/core/scenario.h"
 
 namespace twinbench {
 namespace {
 
 constexpr int kApplicationId = 0x54574E42;  // "TWNB"
-constexpr int kVersion = 4;                 // of the tables below
+constexpr int kVersion = 5;                 // of the tables below
 
 constexpr const char* kTables = R"sql(
-CREATE TABLE provenance(program_version TEXT, bench TEXT, seed TEXT, clock_origin_utc TEXT);
+CREATE TABLE provenance(program_version TEXT, bench TEXT, seed TEXT, clock_origin_utc TEXT, bench_name TEXT);
 CREATE TABLE readings(
   id INTEGER PRIMARY KEY, reading INTEGER NOT NULL UNIQUE, time_ns INTEGER NOT NULL, setup INTEGER, pass INTEGER,
   direction INTEGER, position INTEGER, phase TEXT NOT NULL, status TEXT NOT NULL,
@@ -22,7 +28,7 @@ CREATE TABLE readings(
   psd_a_x_std_V REAL, psd_a_y_std_V REAL, psd_b_x_std_V REAL, psd_b_y_std_V REAL,
   n_samples INTEGER, dwell_s REAL, temperature_degC REAL,
   autocollimator_yaw_rad REAL, autocollimator_tilt_rad REAL, extra TEXT,
-  measured_rad REAL, velocity_rad_s REAL, head_rad REAL, interferometer_rad REAL);
+  measured_rad REAL, velocity_rad_s REAL, head_rad REAL, interferometer_rad REAL, quantities TEXT);
 CREATE TABLE raw_blocks(reading INTEGER PRIMARY KEY REFERENCES readings(reading), channels INTEGER, samples BLOB,
   first_scan INTEGER, device_ns INTEGER, host_ns INTEGER, utc_ns INTEGER, saturated_mask INTEGER);
 CREATE TABLE events(id INTEGER PRIMARY KEY, time_ns INTEGER NOT NULL, device TEXT, text TEXT);
@@ -51,11 +57,12 @@ void ForbidChanges(SqliteDatabase& database, std::initializer_list<const char*> 
 }
 
 void WriteProvenance(SqliteDatabase& database, const Provenance& provenance) {
-  SqliteStatement insert(database, "INSERT INTO provenance VALUES(?, ?, ?, ?)");
+  SqliteStatement insert(database, "INSERT INTO provenance VALUES(?, ?, ?, ?, ?)");
   insert.Bind(0, provenance.program_version);
-  insert.Bind(1, provenance.bench);
+  insert.Bind(1, provenance.source);
   insert.Bind(2, fmt::format("{}", provenance.seed));
   insert.Bind(3, provenance.clock_origin_utc);
+  insert.Bind(4, provenance.bench);
   insert.Run();
 }
 
@@ -72,8 +79,7 @@ void FromVersion1(SqliteDatabase& database) {
 
 /// Version 2 kept no calls, attempts and stamps of blocks.
 void FromVersion2(SqliteDatabase& database) {
-  AddColumns(database, "raw_blocks", "INTEGER",
-             {"first_scan", "device_ns", "host_ns", "utc_ns", "saturated_mask"});
+  AddColumns(database, "raw_blocks", "INTEGER", {"first_scan", "device_ns", "host_ns", "utc_ns", "saturated_mask"});
   database.Execute(kJournalTables);
   ForbidChanges(database, {"calls", "attempts"});
 }
@@ -83,13 +89,44 @@ void FromVersion3(SqliteDatabase& database) {
   AddColumns(database, "readings", "REAL", {"head_rad", "interferometer_rad"});
 }
 
+/// The bench that the run's scenario names; empty if there is no scenario, or none that can be read.
+std::string BenchOfScenario(const std::string& record) {
+  const std::string scenario = std::filesystem::path(record).parent_path() / "scenario.toml";
+  try {
+    return std::filesystem::exists(scenario) ? BenchOfScenarioFile(scenario) : "";
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
+/// The bench that has the columns of which these readings have values; empty if they have none.
+std::string BenchOfReadings(SqliteDatabase& database) {
+  std::vector<Reading> readings;
+  SqliteStatement select(database, "SELECT * FROM readings ORDER BY id");
+  while (select.Step()) readings.push_back(TakeReading(select, database.path()));
+  const BenchFormat* format = FormatByColumns([&](const ReadingColumn& column) {
+    return std::ranges::any_of(readings, [&](const Reading& r) { return !column.print(r).empty(); });
+  });
+  return format ? format->name : "";
+}
+
+/// Version 4 knew the quantities of four benches and did not say of which it was. Nothing in a record may be
+/// changed, but a new column may have a value for the row that is there.
+void FromVersion4(SqliteDatabase& database) {
+  AddColumns(database, "readings", "TEXT", {"quantities"});
+  std::string bench = BenchOfScenario(database.path());
+  if (bench.empty()) bench = BenchOfReadings(database);
+  AddColumns(database, "provenance", fmt::format("TEXT DEFAULT '{}'", bench).c_str(), {"bench_name"});
+}
+
 void BringUpToDate(SqliteDatabase& database) {
-  const std::string version = database.Ask("PRAGMA user_version");
-  if (version != "1" && version != "2" && version != "3") return;
+  const auto version = ParseWholeNumber(database.Ask("PRAGMA user_version")).value_or(0);
+  if (version < 1 || version >= kVersion) return;
   SqliteTransaction transaction(database);
-  if (version == "1") FromVersion1(database);
-  if (version != "3") FromVersion2(database);
-  FromVersion3(database);
+  if (version < 2) FromVersion1(database);
+  if (version < 3) FromVersion2(database);
+  if (version < 4) FromVersion3(database);
+  FromVersion4(database);
   database.Execute(fmt::format("PRAGMA user_version = {}", kVersion).c_str());
   transaction.Commit();
 }

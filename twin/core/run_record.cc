@@ -22,7 +22,7 @@ namespace twinbench {
 namespace {
 
 constexpr const char* kInsertReading =
-    "INSERT INTO readings VALUES(NULL, ?,?,?,?,?,?,?,?, ?,?, ?,?,?,?, ?,?,?,?, ?,?,?, ?,?, ?, ?,?, ?,?)";
+    "INSERT INTO readings VALUES(NULL, ?,?,?,?,?,?,?,?, ?,?, ?,?,?,?, ?,?,?,?, ?,?,?, ?,?, ?, ?,?, ?,?, ?)";
 constexpr const char* kInsertBlock =
     "INSERT INTO raw_blocks(reading, channels, samples, first_scan, device_ns, host_ns, utc_ns, saturated_mask) "
     "VALUES(?,?,?, ?,?,?,?, ?)";
@@ -233,11 +233,11 @@ bool RunRecord::finished() const {
 }
 
 Provenance RunRecord::provenance() const {
-  SqliteStatement select(*database_, "SELECT program_version, bench, seed, clock_origin_utc FROM provenance");
+  SqliteStatement select(*database_, "SELECT program_version, bench, seed, clock_origin_utc, bench_name FROM provenance");
   const bool found = select.Step();
   const auto seed = found ? ParseSeed(select.Text(2)) : std::nullopt;
   if (!seed) throw InputError(database_->path(), "the record has no provenance", "an undamaged record");
-  return {select.Text(0), select.Text(1), *seed, select.Text(3)};
+  return {select.Text(0), select.Text(1), *seed, select.Text(3), select.Text(4)};
 }
 
 std::vector<Reading> RunRecord::Readings() const {

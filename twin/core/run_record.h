@@ -14,9 +14,10 @@ namespace twinbench {
 /// Where a run came from; written once, when the record is made.
 struct Provenance {
   std::string program_version;
-  std::string bench;  // "twin", "iio:...", "import"
+  std::string source;  // what answered: "twin", "iio:...", "import: readings.csv"
   std::uint64_t seed = 0;
   std::string clock_origin_utc;  // ISO 8601 of Time 0; empty for the twin
+  std::string bench;             // the scenario's bench; empty if an old record has neither scenario nor readings
 };
 
 struct RawBlock {

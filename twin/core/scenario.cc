@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
@@ -16,7 +17,6 @@
 #include "twin/core/reading.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_text.h"
-#include "twin/core/scenario_together.h"
 #include "twin/core/scenario_values.h"
 
 namespace twinbench {
@@ -42,14 +42,15 @@ std::vector<std::string> KnownTables(const std::vector<ScenarioKey>& keys) {
 
 /// The bench that has the key or the table `path` where this one has not; empty if there is none.
 std::string BenchThatHas(const std::string& path) {
-  for (const std::string& bench : SupportedBenches()) {
+  for (const BenchFormat* format : BenchFormats()) {
     Scenario scenario;
-    scenario.bench = bench;
+    scenario.bench = format->name;
+    if (format->has_fixtures && path == kFixtureTable) return format->name;
     for (const ScenarioKey& key : KeysOf(scenario)) {
-      if (key.Path() == path || key.table == path) return bench;
+      if (key.Path() == path || key.table == path) return format->name;
     }
   }
-  return path == kFixtureTable ? kRotaryBench : "";
+  return "";
 }
 
 /// Refuses what is not in the description, in one source of the text.
@@ -58,7 +59,7 @@ class KeyCheck {
   KeyCheck(const TomlSource& source, const std::vector<ScenarioKey>& keys, const std::string& bench)
       : source_(source), bench_(bench), known_(KnownKeys(keys)), tables_(KnownTables(keys)) {
     for (const char* blocks : {kEffectTable, kEmpiricalTable}) known_.push_back({"", blocks, ""});
-    if (bench == kRotaryBench) known_.push_back({"", kFixtureTable, ""});
+    if (FormatOf(bench).has_fixtures) known_.push_back({"", kFixtureTable, ""});
   }
 
   void Check() const { CheckTable(source_.root, ""); }
@@ -162,7 +163,7 @@ std::string EffectForm(const EffectEntry& entry) {
 
 /// @throws InputError, naming the other bench if the effect is one of its.
 [[noreturn]] void RefuseEffect(const TomlValue& value, const std::string& name, const std::string& bench) {
-  for (const std::string& other : SupportedBenches()) {
+  for (const std::string& other : BenchNames()) {
     if (FindEffect(name, other))
       throw InputError(value.Where(), fmt::format("the effect {} belongs to the bench {}", name, other),
                        Alternatives(EffectNames(bench)));
@@ -262,19 +263,14 @@ EffectSettings ReadEffect(const TomlValue& block, const std::string& bench) {
 
 // --- [[empirical]] ---
 
-bool BelongsTo(const std::string& bench, const std::string& channel) {
-  const std::vector<std::string> channels = EmpiricalChannels(bench);
-  return std::find(channels.begin(), channels.end(), channel) != channels.end();
-}
-
-void RequireEmpirical(const EmpiricalSettings& empirical, const std::string& bench) {
+void RequireEmpirical(const EmpiricalSettings& empirical, const BenchFormat& bench) {
   const auto require = [&](bool condition, const std::string& what, const std::string& expected) {
     if (!condition) throw InputError(empirical.location, what, expected);
   };
-  const bool is_angle = bench != kRotaryBench;
-  require(BelongsTo(bench, empirical.channel),
+  const bool is_angle = bench.signal == SignalKind::kAngle;
+  require(std::ranges::count(bench.channels, empirical.channel) > 0,
           fmt::format("the empirical signal is for the channel \"{}\"", empirical.channel),
-          "a channel of the bench " + bench);
+          "a channel of the bench " + bench.name);
   const std::vector<double>& values = is_angle ? empirical.value_rad : empirical.value_m;
   const std::string key = is_angle ? "value_deg" : "value_um";
   const std::vector<double>& others = is_angle ? empirical.value_m : empirical.value_rad;
@@ -294,13 +290,22 @@ EmpiricalSettings ReadEmpirical(const TomlValue& block, const std::string& bench
   for (const ScenarioKey& key : keys) {
     if (const auto value = Inside(block, key.Name())) ReadKey(key, *value);
   }
-  RequireEmpirical(empirical, bench);
+  RequireEmpirical(empirical, FormatOf(bench));
   return empirical;
 }
 
 std::string ReadBench(const ScenarioText& text) {
-  if (const auto bench = text.Find("bench")) return ReadText(*bench, "bench", SupportedBenches());
-  throw InputError(text.name() + ":1", "bench is missing", "bench = " + Alternatives(SupportedBenches()));
+  if (const auto bench = text.Find("bench"))
+    return FormatOf(ReadText(*bench, "bench", {}), bench->Where()).name;
+  throw InputError(text.name() + ":1", "bench is missing", "bench = " + Alternatives(BenchNames()));
+}
+
+std::string TextOf(const std::string& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf()))
+    throw InputError(path, "the file cannot be read or is empty", "a scenario in TOML");
+  return text.str();
 }
 
 // --- files that a scenario names ---
@@ -340,26 +345,16 @@ void LoadFiles(const ScenarioText& text, const std::string& folder, Scenario& sc
   FindFile(text, "laser.profile_file", folder, scenario.laser.profile_file);
   FindFile(text, "grating.efficiency_file", folder, scenario.grating.efficiency_file);
   FindFile(text, "environment.temperature_file", folder, scenario.environment.temperature_file);
-  const TableNames tables = TableNamesOf(scenario.bench);
-  LoadErrors(text, tables.target, folder, scenario.target);
-  LoadErrors(text, tables.reference, folder, scenario.reference);
+  if (const auto& tables = FormatOf(scenario.bench).tables) {
+    LoadErrors(text, tables->target, folder, scenario.target);
+    LoadErrors(text, tables->reference, folder, scenario.reference);
+  }
   for (FixtureSettings& f : scenario.fixtures) {
     if (!f.mesh_file.empty()) f.mesh_file = NamedFile(f.location, "fixture.mesh_file", folder, f.mesh_file);
   }
 }
 
 }  // namespace
-
-TableNames TableNamesOf(const std::string& bench) {
-  return bench == kTurntableBench ? TableNames{"turntable", "multitooth"} : TableNames{};
-}
-
-std::vector<std::string> EmpiricalChannels(const std::string& bench) {
-  if (bench == kEncoderBench) return {"angle"};
-  if (bench == kTurntableBench) return {"x", "y"};
-  if (bench == kHobBench) return {"transmission"};
-  return {kChannelNames.begin(), kChannelNames.end()};
-}
 
 Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& folder,
                        const std::vector<std::string>& overrides) {
@@ -377,17 +372,17 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
   });
   scenario.empiricals = ReadBlocks<EmpiricalSettings>(
       sources, kEmpiricalTable, [&](const TomlValue& block) { return ReadEmpirical(block, scenario.bench); });
-  CheckTogether(sources, scenario);
+  FormatOf(scenario.bench).check_together(sources, scenario);
   LoadFiles(sources, folder, scenario);
   return scenario;
 }
 
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw InputError(path, "the file cannot be read or is empty", "a scenario in TOML");
-  return ParseScenario(text.str(), path, std::filesystem::path(path).parent_path().string(), overrides);
+  return ParseScenario(TextOf(path), path, std::filesystem::path(path).parent_path().string(), overrides);
+}
+
+std::string BenchOfScenarioFile(const std::string& path) {
+  return ReadBench(ScenarioText(TextOf(path), path, {}));
 }
 
 }  // namespace twinbench

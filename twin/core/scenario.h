@@ -16,14 +16,9 @@
 #include "twin/core/units.h"
 
 /// A scenario: one measurement on one bench, everything in SI. The structs below are the file format (see
-/// scenario_schema.cc for keys, units and bounds); the defaults are the reference rotary bench of formats.md.
+/// settings.cc of each bench for keys, units and bounds); the defaults are the reference rotary bench of formats.md.
 /// A key is a field's name with the unit of the file: wavelength_m is `wavelength_nm`.
 namespace twinbench {
-
-inline constexpr const char* kRotaryBench = "rotary_4dof";
-inline constexpr const char* kEncoderBench = "encoder_comparison";
-inline constexpr const char* kTurntableBench = "turntable_autocollimator";
-inline constexpr const char* kHobBench = "hob_transmission";
 
 enum class BeamModel { kChiefRay, kGaussian, kProfile };
 
@@ -234,7 +229,7 @@ struct EmpiricalSettings {
 
 /// The keys of other benches keep their defaults.
 struct Scenario {
-  std::string bench = kRotaryBench;
+  std::string bench;                                 // its name; there is no usual one
   std::string title;
   std::uint64_t seed = 1;
   bool noise_free = false;                           // no random contribution and no quantisation
@@ -269,26 +264,20 @@ struct Scenario {
   std::vector<EmpiricalSettings> empiricals;
 };
 
-/// What the two tables of a bench are called in its files: "target" and "reference", or "turntable" and "multitooth".
-struct TableNames {
-  std::string target = "target";
-  std::string reference = "reference";
-};
-TableNames TableNamesOf(const std::string& bench);
-
-/// Channels of a bench to which an [[empirical]] signal can be added.
-std::vector<std::string> EmpiricalChannels(const std::string& bench);
-
-/// Reads a scenario of any supported bench and applies `overrides`: "procedure.positions=12", in TOML syntax, where a single word needs no
+/// Reads a scenario of any bench there is (BenchFormats) and applies `overrides`: "procedure.positions=12", in TOML syntax, where a single word needs no
 /// quotes. A later override wins. A list, or all blocks of [[fixture]],
 /// [[effect]] or [[empirical]], are replaced as a whole.
 ///
 /// @throws InputError with file:line for a syntax error, an unknown key (naming the nearest known one), a value out
-///         of bounds or of the wrong type, a key of another bench, an effect, place or parameter that is not in the
+///         of bounds or of the wrong type, no bench or an unknown one, a key of another bench, an effect, place or parameter that is not in the
 ///         bench's catalogue, a file that cannot be read. Overrides are reported as "--set key=value".
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides = {});
 Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& folder,
                        const std::vector<std::string>& overrides = {});
+
+/// The bench that a scenario file names; nothing else in it is looked at.
+/// @throws InputError if it is no TOML, or names no bench or an unknown one.
+std::string BenchOfScenarioFile(const std::string& path);
 
 /// The scenario as TOML with every key of its bench written out, units in the keys; LoadScenario reads it back to the same bits.
 /// It stands alone: errors of the tables are in it, and other files are named by absolute paths.

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "twin/core/effect_catalogue.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_values.h"
@@ -93,12 +93,12 @@ std::string DescribeEffect(const EffectEntry& entry) {
   return text;
 }
 
-std::string DescribeBench(const std::string& bench) {
+std::string DescribeBench(const BenchFormat& bench) {
   Scenario defaults;
-  defaults.bench = bench;
-  std::string text = fmt::format("\n# ---- bench {} ----\n", bench) + DescribeKeys(KeysOf(defaults));
-  if (bench == kRotaryBench) text += DescribeFixture();
-  for (const EffectEntry& entry : EffectCatalogue(bench)) text += DescribeEffect(entry);
+  defaults.bench = bench.name;
+  std::string text = fmt::format("\n# ---- bench {} ----\n", bench.name) + DescribeKeys(KeysOf(defaults));
+  if (bench.has_fixtures) text += DescribeFixture();
+  for (const EffectEntry& entry : bench.effects) text += DescribeEffect(entry);
   return text;
 }
 
@@ -116,7 +116,7 @@ std::string DescribeKeys(const std::vector<ScenarioKey>& keys) {
 
 std::string DescribeScenarioKeys() {
   std::string text;
-  for (const std::string& bench : SupportedBenches()) text += DescribeBench(bench);
+  for (const BenchFormat* bench : BenchFormats()) text += DescribeBench(*bench);
   return text + kFinding + DescribeEmpirical();
 }
 

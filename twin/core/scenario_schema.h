@@ -49,6 +49,7 @@ struct ScenarioKey {
 /// The description of the file format: every key of a scenario of its bench but those of its [[...]] blocks, in the
 /// order of the file, the keys of a table before those of the tables inside it. Reading, writing, help and --set
 /// all go through it.
+/// @throws InputError if there is no such bench.
 std::vector<ScenarioKey> KeysOf(Scenario& scenario);
 
 /// The same of one [[fixture]] block, and of one [[empirical]] block.
@@ -57,8 +58,5 @@ std::vector<ScenarioKey> KeysOf(EmpiricalSettings& empirical);
 
 /// Keys with their defaults, meanings and bounds, a heading for each table; for people.
 std::string DescribeKeys(const std::vector<ScenarioKey>& keys);
-
-/// Scenarios of these benches can be read.
-std::vector<std::string> SupportedBenches();
 
 }  // namespace twinbench

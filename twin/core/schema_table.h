@@ -5,7 +5,7 @@
 
 #include "twin/core/scenario_schema.h"
 
-/// How the keys of the file format are written down; only its own files need this.
+/// How the keys of the file format are written down; only the settings of the benches need this.
 namespace twinbench::schema {
 
 using Keys = std::vector<ScenarioKey>;
@@ -65,8 +65,5 @@ std::span<double> List(Eigen::Matrix<double, kRows, 1>& vector) {
 void AddTable(Keys& keys, const std::string& table, const std::string& frame, TableSettings& s);
 void AddEnvironment(Keys& keys, EnvironmentSettings& s);
 void AddAutocollimator(Keys& keys, AutocollimatorSettings& s);
-
-void AddTurntableBench(Keys& keys, Scenario& s);
-void AddHobBench(Keys& keys, Scenario& s);
 
 }  // namespace twinbench::schema

@@ -13,8 +13,9 @@
 #include "twin/measure/measure.h"
 #include "twin/model/follow.h"
 
-/// Front door of the room: given readings and the scenario that is believed to describe the bench, finds what the
-/// model gets wrong, names it and measures what the extended model gains.
+/// What is asked of a diagnosis and what it answers: given readings and the scenario that is believed to describe the
+/// bench, it finds what the model gets wrong, names it and measures what the extended model gains. Each bench puts its
+/// own together from the parts of this room (Bench::diagnose).
 namespace twinbench::diagnose {
 
 struct DiagnoseOptions {
@@ -43,12 +44,5 @@ struct DiagnosisRun {
   NoiseModel noise;
   std::vector<Accepted> accepted;  // named causes and empirical terms, in order of acceptance
 };
-
-/// @param readings  Of the scenario's bench, any phases; unusable ones are left out and counted.
-/// @throws InputError if the design has no redundancy (with the smallest addition that would help) or the readings
-/// do
-///         not fit the scenario's procedure at all.
-DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
-                      const DiagnoseOptions& options = {});
 
 }  // namespace twinbench::diagnose

@@ -7,10 +7,11 @@
 
 namespace twinbench::diagnose {
 
-/// One sentence for each optional column of readings.csv that no reading (of the phases where it belongs) has, with
+/// One sentence for each desired column of readings.csv that no reading (of the phases where it belongs) has, with
 /// the causes that cannot be named without it.
 ///
-/// @param bench  "rotary_4dof", "encoder_comparison", "turntable_autocollimator" or "hob_transmission".
+/// @param bench  Its name.
+/// @throws InputError if there is none of that name.
 std::vector<std::string> MissingColumns(const std::vector<Reading>& readings, const std::string& bench);
 
 }  // namespace twinbench::diagnose

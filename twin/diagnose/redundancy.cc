@@ -6,9 +6,8 @@
 #include <map>
 #include <set>
 
+#include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
-#include "twin/core/scenario.h"
-#include "twin/diagnose/bench_of.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -17,23 +16,6 @@ constexpr double kFewestShare = 0.01;
 
 std::string Count(int count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
-/// The cheapest that gives every motion something to be compared with. One more set-up costs one pass; a second
-/// pass in every set-up costs as many as there are set-ups, but shows what depends on time and direction.
-std::string SmallestAddition(const DesignCount& design, const std::string& bench) {
-  if (bench == kTurntableBench)
-    return "a second pass, as in turntable_procedure.passes = [1, -1], which shows drift and backlash; or the "
-           "circle "
-           "again with another tilt, as in turntable_procedure.tilts_arcsec = [60, 100], which shows the roll of "
-           "the "
-           "crosshair";
-  const std::string passes =
-      "passes + - - + in every set-up (procedure.passes = [1, -1, -1, 1]), which also show drift and backlash";
-  if (design.setups >= 3) return passes;
-  const char* next = design.setups == 1 ? "second" : "third";
-  return fmt::format("at least a {} set-up with another shift, as in procedure.shifts = {}; better, {}", next,
-                     design.setups == 1 ? "[0, 1]" : "[0, 1, 7]", passes);
 }
 
 }  // namespace
@@ -64,7 +46,7 @@ void RefuseWithoutRedundancy(const LinearRun& run, const Eigen::VectorXd& redund
                   "into the separated errors and nothing can be found",
                   Count(design.setups, "set-up", "set-ups"), Count(design.passes, "pass", "passes"),
                   std::max(design.redundancy, 0.0), design.rows),
-      SmallestAddition(design, BenchOf(run)));
+      FormatOf(run.bench).smallest_addition(design.setups));
 }
 
 }  // namespace twinbench::diagnose

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/rotary/known_effects.h"
 
 namespace twinbench::diagnose {
@@ -138,14 +139,6 @@ void SearchAboutSuspect(const Trial& trial, const Scenario& scenario, SearchedRo
 
 rotary::ForwardModel ForwardModelOf(const DiagnoseOptions& options) {
   return {options.model == measure::Estimator::kPublished, options.follow};
-}
-
-AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options) {
-  return {options.null_runs, options.cache_folder, 4, nullptr};
-}
-
-bool IsStruck(const DiagnoseOptions& options, const std::string& effect) {
-  return std::ranges::find(options.struck, effect) != options.struck.end();
 }
 
 SearchedRotary SearchRotary(const std::vector<Reading>& readings, const Scenario& scenario,

@@ -29,7 +29,5 @@ SearchedRotary SearchRotary(const std::vector<Reading>& readings, const Scenario
                             const DiagnoseOptions& options);
 
 rotary::ForwardModel ForwardModelOf(const DiagnoseOptions& options);
-AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options);
-bool IsStruck(const DiagnoseOptions& options, const std::string& effect);
 
 }  // namespace twinbench::diagnose

@@ -8,7 +8,6 @@
 
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/bench_of.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -164,7 +163,7 @@ std::string WithUncertainty(const ParameterEstimate& p) {
 
 std::string InWords(const DiagnosisRun& run) {
   const Diagnosis& d = run.diagnosis;
-  std::string text = Found(d, BenchOf(run.run)) + Rivals(d) + NextMeasurements(d) + GainInWords(d.gain, run.run);
+  std::string text = Found(d, run.run.bench) + Rivals(d) + NextMeasurements(d) + GainInWords(d.gain, run.run);
   if (d.verdict == Verdict::kNone) text += Smallest(d);
   text += Unseen(d);
   if (!d.noise.empty()) text += fmt::format("Noise: {}. ", Join(d.noise, "; "));

@@ -99,6 +99,10 @@ const char* EstimatorName(Estimator estimator) {
   return estimator == Estimator::kPublished ? "published" : "rigorous";
 }
 
+Estimator EstimatorNamed(const std::string& name) {
+  return name == EstimatorName(Estimator::kPublished) ? Estimator::kPublished : Estimator::kRigorous;
+}
+
 std::vector<Motion> Measure(const std::vector<Reading>& readings, const BenchGeometry& geometry,
                             const Calibration& calibration, Estimator estimator) {
   std::vector<Motion> motions;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "twin/core/reading.h"
@@ -15,6 +16,8 @@ namespace twinbench::measure {
 /// model.
 enum class Estimator { kPublished, kRigorous };
 const char* EstimatorName(Estimator estimator);  // "published", "rigorous"
+/// The estimator of that name; kRigorous if it is neither.
+Estimator EstimatorNamed(const std::string& name);
 
 /// Turns every reading into a motion, in the same order; results are in L for both estimators.
 ///

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "twin/benches/names.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
 
@@ -98,6 +99,7 @@ std::vector<Pattern> RotaryPatterns() {
 
 LinearRun SyntheticRun(const SyntheticDesign& design) {
   LinearRun run;
+  run.bench = kRotaryBench;
   run.schedule = ScheduleOf(design);
   run.channels = {"psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"};
   run.unit = "um";
@@ -144,6 +146,7 @@ LinearRun SyntheticSweep(int readings) {
     s.velocity_rad_s[i] = s.direction[k] * (which < 2 ? 0.1 : 0.3);
     s.reference_rad[i] = i == 0 ? 0.0 : s.reference_rad[i - 1] + 0.1 * s.velocity_rad_s[i];
   }
+  run.bench = kEncoderBench;
   run.channels = {"angle"};
   run.unit = "arcsec";
   run.to_SI = units::arcsec;

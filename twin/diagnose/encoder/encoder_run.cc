@@ -99,6 +99,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   EncoderRun encoder;
   encoder.left_out = comparison.left_out;
   LinearRun& run = encoder.run;
+  run.bench = scenario.bench;
   const std::vector<Reading> used = Chosen(readings, comparison.used);
   run.schedule = ScheduleOf(used);
   if (scenario.encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/encoder_comparison/format.h"
 #include "twin/core/units.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
 
 const EffectParameter& Entry(const std::string& effect, const std::string& parameter) {
-  return CatalogueParameter(kEncoderBench, effect, parameter);
+  return CatalogueParameter(benches::encoder::Format().effects, effect, parameter);
 }
 
 }  // namespace

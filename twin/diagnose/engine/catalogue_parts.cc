@@ -8,10 +8,10 @@
 
 namespace twinbench::diagnose {
 
-const EffectParameter& CatalogueParameter(const std::string& bench, const std::string& effect,
+const EffectParameter& CatalogueParameter(const std::vector<EffectEntry>& catalogue, const std::string& effect,
                                           const std::string& parameter) {
-  const EffectEntry* entry = FindEffect(effect, bench);
-  Require(entry != nullptr, "a family names an effect that the catalogue has not");
+  const auto entry = std::ranges::find(catalogue, effect, &EffectEntry::name);
+  Require(entry != catalogue.end(), "a family names an effect that the catalogue has not");
   const auto found = std::ranges::find(entry->parameters, parameter, &EffectParameter::name);
   Require(found != entry->parameters.end(), "a family names a parameter that the catalogue has not");
   return *found;

@@ -10,8 +10,9 @@
 /// Parts of families that are named after an effect of a bench's catalogue.
 namespace twinbench::diagnose {
 
-/// @throws std::logic_error if the bench's catalogue has no such effect or parameter.
-const EffectParameter& CatalogueParameter(const std::string& bench, const std::string& effect,
+/// @param catalogue  Outlives what is returned.
+/// @throws std::logic_error if the catalogue has no such effect or parameter.
+const EffectParameter& CatalogueParameter(const std::vector<EffectEntry>& catalogue, const std::string& effect,
                                           const std::string& parameter);
 
 /// The parameter as fitted [SI].

@@ -45,6 +45,7 @@ struct Nuisance {
 
 /// Row of reading i (of the schedule) and channel c: i * channels + c.
 struct LinearRun {
+  std::string bench;  // its name: of the catalogue that names the causes
   Schedule schedule;
   std::vector<std::string> channels;  // "psd_a_x", ...; "angle" on an angle bench
   std::string unit;                   // of values in reports: "um", "arcsec", "deg"

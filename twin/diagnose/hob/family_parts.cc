@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/hob_transmission/format.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/wave_grid.h"
 
@@ -10,7 +11,7 @@ namespace twinbench::diagnose::hob {
 namespace {
 
 const EffectParameter& Entry(const std::string& effect, const std::string& parameter) {
-  return CatalogueParameter(kHobBench, effect, parameter);
+  return CatalogueParameter(benches::hob::Format().effects, effect, parameter);
 }
 
 /// Typical way of the table from one sample to the next.

@@ -186,6 +186,7 @@ Nuisance FreeUnknowns(const SignalContext& c) {
 
 LinearRun RunOf(const SignalContext& c, const Eigen::MatrixXd& left_rad, const Scenario& scenario) {
   LinearRun run;
+  run.bench = scenario.bench;
   run.schedule = Grouped(c.schedule, c.groups);
   run.channels = {kTransmission};
   if (c.channels > 1) run.channels.emplace_back(kInterferometer);

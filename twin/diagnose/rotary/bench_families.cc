@@ -98,7 +98,7 @@ void AddBenchFamilies(const RotaryRun& rotary, const Scenario& scenario, std::ve
                                                              {"wavelength_temperature", "wavelength_per_kelvin"},
                                                              {"incidence_offset", "incidence"}}};
   for (const auto& [effect, parameter] : causes) {
-    std::vector<std::string> places = FindEffect(effect)->places;
+    std::vector<std::string> places = FindEffect(effect, scenario.bench)->places;
     if (places.empty()) places = {""};
     for (const std::string& where : places) {
       families.push_back(BenchFamily(effect, where, parameter, rotary, scenario));

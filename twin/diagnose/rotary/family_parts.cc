@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/rotary_4dof/format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
@@ -46,13 +47,13 @@ Plausible PlausibleOf(const std::string& effect, const std::string& parameter) {
 }  // namespace
 
 Amplitude AmplitudeOf(const std::string& effect, const std::string& parameter) {
-  const EffectParameter& p = CatalogueParameter(kRotaryBench, effect, parameter);
+  const EffectParameter& p = CatalogueParameter(benches::rotary::Format().effects, effect, parameter);
   const Plausible plausible = PlausibleOf(effect, parameter);
   return {parameter, p.unit, p.to_SI, plausible.sd, plausible.lower, plausible.upper};
 }
 
 Shape ShapeOf(const std::string& effect, const std::string& parameter, std::vector<double> values) {
-  const EffectParameter& p = CatalogueParameter(kRotaryBench, effect, parameter);
+  const EffectParameter& p = CatalogueParameter(benches::rotary::Format().effects, effect, parameter);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const double lower = *low, upper = *high;
   return {parameter, p.unit, p.to_SI, lower, upper, std::move(values)};

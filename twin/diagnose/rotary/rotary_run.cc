@@ -41,6 +41,7 @@ void SetBench(const Scenario& scenario, bool published, RotaryRun& rotary) {
 
 void SetReadings(const std::vector<Reading>& used, const Scenario& scenario, RotaryRun& rotary) {
   LinearRun& run = rotary.run;
+  run.bench = scenario.bench;
   run.schedule = ScheduleOf(used);
   run.channels.assign(kChannelNames.begin(), kChannelNames.end());
   run.unit = "um";

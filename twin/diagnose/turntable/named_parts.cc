@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/turntable_autocollimator/format.h"
 #include "twin/core/units.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
 
 const EffectParameter& Entry(const std::string& effect, const std::string& parameter) {
-  return CatalogueParameter(kTurntableBench, effect, parameter);
+  return CatalogueParameter(benches::turntable::Format().effects, effect, parameter);
 }
 
 }  // namespace

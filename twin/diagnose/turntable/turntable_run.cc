@@ -220,6 +220,7 @@ TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scen
   TurntableRun turntable;
   turntable.left_out = static_cast<int>(std::ssize(readings) - std::ssize(used));
   LinearRun& run = turntable.run;
+  run.bench = scenario.bench;
   run.schedule = ScheduleOf(used);
   turntable.places = PlacesOf(run.schedule);
   turntable.context = ContextOf(run.schedule, scenario);

@@ -1,0 +1,38 @@
+#include "twin/benches/encoder_comparison/comparison.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "twin/report/json_units.h"
+
+namespace twinbench::benches::encoder {
+namespace {
+
+std::string DirectionLine(const char* name, double mean_rad) {
+  if (!std::isfinite(mean_rad)) return "";
+  return fmt::format("mean, direction {}   {:+.6f} deg\n", name, mean_rad / units::deg);
+}
+
+}  // namespace
+
+std::string Summary(const measure::AngleComparison& c) {
+  std::string text = fmt::format("{} readings", c.used.size() + c.left_out);
+  text += c.left_out > 0 ? fmt::format(", {} without a value\n", c.left_out) : "\n";
+  if (c.used.empty()) return text;
+  text += fmt::format("measured - reference, mean of each set-up taken out\nrms                   {:.6f} deg\n",
+                      c.rms_rad / units::deg);
+  text += fmt::format("range                 {:.6f} deg\n", c.range_rad / units::deg);
+  return text + DirectionLine("+1", c.mean_forward_rad) + DirectionLine("-1", c.mean_backward_rad);
+}
+
+nlohmann::json ToJson(const measure::AngleComparison& c) {
+  return {{"readings", c.used.size()},
+          {"left_out", c.left_out},
+          {"rms_deg", report::In(units::deg, c.rms_rad)},
+          {"range_deg", report::In(units::deg, c.range_rad)},
+          {"mean_forward_deg", report::In(units::deg, c.mean_forward_rad)},
+          {"mean_backward_deg", report::In(units::deg, c.mean_backward_rad)}};
+}
+
+}  // namespace twinbench::benches::encoder

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "twin/measure/angle_comparison.h"
+
+namespace twinbench::benches::encoder {
+
+/// What an angle comparison found before anything is diagnosed, as text for a person.
+std::string Summary(const measure::AngleComparison& comparison);
+
+/// What results.json has of it.
+nlohmann::json ToJson(const measure::AngleComparison& comparison);
+
+}  // namespace twinbench::benches::encoder

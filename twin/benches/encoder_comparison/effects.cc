@@ -1,0 +1,126 @@
+#include "twin/benches/encoder_comparison/format.h"
+#include "twin/core/effect_entries.h"
+
+namespace twinbench::benches::encoder {
+namespace {
+
+/// What is added to the angle: amplitude * cos(order * angle + phase).
+EffectParameter HarmonicAmplitude(double amplitude_deg) {
+  return Signed("amplitude", "deg", amplitude_deg, 10.0, "of amplitude * cos(order * angle + phase)");
+}
+EffectParameter HarmonicPhase() {
+  return Signed("phase", "deg", 0.0, 360.0, "of the same");
+}
+
+// Defaults are sizes that are plausible before checking; the ranges stand beside the entries.
+std::vector<EffectEntry> MountingAndShapeEffects() {
+  return {
+      // a / R: 1 um on 50 mm is 0.001 deg; 0.5 deg for the magnet of a small magnetic encoder
+      {"eccentricity", "scale off the axis, once a turn", {}, {HarmonicAmplitude(0.01), HarmonicPhase()}},
+      // 0.2-5 arcsec on a ring, 0.3 deg on a magnet
+      {"ellipticity", "scale out of round or tilted, twice a turn", {}, {HarmonicAmplitude(0.01), HarmonicPhase()}},
+  };
+}
+
+// Of the sine and cosine signals, whose period is 1 / device.signal_periods of a turn: 0.05-1 % of them.
+std::vector<EffectEntry> SignalEffects() {
+  return {
+      {"signal_offset",
+       "sine and cosine signals not centred on zero",
+       {},
+       {Signed("offset_sin", "1", 0.002, 0.9, "of the sine, share of its amplitude"),
+        Signed("offset_cos", "1", 0.0, 0.9, "of the cosine")}},
+      {"amplitude_mismatch",
+       "sine and cosine signals of unequal size",
+       {},
+       {Signed("ratio", "1", 0.004, 0.9, "amplitude of the sine over that of the cosine, - 1")}},
+      {"quadrature_error",
+       "sine and cosine signals not a quarter period apart",
+       {},
+       {Signed("angle", "mrad", 4.0, 1000.0, "lead of the sine")}},
+      // Below 0.707 both signals would be flat at once.
+      {"signal_clipping",
+       "sine and cosine signals cut off",
+       {},
+       {Parameter("level", "1", 0.95, 0.71, 1.0, "at this share of the amplitude")}},
+      {"interpolation",
+       "error that repeats with the lines of the scale; needs device.lines_per_turn",
+       {},
+       {Parameter("order", "1", 1.0, 1.0, 64.0, "periods a line"), HarmonicAmplitude(0.005), HarmonicPhase()}},
+  };
+}
+
+std::vector<EffectEntry> MotionEffects() {
+  return {
+      // 1 ms at 5 deg/s is 18 arcsec
+      {"latency",
+       "device read later or earlier than the reference",
+       {},
+       {Signed("delay", "s", 0.001, 10.0, "the reading is this old; its error is -speed * delay")}},
+      {"backlash",
+       "device that stays behind on reversal until a gap is crossed",
+       {},
+       {Signed("width", "deg", 0.01, 30.0, "of the gap; negative: the reference stays behind")}},
+      {"hysteresis",
+       "device that goes over to the other sense gradually after a reversal",
+       {},
+       {Signed("lag", "deg", 0.01, 30.0, "behind the reference once settled, in either sense"),
+        Parameter("settles_over", "deg", 20.0, 0.01, 36000.0, "travel in which 63 % is reached")}},
+      // 1e-6 to 1e-3 for a device without closure
+      {"scale",
+       "device that counts too much or too little a turn",
+       {},
+       {Signed("ratio", "1", 1e-5, 1.0, "measured = reference * (1 + ratio)")}},
+  };
+}
+
+std::vector<EffectEntry> TimeAndReadingEffects() {
+  return {
+      {"drift",
+       "zero of the device that drifts with time",
+       {},
+       {Signed("rate", "deg_per_h", 0.02, 3600.0, "mean rate over the first hour"),
+        Signed("curvature", "1", 0.0, 5.0, "share of a quadratic part, zero at 0 and 1 h")}},
+      // one line of the scale, or a coupling that gave way
+      {"slip",
+       "sudden step of the device's zero",
+       {},
+       {Signed("step", "deg", 0.02, 360.0, "size"),
+        Parameter("at_reading", "1", 100.0, 0.0, 1e9, "first reading behind the step")}},
+      {"outliers",
+       "readings that are disturbed for no lasting reason",
+       {},
+       {Parameter("fraction", "1", 0.01, 0.0, 0.5, "share of the readings"),
+        Parameter("size", "deg", 0.05, 0.0, 360.0, "typical size")}},
+  };
+}
+
+std::vector<EffectEntry> PeriodicEffects() {
+  return {
+      {"periodic",
+       "error that repeats a whole number of times a turn: screws, poles, a polygon",
+       {},
+       {Parameter("order", "1", 7.0, 1.0, 100000.0, "periods a turn"), HarmonicAmplitude(0.01), HarmonicPhase()}},
+      {"gear_mesh",
+       "error that repeats with the teeth of a gear",
+       {},
+       {Parameter("teeth", "1", 44.0, 1.0, 100000.0, "of the gear, a turn"), HarmonicAmplitude(0.01),
+        HarmonicPhase()}},
+      {"reference_fault",
+       "periodic error of the reference, tied to its own angle",
+       {},
+       {Parameter("order", "1", 1.0, 1.0, 100000.0, "periods a turn"), HarmonicAmplitude(0.01), HarmonicPhase()}},
+  };
+}
+
+}  // namespace
+
+std::vector<EffectEntry> Effects() {
+  std::vector<EffectEntry> effects;
+  for (const auto& part :
+       {MountingAndShapeEffects(), SignalEffects(), MotionEffects(), PeriodicEffects(), TimeAndReadingEffects()})
+    effects.insert(effects.end(), part.begin(), part.end());
+  return effects;
+}
+
+}  // namespace twinbench::benches::encoder

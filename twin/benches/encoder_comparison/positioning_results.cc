@@ -1,0 +1,85 @@
+#include "twin/benches/encoder_comparison/positioning_results.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <set>
+
+#include "twin/core/units.h"
+#include "twin/measure/iso230_2.h"
+#include "twin/report/json_units.h"
+
+namespace twinbench::benches::encoder {
+namespace {
+
+using measure::ApproachPositioning;
+using measure::AxisPositioning;
+using measure::ScatteredValue;
+using measure::TargetPositioning;
+
+constexpr std::size_t kMostRows = 40;  // a table that is still looked at
+
+nlohmann::json ToJson(const ScatteredValue& v) {
+  return {{"value_arcsec", report::Arcsec(v.value)},
+          {"u_arcsec", report::Arcsec(v.u)},
+          {"bias_arcsec", report::Arcsec(v.bias)}};
+}
+
+nlohmann::json ToJson(const ApproachPositioning& a) {
+  return {{"runs", a.runs},
+          {"mean_arcsec", report::Arcsec(a.mean)},
+          {"u_mean_arcsec", report::Arcsec(a.u_mean)},
+          {"standard_deviation_arcsec", report::Arcsec(a.deviation)}};
+}
+
+nlohmann::json ToJson(const TargetPositioning& t) {
+  return {{"position_deg", t.position / units::deg},
+          {"forward", ToJson(t.forward)},
+          {"backward", ToJson(t.backward)},
+          {"mean_arcsec", report::Arcsec(t.mean)},
+          {"u_mean_arcsec", report::Arcsec(t.u_mean)},
+          {"reversal_arcsec", report::Arcsec(t.reversal)},
+          {"u_reversal_arcsec", report::Arcsec(t.u_reversal)},
+          {"repeatability", ToJson(t.repeatability)}};
+}
+
+nlohmann::json AxisJson(const AxisPositioning& positioning) {
+  nlohmann::json json = nlohmann::json::object();
+  for (std::size_t i = 0; i < measure::kAxisValues; ++i)
+    json[measure::kAxisValueNames[i]] = ToJson(positioning.axis[i]);
+  return json;
+}
+
+void Append(int setup, const measure::PositioningStops& stops, PositioningResults& results) {
+  const AxisPositioning positioning = measure::EvaluatePositioning(stops.targets);
+  const double travel_rad = stops.targets.back().position - stops.targets.front().position;
+  const std::vector<std::string> missing = measure::MissingForRotaryAxis(stops.targets, travel_rad);
+  nlohmann::json targets = nlohmann::json::array();
+  for (const TargetPositioning& target : positioning.targets) targets.push_back(ToJson(target));
+  results.json.push_back({{"setup", setup},
+                          {"axis", AxisJson(positioning)},
+                          {"targets", targets},
+                          {"left_out", stops.left_out},
+                          {"missing", missing},
+                          {"notes", stops.notes}});
+  results.text +=
+      fmt::format("set-up {}, {} targets over {:.4g} deg\n", setup, targets.size(), travel_rad / units::deg);
+  results.text += targets.size() <= kMostRows ? PositioningText(positioning) : AxisText(positioning);
+  for (const std::string& what : missing) results.text += "missing: " + what + "\n";
+}
+
+}  // namespace
+
+PositioningResults EvaluateStops(const std::vector<Reading>& readings) {
+  PositioningResults results;
+  results.json = nlohmann::json::array();
+  std::set<int> setups;
+  for (const Reading& reading : readings) setups.insert(reading.setup);
+  for (const int setup : setups) {
+    const measure::PositioningStops stops = measure::PositioningOf(readings, setup);
+    if (!stops.targets.empty()) Append(setup, stops, results);
+  }
+  return results;
+}
+
+}  // namespace twinbench::benches::encoder

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "twin/core/reading.h"
+
+namespace twinbench::benches::encoder {
+
+/// The stops of an angle comparison evaluated as ISO 230-2 does a rotary axis, for each set-up.
+struct PositioningResults {
+  nlohmann::json json;  // [{"setup", "axis": {"A": {"value_arcsec", "u_arcsec", "bias_arcsec"}, ...}, "targets",
+                        // "missing", "notes"}]; empty without stops
+  std::string text;     // for a person; of many targets the values of the axis only
+};
+
+PositioningResults EvaluateStops(const std::vector<Reading>& readings);
+
+}  // namespace twinbench::benches::encoder

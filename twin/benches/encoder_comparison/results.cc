@@ -1,0 +1,219 @@
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "twin/benches/encoder_comparison/bench.h"
+#include "twin/benches/encoder_comparison/comparison.h"
+#include "twin/benches/encoder_comparison/positioning_results.h"
+#include "twin/core/errors.h"
+#include "twin/report/curve_score.h"
+#include "twin/report/json_units.h"
+#include "twin/separate/encoder/device_error.h"
+
+namespace twinbench::benches::encoder {
+namespace {
+
+using separate::encoder::AngleMeans;
+using separate::encoder::Curve;
+using separate::encoder::CurveAt;
+using separate::encoder::DeviceError;
+using separate::encoder::PassResult;
+using separate::hob::Coefficient;
+using separate::hob::HarmonicSeries;
+
+constexpr int kPoints = 360;  // a degree: enough for the highest order there is
+constexpr const char* kNoReference =
+    "with one mounting of the device the difference of both is known; it is counted as the device's";
+constexpr const char* kSeenAlike = "all mountings see only the difference of both; it is counted as the device's";
+
+nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) {
+  const CurveAt curve = Curve(series, kPoints);
+  nlohmann::json json;
+  for (int i = 0; i < kPoints; ++i) {
+    json["position_deg"].push_back(i * 360.0 / kPoints);
+    json[name + "_arcsec"].push_back(report::Arcsec(curve.value_rad[i]));
+    json["u_" + name + "_arcsec"].push_back(report::Arcsec(curve.u_rad[i]));
+  }
+  return json;
+}
+
+nlohmann::json HarmonicsJson(const HarmonicSeries& series) {
+  nlohmann::json json = nlohmann::json::array();
+  for (int k = 1; k <= series.Highest(); ++k) {
+    const Coefficient& c = series.At(k);
+    if (!std::isfinite(c.value.real())) continue;
+    json.push_back({{"order", k},
+                    {"amplitude_arcsec", report::Arcsec(Amplitude(c))},
+                    {"u_amplitude_arcsec", report::Arcsec(AmplitudeUncertainty(c))},
+                    {"phase_deg", report::In(units::deg, separate::hob::Phase(c))},
+                    {"u_phase_deg", report::In(units::deg, PhaseUncertainty(c))}});
+  }
+  return json;
+}
+
+nlohmann::json HarmonicsJson(const DeviceError& e) {
+  nlohmann::json json = {{"form", "sum of amplitude cos(order angle + phase)"},
+                         {"highest_order", e.highest_order},
+                         {"device", HarmonicsJson(e.curves.device)}};
+  if (!e.curves.reference.orders.empty()) json["reference"] = HarmonicsJson(e.curves.reference);
+  return json;
+}
+
+nlohmann::json NotSeparable(const DeviceError& e) {
+  nlohmann::json lost = nlohmann::json::array();
+  if (e.curves.reference.orders.empty()) {
+    lost.push_back(
+        {{"what", "device and reference"}, {"why", e.mounting_rad.size() > 1 ? kSeenAlike : kNoReference}});
+    return lost;
+  }
+  for (const int order : e.curves.lost)
+    lost.push_back({{"what", fmt::format("device and reference, order {}", order)}, {"why", kSeenAlike}});
+  return lost;
+}
+
+nlohmann::json SeparationJson(const DeviceError& e) {
+  nlohmann::json json = {{"device", CurveJson(e.curves.device, "ez")},
+                         {"harmonics", HarmonicsJson(e)},
+                         {"not_separable", NotSeparable(e)},
+                         {"residual_rms", {{"x_arcsec", report::Arcsec(e.residual_rms_rad)}}},
+                         {"dof", report::In(1.0, e.dof)}};
+  if (!e.curves.reference.orders.empty()) json["reference"] = CurveJson(e.curves.reference, "ez");
+  return json;
+}
+
+/// By the device's angle: the mean, and the curve with it.
+nlohmann::json ReversalJson(const DeviceError& e) {
+  nlohmann::json json = CurveJson(e.curves.reversal, "reversal");
+  for (auto& value : json["reversal_arcsec"]) value = value.get<double>() + e.reversal.value_rad / units::arcsec;
+  json["mean_arcsec"] = report::Arcsec(e.reversal.value_rad);
+  json["u_mean_arcsec"] = report::Arcsec(e.reversal.u_rad);
+  return json;
+}
+
+/// What was read, by degrees.
+nlohmann::json ToJson(const AngleMeans& means) {
+  nlohmann::json json;
+  for (std::size_t i = 0; i < means.count.size(); ++i) {
+    json["position_deg"].push_back(means.position_rad[i] / units::deg);
+    json["ez_arcsec"].push_back(report::Arcsec(means.value_rad[i]));
+    json["u_ez_arcsec"].push_back(report::Arcsec(means.u_rad[i]));
+    json["readings"].push_back(means.count[i]);
+  }
+  return json;
+}
+
+nlohmann::json MeansJson(const DeviceError& e) {
+  nlohmann::json json = {{"both", ToJson(e.both)}};
+  if (!e.forward.count.empty()) json["forward"] = ToJson(e.forward);
+  if (!e.backward.count.empty()) json["backward"] = ToJson(e.backward);
+  return json;
+}
+
+nlohmann::json ToJson(const PassResult& p) {
+  return {{"setup", p.setup},
+          {"pass", p.pass},
+          {"direction", p.direction},
+          {"readings", p.readings},
+          {"turns", p.turns},
+          {"constant_deg", report::In(units::deg, p.constant_rad)},
+          {"slope_arcsec_per_turn", report::Arcsec(p.slope_rad_per_turn)}};
+}
+
+void AddDevice(const DeviceError& e, nlohmann::json& json) {
+  if (e.highest_order == 0) {
+    json["not_separated"] = e.not_separated;
+    return;
+  }
+  json.update(SeparationJson(e));
+  if (!e.curves.reversal.orders.empty()) json["reversal"] = ReversalJson(e);
+  json["means"] = MeansJson(e);
+  for (const PassResult& pass : e.passes) json["passes"].push_back(ToJson(pass));
+  for (const double mounting_rad : e.mounting_rad) json["mounting_deg"].push_back(mounting_rad / units::deg);
+  if (std::isfinite(e.lag_s)) json["lag"] = {{"value_s", e.lag_s}, {"u_s", report::In(1.0, e.u_lag_s)}};
+  json["notes"] = e.notes;
+}
+
+std::string LinesText(const char* what, const HarmonicSeries& series) {
+  std::string text;
+  for (const int order : FindLines(series)) {
+    const Coefficient& c = series.At(order);
+    text += fmt::format("{:<10} order {:2d}    {:10.3f} +- {:.3f} arcsec, phase {:+.2f} deg\n", what, order,
+                        Amplitude(c) / units::arcsec, AmplitudeUncertainty(c) / units::arcsec,
+                        separate::hob::Phase(c) / units::deg);
+  }
+  return text;
+}
+
+std::string LostText(const DeviceError& e) {
+  if (e.curves.reference.orders.empty())
+    return fmt::format("not told apart from the reference: {}\n",
+                       e.mounting_rad.size() > 1 ? kSeenAlike : kNoReference);
+  std::string orders;
+  for (const int order : e.curves.lost) orders += fmt::format(" {}", order);
+  return orders.empty() ? "" : fmt::format("not told apart from the reference, orders{}: {}\n", orders, kSeenAlike);
+}
+
+std::string SummaryOf(const DeviceError& e) {
+  if (e.highest_order == 0) return fmt::format("no curve: {}\n", e.not_separated);
+  std::string text = LinesText("device", e.curves.device) + LinesText("reference", e.curves.reference) +
+                     LinesText("reversal", e.curves.reversal);
+  if (text.empty()) text = "no order stands out of the noise\n";
+  if (std::isfinite(e.reversal.value_rad))
+    text += fmt::format("forward - backward     {:10.3f} +- {:.3f} arcsec\n", e.reversal.value_rad / units::arcsec,
+                        e.reversal.u_rad / units::arcsec);
+  if (std::abs(e.lag_s) > 3.0 * e.u_lag_s)
+    text +=
+        fmt::format("device behind by       {:10.4f} +- {:.4f} ms\n", e.lag_s / units::ms, e.u_lag_s / units::ms);
+  text += fmt::format("a reading repeats to   {:10.3f} arcsec (standard deviation)\n",
+                      e.residual_rms_rad / units::arcsec);
+  text += LostText(e);
+  for (const std::string& note : e.notes) text += "note: " + note + "\n";
+  return text;
+}
+
+/// At the positions of the truth.
+report::CurveScore ScoreOf(const std::string& name, const HarmonicSeries& series, const nlohmann::json& truth) {
+  report::CurveScore curve{.name = name,
+                           .value = "ez_arcsec",
+                           .position = truth.at("position_deg"),
+                           .estimate = {},
+                           .u = {},
+                           .truth = truth.at("ez_arcsec")};
+  const CurveAt at = Curve(series, static_cast<int>(curve.position.size()));
+  for (Eigen::Index i = 0; i < at.value_rad.size(); ++i) {
+    curve.estimate.push_back(at.value_rad[i] / units::arcsec);
+    curve.u.push_back(at.u_rad[i] / units::arcsec);
+  }
+  return curve;
+}
+
+}  // namespace
+
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, measure::Estimator) {
+  const measure::AngleComparison comparison = measure::CompareAngles(readings);
+  const DeviceError device = separate::encoder::SeparateDevice(readings);
+  report::Evaluation evaluation{ToJson(comparison), {}, device.not_separated, Summary(comparison)};
+  evaluation.summary += SummaryOf(device);
+  AddDevice(device, evaluation.results);
+  if (device.highest_order > 0) evaluation.separation = SeparationJson(device);
+  if (scenario.encoder_procedure.kind == "stops") {
+    const PositioningResults positioning = EvaluateStops(readings);
+    evaluation.results["iso230_2"] = positioning.json;
+    evaluation.summary += positioning.text;
+  }
+  return evaluation;
+}
+
+report::ScoredRun ScoreRun(const Scenario&, const std::vector<Reading>& readings, const nlohmann::json& truth,
+                           measure::Estimator) {
+  const DeviceError device = separate::encoder::SeparateDevice(readings);
+  if (device.highest_order == 0) throw InputError("the run", device.not_separated, "a run with complete turns");
+  std::vector<report::CurveScore> curves = {ScoreOf("device", device.curves.device, truth.at("device"))};
+  if (!device.curves.reference.orders.empty())
+    curves.push_back(ScoreOf("reference", device.curves.reference, truth.at("reference")));
+  return {ToJson(curves),
+          "against the truth; means are taken out of both\n" + report::ScoreTable(curves) + LostText(device),
+          report::PositionTable(curves)};
+}
+
+}  // namespace twinbench::benches::encoder

@@ -1,0 +1,49 @@
+#include "twin/benches/encoder_comparison/format.h"
+#include "twin/core/scenario_together.h"
+#include "twin/core/schema_table.h"
+
+namespace twinbench::benches::encoder {
+namespace {
+
+using namespace schema;
+
+void AddDevice(Keys& keys, DeviceSettings& s) {
+  Table t(keys, "device");
+  t.Add("noise", kDeg, UpTo(10), &s.noise_rad, "of one reading, white, standard deviation");
+  t.Flag("noise_known", s.noise_known, "false: an evaluation estimates it from the readings");
+  t.Add("resolution", kDeg, UpTo(10), &s.resolution_rad, "least step of the reading; 0: none");
+  t.Add("lines_per_turn", kPure, UpTo(10000000), &s.lines, "of its scale; 0: not known");
+  t.Add("teeth", kPure, UpTo(100000), &s.teeth, "of a gear between reference and device; 0: none known");
+  t.Add("signal_periods", kPure, {1, 100000}, &s.signal_periods, "of its sine and cosine signals a turn");
+  t.Add("signal_zero", kDeg, Within(360), &s.signal_zero_rad, "device angle where the sine rises through zero");
+  t.Flag("signal_zero_known", s.signal_zero_known, "false: the phase of signal faults is left free");
+}
+
+void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
+  Table t(keys, "encoder_procedure");
+  t.Text("kind", &s.kind, {"stops", "sweep"}, "readings at rest, or in motion");
+  t.Add("turns", kPure, Positive(1000), &s.turns, "of a pass");
+  t.Add("start", kDeg, Within(360000), &s.start_rad, "where the first pass begins");
+  t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1; a sweep does them at each speed");
+  t.Add("mounting", kDeg, Within(360), &s.mounting_rad, "device angle where the reference shows 0, one a set-up");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("stops_per_turn", kPure, {3, 100000}, &s.stops, "stops: evenly spaced");
+  t.Add("stop_interval", kSecond, Positive(86400), &s.stop_interval_s, "stops: between readings");
+  t.Add("speeds", {"deg_s", units::deg}, Positive(36000), &s.speeds_rad_s, "sweep: one after the other");
+  t.Add("ramp", kSecond, Positive(3600), &s.ramp_s, "sweep: to reach the speed and to stop");
+  t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "sweep: behind every pass");
+  t.Add("interval", kSecond, Positive(3600), &s.interval_s, "sweep: between readings");
+}
+
+}  // namespace
+
+void AddKeys(Keys& keys, Scenario& s) {
+  AddDevice(keys, s.device);
+  AddEncoderProcedure(keys, s.encoder_procedure);
+}
+
+void CheckTogether(const ScenarioText& text, const Scenario& s) {
+  CheckPasses(text, "encoder_procedure.passes", s.encoder_procedure.passes);
+}
+
+}  // namespace twinbench::benches::encoder

@@ -1,0 +1,14 @@
+#include "twin/benches/encoder_comparison/format.h"
+#include "twin/benches/hob_transmission/format.h"
+#include "twin/benches/rotary_4dof/format.h"
+#include "twin/benches/turntable_autocollimator/format.h"
+
+namespace twinbench {
+
+const std::vector<const BenchFormat*>& BenchFormats() {
+  static const std::vector<const BenchFormat*> formats = {&benches::rotary::Format(), &benches::encoder::Format(),
+                                                          &benches::turntable::Format(), &benches::hob::Format()};
+  return formats;  // constant
+}
+
+}  // namespace twinbench

@@ -1,0 +1,30 @@
+#include "twin/benches/hob_transmission/bench.h"
+
+#include "twin/benches/hob_transmission/twin/twin.h"
+#include "twin/procedure/hob.h"
+
+namespace twinbench::benches::hob {
+namespace {
+
+int PlannedReadings(const Scenario& s) {
+  return procedure::PlannedReadings(s.hob_procedure);
+}
+
+}  // namespace
+
+const Bench& Whole() {
+  static const Bench bench = [] {
+    Bench b;
+    b.format = &Format();
+    b.make_twin = MakeTwin;
+    b.planned_readings = PlannedReadings;
+    b.evaluate = Evaluate;
+    b.score = ScoreRun;
+    b.diagnose = Diagnose;
+    b.linear_run = Linear;
+    return b;
+  }();
+  return bench;
+}
+
+}  // namespace twinbench::benches::hob

@@ -1,0 +1,33 @@
+#include "twin/benches/hob_transmission/bench.h"
+#include "twin/diagnose/conclusion.h"
+#include "twin/diagnose/hob/families.h"
+#include "twin/diagnose/hob/hob_answers.h"
+#include "twin/diagnose/hob/hob_run.h"
+#include "twin/diagnose/hob/next_measurement.h"
+
+namespace twinbench::benches::hob {
+
+diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
+                                const diagnose::DiagnoseOptions& options) {
+  const diagnose::hob::HobRun hob = diagnose::hob::BuildRun(readings, scenario);
+  const std::vector<diagnose::Family> families = diagnose::hob::Families(hob, options.struck);
+  diagnose::AnalysisOptions how = diagnose::AnalysisOptionsOf(options);
+  how.null_runs = diagnose::hob::NullRuns(hob, options.null_runs);
+  how.most_causes = 6;
+  const diagnose::Analysis analysis = diagnose::hob::AnalyseToFirstOrder(hob, families, how);
+  const diagnose::AnswerWords words{
+      [orders = scenario.transmission.free_orders](const std::string&, const Eigen::VectorXd& x) {
+        return diagnose::hob::BiasInWords(orders, x);
+      },
+      diagnose::hob::NextMeasurement};
+  diagnose::DiagnosisRun result =
+      diagnose::Conclude(hob.run, analysis, diagnose::hob::DisturbedCauses(hob, options.struck), words);
+  diagnose::hob::ToReadings(hob, result);
+  return result;
+}
+
+diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, measure::Estimator) {
+  return diagnose::hob::BuildRun(readings, scenario).run;
+}
+
+}  // namespace twinbench::benches::hob

@@ -1,0 +1,274 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <complex>
+#include <map>
+
+#include "twin/benches/hob_transmission/bench.h"
+#include "twin/core/errors.h"
+#include "twin/report/curve_score.h"
+#include "twin/report/json_units.h"
+#include "twin/separate/hob/hob_bench.h"
+
+namespace twinbench::benches::hob {
+namespace {
+
+using separate::hob::Amplitude;
+using separate::hob::AmplitudeUncertainty;
+using separate::hob::AnalyseHob;
+using separate::hob::Coefficient;
+using separate::hob::DirectionResult;
+using separate::hob::HarmonicSeries;
+using separate::hob::HobAnalysis;
+using separate::hob::OrderComparison;
+using separate::hob::OrderStatus;
+using separate::hob::Phase;
+using separate::hob::PhaseUncertainty;
+using separate::hob::PositionError;
+using separate::hob::PositionStatus;
+using separate::hob::SeparatedOrder;
+
+/// Columns, one entry an order.
+nlohmann::json ToJson(const HarmonicSeries& series) {
+  nlohmann::json json = {{"form", "sum of amplitude cos(order angle + phase)"}};
+  for (int k = 1; k <= series.Highest(); ++k) {
+    const Coefficient& c = series.At(k);
+    json["order"].push_back(k);
+    json["amplitude_arcsec"].push_back(report::Arcsec(Amplitude(c)));
+    json["u_amplitude_arcsec"].push_back(report::Arcsec(AmplitudeUncertainty(c)));
+    json["phase_deg"].push_back(report::In(units::deg, separate::hob::Phase(c)));
+    json["u_phase_deg"].push_back(report::In(units::deg, PhaseUncertainty(c)));
+  }
+  return json;
+}
+
+nlohmann::json ToJson(const std::vector<OrderComparison>& comparisons) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const OrderComparison& c : comparisons) {
+    json.push_back({{"order", c.order},
+                    {"separated", c.status == OrderStatus::kSeparated},
+                    {"amplitude_arcsec", report::Arcsec(Amplitude(c.estimated))},
+                    {"reference_arcsec", report::Arcsec(Amplitude(c.reference))},
+                    {"amplitude_difference_arcsec", report::Arcsec(c.amplitude_difference_rad)},
+                    {"u_amplitude_difference_arcsec", report::Arcsec(c.u_amplitude_difference_rad)},
+                    {"phase_difference_rad", report::In(1.0, c.phase_difference_rad)},
+                    {"u_phase_difference_rad", report::In(1.0, c.u_phase_difference_rad)},
+                    {"normalised_error", report::In(1.0, c.normalised_error)}});
+  }
+  return json;
+}
+
+nlohmann::json ToJson(const DirectionResult& result) {
+  nlohmann::json json = ToJson(result.transmission);
+  json["direction"] = result.direction;
+  json["lines"] = result.lines;
+  if (!result.against_interferometer.empty())
+    json["against_interferometer"] = ToJson(result.against_interferometer);
+  return json;
+}
+
+nlohmann::json ToJson(const PositionError& p) {
+  nlohmann::json json = ToJson(p.series);
+  json.update({{"setup", p.setup},
+               {"direction", p.direction},
+               {"head_deg", p.head_rad / units::deg},
+               {"turns", p.turns},
+               {"turns_left_out", p.turns_left_out},
+               {"samples", p.samples},
+               {"residual_rms_arcsec", report::Arcsec(p.residual_rms_rad)},
+               {"drift_arcsec_per_turn", report::Arcsec(p.drift_rad_per_turn)}});
+  return json;
+}
+
+nlohmann::json NotSeparable(const HobAnalysis& a) {
+  nlohmann::json lost = nlohmann::json::array();
+  for (const SeparatedOrder& order : a.separation->orders) {
+    if (order.status != OrderStatus::kSumOnly) continue;
+    lost.push_back({{"what", fmt::format("transmission and table encoder, order {}", order.order)},
+                    {"why", "the heads see this order alike; the sum is counted as the transmission's"},
+                    {"noise_factor", report::In(1.0, order.noise_factor)}});
+  }
+  return lost;
+}
+
+nlohmann::json TwoPositionsJson(const separate::hob::TwoPositions& two) {
+  const auto order_1 = [](const Coefficient& c) {
+    return nlohmann::json{{"amplitude_arcsec", report::Arcsec(Amplitude(c))},
+                          {"u_amplitude_arcsec", report::Arcsec(AmplitudeUncertainty(c))},
+                          {"phase_rad", report::In(1.0, Phase(c))},
+                          {"u_phase_rad", report::In(1.0, PhaseUncertainty(c))}};
+  };
+  return {{"noise_factor", report::In(1.0, two.noise_factor)},
+          {"table_encoder_order_1", order_1(two.encoder)},
+          {"transmission_order_1", order_1(two.transmission)}};
+}
+
+/// rms of what the turns' fits left over, over all positions.
+double ResidualRms_rad(const HobAnalysis& a) {
+  double sum = 0.0;
+  int samples = 0;
+  for (const PositionError& p : a.positions) {
+    if (p.status != PositionStatus::kOk) continue;
+    sum += p.samples * p.residual_rms_rad * p.residual_rms_rad;
+    samples += p.samples;
+  }
+  return samples > 0 ? std::sqrt(sum / samples) : kNaN;
+}
+
+nlohmann::json SeparationJson(const HobAnalysis& a) {
+  nlohmann::json json = {{"estimator", measure::EstimatorName(a.estimator)},
+                         {"transmission", nlohmann::json::array()},
+                         {"table_encoder", ToJson(a.encoder)},
+                         {"not_separable", NotSeparable(a)},
+                         {"residual_rms", {{"sample_arcsec", report::Arcsec(ResidualRms_rad(a))}}},
+                         {"dof", report::In(1.0, a.separation->dof)}};
+  for (const DirectionResult& direction : a.directions) json["transmission"].push_back(ToJson(direction));
+  if (a.two_positions) json["two_positions"] = TwoPositionsJson(*a.two_positions);
+  return json;
+}
+
+nlohmann::json ResultsOf(const HobAnalysis& a) {
+  nlohmann::json json = {{"readings", a.used}, {"left_out", a.left_out}, {"positions", nlohmann::json::array()}};
+  for (const PositionError& position : a.positions) json["positions"].push_back(ToJson(position));
+  if (!a.separation) {
+    json["not_separated"] = a.not_separated;
+    return json;
+  }
+  json["separation"] = SeparationJson(a);
+  if (!a.encoder_by_interferometer.orders.empty()) {
+    json["table_encoder_by_interferometer"] = ToJson(a.encoder_by_interferometer);
+    json["table_encoder_against_interferometer"] = ToJson(a.encoder_against_interferometer);
+  }
+  return json;
+}
+
+std::string PositionText(const PositionError& p) {
+  if (p.status != PositionStatus::kOk)
+    return fmt::format("head at {:6.2f} deg, direction {:+d}: no complete turn\n", p.head_rad / units::deg,
+                       p.direction);
+  const Coefficient& first = p.series.At(1);
+  return fmt::format(
+      "head at {:6.2f} deg, direction {:+d}   order 1: {:.2f} +- {:.2f} arcsec ({} turns, {} samples)\n",
+      p.head_rad / units::deg, p.direction, Amplitude(first) / units::arcsec,
+      AmplitudeUncertainty(first) / units::arcsec, p.turns, p.samples);
+}
+
+std::string OrderText(const char* what, const Coefficient& c) {
+  return fmt::format("{}   {:.2f} +- {:.2f} arcsec, phase {:.3f} +- {:.3f} rad\n", what,
+                     Amplitude(c) / units::arcsec, AmplitudeUncertainty(c) / units::arcsec, Phase(c),
+                     PhaseUncertainty(c));
+}
+
+std::string LinesText(const DirectionResult& result) {
+  std::string text = fmt::format("transmission, direction {:+d}: lines at order", result.direction);
+  if (result.lines.empty()) return text + " none\n";
+  for (const int order : result.lines) {
+    const double amplitude_arcsec = Amplitude(result.transmission.At(order)) / units::arcsec;
+    text += fmt::format(" {} ({:.2f})", order, amplitude_arcsec);
+  }
+  return text + " [arcsec]\n";
+}
+
+std::string ComparisonText(const std::vector<OrderComparison>& comparisons) {
+  std::string text;
+  constexpr double kWorthTelling = 5.0;  // of less than so many uncertainties the phase says nothing
+  for (const OrderComparison& c : comparisons) {
+    if (!(Amplitude(c.reference) > kWorthTelling * AmplitudeUncertainty(c.estimated))) continue;
+    text += fmt::format("table encoder against the interferometer, order {}: {:+.2f} arcsec, {:+.3f} rad\n",
+                        c.order, c.amplitude_difference_rad / units::arcsec, c.phase_difference_rad);
+  }
+  return text;
+}
+
+std::string LostText(const HobAnalysis& a) {
+  std::string orders;
+  for (const SeparatedOrder& order : a.separation->orders) {
+    if (order.status == OrderStatus::kSumOnly) orders += fmt::format(" {}", order.order);
+  }
+  return orders.empty() ? "" : "not told apart, counted as transmission: orders" + orders + "\n";
+}
+
+std::string SummaryOf(const HobAnalysis& a) {
+  std::string text = fmt::format("{} samples", a.used);
+  text += a.left_out > 0 ? fmt::format(", {} left out\n", a.left_out) : "\n";
+  for (const PositionError& position : a.positions) text += PositionText(position);
+  if (!a.separation) return text + fmt::format("no separation: {}\n", a.not_separated);
+  const bool published = a.estimator == measure::Estimator::kPublished && a.two_positions;
+  const bool separated = a.separation->At(1).status == OrderStatus::kSeparated;
+  if (published) text += OrderText("table encoder, order 1, two positions", a.two_positions->encoder);
+  if (!published && separated) text += OrderText("table encoder, order 1", a.encoder.At(1));
+  for (const DirectionResult& direction : a.directions) text += LinesText(direction);
+  return text + ComparisonText(a.encoder_against_interferometer) + LostText(a);
+}
+
+// --- against the truth ---
+
+/// Coefficients A exp(j phase) of each order, cosine convention.
+std::map<int, std::complex<double>> TruthOf(const nlohmann::json& harmonics) {
+  std::map<int, std::complex<double>> truth;
+  for (const nlohmann::json& h : harmonics) {
+    const double order = h.at("order").get<double>();
+    if (order != std::floor(order)) continue;
+    truth[static_cast<int>(order)] +=
+        std::polar(h.at("amplitude_arcsec").get<double>(), h.at("phase_deg").get<double>() * units::deg);
+  }
+  return truth;
+}
+
+/// Real and imaginary part of each order as two rows.
+report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series,
+                           const std::map<int, std::complex<double>>& truth) {
+  report::CurveScore curve;
+  curve.name = name;
+  curve.value = "amplitude_arcsec";
+  curve.position_name = "order";
+  const auto add = [&](int order, double estimate_rad, double variance, double true_arcsec) {
+    curve.position.push_back(order);
+    curve.estimate.push_back(estimate_rad / units::arcsec);
+    curve.u.push_back(std::sqrt(variance) / units::arcsec);
+    curve.truth.push_back(true_arcsec);
+  };
+  for (int k = 1; k <= series.Highest(); ++k) {
+    const Coefficient& c = series.At(k);
+    if (!std::isfinite(c.value.real())) continue;
+    const auto found = truth.find(k);
+    const std::complex<double> true_value = found == truth.end() ? 0.0 : found->second;
+    add(k, c.value.real(), c.cov(0, 0), true_value.real());
+    add(k, c.value.imag(), c.cov(1, 1), true_value.imag());
+  }
+  return curve;
+}
+
+}  // namespace
+
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings,
+                            measure::Estimator estimator) {
+  const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
+  const nlohmann::json separation = analysis.separation ? SeparationJson(analysis) : nlohmann::json();
+  return {ResultsOf(analysis), separation, analysis.not_separated, SummaryOf(analysis)};
+}
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, measure::Estimator estimator) {
+  const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
+  if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with complete turns");
+  const auto transmission = TruthOf(truth.at("transmission")), encoder = TruthOf(truth.at("table_encoder"));
+  std::vector<report::CurveScore> curves;
+  for (const DirectionResult& direction : analysis.directions) {
+    const std::string name = fmt::format("transmission {:+d}", direction.direction);
+    curves.push_back(CurveOf(name, direction.transmission, transmission));
+  }
+  curves.push_back(CurveOf("table encoder", analysis.encoder, encoder));
+  if (analysis.two_positions) {
+    HarmonicSeries first;
+    first.orders = {analysis.two_positions->encoder};
+    curves.push_back(CurveOf("two positions", first, encoder));
+  }
+  return {
+      ToJson(curves),
+      "against the truth: both parts of every order; orders that are not told apart have the encoder's share\n" +
+          report::ScoreTable(curves),
+      report::PositionTable(curves)};
+}
+
+}  // namespace twinbench::benches::hob

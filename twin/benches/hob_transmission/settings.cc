@@ -1,0 +1,108 @@
+#include <fmt/format.h>
+
+#include "twin/benches/hob_transmission/format.h"
+#include "twin/core/errors.h"
+#include "twin/core/scenario_together.h"
+#include "twin/core/schema_table.h"
+
+namespace twinbench::benches::hob {
+namespace {
+
+using namespace schema;
+
+void AddTransmission(Keys& keys, TransmissionSettings& s) {
+  Table t(keys, "transmission");
+  t.Add("hob_starts", kPure, {1, 1000}, &s.hob_starts, "of the hob");
+  t.Add("gear_teeth", kPure, {1, 100000}, &s.gear_teeth, "that the hob would cut: the gearbox's ratio");
+  t.Add("worm_wheel_teeth", kPure, {1, 100000}, &s.worm_wheel_teeth, "of the table's worm wheel");
+  t.Add("worm_starts", kPure, {1, 1000}, &s.worm_starts, "of the worm");
+  t.Add("harmonics", kPure, {}, &s.harmonics, "of the transmission error: amplitude * cos(order * table + phase)");
+  t.Add("free_orders", kPure, UpTo(1000), &s.free_orders, "an evaluation takes the orders up to this as unknown");
+  t.Add("servo", kHz, Positive(500), &s.servo_Hz, "bandwidth of the table's drive");
+  t.Add("feed_forward", kPure, UpTo(1), &s.feed_forward, "of the speed; 1: no lag at constant speed");
+  t.Add("table_inertia", {"kg_m2"}, Positive(1e6), &s.table_inertia_kg_m2, "of the table with its load");
+  t.Add("stiffness", {"Nm_mrad", 1e3}, Positive(1e9), &s.stiffness_Nm_rad, "torsion between worm wheel and table");
+  t.Add("damping_ratio", kPure, UpTo(2), &s.damping_ratio, "of that torsion");
+  t.Add("friction", {"Nm"}, UpTo(1e6), &s.friction_Nm, "on the table: winds the torsion up, by direction");
+  t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "of the worm, full width at the table");
+}
+
+void AddRing(Keys& keys, const std::string& table, RingEncoderSettings& s) {
+  Table t(keys, table);
+  t.Add("lines", kPure, {1, 10000000}, &s.lines, "a turn");
+  t.Add("radius", kMm, Positive(5000), &s.radius_m, "of the ring");
+  t.Add("eccentricity", kUm, UpTo(10000), &s.eccentricity_m, "of its middle from the shaft's axis");
+  t.Add("eccentricity_azimuth", kDeg, Within(360), &s.eccentricity_azimuth_rad, "on the ring");
+  t.Add("tilt", kArcsec, Within(36000), &s.tilt_rad, "of the ring against the shaft");
+  t.Add("tilt_azimuth", kDeg, Within(360), &s.tilt_azimuth_rad, "on the ring: of its tilt axis");
+  t.Add("head_height", kMm, Within(1000), &s.head_height_m, "of the head above the ring's middle plane");
+  t.Add("ellipticity", kUm, UpTo(10000), &s.ellipticity_m, "half the difference of largest and smallest radius");
+  t.Add("ellipticity_azimuth", kDeg, Within(360), &s.ellipticity_azimuth_rad, "on the ring: of the largest radius");
+  t.Add("graduation", kPure, {}, &s.graduation,
+        "error of the lines: amplitude * cos(order * ring's angle + phase)");
+  t.Add("interpolation", kPure, {1, 1000000}, &s.interpolation, "steps a line");
+  t.Add("noise", kArcsec, UpTo(3600), &s.noise_rad, "of one reading, white, standard deviation");
+}
+
+void AddInterferometer(Keys& keys, InterferometerSettings& s) {
+  Table t(keys, "interferometer");
+  t.Flag("used", s.used, "the transmission error is compared with it");
+  t.Add("noise", kArcsec, UpTo(3600), &s.noise_rad, "of one reading, standard deviation");
+}
+
+void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
+  Table t(keys, "hob_procedure");
+  t.Add("heads", kDeg, Within(360), &s.heads_rad, "where the mark passes the table's reading head, one a set-up");
+  t.Text("encoder_zero", &s.encoder_zero, {"table_origin", "reference_mark"},
+         "where the table's encoder counts from");
+  t.Add("hob_speeds", {"rev_min", 2.0 * units::kPi / 60.0}, Positive(100000), &s.hob_speeds_rad_s,
+        "one after the other");
+  t.Add("passes", kPure, {-1, 1}, &s.passes, "directions of the table, 1 or -1; at each speed");
+  t.Add("turns", kPure, {1, 1000}, &s.turns, "of the table, a pass");
+  t.Add("samples_per_turn", kPure, {4, 1000000}, &s.samples_per_turn, "of the table; divides table_encoder.lines");
+  t.Add("ramp", kSecond, Positive(3600), &s.ramp_s, "to reach the speed and to stop");
+  t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "behind every pass");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("fifo_samples", kPure, {1, kHuge}, &s.fifo_samples, "that the counter card holds");
+  t.Add("poll", kSecond, Positive(3600), &s.poll_s, "the computer empties the FIFO this often");
+}
+
+void AddMotionOfTheChain(Keys& keys, MechanicsSettings& s) {
+  Table t(keys, "mechanics");
+  t.Text("fidelity", &s.fidelity, {"kinematic", "bullet"}, "how the bodies move");
+}
+
+void CheckAngles(const ScenarioText& text, const std::string& key, const std::vector<HarmonicSettings>& harmonics) {
+  for (const HarmonicSettings& harmonic : harmonics) {
+    if (harmonic.component != Component::kEz)
+      throw InputError(Place(text, key), fmt::format("{} has a harmonic of another component", key), "\"ez\"");
+  }
+}
+
+}  // namespace
+
+void AddKeys(Keys& keys, Scenario& s) {
+  AddTransmission(keys, s.transmission);
+  AddRing(keys, "table_encoder", s.table_encoder);
+  AddRing(keys, "hob_encoder", s.hob_encoder);
+  AddInterferometer(keys, s.interferometer);
+  AddMotionOfTheChain(keys, s.mechanics);
+  AddHobProcedure(keys, s.hob_procedure);
+}
+
+void CheckTogether(const ScenarioText& text, const Scenario& s) {
+  CheckPasses(text, "hob_procedure.passes", s.hob_procedure.passes);
+  CheckAngles(text, "transmission.harmonics", s.transmission.harmonics);
+  CheckAngles(text, "table_encoder.graduation", s.table_encoder.graduation);
+  CheckAngles(text, "hob_encoder.graduation", s.hob_encoder.graduation);
+  if (s.table_encoder.lines % s.hob_procedure.samples_per_turn != 0)
+    throw InputError(Place(text, "hob_procedure.samples_per_turn"),
+                     fmt::format("{} samples a turn", s.hob_procedure.samples_per_turn),
+                     fmt::format("a divisor of the {} lines of the table's encoder", s.table_encoder.lines));
+  for (const double speed_rad_s : s.hob_procedure.hob_speeds_rad_s) {
+    if (speed_rad_s <= 0.0)
+      throw InputError(Place(text, "hob_procedure.hob_speeds_rev_min"), "a speed is 0", "speeds above 0");
+  }
+}
+
+}  // namespace twinbench::benches::hob

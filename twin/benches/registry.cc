@@ -1,0 +1,51 @@
+#include "twin/benches/registry.h"
+
+#include <algorithm>
+
+#include "twin/benches/encoder_comparison/bench.h"
+#include "twin/benches/hob_transmission/bench.h"
+#include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/diagnose/missing.h"
+
+namespace twinbench {
+
+const std::vector<const Bench*>& Benches() {
+  static const std::vector<const Bench*> benches = {&benches::rotary::Whole(), &benches::encoder::Whole(),
+                                                    &benches::turntable::Whole(), &benches::hob::Whole()};
+  return benches;  // constant
+}
+
+const Bench& BenchNamed(const std::string& name) {
+  const auto found = std::ranges::find(Benches(), name, [](const Bench* bench) { return bench->format->name; });
+  if (found == Benches().end()) throw UnknownBench("bench", name);
+  return **found;
+}
+
+const Bench& BenchOf(const Scenario& scenario) {
+  return BenchNamed(scenario.bench);
+}
+
+std::string BenchesWhere(const std::function<bool(const Bench&)>& holds) {
+  std::string text = "bench";
+  const char* separator = " ";
+  for (const Bench* bench : Benches()) {
+    if (!holds(*bench)) continue;
+    text += separator + bench->format->name;
+    separator = " or ";
+  }
+  return text;
+}
+
+namespace diagnose {
+
+DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
+                      const DiagnoseOptions& options) {
+  DiagnosisRun result = BenchOf(scenario).diagnose(readings, scenario, options);
+  const std::vector<std::string> missing = MissingColumns(readings, scenario.bench);
+  result.diagnosis.notes.insert(result.diagnosis.notes.end(), missing.begin(), missing.end());
+  return result;
+}
+
+}  // namespace diagnose
+}  // namespace twinbench

@@ -1,0 +1,33 @@
+#include "twin/benches/rotary_4dof/bench.h"
+
+#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/procedure/procedure.h"
+
+namespace twinbench::benches::rotary {
+namespace {
+
+int PlannedReadings(const Scenario& s) {
+  return procedure::PlannedReadings(s.procedure);
+}
+
+}  // namespace
+
+const Bench& Whole() {
+  static const Bench bench = [] {
+    Bench b;
+    b.format = &Format();
+    b.make_twin = MakeTwin;
+    b.planned_readings = PlannedReadings;
+    b.is_pictured = true;
+    b.has_controllers = true;
+    b.evaluate = Evaluate;
+    b.score = ScoreRun;
+    b.diagnose = Diagnose;
+    b.linear_run = Linear;
+    b.change_of_tables = ChangeOfTables;
+    return b;
+  }();
+  return bench;
+}
+
+}  // namespace twinbench::benches::rotary

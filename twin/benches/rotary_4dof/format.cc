@@ -1,0 +1,27 @@
+#include "twin/benches/rotary_4dof/format.h"
+
+#include "twin/benches/names.h"
+
+namespace twinbench::benches::rotary {
+
+const BenchFormat& Format() {
+  static const BenchFormat format = [] {
+    BenchFormat f;
+    f.name = kRotaryBench;
+    f.title = "errors of two stacked rotary tables by a grating and two PSDs";
+    f.add_keys = AddKeys;
+    f.check_together = CheckTogether;
+    f.tables = TableNames{"target", "reference"};
+    f.has_fixtures = true;
+    f.columns = Columns();
+    f.channels = {kChannelNames.begin(), kChannelNames.end()};
+    f.signal = SignalKind::kPosition;
+    f.desired = Desired();
+    f.smallest_addition = Addition;
+    f.effects = Effects();
+    return f;
+  }();
+  return format;
+}
+
+}  // namespace twinbench::benches::rotary

@@ -1,0 +1,54 @@
+#include <fmt/core.h>
+
+#include "twin/benches/rotary_4dof/analysis.h"
+#include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/tables.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::benches::rotary {
+namespace {
+
+/// What others script against (formats.md); results.json of a run has the rest.
+nlohmann::json SeparationJson(const separate::Separation& separation) {
+  const nlohmann::json all = separate::ToJson(separation);
+  nlohmann::json agreed;
+  for (const char* key : {"target", "reference", "not_separable", "residual_rms", "dof"}) agreed[key] = all.at(key);
+  return agreed;
+}
+
+TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
+  TableErrors errors;
+  for (const double angle_deg : truth.at(table).at("position_deg"))
+    errors.position_rad.push_back(angle_deg * units::deg);
+  for (int c = 0; c < kComponents; ++c) {
+    const bool angle = IsAngle(static_cast<Component>(c));
+    const std::string column = std::string(kComponentNames[c]) + (angle ? "_arcsec" : "_um");
+    for (const double v : truth.at(table).at(column))
+      errors.value[c].push_back(v * (angle ? units::arcsec : units::um));
+  }
+  return errors;
+}
+
+}  // namespace
+
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings,
+                            measure::Estimator estimator) {
+  const Analysis analysis = Analyse(scenario, readings, estimator);
+  const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation) : nlohmann::json();
+  return {ToJson(analysis), separation, analysis.not_separated, Summary(analysis)};
+}
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, measure::Estimator estimator) {
+  const Analysis analysis = Analyse(scenario, readings, estimator);
+  if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full-circle test");
+  const Score score =
+      CompareWithTruth(*analysis.separation, ErrorsOf(truth, "target"), ErrorsOf(truth, "reference"));
+  std::string text = fmt::format("{} estimator against the truth; what cannot be separated is taken out of both\n",
+                                 measure::EstimatorName(estimator)) +
+                     ScoreTable(score);
+  for (const auto& lost : analysis.separation->not_separable) text += fmt::format("not separable: {}\n", lost.what);
+  return {ToJson(score), text, PositionTable(score, *analysis.separation)};
+}
+
+}  // namespace twinbench::benches::rotary

@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "twin/benches/rotary_4dof/format.h"
+#include "twin/core/errors.h"
+#include "twin/core/scenario_together.h"
+#include "twin/core/schema_table.h"
+
+namespace twinbench::benches::rotary {
+namespace {
+
+using namespace schema;
+
+void AddLaser(Keys& keys, LaserSettings& s) {
+  Table t(keys, "laser");
+  t.Add("wavelength", kNm, {200, 2000}, &s.wavelength_m, "in air");
+  t.Add("power", kMw, Positive(10000), &s.power_W, "of the beam");
+  t.Add("position", kMm, Within(5000), List(s.position_m), "of the laser's exit in L: x, y, z");
+  t.Add("yaw", kMrad, Within(500), &s.yaw_rad, "pointing error of the beam about z");
+  t.Add("pitch", kMrad, Within(500), &s.pitch_rad, "pointing error of the beam, upwards");
+  t.Text("beam", &s.beam, {"chief_ray", "gaussian", "profile"}, "how the beam is carried to the PSDs");
+  t.Add("beam_radius", kMm, Positive(50), &s.beam_radius_m, "1/e^2 of the irradiance, at the waist");
+  t.Add("divergence", kMrad, UpTo(100), &s.divergence_rad, "1/e^2 half angle");
+  t.Text("profile_file", &s.profile_file, {}, "OpenEXR of the measured beam, for beam = \"profile\"");
+  t.Add("wavelength_per_kelvin", kNm, Within(10), &s.wavelength_per_kelvin_m, "against environment.reference_degC");
+  t.Add("pointing_yaw_per_kelvin", kUrad, Within(10000), &s.pointing_yaw_per_kelvin_rad, "likewise");
+  t.Add("pointing_pitch_per_kelvin", kUrad, Within(10000), &s.pointing_pitch_per_kelvin_rad, "likewise");
+}
+
+void AddGrating(Keys& keys, GratingSettings& s) {
+  Table t(keys, "grating");
+  t.Add("lines", {"per_mm", 1e3}, Positive(10000), &s.lines_per_m, "grooves a length");
+  t.Add("width", kMm, Positive(1000), &s.width_m, "across the grooves");
+  t.Add("height", kMm, Positive(1000), &s.height_m, "along the grooves");
+  t.Add("efficiency", kPure, UpTo(1), List(s.efficiency), "power share of the orders -2, -1, 0, 1, 2");
+  t.Text("efficiency_file", &s.efficiency_file, {},
+         "instead, by incidence: CSV of sin_incidence, m-2, m-1, m0, m+1, m+2");
+  t.Add("point", kMm, Within(5000), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
+}
+
+void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
+  Table t(keys, table);
+  t.Add("distance", kMm, Positive(10000), &s.distance_m, "from the spot on the grating to the centre");
+  t.Add("roll", kMrad, Within(3200), &s.roll_rad, "about the nominal order, right-handed towards the light");
+  t.Add("tilt_u", kMrad, Within(1000), &s.tilt_u_rad, "about its u axis");
+  t.Add("tilt_v", kMrad, Within(1000), &s.tilt_v_rad, "about its v axis");
+  t.Add("sensitivity", {"V_m"}, Positive(1e6), &s.sensitivity_V_m, "of the output to the spot's place [V/m]");
+  t.Add("width", kMm, Positive(100), &s.width_m, "of the active area, along u");
+  t.Add("height", kMm, Positive(100), &s.height_m, "of the active area, along v");
+  t.Add("cubic", {"per_m2"}, Within(1e7), &s.cubic_per_m2, "non-linearity: u -> u (1 + cubic r^2)");
+  t.Add("stray_fraction", kPure, UpTo(0.9), &s.stray_fraction, "uniform stray light / signal");
+  t.Flag("window", s.window, "a window in front of the silicon");
+  t.Add("window_thickness", kMm, Positive(20), &s.window_thickness_m, "of the glass");
+  t.Add("window_index", kPure, {1, 4}, &s.window_index, "refractive index of the glass");
+  t.Add("window_gap", kMm, UpTo(50), &s.window_gap_m, "from the window's back to the silicon");
+  t.Add("window_reflectance", kPure, UpTo(0.99), &s.window_reflectance, "of one surface");
+  t.Add("window_wedge", kMrad, Within(200), &s.window_wedge_rad, "between the faces");
+  t.Flag("window_coherent", s.window_coherent, "interference between the window's faces");
+  t.Add("silicon_reflectance", kPure, UpTo(0.99), &s.silicon_reflectance, "above 0: ghosts by way of the grating");
+}
+
+void AddAmplifier(Keys& keys, AmplifierSettings& s) {
+  Table t(keys, "amplifier");
+  t.Add("offset", kMillivolt, Within(20000), List(s.offset_V), "psd_a_x, psd_a_y, psd_b_x, psd_b_y");
+  t.Add("gain_error", kPure, Within(0.9), List(s.gain_error), "of the same channels");
+  t.Add("noise", kMillivolt, UpTo(10000), &s.noise_V, "of one sample, white, standard deviation");
+  t.Add("hum", kMillivolt, UpTo(10000), &s.hum_V, "amplitude of the mains hum, on all channels");
+  t.Add("hum_frequency", kHz, Positive(1e6), &s.hum_Hz, "of the hum");
+  t.Add("low_light_fraction", kPure, UpTo(1), &s.low_light_fraction, "of the nominal power; below: no light");
+}
+
+void AddAdc(Keys& keys, AdcSettings& s) {
+  Table t(keys, "adc");
+  t.Text("scan_list", &s.scan_list, {kChannelNames.begin(), kChannelNames.end()}, "order of conversion, each once");
+  t.Add("bits", kPure, {4, 16}, &s.bits, "of one conversion");
+  t.Add("range", kVolt, Positive(1000), &s.range_V, "+- this voltage");
+  t.Add("rate", kKilohertz, Positive(1e6), &s.rate_Hz, "conversions, all channels together");
+  t.Add("fifo_samples", kPure, UpTo(kHuge), &s.fifo_samples, "0: the computer always keeps up");
+  t.Add("drain_rate", kKilohertz, Positive(1e6), &s.drain_rate_Hz, "at which the computer empties the FIFO");
+  t.Add("samples", kPure, {1, 1e7}, &s.samples, "scans a reading");
+  t.Flag("every_sample", s.every_sample, "false: draw mean and deviation of a block at once");
+}
+
+void AddReferenceMounting(Keys& keys, Scenario& s) {
+  Table t(keys, "reference");
+  t.Add("height", kMm, Within(5000), &s.reference_height_m, "of its origin above the target's");
+  t.Add("centring", kUm, Within(50000), List(s.centring_m), "of its body on the target rotor: x, y");
+  t.Add("mount_tilt", kArcsec, Within(36000), List(s.mount_tilt_rad),
+        "of its body on the target rotor: about x, y");
+}
+
+void AddMechanics(Keys& keys, MechanicsSettings& s) {
+  Table t(keys, "mechanics");
+  t.Text("fidelity", &s.fidelity, {"kinematic", "linear", "bullet"}, "how the bodies move");
+  t.Add("payload_mass", {"kg"}, UpTo(10000), &s.payload_mass_kg, "on the reference rotor");
+  t.Add("payload_radius", kMm, UpTo(10000), &s.payload_radius_m, "eccentricity of its centre of mass");
+  t.Add("payload_azimuth", kDeg, Within(360), &s.payload_azimuth_rad, "of it on the rotor");
+  t.Add("payload_height", kMm, Within(10000), &s.payload_height_m, "of its centre of mass");
+  t.Add("axial_stiffness", {"N_um", 1e6}, Positive(1e6), List(s.axial_stiffness_N_m), "target, reference");
+  t.Add("radial_stiffness", {"N_um", 1e6}, Positive(1e6), List(s.radial_stiffness_N_m), "target, reference");
+  t.Add("tilt_stiffness", {"Nm_mrad", 1e3}, Positive(1e9), List(s.tilt_stiffness_Nm_rad), "target, reference");
+  t.Add("damping_ratio", kPure, UpTo(2), &s.damping_ratio, "of the bearings");
+  t.Add("servo", kHz, Positive(10000), List(s.servo_Hz), "bandwidth: target, reference");
+  t.Add("friction", {"Nm"}, UpTo(10000), List(s.friction_Nm), "Coulomb level: target, reference");
+  t.Add("step", kMicrosecond, Positive(100000), &s.step_s, "of the integration");
+}
+
+void AddPlan(Table& t, ProcedureSettings& s) {
+  t.Text("phases", &s.phases, {"calibration", "stability", "verification", "full_circle"},
+         "in the order of the run");
+  t.Add("positions", kPure, {3, 100000}, &s.positions, "stops of the full circle");
+  t.Add("shifts", kPure, UpTo(99999), &s.shifts, "of the reference at every set-up, in steps");
+  t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1");
+  t.Text("clamping", &s.clamping, {"reseat", "reclamp"}, "how the grating comes back to the PSDs after a shift");
+  t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every stop");
+  t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first stop from this far");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+}
+
+void AddProcedure(Keys& keys, ProcedureSettings& s) {
+  Table t(keys, "procedure");
+  AddPlan(t, s);
+  t.Add("sweep", kArcsec, Positive(36000), &s.sweep_rad, "calibration: +- this, in yaw and in tilt");
+  t.Add("sweep_points", kPure, {3, 10000}, &s.sweep_points, "of each sweep");
+  t.Add("stability", kSecond, UpTo(1e8), &s.stability_s, "how long the bench is watched at rest");
+  t.Add("stability_interval", kSecond, Positive(1e7), &s.stability_interval_s, "between its readings");
+  t.Add("verification_points", kPure, {1, 10000}, &s.verification_points, "within the sweep, at other angles");
+  t.Flag("keep_raw", s.keep_raw, "store every sample");
+}
+
+void CheckScanList(const ScenarioText& text, const AdcSettings& adc) {
+  const std::set<std::string> once(adc.scan_list.begin(), adc.scan_list.end());
+  if (once.size() == kChannelNames.size() && adc.scan_list.size() == kChannelNames.size()) return;
+  throw InputError(Place(text, "adc.scan_list"),
+                   fmt::format("adc.scan_list names {} of the {} channels in {} entries", once.size(),
+                               kChannelNames.size(), adc.scan_list.size()),
+                   "every channel once");
+}
+
+void CheckShifts(const ScenarioText& text, const ProcedureSettings& procedure) {
+  const std::string where = Place(text, "procedure.shifts", "procedure.positions");
+  const std::vector<int>& shifts = procedure.shifts;
+  for (const int shift : shifts) {
+    if (shift >= procedure.positions)
+      throw InputError(where, fmt::format("procedure.shifts has {}", shift),
+                       fmt::format("shifts from 0 to {} (positions - 1)", procedure.positions - 1));
+    if (std::count(shifts.begin(), shifts.end(), shift) > 1)
+      throw InputError(where, fmt::format("procedure.shifts has {} twice", shift), "every shift once");
+  }
+}
+
+void CheckProfile(const ScenarioText& text, const LaserSettings& laser) {
+  if (laser.beam == BeamModel::kProfile && laser.profile_file.empty())
+    throw InputError(Place(text, "laser.beam"), "laser.beam is \"profile\" without a file",
+                     "laser.profile_file = \"beam.exr\"");
+}
+
+}  // namespace
+
+void AddKeys(Keys& keys, Scenario& s) {
+  AddLaser(keys, s.laser);
+  AddGrating(keys, s.grating);
+  AddPsd(keys, "psd_a", s.psd_a);
+  AddPsd(keys, "psd_b", s.psd_b);
+  AddAmplifier(keys, s.amplifier);
+  AddAdc(keys, s.adc);
+  AddTable(keys, "target", "in L", s.target);
+  AddReferenceMounting(keys, s);
+  AddTable(keys, "reference", "in its rotor frame", s.reference);
+  AddMechanics(keys, s.mechanics);
+  AddEnvironment(keys, s.environment);
+  AddAutocollimator(keys, s.autocollimator);
+  AddProcedure(keys, s.procedure);
+}
+
+void CheckTogether(const ScenarioText& text, const Scenario& s) {
+  CheckScanList(text, s.adc);
+  CheckShifts(text, s.procedure);
+  CheckPasses(text, "procedure.passes", s.procedure.passes);
+  CheckProfile(text, s.laser);
+}
+
+}  // namespace twinbench::benches::rotary

@@ -1,0 +1,30 @@
+#include "twin/benches/turntable_autocollimator/bench.h"
+
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
+#include "twin/procedure/turntable.h"
+
+namespace twinbench::benches::turntable {
+namespace {
+
+int PlannedReadings(const Scenario& s) {
+  return procedure::PlannedReadings(s.turntable_procedure);
+}
+
+}  // namespace
+
+const Bench& Whole() {
+  static const Bench bench = [] {
+    Bench b;
+    b.format = &Format();
+    b.make_twin = MakeTwin;
+    b.planned_readings = PlannedReadings;
+    b.evaluate = Evaluate;
+    b.score = ScoreRun;
+    b.diagnose = Diagnose;
+    b.linear_run = Linear;
+    return b;
+  }();
+  return bench;
+}
+
+}  // namespace twinbench::benches::turntable

@@ -1,0 +1,51 @@
+#include <cmath>
+
+#include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/diagnose/conclusion.h"
+#include "twin/diagnose/turntable/disturbed.h"
+#include "twin/diagnose/turntable/next_measurement.h"
+#include "twin/diagnose/turntable/seating.h"
+#include "twin/diagnose/turntable/turntable_run.h"
+#include "twin/diagnose/turntable/turntable_search.h"
+
+namespace twinbench::benches::turntable {
+namespace {
+
+diagnose::AnswerWords Words(const diagnose::turntable::Places& places) {
+  return {[places](const std::string& effect, const Eigen::VectorXd& unknowns) {
+            const std::string bias = diagnose::turntable::BiasInWords(places, unknowns);
+            const std::string shown_by = diagnose::turntable::WhatWouldShow(effect);
+            return shown_by.empty() ? bias : bias + "; would be shown by " + shown_by;
+          },
+          diagnose::turntable::NextMeasurement};
+}
+
+/// Sizes were measured in the usual deviation of the run.
+diagnose::Cause DisturbedCause(const diagnose::NoiseCause& disturbed, diagnose::LinearRun run) {
+  run.sigma.setConstant(diagnose::turntable::UsualSigma_rad(run));
+  return diagnose::OutlierCause(disturbed, run);
+}
+
+}  // namespace
+
+diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
+                                const diagnose::DiagnoseOptions& options) {
+  const diagnose::turntable::SearchedTurntable searched = diagnose::turntable::SearchTurntable(
+      readings, scenario, options.struck, diagnose::AnalysisOptionsOf(options));
+  const diagnose::turntable::TurntableRun& turntable = *searched.turntable;
+  std::vector<diagnose::Cause> first = searched.first;
+  if (searched.disturbed) first.push_back(DisturbedCause(*searched.disturbed, turntable.run));
+  diagnose::DiagnosisRun result =
+      diagnose::Conclude(turntable.run, searched.analysis, first, Words(turntable.places));
+  if (searched.disturbed) result.diagnosis.noise.push_back(searched.disturbed->words);
+  result.diagnosis.left_out = turntable.left_out;
+  if (searched.first.empty() && std::isfinite(searched.smallest_seating_rad))
+    result.diagnosis.detectable.push_back(diagnose::turntable::DetectableSeating(searched.smallest_seating_rad));
+  return result;
+}
+
+diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, measure::Estimator) {
+  return diagnose::turntable::BuildRun(readings, scenario).run;
+}
+
+}  // namespace twinbench::benches::turntable

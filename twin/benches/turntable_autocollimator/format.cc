@@ -1,0 +1,26 @@
+#include "twin/benches/turntable_autocollimator/format.h"
+
+#include "twin/benches/names.h"
+
+namespace twinbench::benches::turntable {
+
+const BenchFormat& Format() {
+  static const BenchFormat format = [] {
+    BenchFormat f;
+    f.name = kTurntableBench;
+    f.title = "a turntable against a multi-tooth table by an autocollimator";
+    f.add_keys = AddKeys;
+    f.check_together = CheckTogether;
+    f.tables = TableNames{"turntable", "multitooth"};
+    f.columns = Columns();
+    f.agree_on_signs = CountBothTheSameWay;
+    f.channels = {"x", "y"};
+    f.desired = Desired();
+    f.smallest_addition = Addition;
+    f.effects = Effects();
+    return f;
+  }();
+  return format;
+}
+
+}  // namespace twinbench::benches::turntable

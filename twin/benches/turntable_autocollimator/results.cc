@@ -1,0 +1,261 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/core/errors.h"
+#include "twin/report/curve_score.h"
+#include "twin/report/json_units.h"
+#include "twin/separate/turntable/turntable_bench.h"
+
+namespace twinbench::benches::turntable {
+namespace {
+
+using separate::turntable::AnalyseTurntable;
+using separate::turntable::AngleSeries;
+using separate::turntable::CompensationCheck;
+using separate::turntable::ErrorSize;
+using separate::turntable::HarmonicModel;
+using separate::turntable::IndexingSeparation;
+using separate::turntable::IndexingStatus;
+using separate::turntable::PointStatus;
+using separate::turntable::PointwiseError;
+using separate::turntable::Roll;
+using separate::turntable::RollStatus;
+using separate::turntable::TurntableAnalysis;
+
+nlohmann::json ToJson(const AngleSeries& series) {
+  nlohmann::json json = {{"position_deg", nlohmann::json::array()},
+                         {"ez_arcsec", nlohmann::json::array()},
+                         {"u_ez_arcsec", nlohmann::json::array()}};
+  for (std::size_t k = 0; k < series.position_rad.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    json["position_deg"].push_back(series.position_rad[k] / units::deg);
+    json["ez_arcsec"].push_back(report::Arcsec(series.value_rad[i]));
+    json["u_ez_arcsec"].push_back(report::Arcsec(series.U_rad(i)));
+  }
+  return json;
+}
+
+nlohmann::json ToJson(const Roll& roll) {
+  const char* status = roll.status == RollStatus::kOk      ? "ok"
+                       : roll.status == RollStatus::kGiven ? "given"
+                                                           : "tilts_alike";
+  return {{"status", status},
+          {"gamma_mrad", report::In(units::mrad, roll.gamma_rad)},
+          {"u_gamma_mrad", report::In(units::mrad, roll.u_gamma_rad)}};
+}
+
+nlohmann::json ToJson(const ErrorSize& size) {
+  return {{"count", size.count},
+          {"peak_to_valley_arcsec", report::Arcsec(size.peak_to_valley_rad)},
+          {"rms_arcsec", report::Arcsec(size.rms_rad)},
+          {"largest_arcsec", report::Arcsec(size.largest_rad)},
+          {"largest_from_start_arcsec", report::Arcsec(size.largest_from_start_rad)}};
+}
+
+nlohmann::json ToJson(const HarmonicModel& model) {
+  nlohmann::json terms = nlohmann::json::array();
+  for (const auto& term : model.terms) {
+    terms.push_back({{"order", term.order},
+                     {"amplitude_arcsec", report::Arcsec(term.amplitude_rad)},
+                     {"u_amplitude_arcsec", report::Arcsec(term.u_amplitude_rad)},
+                     {"phase_deg", report::In(units::deg, term.phase_rad)},
+                     {"u_phase_deg", report::In(units::deg, term.u_phase_rad)}});
+  }
+  return {{"form", "sum of amplitude sin(order angle + phase)"},
+          {"highest_order", model.highest_order},
+          {"terms", terms},
+          {"residual_rms_arcsec", report::Arcsec(model.residual_rms_rad)},
+          {"u_unmodelled_arcsec", report::Arcsec(model.u_unmodelled_rad)}};
+}
+
+nlohmann::json ToJson(const CompensationCheck& check) {
+  nlohmann::json json = {{"before", ToJson(check.before)},
+                         {"after", ToJson(check.after)},
+                         {"expected_rms_arcsec", report::Arcsec(check.expected_rms_rad)}};
+  for (std::size_t k = 0; k < check.position_rad.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    json["position_deg"].push_back(check.position_rad[k] / units::deg);
+    json["error_arcsec"].push_back(report::Arcsec(check.error_rad[i]));
+    json["rest_arcsec"].push_back(report::Arcsec(check.rest_rad[i]));
+  }
+  return json;
+}
+
+nlohmann::json ToJson(const std::vector<PointwiseError>& pointwise) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const PointwiseError& point : pointwise) {
+    json["position_deg"].push_back(point.turntable_rad / units::deg);
+    json["ez_arcsec"].push_back(report::Arcsec(point.value_rad));
+    json["u_ez_arcsec"].push_back(report::Arcsec(point.u_rad));
+    json["status"].push_back(point.status == PointStatus::kOk         ? "ok"
+                             : point.status == PointStatus::kNearPole ? "near_pole"
+                                                                      : "missing");
+  }
+  return json;
+}
+
+nlohmann::json NotSeparable(const IndexingSeparation& s) {
+  nlohmann::json lost = nlohmann::json::array();
+  if (s.status == IndexingStatus::kSumOnly) {
+    lost.push_back({{"what", "turntable and multi-tooth table"},
+                    {"why", "one shift shows only the sum of both; it is counted as the turntable's"}});
+    return lost;
+  }
+  for (const int order : s.lost_harmonics) {
+    lost.push_back({{"what", fmt::format("order {}", order)},
+                    {"why", "the shifts show only the sum of both tables; it is counted as the turntable's"}});
+  }
+  return lost;
+}
+
+nlohmann::json SeparationJson(const IndexingSeparation& s) {
+  nlohmann::json json = {{"turntable", ToJson(s.turntable)},
+                         {"not_separable", NotSeparable(s)},
+                         {"residual_rms", {{"x_arcsec", report::Arcsec(s.residual_rms_rad)}}},
+                         {"dof", report::In(1.0, s.dof)},
+                         {"roll", ToJson(s.roll)}};
+  if (!s.multitooth.position_rad.empty()) json["multitooth"] = ToJson(s.multitooth);
+  return json;
+}
+
+nlohmann::json ResultsOf(const TurntableAnalysis& a) {
+  nlohmann::json json = {
+      {"estimator", measure::EstimatorName(a.estimator)}, {"readings", a.used}, {"left_out", a.left_out}};
+  if (a.separation) {
+    json["separation"] = SeparationJson(*a.separation);
+    json["noise"] = {{"u_x_arcsec", report::Arcsec(a.separation->noise.u_x_rad)},
+                     {"u_y_arcsec", report::Arcsec(a.separation->noise.u_y_rad)},
+                     {"dof", a.separation->noise.dof}};
+    json["notes"] = a.separation->notes;
+    json["before"] = ToJson(a.before);
+  }
+  if (!a.pointwise.empty()) json["equation_5"] = ToJson(a.pointwise);
+  if (a.model) json["model"] = ToJson(*a.model);
+  if (a.check) json["verification"] = ToJson(*a.check);
+  if (!a.not_separated.empty()) json["not_separated"] = a.not_separated;
+  return json;
+}
+
+std::string RollText(const Roll& roll) {
+  if (roll.status == RollStatus::kTiltsAlike)
+    return "roll of the crosshair: not seen, the set-ups do not differ in tilt\n";
+  return fmt::format("roll of the crosshair   {:.3f} +- {:.3f} mrad\n", roll.gamma_rad / units::mrad,
+                     roll.u_gamma_rad / units::mrad);
+}
+
+std::string SizeText(const char* name, const ErrorSize& size) {
+  return fmt::format("{:22}  largest {:.2f} arcsec, peak to valley {:.2f}, rms {:.2f} ({} positions)\n", name,
+                     size.largest_rad / units::arcsec, size.peak_to_valley_rad / units::arcsec,
+                     size.rms_rad / units::arcsec, size.count);
+}
+
+std::string SummaryOf(const TurntableAnalysis& a) {
+  std::string text = fmt::format("{} readings of the full circle", a.used);
+  text += a.left_out > 0 ? fmt::format(", {} without numbers left out\n", a.left_out) : "\n";
+  if (!a.separation) return text + fmt::format("no separation: {}\n", a.not_separated);
+  text += RollText(a.separation->roll) + SizeText("turntable", a.before);
+  if (!a.separation->multitooth.position_rad.empty()) {
+    text += SizeText("multi-tooth table", separate::turntable::DescribeErrors(a.separation->multitooth.value_rad));
+  }
+  if (a.model) text += fmt::format("harmonic model          orders 1 to {}\n", a.model->highest_order);
+  if (a.check) {
+    text += SizeText("check, before", a.check->before) + SizeText("check, compensated", a.check->after);
+  }
+  for (const std::string& note : a.separation->notes) text += fmt::format("note: {}\n", note);
+  if (!a.not_separated.empty()) text += fmt::format("no model: {}\n", a.not_separated);
+  return text;
+}
+
+// --- against the truth ---
+
+/// True ez at angles that the truth lists, its mean over them taken out.
+std::vector<double> TruthAt(const nlohmann::json& table, const std::vector<double>& position_rad) {
+  const auto angles_deg = table.at("position_deg").get<std::vector<double>>();
+  const auto ez_arcsec = table.at("ez_arcsec").get<std::vector<double>>();
+  const double step_deg = angles_deg.size() > 1 ? angles_deg[1] - angles_deg[0] : 360.0;
+  std::vector<double> truth;
+  double mean = 0.0;
+  for (const double angle_rad : position_rad) {
+    const auto k = static_cast<std::size_t>(std::llround(angle_rad / units::deg / step_deg)) % angles_deg.size();
+    truth.push_back(ez_arcsec[k]);
+    mean += ez_arcsec[k] / static_cast<double>(position_rad.size());
+  }
+  for (double& value : truth) value -= mean;
+  return truth;
+}
+
+report::CurveScore CurveOf(const std::string& name, const AngleSeries& series, const nlohmann::json& table) {
+  report::CurveScore curve{
+      .name = name, .value = "ez_arcsec", .position = {}, .estimate = {}, .u = {}, .truth = {}};
+  for (std::size_t k = 0; k < series.position_rad.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    curve.position.push_back(series.position_rad[k] / units::deg);
+    curve.estimate.push_back(series.value_rad[i] / units::arcsec);
+    curve.u.push_back(series.U_rad(i) / units::arcsec);
+  }
+  curve.truth = TruthAt(table, series.position_rad);
+  return curve;
+}
+
+/// Equation 5 counts from its first position: means are taken out of both.
+report::CurveScore CurveOf(const std::vector<PointwiseError>& pointwise, const nlohmann::json& table) {
+  report::CurveScore curve{
+      .name = "equation 5", .value = "ez_arcsec", .position = {}, .estimate = {}, .u = {}, .truth = {}};
+  std::vector<double> position_rad;
+  double mean = 0.0;
+  for (const PointwiseError& point : pointwise) {
+    if (!std::isfinite(point.value_rad)) continue;
+    position_rad.push_back(point.turntable_rad);
+    curve.position.push_back(point.turntable_rad / units::deg);
+    curve.estimate.push_back(point.value_rad / units::arcsec);
+    curve.u.push_back(point.u_rad / units::arcsec);
+    mean += curve.estimate.back();
+  }
+  for (double& value : curve.estimate) value -= mean / static_cast<double>(curve.estimate.size());
+  curve.truth = TruthAt(table, position_rad);
+  return curve;
+}
+
+report::CurveScore CurveOf(const HarmonicModel& model, const CompensationCheck& check,
+                           const nlohmann::json& table) {
+  report::CurveScore curve{
+      .name = "model at checks", .value = "ez_arcsec", .position = {}, .estimate = {}, .u = {}, .truth = {}};
+  double mean = 0.0;
+  for (const double angle_rad : check.position_rad) {
+    const auto point = model.At(angle_rad);
+    curve.position.push_back(angle_rad / units::deg);
+    curve.estimate.push_back(point.value_rad / units::arcsec);
+    curve.u.push_back(point.u_rad / units::arcsec);
+    mean += curve.estimate.back() / static_cast<double>(check.position_rad.size());
+  }
+  for (double& value : curve.estimate) value -= mean;
+  curve.truth = TruthAt(table, check.position_rad);
+  return curve;
+}
+
+}  // namespace
+
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings,
+                            measure::Estimator estimator) {
+  const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
+  const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation) : nlohmann::json();
+  return {ResultsOf(analysis), separation, analysis.not_separated, SummaryOf(analysis)};
+}
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, measure::Estimator estimator) {
+  const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
+  if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full circle");
+  const nlohmann::json& turntable = truth.at("turntable");
+  std::vector<report::CurveScore> curves = {CurveOf("turntable", analysis.separation->turntable, turntable)};
+  const AngleSeries& multitooth = analysis.separation->multitooth;
+  if (!multitooth.position_rad.empty()) curves.push_back(CurveOf("multitooth", multitooth, truth.at("multitooth")));
+  if (!analysis.pointwise.empty()) curves.push_back(CurveOf(analysis.pointwise, turntable));
+  if (analysis.model && analysis.check) curves.push_back(CurveOf(*analysis.model, *analysis.check, turntable));
+  return {ToJson(curves), "against the truth; means are taken out of both\n" + report::ScoreTable(curves),
+          report::PositionTable(curves)};
+}
+
+}  // namespace twinbench::benches::turntable

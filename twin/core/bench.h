@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "twin/core/bench_format.h"
+
+namespace twinbench {
+
+class RunRecord;
+namespace measure {
+enum class Estimator;
+}
+namespace report {
+struct Evaluation;
+struct ScoredRun;
+}  // namespace report
+namespace diagnose {
+struct DiagnoseOptions;
+struct DiagnosisRun;
+struct LinearRun;
+}  // namespace diagnose
+namespace procedure {
+struct Progress;
+}
+
+/// A scenario's bench as the simulation has it, ready for one run.
+class BenchTwin {
+ public:
+  virtual ~BenchTwin() = default;
+  /// truth.json.
+  virtual nlohmann::json Truth() const = 0;
+  /// Carries the scenario's procedure out, every reading into `record`.
+  virtual void CarryOut(RunRecord& record, const std::function<void(const procedure::Progress&)>& progress) = 0;
+  /// Writes the light as the run has left it into an existing folder; only where the bench can be pictured.
+  virtual void WriteImages(const std::string& /*folder*/) {}
+};
+
+/// A bench, whole: all that the rest of the program does with it. Each is described once, in its folder of
+/// twin/benches, and found by its name in twin/benches/registry.h. What the functions take and return belongs to
+/// the rooms that make it; this header knows the names of those types only.
+struct Bench {
+  const BenchFormat* format = nullptr;  // never null
+
+  std::unique_ptr<BenchTwin> (*make_twin)(const Scenario&) = nullptr;
+  int (*planned_readings)(const Scenario&) = nullptr;  // of the whole run
+  bool is_pictured = false;                            // there is light on detectors, which `run --images` writes
+  bool has_controllers = false;                        // real devices can stand for it: `measure` and `serve`
+
+  /// Readings -> results.json, separation.json and a summary.
+  report::Evaluation (*evaluate)(const Scenario&, const std::vector<Reading>&, measure::Estimator) = nullptr;
+  /// A run of the twin against its truth.json. Throws InputError if there is nothing to compare.
+  report::ScoredRun (*score)(const Scenario&, const std::vector<Reading>&, const nlohmann::json& truth,
+                             measure::Estimator) = nullptr;
+
+  diagnose::DiagnosisRun (*diagnose)(const std::vector<Reading>&, const Scenario&,
+                                     const diagnose::DiagnoseOptions&) = nullptr;
+  /// The readings so far, to be watched while more come. Throws InputError if they are too few.
+  diagnose::LinearRun (*linear_run)(const std::vector<Reading>&, const Scenario&, measure::Estimator) = nullptr;
+  /// `gain.change_of_tables` of diagnosis.json; null: the bench has no such thing to say.
+  nlohmann::json (*change_of_tables)(const diagnose::DiagnosisRun&, const Scenario&) = nullptr;
+};
+
+}  // namespace twinbench

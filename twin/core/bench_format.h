@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/errors.h"
+#include "twin/core/reading_column.h"
+
+/// The text side of a bench: its names, its scenario's keys, its readings' columns and its catalogue of effects.
+/// It needs nothing but this room; what can be done with a bench is in bench.h.
+namespace twinbench {
+
+struct Scenario;
+struct ScenarioKey;
+class ScenarioText;
+
+/// What the two tables of a bench are called in its files: "target" and "reference", or "turntable" and
+/// "multitooth".
+struct TableNames {
+  std::string target, reference;
+};
+
+/// What the channels of a bench read: a place on a detector [m] or an angle [rad].
+enum class SignalKind { kPosition, kAngle };
+
+/// A column (or several that go together) that a diagnosis can do without, at a price.
+struct DesiredColumn {
+  std::string name;
+  bool (*is_there)(const Reading&);
+  std::string lost;               // the causes that cannot be named without it
+  bool calibration_only = false;  // it counts in that phase only
+};
+
+struct BenchFormat {
+  std::string name;                                                        // `bench` of its scenarios
+  std::string title;                                                       // one line
+  void (*add_keys)(std::vector<ScenarioKey>&, Scenario&) = nullptr;        // those of its own tables
+  void (*check_together)(const ScenarioText&, const Scenario&) = nullptr;  // see scenario_together.h
+  std::optional<TableNames> tables;    // whose errors a file may give; nothing: it has no such tables
+  bool has_fixtures = false;           // things may stand in its light: [[fixture]]
+  std::vector<ReadingColumn> columns;  // of readings.csv, in the order of writing
+  void (*agree_on_signs)(std::vector<Reading>&) = nullptr;  // of a file that was read; null: signs are fixed
+  std::vector<DesiredColumn> desired;
+  std::string (*smallest_addition)(int setups) = nullptr;  // what would give a run of that many some redundancy
+  std::vector<EffectEntry> effects;
+  std::vector<std::string> channels;  // to which an [[empirical]] signal can be added
+  SignalKind signal = SignalKind::kAngle;
+};
+
+/// Every bench that this program knows, in the order of the help. Core declares the list and does not make it:
+/// twin/benches/formats.cc does, so that core stays free of names and the list is fixed when a program is linked.
+const std::vector<const BenchFormat*>& BenchFormats();
+
+std::vector<std::string> BenchNames();
+
+/// The refusal of a name that no bench has: it names those there are, and the nearest.
+/// @param where  File and line of the name.
+InputError UnknownBench(const std::string& where, const std::string& name);
+
+/// @return the bench with that name, or nullptr.
+const BenchFormat* FindFormat(const std::string& bench);
+/// @throws InputError if there is none.
+const BenchFormat& FormatOf(const std::string& bench, const std::string& where = "bench");
+
+/// The bench whose required columns are the most among those there are, or nullptr if no bench's own column is
+/// among them. Only for files that come without a scenario and records that are too old to say.
+/// @param has  Whether a column is there.
+const BenchFormat* FormatByColumns(const std::function<bool(const ReadingColumn&)>& has);
+
+}  // namespace twinbench

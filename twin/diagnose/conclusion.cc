@@ -1,0 +1,154 @@
+#include "twin/diagnose/conclusion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "twin/diagnose/gain.h"
+#include "twin/diagnose/redundancy.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr double kBaarda = 4.13;       // non-centrality: found in 80 % of cases at a test of 0.1 %
+constexpr double kPlausibleTop = 3.0;  // prior deviations: about the largest size that anybody expects
+
+/// The family without what points into the case that made it.
+Family Detached(Family family) {
+  family.columns = nullptr;
+  family.at = nullptr;
+  family.base = nullptr;
+  return family;
+}
+
+std::vector<Accepted> AcceptedOf(const Analysis& analysis) {
+  std::vector<Accepted> accepted;
+  for (const Pick& pick : analysis.found.picks) {
+    const Family& family = analysis.scanner->Families()[static_cast<std::size_t>(pick.family)];
+    accepted.push_back({Detached(family), pick.grid_point, pick.amplitudes, pick.columns});
+  }
+  return accepted;
+}
+
+/// What this run would have shown of each cause, and what it would not.
+void AddDetectability(const LinearRun& run, const Analysis& analysis, const AnswerWords& words,
+                      Diagnosis& diagnosis) {
+  const std::vector<Family>& families = analysis.scanner->Families();
+  for (int k = 0; k < std::ssize(families); ++k) {
+    const Family& family = families[static_cast<std::size_t>(k)];
+    const auto same = [&family](const auto& entry) {
+      return entry.effect == family.effect && entry.where == family.where;
+    };
+    if (family.kind != Kind::kNamed || std::ranges::any_of(diagnosis.detectable, same) ||
+        std::ranges::any_of(diagnosis.invisible, same)) {
+      continue;
+    }
+    const Amplitude& a = family.amplitudes.front();
+    const double information = analysis.scanner->Information(k), top = kPlausibleTop * a.prior_sd;
+    if (top * std::sqrt(information) >= kBaarda) {
+      const double smallest = kBaarda / std::sqrt(information);
+      diagnosis.detectable.push_back(
+          {family.effect, family.where, {a.name, a.unit, a.to_SI, smallest, kNaN, a.lower, a.upper}});
+      continue;
+    }
+    const Eigen::MatrixXd column = top * family.ColumnsAt(family.grid / 2).leftCols(1);
+    const Eigen::VectorXd unknowns = analysis.projector->Solve(analysis.noise.Whiten(run, column)).col(0);
+    diagnosis.invisible.push_back({family.effect, family.where, words.bias(family.effect, unknowns)});
+  }
+}
+
+void AddNextMeasurements(const AnswerWords& words, std::vector<Cause>& causes) {
+  for (Cause& cause : causes) {
+    for (const Rival& rival : cause.indistinguishable_from) {
+      if (cause.next_measurement.empty())
+        cause.next_measurement = words.next_measurement(cause.effect, rival.effect);
+    }
+    if (cause.next_measurement.empty() && !cause.indistinguishable_from.empty()) {
+      cause.next_measurement = "more passes in both directions, with different dwells, and sweeps in yaw and tilt";
+    }
+  }
+}
+
+/// Names what the analysis found.
+/// @param first  What was decided without it.
+Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vector<Cause> first) {
+  Diagnosis diagnosis;
+  Naming naming = Name(analysis.found, analysis.scanner->Families(), analysis.threshold, run.noise_free);
+  diagnosis.verdict = naming.verdict;
+  diagnosis.causes = std::move(naming.causes);
+  diagnosis.unknown = std::move(naming.unknown);
+  diagnosis.alarm_p = analysis.null.PValue(analysis.found.first_statistic);
+  for (const NoiseCause& repair : analysis.repairs) {
+    diagnosis.noise.push_back(repair.words);
+    const bool named_already = std::ranges::count(first, "outliers", &Cause::effect) > 0;
+    if (repair.kind == NoiseCause::Kind::kOutliers && !named_already) first.push_back(OutlierCause(repair, run));
+  }
+  constexpr double kWorthTelling = 3.0;
+  for (const NoiseCause& seen : analysis.observations) {
+    if (seen.log_bayes > kWorthTelling) diagnosis.noise.push_back(seen.words);
+  }
+  for (const Cause& cause : first) diagnosis.alarm_p = std::min(diagnosis.alarm_p, std::exp(-cause.log_evidence));
+  if (!first.empty() && diagnosis.verdict == Verdict::kNone) diagnosis.verdict = Verdict::kNamed;
+  diagnosis.causes.insert(diagnosis.causes.begin(), first.begin(), first.end());
+  diagnosis.readings = run.schedule.Readings();
+  return diagnosis;
+}
+
+/// A cause goes into the model only if it predicts readings that it was not fitted to.
+void JudgeByGain(DiagnosisRun& result) {
+  Diagnosis& d = result.diagnosis;
+  d.gain = MeasureGain(result.run, result.noise, result.accepted);
+  const bool named = d.verdict == Verdict::kNamed || d.verdict == Verdict::kTie;
+  if (!named || result.accepted.empty() || d.gain.folds == 0 || d.gain.positive) return;
+  constexpr double kNotProven = 0.6;
+  for (Cause& cause : d.causes) cause.probability = std::min(cause.probability, kNotProven);
+  d.notes.push_back(
+      "the gain on held-out passes is not above zero at 95 %: the cause is a proposal, not part of the model");
+}
+
+}  // namespace
+
+AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options) {
+  return {options.null_runs, options.cache_folder, 4, nullptr};
+}
+
+bool IsStruck(const DiagnoseOptions& options, const std::string& effect) {
+  return std::ranges::find(options.struck, effect) != options.struck.end();
+}
+
+Cause DecidedCause(const std::string& effect, const std::string& where, double log_evidence) {
+  Cause cause;
+  cause.effect = effect;
+  cause.where = where;
+  cause.probability = kMostProbable;
+  cause.log_evidence = log_evidence;
+  cause.rho = std::sqrt(2.0 * std::max(0.0, log_evidence));
+  return cause;
+}
+
+Cause OutlierCause(const NoiseCause& noise, const LinearRun& run) {
+  Cause cause = DecidedCause("outliers", "", noise.log_bayes);
+  const double share = static_cast<double>(noise.outliers.size()) / std::max(1, run.schedule.Readings());
+  const double size = noise.outlier_size * run.sigma.mean();
+  const double u_size = size / std::sqrt(2.0 * static_cast<double>(noise.outliers.size()));
+  const double u_share = share / std::sqrt(static_cast<double>(noise.outliers.size()));
+  cause.parameters = {{"fraction", "1", 1.0, share, u_share, 0.0, 0.5},
+                      {"size", run.unit, run.to_SI, size, u_size, 0.0, 1e6 * run.to_SI}};
+  return cause;
+}
+
+DiagnosisRun Conclude(const LinearRun& run, const Analysis& analysis, const std::vector<Cause>& first,
+                      const AnswerWords& words) {
+  DiagnosisRun result;
+  RefuseWithoutRedundancy(run, analysis.redundancy);
+  result.diagnosis = DiagnosisOf(run, analysis, first);
+  result.run = run;
+  result.noise = analysis.noise;
+  result.accepted = AcceptedOf(analysis);
+  AddDetectability(run, analysis, words, result.diagnosis);
+  AddNextMeasurements(words, result.diagnosis.causes);
+  JudgeByGain(result);
+  return result;
+}
+
+}  // namespace twinbench::diagnose

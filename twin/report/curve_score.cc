@@ -1,0 +1,83 @@
+#include "twin/report/curve_score.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace twinbench::report {
+namespace {
+
+/// Root mean square of the finite values; NaN if there is none.
+double RmsOfFinite(const std::vector<double>& values) {
+  double sum = 0.0;
+  int count = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value * value;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
+}
+
+struct Sizes {
+  double rms_truth, rms_error, worst_error, rms_u, mean_chi2;
+};
+
+Sizes SizesOf(const CurveScore& curve) {
+  std::vector<double> error, normalised;
+  double worst = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = 0; k < curve.truth.size(); ++k) {
+    error.push_back(curve.estimate[k] - curve.truth[k]);
+    normalised.push_back(error.back() / curve.u[k]);
+    worst = std::fmax(worst, std::abs(error.back()));
+  }
+  return {RmsOfFinite(curve.truth), RmsOfFinite(error), worst, RmsOfFinite(curve.u), std::pow(RmsOfFinite(normalised), 2)};
+}
+
+/// "ez_arcsec": "ez" and "_arcsec".
+std::string Quantity(const CurveScore& curve) {
+  return curve.value.substr(0, curve.value.rfind('_'));
+}
+std::string UnitSuffix(const CurveScore& curve) {
+  return curve.value.substr(curve.value.rfind('_'));
+}
+
+}  // namespace
+
+std::string ScoreTable(const std::vector<CurveScore>& curves) {
+  std::string text = "curve             value         truth rms  error rms  worst error  stated u  (error/u)^2\n";
+  for (const CurveScore& curve : curves) {
+    const Sizes s = SizesOf(curve);
+    text += fmt::format("{:16}  {:12}  {:9.4f}  {:9.4f}  {:11.4f}  {:8.4f}  {:11.3f}\n", curve.name, curve.value,
+                        s.rms_truth, s.rms_error, s.worst_error, s.rms_u, s.mean_chi2);
+  }
+  return text;
+}
+
+std::string PositionTable(const std::vector<CurveScore>& curves) {
+  std::string text;
+  for (const CurveScore& curve : curves) {
+    text += fmt::format("{}: estimate +- standard uncertainty [truth]\n{:>12} {:>27}\n", curve.name,
+                        curve.position_name, curve.value);
+    for (std::size_t k = 0; k < curve.truth.size(); ++k)
+      text += fmt::format("{:12.2f}   {:8.3f} +-{:6.3f} [{:6.2f}]\n", curve.position[k], curve.estimate[k],
+                          curve.u[k], curve.truth[k]);
+  }
+  return text;
+}
+
+nlohmann::json ToJson(const std::vector<CurveScore>& curves) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const CurveScore& curve : curves) {
+    const Sizes s = SizesOf(curve);
+    const std::string unit = UnitSuffix(curve);
+    json[curve.name][Quantity(curve)] = {{"positions", curve.truth.size()}, {"rms_truth" + unit, s.rms_truth},
+                                         {"rms_error" + unit, s.rms_error}, {"worst_error" + unit, s.worst_error},
+                                         {"rms_u" + unit, s.rms_u},         {"mean_chi2", s.mean_chi2}};
+  }
+  return json;
+}
+
+}  // namespace twinbench::report

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace twinbench::report {
+
+/// What the readings of any bench come to.
+struct Evaluation {
+  nlohmann::json results;     // results.json
+  nlohmann::json separation;  // separation.json (formats.md); null if there is none
+  std::string not_separated;  // why
+  std::string summary;        // for a person
+
+  bool Separated() const { return !separation.is_null(); }
+};
+
+/// Compares a run of the twin with its truth.
+struct ScoredRun {
+  nlohmann::json json;
+  std::string text, positions;  // for a person; `positions`: one row a position
+};
+
+}  // namespace twinbench::report
