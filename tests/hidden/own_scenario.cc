@@ -2,7 +2,7 @@
 
 #include "tests/support/angle_benches.h"
 #include "twin/diagnose/diagnose.h"
-#include "twin/sim/follow_bench.h"
+#include "twin/benches/registry.h"
 
 namespace twinbench::hidden {
 namespace {
@@ -26,7 +26,6 @@ Scenario ChangedBench(const std::string& bench, const KeyChange& change, std::ui
 diagnose::Diagnosis DiagnosedAgainstItself(const Scenario& scenario, const std::string& cache_folder) {
   diagnose::DiagnoseOptions options;
   options.cache_folder = cache_folder;
-  if (sim::CanFollow(scenario)) options.follow = sim::FollowBench;
   return diagnose::Diagnose(test::ReadingsOf(scenario), scenario, options).diagnosis;
 }
 

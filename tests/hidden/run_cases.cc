@@ -7,7 +7,6 @@
 
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
-#include "twin/sim/follow_bench.h"
 
 namespace twinbench::hidden {
 namespace {
@@ -15,7 +14,6 @@ namespace {
 Outcome Diagnosed(const Case& hidden_case, const std::string& cache_folder) {
   diagnose::DiagnoseOptions options = hidden_case.options;
   options.cache_folder = cache_folder;
-  if (sim::CanFollow(hidden_case.scenario)) options.follow = sim::FollowBench;
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
   try {

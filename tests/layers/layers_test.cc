@@ -24,7 +24,7 @@ constexpr const char* kFormats = "twin/benches (text)";
 constexpr const char* kTwins = "twin/benches (twin)";
 
 /// Rooms; a longer name wins over its parent ("twin/core" over "twin").
-const std::vector<std::string> kRooms = {"optics",         "mechanics",     "twin/core",     "twin/sim",
+const std::vector<std::string> kRooms = {"optics",         "mechanics",     "twin/core",     "twin/model",    "twin/sim",
                                          "twin/procedure", "twin/measure",  "twin/separate", "twin/diagnose",
                                          "twin/plan",      "twin/campaign", "twin/report",   "hw_bridge",
                                          "twin/benches",   kFormats,        kTwins};
@@ -40,17 +40,17 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"twin/measure", {"twin/core"}},
     {"twin/separate", {"twin/core", "twin/measure"}},
     // Its folders that are named after a bench look up their effects; they will move to the bench.
-    {"twin/diagnose", {"twin/core", "twin/measure", "twin/separate", kFormats}},
+    {"twin/diagnose", {"twin/core", "twin/model", "twin/measure", "twin/separate", kFormats}},
     {"twin/plan", {"twin/core", "twin/separate", "twin/diagnose"}},
     {"twin/campaign",
      {"twin/core", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan",
       "twin/benches"}},
     {"twin/report", {"twin/core", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan", "twin/campaign"}},
     {kFormats, {"twin/core"}},
-    {kTwins, {"twin/core", "twin/sim", "twin/procedure", "optics", "mechanics", kFormats}},
+    {kTwins, {"twin/core", "twin/model", "twin/sim", "twin/procedure", "optics", "mechanics", kFormats}},
     {"twin/benches",
-     {"twin/core", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/report", kFormats,
-      kTwins}},
+     {"twin/core", "twin/model", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/report",
+      kFormats, kTwins}},
     {"hw_bridge", {"twin/core"}}};
 
 /// Third-party headers that only some rooms may see, by how their path begins.

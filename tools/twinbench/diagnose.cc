@@ -21,7 +21,6 @@
 #include "twin/diagnose/json.h"
 #include "twin/diagnose/screen/screen.h"
 #include "twin/diagnose/words.h"
-#include "twin/sim/follow_bench.h"
 
 namespace twinbench::tools {
 namespace {
@@ -127,7 +126,6 @@ void DiagnoseRun(const DiagnoseOptions& options) {
   how.model = measure::EstimatorNamed(options.model);
   how.struck = options.struck;
   how.cache_folder = CacheFolder(options.cache);
-  if (sim::CanFollow(run.scenario)) how.follow = sim::FollowBench;
   const diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
   if (!options.extended.empty()) {
     WriteFileAtOnce(options.extended,

@@ -14,6 +14,9 @@ class RunRecord;
 namespace measure {
 enum class Estimator;
 }
+namespace model {
+class Follow;
+}
 namespace report {
 struct Evaluation;
 struct ScoredRun;
@@ -46,6 +49,8 @@ struct Bench {
   const BenchFormat* format = nullptr;  // never null
 
   std::unique_ptr<BenchTwin> (*make_twin)(const Scenario&) = nullptr;
+  /// The twin on the course of a record. Throws InputError if its parts cannot be built.
+  std::unique_ptr<model::Follow> (*follow)(const Scenario&, const std::vector<Reading>& record) = nullptr;
   int (*planned_readings)(const Scenario&) = nullptr;  // of the whole run
   bool is_pictured = false;                            // there is light on detectors, which `run --images` writes
   bool has_controllers = false;                        // real devices can stand for it: `measure` and `serve`

@@ -23,7 +23,7 @@ struct DiagnoseOptions {
   std::vector<std::string> struck;  // effects taken out of the catalogue (leave-one-cause-out tests)
   int null_runs = 500;              // simulated runs without effect, for thresholds and p-values
   std::string cache_folder;         // calibrations are kept here by design; empty: nowhere
-  model::FollowMaker follow;  // the twin that is asked what readings should have been; empty: closed forms
+  model::FollowMaker follow;        // says what readings should have been; every bench puts its own twin here
 };
 
 /// A cause in the model after the search, with its signature at the fitted shape.

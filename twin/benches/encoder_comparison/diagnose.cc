@@ -1,4 +1,5 @@
 #include "twin/benches/encoder_comparison/bench.h"
+#include "twin/benches/encoder_comparison/twin/twin.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/encoder/encoder_run.h"
 #include "twin/diagnose/encoder/families.h"
@@ -9,7 +10,7 @@ namespace twinbench::benches::encoder {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const diagnose::encoder::EncoderRun encoder = diagnose::encoder::BuildRun(readings, scenario);
+  const diagnose::encoder::EncoderRun encoder = diagnose::encoder::BuildRun(readings, scenario, FollowRecord);
   const std::vector<diagnose::Family> families = diagnose::encoder::Families(encoder, options.struck);
   diagnose::AnalysisOptions how = diagnose::AnalysisOptionsOf(options);
   how.most_causes = 8;  // an angle device may well have an error of many orders
@@ -24,7 +25,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, measure::Estimator) {
-  return diagnose::encoder::BuildRun(readings, scenario).run;
+  return diagnose::encoder::BuildRun(readings, scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::encoder

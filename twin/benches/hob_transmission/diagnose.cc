@@ -1,4 +1,5 @@
 #include "twin/benches/hob_transmission/bench.h"
+#include "twin/benches/hob_transmission/twin/twin.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/hob/families.h"
 #include "twin/diagnose/hob/hob_answers.h"
@@ -9,7 +10,7 @@ namespace twinbench::benches::hob {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const diagnose::hob::HobRun hob = diagnose::hob::BuildRun(readings, scenario);
+  const diagnose::hob::HobRun hob = diagnose::hob::BuildRun(readings, scenario, FollowRecord);
   const std::vector<diagnose::Family> families = diagnose::hob::Families(hob, options.struck);
   diagnose::AnalysisOptions how = diagnose::AnalysisOptionsOf(options);
   how.null_runs = diagnose::hob::NullRuns(hob, options.null_runs);
@@ -27,7 +28,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, measure::Estimator) {
-  return diagnose::hob::BuildRun(readings, scenario).run;
+  return diagnose::hob::BuildRun(readings, scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::hob

@@ -17,6 +17,7 @@ const Bench& Whole() {
     Bench b;
     b.format = &Format();
     b.make_twin = MakeTwin;
+    b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.is_pictured = true;
     b.has_controllers = true;

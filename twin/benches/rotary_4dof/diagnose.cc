@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/gain.h"
 #include "twin/diagnose/json.h"
@@ -30,11 +31,12 @@ diagnose::AnswerWords Words(const diagnose::rotary::RotaryCase& rotary) {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const bool published = options.model == measure::Estimator::kPublished;
+  diagnose::DiagnoseOptions how = options;
+  how.follow = FollowRecord;
   diagnose::rotary::ConventionResult convention{"", 0.0, as_read};
   if (!diagnose::IsStruck(options, "convention"))
-    convention = diagnose::rotary::ScreenConventions(as_read, scenario, published);
-  diagnose::SearchedRotary searched = diagnose::SearchRotary(convention.readings, scenario, options);
+    convention = diagnose::rotary::ScreenConventions(as_read, scenario, diagnose::ForwardModelOf(how));
+  diagnose::SearchedRotary searched = diagnose::SearchRotary(convention.readings, scenario, how);
   if (!convention.where.empty())
     searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
   const diagnose::rotary::RotaryCase& rotary = *searched.rotary;
@@ -50,7 +52,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scena
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario,
                            measure::Estimator estimator) {
-  return diagnose::rotary::BuildRun(readings, scenario, estimator == measure::Estimator::kPublished).run;
+  return diagnose::rotary::BuildRun(readings, scenario, {estimator == measure::Estimator::kPublished, FollowRecord}).run;
 }
 
 nlohmann::json ChangeOfTables(const diagnose::DiagnosisRun& found, const Scenario& scenario) {

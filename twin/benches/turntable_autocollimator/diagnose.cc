@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/turntable/disturbed.h"
 #include "twin/diagnose/turntable/next_measurement.h"
@@ -31,7 +32,7 @@ diagnose::Cause DisturbedCause(const diagnose::NoiseCause& disturbed, diagnose::
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
   const diagnose::turntable::SearchedTurntable searched = diagnose::turntable::SearchTurntable(
-      readings, scenario, options.struck, diagnose::AnalysisOptionsOf(options));
+      readings, scenario, options.struck, diagnose::AnalysisOptionsOf(options), FollowRecord);
   const diagnose::turntable::TurntableRun& turntable = *searched.turntable;
   std::vector<diagnose::Cause> first = searched.first;
   if (searched.disturbed) first.push_back(DisturbedCause(*searched.disturbed, turntable.run));
@@ -45,7 +46,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, measure::Estimator) {
-  return diagnose::turntable::BuildRun(readings, scenario).run;
+  return diagnose::turntable::BuildRun(readings, scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::turntable

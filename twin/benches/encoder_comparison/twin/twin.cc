@@ -5,6 +5,7 @@
 #include "twin/core/run_record.h"
 #include "twin/core/scenario.h"
 #include "twin/procedure/angle_comparison.h"
+#include "twin/sim/encoder/follow.h"
 #include "twin/sim/encoder/twin.h"
 
 namespace twinbench::benches::encoder {
@@ -27,6 +28,10 @@ class Twin : public BenchTwin {
 
 std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
   return std::make_unique<Twin>(scenario);
+}
+
+std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
+  return sim::FollowEncoder(scenario, record);
 }
 
 }  // namespace twinbench::benches::encoder

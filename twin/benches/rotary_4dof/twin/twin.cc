@@ -5,6 +5,7 @@
 #include "twin/core/run_record.h"
 #include "twin/core/scenario.h"
 #include "twin/procedure/procedure.h"
+#include "twin/sim/rotary_follow.h"
 #include "twin/sim/twin.h"
 
 namespace twinbench::benches::rotary {
@@ -31,6 +32,10 @@ class Twin : public BenchTwin {
 
 std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
   return std::make_unique<Twin>(scenario);
+}
+
+std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
+  return sim::FollowRotary(scenario, record);
 }
 
 }  // namespace twinbench::benches::rotary

@@ -5,6 +5,7 @@
 #include "twin/core/run_record.h"
 #include "twin/core/scenario.h"
 #include "twin/procedure/turntable.h"
+#include "twin/sim/turntable/follow.h"
 #include "twin/sim/turntable/twin.h"
 
 namespace twinbench::benches::turntable {
@@ -28,6 +29,10 @@ class Twin : public BenchTwin {
 
 std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
   return std::make_unique<Twin>(scenario);
+}
+
+std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
+  return sim::FollowTurntable(scenario, record);
 }
 
 }  // namespace twinbench::benches::turntable
