@@ -21,18 +21,20 @@ struct Include {
 /// Rooms in the order of docs/architecture: a longer name wins over its parent ("twin/core" over "twin").
 const std::vector<std::string> kRooms = {"optics",         "mechanics",     "twin/core",     "twin/sim",
                                          "twin/procedure", "twin/measure",  "twin/separate", "twin/diagnose",
-                                         "twin/plan",      "twin/campaign", "twin/report",   "hw_bridge"};
+                                         "twin/plan",      "twin/campaign", "twin/report",   "twin/model",
+                                         "hw_bridge"};
 
 /// The room table: which of our rooms each may include, besides itself.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"optics", {}},
     {"mechanics", {}},
     {"twin/core", {}},
-    {"twin/sim", {"twin/core", "optics", "mechanics"}},
+    {"twin/model", {"twin/core"}},
+    {"twin/sim", {"twin/core", "twin/model", "optics", "mechanics"}},
     {"twin/procedure", {"twin/core"}},
     {"twin/measure", {"twin/core"}},
     {"twin/separate", {"twin/core", "twin/measure"}},
-    {"twin/diagnose", {"twin/core", "twin/measure", "twin/separate"}},
+    {"twin/diagnose", {"twin/core", "twin/model", "twin/measure", "twin/separate"}},
     {"twin/plan", {"twin/core", "twin/separate", "twin/diagnose"}},
     {"twin/campaign",
      {"twin/core", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan"}},
