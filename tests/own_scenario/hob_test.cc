@@ -11,7 +11,7 @@ const std::vector<std::string>& Base() {
   static const std::vector<std::string> base = {"mechanics.fidelity=kinematic",
                                                 "hob_procedure.hob_speeds_rev_min=[50.0, 25.0]",
                                                 "hob_procedure.turns=1",
-                                                "hob_procedure.samples_per_turn=360",
+                                                "hob_procedure.samples_per_turn=240",
                                                 "hob_procedure.poll_s=10.0"};
   return base;
 }

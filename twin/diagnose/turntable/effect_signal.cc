@@ -94,6 +94,14 @@ Instrument BelievedInstrument(const Scenario& scenario) {
   return instrument;
 }
 
+Eigen::Vector2d ZeroPerKelvin_rad(const Scenario& scenario) {
+  Eigen::Vector2d per_K(scenario.collimator.x_per_kelvin_rad, scenario.collimator.y_per_kelvin_rad);
+  for (const EffectSettings& e : scenario.effects) {
+    if (e.name == "autocollimator_temperature") per_K[AxisOf(e)] += Value(e, "coefficient");
+  }
+  return per_K;
+}
+
 bool IsAddedBehind(const EffectSettings& effect) {
   constexpr std::array kBehind = {"autocollimator_drift", "mount_creep", "slip", "tone", "autocollimator_periodic"};
   return std::ranges::count(kBehind, effect.name) > 0;

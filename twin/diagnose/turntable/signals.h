@@ -98,6 +98,8 @@ struct KnownSignals {
   Eigen::MatrixXd of_optics_rad;  // steps, gap, beam walk
   Eigen::MatrixXd behind_rad;     // moves of the zero, errors that depend on the reading
 };
+/// How far the zeros of both axes go with the temperature, by coefficients and [[effect]] blocks [rad/K].
+Eigen::Vector2d ZeroPerKelvin_rad(const Scenario& scenario);
 /// True of an effect that is added behind the optics: a moving zero, a ripple.
 bool IsAddedBehind(const EffectSettings& effect);
 /// True if any of it depends on `shown_rad`.

@@ -167,6 +167,21 @@ void AddInterpolation(Columns& columns, double amplitude_rad, const SignalContex
   }
 }
 
+/// A zero that follows a temperature is told from the thermometer's, whose noise looks like a wrong coefficient: by the
+/// share that noise has of what was logged (errors in variables).
+void AddThermometer(Columns& columns, const SignalContext& context, const Scenario& scenario) {
+  if (!context.HasTemperature()) return;
+  const Eigen::Vector2d per_K = ZeroPerKelvin_rad(scenario);
+  const Eigen::VectorXd logged_K = context.above_K.array() - context.above_K.mean();
+  const double variance = logged_K.squaredNorm() / static_cast<double>(logged_K.size());
+  const double noise = std::pow(scenario.environment.sensor_noise_K, 2);
+  if (per_K.isZero() || noise == 0.0 || variance == 0.0) return;
+  const int share = columns.New(std::min(1.0, noise / variance));
+  for (int i = 0; i < columns.Readings(); ++i) {
+    for (int axis = 0; axis < kAxes; ++axis) columns.Put(kAxes * i + axis, share, per_K[axis] * logged_K[i]);
+  }
+}
+
 }  // namespace
 
 Slopes SlopesOf(const Instrument& instrument, Eigen::Index readings) {
@@ -191,6 +206,7 @@ Nuisance AllUnknowns(const Places& places, const Slopes& slopes, const SignalCon
   AddSecondOrder(columns, scenario.turntable_procedure.tilts_rad);
   AddSlopes(columns, TypicalSlope(places, context));
   AddInterpolation(columns, scenario.collimator.interpolation_error_px * context.pixel_rad, context);
+  AddThermometer(columns, context, scenario);
   return columns.Take();
 }
 

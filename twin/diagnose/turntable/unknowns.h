@@ -23,7 +23,8 @@ Nuisance FreeUnknowns(const Places& places, const Slopes& slopes, const Schedule
 ///  - teeth, where shifts tell them from positions: index error with its stated uncertainty, tilt of some seconds;
 ///  - second-order geometry of a tilted axis: x turns by products of two small tilts, once and twice a turn;
 ///  - the slope of the turntable's error along a sweep, as large as between its positions;
-///  - the stated error of the camera's interpolation, whose phase nobody states.
+///  - the stated error of the camera's interpolation, whose phase nobody states;
+///  - the thermometer's noise in a zero that follows the temperature.
 Nuisance AllUnknowns(const Places& places, const Slopes& slopes, const SignalContext& context,
                      const Scenario& scenario);
 
