@@ -43,7 +43,7 @@ struct Match {
 Match BestMatch(const std::string& effect, const std::string& where) {
   const std::vector<Reading> clean = twinbench::test::RunTwin(BenchOf("", "")).readings;
   const std::vector<Reading> with = twinbench::test::RunTwin(BenchOf(effect, where)).readings;
-  const RotaryCase rotary(clean, BenchOf("", ""), false, {});
+  const RotaryCase rotary(clean, BenchOf("", ""), {}, {});
   const LinearRun& run = rotary.Rotary().run;
   const NoiseModel noise{run.sigma, 0.0};
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/own_scenario/own_scenario.h"
-#include "twin/sim/hob/follow.h"
+#include "twin/benches/names.h"
 
-namespace twinbench {
+namespace twinbench::own_hob {
 namespace {
 
 const std::vector<std::string>& Base() {
@@ -79,7 +79,7 @@ const std::vector<test::OwnKey>& Keys() {
   return keys;
 }
 
-std::string Scenario() {
+std::string ScenarioFile() {
   return std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/hob_transmission.toml";
 }
 
@@ -88,14 +88,14 @@ TEST(HobOwnScenario, NoKeyIsForgotten) {
 }
 
 TEST(HobOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms = test::AlarmsOf(Scenario(), Base(), Keys(), test::Or(sim::FollowHob), test::Seeds());
+  const test::Alarms alarms = test::AlarmsOf(ScenarioFile(), Base(), Keys(), test::Seeds());
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
 }
 
 TEST(HobOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms = test::AlarmsOfEffects(Scenario(), Base(), test::Or(sim::FollowHob), test::Seeds());
+  const test::Alarms alarms = test::AlarmsOfEffects(ScenarioFile(), Base(), test::Seeds());
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
 }
 
 }  // namespace
-}  // namespace twinbench
+}  // namespace twinbench::own_hob

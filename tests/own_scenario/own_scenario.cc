@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/support/angle_benches.h"
+#include "twin/benches/registry.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/diagnose/diagnose.h"
 
@@ -22,12 +23,11 @@ std::string CauseOf(const diagnose::Diagnosis& d) {
 }
 
 /// Runs the twin and asks what is wrong.
-void Try(Scenario scenario, const std::string& what, const model::FollowMaker& follow, int seeds, Alarms& alarms) {
+void Try(Scenario scenario, const std::string& what, int seeds, Alarms& alarms) {
   const std::uint64_t first = scenario.seed;
   for (int k = 0; k < seeds; ++k) {
     scenario.seed = first + static_cast<std::uint64_t>(k);
     diagnose::DiagnoseOptions options;
-    options.follow = follow;
     options.null_runs = kNullRuns;
     ++alarms.runs;
     std::string raised;
@@ -61,26 +61,26 @@ std::string Alarms::InWords() const {
 }
 
 Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_settings,
-                const std::vector<OwnKey>& keys, const model::FollowMaker& follow, int seeds) {
+                const std::vector<OwnKey>& keys, int seeds) {
   Alarms alarms;
   for (const OwnKey& key : keys) {
     if (key.settings.empty()) continue;
     std::vector<std::string> settings = base_settings;
     settings.insert(settings.end(), key.settings.begin(), key.settings.end());
-    Try(LoadScenario(base, settings), fmt::format("{}", fmt::join(key.settings, " ")), follow, seeds, alarms);
+    Try(LoadScenario(base, settings), fmt::format("{}", fmt::join(key.settings, " ")), seeds, alarms);
   }
   return alarms;
 }
 
 Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings,
-                       const model::FollowMaker& follow, int seeds) {
+                       int seeds) {
   Alarms alarms;
   const Scenario plain = LoadScenario(base, base_settings);
   for (const EffectEntry& entry : EffectCatalogue(plain.bench)) {
     if (entry.name == "outliers") continue;  // which readings they meet, nobody can foresee
     Scenario scenario = plain;
     scenario.effects = {PlainEffect(entry)};
-    Try(scenario, entry.name, follow, seeds, alarms);
+    Try(scenario, entry.name, seeds, alarms);
   }
   return alarms;
 }
@@ -88,10 +88,6 @@ Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& 
 int Seeds() {
   const char* stated = std::getenv("OWN_SCENARIO_SEEDS");
   return stated ? std::atoi(stated) : 1;
-}
-
-model::FollowMaker Or(const model::FollowMaker& follow) {
-  return std::getenv("OWN_SCENARIO_CLOSED_FORMS") ? model::FollowMaker{} : follow;
 }
 
 }  // namespace twinbench::test

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "twin/core/scenario.h"
-#include "twin/model/follow.h"
 
 /// Runs of the twin that are diagnosed against their own scenario: whatever it states, nothing is wrong.
 namespace twinbench::test {
@@ -26,18 +25,14 @@ struct Alarms {
 };
 
 /// @param base    Scenario and settings that every run has.
-/// @param follow  Empty: closed forms.
 /// @param seeds   How many of each.
 Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_settings,
-                const std::vector<OwnKey>& keys, const model::FollowMaker& follow, int seeds);
+                const std::vector<OwnKey>& keys, int seeds);
 
 /// The same for every effect of the bench's catalogue at its default size.
-Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings,
-                       const model::FollowMaker& follow, int seeds);
+Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings, int seeds);
 
 /// One, or as many as the environment's OWN_SCENARIO_SEEDS says.
 int Seeds();
-/// The twin, or closed forms where the environment has OWN_SCENARIO_CLOSED_FORMS.
-model::FollowMaker Or(const model::FollowMaker& follow);
 
 }  // namespace twinbench::test

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/own_scenario/own_scenario.h"
-#include "twin/sim/turntable/follow.h"
+#include "twin/benches/names.h"
 
-namespace twinbench {
+namespace twinbench::own_turntable {
 namespace {
 
 const std::vector<std::string>& Base() {
@@ -114,7 +114,7 @@ const std::vector<test::OwnKey>& Keys() {
   return keys;
 }
 
-std::string Scenario() {
+std::string ScenarioFile() {
   return std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/turntable_autocollimator.toml";
 }
 
@@ -124,14 +124,14 @@ TEST(TurntableOwnScenario, NoKeyIsForgotten) {
 
 TEST(TurntableOwnScenario, RaisesNoAlarm) {
   const test::Alarms alarms =
-      test::AlarmsOf(Scenario(), Base(), Keys(), test::Or(sim::FollowTurntable), test::Seeds());
+      test::AlarmsOf(ScenarioFile(), Base(), Keys(), test::Seeds());
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
 }
 
 TEST(TurntableOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms = test::AlarmsOfEffects(Scenario(), Base(), test::Or(sim::FollowTurntable), test::Seeds());
+  const test::Alarms alarms = test::AlarmsOfEffects(ScenarioFile(), Base(), test::Seeds());
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
 }
 
 }  // namespace
-}  // namespace twinbench
+}  // namespace twinbench::own_turntable

@@ -42,7 +42,7 @@ std::vector<EffectEntry> ForeseeableAngleEffects() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EncoderFollowEffect, testing::ValuesIn(ForeseeableAngleEffects()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST(EncoderFollow, HasAShaftUnderBothAndADeviceBesideIt) {
   const Scenario s = Bench("stops");

@@ -128,7 +128,7 @@ std::vector<EffectEntry> ForeseeableRotaryEffects() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RotaryFollowEffect, testing::ValuesIn(ForeseeableRotaryEffects()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST(RotaryFollow, DoesNotForeseeSingleOutliers) {
   Scenario s = test::SmallNoiseFree();

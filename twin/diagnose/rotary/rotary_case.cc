@@ -48,8 +48,8 @@ RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& sce
   const SharedSeries series = MakeSharedSeries(rotary_);
   families_ = NamedFamilies(rotary_, context_, With(scenario, about), series);
   if (model.published) {
-    std::vector<Family> model = ModelFamilies(rotary_);
-    std::ranges::move(model, std::back_inserter(families_));
+    std::vector<Family> of_model = ModelFamilies(rotary_);
+    std::ranges::move(of_model, std::back_inserter(families_));
   }
   std::erase_if(families_,
                 [&struck](const Family& f) { return std::ranges::find(struck, f.effect) != struck.end(); });

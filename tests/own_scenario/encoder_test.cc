@@ -1,0 +1,72 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/own_scenario/own_scenario.h"
+#include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
+
+namespace twinbench::own_encoder {
+namespace {
+
+using test::OwnKey;
+
+/// A key with a value that readings feel, and what else must be so that they do.
+OwnKey Change(const std::string& key, const std::string& value, std::vector<std::string> with = {}) {
+  with.push_back(key + "=" + value);
+  return {key, std::move(with)};
+}
+
+std::vector<OwnKey> EncoderChanges() {
+  const std::vector<std::string> sweep = {"encoder_procedure.kind=sweep"};
+  return {Change("noise_free", "true"),
+          Change("device.noise_deg", "0.005"),
+          Change("device.noise_known", "true"),
+          Change("device.resolution_deg", "0.005"),
+          Change("device.lines_per_turn", "30"),
+          Change("device.teeth", "22"),
+          Change("device.signal_periods", "3"),
+          Change("device.signal_zero_deg", "40.0"),
+          Change("device.signal_zero_known", "true"),
+          Change("encoder_procedure.kind", "\"sweep\""),
+          Change("encoder_procedure.turns", "1.0"),
+          Change("encoder_procedure.start_deg", "77.0"),
+          Change("encoder_procedure.passes", "[1, -1]"),
+          Change("encoder_procedure.mounting_deg", "[0.0, 120.0]"),
+          Change("encoder_procedure.remount_s", "60.0", {"encoder_procedure.mounting_deg=[0.0, 120.0]"}),
+          Change("encoder_procedure.stops_per_turn", "48"),
+          Change("encoder_procedure.stop_interval_s", "9.0"),
+          Change("encoder_procedure.speeds_deg_s", "[20.0]", sweep),
+          Change("encoder_procedure.ramp_s", "1.5", sweep),
+          Change("encoder_procedure.rest_s", "5.0", sweep),
+          Change("encoder_procedure.interval_s", "0.15", sweep)};
+}
+
+const std::vector<OwnKey>& Keys() {
+  static const std::vector<OwnKey> keys = [] {
+    std::vector<OwnKey> all = EncoderChanges();
+    all.push_back({"bench", {}, "another bench"});
+    all.push_back({"title", {}, "words"});
+    all.push_back({"seed", {}, "every run has its own"});
+    return all;
+  }();
+  return keys;
+}
+
+const std::vector<std::string> kBase = {};
+
+TEST(EncoderOwnScenario, NoKeyIsForgotten) {
+  EXPECT_THAT(test::Forgotten(kEncoderBench, Keys()), testing::IsEmpty());
+}
+
+TEST(EncoderOwnScenario, RaisesNoAlarm) {
+  const test::Alarms alarms = test::AlarmsOf(test::ScenarioPath("encoder_comparison.toml"), kBase, Keys(), test::Seeds());
+  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
+}
+
+TEST(EncoderOwnScenario, KnowsItsEffects) {
+  const test::Alarms alarms = test::AlarmsOfEffects(test::ScenarioPath("encoder_comparison.toml"), kBase, test::Seeds());
+  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
+}
+
+}  // namespace
+}  // namespace twinbench::own_encoder

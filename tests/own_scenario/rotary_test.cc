@@ -1,0 +1,182 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/own_scenario/own_scenario.h"
+#include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
+
+namespace twinbench::own_rotary {
+namespace {
+
+using test::OwnKey;
+
+/// A key with a value that readings feel, and what else must be so that they do.
+OwnKey Change(const std::string& key, const std::string& value, std::vector<std::string> with = {}) {
+  with.push_back(key + "=" + value);
+  return {key, std::move(with)};
+}
+
+// Values are chosen to move some reading by far more than its noise wherever the key can.
+std::vector<OwnKey> Psd(const std::string& psd) {
+  const std::vector<std::string> window = {psd + ".window=true"};
+  return {Change(psd + ".distance_mm", "121.0"),
+          Change(psd + ".roll_mrad", "12.0"),
+          Change(psd + ".tilt_u_mrad", "60.0"),
+          Change(psd + ".tilt_v_mrad", "60.0"),
+          Change(psd + ".sensitivity_V_m", "1900.0"),
+          Change(psd + ".width_mm", "8.0"),
+          Change(psd + ".height_mm", "8.0"),
+          Change(psd + ".cubic_per_m2", "3000.0"),
+          Change(psd + ".stray_fraction", "0.02"),
+          Change(psd + ".window", "true"),
+          Change(psd + ".window_thickness_mm", "2.0", window),
+          Change(psd + ".window_index", "1.8", window),
+          Change(psd + ".window_gap_mm", "2.0", window),
+          Change(psd + ".window_reflectance", "0.2", window),
+          Change(psd + ".window_wedge_mrad", "4.0", window),  // more: a ghost without extent jumps over the edge
+          Change(psd + ".window_coherent", "true", window),
+          Change(psd + ".silicon_reflectance", "0.3")};
+}
+
+std::vector<OwnKey> Table(const std::string& table) {
+  std::vector<OwnKey> keys = {
+      Change(table + ".harmonics", "[{component=\"ez\", order=1, amplitude_arcsec=40.0, phase_deg=30.0},"
+                             " {component=\"dx\", order=2, amplitude_um=5.0, phase_deg=0.0}]"),
+      Change(table + ".half_frequency_order", "0.43", {table + ".half_frequency_tilt_arcsec=2.0"}),
+      Change(table + ".half_frequency_tilt_arcsec", "2.0"),
+      Change(table + ".half_frequency_radial_um", "3.0"),
+      Change(table + ".backlash_arcsec", "4.0"),
+      Change(table + ".speed_deg_s", "15.0"),
+      Change(table + ".move_time_s", "2.0"),
+      Change(table + ".settle_s", "1.5"),
+      Change(table + ".random.orders", "5"),
+      Change(table + ".errors", "{position_deg=[0.0, 90.0, 180.0, 270.0], ez_arcsec=[0.0, 20.0, -5.0, 8.0]}")};
+  for (const char* component : {"ex_arcsec", "ey_arcsec", "ez_arcsec", "dx_um", "dy_um", "dz_um"}) {
+    keys.push_back(Change(table + ".random." + component, "6.0"));
+    keys.push_back(Change(table + ".seating." + component, "5.0"));
+    keys.push_back(Change(table + ".repeatability." + component, "1.5"));
+  }
+  return keys;
+}
+
+std::vector<OwnKey> RotaryChanges() {
+  const std::vector<std::string> warm = {"environment.drift_K_h=0.5", "laser.pointing_yaw_per_kelvin_urad=20.0"};
+  const std::vector<std::string> loaded = {"mechanics.payload_mass_kg=20.0", "mechanics.payload_radius_mm=60.0",
+                                           "mechanics.fidelity=linear"};
+  const std::vector<std::string> gaussian = {"laser.beam=gaussian"};
+  const std::vector<std::string> hum = {"amplifier.hum_mV=20.0"};
+  std::vector<OwnKey> keys = {
+      Change("noise_free", "true"),
+      Change("laser.wavelength_nm", "635.0"),
+      Change("laser.power_mW", "1.0"),
+      Change("laser.position_mm", "[0.5, 200.0, 0.3]"),
+      Change("laser.yaw_mrad", "0.4"),
+      Change("laser.pitch_mrad", "0.4"),
+      Change("laser.beam", "\"gaussian\""),
+      Change("laser.beam_radius_mm", "1.5", gaussian),
+      Change("laser.divergence_mrad", "3.0", gaussian),
+      Change("laser.wavelength_per_kelvin_nm", "0.25", {"environment.drift_K_h=0.5"}),
+      Change("laser.pointing_yaw_per_kelvin_urad", "20.0", {"environment.drift_K_h=0.5"}),
+      Change("laser.pointing_pitch_per_kelvin_urad", "20.0", {"environment.drift_K_h=0.5"}),
+      Change("grating.lines_per_mm", "620.0"),
+      Change("grating.width_mm", "12.0"),
+      Change("grating.height_mm", "12.0"),
+      Change("grating.efficiency", "[0.05, 0.3, 0.2, 0.4, 0.05]"),
+      Change("grating.point_mm", "[0.5, 31.0, 49.0]"),
+      Change("amplifier.offset_mV", "[40.0, -30.0, 20.0, 10.0]"),
+      Change("amplifier.gain_error", "[0.01, -0.008, 0.006, 0.0]"),
+      Change("amplifier.noise_mV", "20.0"),
+      Change("amplifier.hum_mV", "20.0"),
+      Change("amplifier.hum_frequency_Hz", "60.0", hum),
+      Change("amplifier.low_light_fraction", "0.2"),
+      Change("adc.scan_list", "[\"psd_b_y\", \"psd_a_x\", \"psd_b_x\", \"psd_a_y\"]", hum),
+      Change("adc.bits", "12"),
+      Change("adc.range_V", "20.0"),
+      Change("adc.rate_kHz", "100.0", hum),
+      Change("adc.samples", "40"),
+      Change("adc.every_sample", "true"),
+      Change("reference.height_mm", "90.0"),
+      Change("reference.centring_um", "[40.0, -25.0]"),
+      Change("reference.mount_tilt_arcsec", "[60.0, -45.0]"),
+      Change("mechanics.fidelity", "\"linear\""),
+      Change("mechanics.payload_mass_kg", "20.0", {"mechanics.payload_radius_mm=60.0"}),
+      Change("mechanics.payload_radius_mm", "60.0", {"mechanics.payload_mass_kg=20.0"}),
+      Change("mechanics.payload_azimuth_deg", "70.0", loaded),
+      Change("mechanics.payload_height_mm", "200.0", loaded),
+      Change("mechanics.axial_stiffness_N_um", "[50.0, 30.0]", loaded),
+      Change("mechanics.radial_stiffness_N_um", "[20.0, 10.0]", loaded),
+      Change("mechanics.tilt_stiffness_Nm_mrad", "[100.0, 50.0]", loaded),
+      Change("mechanics.damping_ratio", "0.2", loaded),
+      Change("mechanics.servo_Hz", "[15.0, 18.0]", loaded),
+      Change("mechanics.friction_Nm", "[0.5, 0.3]", loaded),
+      Change("mechanics.step_us", "500.0", loaded),
+      Change("environment.temperature_degC", "21.0", warm),
+      Change("environment.reference_degC", "19.0", warm),
+      Change("environment.drift_K_h", "0.8", warm),
+      Change("environment.swing_mK", "300.0", warm),
+      Change("environment.swing_period_s", "2400.0", {"environment.swing_mK=300.0", warm[1]}),
+      Change("environment.random_walk_K_sqrt_h", "0.3", warm),
+      Change("environment.sensor_noise_mK", "30.0", warm),
+      Change("autocollimator.noise_arcsec", "0.2"),
+      Change("autocollimator.range_arcsec", "350.0"),
+      Change("autocollimator.gain_error", "0.004"),
+      Change("procedure.phases", "[\"calibration\", \"stability\", \"verification\", \"full_circle\"]"),
+      Change("procedure.positions", "18"),
+      Change("procedure.shifts", "[0, 2, 7]"),
+      Change("procedure.passes", "[1, -1]"),
+      Change("procedure.clamping", "\"reclamp\""),
+      Change("procedure.dwell_s", "[0.5, 2.0, 6.0]"),
+      Change("procedure.run_up_steps", "0.2", {"target.backlash_arcsec=4.0"}),
+      Change("procedure.remount_s", "60.0"),
+      Change("procedure.sweep_arcsec", "200.0"),
+      Change("procedure.sweep_points", "9"),
+      Change("procedure.stability_s", "600.0", {"procedure.phases=[\"calibration\", \"stability\", \"full_circle\"]"}),
+      Change("procedure.stability_interval_s", "30.0", {"procedure.phases=[\"calibration\", \"stability\", \"full_circle\"]"}),
+      Change("procedure.verification_points", "5", {"procedure.phases=[\"calibration\", \"verification\", \"full_circle\"]"}),
+      Change("procedure.keep_raw", "true", {"adc.every_sample=true"})};
+  for (const auto& part : {Psd("psd_a"), Psd("psd_b"), Table("target"), Table("reference")})
+    keys.insert(keys.end(), part.begin(), part.end());
+  return keys;
+}
+
+std::vector<OwnKey> RotaryKeys() {
+  std::vector<OwnKey> keys = RotaryChanges();
+  const std::vector<OwnKey> left_out = {{"bench", {}, "another bench"},
+                                        {"title", {}, "words"},
+                                        {"seed", {}, "every run has its own"},
+                                        {"laser.profile_file", {}, "needs an OpenEXR file"},
+                                        {"grating.efficiency_file", {}, "needs a file"},
+                                        {"environment.temperature_file", {}, "needs a file"},
+                                        {"target.errors_file", {}, "its content is in target.errors"},
+                                        {"reference.errors_file", {}, "its content is in reference.errors"},
+                                        {"adc.fifo_samples", {}, "a FIFO that runs full ends the run"},
+                                        {"adc.drain_rate_kHz", {}, "matters only to a FIFO that runs full"}};
+  keys.insert(keys.end(), left_out.begin(), left_out.end());
+  return keys;
+}
+
+const std::vector<OwnKey>& Keys() {
+  static const std::vector<OwnKey> keys = RotaryKeys();
+  return keys;
+}
+
+// Two thirds of the scenario's stops tell everything apart and take less time.
+const std::vector<std::string> kBase = {"procedure.positions=24", "procedure.shifts=[0, 1, 5, 8]",
+                                        "adc.every_sample=false"};
+
+TEST(RotaryOwnScenario, NoKeyIsForgotten) {
+  EXPECT_THAT(test::Forgotten(kRotaryBench, Keys()), testing::IsEmpty());
+}
+
+TEST(RotaryOwnScenario, RaisesNoAlarm) {
+  const test::Alarms alarms = test::AlarmsOf(test::ScenarioPath("rotary_4dof.toml"), kBase, Keys(), test::Seeds());
+  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
+}
+
+TEST(RotaryOwnScenario, KnowsItsEffects) {
+  const test::Alarms alarms = test::AlarmsOfEffects(test::ScenarioPath("rotary_4dof.toml"), kBase, test::Seeds());
+  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
+}
+
+}  // namespace
+}  // namespace twinbench::own_rotary
