@@ -15,6 +15,8 @@ const std::map<std::string, std::string>& UsualSizes() {
                                                            {"stray_light", "fraction"},
                                                            {"psd_distance", "distance_error"},
                                                            {"wavelength_offset", "wavelength_error"},
+                                                           {"grating_pitch", "pitch_error"},
+                                                           {"mode_hop", "wavelength_step"},
                                                            {"incidence_offset", "incidence"},
                                                            {"wavelength_temperature", "wavelength_per_kelvin"},
                                                            {"laser_drift", "drift"},

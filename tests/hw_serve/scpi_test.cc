@@ -23,7 +23,7 @@ class Scpi : public testing::Test {
 TEST_F(Scpi, TheBenchNamesItselfBySerialNumberOfItsScenario) {
   const std::string name = scpi.Ask("*IDN?");
   EXPECT_THAT(name, testing::MatchesRegex("twinbench,rotary-bench,[0-9A-F]{16},[0-9.]+"));
-  Scenario other;
+  Scenario other = test::RotaryScenario();
   other.seed = 2;
   EXPECT_EQ(TcpClient(ServedTwin(OnFreePorts(kAtOnce)).at().scpi_port, 0).Ask("*IDN?"), name);
   ServedTwin second(OnFreePorts(kAtOnce), other);

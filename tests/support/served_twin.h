@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "hw_bridge/serve/server.h"
+#include "tests/support/rotary_scenario.h"
 #include "twin/sim/twin.h"
 
 namespace twinbench::test {
@@ -20,7 +21,7 @@ inline hw::ServeOptions OnFreePorts(double speed = std::numeric_limits<double>::
 /// A twin that is served from a thread, until this goes.
 class ServedTwin {
  public:
-  explicit ServedTwin(const hw::ServeOptions& options, const Scenario& scenario = {})
+  explicit ServedTwin(const hw::ServeOptions& options, const Scenario& scenario = RotaryScenario())
       : twin_(scenario), server_(twin_.Bench(), scenario, options), thread_([this] { server_.Run(); }) {}
   explicit ServedTwin(const Scenario& scenario, double speed = std::numeric_limits<double>::infinity())
       : ServedTwin(OnFreePorts(speed), scenario) {}

@@ -2,11 +2,20 @@
 
 namespace twinbench::sim {
 
+namespace {
+
+/// For which the PSDs were placed. They stand where the nominal grating would send it, whatever the grooves are.
+double NominalWavelength_m(const Scenario& nominal, const Scenario& actual) {
+  return nominal.laser.wavelength_m * (nominal.grating.lines_per_m / actual.grating.lines_per_m);
+}
+
+}  // namespace
+
 OpticalPath::OpticalPath(const Scenario& nominal)
     : effects_(nominal),
       actual_(effects_.ActualBench(nominal)),
       stand_(actual_),
-      light_(actual_, nominal.laser.wavelength_m),
+      light_(actual_, NominalWavelength_m(nominal, actual_)),
       electronics_(actual_, effects_.Sampling()) {}
 
 Pose GratingPose(const Stand& stand, const ActiveEffects& effects, const Moment& moment,

@@ -54,6 +54,17 @@ std::vector<EffectEntry> LightEffects() {
        "wavelength other than stated",
        {},
        {Signed("wavelength_error", "nm", 2.0, 100.0, "actual - nominal")}},
+      // grooves are ruled to parts in a hundred thousand; a label may name another grating
+      {"grating_pitch",
+       "grooves at another distance than stated",
+       {},
+       {Signed("pitch_error", "1", 0.003, 0.2, "actual / nominal - 1")}},
+      // 0.2-0.5 nm
+      {"mode_hop",
+       "sudden step of the wavelength",
+       {},
+       {Signed("wavelength_step", "nm", 0.25, 10.0, "behind the hop"),
+        Parameter("at_reading", "1", 200.0, 0.0, 1e9, "first reading behind the hop")}},
       // 0.2-0.3 nm/K
       {"wavelength_temperature",
        "wavelength that follows the temperature",

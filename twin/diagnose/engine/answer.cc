@@ -85,6 +85,35 @@ double ExplainedAlone(const Cause& cause, const SearchResult& found, const std::
   return most;
 }
 
+/// Causes that explain the same of the whole run as one that won: their signatures are one on this design, and what
+/// was thought of them before is no reason to choose.
+std::vector<CauseKey> DoublesOf(const Cause& cause, const SearchResult& found, const std::vector<Family>& families) {
+  constexpr double kSame = 2e-3;  // of what it explains: two signatures that differ by less lie in each other's noise
+  std::vector<CauseKey> doubles;
+  const double explained = ExplainedAlone(cause, found, families);
+  for (int k = 0; k < std::ssize(families); ++k) {
+    const Family& f = families[static_cast<std::size_t>(k)];
+    const CauseKey key = KeyOf(f);
+    if (f.kind != Kind::kNamed || key == CauseKey{cause.effect, cause.where}) continue;
+    const bool same = std::abs(found.alone.explained(k, 0) - explained) <= kSame * explained;
+    if (same && std::ranges::count(doubles, key) == 0) doubles.push_back(key);
+  }
+  return doubles;
+}
+
+/// The doubles of a cause share its probability with it.
+void AddDoubles(const Pick& pick, const SearchResult& found, const std::vector<Family>& families,
+                std::vector<Cause>& causes) {
+  const auto listed = [&causes](const CauseKey& key) {
+    return std::ranges::any_of(causes, [&key](const Cause& c) { return CauseKey{c.effect, c.where} == key; });
+  };
+  std::vector<CauseKey> doubles = DoublesOf(causes.front(), found, families);
+  std::erase_if(doubles, listed);
+  const double share = causes.front().probability / static_cast<double>(1 + std::ssize(doubles));
+  causes.front().probability = share;
+  for (const CauseKey& key : doubles) causes.push_back(CauseOf(pick, families, {key, share}));
+}
+
 /// How much of what each cause explains the others explain alone.
 void AddRivals(const SearchResult& found, const std::vector<Family>& families, std::vector<Cause>& causes) {
   constexpr double kNothing = 1e-12;
@@ -109,6 +138,7 @@ Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Fami
   answer.signature = SignatureOf(pick, families, ballot);
   if (ballot.unknown > 0.5) return answer;
   for (const Share& share : Winners(ballot)) answer.causes.push_back(CauseOf(pick, families, share));
+  if (!answer.causes.empty() && found.picks.size() == 1) AddDoubles(pick, found, families, answer.causes);
   AddRivals(found, families, answer.causes);
   return answer;
 }

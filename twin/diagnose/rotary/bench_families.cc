@@ -90,11 +90,12 @@ Eigen::VectorXd SensitivityColumn(const RotaryRun& rotary, int dof) {
 }  // namespace
 
 void AddBenchFamilies(const RotaryRun& rotary, const Scenario& scenario, std::vector<Family>& families) {
-  const std::array<std::array<const char*, 2>, 7> causes = {{{"psd_gain", "gain_error"},
+  const std::array<std::array<const char*, 2>, 8> causes = {{{"psd_gain", "gain_error"},
                                                              {"psd_roll", "roll"},
                                                              {"stray_light", "fraction"},
                                                              {"psd_distance", "distance_error"},
                                                              {"wavelength_offset", "wavelength_error"},
+                                                             {"grating_pitch", "pitch_error"},
                                                              {"wavelength_temperature", "wavelength_per_kelvin"},
                                                              {"incidence_offset", "incidence"}}};
   for (const auto& [effect, parameter] : causes) {

@@ -28,6 +28,8 @@ Plausible PlausibleOf(const std::string& effect, const std::string& parameter) {
   if (effect == "stray_light") return {0.006, 0.0, 0.3};
   if (effect == "psd_distance") return both(0.7e-3, 20e-3);
   if (effect == "wavelength_offset") return both(4e-9, 40e-9);
+  if (effect == "grating_pitch") return both(1e-3, 0.06);
+  if (effect == "mode_hop") return both(0.3e-9, 5e-9);
   if (effect == "wavelength_temperature") return both(0.05e-9, 1e-9);
   if (effect == "incidence_offset") return both(6 * mrad, 100 * mrad);
   if (effect == "laser_drift") return both(20e-6 / units::hour, 1e-3 / units::hour);

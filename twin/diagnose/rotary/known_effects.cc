@@ -55,6 +55,7 @@ Eigen::VectorXd AmplitudesOf(const EffectSettings& e) {
   if (e.name == "thermal_tilt") return Eigen::VectorXd::Constant(1, value("tilt_per_kelvin"));
   if (e.name == "backlash") return Eigen::VectorXd::Constant(1, value("half_width"));
   if (e.name == "slip") return Eigen::VectorXd::Constant(1, value(e.where == "lateral" ? "shift" : "angle"));
+  if (e.name == "mode_hop") return Eigen::VectorXd::Constant(1, value("wavelength_step"));
   if (e.name == "adc_step") return Eigen::VectorXd::Constant(1, value("step"));
   if (e.name == "crosstalk") return Eigen::VectorXd::Constant(1, value("fraction"));
   if (e.name == "bearing_half_frequency") return Eigen::Vector2d(value("tilt"), 0.0);
@@ -84,7 +85,8 @@ Eigen::MatrixXd HalfFrequencySignal(double order, const Whirling& whirling, cons
 bool AltersBench(const std::string& effect) {
   static const std::vector<std::string> names = {
       "psd_gain",     "psd_roll",          "psd_nonlinearity",       "stray_light",
-      "psd_distance", "wavelength_offset", "wavelength_temperature", "incidence_offset"};
+      "psd_distance", "wavelength_offset", "grating_pitch",          "wavelength_temperature",
+      "incidence_offset"};
   return std::find(names.begin(), names.end(), effect) != names.end();
 }
 
@@ -98,6 +100,9 @@ void AlterBench(const std::string& effect, const std::string& where, const Param
   if (effect == "stray_light") bench.stray_fraction[psd] += Value(parameters, "fraction");
   if (effect == "psd_distance") bench.distance_error_m[psd] += Value(parameters, "distance_error");
   if (effect == "wavelength_offset") bench.wavelength_error_m += Value(parameters, "wavelength_error");
+  // The grating equation knows the product of wavelength and grooves a length only.
+  if (effect == "grating_pitch")
+    bench.wavelength_error_m -= bench.nominal.wavelength_m * (1.0 - 1.0 / (1.0 + Value(parameters, "pitch_error")));
   if (effect == "wavelength_temperature")
     bench.wavelength_error_m += Value(parameters, "wavelength_per_kelvin") * above_K;
   if (effect == "incidence_offset") bench.incidence_rad += Value(parameters, "incidence");
@@ -131,6 +136,8 @@ Eigen::MatrixXd EffectSignal(const std::string& effect, const std::string& where
   }
   if (effect == "mount_creep") return moved(CreepSignal(s, Value(shape, "time_constant")));
   if (effect == "thermal_tilt") return moved(LaggedTemperature(s, context.reference_degC, Value(shape, "lag")));
+  if (effect == "mode_hop")
+    return OnChannels(StepSignal(s, static_cast<int>(Value(shape, "at_reading"))), context.shown_by_wavelength);
   if (effect == "slip") return moved(StepSignal(s, static_cast<int>(Value(shape, "at_reading"))));
   // A rotor that lags stays behind on the side it came from; the reference turns against the target.
   const double side = where == "reference" ? 1.0 : -1.0;

@@ -39,6 +39,7 @@ struct SignalContext {
   Eigen::VectorXd shown_m;          // what the channels show, by row
   double sample_noise_V = 0.0;      // standard deviation of one A/D sample
   double settle_s = 0.0;            // in-position window of the tables: from a move's end to the dwell's beginning
+  Eigen::Vector4d shown_by_wavelength = Eigen::Vector4d::Zero();  // d shown / d wavelength at rest
 };
 
 /// Signal of an additive effect at unit amplitude, rows x amplitudes (SI per SI).

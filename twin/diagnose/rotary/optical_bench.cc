@@ -100,6 +100,14 @@ Vector4 ShownSpots(const OpticalBench& bench, const Vector4& motion) {
   return shown_m;
 }
 
+Vector4 ShownByWavelength(const OpticalBench& bench) {
+  constexpr double kStep_m = 0.01 * units::nm;
+  OpticalBench longer = bench, shorter = bench;
+  longer.wavelength_error_m += kStep_m;
+  shorter.wavelength_error_m -= kStep_m;
+  return (ShownSpots(longer, Vector4::Zero()) - ShownSpots(shorter, Vector4::Zero())) / (2.0 * kStep_m);
+}
+
 Eigen::Matrix4d ShownJacobian(const OpticalBench& bench, const Vector4& motion) {
   constexpr double kStep = 1e-5;
   Eigen::Matrix4d jacobian;

@@ -38,6 +38,9 @@ OpticalBench BelievedBench(const Scenario& scenario);
 /// @return NaN where an order does not reach its PSD.
 Vector4 ShownSpots(const OpticalBench& bench, const Vector4& motion);
 
+/// d shown / d wavelength at rest, by central differences.
+Vector4 ShownByWavelength(const OpticalBench& bench);
+
 /// d shown / d motion by central differences.
 Eigen::Matrix4d ShownJacobian(const OpticalBench& bench, const Vector4& motion);
 

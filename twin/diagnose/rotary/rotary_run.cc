@@ -110,6 +110,7 @@ SignalContext ContextOf(const RotaryRun& rotary, const Scenario& scenario, const
     context.shown_by_laser.col(k) =
         (ShownSpots(turned, Vector4::Zero()) - ShownSpots(rotary.bench, Vector4::Zero())) / kStep_rad;
   }
+  context.shown_by_wavelength = ShownByWavelength(rotary.bench);
   return context;
 }
 

@@ -127,16 +127,23 @@ void AddTones(const RotaryRun& rotary, const SharedSeries& series, std::vector<F
   families.push_back(FreeTone(rotary, series));
 }
 
+/// A step at any reading that shows in the channels by `weight`.
+Family Step(const std::string& effect, const std::string& where, const std::string& size,
+            const Eigen::Vector4d& weight, const SharedSeries& series) {
+  Family family = Named(effect, where, {AmplitudeOf(effect, size)});
+  family.shapes = {ShapeOf(effect, "at_reading", {series.onset.begin(), series.onset.end()})};
+  family.grid = series.step->grid;
+  family.base = series.step;
+  family.map = PatternMap(weight, 1);
+  return family;
+}
+
 void AddSlips(const RotaryRun& rotary, const SharedSeries& series, std::vector<Family>& families) {
   for (const char* where : {"yaw", "tilt", "lateral"}) {
-    const bool lateral = std::string(where) == "lateral";
-    Family family = Named("slip", where, {AmplitudeOf("slip", lateral ? "shift" : "angle")});
-    family.shapes = {ShapeOf("slip", "at_reading", {series.onset.begin(), series.onset.end()})};
-    family.grid = series.step->grid;
-    family.base = series.step;
-    family.map = PatternMap(WeightOf(where, rotary.shown_by_motion), 1);
-    families.push_back(std::move(family));
+    const char* const size = std::string(where) == "lateral" ? "shift" : "angle";
+    families.push_back(Step("slip", where, size, WeightOf(where, rotary.shown_by_motion), series));
   }
+  families.push_back(Step("mode_hop", "", "wavelength_step", ShownByWavelength(rotary.bench), series));
 }
 
 }  // namespace twinbench::diagnose::rotary

@@ -15,6 +15,8 @@ EffectPointer MakePsdNonlinearity(const EffectSettings&, const Scenario&);
 EffectPointer MakeStrayLight(const EffectSettings&, const Scenario&);
 EffectPointer MakePsdDistance(const EffectSettings&, const Scenario&);
 EffectPointer MakeWavelengthOffset(const EffectSettings&, const Scenario&);
+EffectPointer MakeGratingPitch(const EffectSettings&, const Scenario&);
+EffectPointer MakeModeHop(const EffectSettings&, const Scenario&);
 EffectPointer MakeWavelengthTemperature(const EffectSettings&, const Scenario&);
 EffectPointer MakeIncidenceOffset(const EffectSettings&, const Scenario&);
 EffectPointer MakeLaserDrift(const EffectSettings&, const Scenario&);

@@ -15,6 +15,8 @@ std::unique_ptr<Effect> MakeEffect(const EffectSettings& effect, const Scenario&
       {"stray_light", MakeStrayLight},
       {"psd_distance", MakePsdDistance},
       {"wavelength_offset", MakeWavelengthOffset},
+      {"grating_pitch", MakeGratingPitch},
+      {"mode_hop", MakeModeHop},
       {"wavelength_temperature", MakeWavelengthTemperature},
       {"incidence_offset", MakeIncidenceOffset},
       {"laser_drift", MakeLaserDrift},
