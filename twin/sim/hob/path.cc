@@ -7,7 +7,7 @@
 namespace twinbench::sim {
 namespace {
 
-std::vector<std::unique_ptr<HobEffect>> EffectsOf(const Scenario& nominal) {
+std::vector<std::unique_ptr<HobEffect>> HobEffectsOf(const Scenario& nominal) {
   std::vector<std::unique_ptr<HobEffect>> effects;
   for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeHobEffect(effect, nominal));
   return effects;
@@ -46,7 +46,7 @@ mechanics::GearTrainParameters TrainOf(const Scenario& actual,
 }  // namespace
 
 HobPath::HobPath(const Scenario& nominal)
-    : effects_(EffectsOf(nominal)),
+    : effects_(HobEffectsOf(nominal)),
       actual_(ActualBench(nominal, effects_)),
       train_(TrainOf(actual_, effects_)),
       empirical_(actual_.empiricals, "transmission") {}

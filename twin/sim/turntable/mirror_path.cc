@@ -5,7 +5,7 @@
 namespace twinbench::sim {
 namespace {
 
-std::vector<std::unique_ptr<TurntableEffect>> EffectsOf(const Scenario& nominal) {
+std::vector<std::unique_ptr<TurntableEffect>> TurntableEffectsOf(const Scenario& nominal) {
   std::vector<std::unique_ptr<TurntableEffect>> effects;
   for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeTurntableEffect(effect, nominal));
   return effects;
@@ -68,7 +68,7 @@ ReadingStatus StatusOf(optics::AutocollimatorStatus status) {
 }  // namespace
 
 MirrorPath::MirrorPath(const Scenario& nominal, double field_share)
-    : effects_(EffectsOf(nominal)),
+    : effects_(TurntableEffectsOf(nominal)),
       actual_(ActualBench(nominal, effects_)),
       stand_(actual_),
       optics_(OpticsOf(actual_, field_share)),
