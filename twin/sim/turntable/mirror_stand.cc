@@ -63,10 +63,10 @@ Pose MirrorStand::MirrorPose(double turntable_rad, double yaw_rad, const mechani
   mechanics::PoseError tooth_error = multitooth_.At(multitooth_rad) + extra.multitooth;
   tooth_error.ez_rad += tooth_rad_[static_cast<std::size_t>(Wrapped(tooth_))];
   const mechanics::PoseError turntable_error = turntable_.At(turntable_rad) + turntable_seat_ + extra.turntable;
+  const Pose X_RM = X_RS_ * mechanics::ToPose(extra.mount) * FacingAlongY(mirror_radius_m_);
   return mechanics::ToPose(bearing) * mechanics::ToPose(turntable_error) *
          Turned(mechanics::RotationZ(turntable_rad + yaw_rad)) * X_TB_ * mechanics::ToPose(extra.axis) *
-         Turned(mechanics::RotationZ(multitooth_rad)) * mechanics::ToPose(tooth_error) * X_RS_ *
-         mechanics::ToPose(extra.mount) * FacingAlongY(mirror_radius_m_);
+         Turned(mechanics::RotationZ(multitooth_rad)) * mechanics::ToPose(tooth_error) * X_RM;
 }
 
 TableErrors MirrorStand::MultitoothErrors() const {
