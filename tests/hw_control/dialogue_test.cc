@@ -181,12 +181,11 @@ TEST(Dialogue, AControllerThatComesBackWithinThePatienceIsFound) {
   EXPECT_EQ(Ask(dialogue, "A?"), "7");
   controller.reset();
   EXPECT_EQ(KindOf([&] { Ask(dialogue, "A?"); }), FaultKind::kDropped);
-  std::thread boots([&] {
+  const std::jthread boots([&] {
     std::this_thread::sleep_for(kPatience / 3);
     controller = std::make_unique<FakeController>(handler, Wire::kTcp, port.Port());
   });
   EXPECT_EQ(Ask(dialogue, "A?"), "7");
-  boots.join();
 }
 
 TEST(Dialogue, AMissingSerialDeviceIsAFault) {

@@ -64,7 +64,8 @@ TEST(EncoderOwnScenario, RaisesNoAlarm) {
 }
 
 TEST(EncoderOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms = test::AlarmsOfEffects(test::ScenarioPath("encoder_comparison.toml"), kBase, test::Seeds());
+  const test::Alarms alarms = test::AlarmsOfEffects(
+      test::ScenarioPath("encoder_comparison.toml"), {"device.lines_per_turn=30", "device.teeth=22"}, test::Seeds());
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
 }
 

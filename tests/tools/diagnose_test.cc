@@ -146,12 +146,11 @@ void Replay(const std::string& from, const std::string& to) {
 TEST_F(Diagnose, FollowsARunWhileItIsRecordedAndAlarmsBeforeItsEnd) {
   MakeRun("slip", {"--set", "effect=[{name=\"slip\", where=\"tilt\", angle_arcsec=20.0, at_reading=75}]"});
   std::filesystem::create_directory(At("live"));
-  std::thread bench([&] { Replay(At("slip"), At("live")); });
+  const std::jthread bench([&] { Replay(At("slip"), At("live")); });
   while (!Exists("live/scenario.toml")) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   Process watch(At(""), {"diagnose", "live", "--follow", "--scenario", "small.toml"});
   const Outcome outcome = watch.Wait();
-  bench.join();
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("alarm at reading 7"), HasSubstr(", complete; ")));
 }
