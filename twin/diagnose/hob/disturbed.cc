@@ -44,6 +44,14 @@ Distances DistancesOf(const SignalContext& c, const Eigen::VectorXd& y) {
   return d;
 }
 
+/// Far from the level before and from that behind, and by much the same: a sample at a step is far from one of them
+/// only, and from the other by noise.
+bool StandsAlone(double before, double behind, double far) {
+  constexpr double kMuchTheSame = 0.3;
+  const auto [less, more] = std::minmax({std::abs(before), std::abs(behind)});
+  return before * behind > 0.0 && less > far && less > kMuchTheSame * more;
+}
+
 double RobustDeviation(const Eigen::VectorXd& values) {
   std::vector<double> sizes(values.begin(), values.end());
   for (double& v : sizes) v = std::abs(v);
@@ -69,9 +77,7 @@ Disturbed FindDisturbed(const SignalContext& c, const Eigen::VectorXd& left_rad)
        FindNoiseCauses(samples, noise, d.between / deviation_rad, Eigen::VectorXd::Ones(c.Samples()))) {
     if (cause.kind != NoiseCause::Kind::kOutliers || cause.log_bayes < kBelieved) continue;
     for (const int i : cause.outliers) {
-      const bool alone = d.before[i] * d.behind[i] > 0.0 &&
-                         std::min(std::abs(d.before[i]), std::abs(d.behind[i])) > kFar * deviation_rad;
-      if (!alone) continue;
+      if (!StandsAlone(d.before[i], d.behind[i], kFar * deviation_rad)) continue;
       disturbed.readings.push_back(c.schedule.reading[static_cast<std::size_t>(i)]);
       square += d.between[i] * d.between[i];
     }
