@@ -140,10 +140,17 @@ struct FreeMotion {
   Eigen::VectorXd Motion_rad() const { return waves * sizes_rad; }
 };
 
+Eigen::MatrixXd FreeWaves(const SignalContext& c, const Eigen::VectorXd& gear_rad) {
+  Eigen::MatrixXd waves(c.Samples(), 2 * c.train.free_orders);
+  for (int k = 1; k <= c.train.free_orders; ++k) waves.middleCols(2 * k - 2, 2) = Wave(k * gear_rad);
+  return waves;
+}
+
 /// Of what both encoders show, by least squares.
-FreeMotion FitFreeOrders(const SignalContext& c, const Eigen::VectorXd& centred_rad) {
-  FreeMotion free{Eigen::MatrixXd(c.Samples(), 2 * c.train.free_orders), {}};
-  for (int k = 1; k <= c.train.free_orders; ++k) free.waves.middleCols(2 * k - 2, 2) = Wave(k * c.table_rad);
+/// @param gear_rad  Angle by turns of which the gears err.
+FreeMotion FitFreeOrders(const SignalContext& c, const Eigen::VectorXd& gear_rad,
+                         const Eigen::VectorXd& centred_rad) {
+  FreeMotion free{FreeWaves(c, gear_rad), {}};
   const Eigen::MatrixXd normal = free.waves.transpose() * free.waves;
   free.sizes_rad = normal.ldlt().solve(free.waves.transpose() * centred_rad);
   return free;
@@ -161,22 +168,22 @@ Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const Scenario& scena
 
 /// The same by the twin that follows the record: it is asked again with the free orders that fit, which are then put
 /// back.
-Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const SignalContext& c, const Followed& twin) {
+Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const SignalContext& c, const Eigen::VectorXd& gear_rad,
+                         const Followed& twin) {
   const Eigen::MatrixXd read_rad = AsRead_rad(used, c);
   const auto left_with = [&](const Eigen::VectorXd& motion_rad) -> Eigen::MatrixXd {
     const Eigen::MatrixXd told_rad = twin.Predict({{"transmission", motion_rad}}).leftCols(c.channels);
     return WithoutConstants(c, read_rad - told_rad + motion_rad.replicate(1, c.channels));
   };
   const Eigen::MatrixXd first_rad = left_with(Eigen::VectorXd::Zero(c.Samples()));
-  return left_with(FitFreeOrders(c, first_rad.col(0)).Motion_rad());
+  return left_with(FitFreeOrders(c, gear_rad, first_rad.col(0)).Motion_rad());
 }
 
 /// [orders of the table, shared by the channels; constants of set-up and channel].
-Nuisance FreeUnknowns(const SignalContext& c) {
+Nuisance FreeUnknowns(const SignalContext& c, const Eigen::VectorXd& gear_rad) {
   const int orders = c.train.free_orders;
-  Eigen::MatrixXd waves(c.Samples(), 2 * orders);
-  for (int k = 1; k <= orders; ++k) waves.middleCols(2 * k - 2, 2) = Wave(k * c.table_rad);
-  const Eigen::MatrixXd setups = AsRows(c, SetUps(c), Seen::kByBoth), motion = AsRows(c, waves, Seen::kByBoth);
+  const Eigen::MatrixXd setups = AsRows(c, SetUps(c), Seen::kByBoth),
+                        motion = AsRows(c, FreeWaves(c, gear_rad), Seen::kByBoth);
   Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(motion.rows(), 2 * orders + setups.cols() * c.channels);
   dense.leftCols(2 * orders) = motion;
   for (Eigen::Index row = 0; row < dense.rows(); ++row)
@@ -184,7 +191,8 @@ Nuisance FreeUnknowns(const SignalContext& c) {
   return {dense.sparseView(), Eigen::VectorXd::Constant(dense.cols(), 1.0 / (kFree_rad * kFree_rad)), 0, 0};
 }
 
-LinearRun RunOf(const SignalContext& c, const Eigen::MatrixXd& left_rad, const Scenario& scenario) {
+LinearRun RunOf(const SignalContext& c, const Eigen::MatrixXd& left_rad, const Eigen::VectorXd& gear_rad,
+                const Scenario& scenario) {
   LinearRun run;
   run.bench = scenario.bench;
   run.schedule = Grouped(c.schedule, c.groups);
@@ -197,8 +205,14 @@ LinearRun RunOf(const SignalContext& c, const Eigen::MatrixXd& left_rad, const S
   run.noise_free = scenario.noise_free;
   SetResidual(c, left_rad, scenario, run);
   run.observed = run.residual;  // of m nothing else is of interest: it has no scale of its own
-  run.nuisance = FreeUnknowns(c);
+  run.nuisance = FreeUnknowns(c, gear_rad);
   return run;
+}
+
+/// The table's angle as its encoder shows it is off by the encoder's error; as the hob drives it, it is that by which
+/// gears err.
+Eigen::VectorXd DrivenTable_rad(const SignalContext& c) {
+  return c.table_rad - WithoutConstants(c, c.table_rad - c.train.Ratio() * c.hob_rad);
 }
 
 double Rms(const Eigen::VectorXd& values) {
@@ -207,7 +221,7 @@ double Rms(const Eigen::VectorXd& values) {
 
 double SecondOrder_rad(const SignalContext& c) {
   const Eigen::VectorXd m_rad = WithoutConstants(c, c.table_rad - c.train.Ratio() * c.hob_rad);
-  const Eigen::MatrixXd fast_rad = WithoutConstants(c, m_rad - FitFreeOrders(c, m_rad).Motion_rad());
+  const Eigen::MatrixXd fast_rad = WithoutConstants(c, m_rad - FitFreeOrders(c, c.table_rad, m_rad).Motion_rad());
   const double highest = std::max(c.train.WormOrder(), static_cast<double>(c.train.gear_teeth));
   return Rms(fast_rad.col(0)) * highest * Rms(m_rad);
 }
@@ -217,9 +231,10 @@ double SecondOrder_rad(const SignalContext& c) {
 HobRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const model::FollowMaker& follow) {
   std::vector<Reading> used = Usable(readings);
   HobRun hob;
+  const auto gear_rad = [&] { return follow ? DrivenTable_rad(hob.context) : hob.context.table_rad; };
   const auto left_of_used = [&]() -> Eigen::MatrixXd {
     if (!follow) return Left_rad(used, scenario, hob.context);
-    return Left_rad(used, hob.context, Followed(follow, scenario, readings, used));
+    return Left_rad(used, hob.context, gear_rad(), Followed(follow, scenario, readings, used));
   };
   hob.left_out = static_cast<int>(std::ssize(readings) - std::ssize(used));
   hob.context = ContextOf(used, scenario);
@@ -232,7 +247,7 @@ HobRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, 
     left_rad = left_of_used();
   }
   hob.context.groups = ChooseGroups(hob.context);
-  hob.run = RunOf(hob.context, left_rad, scenario);
+  hob.run = RunOf(hob.context, left_rad, gear_rad(), scenario);
   hob.second_order_rad = SecondOrder_rad(hob.context);
   return hob;
 }
