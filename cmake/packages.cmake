@@ -18,6 +18,7 @@ pkg_check_modules(SQLite REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(Tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 find_package(pugixml REQUIRED)
 find_path(ASIO_INCLUDE asio.hpp REQUIRED)
+find_path(BOOST_MATH_INCLUDE boost/math/special_functions/gamma.hpp REQUIRED)  # Boost.Math, headers only
 
 if(TWINBENCH_TESTS)
   find_package(GTest REQUIRED)

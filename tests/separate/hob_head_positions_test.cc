@@ -3,7 +3,7 @@
 
 #include "tests/separate/hob_bench.h"
 #include "twin/separate/hob/head_positions.h"
-#include "twin/separate/statistics.h"
+#include "twin/core/distributions.h"
 
 namespace twinbench::separate::hob {
 namespace {

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 
 #include "tests/separate/bench.h"
-#include "twin/separate/statistics.h"
 
 namespace twinbench::separate {
 namespace {
@@ -93,13 +92,6 @@ TEST(Separate, TakesTheResidualScatterWhenNoNoiseIsStated) {
     // More than 90 degrees of freedom a motion: 8 % standard deviation, three of them.
     EXPECT_NEAR(found.target.u[c][3] / stated.target.u[c][3], 1.0, 0.25);
   }
-}
-
-TEST(ChiSquaredExceedance, AgreesWithTables) {
-  // Upper 0.001 points of printed tables; Wilson-Hilferty is within 15 % of p for 3 degrees of freedom.
-  EXPECT_NEAR(ChiSquaredExceedance(16.266, 3.0), 0.001, 1.5e-4);
-  EXPECT_NEAR(ChiSquaredExceedance(29.588, 10.0), 0.001, 1e-4);
-  EXPECT_NEAR(ChiSquaredExceedance(149.449, 100.0), 0.001, 2e-5);
 }
 
 }  // namespace

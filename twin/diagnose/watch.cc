@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "twin/core/distributions.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/sequential_fit.h"
 
@@ -211,10 +212,6 @@ void JudgeAll(std::vector<WatchedSeries>& all, const Innovation& innovation, dou
   report.alarms.push_back(*loudest);
 }
 
-double NormalTail(double z) {
-  return 0.5 * std::erfc(z / std::sqrt(2.0));
-}
-
 /// Mean readings until a one-sided cumulative sum of white noise passes h.
 double MeanRunLength(double h) {
   const double b = 2.0 * kReference * (h + 1.166);
@@ -239,8 +236,7 @@ WatchLimits LimitsFor(double false_alarm_rate, int readings, int series) {
           "a false-alarm rate between 0 and 1 for at least one reading");
   const double looks = static_cast<double>(readings) * series;
   const double share = 0.5 * false_alarm_rate;
-  return {Solve([](double z) { return -2.0 * NormalTail(z); }, -share / looks),
-          Solve(MeanRunLength, 2.0 * looks / share)};
+  return {NormalExceededWith(0.5 * share / looks), Solve(MeanRunLength, 2.0 * looks / share)};
 }
 
 WatchReport Watch(const LinearRun& run, const WatchOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "twin/core/distributions.h"
 #include "twin/separate/statistics.h"
 
 namespace twinbench::separate {

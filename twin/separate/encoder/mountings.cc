@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/distributions.h"
 #include "twin/separate/hob/order_model.h"
 
 namespace twinbench::separate::encoder {
@@ -12,16 +13,6 @@ using hob::Coefficient;
 
 constexpr double kFloor_rad = 1e-12;  // rounding: readings without noise have a weight
 constexpr double kContradiction = 1e-3;
-
-/// Probability that chi-squared is larger, for an even number of degrees of freedom (parts come in pairs).
-double ChanceOfMore(double chi2, int dof) {
-  double term = 1.0, sum = 0.0;
-  for (int i = 0; i < dof / 2; ++i) {
-    sum += term;
-    term *= 0.5 * chi2 / (i + 1);
-  }
-  return std::exp(-0.5 * chi2) * sum;
-}
 
 std::vector<int> DirectionsOf(const hob::Positions& seen) {
   std::vector<int> directions;
@@ -90,7 +81,7 @@ class Separation {
   }
 
   double Widening(int order, const hob::OrderSolution& solution) {
-    if (solution.dof <= 0 || ChanceOfMore(solution.chi2, solution.dof) > kContradiction / highest_) return 1.0;
+    if (solution.dof <= 0 || ChiSquaredExceedance(solution.chi2, solution.dof) > kContradiction / highest_) return 1.0;
     curves_.disagreeing.push_back(order);
     return solution.chi2 / solution.dof;
   }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "twin/core/units.h"
+#include "twin/core/distributions.h"
 #include "twin/separate/statistics.h"
 #include "twin/separate/turntable/lost_harmonics.h"
 
