@@ -363,7 +363,7 @@ TEST(Effects, EachChangesSomethingAndOnlyWhenItIsOn) {
     scenario.target.random_rms[2] = scenario.reference.random_rms[0] = 5.0 * units::arcsec;
     const auto honest = test::RunTwin(scenario).readings;
     scenario.effects = {Effect(entry.name, entry.places.empty() ? "" : entry.places.front(), {})};
-    if (entry.name == "slip") scenario.effects[0].parameters["at_reading"] = 60.0;
+    if (entry.name == "slip" || entry.name == "mode_hop") scenario.effects[0].parameters["at_reading"] = 60.0;
     if (entry.name == "outliers") scenario.effects[0].parameters["fraction"] = 0.2;
     const auto hidden = test::RunTwin(scenario).readings;
     double differs_V = 0.0;

@@ -40,7 +40,7 @@ inline BenchRun RunHob(const Scenario& scenario) {
 inline EffectSettings PlainEffect(const EffectEntry& entry) {
   EffectSettings effect{entry.name, entry.places.empty() ? "" : entry.places.back(), {}, ""};
   for (const EffectParameter& p : entry.parameters) effect.parameters[p.name] = p.default_SI;
-  if (entry.name == "slip") effect.parameters["at_reading"] = 5.0;
+  if (entry.name == "slip" || entry.name == "mode_hop") effect.parameters["at_reading"] = 5.0;
   if (entry.name == "outliers") effect.parameters["fraction"] = 0.3;
   return effect;
 }
