@@ -8,13 +8,7 @@
 namespace twinbench::own_encoder {
 namespace {
 
-using test::OwnKey;
-
-/// A key with a value that readings feel, and what else must be so that they do.
-OwnKey Change(const std::string& key, const std::string& value, std::vector<std::string> with = {}) {
-  with.push_back(key + "=" + value);
-  return {key, std::move(with)};
-}
+using test::Change, test::OwnKey;
 
 std::vector<OwnKey> EncoderChanges() {
   const std::vector<std::string> sweep = {"encoder_procedure.kind=sweep"};

@@ -8,13 +8,7 @@
 namespace twinbench::own_rotary {
 namespace {
 
-using test::OwnKey;
-
-/// A key with a value that readings feel, and what else must be so that they do.
-OwnKey Change(const std::string& key, const std::string& value, std::vector<std::string> with = {}) {
-  with.push_back(key + "=" + value);
-  return {key, std::move(with)};
-}
+using test::Change, test::OwnKey;
 
 // Values are chosen to move some reading by far more than its noise wherever the key can.
 std::vector<OwnKey> Psd(const std::string& psd) {

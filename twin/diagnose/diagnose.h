@@ -11,7 +11,6 @@
 #include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/measure/measure.h"
-#include "twin/model/follow.h"
 
 /// What is asked of a diagnosis and what it answers: given readings and the scenario that is believed to describe the
 /// bench, it finds what the model gets wrong, names it and measures what the extended model gains. Each bench puts its
@@ -23,7 +22,6 @@ struct DiagnoseOptions {
   std::vector<std::string> struck;  // effects taken out of the catalogue (leave-one-cause-out tests)
   int null_runs = 500;              // simulated runs without effect, for thresholds and p-values
   std::string cache_folder;         // calibrations are kept here by design; empty: nowhere
-  model::FollowMaker follow;        // says what readings should have been; every bench puts its own twin here
 };
 
 /// A cause in the model after the search, with its signature at the fitted shape.

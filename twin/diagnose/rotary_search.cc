@@ -14,8 +14,8 @@ namespace {
 /// One way to model the bench, and the search in it.
 class Trial {
  public:
-  Trial(const std::vector<Reading>& readings, const DiagnoseOptions& options)
-      : readings_(readings), options_(options), model_(ForwardModelOf(options)) {}
+  Trial(const std::vector<Reading>& readings, const DiagnoseOptions& options, const rotary::ForwardModel& model)
+      : readings_(readings), options_(options), model_(model) {}
 
   std::unique_ptr<rotary::RotaryCase> Case(const Scenario& scenario,
                                            const std::vector<EffectSettings>& about = {}) const {
@@ -32,7 +32,7 @@ class Trial {
  private:
   const std::vector<Reading>& readings_;
   const DiagnoseOptions& options_;
-  rotary::ForwardModel model_;
+  const rotary::ForwardModel& model_;
 };
 
 Scenario With(Scenario scenario, const EffectSettings& effect) {
@@ -137,13 +137,9 @@ void SearchAboutSuspect(const Trial& trial, const Scenario& scenario, SearchedRo
 
 }  // namespace
 
-rotary::ForwardModel ForwardModelOf(const DiagnoseOptions& options) {
-  return {options.model == measure::Estimator::kPublished, options.follow};
-}
-
 SearchedRotary SearchRotary(const std::vector<Reading>& readings, const Scenario& scenario,
-                            const DiagnoseOptions& options) {
-  const Trial trial(readings, options);
+                            const DiagnoseOptions& options, const rotary::ForwardModel& model) {
+  const Trial trial(readings, options, model);
   SearchedRotary searched = SearchFrames(trial, scenario);
   SearchAboutSuspect(trial, scenario, searched);
   return searched;

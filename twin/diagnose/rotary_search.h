@@ -25,9 +25,8 @@ struct SearchedRotary {
 
 /// Searches the bench as stated, or with the reference's wobble turning with the set-up where that explains more;
 /// and again about the size of a cause that changes the bench so much that its signature bends.
+/// @param model  What readings are compared with.
 SearchedRotary SearchRotary(const std::vector<Reading>& readings, const Scenario& scenario,
-                            const DiagnoseOptions& options);
-
-rotary::ForwardModel ForwardModelOf(const DiagnoseOptions& options);
+                            const DiagnoseOptions& options, const rotary::ForwardModel& model = {});
 
 }  // namespace twinbench::diagnose

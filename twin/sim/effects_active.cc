@@ -1,7 +1,7 @@
 #include "twin/sim/effects_active.h"
 
 #include "twin/sim/effects/effects.h"
-#include "twin/sim/silence.h"
+#include "twin/sim/actual_bench.h"
 
 namespace twinbench::sim {
 ActiveEffects::ActiveEffects(const Scenario& scenario) {
@@ -11,10 +11,7 @@ ActiveEffects::ActiveEffects(const Scenario& scenario) {
 }
 
 Scenario ActiveEffects::ActualBench(const Scenario& nominal) const {
-  Scenario actual = nominal;
-  for (const auto& effect : effects_) effect->AlterBench(actual);
-  if (actual.noise_free) Silence(actual);
-  return actual;
+  return ActualBenchOf(nominal, effects_);
 }
 
 void ActiveEffects::Advance(const Moment& moment) {

@@ -4,6 +4,7 @@ namespace twinbench::sim {
 
 Scenario Foreseeable(Scenario scenario) {
   scenario.noise_free = true;
+  if (scenario.mechanics.fidelity == "bullet") scenario.mechanics.fidelity = "linear";
   for (TableSettings* table : {&scenario.target, &scenario.reference}) {
     table->harmonics.clear();
     table->errors.reset();

@@ -44,12 +44,11 @@ Eigen::VectorXd RoomTemperature_degC(const std::vector<Reading>& record, double 
   return room_degC;
 }
 
-/// The drives as they were sent along a record. Bullet's own rotary results differ by nanometres from the linear
-/// model's, at a thousand times the cost.
+/// The drives as they were sent along a record.
 class RecordedDrives {
  public:
   explicit RecordedDrives(const Scenario& actual)
-      : actual_(actual), plant_(mechanics::MakePlant(FidelityOf(actual), StackOf(actual))) {}
+      : actual_(actual), plant_(mechanics::MakePlant(mechanics::FidelityFromName(actual.mechanics.fidelity), StackOf(actual))) {}
 
   void Mount(const mechanics::ChainGeometry& geometry) { plant_->Mount(geometry); }
 
@@ -66,11 +65,6 @@ class RecordedDrives {
 
  private:
   static constexpr double kPatience_s = 10.0;
-
-  static mechanics::Fidelity FidelityOf(const Scenario& actual) {
-    const mechanics::Fidelity stated = mechanics::FidelityFromName(actual.mechanics.fidelity);
-    return stated == mechanics::Fidelity::kBullet ? mechanics::Fidelity::kLinear : stated;
-  }
 
   /// @return how long the move takes; 0 if there is nowhere to go.
   double Start(Axis axis, double to_rad, const TableSettings& table) {

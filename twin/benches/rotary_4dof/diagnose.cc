@@ -13,6 +13,10 @@
 namespace twinbench::benches::rotary {
 namespace {
 
+diagnose::rotary::ForwardModel ModelOf(measure::Estimator estimator) {
+  return {estimator == measure::Estimator::kPublished, FollowRecord};
+}
+
 std::vector<diagnose::Cause> Decided(const std::vector<diagnose::Discrete>& discrete) {
   std::vector<diagnose::Cause> causes;
   for (const auto& [effect, where, log_evidence] : discrete)
@@ -31,12 +35,11 @@ diagnose::AnswerWords Words(const diagnose::rotary::RotaryCase& rotary) {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  diagnose::DiagnoseOptions how = options;
-  how.follow = FollowRecord;
+  const diagnose::rotary::ForwardModel model = ModelOf(options.model);
   diagnose::rotary::ConventionResult convention{"", 0.0, as_read};
   if (!diagnose::IsStruck(options, "convention"))
-    convention = diagnose::rotary::ScreenConventions(as_read, scenario, diagnose::ForwardModelOf(how));
-  diagnose::SearchedRotary searched = diagnose::SearchRotary(convention.readings, scenario, how);
+    convention = diagnose::rotary::ScreenConventions(as_read, scenario, model);
+  diagnose::SearchedRotary searched = diagnose::SearchRotary(convention.readings, scenario, options, model);
   if (!convention.where.empty())
     searched.discrete.insert(searched.discrete.begin(), {"convention", convention.where, convention.log_evidence});
   const diagnose::rotary::RotaryCase& rotary = *searched.rotary;
@@ -52,7 +55,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scena
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario,
                            measure::Estimator estimator) {
-  return diagnose::rotary::BuildRun(readings, scenario, {estimator == measure::Estimator::kPublished, FollowRecord}).run;
+  return diagnose::rotary::BuildRun(readings, scenario, ModelOf(estimator)).run;
 }
 
 nlohmann::json ChangeOfTables(const diagnose::DiagnosisRun& found, const Scenario& scenario) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "twin/sim/silence.h"
+#include "twin/sim/actual_bench.h"
 
 namespace twinbench::sim {
 namespace {
@@ -11,13 +11,6 @@ std::vector<std::unique_ptr<HobEffect>> HobEffectsOf(const Scenario& nominal) {
   std::vector<std::unique_ptr<HobEffect>> effects;
   for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeHobEffect(effect, nominal));
   return effects;
-}
-
-Scenario ActualBench(const Scenario& nominal, const std::vector<std::unique_ptr<HobEffect>>& effects) {
-  Scenario actual = nominal;
-  for (const auto& effect : effects) effect->AlterBench(actual);
-  if (actual.noise_free) Silence(actual);
-  return actual;
 }
 
 mechanics::GearTrainParameters TrainOf(const Scenario& actual,
@@ -47,7 +40,7 @@ mechanics::GearTrainParameters TrainOf(const Scenario& actual,
 
 HobPath::HobPath(const Scenario& nominal)
     : effects_(HobEffectsOf(nominal)),
-      actual_(ActualBench(nominal, effects_)),
+      actual_(ActualBenchOf(nominal, effects_)),
       train_(TrainOf(actual_, effects_)),
       empirical_(actual_.empiricals, "transmission") {}
 

@@ -11,18 +11,13 @@ namespace {
 
 using mechanics::Axis;
 
-Scenario WithoutBullet(Scenario actual) {
-  if (actual.mechanics.fidelity == "bullet") actual.mechanics.fidelity = "linear";
-  return actual;
-}
-
 /// Sends the drives the recorded way on a clock of its own, which gives what lies between mounting, arrival and
 /// reading; when a reading was made, the record says.
 class CourseMaker {
  public:
   CourseMaker(const std::vector<Reading>& record, const Scenario& actual)
       : record_(record),
-        actual_(WithoutBullet(actual)),
+        actual_(actual),
         room_(actual_.environment, actual_.seed),
         axes_(actual_, queue_),
         pitch_rad_(2.0 * units::kPi / actual_.multitooth.teeth) {}

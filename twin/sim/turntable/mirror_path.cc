@@ -1,6 +1,6 @@
 #include "twin/sim/turntable/mirror_path.h"
 
-#include "twin/sim/silence.h"
+#include "twin/sim/actual_bench.h"
 
 namespace twinbench::sim {
 namespace {
@@ -9,13 +9,6 @@ std::vector<std::unique_ptr<TurntableEffect>> TurntableEffectsOf(const Scenario&
   std::vector<std::unique_ptr<TurntableEffect>> effects;
   for (const EffectSettings& effect : nominal.effects) effects.push_back(MakeTurntableEffect(effect, nominal));
   return effects;
-}
-
-Scenario ActualBench(const Scenario& nominal, const std::vector<std::unique_ptr<TurntableEffect>>& effects) {
-  Scenario actual = nominal;
-  for (const auto& effect : effects) effect->AlterBench(actual);
-  if (actual.noise_free) Silence(actual);
-  return actual;
 }
 
 /// Looks along -y of L, up is up.
@@ -69,7 +62,7 @@ ReadingStatus StatusOf(optics::AutocollimatorStatus status) {
 
 MirrorPath::MirrorPath(const Scenario& nominal, double field_share)
     : effects_(TurntableEffectsOf(nominal)),
-      actual_(ActualBench(nominal, effects_)),
+      actual_(ActualBenchOf(nominal, effects_)),
       stand_(actual_),
       optics_(OpticsOf(actual_, field_share)),
       empirical_x_(actual_.empiricals, "x"),
