@@ -14,7 +14,8 @@ namespace {
 void CheckDrive(const DriveParameters& drive, double period_s) {
   RequirePositive(drive.inertia_kg_m2, "gear train: inertia_kg_m2 of a drive");
   RequirePositive(drive.servo_Hz, "gear train: servo_Hz");
-  Require(drive.feed_forward >= 0.0 && drive.feed_forward <= 1.0, "gear train: feed_forward must be between 0 and 1");
+  Require(drive.feed_forward >= 0.0 && drive.feed_forward <= 1.0,
+          "gear train: feed_forward must be between 0 and 1");
   Require(40.0 * drive.servo_Hz * period_s <= 1.0, "gear train: servo_period_s must be at most 1 / (40 servo_Hz)");
 }
 
@@ -66,7 +67,8 @@ void Set(const Hermite& piece, double s, double h_s, double& rad, double& rad_s)
 
 void Check(const GearTrainParameters& p) {
   Require(std::isfinite(p.ratio) && p.ratio != 0.0, "gear train: ratio must not be zero");
-  Require(p.worm_wheel_teeth > 0 && p.worm_starts > 0, "gear train: worm_wheel_teeth and worm_starts must be positive");
+  Require(p.worm_wheel_teeth > 0 && p.worm_starts > 0,
+          "gear train: worm_wheel_teeth and worm_starts must be positive");
   RequirePositive(p.servo_period_s, "gear train: servo_period_s");
   RequirePositive(p.step_s, "gear train: step_s");
   CheckDrive(p.hob, p.servo_period_s);

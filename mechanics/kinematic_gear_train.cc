@@ -8,9 +8,7 @@ namespace {
 class KinematicGearTrain : public GearTrain {
  public:
   explicit KinematicGearTrain(const GearTrainParameters& p)
-      : steady_(p),
-        grid_(ToNanoseconds(p.servo_period_s)),
-        play_(2.0 * steady_.half_play_rad(), Wheel(0).rad) {}
+      : steady_(p), grid_(ToNanoseconds(p.servo_period_s)), play_(2.0 * steady_.half_play_rad(), Wheel(0).rad) {}
 
   void Run(double hob_speed_rad_s, double ramp_s) override {
     SpeedCommand next = command_;

@@ -15,15 +15,18 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 void CheckRing(const Ring& ring) {
   Require(ring.radius_m > 0.0 && std::isfinite(ring.radius_m), "ring encoder: radius_m must be positive");
   Require(ring.lines > 0, "ring encoder: lines must be positive");
-  Require(ring.eccentricity_m.norm() < 0.1 * ring.radius_m, "ring encoder: eccentricity_m must be below a tenth of the radius");
+  Require(ring.eccentricity_m.norm() < 0.1 * ring.radius_m,
+          "ring encoder: eccentricity_m must be below a tenth of the radius");
   Require(ring.tilt_rad.norm() < 0.1, "ring encoder: tilt_rad must be below 0.1");
   Require(std::abs(ring.ellipticity_m) < 0.01 * ring.radius_m,
           "ring encoder: ellipticity_m must be below a hundredth of the radius");
-  Require(std::isfinite(ring.mounting_rad) && std::isfinite(ring.ellipticity_azimuth_rad), "ring encoder: angles must be finite");
+  Require(std::isfinite(ring.mounting_rad) && std::isfinite(ring.ellipticity_azimuth_rad),
+          "ring encoder: angles must be finite");
   Check(ring.graduation, "ring encoder: graduation");
   double steepest = 0.0;
   for (const AngleHarmonic& h : ring.graduation) steepest += std::abs(h.order * h.amplitude_rad);
-  Require(steepest < 0.5, "ring encoder: graduation must leave the lines in their order: order x amplitude below a half");
+  Require(steepest < 0.5,
+          "ring encoder: graduation must leave the lines in their order: order x amplitude below a half");
 }
 
 void CheckHead(const ReadingHead& head, const Ring& ring) {
@@ -32,7 +35,8 @@ void CheckHead(const ReadingHead& head, const Ring& ring) {
           "ring encoder: the head's tangential_m must be below half the radius");
   Require(std::isfinite(head.height_m), "ring encoder: the head's height_m must be finite");
   Require(std::abs(head.height_m) * ring.tilt_rad.norm() < 0.1 * ring.radius_m,
-          "ring encoder: the head's height_m must be near the ring: its tilt moves it there by less than a tenth of the radius");
+          "ring encoder: the head's height_m must be near the ring: its tilt moves it there by less than a tenth "
+          "of the radius");
 }
 
 Eigen::Matrix3d About(double angle_rad, const Eigen::Vector3d& axis) {

@@ -14,7 +14,7 @@ void RequireSameBoard(comedi_t* card, const comedi_calibration_t& calibration, c
   const std::string board = comedi_get_board_name(card), driver = comedi_get_driver_name(card);
   if (calibration.board_name == board && calibration.driver_name == driver) return;
   RefuseCard(file, std::string("calibrates the board ") + calibration.board_name + " of driver " +
-                   calibration.driver_name + ", the card is " + board + " of driver " + driver);
+                       calibration.driver_name + ", the card is " + board + " of driver " + driver);
 }
 
 CalibrationPolynomial PolynomialOf(const comedi_calibration_t& calibration, const ComediInputs& inputs,
@@ -23,7 +23,7 @@ CalibrationPolynomial PolynomialOf(const comedi_calibration_t& calibration, cons
   if (comedi_get_softcal_converter(inputs.subdevice, CR_CHAN(packed), CR_RANGE(packed), COMEDI_TO_PHYSICAL,
                                    &calibration, &polynomial) < 0) {
     RefuseCard(file, "says nothing of channel " + std::to_string(CR_CHAN(packed)) + " in range " +
-                     std::to_string(CR_RANGE(packed)));
+                         std::to_string(CR_RANGE(packed)));
   }
   CalibrationPolynomial result;
   result.origin = polynomial.expansion_origin - std::ldexp(1.0, inputs.bits - 1);

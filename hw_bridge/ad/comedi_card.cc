@@ -41,7 +41,7 @@ unsigned ChannelOf(comedi_t* card, const std::string& name, unsigned subdevice, 
   const int channels = comedi_get_n_channels(card, subdevice);
   if (!number || *number < 0 || *number >= channels) {
     RefuseCard(name,
-           "has no channel \"" + id + "\"; its " + std::to_string(channels) + " channels are numbered from 0");
+               "has no channel \"" + id + "\"; its " + std::to_string(channels) + " channels are numbered from 0");
   }
   return static_cast<unsigned>(*number);
 }
@@ -144,7 +144,7 @@ ComediTiming SettleCommand(comedi_t* card, ComediInputs& inputs, double scan_rat
     if (stage < 0) ThrowComedi(FaultKind::kRefused, inputs.name, "testing a command");
   }
   RefuseCard(inputs.name,
-         "does not come to accept a command; it stops at stage " + std::to_string(stage) + " of the test");
+             "does not come to accept a command; it stops at stage " + std::to_string(stage) + " of the test");
 }
 
 }  // namespace twinbench::hw

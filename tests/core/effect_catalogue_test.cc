@@ -18,12 +18,12 @@ using testing::ElementsAre;
 TEST(EffectCatalogue, HasTheEffectsOfTheRotaryBench) {
   std::vector<std::string> names;
   for (const EffectEntry& entry : EffectCatalogue(kRotaryBench)) names.push_back(entry.name);
-  EXPECT_THAT(names,
-              testing::UnorderedElementsAre("psd_gain", "psd_roll", "psd_nonlinearity", "stray_light",
-                                            "psd_distance", "wavelength_offset", "grating_pitch", "mode_hop", "wavelength_temperature",
-                                            "incidence_offset", "laser_drift", "mount_creep", "thermal_tilt",
-                                            "backlash", "settling", "reclamp_frame", "bearing_half_frequency",
-                                            "tone", "slip", "adc_step", "crosstalk", "outliers", "convention"));
+  EXPECT_THAT(names, testing::UnorderedElementsAre("psd_gain", "psd_roll", "psd_nonlinearity", "stray_light",
+                                                   "psd_distance", "wavelength_offset", "grating_pitch", "mode_hop",
+                                                   "wavelength_temperature", "incidence_offset", "laser_drift",
+                                                   "mount_creep", "thermal_tilt", "backlash", "settling",
+                                                   "reclamp_frame", "bearing_half_frequency", "tone", "slip",
+                                                   "adc_step", "crosstalk", "outliers", "convention"));
 }
 
 TEST(EffectCatalogue, HasTheEffectsOfTheAngleComparison) {
@@ -38,7 +38,8 @@ TEST(EffectCatalogue, HasTheEffectsOfTheAngleComparison) {
 }
 
 TEST(EffectCatalogue, SaysWhereAnEffectCanAct) {
-  EXPECT_THAT(FindEffect("psd_gain", kRotaryBench)->places, ElementsAre("psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"));
+  EXPECT_THAT(FindEffect("psd_gain", kRotaryBench)->places,
+              ElementsAre("psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"));
   EXPECT_THAT(FindEffect("laser_drift", kRotaryBench)->places, ElementsAre("yaw", "pitch"));
   EXPECT_THAT(FindEffect("slip", kRotaryBench)->places, ElementsAre("yaw", "tilt", "lateral"));
   EXPECT_TRUE(FindEffect("wavelength_offset", kRotaryBench)->places.empty());

@@ -146,8 +146,9 @@ TEST(ReadingsCsv, CallAReadingWithAnEmptyVoltageMissing) {
 
 TEST(ReadingsCsv, NameEveryMissingColumnAtOnce) {
   EXPECT_EQ(
-      MessageOf(
-          [] { ParseReadings("# exported\nreading,time_s,setup,pass,position,phase,target_deg,psd_a_x_V,psd_a_y_V\n"); }),
+      MessageOf([] {
+        ParseReadings("# exported\nreading,time_s,setup,pass,position,phase,target_deg,psd_a_x_V,psd_a_y_V\n");
+      }),
       "r.csv:2: required columns are missing: direction, reference_deg, psd_b_x_V, psd_b_y_V; expected readings "
       "of the bench rotary_4dof");
 }
@@ -200,7 +201,9 @@ TEST(ReadingsCsv, NameLineColumnAndFaultOfABadField) {
 }
 
 TEST(ReadingsCsv, NameAStatusThatDoesNotExist) {
-  EXPECT_EQ(MessageOf([] { ParseReadings(std::string(kHeader) + ",status\n0,0,0,0,1,0,full_circle,0,0,1,2,3,4,fine\n"); }),
+  EXPECT_EQ(MessageOf([] {
+              ParseReadings(std::string(kHeader) + ",status\n0,0,0,0,1,0,full_circle,0,0,1,2,3,4,fine\n");
+            }),
             "r.csv:2: status is \"fine\"; expected ok, saturated, no_light, clipped_spot, overrun or missing");
 }
 
@@ -281,7 +284,7 @@ constexpr const char* kTurntableHeader =
 
 TEST(TurntableReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
   const auto readings = ParseReadings(std::string(kTurntableHeader) + "0,0,0,0,1,0,full_circle,5,-5,1.25,-60\n" +
-                              "1,2,0,0,1,1,full_circle,10,-10,,\n");
+                                      "1,2,0,0,1,1,full_circle,10,-10,,\n");
   EXPECT_DOUBLE_EQ(readings[0].target_rad, 5.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].reference_rad, -5.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].autocollimator_yaw_rad, 1.25 * units::arcsec);
@@ -307,7 +310,7 @@ constexpr const char* kHobHeader =
 
 TEST(HobReadings, AreKnownByTheirColumnsAndComeBackToTheSameBits) {
   const auto readings = ParseReadings(std::string(kHobHeader) + ",interferometer_arcsec\n" +
-                              "0,0,0,0,1,0,full_circle,0.5,11,180,2.5\n1,2,0,0,0,1,full_circle,,22,180,\n");
+                                      "0,0,0,0,1,0,full_circle,0.5,11,180,2.5\n1,2,0,0,0,1,full_circle,,22,180,\n");
   EXPECT_DOUBLE_EQ(readings[0].measured_rad, 0.5 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].reference_rad, 11.0 * units::deg);
   EXPECT_DOUBLE_EQ(readings[0].head_rad, 180.0 * units::deg);

@@ -77,7 +77,8 @@ struct Randomise {
     *field = {key.choices[random() % key.choices.size()], key.choices[0]};
   }
   void operator()(std::vector<HarmonicSettings>* field) const {
-    const bool of_a_table = std::set<std::string>{"target", "reference", "turntable", "multitooth"}.contains(key.table);
+    const bool of_a_table =
+        std::set<std::string>{"target", "reference", "turntable", "multitooth"}.contains(key.table);
     for (int i = 0; i < 4; ++i)
       field->push_back({of_a_table ? static_cast<Component>(random() % kComponents) : Component::kEz, 0.1 * i,
                         AnyNumber({-1e-4, 1e-4}, 1, random), AnyNumber({-7, 7}, 1, random)});

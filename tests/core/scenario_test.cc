@@ -226,8 +226,9 @@ TEST(ScenarioError, NamesTheBenchThatAKeyBelongsTo) {
             "s.toml:2: fixture belongs to the bench rotary_4dof; expected keys of encoder_comparison");
   EXPECT_EQ(ErrorOf("[device]\nnoise_deg = 0.1\n"),
             "s.toml:2: device belongs to the bench encoder_comparison; expected keys of rotary_4dof");
-  EXPECT_THAT(encoder("[[effect]]\nname = \"psd_gain\"\n"),
-              StartsWith("s.toml:3: the effect psd_gain belongs to the bench rotary_4dof; expected \"eccentricity\""));
+  EXPECT_THAT(
+      encoder("[[effect]]\nname = \"psd_gain\"\n"),
+      StartsWith("s.toml:3: the effect psd_gain belongs to the bench rotary_4dof; expected \"eccentricity\""));
   EXPECT_EQ(encoder("[device]\nnoise_dg = 0.1\n"),
             "s.toml:3: unknown key device.noise_dg; expected a known one; the nearest is device.noise_deg");
   EXPECT_EQ(encoder("[encoder_procedure]\npasses = [1, 0]\n"),
@@ -237,7 +238,8 @@ TEST(ScenarioError, NamesTheBenchThatAKeyBelongsTo) {
 TEST(Scenario, TakesTheEffectsOfItsOwnBench) {
   const Scenario s = ParseScenario(
       "bench = \"encoder_comparison\"\n[[effect]]\nname = \"backlash\"\nwidth_deg = 0.5\n", "s.toml", ".", {});
-  EXPECT_EQ(s.effects.at(0).parameters.at("width"), 0.5 * units::deg);  // the rotary bench's has a half_width_arcsec
+  EXPECT_EQ(s.effects.at(0).parameters.at("width"),
+            0.5 * units::deg);  // the rotary bench's has a half_width_arcsec
 }
 
 TEST(ScenarioError, GivesTheLineOfASyntaxError) {
@@ -508,7 +510,8 @@ TEST(ScenarioError, WantsTurntablePositionsAWholeNumberOfTeethApart) {
 TEST(ScenarioError, WantsOneEntryASetUpOrOneForAll) {
   EXPECT_EQ(ErrorOfTurntable("tilts_arcsec = [60, 100, 30]\nshifts_teeth = [0, 5]"),
             "s.toml:4: turntable_procedure.shifts_teeth has 2 entries for 3 set-ups; expected 1 or 3");
-  EXPECT_EQ(ErrorOfTurntable("passes = [1, 0]"), "s.toml:3: turntable_procedure.passes has 0; expected directions 1 or -1");
+  EXPECT_EQ(ErrorOfTurntable("passes = [1, 0]"),
+            "s.toml:3: turntable_procedure.passes has 0; expected directions 1 or -1");
 }
 
 TEST(ScenarioError, WantsWholeNumbersOfLinesBetweenSamplesOfTheHobbingMachine) {

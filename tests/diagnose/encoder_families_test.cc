@@ -209,7 +209,7 @@ TEST(EncoderFamilies, GiveCausesOfOneOrderTheSameColumnsAndPriors) {
 }
 
 TEST(EncoderNextMeasurement, SplitsWhatOneRunCannot) {
-    EXPECT_THAT(NextMeasurement("signal_offset", "eccentricity"), testing::HasSubstr("raw sine and cosine"));
+  EXPECT_THAT(NextMeasurement("signal_offset", "eccentricity"), testing::HasSubstr("raw sine and cosine"));
   EXPECT_THAT(NextMeasurement("hysteresis", "backlash"), testing::HasSubstr("behind a reversal"));
   EXPECT_THAT(NextMeasurement("backlash", "latency"), testing::HasSubstr("speed"));
   EXPECT_THAT(NextMeasurement("eccentricity", "reference_fault"), testing::HasSubstr("turned on the shaft"));

@@ -1,4 +1,3 @@
-#include "twin/benches/names.h"
 #include "twin/diagnose/extend.h"
 
 #include <gmock/gmock.h>
@@ -7,6 +6,7 @@
 #include "tests/diagnose/found_causes.h"
 #include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
 
 namespace twinbench::diagnose {
 namespace {

@@ -85,27 +85,28 @@ TEST_P(HobFamily, FitsWhatIndependentFormulasMakeOfItsCause) {
 // order.
 INSTANTIATE_TEST_SUITE_P(
     Causes, HobFamily,
-    ::testing::Values(FamilyTrial{{"eccentricity", "table", {{"amplitude", 6.0 * arcsec}, {"phase", 1.0}}}},
-                      FamilyTrial{{"eccentricity", "hob", {{"amplitude", 40.0 * arcsec}, {"phase", 5.0}}}},
-                      FamilyTrial{{"ellipticity", "table", {{"amplitude", 2.0 * arcsec}, {"phase", 2.0}}}},
-                      FamilyTrial{{"ellipticity", "hob", {{"amplitude", 20.0 * arcsec}, {"phase", 0.3}}}},
-                      FamilyTrial{{"periodic", "table", {{"order", 7.0}, {"amplitude", 1.0 * arcsec}, {"phase", 4.0}}}},
-                      FamilyTrial{{"periodic", "hob", {{"order", 3.0}, {"amplitude", 20.0 * arcsec}, {"phase", 4.0}}}},
-                      // the faults bend as much as they are large: 2 % of an amplitude
-                      FamilyTrial{{"signal_offset", "", {{"offset_sin", 0.02}, {"offset_cos", -0.01}}}, 0.05, 0.02},
-                      FamilyTrial{{"amplitude_mismatch", "", {{"ratio", 0.04}}}, 0.05, 0.05},
-                      FamilyTrial{{"quadrature_error", "", {{"angle", 0.04}}}, 0.05, 0.05},
-                      FamilyTrial{{"hob_runout", "", {{"amplitude", 2.0 * arcsec}, {"phase", 6.0}}}},
-                      FamilyTrial{{"worm", "", {{"amplitude", 2.0 * arcsec}, {"phase", 2.5}}}},
-                      FamilyTrial{{"gear_mesh", "", {{"amplitude", 2.0 * arcsec}, {"phase", 2.5}}}},
-                      FamilyTrial{{"backlash", "", {{"width", 5.0 * arcsec}}}},
-                      FamilyTrial{{"backlash", "", {{"width", -5.0 * arcsec}}}},
-                      // the grid of ways has ratios of 1.44; between its points a tenth of the transition stays
-                      FamilyTrial{{"hysteresis", "", {{"lag", 5.0 * arcsec}, {"settles_over", 20.0 * deg}}}, 0.1, 0.25},
-                      FamilyTrial{{"latency", "", {{"delay", 1e-4}}}},
-                      FamilyTrial{{"drift", "", {{"rate", 20.0 * arcsec / units::hour}, {"curvature", 0.5}}}, 0.01, 0.02},
-                      FamilyTrial{{"slip", "table", {{"step", 72.0 * arcsec}, {"at_reading", 4000.0}}}, 0.05, 0.01},
-                      FamilyTrial{{"slip", "hob", {{"step", 144.0 * arcsec}, {"at_reading", 1000.0}}}, 0.05, 0.01}));
+    ::testing::Values(
+        FamilyTrial{{"eccentricity", "table", {{"amplitude", 6.0 * arcsec}, {"phase", 1.0}}}},
+        FamilyTrial{{"eccentricity", "hob", {{"amplitude", 40.0 * arcsec}, {"phase", 5.0}}}},
+        FamilyTrial{{"ellipticity", "table", {{"amplitude", 2.0 * arcsec}, {"phase", 2.0}}}},
+        FamilyTrial{{"ellipticity", "hob", {{"amplitude", 20.0 * arcsec}, {"phase", 0.3}}}},
+        FamilyTrial{{"periodic", "table", {{"order", 7.0}, {"amplitude", 1.0 * arcsec}, {"phase", 4.0}}}},
+        FamilyTrial{{"periodic", "hob", {{"order", 3.0}, {"amplitude", 20.0 * arcsec}, {"phase", 4.0}}}},
+        // the faults bend as much as they are large: 2 % of an amplitude
+        FamilyTrial{{"signal_offset", "", {{"offset_sin", 0.02}, {"offset_cos", -0.01}}}, 0.05, 0.02},
+        FamilyTrial{{"amplitude_mismatch", "", {{"ratio", 0.04}}}, 0.05, 0.05},
+        FamilyTrial{{"quadrature_error", "", {{"angle", 0.04}}}, 0.05, 0.05},
+        FamilyTrial{{"hob_runout", "", {{"amplitude", 2.0 * arcsec}, {"phase", 6.0}}}},
+        FamilyTrial{{"worm", "", {{"amplitude", 2.0 * arcsec}, {"phase", 2.5}}}},
+        FamilyTrial{{"gear_mesh", "", {{"amplitude", 2.0 * arcsec}, {"phase", 2.5}}}},
+        FamilyTrial{{"backlash", "", {{"width", 5.0 * arcsec}}}},
+        FamilyTrial{{"backlash", "", {{"width", -5.0 * arcsec}}}},
+        // the grid of ways has ratios of 1.44; between its points a tenth of the transition stays
+        FamilyTrial{{"hysteresis", "", {{"lag", 5.0 * arcsec}, {"settles_over", 20.0 * deg}}}, 0.1, 0.25},
+        FamilyTrial{{"latency", "", {{"delay", 1e-4}}}},
+        FamilyTrial{{"drift", "", {{"rate", 20.0 * arcsec / units::hour}, {"curvature", 0.5}}}, 0.01, 0.02},
+        FamilyTrial{{"slip", "table", {{"step", 72.0 * arcsec}, {"at_reading", 4000.0}}}, 0.05, 0.01},
+        FamilyTrial{{"slip", "hob", {{"step", 144.0 * arcsec}, {"at_reading", 1000.0}}}, 0.05, 0.01}));
 
 TEST(HobFamilies, OfATableThatIsNotWatchedHaveTheSameColumnsForDriveAndEncoderOfTheHob) {
   HobChain chain = QuietHeads();

@@ -33,8 +33,9 @@ UnlistedSignal AngleTone(const Draw& draw) {
 }  // namespace
 
 const std::vector<UnlistedCause>& EncoderUnlistedCauses() {
-  static const std::vector<UnlistedCause> causes = {
-      {"non-integer line", EncoderNonIntegerLine}, {"direction times order", EncoderDirectionMap}, {"tone in time", AngleTone}};
+  static const std::vector<UnlistedCause> causes = {{"non-integer line", EncoderNonIntegerLine},
+                                                    {"direction times order", EncoderDirectionMap},
+                                                    {"tone in time", AngleTone}};
   return causes;
 }
 

@@ -35,8 +35,9 @@ UnlistedSignal Switching(const Draw& draw) {
 }  // namespace
 
 const std::vector<UnlistedCause>& HobUnlistedCauses() {
-  static const std::vector<UnlistedCause> causes = {
-      {"non-integer line", HobNonIntegerLine}, {"direction times order", HobDirectionMap}, {"switching pump", Switching}};
+  static const std::vector<UnlistedCause> causes = {{"non-integer line", HobNonIntegerLine},
+                                                    {"direction times order", HobDirectionMap},
+                                                    {"switching pump", Switching}};
   return causes;
 }
 

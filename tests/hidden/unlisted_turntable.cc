@@ -48,8 +48,9 @@ UnlistedSignal OnePassAside(const Draw& draw) {
 }  // namespace
 
 const std::vector<UnlistedCause>& TurntableUnlistedCauses() {
-  static const std::vector<UnlistedCause> causes = {
-      {"direction times order", TurntableDirectionMap}, {"slow wander", SlowWander}, {"one pass aside", OnePassAside}};
+  static const std::vector<UnlistedCause> causes = {{"direction times order", TurntableDirectionMap},
+                                                    {"slow wander", SlowWander},
+                                                    {"one pass aside", OnePassAside}};
   return causes;
 }
 

@@ -16,11 +16,10 @@ namespace twinbench::hw {
 namespace {
 
 using test::ExpectSameBlock;
-using test::ScriptedSource;
 using test::kNoise_V;
+using test::ScriptedSource;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
 
 class AdConverterTest : public ::testing::Test {
  protected:

@@ -12,10 +12,9 @@ namespace twinbench::hw {
 namespace {
 
 using test::FourLevels;
-using test::RawBlock;
 using test::kLsb_V;
 using test::kNoise_V;
-
+using test::RawBlock;
 
 CheckSettings Known(double noise_V) {
   return {.noise_lsb = noise_V / kLsb_V};

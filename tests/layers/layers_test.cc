@@ -24,10 +24,10 @@ constexpr const char* kFormats = "twin/benches (text)";
 constexpr const char* kTwins = "twin/benches (twin)";
 
 /// Rooms; a longer name wins over its parent ("twin/core" over "twin").
-const std::vector<std::string> kRooms = {"optics",         "mechanics",     "twin/core",     "twin/model",    "twin/sim",
-                                         "twin/procedure", "twin/measure",  "twin/separate", "twin/diagnose",
-                                         "twin/plan",      "twin/campaign", "twin/report",   "hw_bridge",
-                                         "twin/benches",   kFormats,        kTwins};
+const std::vector<std::string> kRooms = {"optics",        "mechanics",      "twin/core",     "twin/model",
+                                         "twin/sim",      "twin/procedure", "twin/measure",  "twin/separate",
+                                         "twin/diagnose", "twin/plan",      "twin/campaign", "twin/report",
+                                         "hw_bridge",     "twin/benches",   kFormats,        kTwins};
 
 /// The room table: which of our rooms each may include, besides itself.
 const std::map<std::string, std::set<std::string>> kMayInclude = {

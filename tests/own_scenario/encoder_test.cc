@@ -53,13 +53,14 @@ TEST(EncoderOwnScenario, NoKeyIsForgotten) {
 }
 
 TEST(EncoderOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms = test::AlarmsOf(test::ScenarioPath("encoder_comparison.toml"), kBase, Keys(), test::Seeds());
+  const test::Alarms alarms =
+      test::AlarmsOf(test::ScenarioPath("encoder_comparison.toml"), kBase, Keys(), test::Seeds());
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
 }
 
 TEST(EncoderOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms = test::AlarmsOfEffects(
-      test::ScenarioPath("encoder_comparison.toml"), {"device.lines_per_turn=30", "device.teeth=22"}, test::Seeds());
+  const test::Alarms alarms = test::AlarmsOfEffects(test::ScenarioPath("encoder_comparison.toml"),
+                                                    {"device.lines_per_turn=30", "device.teeth=22"}, test::Seeds());
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
 }
 

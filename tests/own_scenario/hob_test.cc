@@ -8,16 +8,15 @@ namespace twinbench::own_hob {
 namespace {
 
 const std::vector<std::string>& Base() {
-  static const std::vector<std::string> base = {"mechanics.fidelity=kinematic",
-                                                "hob_procedure.hob_speeds_rev_min=[50.0, 25.0]",
-                                                "hob_procedure.turns=1",
-                                                "hob_procedure.samples_per_turn=240",
-                                                "hob_procedure.poll_s=10.0"};
+  static const std::vector<std::string> base = {
+      "mechanics.fidelity=kinematic", "hob_procedure.hob_speeds_rev_min=[50.0, 25.0]", "hob_procedure.turns=1",
+      "hob_procedure.samples_per_turn=240", "hob_procedure.poll_s=10.0"};
   return base;
 }
 
-const char* const kLines = "[{order=2, amplitude_arcsec=5, phase_deg=20}, {order=7, amplitude_arcsec=3, phase_deg=50}, "
-                           "{order=61, amplitude_arcsec=1, phase_deg=0}]";
+const char* const kLines =
+    "[{order=2, amplitude_arcsec=5, phase_deg=20}, {order=7, amplitude_arcsec=3, phase_deg=50}, "
+    "{order=61, amplitude_arcsec=1, phase_deg=0}]";
 
 const std::vector<test::OwnKey>& Keys() {
   const std::string lines = kLines;

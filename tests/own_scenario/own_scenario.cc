@@ -77,8 +77,7 @@ Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_se
   return alarms;
 }
 
-Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings,
-                       int seeds) {
+Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings, int seeds) {
   Alarms alarms;
   const Scenario plain = LoadScenario(base, base_settings);
   for (const EffectEntry& entry : EffectCatalogue(plain.bench)) {

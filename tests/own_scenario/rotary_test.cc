@@ -34,8 +34,9 @@ std::vector<OwnKey> Psd(const std::string& psd) {
 
 std::vector<OwnKey> Table(const std::string& table) {
   std::vector<OwnKey> keys = {
-      Change(table + ".harmonics", "[{component=\"ez\", order=1, amplitude_arcsec=40.0, phase_deg=30.0},"
-                             " {component=\"dx\", order=2, amplitude_um=5.0, phase_deg=0.0}]"),
+      Change(table + ".harmonics",
+             "[{component=\"ez\", order=1, amplitude_arcsec=40.0, phase_deg=30.0},"
+             " {component=\"dx\", order=2, amplitude_um=5.0, phase_deg=0.0}]"),
       Change(table + ".half_frequency_order", "0.43", {table + ".half_frequency_tilt_arcsec=2.0"}),
       Change(table + ".half_frequency_tilt_arcsec", "2.0"),
       Change(table + ".half_frequency_radial_um", "3.0"),
@@ -124,9 +125,12 @@ std::vector<OwnKey> RotaryChanges() {
       Change("procedure.remount_s", "60.0"),
       Change("procedure.sweep_arcsec", "200.0"),
       Change("procedure.sweep_points", "9"),
-      Change("procedure.stability_s", "600.0", {"procedure.phases=[\"calibration\", \"stability\", \"full_circle\"]"}),
-      Change("procedure.stability_interval_s", "30.0", {"procedure.phases=[\"calibration\", \"stability\", \"full_circle\"]"}),
-      Change("procedure.verification_points", "5", {"procedure.phases=[\"calibration\", \"verification\", \"full_circle\"]"}),
+      Change("procedure.stability_s", "600.0",
+             {"procedure.phases=[\"calibration\", \"stability\", \"full_circle\"]"}),
+      Change("procedure.stability_interval_s", "30.0",
+             {"procedure.phases=[\"calibration\", \"stability\", \"full_circle\"]"}),
+      Change("procedure.verification_points", "5",
+             {"procedure.phases=[\"calibration\", \"verification\", \"full_circle\"]"}),
       Change("procedure.keep_raw", "true", {"adc.every_sample=true"})};
   for (const auto& part : {Psd("psd_a"), Psd("psd_b"), Table("target"), Table("reference")})
     keys.insert(keys.end(), part.begin(), part.end());

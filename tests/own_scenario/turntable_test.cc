@@ -15,8 +15,9 @@ const std::vector<std::string>& Base() {
   return base;
 }
 
-const char* const kWave = "[{component=\"ez\", order=3, amplitude_arcsec=30, phase_deg=20}, {component=\"ex\", order=1, "
-                    "amplitude_arcsec=20, phase_deg=50}, {component=\"dx\", order=2, amplitude_um=50, phase_deg=0}]";
+const char* const kWave =
+    "[{component=\"ez\", order=3, amplitude_arcsec=30, phase_deg=20}, {component=\"ex\", order=1, "
+    "amplitude_arcsec=20, phase_deg=50}, {component=\"dx\", order=2, amplitude_um=50, phase_deg=0}]";
 const char* const kWarm = "autocollimator.x_per_kelvin_arcsec=5";
 
 const std::vector<test::OwnKey>& Keys() {
@@ -37,14 +38,16 @@ const std::vector<test::OwnKey>& Keys() {
         {"mirror.flatness_nm", {"mirror.flatness_nm=6000"}},
         {"mirror.radius_mm", {"mirror.radius_mm=300"}},
         {"autocollimator.noise_arcsec", {"autocollimator.noise_arcsec=2"}},
-        {"autocollimator.range_arcsec", {"autocollimator.range_arcsec=1000", "autocollimator.error_at_edge_arcsec=50"}},
+        {"autocollimator.range_arcsec",
+         {"autocollimator.range_arcsec=1000", "autocollimator.error_at_edge_arcsec=50"}},
         {"autocollimator.gain_error", {"autocollimator.gain_error=0.1"}},
         {"autocollimator.distance_mm", {"autocollimator.distance_mm=900"}},
         {"autocollimator.focal_length_mm", {"autocollimator.focal_length_mm=600"}},
         {"autocollimator.aperture_mm", {"autocollimator.aperture_mm=70"}},
         {"autocollimator.roll_mrad", {"autocollimator.roll_mrad=150"}},
         {"autocollimator.error_at_edge_arcsec", {"autocollimator.error_at_edge_arcsec=20"}},
-        {"autocollimator.pixel_pitch_um", {"autocollimator.pixel_pitch_um=9", "autocollimator.interpolation_error_px=0.1"}},
+        {"autocollimator.pixel_pitch_um",
+         {"autocollimator.pixel_pitch_um=9", "autocollimator.interpolation_error_px=0.1"}},
         {"autocollimator.interpolation_error_px", {"autocollimator.interpolation_error_px=0.15"}},
         {"autocollimator.x_per_kelvin_arcsec", {"autocollimator.x_per_kelvin_arcsec=5", "environment.drift_K_h=2"}},
         {"autocollimator.y_per_kelvin_arcsec", {"autocollimator.y_per_kelvin_arcsec=5", "environment.drift_K_h=2"}},
@@ -56,7 +59,8 @@ const std::vector<test::OwnKey>& Keys() {
         {"environment.random_walk_K_sqrt_h", {"environment.random_walk_K_sqrt_h=2", kWarm}},
         {"environment.temperature_file", {}, "as the other kinds of temperature: it is logged"},
         {"environment.sensor_noise_mK", {"environment.sensor_noise_mK=300", kWarm}},
-        {"turntable_procedure.phases", {"turntable_procedure.phases=[\"verification\", \"full_circle\", \"calibration\"]"}},
+        {"turntable_procedure.phases",
+         {"turntable_procedure.phases=[\"verification\", \"full_circle\", \"calibration\"]"}},
         {"turntable_procedure.positions", {"turntable_procedure.positions=36"}},
         {"turntable_procedure.tilts_arcsec", {"turntable_procedure.tilts_arcsec=[250, -200]"}},
         {"turntable_procedure.tilt_azimuths_deg", {"turntable_procedure.tilt_azimuths_deg=[-100, 60]"}},
@@ -123,8 +127,7 @@ TEST(TurntableOwnScenario, NoKeyIsForgotten) {
 }
 
 TEST(TurntableOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms =
-      test::AlarmsOf(ScenarioFile(), Base(), Keys(), test::Seeds());
+  const test::Alarms alarms = test::AlarmsOf(ScenarioFile(), Base(), Keys(), test::Seeds());
   EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
 }
 

@@ -37,14 +37,15 @@ TEST(CompareTransmission, AgreesInTheLinesOfTableAndHob) {
     EXPECT_LT(c.normalised_error, 1.5) << c.order;  // 1 is exceeded once in 20
     EXPECT_NEAR(c.amplitude_difference_rad / c.u_amplitude_difference_rad, 0.0, 3.5);
     EXPECT_NEAR(c.phase_difference_rad / c.u_phase_difference_rad, 0.0, 3.5);
-    EXPECT_LT(DistanceArcsec(c.reference.value, CoefficientOf(NoisyMachine().transmission, c.order)), 0.03);  // u: 0.003
+    EXPECT_LT(DistanceArcsec(c.reference.value, CoefficientOf(NoisyMachine().transmission, c.order)),
+              0.03);  // u: 0.003
   }
   EXPECT_THAT(FindLines(r.transmission), testing::ElementsAre(1, 2, 22, 44));
 }
 
 TEST(CompareEncoder, ShowsTheAmplitudeAndPhaseOfThePapersFigure8) {
-  const Results r = Evaluate(
-      Samples(NoisyMachine(), {{0, 25.0, 1, 0, 3}, {0, 25.0, -1, 1, 3}, {1, 205.0, 1, 0, 3}, {1, 205.0, -1, 1, 3}}));
+  const Results r = Evaluate(Samples(
+      NoisyMachine(), {{0, 25.0, 1, 0, 3}, {0, 25.0, -1, 1, 3}, {1, 205.0, 1, 0, 3}, {1, 205.0, -1, 1, 3}}));
   const auto one = CompareEncoder(r.separation, r.encoder);
   ASSERT_EQ(one.size(), 1u);
   EXPECT_NEAR(Amplitude(one[0].reference) / kArcsec, 5.8, 0.03);  // u: 0.5 sqrt(2 / 17280) = 0.005

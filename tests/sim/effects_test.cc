@@ -25,7 +25,8 @@ constexpr double kV_m = 2000.0;
 /// An effect block as the loader would fill it: the catalogue's defaults with these values on top.
 EffectSettings Effect(const std::string& name, const std::string& where, std::map<std::string, double> values) {
   EffectSettings effect{name, where, {}, "test"};
-  for (const EffectParameter& p : FindEffect(name, kRotaryBench)->parameters) effect.parameters[p.name] = p.default_SI;
+  for (const EffectParameter& p : FindEffect(name, kRotaryBench)->parameters)
+    effect.parameters[p.name] = p.default_SI;
   for (const auto& [key, value] : values) effect.parameters.at(key) = value;
   return effect;
 }

@@ -20,7 +20,8 @@ double Apart_rad(const Scenario& scenario) {
   const Eigen::MatrixXd followed_rad = FollowEncoder(scenario, readings)->Predict();
   double apart_rad = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i)
-    apart_rad = std::max(apart_rad, std::abs(followed_rad(static_cast<Eigen::Index>(i), 0) - readings[i].measured_rad));
+    apart_rad =
+        std::max(apart_rad, std::abs(followed_rad(static_cast<Eigen::Index>(i), 0) - readings[i].measured_rad));
   return apart_rad;
 }
 

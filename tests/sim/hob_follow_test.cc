@@ -1,10 +1,9 @@
-#include "twin/sim/hob/follow.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "twin/sim/hob/follow.h"
 
 // The hobbing machine's twin on the course of a record says what the readings should have been.
 namespace twinbench {
@@ -55,8 +54,7 @@ std::vector<model::Disturbance> FreeOrders(const Scenario& s, const std::vector<
 /// Largest differences between the run's readings and what its own twin says [arcsec].
 double Off_arcsec(const Scenario& scenario) {
   const std::vector<Reading> readings = test::RunHob(scenario).readings;
-  const Eigen::MatrixXd predicted_rad =
-      sim::FollowHob(scenario, readings)->Predict(FreeOrders(scenario, readings));
+  const Eigen::MatrixXd predicted_rad = sim::FollowHob(scenario, readings)->Predict(FreeOrders(scenario, readings));
   double off_rad = 0.0;
   for (Eigen::Index i = 0; i < predicted_rad.rows(); ++i) {
     const Reading& r = readings[static_cast<std::size_t>(i)];
@@ -93,13 +91,17 @@ TEST(HobFollow, KnowsTheKeysOfTheScenario) {
       {"friction", [](Scenario& s) { s.transmission.friction_Nm = 100.0; }},
       {"reference mark", [](Scenario& s) { s.hob_procedure.encoder_zero = "reference_mark"; }},
       {"no interferometer", [](Scenario& s) { s.interferometer.used = false; }},
-      {"tilted ring", [](Scenario& s) {
+      {"tilted ring",
+       [](Scenario& s) {
          s.table_encoder.tilt_rad = 200.0 * arcsec;
          s.table_encoder.head_height_m = 10e-3;
        }},
       {"oval ring", [](Scenario& s) { s.hob_encoder.ellipticity_m = 5e-6; }},
       {"hob's ring aside", [](Scenario& s) { s.hob_encoder.eccentricity_m = 20e-6; }},
-      {"graduation", [](Scenario& s) { s.table_encoder.graduation = {{Component::kEz, 6.0, 3.0 * arcsec, 1.0}}; }},
+      {"graduation",
+       [](Scenario& s) {
+         s.table_encoder.graduation = {{Component::kEz, 6.0, 3.0 * arcsec, 1.0}};
+       }},
       {"a line that is not free", [](Scenario& s) { s.transmission.free_orders = 2; }},
       {"two speeds", [](Scenario& s) {
          s.hob_procedure.hob_speeds_rad_s = {5.0, 3.0};

@@ -85,7 +85,8 @@ TEST(HobTwin, InterferometerSeesWhatTheTableDoesAndNotWhatItsCountersGetWrong) {
     with.effects = {effect};
     return (HobReadings(with).at(100).interferometer_rad - clean.at(100).interferometer_rad) / arcsec;
   };
-  EXPECT_NEAR(seen_arcsec({"hysteresis", "", {{"lag", 5.0 * arcsec}, {"settles_over", 5.0 * deg}}, ""}), -5.0, 1e-6);
+  EXPECT_NEAR(seen_arcsec({"hysteresis", "", {{"lag", 5.0 * arcsec}, {"settles_over", 5.0 * deg}}, ""}), -5.0,
+              1e-6);
   EXPECT_NEAR(seen_arcsec({"latency", "", {{"delay", 1e-3}}, ""}), 0.0, 1e-9);
   EXPECT_NEAR(seen_arcsec({"slip", "table", {{"step", 72.0 * arcsec}, {"at_reading", 5.0}}, ""}), 0.0, 1e-9);
 }

@@ -1,8 +1,9 @@
+#include "twin/sim/rotary_follow.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
-#include "twin/sim/rotary_follow.h"
 
 namespace twinbench::sim {
 namespace {
@@ -42,7 +43,8 @@ double Apart_m(const test::TwinRun& run) {
   for (std::size_t i = 0; i < run.readings.size(); ++i) {
     if (run.readings[i].status != ReadingStatus::kOk) continue;
     for (int c = 0; c < kChannels; ++c)
-      apart_V = std::max(apart_V, std::abs(followed_V(static_cast<Eigen::Index>(i), c) - run.readings[i].mean_V[c]));
+      apart_V =
+          std::max(apart_V, std::abs(followed_V(static_cast<Eigen::Index>(i), c) - run.readings[i].mean_V[c]));
   }
   return apart_V / kVolts_per_metre;
 }
@@ -75,8 +77,8 @@ Scenario RichBench() {
 
 // What is left is rounding in the chain and Newton's last step at the autocollimator.
 constexpr double kRounding_m = 1e-12;
-// A rotor in its backlash stands an arcsecond beside its stop, where its table errs by 1e-10 rad more or less than at
-// the stop; TablesOf looks at the stop.
+// A rotor in its backlash stands an arcsecond beside its stop, where its table errs by 1e-10 rad more or less than
+// at the stop; TablesOf looks at the stop.
 constexpr double kBesideTheStop_m = 2e-10;
 
 TEST(RotaryFollow, SaysWhatThePlainTwinShows) {
@@ -145,7 +147,8 @@ TEST(RotaryFollow, HasTheSlopesOfTheClosedForms) {
   const Eigen::Index stop = std::ssize(run.readings) - 1;
   const double sine = 0.39, cosine = std::sqrt(1.0 - sine * sine), l1_m = 0.120, lever_m = 0.2;
   const auto slope = [&](const char* point) {
-    return Eigen::RowVector4d(model::Slope(*follow, model::PointNamed(*follow, point)).row(stop) / kVolts_per_metre);
+    return Eigen::RowVector4d(model::Slope(*follow, model::PointNamed(*follow, point)).row(stop) /
+                              kVolts_per_metre);
   };
   const double yaw = l1_m * (1.0 + 1.0 / cosine), tilt = l1_m * (1.0 + cosine), pitch = lever_m + l1_m;
   EXPECT_NEAR(slope("mount.ez")[0] / yaw, -1.0, 1e-6);

@@ -1,11 +1,10 @@
-#include "twin/sim/turntable/follow.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
 #include "twin/sim/table_motion.h"
+#include "twin/sim/turntable/follow.h"
 
 // The turntable's twin on the course of a record says what the readings should have been.
 namespace twinbench {
@@ -60,9 +59,8 @@ std::vector<model::Disturbance> OwnErrors(const test::BenchRun& run) {
     errors.push_back(
         {"turntable." + name, Each(run.readings, [&](const Reading& r) { return of(motion.At(rotor_rad(r))); })});
     if (name != "ez")
-      errors.push_back({"multitooth." + name, Each(run.readings, [&](const Reading& r) {
-                          return of(multitooth.At(r.reference_rad));
-                        })});
+      errors.push_back({"multitooth." + name,
+                        Each(run.readings, [&](const Reading& r) { return of(multitooth.At(r.reference_rad)); })});
   }
   errors.push_back({"multitooth.ez", Each(run.readings, tooth_rad)});
   return errors;
@@ -104,7 +102,10 @@ TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
       {"backlash", [](Scenario& s) { s.target.backlash_rad = 3.0 * arcsec; }},
       {"half frequency", [](Scenario& s) { s.target.half_frequency_tilt_rad = 2.0 * arcsec; }},
       {"flatness", [](Scenario& s) { s.mirror.flatness_m = 5e-6; }},
-      {"eccentricities", [](Scenario& s) { s.turntable_procedure.eccentricities_m = {1e-3, 3e-3}; }},
+      {"eccentricities",
+       [](Scenario& s) {
+         s.turntable_procedure.eccentricities_m = {1e-3, 3e-3};
+       }},
       {"mirror radius", [](Scenario& s) { s.mirror.radius_m = 0.2; }},
       {"aperture", [](Scenario& s) { s.collimator.aperture_m = 70e-3; }},
       {"small mirror", [](Scenario& s) { s.mirror.width_m = 20e-3; }},
@@ -117,12 +118,17 @@ TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
          s.environment.swing_K = 0.5;
          s.environment.swing_period_s = 1000.0;
        }},
-      {"steep tilts", [](Scenario& s) { s.turntable_procedure.tilts_rad = {200.0 * arcsec, -250.0 * arcsec}; }},
-      {"no run-up", [](Scenario& s) {
+      {"steep tilts",
+       [](Scenario& s) {
+         s.turntable_procedure.tilts_rad = {200.0 * arcsec, -250.0 * arcsec};
+       }},
+      {"no run-up",
+       [](Scenario& s) {
          s.turntable_procedure.run_up_steps = 0.0;
          s.effects = {{"backlash", "", {{"width", 2.0 * arcsec}}, "", {}}};
        }},
-      {"slow turntable", [](Scenario& s) {
+      {"slow turntable",
+       [](Scenario& s) {
          s.target.move_time_s = 6.0;
          s.effects = {{"settling", "", {{"amplitude", 2.0 * arcsec}, {"time_constant", 1.0}}, "", {}}};
        }},

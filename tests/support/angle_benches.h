@@ -35,8 +35,8 @@ inline BenchRun RunHob(const Scenario& scenario) {
   return RunBench<sim::HobTwin>(scenario);
 }
 
-/// An effect of the catalogue with its default sizes, at its last place. What has an onset or a share gets ones that
-/// a short run shows.
+/// An effect of the catalogue with its default sizes, at its last place. What has an onset or a share gets ones
+/// that a short run shows.
 inline EffectSettings PlainEffect(const EffectEntry& entry) {
   EffectSettings effect{entry.name, entry.places.empty() ? "" : entry.places.back(), {}, ""};
   for (const EffectParameter& p : entry.parameters) effect.parameters[p.name] = p.default_SI;

@@ -12,8 +12,8 @@ namespace twinbench::tools {
 
 bool EvaluateRun(const Scenario& scenario, const std::string& folder) {
   const RunFolder run{folder};
-  const report::Evaluation evaluation = BenchOf(scenario).evaluate(
-      scenario, RunRecord::Open(folder)->Readings(), measure::Estimator::kRigorous);
+  const report::Evaluation evaluation =
+      BenchOf(scenario).evaluate(scenario, RunRecord::Open(folder)->Readings(), measure::Estimator::kRigorous);
   WriteJson(run.results(), evaluation.results);
   fmt::print("{}", evaluation.summary);
   return evaluation.Separated();

@@ -12,7 +12,7 @@ struct FollowOptions {
   std::string scenario;  // empty: the folder's own
   std::string json;      // report of the watch; empty: none
   std::vector<std::string> overrides;
-  double false_alarm_rate = 0.01;  // a run
+  double false_alarm_rate = 0.01;                            // a run
   measure::Estimator model = measure::Estimator::kRigorous;  // sensitivities that are believed
 };
 

@@ -23,9 +23,8 @@ void Import(const ImportOptions& options) {
       BenchOf(scenario).evaluate(scenario, readings, measure::Estimator::kRigorous);
   const RunFolder folder{options.folder};
   {
-    const auto record =
-        RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.readings,
-                                                        scenario.seed, "", scenario.bench});
+    const auto record = RunRecord::Create(
+        folder.path, {TWINBENCH_VERSION, "import: " + options.readings, scenario.seed, "", scenario.bench});
     for (const Reading& reading : readings) record->Append(reading, {});
     record->Finish();
   }

@@ -88,7 +88,8 @@ Begun Resume(const Scenario& scenario, const RunFolder& folder) {
 std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& folder, const hw::BenchFile& file,
                                  const std::string& identity) {
   const std::string origin = file.kind == "hardware" ? UtcText(std::time(nullptr)) : "";
-  auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, identity, scenario.seed, origin, scenario.bench});
+  auto record =
+      RunRecord::Create(folder.path, {TWINBENCH_VERSION, identity, scenario.seed, origin, scenario.bench});
   WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
   return record;
 }

@@ -33,9 +33,9 @@ std::optional<Phase> PhaseOf(std::string_view name);
 std::optional<ReadingStatus> ReadingStatusOf(std::string_view name);
 
 /// One stop of a bench. Rotary bench: the commanded angles and the mean and scatter of one block of A/D samples.
-/// Angle comparison: the angles that reference and device showed at the same instant. Turntable: target and reference
-/// are the nominal angles of turntable and multi-tooth table, yaw and tilt what the autocollimator showed as x and y.
-/// Hob: measured and reference are what the ring encoders of table and hob showed. The rest stays NaN.
+/// Angle comparison: the angles that reference and device showed at the same instant. Turntable: target and
+/// reference are the nominal angles of turntable and multi-tooth table, yaw and tilt what the autocollimator showed
+/// as x and y. Hob: measured and reference are what the ring encoders of table and hob showed. The rest stays NaN.
 struct Reading {
   int reading = 0;    // running number
   Time time{};        // start of the block
@@ -55,8 +55,8 @@ struct Reading {
   double temperature_degC = kNaN;
   double autocollimator_yaw_rad = kNaN;  // rotary bench: calibration and verification only
   double autocollimator_tilt_rad = kNaN;
-  double measured_rad = kNaN;    // angle comparison: what the device under test showed; some wrap it at a turn
-  double velocity_rad_s = kNaN;  // angle comparison: of the reference
+  double measured_rad = kNaN;        // angle comparison: what the device under test showed; some wrap it at a turn
+  double velocity_rad_s = kNaN;      // angle comparison: of the reference
   double head_rad = kNaN;            // hob: reading head of the table's encoder from the table's origin
   double interferometer_rad = kNaN;  // hob, optional: transmission error as the interferometer saw it
 
@@ -72,8 +72,8 @@ struct Reading {
 void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& bench, std::ostream& out);
 void WriteReadingsCsv(const std::vector<Reading>& readings, const std::string& bench, const std::string& path);
 
-/// Reads readings.csv. Column order is free, `#` lines are comments, unknown columns are kept. A reading with an empty
-/// voltage (or angle that was read) and no other status becomes kMissing.
+/// Reads readings.csv. Column order is free, `#` lines are comments, unknown columns are kept. A reading with an
+/// empty voltage (or angle that was read) and no other status becomes kMissing.
 /// @param bench  Its name; empty, of a file that comes without a scenario: the one that the columns speak of.
 /// @throws InputError with file:line for missing required columns (all are named), a field that is no number, a
 ///         wrong number of fields, an unknown phase or status, a reading number that comes twice or a time that

@@ -233,7 +233,8 @@ bool RunRecord::finished() const {
 }
 
 Provenance RunRecord::provenance() const {
-  SqliteStatement select(*database_, "SELECT program_version, bench, seed, clock_origin_utc, bench_name FROM provenance");
+  SqliteStatement select(*database_,
+                         "SELECT program_version, bench, seed, clock_origin_utc, bench_name FROM provenance");
   const bool found = select.Step();
   const auto seed = found ? ParseSeed(select.Text(2)) : std::nullopt;
   if (!seed) throw InputError(database_->path(), "the record has no provenance", "an undamaged record");

@@ -275,9 +275,10 @@ void RequireEmpirical(const EmpiricalSettings& empirical, const BenchFormat& ben
   const std::string key = is_angle ? "value_deg" : "value_um";
   const std::vector<double>& others = is_angle ? empirical.value_m : empirical.value_rad;
   require(others.empty(), "the empirical signal has values of another kind of channel", key);
-  require(!values.empty() && values.size() == empirical.reading.size(),
-          fmt::format("the empirical signal has {} readings and {} values", empirical.reading.size(), values.size()),
-          fmt::format("one {} for each reading", key));
+  require(
+      !values.empty() && values.size() == empirical.reading.size(),
+      fmt::format("the empirical signal has {} readings and {} values", empirical.reading.size(), values.size()),
+      fmt::format("one {} for each reading", key));
   const std::set<int> once(empirical.reading.begin(), empirical.reading.end());
   require(once.size() == values.size(), "the empirical signal names a reading twice", "every reading once");
 }
@@ -295,8 +296,7 @@ EmpiricalSettings ReadEmpirical(const TomlValue& block, const std::string& bench
 }
 
 std::string ReadBench(const ScenarioText& text) {
-  if (const auto bench = text.Find("bench"))
-    return FormatOf(ReadText(*bench, "bench", {}), bench->Where()).name;
+  if (const auto bench = text.Find("bench")) return FormatOf(ReadText(*bench, "bench", {}), bench->Where()).name;
   throw InputError(text.name() + ":1", "bench is missing", "bench = " + Alternatives(BenchNames()));
 }
 
@@ -367,9 +367,8 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
     if (const auto value = sources.Find(key.Path())) ReadKey(key, *value);
   }
   scenario.fixtures = ReadBlocks<FixtureSettings>(sources, kFixtureTable, ReadFixture);
-  scenario.effects = ReadBlocks<EffectSettings>(sources, kEffectTable, [&](const TomlValue& block) {
-    return ReadEffect(block, scenario.bench);
-  });
+  scenario.effects = ReadBlocks<EffectSettings>(
+      sources, kEffectTable, [&](const TomlValue& block) { return ReadEffect(block, scenario.bench); });
   scenario.empiricals = ReadBlocks<EmpiricalSettings>(
       sources, kEmpiricalTable, [&](const TomlValue& block) { return ReadEmpirical(block, scenario.bench); });
   FormatOf(scenario.bench).check_together(sources, scenario);

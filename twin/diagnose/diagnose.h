@@ -12,9 +12,9 @@
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/measure/measure.h"
 
-/// What is asked of a diagnosis and what it answers: given readings and the scenario that is believed to describe the
-/// bench, it finds what the model gets wrong, names it and measures what the extended model gains. Each bench puts its
-/// own together from the parts of this room (Bench::diagnose).
+/// What is asked of a diagnosis and what it answers: given readings and the scenario that is believed to describe
+/// the bench, it finds what the model gets wrong, names it and measures what the extended model gains. Each bench
+/// puts its own together from the parts of this room (Bench::diagnose).
 namespace twinbench::diagnose {
 
 struct DiagnoseOptions {

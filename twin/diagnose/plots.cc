@@ -38,7 +38,7 @@ Eigen::VectorXd Project(const LinearRun& run, const Eigen::VectorXd& rows, const
 }
 
 PlottedSeries MakeSeries(const LinearRun& run, const LeftOver& left, const std::string& name,
-                  const Eigen::VectorXd& weight) {
+                         const Eigen::VectorXd& weight) {
   const Eigen::VectorXd w = weight / weight.cwiseAbs().maxCoeff();
   const Eigen::VectorXd variance = Project(run, run.sigma.cwiseAbs2(), w.cwiseAbs2());
   const double scale = w.cwiseAbs2().squaredNorm() / std::pow(w.squaredNorm(), 2) / run.to_SI;
@@ -167,7 +167,8 @@ json Map(const Schedule& s, const PlottedSeries& series) {
   return map;
 }
 
-void AddCurve(const std::string& name, const Eigen::VectorXd& variable, const PlottedSeries& series, json& against) {
+void AddCurve(const std::string& name, const Eigen::VectorXd& variable, const PlottedSeries& series,
+              json& against) {
   if (variable.size() != series.before.size()) return;
   const Bins bins = MakeBins(variable);
   if (bins.centre.size() > 1) against[name][series.name] = Curve(bins, series);

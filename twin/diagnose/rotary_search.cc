@@ -21,9 +21,7 @@ class Trial {
                                            const std::vector<EffectSettings>& about = {}) const {
     return std::make_unique<rotary::RotaryCase>(readings_, scenario, model_, options_.struck, about);
   }
-  rotary::RotaryRun Run(const Scenario& scenario) const {
-    return rotary::BuildRun(readings_, scenario, model_);
-  }
+  rotary::RotaryRun Run(const Scenario& scenario) const { return rotary::BuildRun(readings_, scenario, model_); }
   Analysis Search(const rotary::RotaryCase& rotary) const {
     return Analyse(rotary.Rotary().run, rotary.Families(), AnalysisOptionsOf(options_));
   }

@@ -12,12 +12,12 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr double kReference = 0.5;             // of the cumulative sums, in standard deviations
-constexpr double kStatedRows = 30.0;           // that the stated noise counts for
-constexpr double kMostOfOneRow = 9.0;          // an outlier must not widen the limits that should see it ...
-constexpr double kMostOfOneReading = 4.0;      // ... nor be taken for a lasting deviation, in standard deviations
-constexpr double kNear = 2.5;                  // to a prediction, in standard deviations ...
-constexpr int kNearReadings = 3;               // ... so often running: the event is over
+constexpr double kReference = 0.5;         // of the cumulative sums, in standard deviations
+constexpr double kStatedRows = 30.0;       // that the stated noise counts for
+constexpr double kMostOfOneRow = 9.0;      // an outlier must not widen the limits that should see it ...
+constexpr double kMostOfOneReading = 4.0;  // ... nor be taken for a lasting deviation, in standard deviations
+constexpr double kNear = 2.5;              // to a prediction, in standard deviations ...
+constexpr int kNearReadings = 3;           // ... so often running: the event is over
 
 /// What one reading says of a series: deviation and its variance [SI].
 struct Deviation {

@@ -15,9 +15,9 @@ namespace twinbench::model {
 /// A scalar input of a bench at which a disturbance can enter: "laser.yaw", "target.ez", "psd_a.roll".
 struct Point {
   std::string name;
-  std::string unit;     // of reports: "urad"
-  double to_SI = 1.0;   // factor from `unit` to SI
-  double step = kNaN;   // SI: half the distance over which slopes are differenced
+  std::string unit;    // of reports: "urad"
+  double to_SI = 1.0;  // factor from `unit` to SI
+  double step = kNaN;  // SI: half the distance over which slopes are differenced
 };
 
 /// What enters at one point: a value at each reading of the record [SI].

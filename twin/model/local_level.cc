@@ -20,7 +20,8 @@ double WalkRate(const Eigen::VectorXd& time_s, const Eigen::VectorXd& shown, dou
 Eigen::VectorXd Smoothed(const Eigen::VectorXd& time_s, const Eigen::VectorXd& shown, double noise) {
   if (shown.size() < 3 || noise <= 0.0) return shown;
   const double variance = noise * noise, rate = WalkRate(time_s, shown, variance);
-  Eigen::VectorXd level(shown.size()), after(shown.size()), before(shown.size());  // variances after, before a reading
+  Eigen::VectorXd level(shown.size()), after(shown.size()),
+      before(shown.size());  // variances after, before a reading
   level[0] = shown[0];
   after[0] = variance;
   for (Eigen::Index i = 1; i < shown.size(); ++i) {

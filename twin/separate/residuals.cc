@@ -9,7 +9,7 @@ namespace twinbench::separate {
 namespace {
 
 constexpr double kTooUnlikely = 0.001;
-constexpr double kBand = 0.01;     // of the largest of the four scales
+constexpr double kBand = 0.01;  // of the largest of the four scales
 constexpr double kLeastScale = 1e-9;
 
 double BirgeRatio(const Separation& result, int dof) {

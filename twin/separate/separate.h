@@ -16,8 +16,8 @@
 namespace twinbench::separate {
 
 /// The error motion that each of the four measured motions is, in the order of measure::Dof.
-inline constexpr std::array<Component, measure::kDofs> kComponentOf = {Component::kEz, Component::kEx, Component::kEy,
-                                                                       Component::kDy};
+inline constexpr std::array<Component, measure::kDofs> kComponentOf = {Component::kEz, Component::kEx,
+                                                                       Component::kEy, Component::kDy};
 
 using measure::Matrix6;
 

@@ -31,9 +31,9 @@ struct PoseState {
   double grating_yaw_rad = 0.0;  // of the grating about the laser spot ...
   double grating_tilt_rad = 0.0;
   double grating_roll_rad = 0.0;
-  double grating_shift_m = 0.0;           // ... and along its normal, in L
-  mechanics::PoseError target_error;      // beside the tables' own: in L ...
-  mechanics::PoseError reference_error;   // ... and in the reference's rotor frame
+  double grating_shift_m = 0.0;          // ... and along its normal, in L
+  mechanics::PoseError target_error;     // beside the tables' own: in L ...
+  mechanics::PoseError reference_error;  // ... and in the reference's rotor frame
 };
 
 struct LightState {

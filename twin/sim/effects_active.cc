@@ -1,7 +1,7 @@
 #include "twin/sim/effects_active.h"
 
-#include "twin/sim/effects/effects.h"
 #include "twin/sim/actual_bench.h"
+#include "twin/sim/effects/effects.h"
 
 namespace twinbench::sim {
 ActiveEffects::ActiveEffects(const Scenario& scenario) {

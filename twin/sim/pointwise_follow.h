@@ -13,7 +13,7 @@ namespace twinbench::sim {
 template <class Extra>
 struct BenchPoint {
   model::Point point;
-  double& (*of_reading)(Extra&) = nullptr;     // this ...
+  double& (*of_reading)(Extra&) = nullptr;   // this ...
   double& (*of_bench)(Scenario&) = nullptr;  // ... or this
 };
 
@@ -42,7 +42,8 @@ class PointwiseFollow : public model::Follow {
       const BenchPoint<Extra>& point = PointOf(d.point);
       if (point.of_bench) of_bench.push_back(&d);
       if (!point.of_reading) continue;
-      for (std::size_t i = 0; i < extra.size(); ++i) point.of_reading(extra[i]) += d.value[static_cast<Eigen::Index>(i)];
+      for (std::size_t i = 0; i < extra.size(); ++i)
+        point.of_reading(extra[i]) += d.value[static_cast<Eigen::Index>(i)];
     }
     Eigen::MatrixXd shown = Shown(extra);
     // A constant of the bench, changed from reading to reading: to first order.

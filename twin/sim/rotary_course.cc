@@ -48,7 +48,8 @@ Eigen::VectorXd RoomTemperature_degC(const std::vector<Reading>& record, double 
 class RecordedDrives {
  public:
   explicit RecordedDrives(const Scenario& actual)
-      : actual_(actual), plant_(mechanics::MakePlant(mechanics::FidelityFromName(actual.mechanics.fidelity), StackOf(actual))) {}
+      : actual_(actual),
+        plant_(mechanics::MakePlant(mechanics::FidelityFromName(actual.mechanics.fidelity), StackOf(actual))) {}
 
   void Mount(const mechanics::ChainGeometry& geometry) { plant_->Mount(geometry); }
 

@@ -17,8 +17,8 @@ struct RecordedStop {
   PoseState pose;
   LightState light;
   std::array<double, kChannels> added_V{};  // at the amplifiers' outputs
-  bool swept = false;           // the autocollimator saw the grating's normal at ...
-  double seen_yaw_rad = 0.0;    // ... these angles, once its own gain is taken out
+  bool swept = false;                       // the autocollimator saw the grating's normal at ...
+  double seen_yaw_rad = 0.0;                // ... these angles, once its own gain is taken out
   double seen_tilt_rad = 0.0;
 };
 

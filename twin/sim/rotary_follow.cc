@@ -65,7 +65,8 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
     for (int k = 0; k < kIterations; ++k) {
       const Vector3 normal_L = at().linear().col(1);
       pose.grating_yaw_rad += stop.seen_yaw_rad - std::atan2(-normal_L.x(), normal_L.y());
-      pose.grating_tilt_rad += stop.seen_tilt_rad - std::atan2(normal_L.z(), std::hypot(normal_L.x(), normal_L.y()));
+      pose.grating_tilt_rad +=
+          stop.seen_tilt_rad - std::atan2(normal_L.z(), std::hypot(normal_L.x(), normal_L.y()));
     }
     return at() * mechanics::ToPose(extra.mount);
   }

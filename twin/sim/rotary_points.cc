@@ -46,34 +46,39 @@ std::vector<RotaryPoint> OfGrating() {
 }
 
 std::vector<RotaryPoint> OfLightAndChannels() {
-  return {{{"laser.yaw", "urad", urad, 1.0 * urad}, [](RotaryExtra& e) -> double& { return e.light.yaw_rad; }},
-          {{"laser.pitch", "urad", urad, 1.0 * urad}, [](RotaryExtra& e) -> double& { return e.light.pitch_rad; }},
-          {{"laser.wavelength", "nm", nm, 0.01 * nm}, [](RotaryExtra& e) -> double& { return e.light.wavelength_m; }},
-          {Length("psd_a_x"), [](RotaryExtra& e) -> double& { return e.shown_m[0]; }},
-          {Length("psd_a_y"), [](RotaryExtra& e) -> double& { return e.shown_m[1]; }},
-          {Length("psd_b_x"), [](RotaryExtra& e) -> double& { return e.shown_m[2]; }},
-          {Length("psd_b_y"), [](RotaryExtra& e) -> double& { return e.shown_m[3]; }}};
+  return {
+      {{"laser.yaw", "urad", urad, 1.0 * urad}, [](RotaryExtra& e) -> double& { return e.light.yaw_rad; }},
+      {{"laser.pitch", "urad", urad, 1.0 * urad}, [](RotaryExtra& e) -> double& { return e.light.pitch_rad; }},
+      {{"laser.wavelength", "nm", nm, 0.01 * nm}, [](RotaryExtra& e) -> double& { return e.light.wavelength_m; }},
+      {Length("psd_a_x"), [](RotaryExtra& e) -> double& { return e.shown_m[0]; }},
+      {Length("psd_a_y"), [](RotaryExtra& e) -> double& { return e.shown_m[1]; }},
+      {Length("psd_b_x"), [](RotaryExtra& e) -> double& { return e.shown_m[2]; }},
+      {Length("psd_b_y"), [](RotaryExtra& e) -> double& { return e.shown_m[3]; }}};
 }
 
 std::vector<RotaryPoint> OfBench() {
-  return {{Share("amplifier.psd_a_x.gain"), nullptr, [](Scenario& s) -> double& { return s.amplifier.gain_error[0]; }},
-          {Share("amplifier.psd_a_y.gain"), nullptr, [](Scenario& s) -> double& { return s.amplifier.gain_error[1]; }},
-          {Share("amplifier.psd_b_x.gain"), nullptr, [](Scenario& s) -> double& { return s.amplifier.gain_error[2]; }},
-          {Share("amplifier.psd_b_y.gain"), nullptr, [](Scenario& s) -> double& { return s.amplifier.gain_error[3]; }},
-          {{"psd_a.roll", "mrad", mrad, 1e-4}, nullptr, [](Scenario& s) -> double& { return s.psd_a.roll_rad; }},
-          {{"psd_b.roll", "mrad", mrad, 1e-4}, nullptr, [](Scenario& s) -> double& { return s.psd_b.roll_rad; }},
-          {Length("psd_a.distance"), nullptr, [](Scenario& s) -> double& { return s.psd_a.distance_m; }},
-          {Length("psd_b.distance"), nullptr, [](Scenario& s) -> double& { return s.psd_b.distance_m; }},
-          {{"psd_a.cubic", "1/m2", 1.0, 1.0}, nullptr, [](Scenario& s) -> double& { return s.psd_a.cubic_per_m2; }},
-          {{"psd_b.cubic", "1/m2", 1.0, 1.0}, nullptr, [](Scenario& s) -> double& { return s.psd_b.cubic_per_m2; }},
-          {Share("psd_a.stray"), nullptr, [](Scenario& s) -> double& { return s.psd_a.stray_fraction; }},
-          {Share("psd_b.stray"), nullptr, [](Scenario& s) -> double& { return s.psd_b.stray_fraction; }},
-          {{"grating.lines_per_m", "1/mm", 1e3, 10.0}, nullptr, [](Scenario& s) -> double& { return s.grating.lines_per_m; }}};
+  return {
+      {Share("amplifier.psd_a_x.gain"), nullptr, [](Scenario& s) -> double& { return s.amplifier.gain_error[0]; }},
+      {Share("amplifier.psd_a_y.gain"), nullptr, [](Scenario& s) -> double& { return s.amplifier.gain_error[1]; }},
+      {Share("amplifier.psd_b_x.gain"), nullptr, [](Scenario& s) -> double& { return s.amplifier.gain_error[2]; }},
+      {Share("amplifier.psd_b_y.gain"), nullptr, [](Scenario& s) -> double& { return s.amplifier.gain_error[3]; }},
+      {{"psd_a.roll", "mrad", mrad, 1e-4}, nullptr, [](Scenario& s) -> double& { return s.psd_a.roll_rad; }},
+      {{"psd_b.roll", "mrad", mrad, 1e-4}, nullptr, [](Scenario& s) -> double& { return s.psd_b.roll_rad; }},
+      {Length("psd_a.distance"), nullptr, [](Scenario& s) -> double& { return s.psd_a.distance_m; }},
+      {Length("psd_b.distance"), nullptr, [](Scenario& s) -> double& { return s.psd_b.distance_m; }},
+      {{"psd_a.cubic", "1/m2", 1.0, 1.0}, nullptr, [](Scenario& s) -> double& { return s.psd_a.cubic_per_m2; }},
+      {{"psd_b.cubic", "1/m2", 1.0, 1.0}, nullptr, [](Scenario& s) -> double& { return s.psd_b.cubic_per_m2; }},
+      {Share("psd_a.stray"), nullptr, [](Scenario& s) -> double& { return s.psd_a.stray_fraction; }},
+      {Share("psd_b.stray"), nullptr, [](Scenario& s) -> double& { return s.psd_b.stray_fraction; }},
+      {{"grating.lines_per_m", "1/mm", 1e3, 10.0}, nullptr, [](Scenario& s) -> double& {
+         return s.grating.lines_per_m;
+       }}};
 }
 
 std::vector<RotaryPoint> AllPoints() {
   std::vector<RotaryPoint> all = OfTables();
-  for (const auto& part : {OfGrating(), OfLightAndChannels(), OfBench()}) all.insert(all.end(), part.begin(), part.end());
+  for (const auto& part : {OfGrating(), OfLightAndChannels(), OfBench()})
+    all.insert(all.end(), part.begin(), part.end());
   return all;
 }
 

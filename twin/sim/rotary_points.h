@@ -11,9 +11,9 @@ namespace twinbench::sim {
 /// What disturbances add to one reading of the rotary bench.
 struct RotaryExtra {
   PoseState pose;
-  LightState light;                      // differences from what the bench has
+  LightState light;                         // differences from what the bench has
   std::array<double, kChannels> shown_m{};  // on the PSDs' surfaces
-  mechanics::PoseError mount;            // of the grating on whatever carries it, unseen by the autocollimator
+  mechanics::PoseError mount;               // of the grating on whatever carries it, unseen by the autocollimator
 };
 
 using RotaryPoint = BenchPoint<RotaryExtra>;

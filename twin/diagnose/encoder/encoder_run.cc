@@ -113,8 +113,9 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   const Eigen::VectorXd offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
   encoder.context = ContextOf(run.schedule, run.schedule.reference_rad + offset_rad, scenario.device);
   run.observed = run.schedule.reference_rad + comparison.error_rad;
-  run.residual = comparison.error_rad - (follow ? FollowedError_rad(run.schedule, *follow(scenario, AsFollowed(used, run.schedule)))
-                                                : KnownSignal_rad(scenario, encoder.context));
+  run.residual = comparison.error_rad -
+                 (follow ? FollowedError_rad(run.schedule, *follow(scenario, AsFollowed(used, run.schedule)))
+                         : KnownSignal_rad(scenario, encoder.context));
   run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
   SetNoise(run, scenario.device);
   return encoder;

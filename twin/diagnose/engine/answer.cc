@@ -87,7 +87,8 @@ double ExplainedAlone(const Cause& cause, const SearchResult& found, const std::
 
 /// Causes that explain the same of the whole run as one that won: their signatures are one on this design, and what
 /// was thought of them before is no reason to choose.
-std::vector<CauseKey> DoublesOf(const Cause& cause, const SearchResult& found, const std::vector<Family>& families) {
+std::vector<CauseKey> DoublesOf(const Cause& cause, const SearchResult& found,
+                                const std::vector<Family>& families) {
   constexpr double kSame = 1e-6;  // of what it explains: rounding; likeness alone is for the evidence to judge
   std::vector<CauseKey> doubles;
   const double explained = ExplainedAlone(cause, found, families);

@@ -166,8 +166,8 @@ Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const Scenario& scena
   return WithoutConstants(c, left_rad);
 }
 
-/// The same by the twin that follows the record: it is asked again with the free orders that fit, which are then put
-/// back.
+/// The same by the twin that follows the record: it is asked again with the free orders that fit, which are then
+/// put back.
 Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const SignalContext& c, const Eigen::VectorXd& gear_rad,
                          const Followed& twin) {
   const Eigen::MatrixXd read_rad = AsRead_rad(used, c);
@@ -209,8 +209,8 @@ LinearRun RunOf(const SignalContext& c, const Eigen::MatrixXd& left_rad, const E
   return run;
 }
 
-/// The table's angle as its encoder shows it is off by the encoder's error; as the hob drives it, it is that by which
-/// gears err.
+/// The table's angle as its encoder shows it is off by the encoder's error; as the hob drives it, it is that by
+/// which gears err.
 Eigen::VectorXd DrivenTable_rad(const SignalContext& c) {
   return c.table_rad - WithoutConstants(c, c.table_rad - c.train.Ratio() * c.hob_rad);
 }

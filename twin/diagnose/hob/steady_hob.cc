@@ -7,7 +7,6 @@
 namespace twinbench::diagnose::hob {
 namespace {
 
-
 /// Samples of one set-up, and a number for each of its passes.
 struct Mounting {
   std::vector<Eigen::Index> samples;

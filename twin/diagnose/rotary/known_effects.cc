@@ -84,9 +84,8 @@ Eigen::MatrixXd HalfFrequencySignal(double order, const Whirling& whirling, cons
 
 bool AltersBench(const std::string& effect) {
   static const std::vector<std::string> names = {
-      "psd_gain",     "psd_roll",          "psd_nonlinearity",       "stray_light",
-      "psd_distance", "wavelength_offset", "grating_pitch",          "wavelength_temperature",
-      "incidence_offset"};
+      "psd_gain",          "psd_roll",      "psd_nonlinearity",       "stray_light",     "psd_distance",
+      "wavelength_offset", "grating_pitch", "wavelength_temperature", "incidence_offset"};
   return std::find(names.begin(), names.end(), effect) != names.end();
 }
 

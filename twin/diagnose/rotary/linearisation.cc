@@ -3,9 +3,9 @@
 #include <Eigen/SparseCore>
 #include <cmath>
 
+#include "twin/core/errors.h"
 #include "twin/diagnose/rotary/free_parameters.h"
 #include "twin/diagnose/rotary/known_effects.h"
-#include "twin/core/errors.h"
 #include "twin/measure/calibrate.h"
 #include "twin/measure/grating_model.h"
 #include "twin/separate/prediction.h"
@@ -108,10 +108,8 @@ Eigen::VectorXd FollowedSpots(const RotaryRun& rotary, const std::vector<Stance>
   Eigen::MatrixXd free(std::ssize(stances), 4);
   for (std::size_t i = 0; i < stances.size(); ++i)
     free.row(static_cast<Eigen::Index>(i)) = stances[i].setup < 0 ? mount : rotary.motion[i];
-  const Eigen::MatrixXd shown_V = twin.Predict({{"mount.ez", free.col(0)},
-                                                {"mount.ex", free.col(1)},
-                                                {"mount.ey", free.col(2)},
-                                                {"mount.dy", free.col(3)}});
+  const Eigen::MatrixXd shown_V = twin.Predict(
+      {{"mount.ez", free.col(0)}, {"mount.ex", free.col(1)}, {"mount.ey", free.col(2)}, {"mount.dy", free.col(3)}});
   Eigen::VectorXd shown_m(rotary.run.observed.size());
   for (Eigen::Index i = 0; i < shown_V.rows(); ++i) {
     if (!shown_V.row(i).allFinite())

@@ -93,7 +93,8 @@ std::string NextMeasurement(const std::string& effect, const std::string& rival)
       {{"laser_drift", "thermal_tilt"}, "a warm-up run with the temperature changed by 1 K"},
       {{"mount_creep", "thermal_tilt"}, "a warm-up run with the temperature changed by 1 K"},
       {{"grating_pitch", "wavelength_offset"},
-       "the wavelength by a wavemeter, or the grating's pitch on another bench: the grating equation knows their product"},
+       "the wavelength by a wavemeter, or the grating's pitch on another bench: the grating equation knows their "
+       "product"},
       {{"mode_hop", "slip"},
        "the PSDs at another distance, or order 0 beside them: a hop moves no order 0, a shift of the grating does"},
       {{"mount_creep", "slip"}, "a repeat of the set-up without re-mounting"},

@@ -80,7 +80,8 @@ Eigen::VectorXd Improved(const Eigen::VectorXd& x, const LinearRun& run) {
   return improved;
 }
 
-void Fit(const Scenario& scenario, const std::vector<Stance>& stances, const model::Follow* twin, RotaryRun& rotary) {
+void Fit(const Scenario& scenario, const std::vector<Stance>& stances, const model::Follow* twin,
+         RotaryRun& rotary) {
   constexpr int kIterations = 4;  // converges quadratically from zero: 20 arcsec squared is below a nanoradian
   Eigen::VectorXd x = Eigen::VectorXd::Zero(UnknownsOf(rotary.design));
   Linearise(scenario, stances, x, twin, rotary);

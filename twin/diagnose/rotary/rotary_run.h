@@ -40,8 +40,7 @@ struct ForwardModel {
 /// what the scenario states.
 ///
 /// @throws InputError if the commanded angles are on no grid or hardly any reading is usable.
-RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
-                   const ForwardModel& model = {});
+RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const ForwardModel& model = {});
 
 /// What additive effects need to know about the run; keeps references into it.
 /// @param shown_m  What the channels show, by row, for effects that depend on it: the prediction, or the readings.

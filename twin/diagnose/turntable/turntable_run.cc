@@ -194,8 +194,9 @@ void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>
   run.sigma = AsRows(shown_rad).array().isFinite().select(run.sigma, kNoWeight * run.sigma);
   const bool nothing_behind = scenario.empiricals.empty() && std::ranges::none_of(scenario.effects, IsAddedBehind);
   turntable.context.shown_rad =
-      OrZero(nothing_behind ? shown_rad
-                            : Followed(follow, BeforeAdding(scenario), readings, used).Predict(AtPoints(turntable.body_rad)));
+      OrZero(nothing_behind
+                 ? shown_rad
+                 : Followed(follow, BeforeAdding(scenario), readings, used).Predict(AtPoints(turntable.body_rad)));
   run.nuisance = AllUnknowns(turntable.places, slopes, turntable.context, scenario);
 }
 

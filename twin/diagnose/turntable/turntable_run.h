@@ -16,7 +16,7 @@ struct TurntableRun {
   LinearRun run;  // channels "x" and "y", in arcsec
   SignalContext context;
   Places places;
-  int left_out = 0;  // readings without a value
+  int left_out = 0;          // readings without a value
   Eigen::MatrixXd body_rad;  // readings x axes: turn and tilt of the mirror by the free unknowns; by the twin only
 };
 
@@ -27,7 +27,8 @@ struct TurntableRun {
 ///
 /// Noise: autocollimator, and the scatter of both tables at a stop; the multi-tooth table is lifted at each.
 ///
-/// @param follow  The twin that is asked what readings should have been, with the errors of tables and mountings that
+/// @param follow  The twin that is asked what readings should have been, with the errors of tables and mountings
+/// that
 ///                fit best; empty: closed forms, which know the effects and the keys that they name.
 /// @throws InputError if fewer than 12 readings have both values.
 TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,

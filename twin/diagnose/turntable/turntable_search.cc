@@ -67,9 +67,9 @@ std::vector<EffectSettings> Rescaled(const std::vector<EffectSettings>& ripples,
   return best;
 }
 
-void FollowRipples(const std::vector<Reading>& readings, const Scenario& scenario,
-                   const model::FollowMaker& follow, const std::vector<std::string>& struck,
-                   const AnalysisOptions& options, SearchedTurntable& searched) {
+void FollowRipples(const std::vector<Reading>& readings, const Scenario& scenario, const model::FollowMaker& follow,
+                   const std::vector<std::string>& struck, const AnalysisOptions& options,
+                   SearchedTurntable& searched) {
   constexpr double kSlight = 0.1;
   constexpr int kMostRounds = 3;
   for (int round = 0; round < kMostRounds; ++round) {

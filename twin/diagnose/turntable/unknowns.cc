@@ -167,8 +167,8 @@ void AddInterpolation(Columns& columns, double amplitude_rad, const SignalContex
   }
 }
 
-/// A zero that follows a temperature is told from the thermometer's, whose noise looks like a wrong coefficient: by the
-/// share that noise has of what was logged (errors in variables).
+/// A zero that follows a temperature is told from the thermometer's, whose noise looks like a wrong coefficient: by
+/// the share that noise has of what was logged (errors in variables).
 void AddThermometer(Columns& columns, const SignalContext& context, const Scenario& scenario) {
   if (!context.HasTemperature()) return;
   const Eigen::Vector2d per_K = ZeroPerKelvin_rad(scenario);

@@ -52,8 +52,8 @@ void FillOrders(const Eigen::VectorXd& th_rad, int first_column, Eigen::MatrixXd
   }
 }
 
-Eigen::MatrixXd RowsOf(const PassGroup& group, std::size_t p, const ModelColumns& columns, const Eigen::VectorXd& th_rad,
-                       int highest) {
+Eigen::MatrixXd RowsOf(const PassGroup& group, std::size_t p, const ModelColumns& columns,
+                       const Eigen::VectorXd& th_rad, int highest) {
   const ComparedPass& pass = group.passes[p];
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(th_rad.size(), columns.before_orders + 2 * highest);
   rows.col(static_cast<Eigen::Index>(p)).setOnes();

@@ -81,7 +81,8 @@ class Separation {
   }
 
   double Widening(int order, const hob::OrderSolution& solution) {
-    if (solution.dof <= 0 || ChiSquaredExceedance(solution.chi2, solution.dof) > kContradiction / highest_) return 1.0;
+    if (solution.dof <= 0 || ChiSquaredExceedance(solution.chi2, solution.dof) > kContradiction / highest_)
+      return 1.0;
     curves_.disagreeing.push_back(order);
     return solution.chi2 / solution.dof;
   }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "twin/core/units.h"
 #include "twin/core/distributions.h"
+#include "twin/core/units.h"
 #include "twin/separate/statistics.h"
 #include "twin/separate/turntable/lost_harmonics.h"
 

@@ -6,7 +6,6 @@
 namespace twinbench::separate::turntable {
 namespace {
 
-
 TurntableStop StopOf(const Reading& r) {
   return {r.setup,
           r.pass,

@@ -31,7 +31,9 @@ class Counters {
   CounterSamples Empty();
 
   /// Error of the table's ring in its own angle, where nothing but the ring is wrong.
-  double TableRingError_rad(double ring_rad) const { return encoders_.TableRing(0.0).Scale_rad(ring_rad) - ring_rad; }
+  double TableRingError_rad(double ring_rad) const {
+    return encoders_.TableRing(0.0).Scale_rad(ring_rad) - ring_rad;
+  }
 
  private:
   double TableShown_rad() const;

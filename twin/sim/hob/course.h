@@ -10,11 +10,11 @@ namespace twinbench::sim {
 
 /// One sample of a record: how the machine ran, and what effects add to what is shown.
 struct HobStop {
-  double hob_shown_rad = kNaN;   // as recorded, but for what effects add
-  double zero_rad = 0.0;         // of the table, where the hob's encoder shows zero
+  double hob_shown_rad = kNaN;  // as recorded, but for what effects add
+  double zero_rad = 0.0;        // of the table, where the hob's encoder shows zero
   double hob_speed_rad_s = 0.0;
-  int direction = 1;             // in which the wheel drags the table
-  CounterSample added;           // by effects
+  int direction = 1;    // in which the wheel drags the table
+  CounterSample added;  // by effects
 };
 
 struct HobCourse {

@@ -15,7 +15,7 @@ using units::arcsec, units::um;
 
 /// What disturbances add to one sample [rad].
 struct HobExtra {
-  double transmission_rad = 0.0;                      // motion of the table against the hob
+  double transmission_rad = 0.0;                          // motion of the table against the hob
   double table_encoder_rad = 0.0, hob_encoder_rad = 0.0;  // shown
   double interferometer_rad = 0.0;
 };
@@ -39,8 +39,7 @@ const std::vector<HobPoint>& HobPoints() {
       {Angle("interferometer"), [](E& e) -> double& { return e.interferometer_rad; }},
       {Angle("worm.backlash"), nullptr, [](S& s) -> double& { return s.transmission.backlash_rad; }},
       {{"table.friction", "Nm", 1.0, 1.0}, nullptr, [](S& s) -> double& { return s.transmission.friction_Nm; }},
-      {Length("table_encoder.eccentricity"),
-       nullptr,
+      {Length("table_encoder.eccentricity"), nullptr,
        [](S& s) -> double& { return s.table_encoder.eccentricity_m; }},
       {Length("hob_encoder.eccentricity"), nullptr, [](S& s) -> double& { return s.hob_encoder.eccentricity_m; }}};
   return points;
@@ -89,13 +88,14 @@ class HobFollow : public PointwiseFollow<HobExtra> {
     const double hob_shown_rad = stop.hob_shown_rad - extra.hob_encoder_rad;
     if (!std::isfinite(hob_shown_rad) || !std::isfinite(r.head_rad)) return Eigen::RowVector2d::Constant(kNaN);
     const double hob_rad = encoders_.Hob_rad(hob_shown_rad) + stop.zero_rad / ratio;
-    const double table_rad = train_.Table_rad(hob_rad, stop.hob_speed_rad_s, stop.direction) + extra.transmission_rad;
+    const double table_rad =
+        train_.Table_rad(hob_rad, stop.hob_speed_rad_s, stop.direction) + extra.transmission_rad;
     const double scale_rad = rings_.at(r.head_rad).Scale_rad(table_rad);
     const double table_shown_rad =
         encoders_.TableShown_rad(scale_rad, r.head_rad) + stop.added.table_encoder_rad + extra.table_encoder_rad;
-    return {table_shown_rad - ratio * r.reference_rad, path_.Interferometer_rad(table_rad, hob_rad) +
-                                                           stop.added.interferometer_rad +
-                                                           extra.interferometer_rad};
+    return {
+        table_shown_rad - ratio * r.reference_rad,
+        path_.Interferometer_rad(table_rad, hob_rad) + stop.added.interferometer_rad + extra.interferometer_rad};
   }
 
   HobPath path_;

@@ -11,8 +11,8 @@
 
 namespace twinbench::sim {
 
-/// The hobbing machine as its scenario and effects make it, at whatever moment it is asked about: no clock, no noise.
-/// The live machine and the twin that follows a record share it, so that both are one physics.
+/// The hobbing machine as its scenario and effects make it, at whatever moment it is asked about: no clock, no
+/// noise. The live machine and the twin that follows a record share it, so that both are one physics.
 class HobPath {
  public:
   explicit HobPath(const Scenario& nominal);

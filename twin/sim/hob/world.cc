@@ -22,7 +22,8 @@ HobWorld::HobWorld(const Scenario& nominal)
       piece_(PieceOf(actual())) {}
 
 void HobWorld::Run(double hob_speed_rad_s, Duration ramp) {
-  if (hob_speed_rad_s != 0.0) direction_ = (hob_speed_rad_s > 0.0) == (actual().transmission.Ratio() > 0.0) ? 1 : -1;
+  if (hob_speed_rad_s != 0.0)
+    direction_ = (hob_speed_rad_s > 0.0) == (actual().transmission.Ratio() > 0.0) ? 1 : -1;
   hob_speed_rad_s_ = hob_speed_rad_s;
   constexpr Duration kRinging = std::chrono::seconds(5);  // 20 Hz servo, torsion with 1 % of damping: long over
   at_rest_ = now_ + ramp + kRinging;

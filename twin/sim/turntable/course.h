@@ -19,7 +19,7 @@ struct TurntableStop {
   TurntableMoment moment;
   mechanics::StackState axes;
   double above_K = 0.0;
-  std::size_t mounting = 0;        // running number
+  std::size_t mounting = 0;  // running number
   int tooth = 0;
   double beside_tooth_rad = 0.0;  // of the multi-tooth table, where a record has it between teeth
   bool known = true;              // the record says where the tables stood
@@ -28,12 +28,13 @@ struct TurntableStop {
 /// The course of a record: the turntable is sent the recorded way (every pass from behind its first stop, a sweep
 /// from twice its reach, as the procedure does), mounted where the set-up changes, and as warm as the record says.
 struct TurntableCourse {
-  std::vector<TurntableStop> stops;          // one a reading
+  std::vector<TurntableStop> stops;  // one a reading
   std::vector<TurntableMounting> mountings;
-  std::vector<std::string> unfixed;          // what the record does not say and what was taken instead
+  std::vector<std::string> unfixed;  // what the record does not say and what was taken instead
 };
 
-/// @param actual  Effects included. Of fidelity "bullet" the linear model is asked: once the servo is quiet they are
+/// @param actual  Effects included. Of fidelity "bullet" the linear model is asked: once the servo is quiet they
+/// are
 ///                the same to a hundredth of an arcsecond.
 TurntableCourse FollowCourse(const std::vector<Reading>& record, const Scenario& actual);
 

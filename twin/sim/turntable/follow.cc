@@ -54,7 +54,9 @@ std::vector<TurntablePoint> OfInstrument() {
   using S = Scenario;
   return {
       {{"autocollimator.roll", "mrad", mrad, 1e-4}, nullptr, [](S& s) -> double& { return s.collimator.roll_rad; }},
-      {{"autocollimator.gain", "1", 1.0, 1e-5}, nullptr, [](S& s) -> double& { return s.autocollimator.gain_error; }},
+      {{"autocollimator.gain", "1", 1.0, 1e-5},
+       nullptr,
+       [](S& s) -> double& { return s.autocollimator.gain_error; }},
       {{"autocollimator.at_edge", "arcsec", arcsec, 1e-2 * arcsec},
        nullptr,
        [](S& s) -> double& { return s.collimator.error_at_edge_rad; }},

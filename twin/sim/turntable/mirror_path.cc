@@ -78,8 +78,7 @@ AutocollimatorReading MirrorPath::Look(const TurntableMoment& moment, const mech
                                        const TurntableExtra& extra) {
   double yaw_rad = extra.yaw_rad;
   for (const auto& effect : effects_) yaw_rad += effect->Yaw_rad(moment);
-  const auto image =
-      optics_.Look(stand_.MirrorPose(axes.target_rad, yaw_rad, axes.target_bearing, extra.mirror));
+  const auto image = optics_.Look(stand_.MirrorPose(axes.target_rad, yaw_rad, axes.target_bearing, extra.mirror));
   if (image.status != optics::AutocollimatorStatus::kOk) return {kNaN, kNaN, StatusOf(image.status)};
   const Eigen::Vector2d seen_rad = Eigen::Vector2d(image.x_rad, image.y_rad) + Zero_rad(above_K + extra.warmer_K);
   const Eigen::Vector2d empirical_rad(empirical_x_.At_rad(moment.reading), empirical_y_.At_rad(moment.reading));

@@ -14,8 +14,8 @@ namespace twinbench::sim {
 /// What disturbances add to one reading of the turntable bench.
 struct TurntableExtra {
   MirrorExtra mirror;
-  double yaw_rad = 0.0;      // of the turntable's rotor
-  double warmer_K = 0.0;     // than the thermometer says
+  double yaw_rad = 0.0;                                 // of the turntable's rotor
+  double warmer_K = 0.0;                                // than the thermometer says
   Eigen::Vector2d shown_rad = Eigen::Vector2d::Zero();  // behind the optics
 };
 
