@@ -4,7 +4,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/signals.h"
-#include "twin/diagnose/encoder/wave_grid.h"
+#include "twin/model/wave_grid.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -63,10 +63,10 @@ SignalContext Steps(const std::vector<double>& angle_deg, const std::vector<int>
 TEST(WaveGrid, IsTheWaveOfEachGridPoint) {
   const Eigen::VectorXd phase = Eigen::VectorXd::LinSpaced(50, -3.0, 125.0);  // twenty turns
   constexpr int kCount = 5972;
-  const WaveGrid grid(phase, 0.3, 0.01, kCount);
+  const model::WaveGrid grid(phase, 0.3, 0.01, kCount);
   for (const int g : {0, 1, 77, 78, 79, 3000, kCount - 1})
     EXPECT_LT((grid.At(g) - Wave((0.3 + 0.01 * g) * phase)).cwiseAbs().maxCoeff(), 1e-11) << g;
-  EXPECT_LT((WaveGrid(phase, 2.0, 1.0, 1).At(0) - Wave(2.0 * phase)).norm(), 1e-12);
+  EXPECT_LT((model::WaveGrid(phase, 2.0, 1.0, 1).At(0) - Wave(2.0 * phase)).norm(), 1e-12);
 }
 
 TEST(Sense, IsThatOfTheLastMotionWhereItHoldsAtRest) {

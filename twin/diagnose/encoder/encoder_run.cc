@@ -10,7 +10,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/noise_estimate.h"
-#include "twin/diagnose/engine/schedule.h"
+#include "twin/model/course.h"
 #include "twin/measure/angle_comparison.h"
 
 namespace twinbench::diagnose::encoder {
@@ -101,7 +101,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   LinearRun& run = encoder.run;
   run.bench = scenario.bench;
   const std::vector<Reading> used = Chosen(readings, comparison.used);
-  run.schedule = ScheduleOf(used);
+  run.schedule = model::CourseOf(used);
   if (scenario.encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);
   run.channels = {"angle"};
   run.unit = "deg";

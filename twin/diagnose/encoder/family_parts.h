@@ -22,20 +22,10 @@ inline constexpr double kPriorToBeSet = -1.0;
 /// @param plausible_rad  Size of a trace in the readings that is worth a candidate.
 std::vector<Family> NamedFamilies(const Context& context, double plausible_rad);
 
-/// @param covered  Named effects in the catalogue, whose shapes are not to come twice.
-std::vector<Family> UnknownFamilies(const Context& context, const std::vector<std::string>& covered);
+/// Structure without a name.
+std::vector<Family> UnknownFamilies(const EncoderRun& encoder, double plausible_rad);
 
 /// Whole orders from `first` to `last`.
 std::vector<double> WholeOrders(int first, int last);
-
-/// Length of the run in angle, in turns, and in time; never zero.
-double Turns(const SignalContext& context);
-double Duration_s(const SignalContext& context);
-
-/// True if time and angle went together all the time, as in a single pass: then neither can be told from the other.
-bool TimeFollowsAngle(const SignalContext& context);
-
-/// Each row of `columns` times the entry of `factor`.
-Eigen::MatrixXd Times(const Eigen::MatrixXd& columns, const Eigen::VectorXd& factor);
 
 }  // namespace twinbench::diagnose::encoder

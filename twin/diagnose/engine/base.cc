@@ -11,4 +11,13 @@ Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& series, int channels) {
   return rows;
 }
 
+Eigen::MatrixXd PatternMap(const Eigen::MatrixXd& pattern, Eigen::Index k) {
+  Eigen::MatrixXd map = Eigen::MatrixXd::Zero(pattern.rows() * k, pattern.cols() * k);
+  for (Eigen::Index c = 0; c < pattern.rows(); ++c) {
+    for (Eigen::Index p = 0; p < pattern.cols(); ++p)
+      map.block(c * k, p * k, k, k).diagonal().setConstant(pattern(c, p));
+  }
+  return map;
+}
+
 }  // namespace twinbench::diagnose

@@ -9,6 +9,9 @@ namespace twinbench::diagnose {
 /// 0 first.
 Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& series, int channels);
 
+/// From columns of OnEachChannel (k a channel) to k of each column of a pattern (channels x patterns): its weights.
+Eigen::MatrixXd PatternMap(const Eigen::MatrixXd& pattern, Eigen::Index k);
+
 /// Signatures that several families are combinations of: the same series in time on each of the channels.
 struct Base {
   int grid = 1;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "twin/core/reading.h"
+#include "twin/model/course.h"
 
 /// A run as the engine sees it: no bench, only readings x channels, what the model predicted, and which directions
 /// of the data the free unknowns can absorb.
@@ -14,17 +14,7 @@ namespace twinbench::diagnose {
 /// A row whose prediction has a larger variance than this, in units of the row's noise, is not judged by it.
 inline constexpr double kDeterminedVariance = 100.0;
 
-/// Under which circumstances each used reading was taken; one entry a reading, NaN where it was not recorded.
-struct Schedule {
-  std::vector<int> reading;  // running number in the file
-  std::vector<int> setup, pass, direction, position;
-  std::vector<Phase> phase;
-  Eigen::VectorXd time_s, dwell_s, temperature_degC;
-  Eigen::VectorXd target_rad, reference_rad;  // unwrapped; an angle bench has only the reference
-  Eigen::VectorXd velocity_rad_s;             // angle bench in motion
-
-  int Readings() const { return static_cast<int>(reading.size()); }
-};
+using Schedule = model::Course;  // of the used readings
 
 /// A way in which a body's motion shows in all channels of one reading: yaw of the grating, lateral shift, ...
 struct Pattern {

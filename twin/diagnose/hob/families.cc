@@ -5,7 +5,6 @@
 #include <set>
 
 #include "twin/core/units.h"
-#include "twin/diagnose/hob/collector.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
@@ -38,16 +37,6 @@ bool IsDoubled(const Family& family, const SignalContext& c) {
 
 }  // namespace
 
-std::vector<Family> UnknownFamilies(const Common& common) {
-  Collector collect(common);
-  AddByAngle(collect);
-  AddByDirection(collect);
-  AddInTime(collect);
-  AddByMounting(collect);
-  AddBySpeed(collect);
-  return collect.Take();
-}
-
 std::vector<Family> Families(const HobRun& hob, const std::vector<std::string>& struck) {
   const auto context = std::make_shared<const SignalContext>(hob.context);
   const Common common = CommonOf(context, LargestOrder(*context));
@@ -57,12 +46,12 @@ std::vector<Family> Families(const HobRun& hob, const std::vector<std::string>& 
   AddChain(common, families);
   AddTime(common, families);
   std::erase_if(families, [&](const Family& family) { return Has(struck, family.effect); });
-  std::ranges::move(UnknownFamilies(common), std::back_inserter(families));
   const double plausible_rad = std::max(kPlausible_rad, 3.0 * hob.run.sigma.minCoeff());
   for (Family& family : families) {
     SetPriors(*context, plausible_rad, family);
     if (IsDoubled(family, *context)) family.most_probable = kMostProbableDoubled;
   }
+  std::ranges::move(UnknownFamilies(hob, common, plausible_rad), std::back_inserter(families));
   return families;
 }
 

@@ -5,7 +5,7 @@
 
 #include "twin/benches/hob_transmission/format.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/encoder/wave_grid.h"
+#include "twin/model/wave_grid.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
@@ -34,7 +34,7 @@ SharedBase BaseOf(const Context& context, int grid, const Series& series) {
 
 SharedBase OrdersOf(const Context& context, const Eigen::VectorXd& angle_rad, int first, int count,
                     const Eigen::VectorXd& factor) {
-  const auto waves = std::make_shared<const encoder::WaveGrid>(angle_rad, first, 1.0, count);
+  const auto waves = std::make_shared<const model::WaveGrid>(angle_rad, first, 1.0, count);
   return BaseOf(context, count, [waves, factor](int g) -> Eigen::MatrixXd {
     if (factor.size() == 0) return waves->At(g);
     return waves->At(g).array().colwise() * factor.array();
@@ -92,56 +92,6 @@ Parameters WaveParameters(const std::string& effect, const std::string& shape_na
   };
 }
 
-std::vector<double> Onsets(const SignalContext& c) {
-  constexpr std::size_t kMost = 1500;
-  const std::vector<int>& readings = c.schedule.reading;
-  const std::size_t every = 1 + readings.size() / kMost;
-  std::vector<double> onsets;
-  for (std::size_t i = every / 2 + 1; i < readings.size(); i += every) onsets.push_back(readings[i]);
-  return onsets;
-}
-
-SharedBase StepsOf(const Context& context, const std::vector<double>& onsets) {
-  return BaseOf(context, static_cast<int>(onsets.size()), [context, onsets](int g) {
-    return Eigen::MatrixXd(StepSignal(*context, onsets[static_cast<std::size_t>(g)]));
-  });
-}
-
-std::vector<double> ToneFrequencies_Hz(const SignalContext& c) {
-  constexpr int kMost = 1500;
-  constexpr double kSpacing = 0.7;  // of the resolution: a wave between two keeps four fifths
-  const double longest_s = std::max(SinceMounting_s(c).maxCoeff(), 1e-6);
-  const Schedule rows = Grouped(c.schedule, c.groups);
-  std::vector<double> steps_s;
-  for (int i = 1; i < rows.Readings(); ++i) steps_s.push_back(rows.time_s[i] - rows.time_s[i - 1]);
-  std::nth_element(steps_s.begin(), steps_s.begin() + std::ssize(steps_s) / 2, steps_s.end());
-  const double last_Hz = 0.5 / std::max(steps_s[steps_s.size() / 2], 1e-6), first_Hz = 3.0 / longest_s;
-  const double step_Hz = std::max(kSpacing / longest_s, (last_Hz - first_Hz) / kMost);
-  std::vector<double> frequencies_Hz;
-  for (int k = 0; first_Hz + k * step_Hz < last_Hz; ++k) frequencies_Hz.push_back(first_Hz + k * step_Hz);
-  return frequencies_Hz;
-}
-
-Eigen::MatrixXd InEachSetUp(const Eigen::MatrixXd& series, const Eigen::MatrixXd& setups) {
-  Eigen::MatrixXd columns(series.rows(), series.cols() * setups.cols());
-  for (Eigen::Index k = 0; k < setups.cols(); ++k)
-    columns.middleCols(k * series.cols(), series.cols()) = series.array().colwise() * setups.col(k).array();
-  return columns;
-}
-
-Eigen::MatrixXd Tone(const SignalContext& c, double frequency_Hz) {
-  return InEachSetUp(Wave(2.0 * units::kPi * frequency_Hz * c.schedule.time_s), SetUps(c));
-}
-
-SharedBase TonesOf(const Context& context, const std::vector<double>& frequencies_Hz) {
-  const int count = static_cast<int>(frequencies_Hz.size());
-  const double step_Hz = count > 1 ? frequencies_Hz[1] - frequencies_Hz[0] : 1.0;
-  const auto waves = std::make_shared<const encoder::WaveGrid>(2.0 * units::kPi * context->schedule.time_s,
-                                                               frequencies_Hz[0], step_Hz, count);
-  return BaseOf(context, count,
-                [waves, setups = SetUps(*context)](int g) { return InEachSetUp(waves->At(g), setups); });
-}
-
 /// Orders by turns of the hob that the samples resolve, and the means over groups keep to some extent.
 int HobOrders(const SignalContext& c) {
   constexpr double kKept = 0.3;
@@ -158,10 +108,10 @@ Common CommonOf(const Context& context, int largest_order) {
   common.ring_orders = OrdersOf(context, context->ring_rad, 1, last);
   common.table_orders = OrdersOf(context, context->table_rad, 1, last);
   common.hob_orders = OrdersOf(context, context->hob_rad, 1, HobOrders(*context));
-  common.frequencies_Hz = ToneFrequencies_Hz(*context);
-  if (!common.frequencies_Hz.empty()) common.tones = TonesOf(context, common.frequencies_Hz);
-  common.onsets = Onsets(*context);
-  common.steps = StepsOf(context, common.onsets);
+  common.series = TimeSeriesOf(
+      context->schedule, context->schedule.setup, context->channels,
+      [context](const Eigen::MatrixXd& samples) { return context->groups.Mean(samples); },
+      Grouped(context->schedule, context->groups).time_s);
   return common;
 }
 

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "twin/diagnose/engine/catalogue_parts.h"
-#include "twin/diagnose/hob/signals.h"
+#include "twin/diagnose/engine/time_series.h"
+#include "twin/diagnose/hob/hob_run.h"
 
 /// What the makers of families have in common; only they need it.
 namespace twinbench::diagnose::hob {
@@ -57,20 +58,11 @@ std::vector<Amplitude> WaveAmplitudes(const std::string& effect);
 /// Amplitude and phase of the catalogue from those; before them the shape, if it is named.
 Parameters WaveParameters(const std::string& effect, const std::string& shape_name = "");
 
-/// Columns of a series with amplitudes of their own in every set-up: samples x (series x set-ups).
-Eigen::MatrixXd InEachSetUp(const Eigen::MatrixXd& series, const Eigen::MatrixXd& setups);
-
-/// A wave in time with an amplitude and a phase of its own in every set-up: nothing swings on through a mounting.
-Eigen::MatrixXd Tone(const SignalContext& context, double frequency_Hz);
-
 /// Columns that named and unknown families share.
 struct Common {
   Context context;
   SharedBase ring_orders, table_orders, hob_orders;  // orders 1, 2, ... of each angle
-  std::vector<double> frequencies_Hz;                // a little closer than one mounting resolves
-  SharedBase tones;                                  // null if there are none
-  std::vector<double> onsets;                        // readings at which a step is looked for
-  SharedBase steps;
+  TimeSeries series;                                 // nothing swings on through a mounting
 };
 Common CommonOf(const Context& context, int largest_order);
 
@@ -80,7 +72,7 @@ void AddHobSignals(const Context& context, std::vector<Family>& families);
 void AddChain(const Common& common, std::vector<Family>& families);
 void AddTime(const Common& common, std::vector<Family>& families);
 
-/// Generic shapes. One that a named cause has exactly is less likely to be something else: it counts less.
-std::vector<Family> UnknownFamilies(const Common& common);
+/// Structure without a name.
+std::vector<Family> UnknownFamilies(const HobRun& hob, const Common& common, double plausible_rad);
 
 }  // namespace twinbench::diagnose::hob

@@ -9,7 +9,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/followed.h"
-#include "twin/diagnose/engine/schedule.h"
+#include "twin/model/course.h"
 #include "twin/diagnose/hob/disturbed.h"
 #include "twin/diagnose/hob/hob_noise.h"
 #include "twin/diagnose/hob/known_signals.h"
@@ -77,7 +77,7 @@ double ShareWatched(const std::vector<Reading>& used) {
 
 SignalContext ContextOf(const std::vector<Reading>& used, const Scenario& scenario) {
   SignalContext c;
-  c.schedule = ScheduleOf(used);
+  c.schedule = model::CourseOf(used);
   const Eigen::VectorXd shown_rad = Column(used, &Reading::measured_rad),
                         head_rad = Column(used, &Reading::head_rad);
   const bool from_origin = scenario.hob_procedure.encoder_zero == "table_origin";

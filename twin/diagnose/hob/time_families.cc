@@ -44,8 +44,8 @@ Family SteadyDrift(const Context& context, Seen seen) {
 Family Slip(const Common& common, const std::string& where, double factor) {
   Family family = NamedFamily("slip", where);
   family.amplitudes = {AmplitudeOf("slip", "step")};
-  family.shapes = {ShapeOf("slip", "at_reading", common.onsets)};
-  Use(common.context, {common.steps, Seen::kByEncoders, factor}, family);
+  family.shapes = {ShapeOf("slip", "at_reading", common.series.onsets)};
+  Use(common.context, {common.series.steps, Seen::kByEncoders, factor}, family);
   const SeriesAt step = [context = common.context](const Eigen::VectorXd& shape) {
     return Eigen::MatrixXd(StepSignal(*context, shape[0]));
   };
@@ -77,15 +77,15 @@ Parameters ToneParameters() {
 Family ToneFamily(const Common& common, Seen seen) {
   const Context& context = common.context;
   Family family = NamedFamily("tone");
-  family.amplitudes.assign(static_cast<std::size_t>(common.tones->series(0).cols()),
+  family.amplitudes.assign(static_cast<std::size_t>(common.series.tones->series(0).cols()),
                            AmplitudeOf("tone", "amplitude"));
-  Shape frequency = ShapeOf("tone", "frequency", common.frequencies_Hz);
-  frequency.lower = 0.5 * common.frequencies_Hz.front();
-  frequency.upper = 1.1 * common.frequencies_Hz.back();
+  Shape frequency = ShapeOf("tone", "frequency", common.series.frequencies_Hz);
+  frequency.lower = 0.5 * common.series.frequencies_Hz.front();
+  frequency.upper = 1.1 * common.series.frequencies_Hz.back();
   family.shapes = {frequency};
-  Use(context, {common.tones, seen}, family);
+  Use(context, {common.series.tones, seen}, family);
   family.at = RowsAt(
-      context, [context](const Eigen::VectorXd& f_Hz) { return Tone(*context, f_Hz[0]); }, seen);
+      context, [series = common.series](const Eigen::VectorXd& f_Hz) { return series.ToneAt(f_Hz[0]); }, seen);
   family.parameters = ToneParameters();
   return family;
 }
@@ -96,7 +96,7 @@ void AddTime(const Common& common, std::vector<Family>& families) {
   for (const Seen seen : Ways(*common.context)) {
     families.push_back(SteadyDrift(common.context, seen));
     families.push_back(Drift(common.context, seen));
-    if (common.tones) families.push_back(ToneFamily(common, seen));
+    if (common.series.tones) families.push_back(ToneFamily(common, seen));
   }
   families.push_back(Slip(common, "table", 1.0));
   families.push_back(Slip(common, "hob", -common.context->train.Ratio()));

@@ -4,24 +4,17 @@
 #include <vector>
 
 #include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/time_series.h"
 #include "twin/diagnose/rotary/rotary_run.h"
 
 /// Candidates for the rotary bench: every effect of the catalogue that leaves a linear trace, and generic shapes.
 namespace twinbench::diagnose::rotary {
 
-/// Time series on each of the channels, shared by the named and the generic families that combine them.
-struct SharedSeries {
-  std::shared_ptr<const Base> tone, step;
-  std::vector<double> frequency_Hz;
-  std::vector<int> onset;
-};
-SharedSeries MakeSharedSeries(const RotaryRun& rotary);
-
 /// Families keep references to `rotary` and `context`, which must outlive them.
 std::vector<Family> NamedFamilies(const RotaryRun& rotary, const SignalContext& context, const Scenario& scenario,
-                                  const SharedSeries& series);
+                                  const TimeSeries& series);
 std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext& context,
-                                    const SharedSeries& series);
+                                    const TimeSeries& series);
 
 /// With the published equations as the model: which of their sensitivities are off (yaw, tilt).
 std::vector<Family> ModelFamilies(const RotaryRun& rotary);
@@ -32,8 +25,5 @@ struct Place {
   Eigen::VectorXd weight;
 };
 std::vector<Place> PlacesOf(const Eigen::Matrix4d& shown_by_motion);
-
-/// Map from k signals on each channel to k amplitudes of a weighted pattern: (channels k) x k.
-Eigen::MatrixXd PatternMap(const Eigen::VectorXd& weight, int signals);
 
 }  // namespace twinbench::diagnose::rotary

@@ -34,7 +34,7 @@ ParameterEstimate Plain(const Shape& shape, double value, double u);
 
 /// Causes that are a wrong property of the bench; causes that are heard on top of any signal.
 void AddBenchFamilies(const RotaryRun& rotary, const Scenario& scenario, std::vector<Family>& families);
-void AddTones(const RotaryRun& rotary, const SharedSeries& series, std::vector<Family>& families);
-void AddSlips(const RotaryRun& rotary, const SharedSeries& series, std::vector<Family>& families);
+void AddTones(const RotaryRun& rotary, const TimeSeries& series, std::vector<Family>& families);
+void AddSlips(const RotaryRun& rotary, const TimeSeries& series, std::vector<Family>& families);
 
 }  // namespace twinbench::diagnose::rotary

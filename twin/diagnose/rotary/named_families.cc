@@ -97,7 +97,7 @@ void AddElectronicFamilies(const SignalContext& context, std::vector<Family>& fa
 }  // namespace
 
 std::vector<Family> NamedFamilies(const RotaryRun& rotary, const SignalContext& context, const Scenario& scenario,
-                                  const SharedSeries& series) {
+                                  const TimeSeries& series) {
   std::vector<Family> families;
   AddBenchFamilies(rotary, scenario, families);
   AddTimeFamilies(context, rotary.run.schedule, families);

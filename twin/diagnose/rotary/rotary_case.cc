@@ -45,7 +45,8 @@ RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& sce
                        const std::vector<std::string>& struck, const std::vector<EffectSettings>& about)
     : rotary_(BuildRun(readings, With(scenario, about), model)),
       context_(ContextOf(rotary_, scenario, rotary_.run.Predicted())) {
-  const SharedSeries series = MakeSharedSeries(rotary_);
+  const Schedule& s = rotary_.run.schedule;
+  const TimeSeries series = TimeSeriesOf(s, std::vector<int>(s.reading.size(), 0), kChannels);
   families_ = NamedFamilies(rotary_, context_, With(scenario, about), series);
   if (model.published) {
     std::vector<Family> of_model = ModelFamilies(rotary_);

@@ -6,7 +6,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/projector.h"
-#include "twin/diagnose/engine/schedule.h"
+#include "twin/model/course.h"
 #include "twin/diagnose/rotary/free_parameters.h"
 #include "twin/diagnose/rotary/linearisation.h"
 #include "twin/diagnose/rotary/rotary_readings.h"
@@ -42,7 +42,7 @@ void SetBench(const Scenario& scenario, bool published, RotaryRun& rotary) {
 void SetReadings(const std::vector<Reading>& used, const Scenario& scenario, RotaryRun& rotary) {
   LinearRun& run = rotary.run;
   run.bench = scenario.bench;
-  run.schedule = ScheduleOf(used);
+  run.schedule = model::CourseOf(used);
   run.channels.assign(kChannelNames.begin(), kChannelNames.end());
   run.unit = "um";
   run.to_SI = units::um;

@@ -5,6 +5,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/rotary/family_parts.h"
 #include "twin/diagnose/rotary/signals.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::rotary {
 namespace {
@@ -12,15 +13,15 @@ namespace {
 using units::um;
 
 /// A tone with an amplitude and a phase of its own on every channel.
-Family FreeTone(const RotaryRun& rotary, const SharedSeries& series) {
+Family FreeTone(const RotaryRun& rotary, const TimeSeries& series) {
   const Amplitude amplitude = AmplitudeOf("tone", "amplitude");
   Family family = Named("tone", "all", std::vector<Amplitude>(2 * kChannels, amplitude));
-  family.shapes = {ShapeOf("tone", "frequency", series.frequency_Hz)};
-  family.grid = series.tone->grid;
-  family.base = series.tone;
+  family.shapes = {ShapeOf("tone", "frequency", series.frequencies_Hz)};
+  family.grid = series.tones->grid;
+  family.base = series.tones;
   family.map = Eigen::MatrixXd::Identity(2 * kChannels, 2 * kChannels);
   family.at = [&rotary](const Eigen::VectorXd& shape) {
-    return OnEachChannel(ToneSignal(rotary.run.schedule, shape[0]), kChannels);
+    return OnEachChannel(model::Tone(rotary.run.schedule.time_s, shape[0]), kChannels);
   };
   family.parameters = [amplitude, f = family.shapes[0]](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
                                                         const Eigen::MatrixXd& cov) {
@@ -33,58 +34,7 @@ Family FreeTone(const RotaryRun& rotary, const SharedSeries& series) {
   return family;
 }
 
-/// About two grid points within the width of a line, up to the frequency of the readings.
-std::vector<double> ToneGrid(const Schedule& s) {
-  constexpr int kMostFrequencies = 1200;
-  const double duration_s = s.time_s.maxCoeff() - s.time_s.minCoeff();
-  std::vector<double> steps_s;
-  for (Eigen::Index i = 1; i < s.time_s.size(); ++i) steps_s.push_back(s.time_s[i] - s.time_s[i - 1]);
-  std::nth_element(steps_s.begin(), steps_s.begin() + std::ssize(steps_s) / 2, steps_s.end());
-  const double usual_s = steps_s[steps_s.size() / 2];
-  const double width_Hz = 0.6 / duration_s, top_Hz = 0.5 / usual_s;
-  const int count = std::clamp(static_cast<int>(top_Hz / width_Hz), 1, kMostFrequencies);
-  return Even(3.0 * width_Hz, std::max(top_Hz, 4.0 * width_Hz), std::max(2, count));
-}
-
 }  // namespace
-
-SharedSeries MakeSharedSeries(const RotaryRun& rotary) {
-  const Schedule& s = rotary.run.schedule;
-  SharedSeries series;
-  series.frequency_Hz = ToneGrid(s);
-  // Within a set-up only: a step at its first reading is a constant.
-  for (std::size_t i = 1; i < s.reading.size(); ++i) {
-    if (s.setup[i] == s.setup[i - 1] && s.phase[i] == s.phase[i - 1]) series.onset.push_back(s.reading[i]);
-  }
-  constexpr std::size_t kMostOnsets = 1000;
-  if (series.onset.size() > kMostOnsets) {
-    std::vector<int> thinned;
-    for (std::size_t k = 0; k < kMostOnsets; ++k)
-      thinned.push_back(series.onset[k * series.onset.size() / kMostOnsets]);
-    series.onset = thinned;
-  }
-  auto tone = std::make_shared<Base>();
-  tone->grid = static_cast<int>(std::ssize(series.frequency_Hz));
-  tone->channels = kChannels;
-  tone->series = [&s, f = series.frequency_Hz](int g) { return ToneSignal(s, f[static_cast<std::size_t>(g)]); };
-  series.tone = tone;
-  auto step = std::make_shared<Base>();
-  step->grid = static_cast<int>(std::ssize(series.onset));
-  step->channels = kChannels;
-  step->series = [&s, onset = series.onset](int g) {
-    return Eigen::MatrixXd(StepSignal(s, onset[static_cast<std::size_t>(g)]));
-  };
-  series.step = step;
-  return series;
-}
-
-Eigen::MatrixXd PatternMap(const Eigen::VectorXd& weight, int signals) {
-  Eigen::MatrixXd map = Eigen::MatrixXd::Zero(weight.size() * signals, signals);
-  for (Eigen::Index c = 0; c < weight.size(); ++c) {
-    map.middleRows(c * signals, signals) = weight[c] * Eigen::MatrixXd::Identity(signals, signals);
-  }
-  return map;
-}
 
 std::vector<Place> PlacesOf(const Eigen::Matrix4d& shown_by_motion) {
   std::vector<Place> places;
@@ -98,25 +48,26 @@ std::vector<Place> PlacesOf(const Eigen::Matrix4d& shown_by_motion) {
   return places;
 }
 
-void AddTones(const RotaryRun& rotary, const SharedSeries& series, std::vector<Family>& families) {
+void AddTones(const RotaryRun& rotary, const TimeSeries& series, std::vector<Family>& families) {
   const auto add = [&](const std::string& where, const Eigen::Vector4d& weight) {
     const Amplitude amplitude = AmplitudeOf("tone", "amplitude");
     Family family = Named("tone", where, {amplitude, amplitude});
-    family.shapes = {ShapeOf("tone", "frequency", series.frequency_Hz)};
-    family.grid = series.tone->grid;
-    family.base = series.tone;
+    family.shapes = {ShapeOf("tone", "frequency", series.frequencies_Hz)};
+    family.grid = series.tones->grid;
+    family.base = series.tones;
     family.map = PatternMap(weight, 2);
     family.at = [&rotary, weight](const Eigen::VectorXd& shape) {
-      return OnChannels(ToneSignal(rotary.run.schedule, shape[0]), weight);
+      return OnChannels(model::Tone(rotary.run.schedule.time_s, shape[0]), weight);
     };
     family.parameters = [amplitude, f = family.shapes[0]](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
                                                           const Eigen::MatrixXd& cov) {
-      const Eigen::Vector2d across = Eigen::Vector2d(-x[1], x[0]) / x.squaredNorm();
+      // x [cos, sin] = amplitude sin(2 pi f t + phase)
+      const Eigen::Vector2d across = Eigen::Vector2d(x[1], -x[0]) / x.squaredNorm();
       const double u_phase = std::sqrt(across.dot(cov.topLeftCorner<2, 2>() * across));
       return std::vector<ParameterEstimate>{
           Plain(f, shape[0], std::sqrt(cov(2, 2))),
           LengthOf(amplitude, x, cov),
-          {"phase", "deg", units::deg, std::atan2(x[1], x[0]), u_phase, kNaN, kNaN}};
+          {"phase", "deg", units::deg, std::atan2(x[0], x[1]), u_phase, kNaN, kNaN}};
     };
     families.push_back(std::move(family));
   };
@@ -129,16 +80,16 @@ void AddTones(const RotaryRun& rotary, const SharedSeries& series, std::vector<F
 
 /// A step at any reading that shows in the channels by `weight`.
 Family Step(const std::string& effect, const std::string& where, const std::string& size,
-            const Eigen::Vector4d& weight, const SharedSeries& series) {
+            const Eigen::Vector4d& weight, const TimeSeries& series) {
   Family family = Named(effect, where, {AmplitudeOf(effect, size)});
-  family.shapes = {ShapeOf(effect, "at_reading", {series.onset.begin(), series.onset.end()})};
-  family.grid = series.step->grid;
-  family.base = series.step;
+  family.shapes = {ShapeOf(effect, "at_reading", {series.onsets.begin(), series.onsets.end()})};
+  family.grid = series.steps->grid;
+  family.base = series.steps;
   family.map = PatternMap(weight, 1);
   return family;
 }
 
-void AddSlips(const RotaryRun& rotary, const SharedSeries& series, std::vector<Family>& families) {
+void AddSlips(const RotaryRun& rotary, const TimeSeries& series, std::vector<Family>& families) {
   for (const char* where : {"yaw", "tilt", "lateral"}) {
     const char* const size = std::string(where) == "lateral" ? "shift" : "angle";
     families.push_back(Step("slip", where, size, WeightOf(where, rotary.shown_by_motion), series));

@@ -1,19 +1,65 @@
-#include "twin/diagnose/rotary/unknown_collector.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/rotary/families.h"
+#include "twin/diagnose/rotary/signals.h"
+#include "twin/diagnose/unknown/design.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::rotary {
+namespace {
 
-std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext& context,
-                                    const SharedSeries& series) {
-  Collector collect(rotary, context);
-  AddByPass(collect);
-  AddByDirection(collect);
-  AddByAngle(collect);
-  AddInTime(collect);
-  AddByDwell(collect);
-  AddGains(collect);
-  AddBySpot(collect);
-  AddOtherPatterns(collect, series);
-  return collect.Take();
+constexpr double kPlausible_m = 0.5 * units::um;  // of a disturbance on a PSD
+constexpr double kPlausibleShare = 0.005;         // of a wrong scale
+
+/// "psd_b_y" or "psd_a_y, psd_b_y in phase (tilt pattern)".
+std::string OnWhat(const std::string& place) {
+  if (place == "yaw") return "psd_a_x, psd_b_x in phase (yaw pattern)";
+  if (place == "tilt") return "psd_a_y, psd_b_y in phase (tilt pattern)";
+  if (place == "roll") return "psd_a_y, psd_b_y in antiphase (roll pattern)";
+  if (place == "lateral") return "psd_a_x, psd_b_x in antiphase (lateral pattern)";
+  return place;
+}
+
+/// A motion of the grating, a channel, or all channels independently.
+std::vector<unknown::Place> GenericPlaces(const Eigen::Matrix4d& shown_by_motion) {
+  std::vector<unknown::Place> places;
+  for (const Place& place : PlacesOf(shown_by_motion)) places.push_back({place.name, OnWhat(place.name), place.weight});
+  places.push_back({"all", "all channels", Eigen::MatrixXd::Identity(kChannels, kChannels)});
+  return places;
+}
+
+/// Every order of both tables is free.
+std::vector<unknown::Angle> GenericAngles(const Schedule& s, int positions) {
+  const int last = std::min(12, (positions - 1) / 2);
+  return {{"target angle", s.target_rad, last, 0, "harmonic"}, {"reference angle", s.reference_rad, last, 0, "harmonic"}};
+}
+
+Eigen::MatrixXd ByReading(const Eigen::VectorXd& rows) {
+  return Eigen::Map<const Eigen::MatrixXd>(rows.data(), kChannels, rows.size() / kChannels).transpose();
+}
+
+}  // namespace
+
+std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext& context, const TimeSeries& series) {
+  const Schedule& s = rotary.run.schedule;
+  unknown::Design design;
+  design.course = s;
+  design.channels = rotary.run.channels;
+  design.places = GenericPlaces(rotary.shown_by_motion);
+  design.angles = GenericAngles(s, rotary.design.n);
+  design.continued_rad = ContinuedTarget_rad(s, false);
+  design.moved = InCircle(s);
+  design.senses = {DirectionSignal(s)};
+  if (model::HasTemperature(s)) design.above_K = model::Above_K(s, context.reference_degC);
+  design.series = series;
+  design.shown = ByReading(rotary.run.Predicted());
+  design.shown_name = "spot";
+  design.detectors = {{0, 1}, {2, 3}};
+  design.unit = rotary.run.unit;
+  design.to_SI = rotary.run.to_SI;
+  design.plausible = kPlausible_m;
+  design.plausible_share = kPlausibleShare;
+  design.named = {"tone", "step", "direction offset", "trend", "restart", "temperature"};
+  return unknown::Families(design);
 }
 
 }  // namespace twinbench::diagnose::rotary

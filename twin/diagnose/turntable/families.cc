@@ -6,21 +6,10 @@
 
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
-#include "twin/diagnose/turntable/collector.h"
 #include "twin/diagnose/turntable/disturbed.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
-
-/// Generic shapes that a cause of the catalogue has exactly; that cause.
-const std::map<std::string, std::string>& Doubles() {
-  static const std::map<std::string, std::string> doubles = {{"direction offset", "backlash"},
-                                                             {"trend", "autocollimator_drift"},
-                                                             {"tone", "tone"},
-                                                             {"step", "slip"},
-                                                             {"linear map", "autocollimator_roll"}};
-  return doubles;
-}
 
 /// A size that is plausible is no reason to look past a larger one that alone would be seen: up to ten times the
 /// catalogue's default, until it leaves a trace.
@@ -41,35 +30,17 @@ void WidenPriors(const LinearRun& run, std::vector<Family>& families) {
 
 }  // namespace
 
-std::vector<Family> UnknownFamilies(const TurntableRun& turntable, const Context& context,
-                                    const std::vector<Family>& named) {
-  Collector collect(turntable, context);
-  AddByPass(collect);
-  AddByDirection(collect);
-  AddByAngle(collect);
-  AddInTime(collect);
-  AddByReading(collect);
-  constexpr double kSameShape = 0.2;  // one that a named cause has is less likely to be something else
-  std::vector<Family> families = collect.Take();
-  for (Family& family : families) {
-    const auto twin = Doubles().find(family.effect);
-    if (twin != Doubles().end() &&
-        std::ranges::any_of(named, [&](const Family& n) { return n.effect == twin->second; }))
-      family.prior_weight = kSameShape;
-  }
-  return families;
-}
-
 std::vector<Family> Families(const TurntableRun& turntable, const std::vector<std::string>& struck) {
   const auto context = std::make_shared<const SignalContext>(turntable.context);
   std::vector<Family> families;
   AddInstrument(context, UsualSigma_rad(turntable.run), families);
-  AddTime(context, families);
+  const Schedule& schedule = turntable.run.schedule;
+  const TimeSeries series = TimeSeriesOf(schedule, std::vector<int>(schedule.reading.size(), 0), kAxes);
+  AddTime(context, series, families);
   AddBody(context, families);
   WidenPriors(turntable.run, families);
-  std::vector<Family> unknown = UnknownFamilies(turntable, context, families);
   std::erase_if(families, [&](const Family& f) { return std::ranges::find(struck, f.effect) != struck.end(); });
-  std::ranges::move(unknown, std::back_inserter(families));
+  std::ranges::move(UnknownFamilies(turntable, series), std::back_inserter(families));
   return families;
 }
 

@@ -74,19 +74,4 @@ Eigen::MatrixXd MapOfAxis(int axis, int signals) {
   return map;
 }
 
-std::vector<double> ToneFrequencies_Hz(const Schedule& s) {
-  constexpr int kMost = 1200;
-  std::vector<double> steps_s;
-  for (Eigen::Index i = 1; i < s.time_s.size(); ++i) steps_s.push_back(s.time_s[i] - s.time_s[i - 1]);
-  std::nth_element(steps_s.begin(), steps_s.begin() + std::ssize(steps_s) / 2, steps_s.end());
-  const double usual_s = std::max(steps_s[steps_s.size() / 2], 1e-3);
-  const double duration_s = std::max(s.time_s.maxCoeff() - s.time_s.minCoeff(), usual_s);
-  const double width_Hz = 0.6 / duration_s, first_Hz = 3.0 * width_Hz;  // slower ones are a wander
-  const double last_Hz = std::max(0.5 / usual_s, 2.0 * first_Hz);
-  const int count = std::clamp(static_cast<int>((last_Hz - first_Hz) / width_Hz), 2, kMost);
-  std::vector<double> frequencies_Hz;
-  for (int k = 0; k < count; ++k) frequencies_Hz.push_back(first_Hz + k * (last_Hz - first_Hz) / (count - 1));
-  return frequencies_Hz;
-}
-
 }  // namespace twinbench::diagnose::turntable

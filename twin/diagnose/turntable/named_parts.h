@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/diagnose/engine/catalogue_parts.h"
+#include "twin/diagnose/engine/time_series.h"
 #include "twin/diagnose/turntable/families.h"
 
 /// Building blocks of families that are named after an effect of the catalogue.
@@ -36,16 +37,12 @@ void ReportWave(const std::string& effect, const std::string& shape, Family& fam
 /// The columns of one axis, or of both, of signals that Base has on each: base columns * map.
 Eigen::MatrixXd MapOfAxis(int axis, int signals);
 
-/// Frequencies [Hz] a little closer than a run of this length can tell apart, up to one of two usual readings.
-std::vector<double> ToneFrequencies_Hz(const Schedule& schedule);
-
 // Families of one kind of cause each; `families` grows.
 void AddInstrument(const Context& context, double sigma_rad, std::vector<Family>& families);
-void AddTime(const Context& context, std::vector<Family>& families);
+void AddTime(const Context& context, const TimeSeries& series, std::vector<Family>& families);
 void AddBody(const Context& context, std::vector<Family>& families);
 
-/// @param named  Families whose shapes need not come twice with equal weight.
-std::vector<Family> UnknownFamilies(const TurntableRun& turntable, const Context& context,
-                                    const std::vector<Family>& named);
+/// Structure without a name.
+std::vector<Family> UnknownFamilies(const TurntableRun& turntable, const TimeSeries& series);
 
 }  // namespace twinbench::diagnose::turntable

@@ -36,54 +36,26 @@ Family Creep(const Context& context, int axis) {
                 [context](const Eigen::VectorXd& tau_s) { return CreepSignal(*context, tau_s[0]); });
 }
 
-/// Within a set-up: a step at its first reading is a constant of it.
-std::vector<double> Onsets(const Schedule& s) {
-  std::vector<double> onsets;
-  for (std::size_t i = 1; i < s.reading.size(); ++i) {
-    if (s.setup[i] == s.setup[i - 1] && s.phase[i] == s.phase[i - 1]) onsets.push_back(s.reading[i]);
-  }
-  constexpr std::size_t kMost = 1000;
-  const std::size_t every = 1 + onsets.size() / kMost;
-  std::vector<double> kept;
-  for (std::size_t k = 0; k < onsets.size(); k += every) kept.push_back(onsets[k]);
-  return kept;
-}
-
-void AddSlips(const Context& context, std::vector<Family>& families) {
-  const std::vector<double> onsets = Onsets(context->schedule);
-  if (onsets.empty()) return;
-  const auto base = std::make_shared<Base>();
-  base->grid = static_cast<int>(std::ssize(onsets));
-  base->channels = kAxes;
-  base->series = [context, onsets](int g) {
-    return Eigen::MatrixXd(StepSignal(*context, static_cast<int>(onsets[static_cast<std::size_t>(g)])));
-  };
+void AddSlips(const TimeSeries& series, std::vector<Family>& families) {
+  if (!series.steps) return;
   for (const int axis : {kX, kY}) {
     Family family = Linear("slip", kAxisNames[static_cast<std::size_t>(axis)], "step", {});
-    family.shapes = {ShapeOf("slip", "at_reading", onsets)};
-    family.grid = base->grid;
+    family.shapes = {ShapeOf("slip", "at_reading", series.onsets)};
+    family.grid = series.steps->grid;
     family.columns = nullptr;
-    family.base = base;
+    family.base = series.steps;
     family.map = MapOfAxis(axis, 1);
     families.push_back(std::move(family));
   }
 }
 
-void AddTones(const Context& context, std::vector<Family>& families) {
-  const std::vector<double> frequencies_Hz = ToneFrequencies_Hz(context->schedule);
-  const Signal tone = [context](const Eigen::VectorXd& frequency_Hz) {
-    return Wave(2.0 * units::kPi * frequency_Hz[0] * context->schedule.time_s);
-  };
-  const auto base = std::make_shared<Base>();
-  base->grid = static_cast<int>(std::ssize(frequencies_Hz));
-  base->channels = kAxes;
-  base->series = [tone, frequencies_Hz](int g) {
-    return tone(Eigen::VectorXd::Constant(1, frequencies_Hz[static_cast<std::size_t>(g)]));
-  };
+void AddTones(const TimeSeries& series, std::vector<Family>& families) {
+  if (!series.tones) return;
+  const Signal tone = [series](const Eigen::VectorXd& frequency_Hz) { return series.ToneAt(frequency_Hz[0]); };
   for (const int axis : {kX, kY}) {
     Family family =
-        Shaped("tone", axis, WaveAmplitudes("tone"), ShapeOf("tone", "frequency", frequencies_Hz), tone);
-    family.base = base;
+        Shaped("tone", axis, WaveAmplitudes("tone"), ShapeOf("tone", "frequency", series.frequencies_Hz), tone);
+    family.base = series.tones;
     family.map = MapOfAxis(axis, 2);
     ReportWave("tone", "frequency", family);
     families.push_back(std::move(family));
@@ -92,7 +64,7 @@ void AddTones(const Context& context, std::vector<Family>& families) {
 
 }  // namespace
 
-void AddTime(const Context& context, std::vector<Family>& families) {
+void AddTime(const Context& context, const TimeSeries& series, std::vector<Family>& families) {
   for (const int axis : {kX, kY}) {
     const char* const where = kAxisNames[static_cast<std::size_t>(axis)];
     families.push_back(SteadyDrift(*context, axis));
@@ -102,8 +74,8 @@ void AddTime(const Context& context, std::vector<Family>& families) {
       families.push_back(
           Linear("autocollimator_temperature", where, "coefficient", OnAxis(context->above_K, axis)));
   }
-  AddSlips(context, families);
-  AddTones(context, families);
+  AddSlips(series, families);
+  AddTones(series, families);
 }
 
 }  // namespace twinbench::diagnose::turntable

@@ -10,7 +10,7 @@
 #include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
-#include "twin/diagnose/engine/schedule.h"
+#include "twin/model/course.h"
 #include "twin/diagnose/turntable/unknowns.h"
 
 namespace twinbench::diagnose::turntable {
@@ -222,7 +222,7 @@ TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scen
   turntable.left_out = static_cast<int>(std::ssize(readings) - std::ssize(used));
   LinearRun& run = turntable.run;
   run.bench = scenario.bench;
-  run.schedule = ScheduleOf(used);
+  run.schedule = model::CourseOf(used);
   turntable.places = PlacesOf(run.schedule);
   turntable.context = ContextOf(run.schedule, scenario);
   run.channels = {kAxisNames.begin(), kAxisNames.end()};

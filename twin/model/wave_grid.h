@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace twinbench::diagnose::encoder {
+namespace twinbench::model {
 
 /// Cosines and sines of (first + g * step) * phase for many g. Each is the product of two tabulated rotations, so
 /// that n grid points cost 2 sqrt(n) series of cosines and sines; they agree with direct ones to 1e-12 of a phase
@@ -19,8 +19,4 @@ class WaveGrid {
   Eigen::ArrayXXcd coarse_, fine_;  // readings x about sqrt(count)
 };
 
-/// The order itself, or the nearest that is `nearest` away from a whole one: a line between the orders that is
-/// refined must not become one of them, for those have names.
-double AwayFromWhole(double order, double nearest);
-
-}  // namespace twinbench::diagnose::encoder
+}  // namespace twinbench::model

@@ -1,9 +1,9 @@
-#include "twin/diagnose/encoder/wave_grid.h"
+#include "twin/model/wave_grid.h"
 
 #include <cmath>
 #include <complex>
 
-namespace twinbench::diagnose::encoder {
+namespace twinbench::model {
 namespace {
 
 /// exp(i (first + k * step) * phase): readings x count.
@@ -30,9 +30,4 @@ Eigen::MatrixXd WaveGrid::At(int g) const {
   return columns;
 }
 
-double AwayFromWhole(double order, double nearest) {
-  const double whole = std::round(order), off = order - whole;
-  return std::abs(off) >= nearest ? order : whole + std::copysign(nearest, off);
-}
-
-}  // namespace twinbench::diagnose::encoder
+}  // namespace twinbench::model

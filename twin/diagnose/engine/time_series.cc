@@ -1,0 +1,99 @@
+#include "twin/diagnose/engine/time_series.h"
+
+#include <algorithm>
+#include <map>
+
+#include "twin/core/units.h"
+#include "twin/model/signals.h"
+#include "twin/model/wave_grid.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+double Usual(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// A little closer than the longest stretch can tell apart, from where a wander ends to one of two usual rows.
+std::vector<double> FrequenciesOf(double longest_s, const Eigen::VectorXd& rows_time_s) {
+  constexpr int kMost = 1500;
+  constexpr double kSpacing = 0.6;      // of the resolution: a wave between two keeps nine tenths
+  constexpr double kFirstWidths = 3.0;  // slower ones are a wander
+  if (rows_time_s.size() < 3) return {};
+  std::vector<double> steps_s;
+  for (Eigen::Index i = 1; i < rows_time_s.size(); ++i) steps_s.push_back(rows_time_s[i] - rows_time_s[i - 1]);
+  const double usual_s = std::max(Usual(std::move(steps_s)), 1e-6);
+  const double width_Hz = kSpacing / std::max(longest_s, usual_s), last_Hz = 0.5 / usual_s;
+  const double first_Hz = kFirstWidths * width_Hz, step_Hz = std::max(width_Hz, (last_Hz - first_Hz) / kMost);
+  std::vector<double> frequencies_Hz;
+  for (int k = 0; first_Hz + k * step_Hz < last_Hz; ++k) frequencies_Hz.push_back(first_Hz + k * step_Hz);
+  return frequencies_Hz;
+}
+
+/// Within a set-up and phase, because a step at its first reading is a constant of it. Thinned evenly where there
+/// are very many.
+std::vector<double> OnsetsOf(const model::Course& course) {
+  constexpr std::size_t kMost = 1500;
+  std::vector<double> onsets, kept;
+  for (std::size_t i = 1; i < course.reading.size(); ++i) {
+    if (course.setup[i] == course.setup[i - 1] && course.phase[i] == course.phase[i - 1])
+      onsets.push_back(course.reading[i]);
+  }
+  const std::size_t every = 1 + onsets.size() / kMost;
+  for (std::size_t k = every / 2; k < onsets.size(); k += every) kept.push_back(onsets[k]);
+  return kept;
+}
+
+std::shared_ptr<const Base> BaseOf(std::size_t grid, int channels, const ToRows& rows,
+                                   const std::function<Eigen::MatrixXd(int)>& series) {
+  if (grid == 0) return nullptr;
+  auto base = std::make_shared<Base>();
+  base->grid = static_cast<int>(grid);
+  base->channels = channels;
+  base->series = series;
+  if (rows) base->series = [rows, series](int g) { return rows(series(g)); };
+  return base;
+}
+
+}  // namespace
+
+Shape TimeSeries::Frequency(const std::string& name) const {
+  return {name, "Hz", 1.0, 0.5 * frequencies_Hz.front(), 1.1 * frequencies_Hz.back(), frequencies_Hz};
+}
+
+Eigen::MatrixXd TimeSeries::ToneAt(double frequency_Hz) const {
+  return model::InEach(model::Tone(time_s, frequency_Hz), model::Indicators(stretch));
+}
+
+TimeSeries TimeSeriesOf(const model::Course& course, const std::vector<int>& stretch, int channels,
+                        const ToRows& rows, const Eigen::VectorXd& rows_time_s) {
+  TimeSeries series{course.time_s, stretch, {}, OnsetsOf(course), nullptr, nullptr};
+  const double longest_s = SinceBegin_s(course.time_s, stretch).maxCoeff();
+  series.frequencies_Hz = FrequenciesOf(longest_s, rows_time_s.size() > 0 ? rows_time_s : course.time_s);
+  const auto count = static_cast<int>(std::ssize(series.frequencies_Hz));
+  if (count > 1) {
+    const auto waves = std::make_shared<const model::WaveGrid>(
+        units::turn * course.time_s, series.frequencies_Hz[0], series.frequencies_Hz[1] - series.frequencies_Hz[0],
+        count);
+    series.tones = BaseOf(series.frequencies_Hz.size(), channels, rows,
+                          [waves, stretches = model::Indicators(stretch)](int g) -> Eigen::MatrixXd {
+                            return stretches.cols() == 1 ? waves->At(g) : model::InEach(waves->At(g), stretches);
+                          });
+  }
+  series.steps = BaseOf(series.onsets.size(), channels, rows, [course, onsets = series.onsets](int g) {
+    return Eigen::MatrixXd(model::Step(course, onsets[static_cast<std::size_t>(g)]));
+  });
+  return series;
+}
+
+Eigen::VectorXd SinceBegin_s(const Eigen::VectorXd& time_s, const std::vector<int>& label) {
+  std::map<int, double> begin_s;
+  Eigen::VectorXd since_s(time_s.size());
+  for (Eigen::Index i = 0; i < time_s.size(); ++i)
+    since_s[i] = time_s[i] - begin_s.try_emplace(label[static_cast<std::size_t>(i)], time_s[i]).first->second;
+  return since_s;
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "twin/core/units.h"
+#include "twin/diagnose/engine/catalogue_parts.h"
+#include "twin/diagnose/unknown/collector.h"
+#include "twin/model/signals.h"
+
+namespace twinbench::diagnose::unknown {
+namespace {
+
+constexpr int kMotionOrders = 24;
+
+/// What dies out behind each reversal, alone and beside an offset that stays: a hysteresis of another form.
+void AddBehindReversals(Collector& collect, const Eigen::VectorXd& held) {
+  using units::deg;
+  const Design& d = collect.design();
+  if (d.travel_rad.size() == 0) return;
+  const Shape decay{"decays_over", "deg", deg, 0.5 * deg, 720.0 * deg, Ratios(2.0 * deg, 360.0 * deg, 14)};
+  const auto left = [held, travel_rad = d.travel_rad](const Eigen::VectorXd& way_rad) -> Eigen::VectorXd {
+    return held.array() * (-travel_rad.array() / way_rad[0]).exp();
+  };
+  const auto words = [values = decay.value](const char* what) {
+    return [=](int g) { return fmt::format(fmt::runtime(what), values[static_cast<std::size_t>(g)] / deg); };
+  };
+  collect.AddOver(
+      "reversal", decay, [left](const Eigen::VectorXd& way_rad) { return Eigen::MatrixXd(left(way_rad)); },
+      words("direction times a decay over {:.3g} deg behind each reversal, odd in direction"));
+  collect.AddOver(
+      "transition", decay,
+      [held, left](const Eigen::VectorXd& way_rad) {
+        Eigen::MatrixXd columns(held.size(), 2);
+        columns << held, left(way_rad);
+        return columns;
+      },
+      words("offset locked to direction that is reached over {:.3g} deg behind each reversal, odd in direction"));
+}
+
+}  // namespace
+
+void AddByDirection(Collector& collect) {
+  const Design& d = collect.design();
+  const Eigen::VectorXd& held = d.senses.front();
+  if (held.maxCoeff() == held.minCoeff()) return;
+  collect.Add("direction offset", held, "offset locked to direction, odd in direction");
+  for (const Angle& angle : d.angles) {
+    if (!angle.is_turned_by_motion) continue;
+    for (const Eigen::VectorXd& sense : d.senses)
+      collect.AddModulated("direction harmonic", angle, kMotionOrders, sense,
+                           "direction times order {} locked to " + angle.name + ", odd in direction");
+  }
+  AddBehindReversals(collect, held);
+}
+
+void AddBySpeed(Collector& collect) {
+  constexpr double kDifferent = 0.05;
+  const Design& d = collect.design();
+  if (d.velocity.size() == 0 || d.velocity.isZero()) return;
+  const Eigen::VectorXd v = model::Unit(d.velocity), speed = v.cwiseAbs();
+  const Angle& angle = d.angles.front();
+  collect.Add("speed", v, "proportional to the velocity, odd in direction");
+  if (speed.maxCoeff() - speed.minCoeff() <= kDifferent * speed.maxCoeff()) return;
+  collect.Add("speed", speed, "proportional to the speed, even in direction");
+  collect.Add("speed", v.cwiseProduct(speed), "proportional to the square of the speed, odd in direction");
+  collect.Add("speed", model::Unit(model::Acceleration(d.course, d.velocity)), "proportional to the acceleration");
+  const std::string order = "order {} locked to " + angle.name;
+  collect.AddModulated("speed harmonic", angle, kMotionOrders, v,
+                       order + ", proportional to the velocity, odd in direction");
+  collect.AddModulated("speed harmonic", angle, kMotionOrders, speed,
+                       order + ", proportional to the speed, even in direction");
+}
+
+}  // namespace twinbench::diagnose::unknown

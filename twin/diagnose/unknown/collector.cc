@@ -1,0 +1,125 @@
+#include "twin/diagnose/unknown/collector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/model/signals.h"
+
+namespace twinbench::diagnose::unknown {
+namespace {
+
+constexpr double kSameShape = 0.2;  // weight of a shape that a named cause has: less likely to be something else
+
+Eigen::MatrixXd AsRows(const Design& design, const Eigen::MatrixXd& samples) {
+  return design.rows ? design.rows(samples) : samples;
+}
+
+/// Of the column that is seen best.
+double LargestRms(const Eigen::MatrixXd& columns) {
+  const double rows = static_cast<double>(std::max<Eigen::Index>(1, columns.rows()));
+  return std::sqrt(columns.colwise().squaredNorm().maxCoeff() / rows);
+}
+
+}  // namespace
+
+Eigen::MatrixXd OnChannel(const Design& design, const Eigen::MatrixXd& samples, int channel) {
+  const Eigen::MatrixXd values = AsRows(design, samples);
+  const Eigen::Index channels = std::ssize(design.channels);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(values.rows() * channels, values.cols());
+  for (Eigen::Index i = 0; i < values.rows(); ++i) rows.row(i * channels + channel) = values.row(i);
+  return rows;
+}
+
+Family& Collector::New(const std::string& sort, const std::string& where, const std::string& on,
+                       const Words& words) {
+  Family& family = families_.emplace_back();
+  family.kind = Kind::kUnknown;
+  family.effect = family.group = sort;
+  family.where = where;
+  family.prior_weight = design_->named.contains(sort) ? kSameShape : 1.0;
+  family.describe = [on, words, unit = design_->unit, to_SI = design_->to_SI](int g, const Eigen::VectorXd& x) {
+    return fmt::format("{}, on {}, amplitude {:.2g} {}", words(g), on, x.norm() / to_SI, unit);
+  };
+  return family;
+}
+
+std::shared_ptr<const Base> Collector::BaseOf(int grid, const Series& series) const {
+  auto base = std::make_shared<Base>();
+  base->grid = grid;
+  base->channels = static_cast<int>(std::ssize(design_->channels));
+  base->series = [design = design_, series](int g) { return AsRows(*design, series(g)); };
+  return base;
+}
+
+void Collector::AddShared(const std::string& sort, const std::shared_ptr<const Base>& base, const Words& words,
+                          const Shape* shape, const SeriesAt& at) {
+  if (!base || base->grid < 1) return;
+  const Eigen::MatrixXd middle = base->series(base->grid / 2);
+  const double rms = LargestRms(middle);
+  if (!(rms > 0.0)) return;
+  for (const Place& place : design_->places) {
+    Family& family = New(sort, place.name, place.words, words);
+    family.grid = base->grid;
+    family.base = base;
+    family.map = PatternMap(place.pattern, middle.cols());
+    family.amplitudes.assign(static_cast<std::size_t>(family.map.cols()),
+                             {"amplitude", design_->unit, design_->to_SI, design_->plausible / rms});
+    if (!shape) continue;
+    family.shapes = {*shape};
+    family.at = [design = design_, at, map = family.map](const Eigen::VectorXd& value) -> Eigen::MatrixXd {
+      return OnEachChannel(AsRows(*design, at(value)), static_cast<int>(std::ssize(design->channels))) * map;
+    };
+  }
+}
+
+void Collector::Add(const std::string& sort, int grid, const Series& series, const Words& words) {
+  if (grid > 0) AddShared(sort, BaseOf(grid, series), words);
+}
+
+void Collector::Add(const std::string& sort, const Eigen::MatrixXd& series, const std::string& words) {
+  if (series.cols() == 0) return;
+  Add(
+      sort, 1, [series](int) { return series; }, [words](int) { return words; });
+}
+
+void Collector::AddOver(const std::string& sort, const Shape& shape, const SeriesAt& at, const Words& words,
+                        const Series& on_grid) {
+  const Series of_shape = [at, values = shape.value](int g) {
+    return at(Eigen::VectorXd::Constant(1, values[static_cast<std::size_t>(g)]));
+  };
+  if (shape.value.empty()) return;
+  AddShared(sort, BaseOf(static_cast<int>(std::ssize(shape.value)), on_grid ? on_grid : of_shape), words, &shape, at);
+}
+
+void Collector::AddModulated(const std::string& sort, const Angle& angle, int last, const Eigen::VectorXd& factor,
+                             const std::string& words) {
+  const Eigen::VectorXd weight = factor.cwiseProduct(design_->moved);
+  Add(
+      sort, std::min(last, angle.last_order),
+      [rad = angle.rad, weight](int g) { return model::Times(model::Wave((g + 1) * rad), weight); },
+      [words](int g) { return fmt::format(fmt::runtime(words), g + 1); });
+}
+
+void Collector::AddRows(const std::string& sort, const std::string& where, int grid, const Series& rows,
+                        const Words& words) {
+  const Eigen::MatrixXd middle = rows(grid / 2);
+  const double channel_rms = LargestRms(middle) * std::sqrt(static_cast<double>(std::ssize(design_->channels)));
+  if (!(channel_rms > 0.0)) return;
+  Family& family = New(sort, where, where == "all" ? "all channels" : where, words);
+  family.grid = grid;
+  family.columns = rows;
+  const double range = design_->shown.size() > 0 ? design_->shown.cwiseAbs().maxCoeff() : 0.0;
+  const double plausible = std::max(design_->plausible, design_->plausible_share * range);
+  family.amplitudes.assign(static_cast<std::size_t>(middle.cols()),
+                           {"amplitude", design_->unit, design_->to_SI, plausible / channel_rms});
+}
+
+void Collector::AddRows(const std::string& sort, const std::string& where, const Eigen::MatrixXd& rows,
+                        const std::string& words) {
+  AddRows(
+      sort, where, 1, [rows](int) { return rows; }, [words](int) { return words; });
+}
+
+}  // namespace twinbench::diagnose::unknown

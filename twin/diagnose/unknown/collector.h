@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "twin/diagnose/unknown/design.h"
+
+/// How generic families are made; only the files that make them need it.
+namespace twinbench::diagnose::unknown {
+
+using Words = std::function<std::string(int grid_point)>;
+using Series = std::function<Eigen::MatrixXd(int grid_point)>;  // samples x k
+using SeriesAt = std::function<Eigen::MatrixXd(const Eigen::VectorXd& shape)>;
+
+class Collector {
+ public:
+  explicit Collector(const std::shared_ptr<const Design>& design) : design_(design) {}
+
+  const Design& design() const { return *design_; }
+  const std::shared_ptr<const Design>& shared() const { return design_; }
+
+  /// The same series on every place.
+  void Add(const std::string& sort, int grid, const Series& series, const Words& words);
+  /// The same without a grid; nothing if it is zero.
+  void Add(const std::string& sort, const Eigen::MatrixXd& series, const std::string& words);
+  /// A grid over one continuous shape.
+  /// @param on_grid  The same as `at` on the grid, where there is a quicker way to them.
+  void AddOver(const std::string& sort, const Shape& shape, const SeriesAt& at, const Words& words,
+               const Series& on_grid = {});
+  /// Combinations of what named families are made of, too.
+  /// @param shape  Of the base's grid, with `at`; or null.
+  void AddShared(const std::string& sort, const std::shared_ptr<const Base>& base, const Words& words,
+                 const Shape* shape = nullptr, const SeriesAt& at = {});
+  /// Waves of the whole orders up to `last` of an angle, times a factor of each sample. @param words  "{}" is the
+  /// order.
+  void AddModulated(const std::string& sort, const Angle& angle, int last, const Eigen::VectorXd& factor,
+                    const std::string& words);
+  /// Columns that differ from channel to channel (rows x k) in one place of their own.
+  void AddRows(const std::string& sort, const std::string& where, int grid, const Series& rows, const Words& words);
+  void AddRows(const std::string& sort, const std::string& where, const Eigen::MatrixXd& rows,
+               const std::string& words);
+
+  std::vector<Family> Take() { return std::move(families_); }
+
+ private:
+  std::shared_ptr<const Base> BaseOf(int grid, const Series& series) const;
+  Family& New(const std::string& sort, const std::string& where, const std::string& on, const Words& words);
+
+  std::shared_ptr<const Design> design_;
+  std::vector<Family> families_;
+};
+
+/// Samples x k as rows of one channel.
+Eigen::MatrixXd OnChannel(const Design& design, const Eigen::MatrixXd& samples, int channel);
+
+// One lock each.
+void AddByAngle(Collector& collect);
+void AddByDirection(Collector& collect);
+void AddBySpeed(Collector& collect);
+void AddByLabel(Collector& collect);
+void AddInTime(Collector& collect);
+void AddByReading(Collector& collect);
+
+}  // namespace twinbench::diagnose::unknown

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/time_series.h"
+#include "twin/model/course.h"
+
+/// Structure without a name: the same generic shapes on every bench, along whatever it has of angles, directions,
+/// speeds, temperatures and readings.
+namespace twinbench::diagnose::unknown {
+
+/// Channels on which structure may show together.
+struct Place {
+  std::string name;         // "tilt"
+  std::string words;        // "psd_a_y, psd_b_y in phase (tilt pattern)"
+  Eigen::MatrixXd pattern;  // channels x amplitudes of their own; largest weight 1
+};
+
+/// An angle that structure may be locked to.
+struct Angle {
+  std::string name;        // "reference angle"
+  Eigen::VectorXd rad;     // one a sample
+  int last_order = 0;      // the largest whole order that the samples show
+  int first_unfree = 0;    // the first whole order that no unknown of the run takes up; 0: there is none
+  std::string harmonics;   // sort of its whole orders
+  bool is_turned_by_motion = true;  // false: direction and speed are of another angle
+};
+
+/// All that generic shapes depend on. Signals have one entry a sample; what a bench has not is empty.
+struct Design {
+  model::Course course;
+  std::vector<std::string> channels;
+  std::vector<Place> places;
+  std::vector<Angle> angles;                // the first is the one that the bench goes through
+  Eigen::VectorXd continued_rad;            // the first with its turns counted on
+  Eigen::VectorXd moved;                    // 1 on the way through the positions, 0 elsewhere
+  std::vector<Eigen::VectorXd> senses;      // in which a reading may remember the direction; the usual one first
+  Eigen::VectorXd travel_rad;               // since the last reversal
+  Eigen::VectorXd velocity;                 // while it is read
+  Eigen::VectorXd above_K;                  // temperature
+  TimeSeries series;
+  Eigen::MatrixXd shown;                    // samples x channels, as predicted, where errors may depend on it
+  std::string shown_name;                   // "spot", "reading"
+  std::vector<std::vector<int>> detectors;  // channels that one detector has
+  std::string unit;
+  double to_SI = 1.0;
+  double plausible = 0.0;        // rms of a structure nobody thought of, SI
+  double plausible_share = 0.0;  // the same of what is shown
+  std::set<std::string> named;   // sorts that a cause of the catalogue has exactly
+  ToRows rows;
+};
+
+/// One sort of shape after the other; families own what they need.
+std::vector<Family> Families(const Design& design);
+
+}  // namespace twinbench::diagnose::unknown

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/diagnose/unknown/collector.h"
+#include "twin/model/signals.h"
+
+namespace twinbench::diagnose::unknown {
+namespace {
+
+constexpr int kGrowingOrders = 24;
+
+/// Where time is the angle in other words, what follows one follows the other.
+bool TimeFollowsAngle(const Design& d) {
+  const Eigen::VectorXd t = d.course.time_s.array() - d.course.time_s.mean(),
+                        a = d.angles.front().rad.array() - d.angles.front().rad.mean();
+  return std::abs(t.dot(a)) > 0.999 * t.norm() * a.norm();
+}
+
+/// From 0 to 1 over the longest stretch, beginning anew in each.
+Eigen::VectorXd ShareOfStretch(const Design& d) {
+  const Eigen::VectorXd since_s = SinceBegin_s(d.course.time_s, d.series.stretch);
+  return since_s / std::max(since_s.maxCoeff(), 1e-6);
+}
+
+/// Single modes of few periods (those of more are tones), some together, and a random walk: its cosine modes with
+/// amplitudes that fall as 1 / k are the generic form of any slow wander.
+void AddWander(Collector& collect) {
+  constexpr int kModes = 4, kTogether = 6, kOfWalk = 24;
+  const Design& d = collect.design();
+  const Eigen::MatrixXd stretches = model::Indicators(d.series.stretch);
+  const Eigen::VectorXd share = ShareOfStretch(d);
+  const auto modes = [&](int count, bool falling) {
+    return model::InEach(model::CosineModes(share, count, falling), stretches);
+  };
+  collect.Add(
+      "wander", kModes,
+      [share, stretches](int g) {
+        return model::InEach(model::CosineModes(share, g + 1, false).rightCols(1), stretches);
+      },
+      [](int g) { return fmt::format("slow wander locked to time, {} half periods a run", g + 1); });
+  collect.Add("wander", modes(kTogether, false), "slow wander locked to time");
+  collect.Add("wander", modes(std::max(kTogether + 1, kOfWalk / static_cast<int>(stretches.cols())), true),
+              "random wander locked to time");
+  const Eigen::MatrixXd setups = model::Times(model::Indicators(d.course.setup), d.moved);
+  if (stretches.cols() == 1 && setups.cols() > 1)
+    collect.Add("wander", model::Times(setups, model::ElapsedShare(d.course)),
+                "drift that differs from set-up to set-up, locked to time");
+}
+
+void AddTones(Collector& collect) {
+  const TimeSeries& series = collect.design().series;
+  if (!series.tones) return;
+  const Shape frequency = series.Frequency("frequency");
+  collect.AddShared(
+      "tone", series.tones,
+      [values = frequency.value](int g) {
+        return fmt::format("tone at {:.4g} Hz locked to time", values[static_cast<std::size_t>(g)]);
+      },
+      &frequency,
+      [design = collect.shared()](const Eigen::VectorXd& f_Hz) { return design->series.ToneAt(f_Hz[0]); });
+}
+
+void AddSteps(Collector& collect) {
+  const TimeSeries& series = collect.design().series;
+  collect.AddShared("step", series.steps, [onsets = series.onsets](int g) {
+    return fmt::format("step at reading {:.0f} locked to time", onsets[static_cast<std::size_t>(g)]);
+  });
+}
+
+/// What dies out behind every mounting, or creeps on as a logarithm.
+void AddRestarts(Collector& collect) {
+  const std::vector<double> times_s = {10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0};
+  const auto count = static_cast<int>(std::ssize(times_s));
+  const Eigen::VectorXd since_s = model::SinceFirst_s(collect.design().course);
+  collect.Add(
+      "restart", 2 * count,
+      [since_s, times_s, count](int g) {
+        const Eigen::ArrayXd share = since_s.array() / times_s[static_cast<std::size_t>(g % count)];
+        return Eigen::MatrixXd(model::Unit(g < count ? Eigen::VectorXd((-share).exp()) : share.log1p()));
+      },
+      [times_s, count](int g) {
+        return fmt::format("{} that begins again with every set-up, about {:.0f} s, locked to time",
+                           g < count ? "decay" : "creep", times_s[static_cast<std::size_t>(g % count)]);
+      });
+}
+
+void AddTemperature(Collector& collect) {
+  const Design& d = collect.design();
+  if (d.above_K.size() == 0) return;
+  const std::vector<double> lags_s = {0.0, 300.0, 900.0, 2700.0};
+  collect.Add(
+      "temperature", static_cast<int>(std::ssize(lags_s)),
+      [design = collect.shared(), lags_s](int g) {
+        return Eigen::MatrixXd(model::Unit(
+            model::Lagged(design->course.time_s, design->above_K, lags_s[static_cast<std::size_t>(g)])));
+      },
+      [lags_s](int g) {
+        return fmt::format("locked to temperature with a lag of {:.0f} s", lags_s[static_cast<std::size_t>(g)]);
+      });
+  constexpr double kLag_s = 600.0;
+  collect.Add("temperature", model::Unit(d.above_K - model::Lagged(d.course.time_s, d.above_K, kLag_s)),
+              "locked to the rate of the temperature");
+}
+
+/// Waves that grow with something.
+void AddGrowing(Collector& collect) {
+  const Design& d = collect.design();
+  const Angle& angle = d.angles.front();
+  const auto add = [&](const Eigen::VectorXd& growing, const std::string& what) {
+    collect.AddModulated("growing harmonic", angle, kGrowingOrders, model::Unit(growing),
+                         "order {} locked to " + angle.name + " that grows with " + what);
+  };
+  add(model::ElapsedShare(d.course), "time");
+  if (d.above_K.size() > 0) add(d.above_K.array() - d.above_K.mean(), "temperature");
+}
+
+void AddTrends(Collector& collect) {
+  const Design& d = collect.design();
+  collect.Add("trend", model::Unit(model::ElapsedShare(d.course)), "linear trend locked to time");
+  const Angle& angle = d.angles.front();
+  if (angle.first_unfree > 0)
+    collect.Add("trend", model::Unit(angle.rad),
+                "linear trend locked to " + angle.name + ", same in both directions");
+}
+
+}  // namespace
+
+void AddInTime(Collector& collect) {
+  AddTrends(collect);
+  AddSteps(collect);
+  AddTemperature(collect);
+  if (TimeFollowsAngle(collect.design())) return;
+  AddWander(collect);
+  AddRestarts(collect);
+  AddGrowing(collect);
+  AddTones(collect);
+}
+
+}  // namespace twinbench::diagnose::unknown
