@@ -4,6 +4,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/signals.h"
+#include "twin/model/signals.h"
 #include "twin/model/wave_grid.h"
 
 namespace twinbench::diagnose::encoder {
@@ -65,8 +66,8 @@ TEST(WaveGrid, IsTheWaveOfEachGridPoint) {
   constexpr int kCount = 5972;
   const model::WaveGrid grid(phase, 0.3, 0.01, kCount);
   for (const int g : {0, 1, 77, 78, 79, 3000, kCount - 1})
-    EXPECT_LT((grid.At(g) - Wave((0.3 + 0.01 * g) * phase)).cwiseAbs().maxCoeff(), 1e-11) << g;
-  EXPECT_LT((model::WaveGrid(phase, 2.0, 1.0, 1).At(0) - Wave(2.0 * phase)).norm(), 1e-12);
+    EXPECT_LT((grid.At(g) - model::Wave((0.3 + 0.01 * g) * phase)).cwiseAbs().maxCoeff(), 1e-11) << g;
+  EXPECT_LT((model::WaveGrid(phase, 2.0, 1.0, 1).At(0) - model::Wave(2.0 * phase)).norm(), 1e-12);
 }
 
 TEST(Sense, IsThatOfTheLastMotionWhereItHoldsAtRest) {

@@ -77,12 +77,15 @@ TEST(TurntableFamilies, HaveTheSlopesOfTheInstrument) {
 TEST(TurntableFamilies, HaveTheCubeOfTheAngleRadiallyAndForEachAxis) {
   Wrong cubic;
   cubic.at_edge_rad = 0.1 * arcsec;
-  const Family& family = FamilyOf("autocollimator_nonlinearity", "");
-  ASSERT_EQ(family.grid, 2);
+  std::vector<Eigen::MatrixXd> columns;  // radially, then for each axis
+  for (const Family& family : Families(QuietRun())) {
+    if (family.effect == "autocollimator_nonlinearity") columns.push_back(family.ColumnsAt(0));
+  }
+  ASSERT_EQ(columns.size(), 2u);
   // The bench has a twentieth of fifth order at the edge; at half the range this is an eightieth of the third.
-  EXPECT_LT(Apart(family.ColumnsAt(1) * cubic.at_edge_rad, Difference({}, cubic)), 0.02);
+  EXPECT_LT(Apart(columns[1] * cubic.at_edge_rad, Difference({}, cubic)), 0.02);
   // Radially the same where one axis is near zero: within (100 / 200)^2 of the largest value.
-  EXPECT_LT(Apart(family.ColumnsAt(0) * cubic.at_edge_rad, Difference({}, cubic)), 0.3);
+  EXPECT_LT(Apart(columns[0] * cubic.at_edge_rad, Difference({}, cubic)), 0.3);
 }
 
 TEST(TurntableFamilies, HaveTheWavesOfTheReadings) {

@@ -62,10 +62,10 @@ Eigen::MatrixXd Tone(const Eigen::VectorXd& time_s, double frequency_Hz) {
   return Wave(2.0 * units::kPi * frequency_Hz * time_s);
 }
 
-Eigen::VectorXd Step(const Course& course, double at_reading) {
-  Eigen::VectorXd step(course.Readings());
+Eigen::VectorXd Step(const std::vector<int>& reading, double at_reading) {
+  Eigen::VectorXd step(std::ssize(reading));
   for (Eigen::Index i = 0; i < step.size(); ++i)
-    step[i] = std::clamp(course.reading[static_cast<std::size_t>(i)] - at_reading + 1.0, 0.0, 1.0);
+    step[i] = std::clamp(reading[static_cast<std::size_t>(i)] - at_reading + 1.0, 0.0, 1.0);
   return step;
 }
 

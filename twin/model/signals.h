@@ -44,7 +44,7 @@ Eigen::MatrixXd Tone(const Eigen::VectorXd& time_s, double frequency_Hz);
 
 /// Zero before the reading of that number, one from there on; between two numbers in proportion, so that a search
 /// may move it.
-Eigen::VectorXd Step(const Course& course, double at_reading);
+Eigen::VectorXd Step(const std::vector<int>& reading, double at_reading);
 
 /// cos(k pi share) / k^falling for k = 1, 2, ...: readings x count.
 Eigen::MatrixXd CosineModes(const Eigen::VectorXd& share, int count, bool falling);

@@ -4,6 +4,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/signals.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -62,8 +63,8 @@ Eigen::VectorXd EffectSignal_rad(const EffectSettings& e, const SignalContext& c
   if (name == "backlash") return PlaySignal_rad(c, Value(e, "width"));
   if (name == "hysteresis") return -Value(e, "lag") * Relaxation(c, Value(e, "settles_over"), RunUp_rad(c)).col(0);
   if (name == "scale") return Value(e, "ratio") * c.reference_rad;
-  if (name == "drift") return Value(e, "rate") * DriftSignals_s(c) * Eigen::Vector2d(1.0, Value(e, "curvature"));
-  if (name == "slip") return Value(e, "step") * StepSignal(c, static_cast<int>(Value(e, "at_reading")));
+  if (name == "drift") return Value(e, "rate") * model::Drift_s(c.since_start_s) * Eigen::Vector2d(1.0, Value(e, "curvature"));
+  if (name == "slip") return Value(e, "step") * model::Step(c.reading, std::floor(Value(e, "at_reading")));
   if (name == "outliers") return Eigen::VectorXd::Zero(c.Readings());
   return SignalFault_rad(e, c);
 }

@@ -13,21 +13,6 @@ namespace {
 constexpr double kPlausible_rad = 0.01 * units::deg;
 constexpr int kMostOrders = 120;
 
-double Rms(const Eigen::MatrixXd& columns, Eigen::Index j) {
-  return std::sqrt(columns.col(j).squaredNorm() / static_cast<double>(columns.rows()));
-}
-
-/// Prior sizes, where they are not set, such that each amplitude leaves a trace of `plausible_rad` rms in the
-/// middle of the grid.
-void SetPriors(Family& family, double plausible_rad) {
-  const Eigen::MatrixXd columns = family.ColumnsAt(family.grid / 2);
-  for (std::size_t j = 0; j < family.amplitudes.size(); ++j) {
-    if (family.amplitudes[j].prior_sd != kPriorToBeSet) continue;
-    const double rms = Rms(columns, static_cast<Eigen::Index>(j));
-    family.amplitudes[j].prior_sd = plausible_rad / std::max(rms, 1e-12);
-  }
-}
-
 bool Has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -57,25 +42,20 @@ int LargestOrder(const SignalContext& context) {
   return std::min(kMostOrders, static_cast<int>(std::ceil(units::kPi / finest_rad - 1e-6)) - 1);
 }
 
-std::vector<double> WholeOrders(int first, int last) {
-  std::vector<double> orders;
-  for (int k = first; k <= last; ++k) orders.push_back(k);
-  return orders;
-}
-
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& struck) {
   const auto context = std::make_shared<const SignalContext>(encoder.context);
   const double plausible_rad = std::max(kPlausible_rad, 3.0 * encoder.run.sigma.mean());
-  std::vector<Family> families = NamedFamilies(context, plausible_rad);
+  const TimeSeries series =
+      TimeSeriesOf(encoder.run.schedule, std::vector<int>(encoder.context.reading.size(), 0), 1);
+  std::vector<Family> families = NamedFamilies(context, series, plausible_rad);
   std::erase_if(families, [&](const Family& family) { return Has(struck, family.effect); });
   // One mounting cannot tell a fault of the device from the same order of the reference.
   const std::vector<std::string> doubled = {"eccentricity",       "signal_offset",    "ellipticity",
                                             "amplitude_mismatch", "quadrature_error", "periodic"};
   for (Family& family : families) {
-    SetPriors(family, plausible_rad);
     if (Has(doubled, family.effect)) family.most_probable = kMostProbableDoubled;
   }
-  std::ranges::move(UnknownFamilies(encoder, plausible_rad), std::back_inserter(families));
+  std::ranges::move(UnknownFamilies(encoder, series, plausible_rad), std::back_inserter(families));
   return families;
 }
 

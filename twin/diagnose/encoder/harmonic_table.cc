@@ -5,7 +5,7 @@
 #include <string>
 
 #include "twin/diagnose/encoder/families.h"
-#include "twin/diagnose/encoder/named_parts.h"
+#include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/engine/projector.h"
 
 namespace twinbench::diagnose::encoder {

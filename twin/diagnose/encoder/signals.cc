@@ -33,12 +33,6 @@ SignalContext ContextOf(const Schedule& s, const Eigen::VectorXd& device_rad, co
   return context;
 }
 
-Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad) {
-  Eigen::MatrixXd wave(phase_rad.size(), 2);
-  wave << phase_rad.array().cos().matrix(), phase_rad.array().sin().matrix();
-  return wave;
-}
-
 Eigen::VectorXd SignalPhase_rad(const SignalContext& context) {
   return context.device.signal_periods * (context.device_rad.array() - context.device.signal_zero_rad);
 }
@@ -110,19 +104,6 @@ Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level
     const double y = std::clamp(std::sin(p), -level, level), x = std::clamp(std::cos(p), -level, level);
     return Wrapped(std::atan2(y, x) - p);
   });
-}
-
-Eigen::MatrixXd DriftSignals_s(const SignalContext& context) {
-  const auto t = context.since_start_s.array();
-  Eigen::MatrixXd signals(t.size(), 2);
-  signals << t.matrix(), (t * (1.0 - t / units::hour)).matrix();
-  return signals;
-}
-
-Eigen::VectorXd StepSignal(const SignalContext& context, int at_reading) {
-  Eigen::VectorXd step(context.Readings());
-  for (Eigen::Index i = 0; i < step.size(); ++i) step[i] = context.reading[i] < at_reading ? 0.0 : 1.0;
-  return step;
 }
 
 }  // namespace twinbench::diagnose::encoder

@@ -27,9 +27,6 @@ struct SignalContext {
 /// @param device_rad  One a reading of the schedule.
 SignalContext ContextOf(const Schedule& schedule, const Eigen::VectorXd& device_rad, const DeviceSettings& device);
 
-/// [cos phase, sin phase]: readings x 2.
-Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad);
-
 /// Phase of the device's sine and cosine, in rad of their period.
 Eigen::VectorXd SignalPhase_rad(const SignalContext& context);
 
@@ -57,12 +54,6 @@ double RunUp_rad(const SignalContext& context);
 /// Error of atan2 from sine and cosine that are cut off at `level` of their amplitude, in rad of their period: a
 /// series of orders 4, 8, 12 whose ratios follow from the level.
 Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level);
-
-/// Linear, and a quadratic part that is zero at 0 and 1 h: readings x 2, per unit of rate.
-Eigen::MatrixXd DriftSignals_s(const SignalContext& context);
-
-/// Zero before the reading of that number, one from there on.
-Eigen::VectorXd StepSignal(const SignalContext& context, int at_reading);
 
 /// The whole signal of an [[effect]] block, for what a scenario already knows of its bench. Single outliers are not
 /// foreseen: zero.

@@ -4,7 +4,7 @@
 
 namespace twinbench::diagnose::encoder {
 
-std::vector<Family> UnknownFamilies(const EncoderRun& encoder, double plausible_rad) {
+std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries& series, double plausible_rad) {
   const SignalContext& c = encoder.context;
   unknown::Design design;
   design.course = encoder.run.schedule;
@@ -20,7 +20,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, double plausible_
     const Eigen::VectorXd T = model::Above_K(design.course, 0.0);
     design.above_K = T.array() - T.mean();
   }
-  design.series = TimeSeriesOf(design.course, std::vector<int>(c.reading.size(), 0), 1);
+  design.series = series;
   design.unit = encoder.run.unit;
   design.to_SI = encoder.run.to_SI;
   design.plausible = plausible_rad;

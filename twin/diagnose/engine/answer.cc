@@ -85,9 +85,17 @@ double ExplainedAlone(const Cause& cause, const SearchResult& found, const std::
   return most;
 }
 
+/// Within its bounds, if the family had to explain the signal.
+bool CanExplain(const Family& family, int grid_point, const Eigen::VectorXd& signal) {
+  if (family.amplitudes.size() != 1) return true;
+  const Eigen::VectorXd column = family.ColumnsAt(grid_point).col(0);
+  const double size = column.dot(signal) / column.squaredNorm();
+  return size >= family.amplitudes[0].lower && size <= family.amplitudes[0].upper;
+}
+
 /// Causes that explain the same of the whole run as one that won: their signatures are one on this design, and what
-/// was thought of them before is no reason to choose.
-std::vector<CauseKey> DoublesOf(const Cause& cause, const SearchResult& found,
+/// was thought of them before is no reason to choose, unless it was that they cannot be so.
+std::vector<CauseKey> DoublesOf(const Cause& cause, const Pick& pick, const SearchResult& found,
                                 const std::vector<Family>& families) {
   constexpr double kSame = 1e-6;  // of what it explains: rounding; likeness alone is for the evidence to judge
   std::vector<CauseKey> doubles;
@@ -97,7 +105,8 @@ std::vector<CauseKey> DoublesOf(const Cause& cause, const SearchResult& found,
     const CauseKey key = KeyOf(f);
     if (f.kind != Kind::kNamed || key == CauseKey{cause.effect, cause.where}) continue;
     const bool same = std::abs(found.alone.explained(k, 0) - explained) <= kSame * explained;
-    if (same && std::ranges::count(doubles, key) == 0) doubles.push_back(key);
+    if (!same || std::ranges::count(doubles, key) > 0) continue;
+    if (CanExplain(f, found.alone.grid_point(k, 0), pick.columns * pick.amplitudes)) doubles.push_back(key);
   }
   return doubles;
 }
@@ -108,7 +117,7 @@ void AddDoubles(const Pick& pick, const SearchResult& found, const std::vector<F
   const auto listed = [&causes](const CauseKey& key) {
     return std::ranges::any_of(causes, [&key](const Cause& c) { return CauseKey{c.effect, c.where} == key; });
   };
-  std::vector<CauseKey> doubles = DoublesOf(causes.front(), found, families);
+  std::vector<CauseKey> doubles = DoublesOf(causes.front(), pick, found, families);
   std::erase_if(doubles, listed);
   const double share = causes.front().probability / static_cast<double>(1 + std::ssize(doubles));
   causes.front().probability = share;

@@ -34,16 +34,16 @@ std::vector<double> FrequenciesOf(double longest_s, const Eigen::VectorXd& rows_
 
 /// Within a set-up and phase, because a step at its first reading is a constant of it. Thinned evenly where there
 /// are very many.
-std::vector<double> OnsetsOf(const model::Course& course) {
+void SetOnsets(const model::Course& course, TimeSeries& series) {
   constexpr std::size_t kMost = 1500;
-  std::vector<double> onsets, kept;
+  std::vector<double> all;
   for (std::size_t i = 1; i < course.reading.size(); ++i) {
     if (course.setup[i] == course.setup[i - 1] && course.phase[i] == course.phase[i - 1])
-      onsets.push_back(course.reading[i]);
+      all.push_back(course.reading[i]);
   }
-  const std::size_t every = 1 + onsets.size() / kMost;
-  for (std::size_t k = every / 2; k < onsets.size(); k += every) kept.push_back(onsets[k]);
-  return kept;
+  const std::size_t every = 1 + all.size() / kMost;
+  series.are_thinned = every > 1;
+  for (std::size_t k = every / 2; k < all.size(); k += every) series.onsets.push_back(all[k]);
 }
 
 std::shared_ptr<const Base> BaseOf(std::size_t grid, int channels, const ToRows& rows,
@@ -67,9 +67,17 @@ Eigen::MatrixXd TimeSeries::ToneAt(double frequency_Hz) const {
   return model::InEach(model::Tone(time_s, frequency_Hz), model::Indicators(stretch));
 }
 
+Eigen::MatrixXd TimeSeries::StepAt(double at_reading) const {
+  return model::Step(reading, at_reading);
+}
+
 TimeSeries TimeSeriesOf(const model::Course& course, const std::vector<int>& stretch, int channels,
                         const ToRows& rows, const Eigen::VectorXd& rows_time_s) {
-  TimeSeries series{course.time_s, stretch, {}, OnsetsOf(course), nullptr, nullptr};
+  TimeSeries series;
+  series.time_s = course.time_s;
+  series.reading = course.reading;
+  series.stretch = stretch;
+  SetOnsets(course, series);
   const double longest_s = SinceBegin_s(course.time_s, stretch).maxCoeff();
   series.frequencies_Hz = FrequenciesOf(longest_s, rows_time_s.size() > 0 ? rows_time_s : course.time_s);
   const auto count = static_cast<int>(std::ssize(series.frequencies_Hz));
@@ -82,8 +90,8 @@ TimeSeries TimeSeriesOf(const model::Course& course, const std::vector<int>& str
                             return stretches.cols() == 1 ? waves->At(g) : model::InEach(waves->At(g), stretches);
                           });
   }
-  series.steps = BaseOf(series.onsets.size(), channels, rows, [course, onsets = series.onsets](int g) {
-    return Eigen::MatrixXd(model::Step(course, onsets[static_cast<std::size_t>(g)]));
+  series.steps = BaseOf(series.onsets.size(), channels, rows, [reading = course.reading, onsets = series.onsets](int g) {
+    return Eigen::MatrixXd(model::Step(reading, onsets[static_cast<std::size_t>(g)]));
   });
   return series;
 }

@@ -17,14 +17,17 @@ using ToRows = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
 
 struct TimeSeries {
   Eigen::VectorXd time_s;
+  std::vector<int> reading;  // its number
   std::vector<int> stretch;  // a label: within one value something in time goes on undisturbed
   std::vector<double> frequencies_Hz, onsets;
+  bool are_thinned = false;  // there are more onsets
   std::shared_ptr<const Base> tones;  // [cos, sin] in each stretch; null if there is no room
   std::shared_ptr<const Base> steps;  // null if there is none
 
   Shape Frequency(const std::string& name) const;
   /// Between the points of the grid: samples x (2 x stretches).
   Eigen::MatrixXd ToneAt(double frequency_Hz) const;
+  Eigen::MatrixXd StepAt(double at_reading) const;
 };
 
 /// @param rows_time_s  Times of the rows, where they are not the samples: they say how fast a tone may be.

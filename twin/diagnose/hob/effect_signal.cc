@@ -3,6 +3,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/hob/known_signals.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
@@ -44,7 +45,7 @@ Eigen::VectorXd OfEncoder_rad(const EffectSettings& e, const SignalContext& c) {
   if (e.name == "eccentricity") return Harmonic_rad(e, angle_rad, 1.0);
   if (e.name == "ellipticity") return Harmonic_rad(e, angle_rad, 2.0);
   if (e.name == "periodic") return Harmonic_rad(e, angle_rad, Value(e, "order"));
-  if (e.name == "slip") return Value(e, "step") * StepSignal(c, std::floor(Value(e, "at_reading")));
+  if (e.name == "slip") return Value(e, "step") * model::Step(c.schedule.reading, std::floor(Value(e, "at_reading")));
   return SignalFault_rad(e, c);
 }
 
@@ -55,7 +56,7 @@ Eigen::VectorXd OfMotion_rad(const EffectSettings& e, const SignalContext& c) {
   if (e.name == "gear_mesh") return Harmonic_rad(e, c.hob_rad, c.train.hob_starts);
   if (e.name == "backlash") return -0.5 * Value(e, "width") * c.direction;
   if (e.name == "hysteresis") return -Value(e, "lag") * Relaxation(c, Value(e, "settles_over"), c.ramp_s);
-  if (e.name == "drift") return Value(e, "rate") * DriftSignals_s(c) * Eigen::Vector2d(1.0, Value(e, "curvature"));
+  if (e.name == "drift") return Value(e, "rate") * model::Drift_s(c.schedule.time_s) * Eigen::Vector2d(1.0, Value(e, "curvature"));
   if (e.name == "tone") return Harmonic_rad(e, 2.0 * units::kPi * c.schedule.time_s, Value(e, "frequency"));
   Require(e.name == "outliers", "an effect of the catalogue has no signal");
   return Eigen::VectorXd::Zero(c.Samples());

@@ -6,7 +6,8 @@
 #include <set>
 #include <string>
 
-#include "twin/diagnose/engine/catalogue_parts.h"
+#include "twin/diagnose/engine/candidates.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
@@ -46,7 +47,7 @@ std::vector<Harmonic> HarmonicTable(const HobRun& hob, const NoiseModel& noise) 
   const Eigen::MatrixXd setups = SetUps(c);
   Eigen::MatrixXd samples(c.Samples(), 2 * std::ssize(orders) + setups.cols());
   Eigen::Index at = 0;
-  for (const int k : orders) samples.middleCols(2 * at++, 2) = Wave(k * c.table_rad);
+  for (const int k : orders) samples.middleCols(2 * at++, 2) = model::Wave(k * c.table_rad);
   samples.rightCols(setups.cols()) = setups;
   Eigen::MatrixXd X = c.groups.Mean(samples);
   Eigen::VectorXd y(X.rows());

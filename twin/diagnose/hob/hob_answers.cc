@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/hob_transmission/format.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/hob/family_parts.h"
 #include "twin/diagnose/hob/harmonic_table.h"
@@ -65,8 +66,9 @@ Cause OutlierCause(double count, double size_rad, double log_bayes, double of) {
   cause.probability = kMostProbable;
   cause.log_evidence = log_bayes;
   cause.rho = std::sqrt(2.0 * std::max(0.0, log_bayes));
-  cause.parameters = {Estimate("outliers", "fraction", count / of, std::sqrt(count) / of),
-                      Estimate("outliers", "size", size_rad, size_rad / std::sqrt(2.0 * count))};
+  const Catalogue catalogue(benches::hob::Format().effects);
+  cause.parameters = {catalogue.Estimate("outliers", "fraction", count / of, std::sqrt(count) / of),
+                      catalogue.Estimate("outliers", "size", size_rad, size_rad / std::sqrt(2.0 * count))};
   return cause;
 }
 

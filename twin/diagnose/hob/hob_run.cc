@@ -14,6 +14,7 @@
 #include "twin/diagnose/hob/hob_noise.h"
 #include "twin/diagnose/hob/known_signals.h"
 #include "twin/diagnose/hob/steady_hob.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
@@ -142,7 +143,7 @@ struct FreeMotion {
 
 Eigen::MatrixXd FreeWaves(const SignalContext& c, const Eigen::VectorXd& gear_rad) {
   Eigen::MatrixXd waves(c.Samples(), 2 * c.train.free_orders);
-  for (int k = 1; k <= c.train.free_orders; ++k) waves.middleCols(2 * k - 2, 2) = Wave(k * gear_rad);
+  for (int k = 1; k <= c.train.free_orders; ++k) waves.middleCols(2 * k - 2, 2) = model::Wave(k * gear_rad);
   return waves;
 }
 

@@ -8,12 +8,6 @@
 #include "twin/diagnose/engine/base.h"
 
 namespace twinbench::diagnose::hob {
-Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad) {
-  Eigen::MatrixXd wave(phase_rad.size(), 2);
-  wave << phase_rad.array().cos().matrix(), phase_rad.array().sin().matrix();
-  return wave;
-}
-
 Eigen::VectorXd HobSignalPhase_rad(const SignalContext& context) {
   return context.hob_lines * context.steady_hob_rad;
 }
@@ -55,31 +49,6 @@ Eigen::VectorXd TravelSinceReversal_rad(const SignalContext& c) {
         onwards ? travel_rad[i - 1] + std::max(way_rad, 0.0) : std::max(beyond_rad(i - 1) + way_rad, 0.0);
   }
   return travel_rad;
-}
-
-Eigen::MatrixXd DriftSignals_s(const SignalContext& context) {
-  const auto t = context.schedule.time_s.array();
-  Eigen::MatrixXd signals(t.size(), 2);
-  signals << t.matrix(), (t * (1.0 - t / units::hour)).matrix();
-  return signals;
-}
-
-Eigen::VectorXd StepSignal(const SignalContext& context, double at_reading) {
-  Eigen::VectorXd step(context.Samples());
-  for (Eigen::Index i = 0; i < step.size(); ++i)
-    step[i] = std::clamp(context.schedule.reading[static_cast<std::size_t>(i)] - at_reading + 1.0, 0.0, 1.0);
-  return step;
-}
-
-Eigen::VectorXd SinceMounting_s(const SignalContext& context) {
-  std::map<int, double> start_s;
-  Eigen::VectorXd since_s(context.Samples());
-  for (Eigen::Index i = 0; i < since_s.size(); ++i) {
-    const double now_s = context.schedule.time_s[i];
-    since_s[i] =
-        now_s - start_s.try_emplace(context.schedule.setup[static_cast<std::size_t>(i)], now_s).first->second;
-  }
-  return since_s;
 }
 
 Eigen::MatrixXd SetUps(const SignalContext& context) {

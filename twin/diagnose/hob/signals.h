@@ -38,9 +38,6 @@ struct SignalContext {
   Eigen::Index Samples() const { return table_rad.size(); }
 };
 
-/// [cos phase, sin phase]: samples x 2.
-Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad);
-
 /// Phase of the sine and cosine of the hob's encoder, in rad of their period.
 Eigen::VectorXd HobSignalPhase_rad(const SignalContext& context);
 
@@ -55,16 +52,6 @@ Eigen::VectorXd Relaxation(const SignalContext& context, double settles_over_rad
 
 /// Travel of the table since its last reversal, with the way of the ramp [rad].
 Eigen::VectorXd TravelSinceReversal_rad(const SignalContext& context);
-
-/// Linear, and a quadratic part that is zero at 0 and 1 h: samples x 2, per unit of rate.
-Eigen::MatrixXd DriftSignals_s(const SignalContext& context);
-
-/// Zero before the reading of that number, one from there on; between two numbers in proportion, so that a search
-/// may move it.
-Eigen::VectorXd StepSignal(const SignalContext& context, double at_reading);
-
-/// Time from the first sample of the set-up, and the longest of these [s].
-Eigen::VectorXd SinceMounting_s(const SignalContext& context);
 
 /// Samples x set-ups, one where it belongs.
 Eigen::MatrixXd SetUps(const SignalContext& context);

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <map>
 #include <set>
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
@@ -35,7 +36,7 @@ Eigen::MatrixXd Basis(const SignalContext& c, const Mounting& mounting) {
   Eigen::MatrixXd basis =
       Eigen::MatrixXd::Zero(table_rad.size(), 2 * std::ssize(orders) + std::ssize(mounting.pass) + 1);
   Eigen::Index at = 0;
-  for (const double order : orders) basis.middleCols(2 * at++, 2) = Wave(order * table_rad);
+  for (const double order : orders) basis.middleCols(2 * at++, 2) = model::Wave(order * table_rad);
   for (Eigen::Index i = 0; i < basis.rows(); ++i) {
     const int pass = c.schedule.pass[static_cast<std::size_t>(mounting.samples[static_cast<std::size_t>(i)])];
     basis(i, 2 * at + mounting.pass.at(pass)) = 1.0;

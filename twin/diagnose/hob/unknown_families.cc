@@ -44,7 +44,7 @@ std::vector<Family> UnknownFamilies(const HobRun& hob, const Common& common, dou
   design.to_SI = hob.run.to_SI;
   design.plausible = plausible_rad;
   design.named = {"ring harmonic", "hob harmonic", "direction offset", "transition", "speed", "trend", "step", "tone"};
-  design.rows = [context = common.context](const Eigen::MatrixXd& samples) { return context->groups.Mean(samples); };
+  design.rows = MeansOf(common.context);
   return unknown::Families(design);
 }
 

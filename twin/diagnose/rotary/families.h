@@ -19,11 +19,4 @@ std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext
 /// With the published equations as the model: which of their sensitivities are off (yaw, tilt).
 std::vector<Family> ModelFamilies(const RotaryRun& rotary);
 
-/// The places "yaw", "tilt", "roll", "lateral" and the channels with their weights, each of largest weight 1.
-struct Place {
-  std::string name;
-  Eigen::VectorXd weight;
-};
-std::vector<Place> PlacesOf(const Eigen::Matrix4d& shown_by_motion);
-
 }  // namespace twinbench::diagnose::rotary

@@ -7,6 +7,7 @@
 #include "twin/core/reading.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/rotary/signals.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::rotary {
 namespace {
@@ -34,13 +35,6 @@ Eigen::MatrixXd Whirl(const Eigen::VectorXd& angle, const Whirling& whirling, co
   return rows;
 }
 
-Eigen::MatrixXd CrosstalkRows(int channel, const SignalContext& context) {
-  Eigen::VectorXd rows = Eigen::VectorXd::Zero(context.run.Rows());
-  const int before = context.scanned_before[static_cast<std::size_t>(channel)];
-  for (Eigen::Index k = 0; k < rows.size(); k += kChannels) rows[k + channel] = context.shown_m[k + before];
-  return rows;
-}
-
 Eigen::Vector4d ToneWeight(const std::string& where) {
   if (where == "all") return Eigen::Vector4d::Ones();
   if (where == "yaw") return {1.0, 0.0, 1.0, 0.0};
@@ -60,11 +54,18 @@ Eigen::VectorXd AmplitudesOf(const EffectSettings& e) {
   if (e.name == "crosstalk") return Eigen::VectorXd::Constant(1, value("fraction"));
   if (e.name == "bearing_half_frequency") return Eigen::Vector2d(value("tilt"), 0.0);
   if (e.name == "tone")
-    return value("amplitude") * Eigen::Vector2d(std::cos(value("phase")), std::sin(value("phase")));
+    return value("amplitude") * Eigen::Vector2d(std::sin(value("phase")), std::cos(value("phase")));
   return {};
 }
 
 }  // namespace
+
+Eigen::VectorXd CrosstalkRows(int channel, const SignalContext& context) {
+  Eigen::VectorXd rows = Eigen::VectorXd::Zero(context.run.Rows());
+  const int before = context.scanned_before[static_cast<std::size_t>(channel)];
+  for (Eigen::Index k = 0; k < rows.size(); k += kChannels) rows[k + channel] = context.shown_m[k + before];
+  return rows;
+}
 
 Eigen::MatrixXd AdcStepSignal(int channel, double at_V, double blur_V, const SignalContext& context) {
   const double sensitivity_V_m = context.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
@@ -78,8 +79,7 @@ Eigen::MatrixXd AdcStepSignal(int channel, double at_V, double blur_V, const Sig
 
 Eigen::MatrixXd HalfFrequencySignal(double order, const Whirling& whirling, const SignalContext& context) {
   const Schedule& s = context.run.schedule;
-  if (whirling.turning == Turning::kTravelled) return Whirl(order * TravelledTarget_rad(s), whirling, context);
-  return Whirl(order * ContinuedTarget_rad(s, whirling.turning == Turning::kThroughSetups), whirling, context);
+  return Whirl(order * ContinuedTarget_rad(s, whirling.through_setups), whirling, context);
 }
 
 bool AltersBench(const std::string& effect) {
@@ -130,14 +130,14 @@ Eigen::MatrixXd EffectSignal(const std::string& effect, const std::string& where
     return OnChannels(signal, WeightOf(where, context.shown_by_motion));
   };
   if (effect == "laser_drift") {
-    return OnChannels(DriftSignal(s, Value(shape, "curvature")),
+    return OnChannels(model::Drift_s(s.time_s) * Eigen::Vector2d(1.0, Value(shape, "curvature")),
                       context.shown_by_laser.col(where == "yaw" ? 0 : 1));
   }
-  if (effect == "mount_creep") return moved(CreepSignal(s, Value(shape, "time_constant")));
-  if (effect == "thermal_tilt") return moved(LaggedTemperature(s, context.reference_degC, Value(shape, "lag")));
+  if (effect == "mount_creep") return moved((model::SinceFirst_s(s) / Value(shape, "time_constant")).array().log1p().matrix());
+  if (effect == "thermal_tilt") return moved(model::Lagged(s.time_s, model::Above_K(s, context.reference_degC), Value(shape, "lag")));
   if (effect == "mode_hop")
-    return OnChannels(StepSignal(s, static_cast<int>(Value(shape, "at_reading"))), context.shown_by_wavelength);
-  if (effect == "slip") return moved(StepSignal(s, static_cast<int>(Value(shape, "at_reading"))));
+    return OnChannels(model::Step(s.reading, std::floor(Value(shape, "at_reading"))), context.shown_by_wavelength);
+  if (effect == "slip") return moved(model::Step(s.reading, std::floor(Value(shape, "at_reading"))));
   // A rotor that lags stays behind on the side it came from; the reference turns against the target.
   const double side = where == "reference" ? 1.0 : -1.0;
   const Eigen::Vector4d yaw = context.shown_by_motion.col(0);
@@ -145,9 +145,9 @@ Eigen::MatrixXd EffectSignal(const std::string& effect, const std::string& where
   if (effect == "settling")
     return OnChannels(-SettlingSignal(s, context.settle_s, Value(shape, "time_constant")), yaw);
   if (effect == "bearing_half_frequency") {
-    return HalfFrequencySignal(Value(shape, "order"), {Turning::kContinued, context.target_height_m, 1.0}, context);
+    return HalfFrequencySignal(Value(shape, "order"), {false, context.target_height_m, 1.0}, context);
   }
-  if (effect == "tone") return OnChannels(ToneSignal(s, Value(shape, "frequency")), ToneWeight(where));
+  if (effect == "tone") return OnChannels(model::Tone(s.time_s, Value(shape, "frequency")), ToneWeight(where));
   if (effect == "adc_step") {
     return AdcStepSignal(ChannelIndex(where), Value(shape, "at_voltage"), std::max(context.sample_noise_V, 1e-6),
                          context);

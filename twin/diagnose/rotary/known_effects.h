@@ -50,14 +50,10 @@ struct SignalContext {
 Eigen::MatrixXd EffectSignal(const std::string& effect, const std::string& where, const Parameters& shape,
                              const SignalContext& context);
 
-/// How the turns of the target are counted where a record has been rewound: within a set-up, through all set-ups,
-/// or as the way travelled whatever its direction.
-enum class Turning { kContinued, kThroughSetups, kTravelled };
-
-/// How a bearing's motion goes about: counting of turns, height of the spot above the point that it tilts about,
-/// and whether it whirls with the angle (+1) or against it (-1).
+/// How a bearing's motion goes about: whether turns are counted through all set-ups, height of the spot above the
+/// point that it tilts about, and whether it whirls with the angle (+1) or against it (-1).
 struct Whirling {
-  Turning turning = Turning::kContinued;
+  bool through_setups = false;
   double lever_m = 0.0;
   double sense = 1.0;
 };
@@ -67,6 +63,9 @@ Eigen::MatrixXd HalfFrequencySignal(double order, const Whirling& whirling, cons
 
 /// A step in a channel's A/D: the share of a block's samples above it, per sensitivity [m / V], rows x 1.
 Eigen::MatrixXd AdcStepSignal(int channel, double at_V, double blur_V, const SignalContext& context);
+
+/// What each channel keeps of the one converted before it, at unit fraction, rows x 1.
+Eigen::VectorXd CrosstalkRows(int channel, const SignalContext& context);
 
 /// Weight of a place on the channels: "yaw", "tilt", "roll", "lateral" of the grating, a channel, a PSD.
 Eigen::Vector4d WeightOf(const std::string& where, const Eigen::Matrix4d& shown_by_motion);

@@ -22,7 +22,14 @@ std::string OnWhat(const std::string& place) {
 /// A motion of the grating, a channel, or all channels independently.
 std::vector<unknown::Place> GenericPlaces(const Eigen::Matrix4d& shown_by_motion) {
   std::vector<unknown::Place> places;
-  for (const Place& place : PlacesOf(shown_by_motion)) places.push_back({place.name, OnWhat(place.name), place.weight});
+  for (const char* motion : {"yaw", "tilt", "roll", "lateral"}) {
+    const Eigen::Vector4d shown = WeightOf(motion, shown_by_motion);
+    places.push_back({motion, OnWhat(motion), shown / shown.cwiseAbs().maxCoeff()});
+  }
+  for (int c = 0; c < kChannels; ++c) {
+    const char* const name = kChannelNames[static_cast<std::size_t>(c)];
+    places.push_back({name, name, Eigen::Vector4d::Unit(c)});
+  }
   places.push_back({"all", "all channels", Eigen::MatrixXd::Identity(kChannels, kChannels)});
   return places;
 }

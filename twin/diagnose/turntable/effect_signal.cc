@@ -5,6 +5,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/turntable/signals.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
@@ -26,10 +27,10 @@ int AxisOf(const EffectSettings& effect) {
 /// What moves the zero of an axis, whatever it reads.
 Eigen::VectorXd ZeroSignal_rad(const EffectSettings& e, const SignalContext& c) {
   if (e.name == "autocollimator_drift")
-    return Value(e, "rate") * DriftSignals_s(c) * Eigen::Vector2d(1.0, Value(e, "curvature"));
+    return Value(e, "rate") * model::Drift_s(c.schedule.time_s) * Eigen::Vector2d(1.0, Value(e, "curvature"));
   if (e.name == "autocollimator_temperature" && c.HasTemperature()) return Value(e, "coefficient") * c.above_K;
   if (e.name == "mount_creep") return Value(e, "amplitude") * CreepSignal(c, Value(e, "time_constant"));
-  if (e.name == "slip") return Value(e, "step") * StepSignal(c, static_cast<int>(Value(e, "at_reading")));
+  if (e.name == "slip") return Value(e, "step") * model::Step(c.schedule.reading, std::floor(Value(e, "at_reading")));
   if (e.name == "tone") return Harmonic_rad(e, Value(e, "frequency") * c.schedule.time_s);
   return Eigen::VectorXd::Zero(c.Readings());
 }

@@ -7,6 +7,7 @@
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/turntable/disturbed.h"
+#include "twin/diagnose/turntable/family_parts.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
@@ -32,12 +33,9 @@ void WidenPriors(const LinearRun& run, std::vector<Family>& families) {
 
 std::vector<Family> Families(const TurntableRun& turntable, const std::vector<std::string>& struck) {
   const auto context = std::make_shared<const SignalContext>(turntable.context);
-  std::vector<Family> families;
-  AddInstrument(context, UsualSigma_rad(turntable.run), families);
   const Schedule& schedule = turntable.run.schedule;
   const TimeSeries series = TimeSeriesOf(schedule, std::vector<int>(schedule.reading.size(), 0), kAxes);
-  AddTime(context, series, families);
-  AddBody(context, families);
+  std::vector<Family> families = NamedFamilies(context, UsualSigma_rad(turntable.run), series);
   WidenPriors(turntable.run, families);
   std::erase_if(families, [&](const Family& f) { return std::ranges::find(struck, f.effect) != struck.end(); });
   std::ranges::move(UnknownFamilies(turntable, series), std::back_inserter(families));

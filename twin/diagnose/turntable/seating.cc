@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/turntable_autocollimator/format.h"
+#include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/turntable/disturbed.h"
-#include "twin/diagnose/turntable/named_parts.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
@@ -76,6 +77,10 @@ double LogBayes(const Squares& s, double nu) {
   return std::log(sum / kSteps);
 }
 
+ParameterEstimate Scatter(double scatter_rad, double u_rad) {
+  return Catalogue(benches::turntable::Format().effects).Estimate("multitooth_seating", "scatter", scatter_rad, u_rad);
+}
+
 double VarianceOfX(const TurntableRun& turntable) {
   LinearRun x;
   x.sigma = turntable.run.sigma(Eigen::seq(kX, Eigen::last, kAxes));
@@ -108,12 +113,12 @@ Cause SeatingCause(const Seating& seating) {
   cause.probability = kMostProbable;
   cause.log_evidence = seating.log_bayes;
   cause.rho = std::sqrt(2.0 * std::max(0.0, seating.log_bayes));
-  cause.parameters = {Estimate(cause.effect, "scatter", seating.scatter_rad, seating.u_scatter_rad)};
+  cause.parameters = {Scatter(seating.scatter_rad, seating.u_scatter_rad)};
   return cause;
 }
 
 Detectable DetectableSeating(double smallest_rad) {
-  return {"multitooth_seating", "", Estimate("multitooth_seating", "scatter", smallest_rad, kNaN)};
+  return {"multitooth_seating", "", Scatter(smallest_rad, kNaN)};
 }
 
 LinearRun WithScatter(const TurntableRun& turntable, double scatter_rad) {

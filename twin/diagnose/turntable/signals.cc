@@ -1,4 +1,5 @@
 #include "twin/diagnose/turntable/signals.h"
+#include "twin/model/signals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,17 +33,6 @@ Eigen::VectorXd SinceMounting_s(const Schedule& s, const Scenario& scenario) {
   return since_s;
 }
 
-Eigen::VectorXd AboveReference_K(const Schedule& s, double reference_degC) {
-  if (!s.temperature_degC.array().isFinite().any()) return {};
-  Eigen::VectorXd above_K(s.Readings());
-  double last_K = 0.0;
-  for (int i = 0; i < s.Readings(); ++i) {
-    if (std::isfinite(s.temperature_degC[i])) last_K = s.temperature_degC[i] - reference_degC;
-    above_K[i] = last_K;
-  }
-  return above_K;
-}
-
 /// The multi-tooth table's axis goes round with the turntable; what lies across the beam counts. To the left of
 /// somebody who looks along the mirror's normal is positive, so that a hollow mirror shows a positive x.
 Eigen::VectorXd BeamWalk_m(const Schedule& s, const TurntableProcedureSettings& procedure) {
@@ -64,7 +54,8 @@ SignalContext ContextOf(const Schedule& schedule, const Scenario& scenario) {
   context.schedule = schedule;
   context.since_mounting_s = SinceMounting_s(schedule, scenario);
   context.since_arrival_s = SinceArrival_s(schedule, scenario);
-  context.above_K = AboveReference_K(schedule, scenario.environment.reference_degC);
+  if (model::HasTemperature(schedule))
+    context.above_K = model::Above_K(schedule, scenario.environment.reference_degC);
   context.beam_walk_m = BeamWalk_m(schedule, scenario.turntable_procedure);
   context.range_rad = scenario.autocollimator.range_rad;
   context.pixel_rad = scenario.collimator.pixel_pitch_m / (2.0 * scenario.collimator.focal_length_m);
@@ -72,28 +63,8 @@ SignalContext ContextOf(const Schedule& schedule, const Scenario& scenario) {
   return context;
 }
 
-Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad) {
-  Eigen::MatrixXd wave(phase_rad.size(), 2);
-  wave << phase_rad.array().cos().matrix(), phase_rad.array().sin().matrix();
-  return wave;
-}
-
-Eigen::MatrixXd DriftSignals_s(const SignalContext& context) {
-  const auto t = context.schedule.time_s.array();
-  Eigen::MatrixXd signals(t.size(), 2);
-  signals << t.matrix(), (t * (1.0 - t / units::hour)).matrix();
-  return signals;
-}
-
 Eigen::VectorXd CreepSignal(const SignalContext& context, double time_constant_s) {
   return (context.since_mounting_s.array() / time_constant_s).log1p();
-}
-
-Eigen::VectorXd StepSignal(const SignalContext& context, int at_reading) {
-  Eigen::VectorXd step(context.Readings());
-  for (Eigen::Index i = 0; i < step.size(); ++i)
-    step[i] = context.schedule.reading[static_cast<std::size_t>(i)] < at_reading ? 0.0 : 1.0;
-  return step;
 }
 
 Eigen::VectorXd DirectionSignal(const SignalContext& context) {
@@ -122,23 +93,6 @@ Eigen::MatrixXd CubicSignals(const Eigen::MatrixXd& shown_rad, double range_rad,
   if (!radial) return u.cube();
   const Eigen::ArrayXd squared = u.square().rowwise().sum();
   return u.colwise() * squared;
-}
-
-Eigen::VectorXd LaggedTemperature_K(const SignalContext& context, double lag_s) {
-  Eigen::VectorXd lagged_K = context.above_K;
-  if (lag_s <= 0.0) return lagged_K;
-  for (Eigen::Index i = 1; i < lagged_K.size(); ++i) {
-    const double elapsed_s = std::max(context.schedule.time_s[i] - context.schedule.time_s[i - 1], 1e-9);
-    const double middle_K = 0.5 * (context.above_K[i] + context.above_K[i - 1]);
-    lagged_K[i] = middle_K + (lagged_K[i - 1] - middle_K) * std::exp(-elapsed_s / lag_s);
-  }
-  return lagged_K;
-}
-
-Eigen::MatrixXd OnAxis(const Eigen::MatrixXd& signal, int axis) {
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(kAxes * signal.rows(), signal.cols());
-  for (Eigen::Index i = 0; i < signal.rows(); ++i) rows.row(kAxes * i + axis) = signal.row(i);
-  return rows;
 }
 
 Eigen::VectorXd AsRows(const Eigen::MatrixXd& of_axes) {

@@ -38,17 +38,8 @@ struct SignalContext {
 /// All but `shown_rad`. Readings without a temperature keep the one before.
 SignalContext ContextOf(const Schedule& schedule, const Scenario& scenario);
 
-/// [cos phase, sin phase]: readings x 2.
-Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad);
-
-/// Linear, and a quadratic part that is zero at 0 and 1 h: readings x 2, per unit of rate.
-Eigen::MatrixXd DriftSignals_s(const SignalContext& context);
-
 /// ln(1 + time since mounting / time constant).
 Eigen::VectorXd CreepSignal(const SignalContext& context, double time_constant_s);
-
-/// Zero before the reading of that number, one from there on.
-Eigen::VectorXd StepSignal(const SignalContext& context, int at_reading);
 
 /// Recorded direction of the turntable, +1 or -1.
 Eigen::VectorXd DirectionSignal(const SignalContext& context);
@@ -66,12 +57,6 @@ Eigen::VectorXd FlatnessSignal_per_m(const SignalContext& context);
 /// @param radial  Each axis times the square of the distance from the middle, as a distorting lens does it; else
 ///                each axis for itself.
 Eigen::MatrixXd CubicSignals(const Eigen::MatrixXd& shown_rad, double range_rad, bool radial);
-
-/// Temperature that follows the recorded one with a lag of first order, above the reference [K].
-Eigen::VectorXd LaggedTemperature_K(const SignalContext& context, double lag_s);
-
-/// A signal (readings x k) as rows of one axis; those of the other are zero.
-Eigen::MatrixXd OnAxis(const Eigen::MatrixXd& signal, int axis);
 
 /// Readings x axes, one signal, as rows.
 Eigen::VectorXd AsRows(const Eigen::MatrixXd& of_axes);

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "twin/core/units.h"
-#include "twin/diagnose/turntable/named_parts.h"
+#include "twin/diagnose/turntable/family_parts.h"
 #include "twin/diagnose/turntable/turntable_run.h"
 #include "twin/diagnose/unknown/design.h"
 

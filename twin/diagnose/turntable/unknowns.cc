@@ -1,4 +1,5 @@
 #include "twin/diagnose/turntable/unknowns.h"
+#include "twin/model/signals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -159,7 +160,7 @@ void AddInterpolation(Columns& columns, double amplitude_rad, const SignalContex
   for (int axis = 0; axis < kAxes; ++axis) {
     const int first = columns.New(amplitude_rad);
     columns.New(amplitude_rad);
-    const Eigen::MatrixXd wave = Wave(2.0 * units::kPi / context.pixel_rad * context.shown_rad.col(axis));
+    const Eigen::MatrixXd wave = model::Wave(2.0 * units::kPi / context.pixel_rad * context.shown_rad.col(axis));
     for (int i = 0; i < columns.Readings(); ++i) {
       columns.Put(kAxes * i + axis, first, wave(i, 0));
       columns.Put(kAxes * i + axis, first + 1, wave(i, 1));

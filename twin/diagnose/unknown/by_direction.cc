@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "twin/core/units.h"
-#include "twin/diagnose/engine/catalogue_parts.h"
+#include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/model/signals.h"
 

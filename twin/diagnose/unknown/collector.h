@@ -5,14 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/unknown/design.h"
 
 /// How generic families are made; only the files that make them need it.
 namespace twinbench::diagnose::unknown {
 
 using Words = std::function<std::string(int grid_point)>;
-using Series = std::function<Eigen::MatrixXd(int grid_point)>;  // samples x k
-using SeriesAt = std::function<Eigen::MatrixXd(const Eigen::VectorXd& shape)>;
 
 class Collector {
  public:
