@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/diagnose/encoder_fit.h"
+#include "tests/diagnose/encoder_twin_run.h"
 #include "twin/benches/names.h"
 #include "twin/diagnose/encoder/next_measurement.h"
 
@@ -24,7 +25,7 @@ struct Recovered {
 /// Injects the effect into a noise-free run and fits the families of the same name, which know nothing of it; the
 /// best.
 Recovered Recover(const Scenario& scenario, const EffectSettings& effect) {
-  const EncoderRun encoder = BuildRun(test::ReadingsWith(scenario, effect), scenario);
+  const EncoderRun encoder = RunOf(test::ReadingsWith(scenario, effect), scenario);
   Recovered best;
   for (const Family& family : Families(encoder)) {
     if (family.effect != effect.name) continue;
@@ -70,14 +71,13 @@ TEST(EncoderFamilies, ReportOfTheManyAmplitudesAndPhasesOfAWaveThePositiveOne) {
 TEST(EncoderFamilies, TellAFaultyReferenceOnlyWhenTheDeviceWasTurned) {
   Scenario scenario = EncoderScenario();
   const auto fault = EncoderEffect("reference_fault", {{"order", 1.0}, {"amplitude", 1e-5}, {"phase", 0.4}});
-  EXPECT_FALSE(
-      test::HasFamily(Families(BuildRun(test::ReadingsWith(scenario, fault), scenario)), "reference_fault"));
+  EXPECT_FALSE(test::HasFamily(Families(RunOf(test::ReadingsWith(scenario, fault), scenario)), "reference_fault"));
   scenario.encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
   const Recovered r = Recover(scenario, fault);
   EXPECT_LT(r.fit.left, 1e-4);
   EXPECT_NEAR(r.parameters.at("amplitude"), 1e-5, 1e-9);
   EXPECT_NEAR(r.parameters.at("phase"), 0.4, 1e-3);
-  const EncoderRun encoder = BuildRun(test::ReadingsWith(scenario, fault), scenario);
+  const EncoderRun encoder = RunOf(test::ReadingsWith(scenario, fault), scenario);
   // A quarter turn between the set-ups: an order 1 locked to the device explains half of the variance.
   EXPECT_NEAR(test::BestFit(test::FamilyOf(Families(encoder), "eccentricity"), encoder.run).left, std::sqrt(0.5),
               0.02);
@@ -112,7 +112,7 @@ TEST(EncoderFamilies, KeepMismatchAndQuadratureApartWhereTheZeroIsKnown) {
   Scenario scenario = EncoderScenario();
   scenario.device.signal_zero_known = true;
   const auto readings = test::ReadingsWith(scenario, EncoderEffect("amplitude_mismatch", {{"ratio", 2e-5}}));
-  const EncoderRun encoder = BuildRun(readings, scenario);
+  const EncoderRun encoder = RunOf(readings, scenario);
   EXPECT_GT(test::BestFit(test::FamilyOf(Families(encoder), "quadrature_error"), encoder.run).left, 0.99);
 }
 
@@ -121,7 +121,7 @@ TEST(EncoderFamilies, RecoverClippingWithTheZeroFree) {
   Scenario turned = scenario;  // what is diagnosed is not told of this
   turned.device.signal_zero_rad = 33.75 * deg;
   const EncoderRun encoder =
-      BuildRun(test::ReadingsWith(turned, EncoderEffect("signal_clipping", {{"level", 0.90}})), scenario);
+      RunOf(test::ReadingsWith(turned, EncoderEffect("signal_clipping", {{"level", 0.90}})), scenario);
   const Family family = test::FamilyOf(Families(encoder), "signal_clipping");
   const test::Fit grid = test::BestFit(family, encoder.run);
   // The next levels of the grid differ by a factor 1.65 in depth; the strength takes up the size, not the shape.
@@ -141,7 +141,7 @@ TEST(EncoderFamilies, RecoverLatencyOnlyInMotion) {
   EXPECT_LT(r.fit.left, 1e-9);
   EXPECT_NEAR(r.parameters.at("delay"), 1e-5, 1e-13);
   const Scenario stops = EncoderScenario("stops");
-  EXPECT_FALSE(test::HasFamily(Families(BuildRun(test::ReadingsWith(stops, effect), stops)), "latency"));
+  EXPECT_FALSE(test::HasFamily(Families(RunOf(test::ReadingsWith(stops, effect), stops)), "latency"));
 }
 
 TEST(EncoderFamilies, RecoverBacklashToFirstOrder) {
@@ -163,7 +163,7 @@ TEST(EncoderFamilies, RecoverBacklashOfStopsThatWereTakenWithoutRunUp) {
     const int sense = turning ? -readings[i].direction : way_rad > 0.0 ? 1 : -1;
     readings[i].measured_rad -= 0.5e-5 * sense;
   }
-  const EncoderRun encoder = BuildRun(readings, scenario);
+  const EncoderRun encoder = RunOf(readings, scenario);
   const Family family = test::FamilyOf(Families(encoder), "backlash");
   const test::Fit fit = test::BestFit(family, encoder.run);
   EXPECT_LT(fit.left, 1e-9);
@@ -198,7 +198,7 @@ TEST(EncoderFamilies, RecoverScaleDriftAndSlip) {
 
 TEST(EncoderFamilies, GiveCausesOfOneOrderTheSameColumnsAndPriors) {
   const Scenario scenario = EncoderScenario();
-  const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
+  const auto families = Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
   const auto scaled = [&](const char* name) {
     const Family& family = test::FamilyOf(families, name);
     Eigen::MatrixXd columns = family.ColumnsAt(0);
@@ -230,7 +230,7 @@ TEST(EncoderFamilies, HaveUniqueGroupsByEffectAndBoundsOfTheCatalogue) {
   Scenario scenario = EncoderScenario("sweep");
   scenario.device.lines = 20;
   scenario.device.teeth = 44;
-  for (const Family& family : Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario))) {
+  for (const Family& family : Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario))) {
     if (family.kind != Kind::kNamed) continue;
     EXPECT_EQ(family.group, family.effect);
     EXPECT_NE(FindEffect(family.effect, kEncoderBench), nullptr) << family.effect;
@@ -241,7 +241,7 @@ TEST(EncoderFamilies, HaveUniqueGroupsByEffectAndBoundsOfTheCatalogue) {
 
 TEST(EncoderFamilies, GiveTheStateThatHysteresisBeginsWithThePriorOfItsLag) {
   const Scenario scenario = EncoderScenario();
-  const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
+  const auto families = Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
   const Family& family = test::FamilyOf(families, "hysteresis");
   EXPECT_EQ(family.amplitudes[1].prior_sd, family.amplitudes[0].prior_sd);
   // In steady motion the lag is the trace in the readings.
@@ -251,7 +251,7 @@ TEST(EncoderFamilies, GiveTheStateThatHysteresisBeginsWithThePriorOfItsLag) {
 
 TEST(EncoderFamilies, StateUncertaintiesOfShapesWhereTheCovarianceHasThem) {
   const Scenario scenario = EncoderScenario();
-  const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
+  const auto families = Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
   const Eigen::Vector4d sd(1e-6, 1e-6, 0.2, 0.1);  // lag, start, settles_over, run_up
   const Eigen::MatrixXd cov = sd.array().square().matrix().asDiagonal();
   const Family& family = test::FamilyOf(families, "hysteresis");
@@ -267,7 +267,7 @@ TEST(EncoderFamilies, StateUncertaintiesOfShapesWhereTheCovarianceHasThem) {
 
 TEST(EncoderFamilies, StateUncertaintiesThatFollowFromTheCovariance) {
   const Scenario scenario = EncoderScenario();
-  const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
+  const auto families = Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
   const Family& family = test::FamilyOf(families, "eccentricity");
   const Eigen::Vector2d x(3e-4, 4e-4);
   const Eigen::Matrix2d cov = Eigen::Vector2d(1e-12, 4e-12).asDiagonal();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/core/input_error.h"
+#include "tests/diagnose/encoder_twin_run.h"
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/names.h"
 #include "twin/diagnose/engine/projector.h"
@@ -28,7 +29,7 @@ Scenario NoisyScenario(const std::string& kind = "stops") {
 TEST(EncoderRun, IsOneChannelWithOneOffsetASetUp) {
   Scenario scenario = NoisyScenario();
   scenario.encoder_procedure.mounting_rad = {0.0, 2.0};
-  const EncoderRun encoder = BuildRun(RunEncoderTwin(scenario).readings, scenario);
+  const EncoderRun encoder = RunOf(RunEncoderTwin(scenario).readings, scenario);
   const LinearRun& run = encoder.run;
   EXPECT_THAT(run.channels, testing::ElementsAre("angle"));
   EXPECT_EQ(run.Rows(), 2 * 576);
@@ -41,9 +42,9 @@ TEST(EncoderRun, IsOneChannelWithOneOffsetASetUp) {
 TEST(EncoderRun, PutsBackTheTurnsThatADeviceDoesNotCount) {
   const Scenario scenario = NoisyScenario();
   auto readings = RunEncoderTwin(scenario).readings;
-  const EncoderRun counted = BuildRun(readings, scenario);
+  const EncoderRun counted = RunOf(readings, scenario);
   for (Reading& r : readings) r.measured_rad = std::fmod(r.measured_rad + 1.0, 2.0 * units::kPi);
-  const EncoderRun wrapped = BuildRun(readings, scenario);
+  const EncoderRun wrapped = RunOf(readings, scenario);
   EXPECT_LT((wrapped.run.residual - counted.run.residual).cwiseAbs().maxCoeff(), 1e-12);
 }
 
@@ -52,13 +53,12 @@ TEST(EncoderRun, LeavesOutAndCountsReadingsWithoutAValue) {
   auto readings = RunEncoderTwin(scenario).readings;
   readings[3].measured_rad = kNaN;
   readings[4].status = ReadingStatus::kMissing;
-  const EncoderRun encoder = BuildRun(readings, scenario);
+  const EncoderRun encoder = RunOf(readings, scenario);
   EXPECT_EQ(encoder.left_out, 2);
   EXPECT_EQ(encoder.run.Rows(), 574);
   EXPECT_EQ(encoder.run.schedule.reading[3], 5);
   for (std::size_t i = 10; i < readings.size(); ++i) readings[i].measured_rad = kNaN;
-  EXPECT_EQ(MessageOf([&] { BuildRun(readings, scenario); }),
-            "readings: 8 of 576 have a value; expected at least 12");
+  EXPECT_EQ(MessageOf([&] { RunOf(readings, scenario); }), "readings: 8 of 576 have a value; expected at least 12");
 }
 
 TEST(EncoderRun, EstimatesTheNoiseUnderEveryEffect) {
@@ -67,7 +67,7 @@ TEST(EncoderRun, EstimatesTheNoiseUnderEveryEffect) {
     scenario.device.lines = 90;
     for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
       const auto readings = ReadingsWith(scenario, EncoderEffect(entry.name));
-      const double ratio = BuildRun(readings, scenario).run.sigma[0] / scenario.device.noise_rad;
+      const double ratio = RunOf(readings, scenario).run.sigma[0] / scenario.device.noise_rad;
       // A median of 140 differences and more: 10 %, some of it low because the smaller estimate counts. Structure
       // of high orders enlarges it; a factor 3 does not hide it, for its amplitude is 5 times the noise.
       EXPECT_GT(ratio, 0.8) << entry.name << " " << kind;
@@ -83,7 +83,7 @@ double NoiseRatio(const std::string& kind, std::uint64_t seed, double outlier = 
   auto readings = RunEncoderTwin(scenario).readings;
   for (std::size_t i = 0; i < readings.size(); i += 50)
     readings[i].measured_rad += outlier * scenario.device.noise_rad;
-  return BuildRun(readings, scenario).run.sigma[0] / scenario.device.noise_rad;
+  return RunOf(readings, scenario).run.sigma[0] / scenario.device.noise_rad;
 }
 
 TEST(EncoderRun, EstimatesTheNoiseToThePrecisionThatTheReadingsAllow) {
@@ -107,7 +107,7 @@ TEST(EncoderRun, EstimatesTheNoiseWithoutItsOutliers) {
 TEST(EncoderRun, TakesTheNoiseThatIsKnown) {
   Scenario scenario = NoisyScenario();
   scenario.device.noise_known = true;
-  const EncoderRun encoder = BuildRun(RunEncoderTwin(scenario).readings, scenario);
+  const EncoderRun encoder = RunOf(RunEncoderTwin(scenario).readings, scenario);
   EXPECT_TRUE(encoder.run.sigma_stated);
   EXPECT_EQ(encoder.run.sigma[0], scenario.device.noise_rad);
 }
@@ -122,8 +122,8 @@ TEST(EncoderRun, KnowsTheEffectsOfItsScenario) {
       Scenario knowing = scenario;
       knowing.effects.push_back(EncoderEffect(entry.name));
       const auto readings = RunEncoderTwin(knowing).readings;
-      const double before = BuildRun(readings, scenario).run.residual.norm();
-      const double after = BuildRun(readings, knowing).run.residual.norm();
+      const double before = RunOf(readings, scenario).run.residual.norm();
+      const double after = RunOf(readings, knowing).run.residual.norm();
       // The device's angle is taken from readings that have the effect in them: its own size enters again, times
       // the order (90 for interpolation at 0.005 deg: 0.8 %; clipping of 0.03 rad, order 4).
       EXPECT_LT(after, 0.05 * before + 1e-12) << entry.name << " " << kind;  // latency of stops is none
@@ -134,9 +134,9 @@ TEST(EncoderRun, KnowsTheEffectsOfItsScenario) {
 TEST(EncoderRun, DerivesVelocitiesOfASweepThatWereNotRecorded) {
   const Scenario scenario = NoisyScenario("sweep");
   auto readings = RunEncoderTwin(scenario).readings;
-  const Eigen::VectorXd recorded = BuildRun(readings, scenario).context.velocity_rad_s;
+  const Eigen::VectorXd recorded = RunOf(readings, scenario).context.velocity_rad_s;
   for (Reading& r : readings) r.velocity_rad_s = kNaN;
-  const Eigen::VectorXd derived = BuildRun(readings, scenario).context.velocity_rad_s;
+  const Eigen::VectorXd derived = RunOf(readings, scenario).context.velocity_rad_s;
   // Central differences are wrong where the acceleration sets in: 60 deg/s^2 * 80 ms / 2.
   EXPECT_LT((derived - recorded).cwiseAbs().maxCoeff(), 2.5 * deg);
 }
@@ -145,7 +145,7 @@ TEST(EncoderRun, OfStopsHasNoVelocityWhereTimeIsAnOrderOnly) {
   const Scenario scenario = NoisyScenario();
   auto readings = RunEncoderTwin(scenario).readings;
   for (Reading& r : readings) r.velocity_rad_s = kNaN;
-  EXPECT_FALSE(BuildRun(readings, scenario).context.Moves());
+  EXPECT_FALSE(RunOf(readings, scenario).context.Moves());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/diagnose/encoder_fit.h"
+#include "tests/diagnose/encoder_twin_run.h"
 
 // The generic families for what the catalogue has not.
 namespace twinbench::diagnose::encoder {
@@ -19,7 +20,7 @@ EncoderRun RunWith(const std::string& kind, Signal signal) {
   const Scenario scenario = EncoderScenario(kind);
   auto readings = twinbench::test::RunEncoderTwin(scenario).readings;
   for (Reading& r : readings) r.measured_rad += signal(r);
-  return BuildRun(readings, scenario);
+  return RunOf(readings, scenario);
 }
 
 /// What the best family of a sort leaves, and its words for it.
@@ -61,7 +62,7 @@ TEST(EncoderUnknown, FindsAHysteresisAlsoWithoutItsName) {
   for (const char* kind : {"stops", "sweep"}) {
     const Scenario scenario = EncoderScenario(kind);
     const auto hysteresis = test::EncoderEffect("hysteresis", {{"lag", 1e-5}, {"settles_over", 30.0 * deg}});
-    const EncoderRun encoder = BuildRun(test::ReadingsWith(scenario, hysteresis), scenario);
+    const EncoderRun encoder = RunOf(test::ReadingsWith(scenario, hysteresis), scenario);
     const auto [left, words] = BestOfSort(encoder, "transition", {"hysteresis"});
     const double offset_alone = BestOfSort(encoder, "direction offset").first;
     // The first pass begins in the middle, not on the other side as all others do; the grid's ways differ by 1.49.
@@ -129,7 +130,7 @@ TEST(EncoderUnknown, HasNoShapesInTimeNorLinesInOneTurn) {
   Scenario scenario = EncoderScenario("stops");
   scenario.encoder_procedure.passes = {1};
   scenario.encoder_procedure.turns = 1.0;
-  const auto families = Families(BuildRun(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
+  const auto families = Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
   for (const char* name : {"wander", "tone", "growing harmonic", "direction harmonic", "backlash", "hysteresis"})
     EXPECT_FALSE(test::HasFamily(families, name)) << name;
   for (const char* name : {"eccentricity", "periodic", "scale", "drift"})

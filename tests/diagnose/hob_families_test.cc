@@ -2,6 +2,7 @@
 
 #include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/hob_chain.h"
+#include "tests/diagnose/hob_twin_run.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/hob/families.h"
 
@@ -65,7 +66,7 @@ TEST_P(HobFamily, FitsWhatIndependentFormulasMakeOfItsCause) {
   HobChain chain = QuietHeads();
   chain.hidden = {trial.cause};
   const Scenario scenario = ScenarioOf(chain);
-  const HobRun hob = BuildRun(ReadingsOf(chain), scenario);
+  const HobRun hob = RunOf(ReadingsOf(chain), scenario);
   const std::vector<Family> families = Families(hob);
   // What is left without the cause: the free orders, to rounding and the second order of the errors.
   const Eigen::MatrixXd free = hob.run.nuisance.jacobian.toDense();
@@ -111,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(HobFamilies, OfATableThatIsNotWatchedHaveTheSameColumnsForDriveAndEncoderOfTheHob) {
   HobChain chain = QuietHeads();
   chain.interferometer = false;
-  const HobRun hob = BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  const HobRun hob = RunOf(ReadingsOf(chain), ScenarioOf(chain));
   const std::vector<Family> families = Families(hob);
   const Family& drive = FamilyAt(families, "hob_runout", "");
   const Family& encoder = FamilyAt(families, "eccentricity", "hob");
@@ -122,7 +123,7 @@ TEST(HobFamilies, OfATableThatIsNotWatchedHaveTheSameColumnsForDriveAndEncoderOf
 
 TEST(HobFamilies, OfTheEncodersDoNotShowToTheInterferometer) {
   const HobChain chain = QuietHeads();
-  const HobRun hob = BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  const HobRun hob = RunOf(ReadingsOf(chain), ScenarioOf(chain));
   ASSERT_EQ(hob.run.channels, (std::vector<std::string>{"transmission", "interferometer"}));
   const std::vector<Family> families = Families(hob);
   const auto seen = [&](const char* effect, const char* where) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/diagnose/hob_chain.h"
+#include "tests/diagnose/hob_twin_run.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/noise_model.h"
@@ -38,7 +39,7 @@ EffectSettings Effect(const std::string& name, const std::string& where, std::ma
 
 TEST(HobRun, LeavesNothingOfAChainWithoutHiddenCauses) {
   const HobChain chain = Quiet();
-  const HobRun hob = BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  const HobRun hob = RunOf(ReadingsOf(chain), ScenarioOf(chain));
   EXPECT_EQ(hob.left_out, 0);
   // The table's angle is read 10 arcsec off at most: 10 arcsec times a slope of 1e-4.
   EXPECT_LT(Left_rad(hob.run), 1e-3 * arcsec);
@@ -52,11 +53,11 @@ TEST(HobRun, TakesOffAKnownEffect) {
                   {"slip", "hob", {{"step", 144.0 * arcsec}, {"at_reading", 700.0}}}};
   Scenario scenario = ScenarioOf(chain);
   const std::vector<Reading> readings = ReadingsOf(chain);
-  EXPECT_GT(Left_rad(BuildRun(readings, scenario).run), 0.5 * arcsec);
+  EXPECT_GT(Left_rad(RunOf(readings, scenario).run), 0.5 * arcsec);
   for (const test::HiddenCause& hidden : chain.hidden)
     scenario.effects.push_back(Effect(hidden.name, hidden.where, hidden.value));
   // The worm's wave is read at an angle that is 6 arcsec off: 90 x 3e-5 of 2 arcsec.
-  EXPECT_LT(Left_rad(BuildRun(readings, scenario).run), 0.01 * arcsec);
+  EXPECT_LT(Left_rad(RunOf(readings, scenario).run), 0.01 * arcsec);
 }
 
 /// The ring's geometry: its middle is off by e towards azimuth A on it, where azimuths run against its angle s. The
@@ -69,7 +70,7 @@ TEST(HobRun, TakesOffTheStatedEccentricityOfTheRing) {
   scenario.table_encoder.radius_m = 0.1;
   scenario.table_encoder.eccentricity_m = 0.1 * amplitude_rad;
   scenario.table_encoder.eccentricity_azimuth_rad = 40.0 * deg;
-  EXPECT_LT(Left_rad(BuildRun(ReadingsOf(chain), scenario).run), 1e-3 * arcsec);
+  EXPECT_LT(Left_rad(RunOf(ReadingsOf(chain), scenario).run), 1e-3 * arcsec);
 }
 
 TEST(HobRun, TakesOffAStatedLineOfTheTransmissionAndBacklash) {
@@ -79,7 +80,7 @@ TEST(HobRun, TakesOffAStatedLineOfTheTransmissionAndBacklash) {
   Scenario scenario = ScenarioOf(chain);
   scenario.transmission.harmonics = {{Component::kEz, 7.0, 3.0 * arcsec, 2.0}};
   scenario.transmission.backlash_rad = 4.0 * arcsec;
-  EXPECT_LT(Left_rad(BuildRun(ReadingsOf(chain), scenario).run), 1e-3 * arcsec);
+  EXPECT_LT(Left_rad(RunOf(ReadingsOf(chain), scenario).run), 1e-3 * arcsec);
 }
 
 TEST(HobRun, TakesOffAnEmpiricalSignal) {
@@ -94,14 +95,14 @@ TEST(HobRun, TakesOffAnEmpiricalSignal) {
     signal.reading.push_back(r.reading);
     signal.value_rad.push_back(value_rad);
   }
-  EXPECT_GT(Left_rad(BuildRun(readings, scenario).run), 0.5 * arcsec);
+  EXPECT_GT(Left_rad(RunOf(readings, scenario).run), 0.5 * arcsec);
   scenario.empiricals = {signal};
-  EXPECT_LT(Left_rad(BuildRun(readings, scenario).run), 1e-3 * arcsec);
+  EXPECT_LT(Left_rad(RunOf(readings, scenario).run), 1e-3 * arcsec);
 }
 
 TEST(HobRun, TakesSamplesTogetherAsFarAsTheWormKeepsItsSize) {
   HobChain chain;
-  const HobRun hob = BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  const HobRun hob = RunOf(ReadingsOf(chain), ScenarioOf(chain));
   // A mean over three of 720 samples leaves sin(3 x) / (3 sin x) = 0.805 of order 90 (x = 22.5 deg); over four
   // 0.65.
   EXPECT_EQ(hob.run.Rows(), 2 * 2 * 3 * 240);
@@ -115,7 +116,7 @@ TEST(HobRun, EstimatesANoiseThatNobodyTold) {
   HobChain chain;
   chain.noise_told = false;
   chain.hidden = {{"worm", "", {{"amplitude", 2.0 * arcsec}, {"phase", 3.0}}}};  // repeats from turn to turn
-  const HobRun hob = BuildRun(ReadingsOf(chain), ScenarioOf(chain));
+  const HobRun hob = RunOf(ReadingsOf(chain), ScenarioOf(chain));
   EXPECT_FALSE(hob.run.sigma_stated);
   const double truth_rad = std::hypot(0.1, 0.5 / 22.0, 1.44 / 22.0 / std::sqrt(12.0)) * arcsec;
   // 8640 samples say 1 / sqrt(8640) = 1 %; what repeats of the steps' errors from turn to turn is not seen: 3 %.
@@ -132,7 +133,7 @@ TEST(HobRun, LeavesOutSamplesThatLieFarOutsideButNoStep) {
   int far = 0;  // beyond ten deviations of the noise of a sample
   for (std::size_t i = 0; i < readings.size(); ++i)
     far += std::abs(readings[i].measured_rad - without[i].measured_rad) > 1.0 * arcsec;
-  const HobRun hob = BuildRun(readings, ScenarioOf(chain));
+  const HobRun hob = RunOf(readings, ScenarioOf(chain));
   EXPECT_GE(std::ssize(hob.disturbed.readings), far);
   EXPECT_LE(std::ssize(hob.disturbed.readings), far + 3);  // of smaller ones one in twenty is as far
   for (const int reading : hob.disturbed.readings) {
@@ -145,7 +146,7 @@ TEST(HobRun, NeedsTheHeadOfEverySetUp) {
   HobChain chain = Quiet();
   std::vector<Reading> readings = ReadingsOf(chain);
   readings[20].head_rad = kNaN;
-  EXPECT_THROW(BuildRun(readings, ScenarioOf(chain)), InputError);
+  EXPECT_THROW(RunOf(readings, ScenarioOf(chain)), InputError);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/diagnose/missing.h"
 #include "twin/diagnose/rotary/rotary_run.h"
 
@@ -54,7 +55,8 @@ TEST(Redundancy, OfThePublishedDesignOnTheRotaryBenchIsNone) {
   scenario.procedure.positions = 24;
   scenario.procedure.shifts = {0, 1};
   scenario.procedure.passes = {1};
-  const auto run = rotary::BuildRun(twinbench::test::RunTwin(scenario).readings, scenario).run;
+  const auto run =
+      rotary::BuildRun(twinbench::test::RunTwin(scenario).readings, scenario, {benches::rotary::FollowRecord}).run;
   EXPECT_THAT(Refusal(run), HasSubstr("2 set-ups with 1 pass each leave 0 degrees of freedom in 192 values"));
 }
 

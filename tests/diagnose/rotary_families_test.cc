@@ -6,12 +6,13 @@
 
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/rotary/rotary_case.h"
 
-/// The room writes every effect down a second time; here its signatures meet those of the twin.
+/// Where a cause shows times its course, against what the twin does when the cause is at work.
 namespace twinbench::diagnose::rotary {
 namespace {
 
@@ -43,11 +44,11 @@ struct Match {
 Match BestMatch(const std::string& effect, const std::string& where) {
   const std::vector<Reading> clean = twinbench::test::RunTwin(BenchOf("", "")).readings;
   const std::vector<Reading> with = twinbench::test::RunTwin(BenchOf(effect, where)).readings;
-  const RotaryCase rotary(clean, BenchOf("", ""), {}, {});
+  const RotaryCase rotary(clean, BenchOf("", ""), {benches::rotary::FollowRecord}, {});
   const LinearRun& run = rotary.Rotary().run;
   const NoiseModel noise{run.sigma, 0.0};
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
-  const RotaryRun disturbed = BuildRun(with, BenchOf("", ""));
+  const RotaryRun disturbed = BuildRun(with, BenchOf("", ""), {benches::rotary::FollowRecord});
   const Eigen::MatrixXd difference = disturbed.run.observed - run.observed;
   const Eigen::MatrixXd y = projector.Apply(noise.Whiten(run, difference));
   Match best;

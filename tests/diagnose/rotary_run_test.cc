@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/diagnose/rotary/free_parameters.h"
 
 namespace twinbench::diagnose::rotary {
@@ -14,7 +15,8 @@ namespace {
 /// equations hold.
 TEST(RotaryRun, PredictsWhatTheFreeUnknownsFitBest) {
   const Scenario scenario = LoadScenario(twinbench::test::ScenarioPath("rotary_4dof.toml"));
-  const RotaryRun rotary = BuildRun(twinbench::test::RunTwin(scenario).readings, scenario);
+  const RotaryRun rotary =
+      BuildRun(twinbench::test::RunTwin(scenario).readings, scenario, {benches::rotary::FollowRecord});
   const LinearRun& run = rotary.run;
   const Eigen::VectorXd weight = run.sigma.cwiseInverse();
   const Eigen::SparseMatrix<double> white = weight.asDiagonal() * run.nuisance.jacobian;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -18,7 +19,8 @@ TEST(RotarySearch, NamesAChangeOfTheBenchThatIsLargeEnoughToBend) {
   actual.effects.push_back({"incidence_offset", "", {{"incidence", kIncidence_rad}}, ""});
   DiagnoseOptions options;
   options.null_runs = 100;
-  const SearchedRotary searched = SearchRotary(twinbench::test::RunTwin(actual).readings, believed, options);
+  const SearchedRotary searched =
+      SearchRotary(twinbench::test::RunTwin(actual).readings, believed, options, {benches::rotary::FollowRecord});
   const SearchResult& found = searched.analysis.found;
   ASSERT_EQ(found.picks.size(), 1U);
   const Pick& pick = found.picks[0];

@@ -2,6 +2,7 @@
 
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/scenario.h"
 #include "twin/core/units.h"
@@ -47,7 +48,7 @@ std::vector<ScreenTest> ScreenOf(const Scenario& actual, const Scenario& believe
   RotaryBench bench = twin.Bench();
   RawSink sink;
   procedure::CarryOut(bench, actual, sink);
-  const rotary::RotaryRun rotary = rotary::BuildRun(sink.readings, believed);
+  const rotary::RotaryRun rotary = rotary::BuildRun(sink.readings, believed, {benches::rotary::FollowRecord});
   return ScreenRaw(sink.blocks, RawScaleOf(believed, rotary.run), 200, actual.seed);
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tests/diagnose/turntable_bench.h"
+#include "tests/diagnose/turntable_twin_run.h"
 #include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/diagnose/turntable/families.h"
@@ -42,7 +43,7 @@ Eigen::VectorXd Difference(const Wrong& from, const Wrong& to) {
 }
 
 const TurntableRun& QuietRun() {
-  static const TurntableRun run = BuildRun(BenchReadings(Quiet(), {}, kSeed), Quiet());
+  static const TurntableRun run = RunOf(BenchReadings(Quiet(), {}, kSeed), Quiet());
   return run;
 }
 
@@ -155,7 +156,7 @@ TEST(TurntableFamilies, AreAllThatTheCatalogueListsButForTheNoise) {
 TEST(TurntableFamilies, LeaveOutWhatWasNotRecorded) {
   std::vector<Reading> readings = BenchReadings(Quiet(), {}, kSeed);
   for (Reading& r : readings) r.temperature_degC = r.dwell_s = kNaN;
-  for (const Family& family : Families(BuildRun(readings, Quiet()))) {
+  for (const Family& family : Families(RunOf(readings, Quiet()))) {
     EXPECT_NE(family.effect, "autocollimator_temperature");
     EXPECT_NE(family.effect, "temperature");
     EXPECT_NE(family.effect, "settling");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/diagnose/turntable_bench.h"
+#include "tests/diagnose/turntable_twin_run.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/diagnose.h"
@@ -41,12 +42,12 @@ EffectSettings Effect(const std::string& name, const std::string& where, std::ma
 TEST(TurntableRun, AbsorbsAWholeBenchThatIsAsStated) {
   for (Scenario scenario : {CarefulScenario(), PublishedScenario()}) {
     // The slope of the turntable's error along the sweep costs its prior.
-    EXPECT_LT(LeftOver(BuildRun(BenchReadings(Quiet(scenario), {}, 4), scenario)), 0.2);
+    EXPECT_LT(LeftOver(RunOf(BenchReadings(Quiet(scenario), {}, 4), scenario)), 0.2);
     // Three shifts meet other teeth, whose errors of 0.1 arcsec cost their prior.
     scenario.turntable_procedure.shifts = {0, 25, 85};
     scenario.turntable_procedure.tilts_rad = {60 * arcsec, 100 * arcsec, 80 * arcsec};
     scenario.turntable_procedure.tilt_azimuths_rad = {0.0};
-    EXPECT_LT(LeftOver(BuildRun(BenchReadings(Quiet(scenario), {}, 4), scenario)), 0.5);
+    EXPECT_LT(LeftOver(RunOf(BenchReadings(Quiet(scenario), {}, 4), scenario)), 0.5);
   }
 }
 
@@ -55,19 +56,21 @@ TEST(TurntableRun, BelievesTheStatedInstrument) {
   scenario.collimator.roll_rad = 10e-3;
   scenario.autocollimator.gain_error = 0.01;
   scenario.collimator.x_per_kelvin_rad = 3.0 * arcsec;
-  scenario.mirror.flatness_m = 2e-6;
-  scenario.turntable_procedure.eccentricities_m = {50e-6, 900e-6};
+  // In a sweep the mirror, which stands before the axis, moves aside of the beam: 0.2 arcsec at 2 um, which the
+  // independent bench leaves out.
+  scenario.mirror.flatness_m = 0.2e-6;
+  scenario.turntable_procedure.eccentricities_m = {50e-6, 9e-3};
   scenario.target.backlash_rad = 2.0 * arcsec;
   Wrong as_stated;
   as_stated.kelvin_rad = {3.0 * arcsec, 0.0};
   as_stated.backlash_rad = 2.0 * arcsec;
   const std::vector<Reading> readings = BenchReadings(Quiet(scenario), as_stated, 4);
-  EXPECT_LT(LeftOver(BuildRun(readings, scenario)), 0.2);
+  EXPECT_LT(LeftOver(RunOf(readings, scenario)), 0.2);
   // Each statement alone is needed.
   const auto without = [&](auto change) {
     Scenario other = scenario;
     change(other);
-    return LeftOver(BuildRun(readings, other));
+    return LeftOver(RunOf(readings, other));
   };
   EXPECT_GT(without([](Scenario& s) { s.collimator.roll_rad = 0.0; }), 1.0);
   EXPECT_GT(without([](Scenario& s) { s.autocollimator.gain_error = 0.0; }), 1.0);
@@ -85,13 +88,13 @@ TEST(TurntableRun, BelievesTheEffectsOfTheScenario) {
   wrong.creep_rad = {0.0, 0.6 * arcsec};
   wrong.slip_rad = {2.0 * arcsec, 0.0};
   wrong.tone_rad = {0.0, 1.0 * arcsec};
-  wrong.kelvin_rad = {0.0, 2.0 * arcsec};
+  wrong.kelvin_rad = {2.0 * arcsec, 0.0};
   wrong.ripple_rad = {0.0, 0.1 * arcsec};
   wrong.settling_rad = 3.0 * arcsec;
   wrong.settling_s = 4.0;
   Scenario scenario = CarefulScenario();
   const std::vector<Reading> readings = BenchReadings(Quiet(scenario), wrong, 4);
-  EXPECT_GT(LeftOver(BuildRun(readings, scenario)), 10.0);
+  EXPECT_GT(LeftOver(RunOf(readings, scenario)), 10.0);
   scenario.effects = {
       Effect("autocollimator_roll", "", {{"angle", 5e-3}}),
       Effect("autocollimator_scale", "", {{"gain_error", 0.004}}),
@@ -99,39 +102,39 @@ TEST(TurntableRun, BelievesTheEffectsOfTheScenario) {
       Effect("mount_creep", "y", {{"amplitude", 0.6 * arcsec}, {"time_constant", 60.0}}),
       Effect("slip", "x", {{"step", 2.0 * arcsec}, {"at_reading", 100.0}}),
       Effect("tone", "y", {{"amplitude", 1.0 * arcsec}, {"frequency", 1.0 / 900.0}, {"phase", 0.7}}),
-      Effect("autocollimator_temperature", "y", {{"coefficient", 2.0 * arcsec}}),
+      Effect("autocollimator_temperature", "x", {{"coefficient", 2.0 * arcsec}}),
       Effect("autocollimator_periodic", "y",
              {{"amplitude", 0.1 * arcsec}, {"period", 1.7 * arcsec}, {"phase", 2.0}}),
       Effect("settling", "", {{"amplitude", 3.0 * arcsec}, {"time_constant", 4.0}}),
       Effect("outliers", "", {{"fraction", 0.01}, {"size", 3.0 * arcsec}})};
-  // The bench's ripple follows the reading without drift, slip and creep, which the model takes off first.
-  EXPECT_LT(LeftOver(BuildRun(readings, scenario)), 0.2);
+  // The ripple is on the other axis than the temperature, whose zero it follows in the twin but not in this bench.
+  EXPECT_LT(LeftOver(RunOf(readings, scenario)), 0.2);
 }
 
 TEST(TurntableRun, TakesOffAnEmpiricalSignal) {
   Scenario scenario = CarefulScenario();
-  const TurntableRun plain = BuildRun(BenchReadings(Quiet(scenario), {}, 4), scenario);
+  const TurntableRun plain = RunOf(BenchReadings(Quiet(scenario), {}, 4), scenario);
   Wrong bump;
   bump.other = [](const Reading& r) { return Eigen::Vector2d(0.0, r.reading == 40 ? 5.0 * arcsec : 0.0); };
   const std::vector<Reading> readings = BenchReadings(Quiet(scenario), bump, 4);
-  EXPECT_GT(LeftOver(BuildRun(readings, scenario)), 10.0);
+  EXPECT_GT(LeftOver(RunOf(readings, scenario)), 10.0);
   EmpiricalSettings signal;
   signal.channel = "y";
   signal.reading = {40};
   signal.value_rad = {5.0 * arcsec};
   scenario.empiricals = {signal};
-  EXPECT_NEAR(LeftOver(BuildRun(readings, scenario)), LeftOver(plain), 1e-6);
+  EXPECT_NEAR(LeftOver(RunOf(readings, scenario)), LeftOver(plain), 1e-6);
 }
 
 TEST(TurntableRun, TellsTeethFromPositionsOnlyWhereAShiftDoes) {
   Scenario scenario = PublishedScenario();
-  EXPECT_FALSE(BuildRun(BenchReadings(scenario, {}, 4), scenario).places.HasTeeth());
+  EXPECT_FALSE(RunOf(BenchReadings(scenario, {}, 4), scenario).places.HasTeeth());
   scenario.turntable_procedure.shifts = {0, 25};
-  const TurntableRun shifted = BuildRun(BenchReadings(scenario, {}, 4), scenario);
+  const TurntableRun shifted = RunOf(BenchReadings(scenario, {}, 4), scenario);
   EXPECT_EQ(shifted.places.teeth, 72);  // 25 teeth are five steps: the same teeth again
   EXPECT_EQ(shifted.places.circle_blocks, 72);
   scenario.turntable_procedure.shifts = {0, 3};
-  EXPECT_EQ(BuildRun(BenchReadings(scenario, {}, 4), scenario).places.teeth, 144);
+  EXPECT_EQ(RunOf(BenchReadings(scenario, {}, 4), scenario).places.teeth, 144);
 }
 
 TEST(TurntableRun, LeavesOutReadingsWithoutBothValues) {
@@ -139,11 +142,11 @@ TEST(TurntableRun, LeavesOutReadingsWithoutBothValues) {
   std::vector<Reading> readings = BenchReadings(scenario, {}, 4);
   readings[20].autocollimator_tilt_rad = kNaN;
   readings[30].status = ReadingStatus::kNoLight;
-  const TurntableRun turntable = BuildRun(readings, scenario);
+  const TurntableRun turntable = RunOf(readings, scenario);
   EXPECT_EQ(turntable.left_out, 2);
   EXPECT_EQ(turntable.run.schedule.Readings() + 2, std::ssize(readings));
   readings.resize(11);
-  EXPECT_THROW(BuildRun(readings, scenario), InputError);
+  EXPECT_THROW(RunOf(readings, scenario), InputError);
 }
 
 TEST(TurntableRun, IsRefusedWhereOnePassOfOneSetUpLeavesNothingToCompare) {

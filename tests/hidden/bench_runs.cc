@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "twin/benches/hob_transmission/twin/twin.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/hob/hob_run.h"
 #include "twin/diagnose/turntable/turntable_run.h"
@@ -155,8 +157,11 @@ SignatureScale::SignatureScale(Design design, const std::string& cache_folder) :
 
 /// What the readings show in the rows of the run.
 Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings) const {
-  if (design_ == Design::kTurntable) return diagnose::turntable::BuildRun(readings, Believed(design_)).run.observed;
-  if (design_ == Design::kHob) return diagnose::hob::BuildRun(readings, Believed(design_)).run.observed;
+  if (design_ == Design::kTurntable)
+    return diagnose::turntable::BuildRun(readings, Believed(design_), benches::turntable::FollowRecord)
+        .run.observed;
+  if (design_ == Design::kHob)
+    return diagnose::hob::BuildRun(readings, Believed(design_), benches::hob::FollowRecord).run.observed;
   Eigen::VectorXd rows(run_.Rows());
   for (int row = 0; row < run_.Rows(); ++row) {
     const auto number =

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "twin/diagnose/conclusion.h"
-#include "twin/diagnose/rotary/known_effects.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -89,7 +88,7 @@ std::optional<Suspect> SuspectOf(const SearchedRotary& searched) {
   int best = -1;
   for (int k = 0; k < std::ssize(families); ++k) {
     const Family& f = families[static_cast<std::size_t>(k)];
-    const bool bends = f.kind == Kind::kNamed && f.amplitudes.size() == 1 && rotary::AltersBench(f.effect);
+    const bool bends = f.kind == Kind::kNamed && f.amplitudes.size() == 1 && rotary::IsOfBench(f.effect);
     if (bends && (best < 0 || explained[k] > explained[best])) best = k;
   }
   if (best < 0 || explained[best] < kNearlyAsMuch * explained.maxCoeff()) return {};

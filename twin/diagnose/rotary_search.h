@@ -27,6 +27,6 @@ struct SearchedRotary {
 /// and again about the size of a cause that changes the bench so much that its signature bends.
 /// @param model  What readings are compared with.
 SearchedRotary SearchRotary(const std::vector<Reading>& readings, const Scenario& scenario,
-                            const DiagnoseOptions& options, const rotary::ForwardModel& model = {});
+                            const DiagnoseOptions& options, const rotary::ForwardModel& model);
 
 }  // namespace twinbench::diagnose

@@ -13,10 +13,9 @@ const Point& PointNamed(const Follow& follow, const std::string& name) {
 }
 
 Eigen::MatrixXd Slope(const Follow& follow, const Point& point, const std::vector<Disturbance>& disturbances) {
-  const Eigen::Index readings = follow.Predict(disturbances).rows();
   const auto shown = [&](double step) {
     std::vector<Disturbance> with = disturbances;
-    with.push_back({point.name, Eigen::VectorXd::Constant(readings, step)});
+    with.push_back({point.name, Eigen::VectorXd::Constant(follow.Readings(), step)});
     return follow.Predict(with);
   };
   return (shown(point.step) - shown(-point.step)) / (2.0 * point.step);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct Point {
   std::string unit;    // of reports: "urad"
   double to_SI = 1.0;  // factor from `unit` to SI
   double step = kNaN;  // SI: half the distance over which slopes are differenced
+  double lower = -std::numeric_limits<double>::infinity();  // SI: of a constant of the bench
 };
 
 /// What enters at one point: a value at each reading of the record [SI].
@@ -36,6 +38,8 @@ class Follow {
 
   /// Where disturbances can enter; what is no number of one reading (an onset, a wire) is no point.
   virtual const std::vector<Point>& Points() const = 0;
+
+  virtual Eigen::Index Readings() const = 0;
 
   /// What each reading should have shown: readings x channels, SI, in the bench's own order of channels; NaN where
   /// nothing would be shown.

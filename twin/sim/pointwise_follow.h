@@ -33,6 +33,7 @@ class PointwiseFollow : public model::Follow {
   }
 
   const std::vector<model::Point>& Points() const override { return points_; }
+  Eigen::Index Readings() const override { return std::ssize(record_); }
 
   Eigen::MatrixXd Predict(const std::vector<model::Disturbance>& disturbances) const override {
     std::vector<Extra> extra(record_.size());
@@ -69,12 +70,12 @@ class PointwiseFollow : public model::Follow {
   }
 
   Eigen::MatrixXd BenchSlope(const BenchPoint<Extra>& point) const {
-    const auto shown = [&](double step) {
-      Scenario changed = scenario_;
-      point.of_bench(changed) += step;
-      return On(changed)->Predict();
-    };
-    return (shown(point.point.step) - shown(-point.point.step)) / (2.0 * point.point.step);
+    Scenario below = scenario_, above = scenario_;
+    double& low = point.of_bench(below);
+    double& high = point.of_bench(above);
+    low = std::max(low - point.point.step, point.point.lower);
+    high += point.point.step;
+    return (On(above)->Predict() - On(below)->Predict()) / (high - low);
   }
 
   Scenario scenario_;

@@ -105,7 +105,7 @@ class CourseMaker {
     const Reading& r = record_[i];
     const bool remounted = i == 0 || IsRemounted(record_[i - 1], r);
     if (remounted) Mount(r);
-    const bool new_pass = remounted || record_[i - 1].pass != r.pass;
+    const bool new_pass = remounted || record_[i - 1].pass != r.pass || record_[i - 1].direction != r.direction;
     if (new_pass && r.phase == Phase::kFullCircle) {
       const double behind_rad = OrZero(r.target_rad) - r.direction * actual().procedure.run_up_steps * step_rad_;
       drives_.GoTo(behind_rad, Shift_rad(r) - behind_rad);

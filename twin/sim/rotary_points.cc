@@ -17,6 +17,11 @@ model::Point Share(const char* name) {
   return {name, "1", 1.0, 1e-4};
 }
 
+model::Point NotNegative(model::Point point) {
+  point.lower = 0.0;
+  return point;
+}
+
 std::vector<RotaryPoint> OfTables() {
   return {{Angle("target.ex"), [](RotaryExtra& e) -> double& { return e.pose.target_error.ex_rad; }},
           {Angle("target.ey"), [](RotaryExtra& e) -> double& { return e.pose.target_error.ey_rad; }},
@@ -68,8 +73,8 @@ std::vector<RotaryPoint> OfBench() {
       {Length("psd_b.distance"), nullptr, [](Scenario& s) -> double& { return s.psd_b.distance_m; }},
       {{"psd_a.cubic", "1/m2", 1.0, 1.0}, nullptr, [](Scenario& s) -> double& { return s.psd_a.cubic_per_m2; }},
       {{"psd_b.cubic", "1/m2", 1.0, 1.0}, nullptr, [](Scenario& s) -> double& { return s.psd_b.cubic_per_m2; }},
-      {Share("psd_a.stray"), nullptr, [](Scenario& s) -> double& { return s.psd_a.stray_fraction; }},
-      {Share("psd_b.stray"), nullptr, [](Scenario& s) -> double& { return s.psd_b.stray_fraction; }},
+      {NotNegative(Share("psd_a.stray")), nullptr, [](Scenario& s) -> double& { return s.psd_a.stray_fraction; }},
+      {NotNegative(Share("psd_b.stray")), nullptr, [](Scenario& s) -> double& { return s.psd_b.stray_fraction; }},
       {{"grating.lines_per_m", "1/mm", 1e3, 10.0}, nullptr, [](Scenario& s) -> double& {
          return s.grating.lines_per_m;
        }}};

@@ -14,7 +14,7 @@ namespace twinbench::benches::rotary {
 namespace {
 
 diagnose::rotary::ForwardModel ModelOf(measure::Estimator estimator) {
-  return {estimator == measure::Estimator::kPublished, FollowRecord};
+  return {FollowRecord, estimator == measure::Estimator::kPublished};
 }
 
 std::vector<diagnose::Cause> Decided(const std::vector<diagnose::Discrete>& discrete) {

@@ -10,8 +10,8 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/encoder/noise_estimate.h"
-#include "twin/model/course.h"
 #include "twin/measure/angle_comparison.h"
+#include "twin/model/course.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -52,21 +52,6 @@ Eigen::VectorXd SetUpMeans(const Eigen::SparseMatrix<double, Eigen::RowMajor>& i
   const Eigen::VectorXd count = indicators.transpose() * Eigen::VectorXd::Ones(y.size());
   const Eigen::VectorXd sum = indicators.transpose() * y;
   return indicators * Eigen::VectorXd(sum.array() / count.array());
-}
-
-/// Signal of what the scenario knows already.
-Eigen::VectorXd KnownSignal_rad(const Scenario& scenario, const SignalContext& context) {
-  Eigen::VectorXd known_rad = Eigen::VectorXd::Zero(context.Readings());
-  for (const EffectSettings& effect : scenario.effects) known_rad += EffectSignal_rad(effect, context);
-  for (const EmpiricalSettings& signal : scenario.empiricals) {
-    std::map<int, double> by_reading;
-    for (std::size_t k = 0; k < signal.reading.size(); ++k) by_reading[signal.reading[k]] = signal.value_rad[k];
-    for (Eigen::Index i = 0; i < known_rad.size(); ++i) {
-      const auto found = by_reading.find(context.reading[i]);
-      if (found != by_reading.end()) known_rad[i] += found->second;
-    }
-  }
-  return known_rad;
 }
 
 /// With the speeds that were derived.
@@ -113,9 +98,8 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   const Eigen::VectorXd offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
   encoder.context = ContextOf(run.schedule, run.schedule.reference_rad + offset_rad, scenario.device);
   run.observed = run.schedule.reference_rad + comparison.error_rad;
-  run.residual = comparison.error_rad -
-                 (follow ? FollowedError_rad(run.schedule, *follow(scenario, AsFollowed(used, run.schedule)))
-                         : KnownSignal_rad(scenario, encoder.context));
+  run.residual =
+      comparison.error_rad - FollowedError_rad(run.schedule, *follow(scenario, AsFollowed(used, run.schedule)));
   run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
   SetNoise(run, scenario.device);
   return encoder;

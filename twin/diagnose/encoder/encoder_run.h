@@ -19,9 +19,9 @@ struct EncoderRun {
 /// is estimated from neighbouring readings, which slow structure does not reach (noise_estimate.h). Velocities that
 /// were not recorded are taken from the angles if the scenario says sweep.
 ///
-/// @param follow  The twin that says what readings should have been; empty: closed forms.
+/// @param follow  The twin that says what readings should have been.
 /// @throws InputError if fewer than 12 readings have a value.
 EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
-                    const model::FollowMaker& follow = {});
+                    const model::FollowMaker& follow);
 
 }  // namespace twinbench::diagnose::encoder

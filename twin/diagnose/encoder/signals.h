@@ -55,8 +55,4 @@ double RunUp_rad(const SignalContext& context);
 /// series of orders 4, 8, 12 whose ratios follow from the level.
 Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level);
 
-/// The whole signal of an [[effect]] block, for what a scenario already knows of its bench. Single outliers are not
-/// foreseen: zero.
-Eigen::VectorXd EffectSignal_rad(const EffectSettings& effect, const SignalContext& context);
-
 }  // namespace twinbench::diagnose::encoder

@@ -9,11 +9,10 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/followed.h"
-#include "twin/model/course.h"
 #include "twin/diagnose/hob/disturbed.h"
 #include "twin/diagnose/hob/hob_noise.h"
-#include "twin/diagnose/hob/known_signals.h"
 #include "twin/diagnose/hob/steady_hob.h"
+#include "twin/model/course.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::hob {
@@ -157,18 +156,9 @@ FreeMotion FitFreeOrders(const SignalContext& c, const Eigen::VectorXd& gear_rad
   return free;
 }
 
-/// What is left of each sample by what is stated, without the constants of the set-ups: samples x channels; NaN
-/// where the interferometer saw nothing.
-Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const Scenario& scenario, const SignalContext& c) {
-  const SampleSignal known = KnownSignal(scenario, c);
-  Eigen::MatrixXd left_rad = AsRead_rad(used, c);
-  left_rad.col(0) -= known.encoders_rad;
-  if (c.channels > 1) left_rad.col(1) -= known.interferometer_rad;
-  return WithoutConstants(c, left_rad);
-}
-
-/// The same by the twin that follows the record: it is asked again with the free orders that fit, which are then
-/// put back.
+/// What is left of each sample by the twin that follows the record, without the constants of the set-ups: samples x
+/// channels; NaN where the interferometer saw nothing. The twin is asked again with the free orders that fit, which
+/// are then put back.
 Eigen::MatrixXd Left_rad(const std::vector<Reading>& used, const SignalContext& c, const Eigen::VectorXd& gear_rad,
                          const Followed& twin) {
   const Eigen::MatrixXd read_rad = AsRead_rad(used, c);
@@ -232,9 +222,8 @@ double SecondOrder_rad(const SignalContext& c) {
 HobRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const model::FollowMaker& follow) {
   std::vector<Reading> used = Usable(readings);
   HobRun hob;
-  const auto gear_rad = [&] { return follow ? DrivenTable_rad(hob.context) : hob.context.table_rad; };
+  const auto gear_rad = [&] { return DrivenTable_rad(hob.context); };
   const auto left_of_used = [&]() -> Eigen::MatrixXd {
-    if (!follow) return Left_rad(used, scenario, hob.context);
     return Left_rad(used, hob.context, gear_rad(), Followed(follow, scenario, readings, used));
   };
   hob.left_out = static_cast<int>(std::ssize(readings) - std::ssize(used));

@@ -37,11 +37,9 @@ struct HobRun {
 /// Second order: gears and rings err at angles that are themselves in error by m. What varies faster than the free
 /// orders, times the order of worm or mesh, times m: a percent of an arcsecond, which a quiet interferometer sees.
 ///
-/// @param follow  The twin that is asked what readings should have been, with the free orders that fit best; empty:
-///                closed forms, which know the effects and the keys that they name.
+/// @param follow  The twin that is asked what readings should have been, with the free orders that fit best.
 /// @throws InputError if fewer than 12 readings have a value, or one has no head angle.
-HobRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
-                const model::FollowMaker& follow = {});
+HobRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const model::FollowMaker& follow);
 
 /// What unknowns that follow a cause would do to the results: "transmission order 1 up to 4.9 arcsec".
 std::string BiasInWords(int free_orders, const Eigen::VectorXd& unknowns);

@@ -64,26 +64,28 @@ int UnknownsOf(const Design& design) {
   return CalibratedColumn(design) + kCalibrated;
 }
 
-double& CalibratedParameter(OpticalBench& bench, int k) {
-  const auto at = static_cast<std::size_t>(k);
-  if (k < 4) return bench.gain_error[at];
-  if (k < 6) return bench.roll_rad[at - 4];
-  if (k < 8) return bench.distance_error_m[at - 6];
-  return k == 8 ? bench.wavelength_error_m : bench.incidence_rad;
-}
-
-double CalibratedSd(int k) {
-  if (k < 4) return kGainSd;
-  if (k < 6) return kRollSd_rad;
-  if (k < 8) return kDistanceSd_m;
-  return k == 8 ? kWavelengthSd_m : kIncidenceSd_rad;
+const std::array<Calibrated, kCalibrated>& CalibratedConstants() {
+  static const std::array<Calibrated, kCalibrated> constants = {{
+      {{"psd_gain", "psd_a_x", "gain_error"}, kGainSd},
+      {{"psd_gain", "psd_a_y", "gain_error"}, kGainSd},
+      {{"psd_gain", "psd_b_x", "gain_error"}, kGainSd},
+      {{"psd_gain", "psd_b_y", "gain_error"}, kGainSd},
+      {{"psd_roll", "psd_a", "roll"}, kRollSd_rad},
+      {{"psd_roll", "psd_b", "roll"}, kRollSd_rad},
+      {{"psd_distance", "psd_a", "distance_error"}, kDistanceSd_m},
+      {{"psd_distance", "psd_b", "distance_error"}, kDistanceSd_m},
+      {{"wavelength_offset", "", "wavelength_error"}, kWavelengthSd_m},
+      {{"incidence_offset", "", "incidence"}, kIncidenceSd_rad},
+  }};
+  return constants;
 }
 
 Eigen::VectorXd PriorPrecision(const Design& design) {
   Eigen::VectorXd sd(UnknownsOf(design));
   SetTables(design, sd);
   SetMounts(design, sd);
-  for (int k = 0; k < kCalibrated; ++k) sd[CalibratedColumn(design) + k] = CalibratedSd(k);
+  for (int k = 0; k < kCalibrated; ++k)
+    sd[CalibratedColumn(design) + k] = CalibratedConstants()[static_cast<std::size_t>(k)].sd;
   return sd.cwiseAbs2().cwiseInverse();
 }
 

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
-#include "twin/diagnose/rotary/optical_bench.h"
+#include "twin/diagnose/rotary/rotary_twin.h"
 #include "twin/separate/design.h"
 
 /// The free unknowns of the fit, in this order: table errors, mounting constants and seats as separate::Design
@@ -17,9 +18,12 @@ int CalibrationMountColumn(const separate::Design& design);  // first of four
 int CalibratedColumn(const separate::Design& design);        // first of kCalibrated
 int UnknownsOf(const separate::Design& design);
 
-/// One calibrated parameter of the bench, and how far it may be off.
-double& CalibratedParameter(OpticalBench& bench, int k);
-double CalibratedSd(int k);
+/// One calibrated parameter of the bench, and how far it may be off [SI].
+struct Calibrated {
+  BenchConstant constant;
+  double sd;
+};
+const std::array<Calibrated, kCalibrated>& CalibratedConstants();
 
 /// 1 / sd^2 of every unknown.
 Eigen::VectorXd PriorPrecision(const separate::Design& design);

@@ -5,8 +5,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/diagnose/rotary/free_parameters.h"
-#include "twin/diagnose/rotary/known_effects.h"
-#include "twin/measure/calibrate.h"
+#include "twin/diagnose/rotary/published_equations.h"
 #include "twin/measure/grating_model.h"
 #include "twin/separate/prediction.h"
 
@@ -30,7 +29,7 @@ Eigen::VectorXd CircleMotions(const RotaryRun& rotary, const std::vector<Stance>
   for (const Stance& stance : stances) {
     if (stance.setup >= 0) cells.push_back({stance.setup, stance.target, measure::Matrix4::Zero()});
   }
-  return separate::PredictCells(rotary.design, cells, x.head(rotary.design.Unknowns()), rotary.bench.nominal);
+  return separate::PredictCells(rotary.design, cells, x.head(rotary.design.Unknowns()), rotary.geometry);
 }
 
 std::vector<Vector4> Motions(const RotaryRun& rotary, const std::vector<Stance>& stances,
@@ -47,10 +46,15 @@ std::vector<Vector4> Motions(const RotaryRun& rotary, const std::vector<Stance>&
   return motions;
 }
 
-OpticalBench BenchAt(const RotaryRun& rotary, Eigen::Index reading, const Scenario& scenario) {
-  const double T_degC = rotary.run.schedule.temperature_degC[reading];
-  const double above_K = std::isfinite(T_degC) ? T_degC - scenario.environment.reference_degC : 0.0;
-  return WithKnownEffects(rotary.bench, scenario, above_K);
+/// As the twin is asked: in the calibration only the mounting is free.
+std::vector<Vector4> FreeMotions(const RotaryRun& rotary, const std::vector<Stance>& stances,
+                                 const Eigen::VectorXd& x) {
+  const Vector4 mount = x.segment<4>(CalibrationMountColumn(rotary.design)).cwiseQuotient(separate::UnitScale());
+  std::vector<Vector4> free = rotary.motion;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (stances[i].setup < 0) free[i] = mount;
+  }
+  return free;
 }
 
 /// Columns of the unknowns that move the grating.
@@ -72,71 +76,64 @@ void AddMotionColumns(const Design& design, const Stance& stance, int row, const
   for (int k = 0; k < stop.columns; ++k) add(stop.column[static_cast<std::size_t>(k)], stop.d.col(k));
 }
 
-/// d shown / d calibrated parameter k by central differences over its standard deviation.
-Vector4 CalibratedSlope(OpticalBench bench, int k, const Vector4& motion) {
-  double& parameter = CalibratedParameter(bench, k);
-  const double step = CalibratedSd(k), kept = parameter;
-  parameter = kept + step;
-  const Vector4 above = ShownSpots(bench, motion);
-  parameter = kept - step;
-  return (above - ShownSpots(bench, motion)) / (2.0 * step);
+/// d shown / d motion at every reading.
+std::vector<Eigen::Matrix4d> MotionSlopes(const RotaryRun& rotary) {
+  std::vector<Eigen::Matrix4d> slopes;
+  if (rotary.published) {
+    for (const Vector4& motion : rotary.motion) slopes.push_back(PublishedSlopes(rotary.geometry, motion));
+    return slopes;
+  }
+  slopes.resize(rotary.motion.size());
+  const std::array<const char*, 4> points = {"mount.ez", "mount.ex", "mount.ey", "mount.dy"};
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::VectorXd rows_m = rotary.twin->Slope_m(points[static_cast<std::size_t>(k)], rotary.free);
+    for (std::size_t i = 0; i < slopes.size(); ++i)
+      slopes[i].col(k) = rows_m.segment<4>(kChannels * static_cast<Eigen::Index>(i));
+  }
+  return slopes;
 }
 
-void AddCalibratedColumns(const Design& design, int row, const OpticalBench& bench, const Vector4& motion,
-                          std::vector<Entry>& entries) {
+void AddCalibratedColumns(const RotaryRun& rotary, std::vector<Entry>& entries) {
+  const int first = CalibratedColumn(rotary.design);
   for (int k = 0; k < kCalibrated; ++k) {
-    const Vector4 slope = CalibratedSlope(bench, k, motion);
-    for (int c = 0; c < kChannels; ++c) entries.emplace_back(row + c, CalibratedColumn(design) + k, slope[c]);
+    const auto& [constant, sd] = CalibratedConstants()[static_cast<std::size_t>(k)];
+    const Eigen::VectorXd slope = rotary.twin->Slope_m(constant, sd, rotary.free);
+    for (int row = 0; row < slope.size(); ++row) entries.emplace_back(row, first + k, slope[row]);
   }
 }
 
-/// What the closed forms say that the readings should have been, by row [m].
-Eigen::VectorXd ModelledSpots(const RotaryRun& rotary, const Scenario& scenario) {
-  Eigen::VectorXd shown_m = KnownSignal(scenario, ContextOf(rotary, scenario, rotary.run.observed));
-  for (std::size_t i = 0; i < rotary.motion.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    shown_m.segment<4>(kChannels * at) += ShownSpots(BenchAt(rotary, at, scenario), rotary.motion[i]);
-  }
-  return shown_m;
-}
-
-/// What the twin says. The free motions come in between the grating and what carries it; in the calibration these
-/// are the mounting's alone, because the twin itself puts the grating where the autocollimator saw it.
-Eigen::VectorXd FollowedSpots(const RotaryRun& rotary, const std::vector<Stance>& stances, const Eigen::VectorXd& x,
-                              const model::Follow& twin) {
-  const Vector4 mount = x.segment<4>(CalibrationMountColumn(rotary.design)).cwiseQuotient(separate::UnitScale());
-  Eigen::MatrixXd free(std::ssize(stances), 4);
-  for (std::size_t i = 0; i < stances.size(); ++i)
-    free.row(static_cast<Eigen::Index>(i)) = stances[i].setup < 0 ? mount : rotary.motion[i];
-  const Eigen::MatrixXd shown_V = twin.Predict(
-      {{"mount.ez", free.col(0)}, {"mount.ex", free.col(1)}, {"mount.ey", free.col(2)}, {"mount.dy", free.col(3)}});
-  Eigen::VectorXd shown_m(rotary.run.observed.size());
-  for (Eigen::Index i = 0; i < shown_V.rows(); ++i) {
-    if (!shown_V.row(i).allFinite())
-      throw InputError("reading " + std::to_string(rotary.run.schedule.reading[static_cast<std::size_t>(i)]),
-                       "it has a value where the scenario's bench would show none",
-                       "a scenario of the bench that the readings come from");
-    const std::array<double, kChannels> reading_V = {shown_V(i, 0), shown_V(i, 1), shown_V(i, 2), shown_V(i, 3)};
-    shown_m.segment<4>(kChannels * i) = measure::OnSurface(reading_V, rotary.bench.nominal);
-  }
+/// The published equations, with what the scenario's effects do on top of them.
+Eigen::VectorXd PublishedRows_m(const RotaryRun& rotary, const Eigen::VectorXd& by_effects_m) {
+  Eigen::VectorXd shown_m = by_effects_m;
+  for (std::size_t i = 0; i < rotary.motion.size(); ++i)
+    shown_m.segment<4>(kChannels * static_cast<Eigen::Index>(i)) +=
+        PublishedSpots_m(rotary.geometry, rotary.motion[i]);
   return shown_m;
 }
 
 }  // namespace
 
-void Linearise(const Scenario& scenario, const std::vector<Stance>& stances, const Eigen::VectorXd& x,
-               const model::Follow* twin, RotaryRun& rotary) {
-  LinearRun& run = rotary.run;
+void Compare(const std::vector<Stance>& stances, const Eigen::VectorXd& x, const RotaryTwin* without_effects,
+             RotaryRun& rotary) {
   rotary.motion = Motions(rotary, stances, x);
-  run.residual = run.observed - (twin ? FollowedSpots(rotary, stances, x, *twin) : ModelledSpots(rotary, scenario));
-  std::vector<Entry> entries;
-  for (std::size_t i = 0; i < stances.size(); ++i) {
-    const int row = kChannels * static_cast<int>(i);
-    const OpticalBench bench = BenchAt(rotary, static_cast<Eigen::Index>(i), scenario);
-    const Vector4& motion = rotary.motion[i];
-    AddMotionColumns(rotary.design, stances[i], row, ShownJacobian(bench, motion), entries);
-    if (!bench.published) AddCalibratedColumns(rotary.design, row, bench, motion, entries);
+  rotary.free = FreeMotions(rotary, stances, x);
+  LinearRun& run = rotary.run;
+  if (!rotary.published) {
+    run.residual = run.observed - rotary.twin->Shown_m(rotary.free);
+    return;
   }
+  Eigen::VectorXd by_effects_m = Eigen::VectorXd::Zero(run.Rows());
+  if (without_effects) by_effects_m = rotary.twin->Shown_m(rotary.free) - without_effects->Shown_m(rotary.free);
+  run.residual = run.observed - PublishedRows_m(rotary, by_effects_m);
+}
+
+void Linearise(const std::vector<Stance>& stances, bool calibrated_too, RotaryRun& rotary) {
+  LinearRun& run = rotary.run;
+  const std::vector<Eigen::Matrix4d> slopes = MotionSlopes(rotary);
+  std::vector<Entry> entries;
+  for (std::size_t i = 0; i < stances.size(); ++i)
+    AddMotionColumns(rotary.design, stances[i], kChannels * static_cast<int>(i), slopes[i], entries);
+  if (calibrated_too && !rotary.published) AddCalibratedColumns(rotary, entries);
   run.nuisance.jacobian.resize(run.Rows(), UnknownsOf(rotary.design));
   run.nuisance.jacobian.setFromTriplets(entries.begin(), entries.end());
 }

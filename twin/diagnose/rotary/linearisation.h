@@ -2,22 +2,26 @@
 
 #include <vector>
 
-#include "twin/core/scenario.h"
 #include "twin/diagnose/rotary/rotary_run.h"
 #include "twin/diagnose/rotary/stance.h"
 
-/// What the believed bench shows at given unknowns, and how it changes with them.
+/// What the bench shows at given unknowns, and how it changes with them.
 namespace twinbench::diagnose::rotary {
 
-/// Fills the motions, the residual and the unknowns' Jacobian of `rotary` (exact chain of poses, exact grating
-/// equation).
+/// Fills the motions and the residual of `rotary`.
 ///
-/// @param stances  One a used reading.
-/// @param x        The free unknowns (free_parameters.h); calibrated parameters do not enter: they stay at what is
-///                 believed, and only have columns.
-/// @param twin     Says what every reading should have been; none: the closed forms do.
+/// @param stances          One a used reading.
+/// @param x                The free unknowns (free_parameters.h); calibrated parameters do not enter: they stay at
+/// what
+///                         is believed, and only have columns.
+/// @param without_effects  Beside the published equations, which know no effects: the twin without those of the
+///                         scenario; null: there are none.
 /// @throws InputError if the twin would show nothing where a reading has a value.
-void Linearise(const Scenario& scenario, const std::vector<Stance>& stances, const Eigen::VectorXd& x,
-               const model::Follow* twin, RotaryRun& rotary);
+void Compare(const std::vector<Stance>& stances, const Eigen::VectorXd& x, const RotaryTwin* without_effects,
+             RotaryRun& rotary);
+
+/// Fills the unknowns' Jacobian there.
+/// @param calibrated_too  Else their columns are empty, as in a fit that holds them.
+void Linearise(const std::vector<Stance>& stances, bool calibrated_too, RotaryRun& rotary);
 
 }  // namespace twinbench::diagnose::rotary

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "twin/benches/rotary_4dof/format.h"
 #include "twin/core/units.h"
@@ -17,30 +16,24 @@ const char* ChannelName(int channel) {
   return kChannelNames[static_cast<std::size_t>(channel)];
 }
 
-/// A motion of the grating, by what the channels show of it.
-Showing Moved(const std::string& effect, const std::string& where, const SignalContext& c, double factor = 1.0) {
-  return {effect, where, factor * WeightOf(where.empty() ? "yaw" : where, c.shown_by_motion)};
-}
+/// A cause that enters at a point of the twin: where it shows, and of what share of its course.
+struct AtPoint {
+  Showing showing;
+  Eigen::VectorXd share;
+
+  AtPoint(const std::string& effect, const std::string& where, const RotaryRun& rotary, const std::string& point,
+          double factor = 1.0) {
+    const Response response = rotary.ResponseTo(point);
+    showing = {effect, where, factor * response.pattern};
+    share = response.share;
+  }
+
+  Eigen::MatrixXd Of(const Eigen::MatrixXd& course) const { return model::Times(course, share); }
+};
 
 /// A cause whose signature is rows already.
 Showing InRows(const std::string& effect, const std::string& where) {
   return {effect, where, {}};
-}
-
-/// How the readings change with one property of the bench as it is believed, by central differences.
-Eigen::VectorXd BenchColumn(const RotaryRun& rotary, const Scenario& scenario, const std::string& effect,
-                            const std::string& where, const std::string& parameter, double step) {
-  const Eigen::VectorXd above_K = model::Above_K(rotary.run.schedule, scenario.environment.reference_degC);
-  Eigen::VectorXd column(rotary.run.Rows());
-  for (std::size_t i = 0; i < rotary.motion.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    OpticalBench more = WithKnownEffects(rotary.bench, scenario, above_K[at]), less = more;
-    AlterBench(effect, where, {{parameter, step}}, above_K[at], more);
-    AlterBench(effect, where, {{parameter, -step}}, above_K[at], less);
-    column.segment<4>(4 * at) =
-        (ShownSpots(more, rotary.motion[i]) - ShownSpots(less, rotary.motion[i])) / (2.0 * step);
-  }
-  return column;
 }
 
 /// u r^2 and u r^4 of one PSD.
@@ -84,73 +77,73 @@ void AddNonlinearities(const RotaryRun& rotary, Candidates& named) {
   }
 }
 
-/// Causes that are a wrong property of the bench.
+/// Effect and parameter of causes that are a wrong constant of the bench.
+constexpr std::array<std::array<const char*, 2>, 7> kBenchConstants = {{{"psd_gain", "gain_error"},
+                                                                        {"psd_roll", "roll"},
+                                                                        {"stray_light", "fraction"},
+                                                                        {"psd_distance", "distance_error"},
+                                                                        {"wavelength_offset", "wavelength_error"},
+                                                                        {"grating_pitch", "pitch_error"},
+                                                                        {"incidence_offset", "incidence"}}};
+
 void AddBench(const RotaryRun& rotary, const Scenario& scenario, Candidates& named) {
   constexpr double kStep = 0.01;  // of a plausible size
-  const std::array<std::array<const char*, 2>, 8> causes = {{{"psd_gain", "gain_error"},
-                                                             {"psd_roll", "roll"},
-                                                             {"stray_light", "fraction"},
-                                                             {"psd_distance", "distance_error"},
-                                                             {"wavelength_offset", "wavelength_error"},
-                                                             {"grating_pitch", "pitch_error"},
-                                                             {"wavelength_temperature", "wavelength_per_kelvin"},
-                                                             {"incidence_offset", "incidence"}}};
-  for (const auto& [effect, parameter] : causes) {
+  for (const auto& [effect, parameter] : kBenchConstants) {
     std::vector<std::string> places = FindEffect(effect, scenario.bench)->places;
     if (places.empty()) places = {""};
     const double step = kStep * named.catalogue().AmplitudeOf(effect, parameter).prior_sd;
     for (const std::string& where : places)
-      named.Add(InRows(effect, where), {parameter}, BenchColumn(rotary, scenario, effect, where, parameter, step));
+      named.Add(InRows(effect, where), {parameter},
+                rotary.twin->Slope_m({effect, where, parameter}, step, rotary.free));
   }
   AddNonlinearities(rotary, named);
 }
 
-/// The grating sat on a mounting of its own in the calibration, which may have crept otherwise, or not at all.
-void AddCreep(const SignalContext& c, const Schedule& s, const char* where, Candidates& named) {
-  Family& family = named.AddOver(
-      Moved("mount_creep", where, c), {"amplitude", "amplitude"},
-      {named.catalogue().ShapeOf("mount_creep", "time_constant", Ratios(5.0, 1500.0, 7))},
-      [since_s = model::SinceFirst_s(s), moved = InCircle(s)](const Eigen::VectorXd& tau_s) {
-        const Eigen::ArrayXd creep = (since_s.array() / tau_s[0]).log1p();
-        Eigen::MatrixXd columns(creep.size(), 2);
-        columns << (creep * moved.array()).matrix(), (creep * (1.0 - moved.array())).matrix();
-        return columns;
-      });
-  family.amplitudes[1].name = "in_calibration";
-  family.parameters = [catalogue = named.catalogue()](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
-                                                      const Eigen::MatrixXd& cov) {
-    return std::vector{catalogue.Estimate("mount_creep", "amplitude", x[0], std::sqrt(cov(0, 0))),
-                       catalogue.Estimate("mount_creep", "time_constant", shape[0], DeviationAt(cov, x.size()))};
-  };
-}
-
-void AddTime(const SignalContext& c, const Schedule& s, Candidates& named) {
-  for (const int k : {0, 1})
-    named.AddDrift({"laser_drift", k == 0 ? "yaw" : "pitch", c.shown_by_laser.col(k)}, "drift", s.time_s);
-  const Eigen::VectorXd above_K = model::Above_K(s, c.reference_degC);
+void AddTime(const RotaryRun& rotary, double reference_degC, Candidates& named) {
+  const Schedule& s = rotary.run.schedule;
+  for (const char* where : {"yaw", "pitch"})
+    named.AddDrift(AtPoint("laser_drift", where, rotary, std::string("laser.") + where).showing, "drift", s.time_s);
+  const Shape time_constant = named.catalogue().ShapeOf("mount_creep", "time_constant", Ratios(5.0, 1500.0, 7));
   for (const char* where : {"yaw", "tilt"}) {
-    AddCreep(c, s, where, named);
-    if (!model::HasTemperature(s)) continue;
-    named.AddOver(Moved("thermal_tilt", where, c), {"tilt_per_kelvin"},
-                  {named.catalogue().ShapeOf("thermal_tilt", "lag", {0.0, 150.0, 300.0, 600.0, 900.0, 1350.0, 2000.0,
-                                                                     3000.0})},
-                  [time_s = s.time_s, above_K](const Eigen::VectorXd& lag_s) -> Eigen::MatrixXd {
-                    return model::Lagged(time_s, above_K, lag_s[0]);
+    const AtPoint at("mount_creep", where, rotary, std::string("grating.") + where);
+    named.AddOver(at.showing, {"amplitude"}, {time_constant},
+                  [at, since_s = model::SinceFirst_s(s)](const Eigen::VectorXd& tau_s) {
+                    return at.Of((since_s.array() / tau_s[0]).log1p().matrix());
+                  });
+  }
+  if (!model::HasTemperature(s)) return;
+  const Eigen::VectorXd above_K = model::Above_K(s, reference_degC);
+  const AtPoint laser("wavelength_temperature", "", rotary, "laser.wavelength");
+  named.Add(laser.showing, {"wavelength_per_kelvin"}, laser.Of(above_K));
+  const Shape lag =
+      named.catalogue().ShapeOf("thermal_tilt", "lag", {0.0, 150.0, 300.0, 600.0, 900.0, 1350.0, 2000.0, 3000.0});
+  for (const char* where : {"yaw", "tilt"}) {
+    const AtPoint at("thermal_tilt", where, rotary, std::string("grating.") + where);
+    named.AddOver(at.showing, {"tilt_per_kelvin"}, {lag},
+                  [at, time_s = s.time_s, above_K](const Eigen::VectorXd& lag_s) {
+                    return at.Of(model::Lagged(time_s, above_K, lag_s[0]));
                   });
   }
 }
 
 /// Tilt of the target's body once in about two turns. The turns of a record that has been rewound may be counted
 /// within a set-up or through all of them; a bearing may whirl with the angle or against it.
-void AddHalfFrequency(const SignalContext& c, Candidates& named) {
+void AddHalfFrequency(const RotaryRun& rotary, Candidates& named) {
   const std::string effect = "bearing_half_frequency";
-  for (const bool through_setups : {false, true}) {
-    for (const double sense : {1.0, -1.0}) {
+  const Schedule& s = rotary.run.schedule;
+  const Vector4 ex = rotary.ResponseTo("target.ex").pattern;
+  for (const double sense : {1.0, -1.0}) {
+    const Vector4 ey = sense * rotary.ResponseTo("target.ey").pattern;
+    for (const bool through_setups : {false, true}) {
+      const Eigen::VectorXd angle_rad = ContinuedTarget_rad(s, through_setups);
       Family& family = named.AddOver(
-          InRows(effect, ""), {"tilt", "tilt"},
-          {named.catalogue().ShapeOf(effect, "order", Even(0.35, 0.65, 61))},
-          [&c, through_setups, sense](const Eigen::VectorXd& order) {
-            return HalfFrequencySignal(order[0], {through_setups, c.target_height_m, sense}, c);
+          InRows(effect, ""), {"tilt", "tilt"}, {named.catalogue().ShapeOf(effect, "order", Even(0.35, 0.65, 61))},
+          [=, moved = InCircle(s)](const Eigen::VectorXd& order) {
+            const Eigen::MatrixXd wave = model::Times(model::Wave(order[0] * angle_rad), moved);
+            Eigen::MatrixXd rows(kChannels * wave.rows(), 2);
+            rows.col(0) = OnChannels(wave.col(0), ex) + OnChannels(wave.col(1), ey);
+            rows.col(1) = OnChannels(-wave.col(1), ex) + OnChannels(wave.col(0), ey);
+            return rows;
           });
       family.parameters = [catalogue = named.catalogue(), effect](
                               const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
@@ -163,41 +156,40 @@ void AddHalfFrequency(const SignalContext& c, Candidates& named) {
 }
 
 /// A rotor that lags stays behind on the side it came from; the reference turns against the target.
-void AddTravel(const SignalContext& c, const Schedule& s, Candidates& named) {
-  const auto yaw = [&](const char* effect, const char* where, double factor) {
-    return Showing{effect, where, factor * WeightOf("yaw", c.shown_by_motion)};
-  };
-  named.Add(yaw("backlash", "target", -1.0), {"half_width"}, DirectionSignal(s));
-  named.Add(yaw("backlash", "reference", 1.0), {"half_width"}, DirectionSignal(s));
+void AddTravel(const RotaryRun& rotary, double settle_s, Candidates& named) {
+  const Schedule& s = rotary.run.schedule;
+  named.Add(AtPoint("backlash", "target", rotary, "target.yaw", -1.0).showing, {"half_width"}, DirectionSignal(s));
+  named.Add(AtPoint("backlash", "reference", rotary, "reference.yaw", 1.0).showing, {"half_width"},
+            DirectionSignal(s));
   if (s.dwell_s.array().isFinite().any())
-    named.AddOver(yaw("settling", "", -1.0), {"amplitude"},
+    named.AddOver(AtPoint("settling", "", rotary, "target.yaw", -1.0).showing, {"amplitude"},
                   {named.catalogue().ShapeOf("settling", "time_constant", Ratios(0.3, 4.0, 8))},
-                  [&c, &s](const Eigen::VectorXd& tau_s) -> Eigen::MatrixXd {
-                    return SettlingSignal(s, c.settle_s, tau_s[0]);
+                  [s, settle_s](const Eigen::VectorXd& tau_s) -> Eigen::MatrixXd {
+                    return SettlingSignal(s, settle_s, tau_s[0]);
                   });
-  AddHalfFrequency(c, named);
+  AddHalfFrequency(rotary, named);
 }
 
-/// A step in a block's mean is as wide as the noise of its samples.
-void AddSteps(const SignalContext& c, int channel, Candidates& named) {
+/// A step in a channel's A/D: the share of a block's samples above it, as wide as their noise, per sensitivity.
+Eigen::VectorXd AdcStep_m(const Eigen::VectorXd& shown_m, double at_V, double blur_V, double sensitivity_V_m) {
+  const double width_V = std::sqrt(2.0) * blur_V;
+  return shown_m.unaryExpr(
+      [=](double m) { return 0.5 * std::erfc((at_V - m * sensitivity_V_m) / width_V) / sensitivity_V_m; });
+}
+
+void AddSteps(const RotaryRun& rotary, int channel, Candidates& named) {
   constexpr int kLevels = 200;
   constexpr double kLeastBlur_V = 0.2e-3;
-  Eigen::VectorXd volts = c.shown_m(Eigen::seq(channel, Eigen::last, kChannels));
-  volts *= c.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
-  const std::vector<double> levels = Even(volts.minCoeff(), volts.maxCoeff(), kLevels);
-  const double blur_V = std::max(kLeastBlur_V, c.sample_noise_V);
-  named.AddOver(InRows("adc_step", ChannelName(channel)), {"step"},
-                {named.catalogue().ShapeOf("adc_step", "at_voltage", levels)},
-                [&c, channel, blur_V](const Eigen::VectorXd& at_V) -> Eigen::MatrixXd {
-                  return AdcStepSignal(channel, at_V[0], blur_V, c);
+  const double sensitivity_V_m = rotary.geometry.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
+  const Eigen::VectorXd shown_m = rotary.run.Predicted()(Eigen::seq(channel, Eigen::last, kChannels));
+  const std::vector<double> levels_V =
+      Even(sensitivity_V_m * shown_m.minCoeff(), sensitivity_V_m * shown_m.maxCoeff(), kLevels);
+  const double blur_V = std::max(kLeastBlur_V, rotary.sample_noise_V);
+  named.AddOver({"adc_step", ChannelName(channel), Eigen::Vector4d::Unit(channel)}, {"step"},
+                {named.catalogue().ShapeOf("adc_step", "at_voltage", levels_V)},
+                [=](const Eigen::VectorXd& at_V) -> Eigen::MatrixXd {
+                  return AdcStep_m(shown_m, at_V[0], blur_V, sensitivity_V_m);
                 });
-}
-
-void AddElectronics(const SignalContext& c, Candidates& named) {
-  for (int channel = 0; channel < kChannels; ++channel) {
-    named.Add(InRows("crosstalk", ChannelName(channel)), {"fraction"}, CrosstalkRows(channel, c));
-    AddSteps(c, channel, named);
-  }
 }
 
 /// A tone with an amplitude and a phase of its own on every channel.
@@ -206,7 +198,21 @@ void AddFreeTone(const TimeSeries& series, Candidates& named) {
   named.AddTone({"tone", "all", Eigen::MatrixXd::Identity(kChannels, kChannels)}, series, true);
 }
 
-void AddPatterns(const SignalContext& c, const TimeSeries& series, Candidates& named) {
+/// What a channel keeps of the one that is converted just before it; the first follows the last of the scan before.
+void AddCrosstalk(const RotaryRun& rotary, const std::vector<std::string>& scan_list, Candidates& named) {
+  const Eigen::VectorXd shown_m = rotary.run.Predicted();
+  const auto channel_of = [&scan_list](std::size_t at) {
+    const std::string& name = scan_list[at % scan_list.size()];
+    return static_cast<int>(std::ranges::find(kChannelNames, name) - kChannelNames.begin());
+  };
+  for (std::size_t k = 0; k < scan_list.size(); ++k) {
+    const int channel = channel_of(k), before = channel_of(k + scan_list.size() - 1);
+    named.Add({"crosstalk", ChannelName(channel), Eigen::Vector4d::Unit(channel)}, {"fraction"},
+              shown_m(Eigen::seq(before, Eigen::last, kChannels)));
+  }
+}
+
+void AddPatterns(const RotaryRun& rotary, const TimeSeries& series, Candidates& named) {
   for (int channel = 0; channel < kChannels; ++channel)
     named.AddTone({"tone", ChannelName(channel), Eigen::Vector4d::Unit(channel)}, series, true);
   named.AddTone({"tone", "yaw", Eigen::Vector4d(1.0, 0.0, 1.0, 0.0)}, series, true);
@@ -214,8 +220,9 @@ void AddPatterns(const SignalContext& c, const TimeSeries& series, Candidates& n
   named.AddTone({"tone", "all", Eigen::Vector4d::Ones()}, series, true);
   AddFreeTone(series, named);
   for (const char* where : {"yaw", "tilt", "lateral"})
-    named.AddStep(Moved("slip", where, c), std::string(where) == "lateral" ? "shift" : "angle", series);
-  named.AddStep({"mode_hop", "", c.shown_by_wavelength}, "wavelength_step", series);
+    named.AddStep(AtPoint("slip", where, rotary, std::string("grating.") + where).showing,
+                  std::string(where) == "lateral" ? "shift" : "angle", series);
+  named.AddStep(AtPoint("mode_hop", "", rotary, "laser.wavelength").showing, "wavelength_step", series);
 }
 
 /// What a wrong sensitivity to one motion adds: the motion itself, as it shows.
@@ -226,7 +233,8 @@ Eigen::VectorXd SensitivityColumn(const RotaryRun& rotary, int dof) {
   return column;
 }
 
-Family ModelFamily(const std::string& where, const std::vector<Amplitude>& amplitudes, const Eigen::MatrixXd& rows) {
+Family ModelFamily(const std::string& where, const std::vector<Amplitude>& amplitudes,
+                   const Eigen::MatrixXd& rows) {
   Family family;
   family.effect = family.group = "published_sensitivity";
   family.where = where;
@@ -246,14 +254,19 @@ std::vector<Family> ModelFamilies(const RotaryRun& rotary) {
           ModelFamily("yaw, tilt", {yaw, tilt}, both)};
 }
 
-std::vector<Family> NamedFamilies(const RotaryRun& rotary, const SignalContext& context, const Scenario& scenario,
-                                  const TimeSeries& series) {
+bool IsOfBench(const std::string& effect) {
+  return effect == "psd_nonlinearity" ||
+         std::ranges::any_of(kBenchConstants, [&](const auto& constant) { return effect == constant[0]; });
+}
+
+std::vector<Family> NamedFamilies(const RotaryRun& rotary, const Scenario& scenario, const TimeSeries& series) {
   Candidates named(Catalogue(benches::rotary::Format().effects), kChannels);
   AddBench(rotary, scenario, named);
-  AddTime(context, rotary.run.schedule, named);
-  AddTravel(context, rotary.run.schedule, named);
-  AddElectronics(context, named);
-  AddPatterns(context, series, named);
+  AddTime(rotary, scenario.environment.reference_degC, named);
+  AddTravel(rotary, std::max(scenario.target.settle_s, scenario.reference.settle_s), named);
+  for (int channel = 0; channel < kChannels; ++channel) AddSteps(rotary, channel, named);
+  AddCrosstalk(rotary, scenario.adc.scan_list, named);
+  AddPatterns(rotary, series, named);
   std::vector<Family> families = named.Take();
   for (Family& family : families) {
     // A wrong sensitivity of both axes of a PSD looks the same.

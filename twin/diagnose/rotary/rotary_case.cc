@@ -43,18 +43,17 @@ Scenario With(Scenario scenario, const std::vector<EffectSettings>& effects) {
 
 RotaryCase::RotaryCase(const std::vector<Reading>& readings, const Scenario& scenario, const ForwardModel& model,
                        const std::vector<std::string>& struck, const std::vector<EffectSettings>& about)
-    : rotary_(BuildRun(readings, With(scenario, about), model)),
-      context_(ContextOf(rotary_, scenario, rotary_.run.Predicted())) {
+    : rotary_(BuildRun(readings, With(scenario, about), model)) {
   const Schedule& s = rotary_.run.schedule;
   const TimeSeries series = TimeSeriesOf(s, std::vector<int>(s.reading.size(), 0), kChannels);
-  families_ = NamedFamilies(rotary_, context_, With(scenario, about), series);
+  families_ = NamedFamilies(rotary_, scenario, series);
   if (model.published) {
     std::vector<Family> of_model = ModelFamilies(rotary_);
     std::ranges::move(of_model, std::back_inserter(families_));
   }
   std::erase_if(families_,
                 [&struck](const Family& f) { return std::ranges::find(struck, f.effect) != struck.end(); });
-  std::vector<Family> unknown = UnknownFamilies(rotary_, context_, series);
+  std::vector<Family> unknown = UnknownFamilies(rotary_, scenario.environment.reference_degC, series);
   std::ranges::move(unknown, std::back_inserter(families_));
   for (const EffectSettings& effect : about) TakeOut(effect);
 }

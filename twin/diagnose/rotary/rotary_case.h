@@ -27,7 +27,6 @@ class RotaryCase {
   void TakeOut(const EffectSettings& effect);
 
   RotaryRun rotary_;
-  SignalContext context_;
   std::vector<Family> families_;
 };
 

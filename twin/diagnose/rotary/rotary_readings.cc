@@ -44,18 +44,6 @@ Eigen::VectorXd ObservedOf(const std::vector<Reading>& used, const measure::Benc
   return observed;
 }
 
-std::vector<int> ScannedBefore(const std::vector<std::string>& scan_list) {
-  std::vector<int> before(kChannels);
-  for (int k = 0; k < kChannels; ++k) {
-    const auto index = [&scan_list](int at) {
-      const auto name = scan_list[static_cast<std::size_t>((at + kChannels) % kChannels)];
-      return static_cast<int>(std::find(kChannelNames.begin(), kChannelNames.end(), name) - kChannelNames.begin());
-    };
-    before[static_cast<std::size_t>(index(k))] = index(k - 1);
-  }
-  return before;
-}
-
 bool IsNoiseFree(const std::vector<Reading>& used) {
   return std::ranges::all_of(
       used, [](const Reading& r) { return std::ranges::all_of(r.std_V, [](double V) { return V == 0.0; }); });
@@ -74,17 +62,18 @@ double SampleNoise_V(const std::vector<Reading>& used, const Scenario& scenario)
   return *middle;
 }
 
-Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario, const OpticalBench& bench) {
+Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario,
+                        const measure::BenchGeometry& geometry, const SweptSlopes& swept) {
   Eigen::Vector4d noise_m;
-  for (int c = 0; c < kChannels; ++c) noise_m[c] = StatedSigma_m(used, c, scenario, bench.nominal);
-  const Eigen::Matrix4d K = ShownJacobian(bench, Vector4::Zero());
-  const double u_rad = bench.nominal.autocollimator_noise_rad;
-  const Eigen::Vector4d sweep_m = (K.col(0).cwiseAbs2() + K.col(1).cwiseAbs2()).cwiseSqrt() * u_rad;
+  for (int c = 0; c < kChannels; ++c) noise_m[c] = StatedSigma_m(used, c, scenario, geometry);
+  const Eigen::VectorXd sweep_m =
+      geometry.autocollimator_noise_rad * (swept.of_yaw.cwiseAbs2() + swept.of_tilt.cwiseAbs2()).cwiseSqrt();
   Eigen::VectorXd sigma(kChannels * std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) {
-    const bool swept = used[i].phase == Phase::kCalibration;
-    const Eigen::Vector4d u_m = swept ? (noise_m.cwiseAbs2() + sweep_m.cwiseAbs2()).cwiseSqrt() : noise_m;
-    sigma.segment<4>(kChannels * static_cast<Eigen::Index>(i)) = u_m;
+    const auto at = kChannels * static_cast<Eigen::Index>(i);
+    const bool is_swept = used[i].phase == Phase::kCalibration;
+    for (Eigen::Index c = 0; c < kChannels; ++c)
+      sigma[at + c] = is_swept ? std::hypot(noise_m[c], sweep_m[at + c]) : noise_m[c];
   }
   return sigma;
 }

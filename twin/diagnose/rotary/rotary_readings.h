@@ -6,7 +6,7 @@
 
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
-#include "twin/diagnose/rotary/optical_bench.h"
+#include "twin/measure/geometry.h"
 
 /// What the readings of the rotary bench say before any model is fitted.
 namespace twinbench::diagnose::rotary {
@@ -17,17 +17,20 @@ bool IsUsable(const Reading& reading);
 /// The four channels referred to the PSDs' surfaces, by row [m].
 Eigen::VectorXd ObservedOf(const std::vector<Reading>& used, const measure::BenchGeometry& geometry);
 
+/// What each row shows of the angles that the autocollimator saw [m / rad].
+struct SweptSlopes {
+  Eigen::VectorXd of_yaw, of_tilt;
+};
+
 /// Standard uncertainty of each row [m]: the blocks' deviations pooled by channel, else what the scenario states;
 /// in the calibration phase the autocollimator's as well.
-Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario, const OpticalBench& bench);
+Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario,
+                        const measure::BenchGeometry& geometry, const SweptSlopes& swept);
 
 /// Median deviation of one sample over all channels, else what the scenario states.
 double SampleNoise_V(const std::vector<Reading>& used, const Scenario& scenario);
 
 /// Real samples always scatter; only a simulation states deviations of nothing.
 bool IsNoiseFree(const std::vector<Reading>& used);
-
-/// The channel converted just before each, in the scan list's order; the first follows the last of the scan before.
-std::vector<int> ScannedBefore(const std::vector<std::string>& scan_list);
 
 }  // namespace twinbench::diagnose::rotary

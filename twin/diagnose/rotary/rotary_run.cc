@@ -6,11 +6,11 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/projector.h"
-#include "twin/model/course.h"
 #include "twin/diagnose/rotary/free_parameters.h"
 #include "twin/diagnose/rotary/linearisation.h"
 #include "twin/diagnose/rotary/rotary_readings.h"
 #include "twin/diagnose/rotary/stance.h"
+#include "twin/model/course.h"
 
 namespace twinbench::diagnose::rotary {
 namespace {
@@ -31,14 +31,6 @@ int LeftOut(const std::vector<Reading>& readings, std::size_t used) {
   return static_cast<int>(wanted) - static_cast<int>(used);
 }
 
-/// What is believed of the bench before its readings are looked at.
-void SetBench(const Scenario& scenario, bool published, RotaryRun& rotary) {
-  rotary.bench = BelievedBench(scenario);
-  rotary.bench.published = published;
-  rotary.shown_by_motion = ShownJacobian(rotary.bench, Vector4::Zero());
-  rotary.scanned_before = ScannedBefore(scenario.adc.scan_list);
-}
-
 void SetReadings(const std::vector<Reading>& used, const Scenario& scenario, RotaryRun& rotary) {
   LinearRun& run = rotary.run;
   run.bench = scenario.bench;
@@ -46,19 +38,28 @@ void SetReadings(const std::vector<Reading>& used, const Scenario& scenario, Rot
   run.channels.assign(kChannelNames.begin(), kChannelNames.end());
   run.unit = "um";
   run.to_SI = units::um;
-  run.observed = ObservedOf(used, rotary.bench.nominal);
+  run.observed = ObservedOf(used, rotary.geometry);
   run.residual = run.observed;
-  run.sigma = SigmaOf(used, scenario, rotary.bench);
+  const std::vector<Vector4> still(used.size(), Vector4::Zero());
+  run.sigma = SigmaOf(used, scenario, rotary.geometry,
+                      {rotary.twin->Slope_m("mount.ez", still), rotary.twin->Slope_m("mount.ex", still)});
   run.noise_free = IsNoiseFree(used);
   rotary.sample_noise_V = SampleNoise_V(used, scenario);
-  const char* const motions[] = {"yaw", "tilt", "roll", "lateral"};  // ez, ex, ey, dy
-  for (int k = 0; k < 4; ++k) run.patterns.push_back({motions[k], rotary.shown_by_motion.col(k)});
+}
+
+/// The ways in which the grating's motions show.
+void SetPatterns(RotaryRun& rotary) {
+  const std::array<const char*, 4> motions = {"yaw", "tilt", "roll", "lateral"};
+  for (int k = 0; k < 4; ++k) {
+    const std::string motion = motions[static_cast<std::size_t>(k)];
+    rotary.shown_by_motion.col(k) = rotary.ResponseTo("grating." + motion).pattern;
+    rotary.run.patterns.push_back({motion, rotary.shown_by_motion.col(k)});
+  }
 }
 
 /// The unknowns that there are, and how far each may be from zero.
 void SetUnknowns(separate::Design design, RotaryRun& rotary) {
   rotary.design = std::move(design);
-  for (const separate::SetUp& s : rotary.design.setups) rotary.shifts.push_back(s.shift);
   Nuisance& nuisance = rotary.run.nuisance;
   nuisance.blocks = rotary.design.n;
   nuisance.block_size = separate::kTargetSeries;
@@ -80,52 +81,54 @@ Eigen::VectorXd Improved(const Eigen::VectorXd& x, const LinearRun& run) {
   return improved;
 }
 
-void Fit(const Scenario& scenario, const std::vector<Stance>& stances, const model::Follow* twin,
-         RotaryRun& rotary) {
-  constexpr int kIterations = 4;  // converges quadratically from zero: 20 arcsec squared is below a nanoradian
+/// Slopes hardly vary within some arcminutes: they are looked up again once.
+void Fit(const std::vector<Stance>& stances, const RotaryTwin* without_effects, RotaryRun& rotary) {
+  constexpr int kLookUps = 2, kSteps = 2;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(UnknownsOf(rotary.design));
-  Linearise(scenario, stances, x, twin, rotary);
-  for (int k = 0; k < kIterations; ++k) {
-    x = Improved(x, rotary.run);
-    Linearise(scenario, stances, x, twin, rotary);
+  Compare(stances, x, without_effects, rotary);
+  for (int look_up = 0; look_up < kLookUps; ++look_up) {
+    Linearise(stances, false, rotary);
+    for (int step = 0; step < kSteps; ++step) {
+      x = Improved(x, rotary.run);
+      Compare(stances, x, without_effects, rotary);
+    }
   }
+  Linearise(stances, true, rotary);
+}
+
+Scenario WithoutEffects(Scenario scenario) {
+  scenario.effects.clear();
+  scenario.empiricals.clear();
+  return scenario;
 }
 
 }  // namespace
 
-SignalContext ContextOf(const RotaryRun& rotary, const Scenario& scenario, const Eigen::VectorXd& shown_m) {
-  constexpr double kStep_rad = 1e-6;
-  SignalContext context{rotary.run,
-                        rotary.shown_by_motion,
-                        {},
-                        rotary.bench.nominal.SpotFromTarget().z(),
-                        scenario.environment.reference_degC,
-                        rotary.bench.nominal.sensitivity_V_m,
-                        rotary.scanned_before,
-                        shown_m,
-                        rotary.sample_noise_V,
-                        std::max(scenario.target.settle_s, scenario.reference.settle_s)};
-  for (int k = 0; k < 2; ++k) {
-    OpticalBench turned = rotary.bench;
-    (k == 0 ? turned.laser_yaw_rad : turned.laser_pitch_rad) += kStep_rad;
-    context.shown_by_laser.col(k) =
-        (ShownSpots(turned, Vector4::Zero()) - ShownSpots(rotary.bench, Vector4::Zero())) / kStep_rad;
-  }
-  context.shown_by_wavelength = ShownByWavelength(rotary.bench);
-  return context;
+Response RotaryRun::ResponseTo(const std::string& point) const {
+  const Eigen::VectorXd rows = twin->Slope_m(point, free);
+  const Eigen::Map<const Eigen::Matrix<double, 4, Eigen::Dynamic>> slopes(rows.data(), 4, rows.size() / 4);
+  const Eigen::VectorXd sizes = slopes.colwise().norm();
+  const Eigen::VectorXd answers = (sizes.array() > 0.5 * sizes.maxCoeff()).cast<double>();
+  const Vector4 pattern = slopes * answers / std::max(1.0, answers.sum());
+  return {pattern, slopes.transpose() * pattern / std::max(pattern.squaredNorm(), 1e-300)};
 }
 
 RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const ForwardModel& model) {
   const std::vector<Reading> used = UsedOf(readings);
   RotaryRun rotary;
   rotary.left_out = LeftOut(readings, used.size());
-  SetBench(scenario, model.published, rotary);
+  rotary.geometry = measure::NominalGeometry(scenario);
+  rotary.published = model.published;
+  rotary.twin = std::make_shared<const RotaryTwin>(model.follow, scenario, used, rotary.geometry);
   SetReadings(used, scenario, rotary);
-  Stances stances = FindStances(used, scenario, rotary.bench);
+  Stances stances = FindStances(used, scenario, rotary.geometry, rotary.published);
   SetUnknowns(std::move(stances.design), rotary);
-  std::unique_ptr<model::Follow> twin;
-  if (model.follow && !model.published) twin = model.follow(scenario, used);
-  Fit(scenario, stances.of_reading, twin.get(), rotary);
+  const Scenario bare = WithoutEffects(scenario);
+  std::unique_ptr<const RotaryTwin> without_effects;
+  if (model.published && scenario.effects.size() + scenario.empiricals.size() > 0)
+    without_effects = std::make_unique<const RotaryTwin>(model.follow, bare, used, rotary.geometry);
+  Fit(stances.of_reading, without_effects.get(), rotary);
+  SetPatterns(rotary);
   return rotary;
 }
 

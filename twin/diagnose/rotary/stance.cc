@@ -38,10 +38,11 @@ Stance StanceOf(const Reading& r) {
 
 }  // namespace
 
-Stances FindStances(const std::vector<Reading>& used, const Scenario& scenario, const OpticalBench& bench) {
+Stances FindStances(const std::vector<Reading>& used, const Scenario& scenario,
+                    const measure::BenchGeometry& geometry, bool published) {
   std::vector<measure::Motion> labels;
   std::ranges::transform(used, std::back_inserter(labels), LabelOf);
-  separate::Layout layout = separate::FindLayout(labels, bench.nominal, OptionsOf(scenario, bench.published));
+  separate::Layout layout = separate::FindLayout(labels, geometry, OptionsOf(scenario, published));
   Stances stances{std::move(layout.design), {}};
   std::ranges::transform(used, std::back_inserter(stances.of_reading), StanceOf);
   for (const separate::Sample& s : layout.samples) {

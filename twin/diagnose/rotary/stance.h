@@ -4,7 +4,7 @@
 
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
-#include "twin/diagnose/rotary/optical_bench.h"
+#include "twin/measure/geometry.h"
 #include "twin/separate/design.h"
 
 namespace twinbench::diagnose::rotary {
@@ -25,6 +25,7 @@ struct Stances {
 /// The published equations add the reference's wobble as it is (eq. 13), however the grating was clamped.
 ///
 /// @throws InputError if the commanded angles are on no grid.
-Stances FindStances(const std::vector<Reading>& used, const Scenario& scenario, const OpticalBench& bench);
+Stances FindStances(const std::vector<Reading>& used, const Scenario& scenario,
+                    const measure::BenchGeometry& geometry, bool published);
 
 }  // namespace twinbench::diagnose::rotary

@@ -22,8 +22,10 @@ std::string OnWhat(const std::string& place) {
 /// A motion of the grating, a channel, or all channels independently.
 std::vector<unknown::Place> GenericPlaces(const Eigen::Matrix4d& shown_by_motion) {
   std::vector<unknown::Place> places;
-  for (const char* motion : {"yaw", "tilt", "roll", "lateral"}) {
-    const Eigen::Vector4d shown = WeightOf(motion, shown_by_motion);
+  const std::array<const char*, 4> motions = {"yaw", "tilt", "roll", "lateral"};
+  for (int k = 0; k < 4; ++k) {
+    const char* const motion = motions[static_cast<std::size_t>(k)];
+    const Eigen::Vector4d shown = shown_by_motion.col(k);
     places.push_back({motion, OnWhat(motion), shown / shown.cwiseAbs().maxCoeff()});
   }
   for (int c = 0; c < kChannels; ++c) {
@@ -37,7 +39,8 @@ std::vector<unknown::Place> GenericPlaces(const Eigen::Matrix4d& shown_by_motion
 /// Every order of both tables is free.
 std::vector<unknown::Angle> GenericAngles(const Schedule& s, int positions) {
   const int last = std::min(12, (positions - 1) / 2);
-  return {{"target angle", s.target_rad, last, 0, "harmonic"}, {"reference angle", s.reference_rad, last, 0, "harmonic"}};
+  return {{"target angle", s.target_rad, last, 0, "harmonic"},
+          {"reference angle", s.reference_rad, last, 0, "harmonic"}};
 }
 
 Eigen::MatrixXd ByReading(const Eigen::VectorXd& rows) {
@@ -46,7 +49,7 @@ Eigen::MatrixXd ByReading(const Eigen::VectorXd& rows) {
 
 }  // namespace
 
-std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext& context, const TimeSeries& series) {
+std::vector<Family> UnknownFamilies(const RotaryRun& rotary, double reference_degC, const TimeSeries& series) {
   const Schedule& s = rotary.run.schedule;
   unknown::Design design;
   design.course = s;
@@ -56,7 +59,7 @@ std::vector<Family> UnknownFamilies(const RotaryRun& rotary, const SignalContext
   design.continued_rad = ContinuedTarget_rad(s, false);
   design.moved = InCircle(s);
   design.senses = {DirectionSignal(s)};
-  if (model::HasTemperature(s)) design.above_K = model::Above_K(s, context.reference_degC);
+  if (model::HasTemperature(s)) design.above_K = model::Above_K(s, reference_degC);
   design.series = series;
   design.shown = ByReading(rotary.run.Predicted());
   design.shown_name = "spot";

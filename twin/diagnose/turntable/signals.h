@@ -8,9 +8,8 @@
 #include "twin/core/scenario.h"
 #include "twin/diagnose/engine/linear_run.h"
 
-/// What causes do to the readings of a turntable that is checked with a multi-tooth table and an autocollimator,
-/// written here a second time: the twin's own code is not asked. A signal has one entry a used reading, in rad of
-/// an autocollimator's axis unless its name says otherwise.
+/// What causes depend on at a turntable that is checked with a multi-tooth table and an autocollimator. A signal
+/// has one entry a used reading, in rad of an autocollimator's axis unless its name says otherwise.
 namespace twinbench::diagnose::turntable {
 
 enum Axis { kX, kY };
@@ -60,36 +59,5 @@ Eigen::MatrixXd CubicSignals(const Eigen::MatrixXd& shown_rad, double range_rad,
 
 /// Readings x axes, one signal, as rows.
 Eigen::VectorXd AsRows(const Eigen::MatrixXd& of_axes);
-
-/// The instrument as it is believed to be, with the [[effect]] blocks that change it.
-struct Instrument {
-  double roll_rad = 0.0;
-  double gain_error = 0.0;
-  double sag_m = 0.0;
-};
-Instrument BelievedInstrument(const Scenario& scenario);
-
-/// What the scenario predicts of each reading without any unknown: steps of the sweep, gap of the turntable, beam
-/// walk, stated temperature coefficients, [[effect]] and [[empirical]] blocks. Single outliers are not foreseen:
-/// zero.
-///
-/// @param shown_rad  Readings x axes: what the optics show, on which cubic errors and ripples depend.
-/// @param sweep_rad  Steps of the sweep; zero outside of it.
-/// How much of a small change of what the optics show is added behind them: readings x axes.
-Eigen::MatrixXd SlopesOfReading(const Eigen::MatrixXd& shown_rad, const Scenario& scenario,
-                                const SignalContext& context);
-
-struct KnownSignals {
-  Eigen::MatrixXd of_optics_rad;  // steps, gap, beam walk
-  Eigen::MatrixXd behind_rad;     // moves of the zero, errors that depend on the reading
-};
-/// How far the zeros of both axes go with the temperature, by coefficients and [[effect]] blocks [rad/K].
-Eigen::Vector2d ZeroPerKelvin_rad(const Scenario& scenario);
-/// True of an effect that is added behind the optics: a moving zero, a ripple.
-bool IsAddedBehind(const EffectSettings& effect);
-/// True if any of it depends on `shown_rad`.
-bool DependsOnReading(const Scenario& scenario);
-KnownSignals KnownSignalsOf(const Eigen::MatrixXd& shown_rad, const Eigen::VectorXd& sweep_rad,
-                            const Scenario& scenario, const SignalContext& context);
 
 }  // namespace twinbench::diagnose::turntable

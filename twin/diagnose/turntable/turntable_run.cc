@@ -10,8 +10,8 @@
 #include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
-#include "twin/model/course.h"
 #include "twin/diagnose/turntable/unknowns.h"
+#include "twin/model/course.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
@@ -48,69 +48,12 @@ Eigen::MatrixXd ByReading(const Eigen::VectorXd& rows) {
   return Eigen::Map<const Eigen::MatrixXd>(rows.data(), kAxes, rows.size() / kAxes).transpose();
 }
 
-Eigen::VectorXd SweepSteps_rad(const Schedule& s, const Places& places) {
-  Eigen::VectorXd steps_rad = Eigen::VectorXd::Zero(s.Readings());
-  for (Eigen::Index i = 0; i < steps_rad.size(); ++i) {
-    const int sweep = places.sweep[static_cast<std::size_t>(i)];
-    if (sweep >= 0) steps_rad[i] = s.target_rad[i] - places.sweep_centre_rad[static_cast<std::size_t>(sweep)];
-  }
-  return steps_rad;
-}
-
-double Scatter_rad(const TableSettings& table, Axis axis) {
-  const auto& sd = table.repeatability_sd;
-  const auto of = [&sd](Component c) { return sd[static_cast<std::size_t>(c)]; };
-  // The line of sight may be any horizontal one of the table.
-  return axis == kX ? of(Component::kEz) : std::hypot(of(Component::kEx), of(Component::kEy)) / std::sqrt(2.0);
-}
-
 double SeatingEffect_rad(const Scenario& scenario) {
   double scatter_rad = 0.0;
   for (const EffectSettings& e : scenario.effects) {
     if (e.name == "multitooth_seating") scatter_rad = std::hypot(scatter_rad, e.parameters.at("scatter"));
   }
   return scatter_rad;
-}
-
-Eigen::VectorXd Sigma_rad(int readings, const Scenario& scenario) {
-  Eigen::VectorXd sigma_rad(kAxes * readings);
-  for (Eigen::Index row = 0; row < sigma_rad.size(); ++row) {
-    const auto axis = static_cast<Axis>(row % kAxes);
-    double tables_rad = std::hypot(Scatter_rad(scenario.target, axis), Scatter_rad(scenario.reference, axis));
-    if (axis == kX) tables_rad = std::hypot(tables_rad, SeatingEffect_rad(scenario));
-    sigma_rad[row] = std::max(std::hypot(scenario.autocollimator.noise_rad, tables_rad), kLeastNoise_rad);
-  }
-  return sigma_rad;
-}
-
-/// Every row of the unknowns times what a reading shows of a small change.
-void Stretch(const Eigen::MatrixXd& slopes, Nuisance& nuisance) {
-  nuisance.jacobian = (1.0 + AsRows(slopes).array()).matrix().asDiagonal() * nuisance.jacobian;
-}
-
-/// The best prediction with what is known to some extent held at what is stated (Gauss-Newton: errors that depend
-/// on the reading are looked up where the prediction lies).
-void FitBaseline(const Scenario& scenario, TurntableRun& turntable) {
-  const int rounds = DependsOnReading(scenario) ? 8 : 1;
-  LinearRun& run = turntable.run;
-  const NoiseModel noise{run.sigma, 0.0};
-  const Eigen::VectorXd sweep_rad = SweepSteps_rad(run.schedule, turntable.places);
-  const Slopes slopes = SlopesOf(BelievedInstrument(scenario), run.schedule.Readings());
-  const Nuisance free = FreeUnknowns(turntable.places, slopes, run.schedule);
-  Eigen::MatrixXd& shown_rad = turntable.context.shown_rad;
-  shown_rad = ByReading(run.observed);
-  KnownSignals known = KnownSignalsOf(shown_rad, sweep_rad, scenario, turntable.context);
-  Eigen::VectorXd optics_rad = AsRows(known.of_optics_rad);
-  for (int round = 0; round < rounds; ++round) {
-    run.residual = run.observed - optics_rad - AsRows(known.behind_rad);
-    Nuisance stretched = free;
-    if (round > 0) Stretch(SlopesOfReading(shown_rad, scenario, turntable.context), stretched);
-    const Projector projector(noise.Whiten(run, stretched.jacobian), stretched);
-    optics_rad += free.jacobian * projector.Solve(noise.Whiten(run, Eigen::MatrixXd(run.residual))).col(0);
-    shown_rad = ByReading(optics_rad);
-    known = KnownSignalsOf(shown_rad, sweep_rad, scenario, turntable.context);
-  }
-  run.residual = run.observed - optics_rad - AsRows(known.behind_rad);
 }
 
 constexpr double kNoWeight = 1e4;  // times the noise, where the twin shows nothing
@@ -139,7 +82,7 @@ Slopes FitTwin(const Followed& twin, TurntableRun& turntable) {
   const Eigen::Index readings = run.schedule.Readings();
   const NoiseModel noise{run.sigma, 0.0};
   // What the mirror does for each unknown, and what is shown of that.
-  const Nuisance moved = FreeUnknowns(turntable.places, SlopesOf({}, readings), run.schedule);
+  const Nuisance moved = FreeUnknowns(turntable.places, StraightSlopes(readings), run.schedule);
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(moved.jacobian.cols());
   turntable.body_rad = Eigen::MatrixXd::Zero(readings, kAxes);
   for (int round = 0;; ++round) {
@@ -157,6 +100,12 @@ Slopes FitTwin(const Followed& twin, TurntableRun& turntable) {
     run.residual = OrZero(run.observed - AsRows(twin.Predict(AtPoints(next_rad))));
     return slopes;
   }
+}
+
+/// True of an effect that is added behind the optics: a moving zero, a ripple.
+bool IsAddedBehind(const EffectSettings& effect) {
+  constexpr std::array kBehind = {"autocollimator_drift", "mount_creep", "slip", "tone", "autocollimator_periodic"};
+  return std::ranges::count(kBehind, effect.name) > 0;
 }
 
 /// The scenario without what is added behind the optics: on what they show, errors of the reading depend.
@@ -188,6 +137,7 @@ void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>
                 const model::FollowMaker& follow, TurntableRun& turntable) {
   LinearRun& run = turntable.run;
   const Followed twin(follow, scenario, readings, used);
+  run.sigma = Sigma_rad(twin, Eigen::MatrixXd::Zero(run.schedule.Readings(), kAxes), scenario);
   const Slopes slopes = FitTwin(twin, turntable);
   const Eigen::MatrixXd shown_rad = twin.Predict(AtPoints(turntable.body_rad));
   run.sigma = Sigma_rad(twin, turntable.body_rad, scenario);
@@ -197,16 +147,8 @@ void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>
       OrZero(nothing_behind
                  ? shown_rad
                  : Followed(follow, BeforeAdding(scenario), readings, used).Predict(AtPoints(turntable.body_rad)));
-  run.nuisance = AllUnknowns(turntable.places, slopes, turntable.context, scenario);
-}
-
-/// The same by closed forms.
-void Believe(const Scenario& scenario, TurntableRun& turntable) {
-  LinearRun& run = turntable.run;
-  FitBaseline(scenario, turntable);
-  run.nuisance = AllUnknowns(turntable.places, SlopesOf(BelievedInstrument(scenario), run.schedule.Readings()),
-                             turntable.context, scenario);
-  Stretch(SlopesOfReading(turntable.context.shown_rad, scenario, turntable.context), run.nuisance);
+  run.nuisance = AllUnknowns(turntable.places, slopes, turntable.context, scenario,
+                             OrZero(twin.Slope("room.temperature", AtPoints(turntable.body_rad))));
 }
 
 double Rms(const Eigen::VectorXd& values) {
@@ -229,13 +171,8 @@ TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scen
   run.unit = "arcsec";
   run.to_SI = arcsec;
   run.noise_free = scenario.noise_free;
-  run.sigma = Sigma_rad(run.schedule.Readings(), scenario);
   run.observed = AsRows(AsRead_rad(used));
-  if (follow) {
-    FollowTwin(readings, used, scenario, follow, turntable);
-  } else {
-    Believe(scenario, turntable);
-  }
+  FollowTwin(readings, used, scenario, follow, turntable);
   return turntable;
 }
 
@@ -244,16 +181,8 @@ TurntableRun LinearisedAbout(const std::vector<EffectSettings>& found, const std
   Scenario with_found = scenario;
   with_found.effects.insert(with_found.effects.end(), found.begin(), found.end());
   TurntableRun turntable = BuildRun(readings, with_found, follow);
-  if (follow) {
-    const Followed stated(follow, scenario, readings, Usable(readings));
-    turntable.run.residual = OrZero(turntable.run.observed - AsRows(stated.Predict(AtPoints(turntable.body_rad))));
-    return turntable;
-  }
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(turntable.context.Readings());
-  const auto behind_rad = [&](const Scenario& s) {
-    return AsRows(KnownSignalsOf(turntable.context.shown_rad, none, s, turntable.context).behind_rad);
-  };
-  turntable.run.residual += behind_rad(with_found) - behind_rad(scenario);
+  const Followed stated(follow, scenario, readings, Usable(readings));
+  turntable.run.residual = OrZero(turntable.run.observed - AsRows(stated.Predict(AtPoints(turntable.body_rad))));
   return turntable;
 }
 

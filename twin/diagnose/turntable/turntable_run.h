@@ -17,7 +17,7 @@ struct TurntableRun {
   SignalContext context;
   Places places;
   int left_out = 0;          // readings without a value
-  Eigen::MatrixXd body_rad;  // readings x axes: turn and tilt of the mirror by the free unknowns; by the twin only
+  Eigen::MatrixXd body_rad;  // readings x axes: turn and tilt of the mirror by the free unknowns
 };
 
 /// x = T(position) + R(tooth) + constant of the set-up; y = tilt of the turntable(position) + constant + wave of
@@ -29,16 +29,16 @@ struct TurntableRun {
 ///
 /// @param follow  The twin that is asked what readings should have been, with the errors of tables and mountings
 /// that
-///                fit best; empty: closed forms, which know the effects and the keys that they name.
+///                fit best.
 /// @throws InputError if fewer than 12 readings have both values.
 TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
-                      const model::FollowMaker& follow = {});
+                      const model::FollowMaker& follow);
 
 /// The run of `scenario`, linearised where effects that were `found` put it: a ripple shifts its own argument, and
 /// what readings show of a small change. The effects themselves are still in the residual.
 /// @param found  Effects that are added behind the optics.
 TurntableRun LinearisedAbout(const std::vector<EffectSettings>& found, const std::vector<Reading>& readings,
-                             const Scenario& scenario, const model::FollowMaker& follow = {});
+                             const Scenario& scenario, const model::FollowMaker& follow);
 
 /// What unknowns that follow a cause would do to the results: "turntable ez up to 0.4 arcsec rms".
 std::string BiasInWords(const Places& places, const Eigen::VectorXd& unknowns);

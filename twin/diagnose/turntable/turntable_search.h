@@ -27,9 +27,9 @@ struct SearchedTurntable {
 /// and the search begins again.
 ///
 /// @param struck  Effects taken out of the catalogue.
-/// @param follow  The twin that is asked what readings should have been; empty: closed forms.
+/// @param follow  The twin that is asked what readings should have been.
 SearchedTurntable SearchTurntable(const std::vector<Reading>& readings, const Scenario& scenario,
                                   const std::vector<std::string>& struck, const AnalysisOptions& options,
-                                  const model::FollowMaker& follow = {});
+                                  const model::FollowMaker& follow);
 
 }  // namespace twinbench::diagnose::turntable

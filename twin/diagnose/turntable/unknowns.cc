@@ -1,5 +1,4 @@
 #include "twin/diagnose/turntable/unknowns.h"
-#include "twin/model/signals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/at.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::turntable {
 namespace {
@@ -170,25 +170,23 @@ void AddInterpolation(Columns& columns, double amplitude_rad, const SignalContex
 
 /// A zero that follows a temperature is told from the thermometer's, whose noise looks like a wrong coefficient: by
 /// the share that noise has of what was logged (errors in variables).
-void AddThermometer(Columns& columns, const SignalContext& context, const Scenario& scenario) {
+void AddThermometer(Columns& columns, const SignalContext& context, const Scenario& scenario,
+                    const Eigen::MatrixXd& per_K) {
   if (!context.HasTemperature()) return;
-  const Eigen::Vector2d per_K = ZeroPerKelvin_rad(scenario);
   const Eigen::VectorXd logged_K = context.above_K.array() - context.above_K.mean();
   const double variance = logged_K.squaredNorm() / static_cast<double>(logged_K.size());
   const double noise = std::pow(scenario.environment.sensor_noise_K, 2);
   if (per_K.isZero() || noise == 0.0 || variance == 0.0) return;
   const int share = columns.New(std::min(1.0, noise / variance));
   for (int i = 0; i < columns.Readings(); ++i) {
-    for (int axis = 0; axis < kAxes; ++axis) columns.Put(kAxes * i + axis, share, per_K[axis] * logged_K[i]);
+    for (int axis = 0; axis < kAxes; ++axis) columns.Put(kAxes * i + axis, share, per_K(i, axis) * logged_K[i]);
   }
 }
 
 }  // namespace
 
-Slopes SlopesOf(const Instrument& instrument, Eigen::Index readings) {
-  const double scale = 1.0 + instrument.gain_error;
-  const double c = scale * std::cos(instrument.roll_rad), s = scale * std::sin(instrument.roll_rad);
-  return {Eigen::RowVector2d(c, -s).replicate(readings, 1), Eigen::RowVector2d(s, c).replicate(readings, 1)};
+Slopes StraightSlopes(Eigen::Index readings) {
+  return {Eigen::RowVector2d(1.0, 0.0).replicate(readings, 1), Eigen::RowVector2d(0.0, 1.0).replicate(readings, 1)};
 }
 
 Nuisance FreeUnknowns(const Places& places, const Slopes& slopes, const Schedule& schedule) {
@@ -199,7 +197,7 @@ Nuisance FreeUnknowns(const Places& places, const Slopes& slopes, const Schedule
 }
 
 Nuisance AllUnknowns(const Places& places, const Slopes& slopes, const SignalContext& context,
-                     const Scenario& scenario) {
+                     const Scenario& scenario, const Eigen::MatrixXd& per_K) {
   Columns columns(places, slopes, context.schedule);
   AddPositions(columns);
   AddSetUps(columns);
@@ -207,7 +205,7 @@ Nuisance AllUnknowns(const Places& places, const Slopes& slopes, const SignalCon
   AddSecondOrder(columns, scenario.turntable_procedure.tilts_rad);
   AddSlopes(columns, TypicalSlope(places, context));
   AddInterpolation(columns, scenario.collimator.interpolation_error_px * context.pixel_rad, context);
-  AddThermometer(columns, context, scenario);
+  AddThermometer(columns, context, scenario, per_K);
   return columns.Take();
 }
 

@@ -10,7 +10,8 @@ namespace twinbench::diagnose::turntable {
 struct Slopes {
   Eigen::MatrixXd of_turn, of_tilt;
 };
-Slopes SlopesOf(const Instrument& instrument, Eigen::Index readings);
+/// Of an instrument that shows turns as x and tilts as y.
+Slopes StraightSlopes(Eigen::Index readings);
 
 /// What the readings may absorb without anything being wrong.
 ///
@@ -25,7 +26,8 @@ Nuisance FreeUnknowns(const Places& places, const Slopes& slopes, const Schedule
 ///  - the slope of the turntable's error along a sweep, as large as between its positions;
 ///  - the stated error of the camera's interpolation, whose phase nobody states;
 ///  - the thermometer's noise in a zero that follows the temperature.
+/// @param per_K  How far both zeros follow it: readings x axes [rad/K].
 Nuisance AllUnknowns(const Places& places, const Slopes& slopes, const SignalContext& context,
-                     const Scenario& scenario);
+                     const Scenario& scenario, const Eigen::MatrixXd& per_K);
 
 }  // namespace twinbench::diagnose::turntable

@@ -11,6 +11,11 @@ namespace {
 
 using mechanics::Axis;
 
+/// A way that does not go on from the reading before: whoever took the record may number passes anew in each phase.
+bool IsNewPass(const Reading& before, const Reading& now) {
+  return before.pass != now.pass || before.phase != now.phase || before.direction != now.direction;
+}
+
 /// Sends the drives the recorded way on a clock of its own, which gives what lies between mounting, arrival and
 /// reading; when a reading was made, the record says.
 class CourseMaker {
@@ -37,7 +42,7 @@ class CourseMaker {
     stop.known = std::isfinite(r.target_rad) && std::isfinite(r.reference_rad);
     const bool remounted = i == 0 || record_[i - 1].setup != r.setup;
     if (remounted) Mount(r);
-    if (stop.known) GoTo(r, remounted || record_[i - 1].pass != r.pass);
+    if (stop.known) GoTo(r, remounted || IsNewPass(record_[i - 1], r));
     const double dwell_s = std::isfinite(r.dwell_s) ? r.dwell_s : 0.0;
     queue_.RunUntil(queue_.Now() + FromSeconds(dwell_s));
     if (remounted) mounted_ = r.time - (queue_.Now() - mounted_here_);

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/diagnose/encoder/encoder_run.h"
+
+namespace twinbench::diagnose::encoder {
+
+/// Readings as a diagnosis takes them, against the twin that follows them.
+inline EncoderRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {
+  return BuildRun(readings, scenario, benches::encoder::FollowRecord);
+}
+
+}  // namespace twinbench::diagnose::encoder

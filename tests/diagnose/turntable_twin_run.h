@@ -1,0 +1,13 @@
+#pragma once
+
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
+#include "twin/diagnose/turntable/turntable_run.h"
+
+namespace twinbench::diagnose::turntable {
+
+/// Readings as a diagnosis takes them, against the twin that follows them.
+inline TurntableRun RunOf(const std::vector<Reading>& readings, const Scenario& scenario) {
+  return BuildRun(readings, scenario, benches::turntable::FollowRecord);
+}
+
+}  // namespace twinbench::diagnose::turntable
