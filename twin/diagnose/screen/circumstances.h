@@ -16,6 +16,9 @@ bool Varies(const Eigen::VectorXd& values);
 /// Values mapped onto [-1, 1] by their extremes; what was not recorded becomes 0.
 Eigen::VectorXd Normalised(const Eigen::VectorXd& values);
 
+/// What was not recorded becomes 0.
+Eigen::MatrixXd Recorded(const Eigen::MatrixXd& values);
+
 /// Equal keys get equal numbers, 0, 1, ... in order of appearance.
 template <typename Key>
 std::vector<int> Numbered(const std::vector<Key>& keys) {
@@ -29,11 +32,26 @@ std::vector<int> Numbered(const std::vector<Key>& keys) {
 using PlaceKey = std::vector<long>;
 PlaceKey PlaceOfReading(const Schedule& schedule, int reading);
 
-/// Consecutive readings of the same pass.
+/// Readings of the same pass.
 bool SamePass(const Schedule& schedule, int a, int b);
 
 /// Time since the first reading of the same set-up and phase.
 Eigen::VectorXd TimeInSetup_s(const Schedule& schedule);
+
+/// An angle that errors may be locked to: target, reference, their sum and difference, as far as they were recorded
+/// and vary.
+struct AngleArgument {
+  std::string name;  // "target angle"
+  Eigen::VectorXd angle_rad;
+  bool of_a_body = false;  // not the sum or the difference
+};
+std::vector<AngleArgument> AnglesOf(const LinearRun& run);
+
+/// Orders that the stops can tell apart: up to half the number of different angles within a turn, at most 16.
+int HighestOrder(const Eigen::VectorXd& angle_rad);
+
+/// Cosine and sine side by side; 0 where the phase was not recorded.
+Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad);
 
 /// Channels that are the two coordinates of one light spot: "psd_a_x" and "psd_a_y".
 struct Spot {

@@ -6,6 +6,13 @@
 #include <cmath>
 
 namespace twinbench::diagnose::screen {
+namespace {
+
+bool ReadsAngles(const LinearRun& run) {
+  return run.unit == "arcsec" || run.unit == "deg" || run.unit == "rad";
+}
+
+}  // namespace
 
 std::string Amount(const LinearRun& run, double value_SI) {
   return fmt::format("{:.3g} {}", value_SI / run.to_SI, run.unit);
@@ -13,10 +20,6 @@ std::string Amount(const LinearRun& run, double value_SI) {
 
 bool IsAngle(const std::string& pattern) {
   return pattern == "yaw" || pattern == "tilt" || pattern == "roll";
-}
-
-bool ReadsAngles(const LinearRun& run) {
-  return run.unit == "arcsec" || run.unit == "deg" || run.unit == "rad";
 }
 
 double AsAngle(const LinearRun& run, int channel, double size_SI) {
@@ -33,6 +36,13 @@ void SetEffect(const LinearRun& run, int channel, double size_SI, ScreenTest& te
   test.effect_rad = AsAngle(run, channel, size_SI);
 }
 
+void SetEffect(const LinearRun& run, const Pattern& pattern, double amplitude, ScreenTest& test) {
+  int channel = 0;
+  const double shown = pattern.weight.cwiseAbs().maxCoeff(&channel);
+  SetEffect(run, channel, shown * amplitude, test);
+  if (IsAngle(pattern.name)) test.effect_rad = amplitude;
+}
+
 int AnyChannel(const LinearRun& run) {
   int most = 0;
   for (int c = 1; c < run.Channels(); ++c) {
@@ -42,9 +52,11 @@ int AnyChannel(const LinearRun& run) {
 }
 
 double TypicalSigma(const LinearRun& run, int channel) {
-  double squared = 0.0;
-  for (int k = channel; k < run.Rows(); k += run.Channels()) squared += run.sigma[k] * run.sigma[k];
-  return std::sqrt(squared * run.Channels() / run.Rows());
+  return run.sigma(RowsOf(run, channel)).norm() / std::sqrt(static_cast<double>(run.schedule.Readings()));
+}
+
+double Beside(double sigma, double ratio) {
+  return sigma * std::sqrt(std::abs(ratio * ratio - 1.0));
 }
 
 }  // namespace twinbench::diagnose::screen

@@ -12,7 +12,6 @@ namespace {
 
 /// One column a group, all sortings side by side; an offset of one stated deviation each.
 struct Design {
-  Whitening columns;                // readings x groups, whitened
   std::vector<Eigen::Index> start;  // first column of each sorting, and the end
   Eigen::VectorXd before;           // squared lengths of the columns
   Eigen::MatrixXd information;      // Z' W Z
@@ -20,31 +19,31 @@ struct Design {
   double squares = 0.0, dof = 0.0;  // of what projection leaves of the channel
 
   Eigen::Index Groups() const { return start.back(); }
-  Eigen::Index Size(std::size_t sorting) const { return start[sorting + 1] - start[sorting]; }
+  Eigen::Index Size(Eigen::Index sorting) const { return start[sorting + 1] - start[sorting]; }
 };
 
-void SetColumns(const Sample& s, const std::vector<std::vector<int>>& sortings, int channel, Design& design) {
+/// Whitened, readings x groups.
+Whitening ColumnsOf(const Sample& s, const std::vector<std::vector<int>>& sortings, int channel,
+                    std::vector<Eigen::Index>& start) {
   std::vector<Eigen::Triplet<double>> entries;
-  design.start = {0};
+  start = {0};
   for (const std::vector<int>& group : sortings) {
-    for (std::size_t i = 0; i < group.size(); ++i)
-      entries.emplace_back(static_cast<int>(i), static_cast<int>(design.start.back()) + group[i], 1.0);
-    design.start.push_back(design.start.back() + *std::max_element(group.begin(), group.end()) + 1);
+    for (std::size_t i = 0; i < group.size(); ++i) entries.emplace_back(i, start.back() + group[i], 1.0);
+    start.push_back(start.back() + *std::ranges::max_element(group) + 1);
   }
-  Whitening indicator(s.run.schedule.Readings(), design.Groups());
+  Whitening indicator(s.run.schedule.Readings(), start.back());
   indicator.setFromTriplets(entries.begin(), entries.end());
-  design.columns = s.whitening[static_cast<std::size_t>(channel)] * indicator * TypicalSigma(s.run, channel);
+  return s.whitening[channel] * indicator * TypicalSigma(s.run, channel);
 }
 
 /// H of the projector, some columns at a time: they are long.
-Eigen::MatrixXd Absorbed(const Sample& s, const Whitening& columns, int channel) {
+Eigen::MatrixXd Absorbed(const Sample& s, const Eigen::SparseMatrix<double>& columns, int channel) {
   constexpr Eigen::Index kChunk = 64;
   Eigen::MatrixXd absorbed(s.projector.Jacobian().cols(), columns.cols());
   for (Eigen::Index first = 0; first < columns.cols(); first += kChunk) {
     const Eigen::Index count = std::min(kChunk, columns.cols() - first);
-    const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(columns.cols(), columns.cols()).middleCols(first, count);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(s.run.Rows(), count);
-    rows(Eigen::seqN(channel, s.run.schedule.Readings(), s.run.Channels()), Eigen::all) = columns * unit;
+    rows(RowsOf(s.run, channel), Eigen::all) = Eigen::MatrixXd(columns.middleCols(first, count));
     absorbed.middleCols(first, count) = s.projector.Absorbed(rows);
   }
   return absorbed;
@@ -52,14 +51,14 @@ Eigen::MatrixXd Absorbed(const Sample& s, const Whitening& columns, int channel)
 
 Design DesignOf(const Sample& s, const std::vector<std::vector<int>>& sortings, int channel) {
   Design design;
-  SetColumns(s, sortings, channel, design);
-  const auto rows = Eigen::seqN(channel, s.run.schedule.Readings(), s.run.Channels());
+  const Whitening columns = ColumnsOf(s, sortings, channel, design.start);
+  const auto rows = RowsOf(s.run, channel);
   const Eigen::VectorXd residual = s.residual.col(0)(rows);
-  const Eigen::MatrixXd absorbed = Absorbed(s, design.columns, channel);
-  design.information = design.columns.transpose() * design.columns;
+  const Eigen::MatrixXd absorbed = Absorbed(s, columns, channel);
+  design.information = columns.transpose() * columns;
   design.before = design.information.diagonal();
   design.information.noalias() -= absorbed.transpose() * absorbed;
-  design.gradient = design.columns.transpose() * residual;
+  design.gradient = columns.transpose() * residual;
   design.squares = residual.squaredNorm();
   design.dof = s.redundancy(rows).sum();
   return design;
