@@ -6,8 +6,7 @@
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/screen/allan.h"
-#include "twin/diagnose/screen/spectrum.h"
+#include "twin/diagnose/screen/estimators.h"
 
 namespace twinbench::diagnose {
 namespace {

@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "twin/diagnose/screen/circumstances.h"
 #include "twin/diagnose/screen/scan.h"
-#include "twin/diagnose/screen/sizes.h"
 #include "twin/diagnose/screen/tests.h"
 
+/// What channels or detectors show more than others, and what they show together.
 namespace twinbench::diagnose::screen {
 namespace {
 
@@ -23,14 +22,13 @@ Eigen::MatrixXd RelativeLevels(const Sample& s) {
 }
 
 /// @param channel  Of each item.
-void TestLevels(const Sample& s, Statistic levels, const std::vector<int>& channel, Tests& tests) {
-  const std::vector<std::string> names = levels.items;
+void TestLevels(const Sample& s, const Statistic& levels, const std::vector<int>& channel, Tests& tests) {
   const auto meaning = [&](int item, double excess, ScreenTest& test) {
     const double ratio = std::exp(0.5 * excess);
     SetEffect(s.run, channel[item], Beside(TypicalSigma(s.run, channel[item]), ratio), test);
-    test.reading = ReadingOf(test.name, names[item], ratio);
+    test.reading = ReadingOf(test.name, levels.items[item], ratio);
   };
-  TestMoments(std::move(levels), Sides::kBoth, meaning, tests);
+  TestMoments(levels, Sides::kBoth, meaning, tests);
 }
 
 /// Adds the spot's score in the model variance = 1 + k radius, radius on [-1, 1]: sum of (r^2 - 1 + leverage)
@@ -41,12 +39,10 @@ double AddRadiusScore(const Sample& s, const Spot& spot, Statistic& scores) {
   Eigen::VectorXd radius = Normalised((x.array().square() + y.array().square()).sqrt());
   radius.array() -= radius.mean();
   double information = 0.0;
-  auto score = scores.values.row(std::ssize(scores.items));
-  score.setZero();
   for (int c : {spot.x, spot.y}) {
     const Eigen::VectorXd redundancy = s.redundancy(RowsOf(s.run, c));
     const Eigen::MatrixXd squares = s.levelled(RowsOf(s.run, c), Eigen::all).cwiseAbs2();
-    score += radius.transpose() * (squares.colwise() - redundancy);
+    scores.values.row(std::ssize(scores.items)) += radius.transpose() * (squares.colwise() - redundancy);
     information += radius.cwiseAbs2().dot(redundancy);
   }
   scores.items.push_back(spot.name);
@@ -55,15 +51,15 @@ double AddRadiusScore(const Sample& s, const Spot& spot, Statistic& scores) {
 
 void TestRadius(const Sample& s, const std::vector<Spot>& spots, Tests& tests) {
   if (spots.empty()) return;
-  Statistic scores{"noise against spot radius", {}, Eigen::MatrixXd(std::ssize(spots), s.Columns())};
+  Statistic scores{"noise against spot radius", {}, Eigen::MatrixXd::Zero(std::ssize(spots), s.Columns())};
   std::vector<double> information;
   for (const Spot& spot : spots) information.push_back(AddRadiusScore(s, spot, scores));
   const auto meaning = [&](int item, double excess, ScreenTest& test) {
     const double slope = excess / information[item];
     SetEffect(s.run, spots[item].x, TypicalSigma(s.run, spots[item].x) * std::sqrt(std::abs(2.0 * slope)), test);
-    test.reading = ReadingBySign(test.name, slope > 0.0, spots[item].name);
+    test.reading = ReadingOf(test.name, spots[item].name, slope > 0.0 ? "grows" : "falls");
   };
-  TestMoments(std::move(scores), Sides::kBoth, meaning, tests);
+  TestMoments(scores, Sides::kBoth, meaning, tests);
 }
 
 /// The pattern in units of the noise of each channel.
@@ -86,16 +82,16 @@ void TestNoiseScale(const Sample& s, Tests& tests) {
   if (s.run.Channels() < 2) return;
   const Eigen::MatrixXd level = RelativeLevels(s);
   const std::vector<Spot> spots = SpotsOf(s.run);
-  std::vector<int> all(s.run.channels.size()), of_spots;
+  std::vector<int> all(s.run.channels.size()), first_of_spot;
   std::iota(all.begin(), all.end(), 0);
   TestLevels(s, {"noise of the channels", s.run.channels, level}, all, tests);
-  Statistic of_spot{"noise of the detectors", {}, Eigen::MatrixXd(std::ssize(spots), s.Columns())};
-  for (const Spot& spot : spots) {
-    of_spot.values.row(std::ssize(of_spots)) = 0.5 * (level.row(spot.x) + level.row(spot.y));
-    of_spot.items.push_back(spot.name);
-    of_spots.push_back(spot.x);
+  Statistic of_spots{"noise of the detectors", {}, Eigen::MatrixXd(std::ssize(spots), s.Columns())};
+  for (const auto& [name, x, y] : spots) {
+    of_spots.values.row(std::ssize(first_of_spot)) = 0.5 * (level.row(x) + level.row(y));
+    of_spots.items.push_back(name);
+    first_of_spot.push_back(x);
   }
-  if (spots.size() > 1) TestLevels(s, std::move(of_spot), of_spots, tests);
+  if (spots.size() > 1) TestLevels(s, of_spots, first_of_spot, tests);
   TestRadius(s, spots, tests);
 }
 
@@ -113,24 +109,22 @@ void TestPatterns(const Sample& s, Tests& tests) {
     SetEffect(s.run, patterns[item], s.level.mean() * std::sqrt(variance) / shown, test);
     test.reading = ReadingOf(test.name, patterns[item].name);
   };
-  TestMoments(std::move(power), Sides::kUpper, meaning, tests);
+  TestMoments(power, Sides::kUpper, meaning, tests);
 }
 
 /// A converter that is switched from channel to channel may keep a trace of the one before. Channels are scanned in
 /// the order of the run, again and again, so that the last comes before the first.
-void TestChannelOrder(const Sample& sample, Tests& tests) {
-  const LinearRun& run = sample.run;
-  const int channels = run.Channels();
-  if (channels < 2) return;
+void TestChannelOrder(const Sample& s, Tests& tests) {
+  const int channels = s.run.Channels();
+  const Eigen::MatrixXd none = Eigen::VectorXd::Zero(s.run.schedule.Readings());
   Scan scan{"channel order"};
-  for (int c = 0; c < channels; ++c) {
+  for (int c = 0; c < channels && channels > 1; ++c) {
     const int before = (c + channels - 1) % channels;
-    Scan::Item item{ItemOf(scan.test, run.channels[before], run.channels[c]), {}};
-    item.shape.assign(channels, Eigen::VectorXd::Zero(run.schedule.Readings()));
-    item.shape[c] = Normalised(Predicted(run, before));
-    scan.items.push_back(std::move(item));
+    std::vector<Eigen::MatrixXd> shape(channels, none);
+    shape[c] = Normalised(Predicted(s.run, before));
+    scan.Add(std::move(shape), s.run.channels[before], s.run.channels[c]);
   }
-  TestScan(sample, scan, tests);
+  TestScan(s, scan, tests);
 }
 
 }  // namespace twinbench::diagnose::screen

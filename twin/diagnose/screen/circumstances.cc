@@ -1,5 +1,7 @@
 #include "twin/diagnose/screen/circumstances.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -10,47 +12,52 @@
 namespace twinbench::diagnose::screen {
 namespace {
 
-constexpr double kTurn = units::turn;
-
-struct Range {
-  double lower = INFINITY, upper = -INFINITY;
-  int finite = 0;
-};
-
-Range RangeOf(const Eigen::VectorXd& values) {
-  Range range;
-  for (double v : values) {
-    if (std::isfinite(v)) range = {std::min(range.lower, v), std::max(range.upper, v), range.finite + 1};
-  }
-  return range;
-}
-
 double WithinTurn(double angle_rad) {
-  return angle_rad - kTurn * std::floor(angle_rad / kTurn);
+  return angle_rad - units::turn * std::floor(angle_rad / units::turn);
 }
 
 /// Angle within a turn in steps of 1e-6 rad, so that 0 and a full turn are the same place; 0 if there is none.
 long Rounded(const Eigen::VectorXd& angle_rad, int reading) {
   if (angle_rad.size() <= reading || !std::isfinite(angle_rad[reading])) return 0;
-  return std::lround(WithinTurn(angle_rad[reading]) / 1e-6) % std::lround(kTurn / 1e-6);
+  return std::lround(WithinTurn(angle_rad[reading]) / 1e-6) % std::lround(units::turn / 1e-6);
+}
+
+double Least(const Eigen::VectorXd& values) {
+  return values.minCoeff<Eigen::PropagateNumbers>();
+}
+
+/// True for the patterns that are rotations.
+bool IsAngle(const std::string& pattern) {
+  return pattern == "yaw" || pattern == "tilt" || pattern == "roll";
+}
+
+bool ReadsAngles(const LinearRun& run) {
+  return run.unit == "arcsec" || run.unit == "deg" || run.unit == "rad";
 }
 
 }  // namespace
 
 bool Varies(const Eigen::VectorXd& values) {
-  const Range range = RangeOf(values);
-  return range.finite > 2 && range.finite >= 0.9 * static_cast<double>(values.size()) &&
-         range.upper - range.lower > 1e-12 * (std::abs(range.upper) + std::abs(range.lower));
+  const auto recorded = static_cast<double>(values.array().isFinite().count());
+  if (recorded <= 2.0 || recorded < 0.9 * static_cast<double>(values.size())) return false;
+  const double lower = Least(values), upper = -Least(-values);
+  return upper - lower > 1e-12 * (std::abs(upper) + std::abs(lower));
 }
 
 Eigen::VectorXd Normalised(const Eigen::VectorXd& values) {
-  const Range range = RangeOf(values);
-  const double middle = 0.5 * (range.upper + range.lower), half = 0.5 * (range.upper - range.lower);
-  return values.unaryExpr([&](double v) { return std::isfinite(v) && half > 0.0 ? (v - middle) / half : 0.0; });
+  const double lower = Least(values), upper = -Least(-values), half = 0.5 * (upper - lower);
+  if (!(half > 0.0)) return Eigen::VectorXd::Zero(values.size());
+  return Recorded((values.array() - 0.5 * (upper + lower)) / half);
 }
 
 Eigen::MatrixXd Recorded(const Eigen::MatrixXd& values) {
   return values.unaryExpr([](double v) { return std::isfinite(v) ? v : 0.0; });
+}
+
+Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad) {
+  Eigen::MatrixXd wave(phase_rad.size(), 2);
+  wave << phase_rad.array().cos(), phase_rad.array().sin();
+  return Recorded(wave);
 }
 
 PlaceKey PlaceOfReading(const Schedule& s, int i) {
@@ -82,16 +89,10 @@ std::vector<AngleArgument> AnglesOf(const LinearRun& run) {
 }
 
 int HighestOrder(const Eigen::VectorXd& angle_rad) {
-  constexpr int kMost = 16;
   std::set<long> different;
-  for (double a : angle_rad) different.insert(std::lround((a / kTurn - std::floor(a / kTurn)) * 1e4) % 10000);
-  return std::min(kMost, (static_cast<int>(different.size()) - 1) / 2);
-}
-
-Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad) {
-  Eigen::MatrixXd wave(phase_rad.size(), 2);
-  wave << phase_rad.array().cos(), phase_rad.array().sin();
-  return Recorded(wave);
+  for (double turns : Eigen::VectorXd(angle_rad / units::turn))
+    different.insert(std::lround((turns - std::floor(turns)) * 1e4) % 10000);
+  return std::min(16, (static_cast<int>(different.size()) - 1) / 2);
 }
 
 std::vector<Spot> SpotsOf(const LinearRun& run) {
@@ -106,8 +107,48 @@ std::vector<Spot> SpotsOf(const LinearRun& run) {
 }
 
 Eigen::VectorXd Predicted(const LinearRun& run, int channel) {
-  const auto rows = Eigen::seqN(channel, run.schedule.Readings(), run.Channels());
-  return run.observed(rows) - run.residual(rows);
+  return run.Predicted()(RowsOf(run, channel));
+}
+
+std::string Amount(const LinearRun& run, double value_SI) {
+  return fmt::format("{:.3g} {}", value_SI / run.to_SI, run.unit);
+}
+
+double AsAngle(const LinearRun& run, int channel, double size_SI) {
+  if (ReadsAngles(run)) return size_SI;
+  double shown = 0.0;
+  for (const Pattern& p : run.patterns) {
+    if (IsAngle(p.name)) shown = std::max(shown, std::abs(p.weight[channel]));
+  }
+  return shown > 0.0 ? size_SI / shown : kNaN;
+}
+
+void SetEffect(const LinearRun& run, int channel, double size_SI, ScreenTest& test) {
+  test.effect_m = ReadsAngles(run) ? kNaN : size_SI;
+  test.effect_rad = AsAngle(run, channel, size_SI);
+}
+
+void SetEffect(const LinearRun& run, const Pattern& pattern, double amplitude, ScreenTest& test) {
+  int channel = 0;
+  const double shown = pattern.weight.cwiseAbs().maxCoeff(&channel);
+  SetEffect(run, channel, shown * amplitude, test);
+  if (IsAngle(pattern.name)) test.effect_rad = amplitude;
+}
+
+int AnyChannel(const LinearRun& run) {
+  int most = 0;
+  for (int c = 1; c < run.Channels(); ++c) {
+    if (AsAngle(run, c, 1.0) > AsAngle(run, most, 1.0)) most = c;
+  }
+  return most;
+}
+
+double TypicalSigma(const LinearRun& run, int channel) {
+  return run.sigma(RowsOf(run, channel)).norm() / std::sqrt(static_cast<double>(run.schedule.Readings()));
+}
+
+double Beside(double sigma, double ratio) {
+  return sigma * std::sqrt(std::abs(ratio * ratio - 1.0));
 }
 
 }  // namespace twinbench::diagnose::screen

@@ -4,10 +4,8 @@
 #include <utility>
 
 #include "twin/diagnose/screen/circumstances.h"
-#include "twin/diagnose/screen/sizes.h"
+#include "twin/diagnose/screen/estimators.h"
 #include "twin/diagnose/screen/tests.h"
-#include "twin/diagnose/screen/variance_components.h"
-#include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose::screen {
 namespace {

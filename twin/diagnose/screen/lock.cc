@@ -6,7 +6,6 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/screen/circumstances.h"
 #include "twin/diagnose/screen/scan.h"
-#include "twin/diagnose/screen/sizes.h"
 #include "twin/diagnose/screen/tests.h"
 
 namespace twinbench::diagnose::screen {

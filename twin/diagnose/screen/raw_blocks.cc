@@ -4,9 +4,8 @@
 #include "twin/core/distributions.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/screen/circumstances.h"
 #include "twin/diagnose/screen/raw_tests.h"
-#include "twin/diagnose/screen/sizes.h"
-#include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose {
 namespace screen {
@@ -35,12 +34,10 @@ std::vector<const RawBlock*> Used(const std::vector<RawBlock>& blocks, Eigen::In
 }
 
 /// Orthonormal cosine and sine, orthogonal to a constant: samples x 2.
-Eigen::MatrixXd Wave(double frequency_Hz, double rate_Hz, Eigen::Index first, Eigen::Index samples) {
-  const Eigen::ArrayXd i =
-      Eigen::ArrayXd::LinSpaced(samples, static_cast<double>(first), static_cast<double>(first + samples - 1));
-  const Eigen::ArrayXd phase = units::turn * frequency_Hz / rate_Hz * i;
-  Eigen::MatrixXd wave(samples, 2);
-  wave << phase.cos(), phase.sin();
+Eigen::MatrixXd PureWave(double frequency_Hz, double rate_Hz, Eigen::Index first, Eigen::Index samples) {
+  const Eigen::VectorXd i =
+      Eigen::VectorXd::LinSpaced(samples, static_cast<double>(first), static_cast<double>(first + samples - 1));
+  Eigen::MatrixXd wave = Wave(units::turn * frequency_Hz / rate_Hz * i);
   wave.rowwise() -= wave.colwise().mean().eval();
   wave.col(0).normalize();
   wave.col(1) -= wave.col(0) * wave.col(0).dot(wave.col(1));
@@ -75,12 +72,17 @@ ThinnedBlocks Thin(const std::vector<RawBlock>& blocks, const RawScale& scale) {
   return thinned;
 }
 
-ScreenTest Simulated(const RawSample& sample, const std::string& test, double statistic, const char* stream,
-                     const std::function<double(Stream&)>& draw) {
-  Eigen::VectorXd values = Eigen::VectorXd::Constant(1 + sample.null_runs, statistic);
+void TestLargest(const RawSample& sample, const std::string& test, const char* stream,
+                 const std::vector<RawItem>& items, const std::function<double(Stream&)>& draw, Tests& tests) {
+  if (items.empty()) return;
+  const RawItem& largest = *std::ranges::max_element(items, {}, &RawItem::score);
+  Eigen::VectorXd statistic = Eigen::VectorXd::Constant(1 + sample.null_runs, largest.score);
   Stream noise(sample.seed, stream);
-  for (int j = 1; j <= sample.null_runs; ++j) values[j] = draw(noise);
-  return Tested(test, values);
+  for (int j = 1; j <= sample.null_runs; ++j) statistic[j] = draw(noise);
+  tests.push_back(Tested(test, statistic));
+  SetEffect(sample.scale.channels[largest.channel], largest.codes, tests.back());
+  tests.back().reading = ReadingOf(test, largest.name);
+  for (const RawItem& item : items) tests.back().tables.push_back(item.line.empty() ? item.name : item.line);
 }
 
 Eigen::ArrayXd Codes(const RawBlock& block, int channel) {
@@ -94,7 +96,7 @@ Eigen::VectorXd Power(const Eigen::MatrixXd& blocks, Eigen::Index first, Eigen::
                       const std::vector<double>& frequency_Hz, double rate_Hz) {
   Eigen::VectorXd power(std::ssize(frequency_Hz));
   for (int k = 0; k < power.size(); ++k) {
-    const Eigen::MatrixXd wave = Wave(frequency_Hz[k], rate_Hz, first, samples);
+    const Eigen::MatrixXd wave = PureWave(frequency_Hz[k], rate_Hz, first, samples);
     power[k] = (wave.transpose() * blocks.middleRows(first, samples)).squaredNorm();
   }
   return power;

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "twin/diagnose/screen/raw_tests.h"
-#include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose::screen {
 namespace {
@@ -54,12 +53,6 @@ Density DensityOf(const std::vector<RawBlock>& blocks, int channel) {
   return density;
 }
 
-struct CodeScore {
-  int channel = 0, code = 0;
-  double count = 0.0, expected = 0.0;
-  double score = 0.0;
-};
-
 /// Roots of Poisson counts have unit variance and, with the second constant for the quieter mean of neighbours, the
 /// same expectation (Anscombe, Biometrika 35 (1948) 246-254).
 double ScoreOf(double count, double expected) {
@@ -68,20 +61,11 @@ double ScoreOf(double count, double expected) {
   return std::abs(difference) / std::sqrt(1.0 + kVariance);
 }
 
-std::vector<CodeScore> ScoresOf(const RawSample& s) {
-  constexpr double kLeastCount = 25.0;   // around a code; below, square roots of counts are no longer normal
-  constexpr double kLeastScatter = 4.0;  // codes; below, the density bends within kReach
-  std::vector<CodeScore> scores;
-  for (int c = 0; c < s.Channels(); ++c) {
-    const auto& [count, scatter] = DensityOf(s.blocks, c);
-    for (int k = kAround; k < kCodes - kAround && scatter >= kLeastScatter; ++k) {
-      if (Around(count, k) < kLeastCount) continue;
-      const double expected = std::max(0.0, FromNeighbours(count, k));
-      scores.push_back({c, k - kCodes / 2, count[k], expected, ScoreOf(count[k], expected)});
-    }
-  }
-  std::ranges::sort(scores, std::greater<>(), &CodeScore::score);
-  return scores;
+RawItem ItemAt(const RawSample& s, const std::vector<double>& count, int channel, int index) {
+  const double came = count[index], expected = std::max(0.0, FromNeighbours(count, index));
+  return {ItemOf("raw: code density", index - kCodes / 2, s.Name(channel), came, expected,
+                 came == 0.0 ? " (missing)" : ""),
+          channel, ScoreOf(came, expected), std::abs(came / std::max(expected, 1.0) - 1.0)};
 }
 
 /// Largest score of as many codes in a row without fault.
@@ -98,20 +82,22 @@ double LargestOfNoise(Stream& noise, int codes) {
 
 /// Code density: a code's width is how often it comes, compared with its neighbours.
 void TestCodes(const RawSample& s, Tests& tests) {
+  constexpr double kLeastCount = 25.0;   // around a code; below, square roots of counts are no longer normal
+  constexpr double kLeastScatter = 4.0;  // codes; below, the density bends within kReach
   constexpr std::size_t kLines = 8;
-  const std::vector<CodeScore> scores = ScoresOf(s);
-  if (scores.empty()) return;
-  const CodeScore& worst = scores.front();
-  const auto draw = [&](Stream& noise) { return LargestOfNoise(noise, static_cast<int>(scores.size())); };
-  ScreenTest test = Simulated(s, "raw: code density", worst.score, "screen.raw.codes", draw);
-  SetEffect(s.scale.channels[worst.channel], std::abs(worst.count / std::max(worst.expected, 1.0) - 1.0), test);
-  for (std::size_t k = 0; k < std::min(kLines, scores.size()); ++k) {
-    const auto& [channel, code, count, expected, score] = scores[k];
-    test.tables.push_back(
-        ItemOf(test.name, code, s.Name(channel), count, expected, count == 0.0 ? " (missing)" : ""));
+  std::vector<RawItem> codes;
+  for (int c = 0; c < s.Channels(); ++c) {
+    const auto& [count, scatter] = DensityOf(s.blocks, c);
+    for (int k = kAround; k < kCodes - kAround && scatter >= kLeastScatter; ++k) {
+      if (Around(count, k) >= kLeastCount) codes.push_back(ItemAt(s, count, c, k));
+    }
   }
-  test.reading = ReadingOf(test.name, test.tables.front());
-  tests.push_back(std::move(test));
+  const auto draw = [judged = codes.size()](Stream& noise) {
+    return LargestOfNoise(noise, static_cast<int>(judged));
+  };
+  std::ranges::sort(codes, std::greater<>(), &RawItem::score);
+  codes.resize(std::min(kLines, codes.size()));
+  TestLargest(s, "raw: code density", "screen.raw.codes", codes, draw, tests);
 }
 
 }  // namespace twinbench::diagnose::screen

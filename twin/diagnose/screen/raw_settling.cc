@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "twin/diagnose/screen/raw_tests.h"
-#include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose::screen {
 namespace {
@@ -19,13 +18,11 @@ double LagSquare(const Eigen::ArrayXd& x, Eigen::Index lag) {
   return (x.tail(x.size() - lag) - x.head(x.size() - lag)).square().mean();
 }
 
-/// A deviation from independent samples: a normal score and what it means.
-struct Trace {
-  std::string name;
-  int channel = 0;
-  double score = 0.0;
-  double codes = kNaN;  // size in a reading; NaN: it does not reach the mean
-};
+/// A deviation from independent samples.
+/// @param score  Normal.
+RawItem Trace(const std::string& name, int channel, double score, double codes) {
+  return {name, channel, std::abs(score), codes, ItemOf("raw: settling", name, score)};
+}
 
 /// Running sums over the blocks of one channel and the one that is converted before it.
 struct Sums {
@@ -54,62 +51,50 @@ void Add(const Eigen::ArrayXd& x, const Eigen::ArrayXd& y, bool same_scan, Sums&
 }
 
 /// Multiplexer. The variance of a correlation of fast parts is (9/4 + 2 + 1/8) / (9/4) = 1.94 a scan.
-Trace ChannelBefore(const RawSample& raw, const Sums& s, int channel, int before) {
+RawItem ChannelBefore(const RawSample& raw, const Sums& s, int channel, int before) {
   const double share = s.pair / std::max(s.before, 1e-300);
   const double correlation = s.pair / std::sqrt(std::max(s.own * s.before, 1e-300));
-  return {ItemOf("raw: settling, channel before", share, raw.Name(before), raw.Name(channel)), channel,
-          correlation * std::sqrt(s.others / 1.9444), std::abs(share) * s.rim};
+  return Trace(ItemOf("raw: settling, channel before", share, raw.Name(before), raw.Name(channel)), channel,
+               correlation * std::sqrt(s.others / 1.9444), std::abs(share) * s.rim);
 }
 
 /// Bandwidth. With memory k of the sample before, squared differences over one scan and over two are as 1 to 1 + k.
-Trace SampleBefore(const RawSample& raw, const Sums& s, int channel) {
+RawItem SampleBefore(const RawSample& raw, const Sums& s, int channel) {
   const double share = s.lag2 / std::max(s.lag1, 1e-300) - 1.0;
-  return {ItemOf("raw: settling, sample before", share, raw.Name(channel)), channel,
-          std::log1p(share) * std::sqrt(0.5 * s.scans), kNaN};
+  return Trace(ItemOf("raw: settling, sample before", share, raw.Name(channel)), channel,
+               std::log1p(share) * std::sqrt(0.5 * s.scans), kNaN);
 }
 
 /// The time before the block.
-Trace FirstSample(const RawSample& raw, const Sums& s, int channel) {
+RawItem FirstSample(const RawSample& raw, const Sums& s, int channel) {
   const double step = s.first / s.blocks, variance = s.rest_square / s.others;
   const double u = std::sqrt(variance * (1.0 / s.blocks + 1.0 / (s.scans - s.blocks)));
-  return {ItemOf("raw: settling, first sample", raw.Name(channel), step), channel, u > 0.0 ? step / u : 0.0,
-          std::abs(step) * s.blocks / s.scans};
-}
-
-/// The largest first.
-std::vector<Trace> TracesOf(const RawSample& raw) {
-  std::vector<Trace> traces;
-  const std::vector<int>& scan = raw.scale.scan;
-  for (std::size_t place = 0; place < scan.size(); ++place) {
-    const int channel = scan[place], before = scan[(place + scan.size() - 1) % scan.size()];
-    Sums sums;
-    for (const RawBlock& block : raw.blocks) Add(Codes(block, channel), Codes(block, before), place > 0, sums);
-    if (sums.blocks < 1.0) continue;
-    if (scan.size() > 1) traces.push_back(ChannelBefore(raw, sums, channel, before));
-    traces.push_back(SampleBefore(raw, sums, channel));
-    traces.push_back(FirstSample(raw, sums, channel));
-  }
-  std::ranges::sort(traces, std::greater<>(), [](const Trace& trace) { return std::abs(trace.score); });
-  return traces;
+  return Trace(ItemOf("raw: settling, first sample", raw.Name(channel), step), channel, u > 0.0 ? step / u : 0.0,
+               std::abs(step) * s.blocks / s.scans);
 }
 
 }  // namespace
 
 /// A converter or amplifier that has not settled when the next sample is taken keeps some of what came before.
 void TestSettling(const RawSample& s, Tests& tests) {
-  const std::vector<Trace> traces = TracesOf(s);
-  if (traces.empty()) return;
-  const auto largest_of_noise = [&](Stream& noise) {
+  std::vector<RawItem> traces;
+  const std::vector<int>& scan = s.scale.scan;
+  for (std::size_t place = 0; place < scan.size(); ++place) {
+    const int channel = scan[place], before = scan[(place + scan.size() - 1) % scan.size()];
+    Sums sums;
+    for (const RawBlock& block : s.blocks) Add(Codes(block, channel), Codes(block, before), place > 0, sums);
+    if (sums.blocks < 1.0) continue;
+    if (scan.size() > 1) traces.push_back(ChannelBefore(s, sums, channel, before));
+    traces.push_back(SampleBefore(s, sums, channel));
+    traces.push_back(FirstSample(s, sums, channel));
+  }
+  const auto draw = [&](Stream& noise) {
     double largest = 0.0;
     for (std::size_t k = 0; k < traces.size(); ++k) largest = std::max(largest, std::abs(noise.Normal()));
     return largest;
   };
-  const Trace& largest = traces.front();
-  ScreenTest test = Simulated(s, "raw: settling", std::abs(largest.score), "screen.raw.settling", largest_of_noise);
-  SetEffect(s.scale.channels[largest.channel], largest.codes, test);
-  test.reading = ReadingOf(test.name, largest.name);
-  for (const Trace& trace : traces) test.tables.push_back(ItemOf(test.name, trace.name, trace.score));
-  tests.push_back(std::move(test));
+  std::ranges::sort(traces, std::greater<>(), &RawItem::score);
+  TestLargest(s, "raw: settling", "screen.raw.settling", traces, draw, tests);
 }
 
 }  // namespace twinbench::diagnose::screen

@@ -39,9 +39,19 @@ struct RawSample {
   const std::string& Name(int channel) const { return scale.channels[channel].name; }
 };
 
-/// Compares a statistic with draws of it in independent Gaussian samples, from the stream of this name.
-ScreenTest Simulated(const RawSample& sample, const std::string& test, double statistic, const char* stream,
-                     const std::function<double(Stream&)>& draw);
+/// One of the deviations that a test looks for, and its size.
+struct RawItem {
+  std::string name;
+  int channel = 0;
+  double score = kNaN;
+  double codes = kNaN;    // size in a reading; NaN: it does not reach the mean
+  std::string line = {};  // of the table; else the name
+};
+
+/// Adds the test of the largest score, compared with what `draw` takes from the stream of this name for the largest
+/// score in independent Gaussian samples; nothing if there is no item.
+void TestLargest(const RawSample& sample, const std::string& test, const char* stream,
+                 const std::vector<RawItem>& items, const std::function<double(Stream&)>& draw, Tests& tests);
 
 /// One channel of a block, scan by scan.
 Eigen::ArrayXd Codes(const RawBlock& block, int channel);

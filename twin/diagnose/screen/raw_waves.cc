@@ -3,7 +3,6 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/screen/raw_tests.h"
-#include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose::screen {
 namespace {
@@ -57,43 +56,33 @@ double LeftByAveraging(double true_Hz, const ThinnedBlocks& blocks) {
   return std::abs(std::sin(x) / (blocks.average * std::sin(x / blocks.average)));
 }
 
-struct Line {
-  std::string name;
-  int channel = 0;
-  double log_ratio = kNaN;  // of its power to the floor's
-  double amplitude = kNaN;  // codes
-  double floors = 0.0;      // neighbours that tell the floor
-};
-
-std::vector<Line> LinesIn(const RawSample& s) {
-  std::vector<Line> lines;
-  for (const Mains& mains : MainsIn(s.thinned)) {
-    const std::vector<double> beside_Hz = Neighbours(mains.shown_Hz, s.thinned);
-    for (int c = 0; c < s.Channels() && !beside_Hz.empty(); ++c) {
-      const Eigen::MatrixXd& samples = s.thinned.channel[c];
-      const auto power = [&](const std::vector<double>& frequency_Hz) {
-        return Power(samples, 0, samples.rows(), frequency_Hz, s.thinned.rate_Hz).mean();
-      };
-      const double line = power({mains.shown_Hz}), floor = power(beside_Hz);
-      const double each = std::max(0.0, line - floor) / static_cast<double>(samples.size());
-      lines.push_back({mains.name + " on " + s.Name(c), c, LogRatio(line, floor),
-                       std::sqrt(2.0 * each) / LeftByAveraging(mains.true_Hz, s.thinned),
-                       static_cast<double>(std::ssize(beside_Hz))});
-    }
-  }
-  std::ranges::sort(lines, std::greater<>(), &Line::log_ratio);
-  return lines;
+/// The largest of a number of draws.
+template <typename Draw>
+double LargestOf(Eigen::Index count, const Draw& draw) {
+  double largest = -1e300;
+  for (Eigen::Index k = 0; k < count; ++k) largest = std::max(largest, draw(k));
+  return largest;
 }
 
-struct Decay {
-  std::string name;
-  int channel = 0;
-  double log_ratio = kNaN;  // of the power in the first half of the blocks to that in the second
-  double amplitude = kNaN;  // codes, over the first half
+struct Line : RawItem {
+  double floors = 0.0;  // neighbours that tell the floor
 };
 
-/// The frequency of one channel that dies out most.
-Decay DecayOn(const RawSample& s, int channel, Eigen::Index half, Eigen::Index lines) {
+Line LineOn(const RawSample& s, int channel, const Mains& mains, const std::vector<double>& beside_Hz) {
+  const Eigen::MatrixXd& samples = s.thinned.channel[channel];
+  const auto power = [&](const std::vector<double>& frequency_Hz) {
+    return Power(samples, 0, samples.rows(), frequency_Hz, s.thinned.rate_Hz).mean();
+  };
+  const double line = power({mains.shown_Hz}), floor = power(beside_Hz);
+  const double each = std::max(0.0, line - floor) / static_cast<double>(samples.size());
+  const double amplitude = std::sqrt(2.0 * each) / LeftByAveraging(mains.true_Hz, s.thinned);
+  const std::string name = mains.name + " on " + s.Name(channel);
+  return {{name, channel, LogRatio(line, floor), amplitude, ItemOf("raw: hum", name, amplitude)},
+          static_cast<double>(beside_Hz.size())};
+}
+
+/// The frequency of one channel at which the first half of the blocks holds most more power than the second.
+RawItem DecayOn(const RawSample& s, int channel, Eigen::Index half, Eigen::Index lines) {
   const double half_s = static_cast<double>(half) / s.thinned.rate_Hz;
   std::vector<double> frequency_Hz;
   for (int k = 1; k <= lines; ++k) frequency_Hz.push_back(k / half_s);
@@ -110,23 +99,20 @@ Decay DecayOn(const RawSample& s, int channel, Eigen::Index half, Eigen::Index l
 }  // namespace
 
 void TestHum(const RawSample& s, Tests& tests) {
-  const std::vector<Line> lines = LinesIn(s);
-  if (lines.empty()) return;
+  std::vector<Line> lines;
+  for (const Mains& mains : MainsIn(s.thinned)) {
+    const std::vector<double> beside_Hz = Neighbours(mains.shown_Hz, s.thinned);
+    for (int c = 0; c < s.Channels() && !beside_Hz.empty(); ++c) lines.push_back(LineOn(s, c, mains, beside_Hz));
+  }
+  std::ranges::sort(lines, std::greater<>(), &Line::score);
   const double dof = 2.0 * static_cast<double>(s.thinned.Blocks());
-  const auto largest_of_noise = [&](Stream& noise) {
-    double largest = -1e300;
-    for (const Line& line : lines) {
-      const double floor = noise.ChiSquared(dof * line.floors) / line.floors;
-      largest = std::max(largest, std::log(noise.ChiSquared(dof) / floor));
-    }
-    return largest;
+  const auto draw = [&](Stream& noise) {
+    return LargestOf(std::ssize(lines), [&](Eigen::Index k) {
+      const double floor = noise.ChiSquared(dof * lines[k].floors) / lines[k].floors;
+      return std::log(noise.ChiSquared(dof) / floor);
+    });
   };
-  const Line& loudest = lines.front();
-  ScreenTest test = Simulated(s, "raw: hum", loudest.log_ratio, "screen.raw.hum", largest_of_noise);
-  SetEffect(s.scale.channels[loudest.channel], loudest.amplitude, test);
-  test.reading = ReadingOf(test.name, loudest.name);
-  for (const Line& line : lines) test.tables.push_back(ItemOf(test.name, line.name, line.amplitude));
-  tests.push_back(std::move(test));
+  TestLargest(s, "raw: hum", "screen.raw.hum", {lines.begin(), lines.end()}, draw, tests);
 }
 
 /// A vibration that the move has started dies out: at its frequency, the first half of a block holds more power
@@ -135,23 +121,16 @@ void TestRingDown(const RawSample& s, Tests& tests) {
   constexpr Eigen::Index kMostLines = 64;
   const Eigen::Index half = s.thinned.Samples() / 2, lines = std::min(kMostLines, half / 4);
   if (lines < 2) return;
-  std::vector<Decay> decays;
+  std::vector<RawItem> decays;
   for (int c = 0; c < s.Channels(); ++c) decays.push_back(DecayOn(s, c, half, lines));
   const double dof = 2.0 * static_cast<double>(s.thinned.Blocks());
-  const auto largest_of_noise = [&](Stream& noise) {
-    double largest = -1e300;
-    for (Eigen::Index k = 0; k < s.Channels() * lines; ++k) {
+  const auto draw = [&](Stream& noise) {
+    return LargestOf(s.Channels() * lines, [&](Eigen::Index) {
       const double first = noise.ChiSquared(dof);
-      largest = std::max(largest, std::log(first / noise.ChiSquared(dof)));
-    }
-    return largest;
+      return std::log(first / noise.ChiSquared(dof));
+    });
   };
-  const Decay& loudest = *std::ranges::max_element(decays, {}, &Decay::log_ratio);
-  ScreenTest test = Simulated(s, "raw: ring-down", loudest.log_ratio, "screen.raw.ring", largest_of_noise);
-  SetEffect(s.scale.channels[loudest.channel], loudest.amplitude, test);
-  test.reading = ReadingOf(test.name, loudest.name);
-  for (const Decay& decay : decays) test.tables.push_back(decay.name);
-  tests.push_back(std::move(test));
+  TestLargest(s, "raw: ring-down", "screen.raw.ring", decays, draw, tests);
 }
 
 }  // namespace twinbench::diagnose::screen

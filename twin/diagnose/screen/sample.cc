@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "twin/core/errors.h"
-#include "twin/core/stream.h"
-#include "twin/diagnose/screen/sizes.h"
+#include "twin/diagnose/screen/circumstances.h"
+#include "twin/diagnose/screen/significance.h"
 
 namespace twinbench::diagnose::screen {
 namespace {
@@ -29,13 +29,6 @@ std::vector<Whitening> WhiteningByChannel(const LinearRun& run, const NoiseModel
   }
   Require(entries == all.nonZeros(), "whitening keeps channels apart");
   return whitening;
-}
-
-Eigen::MatrixXd Normals(std::uint64_t seed, const char* name, Eigen::Index rows, int columns) {
-  Stream stream(seed, name);
-  Eigen::MatrixXf normals(rows, columns);
-  stream.FillNormals({normals.data(), static_cast<std::size_t>(normals.size())});
-  return normals.cast<double>();
 }
 
 /// Prior deviations, no wider than kWide times what the rows alone could tell.
@@ -74,13 +67,12 @@ Sample Simulate(const LinearRun& run, const NoiseModel& noise, const Projector& 
   Require(null_runs >= 50, "the screen needs at least 50 null runs");
   Require(run.Rows() == run.schedule.Readings() * run.Channels(), "a run has one row a reading and channel");
   Sample s{run, projector, WhiteningByChannel(run, noise), projector.Redundancy(), {}, {}, {}, {}};
+  Stream of_unknowns(seed, "screen.null.unknowns"), of_noise(seed, "screen.null.noise");
+  const Eigen::MatrixXd unknowns = UsefulPriors(projector, run.nuisance).asDiagonal() *
+                                   Normals(of_unknowns, run.nuisance.prior_precision.size(), null_runs);
   Eigen::MatrixXd white(run.Rows(), 1 + null_runs);
-  const Eigen::MatrixXd unknowns =
-      UsefulPriors(projector, run.nuisance).asDiagonal() *
-      Normals(seed, "screen.null.unknowns", run.nuisance.prior_precision.size(), null_runs);
-  white.col(0) = noise.Whiten(run, Eigen::MatrixXd(run.residual));
-  white.rightCols(null_runs) =
-      Normals(seed, "screen.null.noise", run.Rows(), null_runs) + projector.Jacobian() * unknowns;
+  white << noise.Whiten(run, Eigen::MatrixXd(run.residual)),
+      Normals(of_noise, run.Rows(), null_runs) + projector.Jacobian() * unknowns;
   s.residual = projector.Apply(white);
   LevelChannels(s);
   return s;

@@ -8,7 +8,6 @@
 
 #include "twin/diagnose/screen/sample.h"
 #include "twin/diagnose/screen/significance.h"
-#include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose::screen {
 
@@ -26,8 +25,12 @@ struct Scan {
 
   /// @param words  Arguments of the test's item in the table of words.
   template <typename... Args>
+  void Add(std::vector<Eigen::MatrixXd> shape_by_channel, const Args&... words) {
+    items.push_back({ItemOf(test, words...), std::move(shape_by_channel)});
+  }
+  template <typename... Args>
   void Add(Eigen::MatrixXd shape, const Args&... words) {
-    items.push_back({ItemOf(test, words...), {std::move(shape)}});
+    Add(std::vector{std::move(shape)}, words...);
   }
 };
 

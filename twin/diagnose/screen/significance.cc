@@ -4,9 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <utility>
-
-#include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose::screen {
 namespace {
@@ -70,14 +67,20 @@ Loudest LoudestOf(const Statistic& statistic) {
   return loudest;
 }
 
-void TestMoments(Statistic moments, Sides sides, const Meaning& meaning, Tests& tests) {
-  Eigen::MatrixXd values = Standardised(moments.values);
-  if (!(values.cwiseAbs().maxCoeff() > 0.0)) return;
-  if (sides == Sides::kBoth) values = values.cwiseAbs();
-  std::swap(values, moments.values);
-  auto [test, item] = LoudestOf(moments);
-  meaning(item, values(item, 0) - values.row(item).tail(values.cols() - 1).mean(), test);
+void TestMoments(const Statistic& moments, Sides sides, const Meaning& meaning, Tests& tests) {
+  Statistic scores{moments.test, moments.items, Standardised(moments.values)};
+  if (!(scores.values.cwiseAbs().maxCoeff() > 0.0)) return;
+  if (sides == Sides::kBoth) scores.values = scores.values.cwiseAbs();
+  auto [test, item] = LoudestOf(scores);
+  const auto value = moments.values.row(item);
+  meaning(item, value[0] - value.tail(value.size() - 1).mean(), test);
   tests.push_back(std::move(test));
+}
+
+Eigen::MatrixXd Normals(Stream& stream, Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXf normals(rows, columns);
+  stream.FillNormals({normals.data(), static_cast<std::size_t>(normals.size())});
+  return normals.cast<double>();
 }
 
 }  // namespace twinbench::diagnose::screen

@@ -5,7 +5,6 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/screen/circumstances.h"
 #include "twin/diagnose/screen/scan.h"
-#include "twin/diagnose/screen/sizes.h"
 #include "twin/diagnose/screen/tests.h"
 
 namespace twinbench::diagnose::screen {
@@ -35,9 +34,9 @@ Scan Polynomials(const Coordinates& u) {
   Scan scan{"spot: polynomial"};
   for (const auto& [which, by_channel] : {std::pair("own", u.own_m), std::pair("cross", u.cross_m)}) {
     for (unsigned degree : {2, 3, 4, 5}) {
-      Scan::Item item{ItemOf(scan.test, degree, which), {}};
-      for (const Eigen::VectorXd& u_m : by_channel) item.shape.push_back(Legendre(degree, Normalised(u_m)));
-      scan.items.push_back(std::move(item));
+      std::vector<Eigen::MatrixXd> shape;
+      for (const Eigen::VectorXd& u_m : by_channel) shape.push_back(Legendre(degree, Normalised(u_m)));
+      scan.Add(std::move(shape), degree, which);
     }
   }
   return scan;
@@ -53,9 +52,9 @@ Scan Fringes(const Coordinates& u) {
   for (int k = 4; k <= static_cast<int>(std::min<double>(kMostHalfFringes, 2.0 * range_m / kShortestPeriod_m));
        ++k) {
     const double fringes_m = 0.5 * k / range_m;
-    Scan::Item item{ItemOf(scan.test, 1e6 / fringes_m), {}};
-    for (const Eigen::VectorXd& own_m : u.own_m) item.shape.push_back(Wave(units::turn * fringes_m * own_m));
-    scan.items.push_back(std::move(item));
+    std::vector<Eigen::MatrixXd> shape;
+    for (const Eigen::VectorXd& own_m : u.own_m) shape.push_back(Wave(units::turn * fringes_m * own_m));
+    scan.Add(std::move(shape), 1e6 / fringes_m);
   }
   return scan;
 }
@@ -130,7 +129,7 @@ void TestSpotMap(const Sample& s, Tests& tests) {
     SetEffect(s.run, channel, rms * s.Unit_SI(channel), test);
     test.reading = ReadingOf(test.name, s.run.channels[channel], WorstCell(s, spot, MapOf(s.run, spot), channel));
   };
-  TestMoments(std::move(misfit), Sides::kUpper, meaning, tests);
+  TestMoments(misfit, Sides::kUpper, meaning, tests);
 }
 
 }  // namespace twinbench::diagnose::screen
