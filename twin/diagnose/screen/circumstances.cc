@@ -60,6 +60,15 @@ Eigen::MatrixXd Wave(const Eigen::VectorXd& phase_rad) {
   return Recorded(wave);
 }
 
+Eigen::MatrixXd SumsByGroup(const Eigen::MatrixXd& rows, const std::vector<int>& group) {
+  const int groups = group.empty() ? 0 : *std::ranges::max_element(group) + 1;
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(groups, rows.cols());
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (group[i] >= 0) sums.row(group[i]) += rows.row(i);
+  }
+  return sums;
+}
+
 PlaceKey PlaceOfReading(const Schedule& s, int i) {
   return {s.setup[i], static_cast<long>(s.phase[i]), s.position[i], Rounded(s.target_rad, i),
           Rounded(s.reference_rad, i)};

@@ -32,6 +32,9 @@ std::vector<int> Numbered(const std::vector<Key>& keys) {
   return of;
 }
 
+/// Sums of rows of the same group: groups x columns. Rows of group -1 are left out.
+Eigen::MatrixXd SumsByGroup(const Eigen::MatrixXd& rows, const std::vector<int>& group);
+
 /// A place to which the bench comes back: set-up, phase, position, and the angles to 1e-6 rad within a turn.
 using PlaceKey = std::vector<long>;
 PlaceKey PlaceOfReading(const Schedule& schedule, int reading);

@@ -34,14 +34,12 @@ std::vector<Sorting> SortingsOf(const Schedule& s) {
 /// Sums of squares of the groups' sums, channels x columns: the slope of the restricted likelihood where all
 /// components are zero, but for a constant, and so the most powerful statistic against small ones.
 Eigen::MatrixXd SlopesAtZero(const Sample& s, const Sorting& sorting) {
-  const int channels = s.run.Channels(), readings = s.run.schedule.Readings();
-  Eigen::MatrixXd values(channels, s.Columns());
-  for (int c = 0; c < channels; ++c) {
-    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(sorting.Groups(), s.Columns());
-    for (int i = 0; i < readings; ++i) sums.row(sorting.group[i]) += s.levelled.row(i * channels + c);
+  Eigen::MatrixXd values(s.run.Channels(), s.Columns());
+  for (int c = 0; c < s.run.Channels(); ++c) {
+    const Eigen::MatrixXd sums = SumsByGroup(s.levelled(RowsOf(s.run, c), Eigen::all), sorting.group);
     values.row(c) = sums.colwise().squaredNorm();
     // Groups whose offsets are free unknowns: nothing is left but rounding and the width of the priors.
-    if (values.row(c).tail(s.Columns() - 1).mean() < 1e-3 * readings) values.row(c).setZero();
+    if (values.row(c).tail(s.Columns() - 1).mean() < 1e-3 * s.run.schedule.Readings()) values.row(c).setZero();
   }
   return values;
 }

@@ -46,31 +46,22 @@ std::vector<int> Repeats(const Schedule& schedule) {
   return group;
 }
 
-/// Sum of squares between the groups' means (first) and within the groups (second) of one column.
-std::pair<double, double> BetweenAndWithin(const Sample& s, const std::vector<int>& group, int column) {
-  const auto readings = s.residual.col(column).reshaped(s.run.Channels(), s.run.schedule.Readings());
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(readings.rows(), readings.cols());
-  Eigen::RowVectorXd count = Eigen::RowVectorXd::Zero(readings.cols());
-  double all = 0.0;
-  for (Eigen::Index i = 0; i < readings.cols(); ++i) {
-    if (group[i] < 0) continue;
-    sum.col(group[i]) += readings.col(i);
-    count[group[i]] += 1.0;
-    all += readings.col(i).squaredNorm();
-  }
-  const double between = sum.colwise().squaredNorm().cwiseQuotient(count.cwiseMax(1.0)).sum();
-  return {between, all - between};
-}
-
 /// Lack of fit: what repeats have in common against what they do not. Knows no stated noise.
 void TestRepeats(const Sample& s, Tests& tests) {
   const std::vector<int> group = Repeats(s.run.schedule);
-  Statistic repeated{"fit to repeats", {ItemOf("fit to repeats")}, Eigen::MatrixXd(1, s.Columns())};
-  for (int j = 0; j < s.Columns(); ++j) {
-    const auto [between, within] = BetweenAndWithin(s, group, j);
-    if (!(within > 0.0)) return;
-    repeated.values(0, j) = std::log(std::max(between, 1e-300) / within);
+  const Eigen::VectorXd count = SumsByGroup(Eigen::VectorXd::Ones(std::ssize(group)), group);
+  Eigen::RowVectorXd between = Eigen::RowVectorXd::Zero(s.Columns()), all = between;  // sums of squares
+  for (int c = 0; c < s.run.Channels(); ++c) {
+    const Eigen::MatrixXd residual = s.residual(RowsOf(s.run, c), Eigen::all);
+    between += count.cwiseMax(1.0).cwiseInverse().transpose() * SumsByGroup(residual, group).cwiseAbs2();
+    for (Eigen::Index i = 0; i < residual.rows(); ++i) {
+      if (group[i] >= 0) all += residual.row(i).cwiseAbs2();
+    }
   }
+  const Eigen::RowVectorXd within = all - between;
+  if (!(within.minCoeff() > 0.0)) return;
+  const Statistic repeated{
+      "fit to repeats", {ItemOf("fit to repeats")}, (between.array().max(1e-300) / within.array()).log()};
   const auto meaning = [&](int, double excess, ScreenTest& test) {
     const double common = std::max(0.0, std::expm1(excess));
     SetEffect(s.run, AnyChannel(s.run), MeanSigma(s.run) * std::sqrt(common), test);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "twin/diagnose/screen/circumstances.h"
 #include "twin/diagnose/screen/estimators.h"
@@ -10,26 +11,10 @@
 namespace twinbench::diagnose::screen {
 namespace {
 
-/// Where a running sum is farthest from zero.
-struct Peak {
-  double height = 0.0;
-  int after = 0;  // readings summed
-};
-
-Peak PeakOf(const Sample& s, int channel, Eigen::Index column) {
-  Peak peak;
-  double sum = 0.0;
-  for (int i = 0; i < s.run.schedule.Readings(); ++i) {
-    sum += s.levelled(i * s.run.Channels() + channel, column);
-    if (std::abs(sum) > std::abs(peak.height)) peak = {sum, i + 1};
-  }
-  return peak;
-}
-
-/// Difference of the means behind and before the peak, in units of the noise.
-double Change(const Peak& peak, int readings) {
-  const double before = peak.after, behind = readings - peak.after;
-  return behind > 0.0 ? std::abs(peak.height * (1.0 / before + 1.0 / behind)) : 0.0;
+Eigen::VectorXd RunningSum(const Sample& s, int channel, int column) {
+  Eigen::VectorXd sum = s.levelled.col(column)(RowsOf(s.run, channel));
+  std::partial_sum(sum.begin(), sum.end(), sum.begin());
+  return sum;
 }
 
 using Series = std::vector<Eigen::VectorXd>;
@@ -113,12 +98,15 @@ void TestCusum(const Sample& s, Tests& tests) {
   if (!Varies(schedule.time_s)) return;
   Statistic heights{"time: running sum", s.run.channels, Eigen::MatrixXd(s.run.Channels(), s.Columns())};
   for (int c = 0; c < s.run.Channels(); ++c) {
-    for (int j = 0; j < s.Columns(); ++j) heights.values(c, j) = std::abs(PeakOf(s, c, j).height);
+    for (int j = 0; j < s.Columns(); ++j) heights.values(c, j) = RunningSum(s, c, j).cwiseAbs().maxCoeff();
   }
   const auto meaning = [&](int channel, double, ScreenTest& test) {
-    const Peak peak = PeakOf(s, channel, 0);
-    const int at = std::min(peak.after, schedule.Readings() - 1);
-    SetEffect(s.run, channel, Change(peak, schedule.Readings()) * s.Unit_SI(channel), test);
+    int peak = 0;
+    const double height = RunningSum(s, channel, 0).cwiseAbs().maxCoeff(&peak);
+    const double before = peak + 1.0, behind = schedule.Readings() - before;
+    const double change = behind > 0.0 ? height * (1.0 / before + 1.0 / behind) : 0.0;  // of the means
+    const int at = std::min(peak + 1, schedule.Readings() - 1);
+    SetEffect(s.run, channel, change * s.Unit_SI(channel), test);
     test.reading = ReadingOf(test.name, s.run.channels[channel], schedule.reading[at], schedule.time_s[at]);
   };
   TestMoments(heights, Sides::kUpper, meaning, tests);

@@ -59,40 +59,36 @@ Scan Fringes(const Coordinates& u) {
   return scan;
 }
 
-/// Cells of equal size over the area that the model lets a spot reach.
+/// Cells of equal size over the area that the model lets a spot reach, row by row.
 struct SpotMap {
   int side = 0;
   std::vector<int> cell;  // by reading
-  Eigen::VectorXd count;  // readings in each cell
 };
 
 SpotMap MapOf(const LinearRun& run, const Spot& spot) {
   constexpr int kLeastSide = 3, kMostSide = 8;
   constexpr double kReadingsInACell = 8.0;
   const Eigen::VectorXd x = Normalised(Predicted(run, spot.x)), y = Normalised(Predicted(run, spot.y));
-  const int side = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(x.size()) / kReadingsInACell)),
-                              kLeastSide, kMostSide);
-  SpotMap map{side, {}, Eigen::VectorXd::Zero(side * side)};
-  const auto at = [side](double u) { return std::clamp(static_cast<int>(0.5 * (u + 1.0) * side), 0, side - 1); };
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    map.cell.push_back(at(y[i]) * side + at(x[i]));
-    map.count[map.cell.back()] += 1.0;
-  }
+  const double wanted = std::sqrt(static_cast<double>(x.size()) / kReadingsInACell);
+  SpotMap map{std::clamp(static_cast<int>(wanted), kLeastSide, kMostSide), {}};
+  const auto at = [&](double u) {
+    return std::clamp(static_cast<int>(0.5 * (u + 1.0) * map.side), 0, map.side - 1);
+  };
+  for (Eigen::Index i = 0; i < x.size(); ++i) map.cell.push_back(at(y[i]) * map.side + at(x[i]));
   return map;
 }
 
-/// Mean of the levelled residual in each cell: cells x columns.
-Eigen::MatrixXd Means(const Sample& s, const SpotMap& map, int channel) {
-  Eigen::MatrixXd means = Eigen::MatrixXd::Zero(map.count.size(), s.Columns());
-  for (int i = 0; i < std::ssize(map.cell); ++i)
-    means.row(map.cell[i]) += s.levelled.row(i * s.run.Channels() + channel);
-  return map.count.cwiseMax(1.0).cwiseInverse().asDiagonal() * means;
+/// Readings in each cell times the square of the mean levelled residual: cells x columns.
+Eigen::MatrixXd Misfit(const Sample& s, const SpotMap& map, int channel) {
+  const Eigen::VectorXd count = SumsByGroup(Eigen::VectorXd::Ones(std::ssize(map.cell)), map.cell);
+  const Eigen::MatrixXd sums = SumsByGroup(s.levelled(RowsOf(s.run, channel), Eigen::all), map.cell);
+  return count.cwiseMax(1.0).cwiseInverse().asDiagonal() * sums.cwiseAbs2();
 }
 
 /// The cell that is farthest from zero for its number of readings, in words.
 std::string WorstCell(const Sample& s, const Spot& spot, const SpotMap& map, int channel) {
   int cell = 0;
-  Means(s, map, channel).col(0).cwiseAbs2().cwiseProduct(map.count).maxCoeff(&cell);
+  Misfit(s, map, channel).col(0).maxCoeff(&cell);
   const auto centre = [&](int of, int k) {
     const Eigen::VectorXd u = Predicted(s.run, of);
     return Amount(s.run, u.minCoeff() + (k + 0.5) / map.side * (u.maxCoeff() - u.minCoeff()));
@@ -118,7 +114,7 @@ void TestSpotMap(const Sample& s, Tests& tests) {
   for (const Spot& spot : spots) {
     const SpotMap map = MapOf(s.run, spot);
     for (int channel : {spot.x, spot.y}) {
-      misfit.values.row(std::ssize(misfit.items)) = map.count.transpose() * Means(s, map, channel).cwiseAbs2();
+      misfit.values.row(std::ssize(misfit.items)) = Misfit(s, map, channel).colwise().sum();
       misfit.items.push_back(s.run.channels[channel]);
     }
   }
