@@ -30,5 +30,17 @@ TEST(NormalExceededWith, IsTheInverseOfTheTail) {
     EXPECT_NEAR(0.5 * std::erfc(NormalExceededWith(p) / std::sqrt(2.0)) / p, 1.0, 1e-12);
 }
 
+TEST(LogDensities, AreThoseOfCauchyForOneDegreeOfFreedomAndOfANormalForVeryMany) {
+  EXPECT_NEAR(StudentLogDensity(1.5, 1.0, 0.5), -std::log(M_PI * 0.5 * (1.0 + 9.0)), 1e-14);
+  EXPECT_NEAR(NormalLogDensity(0.6, 0.5), std::log(std::exp(-0.72) / (0.5 * std::sqrt(2.0 * M_PI))), 1e-14);
+  // The next term of the series is of the order of 1 / dof.
+  EXPECT_NEAR(StudentLogDensity(0.6, 1e6, 0.5), NormalLogDensity(0.6, 0.5), 1e-6);
+}
+
+TEST(Median, IsOneOfTheValues) {
+  EXPECT_EQ(Median({5.0, 1.0, 3.0}), 3.0);
+  EXPECT_EQ(Median({5.0, 1.0, 3.0, 2.0}), 3.0);  // the upper one
+}
+
 }  // namespace
 }  // namespace twinbench

@@ -6,7 +6,7 @@
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/screen/variance_components.h"
+#include "twin/diagnose/screen/estimators.h"
 
 namespace twinbench::diagnose {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/screen/moderated.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -36,11 +35,11 @@ TEST(Moderated, GivesSizesAsLengthAndAngle) {
   ScreenTest test = WithP("a", 1e-9);
   test.effect_m = 0.31 * units::um;
   test.effect_rad = 0.32 * units::arcsec;
-  EXPECT_THAT(screen::Moderated(test).reading, HasSubstr("size 0.31 um (0.32 arcsec)"));
+  EXPECT_THAT(Moderated({test}).front().reading, HasSubstr("size 0.31 um (0.32 arcsec)"));
   test.effect_m = kNaN;
-  EXPECT_THAT(screen::Moderated(test).reading, HasSubstr("size 0.32 arcsec"));
+  EXPECT_THAT(Moderated({test}).front().reading, HasSubstr("size 0.32 arcsec"));
   test.p = 0.2;
-  EXPECT_THAT(screen::Moderated(test).reading, HasSubstr("not beyond noise"));
+  EXPECT_THAT(Moderated({test}).front().reading, HasSubstr("not beyond noise"));
 }
 
 TEST(Screen, SizesWhatItFindsInMicrometresAndArcseconds) {

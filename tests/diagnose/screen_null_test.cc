@@ -5,7 +5,7 @@
 #include <map>
 
 #include "tests/diagnose/support/synthetic_run.h"
-#include "twin/diagnose/screen/sample.h"
+#include "twin/diagnose/screen/significance.h"
 
 namespace twinbench::diagnose {
 namespace {

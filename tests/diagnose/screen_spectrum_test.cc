@@ -6,8 +6,7 @@
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/screen/allan.h"
-#include "twin/diagnose/screen/spectrum.h"
+#include "twin/diagnose/screen/estimators.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -84,26 +83,22 @@ TEST(Tones, AreFoundAtAnyFrequencyOfALongRun) {
 TEST(AllanVariance, OfWhiteNoiseFallsWithTheLengthThatIsAveraged) {
   const Eigen::VectorXd white = Normals(64000, 5);
   for (int length : {1, 4, 16}) {
-    screen::AllanVariance variance(length);
-    variance.Add(white);
     // Relative standard deviation of 64000 / length differences: sqrt(3 length / 64000), at most 0.027.
-    EXPECT_NEAR(variance.Value() * length, 1.0, 0.1) << length;
+    EXPECT_NEAR(screen::AllanVariance({white}, length) * length, 1.0, 0.1) << length;
   }
 }
 
 TEST(AllanVariance, OfADriftIsHalfTheSquareOfWhatItGainsOverTheLength) {
   const Eigen::VectorXd drift = Eigen::VectorXd::LinSpaced(101, 0.0, 50.0);  // 0.5 a sample
-  screen::AllanVariance variance(10);
-  variance.Add(drift);
-  EXPECT_NEAR(variance.Value(), 0.5 * 5.0 * 5.0, 1e-12);
-  EXPECT_EQ(variance.Pairs(), 9.0);
+  EXPECT_NEAR(screen::AllanVariance({drift}, 10), 0.5 * 5.0 * 5.0, 1e-12);
 }
 
-TEST(AllanVariance, DoesNotJoinWhatWasAddedApart) {
-  screen::AllanVariance variance(2);
-  variance.Add(Eigen::VectorXd::Constant(6, 1.0));
-  variance.Add(Eigen::VectorXd::Constant(6, 9.0));
-  EXPECT_EQ(variance.Value(), 0.0);
+TEST(AllanVariance, IsUnknownWithoutTwoMeans) {
+  EXPECT_TRUE(std::isnan(screen::AllanVariance({Eigen::VectorXd::Ones(19)}, 10)));
+}
+
+TEST(AllanVariance, DoesNotJoinSeriesThatStandApart) {
+  EXPECT_EQ(screen::AllanVariance({Eigen::VectorXd::Constant(6, 1.0), Eigen::VectorXd::Constant(6, 9.0)}, 2), 0.0);
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 #include "twin/core/distributions.h"
 
+#include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace twinbench {
 
@@ -14,6 +16,21 @@ double ChiSquaredExceedance(double chi2, double dof) {
 
 double NormalExceededWith(double probability) {
   return std::sqrt(2.0) * boost::math::erfc_inv(2.0 * probability);
+}
+
+double NormalLogDensity(double value, double scale) {
+  return -0.5 * value * value / (scale * scale) - std::log(scale) - 0.5 * std::log(2.0 * std::numbers::pi);
+}
+
+double StudentLogDensity(double value, double dof, double scale) {
+  return std::lgamma(0.5 * (dof + 1.0)) - std::lgamma(0.5 * dof) - 0.5 * std::log(dof * std::numbers::pi) -
+         std::log(scale) - 0.5 * (dof + 1.0) * std::log1p(value * value / (dof * scale * scale));
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 }  // namespace twinbench

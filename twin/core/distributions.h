@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 namespace twinbench {
 
 /// Probability that a chi-squared variable of `dof` degrees of freedom (any positive number) exceeds `chi2`; NaN
@@ -8,5 +10,15 @@ double ChiSquaredExceedance(double chi2, double dof);
 
 /// The value that a standard normal variable exceeds with this probability, between 0 and 1.
 double NormalExceededWith(double probability);
+
+/// Log density of a normal variable of this scale.
+double NormalLogDensity(double value, double scale);
+
+/// Log density of Student's t times `scale`.
+double StudentLogDensity(double value, double dof, double scale);
+
+/// The value in the middle; of an even number of values the upper one of the two, so that it is always one of them.
+/// @param values  Not empty.
+double Median(std::vector<double> values);
 
 }  // namespace twinbench

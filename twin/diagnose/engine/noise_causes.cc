@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "twin/core/units.h"
+#include "twin/core/distributions.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -22,12 +22,6 @@ struct Standardised {
   double scale = 1.0;  // robust scatter of z before it was divided out
 };
 
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Standardised Standardise(const Eigen::VectorXd& rows, const Eigen::VectorXd& redundancy) {
   Standardised s;
   s.z = Eigen::VectorXd::Zero(rows.size());
@@ -39,19 +33,9 @@ Standardised Standardise(const Eigen::VectorXd& rows, const Eigen::VectorXd& red
     sizes.push_back(std::abs(s.z[k]));
   }
   if (sizes.empty()) return s;
-  s.scale = std::max(MedianOf(sizes) / 0.6745, 1e-12);
+  s.scale = std::max(Median(sizes) / 0.6745, 1e-12);
   s.z /= s.scale;
   return s;
-}
-
-/// Log density of Student's t with nu degrees of freedom and scale w, without the constant of the normal.
-double LogStudent(double z, double nu, double w) {
-  return std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(nu * units::kPi) - std::log(w) -
-         0.5 * (nu + 1.0) * std::log1p(z * z / (nu * w * w));
-}
-
-double LogNormal(double z, double w) {
-  return -0.5 * z * z / (w * w) - std::log(w) - 0.5 * std::log(2.0 * units::kPi);
 }
 
 template <typename Density>
@@ -68,7 +52,7 @@ double RmsOf(const Standardised& s) {
 
 double NormalLikelihood(const Standardised& s) {
   const double w = RmsOf(s);
-  return SumOver(s, [w](double z) { return LogNormal(z, w); });
+  return SumOver(s, [w](double z) { return NormalLogDensity(z, w); });
 }
 
 struct StudentFit {
@@ -79,7 +63,7 @@ StudentFit FitStudent(const Standardised& s) {
   StudentFit best;
   for (const double nu : {2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 11.0, 15.0, 22.0}) {
     for (double width = 0.6; width < 1.3; width += 0.05) {
-      const double l = SumOver(s, [=](double z) { return LogStudent(z, nu, width); });
+      const double l = SumOver(s, [=](double z) { return StudentLogDensity(z, nu, width); });
       if (l > best.log_likelihood) best = {nu, width, l};
     }
   }

@@ -27,6 +27,8 @@ struct Sample {
   std::vector<Eigen::MatrixXd> adjoint;  // one a channel, readings x columns: transposed whitening of levelled
 
   int Columns() const { return static_cast<int>(residual.cols()); }
+  /// What one unit of `levelled` typically is on a channel of the run, SI.
+  double Unit_SI(int channel) const;
 };
 
 /// Simulates the nulls: white noise, and unknowns drawn from their priors (a calibrated gain is never exactly its
@@ -34,14 +36,5 @@ struct Sample {
 /// them, and wide draws would only cost digits.
 Sample Simulate(const LinearRun& run, const NoiseModel& noise, const Projector& projector, int null_runs,
                 std::uint64_t seed);
-
-/// Share of null columns whose statistic is at least the run's (entry 0), counting the run itself. Beyond the
-/// largest tenth of the nulls: an exponential with the mean of their excesses, which is too cautious for statistics
-/// with Gaussian tails and never gives 0.
-double PValue(const Eigen::VectorXd& statistic);
-
-/// Items x columns in units of the nulls' scatter: (value - null mean) / null standard deviation; an item that does
-/// not vary becomes 0.
-Eigen::MatrixXd Standardised(const Eigen::MatrixXd& values);
 
 }  // namespace twinbench::diagnose::screen

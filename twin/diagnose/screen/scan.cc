@@ -4,84 +4,83 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <unsupported/Eigen/KroneckerProduct>
+
+#include "twin/diagnose/screen/circumstances.h"
 
 namespace twinbench::diagnose::screen {
 namespace {
 
 /// M with M M' the inverse of the information in the directions that survive the projection.
-Eigen::MatrixXd SurvivingRoot(const Eigen::MatrixXd& information, const Eigen::VectorXd& before) {
+Eigen::MatrixXd SurvivingRoot(const Fit& fit) {
   constexpr double kSurvives = 1e-3;
-  const Eigen::VectorXd scale = (before.array() > 0.0).select(before.array().rsqrt(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * information * scale.asDiagonal());
+  const Eigen::VectorXd scale = (fit.before.array() > 0.0).select(fit.before.array().rsqrt(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * fit.information *
+                                                             scale.asDiagonal());
   const auto dof = (eigen.eigenvalues().array() > kSurvives).count();
   return scale.asDiagonal() * eigen.eigenvectors().rightCols(dof) *
          eigen.eigenvalues().tail(dof).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 void Solve(Fit& fit) {
-  const Eigen::MatrixXd root = SurvivingRoot(fit.information, fit.before);
-  const Eigen::VectorXd score = root.transpose() * fit.gradient;
+  const Eigen::MatrixXd root = SurvivingRoot(fit), score = root.transpose() * fit.gradient;
   fit.dof = static_cast<int>(root.cols());
-  fit.chi2 = score.squaredNorm();
-  fit.amplitude = root * score;
-  fit.cov = root * root.transpose();
+  fit.chi2 = score.colwise().squaredNorm();
+  fit.amplitude = root * score.col(0);
 }
 
-/// Information of some items before projection; it does not mix channels.
-struct Before {
-  std::vector<Eigen::MatrixXd> information;  // one an item
-  Eigen::MatrixXd white;                     // rows x (items * channels * width)
-};
+/// Shapes of the items [first, first + count) on one channel, side by side.
+Eigen::MatrixXd ShapesOf(const Scan& scan, int first, int count, int channel) {
+  Eigen::MatrixXd shapes(scan.items.front().shape.front().rows(), count * scan.width);
+  for (int e = 0; e < count; ++e) {
+    const std::vector<Eigen::MatrixXd>& shape = scan.items[first + e].shape;
+    shapes.middleCols(e * scan.width, scan.width) = shape[shape.size() == 1 ? 0 : channel];
+  }
+  return shapes;
+}
 
-Before BeforeProjection(const Sample& s, const Scan& scan, int first, int items) {
+/// Fits of the items [first, first + count) to all columns, still to be solved. Whitening keeps channels apart,
+/// projection mixes them.
+std::vector<Fit> NormalEquations(const Sample& s, const Scan& scan, int first, int count) {
   const int channels = s.run.Channels(), width = scan.width, size = channels * width;
-  Before before{std::vector(static_cast<std::size_t>(items), Eigen::MatrixXd(Eigen::MatrixXd::Zero(size, size))),
-                Eigen::MatrixXd::Zero(s.run.Rows(), items * size)};
+  const Fit empty{width, Eigen::MatrixXd::Zero(size, size), {}, Eigen::MatrixXd(size, s.Columns()), {}, 0, {}};
+  std::vector<Fit> fits(count, empty);
+  Eigen::MatrixXd white = Eigen::MatrixXd::Zero(s.run.Rows(), count * size);
   for (int c = 0; c < channels; ++c) {
-    const Eigen::MatrixXd white =
-        s.whitening[static_cast<std::size_t>(c)] * scan.ShapesOf(c).middleCols(first * width, items * width);
-    const auto rows = Eigen::seqN(c, s.run.schedule.Readings(), channels);
-    for (int e = 0; e < items; ++e) {
-      const auto item = white.middleCols(e * width, width);
-      before.white(rows, Eigen::seqN((e * channels + c) * width, width)) = item;
-      before.information[static_cast<std::size_t>(e)].block(c * width, c * width, width, width) =
-          item.transpose() * item;
+    const Eigen::MatrixXd shapes = ShapesOf(scan, first, count, c);
+    const Eigen::MatrixXd whitened = s.whitening[c] * shapes, gradient = shapes.transpose() * s.adjoint[c];
+    for (int e = 0; e < count; ++e) {
+      const auto item = whitened.middleCols(e * width, width);
+      white(RowsOf(s.run, c), Eigen::seqN((e * channels + c) * width, width)) = item;
+      fits[e].information.block(c * width, c * width, width, width) = item.transpose() * item;
+      fits[e].gradient.middleRows(c * width, width) = gradient.middleRows(e * width, width);
     }
   }
-  return before;
-}
-
-/// Information of each of the items [first, first + items); `before` receives the diagonals before projection.
-std::vector<Eigen::MatrixXd> Information(const Sample& s, const Scan& scan, int first, int items,
-                                         std::vector<Eigen::VectorXd>& before) {
-  Before all = BeforeProjection(s, scan, first, items);
-  const Eigen::MatrixXd absorbed = s.projector.Absorbed(all.white);
-  const int size = s.run.Channels() * scan.width;
-  for (int e = 0; e < items; ++e) {
-    Eigen::MatrixXd& information = all.information[static_cast<std::size_t>(e)];
-    before.emplace_back(information.diagonal());
+  const Eigen::MatrixXd absorbed = s.projector.Absorbed(white);
+  for (int e = 0; e < count; ++e) {
     const auto h = absorbed.middleCols(e * size, size);
-    information.noalias() -= h.transpose() * h;
+    fits[e].before = fits[e].information.diagonal();
+    fits[e].information.noalias() -= h.transpose() * h;
   }
-  return std::move(all.information);
+  return fits;
 }
 
-/// S' W y of every item in one channel: (items * width) x columns.
-std::vector<Eigen::MatrixXd> Gradients(const Sample& s, const Scan& scan) {
-  std::vector<Eigen::MatrixXd> gradients;
-  for (int c = 0; c < s.run.Channels(); ++c) {
-    gradients.emplace_back(scan.ShapesOf(c).transpose() * s.adjoint[static_cast<std::size_t>(c)]);
-  }
-  return gradients;
+void SetLargestAmplitude(const LinearRun& run, const Fit& fit, ScreenTest& test) {
+  int largest = 0;
+  const Eigen::RowVectorXd size = fit.amplitude.reshaped(fit.width, run.Channels()).colwise().norm();
+  const double size_SI = size.maxCoeff(&largest);
+  SetEffect(run, largest, size_SI, test);
 }
 
-Eigen::MatrixXd GradientOf(const std::vector<Eigen::MatrixXd>& gradients, int item, int width) {
-  Eigen::MatrixXd gradient(static_cast<Eigen::Index>(gradients.size()) * width, gradients.front().cols());
-  for (std::size_t c = 0; c < gradients.size(); ++c) {
-    gradient.middleRows(static_cast<Eigen::Index>(c) * width, width) = gradients[c].middleRows(item * width, width);
-  }
-  return gradient;
+/// What a place must explain to be named: 3/4 of what exceeds the expectation of noise, and half of all.
+double LeastToName(const Fit& fit) {
+  return std::max(fit.width + 0.75 * (fit.chi2[0] - fit.dof), 0.5 * fit.chi2[0]);
+}
+
+/// Each channel takes the pattern's weight times one common set of amplitudes.
+Fit CommonFit(const Fit& fit, const Pattern& pattern) {
+  const Eigen::MatrixXd each = Eigen::MatrixXd::Identity(fit.width, fit.width);
+  return fit.Constrained(Eigen::kroneckerProduct(pattern.weight, each), fit.width);
 }
 
 }  // namespace
@@ -102,40 +101,64 @@ Fit Fit::Constrained(const Eigen::MatrixXd& constraint, int new_width) const {
 }
 
 Fit FitItem(const Sample& sample, const Scan& scan, int item) {
-  std::vector<Eigen::VectorXd> before;
-  Fit fit;
-  fit.width = scan.width;
-  fit.information = Information(sample, scan, item, 1, before).front();
-  fit.before = before.front();
-  fit.gradient.resize(fit.before.size());
-  for (int c = 0; c < sample.run.Channels(); ++c) {
-    fit.gradient.segment(c * scan.width, scan.width) =
-        sample.level[c] * scan.ShapesOf(c).middleCols(item * scan.width, scan.width).transpose() *
-        sample.adjoint[static_cast<std::size_t>(c)].col(0);
-  }
+  Fit fit = NormalEquations(sample, scan, item, 1).front();
+  fit.gradient = fit.gradient.col(0).eval();
+  for (int c = 0; c < sample.run.Channels(); ++c)
+    fit.gradient.middleRows(c * scan.width, scan.width) *= sample.level[c];  // the run as it was before levelling
   Solve(fit);
   return fit;
 }
 
 Eigen::MatrixXd Scores(const Sample& sample, const Scan& scan) {
-  const int items = scan.Items(), size = sample.run.Channels() * scan.width, chunk = std::max(1, 64 / size);
-  const std::vector<Eigen::MatrixXd> gradients = Gradients(sample, scan);
+  const auto items = static_cast<int>(scan.items.size());
+  const int chunk = std::max(1, 64 / (sample.run.Channels() * scan.width));
   Eigen::MatrixXd scores(items, sample.Columns());
+  int item = 0;
   for (int first = 0; first < items; first += chunk) {
-    std::vector<Eigen::VectorXd> before;
-    const auto information = Information(sample, scan, first, std::min(chunk, items - first), before);
-    for (std::size_t e = 0; e < information.size(); ++e) {
-      const int item = first + static_cast<int>(e);
-      const Eigen::MatrixXd root = SurvivingRoot(information[e], before[e]);
-      const Eigen::MatrixXd score = root.transpose() * GradientOf(gradients, item, scan.width);
-      const int dof = static_cast<int>(root.cols());
-      for (int j = 0; j < sample.Columns(); ++j) {
-        scores(item, j) =
-            dof > 0 ? NormalScore(score.col(j).squaredNorm(), dof) : -std::numeric_limits<double>::infinity();
-      }
+    for (Fit& fit : NormalEquations(sample, scan, first, std::min(chunk, items - first))) {
+      Solve(fit);
+      const auto score = [&](double chi2) {
+        return fit.dof > 0 ? NormalScore(chi2, fit.dof) : -std::numeric_limits<double>::infinity();
+      };
+      scores.row(item++) = fit.chi2.unaryExpr(score);
     }
   }
   return scores;
+}
+
+void Describe(const Sample& sample, const Fit& fit, bool one_shape, const std::string& item, ScreenTest& test) {
+  const LinearRun& run = sample.run;
+  std::string place = run.Channels() == 1 ? "on " + run.channels.front() : "on several channels";
+  SetLargestAmplitude(run, fit, test);
+  double best = LeastToName(fit);
+  const auto offer = [&](const Pattern& pattern, const std::string& words) {
+    const Fit common = CommonFit(fit, pattern);
+    if (run.Channels() == 1 || !(common.chi2[0] > best)) return;
+    best = common.chi2[0];
+    place = words;
+    SetEffect(run, pattern, common.amplitude.norm(), test);
+  };
+  if (one_shape) {
+    for (const Pattern& p : run.patterns) offer(p, "in " + p.name);
+  }
+  for (int c = 0; c < run.Channels(); ++c)
+    offer({run.channels[c], Eigen::VectorXd::Unit(run.Channels(), c)}, "on " + run.channels[c]);
+  test.reading = fmt::format("residual follows {} {}: {}", item, place, ReadingOf(test.name));
+}
+
+std::optional<Scanned> Strongest(const Sample& sample, const Scan& scan) {
+  Statistic statistic{scan.test, {}, Scores(sample, scan)};
+  if (scan.items.empty() || !std::isfinite(statistic.values.col(0).maxCoeff())) return std::nullopt;
+  for (const Scan::Item& item : scan.items) statistic.items.push_back(item.words);
+  auto [test, item] = LoudestOf(statistic);
+  Scanned strongest{std::move(test), item, FitItem(sample, scan, item)};
+  const bool one_shape = scan.items.front().shape.size() == 1;
+  Describe(sample, strongest.fit, one_shape, statistic.items[item], strongest.test);
+  return strongest;
+}
+
+void TestScan(const Sample& sample, const Scan& scan, Tests& tests) {
+  if (auto strongest = Strongest(sample, scan)) tests.push_back(std::move(strongest->test));
 }
 
 }  // namespace twinbench::diagnose::screen

@@ -70,6 +70,10 @@ std::vector<ScreenTest> ScreenRaw(const std::vector<RawBlock>& blocks, const Raw
 /// What these blocks are too short for, in a sentence; empty if they are not.
 std::string RawLimitsInWords(const std::vector<RawBlock>& blocks, const RawScale& scale);
 
+/// The tests with their sizes in their readings, in um and arcsec, whichever there is. Words that claim something
+/// are kept for what noise alone seldom does.
+std::vector<ScreenTest> Moderated(std::vector<ScreenTest> tests);
+
 /// In how many runs without any effect one test or more would be told as loud.
 inline constexpr double kScreenFalseAlarms = 0.01;
 

@@ -1,22 +1,14 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
-#include <vector>
 
+#include "twin/core/units.h"
 #include "twin/diagnose/screen/circumstances.h"
+#include "twin/diagnose/screen/scan.h"
 #include "twin/diagnose/screen/tests.h"
-#include "twin/diagnose/screen/words.h"
 
 namespace twinbench::diagnose::screen {
 namespace {
-
-constexpr std::array<int, 4> kDegrees = {2, 3, 4, 5};
-constexpr double kShortestPeriod_m = 20e-6;  // shorter ones change within the spread of a stop
-constexpr int kMostHalfFringes = 80;
 
 /// Own and cross coordinate of each channel as the model places the spot; a channel without a spot has none.
 struct Coordinates {
@@ -26,78 +18,114 @@ struct Coordinates {
 Coordinates CoordinatesOf(const LinearRun& run, const std::vector<Spot>& spots) {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(run.schedule.Readings());
   Coordinates u{std::vector(run.channels.size(), none), std::vector(run.channels.size(), none)};
-  for (const Spot& spot : spots) {
-    const auto x = static_cast<std::size_t>(spot.x), y = static_cast<std::size_t>(spot.y);
-    u.own_m[x] = u.cross_m[y] = Predicted(run, spot.x);
-    u.own_m[y] = u.cross_m[x] = Predicted(run, spot.y);
+  for (const auto& [name, x, y] : spots) {
+    u.own_m[x] = u.cross_m[y] = Predicted(run, x);
+    u.own_m[y] = u.cross_m[x] = Predicted(run, y);
   }
   return u;
 }
 
-/// Legendre polynomials of kDegrees side by side, by the three-term recurrence.
-Eigen::MatrixXd Polynomials(const Eigen::VectorXd& u) {
-  Eigen::MatrixXd p(u.size(), kDegrees.back() + 1);
-  p.col(0).setOnes();
-  p.col(1) = u;
-  for (int n = 1; n < kDegrees.back(); ++n) {
-    p.col(n + 1) = ((2 * n + 1) * u.cwiseProduct(p.col(n)) - n * p.col(n - 1)) / (n + 1);
-  }
-  return p.rightCols(std::ssize(kDegrees));
+/// Legendre polynomial of values on [-1, 1], which rounding may have left.
+Eigen::MatrixXd Legendre(unsigned degree, const Eigen::VectorXd& u) {
+  return u.unaryExpr([degree](double v) { return std::legendre(degree, std::clamp(v, -1.0, 1.0)); });
 }
 
-void TestPolynomials(const Sample& s, const Coordinates& u, Tests& tests) {
-  Scan scan;
-  ScanWords words{"spot: polynomial", {}, "a detector that is not linear: pincushion, tilt, edge, converter"};
-  for (std::size_t c = 0; c < u.own_m.size(); ++c) {
-    Eigen::MatrixXd both(s.run.schedule.Readings(), 2 * std::ssize(kDegrees));
-    both << Polynomials(Normalised(u.own_m[c])), Polynomials(Normalised(u.cross_m[c]));
-    scan.shapes.push_back(std::move(both));
+Scan Polynomials(const Coordinates& u) {
+  Scan scan{"spot: polynomial"};
+  for (const auto& [which, by_channel] : {std::pair("own", u.own_m), std::pair("cross", u.cross_m)}) {
+    for (unsigned degree : {2, 3, 4, 5}) {
+      std::vector<Eigen::MatrixXd> shape;
+      for (const Eigen::VectorXd& u_m : by_channel) shape.push_back(Legendre(degree, Normalised(u_m)));
+      scan.Add(std::move(shape), degree, which);
+    }
   }
-  for (const char* which : {"own", "cross"}) {
-    for (int n : kDegrees) words.items.push_back(fmt::format("degree {} of the spot's {} coordinate", n, which));
-  }
-  Keep(TestScan(s, scan, words), tests);
+  return scan;
 }
 
 /// Frequencies in steps of half a fringe over the range: a fringe between two of them stays within a quarter turn.
-std::vector<double> FringesPerMetre(const Coordinates& u) {
+Scan Fringes(const Coordinates& u) {
+  constexpr double kShortestPeriod_m = 20e-6;  // shorter ones change within the spread of a stop
+  constexpr int kMostHalfFringes = 80;
   double range_m = 0.0;
   for (const Eigen::VectorXd& own_m : u.own_m) range_m = std::max(range_m, own_m.maxCoeff() - own_m.minCoeff());
-  const int halves = static_cast<int>(std::min<double>(kMostHalfFringes, 2.0 * range_m / kShortestPeriod_m));
-  std::vector<double> fringes;
-  for (int k = 4; k <= halves; ++k) fringes.push_back(0.5 * k / range_m);
-  return fringes;
+  Scan scan{"spot: periodic", 2};
+  for (int k = 4; k <= static_cast<int>(std::min<double>(kMostHalfFringes, 2.0 * range_m / kShortestPeriod_m));
+       ++k) {
+    const double fringes_m = 0.5 * k / range_m;
+    std::vector<Eigen::MatrixXd> shape;
+    for (const Eigen::VectorXd& own_m : u.own_m) shape.push_back(Wave(units::turn * fringes_m * own_m));
+    scan.Add(std::move(shape), 1e6 / fringes_m);
+  }
+  return scan;
 }
 
-void TestFringes(const Sample& s, const Coordinates& u, Tests& tests) {
-  const std::vector<double> fringes = FringesPerMetre(u);
-  if (fringes.empty()) return;
-  Scan scan{{}, 2};
-  ScanWords words{"spot: periodic", {}, "interference fringes of a window, steps of a converter"};
-  for (const Eigen::VectorXd& own_m : u.own_m) {
-    Eigen::MatrixXd shapes(own_m.size(), 2 * std::ssize(fringes));
-    for (std::size_t k = 0; k < fringes.size(); ++k) {
-      const Eigen::ArrayXd phase = 2.0 * std::numbers::pi * fringes[k] * own_m.array();
-      shapes.col(2 * static_cast<Eigen::Index>(k)) = phase.cos();
-      shapes.col(2 * static_cast<Eigen::Index>(k) + 1) = phase.sin();
-    }
-    scan.shapes.push_back(std::move(shapes));
-  }
-  for (double f : fringes)
-    words.items.push_back(fmt::format("the spot's own coordinate with a period of {:.3g} um", 1e6 / f));
-  Keep(TestScan(s, scan, words), tests);
+/// Cells of equal size over the area that the model lets a spot reach, row by row.
+struct SpotMap {
+  int side = 0;
+  std::vector<int> cell;  // by reading
+};
+
+SpotMap MapOf(const LinearRun& run, const Spot& spot) {
+  constexpr int kLeastSide = 3, kMostSide = 8;
+  constexpr double kReadingsInACell = 8.0;
+  const Eigen::VectorXd x = Normalised(Predicted(run, spot.x)), y = Normalised(Predicted(run, spot.y));
+  const double wanted = std::sqrt(static_cast<double>(x.size()) / kReadingsInACell);
+  SpotMap map{std::clamp(static_cast<int>(wanted), kLeastSide, kMostSide), {}};
+  const auto at = [&](double u) {
+    return std::clamp(static_cast<int>(0.5 * (u + 1.0) * map.side), 0, map.side - 1);
+  };
+  for (Eigen::Index i = 0; i < x.size(); ++i) map.cell.push_back(at(y[i]) * map.side + at(x[i]));
+  return map;
+}
+
+/// Readings in each cell times the square of the mean levelled residual: cells x columns.
+Eigen::MatrixXd Misfit(const Sample& s, const SpotMap& map, int channel) {
+  const Eigen::VectorXd count = SumsByGroup(Eigen::VectorXd::Ones(std::ssize(map.cell)), map.cell);
+  const Eigen::MatrixXd sums = SumsByGroup(s.levelled(RowsOf(s.run, channel), Eigen::all), map.cell);
+  return count.cwiseMax(1.0).cwiseInverse().asDiagonal() * sums.cwiseAbs2();
+}
+
+/// The cell that is farthest from zero for its number of readings, in words.
+std::string WorstCell(const Sample& s, const Spot& spot, const SpotMap& map, int channel) {
+  int cell = 0;
+  Misfit(s, map, channel).col(0).maxCoeff(&cell);
+  const auto centre = [&](int of, int k) {
+    const Eigen::VectorXd u = Predicted(s.run, of);
+    return Amount(s.run, u.minCoeff() + (k + 0.5) / map.side * (u.maxCoeff() - u.minCoeff()));
+  };
+  return ItemOf("spot: map", centre(spot.x, cell % map.side), centre(spot.y, cell / map.side));
 }
 
 }  // namespace
 
-Tests TestSpot(const Sample& sample) {
-  Tests tests;
+void TestSpot(const Sample& sample, Tests& tests) {
   const std::vector<Spot> spots = SpotsOf(sample.run);
-  if (spots.empty()) return tests;
+  if (spots.empty()) return;
   const Coordinates u = CoordinatesOf(sample.run, spots);
-  TestPolynomials(sample, u, tests);
-  TestFringes(sample, u, tests);
-  return tests;
+  TestScan(sample, Polynomials(u), tests);
+  TestScan(sample, Fringes(u), tests);
+}
+
+/// Residuals by where the spot stands on its detector: a map of cells, for shapes that no polynomial has.
+void TestSpotMap(const Sample& s, Tests& tests) {
+  const std::vector<Spot> spots = SpotsOf(s.run);
+  if (spots.empty()) return;
+  Statistic misfit{"spot: map", {}, Eigen::MatrixXd(2 * std::ssize(spots), s.Columns())};
+  for (const Spot& spot : spots) {
+    const SpotMap map = MapOf(s.run, spot);
+    for (int channel : {spot.x, spot.y}) {
+      misfit.values.row(std::ssize(misfit.items)) = Misfit(s, map, channel).colwise().sum();
+      misfit.items.push_back(s.run.channels[channel]);
+    }
+  }
+  const auto meaning = [&](int item, double excess, ScreenTest& test) {
+    const Spot& spot = spots[item / 2];
+    const int channel = item % 2 == 0 ? spot.x : spot.y;
+    const double rms = std::sqrt(std::max(0.0, excess) / s.run.schedule.Readings());
+    SetEffect(s.run, channel, rms * s.Unit_SI(channel), test);
+    test.reading = ReadingOf(test.name, s.run.channels[channel], WorstCell(s, spot, MapOf(s.run, spot), channel));
+  };
+  TestMoments(misfit, Sides::kUpper, meaning, tests);
 }
 
 }  // namespace twinbench::diagnose::screen

@@ -1,32 +1,28 @@
 #pragma once
 
-#include <vector>
-
 #include "twin/diagnose/screen/sample.h"
-#include "twin/diagnose/screen/screen.h"
+#include "twin/diagnose/screen/significance.h"
 
-/// The tests of the screen, a group a file; each returns those of its group that apply to the run.
+/// The tests of the screen; each adds those of its group that apply to the run.
 namespace twinbench::diagnose::screen {
 
-using Tests = std::vector<ScreenTest>;
-
-Tests TestFit(const Sample& sample);           // against the stated noise, and against repeats
-Tests TestNoiseScale(const Sample& sample);    // by channel, by spot, by distance of the spot from the centre
-Tests TestTails(const Sample& sample);         // Student's t, single outliers
-Tests TestWhiteness(const Sample& sample);     // products of neighbours within a pass
-Tests TestTime(const Sample& sample);          // wander, drift, creep, warm-up
-Tests TestSteps(const Sample& sample);         // onset scan
-Tests TestCusum(const Sample& sample);         // running sum
-Tests TestAveraging(const Sample& sample);     // Allan deviation of readings in a row
-Tests TestTones(const Sample& sample);         // frequency scan
-Tests TestHarmonics(const Sample& sample);     // of each angle and of the sum, difference, half turns
-Tests TestLock(const Sample& sample);          // harmonics by set-up, and what they are locked to
-Tests TestDirection(const Sample& sample);     // mean, harmonics, dwell, speed
-Tests TestGroups(const Sample& sample);        // variance components: set-up, pass, place
-Tests TestTemperature(const Sample& sample);   // behind a first-order lag, and its rate
-Tests TestSpot(const Sample& sample);          // Legendre polynomials and periods of the spot's coordinates
-Tests TestSpotMap(const Sample& sample);       // cells of the detector
-Tests TestPatterns(const Sample& sample);      // which body moves
-Tests TestChannelOrder(const Sample& sample);  // what the channel before leaves behind
+void TestFit(const Sample& sample, Tests& tests);           // against the stated noise, and against repeats
+void TestNoiseScale(const Sample& sample, Tests& tests);    // by channel, by spot, by distance from the centre
+void TestTails(const Sample& sample, Tests& tests);         // Student's t, single outliers
+void TestWhiteness(const Sample& sample, Tests& tests);     // products of neighbours within a pass
+void TestTime(const Sample& sample, Tests& tests);          // wander, drift, creep, warm-up
+void TestSteps(const Sample& sample, Tests& tests);         // onset scan
+void TestCusum(const Sample& sample, Tests& tests);         // running sum
+void TestTones(const Sample& sample, Tests& tests);         // frequency scan
+void TestAveraging(const Sample& sample, Tests& tests);     // Allan deviation of readings in a row
+void TestHarmonics(const Sample& sample, Tests& tests);     // of each angle and of the sum, difference, half turns
+void TestLock(const Sample& sample, Tests& tests);          // harmonics by set-up, and what they are locked to
+void TestDirection(const Sample& sample, Tests& tests);     // mean, harmonics, dwell, speed
+void TestGroups(const Sample& sample, Tests& tests);        // variance components: set-up, pass, place
+void TestTemperature(const Sample& sample, Tests& tests);   // behind a first-order lag, and its rate
+void TestSpot(const Sample& sample, Tests& tests);          // Legendre polynomials and periods of its coordinates
+void TestSpotMap(const Sample& sample, Tests& tests);       // cells of the detector
+void TestPatterns(const Sample& sample, Tests& tests);      // which body moves
+void TestChannelOrder(const Sample& sample, Tests& tests);  // what the channel before leaves behind
 
 }  // namespace twinbench::diagnose::screen

@@ -1,139 +1,111 @@
-#include "twin/diagnose/screen/words.h"
-
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <utility>
+
+#include "twin/core/errors.h"
+#include "twin/diagnose/screen/significance.h"
 
 namespace twinbench::diagnose::screen {
 namespace {
 
-constexpr std::size_t kLines = 8;
-
-/// Each channel takes weight[c] times one common set of `width` amplitudes.
-Eigen::MatrixXd CommonAmplitude(const Eigen::VectorXd& weight, int width) {
-  Eigen::MatrixXd constraint = Eigen::MatrixXd::Zero(weight.size() * width, width);
-  for (Eigen::Index c = 0; c < weight.size(); ++c) {
-    constraint.middleRows(c * width, width) = weight[c] * Eigen::MatrixXd::Identity(width, width);
-  }
-  return constraint;
-}
-
-/// The channel with the largest amplitude, and that amplitude.
-std::pair<int, double> LargestAmplitude(const Fit& fit) {
-  std::pair<int, double> largest{0, 0.0};
-  for (int c = 0; c * fit.width < fit.amplitude.size(); ++c) {
-    const double size = fit.amplitude.segment(c * fit.width, fit.width).norm();
-    if (size > largest.second) largest = {c, size};
-  }
-  return largest;
-}
-
-void SetSize(const LinearRun& run, int channel, double size_SI, Place& place) {
-  place.effect_m = ReadsAngles(run) ? kNaN : size_SI;
-  place.effect_rad = AsAngle(run, channel, size_SI);
-}
-
-/// What a place must explain to be named: 3/4 of what exceeds the expectation of noise, and half of all.
-double LeastToName(const Fit& fit) {
-  return std::max(fit.width + 0.75 * (fit.chi2 - fit.dof), 0.5 * fit.chi2);
-}
-
-/// What a pattern of `weight` explains, offered to the best so far. Its size is that of the channel that shows it
-/// most; if it is a rotation, its own.
-void Offer(const LinearRun& run, const Fit& fit, const Pattern& pattern, const std::string& words, double& best,
-           Place& place) {
-  const Fit common = fit.Constrained(CommonAmplitude(pattern.weight, fit.width), fit.width);
-  if (!(common.chi2 > best)) return;
-  best = common.chi2;
-  place.words = words;
-  Eigen::Index channel = 0;
-  const double weight = pattern.weight.cwiseAbs().maxCoeff(&channel);
-  SetSize(run, static_cast<int>(channel), weight * common.amplitude.norm(), place);
-  if (IsAngle(pattern.name)) place.effect_rad = common.amplitude.norm();
-}
-
-std::vector<std::string> Loudest(const Eigen::VectorXd& scores, const std::vector<std::string>& items) {
-  std::vector<int> order(items.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) { return scores[a] > scores[b]; });
-  std::vector<std::string> lines;
-  for (int i : order) {
-    if (lines.size() == kLines || !std::isfinite(scores[i])) break;
-    lines.push_back(fmt::format("{}: score {:.1f}", items[static_cast<std::size_t>(i)], scores[i]));
-  }
-  return lines;
-}
-
-std::optional<ScanTest> Described(const Sample& sample, const Eigen::MatrixXd& scores,
-                                  const std::function<Fit(int item)>& fit, bool patterns, const ScanWords& words) {
-  Eigen::Index best = 0;
-  ScanTest result;
-  ScreenTest& test = result.test;
-  test.name = words.name;
-  test.statistic = scores.col(0).maxCoeff(&best);
-  if (!std::isfinite(test.statistic)) return std::nullopt;
-  test.p = PValue(scores.colwise().maxCoeff().transpose());
-  result.item = static_cast<int>(best);
-  result.fit = fit(result.item);
-  const Place place = PlaceOf(sample.run, result.fit, patterns);
-  test.effect_m = place.effect_m;
-  test.effect_rad = place.effect_rad;
-  test.reading = fmt::format("residual follows {} {}: {}", words.items[static_cast<std::size_t>(best)], place.words,
-                             words.causes);
-  test.tables = Loudest(scores.col(0), words.items);
-  return result;
-}
+/// In the order of the screen. In a scan, `reading` follows the item and the place where it shows.
+constexpr Words kWords[] = {
+    {"fit to stated noise", "all readings", "residuals are {:.3f} times the stated noise: ",
+     "something is not modelled, or the noise figure is too small", "the noise figure is too large"},
+    {"fit to repeats", "places visited again",
+     "the part of the residual that comes back at each visit is {:.2f} times what noise gives (variance): ",
+     "the model lacks something repeatable", "no lack of fit"},
+    {"noise of the channels", "",
+     "residual of {} is {:.3f} times that of the channels together: noisy channel, or a cause that shows there "
+     "only"},
+    {"noise of the detectors", "",
+     "residual of {} is {:.3f} times that of the detectors together: its electronics, its distance, or light that "
+     "reaches it alone"},
+    {"noise against spot radius", "",
+     "scatter on {} {} with the distance of the spot from the centre: speckle, spot shape, stray light, or a "
+     "detector that is not linear"},
+    {"tails", "", "tails ", "like Student's t with {:.0f} degrees of freedom: spikes, air turbulence, bumps",
+     "no heavier than a Gaussian's"},
+    {"outliers", "reading {} (set-up {}, pass {}, position {}), {}: {:.1f} standard deviations",
+     "one reading stands apart: {}"},
+    {"whiteness within a pass", "lag {}",
+     "readings {} apart are correlated by {:+.3f} beyond what the fit causes: ",
+     "correlated noise, drift or slow dynamics that are not modelled",
+     "alternating error, or noise that a filter has differentiated"},
+    {"time: wander", "{} half wave{} over the run", "a slow change in the room, the source or a mounting"},
+    {"time: drift", "the time", "steady drift of the source, a detector or a mounting"},
+    {"time: creep", "the logarithm of 1 + time in the set-up / {:.0f} s",
+     "a mounting that creeps after it was clamped (amplitude per decade)"},
+    {"time: exponential", "an exponential since the {} that decays in {:.2g} of the run",
+     "warming up, or relaxing after it was touched"},
+    {"time: step", "a step near reading {} (at {:.0f} s)", "a knock, a slip, a mode hop, a lost or gained count"},
+    {"time: running sum", "",
+     "the mean of {} changes near reading {} (at {:.0f} s), at once or slowly: a knock, drift or creep"},
+    {"time: tone", "a tone of {:.3g} mHz (period {:.4g} s)",
+     "hum or vibration aliased by the stops, an air conditioner's cycle"},
+    {"time: Allan deviation", "means over {} readings of {}",
+     "{} scatter more than white noise would: flicker, random walk or drift from reading to reading"},
+    {"harmonics: target angle", "order {:g} of the target angle",
+     "eccentricity, ellipse, gear or encoder of the target, or of the device"},
+    {"harmonics: reference angle", "order {:g} of the reference angle",
+     "eccentricity, ellipse, gear or encoder of the reference"},
+    {"harmonics: sum of both angles", "order {:g} of the sum of both angles",
+     "fixed in the laboratory, or wobble of the reference's rotor"},
+    {"harmonics: difference of both angles", "order {:g} of the difference of both angles",
+     "the two tables' errors multiply"},
+    {"half turns: target angle", "order {:g} of the target angle", "rolling elements or the cage of a bearing"},
+    {"half turns: reference angle", "order {:g} of the reference angle",
+     "rolling elements or the cage of a bearing"},
+    {"harmonics by set-up", "order {} with a phase of its own in each set-up", "locked to "},
+    {"direction: mean", "the direction of travel", "backlash, hysteresis or settling"},
+    {"direction: harmonics of the target angle", "the direction of travel with order {:g} of the target angle",
+     "backlash or hysteresis that varies around the turn"},
+    {"direction: harmonics of the reference angle",
+     "the direction of travel with order {:g} of the reference angle",
+     "backlash or hysteresis that varies around the turn"},
+    {"direction: dwell", "the direction times exp(-dwell / {:g} s)",
+     "settling or creep after the move (amplitude at the shortest dwell)"},
+    {"direction: speed", "the velocity (amplitude at the highest speed, the mean of each direction apart)",
+     "latency between the two devices, lag of a servo, viscous wind-up"},
+    {"offsets by set-up", "",
+     "each set-up has an offset of its own on {}: mountings that were not free enough in the model"},
+    {"offsets by pass", "",
+     "each pass has an offset of its own on {}: something moves or is seated anew between passes"},
+    {"offsets by place", "",
+     "each place has an offset of its own on {}: an error of position that no free table error explains"},
+    {"temperature", "temperature{}",
+     "thermal expansion or wavelength (amplitude for half the range of temperature)"},
+    {"temperature rate", "the rate of temperature, smoothed over {:.0f} min",
+     "a gradient that bends something (amplitude for half the range of the rate)"},
+    {"spot: polynomial", "degree {} of the spot's {} coordinate",
+     "a detector that is not linear: pincushion, tilt, edge, converter"},
+    {"spot: periodic", "the spot's own coordinate with a period of {:.3g} um",
+     "interference fringes of a window, steps of a converter"},
+    {"spot: map", "x = {}, y = {}",
+     "residual of {} depends on where the spot stands, most at {}: dirt, an edge or uneven response"},
+    {"channel pattern", "",
+     "channels move together as in {} more than noise does: a body moves that way, or its model is wrong"},
+    {"channel order", "what {} showed just before {}",
+     "a ghost of the channel scanned before, or crosstalk (size at the rim of its range)"},
+    {"raw: hum", "{}: amplitude {:.3g} codes",
+     "the samples carry a wave of {}: mains hum in cables, lamps or supplies"},
+    {"raw: ring-down", "{} at {:.4g} Hz, time constant {:.3g} s",
+     "vibration dies out within the blocks, loudest on {}: dwell too short for a resonance"},
+    {"raw: Allan deviation", "means over {:.3g} ms of {}",
+     "{} scatter more than white noise would: flicker, drift or hum, and more samples do not help as they should"},
+    {"raw: code density", "code {} of {}: came {:.0f} times instead of {:.0f}{}",
+     "{}: a converter whose steps are not equal"},
+    {"raw: settling", "{}: score {:.1f}",
+     "{}: a multiplexer or amplifier that has not settled, or noise that is not white"},
+    {"raw: settling, channel before", "{:+.2g} of {} stays in {}", ""},
+    {"raw: settling, sample before", "{:+.2g} of the sample before stays in {}", ""},
+    {"raw: settling, first sample", "the first sample of {} is off by {:+.2g} codes", ""},
+};
 
 }  // namespace
 
-Place PlaceOf(const LinearRun& run, const Fit& fit, bool patterns) {
-  const auto [largest, size] = LargestAmplitude(fit);
-  Place place{run.Channels() == 1 ? "on " + run.channels.front() : "on several channels", kNaN, kNaN};
-  SetSize(run, largest, size, place);
-  if (run.Channels() == 1) return place;
-  double best = LeastToName(fit);
-  if (patterns) {
-    for (const Pattern& p : run.patterns) Offer(run, fit, p, "in " + p.name, best, place);
-  }
-  for (int c = 0; c < run.Channels(); ++c) {
-    const std::string& channel = run.channels[static_cast<std::size_t>(c)];
-    Offer(run, fit, {channel, Eigen::VectorXd::Unit(run.Channels(), c)}, "on " + channel, best, place);
-  }
-  return place;
-}
-
-std::optional<ScanTest> TestScan(const Sample& sample, const Scan& scan, const ScanWords& words) {
-  return Described(
-      sample, Scores(sample, scan), [&](int item) { return FitItem(sample, scan, item); }, scan.shapes.size() == 1,
-      words);
-}
-
-std::optional<ScanTest> FromScores(const Sample& sample, const Eigen::MatrixXd& scores,
-                                   const std::function<Fit(int item)>& fit, const ScanWords& words) {
-  return Described(sample, scores, fit, true, words);
-}
-
-void Keep(std::optional<ScanTest> found, std::vector<ScreenTest>& tests) {
-  if (found) tests.push_back(std::move(found->test));
-}
-
-std::optional<MomentTest> TestMoments(const Eigen::MatrixXd& values, const std::vector<std::string>& items,
-                                      const std::string& name, Sides sides) {
-  Eigen::MatrixXd scores = Standardised(values);
-  if (scores.cwiseAbs().maxCoeff() == 0.0) return std::nullopt;
-  if (sides == Sides::kBoth) scores = scores.cwiseAbs();
-  Eigen::Index best = 0;
-  MomentTest result;
-  result.test.name = name;
-  result.test.statistic = scores.col(0).maxCoeff(&best);
-  result.test.p = PValue(scores.colwise().maxCoeff().transpose());
-  result.test.tables = Loudest(scores.col(0), items);
-  result.item = static_cast<int>(best);
-  result.excess = values(best, 0) - values.row(best).tail(values.cols() - 1).mean();
-  return result;
+const Words& WordsOf(std::string_view test) {
+  const auto* words = std::ranges::find(kWords, test, &Words::test);
+  Require(words != std::end(kWords), "every test of the screen has its words");
+  return *words;
 }
 
 }  // namespace twinbench::diagnose::screen
