@@ -46,6 +46,8 @@ struct BenchFormat {
   std::string (*smallest_addition)(int setups) = nullptr;  // what would give a run of that many some redundancy
   std::vector<EffectEntry> effects;
   std::vector<std::string> channels;  // to which an [[empirical]] signal can be added
+  std::vector<std::string> points;    // at which an [[effect]] "signal" can enter, in the order of the channels
+  std::vector<std::string> angles;    // by which it can go; at most two
   SignalKind signal = SignalKind::kAngle;
 };
 

@@ -38,7 +38,9 @@ double FactorOf(const std::string& unit) {
                                                  {"arcsec_per_K", arcsec},
                                                  {"arcsec_per_h", arcsec / units::hour},
                                                  {"urad_per_h", urad / units::hour},
-                                                 {"deg_per_h", deg / units::hour}};
+                                                 {"deg_per_h", deg / units::hour},
+                                                 {"deg_per_s", deg},
+                                                 {"K", 1.0}};
   const auto found = factors.find(unit);
   Require(found != factors.end(), "a parameter of the effect catalogue has an unknown unit");
   return found->second;

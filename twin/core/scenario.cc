@@ -18,6 +18,7 @@
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_text.h"
 #include "twin/core/scenario_values.h"
+#include "twin/core/signal_effect.h"
 
 namespace twinbench {
 namespace {
@@ -203,6 +204,12 @@ bool IsFindingKey(const std::string& key, const EffectEntry& entry) {
   return is_uncertainty || key == kLogEvidence || key == kProbability || key == kProvenance;
 }
 
+/// Keys that say which effect it is and where.
+bool IsWord(const std::string& key, const EffectEntry& entry) {
+  if (entry.name == kSignalEffect) return key == "name" || key == "point" || key == "signal" || key == "by" || key == "times";
+  return key == "name" || key == "where";
+}
+
 void CheckEffectKeys(const TomlValue& block, const toml::table& table, const EffectEntry& entry,
                      const std::string& place) {
   for (const auto& [key, node] : table) {
@@ -210,7 +217,7 @@ void CheckEffectKeys(const TomlValue& block, const toml::table& table, const Eff
     const auto parameter = std::find_if(entry.parameters.begin(), entry.parameters.end(),
                                         [&](const EffectParameter& p) { return p.Key() == name; });
     const bool known = parameter != entry.parameters.end();
-    if (name == "name" || name == "where" || (known && parameter->BelongsTo(place))) continue;
+    if (IsWord(name, entry) || (known && parameter->BelongsTo(place))) continue;
     if (IsFindingKey(name, entry)) continue;
     const std::string what = known ? fmt::format("the effect {} has no {} at {}", entry.name, name, place)
                                    : fmt::format("the effect {} has no {}", entry.name, name);
@@ -247,12 +254,37 @@ EffectFinding ReadFinding(const TomlValue& block, const EffectEntry& entry) {
   return finding;
 }
 
+/// A word of a signal; missing only if it may be.
+std::string ReadWord(const TomlValue& block, const std::string& key, const std::vector<std::string>& words,
+                     bool may_be_missing) {
+  if (const auto value = Inside(block, key)) return ReadText(*value, "signal: " + key, words);
+  if (may_be_missing) return "";
+  throw InputError(block.Where(), "the signal has no " + key, Alternatives(words));
+}
+
+EffectEntry ReadSignal(const TomlValue& block, const BenchFormat& bench, EffectSettings& effect) {
+  effect.signal = ReadWord(block, "signal", SignalKinds(), false);
+  effect.where = ReadWord(block, "point", bench.points, false);
+  effect.times = ReadWord(block, "times", SignalFactors(), true);
+  const std::vector<std::string> arguments = SignalArguments(effect.signal, bench);
+  if (arguments.empty() && Inside(block, "by"))
+    throw InputError(block.Where(), fmt::format("a signal \"{}\" goes by nothing", effect.signal), "no `by`");
+  if (!arguments.empty()) effect.by = ReadWord(block, "by", arguments, false);
+  return SignalEntry(effect.signal, effect.times, bench);
+}
+
+bool IsSignal(const TomlValue& block) {
+  const auto name = Inside(block, "name");
+  return name && name->node().is_string() && name->node().value<std::string>() == kSignalEffect;
+}
+
 EffectSettings ReadEffect(const TomlValue& block, const std::string& bench) {
   const toml::table& table = *block.node().as_table();
-  const EffectEntry& entry = EntryOf(block, table, bench);
   EffectSettings effect;
+  const bool is_signal = IsSignal(block);
+  const EffectEntry entry = is_signal ? ReadSignal(block, FormatOf(bench), effect) : EntryOf(block, table, bench);
   effect.name = entry.name;
-  effect.where = ReadPlace(block, table, entry);
+  if (!is_signal) effect.where = ReadPlace(block, table, entry);
   effect.location = block.Where();
   CheckEffectKeys(block, table, entry, effect.where);
   for (const EffectParameter& parameter : entry.parameters)

@@ -214,6 +214,10 @@ struct EffectSettings {
   std::map<std::string, double> parameters;  // SI, by name without unit ("roll"); all that the catalogue has
   std::string location;                      // "file.toml:31", for messages
   EffectFinding finding = {};                // if a diagnosis added it
+  // Of a signal (signal_effect.h), whose point is `where`:
+  std::string signal = {};  // its kind
+  std::string by = {};      // the angle or channel that it goes by
+  std::string times = {};   // what its size follows
 };
 
 /// Structure without a name: a signal tabulated by the readings that showed it. An [[empirical]] block. It repeats

@@ -7,6 +7,7 @@
 #include "twin/core/number_text.h"
 #include "twin/core/scenario.h"
 #include "twin/core/scenario_schema.h"
+#include "twin/core/signal_effect.h"
 
 namespace twinbench {
 namespace {
@@ -130,16 +131,21 @@ std::string PrintFinding(const EffectFinding& finding, const EffectEntry& entry)
 }
 
 std::string PrintEffect(const EffectSettings& effect, const std::string& bench) {
-  const EffectEntry* entry = FindEffect(effect.name, bench);
-  Require(entry != nullptr, "an effect to be written must be in the catalogue");
+  const EffectEntry entry = EntryOf(effect, bench);
   std::string text = fmt::format("\n[[effect]]\nname = {}\n", Quoted(effect.name));
-  if (!effect.where.empty()) text += fmt::format("where = {}\n", Quoted(effect.where));
-  for (const EffectParameter& parameter : entry->parameters) {
+  const auto word = [&text](const char* key, const std::string& value) {
+    if (!value.empty()) text += fmt::format("{} = {}\n", key, Quoted(value));
+  };
+  word(effect.name == kSignalEffect ? "point" : "where", effect.where);
+  word("signal", effect.signal);
+  word("by", effect.by);
+  word("times", effect.times);
+  for (const EffectParameter& parameter : entry.parameters) {
     const auto value = effect.parameters.find(parameter.name);
     if (value == effect.parameters.end() || !parameter.BelongsTo(effect.where)) continue;
     text += fmt::format("{} = {}\n", parameter.Key(), Float(value->second, parameter.to_SI));
   }
-  return text + PrintFinding(effect.finding, *entry);
+  return text + PrintFinding(effect.finding, entry);
 }
 
 }  // namespace

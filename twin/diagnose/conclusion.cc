@@ -25,7 +25,7 @@ std::vector<Accepted> AcceptedOf(const Analysis& analysis) {
   std::vector<Accepted> accepted;
   for (const Pick& pick : analysis.found.picks) {
     const Family& family = analysis.scanner->Families()[static_cast<std::size_t>(pick.family)];
-    accepted.push_back({Detached(family), pick.grid_point, pick.amplitudes, pick.columns});
+    accepted.push_back({Detached(family), pick.grid_point, pick.shape, pick.amplitudes, pick.columns});
   }
   return accepted;
 }

@@ -86,8 +86,68 @@ std::vector<EmpiricalSettings> EmpiricalsOf(const Accepted& accepted, const Line
   return all;
 }
 
-void AddEmpirical(const Accepted& accepted, const DiagnosisRun& run, const std::string& provenance,
-                  Scenario& scenario) {
+/// Columns of the family's series on each channel (channel after channel), or of its own rows.
+Eigen::VectorXd Coefficients(const Accepted& accepted) {
+  const Family& family = accepted.family;
+  return family.map.size() > 0 ? Eigen::VectorXd(family.map * accepted.amplitudes) : accepted.amplitudes;
+}
+
+/// A product with its size.
+struct Sized {
+  EffectSettings signal;
+  double size = 0.0;  // SI of the channel
+};
+
+Sized WithSize(const Product& product, const std::string& channel, const Eigen::VectorXd& columns, double shown_SI) {
+  Sized sized{product.signal, 0.0};
+  if (sized.signal.where.empty()) sized.signal.where = channel;
+  const double cosine = product.scale * columns[product.column];
+  if (!product.is_wave) {
+    const bool is_share = product.signal.signal == "share";
+    sized.signal.parameters[is_share ? "share" : "amplitude"] = cosine;
+    sized.size = std::abs(cosine) * (is_share ? shown_SI : 1.0);
+    return sized;
+  }
+  const double sine = product.scale * columns[product.column + 1];
+  sized.size = std::hypot(cosine, sine);
+  sized.signal.parameters["amplitude"] = sized.size;
+  sized.signal.parameters["phase"] = std::atan2(-sine, cosine);
+  return sized;
+}
+
+/// What the twin can carry out of a structure without a name; nothing if it cannot.
+std::vector<EffectSettings> SignalsOf(const Accepted& accepted, const LinearRun& run) {
+  const std::vector<Product> products =
+      accepted.family.products ? accepted.family.products(accepted.shape, accepted.grid_point) : std::vector<Product>{};
+  if (products.empty()) return {};
+  const Eigen::VectorXd all = Coefficients(accepted);
+  const double shown_SI = run.Predicted().cwiseAbs().maxCoeff();
+  const bool everywhere = products.front().signal.where.empty();
+  const Eigen::Index count = everywhere ? all.size() / run.Channels() : all.size();
+  std::vector<Sized> sized;
+  for (int c = 0; c < (everywhere ? run.Channels() : 1); ++c) {
+    for (const Product& product : products)
+      sized.push_back(WithSize(product, run.channels[static_cast<std::size_t>(c)],
+                               all.segment(everywhere ? c * count : 0, count), shown_SI));
+  }
+  constexpr double kSlight = 1e-3;  // of the largest: what a pattern leaves where it does not show
+  const double largest = std::ranges::max(sized, {}, &Sized::size).size;
+  std::vector<EffectSettings> signals;
+  for (Sized& s : sized) {
+    if (s.size > kSlight * largest) signals.push_back(std::move(s.signal));
+  }
+  return signals;
+}
+
+void AddUnnamed(const Accepted& accepted, const DiagnosisRun& run, const std::string& provenance,
+                Scenario& scenario) {
+  std::vector<EffectSettings> signals = SignalsOf(accepted, run.run);
+  for (EffectSettings& signal : signals) {
+    signal.finding.provenance = provenance;
+    signal.finding.probability = run.diagnosis.unknown.probability;
+    scenario.effects.push_back(std::move(signal));
+  }
+  if (!signals.empty()) return;
   for (EmpiricalSettings& empirical : EmpiricalsOf(accepted, run.run)) {
     empirical.signature = run.diagnosis.unknown.signature;
     empirical.provenance = provenance;
@@ -99,7 +159,8 @@ std::string What(const Scenario& scenario, const Scenario& extended) {
   std::string text;
   for (std::size_t i = scenario.effects.size(); i < extended.effects.size(); ++i) {
     const EffectSettings& effect = extended.effects[i];
-    text += fmt::format("# added: effect {}{}{}\n", effect.name, effect.where.empty() ? "" : " at ", effect.where);
+    text += fmt::format("# added: effect {}{}{}{}{}\n", effect.name, effect.signal.empty() ? "" : " ", effect.signal,
+                        effect.where.empty() ? "" : " at ", effect.where);
   }
   for (std::size_t i = scenario.empiricals.size(); i < extended.empiricals.size(); ++i) {
     const EmpiricalSettings& empirical = extended.empiricals[i];
@@ -123,7 +184,7 @@ Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::st
     if (IsAtWork(cause, run)) extended.effects.push_back(EffectOf(cause, scenario.bench, provenance));
   }
   for (const Accepted& accepted : run.accepted) {
-    if (accepted.family.kind == Kind::kUnknown) AddEmpirical(accepted, run, provenance, extended);
+    if (accepted.family.kind == Kind::kUnknown) AddUnnamed(accepted, run, provenance, extended);
   }
   return extended;
 }

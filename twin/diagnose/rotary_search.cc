@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "twin/core/errors.h"
 #include "twin/diagnose/conclusion.h"
 
 namespace twinbench::diagnose {
@@ -114,6 +115,15 @@ double LogEvidence(const SearchedRotary& searched) {
                                                       std::log(trust + searched.analysis.power);
 }
 
+/// What a bench leaves unexplained; nothing if it would show no spots where there are readings.
+std::optional<double> PowerOn(const Trial& trial, const Scenario& scenario) {
+  try {
+    return FreeMisfit(trial.Run(scenario).run).power;
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
 /// Searches again about the size of a large change of the bench, where its tangent no longer tells what it does.
 /// About it means: linearised with the change in the model, and its tangent there taken out again.
 void SearchAboutSuspect(const Trial& trial, const Scenario& scenario, SearchedRotary& searched) {
@@ -122,9 +132,9 @@ void SearchAboutSuspect(const Trial& trial, const Scenario& scenario, SearchedRo
   const std::optional<Suspect> suspect = SuspectOf(searched);
   if (!suspect) return;
   const Scenario framed = searched.discrete.empty() ? scenario : With(scenario, Frame());
-  const double with_it = FreeMisfit(trial.Run(With(framed, suspect->effect)).run).power;
+  const std::optional<double> with_it = PowerOn(trial, With(framed, suspect->effect));
   const double by_tangent = FreeMisfit(searched.rotary->Rotary().run).power - suspect->explained;
-  if (std::abs(with_it - by_tangent) < kStraight) return;
+  if (!with_it || std::abs(*with_it - by_tangent) < kStraight) return;
   SearchedRotary about;
   about.rotary = trial.Case(framed, {suspect->effect});
   about.discrete = searched.discrete;

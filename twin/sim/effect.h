@@ -72,6 +72,11 @@ class Effect {
   virtual void AlterLabels(double& /*target_rad*/, double& /*reference_rad*/) const {}
   virtual void AlterPose(const Moment&, PoseState& /*pose*/) const {}
   virtual void AlterLight(const Moment&, LightState& /*light*/) const {}
+  /// What comes to one channel by what all of them show (voltages of the spots alone).
+  virtual double AddedToShown_V(const Moment&, const std::array<double, kChannels>& /*signal_V*/,
+                                int /*channel*/) const {
+    return 0.0;
+  }
   /// Voltages at the A/D's input, in the order of the scan list.
   virtual void AlterSignal(const Moment&, std::array<double, kChannels>& /*signal_V*/) {}
   virtual void AlterSampling(SamplingState& /*sampling*/) const {}

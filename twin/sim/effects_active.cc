@@ -37,6 +37,16 @@ void ActiveEffects::AlterLight(const Moment& moment, LightState& light) const {
   for (const auto& effect : effects_) effect->AlterLight(moment, light);
 }
 
+std::array<double, kChannels> ActiveEffects::Shown_V(const Moment& moment,
+                                                     const std::array<double, kChannels>& spots_V) const {
+  std::array<double, kChannels> shown_V = spots_V;
+  for (const auto& effect : effects_) {
+    for (int c = 0; c < kChannels; ++c)
+      shown_V[static_cast<std::size_t>(c)] += effect->AddedToShown_V(moment, spots_V, c);
+  }
+  return shown_V;
+}
+
 void ActiveEffects::AlterSignal(const Moment& moment, std::array<double, kChannels>& signal_V) {
   for (const auto& effect : effects_) effect->AlterSignal(moment, signal_V);
 }

@@ -21,6 +21,8 @@ class ActiveEffects {
   PoseState Pose(const Moment& moment) const;
   void AlterLabels(double& target_rad, double& reference_rad) const;
   void AlterLight(const Moment& moment, LightState& light) const;
+  /// The voltages of the spots with what depends on them.
+  std::array<double, kChannels> Shown_V(const Moment& moment, const std::array<double, kChannels>& spots_V) const;
   void AlterSignal(const Moment& moment, std::array<double, kChannels>& signal_V);
   SamplingState Sampling() const;
   void AlterReadout(Acquisition& block) const;

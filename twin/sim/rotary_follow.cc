@@ -79,7 +79,8 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
     light.pitch_rad += extra.light.pitch_rad;
     const Spots spots = path_.light().Trace(GratingPose(i, extra), light);
     if (spots.status != ReadingStatus::kOk) return {kNaN, kNaN, kNaN, kNaN};
-    std::array<double, kChannels> signal_V = path_.electronics().Amplify(spots.uv_m);
+    std::array<double, kChannels> signal_V =
+        path_.effects().Shown_V(stop.moment, path_.electronics().Amplify(spots.uv_m));
     for (int c = 0; c < kChannels; ++c) {
       const double sensitivity_V_m = (c < 2 ? scenario().psd_a : scenario().psd_b).sensitivity_V_m;
       signal_V[c] += stop.added_V[c] + sensitivity_V_m * extra.shown_m[c];

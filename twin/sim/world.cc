@@ -67,7 +67,8 @@ Acquisition World::Acquire(int n_samples, bool keep_raw) {
 
   Acquisition block;
   if (spots.status == ReadingStatus::kOk) {
-    std::array<double, kChannels> signal_V = path_.electronics().Amplify(spots.uv_m);
+    std::array<double, kChannels> signal_V =
+        path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
     path_.effects().AlterSignal(moment, signal_V);
     block = path_.electronics().Convert(signal_V, moment.now, next_reading_, n_samples, keep_raw);
     path_.effects().AlterReadout(block);

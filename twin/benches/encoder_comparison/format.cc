@@ -13,6 +13,8 @@ const BenchFormat& Format() {
     f.check_together = CheckTogether;
     f.columns = Columns();
     f.channels = {"angle"};
+    f.points = {"angle"};
+    f.angles = {"device", "reference"};
     f.desired = Desired();
     f.smallest_addition = Addition;
     f.effects = Effects();

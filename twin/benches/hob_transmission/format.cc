@@ -13,6 +13,8 @@ const BenchFormat& Format() {
     f.check_together = CheckTogether;
     f.columns = Columns();
     f.channels = {"transmission"};
+    f.points = {"transmission", "interferometer"};
+    f.angles = {"table"};
     f.desired = Desired();
     f.smallest_addition = Addition;
     f.effects = Effects();

@@ -15,6 +15,8 @@ const BenchFormat& Format() {
     f.has_fixtures = true;
     f.columns = Columns();
     f.channels = {kChannelNames.begin(), kChannelNames.end()};
+    f.points = {kChannelNames.begin(), kChannelNames.end()};
+    f.angles = {"target", "reference"};
     f.signal = SignalKind::kPosition;
     f.desired = Desired();
     f.smallest_addition = Addition;

@@ -15,6 +15,8 @@ const BenchFormat& Format() {
     f.columns = Columns();
     f.agree_on_signs = CountBothTheSameWay;
     f.channels = {"x", "y"};
+    f.points = {"x", "y"};
+    f.angles = {"turntable", "multitooth"};
     f.desired = Desired();
     f.smallest_addition = Addition;
     f.effects = Effects();

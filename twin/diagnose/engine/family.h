@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/core/scenario.h"
 #include "twin/diagnose/diagnosis.h"
 #include "twin/diagnose/engine/base.h"
 
@@ -40,6 +41,14 @@ struct Shape {
 inline constexpr double kMostProbable = 0.97;
 inline constexpr double kMostProbableDoubled = 0.85;
 
+/// A column of a series as an [[effect]] "signal" that a twin can carry out.
+struct Product {
+  EffectSettings signal;  // without size; `where` is empty if it shows on every channel of the family's pattern
+  int column = 0;         // of a wave: its cosine, with its sine behind
+  bool is_wave = false;
+  double scale = 1.0;  // size of the signal per amplitude of the column
+};
+
 struct Family {
   Kind kind = Kind::kNamed;
   std::string effect, where;  // unknown: name of the shape and what it shows on
@@ -69,6 +78,9 @@ struct Family {
   std::function<std::vector<ParameterEstimate>(const Eigen::VectorXd& shape, const Eigen::VectorXd& amplitudes,
                                                const Eigen::MatrixXd& cov)>
       parameters;
+
+  /// What a fitted member of an unknown family is as signals; empty: nothing that predicts another run.
+  std::function<std::vector<Product>(const Eigen::VectorXd& shape, int grid_point)> products;
 
   /// Describes a fitted member of an unknown family in the grammar of docs/diagnosis.md.
   std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;

@@ -20,9 +20,9 @@ std::vector<unknown::Place> GenericPlaces(const SignalContext& c) {
 std::vector<unknown::Angle> GenericAngles(const Common& common) {
   const SignalContext& c = *common.context;
   const int first = c.channels > 1 ? 1 : c.train.free_orders + 1;
-  return {{"table angle", c.table_rad, common.table_orders->grid, first, "harmonic"},
-          {"the table's ring and head", c.ring_rad, common.ring_orders->grid, 1, "ring harmonic", false},
-          {"hob angle", c.hob_rad, common.hob_orders->grid, 1, "hob harmonic", false}};
+  return {{"table angle", c.table_rad, common.table_orders->grid, first, "harmonic", "table"},
+          {"the table's ring and head", c.ring_rad, common.ring_orders->grid, 1, "ring harmonic", "", false},
+          {"hob angle", c.hob_rad, common.hob_orders->grid, 1, "hob harmonic", "", false}};
 }
 
 }  // namespace

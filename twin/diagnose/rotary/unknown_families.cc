@@ -39,8 +39,8 @@ std::vector<unknown::Place> GenericPlaces(const Eigen::Matrix4d& shown_by_motion
 /// Every order of both tables is free.
 std::vector<unknown::Angle> GenericAngles(const Schedule& s, int positions) {
   const int last = std::min(12, (positions - 1) / 2);
-  return {{"target angle", s.target_rad, last, 0, "harmonic"},
-          {"reference angle", s.reference_rad, last, 0, "harmonic"}};
+  return {{"target angle", s.target_rad, last, 0, "harmonic", "target"},
+          {"reference angle", s.reference_rad, last, 0, "harmonic", "reference"}};
 }
 
 Eigen::MatrixXd ByReading(const Eigen::VectorXd& rows) {
@@ -59,6 +59,7 @@ std::vector<Family> UnknownFamilies(const RotaryRun& rotary, double reference_de
   design.continued_rad = ContinuedTarget_rad(s, false);
   design.moved = InCircle(s);
   design.senses = {DirectionSignal(s)};
+  design.twin_is_warm = true;
   if (model::HasTemperature(s)) design.above_K = model::Above_K(s, reference_degC);
   design.series = series;
   design.shown = ByReading(rotary.run.Predicted());

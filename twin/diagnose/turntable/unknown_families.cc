@@ -21,8 +21,8 @@ std::vector<unknown::Place> GenericPlaces() {
 std::vector<unknown::Angle> GenericAngles(const TurntableRun& turntable) {
   const Schedule& s = turntable.run.schedule;
   const int last = std::clamp((turntable.places.circle_blocks - 1) / 2, 0, 12);
-  std::vector<unknown::Angle> angles = {{"target angle", s.target_rad, last, 0, "harmonic"}};
-  if (turntable.places.HasTeeth()) angles.push_back({"reference angle", s.reference_rad, last, 0, "harmonic"});
+  std::vector<unknown::Angle> angles = {{"target angle", s.target_rad, last, 0, "harmonic", "turntable"}};
+  if (turntable.places.HasTeeth()) angles.push_back({"reference angle", s.reference_rad, last, 0, "harmonic", "multitooth"});
   return angles;
 }
 
@@ -45,7 +45,7 @@ std::vector<Family> UnknownFamilies(const TurntableRun& turntable, const TimeSer
   design.moved = AtPositions(turntable.places);
   design.senses = {DirectionSignal(turntable.context)};
   design.above_K = turntable.context.above_K;
-  if (design.above_K.size() > 0) design.above_K.array() -= turntable.context.above_K.mean();
+  design.twin_is_warm = true;
   design.series = series;
   design.shown = turntable.context.shown_rad;
   design.shown_name = "reading";

@@ -22,6 +22,10 @@ void AddHarmonics(Collector& collect, const Angle& angle) {
       [first, name = angle.name](int g) {
         return fmt::format("harmonic of order {} locked to {}, same in both directions", first + g, name);
       });
+  if (!angle.by.empty())
+    collect.Are([first, by = angle.by](const Eigen::VectorXd&, int g) {
+      return WaveOf(SignalOf("harmonic", by, {{"order", first + g}}));
+    });
 }
 
 /// The order itself, or the nearest that is `nearest` away from a whole one: a line between the orders that is
@@ -66,6 +70,10 @@ void AddLines(Collector& collect) {
       [design = collect.shared(), waves, number](int g) {
         return model::Times(waves->At(number[static_cast<std::size_t>(g)]), design->moved);
       });
+  if (!angle.by.empty())
+    collect.Are([nearest, by = angle.by](const Eigen::VectorXd& k, int) {
+      return WaveOf(SignalOf("harmonic", by, {{"order", AwayFromWhole(k[0], nearest)}}));
+    });
 }
 
 /// Orders a of one angle and b of another together, where each angle's own orders are free.
@@ -92,6 +100,10 @@ void AddInteractions(Collector& collect) {
         return model::Times(model::Wave(a * design->angles[0].rad + b * design->angles[1].rad), design->moved);
       },
       words);
+  collect.Are([orders](const Eigen::VectorXd&, int g) {
+    const auto [a, b] = orders[static_cast<std::size_t>(g)];
+    return WaveOf(SignalOf("interaction", "", {{"order", a}, {"with_order", b}}));
+  });
 }
 
 }  // namespace

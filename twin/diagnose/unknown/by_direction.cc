@@ -44,11 +44,14 @@ void AddByDirection(Collector& collect) {
   const Eigen::VectorXd& held = d.senses.front();
   if (held.maxCoeff() == held.minCoeff()) return;
   collect.Add("direction offset", held, "offset locked to direction, odd in direction");
+  collect.Are([](const Eigen::VectorXd&, int) { return ColumnOf(Following(SignalOf("constant"), "direction")); });
   for (const Angle& angle : d.angles) {
     if (!angle.is_turned_by_motion) continue;
-    for (const Eigen::VectorXd& sense : d.senses)
+    for (const Eigen::VectorXd& sense : d.senses) {
       collect.AddModulated("direction harmonic", angle, kMotionOrders, sense,
                            "direction times order {} locked to " + angle.name + ", odd in direction");
+      if (&sense == &d.senses.front()) collect.AreHarmonics(angle, Following({}, "direction"));
+    }
   }
   AddBehindReversals(collect, held);
 }
@@ -59,16 +62,26 @@ void AddBySpeed(Collector& collect) {
   if (d.velocity.size() == 0 || d.velocity.isZero()) return;
   const Eigen::VectorXd v = model::Unit(d.velocity), speed = v.cwiseAbs();
   const Angle& angle = d.angles.front();
+  const double per_rad_s = RmsOf(d.velocity);
+  const auto is_constant = [&](const char* times) {
+    collect.Are([times, per_rad_s](const Eigen::VectorXd&, int) {
+      return ColumnOf(Following(SignalOf("constant"), times, 0.0, per_rad_s));
+    });
+  };
   collect.Add("speed", v, "proportional to the velocity, odd in direction");
+  is_constant("velocity");
   if (speed.maxCoeff() - speed.minCoeff() <= kDifferent * speed.maxCoeff()) return;
   collect.Add("speed", speed, "proportional to the speed, even in direction");
+  is_constant("speed");
   collect.Add("speed", v.cwiseProduct(speed), "proportional to the square of the speed, odd in direction");
   collect.Add("speed", model::Unit(model::Acceleration(d.course, d.velocity)), "proportional to the acceleration");
   const std::string order = "order {} locked to " + angle.name;
   collect.AddModulated("speed harmonic", angle, kMotionOrders, v,
                        order + ", proportional to the velocity, odd in direction");
+  collect.AreHarmonics(angle, Following({}, "velocity", 0.0, per_rad_s));
   collect.AddModulated("speed harmonic", angle, kMotionOrders, speed,
                        order + ", proportional to the speed, even in direction");
+  collect.AreHarmonics(angle, Following({}, "speed", 0.0, per_rad_s));
 }
 
 }  // namespace twinbench::diagnose::unknown

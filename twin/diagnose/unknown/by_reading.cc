@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -35,6 +36,40 @@ struct FringeGrid {
   double Period(int g) const { return 1.0 / (1.0 / longest + g * step); }
 };
 
+EffectSettings At(const std::string& channel, EffectSettings signal) {
+  signal.where = channel;
+  return signal;
+}
+
+/// The exponents of Powers.
+std::vector<Product> ProductsOfPowers(const std::string& channel, double range) {
+  const std::array<std::array<int, 2>, 9> exponents = {
+      {{2, 0}, {1, 1}, {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}, {4, 0}, {5, 0}}};
+  std::vector<Product> products;
+  for (const auto& [own, partner] : exponents) {
+    const auto column = static_cast<int>(products.size());
+    products.push_back({At(channel, SignalOf("power", "", {{"exponent", own}, {"partner_exponent", partner}, {"range", range}})),
+                        column});
+  }
+  return products;
+}
+
+/// A channel that shows a share of another's, or of its own, value.
+struct Leak {
+  int on, of;
+};
+
+/// One column a leak, in shares of the range.
+std::vector<Product> ProductsOfLeaks(const Design& d, const std::vector<Leak>& leaks, double range) {
+  std::vector<Product> products;
+  for (const auto& [on, of] : leaks) {
+    const auto column = static_cast<int>(products.size());
+    const auto name = [&d](int c) { return d.channels[static_cast<std::size_t>(c)]; };
+    products.push_back({At(name(on), SignalOf("share", name(of))), column, false, 1.0 / range});
+  }
+  return products;
+}
+
 void AddFringes(Collector& collect, int channel) {
   constexpr double kShortest = 25.0;  // in plausible sizes of a disturbance
   const Design& d = collect.design();
@@ -51,6 +86,9 @@ void AddFringes(Collector& collect, int channel) {
         return fmt::format("periodic in the {0} of {1}, period {2:.1f} {3}, locked to {0}", what, name,
                            fringes.Period(g) / to_SI, unit);
       });
+  collect.Are([name, fringes](const Eigen::VectorXd&, int g) {
+    return WaveOf(At(name, SignalOf("fringes", "", {{"period", fringes.Period(g)}})));
+  });
 }
 
 /// The other channel of the same detector.
@@ -58,14 +96,18 @@ int Partner(int channel) {
   return channel ^ 1;
 }
 
-void AddOnChannel(Collector& collect, int channel, const Eigen::MatrixXd& share) {
+void AddOnChannel(Collector& collect, int channel, const Eigen::MatrixXd& share, double range) {
   const Design& d = collect.design();
   const std::string name = d.channels[static_cast<std::size_t>(channel)];
   collect.AddRows(d.shown_name, name,
                   OnChannel(d, Powers(share.col(channel), share.col(Partner(channel))), channel),
                   fmt::format("smooth function of the {0} of {1}, locked to {0}", d.shown_name, name));
+  collect.Are([products = ProductsOfPowers(name, range)](const Eigen::VectorXd&, int) { return products; });
   collect.AddRows("linear map", name, OnChannel(d, share, channel),
                   fmt::format("proportional to all {0}s, locked to {0} of {1}", d.shown_name, name));
+  std::vector<Leak> leaks;
+  for (int of = 0; of < std::ssize(d.channels); ++of) leaks.push_back({channel, of});
+  collect.Are([products = ProductsOfLeaks(d, leaks, range)](const Eigen::VectorXd&, int) { return products; });
   AddFringes(collect, channel);
 }
 
@@ -95,66 +137,94 @@ Eigen::MatrixXd Beside(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right
 }
 
 /// Wrong scales and turned axes of a detector; wrong scales of all channels at once.
-void AddLinearMap(Collector& collect, const Group& group, const Eigen::MatrixXd& share) {
+void AddLinearMap(Collector& collect, const Group& group, const Eigen::MatrixXd& share, double range) {
   const Design& d = collect.design();
   const bool axes_too = group.name != "all";
   Eigen::MatrixXd columns;
+  std::vector<Leak> leaks;
   for (const int on : group.channels) {
     for (const int of : group.channels) {
-      if (on == of || axes_too) columns = Beside(columns, OnChannel(d, share.col(of), on));
+      if (on != of && !axes_too) continue;
+      columns = Beside(columns, OnChannel(d, share.col(of), on));
+      leaks.push_back({on, of});
     }
   }
   collect.AddRows("linear map", group.name, columns,
                   fmt::format("scales{0} of {1}, proportional to the {2}s, locked to {2}",
                               axes_too ? " and axes" : "", group.name, d.shown_name));
+  collect.Are([products = ProductsOfLeaks(d, leaks, range)](const Eigen::VectorXd&, int) { return products; });
 }
 
-/// Above its mean in the calibration: the gains were right there, whatever they followed. Of a run without one: above
-/// its first value.
-Eigen::VectorXd SinceCalibration(const Design& d, const Eigen::VectorXd& signal) {
-  const Eigen::VectorXd still = 1.0 - d.moved.array();
-  const double count = still.sum();
-  return model::Unit((signal.array() - (count > 0.0 ? still.dot(signal) / count : signal[0])).matrix());
-}
+/// Something that a gain may follow.
+struct Followed {
+  std::string name;
+  Eigen::VectorXd course;  // of rms about one
+  EffectSettings factor;   // the same as a twin does it; without `times`: it cannot
+};
 
-/// Name and course of something that a gain may follow.
-using Followed = std::pair<std::string, Eigen::VectorXd>;
-
-std::vector<Followed> WhatIsFollowed(const Design& d) {
-  constexpr double kWarmUps = 3.0;  // time constants in a run, of something that warms up and stays
-  const Eigen::VectorXd time = model::ElapsedShare(d.course);
-  const Eigen::VectorXd warm = 1.0 - (-kWarmUps * time.array()).exp();
-  std::vector<Followed> followed = {{"time", model::Unit((time.array() - time.mean()).matrix())},
-                                    {"time", SinceCalibration(d, time)},
-                                    {"time", SinceCalibration(d, warm)},
-                                    {"direction", d.senses.front().cwiseProduct(d.moved)}};
-  if (d.above_K.size() == 0) return followed;
-  followed.emplace_back("temperature", model::Unit((d.above_K.array() - d.above_K.mean()).matrix()));
-  followed.emplace_back("temperature", SinceCalibration(d, d.above_K));
-  followed.emplace_back("temperature", model::Unit(d.above_K));  // nothing at the reference temperature
+/// (quantity - about) / per, with `per` such that its rms is one.
+Followed LinearIn(const std::string& name, const Eigen::VectorXd& quantity, double about, bool twin_knows) {
+  const Eigen::VectorXd beside = quantity.array() - about;
+  Followed followed{name, model::Unit(beside), {}};
+  if (twin_knows && RmsOf(beside) > 0.0) followed.factor = Following({}, name, about, RmsOf(beside));
   return followed;
 }
 
+/// Its mean in the calibration: the gains were right there, whatever they followed. Of a run without one: its first
+/// value.
+double InCalibration(const Design& d, const Eigen::VectorXd& quantity) {
+  const Eigen::VectorXd still = 1.0 - d.moved.array();
+  const double count = still.sum();
+  return count > 0.0 ? still.dot(quantity) / count : quantity[0];
+}
+
+std::vector<Followed> WhatIsFollowed(const Design& d) {
+  constexpr double kWarmUps = 3.0;  // time constants in a run, of something that warms up and stays
+  const Eigen::VectorXd& time_s = d.course.time_s;
+  const Eigen::VectorXd warm = 1.0 - (-kWarmUps * model::ElapsedShare(d.course).array()).exp();
+  std::vector<Followed> followed = {LinearIn("time", time_s, time_s.mean(), true),
+                                    LinearIn("time", time_s, InCalibration(d, time_s), true),
+                                    LinearIn("time", warm, InCalibration(d, warm), false),
+                                    {"direction", d.senses.front().cwiseProduct(d.moved), {}}};
+  if (d.above_K.size() == 0) return followed;
+  for (const double about_K : {d.above_K.mean(), InCalibration(d, d.above_K), 0.0})
+    followed.push_back(LinearIn("temperature", d.above_K, about_K, d.twin_is_warm));
+  return followed;
+}
+
+/// Gains of channels, each with a column of its own or all with one.
+std::vector<Product> ProductsOfGains(const Design& d, const std::vector<int>& channels, bool each, double range,
+                                     const EffectSettings& factor) {
+  std::vector<Product> products;
+  for (const int c : channels) {
+    const std::string& name = d.channels[static_cast<std::size_t>(c)];
+    EffectSettings gain = At(name, SignalOf("share", name, factor.parameters));
+    gain.times = factor.times;
+    products.push_back({gain, each ? static_cast<int>(products.size()) : 0, false, 1.0 / range});
+  }
+  return products;
+}
+
 /// Gains of channels that follow something: one each, one of all that a detector has, or one of each together.
-void AddGains(Collector& collect, const Eigen::MatrixXd& share) {
+void AddGains(Collector& collect, const Eigen::MatrixXd& share, double range) {
   const Design& d = collect.design();
-  for (const auto& [what, signal] : WhatIsFollowed(d)) {
-    const std::string words = fmt::format("gain of {{}} follows {0}, locked to {0} and {1}", what, d.shown_name);
-    const auto add = [&](const std::string& where, const Eigen::MatrixXd& rows) {
-      collect.AddRows("gain changes", where, rows, fmt::format(fmt::runtime(words), where));
-    };
-    std::vector<Eigen::MatrixXd> of_channel;
-    for (int c = 0; c < std::ssize(d.channels); ++c)
-      of_channel.push_back(OnChannel(d, model::Times(share.col(c), signal), c));
-    for (std::size_t c = 0; c < of_channel.size(); ++c) add(d.channels[c], of_channel[c]);
-    for (const Group& group : GroupsOf(d)) {
+  std::vector<Group> groups;
+  for (int c = 0; c < std::ssize(d.channels); ++c) groups.push_back({d.channels[static_cast<std::size_t>(c)], {c}});
+  for (Group& group : GroupsOf(d)) groups.push_back(std::move(group));
+  for (const Followed& followed : WhatIsFollowed(d)) {
+    for (const Group& group : groups) {
       const bool each = group.name == "all";
       Eigen::MatrixXd columns;
       for (const int c : group.channels) {
-        const Eigen::MatrixXd& own = of_channel[static_cast<std::size_t>(c)];
+        const Eigen::MatrixXd own = OnChannel(d, model::Times(share.col(c), followed.course), c);
         columns = each || columns.size() == 0 ? Beside(columns, own) : Eigen::MatrixXd(columns + own);
       }
-      add(group.name, columns);
+      collect.AddRows("gain changes", group.name, columns,
+                      fmt::format("gain of {0} follows {1}, locked to {1} and {2}", group.name, followed.name,
+                                  d.shown_name));
+      if (followed.factor.times.empty()) continue;
+      collect.Are([products = ProductsOfGains(d, group.channels, each, range, followed.factor)](
+                      const Eigen::VectorXd&, int) { return products; });
     }
   }
 }
@@ -164,10 +234,11 @@ void AddGains(Collector& collect, const Eigen::MatrixXd& share) {
 void AddByReading(Collector& collect) {
   const Design& d = collect.design();
   if (d.shown.size() == 0) return;
-  const Eigen::MatrixXd share = d.shown / std::max(d.shown.cwiseAbs().maxCoeff(), 2.0 * d.plausible);
-  for (int c = 0; c < std::ssize(d.channels); ++c) AddOnChannel(collect, c, share);
-  for (const Group& group : GroupsOf(d)) AddLinearMap(collect, group, share);
-  AddGains(collect, share);
+  const double range = std::max(d.shown.cwiseAbs().maxCoeff(), 2.0 * d.plausible);
+  const Eigen::MatrixXd share = d.shown / range;
+  for (int c = 0; c < std::ssize(d.channels); ++c) AddOnChannel(collect, c, share, range);
+  for (const Group& group : GroupsOf(d)) AddLinearMap(collect, group, share, range);
+  AddGains(collect, share, range);
 }
 
 }  // namespace twinbench::diagnose::unknown

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/signal_effect.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::unknown {
@@ -55,6 +56,7 @@ std::shared_ptr<const Base> Collector::BaseOf(int grid, const Series& series) co
 
 void Collector::AddShared(const std::string& sort, const std::shared_ptr<const Base>& base, const Words& words,
                           const Shape* shape, const SeriesAt& at) {
+  last_ = families_.size();
   if (!base || base->grid < 1) return;
   const Eigen::MatrixXd middle = base->series(base->grid / 2);
   const double rms = LargestRms(middle);
@@ -75,10 +77,12 @@ void Collector::AddShared(const std::string& sort, const std::shared_ptr<const B
 }
 
 void Collector::Add(const std::string& sort, int grid, const Series& series, const Words& words) {
+  last_ = families_.size();
   if (grid > 0) AddShared(sort, BaseOf(grid, series), words);
 }
 
 void Collector::Add(const std::string& sort, const Eigen::MatrixXd& series, const std::string& words) {
+  last_ = families_.size();
   if (series.cols() == 0) return;
   Add(
       sort, 1, [series](int) { return series; }, [words](int) { return words; });
@@ -89,6 +93,7 @@ void Collector::AddOver(const std::string& sort, const Shape& shape, const Serie
   const Series of_shape = [at, values = shape.value](int g) {
     return at(Eigen::VectorXd::Constant(1, values[static_cast<std::size_t>(g)]));
   };
+  last_ = families_.size();
   if (shape.value.empty()) return;
   AddShared(sort, BaseOf(static_cast<int>(std::ssize(shape.value)), on_grid ? on_grid : of_shape), words, &shape, at);
 }
@@ -104,6 +109,7 @@ void Collector::AddModulated(const std::string& sort, const Angle& angle, int la
 
 void Collector::AddRows(const std::string& sort, const std::string& where, int grid, const Series& rows,
                         const Words& words) {
+  last_ = families_.size();
   const Eigen::MatrixXd middle = rows(grid / 2);
   const double channel_rms = LargestRms(middle) * std::sqrt(static_cast<double>(std::ssize(design_->channels)));
   if (!(channel_rms > 0.0)) return;
@@ -120,6 +126,50 @@ void Collector::AddRows(const std::string& sort, const std::string& where, const
                         const std::string& words) {
   AddRows(
       sort, where, 1, [rows](int) { return rows; }, [words](int) { return words; });
+}
+
+void Collector::Are(const Products& products) {
+  for (std::size_t k = last_; k < families_.size(); ++k) families_[k].products = products;
+}
+
+void Collector::AreHarmonics(const Angle& angle, const EffectSettings& factor) {
+  if (angle.by.empty()) return;
+  Are([by = angle.by, factor](const Eigen::VectorXd&, int g) {
+    EffectSettings signal = SignalOf("harmonic", by, factor.parameters);
+    signal.parameters["order"] = g + 1;
+    signal.times = factor.times;
+    return WaveOf(signal);
+  });
+}
+
+EffectSettings SignalOf(const std::string& kind, const std::string& by,
+                        const std::map<std::string, double>& parameters) {
+  EffectSettings signal;
+  signal.name = kSignalEffect;
+  signal.signal = kind;
+  signal.by = by;
+  signal.parameters = parameters;
+  return signal;
+}
+
+EffectSettings Following(EffectSettings signal, const std::string& times, double about, double per) {
+  signal.times = times;
+  if (times == "direction") return signal;
+  signal.parameters["about"] = about;
+  signal.parameters["per"] = per;
+  return signal;
+}
+
+std::vector<Product> WaveOf(const EffectSettings& signal) {
+  return {{signal, 0, true, 1.0}};
+}
+
+std::vector<Product> ColumnOf(const EffectSettings& signal, double scale) {
+  return {{signal, 0, false, scale}};
+}
+
+double RmsOf(const Eigen::VectorXd& signal) {
+  return std::sqrt(signal.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, signal.size())));
 }
 
 }  // namespace twinbench::diagnose::unknown

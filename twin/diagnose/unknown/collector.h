@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,12 @@ class Collector {
   void AddRows(const std::string& sort, const std::string& where, const Eigen::MatrixXd& rows,
                const std::string& words);
 
+  /// What the families added last are as signals of a twin.
+  using Products = std::function<std::vector<Product>(const Eigen::VectorXd& shape, int grid_point)>;
+  void Are(const Products& products);
+  /// Whole orders of an angle, whose size follows what `factor` says.
+  void AreHarmonics(const Angle& angle, const EffectSettings& factor);
+
   std::vector<Family> Take() { return std::move(families_); }
 
  private:
@@ -49,7 +56,22 @@ class Collector {
 
   std::shared_ptr<const Design> design_;
   std::vector<Family> families_;
+  std::size_t last_ = 0;  // first of those added last
 };
+
+/// A signal without size. @param by  What it goes by, if anything.
+EffectSettings SignalOf(const std::string& kind, const std::string& by = "",
+                        const std::map<std::string, double>& parameters = {});
+
+/// Its size follows (quantity - about) / per.
+EffectSettings Following(EffectSettings signal, const std::string& times, double about = 0.0, double per = 1.0);
+
+/// The signal alone: a wave of two columns, or one column.
+std::vector<Product> WaveOf(const EffectSettings& signal);
+std::vector<Product> ColumnOf(const EffectSettings& signal, double scale = 1.0);
+
+/// Root of the mean square.
+double RmsOf(const Eigen::VectorXd& signal);
 
 /// Samples x k as rows of one channel.
 Eigen::MatrixXd OnChannel(const Design& design, const Eigen::MatrixXd& samples, int channel);

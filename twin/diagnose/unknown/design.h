@@ -27,6 +27,7 @@ struct Angle {
   int last_order = 0;      // the largest whole order that the samples show
   int first_unfree = 0;    // the first whole order that no unknown of the run takes up; 0: there is none
   std::string harmonics;   // sort of its whole orders
+  std::string by;          // name of the angle in a signal of the twin; empty: it has none
   bool is_turned_by_motion = true;  // false: direction and speed are of another angle
 };
 
@@ -42,6 +43,7 @@ struct Design {
   Eigen::VectorXd travel_rad;               // since the last reversal
   Eigen::VectorXd velocity;                 // while it is read
   Eigen::VectorXd above_K;                  // temperature
+  bool twin_is_warm = false;                // the bench's twin knows that temperature
   TimeSeries series;
   Eigen::MatrixXd shown;                    // samples x channels, as predicted, where errors may depend on it
   std::string shown_name;                   // "spot", "reading"

@@ -60,12 +60,17 @@ void AddTones(Collector& collect) {
       },
       &frequency,
       [design = collect.shared()](const Eigen::VectorXd& f_Hz) { return design->series.ToneAt(f_Hz[0]); });
+  if (model::Indicators(series.stretch).cols() > 1) return;
+  collect.Are([](const Eigen::VectorXd& f_Hz, int) { return WaveOf(SignalOf("tone", "", {{"frequency", f_Hz[0]}})); });
 }
 
 void AddSteps(Collector& collect) {
   const TimeSeries& series = collect.design().series;
   collect.AddShared("step", series.steps, [onsets = series.onsets](int g) {
     return fmt::format("step at reading {:.0f} locked to time", onsets[static_cast<std::size_t>(g)]);
+  });
+  collect.Are([onsets = series.onsets](const Eigen::VectorXd&, int g) {
+    return ColumnOf(SignalOf("step", "", {{"at_reading", onsets[static_cast<std::size_t>(g)]}}));
   });
 }
 
@@ -99,9 +104,20 @@ void AddTemperature(Collector& collect) {
       [lags_s](int g) {
         return fmt::format("locked to temperature with a lag of {:.0f} s", lags_s[static_cast<std::size_t>(g)]);
       });
+  if (d.twin_is_warm)
+    collect.Are([per_K = RmsOf(d.above_K)](const Eigen::VectorXd&, int g) -> std::vector<Product> {
+      if (g > 0) return {};  // a lag has a memory
+      return ColumnOf(Following(SignalOf("constant"), "temperature", 0.0, per_K));
+    });
   constexpr double kLag_s = 600.0;
   collect.Add("temperature", model::Unit(d.above_K - model::Lagged(d.course.time_s, d.above_K, kLag_s)),
               "locked to the rate of the temperature");
+}
+
+/// A size that follows the elapsed share of the run, of rms one.
+EffectSettings OfTime(const Design& d) {
+  const double begin_s = d.course.time_s.minCoeff(), duration_s = d.course.time_s.maxCoeff() - begin_s;
+  return Following({}, "time", begin_s, duration_s * RmsOf(model::ElapsedShare(d.course)));
 }
 
 /// Waves that grow with something.
@@ -113,12 +129,21 @@ void AddGrowing(Collector& collect) {
                          "order {} locked to " + angle.name + " that grows with " + what);
   };
   add(model::ElapsedShare(d.course), "time");
-  if (d.above_K.size() > 0) add(d.above_K.array() - d.above_K.mean(), "temperature");
+  collect.AreHarmonics(angle, OfTime(d));
+  if (d.above_K.size() == 0) return;
+  const Eigen::VectorXd about_mean_K = d.above_K.array() - d.above_K.mean();
+  add(about_mean_K, "temperature");
+  if (d.twin_is_warm) collect.AreHarmonics(angle, Following({}, "temperature", d.above_K.mean(), RmsOf(about_mean_K)));
 }
 
 void AddTrends(Collector& collect) {
   const Design& d = collect.design();
   collect.Add("trend", model::Unit(model::ElapsedShare(d.course)), "linear trend locked to time");
+  collect.Are([factor = OfTime(d)](const Eigen::VectorXd&, int) {
+    EffectSettings signal = SignalOf("constant", "", factor.parameters);
+    signal.times = factor.times;
+    return ColumnOf(signal);
+  });
   const Angle& angle = d.angles.front();
   if (angle.first_unfree > 0)
     collect.Add("trend", model::Unit(angle.rad),

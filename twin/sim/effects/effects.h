@@ -9,6 +9,7 @@ namespace twinbench::sim {
 
 using EffectPointer = std::unique_ptr<Effect>;
 
+EffectPointer MakeSignal(const EffectSettings&, const Scenario&);
 EffectPointer MakePsdGain(const EffectSettings&, const Scenario&);
 EffectPointer MakePsdRoll(const EffectSettings&, const Scenario&);
 EffectPointer MakePsdNonlinearity(const EffectSettings&, const Scenario&);

@@ -17,6 +17,7 @@ std::unique_ptr<Effect> MakeEffect(const EffectSettings& effect, const Scenario&
       {"wavelength_offset", MakeWavelengthOffset},
       {"grating_pitch", MakeGratingPitch},
       {"mode_hop", MakeModeHop},
+      {"signal", MakeSignal},
       {"wavelength_temperature", MakeWavelengthTemperature},
       {"incidence_offset", MakeIncidenceOffset},
       {"laser_drift", MakeLaserDrift},

@@ -18,11 +18,12 @@ struct HobMoment {
 };
 
 /// What is added to what the counters show, and what the table does beyond its gears: its encoder and the
-/// interferometer see that.
+/// interferometer see that. What the interferometer alone shows too much.
 struct ShownError {
   double table_rad = 0.0;
   double hob_rad = 0.0;
   double motion_rad = 0.0;
+  double interferometer_rad = 0.0;
 };
 
 /// One cause on the bench hob_transmission. Errors of different effects add; no effect looks at another one.

@@ -62,7 +62,7 @@ void HobPath::Disturb(const HobMoment& moment, CounterSample& sample) {
   for (const auto& effect : effects_) {
     const ShownError error = effect->Shown(moment);
     sample.table_encoder_rad += error.table_rad + error.motion_rad;
-    sample.interferometer_rad += error.motion_rad;
+    sample.interferometer_rad += error.motion_rad + error.interferometer_rad;
     sample.hob_encoder_rad += error.hob_rad;
   }
   sample.table_encoder_rad += empirical_.At_rad(moment.reading);

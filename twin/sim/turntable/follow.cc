@@ -13,40 +13,40 @@ using TurntablePoint = BenchPoint<TurntableExtra>;
 // Small against the period of a camera's pixels.
 constexpr double kAngleStep_rad = 1e-3 * arcsec, kLengthStep_m = 0.1 * um;
 
-model::Point Angle(const char* name) {
+model::Point MirrorAngle(const char* name) {
   return {name, "arcsec", arcsec, kAngleStep_rad};
 }
-model::Point Length(const char* name) {
+model::Point MirrorLength(const char* name) {
   return {name, "um", um, kLengthStep_m};
 }
 
 std::vector<TurntablePoint> OfTables() {
   using E = TurntableExtra;
-  return {{Angle("turntable.ex"), [](E& e) -> double& { return e.mirror.turntable.ex_rad; }},
-          {Angle("turntable.ey"), [](E& e) -> double& { return e.mirror.turntable.ey_rad; }},
-          {Angle("turntable.ez"), [](E& e) -> double& { return e.mirror.turntable.ez_rad; }},
-          {Length("turntable.dx"), [](E& e) -> double& { return e.mirror.turntable.dx_m; }},
-          {Length("turntable.dy"), [](E& e) -> double& { return e.mirror.turntable.dy_m; }},
-          {Length("turntable.dz"), [](E& e) -> double& { return e.mirror.turntable.dz_m; }},
-          {Angle("multitooth.ex"), [](E& e) -> double& { return e.mirror.multitooth.ex_rad; }},
-          {Angle("multitooth.ey"), [](E& e) -> double& { return e.mirror.multitooth.ey_rad; }},
-          {Angle("multitooth.ez"), [](E& e) -> double& { return e.mirror.multitooth.ez_rad; }},
-          {Length("multitooth.dx"), [](E& e) -> double& { return e.mirror.multitooth.dx_m; }},
-          {Length("multitooth.dy"), [](E& e) -> double& { return e.mirror.multitooth.dy_m; }},
-          {Length("multitooth.dz"), [](E& e) -> double& { return e.mirror.multitooth.dz_m; }},
-          {Angle("turntable.yaw"), [](E& e) -> double& { return e.yaw_rad; }}};
+  return {{MirrorAngle("turntable.ex"), [](E& e) -> double& { return e.mirror.turntable.ex_rad; }},
+          {MirrorAngle("turntable.ey"), [](E& e) -> double& { return e.mirror.turntable.ey_rad; }},
+          {MirrorAngle("turntable.ez"), [](E& e) -> double& { return e.mirror.turntable.ez_rad; }},
+          {MirrorLength("turntable.dx"), [](E& e) -> double& { return e.mirror.turntable.dx_m; }},
+          {MirrorLength("turntable.dy"), [](E& e) -> double& { return e.mirror.turntable.dy_m; }},
+          {MirrorLength("turntable.dz"), [](E& e) -> double& { return e.mirror.turntable.dz_m; }},
+          {MirrorAngle("multitooth.ex"), [](E& e) -> double& { return e.mirror.multitooth.ex_rad; }},
+          {MirrorAngle("multitooth.ey"), [](E& e) -> double& { return e.mirror.multitooth.ey_rad; }},
+          {MirrorAngle("multitooth.ez"), [](E& e) -> double& { return e.mirror.multitooth.ez_rad; }},
+          {MirrorLength("multitooth.dx"), [](E& e) -> double& { return e.mirror.multitooth.dx_m; }},
+          {MirrorLength("multitooth.dy"), [](E& e) -> double& { return e.mirror.multitooth.dy_m; }},
+          {MirrorLength("multitooth.dz"), [](E& e) -> double& { return e.mirror.multitooth.dz_m; }},
+          {MirrorAngle("turntable.yaw"), [](E& e) -> double& { return e.yaw_rad; }}};
 }
 
 std::vector<TurntablePoint> OfMountings() {
   using E = TurntableExtra;
-  return {{Angle("axis.ex"), [](E& e) -> double& { return e.mirror.axis.ex_rad; }},
-          {Angle("axis.ey"), [](E& e) -> double& { return e.mirror.axis.ey_rad; }},
-          {Length("axis.dx"), [](E& e) -> double& { return e.mirror.axis.dx_m; }},
-          {Length("axis.dy"), [](E& e) -> double& { return e.mirror.axis.dy_m; }},
-          {Angle("mount.yaw"), [](E& e) -> double& { return e.mirror.mount.ez_rad; }},
-          {Angle("mount.pitch"), [](E& e) -> double& { return e.mirror.mount.ex_rad; }},
-          {Angle("autocollimator.x"), [](E& e) -> double& { return e.shown_rad.x(); }},
-          {Angle("autocollimator.y"), [](E& e) -> double& { return e.shown_rad.y(); }},
+  return {{MirrorAngle("axis.ex"), [](E& e) -> double& { return e.mirror.axis.ex_rad; }},
+          {MirrorAngle("axis.ey"), [](E& e) -> double& { return e.mirror.axis.ey_rad; }},
+          {MirrorLength("axis.dx"), [](E& e) -> double& { return e.mirror.axis.dx_m; }},
+          {MirrorLength("axis.dy"), [](E& e) -> double& { return e.mirror.axis.dy_m; }},
+          {MirrorAngle("mount.yaw"), [](E& e) -> double& { return e.mirror.mount.ez_rad; }},
+          {MirrorAngle("mount.pitch"), [](E& e) -> double& { return e.mirror.mount.ex_rad; }},
+          {MirrorAngle("autocollimator.x"), [](E& e) -> double& { return e.shown_rad.x(); }},
+          {MirrorAngle("autocollimator.y"), [](E& e) -> double& { return e.shown_rad.y(); }},
           {{"room.temperature", "K", 1.0, 0.01}, [](E& e) -> double& { return e.warmer_K; }}};
 }
 

@@ -73,9 +73,12 @@ Eigen::Vector2d MirrorPath::Zero_rad(double above_K) const {
   return above_K * Eigen::Vector2d(c.x_per_kelvin_rad, c.y_per_kelvin_rad);
 }
 
-AutocollimatorReading MirrorPath::Look(const TurntableMoment& moment, const mechanics::StackState& axes,
+AutocollimatorReading MirrorPath::Look(TurntableMoment moment, const mechanics::StackState& axes,
                                        double above_K, const Eigen::Vector2d& noise_rad,
                                        const TurntableExtra& extra) {
+  moment.turntable_rad = axes.target_rad;
+  moment.multitooth_rad = stand_.Seated_rad();
+  moment.above_K = above_K;
   double yaw_rad = extra.yaw_rad;
   for (const auto& effect : effects_) yaw_rad += effect->Yaw_rad(moment);
   const auto image = optics_.Look(stand_.MirrorPose(axes.target_rad, yaw_rad, axes.target_bearing, extra.mirror));

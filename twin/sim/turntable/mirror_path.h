@@ -35,7 +35,7 @@ class MirrorPath {
 
   /// @param above_K    Temperature of the instrument above the one at which it is as stated.
   /// @param noise_rad  Of the camera.
-  AutocollimatorReading Look(const TurntableMoment& moment, const mechanics::StackState& axes, double above_K,
+  AutocollimatorReading Look(TurntableMoment moment, const mechanics::StackState& axes, double above_K,
                              const Eigen::Vector2d& noise_rad, const TurntableExtra& extra = {});
 
  private:

@@ -34,6 +34,9 @@ class MirrorStand {
   Pose MirrorPose(double turntable_rad, double yaw_rad, const mechanics::BearingPose& bearing,
                   const MirrorExtra& extra = {}) const;
 
+  /// Where the multi-tooth table is seated.
+  double Seated_rad() const { return tooth_ * pitch_rad_; }
+
   const TableMotion& turntable() const { return turntable_; }
   /// Errors of the multi-tooth table that repeat, at each of its teeth.
   TableErrors MultitoothErrors() const;

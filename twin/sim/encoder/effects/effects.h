@@ -10,6 +10,7 @@ namespace twinbench::sim {
 
 using AngleEffectPointer = std::unique_ptr<AngleEffect>;
 
+AngleEffectPointer MakeAngleSignal(const EffectSettings&, const Scenario&);
 AngleEffectPointer MakeHarmonic(const EffectSettings&, double order);  // locked to the device's angle
 AngleEffectPointer MakeSignalFault(const EffectSettings&);
 AngleEffectPointer MakeLatency(const EffectSettings&);

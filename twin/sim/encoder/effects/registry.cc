@@ -32,6 +32,7 @@ AngleEffectPointer MakeAngleEffect(const EffectSettings& effect, const Scenario&
       {"latency", [&] { return MakeLatency(effect); }},
       {"backlash", [&] { return MakeGap(effect); }},
       {"hysteresis", [&] { return MakeHysteresis(effect); }},
+      {"signal", [&] { return MakeAngleSignal(effect, scenario); }},
       {"scale", [&] { return MakeScale(effect); }},
       {"drift", [&] { return MakeZeroDrift(effect); }},
       {"slip", [&] { return MakeZeroSlip(effect); }},

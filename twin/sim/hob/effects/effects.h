@@ -10,6 +10,7 @@ namespace twinbench::sim {
 
 using HobEffectPointer = std::unique_ptr<HobEffect>;
 
+HobEffectPointer MakeHobSignal(const EffectSettings&, const Scenario&);
 HobEffectPointer MakeRingError(const EffectSettings&);  // eccentricity, ellipticity, periodic
 HobEffectPointer MakeHobSignalFault(const EffectSettings&);
 HobEffectPointer MakeGearError(const EffectSettings&, const Scenario&);  // hob_runout, worm, gear_mesh

@@ -27,6 +27,7 @@ std::unique_ptr<HobEffect> MakeHobEffect(const EffectSettings& effect, const Sce
       {"drift", shown},
       {"slip", shown},
       {"tone", shown},
+      {"signal", [&] { return MakeHobSignal(effect, scenario); }},
       {"outliers", [&] { return MakeCounterOutliers(effect, scenario); }},
   };
   const auto found = makers.find(effect.name);

@@ -12,6 +12,7 @@ namespace twinbench::sim {
 using TurntableEffectPointer = std::unique_ptr<TurntableEffect>;
 
 /// autocollimator_roll, _scale, _nonlinearity, _temperature, mirror_flatness, multitooth_seating
+TurntableEffectPointer MakeAutocollimatorSignal(const EffectSettings&, const Scenario&);
 TurntableEffectPointer MakeWrongConstant(const EffectSettings&);
 TurntableEffectPointer MakePixelPeriod(const EffectSettings&);  // autocollimator_periodic
 /// autocollimator_drift, mount_creep, slip, tone

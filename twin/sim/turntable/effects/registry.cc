@@ -21,6 +21,7 @@ std::unique_ptr<TurntableEffect> MakeTurntableEffect(const EffectSettings& effec
       {"mount_creep", zero},
       {"slip", zero},
       {"tone", zero},
+      {"signal", [&] { return MakeAutocollimatorSignal(effect, scenario); }},
       {"backlash", [&] { return MakeTurntableBacklash(effect); }},
       {"settling", [&] { return MakeTurntableSettling(effect); }},
       {"outliers", [&] { return MakeAutocollimatorOutliers(effect, scenario); }},
