@@ -206,7 +206,8 @@ bool IsFindingKey(const std::string& key, const EffectEntry& entry) {
 
 /// Keys that say which effect it is and where.
 bool IsWord(const std::string& key, const EffectEntry& entry) {
-  if (entry.name == kSignalEffect) return key == "name" || key == "point" || key == "signal" || key == "by" || key == "times";
+  if (entry.name == kSignalEffect)
+    return key == "name" || key == "point" || key == "signal" || key == "by" || key == "times";
   return key == "name" || key == "where";
 }
 

@@ -124,7 +124,8 @@ std::string PrintFinding(const EffectFinding& finding, const EffectEntry& entry)
     if (const auto u = finding.u.find(p.name); u != finding.u.end())
       text += fmt::format("{} = {}\n", p.UncertaintyKey(), Float(u->second, p.to_SI));
   }
-  if (!std::isnan(finding.log_evidence)) text += fmt::format("log_evidence = {}\n", Float(finding.log_evidence, 1.0));
+  if (!std::isnan(finding.log_evidence))
+    text += fmt::format("log_evidence = {}\n", Float(finding.log_evidence, 1.0));
   if (!std::isnan(finding.probability)) text += fmt::format("probability = {}\n", Float(finding.probability, 1.0));
   if (!finding.provenance.empty()) text += fmt::format("provenance = {}\n", Quoted(finding.provenance));
   return text;

@@ -28,15 +28,16 @@ std::vector<EffectParameter> ParametersOf(const std::string& kind, const BenchFo
   if (kind == "constant") return {Amplitude(bench)};
   if (kind == "harmonic") return {Amplitude(bench), order, Phase()};
   if (kind == "interaction")
-    return {Amplitude(bench), order, Signed("with_order", "1", 1.0, 1e5, "periods a turn of the bench's second angle"),
-            Phase()};
+    return {Amplitude(bench), order,
+            Signed("with_order", "1", 1.0, 1e5, "periods a turn of the bench's second angle"), Phase()};
   if (kind == "tone")
     return {Amplitude(bench), Parameter("frequency", "Hz", 0.01, 1e-6, 1e6, "of the tone"), Phase()};
   if (kind == "step")
     return {Amplitude(bench), Parameter("at_reading", "1", 0.0, 0.0, 1e9, "first reading behind the step")};
   if (kind == "fringes") return {Amplitude(bench), Length(bench, "period", "of what the channel shows"), Phase()};
   if (kind == "power")
-    return {Amplitude(bench), Parameter("exponent", "1", 3.0, 0.0, 9.0, "of what the channel shows, over the range"),
+    return {Amplitude(bench),
+            Parameter("exponent", "1", 3.0, 0.0, 9.0, "of what the channel shows, over the range"),
             Parameter("partner_exponent", "1", 0.0, 0.0, 9.0, "of what its detector's other channel shows"),
             Length(bench, "range", "that counts as one")};
   return {Signed("share", "1", 0.0, 10.0, "of what the channel named by `by` shows")};
@@ -44,8 +45,10 @@ std::vector<EffectParameter> ParametersOf(const std::string& kind, const BenchFo
 
 /// Where the factor is zero and where it is one: (what is followed - about) / per.
 std::vector<EffectParameter> FactorParameters(const std::string& times) {
-  static const std::map<std::string, std::pair<std::string, double>> units = {
-      {"velocity", {"deg_per_s", 1.0}}, {"speed", {"deg_per_s", 1.0}}, {"time", {"s", 1.0}}, {"temperature", {"K", 1.0}}};
+  static const std::map<std::string, std::pair<std::string, double>> units = {{"velocity", {"deg_per_s", 1.0}},
+                                                                              {"speed", {"deg_per_s", 1.0}},
+                                                                              {"time", {"s", 1.0}},
+                                                                              {"temperature", {"K", 1.0}}};
   const auto found = units.find(times);
   if (found == units.end()) return {};
   const auto& [unit, per] = found->second;

@@ -6,8 +6,9 @@
 #include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
 
-/// Structure that no effect of the catalogue has, as a product: what enters at a channel of the bench, times its course.
-/// An [[effect]] block with name = "signal", `point`, `signal`, what it goes `by` and what its size follows (`times`).
+/// Structure that no effect of the catalogue has, as a product: what enters at a channel of the bench, times its
+/// course. An [[effect]] block with name = "signal", `point`, `signal`, what it goes `by` and what its size follows
+/// (`times`).
 namespace twinbench {
 
 inline constexpr const char* kSignalEffect = "signal";

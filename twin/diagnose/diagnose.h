@@ -28,7 +28,7 @@ struct DiagnoseOptions {
 struct Accepted {
   Family family;
   int grid_point = 0;
-  Eigen::VectorXd shape;  // SI; at the grid point, or refined
+  Eigen::VectorXd shape;       // SI; at the grid point, or refined
   Eigen::VectorXd amplitudes;  // SI
   Eigen::MatrixXd columns;     // rows x amplitudes, SI, not whitened
   /// Structure without a name, where a row is the mean of several readings: its value at each reading, by number.

@@ -98,7 +98,8 @@ struct Sized {
   double size = 0.0;  // SI of the channel
 };
 
-Sized WithSize(const Product& product, const std::string& channel, const Eigen::VectorXd& columns, double shown_SI) {
+Sized WithSize(const Product& product, const std::string& channel, const Eigen::VectorXd& columns,
+               double shown_SI) {
   Sized sized{product.signal, 0.0};
   if (sized.signal.where.empty()) sized.signal.where = channel;
   const double cosine = product.scale * columns[product.column];
@@ -117,8 +118,9 @@ Sized WithSize(const Product& product, const std::string& channel, const Eigen::
 
 /// What the twin can carry out of a structure without a name; nothing if it cannot.
 std::vector<EffectSettings> SignalsOf(const Accepted& accepted, const LinearRun& run) {
-  const std::vector<Product> products =
-      accepted.family.products ? accepted.family.products(accepted.shape, accepted.grid_point) : std::vector<Product>{};
+  const std::vector<Product> products = accepted.family.products
+                                            ? accepted.family.products(accepted.shape, accepted.grid_point)
+                                            : std::vector<Product>{};
   if (products.empty()) return {};
   const Eigen::VectorXd all = Coefficients(accepted);
   const double shown_SI = run.Predicted().cwiseAbs().maxCoeff();
@@ -159,8 +161,8 @@ std::string What(const Scenario& scenario, const Scenario& extended) {
   std::string text;
   for (std::size_t i = scenario.effects.size(); i < extended.effects.size(); ++i) {
     const EffectSettings& effect = extended.effects[i];
-    text += fmt::format("# added: effect {}{}{}{}{}\n", effect.name, effect.signal.empty() ? "" : " ", effect.signal,
-                        effect.where.empty() ? "" : " at ", effect.where);
+    text += fmt::format("# added: effect {}{}{}{}{}\n", effect.name, effect.signal.empty() ? "" : " ",
+                        effect.signal, effect.where.empty() ? "" : " at ", effect.where);
   }
   for (std::size_t i = scenario.empiricals.size(); i < extended.empiricals.size(); ++i) {
     const EmpiricalSettings& empirical = extended.empiricals[i];

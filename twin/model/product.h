@@ -13,14 +13,14 @@ namespace twinbench::model {
 struct Instant {
   double time_s = 0.0;
   int reading = 0;
-  double direction = 0.0;        // +1, -1: sense of the motion, at rest of the last one
-  double velocity_rad_s = 0.0;   // while it is read
-  double above_K = 0.0;          // temperature above environment.reference_degC
+  double direction = 0.0;             // +1, -1: sense of the motion, at rest of the last one
+  double velocity_rad_s = 0.0;        // while it is read
+  double above_K = 0.0;               // temperature above environment.reference_degC
   std::array<double, 2> angle_rad{};  // of the bench's angles (BenchFormat::angles), unwrapped
 };
 
-/// An [[effect]] block "signal": what it adds to one channel at any instant. Without a memory, so that the live twin
-/// and the one that follows a record agree whatever came before.
+/// An [[effect]] block "signal": what it adds to one channel at any instant. Without a memory, so that the live
+/// twin and the one that follows a record agree whatever came before.
 class Product {
  public:
   /// @param effect  Checked by the scenario's loader.

@@ -22,7 +22,8 @@ std::vector<unknown::Angle> GenericAngles(const TurntableRun& turntable) {
   const Schedule& s = turntable.run.schedule;
   const int last = std::clamp((turntable.places.circle_blocks - 1) / 2, 0, 12);
   std::vector<unknown::Angle> angles = {{"target angle", s.target_rad, last, 0, "harmonic", "turntable"}};
-  if (turntable.places.HasTeeth()) angles.push_back({"reference angle", s.reference_rad, last, 0, "harmonic", "multitooth"});
+  if (turntable.places.HasTeeth())
+    angles.push_back({"reference angle", s.reference_rad, last, 0, "harmonic", "multitooth"});
   return angles;
 }
 

@@ -35,9 +35,9 @@ double AwayFromWhole(double order, double nearest) {
   return std::abs(off) >= nearest ? order : whole + std::copysign(nearest, off);
 }
 
-/// Lines between the whole orders, a tenth of the resolution apart as far as that can be afforded. Nearer to a whole
-/// order than the run can tell there are none; and none at all in a single turn where whole orders are not free:
-/// they imitate any line between them.
+/// Lines between the whole orders, a tenth of the resolution apart as far as that can be afforded. Nearer to a
+/// whole order than the run can tell there are none; and none at all in a single turn where whole orders are not
+/// free: they imitate any line between them.
 void AddLines(Collector& collect) {
   constexpr double kFirst = 0.3, kFewestTurns = 1.4;
   constexpr int kMost = 2000;
@@ -90,8 +90,8 @@ void AddInteractions(Collector& collect) {
   }
   const auto words = [first = d.angles[0].name, second = d.angles[1].name, orders](int g) {
     const auto [a, b] = orders[static_cast<std::size_t>(g)];
-    return fmt::format("order {} {} {} {} {}, locked to both angles (interaction), same in both directions", a, first,
-                       b > 0 ? '+' : '-', std::abs(b), second);
+    return fmt::format("order {} {} {} {} {}, locked to both angles (interaction), same in both directions", a,
+                       first, b > 0 ? '+' : '-', std::abs(b), second);
   };
   collect.Add(
       "interaction", static_cast<int>(std::ssize(orders)),

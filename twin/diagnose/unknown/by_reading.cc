@@ -48,8 +48,9 @@ std::vector<Product> ProductsOfPowers(const std::string& channel, double range) 
   std::vector<Product> products;
   for (const auto& [own, partner] : exponents) {
     const auto column = static_cast<int>(products.size());
-    products.push_back({At(channel, SignalOf("power", "", {{"exponent", own}, {"partner_exponent", partner}, {"range", range}})),
-                        column});
+    products.push_back(
+        {At(channel, SignalOf("power", "", {{"exponent", own}, {"partner_exponent", partner}, {"range", range}})),
+         column});
   }
   return products;
 }
@@ -219,9 +220,9 @@ void AddGains(Collector& collect, const Eigen::MatrixXd& share, double range) {
         const Eigen::MatrixXd own = OnChannel(d, model::Times(share.col(c), followed.course), c);
         columns = each || columns.size() == 0 ? Beside(columns, own) : Eigen::MatrixXd(columns + own);
       }
-      collect.AddRows("gain changes", group.name, columns,
-                      fmt::format("gain of {0} follows {1}, locked to {1} and {2}", group.name, followed.name,
-                                  d.shown_name));
+      collect.AddRows(
+          "gain changes", group.name, columns,
+          fmt::format("gain of {0} follows {1}, locked to {1} and {2}", group.name, followed.name, d.shown_name));
       if (followed.factor.times.empty()) continue;
       collect.Are([products = ProductsOfGains(d, group.channels, each, range, followed.factor)](
                       const Eigen::VectorXd&, int) { return products; });

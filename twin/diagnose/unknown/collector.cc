@@ -95,7 +95,8 @@ void Collector::AddOver(const std::string& sort, const Shape& shape, const Serie
   };
   last_ = families_.size();
   if (shape.value.empty()) return;
-  AddShared(sort, BaseOf(static_cast<int>(std::ssize(shape.value)), on_grid ? on_grid : of_shape), words, &shape, at);
+  AddShared(sort, BaseOf(static_cast<int>(std::ssize(shape.value)), on_grid ? on_grid : of_shape), words, &shape,
+            at);
 }
 
 void Collector::AddModulated(const std::string& sort, const Angle& angle, int last, const Eigen::VectorXd& factor,

@@ -22,12 +22,12 @@ struct Place {
 
 /// An angle that structure may be locked to.
 struct Angle {
-  std::string name;        // "reference angle"
-  Eigen::VectorXd rad;     // one a sample
-  int last_order = 0;      // the largest whole order that the samples show
-  int first_unfree = 0;    // the first whole order that no unknown of the run takes up; 0: there is none
-  std::string harmonics;   // sort of its whole orders
-  std::string by;          // name of the angle in a signal of the twin; empty: it has none
+  std::string name;                 // "reference angle"
+  Eigen::VectorXd rad;              // one a sample
+  int last_order = 0;               // the largest whole order that the samples show
+  int first_unfree = 0;             // the first whole order that no unknown of the run takes up; 0: there is none
+  std::string harmonics;            // sort of its whole orders
+  std::string by;                   // name of the angle in a signal of the twin; empty: it has none
   bool is_turned_by_motion = true;  // false: direction and speed are of another angle
 };
 
@@ -36,14 +36,14 @@ struct Design {
   model::Course course;
   std::vector<std::string> channels;
   std::vector<Place> places;
-  std::vector<Angle> angles;                // the first is the one that the bench goes through
-  Eigen::VectorXd continued_rad;            // the first with its turns counted on
-  Eigen::VectorXd moved;                    // 1 on the way through the positions, 0 elsewhere
-  std::vector<Eigen::VectorXd> senses;      // in which a reading may remember the direction; the usual one first
-  Eigen::VectorXd travel_rad;               // since the last reversal
-  Eigen::VectorXd velocity;                 // while it is read
-  Eigen::VectorXd above_K;                  // temperature
-  bool twin_is_warm = false;                // the bench's twin knows that temperature
+  std::vector<Angle> angles;            // the first is the one that the bench goes through
+  Eigen::VectorXd continued_rad;        // the first with its turns counted on
+  Eigen::VectorXd moved;                // 1 on the way through the positions, 0 elsewhere
+  std::vector<Eigen::VectorXd> senses;  // in which a reading may remember the direction; the usual one first
+  Eigen::VectorXd travel_rad;           // since the last reversal
+  Eigen::VectorXd velocity;             // while it is read
+  Eigen::VectorXd above_K;              // temperature
+  bool twin_is_warm = false;            // the bench's twin knows that temperature
   TimeSeries series;
   Eigen::MatrixXd shown;                    // samples x channels, as predicted, where errors may depend on it
   std::string shown_name;                   // "spot", "reading"

@@ -61,7 +61,9 @@ void AddTones(Collector& collect) {
       &frequency,
       [design = collect.shared()](const Eigen::VectorXd& f_Hz) { return design->series.ToneAt(f_Hz[0]); });
   if (model::Indicators(series.stretch).cols() > 1) return;
-  collect.Are([](const Eigen::VectorXd& f_Hz, int) { return WaveOf(SignalOf("tone", "", {{"frequency", f_Hz[0]}})); });
+  collect.Are([](const Eigen::VectorXd& f_Hz, int) {
+    return WaveOf(SignalOf("tone", "", {{"frequency", f_Hz[0]}}));
+  });
 }
 
 void AddSteps(Collector& collect) {
@@ -133,7 +135,8 @@ void AddGrowing(Collector& collect) {
   if (d.above_K.size() == 0) return;
   const Eigen::VectorXd about_mean_K = d.above_K.array() - d.above_K.mean();
   add(about_mean_K, "temperature");
-  if (d.twin_is_warm) collect.AreHarmonics(angle, Following({}, "temperature", d.above_K.mean(), RmsOf(about_mean_K)));
+  if (d.twin_is_warm)
+    collect.AreHarmonics(angle, Following({}, "temperature", d.above_K.mean(), RmsOf(about_mean_K)));
 }
 
 void AddTrends(Collector& collect) {

@@ -16,7 +16,8 @@ struct TurntableMoment {
   int setup = 0;
   int reading = 0;
   int direction = 1;  // of the turntable's last move
-  // Filled in where the mirror is looked at: angles of the turntable and of the multi-tooth table, temperature above the reference.
+  // Filled in where the mirror is looked at: angles of the turntable and of the multi-tooth table, temperature
+  // above the reference.
   double turntable_rad = 0.0, multitooth_rad = 0.0, above_K = 0.0;
 };
 

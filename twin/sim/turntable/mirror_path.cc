@@ -73,9 +73,8 @@ Eigen::Vector2d MirrorPath::Zero_rad(double above_K) const {
   return above_K * Eigen::Vector2d(c.x_per_kelvin_rad, c.y_per_kelvin_rad);
 }
 
-AutocollimatorReading MirrorPath::Look(TurntableMoment moment, const mechanics::StackState& axes,
-                                       double above_K, const Eigen::Vector2d& noise_rad,
-                                       const TurntableExtra& extra) {
+AutocollimatorReading MirrorPath::Look(TurntableMoment moment, const mechanics::StackState& axes, double above_K,
+                                       const Eigen::Vector2d& noise_rad, const TurntableExtra& extra) {
   moment.turntable_rad = axes.target_rad;
   moment.multitooth_rad = stand_.Seated_rad();
   moment.above_K = above_K;

@@ -9,7 +9,8 @@ namespace {
 /// A product of the device's angle and a course.
 class AngleSignal : public AngleEffect {
  public:
-  AngleSignal(const EffectSettings& effect, const Scenario& scenario) : product_(effect, FormatOf(scenario.bench)) {}
+  AngleSignal(const EffectSettings& effect, const Scenario& scenario)
+      : product_(effect, FormatOf(scenario.bench)) {}
 
   double DeviceError_rad(const AngleMoment& moment, double device_rad) const override {
     const double way_rad = moment.approach_rad != 0.0 ? moment.approach_rad : moment.velocity_rad_s;

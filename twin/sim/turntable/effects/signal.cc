@@ -10,7 +10,8 @@ class AutocollimatorSignal : public TurntableEffect {
   AutocollimatorSignal(const EffectSettings& effect, const Scenario& scenario)
       : product_(effect, FormatOf(scenario.bench)) {}
 
-  Eigen::Vector2d ReadingError_rad(const TurntableMoment& moment, const Eigen::Vector2d& reading_rad) const override {
+  Eigen::Vector2d ReadingError_rad(const TurntableMoment& moment,
+                                   const Eigen::Vector2d& reading_rad) const override {
     const model::Instant instant{.time_s = ToSeconds(moment.now),
                                  .reading = moment.reading,
                                  .direction = static_cast<double>(moment.direction),
