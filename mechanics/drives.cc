@@ -9,7 +9,6 @@ namespace twinbench::mechanics {
 namespace {
 
 constexpr double kQuiet_rad = 0.01 / 3600.0 * std::numbers::pi / 180.0;  // 0.01 arcsec
-constexpr Nanoseconds kQuiet = 10'000'000;
 
 }  // namespace
 
@@ -63,30 +62,37 @@ DrivenPlant::DrivenPlant(const StackParameters& parameters)
 
 void DrivenPlant::StartMove(Axis axis, double to_rad, double duration_s) {
   commands_.Start(axis, to_rad, duration_s, now_);
-  if (asleep_) stepped_ = now_;
-  asleep_ = false;
-  quiet_ = 0;
+  if (Settled()) stepped_ = now_;
+  quiet_[Index(axis)] = 0;
   OnStart();
 }
 
 void DrivenPlant::Stop(Axis axis) {
   if (!commands_.Stop(axis, kBraking_s, now_)) return;
-  quiet_ = 0;
+  quiet_[Index(axis)] = 0;
   OnStart();
 }
 
 void DrivenPlant::Advance(double dt_s) {
   now_ += ToNanoseconds(dt_s);
-  while (!asleep_ && stepped_ + period_ <= now_) Tick();
+  while (!Settled() && stepped_ + period_ <= now_) Tick();
 }
 
 void DrivenPlant::Tick() {
   Step(stepped_);
   stepped_ += period_;
   if (backlash_[0].active() || backlash_[1].active()) FollowBacklash();
-  if (!commands_.Ended(stepped_)) return;
-  quiet_ = Deviation_rad().cwiseAbs().maxCoeff() < kQuiet_rad ? quiet_ + period_ : 0;
-  asleep_ = quiet_ >= kQuiet;
+  WatchQuiet();
+}
+
+void DrivenPlant::WatchQuiet() {
+  const std::array<bool, 2> ended = {commands_.Ended(0, stepped_), commands_.Ended(1, stepped_)};
+  if (!ended[0] && !ended[1]) return;  // neither has been quiet since its move started
+  const Eigen::Vector2d deviation = Deviation_rad();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool near = ended[i] && std::abs(deviation[static_cast<Eigen::Index>(i)]) < kQuiet_rad;
+    quiet_[i] = near ? quiet_[i] + period_ : 0;
+  }
 }
 
 void DrivenPlant::FollowBacklash() {
@@ -110,7 +116,7 @@ StackState DrivenPlant::State() const {
 }
 
 void DrivenPlant::Mount(const ChainGeometry& geometry) {
-  if (!asleep_) throw std::logic_error("plant: mounting needs tables at rest");
+  if (!Settled()) throw std::logic_error("plant: mounting needs tables at rest");
   parameters_.geometry = geometry;
   OnMount();
 }

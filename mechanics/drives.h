@@ -37,7 +37,6 @@ class Commands {
   bool Ended(std::size_t axis, Nanoseconds time) const {
     return ToSeconds(time - start_[axis]) >= profile_[axis].duration_s();
   }
-  bool Ended(Nanoseconds time) const { return Ended(0, time) && Ended(1, time); }
   Nanoseconds start(std::size_t axis) const { return start_[axis]; }
   const QuinticProfile& profile(std::size_t axis) const { return profile_[axis]; }
   /// Until both have ended.
@@ -59,7 +58,8 @@ class DrivenPlant : public Plant {
   void Stop(Axis axis) final;
   double CommandedEnd_rad(Axis axis) const final { return commands_.profile(Index(axis)).to_rad(); }
   void Advance(double dt_s) final;
-  bool Settled() const final { return asleep_; }
+  using Plant::Settled;
+  bool Settled(Axis axis) const final { return quiet_[Index(axis)] >= kQuiet; }
   StackState State() const final;
   void Mount(const ChainGeometry& geometry) final;
 
@@ -79,17 +79,19 @@ class DrivenPlant : public Plant {
   Nanoseconds period() const { return period_; }
 
  private:
+  static constexpr Nanoseconds kQuiet = 10'000'000;
+
   void Tick();
   void FollowBacklash();
+  void WatchQuiet();
 
   StackParameters parameters_;
   Commands commands_;
   std::array<Backlash, 2> backlash_;
   Nanoseconds period_;
   Nanoseconds now_ = 0;
-  Nanoseconds stepped_ = 0;  // up to when the periods are done
-  Nanoseconds quiet_ = 0;    // for how long the encoders have been near their commands
-  bool asleep_ = true;
+  Nanoseconds stepped_ = 0;                              // up to when the periods are done
+  std::array<Nanoseconds, 2> quiet_ = {kQuiet, kQuiet};  // for how long each encoder has been near its command
 };
 
 /// Makers behind MakePlant.

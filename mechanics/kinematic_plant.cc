@@ -27,7 +27,8 @@ class KinematicPlant : public Plant {
     for (std::size_t i = 0; i < 2; ++i) backlash_[i].Follow(commands_.At(i, now_).position_rad);
   }
 
-  bool Settled() const override { return commands_.Ended(now_); }
+  using Plant::Settled;
+  bool Settled(Axis axis) const override { return commands_.Ended(Index(axis), now_); }
 
   StackState State() const override {
     StackState state;

@@ -57,9 +57,12 @@ class Plant {
 
   virtual StackState State() const = 0;
 
-  /// True when both profiles have ended and both encoders were within 0.01 arcsec of their commands for 10 ms (the
-  /// kinematic plant: at once). From then until the next move the plant sleeps and Advance costs nothing.
-  virtual bool Settled() const = 0;
+  /// True when the axis' profile has ended and its encoder was within 0.01 arcsec of the command for the last 10 ms
+  /// (the kinematic plant: at once), whatever the other axis does; whose reaction can push it out again.
+  virtual bool Settled(Axis axis) const = 0;
+
+  /// True when both have settled. From then until the next move the plant sleeps and Advance costs nothing.
+  bool Settled() const { return Settled(Axis::kTarget) && Settled(Axis::kReference); }
 
   /// Takes over what a new mounting changes: position of the reference's body and of the grating.
   /// @throws std::logic_error unless settled.

@@ -380,6 +380,35 @@ TEST(Plant, SleepsWhenSettledAndWakesForTheNextMove) {
   }
 }
 
+TEST(Plant, ATableThatHasArrivedIsSettledWhileTheOtherStillMoves) {
+  for (Fidelity fidelity : kAll) {
+    const auto plant = MakePlant(fidelity, ReseatedStack());
+    plant->StartMove(Axis::kTarget, kStep, 0.6);
+    plant->StartMove(Axis::kReference, -kStep, 6.0);
+    EXPECT_FALSE(plant->Settled(Axis::kTarget));
+    plant->Advance(1.2);  // a sixth of a second is enough for the servo's 30 Hz, see SettlesFasterWithAFasterServo
+    EXPECT_TRUE(plant->Settled(Axis::kTarget)) << static_cast<int>(fidelity);
+    EXPECT_FALSE(plant->Settled(Axis::kReference));
+    EXPECT_FALSE(plant->Settled());
+    EXPECT_NEAR(plant->State().target_encoder_rad, kStep, 0.01 * kArcsec);
+    plant->AdvanceUntilSettled(10.0);
+    EXPECT_TRUE(plant->Settled(Axis::kTarget) && plant->Settled(Axis::kReference));
+  }
+}
+
+TEST(Plant, AReactionThatPushesATableOutOfItsWindowUnsettlesIt) {
+  for (Fidelity fidelity : kAll) {
+    const auto plant = MakePlant(fidelity, ReseatedStack());
+    plant->StartMove(Axis::kReference, kStep, 0.6);
+    EXPECT_TRUE(plant->Settled(Axis::kTarget)) << "nothing has happened to it yet";
+    plant->Advance(
+        0.2);  // some arcsec, see ReactionTorqueTurnsTheTableThatHolds; the kinematic plant knows no torque
+    EXPECT_EQ(plant->Settled(Axis::kTarget), fidelity == Fidelity::kKinematic);
+    plant->AdvanceUntilSettled(2.0);
+    EXPECT_TRUE(plant->Settled(Axis::kTarget));
+  }
+}
+
 TEST(Plant, TakesOverANewMountingAtRestOnly) {
   StackParameters p = ReseatedStack();
   for (Fidelity fidelity : kAll) {

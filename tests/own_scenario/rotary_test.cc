@@ -41,7 +41,7 @@ std::vector<OwnKey> Table(const std::string& table) {
       Change(table + ".half_frequency_tilt_arcsec", "2.0"),
       Change(table + ".half_frequency_radial_um", "3.0"),
       Change(table + ".backlash_arcsec", "4.0"),
-      Change(table + ".speed_deg_s", "15.0"),
+      Change(table + ".speed_deg_s", "5.0"),
       Change(table + ".move_time_s", "2.0"),
       Change(table + ".settle_s", "1.5"),
       Change(table + ".random.orders", "5"),

@@ -92,6 +92,42 @@ TEST(Twin, MovesTakeTheirTimeOnTheVirtualClock) {
   EXPECT_EQ(bench.clock.Now(), Time{} + std::chrono::milliseconds(1000 + 3400));
 }
 
+TEST(Twin, ATableThatHasArrivedSaysSoWhileTheOtherStillMoves) {
+  for (const char* fidelity : {"kinematic", "linear", "bullet"}) {
+    Scenario scenario = Quiet();
+    scenario.mechanics.fidelity = fidelity;
+    scenario.reference.speed_rad_s = 5.0 * units::deg;
+    Twin twin(scenario);
+    RotaryBench bench = twin.Bench();
+    bench.target.StartMove(30.0 * units::deg);
+    bench.reference.StartMove(-30.0 * units::deg);  // for 6 s
+    bench.target.WaitSettled();
+    EXPECT_EQ(bench.clock.Now(), Time{} + std::chrono::milliseconds(1000 + 400)) << fidelity;
+    EXPECT_TRUE(bench.target.State().in_position) << fidelity;
+    EXPECT_TRUE(bench.reference.State().moving) << fidelity;
+    EXPECT_FALSE(bench.reference.State().in_position) << fidelity;
+    bench.reference.WaitSettled();
+    EXPECT_EQ(bench.clock.Now(), Time{} + std::chrono::milliseconds(6000 + 400)) << fidelity;
+    EXPECT_NO_THROW(bench.fixture.Mount(1, 0.0, 0.0)) << fidelity;
+  }
+}
+
+TEST(Twin, WhoMountsWaitsForTheServosButNotForAMove) {
+  Scenario scenario = Quiet();
+  scenario.mechanics.fidelity = "linear";
+  scenario.target.settle_s = scenario.reference.settle_s = 0.0;
+  Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  bench.target.StartMove(10.0 * units::deg);
+  bench.clock.Wait(std::chrono::milliseconds(590));
+  EXPECT_THROW(bench.fixture.Mount(1, 0.0, 0.0), BenchError);
+  bench.clock.Wait(std::chrono::milliseconds(10));  // the profile is over, the servo is not
+  EXPECT_FALSE(bench.target.State().in_position);
+  EXPECT_NO_THROW(bench.fixture.Mount(1, 0.0, 0.0));
+  EXPECT_TRUE(bench.target.State().in_position);
+  EXPECT_LT(bench.clock.Now(), Time{} + std::chrono::milliseconds(600 + 200));  // a 30 Hz servo, some 100 ms
+}
+
 TEST(Twin, ABlockTakesTheTimeOfItsConversions) {
   Twin twin(Quiet());
   RotaryBench bench = twin.Bench();

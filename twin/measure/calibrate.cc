@@ -92,8 +92,8 @@ Unknowns PriorValues() {
 /// Information of the prior: gains and rolls; the mounting constants have none.
 Normal PriorInformation(double scale) {
   Normal information = Normal::Zero();
-  const Matrix6 prior = scale * Calibration::PriorCovariance().inverse();
-  information.topLeftCorner<kCalibrationParameters, kCalibrationParameters>() = prior;
+  information.diagonal().head<kCalibrationParameters>() =
+      scale * Calibration::PriorCovariance().diagonal().cwiseInverse();
   return information;
 }
 

@@ -1,7 +1,7 @@
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/separate/separability.h"
 
 namespace twinbench::separate {
@@ -45,10 +45,7 @@ Eigen::MatrixXd LostBasis(Table table, const std::vector<NotSeparable>& lost, co
   for (Eigen::Index r = 0; r < columns.rows(); ++r) {
     if (!usable[static_cast<std::size_t>(r)]) columns.row(r).setZero();
   }
-  if (columns.cols() == 0) return columns;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-  qr.setThreshold(1e-9);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+  return columns.cols() == 0 ? columns : OrthonormalBasisOf(columns, 1e-9);
 }
 
 TableErrors RemoveNotSeparable(const TableErrors& errors, Table table, const std::vector<NotSeparable>& lost) {

@@ -1,10 +1,10 @@
 #include "twin/separate/normal_inverse.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate {
 namespace {
@@ -106,16 +106,12 @@ Eigen::MatrixXd ScaledNull(const Eigen::MatrixXd& null_rest, const Eigen::Vector
 
 /// Inverse of a symmetric matrix of unit scale, only its lower half read; `lost` gets the directions of no weight.
 Eigen::MatrixXd InvertScaled(const Eigen::MatrixXd& scaled, Eigen::MatrixXd& lost) {
-  const Eigen::LLT<Eigen::MatrixXd> llt(scaled);
   lost.resize(scaled.rows(), 0);
-  if (llt.info() == Eigen::Success && llt.rcond() > kDefective) {
-    return llt.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.rows()));
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  const Eigen::VectorXd& values = eigen.eigenvalues();
+  if (const auto inverse = InverseOfPositive(scaled, kDefective)) return *inverse;
+  const auto [values, vectors] = EigenOfSymmetric(scaled);
   const Eigen::Index none = (values.array() <= kDefective * values.maxCoeff()).count();
-  lost = eigen.eigenvectors().leftCols(none);
-  const auto kept = eigen.eigenvectors().rightCols(values.size() - none);
+  lost = vectors.leftCols(none);
+  const auto kept = vectors.rightCols(values.size() - none);
   return kept * values.tail(values.size() - none).cwiseInverse().asDiagonal() * kept.transpose();
 }
 

@@ -1,6 +1,4 @@
-#include <Eigen/LU>
-#include <Eigen/QR>
-
+#include "twin/core/linear_algebra.h"
 #include "twin/separate/published.h"
 
 namespace twinbench::separate {
@@ -27,8 +25,7 @@ Eigen::MatrixXd PublishedMatrix(int n) {
 }
 
 Eigen::MatrixXd SolvePublished(const Eigen::MatrixXd& test_1, const Eigen::MatrixXd& test_2) {
-  const Eigen::PartialPivLU<Eigen::MatrixXd> elimination(PublishedMatrix(static_cast<int>(test_1.rows())));
-  return elimination.solve(RightHandSide(test_1, test_2));
+  return SolveSquare(PublishedMatrix(static_cast<int>(test_1.rows())), RightHandSide(test_1, test_2));
 }
 
 Eigen::MatrixXd SolveTwoTestsLeastSquares(const Eigen::MatrixXd& test_1, const Eigen::MatrixXd& test_2) {
@@ -38,7 +35,7 @@ Eigen::MatrixXd SolveTwoTestsLeastSquares(const Eigen::MatrixXd& test_1, const E
   A(2 * n, n - 1) = A(2 * n, n) = 1.0;  // the row that the elimination drops
   Eigen::MatrixXd right(2 * n + 1, test_1.cols());
   right << RightHandSide(test_1, test_2), test_2.bottomRows(1);
-  return A.colPivHouseholderQr().solve(right);
+  return SolveLeastSquares(A, right);
 }
 
 }  // namespace twinbench::separate

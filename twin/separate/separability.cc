@@ -1,9 +1,9 @@
 #include "twin/separate/separability.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/separate/lost_components.h"
 
@@ -82,16 +82,6 @@ Block OrderBlock(const Design& design, const OrderBasis& basis) {
   return block;
 }
 
-Eigen::MatrixXd NullSpace(const Eigen::MatrixXd& d) {
-  // Square the block up with zero rows, so that V is complete without asking for more.
-  Eigen::MatrixXd square = Eigen::MatrixXd::Zero(std::max(d.rows(), d.cols()), d.cols());
-  square.topRows(d.rows()) = d;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(square, Eigen::ComputeFullV);
-  const auto& sigma = svd.singularValues();
-  const Eigen::Index rank = (sigma.array() > kNullTolerance * sigma[0]).count();
-  return svd.matrixV().rightCols(d.cols() - rank);
-}
-
 /// Null vectors of one order, spread over the positions and put into the columns of the design.
 Eigen::MatrixXd Spread(const Design& design, const OrderBasis& basis, const Block& block,
                        const Eigen::MatrixXd& null) {
@@ -124,7 +114,7 @@ Separability FindSeparability(const Design& design) {
   for (int m = 0; 2 * m <= design.n; ++m) {
     const OrderBasis basis(m, design.n);
     const Block block = OrderBlock(design, basis);
-    const Eigen::MatrixXd null = NullSpace(block.d);
+    const Eigen::MatrixXd null = NullSpaceOf(block.d, kNullTolerance);
     nulls.push_back({m, basis.parts, null.topRows(kSeries * basis.parts)});
     if (null.cols() > 0) Append(result.null_space, Spread(design, basis, block, null));
   }

@@ -1,9 +1,9 @@
 #include "twin/separate/separator.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/separate/prediction.h"
 #include "twin/separate/residuals.h"
 
@@ -20,8 +20,7 @@ double LargestRatio(const std::vector<Cell>& cells, const Vector4& u) {
   for (const Cell& cell : cells) {
     const Matrix4 ratio = scaled.asDiagonal() * cell.weight * scaled.asDiagonal();
     if (ratio.trace() <= largest) continue;  // the trace is never below the largest eigenvalue
-    const Eigen::SelfAdjointEigenSolver<Matrix4> eigen(ratio, Eigen::EigenvaluesOnly);
-    largest = std::max(largest, eigen.eigenvalues()[3]);
+    largest = std::max(largest, EigenvaluesOfSymmetric(ratio)[3]);
   }
   return largest;
 }

@@ -74,7 +74,7 @@ bool Axes::Settles(mechanics::Axis axis, Duration within) {
   CatchUp();
   const bool goes_on = d.given_up == queue_.Now();  // the same looks, however they are cut into calls
   if (!goes_on) {
-    if (plant_->Settled()) return true;
+    if (plant_->Settled(axis)) return true;
     d.watched_from = queue_.Now();
   }
   for (;;) {
@@ -83,7 +83,7 @@ bool Axes::Settles(mechanics::Axis axis, Duration within) {
     if (next > patience_end) break;
     queue_.RunUntil(next);
     CatchUp();
-    if (plant_->Settled()) return true;
+    if (plant_->Settled(axis)) return true;
   }
   queue_.RunUntil(patience_end);
   d.given_up = patience_end;
@@ -92,7 +92,7 @@ bool Axes::Settles(mechanics::Axis axis, Duration within) {
 
 bool Axes::InPosition(mechanics::Axis axis) {
   CatchUp();
-  return queue_.Now() >= drive(axis).arrival + FromSeconds(drive(axis).settle_s) && plant_->Settled();
+  return queue_.Now() >= drive(axis).arrival + FromSeconds(drive(axis).settle_s) && plant_->Settled(axis);
 }
 
 void Axes::Stop(mechanics::Axis axis) {
@@ -105,8 +105,12 @@ void Axes::Stop(mechanics::Axis axis) {
   last_arrival_ = std::max(last_arrival_, d.arrival);
 }
 
-bool Axes::AtRest() {
-  CatchUp();
+bool Axes::ComeToRest() {
+  if (Moving(mechanics::Axis::kTarget) || Moving(mechanics::Axis::kReference)) return false;
+  const Time patience_end = queue_.Now() + std::chrono::seconds(1);
+  for (CatchUp(); !plant_->Settled() && queue_.Now() < patience_end; CatchUp()) {
+    queue_.RunUntil(queue_.Now() + kSettleCheck);
+  }
   return plant_->Settled();
 }
 

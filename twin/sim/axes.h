@@ -32,7 +32,9 @@ class Axes {
   bool Moving(mechanics::Axis axis) const { return queue_.Now() < drive(axis).arrival; }
   double Commanded_rad(mechanics::Axis axis) const { return drive(axis).commanded_rad; }
 
-  bool AtRest();
+  /// Lets the servos of both axes grow quiet, for at most a second: the one that arrives last can push the other
+  /// out of its window again. @return whether they are; false at once while an axis moves.
+  bool ComeToRest();
   void Mount(const mechanics::ChainGeometry& geometry);
 
   /// Angles and deflections at the queue's time.

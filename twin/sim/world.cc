@@ -25,7 +25,7 @@ TableState World::StateOf(Axis axis) {
 }
 
 void World::Mount(int setup, double clamp_rad, double reseat_rad) {
-  if (!axes_.AtRest())
+  if (!axes_.ComeToRest())
     throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while a table moves");
   const bool reseats = actual().procedure.clamping == "reseat";
   axes_.Mount(path_.stand().Mount(path_.effects().Actual({clamp_rad, reseat_rad, reseats})));

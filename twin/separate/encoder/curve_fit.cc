@@ -1,10 +1,10 @@
 #include "twin/separate/encoder/curve_fit.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 
 namespace twinbench::separate::encoder {
@@ -90,10 +90,9 @@ Normal NormalOf(const PassGroup& group, const ScaleAngles& th_rad, int highest) 
 /// if the orders are not determined.
 double Inflation(const Normal& normal, int order, int readings) {
   const int before = normal.columns.before_orders, unknowns = before + 2 * order;
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(normal.matrix.topLeftCorner(unknowns, unknowns));
-  if (cholesky.info() != Eigen::Success) return INFINITY;
-  const Eigen::MatrixXd half = cholesky.matrixL().solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
-  return half.rightCols(2 * order).colwise().squaredNorm().maxCoeff() * readings / 2.0;
+  const auto half = InverseCholeskyFactor(normal.matrix.topLeftCorner(unknowns, unknowns));
+  if (!half) return INFINITY;
+  return half->rightCols(2 * order).colwise().squaredNorm().maxCoeff() * readings / 2.0;
 }
 
 /// Angles of the turn that were read, to a ten-thousandth of it.
@@ -145,9 +144,7 @@ int HighestOrder(const PassGroup& group, const ScaleAngles& th_rad, int most, do
 
 CurveFit FitCurve(const PassGroup& group, const ScaleAngles& th_rad, int highest) {
   const Normal normal = NormalOf(group, th_rad, highest);
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(normal.matrix);
-  const Eigen::VectorXd solution = cholesky.solve(normal.right);
-  const Eigen::MatrixXd inverse = cholesky.solve(Eigen::MatrixXd::Identity(solution.size(), solution.size()));
+  const auto [solution, inverse] = SolveNormal(normal.matrix, normal.right);
   CurveFit fit;
   FillPasses(normal.columns, solution, fit);
   FillOrders(normal, solution, inverse, fit);

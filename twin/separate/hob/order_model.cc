@@ -1,11 +1,12 @@
 #include "twin/separate/hob/order_model.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate::hob {
 namespace {
@@ -27,6 +28,10 @@ Eigen::MatrixXd RealBlocks(const Eigen::MatrixXcd& c) {
       real.block<2, 2>(2 * r, 2 * col) << c(r, col).real(), -c(r, col).imag(), c(r, col).imag(), c(r, col).real();
   }
   return real;
+}
+
+Eigen::MatrixXd AllNaN(Eigen::Index n) {
+  return Eigen::MatrixXd::Constant(n, n, kNaN);
 }
 
 }  // namespace
@@ -61,17 +66,14 @@ OrderModel ModelOrder(int order, const Positions& positions, const std::vector<i
 }
 
 OrderSolution SolveOrder(const Eigen::MatrixXcd& x, const OrderModel& model) {
-  const Eigen::MatrixXd lower = model.cov.llt().matrixL();
   const Eigen::MatrixXd design = RealBlocks(x);
-  const Eigen::MatrixXd weight =
-      lower.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(design.rows(), design.rows()));
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(weight * design, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(kRank);
+  const Eigen::MatrixXd weight = InverseCholeskyFactor(model.cov).value_or(AllNaN(model.cov.rows()));
+  const auto [from_readings, rank] = SolveRanked(weight * design, weight, kRank);
   OrderSolution solution;
-  solution.from_readings = svd.solve(weight);
+  solution.from_readings = from_readings;
   solution.x = solution.from_readings * Real(model.reading);
   solution.chi2 = (weight * (Real(model.reading) - design * solution.x)).squaredNorm();
-  solution.dof = static_cast<int>(design.rows() - svd.rank());
+  solution.dof = static_cast<int>(design.rows() - rank);
   return solution;
 }
 

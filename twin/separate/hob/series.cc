@@ -1,9 +1,10 @@
 #include "twin/separate/hob/series.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 
 namespace twinbench::separate::hob {
@@ -57,7 +58,7 @@ double PhaseUncertainty(const Coefficient& c) {
 
 double LargestUncertainty(const Coefficient& c) {
   if (!c.cov.allFinite()) return kNaN;
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(c.cov, Eigen::EigenvaluesOnly).eigenvalues()[1]);
+  return std::sqrt(EigenvaluesOfSymmetric(c.cov)[1]);
 }
 
 Coefficient Shifted(const Coefficient& c, int order, double shift_rad) {

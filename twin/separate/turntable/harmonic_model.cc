@@ -1,11 +1,11 @@
 #include "twin/separate/turntable/harmonic_model.h"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate::turntable {
 namespace {
@@ -56,7 +56,7 @@ HarmonicModel FitHarmonics(const AngleSeries& series, int highest_order) {
                      "0 to " + std::to_string(MostHarmonics(n)) + " for " + std::to_string(n) + " positions");
   }
   const Eigen::MatrixXd basis = BasisAt(series.position_rad, highest_order);
-  const Eigen::MatrixXd to_coefficients = basis.householderQr().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd to_coefficients = PseudoInverseOf(basis);
   HarmonicModel model;
   model.highest_order = highest_order;
   model.coefficients_rad = to_coefficients * series.value_rad;
@@ -86,7 +86,7 @@ int ChooseHighestOrder(const AngleSeries& series) {
   const auto n = static_cast<int>(series.position_rad.size());
   const Eigen::MatrixXd basis = BasisAt(series.position_rad, MostHarmonics(n));
   // Orders are nested: a model of order k leaves the part of Q^T value that lies behind its 2 k + 1 columns.
-  const Eigen::VectorXd rotated_rad = basis.householderQr().householderQ().transpose() * series.value_rad;
+  const Eigen::VectorXd rotated_rad = RotatedByQ(basis, series.value_rad);
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (int order = 0; 2 * order + 3 < n; ++order) {

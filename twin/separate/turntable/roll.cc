@@ -1,8 +1,8 @@
 #include "twin/separate/turntable/roll.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/separate/statistics.h"
 
 namespace twinbench::separate::turntable {
@@ -15,7 +15,7 @@ AutocollimatorNoise NoiseOfResiduals(const Eigen::VectorXd& x_rad, const Eigen::
   if (dof < 1.0 + kLeastDof) return {};
   Eigen::Matrix2d squares;
   squares << x_rad.squaredNorm(), x_rad.dot(y_rad), x_rad.dot(y_rad), y_rad.squaredNorm();
-  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(squares).eigenvalues()[0];
+  const double least = EigenvaluesOfSymmetric(squares)[0];
   const double u_rad = std::sqrt(std::max(least, 0.0) / (dof - 1.0));
   return {u_rad, u_rad, static_cast<int>(std::lround(dof - 1.0))};
 }

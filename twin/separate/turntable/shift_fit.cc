@@ -1,10 +1,10 @@
 #include "twin/separate/turntable/shift_fit.h"
 
-#include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
 
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/separate/turntable/lost_harmonics.h"
 
 namespace twinbench::separate::turntable {
@@ -29,11 +29,11 @@ ShiftFit::ShiftFit(const StopGrid& grid)
   const Eigen::MatrixXd choices = Choices();
   Eigen::MatrixXd whole = normal + choices.transpose() * choices;
   whole.diagonal() += (readings_of_.array() == 0.0).cast<double>().matrix();
-  const Eigen::LLT<Eigen::MatrixXd> llt(whole);
-  determined_ = llt.info() == Eigen::Success && llt.rcond() > kDefective;
+  const auto inverse = InverseOfPositive(whole, kDefective);
+  determined_ = inverse.has_value();
   cofactor_ = Eigen::MatrixXd::Constant(unknowns_, unknowns_, kNaN);
   if (!determined_) return;
-  inverse_ = llt.solve(Eigen::MatrixXd::Identity(unknowns_, unknowns_));
+  inverse_ = *inverse;
   const Eigen::MatrixXd projector = inverse_ * normal;
   cofactor_ = projector * inverse_;
   dof_ = static_cast<double>(grid_.stops.size()) - projector.trace();

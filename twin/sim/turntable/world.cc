@@ -34,7 +34,7 @@ void TurntableWorld::IndexTo(int tooth) {
 }
 
 void TurntableWorld::Mount(int setup, double tilt_rad, double azimuth_rad, double eccentricity_m, int shift_teeth) {
-  if (!axes_.AtRest())
+  if (!axes_.ComeToRest())
     throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while the turntable moves");
   const double shift_rad = shift_teeth * 2.0 * units::kPi / actual().multitooth.teeth;
   path_.stand().Mount(tilt_rad, azimuth_rad, eccentricity_m, shift_rad);

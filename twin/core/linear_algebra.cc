@@ -1,0 +1,78 @@
+#include "twin/core/linear_algebra.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+
+namespace twinbench {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+RankedSolution SolveRanked(const MatrixXd& a, const MatrixXd& b, double threshold) {
+  Eigen::JacobiSVD<MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  svd.setThreshold(threshold);
+  return {svd.solve(b), svd.rank()};
+}
+
+MatrixXd NullSpaceOf(const MatrixXd& a, double threshold) {
+  // Square the matrix up with zero rows, so that V is complete without asking for more.
+  MatrixXd square = MatrixXd::Zero(std::max(a.rows(), a.cols()), a.cols());
+  square.topRows(a.rows()) = a;
+  const Eigen::JacobiSVD<MatrixXd> svd(square, Eigen::ComputeFullV);
+  const VectorXd& sigma = svd.singularValues();
+  const Eigen::Index rank = (sigma.array() > threshold * sigma[0]).count();
+  return svd.matrixV().rightCols(a.cols() - rank);
+}
+
+MatrixXd OrthonormalBasisOf(const MatrixXd& a, double threshold) {
+  Eigen::ColPivHouseholderQR<MatrixXd> qr(a);
+  qr.setThreshold(threshold);
+  return qr.householderQ() * MatrixXd::Identity(a.rows(), qr.rank());
+}
+
+MatrixXd SolveLeastSquares(const MatrixXd& a, const MatrixXd& b) {
+  return a.colPivHouseholderQr().solve(b);
+}
+
+MatrixXd PseudoInverseOf(const MatrixXd& a) {
+  return a.householderQr().solve(MatrixXd::Identity(a.rows(), a.rows()));
+}
+
+VectorXd RotatedByQ(const MatrixXd& a, const VectorXd& v) {
+  return a.householderQr().householderQ().transpose() * v;
+}
+
+MatrixXd SolveSquare(const MatrixXd& a, const MatrixXd& b) {
+  return a.partialPivLu().solve(b);
+}
+
+std::optional<MatrixXd> InverseOfPositive(const MatrixXd& a, double least_condition) {
+  const Eigen::LLT<MatrixXd> llt(a);
+  if (llt.info() != Eigen::Success || !(llt.rcond() > least_condition)) return std::nullopt;
+  return llt.solve(MatrixXd::Identity(a.rows(), a.rows()));
+}
+
+std::optional<MatrixXd> InverseCholeskyFactor(const MatrixXd& a) {
+  const Eigen::LLT<MatrixXd> llt(a);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  return llt.matrixL().solve(MatrixXd::Identity(a.rows(), a.rows()));
+}
+
+NormalSolution SolveNormal(const MatrixXd& a, const VectorXd& b) {
+  const Eigen::LLT<MatrixXd> llt(a);
+  return {llt.solve(b), llt.solve(MatrixXd::Identity(a.rows(), a.rows()))};
+}
+
+SymmetricEigen EigenOfSymmetric(const MatrixXd& a) {
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(a);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+VectorXd EigenvaluesOfSymmetric(const MatrixXd& a) {
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+}  // namespace twinbench

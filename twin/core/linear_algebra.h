@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+/// Decompositions of dense real matrices, behind functions: Eigen's are templates that take seconds of every source
+/// that names one, so they are compiled here once. They look at numbers, not at units; results are the same bits
+/// wherever they are called from.
+namespace twinbench {
+
+/// Solution of a least-squares problem that need not determine all unknowns.
+struct RankedSolution {
+  Eigen::MatrixXd x;  // one column for each of the right-hand sides; the shortest where several are as good
+  Eigen::Index rank = 0;
+};
+
+/// Least squares by singular values: minimises |a x - b| for each column of b.
+/// @param threshold  Singular values below this part of the largest are zero.
+RankedSolution SolveRanked(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double threshold);
+
+/// Orthonormal columns that span the directions x with a x = 0.
+/// @param threshold  Singular values up to this part of the largest are zero.
+Eigen::MatrixXd NullSpaceOf(const Eigen::MatrixXd& a, double threshold);
+
+/// Orthonormal columns that span what the columns of `a` span.
+/// @param threshold  Pivots up to this part of the largest are zero.
+Eigen::MatrixXd OrthonormalBasisOf(const Eigen::MatrixXd& a, double threshold);
+
+/// Least squares of full rank by pivoted Householder reflections: minimises |a x - b| for each column of b.
+Eigen::MatrixXd SolveLeastSquares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// The matrix that takes observations to the least-squares coefficients of the columns of `a`, which has full rank.
+Eigen::MatrixXd PseudoInverseOf(const Eigen::MatrixXd& a);
+
+/// Q^T v of a = Q R. Behind its first k entries lies what the first k columns of `a` leave of v.
+Eigen::VectorXd RotatedByQ(const Eigen::MatrixXd& a, const Eigen::VectorXd& v);
+
+/// x of a x = b for a square, regular matrix.
+Eigen::MatrixXd SolveSquare(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// Inverse of a positive definite matrix, of which only the lower half is read.
+/// @return nothing if it is not positive definite, or its reciprocal condition is not above the least.
+std::optional<Eigen::MatrixXd> InverseOfPositive(const Eigen::MatrixXd& a, double least_condition);
+
+/// Inverse of the Cholesky factor L of a = L L^T, so that a^-1 = L^-T L^-1; nothing if `a` is not positive
+/// definite.
+std::optional<Eigen::MatrixXd> InverseCholeskyFactor(const Eigen::MatrixXd& a);
+
+/// Solution of positive definite normal equations, and the inverse of their matrix; NaN or noise if it has none.
+struct NormalSolution {
+  Eigen::VectorXd x;
+  Eigen::MatrixXd inverse;
+};
+NormalSolution SolveNormal(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+
+/// Eigenvalues of a symmetric matrix in ascending order, and its eigenvectors as columns.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+SymmetricEigen EigenOfSymmetric(const Eigen::MatrixXd& a);
+
+/// The same without the eigenvectors.
+Eigen::VectorXd EigenvaluesOfSymmetric(const Eigen::MatrixXd& a);
+
+}  // namespace twinbench
