@@ -4,6 +4,7 @@
 #include "tools/twinbench/commands.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
+#include "twin/core/signal_effect.h"
 
 namespace twinbench::tools {
 namespace {
@@ -16,16 +17,32 @@ std::string Join(const std::vector<std::string>& words) {
   return text;
 }
 
+void PrintParameters(const EffectEntry& effect) {
+  for (const EffectParameter& p : effect.parameters)
+    fmt::print("    {} = {:g}   {}\n", p.Key(), p.default_SI / p.to_SI, p.meaning);
+}
+
+/// Structure that no other effect has: a block says its point and its kind.
+void PrintSignals(const BenchFormat& bench) {
+  fmt::print("{}: structure that has no name: what enters at a point, times its course\n", kSignalEffect);
+  fmt::print("    point = {}\n", Join(bench.points));
+  for (const std::string& kind : SignalKinds()) {
+    const std::vector<std::string> by = SignalArguments(kind, bench);
+    fmt::print("  signal = \"{}\"{}\n", kind, by.empty() ? "" : "   by = " + Join(by));
+    PrintParameters(SignalEntry(kind, "", bench));
+  }
+  fmt::print("  times = {}   what its size follows; all but direction with about_... and per_...\n",
+             Join(SignalFactors()));
+}
+
 void PrintEffects(const BenchFormat& bench) {
   fmt::print("\nBench {}\n\n", bench.name);
   for (const EffectEntry& effect : bench.effects) {
     fmt::print("{}: {}\n", effect.name, effect.title);
     if (!effect.places.empty()) fmt::print("    where = {}\n", Join(effect.places));
-    for (const EffectParameter& p : effect.parameters) {
-      const std::string key = p.unit == "1" ? p.name : p.name + "_" + p.unit;
-      fmt::print("    {} = {:g}   {}\n", key, p.default_SI / p.to_SI, p.meaning);
-    }
+    PrintParameters(effect);
   }
+  PrintSignals(bench);
 }
 
 void PrintAllEffects() {
