@@ -5,8 +5,8 @@
 
 #include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/encoder_twin_run.h"
+#include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/names.h"
-#include "twin/diagnose/encoder/next_measurement.h"
 
 // Each named family against the twin's effect: two implementations that share no code.
 namespace twinbench::diagnose::encoder {
@@ -214,14 +214,17 @@ TEST(EncoderFamilies, GiveCausesOfOneOrderTheSameColumnsAndPriors) {
 }
 
 TEST(EncoderNextMeasurement, SplitsWhatOneRunCannot) {
-  EXPECT_THAT(NextMeasurement("signal_offset", "eccentricity"), testing::HasSubstr("raw sine and cosine"));
-  EXPECT_THAT(NextMeasurement("hysteresis", "backlash"), testing::HasSubstr("behind a reversal"));
-  EXPECT_THAT(NextMeasurement("backlash", "latency"), testing::HasSubstr("speed"));
-  EXPECT_THAT(NextMeasurement("eccentricity", "reference_fault"), testing::HasSubstr("turned on the shaft"));
+  EXPECT_THAT(benches::encoder::NextMeasurement("signal_offset", "eccentricity"),
+              testing::HasSubstr("raw sine and cosine"));
+  EXPECT_THAT(benches::encoder::NextMeasurement("hysteresis", "backlash"), testing::HasSubstr("behind a reversal"));
+  EXPECT_THAT(benches::encoder::NextMeasurement("backlash", "latency"), testing::HasSubstr("speed"));
+  EXPECT_THAT(benches::encoder::NextMeasurement("eccentricity", "reference_fault"),
+              testing::HasSubstr("turned on the shaft"));
   for (const EffectEntry& a : EffectCatalogue(kEncoderBench)) {
     for (const EffectEntry& b : EffectCatalogue(kEncoderBench)) {
-      EXPECT_FALSE(NextMeasurement(a.name, b.name).empty());
-      EXPECT_EQ(NextMeasurement(a.name, b.name), NextMeasurement(b.name, a.name));
+      EXPECT_FALSE(benches::encoder::NextMeasurement(a.name, b.name).empty());
+      EXPECT_EQ(benches::encoder::NextMeasurement(a.name, b.name),
+                benches::encoder::NextMeasurement(b.name, a.name));
     }
   }
 }

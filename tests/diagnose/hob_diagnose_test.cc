@@ -200,11 +200,13 @@ TEST(HobDiagnosis, ExtendsTheScenarioSoThatNothingIsLeft) {
   const DiagnosisRun run = Diagnose(readings, scenario, Options());
   const std::string toml = ExtendedToml(scenario, run, "a test");
   const Scenario extended = ParseScenario(toml, "extended.toml", ".");
-  ASSERT_EQ(extended.effects.size(), 1U);
+  ASSERT_EQ(extended.effects.size(), 2U);
   EXPECT_EQ(extended.effects[0].name, "worm");
-  ASSERT_EQ(extended.empiricals.size(), 1U);
-  EXPECT_EQ(extended.empiricals[0].channel, "transmission");
-  EXPECT_EQ(std::ssize(extended.empiricals[0].reading), std::ssize(readings));
+  EXPECT_EQ(extended.effects[1].signal, "harmonic");
+  EXPECT_EQ(extended.effects[1].where, "transmission");
+  EXPECT_EQ(extended.effects[1].parameters.at("order"), 7.0);
+  EXPECT_NEAR(extended.effects[1].parameters.at("amplitude"), 0.3 * arcsec, 0.03 * arcsec);
+  EXPECT_TRUE(extended.empiricals.empty());
   EXPECT_EQ(Diagnose(readings, extended, Options()).diagnosis.verdict, Verdict::kNone);
 }
 

@@ -220,9 +220,12 @@ TEST(TurntableDiagnosis, KeepsStructureWithoutANameAsASignalOfItsAxis) {
   const std::vector<Reading> readings = BenchReadings(scenario, wrong, 21);
   const DiagnosisRun found = Diagnose(readings, scenario);
   const Scenario extended = ParseScenario(ExtendedToml(scenario, found, "a test"), "extended.toml", "/elsewhere");
-  ASSERT_EQ(extended.empiricals.size(), 1u) << InWords(found);
-  EXPECT_EQ(extended.empiricals[0].channel, "y");
-  EXPECT_EQ(extended.empiricals[0].value_rad.size(), found.run.schedule.reading.size());
+  ASSERT_EQ(extended.effects.size(), 1u) << InWords(found);
+  const EffectSettings& signal = extended.effects[0];
+  EXPECT_EQ(signal.name + " " + signal.signal + " at " + signal.where, "signal harmonic at y");
+  EXPECT_EQ(signal.by + " times " + signal.times, "turntable times direction");
+  EXPECT_NEAR(signal.parameters.at("amplitude"), 0.3 * arcsec, 0.05 * arcsec);
+  EXPECT_TRUE(extended.empiricals.empty());
   EXPECT_EQ(Diagnose(readings, extended).diagnosis.verdict, Verdict::kNone);
 }
 

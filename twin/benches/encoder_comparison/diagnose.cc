@@ -4,7 +4,6 @@
 #include "twin/diagnose/encoder/encoder_run.h"
 #include "twin/diagnose/encoder/families.h"
 #include "twin/diagnose/encoder/harmonic_table.h"
-#include "twin/diagnose/encoder/next_measurement.h"
 
 namespace twinbench::benches::encoder {
 
@@ -17,7 +16,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
   const diagnose::Analysis analysis = diagnose::Analyse(encoder.run, families, how);
   const diagnose::AnswerWords words{
       [](const std::string&, const Eigen::VectorXd&) { return std::string("nothing but the device's offset"); },
-      diagnose::encoder::NextMeasurement};
+      NextMeasurement};
   diagnose::DiagnosisRun result = diagnose::Conclude(encoder.run, analysis, {}, words);
   result.diagnosis.left_out = encoder.left_out;
   result.diagnosis.harmonics = diagnose::encoder::HarmonicTable(encoder, analysis.noise);

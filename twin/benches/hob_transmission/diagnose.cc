@@ -4,7 +4,6 @@
 #include "twin/diagnose/hob/families.h"
 #include "twin/diagnose/hob/hob_answers.h"
 #include "twin/diagnose/hob/hob_run.h"
-#include "twin/diagnose/hob/next_measurement.h"
 
 namespace twinbench::benches::hob {
 
@@ -20,7 +19,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
       [orders = scenario.transmission.free_orders](const std::string&, const Eigen::VectorXd& x) {
         return diagnose::hob::BiasInWords(orders, x);
       },
-      diagnose::hob::NextMeasurement};
+      NextMeasurement};
   diagnose::DiagnosisRun result =
       diagnose::Conclude(hob.run, analysis, diagnose::hob::DisturbedCauses(hob, options.struck), words);
   diagnose::hob::ToReadings(hob, result);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "twin/benches/rotary_4dof/format.h"
 #include "twin/core/bench.h"
 #include "twin/core/scenario.h"
@@ -20,5 +22,8 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario,
                            measure::Estimator estimator);
 nlohmann::json ChangeOfTables(const diagnose::DiagnosisRun& found, const Scenario& scenario);
+
+/// What would split two causes that a run cannot tell apart, in words; empty if nothing is known.
+std::string NextMeasurement(const std::string& effect, const std::string& rival);
 
 }  // namespace twinbench::benches::rotary

@@ -28,7 +28,7 @@ diagnose::AnswerWords Words(const diagnose::rotary::RotaryCase& rotary) {
   return {[design = rotary.Rotary().design](const std::string&, const Eigen::VectorXd& x) {
             return diagnose::rotary::BiasInWords(design, x);
           },
-          diagnose::rotary::NextMeasurement};
+          NextMeasurement};
 }
 
 }  // namespace

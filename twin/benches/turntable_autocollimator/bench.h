@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "twin/benches/turntable_autocollimator/format.h"
 #include "twin/core/bench.h"
 #include "twin/core/scenario.h"
@@ -19,5 +21,10 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
                                 const diagnose::DiagnoseOptions& options);
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario,
                            measure::Estimator estimator);
+
+/// What would split two causes that a run cannot tell apart, in words; empty if nothing is known.
+std::string NextMeasurement(const std::string& effect, const std::string& rival);
+/// What would show a cause that a run cannot see; empty if nothing simple does.
+std::string WhatWouldShow(const std::string& effect);
 
 }  // namespace twinbench::benches::turntable

@@ -4,7 +4,6 @@
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/turntable/disturbed.h"
-#include "twin/diagnose/turntable/next_measurement.h"
 #include "twin/diagnose/turntable/seating.h"
 #include "twin/diagnose/turntable/turntable_run.h"
 #include "twin/diagnose/turntable/turntable_search.h"
@@ -15,10 +14,10 @@ namespace {
 diagnose::AnswerWords Words(const diagnose::turntable::Places& places) {
   return {[places](const std::string& effect, const Eigen::VectorXd& unknowns) {
             const std::string bias = diagnose::turntable::BiasInWords(places, unknowns);
-            const std::string shown_by = diagnose::turntable::WhatWouldShow(effect);
+            const std::string shown_by = WhatWouldShow(effect);
             return shown_by.empty() ? bias : bias + "; would be shown by " + shown_by;
           },
-          diagnose::turntable::NextMeasurement};
+          NextMeasurement};
 }
 
 /// Sizes were measured in the usual deviation of the run.

@@ -80,27 +80,4 @@ std::string BiasInWords(const separate::Design& design, const Eigen::VectorXd& u
   return worst;
 }
 
-std::string NextMeasurement(const std::string& effect, const std::string& rival) {
-  using Pair = std::pair<std::string, std::string>;
-  static const std::map<Pair, std::string> known = {
-      {{"psd_distance", "stray_light"},
-       "a reading with the laser off: stray light shows as a signal, a distance does not"},
-      {{"psd_distance", "psd_gain"}, "a tilt sweep as well as a yaw sweep: a distance scales both axes"},
-      {{"psd_gain", "stray_light"}, "a tilt sweep as well as a yaw sweep: stray light scales both axes"},
-      {{"incidence_offset", "wavelength_offset"}, "a tilt sweep and a lateral shift of the grating"},
-      {{"backlash", "settling"}, "stops with dwells from 0.5 to 20 s"},
-      {{"laser_drift", "mount_creep"}, "an hour of idle readings without re-mounting"},
-      {{"laser_drift", "thermal_tilt"}, "a warm-up run with the temperature changed by 1 K"},
-      {{"mount_creep", "thermal_tilt"}, "a warm-up run with the temperature changed by 1 K"},
-      {{"grating_pitch", "wavelength_offset"},
-       "the wavelength by a wavemeter, or the grating's pitch on another bench: the grating equation knows their "
-       "product"},
-      {{"mode_hop", "slip"},
-       "the PSDs at another distance, or order 0 beside them: a hop moves no order 0, a shift of the grating does"},
-      {{"mount_creep", "slip"}, "a repeat of the set-up without re-mounting"},
-      {{"backlash", "backlash"}, "a reversal of the target alone"}};
-  const auto found = known.find(std::minmax(effect, rival));
-  return found == known.end() ? "" : found->second;
-}
-
 }  // namespace twinbench::diagnose::rotary

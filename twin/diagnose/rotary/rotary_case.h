@@ -35,7 +35,4 @@ class RotaryCase {
 /// @param unknowns  Change of the unknowns.
 std::string BiasInWords(const separate::Design& design, const Eigen::VectorXd& unknowns);
 
-/// The measurement that tells two causes apart; empty if none is known.
-std::string NextMeasurement(const std::string& effect, const std::string& rival);
-
 }  // namespace twinbench::diagnose::rotary

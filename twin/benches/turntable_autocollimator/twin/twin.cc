@@ -1,34 +1,14 @@
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 
-#include <nlohmann/json.hpp>
-
-#include "twin/core/run_record.h"
-#include "twin/core/scenario.h"
 #include "twin/procedure/turntable.h"
+#include "twin/sim/simulated_bench.h"
 #include "twin/sim/turntable/follow.h"
 #include "twin/sim/turntable/twin.h"
 
 namespace twinbench::benches::turntable {
-namespace {
-
-class Twin : public BenchTwin {
- public:
-  explicit Twin(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
-  nlohmann::json Truth() const override { return twin_.Truth(); }
-  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
-    auto bench = twin_.Bench();
-    procedure::CarryOut(bench, scenario_, record, progress);
-  }
-
- private:
-  Scenario scenario_;
-  sim::TurntableTwin twin_;
-};
-
-}  // namespace
 
 std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
-  return std::make_unique<Twin>(scenario);
+  return std::make_unique<sim::SimulatedBench<sim::TurntableTwin>>(scenario);
 }
 
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {

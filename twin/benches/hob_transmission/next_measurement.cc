@@ -1,19 +1,14 @@
-#include "twin/diagnose/hob/next_measurement.h"
-
-#include <algorithm>
 #include <vector>
 
-namespace twinbench::diagnose::hob {
+#include "twin/benches/hob_transmission/bench.h"
+#include "twin/diagnose/splits.h"
+
+namespace twinbench::benches::hob {
 namespace {
 
-struct Split {
-  std::vector<std::string> effects;  // any two of them
-  std::string words;
-};
-
 /// The first that has both counts.
-const std::vector<Split>& Splits() {
-  static const std::vector<Split> splits = {
+const std::vector<diagnose::Split>& Splits() {
+  static const std::vector<diagnose::Split> splits = {
       {{"hob_runout", "eccentricity", "gear_mesh", "ellipticity"},
        "the same run with the interferometer, which sees the drive but not the encoders; or a second reading head "
        "on "
@@ -31,19 +26,14 @@ const std::vector<Split>& Splits() {
   return splits;
 }
 
-bool Has(const Split& split, const std::string& effect) {
-  return std::ranges::find(split.effects, effect) != split.effects.end();
-}
-
 }  // namespace
 
 std::string NextMeasurement(const std::string& effect, const std::string& rival) {
   if (effect == "slip" && rival == "slip")
     return "both encoders' reference marks once more: the count that its mark no longer meets has slipped";
-  for (const Split& split : Splits()) {
-    if (Has(split, effect) && Has(split, rival)) return split.words;
-  }
-  return "three or more places of ring and head, passes in both directions at two speeds, and the interferometer";
+  return diagnose::WhatSplits(
+      Splits(), effect, rival,
+      "three or more places of ring and head, passes in both directions at two speeds, and the interferometer");
 }
 
-}  // namespace twinbench::diagnose::hob
+}  // namespace twinbench::benches::hob

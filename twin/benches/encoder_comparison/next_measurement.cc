@@ -1,19 +1,14 @@
-#include "twin/diagnose/encoder/next_measurement.h"
-
-#include <map>
 #include <vector>
 
-namespace twinbench::diagnose::encoder {
+#include "twin/benches/encoder_comparison/bench.h"
+#include "twin/diagnose/splits.h"
+
+namespace twinbench::benches::encoder {
 namespace {
 
-struct Split {
-  std::vector<std::string> effects;  // any two of them
-  std::string words;
-};
-
 /// The first that has both counts.
-const std::vector<Split>& Splits() {
-  static const std::vector<Split> splits = {
+const std::vector<diagnose::Split>& Splits() {
+  static const std::vector<diagnose::Split> splits = {
       {{"eccentricity", "signal_offset"},
        "the raw sine and cosine signals, whose offsets are their means; or a second reading head opposite the "
        "first, "
@@ -29,22 +24,13 @@ const std::vector<Split>& Splits() {
   return splits;
 }
 
-bool Has(const Split& split, const std::string& effect) {
-  for (const std::string& e : split.effects) {
-    if (e == effect) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 std::string NextMeasurement(const std::string& effect, const std::string& rival) {
   if (effect == "reference_fault" || rival == "reference_fault")
     return "a further set-up with the device turned on the shaft: what turns along is the device's";
-  for (const Split& split : Splits()) {
-    if (Has(split, effect) && Has(split, rival)) return split.words;
-  }
-  return "more turns in both directions, at two speeds, at closer angles";
+  return diagnose::WhatSplits(Splits(), effect, rival,
+                              "more turns in both directions, at two speeds, at closer angles");
 }
 
-}  // namespace twinbench::diagnose::encoder
+}  // namespace twinbench::benches::encoder

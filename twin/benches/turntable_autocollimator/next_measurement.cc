@@ -1,10 +1,10 @@
-#include "twin/diagnose/turntable/next_measurement.h"
-
-#include <algorithm>
 #include <map>
 #include <vector>
 
-namespace twinbench::diagnose::turntable {
+#include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/diagnose/splits.h"
+
+namespace twinbench::benches::turntable {
 namespace {
 
 constexpr const char* kOtherTilt =
@@ -22,14 +22,9 @@ constexpr const char* kLifts = "twenty lifts of the multi-tooth table at one pos
 constexpr const char* kWarm = "a run with the room changed by 1 K and the temperature recorded";
 constexpr const char* kIdle = "an hour of readings at rest, nothing moved nor mounted";
 
-struct Split {
-  std::vector<std::string> effects;  // any two of them; one alone: with anything
-  const char* words;
-};
-
 /// The first that fits counts.
-const std::vector<Split>& Splits() {
-  static const std::vector<Split> splits = {
+const std::vector<diagnose::Split>& Splits() {
+  static const std::vector<diagnose::Split> splits = {
       {{"backlash", "settling"}, kDwells},
       {{"multitooth_seating", "outliers"}, kLifts},
       {{"autocollimator_temperature", "autocollimator_drift", "mount_creep", "tone"}, kWarm},
@@ -46,18 +41,10 @@ const std::vector<Split>& Splits() {
   return splits;
 }
 
-bool Has(const Split& split, const std::string& effect) {
-  return std::ranges::find(split.effects, effect) != split.effects.end();
-}
-
 }  // namespace
 
 std::string NextMeasurement(const std::string& effect, const std::string& rival) {
-  for (const Split& split : Splits()) {
-    const bool a = Has(split, effect), b = Has(split, rival);
-    if (split.effects.size() > 1 ? a && b : a || b) return split.words;
-  }
-  return kIdle;
+  return diagnose::WhatSplits(Splits(), effect, rival, kIdle);
 }
 
 std::string WhatWouldShow(const std::string& effect) {
@@ -75,4 +62,4 @@ std::string WhatWouldShow(const std::string& effect) {
   return found == shown_by.end() ? "" : found->second;
 }
 
-}  // namespace twinbench::diagnose::turntable
+}  // namespace twinbench::benches::turntable
