@@ -47,7 +47,8 @@ Amplitude Catalogue::AmplitudeOf(const std::string& effect, const std::string& p
   return {parameter, p.unit, p.to_SI, std::abs(p.default_SI), p.lower_SI, p.upper_SI};
 }
 
-Shape Catalogue::ShapeOf(const std::string& effect, const std::string& parameter, std::vector<double> values) const {
+Shape Catalogue::ShapeOf(const std::string& effect, const std::string& parameter,
+                         std::vector<double> values) const {
   const EffectParameter& p = Entry(effect, parameter);
   const auto [least, most] = std::ranges::minmax(values);
   return {parameter, p.unit, p.to_SI, std::max(p.lower_SI, least), std::min(p.upper_SI, most), std::move(values)};
@@ -108,14 +109,14 @@ Family& Candidates::New(const Showing& showing, const std::vector<std::string>& 
 }
 
 Family& Candidates::Add(const Showing& showing, const std::vector<std::string>& parameters,
-                           const Eigen::MatrixXd& columns) {
+                        const Eigen::MatrixXd& columns) {
   Family& family = New(showing, parameters);
   family.columns = [rows = AsRows(columns, showing.pattern, rows_)](int) { return rows; };
   return family;
 }
 
 Family& Candidates::AddOver(const Showing& showing, const std::vector<std::string>& parameters,
-                               const std::vector<Shape>& shapes, const SeriesAt& at) {
+                            const std::vector<Shape>& shapes, const SeriesAt& at) {
   Family& family = New(showing, parameters);
   family.shapes = shapes;
   family.grid = static_cast<int>(std::ssize(shapes.front().value));
@@ -129,7 +130,7 @@ Family& Candidates::AddOver(const Showing& showing, const std::vector<std::strin
 }
 
 Family& Candidates::AddShared(const Showing& showing, const std::vector<std::string>& parameters,
-                                 const std::shared_ptr<const Base>& base) {
+                              const std::shared_ptr<const Base>& base) {
   Family& family = New(showing, parameters);
   family.grid = base->grid;
   family.base = base;
@@ -142,7 +143,7 @@ Family& Candidates::AddWave(const Showing& showing, const Eigen::VectorXd& phase
 }
 
 Family& Candidates::AddOrders(const Showing& showing, const std::shared_ptr<const Base>& base,
-                                 const std::string& order, const std::vector<double>& orders) {
+                              const std::string& order, const std::vector<double>& orders) {
   Family& family = AddShared(showing, {"amplitude", "amplitude"}, base);
   family.amplitudes[0].name = "cosine";
   family.amplitudes[1].name = "sine";

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <map>
 
+#include "twin/core/distributions.h"
 #include "twin/core/units.h"
 #include "twin/model/signals.h"
 #include "twin/model/wave_grid.h"
 
 namespace twinbench::diagnose {
 namespace {
-
-double Usual(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// A little closer than the longest stretch can tell apart, from where a wander ends to one of two usual rows.
 std::vector<double> FrequenciesOf(double longest_s, const Eigen::VectorXd& rows_time_s) {
@@ -24,7 +19,7 @@ std::vector<double> FrequenciesOf(double longest_s, const Eigen::VectorXd& rows_
   if (rows_time_s.size() < 3) return {};
   std::vector<double> steps_s;
   for (Eigen::Index i = 1; i < rows_time_s.size(); ++i) steps_s.push_back(rows_time_s[i] - rows_time_s[i - 1]);
-  const double usual_s = std::max(Usual(std::move(steps_s)), 1e-6);
+  const double usual_s = std::max(Median(std::move(steps_s)), 1e-6);
   const double width_Hz = kSpacing / std::max(longest_s, usual_s), last_Hz = 0.5 / usual_s;
   const double first_Hz = kFirstWidths * width_Hz, step_Hz = std::max(width_Hz, (last_Hz - first_Hz) / kMost);
   std::vector<double> frequencies_Hz;
@@ -82,17 +77,18 @@ TimeSeries TimeSeriesOf(const model::Course& course, const std::vector<int>& str
   series.frequencies_Hz = FrequenciesOf(longest_s, rows_time_s.size() > 0 ? rows_time_s : course.time_s);
   const auto count = static_cast<int>(std::ssize(series.frequencies_Hz));
   if (count > 1) {
-    const auto waves = std::make_shared<const model::WaveGrid>(
-        units::turn * course.time_s, series.frequencies_Hz[0], series.frequencies_Hz[1] - series.frequencies_Hz[0],
-        count);
+    const auto waves =
+        std::make_shared<const model::WaveGrid>(units::turn * course.time_s, series.frequencies_Hz[0],
+                                                series.frequencies_Hz[1] - series.frequencies_Hz[0], count);
     series.tones = BaseOf(series.frequencies_Hz.size(), channels, rows,
                           [waves, stretches = model::Indicators(stretch)](int g) -> Eigen::MatrixXd {
                             return stretches.cols() == 1 ? waves->At(g) : model::InEach(waves->At(g), stretches);
                           });
   }
-  series.steps = BaseOf(series.onsets.size(), channels, rows, [reading = course.reading, onsets = series.onsets](int g) {
-    return Eigen::MatrixXd(model::Step(reading, onsets[static_cast<std::size_t>(g)]));
-  });
+  series.steps =
+      BaseOf(series.onsets.size(), channels, rows, [reading = course.reading, onsets = series.onsets](int g) {
+        return Eigen::MatrixXd(model::Step(reading, onsets[static_cast<std::size_t>(g)]));
+      });
   return series;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "twin/benches/rotary_4dof/format.h"
 #include "twin/core/units.h"
@@ -16,14 +17,30 @@ const char* ChannelName(int channel) {
   return kChannelNames[static_cast<std::size_t>(channel)];
 }
 
+/// How the channels respond to each point, asked of the twin once.
+class Responses {
+ public:
+  explicit Responses(const RotaryRun& rotary) : rotary_(rotary) {}
+
+  const RotaryRun& rotary() const { return rotary_; }
+  const Response& To(const std::string& point) {
+    const auto found = known_.find(point);
+    return found != known_.end() ? found->second : known_.emplace(point, rotary_.ResponseTo(point)).first->second;
+  }
+
+ private:
+  const RotaryRun& rotary_;
+  std::map<std::string, Response> known_;
+};
+
 /// A cause that enters at a point of the twin: where it shows, and of what share of its course.
 struct AtPoint {
   Showing showing;
   Eigen::VectorXd share;
 
-  AtPoint(const std::string& effect, const std::string& where, const RotaryRun& rotary, const std::string& point,
+  AtPoint(const std::string& effect, const std::string& where, Responses& responses, const std::string& point,
           double factor = 1.0) {
-    const Response response = rotary.ResponseTo(point);
+    const Response& response = responses.To(point);
     showing = {effect, where, factor * response.pattern};
     share = response.share;
   }
@@ -99,13 +116,14 @@ void AddBench(const RotaryRun& rotary, const Scenario& scenario, Candidates& nam
   AddNonlinearities(rotary, named);
 }
 
-void AddTime(const RotaryRun& rotary, double reference_degC, Candidates& named) {
-  const Schedule& s = rotary.run.schedule;
+void AddTime(Responses& responses, double reference_degC, Candidates& named) {
+  const Schedule& s = responses.rotary().run.schedule;
   for (const char* where : {"yaw", "pitch"})
-    named.AddDrift(AtPoint("laser_drift", where, rotary, std::string("laser.") + where).showing, "drift", s.time_s);
+    named.AddDrift(AtPoint("laser_drift", where, responses, std::string("laser.") + where).showing, "drift",
+                   s.time_s);
   const Shape time_constant = named.catalogue().ShapeOf("mount_creep", "time_constant", Ratios(5.0, 1500.0, 7));
   for (const char* where : {"yaw", "tilt"}) {
-    const AtPoint at("mount_creep", where, rotary, std::string("grating.") + where);
+    const AtPoint at("mount_creep", where, responses, std::string("grating.") + where);
     named.AddOver(at.showing, {"amplitude"}, {time_constant},
                   [at, since_s = model::SinceFirst_s(s)](const Eigen::VectorXd& tau_s) {
                     return at.Of((since_s.array() / tau_s[0]).log1p().matrix());
@@ -113,12 +131,12 @@ void AddTime(const RotaryRun& rotary, double reference_degC, Candidates& named) 
   }
   if (!model::HasTemperature(s)) return;
   const Eigen::VectorXd above_K = model::Above_K(s, reference_degC);
-  const AtPoint laser("wavelength_temperature", "", rotary, "laser.wavelength");
+  const AtPoint laser("wavelength_temperature", "", responses, "laser.wavelength");
   named.Add(laser.showing, {"wavelength_per_kelvin"}, laser.Of(above_K));
   const Shape lag =
       named.catalogue().ShapeOf("thermal_tilt", "lag", {0.0, 150.0, 300.0, 600.0, 900.0, 1350.0, 2000.0, 3000.0});
   for (const char* where : {"yaw", "tilt"}) {
-    const AtPoint at("thermal_tilt", where, rotary, std::string("grating.") + where);
+    const AtPoint at("thermal_tilt", where, responses, std::string("grating.") + where);
     named.AddOver(at.showing, {"tilt_per_kelvin"}, {lag},
                   [at, time_s = s.time_s, above_K](const Eigen::VectorXd& lag_s) {
                     return at.Of(model::Lagged(time_s, above_K, lag_s[0]));
@@ -128,12 +146,12 @@ void AddTime(const RotaryRun& rotary, double reference_degC, Candidates& named) 
 
 /// Tilt of the target's body once in about two turns. The turns of a record that has been rewound may be counted
 /// within a set-up or through all of them; a bearing may whirl with the angle or against it.
-void AddHalfFrequency(const RotaryRun& rotary, Candidates& named) {
+void AddHalfFrequency(Responses& responses, Candidates& named) {
   const std::string effect = "bearing_half_frequency";
-  const Schedule& s = rotary.run.schedule;
-  const Vector4 ex = rotary.ResponseTo("target.ex").pattern;
+  const Schedule& s = responses.rotary().run.schedule;
+  const Vector4 ex = responses.To("target.ex").pattern;
   for (const double sense : {1.0, -1.0}) {
-    const Vector4 ey = sense * rotary.ResponseTo("target.ey").pattern;
+    const Vector4 ey = sense * responses.To("target.ey").pattern;
     for (const bool through_setups : {false, true}) {
       const Eigen::VectorXd angle_rad = ContinuedTarget_rad(s, through_setups);
       Family& family = named.AddOver(
@@ -156,18 +174,19 @@ void AddHalfFrequency(const RotaryRun& rotary, Candidates& named) {
 }
 
 /// A rotor that lags stays behind on the side it came from; the reference turns against the target.
-void AddTravel(const RotaryRun& rotary, double settle_s, Candidates& named) {
-  const Schedule& s = rotary.run.schedule;
-  named.Add(AtPoint("backlash", "target", rotary, "target.yaw", -1.0).showing, {"half_width"}, DirectionSignal(s));
-  named.Add(AtPoint("backlash", "reference", rotary, "reference.yaw", 1.0).showing, {"half_width"},
+void AddTravel(Responses& responses, double settle_s, Candidates& named) {
+  const Schedule& s = responses.rotary().run.schedule;
+  named.Add(AtPoint("backlash", "target", responses, "target.yaw", -1.0).showing, {"half_width"},
+            DirectionSignal(s));
+  named.Add(AtPoint("backlash", "reference", responses, "reference.yaw", 1.0).showing, {"half_width"},
             DirectionSignal(s));
   if (s.dwell_s.array().isFinite().any())
-    named.AddOver(AtPoint("settling", "", rotary, "target.yaw", -1.0).showing, {"amplitude"},
+    named.AddOver(AtPoint("settling", "", responses, "target.yaw", -1.0).showing, {"amplitude"},
                   {named.catalogue().ShapeOf("settling", "time_constant", Ratios(0.3, 4.0, 8))},
                   [s, settle_s](const Eigen::VectorXd& tau_s) -> Eigen::MatrixXd {
                     return SettlingSignal(s, settle_s, tau_s[0]);
                   });
-  AddHalfFrequency(rotary, named);
+  AddHalfFrequency(responses, named);
 }
 
 /// A step in a channel's A/D: the share of a block's samples above it, as wide as their noise, per sensitivity.
@@ -212,7 +231,7 @@ void AddCrosstalk(const RotaryRun& rotary, const std::vector<std::string>& scan_
   }
 }
 
-void AddPatterns(const RotaryRun& rotary, const TimeSeries& series, Candidates& named) {
+void AddPatterns(Responses& responses, const TimeSeries& series, Candidates& named) {
   for (int channel = 0; channel < kChannels; ++channel)
     named.AddTone({"tone", ChannelName(channel), Eigen::Vector4d::Unit(channel)}, series, true);
   named.AddTone({"tone", "yaw", Eigen::Vector4d(1.0, 0.0, 1.0, 0.0)}, series, true);
@@ -220,9 +239,9 @@ void AddPatterns(const RotaryRun& rotary, const TimeSeries& series, Candidates& 
   named.AddTone({"tone", "all", Eigen::Vector4d::Ones()}, series, true);
   AddFreeTone(series, named);
   for (const char* where : {"yaw", "tilt", "lateral"})
-    named.AddStep(AtPoint("slip", where, rotary, std::string("grating.") + where).showing,
+    named.AddStep(AtPoint("slip", where, responses, std::string("grating.") + where).showing,
                   std::string(where) == "lateral" ? "shift" : "angle", series);
-  named.AddStep(AtPoint("mode_hop", "", rotary, "laser.wavelength").showing, "wavelength_step", series);
+  named.AddStep(AtPoint("mode_hop", "", responses, "laser.wavelength").showing, "wavelength_step", series);
 }
 
 /// What a wrong sensitivity to one motion adds: the motion itself, as it shows.
@@ -261,12 +280,13 @@ bool IsOfBench(const std::string& effect) {
 
 std::vector<Family> NamedFamilies(const RotaryRun& rotary, const Scenario& scenario, const TimeSeries& series) {
   Candidates named(Catalogue(benches::rotary::Format().effects), kChannels);
+  Responses responses(rotary);
   AddBench(rotary, scenario, named);
-  AddTime(rotary, scenario.environment.reference_degC, named);
-  AddTravel(rotary, std::max(scenario.target.settle_s, scenario.reference.settle_s), named);
+  AddTime(responses, scenario.environment.reference_degC, named);
+  AddTravel(responses, std::max(scenario.target.settle_s, scenario.reference.settle_s), named);
   for (int channel = 0; channel < kChannels; ++channel) AddSteps(rotary, channel, named);
   AddCrosstalk(rotary, scenario.adc.scan_list, named);
-  AddPatterns(rotary, series, named);
+  AddPatterns(responses, series, named);
   std::vector<Family> families = named.Take();
   for (Family& family : families) {
     // A wrong sensitivity of both axes of a PSD looks the same.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/distributions.h"
 #include "twin/diagnose/engine/projector.h"
 
 namespace twinbench::diagnose::turntable {
@@ -13,12 +14,6 @@ namespace {
 constexpr double kVeryFar = 8.0;  // in robust deviations
 constexpr double kLeastRedundancy = 0.05;
 constexpr double kSilent = 1e4;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::string InWords(const NoiseCause& cause) {
   const std::size_t count = cause.outliers.size();
