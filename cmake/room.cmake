@@ -16,6 +16,22 @@ function(twinbench_room name)
   twinbench_precompile(twinbench_${name})
 endfunction()
 
+# twinbench_bench(<name> TEXT ... PROCEDURE ... TWIN ... SOURCES ...)
+#
+# A bench is a folder of four parts, and what each may include is checked by tests/layers: TEXT (names, keys, columns,
+# effects) goes to the library bench_formats; PROCEDURE, how it is driven; TWIN, its simulation; SOURCES, all that is
+# done with its readings, which sees of the twin only the header that makes it.
+function(twinbench_bench name)
+  cmake_parse_arguments(BENCH "" "" "TEXT;PROCEDURE;TWIN;SOURCES" ${ARGN})
+  list(TRANSFORM BENCH_TEXT PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  target_sources(twinbench_bench_formats PRIVATE ${BENCH_TEXT})
+  twinbench_room(${name}_procedure SOURCES ${BENCH_PROCEDURE} ROOMS core procedure)
+  twinbench_room(${name}_twin SOURCES ${BENCH_TWIN} ROOMS ${name}_procedure model sim
+    PRIVATE_LIBRARIES nlohmann_json::nlohmann_json)
+  twinbench_room(${name} SOURCES ${BENCH_SOURCES} ROOMS ${name}_twin separate diagnose report
+    LIBRARIES nlohmann_json::nlohmann_json PRIVATE_LIBRARIES fmt::fmt Ceres::ceres)
+endfunction()
+
 # twinbench_precompile(<target> [headers ...]): what nearly every source of the target includes, where the sources are
 # compiled one by one.
 function(twinbench_precompile target)

@@ -50,13 +50,13 @@ void TellOperator(const std::string& notice) {
 
 class OpenedBench : public OpenBench {
  public:
-  OpenedBench(const BenchFile& file, const Scenario& scenario, Duration elapsed)
+  OpenedBench(const BenchFile& file, const AdcSettings& adc, double noise_V, Duration elapsed)
       : file_(file), hands_(std::cin, std::cerr) {
     OpenClock(elapsed);  // first: a served twin's time stands still from here on
     target_ = OpenTable("target", file.target, file.target_limits);
     reference_ = OpenTable("reference", file.reference, file.reference_limits);
     OpenInstruments();
-    adc_ = MakeAdConverter(file.adc, scenario.adc, *clock_, scenario.noise_free ? 0.0 : scenario.amplifier.noise_V);
+    adc_ = MakeAdConverter(file.adc, adc, *clock_, noise_V);
   }
 
   RotaryBench Bench() override {
@@ -149,9 +149,10 @@ class OpenedBench : public OpenBench {
 
 }  // namespace
 
-std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const Scenario& scenario, Duration elapsed) {
+std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const AdcSettings& adc, double noise_V,
+                                        Duration elapsed) {
   Require(file.kind == "hardware", "only a bench of hardware is opened");
-  return std::make_unique<OpenedBench>(file, scenario, elapsed);
+  return std::make_unique<OpenedBench>(file, adc, noise_V, elapsed);
 }
 
 }  // namespace twinbench::hw

@@ -26,6 +26,7 @@ class OpenBench {
 /// @param scenario  Says which rate, range, resolution and block length the A/D must give.
 /// @param elapsed   Time 0 of the run was so long ago (a resumed run); 0 for a new one.
 /// @throws DeviceFault if a device does not answer, is not the one named or cannot do what is asked.
-std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const Scenario& scenario, Duration elapsed = {});
+std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const AdcSettings& adc, double noise_V,
+                                        Duration elapsed = {});
 
 }  // namespace twinbench::hw

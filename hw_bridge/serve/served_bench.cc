@@ -18,11 +18,11 @@ std::string SerialOf(const Scenario& scenario) {
 
 }  // namespace
 
-ServedBench::ServedBench(RotaryBench bench, const Scenario& scenario, double speed)
-    : paced(bench, scenario.adc, speed),
+ServedBench::ServedBench(RotaryBench bench, const Scenario& scenario, const AdcSettings& its_adc, double speed)
+    : paced(bench, its_adc, speed),
       target(bench.target, bench.clock, faults, "target"),
       reference(bench.reference, bench.clock, faults, "reference"),
-      adc(scenario.adc),
+      adc(its_adc),
       serial(SerialOf(scenario)) {}
 
 void ServedBench::StrikeRestarts() {

@@ -11,7 +11,7 @@ namespace twinbench::hw {
 
 /// What all connections share.
 struct ServedBench {
-  ServedBench(RotaryBench bench, const Scenario& scenario, double speed);
+  ServedBench(RotaryBench bench, const Scenario& scenario, const AdcSettings& its_adc, double speed);
 
   RotaryBench& bench() { return paced.bench(); }
   /// A restarted controller has forgotten its origin before it takes the next order.

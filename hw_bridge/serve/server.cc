@@ -23,8 +23,8 @@ const Scenario& RequireCounts(const Scenario& scenario) {
 }  // namespace
 
 struct Server::Impl {
-  Impl(RotaryBench bench, const Scenario& scenario, const ServeOptions& its_options)
-      : options(its_options), served(bench, RequireCounts(scenario), options.speed) {
+  Impl(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc, const ServeOptions& its_options)
+      : options(its_options), served(bench, RequireCounts(scenario), adc, options.speed) {
     if (options.pty) pty.emplace(io, patience, MakerOf<EspConversation>());
   }
 
@@ -47,8 +47,8 @@ struct Server::Impl {
   std::optional<PseudoTerminal> pty;
 };
 
-Server::Server(RotaryBench bench, const Scenario& scenario, const ServeOptions& options)
-    : impl_(std::make_unique<Impl>(bench, scenario, options)) {}
+Server::Server(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc, const ServeOptions& options)
+    : impl_(std::make_unique<Impl>(bench, scenario, adc, options)) {}
 Server::~Server() = default;
 
 ServedAddresses Server::Addresses() const {

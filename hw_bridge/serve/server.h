@@ -14,9 +14,9 @@ namespace twinbench::hw {
 struct ServeOptions {
   std::string bind = "127.0.0.1";
   int iiod_port = 30431, scpi_port = 5025, esp_port = 5026;  // 0: any that is free
-  bool pty = true;                  // also ESP on a pseudo-terminal
-  double speed = 1.0;               // bench seconds a real second; infinity: as fast as it goes
-  int max_connections = 32;         // of one protocol
+  bool pty = true;                                           // also ESP on a pseudo-terminal
+  double speed = 1.0;                               // bench seconds a real second; infinity: as fast as it goes
+  int max_connections = 32;                         // of one protocol
   Duration idle_limit = std::chrono::minutes(30);   // a client that says nothing
   Duration write_limit = std::chrono::seconds(20);  // a client that takes nothing
 };
@@ -27,7 +27,7 @@ class Server {
  public:
   /// @param bench  Must have a `simulation`: the server passes its time and starts it again.
   /// @throws BenchError if a port is taken; InputError if the scenario cannot be served (noise-free: no counts).
-  Server(RotaryBench bench, const Scenario& scenario, const ServeOptions& options);
+  Server(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc, const ServeOptions& options);
   ~Server();
   ServedAddresses Addresses() const;
   void Run();

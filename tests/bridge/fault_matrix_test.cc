@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "tests/support/served_run.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 /// Faults of real benches, each struck on a served twin while the real procedure drives it through the real
 /// backends. Where trying again is the answer, the readings are those of a run without any fault, to the bit.
@@ -178,7 +179,7 @@ TEST(FaultMatrix, ATravelBeyondTheSoftLimitsIsRefusedBeforeTheMove) {
 TEST(FaultMatrix, ACardWithAnotherRateIsRefusedAndBothAreNamed) {
   Scenario scenario = RestlessBench();
   const ServedTwin served(scenario);
-  scenario.adc.rate_Hz = 100e3;
+  RotaryOf(scenario).adc.rate_Hz = 100e3;
   const ServedRun run = RunServed(served, scenario);
   EXPECT_EQ(run.stopped_by, "refused");
   EXPECT_THAT(run.said, HasSubstr("62500"));

@@ -6,6 +6,7 @@
 
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench {
 namespace {
@@ -36,9 +37,9 @@ std::vector<std::string> RunSeeds(Scenario scenario, int count, int threads) {
 TEST(SameSeed, GivesTheSameBitsOnAnyNumberOfThreads) {
   for (const char* fidelity : {"kinematic", "linear"}) {
     Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
-    scenario.mechanics.fidelity = fidelity;
-    scenario.procedure.positions = 12;
-    scenario.procedure.shifts = {0, 1};
+    RotaryOf(scenario).mechanics.fidelity = fidelity;
+    RotaryOf(scenario).procedure.positions = 12;
+    RotaryOf(scenario).procedure.shifts = {0, 1};
     const auto alone = RunSeeds(scenario, 6, 1);
     EXPECT_EQ(alone, RunSeeds(scenario, 6, 2)) << fidelity;
     EXPECT_EQ(alone, RunSeeds(scenario, 6, 5)) << fidelity;
@@ -48,19 +49,19 @@ TEST(SameSeed, GivesTheSameBitsOnAnyNumberOfThreads) {
 
 TEST(SameSeed, GivesTheSameBitsInFullDynamics) {
   Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
-  scenario.mechanics.fidelity = "bullet";
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.positions = 4;
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {1};
+  RotaryOf(scenario).mechanics.fidelity = "bullet";
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.positions = 4;
+  RotaryOf(scenario).procedure.shifts = {0, 1};
+  RotaryOf(scenario).procedure.passes = {1};
   EXPECT_EQ(RunSeeds(scenario, 2, 1), RunSeeds(scenario, 2, 2));
 }
 
 TEST(OneCauseOneStream, SwitchingOneNoiseOffDoesNotChangeAnother) {
   Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.shifts = {0};
-  scenario.procedure.passes = {1};
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.shifts = {0};
+  RotaryOf(scenario).procedure.passes = {1};
   const auto with = test::RunTwin(scenario).readings;
   scenario.environment.sensor_noise_K = 0.0;
   const auto without = test::RunTwin(scenario).readings;

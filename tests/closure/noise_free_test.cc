@@ -5,6 +5,7 @@
 
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench {
 namespace {
@@ -40,10 +41,10 @@ Scenario RandomTables(const std::string& clamping, std::uint64_t seed) {
   Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   scenario.seed = seed;
-  scenario.procedure.clamping = clamping;
+  RotaryOf(scenario).procedure.clamping = clamping;
   const double as = units::arcsec, um = units::um;
-  scenario.target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
-  scenario.reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
+  RotaryOf(scenario).target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
+  RotaryOf(scenario).reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
   return scenario;
 }
 
@@ -60,8 +61,8 @@ TEST_P(NoiseFree, ErrorsReturnAlsoBehindRealisticMountings) {
   Scenario scenario = RandomTables(std::get<0>(GetParam()), static_cast<std::uint64_t>(std::get<1>(GetParam())));
   // Not random from reading to reading, so noise_free does not take it: the mounting of the body, 30 arcsec and 20
   // um.
-  scenario.mount_tilt_rad = {30.0 * units::arcsec, -20.0 * units::arcsec};
-  scenario.centring_m = {20.0 * units::um, -15.0 * units::um};
+  RotaryOf(scenario).mount_tilt_rad = {30.0 * units::arcsec, -20.0 * units::arcsec};
+  RotaryOf(scenario).centring_m = {20.0 * units::um, -15.0 * units::um};
   ExpectErrorsReturn(test::RunTwin(scenario), 0.02 * units::arcsec, 0.02 * units::um);
 }
 
@@ -72,18 +73,18 @@ INSTANTIATE_TEST_SUITE_P(ClampingsAndSeeds, NoiseFree,
 double PublishedError(int k) {
   Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.clamping = "reclamp";
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {1};
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.clamping = "reclamp";
+  RotaryOf(scenario).procedure.shifts = {0, 1};
+  RotaryOf(scenario).procedure.passes = {1};
   const double amplitude = 5.0 * units::arcsec;
   // ex + j ey = a exp(j m psi) in the reference's rotor frame; in set-up 0 the rotor stands still in the laboratory
   // and psi = -phi, so that the laboratory sees order k = -m of the position index.
   const double m = -k;
-  scenario.reference.harmonics = {{Component::kEx, m, amplitude, 0.0},
-                                  {Component::kEy, m, amplitude, -0.5 * units::kPi}};
+  RotaryOf(scenario).reference.harmonics = {{Component::kEx, m, amplitude, 0.0},
+                                            {Component::kEy, m, amplitude, -0.5 * units::kPi}};
   const test::TwinRun run = test::RunTwin(scenario);
-  const Separation separation = test::Evaluate(run, measure::Estimator::kPublished);
+  const Separation separation = test::Evaluate(run, Estimator::kPublished);
   // The target has no wobble at all: what the equations report for it is their error.
   double sum = 0.0;
   const auto& value = separation.target.value;

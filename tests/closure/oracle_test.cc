@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/truth_rows.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench {
 namespace {
@@ -12,11 +14,11 @@ Scenario OracleScenario(const std::string& clamping) {
       test::ReadTruthFile(test::DataPath("oracle/full_circle_" + clamping + "_truth.json"));
   Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
-  scenario.target.errors = test::ErrorsOfRows(truth.at("target"), false);
-  scenario.reference.errors = test::ErrorsOfRows(truth.at("reference_rotor_frame"), true);
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.passes = {1};
-  scenario.procedure.clamping = clamping;
+  RotaryOf(scenario).target.errors = test::ErrorsOfRows(truth.at("target"), false);
+  RotaryOf(scenario).reference.errors = test::ErrorsOfRows(truth.at("reference_rotor_frame"), true);
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.passes = {1};
+  RotaryOf(scenario).procedure.clamping = clamping;
   return scenario;
 }
 
@@ -28,7 +30,7 @@ TEST_P(FullCircleOracle, TheTwinReadsTheIndependentValuesToANanometre) {
   const auto readings = test::RunTwin(scenario).readings;
   ASSERT_EQ(readings.size(), oracle.size());
   // 1 nm on the PSD; the file itself is rounded to 1 nV, half a femtometre.
-  const double one_nm_V = units::nm * scenario.psd_a.sensitivity_V_m;
+  const double one_nm_V = units::nm * RotaryOf(scenario).psd_a.sensitivity_V_m;
   for (std::size_t k = 0; k < readings.size(); ++k) {
     EXPECT_EQ(readings[k].setup, oracle[k].setup);
     EXPECT_EQ(readings[k].position, oracle[k].position);

@@ -6,6 +6,7 @@
 
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench {
 namespace {
@@ -18,14 +19,14 @@ constexpr int kSeeds = 200;
 Scenario NoisyScenario(const std::string& clamping) {
   Scenario scenario = test::RotaryScenario();
   const double as = units::arcsec, um = units::um;
-  scenario.target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
-  scenario.reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
-  scenario.procedure.clamping = clamping;
-  scenario.procedure.phases = {"full_circle"};  // gains are exact here, so that only the readings scatter
-  scenario.procedure.positions = 12;
-  scenario.procedure.shifts = {0, 1, 4, 6};
-  scenario.procedure.passes = {1, -1};
-  scenario.adc.every_sample = false;
+  RotaryOf(scenario).target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
+  RotaryOf(scenario).reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
+  RotaryOf(scenario).procedure.clamping = clamping;
+  RotaryOf(scenario).procedure.phases = {"full_circle"};  // gains are exact here, so that only the readings scatter
+  RotaryOf(scenario).procedure.positions = 12;
+  RotaryOf(scenario).procedure.shifts = {0, 1, 4, 6};
+  RotaryOf(scenario).procedure.passes = {1, -1};
+  RotaryOf(scenario).adc.every_sample = false;
   return scenario;
 }
 
@@ -96,11 +97,11 @@ double Power(const std::vector<double>& x, int k) {
 TEST(IndexError, ScattersByHarmonicAsTheVarianceFormulaSays) {
   Scenario scenario = test::RotaryScenario();
   scenario.noise_free = false;
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.shifts = {0, 1, 7, 11};
-  scenario.procedure.passes = {1};
-  scenario.adc.every_sample = false;
-  const int n = scenario.procedure.positions, p = 4;
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.shifts = {0, 1, 7, 11};
+  RotaryOf(scenario).procedure.passes = {1};
+  RotaryOf(scenario).adc.every_sample = false;
+  const int n = RotaryOf(scenario).procedure.positions, p = 4;
   constexpr int kRuns = 200;
   std::vector<double> power(static_cast<std::size_t>(n / 2), 0.0);
   double variance = 0.0;
@@ -108,7 +109,7 @@ TEST(IndexError, ScattersByHarmonicAsTheVarianceFormulaSays) {
     scenario.seed = static_cast<std::uint64_t>(seed);
     const test::TwinRun run = test::RunTwin(scenario);
     const auto motions =
-        measure::Measure(run.readings, measure::NominalGeometry(scenario), {}, measure::Estimator::kRigorous);
+        measure::Measure(run.readings, measure::NominalGeometry(scenario), {}, Estimator::kRigorous);
     variance += motions[0].cov(0, 0) / kRuns;
     const Separation s = test::Evaluate(run);
     for (int k = 1; k < n / 2; ++k)
@@ -117,7 +118,8 @@ TEST(IndexError, ScattersByHarmonicAsTheVarianceFormulaSays) {
   double ratio = 0.0;
   for (int k = 1; k < n / 2; ++k) {
     std::complex<double> A = 0.0;
-    for (const int shift : scenario.procedure.shifts) A += std::polar(1.0, 2.0 * units::kPi * k * shift / n);
+    for (const int shift : RotaryOf(scenario).procedure.shifts)
+      A += std::polar(1.0, 2.0 * units::kPi * k * shift / n);
     const double predicted = variance / n * p / (p * p - std::norm(A));
     // A mean of 200 exponential variables: relative deviation 1 / sqrt(200) = 0.07; 4 of them.
     EXPECT_NEAR(power[static_cast<std::size_t>(k)] / predicted, 1.0, 0.28) << "order " << k;

@@ -6,8 +6,9 @@
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/run_record.h"
-#include "twin/sim/twin.h"
 
 namespace twinbench::test {
 namespace {
@@ -23,7 +24,7 @@ class LivingTwin : public LivingBench {
 
 BenchBackend TwinOf(const std::string& fidelity) {
   const auto make = [fidelity](Scenario scenario) -> std::unique_ptr<LivingBench> {
-    scenario.mechanics.fidelity = fidelity;
+    RotaryOf(scenario).mechanics.fidelity = fidelity;
     return std::make_unique<LivingTwin>(scenario);
   };
   return {"Twin" + fidelity, make, true};
@@ -33,7 +34,7 @@ BenchBackend TwinOf(const std::string& fidelity) {
 class LivingHardware : public LivingBench {
  public:
   LivingHardware(const Scenario& scenario, const RunOptions& options) : served_(scenario) {
-    opened_ = hw::OpenHardware(BenchFileOf(served_, options), scenario);
+    opened_ = test::OpenHardware(BenchFileOf(served_, options), scenario);
     opened_->Bench().simulation->Restart();  // its time ran until now
   }
   RotaryBench Bench() override { return opened_->Bench(); }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/errors.h"
 
 /// The contract of twin/core/devices.h. Every backend of a rotary bench goes through the same tests; a new one adds
@@ -265,7 +266,7 @@ TEST_P(RotaryBenchContract, ABlockWithoutLightHasAStatusAndNoNumbers) {
 
 TEST_P(RotaryBenchContract, ASaturatedChannelHasNoMeanAndItsBlockAStatus) {
   Scenario scenario = test::RotaryScenario();
-  scenario.amplifier.offset_V[1] = 11.0;
+  RotaryOf(scenario).amplifier.offset_V[1] = 11.0;
   RotaryBench bench = NewBench(scenario);
   const Acquisition block = bench.adc.Acquire(kSamples, false);
   EXPECT_EQ(block.status, ReadingStatus::kSaturated);
@@ -296,7 +297,7 @@ TEST_P(RotaryBenchContract, AMountingTakesTheShiftBack) {
   // In both ways of clamping the light is back on the PSDs: reference at `shift`, and that taken back by hand.
   for (const bool reseat : {true, false}) {
     Scenario scenario = test::RotaryScenario();
-    scenario.procedure.clamping = reseat ? "reseat" : "reclamp";
+    RotaryOf(scenario).procedure.clamping = reseat ? "reseat" : "reclamp";
     RotaryBench bench = NewBench(scenario);
     const Acquisition before = bench.adc.Acquire(kSamples, false);
     const double shift_rad = 70.0 * units::deg;
@@ -339,8 +340,8 @@ TEST_P(RotaryBenchContract, TheThermometerReadsARoom) {
 TEST_P(RotaryBenchContract, SameSeedSameBits) {
   if (!GetParam().repeats_its_bits) GTEST_SKIP() << "a real bench has no seed";
   Scenario scenario = test::RotaryScenario();
-  scenario.reference.seating_sd[2] = 5.0 * units::arcsec;
-  scenario.target.repeatability_sd[0] = 1.0 * units::arcsec;
+  RotaryOf(scenario).reference.seating_sd[2] = 5.0 * units::arcsec;
+  RotaryOf(scenario).target.repeatability_sd[0] = 1.0 * units::arcsec;
   const auto session = [&](std::uint64_t seed) {
     scenario.seed = seed;
     RotaryBench bench = NewBench(scenario);

@@ -6,8 +6,9 @@
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/run_record.h"
-#include "twin/sim/twin.h"
 
 /// Same scenario, same seed, same result, whatever the bench is reached by.
 namespace twinbench::test {
@@ -33,7 +34,7 @@ class SameResult : public ::testing::TestWithParam<Way> {
 TEST_P(SameResult, ThroughTheRealBackendsAsInThisProgram) {
   for (const char* fidelity : {"kinematic", "linear", "bullet"}) {
     Scenario scenario = RestlessBench();
-    scenario.mechanics.fidelity = fidelity;
+    RotaryOf(scenario).mechanics.fidelity = fidelity;
     const ServedTwin served(scenario);
     const ServedRun run = RunServed(served, scenario, options_);
     EXPECT_EQ(run.stopped_by, "") << run.said;
@@ -52,8 +53,8 @@ TEST_P(SameResult, ASecondTimeOnTheSameServer) {
 TEST_P(SameResult, WithServosThatSettleSlowly) {
   // 6 Hz ring on long behind the in-position window: when the tables are quiet is found by looking.
   Scenario scenario = RestlessBench();
-  scenario.mechanics.fidelity = "linear";
-  scenario.mechanics.servo_Hz = {6.0, 6.0};
+  RotaryOf(scenario).mechanics.fidelity = "linear";
+  RotaryOf(scenario).mechanics.servo_Hz = {6.0, 6.0};
   const ServedTwin served(scenario);
   EXPECT_EQ(RunServed(served, scenario, options_).Readings(), InProcess(scenario));
 }
@@ -100,7 +101,7 @@ TEST(SameResult, AFullFifoOfTheCardCostsOneAttemptAndNoBit) {
 TEST(SameResult, InRealTimeAsWithoutAnyTime) {
   // 25 readings, two minutes of bench time; at 200 times real time the pacing waits for every step.
   Scenario scenario = RestlessBench();
-  scenario.procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
   const ServedTwin served(scenario, 200.0);
   const ServedRun run = RunServed(served, scenario);
   EXPECT_EQ(run.stopped_by, "") << run.said;
@@ -109,14 +110,14 @@ TEST(SameResult, InRealTimeAsWithoutAnyTime) {
 
 TEST(SameResult, WithReadingsThatHaveNoNumbers) {
   Scenario scenario = RestlessBench();
-  scenario.amplifier.offset_V[2] = 9.99;  // saturates at some stops
+  RotaryOf(scenario).amplifier.offset_V[2] = 9.99;  // saturates at some stops
   const ServedTwin served(scenario);
   const std::string expected = InProcess(scenario);
   EXPECT_NE(expected.find("saturated"), std::string::npos);
   EXPECT_EQ(RunServed(served, scenario).Readings(), expected);
 
   scenario = RestlessBench();
-  scenario.psd_a.width_m = 0.2e-3;  // the calibration sweep takes the spot off the PSD
+  RotaryOf(scenario).psd_a.width_m = 0.2e-3;  // the calibration sweep takes the spot off the PSD
   const ServedTwin clipped(scenario);
   const std::string dark = InProcess(scenario);
   EXPECT_NE(dark.find("no_light"), std::string::npos);

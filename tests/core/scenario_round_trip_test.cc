@@ -8,7 +8,10 @@
 #include <set>
 
 #include "tests/core/input_error.h"
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/reading.h"
@@ -55,7 +58,6 @@ struct Randomise {
     if (key.name == "title") *field = "a \"b\" \\ c\n\t\x01 \xC3\xA9 # [x] = 1";
     if (key.name.ends_with("_file") && key.name != "errors_file") *field = file;
   }
-  void operator()(BeamModel* field) const { *field = static_cast<BeamModel>(random() % 3); }
   void operator()(std::span<double> field) const {
     for (double& entry : field) (*this)(&entry);
   }
@@ -97,7 +99,6 @@ struct Bits {
   void operator()(const std::uint64_t* field) { words.push_back(*field); }
   void operator()(const bool* field) { words.push_back(*field ? 1 : 0); }
   void operator()(const std::string* field) { texts.push_back(*field); }
-  void operator()(const BeamModel* field) { words.push_back(static_cast<std::uint64_t>(*field)); }
   void operator()(std::span<double> field) { Add(field); }
   void operator()(const std::vector<double>* field) { Add(*field); }
   void operator()(const std::vector<int>* field) { Add(*field); }
@@ -204,10 +205,11 @@ FixtureSettings AnyFixture(bool is_box, Random& random, const std::string& file)
 
 /// What the loader wants of keys together.
 void MakeWholeTeethAndLines(Scenario& s) {
-  s.multitooth.teeth = 360;
-  s.turntable_procedure.positions = 72;
-  s.turntable_procedure.verification_positions = 100;
-  s.table_encoder.lines = 5 * s.hob_procedure.samples_per_turn;
+  if (s.bench == kHobBench) HobOf(s).table_encoder.lines = 5 * HobOf(s).hob_procedure.samples_per_turn;
+  if (s.bench != kTurntableBench) return;
+  TurntableOf(s).multitooth.teeth = 360;
+  TurntableOf(s).turntable_procedure.positions = 72;
+  TurntableOf(s).turntable_procedure.verification_positions = 100;
 }
 
 Scenario AnyScenario(const std::string& bench, Random& random, const std::string& file) {
@@ -258,7 +260,8 @@ TEST(WriteScenario, OfAnAngleComparisonHasNoKeyOfTheRotaryBench) {
 TEST(WriteScenario, WritesEveryKeyOfTheDescription) {
   Scenario scenario;
   scenario.bench = kRotaryBench;
-  scenario.target.errors = scenario.reference.errors = TableErrors{{0.0}, {{{0}, {0}, {0}, {0}, {0}, {0}}}};
+  RotaryOf(scenario).target.errors = RotaryOf(scenario).reference.errors =
+      TableErrors{{0.0}, {{{0}, {0}, {0}, {0}, {0}, {0}}}};
   const std::string text = "\n" + WriteScenario(scenario);
   for (const ScenarioKey& key : KeysOf(scenario)) {
     const bool has_table = key.name == "errors";
@@ -279,7 +282,7 @@ TEST(WriteScenario, StandsAloneWithoutTheErrorsFile) {
 TEST(WriteScenario, RefusesANumberThatIsNotFinite) {
   Scenario scenario;
   scenario.bench = kRotaryBench;
-  scenario.psd_a.roll_rad = std::nan("");
+  RotaryOf(scenario).psd_a.roll_rad = std::nan("");
   EXPECT_THROW(WriteScenario(scenario), std::logic_error);
 }
 

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/nearest_key.h"
 
 namespace twinbench {
@@ -33,11 +35,11 @@ std::string OverrideError(const std::string& override_text, const std::string& t
 
 TEST(Scenario, WithoutKeysIsTheReferenceBench) {
   const Scenario s = Parse("");
-  EXPECT_EQ(s.laser.wavelength_m, 650.0 * units::nm);
-  EXPECT_EQ(s.psd_a.distance_m, 0.120);
-  EXPECT_THAT(s.procedure.shifts, ElementsAre(0, 1, 7, 11));
-  EXPECT_EQ(s.procedure.positions, 36);
-  EXPECT_EQ(s.procedure.clamping, "reseat");
+  EXPECT_EQ(RotaryOf(s).laser.wavelength_m, 650.0 * units::nm);
+  EXPECT_EQ(RotaryOf(s).psd_a.distance_m, 0.120);
+  EXPECT_THAT(RotaryOf(s).procedure.shifts, ElementsAre(0, 1, 7, 11));
+  EXPECT_EQ(RotaryOf(s).procedure.positions, 36);
+  EXPECT_EQ(RotaryOf(s).procedure.clamping, "reseat");
 }
 
 TEST(Scenario, TakesNumbersToSI) {
@@ -76,26 +78,26 @@ passes = [1, -1]
 )");
   EXPECT_EQ(s.title, "gain");
   EXPECT_EQ(s.seed, 7u);
-  EXPECT_EQ(s.laser.wavelength_m, 635.0 * units::nm);
-  EXPECT_EQ(s.laser.beam, BeamModel::kGaussian);
-  EXPECT_EQ(s.laser.position_m, Vector3(1.0 * units::mm, 200.5 * units::mm, -2.0 * units::mm));
-  EXPECT_EQ(s.grating.lines_per_m, 1200e3);
-  EXPECT_EQ(s.psd_b.roll_rad, -3.5 * units::mrad);
-  EXPECT_EQ(s.psd_a.roll_rad, 0.0);
-  EXPECT_EQ(s.amplifier.noise_V, 6.5 * units::mV);
-  EXPECT_EQ(s.amplifier.offset_V[3], 4.0 * units::mV);
-  EXPECT_EQ(s.adc.rate_Hz, 100e3);
-  EXPECT_EQ(s.reference_height_m, 81.0 * units::mm);
-  EXPECT_EQ(s.centring_m.y(), -20.0 * units::um);
-  EXPECT_EQ(s.reference.seating_sd[2], 0.25 * units::arcsec);
-  EXPECT_EQ(s.reference.seating_sd[3], 1.5 * units::um);
-  EXPECT_EQ(s.target.random_rms[1], 3.0 * units::arcsec);
-  EXPECT_EQ(s.target.random_orders, 5);
-  EXPECT_EQ(s.mechanics.radial_stiffness_N_m[0], 90e6);
-  EXPECT_EQ(s.mechanics.tilt_stiffness_Nm_rad[1], 0.2e6);
-  EXPECT_EQ(s.procedure.sweep_rad, 200.0 * units::arcsec);
-  EXPECT_THAT(s.procedure.dwell_s, ElementsAre(0.5, 1.0, 2.0));
-  EXPECT_THAT(s.procedure.passes, ElementsAre(1, -1));
+  EXPECT_EQ(RotaryOf(s).laser.wavelength_m, 635.0 * units::nm);
+  EXPECT_EQ(RotaryOf(s).laser.beam, "gaussian");
+  EXPECT_EQ(RotaryOf(s).laser.position_m, Vector3(1.0 * units::mm, 200.5 * units::mm, -2.0 * units::mm));
+  EXPECT_EQ(RotaryOf(s).grating.lines_per_m, 1200e3);
+  EXPECT_EQ(RotaryOf(s).psd_b.roll_rad, -3.5 * units::mrad);
+  EXPECT_EQ(RotaryOf(s).psd_a.roll_rad, 0.0);
+  EXPECT_EQ(RotaryOf(s).amplifier.noise_V, 6.5 * units::mV);
+  EXPECT_EQ(RotaryOf(s).amplifier.offset_V[3], 4.0 * units::mV);
+  EXPECT_EQ(RotaryOf(s).adc.rate_Hz, 100e3);
+  EXPECT_EQ(RotaryOf(s).reference_height_m, 81.0 * units::mm);
+  EXPECT_EQ(RotaryOf(s).centring_m.y(), -20.0 * units::um);
+  EXPECT_EQ(RotaryOf(s).reference.seating_sd[2], 0.25 * units::arcsec);
+  EXPECT_EQ(RotaryOf(s).reference.seating_sd[3], 1.5 * units::um);
+  EXPECT_EQ(RotaryOf(s).target.random_rms[1], 3.0 * units::arcsec);
+  EXPECT_EQ(RotaryOf(s).target.random_orders, 5);
+  EXPECT_EQ(RotaryOf(s).mechanics.radial_stiffness_N_m[0], 90e6);
+  EXPECT_EQ(RotaryOf(s).mechanics.tilt_stiffness_Nm_rad[1], 0.2e6);
+  EXPECT_EQ(RotaryOf(s).procedure.sweep_rad, 200.0 * units::arcsec);
+  EXPECT_THAT(RotaryOf(s).procedure.dwell_s, ElementsAre(0.5, 1.0, 2.0));
+  EXPECT_THAT(RotaryOf(s).procedure.passes, ElementsAre(1, -1));
 }
 
 TEST(Scenario, TakesHarmonicsInTheUnitOfTheirComponent) {
@@ -103,14 +105,14 @@ TEST(Scenario, TakesHarmonicsInTheUnitOfTheirComponent) {
 harmonics = [ { component = "ez", order = 1, amplitude_arcsec = 5.0, phase_deg = 30.0 },
               { component = "dy", order = 2.5, amplitude_um = -1.5 } ]
 )");
-  ASSERT_EQ(s.target.harmonics.size(), 2u);
-  EXPECT_EQ(s.target.harmonics[0].component, Component::kEz);
-  EXPECT_EQ(s.target.harmonics[0].amplitude, 5.0 * units::arcsec);
-  EXPECT_EQ(s.target.harmonics[0].phase_rad, 30.0 * units::deg);
-  EXPECT_EQ(s.target.harmonics[1].component, Component::kDy);
-  EXPECT_EQ(s.target.harmonics[1].order, 2.5);
-  EXPECT_EQ(s.target.harmonics[1].amplitude, -1.5 * units::um);
-  EXPECT_EQ(s.target.harmonics[1].phase_rad, 0.0);
+  ASSERT_EQ(RotaryOf(s).target.harmonics.size(), 2u);
+  EXPECT_EQ(RotaryOf(s).target.harmonics[0].component, Component::kEz);
+  EXPECT_EQ(RotaryOf(s).target.harmonics[0].amplitude, 5.0 * units::arcsec);
+  EXPECT_EQ(RotaryOf(s).target.harmonics[0].phase_rad, 30.0 * units::deg);
+  EXPECT_EQ(RotaryOf(s).target.harmonics[1].component, Component::kDy);
+  EXPECT_EQ(RotaryOf(s).target.harmonics[1].order, 2.5);
+  EXPECT_EQ(RotaryOf(s).target.harmonics[1].amplitude, -1.5 * units::um);
+  EXPECT_EQ(RotaryOf(s).target.harmonics[1].phase_rad, 0.0);
 }
 
 TEST(Scenario, TakesEffectsWithTheDefaultsOfTheCatalogue) {
@@ -140,17 +142,17 @@ TEST(Scenario, TakesTheErrorsOfATableFromItsFolder) {
   folder.Write("t.csv", "position_deg,ez_arcsec\n0,1\n180,-1\n");
   const std::string path = folder.Write("s.toml", std::string(kBench) + "[target]\nerrors_file = \"t.csv\"\n");
   const Scenario s = LoadScenario(path);
-  ASSERT_TRUE(s.target.errors.has_value());
-  EXPECT_EQ((*s.target.errors)[Component::kEz][1], -1.0 * units::arcsec);
-  EXPECT_TRUE(s.target.errors_file.empty());
-  EXPECT_FALSE(s.reference.errors.has_value());
+  ASSERT_TRUE(RotaryOf(s).target.errors.has_value());
+  EXPECT_EQ((*RotaryOf(s).target.errors)[Component::kEz][1], -1.0 * units::arcsec);
+  EXPECT_TRUE(RotaryOf(s).target.errors_file.empty());
+  EXPECT_FALSE(RotaryOf(s).reference.errors.has_value());
 }
 
 TEST(Scenario, TakesTheErrorsOfATableInline) {
   const Scenario s = Parse("[reference.errors]\nposition_deg = [0, 90]\ndx_um = [1, 2]\n");
-  EXPECT_EQ(s.reference.errors->position_rad[1], 90.0 * units::deg);
-  EXPECT_EQ((*s.reference.errors)[Component::kDx][1], 2.0 * units::um);
-  EXPECT_EQ((*s.reference.errors)[Component::kEx], (std::vector<double>{0.0, 0.0}));
+  EXPECT_EQ(RotaryOf(s).reference.errors->position_rad[1], 90.0 * units::deg);
+  EXPECT_EQ((*RotaryOf(s).reference.errors)[Component::kDx][1], 2.0 * units::um);
+  EXPECT_EQ((*RotaryOf(s).reference.errors)[Component::kEx], (std::vector<double>{0.0, 0.0}));
 }
 
 // --- overrides ---
@@ -158,25 +160,25 @@ TEST(Scenario, TakesTheErrorsOfATableInline) {
 TEST(ScenarioOverride, WinsOverTheFileAndOverEarlierOnes) {
   const Scenario s = Parse("[procedure]\npositions = 24\nsweep_arcsec = 100\n",
                            {"procedure.positions=48", "procedure.positions=72", "laser.wavelength_nm = 640"});
-  EXPECT_EQ(s.procedure.positions, 72);
-  EXPECT_EQ(s.procedure.sweep_rad, 100.0 * units::arcsec);
-  EXPECT_EQ(s.laser.wavelength_m, 640.0 * units::nm);
+  EXPECT_EQ(RotaryOf(s).procedure.positions, 72);
+  EXPECT_EQ(RotaryOf(s).procedure.sweep_rad, 100.0 * units::arcsec);
+  EXPECT_EQ(RotaryOf(s).laser.wavelength_m, 640.0 * units::nm);
 }
 
 TEST(ScenarioOverride, ReplacesListsAsAWhole) {
   const std::string text =
       "[target]\nharmonics = [{ component = \"ez\", order = 1, amplitude_arcsec = 5.0 }]\n"
       "[[effect]]\nname = \"settling\"\n";
-  EXPECT_EQ(Parse(text).target.harmonics.size(), 1u);
-  EXPECT_TRUE(Parse(text, {"target.harmonics=[]"}).target.harmonics.empty());
+  EXPECT_EQ(RotaryOf(Parse(text)).target.harmonics.size(), 1u);
+  EXPECT_TRUE(RotaryOf(Parse(text, {"target.harmonics=[]"})).target.harmonics.empty());
   EXPECT_TRUE(Parse(text, {"effect=[]"}).effects.empty());
-  EXPECT_THAT(Parse(text, {"procedure.shifts=[0, 5]"}).procedure.shifts, ElementsAre(0, 5));
+  EXPECT_THAT(RotaryOf(Parse(text, {"procedure.shifts=[0, 5]"})).procedure.shifts, ElementsAre(0, 5));
 }
 
 TEST(ScenarioOverride, NeedsNoQuotesForAWord) {
-  EXPECT_EQ(Parse("", {"procedure.clamping=reclamp"}).procedure.clamping, "reclamp");
-  EXPECT_EQ(Parse("", {"procedure.clamping=\"reclamp\""}).procedure.clamping, "reclamp");
-  EXPECT_EQ(Parse("", {"mechanics.fidelity=linear"}).mechanics.fidelity, "linear");
+  EXPECT_EQ(RotaryOf(Parse("", {"procedure.clamping=reclamp"})).procedure.clamping, "reclamp");
+  EXPECT_EQ(RotaryOf(Parse("", {"procedure.clamping=\"reclamp\""})).procedure.clamping, "reclamp");
+  EXPECT_EQ(RotaryOf(Parse("", {"mechanics.fidelity=linear"})).mechanics.fidelity, "linear");
 }
 
 TEST(ScenarioOverride, OfAnErrorsFileReplacesErrorsOfTheFile) {
@@ -184,7 +186,7 @@ TEST(ScenarioOverride, OfAnErrorsFileReplacesErrorsOfTheFile) {
   folder.Write("t.csv", "position_deg,ez_arcsec\n0,3\n");
   const std::string text = std::string(kBench) + "[target.errors]\nposition_deg = [0]\nez_arcsec = [1]\n";
   const Scenario s = ParseScenario(text, "s.toml", folder.path(), {"target.errors_file=t.csv"});
-  EXPECT_EQ((*s.target.errors)[Component::kEz][0], 3.0 * units::arcsec);
+  EXPECT_EQ((*RotaryOf(s).target.errors)[Component::kEz][0], 3.0 * units::arcsec);
 }
 
 TEST(ScenarioOverride, IsNamedWhenItIsWrong) {
@@ -530,10 +532,12 @@ TEST(Scenario, OfTheTurntableNamesItsTablesByTheirOwnNames) {
       "turntable.harmonics = [{ order = 2, amplitude_arcsec = 3.0 }]\n"
       "multitooth = { teeth = 720, repeatability.ez_arcsec = 0.05 }\n",
       "s.toml", ".");
-  EXPECT_EQ(s.target.harmonics.at(0).component, Component::kEz) << "of the index error if nothing is said";
-  EXPECT_DOUBLE_EQ(s.target.harmonics.at(0).amplitude, 3.0 * units::arcsec);
-  EXPECT_EQ(s.multitooth.teeth, 720);
-  EXPECT_DOUBLE_EQ(s.reference.repeatability_sd[static_cast<std::size_t>(Component::kEz)], 0.05 * units::arcsec);
+  EXPECT_EQ(TurntableOf(s).turntable.harmonics.at(0).component, Component::kEz)
+      << "of the index error if nothing is said";
+  EXPECT_DOUBLE_EQ(TurntableOf(s).turntable.harmonics.at(0).amplitude, 3.0 * units::arcsec);
+  EXPECT_EQ(TurntableOf(s).multitooth.teeth, 720);
+  EXPECT_DOUBLE_EQ(TurntableOf(s).multitooth_table.repeatability_sd[static_cast<std::size_t>(Component::kEz)],
+                   0.05 * units::arcsec);
 }
 
 }  // namespace twinbench

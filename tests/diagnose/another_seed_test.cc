@@ -37,7 +37,7 @@ Scenario With(Scenario scenario, const EffectSettings& signal) {
 
 /// What the free unknowns of a run leave of its readings, in units of noise.
 double LeftOf(const std::vector<Reading>& readings, const Scenario& believed) {
-  return FreeMisfit(BenchOf(believed).linear_run(readings, believed, measure::Estimator::kRigorous)).power;
+  return FreeMisfit(BenchOf(believed).linear_run(readings, believed, Estimator::kRigorous)).power;
 }
 
 /// Fewer simulated runs than a user's: nothing here is near the threshold.

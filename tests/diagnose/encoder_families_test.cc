@@ -6,6 +6,7 @@
 #include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/encoder_twin_run.h"
 #include "twin/benches/encoder_comparison/bench.h"
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 
 // Each named family against the twin's effect: two implementations that share no code.
@@ -37,8 +38,8 @@ Recovered Recover(const Scenario& scenario, const EffectSettings& effect) {
 
 TEST(EncoderFamilies, RecoverErrorsThatRepeatWithTheAngle) {
   Scenario scenario = EncoderScenario("sweep");
-  scenario.device.lines = 20;
-  scenario.device.teeth = 44;
+  EncoderOf(scenario).device.lines = 20;
+  EncoderOf(scenario).device.teeth = 44;
   std::map<std::string, double> injected = {{"amplitude", 1e-5}, {"phase", 0.7}};
   for (const char* name : {"eccentricity", "ellipticity", "periodic", "gear_mesh", "interpolation"}) {
     const EffectSettings effect = EncoderEffect(name, injected);
@@ -72,7 +73,7 @@ TEST(EncoderFamilies, TellAFaultyReferenceOnlyWhenTheDeviceWasTurned) {
   Scenario scenario = EncoderScenario();
   const auto fault = EncoderEffect("reference_fault", {{"order", 1.0}, {"amplitude", 1e-5}, {"phase", 0.4}});
   EXPECT_FALSE(test::HasFamily(Families(RunOf(test::ReadingsWith(scenario, fault), scenario)), "reference_fault"));
-  scenario.encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
+  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
   const Recovered r = Recover(scenario, fault);
   EXPECT_LT(r.fit.left, 1e-4);
   EXPECT_NEAR(r.parameters.at("amplitude"), 1e-5, 1e-9);
@@ -85,8 +86,8 @@ TEST(EncoderFamilies, TellAFaultyReferenceOnlyWhenTheDeviceWasTurned) {
 
 TEST(EncoderFamilies, RecoverOffsetsOfTheSignals) {
   Scenario scenario = EncoderScenario();
-  scenario.device.signal_periods = 3;
-  scenario.device.signal_zero_rad = 0.3;
+  EncoderOf(scenario).device.signal_periods = 3;
+  EncoderOf(scenario).device.signal_zero_rad = 0.3;
   const Recovered r =
       Recover(scenario, EncoderEffect("signal_offset", {{"offset_sin", 2e-5}, {"offset_cos", -1e-5}}));
   EXPECT_LT(r.fit.left, 1e-4);  // the square of the offsets is left
@@ -97,8 +98,8 @@ TEST(EncoderFamilies, RecoverOffsetsOfTheSignals) {
 TEST(EncoderFamilies, RecoverMismatchAndQuadratureWhereTheZeroIsKnownAndWhereNot) {
   for (const bool known : {true, false}) {
     Scenario scenario = EncoderScenario();
-    scenario.device.signal_zero_rad = known ? 0.3 : 0.0;
-    scenario.device.signal_zero_known = known;
+    EncoderOf(scenario).device.signal_zero_rad = known ? 0.3 : 0.0;
+    EncoderOf(scenario).device.signal_zero_known = known;
     const Recovered mismatch = Recover(scenario, EncoderEffect("amplitude_mismatch", {{"ratio", 2e-5}}));
     EXPECT_LT(mismatch.fit.left, 1e-3);
     EXPECT_NEAR(mismatch.parameters.at("ratio"), 2e-5, 1e-8);
@@ -110,7 +111,7 @@ TEST(EncoderFamilies, RecoverMismatchAndQuadratureWhereTheZeroIsKnownAndWhereNot
 
 TEST(EncoderFamilies, KeepMismatchAndQuadratureApartWhereTheZeroIsKnown) {
   Scenario scenario = EncoderScenario();
-  scenario.device.signal_zero_known = true;
+  EncoderOf(scenario).device.signal_zero_known = true;
   const auto readings = test::ReadingsWith(scenario, EncoderEffect("amplitude_mismatch", {{"ratio", 2e-5}}));
   const EncoderRun encoder = RunOf(readings, scenario);
   EXPECT_GT(test::BestFit(test::FamilyOf(Families(encoder), "quadrature_error"), encoder.run).left, 0.99);
@@ -119,7 +120,7 @@ TEST(EncoderFamilies, KeepMismatchAndQuadratureApartWhereTheZeroIsKnown) {
 TEST(EncoderFamilies, RecoverClippingWithTheZeroFree) {
   const Scenario scenario = EncoderScenario("sweep");
   Scenario turned = scenario;  // what is diagnosed is not told of this
-  turned.device.signal_zero_rad = 33.75 * deg;
+  EncoderOf(turned).device.signal_zero_rad = 33.75 * deg;
   const EncoderRun encoder =
       RunOf(test::ReadingsWith(turned, EncoderEffect("signal_clipping", {{"level", 0.90}})), scenario);
   const Family family = test::FamilyOf(Families(encoder), "signal_clipping");
@@ -231,8 +232,8 @@ TEST(EncoderNextMeasurement, SplitsWhatOneRunCannot) {
 
 TEST(EncoderFamilies, HaveUniqueGroupsByEffectAndBoundsOfTheCatalogue) {
   Scenario scenario = EncoderScenario("sweep");
-  scenario.device.lines = 20;
-  scenario.device.teeth = 44;
+  EncoderOf(scenario).device.lines = 20;
+  EncoderOf(scenario).device.teeth = 44;
   for (const Family& family : Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario))) {
     if (family.kind != Kind::kNamed) continue;
     EXPECT_EQ(family.group, family.effect);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/sim/encoder_run.h"
-#include "twin/diagnose/encoder/families.h"
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
 
 /// Fits single families to noise-free runs of the twin: what each leaves of the effect that it is made for.
 namespace twinbench::diagnose::test {

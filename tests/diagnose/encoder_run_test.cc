@@ -1,4 +1,4 @@
-#include "twin/diagnose/encoder/encoder_run.h"
+#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include "tests/core/input_error.h"
 #include "tests/diagnose/encoder_twin_run.h"
 #include "tests/sim/encoder_run.h"
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 #include "twin/diagnose/engine/projector.h"
 
@@ -28,13 +29,13 @@ Scenario NoisyScenario(const std::string& kind = "stops") {
 
 TEST(EncoderRun, IsOneChannelWithOneOffsetASetUp) {
   Scenario scenario = NoisyScenario();
-  scenario.encoder_procedure.mounting_rad = {0.0, 2.0};
+  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 2.0};
   const EncoderRun encoder = RunOf(RunEncoderTwin(scenario).readings, scenario);
   const LinearRun& run = encoder.run;
   EXPECT_THAT(run.channels, testing::ElementsAre("angle"));
   EXPECT_EQ(run.Rows(), 2 * 576);
   EXPECT_EQ(run.nuisance.jacobian.cols(), 2);
-  EXPECT_NEAR(run.observed[600] - run.schedule.reference_rad[600], 2.0, 5.0 * scenario.device.noise_rad);
+  EXPECT_NEAR(run.observed[600] - run.schedule.reference_rad[600], 2.0, 5.0 * EncoderOf(scenario).device.noise_rad);
   const Projector projector(run.nuisance.jacobian / run.sigma[0], run.nuisance);
   EXPECT_NEAR(projector.DegreesOfFreedom(), run.Rows() - 2, 1e-3);
 }
@@ -64,10 +65,10 @@ TEST(EncoderRun, LeavesOutAndCountsReadingsWithoutAValue) {
 TEST(EncoderRun, EstimatesTheNoiseUnderEveryEffect) {
   for (const char* kind : {"stops", "sweep"}) {
     Scenario scenario = NoisyScenario(kind);
-    scenario.device.lines = 90;
+    EncoderOf(scenario).device.lines = 90;
     for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
       const auto readings = ReadingsWith(scenario, EncoderEffect(entry.name));
-      const double ratio = RunOf(readings, scenario).run.sigma[0] / scenario.device.noise_rad;
+      const double ratio = RunOf(readings, scenario).run.sigma[0] / EncoderOf(scenario).device.noise_rad;
       // A median of 140 differences and more: 10 %, some of it low because the smaller estimate counts. Structure
       // of high orders enlarges it; a factor 3 does not hide it, for its amplitude is 5 times the noise.
       EXPECT_GT(ratio, 0.8) << entry.name << " " << kind;
@@ -82,8 +83,8 @@ double NoiseRatio(const std::string& kind, std::uint64_t seed, double outlier = 
   scenario.seed = seed;
   auto readings = RunEncoderTwin(scenario).readings;
   for (std::size_t i = 0; i < readings.size(); i += 50)
-    readings[i].measured_rad += outlier * scenario.device.noise_rad;
-  return RunOf(readings, scenario).run.sigma[0] / scenario.device.noise_rad;
+    readings[i].measured_rad += outlier * EncoderOf(scenario).device.noise_rad;
+  return RunOf(readings, scenario).run.sigma[0] / EncoderOf(scenario).device.noise_rad;
 }
 
 TEST(EncoderRun, EstimatesTheNoiseToThePrecisionThatTheReadingsAllow) {
@@ -106,17 +107,17 @@ TEST(EncoderRun, EstimatesTheNoiseWithoutItsOutliers) {
 
 TEST(EncoderRun, TakesTheNoiseThatIsKnown) {
   Scenario scenario = NoisyScenario();
-  scenario.device.noise_known = true;
+  EncoderOf(scenario).device.noise_known = true;
   const EncoderRun encoder = RunOf(RunEncoderTwin(scenario).readings, scenario);
   EXPECT_TRUE(encoder.run.sigma_stated);
-  EXPECT_EQ(encoder.run.sigma[0], scenario.device.noise_rad);
+  EXPECT_EQ(encoder.run.sigma[0], EncoderOf(scenario).device.noise_rad);
 }
 
 TEST(EncoderRun, KnowsTheEffectsOfItsScenario) {
   for (const char* kind : {"stops", "sweep"}) {
     Scenario scenario = EncoderScenario(kind);
-    scenario.device.lines = 90;
-    scenario.device.signal_zero_rad = 0.4;
+    EncoderOf(scenario).device.lines = 90;
+    EncoderOf(scenario).device.signal_zero_rad = 0.4;
     for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
       if (entry.name == "outliers") continue;
       Scenario knowing = scenario;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "twin/benches/encoder_comparison/diagnosis/signals.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/encoder/signals.h"
 #include "twin/model/signals.h"
 #include "twin/model/wave_grid.h"
 

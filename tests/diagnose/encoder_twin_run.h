@@ -1,7 +1,7 @@
 #pragma once
 
-#include "twin/benches/encoder_comparison/twin/twin.h"
-#include "twin/diagnose/encoder/encoder_run.h"
+#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
+#include "twin/benches/encoder_comparison/twin/factory.h"
 
 namespace twinbench::diagnose::encoder {
 

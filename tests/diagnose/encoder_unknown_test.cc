@@ -5,6 +5,7 @@
 
 #include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/encoder_twin_run.h"
+#include "twin/benches/encoder_comparison/settings.h"
 
 // The generic families for what the catalogue has not.
 namespace twinbench::diagnose::encoder {
@@ -25,10 +26,10 @@ EncoderRun RunWith(const std::string& kind, Signal signal) {
 
 /// What the best family of a sort leaves, and its words for it.
 std::pair<double, std::string> BestOfSort(const EncoderRun& encoder, const std::string& sort,
-                                          const std::vector<std::string>& struck = {}) {
+                                          const std::vector<std::string>& excluded = {}) {
   double left = 2.0;
   std::string words;
-  for (const Family& family : Families(encoder, struck)) {
+  for (const Family& family : Families(encoder, excluded)) {
     if (family.group != sort) continue;
     const test::Fit fit = test::BestFit(family, encoder.run);
     if (fit.left >= left) continue;
@@ -107,13 +108,13 @@ TEST(EncoderUnknown, HasTheSameShapesWhateverIsStruck) {
   EXPECT_LT(left, 1e-3);
   EXPECT_THAT(words, HasSubstr("harmonic of order 7 locked to reference angle, same in both directions"));
   const auto whole = Families(encoder),
-             struck = Families(encoder, {"backlash", "slip", "drift", "scale", "latency"});
+             excluded = Families(encoder, {"backlash", "slip", "drift", "scale", "latency"});
   for (const char* name : {"direction offset", "transition", "step", "trend", "speed", "harmonic"}) {
     EXPECT_TRUE(test::HasFamily(whole, name)) << name;
-    EXPECT_TRUE(test::HasFamily(struck, name)) << name;
+    EXPECT_TRUE(test::HasFamily(excluded, name)) << name;
   }
   for (const char* name : {"backlash", "slip", "drift", "scale", "latency"})
-    EXPECT_FALSE(test::HasFamily(struck, name)) << name;
+    EXPECT_FALSE(test::HasFamily(excluded, name)) << name;
 }
 
 TEST(EncoderUnknown, CountsLessWhereACauseOfTheCatalogueHasTheSameShape) {
@@ -128,8 +129,8 @@ TEST(EncoderUnknown, CountsLessWhereACauseOfTheCatalogueHasTheSameShape) {
 
 TEST(EncoderUnknown, HasNoShapesInTimeNorLinesInOneTurn) {
   Scenario scenario = EncoderScenario("stops");
-  scenario.encoder_procedure.passes = {1};
-  scenario.encoder_procedure.turns = 1.0;
+  EncoderOf(scenario).encoder_procedure.passes = {1};
+  EncoderOf(scenario).encoder_procedure.turns = 1.0;
   const auto families = Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
   for (const char* name : {"wander", "tone", "growing harmonic", "direction harmonic", "backlash", "hysteresis"})
     EXPECT_FALSE(test::HasFamily(families, name)) << name;

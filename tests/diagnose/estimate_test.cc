@@ -40,7 +40,7 @@ Family Decay(const LinearRun& run) {
 }
 
 /// @param noise  Actual deviation over the stated one.
-Pick FindDecay(LinearRun run, std::uint64_t seed, double noise) {
+Term FindDecay(LinearRun run, std::uint64_t seed, double noise) {
   run.sigma *= noise;
   AddNoise(run, seed);
   run.sigma /= noise;
@@ -48,7 +48,7 @@ Pick FindDecay(LinearRun run, std::uint64_t seed, double noise) {
   const NoiseModel model{run.sigma, 0.0};
   const Projector projector(model.Whiten(run, run.nuisance.jacobian), run.nuisance);
   const Scanner scanner(run, model, projector, families);
-  return Search(run, model, projector, scanner, LogPriors(families), kAnything, 1).picks.at(0);
+  return Search(run, model, projector, scanner, LogPriors(families), kAnything, 1).terms.at(0);
 }
 
 struct Coverage {
@@ -61,12 +61,12 @@ Coverage CoverageOf95(double noise) {
             [&](int i) { return kAmplitude_m * DecayAt(run.schedule, i, kLifetime_s); });
   Coverage share;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const Pick pick = FindDecay(run, seed, noise);
-    const auto covers = [&pick](double value, double truth, int k) {
-      return std::abs(value - truth) <= 1.96 * std::sqrt(pick.cov(k, k)) ? 1.0 / kSeeds : 0.0;
+    const Term term = FindDecay(run, seed, noise);
+    const auto covers = [&term](double value, double truth, int k) {
+      return std::abs(value - truth) <= 1.96 * std::sqrt(term.cov(k, k)) ? 1.0 / kSeeds : 0.0;
     };
-    share.amplitude += covers(pick.amplitudes[0], kAmplitude_m, 0);
-    share.lifetime += covers(pick.shape[0], kLifetime_s, 1);
+    share.amplitude += covers(term.amplitudes[0], kAmplitude_m, 0);
+    share.lifetime += covers(term.shape[0], kLifetime_s, 1);
   }
   return share;
 }

@@ -5,8 +5,9 @@
 #include <set>
 
 #include "tests/diagnose/ring_run.h"
+#include "twin/benches/rotary_4dof/diagnosis/change_of_tables.h"
+#include "twin/benches/rotary_4dof/estimators/design.h"
 #include "twin/diagnose/folds.h"
-#include "twin/separate/design.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -202,7 +203,7 @@ TEST(ChangeOfTables, IsTheMoveOfEachSeries) {
   run.nuisance.prior_precision = Eigen::VectorXd::Constant(unknowns, 1e-12);
   run.residual = cause.columns.col(0);
   run.sigma = Eigen::VectorXd::Constant(2 * unknowns, 1e-9);
-  const ChangeOfUnknowns change = ChangeOfTables(run, {run.sigma, 0.0}, {cause}, kPositions);
+  const rotary::ChangeOfUnknowns change = rotary::ChangeOfTables(run, {run.sigma, 0.0}, {cause}, kPositions);
   EXPECT_NEAR(change.target_rms[static_cast<std::size_t>(Component::kDy)], 2e-6, 1e-12);
   EXPECT_NEAR(change.reference_rms[static_cast<std::size_t>(Component::kEz)], units::arcsec, 1e-12);
   EXPECT_NEAR(change.target_rms[static_cast<std::size_t>(Component::kEx)], 0.0, 1e-15);

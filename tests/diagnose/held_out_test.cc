@@ -58,7 +58,7 @@ Found Over(const Held& held, bool noise_is_stated, double stated_correlation = 0
 }
 
 TEST(HeldOut, FractionIsRightOnAverageAlsoWhereTheNoiseIsLargerThanTheCause) {
-  // The remainder scatters by sqrt(2 * 600) = 35 where 150 can be removed: 0.23 a run, 0.02 of the mean of 120.
+  // The deflation scatters by sqrt(2 * 600) = 35 where 150 can be removed: 0.23 a run, 0.02 of the mean of 120.
   for (const double explained : {1.0, 0.7, 0.3}) {
     const Held held{.explained = explained};
     const Found found = Over(held, true);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
@@ -208,18 +209,18 @@ class Machine {
 Scenario ScenarioOf(const HobChain& chain) {
   Scenario s;
   s.bench = kHobBench;
-  s.table_encoder.noise_rad = chain.noise_told ? chain.table_noise_arcsec * arcsec : 0.0;
-  s.hob_encoder.noise_rad = chain.noise_told ? chain.hob_noise_arcsec * arcsec : 0.0;
-  s.hob_encoder.lines = kHobLines;
-  s.hob_encoder.interpolation = kHobSteps;
-  s.interferometer.used = chain.interferometer;
-  s.interferometer.noise_rad = chain.interferometer_noise_arcsec * arcsec;
-  s.hob_procedure.heads_rad.clear();
-  for (const double head_deg : chain.heads_deg) s.hob_procedure.heads_rad.push_back(head_deg * deg);
-  s.hob_procedure.passes = chain.passes;
-  s.hob_procedure.turns = chain.turns;
-  s.hob_procedure.samples_per_turn = chain.samples_per_turn;
-  s.hob_procedure.ramp_s = kRamp_s;
+  HobOf(s).table_encoder.noise_rad = chain.noise_told ? chain.table_noise_arcsec * arcsec : 0.0;
+  HobOf(s).hob_encoder.noise_rad = chain.noise_told ? chain.hob_noise_arcsec * arcsec : 0.0;
+  HobOf(s).hob_encoder.lines = kHobLines;
+  HobOf(s).hob_encoder.interpolation = kHobSteps;
+  HobOf(s).interferometer.used = chain.interferometer;
+  HobOf(s).interferometer.noise_rad = chain.interferometer_noise_arcsec * arcsec;
+  HobOf(s).hob_procedure.heads_rad.clear();
+  for (const double head_deg : chain.heads_deg) HobOf(s).hob_procedure.heads_rad.push_back(head_deg * deg);
+  HobOf(s).hob_procedure.passes = chain.passes;
+  HobOf(s).hob_procedure.turns = chain.turns;
+  HobOf(s).hob_procedure.samples_per_turn = chain.samples_per_turn;
+  HobOf(s).hob_procedure.ramp_s = kRamp_s;
   return s;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "tests/diagnose/hob_chain.h"
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/diagnose.h"
@@ -146,8 +147,8 @@ TEST(HobDiagnosis, DoesNotReportAStatedEccentricity) {
   HobChain chain = Short();
   chain.hidden = {{"eccentricity", "table", {{"amplitude", 6.0 * arcsec}, {"phase", 40.0 * deg - 90.0 * deg}}}};
   Scenario scenario = ScenarioOf(chain);
-  scenario.table_encoder.eccentricity_m = 6.0 * arcsec * scenario.table_encoder.radius_m;
-  scenario.table_encoder.eccentricity_azimuth_rad = 40.0 * deg;
+  HobOf(scenario).table_encoder.eccentricity_m = 6.0 * arcsec * HobOf(scenario).table_encoder.radius_m;
+  HobOf(scenario).table_encoder.eccentricity_azimuth_rad = 40.0 * deg;
   EXPECT_EQ(Diagnose(ReadingsOf(chain), scenario, Options()).diagnosis.verdict, Verdict::kNone);
 }
 

@@ -3,8 +3,8 @@
 #include "tests/diagnose/encoder_fit.h"
 #include "tests/diagnose/hob_chain.h"
 #include "tests/diagnose/hob_twin_run.h"
+#include "twin/benches/hob_transmission/diagnosis/families.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/hob/families.h"
 
 /// Each named family against noise-free readings that were made without it (tests/diagnose/hob_chain.cc).
 namespace twinbench::diagnose::hob {
@@ -116,7 +116,7 @@ TEST(HobFamilies, OfATableThatIsNotWatchedHaveTheSameColumnsForDriveAndEncoderOf
   const std::vector<Family> families = Families(hob);
   const Family& drive = FamilyAt(families, "hob_runout", "");
   const Family& encoder = FamilyAt(families, "eccentricity", "hob");
-  // Seen 2 / 44 times, with the other sign.
+  // ShownBy 2 / 44 times, with the other sign.
   EXPECT_LT((22.0 * encoder.ColumnsAt(0) + drive.ColumnsAt(0)).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_NEAR(encoder.amplitudes[0].prior_sd / drive.amplitudes[0].prior_sd, 22.0, 1e-6);
 }

@@ -1,4 +1,4 @@
-#include "twin/diagnose/hob/hob_run.h"
+#include "twin/benches/hob_transmission/diagnosis/hob_run.h"
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 
 #include "tests/diagnose/hob_chain.h"
 #include "tests/diagnose/hob_twin_run.h"
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/noise_model.h"
@@ -67,9 +68,9 @@ TEST(HobRun, TakesOffTheStatedEccentricityOfTheRing) {
   HobChain chain = Quiet();
   chain.hidden = {{"eccentricity", "table", {{"amplitude", amplitude_rad}, {"phase", 40.0 * deg - 90.0 * deg}}}};
   Scenario scenario = ScenarioOf(chain);
-  scenario.table_encoder.radius_m = 0.1;
-  scenario.table_encoder.eccentricity_m = 0.1 * amplitude_rad;
-  scenario.table_encoder.eccentricity_azimuth_rad = 40.0 * deg;
+  HobOf(scenario).table_encoder.radius_m = 0.1;
+  HobOf(scenario).table_encoder.eccentricity_m = 0.1 * amplitude_rad;
+  HobOf(scenario).table_encoder.eccentricity_azimuth_rad = 40.0 * deg;
   EXPECT_LT(Left_rad(RunOf(ReadingsOf(chain), scenario).run), 1e-3 * arcsec);
 }
 
@@ -78,8 +79,8 @@ TEST(HobRun, TakesOffAStatedLineOfTheTransmissionAndBacklash) {
   chain.hidden = {{"unlisted_order", "", {{"order", 7.0}, {"amplitude", 3.0 * arcsec}, {"phase", 2.0}}},
                   {"backlash", "", {{"width", 4.0 * arcsec}}}};
   Scenario scenario = ScenarioOf(chain);
-  scenario.transmission.harmonics = {{Component::kEz, 7.0, 3.0 * arcsec, 2.0}};
-  scenario.transmission.backlash_rad = 4.0 * arcsec;
+  HobOf(scenario).transmission.harmonics = {{Component::kEz, 7.0, 3.0 * arcsec, 2.0}};
+  HobOf(scenario).transmission.backlash_rad = 4.0 * arcsec;
   EXPECT_LT(Left_rad(RunOf(ReadingsOf(chain), scenario).run), 1e-3 * arcsec);
 }
 
@@ -134,9 +135,9 @@ TEST(HobRun, LeavesOutSamplesThatLieFarOutsideButNoStep) {
   for (std::size_t i = 0; i < readings.size(); ++i)
     far += std::abs(readings[i].measured_rad - without[i].measured_rad) > 1.0 * arcsec;
   const HobRun hob = RunOf(readings, ScenarioOf(chain));
-  EXPECT_GE(std::ssize(hob.disturbed.readings), far);
-  EXPECT_LE(std::ssize(hob.disturbed.readings), far + 3);  // of smaller ones one in twenty is as far
-  for (const int reading : hob.disturbed.readings) {
+  EXPECT_GE(std::ssize(hob.outliers.readings), far);
+  EXPECT_LE(std::ssize(hob.outliers.readings), far + 3);  // of smaller ones one in twenty is as far
+  for (const int reading : hob.outliers.readings) {
     const auto i = static_cast<std::size_t>(reading);
     EXPECT_NE(readings[i].measured_rad, without[i].measured_rad) << reading;
   }

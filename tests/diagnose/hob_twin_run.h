@@ -1,7 +1,7 @@
 #pragma once
 
-#include "twin/benches/hob_transmission/twin/twin.h"
-#include "twin/diagnose/hob/hob_run.h"
+#include "twin/benches/hob_transmission/diagnosis/hob_run.h"
+#include "twin/benches/hob_transmission/twin/factory.h"
 
 namespace twinbench::diagnose::hob {
 

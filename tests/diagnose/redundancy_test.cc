@@ -8,9 +8,10 @@
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/benches/rotary_4dof/diagnosis/rotary_run.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/diagnose/missing.h"
-#include "twin/diagnose/rotary/rotary_run.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -52,9 +53,9 @@ TEST(Redundancy, IsNotAskedOfACalibrationAlone) {
 
 TEST(Redundancy, OfThePublishedDesignOnTheRotaryBenchIsNone) {
   Scenario scenario = twinbench::test::RotaryScenario();
-  scenario.procedure.positions = 24;
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {1};
+  RotaryOf(scenario).procedure.positions = 24;
+  RotaryOf(scenario).procedure.shifts = {0, 1};
+  RotaryOf(scenario).procedure.passes = {1};
   const auto run =
       rotary::BuildRun(twinbench::test::RunTwin(scenario).readings, scenario, {benches::rotary::FollowRecord}).run;
   EXPECT_THAT(Refusal(run), HasSubstr("2 set-ups with 1 pass each leave 0 degrees of freedom in 192 values"));
@@ -77,7 +78,7 @@ TEST(MissingColumns, SaysWhenTheWholeCalibrationIsMissing) {
 
 TEST(MissingColumns, HasNothingToSayOfACompleteRun) {
   Scenario scenario = twinbench::test::RotaryScenario();
-  scenario.procedure.positions = 12;
+  RotaryOf(scenario).procedure.positions = 12;
   EXPECT_THAT(MissingColumns(twinbench::test::RunTwin(scenario).readings, kRotaryBench), IsEmpty());
 }
 

@@ -6,11 +6,11 @@
 
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/benches/rotary_4dof/diagnosis/rotary_case.h"
+#include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
-#include "twin/diagnose/rotary/rotary_case.h"
 
 /// Where a cause shows times its course, against what the twin does when the cause is at work.
 namespace twinbench::diagnose::rotary {

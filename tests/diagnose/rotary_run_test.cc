@@ -1,12 +1,12 @@
-#include "twin/diagnose/rotary/rotary_run.h"
+#include "twin/benches/rotary_4dof/diagnosis/rotary_run.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/support/twin_run.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/diagnose/rotary/free_parameters.h"
+#include "twin/benches/rotary_4dof/diagnosis/free_parameters.h"
+#include "twin/benches/rotary_4dof/twin/factory.h"
 
 namespace twinbench::diagnose::rotary {
 namespace {

@@ -1,11 +1,10 @@
-#include "twin/diagnose/rotary_search.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/support/twin_run.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/benches/rotary_4dof/diagnosis/search.h"
+#include "twin/benches/rotary_4dof/twin/factory.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -22,11 +21,11 @@ TEST(RotarySearch, NamesAChangeOfTheBenchThatIsLargeEnoughToBend) {
   const SearchedRotary searched =
       SearchRotary(twinbench::test::RunTwin(actual).readings, believed, options, {benches::rotary::FollowRecord});
   const SearchResult& found = searched.analysis.found;
-  ASSERT_EQ(found.picks.size(), 1U);
-  const Pick& pick = found.picks[0];
-  EXPECT_EQ(searched.rotary->Families()[static_cast<std::size_t>(pick.family)].effect, "incidence_offset");
-  EXPECT_NEAR(pick.amplitudes[0], kIncidence_rad, 4.0 * std::sqrt(pick.cov(0, 0)));
-  EXPECT_LT(std::sqrt(pick.cov(0, 0)), 0.1 * kIncidence_rad);
+  ASSERT_EQ(found.terms.size(), 1U);
+  const Term& term = found.terms[0];
+  EXPECT_EQ(searched.rotary->Families()[static_cast<std::size_t>(term.family)].effect, "incidence_offset");
+  EXPECT_NEAR(term.amplitudes[0], kIncidence_rad, 4.0 * std::sqrt(term.cov(0, 0)));
+  EXPECT_LT(std::sqrt(term.cov(0, 0)), 0.1 * kIncidence_rad);
 }
 
 }  // namespace

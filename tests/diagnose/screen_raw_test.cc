@@ -4,6 +4,8 @@
 #include <functional>
 
 #include "tests/diagnose/support/synthetic_run.h"
+#include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
 
@@ -163,14 +165,15 @@ TEST(ScreenRaw, SaysThatBlocksOfLessThanAPeriodCannotShowTheMains) {
 
 TEST(RawScale, GivesACodeAsALengthOnThePsdAndAsTheRotationThatMovesItsAxis) {
   Scenario scenario;  // 16 bit over +-10 V
-  scenario.psd_a.sensitivity_V_m = 2000.0;
-  scenario.psd_b.sensitivity_V_m = 1000.0;
-  const RawScale scale = RawScaleOf(scenario, SyntheticRun({}));  // yaw and tilt show 0.2 m a radian
+  RotaryOf(scenario).psd_a.sensitivity_V_m = 2000.0;
+  RotaryOf(scenario).psd_b.sensitivity_V_m = 1000.0;
+  const RawScale scale =
+      benches::rotary::RawScaleOf(scenario, SyntheticRun({}));  // yaw and tilt show 0.2 m a radian
   ASSERT_EQ(scale.channels.size(), 4u);
   EXPECT_DOUBLE_EQ(scale.channels[0].code_SI, 20.0 / 65536.0 / 2000.0);
   EXPECT_DOUBLE_EQ(scale.channels[3].code_SI, 20.0 / 65536.0 / 1000.0);
   EXPECT_DOUBLE_EQ(scale.channels[0].code_rad, scale.channels[0].code_SI / 0.2);
-  EXPECT_DOUBLE_EQ(scale.scan_rate_Hz, scenario.adc.rate_Hz / 4.0);
+  EXPECT_DOUBLE_EQ(scale.scan_rate_Hz, RotaryOf(scenario).adc.rate_Hz / 4.0);
 }
 
 }  // namespace

@@ -2,13 +2,15 @@
 
 #include "tests/diagnose/support/synthetic_run.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/diagnosis/rotary_run.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/scenario.h"
 #include "twin/core/units.h"
-#include "twin/diagnose/rotary/rotary_run.h"
-#include "twin/procedure/procedure.h"
-#include "twin/sim/twin.h"
 
 /// Raw blocks as the twin's converter makes them.
 namespace twinbench::diagnose {
@@ -30,11 +32,11 @@ class RawSink : public ReadingSink {
 Scenario SmallBench(std::uint64_t seed) {
   Scenario scenario = twinbench::test::RotaryScenario();
   scenario.seed = seed;
-  scenario.procedure.positions = 12;
-  scenario.procedure.shifts = {0, 1, 5};
-  scenario.procedure.passes = {1, -1};
-  scenario.procedure.keep_raw = true;
-  for (TableSettings* table : {&scenario.target, &scenario.reference}) {
+  RotaryOf(scenario).procedure.positions = 12;
+  RotaryOf(scenario).procedure.shifts = {0, 1, 5};
+  RotaryOf(scenario).procedure.passes = {1, -1};
+  RotaryOf(scenario).procedure.keep_raw = true;
+  for (TableSettings* table : {&RotaryOf(scenario).target, &RotaryOf(scenario).reference}) {
     for (int c = 0; c < kComponents; ++c) {
       table->random_rms[static_cast<std::size_t>(c)] =
           IsAngle(static_cast<Component>(c)) ? 2.0 * units::arcsec : 1.0 * units::um;
@@ -49,14 +51,14 @@ std::vector<ScreenTest> ScreenOf(const Scenario& actual, const Scenario& believe
   RawSink sink;
   procedure::CarryOut(bench, actual, sink);
   const rotary::RotaryRun rotary = rotary::BuildRun(sink.readings, believed, {benches::rotary::FollowRecord});
-  return ScreenRaw(sink.blocks, RawScaleOf(believed, rotary.run), 200, actual.seed);
+  return ScreenRaw(sink.blocks, benches::rotary::RawScaleOf(believed, rotary.run), 200, actual.seed);
 }
 
 TEST(ScreenOfTheTwin, FindsTheMainsHumOfTheAmplifierWithItsAmplitude) {
   Scenario actual = SmallBench(1);
-  actual.adc.samples = 2500;  // 40 ms: two periods
+  RotaryOf(actual).adc.samples = 2500;  // 40 ms: two periods
   const Scenario believed = actual;
-  actual.amplifier.hum_V = 0.5 * units::mV;
+  RotaryOf(actual).amplifier.hum_V = 0.5 * units::mV;
   const auto tests = ScreenOf(actual, believed);
   const ScreenTest* hum = Find(tests, "raw: hum");
   ASSERT_NE(hum, nullptr);
@@ -68,7 +70,7 @@ TEST(ScreenOfTheTwin, FindsTheMainsHumOfTheAmplifierWithItsAmplitude) {
 
 TEST(ScreenOfTheTwin, FindsAMissingCodeOfTheConverter) {
   Scenario actual = SmallBench(1);
-  actual.adc.samples = 1000;
+  RotaryOf(actual).adc.samples = 1000;
   const Scenario believed = actual;
   const double code_V = 20.0 / 65536.0;
   actual.effects.push_back({"adc_step", "psd_a_y", {{"step", code_V}, {"at_voltage", 20.5 * code_V}}, "test"});
@@ -82,7 +84,7 @@ TEST(ScreenOfTheTwin, FindsAMissingCodeOfTheConverter) {
 
 TEST(ScreenOfTheTwin, FindsTheGhostOfTheChannelScannedBefore) {
   Scenario actual = SmallBench(1);
-  actual.adc.samples = 1000;
+  RotaryOf(actual).adc.samples = 1000;
   const Scenario believed = actual;
   actual.effects.push_back({"crosstalk", "psd_b_x", {{"fraction", 0.05}}, "test"});
   const auto tests = ScreenOf(actual, believed);
@@ -98,7 +100,7 @@ TEST(ScreenOfTheTwin, TellsNothingOfCleanBlocksButAtTheStatedRate) {
   int told = 0;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
     Scenario clean = SmallBench(seed);
-    clean.adc.samples = 1500;
+    RotaryOf(clean).adc.samples = 1500;
     const auto tests = ScreenOf(clean, clean);
     EXPECT_EQ(tests.size(), 5u);
     told += !Loud(tests).empty();

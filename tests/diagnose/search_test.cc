@@ -79,23 +79,23 @@ TEST(Search, PicksTheCauseThatIsThereWithItsSize) {
   SearchCase c(2);
   c.run.residual += 3.0 * units::um * Drift(c.run);
   const SearchResult found = c.Find(3.0);
-  ASSERT_EQ(found.picks.size(), 1U);
-  EXPECT_EQ(c.families[static_cast<std::size_t>(found.picks[0].family)].effect, "drift");
-  EXPECT_NEAR(found.picks[0].amplitudes[0], 3.0 * units::um, 4.0 * std::sqrt(found.picks[0].cov(0, 0)));
+  ASSERT_EQ(found.terms.size(), 1U);
+  EXPECT_EQ(c.families[static_cast<std::size_t>(found.terms[0].family)].effect, "drift");
+  EXPECT_NEAR(found.terms[0].amplitudes[0], 3.0 * units::um, 4.0 * std::sqrt(found.terms[0].cov(0, 0)));
 }
 
 TEST(Search, PicksTwoCausesAtOnce) {
   SearchCase c(3);
   c.run.residual += 4.0 * units::um * Drift(c.run) + 3.0 * units::um * OneChannel(c.run, Drift(c.run), 0);
   const SearchResult found = c.Find(3.0);
-  ASSERT_EQ(found.picks.size(), 2U);
-  EXPECT_NE(found.picks[0].family, found.picks[1].family);
+  ASSERT_EQ(found.terms.size(), 2U);
+  EXPECT_NE(found.terms[0].family, found.terms[1].family);
   EXPECT_LT(found.last_statistic, 3.0);
 }
 
 TEST(Search, FindsNothingInNoise) {
   int found = 0;
-  for (std::uint64_t seed = 10; seed < 110; ++seed) found += SearchCase(seed).Find(3.0).picks.empty() ? 0 : 1;
+  for (std::uint64_t seed = 10; seed < 110; ++seed) found += SearchCase(seed).Find(3.0).terms.empty() ? 0 : 1;
   // Odds of e^3 = 20 against none: by Markov's inequality at most one in twenty, as a rule far fewer.
   EXPECT_LE(found, 5);
 }

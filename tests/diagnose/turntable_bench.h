@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "twin/benches/names.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"
@@ -40,20 +41,20 @@ struct Wrong {
 inline Scenario CarefulScenario() {
   Scenario s;
   s.bench = kTurntableBench;
-  s.autocollimator.noise_rad = 0.1 * arcsec;
-  s.reference.repeatability_sd[static_cast<std::size_t>(Component::kEz)] = 0.05 * arcsec;
-  s.turntable_procedure.phases = {"calibration", "full_circle", "verification"};
-  s.turntable_procedure.tilt_azimuths_rad = {0.0, 130.0 * deg};
-  s.turntable_procedure.dwell_s = {0.5, 1.0, 2.0, 4.0, 8.0};
+  TurntableOf(s).autocollimator.noise_rad = 0.1 * arcsec;
+  TurntableOf(s).multitooth_table.repeatability_sd[static_cast<std::size_t>(Component::kEz)] = 0.05 * arcsec;
+  TurntableOf(s).turntable_procedure.phases = {"calibration", "full_circle", "verification"};
+  TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {0.0, 130.0 * deg};
+  TurntableOf(s).turntable_procedure.dwell_s = {0.5, 1.0, 2.0, 4.0, 8.0};
   return s;
 }
 
 /// The published procedure: two tilts, one pass each.
 inline Scenario PublishedScenario() {
   Scenario s = CarefulScenario();
-  s.turntable_procedure.phases = {"full_circle"};
-  s.turntable_procedure.passes = {1};
-  s.turntable_procedure.dwell_s = {1.0};
+  TurntableOf(s).turntable_procedure.phases = {"full_circle"};
+  TurntableOf(s).turntable_procedure.passes = {1};
+  TurntableOf(s).turntable_procedure.dwell_s = {1.0};
   return s;
 }
 
@@ -71,7 +72,7 @@ class Bench {
   }
 
   std::vector<Reading> Run() {
-    const TurntableProcedureSettings& p = s_.turntable_procedure;
+    const TurntableProcedureSettings& p = TurntableOf(s_).turntable_procedure;
     for (int setup = 0; setup < p.SetUps(); ++setup) {
       now_s_ += setup > 0 ? p.remount_s : 20.0;
       mounted_s_ = now_s_;
@@ -90,14 +91,14 @@ class Bench {
                           kMove_s = 0.6;  // the turntable moves while the multi-tooth table is lifted
 
   bool Has(const char* phase) const {
-    for (const std::string& p : s_.turntable_procedure.phases) {
+    for (const std::string& p : TurntableOf(s_).turntable_procedure.phases) {
       if (p == phase) return true;
     }
     return false;
   }
 
   void Circle(int setup, int pass, int direction, int positions, double offset_rad, Phase phase) {
-    const int shift = TurntableProcedureSettings::Of(s_.turntable_procedure.shifts, setup);
+    const int shift = TurntableProcedureSettings::Of(TurntableOf(s_).turntable_procedure.shifts, setup);
     for (int step = 0; step < positions; ++step) {
       Reading r;
       r.position = direction > 0 ? step : positions - 1 - step;
@@ -106,18 +107,18 @@ class Bench {
       r.direction = direction;
       r.phase = phase;
       r.target_rad = offset_rad + r.position * 2.0 * kPi / positions;
-      r.reference_rad = shift * 2.0 * kPi / s_.multitooth.teeth - r.target_rad;
+      r.reference_rad = shift * 2.0 * kPi / TurntableOf(s_).multitooth.teeth - r.target_rad;
       Take(r);
     }
   }
 
   void Sweep() {
-    const int n = s_.turntable_procedure.sweep_points;
+    const int n = TurntableOf(s_).turntable_procedure.sweep_points;
     for (int k = 0; k < n; ++k) {
       Reading r;
       r.position = k;
       r.phase = Phase::kCalibration;
-      r.target_rad = s_.turntable_procedure.sweep_rad * (2.0 * k / (n - 1.0) - 1.0);
+      r.target_rad = TurntableOf(s_).turntable_procedure.sweep_rad * (2.0 * k / (n - 1.0) - 1.0);
       r.reference_rad = 0.0;
       Take(r);
     }
@@ -139,12 +140,12 @@ class Bench {
   Eigen::Vector3d Normal(const Reading& r, double extra_rad) const {
     using Eigen::AngleAxisd;
     using Eigen::Vector3d;
-    const auto& p = s_.turntable_procedure;
+    const auto& p = TurntableOf(s_).turntable_procedure;
     const double tilt_rad = TurntableProcedureSettings::Of(p.tilts_rad, r.setup);
     const double azimuth_rad = TurntableProcedureSettings::Of(p.tilt_azimuths_rad, r.setup);
     const Vector3d across(-std::sin(azimuth_rad), std::cos(azimuth_rad),
                           0.0);  // turns the axis towards the azimuth
-    const double tooth = r.reference_rad / (2.0 * kPi) * s_.multitooth.teeth;
+    const double tooth = r.reference_rad / (2.0 * kPi) * TurntableOf(s_).multitooth.teeth;
     const auto index = static_cast<std::size_t>(((std::lround(tooth) % 360) + 360) % 360);
     const double wobble_rad =
         wobble_rad_[0] * std::cos(r.target_rad) + wobble_rad_[1] * std::sin(3.0 * r.target_rad);
@@ -160,12 +161,12 @@ class Bench {
   }
 
   double Body(const Reading& r) const {
-    const auto& p = s_.turntable_procedure;
+    const auto& p = TurntableOf(s_).turntable_procedure;
     const double e_m = TurntableProcedureSettings::Of(p.eccentricities_m, r.setup);
     const double to_x = std::cos(TurntableProcedureSettings::Of(p.tilt_azimuths_rad, r.setup) + r.target_rad);
     // A hollow mirror that stands to the right (+x) of the beam is met on its left, where it looks to the right.
-    const double flat_rad =
-        -8.0 * (wrong_.sag_m + s_.mirror.flatness_m) * e_m * to_x / std::pow(s_.mirror.width_m, 2);
+    const double flat_rad = -8.0 * (wrong_.sag_m + TurntableOf(s_).mirror.flatness_m) * e_m * to_x /
+                            std::pow(TurntableOf(s_).mirror.width_m, 2);
     const double late_rad = wrong_.settling_rad * std::exp(-(kLift_s - kMove_s + r.dwell_s) / wrong_.settling_s);
     return flat_rad - r.direction * (0.5 * wrong_.backlash_rad + late_rad);
   }
@@ -191,28 +192,29 @@ class Bench {
   static std::size_t Number(int setup) { return static_cast<std::size_t>(setup); }
 
   void Take(Reading& r) {
-    const auto& dwells = s_.turntable_procedure.dwell_s;
+    const auto& dwells = TurntableOf(s_).turntable_procedure.dwell_s;
     r.reading = static_cast<int>(readings_.size());
     r.dwell_s = dwells[static_cast<std::size_t>(truth_.Uniform() * static_cast<double>(dwells.size()))];
     now_s_ += kLift_s + r.dwell_s + 0.2 * truth_.Uniform();
     r.time = Time(FromSeconds(now_s_));
     r.temperature_degC = s_.environment.reference_degC + Room_K(now_s_);
-    const double stated_rad = s_.reference.repeatability_sd[static_cast<std::size_t>(Component::kEz)];
+    const double stated_rad =
+        TurntableOf(s_).multitooth_table.repeatability_sd[static_cast<std::size_t>(Component::kEz)];
     seated_rad_ = (s_.noise_free ? 0.0 : stated_rad * noise_.Normal()) + wrong_.seating_rad * noise_.Normal();
     const Eigen::Vector3d n = Normal(r, Body(r));
     const Eigen::Vector2d true_rad =
         Eigen::Vector2d(std::atan2(-n.x(), n.y()), std::asin(n.z())) + Mounted(r.setup);
-    const double g = s_.collimator.roll_rad + wrong_.roll_rad;
+    const double g = TurntableOf(s_).collimator.roll_rad + wrong_.roll_rad;
     Eigen::Vector2d shown(true_rad.x() * std::cos(g) + true_rad.y() * std::sin(g),
                           true_rad.y() * std::cos(g) - true_rad.x() * std::sin(g));
-    shown *= 1.0 + s_.autocollimator.gain_error + wrong_.gain_error;
-    const Eigen::Array2d part = shown.array() / s_.autocollimator.range_rad;
+    shown *= 1.0 + TurntableOf(s_).autocollimator.gain_error + wrong_.gain_error;
+    const Eigen::Array2d part = shown.array() / TurntableOf(s_).autocollimator.range_rad;
     shown.array() += wrong_.at_edge_rad * part * (part.square() + 0.05 * part.square().square());
     for (Eigen::Index a = 0; a < 2; ++a)
       shown[a] += wrong_.ripple_rad[Number(static_cast<int>(a))] *
                   std::cos(2.0 * kPi * shown[a] / wrong_.ripple_period_rad + wrong_.ripple_phase_rad);
     shown += Zero(r);
-    const double sd_rad = s_.noise_free ? 0.0 : s_.autocollimator.noise_rad;
+    const double sd_rad = s_.noise_free ? 0.0 : TurntableOf(s_).autocollimator.noise_rad;
     shown += Eigen::Vector2d(sd_rad * noise_.Normal(), sd_rad * noise_.Normal());
     if (noise_.Uniform() < wrong_.spoilt)
       shown[noise_.Uniform() < 0.5 ? 0 : 1] += wrong_.spoilt_rad * (1.0 + noise_.Uniform());

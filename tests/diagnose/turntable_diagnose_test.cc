@@ -6,6 +6,7 @@
 
 #include "tests/diagnose/turntable_bench.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/words.h"
@@ -62,7 +63,7 @@ TEST(TurntableDiagnosis, NamesEveryFaultOfTheInstrument) {
   ExpectNamed(edge, "autocollimator_nonlinearity", "", "at_edge", 8.0 * arcsec);
   flat.sag_m = 600e-9;
   Scenario off_centre = CarefulScenario();
-  off_centre.turntable_procedure.eccentricities_m = {5e-3, 0.0};
+  TurntableOf(off_centre).turntable_procedure.eccentricities_m = {5e-3, 0.0};
   ExpectNamed(flat, "mirror_flatness", "", "sag", 600e-9, off_centre);
   for (const std::size_t axis : {0u, 1u}) {
     Wrong ripple;
@@ -109,7 +110,7 @@ TEST(TurntableDiagnosis, NamesTeethThatSeatDifferentlyAndReadingsThatAreSpoilt) 
 
 TEST(TurntableDiagnosis, TakesALouderAutocollimatorForNoSeating) {
   Scenario louder = CarefulScenario();
-  louder.autocollimator.noise_rad = 0.13 * arcsec;
+  TurntableOf(louder).autocollimator.noise_rad = 0.13 * arcsec;
   const DiagnosisRun run = Diagnose(BenchReadings(louder, {}, 21), CarefulScenario());
   EXPECT_EQ(run.diagnosis.verdict, Verdict::kNone) << InWords(run);
 }
@@ -127,7 +128,7 @@ TEST(TurntableDiagnosis, IsQuietOnCleanRuns) {
 
 TEST(TurntableDiagnosis, BelievesTheStatedRoll) {
   Scenario scenario = CarefulScenario();
-  scenario.collimator.roll_rad = 0.6 * units::deg;
+  TurntableOf(scenario).collimator.roll_rad = 0.6 * units::deg;
   EXPECT_EQ(DiagnosisOf(scenario, {}).diagnosis.verdict, Verdict::kNone);
   Wrong more;
   more.roll_rad = 3e-3;
@@ -142,9 +143,9 @@ TEST(TurntableDiagnosis, FindsTheRollOfThePublishedProcedure) {
 
 TEST(TurntableDiagnosis, CallsTheRollInvisibleWithOneTiltAndNoSweep) {
   Scenario scenario = PublishedScenario();
-  scenario.turntable_procedure.tilts_rad = {60 * arcsec};
-  scenario.turntable_procedure.tilt_azimuths_rad = {0.0};
-  scenario.turntable_procedure.passes = {1, -1};
+  TurntableOf(scenario).turntable_procedure.tilts_rad = {60 * arcsec};
+  TurntableOf(scenario).turntable_procedure.tilt_azimuths_rad = {0.0};
+  TurntableOf(scenario).turntable_procedure.passes = {1, -1};
   Wrong roll;
   roll.roll_rad = 10e-3;
   const Diagnosis d = DiagnosisOf(scenario, roll).diagnosis;
@@ -161,7 +162,7 @@ TEST(TurntableDiagnosis, CallsTheRollInvisibleWithOneTiltAndNoSweep) {
 
 TEST(TurntableDiagnosis, TiesBacklashAndSettlingWithOneDwell) {
   Scenario scenario = CarefulScenario();
-  scenario.turntable_procedure.dwell_s = {1.0};
+  TurntableOf(scenario).turntable_procedure.dwell_s = {1.0};
   Wrong gap;
   gap.backlash_rad = 0.6 * arcsec;
   const Diagnosis d = DiagnosisOf(scenario, gap).diagnosis;

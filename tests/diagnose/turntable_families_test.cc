@@ -6,8 +6,9 @@
 #include "tests/diagnose/turntable_bench.h"
 #include "tests/diagnose/turntable_twin_run.h"
 #include "twin/benches/names.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/families.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/effect_catalogue.h"
-#include "twin/diagnose/turntable/families.h"
 
 // The signatures of the causes against differences of readings of the independent bench.
 namespace twinbench::diagnose::turntable {
@@ -23,8 +24,8 @@ constexpr std::uint64_t kSeed = 3;
 Scenario Quiet() {
   Scenario scenario = test::CarefulScenario();
   scenario.noise_free = true;
-  scenario.turntable_procedure.eccentricities_m = {50e-6, 900e-6};
-  scenario.turntable_procedure.shifts = {0, 25};
+  TurntableOf(scenario).turntable_procedure.eccentricities_m = {50e-6, 900e-6};
+  TurntableOf(scenario).turntable_procedure.shifts = {0, 25};
   return scenario;
 }
 
@@ -165,9 +166,9 @@ TEST(TurntableFamilies, LeaveOutWhatWasNotRecorded) {
 }
 
 TEST(TurntableFamilies, HaveTheSameShapesWithoutANameWhateverIsStruck) {
-  const auto unknown = [](const std::vector<std::string>& struck) {
+  const auto unknown = [](const std::vector<std::string>& excluded) {
     std::vector<std::string> names;
-    for (const Family& family : Families(QuietRun(), struck)) {
+    for (const Family& family : Families(QuietRun(), excluded)) {
       if (family.kind == Kind::kUnknown) names.push_back(family.effect + " on " + family.where);
     }
     return names;

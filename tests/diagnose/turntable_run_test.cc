@@ -1,4 +1,4 @@
-#include "twin/diagnose/turntable/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include "tests/diagnose/turntable_bench.h"
 #include "tests/diagnose/turntable_twin_run.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/engine/projector.h"
@@ -44,23 +45,23 @@ TEST(TurntableRun, AbsorbsAWholeBenchThatIsAsStated) {
     // The slope of the turntable's error along the sweep costs its prior.
     EXPECT_LT(LeftOver(RunOf(BenchReadings(Quiet(scenario), {}, 4), scenario)), 0.2);
     // Three shifts meet other teeth, whose errors of 0.1 arcsec cost their prior.
-    scenario.turntable_procedure.shifts = {0, 25, 85};
-    scenario.turntable_procedure.tilts_rad = {60 * arcsec, 100 * arcsec, 80 * arcsec};
-    scenario.turntable_procedure.tilt_azimuths_rad = {0.0};
+    TurntableOf(scenario).turntable_procedure.shifts = {0, 25, 85};
+    TurntableOf(scenario).turntable_procedure.tilts_rad = {60 * arcsec, 100 * arcsec, 80 * arcsec};
+    TurntableOf(scenario).turntable_procedure.tilt_azimuths_rad = {0.0};
     EXPECT_LT(LeftOver(RunOf(BenchReadings(Quiet(scenario), {}, 4), scenario)), 0.5);
   }
 }
 
 TEST(TurntableRun, BelievesTheStatedInstrument) {
   Scenario scenario = CarefulScenario();
-  scenario.collimator.roll_rad = 10e-3;
-  scenario.autocollimator.gain_error = 0.01;
-  scenario.collimator.x_per_kelvin_rad = 3.0 * arcsec;
+  TurntableOf(scenario).collimator.roll_rad = 10e-3;
+  TurntableOf(scenario).autocollimator.gain_error = 0.01;
+  TurntableOf(scenario).collimator.x_per_kelvin_rad = 3.0 * arcsec;
   // In a sweep the mirror, which stands before the axis, moves aside of the beam: 0.2 arcsec at 2 um, which the
   // independent bench leaves out.
-  scenario.mirror.flatness_m = 0.2e-6;
-  scenario.turntable_procedure.eccentricities_m = {50e-6, 9e-3};
-  scenario.target.backlash_rad = 2.0 * arcsec;
+  TurntableOf(scenario).mirror.flatness_m = 0.2e-6;
+  TurntableOf(scenario).turntable_procedure.eccentricities_m = {50e-6, 9e-3};
+  TurntableOf(scenario).turntable.backlash_rad = 2.0 * arcsec;
   Wrong as_stated;
   as_stated.kelvin_rad = {3.0 * arcsec, 0.0};
   as_stated.backlash_rad = 2.0 * arcsec;
@@ -72,11 +73,11 @@ TEST(TurntableRun, BelievesTheStatedInstrument) {
     change(other);
     return LeftOver(RunOf(readings, other));
   };
-  EXPECT_GT(without([](Scenario& s) { s.collimator.roll_rad = 0.0; }), 1.0);
-  EXPECT_GT(without([](Scenario& s) { s.autocollimator.gain_error = 0.0; }), 1.0);
-  EXPECT_GT(without([](Scenario& s) { s.collimator.x_per_kelvin_rad = 0.0; }), 1.0);
-  EXPECT_GT(without([](Scenario& s) { s.mirror.flatness_m = 0.0; }), 1.0);
-  EXPECT_GT(without([](Scenario& s) { s.target.backlash_rad = 0.0; }), 1.0);
+  EXPECT_GT(without([](Scenario& s) { TurntableOf(s).collimator.roll_rad = 0.0; }), 1.0);
+  EXPECT_GT(without([](Scenario& s) { TurntableOf(s).autocollimator.gain_error = 0.0; }), 1.0);
+  EXPECT_GT(without([](Scenario& s) { TurntableOf(s).collimator.x_per_kelvin_rad = 0.0; }), 1.0);
+  EXPECT_GT(without([](Scenario& s) { TurntableOf(s).mirror.flatness_m = 0.0; }), 1.0);
+  EXPECT_GT(without([](Scenario& s) { TurntableOf(s).turntable.backlash_rad = 0.0; }), 1.0);
 }
 
 TEST(TurntableRun, BelievesTheEffectsOfTheScenario) {
@@ -129,11 +130,11 @@ TEST(TurntableRun, TakesOffAnEmpiricalSignal) {
 TEST(TurntableRun, TellsTeethFromPositionsOnlyWhereAShiftDoes) {
   Scenario scenario = PublishedScenario();
   EXPECT_FALSE(RunOf(BenchReadings(scenario, {}, 4), scenario).places.HasTeeth());
-  scenario.turntable_procedure.shifts = {0, 25};
+  TurntableOf(scenario).turntable_procedure.shifts = {0, 25};
   const TurntableRun shifted = RunOf(BenchReadings(scenario, {}, 4), scenario);
   EXPECT_EQ(shifted.places.teeth, 72);  // 25 teeth are five steps: the same teeth again
   EXPECT_EQ(shifted.places.circle_blocks, 72);
-  scenario.turntable_procedure.shifts = {0, 3};
+  TurntableOf(scenario).turntable_procedure.shifts = {0, 3};
   EXPECT_EQ(RunOf(BenchReadings(scenario, {}, 4), scenario).places.teeth, 144);
 }
 
@@ -151,8 +152,8 @@ TEST(TurntableRun, LeavesOutReadingsWithoutBothValues) {
 
 TEST(TurntableRun, IsRefusedWhereOnePassOfOneSetUpLeavesNothingToCompare) {
   Scenario scenario = PublishedScenario();
-  scenario.turntable_procedure.tilts_rad = {60 * arcsec};
-  scenario.turntable_procedure.tilt_azimuths_rad = {0.0};
+  TurntableOf(scenario).turntable_procedure.tilts_rad = {60 * arcsec};
+  TurntableOf(scenario).turntable_procedure.tilt_azimuths_rad = {0.0};
   try {
     Diagnose(BenchReadings(scenario, {}, 4), scenario);
     FAIL();

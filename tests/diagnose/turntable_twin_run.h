@@ -1,7 +1,7 @@
 #pragma once
 
-#include "twin/benches/turntable_autocollimator/twin/twin.h"
-#include "twin/diagnose/turntable/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/twin/factory.h"
 
 namespace twinbench::diagnose::turntable {
 

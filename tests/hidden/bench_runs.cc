@@ -3,13 +3,17 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
-#include "twin/benches/hob_transmission/twin/twin.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/hob_transmission/diagnosis/hob_run.h"
+#include "twin/benches/hob_transmission/settings.h"
+#include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
-#include "twin/benches/turntable_autocollimator/twin/twin.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/core/errors.h"
-#include "twin/diagnose/hob/hob_run.h"
-#include "twin/diagnose/turntable/turntable_run.h"
 
 namespace twinbench::hidden {
 namespace {
@@ -18,18 +22,19 @@ using units::arcsec;
 using units::um;
 
 void StateAllOfTheDevice(Scenario& scenario) {
-  scenario.device.lines = 30;
-  scenario.device.teeth = 22;
-  scenario.encoder_procedure.mounting_rad = {0.0, 0.5 * units::kPi};
+  EncoderOf(scenario).device.lines = 30;
+  EncoderOf(scenario).device.teeth = 22;
+  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 0.5 * units::kPi};
 }
 
 void DrawTables(Stream& stream, Scenario& scenario) {
-  for (TableSettings* table : {&scenario.target, &scenario.reference}) {
+  for (TableSettings* table : {&RotaryOf(scenario).target, &RotaryOf(scenario).reference}) {
     const double size = UniformIn(stream, 0.6, 1.5);
     for (double& rms : table->random_rms) rms *= size;
   }
-  scenario.centring_m = {UniformIn(stream, -5.0, 5.0) * um, UniformIn(stream, -5.0, 5.0) * um};
-  scenario.mount_tilt_rad = {UniformIn(stream, -20.0, 20.0) * arcsec, UniformIn(stream, -20.0, 20.0) * arcsec};
+  RotaryOf(scenario).centring_m = {UniformIn(stream, -5.0, 5.0) * um, UniformIn(stream, -5.0, 5.0) * um};
+  RotaryOf(scenario).mount_tilt_rad = {UniformIn(stream, -20.0, 20.0) * arcsec,
+                                       UniformIn(stream, -20.0, 20.0) * arcsec};
 }
 
 void DrawRoom(Stream& stream, EnvironmentSettings& room) {
@@ -69,20 +74,22 @@ std::string ScenarioOf(Design design) {
 }
 
 void DrawTurntable(Stream& stream, Scenario& scenario) {
-  for (HarmonicSettings& h : scenario.target.harmonics) {
+  TableSettings& turntable = TurntableOf(scenario).turntable;
+  for (HarmonicSettings& h : turntable.harmonics) {
     h.amplitude *= UniformIn(stream, 0.6, 1.5);
     h.phase_rad = UniformIn(stream, 0.0, 2.0 * units::kPi);
   }
-  scenario.target.random_rms[static_cast<std::size_t>(Component::kEz)] = UniformIn(stream, 0.2, 0.6) * arcsec;
+  turntable.random_rms[static_cast<std::size_t>(Component::kEz)] =
+      UniformIn(stream, 0.2, 0.6) * arcsec;
   for (const Component c : {Component::kEx, Component::kEy})
-    scenario.target.random_rms[static_cast<std::size_t>(c)] = UniformIn(stream, 0.5, 2.0) * arcsec;
+    turntable.random_rms[static_cast<std::size_t>(c)] = UniformIn(stream, 0.5, 2.0) * arcsec;
 }
 
 /// What an evaluation takes as unknown: the transmission's lowest orders.
 void DrawTransmission(Stream& stream, Scenario& scenario) {
-  for (HarmonicSettings& h : scenario.transmission.harmonics) {
+  for (HarmonicSettings& h : HobOf(scenario).transmission.harmonics) {
     const double factor = UniformIn(stream, 0.5, 1.5), phase_rad = UniformIn(stream, 0.0, 2.0 * units::kPi);
-    if (h.order > scenario.transmission.free_orders) continue;
+    if (h.order > HobOf(scenario).transmission.free_orders) continue;
     h.amplitude *= factor;
     h.phase_rad = phase_rad;
   }
@@ -108,10 +115,11 @@ double LogUniformIn(Stream& stream, double lower, double upper) {
 
 Scenario Believed(Design design) {
   Scenario scenario = LoadScenario(test::ScenarioPath(ScenarioOf(design)), OverridesOf(design));
-  scenario.adc.every_sample = false;
-  if (design == Design::kSweep || design == Design::kSweepAllKnown) scenario.encoder_procedure.kind = "sweep";
+  if (design == Design::kRotary) RotaryOf(scenario).adc.every_sample = false;
+  if (design == Design::kSweep || design == Design::kSweepAllKnown)
+    EncoderOf(scenario).encoder_procedure.kind = "sweep";
   // Two set-ups have twice the readings; half as many a second keep a case as quick as the others.
-  if (design == Design::kSweepAllKnown) scenario.encoder_procedure.interval_s *= 2.0;
+  if (design == Design::kSweepAllKnown) EncoderOf(scenario).encoder_procedure.interval_s *= 2.0;
   if (design == Design::kStopsAllKnown || design == Design::kSweepAllKnown) StateAllOfTheDevice(scenario);
   return scenario;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <utility>
+#include <nlohmann/json.hpp>
 
 #include "tests/hidden/judge.h"
 #include "tests/support/truth_rows.h"
@@ -81,19 +82,19 @@ Hidden HiddenBy(const json& truth) {
   return hidden;
 }
 
-Case ReadCase(const std::string& folder, const std::string& bench, const std::vector<std::string>& struck) {
+Case ReadCase(const std::string& folder, const std::string& bench, const std::vector<std::string>& excluded) {
   Case hidden_case;
   hidden_case.hidden = HiddenBy(test::ReadTruthFile(folder + "/truth.json"));
   hidden_case.scenario = LoadScenario(test::ScenarioPath(bench + ".toml"));
   hidden_case.readings = ReadReadingsCsv(folder + "/readings.csv", bench);
-  hidden_case.options.struck = struck;
+  hidden_case.options.excluded = excluded;
   return hidden_case;
 }
 
 }  // namespace
 
 std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& bench,
-                                 const std::vector<std::string>& struck) {
+                                 const std::vector<std::string>& excluded) {
   std::vector<std::string> names;
   if (fs::is_directory(folder)) {
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -106,7 +107,7 @@ std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& b
   const std::string set = bench == kRotaryBench ? "challenge" : "challenge_encoder";
   for (const std::string& name : names) {
     const std::string path = folder + "/" + name;
-    plans.push_back({set, name, [path, bench, struck] { return ReadCase(path, bench, struck); }});
+    plans.push_back({set, name, [path, bench, excluded] { return ReadCase(path, bench, excluded); }});
   }
   return plans;
 }

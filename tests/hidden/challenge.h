@@ -9,10 +9,10 @@
 namespace twinbench::hidden {
 
 /// @param bench  "rotary_4dof" or "encoder_comparison": decides the scenario that is believed.
-/// @param struck  Effects taken out of the catalogue.
+/// @param excluded  Effects taken out of the catalogue.
 /// @return one plan a folder, in the order of their names.
 /// @throws InputError if there is no such folder or no case in it.
 std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& bench,
-                                 const std::vector<std::string>& struck = {});
+                                 const std::vector<std::string>& excluded = {});
 
 }  // namespace twinbench::hidden

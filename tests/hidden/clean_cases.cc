@@ -2,9 +2,14 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "tests/hidden/placements.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 
 namespace twinbench::hidden {
 namespace {
@@ -91,8 +96,23 @@ void AddToAutocollimator(const NoiseShape& shape, double noise_rad, std::uint64_
 
 /// Where a bench states the noise of a reading; none is on it where the twin is to stay silent.
 double& StatedNoise_rad(Scenario& scenario) {
-  if (scenario.bench == kTurntableBench) return scenario.autocollimator.noise_rad;
-  return scenario.bench == kHobBench ? scenario.table_encoder.noise_rad : scenario.device.noise_rad;
+  if (scenario.bench == kTurntableBench) return TurntableOf(scenario).autocollimator.noise_rad;
+  return scenario.bench == kHobBench ? HobOf(scenario).table_encoder.noise_rad
+                                     : EncoderOf(scenario).device.noise_rad;
+}
+
+std::vector<Reading> RotaryReadings(const NoiseShape& shape, Scenario actual, std::uint64_t seed) {
+  const double sample_noise_V = std::exchange(RotaryOf(actual).amplifier.noise_V, 0.0);
+  std::vector<Reading> readings = TakeReadings(actual);
+  AddToVoltages(shape, sample_noise_V, seed, readings);
+  return readings;
+}
+
+std::vector<Reading> AngleReadings(const NoiseShape& shape, Scenario actual, std::uint64_t seed) {
+  const double noise_rad = std::exchange(StatedNoise_rad(actual), 0.0);
+  std::vector<Reading> readings = TakeReadings(actual);
+  (actual.bench == kTurntableBench ? AddToAutocollimator : AddToAngles)(shape, noise_rad, seed, readings);
+  return readings;
 }
 
 }  // namespace
@@ -107,21 +127,14 @@ Case MakeClean(Design design, Noise noise, std::uint64_t seed) {
   clean.hidden.noise = shape.name;
   clean.scenario = Believed(design);
   Scenario actual = Drawn(design, seed);
-  const double sample_noise_V = actual.amplifier.noise_V, noise_rad = StatedNoise_rad(actual);
-  actual.amplifier.noise_V = 0.0;
-  StatedNoise_rad(actual) = 0.0;
-  clean.readings = TakeReadings(actual);
   if (design == Design::kRotary) {
-    AddToVoltages(shape, sample_noise_V, seed, clean.readings);
+    clean.readings = RotaryReadings(shape, actual, seed);
     return clean;
   }
-  if (design == Design::kTurntable) {
-    AddToAutocollimator(shape, noise_rad, seed, clean.readings);
-  } else {
-    AddToAngles(shape, noise_rad, seed, clean.readings);
-  }
-  if (shape.stated != 1.0) clean.scenario.device.noise_known = true;
-  StatedNoise_rad(clean.scenario) = shape.stated * noise_rad;
+  clean.readings = AngleReadings(shape, actual, seed);
+  if (shape.stated != 1.0 && clean.scenario.bench == kEncoderBench)
+    EncoderOf(clean.scenario).device.noise_known = true;
+  StatedNoise_rad(clean.scenario) = shape.stated * StatedNoise_rad(actual);
   return clean;
 }
 

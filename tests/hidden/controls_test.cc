@@ -7,6 +7,7 @@
 #include "tests/hidden/twin_cases.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/errors.h"
 
 // Changes of the readings or the model that must change the answer.
@@ -38,7 +39,7 @@ std::vector<Reading> ReadingsWith(const EffectSettings& effect) {
 }
 
 Diagnosis Diagnosed(const std::vector<Reading>& readings, const Scenario& believed = Believed(Design::kRotary),
-                    measure::Estimator model = measure::Estimator::kRigorous) {
+                    Estimator model = Estimator::kRigorous) {
   diagnose::DiagnoseOptions options;
   options.model = model;
   options.cache_folder = CacheFolder();
@@ -104,9 +105,9 @@ TEST(Controls, ACauseAHundredTimesItsUsualSizeIsNotPassedOverInSilence) {
 
 TEST(Controls, TwoSetUpsAndOnePassAreRefusedForWantOfRedundancy) {
   Scenario scenario = Drawn(Design::kRotary, kSeed);
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {1};
-  scenario.procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.shifts = {0, 1};
+  RotaryOf(scenario).procedure.passes = {1};
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
   EXPECT_THROW(Diagnosed(TakeReadings(scenario), scenario), InputError);
 }
 
@@ -114,10 +115,10 @@ TEST(Controls, TwoSetUpsAndOnePassAreRefusedForWantOfRedundancy) {
 Diagnosis PublishedAgainstExact(const std::string& clamping) {
   Scenario scenario = Drawn(Design::kRotary, kSeed);
   scenario.noise_free = true;
-  scenario.procedure.clamping = clamping;
+  RotaryOf(scenario).procedure.clamping = clamping;
   Scenario believed = Believed(Design::kRotary);
-  believed.procedure.clamping = clamping;
-  return Diagnosed(TakeReadings(scenario), believed, measure::Estimator::kPublished);
+  RotaryOf(believed).procedure.clamping = clamping;
+  return Diagnosed(TakeReadings(scenario), believed, Estimator::kPublished);
 }
 
 TEST(PublishedEquations, HaveTheWrongSensitivitiesOfYawAndTilt) {

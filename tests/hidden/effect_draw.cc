@@ -4,7 +4,10 @@
 
 #include "tests/hidden/bench_runs.h"
 #include "tests/hidden/effect_size.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 
 namespace twinbench::hidden {
 namespace {
@@ -62,7 +65,8 @@ void DrawOwnShape(Stream& stream, const Scenario& scenario, EffectSettings& effe
     Set(effect, "period", LogUniformIn(stream, 3.0, 40.0) * units::arcsec);
   if (effect.name == "multitooth_seating") Set(effect, "scatter", UniformIn(stream, 0.4, 0.8) * units::arcsec);
   if (effect.name == "reference_fault") Set(effect, "order", std::floor(UniformIn(stream, 1.0, 6.0)));
-  if (effect.name == "gear_mesh") Set(effect, "teeth", scenario.device.teeth);  // of the encoder bench
+  if (effect.name == "gear_mesh" && scenario.bench == kEncoderBench)
+    Set(effect, "teeth", EncoderOf(scenario).device.teeth);
 }
 
 void DrawOutliers(Stream& stream, double sigma, EffectSettings& effect) {
@@ -73,8 +77,9 @@ void DrawOutliers(Stream& stream, double sigma, EffectSettings& effect) {
 /// Noise of one reading of a bench, m or rad.
 double NoiseOf(const Scenario& scenario) {
   if (scenario.bench == kRotaryBench) return 0.3 * units::um;
-  if (scenario.bench == kTurntableBench) return scenario.autocollimator.noise_rad;
-  return scenario.bench == kHobBench ? scenario.table_encoder.noise_rad : scenario.device.noise_rad;
+  if (scenario.bench == kTurntableBench) return TurntableOf(scenario).autocollimator.noise_rad;
+  return scenario.bench == kHobBench ? HobOf(scenario).table_encoder.noise_rad
+                                     : EncoderOf(scenario).device.noise_rad;
 }
 
 void DrawSign(Stream& stream, const std::string& bench, EffectSettings& effect) {

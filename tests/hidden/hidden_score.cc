@@ -27,7 +27,7 @@ struct Options {
   std::string only;   // part of the names of the cases; empty: all
   std::string out, cases;
   int threads = 2;
-  std::vector<std::string> struck;
+  std::vector<std::string> excluded;
   TwinOptions twin;
 };
 
@@ -49,8 +49,8 @@ int CountOf(const std::string& value, int otherwise) {
 std::vector<Plan> PlansOf(const std::string& set, const Options& options) {
   const std::size_t equals = set.find('=');
   const std::string name = set.substr(0, equals), value = equals == std::string::npos ? "" : set.substr(equals + 1);
-  if (name == "challenge") return ChallengePlans(value, kRotaryBench, options.struck);
-  if (name == "challenge_encoder") return ChallengePlans(value, kEncoderBench, options.struck);
+  if (name == "challenge") return ChallengePlans(value, kRotaryBench, options.excluded);
+  if (name == "challenge_encoder") return ChallengePlans(value, kEncoderBench, options.excluded);
   if (name == "twin")
     return OfBenches(options, [&](const auto& bench) { return SinglePlans(bench, options.twin); });
   if (name == "pairs") return PairPlans(CountOf(value, 60), options.twin);
@@ -71,7 +71,7 @@ std::vector<Plan> PlansOf(const std::string& set, const Options& options) {
 std::string CommandOf(const Options& options) {
   std::string command = "hidden_score";
   for (const std::string& set : options.sets) command += " --set " + set;
-  for (const std::string& effect : options.struck) command += " --strike " + effect;
+  for (const std::string& effect : options.excluded) command += " --strike " + effect;
   if (!options.only.empty()) command += " --only " + options.only;
   if (!options.bench.empty()) command += " --bench " + options.bench;
   return command + fmt::format(" --magnitudes {} --seeds {} --first-seed {}", options.twin.magnitudes,
@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
                  "folder that keeps calibrated thresholds; else they are made anew");
   app.add_option("--out", options.out, "write the score here instead of stdout");
   app.add_option("--cases", options.cases, "write one row a case here");
-  app.add_option("--strike", options.struck, "take an effect out of the catalogue")->allow_extra_args(false);
+  app.add_option("--strike", options.excluded, "take an effect out of the catalogue")->allow_extra_args(false);
   CLI11_PARSE(app, argc, argv);
   const twinbench::hidden::TemporaryFolder cache;
   if (options.twin.cache_folder.empty()) options.twin.cache_folder = cache.Path();

@@ -30,7 +30,7 @@ double Quantile(std::vector<double> values, double share);
 
 Condition Graded(Grade grade);
 bool IsLeaveOneOut(const Outcome& o);
-/// Something of the catalogue is hidden, to be seen, and not struck from it.
+/// Something of the catalogue is hidden, to be seen, and not excluded from it.
 bool IsListed(const Outcome& o);
 bool IsConfidentlyWrong(const Outcome& o);
 

@@ -40,11 +40,11 @@ std::string UnlistedSection(const Outcomes& all) {
 }
 
 std::string LeaveOneOutSection(const Outcomes& all) {
-  const Outcomes struck = Only(all, IsLeaveOneOut);
-  return "## Leave one cause out\n\nThe true cause is struck from the catalogue; every name is wrong. "
+  const Outcomes excluded = Only(all, IsLeaveOneOut);
+  return "## Leave one cause out\n\nThe true cause is excluded from the catalogue; every name is wrong. "
          "`structural`: wrong names that these readings cannot tell from the truth.\n\n" +
          TableHead("cause | cases | named above 0.9 | of these structural | unknown | tie | none") +
-         Rows(By(struck, EffectsOf), LeaveOneOutRow) + LeaveOneOutRow("all", struck) + "\n";
+         Rows(By(excluded, EffectsOf), LeaveOneOutRow) + LeaveOneOutRow("all", excluded) + "\n";
 }
 
 }  // namespace twinbench::hidden

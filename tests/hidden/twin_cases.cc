@@ -43,7 +43,7 @@ Plan SinglePlan(const std::string& set, const Placement& at, double rho, std::ui
 
 Case WithoutItsCause(Case made) {
   constexpr int kNullRuns = 200;  // at rho 20 the alarm is no question
-  made.options.struck = {made.hidden.causes.front().effect};
+  made.options.excluded = {made.hidden.causes.front().effect};
   made.options.null_runs = kNullRuns;
   return made;
 }

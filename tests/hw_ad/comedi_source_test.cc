@@ -12,6 +12,7 @@
 
 #include "tests/hw_ad/backend_test.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 /// On libcomedi itself. Run with the library of tests/support/comedi_device preloaded, as ctest does: it answers
 /// for /dev/comedi0 with the counts of a served twin.
@@ -34,7 +35,7 @@ class ComediSourceTest : public ::testing::Test {
   }
   static std::unique_ptr<AdFrontEnd> Open(const HeldTwin& served, const Scenario& scenario,
                                           const AdSettings& settings) {
-    return MakeAdConverter(settings, scenario.adc, served, scenario.amplifier.noise_V);
+    return MakeAdConverter(settings, RotaryOf(scenario).adc, served, RotaryOf(scenario).amplifier.noise_V);
   }
 };
 
@@ -47,10 +48,10 @@ TEST_F(ComediSourceTest, GivesTheServedTwinsOwnBlocks) {
 
 TEST_F(ComediSourceTest, GivesTheTwinsBlocksInAnotherRangeAndResolution) {
   Scenario scenario = test::RotaryScenario();
-  scenario.adc.rate_Hz = 100e3;
-  scenario.adc.range_V = 5.0;
-  scenario.adc.bits = 12;
-  scenario.amplifier.offset_V[2] = -6.0;
+  RotaryOf(scenario).adc.rate_Hz = 100e3;
+  RotaryOf(scenario).adc.range_V = 5.0;
+  RotaryOf(scenario).adc.bits = 12;
+  RotaryOf(scenario).amplifier.offset_V[2] = -6.0;
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, ComediSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
@@ -160,7 +161,7 @@ TEST_F(ComediSourceTest, RefusesWhatTheCardHasNot) {
 TEST_F(ComediSourceTest, RefusesARateThatTheCardTurnsIntoAnother) {
   Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
-  scenario.adc.rate_Hz = 977517.0;  // 1023 ns a conversion; the card does 4000 ns
+  RotaryOf(scenario).adc.rate_Hz = 977517.0;  // 1023 ns a conversion; the card does 4000 ns
   try {
     Open(served, scenario, ComediSettings(served));
     FAIL() << "was not refused";

@@ -9,6 +9,7 @@
 
 #include "tests/hw_ad/backend_test.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench::hw {
 namespace {
@@ -23,7 +24,7 @@ double SecondsSince(Stopwatch::time_point start) {
 }
 
 std::unique_ptr<AdFrontEnd> Open(const HeldTwin& served, const Scenario& scenario, const AdSettings& settings) {
-  return MakeAdConverter(settings, scenario.adc, served, scenario.amplifier.noise_V);
+  return MakeAdConverter(settings, RotaryOf(scenario).adc, served, RotaryOf(scenario).amplifier.noise_V);
 }
 
 TEST(IioSource, GivesTheServedTwinsOwnBlocks) {
@@ -35,9 +36,9 @@ TEST(IioSource, GivesTheServedTwinsOwnBlocks) {
 
 TEST(IioSource, GivesTheTwinsBlocksAtAnotherRateRangeAndResolution) {
   Scenario scenario = test::RotaryScenario();
-  scenario.adc.rate_Hz = 192e3;  // a scan takes 20833.3 ns
-  scenario.adc.range_V = 5.0;
-  scenario.adc.bits = 12;
+  RotaryOf(scenario).adc.rate_Hz = 192e3;  // a scan takes 20833.3 ns
+  RotaryOf(scenario).adc.range_V = 5.0;
+  RotaryOf(scenario).adc.bits = 12;
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
@@ -45,7 +46,7 @@ TEST(IioSource, GivesTheTwinsBlocksAtAnotherRateRangeAndResolution) {
 
 TEST(IioSource, SaturatesAndLosesTheLightAsTheTwinDoes) {
   Scenario scenario = test::RotaryScenario();
-  scenario.amplifier.offset_V[1] = 11.0;
+  RotaryOf(scenario).amplifier.offset_V[1] = 11.0;
   HeldTwin served(scenario);
   const auto card = Open(served, scenario, IioSettings(served));
   test::ExpectTheTwinsOwnBlocks(*card, served, scenario);
@@ -136,7 +137,8 @@ TEST(IioSource, ComesBackToACardThatWasSwitchedOffAndOn) {
   auto served = std::make_unique<HeldTwin>(scenario);
   const int port = served->iiod_port();
   HeldTwin clock(scenario);
-  const auto card = MakeAdConverter(IioSettings(*served), scenario.adc, clock, scenario.amplifier.noise_V);
+  const auto card =
+      MakeAdConverter(IioSettings(*served), RotaryOf(scenario).adc, clock, RotaryOf(scenario).amplifier.noise_V);
   served.reset();
   EXPECT_EQ(FaultIn([&] { card->Acquire(100, true); }), "dropped");
   EXPECT_EQ(FaultIn([&] { card->Acquire(100, true); }), "dropped") << "still off";
@@ -171,7 +173,7 @@ TEST(IioSource, RefusesADeviceAChannelOrALightThatThereIsNot) {
 TEST(IioSource, RefusesARateThatTheCardCannotDo) {
   Scenario scenario = test::RotaryScenario();
   HeldTwin served(scenario);
-  scenario.adc.rate_Hz = 200e3;
+  RotaryOf(scenario).adc.rate_Hz = 200e3;
   try {
     Open(served, scenario, IioSettings(served));
     FAIL() << "was not refused";

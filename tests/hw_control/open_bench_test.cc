@@ -7,7 +7,7 @@
 #include "tests/hw_control/faults.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
-#include "twin/sim/twin.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::hw {
 namespace {
@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Tables, OpenedBench, testing::Values("scpi", "esp", "pt
 TEST_P(OpenedBench, TakesTheBlocksThatTheTwinTakesInTheProgramItself) {
   const Scenario scenario = Noisy();
   ServedTwin served(scenario);
-  const auto opened = OpenHardware(FileOf(served, GetParam()), scenario);
+  const auto opened = test::OpenHardware(FileOf(served, GetParam()), scenario);
   const RotaryBench bench = opened->Bench();
   bench.simulation->Restart();
   sim::Twin twin(scenario);
@@ -67,10 +67,10 @@ TEST_P(OpenedBench, TakesTheBlocksThatTheTwinTakesInTheProgramItself) {
 TEST_P(OpenedBench, SaysWhoAnsweredTheSameAtEveryOpening) {
   ServedTwin served(Noisy());
   const BenchFile file = FileOf(served, GetParam());
-  std::string identity = OpenHardware(file, Noisy())->Identity();
+  std::string identity = test::OpenHardware(file, Noisy())->Identity();
   EXPECT_THAT(identity, HasSubstr("served twin: "));
   EXPECT_THAT(identity, HasSubstr("twinbench,rotary-bench,"));
-  EXPECT_EQ(OpenHardware(file, Noisy())->Identity(), identity);
+  EXPECT_EQ(test::OpenHardware(file, Noisy())->Identity(), identity);
 }
 
 TEST_P(OpenedBench, RefusesAnotherDeviceThanTheFileNames) {
@@ -78,14 +78,14 @@ TEST_P(OpenedBench, RefusesAnotherDeviceThanTheFileNames) {
   BenchFile file = FileOf(served, GetParam());
   file.target.identity = file.reference.identity = "somebody else";
   if (std::string(GetParam()) == "scpi") file.thermometer.identity = "somebody else";
-  EXPECT_EQ(KindOf([&] { OpenHardware(file, Noisy()); }), FaultKind::kIdentity);
+  EXPECT_EQ(KindOf([&] { test::OpenHardware(file, Noisy()); }), FaultKind::kIdentity);
 }
 
 TEST_P(OpenedBench, RefusesSoftLimitsThatTheControllerDoesNotAllow) {
   ServedTwin served(Noisy());
   BenchFile file = FileOf(served, GetParam());
   file.target_limits.upper_rad = 1.1e4;  // the served one stops at 1e4
-  EXPECT_EQ(KindOf([&] { OpenHardware(file, Noisy()); }), FaultKind::kRefused);
+  EXPECT_EQ(KindOf([&] { test::OpenHardware(file, Noisy()); }), FaultKind::kRefused);
 }
 
 TEST(OpenBench, WithNobodyThereIsAFaultThatNamesTheDevice) {
@@ -93,7 +93,7 @@ TEST(OpenBench, WithNobodyThereIsAFaultThatNamesTheDevice) {
   BenchFile file;
   file.target = file.reference = {"scpi", port.Address()};
   file.target.timeout_s = 0.1;
-  const auto open = [&] { OpenHardware(file, Noisy()); };
+  const auto open = [&] { test::OpenHardware(file, Noisy()); };
   EXPECT_EQ(KindOf(open), FaultKind::kDropped);
   EXPECT_THAT(test::TextOf(open), HasSubstr("target: cannot be reached"));
 }

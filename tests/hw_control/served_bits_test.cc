@@ -8,8 +8,9 @@
 #include "hw_bridge/control/served_clock.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/units.h"
-#include "twin/sim/twin.h"
 
 namespace twinbench::hw {
 namespace {
@@ -96,12 +97,12 @@ void ExpectSame(const Trace& got, const Trace& expected) {
 Scenario ScenarioOf(const std::string& fidelity) {
   Scenario scenario = test::RotaryScenario();
   const bool is_slow = fidelity == "slow";  // settles long after its profile
-  scenario.mechanics.fidelity = is_slow ? "linear" : fidelity;
-  scenario.mechanics.payload_mass_kg = 3.0;
-  if (is_slow) scenario.mechanics.servo_Hz = {6.0, 7.0};
-  if (is_slow) scenario.target.settle_s = 0.0;
+  RotaryOf(scenario).mechanics.fidelity = is_slow ? "linear" : fidelity;
+  RotaryOf(scenario).mechanics.payload_mass_kg = 3.0;
+  if (is_slow) RotaryOf(scenario).mechanics.servo_Hz = {6.0, 7.0};
+  if (is_slow) RotaryOf(scenario).target.settle_s = 0.0;
   scenario.environment.drift_K_h = 1.0;
-  scenario.target.random_rms = {1e-6, 1e-6, 1e-6, 1e-7, 1e-7, 1e-7};
+  RotaryOf(scenario).target.random_rms = {1e-6, 1e-6, 1e-6, 1e-7, 1e-7, 1e-7};
   return scenario;
 }
 

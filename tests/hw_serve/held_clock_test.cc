@@ -5,6 +5,7 @@
 
 #include "tests/hw_serve/serving.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/number_text.h"
 
 /// While a client holds the clock, every request is one call of the bench: the answers are those of the same calls
@@ -14,11 +15,11 @@ namespace {
 
 Scenario Lively() {
   Scenario scenario = test::RotaryScenario();
-  scenario.amplifier.hum_V = 0.02;
+  RotaryOf(scenario).amplifier.hum_V = 0.02;
   scenario.environment.drift_K_h = 3.0;
-  scenario.target.backlash_rad = 3.0 * units::arcsec;
-  scenario.reference.repeatability_sd = {1e-6, 1e-6, 1e-6, 1e-7, 1e-7, 1e-7};
-  scenario.procedure.clamping = "reclamp";
+  RotaryOf(scenario).target.backlash_rad = 3.0 * units::arcsec;
+  RotaryOf(scenario).reference.repeatability_sd = {1e-6, 1e-6, 1e-6, 1e-7, 1e-7, 1e-7};
+  RotaryOf(scenario).procedure.clamping = "reclamp";
   return scenario;
 }
 
@@ -26,7 +27,7 @@ class HeldClock : public testing::TestWithParam<const char*> {
  protected:
   static Scenario Its() {
     Scenario scenario = Lively();
-    scenario.mechanics.fidelity = GetParam();
+    RotaryOf(scenario).mechanics.fidelity = GetParam();
     return scenario;
   }
   HeldClock() { scpi.Ask("CLOC:HOLD ON;:SIM:PACE OFF;REST;*OPC?"); }
@@ -90,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, HeldClock, testing::Values("kinematic", "li
 
 TEST(HeldClockOfTheBench, ScansAreStampedAtTheirInstants) {
   Scenario scenario = test::RotaryScenario();
-  scenario.adc.rate_Hz = 3e5;  // 75 kHz a channel: 13333.3 ns from scan to scan
+  RotaryOf(scenario).adc.rate_Hz = 3e5;  // 75 kHz a channel: 13333.3 ns from scan to scan
   ServedTwin served(OnFreePorts(kAtOnce), scenario);
   TcpClient scpi(served.at().scpi_port);
   EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;WAIT? 1000"), "1000");
@@ -113,8 +114,8 @@ TEST(HeldClockOfTheBench, ABlockWithoutLightIsZerosAndSaysSo) {
 
 TEST(HeldClockOfTheBench, AFifoThatRunsFullLeavesAStepInTheTimeStamps) {
   Scenario scenario = test::RotaryScenario();
-  scenario.adc.fifo_samples = 1024;
-  scenario.adc.drain_rate_Hz = 125e3;  // half of what comes: full after 2048 conversions, 512 scans
+  RotaryOf(scenario).adc.fifo_samples = 1024;
+  RotaryOf(scenario).adc.drain_rate_Hz = 125e3;  // half of what comes: full after 2048 conversions, 512 scans
   ServedTwin served(OnFreePorts(kAtOnce), scenario);
   TcpClient scpi(served.at().scpi_port), iiod(served.at().iiod_port);
   EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;*OPC?"), "1");

@@ -6,6 +6,7 @@
 
 #include "tests/hw_serve/serving.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench::test {
@@ -67,9 +68,10 @@ TEST_F(Iiod, DevicesAnswerToIdAndName) {
 
 TEST_F(Iiod, NumbersHaveAllTheirBits) {
   const Scenario scenario = test::RotaryScenario();
-  EXPECT_EQ(ParseInUnit(Value("READ psd-adc16 INPUT voltage0 scale"), 1e-3), scenario.adc.range_V / 32768.0);
-  EXPECT_EQ(ParseNumber(Value("READ psd-adc16 range_V")), scenario.adc.range_V);
-  EXPECT_EQ(ParseNumber(Value("READ psd-adc16 sampling_frequency")), scenario.adc.rate_Hz / kChannels);
+  EXPECT_EQ(ParseInUnit(Value("READ psd-adc16 INPUT voltage0 scale"), 1e-3),
+            RotaryOf(scenario).adc.range_V / 32768.0);
+  EXPECT_EQ(ParseNumber(Value("READ psd-adc16 range_V")), RotaryOf(scenario).adc.range_V);
+  EXPECT_EQ(ParseNumber(Value("READ psd-adc16 sampling_frequency")), RotaryOf(scenario).adc.rate_Hz / kChannels);
 }
 
 TEST_F(Iiod, AttributesThatAreFixedTakeOnlyWhatTheyAre) {

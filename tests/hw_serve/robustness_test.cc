@@ -9,6 +9,7 @@
 
 #include "tests/hw_serve/serving.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::test {
@@ -217,14 +218,14 @@ TEST(Robustness, APortThatIsTakenIsAnErrorOfTheBench) {
   hw::ServeOptions options = OnFreePorts(1.0);
   options.scpi_port = served.at().scpi_port;
   sim::Twin twin{test::RotaryScenario()};
-  EXPECT_THROW(hw::Server(twin.Bench(), test::RotaryScenario(), options), BenchError);
+  EXPECT_THROW(hw::Server(twin.Bench(), test::RotaryScenario(), AdcSettings{}, options), BenchError);
 }
 
 TEST(Robustness, ABenchWithoutCountsCannotBeServed) {
   Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
   sim::Twin twin(scenario);
-  EXPECT_THROW(hw::Server(twin.Bench(), scenario, OnFreePorts(1.0)), InputError);
+  EXPECT_THROW(hw::Server(twin.Bench(), scenario, RotaryOf(scenario).adc, OnFreePorts(1.0)), InputError);
 }
 
 }  // namespace

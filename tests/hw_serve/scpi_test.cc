@@ -5,6 +5,7 @@
 
 #include "tests/hw_serve/serving.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench::test {
@@ -85,7 +86,7 @@ TEST_F(Scpi, TheEventRegisterTellsCommandFromExecutionErrors) {
 
 TEST_F(Scpi, TheGoniometerMovesWhatTheAutocollimatorSees) {
   Scenario scenario = test::RotaryScenario();
-  scenario.autocollimator.noise_rad = 0.0;
+  RotaryOf(scenario).autocollimator.noise_rad = 0.0;
   ServedTwin quiet(OnFreePorts(kAtOnce), scenario);
   TcpClient client(quiet.at().scpi_port);
   const std::string shown = client.Ask("GON:MOVE 120,-60;:AUT:READ?");

@@ -8,6 +8,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -18,16 +19,20 @@ struct Include {
   std::string file, target;
 };
 
-/// A bench's folder holds three rooms: its text side, which core alone can link; what is done with its readings;
-/// and below twin/ its simulation, which the second never sees but for the header that makes it.
+/// A bench's folder holds five rooms: its text side, which core alone can link; how it is driven; its estimators,
+/// which the twin is there to validate; its simulation, below twin/, of which all else sees only the header that
+/// makes it; and what is done with its readings.
 constexpr const char* kFormats = "twin/benches (text)";
+constexpr const char* kProcedures = "twin/benches (procedure)";
+constexpr const char* kEstimators = "twin/benches (estimators)";
 constexpr const char* kTwins = "twin/benches (twin)";
+constexpr const char* kFactories = "twin/benches (twin/factory.h)";
 
 /// Rooms; a longer name wins over its parent ("twin/core" over "twin").
-const std::vector<std::string> kRooms = {"optics",        "mechanics",      "twin/core",     "twin/model",
-                                         "twin/sim",      "twin/procedure", "twin/measure",  "twin/separate",
-                                         "twin/diagnose", "twin/plan",      "twin/campaign", "twin/report",
-                                         "hw_bridge",     "twin/benches",   kFormats,        kTwins};
+const std::vector<std::string> kRooms = {
+    "optics",        "mechanics",     "twin/core", "twin/model",    "twin/sim",    "twin/procedure",
+    "twin/separate", "twin/diagnose", "twin/plan", "twin/campaign", "twin/report", "twin/benches",
+    kFormats,        kProcedures,     kEstimators, kTwins,          kFactories,    "hw_bridge"};
 
 /// The room table: which of our rooms each may include, besides itself.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
@@ -37,20 +42,21 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"twin/model", {"twin/core"}},
     {"twin/sim", {"twin/core", "twin/model", "optics", "mechanics"}},
     {"twin/procedure", {"twin/core"}},
-    {"twin/measure", {"twin/core"}},
-    {"twin/separate", {"twin/core", "twin/measure"}},
-    // Its folders that are named after a bench look up their effects; they will move to the bench.
-    {"twin/diagnose", {"twin/core", "twin/model", "twin/measure", "twin/separate", kFormats}},
-    {"twin/plan", {"twin/core", "twin/separate", "twin/diagnose"}},
-    {"twin/campaign",
-     {"twin/core", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan",
-      "twin/benches"}},
-    {"twin/report", {"twin/core", "twin/measure", "twin/separate", "twin/diagnose", "twin/plan", "twin/campaign"}},
+    {"twin/separate", {"twin/core"}},
+    {"twin/diagnose", {"twin/core", "twin/model"}},
+    {"twin/plan", {"twin/core", "twin/model"}},
+    {"twin/campaign", {"twin/core", "twin/procedure", "twin/diagnose", "twin/plan", "twin/benches"}},
+    {"twin/report", {"twin/core", "twin/diagnose", "twin/plan", "twin/campaign"}},
     {kFormats, {"twin/core"}},
-    {kTwins, {"twin/core", "twin/model", "twin/sim", "twin/procedure", "optics", "mechanics", kFormats}},
+    {kProcedures, {"twin/core", "twin/procedure", kFormats}},
+    {kEstimators, {"twin/core", "twin/separate", kFormats}},
+    {kFactories, {"twin/core", "twin/model"}},
+    {kTwins,
+     {"twin/core", "twin/model", "twin/sim", "twin/procedure", "optics", "mechanics", kFormats, kProcedures,
+      kFactories}},
     {"twin/benches",
-     {"twin/core", "twin/model", "twin/procedure", "twin/measure", "twin/separate", "twin/diagnose", "twin/report",
-      kFormats, kTwins}},
+     {"twin/core", "twin/model", "twin/procedure", "twin/separate", "twin/diagnose", "twin/report", kFormats,
+      kProcedures, kEstimators, kFactories}},
     {"hw_bridge", {"twin/core"}}};
 
 /// Third-party headers that only some rooms may see, by how their path begins.
@@ -69,10 +75,15 @@ const std::map<std::string, std::set<std::string>> kOwners = {{"embree", {"optic
                                                               {"pugi", {"hw_bridge"}}};
 
 std::string RoomOf(const std::string& path) {
-  static const std::regex text(R"(twin/benches/((names|formats)|\w+/(format|settings|columns|effects))\.(h|cc))");
-  static const std::regex twin(R"(twin/benches/\w+/twin/.*)");
-  if (std::regex_match(path, text)) return kFormats;
-  if (std::regex_match(path, twin)) return kTwins;
+  static const std::vector<std::pair<std::regex, const char*>> parts = {
+      {std::regex(R"(twin/benches/((names|formats)|\w+/(format|settings|columns|effects))\.(h|cc))"), kFormats},
+      {std::regex(R"(twin/benches/\w+/procedure(/\w+)?\.(h|cc))"), kProcedures},
+      {std::regex(R"(twin/benches/\w+/estimators/.*)"), kEstimators},
+      {std::regex(R"(twin/benches/\w+/twin/factory\.h)"), kFactories},
+      {std::regex(R"(twin/benches/\w+/twin/.*)"), kTwins}};
+  for (const auto& [pattern, room] : parts) {
+    if (std::regex_match(path, pattern)) return room;
+  }
   for (const std::string& room : kRooms) {
     if (path.starts_with(room + "/")) return room;
   }
@@ -105,6 +116,16 @@ TEST(Layers, EveryIncludeIsAllowedByTheRoomTable) {
     const std::string to = RoomOf(include.target);
     if (to.empty() || to == from) continue;
     EXPECT_TRUE(kMayInclude.at(from).contains(to)) << include.file << " includes " << include.target;
+  }
+}
+
+TEST(Layers, NoBenchIncludesAnother) {
+  static const std::regex of_a_bench(R"(twin/benches/(\w+)/.*)");
+  for (const Include& include : AllIncludes()) {
+    std::smatch from, to;
+    if (std::regex_match(include.file, from, of_a_bench) && std::regex_match(include.target, to, of_a_bench)) {
+      EXPECT_EQ(from[1], to[1]) << include.file << " includes " << include.target;
+    }
   }
 }
 

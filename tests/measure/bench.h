@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/estimators/grating_model.h"
+#include "twin/benches/rotary_4dof/estimators/measure.h"
 #include "twin/core/stream.h"
-#include "twin/measure/grating_model.h"
-#include "twin/measure/measure.h"
 
 /// What the tests of this room share: the reference bench, and readings made straight from motions.
 namespace twinbench::measure {

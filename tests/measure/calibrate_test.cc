@@ -1,4 +1,4 @@
-#include "twin/measure/calibrate.h"
+#include "twin/benches/rotary_4dof/estimators/calibrate.h"
 
 #include <gtest/gtest.h>
 

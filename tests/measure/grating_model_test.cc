@@ -1,4 +1,4 @@
-#include "twin/measure/grating_model.h"
+#include "twin/benches/rotary_4dof/estimators/grating_model.h"
 
 #include <gtest/gtest.h>
 

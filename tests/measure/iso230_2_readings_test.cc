@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "twin/benches/encoder_comparison/estimators/iso230_2.h"
 #include "twin/core/units.h"
-#include "twin/measure/iso230_2.h"
 
 namespace twinbench::measure {
 namespace {

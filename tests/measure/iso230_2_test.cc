@@ -1,4 +1,4 @@
-#include "twin/measure/iso230_2.h"
+#include "twin/benches/encoder_comparison/estimators/iso230_2.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "twin/measure/measure.h"
+#include "twin/benches/rotary_4dof/estimators/measure.h"
 
 #include <gtest/gtest.h>
 

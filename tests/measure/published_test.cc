@@ -1,10 +1,9 @@
-#include "twin/measure/published.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/measure/bench.h"
+#include "twin/benches/rotary_4dof/estimators/published_motion.h"
 
 namespace twinbench::measure {
 namespace {

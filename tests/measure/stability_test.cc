@@ -1,4 +1,4 @@
-#include "twin/measure/stability.h"
+#include "twin/benches/rotary_4dof/estimators/stability.h"
 
 #include <gtest/gtest.h>
 

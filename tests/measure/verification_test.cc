@@ -1,4 +1,4 @@
-#include "twin/measure/verification.h"
+#include "twin/benches/rotary_4dof/estimators/verification.h"
 
 #include <gtest/gtest.h>
 

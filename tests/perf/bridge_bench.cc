@@ -22,8 +22,9 @@
 
 #include "hw_bridge/serve/server.h"
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/errors.h"
-#include "twin/sim/twin.h"
 
 namespace twinbench {
 namespace {
@@ -38,8 +39,8 @@ double Now_s() {
 
 Scenario FastCard() {
   Scenario scenario = test::RotaryScenario();
-  scenario.adc.rate_Hz = kScanRate_Hz * kChannels;
-  scenario.amplifier.hum_V = 0.01;  // so that no signal is constant
+  RotaryOf(scenario).adc.rate_Hz = kScanRate_Hz * kChannels;
+  RotaryOf(scenario).amplifier.hum_V = 0.01;  // so that no signal is constant
   return scenario;
 }
 
@@ -74,7 +75,7 @@ class ServerProcess {
     options.speed = speed;
     const Scenario scenario = FastCard();
     sim::Twin twin(scenario);
-    hw::Server server(twin.Bench(), scenario, options);
+    hw::Server server(twin.Bench(), scenario, RotaryOf(scenario).adc, options);
     const int port = server.Addresses().iiod_port;
     if (write(tell, &port, sizeof port) != sizeof port) std::_Exit(1);
     server.Run();

@@ -8,9 +8,10 @@
 #include <benchmark/benchmark.h>
 
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/scenario.h"
-#include "twin/procedure/procedure.h"
-#include "twin/sim/twin.h"
 
 namespace twinbench {
 namespace {
@@ -25,15 +26,15 @@ class CountingSink : public ReadingSink {
 
 Scenario PaperTest(const std::string& fidelity, bool every_sample) {
   Scenario scenario = test::RotaryScenario();
-  scenario.mechanics.fidelity = fidelity;
-  scenario.adc.samples = 1000;
-  scenario.adc.every_sample = every_sample;
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {1};
+  RotaryOf(scenario).mechanics.fidelity = fidelity;
+  RotaryOf(scenario).adc.samples = 1000;
+  RotaryOf(scenario).adc.every_sample = every_sample;
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.shifts = {0, 1};
+  RotaryOf(scenario).procedure.passes = {1};
   const double as = units::arcsec, um = units::um;
-  scenario.target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
-  scenario.reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
+  RotaryOf(scenario).target.random_rms = {4 * as, 4 * as, 5 * as, 2 * um, 2 * um, um};
+  RotaryOf(scenario).reference.random_rms = {8 * as, 8 * as, 15 * as, 3 * um, 3 * um, 2 * um};
   return scenario;
 }
 

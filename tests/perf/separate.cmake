@@ -1,2 +1,2 @@
 add_executable(bench_separate separate_bench.cc)
-target_link_libraries(bench_separate PRIVATE twinbench_separate benchmark::benchmark)
+target_link_libraries(bench_separate PRIVATE twinbench_rotary_4dof benchmark::benchmark)

@@ -56,7 +56,7 @@ void MeasureAReading(benchmark::State& state) {
   const std::vector<Reading> readings(576, reading);
   const BenchGeometry geometry = Bench();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(measure::Measure(readings, geometry, {}, measure::Estimator::kRigorous).size());
+    benchmark::DoNotOptimize(measure::Measure(readings, geometry, {}, Estimator::kRigorous).size());
   }
   state.SetItemsProcessed(state.iterations() * 576);
 }

@@ -1,4 +1,4 @@
-#include "twin/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::procedure {
@@ -79,10 +80,10 @@ class LogBench : public Clock,
 
 Scenario FullCircleOnly(int positions, std::vector<int> shifts, std::vector<int> passes) {
   Scenario scenario = test::RotaryScenario();
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.positions = positions;
-  scenario.procedure.shifts = std::move(shifts);
-  scenario.procedure.passes = std::move(passes);
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.positions = positions;
+  RotaryOf(scenario).procedure.shifts = std::move(shifts);
+  RotaryOf(scenario).procedure.passes = std::move(passes);
   return scenario;
 }
 
@@ -128,10 +129,10 @@ TEST(FullCircle, ReclampTurnsTheGratingAndReseatTurnsTheBody) {
   Scenario scenario = FullCircleOnly(12, {0, 5}, {1});
   for (const char* clamping : {"reclamp", "reseat"}) {
     LogBench log;
-    scenario.procedure.clamping = clamping;
+    RotaryOf(scenario).procedure.clamping = clamping;
     CarryOutOn(log, scenario);
     ASSERT_EQ(log.mountings.size(), 2u);
-    const bool reclamp = scenario.procedure.clamping == "reclamp";
+    const bool reclamp = RotaryOf(scenario).procedure.clamping == "reclamp";
     EXPECT_NEAR(log.mountings[1].clamp_deg, reclamp ? 150.0 : 0.0, 1e-9);
     EXPECT_NEAR(log.mountings[1].reseat_deg, reclamp ? 0.0 : -150.0, 1e-9);
   }
@@ -140,8 +141,8 @@ TEST(FullCircle, ReclampTurnsTheGratingAndReseatTurnsTheBody) {
 TEST(Calibration, SweepsYawThenTiltThereAndBack) {
   LogBench log;
   Scenario scenario = test::RotaryScenario();
-  scenario.procedure.phases = {"calibration"};
-  scenario.procedure.sweep_points = 3;
+  RotaryOf(scenario).procedure.phases = {"calibration"};
+  RotaryOf(scenario).procedure.sweep_points = 3;
   const auto readings = CarryOutOn(log, scenario);
   std::vector<double> yaw_arcsec, tilt_arcsec;
   for (const Reading& r : readings) {
@@ -155,7 +156,7 @@ TEST(Calibration, SweepsYawThenTiltThereAndBack) {
 TEST(Verification, UsesAnglesTheCalibrationDidNotUse) {
   LogBench log;
   Scenario scenario = test::RotaryScenario();
-  scenario.procedure.phases = {"calibration", "verification"};
+  RotaryOf(scenario).procedure.phases = {"calibration", "verification"};
   std::vector<double> used;
   for (const Reading& r : CarryOutOn(log, scenario)) {
     if (r.phase == Phase::kCalibration) used.push_back(r.autocollimator_yaw_rad);
@@ -167,9 +168,9 @@ TEST(Verification, UsesAnglesTheCalibrationDidNotUse) {
 TEST(Stability, ReadsTheRestingBenchAtItsInterval) {
   LogBench log;
   Scenario scenario = test::RotaryScenario();
-  scenario.procedure.phases = {"stability"};
-  scenario.procedure.stability_s = 60.0;
-  scenario.procedure.stability_interval_s = 10.0;
+  RotaryOf(scenario).procedure.phases = {"stability"};
+  RotaryOf(scenario).procedure.stability_s = 60.0;
+  RotaryOf(scenario).procedure.stability_interval_s = 10.0;
   const auto readings = CarryOutOn(log, scenario);
   ASSERT_EQ(readings.size(), 6u);
   EXPECT_EQ(readings[5].time - readings[4].time, std::chrono::seconds(10));
@@ -187,13 +188,13 @@ TEST(CarryOut, AnInvalidBlockBecomesAReadingWithAReasonAndNoNumbers) {
 TEST(CarryOut, PlansAsManyReadingsAsItMakes) {
   LogBench log;
   Scenario scenario = test::RotaryScenario();
-  scenario.procedure.phases = {"calibration", "stability", "verification", "full_circle"};
-  EXPECT_EQ(static_cast<int>(CarryOutOn(log, scenario).size()), PlannedReadings(scenario.procedure));
+  RotaryOf(scenario).procedure.phases = {"calibration", "stability", "verification", "full_circle"};
+  EXPECT_EQ(static_cast<int>(CarryOutOn(log, scenario).size()), PlannedReadings(RotaryOf(scenario).procedure));
 }
 
 TEST(CarryOut, TheSeedFixesTheDwellTimes) {
   Scenario scenario = FullCircleOnly(36, {0}, {1});
-  scenario.procedure.dwell_s = {1.0, 2.0, 4.0};
+  RotaryOf(scenario).procedure.dwell_s = {1.0, 2.0, 4.0};
   const auto dwell_times = [&](std::uint64_t seed) {
     LogBench log;
     scenario.seed = seed;
@@ -209,10 +210,10 @@ TEST(CarryOut, KeepsRawBlocksOnlyWhenAsked) {
   Scenario scenario = FullCircleOnly(4, {0}, {1});
   LogBench without, with;
   CarryOutOn(without, scenario);
-  scenario.procedure.keep_raw = true;
+  RotaryOf(scenario).procedure.keep_raw = true;
   CarryOutOn(with, scenario);
   EXPECT_EQ(without.raw_sizes[0], 0u);
-  EXPECT_EQ(with.raw_sizes[0], static_cast<std::size_t>(scenario.adc.samples) * kChannels);
+  EXPECT_EQ(with.raw_sizes[0], static_cast<std::size_t>(RotaryOf(scenario).adc.samples) * kChannels);
 }
 
 TEST(CarryOut, ADeadDeviceStopsTheRunAndLosesNothingThatWasRead) {

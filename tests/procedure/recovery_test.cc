@@ -6,9 +6,10 @@
 #include "tests/support/memory_log.h"
 #include "tests/support/restless_bench.h"
 #include "tests/support/troubled_bench.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/device_fault.h"
-#include "twin/procedure/procedure.h"
-#include "twin/sim/twin.h"
 
 /// Faults, stops and resumed runs on the twin: whatever happens on the way, the readings are those of a run
 /// without.
@@ -79,7 +80,7 @@ TEST(Recovery, TheCallsThatAreKeptAreThoseOfARunWithoutFaults) {
 TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
   for (const char* fidelity : {"kinematic", "linear", "bullet"}) {
     Scenario scenario = test::RestlessBench();
-    scenario.mechanics.fidelity = fidelity;
+    RotaryOf(scenario).mechanics.fidelity = fidelity;
     const std::vector<Reading> undisturbed = Undisturbed(scenario);
     for (const std::size_t kept :
          {std::size_t{1}, std::size_t{11}, std::size_t{12}, std::size_t{13}, undisturbed.size() - 1}) {
@@ -223,8 +224,8 @@ TEST(Recovery, AnImplausibleRoomOrAJumpOfTheSpotStopsTheRun) {
 
 TEST(Recovery, AFifoThatIsTooSmallEndsTheRunInsteadOfLosingEveryReading) {
   Scenario scenario = test::RestlessBench();
-  scenario.adc.fifo_samples = 64;
-  scenario.adc.drain_rate_Hz = 100e3;  // slower than the converter
+  RotaryOf(scenario).adc.fifo_samples = 64;
+  RotaryOf(scenario).adc.drain_rate_Hz = 100e3;  // slower than the converter
   sim::Twin twin(scenario);
   RotaryBench bench = twin.Bench();
   MemoryLog log;

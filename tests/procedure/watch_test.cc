@@ -5,9 +5,10 @@
 #include "tests/support/memory_log.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/troubled_bench.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/device_fault.h"
-#include "twin/procedure/procedure.h"
-#include "twin/sim/twin.h"
 
 /// What is noticed while tables move, with tables that lie, and how a real bench is brought back.
 namespace twinbench::procedure {
@@ -155,11 +156,11 @@ TEST(Watch, NeverTrustsATableThatLostItsOrigin) {
 
 Scenario TwoSetups() {
   Scenario scenario = test::RotaryScenario();
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.positions = 36;
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {-1};
-  scenario.procedure.run_up_steps = 0.5;
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.positions = 36;
+  RotaryOf(scenario).procedure.shifts = {0, 1};
+  RotaryOf(scenario).procedure.passes = {-1};
+  RotaryOf(scenario).procedure.run_up_steps = 0.5;
   return scenario;
 }
 

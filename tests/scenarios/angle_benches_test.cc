@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 // The answers that the scenarios of the turntable and the hobbing machine promise.
 namespace twinbench {
@@ -19,7 +20,7 @@ test::BenchRun Turntable(const std::string& file, const std::vector<std::string>
 }
 
 TurntableAnalysis Analysed(const test::BenchRun& run) {
-  return separate::turntable::AnalyseTurntable(run.readings, run.scenario, measure::Estimator::kRigorous);
+  return separate::turntable::AnalyseTurntable(run.readings, run.scenario, Estimator::kRigorous);
 }
 
 /// True index error of a table at its own angle, in arcsec; the truth lists whole degrees.
@@ -119,12 +120,12 @@ test::BenchRun Machine(const std::string& file, const std::vector<std::string>& 
   return test::RunHob(LoadScenario(test::ScenarioPath(file), overrides));
 }
 
-HobAnalysis Analysed(const test::BenchRun& run, measure::Estimator estimator) {
+HobAnalysis Analysed(const test::BenchRun& run, Estimator estimator) {
   return separate::hob::AnalyseHob(run.readings, run.scenario, estimator);
 }
 
 TEST(HobTransmission, ShowsThirteenAndTenArcsecInTheTwoPositions) {
-  const HobAnalysis a = Analysed(Machine("hob_transmission.toml"), measure::Estimator::kPublished);
+  const HobAnalysis a = Analysed(Machine("hob_transmission.toml"), Estimator::kPublished);
   for (const auto& position : a.positions) {
     const double expected = position.setup == 0 ? 13.0 : 10.0;
     EXPECT_NEAR(separate::hob::Amplitude(position.series.At(1)) / arcsec, expected, 0.3) << position.setup;
@@ -133,7 +134,7 @@ TEST(HobTransmission, ShowsThirteenAndTenArcsecInTheTwoPositions) {
 
 TEST(HobTransmission, GivesTheEncodersErrorWithinThreeTenthsOfAnArcsecAndAHundredthOfARadian) {
   const test::BenchRun run = Machine("hob_transmission.toml");
-  const HobAnalysis a = Analysed(run, measure::Estimator::kPublished);
+  const HobAnalysis a = Analysed(run, Estimator::kPublished);
   ASSERT_TRUE(a.two_positions);
   EXPECT_NEAR(separate::hob::Amplitude(a.two_positions->encoder) / arcsec, 5.8, 0.3);
   EXPECT_NEAR(separate::hob::Phase(a.two_positions->encoder), 2.72, 0.01);
@@ -148,7 +149,7 @@ TEST(HobTransmission, StaysWithinThemOver10Seeds) {
   for (int seed = 1; seed <= 10; ++seed) {
     const test::BenchRun run =
         Machine("hob_transmission.toml", {"seed=" + std::to_string(seed), "mechanics.fidelity=kinematic"});
-    const HobAnalysis a = Analysed(run, measure::Estimator::kPublished);
+    const HobAnalysis a = Analysed(run, Estimator::kPublished);
     worst_arcsec =
         std::max(worst_arcsec, std::abs(separate::hob::Amplitude(a.two_positions->encoder) / arcsec - 5.8));
     worst_rad = std::max(worst_rad, std::abs(separate::hob::Phase(a.two_positions->encoder) - 2.72));
@@ -159,7 +160,7 @@ TEST(HobTransmission, StaysWithinThemOver10Seeds) {
 }
 
 TEST(HobTransmission, HasALineAtOrder22AndTheSameHigherOrdersInBothPositions) {
-  const HobAnalysis a = Analysed(Machine("hob_transmission.toml"), measure::Estimator::kRigorous);
+  const HobAnalysis a = Analysed(Machine("hob_transmission.toml"), Estimator::kRigorous);
   for (const auto& direction : a.directions)
     EXPECT_TRUE(std::ranges::count(direction.lines, 22)) << "once a turn of the hob";
   for (const auto& order : a.separation->orders) {
@@ -171,7 +172,7 @@ TEST(HobTransmission, HasALineAtOrder22AndTheSameHigherOrdersInBothPositions) {
 
 TEST(HobThreeHeads, TellAllOrdersOfTheEncoderFromThoseOfTheMachine) {
   const test::BenchRun run = Machine("hob_three_heads.toml");
-  const HobAnalysis a = Analysed(run, measure::Estimator::kRigorous);
+  const HobAnalysis a = Analysed(run, Estimator::kRigorous);
   for (const int order : {1, 2, 6}) {
     EXPECT_EQ(a.separation->At(order).status, OrderStatus::kSeparated) << order;
     const auto truth =

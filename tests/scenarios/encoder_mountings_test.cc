@@ -1,16 +1,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/twin_run.h"
-#include "twin/separate/encoder/device_error.h"
+#include "twin/benches/encoder_comparison/estimators/device_error.h"
 
 // The answer that scenarios/encoder_mountings.toml promises, and the same device in continuous motion.
 namespace twinbench {
 namespace {
 
 using separate::encoder::DeviceError;
-using separate::hob::Amplitude;
+using separate::harmonics::Amplitude;
 using units::arcsec;
 
 struct Compared {
@@ -25,7 +26,7 @@ Compared Compare(const std::vector<std::string>& overrides) {
 }
 
 /// Mean of (error / u)^2 of a curve at every degree.
-double MeanChi2(const separate::hob::HarmonicSeries& series, const nlohmann::json& truth) {
+double MeanChi2(const separate::harmonics::HarmonicSeries& series, const nlohmann::json& truth) {
   const auto curve = separate::encoder::Curve(series, 360);
   double sum = 0.0;
   for (int i = 0; i < 360; ++i) {

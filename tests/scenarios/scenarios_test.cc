@@ -6,9 +6,10 @@
 #include <fstream>
 
 #include "tests/support/angle_benches.h"
-#include "twin/measure/angle_comparison.h"
-#include "twin/measure/stability.h"
-#include "twin/measure/verification.h"
+#include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/rotary_4dof/estimators/stability.h"
+#include "twin/benches/rotary_4dof/estimators/verification.h"
 
 // Every file in scenarios/ opens with a question and the answer expected; here the answers are checked.
 namespace twinbench {
@@ -121,7 +122,7 @@ TEST(FourShiftsReclamp, ReadsBothRadialErrorsOfTheReferenceAndKeepsTheRetrograde
 
 TEST(PaperTwoShifts, GivesTheIndexErrorRightAndTheWobbleWrong) {
   const test::TwinRun run = test::RunTwin(LoadScenario(test::ScenarioPath("paper_two_shifts.toml")));
-  const Separation published = test::Evaluate(run, measure::Estimator::kPublished);
+  const Separation published = test::Evaluate(run, Estimator::kPublished);
   const Deviation ez = Compare(run, published, Table::kTarget, Component::kEz);
   const Deviation ex = Compare(run, published, Table::kTarget, Component::kEx);
   EXPECT_LT(ez.rms_error, 0.1 * ez.rms_truth);
@@ -135,8 +136,8 @@ measure::Stability RunStability(const Scenario& scenario) {
   const test::TwinRun run = test::RunTwin(scenario);
   const auto geometry = measure::NominalGeometry(scenario);
   const auto calibration = measure::Calibrate(run.readings, geometry);
-  return measure::SummariseStability(
-      measure::Measure(run.readings, geometry, calibration, measure::Estimator::kRigorous), geometry);
+  return measure::SummariseStability(measure::Measure(run.readings, geometry, calibration, Estimator::kRigorous),
+                                     geometry);
 }
 
 TEST(Stability, StaysUnderThePapersFiguresOnlyInASteadyRoom) {
@@ -156,12 +157,13 @@ TEST(Stability, StaysUnderThePapersFiguresOnlyInASteadyRoom) {
 TEST(EncoderComparison, ShowsNothingButTheNoiseOfItsDevice) {
   Scenario scenario = LoadScenario(test::ScenarioPath("encoder_comparison.toml"));
   for (const char* kind : {"stops", "sweep"}) {
-    scenario.encoder_procedure.kind = kind;
+    EncoderOf(scenario).encoder_procedure.kind = kind;
     const auto comparison = measure::CompareAngles(test::RunEncoderTwin(scenario).readings);
     // 576 readings and more: the deviation is known to 1 / sqrt(2 * 576) = 3 %; three of these.
-    EXPECT_NEAR(comparison.rms_rad / scenario.device.noise_rad, 1.0, 0.09) << kind;
+    EXPECT_NEAR(comparison.rms_rad / EncoderOf(scenario).device.noise_rad, 1.0, 0.09) << kind;
     // Each mean of at least 288 readings has u = noise / sqrt(288); three of these.
-    EXPECT_NEAR(comparison.mean_forward_rad, 0.0, 3.0 * scenario.device.noise_rad / std::sqrt(288.0)) << kind;
+    EXPECT_NEAR(comparison.mean_forward_rad, 0.0, 3.0 * EncoderOf(scenario).device.noise_rad / std::sqrt(288.0))
+        << kind;
   }
 }
 

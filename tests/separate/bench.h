@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/estimators/measure.h"
+#include "twin/benches/rotary_4dof/estimators/separator.h"
 #include "twin/core/reading.h"
 #include "twin/core/stream.h"
-#include "twin/measure/measure.h"
-#include "twin/separate/separator.h"
 
 /// What the tests of this room share: the reference bench, designs, motions made straight from table errors.
 namespace twinbench::separate {
@@ -30,8 +30,7 @@ inline LayoutOptions Layouts(int n, Clamping clamping) {
   return {n, clamping, {}};
 }
 
-inline SeparateOptions Options(int n, Clamping clamping,
-                               measure::Estimator estimator = measure::Estimator::kRigorous) {
+inline SeparateOptions Options(int n, Clamping clamping, Estimator estimator = Estimator::kRigorous) {
   SeparateOptions options;
   options.estimator = estimator;
   options.layout = Layouts(n, clamping);

@@ -1,4 +1,4 @@
-#include "twin/separate/chain.h"
+#include "twin/benches/rotary_4dof/estimators/chain.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "tests/separate/bench.h"
-#include "twin/measure/grating_model.h"
+#include "twin/benches/rotary_4dof/estimators/grating_model.h"
 
 namespace twinbench::separate {
 namespace {

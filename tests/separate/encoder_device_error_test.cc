@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "tests/separate/encoder_readings.h"
-#include "twin/separate/encoder/device_error.h"
+#include "twin/benches/encoder_comparison/estimators/device_error.h"
 
 namespace twinbench::separate::encoder {
 namespace {
@@ -18,7 +18,7 @@ const std::vector<Wave> kDevice = {{1, 900.0, 0.7}, {2, 400.0, -1.2}, {7, 60.0, 
 const std::vector<Wave> kReference = {{1, 70.0, 1.3}, {3, 25.0, -0.4}, {12, 9.0, 2.2}};
 
 /// Largest difference to a closed form at every degree [arcsec].
-double Worst_arcsec(const hob::HarmonicSeries& series, const std::vector<Wave>& waves) {
+double Worst_arcsec(const harmonics::HarmonicSeries& series, const std::vector<Wave>& waves) {
   const Eigen::VectorXd value_rad = Curve(series, 360).value_rad;
   double worst = 0.0;
   for (int i = 0; i < 360; ++i) worst = std::max(worst, std::abs(value_rad[i] - ValueOf(waves, i * deg)));
@@ -97,9 +97,9 @@ TEST(SeparateDevice, CannotTellEvenOrdersApartByOppositeMountings) {
   ASSERT_EQ(e.curves.lost.size(), 17u) << "the even ones up to 35";
   for (const int order : e.curves.lost) EXPECT_EQ(order % 2, 0);
   // Second order: error x slope, 100 arcsec x 5e-4.
-  EXPECT_NEAR(hob::Amplitude(e.curves.device.At(1)) / arcsec, 100.0, 0.1);
-  EXPECT_NEAR(hob::Amplitude(e.curves.reference.At(1)) / arcsec, 70.0, 0.1);
-  EXPECT_NEAR(hob::Amplitude(e.curves.device.At(2)) / arcsec, 50.0 - 20.0, 0.1) << "the difference";
+  EXPECT_NEAR(harmonics::Amplitude(e.curves.device.At(1)) / arcsec, 100.0, 0.1);
+  EXPECT_NEAR(harmonics::Amplitude(e.curves.reference.At(1)) / arcsec, 70.0, 0.1);
+  EXPECT_NEAR(harmonics::Amplitude(e.curves.device.At(2)) / arcsec, 50.0 - 20.0, 0.1) << "the difference";
   EXPECT_TRUE(std::isnan(e.curves.reference.At(2).value.real()));
 }
 

@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 
 #include "tests/separate/encoder_readings.h"
-#include "twin/separate/encoder/device_error.h"
+#include "twin/benches/encoder_comparison/estimators/device_error.h"
 
 namespace twinbench::separate::encoder {
 namespace {
@@ -19,7 +19,7 @@ struct Coverage {
   double device = 0.0, reference = 0.0, first_order = 0.0, reversal = 0.0;
 };
 
-double MeanChi2(const hob::HarmonicSeries& series, const std::vector<test::Wave>& waves) {
+double MeanChi2(const harmonics::HarmonicSeries& series, const std::vector<test::Wave>& waves) {
   const CurveAt curve = Curve(series, 72);
   double sum = 0.0;
   for (int i = 0; i < 72; ++i)
@@ -27,8 +27,8 @@ double MeanChi2(const hob::HarmonicSeries& series, const std::vector<test::Wave>
   return sum;
 }
 
-double FirstOrderChi2(const hob::HarmonicSeries& series, const std::vector<test::Wave>& waves) {
-  const hob::Complex error =
+double FirstOrderChi2(const harmonics::HarmonicSeries& series, const std::vector<test::Wave>& waves) {
+  const harmonics::Complex error =
       series.At(1).value - std::polar(waves.front().amplitude_arcsec * units::arcsec, waves.front().phase_rad);
   const Eigen::Vector2d parts(error.real(), error.imag());
   return 0.5 * parts.dot(series.At(1).cov.inverse() * parts);

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "twin/benches/hob_transmission/estimators/transmission_error.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
-#include "twin/separate/hob/transmission_error.h"
 
 /// A hobbing machine for the tests of this folder, written from its description: angles go in, encoders read.
 namespace twinbench::separate::hob {

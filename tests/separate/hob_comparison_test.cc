@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/hob_bench.h"
-#include "twin/separate/hob/comparison.h"
+#include "twin/benches/hob_transmission/estimators/comparison.h"
 
 namespace twinbench::separate::hob {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/hob_bench.h"
+#include "twin/benches/hob_transmission/estimators/head_positions.h"
 #include "twin/core/distributions.h"
-#include "twin/separate/hob/head_positions.h"
 
 namespace twinbench::separate::hob {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/hob_bench.h"
+#include "twin/benches/hob_transmission/estimators/transmission_error.h"
 #include "twin/core/errors.h"
-#include "twin/separate/hob/transmission_error.h"
 
 namespace twinbench::separate::hob {
 namespace {

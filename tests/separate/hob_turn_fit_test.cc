@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/hob_bench.h"
-#include "twin/separate/hob/turn_fit.h"
+#include "twin/benches/hob_transmission/estimators/turn_fit.h"
 
 namespace twinbench::separate::hob {
 namespace {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/hob_bench.h"
-#include "twin/separate/hob/two_positions.h"
+#include "twin/benches/hob_transmission/estimators/two_positions.h"
 
 namespace twinbench::separate::hob {
 namespace {

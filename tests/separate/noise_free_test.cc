@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/bench.h"
-#include "twin/separate/prediction.h"
-#include "twin/separate/residuals.h"
+#include "twin/benches/rotary_4dof/estimators/prediction.h"
+#include "twin/benches/rotary_4dof/estimators/residuals.h"
 
 namespace twinbench::separate {
 namespace {

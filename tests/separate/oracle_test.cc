@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/separate/bench.h"
 #include "tests/support/truth_rows.h"
@@ -16,7 +17,7 @@ Truth OracleTruth(const std::string& mode) {
           test::ErrorsOfRows(truth.at("reference_rotor_frame"), true)};
 }
 
-Separation SeparateOracle(const std::string& mode, measure::Estimator estimator = measure::Estimator::kRigorous) {
+Separation SeparateOracle(const std::string& mode, Estimator estimator = Estimator::kRigorous) {
   const auto readings = ReadReadingsCsv(kOracle + mode + ".csv");
   const auto motions = measure::Measure(readings, Bench(), measure::Calibration{}, estimator);
   return Separate(motions, Bench(),
@@ -92,7 +93,7 @@ TEST(OracleRuns, OfReclampGivesBothRadialComponentsOfTheReferenceAndReseatOnlyOn
 TEST(OracleRuns, ShowsWhatThePublishedEquationsMissWhenTheGratingIsReclamped) {
   // Same tables, same readings: the scalar equations are right in `reseat` up to order one, wrong in `reclamp` by
   // the full wobble of the reference (docs/theory.md 3.1: 1.5 arcsec of 2).
-  const Separation reclamp = SeparateOracle("reclamp", measure::Estimator::kPublished);
+  const Separation reclamp = SeparateOracle("reclamp", Estimator::kPublished);
   const Truth truth = OracleTruth("reclamp");
   const TableErrors visible = RemoveNotSeparable(truth.target, Table::kTarget, reclamp.not_separable);
   EXPECT_GT(RmsDifference(reclamp.target.value[Component::kEx], visible[Component::kEx]), 1.0 * units::arcsec);

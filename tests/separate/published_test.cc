@@ -1,4 +1,4 @@
-#include "twin/separate/published.h"
+#include "twin/benches/rotary_4dof/estimators/published.h"
 
 #include <gtest/gtest.h>
 

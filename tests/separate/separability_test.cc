@@ -1,4 +1,4 @@
-#include "twin/separate/separability.h"
+#include "twin/benches/rotary_4dof/estimators/separability.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

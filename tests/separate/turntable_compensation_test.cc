@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/turntable_run.h"
-#include "twin/separate/turntable/compensation.h"
+#include "twin/benches/turntable_autocollimator/estimators/compensation.h"
 
 namespace twinbench::separate::turntable {
 namespace {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/estimators/harmonic_model.h"
 #include "twin/core/errors.h"
-#include "twin/separate/turntable/harmonic_model.h"
 
 namespace twinbench::separate::turntable {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "tests/separate/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/estimators/indexing.h"
+#include "twin/benches/turntable_autocollimator/estimators/lost_harmonics.h"
 #include "twin/core/errors.h"
-#include "twin/separate/turntable/indexing.h"
-#include "twin/separate/turntable/lost_harmonics.h"
 
 namespace twinbench::separate::turntable {
 namespace {

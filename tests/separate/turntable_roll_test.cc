@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "tests/separate/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/estimators/equation_5.h"
+#include "twin/benches/turntable_autocollimator/estimators/roll.h"
 #include "twin/core/errors.h"
-#include "twin/separate/turntable/equation_5.h"
-#include "twin/separate/turntable/roll.h"
 
 namespace twinbench::separate::turntable {
 namespace {

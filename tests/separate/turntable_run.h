@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
+#include "twin/benches/turntable_autocollimator/estimators/indexing.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
-#include "twin/separate/turntable/indexing.h"
 
 /// A turntable, a 360-tooth table and a rolled autocollimator written down in a few lines, independent of the
 /// program.

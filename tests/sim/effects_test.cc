@@ -6,8 +6,9 @@
 #include "tests/sim/quiet_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/effect.h"
 #include "twin/core/effect_catalogue.h"
-#include "twin/sim/effect.h"
 
 namespace twinbench::sim {
 namespace {
@@ -82,7 +83,7 @@ TEST(Effects, TheTwinHasEveryEffectOfTheCatalogueAtEveryPlace) {
 
 TEST(Effects, CalibrationFindsTheGainAndTheRollThatWereHidden) {
   Scenario scenario = Quiet();
-  scenario.procedure.phases = {"calibration"};
+  RotaryOf(scenario).procedure.phases = {"calibration"};
   scenario.effects = {Effect("psd_gain", "psd_b_x", {{"gain_error", 0.01}}),
                       Effect("psd_roll", "psd_a", {{"roll", 0.005}})};
   const test::TwinRun run = test::RunTwin(scenario);
@@ -233,12 +234,12 @@ TEST(Effects, SettlingDecaysWithTheDwell) {
 
 TEST(Effects, ReclampFrameMakesAReseatRunReadLikeAReclampRun) {
   Scenario scenario = Quiet();
-  scenario.procedure.phases = {"full_circle"};
-  scenario.procedure.positions = 12;
-  scenario.procedure.shifts = {0, 4};
-  scenario.reference.random_rms[0] = 5.0 * units::arcsec;
+  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.positions = 12;
+  RotaryOf(scenario).procedure.shifts = {0, 4};
+  RotaryOf(scenario).reference.random_rms[0] = 5.0 * units::arcsec;
   Scenario reclamp = scenario, hidden = scenario;
-  reclamp.procedure.clamping = "reclamp";
+  RotaryOf(reclamp).procedure.clamping = "reclamp";
   hidden.effects = {Effect("reclamp_frame", "", {})};
   const auto expected = test::RunTwin(reclamp).readings, shown = test::RunTwin(hidden).readings;
   const auto honest = test::RunTwin(scenario).readings;
@@ -305,7 +306,7 @@ TEST(Effects, CrosstalkBringsTheChannelBefore) {
 
 TEST(Effects, CrosstalkFollowsTheScanList) {
   Scenario scenario = Quiet();
-  scenario.adc.scan_list = {"psd_b_y", "psd_a_y", "psd_b_x", "psd_a_x"};
+  RotaryOf(scenario).adc.scan_list = {"psd_b_y", "psd_a_y", "psd_b_x", "psd_a_x"};
   Pair pair(Effect("crosstalk", "psd_a_y", {{"fraction", 0.02}}), scenario);
   pair.Do(kTurnGrating);
   const Volts plain = Read(pair.without), mixed = Read(pair.with);
@@ -342,7 +343,8 @@ TEST(Effects, ConventionsExchangeAndInvertChannels) {
 
 TEST(Effects, AReversedScaleReadsTheMirroredError) {
   Scenario scenario = Quiet();
-  scenario.target.harmonics = {{Component::kEz, 1.0, 10.0 * units::arcsec, 0.5 * units::kPi}};  // -sin(angle)
+  RotaryOf(scenario).target.harmonics = {
+      {Component::kEz, 1.0, 10.0 * units::arcsec, 0.5 * units::kPi}};  // -sin(angle)
   const auto at = [&](const char* what) {
     Pair pair(Effect("convention", what, {}), scenario);
     pair.Do([](RotaryBench bench) { MoveBoth(bench, 90.0 * units::deg); });
@@ -359,9 +361,9 @@ TEST(Effects, EachChangesSomethingAndOnlyWhenItIsOn) {
     Scenario scenario = Quiet();
     scenario.noise_free = true;
     scenario.environment.drift_K_h = 1.0;
-    scenario.procedure.positions = 12;
-    scenario.procedure.shifts = {0, 4};
-    scenario.target.random_rms[2] = scenario.reference.random_rms[0] = 5.0 * units::arcsec;
+    RotaryOf(scenario).procedure.positions = 12;
+    RotaryOf(scenario).procedure.shifts = {0, 4};
+    RotaryOf(scenario).target.random_rms[2] = RotaryOf(scenario).reference.random_rms[0] = 5.0 * units::arcsec;
     const auto honest = test::RunTwin(scenario).readings;
     scenario.effects = {Effect(entry.name, entry.places.empty() ? "" : entry.places.front(), {})};
     if (entry.name == "slip" || entry.name == "mode_hop") scenario.effects[0].parameters["at_reading"] = 60.0;

@@ -5,6 +5,7 @@
 
 #include "tests/core/input_error.h"
 #include "tests/sim/encoder_run.h"
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 
 // Each effect of the bench encoder_comparison against its closed form.
@@ -24,7 +25,7 @@ double Error_rad(const Reading& reading) {
 
 TEST(EncoderEffects, AllOfTheCatalogueActOnTheReadings) {
   Scenario scenario = EncoderScenario("sweep");
-  scenario.device.lines = 90;
+  EncoderOf(scenario).device.lines = 90;
   for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
     double largest_rad = 0.0;
     for (const Reading& r : ReadingsWith(scenario, EncoderEffect(entry.name)))
@@ -35,8 +36,8 @@ TEST(EncoderEffects, AllOfTheCatalogueActOnTheReadings) {
 
 TEST(EncoderEffects, HarmonicsFollowTheAngleOfTheDevicesScale) {
   Scenario scenario = EncoderScenario();
-  scenario.encoder_procedure.mounting_rad = {50.0 * deg};
-  scenario.device.lines = 90;
+  EncoderOf(scenario).encoder_procedure.mounting_rad = {50.0 * deg};
+  EncoderOf(scenario).device.lines = 90;
   const std::map<std::string, double> size = {{"amplitude", 0.01}, {"phase", 0.5}};
   const auto expect = [&](const EffectSettings& effect, double order) {
     for (const Reading& r : ReadingsWith(scenario, effect)) {
@@ -62,7 +63,7 @@ TEST(EncoderEffects, InterpolationNeedsTheLinesOfTheScale) {
 
 TEST(EncoderEffects, AFaultyReferenceIsLockedToItsOwnAngle) {
   Scenario scenario = EncoderScenario();
-  scenario.encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
+  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
   const auto fault = EncoderEffect("reference_fault", {{"order", 1.0}, {"amplitude", 0.01}});
   const auto readings = ReadingsWith(scenario, fault);
   for (int i = 0; i < 576; ++i) {
@@ -78,8 +79,8 @@ TEST(EncoderEffects, AFaultyReferenceIsLockedToItsOwnAngle) {
 template <class Expected>
 double WorstMisfit_rad(const EffectSettings& effect, int periods, Expected expected) {
   Scenario scenario = EncoderScenario();
-  scenario.device.signal_periods = periods;
-  scenario.device.signal_zero_rad = 20.0 * deg;
+  EncoderOf(scenario).device.signal_periods = periods;
+  EncoderOf(scenario).device.signal_zero_rad = 20.0 * deg;
   double worst_rad = 0.0;
   for (const Reading& r : ReadingsWith(scenario, effect)) {
     const double phase_rad = periods * (r.reference_rad - 20.0 * deg);
@@ -137,7 +138,7 @@ TEST(EncoderEffects, BacklashAtStopsIsHalfTheGapBehindTheMotion) {
 TEST(EncoderEffects, BacklashInASweepIsCrossedOverItsWidthOfTravel) {
   const double width_rad = 2.0 * deg;
   Scenario scenario = EncoderScenario("sweep");
-  scenario.encoder_procedure.passes = {1, -1};
+  EncoderOf(scenario).encoder_procedure.passes = {1, -1};
   const auto readings = ReadingsWith(scenario, EncoderEffect("backlash", {{"width", width_rad}}));
   double turned_at_rad = 0.0;
   for (const Reading& r : readings) {
@@ -150,7 +151,7 @@ TEST(EncoderEffects, BacklashInASweepIsCrossedOverItsWidthOfTravel) {
 
 TEST(EncoderEffects, HysteresisSettlesExponentiallyWithTravelAfterAReversal) {
   Scenario scenario = EncoderScenario("sweep");
-  scenario.encoder_procedure.passes = {1, -1};
+  EncoderOf(scenario).encoder_procedure.passes = {1, -1};
   const auto readings =
       ReadingsWith(scenario, EncoderEffect("hysteresis", {{"lag", 0.01}, {"settles_over", 20.0 * deg}}));
   double turned_at_rad = 0.0;

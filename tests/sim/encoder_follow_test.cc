@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/angle_benches.h"
-#include "twin/sim/encoder/follow.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/encoder_comparison/twin/follow.h"
 
 namespace twinbench::sim {
 namespace {
@@ -9,9 +10,9 @@ namespace {
 Scenario Bench(const std::string& kind) {
   Scenario s = LoadScenario(test::ScenarioPath("encoder_comparison.toml"), {"encoder_procedure.kind=" + kind});
   s.noise_free = true;
-  s.device.lines = 30;
-  s.device.teeth = 22;
-  s.encoder_procedure.mounting_rad = {0.0, 1.0};
+  EncoderOf(s).device.lines = 30;
+  EncoderOf(s).device.teeth = 22;
+  EncoderOf(s).encoder_procedure.mounting_rad = {0.0, 1.0};
   return s;
 }
 

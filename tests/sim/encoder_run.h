@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 #include "twin/core/effect_catalogue.h"
 
@@ -13,7 +14,7 @@ namespace twinbench::test {
 inline Scenario EncoderScenario(const std::string& kind = "stops") {
   Scenario scenario;
   scenario.bench = kEncoderBench;
-  scenario.encoder_procedure.kind = kind;
+  EncoderOf(scenario).encoder_procedure.kind = kind;
   scenario.noise_free = true;
   return scenario;
 }

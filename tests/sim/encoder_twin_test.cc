@@ -2,9 +2,11 @@
 
 #include <cmath>
 #include <complex>
+#include <nlohmann/json.hpp>
 
 #include "tests/sim/encoder_run.h"
-#include "twin/sim/encoder/twin.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/encoder_comparison/twin/twin.h"
 
 namespace twinbench {
 namespace {
@@ -14,7 +16,7 @@ using test::RunEncoderTwin;
 using units::deg;
 
 TEST(AngleSchedule, GoesThroughTheSameStopsInBothDirections) {
-  const auto readings = procedure::AngleSchedule(EncoderScenario().encoder_procedure);
+  const auto readings = procedure::AngleSchedule(EncoderOf(EncoderScenario()).encoder_procedure);
   ASSERT_EQ(readings.size(), 4u * 144u);
   EXPECT_EQ(readings[143].reference_rad, readings[144].reference_rad);
   EXPECT_NEAR(readings[143].reference_rad, 715.0 * deg, 1e-12);
@@ -25,8 +27,8 @@ TEST(AngleSchedule, GoesThroughTheSameStopsInBothDirections) {
 
 TEST(AngleSchedule, OfASweepIsTheMotionOfATableWithConstantAcceleration) {
   Scenario scenario = EncoderScenario("sweep");
-  scenario.encoder_procedure.passes = {1, -1};
-  const auto readings = procedure::AngleSchedule(scenario.encoder_procedure);
+  EncoderOf(scenario).encoder_procedure.passes = {1, -1};
+  const auto readings = procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure);
   for (std::size_t i = 1; i < readings.size(); ++i) {
     const Reading &a = readings[i - 1], &b = readings[i];
     const double step_s = ToSeconds(b.time - a.time);
@@ -43,7 +45,7 @@ TEST(AngleSchedule, OfASweepIsTheMotionOfATableWithConstantAcceleration) {
 
 TEST(AngleSchedule, TurnsTheDeviceOnTheShaftAtEverySetUp) {
   Scenario scenario = EncoderScenario();
-  scenario.encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
+  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 90.0 * deg};
   const auto readings = RunEncoderTwin(scenario).readings;
   ASSERT_EQ(readings.size(), 2u * 576u);
   EXPECT_EQ(readings[576].setup, 1);
@@ -63,7 +65,7 @@ TEST(EncoderTwin, DrawsTheNoiseOfAReadingFromItsNumberAlone) {
   scenario.noise_free = false;
   const auto all = RunEncoderTwin(scenario).readings;
   sim::EncoderTwin twin(scenario);
-  Reading alone = procedure::AngleSchedule(scenario.encoder_procedure)[77];
+  Reading alone = procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure)[77];
   twin.Take(alone);
   EXPECT_EQ(alone.measured_rad, all[77].measured_rad);
 }
@@ -71,9 +73,9 @@ TEST(EncoderTwin, DrawsTheNoiseOfAReadingFromItsNumberAlone) {
 TEST(EncoderTwin, ReadsInStepsOfItsResolution) {
   Scenario scenario = EncoderScenario();
   scenario.noise_free = false;
-  scenario.device.resolution_rad = 0.1 * deg;
+  EncoderOf(scenario).device.resolution_rad = 0.1 * deg;
   for (const Reading& r : RunEncoderTwin(scenario).readings) {
-    const double steps = r.measured_rad / scenario.device.resolution_rad;
+    const double steps = r.measured_rad / EncoderOf(scenario).device.resolution_rad;
     EXPECT_NEAR(steps, std::round(steps), 1e-9);
   }
 }
@@ -115,7 +117,7 @@ TEST(EncoderTwin, TellsWhatRepeatsWithTheAnglesOfDeviceAndReference) {
                       test::EncoderEffect("outliers", {{"fraction", 0.5}}),
                       test::EncoderEffect("slip", {{"at_reading", 0.0}}),
                       test::EncoderEffect("backlash")};
-  scenario.device.signal_periods = 4;
+  EncoderOf(scenario).device.signal_periods = 4;
   const nlohmann::json truth = sim::EncoderTwin(scenario).Truth();
   // What is 1e-9 of 1800 arcsec is rounding.
   EXPECT_NEAR(Amplitude_arcsec(truth.at("device"), 1), 1800.0, 1e-6);

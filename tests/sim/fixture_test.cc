@@ -6,8 +6,9 @@
 #include <fstream>
 
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/errors.h"
-#include "twin/sim/twin.h"
 
 namespace twinbench::sim {
 namespace {
@@ -29,11 +30,11 @@ Vector3 BeforePsdA() {
   return 0.060 * Vector3(kSine, kCosine, 0.0);
 }
 
-Acquisition ReadWith(const std::vector<FixtureSettings>& fixtures, BeamModel beam = BeamModel::kChiefRay) {
+Acquisition ReadWith(const std::vector<FixtureSettings>& fixtures, const char* beam = "chief_ray") {
   Scenario scenario = test::RotaryScenario();
-  scenario.laser.beam = beam;
-  scenario.laser.yaw_rad = 0.3 * units::mrad;  // spots out of the centres, so that bits can differ
-  scenario.laser.pitch_rad = -0.7 * units::mrad;
+  RotaryOf(scenario).laser.beam = beam;
+  RotaryOf(scenario).laser.yaw_rad = 0.3 * units::mrad;  // spots out of the centres, so that bits can differ
+  RotaryOf(scenario).laser.pitch_rad = -0.7 * units::mrad;
   scenario.fixtures = fixtures;
   Twin twin(scenario);
   return twin.Bench().adc.Acquire(20, false);
@@ -54,7 +55,7 @@ TEST(Fixture, InFrontOfAPsdLeavesReadingsWithoutLight) {
 }
 
 TEST(Fixture, BesideTheLightChangesNoBit) {
-  for (const BeamModel beam : {BeamModel::kChiefRay, BeamModel::kGaussian}) {
+  for (const char* beam : {"chief_ray", "gaussian"}) {
     const Acquisition free = ReadWith({}, beam);
     EXPECT_EQ(free.status, ReadingStatus::kOk);
     ExpectSameBits(free, ReadWith({CubeAt(BeforePsdA() + Vector3(0.0, 0.0, 0.020))}, beam));
@@ -65,7 +66,7 @@ TEST(Fixture, ThatLeavesLessThanTheLowLightFractionLeavesNoLight) {
   // A plate whose edge stands 0.6 mm = 2.4 standard deviations above the middle of the beam lets 0.8 % past: less
   // than the 2 % that the amplifier asks of the light without the plate.
   FixtureSettings plate = CubeAt(BeforePsdA() + Vector3(0.0, 0.0, -5.0 * units::mm + 0.6 * units::mm));
-  EXPECT_EQ(ReadWith({plate}, BeamModel::kGaussian).status, ReadingStatus::kNoLight);
+  EXPECT_EQ(ReadWith({plate}, "gaussian").status, ReadingStatus::kNoLight);
 }
 
 TEST(Fixture, TurnsAboutItsOwnPlace) {

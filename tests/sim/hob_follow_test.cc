@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
-#include "twin/sim/hob/follow.h"
+#include "twin/benches/hob_transmission/settings.h"
+#include "twin/benches/hob_transmission/twin/follow.h"
 
 // The hobbing machine's twin on the course of a record says what the readings should have been.
 namespace twinbench {
@@ -17,34 +18,35 @@ Scenario Machine() {
   Scenario s;
   s.bench = kHobBench;
   s.noise_free = true;
-  s.transmission.harmonics = {{Component::kEz, 1.0, 8.0 * arcsec, 0.5},
-                              {Component::kEz, 3.0, 2.0 * arcsec, 1.5},
-                              {Component::kEz, 22.0, 2.0 * arcsec, 2.5},
-                              {Component::kEz, 90.0, 0.5 * arcsec, 0.2}};
-  s.table_encoder.eccentricity_m = 2.8e-6;
-  s.hob_encoder.lines = 8192;
-  s.hob_procedure.heads_rad = {10.0 * deg, 187.0 * deg};
-  s.hob_procedure.turns = 1;
-  s.hob_procedure.samples_per_turn = 180;
+  HobOf(s).transmission.harmonics = {{Component::kEz, 1.0, 8.0 * arcsec, 0.5},
+                                     {Component::kEz, 3.0, 2.0 * arcsec, 1.5},
+                                     {Component::kEz, 22.0, 2.0 * arcsec, 2.5},
+                                     {Component::kEz, 90.0, 0.5 * arcsec, 0.2}};
+  HobOf(s).table_encoder.eccentricity_m = 2.8e-6;
+  HobOf(s).hob_encoder.lines = 8192;
+  HobOf(s).hob_procedure.heads_rad = {10.0 * deg, 187.0 * deg};
+  HobOf(s).hob_procedure.turns = 1;
+  HobOf(s).hob_procedure.samples_per_turn = 180;
   return s;
 }
 
 /// All orders are the scenario's to say.
 Scenario WithoutFreeOrders() {
   Scenario s = Machine();
-  s.transmission.free_orders = 0;
+  HobOf(s).transmission.free_orders = 0;
   return s;
 }
 
 /// The free orders by the angle of the motor, which the hob's encoder shows.
 std::vector<model::Disturbance> FreeOrders(const Scenario& s, const std::vector<Reading>& readings) {
   Eigen::VectorXd motion_rad = Eigen::VectorXd::Zero(std::ssize(readings));
-  const double lag_s = (1.0 - s.transmission.feed_forward) / (2.0 * units::kPi * s.transmission.servo_Hz);
+  const double lag_s =
+      (1.0 - HobOf(s).transmission.feed_forward) / (2.0 * units::kPi * HobOf(s).transmission.servo_Hz);
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const Reading& r = readings[i];
-    const double motor_rad = s.transmission.Ratio() * r.reference_rad - lag_s * r.velocity_rad_s;
-    for (const HarmonicSettings& h : s.transmission.harmonics) {
-      if (h.order <= s.transmission.free_orders)
+    const double motor_rad = HobOf(s).transmission.Ratio() * r.reference_rad - lag_s * r.velocity_rad_s;
+    for (const HarmonicSettings& h : HobOf(s).transmission.harmonics) {
+      if (h.order <= HobOf(s).transmission.free_orders)
         motion_rad[static_cast<Eigen::Index>(i)] += h.amplitude * std::cos(h.order * motor_rad + h.phase_rad);
     }
   }
@@ -58,9 +60,9 @@ double Off_arcsec(const Scenario& scenario) {
   double off_rad = 0.0;
   for (Eigen::Index i = 0; i < predicted_rad.rows(); ++i) {
     const Reading& r = readings[static_cast<std::size_t>(i)];
-    const double m_rad = r.measured_rad - scenario.transmission.Ratio() * r.reference_rad;
+    const double m_rad = r.measured_rad - HobOf(scenario).transmission.Ratio() * r.reference_rad;
     off_rad = std::max(off_rad, std::abs(predicted_rad(i, 0) - m_rad));
-    if (scenario.interferometer.used)
+    if (HobOf(scenario).interferometer.used)
       off_rad = std::max(off_rad, std::abs(predicted_rad(i, 1) - r.interferometer_rad));
   }
   return off_rad / arcsec;
@@ -86,26 +88,26 @@ TEST(HobFollow, KnowsEveryEffectOfTheCatalogue) {
 
 TEST(HobFollow, KnowsTheKeysOfTheScenario) {
   const std::vector<std::pair<const char*, void (*)(Scenario&)>> changes = {
-      {"lag", [](Scenario& s) { s.transmission.feed_forward = 0.9; }},
-      {"backlash", [](Scenario& s) { s.transmission.backlash_rad = 20.0 * arcsec; }},
-      {"friction", [](Scenario& s) { s.transmission.friction_Nm = 100.0; }},
-      {"reference mark", [](Scenario& s) { s.hob_procedure.encoder_zero = "reference_mark"; }},
-      {"no interferometer", [](Scenario& s) { s.interferometer.used = false; }},
+      {"lag", [](Scenario& s) { HobOf(s).transmission.feed_forward = 0.9; }},
+      {"backlash", [](Scenario& s) { HobOf(s).transmission.backlash_rad = 20.0 * arcsec; }},
+      {"friction", [](Scenario& s) { HobOf(s).transmission.friction_Nm = 100.0; }},
+      {"reference mark", [](Scenario& s) { HobOf(s).hob_procedure.encoder_zero = "reference_mark"; }},
+      {"no interferometer", [](Scenario& s) { HobOf(s).interferometer.used = false; }},
       {"tilted ring",
        [](Scenario& s) {
-         s.table_encoder.tilt_rad = 200.0 * arcsec;
-         s.table_encoder.head_height_m = 10e-3;
+         HobOf(s).table_encoder.tilt_rad = 200.0 * arcsec;
+         HobOf(s).table_encoder.head_height_m = 10e-3;
        }},
-      {"oval ring", [](Scenario& s) { s.hob_encoder.ellipticity_m = 5e-6; }},
-      {"hob's ring aside", [](Scenario& s) { s.hob_encoder.eccentricity_m = 20e-6; }},
+      {"oval ring", [](Scenario& s) { HobOf(s).hob_encoder.ellipticity_m = 5e-6; }},
+      {"hob's ring aside", [](Scenario& s) { HobOf(s).hob_encoder.eccentricity_m = 20e-6; }},
       {"graduation",
        [](Scenario& s) {
-         s.table_encoder.graduation = {{Component::kEz, 6.0, 3.0 * arcsec, 1.0}};
+         HobOf(s).table_encoder.graduation = {{Component::kEz, 6.0, 3.0 * arcsec, 1.0}};
        }},
-      {"a line that is not free", [](Scenario& s) { s.transmission.free_orders = 2; }},
+      {"a line that is not free", [](Scenario& s) { HobOf(s).transmission.free_orders = 2; }},
       {"two speeds", [](Scenario& s) {
-         s.hob_procedure.hob_speeds_rad_s = {5.0, 3.0};
-         s.transmission.feed_forward = 0.95;
+         HobOf(s).hob_procedure.hob_speeds_rad_s = {5.0, 3.0};
+         HobOf(s).transmission.feed_forward = 0.95;
          s.effects = {{"hysteresis", "", {{"lag", 4.0 * arcsec}, {"settles_over", 5.0 * deg}}, "", {}}};
        }}};
   for (const auto& [name, change] : changes) {
@@ -118,16 +120,16 @@ TEST(HobFollow, KnowsTheKeysOfTheScenario) {
 // Inertia is left out; at 50 r/min of the hob the line of the worm lies at 3.4 Hz, the torsion at 80 Hz.
 TEST(HobFollow, DiffersFromBulletByWhatInertiaDoesToTheLines) {
   Scenario s = WithoutFreeOrders();
-  s.transmission.friction_Nm = 100.0;
-  s.mechanics.fidelity = "bullet";
-  s.hob_procedure.heads_rad = {0.0};
+  HobOf(s).transmission.friction_Nm = 100.0;
+  HobOf(s).mechanics.fidelity = "bullet";
+  HobOf(s).hob_procedure.heads_rad = {0.0};
   EXPECT_LT(Off_arcsec(s), 0.02);
 }
 
 TEST(HobFollow, SlopesAreClosedForms) {
   Scenario s = WithoutFreeOrders();
-  s.transmission.harmonics.clear();
-  s.table_encoder.eccentricity_m = 0.0;
+  HobOf(s).transmission.harmonics.clear();
+  HobOf(s).table_encoder.eccentricity_m = 0.0;
   const std::vector<Reading> readings = test::RunHob(s).readings;
   const auto follow = sim::FollowHob(s, readings);
   const auto slope = [&](const char* point) { return model::Slope(*follow, model::PointNamed(*follow, point)); };
@@ -141,13 +143,13 @@ TEST(HobFollow, SlopesAreClosedForms) {
     EXPECT_NEAR(motion(i, 1), 1.0, 1e-6);
     EXPECT_NEAR(table(i, 0), 1.0, 1e-6);
     EXPECT_EQ(table(i, 1), 0.0);
-    EXPECT_NEAR(hob(i, 0), -s.transmission.Ratio(), 1e-6);
+    EXPECT_NEAR(hob(i, 0), -HobOf(s).transmission.Ratio(), 1e-6);
     EXPECT_EQ(seen(i, 0), 0.0);
     EXPECT_NEAR(seen(i, 1), 1.0, 1e-6);
     EXPECT_NEAR(play(i, 0), -0.5 * r.direction, 1e-6);
-    EXPECT_NEAR(friction(i, 1) * s.transmission.stiffness_Nm_rad, -r.direction, 1e-6);
+    EXPECT_NEAR(friction(i, 1) * HobOf(s).transmission.stiffness_Nm_rad, -r.direction, 1e-6);
     // The head sees (e / R) sin(ring's angle + azimuth) too much.
-    EXPECT_NEAR(aside(i, 0) * s.table_encoder.radius_m, std::sin(r.measured_rad - r.head_rad), 1e-6);
+    EXPECT_NEAR(aside(i, 0) * HobOf(s).table_encoder.radius_m, std::sin(r.measured_rad - r.head_rad), 1e-6);
     EXPECT_NEAR(aside(i, 1), 0.0, 1e-9);
   }
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/effect_catalogue.h"
@@ -18,10 +19,10 @@ Scenario QuietMachine() {
   Scenario s;
   s.bench = kHobBench;
   s.noise_free = true;
-  s.hob_procedure.heads_rad = {0.0};
-  s.hob_procedure.turns = 1;
-  s.hob_procedure.samples_per_turn = 180;
-  s.hob_encoder.lines = 8192;  // a whole number of lines between samples would hide what repeats with them
+  HobOf(s).hob_procedure.heads_rad = {0.0};
+  HobOf(s).hob_procedure.turns = 1;
+  HobOf(s).hob_procedure.samples_per_turn = 180;
+  HobOf(s).hob_encoder.lines = 8192;  // a whole number of lines between samples would hide what repeats with them
   return s;
 }
 
@@ -54,24 +55,24 @@ TEST(HobTwin, KeepsOneSampleAtEveryHundredthLineOfTheTablesEncoder) {
 
 TEST(HobTwin, WithoutErrorsBothEncodersKeepTheRatio) {
   const Scenario s = QuietMachine();
-  for (const double m_arcsec : Differences_arcsec(HobReadings(s), s.transmission.Ratio()))
+  for (const double m_arcsec : Differences_arcsec(HobReadings(s), HobOf(s).transmission.Ratio()))
     EXPECT_NEAR(m_arcsec, 0.0, 1e-6);
 }
 
 TEST(HobTwin, ShowsTheTransmissionErrorByTheTablesAngle) {
   Scenario s = QuietMachine();
-  s.hob_procedure.passes = {1};
-  s.transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
+  HobOf(s).hob_procedure.passes = {1};
+  HobOf(s).transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
   const auto readings = HobReadings(s);
-  const auto m_arcsec = Differences_arcsec(readings, s.transmission.Ratio());
+  const auto m_arcsec = Differences_arcsec(readings, HobOf(s).transmission.Ratio());
   for (std::size_t i = 0; i < m_arcsec.size(); ++i)
     EXPECT_NEAR(m_arcsec[i], 7.0 * std::cos(3.0 * readings[i].measured_rad + 0.5), 1e-3);
 }
 
 TEST(HobTwin, InterferometerSeesTheMachineAndNotTheEncoder) {
   Scenario s = QuietMachine();
-  s.transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
-  s.table_encoder.eccentricity_m = 3e-6;
+  HobOf(s).transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
+  HobOf(s).table_encoder.eccentricity_m = 3e-6;
   for (const Reading& r : HobReadings(s))
     EXPECT_NEAR(r.interferometer_rad / arcsec, 7.0 * std::cos(3.0 * r.measured_rad + 0.5), 1e-2)
         << "the encoder's 6 arcsec move the angle, 3 x 7 arcsec x 3e-5";
@@ -94,7 +95,7 @@ TEST(HobTwin, InterferometerSeesWhatTheTableDoesAndNotWhatItsCountersGetWrong) {
 /// Order 1 of what one head sees.
 std::complex<double> OrderOne_arcsec(const Scenario& s) {
   const auto readings = HobReadings(s);
-  const auto m_arcsec = Differences_arcsec(readings, s.transmission.Ratio());
+  const auto m_arcsec = Differences_arcsec(readings, HobOf(s).transmission.Ratio());
   std::complex<double> sum = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i)
     sum += m_arcsec[i] * std::polar(2.0 / static_cast<double>(readings.size()), -readings[i].measured_rad);
@@ -103,39 +104,40 @@ std::complex<double> OrderOne_arcsec(const Scenario& s) {
 
 TEST(HobTwin, EncodersErrorMovesWithItsHead) {
   Scenario s = QuietMachine();
-  s.table_encoder.eccentricity_m = 2.0e-6;
-  s.table_encoder.eccentricity_azimuth_rad = 70.0 * deg;
-  const double amplitude_arcsec = 2.0e-6 / s.table_encoder.radius_m / arcsec;
+  HobOf(s).table_encoder.eccentricity_m = 2.0e-6;
+  HobOf(s).table_encoder.eccentricity_azimuth_rad = 70.0 * deg;
+  const double amplitude_arcsec = 2.0e-6 / HobOf(s).table_encoder.radius_m / arcsec;
   const std::complex<double> at_zero = OrderOne_arcsec(s);
   EXPECT_NEAR(std::abs(at_zero), amplitude_arcsec, 1e-3);
-  s.hob_procedure.heads_rad = {50.0 * deg};
+  HobOf(s).hob_procedure.heads_rad = {50.0 * deg};
   const std::complex<double> at_50 = OrderOne_arcsec(s);
   EXPECT_NEAR(std::abs(at_50 - at_zero * std::polar(1.0, -50.0 * deg)), 0.0, 1e-3) << "psi(th - head)";
 }
 
 TEST(HobTwin, CountsFromTheMarkIfToldSo) {
   Scenario s = QuietMachine();
-  s.hob_procedure.heads_rad = {50.0 * deg};
+  HobOf(s).hob_procedure.heads_rad = {50.0 * deg};
   const auto from_origin = HobReadings(s);
-  s.hob_procedure.encoder_zero = "reference_mark";
+  HobOf(s).hob_procedure.encoder_zero = "reference_mark";
   const auto from_mark = HobReadings(s);
   EXPECT_NEAR(from_origin[0].measured_rad - from_mark[0].measured_rad, 50.0 * deg, 1e-12);
 }
 
 TEST(HobTwin, BulletAgreesWithTheKinematicChainOnSlowErrors) {
   Scenario s = QuietMachine();
-  s.transmission.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.0}, {Component::kEz, 22.0, 2.0 * arcsec, 1.0}};
-  const auto kinematic = Differences_arcsec(HobReadings(s), s.transmission.Ratio());
-  s.mechanics.fidelity = "bullet";
-  const auto bullet = Differences_arcsec(HobReadings(s), s.transmission.Ratio());
+  HobOf(s).transmission.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.0},
+                                     {Component::kEz, 22.0, 2.0 * arcsec, 1.0}};
+  const auto kinematic = Differences_arcsec(HobReadings(s), HobOf(s).transmission.Ratio());
+  HobOf(s).mechanics.fidelity = "bullet";
+  const auto bullet = Differences_arcsec(HobReadings(s), HobOf(s).transmission.Ratio());
   // Order 22 is 0.83 Hz against a torsional mode of 80 Hz: (0.83 / 80)^2 = 1e-4 of 2 arcsec.
   for (std::size_t i = 0; i < bullet.size(); ++i) EXPECT_NEAR(bullet[i], kinematic[i], 0.02) << i;
 }
 
 TEST(HobTwin, EndsWithAFaultWhenTheFifoRunsFull) {
   Scenario s = QuietMachine();
-  s.hob_procedure.fifo_samples = 4;
-  s.hob_procedure.poll_s = 2.0;  // 14 samples come meanwhile
+  HobOf(s).hob_procedure.fifo_samples = 4;
+  HobOf(s).hob_procedure.poll_s = 2.0;  // 14 samples come meanwhile
   try {
     HobReadings(s);
     FAIL() << "no fault";
@@ -147,7 +149,7 @@ TEST(HobTwin, EndsWithAFaultWhenTheFifoRunsFull) {
 TEST(HobTwin, GivesTheSameBitsForTheSameSeed) {
   Scenario s = QuietMachine();
   s.noise_free = false;
-  s.table_encoder.noise_rad = 0.3 * arcsec;
+  HobOf(s).table_encoder.noise_rad = 0.3 * arcsec;
   const auto a = HobReadings(s), b = HobReadings(s);
   s.seed = 2;
   const auto other = HobReadings(s);

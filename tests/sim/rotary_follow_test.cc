@@ -1,9 +1,9 @@
-#include "twin/sim/rotary_follow.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/follow.h"
 
 namespace twinbench::sim {
 namespace {
@@ -16,7 +16,7 @@ constexpr double kVolts_per_metre = 2000.0;
 /// The errors that the run's tables had at each reading, at the points where they enter.
 std::vector<Disturbance> TablesOf(const test::TwinRun& run) {
   const char* const names[] = {"ex", "ey", "ez", "dx", "dy", "dz"};
-  const int positions = run.scenario.procedure.positions;
+  const int positions = RotaryOf(run.scenario).procedure.positions;
   const auto row = [positions](double angle_rad) {
     const long k = std::lround(angle_rad / (2.0 * units::kPi) * positions) % positions;
     return static_cast<std::size_t>(k < 0 ? k + positions : k);
@@ -52,26 +52,28 @@ double Apart_m(const test::TwinRun& run) {
 /// A bench of which nothing is at its ideal value.
 Scenario RichBench() {
   Scenario s = test::SmallNoiseFree();
-  s.target.harmonics = {{Component::kEz, 1, 20.0 * arcsec, 0.3}, {Component::kDy, 2, 3.0 * units::um, 1.0}};
-  s.reference.harmonics = {{Component::kEx, 1, 10.0 * arcsec, 0.1}, {Component::kDx, 1, 2.0 * units::um, 0.0}};
-  s.centring_m = {4e-6, -3e-6};
-  s.mount_tilt_rad = {15.0 * arcsec, -10.0 * arcsec};
-  s.target.half_frequency_tilt_rad = 1.0 * arcsec;
-  s.target.backlash_rad = 2.0 * arcsec;
-  s.laser.position_m.x() = 0.5 * units::mm;
-  s.laser.yaw_rad = 50e-6;
-  s.laser.pointing_yaw_per_kelvin_rad = 20e-6;
-  s.laser.wavelength_per_kelvin_m = 0.1 * units::nm;
-  s.psd_a.tilt_u_rad = 0.02;
-  s.psd_b.tilt_v_rad = 0.03;
-  s.amplifier.hum_V = 0.02;
-  s.amplifier.offset_V = {0.01, -0.02, 0.03, 0.005};
-  s.autocollimator.gain_error = 0.002;
+  RotaryOf(s).target.harmonics = {{Component::kEz, 1, 20.0 * arcsec, 0.3},
+                                  {Component::kDy, 2, 3.0 * units::um, 1.0}};
+  RotaryOf(s).reference.harmonics = {{Component::kEx, 1, 10.0 * arcsec, 0.1},
+                                     {Component::kDx, 1, 2.0 * units::um, 0.0}};
+  RotaryOf(s).centring_m = {4e-6, -3e-6};
+  RotaryOf(s).mount_tilt_rad = {15.0 * arcsec, -10.0 * arcsec};
+  RotaryOf(s).target.half_frequency_tilt_rad = 1.0 * arcsec;
+  RotaryOf(s).target.backlash_rad = 2.0 * arcsec;
+  RotaryOf(s).laser.position_m.x() = 0.5 * units::mm;
+  RotaryOf(s).laser.yaw_rad = 50e-6;
+  RotaryOf(s).laser.pointing_yaw_per_kelvin_rad = 20e-6;
+  RotaryOf(s).laser.wavelength_per_kelvin_m = 0.1 * units::nm;
+  RotaryOf(s).psd_a.tilt_u_rad = 0.02;
+  RotaryOf(s).psd_b.tilt_v_rad = 0.03;
+  RotaryOf(s).amplifier.hum_V = 0.02;
+  RotaryOf(s).amplifier.offset_V = {0.01, -0.02, 0.03, 0.005};
+  RotaryOf(s).autocollimator.gain_error = 0.002;
   s.environment.drift_K_h = 0.4;
   s.environment.swing_K = 0.2;
-  s.mechanics.payload_mass_kg = 5.0;
-  s.mechanics.payload_radius_m = 0.05;
-  s.procedure.dwell_s = {0.5, 1.0, 4.0};
+  RotaryOf(s).mechanics.payload_mass_kg = 5.0;
+  RotaryOf(s).mechanics.payload_radius_m = 0.05;
+  RotaryOf(s).procedure.dwell_s = {0.5, 1.0, 4.0};
   return s;
 }
 
@@ -91,20 +93,20 @@ TEST(RotaryFollow, SaysWhatARichTwinShows) {
 
 TEST(RotaryFollow, SaysWhatAReclampedTwinShows) {
   Scenario s = RichBench();
-  s.procedure.clamping = "reclamp";
+  RotaryOf(s).procedure.clamping = "reclamp";
   EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
 }
 
 TEST(RotaryFollow, SeesThroughAWedgedWindow) {
   Scenario s = RichBench();
-  s.psd_a.window = true;
-  s.psd_a.window_wedge_rad = 0.010;
+  RotaryOf(s).psd_a.window = true;
+  RotaryOf(s).psd_a.window_wedge_rad = 0.010;
   EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
 }
 
 TEST(RotaryFollow, KnowsTheDynamicsOfTheLinearStack) {
   Scenario s = RichBench();
-  s.mechanics.fidelity = "linear";
+  RotaryOf(s).mechanics.fidelity = "linear";
   // The record says when a reading was taken, not for how long the servo had rung.
   EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
 }
@@ -118,7 +120,8 @@ TEST_P(RotaryFollowEffect, IsFollowed) {
     effect.where = where;
     s.effects = {effect};
     // Labels that are not the rotors' angles change which of the tables' errors act; those are free here.
-    if (where.starts_with("reverse") || where == "index_offset") s.target.harmonics = s.reference.harmonics = {};
+    if (where.starts_with("reverse") || where == "index_offset")
+      RotaryOf(s).target.harmonics = RotaryOf(s).reference.harmonics = {};
     EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m) << effect.name << " " << where;
   }
 }

@@ -3,8 +3,9 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/benches/turntable_autocollimator/twin/follow.h"
 #include "twin/sim/table_motion.h"
-#include "twin/sim/turntable/follow.h"
 
 // The turntable's twin on the course of a record says what the readings should have been.
 namespace twinbench {
@@ -18,15 +19,16 @@ Scenario Careful() {
   Scenario s;
   s.bench = kTurntableBench;
   s.noise_free = true;
-  s.target.harmonics = {{Component::kEz, 1.0, 6.0 * arcsec, 0.3}, {Component::kEx, 2.0, 2.0 * arcsec, 1.0}};
-  s.reference.harmonics = {{Component::kEz, 3.0, 1.0 * arcsec, 0.4}};
-  s.collimator.roll_rad = 5e-3;
-  s.turntable_procedure.phases = {"calibration", "full_circle", "verification"};
-  s.turntable_procedure.positions = 12;
-  s.turntable_procedure.tilt_azimuths_rad = {20.0 * deg, 130.0 * deg};
-  s.turntable_procedure.shifts = {0, 30};
-  s.turntable_procedure.dwell_s = {0.5, 2.0, 8.0};
-  s.turntable_procedure.verification_positions = 7;
+  TurntableOf(s).turntable.harmonics = {{Component::kEz, 1.0, 6.0 * arcsec, 0.3},
+                                        {Component::kEx, 2.0, 2.0 * arcsec, 1.0}};
+  TurntableOf(s).multitooth_table.harmonics = {{Component::kEz, 3.0, 1.0 * arcsec, 0.4}};
+  TurntableOf(s).collimator.roll_rad = 5e-3;
+  TurntableOf(s).turntable_procedure.phases = {"calibration", "full_circle", "verification"};
+  TurntableOf(s).turntable_procedure.positions = 12;
+  TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {20.0 * deg, 130.0 * deg};
+  TurntableOf(s).turntable_procedure.shifts = {0, 30};
+  TurntableOf(s).turntable_procedure.dwell_s = {0.5, 2.0, 8.0};
+  TurntableOf(s).turntable_procedure.verification_positions = 7;
   return s;
 }
 
@@ -39,7 +41,7 @@ Eigen::VectorXd Each(const std::vector<Reading>& readings, const std::function<d
 /// What the run leaves free, given at its points.
 std::vector<model::Disturbance> OwnErrors(const test::BenchRun& run) {
   const Scenario& s = run.scenario;
-  const sim::TableMotion multitooth(s.reference, s.seed, "multitooth");
+  const sim::TableMotion multitooth(TurntableOf(s).multitooth_table, s.seed, "multitooth");
   const auto teeth = run.truth["multitooth"]["ez_arcsec"].get<std::vector<double>>();
   const auto tooth_rad = [&](const Reading& r) {
     const auto n = static_cast<long>(teeth.size());
@@ -47,13 +49,15 @@ std::vector<model::Disturbance> OwnErrors(const test::BenchRun& run) {
     return teeth[static_cast<std::size_t>(((tooth % n) + n) % n)] * arcsec;
   };
   // The rotor is where the gap lets it stay.
-  const auto rotor_rad = [&](const Reading& r) { return r.target_rad - 0.5 * r.direction * s.target.backlash_rad; };
+  const auto rotor_rad = [&](const Reading& r) {
+    return r.target_rad - 0.5 * r.direction * TurntableOf(s).turntable.backlash_rad;
+  };
   std::vector<model::Disturbance> errors;
   const std::array<const char*, kComponents> names = {"ex", "ey", "ez", "dx", "dy", "dz"};
   for (std::size_t c = 0; c < kComponents; ++c) {
     const auto of = [c](const mechanics::PoseError& e) { return e.Array()[c]; };
     const std::string name = names[c];
-    TableSettings repeats = s.target;
+    TableSettings repeats = TurntableOf(s).turntable;
     repeats.half_frequency_tilt_rad = repeats.half_frequency_radial_m = 0.0;  // the twin knows it
     const sim::TableMotion motion(repeats, s.seed, "turntable");
     errors.push_back(
@@ -99,43 +103,43 @@ TEST(TurntableFollow, KnowsEveryEffectOfTheCatalogue) {
 
 TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
   const std::vector<std::pair<const char*, void (*)(Scenario&)>> changes = {
-      {"backlash", [](Scenario& s) { s.target.backlash_rad = 3.0 * arcsec; }},
-      {"half frequency", [](Scenario& s) { s.target.half_frequency_tilt_rad = 2.0 * arcsec; }},
-      {"flatness", [](Scenario& s) { s.mirror.flatness_m = 5e-6; }},
+      {"backlash", [](Scenario& s) { TurntableOf(s).turntable.backlash_rad = 3.0 * arcsec; }},
+      {"half frequency", [](Scenario& s) { TurntableOf(s).turntable.half_frequency_tilt_rad = 2.0 * arcsec; }},
+      {"flatness", [](Scenario& s) { TurntableOf(s).mirror.flatness_m = 5e-6; }},
       {"eccentricities",
        [](Scenario& s) {
-         s.turntable_procedure.eccentricities_m = {1e-3, 3e-3};
+         TurntableOf(s).turntable_procedure.eccentricities_m = {1e-3, 3e-3};
        }},
-      {"mirror radius", [](Scenario& s) { s.mirror.radius_m = 0.2; }},
-      {"aperture", [](Scenario& s) { s.collimator.aperture_m = 70e-3; }},
-      {"small mirror", [](Scenario& s) { s.mirror.width_m = 20e-3; }},
-      {"gain error", [](Scenario& s) { s.autocollimator.gain_error = 0.01; }},
-      {"distortion", [](Scenario& s) { s.collimator.error_at_edge_rad = 5.0 * arcsec; }},
-      {"pixels", [](Scenario& s) { s.collimator.interpolation_error_px = 0.1; }},
+      {"mirror radius", [](Scenario& s) { TurntableOf(s).mirror.radius_m = 0.2; }},
+      {"aperture", [](Scenario& s) { TurntableOf(s).collimator.aperture_m = 70e-3; }},
+      {"small mirror", [](Scenario& s) { TurntableOf(s).mirror.width_m = 20e-3; }},
+      {"gain error", [](Scenario& s) { TurntableOf(s).autocollimator.gain_error = 0.01; }},
+      {"distortion", [](Scenario& s) { TurntableOf(s).collimator.error_at_edge_rad = 5.0 * arcsec; }},
+      {"pixels", [](Scenario& s) { TurntableOf(s).collimator.interpolation_error_px = 0.1; }},
       {"zero with temperature",
        [](Scenario& s) {
-         s.collimator.x_per_kelvin_rad = 2.0 * arcsec;
+         TurntableOf(s).collimator.x_per_kelvin_rad = 2.0 * arcsec;
          s.environment.swing_K = 0.5;
          s.environment.swing_period_s = 1000.0;
        }},
       {"steep tilts",
        [](Scenario& s) {
-         s.turntable_procedure.tilts_rad = {200.0 * arcsec, -250.0 * arcsec};
+         TurntableOf(s).turntable_procedure.tilts_rad = {200.0 * arcsec, -250.0 * arcsec};
        }},
       {"no run-up",
        [](Scenario& s) {
-         s.turntable_procedure.run_up_steps = 0.0;
+         TurntableOf(s).turntable_procedure.run_up_steps = 0.0;
          s.effects = {{"backlash", "", {{"width", 2.0 * arcsec}}, "", {}}};
        }},
       {"slow turntable",
        [](Scenario& s) {
-         s.target.move_time_s = 6.0;
+         TurntableOf(s).turntable.move_time_s = 6.0;
          s.effects = {{"settling", "", {{"amplitude", 2.0 * arcsec}, {"time_constant", 1.0}}, "", {}}};
        }},
-      {"linear drives", [](Scenario& s) { s.mechanics.fidelity = "linear"; }},
-      {"teeth", [](Scenario& s) { s.multitooth.teeth = 720; }},
+      {"linear drives", [](Scenario& s) { TurntableOf(s).mechanics.fidelity = "linear"; }},
+      {"teeth", [](Scenario& s) { TurntableOf(s).multitooth.teeth = 720; }},
       {"order of phases", [](Scenario& s) {
-         s.turntable_procedure.phases = {"verification", "full_circle", "calibration"};
+         TurntableOf(s).turntable_procedure.phases = {"verification", "full_circle", "calibration"};
          s.effects = {{"mount_creep", "x", {{"amplitude", 2.0 * arcsec}, {"time_constant", 60.0}}, "", {}}};
        }}};
   for (const auto& [name, change] : changes) {
@@ -148,11 +152,11 @@ TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
 // Settled means within a hundredth of an arcsecond.
 TEST(TurntableFollow, DiffersFromBulletByLessThanTheServosWindow) {
   Scenario s = Careful();
-  s.mechanics.fidelity = "bullet";
-  s.turntable_procedure.phases = {"full_circle"};
-  s.turntable_procedure.tilts_rad = {60.0 * arcsec};
-  s.turntable_procedure.shifts = {0};
-  s.turntable_procedure.tilt_azimuths_rad = {0.0};
+  TurntableOf(s).mechanics.fidelity = "bullet";
+  TurntableOf(s).turntable_procedure.phases = {"full_circle"};
+  TurntableOf(s).turntable_procedure.tilts_rad = {60.0 * arcsec};
+  TurntableOf(s).turntable_procedure.shifts = {0};
+  TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {0.0};
   EXPECT_LT(TurntableOff_arcsec(s), 0.02);
 }
 
@@ -166,13 +170,13 @@ Eigen::MatrixXd SlopeAt(const Scenario& scenario, const char* point) {
 // A roll g shows x' = x cos g + y sin g, y' = y cos g - x sin g; a scale stretches both.
 TEST(TurntableFollow, SlopesAreThoseOfARolledAndStretchedCrosshair) {
   Scenario s = Careful();
-  s.autocollimator.gain_error = 0.01;
-  s.turntable_procedure.tilts_rad = {0.0};
-  s.target.harmonics = s.reference.harmonics = {};
+  TurntableOf(s).autocollimator.gain_error = 0.01;
+  TurntableOf(s).turntable_procedure.tilts_rad = {0.0};
+  TurntableOf(s).turntable.harmonics = TurntableOf(s).multitooth_table.harmonics = {};
   const double scale = 1.01, g = 5e-3;
   const Eigen::MatrixXd x = SlopeAt(s, "turntable.ez"), y = SlopeAt(s, "turntable.ex");
   // In a sweep of 200 arcsec the tangent is steeper than the angle by 4e-6.
-  for (Eigen::Index i = s.turntable_procedure.sweep_points; i < x.rows(); ++i) {
+  for (Eigen::Index i = TurntableOf(s).turntable_procedure.sweep_points; i < x.rows(); ++i) {
     EXPECT_NEAR(x(i, 0), scale * std::cos(g), 1e-6);
     EXPECT_NEAR(x(i, 1), -scale * std::sin(g), 1e-6);
     EXPECT_NEAR(y(i, 0), scale * std::sin(g), 1e-6);
@@ -182,8 +186,8 @@ TEST(TurntableFollow, SlopesAreThoseOfARolledAndStretchedCrosshair) {
 
 TEST(TurntableFollow, HasPointsForWhatItsErrorsAreMadeOf) {
   Scenario s = Careful();
-  s.turntable_procedure.tilts_rad = {0.0};
-  s.collimator.roll_rad = 0.0;
+  TurntableOf(s).turntable_procedure.tilts_rad = {0.0};
+  TurntableOf(s).collimator.roll_rad = 0.0;
   const test::BenchRun run = test::RunTurntable(s);
   const auto follow = sim::FollowTurntable(s, run.readings);
   const Eigen::MatrixXd shown = model::Slope(*follow, model::PointNamed(*follow, "autocollimator.y"));

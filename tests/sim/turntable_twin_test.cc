@@ -4,6 +4,7 @@
 
 #include "tests/support/angle_benches.h"
 #include "twin/benches/names.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/effect_catalogue.h"
 
 namespace twinbench {
@@ -17,12 +18,12 @@ Scenario QuietTurntable() {
   Scenario s;
   s.bench = kTurntableBench;
   s.noise_free = true;
-  s.multitooth.tooth_rms_rad = 0.0;
-  s.turntable_procedure.phases = {"full_circle"};
-  s.turntable_procedure.positions = 12;
-  s.turntable_procedure.tilts_rad = {0.0};
-  s.turntable_procedure.eccentricities_m = {0.0};
-  s.turntable_procedure.passes = {1};
+  TurntableOf(s).multitooth.tooth_rms_rad = 0.0;
+  TurntableOf(s).turntable_procedure.phases = {"full_circle"};
+  TurntableOf(s).turntable_procedure.positions = 12;
+  TurntableOf(s).turntable_procedure.tilts_rad = {0.0};
+  TurntableOf(s).turntable_procedure.eccentricities_m = {0.0};
+  TurntableOf(s).turntable_procedure.passes = {1};
   return s;
 }
 
@@ -42,9 +43,9 @@ constexpr double kTangent_arcsec = 1e-4;
 
 TEST(TurntableTwin, ReadsTheIndexErrorOfTheTurntablePlusThatOfTheTooth) {
   Scenario s = QuietTurntable();
-  s.target.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
-  s.reference.harmonics = {{Component::kEz, 3.0, 2.0 * arcsec, 1.0}};
-  s.turntable_procedure.shifts = {30};  // teeth
+  TurntableOf(s).turntable.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
+  TurntableOf(s).multitooth_table.harmonics = {{Component::kEz, 3.0, 2.0 * arcsec, 1.0}};
+  TurntableOf(s).turntable_procedure.shifts = {30};  // teeth
   for (const Reading& r : TurntableReadings(s)) {
     const double turntable_rad = r.position * 30.0 * deg, tooth_rad = 30.0 * deg - turntable_rad;
     EXPECT_NEAR(r.target_rad, turntable_rad, 1e-12);
@@ -57,8 +58,8 @@ TEST(TurntableTwin, ReadsTheIndexErrorOfTheTurntablePlusThatOfTheTooth) {
 
 TEST(TurntableTwin, ShowsATiltOfTheMultitoothTableOnceATurnInY) {
   Scenario s = QuietTurntable();
-  s.turntable_procedure.tilts_rad = {100.0 * arcsec};
-  s.turntable_procedure.tilt_azimuths_rad = {40.0 * deg};
+  TurntableOf(s).turntable_procedure.tilts_rad = {100.0 * arcsec};
+  TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {40.0 * deg};
   for (const Reading& r : TurntableReadings(s)) {
     // The axis leans towards the azimuth, so the normal of a mirror that faces that way looks down.
     const double azimuth_rad = 40.0 * deg + r.target_rad;
@@ -69,8 +70,8 @@ TEST(TurntableTwin, ShowsATiltOfTheMultitoothTableOnceATurnInY) {
 
 TEST(TurntableTwin, RolledCrosshairMixesTiltIntoX) {
   Scenario s = QuietTurntable();
-  s.turntable_procedure.tilts_rad = {100.0 * arcsec};
-  s.collimator.roll_rad = 0.6 * deg;
+  TurntableOf(s).turntable_procedure.tilts_rad = {100.0 * arcsec};
+  TurntableOf(s).collimator.roll_rad = 0.6 * deg;
   double largest_arcsec = 0.0;
   for (const Reading& r : TurntableReadings(s)) {
     EXPECT_NEAR(X_arcsec(r), Y_arcsec(r) * std::tan(0.6 * deg), 0.03) << "x' = (x + y' sin g) / cos g";
@@ -81,14 +82,14 @@ TEST(TurntableTwin, RolledCrosshairMixesTiltIntoX) {
 
 TEST(TurntableTwin, EccentricityChangesNothingOnAFlatMirror) {
   Scenario s = QuietTurntable();
-  s.turntable_procedure.eccentricities_m = {1e-3};
+  TurntableOf(s).turntable_procedure.eccentricities_m = {1e-3};
   for (const Reading& r : TurntableReadings(s)) EXPECT_NEAR(X_arcsec(r), 0.0, 1e-6);
 }
 
 TEST(TurntableTwin, EccentricityWalksTheBeamOverAMirrorThatIsNotFlat) {
   Scenario s = QuietTurntable();
-  s.turntable_procedure.eccentricities_m = {1e-3};
-  s.mirror.flatness_m = 79e-9;
+  TurntableOf(s).turntable_procedure.eccentricities_m = {1e-3};
+  TurntableOf(s).mirror.flatness_m = 79e-9;
   double largest_arcsec = 0.0;
   for (const Reading& r : TurntableReadings(s)) largest_arcsec = std::max(largest_arcsec, std::abs(X_arcsec(r)));
   EXPECT_NEAR(largest_arcsec, 0.036, 0.001) << "8 h dL rho / H^2 of the paper";
@@ -96,8 +97,8 @@ TEST(TurntableTwin, EccentricityWalksTheBeamOverAMirrorThatIsNotFlat) {
 
 TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
   Scenario s = QuietTurntable();
-  s.target.backlash_rad = 3.0 * arcsec;
-  s.turntable_procedure.passes = {1, -1};
+  TurntableOf(s).turntable.backlash_rad = 3.0 * arcsec;
+  TurntableOf(s).turntable_procedure.passes = {1, -1};
   const auto readings = TurntableReadings(s);
   for (const Reading& forward : readings) {
     for (const Reading& backward : readings) {
@@ -109,9 +110,9 @@ TEST(TurntableTwin, ComesToEveryPositionFromItsSideAndShowsBacklash) {
 
 TEST(TurntableTwin, MovedByBulletStandsWhereTheKinematicOneDoes) {
   Scenario s = QuietTurntable();
-  s.target.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
+  TurntableOf(s).turntable.harmonics = {{Component::kEz, 2.0, 5.0 * arcsec, 0.3}};
   const auto kinematic = TurntableReadings(s);
-  s.mechanics.fidelity = "bullet";
+  TurntableOf(s).mechanics.fidelity = "bullet";
   const auto bullet = TurntableReadings(s);
   for (std::size_t i = 0; i < bullet.size(); ++i)
     EXPECT_NEAR(X_arcsec(bullet[i]), X_arcsec(kinematic[i]), 0.02) << "settled to 0.01 arcsec";
@@ -119,9 +120,9 @@ TEST(TurntableTwin, MovedByBulletStandsWhereTheKinematicOneDoes) {
 
 TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
   Scenario s = QuietTurntable();
-  s.turntable_procedure.phases = {"calibration"};
-  s.turntable_procedure.sweep_points = 5;
-  s.autocollimator.gain_error = 0.01;
+  TurntableOf(s).turntable_procedure.phases = {"calibration"};
+  TurntableOf(s).turntable_procedure.sweep_points = 5;
+  TurntableOf(s).autocollimator.gain_error = 0.01;
   const auto readings = TurntableReadings(s);
   ASSERT_EQ(readings.size(), 5u);
   for (const Reading& r : readings) {
@@ -134,8 +135,8 @@ TEST(TurntableTwin, SweepsTheTurntableAloneForTheCalibration) {
 
 TEST(TurntableTwin, ChecksBetweenThePositionsOnly) {
   Scenario s = QuietTurntable();
-  s.turntable_procedure.phases = {"verification"};
-  s.turntable_procedure.verification_positions = 20;
+  TurntableOf(s).turntable_procedure.phases = {"verification"};
+  TurntableOf(s).turntable_procedure.verification_positions = 20;
   for (const Reading& r : TurntableReadings(s)) {
     EXPECT_EQ(r.phase, Phase::kVerification);
     EXPECT_NE(std::lround(r.target_rad / deg) % 30, 0) << "a position of the full circle";
@@ -150,7 +151,7 @@ TEST(CheckTeeth, AreWholeTeethOffTheGridEvenlySpread) {
 
 TEST(TurntableTwin, ShowsNothingBeyondTheRange) {
   Scenario s = QuietTurntable();
-  s.target.harmonics = {{Component::kEz, 1.0, 500.0 * arcsec, 0.0}};
+  TurntableOf(s).turntable.harmonics = {{Component::kEz, 1.0, 500.0 * arcsec, 0.0}};
   const auto readings = TurntableReadings(s);
   EXPECT_EQ(readings[0].status, ReadingStatus::kClippedSpot) << "500 arcsec at a range of 410";
   EXPECT_TRUE(std::isnan(readings[0].autocollimator_yaw_rad));
@@ -160,7 +161,7 @@ TEST(TurntableTwin, ShowsNothingBeyondTheRange) {
 TEST(TurntableTwin, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
   Scenario s = QuietTurntable();
   s.noise_free = false;
-  s.multitooth.tooth_rms_rad = 0.1 * arcsec;
+  TurntableOf(s).multitooth.tooth_rms_rad = 0.1 * arcsec;
   const auto a = TurntableReadings(s), b = TurntableReadings(s);
   s.seed = 2;
   const auto other = TurntableReadings(s);
@@ -173,9 +174,9 @@ TEST(TurntableTwin, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
 TEST(TurntableTwin, HasEveryEffectOfTheCatalogueAndEachChangesTheReadings) {
   Scenario s = QuietTurntable();
   s.noise_free = false;  // scatter is an effect too
-  s.turntable_procedure.phases = {"calibration", "full_circle"};
-  s.turntable_procedure.tilts_rad = {60.0 * arcsec, 100.0 * arcsec};
-  s.turntable_procedure.passes = {1, -1};
+  TurntableOf(s).turntable_procedure.phases = {"calibration", "full_circle"};
+  TurntableOf(s).turntable_procedure.tilts_rad = {60.0 * arcsec, 100.0 * arcsec};
+  TurntableOf(s).turntable_procedure.passes = {1, -1};
   s.environment.drift_K_h = 0.5;
   const auto clean = TurntableReadings(s);
   for (const EffectEntry& entry : EffectCatalogue(kTurntableBench)) {

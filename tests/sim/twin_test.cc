@@ -1,4 +1,4 @@
-#include "twin/sim/twin.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "optics/irradiance.h"
 #include "tests/sim/quiet_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::sim {
@@ -32,7 +33,7 @@ TEST(Twin, AYawMovesBothSpotsByTheVectorGratingsSensitivity) {
   const auto voltage_V = ReadOnce(twin);
   // l1 (1 + 1 / cos theta) per radian, not the 2 l1 cos theta of the paper; second order in yaw: 1e-5 of it.
   const double cos_theta = std::sqrt(1.0 - 0.39 * 0.39);
-  const double expected_V = -yaw_rad * 0.12 * (1.0 + 1.0 / cos_theta) * scenario.psd_a.sensitivity_V_m;
+  const double expected_V = -yaw_rad * 0.12 * (1.0 + 1.0 / cos_theta) * RotaryOf(scenario).psd_a.sensitivity_V_m;
   EXPECT_NEAR(voltage_V[0] / expected_V, 1.0, 1e-4);
   EXPECT_NEAR(voltage_V[2] / expected_V, 1.0, 1e-4);
 }
@@ -63,15 +64,15 @@ TEST(Twin, ASpotBesideThePsdIsAReadingWithoutANumber) {
 TEST(Twin, AnAmplifierBeyondTheRangeOfTheConverterIsSaturated) {
   Scenario scenario = Quiet();
   scenario.noise_free = false;
-  scenario.amplifier.offset_V[2] = 10.5;
+  RotaryOf(scenario).amplifier.offset_V[2] = 10.5;
   Twin twin(scenario);
   EXPECT_EQ(twin.Bench().adc.Acquire(10, false).status, ReadingStatus::kSaturated);
 }
 
 TEST(Twin, AFifoThatIsNotDrainedOverruns) {
   Scenario scenario = test::RotaryScenario();
-  scenario.adc.fifo_samples = 1024;
-  scenario.adc.drain_rate_Hz = 100e3;
+  RotaryOf(scenario).adc.fifo_samples = 1024;
+  RotaryOf(scenario).adc.drain_rate_Hz = 100e3;
   Twin twin(scenario);
   // The FIFO fills at 250 - 100 = 150 kS/s: full after 1024 / 150e3 = 6.8 ms = 427 scans.
   EXPECT_EQ(twin.Bench().adc.Acquire(400, false).status, ReadingStatus::kOk);
@@ -95,8 +96,8 @@ TEST(Twin, MovesTakeTheirTimeOnTheVirtualClock) {
 TEST(Twin, ATableThatHasArrivedSaysSoWhileTheOtherStillMoves) {
   for (const char* fidelity : {"kinematic", "linear", "bullet"}) {
     Scenario scenario = Quiet();
-    scenario.mechanics.fidelity = fidelity;
-    scenario.reference.speed_rad_s = 5.0 * units::deg;
+    RotaryOf(scenario).mechanics.fidelity = fidelity;
+    RotaryOf(scenario).reference.speed_rad_s = 5.0 * units::deg;
     Twin twin(scenario);
     RotaryBench bench = twin.Bench();
     bench.target.StartMove(30.0 * units::deg);
@@ -114,8 +115,8 @@ TEST(Twin, ATableThatHasArrivedSaysSoWhileTheOtherStillMoves) {
 
 TEST(Twin, WhoMountsWaitsForTheServosButNotForAMove) {
   Scenario scenario = Quiet();
-  scenario.mechanics.fidelity = "linear";
-  scenario.target.settle_s = scenario.reference.settle_s = 0.0;
+  RotaryOf(scenario).mechanics.fidelity = "linear";
+  RotaryOf(scenario).target.settle_s = RotaryOf(scenario).reference.settle_s = 0.0;
   Twin twin(scenario);
   RotaryBench bench = twin.Bench();
   bench.target.StartMove(10.0 * units::deg);
@@ -138,8 +139,8 @@ TEST(Twin, ABlockTakesTheTimeOfItsConversions) {
 TEST(Twin, SeatingScattersEveryMountingButNotTheStops) {
   Scenario scenario = Quiet();
   scenario.noise_free = false;
-  scenario.amplifier.noise_V = 0.0;
-  scenario.reference.seating_sd[2] = 10.0 * units::arcsec;
+  RotaryOf(scenario).amplifier.noise_V = 0.0;
+  RotaryOf(scenario).reference.seating_sd[2] = 10.0 * units::arcsec;
   Twin twin(scenario);
   twin.Bench().fixture.Mount(0, 0.0, 0.0);
   const auto first = ReadOnce(twin), again = ReadOnce(twin);
@@ -152,8 +153,8 @@ TEST(Twin, SeatingScattersEveryMountingButNotTheStops) {
 TEST(Twin, RepeatabilityScattersEveryStop) {
   Scenario scenario = Quiet();
   scenario.noise_free = false;
-  scenario.amplifier.noise_V = 0.0;
-  scenario.target.repeatability_sd[2] = 1.0 * units::arcsec;
+  RotaryOf(scenario).amplifier.noise_V = 0.0;
+  RotaryOf(scenario).target.repeatability_sd[2] = 1.0 * units::arcsec;
   Twin twin(scenario);
   RotaryBench bench = twin.Bench();
   const auto visit = [&] {
@@ -171,12 +172,13 @@ TEST(Twin, RepeatabilityScattersEveryStop) {
 
 TEST(Twin, TheLaserFollowsTheTemperature) {
   Scenario scenario = Quiet();
-  scenario.laser.wavelength_per_kelvin_m = 0.25 * units::nm;
+  RotaryOf(scenario).laser.wavelength_per_kelvin_m = 0.25 * units::nm;
   scenario.environment.temperature_degC = 21.0;
   Twin twin(scenario);
   const auto voltage_V = ReadOnce(twin);
   // l1 rho d lambda / cos theta, apart on both PSDs: 19.5 um at 0.25 nm; second order 2e-4 of it.
-  const double shift_V = 0.12 * 600e3 * 0.25e-9 / std::sqrt(1.0 - 0.39 * 0.39) * scenario.psd_a.sensitivity_V_m;
+  const double shift_V =
+      0.12 * 600e3 * 0.25e-9 / std::sqrt(1.0 - 0.39 * 0.39) * RotaryOf(scenario).psd_a.sensitivity_V_m;
   EXPECT_NEAR(voltage_V[0] / shift_V, 1.0, 1e-3);
   EXPECT_NEAR(voltage_V[2] / -shift_V, 1.0, 1e-3);
 }
@@ -186,10 +188,11 @@ TEST(Twin, AllFidelitiesAgreeOnceTheTablesRest) {
   const std::array<const char*, 3> fidelities = {"kinematic", "linear", "bullet"};
   for (std::size_t f = 0; f < 3; ++f) {
     Scenario scenario = Quiet();
-    scenario.mechanics.fidelity = fidelities[f];
-    scenario.mechanics.payload_mass_kg = 1.5;
-    scenario.mechanics.payload_radius_m = 0.040;
-    scenario.mechanics.payload_azimuth_rad = 0.5 * units::kPi;  // a tilt about x, which both PSDs read well
+    RotaryOf(scenario).mechanics.fidelity = fidelities[f];
+    RotaryOf(scenario).mechanics.payload_mass_kg = 1.5;
+    RotaryOf(scenario).mechanics.payload_radius_m = 0.040;
+    RotaryOf(scenario).mechanics.payload_azimuth_rad =
+        0.5 * units::kPi;  // a tilt about x, which both PSDs read well
     Twin twin(scenario);
     RotaryBench bench = twin.Bench();
     bench.target.StartMove(10.0 * units::deg);
@@ -209,7 +212,7 @@ TEST(Twin, AllFidelitiesAgreeOnceTheTablesRest) {
 
 TEST(Twin, WritesAPictureOfBothPsds) {
   Scenario scenario = Quiet();
-  scenario.laser.beam = BeamModel::kGaussian;
+  RotaryOf(scenario).laser.beam = "gaussian";
   Twin twin(scenario);
   const std::string path = ::testing::TempDir() + "irradiance.exr";
   twin.WriteIrradiance(path);
@@ -226,8 +229,9 @@ std::string WriteEfficiencies(const std::string& rows) {
 
 TEST(Twin, AnEfficiencyTableSharesThePowerOutByIncidence) {
   Scenario scenario = Quiet();
-  scenario.laser.beam = BeamModel::kGaussian;
-  scenario.grating.efficiency_file = WriteEfficiencies("-0.01,0.1,0.2,0.2,0.4,0.1\n0.01,0.1,0.4,0.2,0.2,0.1\n");
+  RotaryOf(scenario).laser.beam = "gaussian";
+  RotaryOf(scenario).grating.efficiency_file =
+      WriteEfficiencies("-0.01,0.1,0.2,0.2,0.4,0.1\n0.01,0.1,0.4,0.2,0.2,0.1\n");
   Twin twin(scenario);
   const std::string path = ::testing::TempDir() + "shared.exr";
   twin.WriteIrradiance(path);
@@ -240,7 +244,7 @@ TEST(Twin, AnEfficiencyTableSharesThePowerOutByIncidence) {
 TEST(Twin, NamesTheLineOfABadEfficiencyTable) {
   const auto error_of = [](const std::string& rows) -> std::string {
     Scenario scenario = Quiet();
-    scenario.grating.efficiency_file = WriteEfficiencies(rows);
+    RotaryOf(scenario).grating.efficiency_file = WriteEfficiencies(rows);
     try {
       Twin twin(scenario);
       return "accepted";
@@ -256,8 +260,8 @@ TEST(Twin, NamesTheLineOfABadEfficiencyTable) {
 
 TEST(Twin, AProfileThatIsNotThereIsAnInputError) {
   Scenario scenario = Quiet();
-  scenario.laser.beam = BeamModel::kProfile;
-  scenario.laser.profile_file = "/nowhere/beam.exr";
+  RotaryOf(scenario).laser.beam = "profile";
+  RotaryOf(scenario).laser.profile_file = "/nowhere/beam.exr";
   EXPECT_THROW(Twin twin(scenario), InputError);
 }
 

@@ -1,14 +1,20 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
+
 #include "tests/support/twin_run.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/hob_transmission/estimators/hob_bench.h"
+#include "twin/benches/hob_transmission/procedure.h"
+#include "twin/benches/hob_transmission/settings.h"
+#include "twin/benches/hob_transmission/twin/twin.h"
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
+#include "twin/benches/turntable_autocollimator/procedure.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/core/effect_catalogue.h"
-#include "twin/procedure/hob.h"
-#include "twin/procedure/turntable.h"
-#include "twin/separate/hob/hob_bench.h"
-#include "twin/separate/turntable/turntable_bench.h"
-#include "twin/sim/hob/twin.h"
-#include "twin/sim/turntable/twin.h"
 
 /// Runs of the turntable's and the hobbing machine's twins without a disk.
 namespace twinbench::test {
@@ -55,10 +61,11 @@ inline std::vector<Reading> ReadingsOf(const Scenario& scenario) {
 
 inline int PlannedReadings(const Scenario& scenario) {
   if (scenario.bench == kEncoderBench)
-    return static_cast<int>(procedure::AngleSchedule(scenario.encoder_procedure).size());
-  if (scenario.bench == kTurntableBench) return procedure::PlannedReadings(scenario.turntable_procedure);
-  if (scenario.bench == kHobBench) return procedure::PlannedReadings(scenario.hob_procedure);
-  return procedure::PlannedReadings(scenario.procedure);
+    return static_cast<int>(procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure).size());
+  if (scenario.bench == kTurntableBench)
+    return procedure::PlannedReadings(TurntableOf(scenario).turntable_procedure);
+  if (scenario.bench == kHobBench) return procedure::PlannedReadings(HobOf(scenario).hob_procedure);
+  return procedure::PlannedReadings(RotaryOf(scenario).procedure);
 }
 
 }  // namespace twinbench::test

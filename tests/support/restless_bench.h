@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::test {
@@ -10,20 +11,20 @@ namespace twinbench::test {
 inline Scenario RestlessBench() {
   Scenario scenario = test::RotaryScenario();
   scenario.seed = 23;
-  scenario.procedure.positions = 6;
-  scenario.procedure.shifts = {0, 1};
-  scenario.procedure.passes = {1, -1};
-  scenario.procedure.sweep_points = 3;
-  scenario.procedure.dwell_s = {1.0, 2.0, 7.0};
-  scenario.procedure.remount_s = 60.0;
+  RotaryOf(scenario).procedure.positions = 6;
+  RotaryOf(scenario).procedure.shifts = {0, 1};
+  RotaryOf(scenario).procedure.passes = {1, -1};
+  RotaryOf(scenario).procedure.sweep_points = 3;
+  RotaryOf(scenario).procedure.dwell_s = {1.0, 2.0, 7.0};
+  RotaryOf(scenario).procedure.remount_s = 60.0;
   scenario.environment.drift_K_h = 2.0;
   scenario.environment.random_walk_K_sqrt_h = 0.1;
-  scenario.laser.pointing_yaw_per_kelvin_rad = 1e-5;
-  scenario.reference.seating_sd[2] = 20.0 * units::arcsec;
-  scenario.reference.seating_sd[0] = 20.0 * units::arcsec;
-  scenario.amplifier.hum_V = 0.01;
-  scenario.target.repeatability_sd[0] = 1.0 * units::arcsec;
-  scenario.target.random_rms = {4e-5, 4e-5, 4e-5, 2e-6, 2e-6, 1e-6};
+  RotaryOf(scenario).laser.pointing_yaw_per_kelvin_rad = 1e-5;
+  RotaryOf(scenario).reference.seating_sd[2] = 20.0 * units::arcsec;
+  RotaryOf(scenario).reference.seating_sd[0] = 20.0 * units::arcsec;
+  RotaryOf(scenario).amplifier.hum_V = 0.01;
+  RotaryOf(scenario).target.repeatability_sd[0] = 1.0 * units::arcsec;
+  RotaryOf(scenario).target.random_rms = {4e-5, 4e-5, 4e-5, 2e-6, 2e-6, 1e-6};
   return scenario;
 }
 

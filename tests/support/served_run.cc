@@ -96,7 +96,7 @@ ServedRun RunServed(const ServedTwin& served, const Scenario& scenario, const Ru
   ServedRun run;
   try {
     const hw::BenchFile file = BenchFileOf(served, options);
-    const auto opened = hw::OpenHardware(file, scenario);
+    const auto opened = test::OpenHardware(file, scenario);
     RotaryBench bench = opened->Bench();
     bench.simulation->Restart();
     const procedure::Options careful = CarefulOptions(file, run, before);

@@ -8,7 +8,7 @@
 #include "tests/support/memory_log.h"
 #include "tests/support/restless_bench.h"
 #include "tests/support/served_twin.h"
-#include "twin/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
 
 /// Runs of the real procedure on a served twin, through the real backends, with faults on the way.
 namespace twinbench::test {
@@ -24,9 +24,9 @@ struct ServedRun {
 };
 
 struct RunOptions {
-  std::string converter = "iio";        // iio | comedi
-  std::string tables = "scpi";          // scpi | esp | pty
-  std::map<int, std::string> faults;    // injected when so many readings are kept
+  std::string converter = "iio";      // iio | comedi
+  std::string tables = "scpi";        // scpi | esp | pty
+  std::map<int, std::string> faults;  // injected when so many readings are kept
   std::function<void(hw::BenchFile&)> alter;
 };
 

@@ -4,9 +4,11 @@
 #include <string>
 #include <thread>
 
+#include "hw_bridge/open_bench.h"
 #include "hw_bridge/serve/server.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/sim/twin.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::test {
 
@@ -18,11 +20,19 @@ inline hw::ServeOptions OnFreePorts(double speed = std::numeric_limits<double>::
   return options;
 }
 
+/// The bench of a file with the converter that the scenario has.
+inline std::unique_ptr<hw::OpenBench> OpenHardware(const hw::BenchFile& file, const Scenario& scenario) {
+  const RotarySettings& own = RotaryOf(scenario);
+  return hw::OpenHardware(file, own.adc, scenario.noise_free ? 0.0 : own.amplifier.noise_V);
+}
+
 /// A twin that is served from a thread, until this goes.
 class ServedTwin {
  public:
   explicit ServedTwin(const hw::ServeOptions& options, const Scenario& scenario = RotaryScenario())
-      : twin_(scenario), server_(twin_.Bench(), scenario, options), thread_([this] { server_.Run(); }) {}
+      : twin_(scenario),
+        server_(twin_.Bench(), scenario, RotaryOf(scenario).adc, options),
+        thread_([this] { server_.Run(); }) {}
   explicit ServedTwin(const Scenario& scenario, double speed = std::numeric_limits<double>::infinity())
       : ServedTwin(OnFreePorts(speed), scenario) {}
   ~ServedTwin() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::test {
@@ -9,8 +10,8 @@ namespace twinbench::test {
 inline Scenario SmallNoiseFree() {
   Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
-  scenario.procedure.positions = 12;
-  scenario.procedure.shifts = {0, 4};
+  RotaryOf(scenario).procedure.positions = 12;
+  RotaryOf(scenario).procedure.shifts = {0, 4};
   return scenario;
 }
 

@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "twin/measure/measure.h"
-#include "twin/procedure/angle_comparison.h"
-#include "twin/procedure/procedure.h"
-#include "twin/separate/separate.h"
-#include "twin/sim/encoder/twin.h"
-#include "twin/sim/twin.h"
+#include "twin/benches/encoder_comparison/procedure.h"
+#include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/benches/rotary_4dof/estimators/measure.h"
+#include "twin/benches/rotary_4dof/estimators/separate.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 /// Runs of the twin without a disk: what the closure, scenario and hidden tests have in common.
 namespace twinbench::test {
@@ -46,8 +46,7 @@ inline TwinRun RunEncoderTwin(const Scenario& scenario) {
 }
 
 /// Readings -> calibration -> motions -> errors of both tables, as `twinbench separate` does it.
-inline separate::Separation Evaluate(const TwinRun& run,
-                                     measure::Estimator estimator = measure::Estimator::kRigorous) {
+inline separate::Separation Evaluate(const TwinRun& run, Estimator estimator = Estimator::kRigorous) {
   const measure::BenchGeometry geometry = measure::NominalGeometry(run.scenario);
   const measure::Calibration calibration = measure::Calibrate(run.readings, geometry);
   separate::SeparateOptions options = separate::OptionsFrom(run.scenario);

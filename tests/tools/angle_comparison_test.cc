@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <sstream>
+#include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
 

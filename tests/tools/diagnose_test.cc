@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
 #include "twin/core/run_record.h"

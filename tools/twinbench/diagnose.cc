@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 #include <utility>
+#include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/follow.h"
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 
 struct DiagnoseOptions {
   std::string source, scenario, json, extended, cache, model = "rigorous";
-  std::vector<std::string> overrides, struck;
+  std::vector<std::string> overrides, excluded;
   bool follow = false;
   double false_alarm_rate = 0.01;
 };
@@ -52,10 +53,10 @@ std::string CacheFolder(const std::string& asked) {
   return "";
 }
 
-void CheckStruck(const std::vector<std::string>& struck, const std::string& bench) {
+void CheckExcluded(const std::vector<std::string>& excluded, const std::string& bench) {
   std::vector<std::string> names;
   for (const EffectEntry& entry : EffectCatalogue(bench)) names.push_back(entry.name);
-  for (const std::string& name : struck) {
+  for (const std::string& name : excluded) {
     if (!FindEffect(name, bench))
       throw InputError("--strike " + name, "there is no such effect",
                        fmt::format("a known one; the nearest is \"{}\"", Nearest(name, names)));
@@ -99,8 +100,8 @@ Screened ScreenOf(const std::string& folder, const RecordedRun& run, const diagn
   Screened screened{diagnose::Screen(found.run, found.noise, projector), ""};
   const std::vector<RawBlock> blocks = RawBlocksOf(folder, run.readings);
   std::string limits;
-  if (!blocks.empty()) {
-    const diagnose::RawScale scale = diagnose::RawScaleOf(run.scenario, found.run);
+  if (const auto raw_scale = BenchOf(run.scenario).raw_scale; raw_scale && !blocks.empty()) {
+    const diagnose::RawScale scale = raw_scale(run.scenario, found.run);
     for (diagnose::ScreenTest& test : diagnose::ScreenRaw(blocks, scale)) screened.tests.push_back(std::move(test));
     limits = diagnose::RawLimitsInWords(blocks, scale);
   }
@@ -121,10 +122,10 @@ void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const d
 
 void DiagnoseRun(const DiagnoseOptions& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
-  CheckStruck(options.struck, run.scenario.bench);
+  CheckExcluded(options.excluded, run.scenario.bench);
   diagnose::DiagnoseOptions how;
-  how.model = measure::EstimatorNamed(options.model);
-  how.struck = options.struck;
+  how.model = EstimatorNamed(options.model);
+  how.excluded = options.excluded;
   how.cache_folder = CacheFolder(options.cache);
   const diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
   if (!options.extended.empty()) {
@@ -145,7 +146,7 @@ void DiagnoseRun(const DiagnoseOptions& options) {
 void Diagnose(const DiagnoseOptions& options) {
   if (!options.follow) return DiagnoseRun(options);
   Follow({options.source, options.scenario, options.json, options.overrides, options.false_alarm_rate,
-          measure::EstimatorNamed(options.model)});
+          EstimatorNamed(options.model)});
 }
 
 }  // namespace
@@ -162,7 +163,8 @@ void AddDiagnose(CLI::App& app) {
   command->add_option("--model", options->model, "sensitivities believed: published equations, or rigorous")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();
-  command->add_option("--strike", options->struck, "take an effect out of the catalogue")->allow_extra_args(false);
+  command->add_option("--strike", options->excluded, "take an effect out of the catalogue")
+      ->allow_extra_args(false);
   command->add_option("--cache", options->cache, "folder that keeps calibrated thresholds; else the user's cache");
   command->add_flag("--follow", options->follow, "watch a run while it is recorded and raise alarms");
   command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, a run")->capture_default_str();

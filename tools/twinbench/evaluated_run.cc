@@ -4,8 +4,8 @@
 
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
+#include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
-#include "twin/measure/measure.h"
 #include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
@@ -13,7 +13,7 @@ namespace twinbench::tools {
 bool EvaluateRun(const Scenario& scenario, const std::string& folder) {
   const RunFolder run{folder};
   const report::Evaluation evaluation =
-      BenchOf(scenario).evaluate(scenario, RunRecord::Open(folder)->Readings(), measure::Estimator::kRigorous);
+      BenchOf(scenario).evaluate(scenario, RunRecord::Open(folder)->Readings(), Estimator::kRigorous);
   WriteJson(run.results(), evaluation.results);
   fmt::print("{}", evaluation.summary);
   return evaluation.Separated();

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <thread>
+#include <nlohmann/json.hpp>
 
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"

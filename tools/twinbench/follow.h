@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "twin/measure/measure.h"
+#include "twin/core/estimator.h"
 
 namespace twinbench::tools {
 
@@ -12,8 +12,8 @@ struct FollowOptions {
   std::string scenario;  // empty: the folder's own
   std::string json;      // report of the watch; empty: none
   std::vector<std::string> overrides;
-  double false_alarm_rate = 0.01;                            // a run
-  measure::Estimator model = measure::Estimator::kRigorous;  // sensitivities that are believed
+  double false_alarm_rate = 0.01;          // a run
+  Estimator model = Estimator::kRigorous;  // sensitivities that are believed
 };
 
 /// Watches a run while it is recorded: compares each new reading with what those before it predict, and prints a

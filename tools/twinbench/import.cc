@@ -3,8 +3,8 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
+#include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
-#include "twin/measure/measure.h"
 #include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
@@ -19,8 +19,7 @@ void Import(const ImportOptions& options) {
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const std::vector<Reading> readings = ReadReadingsCsv(options.readings, scenario.bench);
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
-  const report::Evaluation evaluation =
-      BenchOf(scenario).evaluate(scenario, readings, measure::Estimator::kRigorous);
+  const report::Evaluation evaluation = BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous);
   const RunFolder folder{options.folder};
   {
     const auto record = RunRecord::Create(

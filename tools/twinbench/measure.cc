@@ -12,9 +12,9 @@
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/run_record.h"
-#include "twin/procedure/procedure.h"
 
 namespace twinbench::tools {
 namespace {

@@ -1,7 +1,8 @@
 #include "tools/twinbench/measured_bench.h"
 
 #include "hw_bridge/replay/replay_bench.h"
-#include "twin/sim/twin.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::tools {
 namespace {
@@ -32,7 +33,8 @@ class Recording : public hw::OpenBench {
 std::unique_ptr<hw::OpenBench> OpenAnyBench(const hw::BenchFile& file, const Scenario& scenario, Duration elapsed) {
   if (file.kind == "twin") return std::make_unique<OwnTwin>(scenario);
   if (file.kind == "replay") return std::make_unique<Recording>(file.record);
-  return hw::OpenHardware(file, scenario, elapsed);
+  const RotarySettings& own = RotaryOf(scenario);
+  return hw::OpenHardware(file, own.adc, scenario.noise_free ? 0.0 : own.amplifier.noise_V, elapsed);
 }
 
 }  // namespace twinbench::tools

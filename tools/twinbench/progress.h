@@ -4,7 +4,7 @@
 #include <string>
 
 #include "twin/core/reading.h"
-#include "twin/procedure/procedure.h"
+#include "twin/procedure/options.h"
 
 namespace twinbench::tools {
 

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/call_text.h"
 #include "twin/core/errors.h"
-#include "twin/sim/twin.h"
 
 namespace twinbench::tools {
 namespace {
@@ -41,7 +42,7 @@ class Watcher : public ReadingSink, public RunLog {
 
  private:
   void NoteSpot(std::size_t channel, double mean_V) {
-    const PsdSettings& psd = channel < 2 ? scenario_.psd_a : scenario_.psd_b;
+    const PsdSettings& psd = channel < 2 ? RotaryOf(scenario_).psd_a : RotaryOf(scenario_).psd_b;
     const double half_m = 0.5 * (channel % 2 == 0 ? psd.width_m : psd.height_m);
     const double share = std::abs(mean_V) / psd.sensitivity_V_m / half_m;
     double& widest = r_.widest_share[channel / 2];
@@ -76,12 +77,12 @@ void JudgeLight(const Rehearsal& r, std::vector<std::string>& problems) {
 
 /// Hum averages out over whole periods only.
 void JudgeMains(const Scenario& scenario, double mains_Hz, std::vector<std::string>& hints) {
-  const double periods = scenario.adc.samples * kChannels / scenario.adc.rate_Hz * mains_Hz;
+  const double periods = RotaryOf(scenario).adc.samples * kChannels / RotaryOf(scenario).adc.rate_Hz * mains_Hz;
   if (periods > 0.5 && std::abs(periods - std::round(periods)) < 0.01) return;
   hints.push_back(
       fmt::format("a block lasts {:.3g} periods of the mains at {:.4g} Hz; hum is averaged out by whole ones: "
                   "adc.samples = {:.0f}",
-                  periods, mains_Hz, scenario.adc.rate_Hz / kChannels / mains_Hz));
+                  periods, mains_Hz, RotaryOf(scenario).adc.rate_Hz / kChannels / mains_Hz));
 }
 
 std::string TravelLine(const char* table, const Rehearsal::Travel& travel, const TableLimits& limits) {

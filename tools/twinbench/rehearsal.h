@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/core/scenario.h"
-#include "twin/procedure/procedure.h"
 
 namespace twinbench::tools {
 

@@ -33,7 +33,7 @@ void ReplaceErrors(Scenario& scenario, const std::string& option) {
     throw InputError("--errors " + option, "names no table",
                      fmt::format("{}=FILE.csv or {}=FILE.csv", names->target, names->reference));
   }
-  TableSettings& settings = table == names->target ? scenario.target : scenario.reference;
+  TableSettings& settings = names->settings(scenario, table == names->reference);
   settings.errors = ReadTableErrors(option.substr(equals + 1));
   settings.harmonics.clear();
   settings.random_rms = {};

@@ -1,12 +1,13 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
-#include "twin/measure/measure.h"
+#include "twin/core/estimator.h"
 #include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
@@ -25,7 +26,7 @@ void PrintScore(const ScoreOptions& options) {
   const nlohmann::json truth = ReadJson(folder.truth());
   const RecordedRun run = LoadRecordedRun(folder.path, "", {});
   const report::ScoredRun score =
-      BenchOf(run.scenario).score(run.scenario, run.readings, truth, measure::EstimatorNamed(options.estimator));
+      BenchOf(run.scenario).score(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
   if (!options.json.empty()) WriteJson(options.json, score.json);
   if (options.json == "-") return;
   if (options.positions) fmt::print("{}\n", score.positions);

@@ -4,7 +4,7 @@
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
-#include "twin/measure/measure.h"
+#include "twin/core/estimator.h"
 #include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
@@ -18,7 +18,7 @@ struct SeparateOptions {
 void Separate(const SeparateOptions& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   const report::Evaluation evaluation =
-      BenchOf(run.scenario).evaluate(run.scenario, run.readings, measure::EstimatorNamed(options.estimator));
+      BenchOf(run.scenario).evaluate(run.scenario, run.readings, EstimatorNamed(options.estimator));
   if (!evaluation.Separated())
     throw InputError(options.source, evaluation.not_separated, "readings of a full-circle test");
   if (!options.json.empty()) WriteJson(options.json, evaluation.separation);

@@ -9,9 +9,10 @@
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
-#include "twin/sim/twin.h"
 
 namespace twinbench::tools {
 namespace {
@@ -54,7 +55,7 @@ void Serve(ServeArguments a) {
   a.serve.speed = SpeedOf(a.speed);
   a.serve.pty = !a.no_pty;
   sim::Twin twin(scenario);
-  hw::Server server(twin.Bench(), scenario, a.serve);
+  hw::Server server(twin.Bench(), scenario, RotaryOf(scenario).adc, a.serve);
   const hw::ServedAddresses addresses = server.Addresses();
   if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, hw::WriteServedBenchFile(addresses, a.tables));
   fmt::print("{}", Told(addresses));

@@ -2,19 +2,9 @@
 
 #include <algorithm>
 
-#include "twin/benches/encoder_comparison/bench.h"
-#include "twin/benches/hob_transmission/bench.h"
-#include "twin/benches/rotary_4dof/bench.h"
-#include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/diagnose/missing.h"
 
 namespace twinbench {
-
-const std::vector<const Bench*>& Benches() {
-  static const std::vector<const Bench*> benches = {&benches::rotary::Whole(), &benches::encoder::Whole(),
-                                                    &benches::turntable::Whole(), &benches::hob::Whole()};
-  return benches;  // constant
-}
 
 const Bench& BenchNamed(const std::string& name) {
   const auto found = std::ranges::find(Benches(), name, [](const Bench* bench) { return bench->format->name; });

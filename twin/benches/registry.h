@@ -7,10 +7,11 @@
 #include "twin/core/scenario.h"
 #include "twin/diagnose/diagnose.h"
 
-/// The only list of benches.
+/// The benches that this program has, by their names.
 namespace twinbench {
 
-/// In the order of BenchFormats.
+/// In the order of BenchFormats. The list itself is all.cc; a program that is linked with another one has other
+/// benches, as tests/trial does.
 const std::vector<const Bench*>& Benches();
 
 /// The bench of that name.

@@ -11,9 +11,7 @@
 namespace twinbench {
 
 class RunRecord;
-namespace measure {
 enum class Estimator;
-}
 namespace model {
 class Follow;
 }
@@ -25,6 +23,7 @@ namespace diagnose {
 struct DiagnoseOptions;
 struct DiagnosisRun;
 struct LinearRun;
+struct RawScale;
 }  // namespace diagnose
 namespace procedure {
 struct Progress;
@@ -56,15 +55,17 @@ struct Bench {
   bool has_controllers = false;                        // real devices can stand for it: `measure` and `serve`
 
   /// Readings -> results.json, separation.json and a summary.
-  report::Evaluation (*evaluate)(const Scenario&, const std::vector<Reading>&, measure::Estimator) = nullptr;
+  report::Evaluation (*evaluate)(const Scenario&, const std::vector<Reading>&, Estimator) = nullptr;
   /// A run of the twin against its truth.json. Throws InputError if there is nothing to compare.
   report::ScoredRun (*score)(const Scenario&, const std::vector<Reading>&, const nlohmann::json& truth,
-                             measure::Estimator) = nullptr;
+                             Estimator) = nullptr;
 
   diagnose::DiagnosisRun (*diagnose)(const std::vector<Reading>&, const Scenario&,
                                      const diagnose::DiagnoseOptions&) = nullptr;
   /// The readings so far, to be watched while more come. Throws InputError if they are too few.
-  diagnose::LinearRun (*linear_run)(const std::vector<Reading>&, const Scenario&, measure::Estimator) = nullptr;
+  diagnose::LinearRun (*linear_run)(const std::vector<Reading>&, const Scenario&, Estimator) = nullptr;
+  /// How codes of raw blocks become readings; null: the bench keeps none.
+  diagnose::RawScale (*raw_scale)(const Scenario&, const diagnose::LinearRun&) = nullptr;
   /// `gain.change_of_tables` of diagnosis.json; null: the bench has no such thing to say.
   nlohmann::json (*change_of_tables)(const diagnose::DiagnosisRun&, const Scenario&) = nullptr;
 };

@@ -14,12 +14,14 @@ namespace twinbench {
 
 struct Scenario;
 struct ScenarioKey;
+struct TableSettings;
 class ScenarioText;
 
 /// What the two tables of a bench are called in its files: "target" and "reference", or "turntable" and
 /// "multitooth".
 struct TableNames {
   std::string target, reference;
+  TableSettings& (*settings)(Scenario&, bool of_reference) = nullptr;
 };
 
 /// What the channels of a bench read: a place on a detector [m] or an angle [rad].
@@ -34,10 +36,11 @@ struct DesiredColumn {
 };
 
 struct BenchFormat {
-  std::string name;                                                        // `bench` of its scenarios
-  std::string title;                                                       // one line
-  void (*add_keys)(std::vector<ScenarioKey>&, Scenario&) = nullptr;        // those of its own tables
-  void (*check_together)(const ScenarioText&, const Scenario&) = nullptr;  // see scenario_together.h
+  std::string name;                                                  // `bench` of its scenarios
+  std::string title;                                                 // one line
+  void (*add_keys)(std::vector<ScenarioKey>&, Scenario&) = nullptr;  // those of its own tables
+  /// See scenario_together.h; null: any keys fit each other.
+  void (*check_together)(const ScenarioText&, const Scenario&) = nullptr;
   std::optional<TableNames> tables;    // whose errors a file may give; nothing: it has no such tables
   bool has_fixtures = false;           // things may stand in its light: [[fixture]]
   std::vector<ReadingColumn> columns;  // of readings.csv, in the order of writing

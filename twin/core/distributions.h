@@ -4,6 +4,9 @@
 
 namespace twinbench {
 
+/// Fewer degrees of freedom are none: where they come as a sum, the rest is its rounding errors.
+inline constexpr double kLeastDof = 0.5;
+
 /// Probability that a chi-squared variable of `dof` degrees of freedom (any positive number) exceeds `chi2`; NaN
 /// unless dof > 0. Exact to rounding (Boost.Math's regularised incomplete gamma function).
 double ChiSquaredExceedance(double chi2, double dof);

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
@@ -19,6 +21,7 @@
 #include "twin/core/scenario_text.h"
 #include "twin/core/scenario_values.h"
 #include "twin/core/signal_effect.h"
+#include "twin/core/table_errors.h"
 
 namespace twinbench {
 namespace {
@@ -357,32 +360,40 @@ std::string NamedFile(const std::string& where, const std::string& key, const st
                    "a readable file, named from the scenario's folder");
 }
 
-void FindFile(const ScenarioText& text, const std::string& key, const std::string& folder, std::string& file) {
-  if (!file.empty()) file = NamedFile(text.Where(key, text.name() + ":1"), key, folder, file);
-}
-
-/// Moves the content of errors_file to `errors`. Where both are given the later source counts.
-void LoadErrors(const ScenarioText& text, const std::string& table, const std::string& folder, TableSettings& s) {
-  if (s.errors_file.empty()) return;
+/// Moves the content of a table's errors_file to its `errors`. Where both are given the later source counts.
+void LoadErrors(const ScenarioText& text, const std::string& table, const std::string& folder, std::string& name,
+                std::optional<TableErrors>& errors) {
+  if (name.empty()) return;
   const std::string key = table + ".errors_file";
   const auto block = text.Find(table + ".errors");
   const auto file = text.Find(key);
   if (block && &block->source() == &file->source())
     throw InputError(file->Where(), fmt::format("{} is given beside a table {}.errors", key, table), "one of them");
   const bool file_is_later = !block || &file->source() > &block->source();
-  if (file_is_later) s.errors = ReadTableErrors(NamedFile(file->Where(), key, folder, s.errors_file));
-  s.errors_file.clear();
+  if (file_is_later) errors = ReadTableErrors(NamedFile(file->Where(), key, folder, name));
+  name.clear();
 }
 
-void LoadFiles(const ScenarioText& text, const std::string& folder, Scenario& scenario) {
-  FindFile(text, "laser.profile_file", folder, scenario.laser.profile_file);
-  FindFile(text, "grating.efficiency_file", folder, scenario.grating.efficiency_file);
-  FindFile(text, "environment.temperature_file", folder, scenario.environment.temperature_file);
-  if (const auto& tables = FormatOf(scenario.bench).tables) {
-    LoadErrors(text, tables->target, folder, scenario.target);
-    LoadErrors(text, tables->reference, folder, scenario.reference);
+/// Where the text of a key is.
+std::string& FileNameAt(const std::vector<ScenarioKey>& keys, const std::string& path) {
+  const auto key = std::ranges::find(keys, path, &ScenarioKey::Path);
+  Require(key != keys.end(), "a table with errors names no errors_file");
+  return *std::get<std::string*>(key->field);
+}
+
+void LoadFiles(const ScenarioText& text, const std::string& folder, const std::vector<ScenarioKey>& keys) {
+  for (const ScenarioKey& key : keys) {
+    if (key.names_a_file) {
+      std::string& file = *std::get<std::string*>(key.field);
+      if (!file.empty()) file = NamedFile(text.Where(key.Path(), text.name() + ":1"), key.Path(), folder, file);
+    }
+    if (auto* const* errors = std::get_if<std::optional<TableErrors>*>(&key.field))
+      LoadErrors(text, key.table, folder, FileNameAt(keys, key.table + ".errors_file"), **errors);
   }
-  for (FixtureSettings& f : scenario.fixtures) {
+}
+
+void LoadMeshes(const std::string& folder, std::vector<FixtureSettings>& fixtures) {
+  for (FixtureSettings& f : fixtures) {
     if (!f.mesh_file.empty()) f.mesh_file = NamedFile(f.location, "fixture.mesh_file", folder, f.mesh_file);
   }
 }
@@ -404,8 +415,9 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
       sources, kEffectTable, [&](const TomlValue& block) { return ReadEffect(block, scenario.bench); });
   scenario.empiricals = ReadBlocks<EmpiricalSettings>(
       sources, kEmpiricalTable, [&](const TomlValue& block) { return ReadEmpirical(block, scenario.bench); });
-  FormatOf(scenario.bench).check_together(sources, scenario);
-  LoadFiles(sources, folder, scenario);
+  if (const auto check = FormatOf(scenario.bench).check_together) check(sources, scenario);
+  LoadFiles(sources, folder, keys);
+  LoadMeshes(folder, scenario.fixtures);
   return scenario;
 }
 

@@ -28,9 +28,6 @@ struct DefaultText {
   std::string operator()(const std::uint64_t* field) const { return fmt::format("{}", *field); }
   std::string operator()(const bool* field) const { return *field ? "true" : "false"; }
   std::string operator()(const std::string* field) const { return '"' + *field + '"'; }
-  std::string operator()(const BeamModel* field) const {
-    return '"' + key.choices[static_cast<std::size_t>(*field)] + '"';
-  }
   std::string operator()(std::span<double> field) const { return ShortList(field, key.unit.to_SI); }
   std::string operator()(const std::vector<double>* field) const { return ShortList(*field, key.unit.to_SI); }
   std::string operator()(const std::vector<int>* field) const {

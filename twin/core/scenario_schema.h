@@ -28,7 +28,7 @@ struct Bounds {
 };
 
 /// Where a value of a scenario lives. A span is a list of fixed length, a vector one of at least one entry.
-using Field = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, BeamModel*, std::span<double>,
+using Field = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, std::span<double>,
                            std::vector<double>*, std::vector<int>*, std::vector<std::string>*,
                            std::vector<HarmonicSettings>*, std::optional<TableErrors>*>;
 
@@ -38,9 +38,10 @@ struct ScenarioKey {
   std::string name;   // without its unit
   Unit unit;
   Bounds bounds;                     // of every number
-  std::vector<std::string> choices;  // allowed texts; for BeamModel in its order; empty: any
+  std::vector<std::string> choices;  // allowed texts; empty: any
   Field field;
   std::string meaning;
+  bool names_a_file = false;  // from the scenario's folder; absolute once loaded
 
   std::string Name() const { return unit.suffix.empty() ? name : name + "_" + std::string(unit.suffix); }
   std::string Path() const { return table.empty() ? Name() : table + "." + Name(); }

@@ -68,7 +68,8 @@ TomlValue Demand(const TomlValue& table, const std::string& key, const std::stri
 
 constexpr const char* kHarmonicForm = "{ component = \"ez\", order = 1, amplitude_arcsec = 5.0, phase_deg = 30.0 }";
 
-/// One entry of `harmonics`; of ez if no component is named. ex, ey, ez have an amplitude_arcsec, dx, dy, dz an amplitude_um.
+/// One entry of `harmonics`; of ez if no component is named. ex, ey, ez have an amplitude_arcsec, dx, dy, dz an
+/// amplitude_um.
 HarmonicSettings ReadHarmonic(const TomlValue& entry, const std::string& key) {
   if (!entry.node().is_table()) Refuse(entry, key, kHarmonicForm);
   RefuseUnknown(entry, "", HarmonicKeys());
@@ -80,7 +81,8 @@ HarmonicSettings ReadHarmonic(const TomlValue& entry, const std::string& key) {
   const Unit unit = angle ? Unit{"arcsec", units::arcsec} : Unit{"um", units::um};
   const std::string amplitude = angle ? "amplitude_arcsec" : "amplitude_um";
   if (const auto other = Inside(entry, angle ? "amplitude_um" : "amplitude_arcsec"))
-    throw InputError(other->Where(), fmt::format("\"{}\" has an amplitude of the wrong unit",
+    throw InputError(other->Where(),
+                     fmt::format("\"{}\" has an amplitude of the wrong unit",
                                  kComponentNames[static_cast<std::size_t>(harmonic.component)]),
                      amplitude);
   harmonic.amplitude = ReadNumber(Demand(entry, amplitude, key, kHarmonicForm), amplitude, unit, {-1e6, 1e6});
@@ -136,9 +138,6 @@ struct FieldReader {
     *field = *flag;
   }
   void operator()(std::string* field) const { *field = ReadText(value, key.Path(), key.choices); }
-  void operator()(BeamModel* field) const {
-    *field = IndexOf<BeamModel>(key.choices, ReadText(value, key.Path(), key.choices));
-  }
   void operator()(std::span<double> field) const {
     const auto numbers = ReadNumbers(value, key.Path(), key.unit, key.bounds, Expected(key));
     if (numbers.size() != field.size())
@@ -182,7 +181,6 @@ struct FieldText {
   std::string operator()(const std::uint64_t*) const { return "a whole number, 0 or more"; }
   std::string operator()(const bool*) const { return "true or false"; }
   std::string operator()(const std::string*) const { return Text("a text in quotes"); }
-  std::string operator()(const BeamModel*) const { return Text(""); }
   std::string operator()(std::span<double> field) const {
     return fmt::format("a list of {}, each {}", field.size(), ExpectedNumber(key.unit, key.bounds));
   }

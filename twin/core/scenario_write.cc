@@ -63,9 +63,6 @@ struct ValuePrinter {
   }
   std::string operator()(const bool* field) const { return *field ? "true" : "false"; }
   std::string operator()(const std::string* field) const { return Quoted(*field); }
-  std::string operator()(const BeamModel* field) const {
-    return Quoted(key.choices[static_cast<std::size_t>(*field)]);
-  }
   std::string operator()(std::span<double> field) const { return Floats(field, key.unit.to_SI); }
   std::string operator()(const std::vector<double>* field) const { return Floats(*field, key.unit.to_SI); }
   std::string operator()(const std::vector<int>* field) const {

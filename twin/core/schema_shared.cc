@@ -48,7 +48,7 @@ void AddEnvironment(Keys& keys, EnvironmentSettings& s) {
   t.Add("swing", kMillikelvin, UpTo(50000), &s.swing_K, "amplitude of a periodic swing");
   t.Add("swing_period", kSecond, Positive(1e7), &s.swing_period_s, "of the swing");
   t.Add("random_walk", {"K_sqrt_h"}, UpTo(50), &s.random_walk_K_sqrt_h, "standard deviation after an hour");
-  t.Text("temperature_file", &s.temperature_file, {}, "CSV of time_s, temperature_degC");
+  t.File("temperature_file", s.temperature_file, "CSV of time_s, temperature_degC");
   t.Add("sensor_noise", kMillikelvin, UpTo(10000), &s.sensor_noise_K, "of the thermometer, standard deviation");
 }
 

@@ -45,6 +45,10 @@ class Table {
   void Text(const std::string& name, Field field, std::vector<std::string> choices, const std::string& meaning) {
     keys_.push_back({name_, name, {}, {}, std::move(choices), field, meaning});
   }
+  /// The name of a file that must be readable once it is given.
+  void File(const std::string& name, std::string& path, const std::string& meaning) {
+    keys_.push_back({name_, name, {}, {}, {}, &path, meaning, true});
+  }
 
  private:
   Keys& keys_;

@@ -6,12 +6,10 @@
 
 #include "twin/diagnose/gain.h"
 #include "twin/diagnose/redundancy.h"
+#include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
 namespace {
-
-constexpr double kBaarda = 4.13;       // non-centrality: found in 80 % of cases at a test of 0.1 %
-constexpr double kPlausibleTop = 3.0;  // prior deviations: about the largest size that anybody expects
 
 /// The family without what points into the case that made it.
 Family Detached(Family family) {
@@ -23,9 +21,9 @@ Family Detached(Family family) {
 
 std::vector<Accepted> AcceptedOf(const Analysis& analysis) {
   std::vector<Accepted> accepted;
-  for (const Pick& pick : analysis.found.picks) {
-    const Family& family = analysis.scanner->Families()[static_cast<std::size_t>(pick.family)];
-    accepted.push_back({Detached(family), pick.grid_point, pick.shape, pick.amplitudes, pick.columns});
+  for (const Term& term : analysis.found.terms) {
+    const Family& family = analysis.scanner->Families()[static_cast<std::size_t>(term.family)];
+    accepted.push_back({Detached(family), term.grid_point, term.shape, term.amplitudes, term.columns});
   }
   return accepted;
 }
@@ -44,9 +42,9 @@ void AddDetectability(const LinearRun& run, const Analysis& analysis, const Answ
       continue;
     }
     const Amplitude& a = family.amplitudes.front();
-    const double information = analysis.scanner->Information(k), top = kPlausibleTop * a.prior_sd;
-    if (top * std::sqrt(information) >= kBaarda) {
-      const double smallest = kBaarda / std::sqrt(information);
+    const double information = analysis.scanner->Information(k), top = tuning::kPlausibleTop * a.prior_sd;
+    if (top * std::sqrt(information) >= tuning::kBaarda) {
+      const double smallest = tuning::kBaarda / std::sqrt(information);
       diagnosis.detectable.push_back(
           {family.effect, family.where, {a.name, a.unit, a.to_SI, smallest, kNaN, a.lower, a.upper}});
       continue;
@@ -83,9 +81,8 @@ Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vecto
     const bool named_already = std::ranges::count(first, "outliers", &Cause::effect) > 0;
     if (repair.kind == NoiseCause::Kind::kOutliers && !named_already) first.push_back(OutlierCause(repair, run));
   }
-  constexpr double kWorthTelling = 3.0;
   for (const NoiseCause& seen : analysis.observations) {
-    if (seen.log_bayes > kWorthTelling) diagnosis.noise.push_back(seen.words);
+    if (seen.log_bayes > tuning::kWorthTelling) diagnosis.noise.push_back(seen.words);
   }
   for (const Cause& cause : first) diagnosis.alarm_p = std::min(diagnosis.alarm_p, std::exp(-cause.log_evidence));
   if (!first.empty() && diagnosis.verdict == Verdict::kNone) diagnosis.verdict = Verdict::kNamed;
@@ -100,8 +97,7 @@ void JudgeByGain(DiagnosisRun& result) {
   d.gain = MeasureGain(result.run, result.noise, result.accepted);
   const bool named = d.verdict == Verdict::kNamed || d.verdict == Verdict::kTie;
   if (!named || result.accepted.empty() || d.gain.folds == 0 || d.gain.positive) return;
-  constexpr double kNotProven = 0.6;
-  for (Cause& cause : d.causes) cause.probability = std::min(cause.probability, kNotProven);
+  for (Cause& cause : d.causes) cause.probability = std::min(cause.probability, tuning::kNotProven);
   d.notes.push_back(
       "the gain on held-out passes is not above zero at 95 %: the cause is a proposal, not part of the model");
 }
@@ -112,15 +108,15 @@ AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options) {
   return {options.null_runs, options.cache_folder, 4, nullptr};
 }
 
-bool IsStruck(const DiagnoseOptions& options, const std::string& effect) {
-  return std::ranges::find(options.struck, effect) != options.struck.end();
+bool IsExcluded(const DiagnoseOptions& options, const std::string& effect) {
+  return std::ranges::find(options.excluded, effect) != options.excluded.end();
 }
 
 Cause DecidedCause(const std::string& effect, const std::string& where, double log_evidence) {
   Cause cause;
   cause.effect = effect;
   cause.where = where;
-  cause.probability = kMostProbable;
+  cause.probability = tuning::kMostProbable;
   cause.log_evidence = log_evidence;
   cause.rho = std::sqrt(2.0 * std::max(0.0, log_evidence));
   return cause;

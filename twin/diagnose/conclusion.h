@@ -19,7 +19,7 @@ struct AnswerWords {
 };
 
 AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options);
-bool IsStruck(const DiagnoseOptions& options, const std::string& effect);
+bool IsExcluded(const DiagnoseOptions& options, const std::string& effect);
 
 /// A cause that was decided by evidence alone, before the search.
 Cause DecidedCause(const std::string& effect, const std::string& where, double log_evidence);

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "twin/core/estimator.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/diagnose/diagnosis.h"
 #include "twin/diagnose/engine/family.h"
 #include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/engine/noise_model.h"
-#include "twin/measure/measure.h"
 
 /// What is asked of a diagnosis and what it answers: given readings and the scenario that is believed to describe
 /// the bench, it finds what the model gets wrong, names it and measures what the extended model gains. Each bench
@@ -18,10 +18,10 @@
 namespace twinbench::diagnose {
 
 struct DiagnoseOptions {
-  measure::Estimator model = measure::Estimator::kRigorous;  // rotary bench: sensitivities that are believed
-  std::vector<std::string> struck;  // effects taken out of the catalogue (leave-one-cause-out tests)
-  int null_runs = 500;              // simulated runs without effect, for thresholds and p-values
-  std::string cache_folder;         // calibrations are kept here by design; empty: nowhere
+  Estimator model = Estimator::kRigorous;  // rotary bench: sensitivities that are believed
+  std::vector<std::string> excluded;       // effects taken out of the catalogue (leave-one-cause-out tests)
+  int null_runs = 500;                     // simulated runs without effect, for thresholds and p-values
+  std::string cache_folder;                // calibrations are kept here by design; empty: nowhere
 };
 
 /// A cause in the model after the search, with its signature at the fitted shape.

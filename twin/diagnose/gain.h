@@ -1,14 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
-#include "twin/core/table_errors.h"
 #include "twin/diagnose/diagnose.h"
 
-/// What a model with the accepted causes gains over one without: on readings that it was not fitted to, and in the
-/// separated errors.
+/// What a model with the accepted causes gains over one without, on readings that it was not fitted to.
 namespace twinbench::diagnose {
 
 /// Predicts held-out passes from the others, with and without the accepted causes.
@@ -27,15 +24,5 @@ namespace twinbench::diagnose {
 /// @return folds = 0 and NaN if nothing was accepted or nothing can be held out.
 /// Not included: that the causes were chosen, and their shapes fitted, on all readings.
 Gain MeasureGain(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted);
-
-/// By how much the accepted causes move the separated errors of a rotary bench, rms over the positions [rad, m].
-/// Components that nobody reads are NaN. What cannot be separated stays zero in both and does not count.
-struct ChangeOfUnknowns {
-  std::array<double, kComponents> target_rms, reference_rms;  // by Component
-};
-
-/// @param positions  n; the unknowns begin with the 9 n table errors in the order of separate::Design::Column.
-ChangeOfUnknowns ChangeOfTables(const LinearRun& run, const NoiseModel& noise,
-                                const std::vector<Accepted>& accepted, int positions);
 
 }  // namespace twinbench::diagnose

@@ -92,17 +92,6 @@ json GainJson(const Gain& gain, const LinearRun& run) {
   return out;
 }
 
-json ToJson(const std::array<double, kComponents>& rms) {
-  json out = json::object();
-  for (int c = 0; c < kComponents; ++c) {
-    const bool angle = IsAngle(static_cast<Component>(c));
-    const double value = rms[static_cast<std::size_t>(c)];
-    const std::string key = std::string(kComponentNames[static_cast<std::size_t>(c)]) + (angle ? "_arcsec" : "_um");
-    if (std::isfinite(value)) out[key] = value / (angle ? units::arcsec : units::um);
-  }
-  return out;
-}
-
 }  // namespace
 
 json ToJson(const std::vector<ScreenTest>& screen) {
@@ -117,10 +106,6 @@ json ToJson(const std::vector<ScreenTest>& screen) {
                     {"items", test.tables}});
   }
   return list;
-}
-
-json ToJson(const ChangeOfUnknowns& change) {
-  return {{"target", ToJson(change.target_rms)}, {"reference", ToJson(change.reference_rms)}};
 }
 
 json ToJson(const DiagnosisRun& run, const std::string& extended_scenario) {

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "twin/diagnose/diagnose.h"
-#include "twin/diagnose/gain.h"
 #include "twin/diagnose/screen/screen.h"
 
 namespace twinbench::diagnose {
@@ -17,10 +16,6 @@ namespace twinbench::diagnose {
 ///
 /// @param extended_scenario  Path of the file that was written; empty: none, null in the file.
 nlohmann::json ToJson(const DiagnosisRun& run, const std::string& extended_scenario);
-
-/// `gain.change_of_tables`: {"target": {"ex_arcsec": rms, ...}, "reference": {...}}; components that nobody reads
-/// are left out.
-nlohmann::json ToJson(const ChangeOfUnknowns& change);
 
 /// The screen of residual tests: `diagnosis.screen` of results.json.
 nlohmann::json ToJson(const std::vector<ScreenTest>& screen);

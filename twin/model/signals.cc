@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "twin/core/distributions.h"
 #include "twin/core/units.h"
 
 namespace twinbench::model {
@@ -12,9 +13,12 @@ Eigen::MatrixXd Times(const Eigen::MatrixXd& columns, const Eigen::VectorXd& fac
   return columns.array().colwise() * factor.array();
 }
 
+double Rms(const Eigen::VectorXd& signal) {
+  return std::sqrt(signal.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, signal.size())));
+}
+
 Eigen::VectorXd Unit(const Eigen::VectorXd& signal) {
-  const double rms =
-      std::sqrt(signal.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, signal.size())));
+  const double rms = Rms(signal);
   return rms > 0.0 ? Eigen::VectorXd(signal / rms) : signal;
 }
 
@@ -126,12 +130,23 @@ Eigen::VectorXd HeldDirection(const Course& course) {
   return held;
 }
 
+double TypicalStep_rad(const Course& course, const Eigen::VectorXd& angle_rad) {
+  std::vector<double> steps_rad;
+  for (Eigen::Index i = 1; i < angle_rad.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double step_rad = std::abs(angle_rad[i] - angle_rad[i - 1]);
+    if (course.pass[k] == course.pass[k - 1] && step_rad > 0.0) steps_rad.push_back(step_rad);
+  }
+  return steps_rad.empty() ? 0.0 : Median(std::move(steps_rad));
+}
+
 Eigen::VectorXd Acceleration(const Course& course, const Eigen::VectorXd& velocity) {
   Eigen::VectorXd acceleration = Eigen::VectorXd::Zero(course.Readings());
   for (Eigen::Index i = 1; i + 1 < acceleration.size(); ++i) {
     const auto before = static_cast<std::size_t>(i - 1), behind = static_cast<std::size_t>(i + 1);
     const double step_s = course.time_s[i + 1] - course.time_s[i - 1];
-    const bool together = course.pass[before] == course.pass[behind] && course.setup[before] == course.setup[behind];
+    const bool together =
+        course.pass[before] == course.pass[behind] && course.setup[before] == course.setup[behind];
     if (together && step_s > 0.0) acceleration[i] = (velocity[i + 1] - velocity[i - 1]) / step_s;
   }
   return acceleration;

@@ -5,14 +5,17 @@
 
 #include "twin/model/course.h"
 
-/// Time courses that causes follow, written once for all benches: one row a reading of a course, dimensionless or in
-/// SI, before any size.
+/// Time courses that causes follow, written once for all benches: one row a reading of a course, dimensionless or
+/// in SI, before any size.
 namespace twinbench::model {
 
 // --- putting together ---
 
 /// Each row of `columns` times the entry of `factor`.
 Eigen::MatrixXd Times(const Eigen::MatrixXd& columns, const Eigen::VectorXd& factor);
+
+/// Root of the mean square.
+double Rms(const Eigen::VectorXd& signal);
 
 /// Divided by its rms.
 Eigen::VectorXd Unit(const Eigen::VectorXd& signal);
@@ -67,6 +70,9 @@ Eigen::VectorXd Lagged(const Eigen::VectorXd& time_s, const Eigen::VectorXd& fol
 
 /// Recorded direction, +1 or -1; at rest that of the last motion.
 Eigen::VectorXd HeldDirection(const Course& course);
+
+/// Typical way from one reading to the next of the same pass; readings at rest do not count. 0 if all are.
+double TypicalStep_rad(const Course& course, const Eigen::VectorXd& angle_rad);
 
 /// Rate of change of a velocity, zero at the ends of a pass.
 Eigen::VectorXd Acceleration(const Course& course, const Eigen::VectorXd& velocity);

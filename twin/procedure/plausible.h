@@ -1,6 +1,6 @@
 #pragma once
 
-#include "twin/procedure/procedure.h"
+#include "twin/procedure/options.h"
 
 namespace twinbench::procedure {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "twin/core/device_fault.h"
+#include "twin/core/units.h"
 
 namespace twinbench::procedure {
 namespace {

@@ -149,12 +149,13 @@ bool IsEndVoltage(const AdcSettings& adc, const ChannelBlock& block) {
 
 void TakeNoiseFree(const AdcSettings& adc, const AdInput& input, const AdRequest& request, AdBlock& block) {
   const Waveform waveform(adc, input);
-  const std::int64_t total = std::int64_t{kChannels} * request.n_samples;
+  // Where every scan is the same, one tells the mean, and the sums about it are zero.
+  const std::int64_t total = std::int64_t{kChannels} * (waveform.IsConstant() ? 1 : request.n_samples);
   std::array<VoltageSums, kChannels> sums;
   std::array<double, kChunk> y_V;
   for (std::int64_t first = 0; first < total; first += kChunk) {
     const auto n = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total - first));
-    if (first == 0 || !waveform.IsConstant()) waveform.Fill(first, std::span(y_V).first(n));
+    waveform.Fill(first, std::span(y_V).first(n));
     for (std::size_t i = 0; i < n; ++i) sums[i % kChannels].Add(WithStep(input.channel[i % kChannels], y_V[i]));
   }
   for (std::size_t k = 0; k < kChannels; ++k) {

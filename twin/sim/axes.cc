@@ -12,10 +12,10 @@ constexpr Duration kSettleCheck = std::chrono::milliseconds(1);
 
 }  // namespace
 
-mechanics::StackParameters StackOf(const Scenario& actual) {
+mechanics::StackParameters StackOf(const TableStack& described) {
   mechanics::StackParameters stack;
-  const MechanicsSettings& m = actual.mechanics;
-  const std::array<const TableSettings*, 2> tables = {&actual.target, &actual.reference};
+  const MechanicsSettings& m = described.mechanics;
+  const std::array<const TableSettings*, 2> tables = {&described.target, &described.reference};
   for (std::size_t k = 0; k < 2; ++k) {
     mechanics::TableParameters& table = stack.table[k];
     table.axial_stiffness_N_m = m.axial_stiffness_N_m[k];
@@ -31,17 +31,14 @@ mechanics::StackParameters StackOf(const Scenario& actual) {
   stack.payload.height_m = m.payload_height_m;
   stack.damping_ratio = m.damping_ratio;
   stack.step_s = m.step_s;
-  stack.geometry.p_RG_m = actual.grating.point_m;
-  stack.geometry.reference_height_m = actual.reference_height_m;
-  stack.geometry.centring_m = actual.centring_m;
-  stack.geometry.mount_tilt_rad = actual.mount_tilt_rad;
+  stack.geometry = described.geometry;
   return stack;
 }
 
-Axes::Axes(const Scenario& actual, EventQueue& queue)
+Axes::Axes(const TableStack& stack, EventQueue& queue)
     : queue_(queue),
-      plant_(mechanics::MakePlant(mechanics::FidelityFromName(actual.mechanics.fidelity), StackOf(actual))) {
-  const std::array<const TableSettings*, 2> tables = {&actual.target, &actual.reference};
+      plant_(mechanics::MakePlant(mechanics::FidelityFromName(stack.mechanics.fidelity), StackOf(stack))) {
+  const std::array<const TableSettings*, 2> tables = {&stack.target, &stack.reference};
   for (std::size_t k = 0; k < 2; ++k) {
     drives_[k].move_time_s = tables[k]->move_time_s;
     drives_[k].speed_rad_s = tables[k]->speed_rad_s;

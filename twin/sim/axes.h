@@ -4,19 +4,25 @@
 #include <memory>
 
 #include "mechanics/plant.h"
-#include "twin/core/scenario.h"
+#include "twin/core/shared_settings.h"
 #include "twin/sim/event_queue.h"
 
 namespace twinbench::sim {
 
-/// The stack of tables that a scenario describes.
-mechanics::StackParameters StackOf(const Scenario& actual);
+/// Two tables, one upon the other, and how the upper one is mounted.
+struct TableStack {
+  const MechanicsSettings& mechanics;
+  const TableSettings &target, &reference;
+  mechanics::ChainGeometry geometry = {};
+};
+
+mechanics::StackParameters StackOf(const TableStack& stack);
 
 /// The drives of both tables on the clock of the queue: moves take their time, and in-position is reported after
 /// it.
 class Axes {
  public:
-  Axes(const Scenario& actual, EventQueue& queue);
+  Axes(const TableStack& stack, EventQueue& queue);
 
   /// Starts a move; one to where the axis already stands is over at once and counts as none.
   /// @return true if the axis moves.

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "twin/sim/effects/effects.h"
+#include "twin/sim/effect_parameter.h"
 
 namespace twinbench::sim {
 

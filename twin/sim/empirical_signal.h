@@ -8,14 +8,14 @@
 
 namespace twinbench::sim {
 
-/// The [[empirical]] signals of one channel that reads an angle.
+/// The [[empirical]] signals of one channel.
 class EmpiricalSignal {
  public:
   EmpiricalSignal(const std::vector<EmpiricalSettings>& empiricals, const std::string& channel);
-  double At_rad(int reading) const;
+  double At(int reading) const;  // SI: rad or m, as the channel reads
 
  private:
-  std::map<int, double> by_reading_rad_;
+  std::map<int, double> by_reading_;
 };
 
 }  // namespace twinbench::sim

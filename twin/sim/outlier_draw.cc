@@ -1,6 +1,6 @@
 #include "twin/sim/outlier_draw.h"
 
-#include "twin/sim/effects/effects.h"
+#include "twin/sim/effect_parameter.h"
 
 namespace twinbench::sim {
 

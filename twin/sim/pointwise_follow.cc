@@ -4,14 +4,18 @@ namespace twinbench::sim {
 
 Scenario Foreseeable(Scenario scenario) {
   scenario.noise_free = true;
-  if (scenario.mechanics.fidelity == "bullet") scenario.mechanics.fidelity = "linear";
-  for (TableSettings* table : {&scenario.target, &scenario.reference}) {
-    table->harmonics.clear();
-    table->errors.reset();
-    table->random_rms = {};
-  }
   std::erase_if(scenario.effects, [](const EffectSettings& e) { return e.name == "outliers"; });
   return scenario;
+}
+
+void LeaveFree(TableSettings& table) {
+  table.harmonics.clear();
+  table.errors.reset();
+  table.random_rms = {};
+}
+
+void WithoutBullet(MechanicsSettings& mechanics) {
+  if (mechanics.fidelity == "bullet") mechanics.fidelity = "linear";
 }
 
 }  // namespace twinbench::sim

@@ -17,10 +17,15 @@ struct BenchPoint {
   double& (*of_bench)(Scenario&) = nullptr;  // ... or this
 };
 
-/// The scenario without what a run leaves free (errors of the tables), without chance, and without single outliers,
-/// which nobody can foresee. Bullet gives way to the linear model: the tables' angles differ by nanometres on the
-/// grating, at a thousandth of the cost.
+/// The scenario without chance and without single outliers, which nobody can foresee.
 Scenario Foreseeable(Scenario scenario);
+
+/// Errors of a table are what a run leaves free.
+void LeaveFree(TableSettings& table);
+
+/// Bullet gives way to the linear model: the tables' angles differ by nanometres on the grating, at a thousandth of
+/// the cost.
+void WithoutBullet(MechanicsSettings& mechanics);
 
 /// @tparam Extra  What disturbances add to one reading of the bench.
 template <class Extra>

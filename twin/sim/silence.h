@@ -1,10 +1,11 @@
 #pragma once
 
-#include "twin/core/scenario.h"
+#include "twin/core/shared_settings.h"
 
+/// Takes out what is drawn at random from reading to reading; random table errors stay, they are errors.
 namespace twinbench::sim {
 
-/// Takes out everything that is drawn at random from reading to reading; random table errors stay, they are errors.
-void Silence(Scenario& scenario);
+void Silence(TableSettings& table);
+void Silence(EnvironmentSettings& environment);
 
 }  // namespace twinbench::sim

@@ -1,5 +1,8 @@
 #include "twin/sim/truth.h"
 
+#include <nlohmann/json.hpp>
+
+
 namespace twinbench::sim {
 
 nlohmann::json ToJson(const TableErrors& errors) {

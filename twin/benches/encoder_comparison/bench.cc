@@ -1,13 +1,14 @@
 #include "twin/benches/encoder_comparison/bench.h"
 
-#include "twin/benches/encoder_comparison/twin/twin.h"
-#include "twin/procedure/angle_comparison.h"
+#include "twin/benches/encoder_comparison/procedure.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/encoder_comparison/twin/factory.h"
 
 namespace twinbench::benches::encoder {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
-  return static_cast<int>(procedure::AngleSchedule(s.encoder_procedure).size());
+  return static_cast<int>(procedure::AngleSchedule(EncoderOf(s).encoder_procedure).size());
 }
 
 }  // namespace

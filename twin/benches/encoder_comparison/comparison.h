@@ -1,9 +1,9 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "twin/measure/angle_comparison.h"
+#include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
 
 namespace twinbench::benches::encoder {
 

@@ -1,16 +1,16 @@
 #include "twin/benches/encoder_comparison/bench.h"
-#include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
+#include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
-#include "twin/diagnose/encoder/encoder_run.h"
-#include "twin/diagnose/encoder/families.h"
-#include "twin/diagnose/encoder/harmonic_table.h"
 
 namespace twinbench::benches::encoder {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
   const diagnose::encoder::EncoderRun encoder = diagnose::encoder::BuildRun(readings, scenario, FollowRecord);
-  const std::vector<diagnose::Family> families = diagnose::encoder::Families(encoder, options.struck);
+  const std::vector<diagnose::Family> families = diagnose::encoder::Families(encoder, options.excluded);
   diagnose::AnalysisOptions how = diagnose::AnalysisOptionsOf(options);
   how.most_causes = 8;  // an angle device may well have an error of many orders
   const diagnose::Analysis analysis = diagnose::Analyse(encoder.run, families, how);
@@ -23,7 +23,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
   return result;
 }
 
-diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, measure::Estimator) {
+diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
   return diagnose::encoder::BuildRun(readings, scenario, FollowRecord).run;
 }
 

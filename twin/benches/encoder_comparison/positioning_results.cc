@@ -4,9 +4,10 @@
 
 #include <cmath>
 #include <set>
+#include <nlohmann/json.hpp>
 
+#include "twin/benches/encoder_comparison/estimators/iso230_2.h"
 #include "twin/core/units.h"
-#include "twin/measure/iso230_2.h"
 #include "twin/report/json_units.h"
 
 namespace twinbench::benches::encoder {

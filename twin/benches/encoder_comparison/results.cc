@@ -1,14 +1,16 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/comparison.h"
+#include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/positioning_results.h"
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/errors.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
-#include "twin/separate/encoder/device_error.h"
 
 namespace twinbench::benches::encoder {
 namespace {
@@ -18,8 +20,8 @@ using separate::encoder::Curve;
 using separate::encoder::CurveAt;
 using separate::encoder::DeviceError;
 using separate::encoder::PassResult;
-using separate::hob::Coefficient;
-using separate::hob::HarmonicSeries;
+using separate::harmonics::Coefficient;
+using separate::harmonics::HarmonicSeries;
 
 constexpr int kPoints = 360;  // a degree: enough for the highest order there is
 constexpr const char* kNoReference =
@@ -45,7 +47,7 @@ nlohmann::json HarmonicsJson(const HarmonicSeries& series) {
     json.push_back({{"order", k},
                     {"amplitude_arcsec", report::Arcsec(Amplitude(c))},
                     {"u_amplitude_arcsec", report::Arcsec(AmplitudeUncertainty(c))},
-                    {"phase_deg", report::In(units::deg, separate::hob::Phase(c))},
+                    {"phase_deg", report::In(units::deg, separate::harmonics::Phase(c))},
                     {"u_phase_deg", report::In(units::deg, PhaseUncertainty(c))}});
   }
   return json;
@@ -139,7 +141,7 @@ std::string LinesText(const char* what, const HarmonicSeries& series) {
     const Coefficient& c = series.At(order);
     text += fmt::format("{:<10} order {:2d}    {:10.3f} +- {:.3f} arcsec, phase {:+.2f} deg\n", what, order,
                         Amplitude(c) / units::arcsec, AmplitudeUncertainty(c) / units::arcsec,
-                        separate::hob::Phase(c) / units::deg);
+                        separate::harmonics::Phase(c) / units::deg);
   }
   return text;
 }
@@ -189,14 +191,14 @@ report::CurveScore ScoreOf(const std::string& name, const HarmonicSeries& series
 
 }  // namespace
 
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, measure::Estimator) {
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator) {
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
   const DeviceError device = separate::encoder::SeparateDevice(readings);
   report::Evaluation evaluation{ToJson(comparison), {}, device.not_separated, Summary(comparison)};
   evaluation.summary += SummaryOf(device);
   AddDevice(device, evaluation.results);
   if (device.highest_order > 0) evaluation.separation = SeparationJson(device);
-  if (scenario.encoder_procedure.kind == "stops") {
+  if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
     const PositioningResults positioning = EvaluateStops(readings);
     evaluation.results["iso230_2"] = positioning.json;
     evaluation.summary += positioning.text;
@@ -205,7 +207,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
 }
 
 report::ScoredRun ScoreRun(const Scenario&, const std::vector<Reading>& readings, const nlohmann::json& truth,
-                           measure::Estimator) {
+                           Estimator) {
   const DeviceError device = separate::encoder::SeparateDevice(readings);
   if (device.highest_order == 0) throw InputError("the run", device.not_separated, "a run with complete turns");
   std::vector<report::CurveScore> curves = {ScoreOf("device", device.curves.device, truth.at("device"))};

@@ -1,3 +1,5 @@
+#include "twin/benches/encoder_comparison/settings.h"
+
 #include "twin/benches/encoder_comparison/format.h"
 #include "twin/core/scenario_together.h"
 #include "twin/core/schema_table.h"
@@ -38,12 +40,14 @@ void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
 }  // namespace
 
 void AddKeys(Keys& keys, Scenario& s) {
-  AddDevice(keys, s.device);
-  AddEncoderProcedure(keys, s.encoder_procedure);
+  EncoderSettings& own = EncoderOf(s);
+  AddDevice(keys, own.device);
+  AddEncoderProcedure(keys, own.encoder_procedure);
 }
 
 void CheckTogether(const ScenarioText& text, const Scenario& s) {
-  CheckPasses(text, "encoder_procedure.passes", s.encoder_procedure.passes);
+  const EncoderSettings& own = EncoderOf(s);
+  CheckPasses(text, "encoder_procedure.passes", own.encoder_procedure.passes);
 }
 
 }  // namespace twinbench::benches::encoder

@@ -1,13 +1,14 @@
 #include "twin/benches/hob_transmission/bench.h"
 
-#include "twin/benches/hob_transmission/twin/twin.h"
-#include "twin/procedure/hob.h"
+#include "twin/benches/hob_transmission/procedure.h"
+#include "twin/benches/hob_transmission/settings.h"
+#include "twin/benches/hob_transmission/twin/factory.h"
 
 namespace twinbench::benches::hob {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
-  return procedure::PlannedReadings(s.hob_procedure);
+  return procedure::PlannedReadings(HobOf(s).hob_procedure);
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ std::vector<EffectEntry> HobTimeEffects() {
        {Signed("amplitude", "arcsec", 1.0, 3600.0, "of amplitude * cos(2 pi frequency time + phase)"),
         Parameter("frequency", "Hz", 0.3, 1e-6, 1e6, "of the same"), WavePhase()}},
       {"outliers",
-       "readings that are disturbed for no lasting reason",
+       "readings that are outliers for no lasting reason",
        {},
        {Parameter("fraction", "1", 0.003, 0.0, 0.5, "share of the readings"),
         Parameter("size", "arcsec", 10.0, 0.0, 36000.0, "typical size")}},

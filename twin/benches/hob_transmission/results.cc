@@ -3,12 +3,13 @@
 #include <cmath>
 #include <complex>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "twin/benches/hob_transmission/bench.h"
+#include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/core/errors.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
-#include "twin/separate/hob/hob_bench.h"
 
 namespace twinbench::benches::hob {
 namespace {
@@ -116,7 +117,7 @@ double ResidualRms_rad(const HobAnalysis& a) {
 }
 
 nlohmann::json SeparationJson(const HobAnalysis& a) {
-  nlohmann::json json = {{"estimator", measure::EstimatorName(a.estimator)},
+  nlohmann::json json = {{"estimator", EstimatorName(a.estimator)},
                          {"transmission", nlohmann::json::array()},
                          {"table_encoder", ToJson(a.encoder)},
                          {"not_separable", NotSeparable(a)},
@@ -193,7 +194,7 @@ std::string SummaryOf(const HobAnalysis& a) {
   text += a.left_out > 0 ? fmt::format(", {} left out\n", a.left_out) : "\n";
   for (const PositionError& position : a.positions) text += PositionText(position);
   if (!a.separation) return text + fmt::format("no separation: {}\n", a.not_separated);
-  const bool published = a.estimator == measure::Estimator::kPublished && a.two_positions;
+  const bool published = a.estimator == Estimator::kPublished && a.two_positions;
   const bool separated = a.separation->At(1).status == OrderStatus::kSeparated;
   if (published) text += OrderText("table encoder, order 1, two positions", a.two_positions->encoder);
   if (!published && separated) text += OrderText("table encoder, order 1", a.encoder.At(1));
@@ -241,15 +242,14 @@ report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series
 
 }  // namespace
 
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings,
-                            measure::Estimator estimator) {
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
   const nlohmann::json separation = analysis.separation ? SeparationJson(analysis) : nlohmann::json();
   return {ResultsOf(analysis), separation, analysis.not_separated, SummaryOf(analysis)};
 }
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
-                           const nlohmann::json& truth, measure::Estimator estimator) {
+                           const nlohmann::json& truth, Estimator estimator) {
   const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with complete turns");
   const auto transmission = TruthOf(truth.at("transmission")), encoder = TruthOf(truth.at("table_encoder"));

@@ -1,3 +1,5 @@
+#include "twin/benches/hob_transmission/settings.h"
+
 #include <fmt/format.h>
 
 #include "twin/benches/hob_transmission/format.h"
@@ -82,24 +84,26 @@ void CheckAngles(const ScenarioText& text, const std::string& key, const std::ve
 }  // namespace
 
 void AddKeys(Keys& keys, Scenario& s) {
-  AddTransmission(keys, s.transmission);
-  AddRing(keys, "table_encoder", s.table_encoder);
-  AddRing(keys, "hob_encoder", s.hob_encoder);
-  AddInterferometer(keys, s.interferometer);
-  AddMotionOfTheChain(keys, s.mechanics);
-  AddHobProcedure(keys, s.hob_procedure);
+  HobSettings& own = HobOf(s);
+  AddTransmission(keys, own.transmission);
+  AddRing(keys, "table_encoder", own.table_encoder);
+  AddRing(keys, "hob_encoder", own.hob_encoder);
+  AddInterferometer(keys, own.interferometer);
+  AddMotionOfTheChain(keys, own.mechanics);
+  AddHobProcedure(keys, own.hob_procedure);
 }
 
 void CheckTogether(const ScenarioText& text, const Scenario& s) {
-  CheckPasses(text, "hob_procedure.passes", s.hob_procedure.passes);
-  CheckAngles(text, "transmission.harmonics", s.transmission.harmonics);
-  CheckAngles(text, "table_encoder.graduation", s.table_encoder.graduation);
-  CheckAngles(text, "hob_encoder.graduation", s.hob_encoder.graduation);
-  if (s.table_encoder.lines % s.hob_procedure.samples_per_turn != 0)
+  const HobSettings& own = HobOf(s);
+  CheckPasses(text, "hob_procedure.passes", own.hob_procedure.passes);
+  CheckAngles(text, "transmission.harmonics", own.transmission.harmonics);
+  CheckAngles(text, "table_encoder.graduation", own.table_encoder.graduation);
+  CheckAngles(text, "hob_encoder.graduation", own.hob_encoder.graduation);
+  if (own.table_encoder.lines % own.hob_procedure.samples_per_turn != 0)
     throw InputError(Place(text, "hob_procedure.samples_per_turn"),
-                     fmt::format("{} samples a turn", s.hob_procedure.samples_per_turn),
-                     fmt::format("a divisor of the {} lines of the table's encoder", s.table_encoder.lines));
-  for (const double speed_rad_s : s.hob_procedure.hob_speeds_rad_s) {
+                     fmt::format("{} samples a turn", own.hob_procedure.samples_per_turn),
+                     fmt::format("a divisor of the {} lines of the table's encoder", own.table_encoder.lines));
+  for (const double speed_rad_s : own.hob_procedure.hob_speeds_rad_s) {
     if (speed_rad_s <= 0.0)
       throw InputError(Place(text, "hob_procedure.hob_speeds_rev_min"), "a speed is 0", "speeds above 0");
   }

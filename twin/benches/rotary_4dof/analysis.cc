@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
 namespace twinbench::benches::rotary {
 namespace {
@@ -66,7 +67,7 @@ nlohmann::json CountByStatus(const std::vector<measure::Motion>& motions) {
 
 }  // namespace
 
-Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings, measure::Estimator estimator) {
+Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const measure::BenchGeometry geometry = measure::NominalGeometry(scenario);
   Analysis analysis;
   analysis.estimator = estimator;
@@ -86,7 +87,7 @@ Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings,
 }
 
 nlohmann::json ToJson(const Analysis& analysis) {
-  nlohmann::json json = {{"estimator", measure::EstimatorName(analysis.estimator)},
+  nlohmann::json json = {{"estimator", EstimatorName(analysis.estimator)},
                          {"readings_by_status", CountByStatus(analysis.motions)},
                          {"calibration", ToJson(analysis.calibration)}};
   if (analysis.stability.readings > 0) json["stability"] = ToJson(analysis.stability);

@@ -1,22 +1,22 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "twin/benches/rotary_4dof/estimators/measure.h"
+#include "twin/benches/rotary_4dof/estimators/separate.h"
+#include "twin/benches/rotary_4dof/estimators/stability.h"
+#include "twin/benches/rotary_4dof/estimators/verification.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
-#include "twin/measure/measure.h"
-#include "twin/measure/stability.h"
-#include "twin/measure/verification.h"
-#include "twin/separate/separate.h"
 
 namespace twinbench::benches::rotary {
 
 /// Everything that follows from readings and the scenario that describes them.
 struct Analysis {
-  measure::Estimator estimator = measure::Estimator::kRigorous;
+  Estimator estimator = Estimator::kRigorous;
   measure::Calibration calibration;
   std::vector<measure::Motion> motions;
   measure::Stability stability;        // readings = 0 without that phase
@@ -25,7 +25,7 @@ struct Analysis {
   std::string not_separated;  // why there is no separation
 };
 
-Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings, measure::Estimator estimator);
+Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator);
 
 /// results.json.
 nlohmann::json ToJson(const Analysis& analysis);

@@ -1,13 +1,14 @@
 #include "twin/benches/rotary_4dof/bench.h"
 
-#include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/factory.h"
 
 namespace twinbench::benches::rotary {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
-  return procedure::PlannedReadings(s.procedure);
+  return procedure::PlannedReadings(RotaryOf(s).procedure);
 }
 
 }  // namespace
@@ -25,6 +26,7 @@ const Bench& Whole() {
     b.score = ScoreRun;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
+    b.raw_scale = RawScaleOf;
     b.change_of_tables = ChangeOfTables;
     return b;
   }();

@@ -1,20 +1,21 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/rotary_4dof/bench.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/benches/rotary_4dof/diagnosis/change_of_tables.h"
+#include "twin/benches/rotary_4dof/diagnosis/conventions.h"
+#include "twin/benches/rotary_4dof/diagnosis/rotary_case.h"
+#include "twin/benches/rotary_4dof/diagnosis/rotary_run.h"
+#include "twin/benches/rotary_4dof/diagnosis/search.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/gain.h"
-#include "twin/diagnose/json.h"
-#include "twin/diagnose/rotary/conventions.h"
-#include "twin/diagnose/rotary/rotary_case.h"
-#include "twin/diagnose/rotary/rotary_run.h"
-#include "twin/diagnose/rotary_search.h"
 
 namespace twinbench::benches::rotary {
 namespace {
 
-diagnose::rotary::ForwardModel ModelOf(measure::Estimator estimator) {
-  return {FollowRecord, estimator == measure::Estimator::kPublished};
+diagnose::rotary::ForwardModel ModelOf(Estimator estimator) {
+  return {FollowRecord, estimator == Estimator::kPublished};
 }
 
 std::vector<diagnose::Cause> Decided(const std::vector<diagnose::Discrete>& discrete) {
@@ -37,7 +38,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scena
                                 const diagnose::DiagnoseOptions& options) {
   const diagnose::rotary::ForwardModel model = ModelOf(options.model);
   diagnose::rotary::ConventionResult convention{"", 0.0, as_read};
-  if (!diagnose::IsStruck(options, "convention"))
+  if (!diagnose::IsExcluded(options, "convention"))
     convention = diagnose::rotary::ScreenConventions(as_read, scenario, model);
   diagnose::SearchedRotary searched = diagnose::SearchRotary(convention.readings, scenario, options, model);
   if (!convention.where.empty())
@@ -53,14 +54,13 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& as_read, const Scena
   return result;
 }
 
-diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario,
-                           measure::Estimator estimator) {
+diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator) {
   return diagnose::rotary::BuildRun(readings, scenario, ModelOf(estimator)).run;
 }
 
 nlohmann::json ChangeOfTables(const diagnose::DiagnosisRun& found, const Scenario& scenario) {
-  return diagnose::ToJson(
-      diagnose::ChangeOfTables(found.run, found.noise, found.accepted, scenario.procedure.positions));
+  return diagnose::rotary::ToJson(diagnose::rotary::ChangeOfTables(found.run, found.noise, found.accepted,
+                                                                   RotaryOf(scenario).procedure.positions));
 }
 
 }  // namespace twinbench::benches::rotary

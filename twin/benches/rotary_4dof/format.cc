@@ -1,8 +1,17 @@
 #include "twin/benches/rotary_4dof/format.h"
 
 #include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench::benches::rotary {
+
+namespace {
+
+TableSettings& TableOf(Scenario& s, bool of_reference) {
+  return of_reference ? RotaryOf(s).reference : RotaryOf(s).target;
+}
+
+}  // namespace
 
 const BenchFormat& Format() {
   static const BenchFormat format = [] {
@@ -11,7 +20,7 @@ const BenchFormat& Format() {
     f.title = "errors of two stacked rotary tables by a grating and two PSDs";
     f.add_keys = AddKeys;
     f.check_together = CheckTogether;
-    f.tables = TableNames{"target", "reference"};
+    f.tables = TableNames{"target", "reference", TableOf};
     f.has_fixtures = true;
     f.columns = Columns();
     f.channels = {kChannelNames.begin(), kChannelNames.end()};

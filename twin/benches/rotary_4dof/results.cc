@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "twin/benches/rotary_4dof/analysis.h"
 #include "twin/benches/rotary_4dof/bench.h"
@@ -31,21 +32,20 @@ TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
 
 }  // namespace
 
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings,
-                            measure::Estimator estimator) {
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const Analysis analysis = Analyse(scenario, readings, estimator);
   const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation) : nlohmann::json();
   return {ToJson(analysis), separation, analysis.not_separated, Summary(analysis)};
 }
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
-                           const nlohmann::json& truth, measure::Estimator estimator) {
+                           const nlohmann::json& truth, Estimator estimator) {
   const Analysis analysis = Analyse(scenario, readings, estimator);
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full-circle test");
   const Score score =
       CompareWithTruth(*analysis.separation, ErrorsOf(truth, "target"), ErrorsOf(truth, "reference"));
   std::string text = fmt::format("{} estimator against the truth; what cannot be separated is taken out of both\n",
-                                 measure::EstimatorName(estimator)) +
+                                 EstimatorName(estimator)) +
                      ScoreTable(score);
   for (const auto& lost : analysis.separation->not_separable) text += fmt::format("not separable: {}\n", lost.what);
   return {ToJson(score), text, PositionTable(score, *analysis.separation)};

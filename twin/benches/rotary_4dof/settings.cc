@@ -1,3 +1,5 @@
+#include "twin/benches/rotary_4dof/settings.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +25,7 @@ void AddLaser(Keys& keys, LaserSettings& s) {
   t.Text("beam", &s.beam, {"chief_ray", "gaussian", "profile"}, "how the beam is carried to the PSDs");
   t.Add("beam_radius", kMm, Positive(50), &s.beam_radius_m, "1/e^2 of the irradiance, at the waist");
   t.Add("divergence", kMrad, UpTo(100), &s.divergence_rad, "1/e^2 half angle");
-  t.Text("profile_file", &s.profile_file, {}, "OpenEXR of the measured beam, for beam = \"profile\"");
+  t.File("profile_file", s.profile_file, "OpenEXR of the measured beam, for beam = \"profile\"");
   t.Add("wavelength_per_kelvin", kNm, Within(10), &s.wavelength_per_kelvin_m, "against environment.reference_degC");
   t.Add("pointing_yaw_per_kelvin", kUrad, Within(10000), &s.pointing_yaw_per_kelvin_rad, "likewise");
   t.Add("pointing_pitch_per_kelvin", kUrad, Within(10000), &s.pointing_pitch_per_kelvin_rad, "likewise");
@@ -35,7 +37,7 @@ void AddGrating(Keys& keys, GratingSettings& s) {
   t.Add("width", kMm, Positive(1000), &s.width_m, "across the grooves");
   t.Add("height", kMm, Positive(1000), &s.height_m, "along the grooves");
   t.Add("efficiency", kPure, UpTo(1), List(s.efficiency), "power share of the orders -2, -1, 0, 1, 2");
-  t.Text("efficiency_file", &s.efficiency_file, {},
+  t.File("efficiency_file", s.efficiency_file,
          "instead, by incidence: CSV of sin_incidence, m-2, m-1, m0, m+1, m+2");
   t.Add("point", kMm, Within(5000), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
 }
@@ -85,9 +87,9 @@ void AddAdc(Keys& keys, AdcSettings& s) {
 
 void AddReferenceMounting(Keys& keys, Scenario& s) {
   Table t(keys, "reference");
-  t.Add("height", kMm, Within(5000), &s.reference_height_m, "of its origin above the target's");
-  t.Add("centring", kUm, Within(50000), List(s.centring_m), "of its body on the target rotor: x, y");
-  t.Add("mount_tilt", kArcsec, Within(36000), List(s.mount_tilt_rad),
+  t.Add("height", kMm, Within(5000), &RotaryOf(s).reference_height_m, "of its origin above the target's");
+  t.Add("centring", kUm, Within(50000), List(RotaryOf(s).centring_m), "of its body on the target rotor: x, y");
+  t.Add("mount_tilt", kArcsec, Within(36000), List(RotaryOf(s).mount_tilt_rad),
         "of its body on the target rotor: about x, y");
 }
 
@@ -152,7 +154,7 @@ void CheckShifts(const ScenarioText& text, const ProcedureSettings& procedure) {
 }
 
 void CheckProfile(const ScenarioText& text, const LaserSettings& laser) {
-  if (laser.beam == BeamModel::kProfile && laser.profile_file.empty())
+  if (laser.beam == "profile" && laser.profile_file.empty())
     throw InputError(Place(text, "laser.beam"), "laser.beam is \"profile\" without a file",
                      "laser.profile_file = \"beam.exr\"");
 }
@@ -160,26 +162,28 @@ void CheckProfile(const ScenarioText& text, const LaserSettings& laser) {
 }  // namespace
 
 void AddKeys(Keys& keys, Scenario& s) {
-  AddLaser(keys, s.laser);
-  AddGrating(keys, s.grating);
-  AddPsd(keys, "psd_a", s.psd_a);
-  AddPsd(keys, "psd_b", s.psd_b);
-  AddAmplifier(keys, s.amplifier);
-  AddAdc(keys, s.adc);
-  AddTable(keys, "target", "in L", s.target);
+  RotarySettings& own = RotaryOf(s);
+  AddLaser(keys, own.laser);
+  AddGrating(keys, own.grating);
+  AddPsd(keys, "psd_a", own.psd_a);
+  AddPsd(keys, "psd_b", own.psd_b);
+  AddAmplifier(keys, own.amplifier);
+  AddAdc(keys, own.adc);
+  AddTable(keys, "target", "in L", own.target);
   AddReferenceMounting(keys, s);
-  AddTable(keys, "reference", "in its rotor frame", s.reference);
-  AddMechanics(keys, s.mechanics);
+  AddTable(keys, "reference", "in its rotor frame", own.reference);
+  AddMechanics(keys, own.mechanics);
   AddEnvironment(keys, s.environment);
-  AddAutocollimator(keys, s.autocollimator);
-  AddProcedure(keys, s.procedure);
+  AddAutocollimator(keys, own.autocollimator);
+  AddProcedure(keys, own.procedure);
 }
 
 void CheckTogether(const ScenarioText& text, const Scenario& s) {
-  CheckScanList(text, s.adc);
-  CheckShifts(text, s.procedure);
-  CheckPasses(text, "procedure.passes", s.procedure.passes);
-  CheckProfile(text, s.laser);
+  const RotarySettings& own = RotaryOf(s);
+  CheckScanList(text, own.adc);
+  CheckShifts(text, own.procedure);
+  CheckPasses(text, "procedure.passes", own.procedure.passes);
+  CheckProfile(text, own.laser);
 }
 
 }  // namespace twinbench::benches::rotary

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 namespace twinbench::benches::rotary {
 namespace {
@@ -78,7 +79,7 @@ std::string EstimateText(const char* name, const TableEstimate& estimate) {
 
 std::string SeparationText(const separate::Separation& s) {
   std::string text = fmt::format("separation by the {} estimator, {} readings, {} degrees of freedom\n",
-                                 measure::EstimatorName(s.estimator), s.readings, s.dof);
+                                 EstimatorName(s.estimator), s.readings, s.dof);
   text += EstimateText("target table (laboratory frame)", s.target);
   text += EstimateText("reference table (rotor frame)", s.reference);
   if (!s.not_separable.empty()) text += "cannot be separated by this design\n";

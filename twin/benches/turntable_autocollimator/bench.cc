@@ -1,13 +1,14 @@
 #include "twin/benches/turntable_autocollimator/bench.h"
 
-#include "twin/benches/turntable_autocollimator/twin/twin.h"
-#include "twin/procedure/turntable.h"
+#include "twin/benches/turntable_autocollimator/procedure.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/benches/turntable_autocollimator/twin/factory.h"
 
 namespace twinbench::benches::turntable {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
-  return procedure::PlannedReadings(s.turntable_procedure);
+  return procedure::PlannedReadings(TurntableOf(s).turntable_procedure);
 }
 
 }  // namespace

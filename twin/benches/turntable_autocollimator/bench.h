@@ -13,14 +13,12 @@ namespace twinbench::benches::turntable {
 
 const Bench& Whole();  // constant
 
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings,
-                            measure::Estimator estimator);
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator);
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
-                           const nlohmann::json& truth, measure::Estimator estimator);
+                           const nlohmann::json& truth, Estimator estimator);
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options);
-diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario,
-                           measure::Estimator estimator);
+diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
 
 /// What would split two causes that a run cannot tell apart, in words; empty if nothing is known.
 std::string NextMeasurement(const std::string& effect, const std::string& rival);

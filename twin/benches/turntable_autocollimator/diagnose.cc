@@ -1,12 +1,12 @@
 #include <cmath>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
-#include "twin/benches/turntable_autocollimator/twin/twin.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/outliers.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/seating.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/turntable_search.h"
+#include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
-#include "twin/diagnose/turntable/disturbed.h"
-#include "twin/diagnose/turntable/seating.h"
-#include "twin/diagnose/turntable/turntable_run.h"
-#include "twin/diagnose/turntable/turntable_search.h"
 
 namespace twinbench::benches::turntable {
 namespace {
@@ -21,9 +21,9 @@ diagnose::AnswerWords Words(const diagnose::turntable::Places& places) {
 }
 
 /// Sizes were measured in the usual deviation of the run.
-diagnose::Cause DisturbedCause(const diagnose::NoiseCause& disturbed, diagnose::LinearRun run) {
+diagnose::Cause DisturbedCause(const diagnose::NoiseCause& outlying, diagnose::LinearRun run) {
   run.sigma.setConstant(diagnose::turntable::UsualSigma_rad(run));
-  return diagnose::OutlierCause(disturbed, run);
+  return diagnose::OutlierCause(outlying, run);
 }
 
 }  // namespace
@@ -31,20 +31,20 @@ diagnose::Cause DisturbedCause(const diagnose::NoiseCause& disturbed, diagnose::
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
   const diagnose::turntable::SearchedTurntable searched = diagnose::turntable::SearchTurntable(
-      readings, scenario, options.struck, diagnose::AnalysisOptionsOf(options), FollowRecord);
+      readings, scenario, options.excluded, diagnose::AnalysisOptionsOf(options), FollowRecord);
   const diagnose::turntable::TurntableRun& turntable = *searched.turntable;
   std::vector<diagnose::Cause> first = searched.first;
-  if (searched.disturbed) first.push_back(DisturbedCause(*searched.disturbed, turntable.run));
+  if (searched.outlying) first.push_back(DisturbedCause(*searched.outlying, turntable.run));
   diagnose::DiagnosisRun result =
       diagnose::Conclude(turntable.run, searched.analysis, first, Words(turntable.places));
-  if (searched.disturbed) result.diagnosis.noise.push_back(searched.disturbed->words);
+  if (searched.outlying) result.diagnosis.noise.push_back(searched.outlying->words);
   result.diagnosis.left_out = turntable.left_out;
   if (searched.first.empty() && std::isfinite(searched.smallest_seating_rad))
     result.diagnosis.detectable.push_back(diagnose::turntable::DetectableSeating(searched.smallest_seating_rad));
   return result;
 }
 
-diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, measure::Estimator) {
+diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
   return diagnose::turntable::BuildRun(readings, scenario, FollowRecord).run;
 }
 

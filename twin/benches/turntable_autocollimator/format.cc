@@ -1,8 +1,17 @@
 #include "twin/benches/turntable_autocollimator/format.h"
 
 #include "twin/benches/names.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 
 namespace twinbench::benches::turntable {
+
+namespace {
+
+TableSettings& TableOf(Scenario& s, bool of_reference) {
+  return of_reference ? TurntableOf(s).multitooth_table : TurntableOf(s).turntable;
+}
+
+}  // namespace
 
 const BenchFormat& Format() {
   static const BenchFormat format = [] {
@@ -11,7 +20,7 @@ const BenchFormat& Format() {
     f.title = "a turntable against a multi-tooth table by an autocollimator";
     f.add_keys = AddKeys;
     f.check_together = CheckTogether;
-    f.tables = TableNames{"turntable", "multitooth"};
+    f.tables = TableNames{"turntable", "multitooth", TableOf};
     f.columns = Columns();
     f.agree_on_signs = CountBothTheSameWay;
     f.channels = {"x", "y"};

@@ -1,12 +1,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
 #include "twin/core/errors.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
-#include "twin/separate/turntable/turntable_bench.h"
 
 namespace twinbench::benches::turntable {
 namespace {
@@ -121,8 +122,7 @@ nlohmann::json SeparationJson(const IndexingSeparation& s) {
 }
 
 nlohmann::json ResultsOf(const TurntableAnalysis& a) {
-  nlohmann::json json = {
-      {"estimator", measure::EstimatorName(a.estimator)}, {"readings", a.used}, {"left_out", a.left_out}};
+  nlohmann::json json = {{"estimator", EstimatorName(a.estimator)}, {"readings", a.used}, {"left_out", a.left_out}};
   if (a.separation) {
     json["separation"] = SeparationJson(*a.separation);
     json["noise"] = {{"u_x_arcsec", report::Arcsec(a.separation->noise.u_x_rad)},
@@ -237,15 +237,14 @@ report::CurveScore CurveOf(const HarmonicModel& model, const CompensationCheck& 
 
 }  // namespace
 
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings,
-                            measure::Estimator estimator) {
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
   const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation) : nlohmann::json();
   return {ResultsOf(analysis), separation, analysis.not_separated, SummaryOf(analysis)};
 }
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
-                           const nlohmann::json& truth, measure::Estimator estimator) {
+                           const nlohmann::json& truth, Estimator estimator) {
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full circle");
   const nlohmann::json& turntable = truth.at("turntable");

@@ -1,3 +1,5 @@
+#include "twin/benches/turntable_autocollimator/settings.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -71,8 +73,8 @@ void AddMotionOfTheTurntable(Keys& keys, MechanicsSettings& s) {
 }
 
 void CheckTeeth(const ScenarioText& text, const Scenario& s) {
-  const int teeth = s.multitooth.teeth;
-  const TurntableProcedureSettings& procedure = s.turntable_procedure;
+  const int teeth = TurntableOf(s).multitooth.teeth;
+  const TurntableProcedureSettings& procedure = TurntableOf(s).turntable_procedure;
   if (teeth % procedure.positions != 0)
     throw InputError(Place(text, "turntable_procedure.positions"),
                      fmt::format("{} positions are no whole number of teeth apart", procedure.positions),
@@ -108,22 +110,24 @@ void CheckSetUps(const ScenarioText& text, const TurntableProcedureSettings& pro
 }  // namespace
 
 void AddKeys(Keys& keys, Scenario& s) {
-  AddTable(keys, "turntable", "in L", s.target);
-  AddMultitooth(keys, s.multitooth);
-  AddTable(keys, "multitooth", "in its rotor frame", s.reference);
-  AddMotionOfTheTurntable(keys, s.mechanics);
-  AddMirror(keys, s.mirror);
-  AddAutocollimator(keys, s.autocollimator);
-  AddCollimator(keys, s.collimator);
+  TurntableSettings& own = TurntableOf(s);
+  AddTable(keys, "turntable", "in L", own.turntable);
+  AddMultitooth(keys, own.multitooth);
+  AddTable(keys, "multitooth", "in its rotor frame", own.multitooth_table);
+  AddMotionOfTheTurntable(keys, own.mechanics);
+  AddMirror(keys, own.mirror);
+  AddAutocollimator(keys, own.autocollimator);
+  AddCollimator(keys, own.collimator);
   AddEnvironment(keys, s.environment);
-  AddTurntableProcedure(keys, s.turntable_procedure);
+  AddTurntableProcedure(keys, own.turntable_procedure);
 }
 
 void CheckTogether(const ScenarioText& text, const Scenario& s) {
-  CheckPasses(text, "turntable_procedure.passes", s.turntable_procedure.passes);
-  CheckPasses(text, "turntable_procedure.verification_passes", s.turntable_procedure.verification_passes);
+  const TurntableSettings& own = TurntableOf(s);
+  CheckPasses(text, "turntable_procedure.passes", own.turntable_procedure.passes);
+  CheckPasses(text, "turntable_procedure.verification_passes", own.turntable_procedure.verification_passes);
   CheckTeeth(text, s);
-  CheckSetUps(text, s.turntable_procedure);
+  CheckSetUps(text, own.turntable_procedure);
 }
 
 }  // namespace twinbench::benches::turntable

@@ -4,16 +4,10 @@
 
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/prior.h"
+#include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
 namespace {
-
-constexpr int kMostRepairs = 4;
-constexpr double kRefuted = 8.0;    // log Bayes factor from which a noise model is not used any more
-constexpr double kDisturbed = 6.0;  // the same for single values: in white noise less than one run in a thousand
-/// The same for what is left of a correlation that was taken out before: projection makes the first estimate too
-/// small.
-constexpr double kLeftCorrelated = 1.5;
 
 void Prepare(const LinearRun& run, const std::vector<Family>& families, Analysis& analysis) {
   analysis.projector = std::make_unique<Projector>(analysis.noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
@@ -21,19 +15,19 @@ void Prepare(const LinearRun& run, const std::vector<Family>& families, Analysis
   analysis.scanner = std::make_unique<Scanner>(run, analysis.noise, *analysis.projector, families);
 }
 
-/// What the noise alone would explain, before and after the picks.
+/// What the noise alone would explain, before and after the terms.
 struct NoiseView {
   std::vector<NoiseCause> before, after;
 };
 
 NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
   const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
-  const Remainder picks(*analysis.projector, analysis.noise.Whiten(run, Signatures(run, analysis.found.picks)));
-  const auto look = [&](const Remainder& remainder) {
-    return FindNoiseCauses(run, analysis.noise, Project(*analysis.projector, remainder, white).rows.col(0),
+  const Deflation terms(*analysis.projector, analysis.noise.Whiten(run, Signatures(run, analysis.found.terms)));
+  const auto look = [&](const Deflation& deflation) {
+    return FindNoiseCauses(run, analysis.noise, Project(*analysis.projector, deflation, white).rows.col(0),
                            analysis.redundancy);
   };
-  NoiseView view{look({}), look(picks)};
+  NoiseView view{look({}), look(terms)};
   // A cause that shows on one channel makes that channel look noisy: only what remains can say so.
   std::erase_if(view.before, [](const NoiseCause& c) { return c.kind == NoiseCause::Kind::kChannelScale; });
   return view;
@@ -41,9 +35,9 @@ NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
 
 /// The repair that has to come before any cause is believed, if there is one.
 const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
-  const bool picked = !analysis.found.picks.empty();
+  const bool picked = !analysis.found.terms.empty();
   // A cause that leaves clean noise behind needs no other explanation; one that does not may be noise itself.
-  const bool clean = view.after.empty() || view.after.front().log_bayes < kRefuted;
+  const bool clean = view.after.empty() || view.after.front().log_bayes < tuning::kRefuted;
   if (picked && !clean && !view.before.empty() && view.before.front().log_bayes > analysis.found.joint_evidence) {
     return &view.before.front();
   }
@@ -52,7 +46,7 @@ const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
     // chosen.
     const bool single = cause.kind == NoiseCause::Kind::kOutliers;
     const bool again = cause.kind == NoiseCause::Kind::kCorrelation && analysis.noise.rho > 0.0;
-    const double limit = single ? kDisturbed : again ? kLeftCorrelated : kRefuted;
+    const double limit = single ? tuning::kRefutedBySingle : again ? tuning::kRefutedAgain : tuning::kRefuted;
     if ((single || picked) && cause.log_bayes > limit) return &cause;
   }
   return nullptr;
@@ -72,14 +66,14 @@ Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, cons
                           : CalibrateCached(*analysis.scanner, *analysis.projector, log_priors, options.null_runs,
                                             options.cache_folder, DesignKey(run, families, options.null_runs));
       // Nothing that is less likely than no cause at all is claimed, however rare it may be in noise.
-      analysis.threshold = std::max(0.0, analysis.null.Threshold(kAlarmProbability));
+      analysis.threshold = std::max(0.0, analysis.null.Threshold(tuning::kAlarmProbability));
       const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
       analysis.power = Project(*analysis.projector, {}, white).power[0];
     }
     analysis.found = Search(run, analysis.noise, *analysis.projector, *analysis.scanner, log_priors,
                             analysis.threshold, options.most_causes);
     const NoiseView view = LookAtNoise(run, analysis);
-    const NoiseCause* repair = repairs < kMostRepairs ? NextRepair(analysis, view) : nullptr;
+    const NoiseCause* repair = repairs < tuning::kMostRepairs ? NextRepair(analysis, view) : nullptr;
     if (!repair) {
       analysis.observations = view.after;
       return analysis;

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/diagnose/engine/ballot.h"
+#include "twin/diagnose/engine/posterior.h"
+#include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -13,17 +14,17 @@ CauseKey KeyOf(const Family& family) {
 }
 
 /// The amplitudes and shapes themselves.
-std::vector<ParameterEstimate> PlainParameters(const Family& family, const Pick& pick) {
+std::vector<ParameterEstimate> PlainParameters(const Family& family, const Term& term) {
   std::vector<ParameterEstimate> parameters;
   for (std::size_t k = 0; k < family.amplitudes.size(); ++k) {
     const Amplitude& a = family.amplitudes[k];
     const auto at = static_cast<Eigen::Index>(k);
-    const double u = std::sqrt(pick.cov(at, at));
-    parameters.push_back({a.name, a.unit, a.to_SI, pick.amplitudes[at], u, a.lower, a.upper});
+    const double u = std::sqrt(term.cov(at, at));
+    parameters.push_back({a.name, a.unit, a.to_SI, term.amplitudes[at], u, a.lower, a.upper});
   }
   for (std::size_t k = 0; k < family.shapes.size(); ++k) {
     const Shape& s = family.shapes[k];
-    const double value = pick.shape[static_cast<Eigen::Index>(k)], u = ShapeDeviation(family, k, pick.cov);
+    const double value = term.shape[static_cast<Eigen::Index>(k)], u = ShapeDeviation(family, k, term.cov);
     parameters.push_back({s.name, s.unit, s.to_SI, value, u, s.lower, s.upper});
   }
   return parameters;
@@ -31,47 +32,46 @@ std::vector<ParameterEstimate> PlainParameters(const Family& family, const Pick&
 
 double CapOf(const std::vector<Family>& families, const CauseKey& key) {
   const auto family = std::ranges::find(families, key, KeyOf);
-  return family == families.end() ? kMostProbable : family->most_probable;
+  return family == families.end() ? tuning::kMostProbable : family->most_probable;
 }
 
 /// @return with parameters only if it is what the search took: the rivals were not fitted.
-Cause CauseOf(const Pick& pick, const std::vector<Family>& families, const Share& share) {
-  const Family& family = families[static_cast<std::size_t>(pick.family)];
+Cause CauseOf(const Term& term, const std::vector<Family>& families, const Share& share) {
+  const Family& family = families[static_cast<std::size_t>(term.family)];
   const auto& [key, probability] = share;
   Cause cause;
   cause.effect = key.first;
   cause.where = key.second;
   cause.probability = std::min(probability, CapOf(families, key));
-  cause.log_evidence = pick.statistic;
+  cause.log_evidence = term.statistic;
   if (KeyOf(family) != key) return cause;
   cause.parameters =
-      family.parameters ? family.parameters(pick.shape, pick.amplitudes, pick.cov) : PlainParameters(family, pick);
-  cause.rho = std::sqrt(std::max(0.0, pick.explained));
+      family.parameters ? family.parameters(term.shape, term.amplitudes, term.cov) : PlainParameters(family, term);
+  cause.rho = std::sqrt(std::max(0.0, term.explained));
   return cause;
 }
 
 /// Places where the same shape explains the data nearly as well: the fit cannot tell which body or channel it is.
-std::string OtherPlaces(const Pick& pick, const std::vector<Family>& families) {
-  constexpr double kNearlyAsLikely = 1.6;  // in log
-  const Family& chosen = families[static_cast<std::size_t>(pick.family)];
+std::string OtherPlaces(const Term& term, const std::vector<Family>& families) {
+  const Family& chosen = families[static_cast<std::size_t>(term.family)];
   std::string places;
   for (int k = 0; k < std::ssize(families); ++k) {
     const Family& f = families[static_cast<std::size_t>(k)];
-    if (k == pick.family || f.kind != Kind::kUnknown || f.effect != chosen.effect || f.where == chosen.where)
+    if (k == term.family || f.kind != Kind::kUnknown || f.effect != chosen.effect || f.where == chosen.where)
       continue;
-    if (pick.log_posterior[k] < pick.log_posterior[pick.family] - kNearlyAsLikely) continue;
+    if (term.log_posterior[k] < term.log_posterior[term.family] - tuning::kNearlyAsLikely) continue;
     places += (places.empty() ? "" : ", ") + f.where;
   }
   return places.empty() ? "" : "; or the same on " + places;
 }
 
 /// In full if the search took a shape without a name, else the name of the nearest one.
-std::string SignatureOf(const Pick& pick, const std::vector<Family>& families, const Ballot& ballot) {
-  if (ballot.best_unknown < 0) return "";
-  const Family& family = families[static_cast<std::size_t>(pick.family)];
+std::string SignatureOf(const Term& term, const std::vector<Family>& families, const Posterior& posterior) {
+  if (posterior.best_unknown < 0) return "";
+  const Family& family = families[static_cast<std::size_t>(term.family)];
   if (family.kind == Kind::kUnknown && family.describe)
-    return family.describe(pick.grid_point, pick.amplitudes) + OtherPlaces(pick, families);
-  const Family& rival = families[static_cast<std::size_t>(ballot.best_unknown)];
+    return family.describe(term.grid_point, term.amplitudes) + OtherPlaces(term, families);
+  const Family& rival = families[static_cast<std::size_t>(posterior.best_unknown)];
   return rival.effect + " on " + rival.where;
 }
 
@@ -95,7 +95,7 @@ bool CanExplain(const Family& family, int grid_point, const Eigen::VectorXd& sig
 
 /// Causes that explain the same of the whole run as one that won: their signatures are one on this design, and what
 /// was thought of them before is no reason to choose, unless it was that they cannot be so.
-std::vector<CauseKey> DoublesOf(const Cause& cause, const Pick& pick, const SearchResult& found,
+std::vector<CauseKey> DoublesOf(const Cause& cause, const Term& term, const SearchResult& found,
                                 const std::vector<Family>& families) {
   constexpr double kSame = 1e-6;  // of what it explains: rounding; likeness alone is for the evidence to judge
   std::vector<CauseKey> doubles;
@@ -106,22 +106,22 @@ std::vector<CauseKey> DoublesOf(const Cause& cause, const Pick& pick, const Sear
     if (f.kind != Kind::kNamed || key == CauseKey{cause.effect, cause.where}) continue;
     const bool same = std::abs(found.alone.explained(k, 0) - explained) <= kSame * explained;
     if (!same || std::ranges::count(doubles, key) > 0) continue;
-    if (CanExplain(f, found.alone.grid_point(k, 0), pick.columns * pick.amplitudes)) doubles.push_back(key);
+    if (CanExplain(f, found.alone.grid_point(k, 0), term.columns * term.amplitudes)) doubles.push_back(key);
   }
   return doubles;
 }
 
 /// The doubles of a cause share its probability with it.
-void AddDoubles(const Pick& pick, const SearchResult& found, const std::vector<Family>& families,
+void AddDoubles(const Term& term, const SearchResult& found, const std::vector<Family>& families,
                 std::vector<Cause>& causes) {
   const auto listed = [&causes](const CauseKey& key) {
     return std::ranges::any_of(causes, [&key](const Cause& c) { return CauseKey{c.effect, c.where} == key; });
   };
-  std::vector<CauseKey> doubles = DoublesOf(causes.front(), pick, found, families);
+  std::vector<CauseKey> doubles = DoublesOf(causes.front(), term, found, families);
   std::erase_if(doubles, listed);
   const double share = causes.front().probability / static_cast<double>(1 + std::ssize(doubles));
   causes.front().probability = share;
-  for (const CauseKey& key : doubles) causes.push_back(CauseOf(pick, families, {key, share}));
+  for (const CauseKey& key : doubles) causes.push_back(CauseOf(term, families, {key, share}));
 }
 
 /// How much of what each cause explains the others explain alone.
@@ -140,15 +140,15 @@ void AddRivals(const SearchResult& found, const std::vector<Family>& families, s
 }  // namespace
 
 Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families) {
-  const Pick& pick = found.picks[k];
-  const Ballot ballot = CountVotes(pick, families);
+  const Term& term = found.terms[k];
+  const Posterior posterior = PosteriorOf(term, families);
   Answer answer;
-  answer.unknown = ballot.unknown;
-  answer.weight = pick.explained;
-  answer.signature = SignatureOf(pick, families, ballot);
-  if (ballot.unknown > 0.5) return answer;
-  for (const Share& share : Winners(ballot)) answer.causes.push_back(CauseOf(pick, families, share));
-  if (!answer.causes.empty() && found.picks.size() == 1) AddDoubles(pick, found, families, answer.causes);
+  answer.unknown = posterior.unknown;
+  answer.weight = term.explained;
+  answer.signature = SignatureOf(term, families, posterior);
+  if (posterior.unknown > 0.5) return answer;
+  for (const Share& share : CredibleSet(posterior)) answer.causes.push_back(CauseOf(term, families, share));
+  if (!answer.causes.empty() && found.terms.size() == 1) AddDoubles(term, found, families, answer.causes);
   AddRivals(found, families, answer.causes);
   return answer;
 }

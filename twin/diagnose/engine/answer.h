@@ -16,7 +16,7 @@ struct Answer {
   double weight = 0.0;        // power that nothing else explains
 };
 
-/// @param k  Which of the picks.
+/// @param k  Which of the terms.
 Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families);
 
 }  // namespace twinbench::diagnose

@@ -2,6 +2,13 @@
 
 namespace twinbench::diagnose {
 
+Eigen::MatrixXd HStack(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
+  Eigen::MatrixXd both(right.rows(), left.cols() + right.cols());
+  if (left.cols() > 0) both.leftCols(left.cols()) = left;
+  both.rightCols(right.cols()) = right;
+  return both;
+}
+
 Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& series, int channels) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(series.rows() * channels, series.cols() * channels);
   for (Eigen::Index i = 0; i < series.rows(); ++i) {

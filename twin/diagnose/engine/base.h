@@ -5,6 +5,9 @@
 
 namespace twinbench::diagnose {
 
+/// Columns side by side; `left` may have none, and then no rows.
+Eigen::MatrixXd HStack(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right);
+
 /// Every column of `series` (readings x k) on each of the channels alone: rows x channels k, the columns of channel
 /// 0 first.
 Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& series, int channels);

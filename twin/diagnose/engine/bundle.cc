@@ -30,9 +30,9 @@ Bundle::Bundle(const LinearRun& run, const NoiseModel& noise, const Projector& p
     Eigen::MatrixXd made = Make(chunk);
     const Eigen::MatrixXd S = Whitened(run, noise, made);
     const Eigen::MatrixXd H = projector.Absorbed(S);
-    for (Eigen::Index at = 0; at < S.cols(); at += columns_) {
-      const auto s = S.middleCols(at, columns_);
-      const auto h = H.middleCols(at, columns_);
+    for (Eigen::Index k = 0; k < S.cols() / columns_; ++k) {
+      const std::vector<Eigen::Index> of_point = ColumnsOf(k, S.cols());
+      const Eigen::MatrixXd s = S(Eigen::all, of_point), h = H(Eigen::all, of_point);
       raw_.push_back(s.transpose() * s);
       gram_.push_back(raw_.back() - h.transpose() * h);
     }
@@ -52,15 +52,17 @@ Eigen::MatrixXd Bundle::Make(int chunk) const {
   return all;
 }
 
-Eigen::MatrixXd Bundle::Whitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& made) const {
-  if (!family_.base) return noise.Whiten(run, made);
-  const int channels = family_.base->channels;
-  const Eigen::Index series = columns_ / channels;
-  Eigen::MatrixXd rows(run.Rows(), made.cols() * channels);
-  for (Eigen::Index at = 0; at < made.cols(); at += series) {
-    rows.middleCols(at * channels, columns_) = OnEachChannel(made.middleCols(at, series), channels);
+std::vector<Eigen::Index> Bundle::ColumnsOf(Eigen::Index k, Eigen::Index all) const {
+  const Eigen::Index channels = family_.base ? family_.base->channels : 1, series = columns_ / channels;
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    for (Eigen::Index j = 0; j < series; ++j) columns.push_back(c * (all / channels) + k * series + j);
   }
-  return noise.Whiten(run, rows);
+  return columns;
+}
+
+Eigen::MatrixXd Bundle::Whitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& made) const {
+  return noise.Whiten(run, family_.base ? OnEachChannel(made, family_.base->channels) : made);
 }
 
 Eigen::MatrixXd Bundle::Products(int chunk, const Unwhitened& Y) const {

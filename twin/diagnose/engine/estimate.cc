@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/engine/shape_spread.h"
 
@@ -26,23 +27,22 @@ Eigen::VectorXd PriorPrecision(const Family& family, Eigen::Index columns) {
   return precision;
 }
 
-/// The slopes of all picks with their priors.
+/// The slopes of all terms with their priors.
 struct Slopes {
   Eigen::MatrixXd columns;
   Eigen::VectorXd precision;
-  std::vector<Eigen::Index> start;  // of each pick
+  std::vector<Eigen::Index> start;  // of each term
 };
 
-Slopes AllSlopes(const LinearRun& run, const std::vector<Family>& families, const std::vector<Pick>& picks) {
+Slopes AllSlopes(const LinearRun& run, const std::vector<Family>& families, const std::vector<Term>& terms) {
   Slopes all;
   all.columns.resize(run.Rows(), 0);
-  for (const Pick& pick : picks) {
-    const Family& family = families[static_cast<std::size_t>(pick.family)];
-    const Eigen::MatrixXd own = WithShapeSlopes(family, pick.shape, pick.columns, pick.amplitudes);
+  for (const Term& term : terms) {
+    const Family& family = families[static_cast<std::size_t>(term.family)];
+    const Eigen::MatrixXd own = WithShapeSlopes(family, term.shape, term.columns, term.amplitudes);
     const Eigen::Index at = all.columns.cols();
     all.start.push_back(at);
-    all.columns.conservativeResize(Eigen::NoChange, at + own.cols());
-    all.columns.rightCols(own.cols()) = own;
+    all.columns = HStack(all.columns, own);
     all.precision.conservativeResize(at + own.cols());
     all.precision.tail(own.cols()) = PriorPrecision(family, own.cols());
   }
@@ -77,42 +77,40 @@ Eigen::MatrixXd CovarianceOf(const Projector& projector, const Eigen::MatrixXd& 
 
 }  // namespace
 
-Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Pick>& picks, std::size_t left_out) {
+Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Term>& terms, std::size_t left_out) {
   Eigen::MatrixXd all(run.Rows(), 0);
-  for (std::size_t k = 0; k < picks.size(); ++k) {
-    const Pick& pick = picks[k];
-    if (k == left_out) continue;
-    all.conservativeResize(Eigen::NoChange, all.cols() + pick.columns.cols());
-    all.rightCols(pick.columns.cols()) = pick.columns;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const Term& term = terms[k];
+    if (k != left_out) all = HStack(all, term.columns);
   }
   return all;
 }
 
-void EstimatePicks(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                   const std::vector<Family>& families, const Eigen::MatrixXd& white, std::vector<Pick>& picks) {
-  if (picks.empty()) return;
-  const Remainder causes(projector, noise.Whiten(run, Signatures(run, picks)));
+void EstimateTerms(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+                   const std::vector<Family>& families, const Eigen::MatrixXd& white, std::vector<Term>& terms) {
+  if (terms.empty()) return;
+  const Deflation causes(projector, noise.Whiten(run, Signatures(run, terms)));
   const Projected left = Project(projector, causes, white);
   const Eigen::VectorXd amplitudes = causes.Amplitudes(projector.Apply(white));
   Eigen::Index at = 0;
-  for (Pick& pick : picks) {
-    pick.amplitudes = amplitudes.segment(at, pick.columns.cols());
-    at += pick.columns.cols();
+  for (Term& term : terms) {
+    term.amplitudes = amplitudes.segment(at, term.columns.cols());
+    at += term.columns.cols();
   }
-  const Slopes slopes = AllSlopes(run, families, picks);
+  const Slopes slopes = AllSlopes(run, families, terms);
   const double trust = PseudoDegrees(run);
   const double variance =
       (trust + left.power[0]) / (trust + projector.DegreesOfFreedom() - static_cast<double>(slopes.columns.cols()));
   const Eigen::MatrixXd cov =
       variance * CovarianceOf(projector, noise.Whiten(run, slopes.columns), slopes.precision);
-  for (std::size_t k = 0; k < picks.size(); ++k) {
+  for (std::size_t k = 0; k < terms.size(); ++k) {
     const Eigen::Index first = slopes.start[k];
-    const Eigen::Index end = k + 1 < picks.size() ? slopes.start[k + 1] : cov.cols();
-    picks[k].cov = cov.block(first, first, end - first, end - first);
-    const Remainder others(projector, noise.Whiten(run, Signatures(run, picks, k)));
-    Widen(SpreadOverGrid(families[static_cast<std::size_t>(picks[k].family)], picks[k], run, noise, projector,
+    const Eigen::Index end = k + 1 < terms.size() ? slopes.start[k + 1] : cov.cols();
+    terms[k].cov = cov.block(first, first, end - first, end - first);
+    const Deflation others(projector, noise.Whiten(run, Signatures(run, terms, k)));
+    Widen(SpreadOverGrid(families[static_cast<std::size_t>(terms[k].family)], terms[k], run, noise, projector,
                          others, Project(projector, others, white), variance),
-          picks[k].cov);
+          terms[k].cov);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "twin/core/scenario.h"
 #include "twin/diagnose/diagnosis.h"
 #include "twin/diagnose/engine/base.h"
+#include "twin/diagnose/tuning.h"
 
 /// Candidates of the search: families of signatures, one a cause and place, or a generic shape for the unknown.
 namespace twinbench::diagnose {
@@ -37,10 +38,6 @@ struct Shape {
   std::vector<double> value;  // SI
 };
 
-/// The general cap of stated probabilities, and that of causes with a double outside the catalogue.
-inline constexpr double kMostProbable = 0.97;
-inline constexpr double kMostProbableDoubled = 0.85;
-
 /// A column of a series as an [[effect]] "signal" that a twin can carry out.
 struct Product {
   EffectSettings signal;  // without size; `where` is empty if it shows on every channel of the family's pattern
@@ -57,7 +54,7 @@ struct Family {
   /// No stated probability of this cause exceeds it. Less than the general cap where something that no catalogue of
   /// ours lists looks exactly the same: a wrong scale of a whole PSD like its distance, a reference off centre like
   /// a device off centre.
-  double most_probable = kMostProbable;
+  double most_probable = tuning::kMostProbable;
   std::vector<Amplitude> amplitudes;
   std::vector<Shape> shapes;  // all of equal length; empty: one grid point
   int grid = 1;               // number of grid points

@@ -5,38 +5,36 @@
 
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/engine/prior.h"
+#include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
 namespace {
 
-/// A shape that no formula hits exactly leaves a rest; up to this share of the explained power it is no news.
-constexpr double kSmallRest = 0.015;
-
 /// The answers of all places, and the power that they explain.
-struct Hearing {
+struct Answered {
   std::vector<Answer> answers;
   double power = 0.0;
 
-  bool IsSmall(const Answer& answer) const { return answer.weight < kSmallRest * power; }
+  bool IsSmall(const Answer& answer) const { return answer.weight < tuning::kSmallRest * power; }
 };
 
-Hearing Hear(const SearchResult& found, const std::vector<Family>& families) {
-  Hearing hearing;
-  for (std::size_t k = 0; k < found.picks.size(); ++k) {
-    hearing.answers.push_back(AnswerOf(found, k, families));
-    hearing.power += std::max(0.0, hearing.answers.back().weight);
+Answered AnswerAll(const SearchResult& found, const std::vector<Family>& families) {
+  Answered answered;
+  for (std::size_t k = 0; k < found.terms.size(); ++k) {
+    answered.answers.push_back(AnswerOf(found, k, families));
+    answered.power += std::max(0.0, answered.answers.back().weight);
   }
-  return hearing;
+  return answered;
 }
 
 /// Every cause once, in the order of the places.
-std::vector<Cause> CausesOf(const Hearing& hearing) {
+std::vector<Cause> CausesOf(const Answered& answered) {
   std::vector<Cause> causes;
   const auto listed = [&causes](const Cause& cause) {
     return std::ranges::any_of(causes,
                                [&](const Cause& c) { return c.effect == cause.effect && c.where == cause.where; });
   };
-  for (const Answer& answer : hearing.answers) {
+  for (const Answer& answer : answered.answers) {
     for (const Cause& cause : answer.causes) {
       if (!listed(cause)) causes.push_back(cause);
     }
@@ -45,10 +43,10 @@ std::vector<Cause> CausesOf(const Hearing& hearing) {
 }
 
 /// The signatures of the places without a name, and the largest probability of such a shape.
-UnknownPart UnknownOf(const Hearing& hearing) {
+UnknownPart UnknownOf(const Answered& answered) {
   UnknownPart unknown;
-  for (const Answer& answer : hearing.answers) {
-    if (!hearing.IsSmall(answer)) unknown.probability = std::max(unknown.probability, answer.unknown);
+  for (const Answer& answer : answered.answers) {
+    if (!answered.IsSmall(answer)) unknown.probability = std::max(unknown.probability, answer.unknown);
     if (!answer.causes.empty()) continue;
     unknown.signature += (unknown.signature.empty() ? "" : " | ") + answer.signature;
   }
@@ -56,20 +54,20 @@ UnknownPart UnknownOf(const Hearing& hearing) {
 }
 
 /// Something significant is left, or a place has a shape without a name.
-bool LeavesStructure(const Hearing& hearing, double last_statistic, double threshold) {
-  if (last_statistic > std::max(threshold, 0.5 * kSmallRest * hearing.power)) return true;
-  return std::ranges::any_of(hearing.answers,
-                             [&](const Answer& a) { return a.causes.empty() && !hearing.IsSmall(a); });
+bool LeavesStructure(const Answered& answered, double last_statistic, double threshold) {
+  if (last_statistic > std::max(threshold, 0.5 * tuning::kSmallRest * answered.power)) return true;
+  return std::ranges::any_of(answered.answers,
+                             [&](const Answer& a) { return a.causes.empty() && !answered.IsSmall(a); });
 }
 
 /// Several named causes together against one generic shape alone, which needs no coincidence.
 double ChanceOfOneUnknown(const SearchResult& found, const std::vector<Family>& families) {
-  if (found.picks.size() < 2) return 0.0;
+  if (found.terms.size() < 2) return 0.0;
   const Eigen::VectorXd log_priors = LogPriors(families);
   double best = -1e300;
   for (int k = 0; k < std::ssize(families); ++k) {
     if (families[static_cast<std::size_t>(k)].kind != Kind::kUnknown) continue;
-    best = std::max(best, found.alone.log_bayes(k, 0) + log_priors[k] - std::log(kPriorNone));
+    best = std::max(best, found.alone.log_bayes(k, 0) + log_priors[k] - std::log(tuning::kPriorNone));
   }
   return 1.0 / (1.0 + std::exp(found.joint_evidence - best));
 }
@@ -90,15 +88,15 @@ bool IsPossible(const Cause& cause) {
 /// The causes share what the unknown leaves.
 void DeclareUnknown(const std::string& otherwise, Naming& naming) {
   naming.verdict = Verdict::kUnknown;
-  naming.unknown.probability = std::clamp(naming.unknown.probability, 0.5, kMostProbable);
+  naming.unknown.probability = std::clamp(naming.unknown.probability, 0.5, tuning::kMostProbable);
   if (naming.unknown.signature.empty()) naming.unknown.signature = otherwise;
   for (Cause& cause : naming.causes) {
     cause.probability = std::clamp(1.0 - naming.unknown.probability, 0.0, cause.probability);
   }
 }
 
-Verdict VerdictOf(const Hearing& hearing) {
-  const auto has = [&](auto test) { return std::ranges::any_of(hearing.answers, test); };
+Verdict VerdictOf(const Answered& answered) {
+  const auto has = [&](auto test) { return std::ranges::any_of(answered.answers, test); };
   if (has([](const Answer& a) { return a.causes.size() > 1; })) return Verdict::kTie;
   return has([](const Answer& a) { return !a.causes.empty(); }) ? Verdict::kNamed : Verdict::kUnknown;
 }
@@ -106,15 +104,15 @@ Verdict VerdictOf(const Hearing& hearing) {
 }  // namespace
 
 Naming Name(const SearchResult& found, const std::vector<Family>& families, double threshold, bool noise_free) {
-  if (found.picks.empty()) return {};
-  Hearing hearing = Hear(found, families);
-  if (noise_free) std::erase_if(hearing.answers, [&](const Answer& a) { return hearing.IsSmall(a); });
-  Naming naming{VerdictOf(hearing), CausesOf(hearing), UnknownOf(hearing)};
+  if (found.terms.empty()) return {};
+  Answered answered = AnswerAll(found, families);
+  if (noise_free) std::erase_if(answered.answers, [&](const Answer& a) { return answered.IsSmall(a); });
+  Naming naming{VerdictOf(answered), CausesOf(answered), UnknownOf(answered)};
   const double one_unknown = ChanceOfOneUnknown(found, families);
   Doubt(one_unknown, naming);
   if (!std::ranges::all_of(naming.causes, IsPossible)) {
     DeclareUnknown("as the cause named here, in a size that is not possible for it", naming);
-  } else if (LeavesStructure(hearing, found.last_statistic, threshold) || one_unknown > 0.5) {
+  } else if (LeavesStructure(answered, found.last_statistic, threshold) || one_unknown > 0.5) {
     DeclareUnknown("structure that the causes named here do not explain", naming);
   }
   return naming;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "twin/core/distributions.h"
+#include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -107,14 +108,12 @@ bool AreExceptions(double likelihood_without, const Standardised& s) {
 
 /// A few rows far outside while the rest is normal.
 NoiseCause Outliers(const NoiseModel& noise, const Standardised& s) {
-  constexpr double kFar = 5.0;            // one in two million rows by chance
-  constexpr double kMostOutlying = 0.05;  // of the rows; more are no exceptions
   NoiseCause cause{NoiseCause::Kind::kOutliers, -1e300, "", noise, {}, 0.0};
   for (const int row : s.rows) {
-    if (std::abs(s.z[row]) > kFar) cause.outliers.push_back(row);
+    if (std::abs(s.z[row]) > tuning::kFarOff) cause.outliers.push_back(row);
   }
   const auto count = static_cast<double>(cause.outliers.size()), all = static_cast<double>(s.rows.size());
-  if (count == 0.0 || count > kMostOutlying * all) return cause;
+  if (count == 0.0 || count > tuning::kMostOutlying * all) return cause;
   double sum2 = 0.0;
   for (const int row : cause.outliers) sum2 += s.z[row] * s.z[row];
   cause.outlier_size = std::sqrt(sum2 / count);

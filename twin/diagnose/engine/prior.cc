@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "twin/diagnose/tuning.h"
+
 namespace twinbench::diagnose {
 
 Eigen::VectorXd LogPriors(const std::vector<Family>& families) {
@@ -15,7 +17,7 @@ Eigen::VectorXd LogPriors(const std::vector<Family>& families) {
   Eigen::VectorXd log_priors(std::ssize(families));
   for (std::size_t k = 0; k < families.size(); ++k) {
     const Family& f = families[k];
-    const double share = f.kind == Kind::kNamed ? kPriorNamed : kPriorUnknown;
+    const double share = f.kind == Kind::kNamed ? tuning::kPriorNamed : tuning::kPriorUnknown;
     log_priors[static_cast<Eigen::Index>(k)] =
         std::log(share * f.prior_weight / groups[f.kind] / members[{f.kind, f.group}]);
   }
@@ -30,7 +32,7 @@ double LogSum(const Eigen::VectorXd& logs) {
 Eigen::VectorXd AlarmStatistic(const Eigen::MatrixXd& log_bayes, const Eigen::VectorXd& log_priors) {
   Eigen::VectorXd statistic(log_bayes.cols());
   for (Eigen::Index k = 0; k < log_bayes.cols(); ++k) {
-    statistic[k] = LogSum(log_bayes.col(k) + log_priors) - std::log(kPriorNone);
+    statistic[k] = LogSum(log_bayes.col(k) + log_priors) - std::log(tuning::kPriorNone);
   }
   return statistic;
 }

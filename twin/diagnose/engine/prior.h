@@ -7,12 +7,7 @@
 
 namespace twinbench::diagnose {
 
-/// Prior probabilities: one half for no effect, 0.4 shared evenly by the groups of named causes, 0.1 by those of
-/// the unknown; inside a group evenly by family.
-inline constexpr double kPriorNone = 0.5;
-inline constexpr double kPriorNamed = 0.4;
-inline constexpr double kPriorUnknown = 0.1;
-
+/// tuning::kPriorNone and its like, shared out.
 /// @return log prior, one a family.
 Eigen::VectorXd LogPriors(const std::vector<Family>& families);
 

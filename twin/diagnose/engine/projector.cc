@@ -1,6 +1,7 @@
 #include "twin/diagnose/engine/projector.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -39,19 +40,23 @@ bool AreSeparate(const Eigen::MatrixXd& normal, int blocks, int size) {
   return true;
 }
 
-/// J' S. Most signatures are zero on most rows (other channels, before a step): those cost nothing here.
+/// J' S, a row of S at a time. Most signatures are zero on most rows (other channels, before a step): what lies
+/// beside the first and last of a row that are not costs nothing here.
 Eigen::MatrixXd Gather(const Sparse& jacobian, const Eigen::MatrixXd& S) {
-  Eigen::MatrixXd gathered = Eigen::MatrixXd::Zero(jacobian.cols(), S.cols());
-  const auto* const start = jacobian.outerIndexPtr();
-  const auto* const column = jacobian.innerIndexPtr();
-  const double* const value = jacobian.valuePtr();
-  for (Eigen::Index j = 0; j < S.cols(); ++j) {
-    double* const sum = gathered.col(j).data();
-    for (Eigen::Index row = 0; row < S.rows(); ++row) {
-      const double s = S(row, j);
-      if (s == 0.0) continue;
-      for (auto k = start[row]; k < start[row + 1]; ++k) sum[column[k]] += value[k] * s;
-    }
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const RowMajor by_row = S;
+  RowMajor gathered = RowMajor::Zero(jacobian.cols(), S.cols());
+  for (Eigen::Index row = 0; row < by_row.rows(); ++row) {
+    const double* const begin = by_row.row(row).data();
+    const double* const end = begin + by_row.cols();
+    const auto is_there = [](double value) { return value != 0.0; };
+    const double* const first = std::find_if(begin, end, is_there);
+    if (first == end) continue;
+    const double* const last =
+        std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), is_there).base();
+    const Eigen::Map<const Eigen::RowVectorXd> values(first, last - first);
+    for (Sparse::InnerIterator j(jacobian, row); j; ++j)
+      gathered.row(j.col()).segment(first - begin, values.size()) += j.value() * values;
   }
   return gathered;
 }

@@ -15,7 +15,7 @@ struct ShapeResidual {
   const LinearRun& run;
   const NoiseModel& noise;
   const Projector& projector;
-  const Remainder& others;
+  const Deflation& others;
   const Eigen::VectorXd& data;
 
   bool operator()(double const* const* parameters, double* residuals) const {
@@ -46,7 +46,7 @@ Range Around(const Shape& shape, double value) {
   return {std::min(below, value), std::max(above, value)};
 }
 
-Explained Explain(const Eigen::MatrixXd& white, const Projector& projector, const Remainder& others,
+Explained Explain(const Eigen::MatrixXd& white, const Projector& projector, const Deflation& others,
                   const Eigen::VectorXd& data) {
   Explained e;
   e.projected = others.Apply(projector.Apply(white));
@@ -57,7 +57,7 @@ Explained Explain(const Eigen::MatrixXd& white, const Projector& projector, cons
 }
 
 Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, const NoiseModel& noise,
-                    const Projector& projector, const Remainder& others, const Projected& data) {
+                    const Projector& projector, const Deflation& others, const Projected& data) {
   const Eigen::VectorXd start = family.ShapeAt(grid_point), rows = data.rows.col(0);
   Eigen::VectorXd shape = start;
   using Cost = ceres::DynamicNumericDiffCostFunction<ShapeResidual, ceres::CENTRAL>;

@@ -20,7 +20,7 @@ struct Explained {
 };
 /// @param white  The signature, whitened.
 /// @param data   One run, projected, with `others` taken out.
-Explained Explain(const Eigen::MatrixXd& white, const Projector& projector, const Remainder& others,
+Explained Explain(const Eigen::MatrixXd& white, const Projector& projector, const Deflation& others,
                   const Eigen::VectorXd& data);
 
 /// Moves the shape of a family (time constants, frequencies) from a grid point to where it explains most, within
@@ -33,7 +33,7 @@ struct Refined {
   double explained = 0.0;  // of data.power
 };
 Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, const NoiseModel& noise,
-                    const Projector& projector, const Remainder& others, const Projected& data);
+                    const Projector& projector, const Deflation& others, const Projected& data);
 
 /// A signature and how its sum, weighted with the fitted amplitudes, changes with each shape parameter: rows x
 /// amplitudes and shapes, not whitened. Without slopes if the family has no `at`.

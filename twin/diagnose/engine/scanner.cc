@@ -6,13 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "twin/diagnose/tuning.h"
+
 namespace twinbench::diagnose {
 namespace {
 
 constexpr Eigen::Index kMostKeptValues = 40'000'000;  // of signatures: 320 MB
-constexpr std::array<double, 3> kPriorScales = {0.25, 1.0, 4.0};
-constexpr double kPseudoDegrees = 20.0;   // trust in a stated noise figure: 20 works, 200 is too trusting
-constexpr double kPseudoEstimated = 2.0;  // in one that was estimated from the same data
 constexpr double kAbsorbed = 1e-10;  // share of a signature's power below which only priors and rounding are left
 constexpr double kDependent = 1e-4;  // share of a signature's power that must survive projection
 
@@ -82,10 +81,10 @@ Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products
 }  // namespace
 
 double PseudoDegrees(const LinearRun& run) {
-  return run.sigma_stated ? kPseudoDegrees : kPseudoEstimated;
+  return run.sigma_stated ? tuning::kPseudoDegrees : tuning::kPseudoEstimated;
 }
 
-Remainder::Remainder(const Projector& projector, const Eigen::MatrixXd& columns) {
+Deflation::Deflation(const Projector& projector, const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0) return;
   const Eigen::MatrixXd projected = projector.Apply(columns);
   const Eigen::MatrixXd gram = columns.transpose() * projected;
@@ -100,14 +99,14 @@ Remainder::Remainder(const Projector& projector, const Eigen::MatrixXd& columns)
   covariance_ = transform * transform.transpose();
 }
 
-Eigen::MatrixXd Remainder::Apply(const Eigen::MatrixXd& projected) const {
+Eigen::MatrixXd Deflation::Apply(const Eigen::MatrixXd& projected) const {
   if (Rank() == 0) return projected;
   return projected - basis_ * (dual_.transpose() * projected);
 }
 
-Projected Project(const Projector& projector, const Remainder& remainder, const Eigen::MatrixXd& white) {
+Projected Project(const Projector& projector, const Deflation& deflation, const Eigen::MatrixXd& white) {
   Projected data;
-  data.rows = remainder.Apply(projector.Apply(white));
+  data.rows = deflation.Apply(projector.Apply(white));
   data.power = white.cwiseProduct(data.rows).colwise().sum();
   return data;
 }
@@ -141,10 +140,10 @@ Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector&
 }
 
 void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows,
-                         const Remainder& remainder, const Unwhitened& removed_rows, Evidence& out) const {
+                         const Deflation& deflation, const Unwhitened& removed_rows, Evidence& out) const {
   const Eigen::Index runs = data.rows.cols();
   const double nu = PseudoDegrees(run_);
-  const double half = 0.5 * (nu + projector_.DegreesOfFreedom() - remainder.Rank());
+  const double half = 0.5 * (nu + projector_.DegreesOfFreedom() - deflation.Rank());
   const Eigen::ArrayXd power = nu + data.power.array();
   const std::vector<int>& members = bundle.Members();
   std::vector<LogMean> mean(members.size());
@@ -153,11 +152,11 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
   for (int g = 0; g < bundle.Grid(); ++g) {
     if (g % bundle.Step() == 0) {
       products = bundle.Products(g / bundle.Step(), rows);
-      if (remainder.Rank() > 0) removed = bundle.Products(g / bundle.Step(), removed_rows);
+      if (deflation.Rank() > 0) removed = bundle.Products(g / bundle.Step(), removed_rows);
     }
     const Eigen::Index at = (g % bundle.Step()) * bundle.Columns();
     Eigen::MatrixXd gram = bundle.Gram(g);
-    if (remainder.Rank() > 0) {
+    if (deflation.Rank() > 0) {
       const auto r = removed.middleRows(at, bundle.Columns());
       gram.noalias() -= r * r.transpose();
     }
@@ -177,7 +176,7 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
         out.grid_point(row, k) = g;
         out.explained(row, k) = explained[k];
       }
-      for (const double f : kPriorScales) {
+      for (const double f : tuning::kPriorScales) {
         const Eigen::ArrayXd d2 = f * f * s.d2;
         const Eigen::ArrayXd shrunk = (s.c2.colwise() * (d2 / (1.0 + d2))).colwise().sum().transpose();
         const double occam = 0.5 * (1.0 + d2).log().sum();
@@ -204,15 +203,15 @@ double Scanner::Information(int family) const {
   return most;
 }
 
-Evidence Scanner::Scan(const Projected& data, const Remainder& remainder) const {
+Evidence Scanner::Scan(const Projected& data, const Deflation& deflation) const {
   Evidence out;
   out.log_bayes.resize(std::ssize(families_), data.rows.cols());
   out.explained.setZero(std::ssize(families_), data.rows.cols());
   out.grid_point.setZero(std::ssize(families_), data.rows.cols());
   const Unwhitened rows(run_, noise_, data.rows);
-  const bool any = remainder.Rank() > 0;
-  const Unwhitened removed(run_, noise_, any ? remainder.Basis() : Eigen::MatrixXd(data.rows.rows(), 0));
-  for (const Bundle& bundle : bundles_) ScanBundle(bundle, data, rows, remainder, removed, out);
+  const bool any = deflation.Rank() > 0;
+  const Unwhitened removed(run_, noise_, any ? deflation.Basis() : Eigen::MatrixXd(data.rows.rows(), 0));
+  for (const Bundle& bundle : bundles_) ScanBundle(bundle, data, rows, deflation, removed, out);
   return out;
 }
 

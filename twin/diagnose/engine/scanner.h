@@ -12,11 +12,11 @@
 namespace twinbench::diagnose {
 
 /// Causes that are already in the model, as a further projection: W2 = W - B B' with B = W S R^-1, R'R = S'WS.
-class Remainder {
+class Deflation {
  public:
-  Remainder() = default;
+  Deflation() = default;
   /// @param columns  Whitened signatures of the accepted causes, rows x any; dependent ones are dropped.
-  Remainder(const Projector& projector, const Eigen::MatrixXd& columns);
+  Deflation(const Projector& projector, const Eigen::MatrixXd& columns);
 
   const Eigen::MatrixXd& Basis() const { return basis_; }  // rows x independent columns
   /// Takes the causes out of data that were projected with W.
@@ -35,7 +35,7 @@ struct Projected {
   Eigen::MatrixXd rows;   // W y, rows x runs
   Eigen::VectorXd power;  // y' W y, one a run
 };
-Projected Project(const Projector& projector, const Remainder& remainder, const Eigen::MatrixXd& white);
+Projected Project(const Projector& projector, const Deflation& deflation, const Eigen::MatrixXd& white);
 
 /// How badly the model with all its free unknowns, and no cause, fits: y' W y with the stated deviations.
 struct Misfit {
@@ -66,7 +66,7 @@ class Scanner {
   Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
           const std::vector<Family>& families);
 
-  Evidence Scan(const Projected& data, const Remainder& remainder) const;
+  Evidence Scan(const Projected& data, const Deflation& deflation) const;
 
   const std::vector<Family>& Families() const { return families_; }
 
@@ -75,7 +75,7 @@ class Scanner {
   double Information(int family) const;
 
  private:
-  void ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows, const Remainder& remainder,
+  void ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows, const Deflation& deflation,
                   const Unwhitened& removed, Evidence& sums) const;
 
   const LinearRun& run_;

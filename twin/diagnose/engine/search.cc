@@ -4,12 +4,16 @@
 #include <cmath>
 #include <map>
 
+#include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/engine/refine.h"
+#include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
 namespace {
+
+constexpr double kNever = -1e300;  // log prior
 
 /// What every step of the search needs.
 struct Problem {
@@ -17,30 +21,23 @@ struct Problem {
   const NoiseModel& noise;
   const Projector& projector;
   const Scanner& scanner;
-  const Eigen::VectorXd& log_priors;
+  Eigen::VectorXd log_priors;
   double threshold;
   int most_causes;
   Eigen::MatrixXd white;  // the residual, rows x 1
 };
 
-Eigen::MatrixXd Beside(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
-  Eigen::MatrixXd both(right.rows(), left.cols() + right.cols());
-  if (left.cols() > 0) both.leftCols(left.cols()) = left;
-  both.rightCols(right.cols()) = right;
-  return both;
-}
-
-/// Signatures of all picks but one, whitened, with the shapes' slopes: a shape that is a little off must not look
+/// Signatures of all terms but one, whitened, with the shapes' slopes: a shape that is a little off must not look
 /// like a second cause.
-Eigen::MatrixXd ColumnsWithout(const Problem& problem, const std::vector<Pick>& picks, int left_out) {
+Eigen::MatrixXd ColumnsWithout(const Problem& problem, const std::vector<Term>& terms, int left_out) {
   Eigen::MatrixXd columns(problem.run.Rows(), 0);
-  for (int k = 0; k < std::ssize(picks); ++k) {
+  for (int k = 0; k < std::ssize(terms); ++k) {
     if (k == left_out) continue;
-    const Pick& pick = picks[static_cast<std::size_t>(k)];
-    const Family& family = problem.scanner.Families()[static_cast<std::size_t>(pick.family)];
-    const Remainder alone(problem.projector, problem.noise.Whiten(problem.run, pick.columns));
+    const Term& term = terms[static_cast<std::size_t>(k)];
+    const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
+    const Deflation alone(problem.projector, problem.noise.Whiten(problem.run, term.columns));
     const Eigen::VectorXd amplitudes = alone.Amplitudes(problem.projector.Apply(problem.white));
-    columns = Beside(columns, WithShapeSlopes(family, pick.shape, pick.columns, amplitudes));
+    columns = HStack(columns, WithShapeSlopes(family, term.shape, term.columns, amplitudes));
   }
   return columns.cols() > 0 ? problem.noise.Whiten(problem.run, columns) : columns;
 }
@@ -48,19 +45,17 @@ Eigen::MatrixXd ColumnsWithout(const Problem& problem, const std::vector<Pick>& 
 /// A grid may be too coarse for a strong effect. Families that explain nearly as much as the best are therefore
 /// moved to their best shape before they are compared; what the fit gains is paid for by the narrower shape it
 /// needs.
-void RefineLeaders(const Problem& problem, const Remainder& others, const Projected& data, Evidence& evidence,
+void RefineLeaders(const Problem& problem, const Deflation& others, const Projected& data, Evidence& evidence,
                    std::map<int, Eigen::VectorXd>& shapes) {
-  constexpr double kNearlyAsMuch = 0.6;
-  constexpr int kMostLeaders = 8;
   const auto& families = problem.scanner.Families();
   std::vector<int> leaders;
-  const double least = kNearlyAsMuch * evidence.explained.col(0).maxCoeff();
+  const double least = tuning::kNearlyAsMuch * evidence.explained.col(0).maxCoeff();
   for (int k = 0; k < std::ssize(families); ++k) {
     const Family& family = families[static_cast<std::size_t>(k)];
     if (family.at && !family.shapes.empty() && evidence.explained(k, 0) >= least) leaders.push_back(k);
   }
   std::ranges::sort(leaders, [&](int a, int b) { return evidence.log_bayes(a, 0) > evidence.log_bayes(b, 0); });
-  leaders.resize(std::min<std::size_t>(leaders.size(), kMostLeaders));
+  leaders.resize(std::min<std::size_t>(leaders.size(), tuning::kMostLeaders));
   const double half = 0.5 * problem.projector.DegreesOfFreedom(), power = data.power[0];
   for (const int k : leaders) {
     const Refined refined = RefineShape(families[static_cast<std::size_t>(k)], evidence.grid_point(k, 0),
@@ -73,87 +68,126 @@ void RefineLeaders(const Problem& problem, const Remainder& others, const Projec
 }
 
 /// The most probable family in a place of its own.
-Pick TakeBest(const Problem& problem, const Remainder& others, Evidence& evidence) {
+Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidence) {
   const Projected data = Project(problem.projector, others, problem.white);
   evidence = problem.scanner.Scan(data, others);
   const Eigen::VectorXd as_scanned = evidence.log_bayes.col(0) + problem.log_priors;
   std::map<int, Eigen::VectorXd> shapes;
-  Pick pick;
-  pick.statistic = LogSum(as_scanned) - std::log(kPriorNone);  // as calibrated: without refinement
-  if (pick.statistic >= problem.threshold) RefineLeaders(problem, others, data, evidence, shapes);
+  Term term;
+  term.statistic = LogSum(as_scanned) - std::log(tuning::kPriorNone);  // as calibrated: without refinement
+  if (term.statistic >= problem.threshold) RefineLeaders(problem, others, data, evidence, shapes);
   const Eigen::VectorXd joint = evidence.log_bayes.col(0) + problem.log_priors;
-  pick.log_posterior.resize(joint.size() + 1);
-  pick.log_posterior << joint, std::log(kPriorNone);
-  pick.log_posterior.array() -= LogSum(pick.log_posterior);
+  term.log_posterior.resize(joint.size() + 1);
+  term.log_posterior << joint, std::log(tuning::kPriorNone);
+  term.log_posterior.array() -= LogSum(term.log_posterior);
   Eigen::Index best = 0;
   joint.maxCoeff(&best);
-  pick.family = static_cast<int>(best);
-  pick.grid_point = evidence.grid_point(best, 0);
-  const Family& family = problem.scanner.Families()[static_cast<std::size_t>(pick.family)];
-  const auto refined = shapes.find(pick.family);
-  pick.shape = refined == shapes.end() ? family.ShapeAt(pick.grid_point) : refined->second;
-  pick.columns = refined == shapes.end() ? family.ColumnsAt(pick.grid_point) : family.at(pick.shape);
-  return pick;
+  term.family = static_cast<int>(best);
+  term.grid_point = evidence.grid_point(best, 0);
+  const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
+  const auto refined = shapes.find(term.family);
+  term.shape = refined == shapes.end() ? family.ShapeAt(term.grid_point) : refined->second;
+  term.columns = refined == shapes.end() ? family.ColumnsAt(term.grid_point) : family.at(term.shape);
+  return term;
 }
 
-/// Votes on pick k again with all others accepted. @return true if another family took its place.
-bool VoteAgain(const Problem& problem, std::vector<Pick>& picks, int k) {
-  Pick& old = picks[static_cast<std::size_t>(k)];
-  const Remainder others(problem.projector, ColumnsWithout(problem, picks, k));
+/// Selects term k again with all others accepted. @return true if another family took its place.
+bool SelectAgain(const Problem& problem, std::vector<Term>& terms, int k) {
+  Term& old = terms[static_cast<std::size_t>(k)];
+  const Deflation others(problem.projector, ColumnsWithout(problem, terms, k));
   Evidence evidence;
-  const Pick pick = TakeBest(problem, others, evidence);
-  const bool changed = pick.family != old.family;
-  old = pick;
+  const Term term = TakeBest(problem, others, evidence);
+  const bool changed = term.family != old.family;
+  old = term;
   return changed;
 }
 
 void Forward(const Problem& problem, SearchResult& result) {
   while (true) {
-    const Remainder others(problem.projector, ColumnsWithout(problem, result.picks, -1));
+    const Deflation others(problem.projector, ColumnsWithout(problem, result.terms, -1));
     Evidence evidence;
-    const Pick pick = TakeBest(problem, others, evidence);
-    result.last_statistic = pick.statistic;
-    if (result.picks.empty()) {
-      result.first_statistic = pick.statistic;
+    const Term term = TakeBest(problem, others, evidence);
+    result.last_statistic = term.statistic;
+    if (result.terms.empty()) {
+      result.first_statistic = term.statistic;
       result.alone = evidence;
     }
-    if (pick.statistic < problem.threshold || std::ssize(result.picks) == problem.most_causes) return;
-    result.joint_evidence += pick.statistic;
-    result.picks.push_back(pick);
+    if (term.statistic < problem.threshold || std::ssize(result.terms) == problem.most_causes) return;
+    result.joint_evidence += term.statistic;
+    result.terms.push_back(term);
   }
 }
 
-/// Swaps until every pick is the best in its place, at most twice round.
-void Swap(const Problem& problem, std::vector<Pick>& picks) {
+/// Swaps until every term is the best in its place, at most twice round.
+void Swap(const Problem& problem, std::vector<Term>& terms) {
   for (int round = 0; round < 2; ++round) {
     bool changed = false;
-    for (int k = 0; k < std::ssize(picks); ++k) changed = VoteAgain(problem, picks, k) || changed;
+    for (int k = 0; k < std::ssize(terms); ++k) changed = SelectAgain(problem, terms, k) || changed;
     if (!changed) break;
   }
 }
 
 /// Drops what the others have made needless, one at a time: two that stand for the same thing need not both go.
 void Revise(const Problem& problem, SearchResult& result) {
-  std::vector<Pick>& picks = result.picks;
-  while (std::ssize(picks) >= 2) {
-    Swap(problem, picks);
-    const auto weakest = std::min_element(picks.begin(), picks.end(),
-                                          [](const Pick& a, const Pick& b) { return a.statistic < b.statistic; });
+  std::vector<Term>& terms = result.terms;
+  while (std::ssize(terms) >= 2) {
+    Swap(problem, terms);
+    const auto weakest = std::min_element(terms.begin(), terms.end(),
+                                          [](const Term& a, const Term& b) { return a.statistic < b.statistic; });
     if (weakest->statistic >= problem.threshold) return;
-    picks.erase(weakest);
+    terms.erase(weakest);
   }
-  if (picks.size() == 1) VoteAgain(problem, picks, 0);
+  if (terms.size() == 1) SelectAgain(problem, terms, 0);
 }
 
-/// What each pick explains that the others cannot.
-void MeasureShares(const Problem& problem, std::vector<Pick>& picks) {
+/// What each term explains that the others cannot.
+void MeasureShares(const Problem& problem, std::vector<Term>& terms) {
   const auto power_with = [&problem](const Eigen::MatrixXd& columns) {
-    return Project(problem.projector, Remainder(problem.projector, columns), problem.white).power[0];
+    return Project(problem.projector, Deflation(problem.projector, columns), problem.white).power[0];
   };
-  const double left = power_with(ColumnsWithout(problem, picks, -1));
-  for (int k = 0; k < std::ssize(picks); ++k) {
-    picks[static_cast<std::size_t>(k)].explained = power_with(ColumnsWithout(problem, picks, k)) - left;
+  const double left = power_with(ColumnsWithout(problem, terms, -1));
+  for (int k = 0; k < std::ssize(terms); ++k) {
+    terms[static_cast<std::size_t>(k)].explained = power_with(ColumnsWithout(problem, terms, k)) - left;
   }
+}
+
+/// Takes terms in as `first` sees them, then goes on with all families until nothing changes.
+SearchResult Stepwise(const Problem& first, const Problem& problem) {
+  SearchResult result;
+  Forward(first, result);
+  const std::size_t before = result.terms.size();
+  Revise(problem, result);
+  if (result.terms.size() != before || &first != &problem) {  // room for one that was hidden
+    Forward(problem, result);
+    Revise(problem, result);
+  }
+  return result;
+}
+
+bool HasUnnamed(const Problem& problem, const std::vector<Term>& terms) {
+  return std::ranges::any_of(terms, [&](const Term& term) {
+    return problem.scanner.Families()[static_cast<std::size_t>(term.family)].kind == Kind::kUnknown;
+  });
+}
+
+/// The same without the shapes that have no name.
+Problem OnlyNamed(Problem problem) {
+  const auto& families = problem.scanner.Families();
+  for (int k = 0; k < std::ssize(families); ++k) {
+    if (families[static_cast<std::size_t>(k)].kind == Kind::kUnknown) problem.log_priors[k] = kNever;
+  }
+  return problem;
+}
+
+/// A shape with many columns may explain at one step what several causes explain together, and is taken before any
+/// of them: then the causes are tried first, and what is the more probable of all of it stays.
+void TryCausesFirst(const Problem& problem, SearchResult& result) {
+  if (!HasUnnamed(problem, result.terms)) return;
+  SearchResult named = Stepwise(OnlyNamed(problem), problem);
+  if (named.joint_evidence <= result.joint_evidence) return;
+  named.first_statistic = result.first_statistic;
+  named.alone = result.alone;
+  result = std::move(named);
 }
 
 }  // namespace
@@ -162,16 +196,10 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
                     const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes) {
   const Problem problem{run,        noise,     projector,   scanner,
                         log_priors, threshold, most_causes, noise.Whiten(run, run.residual)};
-  SearchResult result;
-  Forward(problem, result);
-  const std::size_t before = result.picks.size();
-  Revise(problem, result);
-  if (result.picks.size() != before) {  // room for one that was hidden
-    Forward(problem, result);
-    Revise(problem, result);
-  }
-  MeasureShares(problem, result.picks);
-  EstimatePicks(run, noise, projector, scanner.Families(), problem.white, result.picks);
+  SearchResult result = Stepwise(problem, problem);
+  TryCausesFirst(problem, result);
+  MeasureShares(problem, result.terms);
+  EstimateTerms(run, noise, projector, scanner.Families(), problem.white, result.terms);
   return result;
 }
 

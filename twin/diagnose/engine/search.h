@@ -7,32 +7,29 @@
 
 namespace twinbench::diagnose {
 
-/// Probability of an alarm on a run without effect. Half of what is promised: noise is never as clean as simulated.
-inline constexpr double kAlarmProbability = 0.005;
-
 /// One cause that the search holds responsible.
-struct Pick {
+struct Term {
   int family = 0;
   int grid_point = 0;
   Eigen::VectorXd shape;          // refined; empty without shapes
   Eigen::MatrixXd columns;        // signature at that shape: rows x amplitudes, not whitened
   Eigen::VectorXd log_posterior;  // of every family in this place, the others accepted; last: none
   double statistic = 0.0;         // alarm statistic in this place, the others accepted
-  double explained = 0.0;         // of the whitened power, beyond what the other picks explain
-  Eigen::VectorXd amplitudes;     // fitted together with those of the other picks, SI
+  double explained = 0.0;         // of the whitened power, beyond what the other terms explain
+  Eigen::VectorXd amplitudes;     // fitted together with those of the other terms, SI
   Eigen::MatrixXd cov;            // of the amplitudes and the shape parameters after them
 };
 
 struct SearchResult {
-  std::vector<Pick> picks;
+  std::vector<Term> terms;
   double first_statistic = 0.0;  // alarm statistic of the whole run
   double last_statistic = 0.0;   // of what remains
-  double joint_evidence = 0.0;   // of all picks together: each given those before it
-  Evidence alone;  // the first scan
+  double joint_evidence = 0.0;   // of all terms together: each given those before it
+  Evidence alone;                // the first scan
 };
 
 /// Finds up to `most_causes` simultaneous causes: scan, take the most probable, refine its shape, scan what
-/// remains; then put every pick to the vote again with the others accepted (swaps), and drop those that are not
+/// remains; then select every term again with the others accepted (swaps), and drop those that are not
 /// needed any more.
 SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
                     const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes);

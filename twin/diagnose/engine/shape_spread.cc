@@ -12,23 +12,23 @@ constexpr int kMostColumns = 512;  // of signatures to look at: a few hundredths
 
 }  // namespace
 
-Spread SpreadOverGrid(const Family& family, const Pick& pick, const LinearRun& run, const NoiseModel& noise,
-                      const Projector& projector, const Remainder& others, const Projected& data, double variance) {
-  Spread spread{Eigen::VectorXd::Zero(pick.columns.cols()), Eigen::VectorXd::Zero(pick.shape.size())};
-  if (pick.shape.size() == 0) return spread;
+Spread SpreadOverGrid(const Family& family, const Term& term, const LinearRun& run, const NoiseModel& noise,
+                      const Projector& projector, const Deflation& others, const Projected& data, double variance) {
+  Spread spread{Eigen::VectorXd::Zero(term.columns.cols()), Eigen::VectorXd::Zero(term.shape.size())};
+  if (term.shape.size() == 0) return spread;
   const Eigen::VectorXd rows = data.rows.col(0);
   const auto fit = [&](const Eigen::MatrixXd& columns) {
     return Explain(noise.Whiten(run, columns), projector, others, rows);
   };
-  const Explained best = fit(pick.columns);
+  const Explained best = fit(term.columns);
   double sum = 1.0;  // the fitted shape itself
-  const int reach = std::max(1, kMostColumns / 2 / static_cast<int>(pick.columns.cols()));
-  const int first = std::max(0, pick.grid_point - reach), last = std::min(family.grid - 1, pick.grid_point + reach);
+  const int reach = std::max(1, kMostColumns / 2 / static_cast<int>(term.columns.cols()));
+  const int first = std::max(0, term.grid_point - reach), last = std::min(family.grid - 1, term.grid_point + reach);
   for (int g = first; g <= last; ++g) {
     const Explained other = fit(family.ColumnsAt(g));
     const double weight = std::exp(std::min(0.0, 0.5 * (other.power - best.power) / variance));
     spread.amplitudes += weight * (other.amplitudes - best.amplitudes).cwiseAbs2();
-    spread.shape += weight * (family.ShapeAt(g) - pick.shape).cwiseAbs2();
+    spread.shape += weight * (family.ShapeAt(g) - term.shape).cwiseAbs2();
     sum += weight;
   }
   spread.amplitudes = (spread.amplitudes / sum).cwiseSqrt();
@@ -36,7 +36,7 @@ Spread SpreadOverGrid(const Family& family, const Pick& pick, const LinearRun& r
   if (!family.at) {
     for (Eigen::Index k = 0; k < spread.shape.size(); ++k) {
       // All that is known between two points of the grid.
-      const Range cell = Around(family.shapes[static_cast<std::size_t>(k)], pick.shape[k]);
+      const Range cell = Around(family.shapes[static_cast<std::size_t>(k)], term.shape[k]);
       spread.shape[k] += std::pow(0.5 * (cell.upper - cell.lower), 2) / 12.0;
     }
   }

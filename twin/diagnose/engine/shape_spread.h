@@ -9,14 +9,14 @@ namespace twinbench::diagnose {
 /// trades against its amplitude. Zero if the grid is too coarse to have a second likely point. Of a long grid only
 /// the part about the fitted shape is walked.
 ///
-/// @param others    The other picks.
+/// @param others    The other terms.
 /// @param data      The residual, projected, with `others` taken out.
 /// @param variance  Of the whitened noise.
 struct Spread {
   Eigen::VectorXd amplitudes;  // of their best values from shape to shape
   Eigen::VectorXd shape;
 };
-Spread SpreadOverGrid(const Family& family, const Pick& pick, const LinearRun& run, const NoiseModel& noise,
-                      const Projector& projector, const Remainder& others, const Projected& data, double variance);
+Spread SpreadOverGrid(const Family& family, const Term& term, const LinearRun& run, const NoiseModel& noise,
+                      const Projector& projector, const Deflation& others, const Projected& data, double variance);
 
 }  // namespace twinbench::diagnose

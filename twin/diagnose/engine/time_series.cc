@@ -5,6 +5,7 @@
 
 #include "twin/core/distributions.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
 #include "twin/model/wave_grid.h"
 
@@ -13,15 +14,13 @@ namespace {
 
 /// A little closer than the longest stretch can tell apart, from where a wander ends to one of two usual rows.
 std::vector<double> FrequenciesOf(double longest_s, const Eigen::VectorXd& rows_time_s) {
-  constexpr int kMost = 1500;
-  constexpr double kSpacing = 0.6;      // of the resolution: a wave between two keeps nine tenths
-  constexpr double kFirstWidths = 3.0;  // slower ones are a wander
   if (rows_time_s.size() < 3) return {};
   std::vector<double> steps_s;
   for (Eigen::Index i = 1; i < rows_time_s.size(); ++i) steps_s.push_back(rows_time_s[i] - rows_time_s[i - 1]);
   const double usual_s = std::max(Median(std::move(steps_s)), 1e-6);
-  const double width_Hz = kSpacing / std::max(longest_s, usual_s), last_Hz = 0.5 / usual_s;
-  const double first_Hz = kFirstWidths * width_Hz, step_Hz = std::max(width_Hz, (last_Hz - first_Hz) / kMost);
+  const double width_Hz = tuning::kToneSpacing / std::max(longest_s, usual_s), last_Hz = 0.5 / usual_s;
+  const double first_Hz = tuning::kFirstTone * width_Hz,
+               step_Hz = std::max(width_Hz, (last_Hz - first_Hz) / tuning::kMostTones);
   std::vector<double> frequencies_Hz;
   for (int k = 0; first_Hz + k * step_Hz < last_Hz; ++k) frequencies_Hz.push_back(first_Hz + k * step_Hz);
   return frequencies_Hz;
@@ -30,13 +29,12 @@ std::vector<double> FrequenciesOf(double longest_s, const Eigen::VectorXd& rows_
 /// Within a set-up and phase, because a step at its first reading is a constant of it. Thinned evenly where there
 /// are very many.
 void SetOnsets(const model::Course& course, TimeSeries& series) {
-  constexpr std::size_t kMost = 1500;
   std::vector<double> all;
   for (std::size_t i = 1; i < course.reading.size(); ++i) {
     if (course.setup[i] == course.setup[i - 1] && course.phase[i] == course.phase[i - 1])
       all.push_back(course.reading[i]);
   }
-  const std::size_t every = 1 + all.size() / kMost;
+  const std::size_t every = 1 + all.size() / tuning::kMostSteps;
   series.are_thinned = every > 1;
   for (std::size_t k = every / 2; k < all.size(); k += every) series.onsets.push_back(all[k]);
 }

@@ -25,7 +25,7 @@ Eigen::MatrixXd RelativeLevels(const Sample& s) {
 void TestLevels(const Sample& s, const Statistic& levels, const std::vector<int>& channel, Tests& tests) {
   const auto meaning = [&](int item, double excess, ScreenTest& test) {
     const double ratio = std::exp(0.5 * excess);
-    SetEffect(s.run, channel[item], Beside(TypicalSigma(s.run, channel[item]), ratio), test);
+    SetEffect(s.run, channel[item], Excess(TypicalSigma(s.run, channel[item]), ratio), test);
     test.reading = ReadingOf(test.name, levels.items[item], ratio);
   };
   TestMoments(levels, Sides::kBoth, meaning, tests);

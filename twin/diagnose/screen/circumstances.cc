@@ -156,7 +156,7 @@ double TypicalSigma(const LinearRun& run, int channel) {
   return run.sigma(RowsOf(run, channel)).norm() / std::sqrt(static_cast<double>(run.schedule.Readings()));
 }
 
-double Beside(double sigma, double ratio) {
+double Excess(double sigma, double ratio) {
   return sigma * std::sqrt(std::abs(ratio * ratio - 1.0));
 }
 

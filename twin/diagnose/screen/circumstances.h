@@ -76,7 +76,7 @@ Eigen::VectorXd Predicted(const LinearRun& run, int channel);
 double TypicalSigma(const LinearRun& run, int channel);
 
 /// Deviation of what comes beside noise of this deviation and makes it `ratio` times as large, or as small.
-double Beside(double sigma, double ratio);
+double Excess(double sigma, double ratio);
 
 /// "0.42 um": a value of the readings in the run's unit.
 std::string Amount(const LinearRun& run, double value_SI);

@@ -27,7 +27,7 @@ void TestStatedNoise(const Sample& s, Tests& tests) {
                         (s.residual.colwise().squaredNorm() / dof).array().max(1e-300).log()};
   const auto meaning = [&](int, double, ScreenTest& test) {
     const double ratio = std::exp(0.5 * level.values(0, 0));
-    SetEffect(s.run, AnyChannel(s.run), Beside(MeanSigma(s.run), ratio), test);
+    SetEffect(s.run, AnyChannel(s.run), Excess(MeanSigma(s.run), ratio), test);
     test.reading = ReadingBySign(test.name, ratio > 1.0, ratio);
   };
   TestMoments(level, Sides::kBoth, meaning, tests);

@@ -109,22 +109,6 @@ void SetEffect(const RawChannel& channel, double codes, ScreenTest& test) {
 
 }  // namespace screen
 
-RawScale RawScaleOf(const Scenario& scenario, const LinearRun& run) {
-  const double code_V = std::ldexp(2.0 * scenario.adc.range_V, -scenario.adc.bits);
-  RawScale scale{{}, {}, scenario.adc.rate_Hz / kChannels};
-  for (const std::string& name : scenario.adc.scan_list) {
-    const auto* found = std::ranges::find(kChannelNames, name);
-    Require(found != kChannelNames.end(), "the scan list names the channels of the bench");
-    scale.scan.push_back(static_cast<int>(found - kChannelNames.begin()));
-  }
-  for (int c = 0; c < run.Channels(); ++c) {
-    const double code_m =
-        code_V / (c < kChannels / 2 ? scenario.psd_a.sensitivity_V_m : scenario.psd_b.sensitivity_V_m);
-    scale.channels.push_back({run.channels[c], code_m, screen::AsAngle(run, c, code_m)});
-  }
-  return scale;
-}
-
 std::string RawLimitsInWords(const std::vector<RawBlock>& blocks, const RawScale& scale) {
   constexpr double kMainsPeriod_s = 0.02;
   const double duration_s = screen::Thin(blocks, scale).Duration_s();

@@ -57,9 +57,6 @@ struct RawScale {
   double scan_rate_Hz = kNaN;        // scans a second: each channel is converted once a scan
 };
 
-/// The converter of the scenario's bench and the angles of the run's patterns.
-RawScale RawScaleOf(const Scenario& scenario, const LinearRun& run);
-
 /// Tests of the samples inside the blocks: mains hum, ring-down after the stop, codes that the converter never
 /// gives, settling from sample to sample, scatter that does not average out. Blocks too short for a test leave it
 /// out. Nulls: independent Gaussian samples.

@@ -15,7 +15,7 @@
 namespace twinbench::diagnose::screen {
 namespace {
 
-constexpr int kReach = 6;  // grid points on either side of a reading: six digits
+constexpr int kGridReach = 6;  // grid points on either side of a reading: six digits
 
 struct Grid {
   int size = 0;
@@ -23,9 +23,9 @@ struct Grid {
 };
 
 Grid GridFor(int count) {
-  const auto size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(4 * count + 4 * kReach)));
+  const auto size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(4 * count + 4 * kGridReach)));
   const double modes = 2.0 * count, oversampling = size / modes;
-  return {size, units::kPi * kReach / (modes * modes * oversampling * (oversampling - 0.5))};
+  return {size, units::kPi * kGridReach / (modes * modes * oversampling * (oversampling - 0.5))};
 }
 
 /// Share of each reading that the grid points around it get: grid x readings.
@@ -33,7 +33,7 @@ Eigen::SparseMatrix<double> Spreading(const Eigen::VectorXd& turns, const Grid& 
   std::vector<Eigen::Triplet<double>> shares;
   for (int i = 0; i < turns.size(); ++i) {
     const double at = (turns[i] - std::floor(turns[i])) * grid.size;
-    for (int point = static_cast<int>(at) - kReach + 1; point <= static_cast<int>(at) + kReach; ++point) {
+    for (int point = static_cast<int>(at) - kGridReach + 1; point <= static_cast<int>(at) + kGridReach; ++point) {
       const double away_rad = (at - point) * (units::turn / grid.size);
       shares.emplace_back((point + grid.size) % grid.size, i, std::exp(-away_rad * away_rad / (4.0 * grid.width)));
     }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "twin/core/units.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/model/signals.h"
 #include "twin/model/wave_grid.h"
@@ -39,25 +40,25 @@ double AwayFromWhole(double order, double nearest) {
 /// whole order than the run can tell there are none; and none at all in a single turn where whole orders are not
 /// free: they imitate any line between them.
 void AddLines(Collector& collect) {
-  constexpr double kFirst = 0.3, kFewestTurns = 1.4;
-  constexpr int kMost = 2000;
   const Design& d = collect.design();
   const Angle& angle = d.angles.front();
   const double turns = std::max((d.continued_rad.maxCoeff() - d.continued_rad.minCoeff()) / units::turn, 0.1);
-  if (angle.first_unfree > 0 && turns < kFewestTurns) return;
+  if (angle.first_unfree > 0 && turns < tuning::kFewestTurns) return;
   const double last = std::min(60.0, angle.last_order + 0.5);
-  const double step = std::max(std::clamp(0.1 / turns, 0.01, 0.1), (last - kFirst) / kMost);
+  const double step =
+      std::max(std::clamp(0.1 / turns, 0.01, 0.1), (last - tuning::kFirstLine) / tuning::kMostLines);
   const double nearest = std::clamp(0.2 / turns, 0.01, 0.45);
-  Shape order{"order", "1", 1.0, kFirst, std::max(last, kFirst + step), {}};
+  Shape order{"order", "1", 1.0, tuning::kFirstLine, std::max(last, tuning::kFirstLine + step), {}};
   std::vector<int> number;  // of each value among all steps
-  for (int j = 0; kFirst + j * step <= last; ++j) {
-    const double k = kFirst + j * step;
+  for (int j = 0; tuning::kFirstLine + j * step <= last; ++j) {
+    const double k = tuning::kFirstLine + j * step;
     if (std::abs(k - std::round(k)) <= nearest) continue;
     order.value.push_back(k);
     number.push_back(j);
   }
   if (number.empty()) return;
-  const auto waves = std::make_shared<const model::WaveGrid>(d.continued_rad, kFirst, step, number.back() + 1);
+  const auto waves =
+      std::make_shared<const model::WaveGrid>(d.continued_rad, tuning::kFirstLine, step, number.back() + 1);
   collect.AddOver(
       "line", order,
       [design = collect.shared(), nearest](const Eigen::VectorXd& k) {
@@ -80,8 +81,7 @@ void AddLines(Collector& collect) {
 void AddInteractions(Collector& collect) {
   const Design& d = collect.design();
   if (d.angles.size() < 2 || d.angles[0].first_unfree > 0 || d.angles[1].first_unfree > 0) return;
-  constexpr int kMost = 8;
-  const int last = std::min({kMost, d.angles[0].last_order, d.angles[1].last_order});
+  const int last = std::min({tuning::kInteractionOrders, d.angles[0].last_order, d.angles[1].last_order});
   std::vector<std::pair<int, int>> orders;
   for (int a = 1; a <= last; ++a) {
     for (int b = -last; b <= last; ++b) {
@@ -109,6 +109,7 @@ void AddInteractions(Collector& collect) {
 }  // namespace
 
 void AddByAngle(Collector& collect) {
+  if (collect.design().angles.empty()) return;
   for (const Angle& angle : collect.design().angles) AddHarmonics(collect, angle);
   AddLines(collect);
   AddInteractions(collect);

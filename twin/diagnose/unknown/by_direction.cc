@@ -4,13 +4,12 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/candidates.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::unknown {
 namespace {
-
-constexpr int kMotionOrders = 24;
 
 /// What dies out behind each reversal, alone and beside an offset that stays: a hysteresis of another form.
 void AddBehindReversals(Collector& collect, const Eigen::VectorXd& held) {
@@ -48,7 +47,7 @@ void AddByDirection(Collector& collect) {
   for (const Angle& angle : d.angles) {
     if (!angle.is_turned_by_motion) continue;
     for (const Eigen::VectorXd& sense : d.senses) {
-      collect.AddModulated("direction harmonic", angle, kMotionOrders, sense,
+      collect.AddModulated("direction harmonic", angle, tuning::kModulatedOrders, sense,
                            "direction times order {} locked to " + angle.name + ", odd in direction");
       if (&sense == &d.senses.front()) collect.AreHarmonics(angle, Following({}, "direction"));
     }
@@ -57,12 +56,10 @@ void AddByDirection(Collector& collect) {
 }
 
 void AddBySpeed(Collector& collect) {
-  constexpr double kDifferent = 0.05;
   const Design& d = collect.design();
   if (d.velocity.size() == 0 || d.velocity.isZero()) return;
   const Eigen::VectorXd v = model::Unit(d.velocity), speed = v.cwiseAbs();
-  const Angle& angle = d.angles.front();
-  const double per_rad_s = RmsOf(d.velocity);
+  const double per_rad_s = model::Rms(d.velocity);
   const auto is_constant = [&](const char* times) {
     collect.Are([times, per_rad_s](const Eigen::VectorXd&, int) {
       return ColumnOf(Following(SignalOf("constant"), times, 0.0, per_rad_s));
@@ -70,16 +67,18 @@ void AddBySpeed(Collector& collect) {
   };
   collect.Add("speed", v, "proportional to the velocity, odd in direction");
   is_constant("velocity");
-  if (speed.maxCoeff() - speed.minCoeff() <= kDifferent * speed.maxCoeff()) return;
+  if (speed.maxCoeff() - speed.minCoeff() <= tuning::kOneSpeed * speed.maxCoeff()) return;
   collect.Add("speed", speed, "proportional to the speed, even in direction");
   is_constant("speed");
   collect.Add("speed", v.cwiseProduct(speed), "proportional to the square of the speed, odd in direction");
   collect.Add("speed", model::Unit(model::Acceleration(d.course, d.velocity)), "proportional to the acceleration");
+  if (d.angles.empty()) return;
+  const Angle& angle = d.angles.front();
   const std::string order = "order {} locked to " + angle.name;
-  collect.AddModulated("speed harmonic", angle, kMotionOrders, v,
+  collect.AddModulated("speed harmonic", angle, tuning::kModulatedOrders, v,
                        order + ", proportional to the velocity, odd in direction");
   collect.AreHarmonics(angle, Following({}, "velocity", 0.0, per_rad_s));
-  collect.AddModulated("speed harmonic", angle, kMotionOrders, speed,
+  collect.AddModulated("speed harmonic", angle, tuning::kModulatedOrders, speed,
                        order + ", proportional to the speed, even in direction");
   collect.AreHarmonics(angle, Following({}, "speed", 0.0, per_rad_s));
 }

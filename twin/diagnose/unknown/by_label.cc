@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::unknown {
 namespace {
-
-constexpr Eigen::Index kMostOffsets = 64, kMostWaves = 24;  // labels; more are a wander
 
 bool IsTold(const Eigen::MatrixXd& which, Eigen::Index most) {
   return which.cols() > 1 && which.cols() <= most;
@@ -29,7 +28,7 @@ Eigen::MatrixXd WhereMoved(const Design& design, const std::vector<int>& label) 
 
 /// Low orders of the first angle that differ from one value of a label to the next.
 void AddWaves(Collector& collect, const std::string& what, const Eigen::MatrixXd& which, int last) {
-  if (!IsTold(which, kMostWaves)) return;
+  if (!IsTold(which, tuning::kMostWaves) || collect.design().angles.empty()) return;
   const Angle& angle = collect.design().angles.front();
   collect.Add(
       what + " harmonic", std::min(last, angle.last_order),
@@ -40,28 +39,28 @@ void AddWaves(Collector& collect, const std::string& what, const Eigen::MatrixXd
 }
 
 void AddPasses(Collector& collect) {
-  constexpr int kLastOrder = 3;
   const Design& d = collect.design();
   const Eigen::MatrixXd passes = WhereMoved(d, d.course.pass), visits = WhereMoved(d, model::Visits(d.course));
-  if (IsTold(passes, kMostOffsets)) collect.Add("pass", passes, "offset of each pass, locked to the pass (time)");
-  AddWaves(collect, "pass", passes, kLastOrder);
-  if (visits.cols() <= passes.cols() || !IsTold(visits, kMostOffsets)) return;
+  if (IsTold(passes, tuning::kMostOffsets))
+    collect.Add("pass", passes, "offset of each pass, locked to the pass (time)");
+  AddWaves(collect, "pass", passes, tuning::kPassOrders);
+  if (visits.cols() <= passes.cols() || !IsTold(visits, tuning::kMostOffsets)) return;
   collect.Add("pass", visits, "offset of each pass of each set-up, locked to the pass (time)");
 }
 
 /// A label for every dwell that occurs, to a tenth of a second.
 std::vector<int> DwellLevels(const Eigen::VectorXd& dwell_s) {
   std::vector<int> levels;
-  for (const double d_s : dwell_s) levels.push_back(std::isfinite(d_s) ? static_cast<int>(std::lround(10.0 * d_s)) : -1);
+  for (const double d_s : dwell_s)
+    levels.push_back(std::isfinite(d_s) ? static_cast<int>(std::lround(10.0 * d_s)) : -1);
   return levels;
 }
 
 void AddDwells(Collector& collect) {
-  constexpr Eigen::Index kMostLevels = 8;
   const Design& d = collect.design();
   if (!d.course.dwell_s.array().isFinite().any()) return;
   const Eigen::MatrixXd levels = WhereMoved(d, DwellLevels(d.course.dwell_s));
-  if (!IsTold(levels, kMostLevels)) return;
+  if (!IsTold(levels, tuning::kMostDwells)) return;
   collect.Add("dwell", levels, "depends on the dwell");
   collect.Add("dwell", model::Times(levels, d.senses.front()),
               "direction times a function of the dwell, odd in direction");
@@ -70,11 +69,10 @@ void AddDwells(Collector& collect) {
 }  // namespace
 
 void AddByLabel(Collector& collect) {
-  constexpr int kLastOrder = 6;
   AddPasses(collect);
   AddDwells(collect);
   // An offset of each set-up is free anyway.
-  AddWaves(collect, "set-up", WhereMoved(collect.design(), collect.design().course.setup), kLastOrder);
+  AddWaves(collect, "set-up", WhereMoved(collect.design(), collect.design().course.setup), tuning::kSetupOrders);
 }
 
 }  // namespace twinbench::diagnose::unknown

@@ -6,20 +6,32 @@
 #include <utility>
 
 #include "twin/core/units.h"
+#include "twin/diagnose/engine/base.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::unknown {
 namespace {
 
-/// Monomials of degree 2 and 3 of both values, and of degree 4 and 5 of the first: samples x 9.
-Eigen::MatrixXd Powers(const Eigen::VectorXd& u, const Eigen::VectorXd& v) {
-  Eigen::MatrixXd p(u.size(), 9);
-  const auto a = u.array(), b = v.array();
-  p << a.square().matrix(), (a * b).matrix(), b.square().matrix(), a.cube().matrix(), (a.square() * b).matrix(),
-      (a * b.square()).matrix(), b.cube().matrix(), a.square().square().matrix(),
-      (a.square().square() * a).matrix();
-  return p;
+struct Exponents {
+  int own, partner;
+};
+
+/// Monomials of degree 2 and 3 of a channel and its partner, and of degree 4 and 5 of the channel.
+std::vector<Exponents> ExponentsOf(bool has_partner) {
+  if (!has_partner) return {{2, 0}, {3, 0}, {4, 0}, {5, 0}};
+  return {{2, 0}, {1, 1}, {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}, {4, 0}, {5, 0}};
+}
+
+/// Samples x exponents.
+Eigen::MatrixXd Powers(const Eigen::VectorXd& own, const Eigen::VectorXd& partner,
+                       const std::vector<Exponents>& exponents) {
+  Eigen::MatrixXd powers(own.size(), std::ssize(exponents));
+  for (std::size_t k = 0; k < exponents.size(); ++k)
+    powers.col(static_cast<Eigen::Index>(k)) =
+        own.array().pow(exponents[k].own) * partner.array().pow(exponents[k].partner);
+  return powers;
 }
 
 /// Wave numbers of fringes from one longest period to one shortest, half a cycle of phase between the ends of the
@@ -30,8 +42,7 @@ struct FringeGrid {
 
   FringeGrid(double span, double shortest)
       : longest(std::max(span / 2.0, 1.5 * shortest)), step(0.4 / std::max(span, 3.0 * shortest)) {
-    constexpr int kMost = 400;
-    size = std::clamp(static_cast<int>((1.0 / shortest - 1.0 / longest) / step), 1, kMost);
+    size = std::clamp(static_cast<int>((1.0 / shortest - 1.0 / longest) / step), 1, tuning::kMostFringes);
   }
   double Period(int g) const { return 1.0 / (1.0 / longest + g * step); }
 };
@@ -41,10 +52,9 @@ EffectSettings At(const std::string& channel, EffectSettings signal) {
   return signal;
 }
 
-/// The exponents of Powers.
-std::vector<Product> ProductsOfPowers(const std::string& channel, double range) {
-  const std::array<std::array<int, 2>, 9> exponents = {
-      {{2, 0}, {1, 1}, {0, 2}, {3, 0}, {2, 1}, {1, 2}, {0, 3}, {4, 0}, {5, 0}}};
+/// Powers as signals.
+std::vector<Product> ProductsOfPowers(const std::string& channel, double range,
+                                      const std::vector<Exponents>& exponents) {
   std::vector<Product> products;
   for (const auto& [own, partner] : exponents) {
     const auto column = static_cast<int>(products.size());
@@ -72,11 +82,10 @@ std::vector<Product> ProductsOfLeaks(const Design& d, const std::vector<Leak>& l
 }
 
 void AddFringes(Collector& collect, int channel) {
-  constexpr double kShortest = 25.0;  // in plausible sizes of a disturbance
   const Design& d = collect.design();
   const Eigen::VectorXd shown = d.shown.col(channel);
   const std::string name = d.channels[static_cast<std::size_t>(channel)];
-  const FringeGrid fringes(shown.maxCoeff() - shown.minCoeff(), kShortest * d.plausible);
+  const FringeGrid fringes(shown.maxCoeff() - shown.minCoeff(), tuning::kShortestFringe * d.plausible);
   collect.AddRows(
       d.shown_name + " fringes", name, fringes.size,
       [design = collect.shared(), channel, fringes](int g) {
@@ -92,18 +101,22 @@ void AddFringes(Collector& collect, int channel) {
   });
 }
 
-/// The other channel of the same detector.
-int Partner(int channel) {
-  return channel ^ 1;
+/// The other channel of the same detector; itself if there is none.
+int Partner(const Design& d, int channel) {
+  const int other = channel ^ 1;
+  return other < std::ssize(d.channels) ? other : channel;
 }
 
 void AddOnChannel(Collector& collect, int channel, const Eigen::MatrixXd& share, double range) {
   const Design& d = collect.design();
   const std::string name = d.channels[static_cast<std::size_t>(channel)];
+  const int partner = Partner(d, channel);
+  const std::vector<Exponents> exponents = ExponentsOf(partner != channel);
   collect.AddRows(d.shown_name, name,
-                  OnChannel(d, Powers(share.col(channel), share.col(Partner(channel))), channel),
+                  OnChannel(d, Powers(share.col(channel), share.col(partner), exponents), channel),
                   fmt::format("smooth function of the {0} of {1}, locked to {0}", d.shown_name, name));
-  collect.Are([products = ProductsOfPowers(name, range)](const Eigen::VectorXd&, int) { return products; });
+  collect.Are(
+      [products = ProductsOfPowers(name, range, exponents)](const Eigen::VectorXd&, int) { return products; });
   collect.AddRows("linear map", name, OnChannel(d, share, channel),
                   fmt::format("proportional to all {0}s, locked to {0} of {1}", d.shown_name, name));
   std::vector<Leak> leaks;
@@ -130,13 +143,6 @@ std::vector<Group> GroupsOf(const Design& d) {
   return groups;
 }
 
-Eigen::MatrixXd Beside(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
-  Eigen::MatrixXd both(right.rows(), left.cols() + right.cols());
-  if (left.cols() > 0) both.leftCols(left.cols()) = left;
-  both.rightCols(right.cols()) = right;
-  return both;
-}
-
 /// Wrong scales and turned axes of a detector; wrong scales of all channels at once.
 void AddLinearMap(Collector& collect, const Group& group, const Eigen::MatrixXd& share, double range) {
   const Design& d = collect.design();
@@ -146,7 +152,7 @@ void AddLinearMap(Collector& collect, const Group& group, const Eigen::MatrixXd&
   for (const int on : group.channels) {
     for (const int of : group.channels) {
       if (on != of && !axes_too) continue;
-      columns = Beside(columns, OnChannel(d, share.col(of), on));
+      columns = HStack(columns, OnChannel(d, share.col(of), on));
       leaks.push_back({on, of});
     }
   }
@@ -167,7 +173,7 @@ struct Followed {
 Followed LinearIn(const std::string& name, const Eigen::VectorXd& quantity, double about, bool twin_knows) {
   const Eigen::VectorXd beside = quantity.array() - about;
   Followed followed{name, model::Unit(beside), {}};
-  if (twin_knows && RmsOf(beside) > 0.0) followed.factor = Following({}, name, about, RmsOf(beside));
+  if (twin_knows && model::Rms(beside) > 0.0) followed.factor = Following({}, name, about, model::Rms(beside));
   return followed;
 }
 
@@ -180,9 +186,8 @@ double InCalibration(const Design& d, const Eigen::VectorXd& quantity) {
 }
 
 std::vector<Followed> WhatIsFollowed(const Design& d) {
-  constexpr double kWarmUps = 3.0;  // time constants in a run, of something that warms up and stays
   const Eigen::VectorXd& time_s = d.course.time_s;
-  const Eigen::VectorXd warm = 1.0 - (-kWarmUps * model::ElapsedShare(d.course).array()).exp();
+  const Eigen::VectorXd warm = 1.0 - (-tuning::kWarmUps * model::ElapsedShare(d.course).array()).exp();
   std::vector<Followed> followed = {LinearIn("time", time_s, time_s.mean(), true),
                                     LinearIn("time", time_s, InCalibration(d, time_s), true),
                                     LinearIn("time", warm, InCalibration(d, warm), false),
@@ -218,7 +223,7 @@ void AddGains(Collector& collect, const Eigen::MatrixXd& share, double range) {
       Eigen::MatrixXd columns;
       for (const int c : group.channels) {
         const Eigen::MatrixXd own = OnChannel(d, model::Times(share.col(c), followed.course), c);
-        columns = each || columns.size() == 0 ? Beside(columns, own) : Eigen::MatrixXd(columns + own);
+        columns = each || columns.size() == 0 ? HStack(columns, own) : Eigen::MatrixXd(columns + own);
       }
       collect.AddRows(
           "gain changes", group.name, columns,

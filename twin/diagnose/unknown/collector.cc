@@ -6,12 +6,11 @@
 #include <cmath>
 
 #include "twin/core/signal_effect.h"
+#include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::unknown {
 namespace {
-
-constexpr double kSameShape = 0.2;  // weight of a shape that a named cause has: less likely to be something else
 
 Eigen::MatrixXd AsRows(const Design& design, const Eigen::MatrixXd& samples) {
   return design.rows ? design.rows(samples) : samples;
@@ -39,7 +38,7 @@ Family& Collector::New(const std::string& sort, const std::string& where, const 
   family.kind = Kind::kUnknown;
   family.effect = family.group = sort;
   family.where = where;
-  family.prior_weight = design_->named.contains(sort) ? kSameShape : 1.0;
+  family.prior_weight = design_->named.contains(sort) ? tuning::kSameShape : 1.0;
   family.describe = [on, words, unit = design_->unit, to_SI = design_->to_SI](int g, const Eigen::VectorXd& x) {
     return fmt::format("{}, on {}, amplitude {:.2g} {}", words(g), on, x.norm() / to_SI, unit);
   };
@@ -167,10 +166,6 @@ std::vector<Product> WaveOf(const EffectSettings& signal) {
 
 std::vector<Product> ColumnOf(const EffectSettings& signal, double scale) {
   return {{signal, 0, false, scale}};
-}
-
-double RmsOf(const Eigen::VectorXd& signal) {
-  return std::sqrt(signal.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, signal.size())));
 }
 
 }  // namespace twinbench::diagnose::unknown

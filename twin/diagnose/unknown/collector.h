@@ -70,9 +70,6 @@ EffectSettings Following(EffectSettings signal, const std::string& times, double
 std::vector<Product> WaveOf(const EffectSettings& signal);
 std::vector<Product> ColumnOf(const EffectSettings& signal, double scale = 1.0);
 
-/// Root of the mean square.
-double RmsOf(const Eigen::VectorXd& signal);
-
 /// Samples x k as rows of one channel.
 Eigen::MatrixXd OnChannel(const Design& design, const Eigen::MatrixXd& samples, int channel);
 

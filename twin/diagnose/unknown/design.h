@@ -36,7 +36,7 @@ struct Design {
   model::Course course;
   std::vector<std::string> channels;
   std::vector<Place> places;
-  std::vector<Angle> angles;            // the first is the one that the bench goes through
+  std::vector<Angle> angles;            // the first is the one that the bench goes through; may be none
   Eigen::VectorXd continued_rad;        // the first with its turns counted on
   Eigen::VectorXd moved;                // 1 on the way through the positions, 0 elsewhere
   std::vector<Eigen::VectorXd> senses;  // in which a reading may remember the direction; the usual one first

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::unknown {
 namespace {
 
-constexpr int kGrowingOrders = 24;
-
 /// Where time is the angle in other words, what follows one follows the other.
 bool TimeFollowsAngle(const Design& d) {
+  if (d.angles.empty()) return false;
   const Eigen::VectorXd t = d.course.time_s.array() - d.course.time_s.mean(),
                         a = d.angles.front().rad.array() - d.angles.front().rad.mean();
   return std::abs(t.dot(a)) > 0.999 * t.norm() * a.norm();
@@ -27,7 +27,6 @@ Eigen::VectorXd ShareOfStretch(const Design& d) {
 /// Single modes of few periods (those of more are tones), some together, and a random walk: its cosine modes with
 /// amplitudes that fall as 1 / k are the generic form of any slow wander.
 void AddWander(Collector& collect) {
-  constexpr int kModes = 4, kTogether = 6, kOfWalk = 24;
   const Design& d = collect.design();
   const Eigen::MatrixXd stretches = model::Indicators(d.series.stretch);
   const Eigen::VectorXd share = ShareOfStretch(d);
@@ -35,14 +34,16 @@ void AddWander(Collector& collect) {
     return model::InEach(model::CosineModes(share, count, falling), stretches);
   };
   collect.Add(
-      "wander", kModes,
+      "wander", tuning::kWanderModes,
       [share, stretches](int g) {
         return model::InEach(model::CosineModes(share, g + 1, false).rightCols(1), stretches);
       },
       [](int g) { return fmt::format("slow wander locked to time, {} half periods a run", g + 1); });
-  collect.Add("wander", modes(kTogether, false), "slow wander locked to time");
-  collect.Add("wander", modes(std::max(kTogether + 1, kOfWalk / static_cast<int>(stretches.cols())), true),
-              "random wander locked to time");
+  collect.Add("wander", modes(tuning::kWanderTogether, false), "slow wander locked to time");
+  collect.Add(
+      "wander",
+      modes(std::max(tuning::kWanderTogether + 1, tuning::kWalkModes / static_cast<int>(stretches.cols())), true),
+      "random wander locked to time");
   const Eigen::MatrixXd setups = model::Times(model::Indicators(d.course.setup), d.moved);
   if (stretches.cols() == 1 && setups.cols() > 1)
     collect.Add("wander", model::Times(setups, model::ElapsedShare(d.course)),
@@ -107,7 +108,7 @@ void AddTemperature(Collector& collect) {
         return fmt::format("locked to temperature with a lag of {:.0f} s", lags_s[static_cast<std::size_t>(g)]);
       });
   if (d.twin_is_warm)
-    collect.Are([per_K = RmsOf(d.above_K)](const Eigen::VectorXd&, int g) -> std::vector<Product> {
+    collect.Are([per_K = model::Rms(d.above_K)](const Eigen::VectorXd&, int g) -> std::vector<Product> {
       if (g > 0) return {};  // a lag has a memory
       return ColumnOf(Following(SignalOf("constant"), "temperature", 0.0, per_K));
     });
@@ -119,15 +120,16 @@ void AddTemperature(Collector& collect) {
 /// A size that follows the elapsed share of the run, of rms one.
 EffectSettings OfTime(const Design& d) {
   const double begin_s = d.course.time_s.minCoeff(), duration_s = d.course.time_s.maxCoeff() - begin_s;
-  return Following({}, "time", begin_s, duration_s * RmsOf(model::ElapsedShare(d.course)));
+  return Following({}, "time", begin_s, duration_s * model::Rms(model::ElapsedShare(d.course)));
 }
 
 /// Waves that grow with something.
 void AddGrowing(Collector& collect) {
   const Design& d = collect.design();
+  if (d.angles.empty()) return;
   const Angle& angle = d.angles.front();
   const auto add = [&](const Eigen::VectorXd& growing, const std::string& what) {
-    collect.AddModulated("growing harmonic", angle, kGrowingOrders, model::Unit(growing),
+    collect.AddModulated("growing harmonic", angle, tuning::kModulatedOrders, model::Unit(growing),
                          "order {} locked to " + angle.name + " that grows with " + what);
   };
   add(model::ElapsedShare(d.course), "time");
@@ -136,7 +138,7 @@ void AddGrowing(Collector& collect) {
   const Eigen::VectorXd about_mean_K = d.above_K.array() - d.above_K.mean();
   add(about_mean_K, "temperature");
   if (d.twin_is_warm)
-    collect.AreHarmonics(angle, Following({}, "temperature", d.above_K.mean(), RmsOf(about_mean_K)));
+    collect.AreHarmonics(angle, Following({}, "temperature", d.above_K.mean(), model::Rms(about_mean_K)));
 }
 
 void AddTrends(Collector& collect) {
@@ -147,10 +149,9 @@ void AddTrends(Collector& collect) {
     signal.times = factor.times;
     return ColumnOf(signal);
   });
-  const Angle& angle = d.angles.front();
-  if (angle.first_unfree > 0)
-    collect.Add("trend", model::Unit(angle.rad),
-                "linear trend locked to " + angle.name + ", same in both directions");
+  if (!d.angles.empty() && d.angles.front().first_unfree > 0)
+    collect.Add("trend", model::Unit(d.angles.front().rad),
+                "linear trend locked to " + d.angles.front().name + ", same in both directions");
 }
 
 }  // namespace

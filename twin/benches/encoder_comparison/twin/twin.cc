@@ -1,37 +1,123 @@
 #include "twin/benches/encoder_comparison/twin/twin.h"
 
+#include <Eigen/Core>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "twin/core/run_record.h"
-#include "twin/core/scenario.h"
-#include "twin/procedure/angle_comparison.h"
-#include "twin/sim/encoder/follow.h"
-#include "twin/sim/encoder/twin.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/core/stream.h"
+#include "twin/sim/truth.h"
 
-namespace twinbench::benches::encoder {
+namespace twinbench::sim {
 namespace {
 
-class Twin : public BenchTwin {
- public:
-  explicit Twin(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
-  nlohmann::json Truth() const override { return twin_.Truth(); }
-  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
-    procedure::CarryOut(twin_, scenario_, record, progress);
-  }
+/// A stop is approached in its direction over half the way from its neighbour.
+double Approach_rad(const Reading& reading, const EncoderProcedureSettings& procedure) {
+  if (procedure.kind != "stops") return 0.0;
+  return reading.direction * units::kPi / procedure.stops;
+}
 
- private:
-  Scenario scenario_;
-  sim::EncoderTwin twin_;
-};
+AngleMoment MomentOf(const Reading& reading, const Scenario& scenario) {
+  const double velocity_rad_s = std::isfinite(reading.velocity_rad_s) ? reading.velocity_rad_s : 0.0;
+  return {reading.time,          reading.setup,  reading.reading,
+          reading.reference_rad, velocity_rad_s, Approach_rad(reading, EncoderOf(scenario).encoder_procedure)};
+}
+
+double Noise(const Scenario& scenario, int reading) {
+  Stream stream(scenario.seed, "device.noise");
+  stream.Seek(static_cast<std::uint64_t>(reading));
+  return EncoderOf(scenario).device.noise_rad * stream.Normal();
+}
+
+/// A function of the angle at every degree, its mean taken out.
+template <class Error>
+nlohmann::json CurveOf(Error error_rad) {
+  constexpr int kPositions = 360;
+  Eigen::ArrayXd values(kPositions), positions_deg(kPositions);
+  for (int k = 0; k < kPositions; ++k) {
+    positions_deg[k] = k;
+    values[k] = error_rad(k * units::deg) / units::arcsec;
+  }
+  values -= values.mean();
+  return {{"position_deg", positions_deg}, {"ez_arcsec", values}};
+}
+
+double Quantised(double angle_rad, double step_rad) {
+  return step_rad > 0.0 ? step_rad * std::round(angle_rad / step_rad) : angle_rad;
+}
 
 }  // namespace
 
-std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
-  return std::make_unique<Twin>(scenario);
+EncoderTwin::EncoderTwin(const Scenario& scenario) : scenario_(scenario), empirical_(scenario.empiricals, "angle") {
+  for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
+  for (const auto& effect : effects_) effect->AlterSignals(signals_);
 }
 
-std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
-  return sim::FollowEncoder(scenario, record);
+/// A record of somebody else may have more set-ups than the scenario: where the device stood then is unknown.
+double EncoderTwin::MountingOf_rad(int setup) const {
+  const std::vector<double>& mounting_rad = EncoderOf(scenario_).encoder_procedure.mounting_rad;
+  const auto at = static_cast<std::size_t>(setup);
+  return at < mounting_rad.size() ? mounting_rad[at] : 0.0;
 }
 
-}  // namespace twinbench::benches::encoder
+/// Of the device's shaft, as its scale counts.
+double EncoderTwin::ShaftAngle_rad(const AngleMoment& moment) const {
+  double device_rad = moment.shaft_rad + MountingOf_rad(moment.setup);
+  for (const auto& effect : effects_) device_rad += effect->ShaftError_rad(moment);
+  return device_rad;
+}
+
+double EncoderTwin::DeviceError_rad(const AngleMoment& moment, double device_rad) const {
+  const DeviceSettings& device = EncoderOf(scenario_).device;
+  double error_rad = 0.0;
+  for (const auto& effect : effects_) error_rad += effect->DeviceError_rad(moment, device_rad);
+  const double phase_rad = device.signal_periods * (device_rad - device.signal_zero_rad);
+  return error_rad + mechanics::SignalError_rad(signals_, phase_rad) / device.signal_periods;
+}
+
+double EncoderTwin::ReferenceError_rad(const AngleMoment& moment) const {
+  double error_rad = 0.0;
+  for (const auto& effect : effects_) error_rad += effect->ReferenceError_rad(moment);
+  return error_rad;
+}
+
+double EncoderTwin::Shown_rad(const AngleMoment& moment) const {
+  const double device_rad = ShaftAngle_rad(moment);
+  return device_rad + DeviceError_rad(moment, device_rad) + empirical_.At(moment.reading);
+}
+
+double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
+  AngleMoment moment = MomentOf(reading, scenario_);
+  // A reference that errs by arcseconds an arcminute: each step leaves a hundredth of what is wrong, or less.
+  constexpr int kSteps = 5;
+  for (int k = 0; k < kSteps; ++k) moment.shaft_rad = reading.reference_rad - ReferenceError_rad(moment);
+  moment.shaft_rad += shaft_rad;
+  for (const auto& effect : effects_) effect->Advance(moment);
+  return Shown_rad(moment);
+}
+
+void EncoderTwin::Take(Reading& reading) {
+  const AngleMoment moment = MomentOf(reading, scenario_);
+  for (const auto& effect : effects_) effect->Advance(moment);
+  reading.reference_rad += ReferenceError_rad(moment);
+  reading.measured_rad = Shown_rad(moment);
+  if (scenario_.noise_free) return;
+  reading.measured_rad = Quantised(reading.measured_rad + Noise(scenario_, reading.reading),
+                                   EncoderOf(scenario_).device.resolution_rad);
+}
+
+nlohmann::json EncoderTwin::Truth() const {
+  // At one instant: what does not follow the angle is the same everywhere then and goes with the mean.
+  nlohmann::json json = {{"device", CurveOf([&](double angle_rad) { return DeviceError_rad({}, angle_rad); })},
+                         {"reference", CurveOf([&](double angle_rad) {
+                            AngleMoment moment;
+                            moment.shaft_rad = angle_rad;
+                            return ReferenceError_rad(moment);
+                          })},
+                         {"effects", nlohmann::json::array()},
+                         {"seed", scenario_.seed}};
+  for (const EffectSettings& effect : scenario_.effects) json["effects"].push_back(ToJson(effect));
+  return json;
+}
+
+}  // namespace twinbench::sim

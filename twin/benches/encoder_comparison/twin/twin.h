@@ -1,14 +1,46 @@
 #pragma once
 
-#include "twin/core/bench.h"
-#include "twin/model/follow.h"
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
 
-namespace twinbench::benches::encoder {
+#include "twin/benches/encoder_comparison/twin/effect.h"
+#include "twin/core/devices.h"
+#include "twin/sim/empirical_signal.h"
 
-/// @throws InputError if the scenario's parts cannot be built.
-std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario);
+namespace twinbench::sim {
 
-/// @throws InputError likewise.
-std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);
+/// The virtual angle comparison: an ideal device and an ideal reference on one shaft, with the scenario's effects.
+///
+/// Same scenario, same bits; the noise of a reading follows from its number alone.
+class EncoderTwin : public AngleComparator {
+ public:
+  /// @throws InputError if an effect needs what the scenario does not state.
+  explicit EncoderTwin(const Scenario& scenario);
 
-}  // namespace twinbench::benches::encoder
+  void Take(Reading& reading) override;
+
+  /// What the device would show, noise apart, at the instant when the reference showed `reading.reference_rad`.
+  /// Readings are asked for in their order.
+  /// @param shaft_rad  By how much the shaft stands beside where the reference says.
+  double DeviceAt_rad(const Reading& reading, double shaft_rad = 0.0);
+
+  /// {"device": {"position_deg", "ez_arcsec"}, "reference": same, "effects": [...], "seed": n}: opened only by
+  /// tests and scores. Both curves show too much where positive, each by its own angle at every degree, without
+  /// their mean.
+  nlohmann::json Truth() const;
+
+ private:
+  double MountingOf_rad(int setup) const;
+  double Shown_rad(const AngleMoment& moment) const;
+  double ShaftAngle_rad(const AngleMoment& moment) const;
+  double DeviceError_rad(const AngleMoment& moment, double device_rad) const;
+  double ReferenceError_rad(const AngleMoment& moment) const;
+
+  Scenario scenario_;
+  std::vector<std::unique_ptr<AngleEffect>> effects_;
+  SignalState signals_;
+  EmpiricalSignal empirical_;
+};
+
+}  // namespace twinbench::sim

@@ -1,14 +1,34 @@
 #pragma once
 
-#include "twin/core/bench.h"
-#include "twin/model/follow.h"
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 
-namespace twinbench::benches::hob {
+#include "twin/core/devices.h"
+#include "twin/core/scenario.h"
 
-/// @throws InputError if the scenario's parts cannot be built.
-std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario);
+namespace twinbench::sim {
 
-/// @throws InputError likewise.
-std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);
+/// The virtual bench hob_transmission: a transmission chain with ring encoders, a counter card and an
+/// interferometer that a procedure can drive, and the truth that it may not see.
+///
+/// Same scenario, same bits: every random number comes from Stream(scenario.seed, name of its cause).
+class HobTwin {
+ public:
+  /// @throws InputError if the machine cannot be built as the scenario says.
+  explicit HobTwin(const Scenario& scenario);
+  ~HobTwin();
 
-}  // namespace twinbench::benches::hob
+  /// Valid as long as the twin.
+  HobBench Bench();
+
+  /// {"transmission": [{order, amplitude_arcsec, phase_deg}], "table_encoder": [the same], "effects": [...],
+  ///  "seed": n}: harmonics of cosines. The transmission error is quasi-static; the encoder's is that of its
+  ///  geometry, in its own angle, with the head at its mark.
+  nlohmann::json Truth() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace twinbench::sim

@@ -1,41 +1,148 @@
 #include "twin/benches/rotary_4dof/twin/twin.h"
 
-#include <nlohmann/json.hpp>
+#include <optional>
 
-#include "twin/core/run_record.h"
-#include "twin/core/scenario.h"
-#include "twin/procedure/procedure.h"
-#include "twin/sim/rotary_follow.h"
-#include "twin/sim/twin.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/world.h"
 
-namespace twinbench::benches::rotary {
-namespace {
+namespace twinbench::sim {
 
-class Twin : public BenchTwin {
+using mechanics::Axis;
+
+// Not in the unnamed namespace: a type of the header holds them, and would be local to this file as well.
+
+class TwinClock : public Clock {
  public:
-  explicit Twin(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
-  nlohmann::json Truth() const override { return ToJson(twin_.TheTruth()); }
-  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
-    RotaryBench bench = twin_.Bench();
-    procedure::Options options;
-    options.log = &record;
-    procedure::CarryOut(bench, scenario_, record, progress, options);
-  }
-  void WriteImages(const std::string& folder) override { twin_.WriteIrradiance(folder + "/irradiance.exr"); }
+  explicit TwinClock(World& world) : world_(world) {}
+  Time Now() const override { return world_.queue().Now(); }
+  void Wait(Duration duration) override { world_.queue().RunUntil(Now() + duration); }
 
  private:
-  Scenario scenario_;
-  sim::Twin twin_;
+  World& world_;
 };
 
-}  // namespace
+class TwinTable : public RotaryTable {
+ public:
+  TwinTable(World& world, Axis axis) : world_(world), axis_(axis) {}
+  void StartMove(double angle_rad) override { world_.StartMove(axis_, angle_rad); }
+  bool Settles(Duration within) override { return world_.Settles(axis_, within); }
+  TableState State() override { return world_.StateOf(axis_); }
+  void Stop() override { world_.Stop(axis_); }
+  void Home() override {}  // it never loses its origin
 
-std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
-  return std::make_unique<Twin>(scenario);
+ private:
+  World& world_;
+  Axis axis_;
+};
+
+class TwinAdc : public AdConverter {
+ public:
+  explicit TwinAdc(World& world) : world_(world) {}
+  Acquisition Acquire(int n_samples, bool keep_raw) override { return world_.Acquire(n_samples, keep_raw); }
+
+ private:
+  World& world_;
+};
+
+/// Looks at the grating's normal; out of its range it shows nothing.
+class TwinAutocollimator : public Autocollimator {
+ public:
+  explicit TwinAutocollimator(World& world)
+      : world_(world),
+        settings_(RotaryOf(world.actual()).autocollimator),
+        noise_(world.actual().seed, "autocollimator.noise") {}
+
+  AutocollimatorReading Read() override {
+    const Vector3 normal_L = world_.GratingPose().linear().col(1);
+    const double yaw_rad = Show(std::atan2(-normal_L.x(), normal_L.y()));
+    const double tilt_rad = Show(std::atan2(normal_L.z(), std::hypot(normal_L.x(), normal_L.y())));
+    return {yaw_rad, tilt_rad};
+  }
+
+ private:
+  double Show(double angle_rad) {
+    const double noise_rad = settings_.noise_rad > 0.0 ? settings_.noise_rad * noise_.Normal() : 0.0;
+    const double shown_rad = (1.0 + settings_.gain_error) * angle_rad + noise_rad;
+    return std::abs(shown_rad) <= settings_.range_rad ? shown_rad : kNaN;
+  }
+
+  World& world_;
+  AutocollimatorSettings settings_;
+  Stream noise_;
+};
+
+class TwinThermometer : public Thermometer {
+ public:
+  explicit TwinThermometer(World& world) : world_(world) {}
+  double Read_degC() override { return world_.environment().Measure_degC(world_.queue().Now()); }
+
+ private:
+  World& world_;
+};
+
+class TwinGoniometer : public Goniometer {
+ public:
+  explicit TwinGoniometer(World& world) : world_(world) {}
+  void MoveTo(double yaw_rad, double tilt_rad) override { world_.SetGoniometer(yaw_rad, tilt_rad); }
+
+ private:
+  World& world_;
+};
+
+class TwinFixture : public Fixture {
+ public:
+  explicit TwinFixture(World& world) : world_(world) {}
+  void Mount(int setup, double clamp_rad, double reseat_rad) override {
+    world_.Mount(setup, clamp_rad, reseat_rad);
+  }
+
+ private:
+  World& world_;
+};
+
+/// The devices are rebuilt in their place: whoever holds them keeps them over a restart.
+struct Twin::Impl : public Simulation {
+  struct Devices {
+    explicit Devices(const Scenario& scenario) : world(scenario) {}
+
+    World world;
+    TwinClock clock{world};
+    TwinTable target{world, Axis::kTarget};
+    TwinTable reference{world, Axis::kReference};
+    TwinAdc adc{world};
+    TwinAutocollimator autocollimator{world};
+    TwinThermometer thermometer{world};
+    TwinGoniometer goniometer{world};
+    TwinFixture fixture{world};
+  };
+
+  explicit Impl(const Scenario& its_scenario) : scenario(its_scenario) { devices.emplace(scenario); }
+  void Restart() override { devices.emplace(scenario); }
+  void SetPaced(bool) override {}  // in a program's own twin no time is ever waited for
+
+  Scenario scenario;
+  std::optional<Devices> devices;
+};
+
+Twin::Twin(const Scenario& scenario) : impl_(std::make_unique<Impl>(scenario)) {}
+Twin::~Twin() = default;
+
+RotaryBench Twin::Bench() {
+  Impl::Devices& d = *impl_->devices;
+  return {d.clock,       d.target,     d.reference, d.adc,      d.autocollimator,
+          d.thermometer, d.goniometer, d.fixture,   impl_.get()};
 }
 
-std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
-  return sim::FollowRotary(scenario, record);
+Truth Twin::TheTruth() const {
+  const Stand& stand = impl_->devices->world.stand();
+  const Scenario& scenario = impl_->scenario;
+  const int positions = RotaryOf(scenario).procedure.positions;
+  return {stand.target().Repeatable(positions), stand.reference().Repeatable(positions), scenario.effects,
+          scenario.seed};
 }
 
-}  // namespace twinbench::benches::rotary
+void Twin::WriteIrradiance(const std::string& path) {
+  impl_->devices->world.WriteIrradiance(path);
+}
+
+}  // namespace twinbench::sim

@@ -1,14 +1,35 @@
 #pragma once
 
-#include "twin/core/bench.h"
-#include "twin/model/follow.h"
+#include <memory>
 
-namespace twinbench::benches::rotary {
+#include "twin/core/devices.h"
+#include "twin/core/scenario.h"
+#include "twin/sim/truth.h"
 
-/// @throws InputError if the scenario's parts cannot be built.
-std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario);
+namespace twinbench::sim {
 
-/// @throws InputError likewise.
-std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);
+/// The virtual rotary bench: devices that a procedure can drive, and the truth that it may not see.
+///
+/// Same scenario, same bits: every random number comes from Stream(scenario.seed, name of its cause).
+/// Instances share nothing, so that many may run in as many threads.
+class Twin {
+ public:
+  /// @throws InputError if a file that the scenario names cannot be read or does not fit.
+  explicit Twin(const Scenario& scenario);
+  ~Twin();
 
-}  // namespace twinbench::benches::rotary
+  /// Valid as long as the twin, over restarts too.
+  RotaryBench Bench();
+
+  /// What the errors of both tables are at the stops of the scenario's procedure.
+  Truth TheTruth() const;
+
+  /// Writes the irradiance on both PSDs at this moment as one multi-part OpenEXR.
+  void WriteIrradiance(const std::string& path);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace twinbench::sim

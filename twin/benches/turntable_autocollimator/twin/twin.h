@@ -1,14 +1,33 @@
 #pragma once
 
-#include "twin/core/bench.h"
-#include "twin/model/follow.h"
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 
-namespace twinbench::benches::turntable {
+#include "twin/core/devices.h"
+#include "twin/core/scenario.h"
 
-/// @throws InputError if the scenario's parts cannot be built.
-std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario);
+namespace twinbench::sim {
 
-/// @throws InputError likewise.
-std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);
+/// The virtual bench turntable_autocollimator: devices that a procedure can drive, and the truth that it may not
+/// see. The turntable moves as in the rotary bench, the autocollimator traces its beam to the mirror and back.
+///
+/// Same scenario, same bits: every random number comes from Stream(scenario.seed, name of its cause).
+class TurntableTwin {
+ public:
+  /// @throws InputError if a file that the scenario names cannot be read or does not fit, or if the autocollimator
+  ///         cannot be built as it says.
+  explicit TurntableTwin(const Scenario& scenario);
+  ~TurntableTwin();
 
-}  // namespace twinbench::benches::turntable
+  /// Valid as long as the twin.
+  TurntableBench Bench();
+
+  /// {"turntable": errors at each tooth angle, "multitooth": errors at its teeth, "effects": [...], "seed": n}
+  nlohmann::json Truth() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace twinbench::sim

@@ -1,0 +1,109 @@
+#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/core/errors.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/engine/noise_estimate.h"
+#include "twin/model/course.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+constexpr int kFewest = 12;
+constexpr double kOffsetPrior_rad = 2.0 * units::kPi;  // free
+
+std::vector<Reading> Chosen(const std::vector<Reading>& readings, const std::vector<int>& used) {
+  std::vector<Reading> chosen;
+  for (const int k : used) chosen.push_back(readings[static_cast<std::size_t>(k)]);
+  return chosen;
+}
+
+/// Fills in velocities that were not recorded, from the readings before and behind of the same pass.
+void DeriveVelocities(Schedule& s) {
+  if (s.velocity_rad_s.array().isFinite().any()) return;
+  const int last = s.Readings() - 1;
+  for (int i = 0; i <= last; ++i) {
+    const int a = i > 0 && s.pass[i - 1] == s.pass[i] ? i - 1 : i;
+    const int b = i < last && s.pass[i + 1] == s.pass[i] ? i + 1 : i;
+    const double step_s = s.time_s[b] - s.time_s[a];
+    s.velocity_rad_s[i] = step_s > 0.0 ? (s.reference_rad[b] - s.reference_rad[a]) / step_s : 0.0;
+  }
+}
+
+/// Offsets of the set-ups: rows x set-ups.
+Eigen::SparseMatrix<double, Eigen::RowMajor> SetUpIndicators(const std::vector<int>& setup) {
+  std::map<int, int> column;
+  for (const int s : setup) column.try_emplace(s, static_cast<int>(column.size()));
+  Eigen::SparseMatrix<double, Eigen::RowMajor> indicators(std::ssize(setup), std::ssize(column));
+  for (std::size_t i = 0; i < setup.size(); ++i) indicators.insert(static_cast<int>(i), column.at(setup[i])) = 1.0;
+  return indicators;
+}
+
+/// Means by set-up, one entry a row.
+Eigen::VectorXd SetUpMeans(const Eigen::SparseMatrix<double, Eigen::RowMajor>& indicators,
+                           const Eigen::VectorXd& y) {
+  const Eigen::VectorXd count = indicators.transpose() * Eigen::VectorXd::Ones(y.size());
+  const Eigen::VectorXd sum = indicators.transpose() * y;
+  return indicators * Eigen::VectorXd(sum.array() / count.array());
+}
+
+/// With the speeds that were derived.
+std::vector<Reading> AsFollowed(std::vector<Reading> used, const Schedule& s) {
+  for (std::size_t i = 0; i < used.size(); ++i)
+    used[i].velocity_rad_s = s.velocity_rad_s[static_cast<Eigen::Index>(i)];
+  return used;
+}
+
+/// What the twin's device shows beside the reference.
+Eigen::VectorXd FollowedError_rad(const Schedule& s, const model::Follow& twin) {
+  return twin.Predict().col(0) - s.reference_rad;
+}
+
+void SetNoise(LinearRun& run, const DeviceSettings& device) {
+  run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
+  const double sigma_rad = run.sigma_stated ? std::hypot(device.noise_rad, device.resolution_rad / std::sqrt(12.0))
+                                            : EstimateNoise_rad(run.schedule, run.residual);
+  run.sigma = Eigen::VectorXd::Constant(run.residual.size(), sigma_rad);
+}
+
+}  // namespace
+
+EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
+                    const model::FollowMaker& follow) {
+  const measure::AngleComparison comparison = measure::CompareAngles(readings);
+  if (std::ssize(comparison.used) < kFewest)
+    throw InputError("readings", fmt::format("{} of {} have a value", comparison.used.size(), readings.size()),
+                     fmt::format("at least {}", kFewest));
+  EncoderRun encoder;
+  encoder.left_out = comparison.left_out;
+  LinearRun& run = encoder.run;
+  run.bench = scenario.bench;
+  const std::vector<Reading> used = Chosen(readings, comparison.used);
+  run.schedule = model::CourseOf(used);
+  if (EncoderOf(scenario).encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);
+  run.channels = {"angle"};
+  run.unit = "deg";
+  run.to_SI = units::deg;
+  run.patterns = {{"angle", Eigen::VectorXd::Ones(1)}};
+  run.nuisance.jacobian = SetUpIndicators(run.schedule.setup);
+  run.nuisance.prior_precision =
+      Eigen::VectorXd::Constant(run.nuisance.jacobian.cols(), 1.0 / (kOffsetPrior_rad * kOffsetPrior_rad));
+  const Eigen::VectorXd offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
+  encoder.context = ContextOf(run.schedule, run.schedule.reference_rad + offset_rad, EncoderOf(scenario).device);
+  run.observed = run.schedule.reference_rad + comparison.error_rad;
+  run.residual =
+      comparison.error_rad - FollowedError_rad(run.schedule, *follow(scenario, AsFollowed(used, run.schedule)));
+  run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
+  SetNoise(run, EncoderOf(scenario).device);
+  return encoder;
+}
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "twin/benches/encoder_comparison/diagnosis/signals.h"
+#include "twin/model/follow.h"
+
+/// The forward model of an angle comparison: an ideal device, turned on the shaft by an unknown angle at each
+/// set-up, with the effects that the scenario already knows.
+namespace twinbench::diagnose::encoder {
+
+struct EncoderRun {
+  LinearRun run;  // one channel, "angle", in deg; one unknown a set-up: its offset
+  SignalContext context;
+  int left_out = 0;  // readings without a value
+};
+
+/// `observed` is the device's angle with the turns that it does not count put back. Where the noise is not known it
+/// is estimated from neighbouring readings, which slow structure does not reach (noise_estimate.h). Velocities that
+/// were not recorded are taken from the angles if the scenario says sweep.
+///
+/// @param follow  The twin that says what readings should have been.
+/// @throws InputError if fewer than 12 readings have a value.
+EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
+                    const model::FollowMaker& follow);
+
+}  // namespace twinbench::diagnose::encoder

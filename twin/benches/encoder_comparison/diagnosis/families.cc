@@ -1,0 +1,61 @@
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
+#include "twin/core/distributions.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/tuning.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+constexpr double kPlausible_rad = 0.01 * units::deg;
+constexpr int kMostOrders = 120;
+
+bool Has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Typical distance of neighbouring readings in each pass; passes at rest are left out.
+std::vector<double> Spacings_rad(const SignalContext& c) {
+  std::map<int, std::vector<double>> steps;
+  for (Eigen::Index i = 1; i < c.Readings(); ++i) {
+    const double step_rad = std::abs(c.reference_rad[i] - c.reference_rad[i - 1]);
+    if (c.pass[i] == c.pass[i - 1] && step_rad > units::urad) steps[c.pass[i]].push_back(step_rad);
+  }
+  std::vector<double> spacings;
+  for (const auto& [pass, step_rad] : steps) spacings.push_back(Median(step_rad));
+  return spacings;
+}
+
+}  // namespace
+
+int LargestOrder(const SignalContext& context) {
+  const std::vector<double> spacings_rad = Spacings_rad(context);
+  if (spacings_rad.empty()) return 0;
+  const double finest_rad = *std::min_element(spacings_rad.begin(), spacings_rad.end());
+  // Two readings a period, and a little more: at exactly two the sine may vanish at every stop.
+  return std::min(kMostOrders, static_cast<int>(std::ceil(units::kPi / finest_rad - 1e-6)) - 1);
+}
+
+std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded) {
+  const auto context = std::make_shared<const SignalContext>(encoder.context);
+  const double plausible_rad = std::max(kPlausible_rad, 3.0 * encoder.run.sigma.mean());
+  const TimeSeries series =
+      TimeSeriesOf(encoder.run.schedule, std::vector<int>(encoder.context.reading.size(), 0), 1);
+  std::vector<Family> families = NamedFamilies(context, series, plausible_rad);
+  std::erase_if(families, [&](const Family& family) { return Has(excluded, family.effect); });
+  // One mounting cannot tell a fault of the device from the same order of the reference.
+  const std::vector<std::string> doubled = {"eccentricity",       "signal_offset",    "ellipticity",
+                                            "amplitude_mismatch", "quadrature_error", "periodic"};
+  for (Family& family : families) {
+    if (Has(doubled, family.effect)) family.most_probable = tuning::kMostProbableDoubled;
+  }
+  std::ranges::move(UnknownFamilies(encoder, series, plausible_rad), std::back_inserter(families));
+  return families;
+}
+
+}  // namespace twinbench::diagnose::encoder

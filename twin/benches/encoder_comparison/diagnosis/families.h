@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
+#include "twin/diagnose/engine/family.h"
+
+/// Candidates for an angle comparison: every effect of the catalogue that leaves a trace in this run, and generic
+/// shapes for what the catalogue has not.
+namespace twinbench::diagnose::encoder {
+
+/// Named families, then unknown ones; they own what they need.
+///
+/// Left out are causes that this run cannot show: latency of a device at rest, interpolation and gear mesh without
+/// stated lines or teeth, a faulty reference unless the device was turned on the shaft between set-ups. Causes of
+/// the same order (eccentricity and signal offset; ellipticity, amplitude mismatch and quadrature error where the
+/// zero of the signals is not known) have the same columns and the same prior: they tie. Outliers are no signature
+/// but a matter of the noise.
+///
+/// Prior sizes: a trace of 0.01 deg rms, or three times the noise if that is more.
+///
+/// @param excluded  Effects taken out of the catalogue. The unknown ones are the same whatever is excluded.
+std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded = {});
+
+/// The largest whole order that readings of this spacing can tell from lower ones; at most 120.
+int LargestOrder(const SignalContext& context);
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/diagnose/engine/time_series.h"
+
+/// What the makers of families have in common; only families.cc, named_families.cc and unknown_families.cc need it.
+namespace twinbench::diagnose::encoder {
+
+using Context = std::shared_ptr<const SignalContext>;
+/// Every effect of the catalogue that leaves a trace.
+/// @param plausible_rad  Size of a trace in the readings that is worth a candidate.
+std::vector<Family> NamedFamilies(const Context& context, const TimeSeries& series, double plausible_rad);
+
+/// Structure without a name.
+std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries& series, double plausible_rad);
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,110 @@
+#include "twin/benches/encoder_comparison/diagnosis/signals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/core/distributions.h"
+#include "twin/core/units.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+double Sign(double value) {
+  return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
+}
+
+double Wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * units::kPi);
+}
+
+}  // namespace
+
+SignalContext ContextOf(const Schedule& s, const Eigen::VectorXd& device_rad, const DeviceSettings& device) {
+  SignalContext context;
+  context.reading = s.reading;
+  context.setup = s.setup;
+  context.pass = s.pass;
+  context.direction = s.direction;
+  context.since_start_s = s.time_s;
+  context.time_s = s.time_s.array() - s.time_s[0];
+  context.reference_rad = s.reference_rad;
+  context.device_rad = device_rad;
+  context.velocity_rad_s = s.velocity_rad_s.array().isFinite().select(s.velocity_rad_s, 0.0);
+  context.device = device;
+  return context;
+}
+
+Eigen::VectorXd SignalPhase_rad(const SignalContext& context) {
+  return context.device.signal_periods * (context.device_rad.array() - context.device.signal_zero_rad);
+}
+
+Eigen::VectorXd Sense(const SignalContext& context, bool holds_at_rest) {
+  const auto& d = context.direction;
+  const auto moving = std::find_if(d.begin(), d.end(), [](int direction) { return direction != 0; });
+  double last = moving == d.end() ? 0.0 : *moving;
+  Eigen::VectorXd sense(context.Readings());
+  for (Eigen::Index i = 0; i < sense.size(); ++i) {
+    if (d[i] != 0) last = d[i];
+    sense[i] = d[i] != 0 || holds_at_rest ? last : 0.0;
+  }
+  return sense;
+}
+
+std::vector<Eigen::VectorXd> Senses(const SignalContext& context) {
+  Eigen::VectorXd way = Eigen::VectorXd::Constant(context.Readings(), context.direction[0]);
+  for (Eigen::Index i = 1; i < way.size(); ++i) {
+    const double step_rad = context.reference_rad[i] - context.reference_rad[i - 1];
+    way[i] = std::abs(step_rad) > units::urad ? Sign(step_rad) : way[i - 1];
+  }
+  std::vector<Eigen::VectorXd> senses = {Sense(context, true)};
+  for (const Eigen::VectorXd& other : {Sense(context, false), way}) {
+    if (std::find(senses.begin(), senses.end(), other) == senses.end()) senses.push_back(other);
+  }
+  return senses;
+}
+
+Eigen::VectorXd TravelSinceReversal_rad(const SignalContext& context) {
+  Eigen::VectorXd travel_rad = Eigen::VectorXd::Zero(context.Readings());
+  const Eigen::VectorXd sense = Sense(context, true);
+  for (Eigen::Index i = 1; i < travel_rad.size(); ++i) {
+    const double step_rad = context.reference_rad[i] - context.reference_rad[i - 1], way_rad = std::abs(step_rad);
+    const bool onwards = sense[i] == sense[i - 1] && step_rad * sense[i] >= 0.0;  // else it went back in between
+    travel_rad[i] = onwards ? travel_rad[i - 1] + way_rad : context.Moves() ? way_rad : 0.0;
+  }
+  return travel_rad;
+}
+
+double RunUp_rad(const SignalContext& context) {
+  if (context.Moves() || context.Readings() < 2) return 0.0;
+  std::vector<double> steps_rad;
+  for (Eigen::Index i = 1; i < context.Readings(); ++i)
+    steps_rad.push_back(std::abs(context.reference_rad[i] - context.reference_rad[i - 1]));
+  return 0.5 * Median(std::move(steps_rad));
+}
+
+Eigen::MatrixXd Relaxation(const SignalContext& context, double settles_over_rad, double run_up_rad) {
+  double at_rad = context.reference_rad[0] - context.direction[0] * run_up_rad, state = 0.0, first = 1.0;
+  const auto travel_to = [&](double to_rad) {
+    const double sense = Sign(to_rad - at_rad), left = std::exp(-std::abs(to_rad - at_rad) / settles_over_rad);
+    state = sense == 0.0 ? state : sense + (state - sense) * left;
+    first *= left;
+    at_rad = to_rad;
+  };
+  Eigen::MatrixXd states(context.Readings(), 2);
+  for (Eigen::Index i = 0; i < states.rows(); ++i) {
+    travel_to(context.reference_rad[i] - context.direction[i] * run_up_rad);
+    travel_to(context.reference_rad[i]);
+    states.row(i) << state, first;
+  }
+  return states;
+}
+
+Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level) {
+  return phase_rad.unaryExpr([level](double p) {
+    const double y = std::clamp(std::sin(p), -level, level), x = std::clamp(std::cos(p), -level, level);
+    return Wrapped(std::atan2(y, x) - p);
+  });
+}
+
+}  // namespace twinbench::diagnose::encoder

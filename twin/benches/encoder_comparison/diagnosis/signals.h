@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/core/scenario.h"
+#include "twin/diagnose/engine/linear_run.h"
+
+/// What causes do to the readings of an angle comparison, written here a second time: the twin's own code is not
+/// asked. A signal has one entry a used reading, in rad of measured - reference.
+namespace twinbench::diagnose::encoder {
+
+/// The circumstances that signals depend on.
+struct SignalContext {
+  std::vector<int> reading, setup, pass, direction;
+  Eigen::VectorXd time_s;         // from the first used reading
+  Eigen::VectorXd since_start_s;  // from time 0 of the record
+  Eigen::VectorXd reference_rad;
+  Eigen::VectorXd device_rad;      // angle of the device's scale, without its errors
+  Eigen::VectorXd velocity_rad_s;  // zero where it was not recorded
+  DeviceSettings device;
+
+  Eigen::Index Readings() const { return reference_rad.size(); }
+  bool Moves() const { return velocity_rad_s.cwiseAbs().maxCoeff() > 0.0; }
+};
+
+/// @param device_rad  One a reading of the schedule.
+SignalContext ContextOf(const Schedule& schedule, const Eigen::VectorXd& device_rad, const DeviceSettings& device);
+
+/// Phase of the device's sine and cosine, in rad of their period.
+Eigen::VectorXd SignalPhase_rad(const SignalContext& context);
+
+/// Sense of the motion as recorded, +1 or -1; at rest that of the last motion, or 0.
+Eigen::VectorXd Sense(const SignalContext& context, bool holds_at_rest);
+
+/// The ways in which a reading may remember a sense, those that differ on this schedule: that of the recorded
+/// direction, kept at rest; the same, forgotten at rest; that of the straight way from the reading before, so that
+/// the first stop behind a reversal, if nothing moved, still has the old one.
+std::vector<Eigen::VectorXd> Senses(const SignalContext& context);
+
+/// Travel since the last reversal, in rad; the way to the first reading is taken as none. Passes of one direction
+/// that follow each other without a way back between them are one travel.
+Eigen::VectorXd TravelSinceReversal_rad(const SignalContext& context);
+
+/// State of a hysteresis that goes over to the sense of the motion with the way travelled,
+///     d state / d way = (sense - state) / settles_over,   first state 0,
+/// and what an unknown first state adds to it: readings x 2. The way between readings is straight, but a stop is
+/// approached over the last `run_up_rad` in its direction.
+Eigen::MatrixXd Relaxation(const SignalContext& context, double settles_over_rad, double run_up_rad);
+
+/// Half the usual distance of neighbouring stops, 0 if the shaft moved while it was read.
+double RunUp_rad(const SignalContext& context);
+
+/// Error of atan2 from sine and cosine that are cut off at `level` of their amplitude, in rad of their period: a
+/// series of orders 4, 8, 12 whose ratios follow from the level.
+Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level);
+
+}  // namespace twinbench::diagnose::encoder

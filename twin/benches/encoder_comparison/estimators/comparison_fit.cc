@@ -1,0 +1,107 @@
+#include "twin/benches/encoder_comparison/estimators/comparison_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/encoder_comparison/estimators/mean.h"
+
+namespace twinbench::separate::encoder {
+namespace {
+
+constexpr int kRounds = 4;  // of 1e-2 each
+
+/// Both directions count the same, whatever their passes.
+std::map<int, double> MountingsOf(const std::vector<FittedGroup>& groups) {
+  std::map<int, Mean> mean;
+  for (const FittedGroup& fitted : groups) {
+    Mean constant;
+    for (const PassTerm& pass : fitted.fit.passes) constant.Add(pass.constant_rad);
+    mean[fitted.group->setup].Add(constant.Value());
+  }
+  std::map<int, double> mountings;
+  for (const auto& [setup, value] : mean) mountings[setup] = value.Value();
+  return mountings;
+}
+
+std::map<int, double> RoughMountings(const std::vector<PassGroup>& groups) {
+  std::map<int, Mean> mean;
+  for (const PassGroup& group : groups) {
+    for (const ComparedPass& pass : group.passes) mean[group.setup].Add(pass.error_rad.mean());
+  }
+  std::map<int, double> mountings;
+  for (const auto& [setup, value] : mean) mountings[setup] = value.Value();
+  return mountings;
+}
+
+ScaleAngles AnglesOf(const PassGroup& group, double mounting_rad, const harmonics::HarmonicSeries& reference) {
+  ScaleAngles th_rad;
+  for (const ComparedPass& pass : group.passes) {
+    Eigen::VectorXd th = pass.reference_rad;
+    for (double& angle : th) angle += mounting_rad - ValueAt(reference, angle);
+    th_rad.push_back(th);
+  }
+  return th_rad;
+}
+
+harmonics::PositionError SeenBy(const FittedGroup& fitted, const OrderNoise& noise, double mounting_rad) {
+  harmonics::PositionError seen;
+  seen.setup = fitted.group->setup;
+  seen.direction = fitted.group->direction;
+  seen.head_rad = mounting_rad;
+  seen.status = harmonics::PositionStatus::kOk;
+  seen.series.dof = noise.dof;
+  for (int k = 0; k < fitted.fit.Highest(); ++k)
+    seen.series.orders.push_back(
+        {fitted.fit.value[k], noise.variance_rad2[k] * fitted.fit.cofactor[static_cast<std::size_t>(k)]});
+  return seen;
+}
+
+}  // namespace
+
+double ValueAt(const harmonics::HarmonicSeries& series, double angle_rad) {
+  double value_rad = 0.0;
+  for (int k = 1; k <= series.Highest(); ++k) {
+    const harmonics::Complex c = series.At(k).value;
+    if (std::isfinite(c.real())) value_rad += (c * std::polar(1.0, k * angle_rad)).real();
+  }
+  return value_rad;
+}
+
+UsableGroups PickUsable(const std::vector<PassGroup>& groups, const DeviceOptions& options) {
+  const std::map<int, double> mounting_rad = RoughMountings(groups);
+  std::vector<int> highest;
+  for (const PassGroup& group : groups)
+    highest.push_back(HighestOrder(group, AnglesOf(group, mounting_rad.at(group.setup), {}), options.max_order,
+                                   options.max_inflation));
+  UsableGroups usable;
+  if (groups.empty()) return usable;
+  usable.highest = *std::ranges::max_element(highest);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const bool poor = highest[g] == 0 || 2 * highest[g] < *std::ranges::max_element(highest);
+    (poor ? usable.poor : usable.used).push_back(groups[g]);
+    if (!poor) usable.highest = std::min(usable.highest, highest[g]);
+  }
+  return usable;
+}
+
+ComparisonFit FitComparison(const UsableGroups& groups, const DeviceOptions& options) {
+  ComparisonFit fitted;
+  fitted.mounting_rad = RoughMountings(groups.used);
+  for (int round = 0; round < kRounds; ++round) {
+    fitted.groups.clear();
+    for (const PassGroup& group : groups.used) {
+      ScaleAngles th_rad = AnglesOf(group, fitted.mounting_rad.at(group.setup), fitted.curves.reference);
+      CurveFit fit = FitCurve(group, th_rad, groups.highest);
+      fitted.groups.push_back({&group, std::move(th_rad), std::move(fit)});
+    }
+    fitted.mounting_rad = MountingsOf(fitted.groups);
+    fitted.noise = NoiseOf(fitted.groups, groups.highest, options.pooled_orders);
+    std::vector<harmonics::PositionError> seen;
+    for (const FittedGroup& group : fitted.groups)
+      seen.push_back(SeenBy(group, fitted.noise, fitted.mounting_rad.at(group.group->setup)));
+    fitted.curves = SeparateMountings(seen, options.max_noise_factor);
+  }
+  return fitted;
+}
+
+}  // namespace twinbench::separate::encoder

@@ -1,0 +1,56 @@
+#include "twin/benches/encoder_comparison/estimators/reversal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/encoder_comparison/estimators/mean.h"
+
+namespace twinbench::separate::encoder {
+namespace {
+
+/// Variance of one pass's constant from their scatter, all groups together; NaN if none has two passes.
+double ConstantVariance(const ComparisonFit& fitted) {
+  double squares = 0.0, dof = 0.0;
+  for (const FittedGroup& group : fitted.groups) {
+    Mean constant;
+    for (const PassTerm& pass : group.fit.passes) constant.Add(pass.constant_rad);
+    for (const PassTerm& pass : group.fit.passes) squares += std::pow(pass.constant_rad - constant.Value(), 2);
+    dof += constant.count - 1.0;
+  }
+  return dof > 0.0 ? squares / dof : kNaN;
+}
+
+struct SetUpReversal {
+  double forward_rad = kNaN, backward_rad = kNaN;
+  double variance = 0.0;
+};
+
+std::map<int, SetUpReversal> ReversalsOf(const ComparisonFit& fitted) {
+  const double variance = ConstantVariance(fitted);
+  std::map<int, SetUpReversal> reversals;
+  for (const FittedGroup& group : fitted.groups) {
+    Mean constant;
+    for (const PassTerm& pass : group.fit.passes) constant.Add(pass.constant_rad);
+    SetUpReversal& reversal = reversals[group.group->setup];
+    (group.group->direction > 0 ? reversal.forward_rad : reversal.backward_rad) = constant.Value();
+    reversal.variance += std::max(variance / constant.count, fitted.noise.white_rad2 * group.fit.constant_cofactor);
+  }
+  return reversals;
+}
+
+}  // namespace
+
+MeanReversal ReversalOf(const ComparisonFit& fitted) {
+  Mean reversal;
+  double variance = 0.0;
+  for (const auto& [setup, r] : ReversalsOf(fitted)) {
+    const double difference_rad = r.forward_rad - r.backward_rad;
+    if (!std::isfinite(difference_rad)) continue;
+    reversal.Add(difference_rad);
+    variance += r.variance;
+  }
+  if (reversal.count == 0) return {};
+  return {reversal.Value(), std::sqrt(variance) / reversal.count};
+}
+
+}  // namespace twinbench::separate::encoder

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/core/scenario.h"
+
+/// What a scenario of the bench encoder_comparison says.
+namespace twinbench {
+
+/// The angle device under test.
+struct DeviceSettings {                   // [device]
+  double noise_rad = 0.002 * units::deg;  // one reading, white, standard deviation
+  bool noise_known = false;               // false: whoever evaluates readings estimates it from them
+  double resolution_rad = 0.0;            // least step of the reading; 0: none
+  int lines = 0;                          // [device] lines_per_turn; 0: not known
+  int teeth = 0;                          // of a gear between reference and device; 0: none known
+  int signal_periods = 1;                 // of its sine and cosine signals a turn
+  double signal_zero_rad = 0.0;           // angle of the device at which the sine signal rises through zero
+  bool signal_zero_known = false;         // false: the evaluation leaves the phase of signal faults free
+};
+
+struct EncoderProcedureSettings {            // [encoder_procedure]
+  std::string kind = "stops";                // stops | sweep
+  double turns = 2.0;                        // of a pass
+  double start_rad = 0.0;                    // where the first pass begins
+  std::vector<int> passes = {1, -1, -1, 1};  // directions; a sweep does them at each speed
+  std::vector<double> mounting_rad = {0.0};  // device angle where the reference shows 0, one a set-up
+  double remount_s = 600.0;                  // time a set-up takes
+  int stops = 72;                            // stops: [encoder_procedure] stops_per_turn
+  double stop_interval_s = 4.0;
+  std::vector<double> speeds_rad_s = {36.0 * units::deg, 12.0 * units::deg};  // sweep
+  double ramp_s = 0.6;       // at constant acceleration, up and down
+  double rest_s = 2.0;       // behind every pass
+  double interval_s = 0.08;  // between readings
+};
+
+struct EncoderSettings {
+  DeviceSettings device;
+  EncoderProcedureSettings encoder_procedure;
+};
+
+/// The bench's own part of a scenario. @throws std::logic_error if it is another bench's.
+inline EncoderSettings& EncoderOf(Scenario& scenario) {
+  return scenario.own.As<EncoderSettings>();
+}
+inline const EncoderSettings& EncoderOf(const Scenario& scenario) {
+  return scenario.own.As<EncoderSettings>();
+}
+
+}  // namespace twinbench

@@ -1,0 +1,37 @@
+#include "twin/benches/encoder_comparison/twin/factory.h"
+
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/encoder_comparison/procedure.h"
+#include "twin/benches/encoder_comparison/twin/follow.h"
+#include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/core/run_record.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::benches::encoder {
+namespace {
+
+class Twin : public BenchTwin {
+ public:
+  explicit Twin(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
+  nlohmann::json Truth() const override { return twin_.Truth(); }
+  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
+    procedure::CarryOut(twin_, scenario_, record, progress);
+  }
+
+ private:
+  Scenario scenario_;
+  sim::EncoderTwin twin_;
+};
+
+}  // namespace
+
+std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
+  return std::make_unique<Twin>(scenario);
+}
+
+std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
+  return sim::FollowEncoder(scenario, record);
+}
+
+}  // namespace twinbench::benches::encoder

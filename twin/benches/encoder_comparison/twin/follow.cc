@@ -1,0 +1,52 @@
+#include "twin/benches/encoder_comparison/twin/follow.h"
+
+#include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/sim/pointwise_follow.h"
+
+namespace twinbench::sim {
+namespace {
+
+/// What disturbances add to one reading.
+struct AngleExtra {
+  double shaft_rad = 0.0, device_rad = 0.0;
+};
+using AnglePoint = BenchPoint<AngleExtra>;
+
+const std::vector<AnglePoint>& AnglePoints() {
+  static const std::vector<AnglePoint> points = {
+      {{"shaft", "deg", units::deg, 1.0 * units::arcsec}, [](AngleExtra& e) -> double& { return e.shaft_rad; }},
+      {{"device", "deg", units::deg, 1.0 * units::arcsec}, [](AngleExtra& e) -> double& { return e.device_rad; }}};
+  return points;
+}
+
+class EncoderFollow : public PointwiseFollow<AngleExtra> {
+ public:
+  EncoderFollow(const Scenario& stated, const std::vector<Reading>& record)
+      : PointwiseFollow(Foreseeable(stated), record, AnglePoints()) {}
+
+  std::vector<std::string> Unfixed() const override {
+    return {"angles of the device on the shaft: free in every set-up"};
+  }
+
+ protected:
+  Eigen::MatrixXd Shown(const std::vector<AngleExtra>& extra) const override {
+    EncoderTwin twin(scenario());  // anew: its effects have memories
+    Eigen::VectorXd shown_rad(std::ssize(extra));
+    for (std::size_t i = 0; i < extra.size(); ++i)
+      shown_rad[static_cast<Eigen::Index>(i)] =
+          twin.DeviceAt_rad(record()[i], extra[i].shaft_rad) + extra[i].device_rad;
+    return shown_rad;
+  }
+
+  std::unique_ptr<model::Follow> On(const Scenario& changed) const override {
+    return std::make_unique<EncoderFollow>(changed, record());
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<model::Follow> FollowEncoder(const Scenario& scenario, const std::vector<Reading>& record) {
+  return std::make_unique<EncoderFollow>(scenario, record);
+}
+
+}  // namespace twinbench::sim

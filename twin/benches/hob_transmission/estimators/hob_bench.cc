@@ -1,0 +1,111 @@
+#include "twin/benches/hob_transmission/estimators/hob_bench.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/hob_transmission/settings.h"
+
+namespace twinbench::separate::hob {
+namespace {
+
+constexpr int kHighestOrder = 100;
+
+TransmissionOptions OptionsOf(const Scenario& scenario) {
+  TransmissionOptions options;
+  options.table_turns_per_hob_turn = HobOf(scenario).transmission.Ratio();
+  options.zero = HobOf(scenario).hob_procedure.encoder_zero == "table_origin" ? EncoderZero::kTableOrigin
+                                                                              : EncoderZero::kReferenceMark;
+  options.max_order = std::min(kHighestOrder, (HobOf(scenario).hob_procedure.samples_per_turn - 1) / 2);
+  return options;
+}
+
+bool HasTurns(const PositionError& position) {
+  return position.status == PositionStatus::kOk;
+}
+
+/// The first two set-ups that have turns in one direction.
+std::optional<TwoPositions> Published(const std::vector<PositionError>& positions) {
+  for (const int direction : {1, -1}) {
+    std::vector<const PositionError*> found;
+    for (const PositionError& position : positions) {
+      if (position.direction == direction && HasTurns(position)) found.push_back(&position);
+    }
+    if (found.size() >= 2) return SeparateTwoPositions(*found[0], *found[1]);
+  }
+  return std::nullopt;
+}
+
+/// Orders that mean something on this machine and that were fitted.
+std::vector<int> OrdersToCompare(const TransmissionSettings& t, int highest) {
+  std::vector<int> orders;
+  for (const double order : {1.0, 2.0, t.HobOrder(), static_cast<double>(t.gear_teeth), t.WormOrder()}) {
+    const bool whole = order == std::floor(order);
+    const int k = static_cast<int>(order);
+    if (whole && k <= highest && std::ranges::find(orders, k) == orders.end()) orders.push_back(k);
+  }
+  return orders;
+}
+
+bool HasInterferometer(const std::vector<HobSample>& samples) {
+  return std::ranges::any_of(samples, [](const HobSample& s) { return std::isfinite(s.interferometer_rad); });
+}
+
+void AddDirections(const std::vector<HobSample>& samples, const TransmissionOptions& options,
+                   const std::vector<int>& orders, HobAnalysis& analysis) {
+  std::vector<PositionError> seen;
+  if (HasInterferometer(samples)) seen = MeasurePositions(samples, options, Signal::kInterferometer);
+  for (const int direction : analysis.separation->directions) {
+    DirectionResult result;
+    result.direction = direction;
+    result.transmission = TransmissionSeries(*analysis.separation, direction);
+    result.lines = FindLines(result.transmission);
+    const HarmonicSeries reference = TransmissionByInterferometer(seen, direction);
+    if (!reference.orders.empty())
+      result.against_interferometer = CompareTransmission(*analysis.separation, direction, reference, orders);
+    analysis.directions.push_back(result);
+  }
+}
+
+void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions& options,
+                const std::vector<int>& orders, HobAnalysis& analysis) {
+  analysis.encoder = EncoderSeries(*analysis.separation);
+  if (!HasInterferometer(samples)) return;
+  analysis.encoder_by_interferometer =
+      EncoderByInterferometer(MeasurePositions(samples, options, Signal::kEncodersMinusInterferometer));
+  analysis.encoder_against_interferometer =
+      CompareEncoder(*analysis.separation, analysis.encoder_by_interferometer, orders);
+}
+
+}  // namespace
+
+std::vector<HobSample> SamplesOf(const std::vector<Reading>& readings) {
+  std::vector<HobSample> samples;
+  for (const Reading& r : readings) {
+    if (r.status != ReadingStatus::kOk || r.direction == 0) continue;
+    samples.push_back(
+        {r.setup, r.pass, r.direction, r.measured_rad, r.reference_rad, r.head_rad, r.interferometer_rad});
+  }
+  return samples;
+}
+
+HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator) {
+  HobAnalysis analysis;
+  analysis.estimator = estimator;
+  const std::vector<HobSample> samples = SamplesOf(readings);
+  analysis.used = static_cast<int>(samples.size());
+  analysis.left_out = static_cast<int>(readings.size()) - analysis.used;
+  const TransmissionOptions options = OptionsOf(scenario);
+  analysis.positions = MeasurePositions(samples, options);
+  if (std::ranges::none_of(analysis.positions, HasTurns)) {
+    analysis.not_separated = "no head position has a complete turn";
+    return analysis;
+  }
+  analysis.two_positions = Published(analysis.positions);
+  analysis.separation = SeparateHeads(analysis.positions);
+  const std::vector<int> orders = OrdersToCompare(HobOf(scenario).transmission, options.max_order);
+  AddDirections(samples, options, orders, analysis);
+  AddEncoder(samples, options, orders, analysis);
+  return analysis;
+}
+
+}  // namespace twinbench::separate::hob

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/benches/hob_transmission/estimators/comparison.h"
+#include "twin/benches/hob_transmission/estimators/two_positions.h"
+#include "twin/core/estimator.h"
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+
+/// From readings of the bench hob_transmission to all that is reported of them.
+namespace twinbench::separate::hob {
+
+/// Readings with numbers, as samples.
+std::vector<HobSample> SamplesOf(const std::vector<Reading>& readings);
+
+/// One direction of travel.
+struct DirectionResult {
+  int direction = 1;
+  HarmonicSeries transmission;                          // e_T
+  std::vector<int> lines;                               // orders that noise would not show
+  std::vector<OrderComparison> against_interferometer;  // empty without one
+};
+
+struct HobAnalysis {
+  Estimator estimator = Estimator::kRigorous;
+  int used = 0, left_out = 0;
+  std::vector<PositionError> positions;       // what each head showed, by direction
+  std::optional<HeadSeparation> separation;   // rigorous
+  std::optional<TwoPositions> two_positions;  // published: the first two heads, in the first direction of both
+  std::vector<DirectionResult> directions;
+  HarmonicSeries encoder;                    // psi in the encoder's own angle; orders not seen are NaN
+  HarmonicSeries encoder_by_interferometer;  // empty without one
+  std::vector<OrderComparison> encoder_against_interferometer;
+  std::string not_separated;  // why there is no separation
+};
+
+/// @throws InputError as MeasurePositions.
+/// Reference: Tan et al., equations 1 and 13 to 15 (published); SeparateHeads (rigorous).
+HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
+
+}  // namespace twinbench::separate::hob

@@ -1,0 +1,148 @@
+#include "twin/benches/hob_transmission/estimators/transmission_error.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/hob_transmission/estimators/pass_fit.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::separate::hob {
+namespace {
+
+Complex WithoutDrift(const FittedTurn& turn, const Drift& drift, Eigen::Index k) {
+  return turn.fit.value[k] - drift.rad_per_turn * turn.fit.ramp[k];
+}
+
+/// All turns of one set-up and direction, drift taken out. Rows: turns; columns: orders 1 ..
+Eigen::MatrixXcd Stack(const std::vector<FittedPass>& passes, int turns, int max_order) {
+  Eigen::MatrixXcd stack(turns, max_order);
+  Eigen::Index row = 0;
+  for (const FittedPass& pass : passes) {
+    for (const FittedTurn& turn : pass.turns) {
+      for (Eigen::Index k = 0; k < max_order; ++k) stack(row, k) = WithoutDrift(turn, pass.drift, k);
+      ++row;
+    }
+  }
+  return stack;
+}
+
+/// Variance of one part of each order's mean over the turns, from their scatter pooled with neighbouring orders.
+Eigen::VectorXd ScatterVariance(const Eigen::MatrixXcd& stack, int pooled_orders) {
+  const Eigen::MatrixXcd rest = stack.rowwise() - stack.colwise().mean();
+  const auto turns = static_cast<double>(stack.rows());
+  const Eigen::VectorXd single = rest.cwiseAbs2().colwise().sum().transpose() / (2.0 * (turns - 1.0));
+  Eigen::VectorXd pooled(single.size());
+  for (Eigen::Index k = 0; k < single.size(); ++k) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, k - pooled_orders);
+    const Eigen::Index last = std::min<Eigen::Index>(single.size() - 1, k + pooled_orders);
+    pooled[k] = single.segment(first, last - first + 1).mean() / turns;
+  }
+  return pooled;
+}
+
+/// The error of a pass's drift is common to its turns: what it leaves in the mean of order k + 1.
+Eigen::Matrix2d DriftCovariance(const std::vector<FittedPass>& passes, int turns, Eigen::Index k) {
+  Eigen::Matrix2d cov = Eigen::Matrix2d::Zero();
+  for (const FittedPass& pass : passes) {
+    Complex left = 0.0;
+    for (const FittedTurn& turn : pass.turns) left += turn.fit.ramp[k] / static_cast<double>(turns);
+    const Eigen::Vector2d parts(left.real(), left.imag());
+    cov += pass.drift.variance * parts * parts.transpose();
+  }
+  return cov;
+}
+
+void FillFromSeveralTurns(const std::vector<FittedPass>& passes, const TransmissionOptions& options,
+                          PositionError& position) {
+  const Eigen::MatrixXcd stack = Stack(passes, position.turns, options.max_order);
+  const Eigen::VectorXd variance = ScatterVariance(stack, options.pooled_orders);
+  for (Eigen::Index k = 0; k < stack.cols(); ++k) {
+    const Eigen::Matrix2d cov =
+        variance[k] * Eigen::Matrix2d::Identity() + DriftCovariance(passes, position.turns, k);
+    position.series.orders.push_back({stack.col(k).mean(), cov});
+  }
+  const int pooled = std::min(options.pooled_orders + 1, options.max_order);  // at either end of the spectrum
+  position.series.dof = 2.0 * (position.turns - 1) * pooled;
+}
+
+void FillFromOneTurn(const TurnFit& fit, PositionError& position) {
+  position.scatter = ScatterSource::kWithinTurn;
+  const auto max_order = static_cast<int>(fit.value.size());
+  position.series.dof = fit.samples - 2 * max_order - 1;
+  const double variance = fit.residual_sum2 / position.series.dof;
+  for (Eigen::Index k = 0; k < max_order; ++k)
+    position.series.orders.push_back({fit.value[k], variance * fit.cofactor[static_cast<std::size_t>(k)]});
+}
+
+void Count(const std::vector<FittedPass>& passes, int max_order, PositionError& position) {
+  double sum2 = 0.0;
+  int dof = 0;
+  for (const FittedPass& pass : passes) {
+    position.turns_left_out += pass.left_out;
+    for (const FittedTurn& turn : pass.turns) {
+      ++position.turns;
+      position.samples += turn.fit.samples;
+      sum2 += turn.fit.residual_sum2;
+      dof += turn.fit.samples - 2 * max_order - 1;
+    }
+  }
+  if (dof > 0) position.residual_rms_rad = std::sqrt(sum2 / dof);
+}
+
+/// Mean of the passes whose drift is known.
+void FillDrift(const std::vector<FittedPass>& passes, PositionError& position) {
+  double sum = 0.0, variance = 0.0;
+  int count = 0;
+  for (const FittedPass& pass : passes) {
+    if (!pass.drift.known) continue;
+    sum += pass.drift.rad_per_turn;
+    variance += pass.drift.variance;
+    ++count;
+  }
+  if (count == 0) return;
+  position.drift_rad_per_turn = sum / count;
+  position.u_drift_rad_per_turn = std::sqrt(variance) / count;
+}
+
+PositionError MeasurePosition(const std::vector<Pass>& passes, const TransmissionOptions& options) {
+  PositionError position;
+  position.setup = passes.front().setup;
+  position.direction = passes.front().direction;
+  position.head_rad = passes.front().head_rad;
+  std::vector<FittedPass> fitted;
+  fitted.reserve(passes.size());
+  for (const Pass& pass : passes) fitted.push_back(FitPass(pass, options));
+  Count(fitted, options.max_order, position);
+  if (position.turns == 0) return position;
+  position.status = PositionStatus::kOk;
+  FillDrift(fitted, position);
+  if (position.turns > 1) {
+    FillFromSeveralTurns(fitted, options, position);
+  } else {
+    const auto has_turn = [](const FittedPass& pass) { return !pass.turns.empty(); };
+    FillFromOneTurn(std::find_if(fitted.begin(), fitted.end(), has_turn)->turns.front().fit, position);
+  }
+  return position;
+}
+
+}  // namespace
+
+std::vector<PositionError> MeasurePositions(const std::vector<HobSample>& samples,
+                                            const TransmissionOptions& options, Signal signal) {
+  Require(options.max_order > 0 && options.pooled_orders >= 0, "orders must be positive");
+  std::vector<PositionError> positions;
+  std::vector<Pass> group;
+  for (Pass& pass : SortPasses(samples, options, signal)) {
+    const bool same =
+        !group.empty() && pass.setup == group.front().setup && pass.direction == group.front().direction;
+    if (!group.empty() && !same) {
+      positions.push_back(MeasurePosition(group, options));
+      group.clear();
+    }
+    group.push_back(std::move(pass));
+  }
+  if (!group.empty()) positions.push_back(MeasurePosition(group, options));
+  return positions;
+}
+
+}  // namespace twinbench::separate::hob

@@ -1,0 +1,102 @@
+#include "twin/benches/hob_transmission/estimators/turns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "twin/core/errors.h"
+#include "twin/core/units.h"
+
+namespace twinbench::separate::hob {
+namespace {
+
+constexpr double kRunaway_rad = 0.1;  // no gearbox is out by 6 deg; a wrapped angle is by a turn
+
+double ValueOf(const HobSample& s, Signal signal, double ratio) {
+  const double encoders_rad = s.table_encoder_rad - ratio * s.hob_encoder_rad;
+  if (signal == Signal::kEncoders) return encoders_rad;
+  if (signal == Signal::kInterferometer) return s.interferometer_rad;
+  return encoders_rad - s.interferometer_rad;
+}
+
+std::string Where(const HobSample& s) {
+  return fmt::format("set-up {}, pass {}", s.setup, s.pass);
+}
+
+void CheckSample(const HobSample& s, const Pass& pass) {
+  if (std::abs(s.direction) != 1)
+    throw InputError(Where(s), fmt::format("direction is {}", s.direction), "+1 or -1");
+  if (!std::isfinite(s.head_rad)) throw InputError(Where(s), "the head angle is missing", "one a set-up");
+  if (!pass.th_rad.empty() && s.head_rad != pass.head_rad)
+    throw InputError(Where(s), "the head angle changes", "one head angle a set-up");
+}
+
+void CheckValue(const HobSample& s, double value_rad, const Pass& pass) {
+  if (pass.value_rad.empty() || std::abs(value_rad - pass.value_rad.front()) < kRunaway_rad) return;
+  throw InputError(Where(s), fmt::format("the signal wanders by {:.3g} rad", value_rad - pass.value_rad.front()),
+                   "unwrapped angles and the ratio that was geared");
+}
+
+void Append(const HobSample& s, double value_rad, EncoderZero zero, Pass& pass) {
+  CheckSample(s, pass);
+  CheckValue(s, value_rad, pass);
+  pass.setup = s.setup;
+  pass.pass = s.pass;
+  pass.direction = s.direction;
+  pass.head_rad = s.head_rad;
+  pass.th_rad.push_back(s.table_encoder_rad + (zero == EncoderZero::kReferenceMark ? s.head_rad : 0.0));
+  pass.value_rad.push_back(value_rad);
+}
+
+void CheckHeads(const std::vector<Pass>& passes) {
+  for (std::size_t i = 1; i < passes.size(); ++i) {
+    if (passes[i].setup == passes[i - 1].setup && passes[i].head_rad != passes[i - 1].head_rad)
+      throw InputError(fmt::format("set-up {}", passes[i].setup), "the head angle changes between passes",
+                       "one head angle a set-up");
+  }
+}
+
+/// Turns since the pass began; a sample that jitters back over the start belongs to the first one.
+int TurnOf(const Pass& pass, double th_rad) {
+  const double turns = pass.direction * (th_rad - pass.th_rad.front()) / units::turn;
+  return std::max(0, static_cast<int>(std::floor(turns)));
+}
+
+Eigen::VectorXd Picked(const std::vector<double>& values, const std::vector<std::size_t>& picked) {
+  Eigen::VectorXd result(std::ssize(picked));
+  for (std::size_t i = 0; i < picked.size(); ++i) result[static_cast<Eigen::Index>(i)] = values[picked[i]];
+  return result;
+}
+
+}  // namespace
+
+std::vector<Pass> SortPasses(const std::vector<HobSample>& samples, const TransmissionOptions& options,
+                             Signal signal) {
+  std::map<std::tuple<int, int, int>, Pass> sorted;
+  for (const HobSample& s : samples) {
+    const double value_rad = ValueOf(s, signal, options.table_turns_per_hob_turn);
+    if (!std::isfinite(s.table_encoder_rad) || !std::isfinite(value_rad)) continue;
+    Append(s, value_rad, options.zero, sorted[{s.setup, -s.direction, s.pass}]);
+  }
+  std::vector<Pass> passes;
+  passes.reserve(sorted.size());
+  for (auto& [key, pass] : sorted) passes.push_back(std::move(pass));
+  CheckHeads(passes);
+  return passes;
+}
+
+std::vector<Turn> CutIntoTurns(const Pass& pass) {
+  std::map<int, std::vector<std::size_t>> samples_of;
+  for (std::size_t i = 0; i < pass.th_rad.size(); ++i) samples_of[TurnOf(pass, pass.th_rad[i])].push_back(i);
+  std::vector<Turn> turns;
+  for (const auto& [index, picked] : samples_of) {
+    const double middle_rad = pass.th_rad.front() + pass.direction * (index + 0.5) * units::turn;
+    turns.push_back({index, middle_rad, Picked(pass.th_rad, picked), Picked(pass.value_rad, picked)});
+  }
+  return turns;
+}
+
+}  // namespace twinbench::separate::hob

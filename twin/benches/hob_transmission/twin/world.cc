@@ -1,0 +1,89 @@
+#include "twin/benches/hob_transmission/twin/world.h"
+
+#include <algorithm>
+
+#include "twin/benches/hob_transmission/settings.h"
+#include "twin/core/device_fault.h"
+
+namespace twinbench::sim {
+namespace {
+
+/// Short enough for the cubic between two states: a line of 10 Hz is met to 1e-6 of its size.
+Duration PieceOf(const Scenario& actual) {
+  return HobOf(actual).mechanics.fidelity == "bullet" ? std::chrono::milliseconds(1) : std::chrono::milliseconds(2);
+}
+
+}  // namespace
+
+HobWorld::HobWorld(const Scenario& nominal)
+    : path_(nominal),
+      train_(
+          mechanics::MakeGearTrain(mechanics::FidelityFromName(HobOf(actual()).mechanics.fidelity), path_.train())),
+      counters_(actual(), path_.HobSignals()),
+      interferometer_noise_(actual().seed, "interferometer.noise"),
+      piece_(PieceOf(actual())) {}
+
+void HobWorld::Run(double hob_speed_rad_s, Duration ramp) {
+  if (hob_speed_rad_s != 0.0)
+    direction_ = (hob_speed_rad_s > 0.0) == (HobOf(actual()).transmission.Ratio() > 0.0) ? 1 : -1;
+  hob_speed_rad_s_ = hob_speed_rad_s;
+  constexpr Duration kRinging = std::chrono::seconds(5);  // 20 Hz servo, torsion with 1 % of damping: long over
+  at_rest_ = now_ + ramp + kRinging;
+  train_->Run(hob_speed_rad_s, ToSeconds(ramp));
+}
+
+void HobWorld::Mount(double head_rad) {
+  if (hob_speed_rad_s_ != 0.0)
+    throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while the table turns");
+  counters_.SetHead(head_rad);
+}
+
+void HobWorld::Arm(int edges, int samples) {
+  counters_.Arm(edges, samples, train_->State().table_rad, direction_);
+}
+
+void HobWorld::RunUntil(Time until) {
+  while (now_ < until) {
+    if (StandsStill()) {
+      now_ = until;
+      return;
+    }
+    // While nothing is counted, time may pass in one piece.
+    const Time end = hob_speed_rad_s_ == 0.0 ? std::min(until, at_rest_) : until;
+    const Duration piece = counters_.Armed() ? std::min<Duration>(piece_, end - now_) : end - now_;
+    const mechanics::GearTrainState before = train_->State();
+    train_->Advance(ToSeconds(piece));
+    const mechanics::GearTrainState after = train_->State();
+    if (counters_.Armed()) TakeSamples(before, after);
+    path_.Travel(after.table_rad);
+    now_ += piece;
+  }
+}
+
+void HobWorld::TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after) {
+  while (counters_.Armed()) {
+    const auto time_s = mechanics::PassingTime_s(before, after, counters_.NextTableAngle_rad());
+    if (!time_s) return;
+    const Time then = now_ + FromSeconds(*time_s - before.time_s);  // the train's clock stands still with it
+    counters_.Push(SampleAt(mechanics::Between(before, after, *time_s), then));
+  }
+}
+
+double HobWorld::Interferometer_rad(const mechanics::GearTrainState& at) {
+  const double noise_rad = HobOf(actual()).interferometer.noise_rad;
+  return path_.Interferometer_rad(at.table_rad, at.hob_rad) +
+         (HobOf(actual()).interferometer.used && noise_rad > 0.0 ? noise_rad * interferometer_noise_.Normal()
+                                                                 : 0.0);
+}
+
+CounterSample HobWorld::SampleAt(const mechanics::GearTrainState& at, Time now) {
+  CounterSample sample = counters_.Count(at);
+  sample.time = now;
+  sample.velocity_rad_s = HobOf(actual()).transmission.Ratio() * hob_speed_rad_s_;
+  sample.interferometer_rad = Interferometer_rad(at);
+  path_.Travel(at.table_rad);
+  path_.Disturb({sample.time, next_reading_++, at.table_rad, sample.velocity_rad_s}, sample);
+  return sample;
+}
+
+}  // namespace twinbench::sim

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "twin/benches/hob_transmission/twin/counters.h"
+#include "twin/benches/hob_transmission/twin/path.h"
+
+namespace twinbench::sim {
+
+/// The whole hobbing machine at one time. It runs in pieces short against anything that happens in it; edges of the
+/// table's encoder are found between their ends. While it stands still only the clock goes on.
+class HobWorld {
+ public:
+  explicit HobWorld(const Scenario& nominal);
+
+  Time Now() const { return now_; }
+  void RunUntil(Time until);
+
+  void Run(double hob_speed_rad_s, Duration ramp);
+  void Mount(double head_rad);
+  void Arm(int edges, int samples);
+  CounterSamples ReadCounters() { return counters_.Empty(); }
+
+  const Scenario& actual() const { return path_.actual(); }
+  const Counters& counters() const { return counters_; }
+  /// Of the gears, by turns of the table: what the chain would err if it ran infinitely slowly.
+  std::vector<mechanics::AngleHarmonic> Transmission() const { return path_.Transmission(); }
+
+ private:
+  void TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after);
+  CounterSample SampleAt(const mechanics::GearTrainState& at, Time now);
+  bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && now_ >= at_rest_; }
+  double Interferometer_rad(const mechanics::GearTrainState& at);
+
+  HobPath path_;
+  std::unique_ptr<mechanics::GearTrain> train_;
+  Counters counters_;
+  Stream interferometer_noise_;
+  Duration piece_;
+  Time now_{};
+  Time at_rest_{};  // from then on nothing moves, unless the drive is told to
+  double hob_speed_rad_s_ = 0.0;
+  int direction_ = 1;
+  int next_reading_ = 0;
+};
+
+}  // namespace twinbench::sim

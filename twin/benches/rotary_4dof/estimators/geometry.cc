@@ -1,0 +1,37 @@
+#include "twin/benches/rotary_4dof/estimators/geometry.h"
+
+#include <cmath>
+
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::measure {
+namespace {
+
+double AdcStep_V(const Scenario& scenario) {
+  return scenario.noise_free ? 0.0 : 2.0 * RotaryOf(scenario).adc.range_V / std::exp2(RotaryOf(scenario).adc.bits);
+}
+
+void Check(const BenchGeometry& geometry) {
+  Require(geometry.SinTheta() > 0.0 && geometry.SinTheta() < 1.0, "the nominal first order does not exist");
+  for (const double l1_m : geometry.psd_distance_m) Require(l1_m > 0.0, "a PSD distance is not positive");
+  for (const double V_m : geometry.sensitivity_V_m) Require(V_m > 0.0, "a PSD sensitivity is not positive");
+}
+
+}  // namespace
+
+BenchGeometry NominalGeometry(const Scenario& scenario) {
+  BenchGeometry geometry;
+  geometry.wavelength_m = RotaryOf(scenario).laser.wavelength_m;
+  geometry.lines_per_m = RotaryOf(scenario).grating.lines_per_m;
+  geometry.psd_distance_m = {RotaryOf(scenario).psd_a.distance_m, RotaryOf(scenario).psd_b.distance_m};
+  geometry.sensitivity_V_m = {RotaryOf(scenario).psd_a.sensitivity_V_m, RotaryOf(scenario).psd_b.sensitivity_V_m};
+  geometry.grating_point_m = RotaryOf(scenario).grating.point_m;
+  geometry.reference_height_m = RotaryOf(scenario).reference_height_m;
+  geometry.adc_step_V = AdcStep_V(scenario);
+  geometry.autocollimator_noise_rad = RotaryOf(scenario).autocollimator.noise_rad;
+  Check(geometry);
+  return geometry;
+}
+
+}  // namespace twinbench::measure

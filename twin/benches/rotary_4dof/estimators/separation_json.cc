@@ -1,0 +1,77 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/rotary_4dof/estimators/separate.h"
+#include "twin/core/units.h"
+
+namespace twinbench::separate {
+namespace {
+
+using nlohmann::json;
+
+double FileUnit(Component component) {
+  return IsAngle(component) ? units::arcsec : units::um;
+}
+
+std::string Key(Component component) {
+  return std::string(kComponentNames[static_cast<std::size_t>(component)]) +
+         (IsAngle(component) ? "_arcsec" : "_um");
+}
+
+json Column(const std::vector<double>& values, double unit) {
+  json column = json::array();
+  for (const double v : values) column.push_back(std::isfinite(v) ? json(v / unit) : json(nullptr));
+  return column;
+}
+
+json TableJson(const TableEstimate& estimate) {
+  json table;
+  table["position_deg"] = Column(estimate.value.position_rad, units::deg);
+  for (const Component c : estimate.components) {
+    table[Key(c)] = Column(estimate.value[c], FileUnit(c));
+    table["u_" + Key(c)] = Column(estimate.u[c], FileUnit(c));
+  }
+  return table;
+}
+
+json ByMotion(const Vector4& values, bool with_units) {
+  json object;
+  for (int d = 0; d < measure::kDofs; ++d) {
+    const Component c = kComponentOf[static_cast<std::size_t>(d)];
+    const std::string key = with_units ? Key(c) : kComponentNames[static_cast<std::size_t>(c)];
+    if (std::isfinite(values[d])) object[key] = values[d] / (with_units ? FileUnit(c) : 1.0);
+  }
+  return object;
+}
+
+json ClosureJson(const std::vector<Closure>& closure) {
+  json list = json::array();
+  for (const Closure& c : closure) {
+    json entry = ByMotion(c.difference, true);
+    entry["setup"] = c.setup;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+}  // namespace
+
+json ToJson(const Separation& separation) {
+  json out;
+  out["estimator"] = EstimatorName(separation.estimator);
+  out["target"] = TableJson(separation.target);
+  out["reference"] = TableJson(separation.reference);
+  out["not_separable"] = json::array();
+  for (const NotSeparable& entry : separation.not_separable) {
+    out["not_separable"].push_back({{"what", entry.what}, {"why", entry.why}});
+  }
+  out["residual_rms"] = ByMotion(separation.residual_rms, true);
+  out["dof"] = separation.dof;
+  out["chi2"] = ByMotion(separation.chi2, false);
+  out["dof_of_motion"] = ByMotion(separation.dof_of, false);
+  out["closure"] = ClosureJson(separation.closure);
+  out["notes"] = separation.notes;
+  return out;
+}
+
+}  // namespace twinbench::separate

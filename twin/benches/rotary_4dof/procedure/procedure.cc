@@ -1,0 +1,111 @@
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+
+#include <map>
+
+#include "twin/benches/rotary_4dof/procedure/sequencer.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/device_fault.h"
+#include "twin/procedure/watch.h"
+
+namespace twinbench::procedure {
+namespace {
+
+struct PhaseSteps {
+  void (*carry_out)(Sequencer&);
+  int (*readings)(const ProcedureSettings&);
+};
+
+const PhaseSteps& StepsOf(const std::string& phase) {
+  static const std::map<std::string, PhaseSteps> steps = {{"calibration", {Calibrate, CalibrationReadings}},
+                                                          {"stability", {TestStability, StabilityReadings}},
+                                                          {"verification", {Verify, VerificationReadings}},
+                                                          {"full_circle", {TestFullCircle, FullCircleReadings}}};
+  const auto found = steps.find(phase);
+  Require(found != steps.end(), "procedure.phases holds a phase that does not exist");
+  return found->second;
+}
+
+/// Whether the same again may end otherwise without a hand at the bench.
+bool IsWorthAnotherAttempt(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::kTimeout:
+    case FaultKind::kDropped:
+    case FaultKind::kProtocol:
+    case FaultKind::kRestarted:
+    case FaultKind::kGap:
+    case FaultKind::kOverrun:
+    case FaultKind::kChannelSlip:
+    case FaultKind::kStuck:
+    case FaultKind::kNotInPosition:
+    case FaultKind::kClock:
+      return true;
+    case FaultKind::kRefused:
+    case FaultKind::kIdentity:
+    case FaultKind::kSignalLost:
+    case FaultKind::kStalled:
+    case FaultKind::kFollowing:
+    case FaultKind::kLimit:
+    case FaultKind::kImplausible:
+    case FaultKind::kDisk:
+    case FaultKind::kStopped:
+      return false;
+  }
+  return false;
+}
+
+void CarryOutPhases(Sequencer&& sequencer, const ProcedureSettings& procedure) {
+  sequencer.Begin();
+  for (const std::string& phase : procedure.phases) StepsOf(phase).carry_out(sequencer);
+}
+
+/// Counts the attempts at the reading that is next.
+class Attempts {
+ public:
+  explicit Attempts(int allowed) : allowed_(allowed) {}
+  bool AnotherAt(int reading) {
+    failed_ = reading == reading_ ? failed_ + 1 : 1;
+    reading_ = reading;
+    return failed_ < allowed_;
+  }
+
+ private:
+  int allowed_, reading_ = -1, failed_ = 0;
+};
+
+void NoteFailure(RunLog* log, int reading, Time now, const DeviceFault& fault) {
+  if (!log || fault.kind() == FaultKind::kDisk) return;  // there may be no room to say so
+  log->AttemptFailed(reading, now, FaultName(fault.kind()), fault.what());
+}
+
+}  // namespace
+
+void CarryOut(RotaryBench& bench, const Scenario& scenario, ReadingSink& sink, const ProgressCallback& progress,
+              const Options& options) {
+  Journal journal(bench, options.log, options.calls_done);
+  RunState state{options.readings_done, {}, false};
+  Attempts attempts(options.attempts);
+  for (;;) {
+    try {
+      return CarryOutPhases(Sequencer(journal, scenario, sink, options, progress, state),
+                            RotaryOf(scenario).procedure);
+    } catch (const DeviceFault& fault) {
+      StopBoth(bench);
+      journal.Forget();
+      state.disturbed = true;
+      NoteFailure(options.log, state.kept, bench.clock.Now(), fault);
+      const bool knows_the_way = journal.kept();
+      if (!knows_the_way || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(state.kept)) throw;
+    } catch (...) {  // whatever it is, no table goes on moving
+      StopBoth(bench);
+      throw;
+    }
+  }
+}
+
+int PlannedReadings(const ProcedureSettings& procedure) {
+  int readings = 0;
+  for (const std::string& phase : procedure.phases) readings += StepsOf(phase).readings(procedure);
+  return readings;
+}
+
+}  // namespace twinbench::procedure

@@ -1,0 +1,160 @@
+#include "twin/benches/rotary_4dof/procedure/sequencer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/device_fault.h"
+#include "twin/procedure/plausible.h"
+#include "twin/procedure/watch.h"
+
+namespace twinbench::procedure {
+
+Sequencer::Sequencer(Journal& journal, const Scenario& scenario, ReadingSink& sink, const Options& options,
+                     const ProgressCallback& progress, RunState& state)
+    : journal_(journal),
+      scenario_(scenario),
+      sink_(sink),
+      options_(options),
+      progress_(progress),
+      state_(state),
+      live_devices_(journal.Bench()),
+      dwell_(scenario.seed, "procedure.dwell"),
+      planned_(PlannedReadings(RotaryOf(scenario).procedure)) {}
+
+void Sequencer::Begin() {
+  if (state_.disturbed && !quiet()) GoLive();
+}
+
+void Sequencer::Mount(int setup, int shift_steps) {
+  shift_rad_ = shift_steps * step_rad();
+  GoTo(0.0);
+  // On a real bench a mounting outlives the fault that came after it; a second one would seat differently.
+  if (state_.mounted_for == next_reading_) return;
+  const bool reclamp = settings().clamping == "reclamp";
+  const double clamp_rad = reclamp ? shift_rad_ : 0.0, reseat_rad = reclamp ? 0.0 : -shift_rad_;
+  bench().fixture.Mount(setup, clamp_rad, reseat_rad);
+  if (!quiet()) NoteMounting(setup, clamp_rad, reseat_rad);
+  WaitFor(bench(), FromSeconds(settings().remount_s), options_);
+  if (!quiet() && !bench().simulation) state_.mounted_for = next_reading_;
+}
+
+void Sequencer::NoteMounting(int setup, double clamp_rad, double reseat_rad) {
+  if (!options_.log) return;
+  options_.log->AppendEvent(
+      bench().clock.Now(), "fixture",
+      fmt::format("mounted set-up {}: grating clamped at {:.6g} deg, body seated at {:.6g} deg", setup,
+                  clamp_rad / units::deg, reseat_rad / units::deg));
+}
+
+void Sequencer::GoTo(double target_rad) {
+  target_rad_ = target_rad;
+  MoveBoth(bench(), target_rad, shift_rad_ - target_rad, options_);
+}
+
+void Sequencer::Tilt(double yaw_rad, double tilt_rad) {
+  yaw_rad_ = yaw_rad;
+  tilt_rad_ = tilt_rad;
+  bench().goniometer.MoveTo(yaw_rad, tilt_rad);
+}
+
+void Sequencer::Take(Reading stop, bool with_autocollimator) {
+  TakeAfter(std::move(stop), DrawDwell_s(), with_autocollimator);
+}
+
+void Sequencer::TakeAfter(Reading stop, double dwell_s, bool with_autocollimator) {
+  stop.reading = next_reading_;
+  if (quiet()) {
+    last_ = stop;
+    if (++next_reading_ == state_.kept) GoLive();
+    return;
+  }
+  if (options_.log) options_.log->RequireRoom();
+  const Acquisition block = Measure(stop, dwell_s, with_autocollimator);
+  RequirePlausible(stop, last_, options_);
+  sink_.Append(stop, block);
+  journal_.Commit();
+  last_ = stop;
+  state_.kept = ++next_reading_;
+  if (progress_) progress_({next_reading_, planned_, stop.phase, bench().clock.Now()});
+  if (next_reading_ < planned_) HearOperator(options_);
+}
+
+Acquisition Sequencer::Measure(Reading& stop, double dwell_s, bool with_autocollimator) {
+  WaitFor(bench(), FromSeconds(dwell_s), options_);
+  stop.target_rad = target_rad_;
+  stop.reference_rad = shift_rad_ - target_rad_;
+  stop.dwell_s = dwell_s;
+  stop.temperature_degC = bench().thermometer.Read_degC();
+  if (with_autocollimator) {
+    const AutocollimatorReading angles = bench().autocollimator.Read();
+    stop.autocollimator_yaw_rad = angles.yaw_rad;
+    stop.autocollimator_tilt_rad = angles.tilt_rad;
+  }
+  const Time asked = bench().clock.Now();
+  Acquisition block = bench().adc.Acquire(RotaryOf(scenario_).adc.samples, settings().keep_raw);
+  RequireTimely(block, asked, bench().clock.Now());
+  if (block.status == ReadingStatus::kOverrun) {
+    throw DeviceFault(
+        FaultKind::kOverrun, "adc",
+        fmt::format("its FIFO ran full after {} of {} scans", block.n_samples, RotaryOf(scenario_).adc.samples));
+  }
+  stop.time = block.start;
+  stop.status = block.status;
+  stop.n_samples = block.n_samples;
+  if (block.status == ReadingStatus::kOk) {
+    for (int c = 0; c < kChannels; ++c) {
+      stop.mean_V[c] = block.channel[c].mean_V;
+      stop.std_V[c] = block.channel[c].std_V;
+    }
+  }
+  return block;
+}
+
+double Sequencer::DrawDwell_s() {
+  const std::vector<double>& choices = settings().dwell_s;
+  Require(!choices.empty(), "procedure.dwell_s is empty");
+  return choices[static_cast<std::size_t>(dwell_.Uniform() * static_cast<double>(choices.size()))];
+}
+
+void Sequencer::GoLive() {
+  journal_.inner().simulation ? RepeatCalls() : ReturnToLastStop();
+}
+
+/// A simulation that answers otherwise is not the one that made the record.
+void Sequencer::RepeatCalls() {
+  RotaryBench& bench = journal_.inner();
+  bench.simulation->Restart();
+  bench.simulation->SetPaced(false);
+  for (const DeviceCall& call : journal_.done()) {
+    const std::string answer = Perform(bench, call.device, call.request).text;
+    // What a controller says about its motion may depend on what it was asked before; what is measured may not.
+    if ((answer == call.answer || call.request == "state") && bench.clock.Now() == call.time) continue;
+    throw InputError("record",
+                     call.device + " answered \"" + answer + "\" to \"" + call.request + "\" and not \"" +
+                         call.answer + "\" as before",
+                     "the bench, scenario, seed and version that made the record");
+  }
+  bench.simulation->SetPaced(true);
+}
+
+/// The encoders say where the tables really are. The last stop is approached from the side it was approached from.
+void Sequencer::ReturnToLastStop() {
+  RotaryBench& bench = journal_.inner();
+  for (RotaryTable* table : {&bench.target, &bench.reference}) {
+    if (!table->State().referenced) table->Home();
+  }
+  const double at_rad = target_rad_, behind_rad = at_rad - last_.direction * settings().run_up_steps * step_rad();
+  const double off_rad = std::max(std::abs(bench.target.EncoderAngle_rad() - at_rad),
+                                  std::abs(bench.reference.EncoderAngle_rad() - (shift_rad_ - at_rad)));
+  const double near_rad = std::min(options_.target.in_position_rad, options_.reference.in_position_rad);
+  if (!(off_rad <= near_rad)) {
+    MoveBoth(bench, behind_rad, shift_rad_ - behind_rad, options_);
+    MoveBoth(bench, at_rad, shift_rad_ - at_rad, options_);
+  }
+  bench.goniometer.MoveTo(yaw_rad_, tilt_rad_);
+}
+
+}  // namespace twinbench::procedure

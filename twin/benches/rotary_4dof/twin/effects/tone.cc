@@ -1,0 +1,43 @@
+#include <cmath>
+
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/effects/effects.h"
+
+namespace twinbench::sim {
+namespace {
+
+/// A slow vibration or an aliased hum: a sine in time on one channel, or on those that a yaw or a tilt moves.
+class Tone : public Effect {
+ public:
+  Tone(const EffectSettings& e, const Scenario& scenario)
+      : frequency_Hz_(Parameter(e, "frequency")), phase_rad_(Parameter(e, "phase")) {
+    const double amplitude_m = Parameter(e, "amplitude");
+    for (int c = 0; c < kChannels; ++c) {
+      const double sensitivity_V_m = (c < 2 ? RotaryOf(scenario).psd_a : RotaryOf(scenario).psd_b).sensitivity_V_m;
+      if (Reaches(e.where, c)) amplitude_V_[c] = amplitude_m * sensitivity_V_m;
+    }
+  }
+  void AlterSignal(const Moment& moment, std::array<double, kChannels>& signal_V) override {
+    const double sine = std::sin(2.0 * units::kPi * frequency_Hz_ * ToSeconds(moment.now) + phase_rad_);
+    for (int c = 0; c < kChannels; ++c) signal_V[c] += amplitude_V_[c] * sine;
+  }
+
+ private:
+  static bool Reaches(const std::string& where, int channel) {
+    const bool is_x = channel % 2 == 0;
+    return where == "all" || (where == "yaw" && is_x) || (where == "tilt" && !is_x) ||
+           where == kChannelNames[channel];
+  }
+
+  double frequency_Hz_;
+  double phase_rad_;
+  std::array<double, kChannels> amplitude_V_{};
+};
+
+}  // namespace
+
+EffectPointer MakeTone(const EffectSettings& settings, const Scenario& scenario) {
+  return std::make_unique<Tone>(settings, scenario);
+}
+
+}  // namespace twinbench::sim

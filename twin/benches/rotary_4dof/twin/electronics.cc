@@ -1,0 +1,106 @@
+#include "twin/benches/rotary_4dof/twin/electronics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::sim {
+namespace {
+
+std::array<std::size_t, kChannels> ScanOf(const std::vector<std::string>& scan_list) {
+  std::array<std::size_t, kChannels> scan{};
+  Require(scan_list.size() == kChannels, "the scan list names every channel once");
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    const auto found = std::find(kChannelNames.begin(), kChannelNames.end(), scan_list[place]);
+    Require(found != kChannelNames.end(), "the scan list names a channel that does not exist");
+    scan[place] = static_cast<std::size_t>(found - kChannelNames.begin());
+  }
+  return scan;
+}
+
+/// Of samples that scatter about a level.
+double ShareAbove(double threshold_V, double level_V, double noise_V) {
+  return 0.5 * std::erfc((threshold_V - level_V) / (std::sqrt(2.0) * noise_V));
+}
+
+}  // namespace
+
+Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
+    : adc_(RotaryOf(actual).adc),
+      amplifier_(RotaryOf(actual).amplifier),
+      sensitivity_V_m_{RotaryOf(actual).psd_a.sensitivity_V_m, RotaryOf(actual).psd_a.sensitivity_V_m,
+                       RotaryOf(actual).psd_b.sensitivity_V_m, RotaryOf(actual).psd_b.sensitivity_V_m},
+      sampling_(sampling),
+      scan_(ScanOf(RotaryOf(actual).adc.scan_list)),
+      noise_free_(actual.noise_free),
+      noise_(actual.seed, "amplifier.noise") {}
+
+std::array<double, kChannels> Electronics::Amplify(const std::array<double, kChannels>& spots_m) const {
+  std::array<double, kChannels> signal_V{};
+  for (int c = 0; c < kChannels; ++c) {
+    signal_V[c] = sensitivity_V_m_[c] * (1.0 + amplifier_.gain_error[c]) * spots_m[c] + amplifier_.offset_V[c];
+  }
+  return signal_V;
+}
+
+AdInput Electronics::InScanOrder(const std::array<double, kChannels>& signal_V, Time start) const {
+  AdInput input;
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    const std::size_t c = scan_[place];
+    ChannelInput& channel = input.channel[place];
+    channel.level_V = signal_V[c];
+    channel.noise_V = amplifier_.noise_V;
+    channel.crosstalk = sampling_.crosstalk[c];
+    channel.step_V = sampling_.step_V[c];
+    channel.step_threshold_V = sampling_.step_at_V[c];
+  }
+  // Whole turns are taken off before the sine sees them, so that the phase keeps its digits after hours.
+  const double turns = amplifier_.hum_Hz * ToSeconds(start);
+  input.hum = {amplifier_.hum_V, amplifier_.hum_Hz, 2.0 * units::kPi * (turns - std::floor(turns))};
+  return input;
+}
+
+Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
+  Acquisition block = scanned;
+  block.saturated_mask = 0;
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    block.channel[scan_[place]] = scanned.channel[place];
+    if ((scanned.saturated_mask >> place & 1) != 0) block.saturated_mask |= 1 << scan_[place];
+    for (std::size_t scan = 0; scan + kChannels <= block.raw.size(); scan += kChannels) {
+      block.raw[scan + scan_[place]] = scanned.raw[scan + place];
+    }
+  }
+  return block;
+}
+
+Acquisition Electronics::Convert(const std::array<double, kChannels>& signal_V, Time start, int reading,
+                                 int n_samples, bool keep_raw) {
+  noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
+  const AdRequest request{n_samples, adc_.every_sample, keep_raw, noise_free_};
+  return InChannelOrder(TakeBlock(adc_, InScanOrder(signal_V, start), request, noise_).ToAcquisition(start));
+}
+
+std::array<double, kChannels> Electronics::Expect(const std::array<double, kChannels>& signal_V, Time start,
+                                                  int n_samples, double noise_V) const {
+  AdInput input = InScanOrder(signal_V, start);
+  const bool blurred = noise_V > 0.0;  // else the block itself says where its samples lie
+  for (ChannelInput& channel : input.channel) channel.step_V = blurred ? 0.0 : channel.step_V;
+  Stream unused(0, "electronics.expectation");
+  const AdBlock block = TakeBlock(adc_, input, {n_samples, false, false, true}, unused);
+  std::array<double, kChannels> mean_V{};
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    const std::size_t c = scan_[place];
+    const double level_V = block.channel[place].mean_V;
+    mean_V[c] = level_V;
+    if (blurred) mean_V[c] += sampling_.step_V[c] * ShareAbove(sampling_.step_at_V[c], level_V, noise_V);
+  }
+  return mean_V;
+}
+
+Duration Electronics::BlockTime(int n_samples) const {
+  return FromSeconds(static_cast<double>(n_samples) * kChannels / adc_.rate_Hz);
+}
+
+}  // namespace twinbench::sim

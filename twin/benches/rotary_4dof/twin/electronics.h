@@ -1,0 +1,44 @@
+#pragma once
+
+#include "twin/benches/rotary_4dof/twin/effect.h"
+#include "twin/core/scenario.h"
+#include "twin/core/stream.h"
+#include "twin/sim/ad_sampler.h"
+
+namespace twinbench::sim {
+
+/// From spots to A/D blocks: amplifiers with gain, offset, noise and hum, then the multiplexed converter.
+class Electronics {
+ public:
+  Electronics(const Scenario& actual, const SamplingState& sampling);
+
+  /// Amplifier outputs for spot coordinates [m] in channel order.
+  std::array<double, kChannels> Amplify(const std::array<double, kChannels>& spots_m) const;
+
+  /// Converts one block of steady voltages. `reading` enters the noise stream, so that a reading's noise does not
+  /// depend on how many samples the readings before it took.
+  Acquisition Convert(const std::array<double, kChannels>& signal_V, Time start, int reading, int n_samples,
+                      bool keep_raw);
+
+  /// The mean that such a block would have if it were taken again and again: hum and crosstalk as they fall into
+  /// it, a step of the converter blurred by the samples' noise, no quantisation. NaN at the ends of the range.
+  /// @param noise_V  Standard deviation of one sample.
+  std::array<double, kChannels> Expect(const std::array<double, kChannels>& signal_V, Time start, int n_samples,
+                                       double noise_V) const;
+
+  Duration BlockTime(int n_samples) const;
+
+ private:
+  AdInput InScanOrder(const std::array<double, kChannels>& signal_V, Time start) const;
+  Acquisition InChannelOrder(const Acquisition& scanned) const;
+
+  AdcSettings adc_;
+  AmplifierSettings amplifier_;
+  std::array<double, kChannels> sensitivity_V_m_;
+  SamplingState sampling_;
+  std::array<std::size_t, kChannels> scan_;  // channel of each place in the scan
+  bool noise_free_;
+  Stream noise_;
+};
+
+}  // namespace twinbench::sim

@@ -1,0 +1,41 @@
+#include "twin/benches/rotary_4dof/twin/factory.h"
+
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/twin/follow.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/core/run_record.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::benches::rotary {
+namespace {
+
+class Twin : public BenchTwin {
+ public:
+  explicit Twin(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
+  nlohmann::json Truth() const override { return ToJson(twin_.TheTruth()); }
+  void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
+    RotaryBench bench = twin_.Bench();
+    procedure::Options options;
+    options.log = &record;
+    procedure::CarryOut(bench, scenario_, record, progress, options);
+  }
+  void WriteImages(const std::string& folder) override { twin_.WriteIrradiance(folder + "/irradiance.exr"); }
+
+ private:
+  Scenario scenario_;
+  sim::Twin twin_;
+};
+
+}  // namespace
+
+std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
+  return std::make_unique<Twin>(scenario);
+}
+
+std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
+  return sim::FollowRotary(scenario, record);
+}
+
+}  // namespace twinbench::benches::rotary

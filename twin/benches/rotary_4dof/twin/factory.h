@@ -1,0 +1,14 @@
+#pragma once
+
+#include "twin/core/bench.h"
+#include "twin/model/follow.h"
+
+namespace twinbench::benches::rotary {
+
+/// @throws InputError if the scenario's parts cannot be built.
+std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario);
+
+/// @throws InputError likewise.
+std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);
+
+}  // namespace twinbench::benches::rotary

@@ -1,0 +1,123 @@
+#include "twin/benches/rotary_4dof/twin/follow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/course.h"
+#include "twin/benches/rotary_4dof/twin/points.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::sim {
+namespace {
+
+PoseState Sum(PoseState a, const PoseState& b) {
+  a.target_yaw_rad += b.target_yaw_rad;
+  a.reference_yaw_rad += b.reference_yaw_rad;
+  a.grating_yaw_rad += b.grating_yaw_rad;
+  a.grating_tilt_rad += b.grating_tilt_rad;
+  a.grating_roll_rad += b.grating_roll_rad;
+  a.grating_shift_m += b.grating_shift_m;
+  a.target_error = a.target_error + b.target_error;
+  a.reference_error = a.reference_error + b.reference_error;
+  return a;
+}
+
+double IfNoisy(const Scenario& stated, double noise) {
+  return stated.noise_free ? 0.0 : noise;
+}
+
+Scenario WithFreeTables(Scenario scenario) {
+  RotarySettings& own = RotaryOf(scenario);
+  LeaveFree(own.target);
+  LeaveFree(own.reference);
+  WithoutBullet(own.mechanics);
+  return scenario;
+}
+
+class RotaryFollow : public PointwiseFollow<RotaryExtra> {
+ public:
+  RotaryFollow(const Scenario& stated, const std::vector<Reading>& record)
+      : PointwiseFollow(WithFreeTables(Foreseeable(stated)), record, RotaryPoints()),
+        noise_V_(IfNoisy(stated, RotaryOf(stated).amplifier.noise_V)),
+        thermometer_noise_K_(IfNoisy(stated, stated.environment.sensor_noise_K)),
+        path_(scenario()),
+        course_(FollowCourse(record, thermometer_noise_K_, path_)) {}
+
+  std::vector<std::string> Unfixed() const override { return course_.unfixed; }
+
+ protected:
+  Eigen::MatrixXd Shown(const std::vector<RotaryExtra>& extra) const override {
+    Eigen::MatrixXd shown_V(std::ssize(extra), kChannels);
+    for (std::size_t i = 0; i < extra.size(); ++i) {
+      const std::array<double, kChannels> reading_V = Shown_V(i, extra[i]);
+      for (int c = 0; c < kChannels; ++c) shown_V(static_cast<Eigen::Index>(i), c) = reading_V[c];
+    }
+    return shown_V;
+  }
+
+  std::unique_ptr<model::Follow> On(const Scenario& changed) const override {
+    Scenario stated = changed;
+    stated.noise_free = noise_V_ == 0.0 && thermometer_noise_K_ == 0.0;
+    return std::make_unique<RotaryFollow>(stated, record());
+  }
+
+ private:
+  /// X_LG, with the grating on its goniometer where the autocollimator saw it.
+  Pose GratingPose(std::size_t i, const RotaryExtra& extra) const {
+    const RecordedStop& stop = course_.stops[i];
+    const Stand& stand = course_.stands[static_cast<std::size_t>(stop.mounting)];
+    PoseState pose = Sum(stop.pose, extra.pose);
+    const auto at = [&] { return sim::GratingPose(stand, path_.effects(), stop.moment, stop.axes, pose); };
+    if (!stop.swept) return at() * mechanics::ToPose(extra.mount);
+    constexpr int kIterations = 3;  // each squares what is left of some milliradians
+    for (int k = 0; k < kIterations; ++k) {
+      const Vector3 normal_L = at().linear().col(1);
+      pose.grating_yaw_rad += stop.seen_yaw_rad - std::atan2(-normal_L.x(), normal_L.y());
+      pose.grating_tilt_rad +=
+          stop.seen_tilt_rad - std::atan2(normal_L.z(), std::hypot(normal_L.x(), normal_L.y()));
+    }
+    return at() * mechanics::ToPose(extra.mount);
+  }
+
+  std::array<double, kChannels> Shown_V(std::size_t i, const RotaryExtra& extra) const {
+    const RecordedStop& stop = course_.stops[i];
+    LightState light = stop.light;
+    light.wavelength_m += extra.light.wavelength_m;
+    light.yaw_rad += extra.light.yaw_rad;
+    light.pitch_rad += extra.light.pitch_rad;
+    const Spots spots = path_.light().Trace(GratingPose(i, extra), light);
+    if (spots.status != ReadingStatus::kOk) return {kNaN, kNaN, kNaN, kNaN};
+    std::array<double, kChannels> signal_V =
+        path_.effects().Shown_V(stop.moment, path_.electronics().Amplify(spots.uv_m));
+    for (int c = 0; c < kChannels; ++c) {
+      const double sensitivity_V_m =
+          (c < 2 ? RotaryOf(scenario()).psd_a : RotaryOf(scenario()).psd_b).sensitivity_V_m;
+      signal_V[c] += stop.added_V[c] + sensitivity_V_m * extra.shown_m[c];
+    }
+    return ReadOut(path_.electronics().Expect(signal_V, stop.moment.now, stop.n_samples, noise_V_));
+  }
+
+  std::array<double, kChannels> ReadOut(const std::array<double, kChannels>& mean_V) const {
+    Acquisition block;
+    for (int c = 0; c < kChannels; ++c) block.channel[c].mean_V = mean_V[c];
+    path_.effects().AlterReadout(block);
+    return {block.channel[0].mean_V, block.channel[1].mean_V, block.channel[2].mean_V, block.channel[3].mean_V};
+  }
+
+  double noise_V_, thermometer_noise_K_;  // as stated: what a step of the converter, or a log, is blurred by
+  OpticalPath path_;
+  RotaryCourse course_;
+};
+
+}  // namespace
+
+std::unique_ptr<model::Follow> FollowRotary(const Scenario& scenario, const std::vector<Reading>& record) {
+  try {
+    return std::make_unique<RotaryFollow>(scenario, record);
+  } catch (const std::invalid_argument& error) {
+    throw InputError("bench " + scenario.bench, error.what(), "a scenario of parts that can be built");
+  }
+}
+
+}  // namespace twinbench::sim

@@ -1,0 +1,183 @@
+#include "twin/benches/rotary_4dof/twin/light.h"
+
+#include "optics/stl.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/csv.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::sim {
+namespace {
+
+/// Of the pictures that Twin::WriteIrradiance makes: 20 um pixels on a 10 mm detector.
+constexpr int kIrradiancePixels = 500;
+
+optics::PsdParameters OpticalPsd(const PsdSettings& s) {
+  optics::PsdParameters psd;
+  psd.distance_m = s.distance_m;
+  psd.roll_rad = s.roll_rad;
+  psd.tilt_u_rad = s.tilt_u_rad;
+  psd.tilt_v_rad = s.tilt_v_rad;
+  psd.width_m = s.width_m;
+  psd.height_m = s.height_m;
+  psd.cubic_per_m2 = s.cubic_per_m2;
+  psd.stray_fraction = s.stray_fraction;
+  psd.silicon_reflectance = s.silicon_reflectance;
+  if (s.window) {
+    psd.window = optics::Window{s.window_thickness_m, s.window_index,     s.window_gap_m,
+                                s.window_reflectance, s.window_wedge_rad, s.window_coherent};
+  }
+  return psd;
+}
+
+constexpr std::array<const char*, 5> kOrderColumns = {"m-2", "m-1", "m0", "m+1", "m+2"};
+
+std::size_t NeededColumn(const CsvTable& table, const char* name) {
+  const auto column = table.Column(name);
+  if (!column)
+    throw InputError(table.WhereHeader(), std::string("there is no column ") + name,
+                     "sin_incidence,m-2,m-1,m0,m+1,m+2");
+  return *column;
+}
+
+optics::EfficiencyRow EfficiencyRowOf(const CsvTable& table, const CsvTable::Row& row) {
+  optics::EfficiencyRow efficiency{CsvNumber(table, row, NeededColumn(table, "sin_incidence"), 1.0), {-2, {}}};
+  for (const char* order : kOrderColumns) {
+    efficiency.orders.share.push_back(CsvNumber(table, row, NeededColumn(table, order), 1.0));
+    if (efficiency.orders.share.back() < 0.0)
+      throw InputError(table.Where(row), std::string(order) + " is negative", "shares of the power from 0 to 1");
+  }
+  if (efficiency.orders.Sum() > 1.0)
+    throw InputError(table.Where(row), "the orders carry more than the light", "shares that sum up to 1 at most");
+  return efficiency;
+}
+
+std::vector<optics::EfficiencyRow> EfficienciesFrom(const std::string& path) {
+  const CsvTable table = ReadCsv(path);
+  std::vector<optics::EfficiencyRow> efficiencies;
+  for (const CsvTable::Row& row : table.rows) {
+    efficiencies.push_back(EfficiencyRowOf(table, row));
+    const std::size_t n = efficiencies.size();
+    if (n > 1 && efficiencies[n - 1].sin_incidence <= efficiencies[n - 2].sin_incidence)
+      throw InputError(table.Where(row), "sin_incidence does not increase", "rows in its order");
+  }
+  if (efficiencies.empty()) throw InputError(path, "holds no rows", "a row for each incidence");
+  return efficiencies;
+}
+
+optics::Grating GratingOf(const GratingSettings& s) {
+  optics::Grating grating;
+  grating.lines_per_m = s.lines_per_m;
+  grating.width_m = s.width_m;
+  grating.height_m = s.height_m;
+  grating.table = {{0.0, {-2, {s.efficiency.begin(), s.efficiency.end()}}}};
+  if (!s.efficiency_file.empty()) grating.table = EfficienciesFrom(s.efficiency_file);
+  return grating;
+}
+
+optics::BeamParameters BeamOf(const LaserSettings& s) {
+  optics::BeamParameters beam;
+  beam.radius_m = s.beam_radius_m;
+  beam.divergence_rad = s.divergence_rad;
+  if (s.beam == "gaussian") beam.kind = optics::BeamKind::kGaussian;
+  if (s.beam != "profile") return beam;
+  beam.kind = optics::BeamKind::kProfile;
+  try {
+    beam.profile = optics::ReadIrradianceMaps(s.profile_file).at(0);
+  } catch (const std::exception& error) {
+    throw InputError("laser.profile_file", error.what(), "an OpenEXR file with a channel Y and a pixel pitch");
+  }
+  return beam;
+}
+
+optics::TriangleMesh MeshOf(const FixtureSettings& s) {
+  if (s.mesh_file.empty()) return optics::BoxMesh(-0.5 * s.box_m, 0.5 * s.box_m);
+  try {
+    return optics::ReadStl(s.mesh_file, s.mesh_unit_m);
+  } catch (const std::runtime_error& error) {
+    throw InputError(s.location.empty() ? "fixture " + s.name : s.location,
+                     std::string("fixture.mesh_file: ") + error.what(), "an STL file, binary or text");
+  }
+}
+
+optics::Blocker BlockerOf(const FixtureSettings& s) {
+  Pose pose = Pose::Identity();
+  pose.translation() = s.position_m;
+  pose.rotate(Eigen::AngleAxisd(s.yaw_rad, Vector3::UnitZ()));
+  return {MeshOf(s), pose, s.rides_on_grating};
+}
+
+optics::RotaryOptics OpticsOf(const Scenario& actual, double nominal_wavelength_m) {
+  optics::RotaryOpticsParameters parameters;
+  parameters.nominal_wavelength_m = nominal_wavelength_m;
+  parameters.laser_position_m = RotaryOf(actual).laser.position_m;
+  parameters.grating = GratingOf(RotaryOf(actual).grating);
+  parameters.psd_a = OpticalPsd(RotaryOf(actual).psd_a);
+  parameters.psd_b = OpticalPsd(RotaryOf(actual).psd_b);
+  parameters.beam = BeamOf(RotaryOf(actual).laser);
+  for (const FixtureSettings& fixture : actual.fixtures) parameters.blockers.push_back(BlockerOf(fixture));
+  if (nominal_wavelength_m * RotaryOf(actual).grating.lines_per_m >= 1.0)
+    throw InputError("laser.wavelength_nm, grating.lines_per_mm", "the orders +1 and -1 cannot leave the grating",
+                     "a wavelength below the distance of two grooves");
+  return optics::RotaryOptics(parameters);
+}
+
+ReadingStatus StatusOf(optics::PsdStatus status) {
+  switch (status) {
+    case optics::PsdStatus::kOk:
+      return ReadingStatus::kOk;
+    case optics::PsdStatus::kClipped:
+      return ReadingStatus::kClippedSpot;
+    case optics::PsdStatus::kMissed:
+    case optics::PsdStatus::kNoLight:
+      return ReadingStatus::kNoLight;
+  }
+  return ReadingStatus::kMissing;
+}
+
+}  // namespace
+
+Light::Light(const Scenario& actual, double nominal_wavelength_m)
+    : laser_(RotaryOf(actual).laser),
+      low_light_fraction_(RotaryOf(actual).amplifier.low_light_fraction),
+      optics_(OpticsOf(actual, nominal_wavelength_m)) {
+  // Without fixtures: what they take away is missing from the nominal power.
+  optics::RotaryOpticsParameters unobstructed = optics_.parameters();
+  unobstructed.blockers.clear();
+  const optics::PsdSignals nominal =
+      optics::RotaryOptics(unobstructed).Trace(Pose::Identity(), SourceOf(Nominal(0.0)));
+  nominal_power_W_ = {nominal.a.power_W, nominal.b.power_W};
+}
+
+LightState Light::Nominal(double temperature_K) const {
+  return {laser_.wavelength_m + laser_.wavelength_per_kelvin_m * temperature_K,
+          laser_.yaw_rad + laser_.pointing_yaw_per_kelvin_rad * temperature_K,
+          laser_.pitch_rad + laser_.pointing_pitch_per_kelvin_rad * temperature_K};
+}
+
+optics::SourceState Light::SourceOf(const LightState& light) const {
+  return {light.wavelength_m, light.yaw_rad, light.pitch_rad, laser_.power_W};
+}
+
+Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
+  const optics::PsdSignals signals = optics_.Trace(X_LG, SourceOf(light));
+  const std::array<const optics::PsdSignal*, 2> psd = {&signals.a, &signals.b};
+  Spots spots;
+  for (std::size_t p = 0; p < 2; ++p) {
+    spots.uv_m[2 * p] = psd[p]->u_m;
+    spots.uv_m[2 * p + 1] = psd[p]->v_m;
+    const bool dark = psd[p]->power_W < low_light_fraction_ * nominal_power_W_[p];
+    const ReadingStatus status = dark ? ReadingStatus::kNoLight : StatusOf(psd[p]->status);
+    if (spots.status == ReadingStatus::kOk) spots.status = status;
+  }
+  return spots;
+}
+
+void Light::WriteIrradiance(const std::string& path, const Pose& X_LG, const LightState& light) const {
+  try {
+    optics::WriteIrradianceMaps(path, optics_.Irradiance(X_LG, SourceOf(light), kIrradiancePixels));
+  } catch (const std::runtime_error& error) {
+    throw BenchError(error.what());
+  }
+}
+
+}  // namespace twinbench::sim

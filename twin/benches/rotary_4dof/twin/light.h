@@ -1,0 +1,40 @@
+#pragma once
+
+#include "optics/bench.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/effect.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::sim {
+
+/// Where the light falls on both PSDs, in channel order, or why a reading of it is worth nothing.
+struct Spots {
+  ReadingStatus status = ReadingStatus::kOk;
+  std::array<double, kChannels> uv_m{};
+};
+
+/// Laser, grating and PSDs of a scenario.
+class Light {
+ public:
+  /// @param nominal_wavelength_m  For which the PSDs were placed.
+  /// @throws InputError if the beam's profile or the mesh of a fixture cannot be read.
+  Light(const Scenario& actual, double nominal_wavelength_m);
+
+  /// Wavelength and pointing at this temperature above the reference.
+  LightState Nominal(double temperature_K) const;
+
+  Spots Trace(const Pose& X_LG, const LightState& light) const;
+
+  /// One multi-part OpenEXR with a picture of each PSD. @throws BenchError if it cannot be written.
+  void WriteIrradiance(const std::string& path, const Pose& X_LG, const LightState& light) const;
+
+ private:
+  optics::SourceState SourceOf(const LightState& light) const;
+
+  LaserSettings laser_;
+  double low_light_fraction_;
+  optics::RotaryOptics optics_;
+  std::array<double, 2> nominal_power_W_{};
+};
+
+}  // namespace twinbench::sim

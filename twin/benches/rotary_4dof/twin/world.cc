@@ -1,0 +1,86 @@
+#include "twin/benches/rotary_4dof/twin/world.h"
+
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/table_stack.h"
+#include "twin/core/device_fault.h"
+
+namespace twinbench::sim {
+
+using mechanics::Axis;
+
+World::World(const Scenario& nominal)
+    : path_(nominal), environment_(actual().environment, actual().seed), axes_(StackOfBench(actual()), queue_) {}
+
+void World::StartMove(Axis axis, double to_rad) {
+  if (!axes_.StartMove(axis, to_rad)) return;
+  axis == Axis::kTarget ? path_.stand().BeginTargetStop() : path_.stand().BeginReferenceStop();
+}
+
+TableState World::StateOf(Axis axis) {
+  const mechanics::StackState axes = axes_.Look();
+  TableState state;
+  state.commanded_rad = axes_.Commanded_rad(axis);
+  state.encoder_rad = axis == Axis::kTarget ? axes.target_encoder_rad : axes.reference_encoder_rad;
+  state.moving = axes_.Moving(axis);
+  state.in_position = axes_.InPosition(axis);
+  return state;
+}
+
+void World::Mount(int setup, double clamp_rad, double reseat_rad) {
+  if (!axes_.ComeToRest())
+    throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while a table moves");
+  const bool reseats = RotaryOf(actual()).procedure.clamping == "reseat";
+  axes_.Mount(path_.stand().Mount(path_.effects().Actual({clamp_rad, reseat_rad, reseats})));
+  mounted_ = queue_.Now();
+  setup_ = setup;
+}
+
+Moment World::Look(const mechanics::StackState& axes) {
+  Moment moment;
+  moment.now = queue_.Now();
+  moment.mounted = mounted_;
+  moment.arrived = axes_.LastArrival();
+  moment.temperature_K = environment_.AboveReference_K(moment.now);
+  moment.target_rad = axes.target_rad;
+  moment.reference_rad = axes.reference_rad;
+  moment.target_direction = axes_.Direction(Axis::kTarget);
+  moment.reference_direction = axes_.Direction(Axis::kReference);
+  moment.setup = setup_;
+  moment.reading = next_reading_;
+  path_.effects().Advance(moment);
+  return moment;
+}
+
+Pose World::GratingPose() {
+  const mechanics::StackState axes = axes_.Look();
+  return path_.GratingPose(Look(axes), axes);
+}
+
+void World::WriteIrradiance(const std::string& path) {
+  const mechanics::StackState axes = axes_.Look();
+  const Moment moment = Look(axes);
+  path_.light().WriteIrradiance(path, path_.GratingPose(moment, axes), path_.LightAt(moment));
+}
+
+Acquisition World::Acquire(int n_samples, bool keep_raw) {
+  const mechanics::StackState axes = axes_.Look();
+  const Moment moment = Look(axes);
+  const Spots spots = path_.light().Trace(path_.GratingPose(moment, axes), path_.LightAt(moment));
+
+  Acquisition block;
+  if (spots.status == ReadingStatus::kOk) {
+    std::array<double, kChannels> signal_V =
+        path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
+    path_.effects().AlterSignal(moment, signal_V);
+    block = path_.electronics().Convert(signal_V, moment.now, next_reading_, n_samples, keep_raw);
+    path_.effects().AlterReadout(block);
+  } else {
+    block.start = moment.now;
+    block.status = spots.status;
+  }
+  ++next_reading_;
+  queue_.RunUntil(moment.now + path_.electronics().BlockTime(n_samples));
+  return block;
+}
+
+}  // namespace twinbench::sim

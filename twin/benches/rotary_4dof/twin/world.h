@@ -1,0 +1,48 @@
+#pragma once
+
+#include "twin/benches/rotary_4dof/twin/optical_path.h"
+#include "twin/sim/axes.h"
+#include "twin/sim/environment.h"
+
+namespace twinbench::sim {
+
+/// The whole bench at the time of its event queue. Devices are thin: they ask and change this.
+class World {
+ public:
+  explicit World(const Scenario& nominal);
+
+  EventQueue& queue() { return queue_; }
+  Environment& environment() { return environment_; }
+  const Scenario& actual() const { return path_.actual(); }
+
+  void StartMove(mechanics::Axis axis, double to_rad);
+  bool Settles(mechanics::Axis axis, Duration within) { return axes_.Settles(axis, within); }
+  void Stop(mechanics::Axis axis) { axes_.Stop(axis); }
+  TableState StateOf(mechanics::Axis axis);
+  void Mount(int setup, double clamp_rad, double reseat_rad);
+  void SetGoniometer(double yaw_rad, double tilt_rad) { path_.stand().SetGoniometer(yaw_rad, tilt_rad); }
+
+  /// X_LG now, effects included.
+  Pose GratingPose();
+
+  /// Takes one block: the light as it falls at its start, converted while the clock runs to its end.
+  Acquisition Acquire(int n_samples, bool keep_raw);
+
+  /// Pictures of both PSDs as the light falls now.
+  void WriteIrradiance(const std::string& path);
+
+  const Stand& stand() const { return path_.stand(); }
+
+ private:
+  Moment Look(const mechanics::StackState& axes);
+
+  EventQueue queue_;
+  OpticalPath path_;
+  Environment environment_;
+  Axes axes_;
+  Time mounted_{};
+  int setup_ = 0;
+  int next_reading_ = 0;
+};
+
+}  // namespace twinbench::sim

@@ -1,0 +1,103 @@
+#include "twin/benches/turntable_autocollimator/estimators/harmonic_model.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
+
+namespace twinbench::separate::turntable {
+namespace {
+
+/// [1, cos theta, sin theta, cos 2 theta, ...] up to an order.
+Eigen::RowVectorXd Basis(double angle_rad, int highest_order) {
+  Eigen::RowVectorXd basis(2 * highest_order + 1);
+  basis[0] = 1.0;
+  for (int k = 1; k <= highest_order; ++k) {
+    basis[2 * k - 1] = std::cos(k * angle_rad);
+    basis[2 * k] = std::sin(k * angle_rad);
+  }
+  return basis;
+}
+
+Eigen::MatrixXd BasisAt(const std::vector<double>& angles_rad, int highest_order) {
+  Eigen::MatrixXd basis(std::ssize(angles_rad), 2 * highest_order + 1);
+  for (std::size_t i = 0; i < angles_rad.size(); ++i)
+    basis.row(static_cast<Eigen::Index>(i)) = Basis(angles_rad[i], highest_order);
+  return basis;
+}
+
+/// c cos + s sin = a sin(k theta + alpha) with a = |(c, s)|, alpha = atan2(c, s).
+HarmonicTerm Term(int order, const Eigen::Vector2d& cs, const Eigen::Matrix2d& cov) {
+  const double amplitude_rad = cs.norm();
+  const Eigen::Vector2d along = cs / amplitude_rad, across(along.y(), -along.x());
+  return {order, amplitude_rad, std::atan2(cs[0], cs[1]), std::sqrt(along.dot(cov * along)),
+          std::sqrt(across.dot(cov * across)) / amplitude_rad};
+}
+
+/// Covariance of the series, or that of independent noise of the size of the residuals if it is not known.
+Eigen::MatrixXd CovarianceOf(const AngleSeries& series, double mean_square_rad2) {
+  if (series.cov_rad2.allFinite()) return series.cov_rad2;
+  const auto n = std::ssize(series.position_rad);
+  return mean_square_rad2 * Eigen::MatrixXd::Identity(n, n);
+}
+
+}  // namespace
+
+int MostHarmonics(int positions) {
+  return (positions - 1) / 2;
+}
+
+HarmonicModel FitHarmonics(const AngleSeries& series, int highest_order) {
+  const auto n = static_cast<int>(series.position_rad.size());
+  if (highest_order < 0 || highest_order > MostHarmonics(n)) {
+    throw InputError("harmonic model", "highest order " + std::to_string(highest_order),
+                     "0 to " + std::to_string(MostHarmonics(n)) + " for " + std::to_string(n) + " positions");
+  }
+  const Eigen::MatrixXd basis = BasisAt(series.position_rad, highest_order);
+  const Eigen::MatrixXd to_coefficients = PseudoInverseOf(basis);
+  HarmonicModel model;
+  model.highest_order = highest_order;
+  model.coefficients_rad = to_coefficients * series.value_rad;
+  const Eigen::VectorXd rest_rad = series.value_rad - basis * model.coefficients_rad;
+  const double left = std::max(1.0, static_cast<double>(n - basis.cols()));
+  const double mean_square_rad2 = rest_rad.squaredNorm() / left;
+  const Eigen::MatrixXd cov_rad2 = CovarianceOf(series, mean_square_rad2);
+  model.cov_rad2 = to_coefficients * cov_rad2 * to_coefficients.transpose();
+  model.residual_rms_rad = std::sqrt(rest_rad.squaredNorm() / n);
+  // Expected sum of squared residuals: trace of (1 - H) cov, with H = basis * to_coefficients.
+  const double expected_rad2 =
+      (cov_rad2.trace() - (basis.transpose() * cov_rad2 * to_coefficients.transpose()).trace()) / left;
+  model.u_unmodelled_rad = std::sqrt(std::max(0.0, mean_square_rad2 - expected_rad2));
+  for (int k = 1; k <= highest_order; ++k)
+    model.terms.push_back(
+        Term(k, model.coefficients_rad.segment<2>(2 * k - 1), model.cov_rad2.block<2, 2>(2 * k - 1, 2 * k - 1)));
+  return model;
+}
+
+CurvePoint HarmonicModel::At(double turntable_rad) const {
+  const Eigen::RowVectorXd basis = Basis(turntable_rad, highest_order);
+  const double variance_rad2 = basis * cov_rad2 * basis.transpose();
+  return {basis.dot(coefficients_rad), std::sqrt(variance_rad2 + u_unmodelled_rad * u_unmodelled_rad)};
+}
+
+int ChooseHighestOrder(const AngleSeries& series) {
+  const auto n = static_cast<int>(series.position_rad.size());
+  const Eigen::MatrixXd basis = BasisAt(series.position_rad, MostHarmonics(n));
+  // Orders are nested: a model of order k leaves the part of Q^T value that lies behind its 2 k + 1 columns.
+  const Eigen::VectorXd rotated_rad = RotatedByQ(basis, series.value_rad);
+  int best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int order = 0; 2 * order + 3 < n; ++order) {
+    const double mean_square_rad2 = rotated_rad.tail(n - 2 * order - 1).squaredNorm() / n;
+    const double parameters = 2.0 * order + 2.0;  // the noise is one of them
+    const double aicc = n * std::log(mean_square_rad2) + 2.0 * parameters * n / (n - parameters - 1.0);
+    if (!(aicc < least)) continue;
+    least = aicc;
+    best = order;
+  }
+  return best;
+}
+
+}  // namespace twinbench::separate::turntable

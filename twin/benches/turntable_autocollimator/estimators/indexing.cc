@@ -1,0 +1,152 @@
+#include "twin/benches/turntable_autocollimator/estimators/indexing.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "twin/benches/turntable_autocollimator/estimators/lost_harmonics.h"
+#include "twin/core/distributions.h"
+#include "twin/core/units.h"
+
+namespace twinbench::separate::turntable {
+namespace {
+
+constexpr double kTooUnlikely = 0.001;
+
+/// Variance of one reading about the turntable's axis, of readings with roll.
+double Variance(const AutocollimatorNoise& noise, double gamma_rad) {
+  return std::pow(std::cos(gamma_rad) * noise.u_x_rad, 2) + std::pow(std::sin(gamma_rad) * noise.u_y_rad, 2);
+}
+
+/// Compares the residuals with the noise: scales it, or takes it from them if there is none.
+void JudgeNoise(const Eigen::VectorXd& residual_rad, double gamma_rad, IndexingSeparation& result) {
+  result.residual_rms_rad = std::sqrt(residual_rad.squaredNorm() / static_cast<double>(residual_rad.size()));
+  if (!(result.dof > kLeastDof)) return;
+  if (!std::isfinite(result.noise.u_x_rad)) {
+    const double u_rad = std::sqrt(residual_rad.squaredNorm() / result.dof);
+    result.noise = {u_rad, u_rad, static_cast<int>(std::lround(result.dof))};
+    return;
+  }
+  result.chi2 = residual_rad.squaredNorm() / Variance(result.noise, gamma_rad);
+  if (!(ChiSquaredExceedance(result.chi2, result.dof) < kTooUnlikely)) return;
+  result.scale = std::sqrt(result.chi2 / result.dof);
+  if (result.roll.status == RollStatus::kOk) result.roll.u_gamma_rad *= result.scale;
+  result.notes.push_back(fmt::format(
+      "the residuals are {:.2f} times what the noise explains: uncertainties are scaled", result.scale));
+}
+
+/// Covariance of what the turntable holds of the multi-tooth table: the part that looks alike at positions of the
+/// same remainder by the common steps, of a mean over the rows of teeth.
+Eigen::MatrixXd MultitoothPart(const StopGrid& grid, int common_steps, double u_multitooth_rad) {
+  const double variance = u_multitooth_rad * u_multitooth_rad / static_cast<double>(grid.row_offset_rad.size());
+  Eigen::MatrixXd cov(grid.n, grid.n);
+  for (int i = 0; i < grid.n; ++i) {
+    for (int j = 0; j < grid.n; ++j)
+      cov(i, j) = variance / grid.n * (((i - j) % common_steps == 0 ? common_steps : 0) - 1);
+  }
+  return cov;
+}
+
+/// Those of the unknowns from `first` on that were read, by ascending angle.
+AngleSeries MakeSeries(const Eigen::VectorXd& unknowns, const Eigen::MatrixXd& cov_rad2, int first,
+                       const std::map<double, int>& read) {
+  AngleSeries series;
+  std::vector<int> columns;
+  for (const auto& [angle_rad, index] : read) {
+    series.position_rad.push_back(angle_rad);
+    columns.push_back(first + index);
+  }
+  series.value_rad = unknowns(columns);
+  series.cov_rad2 = cov_rad2(columns, columns);
+  return series;
+}
+
+IndexingStatus StatusOf(const ShiftFit& fit, int n) {
+  if (!fit.determined()) return IndexingStatus::kUndetermined;
+  if (fit.common_steps() == 1) return IndexingStatus::kSeparated;
+  return fit.common_steps() == n ? IndexingStatus::kSumOnly : IndexingStatus::kHarmonicsLost;
+}
+
+void AddNotes(const Eigen::VectorXd& d_roll, int n, IndexingSeparation& result) {
+  if (result.status == IndexingStatus::kUndetermined)
+    result.notes.push_back("readings are missing: the remaining ones do not connect all positions");
+  if (result.status == IndexingStatus::kSumOnly)
+    result.notes.push_back(
+        "the shifts do not separate the tables: the turntable's values hold the multi-tooth table's");
+  if (result.status == IndexingStatus::kHarmonicsLost)
+    result.notes.push_back(fmt::format("orders {} are the same for all shifts and counted as the turntable's",
+                                       fmt::join(result.lost_harmonics, ", ")));
+  if (result.status != IndexingStatus::kUndetermined && result.roll.status == RollStatus::kTiltsAlike) {
+    const double change_arcsec = d_roll.head(n).array().isNaN().select(0.0, d_roll.head(n)).cwiseAbs().maxCoeff() *
+                                 units::deg / units::arcsec;
+    result.notes.push_back(
+        fmt::format("the roll of the crosshair is not determined and not taken out; 1 deg of it "
+                    "would change the turntable's error by up to {:.3f} arcsec",
+                    change_arcsec));
+  }
+}
+
+Roll Given(Roll roll) {
+  roll.status = RollStatus::kGiven;
+  return roll;
+}
+
+/// Covariance of the unknowns.
+/// @param d_roll  Their change with the roll [rad / rad].
+Eigen::MatrixXd Covariance(const StopGrid& grid, const ShiftFit& fit, const Eigen::VectorXd& d_roll,
+                           double gamma_rad, const IndexingOptions& options, const IndexingSeparation& result) {
+  const double variance = result.scale * result.scale * Variance(result.noise, gamma_rad);
+  const double u_roll_rad = std::isfinite(result.roll.u_gamma_rad) ? result.roll.u_gamma_rad : 0.0;
+  const Eigen::VectorXd of_roll = u_roll_rad * d_roll;
+  Eigen::MatrixXd cov_rad2 = variance * fit.cofactor() + of_roll * of_roll.transpose();
+  cov_rad2.topLeftCorner(grid.n, grid.n) += MultitoothPart(grid, fit.common_steps(), options.u_multitooth_rad);
+  return cov_rad2;
+}
+
+void FillTables(const StopGrid& grid, const Eigen::VectorXd& unknowns, const Eigen::MatrixXd& cov_rad2,
+                IndexingSeparation& result) {
+  std::map<double, int> positions, teeth;
+  for (const GridStop& stop : grid.stops) {
+    positions[grid.Position_rad(stop.position)] = stop.position;
+    teeth[grid.Tooth_rad(stop.tooth)] = stop.tooth;
+  }
+  result.turntable = MakeSeries(unknowns, cov_rad2, 0, positions);
+  if (result.status != IndexingStatus::kSumOnly) result.multitooth = MakeSeries(unknowns, cov_rad2, grid.n, teeth);
+}
+
+/// Values of the grid's stops, spread over all stops handed in.
+Eigen::VectorXd ByStop(const Eigen::VectorXd& values, const StopGrid& grid, Eigen::Index stops) {
+  Eigen::VectorXd spread = Eigen::VectorXd::Constant(stops, kNaN);
+  for (Eigen::Index k = 0; k < values.size(); ++k)
+    spread[static_cast<Eigen::Index>(grid.stops[static_cast<std::size_t>(k)].stop)] = values[k];
+  return spread;
+}
+
+}  // namespace
+
+IndexingSeparation SeparateIndexing(const std::vector<TurntableStop>& stops, const IndexingOptions& options) {
+  const StopGrid grid = FindGrid(stops, options.positions);
+  const Readings readings = Collect(stops, grid);
+  const ShiftFit fit(grid);
+  IndexingSeparation result;
+  result.status = StatusOf(fit, grid.n);
+  result.lost_harmonics = LostHarmonics(grid.n, fit.common_steps());
+  result.noise = options.noise ? *options.noise : NoiseOfRepeats(stops, grid);
+  result.roll =
+      options.roll ? Given(*options.roll) : EstimateRoll(fit, readings.x_rad, readings.y_rad, result.noise);
+  result.dof = fit.dof() - (result.roll.status == RollStatus::kOk ? 1.0 : 0.0);
+
+  const double gamma_rad = result.roll.status == RollStatus::kTiltsAlike ? 0.0 : result.roll.gamma_rad;
+  const double c = std::cos(gamma_rad), s = std::sin(gamma_rad);
+  const Eigen::VectorXd x_rad = c * readings.x_rad - s * readings.y_rad;
+  const Eigen::VectorXd d_roll = fit.Solve(-s * readings.x_rad - c * readings.y_rad);
+  const Eigen::VectorXd residual_rad = fit.Residuals(x_rad);
+  JudgeNoise(residual_rad, gamma_rad, result);
+  result.residual_rad = ByStop(residual_rad, grid, std::ssize(stops));
+  FillTables(grid, fit.Solve(x_rad), Covariance(grid, fit, d_roll, gamma_rad, options, result), result);
+  AddNotes(d_roll, grid.n, result);
+  return result;
+}
+
+}  // namespace twinbench::separate::turntable

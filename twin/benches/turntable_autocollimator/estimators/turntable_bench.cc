@@ -1,0 +1,123 @@
+#include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
+
+#include <algorithm>
+#include <set>
+
+#include "twin/benches/turntable_autocollimator/settings.h"
+
+namespace twinbench::separate::turntable {
+namespace {
+
+TurntableStop StopOf(const Reading& r) {
+  return {r.setup,
+          r.pass,
+          r.direction,
+          r.target_rad,
+          r.reference_rad,
+          r.autocollimator_yaw_rad,
+          r.autocollimator_tilt_rad};
+}
+
+struct SetUpPair {
+  int first, second;
+};
+
+/// Two set-ups of equal shift whose tilts differ most, by the range of the difference of their y.
+std::optional<SetUpPair> PairForEquation5(const StopGrid& grid, const Readings& readings) {
+  const auto y_of = [&](int setup) {
+    Eigen::VectorXd y = Eigen::VectorXd::Constant(grid.n, kNaN);
+    for (std::size_t i = 0; i < grid.stops.size(); ++i) {
+      if (grid.stops[i].setup == setup) y[grid.stops[i].position] = readings.y_rad[static_cast<Eigen::Index>(i)];
+    }
+    return y;
+  };
+  std::optional<SetUpPair> best;
+  double largest_rad = 0.0;
+  const int set_ups = static_cast<int>(grid.setups.size());
+  for (int a = 0; a < set_ups; ++a) {
+    for (int b = a + 1; b < set_ups; ++b) {
+      const SetUp &first = grid.setups[static_cast<std::size_t>(a)],
+                  &second = grid.setups[static_cast<std::size_t>(b)];
+      if (first.shift != second.shift || first.row != second.row) continue;
+      const Eigen::VectorXd difference = y_of(b) - y_of(a);
+      const ErrorSize size = DescribeErrors(difference);
+      if (!(size.peak_to_valley_rad > largest_rad)) continue;
+      largest_rad = size.peak_to_valley_rad;
+      best = {first.label, second.label};
+    }
+  }
+  return best;
+}
+
+/// What equation 5 gave, as a series that a model can be fitted to; without uncertainty.
+AngleSeries SeriesOf(const std::vector<PointwiseError>& pointwise) {
+  AngleSeries series;
+  std::vector<double> values_rad;
+  for (const PointwiseError& point : pointwise) {
+    if (!std::isfinite(point.value_rad)) continue;
+    series.position_rad.push_back(point.turntable_rad);
+    values_rad.push_back(point.value_rad);
+  }
+  const auto n = static_cast<Eigen::Index>(values_rad.size());
+  series.value_rad = Eigen::Map<const Eigen::VectorXd>(values_rad.data(), n);
+  if (n > 0) series.value_rad.array() -= series.value_rad.mean();
+  series.cov_rad2 = Eigen::MatrixXd::Constant(n, n, kNaN);
+  return series;
+}
+
+void AddModel(const AngleSeries& series, TurntableAnalysis& analysis) {
+  if (std::ssize(series.position_rad) < kFewestPositions) {
+    analysis.not_separated = "no two set-ups of equal shift and different tilt: equation 5 has nothing to work on";
+    return;
+  }
+  analysis.model = FitHarmonics(series, ChooseHighestOrder(series));
+}
+
+void AddCheck(const std::vector<Reading>& readings, const Scenario& scenario, TurntableAnalysis& analysis) {
+  const std::vector<TurntableStop> stops = StopsOf(readings, Phase::kVerification);
+  if (stops.empty() || !analysis.model) return;
+  const IndexingSeparation& separation = *analysis.separation;
+  // The published way knows no roll; its check was done with instruments levelled with care.
+  analysis.check = CheckCompensation(*analysis.model, stops, separation.roll,
+                                     {separation.noise.u_x_rad, TurntableOf(scenario).multitooth.u_tooth_rad});
+}
+
+}  // namespace
+
+std::vector<TurntableStop> StopsOf(const std::vector<Reading>& readings, Phase phase) {
+  std::vector<TurntableStop> stops;
+  for (const Reading& reading : readings) {
+    if (reading.phase == phase && reading.status == ReadingStatus::kOk) stops.push_back(StopOf(reading));
+  }
+  return stops;
+}
+
+TurntableAnalysis AnalyseTurntable(const std::vector<Reading>& readings, const Scenario& scenario,
+                                   Estimator estimator) {
+  TurntableAnalysis analysis;
+  analysis.estimator = estimator;
+  analysis.left_out = static_cast<int>(
+      std::ranges::count_if(readings, [](const Reading& r) { return r.status != ReadingStatus::kOk; }));
+  const std::vector<TurntableStop> stops = StopsOf(readings, Phase::kFullCircle);
+  analysis.used = static_cast<int>(stops.size());
+  if (stops.empty()) {
+    analysis.not_separated = "there are no usable full-circle readings";
+    return analysis;
+  }
+  const int positions = TurntableOf(scenario).turntable_procedure.positions;
+  IndexingOptions options;
+  options.positions = positions;
+  options.u_multitooth_rad = TurntableOf(scenario).multitooth.u_tooth_rad;
+  analysis.separation = SeparateIndexing(stops, options);
+  const StopGrid grid = FindGrid(stops, positions);
+  if (const auto pair = PairForEquation5(grid, Collect(stops, grid)))
+    analysis.pointwise = SolveEquation5(stops, pair->first, pair->second, analysis.separation->noise, positions);
+  const bool published = estimator == Estimator::kPublished;
+  const AngleSeries series = published ? SeriesOf(analysis.pointwise) : analysis.separation->turntable;
+  analysis.before = DescribeErrors(series.value_rad);
+  AddModel(series, analysis);
+  AddCheck(readings, scenario, analysis);
+  return analysis;
+}
+
+}  // namespace twinbench::separate::turntable

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/core/scenario.h"
+
+/// What a scenario of the bench turntable_autocollimator says beside the errors of its two tables. Defaults: the
+/// instruments of Guo et al. (2014); what that paper does not state is assumed.
+namespace twinbench {
+
+struct MultitoothSettings {  // [multitooth], beside its errors as a table
+  int teeth = 360;
+  double tooth_rms_rad = 0.1 * units::arcsec;  // of errors that differ from tooth to tooth
+  double u_tooth_rad = 0.15 * units::arcsec;   // stated standard uncertainty of a tooth
+  double index_time_s = 4.0;                   // to lift, turn and seat it
+};
+
+struct MirrorSettings {  // [mirror]
+  double width_m = 60.0 * units::mm;
+  double height_m = 60.0 * units::mm;
+  double flatness_m = 0.0;             // sag over the width; positive: hollow
+  double radius_m = 40.0 * units::mm;  // its surface from the multi-tooth table's axis
+};
+
+struct CollimatorSettings {  // [autocollimator], beside its noise, range and gain error
+  double distance_m = 0.35;  // objective from the turntable's axis
+  double focal_length_m = 0.3;
+  double aperture_m = 30.0 * units::mm;  // diameter
+  double roll_rad = 0.0;                 // of the crosshair: x' = x + y' sin roll
+  double error_at_edge_rad = 0.0;        // grows with the cube of the angle to this at the range's edge
+  double pixel_pitch_m = 5.0 * units::um;
+  double interpolation_error_px = 0.0;  // amplitude, with the period of a pixel
+  double x_per_kelvin_rad = 0.0;        // zero, against environment.reference_degC
+  double y_per_kelvin_rad = 0.0;
+};
+
+/// Lists with one entry a set-up; one entry alone holds for all of them.
+struct TurntableProcedureSettings {                                   // [turntable_procedure]
+  std::vector<std::string> phases = {"full_circle", "verification"};  // of calibration, full_circle, verification
+  int positions = 72;
+  std::vector<double> tilts_rad = {60.0 * units::arcsec, 100.0 * units::arcsec};  // of the multi-tooth table's axis
+  std::vector<double> tilt_azimuths_rad = {0.0};              // on the turntable: where it leans to
+  std::vector<int> shifts = {0};                              // shifts_teeth of the multi-tooth table
+  std::vector<double> eccentricities_m = {50.0 * units::um};  // of the multi-tooth table's axis, along the azimuth
+  std::vector<int> passes = {1, -1};                          // directions
+  std::vector<double> dwell_s = {1.0};                        // drawn at random from this list at every stop
+  double run_up_steps = 0.5;                                  // every pass comes to its first stop from this far
+  double remount_s = 600.0;                                   // time a set-up takes
+  double sweep_rad = 200.0 * units::arcsec;  // calibration: the turntable alone, +- this about position 0
+  int sweep_points = 9;
+  int verification_positions = 144;  // whole teeth off the grid of positions
+  std::vector<int> verification_passes = {1};
+
+  int SetUps() const;  // the length of the longest list
+  template <class Value>
+  static Value Of(const std::vector<Value>& list, int setup) {
+    return list.size() == 1 ? list.front() : list.at(static_cast<std::size_t>(setup));
+  }
+};
+
+inline int TurntableProcedureSettings::SetUps() const {
+  std::size_t most = tilts_rad.size();
+  for (const std::size_t length : {tilt_azimuths_rad.size(), shifts.size(), eccentricities_m.size()})
+    most = length > most ? length : most;
+  return static_cast<int>(most);
+}
+
+struct TurntableSettings {
+  TableSettings turntable;         // the table under test
+  TableSettings multitooth_table;  // the reference: its errors as a table ...
+  MultitoothSettings multitooth;   // ... and its teeth
+  MechanicsSettings mechanics;
+  MirrorSettings mirror;
+  AutocollimatorSettings autocollimator;
+  CollimatorSettings collimator;
+  TurntableProcedureSettings turntable_procedure;
+};
+
+/// The bench's own part of a scenario. @throws std::logic_error if it is another bench's.
+inline TurntableSettings& TurntableOf(Scenario& scenario) {
+  return scenario.own.As<TurntableSettings>();
+}
+inline const TurntableSettings& TurntableOf(const Scenario& scenario) {
+  return scenario.own.As<TurntableSettings>();
+}
+
+}  // namespace twinbench

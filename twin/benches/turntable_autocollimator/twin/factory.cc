@@ -1,0 +1,18 @@
+#include "twin/benches/turntable_autocollimator/twin/factory.h"
+
+#include "twin/benches/turntable_autocollimator/procedure.h"
+#include "twin/benches/turntable_autocollimator/twin/follow.h"
+#include "twin/benches/turntable_autocollimator/twin/twin.h"
+#include "twin/sim/simulated_bench.h"
+
+namespace twinbench::benches::turntable {
+
+std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
+  return std::make_unique<sim::SimulatedBench<sim::TurntableTwin>>(scenario);
+}
+
+std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
+  return sim::FollowTurntable(scenario, record);
+}
+
+}  // namespace twinbench::benches::turntable

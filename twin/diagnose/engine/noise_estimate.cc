@@ -1,0 +1,110 @@
+#include "twin/diagnose/engine/noise_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "twin/core/distributions.h"
+#include "twin/core/units.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr std::size_t kFewestDifferences = 8;  // differences; fewer say nothing
+
+/// A standard deviation and the number of differences that it was taken from.
+struct Spread {
+  double sd = std::numeric_limits<double>::infinity();
+  double count = 0.0;
+
+  double RelativeUncertainty() const { return 1.0 / std::sqrt(count); }  // neighbouring differences share readings
+};
+
+double RootMeanSquare(const std::vector<double>& values, double most, std::size_t& kept) {
+  double square = 0.0;
+  kept = 0;
+  for (const double v : values) {
+    if (std::abs(v) > most) continue;
+    square += v * v;
+    ++kept;
+  }
+  return std::sqrt(square / static_cast<double>(kept));
+}
+
+double MedianOfAbsolutes(std::vector<double> values) {
+  for (double& v : values) v = std::abs(v);
+  return Median(std::move(values));
+}
+
+/// Begins with the median of absolute values, which outliers hardly move, and goes on to the rms of what lies
+/// within three deviations, which uses nearly all that the values can say. The plain rms where the median is zero
+/// because the readings have coarse steps.
+Spread SpreadOf(const std::vector<double>& values) {
+  if (values.size() < kFewestDifferences) return {};
+  constexpr double kNormal = 1.4826;    // deviation of a normal distribution / its median of absolute values
+  constexpr double kWithin3 = 0.98658;  // deviation of a normal distribution within three deviations
+  std::size_t kept = 0;
+  double sd = kNormal * MedianOfAbsolutes(values);
+  if (sd == 0.0)
+    return {RootMeanSquare(values, std::numeric_limits<double>::infinity(), kept),
+            static_cast<double>(values.size())};
+  for (int round = 0; round < 3; ++round) sd = RootMeanSquare(values, 3.0 * sd, kept) / kWithin3;
+  return {sd, static_cast<double>(kept)};
+}
+
+/// Both together where they agree within three standard uncertainties, the smaller one where they do not.
+double SmallerOrMean(const Spread& a, const Spread& b) {
+  if (a.count == 0.0 || b.count == 0.0) return std::min(a.sd, b.sd);
+  const double u = std::hypot(a.RelativeUncertainty(), b.RelativeUncertainty());
+  if (std::abs(std::log(a.sd / b.sd)) > 3.0 * u) return std::min(a.sd, b.sd);
+  return std::sqrt((a.count * a.sd * a.sd + b.count * b.sd * b.sd) / (a.count + b.count));
+}
+
+Spread FromNeighbours(const Schedule& s, const Eigen::VectorXd& y) {
+  std::vector<double> second;
+  for (int i = 2; i < s.Readings(); ++i) {
+    const bool together = s.pass[i] == s.pass[i - 2] && s.setup[i] == s.setup[i - 2];
+    if (together) second.push_back(y[i] - 2.0 * y[i - 1] + y[i - 2]);
+  }
+  const Spread spread = SpreadOf(second);
+  return {spread.sd / std::sqrt(6.0), spread.count};
+}
+
+/// Set-up, direction, and the stop to a microradian.
+using Stop = std::tuple<int, int, long long>;
+
+Stop StopOf(const Schedule& s, int i) {
+  return {s.setup[i], s.direction[i], std::llround(s.reference_rad[i] / units::urad)};
+}
+
+Spread FromRepeats(const Schedule& s, const Eigen::VectorXd& y) {
+  std::map<Stop, int> seen;
+  std::vector<int> first(s.Readings(), -1);  // of the pass before that took the same stop
+  for (int i = 0; i < s.Readings(); ++i) {
+    const auto [found, is_new] = seen.try_emplace(StopOf(s, i), i);
+    if (!is_new && s.pass[found->second] != s.pass[i]) first[i] = found->second;
+  }
+  std::vector<double> differences;
+  for (int i = 1; i < s.Readings(); ++i) {
+    const int a = first[i - 1], b = first[i];
+    if (a < 0 || b < 0 || a == b || s.pass[i] != s.pass[i - 1]) continue;
+    differences.push_back(y[i] - y[b] - (y[i - 1] - y[a]));
+  }
+  const Spread spread = SpreadOf(differences);
+  return {spread.sd / 2.0, spread.count};
+}
+
+}  // namespace
+
+double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad) {
+  const double estimate_rad =
+      SmallerOrMean(FromNeighbours(schedule, residual_rad), FromRepeats(schedule, residual_rad));
+  const double range_rad = residual_rad.maxCoeff() - residual_rad.minCoeff();
+  const double least_rad = std::max(1e-9 * range_rad, 1e-15);
+  return std::isfinite(estimate_rad) ? std::max(estimate_rad, least_rad) : std::max(range_rad, least_rad);
+}
+
+}  // namespace twinbench::diagnose

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "twin/core/devices.h"
+#include "twin/core/run_log.h"
+#include "twin/core/table_limits.h"
+
+namespace twinbench::procedure {
+
+/// How far a run has come; `bench_time` is on the bench's own clock.
+struct Progress {
+  int readings_done = 0;
+  int readings_planned = 0;
+  Phase phase = Phase::kFullCircle;
+  Time bench_time{};
+};
+using ProgressCallback = std::function<void(const Progress&)>;
+
+/// How careful to be, and where to begin.
+struct Options {
+  TableLimits target, reference;
+  int attempts = 3;  // at one reading, before the run stops
+  double jump_V =
+      std::numeric_limits<double>::infinity();  // between neighbouring stops of a pass; more: implausible
+  double coldest_degC = -std::numeric_limits<double>::infinity();  // a thermometer beyond these is broken
+  double hottest_degC = std::numeric_limits<double>::infinity();
+  RunLog* log = nullptr;                 // none: only readings are kept, and the first fault ends the run
+  std::function<bool()> stop_requested;  // asked between moves, waits and readings
+
+  int readings_done = 0;                    // a resumed run begins behind these ...
+  std::vector<DeviceCall> calls_done = {};  // ... on a simulated bench by doing these again
+};
+
+}  // namespace twinbench::procedure

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "twin/core/reading.h"
+#include "twin/separate/series.h"
+
+namespace twinbench::separate::harmonics {
+
+enum class PositionStatus { kOk, kNoTurn };  // kNoTurn: no turn was complete enough
+enum class ScatterSource { kBetweenTurns, kWithinTurn };
+
+/// Mean over the turns of one set-up in one direction.
+struct PositionError {
+  int setup = 0;
+  int direction = 1;
+  double head_rad = kNaN;
+  PositionStatus status = PositionStatus::kNoTurn;
+  HarmonicSeries series;                                 // covariance of the mean; empty with kNoTurn
+  ScatterSource scatter = ScatterSource::kBetweenTurns;  // where the covariance is from
+  int turns = 0;
+  int turns_left_out = 0;            // incomplete, or with gaps too wide
+  int samples = 0;                   // used
+  double residual_rms_rad = kNaN;    // of a sample about its own turn's fit: noise, and orders above max_order
+  double drift_rad_per_turn = kNaN;  // in the direction of travel; NaN if no pass has three turns
+  double u_drift_rad_per_turn = kNaN;
+};
+
+}  // namespace twinbench::separate::harmonics
