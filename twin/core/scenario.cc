@@ -10,7 +10,6 @@
 #include <set>
 #include <sstream>
 
-#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"

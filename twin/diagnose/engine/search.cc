@@ -151,17 +151,13 @@ void MeasureShares(const Problem& problem, std::vector<Term>& terms) {
   }
 }
 
-/// Takes terms in as `first` sees them, then goes on with all families until nothing changes.
-SearchResult Stepwise(const Problem& first, const Problem& problem) {
-  SearchResult result;
-  Forward(first, result);
+/// Until nothing changes.
+void Settle(const Problem& problem, SearchResult& result) {
   const std::size_t before = result.terms.size();
   Revise(problem, result);
-  if (result.terms.size() != before || &first != &problem) {  // room for one that was hidden
-    Forward(problem, result);
-    Revise(problem, result);
-  }
-  return result;
+  if (result.terms.size() == before) return;
+  Forward(problem, result);  // room for one that was hidden
+  Revise(problem, result);
 }
 
 bool HasUnnamed(const Problem& problem, const std::vector<Term>& terms) {
@@ -183,11 +179,14 @@ Problem OnlyNamed(Problem problem) {
 /// of them: then the causes are tried first, and what is the more probable of all of it stays.
 void TryCausesFirst(const Problem& problem, SearchResult& result) {
   if (!HasUnnamed(problem, result.terms)) return;
-  SearchResult named = Stepwise(OnlyNamed(problem), problem);
-  if (named.joint_evidence <= result.joint_evidence) return;
-  named.first_statistic = result.first_statistic;
-  named.alone = result.alone;
-  result = std::move(named);
+  SearchResult causes;
+  Forward(OnlyNamed(problem), causes);
+  if (causes.terms.size() < 2 || causes.joint_evidence <= result.joint_evidence) return;
+  Forward(problem, causes);
+  Settle(problem, causes);
+  causes.first_statistic = result.first_statistic;
+  causes.alone = result.alone;
+  result = std::move(causes);
 }
 
 }  // namespace
@@ -196,7 +195,9 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
                     const Scanner& scanner, const Eigen::VectorXd& log_priors, double threshold, int most_causes) {
   const Problem problem{run,        noise,     projector,   scanner,
                         log_priors, threshold, most_causes, noise.Whiten(run, run.residual)};
-  SearchResult result = Stepwise(problem, problem);
+  SearchResult result;
+  Forward(problem, result);
+  Settle(problem, result);
   TryCausesFirst(problem, result);
   MeasureShares(problem, result.terms);
   EstimateTerms(run, noise, projector, scanner.Families(), problem.white, result.terms);
