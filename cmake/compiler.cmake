@@ -22,6 +22,11 @@ endif()
 # Most of a source's time goes into its headers: sixteen sources read them once.
 set(CMAKE_UNITY_BUILD ${TWINBENCH_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
+if(TWINBENCH_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # A tenth of the compiler's time went into collecting what it needs again at once; the largest source takes 1.4 GB
+  # with or without.
+  add_compile_options("SHELL:--param ggc-min-heapsize=400000")
+endif()
 
 find_program(CCACHE ccache)
 if(CCACHE)
