@@ -103,7 +103,7 @@ double LikelihoodWithout(const std::vector<int>& far, const Standardised& s) {
 /// Merely heavy-tailed noise has far values, too: then they are no exceptions.
 bool AreExceptions(double likelihood_without, const Standardised& s) {
   const double tails = FitStudent(s).log_likelihood - std::log(10.0 * 14.0);
-  return likelihood_without > tails + 3.0;
+  return likelihood_without > tails + tuning::kExceptional;
 }
 
 /// A few rows far outside while the rest is normal.
