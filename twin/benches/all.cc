@@ -1,3 +1,4 @@
+#include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/registry.h"
@@ -8,7 +9,8 @@ namespace twinbench {
 
 const std::vector<const Bench*>& Benches() {
   static const std::vector<const Bench*> benches = {&benches::rotary::Whole(), &benches::encoder::Whole(),
-                                                    &benches::turntable::Whole(), &benches::hob::Whole()};
+                                                    &benches::turntable::Whole(), &benches::hob::Whole(),
+                                                    &benches::circular::Whole()};
   return benches;  // constant
 }
 

@@ -1,3 +1,4 @@
+#include "twin/benches/circular_motion/format.h"
 #include "twin/benches/encoder_comparison/format.h"
 #include "twin/benches/hob_transmission/format.h"
 #include "twin/benches/rotary_4dof/format.h"
@@ -7,7 +8,8 @@ namespace twinbench {
 
 const std::vector<const BenchFormat*>& BenchFormats() {
   static const std::vector<const BenchFormat*> formats = {&benches::rotary::Format(), &benches::encoder::Format(),
-                                                          &benches::turntable::Format(), &benches::hob::Format()};
+                                                          &benches::turntable::Format(), &benches::hob::Format(),
+                                                          &benches::circular::Format()};
   return formats;  // constant
 }
 

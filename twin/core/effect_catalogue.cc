@@ -40,7 +40,11 @@ double FactorOf(const std::string& unit) {
                                                  {"urad_per_h", urad / units::hour},
                                                  {"deg_per_h", deg / units::hour},
                                                  {"deg_per_s", deg},
-                                                 {"K", 1.0}};
+                                                 {"K", 1.0},
+                                                 {"um_m", um},
+                                                 {"um_K", um},
+                                                 {"um_m_K", um},
+                                                 {"per_mm2", 1.0 / (mm * mm)}};
   const auto found = factors.find(unit);
   Require(found != factors.end(), "a parameter of the effect catalogue has an unknown unit");
   return found->second;

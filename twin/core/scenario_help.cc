@@ -41,6 +41,20 @@ struct DefaultText {
   }
   std::string operator()(const std::vector<HarmonicSettings>*) const { return "[]"; }
   std::string operator()(const std::optional<TableErrors>*) const { return "none"; }
+  std::string operator()(const RecordList& list) const {
+    std::string text;
+    for (std::size_t i = 0; i < list.count(); ++i) text += (text.empty() ? "" : ", ") + RecordText(list.keys_of(i));
+    return "[" + text + "]";
+  }
+
+ private:
+  static std::string RecordText(const std::vector<ScenarioKey>& keys) {
+    std::string text;
+    for (const ScenarioKey& inside : keys)
+      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", inside.Name(),
+                          std::visit(DefaultText{inside}, inside.field));
+    return "{ " + text + " }";
+  }
 };
 
 std::string DescribeKey(const ScenarioKey& key) {

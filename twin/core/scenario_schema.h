@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -27,10 +29,20 @@ struct Bounds {
   std::string Text() const;  // " from 0 to 10", " above 0", "" without bounds
 };
 
+struct ScenarioKey;
+
+/// A list of records with keys of their own, as in `setups = [ { instrument = "bar", radius_mm = 110.0 }, ... ]`. A
+/// key that a record leaves out keeps its default.
+struct RecordList {
+  std::function<std::size_t()> count;
+  std::function<void(std::size_t)> renew;  // that many records with their defaults
+  std::function<std::vector<ScenarioKey>(std::size_t)> keys_of;
+};
+
 /// Where a value of a scenario lives. A span is a list of fixed length, a vector one of at least one entry.
 using Field = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, std::span<double>,
                            std::vector<double>*, std::vector<int>*, std::vector<std::string>*,
-                           std::vector<HarmonicSettings>*, std::optional<TableErrors>*>;
+                           std::vector<HarmonicSettings>*, std::optional<TableErrors>*, RecordList>;
 
 /// One key of the file format, bound to the scenario that it was asked for.
 struct ScenarioKey {

@@ -124,6 +124,17 @@ TableErrors ReadErrors(const TomlValue& table, const std::string& key) {
   return errors;
 }
 
+/// One entry of a list of records.
+void ReadRecord(const TomlValue& entry, const ScenarioKey& list, const std::vector<ScenarioKey>& keys) {
+  if (!entry.node().is_table()) Refuse(entry, list.Path(), Expected(list));
+  std::vector<KnownKey> known;
+  for (const ScenarioKey& key : keys) known.push_back({"", key.name, std::string(key.unit.suffix)});
+  RefuseUnknown(entry, "", known);
+  for (const ScenarioKey& key : keys) {
+    if (const auto value = Inside(entry, key.Name())) ReadKey(key, *value);
+  }
+}
+
 /// Reads a value into the place that a key is bound to: one overload a type.
 struct FieldReader {
   const ScenarioKey& key;
@@ -158,6 +169,11 @@ struct FieldReader {
   }
   void operator()(std::vector<HarmonicSettings>* field) const { *field = ReadHarmonics(value, key.Path()); }
   void operator()(std::optional<TableErrors>* field) const { *field = ReadErrors(value, key.Path()); }
+  void operator()(const RecordList& field) const {
+    const toml::array& list = ReadList(value, key.Path(), Expected(key));
+    field.renew(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) ReadRecord(value.With(list[i]), key, field.keys_of(i));
+  }
 };
 
 /// TOML has no whole numbers above 2^63 - 1: a larger seed is a text of digits.
@@ -195,6 +211,12 @@ struct FieldText {
     return fmt::format("a list of {}", kHarmonicForm);
   }
   std::string operator()(const std::optional<TableErrors>*) const { return "a table of lists"; }
+  std::string operator()(const RecordList& field) const {
+    std::string form;
+    for (const ScenarioKey& inside : field.keys_of(0))
+      form += fmt::format("{}{}: {}", form.empty() ? "" : ", ", inside.Name(), Expected(inside));
+    return fmt::format("a list of {{ {} }}", form);
+  }
 
   std::string Text(const std::string& any) const { return key.choices.empty() ? any : Alternatives(key.choices); }
 };

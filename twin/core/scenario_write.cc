@@ -51,6 +51,8 @@ std::string PrintHarmonic(const HarmonicSettings& h) {
                      Float(h.phase_rad, units::deg));
 }
 
+std::string PrintRecord(const std::vector<ScenarioKey>& keys);
+
 /// Prints the value of a key: one overload a type.
 struct ValuePrinter {
   const ScenarioKey& key;
@@ -75,7 +77,21 @@ struct ValuePrinter {
     return text.empty() ? "[]" : "[\n" + text + "]";
   }
   std::string operator()(const std::optional<TableErrors>*) const { return ""; }  // has a table of its own
+  std::string operator()(const RecordList& list) const {
+    std::string text;
+    for (std::size_t i = 0; i < list.count(); ++i) text += "  " + PrintRecord(list.keys_of(i)) + ",\n";
+    return "[\n" + text + "]";
+  }
 };
+
+/// `{ instrument = "bar", radius_mm = 110.0 }`
+std::string PrintRecord(const std::vector<ScenarioKey>& keys) {
+  std::string text;
+  for (const ScenarioKey& key : keys)
+    text +=
+        fmt::format("{}{} = {}", text.empty() ? "" : ", ", key.Name(), std::visit(ValuePrinter{key}, key.field));
+  return "{ " + text + " }";
+}
 
 std::string PrintErrors(const std::string& table, const TableErrors& errors) {
   const auto line = [](const ErrorColumn& column, const std::vector<double>& values) {

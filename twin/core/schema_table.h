@@ -49,6 +49,21 @@ class Table {
   void File(const std::string& name, std::string& path, const std::string& meaning) {
     keys_.push_back({name_, name, {}, {}, {}, &path, meaning, true});
   }
+  /// A list of records.
+  /// @param add_keys  Called with a table and one of the records, it adds the keys of the record.
+  template <class Record, class AddKeys>
+  void Records(const std::string& name, std::vector<Record>& records, AddKeys add_keys,
+               const std::string& meaning) {
+    const RecordList list = {[&records] { return records.size(); },
+                             [&records](std::size_t count) { records.assign(count, Record{}); },
+                             [&records, add_keys](std::size_t i) {
+                               Keys keys;
+                               Table table(keys, "");
+                               add_keys(table, records[i]);
+                               return keys;
+                             }};
+    keys_.push_back({name_, name, {}, {}, {}, list, meaning});
+  }
 
  private:
   Keys& keys_;

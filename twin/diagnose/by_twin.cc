@@ -28,18 +28,23 @@ std::vector<ReadingColumn> ColumnsShown(const BenchFormat& format) {
   return shown;
 }
 
-/// One value a channel, SI.
-Eigen::VectorXd ValuesOf(Reading reading, const std::vector<ReadingColumn>& columns) {
-  Eigen::VectorXd values(std::ssize(columns));
-  for (std::size_t c = 0; c < columns.size(); ++c)
-    values[static_cast<Eigen::Index>(c)] = columns[c].number(reading);
-  return values;
+/// What a reading showed: one value a channel, SI.
+using ValuesOf = std::function<Eigen::VectorXd(const Reading&)>;
+
+ValuesOf ShownBy(const TwinComparison& comparison) {
+  if (comparison.shown) return comparison.shown;
+  return [columns = ColumnsShown(*comparison.format)](Reading reading) {
+    Eigen::VectorXd values(std::ssize(columns));
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      values[static_cast<Eigen::Index>(c)] = columns[c].number(reading);
+    return values;
+  };
 }
 
-std::vector<Reading> WithValues(const std::vector<Reading>& readings, const std::vector<ReadingColumn>& columns) {
+std::vector<Reading> WithValues(const std::vector<Reading>& readings, const ValuesOf& values_of) {
   std::vector<Reading> used;
   std::ranges::copy_if(readings, std::back_inserter(used), [&](const Reading& r) {
-    return r.status == ReadingStatus::kOk && ValuesOf(r, columns).allFinite();
+    return r.status == ReadingStatus::kOk && values_of(r).allFinite();
   });
   if (std::ssize(used) < kFewestCompared)
     throw InputError("readings", fmt::format("{} of {} have a value", used.size(), readings.size()),
@@ -94,9 +99,13 @@ struct Compared {
   FreeConstants free;
 };
 
-void SetNoise(double stated, LinearRun& run) {
-  run.sigma_stated = stated > 0.0;
-  run.sigma.setConstant(run.Rows(), stated);
+void SetNoise(const Scenario& scenario, const std::vector<Reading>& used, const TwinComparison& comparison,
+              LinearRun& run) {
+  run.sigma.setConstant(run.Rows(), comparison.noise);
+  for (std::size_t i = 0; comparison.noise_of && i < used.size(); ++i)
+    run.sigma.segment(static_cast<Eigen::Index>(i) * run.Channels(), run.Channels()) =
+        comparison.noise_of(scenario, used[i]);
+  run.sigma_stated = run.sigma.minCoeff() > 0.0;
   if (run.sigma_stated) return;
   for (int c = 0; c < run.Channels(); ++c) {
     const auto of_channel = Eigen::seq(c, Eigen::last, run.Channels());
@@ -104,19 +113,20 @@ void SetNoise(double stated, LinearRun& run) {
   }
 }
 
-/// Hardly held: a millionth of what one reading says.
+/// Hardly held: a millionth of what one reading says. What no reading shows (a length where nothing has one) is
+/// held.
 Nuisance HardlyHeld(const Eigen::MatrixXd& columns, const Eigen::VectorXd& sigma) {
   constexpr double kWeak = 1e-6;
   const Eigen::MatrixXd white = sigma.cwiseInverse().asDiagonal() * columns;
   const Eigen::VectorXd of_one_reading = white.cwiseAbs2().colwise().maxCoeff();
-  return {columns.sparseView(), kWeak * of_one_reading.cwiseMax(1e-300), 0, 0};
+  return {columns.sparseView(), (of_one_reading.array() > 0.0).select(kWeak * of_one_reading, 1.0), 0, 0};
 }
 
 Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison) {
   constexpr double kRank = 1e-10;
   constexpr int kRounds = 2;  // the twin asked again at the constants that fit: nothing stays of first order
-  const std::vector<ReadingColumn> columns = ColumnsShown(*comparison.format);
-  Compared c{WithValues(readings, columns), {}, {}};
+  const ValuesOf values_of = ShownBy(comparison);
+  Compared c{WithValues(readings, values_of), {}, {}};
   LinearRun& run = c.run;
   run.bench = scenario.bench;
   run.schedule = model::CourseOf(c.used);
@@ -128,8 +138,7 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
     run.patterns.push_back({run.channels[static_cast<std::size_t>(k)], Eigen::VectorXd::Unit(run.Channels(), k)});
   run.observed.resize(std::ssize(c.used) * run.Channels());
   for (std::size_t i = 0; i < c.used.size(); ++i)
-    run.observed.segment(static_cast<Eigen::Index>(i) * run.Channels(), run.Channels()) =
-        ValuesOf(c.used[i], columns);
+    run.observed.segment(static_cast<Eigen::Index>(i) * run.Channels(), run.Channels()) = values_of(c.used[i]);
   const Followed twin(comparison.follow, scenario, readings, c.used);
   c.free = FreeOf(comparison.free_points, run.schedule, twin);
   const auto left = [&]() -> Eigen::VectorXd { return run.observed - AsRows(twin.Predict(c.free.Disturbances())); };
@@ -141,7 +150,7 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
     c.free.values += SolveRanked(c.free.columns, run.residual, kRank).x;
     run.residual = left();
   }
-  SetNoise(comparison.noise, run);
+  SetNoise(scenario, c.used, comparison, run);
   run.nuisance = HardlyHeld(c.free.columns, run.sigma);
   return c;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,8 +14,8 @@
 /// own) builds its run and its families itself.
 namespace twinbench::diagnose {
 
-/// What a bench says so that its readings are compared with its twin's. Channels are those of its format, read in
-/// the format's columns that a bench must show, in the same order.
+/// What a bench says so that its readings are compared with its twin's. Channels are those of its format; unless
+/// `shown` says otherwise they are read in the format's columns that a bench must show, in the same order.
 struct TwinComparison {
   /// An angle that structure may be locked to, and where a reading keeps it.
   struct KnownAngle {
@@ -29,6 +31,10 @@ struct TwinComparison {
   std::vector<std::string> free_points;  // a constant of each set-up is free there
   std::vector<KnownAngle> angles;        // the first is the one that the bench goes through
   double plausible = 0.0;                // rms of a disturbance that nobody thought of, SI
+
+  // Of a bench that shows other things in other set-ups, or channels of unlike noise: one value a channel, SI.
+  std::function<Eigen::VectorXd(const Reading&)> shown = {};                      // NaN: not shown
+  std::function<Eigen::VectorXd(const Scenario&, const Reading&)> noise_of = {};  // counts instead of `noise`
 };
 
 /// Readings against the twin's, with the free constants that fit best.
