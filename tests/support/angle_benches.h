@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/circular_motion/procedure.h"
+#include "twin/benches/circular_motion/twin/live.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/procedure.h"
@@ -41,6 +43,13 @@ inline BenchRun RunHob(const Scenario& scenario) {
   return RunBench<sim::HobTwin>(scenario);
 }
 
+inline BenchRun RunCircles(const Scenario& scenario) {
+  const sim::CircleRun run(scenario);
+  std::vector<Reading> readings;
+  for (int k = 0; k < run.Readings(); ++k) readings.push_back(run.Take(k));
+  return {scenario, readings, run.Truth()};
+}
+
 /// An effect of the catalogue with its default sizes, at its last place. What has an onset or a share gets ones
 /// that a short run shows.
 inline EffectSettings PlainEffect(const EffectEntry& entry) {
@@ -56,6 +65,7 @@ inline std::vector<Reading> ReadingsOf(const Scenario& scenario) {
   if (scenario.bench == kEncoderBench) return RunEncoderTwin(scenario).readings;
   if (scenario.bench == kTurntableBench) return RunTurntable(scenario).readings;
   if (scenario.bench == kHobBench) return RunHob(scenario).readings;
+  if (scenario.bench == kCircularBench) return RunCircles(scenario).readings;
   return RunTwin(scenario).readings;
 }
 
@@ -65,6 +75,8 @@ inline int PlannedReadings(const Scenario& scenario) {
   if (scenario.bench == kTurntableBench)
     return procedure::PlannedReadings(TurntableOf(scenario).turntable_procedure);
   if (scenario.bench == kHobBench) return procedure::PlannedReadings(HobOf(scenario).hob_procedure);
+  if (scenario.bench == kCircularBench)
+    return static_cast<int>(procedure::CircleSchedule(CircularOf(scenario).procedure).size());
   return procedure::PlannedReadings(RotaryOf(scenario).procedure);
 }
 
