@@ -30,12 +30,6 @@ constexpr const char* kEffectTable = "effect";
 constexpr const char* kFixtureTable = "fixture";
 constexpr const char* kEmpiricalTable = "empirical";
 
-std::vector<KnownKey> KnownKeys(const std::vector<ScenarioKey>& keys) {
-  std::vector<KnownKey> known;
-  for (const ScenarioKey& key : keys) known.push_back({key.table, key.name, std::string(key.unit.suffix)});
-  return known;
-}
-
 std::vector<std::string> KnownTables(const std::vector<ScenarioKey>& keys) {
   std::vector<std::string> tables;
   for (const ScenarioKey& key : keys) {
