@@ -40,7 +40,11 @@ double FactorOf(const std::string& unit) {
                                                  {"urad_per_h", urad / units::hour},
                                                  {"deg_per_h", deg / units::hour},
                                                  {"deg_per_s", deg},
-                                                 {"K", 1.0}};
+                                                 {"K", 1.0},
+                                                 {"rad", 1.0},
+                                                 {"px", 1.0},
+                                                 {"per_px", 1.0},
+                                                 {"um_K", um}};
   const auto found = factors.find(unit);
   Require(found != factors.end(), "a parameter of the effect catalogue has an unknown unit");
   return found->second;

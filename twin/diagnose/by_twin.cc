@@ -52,39 +52,96 @@ Eigen::VectorXd AsRows(const Eigen::MatrixXd& by_reading) {
   return by_reading.transpose().reshaped();
 }
 
-/// The constants that a run leaves free: one of each free point in each set-up.
+/// A point, and the courses of the constants that are free there: readings x constants.
+struct FreePoint {
+  std::string point;
+  Eigen::MatrixXd courses;
+  std::string of;  // in words: "a set-up"
+};
+
+/// The constants that a run leaves free.
 struct FreeConstants {
-  std::vector<std::string> points;
-  Eigen::MatrixXd setups;   // readings x set-ups
-  Eigen::MatrixXd columns;  // rows x constants, a point's set-ups side by side
+  std::vector<FreePoint> points;
+  Eigen::MatrixXd columns;  // rows x constants, those of a point side by side
+  Eigen::MatrixXd fitted;   // constants x directions of them that the readings show
   Eigen::VectorXd values;   // SI
+
+  /// The part of `constants` that is of each point.
+  template <class Use>
+  void ForEach(const Eigen::VectorXd& constants, Use use) const {
+    Eigen::Index from = 0;
+    for (const FreePoint& p : points) {
+      use(p, constants.segment(from, p.courses.cols()));
+      from += p.courses.cols();
+    }
+  }
 
   /// As the twin is told them.
   std::vector<model::Disturbance> Disturbances() const {
     std::vector<model::Disturbance> all;
-    for (std::size_t k = 0; k < points.size(); ++k)
-      all.push_back(
-          {points[k], setups * values.segment(static_cast<Eigen::Index>(k) * setups.cols(), setups.cols())});
+    ForEach(values, [&](const FreePoint& p, const auto& x) { all.push_back({p.point, p.courses * x}); });
     return all;
   }
 };
 
-FreeConstants FreeOf(const std::vector<std::string>& points, const Schedule& schedule, const Followed& twin) {
-  FreeConstants free{points, model::Indicators(schedule.setup), {}, {}};
-  std::vector<Eigen::MatrixXd> blocks;
-  Eigen::Index rows = 0;
-  for (const std::string& point : points) {
-    const Eigen::MatrixXd slope = twin.Slope(point, {});
-    rows = slope.size();
-    Eigen::MatrixXd& block = blocks.emplace_back(rows, free.setups.cols());
-    for (Eigen::Index k = 0; k < free.setups.cols(); ++k)
-      block.col(k) = AsRows(free.setups.col(k).asDiagonal() * slope);
-  }
-  free.columns.resize(rows, std::ssize(blocks) * free.setups.cols());
-  for (std::size_t k = 0; k < blocks.size(); ++k)
-    free.columns.middleCols(static_cast<Eigen::Index>(k) * free.setups.cols(), free.setups.cols()) = blocks[k];
-  free.values.setZero(free.columns.cols());
+FreeConstants FreeOf(const TwinComparison& comparison, const std::vector<Reading>& used, const Schedule& schedule) {
+  FreeConstants free;
+  for (const std::string& point : comparison.free_points)
+    free.points.push_back({point, model::Indicators(schedule.setup), "a set-up"});
+  for (const TwinComparison::FreeCourses& of_bench : comparison.free_courses)
+    free.points.push_back({of_bench.point, of_bench.courses(used), "the bench"});
+  Eigen::Index constants = 0;
+  for (const FreePoint& p : free.points) constants += p.courses.cols();
+  free.values.setZero(constants);
   return free;
+}
+
+/// What the rows show of each constant, about the values that they have now.
+void SetColumns(const Followed& twin, Eigen::Index rows, FreeConstants& free) {
+  free.columns.resize(rows, free.values.size());
+  Eigen::Index column = 0;
+  for (const FreePoint& p : free.points) {
+    const Eigen::MatrixXd slope = twin.Slope(p.point, free.Disturbances());
+    for (const auto& course : p.courses.colwise()) free.columns.col(column++) = AsRows(course.asDiagonal() * slope);
+  }
+}
+
+/// What each row counts in the fit of the free constants: all the same, unless channels read different things.
+Eigen::VectorXd WeightsOf(const TwinComparison& comparison, Eigen::Index rows) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(rows);
+  const auto channels = std::ssize(comparison.noise_of_channel);
+  for (Eigen::Index c = 0; c < channels; ++c)
+    weights(Eigen::seq(c, Eigen::last, channels))
+        .setConstant(1.0 / comparison.noise_of_channel[static_cast<std::size_t>(c)]);
+  return weights;
+}
+
+/// The constants anew from what the residual still says of them. Columns are made alike first, so that what is not
+/// fitted depends on no unit; of what is not, all that the constants have is kept least, not what this round adds.
+void Refit(const Eigen::VectorXd& residual, const TwinComparison& comparison, FreeConstants& free) {
+  const Eigen::VectorXd weights = WeightsOf(comparison, residual.size());
+  Eigen::MatrixXd white = weights.asDiagonal() * free.columns;
+  const Eigen::VectorXd seen = weights.cwiseProduct(residual) + white * free.values;
+  const Eigen::VectorXd norms = white.colwise().norm();
+  const Eigen::VectorXd scale =
+      (norms.array() > comparison.free_rank * norms.maxCoeff()).select(norms.cwiseInverse(), 0.0);
+  white *= scale.asDiagonal();
+  free.values = scale.cwiseProduct(SolveRanked(white, seen, comparison.free_rank).x.col(0));
+}
+
+/// The directions of the constants that are fitted: each by itself where the readings show them all.
+void SetFitted(const TwinComparison& comparison, FreeConstants& free) {
+  constexpr double kLeastRank = 1e-7;  // squares of less are rounding
+  const Eigen::MatrixXd white = WeightsOf(comparison, free.columns.rows()).asDiagonal() * free.columns;
+  const Eigen::VectorXd norms = white.colwise().norm();
+  const double rank = std::max(comparison.free_rank, kLeastRank);
+  const Eigen::VectorXd scale = (norms.array() > rank * norms.maxCoeff()).select(norms.cwiseInverse(), 0.0);
+  const Eigen::MatrixXd unit = white * scale.asDiagonal();
+  const SymmetricEigen eigen = EigenOfSymmetric(unit.transpose() * unit);
+  const Eigen::Index all = scale.size();
+  const Eigen::Index shown = (eigen.values.array() > rank * rank * eigen.values[all - 1]).count();
+  free.fitted = Eigen::MatrixXd::Identity(all, all);
+  if (shown < all) free.fitted = scale.asDiagonal() * eigen.vectors.rightCols(shown);
 }
 
 /// What the readings showed, what the twin says with the constants that fit best, and those constants.
@@ -94,9 +151,10 @@ struct Compared {
   FreeConstants free;
 };
 
-void SetNoise(double stated, LinearRun& run) {
-  run.sigma_stated = stated > 0.0;
-  run.sigma.setConstant(run.Rows(), stated);
+void SetNoise(const TwinComparison& comparison, LinearRun& run) {
+  run.sigma_stated = comparison.noise > 0.0 || !comparison.noise_of_channel.empty();
+  run.sigma.setConstant(run.Rows(), comparison.noise);
+  if (!comparison.noise_of_channel.empty()) run.sigma = WeightsOf(comparison, run.Rows()).cwiseInverse();
   if (run.sigma_stated) return;
   for (int c = 0; c < run.Channels(); ++c) {
     const auto of_channel = Eigen::seq(c, Eigen::last, run.Channels());
@@ -113,8 +171,7 @@ Nuisance HardlyHeld(const Eigen::MatrixXd& columns, const Eigen::VectorXd& sigma
 }
 
 Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison) {
-  constexpr double kRank = 1e-10;
-  constexpr int kRounds = 2;  // the twin asked again at the constants that fit: nothing stays of first order
+  constexpr int kMostHalvings = 6;
   const std::vector<ReadingColumn> columns = ColumnsShown(*comparison.format);
   Compared c{WithValues(readings, columns), {}, {}};
   LinearRun& run = c.run;
@@ -131,18 +188,31 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
     run.observed.segment(static_cast<Eigen::Index>(i) * run.Channels(), run.Channels()) =
         ValuesOf(c.used[i], columns);
   const Followed twin(comparison.follow, scenario, readings, c.used);
-  c.free = FreeOf(comparison.free_points, run.schedule, twin);
+  c.free = FreeOf(comparison, c.used, run.schedule);
   const auto left = [&]() -> Eigen::VectorXd { return run.observed - AsRows(twin.Predict(c.free.Disturbances())); };
   run.residual = left();
   if (!run.residual.allFinite())
     throw InputError("readings", "there are values where the scenario's bench would show none",
                      "a scenario of the bench that the readings come from");
-  for (int k = 0; k < kRounds && c.free.columns.cols() > 0; ++k) {
-    c.free.values += SolveRanked(c.free.columns, run.residual, kRank).x;
+  // The twin is asked again at the constants that fit: nothing stays of first order.
+  SetColumns(twin, run.Rows(), c.free);
+  const Eigen::VectorXd weights = WeightsOf(comparison, run.Rows());
+  for (int k = 0; k < comparison.free_rounds && c.free.values.size() > 0; ++k) {
+    if (k > 0) SetColumns(twin, run.Rows(), c.free);
+    const Eigen::VectorXd before = c.free.values;
+    const double norm = weights.cwiseProduct(run.residual).norm();
+    Refit(run.residual, comparison, c.free);
     run.residual = left();
+    // A step that leads out of what is nearly linear is shortened.
+    for (int half = 0; half < kMostHalvings && !(weights.cwiseProduct(run.residual).norm() < 1.001 * norm);
+         ++half) {
+      c.free.values = 0.5 * (c.free.values + before);
+      run.residual = left();
+    }
   }
-  SetNoise(comparison.noise, run);
-  run.nuisance = HardlyHeld(c.free.columns, run.sigma);
+  SetNoise(comparison, run);
+  if (c.free.values.size() > 0) SetFitted(comparison, c.free);
+  run.nuisance = HardlyHeld(c.free.columns * c.free.fitted, run.sigma);
   return c;
 }
 
@@ -162,7 +232,7 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
   for (const Pattern& pattern : run.patterns) design.places.push_back({pattern.name, pattern.name, pattern.weight});
   for (const TwinComparison::KnownAngle& known : comparison.angles) {
     Eigen::VectorXd rad(run.schedule.Readings());
-    for (std::size_t i = 0; i < c.used.size(); ++i) rad[static_cast<Eigen::Index>(i)] = c.used[i].*known.rad;
+    for (std::size_t i = 0; i < c.used.size(); ++i) rad[static_cast<Eigen::Index>(i)] = known.rad(c.used[i]);
     if (!rad.allFinite()) continue;
     design.angles.push_back({known.name + " angle", rad, HighestOrder(run.schedule, rad), 1, "harmonic", known.name,
                              design.angles.empty()});
@@ -185,15 +255,30 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
   return design;
 }
 
+void AddProducts(const Compared& c, const TwinComparison& comparison, const Followed& twin,
+                 const DiagnoseOptions& options, Candidates& named) {
+  for (const TwinComparison::Product& product : comparison.products) {
+    if (IsExcluded(options, product.effect)) continue;
+    const auto columns = [slope = twin.Slope(product.point, c.free.Disturbances()), product,
+                          used = c.used](const Eigen::VectorXd& shape) {
+      const Eigen::MatrixXd courses = product.courses(used, shape[0]);
+      Eigen::MatrixXd shown(slope.size(), courses.cols());
+      for (Eigen::Index k = 0; k < courses.cols(); ++k) shown.col(k) = AsRows(courses.col(k).asDiagonal() * slope);
+      return shown;
+    };
+    named.AddOver({product.effect, product.where, {}}, product.sizes,
+                  {named.catalogue().ShapeOf(product.effect, product.shape, product.values(c.used))}, columns);
+  }
+}
+
 /// "zero up to 0.3 um": the largest constant of each free point.
 std::string BiasOf(const FreeConstants& free, const model::Follow& twin, const Eigen::VectorXd& constants) {
   std::string words;
-  for (std::size_t k = 0; k < free.points.size(); ++k) {
-    const model::Point& point = model::PointNamed(twin, free.points[k]);
-    const auto of_point = constants.segment(static_cast<Eigen::Index>(k) * free.setups.cols(), free.setups.cols());
-    words += fmt::format("{}{} of a set-up up to {:.2g} {}", words.empty() ? "" : ", ", point.name,
+  free.ForEach(free.fitted * constants, [&](const FreePoint& p, const auto& of_point) {
+    const model::Point& point = model::PointNamed(twin, p.point);
+    words += fmt::format("{}{} of {} up to {:.2g} {}", words.empty() ? "" : ", ", point.name, p.of,
                          of_point.cwiseAbs().maxCoeff() / point.to_SI, point.unit);
-  }
+  });
   return words.empty() ? "nothing: the run leaves nothing free" : words;
 }
 
@@ -217,7 +302,11 @@ DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario
   const TimeSeries series = TimeSeriesOf(c.run.schedule, std::vector<int>(c.used.size(), 0), c.run.Channels());
   Candidates named(Catalogue(comparison.format->effects), c.run.Channels());
   std::vector<EffectEntry> entries = comparison.format->effects;
-  std::erase_if(entries, [&](const EffectEntry& entry) { return IsExcluded(options, entry.name); });
+  std::erase_if(entries, [&](const EffectEntry& entry) {
+    return IsExcluded(options, entry.name) ||
+           std::ranges::any_of(comparison.products, [&](const auto& p) { return p.effect == entry.name; });
+  });
+  AddProducts(c, comparison, Followed(comparison.follow, scenario, readings, c.used), options, named);
   const std::vector<Invisible> invisible = AddAskedEffects(
       {comparison.follow, scenario, readings, c.used, c.free.Disturbances(), series.onsets}, entries, named);
   std::vector<Family> families = named.Take();
