@@ -157,7 +157,8 @@ TEST(ReadingsCsv, AreOfTheBenchThatIsStated) {
   std::istringstream in(std::string(kHeader) + "\n");
   EXPECT_EQ(MessageOf([&] { ParseReadingsCsv(in, "r.csv", "rotary_4df"); }),
             "r.csv: unknown bench \"rotary_4df\"; expected \"rotary_4dof\", \"encoder_comparison\", "
-            "\"turntable_autocollimator\" or \"hob_transmission\"; the nearest is \"rotary_4dof\"");
+            "\"turntable_autocollimator\", \"hob_transmission\", \"circular_motion\" or \"freeform_five_axis\"; the "
+            "nearest is \"rotary_4dof\"");
   std::ostringstream out;
   EXPECT_THROW(WriteReadingsCsv({}, "", out), InputError) << "there is no usual bench";
 }
@@ -167,16 +168,16 @@ TEST(ReadingColumns, MayHoldAQuantityWithoutAFieldOfItsOwn) {
   Reading reading;
   EXPECT_EQ(bar.print(reading), "") << "not available";
   EXPECT_TRUE(bar.parse(reading, "1.25"));
-  EXPECT_DOUBLE_EQ(reading.quantities.at("bar_um"), 1.25e-6);
+  EXPECT_DOUBLE_EQ(bar.number(reading), 1.25e-6);
   EXPECT_EQ(bar.print(reading), "1.25");
   bar.number(reading) = kNaN;
   EXPECT_EQ(bar.print(reading), "");
 }
 
 TEST(ReadingsCsv, WithoutAColumnOfAnyBenchAreRefused) {
-  EXPECT_EQ(MessageOf([] { ParseReadings("reading,time_s,setup,pass,direction,position,phase,bar_um\n"); }),
+  EXPECT_EQ(MessageOf([] { ParseReadings("reading,time_s,setup,pass,direction,position,phase,bar_mm\n"); }),
             "r.csv:1: the columns are those of no known bench; expected readings of rotary_4dof, "
-            "encoder_comparison, turntable_autocollimator, hob_transmission");
+            "encoder_comparison, turntable_autocollimator, hob_transmission, circular_motion, freeform_five_axis");
 }
 
 TEST(ReadingsCsv, NameLineColumnAndFaultOfABadField) {

@@ -265,7 +265,7 @@ TEST(RunRecord, KeepsQuantitiesThatHaveNoFieldOfTheirOwn) {
   Reading reading = ReadingOf(0);
   reading.quantities = {{"bar_um", 1.0 / 3.0 * 1e-6}, {"feed_mm_min", kNaN}};
   RunRecord::Create(folder.path(), AnyProvenance())->Append(reading, {});
-  const std::map<std::string, double> kept = {{"bar_um", 1.0 / 3.0 * 1e-6}};
+  const decltype(reading.quantities) kept = {{"bar_um", 1.0 / 3.0 * 1e-6}};
   EXPECT_EQ(RunRecord::Open(folder.path())->Readings().at(0).quantities, kept) << "to the same bits";
 }
 

@@ -17,6 +17,7 @@
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/core/scenario_schema.h"
+#include "twin/core/signal_effect.h"
 
 namespace twinbench {
 namespace {
@@ -86,6 +87,12 @@ struct Randomise {
                         AnyNumber({-1e-4, 1e-4}, 1, random), AnyNumber({-7, 7}, 1, random)});
   }
   void operator()(std::optional<TableErrors>* field) const { *field = AnyErrors(random); }
+  void operator()(const RecordList& list) const {
+    list.start_anew(3);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      for (const ScenarioKey& inner : list.keys_of(i)) std::visit(Randomise{inner, random, file}, inner.field);
+    }
+  }
 };
 
 /// Every bit of a place, as a list of words and texts.
@@ -113,6 +120,12 @@ struct Bits {
     if (!field->has_value()) return;
     Add((*field)->position_rad);
     for (const auto& column : (*field)->value) Add(column);
+  }
+  void operator()(const RecordList& list) {
+    words.push_back(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      for (const ScenarioKey& inner : list.keys_of(i)) std::visit(*this, inner.field);
+    }
   }
 
  private:
@@ -179,12 +192,11 @@ EffectSettings AnyEffect(const EffectEntry& entry, Random& random) {
 EmpiricalSettings AnyEmpirical(const std::string& bench, Random& random) {
   EmpiricalSettings empirical;
   empirical.signature = "order 7 locked to the \"reference\" angle";
-  const bool is_rotary = bench == kRotaryBench;
   const std::vector<std::string>& channels = FormatOf(bench).channels;
   empirical.channel = channels[random() % channels.size()];
   for (int i = 0; i < 5; ++i) {
     empirical.reading.push_back(3 * i);
-    (is_rotary ? empirical.value_m : empirical.value_rad).push_back(AnyNumber({-1e-5, 1e-5}, 1.0, random));
+    ValuesOf(empirical, FormatOf(bench).signal).push_back(AnyNumber({-1e-5, 1e-5}, 1.0, random));
   }
   empirical.provenance = "a run";
   return empirical;

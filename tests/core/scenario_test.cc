@@ -208,7 +208,8 @@ TEST(ScenarioOverride, IsNamedWhenItIsWrong) {
 
 TEST(ScenarioError, NamesTheBenchesThatThereAre) {
   const std::string benches =
-      "\"rotary_4dof\", \"encoder_comparison\", \"turntable_autocollimator\" or \"hob_transmission\"";
+      "\"rotary_4dof\", \"encoder_comparison\", \"turntable_autocollimator\", \"hob_transmission\", "
+      "\"circular_motion\" or \"freeform_five_axis\"";
   EXPECT_EQ(MessageOf([] { ParseScenario("seed = 1\n", "s.toml", ".", {}); }),
             "s.toml:1: bench is missing; expected bench = " + benches);
   EXPECT_EQ(MessageOf([] { ParseScenario("\nbench = \"lathe\"\n", "s.toml", ".", {}); }),

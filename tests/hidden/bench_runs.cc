@@ -3,15 +3,18 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/hob_transmission/diagnosis/hob_run.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/core/errors.h"
 
@@ -45,13 +48,52 @@ void DrawRoom(Stream& stream, EnvironmentSettings& room) {
   room.random_walk_K_sqrt_h = UniformIn(stream, 0.0, 0.1);
 }
 
-/// What the readings of the rotary and of the encoder bench show, by row of the run, SI.
-double Shown(const Reading& reading, int channel, int channels) {
-  return channels == 1 ? reading.measured_rad
-                       : reading.mean_V[static_cast<std::size_t>(channel)] / kSensitivity_V_m;
+/// What a reading shows by the channels of its bench, SI.
+double Shown(const std::string& bench, const Reading& r, int channel) {
+  if (bench == kRotaryBench) return r.mean_V[static_cast<std::size_t>(channel)] / kSensitivity_V_m;
+  if (bench == kCircularBench) {
+    const benches::circular::Deviation shown = benches::circular::DeviationOf(r);
+    return channel == 0 ? shown.radial_m : shown.tangential_m;
+  }
+  if (bench != kFreeformBench) return r.measured_rad;
+  using namespace benches::freeform;
+  return channel == 0 ? kQpdX_V(r) : channel == 1 ? kQpdY_V(r) : kCcd_px(r);
 }
 
-/// Keys in which the designs of the two newer benches differ from their scenarios.
+void AddToCircle(const Eigen::RowVectorXd& values, Reading& r) {
+  using namespace benches::circular;
+  if (IsOfBar(r)) {
+    kBar_m(r) += values[0];
+    kEncoder_rad(r) += values[1] / Radius_m(r);
+    return;
+  }
+  const double c = std::cos(r.target_rad), s = std::sin(r.target_rad);
+  kGridX_m(r) += c * values[0] - s * values[1];
+  kGridY_m(r) += s * values[0] + c * values[1];
+}
+
+void AddToProbe(const Eigen::RowVectorXd& values, Reading& r) {
+  using namespace benches::freeform;
+  kQpdX_V(r) += values[0];
+  kQpdY_V(r) += values[1];
+  kCcd_px(r) += values[2];
+}
+
+void AddToReading(const std::string& bench, const Eigen::RowVectorXd& values, Reading& r) {
+  if (bench == kCircularBench) return AddToCircle(values, r);
+  if (bench == kFreeformBench) return AddToProbe(values, r);
+  if (bench == kRotaryBench) {
+    for (Eigen::Index c = 0; c < kChannels; ++c)
+      r.mean_V[static_cast<std::size_t>(c)] += kSensitivity_V_m * values[c];
+  } else if (bench == kTurntableBench) {
+    r.autocollimator_yaw_rad += values[0];
+    r.autocollimator_tilt_rad += values[1];
+  } else {
+    r.measured_rad += values[0];
+  }
+}
+
+/// Keys in which designs differ from their scenarios.
 std::vector<std::string> OverridesOf(Design design) {
   if (design == Design::kTurntable) {
     return {"turntable_procedure.phases=[\"calibration\", \"full_circle\"]", "turntable_procedure.positions=36",
@@ -66,6 +108,10 @@ std::vector<std::string> OverridesOf(Design design) {
             "hob_procedure.samples_per_turn=360",
             "hob_procedure.poll_s=10.0"};
   }
+  const std::vector<std::string> warm = {"environment.swing_mK=700.0", "environment.swing_period_s=7000.0"};
+  if (design == Design::kCircles)
+    return {"circular_procedure.points=72", "circular_procedure.stops=18", warm[0], warm[1]};
+  if (design == Design::kFreeform) return {"freeform_procedure.poses=60", warm[0], warm[1]};
   return {};
 }
 
@@ -79,8 +125,7 @@ void DrawTurntable(Stream& stream, Scenario& scenario) {
     h.amplitude *= UniformIn(stream, 0.6, 1.5);
     h.phase_rad = UniformIn(stream, 0.0, 2.0 * units::kPi);
   }
-  turntable.random_rms[static_cast<std::size_t>(Component::kEz)] =
-      UniformIn(stream, 0.2, 0.6) * arcsec;
+  turntable.random_rms[static_cast<std::size_t>(Component::kEz)] = UniformIn(stream, 0.2, 0.6) * arcsec;
   for (const Component c : {Component::kEx, Component::kEy})
     turntable.random_rms[static_cast<std::size_t>(c)] = UniformIn(stream, 0.5, 2.0) * arcsec;
 }
@@ -99,7 +144,9 @@ void DrawTransmission(Stream& stream, Scenario& scenario) {
 
 const std::string& BenchOf(Design design) {
   static const std::string rotary = kRotaryBench, encoder = kEncoderBench, turntable = kTurntableBench,
-                           hob = kHobBench;
+                           hob = kHobBench, circles = kCircularBench, freeform = kFreeformBench;
+  if (design == Design::kCircles) return circles;
+  if (design == Design::kFreeform) return freeform;
   if (design == Design::kRotary) return rotary;
   if (design == Design::kTurntable) return turntable;
   return design == Design::kHob ? hob : encoder;
@@ -139,18 +186,9 @@ std::vector<Reading> TakeReadings(const Scenario& actual) {
   return test::ReadingsOf(actual);
 }
 
-void AddTo(std::vector<Reading>& readings, const Eigen::MatrixXd& signal) {
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    const Eigen::RowVectorXd values = signal.row(static_cast<Eigen::Index>(i));
-    Reading& r = readings[i];
-    if (values.size() == 1) r.measured_rad += values[0];
-    if (values.size() == 2) {
-      r.autocollimator_yaw_rad += values[0];
-      r.autocollimator_tilt_rad += values[1];
-    }
-    for (Eigen::Index c = 0; values.size() == kChannels && c < kChannels; ++c)
-      r.mean_V[static_cast<std::size_t>(c)] += kSensitivity_V_m * values[c];
-  }
+void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<Reading>& readings) {
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    AddToReading(bench, signal.row(static_cast<Eigen::Index>(i)), readings[i]);
 }
 
 SignatureScale::SignatureScale(Design design, const std::string& cache_folder) : design_(design) {
@@ -174,7 +212,7 @@ Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings) const
   for (int row = 0; row < run_.Rows(); ++row) {
     const auto number =
         static_cast<std::size_t>(run_.schedule.reading[static_cast<std::size_t>(run_.ReadingOf(row))]);
-    rows[row] = Shown(readings[number], run_.ChannelOf(row), run_.Channels());
+    rows[row] = Shown(BenchOf(design_), readings[number], run_.ChannelOf(row));
   }
   return rows;
 }

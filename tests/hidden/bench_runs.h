@@ -22,7 +22,9 @@ enum class Design {
   kStopsAllKnown,  // the same with two mountings of the device, and its lines and teeth stated
   kSweepAllKnown,
   kTurntable,  // turntable_autocollimator, two tilts and eccentricities, with a sweep
-  kHob         // hob_transmission, two heads and two speeds
+  kHob,        // hob_transmission, two heads and two speeds
+  kCircles,    // circular_motion, two radii and the grid
+  kFreeform    // freeform_five_axis, four mountings
 };
 const std::string& BenchOf(Design design);
 
@@ -35,9 +37,9 @@ Scenario Drawn(Design design, std::uint64_t seed);
 /// Carries the scenario out on the twin of its bench.
 std::vector<Reading> TakeReadings(const Scenario& actual);
 
-/// Adds a signal to what the readings show: readings x channels, m or rad. Rotary bench: four PSD axes; turntable:
-/// x and y; the others: the angle.
-void AddTo(std::vector<Reading>& readings, const Eigen::MatrixXd& signal);
+/// Adds a signal to what the readings show: readings x channels, SI. Rotary bench: four PSD axes; turntable: x and
+/// y; circles: radial and tangential; five axes: quadrants' x and y [V], camera [px]; the others: the angle.
+void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<Reading>& readings);
 
 /// Measures signatures in units of noise after projection.
 class SignatureScale {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <utility>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tests/hidden/judge.h"
 #include "tests/support/truth_rows.h"
@@ -58,8 +58,8 @@ Part PartOf(const json& truth) {
 /// What a signature has to say, from the generator's words for it.
 std::string LockOf(const std::string& signature) {
   const std::vector<std::pair<std::string, std::string>> locks = {
-      {"per pass", "pass"}, {"temperature", "temperature"}, {"direction", "direction"},
-      {"spot", "spot"},     {"reference,", "both angles"},  {"per turn", "per turn"}};
+      {"per pass", "pass"},          {"temperature", "temperature"}, {"direction", "direction"}, {"spot", "spot"},
+      {"reference,", "both angles"}, {"per turn", "per turn"},       {"travelled", "angle"}};
   for (const auto& [theirs, ours] : locks) {
     if (signature.find(theirs) != std::string::npos) return ours;
   }
@@ -78,7 +78,7 @@ Hidden HiddenBy(const json& truth) {
   const std::string signature = truth.at("facts").at("signature");
   hidden.unlisted = truth.at("where");
   hidden.locks = {LockOf(signature)};
-  hidden.channels = ChannelsIn(signature);
+  hidden.channels = ChannelsIn(signature);  // of the two machine tools: none, they are not asked for
   return hidden;
 }
 
@@ -93,6 +93,11 @@ Case ReadCase(const std::string& folder, const std::string& bench, const std::ve
 
 }  // namespace
 
+std::string ChallengeSetOf(const std::string& bench) {
+  if (bench == kRotaryBench) return "challenge";
+  return "challenge_" + bench.substr(0, bench.find('_'));
+}
+
 std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& bench,
                                  const std::vector<std::string>& excluded) {
   std::vector<std::string> names;
@@ -104,7 +109,7 @@ std::vector<Plan> ChallengePlans(const std::string& folder, const std::string& b
   if (names.empty()) throw InputError(folder, "holds no case", "folders with readings.csv and truth.json");
   std::ranges::sort(names);
   std::vector<Plan> plans;
-  const std::string set = bench == kRotaryBench ? "challenge" : "challenge_encoder";
+  const std::string set = ChallengeSetOf(bench);
   for (const std::string& name : names) {
     const std::string path = folder + "/" + name;
     plans.push_back({set, name, [path, bench, excluded] { return ReadCase(path, bench, excluded); }});

@@ -8,7 +8,10 @@
 /// Cases of the independent generators: folders NNN with readings.csv and truth.json.
 namespace twinbench::hidden {
 
-/// @param bench  "rotary_4dof" or "encoder_comparison": decides the scenario that is believed.
+/// "challenge" of the rotary bench, else with the first word of the bench's name: "challenge_circular".
+std::string ChallengeSetOf(const std::string& bench);
+
+/// @param bench  Decides the scenario that is believed.
 /// @param excluded  Effects taken out of the catalogue.
 /// @return one plan a folder, in the order of their names.
 /// @throws InputError if there is no such folder or no case in it.

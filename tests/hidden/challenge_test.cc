@@ -25,8 +25,7 @@ class Challenge : public ::testing::TestWithParam<const char*> {
   static const std::vector<Outcome>& Outcomes() {
     static std::map<std::string, std::vector<Outcome>> outcomes;
     std::vector<Outcome>& mine = outcomes[GetParam()];
-    const std::string folder = std::string(GetParam()) == kRotaryBench ? "challenge" : "challenge_encoder";
-    if (mine.empty()) mine = RunReduced(ChallengePlans(test::DataPath(folder), GetParam()));
+    if (mine.empty()) mine = RunReduced(ChallengePlans(test::DataPath(ChallengeSetOf(GetParam())), GetParam()));
     return mine;
   }
   static std::vector<Outcome> Only(bool (*test)(const Outcome&)) {
@@ -61,7 +60,7 @@ TEST_P(Challenge, NamedCausesPredictPassesThatWereNotUsed) {
   EXPECT_TRUE(IsNotBelow(CountOf(gained, enough), gained.size(), 0.9)) << Others(gained, enough);
 }
 
-INSTANTIATE_TEST_SUITE_P(BothBenches, Challenge, ::testing::Values(kRotaryBench, kEncoderBench),
+INSTANTIATE_TEST_SUITE_P(EveryBench, Challenge, ::testing::Values(kRotaryBench, kEncoderBench, kCircularBench),
                          [](const auto& of) { return std::string(of.param); });
 
 }  // namespace

@@ -5,7 +5,10 @@
 #include <utility>
 
 #include "tests/hidden/placements.h"
+#include "twin/benches/circular_motion/columns.h"
+#include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -115,6 +118,46 @@ std::vector<Reading> AngleReadings(const NoiseShape& shape, Scenario actual, std
   return readings;
 }
 
+/// Everything that a scenario of the two machine tools states as noise.
+std::vector<double*> StatedNoises(Scenario& scenario) {
+  if (scenario.bench == kCircularBench) {
+    CircularSettings& s = CircularOf(scenario);
+    return {&s.machine.noise_m, &s.bar.noise_m, &s.encoder.noise_rad, &s.grid.noise_m};
+  }
+  FreeformSettings& s = FreeformOf(scenario);
+  return {&s.qpd.noise_V, &s.ccd.noise_px};
+}
+
+/// Standard deviation of what each channel of a reading shows.
+Eigen::VectorXd Deviations(const Scenario& scenario, const Reading& r) {
+  if (scenario.bench == kFreeformBench) {
+    const FreeformSettings& s = FreeformOf(scenario);
+    return Eigen::Vector3d(s.qpd.noise_V, s.qpd.noise_V, s.ccd.noise_px);
+  }
+  const CircularSettings& s = CircularOf(scenario);
+  const bool bar = benches::circular::IsOfBar(r);
+  const double radial_m = bar ? s.bar.noise_m : s.grid.noise_m;
+  const double tangential_m = bar ? benches::circular::Radius_m(r) * s.encoder.noise_rad : s.grid.noise_m;
+  return Eigen::Vector2d(std::hypot(s.machine.noise_m, radial_m), std::hypot(s.machine.noise_m, tangential_m));
+}
+
+/// Noise of this shape on readings that are taken without; the scenario states what the shape says.
+Case MachineToolClean(const NoiseShape& shape, Scenario actual, Case clean, std::uint64_t seed) {
+  const Scenario noisy = actual;
+  for (double* noise : StatedNoises(actual)) *noise = 0.0;
+  clean.readings = TakeReadings(actual);
+  const Eigen::Index channels = Deviations(noisy, clean.readings.front()).size();
+  Eigen::MatrixXd noise(std::ssize(clean.readings), channels);
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    Series series(shape, seed, "channel " + std::to_string(c));
+    for (Eigen::Index i = 0; i < noise.rows(); ++i)
+      noise(i, c) = Deviations(noisy, clean.readings[static_cast<std::size_t>(i)])[c] * series.Next();
+  }
+  AddTo(actual.bench, noise, clean.readings);
+  for (double* stated : StatedNoises(clean.scenario)) *stated *= shape.stated;
+  return clean;
+}
+
 }  // namespace
 
 const char* NoiseName(Noise noise) {
@@ -131,6 +174,8 @@ Case MakeClean(Design design, Noise noise, std::uint64_t seed) {
     clean.readings = RotaryReadings(shape, actual, seed);
     return clean;
   }
+  if (design == Design::kCircles || design == Design::kFreeform)
+    return MachineToolClean(shape, actual, clean, seed);
   clean.readings = AngleReadings(shape, actual, seed);
   if (shape.stated != 1.0 && clean.scenario.bench == kEncoderBench)
     EncoderOf(clean.scenario).device.noise_known = true;

@@ -4,7 +4,9 @@
 
 #include "tests/hidden/bench_runs.h"
 #include "tests/hidden/effect_size.h"
+#include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
@@ -40,6 +42,8 @@ Ranges RangesOf(const std::string& bench) {
   if (bench == kRotaryBench) return {80.0, 560.0, 0.003, 0.06};
   if (bench == kTurntableBench) return {40.0, 260.0, 0.001, 0.02};
   if (bench == kHobBench) return {300.0, 2500.0, 0.05, 1.0};
+  if (bench == kCircularBench) return {100.0, 850.0, 0.003, 0.06};
+  if (bench == kFreeformBench) return {50.0, 430.0, 0.003, 0.06};
   return {40.0, 500.0, 0.003, 0.06};
 }
 
@@ -74,16 +78,27 @@ void DrawOutliers(Stream& stream, double sigma, EffectSettings& effect) {
   Set(effect, "size", UniformIn(stream, 8.0, 20.0) * sigma);
 }
 
+/// Of the two machine tools.
+void DrawMachineShape(Stream& stream, EffectSettings& effect) {
+  Set(effect, "pitch", LogUniformIn(stream, 4.0, 20.0) * units::mm);
+  Set(effect, "lag", LogUniformIn(stream, 200.0, 3000.0));
+  Set(effect, "time", LogUniformIn(stream, 0.25, 1.0));
+  Set(effect, "waves", UniformIn(stream, 1.0, 3.0));
+  Set(effect, "azimuth", UniformIn(stream, -80.0, 80.0) * deg);
+  if (effect.name == "ball_form") Set(effect, "order", 2.0 + std::floor(UniformIn(stream, 0.0, 2.0)));
+}
+
 /// Noise of one reading of a bench, m or rad.
 double NoiseOf(const Scenario& scenario) {
-  if (scenario.bench == kRotaryBench) return 0.3 * units::um;
+  if (scenario.bench == kRotaryBench || scenario.bench == kCircularBench) return 0.3 * units::um;
+  if (scenario.bench == kFreeformBench) return units::um;  // of the tip
   if (scenario.bench == kTurntableBench) return TurntableOf(scenario).autocollimator.noise_rad;
   return scenario.bench == kHobBench ? HobOf(scenario).table_encoder.noise_rad
                                      : EncoderOf(scenario).device.noise_rad;
 }
 
 void DrawSign(Stream& stream, const std::string& bench, EffectSettings& effect) {
-  const std::string size = SizeParameter(effect.name, effect.where);
+  const std::string size = SizeParameter(effect.name, effect.where, bench);
   // A negative amplitude is a positive one at the opposite phase: only one of the two is drawn.
   const bool is_signed =
       CatalogueParameter(bench, effect.name, size).lower_SI < 0.0 && !effect.parameters.contains("phase");
@@ -97,8 +112,11 @@ EffectSettings DrawEffect(const std::string& name, const std::string& where, con
   EffectSettings effect = WithDefaults(name, where, scenario.bench);
   DrawShape(stream, RangesOf(scenario.bench), effect);
   DrawOwnShape(stream, scenario, effect);
+  const bool is_machine_tool = scenario.bench == kCircularBench || scenario.bench == kFreeformBench;
+  if (is_machine_tool) DrawMachineShape(stream, effect);
+  if (is_machine_tool) TurnWave(UniformIn(stream, 0.0, units::turn), scenario.bench, effect);
   if (name == "outliers") DrawOutliers(stream, NoiseOf(scenario), effect);
-  if (HasSize(name)) DrawSign(stream, scenario.bench, effect);
+  if (HasSize(name, where, scenario.bench)) DrawSign(stream, scenario.bench, effect);
   if (name == "signal_offset")
     effect.parameters["offset_cos"] = UniformIn(stream, -2.0, 2.0) * effect.parameters.at("offset_sin");
   return effect;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "twin/benches/names.h"
+
 namespace twinbench::hidden {
 namespace {
 
@@ -53,6 +55,19 @@ const std::map<std::string, std::string>& UsualSizes() {
   return sizes;
 }
 
+/// Of benches whose catalogue begins with the size.
+bool SizeComesFirst(const std::string& bench) {
+  return bench == kCircularBench || bench == kFreeformBench;
+}
+
+/// Parameters that are scaled with a size.
+std::string PartnerOf(const std::string& size) {
+  static const std::map<std::string, std::string> partners = {
+      {"cosine", "sine"}, {"cosine_signal", "sine_signal"}, {"tilt_x", "tilt_y"}, {"offset_sin", "offset_cos"}};
+  const auto found = partners.find(size);
+  return found == partners.end() ? "" : found->second;
+}
+
 void Scale(EffectSettings& effect, const std::string& name, double factor, const std::string& bench) {
   const EffectParameter& p = CatalogueParameter(bench, effect.name, name);
   double& value = effect.parameters.at(name);
@@ -63,14 +78,20 @@ void Scale(EffectSettings& effect, const std::string& name, double factor, const
 
 /// The same effect, `factor` times as large, within the catalogue's bounds.
 EffectSettings Scaled(EffectSettings effect, double factor, const std::string& bench) {
-  Scale(effect, SizeParameter(effect.name, effect.where), factor, bench);
-  if (effect.name == "signal_offset") Scale(effect, "offset_cos", factor, bench);
+  const std::string size = SizeParameter(effect.name, effect.where, bench), partner = PartnerOf(size);
+  Scale(effect, size, factor, bench);
+  if (effect.parameters.contains(partner)) Scale(effect, partner, factor, bench);
   return effect;
 }
 
 }  // namespace
 
-std::string SizeParameter(const std::string& effect, const std::string& where) {
+std::string SizeParameter(const std::string& effect, const std::string& where, const std::string& bench) {
+  if (effect == "outliers") return "";
+  if (SizeComesFirst(bench)) {
+    const std::vector<EffectParameter>& all = FindEffect(effect, bench)->parameters;
+    return std::ranges::find_if(all, [&](const EffectParameter& p) { return p.BelongsTo(where); })->name;
+  }
   if (effect == "slip" && (where == "yaw" || where == "tilt")) return "angle";
   if (effect == "slip") return where == "lateral" ? "shift" : "step";
   if (effect == "backlash") return where.empty() ? "width" : "half_width";
@@ -78,8 +99,17 @@ std::string SizeParameter(const std::string& effect, const std::string& where) {
   return found == UsualSizes().end() ? "" : found->second;
 }
 
-bool HasSize(const std::string& effect) {
-  return !SizeParameter(effect, "").empty();
+bool HasSize(const std::string& effect, const std::string& where, const std::string& bench) {
+  return !SizeParameter(effect, where, bench).empty();
+}
+
+void TurnWave(double phase_rad, const std::string& bench, EffectSettings& effect) {
+  const std::string size = SizeParameter(effect.name, effect.where, bench), partner = PartnerOf(size);
+  if (!SizeComesFirst(bench) || !effect.parameters.contains(partner)) return;
+  double &cosine = effect.parameters.at(size), &sine = effect.parameters.at(partner);
+  const double amplitude = std::hypot(cosine, sine);
+  cosine = amplitude * std::cos(phase_rad);
+  sine = amplitude * std::sin(phase_rad);
 }
 
 const EffectParameter& CatalogueParameter(const std::string& bench, const std::string& effect,

@@ -10,11 +10,14 @@
 namespace twinbench::hidden {
 
 /// The parameter that an effect's signature grows with; empty if the effect has no size.
-std::string SizeParameter(const std::string& effect, const std::string& where);
+std::string SizeParameter(const std::string& effect, const std::string& where, const std::string& bench);
 
 /// Effects that leave a trace proportional to a size; the others (a swap, a frame) are there or not, or, as
 /// outliers, come with a size of their own.
-bool HasSize(const std::string& effect);
+bool HasSize(const std::string& effect, const std::string& where, const std::string& bench);
+
+/// Gives a wave that is stated by cosine and sine this phase; other effects stay.
+void TurnWave(double phase_rad, const std::string& bench, EffectSettings& effect);
 
 /// @param name  One of the effect's parameters.
 const EffectParameter& CatalogueParameter(const std::string& bench, const std::string& effect,

@@ -49,8 +49,9 @@ int CountOf(const std::string& value, int otherwise) {
 std::vector<Plan> PlansOf(const std::string& set, const Options& options) {
   const std::size_t equals = set.find('=');
   const std::string name = set.substr(0, equals), value = equals == std::string::npos ? "" : set.substr(equals + 1);
-  if (name == "challenge") return ChallengePlans(value, kRotaryBench, options.excluded);
-  if (name == "challenge_encoder") return ChallengePlans(value, kEncoderBench, options.excluded);
+  for (const std::string& bench : BenchNames()) {
+    if (name == ChallengeSetOf(bench)) return ChallengePlans(value, bench, options.excluded);
+  }
   if (name == "twin")
     return OfBenches(options, [&](const auto& bench) { return SinglePlans(bench, options.twin); });
   if (name == "pairs") return PairPlans(CountOf(value, 60), options.twin);
@@ -64,7 +65,8 @@ std::vector<Plan> PlansOf(const std::string& set, const Options& options) {
     });
   }
   throw InputError("--set " + set, "there is no such set",
-                   "challenge=DIR, challenge_encoder=DIR, twin, pairs=N, unlisted, clean=N or leave-one-out");
+                   "challenge=DIR, challenge_encoder=DIR (_circular, _freeform), twin, pairs=N, unlisted, clean=N "
+                   "or leave-one-out");
 }
 
 /// What made this score; where it was written to is no part of it.
@@ -123,7 +125,8 @@ int main(int argc, char** argv) {
   CLI::App app("Hides causes in readings, has them diagnosed, and scores the answers");
   twinbench::hidden::Options options;
   app.add_option("--set", options.sets,
-                 "challenge=DIR, challenge_encoder=DIR, twin, pairs=N, unlisted, clean=N, leave-one-out")
+                 "challenge=DIR, challenge_encoder=DIR (_circular, _freeform), twin, pairs=N, unlisted, clean=N, "
+                 "leave-one-out")
       ->required()
       ->allow_extra_args(false);
   app.add_option("--bench", options.bench, "of the sets made by the twin, only this bench")

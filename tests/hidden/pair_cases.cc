@@ -14,7 +14,7 @@ namespace {
 std::vector<Wanted> SizedEffects(const std::string& bench) {
   std::vector<Wanted> effects;
   for (const Placement& at : Placements(bench)) {
-    if (HasSize(at.effect)) effects.push_back({at.effect, at.where});
+    if (HasSize(at.effect, at.where, bench)) effects.push_back({at.effect, at.where});
   }
   return effects;
 }

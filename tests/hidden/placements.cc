@@ -21,6 +21,8 @@ std::vector<Design> DesignsFor(const std::string& effect, const std::string& ben
   if (bench == kRotaryBench) return {Design::kRotary};
   if (bench == kTurntableBench) return {Design::kTurntable};
   if (bench == kHobBench) return {Design::kHob};
+  if (bench == kCircularBench) return {Design::kCircles};
+  if (bench == kFreeformBench) return {Design::kFreeform};
   if (effect == "latency") return {Design::kSweep};
   if (NeedsAllKnown(effect)) return {Design::kStopsAllKnown, Design::kSweepAllKnown};
   return {Design::kStops, Design::kSweep};
@@ -42,6 +44,10 @@ const char* NameOf(Design design) {
       return "turntable";
     case Design::kHob:
       return "hob";
+    case Design::kCircles:
+      return "circles";
+    case Design::kFreeform:
+      return "freeform";
   }
   return "";
 }

@@ -13,7 +13,7 @@ std::vector<EffectSettings> DrawEffects(const std::vector<Wanted>& wanted, const
   std::vector<EffectSettings> effects;
   for (const Wanted& w : wanted) {
     const EffectSettings effect = DrawEffect(w.effect, w.where, drawn, stream);
-    effects.push_back(HasSize(w.effect) ? SizedTo(w.rho, effect, drawn, scale) : effect);
+    effects.push_back(HasSize(w.effect, w.where, drawn.bench) ? SizedTo(w.rho, effect, drawn, scale) : effect);
   }
   return effects;
 }
@@ -37,7 +37,8 @@ Case MakeTwinCase(Design design, std::uint64_t seed, const std::vector<Wanted>& 
   made.readings = TakeReadings(actual);
   made.hidden = TruthOf(actual.effects);
   made.hidden.alike = AlikeOf(actual.effects.front(), drawn, scale);
-  if (wanted.size() == 1 && HasSize(wanted.front().effect)) made.hidden.rho = wanted.front().rho;
+  if (wanted.size() == 1 && HasSize(wanted.front().effect, wanted.front().where, drawn.bench))
+    made.hidden.rho = wanted.front().rho;
   return made;
 }
 

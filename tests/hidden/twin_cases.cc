@@ -29,8 +29,9 @@ class Scales {
 };
 
 /// How many sizes an effect is hidden with: a swap has but one.
-int MagnitudesOf(const std::string& effect, const TwinOptions& options) {
-  const bool comes_in_sizes = HasSize(effect) || effect == "outliers" || effect == "multitooth_seating";
+int MagnitudesOf(const Placement& at, const std::string& bench, const TwinOptions& options) {
+  const bool comes_in_sizes =
+      HasSize(at.effect, at.where, bench) || at.effect == "outliers" || at.effect == "multitooth_seating";
   return comes_in_sizes ? options.magnitudes : 1;
 }
 
@@ -60,7 +61,7 @@ std::vector<Plan> SinglePlans(const std::string& bench, const TwinOptions& optio
   Scales scales(options.cache_folder);
   std::uint64_t seed = options.first_seed;
   for (const Placement& at : Placements(bench)) {
-    for (int k = 0; k < MagnitudesOf(at.effect, options) * options.seeds; ++k)
+    for (int k = 0; k < MagnitudesOf(at, bench, options) * options.seeds; ++k)
       plans.push_back(SinglePlan("twin " + bench, at, options.RhoOf(k), ++seed, scales.Of(at.design)));
   }
   return plans;
@@ -72,7 +73,7 @@ std::vector<Plan> LeaveOneOutPlans(const std::string& bench, const TwinOptions& 
   Scales scales(options.cache_folder);
   std::uint64_t seed = 200000 + options.first_seed;
   for (const Placement& at : Placements(bench)) {
-    if (!HasSize(at.effect)) continue;
+    if (!HasSize(at.effect, at.where, bench)) continue;
     for (int k = 0; k < options.seeds; ++k) {
       Plan plan = SinglePlan("leave-one-out", at, kRho, ++seed, scales.Of(at.design));
       plan.make = [make = std::move(plan.make)] { return WithoutItsCause(make()); };

@@ -80,7 +80,8 @@ TEST_P(Twin, WithoutItsCauseTheCatalogueSeldomNamesAnother) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryBench, Twin,
-                         ::testing::Values(kRotaryBench, kEncoderBench, kTurntableBench, kHobBench),
+                         ::testing::Values(kRotaryBench, kEncoderBench, kTurntableBench, kHobBench, kCircularBench,
+                                           kFreeformBench),
                          [](const auto& of) { return std::string(of.param); });
 
 TEST(HiddenCases, CoverEveryEffectOfEveryCatalogue) {

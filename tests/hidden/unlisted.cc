@@ -10,12 +10,12 @@ namespace twinbench::hidden {
 namespace {
 
 /// Adds the signal at the size that gives it the length `rho`.
-void AddWithLength(double rho, const Eigen::MatrixXd& signal, const SignatureScale& scale,
+void AddWithLength(double rho, const std::string& bench, const Eigen::MatrixXd& signal, const SignatureScale& scale,
                    std::vector<Reading>& readings) {
   constexpr double kUnit = 1e-6;
   std::vector<Reading> with = readings;
-  AddTo(with, kUnit * signal);
-  AddTo(readings, kUnit * rho / scale.Rho(with, readings) * signal);
+  AddTo(bench, kUnit * signal, with);
+  AddTo(bench, kUnit * rho / scale.Rho(with, readings) * signal, readings);
 }
 
 Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::uint64_t seed,
@@ -25,7 +25,7 @@ Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::ui
   made.readings = TakeReadings(Drawn(design, seed));
   Stream stream(seed, "hidden.unlisted");
   const UnlistedSignal drawn = cause.draw({made.readings, stream});
-  AddWithLength(rho, drawn.signal, scale, made.readings);
+  AddWithLength(rho, BenchOf(design), drawn.signal, scale, made.readings);
   made.hidden.unlisted = cause.name;
   made.hidden.locks = drawn.locks;
   made.hidden.channels = drawn.channels;
@@ -36,6 +36,8 @@ Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::ui
 const std::vector<UnlistedCause>& CausesOf(const std::string& bench) {
   if (bench == kRotaryBench) return RotaryUnlistedCauses();
   if (bench == kTurntableBench) return TurntableUnlistedCauses();
+  if (bench == kCircularBench) return CircularUnlistedCauses();
+  if (bench == kFreeformBench) return FreeformUnlistedCauses();
   return bench == kHobBench ? HobUnlistedCauses() : EncoderUnlistedCauses();
 }
 

@@ -63,6 +63,11 @@ UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& l
   return {locks, {}, series * weight};
 }
 
+UnlistedSignal OnColumn(Eigen::Index channel, Eigen::Index channels, const std::vector<std::string>& locks,
+                        const Eigen::VectorXd& series) {
+  return {locks, {}, series * Eigen::RowVectorXd::Unit(channels, channel)};
+}
+
 UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series) {
   return {locks, {}, series};
 }

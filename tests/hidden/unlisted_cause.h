@@ -45,6 +45,10 @@ UnlistedSignal OnChannel(std::size_t channel, const std::vector<std::string>& lo
 UnlistedSignal OnAxis(const std::string& axis, const std::vector<std::string>& locks,
                       const Eigen::VectorXd& series);
 
+/// Of a bench whose scores do not ask for the channel: on the one of that number.
+UnlistedSignal OnColumn(Eigen::Index channel, Eigen::Index channels, const std::vector<std::string>& locks,
+                        const Eigen::VectorXd& series);
+
 /// Of the benches that read one angle.
 UnlistedSignal OnAngle(const std::vector<std::string>& locks, const Eigen::VectorXd& series);
 
@@ -56,5 +60,7 @@ const std::vector<UnlistedCause>& RotaryUnlistedCauses();
 const std::vector<UnlistedCause>& EncoderUnlistedCauses();
 const std::vector<UnlistedCause>& TurntableUnlistedCauses();
 const std::vector<UnlistedCause>& HobUnlistedCauses();
+const std::vector<UnlistedCause>& CircularUnlistedCauses();
+const std::vector<UnlistedCause>& FreeformUnlistedCauses();
 
 }  // namespace twinbench::hidden

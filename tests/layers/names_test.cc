@@ -28,7 +28,7 @@ std::vector<std::string> BenchFolders() {
 std::regex NameOfABench() {
   std::string names;
   for (const std::string& name : BenchFolders()) names += (names.empty() ? "" : "|") + name;
-  return std::regex("\"(" + names + ")\"|\\bk(Rotary|Encoder|Turntable|Hob)Bench\\b");
+  return std::regex("\"(" + names + ")\"|\\bk(Rotary|Encoder|Turntable|Hob|Circular|Freeform)Bench\\b");
 }
 
 bool IsSource(const fs::path& path) {

@@ -1,20 +1,24 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/twin_run.h"
+#include "twin/benches/circular_motion/twin/live.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/procedure.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/twin.h"
 #include "twin/benches/names.h"
+#include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/core/effect_catalogue.h"
+#include "twin/core/run_record.h"
 
 /// Runs of the turntable's and the hobbing machine's twins without a disk.
 namespace twinbench::test {
@@ -41,6 +45,24 @@ inline BenchRun RunHob(const Scenario& scenario) {
   return RunBench<sim::HobTwin>(scenario);
 }
 
+inline BenchRun RunCircles(const Scenario& scenario) {
+  const sim::CircleRun run(scenario);
+  std::vector<Reading> readings;
+  for (int k = 0; k < run.Readings(); ++k) readings.push_back(run.Take(k));
+  return {scenario, readings, run.Truth()};
+}
+
+/// By the bench's own twin, through a run record: a bench that has no shorter way.
+inline std::vector<Reading> ReadingsByRecord(const Scenario& scenario) {
+  std::string folder = std::filesystem::temp_directory_path() / "twinbench-readings-XXXXXX";
+  Require(mkdtemp(folder.data()) != nullptr, "a temporary folder");
+  const std::unique_ptr<RunRecord> record = RunRecord::Create(folder, {});
+  BenchOf(scenario).make_twin(scenario)->CarryOut(*record, {});
+  std::vector<Reading> readings = record->Readings();
+  std::filesystem::remove_all(folder);
+  return readings;
+}
+
 /// An effect of the catalogue with its default sizes, at its last place. What has an onset or a share gets ones
 /// that a short run shows.
 inline EffectSettings PlainEffect(const EffectEntry& entry) {
@@ -56,7 +78,9 @@ inline std::vector<Reading> ReadingsOf(const Scenario& scenario) {
   if (scenario.bench == kEncoderBench) return RunEncoderTwin(scenario).readings;
   if (scenario.bench == kTurntableBench) return RunTurntable(scenario).readings;
   if (scenario.bench == kHobBench) return RunHob(scenario).readings;
-  return RunTwin(scenario).readings;
+  if (scenario.bench == kCircularBench) return RunCircles(scenario).readings;
+  if (scenario.bench == kRotaryBench) return RunTwin(scenario).readings;
+  return ReadingsByRecord(scenario);
 }
 
 inline int PlannedReadings(const Scenario& scenario) {
@@ -65,6 +89,7 @@ inline int PlannedReadings(const Scenario& scenario) {
   if (scenario.bench == kTurntableBench)
     return procedure::PlannedReadings(TurntableOf(scenario).turntable_procedure);
   if (scenario.bench == kHobBench) return procedure::PlannedReadings(HobOf(scenario).hob_procedure);
+  if (scenario.bench != kRotaryBench) return BenchOf(scenario).planned_readings(scenario);
   return procedure::PlannedReadings(RotaryOf(scenario).procedure);
 }
 

@@ -7,9 +7,10 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
-#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
@@ -46,25 +47,39 @@ class InterruptGuard {
 /// The state of a watch after some readings.
 struct Watched {
   diagnose::WatchReport report;
-  std::string unit;
-  double to_SI = 1.0;
+  std::vector<std::string> channels;
+  std::vector<diagnose::ChannelUnit> units;  // of each channel
+
+  /// Of a channel; of a pattern that of the first.
+  const diagnose::ChannelUnit& UnitOf(const std::string& series) const {
+    const auto found = std::ranges::find(channels, series);
+    return units.at(found == channels.end() ? 0 : static_cast<std::size_t>(found - channels.begin()));
+  }
 };
 
+Watched Seen(const diagnose::LinearRun& run, const diagnose::WatchOptions& how) {
+  Watched watched{diagnose::Watch(run, how), run.channels, {}};
+  for (int c = 0; c < run.Channels(); ++c) watched.units.push_back(run.UnitOf(c));
+  return watched;
+}
+
 void PrintAlarm(const diagnose::Alarm& alarm, const Watched& watched, std::FILE* to) {
+  const diagnose::ChannelUnit& unit = watched.UnitOf(alarm.series);
   const std::string since = alarm.lasting ? fmt::format("since reading {}", alarm.since) : "in this reading";
   fmt::print(to, "alarm at reading {}: {} deviates by {:.3g} +- {:.2g} {}, {} (statistic {:.1f}, limit {:.1f})\n",
-             alarm.reading, alarm.series, alarm.size / watched.to_SI, alarm.u_size / watched.to_SI, watched.unit,
-             since, alarm.z, alarm.limit);
+             alarm.reading, alarm.series, alarm.size / unit.to_SI, alarm.u_size / unit.to_SI, unit.name, since,
+             alarm.z, alarm.limit);
   std::fflush(to);
 }
 
 nlohmann::json ToJson(const diagnose::Alarm& alarm, const Watched& watched) {
+  const diagnose::ChannelUnit& unit = watched.UnitOf(alarm.series);
   return {{"reading", alarm.reading},
           {"since", alarm.since},
           {"series", alarm.series},
           {"lasting", alarm.lasting},
-          {"size_" + watched.unit, alarm.size / watched.to_SI},
-          {"u_size_" + watched.unit, alarm.u_size / watched.to_SI},
+          {"size_" + unit.name, alarm.size / unit.to_SI},
+          {"u_size_" + unit.name, alarm.u_size / unit.to_SI},
           {"statistic", alarm.z},
           {"limit", alarm.limit}};
 }
@@ -119,7 +134,7 @@ class Follower {
       const Bench& bench = BenchOf(scenario_);
       const diagnose::LinearRun run = bench.linear_run(readings, scenario_, options_.model);
       const diagnose::WatchOptions how{options_.false_alarm_rate, bench.planned_readings(scenario_)};
-      return Watched{diagnose::Watch(run, how), run.unit, run.to_SI};
+      return Seen(run, how);
     } catch (const InputError&) {
       if (complete_) throw;
       return std::nullopt;

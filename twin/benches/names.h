@@ -8,5 +8,7 @@ inline constexpr const char* kRotaryBench = "rotary_4dof";
 inline constexpr const char* kEncoderBench = "encoder_comparison";
 inline constexpr const char* kTurntableBench = "turntable_autocollimator";
 inline constexpr const char* kHobBench = "hob_transmission";
+inline constexpr const char* kCircularBench = "circular_motion";
+inline constexpr const char* kFreeformBench = "freeform_five_axis";
 
 }  // namespace twinbench

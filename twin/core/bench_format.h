@@ -24,8 +24,9 @@ struct TableNames {
   TableSettings& (*settings)(Scenario&, bool of_reference) = nullptr;
 };
 
-/// What the channels of a bench read: a place on a detector [m] or an angle [rad].
-enum class SignalKind { kPosition, kAngle };
+/// What the channels of a bench read: a place on a detector [m], an angle [rad], or each something of its own, in
+/// the unit of its column.
+enum class SignalKind { kPosition, kAngle, kOwn };
 
 /// A column (or several that go together) that a diagnosis can do without, at a price.
 struct DesiredColumn {

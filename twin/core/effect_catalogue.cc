@@ -1,6 +1,7 @@
 #include "twin/core/effect_catalogue.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -40,7 +41,14 @@ double FactorOf(const std::string& unit) {
                                                  {"urad_per_h", urad / units::hour},
                                                  {"deg_per_h", deg / units::hour},
                                                  {"deg_per_s", deg},
-                                                 {"K", 1.0}};
+                                                 {"K", 1.0},
+                                                 {"um_m", um},
+                                                 {"um_K", um},
+                                                 {"um_m_K", um},
+                                                 {"per_mm2", 1.0 / (mm * mm)},
+                                                 {"rad", 1.0},
+                                                 {"px", 1.0},
+                                                 {"per_px", 1.0}};
   const auto found = factors.find(unit);
   Require(found != factors.end(), "a parameter of the effect catalogue has an unknown unit");
   return found->second;
@@ -61,6 +69,16 @@ EffectParameter Signed(const std::string& name, const std::string& unit, double 
 
 bool EffectParameter::BelongsTo(const std::string& place) const {
   return only_at.empty() || std::find(only_at.begin(), only_at.end(), place) != only_at.end();
+}
+
+double EffectEntry::Plausible(const EffectParameter& parameter) const {
+  constexpr double kShareOfBounds = 0.1;
+  double plausible = std::abs(parameter.default_SI);
+  for (const EffectParameter& other : parameters) {
+    if (plausible == 0.0 && other.unit == parameter.unit) plausible = std::abs(other.default_SI);
+  }
+  return plausible > 0.0 ? plausible
+                         : kShareOfBounds * std::max(std::abs(parameter.lower_SI), std::abs(parameter.upper_SI));
 }
 
 const std::vector<EffectEntry>& EffectCatalogue(const std::string& bench) {

@@ -29,6 +29,10 @@ struct EffectEntry {
   std::vector<std::string> places;  // allowed `where`; empty: none may be given
   std::vector<EffectParameter> parameters;
   std::string default_place = {};  // if `where` is left out; empty: it must be given (where there are places)
+
+  /// How large a parameter plausibly is [SI]: its default. One that is 0 unless stated (the sine of a wave) is as
+  /// large as the others of its unit, or a tenth of its bounds.
+  double Plausible(const EffectParameter& parameter) const;
 };
 
 /// Every effect of a bench, in the order of formats.md.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "twin/core/time.h"
@@ -61,7 +62,7 @@ struct Reading {
   double interferometer_rad = kNaN;  // hob, optional: transmission error as the interferometer saw it
 
   /// What a bench reads that has no field above: SI, by the name of its column (Quantity in reading_column.h).
-  std::map<std::string, double> quantities;
+  std::vector<std::pair<std::string, double>> quantities;
   std::map<std::string, std::string> extra;  // columns of an imported file that we do not know, kept as text
 };
 

@@ -36,10 +36,17 @@ struct ReadingColumn {
 /// The place of a quantity that has no field of its own in a reading.
 struct Quantity {
   std::string column;
-  double& operator()(Reading& r) const { return r.quantities.try_emplace(column, kNaN).first->second; }
+  double& operator()(Reading& r) const {
+    for (auto& [name, value] : r.quantities) {
+      if (name == column) return value;
+    }
+    return r.quantities.emplace_back(column, kNaN).second;
+  }
   double operator()(const Reading& r) const {
-    const auto found = r.quantities.find(column);
-    return found == r.quantities.end() ? kNaN : found->second;
+    for (const auto& [name, value] : r.quantities) {
+      if (name == column) return value;
+    }
+    return kNaN;
   }
 };
 

@@ -79,7 +79,7 @@ Reading TakeReading(const SqliteStatement& row, const std::string& path) {
   r.phase = *phase;
   r.status = *status;
   r.extra = extra.get<std::map<std::string, std::string>>();
-  r.quantities = quantities.get<std::map<std::string, double>>();
+  for (const auto& [name, value] : quantities.items()) r.quantities.emplace_back(name, value.get<double>());
   return r;
 }
 

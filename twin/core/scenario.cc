@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
@@ -28,12 +29,6 @@ namespace {
 constexpr const char* kEffectTable = "effect";
 constexpr const char* kFixtureTable = "fixture";
 constexpr const char* kEmpiricalTable = "empirical";
-
-std::vector<KnownKey> KnownKeys(const std::vector<ScenarioKey>& keys) {
-  std::vector<KnownKey> known;
-  for (const ScenarioKey& key : keys) known.push_back({key.table, key.name, std::string(key.unit.suffix)});
-  return known;
-}
 
 std::vector<std::string> KnownTables(const std::vector<ScenarioKey>& keys) {
   std::vector<std::string> tables;
@@ -298,18 +293,23 @@ EffectSettings ReadEffect(const TomlValue& block, const std::string& bench) {
 
 // --- [[empirical]] ---
 
-void RequireEmpirical(const EmpiricalSettings& empirical, const BenchFormat& bench) {
+/// Key of the values in a file.
+std::string ValueKey(SignalKind kind) {
+  if (kind == SignalKind::kOwn) return "value";
+  return kind == SignalKind::kAngle ? "value_deg" : "value_um";
+}
+
+void RequireEmpirical(EmpiricalSettings empirical, const BenchFormat& bench) {
   const auto require = [&](bool condition, const std::string& what, const std::string& expected) {
     if (!condition) throw InputError(empirical.location, what, expected);
   };
-  const bool is_angle = bench.signal == SignalKind::kAngle;
   require(std::ranges::count(bench.channels, empirical.channel) > 0,
           fmt::format("the empirical signal is for the channel \"{}\"", empirical.channel),
           "a channel of the bench " + bench.name);
-  const std::vector<double>& values = is_angle ? empirical.value_rad : empirical.value_m;
-  const std::string key = is_angle ? "value_deg" : "value_um";
-  const std::vector<double>& others = is_angle ? empirical.value_m : empirical.value_rad;
-  require(others.empty(), "the empirical signal has values of another kind of channel", key);
+  const std::vector<double> values = std::exchange(ValuesOf(empirical, bench.signal), {});
+  const std::string key = ValueKey(bench.signal);
+  require(empirical.value_m.empty() && empirical.value_rad.empty() && empirical.value.empty(),
+          "the empirical signal has values of another kind of channel", key);
   require(
       !values.empty() && values.size() == empirical.reading.size(),
       fmt::format("the empirical signal has {} readings and {} values", empirical.reading.size(), values.size()),

@@ -56,7 +56,8 @@ struct EmpiricalSettings {
   std::string channel;            // to which the signal is added
   std::vector<int> reading;       // running numbers, each once; elsewhere the signal is zero
   std::vector<double> value_m;    // one a reading, on a channel that reads a position ...
-  std::vector<double> value_rad;  // ... or an angle; the other list is empty
+  std::vector<double> value_rad;  // ... or an angle ...
+  std::vector<double> value;      // ... or something else, in the unit of its column; the other lists are empty
   std::string provenance;
   std::string location;  // "file.toml:31", for messages
 };

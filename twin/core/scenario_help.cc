@@ -41,6 +41,17 @@ struct DefaultText {
   }
   std::string operator()(const std::vector<HarmonicSettings>*) const { return "[]"; }
   std::string operator()(const std::optional<TableErrors>*) const { return "none"; }
+  std::string operator()(const RecordList& list) const {
+    std::string text;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      std::string inside;
+      for (const ScenarioKey& inner : list.keys_of(i))
+        inside += fmt::format("{}{} = {}", inside.empty() ? "" : ", ", inner.Name(),
+                              std::visit(DefaultText{inner}, inner.field));
+      text += fmt::format("{}{{ {} }}", text.empty() ? "" : ", ", inside);
+    }
+    return "[" + text + "]";
+  }
 };
 
 std::string DescribeKey(const ScenarioKey& key) {

@@ -66,6 +66,7 @@ std::vector<ScenarioKey> KeysOf(EmpiricalSettings& s) {
   t.Add("reading", kPure, UpTo(kHuge), &s.reading, "running numbers of the readings that have it, each once");
   t.Add("value", kUm, Within(1e6), &s.value_m, "the signal at these readings, on a PSD");
   t.Add("value", kDeg, Within(360), &s.value_rad, "the same of an angle");
+  t.Add("value", kPure, Within(1e6), &s.value, "the same of what its column has in another unit");
   t.Text("provenance", &s.provenance, {}, "which run showed it, and when it was diagnosed");
   return keys;
 }

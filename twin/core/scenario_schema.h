@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -27,10 +29,21 @@ struct Bounds {
   std::string Text() const;  // " from 0 to 10", " above 0", "" without bounds
 };
 
+struct ScenarioKey;
+
+/// A list of tables of one kind: `mounts = [{ z_mm = 60.0, yaw_deg = 90.0 }, ...]`. What a table leaves out keeps
+/// its default.
+struct RecordList {
+  std::function<std::size_t()> size;
+  std::function<void(std::size_t)> start_anew;                   // that many, all with defaults
+  std::function<std::vector<ScenarioKey>(std::size_t)> keys_of;  // of one; without a table's name
+  std::function<std::vector<ScenarioKey>()> example_keys;        // of one with defaults
+};
+
 /// Where a value of a scenario lives. A span is a list of fixed length, a vector one of at least one entry.
 using Field = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, std::span<double>,
                            std::vector<double>*, std::vector<int>*, std::vector<std::string>*,
-                           std::vector<HarmonicSettings>*, std::optional<TableErrors>*>;
+                           std::vector<HarmonicSettings>*, std::optional<TableErrors>*, RecordList>;
 
 /// One key of the file format, bound to the scenario that it was asked for.
 struct ScenarioKey {

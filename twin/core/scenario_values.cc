@@ -158,6 +158,7 @@ struct FieldReader {
   }
   void operator()(std::vector<HarmonicSettings>* field) const { *field = ReadHarmonics(value, key.Path()); }
   void operator()(std::optional<TableErrors>* field) const { *field = ReadErrors(value, key.Path()); }
+  void operator()(const RecordList& list) const;
 };
 
 /// TOML has no whole numbers above 2^63 - 1: a larger seed is a text of digits.
@@ -170,6 +171,20 @@ void FieldReader::operator()(std::uint64_t* field) const {
   const auto seed = text ? ParseSeed(*text) : std::nullopt;
   if (!seed) Refuse(value, key.Path(), Expected(key));
   *field = *seed;
+}
+
+void FieldReader::operator()(const RecordList& list) const {
+  const toml::array& entries = ReadList(value, key.Path(), Expected(key));
+  list.start_anew(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const TomlValue entry = value.With(*entries.get(i));
+    if (!entry.node().is_table()) Refuse(entry, key.Path(), Expected(key));
+    const std::vector<ScenarioKey> keys = list.keys_of(i);
+    RefuseUnknown(entry, "", KnownKeys(keys));
+    for (const ScenarioKey& inner : keys) {
+      if (const auto found = Inside(entry, inner.Name())) ReadKey(inner, *found);
+    }
+  }
 }
 
 /// Says what a place takes: one overload a type.
@@ -195,6 +210,12 @@ struct FieldText {
     return fmt::format("a list of {}", kHarmonicForm);
   }
   std::string operator()(const std::optional<TableErrors>*) const { return "a table of lists"; }
+  std::string operator()(const RecordList& list) const {
+    std::string names;
+    for (const ScenarioKey& inner : list.example_keys())
+      names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", inner.Name(), Expected(inner));
+    return "a list of tables with " + names;
+  }
 
   std::string Text(const std::string& any) const { return key.choices.empty() ? any : Alternatives(key.choices); }
 };
@@ -205,6 +226,12 @@ std::optional<TomlValue> Inside(const TomlValue& table, const std::string& key) 
   const toml::node* node = table.node().as_table()->get(key);
   if (!node) return std::nullopt;
   return table.With(*node);
+}
+
+std::vector<KnownKey> KnownKeys(const std::vector<ScenarioKey>& keys) {
+  std::vector<KnownKey> known;
+  for (const ScenarioKey& key : keys) known.push_back({key.table, key.name, std::string(key.unit.suffix)});
+  return known;
 }
 
 void RefuseUnknown(const TomlValue& table, const std::string& path, const std::vector<KnownKey>& known) {

@@ -17,6 +17,9 @@ std::string ReadText(const TomlValue& value, const std::string& key, const std::
 /// @return the value of `key` in a table that stands in the text, or nothing.
 std::optional<TomlValue> Inside(const TomlValue& table, const std::string& key);
 
+/// Tables, names and units of keys, for messages.
+std::vector<KnownKey> KnownKeys(const std::vector<ScenarioKey>& keys);
+
 /// @param path  Of the table, for messages.
 /// @throws InputError, naming the nearest of `known`, if the table has another key.
 void RefuseUnknown(const TomlValue& table, const std::string& path, const std::vector<KnownKey>& known);

@@ -75,6 +75,17 @@ struct ValuePrinter {
     return text.empty() ? "[]" : "[\n" + text + "]";
   }
   std::string operator()(const std::optional<TableErrors>*) const { return ""; }  // has a table of its own
+  std::string operator()(const RecordList& list) const {
+    std::string text;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      std::string inside;
+      for (const ScenarioKey& inner : list.keys_of(i))
+        inside += fmt::format("{}{} = {}", inside.empty() ? "" : ", ", inner.Name(),
+                              std::visit(ValuePrinter{inner}, inner.field));
+      text += fmt::format("  {{ {} }},\n", inside);
+    }
+    return "[\n" + text + "]";
+  }
 };
 
 std::string PrintErrors(const std::string& table, const TableErrors& errors) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <utility>
 
 #include "twin/core/scenario_schema.h"
@@ -48,6 +49,25 @@ class Table {
   /// The name of a file that must be readable once it is given.
   void File(const std::string& name, std::string& path, const std::string& meaning) {
     keys_.push_back({name_, name, {}, {}, {}, &path, meaning, true});
+  }
+
+  /// A list of tables, at least one.
+  /// @param add_keys  Puts the keys of one into a table without a name.
+  template <class Record, class AddKeys>
+  void Records(const std::string& name, std::vector<Record>& records, AddKeys add_keys,
+               const std::string& meaning) {
+    const auto keys_of = [add_keys](Record& record) {
+      Keys keys;
+      Table table(keys, "");
+      add_keys(table, record);
+      return keys;
+    };
+    const auto example = std::make_shared<Record>();
+    const RecordList list{[&records] { return records.size(); },
+                          [&records](std::size_t count) { records.assign(count, Record{}); },
+                          [&records, keys_of](std::size_t i) { return keys_of(records.at(i)); },
+                          [example, keys_of] { return keys_of(*example); }};
+    keys_.push_back({name_, name, {}, {}, {}, list, meaning});
   }
 
  private:

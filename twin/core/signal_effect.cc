@@ -9,14 +9,18 @@
 namespace twinbench {
 namespace {
 
+std::string UnitOf(SignalKind kind) {
+  if (kind == SignalKind::kOwn) return "1";
+  return kind == SignalKind::kAngle ? "arcsec" : "um";
+}
+
 EffectParameter Amplitude(const BenchFormat& bench) {
   const bool angle = bench.signal == SignalKind::kAngle;
-  return Signed("amplitude", angle ? "arcsec" : "um", 0.0, angle ? 3.6e6 : 1e5, "of the signal on its channel");
+  return Signed("amplitude", UnitOf(bench.signal), 0.0, angle ? 3.6e6 : 1e5, "of the signal on its channel");
 }
 
 EffectParameter Length(const BenchFormat& bench, const std::string& name, const std::string& meaning) {
-  const bool angle = bench.signal == SignalKind::kAngle;
-  return Parameter(name, angle ? "arcsec" : "um", 1.0, 1e-6, 1e9, meaning);
+  return Parameter(name, UnitOf(bench.signal), 1.0, 1e-6, 1e9, meaning);
 }
 
 EffectParameter Phase() {
@@ -57,6 +61,11 @@ std::vector<EffectParameter> FactorParameters(const std::string& times) {
 }
 
 }  // namespace
+
+std::vector<double>& ValuesOf(EmpiricalSettings& empirical, SignalKind kind) {
+  if (kind == SignalKind::kOwn) return empirical.value;
+  return kind == SignalKind::kAngle ? empirical.value_rad : empirical.value_m;
+}
 
 std::vector<std::string> SignalKinds() {
   return {"constant", "harmonic", "interaction", "tone", "step", "fringes", "power", "share"};

@@ -21,9 +21,13 @@ std::vector<std::string> SignalFactors();
 /// What a signal of this kind may go by: angles of the bench, channels, or nothing.
 std::vector<std::string> SignalArguments(const std::string& kind, const BenchFormat& bench);
 
-/// The parameters of a kind: sizes in um where channels read positions and in arcsec where they read angles.
+/// The parameters of a kind: sizes in um where channels read positions, in arcsec where they read angles, else in
+/// the unit of the channel's column.
 /// @param times  Empty: its size follows nothing.
 EffectEntry SignalEntry(const std::string& kind, const std::string& times, const BenchFormat& bench);
+
+/// The list of values that an [[empirical]] signal has on a bench whose channels read this.
+std::vector<double>& ValuesOf(EmpiricalSettings& empirical, SignalKind kind);
 
 /// Of any effect of a scenario.
 /// @throws std::logic_error if the catalogue has no such effect.

@@ -4,197 +4,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
-#include "twin/core/errors.h"
-#include "twin/core/linear_algebra.h"
-#include "twin/core/units.h"
+#include "twin/diagnose/compared.h"
 #include "twin/diagnose/conclusion.h"
-#include "twin/diagnose/engine/asked_effects.h"
-#include "twin/diagnose/engine/followed.h"
-#include "twin/diagnose/engine/noise_estimate.h"
-#include "twin/diagnose/unknown/design.h"
-#include "twin/model/signals.h"
+#include "twin/diagnose/engine/analysis.h"
+#include "twin/diagnose/twin_candidates.h"
 
 namespace twinbench::diagnose {
 namespace {
 
-constexpr int kFewestCompared = 12;
-
-std::vector<ReadingColumn> ColumnsShown(const BenchFormat& format) {
-  std::vector<ReadingColumn> shown;
-  std::ranges::copy_if(format.columns, std::back_inserter(shown),
-                       [](const ReadingColumn& c) { return c.role == ColumnRole::kShown; });
-  Require(shown.size() == format.channels.size(), "a bench that is compared by its columns shows one a channel");
-  return shown;
-}
-
-/// One value a channel, SI.
-Eigen::VectorXd ValuesOf(Reading reading, const std::vector<ReadingColumn>& columns) {
-  Eigen::VectorXd values(std::ssize(columns));
-  for (std::size_t c = 0; c < columns.size(); ++c)
-    values[static_cast<Eigen::Index>(c)] = columns[c].number(reading);
-  return values;
-}
-
-std::vector<Reading> WithValues(const std::vector<Reading>& readings, const std::vector<ReadingColumn>& columns) {
-  std::vector<Reading> used;
-  std::ranges::copy_if(readings, std::back_inserter(used), [&](const Reading& r) {
-    return r.status == ReadingStatus::kOk && ValuesOf(r, columns).allFinite();
+/// "zero of a set-up up to 0.3 um": the largest constant of each free point; of many points those that show most.
+std::string BiasOf(const LinearRun& run, const FreeConstants& free, const Eigen::VectorXd& fitted) {
+  constexpr std::size_t kMostTold = 4;
+  const Eigen::VectorXd constants = free.fitted * fitted;
+  const Eigen::VectorXd trace = (run.sigma.cwiseInverse().asDiagonal() * free.columns)
+                                    .colwise()
+                                    .norm()
+                                    .transpose()
+                                    .cwiseProduct(constants.cwiseAbs());
+  std::vector<std::pair<double, std::string>> told;
+  Eigen::Index from = 0;
+  free.ForEach(constants, [&](const FreePoint& p, const auto& own) {
+    told.emplace_back(-trace.segment(from, own.size()).maxCoeff(),
+                      fmt::format("{} of {} up to {:.2g} {}", p.point.name, p.of,
+                                  own.cwiseAbs().maxCoeff() / p.point.to_SI, p.point.unit));
+    from += own.size();
   });
-  if (std::ssize(used) < kFewestCompared)
-    throw InputError("readings", fmt::format("{} of {} have a value", used.size(), readings.size()),
-                     fmt::format("at least {}", kFewestCompared));
-  return used;
-}
-
-/// By rows: reading i, channel c at i * channels + c.
-Eigen::VectorXd AsRows(const Eigen::MatrixXd& by_reading) {
-  return by_reading.transpose().reshaped();
-}
-
-/// The constants that a run leaves free: one of each free point in each set-up.
-struct FreeConstants {
-  std::vector<std::string> points;
-  Eigen::MatrixXd setups;   // readings x set-ups
-  Eigen::MatrixXd columns;  // rows x constants, a point's set-ups side by side
-  Eigen::VectorXd values;   // SI
-
-  /// As the twin is told them.
-  std::vector<model::Disturbance> Disturbances() const {
-    std::vector<model::Disturbance> all;
-    for (std::size_t k = 0; k < points.size(); ++k)
-      all.push_back(
-          {points[k], setups * values.segment(static_cast<Eigen::Index>(k) * setups.cols(), setups.cols())});
-    return all;
+  const bool too_many = told.size() > 2 * kMostTold;
+  if (too_many) {
+    std::ranges::stable_sort(told, {}, &std::pair<double, std::string>::first);
+    told.resize(kMostTold);
   }
-};
-
-FreeConstants FreeOf(const std::vector<std::string>& points, const Schedule& schedule, const Followed& twin) {
-  FreeConstants free{points, model::Indicators(schedule.setup), {}, {}};
-  std::vector<Eigen::MatrixXd> blocks;
-  Eigen::Index rows = 0;
-  for (const std::string& point : points) {
-    const Eigen::MatrixXd slope = twin.Slope(point, {});
-    rows = slope.size();
-    Eigen::MatrixXd& block = blocks.emplace_back(rows, free.setups.cols());
-    for (Eigen::Index k = 0; k < free.setups.cols(); ++k)
-      block.col(k) = AsRows(free.setups.col(k).asDiagonal() * slope);
-  }
-  free.columns.resize(rows, std::ssize(blocks) * free.setups.cols());
-  for (std::size_t k = 0; k < blocks.size(); ++k)
-    free.columns.middleCols(static_cast<Eigen::Index>(k) * free.setups.cols(), free.setups.cols()) = blocks[k];
-  free.values.setZero(free.columns.cols());
-  return free;
-}
-
-/// What the readings showed, what the twin says with the constants that fit best, and those constants.
-struct Compared {
-  std::vector<Reading> used;
-  LinearRun run;
-  FreeConstants free;
-};
-
-void SetNoise(double stated, LinearRun& run) {
-  run.sigma_stated = stated > 0.0;
-  run.sigma.setConstant(run.Rows(), stated);
-  if (run.sigma_stated) return;
-  for (int c = 0; c < run.Channels(); ++c) {
-    const auto of_channel = Eigen::seq(c, Eigen::last, run.Channels());
-    run.sigma(of_channel).setConstant(EstimateNoise_rad(run.schedule, run.residual(of_channel)));
-  }
-}
-
-/// Hardly held: a millionth of what one reading says.
-Nuisance HardlyHeld(const Eigen::MatrixXd& columns, const Eigen::VectorXd& sigma) {
-  constexpr double kWeak = 1e-6;
-  const Eigen::MatrixXd white = sigma.cwiseInverse().asDiagonal() * columns;
-  const Eigen::VectorXd of_one_reading = white.cwiseAbs2().colwise().maxCoeff();
-  return {columns.sparseView(), kWeak * of_one_reading.cwiseMax(1e-300), 0, 0};
-}
-
-Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario, const TwinComparison& comparison) {
-  constexpr double kRank = 1e-10;
-  constexpr int kRounds = 2;  // the twin asked again at the constants that fit: nothing stays of first order
-  const std::vector<ReadingColumn> columns = ColumnsShown(*comparison.format);
-  Compared c{WithValues(readings, columns), {}, {}};
-  LinearRun& run = c.run;
-  run.bench = scenario.bench;
-  run.schedule = model::CourseOf(c.used);
-  run.channels = comparison.format->channels;
-  run.unit = comparison.unit;
-  run.to_SI = comparison.to_SI;
-  run.noise_free = scenario.noise_free;
-  for (int k = 0; k < run.Channels(); ++k)
-    run.patterns.push_back({run.channels[static_cast<std::size_t>(k)], Eigen::VectorXd::Unit(run.Channels(), k)});
-  run.observed.resize(std::ssize(c.used) * run.Channels());
-  for (std::size_t i = 0; i < c.used.size(); ++i)
-    run.observed.segment(static_cast<Eigen::Index>(i) * run.Channels(), run.Channels()) =
-        ValuesOf(c.used[i], columns);
-  const Followed twin(comparison.follow, scenario, readings, c.used);
-  c.free = FreeOf(comparison.free_points, run.schedule, twin);
-  const auto left = [&]() -> Eigen::VectorXd { return run.observed - AsRows(twin.Predict(c.free.Disturbances())); };
-  run.residual = left();
-  if (!run.residual.allFinite())
-    throw InputError("readings", "there are values where the scenario's bench would show none",
-                     "a scenario of the bench that the readings come from");
-  for (int k = 0; k < kRounds && c.free.columns.cols() > 0; ++k) {
-    c.free.values += SolveRanked(c.free.columns, run.residual, kRank).x;
-    run.residual = left();
-  }
-  SetNoise(comparison.noise, run);
-  run.nuisance = HardlyHeld(c.free.columns, run.sigma);
-  return c;
-}
-
-/// The largest whole order that readings so far apart show: two a period.
-int HighestOrder(const Schedule& schedule, const Eigen::VectorXd& angle_rad) {
-  constexpr int kMost = 120;
-  const double step_rad = model::TypicalStep_rad(schedule, angle_rad);
-  return step_rad > 0.0 ? std::min(kMost, static_cast<int>(std::ceil(units::kPi / step_rad - 1e-6)) - 1) : 0;
-}
-
-unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, const TimeSeries& series) {
-  constexpr double kPlausibleShare = 0.01;
-  const LinearRun& run = c.run;
-  unknown::Design design;
-  design.course = run.schedule;
-  design.channels = run.channels;
-  for (const Pattern& pattern : run.patterns) design.places.push_back({pattern.name, pattern.name, pattern.weight});
-  for (const TwinComparison::KnownAngle& known : comparison.angles) {
-    Eigen::VectorXd rad(run.schedule.Readings());
-    for (std::size_t i = 0; i < c.used.size(); ++i) rad[static_cast<Eigen::Index>(i)] = c.used[i].*known.rad;
-    if (!rad.allFinite()) continue;
-    design.angles.push_back({known.name + " angle", rad, HighestOrder(run.schedule, rad), 1, "harmonic", known.name,
-                             design.angles.empty()});
-  }
-  if (!design.angles.empty()) design.continued_rad = design.angles.front().rad;
-  design.moved = Eigen::VectorXd::Ones(run.schedule.Readings());
-  design.senses = {model::HeldDirection(run.schedule)};
-  if (run.schedule.velocity_rad_s.allFinite()) design.velocity = run.schedule.velocity_rad_s;
-  if (model::HasTemperature(run.schedule)) {
-    const Eigen::VectorXd T_degC = model::Above_K(run.schedule, 0.0);
-    design.above_K = T_degC.array() - T_degC.mean();
-  }
-  design.series = series;
-  design.shown = run.Predicted().reshaped<Eigen::RowMajor>(run.schedule.Readings(), run.Channels());
-  design.shown_name = "reading";
-  design.unit = run.unit;
-  design.to_SI = run.to_SI;
-  design.plausible = std::max(comparison.plausible, 3.0 * run.sigma.mean());
-  design.plausible_share = kPlausibleShare;
-  return design;
-}
-
-/// "zero up to 0.3 um": the largest constant of each free point.
-std::string BiasOf(const FreeConstants& free, const model::Follow& twin, const Eigen::VectorXd& constants) {
   std::string words;
-  for (std::size_t k = 0; k < free.points.size(); ++k) {
-    const model::Point& point = model::PointNamed(twin, free.points[k]);
-    const auto of_point = constants.segment(static_cast<Eigen::Index>(k) * free.setups.cols(), free.setups.cols());
-    words += fmt::format("{}{} of a set-up up to {:.2g} {}", words.empty() ? "" : ", ", point.name,
-                         of_point.cwiseAbs().maxCoeff() / point.to_SI, point.unit);
-  }
-  return words.empty() ? "nothing: the run leaves nothing free" : words;
+  for (const auto& [trace_of_it, text] : told) words += (words.empty() ? "" : ", ") + text;
+  if (words.empty()) return "nothing: the run leaves nothing free";
+  return too_many ? words + " and others" : words;
 }
 
 std::string NextOf(const std::string& effect, const std::string& rival) {
@@ -202,6 +48,71 @@ std::string NextOf(const std::string& effect, const std::string& rival) {
       "the same run on another course (more passes in both directions, other dwells, a further "
       "set-up), chosen so that {} and {} go different ways",
       effect, rival);
+}
+
+/// A record compared with the twin of one scenario, and what the search makes of it.
+struct Searched {
+  Searched(const std::vector<Reading>& readings, const Scenario& believed, const DiagnoseOptions& options,
+           const TwinComparison& comparison)
+      : scenario(believed),
+        compared(Compare(readings, scenario, comparison)),
+        candidates(CandidatesOf(compared, readings, scenario, options, comparison)) {}
+  Searched(const Searched&) = delete;
+  Searched& operator=(const Searched&) = delete;
+
+  const SearchResult& found() const { return analysis.found; }
+  const Family& FamilyOf(const Term& term) const {
+    return candidates.families[static_cast<std::size_t>(term.family)];
+  }
+  /// More than the first cause is needed, or something is left.
+  bool LeavesStructure() const {
+    return found().terms.size() > 1 || (!found().terms.empty() && found().last_statistic > analysis.threshold);
+  }
+
+  Scenario scenario;
+  Compared compared;
+  TwinCandidates candidates;
+  Analysis analysis;
+};
+
+/// The cause that was found first as the twin can carry it out.
+EffectSettings EffectOf(const Family& family, const Term& term, const std::vector<EffectEntry>& catalogue) {
+  EffectSettings effect;
+  effect.name = family.effect;
+  effect.where = family.where;
+  const EffectEntry& entry = *std::ranges::find(catalogue, family.effect, &EffectEntry::name);
+  for (const EffectParameter& p : entry.parameters) effect.parameters[p.name] = p.default_SI;
+  for (std::size_t k = 0; k < family.amplitudes.size(); ++k)
+    effect.parameters[family.amplitudes[k].name] = term.amplitudes[static_cast<Eigen::Index>(k)];
+  for (std::size_t k = 0; k < family.shapes.size(); ++k)
+    effect.parameters[family.shapes[k].name] = term.shape[static_cast<Eigen::Index>(k)];
+  return effect;
+}
+
+/// Whether asking again with the first cause in the twin may tell more: it is named, the twin has it as it stands,
+/// and what it leaves may be nothing but that it was taken for linear.
+bool MayBeCurved(const Searched& searched) {
+  if (!searched.LeavesStructure()) return false;
+  const Family& family = searched.FamilyOf(searched.found().terms.front());
+  return family.kind == Kind::kNamed && !family.parameters;
+}
+
+/// The same search with slopes about the first cause at the size that was found; it is still weighed against the
+/// others.
+std::unique_ptr<Searched> AboutFirstCause(const Searched& before, const std::vector<Reading>& readings,
+                                          const DiagnoseOptions& options, const TwinComparison& comparison) {
+  const Term& first = before.found().terms.front();
+  Scenario believed = before.scenario;
+  believed.effects.push_back(EffectOf(before.FamilyOf(first), first, comparison.format->effects));
+  auto after = std::make_unique<Searched>(readings, believed, options, comparison);
+  if (after->candidates.families.size() != before.candidates.families.size()) return nullptr;
+  const Family& same = after->FamilyOf(first);
+  const Eigen::MatrixXd columns = same.at ? same.at(first.shape) : same.ColumnsAt(first.grid_point);
+  after->compared.run.residual += columns * first.amplitudes;
+  AnalysisOptions how = AnalysisOptionsOf(options);
+  how.null = &before.analysis.null;
+  after->analysis = Analyse(after->compared.run, after->candidates.families, how);
+  return after;
 }
 
 }  // namespace
@@ -213,21 +124,18 @@ LinearRun CompareWithTwin(const std::vector<Reading>& readings, const Scenario& 
 
 DiagnosisRun DiagnoseByTwin(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options, const TwinComparison& comparison) {
-  const Compared c = Compare(readings, scenario, comparison);
-  const TimeSeries series = TimeSeriesOf(c.run.schedule, std::vector<int>(c.used.size(), 0), c.run.Channels());
-  Candidates named(Catalogue(comparison.format->effects), c.run.Channels());
-  std::vector<EffectEntry> entries = comparison.format->effects;
-  std::erase_if(entries, [&](const EffectEntry& entry) { return IsExcluded(options, entry.name); });
-  const std::vector<Invisible> invisible = AddAskedEffects(
-      {comparison.follow, scenario, readings, c.used, c.free.Disturbances(), series.onsets}, entries, named);
-  std::vector<Family> families = named.Take();
-  std::ranges::move(unknown::Families(DesignOf(c, comparison, series)), std::back_inserter(families));
-  const Analysis analysis = Analyse(c.run, families, AnalysisOptionsOf(options));
-  const std::unique_ptr<model::Follow> twin = comparison.follow(scenario, readings);
+  auto searched = std::make_unique<Searched>(readings, scenario, options, comparison);
+  searched->analysis = Analyse(searched->compared.run, searched->candidates.families, AnalysisOptionsOf(options));
+  if (MayBeCurved(*searched)) {
+    auto again = AboutFirstCause(*searched, readings, options, comparison);
+    const auto terms = [](const Searched& s) { return s.found().terms.size(); };
+    if (again && terms(*again) > 0 && terms(*again) <= terms(*searched)) searched = std::move(again);
+  }
+  const Compared& c = searched->compared;
   DiagnosisRun result =
-      Conclude(c.run, analysis, {},
-               {[&](const std::string&, const Eigen::VectorXd& x) { return BiasOf(c.free, *twin, x); }, NextOf});
-  std::ranges::copy(invisible, std::back_inserter(result.diagnosis.invisible));
+      Conclude(c.run, searched->analysis, {},
+               {[&](const std::string&, const Eigen::VectorXd& x) { return BiasOf(c.run, c.free, x); }, NextOf});
+  std::ranges::copy(searched->candidates.invisible, std::back_inserter(result.diagnosis.invisible));
   result.diagnosis.left_out = static_cast<int>(readings.size() - c.used.size());
   return result;
 }

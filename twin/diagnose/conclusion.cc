@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/errors.h"
 #include "twin/diagnose/gain.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/diagnose/tuning.h"
@@ -122,14 +124,24 @@ Cause DecidedCause(const std::string& effect, const std::string& where, double l
   return cause;
 }
 
+/// Of their size in the catalogue.
+ChannelUnit UnitOfOutliers(const std::string& bench) {
+  const EffectEntry* const entry = FindEffect("outliers", bench);
+  Require(entry != nullptr, "a bench that counts outliers in a unit has them in its catalogue");
+  const EffectParameter& size = *std::ranges::find(entry->parameters, "size", &EffectParameter::name);
+  return {size.unit, size.to_SI};
+}
+
 Cause OutlierCause(const NoiseCause& noise, const LinearRun& run) {
   Cause cause = DecidedCause("outliers", "", noise.log_bayes);
   const double share = static_cast<double>(noise.outliers.size()) / std::max(1, run.schedule.Readings());
-  const double size = noise.outlier_size * run.sigma.mean();
+  const bool is_of_reading = !std::isfinite(run.outlier_per_noise);
+  const double size = noise.outlier_size * (is_of_reading ? run.sigma.mean() : run.outlier_per_noise);
+  const ChannelUnit told = is_of_reading ? run.UnitOf(0) : UnitOfOutliers(run.bench);
   const double u_size = size / std::sqrt(2.0 * static_cast<double>(noise.outliers.size()));
   const double u_share = share / std::sqrt(static_cast<double>(noise.outliers.size()));
   cause.parameters = {{"fraction", "1", 1.0, share, u_share, 0.0, 0.5},
-                      {"size", run.unit, run.to_SI, size, u_size, 0.0, 1e6 * run.to_SI}};
+                      {"size", told.name, told.to_SI, size, u_size, 0.0, 1e6 * told.to_SI}};
   return cause;
 }
 

@@ -8,6 +8,7 @@
 #include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
+#include "twin/core/signal_effect.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -53,8 +54,7 @@ EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std:
 std::vector<EmpiricalSettings> EmpiricalOn(int channel, const LinearRun& run, const Eigen::VectorXd& signal) {
   EmpiricalSettings empirical;
   empirical.channel = run.channels[static_cast<std::size_t>(channel)];
-  std::vector<double>& values =
-      FormatOf(run.bench).signal == SignalKind::kPosition ? empirical.value_m : empirical.value_rad;
+  std::vector<double>& values = ValuesOf(empirical, FormatOf(run.bench).signal);
   double largest = 0.0;
   for (int i = 0; i < run.schedule.Readings(); ++i) {
     const double value = signal[i * run.Channels() + channel];

@@ -68,12 +68,13 @@ json ArrayOf(const List& list) {
   return out;
 }
 
-/// Metres on the PSD that one radian of the grating's yaw makes, at most; 1 on a bench that reads angles.
+/// Metres on the PSD that one radian of the grating's yaw makes, at most; 1 on a bench that reads angles, NaN on
+/// one that reads neither.
 double ShownByYaw(const LinearRun& run) {
   for (const Pattern& pattern : run.patterns) {
     if (pattern.name == "yaw") return pattern.weight.cwiseAbs().maxCoeff();
   }
-  return run.unit == "um" ? kNaN : 1.0;
+  return run.unit == "um" || run.IsMixed() ? kNaN : 1.0;
 }
 
 json GainJson(const Gain& gain, const LinearRun& run) {
@@ -85,6 +86,7 @@ json GainJson(const Gain& gain, const LinearRun& run) {
   const auto add = [&](const std::string& key, double value_SI) {
     out[key + "_um"] = is_length ? Number(value_SI / units::um) : json(nullptr);
     out[key + "_arcsec"] = Number(value_SI / ShownByYaw(run) / units::arcsec);
+    if (run.IsMixed()) out[key + "_over_noise"] = Number(value_SI / gain.noise_floor_m);
   };
   add("heldout_rms_before", gain.before_m);
   add("heldout_rms_after", gain.after_m);

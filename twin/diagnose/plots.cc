@@ -28,21 +28,32 @@ json Short(double value) {
 struct PlottedSeries {
   std::string name;
   Eigen::VectorXd before, after, sigma;
+  std::string unit;
   Eigen::VectorXd spot_um;  // of a channel; empty for a pattern
 };
+
+/// Of the channel that shows most of it.
+ChannelUnit UnitOf(const LinearRun& run, const Eigen::VectorXd& weight) {
+  int channel = 0;
+  weight.cwiseAbs().maxCoeff(&channel);
+  return run.UnitOf(channel);
+}
 
 /// Projects the channels of each reading on `weight`, whose largest entry is 1.
 Eigen::VectorXd Project(const LinearRun& run, const Eigen::VectorXd& rows, const Eigen::VectorXd& weight) {
   const Eigen::Map<const Eigen::MatrixXd> by_reading(rows.data(), run.Channels(), run.schedule.Readings());
-  return by_reading.transpose() * weight / (weight.squaredNorm() * run.to_SI);
+  return by_reading.transpose() * weight / (weight.squaredNorm() * UnitOf(run, weight).to_SI);
 }
 
 PlottedSeries MakeSeries(const LinearRun& run, const LeftOver& left, const std::string& name,
                          const Eigen::VectorXd& weight) {
   const Eigen::VectorXd w = weight / weight.cwiseAbs().maxCoeff();
   const Eigen::VectorXd variance = Project(run, run.sigma.cwiseAbs2(), w.cwiseAbs2());
-  const double scale = w.cwiseAbs2().squaredNorm() / std::pow(w.squaredNorm(), 2) / run.to_SI;
-  return {name, Project(run, left.before, w), Project(run, left.after, w), (variance * scale).cwiseSqrt(), {}};
+  const ChannelUnit unit = UnitOf(run, w);
+  const double scale = w.cwiseAbs2().squaredNorm() / std::pow(w.squaredNorm(), 2) / unit.to_SI;
+  return {
+      name, Project(run, left.before, w), Project(run, left.after, w), (variance * scale).cwiseSqrt(), unit.name,
+      {}};
 }
 
 std::vector<PlottedSeries> AllSeries(const LinearRun& run, const LeftOver& left) {
@@ -180,6 +191,7 @@ json PlotsJson(const DiagnosisRun& run) {
   const LeftOver left = FitAll(run.run, run.noise, run.accepted);
   json plots = {{"unit", run.run.unit}, {"against", json::object()}, {"maps", json::object()}};
   for (const PlottedSeries& series : AllSeries(run.run, left)) {
+    if (run.run.IsMixed()) plots["units"][series.name] = series.unit;
     for (const auto& [name, variable] : Variables(run.run.schedule))
       AddCurve(name, variable, series, plots["against"]);
     AddCurve("spot_um", series.spot_um, series, plots["against"]);

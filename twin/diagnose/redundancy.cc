@@ -20,6 +20,13 @@ std::string Count(int count, const char* one, const char* many) {
 
 }  // namespace
 
+void RefuseTooFew(std::size_t used, std::size_t all) {
+  constexpr std::size_t kFewest = 12;
+  if (used < kFewest)
+    throw InputError("readings", fmt::format("{} of {} have a value", used, all),
+                     fmt::format("at least {}", kFewest));
+}
+
 DesignCount CountDesign(const LinearRun& run, const Eigen::VectorXd& redundancy) {
   Require(redundancy.size() == run.Rows(), "there is a redundancy for every row");
   DesignCount design;

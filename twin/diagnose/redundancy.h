@@ -6,6 +6,10 @@
 
 namespace twinbench::diagnose {
 
+/// @param used  Of `all` readings those that have a value.
+/// @throws InputError if they are fewer than twelve.
+void RefuseTooFew(std::size_t used, std::size_t all);
+
 /// What a design leaves over for a diagnosis.
 struct DesignCount {
   int setups = 0;

@@ -107,6 +107,11 @@ std::string GainInWords(const Gain& gain, const LinearRun& run) {
     share = fmt::format(": {} (95 % interval {} to {}) of what can be removed", Percent(gain.fraction_removed),
                         Percent(gain.interval95[0]), Percent(gain.interval95[1]));
   }
+  if (run.IsMixed())
+    return fmt::format(
+        "On passes that the model was not fitted to, its error falls from {:.3g} to {:.3g} times what noise alone "
+        "leaves{}. ",
+        gain.before_m / gain.noise_floor_m, gain.after_m / gain.noise_floor_m, share);
   return fmt::format(
       "On passes that the model was not fitted to, its error falls from {} to {} {}, where noise alone leaves {} "
       "{}{}. ",

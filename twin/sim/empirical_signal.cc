@@ -5,8 +5,9 @@ namespace twinbench::sim {
 EmpiricalSignal::EmpiricalSignal(const std::vector<EmpiricalSettings>& empiricals, const std::string& channel) {
   for (const EmpiricalSettings& signal : empiricals) {
     if (signal.channel != channel) continue;
-    const std::vector<double>& value = signal.value_rad.empty() ? signal.value_m : signal.value_rad;
-    for (std::size_t i = 0; i < signal.reading.size(); ++i) by_reading_[signal.reading[i]] += value[i];
+    for (const std::vector<double>& values : {signal.value_m, signal.value_rad, signal.value}) {
+      for (std::size_t i = 0; i < values.size(); ++i) by_reading_[signal.reading[i]] += values[i];
+    }
   }
 }
 

@@ -12,7 +12,7 @@ namespace twinbench::sim {
 class EmpiricalSignal {
  public:
   EmpiricalSignal(const std::vector<EmpiricalSettings>& empiricals, const std::string& channel);
-  double At(int reading) const;  // SI: rad or m, as the channel reads
+  double At(int reading) const;  // SI: rad, m or what the channel reads
 
  private:
   std::map<int, double> by_reading_;

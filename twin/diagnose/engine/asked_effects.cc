@@ -13,11 +13,17 @@ namespace {
 
 using Values = std::map<std::string, double>;
 
+/// What all effects are compared with: asked once.
+struct Baseline {
+  BelievedRecord believed;
+  Eigen::VectorXd shown;  // by row
+};
+
 /// One effect at one place, and how the record answers to it.
 class AskedEffect {
  public:
-  AskedEffect(const BelievedRecord& believed, const EffectEntry& entry, const std::string& place)
-      : believed_(std::make_shared<const BelievedRecord>(believed)), without_(believed.Shown()) {
+  AskedEffect(const std::shared_ptr<const Baseline>& baseline, const EffectEntry& entry, const std::string& place)
+      : baseline_(baseline), entry_(entry) {
     effect_.name = entry.name;
     effect_.where = place;
     for (const EffectParameter& p : entry.parameters) {
@@ -34,12 +40,12 @@ class AskedEffect {
   Eigen::VectorXd More(const Values& values) const {
     EffectSettings effect = effect_;
     for (const auto& [name, value] : values) effect.parameters[name] = value;
-    return believed_->ShownWith(effect) - without_;
+    return baseline_->believed.ShownWith(effect) - baseline_->shown;
   }
 
   /// d rows / d size about no effect: rows x sizes.
   Eigen::MatrixXd Columns(const Eigen::VectorXd& shape) const {
-    Eigen::MatrixXd columns(without_.size(), std::ssize(sizes_));
+    Eigen::MatrixXd columns(baseline_->shown.size(), std::ssize(sizes_));
     for (std::size_t j = 0; j < sizes_.size(); ++j) {
       Values values;
       for (const EffectParameter& p : sizes_) values[p.name] = 0.0;
@@ -48,20 +54,14 @@ class AskedEffect {
       const double above = tuning::kAskedStep * Typical(sizes_[j]), below = sizes_[j].lower_SI < 0.0 ? -above : 0.0;
       values[sizes_[j].name] = above;
       Eigen::VectorXd column = More(values);
-      if (below < 0.0) {
-        values[sizes_[j].name] = below;
-        column -= More(values);
-      }
+      values[sizes_[j].name] = below;
+      column -= More(values);
       columns.col(static_cast<Eigen::Index>(j)) = column / (above - below);
     }
     return columns;
   }
 
-  /// The plausible value of a parameter, or a tenth of its bounds where that is zero.
-  static double Typical(const EffectParameter& p) {
-    return p.default_SI != 0.0 ? std::abs(p.default_SI)
-                               : 0.1 * std::max(std::abs(p.lower_SI), std::abs(p.upper_SI));
-  }
+  double Typical(const EffectParameter& p) const { return entry_.Plausible(p); }
 
  private:
   void SortParameters() {
@@ -70,27 +70,29 @@ class AskedEffect {
       (IsSize(parameters_[k]) ? sizes_ : shapes_).push_back(parameters_[k]);
   }
 
-  /// Whether the answer is linear in it alone and adds to that of the sizes so far.
+  /// Whether the answer is linear in it alone and adds to that of the sizes so far. What an effect shows at sizes
+  /// of zero (the height that a tilt needs) is no part of either.
   bool IsSize(const EffectParameter& p) const {
     constexpr double kTolerance = 1e-3;
     if (p.lower_SI > 0.0 || p.upper_SI < 0.0) return false;
-    Values alone, together, sizes;
+    Values none = {{p.name, 0.0}}, sizes = none;
     for (const EffectParameter& size : sizes_) {
-      alone[size.name] = 0.0;
-      together[size.name] = sizes[size.name] = Typical(size);
+      none[size.name] = 0.0;
+      sizes[size.name] = tuning::kAskedStep * Typical(size);
     }
-    alone[p.name] = together[p.name] = Typical(p);
-    sizes[p.name] = 0.0;
-    const Eigen::VectorXd own = More(alone);
+    Values alone = none, half = none, together = sizes;
+    alone[p.name] = together[p.name] = tuning::kAskedStep * Typical(p);
+    half[p.name] = 0.5 * tuning::kAskedStep * Typical(p);
+    const Eigen::VectorXd without = More(none), own = More(alone) - without;
     if (own.isZero()) return false;
-    alone[p.name] *= 0.5;
     const double scale = kTolerance * own.norm();
-    return (2.0 * More(alone) - own).norm() < scale && (More(together) - More(sizes) - own).norm() < scale;
+    return (2.0 * (More(half) - without) - own).norm() < scale &&
+           (More(together) - More(sizes) - own).norm() < scale;
   }
 
-  std::shared_ptr<const BelievedRecord> believed_;
+  std::shared_ptr<const Baseline> baseline_;
+  EffectEntry entry_;
   EffectSettings effect_;
-  Eigen::VectorXd without_;
   std::vector<EffectParameter> parameters_, sizes_, shapes_;
 };
 
@@ -103,9 +105,8 @@ std::vector<double> Thinned(const std::vector<double>& values, std::size_t most)
 }
 
 /// `count` values about the plausible one: in equal ratios where the sign is fixed, else in equal steps.
-std::vector<double> GridOf(const EffectParameter& p, const std::vector<double>& onsets, int count) {
+std::vector<double> GridOf(const EffectParameter& p, double typical, const std::vector<double>& onsets, int count) {
   if (p.name == "at_reading" && !onsets.empty()) return Thinned(onsets, tuning::kAskedOnsets);
-  const double typical = AskedEffect::Typical(p);
   if (p.lower_SI >= 0.0)
     return Ratios(std::max(p.lower_SI, typical / tuning::kAskedRatio),
                   std::min(p.upper_SI, typical * tuning::kAskedRatio), count);
@@ -122,7 +123,7 @@ std::vector<Shape> ShapesOf(const Catalogue& catalogue, const AskedEffect& asked
   for (const EffectParameter& p : asked.Shapes()) {
     std::vector<std::vector<double>> longer;
     for (const std::vector<double>& before : combined) {
-      for (const double value : GridOf(p, onsets, count)) {
+      for (const double value : GridOf(p, asked.Typical(p), onsets, count)) {
         longer.push_back(before);
         longer.back().push_back(value);
       }
@@ -147,8 +148,7 @@ std::vector<std::string> NamesOf(const std::vector<EffectParameter>& parameters)
 }  // namespace
 
 Eigen::VectorXd BelievedRecord::ShownUnder(const Scenario& believed) const {
-  const Eigen::MatrixXd shown = Followed(follow, believed, record, used).Predict(free);
-  return shown.transpose().reshaped();
+  return ByRow(Followed(follow, believed, record, used).Predict(free));
 }
 
 Eigen::VectorXd BelievedRecord::ShownWith(const EffectSettings& effect) const {
@@ -159,10 +159,11 @@ Eigen::VectorXd BelievedRecord::ShownWith(const EffectSettings& effect) const {
 
 std::vector<Invisible> AddAskedEffects(const BelievedRecord& believed, const std::vector<EffectEntry>& entries,
                                        Candidates& named) {
+  const auto baseline = std::make_shared<const Baseline>(Baseline{believed, believed.Shown()});
   std::vector<Invisible> invisible;
   for (const EffectEntry& entry : entries) {
     for (const std::string& place : entry.places.empty() ? std::vector<std::string>{""} : entry.places) {
-      const auto asked = std::make_shared<const AskedEffect>(believed, entry, place);
+      const auto asked = std::make_shared<const AskedEffect>(baseline, entry, place);
       const Showing showing{entry.name, place, {}};
       if (asked->Sizes().empty() || asked->More({}).isZero())
         invisible.push_back({entry.name, place, "nothing: this run shows nothing of it"});

@@ -34,17 +34,22 @@ double DeviationAt(const Eigen::MatrixXd& cov, Eigen::Index at) {
   return at < cov.cols() ? std::sqrt(cov(at, at)) : kNaN;
 }
 
-const EffectParameter& Catalogue::Entry(const std::string& effect, const std::string& parameter) const {
+const EffectEntry& Catalogue::EntryOf(const std::string& effect) const {
   const auto entry = std::ranges::find(*entries_, effect, &EffectEntry::name);
   Require(entry != entries_->end(), "a family names an effect that the catalogue has not");
-  const auto found = std::ranges::find(entry->parameters, parameter, &EffectParameter::name);
-  Require(found != entry->parameters.end(), "a family names a parameter that the catalogue has not");
+  return *entry;
+}
+
+const EffectParameter& Catalogue::Entry(const std::string& effect, const std::string& parameter) const {
+  const std::vector<EffectParameter>& parameters = EntryOf(effect).parameters;
+  const auto found = std::ranges::find(parameters, parameter, &EffectParameter::name);
+  Require(found != parameters.end(), "a family names a parameter that the catalogue has not");
   return *found;
 }
 
 Amplitude Catalogue::AmplitudeOf(const std::string& effect, const std::string& parameter) const {
   const EffectParameter& p = Entry(effect, parameter);
-  return {parameter, p.unit, p.to_SI, std::abs(p.default_SI), p.lower_SI, p.upper_SI};
+  return {parameter, p.unit, p.to_SI, EntryOf(effect).Plausible(p), p.lower_SI, p.upper_SI};
 }
 
 Shape Catalogue::ShapeOf(const std::string& effect, const std::string& parameter,

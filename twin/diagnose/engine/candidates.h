@@ -50,6 +50,8 @@ class Catalogue {
   ParameterEstimate Estimate(const std::string& effect, const std::string& parameter, double value, double u) const;
 
  private:
+  const EffectEntry& EntryOf(const std::string& effect) const;
+
   const std::vector<EffectEntry>* entries_;
 };
 

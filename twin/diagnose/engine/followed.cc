@@ -4,6 +4,10 @@
 
 namespace twinbench::diagnose {
 
+Eigen::VectorXd ByRow(const Eigen::MatrixXd& by_reading) {
+  return by_reading.transpose().reshaped();
+}
+
 Followed::Followed(const model::FollowMaker& maker, const Scenario& scenario, const std::vector<Reading>& record,
                    const std::vector<Reading>& used)
     : follow_(maker(scenario, record)), readings_(std::ssize(record)) {
@@ -27,7 +31,7 @@ Eigen::MatrixXd Followed::Predict(const std::vector<model::Disturbance>& at) con
 }
 
 Eigen::MatrixXd Followed::Slope(const std::string& point, const std::vector<model::Disturbance>& at) const {
-  return model::Slope(*follow_, model::PointNamed(*follow_, point), OfRecord(at))(rows_, Eigen::all);
+  return model::Slope(*follow_, Point(point), OfRecord(at))(rows_, Eigen::all);
 }
 
 }  // namespace twinbench::diagnose

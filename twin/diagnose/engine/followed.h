@@ -8,6 +8,9 @@
 
 namespace twinbench::diagnose {
 
+/// Readings x channels by rows: reading i, channel c at i * channels + c.
+Eigen::VectorXd ByRow(const Eigen::MatrixXd& by_reading);
+
 /// The twin on the course of a whole record, asked about the readings that a diagnosis uses: the others have moved
 /// the bench, too.
 class Followed {
@@ -20,6 +23,8 @@ class Followed {
   /// Used readings x channels.
   /// @param at  One value a used reading.
   Eigen::MatrixXd Predict(const std::vector<model::Disturbance>& at) const;
+  /// @throws std::logic_error if there is no point of that name.
+  const model::Point& Point(const std::string& name) const { return model::PointNamed(*follow_, name); }
   /// d reading / d point there.
   Eigen::MatrixXd Slope(const std::string& point, const std::vector<model::Disturbance>& at) const;
 

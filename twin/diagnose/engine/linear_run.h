@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/core/errors.h"
 #include "twin/model/course.h"
 
 /// A run as the engine sees it: no bench, only readings x channels, what the model predicted, and which directions
@@ -31,6 +32,13 @@ struct Nuisance {
   Eigen::VectorXd prior_precision;                        // 1 / sd^2, one an unknown, all positive
   int blocks = 0;
   int block_size = 0;
+  Eigen::VectorXd at = {};  // where the jacobian was taken, from the middle of the priors; empty: there
+};
+
+/// What values of a channel are told in.
+struct ChannelUnit {
+  std::string name;    // "V"
+  double to_SI = 1.0;  // factor from there to SI
 };
 
 /// Row of reading i (of the schedule) and channel c: i * channels + c.
@@ -40,16 +48,25 @@ struct LinearRun {
   std::vector<std::string> channels;  // "psd_a_x", ...; "angle" on an angle bench
   std::string unit;                   // of values in reports: "um", "arcsec", "deg"
   double to_SI = 1.0;                 // factor from `unit` to SI
+  std::vector<ChannelUnit> units;     // of each channel where they are unlike; empty: all are told in `unit`
+  double outlier_per_noise = kNaN;    // SI of the catalogue's size of outliers; NaN: it is that of a reading
   Eigen::VectorXd observed;           // SI, by row
-  Eigen::VectorXd residual;           // observed - best prediction without further effects, SI
-  Eigen::VectorXd sigma;              // stated standard uncertainty of each row, SI
-  bool sigma_stated = true;           // false: sigma is an estimate from the data itself
-  bool noise_free = false;            // a simulation without noise: its residuals say nothing about sigma
+  Eigen::VectorXd residual;  // observed - prediction without further effects, unknowns as their priors say, SI
+  Eigen::VectorXd sigma;     // stated standard uncertainty of each row, SI
+  bool sigma_stated = true;  // false: sigma is an estimate from the data itself
+  bool noise_free = false;   // a simulation without noise: its residuals say nothing about sigma
   Nuisance nuisance;
   std::vector<Pattern> patterns;
 
   /// Best prediction, SI. Regress on this, never on `observed`: that has the residual in it.
-  Eigen::VectorXd Predicted() const { return observed - residual; }
+  Eigen::VectorXd Predicted() const {
+    if (nuisance.at.size() == 0) return observed - residual;
+    return observed - residual + nuisance.jacobian * nuisance.at;
+  }
+  bool IsMixed() const { return !units.empty(); }
+  ChannelUnit UnitOf(int channel) const {
+    return IsMixed() ? units[static_cast<std::size_t>(channel)] : ChannelUnit{unit, to_SI};
+  }
   int Rows() const { return static_cast<int>(residual.size()); }
   int Channels() const { return static_cast<int>(channels.size()); }
   int ReadingOf(int row) const { return row / Channels(); }

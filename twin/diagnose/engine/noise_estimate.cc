@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kFewestDifferences = 8;  // differences; fewer say nothing
 
 /// A standard deviation and the number of differences that it was taken from.
-struct Spread {
+struct Scatter {
   double sd = std::numeric_limits<double>::infinity();
   double count = 0.0;
 
@@ -42,7 +42,7 @@ double MedianOfAbsolutes(std::vector<double> values) {
 /// Begins with the median of absolute values, which outliers hardly move, and goes on to the rms of what lies
 /// within three deviations, which uses nearly all that the values can say. The plain rms where the median is zero
 /// because the readings have coarse steps.
-Spread SpreadOf(const std::vector<double>& values) {
+Scatter SpreadOf(const std::vector<double>& values) {
   if (values.size() < kFewestDifferences) return {};
   constexpr double kNormal = 1.4826;    // deviation of a normal distribution / its median of absolute values
   constexpr double kWithin3 = 0.98658;  // deviation of a normal distribution within three deviations
@@ -56,20 +56,20 @@ Spread SpreadOf(const std::vector<double>& values) {
 }
 
 /// Both together where they agree within three standard uncertainties, the smaller one where they do not.
-double SmallerOrMean(const Spread& a, const Spread& b) {
+double SmallerOrMean(const Scatter& a, const Scatter& b) {
   if (a.count == 0.0 || b.count == 0.0) return std::min(a.sd, b.sd);
   const double u = std::hypot(a.RelativeUncertainty(), b.RelativeUncertainty());
   if (std::abs(std::log(a.sd / b.sd)) > 3.0 * u) return std::min(a.sd, b.sd);
   return std::sqrt((a.count * a.sd * a.sd + b.count * b.sd * b.sd) / (a.count + b.count));
 }
 
-Spread FromNeighbours(const Schedule& s, const Eigen::VectorXd& y) {
+Scatter FromNeighbours(const Schedule& s, const Eigen::VectorXd& y) {
   std::vector<double> second;
   for (int i = 2; i < s.Readings(); ++i) {
     const bool together = s.pass[i] == s.pass[i - 2] && s.setup[i] == s.setup[i - 2];
     if (together) second.push_back(y[i] - 2.0 * y[i - 1] + y[i - 2]);
   }
-  const Spread spread = SpreadOf(second);
+  const Scatter spread = SpreadOf(second);
   return {spread.sd / std::sqrt(6.0), spread.count};
 }
 
@@ -80,7 +80,7 @@ Stop StopOf(const Schedule& s, int i) {
   return {s.setup[i], s.direction[i], std::llround(s.reference_rad[i] / units::urad)};
 }
 
-Spread FromRepeats(const Schedule& s, const Eigen::VectorXd& y) {
+Scatter FromRepeats(const Schedule& s, const Eigen::VectorXd& y) {
   std::map<Stop, int> seen;
   std::vector<int> first(s.Readings(), -1);  // of the pass before that took the same stop
   for (int i = 0; i < s.Readings(); ++i) {
@@ -93,7 +93,7 @@ Spread FromRepeats(const Schedule& s, const Eigen::VectorXd& y) {
     if (a < 0 || b < 0 || a == b || s.pass[i] != s.pass[i - 1]) continue;
     differences.push_back(y[i] - y[b] - (y[i - 1] - y[a]));
   }
-  const Spread spread = SpreadOf(differences);
+  const Scatter spread = SpreadOf(differences);
   return {spread.sd / 2.0, spread.count};
 }
 

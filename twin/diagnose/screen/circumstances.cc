@@ -119,8 +119,9 @@ Eigen::VectorXd Predicted(const LinearRun& run, int channel) {
   return run.Predicted()(RowsOf(run, channel));
 }
 
-std::string Amount(const LinearRun& run, double value_SI) {
-  return fmt::format("{:.3g} {}", value_SI / run.to_SI, run.unit);
+std::string Amount(const LinearRun& run, int channel, double value_SI) {
+  const ChannelUnit unit = run.UnitOf(channel);
+  return fmt::format("{:.3g} {}", value_SI / unit.to_SI, unit.name);
 }
 
 double AsAngle(const LinearRun& run, int channel, double size_SI) {
@@ -133,6 +134,7 @@ double AsAngle(const LinearRun& run, int channel, double size_SI) {
 }
 
 void SetEffect(const LinearRun& run, int channel, double size_SI, ScreenTest& test) {
+  if (run.IsMixed()) return;  // neither a length nor an angle
   test.effect_m = ReadsAngles(run) ? kNaN : size_SI;
   test.effect_rad = AsAngle(run, channel, size_SI);
 }

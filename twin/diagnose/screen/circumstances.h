@@ -78,8 +78,8 @@ double TypicalSigma(const LinearRun& run, int channel);
 /// Deviation of what comes beside noise of this deviation and makes it `ratio` times as large, or as small.
 double Excess(double sigma, double ratio);
 
-/// "0.42 um": a value of the readings in the run's unit.
-std::string Amount(const LinearRun& run, double value_SI);
+/// "0.42 um": a value of a channel's readings in its unit.
+std::string Amount(const LinearRun& run, int channel, double value_SI);
 
 /// What a size on one channel amounts to as an angle: of the rotation that moves that channel most, or the size
 /// itself where readings are angles; NaN if there is neither.
@@ -88,7 +88,8 @@ double AsAngle(const LinearRun& run, int channel, double size_SI);
 /// The channel of which a unit of noise is most as an angle: for sizes that belong to no channel.
 int AnyChannel(const LinearRun& run);
 
-/// A size on one channel, as a length (NaN where readings are angles) and as an angle.
+/// A size on one channel, as a length (NaN where readings are angles) and as an angle; neither where they are
+/// neither.
 void SetEffect(const LinearRun& run, int channel, double size_SI, ScreenTest& test);
 
 /// The size of a body's motion by its pattern: as a length that of the channel that shows it most.

@@ -60,7 +60,9 @@ VarianceComponents ComponentsOn(const Sample& s, const std::vector<Sorting>& sor
 void AddLines(const LinearRun& run, const std::vector<Sorting>& sortings, int channel,
               const VarianceComponents& components, ScreenTest& test) {
   const std::string& on = run.channels[channel];
-  const auto rms = [&](double variance) { return Amount(run, TypicalSigma(run, channel) * std::sqrt(variance)); };
+  const auto rms = [&](double variance) {
+    return Amount(run, channel, TypicalSigma(run, channel) * std::sqrt(variance));
+  };
   for (Eigen::Index k = 0; k < components.variance.size(); ++k) {
     const double variance = components.variance[k], u = components.u_variance[k];
     test.tables.push_back(fmt::format(

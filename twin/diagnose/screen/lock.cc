@@ -89,7 +89,7 @@ void AddPhaseLines(const LinearRun& run, const Fit& fit, const std::vector<Round
       const double a = fit.amplitude[c * fit.width + 2 * r], b = fit.amplitude[c * fit.width + 2 * r + 1];
       test.tables.push_back(fmt::format("{}, set-up {} (offset {:.1f} deg): {}, phase {:.0f} deg", run.channels[c],
                                         rounds[r].setup, rounds[r].offset_rad / units::deg,
-                                        Amount(run, std::hypot(a, b)), std::atan2(b, a) / units::deg));
+                                        Amount(run, c, std::hypot(a, b)), std::atan2(b, a) / units::deg));
     }
   }
 }

@@ -91,7 +91,7 @@ std::string WorstCell(const Sample& s, const Spot& spot, const SpotMap& map, int
   Misfit(s, map, channel).col(0).maxCoeff(&cell);
   const auto centre = [&](int of, int k) {
     const Eigen::VectorXd u = Predicted(s.run, of);
-    return Amount(s.run, u.minCoeff() + (k + 0.5) / map.side * (u.maxCoeff() - u.minCoeff()));
+    return Amount(s.run, of, u.minCoeff() + (k + 0.5) / map.side * (u.maxCoeff() - u.minCoeff()));
   };
   return ItemOf("spot: map", centre(spot.x, cell % map.side), centre(spot.y, cell / map.side));
 }

@@ -65,18 +65,23 @@ std::vector<Product> ProductsOfPowers(const std::string& channel, double range,
   return products;
 }
 
+/// What counts as one of what a channel shows.
+double RangeOf(const Design& d, int channel) {
+  return std::max(d.RangeOf(channel), 2.0 * d.plausible * d.ScaleOf(channel));
+}
+
 /// A channel that shows a share of another's, or of its own, value.
 struct Leak {
   int on, of;
 };
 
 /// One column a leak, in shares of the range.
-std::vector<Product> ProductsOfLeaks(const Design& d, const std::vector<Leak>& leaks, double range) {
+std::vector<Product> ProductsOfLeaks(const Design& d, const std::vector<Leak>& leaks) {
   std::vector<Product> products;
   for (const auto& [on, of] : leaks) {
     const auto column = static_cast<int>(products.size());
     const auto name = [&d](int c) { return d.channels[static_cast<std::size_t>(c)]; };
-    products.push_back({At(name(on), SignalOf("share", name(of))), column, false, 1.0 / range});
+    products.push_back({At(name(on), SignalOf("share", name(of))), column, false, 1.0 / RangeOf(d, of)});
   }
   return products;
 }
@@ -85,16 +90,19 @@ void AddFringes(Collector& collect, int channel) {
   const Design& d = collect.design();
   const Eigen::VectorXd shown = d.shown.col(channel);
   const std::string name = d.channels[static_cast<std::size_t>(channel)];
-  const FringeGrid fringes(shown.maxCoeff() - shown.minCoeff(), tuning::kShortestFringe * d.plausible);
+  const FringeGrid fringes(shown.maxCoeff() - shown.minCoeff(),
+                           tuning::kShortestFringe * d.plausible * d.ScaleOf(channel));
+  const ChannelUnit unit =
+      d.units.empty() ? ChannelUnit{d.unit, d.to_SI} : d.units[static_cast<std::size_t>(channel)];
   collect.AddRows(
       d.shown_name + " fringes", name, fringes.size,
       [design = collect.shared(), channel, fringes](int g) {
         const Eigen::VectorXd turns = design->shown.col(channel) / fringes.Period(g);
         return OnChannel(*design, model::Wave(units::turn * turns), channel);
       },
-      [=, what = d.shown_name, unit = d.unit, to_SI = d.to_SI](int g) {
-        return fmt::format("periodic in the {0} of {1}, period {2:.1f} {3}, locked to {0}", what, name,
-                           fringes.Period(g) / to_SI, unit);
+      [=, what = d.shown_name](int g) {
+        return fmt::format("periodic in the {0} of {1}, period {2:.3g} {3}, locked to {0}", what, name,
+                           fringes.Period(g) / unit.to_SI, unit.name);
       });
   collect.Are([name, fringes](const Eigen::VectorXd&, int g) {
     return WaveOf(At(name, SignalOf("fringes", "", {{"period", fringes.Period(g)}})));
@@ -107,7 +115,7 @@ int Partner(const Design& d, int channel) {
   return other < std::ssize(d.channels) ? other : channel;
 }
 
-void AddOnChannel(Collector& collect, int channel, const Eigen::MatrixXd& share, double range) {
+void AddOnChannel(Collector& collect, int channel, const Eigen::MatrixXd& share) {
   const Design& d = collect.design();
   const std::string name = d.channels[static_cast<std::size_t>(channel)];
   const int partner = Partner(d, channel);
@@ -115,13 +123,14 @@ void AddOnChannel(Collector& collect, int channel, const Eigen::MatrixXd& share,
   collect.AddRows(d.shown_name, name,
                   OnChannel(d, Powers(share.col(channel), share.col(partner), exponents), channel),
                   fmt::format("smooth function of the {0} of {1}, locked to {0}", d.shown_name, name));
-  collect.Are(
-      [products = ProductsOfPowers(name, range, exponents)](const Eigen::VectorXd&, int) { return products; });
+  collect.Are([products = ProductsOfPowers(name, RangeOf(d, channel), exponents)](const Eigen::VectorXd&, int) {
+    return products;
+  });
   collect.AddRows("linear map", name, OnChannel(d, share, channel),
                   fmt::format("proportional to all {0}s, locked to {0} of {1}", d.shown_name, name));
   std::vector<Leak> leaks;
   for (int of = 0; of < std::ssize(d.channels); ++of) leaks.push_back({channel, of});
-  collect.Are([products = ProductsOfLeaks(d, leaks, range)](const Eigen::VectorXd&, int) { return products; });
+  collect.Are([products = ProductsOfLeaks(d, leaks)](const Eigen::VectorXd&, int) { return products; });
   AddFringes(collect, channel);
 }
 
@@ -144,7 +153,7 @@ std::vector<Group> GroupsOf(const Design& d) {
 }
 
 /// Wrong scales and turned axes of a detector; wrong scales of all channels at once.
-void AddLinearMap(Collector& collect, const Group& group, const Eigen::MatrixXd& share, double range) {
+void AddLinearMap(Collector& collect, const Group& group, const Eigen::MatrixXd& share) {
   const Design& d = collect.design();
   const bool axes_too = group.name != "all";
   Eigen::MatrixXd columns;
@@ -159,7 +168,7 @@ void AddLinearMap(Collector& collect, const Group& group, const Eigen::MatrixXd&
   collect.AddRows("linear map", group.name, columns,
                   fmt::format("scales{0} of {1}, proportional to the {2}s, locked to {2}",
                               axes_too ? " and axes" : "", group.name, d.shown_name));
-  collect.Are([products = ProductsOfLeaks(d, leaks, range)](const Eigen::VectorXd&, int) { return products; });
+  collect.Are([products = ProductsOfLeaks(d, leaks)](const Eigen::VectorXd&, int) { return products; });
 }
 
 /// Something that a gain may follow.
@@ -199,20 +208,20 @@ std::vector<Followed> WhatIsFollowed(const Design& d) {
 }
 
 /// Gains of channels, each with a column of its own or all with one.
-std::vector<Product> ProductsOfGains(const Design& d, const std::vector<int>& channels, bool each, double range,
+std::vector<Product> ProductsOfGains(const Design& d, const std::vector<int>& channels, bool each,
                                      const EffectSettings& factor) {
   std::vector<Product> products;
   for (const int c : channels) {
     const std::string& name = d.channels[static_cast<std::size_t>(c)];
     EffectSettings gain = At(name, SignalOf("share", name, factor.parameters));
     gain.times = factor.times;
-    products.push_back({gain, each ? static_cast<int>(products.size()) : 0, false, 1.0 / range});
+    products.push_back({gain, each ? static_cast<int>(products.size()) : 0, false, 1.0 / RangeOf(d, c)});
   }
   return products;
 }
 
 /// Gains of channels that follow something: one each, one of all that a detector has, or one of each together.
-void AddGains(Collector& collect, const Eigen::MatrixXd& share, double range) {
+void AddGains(Collector& collect, const Eigen::MatrixXd& share) {
   const Design& d = collect.design();
   std::vector<Group> groups;
   for (int c = 0; c < std::ssize(d.channels); ++c) groups.push_back({d.channels[static_cast<std::size_t>(c)], {c}});
@@ -229,8 +238,8 @@ void AddGains(Collector& collect, const Eigen::MatrixXd& share, double range) {
           "gain changes", group.name, columns,
           fmt::format("gain of {0} follows {1}, locked to {1} and {2}", group.name, followed.name, d.shown_name));
       if (followed.factor.times.empty()) continue;
-      collect.Are([products = ProductsOfGains(d, group.channels, each, range, followed.factor)](
-                      const Eigen::VectorXd&, int) { return products; });
+      collect.Are([products = ProductsOfGains(d, group.channels, each, followed.factor)](const Eigen::VectorXd&,
+                                                                                         int) { return products; });
     }
   }
 }
@@ -240,11 +249,11 @@ void AddGains(Collector& collect, const Eigen::MatrixXd& share, double range) {
 void AddByReading(Collector& collect) {
   const Design& d = collect.design();
   if (d.shown.size() == 0) return;
-  const double range = std::max(d.shown.cwiseAbs().maxCoeff(), 2.0 * d.plausible);
-  const Eigen::MatrixXd share = d.shown / range;
-  for (int c = 0; c < std::ssize(d.channels); ++c) AddOnChannel(collect, c, share, range);
-  for (const Group& group : GroupsOf(d)) AddLinearMap(collect, group, share, range);
-  AddGains(collect, share, range);
+  Eigen::MatrixXd share = d.shown;
+  for (int c = 0; c < std::ssize(d.channels); ++c) share.col(c) /= RangeOf(d, c);
+  for (int c = 0; c < std::ssize(d.channels); ++c) AddOnChannel(collect, c, share);
+  for (const Group& group : GroupsOf(d)) AddLinearMap(collect, group, share);
+  AddGains(collect, share);
 }
 
 }  // namespace twinbench::diagnose::unknown

@@ -16,6 +16,27 @@ Eigen::MatrixXd AsRows(const Design& design, const Eigen::MatrixXd& samples) {
   return design.rows ? design.rows(samples) : samples;
 }
 
+/// Of a pattern: where it shows most.
+int ShowsMostOn(const Eigen::MatrixXd& pattern, Eigen::Index column) {
+  int channel = 0;
+  pattern.col(column).cwiseAbs().maxCoeff(&channel);
+  return channel;
+}
+
+/// -1: it is no channel's name.
+int ChannelNamed(const Design& design, const std::string& name) {
+  const auto found = std::ranges::find(design.channels, name);
+  return found == design.channels.end() ? -1 : static_cast<int>(found - design.channels.begin());
+}
+
+/// Rows over the scale of their channels.
+Eigen::MatrixXd Scaled(const Design& design, Eigen::MatrixXd rows) {
+  const Eigen::Index channels = std::ssize(design.channels);
+  for (Eigen::Index c = 0; c < channels; ++c)
+    rows(Eigen::seq(c, Eigen::last, channels), Eigen::all) /= design.ScaleOf(c);
+  return rows;
+}
+
 /// Of the column that is seen best.
 double LargestRms(const Eigen::MatrixXd& columns) {
   const double rows = static_cast<double>(std::max<Eigen::Index>(1, columns.rows()));
@@ -23,6 +44,17 @@ double LargestRms(const Eigen::MatrixXd& columns) {
 }
 
 }  // namespace
+
+double Design::RangeOf(int channel) const {
+  if (shown.size() == 0) return 0.0;
+  if (units.empty()) return shown.cwiseAbs().maxCoeff();
+  double range = 0.0;
+  for (std::size_t c = 0; c < units.size(); ++c) {
+    if (units[c].name == units[static_cast<std::size_t>(channel)].name)
+      range = std::max(range, shown.col(static_cast<Eigen::Index>(c)).cwiseAbs().maxCoeff());
+  }
+  return range;
+}
 
 Eigen::MatrixXd OnChannel(const Design& design, const Eigen::MatrixXd& samples, int channel) {
   const Eigen::MatrixXd values = AsRows(design, samples);
@@ -32,15 +64,22 @@ Eigen::MatrixXd OnChannel(const Design& design, const Eigen::MatrixXd& samples, 
   return rows;
 }
 
-Family& Collector::New(const std::string& sort, const std::string& where, const std::string& on,
+Family& Collector::New(const std::string& sort, const std::string& where, const std::string& on, int channel,
                        const Words& words) {
   Family& family = families_.emplace_back();
   family.kind = Kind::kUnknown;
   family.effect = family.group = sort;
   family.where = where;
   family.prior_weight = design_->named.contains(sort) ? tuning::kSameShape : 1.0;
-  family.describe = [on, words, unit = design_->unit, to_SI = design_->to_SI](int g, const Eigen::VectorXd& x) {
-    return fmt::format("{}, on {}, amplitude {:.2g} {}", words(g), on, x.norm() / to_SI, unit);
+  const bool is_mixed = !design_->units.empty();
+  if (is_mixed && channel < 0) {
+    family.describe = [on, words](int g, const Eigen::VectorXd&) { return fmt::format("{}, on {}", words(g), on); };
+    return family;
+  }
+  const ChannelUnit unit =
+      is_mixed ? design_->units[static_cast<std::size_t>(channel)] : ChannelUnit{design_->unit, design_->to_SI};
+  family.describe = [on, words, unit](int g, const Eigen::VectorXd& x) {
+    return fmt::format("{}, on {}, amplitude {:.2g} {}", words(g), on, x.norm() / unit.to_SI, unit.name);
   };
   return family;
 }
@@ -61,12 +100,14 @@ void Collector::AddShared(const std::string& sort, const std::shared_ptr<const B
   const double rms = LargestRms(middle);
   if (!(rms > 0.0)) return;
   for (const Place& place : design_->places) {
-    Family& family = New(sort, place.name, place.words, words);
+    Family& family = New(sort, place.name, place.words, ShowsMostOn(place.pattern, 0), words);
     family.grid = base->grid;
     family.base = base;
     family.map = PatternMap(place.pattern, middle.cols());
-    family.amplitudes.assign(static_cast<std::size_t>(family.map.cols()),
-                             {"amplitude", design_->unit, design_->to_SI, design_->plausible / rms});
+    for (Eigen::Index k = 0; k < family.map.cols(); ++k) {
+      const double scale = design_->ScaleOf(ShowsMostOn(place.pattern, k / middle.cols()));
+      family.amplitudes.push_back({"amplitude", design_->unit, design_->to_SI, scale * design_->plausible / rms});
+    }
     if (!shape) continue;
     family.shapes = {*shape};
     family.at = [design = design_, at, map = family.map](const Eigen::VectorXd& value) -> Eigen::MatrixXd {
@@ -111,12 +152,14 @@ void Collector::AddRows(const std::string& sort, const std::string& where, int g
                         const Words& words) {
   last_ = families_.size();
   const Eigen::MatrixXd middle = rows(grid / 2);
-  const double channel_rms = LargestRms(middle) * std::sqrt(static_cast<double>(std::ssize(design_->channels)));
+  const double channel_rms =
+      LargestRms(Scaled(*design_, middle)) * std::sqrt(static_cast<double>(std::ssize(design_->channels)));
   if (!(channel_rms > 0.0)) return;
-  Family& family = New(sort, where, where == "all" ? "all channels" : where, words);
+  const int channel = ChannelNamed(*design_, where), first = std::max(0, channel);
+  Family& family = New(sort, where, where == "all" ? "all channels" : where, channel, words);
   family.grid = grid;
   family.columns = rows;
-  const double range = design_->shown.size() > 0 ? design_->shown.cwiseAbs().maxCoeff() : 0.0;
+  const double range = design_->RangeOf(first) / design_->ScaleOf(first);
   const double plausible = std::max(design_->plausible, design_->plausible_share * range);
   family.amplitudes.assign(static_cast<std::size_t>(middle.cols()),
                            {"amplitude", design_->unit, design_->to_SI, plausible / channel_rms});

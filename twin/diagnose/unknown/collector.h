@@ -52,7 +52,9 @@ class Collector {
 
  private:
   std::shared_ptr<const Base> BaseOf(int grid, const Series& series) const;
-  Family& New(const std::string& sort, const std::string& where, const std::string& on, const Words& words);
+  /// @param channel  Whose unit its size is told in; -1: of several.
+  Family& New(const std::string& sort, const std::string& where, const std::string& on, int channel,
+              const Words& words);
 
   std::shared_ptr<const Design> design_;
   std::vector<Family> families_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/engine/time_series.h"
 #include "twin/model/course.h"
 
@@ -50,10 +51,16 @@ struct Design {
   std::vector<std::vector<int>> detectors;  // channels that one detector has
   std::string unit;
   double to_SI = 1.0;
-  double plausible = 0.0;        // rms of a structure nobody thought of, SI
-  double plausible_share = 0.0;  // the same of what is shown
-  std::set<std::string> named;   // sorts that a cause of the catalogue has exactly
+  std::vector<ChannelUnit> units;  // of each channel where they are unlike; empty: all are told in `unit`
+  Eigen::VectorXd scale;           // where they are unlike: what is alike on all channels, SI; empty: one on each
+  double plausible = 0.0;          // rms of a structure nobody thought of, SI, or times `scale`
+  double plausible_share = 0.0;    // the same of what is shown
+  std::set<std::string> named;     // sorts that a cause of the catalogue has exactly
   ToRows rows;
+
+  double ScaleOf(Eigen::Index channel) const { return scale.size() > 0 ? scale[channel] : 1.0; }
+  /// The largest that is shown by any channel with the unit of this one.
+  double RangeOf(int channel) const;
 };
 
 /// One sort of shape after the other; families own what they need.

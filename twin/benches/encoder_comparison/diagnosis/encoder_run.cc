@@ -12,12 +12,12 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/noise_estimate.h"
+#include "twin/diagnose/redundancy.h"
 #include "twin/model/course.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
 
-constexpr int kFewest = 12;
 constexpr double kOffsetPrior_rad = 2.0 * units::kPi;  // free
 
 std::vector<Reading> Chosen(const std::vector<Reading>& readings, const std::vector<int>& used) {
@@ -79,9 +79,7 @@ void SetNoise(LinearRun& run, const DeviceSettings& device) {
 EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
                     const model::FollowMaker& follow) {
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
-  if (std::ssize(comparison.used) < kFewest)
-    throw InputError("readings", fmt::format("{} of {} have a value", comparison.used.size(), readings.size()),
-                     fmt::format("at least {}", kFewest));
+  RefuseTooFew(comparison.used.size(), readings.size());
   EncoderRun encoder;
   encoder.left_out = comparison.left_out;
   LinearRun& run = encoder.run;

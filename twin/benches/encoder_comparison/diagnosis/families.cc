@@ -8,12 +8,12 @@
 #include "twin/core/distributions.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/tuning.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
 
 constexpr double kPlausible_rad = 0.01 * units::deg;
-constexpr int kMostOrders = 120;
 
 bool Has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -37,8 +37,7 @@ int LargestOrder(const SignalContext& context) {
   const std::vector<double> spacings_rad = Spacings_rad(context);
   if (spacings_rad.empty()) return 0;
   const double finest_rad = *std::min_element(spacings_rad.begin(), spacings_rad.end());
-  // Two readings a period, and a little more: at exactly two the sine may vanish at every stop.
-  return std::min(kMostOrders, static_cast<int>(std::ceil(units::kPi / finest_rad - 1e-6)) - 1);
+  return model::HighestOrder(finest_rad);
 }
 
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded) {

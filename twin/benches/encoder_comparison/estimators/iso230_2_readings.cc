@@ -7,6 +7,7 @@
 
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
 #include "twin/benches/encoder_comparison/estimators/iso230_2.h"
+#include "twin/benches/encoder_comparison/estimators/mean.h"
 #include "twin/core/units.h"
 
 namespace twinbench::measure {
@@ -14,16 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-struct Mean {
-  double sum = 0.0;
-  int count = 0;
-
-  void Add(double value) {
-    sum += value;
-    ++count;
-  }
-  double Value() const { return sum / count; }
-};
+using separate::encoder::Mean;
 
 /// The readings at one position.
 struct Stop {

@@ -13,13 +13,13 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/followed.h"
+#include "twin/diagnose/redundancy.h"
 #include "twin/model/course.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::hob {
 namespace {
 
-constexpr int kFewest = 12;
 constexpr double kWatched = 0.9;  // of the samples; fewer are not worth a channel
 constexpr double kFree_rad = 2.0 * units::kPi;
 
@@ -28,9 +28,7 @@ std::vector<Reading> Usable(const std::vector<Reading>& readings) {
   std::ranges::copy_if(readings, std::back_inserter(used), [](const Reading& r) {
     return r.status == ReadingStatus::kOk && std::isfinite(r.measured_rad) && std::isfinite(r.reference_rad);
   });
-  if (std::ssize(used) < kFewest)
-    throw InputError("readings", fmt::format("{} of {} have a value", used.size(), readings.size()),
-                     fmt::format("at least {}", kFewest));
+  RefuseTooFew(used.size(), readings.size());
   for (const Reading& r : used) {
     if (!std::isfinite(r.head_rad))
       throw InputError("readings", fmt::format("reading {} has no head angle", r.reading),
@@ -257,8 +255,7 @@ double RowSpacing_rad(const SignalContext& c) {
 }
 
 int LargestOrder(const SignalContext& c) {
-  constexpr int kMostOrders = 120;
-  return std::min(kMostOrders, static_cast<int>(std::ceil(units::kPi / RowSpacing_rad(c) - 1e-6)) - 1);
+  return model::HighestOrder(RowSpacing_rad(c));
 }
 
 }  // namespace twinbench::diagnose::hob

@@ -1,0 +1,62 @@
+#include "twin/diagnose/diagnose.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/circular_motion/oracle.h"
+#include "twin/benches/circular_motion/bench.h"
+#include "twin/benches/circular_motion/twin/live.h"
+
+namespace twinbench::benches::circular {
+namespace {
+
+Scenario Believed(const std::vector<std::string>& settings = {}) {
+  return ParseScenario(
+      "bench = \"circular_motion\"\nseed = 7\n[environment]\nswing_mK = 700.0\nswing_period_s = 7000.0", "believed",
+      ".", settings);
+}
+
+std::vector<Reading> ReadingsOf(const Scenario& scenario) {
+  const sim::CircleRun run(scenario);
+  std::vector<Reading> readings;
+  for (int k = 0; k < run.Readings(); ++k) readings.push_back(run.Take(k));
+  return readings;
+}
+
+diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {
+  diagnose::DiagnoseOptions options;
+  options.null_runs = 200;  // enough for a threshold
+  return Diagnose(readings, believed, options).diagnosis;
+}
+
+std::string NameOf(const diagnose::Diagnosis& d) {
+  if (d.verdict == diagnose::Verdict::kNone) return "none";
+  return d.causes.empty() ? "unknown" : d.causes.front().effect + d.causes.front().where;
+}
+
+/// What a run with one effect of this size is diagnosed as.
+std::string NameOfHidden(const std::string& effect, const std::string& where, const std::string& parameter,
+                         double value_SI) {
+  Scenario with = Believed();
+  EffectSettings hidden{effect, where, {}, ""};
+  for (const EffectParameter& p : FindEffect(effect, with.bench)->parameters)
+    hidden.parameters[p.name] = p.default_SI;
+  hidden.parameters[parameter] = value_SI;
+  with.effects = {hidden};
+  return NameOf(DiagnosisOf(ReadingsOf(with), Believed()));
+}
+
+TEST(CircularDiagnosis, RaisesNoAlarmWithoutACause) {
+  EXPECT_EQ(NameOf(DiagnosisOf(ReadingsOf(Believed()), Believed())), "none");
+}
+
+TEST(CircularDiagnosis, NamesWhatTheTwinWasGiven) {
+  using units::um, units::arcsec;
+  EXPECT_EQ(NameOfHidden("squareness", "", "angle", 0.4 * arcsec), "squareness");
+  EXPECT_EQ(NameOfHidden("backlash", "x", "width", 0.3 * um), "backlashx");
+  EXPECT_EQ(NameOfHidden("servo_mismatch", "", "lag", 5e-5), "servo_mismatch");
+  EXPECT_EQ(NameOfHidden("ball_form", "", "cosine", 0.2 * um), "ball_form");
+}
+
+}  // namespace
+}  // namespace twinbench::benches::circular

@@ -1,0 +1,172 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/circular_motion/oracle.h"
+#include "twin/benches/circular_motion/analysis.h"
+#include "twin/benches/circular_motion/twin/live.h"
+
+namespace twinbench::benches::circular {
+namespace {
+
+using namespace separate::circular;
+using test::OraclePath;
+using units::mm, units::um;
+
+/// 36 stops of a perfect circle under a bar whose ball stands off its centre.
+std::vector<CirclePoint> OffCentre(const Eigen::Vector2d& offset_m) {
+  constexpr int kStops = 36;
+  std::vector<CirclePoint> points(kStops);
+  for (int k = 0; k < kStops; ++k) {
+    CirclePoint& p = points[static_cast<std::size_t>(k)];
+    p.radius_m = 156.278 * mm;
+    p.commanded_rad = k * units::turn / kStops;
+    const Eigen::Vector2d v_m = offset_m + p.Commanded_m();
+    p.radial_m = v_m.norm() - p.radius_m;
+    p.tangential_m = p.radius_m * std::remainder(std::atan2(v_m.y(), v_m.x()) - p.commanded_rad, units::turn);
+  }
+  return points;
+}
+
+TEST(PublishedCircle, FindsTheCentreAndLeavesItsTangentialPart) {
+  const std::vector<CirclePoint> points = OffCentre({20.0 * um, -12.0 * um});
+  const Eigen::Vector2d offset_m = PublishedOffset_m(points);
+  // By an independent implementation of the same equations; it agrees to the digits that it gave.
+  EXPECT_NEAR(offset_m.x() / um, 19.999999944316965, 1e-7);
+  EXPECT_NEAR(offset_m.y() / um, -11.999999966590826, 1e-7);
+  double largest_um = 0.0, radial_um = 0.0;
+  for (const CirclePoint& p : points) {
+    const PathPoint at{p.commanded_rad, PublishedDeviation_m(p, offset_m)};
+    largest_um = std::max(largest_um, at.d_m.norm() / um);
+    radial_um = std::max(radial_um, std::abs(at.Radial_m()) / um);
+  }
+  EXPECT_NEAR(largest_um, 23.32056635769292, 1e-4);
+  EXPECT_NEAR(radial_um, 0.003480009885231894, 1e-6);
+}
+
+TEST(RigorousCircle, LeavesNothingOfAnOffset) {
+  const CircleMounting mounting{{20.0 * um, -12.0 * um}};
+  for (const CirclePoint& p : OffCentre({20.0 * um, -12.0 * um}))
+    EXPECT_LT(Deviation_m(p, {}, mounting, {1.0, 1.0, 1.0, 0.0}).norm(), 1e-15);
+}
+
+/// The run of an independent implementation and what it was made with.
+struct OracleRun {
+  Scenario scenario;
+  std::vector<Reading> readings;
+  nlohmann::json truth;
+};
+
+OracleRun Oracle() {
+  test::QuietCircles quiet;  // the grid is calibrated: its mean scale is the only measure of length
+  quiet.Set("grid_scale_x_um_m", 2.0);
+  quiet.Set("grid_scale_y_um_m", -1.0);
+  OracleRun run{quiet.Make(), ReadReadingsCsv(OraclePath("circular_run.csv"), "circular_motion"), {}};
+  std::ifstream(OraclePath("circular_run_truth.json")) >> run.truth;
+  return run;
+}
+
+TEST(RigorousCircle, FindsWhatAnIndependentRunWasMadeWith) {
+  const OracleRun run = Oracle();
+  const CircleAnalysis a = Analyse(run.scenario, run.readings, Estimator::kRigorous);
+  const nlohmann::json& p = run.truth["parameters"];
+  std::map<std::string, ErrorValue> found;
+  for (const ErrorValue& e : ErrorsOf(a.fit)) found[e.key] = e;
+  // The readings are without noise: what is separable comes out far within its uncertainty (under stated noise).
+  for (const auto& [key, name] :
+       std::map<std::string, std::string>{{"machine.scale_x_um_m", "scale_x_um_m"},
+                                          {"machine.scale_y_um_m", "scale_y_um_m"},
+                                          {"machine.squareness_arcsec", "squareness_arcsec"},
+                                          {"machine.backlash_x_um", "backlash_x_um"},
+                                          {"machine.backlash_y_um", "backlash_y_um"},
+                                          {"machine.spike_x_um", "spike_x_um"},
+                                          {"machine.straightness_x_um", "straightness_x_um"},
+                                          {"machine.lag_x_s", "lag_x_s"},
+                                          {"machine.lag_y_s", "lag_y_s"},
+                                          {"machine.cyclic_x_um", "cyclic_x_um"},
+                                          {"bar.gain_error", "bar_gain"},
+                                          {"encoder.eccentricity_arcsec", "ecc_arcsec"},
+                                          {"encoder.ellipticity_arcsec", "ell_arcsec"},
+                                          {"bar.ball3_um", "ball3_um"}}) {
+    ASSERT_TRUE(found.contains(key)) << key;
+    EXPECT_TRUE(std::isfinite(found[key].u)) << key << " is not separable";
+    EXPECT_NEAR(found[key].value, p[name].get<double>(), 0.1 * found[key].u) << key;
+  }
+  EXPECT_LT(a.fit.rms_bar_m, 1e-9);
+  EXPECT_LT(a.fit.rms_grid_m, 1e-9);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(a.fit.mountings[k].offset_m[0] / um, p["offset_x_um"][k].get<double>(), 0.01);
+    EXPECT_NEAR(a.fit.mountings[k].offset_m[1] / um, p["offset_y_um"][k].get<double>(), 0.01);
+  }
+}
+
+TEST(RigorousCircle, StatesNoUncertaintyOfWhatOneBarCannotTellApart) {
+  OracleRun run = Oracle();
+  std::erase_if(run.readings, [](const Reading& r) { return r.setup != 0; });
+  const CircleAnalysis a = Analyse(run.scenario, run.readings, Estimator::kRigorous);
+  for (const ErrorValue& e : ErrorsOf(a.fit)) {
+    // Lag of both axes and latency of the encoder turn the path alike.
+    if (e.key == "encoder.latency_s") {
+      EXPECT_TRUE(std::isnan(e.u));
+    }
+    if (e.key == "machine.backlash_x_um") {
+      EXPECT_TRUE(std::isfinite(e.u));
+    }
+  }
+  EXPECT_THAT(a.fit.not_separable, testing::Contains(testing::HasSubstr("encoder.latency_s")));
+}
+
+/// Where the machine of the run was, without noise and instruments, on circles of 720 points.
+std::vector<CirclePath> ActualPaths(const nlohmann::json& parameters) {
+  test::QuietCircles quiet;
+  for (const auto& [name, value] : parameters.items()) {
+    if (value.is_number() && !name.starts_with("grid")) quiet.Set(name, value.get<double>());
+  }
+  Scenario scenario = quiet.Make();
+  scenario.noise_free = true;
+  CircularProcedureSettings& procedure = CircularOf(scenario).procedure;
+  procedure.setups = {{"bar", 110.230 * mm}, {"bar", 156.278 * mm}};
+  procedure.feeds_m_s = {40.0 * mm / 60.0};
+  procedure.points = 720;
+  procedure.stops = 0;
+  std::vector<CirclePath> paths;
+  const nlohmann::json truth = sim::CircleRun(scenario).Truth();
+  for (const nlohmann::json& pass : truth["path"]) {
+    const int setup = pass["setup"], number = pass["pass"];
+    CirclePath& path = paths.emplace_back(
+        CirclePath{setup, number, number == 0 ? 1 : -1, true, setup == 0 ? 110.230 * mm : 156.278 * mm, 1.0, {}});
+    for (std::size_t i = 0; i < pass["dx_um"].size(); ++i) {
+      PathPoint& point = path.points.emplace_back();
+      point.commanded_rad = pass["commanded_deg"][i].get<double>() * units::deg;
+      point.d_m = um * Eigen::Vector2d(pass["dx_um"][i].get<double>(), pass["dy_um"][i].get<double>());
+    }
+  }
+  return paths;
+}
+
+TEST(CircularDeviations, AgreeWithAnIndependentImplementation) {
+  const OracleRun run = Oracle();
+  const std::vector<Iso230_4> found = CircularDeviations(ActualPaths(run.truth["parameters"]), {});
+  ASSERT_EQ(found.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const nlohmann::json& expected = run.truth["iso230_4_um"][k == 0 ? "110.230" : "156.278"];
+    const Iso230_4& d = found[k];
+    for (const auto& [name, value] : std::map<std::string, Iso230_4Value>{{"G_ccw", d.G_ccw},
+                                                                          {"G_cw", d.G_cw},
+                                                                          {"G_b", d.G_b},
+                                                                          {"Fmax_ccw", d.Fmax_ccw},
+                                                                          {"Fmin_ccw", d.Fmin_ccw},
+                                                                          {"Fmax_cw", d.Fmax_cw},
+                                                                          {"Fmin_cw", d.Fmin_cw},
+                                                                          {"Fmax_b", d.Fmax_b},
+                                                                          {"Fmin_b", d.Fmin_b},
+                                                                          {"D", d.D},
+                                                                          {"H", d.H}})
+      // The least-squares centre of first order: its distance squared over the radius.
+      EXPECT_NEAR(value.value_m / um, expected[name].get<double>(), 1e-3) << name << " at radius " << k;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::benches::circular

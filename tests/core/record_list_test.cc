@@ -1,0 +1,59 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/core/input_error.h"
+#include "twin/core/schema_table.h"
+#include "twin/core/toml_reader.h"
+
+namespace twinbench {
+namespace {
+
+/// One entry of the list.
+struct Place {
+  std::string what = "bar";
+  double at_m = 0.5;
+  int turns = 2;
+};
+
+void AddPlace(schema::Table& table, Place& place) {
+  table.Text("what", &place.what, {"bar", "grid"}, "");
+  table.Add("at", schema::kMm, schema::UpTo(1000), &place.at_m, "");
+  table.Add("turns", schema::kPure, {1, 9}, &place.turns, "");
+}
+
+std::vector<Place> ReadPlaces(const std::string& text) {
+  std::vector<Place> places = {{}};
+  schema::Keys keys;
+  schema::Table(keys, "run").Records("places", places, AddPlace, "");
+  ReadToml(text, "s.toml", keys);
+  return places;
+}
+
+std::string RecordError(const std::string& text) {
+  return MessageOf([&] { ReadPlaces(text); });
+}
+
+TEST(RecordList, IsReplacedAsAWholeAndWhatATableLeavesOutKeepsItsDefault) {
+  const std::vector<Place> places =
+      ReadPlaces("[run]\nplaces = [{ what = \"grid\", at_mm = 60 }, { turns = 3 }]\n");
+  ASSERT_EQ(places.size(), 2u);
+  EXPECT_EQ(places[0].what, "grid");
+  EXPECT_EQ(places[0].at_m, 0.060);
+  EXPECT_EQ(places[0].turns, 2);
+  EXPECT_EQ(places[1].what, "bar");
+  EXPECT_EQ(places[1].at_m, 0.5);
+  EXPECT_EQ(places[1].turns, 3);
+  EXPECT_EQ(ReadPlaces("").size(), 1u);
+}
+
+TEST(RecordList, SaysWhatIsWrongInsideATable) {
+  EXPECT_THAT(RecordError("[run]\nplaces = [{ at = 60 }]\n"), testing::HasSubstr("at_mm"));
+  EXPECT_THAT(RecordError("[run]\nplaces = [{ at_mm = 2000 }]\n"),
+              testing::HasSubstr("a number of mm from 0 to 1000"));
+  EXPECT_THAT(RecordError("[run]\nplaces = [{ what = \"ball\" }]\n"), testing::HasSubstr("\"bar\" or \"grid\""));
+  EXPECT_THAT(RecordError("[run]\nplaces = [7]\n"), testing::HasSubstr("a list of tables with what"));
+  EXPECT_THAT(RecordError("[run]\nplaces = []\n"), testing::HasSubstr("run.places is empty"));
+}
+
+}  // namespace
+}  // namespace twinbench

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/freeform_five_axis/bench.h"
+#include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/freeform_five_axis/procedure.h"
+#include "twin/benches/freeform_five_axis/settings.h"
+#include "twin/benches/freeform_five_axis/twin/twin.h"
+#include "twin/benches/names.h"
+#include "twin/core/csv.h"
+#include "twin/core/stream.h"
+
+/// Runs of the bench freeform_five_axis, live ones and those of an independent implementation.
+namespace twinbench::freeform_test {
+
+using namespace benches::freeform;
+
+inline Scenario FreeformScenario(const std::string& more = "") {
+  return ParseScenario("bench = \"freeform_five_axis\"\n" + more, "freeform.toml", ".");
+}
+
+inline std::string OraclePath(const std::string& name) {
+  return TWINBENCH_TEST_DATA "/oracle/freeform_" + name;
+}
+
+inline nlohmann::json OracleTruth() {
+  return nlohmann::json::parse(std::ifstream(OraclePath("truth.json"))).at("machine");
+}
+
+inline double UnitOfError(std::size_t error) {
+  return IsRotation(static_cast<int>(error)) ? units::arcsec : units::um;
+}
+
+inline sim::DrawnBench OracleBench() {
+  const nlohmann::json truth = OracleTruth();
+  sim::DrawnBench bench;
+  for (std::size_t axis = 0; axis < kMachineAxes; ++axis) {
+    for (std::size_t error = 0; error < kBodyErrors; ++error) {
+      for (std::size_t term = 0; term < kCubicTerms; ++term)
+        bench.machine.errors[axis][error][term] =
+            truth.at("poly").at(kAxisNames[axis]).at(error).at(term).get<double>() * UnitOfError(error);
+    }
+  }
+  for (std::size_t k = 0; k < kSquarenesses; ++k)
+    bench.machine.squareness_rad[k] =
+        truth.at("squareness_arcsec").at(kSquarenessNames[k]).get<double>() * units::arcsec;
+  for (const nlohmann::json& mounting : truth.at("mount_um_arcsec")) {
+    sim::BodyError& error = bench.mountings.emplace_back();
+    for (std::size_t k = 0; k < kBodyErrors; ++k) error[k] = mounting.at(k).get<double>() * UnitOfError(k);
+  }
+  return bench;
+}
+
+/// What the scenario's twin shows on the course of its own procedure.
+inline std::vector<Reading> RunOf(const Scenario& scenario, const sim::DrawnBench& drawn) {
+  sim::FreeformTwin twin(scenario, drawn);
+  std::vector<Reading> readings = procedure::FreeformSchedule(scenario);
+  const double run_s = ToSeconds(readings.back().time);
+  const FreeformSettings& own = FreeformOf(scenario);
+  Stream noise(scenario.seed, "test.noise");
+  for (Reading& r : readings) {
+    r.temperature_degC = 20.0 + 0.5 * std::sin(ToSeconds(r.time) / 700.0);
+    const sim::ProbeSignals shown = twin.Show(r, ToSeconds(r.time) / run_s);
+    const double share = scenario.noise_free ? 0.0 : 1.0;
+    kQpdX_V(r) = shown.qpd_x_V + share * own.qpd.noise_V * noise.Normal();
+    kQpdY_V(r) = shown.qpd_y_V + share * own.qpd.noise_V * noise.Normal();
+    kQpdSum_V(r) = shown.qpd_sum_V;
+    kCcd_px(r) = shown.ccd_px + share * own.ccd.noise_px * noise.Normal();
+  }
+  return readings;
+}
+
+inline std::vector<Reading> RunOf(const Scenario& scenario) {
+  return RunOf(scenario, sim::Draw(scenario));
+}
+
+}  // namespace twinbench::freeform_test

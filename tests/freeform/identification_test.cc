@@ -1,0 +1,115 @@
+#include "twin/benches/freeform_five_axis/estimators/identification.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/freeform/freeform_run.h"
+#include "twin/benches/freeform_five_axis/estimators/volumetric.h"
+
+namespace twinbench::freeform_test {
+namespace {
+
+using namespace benches::freeform::estimators;
+
+/// The oracle's machine as unknowns of a run of four set-ups.
+Eigen::VectorXd UnknownsOf(const sim::DrawnBench& bench) {
+  Eigen::VectorXd x(MountingAt(static_cast<int>(bench.mountings.size()), 0));
+  for (int axis = 0; axis < kMachineAxes; ++axis) {
+    for (int error = 0; error < kBodyErrors; ++error) {
+      for (int term = 0; term < kCubicTerms; ++term)
+        x[CubicAt(axis, error, term)] =
+            bench.machine.errors[static_cast<std::size_t>(axis)][static_cast<std::size_t>(error)]
+                                [static_cast<std::size_t>(term)];
+    }
+  }
+  for (int k = 0; k < kSquarenesses; ++k)
+    x[SquarenessAt(k)] = bench.machine.squareness_rad[static_cast<std::size_t>(k)];
+  for (std::size_t setup = 0; setup < bench.mountings.size(); ++setup) {
+    for (int k = 0; k < kBodyErrors; ++k)
+      x[MountingAt(static_cast<int>(setup), k)] = bench.mountings[setup][static_cast<std::size_t>(k)];
+  }
+  for (int k = 0; k < x.size(); ++k) x[k] /= UnitOf(k);
+  return x;
+}
+
+TEST(FreeformEstimator, PredictsWhatTheTwinShows) {
+  // Written down twice, with other steps: to the rounding of doubles.
+  const FreeformSettings settings;
+  const std::vector<Reading> readings = ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
+  const Eigen::VectorXd x = UnknownsOf(OracleBench());
+  sim::FreeformTwin twin(FreeformScenario(), OracleBench());
+  const std::vector<PoseRead> poses = PosesOf(readings, settings);
+  ASSERT_EQ(poses.size(), readings.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Vector3d predicted = Predicted(settings, poses[i], InputsAt(poses[i], x));
+    const sim::ProbeSignals shown = twin.Show(readings[i], 0.0);
+    EXPECT_NEAR(predicted[0], shown.qpd_x_V, 1e-10);
+    EXPECT_NEAR(predicted[1], shown.qpd_y_V, 1e-10);
+    EXPECT_NEAR(predicted[2], shown.ccd_px, 1e-8);
+  }
+}
+
+TEST(FreeformEstimator, Finds114Of151UnknownsOnTheStandardPath) {
+  const Scenario scenario = FreeformScenario();
+  const Identification found = Identify(FreeformOf(scenario), PosesOf(RunOf(scenario), FreeformOf(scenario)));
+  EXPECT_TRUE(found.converged);
+  EXPECT_EQ(found.unknowns.size(), 151);
+  EXPECT_EQ(found.rank, 114);
+  EXPECT_EQ(found.not_separable.size(), 37u);
+  // Noise alone is left: 10 mV and 0.05 px, each from some 800 readings, of which 114 / 3 unknowns take 2 %.
+  EXPECT_NEAR(found.residual_rms[0], 0.010, 0.0006);
+  EXPECT_NEAR(found.residual_rms[1], 0.010, 0.0006);
+  EXPECT_NEAR(found.residual_rms[2], 0.050, 0.004);
+}
+
+TEST(FreeformEstimator, LeavesNothingOfTheOraclesRunAndPredictsItsUnseenPoses) {
+  const FreeformSettings settings;
+  const std::vector<Reading> readings = ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
+  const Identification found = Identify(settings, PosesOf(readings, settings));
+  EXPECT_TRUE(found.converged);
+  const CsvTable table = ReadCsv(OraclePath("unseen.csv"));
+  Eigen::Matrix3Xd points(3, std::ssize(table.rows)), off_um = points;
+  const Eigen::VectorXd ideal = Eigen::VectorXd::Zero(found.unknowns.size());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    PoseRead pose;
+    for (std::size_t axis = 0; axis < kMachineAxes; ++axis) {
+      pose.at[axis] = CsvNumber(table, table.rows[i], axis, axis < 3 ? units::mm : units::deg);
+      pose.t[axis] = (pose.at[axis] - settings.machine.centre[axis]) / settings.machine.half[axis];
+    }
+    points.col(column) = estimators::Tip_m(settings, pose, InputsAt(pose, ideal)) / units::um;
+    off_um.col(column) =
+        estimators::Tip_m(settings, pose, InputsAt(pose, found.unknowns)) / units::um - points.col(column);
+    for (int k = 0; k < 3; ++k)
+      off_um(k, column) -= CsvNumber(table, table.rows[i], 5 + static_cast<std::size_t>(k), 1.0);
+  }
+  const Eigen::Matrix3Xd left_um = WithoutRigidMotion(points, off_um);
+  // Without noise what is left are the directions below 3e-4 of the largest, which the run hardly shows and unseen
+  // poses hardly need.
+  EXPECT_LT(left_um.colwise().norm().maxCoeff(), 0.5);
+  EXPECT_GT(WithoutRigidMotion(points, points * 1e-5).norm(), 0.0);  // a stretch is no rigid motion
+}
+
+TEST(FreeformEstimator, StatesUncertaintiesThatMatchItsScatter) {
+  double sum = 0.0;
+  int count = 0;
+  constexpr int kRuns = 6;
+  for (int run = 0; run < kRuns; ++run) {
+    const Scenario scenario = FreeformScenario("seed = " + std::to_string(run + 1) + "\n");
+    const sim::DrawnBench drawn = sim::Draw(scenario);
+    const Identification found =
+        Identify(FreeformOf(scenario), PosesOf(RunOf(scenario, drawn), FreeformOf(scenario)));
+    EXPECT_TRUE(found.converged) << run;
+    const Eigen::VectorXd truth = UnknownsOf(drawn);
+    for (int k = 0; k < kOfMachine; ++k) {
+      if (!found.identified[static_cast<std::size_t>(k)]) continue;
+      sum += std::pow((found.unknowns[k] - truth[k]) / found.u[k], 2);
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 30 * kRuns);
+  // Mean square of some hundreds of standard deviations, correlated in a run: 1 within 20 %.
+  EXPECT_NEAR(sum / count, 1.0, 0.2);
+}
+
+}  // namespace
+}  // namespace twinbench::freeform_test

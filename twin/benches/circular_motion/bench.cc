@@ -1,0 +1,31 @@
+#include "twin/benches/circular_motion/bench.h"
+
+#include "twin/benches/circular_motion/procedure.h"
+#include "twin/benches/circular_motion/twin/factory.h"
+
+namespace twinbench::benches::circular {
+namespace {
+
+int PlannedReadings(const Scenario& s) {
+  return static_cast<int>(procedure::CircleSchedule(CircularOf(s).procedure).size());
+}
+
+}  // namespace
+
+const Bench& Whole() {
+  static const Bench bench = [] {
+    Bench b;
+    b.format = &Format();
+    b.make_twin = MakeTwin;
+    b.follow = FollowRecord;
+    b.planned_readings = PlannedReadings;
+    b.evaluate = Evaluate;
+    b.score = ScoreRun;
+    b.diagnose = Diagnose;
+    b.linear_run = Linear;
+    return b;
+  }();
+  return bench;
+}
+
+}  // namespace twinbench::benches::circular

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "twin/benches/circular_motion/format.h"
+#include "twin/core/bench.h"
+#include "twin/core/scenario.h"
+#include "twin/diagnose/diagnose.h"
+#include "twin/report/evaluation.h"
+
+/// What can be done with the bench; the fields of Bench say what each is.
+namespace twinbench::benches::circular {
+
+const Bench& Whole();  // constant
+
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator);
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, Estimator estimator);
+diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
+                                const diagnose::DiagnoseOptions& options);
+diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
+
+}  // namespace twinbench::benches::circular

@@ -1,0 +1,77 @@
+#include "twin/benches/circular_motion/columns.h"
+
+#include <cmath>
+
+#include "twin/benches/circular_motion/format.h"
+#include "twin/core/units.h"
+
+namespace twinbench::benches::circular {
+namespace {
+
+constexpr double kMillimetreAMinute = units::mm / 60.0;
+
+ReadingColumn Required(const Quantity& quantity, double to_SI) {
+  return NumberColumn(quantity.column, to_SI, ColumnRole::kRequired, quantity);
+}
+
+/// A set-up has only some of these.
+ReadingColumn Shown(const Quantity& quantity, double to_SI) {
+  return NumberColumn(quantity.column, to_SI, ColumnRole::kShownToo, quantity);
+}
+
+bool SamePass(const Reading& a, const Reading& b) {
+  return a.setup == b.setup && a.pass == b.pass;
+}
+
+}  // namespace
+
+std::vector<ReadingColumn> Columns() {
+  using units::mm, units::um, units::deg;
+  const std::vector<ReadingColumn> own = {
+      Required(kCommandedX_m, mm), Required(kCommandedY_m, mm), Required(kFeed_m_s, kMillimetreAMinute),
+      Shown(kBar_m, um),           Shown(kEncoder_rad, deg),    Shown(kGridX_m, mm),
+      Shown(kGridY_m, mm)};
+  const ReadingColumn temperature = NumberColumn(
+      "temperature_degC", 1.0, ColumnRole::kOptional, [](auto& r) -> auto& { return r.temperature_degC; });
+  return Joined({CommonColumns(false), own, {temperature}});
+}
+
+std::vector<Reading> WithAngles(std::vector<Reading> readings) {
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    Reading& r = readings[i];
+    r.target_rad = std::atan2(kCommandedY_m(r), kCommandedX_m(r));
+    r.velocity_rad_s = r.direction * kFeed_m_s(r) / Radius_m(r);
+    if (i == 0 || !SamePass(readings[i - 1], r)) continue;
+    const double before_rad = readings[i - 1].target_rad;
+    r.target_rad = before_rad + std::remainder(r.target_rad - before_rad, units::turn);
+  }
+  return readings;
+}
+
+Deviation DeviationOf(const Reading& r) {
+  if (IsOfBar(r)) return {kBar_m(r), Radius_m(r) * std::remainder(kEncoder_rad(r) - r.target_rad, units::turn)};
+  const double dx_m = kGridX_m(r) - kCommandedX_m(r), dy_m = kGridY_m(r) - kCommandedY_m(r);
+  const double c = std::cos(r.target_rad), s = std::sin(r.target_rad);
+  return {c * dx_m + s * dy_m, -s * dx_m + c * dy_m};
+}
+
+double Radius_m(const Reading& r) {
+  return std::hypot(kCommandedX_m(r), kCommandedY_m(r));
+}
+
+bool IsOfBar(const Reading& r) {
+  return !std::isfinite(kGridX_m(r));
+}
+
+std::vector<DesiredColumn> Desired() {
+  return {{"encoder_deg", [](const Reading& r) { return std::isfinite(kEncoder_rad(r)) || !IsOfBar(r); },
+           "only the radius is known there, as of a ball bar without an encoder, and such readings are left out"},
+          {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
+           "thermal_growth, drift and bar_expansion cannot be named"}};
+}
+
+std::string Addition(int /*setups*/) {
+  return "the other direction, as in circular_procedure.directions = [1, -1], and a set-up of another radius";
+}
+
+}  // namespace twinbench::benches::circular

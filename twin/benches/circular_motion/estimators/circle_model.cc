@@ -1,0 +1,250 @@
+#include "twin/benches/circular_motion/estimators/circle_model.h"
+
+#include <algorithm>
+
+#include "twin/benches/circular_motion/columns.h"
+
+namespace twinbench::separate::circular {
+namespace {
+
+using Eigen::Vector2d;
+
+/// One axis at an instant: where it is, which way it goes, and how far it has come since it turned round.
+struct AxisMotion {
+  double at_m, sense, since_turn_m, since_turn_s;
+};
+
+/// @param quarters  0: x goes with the cosine, 1: y with the sine.
+AxisMotion MotionOf(const CirclePoint& p, double lag_s, double commanded_rad, int quarters) {
+  const double lag = p.rate_rad_s * lag_s;
+  const double amplitude_m = p.radius_m / std::sqrt(1.0 + lag * lag);
+  const double angle_rad = commanded_rad - std::atan(lag) - quarters * 0.5 * units::kPi;
+  // Counted along the motion the axis turns at 0, pi, 2 pi; in the first half turn it goes down.
+  const double along_rad = std::remainder(p.direction * angle_rad, units::turn);
+  const bool down = along_rad >= 0.0;
+  const double since_rad = down ? along_rad : along_rad + units::kPi;
+  return {amplitude_m * std::cos(angle_rad), down ? -1.0 : 1.0, amplitude_m * (1.0 - std::cos(since_rad)),
+          p.rate_rad_s == 0.0 ? -1.0 : since_rad / std::abs(p.rate_rad_s)};
+}
+
+double AxisError_m(const CircleErrors& e, const CircleConstants& known, std::size_t k, const AxisMotion& axis,
+                   double other_m, double above_K) {
+  const double u = other_m / known.span_m, wave_rad = units::turn * axis.at_m / known.pitch_m;
+  double error_m = (e.scale[k] + e.expansion_per_K[k] * above_K) * axis.at_m + e.drift_m_per_K[k] * above_K;
+  error_m += e.bow_m[k] * (1.5 * u * u - 0.5) + e.s_shape_m[k] * (2.5 * u * u - 1.5) * u;
+  error_m += e.cyclic_sine_m[k] * std::sin(wave_rad) + e.cyclic_cosine_m[k] * std::cos(wave_rad);
+  const double width_m = std::abs(e.backlash_m[k]);
+  const double taken_up_m = std::copysign(std::min(axis.since_turn_m, width_m), e.backlash_m[k]);
+  error_m += axis.sense * (0.5 * e.backlash_m[k] - taken_up_m);
+  if (axis.since_turn_s < 0.0) return error_m;
+  const double f = axis.since_turn_s / known.spike_time_s;
+  return error_m - axis.sense * e.spike_m[k] * f * std::exp(1.0 - f);
+}
+
+/// Of the spindle from the commanded centre, so much before the reading.
+Vector2d Position_m(const CirclePoint& p, const CircleErrors& e, const CircleConstants& known, double before_s) {
+  const double commanded_rad = p.commanded_rad - p.rate_rad_s * before_s;
+  const AxisMotion x = MotionOf(p, e.lag_s[0], commanded_rad, 0), y = MotionOf(p, e.lag_s[1], commanded_rad, 1);
+  return {x.at_m + AxisError_m(e, known, 0, x, y.at_m, p.above_K) - e.squareness_rad * y.at_m,
+          y.at_m + AxisError_m(e, known, 1, y, x.at_m, p.above_K)};
+}
+
+double Wave(const AxisPair& cosine_sine, double angle_rad) {
+  return cosine_sine[0] * std::cos(angle_rad) + cosine_sine[1] * std::sin(angle_rad);
+}
+
+double BallForm_m(const CircleErrors& e, double azimuth_rad) {
+  return Wave(e.ball2_m, 2.0 * azimuth_rad) + Wave(e.ball3_m, 3.0 * azimuth_rad);
+}
+
+double ScaleError_rad(const CircleErrors& e, double azimuth_rad) {
+  return Wave(e.eccentricity_rad, azimuth_rad) + Wave(e.ellipticity_rad, 2.0 * azimuth_rad);
+}
+
+double Azimuth_rad(const Vector2d& v_m) {
+  return std::atan2(v_m.y(), v_m.x());
+}
+
+/// As the encoder sees it whose axis is tilted: azimuth of [Ry Rx]^T (v, height).
+double SeenAzimuth_rad(const Vector2d& v_m, const CircleConstants& known) {
+  const double cx = std::cos(known.tilt_rad[0]), sx = std::sin(known.tilt_rad[0]);
+  const double cy = std::cos(known.tilt_rad[1]), sy = std::sin(known.tilt_rad[1]);
+  const double along_m = sy * v_m.x() + cy * known.height_m;  // after Ry: (cy x - sy h, y, sy x + cy h)
+  return std::atan2(cx * v_m.y() + sx * along_m, cy * v_m.x() - sy * known.height_m);
+}
+
+/// Of the bar where it shows zero.
+double BarLength_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m) {
+  return (p.radius_m + m.length_m) * (1.0 + e.bar_expansion_per_K * p.above_K);
+}
+
+Vector2d BarShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
+                    const CircleConstants& known) {
+  const Vector2d offset_m(m.offset_m[0], m.offset_m[1]);
+  const Vector2d v_m = offset_m + Position_m(p, e, known, known.bar_latency_s);
+  const double longer_m =
+      std::hypot(v_m.norm(), known.height_m) - BarLength_m(p, e, m) + BallForm_m(e, Azimuth_rad(v_m));
+  const double azimuth_rad = SeenAzimuth_rad(offset_m + Position_m(p, e, known, e.encoder_latency_s), known);
+  const double shown_rad = azimuth_rad + ScaleError_rad(e, azimuth_rad) + m.rotation_rad;
+  return {longer_m * (1.0 + e.bar_gain + e.bar_cubic_per_m2 * longer_m * longer_m),
+          p.radius_m * std::remainder(shown_rad - p.commanded_rad, units::turn)};
+}
+
+Vector2d Turned(const Vector2d& v, double angle_rad) {
+  const double c = std::cos(angle_rad), s = std::sin(angle_rad);
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+
+/// Of the plate's two axes, from where the spindle is and back.
+Vector2d OnPlate_m(const Vector2d& at_m, const CircleConstants& known) {
+  return {(1.0 + known.grid_scale[0]) * at_m.x() - known.grid_shear_rad * at_m.y(),
+          (1.0 + known.grid_scale[1]) * at_m.y()};
+}
+Vector2d FromPlate_m(const Vector2d& plate_m, const CircleConstants& known) {
+  const double y_m = plate_m.y() / (1.0 + known.grid_scale[1]);
+  return {(plate_m.x() + known.grid_shear_rad * y_m) / (1.0 + known.grid_scale[0]), y_m};
+}
+
+/// Subdivisional error of a place on the grid.
+Vector2d Subdivision_m(const Vector2d& place_m, const CircleConstants& known) {
+  return known.grid_sde_m * (units::turn / known.grid_period_m * place_m.array()).sin().matrix();
+}
+
+Vector2d GridShown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
+                     const CircleConstants& known) {
+  const Vector2d offset_m(m.offset_m[0], m.offset_m[1]);
+  Vector2d shown_m = Turned(OnPlate_m(Position_m(p, e, known, 0.0), known), m.rotation_rad) + offset_m;
+  shown_m += Subdivision_m(shown_m, known);
+  return Turned(shown_m - p.Commanded_m(), -p.commanded_rad);
+}
+
+Vector2d FromBar_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
+                   const CircleConstants& known) {
+  const double shown_m = p.radial_m;
+  const double longer_m = shown_m / (1.0 + e.bar_gain + e.bar_cubic_per_m2 * shown_m * shown_m);
+  const double shown_rad = p.commanded_rad + p.tangential_m / p.radius_m - m.rotation_rad;
+  double azimuth_rad = shown_rad - ScaleError_rad(e, shown_rad);
+  azimuth_rad -=
+      std::remainder(SeenAzimuth_rad(Turned({p.radius_m, 0.0}, azimuth_rad), known) - azimuth_rad, units::turn);
+  azimuth_rad += p.rate_rad_s * (e.encoder_latency_s - known.bar_latency_s);  // where it was when the bar was read
+  const double length_m = BarLength_m(p, e, m) + longer_m - BallForm_m(e, azimuth_rad);
+  const double flat_m = std::sqrt(length_m * length_m - known.height_m * known.height_m);
+  const Vector2d then_m = Turned({flat_m, 0.0}, azimuth_rad) - Vector2d(m.offset_m[0], m.offset_m[1]);
+  return Turned(then_m, p.rate_rad_s * known.bar_latency_s) - p.Commanded_m();
+}
+
+Vector2d FromGrid_m(const CirclePoint& p, const CircleMounting& m, const CircleConstants& known) {
+  const Vector2d shown_m = p.Commanded_m() + Turned({p.radial_m, p.tangential_m}, p.commanded_rad);
+  const Vector2d first_m = shown_m - Subdivision_m(shown_m, known);
+  const Vector2d place_m = shown_m - Subdivision_m(first_m, known);
+  return FromPlate_m(Turned(place_m - Vector2d(m.offset_m[0], m.offset_m[1]), -m.rotation_rad), known) -
+         p.Commanded_m();
+}
+
+/// Stated standard uncertainties: the instrument's, its quantum's, the machine's own.
+void SetNoise(const CircularSettings& s, CirclePoint& p) {
+  const double quantum = 1.0 / std::sqrt(12.0), step_rad = units::turn / s.encoder.lines / s.encoder.interpolation;
+  const double radial_m = p.is_bar ? std::hypot(s.bar.noise_m, quantum * s.bar.resolution_m) : s.grid.noise_m;
+  const double angle_rad = std::hypot(s.encoder.noise_rad, quantum * step_rad);
+  p.u_radial_m = std::hypot(radial_m, s.machine.noise_m);
+  p.u_tangential_m = std::hypot(p.is_bar ? p.radius_m * angle_rad : s.grid.noise_m, s.machine.noise_m);
+}
+
+}  // namespace
+
+std::vector<CirclePoint> PointsOf(const std::vector<Reading>& readings, const Scenario& scenario) {
+  using namespace benches::circular;
+  std::vector<CirclePoint> points;
+  for (const Reading& r : WithAngles(readings)) {
+    const Deviation shown = DeviationOf(r);
+    if (r.status != ReadingStatus::kOk || !std::isfinite(shown.radial_m + shown.tangential_m)) continue;
+    CirclePoint& p = points.emplace_back();
+    p.setup = r.setup;
+    p.pass = r.pass;
+    p.direction = r.direction;
+    p.is_bar = IsOfBar(r);
+    p.commanded_rad = r.target_rad;
+    p.radius_m = Radius_m(r);
+    p.rate_rad_s = r.velocity_rad_s;
+    p.feed_m_s = kFeed_m_s(r);
+    if (std::isfinite(r.temperature_degC)) p.above_K = r.temperature_degC - scenario.environment.reference_degC;
+    p.radial_m = shown.radial_m;
+    p.tangential_m = shown.tangential_m;
+    SetNoise(CircularOf(scenario), p);
+  }
+  return points;
+}
+
+CircleConstants ConstantsOf(const CircularSettings& s) {
+  return {s.machine.span_m, s.machine.cyclic_pitch_m, s.machine.spike_time_s, s.bar.height_m,
+          s.bar.latency_s,  s.encoder.tilt_rad,       s.grid.scale,           s.grid.shear_rad,
+          s.grid.sde_m,     s.grid.period_m};
+}
+
+Vector2d Shown_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
+                 const CircleConstants& known) {
+  return p.is_bar ? BarShown_m(p, e, m, known) : GridShown_m(p, e, m, known);
+}
+
+Vector2d Deviation_m(const CirclePoint& p, const CircleErrors& e, const CircleMounting& m,
+                     const CircleConstants& known) {
+  return p.is_bar ? FromBar_m(p, e, m, known) : FromGrid_m(p, m, known);
+}
+
+const std::vector<CircleUnknown>& CircleUnknowns() {
+  using units::um, units::arcsec;
+  using enum CircleUnknown::Needs;
+  using E = CircleErrors;
+  constexpr double kSmall_m = 0.1 * um, kPpm = 1e-6;
+  static const std::vector<CircleUnknown> unknowns = {
+      {"machine.lag_x_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.lag_s[0]; }, kNothing},
+      {"machine.lag_y_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.lag_s[1]; }, kNothing},
+      {"machine.scale_x_um_m", "um/m", um, kPpm, [](E& e) -> double& { return e.scale[0]; }, kNothing},
+      {"machine.scale_y_um_m", "um/m", um, kPpm, [](E& e) -> double& { return e.scale[1]; }, kNothing},
+      {"machine.squareness_arcsec", "arcsec", arcsec, arcsec, [](E& e) -> double& { return e.squareness_rad; },
+       kNothing},
+      {"machine.straightness_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.bow_m[0]; }, kNothing},
+      {"machine.straightness_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.bow_m[1]; }, kNothing},
+      {"machine.straightness3_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.s_shape_m[0]; }, kNothing},
+      {"machine.straightness3_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.s_shape_m[1]; }, kNothing},
+      {"machine.backlash_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.backlash_m[0]; }, kNothing},
+      {"machine.backlash_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.backlash_m[1]; }, kNothing},
+      {"machine.spike_x_um", "um", um, kSmall_m, [](E& e) -> double& { return e.spike_m[0]; }, kNothing},
+      {"machine.spike_y_um", "um", um, kSmall_m, [](E& e) -> double& { return e.spike_m[1]; }, kNothing},
+      {"machine.cyclic_x_sine_um", "um", um, kSmall_m, [](E& e) -> double& { return e.cyclic_sine_m[0]; },
+       kNothing},
+      {"machine.cyclic_x_cosine_um", "um", um, kSmall_m, [](E& e) -> double& { return e.cyclic_cosine_m[0]; },
+       kNothing},
+      {"machine.cyclic_y_sine_um", "um", um, kSmall_m, [](E& e) -> double& { return e.cyclic_sine_m[1]; },
+       kNothing},
+      {"machine.cyclic_y_cosine_um", "um", um, kSmall_m, [](E& e) -> double& { return e.cyclic_cosine_m[1]; },
+       kNothing},
+      {"machine.expansion_x_um_m_K", "um/m/K", um, kPpm, [](E& e) -> double& { return e.expansion_per_K[0]; },
+       kTemperature},
+      {"machine.expansion_y_um_m_K", "um/m/K", um, kPpm, [](E& e) -> double& { return e.expansion_per_K[1]; },
+       kTemperature},
+      {"machine.drift_x_um_K", "um/K", um, kSmall_m, [](E& e) -> double& { return e.drift_m_per_K[0]; },
+       kTemperature},
+      {"machine.drift_y_um_K", "um/K", um, kSmall_m, [](E& e) -> double& { return e.drift_m_per_K[1]; },
+       kTemperature},
+      {"bar.gain_error", "1", 1.0, 1e-3, [](E& e) -> double& { return e.bar_gain; }, kBarShown},
+      {"bar.cubic_per_mm2", "per_mm2", 1e6, 1e5, [](E& e) -> double& { return e.bar_cubic_per_m2; }, kBarShown},
+      {"bar.expansion_um_m_K", "um/m/K", um, kPpm, [](E& e) -> double& { return e.bar_expansion_per_K; },
+       kBarAndTemperature},
+      {"bar.ball2_cosine_um", "um", um, kSmall_m, [](E& e) -> double& { return e.ball2_m[0]; }, kBar},
+      {"bar.ball2_sine_um", "um", um, kSmall_m, [](E& e) -> double& { return e.ball2_m[1]; }, kBar},
+      {"bar.ball3_cosine_um", "um", um, kSmall_m, [](E& e) -> double& { return e.ball3_m[0]; }, kBar},
+      {"bar.ball3_sine_um", "um", um, kSmall_m, [](E& e) -> double& { return e.ball3_m[1]; }, kBar},
+      {"encoder.eccentricity_cosine_arcsec", "arcsec", arcsec, arcsec,
+       [](E& e) -> double& { return e.eccentricity_rad[0]; }, kBar},
+      {"encoder.eccentricity_sine_arcsec", "arcsec", arcsec, arcsec,
+       [](E& e) -> double& { return e.eccentricity_rad[1]; }, kBar},
+      {"encoder.ellipticity_cosine_arcsec", "arcsec", arcsec, arcsec,
+       [](E& e) -> double& { return e.ellipticity_rad[0]; }, kBar},
+      {"encoder.ellipticity_sine_arcsec", "arcsec", arcsec, arcsec,
+       [](E& e) -> double& { return e.ellipticity_rad[1]; }, kBar},
+      {"encoder.latency_s", "s", 1.0, 1e-4, [](E& e) -> double& { return e.encoder_latency_s; }, kBar}};
+  return unknowns;  // constant
+}
+
+}  // namespace twinbench::separate::circular

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "twin/benches/circular_motion/settings.h"
+#include "twin/core/reading.h"
+
+/// Circles as the estimators see them: what each reading shows of the machine's and the instruments' errors.
+/// Written apart from the twin, so that each can find the other's mistakes.
+namespace twinbench::separate::circular {
+
+/// One reading with a value.
+struct CirclePoint {
+  int setup = 0, pass = 0, direction = 1;
+  bool is_bar = true;
+  double commanded_rad = kNaN, radius_m = kNaN;
+  double rate_rad_s = 0.0;  // of the commanded angle; 0: at rest
+  double feed_m_s = 0.0;
+  double above_K = 0.0;                         // temperature above that of reference
+  double radial_m = kNaN, tangential_m = kNaN;  // shown, from the commanded point
+  double u_radial_m = kNaN, u_tangential_m = kNaN;
+
+  Eigen::Vector2d Commanded_m() const {
+    return {radius_m * std::cos(commanded_rad), radius_m * std::sin(commanded_rad)};
+  }
+};
+
+/// The readings with both values, by the scenario's stated noise.
+std::vector<CirclePoint> PointsOf(const std::vector<Reading>& readings, const Scenario& scenario);
+
+/// What a scenario states and no reading is asked for. The grid is the standard: as it was calibrated.
+struct CircleConstants {
+  double span_m, pitch_m, spike_time_s, height_m;
+  double bar_latency_s = 0.0;
+  AxisPair tilt_rad{};    // of the encoder's axis
+  AxisPair grid_scale{};  // shows too much in proportion
+  double grid_shear_rad = 0.0, grid_sde_m = 0.0, grid_period_m = 1.0;
+};
+CircleConstants ConstantsOf(const CircularSettings& settings);
+
+/// What is unknown of machine and instruments. Waves are cosine and sine.
+struct CircleErrors {
+  AxisPair lag_s{}, scale{}, bow_m{}, s_shape_m{}, backlash_m{}, spike_m{};
+  AxisPair cyclic_sine_m{}, cyclic_cosine_m{}, expansion_per_K{}, drift_m_per_K{};
+  double squareness_rad = 0.0;
+  double bar_gain = 0.0, bar_cubic_per_m2 = 0.0, bar_expansion_per_K = 0.0;
+  AxisPair ball2_m{}, ball3_m{}, eccentricity_rad{}, ellipticity_rad{};
+  double encoder_latency_s = 0.0;
+};
+
+/// And of every set-up.
+struct CircleMounting {
+  AxisPair offset_m{};        // of the commanded centre, as bar or grid sees it
+  double rotation_rad = 0.0;  // zero of the encoder, or rotation of the grid
+  double length_m = 0.0;      // of the bar
+};
+
+/// Radial and tangential deviation that would be shown [m].
+Eigen::Vector2d Shown_m(const CirclePoint& point, const CircleErrors& errors, const CircleMounting& mounting,
+                        const CircleConstants& known);
+
+/// The other way: deviation of the spindle from the commanded point, x and y [m], from what was shown.
+Eigen::Vector2d Deviation_m(const CirclePoint& point, const CircleErrors& errors, const CircleMounting& mounting,
+                            const CircleConstants& known);
+
+/// One unknown of CircleErrors.
+struct CircleUnknown {
+  std::string key;  // of the scenario: "machine.scale_x_um_m"; of a wave with _cosine or _sine for its azimuth
+  std::string unit;
+  double to_SI;
+  double step;  // SI, over which slopes are differenced
+  double& (*in)(CircleErrors&);
+  /// kBarShown: its slope is in proportion to what the bar shows, and nothing before the set-ups are known.
+  enum class Needs { kNothing, kTemperature, kBar, kBarShown, kBarAndTemperature } needs;
+};
+const std::vector<CircleUnknown>& CircleUnknowns();
+
+}  // namespace twinbench::separate::circular

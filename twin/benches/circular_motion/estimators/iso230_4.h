@@ -1,0 +1,30 @@
+#pragma once
+
+#include "twin/benches/circular_motion/estimators/circle_path.h"
+
+/// Circular deviations as ISO 230-4 has them.
+namespace twinbench::separate::circular {
+
+struct Iso230_4Value {
+  double value_m = kNaN, u_m = kNaN;  // u: NaN without one
+};
+
+/// Of one set-up and feed; NaN where a direction is missing.
+struct Iso230_4 {
+  int setup = 0;
+  double feed_m_s = 0.0;
+  Iso230_4Value G_ccw, G_cw, G_b;    // circular deviation: range of the radius from the least-squares centre
+  Iso230_4Value Fmax_ccw, Fmin_ccw;  // radial deviation from the commanded centre
+  Iso230_4Value Fmax_cw, Fmin_cw, Fmax_b, Fmin_b;
+  Iso230_4Value D;  // mean radial deviation of both paths
+  Iso230_4Value H;  // largest difference between the directions at one angle
+};
+
+/// One entry a set-up and feed, in the order of the paths.
+///
+/// Uncertainty: of the radius at the readings that are the extremes. Not included: noise makes extremes larger, by
+/// some two of its standard deviations at either end.
+/// @param shared  Unknowns behind the paths; empty: no uncertainty is stated.
+std::vector<Iso230_4> CircularDeviations(const std::vector<CirclePath>& paths, const SharedUncertainty& shared);
+
+}  // namespace twinbench::separate::circular

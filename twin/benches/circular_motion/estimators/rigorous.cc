@@ -1,0 +1,233 @@
+#include "twin/benches/circular_motion/estimators/rigorous.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
+
+namespace twinbench::separate::circular {
+namespace {
+
+using Eigen::Index, Eigen::VectorXd, Eigen::MatrixXd;
+
+constexpr int kOfSetup = 4;
+constexpr double kMountingStep = 1e-6;  // m, rad
+
+double& MountingUnknown(CircleMounting& m, Index k) {
+  if (k < 2) return m.offset_m[static_cast<std::size_t>(k)];
+  return k == 2 ? m.rotation_rad : m.length_m;
+}
+
+bool TemperatureChanged(const std::vector<CirclePoint>& points) {
+  constexpr double kLeast_K = 0.2;
+  const auto [coldest, warmest] = std::ranges::minmax_element(points, {}, &CirclePoint::above_K);
+  return warmest->above_K - coldest->above_K >= kLeast_K;
+}
+
+bool CanBeSeen(const CircleUnknown& unknown, bool warm, bool bar) {
+  using enum CircleUnknown::Needs;
+  if (unknown.needs == kTemperature) return warm;
+  if (unknown.needs == kBar || unknown.needs == kBarShown) return bar;
+  if (unknown.needs == kBarAndTemperature) return bar && warm;
+  return unknown.needs == kNothing;
+}
+
+CircleFit Begin(const std::vector<CirclePoint>& points) {
+  CircleFit fit;
+  const bool warm = TemperatureChanged(points), bar = std::ranges::any_of(points, &CirclePoint::is_bar);
+  for (std::size_t k = 0; k < CircleUnknowns().size(); ++k) {
+    if (CanBeSeen(CircleUnknowns()[k], warm, bar)) fit.fitted.push_back(k);
+  }
+  std::set<int> setups;
+  for (const CirclePoint& p : points) setups.insert(p.setup);
+  fit.setups.assign(setups.begin(), setups.end());
+  fit.mountings.resize(fit.setups.size());
+  if (!warm) fit.not_separable.push_back("thermal errors: the temperature hardly changed");
+  return fit;
+}
+
+Index UnknownsOf(const CircleFit& fit) {
+  return std::ssize(fit.fitted) + kOfSetup * std::ssize(fit.setups);
+}
+
+void Add(const VectorXd& change, CircleFit& fit) {
+  for (std::size_t k = 0; k < fit.fitted.size(); ++k)
+    CircleUnknowns()[fit.fitted[k]].in(fit.errors) += change[static_cast<Index>(k)];
+  for (std::size_t j = 0; j < fit.setups.size(); ++j) {
+    for (Index k = 0; k < kOfSetup; ++k)
+      MountingUnknown(fit.mountings[j], k) += change[fit.UnknownOf(fit.setups[j]) + k];
+  }
+}
+
+std::string NameOf(const CircleFit& fit, Index unknown) {
+  if (unknown < std::ssize(fit.fitted)) return CircleUnknowns()[fit.fitted[static_cast<std::size_t>(unknown)]].key;
+  const Index behind = unknown - std::ssize(fit.fitted);
+  const char* const names[] = {"offset_x", "offset_y", "rotation", "length"};
+  return fmt::format("{} of set-up {}", names[behind % kOfSetup],
+                     fit.setups[static_cast<std::size_t>(behind / kOfSetup)]);
+}
+
+/// Gain and the like: while the bar is thought to show nothing, they would be anything.
+std::vector<Index> OfWhatTheBarShows(const CircleFit& fit) {
+  std::vector<Index> unknowns;
+  for (std::size_t k = 0; k < fit.fitted.size(); ++k) {
+    if (CircleUnknowns()[fit.fitted[k]].needs == CircleUnknown::Needs::kBarShown)
+      unknowns.push_back(static_cast<Index>(k));
+  }
+  return unknowns;
+}
+
+/// The equations of one round: normal matrix of unit columns, and their lengths.
+struct Equations {
+  MatrixXd normal;
+  VectorXd right, scale;
+  Index empty = 0;  // unknowns that no reading has: the length of a bar where the grid measures
+  double chi2 = 0.0;
+};
+
+/// @param held  Unknowns that stay where they are.
+Equations EquationsAt(const std::vector<CirclePoint>& points, const CircleFit& fit, const CircleConstants& known,
+                      const std::vector<Index>& held) {
+  const Index unknowns = UnknownsOf(fit);
+  MatrixXd slope(2 * std::ssize(points), unknowns);
+  VectorXd left(slope.rows());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const CirclePoint& p = points[i];
+    const Index row = 2 * static_cast<Index>(i);
+    const Eigen::Vector2d weight(1.0 / p.u_radial_m, 1.0 / p.u_tangential_m);
+    const Eigen::Vector2d shown_m = Shown_m(p, fit.errors, fit.MountingOf(p.setup), known);
+    left.segment<2>(row) = weight.cwiseProduct(Eigen::Vector2d(p.radial_m, p.tangential_m) - shown_m);
+    slope.middleRows<2>(row) = weight.asDiagonal() * SlopeOf(Shown_m, p, fit, known);
+  }
+  slope(Eigen::all, held).setZero();
+  Equations equations;
+  equations.scale = slope.colwise().norm().transpose();
+  const Eigen::ArrayXd is_empty = (equations.scale.array() == 0.0).cast<double>();
+  equations.empty = static_cast<Index>(is_empty.sum());
+  equations.scale = (equations.scale.array() > 0.0).select(equations.scale, 1.0);
+  slope *= equations.scale.cwiseInverse().asDiagonal();
+  equations.normal = slope.transpose() * slope;
+  equations.normal.diagonal().array() += is_empty;  // they stay 0
+  equations.right = slope.transpose() * left;
+  equations.chi2 = left.squaredNorm();
+  return equations;
+}
+
+/// Inverse of the normal matrix where the readings show something, and the directions where they do not.
+struct Solved {
+  MatrixXd inverse, hidden;
+};
+
+Solved Solve(const Equations& equations) {
+  constexpr double kRank = 1e-7;  // of a squared singular value: 3e-4 of the largest
+  const SymmetricEigen eigen = EigenOfSymmetric(equations.normal);
+  const Index hidden = (eigen.values.array() < kRank * eigen.values.maxCoeff()).count();
+  const Index seen = eigen.values.size() - hidden;
+  const MatrixXd vectors = eigen.vectors.rightCols(seen);
+  return {vectors * eigen.values.tail(seen).cwiseInverse().asDiagonal() * vectors.transpose(),
+          eigen.vectors.leftCols(hidden)};
+}
+
+/// "machine.lag_x_s, machine.lag_y_s, encoder.latency_s": those that share the hidden directions.
+void NameHidden(const MatrixXd& hidden, CircleFit& fit) {
+  constexpr double kPart = 0.05;
+  fit.identified.assign(static_cast<std::size_t>(UnknownsOf(fit)), true);
+  for (Index j = 0; j < hidden.cols(); ++j) {
+    std::string words;
+    for (Index k = 0; k < hidden.rows(); ++k) {
+      if (std::abs(hidden(k, j)) < kPart) continue;
+      words += (words.empty() ? "" : ", ") + NameOf(fit, k);
+    }
+    fit.not_separable.push_back(words);
+  }
+  for (Index k = 0; k < hidden.rows(); ++k) {
+    if (hidden.row(k).norm() >= kPart) fit.identified[static_cast<std::size_t>(k)] = false;
+  }
+}
+
+void SetResiduals(const std::vector<CirclePoint>& points, const CircleConstants& known, CircleFit& fit) {
+  double bar = 0.0, encoder = 0.0, grid = 0.0;
+  int of_bar = 0, of_grid = 0;
+  for (const CirclePoint& p : points) {
+    const Eigen::Vector2d left_m =
+        Eigen::Vector2d(p.radial_m, p.tangential_m) - Shown_m(p, fit.errors, fit.MountingOf(p.setup), known);
+    ++(p.is_bar ? of_bar : of_grid);
+    if (!p.is_bar) grid += 0.5 * left_m.squaredNorm();
+    if (!p.is_bar) continue;
+    bar += left_m.x() * left_m.x();
+    encoder += std::pow(left_m.y() / p.radius_m, 2);
+  }
+  if (of_bar > 0) fit.rms_bar_m = std::sqrt(bar / of_bar);
+  if (of_bar > 0) fit.rms_encoder_rad = std::sqrt(encoder / of_bar);
+  if (of_grid > 0) fit.rms_grid_m = std::sqrt(grid / of_grid);
+}
+
+}  // namespace
+
+double SharedUncertainty::Variance(const VectorXd& slope) const {
+  constexpr double kPart = 0.02;
+  const double goes_with_hidden = (hidden.transpose() * slope).norm();
+  if (goes_with_hidden > kPart * slope.cwiseProduct(typical).norm()) return kNaN;
+  return slope.dot(cov * slope);
+}
+
+const CircleMounting& CircleFit::MountingOf(int setup) const {
+  return mountings[static_cast<std::size_t>(std::ranges::find(setups, setup) - setups.begin())];
+}
+
+Eigen::Index CircleFit::UnknownOf(int setup) const {
+  return std::ssize(fitted) + kOfSetup * (std::ranges::find(setups, setup) - setups.begin());
+}
+
+Eigen::Matrix2Xd SlopeOf(decltype(&Shown_m) of, const CirclePoint& p, const CircleFit& fit,
+                         const CircleConstants& known) {
+  Eigen::Matrix2Xd slope = Eigen::Matrix2Xd::Zero(2, UnknownsOf(fit));
+  const CircleMounting& mounting = fit.MountingOf(p.setup);
+  for (std::size_t k = 0; k < fit.fitted.size(); ++k) {
+    const CircleUnknown& unknown = CircleUnknowns()[fit.fitted[k]];
+    CircleErrors above = fit.errors, below = fit.errors;
+    unknown.in(above) += unknown.step;
+    unknown.in(below) -= unknown.step;
+    slope.col(static_cast<Index>(k)) =
+        (of(p, above, mounting, known) - of(p, below, mounting, known)) / (2.0 * unknown.step);
+  }
+  const Index first = fit.UnknownOf(p.setup);
+  for (Index k = 0; k < kOfSetup; ++k) {
+    CircleMounting above = mounting, below = mounting;
+    MountingUnknown(above, k) += kMountingStep;
+    MountingUnknown(below, k) -= kMountingStep;
+    slope.col(first + k) =
+        (of(p, fit.errors, above, known) - of(p, fit.errors, below, known)) / (2.0 * kMountingStep);
+  }
+  return slope;
+}
+
+CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstants& known) {
+  constexpr int kRounds = 6, kSetupsFirst = 2;
+  if (points.empty()) throw InputError("readings", "none has radius and angle", "readings of a bar or a grid");
+  CircleFit fit = Begin(points);
+  const Index unknowns = UnknownsOf(fit);
+  if (2 * std::ssize(points) <= unknowns)
+    throw InputError("readings", fmt::format("{} values for {} unknowns", 2 * points.size(), unknowns),
+                     "more readings with radius and angle");
+  Solved solved;
+  Equations equations;
+  for (int k = 0; k <= kRounds; ++k) {
+    equations = EquationsAt(points, fit, known, k < kSetupsFirst ? OfWhatTheBarShows(fit) : std::vector<Index>{});
+    solved = Solve(equations);
+    if (k < kRounds) Add((solved.inverse * equations.right).cwiseQuotient(equations.scale), fit);
+  }
+  fit.dof = 2 * std::ssize(points) - unknowns + solved.hidden.cols() + equations.empty;
+  fit.chi = std::sqrt(equations.chi2 / static_cast<double>(fit.dof));
+  const MatrixXd unscale = equations.scale.cwiseInverse().asDiagonal();
+  fit.shared = {std::pow(std::max(1.0, fit.chi), 2) * unscale * solved.inverse * unscale, unscale * solved.hidden,
+                equations.scale.cwiseInverse()};
+  NameHidden(solved.hidden, fit);
+  SetResiduals(points, known, fit);
+  return fit;
+}
+
+}  // namespace twinbench::separate::circular

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+
+#include "twin/benches/circular_motion/estimators/circle_model.h"
+
+/// The vector form: every unknown of machine, instruments and set-ups in one least-squares fit of radius and angle.
+namespace twinbench::separate::circular {
+
+/// What results share: the unknowns behind them.
+struct SharedUncertainty {
+  Eigen::MatrixXd cov = {};      // SI; empty: nothing was fitted
+  Eigen::MatrixXd hidden = {};   // directions that the readings do not show, as columns, SI
+  Eigen::VectorXd typical = {};  // of each unknown: what the readings would just show of it alone, SI
+
+  bool IsKnown() const { return cov.size() > 0; }
+  /// Of a result with these slopes; NaN if it goes with something that the readings do not show.
+  double Variance(const Eigen::VectorXd& slope) const;
+};
+
+struct CircleFit {
+  std::vector<std::size_t> fitted;  // of CircleUnknowns, in the order of `shared`
+  std::vector<int> setups;          // in the order of `mountings`; four unknowns each, behind those
+  CircleErrors errors;              // what was not fitted is 0
+  std::vector<CircleMounting> mountings;
+  SharedUncertainty shared;
+  std::vector<bool> identified;            // one an unknown, those of the set-ups too
+  std::vector<std::string> not_separable;  // in words
+  Eigen::Index dof = 0;
+  double chi = kNaN;  // what is left over, in stated uncertainties, rms
+  double rms_bar_m = kNaN, rms_encoder_rad = kNaN, rms_grid_m = kNaN;
+
+  const CircleMounting& MountingOf(int setup) const;
+  Eigen::Index UnknownOf(int setup) const;  // the first of its four
+};
+
+/// Gauss-Newton. Directions that the readings do not show stay where they are (the shortest solution) and are
+/// named. Thermal unknowns are left out unless the temperature changed by 0.2 K.
+///
+/// Uncertainty: stated noise, larger if more is left over. Not included: calibration of the grid; an error of
+/// machine or instruments that is none of the unknowns; what is not separable.
+/// @throws InputError if there are fewer values than unknowns.
+CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstants& known);
+
+/// Slope of a function of errors and mounting with respect to every unknown of the fit: 2 x unknowns.
+/// @param of  Any of Shown_m and Deviation_m.
+Eigen::Matrix2Xd SlopeOf(decltype(&Shown_m) of, const CirclePoint& point, const CircleFit& fit,
+                         const CircleConstants& known);
+
+}  // namespace twinbench::separate::circular

@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/circular_motion/analysis.h"
+#include "twin/benches/circular_motion/bench.h"
+#include "twin/report/json_units.h"
+
+namespace twinbench::benches::circular {
+namespace {
+
+using namespace separate::circular;
+using nlohmann::json;
+using report::In;
+using units::um;
+
+json WithUncertainty(double value, double u, double unit) {
+  return {{"value", In(unit, value)}, {"u", In(unit, u)}};
+}
+
+bool IsBarSetup(const CircleAnalysis& a, int setup) {
+  const auto point = std::ranges::find(a.points, setup, &CirclePoint::setup);
+  return point != a.points.end() && point->is_bar;
+}
+
+double RadiusOf_m(const CircleAnalysis& a, int setup) {
+  return std::ranges::find(a.points, setup, &CirclePoint::setup)->radius_m;
+}
+
+/// What was fitted of a set-up.
+void AddMounting(const CircleFit& fit, int setup, bool is_bar, json& entry) {
+  const CircleMounting& m = fit.MountingOf(setup);
+  const Eigen::Index first = fit.UnknownOf(setup);
+  const auto value = [&](Eigen::Index k, double of, double unit) {
+    const bool known = fit.identified[static_cast<std::size_t>(first + k)];
+    return WithUncertainty(of, known ? std::sqrt(fit.shared.cov(first + k, first + k)) : kNaN, unit);
+  };
+  entry["offset_x_um"] = value(0, m.offset_m[0], um);
+  entry["offset_y_um"] = value(1, m.offset_m[1], um);
+  if (is_bar) {
+    entry["encoder_zero_deg"] = value(2, m.rotation_rad, units::deg);
+    entry["length_error_um"] = value(3, m.length_m, um);
+  } else {
+    entry["rotation_arcsec"] = value(2, m.rotation_rad, units::arcsec);
+  }
+}
+
+json SetupsJson(const CircleAnalysis& a) {
+  json setups = json::array();
+  std::vector<int> numbers;
+  for (const CirclePoint& p : a.points) {
+    if (numbers.empty() || numbers.back() != p.setup) numbers.push_back(p.setup);
+  }
+  for (const int setup : numbers) {
+    const bool is_bar = IsBarSetup(a, setup);
+    json entry = {
+        {"setup", setup}, {"instrument", is_bar ? "bar" : "grid"}, {"radius_mm", RadiusOf_m(a, setup) / units::mm}};
+    if (a.IsFitted()) AddMounting(a.fit, setup, is_bar, entry);
+    if (is_bar) {
+      const Eigen::Vector2d& offset_m = a.published_offset_m.at(setup);
+      entry["published_offset_um"] = {offset_m.x() / um, offset_m.y() / um};
+    }
+    setups.push_back(entry);
+  }
+  return setups;
+}
+
+json ErrorsJson(const std::vector<ErrorValue>& errors) {
+  json all = json::object();
+  for (const ErrorValue& e : errors)
+    all[e.key] = {{"value", In(1.0, e.value)}, {"u", In(1.0, e.u)}, {"unit", e.unit}};
+  return all;
+}
+
+json PathJson(const CirclePath& path, const SharedUncertainty& shared) {
+  json entry = {{"setup", path.setup}, {"pass", path.pass}};
+  for (const PathPoint& point : path.points) {
+    const Eigen::Vector2d u_m = Uncertainty_m(point, shared);
+    entry["commanded_deg"].push_back(point.commanded_rad / units::deg);
+    entry["dx_um"].push_back(In(um, point.d_m.x()));
+    entry["dy_um"].push_back(In(um, point.d_m.y()));
+    entry["u_dx_um"].push_back(In(um, u_m.x()));
+    entry["u_dy_um"].push_back(In(um, u_m.y()));
+  }
+  return entry;
+}
+
+/// The values of a set-up and feed by their names.
+std::vector<std::pair<std::string, Iso230_4Value>> Named(const Iso230_4& d) {
+  return {{"G_ccw", d.G_ccw},
+          {"G_cw", d.G_cw},
+          {"G_b", d.G_b},
+          {"Fmax_ccw", d.Fmax_ccw},
+          {"Fmin_ccw", d.Fmin_ccw},
+          {"Fmax_cw", d.Fmax_cw},
+          {"Fmin_cw", d.Fmin_cw},
+          {"Fmax_b", d.Fmax_b},
+          {"Fmin_b", d.Fmin_b},
+          {"D", d.D},
+          {"H", d.H}};
+}
+
+double Feed_mm_min(double feed_m_s) {
+  return feed_m_s * 60.0 / units::mm;
+}
+
+json IsoJson(const Iso230_4& d) {
+  json entry = {{"setup", d.setup}, {"feed_mm_min", Feed_mm_min(d.feed_m_s)}};
+  for (const auto& [name, value] : Named(d)) {
+    entry[name + "_um"] = In(um, value.value_m);
+    entry["u_" + name + "_um"] = In(um, value.u_m);
+  }
+  return entry;
+}
+
+json SeparationJson(const CircleAnalysis& a) {
+  json separation = {{"setups", SetupsJson(a)},
+                     {"errors", json::object()},
+                     {"path", json::array()},
+                     {"iso230_4", json::array()},
+                     {"not_separable", json::array()}};
+  if (a.IsFitted()) {
+    separation["errors"] = ErrorsJson(ErrorsOf(a.fit));
+    separation["not_separable"] = a.fit.not_separable;
+    separation["residual_rms"] = {{"bar_um", In(um, a.fit.rms_bar_m)},
+                                  {"encoder_arcsec", report::Arcsec(a.fit.rms_encoder_rad)},
+                                  {"grid_um", In(um, a.fit.rms_grid_m)}};
+    separation["dof"] = a.fit.dof;
+  }
+  for (const CirclePath& path : a.paths) separation["path"].push_back(PathJson(path, a.fit.shared));
+  for (const Iso230_4& d : a.deviations) separation["iso230_4"].push_back(IsoJson(d));
+  const BarAgainstGrid grid = CompareWithGrid(a.paths);
+  separation["comparison"] = {{"radial_max_um", In(um, grid.radial_max_m)},
+                              {"tangential_max_um", In(um, grid.tangential_max_m)}};
+  return separation;
+}
+
+std::string ErrorsText(const CircleAnalysis& a) {
+  std::string text;
+  for (const ErrorValue& e : ErrorsOf(a.fit))
+    text += std::isfinite(e.u) ? fmt::format("{:<34} {:14.6g} +- {:.2g} {}\n", e.key, e.value, e.u, e.unit) : "";
+  for (const std::string& words : a.fit.not_separable) text += "not separable: " + words + "\n";
+  return text + fmt::format("left over, in stated uncertainties: {:.3f} rms\n", a.fit.chi);
+}
+
+std::string DeviationsText(const CircleAnalysis& a) {
+  std::string text = "ISO 230-4 [um]: set-up, feed [mm/min], G(b), F max, F min, D, H\n";
+  for (const Iso230_4& d : a.deviations)
+    text += fmt::format("{:3d} {:8.1f} {:10.3f} {:10.3f} {:10.3f} {:10.3f} {:10.3f}\n", d.setup,
+                        Feed_mm_min(d.feed_m_s), d.G_b.value_m / um, d.Fmax_b.value_m / um, d.Fmin_b.value_m / um,
+                        d.D.value_m / um, d.H.value_m / um);
+  return text;
+}
+
+}  // namespace
+
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
+  const CircleAnalysis a = Analyse(scenario, readings, estimator);
+  report::Evaluation evaluation;
+  evaluation.separation = SeparationJson(a);
+  evaluation.results = {{"readings", a.points.size()},
+                        {"left_out", readings.size() - a.points.size()},
+                        {"estimator", EstimatorName(estimator)},
+                        {"setups", evaluation.separation["setups"]},
+                        {"errors", evaluation.separation["errors"]},
+                        {"iso230_4", evaluation.separation["iso230_4"]},
+                        {"comparison", evaluation.separation["comparison"]}};
+  evaluation.summary = fmt::format("{} of {} readings have radius and angle\n", a.points.size(), readings.size());
+  if (a.IsFitted()) evaluation.summary += ErrorsText(a);
+  evaluation.summary += DeviationsText(a);
+  return evaluation;
+}
+
+}  // namespace twinbench::benches::circular

@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/circular_motion/analysis.h"
+#include "twin/benches/circular_motion/bench.h"
+#include "twin/core/errors.h"
+#include "twin/report/json_units.h"
+
+namespace twinbench::benches::circular {
+namespace {
+
+using namespace separate::circular;
+using nlohmann::json;
+
+/// Estimated minus true path, all passes together.
+struct PathScore {
+  int readings = 0;
+  double sum_m2 = 0.0, largest_m = 0.0, sum_normed = 0.0;
+
+  double Rms_m() const { return std::sqrt(sum_m2 / (2.0 * readings)); }
+};
+
+void AddPass(const CirclePath& path, const json& truth, const SharedUncertainty& shared, PathScore& score) {
+  const json &x_um = truth.at("dx_um"), &y_um = truth.at("dy_um");
+  if (x_um.size() != path.points.size()) return;  // readings that are missing shift the rest
+  for (std::size_t i = 0; i < path.points.size(); ++i) {
+    const Eigen::Vector2d error_m =
+        path.points[i].d_m - units::um * Eigen::Vector2d(x_um[i].get<double>(), y_um[i].get<double>());
+    ++score.readings;
+    score.sum_m2 += error_m.squaredNorm();
+    score.largest_m = std::max(score.largest_m, error_m.cwiseAbs().maxCoeff());
+    score.sum_normed += error_m.cwiseQuotient(Uncertainty_m(path.points[i], shared)).squaredNorm();
+  }
+}
+
+PathScore ScorePaths(const CircleAnalysis& a, const json& truth) {
+  PathScore score;
+  for (const CirclePath& path : a.paths) {
+    const auto same = [&](const json& t) { return t.at("setup") == path.setup && t.at("pass") == path.pass; };
+    const auto found = std::ranges::find_if(truth.at("path"), same);
+    if (found != truth.at("path").end()) AddPass(path, *found, a.fit.shared, score);
+  }
+  return score;
+}
+
+/// Sizes that the run shows, against those of the scenario; phases are left out, they mean little where there is no
+/// size.
+json ErrorScores(const CircleFit& fit, const json& truth, std::string& text) {
+  json scores = json::object();
+  for (const ErrorValue& e : ErrorsOf(fit)) {
+    if (!truth.contains(e.key) || !std::isfinite(e.u) || e.unit == "deg") continue;
+    const double error = e.value - truth.at(e.key).get<double>();
+    scores[e.key] = {{"error", error}, {"u", e.u}, {"unit", e.unit}};
+    text += fmt::format("{:<34} {:+14.4g}   u {:.2g} {}\n", e.key, error, e.u, e.unit);
+  }
+  return scores;
+}
+
+}  // namespace
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings, const json& truth,
+                           Estimator estimator) {
+  const CircleAnalysis a = Analyse(scenario, readings, estimator);
+  const PathScore path = ScorePaths(a, truth);
+  if (path.readings == 0) throw InputError("the run", "none of its passes is in the truth", "a run of the twin");
+  report::ScoredRun scored;
+  scored.json["path"] = {{"readings", path.readings},
+                         {"rms_error_um", path.Rms_m() / units::um},
+                         {"largest_error_um", path.largest_m / units::um},
+                         {"mean_normed_square", report::In(1.0, path.sum_normed / (2.0 * path.readings))}};
+  scored.text = fmt::format("path: off the truth by {:.4f} um rms, {:.4f} um at most\n", path.Rms_m() / units::um,
+                            path.largest_m / units::um);
+  if (a.IsFitted()) scored.json["errors"] = ErrorScores(a.fit, truth.at("errors"), scored.text);
+  return scored;
+}
+
+}  // namespace twinbench::benches::circular

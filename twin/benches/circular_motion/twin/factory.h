@@ -1,0 +1,12 @@
+#pragma once
+
+#include "twin/core/bench.h"
+#include "twin/model/follow.h"
+
+namespace twinbench::benches::circular {
+
+std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario);
+
+std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);
+
+}  // namespace twinbench::benches::circular

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "twin/model/follow.h"
+
+namespace twinbench::sim {
+
+/// The circles' twin on the course of a record; the prediction is the radial and tangential deviation from the
+/// commanded point [m]. Points: offset_x, offset_y (of the centre, as bar or grid sees it), rotation (of the
+/// encoder's zero, or of the grid), length (of the bar), x, y (of the spindle), radial, tangential (of what is
+/// shown).
+std::unique_ptr<model::Follow> FollowCircles(const Scenario& scenario, const std::vector<Reading>& record);
+
+}  // namespace twinbench::sim

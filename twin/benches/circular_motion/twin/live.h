@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "twin/benches/circular_motion/twin/twin.h"
+#include "twin/sim/outlier_draw.h"
+
+namespace twinbench::sim {
+
+/// A run of the scenario's procedure: the room's temperature, the set-ups as they were mounted, and chance.
+///
+/// Same scenario, same bits; the noise of a reading follows from its number alone.
+class CircleRun {
+ public:
+  /// @throws InputError if the temperature file cannot be read.
+  explicit CircleRun(const Scenario& scenario);
+
+  int Readings() const { return static_cast<int>(course_.size()); }
+  Reading Take(int reading) const;
+
+  /// {"errors": scenario keys, "setups": what each was mounted with, "path": where the spindle was (set-up, pass),
+  /// "effects", "seed"}.
+  nlohmann::json Truth() const;
+
+ private:
+  bool IsBar(const Reading& r) const;
+  CircleExtra Chance(int reading) const;
+  benches::circular::Deviation Digitised(const Reading& r, benches::circular::Deviation shown) const;
+
+  Scenario scenario_;
+  std::vector<Reading> course_;
+  Eigen::VectorXd above_K_;
+  CircleTwin twin_;
+  std::vector<CircleExtra> mounted_;  // one a set-up
+  std::vector<OutlierDraw> outliers_;
+};
+
+}  // namespace twinbench::sim

@@ -1,0 +1,139 @@
+#include "twin/benches/circular_motion/twin/twin.h"
+
+#include <array>
+#include <cmath>
+
+#include "twin/benches/circular_motion/format.h"
+#include "twin/benches/circular_motion/twin/effects.h"
+#include "twin/benches/circular_motion/twin/instruments.h"
+#include "twin/core/signal_effect.h"
+#include "twin/model/signals.h"
+#include "twin/sim/courses.h"
+#include "twin/sim/effect_parameter.h"
+
+namespace twinbench::sim {
+namespace {
+
+using benches::circular::Deviation;
+
+/// As the readings say; where nothing has been read yet, as the scenario says.
+bool IsBar(const Reading& r, const CircularProcedureSettings& procedure) {
+  using namespace benches::circular;
+  if (std::isfinite(kGridX_m(r))) return false;
+  if (std::isfinite(kBar_m(r)) || std::isfinite(kEncoder_rad(r))) return true;
+  const auto setup = static_cast<std::size_t>(r.setup);
+  return setup >= procedure.setups.size() || procedure.setups[setup].IsBar();
+}
+
+CircleStep StepOf(const Reading& r, const CircularProcedureSettings& procedure, double above_K) {
+  using namespace benches::circular;
+  return {{r.target_rad, Radius_m(r), r.direction, kFeed_m_s(r), above_K},
+          r.reading,
+          ToSeconds(r.time),
+          r.velocity_rad_s,
+          IsBar(r, procedure)};
+}
+
+/// What a drift adds along its axis: in proportion to the temperature, or to one that lags behind it.
+Eigen::VectorXd Drift_m(const EffectSettings& e, const std::vector<CircleStep>& steps) {
+  Eigen::VectorXd time_s(std::ssize(steps)), above_K(std::ssize(steps));
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    time_s[static_cast<Eigen::Index>(i)] = steps[i].time_s;
+    above_K[static_cast<Eigen::Index>(i)] = steps[i].at.above_K;
+  }
+  const double lag_s = Parameter(e, "lag");
+  return Parameter(e, "drift") * (lag_s > 0.0 ? model::Lagged(time_s, above_K, lag_s) : above_K);
+}
+
+Eigen::Matrix2Xd Moved_m(const std::vector<EffectSettings>& effects, const std::vector<CircleStep>& steps) {
+  Eigen::Matrix2Xd moved_m = Eigen::Matrix2Xd::Zero(2, std::ssize(steps));
+  for (const EffectSettings& e : effects) {
+    auto axis = moved_m.row(e.where == "y" ? 1 : 0);
+    if (e.name == "drift") axis += Drift_m(e, steps).transpose();
+    for (std::size_t i = 0; e.name == "slip" && i < steps.size(); ++i)
+      axis[static_cast<Eigen::Index>(i)] += StepAt(e, steps[i].reading);
+  }
+  return moved_m;
+}
+
+double Tone(const EffectSettings& e, double time_s) {
+  return Parameter(e, "amplitude") *
+         std::cos(units::turn * Parameter(e, "frequency") * time_s + Parameter(e, "phase"));
+}
+
+}  // namespace
+
+CircleTwin::CircleTwin(const Scenario& scenario, const std::vector<Reading>& course, const Eigen::VectorXd& above_K)
+    : settings_(WithEffects(CircularOf(scenario), scenario.effects)),
+      machine_(settings_.machine),
+      radial_(scenario.empiricals, "radial"),
+      tangential_(scenario.empiricals, "tangential") {
+  for (std::size_t i = 0; i < course.size(); ++i)
+    steps_.push_back(StepOf(course[i], settings_.procedure, above_K[static_cast<Eigen::Index>(i)]));
+  AddToMachine(scenario.effects, machine_);
+  moved_m_ = Moved_m(scenario.effects, steps_);
+  for (const EffectSettings& effect : scenario.effects) {
+    if (effect.name == kSignalEffect) signals_.emplace_back(effect, benches::circular::Format());
+    if (effect.name == "tone") tones_.push_back(effect);
+  }
+}
+
+Eigen::Vector2d CircleTwin::Position_m(std::size_t i, double latency_s) const {
+  return machine_.Position_m(steps_[i].at.Before(latency_s)) + moved_m_.col(static_cast<Eigen::Index>(i));
+}
+
+Deviation CircleTwin::Bar(std::size_t i, const CircleExtra& extra) const {
+  const CircleInstant& at = steps_[i].at;
+  BarSettings bar = settings_.bar;
+  BarEncoderSettings encoder = settings_.encoder;
+  bar.offset_m[0] += extra.offset_x_m;
+  bar.offset_m[1] += extra.offset_y_m;
+  bar.length_error_m += extra.length_m;
+  encoder.zero_rad += extra.rotation_rad;
+  const Eigen::Vector2d moved_m(extra.x_m, extra.y_m);
+  const double shown_rad =
+      EncoderShown_rad(encoder, bar, Position_m(i, encoder.latency_s) + moved_m, at.commanded_rad);
+  return {BarShown_m(bar, Position_m(i, bar.latency_s) + moved_m, at.radius_m, at.above_K),
+          at.radius_m * (shown_rad - at.commanded_rad)};
+}
+
+Deviation CircleTwin::Grid(std::size_t i, const CircleExtra& extra) const {
+  const CircleInstant& at = steps_[i].at;
+  GridSettings grid = settings_.grid;
+  grid.offset_m[0] += extra.offset_x_m;
+  grid.offset_m[1] += extra.offset_y_m;
+  grid.rotation_rad += extra.rotation_rad;
+  const Eigen::Vector2d radial(std::cos(at.commanded_rad), std::sin(at.commanded_rad));
+  const Eigen::Vector2d off_m =
+      GridShown_m(grid, Position_m(i) + Eigen::Vector2d(extra.x_m, extra.y_m)) - at.radius_m * radial;
+  return {radial.dot(off_m), radial.x() * off_m.y() - radial.y() * off_m.x()};
+}
+
+/// Structure that no effect of the catalogue has, on top of what is shown; and vibration of the radius.
+void CircleTwin::AddSignals(std::size_t i, Deviation& shown) const {
+  const CircleStep& step = steps_[i];
+  const std::array<double, 2> without_m = {shown.radial_m, shown.tangential_m};
+  if (!signals_.empty()) {
+    const model::Instant now{.time_s = step.time_s,
+                             .reading = step.reading,
+                             .direction = static_cast<double>(step.at.direction),
+                             .velocity_rad_s = step.velocity_rad_s,
+                             .above_K = step.at.above_K,
+                             .angle_rad = {step.at.commanded_rad, 0.0}};
+    for (const model::Product& signal : signals_)
+      (signal.Channel() == 0 ? shown.radial_m : shown.tangential_m) += signal.At(now, without_m);
+  }
+  for (const EffectSettings& tone : tones_) shown.radial_m += Tone(tone, step.time_s);
+  shown.radial_m += radial_.At(step.reading);
+  shown.tangential_m += tangential_.At(step.reading);
+}
+
+Deviation CircleTwin::At(std::size_t i, const CircleExtra& extra) const {
+  Deviation shown = steps_[i].is_bar ? Bar(i, extra) : Grid(i, extra);
+  AddSignals(i, shown);
+  shown.radial_m += extra.radial_m;
+  shown.tangential_m += extra.tangential_m;
+  return shown;
+}
+
+}  // namespace twinbench::sim

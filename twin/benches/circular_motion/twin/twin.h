@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "twin/benches/circular_motion/columns.h"
+#include "twin/benches/circular_motion/twin/machine.h"
+#include "twin/core/reading.h"
+#include "twin/model/product.h"
+#include "twin/sim/empirical_signal.h"
+
+namespace twinbench::sim {
+
+/// What is added to one reading: by its set-up, by disturbances, by chance.
+struct CircleExtra {
+  double offset_x_m = 0.0, offset_y_m = 0.0;  // of the commanded centre, as bar or grid sees it
+  double rotation_rad = 0.0;                  // of the encoder's zero, or of the grid
+  double length_m = 0.0;                      // of the bar
+  double x_m = 0.0, y_m = 0.0;                // of the spindle against the table
+  double radial_m = 0.0, tangential_m = 0.0;  // of what is shown
+};
+
+/// What the twin needs of a reading: taken from its columns once.
+struct CircleStep {
+  CircleInstant at;
+  int reading = 0;
+  double time_s = 0.0, velocity_rad_s = 0.0;
+  bool is_bar = true;
+};
+
+/// The machine on the course of a run and the instruments on it, without noise. What is shown is the radial and
+/// tangential deviation from the commanded point (see columns.h).
+class CircleTwin {
+ public:
+  /// @param course   With angles, in order.
+  /// @param above_K  One temperature a reading, above that of reference.
+  CircleTwin(const Scenario& scenario, const std::vector<Reading>& course, const Eigen::VectorXd& above_K);
+
+  benches::circular::Deviation At(std::size_t i, const CircleExtra& extra) const;
+
+  /// Where the spindle was, from the commanded centre.
+  Eigen::Vector2d Position_m(std::size_t i, double latency_s = 0.0) const;
+
+ private:
+  benches::circular::Deviation Bar(std::size_t i, const CircleExtra& extra) const;
+  benches::circular::Deviation Grid(std::size_t i, const CircleExtra& extra) const;
+  void AddSignals(std::size_t i, benches::circular::Deviation& shown) const;
+
+  CircularSettings settings_;
+  CircleMachine machine_;
+  std::vector<CircleStep> steps_;
+  std::vector<EffectSettings> tones_;
+  Eigen::Matrix2Xd moved_m_;  // by effects that follow time or the reading's number
+  std::vector<model::Product> signals_;
+  EmpiricalSignal radial_, tangential_;
+};
+
+}  // namespace twinbench::sim

@@ -1,0 +1,32 @@
+#include "twin/benches/freeform_five_axis/bench.h"
+
+#include "twin/benches/freeform_five_axis/settings.h"
+#include "twin/benches/freeform_five_axis/twin/factory.h"
+
+namespace twinbench::benches::freeform {
+namespace {
+
+int PlannedReadings(const Scenario& scenario) {
+  const FreeformProcedureSettings& p = FreeformOf(scenario).freeform_procedure;
+  return 2 * p.poses * static_cast<int>(p.mounts.size());
+}
+
+}  // namespace
+
+const Bench& Whole() {
+  static const Bench bench = [] {
+    Bench b;
+    b.format = &Format();
+    b.make_twin = MakeTwin;
+    b.follow = FollowRecord;
+    b.planned_readings = PlannedReadings;
+    b.evaluate = Evaluate;
+    b.score = ScoreRun;
+    b.diagnose = Diagnose;
+    b.linear_run = Linear;
+    return b;
+  }();
+  return bench;
+}
+
+}  // namespace twinbench::benches::freeform

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "twin/benches/freeform_five_axis/format.h"
+#include "twin/core/bench.h"
+#include "twin/core/estimator.h"
+#include "twin/core/scenario.h"
+#include "twin/diagnose/diagnose.h"
+#include "twin/report/evaluation.h"
+
+/// What can be done with the bench; the fields of Bench say what each is.
+namespace twinbench::benches::freeform {
+
+const Bench& Whole();  // constant
+
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator);
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, Estimator estimator);
+diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
+                                const diagnose::DiagnoseOptions& options);
+diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
+
+}  // namespace twinbench::benches::freeform

@@ -1,0 +1,29 @@
+#include "twin/benches/freeform_five_axis/columns.h"
+
+#include "twin/benches/freeform_five_axis/format.h"
+#include "twin/core/units.h"
+
+namespace twinbench::benches::freeform {
+
+std::vector<ReadingColumn> Columns() {
+  std::vector<ReadingColumn> own;
+  for (std::size_t axis = 0; axis < kCommanded.size(); ++axis)
+    own.push_back(NumberColumn(kCommanded[axis].column, axis < 3 ? units::mm : units::deg, ColumnRole::kRequired,
+                               kCommanded[axis]));
+  own.push_back(NumberColumn("cell_i", 1.0, ColumnRole::kRequired, kCellI));
+  own.push_back(NumberColumn("cell_j", 1.0, ColumnRole::kRequired, kCellJ));
+  own.push_back(ShownColumn("qpd_x_V", 1.0, "V", kQpdX_V));
+  own.push_back(ShownColumn("qpd_y_V", 1.0, "V", kQpdY_V));
+  own.push_back(NumberColumn("qpd_sum_V", 1.0, ColumnRole::kShownToo, kQpdSum_V));
+  own.push_back(ShownColumn("ccd_px", 1.0, "px", kCcd_px));
+  own.push_back(NumberColumn(
+      "temperature_degC", 1.0, ColumnRole::kOptional, [](auto& r) -> auto& { return r.temperature_degC; }));
+  return Joined({CommonColumns(false), own});
+}
+
+std::vector<DesiredColumn> Desired() {
+  return {{"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
+           "growth with the temperature cannot be seen"}};
+}
+
+}  // namespace twinbench::benches::freeform

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "twin/core/scenario.h"
+
+/// What a scenario of the bench freeform_five_axis says.
+namespace twinbench {
+
+inline constexpr int kMachineAxes = 5, kBodyErrors = 6, kCubicTerms = 4, kSquarenesses = 7;
+inline constexpr std::array<const char*, kMachineAxes> kAxisNames = {"x", "y", "z", "a", "b"};
+inline constexpr std::array<const char*, kBodyErrors> kBodyErrorNames = {"tx", "ty", "tz", "rx", "ry", "rz"};
+inline constexpr std::array<const char*, kSquarenesses> kSquarenessNames = {"syx", "szx", "szy", "say",
+                                                                            "saz", "sbx", "sbz"};
+constexpr bool IsRotation(int body_error) {
+  return body_error >= 3;
+}
+constexpr bool IsRotaryAxis(int axis) {
+  return axis >= 3;
+}
+
+/// c0 + c1 t + c2 t^2 + c3 t^3, t = (coordinate - centre) / half.
+using CubicError = std::array<double, kCubicTerms>;
+
+struct MachineSettings {                                                   // [machine]
+  double pivot_m = 0.120;                                                  // from the axes A and B to the tip
+  std::array<std::array<CubicError, kBodyErrors>, kMachineAxes> errors{};  // [machine.x] tx_um ...
+  std::array<double, kSquarenesses> squareness_rad{};
+  std::array<double, kMachineAxes> centre = {0.0, 0.0, 0.100, 0.0, 0.0};
+  std::array<double, kMachineAxes> half = {0.150, 0.150, 0.100, 12.0 * units::deg, 12.0 * units::deg};
+  // [machine.random]: standard deviation of c0 and c1; c2 has 0.7, c3 0.5 of it
+  double random_translation_m = 3.0 * units::um;
+  double random_rotation_rad = 2.0 * units::arcsec;
+  double random_squareness_rad = 5.0 * units::arcsec;
+};
+
+struct ArtefactSettings {                                  // [artefact]
+  std::array<double, 2> vertex_radius_m = {0.040, 0.080};  // of cells (i, j) with i + j even, odd
+  double pitch_m = 0.020;
+  int cells = 5;                         // i and j go from -cells to cells
+  double mounting_m = 20.0 * units::um;  // standard deviation of where a set-up really stands
+  double mounting_rad = 20.0 * units::arcsec;
+};
+
+struct QuadrantSettings {  // [qpd]
+  double lens_m = 0.050;
+  double spot_radius_m = 0.25 * units::mm;  // 1/e^2
+  double gap_m = 0.02 * units::mm;
+  double sum_V = 5.0;
+  double noise_V = 10.0 * units::mV;
+};
+
+struct CameraSettings {  // [ccd]
+  double object_m = 0.060, image_m = 0.060;
+  double alpha_rad = 30.0 * units::deg;
+  double pixel_m = 7.0 * units::um;
+  double centre_px = 1024.0;
+  double noise_px = 0.05;
+};
+
+/// Where the artefact stands on the X slide, nominally.
+struct MountSettings {
+  double x_m = 0.0, y_m = 0.0, z_m = 0.0, yaw_rad = 0.0;
+};
+
+struct FreeformProcedureSettings {  // [freeform_procedure]
+  std::vector<MountSettings> mounts = {
+      {}, {0.0, 0.0, 0.060, 90.0 * units::deg}, {0.0, 0.0, 0.120, 0.0}, {0.0, 0.0, 0.180, 0.0}};  // one a set-up
+  int poses = 100;                                                                                // a set-up
+  double angle_rad = 10.0 * units::deg;
+  double height_m = 5.0 * units::mm;
+  double dither_m = 30.0 * units::um;
+  double dither_rad = 0.01 * units::deg;
+  std::string path = "joint";  // joint | single: all axes together, or one after the other
+};
+
+struct FreeformSettings {
+  MachineSettings machine;
+  ArtefactSettings artefact;
+  QuadrantSettings qpd;
+  CameraSettings ccd;
+  FreeformProcedureSettings freeform_procedure;
+};
+
+/// The bench's own part of a scenario. @throws std::logic_error if it is another bench's.
+inline FreeformSettings& FreeformOf(Scenario& scenario) {
+  return scenario.own.As<FreeformSettings>();
+}
+inline const FreeformSettings& FreeformOf(const Scenario& scenario) {
+  return scenario.own.As<FreeformSettings>();
+}
+
+}  // namespace twinbench

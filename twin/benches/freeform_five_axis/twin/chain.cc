@@ -1,0 +1,76 @@
+#include "twin/benches/freeform_five_axis/twin/chain.h"
+
+namespace twinbench::sim {
+namespace {
+
+enum Squareness { kSyx, kSzx, kSzy, kSay, kSaz, kSbx, kSbz };
+
+Matrix3 Rx(double angle_rad) {
+  return Eigen::AngleAxisd(angle_rad, Vector3::UnitX()).toRotationMatrix();
+}
+Matrix3 Ry(double angle_rad) {
+  return Eigen::AngleAxisd(angle_rad, Vector3::UnitY()).toRotationMatrix();
+}
+Matrix3 Rz(double angle_rad) {
+  return Eigen::AngleAxisd(angle_rad, Vector3::UnitZ()).toRotationMatrix();
+}
+
+Pose Turned(const Matrix3& R) {
+  Pose pose = Pose::Identity();
+  pose.linear() = R;
+  return pose;
+}
+
+Pose Moved(const Vector3& by_m) {
+  return Pose(Eigen::Translation3d(by_m));
+}
+
+double Cubic(const CubicError& c, double t) {
+  return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+}
+
+}  // namespace
+
+Pose PoseOf(const BodyError& e) {
+  return Moved({e[0], e[1], e[2]}) * Turned(Rz(e[5]) * Ry(e[4]) * Rx(e[3]));
+}
+
+MachineErrors ErrorsAt(const MachineSettings& machine, const MachineCommand& at) {
+  MachineErrors errors;
+  errors.squareness_rad = machine.squareness_rad;
+  for (std::size_t axis = 0; axis < kMachineAxes; ++axis) {
+    const double t = (at[axis] - machine.centre[axis]) / machine.half[axis];
+    for (std::size_t k = 0; k < kBodyErrors; ++k) errors.body[axis][k] = Cubic(machine.errors[axis][k], t);
+  }
+  return errors;
+}
+
+Pose X_MT(const MachineCommand& at, const MachineErrors& errors, double pivot_m) {
+  const auto& [x_m, y_m, z_m, a_rad, b_rad] = at;
+  const auto& s = errors.squareness_rad;
+  const Vector3 dir_y = Rz(s[kSyx]) * Vector3::UnitY();
+  const Vector3 dir_z = Ry(s[kSzx]) * Rx(s[kSzy]) * Vector3::UnitZ();
+  const Matrix3 S_a = Rz(s[kSaz]) * Ry(s[kSay]);
+  const Matrix3 S_b = Rz(s[kSbz]) * Rx(s[kSbx]);
+  const Vector3 pivot = pivot_m * Vector3::UnitZ();
+  return Moved(y_m * dir_y) * PoseOf(errors.body[1]) * Moved(z_m * dir_z) * PoseOf(errors.body[2]) * Moved(pivot) *
+         Turned(S_a * Rx(a_rad) * S_a.transpose()) * PoseOf(errors.body[3]) *
+         Turned(S_b * Ry(b_rad) * S_b.transpose()) * PoseOf(errors.body[4]) * Moved(-pivot);
+}
+
+Pose X_MS(const MachineCommand& at, const MachineErrors& errors) {
+  return Moved(at[0] * Vector3::UnitX()) * PoseOf(errors.body[0]);
+}
+
+Pose X_SF(const MountSettings& mount, const BodyError& error) {
+  return Moved({mount.x_m, mount.y_m, mount.z_m}) * Turned(Rz(mount.yaw_rad)) * PoseOf(error);
+}
+
+Vector3 VolumetricError_m(const MachineSettings& machine, const MachineCommand& at) {
+  const auto tip = [&](const MachineErrors& errors) -> Vector3 {
+    return X_MS(at, errors).inverse() * X_MT(at, errors, machine.pivot_m).translation();
+  };
+  return tip(ErrorsAt(machine, at)) - tip({});
+}
+
+}  // namespace twinbench::sim

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+
+#include "twin/benches/freeform_five_axis/twin/chain.h"
+#include "twin/benches/freeform_five_axis/twin/probe.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::sim {
+
+/// What the twin of a five-axis machine knows at the instant of a reading.
+struct FreeformMoment {
+  int reading = 0, setup = 0;
+  double time_s = 0.0;
+  double run_share = 0.0;  // of the whole run
+  double direction = 1.0;
+  double above_K = 0.0;
+  MachineCommand at{};
+  ArtefactCell cell;
+};
+
+/// What adds to one reading: errors of the machine and of how the artefact stands, a height of the cell, a way of
+/// the spot, and what is shown.
+struct FreeformExtra {
+  MachineErrors machine;
+  BodyError mounting{};
+  Vector3 slipped_S_m = Vector3::Zero();  // of the artefact, along the X slide's axes
+  double cell_height_m = 0.0;
+  Eigen::Vector2d spot_m = Eigen::Vector2d::Zero();
+  double qpd_x_V = 0.0, qpd_y_V = 0.0, ccd_px = 0.0;
+};
+
+/// One cause on the bench freeform_five_axis. Most have only one of the three parts.
+class FreeformEffect {
+ public:
+  virtual ~FreeformEffect() = default;
+
+  /// A constant of the bench that is not what the scenario says.
+  virtual void AlterBench(FreeformSettings& /*bench*/) const {}
+  /// Once for each reading, with the time running forwards.
+  virtual void Disturb(const FreeformMoment& /*moment*/, FreeformExtra& /*extra*/) {}
+  /// Where the spot lies on the quadrant detector.
+  virtual void MoveSpot(Eigen::Vector2d& /*spot_m*/) const {}
+  /// What the detectors show without it.
+  virtual void AlterSignals(const FreeformMoment& /*moment*/, ProbeSignals& /*shown*/) const {}
+};
+
+/// @param effect  Checked against the catalogue by the scenario loader.
+/// @throws std::logic_error if the catalogue has an effect that the twin has not.
+std::unique_ptr<FreeformEffect> MakeFreeformEffect(const EffectSettings& effect, const Scenario& scenario);
+
+}  // namespace twinbench::sim

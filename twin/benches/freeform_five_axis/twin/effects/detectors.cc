@@ -1,0 +1,125 @@
+#include <array>
+
+#include "twin/benches/freeform_five_axis/twin/effects/effects.h"
+#include "twin/core/units.h"
+#include "twin/model/product.h"
+
+namespace twinbench::sim {
+namespace {
+
+class WrongConstant : public FreeformEffect {
+ public:
+  explicit WrongConstant(const EffectSettings& e) : name_(e.name), factor_(1.0 + Parameter(e, "ratio")) {}
+  void AlterBench(FreeformSettings& bench) const override {
+    if (name_ == "spot_size") bench.qpd.spot_radius_m *= factor_;
+    if (name_ == "focal_length") bench.qpd.lens_m *= factor_;
+    if (name_ == "ccd_scale") bench.ccd.pixel_m /= factor_;
+    if (name_ != "vertex_radius") return;
+    for (double& radius_m : bench.artefact.vertex_radius_m) radius_m *= factor_;
+  }
+
+ private:
+  std::string name_;
+  double factor_;
+};
+
+/// Too large, or part of the light on a fixed place: to the run itself the two are hardly different.
+class GainOrLeakage : public FreeformEffect {
+ public:
+  explicit GainOrLeakage(const EffectSettings& e) : of_x_(e.where == "qpd_x") {
+    if (e.name == "leakage") {
+      const double fraction = Parameter(e, "fraction");
+      factor_ = 1.0 - fraction;
+      offset_V_ = fraction * Parameter(e, "at");
+    } else {
+      factor_ = 1.0 + Parameter(e, "ratio");
+    }
+  }
+  void AlterSignals(const FreeformMoment&, ProbeSignals& shown) const override {
+    double& one_V = of_x_ ? shown.qpd_x_V : shown.qpd_y_V;
+    one_V = factor_ * one_V + offset_V_;
+  }
+
+ private:
+  bool of_x_;
+  double factor_ = 1.0, offset_V_ = 0.0;
+};
+
+class SpotDrift : public FreeformEffect {
+ public:
+  explicit SpotDrift(const EffectSettings& e) : along_(e.where == "qpd_x" ? 0 : 1), spot_m_(Parameter(e, "spot")) {}
+  void Disturb(const FreeformMoment& moment, FreeformExtra& extra) override {
+    extra.spot_m[along_] += spot_m_ * moment.run_share;
+  }
+
+ private:
+  Eigen::Index along_;
+  double spot_m_;
+};
+
+class SpotRoll : public FreeformEffect {
+ public:
+  explicit SpotRoll(const EffectSettings& e) : roll_(Parameter(e, "roll")) {}
+  void MoveSpot(Eigen::Vector2d& spot_m) const override { spot_m = roll_ * spot_m; }
+
+ private:
+  Eigen::Rotation2Dd roll_;
+};
+
+class CameraFault : public FreeformEffect {
+ public:
+  explicit CameraFault(const EffectSettings& e)
+      : bends_(e.name == "ccd_nonlinearity"), size_(Parameter(e, bends_ ? "bend" : "per_spot")) {}
+  void AlterBench(FreeformSettings& bench) const override { centre_px_ = bench.ccd.centre_px; }
+  void AlterSignals(const FreeformMoment&, ProbeSignals& shown) const override {
+    const double off_px = shown.ccd_px - centre_px_;
+    shown.ccd_px += size_ * (bends_ ? off_px * off_px : shown.qpd_x_V / shown.qpd_sum_V);
+  }
+
+ private:
+  bool bends_;
+  double size_;
+  mutable double centre_px_ = kNaN;  // told before the first reading
+};
+
+/// A product of what is shown, the angles A and B, or neither, and a course.
+class Signal : public FreeformEffect {
+ public:
+  Signal(const EffectSettings& effect, const Scenario& scenario) : product_(effect, FormatOf(scenario.bench)) {}
+  void AlterSignals(const FreeformMoment& moment, ProbeSignals& shown) const override {
+    const model::Instant now{.time_s = moment.time_s,
+                             .reading = moment.reading,
+                             .direction = moment.direction,
+                             .above_K = moment.above_K,
+                             .angle_rad = {moment.at[3], moment.at[4]}};
+    const std::array<double*, 3> channels = {&shown.qpd_x_V, &shown.qpd_y_V, &shown.ccd_px};
+    *channels.at(static_cast<std::size_t>(product_.Channel())) +=
+        product_.At(now, std::array{shown.qpd_x_V, shown.qpd_y_V, shown.ccd_px});
+  }
+
+ private:
+  model::Product product_;
+};
+
+}  // namespace
+
+FreeformEffectPointer MakeWrongProbe(const EffectSettings& e) {
+  return std::make_unique<WrongConstant>(e);
+}
+FreeformEffectPointer MakeGainOrLeakage(const EffectSettings& e) {
+  return std::make_unique<GainOrLeakage>(e);
+}
+FreeformEffectPointer MakeSpotDrift(const EffectSettings& e) {
+  return std::make_unique<SpotDrift>(e);
+}
+FreeformEffectPointer MakeSpotRoll(const EffectSettings& e) {
+  return std::make_unique<SpotRoll>(e);
+}
+FreeformEffectPointer MakeCameraFault(const EffectSettings& e) {
+  return std::make_unique<CameraFault>(e);
+}
+FreeformEffectPointer MakeFreeformSignal(const EffectSettings& e, const Scenario& scenario) {
+  return std::make_unique<Signal>(e, scenario);
+}
+
+}  // namespace twinbench::sim

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "twin/benches/freeform_five_axis/twin/effect.h"
+#include "twin/core/reading.h"
+#include "twin/sim/empirical_signal.h"
+
+namespace twinbench::sim {
+
+/// The machine and the mountings as they really are: what the scenario says, and what it lets be drawn.
+struct DrawnBench {
+  MachineSettings machine;
+  std::vector<BodyError> mountings;  // one a set-up
+};
+DrawnBench Draw(const Scenario& scenario);
+
+/// The virtual five-axis machine with its probe and artefact, and the scenario's effects. Readings are asked for in
+/// their order.
+class FreeformTwin {
+ public:
+  /// @param drawn  Nothing drawn: the machine is as the scenario says and every set-up stands where it should.
+  FreeformTwin(const Scenario& scenario, DrawnBench drawn);
+
+  /// Without noise.
+  /// @param reading  With its commanded values; without a temperature it is at reference.
+  /// @param run_share  Of the whole run.
+  ProbeSignals Show(const Reading& reading, double run_share, FreeformExtra extra = {});
+
+  const DrawnBench& drawn() const { return drawn_; }
+
+ private:
+  Scenario scenario_;
+  FreeformSettings actual_;
+  DrawnBench drawn_;
+  std::vector<std::unique_ptr<FreeformEffect>> effects_;
+  std::vector<EmpiricalSignal> empirical_;
+};
+
+/// {"machine": {"errors": {"x.tx": {"unit", "coefficients"}, ...}, "squareness_arcsec": {...}}, "mountings": [...],
+/// "effects": [...], "seed": n}
+nlohmann::json FreeformTruth(const Scenario& scenario, const DrawnBench& drawn);
+
+}  // namespace twinbench::sim

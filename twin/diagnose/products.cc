@@ -1,0 +1,83 @@
+#include "twin/diagnose/products.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/units.h"
+#include "twin/diagnose/engine/candidates.h"
+#include "twin/diagnose/tuning.h"
+#include "twin/model/signals.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+/// Even in 1 / period, so close that a wave between two of them keeps nearly all of its size.
+std::vector<double> Periods(double range, double shortest, double longest) {
+  const double first = 1.0 / longest, last = 1.0 / shortest;
+  const int count = 2 + static_cast<int>(std::ceil(2.0 * (last - first) * range));
+  std::vector<double> periods;
+  for (int k = count - 1; k >= 0; --k) periods.push_back(1.0 / (first + (last - first) * k / (count - 1)));
+  return periods;
+}
+
+Eigen::ArrayXd Along(const std::vector<Reading>& readings, const std::function<double(const Reading&)>& along) {
+  Eigen::ArrayXd at(std::ssize(readings));
+  for (std::size_t i = 0; i < readings.size(); ++i) at[static_cast<Eigen::Index>(i)] = along(readings[i]);
+  return at;
+}
+
+std::vector<double> Onsets(const std::vector<Reading>& readings) {
+  std::vector<double> all;
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    if (readings[i].setup == readings[i - 1].setup) all.push_back(readings[i].reading);
+  }
+  const std::size_t every = 1 + all.size() / tuning::kMostSteps;
+  std::vector<double> thinned;
+  for (std::size_t k = every / 2; k < all.size(); k += every) thinned.push_back(all[k]);
+  return thinned;
+}
+
+/// 0, and from shorter than a room needs to longer than a machine does.
+std::vector<double> Lags_s() {
+  std::vector<double> lags_s = Ratios(100.0, 20000.0, 16);
+  lags_s.insert(lags_s.begin(), 0.0);
+  return lags_s;
+}
+
+}  // namespace
+
+TwinComparison::Product WaveAlong(const std::string& effect, const std::string& where, const std::string& point,
+                                  const std::string& period, std::function<double(const Reading&)> along,
+                                  double shortest, double longest) {
+  const auto periods = [along, shortest, longest](const std::vector<Reading>& readings) {
+    const Eigen::ArrayXd at = Along(readings, along);
+    return Periods(at.maxCoeff() - at.minCoeff(), shortest, longest);
+  };
+  const auto wave = [along](const std::vector<Reading>& readings, double length) {
+    const Eigen::ArrayXd phase_rad = units::turn * Along(readings, along) / length;
+    Eigen::MatrixXd wave(phase_rad.size(), 2);
+    wave << phase_rad.cos(), phase_rad.sin();
+    return wave;
+  };
+  return {effect, where, point, {"cosine", "sine"}, period, periods, wave};
+}
+
+TwinComparison::Product SlipAt(const std::string& where, const std::string& point) {
+  const auto step = [](const std::vector<Reading>& readings, double at_reading) {
+    return Eigen::MatrixXd(model::Step(model::CourseOf(readings).reading, at_reading));
+  };
+  return {"slip", where, point, {"step"}, "at_reading", Onsets, step};
+}
+
+TwinComparison::Product FollowsTemperature(const std::string& effect, const std::string& where,
+                                           const std::string& point, const std::string& size,
+                                           double reference_degC) {
+  const auto followed = [reference_degC](const std::vector<Reading>& readings, double lag_s) {
+    const model::Course course = model::CourseOf(readings);
+    const Eigen::VectorXd above_K = model::Above_K(course, reference_degC);
+    return Eigen::MatrixXd(lag_s > 0.0 ? model::Lagged(course.time_s, above_K, lag_s) : above_K);
+  };
+  return {effect, where, point, {size}, "lag", [](const std::vector<Reading>&) { return Lags_s(); }, followed};
+}
+
+}  // namespace twinbench::diagnose
