@@ -7,6 +7,7 @@
 #include "twin/benches/circular_motion/analysis.h"
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/report/json_units.h"
+#include "twin/report/polar_text.h"
 
 namespace twinbench::benches::circular {
 namespace {
@@ -154,6 +155,30 @@ std::string DeviationsText(const CircleAnalysis& a) {
   return text;
 }
 
+/// Radial deviation of the paths of one set-up and feed: + counter-clockwise, o clockwise.
+std::string PolarOf(const std::vector<CirclePath>& all, const Iso230_4& of) {
+  std::vector<report::PolarSeries> series;
+  std::string title;
+  for (const CirclePath& path : all) {
+    if (path.setup != of.setup || path.feed_m_s != of.feed_m_s) continue;
+    report::PolarSeries& s = series.emplace_back(report::PolarSeries{path.direction > 0 ? '+' : 'o', {}, {}});
+    for (const PathPoint& point : path.points) {
+      s.angle_rad.push_back(point.commanded_rad);
+      s.value.push_back(point.Radial_m() / um);
+    }
+    title = fmt::format("set-up {}, {}, R = {:.3f} mm, {}: radial deviation, + counter-clockwise, o clockwise\n",
+                        path.setup, path.is_bar ? "bar" : "grid", path.radius_m / units::mm,
+                        of.feed_m_s > 0.0 ? fmt::format("{:.6g} mm/min", Feed_mm_min(of.feed_m_s)) : "at rest");
+  }
+  return title + report::PolarText(series, "um") + "\n";
+}
+
+std::string PolarsOf(const CircleAnalysis& a) {
+  std::string text;
+  for (const Iso230_4& d : a.deviations) text += PolarOf(a.paths, d);
+  return text;
+}
+
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
@@ -170,6 +195,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   evaluation.summary = fmt::format("{} of {} readings have radius and angle\n", a.points.size(), readings.size());
   if (a.IsFitted()) evaluation.summary += ErrorsText(a);
   evaluation.summary += DeviationsText(a);
+  evaluation.tables = {{"polar.txt", PolarsOf(a)}};
   return evaluation;
 }
 
