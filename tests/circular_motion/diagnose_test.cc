@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/circular_motion/circle_run.h"
 #include "tests/circular_motion/oracle.h"
 #include "twin/benches/circular_motion/bench.h"
-#include "twin/benches/circular_motion/twin/live.h"
 
 namespace twinbench::benches::circular {
 namespace {
@@ -14,13 +14,6 @@ Scenario Believed(const std::vector<std::string>& settings = {}) {
   return ParseScenario(
       "bench = \"circular_motion\"\nseed = 7\n[environment]\nswing_mK = 700.0\nswing_period_s = 7000.0", "believed",
       ".", settings);
-}
-
-std::vector<Reading> ReadingsOf(const Scenario& scenario) {
-  const sim::CircleRun run(scenario);
-  std::vector<Reading> readings;
-  for (int k = 0; k < run.Readings(); ++k) readings.push_back(run.Take(k));
-  return readings;
 }
 
 diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {
@@ -43,11 +36,11 @@ std::string NameOfHidden(const std::string& effect, const std::string& where, co
     hidden.parameters[p.name] = p.default_SI;
   hidden.parameters[parameter] = value_SI;
   with.effects = {hidden};
-  return NameOf(DiagnosisOf(ReadingsOf(with), Believed()));
+  return NameOf(DiagnosisOf(test::CircleReadings(with), Believed()));
 }
 
 TEST(CircularDiagnosis, RaisesNoAlarmWithoutACause) {
-  EXPECT_EQ(NameOf(DiagnosisOf(ReadingsOf(Believed()), Believed())), "none");
+  EXPECT_EQ(NameOf(DiagnosisOf(test::CircleReadings(Believed()), Believed())), "none");
 }
 
 TEST(CircularDiagnosis, NamesWhatTheTwinWasGiven) {

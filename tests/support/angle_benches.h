@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tests/circular_motion/circle_run.h"
 #include "tests/support/twin_run.h"
-#include "twin/benches/circular_motion/twin/live.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/procedure.h"
@@ -46,10 +46,7 @@ inline BenchRun RunHob(const Scenario& scenario) {
 }
 
 inline BenchRun RunCircles(const Scenario& scenario) {
-  const sim::CircleRun run(scenario);
-  std::vector<Reading> readings;
-  for (int k = 0; k < run.Readings(); ++k) readings.push_back(run.Take(k));
-  return {scenario, readings, run.Truth()};
+  return {scenario, CircleReadings(scenario), sim::CircleRun(scenario).Truth()};
 }
 
 /// By the bench's own twin, through a run record: a bench that has no shorter way.

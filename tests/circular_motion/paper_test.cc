@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/circular_motion/circle_run.h"
+#include "twin/benches/circular_motion/analysis.h"
+
+// The figures of the bar's paper, and what stands behind the uncertainties that are stated beside them: many runs.
+namespace twinbench::benches::circular {
+namespace {
+
+using namespace separate::circular;
+using units::um;
+
+/// The paper's instrument: 0.1 um, 18000 lines read to 1/4096; everything else as well as it is usually.
+Scenario Instrument(std::uint64_t seed, const std::vector<std::string>& settings) {
+  Scenario scenario =
+      ParseScenario("bench = \"circular_motion\"\n[environment]\nswing_mK = 700.0\nswing_period_s = 7000.0\n",
+                    "instrument", ".", settings);
+  scenario.seed = seed;
+  return scenario;
+}
+
+/// Largest distance of the radius at any of 36 stops, in any of three runs on one mounting, from their mean.
+double Unrepeated_m(std::uint64_t seed) {
+  constexpr int kRuns = 3, kStops = 36;
+  Eigen::MatrixXd radial_m(kStops, kRuns);
+  for (int run = 0; run < kRuns; ++run) {
+    const std::vector<Reading> readings = test::CircleReadings(
+        Instrument(kRuns * seed + static_cast<std::uint64_t>(run),
+                   {"circular_procedure.setups=[{ instrument = \"bar\", radius_mm = 156.278 }]",
+                    "circular_procedure.feeds_mm_min=[1000.0]", "circular_procedure.points=3",
+                    "circular_procedure.directions=[1]", "mounting.offset_um=0.0", "mounting.zero_deg=0.0",
+                    "mounting.length_um=0.0"}));
+    for (int k = 0; k < kStops; ++k)
+      radial_m(k, run) = kBar_m(readings[readings.size() - kStops + static_cast<std::size_t>(k)]);
+  }
+  return (radial_m.colwise() - radial_m.rowwise().mean()).cwiseAbs().maxCoeff();
+}
+
+TEST(PaperOfTheBar, RepeatsWithinAMicrometreAt156Millimetres) {
+  constexpr int kSets = 200;
+  std::vector<double> largest_m;
+  for (std::uint64_t seed = 1; seed <= kSets; ++seed) largest_m.push_back(Unrepeated_m(seed));
+  std::ranges::sort(largest_m);
+  EXPECT_LT(largest_m.back(), 1.0 * um) << "the paper's claim";
+  // Another implementation of the same noise has 0.64 um in 95 of 100 sets; of 200 sets that quantile scatters
+  // 0.03.
+  EXPECT_NEAR(largest_m[kSets * 95 / 100] / um, 0.64, 0.08);
+}
+
+TEST(PaperOfTheBar, AgreesWithTheGridWhereEveryUnknownIsFittedAndNotAsPublished) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Scenario scenario =
+        Instrument(seed, {"circular_procedure.points=36", "encoder.eccentricity_arcsec=5.0", "bar.ball3_um=0.1"});
+    const std::vector<Reading> readings = test::CircleReadings(scenario);
+    const BarAgainstGrid fitted = CompareWithGrid(Analyse(scenario, readings, Estimator::kRigorous).paths);
+    EXPECT_LT(fitted.radial_max_m, 2.0 * um) << seed;
+    EXPECT_LT(fitted.tangential_max_m, 2.0 * um) << seed;
+    const CircleAnalysis published = Analyse(scenario, readings, Estimator::kPublished);
+    double tangential_m = 0.0;  // of a machine without errors
+    for (const CirclePath& path : published.paths) {
+      for (const PathPoint& point : path.points)
+        tangential_m = std::max(tangential_m, path.is_bar ? std::abs(point.Tangential_m()) : 0.0);
+    }
+    EXPECT_GT(tangential_m, 10.0 * um) << "zero of the encoder and centre stay in it, seed " << seed;
+  }
+}
+
+/// e' cov^-1 e of all fitted errors of machine, bar and encoder, and how many they are.
+std::pair<double, Eigen::Index> ChiSquared(std::uint64_t seed) {
+  const Scenario scenario = Instrument(seed, {"circular_procedure.points=120"});
+  const CircleFit fit = Analyse(scenario, test::CircleReadings(scenario), Estimator::kRigorous).fit;
+  const Eigen::Index count = std::ssize(fit.fitted);
+  Eigen::VectorXd error(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const CircleUnknown& unknown = CircleUnknowns()[fit.fitted[static_cast<std::size_t>(k)]];
+    CircleErrors found = fit.errors;
+    const double truth = unknown.key.starts_with("machine.lag") ? 1e-3 : 0.0;  // as scenarios have it unsaid
+    error[k] = unknown.in(found)-truth;
+  }
+  EXPECT_EQ(fit.shared.hidden.cols(), 0) << "two radii, two feeds and the grid tell all apart";
+  return {error.dot(fit.shared.cov.topLeftCorner(count, count).inverse() * error), count};
+}
+
+TEST(RigorousCircle, StatesUncertaintiesThatMatchItsErrors) {
+  constexpr int kSeeds = 40;
+  double sum = 0.0, dof = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const auto [chi2, count] = ChiSquared(seed);
+    sum += chi2;
+    dof += static_cast<double>(count);
+  }
+  // Chi-squared per degree of freedom: standard deviation sqrt(2 / dof), about 0.04 with 40 runs.
+  EXPECT_NEAR(sum / dof, 1.0, 4.0 * std::sqrt(2.0 / dof)) << dof;
+}
+
+}  // namespace
+}  // namespace twinbench::benches::circular
