@@ -10,10 +10,10 @@
 namespace twinbench::benches::circular {
 namespace {
 
-Scenario Believed(const std::vector<std::string>& settings = {}) {
+Scenario Believed() {
   return ParseScenario(
       "bench = \"circular_motion\"\nseed = 7\n[environment]\nswing_mK = 700.0\nswing_period_s = 7000.0", "believed",
-      ".", settings);
+      ".", {"circular_procedure.points=72", "circular_procedure.stops=18"});
 }
 
 diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {

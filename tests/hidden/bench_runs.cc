@@ -191,14 +191,17 @@ void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<
     AddToReading(bench, signal.row(static_cast<Eigen::Index>(i)), readings[i]);
 }
 
-SignatureScale::SignatureScale(Design design, const std::string& cache_folder) : design_(design) {
-  diagnose::DiagnoseOptions options;
-  options.cache_folder = cache_folder;
-  const diagnose::DiagnosisRun clean =
-      diagnose::Diagnose(TakeReadings(Drawn(design, 1)), Believed(design), options);
-  run_ = clean.run;
-  noise_ = clean.noise;
-  projector_ = std::make_unique<diagnose::Projector>(noise_.Whiten(run_, run_.nuisance.jacobian), run_.nuisance);
+const SignatureScale::Clean& SignatureScale::CleanRun() const {
+  std::call_once(diagnosed_, [this] {
+    diagnose::DiagnoseOptions options;
+    options.cache_folder = cache_folder_;
+    const diagnose::DiagnosisRun clean =
+        diagnose::Diagnose(TakeReadings(Drawn(design_, 1)), Believed(design_), options);
+    clean_ = {clean.run, clean.noise, nullptr};
+    clean_.projector = std::make_unique<diagnose::Projector>(
+        clean.noise.Whiten(clean.run, clean.run.nuisance.jacobian), clean.run.nuisance);
+  });
+  return clean_;
 }
 
 /// What the readings show in the rows of the run.
@@ -208,11 +211,12 @@ Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings) const
         .run.observed;
   if (design_ == Design::kHob)
     return diagnose::hob::BuildRun(readings, Believed(design_), benches::hob::FollowRecord).run.observed;
-  Eigen::VectorXd rows(run_.Rows());
-  for (int row = 0; row < run_.Rows(); ++row) {
+  const diagnose::LinearRun& run = CleanRun().run;
+  Eigen::VectorXd rows(run.Rows());
+  for (int row = 0; row < run.Rows(); ++row) {
     const auto number =
-        static_cast<std::size_t>(run_.schedule.reading[static_cast<std::size_t>(run_.ReadingOf(row))]);
-    rows[row] = Shown(BenchOf(design_), readings[number], run_.ChannelOf(row));
+        static_cast<std::size_t>(run.schedule.reading[static_cast<std::size_t>(run.ReadingOf(row))]);
+    rows[row] = Shown(BenchOf(design_), readings[number], run.ChannelOf(row));
   }
   return rows;
 }
@@ -220,10 +224,11 @@ Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings) const
 double SignatureScale::Rho(const std::vector<Reading>& with, const std::vector<Reading>& without) const {
   Require(with.size() == without.size(), "two runs of the same schedule");
   Eigen::MatrixXd signature = Rows(with) - Rows(without);
-  Require(signature.rows() == run_.Rows(), "a run of the design");
+  const Clean& clean = CleanRun();
+  Require(signature.rows() == clean.run.Rows(), "a run of the design");
   signature = signature.array().isFinite().select(signature, 0.0);
-  const Eigen::MatrixXd white = noise_.Whiten(run_, signature);
-  return std::sqrt(std::max(0.0, white.cwiseProduct(projector_->Apply(white)).sum()));
+  const Eigen::MatrixXd white = clean.noise.Whiten(clean.run, signature);
+  return std::sqrt(std::max(0.0, white.cwiseProduct(clean.projector->Apply(white)).sum()));
 }
 
 }  // namespace twinbench::hidden

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -41,22 +42,31 @@ std::vector<Reading> TakeReadings(const Scenario& actual);
 /// y; circles: radial and tangential; five axes: quadrants' x and y [V], camera [px]; the others: the angle.
 void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<Reading>& readings);
 
-/// Measures signatures in units of noise after projection.
+/// Measures signatures in units of noise after projection, by a clean run of the design that is diagnosed when the
+/// first one is asked for.
 class SignatureScale {
  public:
   /// @param cache_folder  Of calibrated thresholds.
-  SignatureScale(Design design, const std::string& cache_folder);
+  SignatureScale(Design design, std::string cache_folder)
+      : design_(design), cache_folder_(std::move(cache_folder)) {}
 
   /// Length of what two runs of the same schedule differ by.
   double Rho(const std::vector<Reading>& with, const std::vector<Reading>& without) const;
 
  private:
+  struct Clean {
+    diagnose::LinearRun run;
+    diagnose::NoiseModel noise;
+    std::unique_ptr<diagnose::Projector> projector;
+  };
+
+  const Clean& CleanRun() const;
   Eigen::VectorXd Rows(const std::vector<Reading>& readings) const;
 
   Design design_;
-  diagnose::LinearRun run_;
-  diagnose::NoiseModel noise_;
-  std::unique_ptr<diagnose::Projector> projector_;
+  std::string cache_folder_;
+  mutable std::once_flag diagnosed_;
+  mutable Clean clean_;
 };
 
 double UniformIn(Stream& stream, double lower, double upper);
