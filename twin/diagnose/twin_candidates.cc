@@ -72,26 +72,28 @@ TwinComparison::ShapedProduct Shaped(const TwinComparison::Product& p, const std
           }};
 }
 
-void AddProduct(const Compared& c, const TwinComparison::ShapedProduct& product, Candidates& named) {
+void AddProduct(const Compared& c, const TwinComparison& comparison, const TwinComparison::ShapedProduct& product,
+                Candidates& named) {
   std::vector<Shape> shapes;
   for (std::size_t k = 0; k < product.shapes.size(); ++k) {
     const auto values = product.values.col(static_cast<Eigen::Index>(k));
     shapes.push_back(named.catalogue().ShapeOf(product.effect, product.shapes[k], {values.begin(), values.end()}));
   }
-  named.AddOver(
-      {product.effect, product.where, {}}, product.sizes, shapes,
-      [slope = c.twin.Slope(product.point, c.free.Disturbances()), courses = product.courses,
-       used = c.used](const Eigen::VectorXd& shape) { return unknown::ShownOf(slope, courses(used, shape)); });
+  named.AddOver({product.effect, product.where, {}}, product.sizes, shapes,
+                [slope = c.twin.Slope(product.point, c.free.Disturbances()), courses = product.courses,
+                 used = AsPredicted(c, comparison)](const Eigen::VectorXd& shape) {
+                  return unknown::ShownOf(slope, courses(used, shape));
+                });
 }
 
 /// Effects of the catalogue as slopes of the twin times courses, where asking anew at each shape takes too long.
 void AddProducts(const Compared& c, const TwinComparison& comparison, const DiagnoseOptions& options,
                  Candidates& named) {
   for (const TwinComparison::Product& product : comparison.products) {
-    if (!IsExcluded(options, product.effect)) AddProduct(c, Shaped(product, c.used), named);
+    if (!IsExcluded(options, product.effect)) AddProduct(c, comparison, Shaped(product, c.used), named);
   }
   for (const TwinComparison::ShapedProduct& product : comparison.shaped_products) {
-    if (!IsExcluded(options, product.effect)) AddProduct(c, product, named);
+    if (!IsExcluded(options, product.effect)) AddProduct(c, comparison, product, named);
   }
 }
 

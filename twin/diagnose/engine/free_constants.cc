@@ -42,6 +42,8 @@ Eigen::VectorXd Refitted(const FreeConstants& free, const Eigen::VectorXd& resid
   seen.head(rows) = how.weights.cwiseProduct(residual) + white.topRows(rows) * free.values;
   const Eigen::VectorXd scale = Alike(white, how.rank);
   white *= scale.asDiagonal();
+  const bool all_held = (free.Precision().array() > 0.0).all();
+  if (all_held) return scale.cwiseProduct(SolveLeastSquares(white, seen).col(0));
   return scale.cwiseProduct(SolveRanked(white, seen, how.rank).x.col(0));
 }
 
@@ -84,7 +86,7 @@ Eigen::VectorXd FreeConstants::Precision() const {
 FreeConstants FitFree(const Followed& twin, std::vector<FreePoint> points, const Eigen::VectorXd& observed,
                       const FreeFit& how) {
   constexpr int kMostHalvings = 6;
-  constexpr double kNoWorse = 1.001;
+  constexpr double kNoWorse = 1.001, kSettled = 1e-7;
   FreeConstants free;
   free.points = std::move(points);
   Eigen::Index constants = 0;
@@ -109,7 +111,9 @@ FreeConstants FitFree(const Followed& twin, std::vector<FreePoint> points, const
       free.values = 0.5 * (free.values + before);
       now = misfit();
     }
+    const bool has_settled = k > 0 && least - now < kSettled * now;
     least = now;
+    if (has_settled) break;
   }
   free.fitted = Fitted(free, how);
   return free;

@@ -12,8 +12,19 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
+/// Whether sparse arithmetic would only get in the way.
+bool IsDense(const Sparse& jacobian) {
+  constexpr double kDense = 0.2;
+  return static_cast<double>(jacobian.nonZeros()) >
+         kDense * static_cast<double>(jacobian.rows()) * static_cast<double>(jacobian.cols());
+}
+
 /// J'J, dense: a few hundred unknowns.
 Eigen::MatrixXd Gram(const Sparse& jacobian) {
+  if (IsDense(jacobian)) {
+    const Eigen::MatrixXd dense = jacobian;
+    return dense.transpose() * dense;
+  }
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   for (int k = 0; k < jacobian.rows(); ++k) {
     for (Sparse::InnerIterator a(jacobian, k); a; ++a) {
@@ -40,9 +51,42 @@ bool AreSeparate(const Eigen::MatrixXd& normal, int blocks, int size) {
   return true;
 }
 
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr Eigen::Index kRowsAtOnce = 8;  // so many rows of S stay in the first-level cache
+
+/// gathered += J' S of kRowsAtOnce rows: each sum is loaded and stored once for all of them.
+[[gnu::target_clones("avx512f", "avx2", "default")]] void AddRows(const double* __restrict J, Eigen::Index unknowns,
+                                                                  const double* __restrict S, Eigen::Index columns,
+                                                                  double* __restrict gathered) {
+  for (Eigen::Index j = 0; j < unknowns; ++j) {
+    double a[kRowsAtOnce];
+    for (Eigen::Index r = 0; r < kRowsAtOnce; ++r) a[r] = J[r * unknowns + j];
+    double* const sum = gathered + j * columns;
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      double more = 0.0;
+      for (Eigen::Index r = 0; r < kRowsAtOnce; ++r) more += a[r] * S[r * columns + c];
+      sum[c] += more;
+    }
+  }
+}
+
+/// J' S where every reading shows nearly every unknown.
+Eigen::MatrixXd GatherDense(const Sparse& jacobian, const Eigen::MatrixXd& S) {
+  const Eigen::Index rows = (S.rows() + kRowsAtOnce - 1) / kRowsAtOnce * kRowsAtOnce;
+  RowMajorMatrix J = RowMajorMatrix::Zero(rows, jacobian.cols()), by_row = RowMajorMatrix::Zero(rows, S.cols());
+  J.topRows(S.rows()) = jacobian;
+  by_row.topRows(S.rows()) = S;
+  RowMajorMatrix gathered = RowMajorMatrix::Zero(jacobian.cols(), S.cols());
+  for (Eigen::Index row = 0; row < rows; row += kRowsAtOnce)
+    AddRows(J.row(row).data(), J.cols(), by_row.row(row).data(), by_row.cols(), gathered.data());
+  return gathered;
+}
+
 /// J' S, a row of S at a time. Most signatures are zero on most rows (other channels, before a step): what lies
 /// beside the first and last of a row that are not costs nothing here.
 Eigen::MatrixXd Gather(const Sparse& jacobian, const Eigen::MatrixXd& S) {
+  if (IsDense(jacobian)) return GatherDense(jacobian, S);
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const RowMajor by_row = S;
   RowMajor gathered = RowMajor::Zero(jacobian.cols(), S.cols());
