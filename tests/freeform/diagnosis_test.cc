@@ -11,7 +11,9 @@ constexpr const char* kShorter = "[freeform_procedure]\nposes = 60\n";  // for t
 
 diagnose::Diagnosis DiagnosisOf(const std::string& hidden) {
   const std::vector<Reading> readings = RunOf(FreeformScenario(kShorter + hidden));
-  return benches::freeform::Diagnose(readings, FreeformScenario(kShorter), {}).diagnosis;
+  diagnose::DiagnoseOptions options;
+  options.null_runs = 200;  // enough for a threshold
+  return benches::freeform::Diagnose(readings, FreeformScenario(kShorter), options).diagnosis;
 }
 
 std::vector<std::string> NamesOf(const diagnose::Diagnosis& diagnosis) {

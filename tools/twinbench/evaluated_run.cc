@@ -15,6 +15,7 @@ bool EvaluateRun(const Scenario& scenario, const std::string& folder) {
   const report::Evaluation evaluation =
       BenchOf(scenario).evaluate(scenario, RunRecord::Open(folder)->Readings(), Estimator::kRigorous);
   WriteJson(run.results(), evaluation.results);
+  WriteTables(folder, evaluation.tables);
   fmt::print("{}", evaluation.summary);
   return evaluation.Separated();
 }

@@ -36,6 +36,12 @@ void WriteJson(const std::string& path, const nlohmann::json& json) {
   }
 }
 
+void WriteTables(const std::string& folder, const std::vector<report::ResultTable>& tables) {
+  if (!tables.empty()) fs::create_directories(folder);
+  for (const report::ResultTable& table : tables)
+    WriteFileAtOnce((fs::path(folder) / table.file).string(), table.text);
+}
+
 nlohmann::json ReadJson(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw InputError(path, "cannot be opened", "a file of a twinbench run");

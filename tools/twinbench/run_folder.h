@@ -6,6 +6,7 @@
 
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
+#include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 
@@ -25,6 +26,9 @@ void WriteFileAtOnce(const std::string& path, const std::string& text);
 
 /// "-" is stdout.
 void WriteJson(const std::string& path, const nlohmann::json& json);
+
+/// Each into the folder, which is made if it is not there.
+void WriteTables(const std::string& folder, const std::vector<report::ResultTable>& tables);
 
 /// @throws InputError if the file is missing or no JSON.
 nlohmann::json ReadJson(const std::string& path);

@@ -11,7 +11,7 @@ namespace twinbench::tools {
 namespace {
 
 struct SeparateOptions {
-  std::string source, scenario, json, estimator = "rigorous";
+  std::string source, scenario, json, tables, estimator = "rigorous";
   std::vector<std::string> overrides;
 };
 
@@ -22,6 +22,7 @@ void Separate(const SeparateOptions& options) {
   if (!evaluation.Separated())
     throw InputError(options.source, evaluation.not_separated, "readings of a full-circle test");
   if (!options.json.empty()) WriteJson(options.json, evaluation.separation);
+  if (!options.tables.empty()) WriteTables(options.tables, evaluation.tables);
   if (options.json != "-") fmt::print("{}", evaluation.summary);
 }
 
@@ -34,6 +35,8 @@ void AddSeparate(CLI::App& app) {
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
   command->add_option("--json", options->json, "write separation.json here, - for stdout");
+  command->add_option("--tables", options->tables,
+                      "write the results' tables (CSV) into this folder, if there are any");
   command->add_option("--estimator", options->estimator, "published: the paper's equations; rigorous: ours")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();

@@ -2,8 +2,15 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace twinbench::report {
+
+/// A result as a file for other programs.
+struct ResultTable {
+  std::string file;  // "compensation.csv"
+  std::string text;
+};
 
 /// What the readings of any bench come to.
 struct Evaluation {
@@ -11,6 +18,7 @@ struct Evaluation {
   nlohmann::json separation;  // separation.json (formats.md); null if there is none
   std::string not_separated;  // why
   std::string summary;        // for a person
+  std::vector<ResultTable> tables = {};
 
   bool Separated() const { return !separation.is_null(); }
 };

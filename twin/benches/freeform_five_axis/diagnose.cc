@@ -7,6 +7,7 @@
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/twin/factory.h"
 #include "twin/diagnose/by_twin.h"
+#include "twin/diagnose/products.h"
 
 namespace twinbench::benches::freeform {
 namespace {
@@ -79,7 +80,8 @@ Eigen::ArrayXd Times_s(const std::vector<Reading>& readings) {
 
 /// Values of 1 / period, in even steps, so close that a wave between two of them keeps nearly all of its size.
 std::vector<double> Frequencies(double first, double last, double range) {
-  const int count = 1 + static_cast<int>(std::ceil((last - first) * range * 2.0));
+  constexpr int kMost = 1500;  // thinned evenly beyond that, for the time it takes
+  const int count = std::min(kMost, 1 + static_cast<int>(std::ceil((last - first) * range * 2.0)));
   std::vector<double> values;
   for (int k = 0; k < count; ++k) values.push_back(first + (last - first) * k / std::max(1, count - 1));
   return values;
@@ -111,11 +113,31 @@ Eigen::MatrixXd ToneAt(const std::vector<Reading>& readings, double frequency_Hz
   return Waves(Times_s(readings) * frequency_Hz);
 }
 
-/// Waves whose period nobody knows: as slopes of the twin times waves.
-std::vector<diagnose::TwinComparison::Product> WavesOfUnknownPeriod() {
+/// Part of the light on a fixed place: what is missing elsewhere, and what is shown of it there.
+diagnose::TwinComparison::Product Leakage(const std::string& channel, const Quantity& shown_V) {
+  constexpr double kFarthest_V = 2.0, kStep_V = 0.1;
+  const auto places = [](const std::vector<Reading>&) {
+    std::vector<double> values;
+    for (int k = 0; k * kStep_V <= 2.0 * kFarthest_V; ++k) values.push_back(k * kStep_V - kFarthest_V);
+    return values;
+  };
+  const auto missing = [shown_V](const std::vector<Reading>& readings, double at_V) {
+    Eigen::MatrixXd course(std::ssize(readings), 1);
+    for (std::size_t i = 0; i < readings.size(); ++i)
+      course(static_cast<Eigen::Index>(i), 0) = at_V - shown_V(readings[i]);
+    return course;
+  };
+  return {"leakage", channel, channel, {"fraction"}, "at", places, missing};
+}
+
+/// What depends on a shape that nobody knows, as slopes of the twin times courses.
+std::vector<diagnose::TwinComparison::Product> Products(double reference_degC) {
   std::vector<diagnose::TwinComparison::Product> products;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = kAxisNames[axis], point = name + ".t" + name;
+    products.push_back(diagnose::SlipAt(name, "x.t" + name));  // between X slide and artefact
+    products.push_back(
+        diagnose::FollowsTemperature("thermal_growth", name, "z.t" + name, "growth", reference_degC));
     const std::vector<std::string> sizes = {"cosine", "sine"};
     products.push_back(
         {"cyclic", name, point, sizes, "pitch",
@@ -123,6 +145,8 @@ std::vector<diagnose::TwinComparison::Product> WavesOfUnknownPeriod() {
          [axis](const std::vector<Reading>& r, double pitch_m) { return Waves(Along(r, axis) / pitch_m); }});
     products.push_back({"tone", name, point, sizes, "frequency", Tones_Hz, ToneAt});
   }
+  for (const auto& [channel, shown_V] : {std::pair{"qpd_x", kQpdX_V}, std::pair{"qpd_y", kQpdY_V}})
+    products.push_back(Leakage(channel, shown_V));
   for (const char* channel : {"qpd_x", "qpd_y"})
     products.push_back({"tone", channel, channel, {"cosine_signal", "sine_signal"}, "frequency", Tones_Hz, ToneAt});
   return products;
@@ -200,7 +224,7 @@ diagnose::TwinComparison Comparison(const Scenario& scenario) {
   comparison.free_courses = FreeOfMachine(own.machine);
   comparison.free_sd = [own](const model::Point& point) { return LargestFree(own, point); };
   comparison.free_rounds = kRounds;
-  comparison.products = WavesOfUnknownPeriod();
+  comparison.products = Products(scenario.environment.reference_degC);
   comparison.shaped_products = {WavesOverTheArray(own.artefact)};
   comparison.interaction_points = {"x.tx", "y.ty", "z.tz"};
   comparison.coordinates = Coordinates();

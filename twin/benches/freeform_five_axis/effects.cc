@@ -30,7 +30,7 @@ std::vector<EffectEntry> QuadrantEffects() {
       {"qpd_roll",
        "quadrant detector turned about the beam",
        {},
-       {Signed("roll", "rad", 0.03, 3.0, "of the spot")}},
+       {Signed("roll", "rad", 0.03, 3.0, "of the axes of its signals")}},
       {"spot_size", "spot larger than stated", {}, {Ratio(0.005, 0.9, "too much")}},
       {"focal_length", "lens of another focal length", {}, {Ratio(0.005, 0.9, "too much")}},
   };

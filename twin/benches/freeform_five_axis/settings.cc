@@ -37,6 +37,8 @@ void AddArtefact(Keys& keys, ArtefactSettings& s) {
   t.Add("vertex_radius", kMm, Positive(10000), List(s.vertex_radius_m), "of its cells, in turn like a chessboard");
   t.Add("pitch", kMm, Positive(1000), &s.pitch_m, "of the cells");
   t.Add("cells", kPure, {0, 100}, &s.cells, "from the middle to the last one, in x and y");
+  t.File("form_error", s.form_error,
+         "OpenEXR of heights [um] over the array, +x to the right, +y up, beside its form");
   t.Add("mounting", kUm, UpTo(10000), &s.mounting_m, "standard deviation of where a set-up really stands");
   t.Add("mounting", kArcsec, UpTo(3600), &s.mounting_rad, "likewise of how it is turned");
 }

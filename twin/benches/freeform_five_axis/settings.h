@@ -39,6 +39,7 @@ struct MachineSettings {                                                   // [m
 struct ArtefactSettings {                                  // [artefact]
   std::array<double, 2> vertex_radius_m = {0.040, 0.080};  // of cells (i, j) with i + j even, odd
   double pitch_m = 0.020;
+  std::string form_error;                // OpenEXR of heights over the array; the estimators do not know of it
   int cells = 5;                         // i and j go from -cells to cells
   double mounting_m = 20.0 * units::um;  // standard deviation of where a set-up really stands
   double mounting_rad = 20.0 * units::arcsec;

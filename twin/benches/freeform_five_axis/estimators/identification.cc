@@ -84,6 +84,9 @@ std::string WhyOf(const std::map<std::string, double>& what, bool strictly) {
     return "turning about the beam moves nothing that the probe sees";
   if (!strictly) return "on this path these courses differ by less than the noise can tell";
   if (all(IsConstant)) return "constants of bodies in a row add up, and mountings take up what is left";
+  const bool mounted =
+      std::ranges::any_of(what, [](const auto& entry) { return entry.first.starts_with("mount"); });
+  if (mounted) return "every mounting can be moved and turned so that it takes up the rest";
   return "a slope of an error along its axis is the squareness of that axis, or a turn of every mounting";
 }
 

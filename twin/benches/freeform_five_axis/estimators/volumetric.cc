@@ -1,6 +1,10 @@
 #include "twin/benches/freeform_five_axis/estimators/volumetric.h"
 
+#include <algorithm>
+
+#include "twin/benches/freeform_five_axis/estimators/published.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/core/stream.h"
 
 namespace twinbench::benches::freeform::estimators {
 
@@ -17,6 +21,48 @@ Eigen::Matrix3Xd WithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen:
   const Eigen::VectorXd flat = vectors.reshaped();
   const Eigen::VectorXd left = flat - motion * SolveRanked(motion, flat, kRank).x;
   return left.reshaped(3, points.cols());
+}
+
+std::vector<PoseRead> UnseenPoses(const std::vector<PoseRead>& seen, const FreeformSettings& bench, int count) {
+  Stream random(1, "score.unseen_poses");
+  std::vector<PoseRead> poses(static_cast<std::size_t>(count));
+  for (std::size_t axis = 0; axis < kMachineAxes; ++axis) {
+    const auto [low, high] = std::ranges::minmax(seen, {}, [axis](const PoseRead& p) { return p.at[axis]; });
+    for (PoseRead& pose : poses) {
+      pose.at[axis] = low.at[axis] + random.Uniform() * (high.at[axis] - low.at[axis]);
+      pose.t[axis] = (pose.at[axis] - bench.machine.centre[axis]) / bench.machine.half[axis];
+    }
+  }
+  return poses;
+}
+
+Eigen::Matrix3Xd Tips_um(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                         const Eigen::VectorXd& unknowns, Estimator estimator) {
+  const bool is_published = estimator == Estimator::kPublished;
+  Eigen::Matrix3Xd tips(3, std::ssize(poses));
+  for (std::size_t p = 0; p < poses.size(); ++p) {
+    const Inputs inputs = is_published ? Inputs(Inputs::Zero()) : InputsAt(poses[p], unknowns);
+    tips.col(static_cast<Eigen::Index>(p)) = Tip_m(bench, poses[p], inputs) / units::um;
+  }
+  return is_published ? Eigen::Matrix3Xd(tips + PublishedErrors_um(poses, unknowns)) : tips;
+}
+
+VolumetricErrors PredictErrors(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                               const Identification& found, Estimator estimator) {
+  const auto tips = [&](const Eigen::VectorXd& x) { return Tips_um(bench, poses, x, estimator); };
+  VolumetricErrors errors;
+  errors.nominal_um = tips(Eigen::VectorXd::Zero(found.unknowns.size()));
+  errors.error_um = WithoutRigidMotion(errors.nominal_um, tips(found.unknowns) - errors.nominal_um);
+  Eigen::MatrixXd slopes(3 * std::ssize(poses), kOfMachine);
+  for (Eigen::Index k = 0; k < kOfMachine; ++k) {
+    const Eigen::VectorXd one = Eigen::VectorXd::Unit(found.unknowns.size(), k);
+    const Eigen::Matrix3Xd slope = 0.5 * (tips(found.unknowns + one) - tips(found.unknowns - one));
+    slopes.col(k) = WithoutRigidMotion(errors.nominal_um, slope).reshaped();
+  }
+  const Eigen::MatrixXd covariance = found.covariance.topLeftCorner(kOfMachine, kOfMachine);
+  const Eigen::VectorXd variance = (slopes * covariance).cwiseProduct(slopes).rowwise().sum();
+  errors.u_um = variance.cwiseMax(0.0).cwiseSqrt().reshaped(3, std::ssize(poses));
+  return errors;
 }
 
 }  // namespace twinbench::benches::freeform::estimators

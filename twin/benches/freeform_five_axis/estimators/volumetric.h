@@ -1,6 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
+
+#include "twin/benches/freeform_five_axis/estimators/identification.h"
+#include "twin/core/estimator.h"
 
 namespace twinbench::benches::freeform::estimators {
 
@@ -8,5 +12,21 @@ namespace twinbench::benches::freeform::estimators {
 /// out: the errors of two models may differ by it without saying anything else.
 /// @param points, vectors  3 x count.
 Eigen::Matrix3Xd WithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& vectors);
+
+/// Poses that a run had not, anywhere where it had been; the same for every run of the same range.
+std::vector<PoseRead> UnseenPoses(const std::vector<PoseRead>& seen, const FreeformSettings& bench, int count);
+
+/// The tip in the X slide's frame as the estimator's own equations have it [um]: 3 x poses.
+Eigen::Matrix3Xd Tips_um(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                         const Eigen::VectorXd& unknowns, Estimator estimator);
+
+/// Volumetric error at poses, best rigid motion taken out [um]: 3 x poses.
+struct VolumetricErrors {
+  Eigen::Matrix3Xd nominal_um, error_um, u_um;
+};
+
+/// Uncertainty: noise of the readings, first order. Not included: what the readings leave open.
+VolumetricErrors PredictErrors(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                               const Identification& found, Estimator estimator);
 
 }  // namespace twinbench::benches::freeform::estimators

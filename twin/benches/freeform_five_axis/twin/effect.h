@@ -39,8 +39,6 @@ class FreeformEffect {
   virtual void AlterBench(FreeformSettings& /*bench*/) const {}
   /// Once for each reading, with the time running forwards.
   virtual void Disturb(const FreeformMoment& /*moment*/, FreeformExtra& /*extra*/) {}
-  /// Where the spot lies on the quadrant detector.
-  virtual void MoveSpot(Eigen::Vector2d& /*spot_m*/) const {}
   /// What the detectors show without it.
   virtual void AlterSignals(const FreeformMoment& /*moment*/, ProbeSignals& /*shown*/) const {}
 };

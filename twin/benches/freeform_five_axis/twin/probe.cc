@@ -15,9 +15,25 @@ Sides SidesOf(double at_m, const QuadrantSettings& qpd) {
   return {0.5 * std::erfc(scale * (0.5 * qpd.gap_m - at_m)), 0.5 * std::erfc(scale * (0.5 * qpd.gap_m + at_m))};
 }
 
+/// From the closed form to the surface with its form error: Newton's steps, each of which leaves some 1e-4 of the
+/// height.
+double OnForm_m(const Vector3& from, const Vector3& beam, double radius_m, const Vector3& vertex_F,
+                const optics::HeightMap& form, double distance_m) {
+  constexpr int kSteps = 4;
+  for (int step = 0; step < kSteps; ++step) {
+    const Vector3 p = from + distance_m * beam;
+    const optics::HeightAt at = optics::Interpolate(form, vertex_F.x() + p.x(), vertex_F.y() + p.y());
+    const double above_m = p.z() - p.head<2>().squaredNorm() / (2.0 * radius_m) - at.height_m;
+    const Eigen::Vector2d slope = p.head<2>() / radius_m + at.slope;
+    distance_m -= above_m / (beam.z() - slope.dot(beam.head<2>()));
+  }
+  return distance_m;
+}
+
 }  // namespace
 
-ProbeSpot Look(const ArtefactSettings& artefact, const ArtefactCell& cell, const Pose& X_FT, double height_m) {
+ProbeSpot Look(const ArtefactSettings& artefact, const ArtefactCell& cell, const Pose& X_FT, double height_m,
+               const optics::HeightMap* form) {
   const double radius_m = artefact.vertex_radius_m[(cell.i + cell.j) % 2 == 0 ? 0 : 1];
   const Vector3 vertex_F(cell.i * artefact.pitch_m, cell.j * artefact.pitch_m, height_m);
   const Vector3 p = X_FT.translation() - vertex_F;
@@ -28,8 +44,11 @@ ProbeSpot Look(const ArtefactSettings& artefact, const ArtefactCell& cell, const
   const double c = p.head<2>().squaredNorm() - 2.0 * radius_m * p.z();
   ProbeSpot spot;
   spot.distance_m = -c / (b + std::sqrt(b * b - a * c));
+  if (form) spot.distance_m = OnForm_m(p, d, radius_m, vertex_F, *form, spot.distance_m);
   spot.hit_F = p + spot.distance_m * d;
-  const Vector3 normal = Vector3(-spot.hit_F.x() / radius_m, -spot.hit_F.y() / radius_m, 1.0).normalized();
+  Eigen::Vector2d slope = spot.hit_F.head<2>() / radius_m;
+  if (form) slope += optics::Interpolate(*form, vertex_F.x() + spot.hit_F.x(), vertex_F.y() + spot.hit_F.y()).slope;
+  const Vector3 normal = Vector3(-slope.x(), -slope.y(), 1.0).normalized();
   spot.reflected_T = X_FT.linear().transpose() * (d - 2.0 * d.dot(normal) * normal);
   return spot;
 }

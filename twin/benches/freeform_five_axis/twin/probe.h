@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "optics/height_map.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/core/frames.h"
 #include "twin/core/reading.h"
@@ -22,7 +23,9 @@ struct ProbeSpot {
 
 /// @param X_FT  Tool in the artefact.
 /// @param height_m  Of this cell above where it should be.
-ProbeSpot Look(const ArtefactSettings& artefact, const ArtefactCell& cell, const Pose& X_FT, double height_m = 0.0);
+/// @param form  Heights over the whole array beside its form; null: none.
+ProbeSpot Look(const ArtefactSettings& artefact, const ArtefactCell& cell, const Pose& X_FT, double height_m = 0.0,
+               const optics::HeightMap* form = nullptr);
 
 struct ProbeSignals {
   double qpd_x_V = kNaN, qpd_y_V = kNaN, qpd_sum_V = kNaN, ccd_px = kNaN;

@@ -1,8 +1,12 @@
 #include "twin/benches/freeform_five_axis/twin/twin.h"
 
+#include <map>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/core/errors.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
 #include "twin/sim/truth.h"
@@ -51,6 +55,22 @@ Entry Of(const std::vector<Entry>& entries, int setup) {
   return at < entries.size() ? entries[at] : Entry{};
 }
 
+/// Read once for all twins: a diagnosis makes thousands of them.
+std::shared_ptr<const optics::HeightMap> FormOf(const ArtefactSettings& artefact) {
+  if (artefact.form_error.empty()) return nullptr;
+  static std::mutex one_at_a_time;
+  static std::map<std::string, std::shared_ptr<const optics::HeightMap>> read;
+  const std::scoped_lock lock(one_at_a_time);
+  std::shared_ptr<const optics::HeightMap>& form = read[artefact.form_error];
+  if (form) return form;
+  try {
+    form = std::make_shared<const optics::HeightMap>(optics::ReadHeightMap(artefact.form_error));
+  } catch (const std::runtime_error& error) {
+    throw InputError("artefact.form_error", error.what(), "an OpenEXR file with a channel Y and a pixel pitch");
+  }
+  return form;
+}
+
 }  // namespace
 
 DrawnBench Draw(const Scenario& scenario) {
@@ -69,6 +89,7 @@ DrawnBench Draw(const Scenario& scenario) {
 
 FreeformTwin::FreeformTwin(const Scenario& scenario, DrawnBench drawn)
     : scenario_(scenario), actual_(FreeformOf(scenario)), drawn_(std::move(drawn)) {
+  form_ = FormOf(actual_.artefact);
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeFreeformEffect(effect, scenario));
   for (const auto& effect : effects_) effect->AlterBench(actual_);
   for (const std::string& channel : FormatOf(scenario.bench).channels)
@@ -85,9 +106,8 @@ ProbeSignals FreeformTwin::Show(const Reading& reading, double run_share, Freefo
                     X_SF(Of(actual_.freeform_procedure.mounts, moment.setup), mounting);
   const ProbeSpot spot =
       Look(actual_.artefact, moment.cell, X_MF.inverse() * X_MT(moment.at, errors, actual_.machine.pivot_m),
-           extra.cell_height_m);
-  Eigen::Vector2d on_quadrants_m = OnQuadrants_m(actual_.qpd, spot) + extra.spot_m;
-  for (const auto& effect : effects_) effect->MoveSpot(on_quadrants_m);
+           extra.cell_height_m, form_.get());
+  const Eigen::Vector2d on_quadrants_m = OnQuadrants_m(actual_.qpd, spot) + extra.spot_m;
   ProbeSignals shown;
   ShowQuadrants(actual_.qpd, on_quadrants_m, shown);
   shown.ccd_px = Camera_px(actual_.ccd, spot.distance_m);

@@ -35,6 +35,7 @@ class FreeformTwin {
   Scenario scenario_;
   FreeformSettings actual_;
   DrawnBench drawn_;
+  std::shared_ptr<const optics::HeightMap> form_;  // null: the array has its form
   std::vector<std::unique_ptr<FreeformEffect>> effects_;
   std::vector<EmpiricalSignal> empirical_;
 };

@@ -57,10 +57,16 @@ class SpotDrift : public FreeformEffect {
   double spot_m_;
 };
 
-class SpotRoll : public FreeformEffect {
+/// The axes of its signals are turned, with the detector or where they are added up: a spot that goes along the
+/// tool's y is seen to go towards x, too.
+class AxesTurned : public FreeformEffect {
  public:
-  explicit SpotRoll(const EffectSettings& e) : roll_(Parameter(e, "roll")) {}
-  void MoveSpot(Eigen::Vector2d& spot_m) const override { spot_m = roll_ * spot_m; }
+  explicit AxesTurned(const EffectSettings& e) : roll_(Parameter(e, "roll")) {}
+  void AlterSignals(const FreeformMoment&, ProbeSignals& shown) const override {
+    const Eigen::Vector2d turned = roll_.inverse() * Eigen::Vector2d(shown.qpd_x_V, shown.qpd_y_V);
+    shown.qpd_x_V = turned.x();
+    shown.qpd_y_V = turned.y();
+  }
 
  private:
   Eigen::Rotation2Dd roll_;
@@ -112,8 +118,8 @@ FreeformEffectPointer MakeGainOrLeakage(const EffectSettings& e) {
 FreeformEffectPointer MakeSpotDrift(const EffectSettings& e) {
   return std::make_unique<SpotDrift>(e);
 }
-FreeformEffectPointer MakeSpotRoll(const EffectSettings& e) {
-  return std::make_unique<SpotRoll>(e);
+FreeformEffectPointer MakeAxesTurned(const EffectSettings& e) {
+  return std::make_unique<AxesTurned>(e);
 }
 FreeformEffectPointer MakeCameraFault(const EffectSettings& e) {
   return std::make_unique<CameraFault>(e);

@@ -13,7 +13,7 @@ FreeformEffectPointer MakeWrongProbe(const EffectSettings&);
 // On the detectors
 FreeformEffectPointer MakeGainOrLeakage(const EffectSettings&);
 FreeformEffectPointer MakeSpotDrift(const EffectSettings&);
-FreeformEffectPointer MakeSpotRoll(const EffectSettings&);
+FreeformEffectPointer MakeAxesTurned(const EffectSettings&);
 FreeformEffectPointer MakeCameraFault(const EffectSettings&);
 FreeformEffectPointer MakeFreeformSignal(const EffectSettings&, const Scenario&);
 // Of the artefact and the machine

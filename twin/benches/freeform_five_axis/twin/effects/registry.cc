@@ -11,7 +11,7 @@ FreeformEffectPointer MakeFreeformEffect(const EffectSettings& effect, const Sce
       {"qpd_gain", [&] { return MakeGainOrLeakage(effect); }},
       {"leakage", [&] { return MakeGainOrLeakage(effect); }},
       {"laser_drift", [&] { return MakeSpotDrift(effect); }},
-      {"qpd_roll", [&] { return MakeSpotRoll(effect); }},
+      {"qpd_roll", [&] { return MakeAxesTurned(effect); }},
       {"spot_size", [&] { return MakeWrongProbe(effect); }},
       {"focal_length", [&] { return MakeWrongProbe(effect); }},
       {"vertex_radius", [&] { return MakeWrongProbe(effect); }},

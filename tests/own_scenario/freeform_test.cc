@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/own_scenario/own_scenario.h"
+#include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
+
+namespace twinbench::own_freeform {
+namespace {
+
+using test::Change, test::OwnKey;
+
+std::vector<OwnKey> MachineChanges() {
+  std::vector<OwnKey> keys = {Change("machine.pivot_mm", "80.0"), Change("machine.random.translation_um", "8.0"),
+                              Change("machine.random.rotation_arcsec", "5.0"),
+                              Change("machine.random.squareness_arcsec", "12.0")};
+  for (const char* squareness : {"syx", "szx", "szy", "say", "saz", "sbx", "sbz"})
+    keys.push_back(Change(std::string("machine.") + squareness + "_arcsec", "-20.0"));
+  for (const char* axis : {"x", "y", "z", "a", "b"}) {
+    const std::string name = std::string("machine.") + axis, unit = *axis < 'x' ? "_deg" : "_mm";
+    keys.push_back(Change(name + "_centre" + unit, "3.0"));
+    keys.push_back(Change(name + "_half" + unit, *axis < 'x' ? "9.0" : "200.0"));
+    for (const char* error : {"tx_um", "ty_um", "tz_um", "rx_arcsec", "ry_arcsec", "rz_arcsec"})
+      keys.push_back(Change(name + "." + error, "[8.0, -8.0, 4.0, 4.0]"));
+  }
+  return keys;
+}
+
+std::vector<OwnKey> ProbeChanges() {
+  return {Change("artefact.vertex_radius_mm", "[50.0, 90.0]"),
+          Change("artefact.pitch_mm", "25.0"),
+          Change("artefact.cells", "4"),
+          Change("artefact.mounting_um", "60.0"),
+          Change("artefact.mounting_arcsec", "60.0"),
+          Change("qpd.lens_mm", "40.0"),
+          Change("qpd.spot_radius_mm", "0.35"),
+          Change("qpd.gap_mm", "0.05"),
+          Change("qpd.sum_V", "8.0"),
+          Change("qpd.noise_mV", "30.0"),
+          Change("ccd.object_mm", "80.0"),
+          Change("ccd.image_mm", "50.0"),
+          Change("ccd.alpha_deg", "40.0"),
+          Change("ccd.pixel_um", "5.0"),
+          Change("ccd.centre_px", "900.0"),
+          Change("ccd.noise_px", "0.2")};
+}
+
+std::vector<OwnKey> ProcedureChanges() {
+  return {Change("freeform_procedure.mounts", "[{x_mm=10.0, yaw_deg=45.0}, {z_mm=80.0}, {z_mm=160.0}]"),
+          Change("freeform_procedure.poses", "60"),
+          Change("freeform_procedure.angle_deg", "8.0"),
+          Change("freeform_procedure.height_mm", "3.0"),
+          Change("freeform_procedure.dither_um", "50.0"),
+          Change("freeform_procedure.dither_deg", "0.02"),
+          Change("freeform_procedure.path", "\"single\""),
+          Change("environment.temperature_degC", "22.0"),
+          Change("environment.reference_degC", "19.0"),
+          Change("environment.drift_K_h", "1.0"),
+          Change("environment.swing_mK", "3000.0"),
+          Change("environment.swing_period_s", "3000.0"),
+          Change("environment.random_walk_K_sqrt_h", "0.5"),
+          Change("environment.sensor_noise_mK", "5.0")};
+}
+
+const std::vector<OwnKey>& Keys() {
+  static const std::vector<OwnKey> keys = [] {
+    std::vector<OwnKey> all = {
+        {"bench", {}, "another bench"},
+        {"title", {}, "words"},
+        {"seed", {}, "every run has its own"},
+        {"noise_free", {"noise_free=true"}},
+        {"environment.temperature_file", {}, "read by another test of the room's temperature"}};
+    for (const auto& part : {MachineChanges(), ProbeChanges(), ProcedureChanges()})
+      all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }();
+  return keys;
+}
+
+const std::vector<std::string> kBase = {"freeform_procedure.poses=48"};
+
+TEST(FreeformOwnScenario, NoKeyIsForgotten) {
+  EXPECT_THAT(test::Forgotten(kFreeformBench, Keys()), testing::IsEmpty());
+}
+
+TEST(FreeformOwnScenario, RaisesNoAlarm) {
+  const test::Alarms alarms =
+      test::AlarmsOf(test::ScenarioPath("freeform_five_axis.toml"), kBase, Keys(), test::Seeds());
+  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
+}
+
+TEST(FreeformOwnScenario, KnowsItsEffects) {
+  const test::Alarms alarms =
+      test::AlarmsOfEffects(test::ScenarioPath("freeform_five_axis.toml"), kBase, test::Seeds());
+  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
+}
+
+}  // namespace
+}  // namespace twinbench::own_freeform

@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/freeform_five_axis/bench.h"
+#include "twin/benches/freeform_five_axis/evaluated.h"
+#include "twin/benches/freeform_five_axis/settings.h"
+#include "twin/benches/freeform_five_axis/tables.h"
+#include "twin/report/json_units.h"
+
+namespace twinbench::benches::freeform {
+namespace {
+
+using namespace estimators;
+
+/// The machine of a truth, as unknowns.
+Eigen::VectorXd TruthOf(const nlohmann::json& truth, const Identification& found) {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(found.unknowns.size());
+  const nlohmann::json& machine = truth.at("machine");
+  for (int axis = 0; axis < kMachineAxes; ++axis) {
+    for (int error = 0; error < kBodyErrors; ++error) {
+      const std::string name = std::string(kAxisNames[static_cast<std::size_t>(axis)]) + "." +
+                               kBodyErrorNames[static_cast<std::size_t>(error)];
+      for (int term = 0; term < kCubicTerms; ++term)
+        x[CubicAt(axis, error, term)] =
+            machine.at("errors").at(name).at("coefficients").at(static_cast<std::size_t>(term)).get<double>();
+    }
+  }
+  for (int k = 0; k < kSquarenesses; ++k)
+    x[SquarenessAt(k)] =
+        machine.at("squareness_arcsec").at(kSquarenessNames[static_cast<std::size_t>(k)]).get<double>();
+  return x;
+}
+
+/// Deviation over u of the unknowns that the readings decide, rms.
+double PullsOf(const Identification& found, const Eigen::VectorXd& truth) {
+  double sum = 0.0;
+  int count = 0;
+  for (int k = 0; k < kOfMachine; ++k) {
+    if (!found.identified[static_cast<std::size_t>(k)]) continue;
+    sum += std::pow((found.unknowns[k] - truth[k]) / found.u[k], 2);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : kNaN;
+}
+
+}  // namespace
+
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, Estimator estimator) {
+  constexpr int kPoses = 1000;
+  const FreeformSettings& bench = FreeformOf(scenario);
+  const std::vector<PoseRead> seen = SeenPoses(scenario, readings), unseen = UnseenPoses(seen, bench, kPoses);
+  const Identification found = IdentifyBy(bench, seen, estimator);
+  const Eigen::VectorXd true_x = TruthOf(truth, found);
+  const VolumetricErrors predicted = PredictErrors(bench, unseen, found, estimator);
+  const Eigen::Matrix3Xd& nominal = predicted.nominal_um;
+  const Eigen::Matrix3Xd actual =
+      WithoutRigidMotion(nominal, Tips_um(bench, unseen, true_x, Estimator::kRigorous) - nominal);
+  VolumetricErrors left = predicted;
+  left.error_um = WithoutRigidMotion(nominal, actual - predicted.error_um);
+  const double pulls = PullsOf(found, true_x), most = left.error_um.colwise().norm().maxCoeff();
+  return {
+      {{"volumetric_um",
+        {{"machine_rms", RmsLength(actual)},
+         {"left_rms", RmsLength(left.error_um)},
+         {"left_max", most},
+         {"u_rms", RmsLength(left.u_um)}}},
+       {"identified_pull_rms", report::In(1.0, pulls)},
+       {"poses", unseen.size()}},
+      fmt::format("volumetric error at {} poses that the run had not, best rigid motion taken out\n"
+                  "of the machine         {:.3f} um rms\nleft by the estimate   {:.3f} um rms, {:.3f} um at "
+                  "most; noise explains {:.3f} um rms\n"
+                  "what is identified by itself is off by {:.2f} of its uncertainty, rms\n",
+                  unseen.size(), RmsLength(actual), RmsLength(left.error_um), most, RmsLength(left.u_um), pulls),
+      VolumetricCsv(unseen, left)};
+}
+
+}  // namespace twinbench::benches::freeform
