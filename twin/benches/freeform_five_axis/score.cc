@@ -14,7 +14,7 @@ namespace {
 
 using namespace estimators;
 
-/// The machine of a truth, as unknowns.
+/// Machine and mountings of a truth, as unknowns.
 Eigen::VectorXd TruthOf(const nlohmann::json& truth, const Identification& found) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(found.unknowns.size());
   const nlohmann::json& machine = truth.at("machine");
@@ -30,7 +30,28 @@ Eigen::VectorXd TruthOf(const nlohmann::json& truth, const Identification& found
   for (int k = 0; k < kSquarenesses; ++k)
     x[SquarenessAt(k)] =
         machine.at("squareness_arcsec").at(kSquarenessNames[static_cast<std::size_t>(k)]).get<double>();
+  for (int setup = 0; setup < found.setups; ++setup) {
+    const nlohmann::json& mounting = truth.at("mountings").at(static_cast<std::size_t>(setup));
+    for (int error = 0; error < kBodyErrors; ++error)
+      x[MountingAt(setup, error)] = mounting
+                                        .at(std::string(kBodyErrorNames[static_cast<std::size_t>(error)]) +
+                                            (IsRotation(error) ? "_arcsec" : "_um"))
+                                        .get<double>();
+  }
   return x;
+}
+
+/// What the estimate and the truth differ by in the readings, over their noise: squares as many as are identified.
+double Chi2OverRank(const FreeformSettings& bench, const std::vector<PoseRead>& seen, const Identification& found,
+                    const Eigen::VectorXd& truth) {
+  const Eigen::Vector3d noise(bench.qpd.noise_V, bench.qpd.noise_V, bench.ccd.noise_px);
+  double chi2 = 0.0;
+  for (const PoseRead& pose : seen) {
+    const Eigen::Vector3d off =
+        Predicted(bench, pose, InputsAt(pose, found.unknowns)) - Predicted(bench, pose, InputsAt(pose, truth));
+    chi2 += off.cwiseQuotient(noise).squaredNorm();
+  }
+  return chi2 / static_cast<double>(found.rank);
 }
 
 /// Deviation over u of the unknowns that the readings decide, rms.
@@ -68,6 +89,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
          {"left_max", most},
          {"u_rms", RmsLength(left.u_um)}}},
        {"identified_pull_rms", report::In(1.0, pulls)},
+       {"chi2_over_rank", report::In(1.0, Chi2OverRank(bench, seen, found, true_x))},
        {"poses", unseen.size()}},
       fmt::format("volumetric error at {} poses that the run had not, best rigid motion taken out\n"
                   "of the machine         {:.3f} um rms\nleft by the estimate   {:.3f} um rms, {:.3f} um at "
