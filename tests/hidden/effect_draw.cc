@@ -43,7 +43,7 @@ Ranges RangesOf(const std::string& bench) {
   if (bench == kTurntableBench) return {40.0, 260.0, 0.001, 0.02};
   if (bench == kHobBench) return {300.0, 2500.0, 0.05, 1.0};
   if (bench == kCircularBench) return {100.0, 850.0, 0.003, 0.06};
-  if (bench == kFreeformBench) return {50.0, 430.0, 0.003, 0.06};
+  if (bench == kFreeformBench) return {40.0, 280.0, 0.003, 0.06};
   return {40.0, 500.0, 0.003, 0.06};
 }
 
