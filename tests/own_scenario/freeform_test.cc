@@ -69,6 +69,7 @@ const std::vector<OwnKey>& Keys() {
         {"title", {}, "words"},
         {"seed", {}, "every run has its own"},
         {"noise_free", {"noise_free=true"}},
+        {"artefact.form_error", {}, "a picture of heights, in the tests of the bench"},
         {"environment.temperature_file", {}, "read by another test of the room's temperature"}};
     for (const auto& part : {MachineChanges(), ProbeChanges(), ProcedureChanges()})
       all.insert(all.end(), part.begin(), part.end());

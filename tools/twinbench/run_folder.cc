@@ -37,7 +37,9 @@ void WriteJson(const std::string& path, const nlohmann::json& json) {
 }
 
 void WriteTables(const std::string& folder, const std::vector<report::ResultTable>& tables) {
-  if (!tables.empty()) fs::create_directories(folder);
+  std::error_code error;
+  if (!tables.empty()) fs::create_directories(folder, error);
+  if (error) throw BenchError(folder + ": " + error.message());
   for (const report::ResultTable& table : tables)
     WriteFileAtOnce((fs::path(folder) / table.file).string(), table.text);
 }
