@@ -80,7 +80,7 @@ std::vector<OwnKey> ProcedureChanges() {
           Change("circular_procedure.setups",
                  R"([{instrument="bar", radius_mm=80.0}, {instrument="grid", radius_mm=80.0}])"),
           Change("circular_procedure.feeds_mm_min", "[500.0, 2000.0]"),
-          Change("circular_procedure.points", "60"),
+          Change("circular_procedure.points", "40"),
           Change("circular_procedure.stops", "0"),
           Change("circular_procedure.dwell_s", "9.0"),
           Change("circular_procedure.rapid_mm_min", "5000.0"),
@@ -110,7 +110,7 @@ const std::vector<OwnKey>& Keys() {
   return keys;
 }
 
-const std::vector<std::string> kBase = {"circular_procedure.points=40", "circular_procedure.stops=12"};
+const std::vector<std::string> kBase = {"circular_procedure.points=24", "circular_procedure.stops=8"};
 
 TEST(CircularOwnScenario, NoKeyIsForgotten) {
   EXPECT_THAT(test::Forgotten(kCircularBench, Keys()), testing::IsEmpty());

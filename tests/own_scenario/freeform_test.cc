@@ -47,7 +47,7 @@ std::vector<OwnKey> ProbeChanges() {
 
 std::vector<OwnKey> ProcedureChanges() {
   return {Change("freeform_procedure.mounts", "[{x_mm=10.0, yaw_deg=45.0}, {z_mm=80.0}, {z_mm=160.0}]"),
-          Change("freeform_procedure.poses", "60"),
+          Change("freeform_procedure.poses", "40"),
           Change("freeform_procedure.angle_deg", "8.0"),
           Change("freeform_procedure.height_mm", "3.0"),
           Change("freeform_procedure.dither_um", "50.0"),
@@ -78,7 +78,7 @@ const std::vector<OwnKey>& Keys() {
   return keys;
 }
 
-const std::vector<std::string> kBase = {"freeform_procedure.poses=48"};
+const std::vector<std::string> kBase = {"freeform_procedure.poses=32"};
 
 TEST(FreeformOwnScenario, NoKeyIsForgotten) {
   EXPECT_THAT(test::Forgotten(kFreeformBench, Keys()), testing::IsEmpty());

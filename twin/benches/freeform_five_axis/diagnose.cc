@@ -64,13 +64,6 @@ Eigen::MatrixXd Waves(const Eigen::ArrayXd& periods) {
   return waves;
 }
 
-Eigen::ArrayXd Along(const std::vector<Reading>& readings, std::size_t axis) {
-  Eigen::ArrayXd at(std::ssize(readings));
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    at[static_cast<Eigen::Index>(i)] = kCommanded[axis](readings[i]);
-  return at;
-}
-
 Eigen::ArrayXd Times_s(const std::vector<Reading>& readings) {
   Eigen::ArrayXd time_s(std::ssize(readings));
   for (std::size_t i = 0; i < readings.size(); ++i)
@@ -85,15 +78,6 @@ std::vector<double> Frequencies(double first, double last, double range) {
   std::vector<double> values;
   for (int k = 0; k < count; ++k) values.push_back(first + (last - first) * k / std::max(1, count - 1));
   return values;
-}
-
-std::vector<double> Pitches_m(const std::vector<Reading>& readings, std::size_t axis) {
-  constexpr double kLongest_m = 40.0 * units::mm, kShortest_m = 2.0 * units::mm;  // as the catalogue has them
-  const Eigen::ArrayXd at = Along(readings, axis);
-  std::vector<double> pitches = Frequencies(1.0 / kLongest_m, 1.0 / kShortest_m, at.maxCoeff() - at.minCoeff());
-  for (double& value : pitches) value = 1.0 / value;
-  std::ranges::reverse(pitches);
-  return pitches;
 }
 
 /// Up to two readings a period; slow ones are drifts.
@@ -132,6 +116,8 @@ diagnose::TwinComparison::Product Leakage(const std::string& channel, const Quan
 
 /// What depends on a shape that nobody knows, as slopes of the twin times courses.
 std::vector<diagnose::TwinComparison::Product> Products(double reference_degC) {
+  constexpr double kShortest_m = 2.0 * units::mm,
+                   kLongest_m = 40.0 * units::mm;  // of pitches, as the catalogue has
   std::vector<diagnose::TwinComparison::Product> products;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = kAxisNames[axis], point = name + ".t" + name;
@@ -140,9 +126,7 @@ std::vector<diagnose::TwinComparison::Product> Products(double reference_degC) {
         diagnose::FollowsTemperature("thermal_growth", name, "z.t" + name, "growth", reference_degC));
     const std::vector<std::string> sizes = {"cosine", "sine"};
     products.push_back(
-        {"cyclic", name, point, sizes, "pitch",
-         [axis](const std::vector<Reading>& r) { return Pitches_m(r, axis); },
-         [axis](const std::vector<Reading>& r, double pitch_m) { return Waves(Along(r, axis) / pitch_m); }});
+        diagnose::WaveAlong("cyclic", name, point, "pitch", kCommanded[axis], kShortest_m, kLongest_m));
     products.push_back({"tone", name, point, sizes, "frequency", Tones_Hz, ToneAt});
   }
   for (const auto& [channel, shown_V] : {std::pair{"qpd_x", kQpdX_V}, std::pair{"qpd_y", kQpdY_V}})
