@@ -6,6 +6,8 @@
 #include "tests/circular_motion/circle_run.h"
 #include "tests/circular_motion/oracle.h"
 #include "twin/benches/circular_motion/bench.h"
+#include "twin/benches/circular_motion/twin/factory.h"
+#include "twin/diagnose/by_twin.h"
 
 namespace twinbench::benches::circular {
 namespace {
@@ -49,6 +51,24 @@ TEST(CircularDiagnosis, NamesWhatTheTwinWasGiven) {
   EXPECT_EQ(NameOfHidden("backlash", "x", "width", 0.3 * um), "backlashx");
   EXPECT_EQ(NameOfHidden("servo_mismatch", "", "lag", 5e-5), "servo_mismatch");
   EXPECT_EQ(NameOfHidden("ball_form", "", "cosine", 0.2 * um), "ball_form");
+}
+
+TEST(DiagnosisByTwin, NeedsNeitherFreeConstantsNorAngles) {
+  Scenario scenario = Believed();
+  CircularOf(scenario).mounting = {0.0, 0.0, 0.0, 0.0};
+  diagnose::TwinComparison comparison;
+  comparison.format = &Format();
+  comparison.follow = FollowRecord;
+  comparison.unit = "um";
+  comparison.to_SI = units::um;
+  comparison.shown = [](const Reading& r) -> Eigen::VectorXd {
+    const Deviation shown = DeviationOf(r);
+    return Eigen::Vector2d(shown.radial_m, shown.tangential_m);
+  };
+  diagnose::DiagnoseOptions options;
+  options.null_runs = 200;
+  const std::vector<Reading> readings = WithAngles(test::CircleReadings(scenario));
+  EXPECT_EQ(NameOf(diagnose::DiagnoseByTwin(readings, scenario, options, comparison).diagnosis), "none");
 }
 
 }  // namespace
