@@ -5,7 +5,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/candidates.h"
-#include "twin/diagnose/tuning.h"
+#include "twin/diagnose/engine/time_series.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose {
@@ -26,17 +26,6 @@ Eigen::ArrayXd Along(const std::vector<Reading>& readings, const std::function<d
   return at;
 }
 
-std::vector<double> Onsets(const std::vector<Reading>& readings) {
-  std::vector<double> all;
-  for (std::size_t i = 1; i < readings.size(); ++i) {
-    if (readings[i].setup == readings[i - 1].setup) all.push_back(readings[i].reading);
-  }
-  const std::size_t every = 1 + all.size() / tuning::kMostSteps;
-  std::vector<double> thinned;
-  for (std::size_t k = every / 2; k < all.size(); k += every) thinned.push_back(all[k]);
-  return thinned;
-}
-
 /// 0, and from shorter than a room needs to longer than a machine does.
 std::vector<double> Lags_s() {
   std::vector<double> lags_s = Ratios(100.0, 20000.0, 16);
@@ -54,19 +43,19 @@ TwinComparison::Product WaveAlong(const std::string& effect, const std::string& 
     return Periods(at.maxCoeff() - at.minCoeff(), shortest, longest);
   };
   const auto wave = [along](const std::vector<Reading>& readings, double length) {
-    const Eigen::ArrayXd phase_rad = units::turn * Along(readings, along) / length;
-    Eigen::MatrixXd wave(phase_rad.size(), 2);
-    wave << phase_rad.cos(), phase_rad.sin();
-    return wave;
+    return model::Wave(units::turn * Along(readings, along) / length);
   };
   return {effect, where, point, {"cosine", "sine"}, period, periods, wave};
 }
 
 TwinComparison::Product SlipAt(const std::string& where, const std::string& point) {
+  const auto onsets = [](const std::vector<Reading>& readings) {
+    return OnsetsOf(model::CourseOf(readings)).at_reading;
+  };
   const auto step = [](const std::vector<Reading>& readings, double at_reading) {
     return Eigen::MatrixXd(model::Step(model::CourseOf(readings).reading, at_reading));
   };
-  return {"slip", where, point, {"step"}, "at_reading", Onsets, step};
+  return {"slip", where, point, {"step"}, "at_reading", onsets, step};
 }
 
 TwinComparison::Product FollowsTemperature(const std::string& effect, const std::string& where,

@@ -88,28 +88,13 @@ json PathJson(const CirclePath& path, const SharedUncertainty& shared) {
   return entry;
 }
 
-/// The values of a set-up and feed by their names.
-std::vector<std::pair<std::string, Iso230_4Value>> Named(const Iso230_4& d) {
-  return {{"G_ccw", d.G_ccw},
-          {"G_cw", d.G_cw},
-          {"G_b", d.G_b},
-          {"Fmax_ccw", d.Fmax_ccw},
-          {"Fmin_ccw", d.Fmin_ccw},
-          {"Fmax_cw", d.Fmax_cw},
-          {"Fmin_cw", d.Fmin_cw},
-          {"Fmax_b", d.Fmax_b},
-          {"Fmin_b", d.Fmin_b},
-          {"D", d.D},
-          {"H", d.H}};
-}
-
 double Feed_mm_min(double feed_m_s) {
   return feed_m_s * 60.0 / units::mm;
 }
 
 json IsoJson(const Iso230_4& d) {
   json entry = {{"setup", d.setup}, {"feed_mm_min", Feed_mm_min(d.feed_m_s)}};
-  for (const auto& [name, value] : Named(d)) {
+  for (const auto& [name, value] : NamedValues(d)) {
     entry[name + "_um"] = In(um, value.value_m);
     entry["u_" + name + "_um"] = In(um, value.u_m);
   }

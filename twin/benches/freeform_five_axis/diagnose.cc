@@ -8,6 +8,7 @@
 #include "twin/benches/freeform_five_axis/twin/factory.h"
 #include "twin/diagnose/by_twin.h"
 #include "twin/diagnose/products.h"
+#include "twin/model/signals.h"
 
 namespace twinbench::benches::freeform {
 namespace {
@@ -57,20 +58,6 @@ double LargestFree(const FreeformSettings& own, const model::Point& point) {
                  : std::max(kMachine_m, kTimes * own.machine.random_translation_m);
 }
 
-/// [cos, sin] of so many periods.
-Eigen::MatrixXd Waves(const Eigen::ArrayXd& periods) {
-  Eigen::MatrixXd waves(periods.size(), 2);
-  waves << (units::turn * periods).cos(), (units::turn * periods).sin();
-  return waves;
-}
-
-Eigen::ArrayXd Times_s(const std::vector<Reading>& readings) {
-  Eigen::ArrayXd time_s(std::ssize(readings));
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    time_s[static_cast<Eigen::Index>(i)] = ToSeconds(readings[i].time);
-  return time_s;
-}
-
 /// Values of 1 / period, in even steps, so close that a wave between two of them keeps nearly all of its size.
 std::vector<double> Frequencies(double first, double last, double range) {
   constexpr int kMost = 1500;  // thinned evenly beyond that, for the time it takes
@@ -82,7 +69,7 @@ std::vector<double> Frequencies(double first, double last, double range) {
 
 /// Up to two readings a period; slow ones are drifts.
 std::vector<double> Tones_Hz(const std::vector<Reading>& readings) {
-  const Eigen::ArrayXd time_s = Times_s(readings);
+  const Eigen::VectorXd time_s = model::CourseOf(readings).time_s;
   const double run_s = time_s[time_s.size() - 1] - time_s[0];
   double step_s = run_s;
   for (Eigen::Index k = 1; k < time_s.size(); ++k) {
@@ -94,7 +81,7 @@ std::vector<double> Tones_Hz(const std::vector<Reading>& readings) {
 }
 
 Eigen::MatrixXd ToneAt(const std::vector<Reading>& readings, double frequency_Hz) {
-  return Waves(Times_s(readings) * frequency_Hz);
+  return model::Tone(model::CourseOf(readings).time_s, frequency_Hz);
 }
 
 /// Part of the light on a fixed place: what is missing elsewhere, and what is shown of it there.
@@ -160,7 +147,7 @@ diagnose::TwinComparison::ShapedProduct WavesOverTheArray(const ArtefactSettings
               periods[static_cast<Eigen::Index>(i)] =
                   shape[0] * (std::cos(shape[1]) * kCellI(readings[i]) + std::sin(shape[1]) * kCellJ(readings[i])) /
                   side;
-            return Waves(periods);
+            return model::Wave(units::turn * periods);
           }};
 }
 

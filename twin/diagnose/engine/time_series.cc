@@ -26,19 +26,6 @@ std::vector<double> FrequenciesOf(double longest_s, const Eigen::VectorXd& rows_
   return frequencies_Hz;
 }
 
-/// Within a set-up and phase, because a step at its first reading is a constant of it. Thinned evenly where there
-/// are very many.
-void SetOnsets(const model::Course& course, TimeSeries& series) {
-  std::vector<double> all;
-  for (std::size_t i = 1; i < course.reading.size(); ++i) {
-    if (course.setup[i] == course.setup[i - 1] && course.phase[i] == course.phase[i - 1])
-      all.push_back(course.reading[i]);
-  }
-  const std::size_t every = 1 + all.size() / tuning::kMostSteps;
-  series.are_thinned = every > 1;
-  for (std::size_t k = every / 2; k < all.size(); k += every) series.onsets.push_back(all[k]);
-}
-
 std::shared_ptr<const Base> BaseOf(std::size_t grid, int channels, const ToRows& rows,
                                    const std::function<Eigen::MatrixXd(int)>& series) {
   if (grid == 0) return nullptr;
@@ -51,6 +38,18 @@ std::shared_ptr<const Base> BaseOf(std::size_t grid, int channels, const ToRows&
 }
 
 }  // namespace
+
+Onsets OnsetsOf(const model::Course& course) {
+  std::vector<double> all;
+  for (std::size_t i = 1; i < course.reading.size(); ++i) {
+    if (course.setup[i] == course.setup[i - 1] && course.phase[i] == course.phase[i - 1])
+      all.push_back(course.reading[i]);
+  }
+  const std::size_t every = 1 + all.size() / tuning::kMostSteps;
+  Onsets onsets{{}, every > 1};
+  for (std::size_t k = every / 2; k < all.size(); k += every) onsets.at_reading.push_back(all[k]);
+  return onsets;
+}
 
 Shape TimeSeries::Frequency(const std::string& name) const {
   return {name, "Hz", 1.0, 0.5 * frequencies_Hz.front(), 1.1 * frequencies_Hz.back(), frequencies_Hz};
@@ -70,7 +69,9 @@ TimeSeries TimeSeriesOf(const model::Course& course, const std::vector<int>& str
   series.time_s = course.time_s;
   series.reading = course.reading;
   series.stretch = stretch;
-  SetOnsets(course, series);
+  const Onsets onsets = OnsetsOf(course);
+  series.onsets = onsets.at_reading;
+  series.are_thinned = onsets.are_thinned;
   const double longest_s = SinceBegin_s(course.time_s, stretch).maxCoeff();
   series.frequencies_Hz = FrequenciesOf(longest_s, rows_time_s.size() > 0 ? rows_time_s : course.time_s);
   const auto count = static_cast<int>(std::ssize(series.frequencies_Hz));

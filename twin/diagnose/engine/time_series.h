@@ -15,12 +15,20 @@ namespace twinbench::diagnose {
 /// From samples (samples x k) to rows of one channel; empty: they are the same.
 using ToRows = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
 
+/// Numbers of readings at which something may begin: within a set-up and phase, because a step at its first reading
+/// is a constant of it. Thinned evenly where there are very many.
+struct Onsets {
+  std::vector<double> at_reading;
+  bool are_thinned = false;
+};
+Onsets OnsetsOf(const model::Course& course);
+
 struct TimeSeries {
   Eigen::VectorXd time_s;
   std::vector<int> reading;  // its number
   std::vector<int> stretch;  // a label: within one value something in time goes on undisturbed
   std::vector<double> frequencies_Hz, onsets;
-  bool are_thinned = false;  // there are more onsets
+  bool are_thinned = false;           // there are more onsets
   std::shared_ptr<const Base> tones;  // [cos, sin] in each stretch; null if there is no room
   std::shared_ptr<const Base> steps;  // null if there is none
 

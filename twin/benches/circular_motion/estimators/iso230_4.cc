@@ -147,6 +147,20 @@ Iso230_4 DeviationsOf(const std::vector<const CirclePath*>& paths, const SharedU
 
 }  // namespace
 
+std::vector<std::pair<std::string, Iso230_4Value>> NamedValues(const Iso230_4& d) {
+  return {{"G_ccw", d.G_ccw},
+          {"G_cw", d.G_cw},
+          {"G_b", d.G_b},
+          {"Fmax_ccw", d.Fmax_ccw},
+          {"Fmin_ccw", d.Fmin_ccw},
+          {"Fmax_cw", d.Fmax_cw},
+          {"Fmin_cw", d.Fmin_cw},
+          {"Fmax_b", d.Fmax_b},
+          {"Fmin_b", d.Fmin_b},
+          {"D", d.D},
+          {"H", d.H}};
+}
+
 std::vector<Iso230_4> CircularDeviations(const std::vector<CirclePath>& paths, const SharedUncertainty& shared) {
   std::vector<std::vector<const CirclePath*>> groups;
   for (const CirclePath& path : paths) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "twin/benches/circular_motion/estimators/circle_path.h"
 
 /// Circular deviations as ISO 230-4 has them.
@@ -19,6 +23,9 @@ struct Iso230_4 {
   Iso230_4Value D;  // mean radial deviation of both paths
   Iso230_4Value H;  // largest difference between the directions at one angle
 };
+
+/// Its values by their names: "G_ccw", "Fmax_b", ...
+std::vector<std::pair<std::string, Iso230_4Value>> NamedValues(const Iso230_4& deviations);
 
 /// One entry a set-up and feed, in the order of the paths.
 ///
