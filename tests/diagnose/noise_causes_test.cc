@@ -20,8 +20,17 @@ std::vector<NoiseCause> CausesOf(std::uint64_t seed, const Alter& alter) {
   alter(run);
   const NoiseModel noise = WhiteNoise(run);
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
-  const Eigen::VectorXd rows = projector.Apply(noise.Whiten(run, Eigen::MatrixXd(run.residual))).col(0);
-  return FindNoiseCauses(run, noise, rows, projector.Redundancy());
+  const Eigen::VectorXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual));
+  // Left out by the plain way: a row without weight.
+  const auto without = [&](const std::vector<int>& left_out) {
+    Eigen::MatrixXd jacobian = noise.Whiten(run, run.nuisance.jacobian);
+    for (const int row : left_out) jacobian.row(row).setZero();
+    const Projector others(jacobian.sparseView(), run.nuisance);
+    Rest rest{others.Apply(white).col(0), others.Redundancy()};
+    rest.redundancy(left_out).setZero();
+    return rest;
+  };
+  return FindNoiseCauses(run, noise, without({}), without);
 }
 
 int CountAbove(const std::vector<NoiseCause>& causes, double log_bayes) {
@@ -44,6 +53,15 @@ TEST(FindNoiseCauses, TakesAFewFarValuesForOutliersAndLeavesThemOut) {
   ASSERT_FALSE(causes.empty());
   EXPECT_EQ(causes.front().kind, NoiseCause::Kind::kOutliers);
   EXPECT_EQ(causes.front().outliers, (std::vector<int>{11, 47, 90}));
+}
+
+TEST(FindNoiseCauses, FindsOneThatBendsTheFitForItsNeighbours) {
+  // Two free constants a position and one reading that is far off: without it, none of the others is.
+  const auto causes = CausesOf(3, [](LinearRun& run) { run.residual[47] += 400.0 * run.sigma[47]; });
+  ASSERT_FALSE(causes.empty());
+  EXPECT_EQ(causes.front().kind, NoiseCause::Kind::kOutliers);
+  EXPECT_EQ(causes.front().outliers, (std::vector<int>{47}));
+  EXPECT_NEAR(causes.front().outlier_size, 400.0, 10.0);
 }
 
 TEST(FindNoiseCauses, TakesManyModeratelyFarValuesForTails) {

@@ -31,7 +31,7 @@ bool IsLikeAGap(const EffectSettings& effect, const Scenario& drawn, const Signa
   gap.name = "backlash";
   gap.parameters["width"] = 2.0 * effect.parameters.at("lag");
   if (gap.parameters["width"] < CatalogueParameter(drawn.bench, "backlash", "width").lower_SI) return false;
-  return scale.Rho(NoiseFree(drawn, {effect}), NoiseFree(drawn, {gap})) < kTellable;
+  return scale.Rho(NoiseFree(drawn, {effect}), NoiseFree(drawn, {gap}), drawn.seed) < kTellable;
 }
 
 }  // namespace

@@ -191,40 +191,43 @@ void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<
     AddToReading(bench, signal.row(static_cast<Eigen::Index>(i)), readings[i]);
 }
 
-const SignatureScale::Clean& SignatureScale::CleanRun() const {
-  std::call_once(diagnosed_, [this] {
-    diagnose::DiagnoseOptions options;
-    options.cache_folder = cache_folder_;
-    const diagnose::DiagnosisRun clean =
-        diagnose::Diagnose(TakeReadings(Drawn(design_, 1)), Believed(design_), options);
-    clean_ = {clean.run, clean.noise, nullptr};
-    clean_.projector = std::make_unique<diagnose::Projector>(
-        clean.noise.Whiten(clean.run, clean.run.nuisance.jacobian), clean.run.nuisance);
-  });
-  return clean_;
+const SignatureScale::Clean& SignatureScale::CleanRun(std::uint64_t seed) const {
+  const std::uint64_t schedule = design_ == Design::kFreeform ? seed : 1;
+  const std::scoped_lock lock(one_at_a_time_);
+  Clean& clean = clean_[schedule];
+  if (clean.projector) return clean;
+  diagnose::DiagnoseOptions options;
+  options.cache_folder = cache_folder_;
+  const diagnose::DiagnosisRun diagnosed =
+      diagnose::Diagnose(TakeReadings(Drawn(design_, schedule)), Believed(design_), options);
+  clean.run = diagnosed.run;
+  clean.noise = diagnosed.noise;
+  clean.projector = std::make_unique<diagnose::Projector>(
+      clean.noise.Whiten(clean.run, clean.run.nuisance.jacobian), clean.run.nuisance);
+  return clean;
 }
 
 /// What the readings show in the rows of the run.
-Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings) const {
+Eigen::VectorXd SignatureScale::Rows(const std::vector<Reading>& readings, const diagnose::LinearRun& clean) const {
   if (design_ == Design::kTurntable)
     return diagnose::turntable::BuildRun(readings, Believed(design_), benches::turntable::FollowRecord)
         .run.observed;
   if (design_ == Design::kHob)
     return diagnose::hob::BuildRun(readings, Believed(design_), benches::hob::FollowRecord).run.observed;
-  const diagnose::LinearRun& run = CleanRun().run;
-  Eigen::VectorXd rows(run.Rows());
-  for (int row = 0; row < run.Rows(); ++row) {
+  Eigen::VectorXd rows(clean.Rows());
+  for (int row = 0; row < clean.Rows(); ++row) {
     const auto number =
-        static_cast<std::size_t>(run.schedule.reading[static_cast<std::size_t>(run.ReadingOf(row))]);
-    rows[row] = Shown(BenchOf(design_), readings[number], run.ChannelOf(row));
+        static_cast<std::size_t>(clean.schedule.reading[static_cast<std::size_t>(clean.ReadingOf(row))]);
+    rows[row] = Shown(BenchOf(design_), readings[number], clean.ChannelOf(row));
   }
   return rows;
 }
 
-double SignatureScale::Rho(const std::vector<Reading>& with, const std::vector<Reading>& without) const {
+double SignatureScale::Rho(const std::vector<Reading>& with, const std::vector<Reading>& without,
+                           std::uint64_t seed) const {
   Require(with.size() == without.size(), "two runs of the same schedule");
-  Eigen::MatrixXd signature = Rows(with) - Rows(without);
-  const Clean& clean = CleanRun();
+  const Clean& clean = CleanRun(seed);
+  Eigen::MatrixXd signature = Rows(with, clean.run) - Rows(without, clean.run);
   Require(signature.rows() == clean.run.Rows(), "a run of the design");
   signature = signature.array().isFinite().select(signature, 0.0);
   const Eigen::MatrixXd white = clean.noise.Whiten(clean.run, signature);

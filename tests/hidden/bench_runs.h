@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -43,7 +44,7 @@ std::vector<Reading> TakeReadings(const Scenario& actual);
 void AddTo(const std::string& bench, const Eigen::MatrixXd& signal, std::vector<Reading>& readings);
 
 /// Measures signatures in units of noise after projection, by a clean run of the design that is diagnosed when the
-/// first one is asked for.
+/// first one is asked for; where a design draws its schedule, by one of the same schedule.
 class SignatureScale {
  public:
   /// @param cache_folder  Of calibrated thresholds.
@@ -51,7 +52,8 @@ class SignatureScale {
       : design_(design), cache_folder_(std::move(cache_folder)) {}
 
   /// Length of what two runs of the same schedule differ by.
-  double Rho(const std::vector<Reading>& with, const std::vector<Reading>& without) const;
+  /// @param seed  Of the scenario that both were drawn by.
+  double Rho(const std::vector<Reading>& with, const std::vector<Reading>& without, std::uint64_t seed) const;
 
  private:
   struct Clean {
@@ -60,13 +62,13 @@ class SignatureScale {
     std::unique_ptr<diagnose::Projector> projector;
   };
 
-  const Clean& CleanRun() const;
-  Eigen::VectorXd Rows(const std::vector<Reading>& readings) const;
+  const Clean& CleanRun(std::uint64_t seed) const;
+  Eigen::VectorXd Rows(const std::vector<Reading>& readings, const diagnose::LinearRun& clean) const;
 
   Design design_;
   std::string cache_folder_;
-  mutable std::once_flag diagnosed_;
-  mutable Clean clean_;
+  mutable std::mutex one_at_a_time_;
+  mutable std::map<std::uint64_t, Clean> clean_;  // by the seed of the schedule
 };
 
 double UniformIn(Stream& stream, double lower, double upper);

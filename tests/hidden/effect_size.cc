@@ -127,7 +127,7 @@ EffectSettings SizedTo(double rho, EffectSettings effect, const Scenario& drawn,
   constexpr int kMostSteps = 4;  // one is enough where the signature is proportional to the size
   const std::vector<Reading> without = NoiseFree(drawn, {});
   for (int step = 0; step < kMostSteps; ++step) {
-    const double factor = rho / scale.Rho(NoiseFree(drawn, {effect}), without);
+    const double factor = rho / scale.Rho(NoiseFree(drawn, {effect}), without, drawn.seed);
     if (!std::isfinite(factor) || std::abs(factor - 1.0) < 0.03) break;
     effect = Scaled(effect, factor, drawn.bench);
   }

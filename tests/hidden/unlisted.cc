@@ -11,11 +11,11 @@ namespace {
 
 /// Adds the signal at the size that gives it the length `rho`.
 void AddWithLength(double rho, const std::string& bench, const Eigen::MatrixXd& signal, const SignatureScale& scale,
-                   std::vector<Reading>& readings) {
+                   std::uint64_t seed, std::vector<Reading>& readings) {
   constexpr double kUnit = 1e-6;
   std::vector<Reading> with = readings;
   AddTo(bench, kUnit * signal, with);
-  AddTo(bench, kUnit * rho / scale.Rho(with, readings) * signal, readings);
+  AddTo(bench, kUnit * rho / scale.Rho(with, readings, seed) * signal, readings);
 }
 
 Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::uint64_t seed,
@@ -25,7 +25,7 @@ Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::ui
   made.readings = TakeReadings(Drawn(design, seed));
   Stream stream(seed, "hidden.unlisted");
   const UnlistedSignal drawn = cause.draw({made.readings, stream});
-  AddWithLength(rho, BenchOf(design), drawn.signal, scale, made.readings);
+  AddWithLength(rho, BenchOf(design), drawn.signal, scale, seed, made.readings);
   made.hidden.unlisted = cause.name;
   made.hidden.locks = drawn.locks;
   made.hidden.channels = drawn.channels;

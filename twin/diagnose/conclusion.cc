@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "twin/core/effect_catalogue.h"
@@ -134,12 +135,15 @@ ChannelUnit UnitOfOutliers(const std::string& bench) {
 
 Cause OutlierCause(const NoiseCause& noise, const LinearRun& run) {
   Cause cause = DecidedCause("outliers", "", noise.log_bayes);
-  const double share = static_cast<double>(noise.outliers.size()) / std::max(1, run.schedule.Readings());
+  std::set<int> readings;
+  for (const int row : noise.outliers) readings.insert(run.ReadingOf(row));
+  const auto count = static_cast<double>(readings.size());
+  const double share = count / std::max(1, run.schedule.Readings());
   const bool is_of_reading = !std::isfinite(run.outlier_per_noise);
   const double size = noise.outlier_size * (is_of_reading ? run.sigma.mean() : run.outlier_per_noise);
   const ChannelUnit told = is_of_reading ? run.UnitOf(0) : UnitOfOutliers(run.bench);
-  const double u_size = size / std::sqrt(2.0 * static_cast<double>(noise.outliers.size()));
-  const double u_share = share / std::sqrt(static_cast<double>(noise.outliers.size()));
+  const double u_size = size / std::sqrt(2.0 * count);
+  const double u_share = share / std::sqrt(count);
   cause.parameters = {{"fraction", "1", 1.0, share, u_share, 0.0, 0.5},
                       {"size", told.name, told.to_SI, size, u_size, 0.0, 1e6 * told.to_SI}};
   return cause;

@@ -20,14 +20,33 @@ struct NoiseView {
   std::vector<NoiseCause> before, after;
 };
 
+/// 1 at the k-th of `rows` in column k.
+Eigen::MatrixXd UnitColumns(const std::vector<int>& rows, int all) {
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(all, std::ssize(rows));
+  for (std::size_t k = 0; k < rows.size(); ++k) columns(rows[k], static_cast<Eigen::Index>(k)) = 1.0;
+  return columns;
+}
+
 NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
-  const Eigen::MatrixXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
-  const Deflation terms(*analysis.projector, analysis.noise.Whiten(run, Signatures(run, analysis.found.terms)));
-  const auto look = [&](const Deflation& deflation) {
-    return FindNoiseCauses(run, analysis.noise, Project(*analysis.projector, deflation, white).rows.col(0),
-                           analysis.redundancy);
+  const Projector& projector = *analysis.projector;
+  const Eigen::VectorXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
+  const auto look = [&](const Eigen::MatrixXd& terms) {
+    const auto rest = [&](const Deflation& deflation, const std::vector<int>& left_out) {
+      Rest r{Project(projector, deflation, white).rows.col(0), analysis.redundancy};
+      if (left_out.empty()) return r;
+      r.redundancy -= deflation.Basis().rowwise().squaredNorm();
+      r.redundancy(left_out).setZero();
+      return r;
+    };
+    const auto without = [&](const std::vector<int>& rows) {
+      Eigen::MatrixXd columns(run.Rows(), terms.cols() + std::ssize(rows));
+      columns << terms, UnitColumns(rows, run.Rows());
+      return rest(Deflation(projector, columns), rows);
+    };
+    return FindNoiseCauses(run, analysis.noise, rest(Deflation(projector, terms), {}), without);
   };
-  NoiseView view{look({}), look(terms)};
+  const Eigen::MatrixXd none(run.Rows(), 0);
+  NoiseView view{look(none), look(analysis.noise.Whiten(run, Signatures(run, analysis.found.terms)))};
   // A cause that shows on one channel makes that channel look noisy: only what remains can say so.
   std::erase_if(view.before, [](const NoiseCause& c) { return c.kind == NoiseCause::Kind::kChannelScale; });
   return view;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include "twin/core/distributions.h"
 #include "twin/diagnose/tuning.h"
@@ -23,13 +23,13 @@ struct Standardised {
   double scale = 1.0;  // robust scatter of z before it was divided out
 };
 
-Standardised Standardise(const Eigen::VectorXd& rows, const Eigen::VectorXd& redundancy) {
+Standardised Standardise(const Rest& rest) {
   Standardised s;
-  s.z = Eigen::VectorXd::Zero(rows.size());
+  s.z = Eigen::VectorXd::Zero(rest.rows.size());
   std::vector<double> sizes;
-  for (Eigen::Index k = 0; k < rows.size(); ++k) {
-    if (redundancy[k] < kLeastRedundancy) continue;
-    s.z[k] = rows[k] / std::sqrt(redundancy[k]);
+  for (Eigen::Index k = 0; k < rest.rows.size(); ++k) {
+    if (rest.redundancy[k] < kLeastRedundancy) continue;
+    s.z[k] = rest.rows[k] / std::sqrt(rest.redundancy[k]);
     s.rows.push_back(static_cast<int>(k));
     sizes.push_back(std::abs(s.z[k]));
   }
@@ -87,17 +87,20 @@ NoiseCause Tails(const NoiseModel& noise, const Standardised& s) {
   return cause;
 }
 
+double Farthest(const Standardised& s) {
+  double farthest = 0.0;
+  for (const int row : s.rows) farthest = std::max(farthest, std::abs(s.z[row]));
+  return farthest;
+}
+
 /// What single disturbed rows in otherwise normal noise make of the data: each pays for being chosen, and for a
 /// size that may be anything up to the largest.
-double LikelihoodWithout(const std::vector<int>& far, const Standardised& s) {
-  Standardised rest = s;
-  std::erase_if(rest.rows, [&](int row) { return std::ranges::find(far, row) != far.end(); });
-  double top = 1.0;
-  for (const int row : s.rows) top = std::max(top, std::abs(s.z[row]));
-  const auto count = static_cast<double>(far.size()), all = static_cast<double>(s.rows.size());
+/// @param rest  Without those rows, in the same scale.
+double LikelihoodWithout(std::size_t left_out, const Standardised& rest, const Standardised& s) {
+  const auto count = static_cast<double>(left_out), all = static_cast<double>(s.rows.size());
   const double chosen =
       std::lgamma(all + 1) - std::lgamma(count + 1) - std::lgamma(all - count + 1) + std::log1p(count);
-  return NormalLikelihood(rest) - count * std::log(2.0 * top) - chosen;
+  return NormalLikelihood(rest) - count * std::log(2.0 * std::max(1.0, Farthest(s))) - chosen;
 }
 
 /// Merely heavy-tailed noise has far values, too: then they are no exceptions.
@@ -106,21 +109,61 @@ bool AreExceptions(double likelihood_without, const Standardised& s) {
   return likelihood_without > tails + tuning::kExceptional;
 }
 
-/// A few rows far outside while the rest is normal.
-NoiseCause Outliers(const NoiseModel& noise, const Standardised& s) {
-  NoiseCause cause{NoiseCause::Kind::kOutliers, -1e300, "", noise, {}, 0.0};
-  for (const int row : s.rows) {
-    if (std::abs(s.z[row]) > tuning::kFarOff) cause.outliers.push_back(row);
+/// Rows that are far outside what the others leave, and what these leave then.
+struct Snooped {
+  std::vector<int> far;
+  std::vector<double> size;  // of each, in deviations
+  Standardised rest;
+};
+
+Snooped Snoop(const Standardised& s, const RestWithout& without) {
+  constexpr double kAtOnce = 0.5;  // of the farthest: what lies nearer may be bent by it
+  const double most = tuning::kMostOutlying * static_cast<double>(s.rows.size());
+  Snooped found{{}, {}, s};
+  for (double farthest = Farthest(s); farthest > tuning::kFarOff; farthest = Farthest(found.rest)) {
+    for (const int row : found.rest.rows) {
+      if (std::abs(found.rest.z[row]) <= std::max(tuning::kFarOff, kAtOnce * farthest)) continue;
+      found.far.push_back(row);
+      found.size.push_back(std::abs(found.rest.z[row]) * found.rest.scale);
+    }
+    if (static_cast<double>(found.far.size()) > most) return {{}, {}, s};
+    found.rest = Standardise(without(found.far));
   }
-  const auto count = static_cast<double>(cause.outliers.size()), all = static_cast<double>(s.rows.size());
-  if (count == 0.0 || count > tuning::kMostOutlying * all) return cause;
+  return found;
+}
+
+/// In units of another one's scale.
+Standardised InScaleOf(const Standardised& other, Standardised s) {
+  s.z *= s.scale / other.scale;
+  s.scale = other.scale;
+  return s;
+}
+
+/// Of each disturbed reading the largest.
+double RmsByReading(const Snooped& found, int channels) {
+  std::map<int, double> largest;
+  for (std::size_t k = 0; k < found.far.size(); ++k) {
+    double& of_reading = largest[found.far[k] / channels];
+    of_reading = std::max(of_reading, found.size[k]);
+  }
   double sum2 = 0.0;
-  for (const int row : cause.outliers) sum2 += s.z[row] * s.z[row];
-  cause.outlier_size = std::sqrt(sum2 / count);
-  const double mixture = LikelihoodWithout(cause.outliers, s);
+  for (const auto& [reading, size] : largest) sum2 += size * size;
+  return std::sqrt(sum2 / static_cast<double>(largest.size()));
+}
+
+/// A few rows far outside while the rest is normal.
+NoiseCause Outliers(const LinearRun& run, const NoiseModel& noise, const Standardised& s,
+                    const RestWithout& without) {
+  NoiseCause cause{NoiseCause::Kind::kOutliers, -1e300, "", noise, {}, 0.0};
+  const Snooped found = Snoop(s, without);
+  if (found.far.empty()) return cause;
+  const std::size_t count = found.far.size();
+  const double mixture = LikelihoodWithout(count, InScaleOf(s, found.rest), s);
   if (AreExceptions(mixture, s)) cause.log_bayes = mixture - NormalLikelihood(s);
-  cause.words =
-      fmt::format("{} value{} far outside the noise, left out", cause.outliers.size(), count == 1.0 ? "" : "s");
+  cause.outliers = found.far;
+  std::ranges::sort(cause.outliers);
+  cause.outlier_size = RmsByReading(found, run.Channels());
+  cause.words = fmt::format("{} value{} far outside the noise, left out", count, count == 1 ? "" : "s");
   for (const int row : cause.outliers) cause.repaired.sigma[row] *= 1e4;
   return cause;
 }
@@ -186,14 +229,16 @@ bool StandOut(const std::vector<int>& far, const Eigen::VectorXd& z) {
   for (int row = 0; row < z.size(); ++row) {
     if (z[row] != 0.0) s.rows.push_back(row);
   }
-  return AreExceptions(LikelihoodWithout(far, s), s);
+  Standardised rest = s;
+  std::erase_if(rest.rows, [&](int row) { return std::ranges::find(far, row) != far.end(); });
+  return AreExceptions(LikelihoodWithout(far.size(), rest, s), s);
 }
 
-std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Eigen::VectorXd& rows,
-                                        const Eigen::VectorXd& redundancy) {
-  const Standardised s = Standardise(rows, redundancy);
+std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Rest& rest,
+                                        const RestWithout& without) {
+  const Standardised s = Standardise(rest);
   if (s.rows.empty() || run.noise_free) return {};
-  std::vector<NoiseCause> causes = {Outliers(noise, s), Tails(noise, s), Correlation(run, noise, s)};
+  std::vector<NoiseCause> causes = {Outliers(run, noise, s, without), Tails(noise, s), Correlation(run, noise, s)};
   if (run.Channels() > 1) causes.push_back(ChannelScale(run, noise, s));
   std::erase_if(causes, [](const NoiseCause& cause) { return !(cause.log_bayes > kLeastLogBayes); });
   std::ranges::stable_sort(causes, std::greater<>(), &NoiseCause::log_bayes);

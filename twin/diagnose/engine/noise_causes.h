@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,17 @@ struct NoiseCause {
   std::string words;       // "tails like Student's t with 5 degrees of freedom"
   NoiseModel repaired;
   std::vector<int> outliers;  // rows; kOutliers only
-  double outlier_size = 0.0;  // rms, in units of noise
+  double outlier_size = 0.0;  // rms of the largest of each reading, in units of noise
 };
+
+/// What is left of the data, whitened.
+struct Rest {
+  Eigen::VectorXd rows;
+  Eigen::VectorXd redundancy;  // by row, the share of its own noise that is left; 0: it may be anything
+};
+
+/// What would be left if these rows might be anything.
+using RestWithout = std::function<Rest(const std::vector<int>& rows)>;
 
 /// Whether the rows `far` stand out of normal noise, rather than being the tails of noise that has heavy ones.
 /// @param z  By row, in deviations; a row that is exactly zero is not looked at.
@@ -29,10 +39,13 @@ bool StandOut(const std::vector<int>& far, const Eigen::VectorXd& z);
 
 /// Looks for refuted properties in what is left of the data.
 ///
-/// @param rows        W y with accepted causes taken out, whitened with `noise`.
-/// @param redundancy  Diagonal of W by row.
+/// @param rest  W y with accepted causes taken out, whitened with `noise`, and the diagonal of W.
 /// @return best first; only those with a log Bayes factor above 1.
-std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Eigen::VectorXd& rows,
-                                        const Eigen::VectorXd& redundancy);
+///
+/// Single disturbed rows are found as in Baarda's data snooping: those farthest out are left out, the unknowns
+/// adapt to the others, and again, until none is far; one row that is far off bends the fit for all that share its
+/// unknowns. Reference: Baarda, A testing procedure for use in geodetic networks (1968).
+std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& noise, const Rest& rest,
+                                        const RestWithout& without);
 
 }  // namespace twinbench::diagnose

@@ -73,8 +73,13 @@ Outliers FindOutliers(const SignalContext& c, const Eigen::VectorXd& left_rad) {
   const double deviation_rad = RobustDeviation(d.between);
   if (!(deviation_rad > 0.0)) return outliers;
   double square = 0.0;
-  for (const NoiseCause& cause :
-       FindNoiseCauses(samples, noise, d.between / deviation_rad, Eigen::VectorXd::Ones(c.Samples()))) {
+  const Rest rest{d.between / deviation_rad, Eigen::VectorXd::Ones(c.Samples())};
+  const auto without = [&](const std::vector<int>& rows) {
+    Rest others = rest;  // nothing that is fitted joins them
+    others.redundancy(rows).setZero();
+    return others;
+  };
+  for (const NoiseCause& cause : FindNoiseCauses(samples, noise, rest, without)) {
     if (cause.kind != NoiseCause::Kind::kOutliers || cause.log_bayes < kBelieved) continue;
     for (const int i : cause.outliers) {
       if (!StandsAlone(d.before[i], d.behind[i], kFar * deviation_rad)) continue;

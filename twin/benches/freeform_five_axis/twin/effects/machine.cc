@@ -2,6 +2,7 @@
 
 #include "twin/benches/freeform_five_axis/twin/effects/effects.h"
 #include "twin/core/units.h"
+#include "twin/sim/first_order_lag.h"
 #include "twin/sim/outlier_draw.h"
 
 namespace twinbench::sim {
@@ -57,22 +58,19 @@ class AxisBacklash : public FreeformEffect {
   double half_, sense_ = 1.0, last_ = kNaN;
 };
 
-/// The spindle on the Z slide grows; what lags behind the temperature starts in equilibrium.
+/// The spindle on the Z slide grows.
 class ThermalGrowth : public FreeformEffect {
  public:
   explicit ThermalGrowth(const EffectSettings& e)
-      : along_(AxisOf(e)), growth_m_K_(Parameter(e, "growth")), lag_s_(Parameter(e, "lag")) {}
+      : along_(AxisOf(e)), growth_m_K_(Parameter(e, "growth")), spindle_(Parameter(e, "lag")) {}
   void Disturb(const FreeformMoment& moment, FreeformExtra& extra) override {
-    const double passed_s = moment.time_s - last_s_;
-    const double kept = std::isfinite(passed_s) && lag_s_ > 0.0 ? std::exp(-passed_s / lag_s_) : 0.0;
-    follows_K_ = moment.above_K + kept * (follows_K_ - moment.above_K);
-    last_s_ = moment.time_s;
-    extra.machine.body[2][along_] += growth_m_K_ * follows_K_;
+    extra.machine.body[2][along_] += growth_m_K_ * spindle_.Follow(moment.time_s, moment.above_K);
   }
 
  private:
   std::size_t along_;
-  double growth_m_K_, lag_s_, follows_K_ = 0.0, last_s_ = kNaN;
+  double growth_m_K_;
+  FirstOrderLag spindle_;
 };
 
 /// Mounting the artefact anew ends it.
