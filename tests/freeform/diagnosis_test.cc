@@ -45,8 +45,24 @@ INSTANTIATE_TEST_SUITE_P(
     Freeform, FreeformDiagnosis,
     testing::Values(Hidden{"qpd_gain", "where = \"qpd_y\"\nratio = 0.01"}, Hidden{"qpd_roll", "roll_rad = -0.04"},
                     Hidden{"vertex_radius", "ratio = 0.0004"},
-                    Hidden{"cyclic", "where = \"x\"\ncosine_um = 0.3\nsine_um = 0.1\npitch_mm = 12.1"}),
+                    Hidden{"cyclic", "where = \"x\"\ncosine_um = 0.3\nsine_um = 0.1\npitch_mm = 12.1"},
+                    Hidden{"outliers", "fraction = 0.02\nsize_um = 12.0"}),
     [](const testing::TestParamInfo<Hidden>& test) { return test.param.name; });
+
+/// Set-ups are a quarter of an hour apart: what the spindle did in between counts.
+TEST(FreeformDiagnosis, SizesGrowthThatLagsBehindTheTemperature) {
+  const std::string warm = "[environment]\nswing_mK = 700.0\nswing_period_s = 7000.0\n";
+  const diagnose::Diagnosis diagnosis = DiagnosisOf(
+      "[[effect]]\nname = \"thermal_growth\"\nwhere = \"y\"\ngrowth_um_K = 4.0\nlag_s = 500.0\n" + warm);
+  ASSERT_THAT(NamesOf(diagnosis), testing::ElementsAre("thermal_growth"));
+  for (const auto& [name, truth] : {std::pair{"growth", 4e-6}, std::pair{"lag", 500.0}}) {
+    const auto& all = diagnosis.causes.front().parameters;
+    const auto found = std::ranges::find(all, name, &diagnose::ParameterEstimate::name);
+    ASSERT_NE(found, all.end());
+    EXPECT_NEAR(found->value, truth, 3.0 * found->u);
+    EXPECT_LT(found->u, 0.3 * truth);
+  }
+}
 
 }  // namespace
 }  // namespace twinbench::freeform_test

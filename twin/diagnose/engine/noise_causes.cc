@@ -19,6 +19,7 @@ constexpr double kLeastRedundancy = 0.05;  // rows below it say nothing about th
 /// What is left of each row in units of its own expected scatter, and the rows that can be judged.
 struct Standardised {
   Eigen::VectorXd z;
+  Eigen::VectorXd kept;  // share of each row's own value that is left of it
   std::vector<int> rows;
   double scale = 1.0;  // robust scatter of z before it was divided out
 };
@@ -26,6 +27,7 @@ struct Standardised {
 Standardised Standardise(const Rest& rest) {
   Standardised s;
   s.z = Eigen::VectorXd::Zero(rest.rows.size());
+  s.kept = rest.redundancy;
   std::vector<double> sizes;
   for (Eigen::Index k = 0; k < rest.rows.size(); ++k) {
     if (rest.redundancy[k] < kLeastRedundancy) continue;
@@ -109,10 +111,17 @@ bool AreExceptions(double likelihood_without, const Standardised& s) {
   return likelihood_without > tails + tuning::kExceptional;
 }
 
+/// In units of another one's scale.
+Standardised InScaleOf(const Standardised& other, Standardised s) {
+  s.z *= s.scale / other.scale;
+  s.scale = other.scale;
+  return s;
+}
+
 /// Rows that are far outside what the others leave, and what these leave then.
 struct Snooped {
   std::vector<int> far;
-  std::vector<double> size;  // of each, in deviations
+  std::vector<double> size;  // of each, in units of noise
   Standardised rest;
 };
 
@@ -124,19 +133,12 @@ Snooped Snoop(const Standardised& s, const RestWithout& without) {
     for (const int row : found.rest.rows) {
       if (std::abs(found.rest.z[row]) <= std::max(tuning::kFarOff, kAtOnce * farthest)) continue;
       found.far.push_back(row);
-      found.size.push_back(std::abs(found.rest.z[row]) * found.rest.scale);
+      found.size.push_back(std::abs(found.rest.z[row]) * s.scale / std::sqrt(found.rest.kept[row]));
     }
     if (static_cast<double>(found.far.size()) > most) return {{}, {}, s};
-    found.rest = Standardise(without(found.far));
+    found.rest = InScaleOf(s, Standardise(without(found.far)));
   }
   return found;
-}
-
-/// In units of another one's scale.
-Standardised InScaleOf(const Standardised& other, Standardised s) {
-  s.z *= s.scale / other.scale;
-  s.scale = other.scale;
-  return s;
 }
 
 /// Of each disturbed reading the largest.
@@ -151,6 +153,14 @@ double RmsByReading(const Snooped& found, int channels) {
   return std::sqrt(sum2 / static_cast<double>(largest.size()));
 }
 
+/// All rows about what the others leave: each far one as it then stands.
+Standardised AboutTheRest(const Snooped& found, const Standardised& s) {
+  Standardised all = found.rest;
+  all.rows = s.rows;
+  for (std::size_t k = 0; k < found.far.size(); ++k) all.z[found.far[k]] = found.size[k] / s.scale;
+  return all;
+}
+
 /// A few rows far outside while the rest is normal.
 NoiseCause Outliers(const LinearRun& run, const NoiseModel& noise, const Standardised& s,
                     const RestWithout& without) {
@@ -158,8 +168,9 @@ NoiseCause Outliers(const LinearRun& run, const NoiseModel& noise, const Standar
   const Snooped found = Snoop(s, without);
   if (found.far.empty()) return cause;
   const std::size_t count = found.far.size();
-  const double mixture = LikelihoodWithout(count, InScaleOf(s, found.rest), s);
-  if (AreExceptions(mixture, s)) cause.log_bayes = mixture - NormalLikelihood(s);
+  const Standardised all = AboutTheRest(found, s);
+  const double mixture = LikelihoodWithout(count, found.rest, all);
+  if (AreExceptions(mixture, all)) cause.log_bayes = mixture - NormalLikelihood(s);
   cause.outliers = found.far;
   std::ranges::sort(cause.outliers);
   cause.outlier_size = RmsByReading(found, run.Channels());
