@@ -142,36 +142,47 @@ FeedVector CalmFeed::Leap(const FeedVector& at, Complex from_m, Complex to_m, in
   return off + Play(there.speed_m_s) + Circle(to_m) + to_N * constant_ + grows;
 }
 
+CalmFeed::Spring CalmFeed::SpringOf(double bend_m, double speed_m_s) const {
+  if (law_.coulomb == 0.0) return {0.0, 0.0};
+  const double gives = 1.0 - std::copysign(1.0, speed_m_s) * bend_m / law_.Slip(0.0);
+  return {gives, law_.Stiffness() * bend_m};
+}
+
+CalmFeed::Matrix CalmFeed::MapOnSpring(double gives) const {
+  Matrix map = powers_.front();
+  if (gives == 0.0) return map;
+  map.col(kSlide) -= gives * law_.Stiffness() * by_friction_;
+  map.col(kSlideSpeed) -= gives * law_.damping * by_friction_;
+  return map;
+}
+
+/// Both outside the play and on the same side.
+bool CalmFeed::StaysPressed(const FeedVector& from, const FeedVector& to) const {
+  const double sense = std::copysign(1.0, from[kNut] - from[kSlide]);
+  const double least_m = std::min(sense * (from[kNut] - from[kSlide]), sense * (to[kNut] - to[kSlide]));
+  return p_.play_m == 0.0 || least_m > 0.5 * p_.play_m;
+}
+
 std::optional<CalmFeed::Rested> CalmFeed::Rest(const FeedVector& at, double bend_m, double command_m,
                                                int most) const {
-  const double share =  // of the bristles that is not yet bent the way it goes
-      law_.coulomb > 0.0 ? 1.0 - std::copysign(bend_m, bend_m * at[kSlideSpeed]) / law_.Slip(0.0) : 0.0;
-  const double spring_N_m = law_.coulomb > 0.0 ? share * law_.Stiffness() : 0.0;
-  const double bent_N = law_.coulomb > 0.0 ? law_.Stiffness() * bend_m : 0.0;
+  if (std::abs(at[kSlideSpeed]) > kNearRest_m * p_.position_gain_1_s) return std::nullopt;
+  const Spring spring = SpringOf(bend_m, at[kSlideSpeed]);
+  Matrix map = MapOnSpring(spring.gives);
   const FeedVector play = Play(at[kNut] - at[kSlide]), from = at - play;
-  Matrix map = powers_.front();
-  map.col(kSlide) -= spring_N_m * by_friction_;
-  map.col(kSlideSpeed) -= share * law_.damping * by_friction_;
-  const FeedVector ends = (Matrix::Identity() - map)
-                              .fullPivLu()
-                              .solve(by_command_ * command_m + by_friction_ * (spring_N_m * from[kSlide] - bent_N));
-  const FeedVector off = from - ends;
+  const FeedVector held =
+      by_command_ * command_m - spring.bent_N * by_friction_ + (powers_.front() - map).col(kSlide) * from[kSlide];
+  const FeedVector ends = (Matrix::Identity() - map).fullPivLu().solve(held), off = from - ends;
   const double left_m = std::max(std::abs(off[kSlide]), std::abs(off[kNut]));
-  const double fast_m = at.cwiseAbs()[kSlideSpeed] / p_.position_gain_1_s;
-  const FeedVector there = ends + play;
-  const bool pressed =
-      std::min((at[kNut] - at[kSlide]) * (at[kNut] - at[kSlide]),
-               (there[kNut] - there[kSlide]) * (at[kNut] - at[kSlide])) > 0.25 * p_.play_m * p_.play_m;
-  if (std::max(left_m, fast_m) > kNearRest_m || (p_.play_m > 0.0 && !pressed)) return std::nullopt;
+  if (left_m > kNearRest_m || !StaysPressed(at, ends + play)) return std::nullopt;
   const int periods = left_m > kAtRest_m ? std::min(most, kPeriodsToRest) : most;
   FeedVector then = off;
   for (int left = periods; left > 0; left >>= 1) {
     if (left & 1) then = map * then;
     map = map * map;
   }
-  if (!(std::abs(then[kSlide]) <= left_m)) return std::nullopt;
-  then += there;
-  return Rested{then, bend_m + share * (then[kSlide] - at[kSlide]), periods};
+  if (!(std::abs(then[kSlide]) <= left_m)) return std::nullopt;  // it swings still
+  then += ends + play;
+  return Rested{then, bend_m + spring.gives * (then[kSlide] - at[kSlide]), periods};
 }
 
 }  // namespace twinbench::mechanics

@@ -52,6 +52,12 @@ class CalmFeed {
     double speed_m_s, acceleration_m_s2;
   };
 
+  /// Bristles near rest.
+  struct Spring {
+    double gives;  // share of their stiffness: that which is not yet bent the way the slide goes
+    double bent_N;
+  };
+
   FeedVector Period(FeedBody& body, const FeedVector& at, double command_m, double command_m_s,
                     double friction_N) const;
   Slip SlipOf(std::complex<double> command_m) const;
@@ -59,6 +65,9 @@ class CalmFeed {
   double Friction_N(const Slip& slip) const;
   bool Pressed(const Slip& slip) const;
   bool BendsLate(const Slip& slip) const;
+  Spring SpringOf(double bend_m, double speed_m_s) const;
+  Matrix MapOnSpring(double gives) const;
+  bool StaysPressed(const FeedVector& from, const FeedVector& to) const;
   FeedVector Circle(std::complex<double> command_m) const { return (response_ * command_m).real(); }
   /// Of the play on the side to which the nut pushes: taken out of the state it is one without play.
   FeedVector Play(double sense) const;
