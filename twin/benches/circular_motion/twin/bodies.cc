@@ -71,7 +71,7 @@ const CircleMotion& MotionAt(const std::vector<FeedLeg>& legs, double time_s) {
 /// From its steady motion to rest at an angle.
 void Brake(std::vector<FeedLeg>& legs, double at_rad, double stays_s) {
   const double time_s = legs.back().until_s;
-  const CircleMotion& before = legs.back().motion;
+  const CircleMotion before = legs.back().motion;
   if (before.rate_rad_s() != 0.0) legs.push_back({before.RampTo(0.0, time_s, kRamp_s), time_s + kRamp_s});
   const double stands_s = legs.back().until_s;
   legs.push_back({CircleMotion(before.radius_m(), at_rad, 0.0, stands_s), stands_s + stays_s});
@@ -80,7 +80,7 @@ void Brake(std::vector<FeedLeg>& legs, double at_rad, double stays_s) {
 /// From rest into steady motion, as far as where it brakes; over all it takes as long as at `rate_rad_s`.
 void GoTo(std::vector<FeedLeg>& legs, double to_rad, double rate_rad_s) {
   const double time_s = legs.back().until_s;
-  const CircleMotion& before = legs.back().motion;
+  const CircleMotion before = legs.back().motion;
   const double way_rad = to_rad - before.Angle_rad(time_s);
   const double steady_s = std::max(std::abs(way_rad) / rate_rad_s - kRamp_s, kRamp_s);
   const double goes_rad_s = way_rad / steady_s;  // both ramps together are as much way as one at full speed
