@@ -5,6 +5,15 @@
 #include <numbers>
 
 namespace twinbench::mechanics {
+namespace {
+
+BristleLaw LawOf(const FrictionParameters& p, double inertia_kg_m2) {
+  const double stiffness_Nm_rad = p.coulomb_Nm / p.presliding_rad;
+  return {p.coulomb_Nm, p.static_ratio, p.stribeck_rad_s, p.presliding_rad,
+          2.0 * p.bristle_damping_ratio * std::sqrt(stiffness_Nm_rad * inertia_kg_m2)};
+}
+
+}  // namespace
 
 ServoGains ServoGains::For(double inertia_kg_m2, double servo_Hz) {
   const double w = 2.0 * std::numbers::pi * servo_Hz;
@@ -23,24 +32,13 @@ double Servo::Torque(double error_rad, double error_rad_s, double feed_forward_N
   return torque;
 }
 
-LuGreFriction::LuGreFriction(const FrictionParameters& parameters, double inertia_kg_m2)
-    : parameters_(parameters),
-      bristle_stiffness_Nm_rad_(parameters.coulomb_Nm / parameters.presliding_rad),
-      bristle_damping_Nm_s_(2.0 * parameters.bristle_damping_ratio *
-                            std::sqrt(bristle_stiffness_Nm_rad_ * inertia_kg_m2)) {}
+LuGreFriction::LuGreFriction(const FrictionParameters& p, double inertia_kg_m2)
+    : bristles_(LawOf(p, inertia_kg_m2)), viscous_Nm_s_(p.viscous_Nm_s) {}
 
 double LuGreFriction::Torque(double speed_rad_s, double step_s) {
-  const double viscous_Nm = parameters_.viscous_Nm_s * speed_rad_s;
-  if (parameters_.coulomb_Nm == 0.0) return -viscous_Nm;
-  const double slow = speed_rad_s / parameters_.stribeck_rad_s;
-  const double slip_rad =  // bend at which the bristles slip
-      parameters_.presliding_rad * (1.0 + (parameters_.static_ratio - 1.0) * std::exp(-slow * slow));
-  const double end_rad = std::copysign(slip_rad, speed_rad_s);
-  const double rate_1_s = std::abs(speed_rad_s) / slip_rad;
-  const double before_rad = bend_rad_;
-  bend_rad_ = end_rad + (bend_rad_ - end_rad) * std::exp(-rate_1_s * step_s);
-  const double bend_rate_rad_s = (bend_rad_ - before_rad) / step_s;
-  return -(bristle_stiffness_Nm_rad_ * bend_rad_ + bristle_damping_Nm_s_ * bend_rate_rad_s + viscous_Nm);
+  const double viscous_Nm = viscous_Nm_s_ * speed_rad_s;
+  if (bristles_.law().coulomb == 0.0) return -viscous_Nm;
+  return -(bristles_.Pull(speed_rad_s, step_s) + viscous_Nm);
 }
 
 double Backlash::Follow(double encoder_rad) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mechanics/bristles.h"
 #include "mechanics/stack.h"
 
 /// What turns and brakes a rotor: drive with controller, and friction.
@@ -33,22 +34,19 @@ class Servo {
   double integral_rad_s_ = 0.0;
 };
 
-/// LuGre friction of one rotor. The bristles' equation is stiff and linear while the speed is constant, so a step
-/// takes its exact solution and is stable for every length.
+/// LuGre friction of one rotor.
 class LuGreFriction {
  public:
   LuGreFriction(const FrictionParameters& parameters, double inertia_kg_m2);
 
   /// Torque on the rotor [Nm] after it moved at `speed_rad_s` for `step_s`.
   double Torque(double speed_rad_s, double step_s);
-  void Reset() { bend_rad_ = 0.0; }
-  bool active() const { return parameters_.coulomb_Nm > 0.0 || parameters_.viscous_Nm_s > 0.0; }
+  void Reset() { bristles_.set_bend(0.0); }
+  bool active() const { return bristles_.law().coulomb > 0.0 || viscous_Nm_s_ > 0.0; }
 
  private:
-  FrictionParameters parameters_;
-  double bristle_stiffness_Nm_rad_;
-  double bristle_damping_Nm_s_;
-  double bend_rad_ = 0.0;
+  Bristles bristles_;
+  double viscous_Nm_s_;
 };
 
 /// Play between encoder and rotor: the rotor stays until the encoder has moved by the gap and then follows it.

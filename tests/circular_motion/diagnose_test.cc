@@ -53,6 +53,26 @@ TEST(CircularDiagnosis, NamesWhatTheTwinWasGiven) {
   EXPECT_EQ(NameOfHidden("ball_form", "", "cosine", 0.2 * um), "ball_form");
 }
 
+Scenario BelievedBodies() {
+  return ParseScenario("bench = \"circular_motion\"\nseed = 7\n[mechanics]\nfidelity = \"bullet\"", "believed", ".",
+                       {"circular_procedure.points=72", "circular_procedure.stops=18", "drives.play_x_um=1.0",
+                        "circular_procedure.feeds_mm_min=[1000.0]"});
+}
+
+TEST(CircularDiagnosis, TellsWhatBodiesDoFromWhatElseIsWrong) {
+  const Scenario believed = BelievedBodies();
+  EXPECT_EQ(NameOf(DiagnosisOf(test::CircleReadings(believed), believed)), "none");
+  Scenario squint = believed;
+  CircularOf(squint).machine.squareness_rad = 0.5 * units::arcsec;
+  EXPECT_EQ(NameOf(DiagnosisOf(test::CircleReadings(squint), believed)), "squareness");
+  Scenario late = believed;
+  CircularOf(late).drives.position_gain_1_s[0] = 47.0;  // 64 us more of lag
+  EXPECT_EQ(NameOf(DiagnosisOf(test::CircleReadings(late), believed)), "servo_mismatch");
+  Scenario closed = believed;  // who takes the axes for rigid learns that they are not
+  CircularOf(closed).mechanics.fidelity = "kinematic";
+  EXPECT_NE(NameOf(DiagnosisOf(test::CircleReadings(believed), closed)), "none");
+}
+
 TEST(DiagnosisByTwin, NeedsNeitherFreeConstantsNorAngles) {
   Scenario scenario = Believed();
   CircularOf(scenario).mounting = {0.0, 0.0, 0.0, 0.0};

@@ -72,6 +72,46 @@ std::vector<OwnKey> InstrumentChanges() {
   return keys;
 }
 
+/// Axes as bodies, on few circles; the closed form's own words are taken back.
+std::vector<OwnKey> BodyChanges() {
+  const std::vector<std::string> few = {
+      "machine.lag_y_s=0.001",
+      "machine.backlash_x_um=0",
+      "machine.backlash_y_um=0",
+      "machine.spike_x_um=0",
+      "machine.spike_y_um=0",
+      "circular_procedure.feeds_mm_min=[1000.0]",
+      R"(circular_procedure.setups=[{instrument="bar", radius_mm=110.23}, {instrument="grid", radius_mm=110.23}])"};
+  std::vector<OwnKey> keys = {Change("mechanics.fidelity", "\"bullet\"", few)};
+  std::vector<std::string> bodies = few;
+  bodies.push_back("mechanics.fidelity=\"bullet\"");
+  const auto add = [&](const std::string& key, const std::string& value) {
+    keys.push_back(Change("drives." + key, value, bodies));
+  };
+  for (const std::string axis : {"x", "y"}) {
+    add("mass_" + axis + "_kg", "500");
+    add("screw_inertia_" + axis + "_kg_m2", "6e-3");
+    add("lead_" + axis + "_mm", "20");
+    add("stiffness_" + axis + "_N_um", "80");
+    add("torsion_" + axis + "_Nm_rad", "3000");
+    add("play_" + axis + "_um", "2");
+    add("friction_" + axis + "_N", "400");
+    add("viscous_" + axis + "_N_s_m", "8000");
+    add("position_gain_" + axis + "_per_s", "40");
+    add("velocity_gain_" + axis + "_per_s", "200");
+    add("integral_time_" + axis + "_s", "0.04");
+    add("feed_forward_" + axis, "0.5");
+  }
+  add("damping_ratio", "0.2");
+  add("static_ratio", "1.6");
+  add("stribeck_mm_s", "5");
+  add("presliding_um", "10");
+  add("encoder", "\"slide\"");
+  add("servo_period_us", "250");
+  add("step_us", "100");
+  return keys;
+}
+
 std::vector<OwnKey> ProcedureChanges() {
   return {Change("mounting.offset_um", "200.0"),
           Change("mounting.zero_deg", "2.0"),
@@ -103,7 +143,7 @@ const std::vector<OwnKey>& Keys() {
         {"seed", {}, "every run has its own"},
         {"noise_free", {"noise_free=true"}},
         {"environment.temperature_file", {}, "read by another test of the room's temperature"}};
-    for (const auto& part : {MachineChanges(), InstrumentChanges(), ProcedureChanges()})
+    for (const auto& part : {MachineChanges(), BodyChanges(), InstrumentChanges(), ProcedureChanges()})
       all.insert(all.end(), part.begin(), part.end());
     return all;
   }();

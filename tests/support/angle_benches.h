@@ -46,7 +46,8 @@ inline BenchRun RunHob(const Scenario& scenario) {
 }
 
 inline BenchRun RunCircles(const Scenario& scenario) {
-  return {scenario, CircleReadings(scenario), sim::CircleRun(scenario).Truth()};
+  const sim::CircleRun run(scenario);
+  return {scenario, CircleReadings(run), run.Truth()};
 }
 
 /// By the bench's own twin, through a run record: a bench that has no shorter way.

@@ -42,7 +42,7 @@ std::vector<diagnose::TwinComparison::Product> ProductsOf(const Scenario& scenar
 diagnose::TwinComparison Comparison(const Scenario& scenario) {
   diagnose::TwinComparison comparison;
   comparison.format = &Format();
-  comparison.follow = FollowRecord;
+  comparison.follow = FollowOften();
   comparison.unit = "um";
   comparison.to_SI = units::um;
   comparison.free_points = {"offset_x", "offset_y", "rotation", "length"};

@@ -1,6 +1,9 @@
 #include "twin/benches/circular_motion/settings.h"
 
+#include <fmt/format.h>
+
 #include "twin/benches/circular_motion/format.h"
+#include "twin/core/errors.h"
 #include "twin/core/scenario_together.h"
 #include "twin/core/schema_table.h"
 
@@ -34,12 +37,57 @@ void AddErrors(Table& t, CircularMachineSettings& s) {
 
 void AddMachine(Keys& keys, CircularMachineSettings& s) {
   Table t(keys, "machine");
-  AddPair(t, "lag", kSecond, Within(1), s.lag_s, "of the servo");
+  AddPair(t, "lag", kSecond, Within(1), s.lag_s, "of the servo; of bodies it follows from [drives]");
   t.Add("span", kMm, Positive(10000), &s.span_m, "half the travel over which straightness is stated");
   t.Add("cyclic_pitch", kMm, Positive(1000), &s.cyclic_pitch_m, "of the screw or scale");
   t.Add("spike_time", kSecond, Positive(100), &s.spike_time_s, "from a reversal to the largest excursion");
   t.Add("noise", kUm, UpTo(100), &s.noise_m, "repeatability, an axis and reading, standard deviation");
   AddErrors(t, s);
+}
+
+void AddBodies(Keys& keys, CircularMechanicsSettings& s) {
+  Table t(keys, "mechanics");
+  t.Text("fidelity", &s.fidelity, {"kinematic", "linear", "bullet"},
+         "how the axes move: in closed form, or as bodies with [drives]");
+}
+
+void AddScrew(Table& t, FeedDrivesSettings& s) {
+  AddPair(t, "mass", {"kg"}, Positive(1e5), s.mass_kg, "of the slide and what it carries");
+  AddPair(t, "screw_inertia", {"kg_m2"}, Positive(100), s.screw_inertia_kg_m2, "of screw and motor");
+  AddPair(t, "lead", kMm, Positive(1000), s.lead_m, "of the screw");
+  AddPair(t, "stiffness", {"N_um", 1.0 / units::um}, Positive(1e5), s.stiffness_N_m,
+          "along the axis, of screw, nut and bearings");
+  AddPair(t, "torsion", {"Nm_rad"}, Positive(1e7), s.torsion_Nm_rad, "stiffness of screw and coupling");
+  t.Add("damping_ratio", kPure, UpTo(1), &s.damping_ratio, "of the slide swinging against the screw");
+  AddPair(t, "play", kUm, UpTo(1000), s.play_m, "between nut and slide, full width");
+}
+
+void AddGuideway(Table& t, FeedDrivesSettings& s) {
+  AddPair(t, "friction", {"N"}, UpTo(1e5), s.friction_N, "of the guideway, Coulomb level");
+  AddPair(t, "viscous", {"N_s_m"}, UpTo(1e6), s.viscous_N_s_m, "friction by speed");
+  t.Add("static_ratio", kPure, {1.0, 10.0}, &s.static_ratio, "breakaway force over Coulomb level");
+  t.Add("stribeck", {"mm_s", units::mm}, Positive(1000), &s.stribeck_m_s,
+        "speed by which the breakaway force has gone");
+  t.Add("presliding", kUm, Positive(100), &s.presliding_m, "way by which the guideway gives before it slips");
+}
+
+void AddServo(Table& t, FeedDrivesSettings& s) {
+  constexpr Unit kPerSecond{"per_s"};
+  AddPair(t, "position_gain", kPerSecond, Positive(1000), s.position_gain_1_s, "Kv of the position controller");
+  AddPair(t, "velocity_gain", kPerSecond, Positive(10000), s.velocity_gain_1_s, "band of the speed controller");
+  AddPair(t, "integral_time", kSecond, Positive(10), s.integral_time_s, "of the speed controller");
+  AddPair(t, "feed_forward", kPure, UpTo(1), s.feed_forward,
+          "share of the commanded speed that the speed controller is told; lag = (1 - share) / Kv");
+  t.Text("encoder", &s.encoder, {"motor", "slide"}, "where the position controller reads");
+  t.Add("servo_period", kMicrosecond, {10.0, 10000.0}, &s.servo_period_s, "of the controllers");
+  t.Add("step", kMicrosecond, {1.0, 10000.0}, &s.step_s, "longest, of the bodies within a servo period");
+}
+
+void AddDrives(Keys& keys, FeedDrivesSettings& s) {
+  Table t(keys, "drives");
+  AddScrew(t, s);
+  AddGuideway(t, s);
+  AddServo(t, s);
 }
 
 void AddBar(Keys& keys, BarSettings& s) {
@@ -111,11 +159,41 @@ void AddProcedure(Keys& keys, CircularProcedureSettings& s) {
   t.Add("start", kDeg, Within(360), &s.start_rad, "where every pass begins");
 }
 
+/// What bodies do by themselves must not be stated a second time in closed form.
+void CheckNotTwice(const ScenarioText& text, const std::string& key, double value, double allowed,
+                   const std::string& instead) {
+  if (value == 0.0 || value == allowed) return;
+  throw InputError(Place(text, "machine." + key, "mechanics.fidelity"),
+                   fmt::format("machine.{} is stated, and mechanics.fidelity asks for bodies", key),
+                   fmt::format("no such key: with bodies it follows from {}", instead));
+}
+
+void CheckBodies(const ScenarioText& text, const CircularSettings& s) {
+  const CircularMachineSettings usual;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::string axis = k == 0 ? "x" : "y";
+    CheckNotTwice(text, "lag_" + axis + "_s", s.machine.lag_s[k], usual.lag_s[k],
+                  "drives.position_gain and feed_forward");
+    CheckNotTwice(text, "backlash_" + axis + "_um", s.machine.backlash_m[k], 0.0, "drives.play and friction");
+    CheckNotTwice(text, "spike_" + axis + "_um", s.machine.spike_m[k], 0.0, "drives.friction");
+    if (s.drives.play_m[k] == 0.0) continue;
+    const std::string place = Place(text, "drives.play_" + axis + "_um");
+    if (s.drives.friction_N[k] == 0.0)
+      throw InputError(place, fmt::format("drives.play_{}_um has no drives.friction_{}_N beside it", axis, axis),
+                       "friction above 0: without it the slide floats in its play");
+    if (s.mechanics.fidelity == "linear")
+      throw InputError(place, fmt::format("drives.play_{}_um in the fidelity \"linear\", which has no play", axis),
+                       "mechanics.fidelity = \"bullet\"");
+  }
+}
+
 }  // namespace
 
 void AddKeys(Keys& keys, Scenario& s) {
   CircularSettings& own = CircularOf(s);
   AddMachine(keys, own.machine);
+  AddBodies(keys, own.mechanics);
+  AddDrives(keys, own.drives);
   AddBar(keys, own.bar);
   AddEncoder(keys, own.encoder);
   AddGrid(keys, own.grid);
@@ -125,7 +203,9 @@ void AddKeys(Keys& keys, Scenario& s) {
 }
 
 void CheckTogether(const ScenarioText& text, const Scenario& s) {
-  CheckPasses(text, "circular_procedure.directions", CircularOf(s).procedure.directions);
+  const CircularSettings& own = CircularOf(s);
+  CheckPasses(text, "circular_procedure.directions", own.procedure.directions);
+  if (own.mechanics.HasBodies()) CheckBodies(text, own);
 }
 
 }  // namespace twinbench::benches::circular

@@ -30,6 +30,38 @@ struct CircularMachineSettings {      // [machine]
   double noise_m = 0.2 * units::um;  // repeatability, an axis and reading, standard deviation
 };
 
+struct CircularMechanicsSettings {     // [mechanics]
+  std::string fidelity = "kinematic";  // kinematic | linear | bullet
+
+  /// Whether the axes are bodies with drives; else they follow in closed form.
+  bool HasBodies() const { return fidelity != "kinematic"; }
+};
+
+/// Drives of the linear axes where they are bodies. A plausible small machining centre, not data of a real machine.
+struct FeedDrivesSettings {  // [drives]
+  AxisPair mass_kg = {300.0, 300.0};
+  AxisPair screw_inertia_kg_m2 = {4e-3, 4e-3};
+  AxisPair lead_m = {10.0 * units::mm, 10.0 * units::mm};
+  AxisPair stiffness_N_m = {150e6, 150e6};
+  AxisPair torsion_Nm_rad = {8000.0, 8000.0};
+  double damping_ratio = 0.05;
+  AxisPair play_m = {};
+  AxisPair friction_N = {200.0, 200.0};
+  AxisPair viscous_N_s_m = {2000.0, 2000.0};
+  double static_ratio = 1.3;
+  double stribeck_m_s = 2.0 * units::mm;
+  double presliding_m = 5.0 * units::um;
+  AxisPair position_gain_1_s = {50.0, 50.0};
+  AxisPair velocity_gain_1_s = {300.0, 300.0};
+  AxisPair integral_time_s = {0.02, 0.02};
+  AxisPair feed_forward = {0.95, 0.95};
+  std::string encoder = "motor";  // motor | slide
+  double servo_period_s = 500.0 * units::us;
+  double step_s = 500.0 * units::us;
+
+  friend bool operator==(const FeedDrivesSettings&, const FeedDrivesSettings&) = default;
+};
+
 struct BarSettings {  // [bar]
   double noise_m = 0.15 * units::um;
   double resolution_m = 0.1 * units::um;
@@ -96,6 +128,8 @@ struct CircularProcedureSettings {  // [circular_procedure]
 
 struct CircularSettings {
   CircularMachineSettings machine;
+  CircularMechanicsSettings mechanics;
+  FeedDrivesSettings drives;
   BarSettings bar;
   BarEncoderSettings encoder;
   GridSettings grid;

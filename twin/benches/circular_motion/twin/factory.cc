@@ -38,7 +38,14 @@ std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
 }
 
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
-  return sim::FollowCircles(scenario, record);
+  return sim::FollowCircles(scenario, record, std::make_shared<sim::BodiesOnce>());
+}
+
+model::FollowMaker FollowOften() {
+  return
+      [bodies = std::make_shared<sim::BodiesOnce>()](const Scenario& scenario, const std::vector<Reading>& record) {
+        return sim::FollowCircles(scenario, record, bodies);
+      };
 }
 
 }  // namespace twinbench::benches::circular

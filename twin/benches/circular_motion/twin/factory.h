@@ -9,4 +9,7 @@ std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario);
 
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);
 
+/// The same for one who asks often: axes that are bodies are run once for the same drives on the same record.
+model::FollowMaker FollowOften();
+
 }  // namespace twinbench::benches::circular

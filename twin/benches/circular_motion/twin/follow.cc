@@ -28,9 +28,11 @@ const std::vector<BenchPoint<CircleExtra>>& CirclePoints() {
 /// A record with angles.
 class CircleFollow : public PointwiseFollow<CircleExtra> {
  public:
-  CircleFollow(const Scenario& stated, const std::vector<Reading>& record)
+  CircleFollow(const Scenario& stated, const std::vector<Reading>& record, std::shared_ptr<BodiesOnce> bodies)
       : PointwiseFollow(Foreseeable(stated), record, CirclePoints()),
-        twin_(scenario(), record, model::Above_K(model::CourseOf(record), stated.environment.reference_degC)) {}
+        bodies_(std::move(bodies)),
+        twin_(scenario(), record, model::Above_K(model::CourseOf(record), stated.environment.reference_degC),
+              *bodies_) {}
 
   std::vector<std::string> Unfixed() const override {
     return {"centre, zero of the encoder, length of the bar and rotation of the grid: free in every set-up"};
@@ -47,17 +49,19 @@ class CircleFollow : public PointwiseFollow<CircleExtra> {
   }
 
   std::unique_ptr<model::Follow> On(const Scenario& changed) const override {
-    return std::make_unique<CircleFollow>(changed, record());
+    return std::make_unique<CircleFollow>(changed, record(), bodies_);
   }
 
  private:
+  std::shared_ptr<BodiesOnce> bodies_;
   CircleTwin twin_;
 };
 
 }  // namespace
 
-std::unique_ptr<model::Follow> FollowCircles(const Scenario& scenario, const std::vector<Reading>& record) {
-  return std::make_unique<CircleFollow>(scenario, benches::circular::WithAngles(record));
+std::unique_ptr<model::Follow> FollowCircles(const Scenario& scenario, const std::vector<Reading>& record,
+                                             const std::shared_ptr<BodiesOnce>& bodies) {
+  return std::make_unique<CircleFollow>(scenario, benches::circular::WithAngles(record), bodies);
 }
 
 }  // namespace twinbench::sim

@@ -70,7 +70,7 @@ CircleRun::CircleRun(const Scenario& scenario)
     : scenario_(scenario),
       course_(CourseOf(scenario)),
       above_K_(Above_K(scenario, course_)),
-      twin_(scenario, course_, above_K_),
+      twin_(scenario, course_, above_K_, bodies_),
       mounted_(MountedOf(scenario)) {
   for (const EffectSettings& effect : scenario.effects) {
     if (effect.name == "outliers") outliers_.emplace_back(effect, scenario.seed);
@@ -120,6 +120,18 @@ Reading CircleRun::Take(int reading) const {
 
 namespace {
 
+/// With bodies: in the words of the closed form, as far as these say it. Behind a reversal bodies follow a curve of
+/// their own.
+void TakeFromDrives(const FeedDrivesSettings& drives, nlohmann::json& errors) {
+  const DrivesInClosedForm form = InClosedForm(drives);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const std::string axis = k == 0 ? "x" : "y";
+    errors["machine.lag_" + axis + "_s"] = form.lag_s[k];
+    errors["machine.backlash_" + axis + "_um"] = form.backlash_m[k] / units::um;
+    errors.erase("machine.spike_" + axis + "_um");
+  }
+}
+
 /// Every number of the bench's own tables, by its key.
 nlohmann::json Errors(Scenario scenario) {
   nlohmann::json errors = nlohmann::json::object();
@@ -128,6 +140,7 @@ nlohmann::json Errors(Scenario scenario) {
     if (number && (key.table == "machine" || key.table == "bar" || key.table == "encoder" || key.table == "grid"))
       errors[key.Path()] = **number / key.unit.to_SI;
   }
+  if (CircularOf(scenario).mechanics.HasBodies()) TakeFromDrives(CircularOf(scenario).drives, errors);
   return errors;
 }
 

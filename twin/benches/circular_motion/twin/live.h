@@ -31,6 +31,7 @@ class CircleRun {
   Scenario scenario_;
   std::vector<Reading> course_;
   Eigen::VectorXd above_K_;
+  BodiesOnce bodies_;
   CircleTwin twin_;
   std::vector<CircleExtra> mounted_;  // one a set-up
   std::vector<OutlierDraw> outliers_;

@@ -72,8 +72,11 @@ CircleMachine::CircleMachine(const CircularMachineSettings& settings) : settings
 }
 
 Eigen::Vector2d CircleMachine::Position_m(const CircleInstant& at) const {
+  return Position_m(at, {AxisOf(settings_, at, 0).At_m(), AxisOf(settings_, at, 1).At_m()});
+}
+
+Eigen::Vector2d CircleMachine::Position_m(const CircleInstant& at, const Eigen::Vector2d& lagged_m) const {
   const std::array<LaggedAxis, 2> axes = {AxisOf(settings_, at, 0), AxisOf(settings_, at, 1)};
-  const Eigen::Vector2d lagged_m(axes[0].At_m(), axes[1].At_m());
   Eigen::Vector2d p_m = lagged_m;
   for (std::size_t k = 0; k < 2; ++k) {
     const auto row = static_cast<Eigen::Index>(k);

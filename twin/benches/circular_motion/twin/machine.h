@@ -16,6 +16,10 @@ struct CircleInstant {
   double above_K = 0.0;   // temperature above that of reference
 
   double Rate_rad_s() const { return direction * feed_m_s / radius_m; }
+  bool SameCourse(const CircleInstant& other) const {
+    return commanded_rad == other.commanded_rad && radius_m == other.radius_m && direction == other.direction &&
+           feed_m_s == other.feed_m_s;
+  }
   /// So much earlier on the same pass.
   CircleInstant Before(double latency_s) const;
 };
@@ -42,6 +46,9 @@ class CircleMachine {
 
   /// Of the spindle relative to the table, from the commanded centre.
   Eigen::Vector2d Position_m(const CircleInstant& at) const;
+  /// The same where the axes followed by themselves to `followed_m`: that takes the place of the lagged circle.
+  /// When they turned round is told by the lags still.
+  Eigen::Vector2d Position_m(const CircleInstant& at, const Eigen::Vector2d& followed_m) const;
 
  private:
   CircularMachineSettings settings_;

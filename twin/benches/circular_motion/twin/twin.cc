@@ -29,6 +29,8 @@ CircleStep StepOf(const Reading& r, const CircularProcedureSettings& procedure, 
   using namespace benches::circular;
   return {{r.target_rad, Radius_m(r), r.direction, kFeed_m_s(r), above_K},
           r.reading,
+          r.setup,
+          r.pass,
           ToSeconds(r.time),
           r.velocity_rad_s,
           IsBar(r, procedure)};
@@ -61,15 +63,39 @@ double Tone(const EffectSettings& e, double time_s) {
          std::cos(units::turn * Parameter(e, "frequency") * time_s + Parameter(e, "phase"));
 }
 
+/// What effects add to the lags of the scenario.
+AxisPair Later_s(const CircularSettings& with_effects, const CircularSettings& stated) {
+  const AxisPair &with_s = with_effects.machine.lag_s, &stated_s = stated.machine.lag_s;
+  return {with_s[0] - stated_s[0], with_s[1] - stated_s[1]};
+}
+
+/// With bodies the lags are those of their drives.
+CircularMachineSettings MachineOf(const CircularSettings& s, const AxisPair& later_s) {
+  CircularMachineSettings machine = s.machine;
+  if (!s.mechanics.HasBodies()) return machine;
+  const DrivesInClosedForm drives = InClosedForm(s.drives);
+  for (std::size_t k = 0; k < 2; ++k) machine.lag_s[k] = drives.lag_s[k] + later_s[k];
+  return machine;
+}
+
+std::vector<CirclePlace> PlacesOf(const std::vector<CircleStep>& steps) {
+  std::vector<CirclePlace> places;
+  for (const CircleStep& step : steps) places.push_back({step.setup, step.pass, step.at});
+  return places;
+}
+
 }  // namespace
 
-CircleTwin::CircleTwin(const Scenario& scenario, const std::vector<Reading>& course, const Eigen::VectorXd& above_K)
+CircleTwin::CircleTwin(const Scenario& scenario, const std::vector<Reading>& course, const Eigen::VectorXd& above_K,
+                       BodiesOnce& bodies)
     : settings_(WithEffects(CircularOf(scenario), scenario.effects)),
-      machine_(settings_.machine),
+      later_s_(Later_s(settings_, CircularOf(scenario))),
+      machine_(MachineOf(settings_, later_s_)),
       radial_(scenario.empiricals, "radial"),
       tangential_(scenario.empiricals, "tangential") {
   for (std::size_t i = 0; i < course.size(); ++i)
     steps_.push_back(StepOf(course[i], settings_.procedure, above_K[static_cast<Eigen::Index>(i)]));
+  bodies_ = bodies.Of(settings_, PlacesOf(steps_));
   AddToMachine(scenario.effects, machine_);
   moved_m_ = Moved_m(scenario.effects, steps_);
   for (const EffectSettings& effect : scenario.effects) {
@@ -79,7 +105,12 @@ CircleTwin::CircleTwin(const Scenario& scenario, const std::vector<Reading>& cou
 }
 
 Eigen::Vector2d CircleTwin::Position_m(std::size_t i, double latency_s) const {
-  return machine_.Position_m(steps_[i].at.Before(latency_s)) + moved_m_.col(static_cast<Eigen::Index>(i));
+  const CircleInstant at = steps_[i].at.Before(latency_s);
+  const auto moved_m = moved_m_.col(static_cast<Eigen::Index>(i));
+  if (!bodies_) return machine_.Position_m(at) + moved_m;
+  const Eigen::Vector2d followed_m(bodies_->Position_m(i, 0, latency_s + later_s_[0]),
+                                   bodies_->Position_m(i, 1, latency_s + later_s_[1]));
+  return machine_.Position_m(at, followed_m) + moved_m;
 }
 
 Deviation CircleTwin::Bar(std::size_t i, const CircleExtra& extra) const {

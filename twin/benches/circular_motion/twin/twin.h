@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/benches/circular_motion/columns.h"
+#include "twin/benches/circular_motion/twin/bodies.h"
 #include "twin/benches/circular_motion/twin/machine.h"
 #include "twin/core/reading.h"
 #include "twin/model/product.h"
@@ -24,7 +25,7 @@ struct CircleExtra {
 /// What the twin needs of a reading: taken from its columns once.
 struct CircleStep {
   CircleInstant at;
-  int reading = 0;
+  int reading = 0, setup = 0, pass = 0;
   double time_s = 0.0, velocity_rad_s = 0.0;
   bool is_bar = true;
 };
@@ -35,7 +36,9 @@ class CircleTwin {
  public:
   /// @param course   With angles, in order.
   /// @param above_K  One temperature a reading, above that of reference.
-  CircleTwin(const Scenario& scenario, const std::vector<Reading>& course, const Eigen::VectorXd& above_K);
+  /// @param bodies   Runs the axes where they are bodies.
+  CircleTwin(const Scenario& scenario, const std::vector<Reading>& course, const Eigen::VectorXd& above_K,
+             BodiesOnce& bodies);
 
   benches::circular::Deviation At(std::size_t i, const CircleExtra& extra) const;
 
@@ -48,7 +51,9 @@ class CircleTwin {
   void AddSignals(std::size_t i, benches::circular::Deviation& shown) const;
 
   CircularSettings settings_;
+  AxisPair later_s_ = {};  // by effects: axes that are bodies are then found where they were so much earlier
   CircleMachine machine_;
+  std::shared_ptr<const CircleBodies> bodies_;
   std::vector<CircleStep> steps_;
   std::vector<EffectSettings> tones_;
   Eigen::Matrix2Xd moved_m_;  // by effects that follow time or the reading's number

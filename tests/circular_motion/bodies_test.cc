@@ -1,0 +1,195 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/circular_motion/circle_run.h"
+#include "twin/benches/circular_motion/columns.h"
+#include "twin/benches/circular_motion/twin/factory.h"
+#include "twin/core/errors.h"
+
+// Axes that are bodies, beside the same axes in closed form.
+namespace twinbench::benches::circular {
+namespace {
+
+using units::mm, units::nm, units::um;
+
+constexpr const char* kBench = R"(
+bench = "circular_motion"
+noise_free = true
+[mounting]
+offset_um = 0.0
+zero_deg = 0.0
+length_um = 0.0
+grid_rotation_arcsec = 0.0
+[circular_procedure]
+setups = [ { instrument = "grid", radius_mm = 110.230 } ]
+feeds_mm_min = [1000.0]
+points = 24
+stops = 4
+)";
+
+Scenario With(const std::vector<std::string>& settings) {
+  return ParseScenario(kBench, "bodies", ".", settings);
+}
+
+std::vector<std::string> Joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// Drives without anything that the closed form does not have.
+std::vector<std::string> Ideal(const std::string& fidelity) {
+  std::vector<std::string> settings = {"mechanics.fidelity=\"" + fidelity + "\""};
+  for (const std::string axis : {"x", "y"}) {
+    for (const char* setting : {"friction_#_N=0", "viscous_#_N_s_m=0", "feed_forward_#=0", "stiffness_#_N_um=1e4",
+                                "torsion_#_Nm_rad=1e6"}) {
+      std::string text = std::string("drives.") + setting;
+      text.replace(text.find('#'), 1, axis);
+      settings.push_back(text);
+    }
+  }
+  return settings;
+}
+
+const std::vector<std::string> kErrorsOfPlace = {"machine.scale_x_um_m=25",       "machine.squareness_arcsec=4",
+                                                 "machine.straightness_x_um=0.8", "machine.straightness3_y_um=0.5",
+                                                 "machine.cyclic_x_um=0.4",       "machine.drift_y_um_K=1.5",
+                                                 "environment.swing_mK=700",      "environment.swing_period_s=700"};
+
+Deviation WorstBetween(const std::vector<Reading>& a, const std::vector<Reading>& b) {
+  Deviation worst{0.0, 0.0};
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Deviation of_a = DeviationOf(a[i]), of_b = DeviationOf(b[i]);
+    worst.radial_m = std::max(worst.radial_m, std::abs(of_a.radial_m - of_b.radial_m));
+    worst.tangential_m = std::max(worst.tangential_m, std::abs(of_a.tangential_m - of_b.tangential_m));
+  }
+  return worst;
+}
+
+TEST(CircularBodies, AreTheClosedFormWhereTheirDrivesAreIdeal) {
+  const auto closed =
+      test::CircleReadings(With(Joined(kErrorsOfPlace, {"machine.lag_x_s=0.02", "machine.lag_y_s=0.02"})));
+  for (const char* fidelity : {"linear", "bullet"}) {
+    const auto bodies = test::CircleReadings(With(Joined(kErrorsOfPlace, Ideal(fidelity))));
+    ASSERT_EQ(bodies.size(), closed.size());
+    const Deviation worst = WorstBetween(bodies, closed);
+    // The drive's own s^3 / a is 5e-9 of the radius at 1000 mm/min; 0.33 mm of lag are within it.
+    EXPECT_LT(worst.radial_m, 1.0 * nm) << fidelity;
+    EXPECT_LT(worst.tangential_m, 1.0 * nm) << fidelity;
+  }
+}
+
+const std::vector<std::string> kRubbing = {"mechanics.fidelity=\"bullet\"", "drives.play_x_um=1.0",
+                                           "drives.position_gain_y_per_s=48"};
+const std::vector<std::string> kOnABar = {
+    R"(circular_procedure.setups=[ { instrument = "bar", radius_mm = 110.230 } ])"};
+
+TEST(CircularBodies, AreFollowedAsTheyRan) {
+  const Scenario scenario = With(
+      Joined(Joined(kRubbing, kErrorsOfPlace), Joined(kOnABar, {"bar.latency_s=0.002", "encoder.latency_s=0.02"})));
+  const std::vector<Reading> record = test::CircleReadings(scenario);
+  const Eigen::MatrixXd shown_m = FollowRecord(scenario, record)->Predict({});
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const Deviation was = DeviationOf(WithAngles(record)[i]);
+    EXPECT_NEAR(shown_m(static_cast<Eigen::Index>(i), 0), was.radial_m, 1e-12) << i;
+    EXPECT_NEAR(shown_m(static_cast<Eigen::Index>(i), 1), was.tangential_m, 1e-12) << i;
+  }
+}
+
+TEST(CircularBodies, AreFollowedOnARecordThatRounds) {
+  const Scenario scenario = With(kRubbing);
+  std::vector<Reading> record = test::CircleReadings(scenario);
+  const Eigen::MatrixXd exact_m = FollowRecord(scenario, record)->Predict({});
+  const auto round = [](double value, double step) { return step * std::round(value / step); };
+  for (Reading& r : record) {
+    kCommandedX_m(r) = round(kCommandedX_m(r), 1e-6 * mm);
+    kCommandedY_m(r) = round(kCommandedY_m(r), 1e-6 * mm);
+    r.time = Time(std::chrono::milliseconds(std::llround(1e3 * ToSeconds(r.time))));
+  }
+  const Eigen::MatrixXd rounded_m = FollowRecord(scenario, record)->Predict({});
+  // 1 nm of commanded place; play and friction make of it as much again beside a reversal.
+  EXPECT_LT((rounded_m - exact_m).cwiseAbs().maxCoeff(), 3.0 * nm);
+}
+
+TEST(CircularBodies, ALatencyShowsWhereTheyWereThen) {
+  const std::vector<std::string> base = Joined(kRubbing, kOnABar);
+  const auto now = test::CircleReadings(With(base));
+  const auto late = test::CircleReadings(With(Joined(base, {"encoder.latency_s=0.01"})));
+  int in_motion = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const double back_m = DeviationOf(now[i]).tangential_m - DeviationOf(late[i]).tangential_m;
+    const double expected_m = 0.01 * now[i].direction * kFeed_m_s(now[i]);
+    // Behind a reversal an axis goes more slowly than commanded or faster, by up to a micrometre in 10 ms.
+    EXPECT_NEAR(back_m, expected_m, kFeed_m_s(now[i]) > 0.0 ? 1.0 * um : 1e-3 * nm) << i;
+    in_motion += kFeed_m_s(now[i]) > 0.0;
+    EXPECT_EQ(DeviationOf(now[i]).radial_m, DeviationOf(late[i]).radial_m);
+  }
+  EXPECT_EQ(in_motion, 2 * 24);
+}
+
+TEST(CircularBodies, StandAtTheirStops) {
+  const Scenario scenario = With(kRubbing), later = With(Joined(kRubbing, {"circular_procedure.dwell_s=6.0"}));
+  const auto three_s = test::CircleReadings(scenario), six_s = test::CircleReadings(later);
+  const double lost_m = 2.0 * 1.0 * um;  // play, and more of the screw's twist under friction
+  for (std::size_t i = 0; i < three_s.size(); ++i) {
+    if (kFeed_m_s(three_s[i]) > 0.0) continue;
+    const Deviation at = DeviationOf(three_s[i]), then = DeviationOf(six_s[i]);
+    EXPECT_NEAR(at.radial_m, then.radial_m, 1.0 * nm) << i;
+    EXPECT_NEAR(at.tangential_m, then.tangential_m, 1.0 * nm) << i;
+    EXPECT_LT(std::hypot(at.radial_m, at.tangential_m), 2.0 * lost_m) << "no lag is left";
+    EXPECT_GT(std::hypot(at.radial_m, at.tangential_m), 0.1 * um) << "but play and twist";
+  }
+}
+
+TEST(CircularBodies, EffectsActOnThemAsOnTheClosedForm) {
+  const auto shown = [](const std::vector<std::string>& settings, const std::string& effects) {
+    return test::CircleReadings(ParseScenario(kBench + effects, "bodies", ".", settings));
+  };
+  const std::vector<std::string> closed = {"machine.lag_x_s=0.02", "machine.lag_y_s=0.02"};
+  for (const char* effect :
+       {"name = \"backlash\"\nwhere = \"x\"\nwidth_um = 2.0", "name = \"servo_mismatch\"\nlag_s = 1e-4",
+        "name = \"reversal_spike\"\nwhere = \"y\"\nheight_um = 2.0", "name = \"servo_lag\"\nlag_s = 5e-4"}) {
+    const std::string block = std::string("\n[[effect]]\n") + effect + "\n";
+    const auto on_bodies = shown(Ideal("linear"), block), on_closed = shown(closed, block);
+    // A lag is a delay of the bodies: of the loss of radius, R (w lag)^2 / 2 = 9 nm at 0.02 s and 2.5 % more of it
+    // with the effect, half is missing.
+    EXPECT_LT(WorstBetween(on_bodies, on_closed).radial_m, 30.0 * nm) << effect;
+    EXPECT_LT(WorstBetween(on_bodies, on_closed).tangential_m, 5.0 * nm) << effect;
+    const Deviation moved = WorstBetween(on_bodies, shown(Ideal("linear"), ""));
+    EXPECT_GT(std::max(moved.radial_m, moved.tangential_m), 500.0 * nm) << effect;
+  }
+}
+
+std::string Refusal(const std::vector<std::string>& settings) {
+  try {
+    test::CircleReadings(With(settings));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(CircularBodies, NothingIsStatedTwice) {
+  using testing::HasSubstr;
+  EXPECT_THAT(Refusal(Joined(kRubbing, {"machine.backlash_x_um=2"})), HasSubstr("machine.backlash_x_um"));
+  EXPECT_THAT(Refusal(Joined(kRubbing, {"machine.spike_y_um=2"})), HasSubstr("drives.friction"));
+  EXPECT_THAT(Refusal(Joined(kRubbing, {"machine.lag_x_s=0.002"})), HasSubstr("drives.position_gain"));
+  EXPECT_EQ(Refusal(Joined(kRubbing, {"machine.lag_x_s=0.001"})), "") << "as every resolved scenario has it";
+  EXPECT_THAT(Refusal(Joined(kRubbing, {"drives.friction_x_N=0"})), HasSubstr("floats"));
+  EXPECT_THAT(Refusal(Joined(kRubbing, {"mechanics.fidelity=\"linear\""})), HasSubstr("has no play"));
+  EXPECT_THAT(Refusal(Joined(kRubbing, {"drives.velocity_gain_y_per_s=5000"})), HasSubstr("axis y"));
+}
+
+TEST(CircularBodies, TruthSaysWhatTheyDoInTheFormatsWords) {
+  const nlohmann::json errors = sim::CircleRun(With(kRubbing)).Truth().at("errors");
+  EXPECT_NEAR(errors.at("machine.lag_x_s").get<double>(), 0.001, 1e-15);
+  EXPECT_NEAR(errors.at("machine.lag_y_s").get<double>(), 0.05 / 48.0, 1e-15);
+  const double twist_um = 400.0 * (1.0 / 150.0 + 1e6 * std::pow(0.01 / units::turn, 2) / 8000.0);
+  EXPECT_NEAR(errors.at("machine.backlash_x_um").get<double>(), 1.0 + twist_um, 1e-9);
+  EXPECT_FALSE(errors.contains("machine.spike_x_um"));
+}
+
+}  // namespace
+}  // namespace twinbench::benches::circular
