@@ -1,8 +1,7 @@
-#include <cmath>
-
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/settings.h"
+#include "twin/benches/circular_motion/stated_noise.h"
 #include "twin/benches/circular_motion/twin/factory.h"
 #include "twin/diagnose/products.h"
 
@@ -14,15 +13,9 @@ Eigen::VectorXd Shown_m(const Reading& r) {
   return Eigen::Vector2d(deviation.radial_m, deviation.tangential_m);
 }
 
-/// Of radius and angle as the instrument reads them, with the machine's own repeatability.
 Eigen::VectorXd Noise_m(const Scenario& scenario, const Reading& r) {
-  const CircularSettings& s = CircularOf(scenario);
-  const auto with_machine = [&](double noise_m) { return std::hypot(noise_m, s.machine.noise_m); };
-  if (!IsOfBar(r)) return Eigen::VectorXd::Constant(2, with_machine(s.grid.noise_m));
-  const double quantum = 1.0 / std::sqrt(12.0);
-  const double step_rad = units::turn / s.encoder.lines / s.encoder.interpolation;
-  return Eigen::Vector2d(with_machine(std::hypot(s.bar.noise_m, quantum * s.bar.resolution_m)),
-                         with_machine(Radius_m(r) * std::hypot(s.encoder.noise_rad, quantum * step_rad)));
+  const StatedNoise noise = StatedNoiseOf(CircularOf(scenario), IsOfBar(r), Radius_m(r));
+  return Eigen::Vector2d(noise.radial_m, noise.tangential_m);
 }
 
 /// Slopes of the twin at the spindle's place: what has a shape on a fine grid need not be asked point by point.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "twin/benches/circular_motion/columns.h"
+#include "twin/benches/circular_motion/stated_noise.h"
 
 namespace twinbench::separate::circular {
 namespace {
@@ -141,13 +142,10 @@ Vector2d FromGrid_m(const CirclePoint& p, const CircleMounting& m, const CircleC
          p.Commanded_m();
 }
 
-/// Stated standard uncertainties: the instrument's, its quantum's, the machine's own.
 void SetNoise(const CircularSettings& s, CirclePoint& p) {
-  const double quantum = 1.0 / std::sqrt(12.0), step_rad = units::turn / s.encoder.lines / s.encoder.interpolation;
-  const double radial_m = p.is_bar ? std::hypot(s.bar.noise_m, quantum * s.bar.resolution_m) : s.grid.noise_m;
-  const double angle_rad = std::hypot(s.encoder.noise_rad, quantum * step_rad);
-  p.u_radial_m = std::hypot(radial_m, s.machine.noise_m);
-  p.u_tangential_m = std::hypot(p.is_bar ? p.radius_m * angle_rad : s.grid.noise_m, s.machine.noise_m);
+  const benches::circular::StatedNoise noise = benches::circular::StatedNoiseOf(s, p.is_bar, p.radius_m);
+  p.u_radial_m = noise.radial_m;
+  p.u_tangential_m = noise.tangential_m;
 }
 
 }  // namespace
