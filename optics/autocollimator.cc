@@ -60,15 +60,6 @@ RayBatch CollimatedBeam(const AutocollimatorParameters& p) {
   return beam;
 }
 
-void Set(RayBatch& rays, std::size_t i, const Ray& ray) {
-  rays.ox[i] = ray.origin_m.x();
-  rays.oy[i] = ray.origin_m.y();
-  rays.oz[i] = ray.origin_m.z();
-  rays.dx[i] = ray.direction.x();
-  rays.dy[i] = ray.direction.y();
-  rays.dz[i] = ray.direction.z();
-}
-
 /// What finding the centre between pixels does to one coordinate.
 double Interpolated(const AutocollimatorParameters& p, double u_m) {
   const double phase = 2.0 * std::numbers::pi * u_m / p.pixel_pitch_m;
@@ -108,7 +99,7 @@ void AutocollimatorOptics::ReflectFromMirror() {
     const Eigen::Vector3d normal = Normal(mirror, hits_.x_m[i], hits_.y_m[i]);
     const Eigen::Vector3d direction = outgoing_.At(i).direction;
     if (direction.dot(normal) >= 0.0) continue;
-    Set(returning_, i, {Point(mirror, hits_.x_m[i], hits_.y_m[i]), Reflect(direction, normal)});
+    returning_.Set(i, {Point(mirror, hits_.x_m[i], hits_.y_m[i]), Reflect(direction, normal)});
   }
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
@@ -78,6 +79,7 @@ struct Scene::Impl {
   float blur_m = 0.0f;
   bool committed = false;
   bool same_topology = false;
+  mutable std::atomic<std::uint64_t> rays_traced{0};
 
   void CommitProxies();
   void FindNeighbours(const std::vector<Eigen::AlignedBox3d>& boxes);
@@ -275,6 +277,9 @@ void Scene::Commit() {
 const std::vector<Surface>& Scene::surfaces() const {
   return impl_->surfaces;
 }
+std::uint64_t Scene::rays_traced() const {
+  return impl_->rays_traced;
+}
 int Scene::packet_width() const {
   return impl_->world.packet_width();
 }
@@ -285,6 +290,7 @@ RTCSceneTy* Scene::embree_scene() const {
 void Scene::Intersect(const RayBatch& rays, HitBatch& hits, RayOrder order) const {
   if (!impl_->committed) throw std::logic_error("Scene::Intersect before Commit");
   hits.Resize(rays.size());
+  impl_->rays_traced.fetch_add(rays.size(), std::memory_order_relaxed);
   const auto width = static_cast<std::size_t>(packet_width());
   std::size_t begin = 0;
   while (const std::size_t packets = std::min(kTilePackets, (rays.size() - begin) / width)) {

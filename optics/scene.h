@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -54,6 +55,9 @@ class Scene {
 
   /// Does a mesh stand between two points?
   bool Occluded(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;
+
+  /// How many rays Embree has been asked about by Intersect so far: what shows that light was traced.
+  std::uint64_t rays_traced() const;
 
   /// Rays per packet on this machine: 16 where Embree has them natively, else 8.
   int packet_width() const;

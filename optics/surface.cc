@@ -17,6 +17,15 @@ void RayBatch::Add(const Ray& ray) {
   dz.push_back(ray.direction.z());
 }
 
+void RayBatch::Set(std::size_t i, const Ray& ray) {
+  ox[i] = ray.origin_m.x();
+  oy[i] = ray.origin_m.y();
+  oz[i] = ray.origin_m.z();
+  dx[i] = ray.direction.x();
+  dy[i] = ray.direction.y();
+  dz[i] = ray.direction.z();
+}
+
 void HitBatch::Resize(std::size_t size) {
   surface.resize(size);
   t_m.resize(size);

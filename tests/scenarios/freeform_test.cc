@@ -47,6 +47,16 @@ TEST(FreeformFiveAxis, PredictsTheTipWhereTheProbeHasNotBeen) {
   EXPECT_NEAR(e.results.at("volumetric_um").at("machine_rms").get<double>(), OfScore(e, "machine_rms"), 0.5);
 }
 
+TEST(FreeformFiveAxis, MapsItsVolumeBeforeAndAfterCompensation) {
+  const nlohmann::json grids = Freeform("freeform_five_axis.toml").score.at("volumetric_grid_um");
+  ASSERT_EQ(grids.size(), 4u);
+  EXPECT_EQ(grids[0].at("a_deg"), 0.0);
+  EXPECT_EQ(grids[0].at("b_deg"), 0.0);
+  EXPECT_NEAR(grids[3].at("b_deg").get<double>(), 5.0, 0.2);  // half-way to 10 deg
+  for (const nlohmann::json& grid : grids)
+    EXPECT_LT(grid.at("left_rms").get<double>(), grid.at("machine_rms").get<double>() / 5.0) << grid.dump();
+}
+
 TEST(FreeformOneRadius, LeavesMoreThanTwoCurvatures) {
   const EvaluatedFreeform &one = Freeform("freeform_one_radius.toml"), &two = Freeform("freeform_five_axis.toml");
   EXPECT_GT(one.separation.at("rank").get<int>(), 100);

@@ -106,6 +106,37 @@ nlohmann::json VolumetricJson(const Unseen& unseen) {
           {"u_compensated_max", v.u_um.colwise().norm().maxCoeff()}};
 }
 
+/// The same on regular grids.
+struct Mapped {
+  std::vector<Grid> grids;
+  std::vector<PoseRead> poses;  // of all of them
+  VolumetricErrors errors;
+};
+
+Mapped MapOf(const FreeformSettings& bench, const std::vector<PoseRead>& seen, const Identification& found,
+             Estimator estimator) {
+  Mapped map{GridsOf(seen, bench, kGridNodes), {}, {}};
+  map.poses = PosesOnGrids(map.grids);
+  map.errors = PredictErrors(bench, map.poses, found, estimator);
+  return map;
+}
+
+std::string MapWords(const Mapped& map) {
+  std::string words =
+      "on grids over X, Y and Z, before and after compensation (volumetric_grid.csv), um rms and at most:\n";
+  Eigen::Index from = 0;
+  for (const Grid& grid : map.grids) {
+    const auto columns = Eigen::seqN(from, std::ssize(grid.poses));
+    const Eigen::Matrix3Xd before = map.errors.error_um(Eigen::all, columns),
+                           u = map.errors.u_um(Eigen::all, columns);
+    words += fmt::format("  A {:5.2f} deg, B {:5.2f} deg   {:.2f}, {:.2f}   noise leaves {:.2f}, {:.2f}\n",
+                         grid.a_rad / units::deg, grid.b_rad / units::deg, RmsLength(before),
+                         before.colwise().norm().maxCoeff(), RmsLength(u), u.colwise().norm().maxCoeff());
+    from += std::ssize(grid.poses);
+  }
+  return words;
+}
+
 std::string VolumetricWords(const Unseen& unseen) {
   return fmt::format(
       "at {} poses that were not measured the machine errs by {:.2f} um rms, rigid motion taken out;\n"
@@ -120,6 +151,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const std::vector<PoseRead> seen = SeenPoses(scenario, readings);
   const Identification found = IdentifyBy(bench, seen, estimator);
   const Unseen unseen = UnseenOf(bench, seen, found, estimator);
+  const Mapped map = MapOf(bench, seen, found, estimator);
   const nlohmann::json separation = SeparationJson(found);
   const nlohmann::json results = {{"rank", separation.at("rank")},
                                   {"unknowns", separation.at("unknowns")},
@@ -130,8 +162,9 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   return {results,
           separation,
           "",
-          SummaryOf(found) + VolumetricWords(unseen),
+          SummaryOf(found) + VolumetricWords(unseen) + MapWords(map),
           {{"volumetric.csv", VolumetricCsv(unseen.poses, unseen.errors)},
+           {"volumetric_grid.csv", VolumetricCsv(map.poses, map.errors)},
            {"compensation.csv", CompensationCsv(bench, seen, found)}}};
 }
 

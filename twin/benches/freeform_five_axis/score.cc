@@ -66,6 +66,46 @@ double PullsOf(const Identification& found, const Eigen::VectorXd& truth) {
   return count > 0 ? std::sqrt(sum / count) : kNaN;
 }
 
+/// What the machine errs at some poses and what the estimate leaves of it, best rigid motion taken out.
+struct Compensated {
+  Eigen::Matrix3Xd actual_um;
+  VolumetricErrors left;
+};
+
+Compensated CompensatedAt(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                          const Identification& found, const Eigen::VectorXd& truth, Estimator estimator) {
+  Compensated at{{}, PredictErrors(bench, poses, found, estimator)};
+  const Eigen::Matrix3Xd& nominal = at.left.nominal_um;
+  at.actual_um = WithoutRigidMotion(nominal, Tips_um(bench, poses, truth, Estimator::kRigorous) - nominal);
+  at.left.error_um = WithoutRigidMotion(nominal, at.actual_um - at.left.error_um);
+  return at;
+}
+
+/// On grids over X, Y and Z: before, and after.
+struct ScoredGrids {
+  nlohmann::json json = nlohmann::json::array();
+  std::string text;
+};
+
+ScoredGrids ScoreGrids(const FreeformSettings& bench, const std::vector<PoseRead>& seen,
+                       const Identification& found, const Eigen::VectorXd& truth, Estimator estimator) {
+  const std::vector<Grid> grids = GridsOf(seen, bench, kGridNodes);
+  const Compensated all = CompensatedAt(bench, PosesOnGrids(grids), found, truth, estimator);
+  ScoredGrids scored;
+  Eigen::Index from = 0;
+  for (const Grid& grid : grids) {
+    const auto columns = Eigen::seqN(from, std::ssize(grid.poses));
+    const double before = RmsLength(all.actual_um(Eigen::all, columns));
+    const double left = RmsLength(all.left.error_um(Eigen::all, columns));
+    const double a_deg = grid.a_rad / units::deg, b_deg = grid.b_rad / units::deg;
+    scored.json.push_back({{"a_deg", a_deg}, {"b_deg", b_deg}, {"machine_rms", before}, {"left_rms", left}});
+    scored.text += fmt::format("on a grid at A {:.2f}, B {:.2f} deg: {:.3f} um before, {:.3f} um left, rms\n",
+                               a_deg, b_deg, before, left);
+    from += std::ssize(grid.poses);
+  }
+  return scored;
+}
+
 }  // namespace
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
@@ -75,12 +115,10 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
   const std::vector<PoseRead> seen = SeenPoses(scenario, readings), unseen = UnseenPoses(seen, bench, kPoses);
   const Identification found = IdentifyBy(bench, seen, estimator);
   const Eigen::VectorXd true_x = TruthOf(truth, found);
-  const VolumetricErrors predicted = PredictErrors(bench, unseen, found, estimator);
-  const Eigen::Matrix3Xd& nominal = predicted.nominal_um;
-  const Eigen::Matrix3Xd actual =
-      WithoutRigidMotion(nominal, Tips_um(bench, unseen, true_x, Estimator::kRigorous) - nominal);
-  VolumetricErrors left = predicted;
-  left.error_um = WithoutRigidMotion(nominal, actual - predicted.error_um);
+  const Compensated at = CompensatedAt(bench, unseen, found, true_x, estimator);
+  const Eigen::Matrix3Xd& actual = at.actual_um;
+  const VolumetricErrors& left = at.left;
+  const ScoredGrids grids = ScoreGrids(bench, seen, found, true_x, estimator);
   const double pulls = PullsOf(found, true_x), most = left.error_um.colwise().norm().maxCoeff();
   return {
       {{"volumetric_um",
@@ -88,6 +126,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
          {"left_rms", RmsLength(left.error_um)},
          {"left_max", most},
          {"u_rms", RmsLength(left.u_um)}}},
+       {"volumetric_grid_um", grids.json},
        {"identified_pull_rms", report::In(1.0, pulls)},
        {"chi2_over_rank", report::In(1.0, Chi2OverRank(bench, seen, found, true_x))},
        {"poses", unseen.size()}},
@@ -95,7 +134,8 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                   "of the machine         {:.3f} um rms\nleft by the estimate   {:.3f} um rms, {:.3f} um at "
                   "most; noise explains {:.3f} um rms\n"
                   "what is identified by itself is off by {:.2f} of its uncertainty, rms\n",
-                  unseen.size(), RmsLength(actual), RmsLength(left.error_um), most, RmsLength(left.u_um), pulls),
+                  unseen.size(), RmsLength(actual), RmsLength(left.error_um), most, RmsLength(left.u_um), pulls) +
+          grids.text,
       VolumetricCsv(unseen, left)};
 }
 

@@ -58,6 +58,24 @@ void AddProbe(Keys& keys, QuadrantSettings& qpd, CameraSettings& ccd) {
   c.Add("noise", {"px"}, UpTo(1000), &ccd.noise_px, "of one reading, standard deviation");
 }
 
+void AddOptics(Keys& keys, ProbeOpticsSettings& s) {
+  Table t(keys, "optics");
+  const Bounds share{0.0, 0.5};
+  t.Text("fidelity", &s.fidelity, {"traced", "closed"},
+         "how the probe's light is found: by Embree, or by a formula");
+  t.Text("spot", &s.spot, {"stated", "beam"}, "as qpd.spot_radius says, or as the beam's rays make it");
+  t.Add("beam_radius", kMm, Positive(1), &s.beam_radius_m, "1/e^2, of the beam's waist at the tip");
+  t.Add("wavelength", kNm, {100, 20000}, &s.wavelength_m, "of the laser");
+  t.Text("splitter", &s.splitter, {"grid", "stack"}, "of wires, or of layers, through which rays askew leak");
+  t.Add("splitter_p_reflected", kPure, share, &s.splitter_p_reflected, "share of what should go through it");
+  t.Add("splitter_s_transmitted", kPure, share, &s.splitter_s_transmitted, "share of what it should reflect");
+  t.Add("plate_reflected", kPure, share, &s.plate_reflected, "share that each face of the wave plate reflects");
+  t.Add("plate_retardance", kDeg, Within(90), &s.plate_retardance_rad, "beyond a quarter wave");
+  t.Add("plate_azimuth", kDeg, Within(45), &s.plate_azimuth_rad, "of its axis, beyond 45 deg");
+  t.Add("plate_tilt_x", kMrad, Within(100), &s.plate_tilt_x_rad, "about the tool's x");
+  t.Add("plate_tilt_y", kMrad, Within(100), &s.plate_tilt_y_rad, "about the tool's y");
+}
+
 void AddMount(Table& t, MountSettings& s) {
   t.Add("x", kMm, Within(10000), &s.x_m, "");
   t.Add("y", kMm, Within(10000), &s.y_m, "");
@@ -83,6 +101,7 @@ void AddKeys(Keys& keys, Scenario& s) {
   AddMachine(keys, own.machine);
   AddArtefact(keys, own.artefact);
   AddProbe(keys, own.qpd, own.ccd);
+  AddOptics(keys, own.optics);
   AddProcedure(keys, own.freeform_procedure);
   AddEnvironment(keys, s.environment);
 }

@@ -61,6 +61,27 @@ struct CameraSettings {  // [ccd]
   double noise_px = 0.05;
 };
 
+/// How the probe's light is found. All but the first are known to the twin only, not to the estimators.
+struct ProbeOpticsSettings {        // [optics]
+  std::string fidelity = "traced";  // traced | closed
+  std::string spot = "stated";      // stated | beam: of qpd.spot_radius, or as the beam's rays make it
+  double beam_radius_m = 0.1e-3;    // 1/e^2, of the waist at the tip
+  double wavelength_m = 650.0 * units::nm;
+  std::string splitter = "grid";      // grid | stack: whose rays askew leak
+  double splitter_p_reflected = 0.0;  // shares of the power
+  double splitter_s_transmitted = 0.0;
+  double plate_reflected = 0.0;       // of each face
+  double plate_retardance_rad = 0.0;  // beyond a quarter wave
+  double plate_azimuth_rad = 0.0;     // of its axis, beyond 45 deg
+  double plate_tilt_x_rad = 0.0, plate_tilt_y_rad = 0.0;
+
+  /// One spot of the stated size and all of the light in it: then the closed form says the same as the light.
+  bool IsPlain() const {
+    return spot == "stated" && splitter == "grid" && splitter_p_reflected == 0.0 && splitter_s_transmitted == 0.0 &&
+           plate_reflected == 0.0 && plate_retardance_rad == 0.0 && plate_azimuth_rad == 0.0;
+  }
+};
+
 /// Where the artefact stands on the X slide, nominally.
 struct MountSettings {
   double x_m = 0.0, y_m = 0.0, z_m = 0.0, yaw_rad = 0.0;
@@ -82,6 +103,7 @@ struct FreeformSettings {
   ArtefactSettings artefact;
   QuadrantSettings qpd;
   CameraSettings ccd;
+  ProbeOpticsSettings optics;
   FreeformProcedureSettings freeform_procedure;
 };
 

@@ -36,6 +36,47 @@ std::vector<PoseRead> UnseenPoses(const std::vector<PoseRead>& seen, const Freef
   return poses;
 }
 
+namespace {
+
+PoseRead PoseAt(const std::array<double, kMachineAxes>& at, const FreeformSettings& bench) {
+  PoseRead pose;
+  pose.at = at;
+  for (std::size_t axis = 0; axis < kMachineAxes; ++axis)
+    pose.t[axis] = (at[axis] - bench.machine.centre[axis]) / bench.machine.half[axis];
+  return pose;
+}
+
+}  // namespace
+
+std::vector<Grid> GridsOf(const std::vector<PoseRead>& seen, const FreeformSettings& bench, int nodes_an_axis) {
+  std::array<double, kMachineAxes> low{}, high{};
+  for (std::size_t axis = 0; axis < kMachineAxes; ++axis) {
+    const auto [least, most] = std::ranges::minmax(seen, {}, [axis](const PoseRead& p) { return p.at[axis]; });
+    low[axis] = least.at[axis];
+    high[axis] = most.at[axis];
+  }
+  const auto node = [&](std::size_t axis, int k) {
+    return low[axis] + (high[axis] - low[axis]) * k / (nodes_an_axis - 1);
+  };
+  std::vector<Grid> grids;
+  for (const auto& [share_a, share_b] : {std::pair{0.0, 0.0}, {0.5, 0.0}, {0.0, 0.5}, {0.5, 0.5}}) {
+    Grid& grid = grids.emplace_back(Grid{share_a * high[3], share_b * high[4], {}});
+    for (int i = 0; i < nodes_an_axis; ++i) {
+      for (int j = 0; j < nodes_an_axis; ++j) {
+        for (int k = 0; k < nodes_an_axis; ++k)
+          grid.poses.push_back(PoseAt({node(0, i), node(1, j), node(2, k), grid.a_rad, grid.b_rad}, bench));
+      }
+    }
+  }
+  return grids;
+}
+
+std::vector<PoseRead> PosesOnGrids(const std::vector<Grid>& grids) {
+  std::vector<PoseRead> poses;
+  for (const Grid& grid : grids) poses.insert(poses.end(), grid.poses.begin(), grid.poses.end());
+  return poses;
+}
+
 Eigen::Matrix3Xd Tips_um(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
                          const Eigen::VectorXd& unknowns, Estimator estimator) {
   const bool is_published = estimator == Estimator::kPublished;

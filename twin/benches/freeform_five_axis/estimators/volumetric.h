@@ -16,6 +16,20 @@ Eigen::Matrix3Xd WithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen:
 /// Poses that a run had not, anywhere where it had been; the same for every run of the same range.
 std::vector<PoseRead> UnseenPoses(const std::vector<PoseRead>& seen, const FreeformSettings& bench, int count);
 
+/// Places of a regular grid over where a run has been, in X, Y and Z, at one pair of A and B.
+struct Grid {
+  double a_rad = 0.0, b_rad = 0.0;
+  std::vector<PoseRead> poses;  // Z runs fastest
+};
+
+inline constexpr int kGridNodes = 5;  // an axis
+
+/// One grid at A = B = 0, and three half-way to where A, B, and both of them had been.
+std::vector<Grid> GridsOf(const std::vector<PoseRead>& seen, const FreeformSettings& bench, int nodes_an_axis);
+
+/// All poses of some grids, one grid after the other.
+std::vector<PoseRead> PosesOnGrids(const std::vector<Grid>& grids);
+
 /// The tip in the X slide's frame as the estimator's own equations have it [um]: 3 x poses.
 Eigen::Matrix3Xd Tips_um(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
                          const Eigen::VectorXd& unknowns, Estimator estimator);

@@ -1,5 +1,6 @@
 #include "twin/benches/freeform_five_axis/twin/factory.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/freeform_five_axis/columns.h"
@@ -48,6 +49,7 @@ class Twin : public BenchTwin {
     kQpdX_V(reading) = shown.qpd_x_V + own.qpd.noise_V * Noise("qpd_x.noise", reading);
     kQpdY_V(reading) = shown.qpd_y_V + own.qpd.noise_V * Noise("qpd_y.noise", reading);
     kQpdSum_V(reading) = shown.qpd_sum_V + own.qpd.noise_V * Noise("qpd_sum.noise", reading);
+    if (!std::isfinite(shown.ccd_px)) reading.status = ReadingStatus::kNoLight;
     kCcd_px(reading) = shown.ccd_px + own.ccd.noise_px * Noise("ccd.noise", reading);
   }
 

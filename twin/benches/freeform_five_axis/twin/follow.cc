@@ -80,7 +80,8 @@ class FreeformFollow : public PointwiseFollow<FreeformExtra> {
 
  protected:
   Eigen::MatrixXd Shown(const std::vector<FreeformExtra>& extra) const override {
-    FreeformTwin twin(scenario(), {FreeformOf(scenario()).machine, {}});  // anew: its effects have memories
+    FreeformTwin twin(scenario(), {FreeformOf(scenario()).machine, {}},
+                      LightAsked::kQuickly);  // its effects have memories
     Eigen::MatrixXd shown(std::ssize(extra), 3);
     for (std::size_t i = 0; i < extra.size(); ++i) {
       const double share = run_s_ > 0.0 ? ToSeconds(record()[i].time) / run_s_ : 0.0;

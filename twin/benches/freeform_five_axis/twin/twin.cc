@@ -87,11 +87,11 @@ DrawnBench Draw(const Scenario& scenario) {
   return drawn;
 }
 
-FreeformTwin::FreeformTwin(const Scenario& scenario, DrawnBench drawn)
+FreeformTwin::FreeformTwin(const Scenario& scenario, DrawnBench drawn, LightAsked asked)
     : scenario_(scenario), actual_(FreeformOf(scenario)), drawn_(std::move(drawn)) {
-  form_ = FormOf(actual_.artefact);
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeFreeformEffect(effect, scenario));
   for (const auto& effect : effects_) effect->AlterBench(actual_);
+  light_ = std::make_unique<ProbeLight>(actual_, FormOf(actual_.artefact), asked);
   for (const std::string& channel : FormatOf(scenario.bench).channels)
     empirical_.emplace_back(scenario.empiricals, channel);
 }
@@ -104,13 +104,8 @@ ProbeSignals FreeformTwin::Show(const Reading& reading, double run_share, Freefo
   for (std::size_t k = 0; k < kBodyErrors; ++k) mounting[k] += extra.mounting[k];
   const Pose X_MF = X_MS(moment.at, errors) * Eigen::Translation3d(extra.slipped_S_m) *
                     X_SF(Of(actual_.freeform_procedure.mounts, moment.setup), mounting);
-  const ProbeSpot spot =
-      Look(actual_.artefact, moment.cell, X_MF.inverse() * X_MT(moment.at, errors, actual_.machine.pivot_m),
-           extra.cell_height_m, form_.get());
-  const Eigen::Vector2d on_quadrants_m = OnQuadrants_m(actual_.qpd, spot) + extra.spot_m;
-  ProbeSignals shown;
-  ShowQuadrants(actual_.qpd, on_quadrants_m, shown);
-  shown.ccd_px = Camera_px(actual_.ccd, spot.distance_m);
+  ProbeSignals shown = light_->Show(moment.cell, X_MF.inverse() * X_MT(moment.at, errors, actual_.machine.pivot_m),
+                                    extra.cell_height_m, extra.spot_m);
   for (const auto& effect : effects_) effect->AlterSignals(moment, shown);
   shown.qpd_x_V += extra.qpd_x_V + empirical_[0].At(moment.reading);
   shown.qpd_y_V += extra.qpd_y_V + empirical_[1].At(moment.reading);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/benches/freeform_five_axis/twin/effect.h"
+#include "twin/benches/freeform_five_axis/twin/light.h"
 #include "twin/core/reading.h"
 #include "twin/sim/empirical_signal.h"
 
@@ -22,20 +23,21 @@ DrawnBench Draw(const Scenario& scenario);
 class FreeformTwin {
  public:
   /// @param drawn  Nothing drawn: the machine is as the scenario says and every set-up stands where it should.
-  FreeformTwin(const Scenario& scenario, DrawnBench drawn);
+  FreeformTwin(const Scenario& scenario, DrawnBench drawn, LightAsked asked = LightAsked::kAsStated);
 
-  /// Without noise.
+  /// Without noise. Where no light comes to the camera ccd_px is NaN.
   /// @param reading  With its commanded values; without a temperature it is at reference.
   /// @param run_share  Of the whole run.
   ProbeSignals Show(const Reading& reading, double run_share, FreeformExtra extra = {});
 
   const DrawnBench& drawn() const { return drawn_; }
+  const ProbeLight& light() const { return *light_; }
 
  private:
   Scenario scenario_;
   FreeformSettings actual_;
   DrawnBench drawn_;
-  std::shared_ptr<const optics::HeightMap> form_;  // null: the array has its form
+  std::unique_ptr<ProbeLight> light_;
   std::vector<std::unique_ptr<FreeformEffect>> effects_;
   std::vector<EmpiricalSignal> empirical_;
 };
