@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <map>
-#include <set>
 
 #include "hw_bridge/ad/ad_converter.h"
 #include "hw_bridge/ad/negotiation.h"
@@ -14,35 +12,13 @@
 #include "hw_bridge/control/esp_table.h"
 #include "hw_bridge/control/host_clock.h"
 #include "hw_bridge/control/operator_devices.h"
-#include "hw_bridge/control/scpi.h"
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/control/served_clock.h"
+#include "hw_bridge/conversations.h"
 
 namespace twinbench::hw {
 namespace {
-
-/// One conversation for every address.
-class Conversations {
- public:
-  /// The part of `device` in it, connected and identified.
-  DeviceLine LineOf(const std::string& device, const ControlSettings& settings) {
-    const std::string query = settings.kind == "esp" ? kEspIdentity : kScpiIdentity;
-    const auto found =
-        by_address_.try_emplace(settings.address, ParseAddress(settings.address).value(), query, settings.identity);
-    DeviceLine line(found.first->second, device, FromSeconds(settings.timeout_s));
-    line.Openings();
-    return line;
-  }
-  std::set<std::string> Identities() const {
-    std::set<std::string> identities;
-    for (const auto& [address, dialogue] : by_address_) identities.insert(dialogue.identity());
-    return identities;
-  }
-
- private:
-  std::map<std::string, Dialogue> by_address_;
-};
 
 void TellOperator(const std::string& notice) {
   fmt::print(stderr, "twinbench: {}\n", notice);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <thread>
 
-#include "twin/core/number_text.h"
 #include "twin/core/units.h"
 
 namespace twinbench::hw {
@@ -13,15 +12,8 @@ namespace {
 
 constexpr Duration kPoll = std::chrono::milliseconds(20);
 constexpr int kDegrees = 7;
-constexpr const char* kEspErrorQuery = "TB?";
 constexpr int kStatusAxes = 4;  // that TS? tells of
 constexpr int kReferencedBit = 1, kLowerBit = 2, kUpperBit = 4;
-
-/// Errors of an axis are axis * 100 + code; 4 to 7: hardware and software limits.
-bool IsLimit(long long error) {
-  const long long code = error % 100;
-  return error >= 100 && code >= 4 && code <= 7;
-}
 
 }  // namespace
 
@@ -32,39 +24,20 @@ std::string EspTable::Axis(const std::string& command) const {
   return std::to_string(axis_) + command;
 }
 
-/// Sends a command and asks for the error that it made.
 void EspTable::Tell(const std::string& command) {
-  const std::string answer = line().Ask(Axis(command) + "\n" + kEspErrorQuery);
-  const auto comma = answer.find(',');
-  const auto error = ParseWholeNumber(answer.substr(0, comma));
-  if (!error || comma == std::string::npos) line().FailProtocol(kEspErrorQuery, answer, "<number>, <time>, <text>");
-  if (*error == 0) return;
-  line().Fail(IsLimit(*error) ? FaultKind::kLimit : FaultKind::kRefused,
-              fmt::format("\"{}\" was refused: {}", Axis(command), answer));
+  TellEsp(line(), Axis(command));
 }
 
 /// After every opening: the controller may have been off. An axis is moved in degrees with its motor on.
 void EspTable::Prepare() {
   const int opening = line().Openings();
   if (opening == prepared_opening_) return;
-  knows_status_ = KnowsStatus();
+  knows_status_ = EspKnows(line(), Axis("MS?"));
   if (line().AskWholeNumber(Axis("SN?")) != kDegrees) Tell("SN" + std::to_string(kDegrees));
   const bool motor_is_off = line().AskWholeNumber(Axis("MO?")) == 0;
   if (motor_is_off && !knows_status_) lost_origin_ = true;
   if (motor_is_off && !lost_origin_) Tell("MO");
   prepared_opening_ = opening;
-}
-
-/// An unknown query is not answered, so what comes first is the answer to the next.
-bool EspTable::KnowsStatus() {
-  const std::string answer = line().Ask(Axis("MS?") + "\n" + kEspIdentity);
-  if (answer == line().identity()) {
-    line().Ask(kEspErrorQuery);  // takes the complaint about MS? out of the queue
-    return false;
-  }
-  const std::string identity = line().NextLine();
-  if (identity != line().identity()) line().FailProtocol(kEspIdentity, identity, line().identity());
-  return true;
 }
 
 void EspTable::SendMove(const std::string& angle_deg) {

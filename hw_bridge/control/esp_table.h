@@ -1,10 +1,9 @@
 #pragma once
 
 #include "hw_bridge/control/controlled_table.h"
+#include "hw_bridge/control/esp_words.h"
 
 namespace twinbench::hw {
-
-inline constexpr const char* kEspIdentity = "VE?";
 
 /// What a query of MD? lets pass of a clock that is held (docs/protocols.md).
 inline constexpr Duration kEspHeldPoll = std::chrono::milliseconds(50);
@@ -34,7 +33,6 @@ class EspTable : public ControlledTable {
   bool PollHeld(Duration within);
   bool PollRunning(Duration within);
   void Prepare();
-  bool KnowsStatus();
   bool AskMoving();
   void ReadStatus(TableState& state);
 

@@ -21,6 +21,14 @@ void ConsoleFixture::Mount(int setup, double clamp_rad, double reseat_rad) {
                                   setup, clamp_rad / units::deg, reseat_rad / units::deg));
 }
 
+void ConsoleMachineFixture::Clear() {
+  hands_.DoAndConfirm("fixture", "Take off what is mounted; the axes will move freely.");
+}
+
+void ConsoleMachineFixture::Mount(int setup, const std::string& what) {
+  hands_.DoAndConfirm("fixture", fmt::format("Set-up {}: mount {}.", setup, what));
+}
+
 void ConsoleGoniometer::MoveTo(double yaw_rad, double tilt_rad) {
   hands_.DoAndConfirm("goniometer", fmt::format("Turn the grating to yaw {:.2f} arcsec, tilt {:.2f} arcsec.",
                                                 yaw_rad / units::arcsec, tilt_rad / units::arcsec));

@@ -4,7 +4,7 @@
 #include <ostream>
 #include <string>
 
-#include "twin/core/devices.h"
+#include "twin/core/machine.h"
 
 /// Devices that are a person's hands: they say what to do and wait for Enter.
 namespace twinbench::hw {
@@ -26,6 +26,16 @@ class ConsoleFixture : public Fixture {
  public:
   explicit ConsoleFixture(Operator hands) : hands_(hands) {}
   void Mount(int setup, double clamp_rad, double reseat_rad) override;
+
+ private:
+  Operator hands_;
+};
+
+class ConsoleMachineFixture : public MachineFixture {
+ public:
+  explicit ConsoleMachineFixture(Operator hands) : hands_(hands) {}
+  void Clear() override;
+  void Mount(int setup, const std::string& what) override;
 
  private:
   Operator hands_;

@@ -37,4 +37,12 @@ void ScpiFixture::Mount(int setup, double clamp_rad, double reseat_rad) {
                               PrintInUnit(reseat_rad, units::deg)));
 }
 
+void ScpiMachineFixture::Clear() {
+  TellScpi(line_, "FIXT:CLE");
+}
+
+void ScpiMachineFixture::Mount(int setup, const std::string& what) {
+  TellScpi(line_, fmt::format("FIXT:MOUN {},\"{}\"", setup, what));
+}
+
 }  // namespace twinbench::hw

@@ -30,8 +30,8 @@ Step CommandConversation::Begin(InputBuffer& input) {
     }
     if (commands_.empty()) continue;
     state_ = State::kRunning;
-    served_.paced.CatchUp();
-    line_began_ = served_.bench().clock.Now();
+    served_.pace().CatchUp();
+    line_began_ = served_.pace().Now();
     return Next(input);
   }
   return input.Unread().size() > kLongestLine ? Step::Close(LineTooLong()) : Step::Read();
@@ -62,14 +62,14 @@ void CommandConversation::Take(Outcome outcome) {
   poll_ = std::move(outcome.poll);
 }
 
-void CommandConversation::Asks(const ShownTable& table) {
-  if (fault_ == Injected::kNone) fault_ = served_.faults.TakeAnswer(table.name());
+void CommandConversation::Asks(const std::string& device) {
+  if (fault_ == Injected::kNone) fault_ = served_.faults.TakeAnswer(device);
 }
 
 void CommandConversation::Prepare() {
   state_ = State::kReplying;
   reply_at_ = WallClock::now();
-  if (served_.bench().clock.Now() != line_began_) reply_at_ += served_.paced.Lag();
+  if (served_.pace().Now() != line_began_) reply_at_ += served_.pace().Lag();
   if (fault_ == Injected::kLate) reply_at_ += kLate;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hw_bridge/serve/conversation.h"
-#include "hw_bridge/serve/served_bench.h"
+#include "hw_bridge/serve/served.h"
 
 namespace twinbench::hw {
 
@@ -21,8 +21,8 @@ class CommandConversation : public Conversation {
  public:
   static constexpr std::size_t kLongestLine = 4096;
 
-  explicit CommandConversation(ServedBench& served) : served_(served) {}
-  ~CommandConversation() override { served_.paced.Leave(this); }
+  explicit CommandConversation(Served& served) : served_(served) {}
+  ~CommandConversation() override { served_.pace().Leave(this); }
   Step Next(InputBuffer& input) override;
 
  protected:
@@ -31,9 +31,9 @@ class CommandConversation : public Conversation {
   virtual void Failed(const std::string& what) = 0;
   virtual std::string Join(const std::vector<std::string>& answers) const = 0;
   virtual std::string LineTooLong() = 0;
-  ServedBench& served() { return served_; }
-  /// Faults of the controller strike the line in which a query of `table` stands.
-  void Asks(const ShownTable& table);
+  Served& served() { return served_; }
+  /// Faults of a device strike the line in which a query of it stands.
+  void Asks(const std::string& device);
 
  private:
   enum class State { kIdle, kRunning, kReplying };
@@ -43,7 +43,7 @@ class CommandConversation : public Conversation {
   void Prepare();
   Step Reply();
 
-  ServedBench& served_;
+  Served& served_;
   State state_ = State::kIdle;
   std::deque<std::string> commands_;
   std::vector<std::string> answers_;

@@ -77,13 +77,13 @@ Outcome MotionStatus(const EspCall& call) {
 
 Outcome Stop(const EspCall& call) {
   call.served.paced.CatchUp();
-  call.table ? call.table->Stop() : call.served.StopTables();
+  call.table ? call.table->Stop() : call.served.StopAll();
   return {};
 }
 
 Outcome Abort(const EspCall& call) {
   call.served.paced.CatchUp();
-  call.served.StopTables();
+  call.served.StopAll();
   return {};
 }
 
@@ -249,7 +249,8 @@ std::span<const EspEntry> EspCommands() {
 }
 
 bool EspOnlyAsks(const std::string& name) {
-  constexpr std::array<std::string_view, 9> kQueries = {"TP", "DP", "MD", "MS", "ID", "VE", "TE", "TB", "TS"};
+  constexpr std::array<std::string_view, 10> kQueries = {"TP", "DP", "MD", "MS", "ID",
+                                                         "VE", "TE", "TB", "TS", "XD"};
   return std::ranges::find(kQueries, name) != kQueries.end();
 }
 

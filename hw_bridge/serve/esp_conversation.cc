@@ -60,10 +60,10 @@ Outcome EspConversation::Execute(const std::string& text) {
     if (command->axis == 0 && entry->axis == EspAxis::kNeeded) throw EspError{kEspAxisMissing};
     if (command->axis > 2) throw EspError{kEspAxisOutOfRange};
     if (entry->value && command->value.empty()) throw EspError{kEspParameterMissing};
-    ShownTable* tables[] = {nullptr, &served().target, &served().reference};
-    if (command->axis > 0) served().StrikeRestarts();
-    if (command->axis > 0 && command->query) Asks(*tables[command->axis]);
-    return entry->run({*this, served(), *command, tables[command->axis]});
+    ShownTable* tables[] = {nullptr, &served_.target, &served_.reference};
+    if (command->axis > 0) served_.StrikeRestarts();
+    if (command->axis > 0 && command->query) Asks(tables[command->axis]->name());
+    return entry->run({*this, served_, *command, tables[command->axis]});
   } catch (const EspError& error) {
     Report(error.of_axis ? 100 * command->axis + error.number : error.number);
     return {};

@@ -3,6 +3,7 @@
 #include <deque>
 
 #include "hw_bridge/serve/command_conversation.h"
+#include "hw_bridge/serve/served_bench.h"
 
 namespace twinbench::hw {
 
@@ -25,9 +26,7 @@ std::optional<EspCommand> ParseEspCommand(const std::string& text);
 /// driver.
 class EspConversation : public CommandConversation {
  public:
-  explicit EspConversation(ServedBench& served) : CommandConversation(served) {}
-  using CommandConversation::Asks;
-  using CommandConversation::served;
+  explicit EspConversation(ServedBench& served) : CommandConversation(served), served_(served) {}
 
   /// Adds to the error buffer; it keeps the oldest ten, like the controller.
   void Report(int number);
@@ -41,6 +40,7 @@ class EspConversation : public CommandConversation {
   std::string LineTooLong() override;
 
  private:
+  ServedBench& served_;
   std::deque<int> errors_;
 };
 

@@ -38,6 +38,19 @@ constexpr Kind kKinds[] = {
     {"tables", "not_in_position", Injected::kNotInPosition},
     {"tables", "limit", Injected::kLimit},
     {"tables", "stall", Injected::kStandStill},
+    {"machine", "mute", Injected::kMute},
+    {"machine", "late", Injected::kLate},
+    {"machine", "partial", Injected::kPartial},
+    {"machine", "disconnect", Injected::kDisconnect},
+    {"machine", "restart", Injected::kRestart},
+    {"machine", "not_in_position", Injected::kNotInPosition},
+    {"machine", "limit", Injected::kLimit},
+    {"machine", "stall", Injected::kStandStill},
+    {"instruments", "mute", Injected::kMute},
+    {"instruments", "late", Injected::kLate},
+    {"instruments", "partial", Injected::kPartial},
+    {"instruments", "disconnect", Injected::kDisconnect},
+    {"instruments", "gap", Injected::kGap},
 };
 constexpr std::size_t kMostEntries = 100;
 constexpr long long kMostStrikes = 1'000'000;

@@ -37,6 +37,8 @@ class Faults {
     return Take({table, "controller"}, Injected::kLostStep, Injected::kStandStill);
   }
 
+  Injected TakeLatch(std::string_view instruments) { return Take({instruments}, Injected::kGap, Injected::kGap); }
+
   /// "adc,drop,2;target,mute,1"
   std::string Waiting() const;
 

@@ -2,9 +2,10 @@
 
 namespace twinbench::hw {
 
-ScpiFound FindScpiCommand(const std::vector<std::string>& header, bool query) {
-  for (const auto family :
-       {ScpiStatusCommands(), ScpiTableCommands(), ScpiInstrumentCommands(), ScpiTimeCommands()}) {
+ScpiFound FindScpiCommand(const Served& served, const std::vector<std::string>& header, bool query) {
+  std::vector<std::span<const ScpiCommand>> families = {ScpiStatusCommands(), ScpiTimeCommands()};
+  for (const auto family : served.OwnScpiCommands()) families.push_back(family);
+  for (const auto family : families) {
     for (const ScpiCommand& command : family) {
       if (command.query != query) continue;
       if (const auto number = MatchHeader(command.header, header)) return {&command, *number};
@@ -13,9 +14,9 @@ ScpiFound FindScpiCommand(const std::vector<std::string>& header, bool query) {
   return {};
 }
 
-Outcome StopScpiTables(const ScpiCall& call) {
-  call.served.paced.CatchUp();
-  call.served.StopTables();
+Outcome StopScpiDevices(const ScpiCall& call) {
+  call.served.pace().CatchUp();
+  call.served.StopAll();
   return {};
 }
 

@@ -9,7 +9,7 @@ namespace twinbench::hw {
 /// A command as its handler sees it.
 struct ScpiCall {
   ScpiConversation& client;
-  ServedBench& served;
+  Served& served;
   int number;  // of the keyword with a number
   const std::vector<std::string>& parameters;
 };
@@ -22,19 +22,21 @@ struct ScpiCommand {
   Outcome (*run)(const ScpiCall&);  // may throw ScpiError, BenchError
 };
 
-/// Every command that the server knows, by family.
+/// Every command that the server knows, by family. Those of tables and instruments are of a ServedBench, those of
+/// machines of a ServedMachine; the others of any.
 std::span<const ScpiCommand> ScpiStatusCommands();
 std::span<const ScpiCommand> ScpiTableCommands();
 std::span<const ScpiCommand> ScpiInstrumentCommands();
+std::span<const ScpiCommand> ScpiMachineCommands();
 std::span<const ScpiCommand> ScpiTimeCommands();
 
 struct ScpiFound {
   const ScpiCommand* command = nullptr;
   int number = 0;
 };
-ScpiFound FindScpiCommand(const std::vector<std::string>& header, bool query);
+ScpiFound FindScpiCommand(const Served& served, const std::vector<std::string>& header, bool query);
 
 /// ABORt and *RST.
-Outcome StopScpiTables(const ScpiCall& call);
+Outcome StopScpiDevices(const ScpiCall& call);
 
 }  // namespace twinbench::hw

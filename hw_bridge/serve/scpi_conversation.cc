@@ -36,10 +36,10 @@ Outcome ScpiConversation::Execute(const std::string& command) {
 /// A header may also continue the path of the command before it.
 Outcome ScpiConversation::Run(const ScpiUnit& unit) {
   std::vector<std::string> header = unit.header;
-  ScpiFound found = FindScpiCommand(header, unit.query);
+  ScpiFound found = FindScpiCommand(served(), header, unit.query);
   if (!found.command && !unit.rooted) {
     header.insert(header.begin(), path_.begin(), path_.end());
-    found = FindScpiCommand(header, unit.query);
+    found = FindScpiCommand(served(), header, unit.query);
   }
   if (!found.command) throw ScpiError{-113, ""};
   if (!header.front().starts_with('*')) path_.assign(header.begin(), header.end() - 1);

@@ -10,7 +10,7 @@ namespace twinbench::hw {
 namespace {
 
 Outcome Identify(const ScpiCall& call) {
-  return {fmt::format("twinbench,rotary-bench,{},{}", call.served.serial, TWINBENCH_VERSION), nullptr};
+  return {fmt::format("twinbench,{},{},{}", call.served.name, call.served.serial, TWINBENCH_VERSION), nullptr};
 }
 
 Outcome OperationComplete(const ScpiCall& call) {
@@ -81,7 +81,7 @@ constexpr ScpiCommand kStatusCommands[] = {
     {"*OPC", false, 0, 0, SetOperationComplete},
     {"*WAI", false, 0, 0, WaitToContinue},
     {"*CLS", false, 0, 0, ClearStatus},
-    {"*RST", false, 0, 0, StopScpiTables},
+    {"*RST", false, 0, 0, StopScpiDevices},
     {"*ESR", true, 0, 0, Events},
     {"*ESE", false, 1, 0, SetEventMask},
     {"*ESE", true, 0, 0, EventMask},
@@ -92,6 +92,7 @@ constexpr ScpiCommand kStatusCommands[] = {
     {"SYSTem:ERRor", true, 0, 0, NextError},
     {"SYSTem:ERRor:NEXT", true, 0, 0, NextError},
     {"SYSTem:VERSion", true, 0, 0, ScpiVersion},
+    {"ABORt", false, 0, 0, StopScpiDevices},
 };
 // clang-format on
 

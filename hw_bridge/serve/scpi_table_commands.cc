@@ -4,28 +4,33 @@
 
 #include "hw_bridge/serve/scpi_commands.h"
 #include "hw_bridge/serve/scpi_parameters.h"
+#include "hw_bridge/serve/served_bench.h"
 #include "twin/core/units.h"
 namespace twinbench::hw {
 namespace {
 
 constexpr double kLongestWait_s = 1e7;
 
+ServedBench& RotaryOf(const ScpiCall& call) {
+  return static_cast<ServedBench&>(call.served);  // nobody else has these commands
+}
+
 ShownTable& TableOf(const ScpiCall& call) {
   if (call.number != 1 && call.number != 2) throw ScpiError{-114, ""};
-  call.served.StrikeRestarts();
-  return call.number == 1 ? call.served.target : call.served.reference;
+  RotaryOf(call).StrikeRestarts();
+  return call.number == 1 ? RotaryOf(call).target : RotaryOf(call).reference;
 }
 
 ShownTable& Asked(const ScpiCall& call) {
   ShownTable& table = TableOf(call);
-  call.client.Asks(table);
+  call.client.Asks(table.name());
   return table;
 }
 
 /// Where bench time does not run by itself nor is held, watching a table must make it get on.
 TableState StateOf(const ScpiCall& call, ShownTable& table) {
-  call.served.paced.CatchUp();
-  PacedBench& paced = call.served.paced;
+  RotaryOf(call).paced.CatchUp();
+  PacedBench& paced = RotaryOf(call).paced;
   if (paced.Timeless() && !paced.Held() && !table.State().in_position) paced.LetGetOn(table);
   return table.State();
 }
@@ -33,7 +38,7 @@ TableState StateOf(const ScpiCall& call, ShownTable& table) {
 Outcome Move(const ScpiCall& call) {
   ShownTable& table = TableOf(call);
   const double angle_rad = ScpiNumber(call.parameters[0], units::deg);
-  call.served.paced.CatchUp();
+  RotaryOf(call).paced.CatchUp();
   switch (table.Refuses(angle_rad)) {
     case ShownTable::Refusal::kSoftLimit:
       throw ScpiError{-222, "soft limit"};
@@ -42,7 +47,7 @@ Outcome Move(const ScpiCall& call) {
     case ShownTable::Refusal::kNone:
       break;
   }
-  call.served.paced.Spend([&] { table.StartMove(angle_rad); });
+  RotaryOf(call).paced.Spend([&] { table.StartMove(angle_rad); });
   return {};
 }
 
@@ -66,19 +71,19 @@ Outcome Settled(const ScpiCall& call) {
   ShownTable& table = Asked(call);
   const double within_s = ScpiNumber(call.parameters[0], 1.0);
   if (within_s < 0.0 || within_s > kLongestWait_s) throw ScpiError{-222, ""};
-  return {"", call.served.paced.Settle(table, FromSeconds(within_s))};
+  return {"", RotaryOf(call).paced.Settle(table, FromSeconds(within_s))};
 }
 
 Outcome Stop(const ScpiCall& call) {
   ShownTable& table = TableOf(call);
-  call.served.paced.CatchUp();
+  RotaryOf(call).paced.CatchUp();
   table.Stop();
   return {};
 }
 
 Outcome Home(const ScpiCall& call) {
   ShownTable& table = TableOf(call);
-  call.served.paced.Spend([&] { table.Home(); });
+  RotaryOf(call).paced.Spend([&] { table.Home(); });
   return {};
 }
 
@@ -122,7 +127,6 @@ constexpr ScpiCommand kTableCommands[] = {
     {"ROTation#:LIMit:UPPer", false, 1, 0, SetUpperLimit},
     {"ROTation#:LIMit:LOWer", true, 0, 0, LowerLimit},
     {"ROTation#:LIMit:UPPer", true, 0, 0, UpperLimit},
-    {"ABORt", false, 0, 0, StopScpiTables},
 };
 // clang-format on
 

@@ -7,36 +7,35 @@ namespace {
 
 constexpr long long kLongestWait_ns = 10'000'000'000'000'000;
 
-std::string NowText(ServedBench& served) {
-  return std::to_string(served.bench().clock.Now().time_since_epoch().count());
+std::string NowText(Served& served) {
+  return std::to_string(served.pace().Now().time_since_epoch().count());
 }
 
 Outcome Now(const ScpiCall& call) {
-  call.served.paced.CatchUp();
+  call.served.pace().CatchUp();
   return {NowText(call.served), nullptr};
 }
 
 Outcome Hold(const ScpiCall& call) {
-  call.served.paced.Hold(&call.client, ScpiSwitch(call.parameters[0]));
+  call.served.pace().Hold(&call.client, ScpiSwitch(call.parameters[0]));
   return {};
 }
 
 Outcome Pass(const ScpiCall& call) {
   const Duration duration(ScpiWholeNumber(call.parameters[0], 0, kLongestWait_ns));
-  const Poll pass = call.served.paced.Pass(duration);
+  const Poll pass = call.served.pace().Pass(duration);
   return {"", [pass, &served = call.served]() -> std::optional<std::string> {
             return pass() ? std::optional(NowText(served)) : std::nullopt;
           }};
 }
 
 Outcome Restart(const ScpiCall& call) {
-  if (!call.served.bench().simulation) throw ScpiError{-241, ""};
   call.served.Restart();
   return {};
 }
 
 Outcome SetPaced(const ScpiCall& call) {
-  call.served.paced.SetPaced(&call.client, ScpiSwitch(call.parameters[0]));
+  call.served.pace().SetPaced(&call.client, ScpiSwitch(call.parameters[0]));
   return {};
 }
 
@@ -47,7 +46,7 @@ Outcome Fault(const ScpiCall& call) {
   return {};
 }
 
-Outcome Faults(const ScpiCall& call) {
+Outcome WaitingFaults(const ScpiCall& call) {
   return {'"' + call.served.faults.Waiting() + '"', nullptr};
 }
 
@@ -59,7 +58,7 @@ constexpr ScpiCommand kTimeCommands[] = {
     {"SIMulation:RESTart", false, 0, 0, Restart},
     {"SIMulation:PACE", false, 1, 0, SetPaced},
     {"SIMulation:FAULt", false, 2, 1, Fault},
-    {"SIMulation:FAULt", true, 0, 0, Faults},
+    {"SIMulation:FAULt", true, 0, 0, WaitingFaults},
 };
 // clang-format on
 

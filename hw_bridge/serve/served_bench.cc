@@ -1,29 +1,20 @@
 #include "hw_bridge/serve/served_bench.h"
 
-#include <fmt/format.h>
-
-#include <cstdint>
-
+#include "hw_bridge/serve/scpi_commands.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::hw {
-namespace {
-
-/// 64-bit FNV-1a of the whole scenario: bench, seed and every setting.
-std::string SerialOf(const Scenario& scenario) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const char c : WriteScenario(scenario)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return fmt::format("{:016X}", hash);
-}
-
-}  // namespace
 
 ServedBench::ServedBench(RotaryBench bench, const Scenario& scenario, const AdcSettings& its_adc, double speed)
-    : paced(bench, its_adc, speed),
+    : Served("rotary-bench", scenario),
+      paced(bench, its_adc, speed),
       target(bench.target, bench.clock, faults, "target"),
       reference(bench.reference, bench.clock, faults, "reference"),
-      adc(its_adc),
-      serial(SerialOf(scenario)) {}
+      adc(its_adc) {}
+
+std::vector<std::span<const ScpiCommand>> ServedBench::OwnScpiCommands() const {
+  return {ScpiTableCommands(), ScpiInstrumentCommands()};
+}
 
 void ServedBench::StrikeRestarts() {
   const bool both = faults.TakeRestart("controller") != Injected::kNone;
@@ -32,7 +23,7 @@ void ServedBench::StrikeRestarts() {
   }
 }
 
-void ServedBench::StopTables() {
+void ServedBench::StopAll() {
   target.Stop();
   reference.Stop();
 }
@@ -42,15 +33,10 @@ bool ServedBench::Moves() {
   return target.State().moving || reference.State().moving;
 }
 
-Poll ServedBench::AtRest(const std::string& answer) {
-  return [this, answer]() -> std::optional<std::string> {
-    if (!Moves()) return answer;
-    if (!paced.Immediate()) return std::nullopt;
-    for (ShownTable* table : {&target, &reference}) {
-      if (table->State().moving) paced.LetGetOn(*table);
-    }
-    return Moves() ? std::nullopt : std::optional(answer);
-  };
+void ServedBench::LetGetOn() {
+  for (ShownTable* table : {&target, &reference}) {
+    if (table->State().moving) paced.LetGetOn(*table);
+  }
 }
 
 void ServedBench::Restart() {

@@ -1,33 +1,28 @@
 #pragma once
 
-#include <string>
-
-#include "hw_bridge/serve/faults.h"
 #include "hw_bridge/serve/paced_bench.h"
+#include "hw_bridge/serve/served.h"
 #include "hw_bridge/serve/shown_table.h"
-#include "twin/core/scenario.h"
 
 namespace twinbench::hw {
 
-/// What all connections share.
-struct ServedBench {
+/// A rotary bench, served.
+struct ServedBench : Served {
   ServedBench(RotaryBench bench, const Scenario& scenario, const AdcSettings& its_adc, double speed);
 
   RotaryBench& bench() { return paced.bench(); }
+  PacedClock& pace() override { return paced; }
+  std::vector<std::span<const ScpiCommand>> OwnScpiCommands() const override;
   /// A restarted controller has forgotten its origin before it takes the next order.
   void StrikeRestarts();
-  void StopTables();
-  bool Moves();
-  /// `answer` when no table moves.
-  Poll AtRest(const std::string& answer);
-  /// @throws BenchError on a bench that cannot.
-  void Restart();
+  void StopAll() override;
+  bool Moves() override;
+  void LetGetOn() override;
+  void Restart() override;
 
   PacedBench paced;
-  Faults faults;
   ShownTable target, reference;
   AdcSettings adc;
-  std::string serial;
 };
 
 }  // namespace twinbench::hw

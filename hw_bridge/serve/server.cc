@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "hw_bridge/serve/esp_conversation.h"
+#include "hw_bridge/serve/esp_machine_conversation.h"
 #include "hw_bridge/serve/iiod_conversation.h"
 #include "hw_bridge/serve/listener.h"
 #include "hw_bridge/serve/pseudo_terminal.h"
@@ -23,36 +24,58 @@ const Scenario& RequireCounts(const Scenario& scenario) {
 }  // namespace
 
 struct Server::Impl {
-  Impl(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc, const ServeOptions& its_options)
-      : options(its_options), served(bench, RequireCounts(scenario), adc, options.speed) {
-    if (options.pty) pty.emplace(io, patience, MakerOf<EspConversation>());
+  explicit Impl(const ServeOptions& its_options) : options(its_options) {}
+
+  void Show(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc) {
+    auto& served = *(rotary = std::make_unique<ServedBench>(bench, RequireCounts(scenario), adc, options.speed));
+    iiod.emplace(Maker<IiodConversation>(served), options.iiod_port, *this);
+    Listen<EspConversation>(served);
+  }
+  void Show(MachineBench bench, const std::vector<ReadingColumn>& shown, const Scenario& scenario) {
+    Listen<EspMachineConversation>(
+        *(machine = std::make_unique<ServedMachine>(bench, shown, scenario, options.speed)));
   }
 
-  template <class Kind>
-  MakeConversation MakerOf() {
-    return [this] { return std::make_unique<Kind>(served); };
+  template <class Esp, class Kind>
+  void Listen(Kind& served) {
+    scpi.emplace(Maker<ScpiConversation>(served), options.scpi_port, *this);
+    esp.emplace(Maker<Esp>(served), options.esp_port, *this);
+    if (options.pty) pty.emplace(io, patience, Maker<Esp>(served));
   }
-  template <class Kind>
-  Listener At(int port) {
-    return {io, options.bind, port, options.max_connections, patience, MakerOf<Kind>()};
+  template <class Speaks, class Kind>
+  static MakeConversation Maker(Kind& served) {
+    return [&served] { return std::make_unique<Speaks>(served); };
   }
+
+  /// A port of this server.
+  struct Port : Listener {
+    Port(MakeConversation make, int number, Impl& impl)
+        : Listener(impl.io, impl.options.bind, number, impl.options.max_connections, impl.patience,
+                   std::move(make)) {}
+  };
 
   ServeOptions options;
   Patience patience{options.idle_limit, options.write_limit};
-  ServedBench served;
+  std::unique_ptr<ServedBench> rotary;  // one of the two
+  std::unique_ptr<ServedMachine> machine;
   asio::io_context io{1};
-  Listener iiod = At<IiodConversation>(options.iiod_port);
-  Listener scpi = At<ScpiConversation>(options.scpi_port);
-  Listener esp = At<EspConversation>(options.esp_port);
+  std::optional<Port> iiod, scpi, esp;
   std::optional<PseudoTerminal> pty;
 };
 
 Server::Server(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc, const ServeOptions& options)
-    : impl_(std::make_unique<Impl>(bench, scenario, adc, options)) {}
+    : impl_(std::make_unique<Impl>(options)) {
+  impl_->Show(bench, scenario, adc);
+}
+Server::Server(MachineBench bench, const std::vector<ReadingColumn>& shown, const Scenario& scenario,
+               const ServeOptions& options)
+    : impl_(std::make_unique<Impl>(options)) {
+  impl_->Show(bench, shown, scenario);
+}
 Server::~Server() = default;
 
 ServedAddresses Server::Addresses() const {
-  return {impl_->options.bind, impl_->iiod.port(), impl_->scpi.port(), impl_->esp.port(),
+  return {impl_->options.bind, impl_->iiod ? impl_->iiod->port() : 0, impl_->scpi->port(), impl_->esp->port(),
           impl_->pty ? impl_->pty->path() : ""};
 }
 

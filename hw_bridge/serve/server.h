@@ -6,6 +6,8 @@
 
 #include "hw_bridge/bench_file.h"
 #include "twin/core/devices.h"
+#include "twin/core/machine.h"
+#include "twin/core/reading_column.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::hw {
@@ -21,13 +23,17 @@ struct ServeOptions {
   Duration write_limit = std::chrono::seconds(20);  // a client that takes nothing
 };
 
-/// Shows any rotary bench as hardware: IIOD, SCPI and Newport ESP (docs/protocols.md). One thread: Run serves until
+/// Shows any rotary bench as hardware: IIOD, SCPI and Newport ESP (docs/protocols.md); any bench with a machine by
+/// SCPI and Newport ESP. One thread: Run serves until
 /// Stop, which may be called from a signal handler's thread.
 class Server {
  public:
   /// @param bench  Must have a `simulation`: the server passes its time and starts it again.
   /// @throws BenchError if a port is taken; InputError if the scenario cannot be served (noise-free: no counts).
   Server(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc, const ServeOptions& options);
+  /// @param shown  The columns that the instruments of a reading fill.
+  Server(MachineBench bench, const std::vector<ReadingColumn>& shown, const Scenario& scenario,
+         const ServeOptions& options);
   ~Server();
   ServedAddresses Addresses() const;
   void Run();

@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "hw_bridge/bench_file.h"
+#include "hw_bridge/machine_file.h"
 #include "tools/twinbench/commands.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
@@ -54,6 +54,11 @@ void PrintBenchKeys() {
   fmt::print("bench.toml: which devices stand on the table and how they are reached (docs/hardware.md)\n\n");
   hw::BenchFile defaults;
   fmt::print("{}", DescribeKeys(hw::KeysOf(defaults)));
+  hw::MachineFile machine;
+  fmt::print(
+      "\n# Of a bench whose machine is driven: a table for each axis and instrument, here for the axes x and "
+      "a\n\n");
+  fmt::print("{}", DescribeKeys(hw::KeysOf(machine, {{"x", false}, {"a", true}})));
 }
 
 void PrintHelp(const std::string& topic) {

@@ -1,12 +1,10 @@
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <ctime>
-#include <filesystem>
-
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
+#include "tools/twinbench/measure_machine.h"
 #include "tools/twinbench/measured_bench.h"
+#include "tools/twinbench/measured_run.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/rehearsal.h"
 #include "tools/twinbench/run_folder.h"
@@ -18,12 +16,6 @@
 
 namespace twinbench::tools {
 namespace {
-
-struct MeasureOptions {
-  std::string scenario, bench, folder;
-  std::vector<std::string> overrides;
-  bool resume = false, rehearse = false, rehearse_only = false;
-};
 
 constexpr double kColdest_degC = -20.0, kHottest_degC = 60.0;  // beyond: no room that a bench stands in
 
@@ -39,72 +31,11 @@ procedure::Options Carefulness(const hw::BenchFile& file) {
   return options;
 }
 
-std::string UtcText(std::time_t now) {
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
-/// How long ago the run began. The wall clock is all that outlives a power failure; if it was set back meanwhile,
-/// the run still goes on behind its last reading.
-Duration SinceBegin(const Provenance& provenance, const std::vector<Reading>& readings) {
-  const Duration last = readings.empty() ? Duration{} : readings.back().time.time_since_epoch();
-  std::tm utc{};
-  if (!strptime(provenance.clock_origin_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &utc)) return last;
-  return std::max<Duration>(last, std::chrono::seconds(std::time(nullptr) - timegm(&utc)));
-}
-
 /// @throws BenchError if the twin finds that the bench could not do it.
 void RehearseFirst(const Scenario& scenario, const procedure::Options& limits, double mains_Hz) {
   const Rehearsal rehearsal = Rehearse(scenario, limits, mains_Hz);
   fmt::print(stderr, "{}", Summary(rehearsal, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
-}
-
-/// The record of a run that was begun before.
-struct Begun {
-  std::unique_ptr<RunRecord> record;
-  std::vector<Reading> readings;
-};
-
-/// @throws InputError if the run was another scenario's.
-void RequireSameScenario(const Scenario& scenario, const RunFolder& folder) {
-  if (!std::filesystem::exists(folder.scenario())) {  // the program ended between making the record and writing it
-    WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
-  } else if (WriteScenario(LoadScenario(folder.scenario())) != WriteScenario(scenario)) {
-    throw InputError(folder.path, "the run was begun with another scenario or other --set", "the same");
-  }
-}
-
-Begun Resume(const Scenario& scenario, const RunFolder& folder) {
-  Begun begun{RunRecord::Continue(folder.path), {}};
-  RequireSameScenario(scenario, folder);
-  begun.readings = begun.record->Readings();
-  return begun;
-}
-
-std::unique_ptr<RunRecord> Begin(const Scenario& scenario, const RunFolder& folder, const hw::BenchFile& file,
-                                 const std::string& identity) {
-  const std::string origin = file.kind == "hardware" ? UtcText(std::time(nullptr)) : "";
-  auto record =
-      RunRecord::Create(folder.path, {TWINBENCH_VERSION, identity, scenario.seed, origin, scenario.bench});
-  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
-  return record;
-}
-
-/// What was kept is not measured again; whatever was tried after it counts as an attempt that failed.
-void TakeUp(const Begun& begun, const std::string& identity, procedure::Options& options) {
-  const RunRecord& record = *begun.record;
-  if (record.provenance().source != identity)
-    throw BenchError(
-        fmt::format("the run was begun on \"{}\" and this is \"{}\"", record.provenance().source, identity));
-  options.readings_done = static_cast<int>(begun.readings.size());
-  options.calls_done = record.Calls();
-  const Time last = begun.readings.empty() ? Time{} : begun.readings.back().time;
-  begun.record->AttemptFailed(options.readings_done, last, "interrupted", "the program ended; resumed");
-  fmt::print(stderr, "twinbench: {} readings are kept; going on behind them\n", options.readings_done);
 }
 
 void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, procedure::Options& options) {
@@ -115,13 +46,16 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
   record.Finish();
 }
 
-void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::BenchFile& file, Begun begun,
+void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::BenchFile& file, BegunRun begun,
                  procedure::Options options) {
   const bool resumed = begun.record != nullptr;
-  const Duration elapsed = resumed ? SinceBegin(begun.record->provenance(), begun.readings) : Duration{};
-  const auto bench = OpenAnyBench(file, scenario, elapsed);
-  if (resumed) TakeUp(begun, bench->Identity(), options);
-  const auto record = resumed ? std::move(begun.record) : Begin(scenario, folder, file, bench->Identity());
+  const auto bench = OpenAnyBench(file, scenario, SinceBegin(begun));
+  if (resumed) {
+    TakeUp(begun, bench->Identity());
+    options.readings_done = static_cast<int>(begun.readings.size());
+    options.calls_done = begun.record->Calls();
+  }
+  const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench->Identity());
   const auto note = [&](const std::vector<std::string>& lines) {
     for (const std::string& line : lines) record->AppendEvent(bench->Bench().clock.Now(), "adc", line);
   };
@@ -143,14 +77,14 @@ void Measure(const MeasureOptions& o) {
   if (!BenchOf(scenario).has_controllers)
     throw InputError(o.scenario, "no controllers for the bench " + scenario.bench,
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
+  if (BenchOf(scenario).drive) return MeasureMachine(o, scenario);
   const hw::BenchFile file = hw::LoadBenchFile(o.bench);
   const procedure::Options options = Carefulness(file);
   if (o.rehearse || o.rehearse_only) RehearseFirst(scenario, options, file.adc.mains_Hz);
   if (o.rehearse_only) return;
-  if (o.folder.empty()) throw InputError("measure", "there is no -o", "-o DIR, a folder for the run");
-  const RunFolder folder{o.folder};
-  const bool resumes = o.resume && std::filesystem::exists(folder.path + "/record.sqlite");
-  Begun begun = resumes ? Resume(scenario, folder) : Begun{};
+  const RunFolder folder = FolderOf(o);
+  BegunRun begun = TakeUpIfAsked(o, scenario, folder);
+  const bool resumes = begun.record != nullptr;
   ListenForStop();
   if (!resumes || !begun.record->finished()) MeasureInto(folder, scenario, file, std::move(begun), options);
   EvaluateRun(scenario, folder.path);

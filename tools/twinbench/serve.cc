@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "hw_bridge/machine_file.h"
 #include "hw_bridge/serve/server.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/run_folder.h"
@@ -32,8 +33,8 @@ double SpeedOf(const std::string& text) {
 }
 
 std::string Told(const hw::ServedAddresses& at) {
-  std::string text = fmt::format("iiod {}:{}\nscpi {}:{}\nesp  {}:{}\n", at.host, at.iiod_port, at.host,
-                                 at.scpi_port, at.host, at.esp_port);
+  std::string text = at.iiod_port == 0 ? "" : fmt::format("iiod {}:{}\n", at.host, at.iiod_port);
+  text += fmt::format("scpi {}:{}\nesp  {}:{}\n", at.host, at.scpi_port, at.host, at.esp_port);
   return at.pty.empty() ? text : text + fmt::format("esp  {}\n", at.pty);
 }
 
@@ -47,6 +48,32 @@ void ServeUntilStopped(hw::Server& server) {
   server.Run();
 }
 
+/// Writes the bench file, says where the server is and serves.
+void ServeShown(hw::Server& server, const ServeArguments& a, const std::string& bench_file) {
+  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, bench_file);
+  fmt::print("{}", Told(server.Addresses()));
+  std::fflush(stdout);
+  ServeUntilStopped(server);
+}
+
+void ServeRotary(const ServeArguments& a, const Scenario& scenario) {
+  sim::Twin twin(scenario);
+  hw::Server server(twin.Bench(), scenario, RotaryOf(scenario).adc, a.serve);
+  ServeShown(server, a, a.bench_file.empty() ? "" : hw::WriteServedBenchFile(server.Addresses(), a.tables));
+}
+
+void ServeMachine(const ServeArguments& a, const Scenario& scenario) {
+  const Bench& bench = BenchOf(scenario);
+  const std::vector<ReadingColumn> shown = InstrumentColumns(bench.format->columns);
+  std::vector<std::string> fields = {"time_ns", "status"};
+  for (const ReadingColumn& column : shown) fields.push_back(column.name);
+  const auto twin = bench.make_devices(scenario);
+  hw::Server server(twin->Devices(), shown, scenario, a.serve);
+  const std::string language = a.tables == "pty" ? "pty" : "esp";
+  ServeShown(server, a,
+             a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields));
+}
+
 void Serve(ServeArguments a) {
   const Scenario scenario = LoadScenario(a.scenario, a.overrides);
   if (!BenchOf(scenario).has_controllers)
@@ -54,13 +81,7 @@ void Serve(ServeArguments a) {
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
   a.serve.speed = SpeedOf(a.speed);
   a.serve.pty = !a.no_pty;
-  sim::Twin twin(scenario);
-  hw::Server server(twin.Bench(), scenario, RotaryOf(scenario).adc, a.serve);
-  const hw::ServedAddresses addresses = server.Addresses();
-  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, hw::WriteServedBenchFile(addresses, a.tables));
-  fmt::print("{}", Told(addresses));
-  std::fflush(stdout);
-  ServeUntilStopped(server);
+  BenchOf(scenario).make_devices ? ServeMachine(a, scenario) : ServeRotary(a, scenario);
 }
 
 void AddPort(CLI::App& command, const char* name, int& port, const char* what) {

@@ -11,6 +11,9 @@
 namespace twinbench {
 
 class RunRecord;
+class MachineDevices;
+class ReadingSink;
+struct MachineBench;
 enum class Estimator;
 namespace model {
 class Follow;
@@ -27,7 +30,8 @@ struct RawScale;
 }  // namespace diagnose
 namespace procedure {
 struct Progress;
-}
+struct MachineOptions;
+}  // namespace procedure
 
 /// A scenario's bench as the simulation has it, ready for one run.
 class BenchTwin {
@@ -53,6 +57,12 @@ struct Bench {
   int (*planned_readings)(const Scenario&) = nullptr;  // of the whole run
   bool is_pictured = false;                            // there is light on detectors, which `run --images` writes
   bool has_controllers = false;                        // real devices can stand for it: `measure` and `serve`
+
+  /// Of a bench that is driven as a MachineBench: its twin as devices, and the procedure on any such bench. Null of
+  /// others.
+  std::unique_ptr<MachineDevices> (*make_devices)(const Scenario&) = nullptr;
+  void (*drive)(MachineBench&, const Scenario&, ReadingSink&,
+                const std::function<void(const procedure::Progress&)>&, const procedure::MachineOptions&) = nullptr;
 
   /// Readings -> results.json, separation.json and a summary.
   report::Evaluation (*evaluate)(const Scenario&, const std::vector<Reading>&, Estimator) = nullptr;

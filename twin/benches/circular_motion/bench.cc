@@ -1,6 +1,7 @@
 #include "twin/benches/circular_motion/bench.h"
 
 #include "twin/benches/circular_motion/procedure.h"
+#include "twin/benches/circular_motion/procedure/drive.h"
 #include "twin/benches/circular_motion/twin/factory.h"
 
 namespace twinbench::benches::circular {
@@ -17,6 +18,9 @@ const Bench& Whole() {
     Bench b;
     b.format = &Format();
     b.make_twin = MakeTwin;
+    b.has_controllers = true;
+    b.make_devices = MakeDevices;
+    b.drive = procedure::DriveCircles;
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;

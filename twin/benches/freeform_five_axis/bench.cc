@@ -1,5 +1,6 @@
 #include "twin/benches/freeform_five_axis/bench.h"
 
+#include "twin/benches/freeform_five_axis/procedure/drive.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/twin/factory.h"
 
@@ -18,6 +19,9 @@ const Bench& Whole() {
     Bench b;
     b.format = &Format();
     b.make_twin = MakeTwin;
+    b.has_controllers = true;
+    b.make_devices = MakeDevices;
+    b.drive = procedure::DriveFreeform;
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;

@@ -2,39 +2,38 @@
 
 #include <nlohmann/json.hpp>
 
+#include "twin/benches/circular_motion/procedure/drive.h"
+#include "twin/benches/circular_motion/twin/driven.h"
 #include "twin/benches/circular_motion/twin/follow.h"
 #include "twin/benches/circular_motion/twin/live.h"
 #include "twin/core/run_record.h"
-#include "twin/procedure/options.h"
 
 namespace twinbench::benches::circular {
 namespace {
 
 class Twin : public BenchTwin {
  public:
-  explicit Twin(const Scenario& scenario) : run_(scenario) {}
-  nlohmann::json Truth() const override { return run_.Truth(); }
+  explicit Twin(const Scenario& scenario) : scenario_(scenario) {}
+  nlohmann::json Truth() const override { return sim::CircleRun(scenario_).Truth(); }
 
   void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
-    constexpr int kTogether = 256;  // in motion readings come too fast to be waited for one by one
-    std::vector<Reading> taken;
-    for (int k = 0; k < run_.Readings(); ++k) {
-      taken.push_back(run_.Take(k));
-      if (taken.size() < kTogether && k + 1 < run_.Readings()) continue;
-      record.AppendAll(taken);
-      if (progress) progress({k + 1, run_.Readings(), taken.back().phase, taken.back().time});
-      taken.clear();
-    }
+    const auto devices = MakeDevices(scenario_);
+    MachineBench bench = devices->Devices();
+    procedure::DriveCircles(bench, scenario_, record, progress, {});
   }
 
  private:
-  sim::CircleRun run_;
+  Scenario scenario_;
 };
 
 }  // namespace
 
 std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
   return std::make_unique<Twin>(scenario);
+}
+
+std::unique_ptr<MachineDevices> MakeDevices(const Scenario& scenario) {
+  return std::make_unique<sim::DrivenMachine>(sim::MakeCirclePhysics(scenario));
 }
 
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {

@@ -14,14 +14,17 @@ namespace {
 
 using namespace benches::circular;
 
-/// The procedure's readings with the room's temperature, as the bench's thermometer shows it.
-std::vector<Reading> CourseOf(const Scenario& scenario) {
-  std::vector<Reading> course = WithAngles(procedure::CircleSchedule(CircularOf(scenario).procedure));
+/// With the room's temperature, as the bench's thermometer shows it.
+std::vector<Reading> WithTemperatures(std::vector<Reading> course, const Scenario& scenario) {
   Environment environment(scenario.environment, scenario.seed);
   for (Reading& r : course)
     r.temperature_degC =
         scenario.noise_free ? environment.Temperature_degC(r.time) : environment.Measure_degC(r.time);
   return course;
+}
+
+std::vector<Reading> CourseOf(const Scenario& scenario) {
+  return WithTemperatures(WithAngles(procedure::CircleSchedule(CircularOf(scenario).procedure)), scenario);
 }
 
 Eigen::VectorXd Above_K(const Scenario& scenario, const std::vector<Reading>& course) {
@@ -82,20 +85,19 @@ bool CircleRun::IsBar(const Reading& r) const {
 }
 
 /// The mounting, and chance where there is any.
-CircleExtra CircleRun::Chance(int reading) const {
-  const Reading& r = course_[static_cast<std::size_t>(reading)];
+CircleExtra CircleRun::Chance(const Reading& r) const {
   CircleExtra extra = mounted_[static_cast<std::size_t>(r.setup)];
   if (scenario_.noise_free) return extra;
   const CircularSettings& s = CircularOf(scenario_);
   Stream stream(scenario_.seed, "circular.noise");
-  stream.Seek(2 * static_cast<std::uint64_t>(reading));  // a block has two normal numbers
+  stream.Seek(2 * static_cast<std::uint64_t>(r.reading));  // a block has two normal numbers
   const bool is_bar = IsBar(r);
   extra.x_m = s.machine.noise_m * stream.Normal();
   extra.y_m = s.machine.noise_m * stream.Normal();
   extra.radial_m = (is_bar ? s.bar.noise_m : s.grid.noise_m) * stream.Normal();
   extra.tangential_m = (is_bar ? Radius_m(r) * s.encoder.noise_rad : s.grid.noise_m) * stream.Normal();
   for (const OutlierDraw& outliers : outliers_) {
-    const OutlierDraw::Drawn drawn = outliers.At(reading);
+    const OutlierDraw::Drawn drawn = outliers.At(r.reading);
     (drawn.uniform < 0.5 ? extra.radial_m : extra.tangential_m) += drawn.size;
   }
   return extra;
@@ -111,11 +113,21 @@ Deviation CircleRun::Digitised(const Reading& r, Deviation shown) const {
   return shown;
 }
 
+Reading CircleRun::Shown(const Reading& r, const CircleTwin& twin, std::size_t at) const {
+  Reading shown = r;
+  Show(Digitised(r, twin.At(at, Chance(r))), IsBar(r), shown);
+  return shown;
+}
+
 Reading CircleRun::Take(int reading) const {
   const auto i = static_cast<std::size_t>(reading);
-  Reading r = course_[i];
-  Show(Digitised(r, twin_.At(i, Chance(reading))), IsBar(r), r);
-  return r;
+  return Shown(course_[i], twin_, i);
+}
+
+Reading CircleRun::TakeBeside(std::vector<Reading> course, const Reading& commanded) const {
+  course.push_back(commanded);
+  course = WithTemperatures(WithAngles(std::move(course)), scenario_);
+  return Shown(course.back(), CircleTwin(scenario_, course, Above_K(scenario_, course)), course.size() - 1);
 }
 
 namespace {

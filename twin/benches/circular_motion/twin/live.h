@@ -17,7 +17,13 @@ class CircleRun {
   explicit CircleRun(const Scenario& scenario);
 
   int Readings() const { return static_cast<int>(course_.size()); }
+  /// One of the procedure's readings before it is taken, with its temperature.
+  const Reading& Planned(int reading) const { return course_[static_cast<std::size_t>(reading)]; }
   Reading Take(int reading) const;
+  /// A reading that the procedure does not have.
+  /// @param course     All that was taken before it: effects may remember.
+  /// @param commanded  What, when and how fast; its number says which noise it has.
+  Reading TakeBeside(std::vector<Reading> course, const Reading& commanded) const;
 
   /// {"errors": scenario keys, "setups": what each was mounted with, "path": where the spindle was (set-up, pass),
   /// "effects", "seed"}.
@@ -25,7 +31,8 @@ class CircleRun {
 
  private:
   bool IsBar(const Reading& r) const;
-  CircleExtra Chance(int reading) const;
+  CircleExtra Chance(const Reading& r) const;
+  Reading Shown(const Reading& r, const CircleTwin& twin, std::size_t at) const;
   benches::circular::Deviation Digitised(const Reading& r, benches::circular::Deviation shown) const;
 
   Scenario scenario_;

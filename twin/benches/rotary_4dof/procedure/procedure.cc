@@ -5,6 +5,7 @@
 #include "twin/benches/rotary_4dof/procedure/sequencer.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/device_fault.h"
+#include "twin/procedure/attempts.h"
 #include "twin/procedure/watch.h"
 
 namespace twinbench::procedure {
@@ -25,56 +26,9 @@ const PhaseSteps& StepsOf(const std::string& phase) {
   return found->second;
 }
 
-/// Whether the same again may end otherwise without a hand at the bench.
-bool IsWorthAnotherAttempt(FaultKind kind) {
-  switch (kind) {
-    case FaultKind::kTimeout:
-    case FaultKind::kDropped:
-    case FaultKind::kProtocol:
-    case FaultKind::kRestarted:
-    case FaultKind::kGap:
-    case FaultKind::kOverrun:
-    case FaultKind::kChannelSlip:
-    case FaultKind::kStuck:
-    case FaultKind::kNotInPosition:
-    case FaultKind::kClock:
-      return true;
-    case FaultKind::kRefused:
-    case FaultKind::kIdentity:
-    case FaultKind::kSignalLost:
-    case FaultKind::kStalled:
-    case FaultKind::kFollowing:
-    case FaultKind::kLimit:
-    case FaultKind::kImplausible:
-    case FaultKind::kDisk:
-    case FaultKind::kStopped:
-      return false;
-  }
-  return false;
-}
-
 void CarryOutPhases(Sequencer&& sequencer, const ProcedureSettings& procedure) {
   sequencer.Begin();
   for (const std::string& phase : procedure.phases) StepsOf(phase).carry_out(sequencer);
-}
-
-/// Counts the attempts at the reading that is next.
-class Attempts {
- public:
-  explicit Attempts(int allowed) : allowed_(allowed) {}
-  bool AnotherAt(int reading) {
-    failed_ = reading == reading_ ? failed_ + 1 : 1;
-    reading_ = reading;
-    return failed_ < allowed_;
-  }
-
- private:
-  int allowed_, reading_ = -1, failed_ = 0;
-};
-
-void NoteFailure(RunLog* log, int reading, Time now, const DeviceFault& fault) {
-  if (!log || fault.kind() == FaultKind::kDisk) return;  // there may be no room to say so
-  log->AttemptFailed(reading, now, FaultName(fault.kind()), fault.what());
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "hw_bridge/control/device_line.h"
+#include "twin/core/machine.h"
+
+namespace twinbench::hw {
+
+/// How a machine behind an ESP controller is to be driven.
+struct EspMachineManner {
+  double traverse_m_s = 0.0;     // of moves that have no feed
+  bool polls_pass_time = false;  // the bench is a served twin with its clock held
+};
+
+/// A machine whose axes 1 to N are group 1 of a Newport ESP controller (docs/protocols.md).
+///
+/// A move beyond the soft limits sends nothing, and one that was understood otherwise is stopped. An axis that has
+/// lost its origin is not moved before Home: kRestarted.
+class EspMachine : public MachineController {
+ public:
+  /// @param limits  Of the bench file, one entry an axis; infinite: the controller's own.
+  EspMachine(DeviceLine line, std::vector<MachineAxis> axes, std::vector<AxisLimits> limits,
+             EspMachineManner manner);
+
+  /// Takes over the controller's limits where the bench file gives none.
+  /// @throws DeviceFault kRefused if the controller allows less than the bench file.
+  void AgreeOnLimits();
+  const std::vector<AxisLimits>& limits() const { return limits_; }
+
+  const std::vector<MachineAxis>& Axes() const override { return axes_; }
+  std::vector<AxisLimits> Travel() override;
+  void StartMove(const std::vector<double>& to, double feed_m_s) override;
+  void StartArc(const Arc& arc) override;
+  bool Settles(Duration within) override;
+  std::vector<AxisState> State() override;
+  void Stop() override;
+  void Home() override;
+
+ private:
+  void Prepare();
+  void SetFeed(double feed_m_s);
+  AxisState ReadAxis(std::size_t axis);
+  bool AskDone();
+  bool PollRunning(Duration within);
+  void RequireWithinLimits(std::size_t axis, double to);
+  void RequireReady(const std::vector<AxisState>& states);
+  void RequireUnderstood(const std::vector<double>& to);
+  [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why);
+  std::string Place(std::size_t axis, double at) const;
+
+  DeviceLine line_;
+  std::vector<MachineAxis> axes_;
+  std::vector<AxisLimits> limits_;
+  EspMachineManner manner_;
+  int prepared_opening_ = 0;
+  bool knows_status_ = true;  // MS?
+};
+
+}  // namespace twinbench::hw

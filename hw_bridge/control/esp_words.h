@@ -1,0 +1,18 @@
+#pragma once
+
+#include "hw_bridge/control/device_line.h"
+
+/// The manners of Newport ESP controllers. Reference: Newport, ESP301 user's manual, section 3 and appendix A.
+namespace twinbench::hw {
+
+inline constexpr const char* kEspIdentity = "VE?";
+
+/// Sends a command and asks for the error that it made.
+/// @throws DeviceFault kLimit for a limit of an axis, kRefused for another error; what DeviceLine throws.
+void TellEsp(DeviceLine& line, const std::string& command);
+
+/// Whether the controller knows a query: one that it does not know is not answered, so what comes first then is the
+/// answer to the next.
+bool EspKnows(DeviceLine& line, const std::string& query);
+
+}  // namespace twinbench::hw

@@ -1,0 +1,211 @@
+#include "hw_bridge/machine_file.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "hw_bridge/control/address.h"
+#include "twin/core/errors.h"
+#include "twin/core/toml_reader.h"
+
+namespace twinbench::hw {
+namespace {
+
+constexpr Unit kOne{}, kSeconds{"s"}, kMillimetresASecond{"mm_s", units::mm};
+constexpr double kFurthest = 1e6;
+
+Bounds Above(double lower, double upper) {
+  return {lower, upper, true};
+}
+
+std::string InstrumentTable(std::size_t number) {
+  return fmt::format("instrument_{}", number + 1);
+}
+
+std::string AxisTable(const MachineAxis& axis) {
+  return "axis_" + axis.name;
+}
+
+class MachineKeys {
+ public:
+  MachineKeys(std::vector<ScenarioKey>& keys, std::string table) : keys_(keys), table_(std::move(table)) {}
+
+  void Add(const std::string& name, const Unit& unit, const Bounds& bounds, Field field,
+           const std::string& meaning) {
+    keys_.push_back({table_, name, unit, bounds, {}, field, meaning});
+  }
+  void Text(const std::string& name, Field field, std::vector<std::string> choices, const std::string& meaning) {
+    keys_.push_back({table_, name, {}, {}, std::move(choices), field, meaning});
+  }
+  void Connection(ControlSettings& s, std::vector<std::string> kinds) {
+    Text("kind", &s.kind, std::move(kinds), "language, or who does it");
+    Text("address", &s.address, {}, "where it is reached");
+    Text("identity", &s.identity, {}, "what its answer to *IDN? or VE? must begin with; empty: any");
+    Add("timeout", kSeconds, Above(0.0, 3600.0), &s.timeout_s, "of one answer");
+  }
+
+ private:
+  std::vector<ScenarioKey>& keys_;
+  std::string table_;
+};
+
+void AddInstrument(std::vector<ScenarioKey>& keys, std::size_t number, InstrumentSettings& s) {
+  MachineKeys t(keys, InstrumentTable(number));
+  t.Connection(s.connection, {"scpi", "none"});
+  t.Text("fields", &s.words.fields, {}, "of a sample, in order: columns, time_ns, status, ignored");
+  t.Add("scale", kOne, {}, &s.words.scale, "field times this is in the column's unit, one a field; without it 1");
+  t.Text("read", &s.words.read, {}, "query that is answered by one sample");
+  t.Text("arm", &s.words.arm, {}, "command that makes the next {samples} triggers latch; empty: it cannot");
+  t.Text("fetch", &s.words.fetch, {}, "query that is answered by <samples>,<1: some are lost>,<the samples>");
+}
+
+/// What keys say together.
+class MachineFileCheck {
+ public:
+  MachineFileCheck(const MachineFile& file, const KeyPlaces& places) : file_(file), places_(places) {}
+
+  void Check(const std::vector<MachineAxis>& axes) const {
+    if (file_.kind != "hardware") return RefuseDevices();
+    CheckConnection("machine", file_.machine);
+    if (file_.machine.kind.empty())
+      throw InputError(Where("machine"), "there is no [machine] with a kind", "kind = \"esp\"");
+    for (std::size_t k = 0; k < axes.size(); ++k) CheckAxis(axes[k], file_.axes[k]);
+    CheckInstruments();
+    CheckConnection("fixture", file_.fixture);
+    CheckConnection("clock", file_.clock);
+  }
+
+ private:
+  std::string Where(const std::string& path) const {
+    if (const auto key = places_.find(path); key != places_.end()) return key->second;
+    if (const auto table = places_.find(path.substr(0, path.find('.'))); table != places_.end())
+      return table->second;
+    return file_.path + ":1";
+  }
+
+  void RefuseDevices() const {
+    static const std::set<std::string> kNotDevices = {"kind", "name", "attempts"};
+    for (const auto& [path, where] : places_) {
+      if (!kNotDevices.contains(path))
+        throw InputError(where, fmt::format("{} in a bench of kind \"{}\"", path, file_.kind),
+                         "kind = \"hardware\"");
+    }
+  }
+
+  void CheckConnection(const std::string& table, const ControlSettings& s) const {
+    const bool connected = s.kind == "scpi" || s.kind == "esp";
+    const std::string key = table + ".address";
+    if (!connected && !s.address.empty())
+      throw InputError(Where(key), fmt::format("{} with kind = \"{}\"", key, s.kind), "no address");
+    if (connected && !ParseAddress(s.address))
+      throw InputError(Where(key), fmt::format("{} is \"{}\"", key, s.address), kAddressForm);
+  }
+
+  void CheckAxis(const MachineAxis& axis, const AxisLimits& limits) const {
+    if (limits.lower < limits.upper) return;
+    throw InputError(Where(AxisTable(axis)),
+                     fmt::format("the upper limit of axis {} is not above its lower", axis.name),
+                     "a range to move in");
+  }
+
+  void CheckInstruments() const {
+    bool any = false;
+    for (std::size_t k = 0; k < kMostInstruments; ++k) {
+      const InstrumentSettings& s = file_.instruments[k];
+      const std::string table = InstrumentTable(k);
+      CheckConnection(table, s.connection);
+      if (s.connection.kind == "none") continue;
+      any = true;
+      if (s.words.fields.empty())
+        throw InputError(Where(table), fmt::format("{}.fields is missing", table), "the fields of its answer");
+      if (!s.words.scale.empty() && s.words.scale.size() != s.words.fields.size())
+        throw InputError(Where(table + ".scale"),
+                         fmt::format("{} scales for {} fields", s.words.scale.size(), s.words.fields.size()),
+                         "one a field");
+      CheckShared(table, s.connection);
+    }
+    if (!any) throw InputError(file_.path + ":1", "there is no instrument", "[instrument_1] with kind = \"scpi\"");
+  }
+
+  /// Who shares an address shares a connection: one language, one identity.
+  void CheckShared(const std::string& table, const ControlSettings& s) const {
+    if (s.address != file_.machine.address) return;
+    throw InputError(Where(table + ".address"), fmt::format("{} shares the address of the machine", table),
+                     "an address of its own: the machine speaks another language");
+  }
+
+  const MachineFile& file_;
+  const KeyPlaces& places_;
+};
+
+}  // namespace
+
+std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis>& axes) {
+  std::vector<ScenarioKey> keys;
+  MachineKeys top(keys, "");
+  top.Text("kind", &file.kind, {"hardware", "twin"}, "what stands there");
+  top.Text("name", &file.name, {}, "of the bench, for the record");
+  top.Add("attempts", kOne, {1, 100}, &file.attempts, "at one reading, before the run stops");
+  MachineKeys machine(keys, "machine");
+  machine.Connection(file.machine, {"esp"});
+  machine.Add("traverse", kMillimetresASecond, Above(0.0, 1e4), &file.traverse_m_s, "feed of moves without a feed");
+  machine.Add("stall", kSeconds, Above(0.0, 3600.0), &file.stall_s, "it may stand still so long during a move");
+  machine.Add("move_timeout", kSeconds, Above(0.0, 36000.0), &file.move_timeout_s, "beyond what a path takes");
+  file.axes.resize(axes.size());
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    MachineKeys t(keys, AxisTable(axes[k]));
+    const Unit unit{axes[k].unit(), axes[k].to_SI()};
+    const Unit fine = axes[k].is_rotary ? Unit{"arcsec", units::arcsec} : Unit{"um", units::um};
+    t.Add("lower", unit, {-kFurthest, kFurthest}, &file.axes[k].lower,
+          "soft limit; without it the controller's own");
+    t.Add("upper", unit, {-kFurthest, kFurthest}, &file.axes[k].upper,
+          "soft limit; without it the controller's own");
+    t.Add("in_position", fine, Above(0.0, 1e9), &file.axes[k].in_position, "encoder against command when settled");
+  }
+  for (std::size_t k = 0; k < kMostInstruments; ++k) AddInstrument(keys, k, file.instruments[k]);
+  MachineKeys(keys, "fixture").Connection(file.fixture, {"scpi", "console"});
+  MachineKeys(keys, "clock").Connection(file.clock, {"host", "scpi"});
+  return keys;
+}
+
+MachineFile ParseMachineFile(const std::string& text, const std::string& name,
+                             const std::vector<MachineAxis>& axes) {
+  MachineFile file;
+  file.path = name;
+  const KeyPlaces places = ReadToml(text, name, KeysOf(file, axes));
+  MachineFileCheck(file, places).Check(axes);
+  for (AxisLimits& limits : file.axes) {
+    limits.stall_s = file.stall_s;
+    limits.move_timeout_s = file.move_timeout_s;
+  }
+  return file;
+}
+
+MachineFile LoadMachineFile(const std::string& path, const std::vector<MachineAxis>& axes) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf()))
+    throw InputError(path, "the file cannot be read or is empty", "a bench file in TOML");
+  return ParseMachineFile(text.str(), path, axes);
+}
+
+std::string WriteServedMachineFile(const ServedAddresses& a, const std::string& machine,
+                                   const std::vector<std::string>& fields) {
+  Require(machine == "esp" || machine == "pty", "a machine is driven by esp or pty");
+  Require(machine != "pty" || !a.pty.empty(), "there is no pseudo-terminal");
+  const std::string scpi = fmt::format(
+      "kind = \"scpi\"\naddress = \"tcp:{}:{}\"\nidentity = \"twinbench,machine-bench,\"\n", a.host, a.scpi_port);
+  const std::string esp = machine == "pty" ? "serial:" + a.pty : fmt::format("tcp:{}:{}", a.host, a.esp_port);
+  std::string list;
+  for (const std::string& field : fields) list += (list.empty() ? "\"" : ", \"") + field + "\"";
+  return fmt::format(
+      "# What `twinbench serve` shows, as `twinbench measure --bench` takes it.\n"
+      "kind = \"hardware\"\nname = \"served twin\"\n\n"
+      "[machine]\nkind = \"esp\"\naddress = \"{}\"\nidentity = \"ESP301 twinbench \"\ntraverse_mm_s = 200.0\n\n"
+      "[instrument_1]\n{}fields = [{}]\n\n[fixture]\n{}\n[clock]\n{}",
+      esp, scpi, list, scpi, scpi);
+}
+
+}  // namespace twinbench::hw

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+
+#include "hw_bridge/bench_file.h"
+#include "hw_bridge/control/instrument_box.h"
+#include "twin/core/machine.h"
+
+/// bench.toml of a bench whose machine is driven. docs/hardware.md lists every key.
+namespace twinbench::hw {
+
+inline constexpr std::size_t kMostInstruments = 4;  // [instrument_1] to [instrument_4]
+inline constexpr double kTraverse_m_s = 1000.0 * units::mm / 60.0;
+
+struct InstrumentSettings {
+  ControlSettings connection{"none"};  // scpi | none
+  InstrumentWords words;
+};
+
+struct MachineFile {
+  std::string path;               // for messages
+  std::string kind = "hardware";  // hardware | twin
+  std::string name;               // for the record
+  int attempts = 3;               // at one reading, before the run stops
+  ControlSettings machine;        // kind esp
+  double traverse_m_s = kTraverse_m_s;
+  double stall_s = AxisLimits{}.stall_s, move_timeout_s = AxisLimits{}.move_timeout_s;
+  std::vector<AxisLimits> axes;  // one an axis
+  std::array<InstrumentSettings, kMostInstruments> instruments;
+  ControlSettings fixture{"console"};  // scpi | console
+  ControlSettings clock{"host"};       // host | scpi
+};
+
+/// Every key of the file format for a machine with these axes: [axis_x], ...
+std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis>& axes);
+
+/// @throws InputError with file:line, as LoadBenchFile does.
+MachineFile LoadMachineFile(const std::string& path, const std::vector<MachineAxis>& axes);
+MachineFile ParseMachineFile(const std::string& text, const std::string& name,
+                             const std::vector<MachineAxis>& axes);
+
+/// The bench file that drives what `twinbench serve` shows of such a bench.
+/// @param machine  How the machine is driven: "esp" (over TCP) or "pty" (over the pseudo-terminal).
+/// @param fields   Of a sample.
+std::string WriteServedMachineFile(const ServedAddresses& addresses, const std::string& machine,
+                                   const std::vector<std::string>& fields);
+
+}  // namespace twinbench::hw

@@ -1,0 +1,92 @@
+#include "hw_bridge/open_machine.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <iostream>
+
+#include "hw_bridge/control/esp_machine.h"
+#include "hw_bridge/control/host_clock.h"
+#include "hw_bridge/control/operator_devices.h"
+#include "hw_bridge/control/scpi_instruments.h"
+#include "hw_bridge/control/served_clock.h"
+#include "hw_bridge/conversations.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::hw {
+namespace {
+
+class OpenedMachine : public OpenMachine {
+ public:
+  OpenedMachine(const MachineFile& file, const std::vector<MachineAxis>& axes,
+                const std::vector<ReadingColumn>& columns, Duration elapsed)
+      : name_(file.name),
+        clock_(OpenClock(file.clock, elapsed)),
+        machine_(OpenAxes(file, axes)),
+        instruments_(OpenInstruments(file, columns), *clock_),
+        fixture_(OpenFixture(file.fixture)) {}
+
+  MachineBench Devices() override { return {*clock_, machine_, instruments_, *fixture_, simulation_.get()}; }
+  std::vector<AxisLimits> Limits() const override { return machine_.limits(); }
+
+  std::string Identity() const override {
+    std::string text;
+    for (const std::string& identity : conversations_.Identities()) text += (text.empty() ? "" : "; ") + identity;
+    return name_.empty() ? text : name_ + ": " + text;
+  }
+
+ private:
+  /// First of all: a served twin's time stands still from here on.
+  std::unique_ptr<Clock> OpenClock(const ControlSettings& settings, Duration elapsed) {
+    if (settings.kind != "scpi") {
+      const auto tell = [](const std::string& notice) { fmt::print(stderr, "twinbench: {}\n", notice); };
+      return std::make_unique<HostClock>(elapsed, tell);
+    }
+    auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", settings));
+    clock->Open();
+    if (clock->IsTwin()) simulation_ = std::make_unique<ScpiSimulation>(*clock);
+    return clock;
+  }
+
+  EspMachine OpenAxes(const MachineFile& file, const std::vector<MachineAxis>& axes) {
+    EspMachine machine(conversations_.LineOf("machine", file.machine), axes, file.axes,
+                       {.traverse_m_s = file.traverse_m_s, .polls_pass_time = file.clock.kind == "scpi"});
+    machine.AgreeOnLimits();
+    return machine;
+  }
+
+  std::vector<InstrumentBox> OpenInstruments(const MachineFile& file, const std::vector<ReadingColumn>& columns) {
+    std::vector<InstrumentBox> boxes;
+    for (std::size_t k = 0; k < kMostInstruments; ++k) {
+      const InstrumentSettings& s = file.instruments[k];
+      if (s.connection.kind == "none") continue;
+      boxes.emplace_back(conversations_.LineOf(fmt::format("instrument_{}", k + 1), s.connection), s.words,
+                         columns);
+    }
+    return boxes;
+  }
+
+  std::unique_ptr<MachineFixture> OpenFixture(const ControlSettings& settings) {
+    if (settings.kind == "console") return std::make_unique<ConsoleMachineFixture>(Operator(std::cin, std::cerr));
+    return std::make_unique<ScpiMachineFixture>(conversations_.LineOf("fixture", settings));
+  }
+
+  std::string name_;
+  Conversations own_conversation_;  // the clock's
+  Conversations conversations_;
+  std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<Clock> clock_;
+  EspMachine machine_;
+  InstrumentBoxes instruments_;
+  std::unique_ptr<MachineFixture> fixture_;
+};
+
+}  // namespace
+
+std::unique_ptr<OpenMachine> OpenMachineHardware(const MachineFile& file, const std::vector<MachineAxis>& axes,
+                                                 const std::vector<ReadingColumn>& columns, Duration elapsed) {
+  Require(file.kind == "hardware", "only a bench of hardware is opened");
+  return std::make_unique<OpenedMachine>(file, axes, columns, elapsed);
+}
+
+}  // namespace twinbench::hw

@@ -1,0 +1,31 @@
+#include "hw_bridge/serve/served.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+
+namespace twinbench::hw {
+namespace {
+
+/// 64-bit FNV-1a of the whole scenario: bench, seed and every setting.
+std::string SerialOf(const Scenario& scenario) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char c : WriteScenario(scenario)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return fmt::format("{:016X}", hash);
+}
+
+}  // namespace
+
+Served::Served(std::string its_name, const Scenario& scenario)
+    : name(std::move(its_name)), serial(SerialOf(scenario)) {}
+
+Poll Served::AtRest(const std::string& answer) {
+  return [this, answer]() -> std::optional<std::string> {
+    if (!Moves()) return answer;
+    if (!pace().Immediate()) return std::nullopt;
+    LetGetOn();
+    return Moves() ? std::nullopt : std::optional(answer);
+  };
+}
+
+}  // namespace twinbench::hw

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/serve/faults.h"
+#include "hw_bridge/serve/paced_clock.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::hw {
+
+struct ScpiCommand;
+
+/// A served bench of any kind, as far as all connections share it.
+class Served {
+ public:
+  /// @param its_name  As *IDN? tells it: "rotary-bench".
+  Served(std::string its_name, const Scenario& scenario);
+  virtual ~Served() = default;
+
+  virtual PacedClock& pace() = 0;
+  /// What it understands beside the commands that every served bench has.
+  virtual std::vector<std::span<const ScpiCommand>> OwnScpiCommands() const = 0;
+  /// Whether anything that a controller moves is moving.
+  virtual bool Moves() = 0;
+  /// Lets what moves get on where time does not pass by itself.
+  virtual void LetGetOn() = 0;
+  virtual void StopAll() = 0;
+  /// @throws BenchError on a bench that cannot.
+  virtual void Restart() = 0;
+
+  /// `answer` when nothing moves.
+  Poll AtRest(const std::string& answer);
+
+  std::string name;
+  std::string serial;  // made from bench, scenario and seed
+  Faults faults;
+};
+
+}  // namespace twinbench::hw

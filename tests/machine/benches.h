@@ -1,0 +1,51 @@
+#pragma once
+
+#include "twin/benches/circular_motion/settings.h"
+#include "twin/benches/freeform_five_axis/settings.h"
+#include "twin/benches/names.h"
+#include "twin/core/scenario.h"
+
+/// Short runs of the benches with a machine, with effects that remember.
+namespace twinbench::test {
+
+/// Two set-ups, each with sweeps both ways at one feed and a few stops: 2 * (2 * 12 + 2 * 4) = 64 readings.
+inline Scenario ShortCircles() {
+  Scenario scenario = ParseScenario(R"(bench = "circular_motion"
+seed = 7
+[machine]
+squareness_arcsec = 12.0
+backlash_x_um = 3.0
+[circular_procedure]
+setups = [ { instrument = "bar", radius_mm = 110.230 }, { instrument = "grid", radius_mm = 90.0 } ]
+feeds_mm_min = [1000.0]
+points = 12
+stops = 4
+[environment]
+swing_mK = 500.0
+swing_period_s = 3000.0
+[[effect]]
+name = "drift"
+where = "x"
+drift_um_K = 5.0
+lag_s = 900.0
+)",
+                                    "short_circles.toml", "");
+  return scenario;
+}
+
+/// Two mounts of six poses, there and back: 24 readings.
+inline Scenario ShortFreeform() {
+  return ParseScenario(R"(bench = "freeform_five_axis"
+seed = 9
+[freeform_procedure]
+mounts = [ { }, { z_mm = 60.0, yaw_deg = 90.0 } ]
+poses = 6
+[[effect]]
+name = "backlash"
+where = "x"
+half_um = 2.0
+)",
+                       "short_freeform.toml", "");
+}
+
+}  // namespace twinbench::test

@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/machine/benches.h"
+#include "tests/support/machine_run.h"
+#include "twin/benches/circular_motion/columns.h"
+#include "twin/benches/circular_motion/twin/driven.h"
+#include "twin/benches/circular_motion/twin/live.h"
+
+/// Same scenario, same seed, same readings: on the twin in this program and through the network.
+namespace twinbench::test {
+namespace {
+
+class MachineContract : public ::testing::TestWithParam<Scenario (*)()> {
+ protected:
+  const Scenario scenario_ = GetParam()();
+  const std::vector<Reading> in_process_ = DrivenInProcess(scenario_);
+};
+
+TEST_P(MachineContract, TakesEveryPlannedReadingWhenItIsDue) {
+  ASSERT_EQ(static_cast<int>(in_process_.size()), BenchOf(scenario_).planned_readings(scenario_));
+  for (std::size_t k = 0; k < in_process_.size(); ++k) EXPECT_EQ(in_process_[k].reading, static_cast<int>(k));
+}
+
+TEST_P(MachineContract, GivesTheSameBitsThroughTheNetwork) {
+  const ServedMachineTwin served(scenario_);
+  for (const char* machine : {"esp", "pty"}) {
+    const MachineRun run = RunServedMachine(served, scenario_, served.BenchFile(machine));
+    EXPECT_EQ(run.stopped_by, "") << run.said;
+    EXPECT_EQ(TextOf(run.log.readings, scenario_), TextOf(in_process_, scenario_)) << machine;
+    EXPECT_TRUE(run.log.attempts.empty());
+  }
+}
+
+TEST_P(MachineContract, WritesDownWhatItAskedOfTheDevices) {
+  const ServedMachineTwin served(scenario_);
+  const MachineRun run = RunServedMachine(served, scenario_, served.BenchFile());
+  const auto asked = [&](const std::string& device) {
+    return std::ranges::count(run.log.calls, device, &DeviceCall::device);
+  };
+  EXPECT_GT(asked("machine"), 0);
+  EXPECT_GT(asked("instruments"), 0);
+  EXPECT_EQ(run.log.events.size(), 2u) << "two set-ups were mounted";
+}
+
+TEST_P(MachineContract, AResumedRunMakesTheSameReadings) {
+  const ServedMachineTwin served(scenario_);
+  for (const std::size_t kept : {std::size_t{1}, in_process_.size() / 2, in_process_.size() - 1}) {
+    const std::vector<Reading> before(in_process_.begin(), in_process_.begin() + static_cast<long>(kept));
+    const MachineRun run = RunServedMachine(served, scenario_, served.BenchFile(), {}, before);
+    EXPECT_EQ(run.stopped_by, "") << run.said;
+    EXPECT_EQ(TextOf(run.log.readings, scenario_), TextOf(in_process_, scenario_)) << kept;
+  }
+}
+
+TEST_P(MachineContract, ARecordOfAnotherBenchIsNotGoneOnWith) {
+  std::vector<Reading> before(in_process_.begin(), in_process_.begin() + 3);
+  before[1].temperature_degC += 1e-9;
+  const ServedMachineTwin served(scenario_);
+  EXPECT_THROW(RunServedMachine(served, scenario_, served.BenchFile(), {}, before), InputError);
+}
+
+TEST_P(MachineContract, RunsInRealTimeAsWithoutAny) {
+  // At 2000 times real time the pacing waits for every step: some minutes of bench time a quarter of a second.
+  const ServedMachineTwin served(scenario_, 2000.0);
+  const MachineRun run = RunServedMachine(served, scenario_, served.BenchFile());
+  EXPECT_EQ(run.stopped_by, "") << run.said;
+  EXPECT_EQ(TextOf(run.log.readings, scenario_), TextOf(in_process_, scenario_));
+}
+
+/// A bench that cannot begin again goes on where it is, also in the middle of a sweep: nothing is taken twice, and
+/// what is mounted stays mounted.
+TEST_P(MachineContract, ARealBenchGoesOnWithTheReadingThatIsMissing) {
+  const auto twin = BenchOf(scenario_).make_devices(scenario_);
+  MachineBench bench = twin->Devices();
+  bench.simulation = nullptr;
+  MemoryLog log;
+  for (const std::size_t stop_at : {std::size_t{5}, std::size_t{17}, in_process_.size() + 1}) {
+    procedure::MachineOptions options;
+    options.log = &log;
+    options.kept = log.readings;
+    options.stop_requested = [&] { return log.readings.size() >= stop_at; };
+    if (stop_at > in_process_.size()) {
+      BenchOf(scenario_).drive(bench, scenario_, log, {}, options);
+    } else {
+      EXPECT_THROW(BenchOf(scenario_).drive(bench, scenario_, log, {}, options), DeviceFault);
+      EXPECT_EQ(log.readings.size(), stop_at) << "every reading is kept before the operator is heard";
+    }
+  }
+  ASSERT_EQ(log.readings.size(), in_process_.size());
+  EXPECT_EQ(log.events.size(), 2u) << "each set-up was mounted once";
+  for (std::size_t k = 0; k < in_process_.size(); ++k) {
+    EXPECT_EQ(log.readings[k].reading, static_cast<int>(k));
+    for (const ReadingColumn& column : InstrumentColumns(BenchOf(scenario_).format->columns))
+      EXPECT_EQ(column.print(log.readings[k]).empty(), column.print(in_process_[k]).empty()) << column.name;
+  }
+}
+
+TEST_P(MachineContract, APathBeyondTheTravelIsRefused) {
+  const auto twin = BenchOf(scenario_).make_devices(scenario_);
+  MachineController& machine = twin->Devices().machine;
+  std::vector<double> to;
+  for (const AxisLimits& axis : machine.Travel()) to.push_back(axis.upper + 1e-3);
+  EXPECT_THROW(machine.StartMove(to, 0.0), DeviceFault);
+  for (const AxisState& axis : machine.State()) EXPECT_FALSE(axis.moving);
+}
+
+TEST_P(MachineContract, AStopLeavesTheAxesWhereTheyAre) {
+  const auto twin = BenchOf(scenario_).make_devices(scenario_);
+  MachineBench bench = twin->Devices();
+  std::vector<double> to;
+  for (const AxisState& axis : bench.machine.State()) to.push_back(axis.encoder - 0.02);
+  bench.machine.StartMove(to, 0.01);
+  EXPECT_FALSE(bench.machine.Settles(std::chrono::seconds(1)));
+  bench.machine.Stop();
+  const std::vector<AxisState> stopped = bench.machine.State();
+  bench.clock.Wait(std::chrono::seconds(5));
+  for (std::size_t k = 0; k < stopped.size(); ++k) {
+    EXPECT_FALSE(stopped[k].moving);
+    EXPECT_GT(std::abs(stopped[k].encoder - to[k]), 0.01) << "it was on its way";
+    EXPECT_EQ(bench.machine.State()[k].encoder, stopped[k].encoder);
+  }
+}
+
+TEST_P(MachineContract, AReadingBesideThePlanIsOneToo) {
+  const auto twin = BenchOf(scenario_).make_devices(scenario_);
+  MachineBench bench = twin->Devices();
+  const std::vector<ReadingColumn> columns = InstrumentColumns(BenchOf(scenario_).format->columns);
+  bench.clock.Wait(std::chrono::seconds(3));  // no reading is due now
+  const Reading sample = bench.instruments.Read();
+  EXPECT_EQ(sample.time, bench.clock.Now());
+  EXPECT_TRUE(std::isfinite(sample.temperature_degC));
+  EXPECT_TRUE(std::ranges::any_of(columns, [&](const ReadingColumn& c) { return !c.print(sample).empty(); }));
+}
+
+INSTANTIATE_TEST_SUITE_P(Benches, MachineContract, ::testing::Values(ShortCircles, ShortFreeform),
+                         [](const auto& bench) { return bench.index == 0 ? "Circles" : "Freeform"; });
+
+/// Off the plan everything is computed anew from what was taken before; on it the plan's own course is used. Both
+/// must be one physics: 3 ns beside every planned instant the machine shows the same to 1 pm, for it needs
+/// microseconds to go as far.
+TEST(DrivenCircles, ShowBesideThePlanWhatTheyShowOnIt) {
+  using namespace benches::circular;
+  Scenario scenario = ShortCircles();
+  scenario.noise_free = true;  // no digits that could turn over
+  const auto physics = sim::MakeCirclePhysics(scenario);
+  const sim::CircleRun run(scenario);
+  double largest_m = 0.0, largest_rad = 0.0;
+  for (int k = 0; k < run.Readings(); ++k) {
+    const Reading planned = run.Take(k);
+    const sim::DrivenInstant at{k,
+                                planned.time + Duration(3),
+                                planned.setup,
+                                planned.direction,
+                                kFeed_m_s(planned),
+                                {kCommandedX_m(planned), kCommandedY_m(planned)}};
+    const Reading beside = physics->Show(at);
+    EXPECT_EQ(beside.time, at.time) << "it was not taken for the planned one";
+    for (const Quantity* q : {&kBar_m, &kGridX_m, &kGridY_m}) {
+      EXPECT_EQ(std::isfinite((*q)(planned)), std::isfinite((*q)(beside)));
+      if (std::isfinite((*q)(planned))) largest_m = std::max(largest_m, std::abs((*q)(beside) - (*q)(planned)));
+    }
+    if (std::isfinite(kEncoder_rad(planned)))
+      largest_rad = std::max(largest_rad,
+                             std::abs(std::remainder(kEncoder_rad(beside) - kEncoder_rad(planned), units::turn)));
+  }
+  EXPECT_LT(largest_m, 1e-12);
+  EXPECT_LT(largest_rad, 1e-11);
+}
+
+}  // namespace
+}  // namespace twinbench::test

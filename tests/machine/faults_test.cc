@@ -1,0 +1,105 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/machine/benches.h"
+#include "tests/support/machine_run.h"
+#include "twin/procedure/machine_watch.h"
+
+/// What goes wrong with a machine and its instruments, and what becomes of the run.
+namespace twinbench::test {
+namespace {
+
+using testing::HasSubstr;
+
+struct Failing {
+  Scenario scenario = ShortCircles();
+  ServedMachineTwin served{scenario};
+  std::string undisturbed = TextOf(DrivenInProcess(scenario), scenario);
+
+  /// @param alter  Of the bench file.
+  MachineRun Run(std::map<int, std::string> faults, const std::vector<Reading>& kept = {}) {
+    std::string file = served.BenchFile();
+    for (auto at = file.find("kind = \"scpi\""); at != std::string::npos;
+         at = file.find("kind = \"scpi\"", at + 20))
+      file.insert(at, "timeout_s = 1.0\n");
+    const auto machine = file.find("kind = \"esp\"");
+    file.insert(machine, "timeout_s = 1.0\nmove_timeout_s = 20.0\n");
+    return RunServedMachine(served, scenario, file, std::move(faults), kept);
+  }
+  void ExpectGoneOn(const MachineRun& run, const std::string& fault) {
+    EXPECT_EQ(run.stopped_by, "") << run.said;
+    EXPECT_EQ(TextOf(run.log.readings, scenario), undisturbed);
+    ASSERT_EQ(run.log.attempts.size(), 1u);
+    EXPECT_EQ(run.log.attempts[0].fault, fault);
+  }
+};
+
+TEST(MachineFaults, ThatPassCostOneAttemptAndNoBit) {
+  Failing bench;
+  bench.ExpectGoneOn(bench.Run({{32, "machine,mute"}}), "timeout");
+  bench.ExpectGoneOn(bench.Run({{32, "machine,disconnect"}}), "dropped");
+  bench.ExpectGoneOn(bench.Run({{32, "machine,partial"}}), "timeout");
+  bench.ExpectGoneOn(bench.Run({{32, "machine,not_in_position"}}), "not_in_position");
+  bench.ExpectGoneOn(bench.Run({{32, "machine,restart"}}), "restarted");
+  bench.ExpectGoneOn(bench.Run({{32, "instruments,mute"}}), "timeout");
+  bench.ExpectGoneOn(bench.Run({{32, "instruments,gap"}}), "overrun");
+}
+
+/// What ends a run keeps what was taken, and the run can be gone on with.
+void ExpectStopped(const std::string& fault, const std::string& kind, const std::string& said) {
+  Failing bench;
+  const MachineRun run = bench.Run({{32, fault}});
+  EXPECT_EQ(run.stopped_by, kind);
+  EXPECT_THAT(run.said, HasSubstr(said));
+  EXPECT_GE(run.log.readings.size(), 32u);
+  EXPECT_LT(run.log.readings.size(), 64u);
+  ASSERT_EQ(run.log.attempts.size(), 1u);
+  const MachineRun rest = bench.Run({}, run.log.readings);
+  EXPECT_EQ(rest.stopped_by, "") << rest.said;
+  EXPECT_EQ(TextOf(rest.log.readings, bench.scenario), bench.undisturbed);
+}
+
+TEST(MachineFaults, AMachineThatFreezesInMidMoveIsStalled) {
+  ExpectStopped("machine,stall", "stalled", "on its way");
+}
+
+TEST(MachineFaults, ALimitSwitchEndsTheRun) {
+  ExpectStopped("machine,limit", "limit", "limit switch");
+}
+
+TEST(MachineFaults, AStopIsReadBack) {
+  Failing bench;
+  const std::vector<MachineAxis> axes = {{"x"}, {"y"}};
+  const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench.served.BenchFile(), "served.toml", axes),
+                                              axes, InstrumentColumns(FormatOf(kCircularBench).columns));
+  MachineBench devices = opened->Devices();
+  devices.simulation->Restart();
+  devices.machine.StartMove({0.0, 0.0}, 1e-3);
+  EXPECT_TRUE(devices.machine.State()[0].moving);
+  EXPECT_TRUE(procedure::StopMachine(devices).is_sure);
+  EXPECT_FALSE(devices.machine.State()[0].moving);
+
+  bench.served.Inject("machine,mute");
+  const procedure::Standstill unknown = procedure::StopMachine(devices);
+  EXPECT_FALSE(unknown.is_sure);
+  EXPECT_THAT(unknown.why_not, HasSubstr("no answer in time"));
+}
+
+TEST(MachineFaults, AnOperatorWhoSaysStopIsHeardInTheMiddleOfASweep) {
+  const Scenario scenario = ShortCircles();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  MemoryLog log;
+  procedure::MachineOptions options;
+  options.log = &log;
+  int asked = 0;
+  options.stop_requested = [&] { return ++asked > 40; };
+  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, options), DeviceFault);
+  for (const AxisState& axis : bench.machine.State()) EXPECT_FALSE(axis.moving);
+  ASSERT_EQ(log.attempts.size(), 1u);
+  EXPECT_EQ(log.attempts[0].fault, "stopped");
+  EXPECT_LT(log.readings.size(), 64u);
+}
+
+}  // namespace
+}  // namespace twinbench::test

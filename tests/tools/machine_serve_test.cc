@@ -1,0 +1,141 @@
+#include <gmock/gmock.h>
+
+#include <thread>
+
+#include "tests/tools/program.h"
+#include "twin/core/run_record.h"
+
+/// `serve` and `measure` of benches with a machine, as two programs that only share a network.
+namespace twinbench::test {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+constexpr const char* kCircles = R"(bench = "circular_motion"
+seed = 7
+[circular_procedure]
+setups = [ { instrument = "bar", radius_mm = 110.230 }, { instrument = "grid", radius_mm = 90.0 } ]
+feeds_mm_min = [40.0, 1000.0]
+points = 24
+stops = 6
+)";
+
+constexpr const char* kFreeform = R"(bench = "freeform_five_axis"
+seed = 9
+[freeform_procedure]
+mounts = [ { }, { z_mm = 60.0, yaw_deg = 90.0 }, { z_mm = 120.0 }, { z_mm = 180.0 } ]
+poses = 30
+)";
+
+class ServedMachineProgram : public Program, public ::testing::WithParamInterface<const char*> {
+ protected:
+  ServedMachineProgram() {
+    Write("small.toml", GetParam());
+    Succeed({"run", "small.toml", "-o", "run"});
+    readings_ = ReadingsOf("run");
+  }
+
+  std::unique_ptr<Process> Serve(const std::string& speed, const std::string& machine = "esp") {
+    std::filesystem::remove(At("bench.toml"));
+    auto server = std::make_unique<Process>(
+        At(""),
+        std::vector<std::string>{"serve", "small.toml", "--scpi-port", "0", "--esp-port", "0", "--write-bench",
+                                 "bench.toml", "--speed", speed, "--tables", machine},
+        "server");
+    for (int k = 0; k < 500 && !Exists("bench.toml"); ++k) std::this_thread::sleep_for(milliseconds(20));
+    EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
+    return server;
+  }
+  /// Whoever is gone shall not be waited for long.
+  void WaitBriefly() const {
+    std::string text = Read("bench.toml");
+    for (auto at = text.find("kind = \""); at != std::string::npos; at = text.find("kind = \"", at + 30)) {
+      if (at > 0 && text[at - 1] == '\n' && text[at - 2] == ']') text.insert(at, "timeout_s = 0.3\n");
+    }
+    Write("bench.toml", text);
+  }
+  static std::vector<std::string> Measure(const std::string& name) {
+    return {"measure", "small.toml", "--bench", "bench.toml", "-o", name, "--resume"};
+  }
+  /// Waits until a run has kept something.
+  static void AwaitProgress(Process& run) {
+    while (run.Runs() && run.ProgressLines() < 2) std::this_thread::sleep_for(milliseconds(2));
+  }
+
+  std::string readings_;
+};
+
+TEST_P(ServedMachineProgram, MeasuresTheReadingsThatRunMakesBitForBit) {
+  const auto server = Serve("max", "pty");
+  Succeed(Measure("measured"));
+  EXPECT_EQ(ReadingsOf("measured"), readings_);
+  EXPECT_EQ(Read("measured/results.json"), Read("run/results.json"));
+  EXPECT_FALSE(Exists("measured/truth.json")) << "nobody at a real bench knows the truth";
+  EXPECT_THAT(RunRecord::Open(At("measured"))->provenance().source, HasSubstr("twinbench,machine-bench"));
+}
+
+TEST_P(ServedMachineProgram, AKilledMeasurementGoesOnToTheSameReadings) {
+  const auto server = Serve("max");
+  Process run(At(""), Measure("killed"));
+  AwaitProgress(run);
+  ASSERT_TRUE(run.Runs()) << "it was too quick to be killed";
+  run.Kill();
+  const std::size_t kept = RunRecord::Open(At("killed"))->Readings().size();
+  EXPECT_GT(kept, 0u);
+  Succeed(Measure("killed"));
+  EXPECT_EQ(ReadingsOf("killed"), readings_);
+}
+
+TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
+  const auto server = Serve("1000");
+  {
+    Process run(At(""), Measure("stopped"));
+    AwaitProgress(run);
+    run.Signal(SIGINT);
+    const Outcome outcome = run.Wait();
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("The controller says that all axes stand still"));
+  }
+  Succeed(Measure("stopped"));
+  EXPECT_EQ(ReadingsOf("stopped"), readings_);
+}
+
+TEST_P(ServedMachineProgram, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
+  auto server = Serve("1000");
+  WaitBriefly();
+  Process run(At(""), Measure("cut"));
+  AwaitProgress(run);
+  server->Kill();
+  const Outcome outcome = run.Wait();
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("WHETHER THE AXES STAND STILL IS NOT KNOWN"));
+  server = Serve("max");
+  Succeed(Measure("cut"));
+  EXPECT_EQ(ReadingsOf("cut"), readings_);
+}
+
+TEST_P(ServedMachineProgram, ARehearsalAsksTheControllerAndMovesNothing) {
+  const auto server = Serve("max");
+  const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
+  EXPECT_EQ(fine.exit_code, 0) << fine.err;
+  EXPECT_THAT(fine.err, HasSubstr("axis x"));
+  EXPECT_THAT(fine.err, HasSubstr("limits "));
+  Write("bench.toml", Read("bench.toml") + "\n[axis_x]\nlower_mm = -20.0\nupper_mm = 20.0\n");
+  const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "narrow"});
+  EXPECT_EQ(narrow.exit_code, 1);
+  EXPECT_THAT(narrow.err, HasSubstr("PROBLEM: axis x would travel"));
+  EXPECT_FALSE(Exists("narrow"));
+}
+
+TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
+  Write("bench.toml", "kind = \"twin\"\n");
+  Succeed(Measure("own"));
+  EXPECT_EQ(ReadingsOf("own"), readings_);
+}
+
+INSTANTIATE_TEST_SUITE_P(Benches, ServedMachineProgram, ::testing::Values(kCircles, kFreeform),
+                         [](const auto& bench) { return bench.index == 0 ? "Circles" : "Freeform"; });
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,113 @@
+#include "tools/twinbench/measure_machine.h"
+
+#include <fmt/core.h>
+
+#include "hw_bridge/open_machine.h"
+#include "tools/twinbench/evaluated_run.h"
+#include "tools/twinbench/machine_rehearsal.h"
+#include "tools/twinbench/progress.h"
+#include "tools/twinbench/stop_signal.h"
+#include "twin/benches/registry.h"
+#include "twin/core/device_fault.h"
+#include "twin/procedure/machine_options.h"
+#include "twin/procedure/machine_watch.h"
+
+namespace twinbench::tools {
+namespace {
+
+constexpr double kColdestRoom_degC = -20.0, kHottestRoom_degC = 60.0;
+
+/// The program's own twin as a bench of devices.
+class OwnMachine : public hw::OpenMachine {
+ public:
+  explicit OwnMachine(std::unique_ptr<MachineDevices> twin) : twin_(std::move(twin)) {}
+  MachineBench Devices() override { return twin_->Devices(); }
+  std::string Identity() const override { return "twin"; }
+  std::vector<AxisLimits> Limits() const override { return twin_->Devices().machine.Travel(); }
+
+ private:
+  std::unique_ptr<MachineDevices> twin_;
+};
+
+std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, const Scenario& scenario,
+                                                const std::vector<MachineAxis>& axes, Duration elapsed) {
+  const Bench& bench = BenchOf(scenario);
+  if (file.kind == "twin") return std::make_unique<OwnMachine>(bench.make_devices(scenario));
+  return hw::OpenMachineHardware(file, axes, InstrumentColumns(bench.format->columns), elapsed);
+}
+
+/// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.
+void RehearseMachineFirst(const Scenario& scenario, const std::vector<MachineAxis>& axes,
+                          const std::vector<AxisLimits>& limits) {
+  const MachineRehearsal rehearsal = RehearseMachine(scenario, limits);
+  fmt::print(stderr, "{}", Summary(rehearsal, axes, limits));
+  if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
+}
+
+procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenMachine& bench,
+                                    const BegunRun& begun) {
+  procedure::MachineOptions options;
+  options.axes = bench.Limits();
+  options.attempts = file.attempts;
+  options.coldest_degC = kColdestRoom_degC;
+  options.hottest_degC = kHottestRoom_degC;
+  options.stop_requested = StopWasAsked;
+  options.kept = begun.readings;
+  return options;
+}
+
+/// Whether the axes stand is told as the controller says it now, not as it was asked to.
+[[noreturn]] void TellStopped(const DeviceFault& fault, MachineBench bench) {
+  const procedure::Standstill stands = procedure::StopMachine(bench);
+  const std::string why = fault.kind() == FaultKind::kStopped
+                              ? "stopped by the operator"
+                              : fmt::format("stopped: {} ({})", fault.what(), FaultName(fault.kind()));
+  throw BenchError(fmt::format("{}. {}; every reading so far is kept. Go on with --resume", why,
+                               stands.is_sure ? "The controller says that all axes stand still"
+                                              : "WHETHER THE AXES STAND STILL IS NOT KNOWN: " + stands.why_not));
+}
+
+void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& opened,
+               procedure::MachineOptions options) {
+  MachineBench bench = opened.Devices();
+  ProgressLine line;
+  options.log = &record;
+  if (bench.simulation && options.kept.empty()) bench.simulation->Restart();
+  try {
+    BenchOf(scenario).drive(bench, scenario, record, ShownOn(line), options);
+  } catch (const DeviceFault& fault) {
+    TellStopped(fault, bench);
+  }
+  record.Finish();
+}
+
+void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const hw::MachineFile& file,
+                        hw::OpenMachine& bench, BegunRun begun) {
+  const bool resumed = begun.record != nullptr;
+  if (resumed) TakeUp(begun, bench.Identity());
+  const procedure::MachineOptions options = Carefully(file, bench, begun);
+  const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench.Identity());
+  record->AppendEvent(bench.Devices().clock.Now(), "bench", bench.Identity());
+  DriveInto(*record, scenario, bench, options);
+}
+
+}  // namespace
+
+void MeasureMachine(const MeasureOptions& o, const Scenario& scenario) {
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  const std::vector<MachineAxis> axes = twin->Devices().machine.Axes();
+  const hw::MachineFile file = hw::LoadMachineFile(o.bench, axes);
+  if (o.rehearse_only)
+    return RehearseMachineFirst(scenario, axes, OpenAnyMachine(file, scenario, axes, {})->Limits());
+  const RunFolder folder = FolderOf(o);
+  BegunRun begun = TakeUpIfAsked(o, scenario, folder);
+  ListenForStop();
+  if (!begun.record || !begun.record->finished()) {
+    const auto bench = OpenAnyMachine(file, scenario, axes, SinceBegin(begun));
+    if (o.rehearse) RehearseMachineFirst(scenario, axes, bench->Limits());
+    MeasureMachineInto(folder, scenario, file, *bench, std::move(begun));
+  }
+  EvaluateRun(scenario, folder.path);
+}
+
+}  // namespace twinbench::tools

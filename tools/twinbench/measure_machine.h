@@ -1,0 +1,10 @@
+#pragma once
+
+#include "tools/twinbench/measured_run.h"
+
+namespace twinbench::tools {
+
+/// `measure` of a bench whose machine is driven (Bench::drive).
+void MeasureMachine(const MeasureOptions& options, const Scenario& scenario);
+
+}  // namespace twinbench::tools

@@ -1,0 +1,72 @@
+#include "tools/twinbench/measured_run.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+
+#include "twin/core/errors.h"
+
+namespace twinbench::tools {
+namespace {
+
+std::string UtcText(std::time_t now) {
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+void RequireSameScenario(const Scenario& scenario, const RunFolder& folder) {
+  if (!std::filesystem::exists(folder.scenario())) {  // the program ended between making the record and writing it
+    WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
+  } else if (WriteScenario(LoadScenario(folder.scenario())) != WriteScenario(scenario)) {
+    throw InputError(folder.path, "the run was begun with another scenario or other --set", "the same");
+  }
+}
+
+}  // namespace
+
+RunFolder FolderOf(const MeasureOptions& options) {
+  if (options.folder.empty()) throw InputError("measure", "there is no -o", "-o DIR, a folder for the run");
+  return {options.folder};
+}
+
+BegunRun TakeUpIfAsked(const MeasureOptions& options, const Scenario& scenario, const RunFolder& folder) {
+  if (!options.resume || !std::filesystem::exists(folder.record())) return {};
+  BegunRun begun{RunRecord::Continue(folder.path), {}};
+  RequireSameScenario(scenario, folder);
+  begun.readings = begun.record->Readings();
+  return begun;
+}
+
+std::unique_ptr<RunRecord> BeginRun(const Scenario& scenario, const RunFolder& folder, const std::string& kind,
+                                    const std::string& identity) {
+  const std::string origin = kind == "hardware" ? UtcText(std::time(nullptr)) : "";
+  auto record =
+      RunRecord::Create(folder.path, {TWINBENCH_VERSION, identity, scenario.seed, origin, scenario.bench});
+  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
+  return record;
+}
+
+Duration SinceBegin(const BegunRun& begun) {
+  if (!begun.record) return {};
+  const Duration last = begun.readings.empty() ? Duration{} : begun.readings.back().time.time_since_epoch();
+  std::tm utc{};
+  if (!strptime(begun.record->provenance().clock_origin_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &utc)) return last;
+  return std::max<Duration>(last, std::chrono::seconds(std::time(nullptr) - timegm(&utc)));
+}
+
+void TakeUp(const BegunRun& begun, const std::string& identity) {
+  const std::string source = begun.record->provenance().source;
+  if (source != identity)
+    throw BenchError(fmt::format("the run was begun on \"{}\" and this is \"{}\"", source, identity));
+  const int kept = static_cast<int>(begun.readings.size());
+  const Time last = begun.readings.empty() ? Time{} : begun.readings.back().time;
+  begun.record->AttemptFailed(kept, last, "interrupted", "the program ended; resumed");
+  fmt::print(stderr, "twinbench: {} readings are kept; going on behind them\n", kept);
+}
+
+}  // namespace twinbench::tools

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "twin/core/scenario.h"
+#include "twin/procedure/machine_sequencer.h"
+
+namespace twinbench::procedure {
+
+/// Carries a scenario's circles out on any such bench: axes X and Y, instruments that show the bench's columns.
+///
+/// Between the mountings the machine goes straight; with an instrument mounted it never leaves the circle, for the
+/// bar's stroke is a millimetre or two. A sweep is led in by half a circle at its own feed; every stop is reached
+/// from the one before it, also the first.
+/// @throws what CarryOutPlan throws; kImplausible if a resumed bench does not stand on its circle.
+void DriveCircles(MachineBench& bench, const Scenario& scenario, ReadingSink& sink,
+                  const ProgressCallback& progress, const MachineOptions& options);
+
+}  // namespace twinbench::procedure

@@ -1,0 +1,83 @@
+#include "twin/benches/circular_motion/twin/driven.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/circular_motion/twin/live.h"
+
+namespace twinbench::sim {
+namespace {
+
+using namespace benches::circular;
+
+constexpr double kSame_m = 1.0 * units::nm, kSameFeed = 1e-9;
+constexpr Duration kSameTime{2};     // both are rounded
+constexpr double kRoomToMove = 1.1;  // of the largest radius
+constexpr int kBesideThePlan = -1;   // a pass
+
+class CirclePhysics : public DrivenPhysics {
+ public:
+  explicit CirclePhysics(const Scenario& scenario) : run_(scenario), settings_(CircularOf(scenario)) {}
+
+  const std::vector<MachineAxis>& Axes() const override { return axes_; }
+  int Setups() const override { return static_cast<int>(settings_.procedure.setups.size()); }
+
+  std::vector<AxisLimits> Travel() const override {
+    double half_m = settings_.machine.span_m;
+    for (const CircularSetup& setup : settings_.procedure.setups)
+      half_m = std::max(half_m, kRoomToMove * setup.radius_m);
+    return {2, AxisLimits{.lower = -half_m, .upper = half_m}};
+  }
+
+  std::vector<double> Start() const override {
+    const Reading& first = run_.Planned(0);
+    return {kCommandedX_m(first), kCommandedY_m(first)};
+  }
+
+  std::optional<Time> Planned(const DrivenInstant& at) const override {
+    if (at.sample >= run_.Readings()) return std::nullopt;
+    const Reading& planned = run_.Planned(at.sample);
+    const double off_m =
+        std::hypot(kCommandedX_m(planned) - at.commanded[0], kCommandedY_m(planned) - at.commanded[1]);
+    const bool same = planned.setup == at.setup && planned.direction == at.direction && off_m < kSame_m &&
+                      std::abs(kFeed_m_s(planned) - at.feed_m_s) <= kSameFeed * at.feed_m_s;
+    return same ? std::optional(planned.time) : std::nullopt;
+  }
+
+  Reading Show(const DrivenInstant& at) override {
+    const std::optional<Time> planned = Planned(at);
+    const bool as_planned = planned && std::chrono::abs(*planned - at.time) <= kSameTime;
+    Reading shown = as_planned ? run_.Take(at.sample) : run_.TakeBeside(course_, Commanded(at));
+    course_.push_back(shown);
+    return shown;
+  }
+
+  void Restart() override { course_.clear(); }
+
+ private:
+  static Reading Commanded(const DrivenInstant& at) {
+    Reading r;
+    r.reading = at.sample;
+    r.time = at.time;
+    r.setup = at.setup;
+    r.pass = kBesideThePlan;
+    r.direction = at.direction;
+    kCommandedX_m(r) = at.commanded[0];
+    kCommandedY_m(r) = at.commanded[1];
+    kFeed_m_s(r) = at.feed_m_s;
+    return r;
+  }
+
+  CircleRun run_;
+  CircularSettings settings_;
+  std::vector<MachineAxis> axes_ = {{"x"}, {"y"}};
+  std::vector<Reading> course_;  // what was taken
+};
+
+}  // namespace
+
+std::unique_ptr<DrivenPhysics> MakeCirclePhysics(const Scenario& scenario) {
+  return std::make_unique<CirclePhysics>(scenario);
+}
+
+}  // namespace twinbench::sim

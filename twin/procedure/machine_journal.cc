@@ -1,0 +1,88 @@
+#include "twin/procedure/machine_journal.h"
+
+#include <fmt/format.h>
+
+namespace twinbench::procedure {
+namespace {
+
+std::string Places(const std::vector<double>& to) {
+  std::string text;
+  for (const double place : to) text += fmt::format(" {}", place);
+  return text;
+}
+
+std::string Text(const Arc& a) {
+  return fmt::format("arc {} {} {} {} {} {} {} {} {}", a.axes[0], a.axes[1], a.centre_m[0], a.centre_m[1],
+                     a.sweep_rad, a.feed_m_s, a.triggers, a.first_trigger_rad, a.trigger_step_rad);
+}
+
+}  // namespace
+
+struct MachineJournal::Devices : Clock, MachineController, InstrumentSet, MachineFixture {
+  Devices(MachineBench& its_inner, RunLog& its_log) : inner(its_inner), log(its_log) {}
+
+  Time Now() const override { return inner.clock.Now(); }
+  void Wait(Duration duration) override {
+    inner.clock.Wait(duration);
+    Note("clock", fmt::format("wait {}", duration.count()));
+  }
+
+  const std::vector<MachineAxis>& Axes() const override { return inner.machine.Axes(); }
+  std::vector<AxisLimits> Travel() override { return inner.machine.Travel(); }
+  std::vector<AxisState> State() override { return inner.machine.State(); }
+  bool Settles(Duration within) override { return inner.machine.Settles(within); }
+  void StartMove(const std::vector<double>& to, double feed_m_s) override {
+    inner.machine.StartMove(to, feed_m_s);
+    Note("machine", fmt::format("move {}{}", feed_m_s, Places(to)));
+  }
+  void StartArc(const Arc& arc) override {
+    inner.machine.StartArc(arc);
+    Note("machine", Text(arc));
+  }
+  void Stop() override {
+    inner.machine.Stop();
+    Note("machine", "stop");
+  }
+  void Home() override {
+    inner.machine.Home();
+    Note("machine", "home");
+  }
+
+  Reading Read() override {
+    Reading shown = inner.instruments.Read();
+    Note("instruments", "read");
+    return shown;
+  }
+  void Arm(int samples) override {
+    inner.instruments.Arm(samples);
+    Note("instruments", fmt::format("arm {}", samples));
+  }
+  LatchedSamples Latched() override { return inner.instruments.Latched(); }
+
+  void Clear() override {
+    inner.fixture.Clear();
+    Note("fixture", "clear");
+  }
+  void Mount(int setup, const std::string& what) override {
+    inner.fixture.Mount(setup, what);
+    Note("fixture", fmt::format("mount {} {}", setup, what));
+  }
+
+  void Note(const char* device, const std::string& request) {
+    log.Called({inner.clock.Now(), device, request, ""});
+  }
+
+  MachineBench& inner;
+  RunLog& log;
+};
+
+MachineJournal::MachineJournal(MachineBench inner, RunLog* log)
+    : inner_(inner), devices_(log ? std::make_unique<Devices>(inner_, *log) : nullptr) {}
+MachineJournal::~MachineJournal() = default;
+
+MachineBench MachineJournal::Bench() {
+  if (!devices_) return inner_;
+  return {*devices_, *devices_, *devices_, *devices_, inner_.simulation};
+}
+
+}  // namespace twinbench::procedure

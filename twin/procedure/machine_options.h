@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "twin/core/machine.h"
+#include "twin/core/run_log.h"
+#include "twin/procedure/options.h"
+
+namespace twinbench::procedure {
+
+/// How careful to be with a machine, and where to begin.
+struct MachineOptions {
+  std::vector<AxisLimits> axes = {};  // one an axis; none: the controller's travel is the only limit
+  int attempts = 3;                   // at one reading, before the run stops
+  double coldest_degC = -std::numeric_limits<double>::infinity();  // a thermometer beyond these is broken
+  double hottest_degC = std::numeric_limits<double>::infinity();
+  RunLog* log = nullptr;                      // none: only readings are kept, and the first fault ends the run
+  std::function<bool()> stop_requested = {};  // asked between moves, waits and readings
+  std::vector<Reading> kept = {};             // of a resumed run, which goes on behind these
+};
+
+}  // namespace twinbench::procedure

@@ -1,0 +1,228 @@
+#include "twin/procedure/machine_sequencer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/bench_format.h"
+#include "twin/core/device_fault.h"
+#include "twin/procedure/attempts.h"
+#include "twin/procedure/machine_journal.h"
+#include "twin/procedure/machine_watch.h"
+
+namespace twinbench::procedure {
+namespace {
+
+/// The plan counts in nanoseconds that are rounded; so much later is in time.
+constexpr Duration kInTime = std::chrono::microseconds(1);
+constexpr double kTraverseAtLeast_m_s = 1e-3;
+
+/// A run on a real bench keeps what it has at once; simulated readings come too fast to be waited for one by one.
+constexpr std::size_t kTogetherWatched = 32, kTogetherAlone = 256;
+
+}  // namespace
+
+MachineSequencer::MachineSequencer(MachineBench bench, const MachinePlan& plan, ReadingSink& sink,
+                                   const MachineOptions& options, const ProgressCallback& progress,
+                                   MachineRunState& state)
+    : bench_(bench), plan_(plan), sink_(sink), options_(options), progress_(progress), state_(state) {}
+
+std::vector<double> MachineSequencer::Where() {
+  std::vector<double> at;
+  for (const AxisState& axis : bench_.machine.State()) at.push_back(axis.encoder);
+  return at;
+}
+
+int MachineSequencer::From(int first, int end) const {
+  return bench_.simulation ? first : std::clamp(static_cast<int>(state_.kept.size()), first, end);
+}
+
+void MachineSequencer::Clear() {
+  bench_.fixture.Clear();
+  state_.mounted.reset();
+}
+
+void MachineSequencer::Mount(int setup, const std::string& what) {
+  bench_.fixture.Mount(setup, what);
+  state_.mounted = setup;
+  if (options_.log)
+    options_.log->AppendEvent(bench_.clock.Now(), "fixture", fmt::format("mounted set-up {}: {}", setup, what));
+}
+
+void MachineSequencer::Rest(int reading, Duration duration) {
+  if (reading == 0) return;
+  const Time until = plan()[static_cast<std::size_t>(reading) - 1].time + duration;
+  WaitFor(bench_, until - bench_.clock.Now(), options_);
+}
+
+void MachineSequencer::MoveTo(const std::vector<double>& to) {
+  HearOperator(options_);
+  RequireMayGo(bench_, to, options_);
+  const std::vector<double> from = Where();
+  double way_m = 0.0;
+  for (std::size_t k = 0; k < to.size(); ++k) way_m += axes()[k].is_rotary ? 0.0 : std::abs(to[k] - from[k]);
+  bench_.machine.StartMove(to, 0.0);
+  Watch(bench_, way_m / kTraverseAtLeast_m_s, options_);
+}
+
+double MachineSequencer::PathTime_s(const Arc& arc) {
+  const std::vector<double> at = Where();
+  const double radius_m = std::hypot(at[arc.axes[0]] - arc.centre_m[0], at[arc.axes[1]] - arc.centre_m[1]);
+  return std::abs(arc.sweep_rad) * radius_m / (arc.feed_m_s > 0.0 ? arc.feed_m_s : kTraverseAtLeast_m_s);
+}
+
+void MachineSequencer::Go(const Arc& arc) {
+  HearOperator(options_);
+  const double takes_s = PathTime_s(arc);
+  bench_.machine.StartArc(arc);
+  Watch(bench_, takes_s, options_);
+}
+
+void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
+  HearOperator(options_);
+  if (options_.log) options_.log->RequireRoom();
+  const double takes_s = PathTime_s(arc);
+  int next = first;
+  bench_.instruments.Arm(end - first);
+  bench_.machine.StartArc(arc);
+  Watch(bench_, takes_s, options_, [&] {
+    const LatchedSamples latched = bench_.instruments.Latched();
+    if (latched.overrun)
+      throw DeviceFault(FaultKind::kOverrun, "instruments", "their memory ran full; samples are lost");
+    for (const Reading& sample : latched.samples) {
+      if (next == end)
+        throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than there were triggers");
+      Keep(next++, sample);
+    }
+  });
+  if (next < end)
+    throw DeviceFault(
+        FaultKind::kGap, "instruments",
+        fmt::format("the path has ended and {} of {} triggers latched nothing", end - next, end - first));
+}
+
+void MachineSequencer::TakeAtRest(int reading, Duration dwell) {
+  if (options_.log) options_.log->RequireRoom();
+  WaitUntilDue(reading, dwell);
+  Keep(reading, bench_.instruments.Read());
+}
+
+void MachineSequencer::WaitUntilDue(int reading, Duration dwell) {
+  const Duration left = plan()[static_cast<std::size_t>(reading)].time - bench_.clock.Now();
+  WaitFor(bench_, left + kInTime >= dwell ? left : dwell, options_);
+}
+
+/// What was planned with what was shown.
+Reading MachineSequencer::Joined(const Reading& planned, const Reading& sample) const {
+  Reading joined = planned;
+  joined.time = sample.time;
+  joined.status = sample.status;
+  joined.temperature_degC = sample.temperature_degC;
+  Reading shown = sample;
+  for (const ReadingColumn& column : FormatOf(plan_.bench).columns) {
+    if (column.IsShown() && column.number && !column.print(sample).empty())
+      column.number(joined) = column.number(shown);
+  }
+  return joined;
+}
+
+void MachineSequencer::Keep(int number, const Reading& sample) {
+  Reading reading = Joined(plan()[static_cast<std::size_t>(number)], sample);
+  if (plan_.complete) plan_.complete(reading);
+  const double room_degC = reading.temperature_degC;
+  if (room_degC < options_.coldest_degC || room_degC > options_.hottest_degC)
+    throw DeviceFault(FaultKind::kImplausible, "thermometer",
+                      fmt::format("{:.4g} degC; no bench is measured in such a room", room_degC));
+  if (static_cast<std::size_t>(number) < state_.kept.size()) {
+    RequireSame(reading);
+    if (static_cast<std::size_t>(number) + 1 == state_.kept.size()) bench_.simulation->SetPaced(true);
+    return;
+  }
+  taken_.push_back(reading);
+  const bool is_last = number + 1 == static_cast<int>(plan().size());
+  if (taken_.size() >= Together() || is_last) Flush();
+  if (!is_last) HearOperator(options_);
+}
+
+std::size_t MachineSequencer::Together() const {
+  if (!options_.log) return kTogetherAlone;
+  return bench_.simulation ? kTogetherWatched : 1;
+}
+
+void MachineSequencer::Flush() {
+  if (taken_.empty()) return;
+  sink_.AppendAll(taken_);
+  state_.kept.insert(state_.kept.end(), taken_.begin(), taken_.end());
+  taken_.clear();
+  const Reading& last = state_.kept.back();
+  if (progress_)
+    progress_({static_cast<int>(state_.kept.size()), static_cast<int>(plan().size()), last.phase, last.time});
+}
+
+/// A simulation that shows something else is not the one that made the record.
+void MachineSequencer::RequireSame(const Reading& reading) const {
+  const Reading& before = state_.kept[static_cast<std::size_t>(reading.reading)];
+  for (const ReadingColumn& column : FormatOf(plan_.bench).columns) {
+    if (column.print(reading) == column.print(before)) continue;
+    throw InputError("record",
+                     fmt::format("reading {} has {} = {} now and {} in the record", reading.reading, column.name,
+                                 column.print(reading), column.print(before)),
+                     "the bench, scenario, seed and version that made the record");
+  }
+}
+
+namespace {
+
+/// How a resumed run finds a real bench: as the last reading left it.
+MachineRunState StateBehind(const MachineBench& bench, const MachineOptions& options) {
+  MachineRunState state{options.kept, {}};
+  if (!bench.simulation && !options.kept.empty()) state.mounted = options.kept.back().setup;
+  return state;
+}
+
+/// The time of a fault; where the clock is what has failed, of the last reading.
+Time TimeOf(MachineBench& bench, const MachineRunState& state) {
+  try {
+    return bench.clock.Now();
+  } catch (const BenchError&) {
+    return state.kept.empty() ? Time{} : state.kept.back().time;
+  }
+}
+
+/// A simulation starts again; what was taken before passes without taking any time.
+void StartAgain(MachineBench& bench, const MachineRunState& state) {
+  if (!bench.simulation) return;
+  bench.simulation->Restart();
+  bench.simulation->SetPaced(state.kept.empty());
+}
+
+}  // namespace
+
+void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay& way, ReadingSink& sink,
+                  const ProgressCallback& progress, const MachineOptions& options) {
+  MachineJournal journal(bench, options.log);
+  MachineRunState state = StateBehind(bench, options);
+  Attempts attempts(options.attempts);
+  for (bool anew = !state.kept.empty();; anew = true) {
+    MachineSequencer sequencer(journal.Bench(), plan, sink, options, progress, state);
+    try {
+      if (anew) StartAgain(bench, state);
+      if (bench.simulation) state.mounted.reset();
+      way(sequencer);
+      return sequencer.Flush();
+    } catch (const DeviceFault& fault) {
+      StopMachine(bench);
+      sequencer.Flush();
+      if (options.log) options.log->ForgetCalls();
+      const int next = static_cast<int>(state.kept.size());
+      NoteFailure(options.log, next, TimeOf(bench, state), fault);
+      if (!options.log || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(next)) throw;
+    } catch (...) {  // whatever it is, nothing goes on moving
+      StopMachine(bench);
+      throw;
+    }
+  }
+}
+
+}  // namespace twinbench::procedure

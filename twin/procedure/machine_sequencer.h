@@ -1,0 +1,90 @@
+#pragma once
+
+#include <optional>
+
+#include "twin/procedure/machine_options.h"
+
+namespace twinbench::procedure {
+
+/// What a run is to take: every reading with its commanded coordinates and the time at which it is due.
+struct MachinePlan {
+  std::vector<Reading> readings;
+  std::string bench;                            // whose columns they are
+  std::function<void(Reading&)> complete = {};  // a reading that has just been taken; none: it is whole
+};
+
+/// How far a run has come, over all attempts.
+struct MachineRunState {
+  std::vector<Reading> kept;
+  std::optional<int> mounted;  // set-up, on a real bench: a mounting outlives the fault that came after it
+};
+
+/// The steps that all runs of machines share: mount, go somewhere, go round, take readings.
+///
+/// On a simulated bench every attempt goes the whole way from the start; readings that are kept already must come
+/// out the same and are not kept again. A real bench goes on with the first reading that is missing.
+class MachineSequencer {
+ public:
+  MachineSequencer(MachineBench bench, const MachinePlan& plan, ReadingSink& sink, const MachineOptions& options,
+                   const ProgressCallback& progress, MachineRunState& state);
+
+  const std::vector<Reading>& plan() const { return plan_.readings; }
+  const std::vector<MachineAxis>& axes() const { return bench_.machine.Axes(); }
+  /// Where the axes stand, by their encoders.
+  std::vector<double> Where();
+
+  /// The first reading of [first, end) that is to be gone for; `end` if there is none.
+  int From(int first, int end) const;
+  /// Whether the set-up has to be mounted first.
+  bool NeedsMounting(int setup) const { return state_.mounted != setup; }
+  /// Whether anything stands in the way that was mounted for another set-up.
+  bool HasMounted() const { return state_.mounted.has_value(); }
+  /// Takes off what is mounted.
+  void Clear();
+  void Mount(int setup, const std::string& what);
+  /// Waits until the bench has rested so long since the last reading that was due before `reading`.
+  void Rest(int reading, Duration duration);
+
+  /// Goes straight to a place, as fast as the machine goes.
+  void MoveTo(const std::vector<double>& to);
+  /// Goes round without taking anything.
+  void Go(const Arc& arc);
+  /// Goes round; the arc's triggers take the readings [first, end).
+  void Sweep(const Arc& arc, int first, int end);
+  /// Takes a reading when it is due, and so long behind the end of the last move that nothing settles any more.
+  void TakeAtRest(int reading, Duration dwell);
+
+  /// Keeps what has been taken. Called by itself every now and then; to be called at the end and behind a fault.
+  void Flush();
+
+ private:
+  void WaitUntilDue(int reading, Duration dwell);
+  void Keep(int reading, const Reading& sample);
+  Reading Joined(const Reading& planned, const Reading& sample) const;
+  void RequireSame(const Reading& reading) const;
+  double PathTime_s(const Arc& arc);
+  std::size_t Together() const;
+
+  MachineBench bench_;
+  const MachinePlan& plan_;
+  ReadingSink& sink_;
+  const MachineOptions& options_;
+  const ProgressCallback& progress_;
+  MachineRunState& state_;
+  std::vector<Reading> taken_;  // not yet kept
+};
+
+/// The way of one bench through its plan.
+using MachineWay = std::function<void(MachineSequencer&)>;
+
+/// Carries out a plan on any such bench: the twin or hardware. Every reading goes to `sink`, those of a sweep some
+/// at a time.
+///
+/// A fault of a device costs an attempt: the machine is stopped, what was taken is kept, and the way to the next
+/// reading is gone again. Stalls, limits, refusals and the operator end the run at once; it can be resumed.
+/// @throws DeviceFault when no attempt is left or the fault is none to try again; the machine was told to stop.
+///         InputError if a simulated bench does not make the readings again that are kept.
+void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay& way, ReadingSink& sink,
+                  const ProgressCallback& progress, const MachineOptions& options);
+
+}  // namespace twinbench::procedure

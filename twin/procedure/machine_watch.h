@@ -1,0 +1,36 @@
+#pragma once
+
+#include "twin/procedure/machine_options.h"
+
+namespace twinbench::procedure {
+
+/// Whether a machine stands, as its controller says.
+struct Standstill {
+  bool is_sure = false;
+  std::string why_not;  // which axis moves, or why nobody knows
+};
+
+/// Tells all axes to stop and asks whether they do: the answer is the controller's, read back within some seconds.
+/// Never throws what the bench throws.
+Standstill StopMachine(MachineBench& bench);
+
+/// @throws DeviceFault kStopped if the operator said so.
+void HearOperator(const MachineOptions& options);
+
+/// Lets bench time pass in slices, so that an operator who says stop is heard.
+void WaitFor(MachineBench& bench, Duration duration, const MachineOptions& options);
+
+/// Whatever speaks against a move to a place, before it begins.
+/// @throws DeviceFault kLimit for a place outside the soft limits or an axis on a limit switch that would be driven
+///         further; kRestarted for one that has lost its origin; kRefused for one that reports a fault.
+void RequireMayGo(MachineBench& bench, const std::vector<double>& to, const MachineOptions& options);
+
+/// Returns when the path that was begun has ended with every axis in position.
+/// @param takes_s   What the path should take.
+/// @param look      Called at least every second of bench time on the way.
+/// @throws DeviceFault kStalled, kRestarted, kRefused, kLimit (a switch), kNotInPosition (too late, or not there);
+///         kStopped.
+void Watch(MachineBench& bench, double takes_s, const MachineOptions& options,
+           const std::function<void()>& look = {});
+
+}  // namespace twinbench::procedure

@@ -1,0 +1,233 @@
+#include "twin/sim/driven_machine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "twin/core/device_fault.h"
+#include "twin/sim/driven_path.h"
+
+namespace twinbench::sim {
+namespace {
+
+constexpr double kTraverse_m_s = 0.2, kTraverse_rad_s = 0.5;
+constexpr Duration kHoming = std::chrono::seconds(10);
+
+Duration MoveTime(const std::vector<double>& from, const std::vector<double>& to, double feed_m_s,
+                  const std::vector<MachineAxis>& axes) {
+  double square_m2 = 0.0, turn_rad = 0.0;
+  for (std::size_t k = 0; k < to.size(); ++k) {
+    const double way = to[k] - from[k];
+    if (axes[k].is_rotary) {
+      turn_rad = std::max(turn_rad, std::abs(way));
+    } else {
+      square_m2 += way * way;
+    }
+  }
+  const double speed_m_s = feed_m_s > 0.0 ? feed_m_s : kTraverse_m_s;
+  return FromSeconds(std::max(std::sqrt(square_m2) / speed_m_s, turn_rad / kTraverse_rad_s));
+}
+
+}  // namespace
+
+/// A trigger that will come.
+struct DrivenTrigger {
+  Time time{};
+  DrivenInstant at;
+};
+
+struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFixture, Simulation {
+  explicit Parts(std::unique_ptr<DrivenPhysics> its_physics)
+      : physics(std::move(its_physics)), travel(physics->Travel()) {
+    Begin();
+  }
+
+  // Clock
+  Time Now() const override { return now; }
+  void Wait(Duration duration) override { AdvanceTo(now + duration); }
+
+  // Controller
+  const std::vector<MachineAxis>& Axes() const override { return physics->Axes(); }
+  std::vector<AxisLimits> Travel() override { return travel; }
+
+  void StartMove(const std::vector<double>& to, double its_feed_m_s) override {
+    Require(to.size() == Axes().size(), "a move has one coordinate an axis");
+    RequireWithinTravel(to);
+    BeginPath(DrivenPath::Line(path.At(now), to, now, MoveTime(path.At(now), to, its_feed_m_s, Axes())),
+              its_feed_m_s, 1);
+  }
+
+  void StartArc(const Arc& arc) override {
+    const std::vector<double> from = path.At(now);
+    RequireArc(arc, from);
+    const double radius_m = std::hypot(from[arc.axes[0]] - arc.centre_m[0], from[arc.axes[1]] - arc.centre_m[1]);
+    BeginPath(DrivenPath::Circular(from, arc, {{now, 1.0}}), arc.feed_m_s, arc.sweep_rad < 0.0 ? -1 : 1);
+    const std::vector<PathKnot> knots =
+        PlaceTriggers(arc, radius_m / (arc.feed_m_s > 0.0 ? arc.feed_m_s : kTraverse_m_s));
+    path = DrivenPath::Circular(from, arc, knots);
+  }
+
+  bool Settles(Duration within) override {
+    AdvanceTo(std::min(now + within, std::max(now, path.End())));
+    return now >= path.End();
+  }
+
+  std::vector<AxisState> State() override {
+    const std::vector<double> at = path.At(now);
+    const bool moves = now < path.End();
+    std::vector<AxisState> states(at.size());
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      states[k].commanded = path.to()[k];
+      states[k].encoder = at[k];
+      states[k].moving = moves;
+      states[k].in_position = !moves;
+    }
+    return states;
+  }
+
+  void Stop() override {
+    triggers.clear();
+    path = DrivenPath::Resting(path.At(now), now);
+  }
+
+  void Home() override {
+    Stop();
+    AdvanceTo(now + kHoming);
+  }
+
+  // Instruments
+  Reading Read() override {
+    return Show({next_sample, now, setup, direction, now < path.End() ? feed_m_s : 0.0, path.At(now)});
+  }
+  void Arm(int samples) override {
+    latched = {};
+    armed = samples;
+  }
+  LatchedSamples Latched() override { return std::exchange(latched, {}); }
+
+  // Fixture
+  void Clear() override {}
+  void Mount(int its_setup, const std::string&) override {
+    if (its_setup < 0 || its_setup >= physics->Setups())
+      throw DeviceFault(FaultKind::kRefused, "fixture",
+                        fmt::format("there are {} set-ups, from 0 on; not {}", physics->Setups(), its_setup));
+    setup = its_setup;
+  }
+
+  // Simulation
+  void Restart() override {
+    physics->Restart();
+    Begin();
+  }
+  void SetPaced(bool) override {}  // it never is
+
+  void Begin() {
+    now = Time{};
+    setup = next_sample = armed = 0;
+    direction = 1;
+    feed_m_s = 0.0;
+    latched = {};
+    triggers.clear();
+    path = DrivenPath::Resting(physics->Start(), now);
+  }
+
+  void BeginPath(DrivenPath next, double its_feed_m_s, int its_direction) {
+    triggers.clear();
+    path = std::move(next);
+    feed_m_s = its_feed_m_s;
+    direction = its_direction;
+  }
+
+  Reading Show(const DrivenInstant& at) {
+    Reading shown = physics->Show(at);
+    shown.time = at.time;
+    ++next_sample;
+    return shown;
+  }
+
+  void AdvanceTo(Time to) {
+    for (; !triggers.empty() && triggers.front().time <= to; triggers.pop_front()) Latch(triggers.front());
+    now = std::max(now, to);
+  }
+
+  void Latch(DrivenTrigger& trigger) {
+    now = trigger.time;
+    if (armed == 0) return;
+    --armed;
+    trigger.at.sample = next_sample;
+    trigger.at.time = trigger.time;
+    latched.samples.push_back(Show(trigger.at));
+  }
+
+  /// Puts the arc's triggers where and when they come. @return the times of the whole way.
+  /// @param s_per_rad  Of the arc.
+  std::vector<PathKnot> PlaceTriggers(const Arc& arc, double s_per_rad) {
+    const double length_rad = std::abs(arc.sweep_rad);
+    std::vector<PathKnot> knots = {{now, 0.0}};
+    double behind_rad = 0.0;  // the last knot
+    for (int k = 0; k < arc.triggers; ++k) {
+      const double at_rad = arc.first_trigger_rad + k * arc.trigger_step_rad;
+      const double share = at_rad / length_rad;
+      DrivenTrigger trigger{now, {next_sample + k, now, setup, direction, arc.feed_m_s, path.AtShare(share)}};
+      const Time first = knots.size() > 1 ? knots[1].time : now;
+      const double from_first_rad = k > 0 ? k * arc.trigger_step_rad : at_rad;
+      trigger.time = first + FromSeconds(from_first_rad * s_per_rad);
+      const auto planned = physics->Planned(trigger.at);
+      if (planned && *planned >= knots.back().time) trigger.time = *planned;
+      knots.push_back({trigger.time, share});
+      triggers.push_back(std::move(trigger));
+      behind_rad = at_rad;
+    }
+    knots.push_back({knots.back().time + FromSeconds((length_rad - behind_rad) * s_per_rad), 1.0});
+    return knots;
+  }
+
+  void RequireArc(const Arc& arc, const std::vector<double>& from) const {
+    const auto [i, j] = arc.axes;
+    Require(i < from.size() && j < from.size() && i != j, "an arc is of two axes of the machine");
+    const double radius_m = std::hypot(from[i] - arc.centre_m[0], from[j] - arc.centre_m[1]);
+    const double last_rad = arc.first_trigger_rad + std::max(0, arc.triggers - 1) * arc.trigger_step_rad;
+    const bool is_one = radius_m > 0.0 && arc.feed_m_s >= 0.0 && arc.sweep_rad != 0.0 && arc.triggers >= 0 &&
+                        arc.first_trigger_rad >= 0.0 && (arc.triggers < 2 || arc.trigger_step_rad > 0.0) &&
+                        (arc.triggers == 0 || last_rad <= std::abs(arc.sweep_rad));
+    if (!is_one) throw DeviceFault(FaultKind::kRefused, "machine", "this is no arc, or its triggers lie beside it");
+    for (std::size_t side = 0; side < 2; ++side) {  // the whole circle must lie within the travel
+      std::vector<double> at = from;
+      for (const double end : {-radius_m, radius_m}) {
+        at[arc.axes[side]] = arc.centre_m[side] + end;
+        RequireWithinTravel(at);
+      }
+    }
+  }
+
+  void RequireWithinTravel(const std::vector<double>& to) const {
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      if (to[k] >= travel[k].lower && to[k] <= travel[k].upper) continue;
+      const MachineAxis& axis = Axes()[k];
+      throw DeviceFault(FaultKind::kLimit, axis.name,
+                        fmt::format("{:.6g} {} lies outside its travel from {:.6g} to {:.6g}", to[k] / axis.to_SI(),
+                                    axis.unit(), travel[k].lower / axis.to_SI(), travel[k].upper / axis.to_SI()));
+    }
+  }
+
+  std::unique_ptr<DrivenPhysics> physics;
+  std::vector<AxisLimits> travel;
+  Time now{};
+  int setup = 0, next_sample = 0, armed = 0, direction = 1;
+  double feed_m_s = 0.0;
+  DrivenPath path;
+  std::deque<DrivenTrigger> triggers;  // still to come
+  LatchedSamples latched;
+};
+
+DrivenMachine::DrivenMachine(std::unique_ptr<DrivenPhysics> physics)
+    : parts_(std::make_unique<Parts>(std::move(physics))) {}
+DrivenMachine::~DrivenMachine() = default;
+
+MachineBench DrivenMachine::Devices() {
+  return {*parts_, *parts_, *parts_, *parts_, parts_.get()};
+}
+
+}  // namespace twinbench::sim
