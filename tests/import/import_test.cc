@@ -118,6 +118,7 @@ TEST_F(Importing, OfAScopeExportKeepsTheClockOfEveryGroup) {
 TEST_F(Importing, JoinsChannelsThatAreStampedOneByOne) {
   const auto samples = test::DriveAxis({.speed_deg_s = 10.0, .interval_s = 0.1, .rest_s = 3.0}, NoError);
   const Imported imported = Take(test::CamonitorLog(samples, 0.04), "camonitor");
+  EXPECT_NEAR(imported.readings[0].reference_rad / units::deg, 1.4, 0.01) << "not the value of last week";
   // The device is stamped 0.04 s after it was read: 0.4 deg at this speed, forward and backward.
   EXPECT_NEAR(Worst_deg(imported.readings), 0.4, 0.02);
   EXPECT_THAT(imported.story, HasSubstr("is taken to the clock of"));
@@ -128,7 +129,7 @@ TEST_F(Importing, JoinsChannelsThatAreStampedOneByOne) {
 TEST_F(Importing, JoinsTwoFilesWithClocksOfTheirOwn) {
   std::string laser = "time_s,laser_deg\n", device = "stamp_ms\tencoder_deg\n";
   for (const auto& s : test::DriveAxis({.speed_deg_s = 10.0, .interval_s = 0.05}, NoError))
-    laser += fmt::format("{:.3f},{:.5f}\n", s.time_s, s.angle_deg);
+    laser += fmt::format("{:.3f},{:.5f}\n", s.time_s, test::OnceRound(s.angle_deg));
   for (const auto& s : test::DriveAxis({.speed_deg_s = 10.0, .interval_s = 0.08}, NoError))
     device += fmt::format("{:.0f}\t{:.5f}\n", 1000.0 * s.time_s, s.shown_deg);
   const Imported imported = TakeFiles({File("laser.csv", laser), File("device.txt", device)});

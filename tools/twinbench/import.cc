@@ -114,7 +114,7 @@ void Write(const Taken& taken, const ImportOptions& options) {
   {
     const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.files.front(),
                                                         taken.scenario.seed, "", taken.scenario.bench});
-    for (const Reading& reading : taken.readings) record->Append(reading, {});
+    record->AppendAll(taken.readings);
     record->Finish();
   }
   WriteFileAtOnce(folder.scenario(), WriteScenario(taken.scenario));

@@ -30,7 +30,10 @@ Line Understand(std::string_view line, std::vector<std::string_view>& fields, Ch
   if (fields.empty()) return Line::kOther;
   if (line.find("***") != std::string_view::npos) return Line::kMessage;
   if (fields.size() < 4) return Line::kOther;
-  const auto day = ParseInstant(fields[1]), time = ParseInstant(fields[2]);
+  // The client's own stamps (-t c) stand in brackets.
+  const std::string_view date = fields[1].starts_with('(') ? fields[1].substr(1) : fields[1];
+  const std::string_view clock = fields[2].ends_with(')') ? fields[2].substr(0, fields[2].size() - 1) : fields[2];
+  const auto day = ParseInstant(date), time = ParseInstant(clock);
   const auto value = FieldNumber(fields[3], false);
   if (!day || !day->has_date || !time || !value) return Line::kOther;
   if (IsArray(fields, *value)) return Line::kArray;
@@ -77,8 +80,13 @@ void MoveFirstValues(Recording& recording) {
   int moved = 0;
   for (Track& track : recording.tracks) {
     if (track.time_s.front() >= start_s - 1.0) continue;
-    track.time_s.front() = start_s;
     ++moved;
+    if (track.time_s.size() > 1 && track.time_s[1] <= start_s) {  // it was told anew at once
+      track.time_s.erase(track.time_s.begin());
+      track.columns[0].value.erase(track.columns[0].value.begin());
+    } else {
+      track.time_s.front() = start_s;
+    }
   }
   if (moved > 0)
     recording.remarks.push_back(

@@ -297,12 +297,8 @@ std::string InUnit(double rad, bool linear, double turn_m) {
 std::string StoryOf(const std::vector<Recording>& recordings, const Joined& joined, const Tally& tally,
                     const std::vector<std::string>& guessed, const Map& map, const Imported& imported) {
   std::string text;
-  for (const Recording& recording : recordings) {
-    text += fmt::format("{}: {}\n", recording.file, recording.layout);
-    for (const LeftOut& left_out : recording.left_out)
-      text += fmt::format("left out: {} {}\n", left_out.count, left_out.why);
-    for (const std::string& remark : recording.remarks) text += "note: " + remark + "\n";
-  }
+  for (const Recording& recording : recordings)
+    text += fmt::format("{}: {}\n", recording.file, recording.layout) + RemarksOn(recording);
   for (const MappedColumn& column : map.columns) {
     const std::string& unit = joined.unit.at(column.column);
     text += fmt::format("  {} <- {}{}\n", BaseOf(column.column), column.expression,
@@ -405,6 +401,7 @@ std::string Look(const std::vector<std::string>& files, const Map& map) {
   try {
     return text + "\nIt would be imported like this:\n" + MakeReadings(recordings, map).story;
   } catch (const InputError& needs) {
+    for (const Recording& recording : recordings) text += RemarksOn(recording);
     return text + "\nIt cannot be imported yet:\n" + needs.what() + "\n";
   }
 }

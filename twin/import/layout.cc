@@ -19,7 +19,8 @@ bool IsChange(std::string_view line) {
   std::vector<std::string_view> fields;
   Split(line, ' ', fields);
   if (fields.size() < 4 || FieldNumber(fields[0], false)) return false;
-  return LooksLikeDate(fields[1]) && fields[2].find(':') != std::string_view::npos && ParseInstant(fields[2]);
+  const std::string_view date = fields[1].starts_with('(') ? fields[1].substr(1) : fields[1];
+  return LooksLikeDate(date) && fields[2].find(':') != std::string_view::npos;
 }
 
 bool Has(const std::vector<std::string_view>& lines, std::string_view what) {

@@ -95,9 +95,14 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
 std::string Describe(const Recording& recording) {
   std::string text = fmt::format("{}: {}\n", recording.file, recording.layout);
   for (const Track& track : recording.tracks) text += Describe(track);
+  return text;
+}
+
+std::string RemarksOn(const Recording& recording) {
+  std::string text;
   for (const LeftOut& left_out : recording.left_out)
-    text += fmt::format("  left out: {} {}\n", left_out.count, left_out.why);
-  for (const std::string& remark : recording.remarks) text += "  note: " + remark + "\n";
+    text += fmt::format("left out: {} {}\n", left_out.count, left_out.why);
+  for (const std::string& remark : recording.remarks) text += "note: " + remark + "\n";
   return text;
 }
 

@@ -14,4 +14,7 @@ Recording ReadRecording(const std::string& path, const Layout& layout, const Clo
 /// Says what a text gives away itself: columns with units, clock, rate, gaps; a few lines.
 std::string Describe(const Recording& recording);
 
+/// What was left out of the file and what was taken for granted, a line each.
+std::string RemarksOn(const Recording& recording);
+
 }  // namespace twinbench::imports
