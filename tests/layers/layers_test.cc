@@ -30,7 +30,7 @@ constexpr const char* kFactories = "twin/benches (twin/factory.h)";
 
 /// Rooms; a longer name wins over its parent ("twin/core" over "twin").
 const std::vector<std::string> kRooms = {
-    "optics",        "mechanics",     "twin/core", "twin/model",    "twin/sim",    "twin/procedure",
+    "optics",        "mechanics",     "twin/core", "twin/import", "twin/plausible", "twin/model",    "twin/sim",    "twin/procedure",
     "twin/separate", "twin/diagnose", "twin/plan", "twin/campaign", "twin/report", "twin/benches",
     kFormats,        kProcedures,     kEstimators, kTwins,          kFactories,    "hw_bridge"};
 
@@ -39,6 +39,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"optics", {}},
     {"mechanics", {}},
     {"twin/core", {}},
+    {"twin/import", {"twin/core"}},
+    {"twin/plausible", {"twin/core"}},
     {"twin/model", {"twin/core"}},
     {"twin/sim", {"twin/core", "twin/model", "optics", "mechanics"}},
     {"twin/procedure", {"twin/core"}},

@@ -16,6 +16,7 @@ std::vector<OwnKey> EncoderChanges() {
           Change("device.noise_deg", "0.005"),
           Change("device.noise_known", "true"),
           Change("device.resolution_deg", "0.005"),
+          Change("device.turn_mm", "5.0"),
           Change("device.lines_per_turn", "30"),
           Change("device.teeth", "22"),
           Change("device.signal_periods", "3"),

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
-#include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/follow.h"
@@ -22,6 +22,7 @@
 #include "twin/diagnose/json.h"
 #include "twin/diagnose/screen/screen.h"
 #include "twin/diagnose/words.h"
+#include "twin/plausible/check.h"
 
 namespace twinbench::tools {
 namespace {
@@ -123,6 +124,9 @@ void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const d
 void DiagnoseRun(const DiagnoseOptions& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   CheckExcluded(options.excluded, run.scenario.bench);
+  const std::vector<plausible::Finding> findings = plausible::Check(run.readings, run.scenario);
+  fmt::print(options.json == "-" ? stderr : stdout, "{}", plausible::InLines(findings));
+  plausible::RefuseFatal(findings, options.source);
   diagnose::DiagnoseOptions how;
   how.model = EstimatorNamed(options.model);
   how.excluded = options.excluded;

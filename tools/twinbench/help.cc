@@ -5,6 +5,7 @@
 #include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
 #include "twin/core/signal_effect.h"
+#include "twin/import/map.h"
 
 namespace twinbench::tools {
 namespace {
@@ -64,16 +65,20 @@ void PrintBenchKeys() {
 void PrintHelp(const std::string& topic) {
   if (topic == "effects") return PrintAllEffects();
   if (topic == "bench") return PrintBenchKeys();
+  if (topic == "map") {
+    fmt::print("{}", imports::DescribeMaps());
+    return;
+  }
   fmt::print("{}", DescribeScenarioKeys());
 }
 
 }  // namespace
 
 void AddHelp(CLI::App& app) {
-  auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects or bench files");
+  auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects, bench files or maps");
   auto topic = std::make_shared<std::string>("scenario");
-  command->add_option("topic", *topic, "scenario, effects or bench")
-      ->check(CLI::IsMember({"scenario", "effects", "bench"}));
+  command->add_option("topic", *topic, "scenario, effects, bench or map")
+      ->check(CLI::IsMember({"scenario", "effects", "bench", "map"}));
   command->callback([topic] { PrintHelp(*topic); });
 }
 

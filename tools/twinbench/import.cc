@@ -1,45 +1,153 @@
+#include "twin/import/import.h"
+
 #include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
+#include "twin/core/bench_format.h"
+#include "twin/core/csv.h"
+#include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
+#include "twin/plausible/check.h"
 #include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 namespace {
 
 struct ImportOptions {
-  std::string readings, scenario, folder;
-  std::vector<std::string> overrides;
+  std::vector<std::string> files;
+  std::string scenario, folder, map;
+  std::vector<std::string> overrides, columns;
+  int most_readings = 0;
+  bool look = false;
 };
 
-void Import(const ImportOptions& options) {
-  const Scenario scenario = LoadScenario(options.scenario, options.overrides);
-  const std::vector<Reading> readings = ReadReadingsCsv(options.readings, scenario.bench);
+/// Readings, with the scenario that describes their bench.
+struct Taken {
+  Scenario scenario;
+  std::vector<Reading> readings;
+  std::string story;  // how they were understood; empty of a readings.csv
+};
+
+/// The bench of a file whose first line has every column that readings.csv must have; empty if it is no such file.
+std::string BenchOfReadingsCsv(const std::string& path) {
+  std::ifstream in(path);
+  std::string line;
+  while (std::getline(in, line) && (line.empty() || line[0] == '#')) {
+  }
+  std::istringstream header(line);
+  CsvTable table;
+  try {
+    table = ParseCsv(header, path);
+  } catch (const InputError&) {
+    return "";  // whatever it is, it has no such header
+  }
+  const auto has = [&table](const ReadingColumn& column) { return table.Column(column.name).has_value(); };
+  const BenchFormat* bench = FormatByColumns(has);
+  const bool all = bench && std::ranges::all_of(bench->columns, [&has](const ReadingColumn& column) {
+                     return !column.MustBeThere() || has(column);
+                   });
+  return all ? bench->name : "";
+}
+
+/// A file that is taken as it is: one that comes with its scenario, or that has every column a bench wants.
+/// @return its bench; empty if it is to be understood first.
+std::string TakenAsItIs(const ImportOptions& options) {
+  if (options.files.size() != 1 || !options.map.empty() || !options.columns.empty()) return "";
+  if (!options.scenario.empty()) return BenchOfScenarioFile(options.scenario);
+  return BenchOfReadingsCsv(options.files.front());
+}
+
+Scenario UsualScenario(const std::string& bench, const ImportOptions& options,
+                       const std::vector<std::string>& set) {
+  const std::string title = "imported from " + std::filesystem::path(options.files.front()).filename().string();
+  std::string quoted;
+  for (const char c : title) quoted += c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ' ? '_' : c;
+  return ParseScenario(fmt::format("bench = \"{}\"\ntitle = \"{}\"\n", bench, quoted), "the imported run", "", set);
+}
+
+/// A readings.csv as formats.md has it, read to the bit.
+Taken TakeReadings(const ImportOptions& options, const std::string& bench) {
+  Taken taken;
+  taken.scenario = options.scenario.empty() ? UsualScenario(bench, options, options.overrides)
+                                            : LoadScenario(options.scenario, options.overrides);
+  taken.readings = ReadReadingsCsv(options.files.front(), taken.scenario.bench);
+  return taken;
+}
+
+imports::Map MapOf(const ImportOptions& options) {
+  imports::Map map = imports::LoadMap(options.map);
+  if (map.bench.empty() && !options.scenario.empty()) map.bench = BenchOfScenarioFile(options.scenario);
+  for (const std::string& column : options.columns) imports::SetColumn(column, map);
+  if (options.most_readings > 0) map.average.most_readings = options.most_readings;
+  return map;
+}
+
+/// The bench's usual scenario with what the recording says about the course, or the one that is given.
+Scenario ScenarioOf(const ImportOptions& options, const imports::Imported& imported) {
+  std::vector<std::string> set = imported.set;
+  set.insert(set.end(), options.overrides.begin(), options.overrides.end());
+  if (!options.scenario.empty()) return LoadScenario(options.scenario, set);
+  return UsualScenario(imported.bench, options, set);
+}
+
+Taken TakeAnything(const ImportOptions& options) {
+  imports::Imported imported = imports::Import(options.files, MapOf(options));
+  return {ScenarioOf(options, imported), std::move(imported.readings), std::move(imported.story)};
+}
+
+void Write(const Taken& taken, const ImportOptions& options) {
+  const std::vector<plausible::Finding> findings = plausible::Check(taken.readings, taken.scenario);
+  fmt::print("{}{}", taken.story, plausible::InLines(findings));
+  plausible::RefuseFatal(findings, options.files.front());
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
-  const report::Evaluation evaluation = BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous);
+  const report::Evaluation evaluation =
+      BenchOf(taken.scenario).evaluate(taken.scenario, taken.readings, Estimator::kRigorous);
   const RunFolder folder{options.folder};
   {
-    const auto record = RunRecord::Create(
-        folder.path, {TWINBENCH_VERSION, "import: " + options.readings, scenario.seed, "", scenario.bench});
-    for (const Reading& reading : readings) record->Append(reading, {});
+    const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.files.front(),
+                                                        taken.scenario.seed, "", taken.scenario.bench});
+    record->AppendAll(taken.readings);
     record->Finish();
   }
-  WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
+  WriteFileAtOnce(folder.scenario(), WriteScenario(taken.scenario));
   WriteJson(folder.results(), evaluation.results);
+  if (!taken.story.empty()) WriteFileAtOnce(folder.path + "/import.txt", taken.story);
   fmt::print("{}", evaluation.summary);
+}
+
+void Import(const ImportOptions& options) {
+  if (options.look) {
+    fmt::print("{}", imports::Look(options.files, MapOf(options)));
+    return;
+  }
+  if (options.folder.empty())
+    throw InputError("-o", "it is not said where the run goes",
+                     "-o FOLDER, or --look to see what would be imported");
+  const std::string bench = TakenAsItIs(options);
+  Write(bench.empty() ? TakeAnything(options) : TakeReadings(options, bench), options);
 }
 
 }  // namespace
 
 void AddImport(CLI::App& app) {
-  auto* command = app.add_subcommand("import", "Make a run folder from anybody's readings.csv");
+  auto* command = app.add_subcommand("import", "Make a run folder from anybody's recording or readings.csv");
   auto options = std::make_shared<ImportOptions>();
-  command->add_option("readings", options->readings, "readings.csv")->required();
-  command->add_option("--scenario", options->scenario, "the bench that made them")->required();
-  command->add_option("-o,--output", options->folder, "folder of the new run")->required();
+  command->add_option("files", options->files, "readings.csv, or recordings of any layout")->required();
+  command->add_option("--scenario", options->scenario, "the bench that made them; left out: its usual one");
+  command->add_option("-o,--output", options->folder, "folder of the new run");
+  command->add_flag("--look", options->look, "say what is understood and what is needed, write nothing");
+  command->add_option("--map", options->map, "ready map or TOML file that says what the files do not (help map)");
+  command->add_option("--column", options->columns, "one quantity: reference_deg='Axis 1.ActPos'")
+      ->allow_extra_args(false);
+  command->add_option("--most-readings", options->most_readings, "longer recordings are averaged in blocks");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
   command->callback([options] { Import(*options); });

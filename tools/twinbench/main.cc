@@ -32,6 +32,7 @@ constexpr const char* kExamples =
     "  twinbench help scenario     every key of a scenario file with unit, default and bounds\n"
     "  twinbench help effects      every error that can be hidden in the bench\n"
     "  twinbench help bench        every key of a bench file\n"
+    "  twinbench help map          every key of a map for importing recordings, and the ready maps\n"
     "\n"
     "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong.";
 

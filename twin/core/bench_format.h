@@ -36,6 +36,21 @@ struct DesiredColumn {
   bool calibration_only = false;  // it counts in that phase only
 };
 
+/// How the axis of an imported recording was driven.
+struct ImportedCourse {
+  bool stops = true;    // else in motion
+  double turns = 0.0;   // from its lowest to its highest angle
+  double turn_m = 0.0;  // a linear axis: the way that counts as a turn; 0: an angle
+};
+
+/// The two columns that a bench compares, of which the second should follow the first one to one: what an import
+/// needs to know of a bench that reads anybody's recordings.
+struct ComparedColumns {
+  std::string reference, shown, velocity;
+  /// Keys of a scenario, as --set has them, for such a recording.
+  std::vector<std::string> (*scenario_of)(const ImportedCourse&) = nullptr;
+};
+
 struct BenchFormat {
   std::string name;                                                  // `bench` of its scenarios
   std::string title;                                                 // one line
@@ -47,6 +62,9 @@ struct BenchFormat {
   std::vector<ReadingColumn> columns;  // of readings.csv, in the order of writing
   void (*agree_on_signs)(std::vector<Reading>&) = nullptr;  // of a file that was read; null: signs are fixed
   std::vector<DesiredColumn> desired;
+  std::optional<ComparedColumns> compared;
+  /// The largest size that a converter can give in a column [SI]; 0 where none is known. Null: of no column.
+  double (*range_of)(const Scenario&, const std::string& column) = nullptr;
   std::string (*smallest_addition)(int setups) = nullptr;  // what would give a run of that many some redundancy
   std::vector<EffectEntry> effects;
   std::vector<std::string> channels;  // to which an [[empirical]] signal can be added

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/format.h"
@@ -22,6 +25,17 @@ std::vector<DesiredColumn> Desired() {
            "latency is judged by speeds from the reference's own angles and times, and at stops not at all"},
           {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
            "a drift cannot be tied to the temperature"}};
+}
+
+ComparedColumns Compared() {
+  return {"reference_deg", "measured_deg", "velocity_deg_s", [](const ImportedCourse& course) {
+            std::vector<std::string> set = {
+                fmt::format("encoder_procedure.kind={}", course.stops ? "stops" : "sweep"),
+                fmt::format("encoder_procedure.turns={:.6g}", std::clamp(course.turns, 1e-3, 1000.0))};
+            if (course.turn_m > 0.0)
+              set.push_back(fmt::format("device.turn_mm={:.17g}", course.turn_m / units::mm));
+            return set;
+          }};
 }
 
 std::string Addition(int /*setups*/) {

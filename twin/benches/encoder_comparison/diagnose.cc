@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
@@ -6,6 +9,21 @@
 #include "twin/diagnose/conclusion.h"
 
 namespace twinbench::benches::encoder {
+
+namespace {
+
+/// Sizes of a linear axis are told as lengths; what a cause's wave or way is called stays.
+void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
+  const auto tell = [&unit](diagnose::ParameterEstimate& p) {
+    if (p.unit != "deg" || p.name == "phase" || p.name == "zero") return;
+    p.unit = unit.name;
+    p.to_SI = unit.to_SI;
+  };
+  for (diagnose::Cause& cause : diagnosis.causes) std::ranges::for_each(cause.parameters, tell);
+  for (diagnose::Detectable& seen : diagnosis.detectable) tell(seen.smallest);
+}
+
+}  // namespace
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
@@ -20,6 +38,8 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
   diagnose::DiagnosisRun result = diagnose::Conclude(encoder.run, analysis, {}, words);
   result.diagnosis.left_out = encoder.left_out;
   result.diagnosis.harmonics = diagnose::encoder::HarmonicTable(encoder, analysis.noise);
+  const DeviceSettings& device = EncoderOf(scenario).device;
+  if (device.turn_m > 0.0) TellLengths(CoarseUnit(device), result.diagnosis);
   return result;
 }
 

@@ -16,6 +16,7 @@ const BenchFormat& Format() {
     f.points = {"angle"};
     f.angles = {"device", "reference"};
     f.desired = Desired();
+    f.compared = Compared();
     f.smallest_addition = Addition;
     f.effects = Effects();
     return f;

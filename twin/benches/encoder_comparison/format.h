@@ -13,6 +13,7 @@ void AddKeys(std::vector<ScenarioKey>& keys, Scenario& s);
 void CheckTogether(const ScenarioText& text, const Scenario& s);
 std::vector<ReadingColumn> Columns();
 std::vector<DesiredColumn> Desired();
+ComparedColumns Compared();
 std::string Addition(int setups);
 std::vector<EffectEntry> Effects();
 

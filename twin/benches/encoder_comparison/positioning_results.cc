@@ -3,9 +3,10 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <set>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/estimators/iso230_2.h"
 #include "twin/core/units.h"
 #include "twin/report/json_units.h"
@@ -51,7 +52,8 @@ nlohmann::json AxisJson(const AxisPositioning& positioning) {
   return json;
 }
 
-void Append(int setup, const measure::PositioningStops& stops, PositioningResults& results) {
+void Append(int setup, const measure::PositioningStops& stops, const DeviceSettings& device,
+            PositioningResults& results) {
   const AxisPositioning positioning = measure::EvaluatePositioning(stops.targets);
   const double travel_rad = stops.targets.back().position - stops.targets.front().position;
   const std::vector<std::string> missing = measure::MissingForRotaryAxis(stops.targets, travel_rad);
@@ -63,22 +65,24 @@ void Append(int setup, const measure::PositioningStops& stops, PositioningResult
                           {"left_out", stops.left_out},
                           {"missing", missing},
                           {"notes", stops.notes}});
-  results.text +=
-      fmt::format("set-up {}, {} targets over {:.4g} deg\n", setup, targets.size(), travel_rad / units::deg);
-  results.text += targets.size() <= kMostRows ? PositioningText(positioning) : AxisText(positioning);
+  const AxisUnit coarse = CoarseUnit(device), fine = FineUnit(device);
+  const measure::ToldIn told{coarse.name, coarse.to_SI, fine.name, fine.to_SI};
+  results.text += fmt::format("set-up {}, {} targets over {:.4g} {}\n", setup, targets.size(),
+                              travel_rad / coarse.to_SI, coarse.name);
+  results.text += targets.size() <= kMostRows ? PositioningText(positioning, told) : AxisText(positioning, told);
   for (const std::string& what : missing) results.text += "missing: " + what + "\n";
 }
 
 }  // namespace
 
-PositioningResults EvaluateStops(const std::vector<Reading>& readings) {
+PositioningResults EvaluateStops(const std::vector<Reading>& readings, const DeviceSettings& device) {
   PositioningResults results;
   results.json = nlohmann::json::array();
   std::set<int> setups;
   for (const Reading& reading : readings) setups.insert(reading.setup);
   for (const int setup : setups) {
     const measure::PositioningStops stops = measure::PositioningOf(readings, setup);
-    if (!stops.targets.empty()) Append(setup, stops, results);
+    if (!stops.targets.empty()) Append(setup, stops, device, results);
   }
   return results;
 }

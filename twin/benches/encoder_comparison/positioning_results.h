@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/reading.h"
 
 namespace twinbench::benches::encoder {
@@ -15,6 +16,6 @@ struct PositioningResults {
   std::string text;     // for a person; of many targets the values of the axis only
 };
 
-PositioningResults EvaluateStops(const std::vector<Reading>& readings);
+PositioningResults EvaluateStops(const std::vector<Reading>& readings, const DeviceSettings& device);
 
 }  // namespace twinbench::benches::encoder

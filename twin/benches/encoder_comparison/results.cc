@@ -135,12 +135,12 @@ void AddDevice(const DeviceError& e, nlohmann::json& json) {
   json["notes"] = e.notes;
 }
 
-std::string LinesText(const char* what, const HarmonicSeries& series) {
+std::string LinesText(const char* what, const HarmonicSeries& series, const AxisUnit& unit) {
   std::string text;
   for (const int order : FindLines(series)) {
     const Coefficient& c = series.At(order);
-    text += fmt::format("{:<10} order {:2d}    {:10.3f} +- {:.3f} arcsec, phase {:+.2f} deg\n", what, order,
-                        Amplitude(c) / units::arcsec, AmplitudeUncertainty(c) / units::arcsec,
+    text += fmt::format("{:<10} order {:2d}    {:10.3f} +- {:.3f} {}, phase {:+.2f} deg\n", what, order,
+                        Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
                         separate::harmonics::Phase(c) / units::deg);
   }
   return text;
@@ -155,19 +155,19 @@ std::string LostText(const DeviceError& e) {
   return orders.empty() ? "" : fmt::format("not told apart from the reference, orders{}: {}\n", orders, kSeenAlike);
 }
 
-std::string SummaryOf(const DeviceError& e) {
+std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
   if (e.highest_order == 0) return fmt::format("no curve: {}\n", e.not_separated);
-  std::string text = LinesText("device", e.curves.device) + LinesText("reference", e.curves.reference) +
-                     LinesText("reversal", e.curves.reversal);
+  std::string text = LinesText("device", e.curves.device, unit) + LinesText("reference", e.curves.reference, unit) +
+                     LinesText("reversal", e.curves.reversal, unit);
   if (text.empty()) text = "no order stands out of the noise\n";
   if (std::isfinite(e.reversal.value_rad))
-    text += fmt::format("forward - backward     {:10.3f} +- {:.3f} arcsec\n", e.reversal.value_rad / units::arcsec,
-                        e.reversal.u_rad / units::arcsec);
+    text += fmt::format("forward - backward     {:10.3f} +- {:.3f} {}\n", e.reversal.value_rad / unit.to_SI,
+                        e.reversal.u_rad / unit.to_SI, unit.name);
   if (std::abs(e.lag_s) > 3.0 * e.u_lag_s)
     text +=
         fmt::format("device behind by       {:10.4f} +- {:.4f} ms\n", e.lag_s / units::ms, e.u_lag_s / units::ms);
-  text += fmt::format("a reading repeats to   {:10.3f} arcsec (standard deviation)\n",
-                      e.residual_rms_rad / units::arcsec);
+  text += fmt::format("a reading repeats to   {:10.3f} {} (standard deviation)\n", e.residual_rms_rad / unit.to_SI,
+                      unit.name);
   text += LostText(e);
   for (const std::string& note : e.notes) text += "note: " + note + "\n";
   return text;
@@ -194,12 +194,14 @@ report::CurveScore ScoreOf(const std::string& name, const HarmonicSeries& series
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator) {
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
   const DeviceError device = separate::encoder::SeparateDevice(readings);
-  report::Evaluation evaluation{ToJson(comparison), {}, device.not_separated, Summary(comparison)};
-  evaluation.summary += SummaryOf(device);
+  const DeviceSettings& device_settings = EncoderOf(scenario).device;
+  report::Evaluation evaluation{
+      ToJson(comparison), {}, device.not_separated, Summary(comparison, CoarseUnit(device_settings))};
+  evaluation.summary += SummaryOf(device, FineUnit(device_settings));
   AddDevice(device, evaluation.results);
   if (device.highest_order > 0) evaluation.separation = SeparationJson(device);
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
-    const PositioningResults positioning = EvaluateStops(readings);
+    const PositioningResults positioning = EvaluateStops(readings, device_settings);
     evaluation.results["iso230_2"] = positioning.json;
     evaluation.summary += positioning.text;
   }

@@ -14,6 +14,7 @@ void AddDevice(Keys& keys, DeviceSettings& s) {
   t.Add("noise", kDeg, UpTo(10), &s.noise_rad, "of one reading, white, standard deviation");
   t.Flag("noise_known", s.noise_known, "false: an evaluation estimates it from the readings");
   t.Add("resolution", kDeg, UpTo(10), &s.resolution_rad, "least step of the reading; 0: none");
+  t.Add("turn", kMm, UpTo(1e7), &s.turn_m, "linear axis: the way that counts as one turn; 0: the axis turns");
   t.Add("lines_per_turn", kPure, UpTo(10000000), &s.lines, "of its scale; 0: not known");
   t.Add("teeth", kPure, UpTo(100000), &s.teeth, "of a gear between reference and device; 0: none known");
   t.Add("signal_periods", kPure, {1, 100000}, &s.signal_periods, "of its sine and cosine signals a turn");

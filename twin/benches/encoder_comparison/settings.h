@@ -13,11 +13,12 @@ struct DeviceSettings {                   // [device]
   double noise_rad = 0.002 * units::deg;  // one reading, white, standard deviation
   bool noise_known = false;               // false: whoever evaluates readings estimates it from them
   double resolution_rad = 0.0;            // least step of the reading; 0: none
-  int lines = 0;                          // [device] lines_per_turn; 0: not known
-  int teeth = 0;                          // of a gear between reference and device; 0: none known
-  int signal_periods = 1;                 // of its sine and cosine signals a turn
-  double signal_zero_rad = 0.0;           // angle of the device at which the sine signal rises through zero
-  bool signal_zero_known = false;         // false: the evaluation leaves the phase of signal faults free
+  double turn_m = 0.0;           // [device] turn_mm of a linear axis: the way that counts as one turn; 0: it turns
+  int lines = 0;                 // [device] lines_per_turn; 0: not known
+  int teeth = 0;                 // of a gear between reference and device; 0: none known
+  int signal_periods = 1;        // of its sine and cosine signals a turn
+  double signal_zero_rad = 0.0;  // angle of the device at which the sine signal rises through zero
+  bool signal_zero_known = false;  // false: the evaluation leaves the phase of signal faults free
 };
 
 struct EncoderProcedureSettings {            // [encoder_procedure]

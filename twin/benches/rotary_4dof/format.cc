@@ -11,6 +11,11 @@ TableSettings& TableOf(Scenario& s, bool of_reference) {
   return of_reference ? RotaryOf(s).reference : RotaryOf(s).target;
 }
 
+/// The card's, of what it reads.
+double RangeOf(const Scenario& s, const std::string& column) {
+  return column.ends_with("_V") ? RotaryOf(s).adc.range_V : 0.0;
+}
+
 }  // namespace
 
 const BenchFormat& Format() {
@@ -28,6 +33,7 @@ const BenchFormat& Format() {
     f.angles = {"target", "reference"};
     f.signal = SignalKind::kPosition;
     f.desired = Desired();
+    f.range_of = RangeOf;
     f.smallest_addition = Addition;
     f.effects = Effects();
     return f;

@@ -7,6 +7,7 @@
 #include <map>
 #include <tuple>
 
+#include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/errors.h"
@@ -88,8 +89,9 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   run.schedule = model::CourseOf(used);
   if (EncoderOf(scenario).encoder_procedure.kind == "sweep") DeriveVelocities(run.schedule);
   run.channels = {"angle"};
-  run.unit = "deg";
-  run.to_SI = units::deg;
+  const benches::encoder::AxisUnit told_in = benches::encoder::CoarseUnit(EncoderOf(scenario).device);
+  run.unit = told_in.name;
+  run.to_SI = told_in.to_SI;
   run.patterns = {{"angle", Eigen::VectorXd::Ones(1)}};
   run.nuisance.jacobian = SetUpIndicators(run.schedule.setup);
   run.nuisance.prior_precision =

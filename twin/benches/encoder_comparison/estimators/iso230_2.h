@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "twin/core/reading.h"
+#include "twin/core/units.h"
 
 /// How well an axis positions, in the terms of ISO 230-2:2014. Rotary or linear: every number here has the unit of
 /// the deviations that were put in, rad or m, so these names carry none. Forward is the positive direction of
@@ -121,9 +122,17 @@ PositioningStops PositioningOf(const std::vector<Reading>& readings, int setup);
 /// turn.
 std::vector<std::string> MissingForRotaryAxis(const std::vector<PositioningTarget>& targets, double travel_rad);
 
-/// The evaluation of a rotary axis as a table for people: targets in deg, the rest in arcsec; "-" is not available.
-std::string PositioningText(const AxisPositioning& positioning);
+/// The units of a table for people: of targets, and of what they are missed by.
+struct ToldIn {
+  std::string coarse_name = "deg";
+  double coarse = units::deg;
+  std::string fine_name = "arcsec";
+  double fine = units::arcsec;
+};
+
+/// The evaluation as a table for people; "-" is not available.
+std::string PositioningText(const AxisPositioning& positioning, const ToldIn& told = {});
 /// Of it, the values of the axis alone: for a test with very many targets.
-std::string AxisText(const AxisPositioning& positioning);
+std::string AxisText(const AxisPositioning& positioning, const ToldIn& told = {});
 
 }  // namespace twinbench::measure

@@ -8,36 +8,38 @@
 namespace twinbench::measure {
 namespace {
 
-std::string Arcsec(double value_rad) {
-  if (std::isnan(value_rad)) return fmt::format("{:>9}", "-");
-  return fmt::format("{:9.3f}", value_rad / units::arcsec);
+std::string Fine(double value, const ToldIn& told) {
+  if (std::isnan(value)) return fmt::format("{:>9}", "-");
+  return fmt::format("{:9.3f}", value / told.fine);
 }
 
-std::string Row(const TargetPositioning& t) {
+std::string Row(const TargetPositioning& t, const ToldIn& told) {
   const ApproachPositioning &f = t.forward, &b = t.backward;
-  std::string row = fmt::format("{:10.4f}{:5d}{:5d}", t.position / units::deg, f.runs, b.runs);
+  std::string row = fmt::format("{:10.4f}{:5d}{:5d}", t.position / told.coarse, f.runs, b.runs);
   for (const double value : {f.mean, b.mean, t.mean, f.deviation, b.deviation, t.reversal, f.Repeatability(),
                              b.Repeatability(), t.repeatability.value})
-    row += Arcsec(value);
+    row += Fine(value, told);
   return row + "\n";
 }
 
 }  // namespace
 
-std::string AxisText(const AxisPositioning& positioning) {
-  std::string text = "axis        value        u     bias   (ISO 230-2, arcsec)\n";
+std::string AxisText(const AxisPositioning& positioning, const ToldIn& told) {
+  std::string text = fmt::format("axis        value        u     bias   (ISO 230-2, {})\n", told.fine_name);
   for (std::size_t i = 0; i < kAxisValues; ++i) {
     const ScatteredValue& v = positioning.axis[i];
-    text += fmt::format("{:<8}", kAxisValueNames[i]) + Arcsec(v.value) + Arcsec(v.u) + Arcsec(v.bias) + "\n";
+    text += fmt::format("{:<8}", kAxisValueNames[i]) + Fine(v.value, told) + Fine(v.u, told) + Fine(v.bias, told) +
+            "\n";
   }
   return text + "u and bias hold the scatter of the runs only\n";
 }
 
-std::string PositioningText(const AxisPositioning& positioning) {
-  std::string text = "ISO 230-2, arcsec; + forward, - backward\n";
-  text += "target_deg   n+   n-    mean+    mean-     mean       s+       s-      B_i     R_i+     R_i-      R_i\n";
-  for (const TargetPositioning& target : positioning.targets) text += Row(target);
-  return text + "\n" + AxisText(positioning);
+std::string PositioningText(const AxisPositioning& positioning, const ToldIn& told) {
+  std::string text = fmt::format("ISO 230-2, {}; + forward, - backward\n", told.fine_name);
+  text += fmt::format("{:<10} ", "target_" + told.coarse_name) +
+          "  n+   n-    mean+    mean-     mean       s+       s-      B_i     R_i+     R_i-      R_i\n";
+  for (const TargetPositioning& target : positioning.targets) text += Row(target, told);
+  return text + "\n" + AxisText(positioning, told);
 }
 
 }  // namespace twinbench::measure

@@ -1,0 +1,124 @@
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "tests/import/raw_files.h"
+#include "tests/tools/program.h"
+
+/// From a raw file to a diagnosis with two commands, for every layout that is known.
+namespace twinbench::test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+class TwoCommands : public Program {
+ protected:
+  /// Imports `text` and diagnoses it. @return the effects that are named or tied.
+  std::set<std::string> Named(const std::string& file, const std::string& text,
+                              const std::vector<std::string>& options) {
+    Write(file, text);
+    std::vector<std::string> words = {"import", file, "-o", "run"};
+    words.insert(words.end(), options.begin(), options.end());
+    story_ = Succeed(words);
+    found_ = Json({"diagnose", "run", "--json", "-"});
+    std::set<std::string> effects;
+    for (const auto& cause : found_.at("causes")) effects.insert(cause.at("effect"));
+    return effects;
+  }
+  double Parameter(const std::string& effect, const std::string& name) const {
+    for (const auto& cause : found_.at("causes")) {
+      if (cause.at("effect") == effect) return cause.at("parameters").at(name).at("value");
+    }
+    return std::nan("");
+  }
+
+  std::string story_;
+  nlohmann::json found_;
+};
+
+double LostMotion(double, int sense) {
+  return sense > 0 ? 0.0 : 0.05;
+}
+double OncePerTurn(double angle_deg, int) {
+  return 0.05 * Cosine(1.0, angle_deg, 40.0);
+}
+double FivePerTurn(double angle_deg, int) {
+  return 0.05 * Cosine(5.0, angle_deg, 40.0);
+}
+
+TEST_F(TwoCommands, TakeAScopeExportToItsBacklash) {
+  const auto samples = DriveAxis({.speed_deg_s = 36.0, .interval_s = 0.1}, LostMotion);
+  EXPECT_THAT(Named("scope.csv", ScopeExport(samples), {"--map", "twincat"}), Contains("backlash"));
+  EXPECT_NEAR(Parameter("backlash", "width"), 0.05, 0.002);
+}
+
+TEST_F(TwoCommands, TakeACamonitorLogToTheOrderOfItsError) {
+  const auto samples =
+      DriveAxis({.speed_deg_s = 10.0, .interval_s = 0.25, .rest_s = 2.0, .passes = {1, -1}}, FivePerTurn);
+  EXPECT_THAT(Named("pv.log", CamonitorLog(samples, 0.0), {"--map", "camonitor"}), Contains("periodic"));
+}
+
+TEST_F(TwoCommands, TakeAGuideLogToItsWorm) {
+  const auto worm = [](double angle_deg) { return 12.0 * Cosine(72.0, angle_deg, 20.0); };
+  EXPECT_THAT(Named("phd2.txt", GuideLog(worm, 900), {"--map", "phd2", "--set", "device.teeth=72"}),
+              testing::AnyOf(Contains("gear_mesh"), Contains("periodic")));
+}
+
+TEST_F(TwoCommands, TakeATableOfAFirmwareToTheOffCentreMagnet) {
+  EXPECT_THAT(Named("lookup.cpp", FirmwareTable(OncePerTurn, 512), {"--map", "lookup_table"}),
+              Contains("eccentricity"));
+}
+
+TEST_F(TwoCommands, TakeSamplesOfLinuxCncToTheirBacklash) {
+  const auto samples =
+      DriveAxis({.speed_deg_s = 180.0, .interval_s = 0.001, .rest_s = 0.1, .passes = {1, -1}}, LostMotion);
+  EXPECT_THAT(Named("hal.txt", HalSamples(samples), {"--map", "halsampler", "--most-readings", "500"}),
+              Contains("backlash"));
+}
+
+TEST_F(TwoCommands, TakeAPositioningReportToItsReversalError) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise(0.0, 0.0006);
+  const auto actual_mm = [&](double target, int sense, int) {
+    return target - (sense < 0 ? 0.012 : 0.0) + noise(random);
+  };
+  EXPECT_THAT(
+      Named("report.md", PositioningReport({0.0, 50.1, 99.8, 150.3, 200.2, 249.9, 300.4, 349.7}, 5, actual_mm),
+            {"--map", "iso230"}),
+      Contains("backlash"));
+  EXPECT_EQ(found_.at("causes").at(0).at("parameters").begin().value().at("unit"), "mm")
+      << "a linear axis errs in lengths";
+  EXPECT_THAT(story_, HasSubstr("ISO 230-2, um"));
+}
+
+TEST_F(TwoCommands, TakeTwoColumnsToTheOffCentreScale) {
+  std::string text = "reference,encoder\n";
+  for (const auto& s : DriveAxis(
+           {.turns = 1.0, .speed_deg_s = 100.0, .interval_s = 0.05, .rest_s = 0.0, .passes = {1, -1}}, OncePerTurn))
+    text += fmt::format("{:.4f},{:.4f}\n", OnceRound(s.angle_deg), OnceRound(s.shown_deg));
+  EXPECT_THAT(Named("two.csv", text, {}), Contains("eccentricity"));
+  EXPECT_THAT(story_, HasSubstr("unwrapped"));
+}
+
+TEST_F(TwoCommands, LookBeforeAnythingIsWritten) {
+  Write("hal.txt", HalSamples(DriveAxis({.turns = 0.1}, LostMotion)));
+  const std::string text = Succeed({"import", "hal.txt", "--look", "--map", "halsampler"});
+  EXPECT_THAT(text, HasSubstr("It would be imported like this"));
+  EXPECT_FALSE(Exists("run"));
+  EXPECT_THAT(Call({"import", "hal.txt"}).err, HasSubstr("-o FOLDER"));
+}
+
+TEST_F(TwoCommands, RefuseWhatCannotBe) {
+  const auto samples = DriveAxis({.turns = 0.5}, LostMotion);
+  std::string dead = "time_s,reference_deg,measured_deg\n";
+  for (const auto& s : samples) dead += fmt::format("{},{},0\n", s.time_s, s.angle_deg);
+  Write("dead.csv", dead);
+  const Outcome outcome = Call({"import", "dead.csv", "-o", "run"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("the channel is dead"));
+  EXPECT_FALSE(Exists("run"));
+}
+
+}  // namespace
+}  // namespace twinbench::test

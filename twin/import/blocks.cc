@@ -1,0 +1,103 @@
+#include "twin/import/blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/import/common.h"
+
+namespace twinbench::imports {
+namespace {
+
+constexpr double kOneInAHundred = 0.49;  // rad of a wave: a block as wide lowers it by 1 %
+constexpr int kOrdersWanted = 30;
+constexpr std::size_t kBehindReversal = 40;  // short blocks there
+
+/// True if rows i - 1 and i cannot be in one block.
+bool Parts(const Course& course, const std::vector<double>& time_s, double usual_s, std::size_t i) {
+  return course.pass[i] != course.pass[i - 1] || course.direction[i] != course.direction[i - 1] ||
+         course.motion[i] != course.motion[i - 1] || time_s[i] - time_s[i - 1] > kGapIntervals * usual_s;
+}
+
+double UsualInterval(const std::vector<double>& time_s) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
+  if (steps.empty()) return 0.0;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  return *middle;
+}
+
+/// Rests become one reading each: their last two thirds, when the axis has settled.
+Blocks CutStops(const Course& course) {
+  Blocks cut;
+  for (std::size_t i = 0; i < course.reference.size();) {
+    std::size_t end = i;
+    while (end < course.reference.size() && course.direction[end] == 0) ++end;
+    if (end > i) {
+      cut.blocks.push_back({i + (end - i) / 3, end});
+      cut.usual_rows = std::max(cut.usual_rows, end - i - (end - i) / 3);
+      i = end;
+    } else {
+      ++cut.left_out;
+      ++i;
+    }
+  }
+  return cut;
+}
+
+Blocks CutMotion(const Course& course, const std::vector<double>& time_s, std::size_t rows) {
+  Blocks cut;
+  cut.usual_rows = rows;
+  const double usual_s = UsualInterval(time_s);
+  const std::size_t n = course.reference.size();
+  std::size_t begin = 0, behind_reversal = kBehindReversal;
+  for (std::size_t i = 1; i <= n; ++i) {
+    const bool moves = course.direction[begin] != 0;
+    // A rest has little to tell: its blocks are eight times as long.
+    const std::size_t longest = !moves                              ? 8 * rows
+                                : behind_reversal < kBehindReversal ? std::max<std::size_t>(1, rows / 8)
+                                                                    : rows;
+    if (i < n && i - begin < longest && !Parts(course, time_s, usual_s, i)) continue;
+    cut.blocks.push_back({begin, i});
+    if (moves) cut.widest = std::max(cut.widest, std::abs(course.reference[i - 1] - course.reference[begin]));
+    if (moves) ++behind_reversal;
+    if (i < n && course.pass[i] != course.pass[i - 1]) behind_reversal = 0;
+    begin = i;
+  }
+  return cut;
+}
+
+Blocks CutToAbout(const Course& course, const std::vector<double>& time_s, std::size_t most) {
+  std::size_t rows = (course.reference.size() + most - 1) / most;
+  Blocks cut = CutMotion(course, time_s, rows);
+  for (int tries = 0; cut.blocks.size() > most + most / 4 && tries < 6;
+       ++tries) {  // many reversals, many short blocks
+    rows += rows / 2 + 1;
+    cut = CutMotion(course, time_s, rows);
+  }
+  return cut;
+}
+
+}  // namespace
+
+Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most, bool stop_and_go) {
+  if (stop_and_go) return CutStops(course);
+  const std::size_t n = course.reference.size();
+  if (n <= most || course.stops) {
+    Blocks cut;
+    for (std::size_t i = 0; i < n; ++i) cut.blocks.push_back({i, i + 1});
+    return cut;
+  }
+  Blocks cut = CutToAbout(course, time_s, most);
+  if (HighestOrderKept(cut.widest) < kOrdersWanted && cut.usual_rows > 1) {
+    const double wanted = static_cast<double>(most) * kOrdersWanted * cut.widest / kOneInAHundred;
+    cut = CutToAbout(course, time_s, std::min(4 * most, static_cast<std::size_t>(wanted) + 1));
+  }
+  return cut;
+}
+
+int HighestOrderKept(double widest_rad) {
+  return widest_rad > 0.0 ? static_cast<int>(kOneInAHundred / widest_rad) : 0;
+}
+
+}  // namespace twinbench::imports

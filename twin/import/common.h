@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Small things that several sources of this room need.
+namespace twinbench::imports {
+
+inline constexpr double kGapIntervals = 5.0;                     // a gap is longer than this many usual intervals
+inline constexpr double kFileTimeOf1970 = 116444736000000000.0;  // Windows counts 100 ns since 1601
+
+inline std::string SmallLetters(std::string_view text) {
+  std::string small(text);
+  std::ranges::transform(small, small.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return small;
+}
+
+/// 0 of nothing.
+inline double QuantileOf(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+inline double MedianOf(std::vector<double> values) {
+  return QuantileOf(std::move(values), 0.5);
+}
+
+/// From each number to the next, where both are numbers.
+inline std::vector<double> StepsOf(const std::vector<double>& values) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (std::isfinite(values[i] - values[i - 1])) steps.push_back(values[i] - values[i - 1]);
+  }
+  return steps;
+}
+
+}  // namespace twinbench::imports

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "twin/import/recording.h"
+
+/// How a quantity of the bench comes from the columns of a file: "encoder * 360 / 4096".
+///
+/// Numbers, + - * / ^ and parentheses; names of columns as they are, or in brackets where they have blanks or
+/// signs: [Axis 1.ActPos]; numbers from the text above a table by their names; `index` (0, 1, ...), `count` (rows),
+/// `time_s`. Functions: sin cos tan asin acos atan atan2 sqrt abs (angles in rad), sind cosd (in deg), min max,
+/// before(x), the sum of x over all earlier rows; turns(x), x by its turn where x goes round once, in whatever
+/// unit; is(column, word), 1 where the column has the word, else 0.
+///
+/// Written here because no such library is among the packages that the program needs, and columns of a million rows
+/// are to go through it as a whole.
+namespace twinbench::imports {
+
+/// What a name stands for; a single number stands for all rows.
+struct Values {
+  std::vector<double> value;
+  const std::vector<std::string>* words = nullptr;  // of a column of words
+};
+
+class Expression {
+ public:
+  /// @param where  For messages.
+  /// @throws InputError if the text is no expression.
+  Expression(const std::string& text, const std::string& where);
+  ~Expression();
+  Expression(Expression&&) noexcept;
+
+  /// Every name in it, each once.
+  const std::vector<std::string>& Names() const { return names_; }
+
+  /// @param look_up  What a name stands for on the rows in hand.
+  /// @return one value a row.
+  /// @throws InputError if a word is used as a number, or no unit is known of which turns(x) has one turn.
+  std::vector<double> Evaluate(std::size_t rows, const std::function<Values(const std::string&)>& look_up) const;
+
+  struct Node;
+
+ private:
+  std::string where_;
+  std::vector<std::string> names_;
+  std::unique_ptr<Node> root_;
+};
+
+}  // namespace twinbench::imports

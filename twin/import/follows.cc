@@ -1,0 +1,77 @@
+#include "twin/import/follows.h"
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "twin/core/units.h"
+#include "twin/import/course.h"
+
+namespace twinbench::imports {
+namespace {
+
+struct KnownRatio {
+  double ratio;
+  const char* meaning;
+};
+
+constexpr std::array kRatios = std::to_array<KnownRatio>({
+    {180.0 / units::kPi, "one of the two is in rad, the other in deg"},
+    {3600.0, "one of the two is in arcsec, the other in deg"},
+    {60.0, "one of the two is in arcmin, the other in deg"},
+    {360.0, "one of the two is in turns, the other in deg"},
+    {2.0 * units::kPi, "one of the two is in turns, the other in rad"},
+    {206264.806, "one of the two is in arcsec, the other in rad"},
+    {1000.0, "one of the two is in thousandths (mm and um, rad and mrad, deg and mdeg)"},
+    {1e6, "one of the two is in millionths (m and um, rad and urad)"},
+    {10.0 / 9.0, "one of the two is in gon, the other in deg"},
+    {25.4, "one of the two is in inches, the other in mm"},
+});
+
+Following LeastSquares(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto n = static_cast<double>(x.size());
+  double sx = 0.0, sy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sx += x[i];
+    sy += y[i];
+  }
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double dx = x[i] - sx / n, dy = y[i] - sy / n;
+    xx += dx * dx;
+    xy += dx * dy;
+    yy += dy * dy;
+  }
+  if (xx == 0.0 || yy == 0.0) return {};
+  return {xy / xx, xy / std::sqrt(xx * yy)};
+}
+
+}  // namespace
+
+Following FollowingOf(const std::vector<double>& reference, const std::vector<double>& shown) {
+  Following best = LeastSquares(reference, shown);
+  std::vector<double> unwrapped = shown;
+  if (Unwrap(units::turn, unwrapped) > 0) {
+    const Following other = LeastSquares(reference, unwrapped);
+    if (std::abs(other.correlation) > std::abs(best.correlation)) best = other;
+  }
+  // The difference of the two may be followed where neither can be: large steps, both going round.
+  std::vector<double> difference;
+  for (std::size_t i = 0; i < shown.size(); ++i) difference.push_back(shown[i] - reference[i]);
+  Unwrap(units::turn, difference);
+  for (std::size_t i = 0; i < shown.size(); ++i) difference[i] += reference[i];
+  const Following other = LeastSquares(reference, difference);
+  return std::abs(other.correlation) > std::abs(best.correlation) && std::abs(other.gain - 1.0) < 0.2 ? other
+                                                                                                      : best;
+}
+
+std::string MeaningOfGain(double gain) {
+  const double size = std::abs(gain) >= 1.0 ? std::abs(gain) : 1.0 / std::abs(gain);
+  for (const KnownRatio& known : kRatios) {
+    if (std::abs(size / known.ratio - 1.0) < 0.02) return known.meaning;
+  }
+  if (std::abs(size - 1.0) < 0.2 && gain < 0.0) return "they count in opposite directions";
+  return "";
+}
+
+}  // namespace twinbench::imports

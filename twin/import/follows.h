@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace twinbench::imports {
+
+/// How a device goes with its reference over a whole recording.
+struct Following {
+  double gain = 0.0;         // device per reference, least squares
+  double correlation = 0.0;  // -1 to 1
+};
+
+/// Jumps of whole turns in either are taken out if that makes them agree better.
+Following FollowingOf(const std::vector<double>& reference, const std::vector<double>& shown);
+
+/// What a gain far from 1 looks like, "one of them is in rad, the other in deg"; empty if it is no known ratio.
+std::string MeaningOfGain(double gain);
+
+}  // namespace twinbench::imports

@@ -1,0 +1,195 @@
+#include "twin/import/map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "twin/core/nearest_key.h"
+#include "twin/core/schema_table.h"
+#include "twin/core/toml_reader.h"
+
+namespace twinbench::imports {
+namespace {
+
+using namespace schema;
+
+/// Quantities of every reading that a map may give beside the bench's own.
+constexpr std::array kCommon = {"setup", "pass", "direction", "position", "n_samples"};
+
+bool IsCommon(const std::string& column) {
+  return std::ranges::find(kCommon, column) != kCommon.end();
+}
+
+/// The units in which a column may be given. An angle may be a length: then the axis is linear.
+std::vector<std::string> UnitsFor(const std::string& column) {
+  std::vector<std::string> names;
+  const auto unit = UnitAtEnd(column);
+  if (!unit) return {""};
+  const auto add = [&names](Dimension dimension) {
+    for (const NamedUnit& known : UnitsOf(dimension)) names.emplace_back(known.name);
+  };
+  add(unit->dimension);
+  if (unit->dimension == Dimension::kAngle) add(Dimension::kLength);
+  return names;
+}
+
+/// The bench's columns that a map may fill. The reading's number and its time are the import's own business.
+std::vector<std::string> ColumnsOf(const BenchFormat& bench) {
+  std::vector<std::string> columns;
+  for (const ReadingColumn& column : bench.columns) {
+    if (column.number || IsCommon(column.name)) columns.push_back(column.name);
+  }
+  return columns;
+}
+
+/// One text for each key that a column may have.
+struct ColumnKeys {
+  std::vector<MappedColumn> entries;
+
+  explicit ColumnKeys(const std::vector<const BenchFormat*>& benches) {
+    for (const BenchFormat* bench : benches) {
+      for (const std::string& column : ColumnsOf(*bench)) {
+        for (const std::string& unit : UnitsFor(column)) Add({column, "", unit, ""});
+      }
+    }
+  }
+  void Add(const MappedColumn& entry) {
+    const bool known = std::ranges::any_of(
+        entries, [&entry](const MappedColumn& e) { return e.column == entry.column && e.unit == entry.unit; });
+    if (!known) entries.push_back(entry);
+  }
+  static std::string Key(const MappedColumn& entry) {
+    return entry.unit.empty() ? entry.column : BaseOf(entry.column) + "_" + entry.unit;
+  }
+};
+
+void AddKeys(Keys& keys, Map& map, ColumnKeys& columns) {
+  Table top(keys, "");
+  top.Text("title", &map.title, {}, "what the map is for, one line");
+  top.Text("bench", &map.bench, BenchNames(), "whose readings they are; left out: found by the columns");
+  Table file(keys, "file");
+  file.Text("kind", &map.file.kind, {"auto", "table", "changes", "scope", "array", "cycles"},
+            "rows of fields | one change a line (camonitor) | TwinCAT scope | array in a program | ISO 230-2 runs");
+  file.Text("separator", &map.file.separator, {"auto", "tab", "semicolon", "comma", "bar", "space"},
+            "between fields");
+  file.Text("decimal", &map.file.decimal, {"auto", "point", "comma"}, "the decimal mark");
+  file.Text("header", &map.file.header, {}, "what the line with the names begins with");
+  file.Text("section", &map.file.section, {}, "what a line begins with that opens a part; each part is a set-up");
+  file.Add("names", kPure, {}, &map.file.names, "of the columns, in order, where the file has none");
+  file.Text("array", &map.file.array, {}, "name of the array; left out: the longest");
+  Table time(keys, "time");
+  time.Text("column", &map.clock.column, {}, "that has the time; left out: found by its name or its look");
+  time.Text("unit", &map.clock.unit, {}, "s, ms, us, ns, min, h, epoch or filetime; left out: by name or size");
+  time.Add("rate", kHz, UpTo(1e9), &map.clock.rate_Hz,
+           "of rows without a time, or of a column that counts samples");
+  Table course(keys, "course");
+  course.Text("kind", &map.course.kind, {"auto", "stops", "sweep"}, "readings at rest, or in motion");
+  course.Text("files", &map.course.files, {"auto", "series", "setups"}, "side by side, or one after the other");
+  course.Add("turn", kMm, UpTo(1e7), &map.course.turn_m, "linear axes: the way that counts as one turn; 0: 360 mm");
+  course.Add("wrap", kDeg, UpTo(1e7), &map.course.wrap_rad,
+             "the reference starts again here; 0: at 360 if it does");
+  course.Add("clock_offset", kSecond, Within(1e10), &map.course.clock_offset_s, "added to the second file's clock");
+  Table average(keys, "average");
+  average.Add("most_readings", kPure, {12, 1000000}, &map.average.most_readings,
+              "longer recordings are averaged in blocks");
+  Table scenario(keys, "scenario");
+  scenario.Add("set", kPure, {}, &map.set, "keys of the scenario, as --set has them: \"device.teeth=144\"");
+  Table columns_table(keys, "columns");
+  for (MappedColumn& entry : columns.entries)
+    columns_table.Text(ColumnKeys::Key(entry), &entry.expression, {}, "from the file's columns");
+}
+
+std::vector<const BenchFormat*> BenchesNamed(const std::string& text, const std::string& name) {
+  Map top;
+  Keys keys;
+  std::string any;
+  ColumnKeys all(BenchFormats());
+  AddKeys(keys, top, all);
+  ReadToml(text, name, keys);
+  if (top.bench.empty()) return BenchFormats();
+  return {&FormatOf(top.bench, name)};
+}
+
+std::string Names() {
+  std::string names;
+  for (const ReadyMap& ready : ReadyMaps()) names += (names.empty() ? "" : ", ") + ready.name;
+  return names;
+}
+
+}  // namespace
+
+std::string BaseOf(const std::string& column) {
+  const auto unit = UnitAtEnd(column);
+  return unit ? column.substr(0, column.size() - unit->name.size() - 1) : column;
+}
+
+Map ParseMap(const std::string& text, const std::string& name) {
+  ColumnKeys columns(BenchesNamed(text, name));
+  Map map;
+  map.name = name;
+  Keys keys;
+  AddKeys(keys, map, columns);
+  const KeyPlaces places = ReadToml(text, name, keys);
+  for (const MappedColumn& entry : columns.entries) {
+    const auto place = places.find("columns." + ColumnKeys::Key(entry));
+    if (place == places.end()) continue;
+    map.columns.push_back(entry);
+    map.columns.back().where = place->second;
+  }
+  return map;
+}
+
+Map LoadMap(const std::string& name_or_path) {
+  if (name_or_path.empty()) return {};
+  const auto ready = std::ranges::find(ReadyMaps(), name_or_path, &ReadyMap::name);
+  if (ready != ReadyMaps().end()) return ParseMap(ready->text, ready->name);
+  std::ifstream in(name_or_path);
+  if (!in || std::filesystem::is_directory(name_or_path))
+    throw InputError("--map " + name_or_path, "there is no such file, and no ready map of that name",
+                     "a TOML file or one of " + Names());
+  std::ostringstream text;
+  text << in.rdbuf();
+  return ParseMap(text.str(), name_or_path);
+}
+
+void SetColumn(const std::string& assignment, Map& map) {
+  const std::string where = "--column " + assignment;
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos)
+    throw InputError(where, "there is no =", "QUANTITY=COLUMN, as in reference_deg=angle");
+  const std::string key = assignment.substr(0, equals);
+  const ColumnKeys columns(map.bench.empty() ? BenchFormats() : std::vector{&FormatOf(map.bench)});
+  const auto found =
+      std::ranges::find_if(columns.entries, [&key](const MappedColumn& e) { return ColumnKeys::Key(e) == key; });
+  if (found == columns.entries.end()) {
+    std::vector<std::string> known;
+    for (const MappedColumn& entry : columns.entries) known.push_back(ColumnKeys::Key(entry));
+    throw InputError(where, "no bench has a quantity " + key,
+                     fmt::format("another; the nearest is {}", Nearest(key, known)));
+  }
+  std::erase_if(map.columns, [&found](const MappedColumn& e) { return e.column == found->column; });
+  map.columns.push_back(*found);
+  map.columns.back().expression = assignment.substr(equals + 1);
+  map.columns.back().where = where;
+}
+
+std::string DescribeMaps() {
+  std::string text = "A map says what a file does not (docs/import.md). Ready maps:\n\n";
+  for (const ReadyMap& ready : ReadyMaps())
+    text += fmt::format("  {:<18} {}\n", ready.name, ParseMap(ready.text, ready.name).title);
+  Map map;
+  ColumnKeys none({});
+  Keys keys;
+  AddKeys(keys, map, none);
+  text += "\nKeys of a map:\n\n" + DescribeKeys(keys);
+  return text +
+         "\n[columns]\n  a quantity of the bench with the unit in which it is given, e.g.\n"
+         "  reference_deg = \"[Axis 1.ActPos]\"   measured_mm = \"counts * 0.001\"\n";
+}
+
+}  // namespace twinbench::imports

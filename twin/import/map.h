@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/core/bench_format.h"
+#include "twin/import/layout.h"
+#include "twin/import/table.h"
+#include "twin/import/unit_names.h"
+
+/// What is said once about a kind of file: how it is laid out, which of its columns are which quantities of the
+/// bench, and how the axis moved. Everything may be left out that the file itself tells.
+namespace twinbench::imports {
+
+/// A quantity of the bench as a map gives it.
+struct MappedColumn {
+  std::string column;      // of the bench: "reference_deg"
+  std::string expression;  // of the file's columns; empty: not given
+  std::string unit;        // of what the expression gives, as in the key: reference_mm has "mm"
+  std::string where;       // "map.toml:12"
+};
+
+struct CourseSettings {
+  std::string kind = "auto";    // stops | sweep | auto
+  std::string files = "auto";   // series: side by side | setups: one after the other | auto
+  double turn_m = 0.0;          // linear axes: the way that counts as one turn; 0: 360 mm, a degree a millimetre
+  double wrap_rad = 0.0;        // the reference starts again at this angle; 0: at 360 deg if it does
+  double clock_offset_s = 0.0;  // added to the clock of the second file
+};
+
+struct AverageSettings {
+  int most_readings = 5000;  // longer recordings are averaged in blocks
+};
+
+struct Map {
+  std::string name;  // of the file or the ready map, for messages; empty: none was given
+  std::string title;
+  std::string bench;  // empty: found by the columns
+  Layout file;
+  ClockSettings clock;
+  std::vector<MappedColumn> columns;
+  CourseSettings course;
+  AverageSettings average;
+  std::vector<std::string> set;  // keys of the scenario, as in --set
+};
+
+/// @param name_or_path  "" (nothing is said), the name of a ready map, or a TOML file.
+/// @throws InputError with file:line for what is wrong in it; for an unknown name, the known ones.
+Map LoadMap(const std::string& name_or_path);
+
+/// @param name  For messages.
+Map ParseMap(const std::string& text, const std::string& name);
+
+/// "reference_mm=Axis 1.ActPos": one quantity said on the command line; it goes before the map's.
+/// @throws InputError if that is no quantity of the map's bench.
+void SetColumn(const std::string& assignment, Map& map);
+
+/// A quantity's name without its unit: "reference" of "reference_deg".
+std::string BaseOf(const std::string& column);
+
+struct ReadyMap {
+  std::string name, text;
+};
+/// Those that come with the program, by name.
+const std::vector<ReadyMap>& ReadyMaps();
+
+/// Every key of a map with its meaning, and the ready maps; for `twinbench help map`.
+std::string DescribeMaps();
+
+}  // namespace twinbench::imports

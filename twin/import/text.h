@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Text files of unknown making: bytes, lines, fields.
+namespace twinbench::imports {
+
+/// The whole file as UTF-8 without a byte order mark; UTF-16 is translated.
+/// @throws InputError if it cannot be read, is empty or is no text.
+std::string LoadText(const std::string& path);
+
+/// Takes lines off a text one by one; without their ends, whichever of the three kinds they have.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : rest_(text) {}
+  bool Next(std::string_view& line);
+  int Number() const { return number_; }  // of the line that was taken last, from 1
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+/// How fields stand in a line.
+struct Fields {
+  char separator = ',';  // ' ': any run of blanks
+  bool decimal_comma = false;
+};
+
+/// @param fields  Filled anew; views into `line`, without blanks and quotes around them.
+void Split(std::string_view line, char separator, std::vector<std::string_view>& fields);
+
+std::string_view Trimmed(std::string_view text);
+
+/// The number that a field is, all of it; nothing if it is none or not finite.
+std::optional<double> FieldNumber(std::string_view field, bool decimal_comma);
+
+/// "tab", "comma", ... of a separator, and back; 0 if there is no such name.
+std::string SeparatorName(char separator);
+char SeparatorNamed(const std::string& name);
+
+}  // namespace twinbench::imports

@@ -1,0 +1,131 @@
+#include "twin/import/unit_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "twin/core/units.h"
+#include "twin/import/common.h"
+#include "twin/import/text.h"
+
+namespace twinbench::imports {
+namespace {
+
+struct Spelling {
+  std::string_view spelling;  // in small letters
+  std::string_view name;
+};
+
+constexpr std::array kUnits = std::to_array<NamedUnit>({
+    {"deg", Dimension::kAngle, units::deg},
+    {"rad", Dimension::kAngle, 1.0},
+    {"mrad", Dimension::kAngle, units::mrad},
+    {"urad", Dimension::kAngle, units::urad},
+    {"arcsec", Dimension::kAngle, units::arcsec},
+    {"arcmin", Dimension::kAngle, units::deg / 60.0},
+    {"mdeg", Dimension::kAngle, 1e-3 * units::deg},
+    {"gon", Dimension::kAngle, units::turn / 400.0},
+    {"turn", Dimension::kAngle, units::turn},
+    {"m", Dimension::kLength, 1.0},
+    {"mm", Dimension::kLength, units::mm},
+    {"um", Dimension::kLength, units::um},
+    {"nm", Dimension::kLength, units::nm},
+    {"inch", Dimension::kLength, 0.0254},
+    {"s", Dimension::kTime, 1.0},
+    {"ms", Dimension::kTime, 1e-3},
+    {"us", Dimension::kTime, 1e-6},
+    {"ns", Dimension::kTime, 1e-9},
+    {"min", Dimension::kTime, 60.0},
+    {"h", Dimension::kTime, 3600.0},
+    {"V", Dimension::kVoltage, 1.0},
+    {"mV", Dimension::kVoltage, 1e-3},
+    {"degC", Dimension::kTemperature, 1.0},
+});
+
+constexpr std::array kSpellings = std::to_array<Spelling>({
+    {"°", "deg"},           {"degree", "deg"},   {"degrees", "deg"},     {"grad", "deg"},
+    {"º", "deg"},           {"radian", "rad"},   {"radians", "rad"},     {"µrad", "urad"},
+    {"μrad", "urad"},       {"as", "arcsec"},    {"a-s", "arcsec"},      {"asec", "arcsec"},
+    {"arc-sec", "arcsec"},  {"\"", "arcsec"},    {"″", "arcsec"},        {"arcseconds", "arcsec"},
+    {"arc-min", "arcmin"},  {"'", "arcmin"},     {"′", "arcmin"},        {"turns", "turn"},
+    {"rev", "turn"},        {"revs", "turn"},    {"revolution", "turn"}, {"revolutions", "turn"},
+    {"u", "turn"},          {"meter", "m"},      {"metre", "m"},         {"millimeter", "mm"},
+    {"millimetre", "mm"},   {"µm", "um"},        {"μm", "um"},           {"micron", "um"},
+    {"microns", "um"},      {"in", "inch"},      {"sec", "s"},           {"second", "s"},
+    {"seconds", "s"},       {"msec", "ms"},      {"millis", "ms"},       {"milliseconds", "ms"},
+    {"µs", "us"},           {"μs", "us"},        {"usec", "us"},         {"micros", "us"},
+    {"microseconds", "us"}, {"nsec", "ns"},      {"minutes", "min"},     {"hours", "h"},
+    {"volt", "V"},          {"volts", "V"},      {"°c", "degC"},         {"c", "degC"},
+    {"celsius", "degC"},    {"mdegree", "mdeg"},
+});
+
+std::optional<NamedUnit> PlainUnit(std::string_view name) {
+  const auto found = std::ranges::find(kUnits, name, &NamedUnit::name);
+  if (found == kUnits.end()) return std::nullopt;
+  return *found;
+}
+
+/// What stands inside a pair of brackets at the end.
+std::optional<NameAndUnit> InBrackets(std::string_view field, char open, char close) {
+  if (field.size() < 2 || field.back() != close) return std::nullopt;
+  const std::size_t at = field.rfind(open);
+  if (at == std::string_view::npos) return std::nullopt;
+  return NameAndUnit{std::string(Trimmed(field.substr(0, at))),
+                     std::string(Trimmed(field.substr(at + 1, field.size() - at - 2)))};
+}
+
+}  // namespace
+
+std::optional<NamedUnit> UnitNamed(std::string_view text) {
+  text = Trimmed(text);
+  if (const auto plain = PlainUnit(text)) return plain;
+  const std::string small = SmallLetters(text);
+  const auto spelling = std::ranges::find(kSpellings, small, &Spelling::spelling);
+  if (spelling != kSpellings.end()) return PlainUnit(spelling->name);
+  for (const NamedUnit& unit : kUnits) {
+    if (SmallLetters(unit.name) == small && small != "mv" && small.size() > 1) return unit;
+  }
+  return std::nullopt;
+}
+
+std::optional<NamedUnit> UnitAtEnd(std::string_view name) {
+  const std::size_t at = name.rfind('_');
+  if (at == std::string_view::npos || at == 0) return std::nullopt;
+  return PlainUnit(name.substr(at + 1));
+}
+
+std::vector<NamedUnit> UnitsOf(Dimension dimension) {
+  std::vector<NamedUnit> units;
+  std::ranges::copy_if(kUnits, std::back_inserter(units),
+                       [dimension](const NamedUnit& unit) { return unit.dimension == dimension; });
+  return units;
+}
+
+NameAndUnit SplitHeader(std::string_view field) {
+  field = Trimmed(field);
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    const auto split = InBrackets(field, open, close);
+    if (split && !split->name.empty() && (open == '[' || UnitNamed(split->unit))) return *split;
+  }
+  const std::size_t slash = field.rfind('/');
+  if (slash != std::string_view::npos && slash > 0 && UnitNamed(field.substr(slash + 1)))
+    return {std::string(Trimmed(field.substr(0, slash))), std::string(Trimmed(field.substr(slash + 1)))};
+  if (const auto unit = UnitAtEnd(field)) return {std::string(field), std::string(unit->name)};
+  return {std::string(field), ""};
+}
+
+std::optional<std::string> BareUnit(std::string_view field) {
+  field = Trimmed(field);
+  if (field.size() >= 2 &&
+      ((field.front() == '[' && field.back() == ']') || (field.front() == '(' && field.back() == ')')))
+    field = Trimmed(field.substr(1, field.size() - 2));
+  if (field.empty() || field == "-" || field == "1") return std::string(field);
+  if (UnitNamed(field)) return std::string(field);
+  for (const std::string_view other :
+       {"counts", "count", "steps", "step", "px", "rpm", "deg/s", "mm/s", "A", "Hz", "Nm", "%"}) {
+    if (field == other) return std::string(field);
+  }
+  return std::nullopt;
+}
+
+}  // namespace twinbench::imports

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// The names that people give to units in files of their own.
+namespace twinbench::imports {
+
+enum class Dimension { kAngle, kLength, kTime, kVoltage, kTemperature, kPure };
+
+struct NamedUnit {
+  std::string_view name;  // "mm"
+  Dimension dimension = Dimension::kPure;
+  double to_SI = 1.0;
+};
+
+/// Also knows the names that are written otherwise: "°", "degrees", "µm", "revs", "\"".
+std::optional<NamedUnit> UnitNamed(std::string_view text);
+
+/// The unit with which a key or a column ends: "deg" of "reference_deg"; nothing if it ends in none.
+std::optional<NamedUnit> UnitAtEnd(std::string_view name);
+
+/// Every plain name of a unit of that dimension, for keys: "deg", "rad", "arcsec", ...
+std::vector<NamedUnit> UnitsOf(Dimension dimension);
+
+/// A header's field taken apart: "Angle [deg]", "angle (deg)", "angle / deg", "angle_deg", "angle".
+struct NameAndUnit {
+  std::string name, unit;
+};
+NameAndUnit SplitHeader(std::string_view field);
+
+/// "[deg]", "(mm)" or "mm": the unit, or nothing if the text is none.
+std::optional<std::string> BareUnit(std::string_view field);
+
+}  // namespace twinbench::imports

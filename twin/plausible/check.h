@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/core/bench_format.h"
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+
+/// Are these readings what they say they are? Asked before any statistics, of any bench, with nothing but the
+/// readings, the bench's columns and what the scenario says of its converters.
+namespace twinbench::plausible {
+
+struct Finding {
+  bool fatal = false;  // no result from these readings can be trusted
+  std::string line;    // what was seen and what it may mean
+};
+
+/// Too few readings; values that the converter cannot give; channels that are dead or stuck while others move;
+/// positions and directions that contradict the angles; times that stand still; readings that come in steps as
+/// large as their noise. Fatal ones first.
+std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario& scenario);
+
+/// A line each, "cannot be: ..." or "doubtful: ...".
+std::string InLines(const std::vector<Finding>& findings);
+
+/// @throws InputError with the first fatal finding, if there is one.
+/// @param where  The file or folder.
+void RefuseFatal(const std::vector<Finding>& findings, const std::string& where);
+
+}  // namespace twinbench::plausible
