@@ -59,6 +59,7 @@ void Diagnose(const Machine& machine, const std::string& cache_folder, Answer& a
     if (answer.alarm && !machine.truth.IsClean()) HoldToTheFile(machine, readings, found, options, answer);
   } catch (const InputError& refusal) {
     answer.outcome.answer = std::string("refused: ") + refusal.what();
+    answer.missing = static_cast<int>(std::ssize(machine.truth.listed)) + machine.truth.unlisted;
   }
 }
 

@@ -30,8 +30,13 @@ StandFault Crosstalk(Dice& dice, const StandRun&) {
   return fault;
 }
 
+/// Between two readings of a set-up: what happens while it is re-mounted is its own constant.
 StandFault Slip(Dice& dice, const StandRun& example) {
-  const double from_s = Duration_s(example) * dice.Between(0.3, 0.9);
+  std::vector<double> times_s;
+  for (const StandStop& at : example) {
+    if (!at.calibration && (at.pass == 1 || at.pass == 2)) times_s.push_back(at.t_s);
+  }
+  const double from_s = dice.OneOf(times_s);
   Truth truth = Listed("slip tilt");
   truth.repeats = false;
   return Moving(truth, &Disturbed::ex_rad, [=](const StandStop& at) { return at.t_s < from_s ? 0.0 : 1.0; });
