@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tests/foreign/angle_fault.h"
+
+// Faults of angle devices that are locked to motion: speed, travel, reversals.
+namespace twinbench::foreign {
+namespace {
+
+AngleFault SpeedBias(Dice& dice, const Track&) {
+  const double sign = dice.Sign(), power = dice.Sign() > 0.0 ? 1.0 : 2.0;
+  Truth truth = Unlisted();
+  truth.never_wrong = true;
+  return Linear(truth, [=](const Instant& at) { return sign * std::pow(std::abs(at.speed_deg_s) / 30.0, power); });
+}
+
+/// The device's clock runs at another rate: an age of the reading that grows.
+AngleFault ClockRate(Dice& dice, const Track& example) {
+  const double duration_s = Duration_s(example), sign = dice.Sign();
+  return Linear(Unlisted({"latency"}),
+                [=](const Instant& at) { return sign * at.speed_deg_s / 30.0 * at.t_s / duration_s; });
+}
+
+/// Sticking: the device is left behind evenly, lets go, and begins anew, by travel and not by angle.
+AngleFault StickSlip(Dice& dice, const Track&) {
+  const double period_deg = dice.Between(17.0, 70.0);
+  return Linear(Unlisted(), [=](const Instant& at) {
+    const double x = at.travelled_deg / period_deg;
+    return -at.sense * (x - std::floor(x));
+  });
+}
+
+/// Friction that remembers the last reversal: the branch of a Rayleigh loop, which settles with a power and not
+/// with an exponential.
+AngleFault RememberedReversal(Dice& dice, const Track&) {
+  const double over_deg = dice.Between(10.0, 60.0), power = dice.Between(0.4, 0.9);
+  return Linear(Unlisted({"hysteresis", "backlash"}), [=](const Instant& at) {
+    return -at.sense * (1.0 - 2.0 * std::pow(1.0 + at.since_reversal_deg / over_deg, -power));
+  });
+}
+
+/// After every reversal something comes to rest in time, whatever the travel.
+AngleFault RelaxesBehindReversals(Dice& dice, const Track& example) {
+  const double over_s = Duration_s(example) * dice.Between(0.03, 0.1);
+  return Linear(Unlisted({"hysteresis", "backlash"}),
+                [=](const Instant& at) { return at.sense * std::exp(-at.since_reversal_s / over_s); });
+}
+
+/// A resonance of the mounting that is met while the speed goes by.
+AngleFault SpeedResonance(Dice& dice, const Track& example) {
+  double fastest_deg_s = 0.0;
+  for (const Instant& at : example) fastest_deg_s = std::max(fastest_deg_s, std::abs(at.speed_deg_s));
+  const double at_deg_s = fastest_deg_s * dice.Between(0.3, 0.7), width_deg_s = 0.15 * fastest_deg_s;
+  return Linear(Unlisted(), [=](const Instant& at) {
+    const double x = (std::abs(at.speed_deg_s) - at_deg_s) / width_deg_s;
+    return at.sense / (1.0 + x * x);
+  });
+}
+
+}  // namespace
+
+std::vector<AngleKind> MotionKinds() {
+  return {{"speed bias", Where::kMotion, SpeedBias},
+          {"clock rate", Where::kMotion, ClockRate},
+          {"stick-slip", Where::kBoth, StickSlip},
+          {"remembered reversal", Where::kBoth, RememberedReversal},
+          {"relaxes behind reversals", Where::kBoth, RelaxesBehindReversals},
+          {"speed resonance", Where::kMotion, SpeedResonance}};
+}
+
+}  // namespace twinbench::foreign
