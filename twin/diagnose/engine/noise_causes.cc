@@ -107,10 +107,13 @@ bool AreExceptions(double likelihood_without, const Standardised& s) {
 }
 
 /// A few rows far outside while the rest is normal.
-NoiseCause Outliers(const NoiseModel& noise, const Standardised& s) {
+NoiseCause Outliers(const LinearRun& run, const NoiseModel& noise, const Standardised& s) {
+  constexpr double kBeyondRounding = 1.1;  // a value that was rounded the other way is no exception
   NoiseCause cause{NoiseCause::Kind::kOutliers, -1e300, "", noise, {}, 0.0};
   for (const int row : s.rows) {
-    if (std::abs(s.z[row]) > tuning::kFarOff) cause.outliers.push_back(row);
+    const double size = std::abs(s.z[row]);
+    if (size > tuning::kFarOff && size * s.scale * noise.sigma[row] > kBeyondRounding * run.rounding)
+      cause.outliers.push_back(row);
   }
   const auto count = static_cast<double>(cause.outliers.size()), all = static_cast<double>(s.rows.size());
   if (count == 0.0 || count > tuning::kMostOutlying * all) return cause;
@@ -193,7 +196,7 @@ std::vector<NoiseCause> FindNoiseCauses(const LinearRun& run, const NoiseModel& 
                                         const Eigen::VectorXd& redundancy) {
   const Standardised s = Standardise(rows, redundancy);
   if (s.rows.empty() || run.noise_free) return {};
-  std::vector<NoiseCause> causes = {Outliers(noise, s), Tails(noise, s), Correlation(run, noise, s)};
+  std::vector<NoiseCause> causes = {Outliers(run, noise, s), Tails(noise, s), Correlation(run, noise, s)};
   if (run.Channels() > 1) causes.push_back(ChannelScale(run, noise, s));
   std::erase_if(causes, [](const NoiseCause& cause) { return !(cause.log_bayes > kLeastLogBayes); });
   std::ranges::stable_sort(causes, std::greater<>(), &NoiseCause::log_bayes);
