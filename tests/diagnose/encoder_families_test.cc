@@ -178,7 +178,7 @@ TEST(EncoderFamilies, RecoverHysteresisAtTheNextSettlingLength) {
     EXPECT_LT(r.fit.left, 0.05) << kind;  // settling lengths of the grid differ by a factor 1.37
     EXPECT_NEAR(r.parameters.at("lag"), 1e-5, 3e-7) << kind;
     EXPECT_NEAR(r.parameters.at("settles_over") / (30.0 * deg), 1.0, 0.2) << kind;
-    EXPECT_EQ(r.parameters.size(), 2u) << "start and run-up are no parameters of the catalogue";
+    EXPECT_NEAR(r.parameters.at("start"), 0.0, 1e-12) << kind;
   }
 }
 
@@ -243,25 +243,46 @@ TEST(EncoderFamilies, HaveUniqueGroupsByEffectAndBoundsOfTheCatalogue) {
   }
 }
 
-TEST(EncoderFamilies, GiveTheStateThatHysteresisBeginsWithThePriorOfItsLag) {
+TEST(EncoderFamilies, LetHysteresisBeginWithNoMoreThanItsLag) {
   const Scenario scenario = EncoderScenario();
   const auto families = Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
   const Family& family = test::FamilyOf(families, "hysteresis");
-  EXPECT_EQ(family.amplitudes[1].prior_sd, family.amplitudes[0].prior_sd);
-  // In steady motion the lag is the trace in the readings.
-  EXPECT_NEAR(family.amplitudes[0].prior_sd, test::FamilyOf(families, "backlash").amplitudes[0].prior_sd / 2.0,
-              1e-9);
+  ASSERT_EQ(family.amplitudes.size(), 1u) << "a decay from the start without a lag is no hysteresis";
+  EXPECT_EQ(family.shapes[1].lower, -1.0);
+  EXPECT_EQ(family.shapes[1].upper, 1.0);
+}
+
+TEST(EncoderFamilies, RecoverPlayThatIsCrossedOverManyReadings) {
+  Scenario scenario = EncoderScenario("sweep");
+  EncoderOf(scenario).encoder_procedure.passes = {1, -1, 1, -1};
+  const double width_rad = 25.0 * deg;
+  const auto effect = EncoderEffect("backlash", {{"width", width_rad}, {"start", 0.4}});
+  const EncoderRun encoder = RunOf(test::ReadingsWith(scenario, effect), scenario);
+  Family exact = test::FamilyOf(Families(encoder), "backlash");
+  EXPECT_LT(test::BestFit(exact, encoder.run).left, 0.2);  // ways of the grid differ by a factor 1.3
+  exact.columns = [at = exact.at, width_rad](int) { return at(Eigen::Vector3d(width_rad, 0.4, 1.0)); };
+  const test::Fit fit = test::FitAt(exact, 0, encoder.run);
+  EXPECT_LT(fit.left, 1e-9);
+  EXPECT_NEAR(fit.amplitudes[0], width_rad, 1e-9);
+}
+
+TEST(EncoderFamilies, RecoverAWarmUpAsADriftThatSettles) {
+  const Scenario scenario = EncoderScenario("stops");
+  const Recovered r = Recover(scenario, EncoderEffect("drift", {{"rate", 1e-8}, {"warm_up", 300.0}}));
+  EXPECT_LT(r.fit.left, 0.08);  // times of the grid differ by a factor 1.36
+  EXPECT_NEAR(r.parameters.at("warm_up"), 300.0, 60.0);
 }
 
 TEST(EncoderFamilies, StateUncertaintiesOfShapesWhereTheCovarianceHasThem) {
   const Scenario scenario = EncoderScenario();
   const auto families = Families(RunOf(twinbench::test::RunEncoderTwin(scenario).readings, scenario));
-  const Eigen::Vector4d sd(1e-6, 1e-6, 0.2, 0.1);  // lag, start, settles_over, run_up
+  const Eigen::Vector4d sd(1e-6, 0.2, 0.1, 0.3);  // lag, settles_over, start, approach
   const Eigen::MatrixXd cov = sd.array().square().matrix().asDiagonal();
   const Family& family = test::FamilyOf(families, "hysteresis");
-  const Eigen::Vector2d shape(0.5, 0.04), x(1e-4, 0.0);
+  const Eigen::Vector3d shape(0.5, 0.04, 1.0);
+  const Eigen::VectorXd x = Eigen::VectorXd::Constant(1, 1e-4);
   EXPECT_NEAR(family.parameters(shape, x, cov)[1].u, 0.2, 1e-12);
-  EXPECT_TRUE(std::isnan(family.parameters(shape, x, cov.topLeftCorner<2, 2>())[1].u)) << "held fixed";
+  EXPECT_TRUE(std::isnan(family.parameters(shape, x, cov.topLeftCorner<1, 1>())[1].u)) << "held fixed";
   const Family& clipping = test::FamilyOf(families, "signal_clipping");
   const Eigen::Vector3d sd_clipping(0.1, 2e-4, 0.01);  // strength, level, zero
   const Eigen::MatrixXd cov_clipping = sd_clipping.array().square().matrix().asDiagonal();

@@ -149,6 +149,27 @@ TEST(EncoderEffects, BacklashInASweepIsCrossedOverItsWidthOfTravel) {
   }
 }
 
+TEST(EncoderEffects, BacklashBeginsWhereItIsSaidAndIsCrossedOverTheWayThatIsStated) {
+  Scenario scenario = EncoderScenario("sweep");
+  EncoderOf(scenario).encoder_procedure.passes = {1};
+  const double width_rad = 1.0 * deg, way_rad = 40.0 * deg;
+  const auto readings = ReadingsWith(
+      scenario, EncoderEffect("backlash", {{"width", width_rad}, {"crossed_over", way_rad}, {"start", 0.5}}));
+  for (const Reading& r : readings) {
+    // From half way before the shaft to half the gap behind it.
+    const double share = std::max(0.25 - r.reference_rad / way_rad, -0.5);
+    EXPECT_NEAR(Error_rad(r), width_rad * share, kTiny_rad);
+  }
+}
+
+TEST(EncoderEffects, HysteresisBeginsWithTheStateThatIsStated) {
+  Scenario scenario = EncoderScenario("sweep");
+  EncoderOf(scenario).encoder_procedure.passes = {1};
+  const auto readings = ReadingsWith(
+      scenario, EncoderEffect("hysteresis", {{"lag", 0.01}, {"settles_over", 20.0 * deg}, {"start", -1.0}}));
+  EXPECT_NEAR(Error_rad(readings.front()), 0.01, kTiny_rad);
+}
+
 TEST(EncoderEffects, HysteresisSettlesExponentiallyWithTravelAfterAReversal) {
   Scenario scenario = EncoderScenario("sweep");
   EncoderOf(scenario).encoder_procedure.passes = {1, -1};
@@ -180,6 +201,23 @@ TEST(EncoderEffects, DriftIsLinearWithAQuadraticShare) {
     const double t_s = ToSeconds(r.time);
     EXPECT_NEAR(Error_rad(r), rate_rad_s * t_s * (1.0 + 0.5 * (1.0 - t_s / 3600.0)), kTiny_rad);
   }
+}
+
+TEST(EncoderEffects, AWarmUpSettles) {
+  const double rate_rad_s = 1e-6, warm_up_s = 600.0;
+  for (const Reading& r :
+       ReadingsWith(EncoderScenario(), EncoderEffect("drift", {{"rate", rate_rad_s}, {"warm_up", warm_up_s}}))) {
+    const double final_rad = rate_rad_s * warm_up_s;
+    EXPECT_NEAR(Error_rad(r), final_rad * (1.0 - std::exp(-ToSeconds(r.time) / warm_up_s)), kTiny_rad);
+  }
+}
+
+TEST(EncoderEffects, SignalsThatBeginLaterErrLater) {
+  const auto clipped = [](double zero_rad) {
+    return ReadingsWith(EncoderScenario(), EncoderEffect("signal_clipping", {{"level", 0.5}, {"zero", zero_rad}}));
+  };
+  const auto here = clipped(0.0), later = clipped(5.0 * deg);  // the distance of two stops
+  for (std::size_t i = 1; i < 144; ++i) EXPECT_NEAR(Error_rad(later[i]), Error_rad(here[i - 1]), kTiny_rad);
 }
 
 TEST(EncoderEffects, SlipIsAStepAtItsReading) {

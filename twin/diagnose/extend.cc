@@ -37,19 +37,6 @@ void TakeEstimates(const Cause& cause, const EffectEntry& entry, EffectSettings&
   effect.finding.probability = cause.probability;
 }
 
-EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std::string& provenance) {
-  const EffectEntry* entry = FindEffect(cause.effect, bench);
-  Require(entry != nullptr, "a named cause is an effect of the bench");
-  EffectSettings effect;
-  effect.name = cause.effect;
-  effect.where = cause.where;
-  effect.finding.provenance = provenance;
-  for (const EffectParameter& parameter : entry->parameters)
-    effect.parameters[parameter.name] = parameter.default_SI;
-  TakeEstimates(cause, *entry, effect);
-  return effect;
-}
-
 /// The signal of an unnamed structure on one channel; nothing if it does not show there.
 std::vector<EmpiricalSettings> EmpiricalOn(int channel, const LinearRun& run, const Eigen::VectorXd& signal) {
   EmpiricalSettings empirical;
@@ -179,6 +166,19 @@ std::string OneLine(std::string text) {
 }
 
 }  // namespace
+
+EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std::string& provenance) {
+  const EffectEntry* entry = FindEffect(cause.effect, bench);
+  Require(entry != nullptr, "a named cause is an effect of the bench");
+  EffectSettings effect;
+  effect.name = cause.effect;
+  effect.where = cause.where;
+  effect.finding.provenance = provenance;
+  for (const EffectParameter& parameter : entry->parameters)
+    effect.parameters[parameter.name] = parameter.default_SI;
+  TakeEstimates(cause, *entry, effect);
+  return effect;
+}
 
 Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance) {
   Scenario extended = scenario;

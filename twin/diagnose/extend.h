@@ -17,6 +17,10 @@ namespace twinbench::diagnose {
 /// @param provenance  Which run said so, and when.
 Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance);
 
+/// The cause as a twin carries it out: its parameters where they were estimated and within the catalogue's bounds,
+/// the others as the catalogue has them.
+EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std::string& provenance);
+
 /// Extend() as TOML, below a comment that says in a line or two what was added.
 std::string ExtendedToml(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance);
 

@@ -30,6 +30,8 @@ inline constexpr double kAlarmProbability = 0.005;
 inline constexpr double kMostProbable = 0.97;
 /// The same for causes with a double outside the catalogue: a wrong scale of a whole detector and its distance.
 inline constexpr double kMostProbableDoubled = 0.85;
+/// A cause has to be there: its size so many standard uncertainties from zero.
+inline constexpr double kHeadline = 3.0;
 /// One name alone from here on; below, the smallest set that holds so much of what is not unknown, without causes
 /// that hardly count.
 inline constexpr double kNamedFrom = 0.8, kTieFrom = 0.95, kWorthListing = 0.02;

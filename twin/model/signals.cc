@@ -140,9 +140,9 @@ double TypicalStep_rad(const Course& course, const Eigen::VectorXd& angle_rad) {
   return steps_rad.empty() ? 0.0 : Median(std::move(steps_rad));
 }
 
-int HighestOrder(double step_rad) {
-  constexpr int kMost = 120;
-  return step_rad > 0.0 ? std::min(kMost, static_cast<int>(std::ceil(units::kPi / step_rad - 1e-6)) - 1) : 0;
+int HighestOrder(double step_rad, int most) {
+  if (!(step_rad > units::kPi / (most + 1.0))) return step_rad > 0.0 ? most : 0;
+  return static_cast<int>(std::ceil(units::kPi / step_rad - 1e-6)) - 1;
 }
 
 Eigen::VectorXd Acceleration(const Course& course, const Eigen::VectorXd& velocity) {

@@ -74,9 +74,9 @@ Eigen::VectorXd HeldDirection(const Course& course);
 /// Typical way from one reading to the next of the same pass; readings at rest do not count. 0 if all are.
 double TypicalStep_rad(const Course& course, const Eigen::VectorXd& angle_rad);
 
-/// The largest whole order that readings so far apart show, no more than 120: two readings a period and a little
+/// The largest whole order that readings so far apart show, no more than `most`: two readings a period and a little
 /// more, for at exactly two the sine may vanish at every stop. 0 for a step of 0.
-int HighestOrder(double step_rad);
+int HighestOrder(double step_rad, int most = 120);
 
 /// Rate of change of a velocity, zero at the ends of a pass.
 Eigen::VectorXd Acceleration(const Course& course, const Eigen::VectorXd& velocity);

@@ -12,6 +12,17 @@ EffectParameter HarmonicPhase() {
   return Signed("phase", "deg", 0.0, 360.0, "of the same");
 }
 
+/// Faults of the signals show at other angles of a device whose signals begin elsewhere.
+EffectParameter SignalZero() {
+  return Signed("zero", "deg", 0.0, 360.0, "device angle where the sine rises, beyond device.signal_zero");
+}
+
+/// How a stop was reached matters to what remembers the way.
+EffectParameter Approach() {
+  return Parameter("approach", "1", 1.0, 0.0, 1.0,
+                   "1: a stop is reached in its direction over half the way from its neighbour; 0: straight");
+}
+
 // Defaults are sizes that are plausible before checking; the ranges stand beside the entries.
 std::vector<EffectEntry> MountingAndShapeEffects() {
   return {
@@ -33,16 +44,16 @@ std::vector<EffectEntry> SignalEffects() {
       {"amplitude_mismatch",
        "sine and cosine signals of unequal size",
        {},
-       {Signed("ratio", "1", 0.004, 0.9, "amplitude of the sine over that of the cosine, - 1")}},
+       {Signed("ratio", "1", 0.004, 0.9, "amplitude of the sine over that of the cosine, - 1"), SignalZero()}},
       {"quadrature_error",
        "sine and cosine signals not a quarter period apart",
        {},
-       {Signed("angle", "mrad", 4.0, 1000.0, "lead of the sine")}},
-      // Below 0.707 both signals would be flat at once.
+       {Signed("angle", "mrad", 4.0, 1000.0, "lead of the sine"), SignalZero()}},
+      // Below 0.707 both signals are flat at once, and the reading stands still there.
       {"signal_clipping",
        "sine and cosine signals cut off",
        {},
-       {Parameter("level", "1", 0.95, 0.71, 1.0, "at this share of the amplitude")}},
+       {Parameter("level", "1", 0.95, 0.3, 1.0, "at this share of the amplitude"), SignalZero()}},
       {"interpolation",
        "error that repeats with the lines of the scale; needs device.lines_per_turn",
        {},
@@ -60,12 +71,16 @@ std::vector<EffectEntry> MotionEffects() {
       {"backlash",
        "device that stays behind on reversal until a gap is crossed",
        {},
-       {Signed("width", "deg", 0.01, 30.0, "of the gap; negative: the reference stays behind")}},
+       {Signed("width", "deg", 0.01, 30.0, "of the gap; negative: the reference stays behind"),
+        Parameter("crossed_over", "deg", 0.0, 0.0, 360.0, "way in which it is crossed; 0: its width"),
+        Parameter("start", "1", -1.0, -1.0, 1.0, "where in the gap it begins, -1: half of it behind"), Approach()}},
       {"hysteresis",
        "device that goes over to the other sense gradually after a reversal",
        {},
        {Signed("lag", "deg", 0.01, 30.0, "behind the reference once settled, in either sense"),
-        Parameter("settles_over", "deg", 20.0, 0.01, 36000.0, "travel in which 63 % is reached")}},
+        Parameter("settles_over", "deg", 20.0, 1e-6, 36000.0, "travel in which 63 % is reached"),
+        Parameter("start", "1", 0.0, -1.0, 1.0, "what it begins with, 1: settled in the upward sense"),
+        Approach()}},
       // 1e-6 to 1e-3 for a device without closure
       {"scale",
        "device that counts too much or too little a turn",
@@ -79,8 +94,9 @@ std::vector<EffectEntry> TimeAndReadingEffects() {
       {"drift",
        "zero of the device that drifts with time",
        {},
-       {Signed("rate", "deg_per_h", 0.02, 3600.0, "mean rate over the first hour"),
-        Signed("curvature", "1", 0.0, 5.0, "share of a quadratic part, zero at 0 and 1 h")}},
+       {Signed("rate", "deg_per_h", 0.02, 3600.0, "mean rate over the first hour; of a warm-up, the first one"),
+        Signed("curvature", "1", 0.0, 5.0, "share of a quadratic part, zero at 0 and 1 h"),
+        Parameter("warm_up", "s", 0.0, 0.0, 1e6, "time in which 63 % of a warm-up is over; 0: it goes on")}},
       // one line of the scale, or a coupling that gave way
       {"slip",
        "sudden step of the device's zero",

@@ -10,6 +10,7 @@ Eigen::MatrixXd HStack(const Eigen::MatrixXd& left, const Eigen::MatrixXd& right
 }
 
 Eigen::MatrixXd OnEachChannel(const Eigen::MatrixXd& series, int channels) {
+  if (channels == 1) return series;
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(series.rows() * channels, series.cols() * channels);
   for (Eigen::Index i = 0; i < series.rows(); ++i) {
     for (int c = 0; c < channels; ++c)

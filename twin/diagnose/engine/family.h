@@ -36,6 +36,7 @@ struct Shape {
   double to_SI = 1.0;
   double lower, upper;        // SI
   std::vector<double> value;  // SI
+  bool is_inside = false;     // at a bound the signature is that of another cause: this one is not named there
 };
 
 /// A column of a series as an [[effect]] "signal" that a twin can carry out.

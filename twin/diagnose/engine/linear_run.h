@@ -54,6 +54,7 @@ struct LinearRun {
   Eigen::VectorXd residual;  // observed - prediction without further effects, unknowns as their priors say, SI
   Eigen::VectorXd sigma;     // stated standard uncertainty of each row, SI
   bool sigma_stated = true;  // false: sigma is an estimate from the data itself
+  double rounding = 0.0;     // SI: step to which the readings are rounded, found in them; 0: none
   bool noise_free = false;   // a simulation without noise: its residuals say nothing about sigma
   Nuisance nuisance;
   std::vector<Pattern> patterns;

@@ -27,12 +27,23 @@ Answered AnswerAll(const SearchResult& found, const std::vector<Family>& familie
   return answered;
 }
 
+/// Of a periodic error; NaN where a cause has none or was not fitted.
+double OrderOf(const Cause& cause) {
+  const auto order = std::ranges::find(cause.parameters, "order", &ParameterEstimate::name);
+  return order == cause.parameters.end() ? kNaN : order->value;
+}
+
+/// Two orders of one effect are two causes.
+bool IsSame(const Cause& a, const Cause& b) {
+  const double apart = std::abs(OrderOf(a) - OrderOf(b));
+  return a.effect == b.effect && a.where == b.where && !(apart > 0.0);
+}
+
 /// Every cause once, in the order of the places.
 std::vector<Cause> CausesOf(const Answered& answered) {
   std::vector<Cause> causes;
   const auto listed = [&causes](const Cause& cause) {
-    return std::ranges::any_of(causes,
-                               [&](const Cause& c) { return c.effect == cause.effect && c.where == cause.where; });
+    return std::ranges::any_of(causes, [&](const Cause& c) { return IsSame(c, cause); });
   };
   for (const Answer& answer : answered.answers) {
     for (const Cause& cause : answer.causes) {
@@ -85,14 +96,27 @@ bool IsPossible(const Cause& cause) {
   });
 }
 
-/// The causes share what the unknown leaves.
-void DeclareUnknown(const std::string& otherwise, Naming& naming) {
+/// What has no name is another cause. One that has may be no more than a piece of it: it keeps its probability as
+/// far as it explains more than that.
+/// @param unnamed  Power of what has no name.
+void DeclareUnknown(const std::string& otherwise, double unnamed, Naming& naming) {
   naming.verdict = Verdict::kUnknown;
   naming.unknown.probability = std::clamp(naming.unknown.probability, 0.5, tuning::kMostProbable);
   if (naming.unknown.signature.empty()) naming.unknown.signature = otherwise;
   for (Cause& cause : naming.causes) {
-    cause.probability = std::clamp(1.0 - naming.unknown.probability, 0.0, cause.probability);
+    const double own = std::isfinite(cause.rho) ? cause.rho * cause.rho : 0.0;
+    const double share = own > 0.0 ? own / (own + unnamed) : 0.0;
+    const double left = std::max(share, 1.0 - naming.unknown.probability);
+    cause.probability = IsPossible(cause) ? std::min(cause.probability, left) : 1.0 - naming.unknown.probability;
   }
+}
+
+double UnnamedPower(const Answered& answered) {
+  double power = 0.0;
+  for (const Answer& answer : answered.answers) {
+    if (answer.causes.empty()) power += std::max(0.0, answer.weight);
+  }
+  return power;
 }
 
 Verdict VerdictOf(const Answered& answered) {
@@ -111,9 +135,10 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
   const double one_unknown = ChanceOfOneUnknown(found, families);
   Doubt(one_unknown, naming);
   if (!std::ranges::all_of(naming.causes, IsPossible)) {
-    DeclareUnknown("as the cause named here, in a size that is not possible for it", naming);
+    DeclareUnknown("as the cause named here, in a size that is not possible for it", UnnamedPower(answered),
+                   naming);
   } else if (LeavesStructure(answered, found.last_statistic, threshold) || one_unknown > 0.5) {
-    DeclareUnknown("structure that the causes named here do not explain", naming);
+    DeclareUnknown("structure that the causes named here do not explain", UnnamedPower(answered), naming);
   }
   return naming;
 }

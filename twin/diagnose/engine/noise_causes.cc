@@ -125,20 +125,28 @@ struct Snooped {
   Standardised rest;
 };
 
-Snooped Snoop(const Standardised& s, const RestWithout& without) {
+/// From where on each row is far off; one that was rounded the other way is not.
+Eigen::VectorXd FarFrom(const LinearRun& run, const NoiseModel& noise, double scale) {
+  constexpr double kBeyondRounding = 1.1;
+  return (kBeyondRounding * run.rounding / scale * noise.sigma.cwiseInverse()).cwiseMax(tuning::kFarOff);
+}
+
+Snooped Snoop(const Standardised& s, const Eigen::VectorXd& far_from, const RestWithout& without) {
   constexpr double kAtOnce = 0.5;  // of the farthest: what lies nearer may be bent by it
   const double most = tuning::kMostOutlying * static_cast<double>(s.rows.size());
   Snooped found{{}, {}, s};
-  for (double farthest = Farthest(s); farthest > tuning::kFarOff; farthest = Farthest(found.rest)) {
+  for (;;) {
+    const std::size_t before = found.far.size();
+    const double farthest = Farthest(found.rest);
     for (const int row : found.rest.rows) {
-      if (std::abs(found.rest.z[row]) <= std::max(tuning::kFarOff, kAtOnce * farthest)) continue;
+      if (std::abs(found.rest.z[row]) <= std::max(far_from[row], kAtOnce * farthest)) continue;
       found.far.push_back(row);
       found.size.push_back(std::abs(found.rest.z[row]) * s.scale / std::sqrt(found.rest.kept[row]));
     }
     if (static_cast<double>(found.far.size()) > most) return {{}, {}, s};
+    if (found.far.size() == before) return found;
     found.rest = InScaleOf(s, Standardise(without(found.far)));
   }
-  return found;
 }
 
 /// Of each disturbed reading the largest.
@@ -165,7 +173,7 @@ Standardised AboutTheRest(const Snooped& found, const Standardised& s) {
 NoiseCause Outliers(const LinearRun& run, const NoiseModel& noise, const Standardised& s,
                     const RestWithout& without) {
   NoiseCause cause{NoiseCause::Kind::kOutliers, -1e300, "", noise, {}, 0.0};
-  const Snooped found = Snoop(s, without);
+  const Snooped found = Snoop(s, FarFrom(run, noise, s.scale), without);
   if (found.far.empty()) return cause;
   const std::size_t count = found.far.size();
   const Standardised all = AboutTheRest(found, s);

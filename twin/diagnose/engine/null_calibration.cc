@@ -68,6 +68,14 @@ struct Hash {
   }
 };
 
+/// Of long runs there are fewer, for the time they take: the threshold is a fit to the top tenth.
+int RunsOf(Eigen::Index rows, int runs) {
+  constexpr Eigen::Index kLong = 4000;
+  constexpr int kFewest = 100;
+  if (rows <= kLong) return runs;
+  return std::min(runs, std::max(kFewest, static_cast<int>(runs * kLong / rows)));
+}
+
 }  // namespace
 
 double NullCalibration::Threshold(double probability) const {
@@ -92,8 +100,10 @@ NullCalibration Calibrate(const Scanner& scanner, const Projector& projector, co
                           int runs) {
   Stream stream(1, "diagnose.null");
   NullCalibration calibration;
+  const Eigen::Index rows = projector.Jacobian().rows();
+  runs = RunsOf(rows, runs);
   for (int done = 0; done < runs; done += kBatch) {
-    const Eigen::MatrixXd white = WhiteRuns(stream, projector.Jacobian().rows(), std::min(kBatch, runs - done));
+    const Eigen::MatrixXd white = WhiteRuns(stream, rows, std::min(kBatch, runs - done));
     const Evidence evidence = scanner.Scan(Project(projector, {}, white), {});
     const Eigen::VectorXd statistic = AlarmStatistic(evidence.log_bayes, log_priors);
     calibration.sorted.insert(calibration.sorted.end(), statistic.begin(), statistic.end());
@@ -108,7 +118,7 @@ NullCalibration CalibrateCached(const Scanner& scanner, const Projector& project
   if (folder.empty()) return Calibrate(scanner, projector, log_priors, runs);
   const fs::path path = fs::path(folder) / ("null-" + key + ".txt");
   NullCalibration calibration{ReadValues(path)};
-  if (std::ssize(calibration.sorted) == runs &&
+  if (std::ssize(calibration.sorted) == RunsOf(projector.Jacobian().rows(), runs) &&
       std::is_sorted(calibration.sorted.begin(), calibration.sorted.end())) {
     return calibration;
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "twin/core/units.h"
 #include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/prior.h"
@@ -67,15 +68,36 @@ void RefineLeaders(const Problem& problem, const Deflation& others, const Projec
   }
 }
 
-/// The most probable family in a place of its own.
-Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidence) {
-  const Projected data = Project(problem.projector, others, problem.white);
-  evidence = problem.scanner.Scan(data, others);
-  const Eigen::VectorXd as_scanned = evidence.log_bayes.col(0) + problem.log_priors;
-  std::map<int, Eigen::VectorXd> shapes;
-  Term term;
-  term.statistic = LogSum(as_scanned) - std::log(tuning::kPriorNone);  // as calibrated: without refinement
-  if (term.statistic >= problem.threshold) RefineLeaders(problem, others, data, evidence, shapes);
+/// No shape that has to be is on its bound.
+bool IsInside(const Family& family, const Eigen::VectorXd& shape) {
+  constexpr double kOnBound = 0.02;  // of the distance to the next point of the grid and beyond
+  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
+    const Shape& s = family.shapes[k];
+    const double value = shape[static_cast<Eigen::Index>(k)];
+    if (s.is_inside && (value < s.lower * (1.0 + kOnBound) || value > s.upper * (1.0 - kOnBound))) return false;
+  }
+  return true;
+}
+
+/// The size of a named cause is some standard uncertainties from zero, with its shape free: what is left without
+/// the amplitudes, the slopes of the shape kept, beside what is left with them.
+bool IsThere(const Problem& problem, const Deflation& others, const Projected& data, const Term& term) {
+  const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
+  if (family.kind != Kind::kNamed || !family.at || family.amplitudes.size() != 1) return true;
+  const Eigen::VectorXd rows = data.rows.col(0);
+  const auto explained = [&](const Eigen::MatrixXd& columns) {
+    return Explain(problem.noise.Whiten(problem.run, columns), problem.projector, others, rows);
+  };
+  const Explained alone = explained(term.columns);
+  const Eigen::MatrixXd all = WithShapeSlopes(family, term.shape, term.columns, alone.amplitudes);
+  const double with = explained(all).power, without = explained(all.rightCols(term.shape.size())).power;
+  const double noise = std::max(1.0, (data.power[0] - with) / problem.projector.DegreesOfFreedom());
+  return with - without > tuning::kHeadline * tuning::kHeadline * noise;
+}
+
+/// The most probable of what is left.
+void TakeAmong(const Problem& problem, const std::map<int, Eigen::VectorXd>& shapes, const Evidence& evidence,
+               Term& term) {
   const Eigen::VectorXd joint = evidence.log_bayes.col(0) + problem.log_priors;
   term.log_posterior.resize(joint.size() + 1);
   term.log_posterior << joint, std::log(tuning::kPriorNone);
@@ -88,6 +110,26 @@ Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidenc
   const auto refined = shapes.find(term.family);
   term.shape = refined == shapes.end() ? family.ShapeAt(term.grid_point) : refined->second;
   term.columns = refined == shapes.end() ? family.ColumnsAt(term.grid_point) : family.at(term.shape);
+}
+
+/// The most probable family in a place of its own.
+Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidence) {
+  const Projected data = Project(problem.projector, others, problem.white);
+  evidence = problem.scanner.Scan(data, others);
+  const Eigen::VectorXd as_scanned = evidence.log_bayes.col(0) + problem.log_priors;
+  std::map<int, Eigen::VectorXd> shapes;
+  Term term;
+  term.statistic = LogSum(as_scanned) - std::log(tuning::kPriorNone);  // as calibrated: without refinement
+  if (term.statistic >= problem.threshold) RefineLeaders(problem, others, data, evidence, shapes);
+  // A name that does not hold leaves its probability to the others.
+  constexpr int kMostRefused = 4;
+  for (int refused = 0;; ++refused) {
+    TakeAmong(problem, shapes, evidence, term);
+    const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
+    if (term.statistic < problem.threshold || refused == kMostRefused) break;
+    if (IsInside(family, term.shape) && IsThere(problem, others, data, term)) break;
+    evidence.log_bayes(term.family, 0) = kNever;
+  }
   return term;
 }
 
@@ -102,11 +144,27 @@ bool SelectAgain(const Problem& problem, std::vector<Term>& terms, int k) {
   return changed;
 }
 
+/// Rounding to steps leaves an error that repeats with what is rounded, and looks like a cause. Its rms is
+/// step / sqrt(12) without noise, and falls with noise as the fundamental of a sawtooth that is smoothed does.
+bool IsRounding(const Problem& problem, const Deflation& others, const Term& term) {
+  const double step = problem.run.rounding;
+  if (!(step > 0.0)) return false;
+  constexpr double kMargin = 1.1;
+  const double sigma = problem.run.sigma.mean();
+  const double noise2 = std::max(0.0, sigma * sigma - step * step / 12.0) / (step * step);
+  const double largest = kMargin * step / std::sqrt(12.0) * std::exp(-2.0 * units::kPi * units::kPi * noise2);
+  const Projected data = Project(problem.projector, others, problem.white);
+  const double power =
+      Explain(problem.noise.Whiten(problem.run, term.columns), problem.projector, others, data.rows.col(0)).power;
+  return sigma * std::sqrt(power / problem.run.Rows()) < largest;
+}
+
 void Forward(const Problem& problem, SearchResult& result) {
   while (true) {
     const Deflation others(problem.projector, ColumnsWithout(problem, result.terms, -1));
     Evidence evidence;
-    const Term term = TakeBest(problem, others, evidence);
+    Term term = TakeBest(problem, others, evidence);
+    if (term.statistic >= problem.threshold && IsRounding(problem, others, term)) term.statistic = kNever;
     result.last_statistic = term.statistic;
     if (result.terms.empty()) {
       result.first_statistic = term.statistic;

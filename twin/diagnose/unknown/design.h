@@ -55,6 +55,7 @@ struct Design {
   Eigen::VectorXd scale;           // where they are unlike: what is alike on all channels, SI; empty: one on each
   double plausible = 0.0;          // rms of a structure nobody thought of, SI, or times `scale`
   double plausible_share = 0.0;    // the same of what is shown
+  bool may_be_touched = false;     // something may act for a while and go away again
   std::set<std::string> named;     // sorts that a cause of the catalogue has exactly
   ToRows rows;
 

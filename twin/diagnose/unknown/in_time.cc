@@ -77,6 +77,48 @@ void AddSteps(Collector& collect) {
   });
 }
 
+/// A stretch of readings in which something touches, and over how many it fades away behind them.
+struct Touch {
+  int first, end;
+  double fades_over;
+};
+
+/// Of lengths in ratios of two, each begun at every quarter of its length.
+std::vector<Touch> Touches(int readings) {
+  std::vector<Touch> touches;
+  constexpr int kShortest = 2, kFinest = 256;  // readings; parts of the run
+  constexpr double kFadesOver = 2.0;           // of its length
+  for (int length = std::max(kShortest, readings / kFinest); length <= readings / 4; length *= 2) {
+    for (int first = 1; first + length < readings; first += std::max(1, length / 4))
+      touches.push_back({first, first + length, kFadesOver * length});
+  }
+  return touches;
+}
+
+/// While it touches, and what is left of it: readings x 2.
+Eigen::MatrixXd CourseOf(const Touch& touch, int readings) {
+  Eigen::MatrixXd course = Eigen::MatrixXd::Zero(readings, 2);
+  course.col(0).segment(touch.first, touch.end - touch.first).setOnes();
+  for (int i = touch.end; i < readings; ++i) course(i, 1) = std::exp(-(i - touch.end) / touch.fades_over);
+  return course;
+}
+
+void AddTouches(Collector& collect) {
+  const Design& d = collect.design();
+  const int readings = d.course.Readings();
+  const std::vector<Touch> touches = Touches(readings);
+  if (!d.may_be_touched || touches.empty()) return;
+  collect.Add(
+      "touch", static_cast<int>(std::ssize(touches)),
+      [readings, touches](int g) { return CourseOf(touches[static_cast<std::size_t>(g)], readings); },
+      [touches, numbers = d.course.reading](int g) {
+        const Touch& touch = touches[static_cast<std::size_t>(g)];
+        return fmt::format("offset from reading {} to {} that fades away, locked to time",
+                           numbers[static_cast<std::size_t>(touch.first)],
+                           numbers[static_cast<std::size_t>(touch.end - 1)]);
+      });
+}
+
 /// What dies out behind every mounting, or creeps on as a logarithm.
 void AddRestarts(Collector& collect) {
   const std::vector<double> times_s = {10.0, 30.0, 100.0, 300.0, 1000.0, 3000.0};
@@ -159,6 +201,7 @@ void AddTrends(Collector& collect) {
 void AddInTime(Collector& collect) {
   AddTrends(collect);
   AddSteps(collect);
+  AddTouches(collect);
   AddTemperature(collect);
   if (TimeFollowsAngle(collect.design())) return;
   AddWander(collect);

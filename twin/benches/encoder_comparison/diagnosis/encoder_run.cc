@@ -56,6 +56,17 @@ Eigen::VectorXd SetUpMeans(const Eigen::SparseMatrix<double, Eigen::RowMajor>& i
   return indicators * Eigen::VectorXd(sum.array() / count.array());
 }
 
+/// The device stands on the shaft as the readings say: what is locked to its angle must be where they show it.
+Scenario AsMounted(Scenario scenario, const Schedule& s, const Eigen::VectorXd& offset_rad) {
+  std::vector<double>& mounting_rad = EncoderOf(scenario).encoder_procedure.mounting_rad;
+  for (int i = 0; i < s.Readings(); ++i) {
+    const auto setup = static_cast<std::size_t>(std::max(0, s.setup[i]));
+    if (setup >= mounting_rad.size()) mounting_rad.resize(setup + 1, 0.0);
+    mounting_rad[setup] = offset_rad[i];
+  }
+  return scenario;
+}
+
 /// With the speeds that were derived.
 std::vector<Reading> AsFollowed(std::vector<Reading> used, const Schedule& s) {
   for (std::size_t i = 0; i < used.size(); ++i)
@@ -100,7 +111,8 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   encoder.context = ContextOf(run.schedule, run.schedule.reference_rad + offset_rad, EncoderOf(scenario).device);
   run.observed = run.schedule.reference_rad + comparison.error_rad;
   run.residual =
-      comparison.error_rad - FollowedError_rad(run.schedule, *follow(scenario, AsFollowed(used, run.schedule)));
+      comparison.error_rad - FollowedError_rad(run.schedule, *follow(AsMounted(scenario, run.schedule, offset_rad),
+                                                                     AsFollowed(used, run.schedule)));
   run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
   SetNoise(run, EncoderOf(scenario).device);
   return encoder;

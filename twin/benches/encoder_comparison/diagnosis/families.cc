@@ -14,6 +14,7 @@ namespace twinbench::diagnose::encoder {
 namespace {
 
 constexpr double kPlausible_rad = 0.01 * units::deg;
+constexpr double kRest_rad = 1e-9;
 
 bool Has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -24,7 +25,7 @@ std::vector<double> Spacings_rad(const SignalContext& c) {
   std::map<int, std::vector<double>> steps;
   for (Eigen::Index i = 1; i < c.Readings(); ++i) {
     const double step_rad = std::abs(c.reference_rad[i] - c.reference_rad[i - 1]);
-    if (c.pass[i] == c.pass[i - 1] && step_rad > units::urad) steps[c.pass[i]].push_back(step_rad);
+    if (c.pass[i] == c.pass[i - 1] && step_rad > kRest_rad) steps[c.pass[i]].push_back(step_rad);
   }
   std::vector<double> spacings;
   for (const auto& [pass, step_rad] : steps) spacings.push_back(Median(step_rad));
@@ -33,11 +34,13 @@ std::vector<double> Spacings_rad(const SignalContext& c) {
 
 }  // namespace
 
-int LargestOrder(const SignalContext& context) {
+double FinestSpacing_rad(const SignalContext& context) {
   const std::vector<double> spacings_rad = Spacings_rad(context);
-  if (spacings_rad.empty()) return 0;
-  const double finest_rad = *std::min_element(spacings_rad.begin(), spacings_rad.end());
-  return model::HighestOrder(finest_rad);
+  return spacings_rad.empty() ? 0.0 : *std::min_element(spacings_rad.begin(), spacings_rad.end());
+}
+
+int LargestOrder(const SignalContext& context) {
+  return model::HighestOrder(FinestSpacing_rad(context));
 }
 
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded) {

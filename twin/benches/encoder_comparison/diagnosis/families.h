@@ -23,6 +23,9 @@ namespace twinbench::diagnose::encoder {
 /// @param excluded  Effects taken out of the catalogue. The unknown ones are the same whatever is excluded.
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded = {});
 
+/// The closest usual distance of neighbouring readings of any pass; 0 if all are at rest.
+double FinestSpacing_rad(const SignalContext& context);
+
 /// The largest whole order that readings of this spacing can tell from lower ones; at most 120.
 int LargestOrder(const SignalContext& context);
 

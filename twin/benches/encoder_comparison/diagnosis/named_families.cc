@@ -1,5 +1,5 @@
+#include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
 #include "twin/benches/encoder_comparison/format.h"
@@ -52,20 +52,26 @@ void AddPeriodic(const SignalContext& c, Candidates& named) {
     AddOrders(named, Shown("reference_fault", -1.0), c.reference_rad, WholeOrders(1, last), "order");
 }
 
-/// Twice per period, half the fault; its phase says which fault it is, if the zero of the signals is known.
+/// Twice per period, half the fault; its phase says which fault it is, if the zero of the signals is known. If it
+/// is not, the fault says where it is.
 /// @param sine  The fault shows as sine of twice the phase, otherwise as cosine.
 void AddTwicePerPeriod(const SignalContext& c, const std::string& effect, const std::string& parameter, bool sine,
                        Candidates& named) {
-  const Eigen::MatrixXd wave = 0.5 * Wave(2.0 * SignalPhase_rad(c)) / c.device.signal_periods;
+  const double periods = c.device.signal_periods;
+  const Eigen::MatrixXd wave = 0.5 * Wave(2.0 * SignalPhase_rad(c)) / periods;
   if (c.device.signal_zero_known) {
     named.Add(Shown(effect), {parameter}, wave.col(sine ? 1 : 0));
     return;
   }
   Family& family = named.Add(Shown(effect), {parameter, parameter}, wave);
-  family.parameters = [catalogue = named.catalogue(), effect, parameter](
+  const double behind_rad = sine ? 0.5 * units::kPi : 0.0;
+  family.parameters = [catalogue = named.catalogue(), effect, parameter, periods, behind_rad](
                           const Eigen::VectorXd&, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     const Polar polar = PolarOf(x, cov);
-    return std::vector{catalogue.Estimate(effect, parameter, polar.size, polar.u_size)};
+    // size cos(2 p + phase) with p from the stated zero is the fault at p from its own.
+    const double zero_rad = std::remainder(-polar.phase_rad - behind_rad, 2.0 * units::kPi) / (2.0 * periods);
+    return std::vector{catalogue.Estimate(effect, parameter, polar.size, polar.u_size),
+                       catalogue.Estimate(effect, "zero", zero_rad, polar.u_phase_rad / (2.0 * periods))};
   };
 }
 
@@ -79,13 +85,16 @@ double LeastDepth(const SignalContext& c, double plausible_rad, double deepest) 
 }
 
 /// The level fixes size and ratios of orders 4, 8, 12; an unknown zero of the signals shifts all of them together.
+/// Readings that cannot show the second of them cannot tell clipping from an error of order 4.
 void AddClipping(const Context& context, double plausible_rad, Candidates& named) {
   const SignalContext& c = *context;
+  constexpr int kSecondOrder = 8;
+  if (LargestOrder(c) < kSecondOrder * c.device.signal_periods) return;
   const double quarter_rad = 0.5 * units::kPi;  // the error repeats so
   constexpr int kZeros = 24;                    // 3.75 deg: an eighth of a period of order 12
-  constexpr double kDeepest = 0.25;
-  Shape level{"level", "1", 1.0, 0.72, 0.9999, {}}, zero{"zero", "deg", units::deg, -units::kPi, units::kPi, {}};
-  for (const double depth : Ratios(LeastDepth(c, plausible_rad, kDeepest), kDeepest, 12)) {
+  constexpr double kDeepest = 0.68;
+  Shape level{"level", "1", 1.0, 0.3, 0.9999, {}}, zero{"zero", "deg", units::deg, -units::kPi, units::kPi, {}};
+  for (const double depth : Ratios(LeastDepth(c, plausible_rad, kDeepest), kDeepest, 16)) {
     for (int k = 0; k < (c.device.signal_zero_known ? 1 : kZeros); ++k) {
       level.value.push_back(1.0 - depth);
       zero.value.push_back(k * quarter_rad / kZeros);
@@ -100,9 +109,13 @@ void AddClipping(const Context& context, double plausible_rad, Candidates& named
   });
   // One where the signal is as large as the level says; a little freedom for cut-offs that are not quite sharp.
   family.amplitudes = {{"strength", "1", 1.0, 1.0, 0.3, 3.0}};
-  family.parameters = [catalogue = named.catalogue()](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
-                                                      const Eigen::MatrixXd& cov) {
-    return std::vector{catalogue.Estimate("signal_clipping", "level", shape[0], DeviationAt(cov, x.size()))};
+  family.parameters = [catalogue = named.catalogue(), periods = c.device.signal_periods](
+                          const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
+    std::vector estimates = {catalogue.Estimate("signal_clipping", "level", shape[0], DeviationAt(cov, x.size()))};
+    if (shape.size() > 1)
+      estimates.push_back(catalogue.Estimate("signal_clipping", "zero", shape[1] / periods,
+                                             DeviationAt(cov, x.size() + 1) / periods));
+    return estimates;
   };
 }
 
@@ -116,44 +129,83 @@ void AddSignals(const Context& context, double plausible_rad, Candidates& named)
   AddClipping(context, plausible_rad, named);
 }
 
-/// Of the first amplitude and the first shape, if the catalogue has a word for it; the others are means to an end.
-Parameters FirstOf(const Catalogue& catalogue, const std::string& effect, const std::string& amplitude,
-                   const std::string& shape_name = "") {
+/// Of the amplitude and of the shapes that the catalogue has words for.
+Parameters AsInCatalogue(const Catalogue& catalogue, const std::string& effect, const std::string& amplitude,
+                         const std::vector<std::string>& shapes) {
   return [=](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
     std::vector<ParameterEstimate> estimates = {catalogue.Estimate(effect, amplitude, x[0], std::sqrt(cov(0, 0)))};
-    if (!shape_name.empty())
-      estimates.push_back(catalogue.Estimate(effect, shape_name, shape[0], DeviationAt(cov, x.size())));
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      estimates.push_back(catalogue.Estimate(effect, shapes[k], shape[at], DeviationAt(cov, x.size() + at)));
+    }
     return estimates;
   };
 }
 
-/// To first order half the gap behind the motion, with the sense remembered in one of several ways.
-void AddBacklash(const SignalContext& c, Candidates& named) {
-  const std::vector<Eigen::VectorXd> senses = Senses(c);
-  const auto count = static_cast<int>(std::ssize(senses));
-  Family& family = named.AddShared(Shown("backlash", -0.5), {"width"}, named.BaseOf(count, [senses](int g) {
-    return Eigen::MatrixXd(senses[static_cast<std::size_t>(g)]);
-  }));
-  family.shapes = {{"memory", "1", 1.0, 0.0, 2.0, Even(0.0, count - 1.0, count)}};
-  family.parameters = FirstOf(named.catalogue(), "backlash", "width");
-}
+/// What goes by the way since the reversals, and where it begins; stops may have been reached in their direction or
+/// straight.
+struct WayShapes {
+  Shape way, start, approach;
 
-/// The lag in steady motion, and what is left of an unknown state at the beginning: that is no larger than the lag.
-void AddHysteresis(const Context& context, Candidates& named) {
-  const double run_up_rad = RunUp_rad(*context);
-  Shape settles{"settles_over", "deg", units::deg, 2.0 * units::deg, 360.0 * units::deg, {}};
-  Shape run_up{"run_up", "deg", units::deg, 0.0, std::max(run_up_rad, 1e-9), {}};
-  for (const double way_rad : Ratios(3.0 * units::deg, 180.0 * units::deg, 14)) {
-    for (const double approach_rad : std::set<double>{0.0, run_up_rad}) {
-      settles.value.push_back(way_rad);
-      run_up.value.push_back(approach_rad);
+  /// @param ways_rad  That are tried.
+  WayShapes(const SignalContext& c, const std::string& name, const std::vector<double>& ways_rad)
+      : way{name, "deg", units::deg, ways_rad.front(), ways_rad.back(), {}},
+        start{"start", "1", 1.0, -1.0, 1.0, {}},
+        approach{"approach", "1", 1.0, 0.0, 1.0, {}} {
+    const std::vector<double> approaches = RunUp_rad(c) > 0.0 ? std::vector{0.0, 1.0} : std::vector{1.0};
+    for (const double way_rad : ways_rad) {
+      for (const double from : {-1.0, 0.0, 1.0}) {
+        for (const double share : approaches) {
+          way.value.push_back(way_rad);
+          start.value.push_back(from);
+          approach.value.push_back(share);
+        }
+      }
     }
   }
-  Family& family =
-      named.AddOver(Shown("hysteresis", -1.0), {"lag", "lag"}, {settles, run_up},
-                    [context](const Eigen::VectorXd& shape) { return Relaxation(*context, shape[0], shape[1]); });
-  family.amplitudes[1].name = "start";
-  family.parameters = FirstOf(named.catalogue(), "hysteresis", "lag", "settles_over");
+  std::vector<Shape> All() const { return {way, start, approach}; }
+};
+
+double Range_rad(const Eigen::VectorXd& angle_rad) {
+  return angle_rad.maxCoeff() - angle_rad.minCoeff();
+}
+
+/// Play with its state. A gap that is crossed between two readings has no way of its own: it is the width.
+void AddBacklash(const Context& context, Candidates& named) {
+  const double finest_rad = FinestSpacing_rad(*context), widest_rad = 0.5 * Range_rad(context->reference_rad);
+  if (!(finest_rad > 0.0) || widest_rad < finest_rad) return;
+  constexpr double kAtOnce = 1e-3;  // of the distance of two readings
+  std::vector<double> ways_rad = Ratios(0.7 * finest_rad, std::max(widest_rad, 1.4 * finest_rad), 22);
+  ways_rad.insert(ways_rad.begin(), kAtOnce * finest_rad);
+  const double run_up_rad = RunUp_rad(*context);
+  const WayShapes shapes(*context, "crossed_over", ways_rad);
+  Family& family = named.AddOver(
+      Shown("backlash"), {"width"}, shapes.All(), [context, run_up_rad](const Eigen::VectorXd& shape) {
+        return Eigen::MatrixXd(Play(*context, shape[0], shape[1], shape[2] * run_up_rad));
+      });
+  family.parameters =
+      [estimates = AsInCatalogue(named.catalogue(), "backlash", "width", {"crossed_over", "start", "approach"}),
+       finest_rad](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
+        std::vector<ParameterEstimate> all = estimates(shape, x, cov);
+        if (std::max(0.5 * shape[0], std::abs(x[0])) < finest_rad) all[1].value = 0.0;
+        return all;
+      };
+}
+
+/// The lag in steady motion; the state at the beginning is no larger than it. One that settles between two readings
+/// is none that these can tell from play.
+void AddHysteresis(const Context& context, Candidates& named) {
+  const double finest_rad = FinestSpacing_rad(*context), longest_rad = Range_rad(context->reference_rad);
+  if (!(finest_rad > 0.0) || longest_rad < finest_rad) return;
+  const double run_up_rad = RunUp_rad(*context);
+  const WayShapes shapes(*context, "settles_over",
+                         Ratios(0.5 * finest_rad, std::min(longest_rad, units::turn), 20));
+  Family& family = named.AddOver(
+      Shown("hysteresis", -1.0), {"lag"}, shapes.All(), [context, run_up_rad](const Eigen::VectorXd& shape) {
+        const Eigen::MatrixXd states = Relaxation(*context, shape[0], shape[2] * run_up_rad);
+        return Eigen::MatrixXd(states * Eigen::Vector2d(1.0, shape[1]));
+      });
+  family.parameters = AsInCatalogue(named.catalogue(), "hysteresis", "lag", {"settles_over", "start", "approach"});
 }
 
 void AddMotion(const Context& context, Candidates& named) {
@@ -161,18 +213,36 @@ void AddMotion(const Context& context, Candidates& named) {
   const Eigen::VectorXd sense = Senses(c).front();
   if (c.Moves()) named.Add(Shown("latency", -1.0), {"delay"}, c.velocity_rad_s);
   if (sense.size() > 0 && sense.maxCoeff() > sense.minCoeff()) {
-    AddBacklash(c, named);
+    AddBacklash(context, named);
     AddHysteresis(context, named);
   }
   named.Add(Shown("scale"), {"ratio"}, c.reference_rad);
 }
 
-/// Faults of the signals know what strength they have; the states of a hysteresis are as large as its lag.
+/// A zero that warms up: it goes over to its final value exponentially with the time.
+void AddWarmUp(const Context& context, Candidates& named) {
+  const Eigen::VectorXd& since_s = context->since_start_s;
+  const double first_s = since_s[0], longest_s = since_s[since_s.size() - 1] - first_s;
+  if (!(longest_s > 0.0)) return;
+  constexpr double kShortest = 0.01;  // of the run
+  Shape warm_up{
+      "warm_up", "s", 1.0, kShortest * longest_s, longest_s, Ratios(kShortest * longest_s, longest_s, 16)};
+  Family& family = named.AddOver(Shown("drift"), {"rate"}, {warm_up}, [context](const Eigen::VectorXd& tau_s) {
+    const Eigen::ArrayXd decay = (-context->since_start_s.array() / tau_s[0]).exp();
+    return Eigen::MatrixXd(tau_s[0] * (1.0 - decay).matrix());
+  });
+  family.parameters = [catalogue = named.catalogue()](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
+                                                      const Eigen::MatrixXd& cov) {
+    return std::vector{catalogue.Estimate("drift", "rate", x[0], std::sqrt(cov(0, 0))),
+                       catalogue.Estimate("drift", "curvature", 0.0, kNaN),
+                       catalogue.Estimate("drift", "warm_up", shape[0], DeviationAt(cov, 1))};
+  };
+}
+
+/// Faults of the signals know what strength they have.
 void SetSizes(double plausible_rad, Family& family) {
   if (family.effect == "signal_clipping") return;
   SetSizesByTrace(1, plausible_rad, family);
-  if (family.effect != "hysteresis") return;
-  for (Amplitude& amplitude : family.amplitudes) amplitude.prior_sd = plausible_rad;
 }
 
 }  // namespace
@@ -183,6 +253,7 @@ std::vector<Family> NamedFamilies(const Context& context, const TimeSeries& seri
   AddSignals(context, plausible_rad, named);
   AddMotion(context, named);
   named.AddDrift(Shown("drift"), "rate", context->since_start_s);
+  AddWarmUp(context, named);
   named.AddStep(Shown("slip"), "step", series);
   std::vector<Family> families = named.Take();
   for (Family& family : families) SetSizes(plausible_rad, family);

@@ -78,9 +78,26 @@ Eigen::VectorXd TravelSinceReversal_rad(const SignalContext& context) {
 double RunUp_rad(const SignalContext& context) {
   if (context.Moves() || context.Readings() < 2) return 0.0;
   std::vector<double> steps_rad;
-  for (Eigen::Index i = 1; i < context.Readings(); ++i)
-    steps_rad.push_back(std::abs(context.reference_rad[i] - context.reference_rad[i - 1]));
-  return 0.5 * Median(std::move(steps_rad));
+  for (Eigen::Index i = 1; i < context.Readings(); ++i) {
+    const double step_rad = std::abs(context.reference_rad[i] - context.reference_rad[i - 1]);
+    if (context.pass[i] == context.pass[i - 1] && step_rad > 0.0) steps_rad.push_back(step_rad);
+  }
+  return steps_rad.empty() ? 0.0 : 0.5 * Median(std::move(steps_rad));
+}
+
+Eigen::VectorXd Play(const SignalContext& context, double crossed_over_rad, double start, double run_up_rad) {
+  const double half_rad = 0.5 * crossed_over_rad;
+  double follower_rad = context.reference_rad[0] + start * half_rad;
+  const auto drag = [&](double shaft_rad) {
+    follower_rad = std::clamp(follower_rad, shaft_rad - half_rad, shaft_rad + half_rad);
+  };
+  Eigen::VectorXd behind(context.Readings());
+  for (Eigen::Index i = 0; i < behind.size(); ++i) {
+    drag(context.reference_rad[i] - context.direction[i] * run_up_rad);
+    drag(context.reference_rad[i]);
+    behind[i] = (follower_rad - context.reference_rad[i]) / crossed_over_rad;
+  }
+  return behind;
 }
 
 Eigen::MatrixXd Relaxation(const SignalContext& context, double settles_over_rad, double run_up_rad) {

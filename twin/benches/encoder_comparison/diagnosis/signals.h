@@ -49,6 +49,11 @@ Eigen::VectorXd TravelSinceReversal_rad(const SignalContext& context);
 /// approached over the last `run_up_rad` in its direction.
 Eigen::MatrixXd Relaxation(const SignalContext& context, double settles_over_rad, double run_up_rad);
 
+/// Where a follower with play stands behind (-) or before (+) the shaft, in shares of the way `crossed_over_rad`
+/// that the shaft goes until it is dragged along: the play operator, -0.5 to 0.5. `start` is where in the gap it
+/// begins, -1 behind to 1 before; the way between readings is as in Relaxation.
+Eigen::VectorXd Play(const SignalContext& context, double crossed_over_rad, double start, double run_up_rad);
+
 /// Half the usual distance of neighbouring stops, 0 if the shaft moved while it was read.
 double RunUp_rad(const SignalContext& context);
 

@@ -15,7 +15,7 @@ struct AngleMoment {
   int reading = 0;
   double shaft_rad = 0.0;       // true angle of the shaft, unwrapped
   double velocity_rad_s = 0.0;  // of the shaft
-  double approach_rad = 0.0;    // last leg of the way to a stop, signed; 0 in motion
+  double approach_rad = 0.0;    // last leg of the usual way to a stop, signed; 0 in motion
 };
 
 using mechanics::SignalState;
@@ -30,6 +30,8 @@ class AngleEffect {
   /// Of the device's shaft, against that of the reference.
   virtual double ShaftError_rad(const AngleMoment& /*moment*/) const { return 0.0; }
   virtual void AlterSignals(SignalState& /*signals*/) const {}
+  /// By how much the device's sine rises later than the scenario says.
+  virtual double SignalZero_rad() const { return 0.0; }
   /// Of the reading; `device_rad` is the angle of the device's scale.
   virtual double DeviceError_rad(const AngleMoment& /*moment*/, double /*device_rad*/) const { return 0.0; }
   /// Of what the reference shows.

@@ -1,6 +1,11 @@
 #include "twin/benches/encoder_comparison/twin/follow.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/model/signals.h"
 #include "twin/sim/pointwise_follow.h"
 
 namespace twinbench::sim {
@@ -19,6 +24,14 @@ const std::vector<AnglePoint>& AnglePoints() {
   return points;
 }
 
+/// Half the usual way between the stops that were recorded; none if the shaft moved while it was read.
+double RunUp_rad(const std::vector<Reading>& record, const Scenario& scenario) {
+  const auto moves = [](const Reading& r) { return std::isfinite(r.velocity_rad_s) && r.velocity_rad_s != 0.0; };
+  if (EncoderOf(scenario).encoder_procedure.kind != "stops" || std::ranges::any_of(record, moves)) return 0.0;
+  const model::Course course = model::CourseOf(record);
+  return 0.5 * model::TypicalStep_rad(course, course.reference_rad);
+}
+
 class EncoderFollow : public PointwiseFollow<AngleExtra> {
  public:
   EncoderFollow(const Scenario& stated, const std::vector<Reading>& record)
@@ -30,7 +43,7 @@ class EncoderFollow : public PointwiseFollow<AngleExtra> {
 
  protected:
   Eigen::MatrixXd Shown(const std::vector<AngleExtra>& extra) const override {
-    EncoderTwin twin(scenario());  // anew: its effects have memories
+    EncoderTwin twin(scenario(), RunUp_rad(record(), scenario()));  // anew: its effects have memories
     Eigen::VectorXd shown_rad(std::ssize(extra));
     for (std::size_t i = 0; i < extra.size(); ++i)
       shown_rad[static_cast<Eigen::Index>(i)] =

@@ -12,15 +12,14 @@ namespace twinbench::sim {
 namespace {
 
 /// A stop is approached in its direction over half the way from its neighbour.
-double Approach_rad(const Reading& reading, const EncoderProcedureSettings& procedure) {
-  if (procedure.kind != "stops") return 0.0;
-  return reading.direction * units::kPi / procedure.stops;
+double RunUp_rad(const EncoderProcedureSettings& procedure) {
+  return procedure.kind == "stops" ? units::kPi / procedure.stops : 0.0;
 }
 
-AngleMoment MomentOf(const Reading& reading, const Scenario& scenario) {
+AngleMoment MomentOf(const Reading& reading, double run_up_rad) {
   const double velocity_rad_s = std::isfinite(reading.velocity_rad_s) ? reading.velocity_rad_s : 0.0;
   return {reading.time,          reading.setup,  reading.reading,
-          reading.reference_rad, velocity_rad_s, Approach_rad(reading, EncoderOf(scenario).encoder_procedure)};
+          reading.reference_rad, velocity_rad_s, reading.direction * run_up_rad};
 }
 
 double Noise(const Scenario& scenario, int reading) {
@@ -48,9 +47,19 @@ double Quantised(double angle_rad, double step_rad) {
 
 }  // namespace
 
-EncoderTwin::EncoderTwin(const Scenario& scenario) : scenario_(scenario), empirical_(scenario.empiricals, "angle") {
+EncoderTwin::EncoderTwin(const Scenario& scenario)
+    : EncoderTwin(scenario, RunUp_rad(EncoderOf(scenario).encoder_procedure)) {}
+
+EncoderTwin::EncoderTwin(const Scenario& scenario, double run_up_rad)
+    : scenario_(scenario),
+      run_up_rad_(run_up_rad),
+      signal_zero_rad_(EncoderOf(scenario).device.signal_zero_rad),
+      empirical_(scenario.empiricals, "angle") {
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
-  for (const auto& effect : effects_) effect->AlterSignals(signals_);
+  for (const auto& effect : effects_) {
+    effect->AlterSignals(signals_);
+    signal_zero_rad_ += effect->SignalZero_rad();
+  }
 }
 
 /// A record of somebody else may have more set-ups than the scenario: where the device stood then is unknown.
@@ -71,7 +80,7 @@ double EncoderTwin::DeviceError_rad(const AngleMoment& moment, double device_rad
   const DeviceSettings& device = EncoderOf(scenario_).device;
   double error_rad = 0.0;
   for (const auto& effect : effects_) error_rad += effect->DeviceError_rad(moment, device_rad);
-  const double phase_rad = device.signal_periods * (device_rad - device.signal_zero_rad);
+  const double phase_rad = device.signal_periods * (device_rad - signal_zero_rad_);
   return error_rad + mechanics::SignalError_rad(signals_, phase_rad) / device.signal_periods;
 }
 
@@ -87,7 +96,7 @@ double EncoderTwin::Shown_rad(const AngleMoment& moment) const {
 }
 
 double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
-  AngleMoment moment = MomentOf(reading, scenario_);
+  AngleMoment moment = MomentOf(reading, run_up_rad_);
   // A reference that errs by arcseconds an arcminute: each step leaves a hundredth of what is wrong, or less.
   constexpr int kSteps = 5;
   for (int k = 0; k < kSteps; ++k) moment.shaft_rad = reading.reference_rad - ReferenceError_rad(moment);
@@ -97,7 +106,7 @@ double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
 }
 
 void EncoderTwin::Take(Reading& reading) {
-  const AngleMoment moment = MomentOf(reading, scenario_);
+  const AngleMoment moment = MomentOf(reading, run_up_rad_);
   for (const auto& effect : effects_) effect->Advance(moment);
   reading.reference_rad += ReferenceError_rad(moment);
   reading.measured_rad = Shown_rad(moment);

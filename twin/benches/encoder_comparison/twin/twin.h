@@ -17,6 +17,8 @@ class EncoderTwin : public AngleComparator {
  public:
   /// @throws InputError if an effect needs what the scenario does not state.
   explicit EncoderTwin(const Scenario& scenario);
+  /// @param run_up_rad  Usual way to a stop in its direction: half the distance of the stops that are followed.
+  EncoderTwin(const Scenario& scenario, double run_up_rad);
 
   void Take(Reading& reading) override;
 
@@ -38,6 +40,8 @@ class EncoderTwin : public AngleComparator {
   double ReferenceError_rad(const AngleMoment& moment) const;
 
   Scenario scenario_;
+  double run_up_rad_;
+  double signal_zero_rad_;
   std::vector<std::unique_ptr<AngleEffect>> effects_;
   SignalState signals_;
   EmpiricalSignal empirical_;

@@ -6,15 +6,19 @@ namespace twinbench::sim {
 namespace {
 
 /// The reading lags behind the motion; after a reversal the lag goes over to the other sense exponentially with the
-/// way travelled. A run starts without any.
+/// way travelled.
 class Hysteresis : public AngleEffect {
  public:
   explicit Hysteresis(const EffectSettings& e)
-      : lag_rad_(Parameter(e, "lag")), settles_over_rad_(Parameter(e, "settles_over")) {}
+      : lag_rad_(Parameter(e, "lag")),
+        settles_over_rad_(Parameter(e, "settles_over")),
+        approach_(Parameter(e, "approach")),
+        state_(Parameter(e, "start")) {}
   void Advance(const AngleMoment& moment) override {
-    if (!started_) last_rad_ = moment.shaft_rad - moment.approach_rad;
+    const double from_rad = moment.shaft_rad - approach_ * moment.approach_rad;
+    if (!started_) last_rad_ = from_rad;
     started_ = true;
-    Travel(moment.shaft_rad - moment.approach_rad);
+    Travel(from_rad);
     Travel(moment.shaft_rad);
   }
   double ShaftError_rad(const AngleMoment&) const override { return -lag_rad_ * state_; }
@@ -28,9 +32,9 @@ class Hysteresis : public AngleEffect {
     state_ = sense + (state_ - sense) * std::exp(-std::abs(way_rad) / settles_over_rad_);
   }
 
-  double lag_rad_, settles_over_rad_;
+  double lag_rad_, settles_over_rad_, approach_;
+  double state_;  // -1 to 1
   double last_rad_ = 0.0;
-  double state_ = 0.0;  // -1 to 1
   bool started_ = false;
 };
 

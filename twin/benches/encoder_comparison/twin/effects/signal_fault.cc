@@ -20,6 +20,10 @@ class SignalFault : public AngleEffect {
       signals.clip_level = std::min(signals.clip_level, Parameter(settings_, "level"));
   }
 
+  double SignalZero_rad() const override {
+    return settings_.name == "signal_offset" ? 0.0 : Parameter(settings_, "zero");
+  }
+
  private:
   EffectSettings settings_;
 };

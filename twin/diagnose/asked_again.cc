@@ -1,0 +1,169 @@
+#include "twin/diagnose/asked_again.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "twin/core/distributions.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+/// Parameters in units of what is known of them, so that one step suits all; they begin at this, so that a relative
+/// step has a size.
+constexpr double kBegin = 10.0;
+
+struct Scaled {
+  std::vector<EffectSettings> effects;
+  std::vector<Movable> movable;
+
+  std::vector<EffectSettings> At(const Eigen::VectorXd& x) const {
+    std::vector<EffectSettings> at = effects;
+    for (std::size_t k = 0; k < movable.size(); ++k)
+      at[movable[k].effect].parameters[movable[k].parameter] +=
+          (x[static_cast<Eigen::Index>(k)] - kBegin) * movable[k].sd;
+    return at;
+  }
+};
+
+const EffectParameter& EntryOf(const std::vector<EffectEntry>& catalogue, const std::string& effect,
+                               const std::string& parameter) {
+  const auto entry = std::ranges::find(catalogue, effect, &EffectEntry::name);
+  Require(entry != catalogue.end(), "an effect that is asked about is in the catalogue");
+  const auto found = std::ranges::find(entry->parameters, parameter, &EffectParameter::name);
+  Require(found != entry->parameters.end(), "a parameter that is moved is in the catalogue");
+  return *found;
+}
+
+/// What is left, whitened and projected.
+struct Left {
+  const Shows& shows;
+  const Scaled& scaled;
+  const Eigen::VectorXd& rows;
+  const Eigen::VectorXd& weight;
+  const Projector& projector;
+
+  Eigen::VectorXd Of(const Eigen::VectorXd& x) const {
+    const Eigen::VectorXd left = rows - shows(scaled.At(x));
+    return projector.Apply(Eigen::MatrixXd(weight.asDiagonal() * left)).col(0);
+  }
+  bool operator()(double const* const* x, double* residuals) const {
+    const Eigen::VectorXd left = Of(Eigen::Map<const Eigen::VectorXd>(x[0], std::ssize(scaled.movable)));
+    Eigen::Map<Eigen::VectorXd>(residuals, left.size()) = left;
+    return left.allFinite();
+  }
+};
+
+ceres::Solver::Options SolverOptions() {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 40;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  return options;
+}
+
+/// A tenth of what is known.
+ceres::NumericDiffOptions Steps() {
+  ceres::NumericDiffOptions steps;
+  steps.relative_step_size = 0.1 / kBegin;
+  return steps;
+}
+
+Eigen::VectorXd Solve(const Left& left, const std::vector<EffectEntry>& catalogue, Eigen::VectorXd x) {
+  const std::vector<Movable>& movable = left.scaled.movable;
+  using Cost = ceres::DynamicNumericDiffCostFunction<Left, ceres::CENTRAL>;
+  auto* cost = new Cost(new Left(left), ceres::TAKE_OWNERSHIP, Steps());  // Ceres takes ownership
+  cost->AddParameterBlock(static_cast<int>(x.size()));
+  cost->SetNumResiduals(static_cast<int>(left.rows.size()));
+  ceres::Problem problem;
+  problem.AddResidualBlock(cost, nullptr, x.data());
+  for (std::size_t k = 0; k < movable.size(); ++k) {
+    const EffectSettings& effect = left.scaled.effects[movable[k].effect];
+    const EffectParameter& p = EntryOf(catalogue, effect.name, movable[k].parameter);
+    const double at = effect.parameters.at(movable[k].parameter);
+    problem.SetParameterLowerBound(x.data(), static_cast<int>(k), kBegin + (p.lower_SI - at) / movable[k].sd);
+    problem.SetParameterUpperBound(x.data(), static_cast<int>(k), kBegin + (p.upper_SI - at) / movable[k].sd);
+  }
+  const Eigen::VectorXd start = x;
+  ceres::Solver::Summary summary;
+  ceres::Solve(SolverOptions(), &problem, &summary);
+  return summary.IsSolutionUsable() ? x : start;
+}
+
+/// Single rows that stand far out of the others count no more; several side by side are structure.
+Eigen::VectorXd WithoutFar(const Eigen::VectorXd& left, Eigen::VectorXd weight, int& far) {
+  constexpr double kFar = 8.0;      // deviations of the middle half
+  constexpr double kHardly = 1e-4;  // no row has no weight: the projector was made for all of them
+  std::vector<double> sizes;
+  for (const double v : left) sizes.push_back(std::abs(v));
+  const double scale = std::max(Median(std::move(sizes)) / 0.6745, 1e-12);
+  const auto is_far = [&](Eigen::Index i) { return i >= 0 && i < left.size() && std::abs(left[i]) > kFar * scale; };
+  far = 0;
+  for (Eigen::Index i = 0; i < left.size(); ++i) {
+    if (!is_far(i) || is_far(i - 1) || is_far(i + 1)) continue;
+    weight[i] *= kHardly;
+    ++far;
+  }
+  return weight;
+}
+
+/// Slopes by parameter, SI.
+Eigen::MatrixXd SlopesAt(const Shows& shows, const Scaled& scaled, const Eigen::VectorXd& x) {
+  constexpr double kStep = 1e-2;  // of what is known
+  Eigen::MatrixXd slopes;
+  for (std::size_t k = 0; k < scaled.movable.size(); ++k) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(x.size(), static_cast<Eigen::Index>(k));
+    const Eigen::VectorXd change = shows(scaled.At(x + step)) - shows(scaled.At(x - step));
+    slopes.conservativeResize(change.size(), static_cast<Eigen::Index>(k) + 1);
+    slopes.col(static_cast<Eigen::Index>(k)) = change / (2.0 * kStep * scaled.movable[k].sd);
+  }
+  return slopes;
+}
+
+void StateUncertainties(const Projector& projector, const Eigen::VectorXd& weight, double variance,
+                        const std::vector<Movable>& movable, AskedAgain& asked) {
+  const Eigen::MatrixXd white = weight.asDiagonal() * asked.slopes * asked.sd.asDiagonal();
+  Eigen::MatrixXd normal = white.transpose() * projector.Apply(white);
+  normal.diagonal().array() += variance;  // no parameter is known worse than it was thought of
+  const Eigen::MatrixXd cov =
+      variance * normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+  for (std::size_t k = 0; k < movable.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    asked.effects[movable[k].effect].finding.u[movable[k].parameter] = std::sqrt(cov(at, at)) * asked.sd[at];
+  }
+}
+
+}  // namespace
+
+AskedAgain AskAgain(const Shows& shows, std::vector<EffectSettings> effects, const std::vector<Movable>& movable,
+                    const std::vector<EffectEntry>& catalogue, const Eigen::VectorXd& rows,
+                    const Eigen::VectorXd& sigma, const Projector& projector) {
+  const Scaled scaled{std::move(effects), movable};
+  Eigen::VectorXd weight = sigma.cwiseInverse();
+  AskedAgain asked;
+  const Left all{shows, scaled, rows, weight, projector};
+  Eigen::VectorXd x = Solve(all, catalogue, Eigen::VectorXd::Constant(std::ssize(movable), kBegin));
+  weight = WithoutFar(all.Of(x), weight, asked.far);
+  const Left near{shows, scaled, rows, weight, projector};
+  if (asked.far > 0) x = Solve(near, catalogue, x);
+  asked.effects = scaled.At(x);
+  asked.left = rows - shows(asked.effects);
+  asked.slopes = SlopesAt(shows, scaled, x);
+  asked.sd.resize(x.size());
+  for (std::size_t k = 0; k < movable.size(); ++k) {
+    const EffectSettings& effect = asked.effects[movable[k].effect];
+    const EffectParameter& p = EntryOf(catalogue, effect.name, movable[k].parameter);
+    asked.sd[static_cast<Eigen::Index>(k)] =
+        std::max({std::abs(effect.parameters.at(p.name)), 10.0 * movable[k].sd, 1e-12});
+  }
+  asked.power = near.Of(x).squaredNorm();
+  const double degrees = std::max(1.0, projector.DegreesOfFreedom() - static_cast<double>(movable.size()));
+  StateUncertainties(projector, weight, asked.power / degrees, movable, asked);
+  return asked;
+}
+
+}  // namespace twinbench::diagnose
