@@ -27,8 +27,9 @@ FeedCourse::FeedCourse(FeedDrive& drive, CircleAxis axis, const std::vector<Feed
       drive.Step(leg.until_s);
       Keep(knot_of(leg.motion), drive.time_s() > before_s + 1.5 * drive.parameters().servo_period_s);
     }
+    if (left_out_) knots_.push_back(last_);  // no cubic goes across a change of command
+    left_out_ = false;
   }
-  if (left_out_) knots_.push_back(last_);
 }
 
 void FeedCourse::Keep(const Knot& now, bool leapt) {

@@ -77,7 +77,7 @@ TEST(CircularBodies, AreTheClosedFormWhereTheirDrivesAreIdeal) {
     const Deviation worst = WorstBetween(bodies, closed);
     // The drive's own s^3 / a is 5e-9 of the radius at 1000 mm/min; 0.33 mm of lag are within it.
     EXPECT_LT(worst.radial_m, 1.0 * nm) << fidelity;
-    EXPECT_LT(worst.tangential_m, 1.0 * nm) << fidelity;
+    EXPECT_LT(worst.tangential_m, 2.0 * nm) << fidelity;
   }
 }
 
@@ -122,7 +122,7 @@ TEST(CircularBodies, ALatencyShowsWhereTheyWereThen) {
     const double back_m = DeviationOf(now[i]).tangential_m - DeviationOf(late[i]).tangential_m;
     const double expected_m = 0.01 * now[i].direction * kFeed_m_s(now[i]);
     // Behind a reversal an axis goes more slowly than commanded or faster, by up to a micrometre in 10 ms.
-    EXPECT_NEAR(back_m, expected_m, kFeed_m_s(now[i]) > 0.0 ? 1.0 * um : 1e-3 * nm) << i;
+    EXPECT_NEAR(back_m, expected_m, kFeed_m_s(now[i]) > 0.0 ? 1.0 * um : 0.01 * nm) << i;
     in_motion += kFeed_m_s(now[i]) > 0.0;
     EXPECT_EQ(DeviationOf(now[i]).radial_m, DeviationOf(late[i]).radial_m);
   }
@@ -130,16 +130,19 @@ TEST(CircularBodies, ALatencyShowsWhereTheyWereThen) {
 }
 
 TEST(CircularBodies, StandAtTheirStops) {
-  const Scenario scenario = With(kRubbing), later = With(Joined(kRubbing, {"circular_procedure.dwell_s=6.0"}));
-  const auto three_s = test::CircleReadings(scenario), six_s = test::CircleReadings(later);
-  const double lost_m = 2.0 * 1.0 * um;  // play, and more of the screw's twist under friction
+  // x lags by 1 ms and loses its play of 1 um and 400 N / 143 N/um; y has no play.
+  const auto closed = test::CircleReadings(
+      With({"machine.lag_y_s=0.00104", "machine.backlash_x_um=3.79", "machine.backlash_y_um=2.79"}));
+  const auto three_s = test::CircleReadings(With(kRubbing));
+  const auto six_s = test::CircleReadings(With(Joined(kRubbing, {"circular_procedure.dwell_s=6.0"})));
   for (std::size_t i = 0; i < three_s.size(); ++i) {
     if (kFeed_m_s(three_s[i]) > 0.0) continue;
-    const Deviation at = DeviationOf(three_s[i]), then = DeviationOf(six_s[i]);
+    const Deviation at = DeviationOf(three_s[i]), then = DeviationOf(six_s[i]), formula = DeviationOf(closed[i]);
     EXPECT_NEAR(at.radial_m, then.radial_m, 1.0 * nm) << i;
     EXPECT_NEAR(at.tangential_m, then.tangential_m, 1.0 * nm) << i;
-    EXPECT_LT(std::hypot(at.radial_m, at.tangential_m), 2.0 * lost_m) << "no lag is left";
-    EXPECT_GT(std::hypot(at.radial_m, at.tangential_m), 0.1 * um) << "but play and twist";
+    // Where friction holds a slide it is between the Coulomb and the breakaway force: up to 60 N / 143 N/um more.
+    EXPECT_NEAR(at.radial_m, formula.radial_m, 0.6 * um) << i;
+    EXPECT_NEAR(at.tangential_m, formula.tangential_m, 0.6 * um) << i;
   }
 }
 

@@ -107,6 +107,7 @@ std::vector<OwnKey> BodyChanges() {
   add("stribeck_mm_s", "5");
   add("presliding_um", "10");
   add("encoder", "\"slide\"");
+  add("ramp_s", "0.2");
   add("servo_period_us", "250");
   add("step_us", "100");
   return keys;

@@ -79,6 +79,7 @@ void AddServo(Table& t, FeedDrivesSettings& s) {
   AddPair(t, "feed_forward", kPure, UpTo(1), s.feed_forward,
           "share of the commanded speed that the speed controller is told; lag = (1 - share) / Kv");
   t.Text("encoder", &s.encoder, {"motor", "slide"}, "where the position controller reads");
+  t.Add("ramp", kSecond, {0.01, 100.0}, &s.ramp_s, "in which the path's speed comes and goes between stops");
   t.Add("servo_period", kMicrosecond, {10.0, 10000.0}, &s.servo_period_s, "of the controllers");
   t.Add("step", kMicrosecond, {1.0, 10000.0}, &s.step_s, "longest, of the bodies within a servo period");
 }

@@ -56,6 +56,7 @@ struct FeedDrivesSettings {  // [drives]
   AxisPair integral_time_s = {0.02, 0.02};
   AxisPair feed_forward = {0.95, 0.95};
   std::string encoder = "motor";  // motor | slide
+  double ramp_s = 1.0;            // of the path's speed, at both ends of a way to a stop
   double servo_period_s = 500.0 * units::us;
   double step_s = 500.0 * units::us;
 

@@ -13,7 +13,6 @@ using mechanics::CircleAxis, mechanics::CircleMotion, mechanics::FeedLeg;
 
 constexpr std::array<CircleAxis, 2> kCircleAxes = {CircleAxis::kX, CircleAxis::kY};
 constexpr double kBehind_s = 3.0;  // a latency of -1 s of a key, of an effect, and a lag of an effect
-constexpr double kRamp_s = 0.1;
 
 mechanics::FeedDriveParameters ParametersOf(const FeedDrivesSettings& s, std::size_t k) {
   mechanics::FeedDriveParameters p;
@@ -69,26 +68,26 @@ const CircleMotion& MotionAt(const std::vector<FeedLeg>& legs, double time_s) {
 }
 
 /// From its steady motion to rest at an angle.
-void Brake(std::vector<FeedLeg>& legs, double at_rad, double stays_s) {
+void Brake(std::vector<FeedLeg>& legs, double at_rad, double ramp_s, double stays_s) {
   const double time_s = legs.back().until_s;
   const CircleMotion before = legs.back().motion;
-  if (before.rate_rad_s() != 0.0) legs.push_back({before.RampTo(0.0, time_s, kRamp_s), time_s + kRamp_s});
+  if (before.rate_rad_s() != 0.0) legs.push_back({before.RampTo(0.0, time_s, ramp_s), time_s + ramp_s});
   const double stands_s = legs.back().until_s;
   legs.push_back({CircleMotion(before.radius_m(), at_rad, 0.0, stands_s), stands_s + stays_s});
 }
 
 /// From rest into steady motion, as far as where it brakes; over all it takes as long as at `rate_rad_s`.
-void GoTo(std::vector<FeedLeg>& legs, double to_rad, double rate_rad_s) {
+void GoTo(std::vector<FeedLeg>& legs, double to_rad, double rate_rad_s, double ramp_s) {
   const double time_s = legs.back().until_s;
   const CircleMotion before = legs.back().motion;
   const double way_rad = to_rad - before.Angle_rad(time_s);
-  const double steady_s = std::max(std::abs(way_rad) / rate_rad_s - kRamp_s, kRamp_s);
+  const double steady_s = std::max(std::abs(way_rad) / rate_rad_s - ramp_s, ramp_s);
   const double goes_rad_s = way_rad / steady_s;  // both ramps together are as much way as one at full speed
   if (goes_rad_s == 0.0) return;
-  legs.push_back({before.RampTo(goes_rad_s, time_s, kRamp_s), time_s + kRamp_s});
+  legs.push_back({before.RampTo(goes_rad_s, time_s, ramp_s), time_s + ramp_s});
   const double runs_s = legs.back().until_s;
   legs.push_back({CircleMotion(before.radius_m(), legs.back().motion.Angle_rad(runs_s), goes_rad_s, runs_s),
-                  runs_s + std::max(0.0, steady_s - kRamp_s)});
+                  runs_s + std::max(0.0, steady_s - ramp_s)});
 }
 
 }  // namespace
@@ -117,15 +116,16 @@ void CircleBodies::AddStops(const std::vector<CirclePlace>& places, std::size_t 
   const CircleInstant& at = places[first].at;
   const double radius_m = at.radius_m, rate_rad_s = at.direction * s.rapid_m_s / radius_m;
   const double step_rad = at.direction * units::turn / std::max(s.stops, 4);
+  const double ramp_s = settings_.drives.ramp_s;
   const double first_rad = at.commanded_rad - step_rad;  // where it stands before it goes to the first
-  const double brakes_rad = first_rad - 0.5 * rate_rad_s * kRamp_s, from_rad = LeadIn_rad(brakes_rad, at.direction);
+  const double brakes_rad = first_rad - 0.5 * rate_rad_s * ramp_s, from_rad = LeadIn_rad(brakes_rad, at.direction);
   const CircleMotion lead_in(radius_m, from_rad, rate_rad_s, 0.0);
   Pass pass{{{lead_in, (brakes_rad - from_rad) / rate_rad_s}}, {}};
-  Brake(pass.legs, first_rad, s.dwell_s);
+  Brake(pass.legs, first_rad, ramp_s, s.dwell_s);
   for (std::size_t i = first; i < end; ++i) {
     const CircleInstant& read = places[i].at;
-    GoTo(pass.legs, read.commanded_rad, s.rapid_m_s / radius_m);
-    Brake(pass.legs, read.commanded_rad, s.dwell_s);
+    GoTo(pass.legs, read.commanded_rad, s.rapid_m_s / radius_m, ramp_s);
+    Brake(pass.legs, read.commanded_rad, ramp_s, s.dwell_s);
     taken_.push_back({passes_.size(), pass.legs.back().until_s, read.radius_m, read.commanded_rad});
   }
   pass.legs.back().until_s += kBehind_s;

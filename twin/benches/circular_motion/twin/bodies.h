@@ -21,8 +21,9 @@ struct CirclePlace {
 };
 
 /// The two axes as bodies on the course of a run, pass by pass. A sweep has been in motion for half a circle and
-/// more before its first reading. Stops are gone to along the circle in as long as it takes at the rapid feed, with
-/// ramps of 0.1 s, behind half a circle at that feed, and read at the end of the dwell.
+/// more before its first reading. Stops are gone to along the circle in as long as it takes at the rapid feed, or
+/// in two of the control's ramps if that is longer, behind half a circle at that feed, and read at the end of the
+/// dwell.
 class CircleBodies {
  public:
   /// @throws InputError if no drive can be made of [drives].
