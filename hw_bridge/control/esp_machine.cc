@@ -42,14 +42,14 @@ std::string EspMachine::Place(std::size_t axis, double at) const {
 void EspMachine::Prepare() {
   const int opening = line_.Openings();
   if (opening == prepared_opening_) return;
+  std::string group = "1HN1";
+  for (std::size_t k = 1; k < axes_.size(); ++k) group += "," + std::to_string(k + 1);
+  TellEsp(line_, group);  // first: a controller of other axes says no
   knows_status_ = EspKnows(line_, "1MS?");
-  std::string group = "1HN";
   for (std::size_t k = 0; k < axes_.size(); ++k) {
     const int unit = axes_[k].is_rotary ? kUnitDegree : kUnitMillimetre;
     if (line_.AskWholeNumber(OfAxis(k, "SN?")) != unit) TellEsp(line_, OfAxis(k, "SN") + std::to_string(unit));
-    group += (k > 0 ? "," : "") + std::to_string(k + 1);
   }
-  TellEsp(line_, group);
   prepared_opening_ = opening;
 }
 
@@ -164,22 +164,40 @@ bool EspMachine::PollRunning(Duration within) {
   return true;
 }
 
+/// All questions go in one line, for a look at five axes would be twenty ways to the controller and back.
 std::vector<AxisState> EspMachine::State() {
   Prepare();
+  std::string questions;
+  for (std::size_t k = 0; k < axes_.size(); ++k) {
+    for (const char* query : {"PA?", "TP?", "MD?"}) questions += (questions.empty() ? "" : ";") + OfAxis(k, query);
+    if (knows_status_) questions += ";" + OfAxis(k, "MS?");
+  }
+  std::string answer = line_.Ask(questions);
+  const std::function<std::string()> next = [&, first = true]() mutable {
+    if (!first) answer = line_.NextLine();
+    first = false;
+    return answer;
+  };
   std::vector<AxisState> states;
-  for (std::size_t k = 0; k < axes_.size(); ++k) states.push_back(ReadAxis(k));
+  for (std::size_t k = 0; k < axes_.size(); ++k) states.push_back(ReadAxis(k, next));
   return states;
 }
 
 /// The status comes last, so that it speaks for the places before it.
-AxisState EspMachine::ReadAxis(std::size_t k) {
+AxisState EspMachine::ReadAxis(std::size_t k, const std::function<std::string()>& next_answer) {
+  const auto number = [&](const char* query, double to_SI) {
+    const std::string answer = next_answer();
+    const auto number_SI = ParseInUnit(answer, to_SI);
+    if (!number_SI) line_.FailProtocol(OfAxis(k, query), answer, "a number");
+    return *number_SI;
+  };
   AxisState state;
-  state.commanded = line_.AskNumber(OfAxis(k, "PA?"), axes_[k].to_SI());
-  state.encoder = line_.AskNumber(OfAxis(k, "TP?"), axes_[k].to_SI());
-  state.in_position = line_.AskWholeNumber(OfAxis(k, "MD?")) == 1;
+  state.commanded = number("PA?", axes_[k].to_SI());
+  state.encoder = number("TP?", axes_[k].to_SI());
+  state.in_position = number("MD?", 1.0) == 1.0;
   state.moving = !state.in_position;
   if (!knows_status_) return state;
-  const auto bits = line_.AskWholeNumber(OfAxis(k, "MS?"));
+  const auto bits = static_cast<long long>(number("MS?", 1.0));
   state.referenced = (bits & kReferenced) != 0;
   state.limit = (bits & kLower) != 0 ? -1 : (bits & kUpper) != 0 ? 1 : 0;
   state.moving = (bits & kMoving) != 0;

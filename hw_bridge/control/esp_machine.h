@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "hw_bridge/control/device_line.h"
 #include "twin/core/machine.h"
 
@@ -38,7 +40,7 @@ class EspMachine : public MachineController {
  private:
   void Prepare();
   void SetFeed(double feed_m_s);
-  AxisState ReadAxis(std::size_t axis);
+  AxisState ReadAxis(std::size_t axis, const std::function<std::string()>& next_answer);
   bool AskDone();
   bool PollRunning(Duration within);
   void RequireWithinLimits(std::size_t axis, double to);

@@ -64,7 +64,7 @@ TEST(MachineFile, WhatIsWrongIsToldWithItsLine) {
   EXPECT_THAT(Refusal(Changed("lower_mm", "lower_deg")), AllOf(HasSubstr("bench.toml:7"), HasSubstr("lower_mm")));
   EXPECT_THAT(Refusal(Changed("serial:/dev/ttyUSB0:19200", "ttyUSB0")), HasSubstr("tcp:HOST:PORT"));
   EXPECT_THAT(Refusal(Changed("scale = [1.0, 1000.0]", "scale = [1.0]")), HasSubstr("1 scales for 2 fields"));
-  EXPECT_THAT(Refusal(Changed("[axis_a]", "[axis_b]")), HasSubstr("axis_a"));
+  EXPECT_THAT(Refusal(Changed("[axis_a]", "[axis_b]")), AllOf(HasSubstr("bench.toml:10"), HasSubstr("axis_b")));
   EXPECT_THAT(Refusal(Changed("[instrument_1]\nkind = \"scpi\"", "[instrument_1]\nkind = \"none\"")),
               HasSubstr("instrument_1.address"));
   EXPECT_THAT(Refusal("kind = \"twin\"\n[machine]\nkind = \"esp\"\n"), HasSubstr("kind = \"hardware\""));
@@ -100,6 +100,19 @@ TEST(OpenMachine, RefusesWhatTheControllerDoesNotAllow) {
 
 TEST(OpenMachine, RefusesAFieldThatTheBenchHasNot) {
   EXPECT_THAT(OpeningRefusal("\"bar_um\"", "\"bar_mm\""), HasSubstr("expected \"bar_um\""));
+}
+
+TEST(OpenMachine, RefusesAMachineOfOtherAxes) {
+  const ServedMachineTwin served(ShortCircles());
+  const std::vector<MachineAxis> axes = {{"x"}, {"y"}, {"z"}};
+  try {
+    hw::OpenMachineHardware(hw::ParseMachineFile(served.BenchFile(), "served.toml", axes), axes,
+                            InstrumentColumns(FormatOf(kCircularBench).columns));
+    FAIL() << "two axes are not three";
+  } catch (const DeviceFault& fault) {
+    EXPECT_EQ(fault.kind(), FaultKind::kRefused);
+    EXPECT_THAT(fault.what(), HasSubstr("1HN1,2,3"));
+  }
 }
 
 TEST(OpenMachine, RefusesAnotherDevice) {

@@ -21,9 +21,9 @@ struct Failing {
     std::string file = served.BenchFile();
     for (auto at = file.find("kind = \"scpi\""); at != std::string::npos;
          at = file.find("kind = \"scpi\"", at + 20))
-      file.insert(at, "timeout_s = 1.0\n");
+      file.insert(at, "timeout_s = 0.5\n");
     const auto machine = file.find("kind = \"esp\"");
-    file.insert(machine, "timeout_s = 1.0\nmove_timeout_s = 20.0\n");
+    file.insert(machine, "timeout_s = 0.5\n");
     return RunServedMachine(served, scenario, file, std::move(faults), kept);
   }
   void ExpectGoneOn(const MachineRun& run, const std::string& fault) {
