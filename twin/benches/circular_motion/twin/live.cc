@@ -127,7 +127,8 @@ Reading CircleRun::Take(int reading) const {
 Reading CircleRun::TakeBeside(std::vector<Reading> course, const Reading& commanded) const {
   course.push_back(commanded);
   course = WithTemperatures(WithAngles(std::move(course)), scenario_);
-  return Shown(course.back(), CircleTwin(scenario_, course, Above_K(scenario_, course)), course.size() - 1);
+  BodiesOnce bodies;  // of this course; axes that are bodies take a second or two for it
+  return Shown(course.back(), CircleTwin(scenario_, course, Above_K(scenario_, course), bodies), course.size() - 1);
 }
 
 namespace {
