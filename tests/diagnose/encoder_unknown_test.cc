@@ -141,9 +141,9 @@ TEST(EncoderUnknown, HasNoShapesInTimeNorLinesInOneTurn) {
 }
 
 TEST(EncoderUnknown, LooksForOrdersThatTheSpacingCanShow) {
-  // Stops every 5 deg: orders below 36. Readings every 0.96 deg at the lower speed: 187, more than is looked for.
+  // Stops every 5 deg: orders below 36. Readings every 0.96 deg at the lower speed: 187.
   EXPECT_EQ(LargestOrder(RunWith("stops", [](const Reading&) { return 0.0; }).context), 35);
-  EXPECT_EQ(LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 120);
+  EXPECT_EQ(LargestOrder(RunWith("sweep", [](const Reading&) { return 0.0; }).context), 187);
 }
 
 }  // namespace

@@ -3,13 +3,12 @@
 #include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
-#include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
+#include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
 
 namespace twinbench::benches::encoder {
-
 namespace {
 
 /// Sizes of a linear axis are told as lengths; what a cause's wave or way is called stays.
@@ -27,17 +26,17 @@ void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
 
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
-  const diagnose::encoder::EncoderRun encoder = diagnose::encoder::BuildRun(readings, scenario, FollowRecord);
-  const std::vector<diagnose::Family> families = diagnose::encoder::Families(encoder, options.excluded);
-  diagnose::AnalysisOptions how = diagnose::AnalysisOptionsOf(options);
-  how.most_causes = 8;  // an angle device may well have an error of many orders
-  const diagnose::Analysis analysis = diagnose::Analyse(encoder.run, families, how);
+  const diagnose::encoder::LargeCauses large =
+      diagnose::encoder::FindLargeCauses(readings, scenario, options, FollowRecord);
+  const diagnose::encoder::Searched& searched = large.Last();
   const diagnose::AnswerWords words{
       [](const std::string&, const Eigen::VectorXd&) { return std::string("nothing but the device's offset"); },
       NextMeasurement};
-  diagnose::DiagnosisRun result = diagnose::Conclude(encoder.run, analysis, {}, words);
-  result.diagnosis.left_out = encoder.left_out;
-  result.diagnosis.harmonics = diagnose::encoder::HarmonicTable(encoder, analysis.noise);
+  diagnose::DiagnosisRun result = diagnose::Conclude(searched.encoder.run, searched.analysis, {}, words);
+  diagnose::encoder::AddLargeCauses(large, result);
+  result.diagnosis.left_out = searched.encoder.left_out;
+  result.diagnosis.harmonics =
+      diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, 0.0});
   const DeviceSettings& device = EncoderOf(scenario).device;
   if (device.turn_m > 0.0) TellLengths(CoarseUnit(device), result.diagnosis);
   return result;

@@ -74,19 +74,25 @@ std::vector<Reading> AsFollowed(std::vector<Reading> used, const Schedule& s) {
   return used;
 }
 
-/// What the twin's device shows beside the reference.
-Eigen::VectorXd FollowedError_rad(const Schedule& s, const model::Follow& twin) {
-  return twin.Predict().col(0) - s.reference_rad;
-}
-
-void SetNoise(LinearRun& run, const DeviceSettings& device) {
+/// Readings that are rounded err by no less than that.
+void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Reading>& used) {
+  Eigen::VectorXd shown_rad(std::ssize(used));
+  for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
+  run.rounding = std::max(device.resolution_rad, CommonStep(shown_rad));
+  const double rounded_rad = run.rounding / std::sqrt(12.0);
   run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
-  const double sigma_rad = run.sigma_stated ? std::hypot(device.noise_rad, device.resolution_rad / std::sqrt(12.0))
-                                            : EstimateNoise_rad(run.schedule, run.residual);
+  const double sigma_rad = run.sigma_stated ? std::hypot(device.noise_rad, rounded_rad)
+                                            : std::max(EstimateNoise_rad(run.schedule, run.residual), rounded_rad);
   run.sigma = Eigen::VectorXd::Constant(run.residual.size(), sigma_rad);
 }
 
 }  // namespace
+
+Eigen::VectorXd FollowedError_rad(const EncoderRun& encoder, const Scenario& scenario,
+                                  const model::FollowMaker& follow) {
+  const Schedule& s = encoder.run.schedule;
+  return follow(AsMounted(scenario, s, encoder.offset_rad), encoder.used)->Predict().col(0) - s.reference_rad;
+}
 
 EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
                     const model::FollowMaker& follow) {
@@ -110,11 +116,12 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   const Eigen::VectorXd offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
   encoder.context = ContextOf(run.schedule, run.schedule.reference_rad + offset_rad, EncoderOf(scenario).device);
   run.observed = run.schedule.reference_rad + comparison.error_rad;
-  run.residual =
-      comparison.error_rad - FollowedError_rad(run.schedule, *follow(AsMounted(scenario, run.schedule, offset_rad),
-                                                                     AsFollowed(used, run.schedule)));
+  encoder.used = AsFollowed(used, run.schedule);
+  encoder.error_rad = comparison.error_rad;
+  encoder.offset_rad = offset_rad;
+  run.residual = encoder.error_rad - FollowedError_rad(encoder, scenario, follow);
   run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
-  SetNoise(run, EncoderOf(scenario).device);
+  SetNoise(run, EncoderOf(scenario).device, used);
   return encoder;
 }
 

@@ -13,6 +13,10 @@ struct EncoderRun {
   LinearRun run;  // one channel, "angle", in deg; one unknown a set-up: its offset
   SignalContext context;
   int left_out = 0;  // readings without a value
+
+  std::vector<Reading> used;   // as the twin follows them
+  Eigen::VectorXd error_rad;   // measured - reference
+  Eigen::VectorXd offset_rad;  // its mean in the set-up: where the device stands on the shaft
 };
 
 /// `observed` is the device's angle with the turns that it does not count put back. Where the noise is not known it
@@ -23,5 +27,9 @@ struct EncoderRun {
 /// @throws InputError if fewer than 12 readings have a value.
 EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
                     const model::FollowMaker& follow);
+
+/// What the twin's device shows beside the reference at the readings of the run.
+Eigen::VectorXd FollowedError_rad(const EncoderRun& encoder, const Scenario& scenario,
+                                  const model::FollowMaker& follow);
 
 }  // namespace twinbench::diagnose::encoder

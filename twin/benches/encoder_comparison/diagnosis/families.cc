@@ -39,8 +39,15 @@ double FinestSpacing_rad(const SignalContext& context) {
   return spacings_rad.empty() ? 0.0 : *std::min_element(spacings_rad.begin(), spacings_rad.end());
 }
 
+int LeastOrder(const SignalContext& context) {
+  constexpr double kLeast = 0.6;  // of a period
+  const double range_rad = context.reference_rad.maxCoeff() - context.reference_rad.minCoeff();
+  return range_rad > 0.0 ? std::max(1, static_cast<int>(std::ceil(kLeast * units::turn / range_rad))) : 1;
+}
+
 int LargestOrder(const SignalContext& context) {
-  return model::HighestOrder(FinestSpacing_rad(context));
+  constexpr int kMost = 720;  // teeth of a worm wheel, poles of a motor
+  return model::HighestOrder(FinestSpacing_rad(context), kMost);
 }
 
 std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::string>& excluded) {

@@ -26,7 +26,10 @@ std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::s
 /// The closest usual distance of neighbouring readings of any pass; 0 if all are at rest.
 double FinestSpacing_rad(const SignalContext& context);
 
-/// The largest whole order that readings of this spacing can tell from lower ones; at most 120.
+/// The least whole order of which the run shows enough of a period to know one: 1 of a whole turn.
+int LeastOrder(const SignalContext& context);
+
+/// The largest whole order that readings of this spacing can tell from lower ones; at most 720.
 int LargestOrder(const SignalContext& context);
 
 }  // namespace twinbench::diagnose::encoder

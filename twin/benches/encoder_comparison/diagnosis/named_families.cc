@@ -13,9 +13,11 @@ namespace {
 
 using model::Wave;
 
-std::vector<double> WholeOrders(int first, int last) {
+/// Whole orders as close as the part of a turn that was gone through can tell them apart.
+std::vector<double> WholeOrders(const SignalContext& c, int first, int last) {
+  const int apart = std::max(1, LeastOrder(c) / 3);
   std::vector<double> orders;
-  for (int k = first; k <= last; ++k) orders.push_back(k);
+  for (int k = std::max(first, LeastOrder(c)); k <= last; k += apart) orders.push_back(k);
   return orders;
 }
 
@@ -29,7 +31,8 @@ void AddOrders(Candidates& named, const Showing& showing, const Eigen::VectorXd&
                const std::vector<double>& orders, const std::string& order, double factor = 1.0) {
   const auto count = static_cast<int>(std::ssize(orders));
   if (count == 0) return;
-  const auto waves = std::make_shared<const model::WaveGrid>(factor * angle_rad, orders.front(), 1.0, count);
+  const auto waves = std::make_shared<const model::WaveGrid>(factor * angle_rad, orders.front(),
+                                                             count > 1 ? orders[1] - orders[0] : 1.0, count);
   named.AddOrders(showing, named.BaseOf(count, [waves](int g) { return waves->At(g); }), order, orders);
 }
 
@@ -41,15 +44,17 @@ bool WasTurned(const SignalContext& c) {
 
 void AddPeriodic(const SignalContext& c, Candidates& named) {
   const int last = LargestOrder(c);
-  AddOrders(named, Shown("eccentricity"), c.device_rad, {1.0}, "");
-  AddOrders(named, Shown("ellipticity"), c.device_rad, {2.0}, "");
-  AddOrders(named, Shown("periodic"), c.device_rad, WholeOrders(3, last), "order");
+  const int least = LeastOrder(c);
+  if (least <= 1) AddOrders(named, Shown("eccentricity"), c.device_rad, {1.0}, "");
+  if (least <= 2) AddOrders(named, Shown("ellipticity"), c.device_rad, {2.0}, "");
+  AddOrders(named, Shown("periodic"), c.device_rad, WholeOrders(c, 3, last), "order");
   if (c.device.teeth > 0)
     AddOrders(named, Shown("gear_mesh"), c.device_rad, {static_cast<double>(c.device.teeth)}, "teeth");
   if (c.device.lines > 0)
-    AddOrders(named, Shown("interpolation"), c.device_rad, WholeOrders(1, 4), "order", c.device.lines);
+    AddOrders(named, Shown("interpolation"), c.device_rad, std::vector{1.0, 2.0, 3.0, 4.0}, "order",
+              c.device.lines);
   if (WasTurned(c))
-    AddOrders(named, Shown("reference_fault", -1.0), c.reference_rad, WholeOrders(1, last), "order");
+    AddOrders(named, Shown("reference_fault", -1.0), c.reference_rad, WholeOrders(c, 1, last), "order");
 }
 
 /// Twice per period, half the fault; its phase says which fault it is, if the zero of the signals is known. If it
@@ -121,8 +126,10 @@ void AddClipping(const Context& context, double plausible_rad, Candidates& named
 
 void AddSignals(const Context& context, double plausible_rad, Candidates& named) {
   const SignalContext& c = *context;
+  const int periods = c.device.signal_periods;
+  if (LeastOrder(c) > periods) return;  // too little of one of their periods
   // To first order the angle errs by (y error) cos - (x error) sin, in rad of the period.
-  const Eigen::MatrixXd wave = Wave(SignalPhase_rad(c)) / c.device.signal_periods;
+  const Eigen::MatrixXd wave = Wave(SignalPhase_rad(c)) / periods;
   named.Add(Shown("signal_offset"), {"offset_sin", "offset_cos"}, wave * Eigen::Vector2d(1.0, -1.0).asDiagonal());
   AddTwicePerPeriod(c, "amplitude_mismatch", "ratio", true, named);
   AddTwicePerPeriod(c, "quadrature_error", "angle", false, named);
@@ -170,26 +177,30 @@ double Range_rad(const Eigen::VectorXd& angle_rad) {
   return angle_rad.maxCoeff() - angle_rad.minCoeff();
 }
 
-/// Play with its state. A gap that is crossed between two readings has no way of its own: it is the width.
+/// A gap that is crossed between two readings has no way of its own: it is the width.
+void AddBacklashAtOnce(const Context& context, double finest_rad, Candidates& named) {
+  const double at_once_rad = 1e-3 * finest_rad, run_up_rad = RunUp_rad(*context);
+  const WayShapes shapes(*context, "crossed_over", {at_once_rad});
+  Family& family = named.AddOver(
+      Shown("backlash"), {"width"}, {shapes.start, shapes.approach}, [=](const Eigen::VectorXd& shape) {
+        return Eigen::MatrixXd(Play(*context, at_once_rad, shape[0], shape[1] * run_up_rad));
+      });
+  family.parameters = AsInCatalogue(named.catalogue(), "backlash", "width", {"start", "approach"});
+}
+
+/// Play with its state; a gap may be crossed over more than one reading.
 void AddBacklash(const Context& context, Candidates& named) {
   const double finest_rad = FinestSpacing_rad(*context), widest_rad = 0.5 * Range_rad(context->reference_rad);
   if (!(finest_rad > 0.0) || widest_rad < finest_rad) return;
-  constexpr double kAtOnce = 1e-3;  // of the distance of two readings
-  std::vector<double> ways_rad = Ratios(0.7 * finest_rad, std::max(widest_rad, 1.4 * finest_rad), 22);
-  ways_rad.insert(ways_rad.begin(), kAtOnce * finest_rad);
+  AddBacklashAtOnce(context, finest_rad, named);
   const double run_up_rad = RunUp_rad(*context);
-  const WayShapes shapes(*context, "crossed_over", ways_rad);
+  const WayShapes shapes(*context, "crossed_over",
+                         Ratios(0.7 * finest_rad, std::max(widest_rad, 1.4 * finest_rad), 22));
   Family& family = named.AddOver(
       Shown("backlash"), {"width"}, shapes.All(), [context, run_up_rad](const Eigen::VectorXd& shape) {
         return Eigen::MatrixXd(Play(*context, shape[0], shape[1], shape[2] * run_up_rad));
       });
-  family.parameters =
-      [estimates = AsInCatalogue(named.catalogue(), "backlash", "width", {"crossed_over", "start", "approach"}),
-       finest_rad](const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
-        std::vector<ParameterEstimate> all = estimates(shape, x, cov);
-        if (std::max(0.5 * shape[0], std::abs(x[0])) < finest_rad) all[1].value = 0.0;
-        return all;
-      };
+  family.parameters = AsInCatalogue(named.catalogue(), "backlash", "width", {"crossed_over", "start", "approach"});
 }
 
 /// The lag in steady motion; the state at the beginning is no larger than it. One that settles between two readings
@@ -198,8 +209,7 @@ void AddHysteresis(const Context& context, Candidates& named) {
   const double finest_rad = FinestSpacing_rad(*context), longest_rad = Range_rad(context->reference_rad);
   if (!(finest_rad > 0.0) || longest_rad < finest_rad) return;
   const double run_up_rad = RunUp_rad(*context);
-  const WayShapes shapes(*context, "settles_over",
-                         Ratios(0.5 * finest_rad, std::min(longest_rad, units::turn), 20));
+  WayShapes shapes(*context, "settles_over", Ratios(0.5 * finest_rad, std::min(longest_rad, units::turn), 20));
   Family& family = named.AddOver(
       Shown("hysteresis", -1.0), {"lag"}, shapes.All(), [context, run_up_rad](const Eigen::VectorXd& shape) {
         const Eigen::MatrixXd states = Relaxation(*context, shape[0], shape[2] * run_up_rad);

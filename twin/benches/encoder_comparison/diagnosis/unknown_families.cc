@@ -10,7 +10,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.course = encoder.run.schedule;
   design.channels = encoder.run.channels;
   design.places = {{"angle", "angle", Eigen::MatrixXd::Ones(1, 1)}};
-  design.angles = {{"reference angle", c.device_rad, LargestOrder(c), 1, "harmonic", "device"}};
+  design.angles = {{"reference angle", c.device_rad, LargestOrder(c), LeastOrder(c), "harmonic", "device"}};
   design.continued_rad = c.device_rad;
   design.moved = Eigen::VectorXd::Ones(c.Readings());
   design.senses = Senses(c);
@@ -24,6 +24,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.unit = encoder.run.unit;
   design.to_SI = encoder.run.to_SI;
   design.plausible = plausible_rad;
+  design.may_be_touched = true;
   design.named = {"harmonic", "direction offset", "transition", "step", "trend"};
   return unknown::Families(design);
 }
