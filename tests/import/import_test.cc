@@ -175,6 +175,15 @@ TEST_F(Importing, TakesAFirmwaresTableOverItsComments) {
   EXPECT_THAT(imported.story, HasSubstr("unwrapped"));
 }
 
+TEST_F(Importing, TakesNeighboursOfALargeTableTogetherAndSaysSo) {
+  const auto error = [](double angle_deg, int) { return 0.2 * test::Cosine(4.0, angle_deg, 30.0); };
+  const Imported imported = Take(test::FirmwareTable(error, 16384), "lookup_table");
+  EXPECT_LT(imported.readings.size(), 6250u);
+  EXPECT_GT(imported.readings.size(), 3000u);
+  EXPECT_NEAR(Worst_deg(imported.readings), 0.2, 0.002);
+  EXPECT_THAT(imported.story, HasSubstr("averaged in blocks of up to 4 rows"));
+}
+
 TEST_F(Importing, OfAPositioningReportTakesTheRunsInTheOrderOfTheTest) {
   const auto actual_mm = [](double target, int sense, int run) {
     return target + 0.001 * run - (sense < 0 ? 0.012 : 0.0);
@@ -257,8 +266,10 @@ TEST_F(Importing, RefusesADeviceThatDoesNotFollowOneToOne) {
   EXPECT_THAT(MessageOf([&] { Take(rad); }), HasSubstr("one of the two is in rad, the other in deg"));
   EXPECT_THAT(MessageOf([&] { Take(dead); }), HasSubstr("the channel is dead"));
   EXPECT_THAT(MessageOf([&] { Take(noise); }), HasSubstr("does not follow reference_deg"));
-  EXPECT_THAT(MessageOf([&] { Take(against); }), HasSubstr("they count in opposite directions"));
-  EXPECT_EQ(Take(against, "", {"measured_deg=-measured_deg"}).readings.size(), 200u);
+  EXPECT_THAT(
+      MessageOf([&] { Take(against); }),
+      HasSubstr("they count in opposite directions; expected the same sense: measured_deg = \"-[measured_deg]\""));
+  EXPECT_EQ(Take(against, "", {"measured_deg=-[measured_deg]"}).readings.size(), 200u);
 }
 
 TEST_F(Importing, NamesTheColumnsThereAreWhereItCannotChoose) {

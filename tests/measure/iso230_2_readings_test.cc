@@ -173,6 +173,19 @@ TEST(MissingForRotaryAxis, WantsFiveRunsFromBothSides) {
                           "0 backward runs to the target at 0 deg; ISO 230-2 wants 5"));
 }
 
+TEST(MissingForLinearAxis, WantsFiveTargetsAndFiveAMetre) {
+  const auto over = [](int count, double travel_m) {
+    std::vector<PositioningTarget> targets;
+    for (int i = 0; i < count; ++i) targets.push_back({travel_m * i, std::vector(5, 0.0), std::vector(5, 0.0)});
+    return MissingForLinearAxis(targets, travel_m, {"mm", 1e-3, "um", 1e-6});
+  };
+  EXPECT_THAT(over(5, 0.3), testing::IsEmpty());
+  ASSERT_EQ(over(4, 0.3).size(), 1u);
+  EXPECT_EQ(over(4, 0.3)[0], "4 targets for 300 mm of travel; ISO 230-2 wants 5");
+  EXPECT_EQ(over(5, 1.2)[0], "5 targets for 1200 mm of travel; ISO 230-2 wants 6");
+  EXPECT_THAT(over(10, 3.0), testing::IsEmpty()) << "above 2 m the standard asks otherwise";
+}
+
 TEST(PositioningText, PrintsArcsecAndADashForWhatIsNotThere) {
   const double s = 1.0 / std::sqrt(2.0);
   std::vector<PositioningTarget> test = {{0.0, {10 - s, 10 + s}, {4 - 2 * s, 4 + 2 * s}},

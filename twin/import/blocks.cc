@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/core/units.h"
 #include "twin/import/common.h"
 
 namespace twinbench::imports {
@@ -10,6 +11,7 @@ namespace {
 
 constexpr double kOneInAHundred = 0.49;  // rad of a wave: a block as wide lowers it by 1 %
 constexpr int kOrdersWanted = 30;
+constexpr double kDense_rad = 0.5 * units::deg;
 constexpr std::size_t kBehindReversal = 40;  // short blocks there
 
 /// True if rows i - 1 and i cannot be in one block.
@@ -67,6 +69,13 @@ Blocks CutMotion(const Course& course, const std::vector<double>& time_s, std::s
   return cut;
 }
 
+/// Stops as close as the entries of a table: neighbours can be taken together.
+bool AreDense(const Course& course) {
+  std::vector<double> way = StepsOf(course.reference);
+  for (double& step : way) step = std::abs(step);
+  return MedianOf(std::move(way)) < kDense_rad;
+}
+
 Blocks CutToAbout(const Course& course, const std::vector<double>& time_s, std::size_t most) {
   std::size_t rows = (course.reference.size() + most - 1) / most;
   Blocks cut = CutMotion(course, time_s, rows);
@@ -83,7 +92,7 @@ Blocks CutToAbout(const Course& course, const std::vector<double>& time_s, std::
 Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most, bool stop_and_go) {
   if (stop_and_go) return CutStops(course);
   const std::size_t n = course.reference.size();
-  if (n <= most || course.stops) {
+  if (n <= most || (course.stops && !AreDense(course))) {
     Blocks cut;
     for (std::size_t i = 0; i < n; ++i) cut.blocks.push_back({i, i + 1});
     return cut;

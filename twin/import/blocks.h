@@ -26,7 +26,8 @@ struct Blocks {
 /// motion is cut into at most about `most` blocks that never span a reversal, a rest's end, a gap or a ramp's end;
 /// behind a reversal, where play is crossed, they are an eighth as long.
 ///
-/// Where that would lose orders below 30, there are up to four times as many.
+/// Stops are kept one by one, unless they are as close as the entries of a firmware's table. Where that would lose
+/// orders below 30, there are up to four times as many.
 ///
 /// A block of width w lowers a wave of order k by (k w)^2 / 24: one part in a hundred at k = 0.49 / w.
 Blocks CutIntoBlocks(const Course& course, const std::vector<double>& time_s, std::size_t most, bool stop_and_go);

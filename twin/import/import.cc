@@ -156,14 +156,32 @@ class Maker {
         source,
         fmt::format("{} follows {} times {:.6g}{}", name, bench_.compared->reference, following.gain,
                     meaning.empty() ? "" : ": " + meaning),
-        fmt::format("the same unit and sense: {} = \"...\" in the unit it has, or {} = \"[column] / {:.6g}\"",
-                    KeysOf(name), name, following.gain));
+        std::abs(following.gain + 1.0) <= kLikeOne
+            ? fmt::format("the same sense: {} = \"-{}\"", KeyOf(name), ExpressionOf(name))
+            : fmt::format("the same unit and sense: {} = \"...\" in the unit it has, or {} = \"{} / {:.6g}\"",
+                          KeysOf(name), KeyOf(name), ExpressionOf(name), following.gain));
   }
   std::string Sum() const {
     return fmt::format("{} = \"[reference column] + [error column]\"", bench_.compared->shown);
   }
   static std::string KeysOf(const std::string& column) {
     return BaseOf(column) + "_rad, " + BaseOf(column) + "_arcsec or " + BaseOf(column) + "_mm";
+  }
+  /// What a column came from, to be used inside a formula.
+  std::string ExpressionOf(const std::string& column) const {
+    for (const MappedColumn& mapped : map_.columns) {
+      if (mapped.column != column) continue;
+      const bool is_name = mapped.expression.find_first_of("+*/()[]") == std::string::npos;
+      return is_name ? "[" + mapped.expression + "]" : "(" + mapped.expression + ")";
+    }
+    return column;
+  }
+  /// The key with the unit that counted.
+  std::string KeyOf(const std::string& column) const {
+    for (const MappedColumn& mapped : map_.columns) {
+      if (mapped.column == column && !mapped.unit.empty()) return BaseOf(column) + "_" + mapped.unit;
+    }
+    return column;
   }
   std::string NameOf(const std::string& column) const {
     for (const MappedColumn& mapped : map_.columns) {
@@ -315,7 +333,7 @@ std::string StoryOf(const std::vector<Recording>& recordings, const Joined& join
   if (tally.wraps > 0) text += fmt::format("the reference starts again {} times: it was unwrapped\n", tally.wraps);
   text += tally.stops ? "taken as stops: every row, or every rest, is a reading at rest (course.kind)\n"
                       : "taken as motion that is read while it goes on (course.kind)\n";
-  if (tally.usual_rows > 1 && !tally.stops)
+  if (tally.widest > 0.0)
     text += fmt::format(
         "averaged in blocks of up to {} rows, never across a reversal, a rest or a gap: orders up to {} keep 99 "
         "%\n",

@@ -56,7 +56,12 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
             PositioningResults& results) {
   const AxisPositioning positioning = measure::EvaluatePositioning(stops.targets);
   const double travel_rad = stops.targets.back().position - stops.targets.front().position;
-  const std::vector<std::string> missing = measure::MissingForRotaryAxis(stops.targets, travel_rad);
+  const AxisUnit coarse = CoarseUnit(device), fine = FineUnit(device);
+  const measure::ToldIn told{coarse.name, coarse.to_SI, fine.name, fine.to_SI};
+  const std::vector<std::string> missing =
+      device.turn_m > 0.0
+          ? measure::MissingForLinearAxis(stops.targets, travel_rad / units::turn * device.turn_m, told)
+          : measure::MissingForRotaryAxis(stops.targets, travel_rad);
   nlohmann::json targets = nlohmann::json::array();
   for (const TargetPositioning& target : positioning.targets) targets.push_back(ToJson(target));
   results.json.push_back({{"setup", setup},
@@ -65,8 +70,6 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
                           {"left_out", stops.left_out},
                           {"missing", missing},
                           {"notes", stops.notes}});
-  const AxisUnit coarse = CoarseUnit(device), fine = FineUnit(device);
-  const measure::ToldIn told{coarse.name, coarse.to_SI, fine.name, fine.to_SI};
   results.text += fmt::format("set-up {}, {} targets over {:.4g} {}\n", setup, targets.size(),
                               travel_rad / coarse.to_SI, coarse.name);
   results.text += targets.size() <= kMostRows ? PositioningText(positioning, told) : AxisText(positioning, told);

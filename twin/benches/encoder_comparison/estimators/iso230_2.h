@@ -115,13 +115,6 @@ struct PositioningStops {
 /// angle are one target (some files number the readings instead of the stops).
 PositioningStops PositioningOf(const std::vector<Reading>& readings, int setup);
 
-/// What a test of a rotary axis lacks of the standard: at least 3 targets for a travel up to 90 deg, 5 up to 180
-/// deg and 8 above, and five runs to each target from both sides. Empty: nothing.
-///
-/// Not checked: uneven spacing of the targets, which the standard wants against periodic errors; more than one
-/// turn.
-std::vector<std::string> MissingForRotaryAxis(const std::vector<PositioningTarget>& targets, double travel_rad);
-
 /// The units of a table for people: of targets, and of what they are missed by.
 struct ToldIn {
   std::string coarse_name = "deg";
@@ -129,6 +122,18 @@ struct ToldIn {
   std::string fine_name = "arcsec";
   double fine = units::arcsec;
 };
+
+/// What a test of a rotary axis lacks of the standard: at least 3 targets for a travel up to 90 deg, 5 up to 180
+/// deg and 8 above, and five runs to each target from both sides. Empty: nothing.
+///
+/// Not checked: uneven spacing of the targets, which the standard wants against periodic errors; more than one
+/// turn.
+std::vector<std::string> MissingForRotaryAxis(const std::vector<PositioningTarget>& targets, double travel_rad);
+
+/// The same of a linear axis: 5 targets, and 5 a metre up to 2 m of travel.
+/// @param told  How the targets are told in messages.
+std::vector<std::string> MissingForLinearAxis(const std::vector<PositioningTarget>& targets, double travel_m,
+                                              const ToldIn& told);
 
 /// The evaluation as a table for people; "-" is not available.
 std::string PositioningText(const AxisPositioning& positioning, const ToldIn& told = {});

@@ -99,13 +99,21 @@ int TargetsNeeded(double travel_rad) {
 using RunsOf = std::vector<double> PositioningTarget::*;
 
 std::vector<std::string> MissingRuns(const std::vector<PositioningTarget>& targets, RunsOf runs_of,
-                                     const char* direction) {
+                                     const char* direction, const ToldIn& told) {
   constexpr std::size_t kRunsNeeded = 5;
   const auto fewest = std::ranges::min_element(
       targets, {}, [runs_of](const PositioningTarget& target) { return (target.*runs_of).size(); });
   if (fewest == targets.end() || ((*fewest).*runs_of).size() >= kRunsNeeded) return {};
-  return {fmt::format("{} {} runs to the target at {:.4g} deg; ISO 230-2 wants {}", ((*fewest).*runs_of).size(),
-                      direction, fewest->position / units::deg, kRunsNeeded)};
+  return {fmt::format("{} {} runs to the target at {:.4g} {}; ISO 230-2 wants {}", ((*fewest).*runs_of).size(),
+                      direction, fewest->position / told.coarse, told.coarse_name, kRunsNeeded)};
+}
+
+void AppendMissingRuns(const std::vector<PositioningTarget>& targets, const ToldIn& told,
+                       std::vector<std::string>& missing) {
+  for (const auto& text : MissingRuns(targets, &PositioningTarget::forward, "forward", told))
+    missing.push_back(text);
+  for (const auto& text : MissingRuns(targets, &PositioningTarget::backward, "backward", told))
+    missing.push_back(text);
 }
 
 }  // namespace
@@ -134,8 +142,18 @@ std::vector<std::string> MissingForRotaryAxis(const std::vector<PositioningTarge
   if (std::ssize(targets) < needed)
     missing.push_back(fmt::format("{} targets for {:.4g} deg of travel; ISO 230-2 wants {}", targets.size(),
                                   travel_rad / units::deg, needed));
-  for (const auto& text : MissingRuns(targets, &PositioningTarget::forward, "forward")) missing.push_back(text);
-  for (const auto& text : MissingRuns(targets, &PositioningTarget::backward, "backward")) missing.push_back(text);
+  AppendMissingRuns(targets, {}, missing);
+  return missing;
+}
+
+std::vector<std::string> MissingForLinearAxis(const std::vector<PositioningTarget>& targets, double travel_m,
+                                              const ToldIn& told) {
+  std::vector<std::string> missing;
+  const int needed = std::max(5, static_cast<int>(std::ceil(5.0 * std::min(travel_m, 2.0) - 1e-9)));
+  if (std::ssize(targets) < needed)
+    missing.push_back(fmt::format("{} targets for {:.4g} mm of travel; ISO 230-2 wants {}", targets.size(),
+                                  travel_m / units::mm, needed));
+  AppendMissingRuns(targets, told, missing);
   return missing;
 }
 
