@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/core/input_error.h"
+#include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -218,6 +219,8 @@ FixtureSettings AnyFixture(bool is_box, Random& random, const std::string& file)
 /// What the loader wants of keys together.
 void MakeWholeTeethAndLines(Scenario& s) {
   if (s.bench == kHobBench) HobOf(s).table_encoder.lines = 5 * HobOf(s).hob_procedure.samples_per_turn;
+  // Bodies and the closed form of what they do exclude each other; tests/own_scenario has every key of either.
+  if (s.bench == kCircularBench) CircularOf(s).mechanics.fidelity = "kinematic";
   if (s.bench != kTurntableBench) return;
   TurntableOf(s).multitooth.teeth = 360;
   TurntableOf(s).turntable_procedure.positions = 72;

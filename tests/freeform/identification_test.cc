@@ -32,7 +32,7 @@ Eigen::VectorXd UnknownsOf(const sim::DrawnBench& bench) {
 }
 
 TEST(FreeformEstimator, PredictsWhatTheTwinShows) {
-  // Written down twice, with other steps: to the rounding of doubles.
+  // Written down twice, one by equations and one by rays: to what tracing leaves in a double.
   const FreeformSettings settings;
   const std::vector<Reading> readings = ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
   const Eigen::VectorXd x = UnknownsOf(OracleBench());
@@ -42,8 +42,8 @@ TEST(FreeformEstimator, PredictsWhatTheTwinShows) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d predicted = Predicted(settings, poses[i], InputsAt(poses[i], x));
     const sim::ProbeSignals shown = twin.Show(readings[i], 0.0);
-    EXPECT_NEAR(predicted[0], shown.qpd_x_V, 1e-10);
-    EXPECT_NEAR(predicted[1], shown.qpd_y_V, 1e-10);
+    EXPECT_NEAR(predicted[0], shown.qpd_x_V, 1e-8);
+    EXPECT_NEAR(predicted[1], shown.qpd_y_V, 1e-8);
     EXPECT_NEAR(predicted[2], shown.ccd_px, 1e-8);
   }
 }

@@ -116,10 +116,11 @@ void TakeAmong(const Problem& problem, const std::map<int, Eigen::VectorXd>& sha
 Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidence) {
   const Projected data = Project(problem.projector, others, problem.white);
   evidence = problem.scanner.Scan(data, others);
-  const Eigen::VectorXd as_scanned = evidence.log_bayes.col(0) + problem.log_priors;
+  Eigen::VectorXd as_scanned = evidence.log_bayes.col(0) + problem.log_priors;
+  const auto statistic = [&] { return LogSum(as_scanned) - std::log(tuning::kPriorNone); };
   std::map<int, Eigen::VectorXd> shapes;
   Term term;
-  term.statistic = LogSum(as_scanned) - std::log(tuning::kPriorNone);  // as calibrated: without refinement
+  term.statistic = statistic();  // as calibrated: without refinement
   if (term.statistic >= problem.threshold) RefineLeaders(problem, others, data, evidence, shapes);
   // A name that does not hold leaves its probability to the others.
   constexpr int kMostRefused = 4;
@@ -128,7 +129,8 @@ Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidenc
     const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
     if (term.statistic < problem.threshold || refused == kMostRefused) break;
     if (IsInside(family, term.shape) && IsThere(problem, others, data, term)) break;
-    evidence.log_bayes(term.family, 0) = kNever;
+    evidence.log_bayes(term.family, 0) = as_scanned[term.family] = kNever;
+    term.statistic = statistic();
   }
   return term;
 }
