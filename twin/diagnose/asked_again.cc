@@ -75,6 +75,7 @@ ceres::NumericDiffOptions Steps() {
 
 Eigen::VectorXd Solve(const Left& left, const std::vector<EffectEntry>& catalogue, Eigen::VectorXd x) {
   const std::vector<Movable>& movable = left.scaled.movable;
+  if (movable.empty()) return x;
   using Cost = ceres::DynamicNumericDiffCostFunction<Left, ceres::CENTRAL>;
   auto* cost = new Cost(new Left(left), ceres::TAKE_OWNERSHIP, Steps());  // Ceres takes ownership
   cost->AddParameterBlock(static_cast<int>(x.size()));
@@ -114,7 +115,7 @@ Eigen::VectorXd WithoutFar(const Eigen::VectorXd& left, Eigen::VectorXd weight, 
 /// Slopes by parameter, SI.
 Eigen::MatrixXd SlopesAt(const Shows& shows, const Scaled& scaled, const Eigen::VectorXd& x) {
   constexpr double kStep = 1e-2;  // of what is known
-  Eigen::MatrixXd slopes;
+  Eigen::MatrixXd slopes(shows(scaled.At(x)).size(), 0);
   for (std::size_t k = 0; k < scaled.movable.size(); ++k) {
     const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(x.size(), static_cast<Eigen::Index>(k));
     const Eigen::VectorXd change = shows(scaled.At(x + step)) - shows(scaled.At(x - step));
@@ -126,6 +127,7 @@ Eigen::MatrixXd SlopesAt(const Shows& shows, const Scaled& scaled, const Eigen::
 
 void StateUncertainties(const Projector& projector, const Eigen::VectorXd& weight, double variance,
                         const std::vector<Movable>& movable, AskedAgain& asked) {
+  if (movable.empty()) return;
   const Eigen::MatrixXd white = weight.asDiagonal() * asked.slopes * asked.sd.asDiagonal();
   Eigen::MatrixXd normal = white.transpose() * projector.Apply(white);
   normal.diagonal().array() += variance;  // no parameter is known worse than it was thought of

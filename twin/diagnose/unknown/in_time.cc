@@ -201,9 +201,9 @@ void AddTrends(Collector& collect) {
 void AddInTime(Collector& collect) {
   AddTrends(collect);
   AddSteps(collect);
-  AddTouches(collect);
   AddTemperature(collect);
   if (TimeFollowsAngle(collect.design())) return;
+  AddTouches(collect);
   AddWander(collect);
   AddRestarts(collect);
   AddGrowing(collect);

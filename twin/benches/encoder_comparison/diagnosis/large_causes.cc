@@ -278,6 +278,8 @@ class Search {
   bool Take(const LargeCause& next) {
     std::vector<LargeCause> causes = large_.causes;
     causes.push_back(next);
+    // Of a cause whose size is not known there is nothing to be asked.
+    if (MovableOf({next}).empty()) return false;
     AskedAgain asked = Ask(causes);
     double power = PowerOf(asked.left);
     if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
@@ -302,6 +304,7 @@ class Search {
       Cause& cause = changed[k].causes[j];
       cause.parameters = CauseFrom(*family, 0, plain.residual - Shown(others), plain.sigma, *projector_).parameters;
       changed[k] = LedBy(changed[k].causes, j, plain.bench);
+      if (MovableOf({changed[k]}).empty()) continue;
       changed[k].explained = causes[k].explained;
       for (std::size_t i = 0; i < changed.size(); ++i) {
         if (i != k) changed[i].effect = asked.effects[i];
@@ -325,7 +328,9 @@ class Search {
   void DropNeedless() {
     std::vector<LargeCause> kept = large_.causes;
     std::erase_if(kept, [](const LargeCause& cause) { return !IsHeld(cause.effect); });
-    if (!kept.empty() && kept.size() < large_.causes.size()) Accept(Ask(kept), std::move(kept));
+    if (kept.empty() || kept.size() == large_.causes.size()) return;
+    const AskedAgain asked = Ask(kept);
+    Accept(asked, std::move(kept));
   }
 
   std::unique_ptr<Searched> SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes) const {
