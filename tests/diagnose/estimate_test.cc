@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/units.h"
@@ -13,7 +14,8 @@ namespace {
 
 constexpr double kAmplitude_m = 6.0 * units::um, kLifetime_s = 700.0;
 constexpr int kSeeds = 200;
-constexpr double kAnything = -1e9;  // threshold of the search: size is asked for here, not presence
+// Threshold of the search: size is asked for here, not presence.
+constexpr double kAnything = -std::numeric_limits<double>::infinity();
 
 double DecayAt(const Schedule& s, int reading, double lifetime_s) {
   return std::exp(-(s.time_s[reading] - s.time_s[0]) / lifetime_s);
