@@ -72,7 +72,7 @@ TEST(ForeignGain, IsTheShareThatTheFileExplainsOfAnotherRun) {
   for (const double share : {0.0, 0.5, 1.0, 2.5}) {
     Scenario extended = machine.believed;
     extended.effects.push_back(
-        {"drift", "", {{"rate", share * 0.02 * units::deg / 3600.0}, {"curvature", 0.0}}, ""});
+        {"drift", "", {{"rate", share * 0.02 * units::deg / 3600.0}, {"curvature", 0.0}, {"warm_up", 0.0}}, ""});
     EXPECT_NEAR(GainOn(machine, extended), 1.0 - (1.0 - share) * (1.0 - share), 1e-4) << share;
   }
 }

@@ -29,6 +29,8 @@ bool IsLikeAGap(const EffectSettings& effect, const Scenario& drawn, const Signa
   if (effect.name != "hysteresis") return false;
   EffectSettings gap;
   gap.name = "backlash";
+  for (const EffectParameter& p : FindEffect("backlash", drawn.bench)->parameters)
+    gap.parameters[p.name] = p.default_SI;
   gap.parameters["width"] = 2.0 * effect.parameters.at("lag");
   if (gap.parameters["width"] < CatalogueParameter(drawn.bench, "backlash", "width").lower_SI) return false;
   return scale.Rho(NoiseFree(drawn, {effect}), NoiseFree(drawn, {gap}), drawn.seed) < kTellable;

@@ -1,7 +1,6 @@
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/settings.h"
-#include "twin/benches/circular_motion/stated_noise.h"
 #include "twin/benches/circular_motion/twin/factory.h"
 #include "twin/diagnose/products.h"
 

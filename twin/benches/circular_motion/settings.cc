@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "twin/benches/circular_motion/format.h"
 #include "twin/core/errors.h"
 #include "twin/core/scenario_together.h"
@@ -210,3 +212,15 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
 }
 
 }  // namespace twinbench::benches::circular
+
+namespace twinbench {
+
+StatedNoise StatedNoiseOf(const CircularSettings& s, bool is_bar, double radius_m) {
+  const auto with_machine = [&](double noise_m) { return std::hypot(noise_m, s.machine.noise_m); };
+  if (!is_bar) return {with_machine(s.grid.noise_m), with_machine(s.grid.noise_m)};
+  const double quantum = 1.0 / std::sqrt(12.0), step_rad = units::turn / s.encoder.lines / s.encoder.interpolation;
+  return {with_machine(std::hypot(s.bar.noise_m, quantum * s.bar.resolution_m)),
+          with_machine(radius_m * std::hypot(s.encoder.noise_rad, quantum * step_rad))};
+}
+
+}  // namespace twinbench

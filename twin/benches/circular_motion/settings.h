@@ -138,6 +138,12 @@ struct CircularSettings {
   CircularProcedureSettings procedure;
 };
 
+/// Standard deviation of one reading as the scenario states it: of the instrument, its quantum, and the machine.
+struct StatedNoise {
+  double radial_m, tangential_m;
+};
+StatedNoise StatedNoiseOf(const CircularSettings& settings, bool is_bar, double radius_m);
+
 /// The bench's own part of a scenario. @throws std::logic_error if it is another bench's.
 inline CircularSettings& CircularOf(Scenario& scenario) {
   return scenario.own.As<CircularSettings>();

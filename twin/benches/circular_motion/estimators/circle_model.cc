@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "twin/benches/circular_motion/columns.h"
-#include "twin/benches/circular_motion/stated_noise.h"
 
 namespace twinbench::separate::circular {
 namespace {
@@ -143,7 +142,7 @@ Vector2d FromGrid_m(const CirclePoint& p, const CircleMounting& m, const CircleC
 }
 
 void SetNoise(const CircularSettings& s, CirclePoint& p) {
-  const benches::circular::StatedNoise noise = benches::circular::StatedNoiseOf(s, p.is_bar, p.radius_m);
+  const StatedNoise noise = StatedNoiseOf(s, p.is_bar, p.radius_m);
   p.u_radial_m = noise.radial_m;
   p.u_tangential_m = noise.tangential_m;
 }

@@ -88,10 +88,21 @@ void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Re
 
 }  // namespace
 
-Eigen::VectorXd FollowedError_rad(const EncoderRun& encoder, const Scenario& scenario,
-                                  const model::FollowMaker& follow) {
+ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow) {
+  constexpr double kSame_rad = 1e-12;
   const Schedule& s = encoder.run.schedule;
-  return follow(AsMounted(scenario, s, encoder.offset_rad), encoder.used)->Predict().col(0) - s.reference_rad;
+  ErrorOfTwin followed{{}, encoder.offset_rad};
+  const auto ask = [&] {
+    followed.error_rad =
+        follow(AsMounted(scenario, s, followed.offset_rad), encoder.used)->Predict().col(0) - s.reference_rad;
+  };
+  ask();
+  const Eigen::VectorXd mean_rad =
+      SetUpMeans(encoder.run.nuisance.jacobian, encoder.error_rad - followed.error_rad);
+  if (mean_rad.cwiseAbs().maxCoeff() < kSame_rad) return followed;
+  followed.offset_rad += mean_rad;
+  ask();
+  return followed;
 }
 
 EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario,
@@ -113,14 +124,16 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   run.nuisance.jacobian = SetUpIndicators(run.schedule.setup);
   run.nuisance.prior_precision =
       Eigen::VectorXd::Constant(run.nuisance.jacobian.cols(), 1.0 / (kOffsetPrior_rad * kOffsetPrior_rad));
-  const Eigen::VectorXd offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
-  encoder.context = ContextOf(run.schedule, run.schedule.reference_rad + offset_rad, EncoderOf(scenario).device);
   run.observed = run.schedule.reference_rad + comparison.error_rad;
   encoder.used = AsFollowed(used, run.schedule);
   encoder.error_rad = comparison.error_rad;
-  encoder.offset_rad = offset_rad;
-  run.residual = encoder.error_rad - FollowedError_rad(encoder, scenario, follow);
+  encoder.offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
+  const ErrorOfTwin followed = FollowTwin(encoder, scenario, follow);
+  encoder.offset_rad = followed.offset_rad;
+  run.residual = encoder.error_rad - followed.error_rad;
   run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
+  encoder.context =
+      ContextOf(run.schedule, run.schedule.reference_rad + encoder.offset_rad, EncoderOf(scenario).device);
   SetNoise(run, EncoderOf(scenario).device, used);
   return encoder;
 }

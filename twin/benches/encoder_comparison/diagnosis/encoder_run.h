@@ -16,7 +16,7 @@ struct EncoderRun {
 
   std::vector<Reading> used;   // as the twin follows them
   Eigen::VectorXd error_rad;   // measured - reference
-  Eigen::VectorXd offset_rad;  // its mean in the set-up: where the device stands on the shaft
+  Eigen::VectorXd offset_rad;  // where the device stands on the shaft
 };
 
 /// `observed` is the device's angle with the turns that it does not count put back. Where the noise is not known it
@@ -29,7 +29,13 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
                     const model::FollowMaker& follow);
 
 /// What the twin's device shows beside the reference at the readings of the run.
-Eigen::VectorXd FollowedError_rad(const EncoderRun& encoder, const Scenario& scenario,
-                                  const model::FollowMaker& follow);
+struct ErrorOfTwin {
+  Eigen::VectorXd error_rad;
+  Eigen::VectorXd offset_rad;  // where the device then stands on the shaft, by reading
+};
+
+/// The device is set up where the readings say: the mean of what it shows in a set-up, less the mean of the errors
+/// that the scenario has (those of a quadrature error are not zero).
+ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow);
 
 }  // namespace twinbench::diagnose::encoder

@@ -226,7 +226,7 @@ class Search {
     const LinearRun& plain = large_.first->encoder.run;
     const NoiseModel noise{plain.sigma, 0.0};
     projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
-    nothing_ = FollowedError_rad(large_.first->encoder, scenario_, follow_);
+    nothing_ = FollowTwin(large_.first->encoder, scenario_, follow_).error_rad;
     power_ = PowerOf(large_.first->encoder.run.residual);
     while (large_.causes.size() < kMostLarge && TakeNext()) {
     }
@@ -237,7 +237,7 @@ class Search {
 
  private:
   Eigen::VectorXd Shown(const std::vector<EffectSettings>& effects) const {
-    return FollowedError_rad(large_.first->encoder, With(scenario_, effects), follow_) - nothing_;
+    return FollowTwin(large_.first->encoder, With(scenario_, effects), follow_).error_rad - nothing_;
   }
 
   double PowerOf(const Eigen::VectorXd& rows) const {
