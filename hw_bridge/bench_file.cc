@@ -9,6 +9,7 @@
 
 #include "hw_bridge/ad/ad_source.h"
 #include "hw_bridge/control/address.h"
+#include "hw_bridge/file_places.h"
 #include "twin/core/errors.h"
 #include "twin/core/reading.h"
 #include "twin/core/toml_reader.h"
@@ -26,7 +27,7 @@ class FileCheck {
   FileCheck(const BenchFile& file, const KeyPlaces& places) : file_(file), places_(places) {}
 
   void Check() const {
-    if (file_.kind != "hardware") RefuseDevices();
+    if (file_.kind != "hardware") RefuseDevices(places_, file_.kind, {"kind", "name", "record", "attempts"});
     if (file_.kind == "replay" && file_.record.empty())
       throw InputError(Where("kind"), "kind is \"replay\" without a record", "record = \"folder of the run\"");
     if (file_.kind != "replay" && !file_.record.empty())
@@ -35,22 +36,7 @@ class FileCheck {
   }
 
  private:
-  /// Where the key stands, or else its table, or else the file.
-  std::string Where(const std::string& path) const {
-    if (const auto key = places_.find(path); key != places_.end()) return key->second;
-    if (const auto table = places_.find(path.substr(0, path.find('.'))); table != places_.end())
-      return table->second;
-    return file_.path + ":1";
-  }
-
-  void RefuseDevices() const {
-    static const std::set<std::string> kNotDevices = {"kind", "name", "record", "attempts"};
-    for (const auto& [path, where] : places_) {
-      if (!kNotDevices.contains(path))
-        throw InputError(where, fmt::format("{} in a bench of kind \"{}\"", path, file_.kind),
-                         "kind = \"hardware\"");
-    }
-  }
+  std::string Where(const std::string& path) const { return WhereIn(places_, file_.path, path); }
 
   void CheckDevices() const {
     CheckAd();

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "hw_bridge/control/address.h"
+#include "hw_bridge/file_places.h"
 #include "twin/core/errors.h"
 #include "twin/core/toml_reader.h"
 
@@ -67,7 +67,7 @@ class MachineFileCheck {
   MachineFileCheck(const MachineFile& file, const KeyPlaces& places) : file_(file), places_(places) {}
 
   void Check(const std::vector<MachineAxis>& axes) const {
-    if (file_.kind != "hardware") return RefuseDevices();
+    if (file_.kind != "hardware") return RefuseDevices(places_, file_.kind, {"kind", "name", "attempts"});
     CheckConnection("machine", file_.machine);
     if (file_.machine.kind.empty())
       throw InputError(Where("machine"), "there is no [machine] with a kind", "kind = \"esp\"");
@@ -78,21 +78,7 @@ class MachineFileCheck {
   }
 
  private:
-  std::string Where(const std::string& path) const {
-    if (const auto key = places_.find(path); key != places_.end()) return key->second;
-    if (const auto table = places_.find(path.substr(0, path.find('.'))); table != places_.end())
-      return table->second;
-    return file_.path + ":1";
-  }
-
-  void RefuseDevices() const {
-    static const std::set<std::string> kNotDevices = {"kind", "name", "attempts"};
-    for (const auto& [path, where] : places_) {
-      if (!kNotDevices.contains(path))
-        throw InputError(where, fmt::format("{} in a bench of kind \"{}\"", path, file_.kind),
-                         "kind = \"hardware\"");
-    }
-  }
+  std::string Where(const std::string& path) const { return WhereIn(places_, file_.path, path); }
 
   void CheckConnection(const std::string& table, const ControlSettings& s) const {
     const bool connected = s.kind == "scpi" || s.kind == "esp";

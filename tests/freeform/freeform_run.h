@@ -7,6 +7,7 @@
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/procedure.h"
 #include "twin/benches/freeform_five_axis/settings.h"
+#include "twin/benches/freeform_five_axis/twin/chain.h"
 #include "twin/benches/freeform_five_axis/twin/twin.h"
 #include "twin/benches/names.h"
 #include "twin/core/csv.h"
@@ -51,6 +52,17 @@ inline sim::DrawnBench OracleBench() {
     for (std::size_t k = 0; k < kBodyErrors; ++k) error[k] = mounting.at(k).get<double>() * UnitOfError(k);
   }
   return bench;
+}
+
+/// Where the tool stands over the artefact at a reading.
+inline Pose ToolOverArtefact(const Reading& r, const sim::DrawnBench& bench, const FreeformSettings& settings) {
+  const auto setup = static_cast<std::size_t>(r.setup);
+  sim::MachineCommand at{};
+  for (std::size_t axis = 0; axis < kMachineAxes; ++axis) at[axis] = kCommanded[axis](r);
+  const sim::MachineErrors errors = sim::ErrorsAt(bench.machine, at);
+  const Pose X_MF =
+      sim::X_MS(at, errors) * sim::X_SF(settings.freeform_procedure.mounts[setup], bench.mountings[setup]);
+  return X_MF.inverse() * sim::X_MT(at, errors, bench.machine.pivot_m);
 }
 
 /// What the scenario's twin shows on the course of its own procedure.

@@ -21,16 +21,6 @@ optics::Scene SceneOfCell(double radius_m) {
   return scene;
 }
 
-Pose ToolOverArtefact(const Reading& r, const sim::DrawnBench& bench, const FreeformSettings& settings) {
-  const auto setup = static_cast<std::size_t>(r.setup);
-  sim::MachineCommand at{};
-  for (std::size_t axis = 0; axis < kMachineAxes; ++axis) at[axis] = kCommanded[axis](r);
-  const sim::MachineErrors errors = sim::ErrorsAt(bench.machine, at);
-  const Pose X_MF =
-      sim::X_MS(at, errors) * sim::X_SF(settings.freeform_procedure.mounts[setup], bench.mountings[setup]);
-  return X_MF.inverse() * sim::X_MT(at, errors, bench.machine.pivot_m);
-}
-
 /// A reading's beam in the frame of its cell, and what the closed form says of it.
 struct Beam {
   optics::Ray ray;

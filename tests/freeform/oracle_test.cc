@@ -79,15 +79,9 @@ TEST(Freeform, MeetsTheSurfaceAndIsReflectedAsTheOracleIs) {
   ASSERT_EQ(table.rows.size(), 96u);
   for (const CsvTable::Row& row : table.rows) {
     const Reading& r = readings[static_cast<std::size_t>(CsvNumber(table, row, 0, 1.0))];
-    const auto setup = static_cast<std::size_t>(r.setup);
-    sim::MachineCommand at{};
-    for (std::size_t axis = 0; axis < kMachineAxes; ++axis) at[axis] = kCommanded[axis](r);
-    const sim::MachineErrors errors = sim::ErrorsAt(bench.machine, at);
-    const Pose X_MF =
-        sim::X_MS(at, errors) * sim::X_SF(settings.freeform_procedure.mounts[setup], bench.mountings[setup]);
     const sim::ProbeSpot spot =
         sim::Look(settings.artefact, {static_cast<int>(kCellI(r)), static_cast<int>(kCellJ(r))},
-                  X_MF.inverse() * sim::X_MT(at, errors, bench.machine.pivot_m));
+                  ToolOverArtefact(r, bench, settings));
     const Vector3 reflected(CsvNumber(table, row, 2, 1.0), CsvNumber(table, row, 3, 1.0),
                             CsvNumber(table, row, 4, 1.0));
     EXPECT_LT((spot.reflected_T - reflected).norm(), 1e-12);  // the oracle's last digit

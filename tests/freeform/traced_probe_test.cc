@@ -21,17 +21,6 @@ std::vector<Reading> OracleRun() {
   return ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
 }
 
-/// Where the tool stands over the artefact at a reading.
-Pose ToolAt(const Reading& r, const sim::DrawnBench& bench, const FreeformSettings& settings) {
-  const auto setup = static_cast<std::size_t>(r.setup);
-  sim::MachineCommand at{};
-  for (std::size_t axis = 0; axis < kMachineAxes; ++axis) at[axis] = kCommanded[axis](r);
-  const sim::MachineErrors errors = sim::ErrorsAt(bench.machine, at);
-  const Pose X_MF =
-      sim::X_MS(at, errors) * sim::X_SF(settings.freeform_procedure.mounts[setup], bench.mountings[setup]);
-  return X_MF.inverse() * sim::X_MT(at, errors, bench.machine.pivot_m);
-}
-
 sim::ArtefactCell CellAt(const Reading& r) {
   return {static_cast<int>(kCellI(r)), static_cast<int>(kCellJ(r))};
 }
@@ -65,7 +54,7 @@ TEST(FreeformLight, MeetsTheArtefactWhereTheOracleDoes) {
   const sim::TracedProbe probe(settings);
   for (const CsvTable::Row& row : table.rows) {
     const Reading& r = readings[static_cast<std::size_t>(CsvNumber(table, row, 0, 1.0))];
-    const Pose X_FT = ToolAt(r, bench, settings);
+    const Pose X_FT = ToolOverArtefact(r, bench, settings);
     const sim::ArtefactCell cell = CellAt(r);
     const optics::ProbeView view = probe.View(cell, X_FT, 0.0, nullptr);
     ASSERT_TRUE(view.is_met);
@@ -206,7 +195,7 @@ TEST(FreeformLight, LeaksAsTheEffectOfThatNameSays) {
   int readings = 0;
   for (const Reading& r : OracleRun()) {
     if (++readings % 7 != 0) continue;  // enough of them
-    const optics::ProbeView view = probe.View(CellAt(r), ToolAt(r, bench, leaky), 0.0, nullptr);
+    const optics::ProbeView view = probe.View(CellAt(r), ToolOverArtefact(r, bench, leaky), 0.0, nullptr);
     Eigen::Vector2d sum_V = Eigen::Vector2d::Zero();
     double power = 0.0;
     for (const optics::ProbePatch& patch : view.patches) {
@@ -231,7 +220,8 @@ TEST(FreeformLight, AWavePlateThatReflectsIsMoreThanALeakage) {
   const sim::DrawnBench bench = OracleBench();
   double fixed = 0.0, moving = 0.0;
   for (const Reading& r : OracleRun()) {
-    for (const optics::ProbePatch& patch : probe.View(CellAt(r), ToolAt(r, bench, leaky), 0.0, nullptr).patches) {
+    for (const optics::ProbePatch& patch :
+         probe.View(CellAt(r), ToolOverArtefact(r, bench, leaky), 0.0, nullptr).patches) {
       fixed += patch.returns == 0 ? patch.power : 0.0;
       moving += patch.returns == 2 ? patch.power : 0.0;
     }
