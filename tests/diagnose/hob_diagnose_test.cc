@@ -6,12 +6,12 @@
 #include <set>
 
 #include "tests/diagnose/hob_chain.h"
+#include "tests/diagnose/told.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/extend.h"
-#include "twin/diagnose/words.h"
 
 /// Readings of a chain with a hidden cause (tests/diagnose/hob_chain.cc), and what the diagnosis says of them.
 namespace twinbench::diagnose::hob {
@@ -72,7 +72,7 @@ TEST_P(HiddenHobCause, IsNamedOrTiedWithWhatLooksTheSame) {
   const DiagnosisRun run = DiagnosisOf(chain);
   const std::string own = NameOf(trial.cause.name, trial.cause.where);
   const std::set<std::string> names = NamesIn(run.diagnosis);
-  SCOPED_TRACE(InWords(run));
+  SCOPED_TRACE(test::Told(run));
   EXPECT_TRUE(names.contains(own));
   for (const std::string& name : names) EXPECT_TRUE(name == own || trial.alike.contains(name)) << name;
   EXPECT_EQ(run.diagnosis.verdict, names.size() > 1 ? Verdict::kTie : Verdict::kNamed);
@@ -162,7 +162,7 @@ TEST(HobDiagnosis, FindsStructureWithoutANameAsUnknown) {
     HobChain chain = Short();
     chain.hidden = {cause};
     const DiagnosisRun run = DiagnosisOf(chain);
-    EXPECT_EQ(run.diagnosis.verdict, Verdict::kUnknown) << InWords(run);
+    EXPECT_EQ(run.diagnosis.verdict, Verdict::kUnknown) << test::Told(run);
     EXPECT_NE(run.diagnosis.unknown.signature.find(signature), std::string::npos)
         << run.diagnosis.unknown.signature;
   }

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "tests/diagnose/turntable_bench.h"
+#include "tests/diagnose/told.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/diagnose/diagnose.h"
 #include "twin/diagnose/extend.h"
-#include "twin/diagnose/words.h"
 
 // Whole diagnoses of readings that the independent bench made, with noise.
 namespace twinbench::diagnose::turntable {
@@ -45,7 +45,7 @@ void ExpectNamed(const Wrong& wrong, const std::string& effect, const std::strin
                  const std::string& parameter, double value, const Scenario& scenario = CarefulScenario()) {
   const DiagnosisRun run = DiagnosisOf(scenario, wrong);
   const Cause* cause = OnlyCause(run, effect, where);
-  ASSERT_TRUE(cause) << effect << " at " << where << "\n" << InWords(run);
+  ASSERT_TRUE(cause) << effect << " at " << where << "\n" << test::Told(run);
   EXPECT_LE(cause->probability, 0.97);
   const ParameterEstimate& p = ParameterOf(*cause, parameter);
   EXPECT_NEAR(p.value, value, 3.0 * p.u) << effect << " at " << where;
@@ -112,7 +112,7 @@ TEST(TurntableDiagnosis, TakesALouderAutocollimatorForNoSeating) {
   Scenario louder = CarefulScenario();
   TurntableOf(louder).autocollimator.noise_rad = 0.13 * arcsec;
   const DiagnosisRun run = Diagnose(BenchReadings(louder, {}, 21), CarefulScenario());
-  EXPECT_EQ(run.diagnosis.verdict, Verdict::kNone) << InWords(run);
+  EXPECT_EQ(run.diagnosis.verdict, Verdict::kNone) << test::Told(run);
 }
 
 TEST(TurntableDiagnosis, IsQuietOnCleanRuns) {
@@ -208,7 +208,7 @@ TEST(TurntableDiagnosis, ExtendsTheScenarioSoThatNothingIsLeft) {
   const std::vector<Reading> readings = BenchReadings(scenario, wrong, 21);
   const DiagnosisRun found = Diagnose(readings, scenario);
   const Scenario extended = ParseScenario(ExtendedToml(scenario, found, "a test"), "extended.toml", "/elsewhere");
-  ASSERT_EQ(extended.effects.size(), 2u) << InWords(found);
+  ASSERT_EQ(extended.effects.size(), 2u) << test::Told(found);
   EXPECT_EQ(Diagnose(readings, extended).diagnosis.verdict, Verdict::kNone);
 }
 
@@ -221,7 +221,7 @@ TEST(TurntableDiagnosis, KeepsStructureWithoutANameAsASignalOfItsAxis) {
   const std::vector<Reading> readings = BenchReadings(scenario, wrong, 21);
   const DiagnosisRun found = Diagnose(readings, scenario);
   const Scenario extended = ParseScenario(ExtendedToml(scenario, found, "a test"), "extended.toml", "/elsewhere");
-  ASSERT_EQ(extended.effects.size(), 1u) << InWords(found);
+  ASSERT_EQ(extended.effects.size(), 1u) << test::Told(found);
   const EffectSettings& signal = extended.effects[0];
   EXPECT_EQ(signal.name + " " + signal.signal + " at " + signal.where, "signal harmonic at y");
   EXPECT_EQ(signal.by + " times " + signal.times, "turntable times direction");

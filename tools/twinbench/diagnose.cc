@@ -13,6 +13,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/follow.h"
 #include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/terminal.h"
 #include "twin/benches/registry.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
@@ -21,8 +22,9 @@
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/json.h"
 #include "twin/diagnose/screen/screen.h"
-#include "twin/diagnose/words.h"
+#include "twin/diagnose/shown.h"
 #include "twin/plausible/check.h"
+#include "twin/report/diagnosis_text.h"
 
 namespace twinbench::tools {
 namespace {
@@ -32,7 +34,7 @@ namespace fs = std::filesystem;
 struct DiagnoseOptions {
   std::string source, scenario, json, extended, cache, model = "rigorous";
   std::vector<std::string> overrides, excluded;
-  bool follow = false;
+  bool follow = false, verbose = false;
   double false_alarm_rate = 0.01;
 };
 
@@ -78,12 +80,6 @@ nlohmann::json JsonOf(const diagnose::DiagnosisRun& found, const Scenario& scena
   return json;
 }
 
-/// The residual tests of the model as it was believed, before any cause was added; with a paragraph on them.
-struct Screened {
-  std::vector<diagnose::ScreenTest> tests;
-  std::string in_words;
-};
-
 /// Raw blocks of the readings that have numbers.
 std::vector<RawBlock> RawBlocksOf(const std::string& folder, const std::vector<Reading>& readings) {
   std::set<int> good;
@@ -95,28 +91,26 @@ std::vector<RawBlock> RawBlocksOf(const std::string& folder, const std::vector<R
   return blocks;
 }
 
-Screened ScreenOf(const std::string& folder, const RecordedRun& run, const diagnose::DiagnosisRun& found) {
+/// Adds the residual tests of the model as it was believed, before any cause was added.
+void Screen(const std::string& folder, const RecordedRun& run, report::DiagnosisPage& page) {
+  const diagnose::DiagnosisRun& found = page.found;
   const diagnose::Projector projector(found.noise.Whiten(found.run, found.run.nuisance.jacobian),
                                       found.run.nuisance);
-  Screened screened{diagnose::Screen(found.run, found.noise, projector), ""};
+  page.screen = diagnose::Screen(found.run, found.noise, projector);
   const std::vector<RawBlock> blocks = RawBlocksOf(folder, run.readings);
-  std::string limits;
-  if (const auto raw_scale = BenchOf(run.scenario).raw_scale; raw_scale && !blocks.empty()) {
-    const diagnose::RawScale scale = raw_scale(run.scenario, found.run);
-    for (diagnose::ScreenTest& test : diagnose::ScreenRaw(blocks, scale)) screened.tests.push_back(std::move(test));
-    limits = diagnose::RawLimitsInWords(blocks, scale);
-  }
-  screened.in_words = diagnose::Wrapped(diagnose::ScreenInWords(screened.tests) + " " + limits);
-  return screened;
+  const auto raw_scale = BenchOf(run.scenario).raw_scale;
+  if (!raw_scale || blocks.empty()) return;
+  const diagnose::RawScale scale = raw_scale(run.scenario, found.run);
+  for (diagnose::ScreenTest& test : diagnose::ScreenRaw(blocks, scale)) page.screen.push_back(std::move(test));
+  page.raw_limits = diagnose::RawLimitsInWords(blocks, scale);
 }
 
 /// Puts the diagnosis into the run's results.json, beside what is there.
-void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const diagnose::DiagnosisRun& found,
-                      const Screened& screened, const std::string& in_words) {
+void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const report::DiagnosisPage& page) {
   nlohmann::json results = fs::exists(path) ? ReadJson(path) : nlohmann::json::object();
-  diagnosis["plots"] = diagnose::PlotsJson(found);
-  diagnosis["in_words"] = in_words;
-  diagnosis["screen"] = diagnose::ToJson(screened.tests);
+  diagnosis["plots"] = diagnose::PlotsJson(page.found);
+  diagnosis["in_words"] = report::DiagnosisText(page, {report::Letters::kAscii, true});
+  diagnosis["screen"] = diagnose::ToJson(page.screen);
   results["diagnosis"] = std::move(diagnosis);
   WriteJson(path, results);
 }
@@ -138,13 +132,13 @@ void DiagnoseRun(const DiagnoseOptions& options) {
   }
   const nlohmann::json json = JsonOf(found, run.scenario, options.extended);
   if (!options.json.empty()) WriteJson(options.json, json);
-  std::string in_words = diagnose::InWords(found);
+  const diagnose::Shown shown = diagnose::ShownBy(found);
+  report::DiagnosisPage page{found, shown, options.source};
   if (fs::is_directory(options.source)) {
-    const Screened screened = ScreenOf(options.source, run, found);
-    in_words += screened.in_words;
-    MergeIntoResults(RunFolder{options.source}.results(), json, found, screened, in_words);
+    Screen(options.source, run, page);
+    MergeIntoResults(RunFolder{options.source}.results(), json, page);
   }
-  if (options.json != "-") fmt::print("{}", in_words);
+  if (options.json != "-") fmt::print("{}", report::DiagnosisText(page, {LettersOfStdout(), options.verbose}));
 }
 
 void Diagnose(const DiagnoseOptions& options) {
@@ -170,6 +164,7 @@ void AddDiagnose(CLI::App& app) {
   command->add_option("--strike", options->excluded, "take an effect out of the catalogue")
       ->allow_extra_args(false);
   command->add_option("--cache", options->cache, "folder that keeps calibrated thresholds; else the user's cache");
+  command->add_flag("--verbose", options->verbose, "print all there is to be said, not what matters first");
   command->add_flag("--follow", options->follow, "watch a run while it is recorded and raise alarms");
   command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, a run")->capture_default_str();
   command->callback([options] { Diagnose(*options); });

@@ -4,16 +4,22 @@
 
 #include "twin/diagnose/diagnose.h"
 
+/// The words that diagnoses are told in. Where they stand on a page is for the report to say.
 namespace twinbench::diagnose {
 
-/// The diagnosis in plain words: what was found and how sure that is, what else it could be, what to measure next,
-/// what the extended model gains, and what this run cannot see. A few sentences, wrapped at 100 letters.
-std::string InWords(const DiagnosisRun& run);
+/// "psd_gain at psd_a_x".
+std::string Place(const std::string& effect, const std::string& where);
 
-/// The words of `text` in lines of at most 100 letters.
-std::string Wrapped(const std::string& text);
+/// "97 %", "< 1 %"; "-" if it is not known.
+std::string Percent(double share);
 
-/// "0.0031 +- 0.0002 mrad": as many digits as the uncertainty has meaning.
+/// "0.0031 +- 0.0002 mrad": as many digits as the uncertainty has meaning; without an uncertainty three.
 std::string WithUncertainty(const ParameterEstimate& parameter);
+
+/// "gain error 0.0031 +- 0.0002".
+std::string NameAndSize(const ParameterEstimate& parameter);
+
+/// What the extended model gains on readings that it was not fitted to, in a sentence; "" if it was not measured.
+std::string GainInWords(const Gain& gain, const LinearRun& run);
 
 }  // namespace twinbench::diagnose

@@ -1,0 +1,142 @@
+#include "twin/diagnose/shown.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/diagnose/support/synthetic_run.h"
+#include "twin/core/units.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+/// The term as a search would have left it: one amplitude, its signature in SI.
+Accepted TermOf(const std::string& effect, const Eigen::VectorXd& signature, Kind kind = Kind::kNamed) {
+  Accepted term;
+  term.family.kind = kind;
+  term.family.effect = effect;
+  term.family.amplitudes = {{"size", "1", 1.0, 1.0}};
+  term.amplitudes = Eigen::VectorXd::Ones(1);
+  term.columns = signature;
+  return term;
+}
+
+/// A sweep forth and back without noise, with what two causes show: a wave of 10 sigma, a wave of 5 sigma.
+struct TwoWaves {
+  TwoWaves() {
+    found.run = SyntheticSweep(400);
+    const Eigen::VectorXd& angle_rad = found.run.schedule.reference_rad;
+    found.noise.sigma = found.run.sigma;
+    large = 10.0 * found.run.sigma[0] * (12.0 * angle_rad.array()).cos();
+    small = 5.0 * found.run.sigma[0] * (28.0 * angle_rad.array()).cos();
+    found.run.residual = large + small;
+    for (const char* effect : {"large", "small", "decided before"}) {
+      found.diagnosis.causes.emplace_back();
+      found.diagnosis.causes.back().effect = effect;
+    }
+  }
+  DiagnosisRun found;
+  Eigen::VectorXd large, small;
+};
+
+TEST(ShownBy, SharesTheVarianceAmongTheCauses) {
+  TwoWaves waves;
+  waves.found.accepted = {TermOf("small", waves.small), TermOf("large", waves.large)};
+  const Shown shown = ShownBy(waves.found);
+  ASSERT_EQ(shown.share.size(), 3u);
+  // Powers 100 to 25. The waves are not quite orthogonal on the unequal steps of the sweep: some hundredths.
+  EXPECT_NEAR(shown.share[0], 0.8, 0.05);
+  EXPECT_NEAR(shown.share[1], 0.2, 0.05);
+  EXPECT_NEAR(shown.share[0] + shown.share[1], 1.0, 1e-3);  // all that there is
+  EXPECT_TRUE(std::isnan(shown.share[2]));
+  EXPECT_TRUE(std::isnan(shown.share_unnamed));
+}
+
+TEST(ShownBy, LeavesTheShareOfWhatWasNotAccepted) {
+  TwoWaves waves;
+  waves.found.accepted = {TermOf("wave", waves.small, Kind::kUnknown)};
+  const Shown shown = ShownBy(waves.found);
+  EXPECT_TRUE(std::isnan(shown.share[0]));
+  EXPECT_NEAR(shown.share_unnamed, 0.2, 0.05);
+}
+
+/// A device that reads `half` more going forward and as much less going backward, at four stops of two turns.
+DiagnosisRun StopsWithPlay(double half_deg) {
+  DiagnosisRun found;
+  LinearRun& run = found.run;
+  Schedule& s = run.schedule;
+  std::vector<double> angle_deg, shown_deg;
+  for (const int direction : {1, -1}) {
+    for (int k = 0; k < 8; ++k) {
+      s.reading.push_back(s.Readings());
+      s.setup.push_back(0), s.pass.push_back(direction > 0 ? 0 : 1), s.position.push_back(k % 4);
+      s.direction.push_back(direction);
+      s.phase.push_back(Phase::kFullCircle);
+      angle_deg.push_back(90.0 * (direction > 0 ? k : 7 - k));
+      shown_deg.push_back(direction * half_deg);
+    }
+  }
+  s.reference_rad = units::deg * Eigen::Map<Eigen::VectorXd>(angle_deg.data(), std::ssize(angle_deg));
+  s.target_rad.setConstant(s.Readings(), kNaN);
+  run.channels = {"angle"};
+  run.unit = "deg";
+  run.to_SI = units::deg;
+  run.residual = units::deg * Eigen::Map<Eigen::VectorXd>(shown_deg.data(), std::ssize(shown_deg));
+  run.sigma = Eigen::VectorXd::Constant(s.Readings(), 1e-3 * units::deg);
+  run.nuisance.jacobian.resize(s.Readings(), 1);
+  for (int i = 0; i < s.Readings(); ++i) run.nuisance.jacobian.insert(i, 0) = 1.0;
+  run.nuisance.prior_precision = Eigen::VectorXd::Constant(1, 1e-6);
+  found.noise.sigma = run.sigma;
+  return found;
+}
+
+TEST(ErrorCurve, HoldsBothDirectionsAtThePlacesOfOneTurn) {
+  const ErrorCurve curve = ShownBy(StopsWithPlay(0.25)).curve;
+  EXPECT_EQ(curve.unit, "deg");
+  EXPECT_EQ(curve.along, "angle");
+  EXPECT_EQ(curve.along_unit, "deg");
+  ASSERT_EQ(curve.x.size(), 4u);  // eight stops of two turns
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_NEAR(curve.x[k], 90.0 * static_cast<double>(k), 1e-6);
+    EXPECT_NEAR(curve.forward[k], 0.25, 1e-9);
+    EXPECT_NEAR(curve.backward[k], -0.25, 1e-9);
+  }
+}
+
+TEST(ErrorCurve, OfALinearAxisIsAgainstItsPosition) {
+  DiagnosisRun found = StopsWithPlay(0.25);
+  // A turn of the bench's angle is 2 mm of way: 90 deg are 0.5 mm.
+  found.run.unit = "mm";
+  found.run.to_SI = 180.0 * units::deg;
+  found.run.along = {"mm", found.run.to_SI};
+  const ErrorCurve curve = ShownBy(found).curve;
+  EXPECT_EQ(curve.along, "position");
+  EXPECT_EQ(curve.along_unit, "mm");
+  ASSERT_EQ(curve.x.size(), 8u);  // a way has no turns
+  EXPECT_NEAR(curve.x[7], 3.5, 1e-9);
+  EXPECT_NEAR(curve.forward[7], 0.25 / 180.0, 1e-9);
+}
+
+TEST(ErrorCurve, GathersManyPlacesAndLeavesRestsOut) {
+  DiagnosisRun found;
+  found.run = SyntheticSweep(4000);
+  found.noise.sigma = found.run.sigma;
+  found.run.schedule.direction.assign(4000, 1);
+  found.run.schedule.direction[17] = 0;
+  found.run.residual[17] = 1.0;  // a rest that would be seen
+  const ErrorCurve curve = ShownBy(found).curve;
+  EXPECT_EQ(curve.x.size(), static_cast<std::size_t>(kCurvePlaces));
+  for (const double backward : curve.backward) EXPECT_TRUE(std::isnan(backward));
+  for (const double forward : curve.forward) EXPECT_LT(std::abs(forward), 1000.0);
+}
+
+TEST(IsSignificant, MeansThatNoiseSeldomShowsSuchAnOrder) {
+  // exp(-a^2 / 2 u^2) = 0.01 / 12 at a = 3.77 u.
+  EXPECT_FALSE(IsSignificant({1, 3.7, 1.0, 0.0, 0.1, ""}, 12));
+  EXPECT_TRUE(IsSignificant({1, 3.8, 1.0, 0.0, 0.1, ""}, 12));
+  EXPECT_FALSE(IsSignificant({1, kNaN, kNaN, 0.0, 0.1, ""}, 12));
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose

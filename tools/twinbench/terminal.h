@@ -1,0 +1,11 @@
+#pragma once
+
+#include "twin/report/curve_text.h"
+
+namespace twinbench::tools {
+
+/// What stdout can show: Unicode on a terminal whose locale is UTF-8 and that has the fonts for it (not the Linux
+/// console, not a dumb one); ASCII else, as into a file or a pipe.
+report::Letters LettersOfStdout();
+
+}  // namespace twinbench::tools

@@ -1,0 +1,192 @@
+#include "twin/diagnose/shown.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "twin/core/units.h"
+#include "twin/diagnose/at.h"
+#include "twin/diagnose/engine/projector.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+/// What each accepted term explains, and what can be explained at all, in units of noise.
+struct Powers {
+  std::vector<double> explained;
+  double removable = 0.0;
+};
+
+/// @param before  W y of the raw rows: the residual once the unknowns have been fitted.
+Powers PowersOf(const DiagnosisRun& found, const Projector& projector, const Eigen::MatrixXd& y,
+                const Eigen::VectorXd& before) {
+  const Eigen::MatrixXd left = found.noise.Whiten(found.run, Eigen::MatrixXd(before));
+  Powers powers;
+  double sum = 0.0;
+  for (const Accepted& term : found.accepted) {
+    const Eigen::MatrixXd signature = term.columns * term.amplitudes;
+    powers.explained.push_back(found.noise.Whiten(found.run, signature).col(0).dot(left.col(0)));
+    sum += powers.explained.back();
+  }
+  powers.removable = std::max(y.col(0).dot(left.col(0)) - projector.DegreesOfFreedom(), sum);
+  return powers;
+}
+
+/// Two orders of one effect stand in the same order in both lists.
+std::vector<double> SharesOfCauses(const DiagnosisRun& found, const Powers& powers) {
+  std::vector<double> shares;
+  std::set<std::size_t> used;
+  for (const Cause& cause : found.diagnosis.causes) {
+    shares.push_back(kNaN);
+    for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+      const Family& family = found.accepted[k].family;
+      if (family.kind != Kind::kNamed || family.effect != cause.effect || family.where != cause.where) continue;
+      if (!used.insert(k).second) continue;
+      shares.back() = powers.explained[k] / powers.removable;
+      break;
+    }
+  }
+  return shares;
+}
+
+double ShareUnnamed(const DiagnosisRun& found, const Powers& powers) {
+  double sum = kNaN;
+  for (std::size_t k = 0; k < found.accepted.size(); ++k) {
+    if (found.accepted[k].family.kind != Kind::kUnknown) continue;
+    sum = (std::isfinite(sum) ? sum : 0.0) + powers.explained[k] / powers.removable;
+  }
+  return sum;
+}
+
+int LoudestChannel(const LinearRun& run, const Eigen::VectorXd& before) {
+  Eigen::VectorXd power = Eigen::VectorXd::Zero(run.Channels());
+  for (int k = 0; k < run.Rows(); ++k) power[run.ChannelOf(k)] += std::pow(before[k] / run.sigma[k], 2);
+  int loudest = 0;
+  power.maxCoeff(&loudest);
+  return loudest;
+}
+
+/// Readings of the measurement itself, or all where there are no others.
+std::vector<int> ReadingsOf(const Schedule& s) {
+  std::vector<int> measured, all;
+  for (int i = 0; i < s.Readings(); ++i) {
+    all.push_back(i);
+    if (s.phase[At(i)] == Phase::kFullCircle) measured.push_back(i);
+  }
+  return measured.empty() ? all : measured;
+}
+
+/// Within one turn where there are several; angles that lie within one stay as they were recorded.
+Eigen::VectorXd InOneTurn(Eigen::VectorXd x_deg) {
+  constexpr double kTurn_deg = 360.0, kSame_deg = 1e-6;
+  const auto finite = [](double x) { return std::isfinite(x); };
+  const double lowest = x_deg.unaryExpr([&](double x) { return finite(x) ? x : 1e300; }).minCoeff();
+  const double highest = x_deg.unaryExpr([&](double x) { return finite(x) ? x : -1e300; }).maxCoeff();
+  if (highest - lowest <= kTurn_deg + kSame_deg) return x_deg;
+  return x_deg.unaryExpr([](double x) {
+    const double turn = std::fmod(std::round(x / kSame_deg) * kSame_deg, kTurn_deg);
+    return turn < 0.0 ? turn + kTurn_deg : turn;
+  });
+}
+
+/// Where each reading stood: the first angle of the course that is there, else its number.
+Eigen::VectorXd Along(const LinearRun& run, ErrorCurve& curve) {
+  const Schedule& s = run.schedule;
+  for (const Eigen::VectorXd* angle_rad : {&s.target_rad, &s.reference_rad}) {
+    if (angle_rad->size() != s.Readings() || !angle_rad->array().isFinite().any()) continue;
+    curve.along_unit = run.along.name;
+    const bool is_angle = run.along.name == "deg";
+    curve.along = is_angle ? "angle" : "position";
+    const Eigen::VectorXd x = *angle_rad / run.along.to_SI;
+    return is_angle ? InOneTurn(x) : x;
+  }
+  curve.along = "reading";
+  Eigen::VectorXd number(s.Readings());
+  for (int i = 0; i < s.Readings(); ++i) number[i] = s.reading[At(i)];
+  return number;
+}
+
+/// The places themselves if they are few, else the middles of equal parts of the way.
+struct Places {
+  std::vector<double> x;
+  double lowest = 0.0, width = 0.0;  // of a part; 0: places themselves
+
+  std::size_t Of(double at) const {
+    if (width == 0.0) return static_cast<std::size_t>(std::ranges::lower_bound(x, at) - x.begin());
+    return std::min(static_cast<std::size_t>((at - lowest) / width), x.size() - 1);
+  }
+};
+
+Places PlacesOf(const Eigen::VectorXd& x, const std::vector<int>& readings) {
+  std::set<double> values;
+  for (const int i : readings) {
+    if (std::isfinite(x[i])) values.insert(x[i]);
+  }
+  Places places;
+  if (values.size() <= At(kCurvePlaces)) {
+    places.x.assign(values.begin(), values.end());
+    return places;
+  }
+  places.lowest = *values.begin();
+  places.width = (*values.rbegin() - places.lowest) / kCurvePlaces;
+  for (int k = 0; k < kCurvePlaces; ++k) places.x.push_back(places.lowest + (k + 0.5) * places.width);
+  return places;
+}
+
+struct Mean {
+  double sum = 0.0;
+  int n = 0;
+};
+
+std::vector<double> ValuesOf(const std::vector<Mean>& means) {
+  std::vector<double> values;
+  for (const Mean& mean : means) values.push_back(mean.n > 0 ? mean.sum / mean.n : kNaN);
+  return values;
+}
+
+ErrorCurve CurveOf(const LinearRun& run, const Eigen::VectorXd& before) {
+  ErrorCurve curve;
+  const Schedule& s = run.schedule;
+  const int channel = LoudestChannel(run, before);
+  const ChannelUnit unit = run.UnitOf(channel);
+  curve.channel = run.channels[At(channel)];
+  curve.unit = unit.name;
+  const std::vector<int> readings = ReadingsOf(s);
+  curve.is_directed = std::ranges::any_of(readings, [&s](int i) { return s.direction[At(i)] != 0; });
+  const Eigen::VectorXd x = Along(run, curve);
+  const Places places = PlacesOf(x, readings);
+  std::array<std::vector<Mean>, 2> means;
+  for (std::vector<Mean>& direction : means) direction.resize(places.x.size());
+  for (const int i : readings) {
+    const int direction = s.direction[At(i)];
+    if (!std::isfinite(x[i]) || (curve.is_directed && direction == 0)) continue;
+    Mean& mean = means[direction < 0 ? 1 : 0][places.Of(x[i])];
+    mean.sum += before[i * run.Channels() + channel] / unit.to_SI;
+    ++mean.n;
+  }
+  curve.x = places.x;
+  curve.forward = ValuesOf(means[0]);
+  curve.backward = ValuesOf(means[1]);
+  return curve;
+}
+
+}  // namespace
+
+Shown ShownBy(const DiagnosisRun& found) {
+  const Projector projector(found.noise.Whiten(found.run, found.run.nuisance.jacobian), found.run.nuisance);
+  const Eigen::MatrixXd y = found.noise.Whiten(found.run, Eigen::MatrixXd(found.run.residual));
+  const Eigen::VectorXd before = found.run.residual - found.run.nuisance.jacobian * projector.Solve(y).col(0);
+  const Powers powers = PowersOf(found, projector, y, before);
+  return {SharesOfCauses(found, powers), ShareUnnamed(found, powers), CurveOf(found.run, before)};
+}
+
+bool IsSignificant(const Harmonic& harmonic, std::size_t orders) {
+  // The amplitude of a wave of noise is Rayleigh: beyond a with probability exp(-a^2 / 2 u^2).
+  constexpr double kByChance = 0.01;
+  const double ratio = harmonic.amplitude_rad / harmonic.u_amplitude_rad;
+  return std::exp(-0.5 * ratio * ratio) < kByChance / static_cast<double>(std::max<std::size_t>(1, orders));
+}
+
+}  // namespace twinbench::diagnose

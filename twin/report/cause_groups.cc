@@ -1,0 +1,38 @@
+#include "twin/report/cause_groups.h"
+
+#include <algorithm>
+
+namespace twinbench::report {
+namespace {
+
+using diagnose::Cause;
+using diagnose::Rival;
+
+const Rival* RivalryOf(const Cause& cause, const Cause& other) {
+  for (const Rival& rival : cause.indistinguishable_from) {
+    if (rival.effect == other.effect && rival.where == other.where) return &rival;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::vector<CauseGroup> GroupsOf(const std::vector<Cause>& causes) {
+  std::vector<CauseGroup> groups;
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    const auto its = std::ranges::find_if(
+        groups, [&](const CauseGroup& group) { return RivalryOf(causes[group.front()], causes[k]) != nullptr; });
+    if (its == groups.end())
+      groups.push_back({k});
+    else
+      its->push_back(k);
+  }
+  return groups;
+}
+
+double Imitates(const std::vector<Cause>& causes, const CauseGroup& group, std::size_t member) {
+  const Rival* const rival = RivalryOf(causes[group.front()], causes[group[member]]);
+  return rival ? rival->overlap : kNaN;
+}
+
+}  // namespace twinbench::report
