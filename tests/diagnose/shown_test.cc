@@ -109,7 +109,6 @@ TEST(ErrorCurve, OfALinearAxisIsAgainstItsPosition) {
   // A turn of the bench's angle is 2 mm of way: 90 deg are 0.5 mm.
   found.run.unit = "mm";
   found.run.to_SI = 180.0 * units::deg;
-  found.run.along = {"mm", found.run.to_SI};
   const ErrorCurve curve = ShownBy(found).curve;
   EXPECT_EQ(curve.along, "position");
   EXPECT_EQ(curve.along_unit, "mm");

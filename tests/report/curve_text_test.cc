@@ -65,6 +65,12 @@ TEST(PlotOf, LabelsBothAxesWithTheirEnds) {
   EXPECT_THAT(lines.back(), HasSubstr("> forward   < backward   x both"));
 }
 
+TEST(PlotOf, DoesNotLabelZeroWithASign) {
+  CurveText curve = Steps();
+  for (double& value : curve.forward) value *= 0.999;  // the middle is -0.0005
+  EXPECT_THAT(test::LinesOf(PlotOf(curve, Letters::kAscii)).at(kFirstRow + kRows / 2), HasSubstr(" 0.00|"));
+}
+
 TEST(PlotOf, InUnicodeDrawsForwardAsALineAndBackwardAsRings) {
   CurveText curve = Steps();
   curve.forward = {1.0, 1.0, 1.0, 1.0, 1.0};

@@ -60,7 +60,7 @@ TEST(DiagnosisText, IsInTheReadersOrder) {
   std::size_t before = 0;
   for (const char* begin :
        {"Causes", "psd_gain at psd_a_x", "Next: a tilt sweep", "Harmonics", "    1",
-        "What the scenario leaves of angle against the angle [deg]", "Gain: ", "! no column", "--verbose"}) {
+        "What the scenario leaves of angle [deg] against the angle", "Gain: ", "! no column", "--verbose"}) {
     const std::size_t at = LineOf(lines, begin);
     EXPECT_GT(at, before) << begin;
     before = at;

@@ -91,15 +91,23 @@ Eigen::VectorXd InOneTurn(Eigen::VectorXd x_deg) {
   });
 }
 
+/// What the angles of the course are told in: those of a linear axis, which is its one channel too, as lengths.
+ChannelUnit UnitAlong(const LinearRun& run) {
+  const ChannelUnit shown = run.UnitOf(0);
+  const bool is_angle = shown.name == "deg" || shown.name == "arcsec";
+  return run.Channels() == 1 && !is_angle ? shown : ChannelUnit{"deg", units::deg};
+}
+
 /// Where each reading stood: the first angle of the course that is there, else its number.
 Eigen::VectorXd Along(const LinearRun& run, ErrorCurve& curve) {
   const Schedule& s = run.schedule;
+  const ChannelUnit unit = UnitAlong(run);
   for (const Eigen::VectorXd* angle_rad : {&s.target_rad, &s.reference_rad}) {
     if (angle_rad->size() != s.Readings() || !angle_rad->array().isFinite().any()) continue;
-    curve.along_unit = run.along.name;
-    const bool is_angle = run.along.name == "deg";
+    curve.along_unit = unit.name;
+    const bool is_angle = unit.name == "deg";
     curve.along = is_angle ? "angle" : "position";
-    const Eigen::VectorXd x = *angle_rad / run.along.to_SI;
+    const Eigen::VectorXd x = *angle_rad / unit.to_SI;
     return is_angle ? InOneTurn(x) : x;
   }
   curve.along = "reading";

@@ -34,7 +34,9 @@ struct Range {
   std::string Label(double value) const {
     const double digits = 2.0 - std::floor(std::log10(high - low));
     if (digits > 6.0 || std::max(std::abs(low), std::abs(high)) >= 1e6) return fmt::format("{:.3g}", value);
-    return fmt::format("{:.{}f}", value, std::max(0, static_cast<int>(digits)));
+    const int decimals = std::max(0, static_cast<int>(digits));
+    const bool is_zero = std::abs(value) < 0.5 * std::pow(10.0, -decimals);
+    return fmt::format("{:.{}f}", is_zero ? 0.0 : value, decimals);
   }
 };
 

@@ -34,9 +34,8 @@ std::string CurveOfPage(const DiagnosisPage& page, Letters letters) {
   const diagnose::ErrorCurve& c = page.shown.curve;
   const bool is_error = page.found.run.Channels() == 1;
   CurveText curve;
-  curve.title = WithUnit(is_error ? "Error against the " + c.along
-                                  : "What the scenario leaves of " + c.channel + " against the " + c.along,
-                         c.unit);
+  curve.title =
+      WithUnit(is_error ? "Error" : "What the scenario leaves of " + c.channel, c.unit) + " against the " + c.along;
   curve.x_name = WithUnit(c.along, c.along_unit);
   curve.x = c.x;
   curve.forward = c.forward;

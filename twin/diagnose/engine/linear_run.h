@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "twin/core/errors.h"
-#include "twin/core/units.h"
 #include "twin/model/course.h"
 
 /// A run as the engine sees it: no bench, only readings x channels, what the model predicted, and which directions
@@ -59,7 +58,6 @@ struct LinearRun {
   bool noise_free = false;   // a simulation without noise: its residuals say nothing about sigma
   Nuisance nuisance;
   std::vector<Pattern> patterns;
-  ChannelUnit along = {"deg", units::deg};  // what the angles of the course are told in: "mm" of a linear axis
 
   /// Best prediction, SI. Regress on this, never on `observed`: that has the residual in it.
   Eigen::VectorXd Predicted() const {

@@ -120,7 +120,6 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   const benches::encoder::AxisUnit told_in = benches::encoder::CoarseUnit(EncoderOf(scenario).device);
   run.unit = told_in.name;
   run.to_SI = told_in.to_SI;
-  run.along = {told_in.name, told_in.to_SI};
   run.patterns = {{"angle", Eigen::VectorXd::Ones(1)}};
   run.nuisance.jacobian = SetUpIndicators(run.schedule.setup);
   run.nuisance.prior_precision =
