@@ -70,8 +70,9 @@ void Add(const std::string& name, const std::string& text, std::vector<Remark>& 
 
 std::string ChanceInWords(const Diagnosis& d) {
   if (d.verdict == Verdict::kNone || !std::isfinite(d.alarm_p)) return "";
-  const std::string share = d.alarm_p < 0.001 ? "fewer than 1 of 1000" : fmt::format("{:.2g} %", 100.0 * d.alarm_p);
-  return Sentence("Chance: ", share + " of runs without any effect would disagree with the scenario as much");
+  const std::string share =
+      d.alarm_p < 0.001 ? "fewer than 1 in 1000 runs" : fmt::format("{:.2g} % of runs", 100.0 * d.alarm_p);
+  return Sentence("Chance: ", share + " without any effect would disagree with the scenario as much");
 }
 
 std::string RemovedInWords(const diagnose::Gain& gain) {
