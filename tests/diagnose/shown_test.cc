@@ -114,7 +114,8 @@ TEST(ErrorCurve, OfALinearAxisIsAgainstItsPosition) {
   EXPECT_EQ(curve.along_unit, "mm");
   ASSERT_EQ(curve.x.size(), 8u);  // a way has no turns
   EXPECT_NEAR(curve.x[7], 3.5, 1e-9);
-  EXPECT_NEAR(curve.forward[7], 0.25 / 180.0, 1e-9);
+  EXPECT_EQ(curve.unit, "um");  // small as it is
+  EXPECT_NEAR(curve.forward[7], 1000.0 * 0.25 / 180.0, 1e-6);
 }
 
 TEST(ErrorCurve, GathersManyPlacesAndLeavesRestsOut) {

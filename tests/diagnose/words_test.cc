@@ -16,7 +16,14 @@ TEST(WithUncertainty, HasTwoDigitsOfTheUncertainty) {
   };
   EXPECT_EQ(text(12.3456, 0.123), "12.35 +- 0.12 mrad");
   EXPECT_EQ(text(180000.0, 2345.0), "180000 +- 2345 mrad");
+  EXPECT_EQ(text(0.01, 8e-6), "0.0100000 +- 0.0000080 mrad");
+  EXPECT_EQ(text(0.01, 8e-12), "0.01 +- 8e-12 mrad");
   EXPECT_EQ(text(1.5, kNaN), "1.5 mrad");
+}
+
+TEST(WithUncertainty, TellsSmallLengthsInMicrometres) {
+  EXPECT_EQ(WithUncertainty({"width", "mm", 1e-3, 0.0004136e-3, 2.4e-9, kNaN, kNaN}), "0.4136 +- 0.0024 um");
+  EXPECT_EQ(WithUncertainty({"width", "mm", 1e-3, 0.25e-3, 0.01e-3, kNaN, kNaN}), "0.250 +- 0.010 mm");
 }
 
 TEST(Percent, TellsLittleFromNothingAndFromUnknown) {

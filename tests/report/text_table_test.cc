@@ -29,6 +29,15 @@ TEST(TextTable, BreaksTheWidestColumnAtWordsAndKeepsItsIndent) {
                                                "  four five six"));
 }
 
+TEST(TextTable, KeepsAWholeColumnAsLongAsOthersCanGiveWay) {
+  const std::string title = "some thirty letters of a title of";
+  const std::string text = TextTable({{"a"}, {"b", false, true}}, {{title, "1.0000000 +- 0.0000001 um"}}, 56);
+  EXPECT_THAT(test::LinesOf(text), ElementsAre("a                              b",                          //
+                                               std::string(56, '-'),                                        //
+                                               "some thirty letters of a       1.0000000 +- 0.0000001 um",  //
+                                               "title of"));
+}
+
 TEST(TextTable, LeavesOutColumnsWithoutCells) {
   EXPECT_EQ(TextTable({{"a"}, {"b"}}, {{"1"}}, 80), "a\n-\n1\n");
   EXPECT_EQ(TextTable({{"a"}}, {}, 80), "");

@@ -42,7 +42,13 @@ TEST(VerdictLine, OfATieListsItsMembersOnce) {
   EXPECT_EQ(VerdictLine(Of(Verdict::kTie, {Without("a", 0.6, {"b", "c"}), Without("b", 0.3, {"a", "c"}),
                                            Without("c", 0.1, {"a", "b"}), Backlash()}),
                         "run.csv"),
-            "Tie: a (60 %), b (30 %) or c (10 %); backlash (97 %) in 720 readings of run.csv");
+            "Tie: a (60 %), b (30 %) or c (10 %); backlash, width 0.01200 +- 0.00030 deg (97 %) in run.csv");
+}
+
+TEST(VerdictLine, LeavesTheReadingsOutBeforeAName) {
+  const std::string a(30, 'a'), b(30, 'b');
+  EXPECT_EQ(VerdictLine(Of(Verdict::kTie, {Without(a, 0.48, {b}), Without(b, 0.48, {a})}), "run.csv"),
+            "Tie: " + a + " or " + b + " (48 % each) in run.csv");
 }
 
 TEST(VerdictLine, SaysWhatIsUnknownOrThatNothingWasFound) {

@@ -9,6 +9,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/at.h"
 #include "twin/diagnose/engine/projector.h"
+#include "twin/diagnose/words.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -148,19 +149,25 @@ struct Mean {
   int n = 0;
 };
 
-std::vector<double> ValuesOf(const std::vector<Mean>& means) {
+std::vector<double> ValuesOf(const std::vector<Mean>& means, double unit_SI) {
   std::vector<double> values;
-  for (const Mean& mean : means) values.push_back(mean.n > 0 ? mean.sum / mean.n : kNaN);
+  for (const Mean& mean : means) values.push_back(mean.n > 0 ? mean.sum / mean.n / unit_SI : kNaN);
   return values;
+}
+
+double LargestOf(const std::array<std::vector<Mean>, 2>& means) {
+  double largest = 0.0;
+  for (const std::vector<Mean>& direction : means) {
+    for (const Mean& mean : direction) largest = std::max(largest, mean.n > 0 ? std::abs(mean.sum / mean.n) : 0.0);
+  }
+  return largest;
 }
 
 ErrorCurve CurveOf(const LinearRun& run, const Eigen::VectorXd& before) {
   ErrorCurve curve;
   const Schedule& s = run.schedule;
   const int channel = LoudestChannel(run, before);
-  const ChannelUnit unit = run.UnitOf(channel);
   curve.channel = run.channels[At(channel)];
-  curve.unit = unit.name;
   const std::vector<int> readings = ReadingsOf(s);
   curve.is_directed = std::ranges::any_of(readings, [&s](int i) { return s.direction[At(i)] != 0; });
   const Eigen::VectorXd x = Along(run, curve);
@@ -171,12 +178,14 @@ ErrorCurve CurveOf(const LinearRun& run, const Eigen::VectorXd& before) {
     const int direction = s.direction[At(i)];
     if (!std::isfinite(x[i]) || (curve.is_directed && direction == 0)) continue;
     Mean& mean = means[direction < 0 ? 1 : 0][places.Of(x[i])];
-    mean.sum += before[i * run.Channels() + channel] / unit.to_SI;
+    mean.sum += before[i * run.Channels() + channel];
     ++mean.n;
   }
+  const ChannelUnit unit = FinerUnit(run.UnitOf(channel), LargestOf(means));
+  curve.unit = unit.name;
   curve.x = places.x;
-  curve.forward = ValuesOf(means[0]);
-  curve.backward = ValuesOf(means[1]);
+  curve.forward = ValuesOf(means[0], unit.to_SI);
+  curve.backward = ValuesOf(means[1], unit.to_SI);
   return curve;
 }
 

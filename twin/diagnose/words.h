@@ -13,6 +13,9 @@ std::string Place(const std::string& effect, const std::string& where);
 /// "97 %", "< 1 %"; "-" if it is not known.
 std::string Percent(double share);
 
+/// What values up to `largest_SI` are told in: um for lengths in mm that are below a tenth, else their own unit.
+ChannelUnit FinerUnit(const ChannelUnit& unit, double largest_SI);
+
 /// "0.0031 +- 0.0002 mrad": as many digits as the uncertainty has meaning; without an uncertainty three.
 std::string WithUncertainty(const ParameterEstimate& parameter);
 

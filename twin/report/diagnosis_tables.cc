@@ -86,7 +86,8 @@ std::string CauseTable(const DiagnosisRun& found, const diagnose::Shown& shown) 
   for (const CauseGroup& group : GroupsOf(d.causes)) AddGroup(found, group, ShareOf(group, shown.share), rows);
   if (rows.empty()) return "";
   return "Causes (share: of the variance beyond noise)\n" +
-         TextTable({{"cause"}, {"size +- u"}, {"probability", true}, {"share", true}}, rows, kPageWidth);
+         TextTable({{"cause"}, {"size +- u", false, true}, {"probability", true}, {"share", true}}, rows,
+                   kPageWidth);
 }
 
 std::string NextMeasurements(const Diagnosis& d) {

@@ -48,6 +48,17 @@ bool SayOf(const std::string& word, const std::vector<std::string>& notes) {
   return std::ranges::any_of(notes, [&](const std::string& note) { return note.find(word) != std::string::npos; });
 }
 
+/// Residual tests that stand out although nothing was found, by name.
+std::string LoudTests(const std::vector<diagnose::ScreenTest>& screen) {
+  constexpr std::size_t kMostNamed = 3;
+  const std::vector<diagnose::ScreenTest> loud = Loud(screen);
+  std::string names;
+  for (std::size_t k = 0; k < std::min(loud.size(), kMostNamed); ++k) names += (k > 0 ? ", " : "") + loud[k].name;
+  if (loud.empty()) return "";
+  return Sentence("! ", fmt::format("{} of {} residual tests stand out nevertheless: {}{}", loud.size(),
+                                    screen.size(), names, loud.size() > kMostNamed ? ", ..." : ""));
+}
+
 /// What limits the answer, a line or two each.
 std::string Warnings(const DiagnosisPage& page) {
   const Diagnosis& d = page.found.diagnosis;
@@ -57,10 +68,7 @@ std::string Warnings(const DiagnosisPage& page) {
   for (const std::string& note : d.notes) text += Sentence("! ", note);
   if (d.left_out > 0)
     text += Sentence("! ", fmt::format("{} readings without usable values were left out", d.left_out));
-  const auto loud = static_cast<std::size_t>(std::ssize(Loud(page.screen)));
-  if (d.verdict == Verdict::kNone && loud > 0)
-    text += Sentence(
-        "! ", fmt::format("{} of {} residual tests stand out nevertheless (--verbose)", loud, page.screen.size()));
+  if (d.verdict == Verdict::kNone) text += LoudTests(page.screen);
   return text;
 }
 

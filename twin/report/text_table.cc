@@ -8,7 +8,8 @@ namespace twinbench::report {
 namespace {
 
 constexpr const char* kGap = "  ";
-constexpr std::size_t kNarrowest = 12;  // a column is not broken below this
+constexpr std::size_t kNarrow = 24;     // as far as other columns give way to whole ones
+constexpr std::size_t kNarrowest = 12;  // no column is broken below this
 
 using Row = std::vector<std::string>;
 
@@ -57,11 +58,8 @@ class Layout {
   }
 
   void FitInto(std::size_t width) {
-    while (Total() > width) {
-      const auto widest = std::ranges::max_element(width_);
-      if (*widest <= kNarrowest) return;
-      *widest = std::max(kNarrowest, *widest - std::min(*widest, Total() - width));
-    }
+    Narrow(width, kNarrow, false);
+    Narrow(width, kNarrowest, true);
   }
 
   std::string Text() const {
@@ -73,6 +71,21 @@ class Layout {
   }
 
  private:
+  /// Takes what is too much from the widest column, then from the next.
+  void Narrow(std::size_t width, std::size_t narrowest, bool whole_ones_too) {
+    for (std::size_t k = 0; k < width_.size() && Total() > width; ++k) {
+      std::size_t widest = 0, at = width_.size();
+      for (std::size_t i = 0; i < width_.size(); ++i) {
+        if ((columns_[i].is_whole && !whole_ones_too) || width_[i] <= std::max(narrowest, widest)) continue;
+        widest = width_[i];
+        at = i;
+      }
+      if (at == width_.size()) return;
+      const std::size_t too_much = Total() - width;
+      width_[at] = std::max(narrowest, widest - std::min(widest, too_much));
+    }
+  }
+
   void DropEmpty() {
     for (std::size_t k = columns_.size(); k-- > 0;) {
       if (std::ranges::any_of(rows_, [k](const Row& row) { return !row[k].empty(); })) continue;

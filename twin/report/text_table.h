@@ -17,6 +17,7 @@ std::string Paragraph(const std::string& head, const std::string& text, std::siz
 struct TextColumn {
   std::string title;
   bool is_number = false;  // to the right
+  bool is_whole = false;   // broken only when the others are as narrow as they may be
 };
 
 /// A table of aligned columns. A cell may hold several lines; where the table is wider than `width`, the widest

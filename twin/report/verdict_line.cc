@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -25,9 +26,9 @@ std::string NameOf(const Cause& cause) {
 }
 
 /// "backlash, width 0.0120 +- 0.0003 deg (97 %)".
-std::string Alone(const Cause& cause) {
+std::string Alone(const Cause& cause, bool with_size) {
   std::string size;
-  if (!cause.parameters.empty() && std::isfinite(cause.parameters.front().value))
+  if (with_size && !cause.parameters.empty() && std::isfinite(cause.parameters.front().value))
     size = ", " + diagnose::NameAndSize(cause.parameters.front());
   return fmt::format("{}{} ({})", NameOf(cause), size, diagnose::Percent(cause.probability));
 }
@@ -49,17 +50,19 @@ std::string Together(const std::vector<Cause>& causes, const CauseGroup& group) 
 std::string ShortOf(const std::vector<Cause>& causes, const CauseGroup& group) {
   const Cause& first = causes[group.front()];
   const std::string name = fmt::format("{} ({})", NameOf(first), diagnose::Percent(first.probability));
-  return group.size() == 1 ? name : fmt::format("{} or one of {} others", name, group.size() - 1);
+  if (group.size() == 1) return name;
+  return fmt::format("{} or {} other{}", name, group.size() - 1, group.size() == 2 ? "" : "s");
 }
 
 /// As many groups as there is room for.
-std::string Causes(const Diagnosis& d, std::size_t room) {
+std::string Causes(const Diagnosis& d, bool with_sizes, std::size_t room = std::string::npos) {
   const std::vector<CauseGroup> groups = GroupsOf(d.causes);
   std::string text;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::string more = fmt::format("; and {} more", groups.size() - g);
     const std::size_t rest = g + 1 < groups.size() ? more.size() : 0;
-    std::string part = groups[g].size() == 1 ? Alone(d.causes[groups[g].front()]) : Together(d.causes, groups[g]);
+    std::string part =
+        groups[g].size() == 1 ? Alone(d.causes[groups[g].front()], with_sizes) : Together(d.causes, groups[g]);
     if (text.size() + 2 + part.size() + rest > room) part = ShortOf(d.causes, groups[g]);
     if (g > 0 && text.size() + 2 + part.size() + rest > room) return text + more;
     text += (g > 0 ? "; " : "") + part;
@@ -76,22 +79,25 @@ std::string ShortSource(const std::string& source) {
 }  // namespace
 
 std::string VerdictLine(const Diagnosis& d, const std::string& source) {
-  const std::string of = fmt::format("{} readings of {}", d.readings, ShortSource(source));
-  const auto line = [&of](const std::string& verdict, const auto& causes) {
-    const std::size_t taken = verdict.size() + 6 + of.size();  // ": " and " in "
-    return fmt::format("{}: {} in {}", verdict, causes(kLongest - std::min(kLongest, taken)), of);
+  const std::string name = ShortSource(source), of = fmt::format("{} readings of {}", d.readings, name);
+  const auto line = [&](const std::string& verdict) {
+    for (const bool with_sizes : {true, false}) {
+      for (const std::string& place : {of, name}) {
+        const std::string text = fmt::format("{}: {} in {}", verdict, Causes(d, with_sizes), place);
+        if (WidthOf(text) <= kLongest) return text;
+      }
+    }
+    const std::size_t taken = verdict.size() + 6 + name.size();  // ": " and " in "
+    return fmt::format("{}: {} in {}", verdict, Causes(d, true, kLongest - std::min(kLongest, taken)), name);
   };
-  const auto causes = [&d](std::size_t room) { return Causes(d, room); };
   switch (d.verdict) {
     case Verdict::kNamed:
-      return line("Named", causes);
+      return line("Named");
     case Verdict::kTie:
-      return line("Tie", causes);
+      return line("Tie");
     case Verdict::kUnknown:
-      return line("Unknown", [&d](std::size_t) {
-        return fmt::format("structure that no cause of the catalogue explains ({})",
-                           diagnose::Percent(d.unknown.probability));
-      });
+      return fmt::format("Unknown: structure that no cause of the catalogue explains ({}) in {}",
+                         diagnose::Percent(d.unknown.probability), of);
     case Verdict::kNone:
       break;
   }
