@@ -9,6 +9,7 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/at.h"
+#include "twin/diagnose/bins.h"
 #include "twin/diagnose/json.h"
 
 namespace twinbench::diagnose {
@@ -70,51 +71,17 @@ std::vector<PlottedSeries> AllSeries(const LinearRun& run, const LeftOver& left)
   return all;
 }
 
-/// In one turn, without -0 and 360 for the same place.
-Eigen::VectorXd Wrapped_deg(const Eigen::VectorXd& angle_rad) {
-  return angle_rad.unaryExpr([](double rad) {
-    const double turn = std::fmod(std::round(rad / units::deg * 1e6) / 1e6, 360.0);
-    return turn < 0.0 ? turn + 360.0 : turn;
-  });
-}
-
 std::vector<std::pair<std::string, Eigen::VectorXd>> Variables(const Schedule& s) {
   Eigen::VectorXd direction(s.Readings());
   for (int i = 0; i < s.Readings(); ++i)
     direction[i] = s.phase[At(i)] == Phase::kFullCircle ? s.direction[At(i)] : kNaN;
   return {{"time_s", s.time_s},
-          {"target_deg", Wrapped_deg(s.target_rad)},
-          {"reference_deg", Wrapped_deg(s.reference_rad)},
+          {"target_deg", InTurn_deg(s.target_rad / units::deg)},
+          {"reference_deg", InTurn_deg(s.reference_rad / units::deg)},
           {"direction", direction},
           {"temperature_degC", s.temperature_degC},
           {"dwell_s", s.dwell_s},
           {"velocity_deg_s", s.velocity_rad_s / units::deg}};
-}
-
-/// Bin of each reading; -1 where the variable is not known. Few values: one bin each; else bins of equal width.
-struct Bins {
-  std::vector<int> of_reading;
-  std::vector<double> centre;
-};
-
-Bins MakeBins(const Eigen::VectorXd& x) {
-  std::set<double> values;
-  for (const double v : x) {
-    if (std::isfinite(v)) values.insert(v);
-  }
-  Bins bins;
-  if (values.size() <= kMostValues) {
-    bins.centre.assign(values.begin(), values.end());
-    for (const double v : x)
-      bins.of_reading.push_back(std::isfinite(v) ? static_cast<int>(std::distance(values.begin(), values.find(v)))
-                                                 : -1);
-    return bins;
-  }
-  const double lowest = *values.begin(), width = (*values.rbegin() - lowest) / kBins;
-  for (int b = 0; b < kBins; ++b) bins.centre.push_back(lowest + (b + 0.5) * width);
-  for (const double v : x)
-    bins.of_reading.push_back(std::isfinite(v) ? std::min(static_cast<int>((v - lowest) / width), kBins - 1) : -1);
-  return bins;
 }
 
 /// Means of a series in each bin that has readings.
@@ -124,10 +91,10 @@ json Curve(const Bins& bins, const PlottedSeries& series) {
     double before = 0.0, after = 0.0, variance = 0.0;
   };
   std::vector<Sum> sums(bins.centre.size());
-  for (std::size_t i = 0; i < bins.of_reading.size(); ++i) {
-    if (bins.of_reading[i] < 0) continue;
+  for (std::size_t i = 0; i < bins.of_value.size(); ++i) {
+    if (bins.of_value[i] < 0) continue;
     const auto k = static_cast<Eigen::Index>(i);
-    Sum& sum = sums[At(bins.of_reading[i])];
+    Sum& sum = sums[At(bins.of_value[i])];
     ++sum.n;
     sum.before += series.before[k];
     sum.after += series.after[k];
@@ -181,7 +148,7 @@ json Map(const Schedule& s, const PlottedSeries& series) {
 void AddCurve(const std::string& name, const Eigen::VectorXd& variable, const PlottedSeries& series,
               json& against) {
   if (variable.size() != series.before.size()) return;
-  const Bins bins = MakeBins(variable);
+  const Bins bins = MakeBins(variable, kMostValues, kBins);
   if (bins.centre.size() > 1) against[name][series.name] = Curve(bins, series);
 }
 

@@ -8,6 +8,7 @@
 
 #include "twin/core/units.h"
 #include "twin/diagnose/at.h"
+#include "twin/diagnose/bins.h"
 #include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/words.h"
 
@@ -80,16 +81,13 @@ std::vector<int> ReadingsOf(const Schedule& s) {
 }
 
 /// Within one turn where there are several; angles that lie within one stay as they were recorded.
-Eigen::VectorXd InOneTurn(Eigen::VectorXd x_deg) {
+Eigen::VectorXd InOneTurn(const Eigen::VectorXd& x_deg) {
   constexpr double kTurn_deg = 360.0, kSame_deg = 1e-6;
   const auto finite = [](double x) { return std::isfinite(x); };
   const double lowest = x_deg.unaryExpr([&](double x) { return finite(x) ? x : 1e300; }).minCoeff();
   const double highest = x_deg.unaryExpr([&](double x) { return finite(x) ? x : -1e300; }).maxCoeff();
   if (highest - lowest <= kTurn_deg + kSame_deg) return x_deg;
-  return x_deg.unaryExpr([](double x) {
-    const double turn = std::fmod(std::round(x / kSame_deg) * kSame_deg, kTurn_deg);
-    return turn < 0.0 ? turn + kTurn_deg : turn;
-  });
+  return InTurn_deg(x_deg);
 }
 
 /// What the angles of the course are told in: those of a linear axis, which is its one channel too, as lengths.
@@ -115,33 +113,6 @@ Eigen::VectorXd Along(const LinearRun& run, ErrorCurve& curve) {
   Eigen::VectorXd number(s.Readings());
   for (int i = 0; i < s.Readings(); ++i) number[i] = s.reading[At(i)];
   return number;
-}
-
-/// The places themselves if they are few, else the middles of equal parts of the way.
-struct Places {
-  std::vector<double> x;
-  double lowest = 0.0, width = 0.0;  // of a part; 0: places themselves
-
-  std::size_t Of(double at) const {
-    if (width == 0.0) return static_cast<std::size_t>(std::ranges::lower_bound(x, at) - x.begin());
-    return std::min(static_cast<std::size_t>((at - lowest) / width), x.size() - 1);
-  }
-};
-
-Places PlacesOf(const Eigen::VectorXd& x, const std::vector<int>& readings) {
-  std::set<double> values;
-  for (const int i : readings) {
-    if (std::isfinite(x[i])) values.insert(x[i]);
-  }
-  Places places;
-  if (values.size() <= At(kCurvePlaces)) {
-    places.x.assign(values.begin(), values.end());
-    return places;
-  }
-  places.lowest = *values.begin();
-  places.width = (*values.rbegin() - places.lowest) / kCurvePlaces;
-  for (int k = 0; k < kCurvePlaces; ++k) places.x.push_back(places.lowest + (k + 0.5) * places.width);
-  return places;
 }
 
 struct Mean {
@@ -170,20 +141,20 @@ ErrorCurve CurveOf(const LinearRun& run, const Eigen::VectorXd& before) {
   curve.channel = run.channels[At(channel)];
   const std::vector<int> readings = ReadingsOf(s);
   curve.is_directed = std::ranges::any_of(readings, [&s](int i) { return s.direction[At(i)] != 0; });
-  const Eigen::VectorXd x = Along(run, curve);
-  const Places places = PlacesOf(x, readings);
+  const Eigen::VectorXd x = Along(run, curve)(readings);
+  const Bins places = MakeBins(x, At(kCurvePlaces), kCurvePlaces);
   std::array<std::vector<Mean>, 2> means;
-  for (std::vector<Mean>& direction : means) direction.resize(places.x.size());
-  for (const int i : readings) {
-    const int direction = s.direction[At(i)];
-    if (!std::isfinite(x[i]) || (curve.is_directed && direction == 0)) continue;
-    Mean& mean = means[direction < 0 ? 1 : 0][places.Of(x[i])];
-    mean.sum += before[i * run.Channels() + channel];
+  for (std::vector<Mean>& direction : means) direction.resize(places.centre.size());
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const int direction = s.direction[At(readings[k])], place = places.of_value[k];
+    if (place < 0 || (curve.is_directed && direction == 0)) continue;
+    Mean& mean = means[direction < 0 ? 1 : 0][At(place)];
+    mean.sum += before[readings[k] * run.Channels() + channel];
     ++mean.n;
   }
   const ChannelUnit unit = FinerUnit(run.UnitOf(channel), LargestOf(means));
   curve.unit = unit.name;
-  curve.x = places.x;
+  curve.x = places.centre;
   curve.forward = ValuesOf(means[0], unit.to_SI);
   curve.backward = ValuesOf(means[1], unit.to_SI);
   return curve;
