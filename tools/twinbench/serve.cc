@@ -38,9 +38,8 @@ std::string Told(const hw::ServedAddresses& at) {
   return at.pty.empty() ? text : text + fmt::format("esp  {}\n", at.pty);
 }
 
-/// Runs until Ctrl-C.
+/// Runs until a stop is asked for.
 void ServeUntilStopped(hw::Server& server) {
-  ListenForStop();
   std::jthread watch([&server](std::stop_token ended) {
     while (!StopWasAsked() && !ended.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     server.Stop();
@@ -48,8 +47,9 @@ void ServeUntilStopped(hw::Server& server) {
   server.Run();
 }
 
-/// Writes the bench file, says where the server is and serves.
+/// Writes the bench file, says where the server is and serves. Who has read the file may already stop the server.
 void ServeShown(hw::Server& server, const ServeArguments& a, const std::string& bench_file) {
+  ListenForStop();
   if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, bench_file);
   fmt::print("{}", Told(server.Addresses()));
   std::fflush(stdout);
