@@ -59,6 +59,15 @@ TEST(ScenarioEmpirical, IsTabulatedByReading) {
   EXPECT_THAT(empirical.value_m, ElementsAre(0.5 * units::um, -0.25 * units::um));
 }
 
+TEST(ScenarioEmpirical, IsTabulatedByTime) {
+  const EmpiricalSettings empirical =
+      ParseFinding("[[empirical]]\nchannel = \"psd_b_y\"\nby = \"time\"\ntime_s = [1.5, 2]\nvalue_um = [0.5, 1]\n")
+          .empiricals.at(0);
+  EXPECT_EQ(empirical.by, "time");
+  EXPECT_THAT(empirical.time_s, ElementsAre(1.5, 2.0));
+  EXPECT_THAT(empirical.reading, testing::IsEmpty());
+}
+
 TEST(ScenarioEmpirical, RefusesATableThatDoesNotFit) {
   const auto error = [](const std::string& lines) { return FindingError("[[empirical]]\n" + lines); };
   EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 2]\nvalue_um = [1.0]\n"),
@@ -69,6 +78,12 @@ TEST(ScenarioEmpirical, RefusesATableThatDoesNotFit) {
               HasSubstr("values of another kind of channel; expected value_um"));
   EXPECT_THAT(error("channel = \"angle\"\nreading = [1]\nvalue_deg = [1.0]\n"),
               HasSubstr("expected a channel of the bench rotary_4dof"));
+  const std::string by_time = "channel = \"psd_a_x\"\nby = \"time\"\n";
+  EXPECT_THAT(error(by_time + "time_s = [2, 1]\nvalue_um = [1.0, 2.0]\n"), HasSubstr("do not ascend"));
+  EXPECT_THAT(error(by_time + "time_s = [2]\nvalue_um = [1.0, 2.0]\n"), HasSubstr("has 1 times and 2 values"));
+  EXPECT_THAT(error(by_time + "time_s = [2]\nreading = [1]\nvalue_um = [1.0]\n"), HasSubstr("names readings"));
+  EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 2]\ntime_s = [1]\nvalue_um = [1, 2]\n"),
+              HasSubstr("has 2 readings and 1 times"));
   EXPECT_THAT(error("chanel = \"psd_a_x\"\n"), HasSubstr("empirical.chanel"));
 }
 

@@ -195,8 +195,10 @@ EmpiricalSettings AnyEmpirical(const std::string& bench, Random& random) {
   empirical.signature = "order 7 locked to the \"reference\" angle";
   const std::vector<std::string>& channels = FormatOf(bench).channels;
   empirical.channel = channels[random() % channels.size()];
+  if (random() % 2 == 0) empirical.by = "time";
   for (int i = 0; i < 5; ++i) {
-    empirical.reading.push_back(3 * i);
+    if (empirical.by == "reading") empirical.reading.push_back(3 * i);
+    empirical.time_s.push_back(AnyNumber({10.0 * i, 10.0 * i + 9.0}, 1.0, random));
     ValuesOf(empirical, FormatOf(bench).signal).push_back(AnyNumber({-1e-5, 1e-5}, 1.0, random));
   }
   empirical.provenance = "a run";

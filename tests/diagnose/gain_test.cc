@@ -7,6 +7,7 @@
 #include "tests/diagnose/ring_run.h"
 #include "twin/benches/rotary_4dof/diagnosis/change_of_tables.h"
 #include "twin/benches/rotary_4dof/estimators/design.h"
+#include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/folds.h"
 
 namespace twinbench::diagnose {
@@ -20,6 +21,18 @@ LinearRun NoisyRing(std::uint64_t seed, double amplitude_m, const RingShape& sha
   AddRingNoise(run, seed);
   run.residual += amplitude_m * Direction(run).columns.col(0);
   return run;
+}
+
+/// Of causes that the written file shows as they were fitted.
+Gain GainOf(const LinearRun& run, std::vector<Accepted> accepted) {
+  for (Accepted& a : accepted) {
+    const NoiseModel noise = WhiteNoise(run);
+    const Projector all(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+    a.amplitudes =
+        FitAmplitudes(all, noise.Whiten(run, a.columns), noise.Whiten(run, Eigen::MatrixXd(run.residual)),
+                      ColumnsOf({a}, run.Rows()).prior_precision);
+  }
+  return MeasureGain(run, WhiteNoise(run), accepted, ShownByFit(run, accepted));
 }
 
 TEST(Folds, LeaveOutOnePassOfEverySetUpAndBlocksOfTheCalibration) {
@@ -43,7 +56,7 @@ TEST(Folds, OfASinglePassAreBlocksOfTime) {
 
 TEST(MeasureGain, WithoutCausesIsNothing) {
   const LinearRun run = NoisyRing(1, 0.0);
-  const Gain gain = MeasureGain(run, WhiteNoise(run), {});
+  const Gain gain = GainOf(run, {});
   EXPECT_EQ(gain.folds, 0);
   EXPECT_FALSE(gain.positive);
 }
@@ -67,8 +80,7 @@ TEST(MeasureGain, BeforeIsTheErrorOfADenseFitToTheOtherPasses) {
   double mean = 0.0;
   for (int pass = 0; pass < 4; ++pass) mean += DenseHeldOutSquares(run, pass) / run.Rows();
   // The weak prior and the traces of held-out rows count 1e-8.
-  EXPECT_NEAR(MeasureGain(run, WhiteNoise(run), {Direction(run)}).before_m, std::sqrt(mean),
-              1e-6 * std::sqrt(mean));
+  EXPECT_NEAR(GainOf(run, {Direction(run)}).before_m, std::sqrt(mean), 1e-6 * std::sqrt(mean));
 }
 
 TEST(MeasureGain, OfTheTrueCauseRemovesTheWholeRemovableVariance) {
@@ -76,7 +88,7 @@ TEST(MeasureGain, OfTheTrueCauseRemovesTheWholeRemovableVariance) {
   double fraction = 0.0, floor = 0.0, after = 0.0;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
     const LinearRun run = NoisyRing(seed, 1e-6);
-    const Gain gain = MeasureGain(run, WhiteNoise(run), {Direction(run)});
+    const Gain gain = GainOf(run, {Direction(run)});
     EXPECT_TRUE(gain.positive) << seed;
     EXPECT_EQ(gain.folds, 4);
     fraction += gain.fraction_removed / kRuns;
@@ -98,7 +110,7 @@ TEST(MeasureGain, OfHalfTheCauseRemovesItsShare) {
     LinearRun run = NoisyRing(seed, 1e-6);
     const Eigen::VectorXd other = Direction(run).columns.col(0);
     for (int k = 0; k + 1 < run.Rows(); k += 2) run.residual[k + 1] += 1e-6 * other[k];  // the same on channel b
-    fraction += MeasureGain(run, WhiteNoise(run), {Direction(run)}).fraction_removed / kRuns;
+    fraction += GainOf(run, {Direction(run)}).fraction_removed / kRuns;
   }
   EXPECT_NEAR(fraction, 0.5, 0.02);
 }
@@ -121,7 +133,7 @@ TEST(MeasureGain, OfACauseThatOnePassAloneShowsIsMeasuredOnBlocksOfThatPass) {
     AddUnknowns(run, seed);
     AddRingNoise(run, seed);
     run.residual += 2e-6 * LastStep(run).columns.col(0);
-    const Gain gain = MeasureGain(run, WhiteNoise(run), {LastStep(run)});
+    const Gain gain = GainOf(run, {LastStep(run)});
     EXPECT_TRUE(gain.positive) << seed;
     fraction += gain.fraction_removed / kRuns;
   }
@@ -134,7 +146,7 @@ TEST(MeasureGain, OfACauseInADirectionThatWasDrivenOnceIsMeasuredAsWell) {
   LinearRun run = MakeRing({12, {0, 1, 5}, {1, -1}, 0});
   AddRingNoise(run, 7);
   run.residual += 1e-6 * Direction(run).columns.col(0);
-  const Gain gain = MeasureGain(run, WhiteNoise(run), {Direction(run)});
+  const Gain gain = GainOf(run, {Direction(run)});
   EXPECT_TRUE(gain.positive);
   EXPECT_GT(gain.fraction_removed, 0.8);  // 36 pairs of readings, some 200 to be removed, u = sqrt(144) / 200
 }
@@ -152,7 +164,7 @@ TEST(MeasureGain, CountsACauseThatOnlyTheCalibrationShows) {
     scale.columns = Eigen::MatrixXd::Zero(run.Rows(), 1);
     for (int i = 0; i < 26; ++i) scale.columns(kRingChannels * i + 1, 0) = 50e-6 * (i % 13 - 6);
     run.residual += 0.003 * scale.columns.col(0);  // 0.9 um at the ends
-    positive += MeasureGain(run, WhiteNoise(run), {scale}).positive ? 1 : 0;
+    positive += GainOf(run, {scale}).positive ? 1 : 0;
   }
   EXPECT_GE(positive, kRuns - 1);
 }
@@ -162,7 +174,7 @@ TEST(MeasureGain, OfACauseThatIsNotThereIsHardlyEverPositive) {
   int positive = 0, above_zero = 0;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
     const LinearRun run = NoisyRing(1000 + seed, 0.0);
-    const Gain gain = MeasureGain(run, WhiteNoise(run), {Direction(run)});
+    const Gain gain = GainOf(run, {Direction(run)});
     positive += gain.positive ? 1 : 0;
     above_zero += gain.interval95[0] > 0.0 ? 1 : 0;
   }
@@ -174,7 +186,7 @@ TEST(MeasureGain, SaysThatTheFloorIsTheNoiseAndThePrediction) {
   // Two passes and one set-up: a held-out reading is the other reading's value, so its error has twice the
   // variance.
   LinearRun run = NoisyRing(5, 0.0, {12, {0}, {1, -1}, 0});
-  const Gain gain = MeasureGain(run, WhiteNoise(run), {Direction(run)});
+  const Gain gain = GainOf(run, {Direction(run)});
   EXPECT_NEAR(gain.noise_floor_m, std::sqrt(2.0) * kRingSigma_m, 1e-6 * kRingSigma_m);
 }
 

@@ -2,6 +2,9 @@
 
 #include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/registry.h"
+#include "twin/sim/empirical_signal.h"
+#include "twin/sim/own_tables.h"
 
 namespace twinbench::sim {
 namespace {
@@ -26,6 +29,62 @@ TEST(Empirical, AddsItsValuesAtItsReadingsAndNothingElse) {
       EXPECT_NEAR(extended[k].mean_V[c] - plain[k].mean_V[c], 2000.0 * expected_m, 1e-12) << k;
     }
   }
+}
+
+EmpiricalSettings ByTime() {
+  EmpiricalSettings table;
+  table.channel = "psd_b_y";
+  table.by = "time";
+  table.time_s = {10.0, 20.0, 40.0};
+  table.value_m = {1e-6, 3e-6, -1e-6};
+  return table;
+}
+
+TEST(Empirical, GoesStraightBetweenItsTimesAndIsNothingOutside) {
+  const EmpiricalSignal signal({ByTime()}, "psd_b_y");
+  EXPECT_DOUBLE_EQ(signal.At(1, 10.0), 1e-6);
+  EXPECT_DOUBLE_EQ(signal.At(1, 12.5), 1.5e-6);
+  EXPECT_DOUBLE_EQ(signal.At(7, 30.0), 1e-6);
+  EXPECT_DOUBLE_EQ(signal.At(7, 40.0), -1e-6);
+  EXPECT_EQ(signal.At(1, 9.999), 0.0);
+  EXPECT_EQ(signal.At(1, 40.001), 0.0);
+  EXPECT_EQ(EmpiricalSignal({ByTime()}, "psd_a_y").At(1, 20.0), 0.0);
+}
+
+TEST(Empirical, ByTimeIsShownByTheTwinThatFollows) {
+  Scenario scenario = test::SmallNoiseFree();
+  const auto readings = test::RunTwin(scenario).readings;
+  const auto shown = [&] { return BenchOf(scenario).follow(scenario, readings)->Predict(); };
+  const Eigen::MatrixXd plain = shown();
+  EmpiricalSettings table = ByTime();
+  table.time_s = {ToSeconds(readings.at(30).time), ToSeconds(readings.at(33).time),
+                  ToSeconds(readings.at(50).time)};
+  scenario.empiricals = {table};
+  const Eigen::MatrixXd change = shown() - plain;
+  const EmpiricalSignal signal({table}, "psd_b_y");
+  double most_V = 0.0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const double expected_V = 2000.0 * signal.At(readings[i].reading, ToSeconds(readings[i].time));
+    EXPECT_NEAR(change(static_cast<Eigen::Index>(i), 3), expected_V, 1e-9) << i;
+    most_V = std::max(most_V, std::abs(expected_V));
+  }
+  EXPECT_GT(most_V, 1e-3);
+}
+
+TEST(OwnTables, AreLeftOutOfARecordThatWasTakenAtOtherTimes) {
+  std::vector<Reading> record(3);
+  for (int i = 0; i < 3; ++i) record[static_cast<std::size_t>(i)].reading = i;
+  for (int i = 0; i < 3; ++i) record[static_cast<std::size_t>(i)].time = Time(FromSeconds(2.0 * i));
+  EmpiricalSettings own, other, without, by_time = ByTime();
+  own.reading = other.reading = without.reading = {0, 2, 9};
+  own.time_s = {0.0, 4.0, 18.0};
+  other.time_s = {0.0, 4.001, 18.0};
+  std::vector<EmpiricalSettings> tables = {other, own, without, by_time};
+  LeaveOutForeignTables(record, tables);
+  ASSERT_EQ(tables.size(), 3u);
+  EXPECT_EQ(tables[0].time_s, own.time_s);
+  EXPECT_TRUE(tables[1].time_s.empty());
+  EXPECT_EQ(tables[2].by, "time");
 }
 
 }  // namespace

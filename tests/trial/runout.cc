@@ -118,7 +118,7 @@ double ShownByEffect_m(const EffectSettings& effect, const Reading& r, double sh
 double Shown_m(const Scenario& scenario, const Reading& r) {
   const RunoutSettings& s = RunoutOf(scenario);
   const double centred_m = s.x_m * std::cos(r.reference_rad) + s.y_m * std::sin(r.reference_rad);
-  double shown_m = centred_m + sim::EmpiricalSignal(scenario.empiricals, "gauge").At(r.reading);
+  double shown_m = centred_m + sim::EmpiricalSignal(scenario.empiricals, "gauge").At(r.reading, ToSeconds(r.time));
   for (const EffectSettings& effect : scenario.effects) shown_m += ShownByEffect_m(effect, r, centred_m);
   return shown_m;
 }
@@ -151,7 +151,7 @@ const std::vector<sim::BenchPoint<double>> kPoints = {
 class Follow : public sim::PointwiseFollow<double> {
  public:
   Follow(const Scenario& stated, const std::vector<Reading>& record)
-      : PointwiseFollow(sim::Foreseeable(stated), record, kPoints) {}
+      : PointwiseFollow(sim::Foreseeable(stated, record), record, kPoints) {}
 
  protected:
   Eigen::MatrixXd Shown(const std::vector<double>& extra_m) const override {

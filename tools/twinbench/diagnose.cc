@@ -21,6 +21,7 @@
 #include "twin/core/run_record.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/json.h"
+#include "twin/diagnose/misfit.h"
 #include "twin/diagnose/screen/screen.h"
 #include "twin/diagnose/shown.h"
 #include "twin/plausible/check.h"
@@ -115,17 +116,24 @@ void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const r
   WriteJson(path, results);
 }
 
+/// What speaks against the readings themselves, where whoever reads the answer sees it first.
+void TellDoubts(const std::vector<plausible::Finding>& findings, const DiagnoseOptions& options) {
+  fmt::print(options.json == "-" ? stderr : stdout, "{}", plausible::InLines(findings));
+}
+
 void DiagnoseRun(const DiagnoseOptions& options) {
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   CheckExcluded(options.excluded, run.scenario.bench);
   const std::vector<plausible::Finding> findings = plausible::Check(run.readings, run.scenario);
-  fmt::print(options.json == "-" ? stderr : stdout, "{}", plausible::InLines(findings));
+  TellDoubts(findings, options);
   plausible::RefuseFatal(findings, options.source);
   diagnose::DiagnoseOptions how;
   how.model = EstimatorNamed(options.model);
   how.excluded = options.excluded;
   how.cache_folder = CacheFolder(options.cache);
   const diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
+  const diagnose::Misfit misfit = diagnose::MisfitOf(found);
+  if (!misfit.line.empty()) TellDoubts({{!misfit.is_plausible, misfit.line}}, options);
   if (!options.extended.empty()) {
     WriteFileAtOnce(options.extended,
                     diagnose::ExtendedToml(run.scenario, found, Provenance(options.source, run.readings.size())));
@@ -139,6 +147,7 @@ void DiagnoseRun(const DiagnoseOptions& options) {
     MergeIntoResults(RunFolder{options.source}.results(), json, page);
   }
   if (options.json != "-") fmt::print("{}", report::DiagnosisText(page, {LettersOfStdout(), options.verbose}));
+  if (!misfit.is_plausible) throw InputError(options.source, misfit.line, "readings that the scenario describes");
 }
 
 void Diagnose(const DiagnoseOptions& options) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "twin/diagnose/missing.h"
+#include "twin/diagnose/stated_outliers.h"
+#include "twin/diagnose/written_file.h"
 
 namespace twinbench {
 
@@ -31,7 +33,10 @@ namespace diagnose {
 
 DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                       const DiagnoseOptions& options) {
-  DiagnosisRun result = BenchOf(scenario).diagnose(readings, scenario, options);
+  const Bench& bench = BenchOf(scenario);
+  DiagnosisRun result = bench.diagnose(readings, scenario, options);
+  JudgeByFile(readings, scenario, options, bench.linear_run, result);
+  LeaveOutStatedOutliers(scenario, result);
   const std::vector<std::string> missing = MissingColumns(readings, scenario.bench);
   result.diagnosis.notes.insert(result.diagnosis.notes.end(), missing.begin(), missing.end());
   return result;

@@ -310,12 +310,22 @@ void RequireEmpirical(EmpiricalSettings empirical, const BenchFormat& bench) {
   const std::string key = ValueKey(bench.signal);
   require(empirical.value_m.empty() && empirical.value_rad.empty() && empirical.value.empty(),
           "the empirical signal has values of another kind of channel", key);
-  require(
-      !values.empty() && values.size() == empirical.reading.size(),
-      fmt::format("the empirical signal has {} readings and {} values", empirical.reading.size(), values.size()),
-      fmt::format("one {} for each reading", key));
+  const bool by_time = empirical.by == "time";
+  const std::size_t places = by_time ? empirical.time_s.size() : empirical.reading.size();
+  require(!values.empty() && values.size() == places,
+          fmt::format("the empirical signal has {} {}s and {} values", places, empirical.by, values.size()),
+          fmt::format("one {} for each {}", key, empirical.by));
+  if (by_time) {
+    require(empirical.reading.empty(), "the empirical signal by time names readings", "time_s alone");
+    require(std::ranges::is_sorted(empirical.time_s, std::less_equal()),
+            "the times of the empirical signal do not ascend", "each time later than the one before");
+    return;
+  }
   const std::set<int> once(empirical.reading.begin(), empirical.reading.end());
   require(once.size() == values.size(), "the empirical signal names a reading twice", "every reading once");
+  require(empirical.time_s.empty() || empirical.time_s.size() == places,
+          fmt::format("the empirical signal has {} readings and {} times", places, empirical.time_s.size()),
+          "one time_s for each reading, or none");
 }
 
 EmpiricalSettings ReadEmpirical(const TomlValue& block, const std::string& bench) {

@@ -63,8 +63,10 @@ std::vector<ScenarioKey> KeysOf(EmpiricalSettings& s) {
   Table t(keys, "empirical");
   t.Text("signature", &s.signature, {}, "what the signal looks like, in words");
   t.Text("channel", &s.channel, AllChannels(), "to which it is added");
-  t.Add("reading", kPure, UpTo(kHuge), &s.reading, "running numbers of the readings that have it, each once");
-  t.Add("value", kUm, Within(1e6), &s.value_m, "the signal at these readings, on a PSD");
+  t.Text("by", &s.by, {"reading", "time"}, "what it is tabulated by; between two times it goes straight");
+  t.Add("reading", kPure, UpTo(kHuge), &s.reading, "by reading: numbers of those that have it, each once");
+  t.Add("time", kSecond, Within(kHuge), &s.time_s, "by time: ascending; by reading: when they were taken");
+  t.Add("value", kUm, Within(1e6), &s.value_m, "the signal at these readings or times, on a PSD");
   t.Add("value", kDeg, Within(360), &s.value_rad, "the same of an angle");
   t.Add("value", kPure, Within(1e6), &s.value, "the same of what its column has in another unit");
   t.Text("provenance", &s.provenance, {}, "which run showed it, and when it was diagnosed");

@@ -120,8 +120,9 @@ std::string PrintEmpirical(EmpiricalSettings empirical) {
   std::string text = "\n[[empirical]]\n";
   for (const ScenarioKey& key : KeysOf(empirical)) {
     const auto* const* values = std::get_if<std::vector<double>*>(&key.field);
-    const bool of_another_bench = values && (*values)->empty();
-    if (!of_another_bench) text += PrintKey(key);
+    const auto* const* readings = std::get_if<std::vector<int>*>(&key.field);
+    const bool is_left_out = (values && (*values)->empty()) || (readings && (*readings)->empty());
+    if (!is_left_out) text += PrintKey(key);
   }
   return text;
 }

@@ -7,7 +7,8 @@
 
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
-#include "twin/diagnose/gain.h"
+#include "twin/diagnose/accepted_columns.h"
+#include "twin/diagnose/recurrence.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/diagnose/tuning.h"
 
@@ -70,6 +71,20 @@ void AddNextMeasurements(const AnswerWords& words, std::vector<Cause>& causes) {
   }
 }
 
+/// Far values that come by chance are a cause of the catalogue; those that recur are one that nobody has named.
+void TellOutliers(const NoiseCause& repair, const LinearRun& run, std::vector<Cause>& first, Diagnosis& diagnosis) {
+  const std::string recurs = RecurrenceOf(repair.outliers, run);
+  if (recurs.empty()) {
+    if (std::ranges::count(first, "outliers", &Cause::effect) == 0) first.push_back(OutlierCause(repair, run));
+    return;
+  }
+  UnknownPart& unknown = diagnosis.unknown;
+  diagnosis.verdict = Verdict::kUnknown;
+  unknown.probability = std::max(unknown.probability, tuning::kListed);
+  unknown.signature += (unknown.signature.empty() ? "" : " | ") + recurs;
+  diagnosis.alarm_p = std::min(diagnosis.alarm_p, std::exp(-repair.log_bayes));
+}
+
 /// Names what the analysis found.
 /// @param first  What was decided without it.
 Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vector<Cause> first) {
@@ -81,8 +96,7 @@ Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vecto
   diagnosis.alarm_p = analysis.null.PValue(analysis.found.first_statistic);
   for (const NoiseCause& repair : analysis.repairs) {
     diagnosis.noise.push_back(repair.words);
-    const bool named_already = std::ranges::count(first, "outliers", &Cause::effect) > 0;
-    if (repair.kind == NoiseCause::Kind::kOutliers && !named_already) first.push_back(OutlierCause(repair, run));
+    if (repair.kind == NoiseCause::Kind::kOutliers) TellOutliers(repair, run, first, diagnosis);
   }
   for (const NoiseCause& seen : analysis.observations) {
     if (seen.log_bayes > tuning::kWorthTelling) diagnosis.noise.push_back(seen.words);
@@ -94,15 +108,20 @@ Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vecto
   return diagnosis;
 }
 
-/// A cause goes into the model only if it predicts readings that it was not fitted to.
-void JudgeByGain(DiagnosisRun& result) {
-  Diagnosis& d = result.diagnosis;
-  d.gain = MeasureGain(result.run, result.noise, result.accepted);
-  const bool named = d.verdict == Verdict::kNamed || d.verdict == Verdict::kTie;
-  if (!named || result.accepted.empty() || d.gain.folds == 0 || d.gain.positive) return;
-  for (Cause& cause : d.causes) cause.probability = std::min(cause.probability, tuning::kNotProven);
-  d.notes.push_back(
-      "the gain on held-out passes is not above zero at 95 %: the cause is a proposal, not part of the model");
+/// What the rows that recur show, for a scenario that repeats it at these readings.
+void AcceptRecurrent(const Analysis& analysis, DiagnosisRun& result) {
+  for (const NoiseCause& repair : analysis.repairs) {
+    if (repair.kind != NoiseCause::Kind::kOutliers || RecurrenceOf(repair.outliers, result.run).empty()) continue;
+    const Eigen::VectorXd left = FitAll(result.run, result.noise, result.accepted).after;
+    Accepted far;
+    far.family.kind = Kind::kUnknown;
+    far.family.effect = "far values";
+    far.family.amplitudes = {{"size", "1", 1.0, 1.0}};
+    far.amplitudes = Eigen::VectorXd::Ones(1);
+    far.columns = Eigen::MatrixXd::Zero(result.run.Rows(), 1);
+    far.columns(repair.outliers, 0) = left(repair.outliers);
+    result.accepted.push_back(std::move(far));
+  }
 }
 
 }  // namespace
@@ -119,7 +138,7 @@ Cause DecidedCause(const std::string& effect, const std::string& where, double l
   Cause cause;
   cause.effect = effect;
   cause.where = where;
-  cause.probability = tuning::kMostProbable;
+  cause.probability = tuning::kListed;
   cause.log_evidence = log_evidence;
   cause.rho = std::sqrt(2.0 * std::max(0.0, log_evidence));
   return cause;
@@ -154,12 +173,13 @@ DiagnosisRun Conclude(const LinearRun& run, const Analysis& analysis, const std:
   DiagnosisRun result;
   RefuseWithoutRedundancy(run, analysis.redundancy);
   result.diagnosis = DiagnosisOf(run, analysis, first);
+  result.structure_p = analysis.null.PValue(analysis.found.first_statistic);
   result.run = run;
   result.noise = analysis.noise;
   result.accepted = AcceptedOf(analysis);
+  AcceptRecurrent(analysis, result);
   AddDetectability(run, analysis, words, result.diagnosis);
   AddNextMeasurements(words, result.diagnosis.causes);
-  JudgeByGain(result);
   return result;
 }
 

@@ -33,6 +33,7 @@ struct Accepted {
   Eigen::MatrixXd columns;     // rows x amplitudes, SI, not whitened
   /// Structure without a name, where a row is the mean of several readings: its value at each reading, by number.
   std::vector<int> readings = {};
+  Eigen::VectorXd times_s = {};
   Eigen::VectorXd at_readings = {};  // SI, on the first channel
 };
 
@@ -42,6 +43,7 @@ struct DiagnosisRun {
   LinearRun run;
   NoiseModel noise;
   std::vector<Accepted> accepted;  // named causes and empirical terms, in order of acceptance
+  double structure_p = kNaN;       // alarm_p without what single far values add to it
 };
 
 }  // namespace twinbench::diagnose

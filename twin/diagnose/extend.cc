@@ -37,39 +37,51 @@ void TakeEstimates(const Cause& cause, const EffectEntry& entry, EffectSettings&
   effect.finding.probability = cause.probability;
 }
 
-/// The signal of an unnamed structure on one channel; nothing if it does not show there.
-std::vector<EmpiricalSettings> EmpiricalOn(int channel, const LinearRun& run, const Eigen::VectorXd& signal) {
-  EmpiricalSettings empirical;
-  empirical.channel = run.channels[static_cast<std::size_t>(channel)];
-  std::vector<double>& values = ValuesOf(empirical, FormatOf(run.bench).signal);
-  double largest = 0.0;
-  for (int i = 0; i < run.schedule.Readings(); ++i) {
-    const double value = signal[i * run.Channels() + channel];
-    largest = std::max(largest, std::abs(value));
-    empirical.reading.push_back(run.schedule.reading[static_cast<std::size_t>(i)]);
-    values.push_back(std::round(value / kRounding_SI) * kRounding_SI);
+/// A structure without a name on one channel, where it is known.
+struct Known {
+  std::vector<int> reading;
+  Eigen::VectorXd time_s, value_SI;
+};
+
+/// Times that a table may go by: each later than the one before.
+bool Ascends(const Eigen::VectorXd& time_s) {
+  for (Eigen::Index i = 1; i < time_s.size(); ++i) {
+    if (!(time_s[i] > time_s[i - 1])) return false;
   }
-  if (largest < kSmallest_SI) return {};
-  return {empirical};
+  return time_s.size() > 0;
 }
 
-/// The same where it is known at each reading.
-std::vector<EmpiricalSettings> EmpiricalAt(const Accepted& accepted, const LinearRun& run) {
-  EmpiricalSettings empirical;
-  empirical.channel = run.channels.front();
-  empirical.reading = accepted.readings;
-  for (const double value : accepted.at_readings)
-    empirical.value_rad.push_back(std::round(value / kRounding_SI) * kRounding_SI);
-  if (accepted.at_readings.cwiseAbs().maxCoeff() < kSmallest_SI) return {};
-  return {empirical};
+/// Nothing if it does not show.
+std::vector<EmpiricalSettings> TableOf(const Known& known, const std::string& channel, const LinearRun& run,
+                                       bool goes_by_time) {
+  if (known.value_SI.size() == 0 || known.value_SI.cwiseAbs().maxCoeff() < kSmallest_SI) return {};
+  EmpiricalSettings table;
+  table.channel = channel;
+  const bool has_times = known.time_s.size() == known.value_SI.size() && known.time_s.allFinite();
+  if (has_times) table.time_s.assign(known.time_s.begin(), known.time_s.end());
+  if (has_times && goes_by_time && Ascends(known.time_s)) {
+    table.by = "time";
+  } else {
+    table.reading = known.reading;
+  }
+  std::vector<double>& values = ValuesOf(table, FormatOf(run.bench).signal);
+  for (const double value : known.value_SI) values.push_back(std::round(value / kRounding_SI) * kRounding_SI);
+  return {table};
 }
 
 std::vector<EmpiricalSettings> EmpiricalsOf(const Accepted& accepted, const LinearRun& run) {
-  if (!accepted.readings.empty()) return EmpiricalAt(accepted, run);
+  const bool by_time = accepted.family.goes_by_time;
+  if (!accepted.readings.empty())
+    return TableOf({accepted.readings, accepted.times_s, accepted.at_readings}, run.channels.front(), run, by_time);
   const Eigen::VectorXd signal = accepted.columns * accepted.amplitudes;
+  const int channels = run.Channels();
   std::vector<EmpiricalSettings> all;
-  for (int channel = 0; channel < run.Channels(); ++channel)
-    std::ranges::move(EmpiricalOn(channel, run, signal), std::back_inserter(all));
+  for (int c = 0; c < channels; ++c) {
+    const Eigen::VectorXd own = signal(Eigen::seqN(c, signal.size() / channels, channels));
+    std::ranges::move(TableOf({run.schedule.reading, run.schedule.time_s, own},
+                              run.channels[static_cast<std::size_t>(c)], run, by_time),
+                      std::back_inserter(all));
+  }
   return all;
 }
 
@@ -178,6 +190,11 @@ EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std:
     effect.parameters[parameter.name] = parameter.default_SI;
   TakeEstimates(cause, *entry, effect);
   return effect;
+}
+
+bool IsRepeatedOnly(const Accepted& accepted, const LinearRun& run) {
+  const Family& family = accepted.family;
+  return family.kind == Kind::kUnknown && !family.goes_by_time && SignalsOf(accepted, run).empty();
 }
 
 Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance) {

@@ -21,6 +21,10 @@ Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::st
 /// the others as the catalogue has them.
 EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std::string& provenance);
 
+/// The extended scenario has this structure without a name only at the readings that showed it: no signal of a twin
+/// has its shape, and it goes by more than time.
+bool IsRepeatedOnly(const Accepted& accepted, const LinearRun& run);
+
 /// Extend() as TOML, below a comment that says in a line or two what was added.
 std::string ExtendedToml(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance);
 

@@ -8,6 +8,7 @@
 #include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/at.h"
 #include "twin/diagnose/engine/projector.h"
+#include "twin/diagnose/extend.h"
 #include "twin/diagnose/folds.h"
 #include "twin/diagnose/held_out.h"
 
@@ -49,9 +50,23 @@ Eigen::VectorXd VarianceOfHeld(const Projector& fit, const Eigen::VectorXd& held
   return variance;
 }
 
+/// What is predicted from: the causes with their amplitudes from all readings, and the file that says them.
+struct Model {
+  Columns columns;
+  Eigen::VectorXd amplitudes;  // from all readings
+  Eigen::VectorXd repeated;    // 1 for a column that the file has at its own readings only
+  const Eigen::VectorXd& written;
+};
+
+/// What the file would show, had it these amplitudes.
+Eigen::VectorXd ShownWith(const Model& model, const Eigen::VectorXd& amplitudes) {
+  return model.written + model.columns.S * (amplitudes - model.amplitudes);
+}
+
 /// Fits the rows where `held` is 0 and predicts those where it is 1.
-FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Columns& columns,
+FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Model& model,
                        const Eigen::VectorXd& held) {
+  const Columns& columns = model.columns;
   const Projector fit(Mixed(run, noise, held, run.nuisance.jacobian), run.nuisance);
   const Eigen::MatrixXd raw_y = run.residual;
   const Eigen::MatrixXd train_y = (1.0 - held.array()).matrix().asDiagonal() * noise.Whiten(run, raw_y);
@@ -59,8 +74,11 @@ FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Colu
   const Eigen::VectorXd amplitudes = FitAmplitudes(fit, S, train_y, columns.prior_precision);
   FoldErrors errors;
   errors.before = run.residual - run.nuisance.jacobian * fit.Solve(train_y);
-  errors.after =
-      run.residual - columns.S * amplitudes - run.nuisance.jacobian * fit.Solve(train_y - S * amplitudes);
+  const Eigen::VectorXd shown = ShownWith(model, amplitudes);
+  const Eigen::MatrixXd left = run.residual - shown;
+  const Eigen::MatrixXd train_left = (1.0 - held.array()).matrix().asDiagonal() * noise.Whiten(run, left);
+  const Eigen::VectorXd predicted = shown - columns.S * model.repeated.cwiseProduct(amplitudes);
+  errors.after = run.residual - predicted - run.nuisance.jacobian * fit.Solve(train_left);
   errors.amplitude = RelativeVariances(fit, S, columns.prior_precision);
   errors.variance = VarianceOfHeld(fit, held);
   for (int k = 0; k < run.Rows(); ++k) {
@@ -106,14 +124,15 @@ struct Predicted {
   double least_information = 1.0;  // share that a fold has left of what all readings say of an amplitude
 };
 
-Predicted Predict(const LinearRun& run, const NoiseModel& noise, const Columns& columns, const Folds& folds) {
+Predicted Predict(const LinearRun& run, const NoiseModel& noise, const Model& model, const Folds& folds) {
+  const Columns& columns = model.columns;
   const std::vector<int> block_of = BlocksOfReadings(run.schedule);
   const Projector all(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
   const Eigen::VectorXd full = RelativeVariances(all, noise.Whiten(run, columns.S), columns.prior_precision);
   Predicted predicted{folds.count, {}, 1.0};
   predicted.blocks.resize(At(1 + *std::max_element(block_of.begin(), block_of.end())));
   for (int fold = 0; fold < folds.count; ++fold) {
-    const FoldErrors errors = PredictFold(run, noise, columns, HeldRows(run, folds, fold));
+    const FoldErrors errors = PredictFold(run, noise, model, HeldRows(run, folds, fold));
     AddFold(run, noise, errors, block_of, predicted.blocks);
     predicted.least_information =
         std::min(predicted.least_information, full.cwiseQuotient(errors.amplitude).minCoeff());
@@ -122,21 +141,44 @@ Predicted Predict(const LinearRun& run, const NoiseModel& noise, const Columns& 
   return predicted;
 }
 
+Model ModelOf(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted,
+              const Eigen::VectorXd& written) {
+  Model model{ColumnsOf(accepted, run.Rows()), {}, {}, written};
+  const Projector all(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  const Eigen::MatrixXd y = run.residual;
+  model.amplitudes =
+      FitAmplitudes(all, noise.Whiten(run, model.columns.S), noise.Whiten(run, y), model.columns.prior_precision);
+  model.repeated.resize(model.amplitudes.size());
+  Eigen::Index column = 0;
+  for (const Accepted& a : accepted) {
+    model.repeated.segment(column, a.columns.cols()).setConstant(IsRepeatedOnly(a, run) ? 1.0 : 0.0);
+    column += a.columns.cols();
+  }
+  return model;
+}
+
 }  // namespace
 
-Gain MeasureGain(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted) {
+Gain MeasureGain(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted,
+                 const Eigen::VectorXd& written) {
   Gain gain;
   if (accepted.empty()) return gain;
-  const Columns columns = ColumnsOf(accepted, run.Rows());
-  Predicted predicted = Predict(run, noise, columns, MakeFolds(run.schedule));
+  const Model model = ModelOf(run, noise, accepted, written);
+  Predicted predicted = Predict(run, noise, model, MakeFolds(run.schedule));
   if (predicted.least_information < kLeastInformation) {
-    Predicted by_time = Predict(run, noise, columns, FoldsOfTime(run.schedule));
+    Predicted by_time = Predict(run, noise, model, FoldsOfTime(run.schedule));
     if (by_time.least_information > predicted.least_information) predicted = std::move(by_time);
   }
   if (predicted.blocks.empty()) return gain;
   gain.folds = predicted.folds;
   FillGain(predicted.blocks, run.sigma_stated, noise.rho, gain);
   return gain;
+}
+
+Eigen::VectorXd ShownByFit(const LinearRun& run, const std::vector<Accepted>& accepted) {
+  Eigen::VectorXd shown = Eigen::VectorXd::Zero(run.Rows());
+  for (const Accepted& a : accepted) shown += a.columns * a.amplitudes;
+  return shown;
 }
 
 }  // namespace twinbench::diagnose

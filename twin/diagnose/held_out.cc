@@ -31,7 +31,9 @@ struct Shares {
 };
 
 Shares SharesOf(const HeldOutSums& sum, double scale) {
-  return {sum.before - sum.after, sum.after - scale * sum.floor};
+  constexpr double kRounding = 1e-9;  // of what was there: nothing was removed
+  const double removed = sum.before - sum.after;
+  return {std::abs(removed) > kRounding * sum.before ? removed : 0.0, sum.after - scale * sum.floor};
 }
 
 double Quantile(const std::vector<double>& sorted, double q) {

@@ -26,10 +26,11 @@ inline constexpr double kSameShape = 0.2;
 /// Probability of an alarm on a run without effect: half of what is promised, for noise is never as clean as
 /// simulated.
 inline constexpr double kAlarmProbability = 0.005;
-/// No name is surer than this: there is always something that the catalogue has not.
-inline constexpr double kMostProbable = 0.97;
+/// Share of the machines that look exactly like a cause of the catalogue and have it; the others have something
+/// that the catalogue lacks.
+inline constexpr double kListed = 0.97;
 /// The same for causes with a double outside the catalogue: a wrong scale of a whole detector and its distance.
-inline constexpr double kMostProbableDoubled = 0.85;
+inline constexpr double kListedDoubled = 0.85;
 /// A cause has to be there: its size so many standard uncertainties from zero.
 inline constexpr double kHeadline = 3.0;
 /// One name alone from here on; below, the smallest set that holds so much of what is not unknown, without causes

@@ -7,6 +7,10 @@
 /// The words that diagnoses are told in. Where they stand on a page is for the report to say.
 namespace twinbench::diagnose {
 
+/// Of causes that predict nothing.
+inline constexpr const char* kNoGainNote =
+    "the gain on held-out passes is not above zero at 95 %: the cause is a proposal, not part of the model";
+
 /// "psd_gain at psd_a_x".
 std::string Place(const std::string& effect, const std::string& where);
 

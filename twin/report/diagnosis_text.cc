@@ -44,10 +44,6 @@ std::string CurveOfPage(const DiagnosisPage& page, Letters letters) {
   return PlotOf(curve, letters);
 }
 
-bool SayOf(const std::string& word, const std::vector<std::string>& notes) {
-  return std::ranges::any_of(notes, [&](const std::string& note) { return note.find(word) != std::string::npos; });
-}
-
 /// Residual tests that stand out although nothing was found, by name.
 std::string LoudTests(const std::vector<diagnose::ScreenTest>& screen) {
   constexpr std::size_t kMostNamed = 3;
@@ -63,7 +59,7 @@ std::string LoudTests(const std::vector<diagnose::ScreenTest>& screen) {
 std::string Warnings(const DiagnosisPage& page) {
   const Diagnosis& d = page.found.diagnosis;
   std::string text;
-  if (d.gain.folds > 0 && !d.gain.positive && !SayOf("gain", d.notes))
+  if (d.gain.folds > 0 && !d.gain.positive && std::ranges::count(d.notes, diagnose::kNoGainNote) == 0)
     text += Sentence("! ", diagnose::GainInWords(d.gain, page.found.run));
   for (const std::string& note : d.notes) text += Sentence("! ", note);
   if (d.left_out > 0)

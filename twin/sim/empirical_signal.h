@@ -12,10 +12,13 @@ namespace twinbench::sim {
 class EmpiricalSignal {
  public:
   EmpiricalSignal(const std::vector<EmpiricalSettings>& empiricals, const std::string& channel);
-  double At(int reading) const;  // SI: rad, m or what the channel reads
+
+  /// SI: rad, m or what the channel reads. @param time_s  As the record counts it.
+  double At(int reading, double time_s) const;
 
  private:
   std::map<int, double> by_reading_;
+  std::vector<std::map<double, double>> by_time_;
 };
 
 }  // namespace twinbench::sim

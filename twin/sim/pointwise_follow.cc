@@ -1,10 +1,13 @@
 #include "twin/sim/pointwise_follow.h"
 
+#include "twin/sim/own_tables.h"
+
 namespace twinbench::sim {
 
-Scenario Foreseeable(Scenario scenario) {
+Scenario Foreseeable(Scenario scenario, const std::vector<Reading>& record) {
   scenario.noise_free = true;
   std::erase_if(scenario.effects, [](const EffectSettings& e) { return e.name == "outliers"; });
+  LeaveOutForeignTables(record, scenario.empiricals);
   return scenario;
 }
 

@@ -17,8 +17,9 @@ struct BenchPoint {
   double& (*of_bench)(Scenario&) = nullptr;  // ... or this
 };
 
-/// The scenario without chance and without single outliers, which nobody can foresee.
-Scenario Foreseeable(Scenario scenario);
+/// The scenario without chance and without single outliers, which nobody can foresee, and without what was
+/// tabulated by the readings of another record.
+Scenario Foreseeable(Scenario scenario, const std::vector<Reading>& record);
 
 /// Errors of a table are what a run leaves free.
 void LeaveFree(TableSettings& table);

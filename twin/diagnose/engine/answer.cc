@@ -30,9 +30,9 @@ std::vector<ParameterEstimate> PlainParameters(const Family& family, const Term&
   return parameters;
 }
 
-double CapOf(const std::vector<Family>& families, const CauseKey& key) {
+double ListedShareOf(const std::vector<Family>& families, const CauseKey& key) {
   const auto family = std::ranges::find(families, key, KeyOf);
-  return family == families.end() ? tuning::kMostProbable : family->most_probable;
+  return family == families.end() ? tuning::kListed : family->listed;
 }
 
 /// @return with parameters only if it is what the search took: the rivals were not fitted.
@@ -42,7 +42,7 @@ Cause CauseOf(const Term& term, const std::vector<Family>& families, const Share
   Cause cause;
   cause.effect = key.first;
   cause.where = key.second;
-  cause.probability = std::min(probability, CapOf(families, key));
+  cause.probability = std::min(probability, 1.0) * ListedShareOf(families, key);  // sums of many shares round
   cause.log_evidence = term.statistic;
   if (KeyOf(family) != key) return cause;
   cause.parameters =
@@ -121,7 +121,10 @@ void AddDoubles(const Term& term, const SearchResult& found, const std::vector<F
   std::erase_if(doubles, listed);
   const double share = causes.front().probability / static_cast<double>(1 + std::ssize(doubles));
   causes.front().probability = share;
-  for (const CauseKey& key : doubles) causes.push_back(CauseOf(term, families, {key, share}));
+  for (const CauseKey& key : doubles) {
+    causes.push_back(CauseOf(term, families, {key, 1.0}));
+    causes.back().probability = share;
+  }
 }
 
 /// How much of what each cause explains the others explain alone.
@@ -147,6 +150,9 @@ Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Fami
   answer.weight = term.explained;
   answer.signature = SignatureOf(term, families, posterior);
   if (posterior.unknown > 0.5) return answer;
+  answer.unknown = 1.0;
+  for (const auto& [key, probability] : posterior.named)
+    answer.unknown -= probability * ListedShareOf(families, key);
   for (const Share& share : CredibleSet(posterior)) answer.causes.push_back(CauseOf(term, families, share));
   if (!answer.causes.empty() && found.terms.size() == 1) AddDoubles(term, found, families, answer.causes);
   AddRivals(found, families, answer.causes);

@@ -52,10 +52,10 @@ struct Family {
   std::string effect, where;  // unknown: name of the shape and what it shows on
   std::string group;          // families of one group share one prior mass: the effect, or the sort of unknown
   double prior_weight = 1.0;  // within the group
-  /// No stated probability of this cause exceeds it. Less than the general cap where something that no catalogue of
-  /// ours lists looks exactly the same: a wrong scale of a whole PSD like its distance, a reference off centre like
-  /// a device off centre.
-  double most_probable = tuning::kMostProbable;
+  /// Share of what looks exactly so that is this cause, and nothing that no catalogue of ours lists: less than
+  /// usual for a wrong scale of a whole PSD, which looks like its distance, or a device off centre, which looks
+  /// like a reference off centre.
+  double listed = tuning::kListed;
   std::vector<Amplitude> amplitudes;
   std::vector<Shape> shapes;  // all of equal length; empty: one grid point
   int grid = 1;               // number of grid points
@@ -79,6 +79,9 @@ struct Family {
 
   /// What a fitted member of an unknown family is as signals; empty: nothing that predicts another run.
   std::function<std::vector<Product>(const Eigen::VectorXd& shape, int grid_point)> products;
+
+  /// One value at a time on each channel, whatever the bench does: without products it is tabulated by time.
+  bool goes_by_time = false;
 
   /// Describes a fitted member of an unknown family in the grammar of docs/diagnosis.md.
   std::function<std::string(int grid_point, const Eigen::VectorXd& amplitudes)> describe;

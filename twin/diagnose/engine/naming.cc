@@ -1,6 +1,7 @@
 #include "twin/diagnose/engine/naming.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "twin/diagnose/engine/answer.h"
@@ -27,16 +28,18 @@ Answered AnswerAll(const SearchResult& found, const std::vector<Family>& familie
   return answered;
 }
 
-/// Of a periodic error; NaN where a cause has none or was not fitted.
-double OrderOf(const Cause& cause) {
-  const auto order = std::ranges::find(cause.parameters, "order", &ParameterEstimate::name);
-  return order == cause.parameters.end() ? kNaN : order->value;
+/// Of a parameter; NaN where a cause has none of that name or was not fitted.
+double Value(const Cause& cause, const std::string& name) {
+  const auto found = std::ranges::find(cause.parameters, name, &ParameterEstimate::name);
+  return found == cause.parameters.end() ? kNaN : found->value;
 }
 
-/// Two orders of one effect are two causes.
+/// Two orders, tones or steps of one effect are two causes.
 bool IsSame(const Cause& a, const Cause& b) {
-  const double apart = std::abs(OrderOf(a) - OrderOf(b));
-  return a.effect == b.effect && a.where == b.where && !(apart > 0.0);
+  constexpr std::array kTellApart = {"order", "frequency", "at_reading"};
+  const bool apart = std::ranges::any_of(
+      kTellApart, [&](const char* name) { return std::abs(Value(a, name) - Value(b, name)) > 0.0; });
+  return a.effect == b.effect && a.where == b.where && !apart;
 }
 
 /// Every cause once, in the order of the places.
@@ -101,7 +104,7 @@ bool IsPossible(const Cause& cause) {
 /// @param unnamed  Power of what has no name.
 void DeclareUnknown(const std::string& otherwise, double unnamed, Naming& naming) {
   naming.verdict = Verdict::kUnknown;
-  naming.unknown.probability = std::clamp(naming.unknown.probability, 0.5, tuning::kMostProbable);
+  naming.unknown.probability = std::clamp(naming.unknown.probability, 0.5, tuning::kListed);
   if (naming.unknown.signature.empty()) naming.unknown.signature = otherwise;
   for (Cause& cause : naming.causes) {
     const double own = std::isfinite(cause.rho) ? cause.rho * cause.rho : 0.0;
@@ -109,6 +112,28 @@ void DeclareUnknown(const std::string& otherwise, double unnamed, Naming& naming
     const double left = std::max(share, 1.0 - naming.unknown.probability);
     cause.probability = IsPossible(cause) ? std::min(cause.probability, left) : 1.0 - naming.unknown.probability;
   }
+}
+
+/// A tone or a step has its own place in a bench; many of them at one place are the pieces of something else, which
+/// no formula of the catalogue has: a chirp, lost counts. Orders of an angle are not: a wheel may well have many.
+bool IsPiece(const Cause& cause, const std::vector<Cause>& causes) {
+  constexpr std::ptrdiff_t kPieces = 3;
+  const bool is_own = std::isnan(Value(cause, "frequency")) && std::isnan(Value(cause, "at_reading"));
+  return !is_own && std::ranges::count_if(causes, [&](const Cause& c) {
+                      return c.effect == cause.effect && c.where == cause.where;
+                    }) >= kPieces;
+}
+
+/// @return the effects that came in pieces, which then are hardly believed.
+std::string DisbelievePieces(Naming& naming) {
+  const std::vector<Cause> all = naming.causes;
+  std::string effects;
+  for (Cause& cause : naming.causes) {
+    if (!IsPiece(cause, all)) continue;
+    cause.probability = std::min(cause.probability, 1.0 - tuning::kListed);
+    if (effects.find(cause.effect) == std::string::npos) effects += (effects.empty() ? "" : ", ") + cause.effect;
+  }
+  return effects;
 }
 
 double UnnamedPower(const Answered& answered) {
@@ -139,6 +164,12 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
                    naming);
   } else if (LeavesStructure(answered, found.last_statistic, threshold) || one_unknown > 0.5) {
     DeclareUnknown("structure that the causes named here do not explain", UnnamedPower(answered), naming);
+  }
+  if (const std::string effects = DisbelievePieces(naming); !effects.empty()) {
+    naming.verdict = Verdict::kUnknown;
+    naming.unknown.probability = std::max(naming.unknown.probability, tuning::kListed);
+    naming.unknown.signature += (naming.unknown.signature.empty() ? "" : " | ") +
+                                ("structure of which many effects " + effects + " are the pieces, locked to time");
   }
   return naming;
 }

@@ -123,11 +123,10 @@ Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidenc
   term.statistic = statistic();  // as calibrated: without refinement
   if (term.statistic >= problem.threshold) RefineLeaders(problem, others, data, evidence, shapes);
   // A name that does not hold leaves its probability to the others.
-  constexpr int kMostRefused = 4;
-  for (int refused = 0;; ++refused) {
+  for (;;) {
     TakeAmong(problem, shapes, evidence, term);
     const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
-    if (term.statistic < problem.threshold || refused == kMostRefused) break;
+    if (term.statistic < problem.threshold) break;
     if (IsInside(family, term.shape) && IsThere(problem, others, data, term)) break;
     evidence.log_bayes(term.family, 0) = as_scanned[term.family] = kNever;
     term.statistic = statistic();

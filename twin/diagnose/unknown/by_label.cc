@@ -41,11 +41,14 @@ void AddWaves(Collector& collect, const std::string& what, const Eigen::MatrixXd
 void AddPasses(Collector& collect) {
   const Design& d = collect.design();
   const Eigen::MatrixXd passes = WhereMoved(d, d.course.pass), visits = WhereMoved(d, model::Visits(d.course));
-  if (IsTold(passes, tuning::kMostOffsets))
+  if (IsTold(passes, tuning::kMostOffsets)) {
     collect.Add("pass", passes, "offset of each pass, locked to the pass (time)");
+    collect.GoByTime();
+  }
   AddWaves(collect, "pass", passes, tuning::kPassOrders);
   if (visits.cols() <= passes.cols() || !IsTold(visits, tuning::kMostOffsets)) return;
   collect.Add("pass", visits, "offset of each pass of each set-up, locked to the pass (time)");
+  collect.GoByTime();
 }
 
 /// A label for every dwell that occurs, to a tenth of a second.

@@ -175,6 +175,10 @@ void Collector::Are(const Products& products) {
   for (std::size_t k = last_; k < families_.size(); ++k) families_[k].products = products;
 }
 
+void Collector::GoByTime() {
+  for (std::size_t k = last_; k < families_.size(); ++k) families_[k].goes_by_time = true;
+}
+
 void Collector::AreHarmonics(const Angle& angle, const EffectSettings& factor) {
   if (angle.by.empty()) return;
   Are([by = angle.by, factor](const Eigen::VectorXd&, int g) {

@@ -45,6 +45,8 @@ class Collector {
   /// What the families added last are as signals of a twin.
   using Products = std::function<std::vector<Product>(const Eigen::VectorXd& shape, int grid_point)>;
   void Are(const Products& products);
+  /// One value at a time, whatever the bench does.
+  void GoByTime();
   /// Whole orders of an angle, whose size follows what `factor` says.
   void AreHarmonics(const Angle& angle, const EffectSettings& factor);
 

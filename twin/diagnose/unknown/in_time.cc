@@ -39,15 +39,19 @@ void AddWander(Collector& collect) {
         return model::InEach(model::CosineModes(share, g + 1, false).rightCols(1), stretches);
       },
       [](int g) { return fmt::format("slow wander locked to time, {} half periods a run", g + 1); });
+  collect.GoByTime();
   collect.Add("wander", modes(tuning::kWanderTogether, false), "slow wander locked to time");
+  collect.GoByTime();
   collect.Add(
       "wander",
       modes(std::max(tuning::kWanderTogether + 1, tuning::kWalkModes / static_cast<int>(stretches.cols())), true),
       "random wander locked to time");
+  collect.GoByTime();
   const Eigen::MatrixXd setups = model::Times(model::Indicators(d.course.setup), d.moved);
-  if (stretches.cols() == 1 && setups.cols() > 1)
-    collect.Add("wander", model::Times(setups, model::ElapsedShare(d.course)),
-                "drift that differs from set-up to set-up, locked to time");
+  if (stretches.cols() > 1 || setups.cols() < 2) return;
+  collect.Add("wander", model::Times(setups, model::ElapsedShare(d.course)),
+              "drift that differs from set-up to set-up, locked to time");
+  collect.GoByTime();
 }
 
 void AddTones(Collector& collect) {
@@ -117,6 +121,7 @@ void AddTouches(Collector& collect) {
                            numbers[static_cast<std::size_t>(touch.first)],
                            numbers[static_cast<std::size_t>(touch.end - 1)]);
       });
+  collect.GoByTime();
 }
 
 /// What dies out behind every mounting, or creeps on as a logarithm.
@@ -134,6 +139,7 @@ void AddRestarts(Collector& collect) {
         return fmt::format("{} that begins again with every set-up, about {:.0f} s, locked to time",
                            g < count ? "decay" : "creep", times_s[static_cast<std::size_t>(g % count)]);
       });
+  collect.GoByTime();
 }
 
 void AddTemperature(Collector& collect) {
@@ -149,6 +155,7 @@ void AddTemperature(Collector& collect) {
       [lags_s](int g) {
         return fmt::format("locked to temperature with a lag of {:.0f} s", lags_s[static_cast<std::size_t>(g)]);
       });
+  collect.GoByTime();
   if (d.twin_is_warm)
     collect.Are([per_K = model::Rms(d.above_K)](const Eigen::VectorXd&, int g) -> std::vector<Product> {
       if (g > 0) return {};  // a lag has a memory
@@ -157,6 +164,7 @@ void AddTemperature(Collector& collect) {
   constexpr double kLag_s = 600.0;
   collect.Add("temperature", model::Unit(d.above_K - model::Lagged(d.course.time_s, d.above_K, kLag_s)),
               "locked to the rate of the temperature");
+  collect.GoByTime();
 }
 
 /// A size that follows the elapsed share of the run, of rms one.

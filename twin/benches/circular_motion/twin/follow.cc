@@ -29,7 +29,7 @@ const std::vector<BenchPoint<CircleExtra>>& CirclePoints() {
 class CircleFollow : public PointwiseFollow<CircleExtra> {
  public:
   CircleFollow(const Scenario& stated, const std::vector<Reading>& record, std::shared_ptr<BodiesOnce> bodies)
-      : PointwiseFollow(Foreseeable(stated), record, CirclePoints()),
+      : PointwiseFollow(Foreseeable(stated, record), record, CirclePoints()),
         bodies_(std::move(bodies)),
         twin_(scenario(), record, model::Above_K(model::CourseOf(record), stated.environment.reference_degC),
               *bodies_) {}

@@ -155,8 +155,8 @@ void CircleTwin::AddSignals(std::size_t i, Deviation& shown) const {
       (signal.Channel() == 0 ? shown.radial_m : shown.tangential_m) += signal.At(now, without_m);
   }
   for (const EffectSettings& tone : tones_) shown.radial_m += Tone(tone, step.time_s);
-  shown.radial_m += radial_.At(step.reading);
-  shown.tangential_m += tangential_.At(step.reading);
+  shown.radial_m += radial_.At(step.reading, step.time_s);
+  shown.tangential_m += tangential_.At(step.reading, step.time_s);
 }
 
 Deviation CircleTwin::At(std::size_t i, const CircleExtra& extra) const {

@@ -61,7 +61,7 @@ std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::s
   const std::vector<std::string> doubled = {"eccentricity",       "signal_offset",    "ellipticity",
                                             "amplitude_mismatch", "quadrature_error", "periodic"};
   for (Family& family : families) {
-    if (Has(doubled, family.effect)) family.most_probable = tuning::kMostProbableDoubled;
+    if (Has(doubled, family.effect)) family.listed = tuning::kListedDoubled;
   }
   std::ranges::move(UnknownFamilies(encoder, series, plausible_rad), std::back_inserter(families));
   return families;

@@ -15,7 +15,6 @@
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/extend.h"
-#include "twin/diagnose/gain.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {
@@ -64,7 +63,7 @@ Cause CauseFrom(const Family& family, int grid_point, const Eigen::VectorXd& row
   Cause cause;
   cause.effect = family.effect;
   cause.where = family.where;
-  cause.probability = family.most_probable;
+  cause.probability = family.listed;
   cause.rho = std::sqrt(fit.power);
   if (family.parameters) {
     cause.parameters = family.parameters(shape, fit.amplitudes, cov);
@@ -316,7 +315,7 @@ class Search {
       if (!(left < power - kBetter * noise)) continue;
       // The others do not show what is there: they are no tie any more.
       changed[k].causes.resize(1);
-      changed[k].causes.front().probability = tuning::kMostProbable;
+      changed[k].causes.front().probability = tuning::kListed;
       causes = std::move(changed);
       asked = std::move(again);
       power = left;
@@ -424,11 +423,10 @@ void AddLargeCauses(const LargeCauses& large, DiagnosisRun& result) {
   const bool is_tie = std::ranges::any_of(large.causes, [](const LargeCause& c) { return c.causes.size() > 1; });
   if (is_tie && d.verdict == Verdict::kNamed) d.verdict = Verdict::kTie;
   d.causes.insert(d.causes.begin(), causes.begin(), causes.end());
-  d.alarm_p = large.first->analysis.null.PValue(large.first->analysis.found.first_statistic);
+  d.alarm_p = result.structure_p = large.first->analysis.null.PValue(large.first->analysis.found.first_statistic);
   result.accepted.insert(result.accepted.begin(), accepted.begin(), accepted.end());
   result.run = large.first->encoder.run;
   result.run.sigma = large.Last().encoder.run.sigma;
-  d.gain = MeasureGain(result.run, result.noise, result.accepted);
 }
 
 }  // namespace twinbench::diagnose::encoder

@@ -35,7 +35,7 @@ double RunUp_rad(const std::vector<Reading>& record, const Scenario& scenario) {
 class EncoderFollow : public PointwiseFollow<AngleExtra> {
  public:
   EncoderFollow(const Scenario& stated, const std::vector<Reading>& record)
-      : PointwiseFollow(Foreseeable(stated), record, AnglePoints()) {}
+      : PointwiseFollow(Foreseeable(stated, record), record, AnglePoints()) {}
 
   std::vector<std::string> Unfixed() const override {
     return {"angles of the device on the shaft: free in every set-up"};

@@ -92,7 +92,7 @@ double EncoderTwin::ReferenceError_rad(const AngleMoment& moment) const {
 
 double EncoderTwin::Shown_rad(const AngleMoment& moment) const {
   const double device_rad = ShaftAngle_rad(moment);
-  return device_rad + DeviceError_rad(moment, device_rad) + empirical_.At(moment.reading);
+  return device_rad + DeviceError_rad(moment, device_rad) + empirical_.At(moment.reading, ToSeconds(moment.now));
 }
 
 double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {

@@ -70,7 +70,7 @@ const std::vector<FreeformPoint>& FreeformPoints() {
 class FreeformFollow : public PointwiseFollow<FreeformExtra> {
  public:
   FreeformFollow(const Scenario& stated, const std::vector<Reading>& its_record)
-      : PointwiseFollow(Foreseeable(stated), its_record, FreeformPoints()) {
+      : PointwiseFollow(Foreseeable(stated, its_record), its_record, FreeformPoints()) {
     if (!record().empty()) run_s_ = ToSeconds(record().back().time);
   }
 

@@ -107,9 +107,9 @@ ProbeSignals FreeformTwin::Show(const Reading& reading, double run_share, Freefo
   ProbeSignals shown = light_->Show(moment.cell, X_MF.inverse() * X_MT(moment.at, errors, actual_.machine.pivot_m),
                                     extra.cell_height_m, extra.spot_m);
   for (const auto& effect : effects_) effect->AlterSignals(moment, shown);
-  shown.qpd_x_V += extra.qpd_x_V + empirical_[0].At(moment.reading);
-  shown.qpd_y_V += extra.qpd_y_V + empirical_[1].At(moment.reading);
-  shown.ccd_px += extra.ccd_px + empirical_[2].At(moment.reading);
+  shown.qpd_x_V += extra.qpd_x_V + empirical_[0].At(moment.reading, moment.time_s);
+  shown.qpd_y_V += extra.qpd_y_V + empirical_[1].At(moment.reading, moment.time_s);
+  shown.ccd_px += extra.ccd_px + empirical_[2].At(moment.reading, moment.time_s);
   return shown;
 }
 

@@ -32,7 +32,7 @@ std::vector<Family> Families(const HobRun& hob, const std::vector<std::string>& 
   std::vector<Family> families = NamedFamilies(common, plausible_rad);
   std::erase_if(families, [&](const Family& family) { return Has(excluded, family.effect); });
   for (Family& family : families) {
-    if (IsDoubled(family, *context)) family.most_probable = tuning::kMostProbableDoubled;
+    if (IsDoubled(family, *context)) family.listed = tuning::kListedDoubled;
   }
   std::ranges::move(UnknownFamilies(hob, common, plausible_rad), std::back_inserter(families));
   return families;

@@ -58,13 +58,14 @@ void SpreadUnnamed(const HobRun& hob, Accepted& accepted) {
   const Eigen::VectorXd of_m =
       Eigen::Map<const Eigen::MatrixXd>(rows.data(), channels, rows.size() / channels).row(0);
   accepted.readings = hob.context.schedule.reading;
+  accepted.times_s = hob.context.schedule.time_s;
   accepted.at_readings = AtReadings(hob, of_m);
 }
 
 Cause OutlierCause(double count, double size_rad, double log_bayes, double of) {
   Cause cause;
   cause.effect = "outliers";
-  cause.probability = tuning::kMostProbable;
+  cause.probability = tuning::kListed;
   cause.log_evidence = log_bayes;
   cause.rho = std::sqrt(2.0 * std::max(0.0, log_bayes));
   const Catalogue catalogue(benches::hob::Format().effects);

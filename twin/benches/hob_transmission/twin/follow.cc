@@ -62,7 +62,7 @@ Scenario WithoutFreeOrders(Scenario scenario) {
 class HobFollow : public PointwiseFollow<HobExtra> {
  public:
   HobFollow(const Scenario& stated, const std::vector<Reading>& its_record)
-      : PointwiseFollow(WithoutFreeOrders(Foreseeable(stated)), its_record, HobPoints()),
+      : PointwiseFollow(WithoutFreeOrders(Foreseeable(stated, its_record)), its_record, HobPoints()),
         path_(scenario()),
         train_(path_.train()),
         encoders_(path_.actual(), path_.HobSignals()),

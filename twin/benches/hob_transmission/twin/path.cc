@@ -72,7 +72,7 @@ void HobPath::Disturb(const HobMoment& moment, CounterSample& sample) {
     sample.interferometer_rad += error.motion_rad + error.interferometer_rad;
     sample.hob_encoder_rad += error.hob_rad;
   }
-  sample.table_encoder_rad += empirical_.At(moment.reading);
+  sample.table_encoder_rad += empirical_.At(moment.reading, ToSeconds(moment.now));
 }
 
 std::vector<mechanics::AngleHarmonic> HobPath::Transmission() const {

@@ -292,8 +292,7 @@ std::vector<Family> NamedFamilies(const RotaryRun& rotary, const Scenario& scena
   std::vector<Family> families = named.Take();
   for (Family& family : families) {
     // A wrong sensitivity of both axes of a PSD looks the same.
-    if (family.effect == "stray_light" || family.effect == "psd_distance")
-      family.most_probable = tuning::kMostProbableDoubled;
+    if (family.effect == "stray_light" || family.effect == "psd_distance") family.listed = tuning::kListedDoubled;
   }
   return families;
 }

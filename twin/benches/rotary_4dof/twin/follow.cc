@@ -38,7 +38,7 @@ Scenario WithFreeTables(Scenario scenario) {
 class RotaryFollow : public PointwiseFollow<RotaryExtra> {
  public:
   RotaryFollow(const Scenario& stated, const std::vector<Reading>& record)
-      : PointwiseFollow(WithFreeTables(Foreseeable(stated)), record, RotaryPoints()),
+      : PointwiseFollow(WithFreeTables(Foreseeable(stated, record)), record, RotaryPoints()),
         noise_V_(IfNoisy(stated, RotaryOf(stated).amplifier.noise_V)),
         thermometer_noise_K_(IfNoisy(stated, stated.environment.sensor_noise_K)),
         path_(scenario()),

@@ -112,7 +112,7 @@ Seating MeasureSeating(const TurntableRun& turntable, const Analysis& analysis) 
 Cause SeatingCause(const Seating& seating) {
   Cause cause;
   cause.effect = "multitooth_seating";
-  cause.probability = tuning::kMostProbable;
+  cause.probability = tuning::kListed;
   cause.log_evidence = seating.log_bayes;
   cause.rho = std::sqrt(2.0 * std::max(0.0, seating.log_bayes));
   cause.parameters = {Scatter(seating.scatter_rad, seating.u_scatter_rad)};

@@ -88,7 +88,7 @@ Scenario WithFreeTables(Scenario scenario) {
 class TurntableFollow : public PointwiseFollow<TurntableExtra> {
  public:
   TurntableFollow(const Scenario& stated, const std::vector<Reading>& its_record)
-      : PointwiseFollow(WithFreeTables(Foreseeable(stated)), its_record, TurntablePoints()),
+      : PointwiseFollow(WithFreeTables(Foreseeable(stated, its_record)), its_record, TurntablePoints()),
         path_(std::make_unique<MirrorPath>(scenario(), kFieldShare)),
         course_(FollowCourse(record(), path_->actual())) {}
 

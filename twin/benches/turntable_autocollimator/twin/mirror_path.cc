@@ -90,7 +90,9 @@ AutocollimatorReading MirrorPath::Look(TurntableMoment moment, const mechanics::
   const auto image = optics_.Look(stand_.MirrorPose(axes.target_rad, yaw_rad, axes.target_bearing, extra.mirror));
   if (image.status != optics::AutocollimatorStatus::kOk) return {kNaN, kNaN, StatusOf(image.status)};
   const Eigen::Vector2d seen_rad = Eigen::Vector2d(image.x_rad, image.y_rad) + Zero_rad(above_K + extra.warmer_K);
-  const Eigen::Vector2d empirical_rad(empirical_x_.At(moment.reading), empirical_y_.At(moment.reading));
+  const double now_s = ToSeconds(moment.now);
+  const Eigen::Vector2d empirical_rad(empirical_x_.At(moment.reading, now_s),
+                                      empirical_y_.At(moment.reading, now_s));
   Eigen::Vector2d shown_rad = seen_rad + noise_rad + empirical_rad + extra.shown_rad;
   for (const auto& effect : effects_) shown_rad += effect->ReadingError_rad(moment, seen_rad);
   return {shown_rad.x(), shown_rad.y(), ReadingStatus::kOk};
