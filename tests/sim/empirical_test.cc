@@ -40,14 +40,14 @@ EmpiricalSettings ByTime() {
   return table;
 }
 
-TEST(Empirical, GoesStraightBetweenItsTimesAndIsNothingOutside) {
+TEST(Empirical, GoesStraightBetweenItsTimesAndStaysOutside) {
   const EmpiricalSignal signal({ByTime()}, "psd_b_y");
   EXPECT_DOUBLE_EQ(signal.At(1, 10.0), 1e-6);
   EXPECT_DOUBLE_EQ(signal.At(1, 12.5), 1.5e-6);
   EXPECT_DOUBLE_EQ(signal.At(7, 30.0), 1e-6);
   EXPECT_DOUBLE_EQ(signal.At(7, 40.0), -1e-6);
-  EXPECT_EQ(signal.At(1, 9.999), 0.0);
-  EXPECT_EQ(signal.At(1, 40.001), 0.0);
+  EXPECT_EQ(signal.At(1, 9.0), 1e-6);
+  EXPECT_EQ(signal.At(1, 400.0), -1e-6);
   EXPECT_EQ(EmpiricalSignal({ByTime()}, "psd_a_y").At(1, 20.0), 0.0);
 }
 

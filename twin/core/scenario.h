@@ -56,7 +56,7 @@ struct EmpiricalSettings {
   std::string channel;          // to which the signal is added
   std::string by = "reading";   // what it is tabulated by: "reading" or "time"
   std::vector<int> reading;     // by reading: running numbers, each once; elsewhere the signal is zero
-  std::vector<double> time_s;   // by time: ascending, straight between, zero before and behind; by reading: when
+  std::vector<double> time_s;   // by time: ascending, straight between, at the ends on; by reading: when
                                 // these were taken, or nothing. A record that was taken at other times has no such
                                 // signal
   std::vector<double> value_m;  // one a reading, on a channel that reads a position ...

@@ -12,12 +12,11 @@ std::vector<double> ValuesOf(const EmpiricalSettings& signal) {
   return values;
 }
 
-/// Straight between two times; before the first and behind the last nothing is known.
+/// Straight between two times; before the first and behind the last as it is there, for a jump was never seen.
 double Between(const std::map<double, double>& table, double time_s) {
   const auto behind = table.lower_bound(time_s);
-  if (behind == table.end()) return 0.0;
-  if (behind->first == time_s) return behind->second;
-  if (behind == table.begin()) return 0.0;
+  if (behind == table.end()) return std::prev(behind)->second;
+  if (behind->first == time_s || behind == table.begin()) return behind->second;
   const auto before = std::prev(behind);
   const double share = (time_s - before->first) / (behind->first - before->first);
   return before->second + share * (behind->second - before->second);
