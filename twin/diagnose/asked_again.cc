@@ -63,6 +63,7 @@ ceres::Solver::Options SolverOptions() {
   options.max_num_iterations = 40;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
+  options.max_num_line_search_step_size_iterations = 0;  // at a bound a shorter step does as well, and sooner
   return options;
 }
 

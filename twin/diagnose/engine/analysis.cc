@@ -20,30 +20,29 @@ struct NoiseView {
   std::vector<NoiseCause> before, after;
 };
 
-/// 1 at the k-th of `rows` in column k.
-Eigen::MatrixXd UnitColumns(const std::vector<int>& rows, int all) {
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(all, std::ssize(rows));
-  for (std::size_t k = 0; k < rows.size(); ++k) columns(rows[k], static_cast<Eigen::Index>(k)) = 1.0;
-  return columns;
+/// What is left when neither unknowns nor terms see some of the rows.
+Rest RestWithoutRows(const LinearRun& run, const Projector& projector, const Eigen::MatrixXd& white,
+                     const Eigen::MatrixXd& terms, const std::vector<int>& left_out) {
+  Eigen::VectorXd kept = Eigen::VectorXd::Ones(run.Rows());
+  kept(left_out).setZero();
+  const Projector others(kept.asDiagonal() * projector.Jacobian(), run.nuisance);
+  const Deflation deflation(others, kept.asDiagonal() * terms);
+  Rest rest{Project(others, deflation, kept.asDiagonal() * white).rows.col(0), others.Redundancy()};
+  rest.redundancy -= deflation.BasisOf(run.Rows()).rowwise().squaredNorm();
+  rest.redundancy(left_out).setZero();
+  return rest;
 }
 
 NoiseView LookAtNoise(const LinearRun& run, const Analysis& analysis) {
   const Projector& projector = *analysis.projector;
   const Eigen::VectorXd white = analysis.noise.Whiten(run, Eigen::MatrixXd(run.residual));
   const auto look = [&](const Eigen::MatrixXd& terms) {
-    const auto rest = [&](const Deflation& deflation, const std::vector<int>& left_out) {
-      Rest r{Project(projector, deflation, white).rows.col(0), analysis.redundancy};
-      if (left_out.empty()) return r;
-      r.redundancy -= deflation.Basis().rowwise().squaredNorm();
-      r.redundancy(left_out).setZero();
-      return r;
-    };
     const auto without = [&](const std::vector<int>& rows) {
-      Eigen::MatrixXd columns(run.Rows(), terms.cols() + std::ssize(rows));
-      columns << terms, UnitColumns(rows, run.Rows());
-      return rest(Deflation(projector, columns), rows);
+      return RestWithoutRows(run, projector, white, terms, rows);
     };
-    return FindNoiseCauses(run, analysis.noise, rest(Deflation(projector, terms), {}), without);
+    const Deflation deflation(projector, terms);
+    const Rest rest{Project(projector, deflation, white).rows.col(0), analysis.redundancy};
+    return FindNoiseCauses(run, analysis.noise, rest, without);
   };
   const Eigen::MatrixXd none(run.Rows(), 0);
   NoiseView view{look(none), look(analysis.noise.Whiten(run, Signatures(run, analysis.found.terms)))};

@@ -2,6 +2,9 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
+
+#include "twin/diagnose/engine/series_sums.h"
 
 namespace twinbench::diagnose {
 
@@ -20,6 +23,9 @@ struct Base {
   int grid = 1;
   int channels = 1;
   std::function<Eigen::MatrixXd(int grid_point)> series;  // readings x k
+  // Of one channel only; empty: there is no quicker way. They take memory and are made for as long as they are
+  // used.
+  std::function<std::unique_ptr<const SeriesSums>()> sums = {};
 
   Eigen::MatrixXd Columns(int grid_point) const { return OnEachChannel(series(grid_point), channels); }
 };

@@ -13,6 +13,7 @@ constexpr int kChunkColumns = 128;
 Unwhitened::Unwhitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& white)
     : rows_(noise.WhitenTransposed(run, white)) {
   const Eigen::Index readings = run.schedule.Readings(), channels = run.Channels();
+  if (channels == 1) return;
   using Stride = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
   for (Eigen::Index c = 0; c < channels; ++c) {
     channel_.emplace_back(Eigen::Map<const Eigen::MatrixXd, 0, Stride>(rows_.data() + c, readings, rows_.cols(),
@@ -25,7 +26,29 @@ Bundle::Bundle(const LinearRun& run, const NoiseModel& noise, const Projector& p
     : family_(families[static_cast<std::size_t>(members.front())]), members_(std::move(members)) {
   grid_ = family_.base ? family_.base->grid : family_.grid;
   columns_ = static_cast<int>(family_.base ? family_.map.rows() : std::ssize(family_.amplitudes));
-  step_ = std::max(1, kChunkColumns / std::max(1, columns_));
+  if (family_.base && family_.base->sums) {
+    sums_ = family_.base->sums();
+    step_ = grid_;
+    SumUp(run, noise, projector);
+  } else {
+    step_ = std::max(1, kChunkColumns / std::max(1, columns_));
+    WriteOut(run, noise, projector, kept_left);
+  }
+}
+
+/// S'WS = S'F'FS - H'H with H of J'FS = (F'J)'S, F the whitening.
+void Bundle::SumUp(const LinearRun& run, const NoiseModel& noise, const Projector& projector) {
+  const Unwhitened unknowns(run, noise, projector.Jacobian());
+  raw_ = sums_->Squares(noise.Precision(run));
+  const Eigen::MatrixXd H = projector.AbsorbedOf(sums_->Products(unknowns.Rows()).transpose());
+  for (int g = 0; g < grid_; ++g) {
+    const auto h = H.middleCols(g * columns_, columns_);
+    gram_.push_back(raw_[static_cast<std::size_t>(g)] - h.transpose() * h);
+  }
+}
+
+void Bundle::WriteOut(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
+                      Eigen::Index& kept_left) {
   for (int chunk = 0; chunk * step_ < grid_; ++chunk) {
     Eigen::MatrixXd made = Make(chunk);
     const Eigen::MatrixXd S = Whitened(run, noise, made);
@@ -66,6 +89,7 @@ Eigen::MatrixXd Bundle::Whitened(const LinearRun& run, const NoiseModel& noise, 
 }
 
 Eigen::MatrixXd Bundle::Products(int chunk, const Unwhitened& Y) const {
+  if (sums_) return sums_->Products(Y.Rows());
   const bool is_kept = chunk < std::ssize(kept_);
   const Eigen::MatrixXd again = is_kept ? Eigen::MatrixXd() : Make(chunk);
   const Eigen::MatrixXd& made = is_kept ? kept_[static_cast<std::size_t>(chunk)] : again;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "twin/diagnose/engine/family.h"
@@ -16,16 +17,18 @@ class Unwhitened {
  public:
   Unwhitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& white);
 
-  const Eigen::MatrixXd& Rows() const { return rows_; }                                          // F'Y
-  const Eigen::MatrixXd& Channel(int c) const { return channel_[static_cast<std::size_t>(c)]; }  // readings x any
+  const Eigen::MatrixXd& Rows() const { return rows_; }  // F'Y
+  const Eigen::MatrixXd& Channel(int c) const {          // readings x any
+    return channel_.empty() ? rows_ : channel_[static_cast<std::size_t>(c)];
+  }
 
  private:
   Eigen::MatrixXd rows_;
-  std::vector<Eigen::MatrixXd> channel_;
+  std::vector<Eigen::MatrixXd> channel_;  // empty: the only one has all rows
 };
 
 /// Families that share their columns, with what depends on the design only. Grid points come in chunks that fit
-/// into the processor's cache.
+/// into the processor's cache, or all at once where their sums need no columns.
 class Bundle {
  public:
   /// @param members    Indices of the families.
@@ -45,6 +48,8 @@ class Bundle {
   Eigen::MatrixXd Products(int chunk, const Unwhitened& Y) const;
 
  private:
+  void SumUp(const LinearRun& run, const NoiseModel& noise, const Projector& projector);
+  void WriteOut(const LinearRun& run, const NoiseModel& noise, const Projector& projector, Eigen::Index& kept_left);
   Eigen::MatrixXd Make(int chunk) const;  // series, or signatures of a family of its own, not whitened
   /// Signatures of a chunk; those of a base channel by channel, so that a row has its values side by side.
   Eigen::MatrixXd Whitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& made) const;
@@ -52,6 +57,7 @@ class Bundle {
   std::vector<Eigen::Index> ColumnsOf(Eigen::Index k, Eigen::Index all) const;
 
   const Family& family_;  // one of the members
+  std::unique_ptr<const SeriesSums> sums_;
   std::vector<int> members_;
   int grid_, columns_, step_;
   std::vector<Eigen::MatrixXd> gram_, raw_;

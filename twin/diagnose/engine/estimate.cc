@@ -87,7 +87,7 @@ Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Term>& terms,
 }
 
 void EstimateTerms(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                   const std::vector<Family>& families, const Eigen::MatrixXd& white, std::vector<Term>& terms) {
+                   const Scanner& scanner, const Eigen::MatrixXd& white, std::vector<Term>& terms) {
   if (terms.empty()) return;
   const Deflation causes(projector, noise.Whiten(run, Signatures(run, terms)));
   const Projected left = Project(projector, causes, white);
@@ -97,7 +97,7 @@ void EstimateTerms(const LinearRun& run, const NoiseModel& noise, const Projecto
     term.amplitudes = amplitudes.segment(at, term.columns.cols());
     at += term.columns.cols();
   }
-  const Slopes slopes = AllSlopes(run, families, terms);
+  const Slopes slopes = AllSlopes(run, scanner.Families(), terms);
   const double trust = PseudoDegrees(run);
   const double variance =
       (trust + left.power[0]) / (trust + projector.DegreesOfFreedom() - static_cast<double>(slopes.columns.cols()));
@@ -108,8 +108,8 @@ void EstimateTerms(const LinearRun& run, const NoiseModel& noise, const Projecto
     const Eigen::Index end = k + 1 < terms.size() ? slopes.start[k + 1] : cov.cols();
     terms[k].cov = cov.block(first, first, end - first, end - first);
     const Deflation others(projector, noise.Whiten(run, Signatures(run, terms, k)));
-    Widen(SpreadOverGrid(families[static_cast<std::size_t>(terms[k].family)], terms[k], run, noise, projector,
-                         others, Project(projector, others, white), variance),
+    Widen(SpreadOverGrid(scanner, terms[k], run, noise, projector, others, Project(projector, others, white),
+                         variance),
           terms[k].cov);
   }
 }

@@ -19,6 +19,6 @@ Eigen::MatrixXd Signatures(const LinearRun& run, const std::vector<Term>& terms,
 /// data do not resolve are left at zero.
 /// @param white  The residual, whitened, rows x 1.
 void EstimateTerms(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                   const std::vector<Family>& families, const Eigen::MatrixXd& white, std::vector<Term>& terms);
+                   const Scanner& scanner, const Eigen::MatrixXd& white, std::vector<Term>& terms);
 
 }  // namespace twinbench::diagnose

@@ -60,6 +60,20 @@ Eigen::MatrixXd NoiseModel::WhitenTransposed(const LinearRun& run, const Eigen::
   return rows;
 }
 
+Tridiagonal NoiseModel::Precision(const LinearRun& run) const {
+  Require(run.Channels() == 1, "neighbouring rows are neighbouring readings only on one channel");
+  const std::vector<Filter> filters = FiltersOf(run, *this);
+  Tridiagonal precision{Eigen::VectorXd(run.Rows()), Eigen::VectorXd::Zero(run.Rows())};
+  for (int k = 0; k < run.Rows(); ++k) {
+    const Filter& f = filters[static_cast<std::size_t>(k)];
+    precision.diagonal[k] = f.own * f.own;
+    if (f.before == 0.0) continue;
+    precision.diagonal[k - 1] += f.before * f.before;
+    precision.beside[k - 1] = f.own * f.before;
+  }
+  return precision;
+}
+
 Eigen::SparseMatrix<double, Eigen::RowMajor> NoiseModel::Whiten(
     const LinearRun& run, const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows) const {
   const std::vector<Filter> filters = FiltersOf(run, *this);

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 
 #include "twin/diagnose/engine/linear_run.h"
+#include "twin/diagnose/engine/series_sums.h"
 
 namespace twinbench::diagnose {
 
@@ -17,6 +18,8 @@ struct NoiseModel {
   Eigen::MatrixXd Whiten(const LinearRun& run, const Eigen::MatrixXd& rows) const;
   /// The transpose of that map.
   Eigen::MatrixXd WhitenTransposed(const LinearRun& run, const Eigen::MatrixXd& white) const;
+  /// That transpose times the map, of a run with one channel.
+  Tridiagonal Precision(const LinearRun& run) const;
   Eigen::SparseMatrix<double, Eigen::RowMajor> Whiten(
       const LinearRun& run, const Eigen::SparseMatrix<double, Eigen::RowMajor>& rows) const;
 };

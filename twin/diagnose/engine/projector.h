@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <utility>
 #include <vector>
 
 #include "twin/diagnose/engine/linear_run.h"
@@ -25,6 +26,9 @@ class Projector {
 
   /// H with S' W S = S'S - H'H (unknowns x columns of S).
   Eigen::MatrixXd Absorbed(const Eigen::MatrixXd& S) const;
+
+  /// The same from J'S.
+  Eigen::MatrixXd AbsorbedOf(Eigen::MatrixXd gathered) const { return Forward(std::move(gathered)); }
 
   /// Most probable unknowns, (J'J + D)^-1 J' y.
   Eigen::MatrixXd Solve(const Eigen::MatrixXd& Y) const;

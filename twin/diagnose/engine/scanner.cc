@@ -1,6 +1,7 @@
 #include "twin/diagnose/engine/scanner.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -190,15 +191,44 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
   }
 }
 
-double Scanner::Information(int family) const {
-  double most = 0.0;
-  for (const Bundle& bundle : bundles_) {
-    if (std::ranges::find(bundle.Members(), family) == bundle.Members().end()) continue;
-    const Family& f = families_[static_cast<std::size_t>(family)];
-    for (int g = 0; g < bundle.Grid(); ++g) {
-      const Eigen::MatrixXd& gram = bundle.Gram(g);
-      most = std::max(most, f.base ? f.map.col(0).dot(gram * f.map.col(0)) : gram(0, 0));
+const Bundle& Scanner::BundleOf(int family) const {
+  const auto has = [family](const Bundle& b) { return std::ranges::count(b.Members(), family) > 0; };
+  return *std::ranges::find_if(bundles_, has);
+}
+
+std::vector<Scanner::Fit> Scanner::FitEach(int family, int first, int last, const Projected& data,
+                                           const Deflation& deflation) const {
+  const Family& f = families_[static_cast<std::size_t>(family)];
+  const Bundle& bundle = BundleOf(family);
+  const Unwhitened rows(run_, noise_, data.rows.col(0)), removed_rows(run_, noise_, deflation.BasisOf(run_.Rows()));
+  Eigen::MatrixXd products, removed;
+  std::vector<Fit> fits;
+  for (int g = first; g <= last; ++g) {
+    if (g == first || g % bundle.Step() == 0) {
+      products = bundle.Products(g / bundle.Step(), rows);
+      removed = bundle.Products(g / bundle.Step(), removed_rows);
     }
+    const Eigen::Index at = (g % bundle.Step()) * bundle.Columns();
+    const auto r = removed.middleRows(at, bundle.Columns());
+    Eigen::MatrixXd gram = bundle.Gram(g) - r * r.transpose();
+    Eigen::VectorXd product = products.middleRows(at, bundle.Columns());
+    if (f.base) {
+      gram = f.map.transpose() * gram * f.map;
+      product = f.map.transpose() * product;
+    }
+    const Eigen::VectorXd amplitudes = gram.completeOrthogonalDecomposition().solve(product);
+    fits.push_back({amplitudes, product.dot(amplitudes)});
+  }
+  return fits;
+}
+
+double Scanner::Information(int family) const {
+  const Bundle& bundle = BundleOf(family);
+  const Family& f = families_[static_cast<std::size_t>(family)];
+  double most = 0.0;
+  for (int g = 0; g < bundle.Grid(); ++g) {
+    const Eigen::MatrixXd& gram = bundle.Gram(g);
+    most = std::max(most, f.base ? f.map.col(0).dot(gram * f.map.col(0)) : gram(0, 0));
   }
   return most;
 }
@@ -209,8 +239,7 @@ Evidence Scanner::Scan(const Projected& data, const Deflation& deflation) const 
   out.explained.setZero(std::ssize(families_), data.rows.cols());
   out.grid_point.setZero(std::ssize(families_), data.rows.cols());
   const Unwhitened rows(run_, noise_, data.rows);
-  const bool any = deflation.Rank() > 0;
-  const Unwhitened removed(run_, noise_, any ? deflation.Basis() : Eigen::MatrixXd(data.rows.rows(), 0));
+  const Unwhitened removed(run_, noise_, deflation.BasisOf(run_.Rows()));
   for (const Bundle& bundle : bundles_) ScanBundle(bundle, data, rows, deflation, removed, out);
   return out;
 }

@@ -19,6 +19,8 @@ class Deflation {
   Deflation(const Projector& projector, const Eigen::MatrixXd& columns);
 
   const Eigen::MatrixXd& Basis() const { return basis_; }  // rows x independent columns
+  /// The same of nothing: no columns, but so many rows.
+  Eigen::MatrixXd BasisOf(Eigen::Index rows) const { return Rank() > 0 ? basis_ : Eigen::MatrixXd(rows, 0); }
   /// Takes the causes out of data that were projected with W.
   Eigen::MatrixXd Apply(const Eigen::MatrixXd& projected) const;
   /// Coefficients of the causes in projected data, and their covariance for unit noise.
@@ -70,11 +72,20 @@ class Scanner {
 
   const std::vector<Family>& Families() const { return families_; }
 
+  /// What a family explains of one run at grid points from `first` to `last`, amplitudes free.
+  struct Fit {
+    Eigen::VectorXd amplitudes;
+    double power = 0.0;
+  };
+  std::vector<Fit> FitEach(int family, int first, int last, const Projected& data,
+                           const Deflation& deflation) const;
+
   /// Squared length of a family's projected signature per unit of its first amplitude [1 / SI^2]: the largest over
   /// the grid.
   double Information(int family) const;
 
  private:
+  const Bundle& BundleOf(int family) const;
   void ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows, const Deflation& deflation,
                   const Unwhitened& removed, Evidence& sums) const;
 

@@ -259,7 +259,7 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
   Settle(problem, result);
   TryCausesFirst(problem, result);
   MeasureShares(problem, result.terms);
-  EstimateTerms(run, noise, projector, scanner.Families(), problem.white, result.terms);
+  EstimateTerms(run, noise, projector, scanner, problem.white, result.terms);
   return result;
 }
 

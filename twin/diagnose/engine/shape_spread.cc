@@ -12,20 +12,18 @@ constexpr int kMostColumns = 512;  // of signatures to look at: a few hundredths
 
 }  // namespace
 
-Spread SpreadOverGrid(const Family& family, const Term& term, const LinearRun& run, const NoiseModel& noise,
+Spread SpreadOverGrid(const Scanner& scanner, const Term& term, const LinearRun& run, const NoiseModel& noise,
                       const Projector& projector, const Deflation& others, const Projected& data, double variance) {
+  const Family& family = scanner.Families()[static_cast<std::size_t>(term.family)];
   Spread spread{Eigen::VectorXd::Zero(term.columns.cols()), Eigen::VectorXd::Zero(term.shape.size())};
   if (term.shape.size() == 0) return spread;
-  const Eigen::VectorXd rows = data.rows.col(0);
-  const auto fit = [&](const Eigen::MatrixXd& columns) {
-    return Explain(noise.Whiten(run, columns), projector, others, rows);
-  };
-  const Explained best = fit(term.columns);
+  const Explained best = Explain(noise.Whiten(run, term.columns), projector, others, data.rows.col(0));
   double sum = 1.0;  // the fitted shape itself
   const int reach = std::max(1, kMostColumns / 2 / static_cast<int>(term.columns.cols()));
   const int first = std::max(0, term.grid_point - reach), last = std::min(family.grid - 1, term.grid_point + reach);
+  const std::vector<Scanner::Fit> fits = scanner.FitEach(term.family, first, last, data, others);
   for (int g = first; g <= last; ++g) {
-    const Explained other = fit(family.ColumnsAt(g));
+    const Scanner::Fit& other = fits[static_cast<std::size_t>(g - first)];
     const double weight = std::exp(std::min(0.0, 0.5 * (other.power - best.power) / variance));
     spread.amplitudes += weight * (other.amplitudes - best.amplitudes).cwiseAbs2();
     spread.shape += weight * (family.ShapeAt(g) - term.shape).cwiseAbs2();

@@ -16,7 +16,7 @@ struct Spread {
   Eigen::VectorXd amplitudes;  // of their best values from shape to shape
   Eigen::VectorXd shape;
 };
-Spread SpreadOverGrid(const Family& family, const Term& term, const LinearRun& run, const NoiseModel& noise,
+Spread SpreadOverGrid(const Scanner& scanner, const Term& term, const LinearRun& run, const NoiseModel& noise,
                       const Projector& projector, const Deflation& others, const Projected& data, double variance);
 
 }  // namespace twinbench::diagnose

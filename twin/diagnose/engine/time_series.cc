@@ -5,6 +5,7 @@
 
 #include "twin/core/distributions.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/engine/step_series.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
 #include "twin/model/wave_grid.h"
@@ -35,6 +36,22 @@ std::shared_ptr<const Base> BaseOf(std::size_t grid, int channels, const ToRows&
   base->series = series;
   if (rows) base->series = [rows, series](int g) { return rows(series(g)); };
   return base;
+}
+
+/// On the grid of frequencies, in each stretch.
+std::shared_ptr<const Base> TonesOf(const TimeSeries& series, int channels, const ToRows& rows) {
+  const std::vector<double>& f_Hz = series.frequencies_Hz;
+  if (f_Hz.size() < 2) return nullptr;
+  const auto count = static_cast<int>(std::ssize(f_Hz));
+  const Eigen::VectorXd phase_rad = units::turn * series.time_s;
+  const Eigen::MatrixXd stretches = model::Indicators(series.stretch);
+  if (stretches.cols() == 1) {
+    const WaveSeries waves{phase_rad, f_Hz[0], f_Hz[1] - f_Hz[0], NumbersTo(count)};
+    return diagnose::BaseOf(waves, channels, rows);
+  }
+  const auto waves = std::make_shared<const model::WaveGrid>(phase_rad, f_Hz[0], f_Hz[1] - f_Hz[0], count);
+  return BaseOf(f_Hz.size(), channels, rows,
+                [waves, stretches](int g) -> Eigen::MatrixXd { return model::InEach(waves->At(g), stretches); });
 }
 
 }  // namespace
@@ -74,20 +91,14 @@ TimeSeries TimeSeriesOf(const model::Course& course, const std::vector<int>& str
   series.are_thinned = onsets.are_thinned;
   const double longest_s = SinceBegin_s(course.time_s, stretch).maxCoeff();
   series.frequencies_Hz = FrequenciesOf(longest_s, rows_time_s.size() > 0 ? rows_time_s : course.time_s);
-  const auto count = static_cast<int>(std::ssize(series.frequencies_Hz));
-  if (count > 1) {
-    const auto waves =
-        std::make_shared<const model::WaveGrid>(units::turn * course.time_s, series.frequencies_Hz[0],
-                                                series.frequencies_Hz[1] - series.frequencies_Hz[0], count);
-    series.tones = BaseOf(series.frequencies_Hz.size(), channels, rows,
-                          [waves, stretches = model::Indicators(stretch)](int g) -> Eigen::MatrixXd {
-                            return stretches.cols() == 1 ? waves->At(g) : model::InEach(waves->At(g), stretches);
-                          });
-  }
+  series.tones = TonesOf(series, channels, rows);
+  const bool is_one = channels == 1 && !rows && std::ranges::is_sorted(course.reading);
   series.steps =
-      BaseOf(series.onsets.size(), channels, rows, [reading = course.reading, onsets = series.onsets](int g) {
-        return Eigen::MatrixXd(model::Step(reading, onsets[static_cast<std::size_t>(g)]));
-      });
+      is_one
+          ? StepBase(course.reading, series.onsets)
+          : BaseOf(series.onsets.size(), channels, rows, [reading = course.reading, onsets = series.onsets](int g) {
+              return Eigen::MatrixXd(model::Step(reading, onsets[static_cast<std::size_t>(g)]));
+            });
   return series;
 }
 

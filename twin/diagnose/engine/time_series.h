@@ -6,14 +6,12 @@
 
 #include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/family.h"
+#include "twin/diagnose/engine/wave_series.h"
 #include "twin/model/course.h"
 
 /// Tones and steps, on grids by what a course can tell: the largest families of a search, which named causes and
 /// structure without a name share.
 namespace twinbench::diagnose {
-
-/// From samples (samples x k) to rows of one channel; empty: they are the same.
-using ToRows = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
 
 /// Numbers of readings at which something may begin: within a set-up and phase, because a step at its first reading
 /// is a constant of it. Thinned evenly where there are very many.

@@ -8,7 +8,6 @@
 #include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/model/signals.h"
-#include "twin/model/wave_grid.h"
 
 namespace twinbench::diagnose::unknown {
 namespace {
@@ -17,12 +16,11 @@ namespace {
 void AddHarmonics(Collector& collect, const Angle& angle) {
   if (angle.first_unfree < 1 || angle.last_order < angle.first_unfree) return;
   const int first = angle.first_unfree, count = angle.last_order - first + 1;
-  const auto waves = std::make_shared<const model::WaveGrid>(angle.rad, first, 1.0, count);
-  collect.Add(
-      angle.harmonics, count, [waves](int g) { return waves->At(g); },
-      [first, name = angle.name](int g) {
-        return fmt::format("harmonic of order {} locked to {}, same in both directions", first + g, name);
-      });
+  collect.AddWaves(angle.harmonics, {angle.rad, static_cast<double>(first), 1.0, NumbersTo(count)},
+                   [first, name = angle.name](int g) {
+                     return fmt::format("harmonic of order {} locked to {}, same in both directions", first + g,
+                                        name);
+                   });
   if (!angle.by.empty())
     collect.Are([first, by = angle.by](const Eigen::VectorXd&, int g) {
       return WaveOf(SignalOf("harmonic", by, {{"order", first + g}}));
@@ -57,19 +55,15 @@ void AddLines(Collector& collect) {
     number.push_back(j);
   }
   if (number.empty()) return;
-  const auto waves =
-      std::make_shared<const model::WaveGrid>(d.continued_rad, tuning::kFirstLine, step, number.back() + 1);
-  collect.AddOver(
-      "line", order,
-      [design = collect.shared(), nearest](const Eigen::VectorXd& k) {
-        return model::Times(model::Wave(AwayFromWhole(k[0], nearest) * design->continued_rad), design->moved);
-      },
+  collect.AddWaves(
+      "line", {d.continued_rad, tuning::kFirstLine, step, number, d.moved},
       [values = order.value, name = angle.name](int g) {
         return fmt::format("line at {:.3f} per turn locked to {}, same in both directions",
                            values[static_cast<std::size_t>(g)], name);
       },
-      [design = collect.shared(), waves, number](int g) {
-        return model::Times(waves->At(number[static_cast<std::size_t>(g)]), design->moved);
+      &order,
+      [design = collect.shared(), nearest](const Eigen::VectorXd& k) {
+        return model::Times(model::Wave(AwayFromWhole(k[0], nearest) * design->continued_rad), design->moved);
       });
   if (!angle.by.empty())
     collect.Are([nearest, by = angle.by](const Eigen::VectorXd& k, int) {

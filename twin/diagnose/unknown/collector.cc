@@ -128,24 +128,26 @@ void Collector::Add(const std::string& sort, const Eigen::MatrixXd& series, cons
       sort, 1, [series](int) { return series; }, [words](int) { return words; });
 }
 
-void Collector::AddOver(const std::string& sort, const Shape& shape, const SeriesAt& at, const Words& words,
-                        const Series& on_grid) {
-  const Series of_shape = [at, values = shape.value](int g) {
-    return at(Eigen::VectorXd::Constant(1, values[static_cast<std::size_t>(g)]));
-  };
+void Collector::AddOver(const std::string& sort, const Shape& shape, const SeriesAt& at, const Words& words) {
   last_ = families_.size();
   if (shape.value.empty()) return;
-  AddShared(sort, BaseOf(static_cast<int>(std::ssize(shape.value)), on_grid ? on_grid : of_shape), words, &shape,
-            at);
+  const Series on_grid = [at, values = shape.value](int g) {
+    return at(Eigen::VectorXd::Constant(1, values[static_cast<std::size_t>(g)]));
+  };
+  AddShared(sort, BaseOf(static_cast<int>(std::ssize(shape.value)), on_grid), words, &shape, at);
+}
+
+void Collector::AddWaves(const std::string& sort, const WaveSeries& waves, const Words& words, const Shape* shape,
+                         const SeriesAt& at) {
+  AddShared(sort, diagnose::BaseOf(waves, static_cast<int>(std::ssize(design_->channels)), design_->rows), words,
+            shape, at);
 }
 
 void Collector::AddModulated(const std::string& sort, const Angle& angle, int last, const Eigen::VectorXd& factor,
                              const std::string& words) {
-  const Eigen::VectorXd weight = factor.cwiseProduct(design_->moved);
-  Add(
-      sort, std::min(last, angle.last_order),
-      [rad = angle.rad, weight](int g) { return model::Times(model::Wave((g + 1) * rad), weight); },
-      [words](int g) { return fmt::format(fmt::runtime(words), g + 1); });
+  const int count = std::min(last, angle.last_order);
+  AddWaves(sort, {angle.rad, 1.0, 1.0, NumbersTo(std::max(0, count)), factor.cwiseProduct(design_->moved)},
+           [words](int g) { return fmt::format(fmt::runtime(words), g + 1); });
 }
 
 void Collector::AddRows(const std::string& sort, const std::string& where, int grid, const Series& rows,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "twin/diagnose/engine/candidates.h"
+#include "twin/diagnose/engine/wave_series.h"
 #include "twin/diagnose/unknown/design.h"
 
 /// How generic families are made; only the files that make them need it.
@@ -26,13 +27,15 @@ class Collector {
   /// The same without a grid; nothing if it is zero.
   void Add(const std::string& sort, const Eigen::MatrixXd& series, const std::string& words);
   /// A grid over one continuous shape.
-  /// @param on_grid  The same as `at` on the grid, where there is a quicker way to them.
-  void AddOver(const std::string& sort, const Shape& shape, const SeriesAt& at, const Words& words,
-               const Series& on_grid = {});
+  void AddOver(const std::string& sort, const Shape& shape, const SeriesAt& at, const Words& words);
   /// Combinations of what named families are made of, too.
   /// @param shape  Of the base's grid, with `at`; or null.
   void AddShared(const std::string& sort, const std::shared_ptr<const Base>& base, const Words& words,
                  const Shape* shape = nullptr, const SeriesAt& at = {});
+  /// Cosine and sine of many orders or frequencies.
+  /// @param shape  Of their grid, with `at`; or null.
+  void AddWaves(const std::string& sort, const WaveSeries& waves, const Words& words, const Shape* shape = nullptr,
+                const SeriesAt& at = {});
   /// Waves of the whole orders up to `last` of an angle, times a factor of each sample. @param words  "{}" is the
   /// order.
   void AddModulated(const std::string& sort, const Angle& angle, int last, const Eigen::VectorXd& factor,

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
+#include "twin/core/errors.h"
+#include "twin/diagnose/engine/series_sums.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/diagnose/unknown/collector.h"
 #include "twin/model/signals.h"
@@ -107,20 +111,81 @@ Eigen::MatrixXd CourseOf(const Touch& touch, int readings) {
   return course;
 }
 
+/// What each reading and all behind it sum up to, those behind falling by `left` from one to the next.
+Eigen::VectorXd FadingSums(const Eigen::VectorXd& values, double left) {
+  Eigen::VectorXd sums(values.size() + 1);
+  sums[values.size()] = 0.0;
+  for (Eigen::Index i = values.size() - 1; i >= 0; --i) sums[i] = values[i] + left * sums[i + 1];
+  return sums;
+}
+
+/// Running sums, once for all touches that fade alike.
+class SumsOfTouches : public SeriesSums {
+ public:
+  /// @param touches  Those that fade over the same number of readings follow each other.
+  explicit SumsOfTouches(std::vector<Touch> touches) : touches_(std::move(touches)) {}
+
+  Eigen::MatrixXd Products(const Eigen::MatrixXd& Y) const override {
+    Eigen::MatrixXd products(2 * std::ssize(touches_), Y.cols());
+    for (Eigen::Index j = 0; j < Y.cols(); ++j) {
+      const Eigen::VectorXd behind = FadingSums(Y.col(j), 1.0);
+      Eigen::VectorXd fading;
+      ForEach([&](Eigen::Index g, const Touch& touch, double left, bool is_new) {
+        if (is_new) fading = FadingSums(Y.col(j), left);
+        products(2 * g, j) = behind[touch.first] - behind[touch.end];
+        products(2 * g + 1, j) = fading[touch.end];
+      });
+    }
+    return products;
+  }
+
+  std::vector<Eigen::MatrixXd> Squares(const Tridiagonal& T) const override {
+    const Eigen::VectorXd behind = FadingSums(T.diagonal, 1.0), pairs = FadingSums(T.beside, 1.0);
+    Eigen::VectorXd fading;
+    std::vector<Eigen::MatrixXd> squares;
+    ForEach([&](Eigen::Index, const Touch& touch, double left, bool is_new) {
+      if (is_new) fading = FadingSums(T.diagonal + 2.0 * left * T.beside, left * left);
+      const double last = T.beside[touch.end - 1];  // joins the touch and what is left of it
+      const double on =
+          behind[touch.first] - behind[touch.end] + 2.0 * (pairs[touch.first] - pairs[touch.end] - last);
+      squares.push_back(Eigen::Matrix2d{{on, last}, {last, fading[touch.end]}});
+    });
+    return squares;
+  }
+
+ private:
+  /// @param visit  Gets the number of a touch, what is left of it from one reading to the next, and whether that is
+  /// another share than of the touch before.
+  void ForEach(const std::function<void(Eigen::Index, const Touch&, double, bool)>& visit) const {
+    for (std::size_t g = 0; g < touches_.size(); ++g) {
+      const Touch& touch = touches_[g];
+      visit(static_cast<Eigen::Index>(g), touch, std::exp(-1.0 / touch.fades_over),
+            g == 0 || touches_[g - 1].fades_over != touch.fades_over);
+    }
+  }
+
+  std::vector<Touch> touches_;
+};
+
+std::shared_ptr<const Base> BaseOf(const std::vector<Touch>& touches, int readings) {
+  return std::make_shared<const Base>(
+      Base{static_cast<int>(std::ssize(touches)), 1,
+           [readings, touches](int g) { return CourseOf(touches[static_cast<std::size_t>(g)], readings); },
+           [touches] { return std::make_unique<const SumsOfTouches>(touches); }});
+}
+
 void AddTouches(Collector& collect) {
   const Design& d = collect.design();
   const int readings = d.course.Readings();
   const std::vector<Touch> touches = Touches(readings);
   if (!d.may_be_touched || touches.empty()) return;
-  collect.Add(
-      "touch", static_cast<int>(std::ssize(touches)),
-      [readings, touches](int g) { return CourseOf(touches[static_cast<std::size_t>(g)], readings); },
-      [touches, numbers = d.course.reading](int g) {
-        const Touch& touch = touches[static_cast<std::size_t>(g)];
-        return fmt::format("offset from reading {} to {} that fades away, locked to time",
-                           numbers[static_cast<std::size_t>(touch.first)],
-                           numbers[static_cast<std::size_t>(touch.end - 1)]);
-      });
+  Require(d.channels.size() == 1 && !d.rows, "touches are of an angle device: one channel, a row a reading");
+  collect.AddShared("touch", BaseOf(touches, readings), [touches, numbers = d.course.reading](int g) {
+    const Touch& touch = touches[static_cast<std::size_t>(g)];
+    return fmt::format("offset from reading {} to {} that fades away, locked to time",
+                       numbers[static_cast<std::size_t>(touch.first)],
+                       numbers[static_cast<std::size_t>(touch.end - 1)]);
+  });
   collect.GoByTime();
 }
 

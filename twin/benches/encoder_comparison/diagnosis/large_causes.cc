@@ -24,12 +24,9 @@ namespace {
 /// well miss, is then half a deviation.
 constexpr double kLarge = 50.0;
 constexpr std::size_t kMostLarge = 16;
-
-AnalysisOptions HowToSearch(const DiagnoseOptions& options) {
-  AnalysisOptions how = AnalysisOptionsOf(options);
-  how.most_causes = 8;  // an angle device may well have an error of many orders
-  return how;
-}
+/// An angle device may well have an error of many orders. As long as something large is found, the first few are
+/// enough: what a large cause leaves to first order is explained by shapes that are gone once the twin has it.
+constexpr int kMostCauses = 8, kFewCauses = 3;
 
 std::unique_ptr<Searched> SearchIn(EncoderRun encoder, const std::vector<std::string>& excluded,
                                    const AnalysisOptions& how) {
@@ -217,24 +214,58 @@ class Search {
  public:
   Search(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
          const model::FollowMaker& follow)
-      : readings_(readings), scenario_(scenario), options_(options), follow_(follow), how_(HowToSearch(options)) {}
+      : readings_(readings),
+        scenario_(scenario),
+        options_(options),
+        follow_(follow),
+        how_(AnalysisOptionsOf(options)) {}
 
   LargeCauses Go() {
-    large_.first = SearchIn(BuildRun(readings_, scenario_, follow_), options_.excluded, how_);
-    how_.null = &large_.first->analysis.null;
+    large_.first = SearchIn(BuildRun(readings_, scenario_, follow_), options_.excluded, For(kFewCauses));
+    null_ = large_.first->analysis.null;
+    how_.null = &null_;
     const LinearRun& plain = large_.first->encoder.run;
     const NoiseModel noise{plain.sigma, 0.0};
     projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
     nothing_ = FollowTwin(large_.first->encoder, scenario_, follow_).error_rad;
     power_ = PowerOf(large_.first->encoder.run.residual);
-    while (large_.causes.size() < kMostLarge && TakeNext()) {
-    }
+    TakeAll();
     DropNeedless();
     TellWhatEachShows();
     return std::move(large_);
   }
 
  private:
+  AnalysisOptions For(int most_causes) const {
+    AnalysisOptions how = how_;
+    how.most_causes = most_causes;
+    return how;
+  }
+
+  void TakeAll() {
+    do {
+      while (large_.causes.size() < kMostLarge && TakeNext()) {
+      }
+    } while (SearchOn());
+  }
+
+  /// For more causes, where the last search ended at a few.
+  /// @return false if it did not.
+  bool SearchOn() {
+    std::unique_ptr<Searched>& last = large_.last ? large_.last : large_.first;
+    if (std::ssize(last->analysis.found.terms) != kFewCauses || searched_on_ == last.get()) return false;
+    last->analysis.scanner.reset();
+    last = SearchIn(std::move(last->encoder), Excluded(large_.causes), For(kMostCauses));
+    searched_on_ = last.get();
+    return true;
+  }
+
+  std::vector<std::string> Excluded(const std::vector<LargeCause>& causes) const {
+    std::vector<std::string> excluded = ThatAreOnce(causes);
+    excluded.insert(excluded.end(), options_.excluded.begin(), options_.excluded.end());
+    return excluded;
+  }
+
   Eigen::VectorXd Shown(const std::vector<EffectSettings>& effects) const {
     return FollowTwin(large_.first->encoder, With(scenario_, effects), follow_).error_rad - nothing_;
   }
@@ -253,8 +284,10 @@ class Search {
                     benches::encoder::Format().effects, plain.residual, plain.sigma, *projector_);
   }
 
-  void Accept(const AskedAgain& asked, std::vector<LargeCause> causes) {
-    auto searched = SearchWith(asked, causes);
+  void Accept(const AskedAgain& asked, std::vector<LargeCause> causes, int most_causes) {
+    // Its signatures were for the search alone, and the next one has its own.
+    (large_.last ? large_.last : large_.first)->analysis.scanner.reset();
+    auto searched = SearchWith(asked, causes, For(most_causes));
     TakeOver(asked, causes);
     power_ = PowerOf(asked.left);
     large_.causes = std::move(causes);
@@ -284,7 +317,7 @@ class Search {
     if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
     causes.back().explained = power_ - power;
     for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, causes, asked, power);
-    Accept(asked, std::move(causes));
+    Accept(asked, std::move(causes), kFewCauses);
     return true;
   }
 
@@ -292,7 +325,9 @@ class Search {
   void TryOthers(std::size_t k, std::vector<LargeCause>& causes, AskedAgain& asked, double& power) const {
     if (causes.size() < 2) return;
     const LinearRun& plain = large_.first->encoder.run;
+    std::vector<Cause> as_likely = {causes[k].causes.front()};
     for (std::size_t j = 1; j < causes[k].causes.size(); ++j) {
+      as_likely.push_back(causes[k].causes[j]);
       std::vector<EffectSettings> others = asked.effects;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
       const auto family = std::ranges::find_if(large_.first->families, [&](const Family& f) {
@@ -311,7 +346,8 @@ class Search {
       AskedAgain again = Ask(changed);
       const double left = PowerOf(again.left);
       constexpr double kBetter = 25.0;  // power, so many units of noise: no chance
-      const double noise = std::max(1.0, left / projector_->DegreesOfFreedom());
+      const double noise = std::max(1.0, std::min(left, power) / projector_->DegreesOfFreedom());
+      if (left > power + kBetter * noise) as_likely.pop_back();
       if (!(left < power - kBetter * noise)) continue;
       // The others do not show what is there: they are no tie any more.
       changed[k].causes.resize(1);
@@ -321,6 +357,8 @@ class Search {
       power = left;
       return;
     }
+    if (as_likely.size() == 1 && causes[k].causes.size() > 1) as_likely.front().probability = tuning::kMostProbable;
+    causes[k].causes = std::move(as_likely);
   }
 
   /// What stood for something that was found later is not kept.
@@ -329,16 +367,15 @@ class Search {
     std::erase_if(kept, [](const LargeCause& cause) { return !IsHeld(cause.effect); });
     if (kept.empty() || kept.size() == large_.causes.size()) return;
     const AskedAgain asked = Ask(kept);
-    Accept(asked, std::move(kept));
+    Accept(asked, std::move(kept), kMostCauses);
   }
 
-  std::unique_ptr<Searched> SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes) const {
+  std::unique_ptr<Searched> SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes,
+                                       const AnalysisOptions& how) const {
     EncoderRun encoder = BuildRun(readings_, With(scenario_, asked.effects), follow_);
     LeaveFree(asked, encoder.run.nuisance);
     TellSignalZero(asked.effects, encoder.context.device);
-    std::vector<std::string> excluded = ThatAreOnce(causes);
-    excluded.insert(excluded.end(), options_.excluded.begin(), options_.excluded.end());
-    return SearchIn(std::move(encoder), excluded, how_);
+    return SearchIn(std::move(encoder), Excluded(causes), how);
   }
 
   void TellWhatEachShows() {
@@ -357,8 +394,10 @@ class Search {
   const DiagnoseOptions& options_;
   const model::FollowMaker& follow_;
   AnalysisOptions how_;
+  NullCalibration null_;
   LargeCauses large_;
-  std::unique_ptr<Projector> projector_;  // with no more than the noise of the readings
+  const Searched* searched_on_ = nullptr;  // the last that was searched for all causes
+  std::unique_ptr<Projector> projector_;   // with no more than the noise of the readings
   Eigen::VectorXd nothing_;
   double power_ = 0.0;
 };

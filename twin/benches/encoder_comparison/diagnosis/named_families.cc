@@ -5,8 +5,8 @@
 #include "twin/benches/encoder_comparison/format.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/candidates.h"
+#include "twin/diagnose/engine/wave_series.h"
 #include "twin/model/signals.h"
-#include "twin/model/wave_grid.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
@@ -31,9 +31,9 @@ void AddOrders(Candidates& named, const Showing& showing, const Eigen::VectorXd&
                const std::vector<double>& orders, const std::string& order, double factor = 1.0) {
   const auto count = static_cast<int>(std::ssize(orders));
   if (count == 0) return;
-  const auto waves = std::make_shared<const model::WaveGrid>(factor * angle_rad, orders.front(),
-                                                             count > 1 ? orders[1] - orders[0] : 1.0, count);
-  named.AddOrders(showing, named.BaseOf(count, [waves](int g) { return waves->At(g); }), order, orders);
+  const WaveSeries waves{factor * angle_rad, orders.front(), count > 1 ? orders[1] - orders[0] : 1.0,
+                         NumbersTo(count)};
+  named.AddOrders(showing, BaseOf(waves, 1, {}), order, orders);
 }
 
 /// True if the device was turned on the shaft between set-ups: only then is its angle not the reference's.

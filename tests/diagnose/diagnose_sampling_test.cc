@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <set>
+#include <string>
+
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/diagnose.h"
+
+// One machine read in several ways: what is wrong with it does not hang on how often, or where, it was read.
+namespace twinbench::diagnose {
+namespace {
+
+using units::deg;
+
+struct Sampling {
+  std::string name;
+  int readings;
+  double turns = 1.0;   // of a pass
+  double uneven = 0.0;  // of a step: readings lie so far beside their even places
+};
+
+/// Passes + - - + at 10 deg/s with white noise of 0.002 deg.
+template <class Error>
+std::vector<Reading> ReadAs(const Sampling& sampling, Error error_deg) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise_deg(0.0, 0.002);
+  std::uniform_real_distribution<double> beside(-0.5, 0.5);
+  constexpr double kSpeed_deg_s = 10.0;
+  const int in_pass = sampling.readings / 4;
+  const double length_deg = 360.0 * sampling.turns, step_deg = length_deg / in_pass;
+  std::vector<Reading> readings;
+  int pass = 0;
+  for (const int direction : {1, -1, -1, 1}) {
+    for (int k = 0; k < in_pass; ++k) {
+      const double way_deg = (k + 0.5 + sampling.uneven * beside(random)) * step_deg;
+      Reading r;
+      r.reading = static_cast<int>(readings.size());
+      const double time_s = (pass * (length_deg + 20.0) + way_deg) / kSpeed_deg_s;
+      const double angle_deg = direction > 0 ? way_deg : length_deg - way_deg;
+      r.time = Time(FromSeconds(time_s));
+      r.pass = pass;
+      r.direction = direction;
+      r.position = k;
+      r.reference_rad = angle_deg * deg;
+      r.velocity_rad_s = direction * kSpeed_deg_s * deg;
+      r.measured_rad = (angle_deg + error_deg(angle_deg * deg, direction, time_s) + noise_deg(random)) * deg;
+      readings.push_back(r);
+    }
+    ++pass;
+  }
+  return readings;
+}
+
+/// Effects that are named, alone or in a tie.
+template <class Error>
+std::set<std::string> NamedIn(const Sampling& sampling, Error error_deg) {
+  Scenario scenario;
+  scenario.bench = kEncoderBench;
+  EncoderOf(scenario).encoder_procedure.kind = "sweep";
+  DiagnoseOptions options;
+  options.null_runs = 100;  // what is found here is far above any threshold
+  const Diagnosis d = Diagnose(ReadAs(sampling, error_deg), scenario, options).diagnosis;
+  EXPECT_NE(d.verdict, Verdict::kUnknown) << sampling.name << ": " << d.unknown.signature;
+  std::set<std::string> named;
+  for (const Cause& cause : d.causes) named.insert(cause.effect);
+  return named;
+}
+
+const std::vector<Sampling>& Samplings() {
+  static const std::vector<Sampling> samplings = {{"a few", 360},
+                                                  {"many", 2000},
+                                                  {"very many", 20000},
+                                                  {"uneven", 2000, 1.0, 0.9},
+                                                  {"several turns", 2000, 3.3, 0.9}};
+  return samplings;
+}
+
+TEST(DiagnoseSampling, NothingIsNamedInNoiseHoweverItIsSampled) {
+  for (const Sampling& sampling : Samplings())
+    EXPECT_TRUE(NamedIn(sampling, [](double, int, double) { return 0.0; }).empty()) << sampling.name;
+}
+
+TEST(DiagnoseSampling, ASmallCauseIsNamedHoweverItIsSampled) {
+  const auto error_deg = [](double angle_rad, int, double) { return 0.005 * std::cos(7.0 * angle_rad + 0.4); };
+  for (const Sampling& sampling : Samplings())
+    EXPECT_EQ(NamedIn(sampling, error_deg), std::set<std::string>{"periodic"}) << sampling.name;
+}
+
+TEST(DiagnoseSampling, LargeCausesAreNamedHoweverTheyAreSampled) {
+  const auto error_deg = [](double angle_rad, int direction, double time_s) {
+    return 0.3 * std::cos(7.0 * angle_rad + 0.4) + 0.1 * std::cos(2.0 * angle_rad) + 5e-4 * time_s -
+           0.05 * direction;
+  };
+  for (const Sampling& sampling : Samplings()) {
+    const std::set<std::string> named = NamedIn(sampling, error_deg);
+    EXPECT_TRUE(named.contains("periodic") && named.contains("drift")) << sampling.name;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose
