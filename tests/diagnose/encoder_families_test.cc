@@ -140,8 +140,9 @@ TEST(EncoderFamilies, RecoverClippingWithTheZeroFree) {
 TEST(EncoderFamilies, RecoverLatencyOnlyInMotion) {
   const auto effect = EncoderEffect("latency", {{"delay", 1e-5}});
   const Recovered r = Recover(EncoderScenario("sweep"), effect);
-  EXPECT_LT(r.fit.left, 1e-9);
-  EXPECT_NEAR(r.parameters.at("delay"), 1e-5, 1e-13);
+  // In the ramps the speed changes by up to 1e-5 of itself meanwhile.
+  EXPECT_LT(r.fit.left, 1e-5);
+  EXPECT_NEAR(r.parameters.at("delay"), 1e-5, 1e-12);
   const Scenario stops = EncoderScenario("stops");
   EXPECT_FALSE(test::HasFamily(Families(RunOf(test::ReadingsWith(stops, effect), stops)), "latency"));
 }

@@ -14,10 +14,11 @@ AngleFault SpeedBias(Dice& dice, const Track&) {
   return Linear(truth, [=](const Instant& at) { return sign * std::pow(std::abs(at.speed_deg_s) / 30.0, power); });
 }
 
-/// The device's clock runs at another rate: an age of the reading that grows.
+/// The device's clock runs at another rate: an age of the reading that grows. It is here for the way in which it
+/// was taken for slips and passes of their own.
 AngleFault ClockRate(Dice& dice, const Track& example) {
   const double duration_s = Duration_s(example), sign = dice.Sign();
-  return Linear(Unlisted({"latency"}),
+  return Linear(Listed({"clock_rate"}),
                 [=](const Instant& at) { return sign * at.speed_deg_s / 30.0 * at.t_s / duration_s; });
 }
 

@@ -46,6 +46,7 @@ const std::map<std::string, std::string>& UsualSizes() {
                                                            {"signal_clipping", "level"},
                                                            {"interpolation", "amplitude"},
                                                            {"latency", "delay"},
+                                                           {"clock_rate", "ratio"},
                                                            {"hysteresis", "lag"},
                                                            {"scale", "ratio"},
                                                            {"drift", "rate"},

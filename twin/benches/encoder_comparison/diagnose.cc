@@ -3,6 +3,7 @@
 #include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
+#include "twin/benches/encoder_comparison/diagnosis/equal_steps.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
@@ -34,6 +35,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
       NextMeasurement};
   diagnose::DiagnosisRun result = diagnose::Conclude(searched.encoder.run, searched.analysis, {}, words);
   diagnose::encoder::AddLargeCauses(large, result);
+  diagnose::encoder::TellEqualSteps(result);
   result.diagnosis.left_out = searched.encoder.left_out;
   result.diagnosis.harmonics =
       diagnose::encoder::HarmonicTable(large.first->encoder, {searched.encoder.run.sigma, 0.0});

@@ -68,6 +68,11 @@ std::vector<EffectEntry> MotionEffects() {
        "device read later or earlier than the reference",
        {},
        {Signed("delay", "s", 0.001, 10.0, "the reading is this old; its error is -speed * delay")}},
+      // a quartz is right to 1e-4, the timer of a computer or of a controller of its own to 1e-3
+      {"clock_rate",
+       "clock of the device that runs fast against the reference's",
+       {},
+       {Signed("ratio", "1", 1e-3, 0.1, "the reading is older by this share of the time since the start")}},
       {"backlash",
        "device that stays behind on reversal until a gap is crossed",
        {},

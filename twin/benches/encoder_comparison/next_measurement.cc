@@ -18,6 +18,8 @@ const std::vector<diagnose::Split>& Splits() {
       {{"backlash", "hysteresis"},
        "readings close behind a reversal, every tenth of the way over which the difference builds up"},
       {{"backlash", "latency", "hysteresis"}, "the same passes at half and at twice the speed, and stops at rest"},
+      {{"clock_rate", "latency", "scale", "hysteresis", "backlash"},
+       "the same passes at another speed, and again after some minutes without a new start of the clocks"},
       {{"interpolation", "gear_mesh", "periodic"}, "the same run with the gear taken out"},
       {{"drift", "slip", "outliers"}, "a quarter of an hour at rest at one angle, and the same passes again"},
       {{"drift", "scale", "backlash"}, "several turns in both directions, with a return to the first angle"}};

@@ -89,19 +89,19 @@ void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Re
 }  // namespace
 
 ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow) {
-  constexpr double kSame_rad = 1e-12;
+  constexpr double kSame_rad = 1e-10;
+  // What is locked to the device's angle turns with it: each step leaves a tenth of what is wrong, or less.
+  constexpr int kSteps = 6;
   const Schedule& s = encoder.run.schedule;
   ErrorOfTwin followed{{}, encoder.offset_rad};
-  const auto ask = [&] {
+  for (int step = 0; step < kSteps; ++step) {
     followed.error_rad =
         follow(AsMounted(scenario, s, followed.offset_rad), encoder.used)->Predict().col(0) - s.reference_rad;
-  };
-  ask();
-  const Eigen::VectorXd mean_rad =
-      SetUpMeans(encoder.run.nuisance.jacobian, encoder.error_rad - followed.error_rad);
-  if (mean_rad.cwiseAbs().maxCoeff() < kSame_rad) return followed;
-  followed.offset_rad += mean_rad;
-  ask();
+    const Eigen::VectorXd mean_rad =
+        SetUpMeans(encoder.run.nuisance.jacobian, encoder.error_rad - followed.error_rad);
+    if (mean_rad.cwiseAbs().maxCoeff() < kSame_rad) break;
+    if (step + 1 < kSteps) followed.offset_rad += mean_rad;
+  }
   return followed;
 }
 

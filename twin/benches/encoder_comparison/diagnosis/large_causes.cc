@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
+#include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 #include "twin/benches/encoder_comparison/format.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/asked_again.h"
@@ -229,6 +231,7 @@ class Search {
     projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
     nothing_ = FollowTwin(large_.first->encoder, scenario_, follow_).error_rad;
     power_ = PowerOf(large_.first->encoder.run.residual);
+    TakeSignals();
     TakeAll();
     DropNeedless();
     TellWhatEachShows();
@@ -294,6 +297,34 @@ class Search {
     large_.last = std::move(searched);
   }
 
+  /// Signals that are cut off have all their faults at once: none of them is found alone.
+  void TakeSignals() {
+    const EncoderRun& encoder = large_.first->encoder;
+    if (power_ < kLarge * kLarge || std::ranges::count(options_.excluded, "signal_clipping") > 0) return;
+    const std::optional<SignalGuess> guess = GuessSignals(encoder.context, encoder.run.residual);
+    if (!guess) return;
+    std::vector<LargeCause> causes = SignalBlock(*guess, encoder, options_.excluded);
+    AskedAgain asked = Ask(causes);
+    while (DropNotHeld(asked, causes)) asked = Ask(causes);
+    double power = PowerOf(asked.left);
+    if (causes.empty() || causes.front().effect.name != "signal_clipping" || !(power < 0.5 * power_)) return;
+    for (std::size_t k = 0; k < causes.size(); ++k) causes[k].explained = PowerWithout(k, asked) - power;
+    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, causes, asked, power);
+    Accept(asked, std::move(causes));
+  }
+
+  /// @return true if there were any.
+  static bool DropNotHeld(const AskedAgain& asked, std::vector<LargeCause>& causes) {
+    const std::size_t before = causes.size();
+    TakeOver(asked, causes);
+    std::erase_if(causes, [](const LargeCause& cause) { return !IsHeld(cause.effect); });
+    return causes.size() < before;
+  }
+
+  double PowerWithout(std::size_t k, const AskedAgain& asked) const {
+    return PowerOf(large_.first->encoder.run.residual - Shown(EffectsWithout(k, asked)));
+  }
+
   /// @return false if nothing more is large, or the twin does not show it as the search has it.
   bool TakeNext() {
     const std::optional<LargeCause> next = LargestNamed(large_.Last());
@@ -307,7 +338,26 @@ class Search {
     return Take(LedBy({cause}, 0, last.encoder.run.bench));
   }
 
+  /// A clock that runs fast shows in proportion to the speed and to the time. What goes with another power of
+  /// either is not one, however much it looks like it.
+  bool IsInProportion(const LargeCause& next) const {
+    if (next.effect.name != "clock_rate") return true;
+    const SignalContext& c = large_.Last().encoder.context;
+    const Eigen::ArrayXd v = c.velocity_rad_s, t = c.since_start_s;
+    const double own = Explains(v * t);
+    return std::max({Explains(v * v.abs() * t), Explains(v.abs() * t), Explains(v * t * t),
+                     Explains(v * v.abs())}) < own;
+  }
+  /// Of what is left, by one column alone.
+  double Explains(const Eigen::VectorXd& column) const {
+    const Eigen::VectorXd weight = large_.first->encoder.run.sigma.cwiseInverse();
+    const Eigen::VectorXd white = weight.cwiseProduct(column), projected = projector_->Apply(white).col(0);
+    const double shared = projected.dot(weight.cwiseProduct(large_.Last().encoder.run.residual));
+    return shared * shared / std::max(white.dot(projected), 1e-300);
+  }
+
   bool Take(const LargeCause& next) {
+    if (!IsInProportion(next)) return false;
     std::vector<LargeCause> causes = large_.causes;
     causes.push_back(next);
     // Of a cause whose size is not known there is nothing to be asked.
@@ -321,44 +371,75 @@ class Search {
     return true;
   }
 
-  /// Causes that are one to first order are not beside large ones: the one that leaves least is in the twin.
+  /// Large causes as they are in the twin, and what they leave.
+  struct Tried {
+    std::vector<LargeCause> causes;
+    AskedAgain asked;
+    double power;
+  };
+
+  /// Causes that are one to first order are not beside large ones: the one that leaves least is in the twin, and
+  /// those that leave clearly more do not tie with it.
   void TryOthers(std::size_t k, std::vector<LargeCause>& causes, AskedAgain& asked, double& power) const {
     if (causes.size() < 2) return;
-    const LinearRun& plain = large_.first->encoder.run;
-    std::vector<Cause> as_likely = {causes[k].causes.front()};
-    for (std::size_t j = 1; j < causes[k].causes.size(); ++j) {
-      as_likely.push_back(causes[k].causes[j]);
-      std::vector<EffectSettings> others = asked.effects;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-      const auto family = std::ranges::find_if(large_.first->families, [&](const Family& f) {
-        return f.kind == Kind::kNamed && IsOf(causes[k].causes[j], f);
-      });
-      if (family == large_.first->families.end()) continue;
-      std::vector<LargeCause> changed = causes;
-      Cause& cause = changed[k].causes[j];
-      cause.parameters = CauseFrom(*family, 0, plain.residual - Shown(others), plain.sigma, *projector_).parameters;
-      changed[k] = LedBy(changed[k].causes, j, plain.bench);
-      if (MovableOf({changed[k]}).empty()) continue;
-      changed[k].explained = causes[k].explained;
-      for (std::size_t i = 0; i < changed.size(); ++i) {
-        if (i != k) changed[i].effect = asked.effects[i];
-      }
-      AskedAgain again = Ask(changed);
-      const double left = PowerOf(again.left);
+    const std::vector<Cause> doubles(causes[k].causes.begin() + 1, causes[k].causes.end());
+    for (const Cause& other : doubles) {
+      std::optional<Tried> tried = Try(other, k, causes, asked);
+      if (!tried) continue;
       constexpr double kBetter = 25.0;  // power, so many units of noise: no chance
-      const double noise = std::max(1.0, std::min(left, power) / projector_->DegreesOfFreedom());
-      if (left > power + kBetter * noise) as_likely.pop_back();
-      if (!(left < power - kBetter * noise)) continue;
-      // The others do not show what is there: they are no tie any more.
-      changed[k].causes.resize(1);
-      changed[k].causes.front().probability = tuning::kListed;
-      causes = std::move(changed);
-      asked = std::move(again);
-      power = left;
-      return;
+      const double clearly =
+          kBetter * std::max(1.0, std::min(power, tried->power) / projector_->DegreesOfFreedom());
+      if (std::abs(tried->power - power) < clearly) continue;
+      const bool is_better = tried->power < power;
+      const std::string dropped = is_better ? causes[k].effect.name : other.effect;
+      if (is_better) {
+        causes = std::move(tried->causes);
+        asked = std::move(tried->asked);
+        power = tried->power;
+      }
+      DropDouble(dropped, causes[k].causes);
     }
-    if (as_likely.size() == 1 && causes[k].causes.size() > 1) as_likely.front().probability = tuning::kMostProbable;
-    causes[k].causes = std::move(as_likely);
+  }
+
+  /// Those that are left share what all claimed; one alone has no double any more.
+  static void DropDouble(const std::string& effect, std::vector<Cause>& doubles) {
+    const auto claimed = [&doubles] {
+      double sum = 0.0;
+      for (const Cause& cause : doubles) sum += cause.probability;
+      return sum;
+    };
+    const double before = claimed();
+    std::erase_if(doubles, [&](const Cause& cause) { return cause.effect == effect; });
+    const double share = doubles.size() == 1 ? tuning::kListed / claimed() : before / claimed();
+    for (Cause& cause : doubles) cause.probability *= share;
+  }
+
+  /// The twin with a double in the place of cause k, fitted to what the others leave and then all together.
+  std::optional<Tried> Try(const Cause& other, std::size_t k, const std::vector<LargeCause>& causes,
+                           const AskedAgain& asked) const {
+    const auto family = std::ranges::find_if(
+        large_.first->families, [&](const Family& f) { return f.kind == Kind::kNamed && IsOf(other, f); });
+    if (family == large_.first->families.end()) return std::nullopt;
+    const LinearRun& plain = large_.first->encoder.run;
+    Tried tried{causes, {}, 0.0};
+    for (std::size_t i = 0; i < causes.size(); ++i) tried.causes[i].effect = asked.effects[i];
+    std::vector<Cause>& doubles = tried.causes[k].causes;
+    const auto at = std::ranges::find_if(doubles, [&](const Cause& cause) { return IsOf(cause, *family); });
+    const Eigen::VectorXd left = plain.residual - Shown(EffectsWithout(k, asked));
+    at->parameters = CauseFrom(*family, 0, left, plain.sigma, *projector_).parameters;
+    LargeCause led = LedBy(doubles, static_cast<std::size_t>(at - doubles.begin()), plain.bench);
+    if (MovableOf({led}).empty()) return std::nullopt;
+    led.explained = causes[k].explained;
+    tried.causes[k] = std::move(led);
+    tried.asked = Ask(tried.causes);
+    tried.power = PowerOf(tried.asked.left);
+    return tried;
+  }
+
+  static std::vector<EffectSettings> EffectsWithout(std::size_t k, const AskedAgain& asked) {
+    std::vector<EffectSettings> others = asked.effects;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    return others;
   }
 
   /// What stood for something that was found later is not kept.

@@ -221,7 +221,10 @@ void AddHysteresis(const Context& context, Candidates& named) {
 void AddMotion(const Context& context, Candidates& named) {
   const SignalContext& c = *context;
   const Eigen::VectorXd sense = Senses(c).front();
-  if (c.Moves()) named.Add(Shown("latency", -1.0), {"delay"}, c.velocity_rad_s);
+  if (c.Moves()) {
+    named.Add(Shown("latency", -1.0), {"delay"}, c.velocity_rad_s);
+    named.Add(Shown("clock_rate", -1.0), {"ratio"}, c.velocity_rad_s.cwiseProduct(c.since_start_s));
+  }
   if (sense.size() > 0 && sense.maxCoeff() > sense.minCoeff()) {
     AddBacklash(context, named);
     AddHysteresis(context, named);

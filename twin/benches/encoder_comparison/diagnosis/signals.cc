@@ -117,11 +117,16 @@ Eigen::MatrixXd Relaxation(const SignalContext& context, double settles_over_rad
   return states;
 }
 
-Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level) {
-  return phase_rad.unaryExpr([level](double p) {
-    const double y = std::clamp(std::sin(p), -level, level), x = std::clamp(std::cos(p), -level, level);
-    return Wrapped(std::atan2(y, x) - p);
+Eigen::VectorXd SignalError_rad(const Eigen::VectorXd& phase_rad, const SignalFaults& f) {
+  return phase_rad.unaryExpr([&f](double p) {
+    const double y = (1.0 + f.ratio) * std::sin(p + f.quadrature_rad) + f.offset_sin,
+                 x = std::cos(p) + f.offset_cos;
+    return Wrapped(std::atan2(std::clamp(y, -f.level, f.level), std::clamp(x, -f.level, f.level)) - p);
   });
+}
+
+Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level) {
+  return SignalError_rad(phase_rad, {.level = level});
 }
 
 }  // namespace twinbench::diagnose::encoder

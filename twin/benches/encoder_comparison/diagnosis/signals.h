@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "twin/benches/encoder_comparison/settings.h"
@@ -56,6 +57,16 @@ Eigen::VectorXd Play(const SignalContext& context, double crossed_over_rad, doub
 
 /// Half the usual distance of neighbouring stops, 0 if the shaft moved while it was read.
 double RunUp_rad(const SignalContext& context);
+
+/// Sine and cosine of phase p as they are: (1 + ratio) sin(p + quadrature) + offset_sin and cos p + offset_cos,
+/// both cut off at `level`.
+struct SignalFaults {
+  double offset_sin = 0.0, offset_cos = 0.0, ratio = 0.0, quadrature_rad = 0.0;
+  double level = std::numeric_limits<double>::infinity();
+};
+
+/// Error of atan2 from them, in rad of their period.
+Eigen::VectorXd SignalError_rad(const Eigen::VectorXd& phase_rad, const SignalFaults& faults);
 
 /// Error of atan2 from sine and cosine that are cut off at `level` of their amplitude, in rad of their period: a
 /// series of orders 4, 8, 12 whose ratios follow from the level.

@@ -1,8 +1,28 @@
+#include <algorithm>
+#include <iterator>
+
 #include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
+#include "twin/diagnose/unknown/collector.h"
 #include "twin/diagnose/unknown/design.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::encoder {
+
+namespace {
+
+/// What looks like a clock that runs fast and is none.
+std::vector<Family> GrowingSpeeds(const SignalContext& c, const unknown::Design& design) {
+  if (!c.Moves()) return {};
+  unknown::Collector collect(std::make_shared<const unknown::Design>(design));
+  const Eigen::ArrayXd v = c.velocity_rad_s, t = c.since_start_s;
+  collect.Add("growing speed", model::Unit(v * v.abs() * t),
+              "proportional to the square of the speed that grows with time, odd in direction");
+  collect.Add("growing speed", model::Unit(v.abs() * t),
+              "proportional to the speed that grows with time, even in direction");
+  return collect.Take();
+}
+
+}  // namespace
 
 std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries& series, double plausible_rad) {
   const SignalContext& c = encoder.context;
@@ -26,7 +46,10 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.plausible = plausible_rad;
   design.may_be_touched = true;
   design.named = {"harmonic", "direction offset", "transition", "step", "trend"};
-  return unknown::Families(design);
+  std::vector<Family> families = unknown::Families(design);
+  std::ranges::move(GrowingSpeeds(c, design), std::back_inserter(families));
+  std::ranges::move(LostCountFamilies(c, design), std::back_inserter(families));
+  return families;
 }
 
 }  // namespace twinbench::diagnose::encoder

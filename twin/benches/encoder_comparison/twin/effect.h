@@ -20,7 +20,8 @@ struct AngleMoment {
 
 using mechanics::SignalState;
 
-/// One cause on the bench encoder_comparison. Errors of different effects add; no effect looks at another one.
+/// One cause on the bench encoder_comparison. Errors, and ages, of different effects add; no effect looks at
+/// another one.
 class AngleEffect {
  public:
   virtual ~AngleEffect() = default;
@@ -29,6 +30,8 @@ class AngleEffect {
   virtual void Advance(const AngleMoment& /*moment*/) {}
   /// Of the device's shaft, against that of the reference.
   virtual double ShaftError_rad(const AngleMoment& /*moment*/) const { return 0.0; }
+  /// Of the device's reading, beyond that of the reference's.
+  virtual double Age_s(const AngleMoment& /*moment*/) const { return 0.0; }
   virtual void AlterSignals(SignalState& /*signals*/) const {}
   /// By how much the device's sine rises later than the scenario says.
   virtual double SignalZero_rad() const { return 0.0; }

@@ -69,11 +69,19 @@ double EncoderTwin::MountingOf_rad(int setup) const {
   return at < mounting_rad.size() ? mounting_rad[at] : 0.0;
 }
 
+void EncoderTwin::Advance(const AngleMoment& moment) {
+  course_.Add(moment);
+  for (const auto& effect : effects_) effect->Advance(moment);
+}
+
 /// Of the device's shaft, as its scale counts.
 double EncoderTwin::ShaftAngle_rad(const AngleMoment& moment) const {
-  double device_rad = moment.shaft_rad + MountingOf_rad(moment.setup);
-  for (const auto& effect : effects_) device_rad += effect->ShaftError_rad(moment);
-  return device_rad;
+  double device_rad = moment.shaft_rad + MountingOf_rad(moment.setup), age_s = 0.0;
+  for (const auto& effect : effects_) {
+    device_rad += effect->ShaftError_rad(moment);
+    age_s += effect->Age_s(moment);
+  }
+  return device_rad + (age_s != 0.0 ? course_.Beside_rad(moment, age_s) : 0.0);
 }
 
 double EncoderTwin::DeviceError_rad(const AngleMoment& moment, double device_rad) const {
@@ -101,13 +109,13 @@ double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
   constexpr int kSteps = 5;
   for (int k = 0; k < kSteps; ++k) moment.shaft_rad = reading.reference_rad - ReferenceError_rad(moment);
   moment.shaft_rad += shaft_rad;
-  for (const auto& effect : effects_) effect->Advance(moment);
+  Advance(moment);
   return Shown_rad(moment);
 }
 
 void EncoderTwin::Take(Reading& reading) {
   const AngleMoment moment = MomentOf(reading, run_up_rad_);
-  for (const auto& effect : effects_) effect->Advance(moment);
+  Advance(moment);
   reading.reference_rad += ReferenceError_rad(moment);
   reading.measured_rad = Shown_rad(moment);
   if (scenario_.noise_free) return;

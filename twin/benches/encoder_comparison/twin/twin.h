@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/benches/encoder_comparison/twin/effect.h"
+#include "twin/benches/encoder_comparison/twin/shaft_course.h"
 #include "twin/core/devices.h"
 #include "twin/sim/empirical_signal.h"
 
@@ -35,6 +36,7 @@ class EncoderTwin : public AngleComparator {
  private:
   double MountingOf_rad(int setup) const;
   double Shown_rad(const AngleMoment& moment) const;
+  void Advance(const AngleMoment& moment);
   double ShaftAngle_rad(const AngleMoment& moment) const;
   double DeviceError_rad(const AngleMoment& moment, double device_rad) const;
   double ReferenceError_rad(const AngleMoment& moment) const;
@@ -43,6 +45,7 @@ class EncoderTwin : public AngleComparator {
   double run_up_rad_;
   double signal_zero_rad_;
   std::vector<std::unique_ptr<AngleEffect>> effects_;
+  ShaftCourse course_;
   SignalState signals_;
   EmpiricalSignal empirical_;
 };

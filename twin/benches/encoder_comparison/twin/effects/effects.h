@@ -14,7 +14,8 @@ AngleEffectPointer MakeAngleSignal(const EffectSettings&, const Scenario&);
 AngleEffectPointer MakeHarmonic(const EffectSettings&, double order);  // locked to the device's angle
 AngleEffectPointer MakeSignalFault(const EffectSettings&);
 AngleEffectPointer MakeLatency(const EffectSettings&);
-AngleEffectPointer MakeGap(const EffectSettings&);  // backlash of the device's shaft
+AngleEffectPointer MakeClockRate(const EffectSettings&);  // a latency that grows
+AngleEffectPointer MakeGap(const EffectSettings&);        // backlash of the device's shaft
 AngleEffectPointer MakeHysteresis(const EffectSettings&);
 AngleEffectPointer MakeScale(const EffectSettings&);
 AngleEffectPointer MakeZeroDrift(const EffectSettings&);

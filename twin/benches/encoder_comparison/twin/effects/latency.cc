@@ -3,20 +3,25 @@
 namespace twinbench::sim {
 namespace {
 
-/// The device's reading is older than the reference's, so that it is behind in proportion to the speed.
-class Latency : public AngleEffect {
+/// The device's reading is older than the reference's; on a clock that runs fast more and more so.
+class Late : public AngleEffect {
  public:
-  explicit Latency(const EffectSettings& e) : delay_s_(Parameter(e, "delay")) {}
-  double ShaftError_rad(const AngleMoment& moment) const override { return -moment.velocity_rad_s * delay_s_; }
+  /// @param per_s  By how much the age grows.
+  Late(double age_s, double per_s) : begin_s_(age_s), per_s_(per_s) {}
+  double Age_s(const AngleMoment& moment) const override { return begin_s_ + per_s_ * ToSeconds(moment.now); }
 
  private:
-  double delay_s_;
+  double begin_s_, per_s_;
 };
 
 }  // namespace
 
 AngleEffectPointer MakeLatency(const EffectSettings& settings) {
-  return std::make_unique<Latency>(settings);
+  return std::make_unique<Late>(Parameter(settings, "delay"), 0.0);
+}
+
+AngleEffectPointer MakeClockRate(const EffectSettings& settings) {
+  return std::make_unique<Late>(0.0, Parameter(settings, "ratio"));
 }
 
 }  // namespace twinbench::sim

@@ -31,6 +31,7 @@ AngleEffectPointer MakeAngleEffect(const EffectSettings& effect, const Scenario&
       {"quadrature_error", [&] { return MakeSignalFault(effect); }},
       {"signal_clipping", [&] { return MakeSignalFault(effect); }},
       {"latency", [&] { return MakeLatency(effect); }},
+      {"clock_rate", [&] { return MakeClockRate(effect); }},
       {"backlash", [&] { return MakeGap(effect); }},
       {"hysteresis", [&] { return MakeHysteresis(effect); }},
       {"signal", [&] { return MakeAngleSignal(effect, scenario); }},

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/diagnose.h"
+#include "twin/diagnose/extend.h"
+
+/// Comparisons made by hand and asked about, for instruments by closed forms that share nothing with the twin.
+namespace twinbench::diagnose::encoder::lab {
+
+/// A comparison in the making, all in deg and s.
+struct Record {
+  std::string kind = "sweep";  // what the scenario says of it
+  std::vector<Reading> readings;
+
+  void Add(double time_s, double reference_deg, double measured_deg, int direction, int pass) {
+    Reading r;
+    r.reading = static_cast<int>(readings.size());
+    r.time = Time(FromSeconds(time_s));
+    r.pass = pass;
+    r.direction = direction;
+    r.position = r.reading;
+    r.reference_rad = reference_deg * units::deg;
+    r.measured_rad = measured_deg * units::deg;
+    readings.push_back(r);
+  }
+  Scenario Believed() const {
+    Scenario scenario;
+    scenario.bench = kEncoderBench;
+    EncoderOf(scenario).encoder_procedure.kind = kind;
+    return scenario;
+  }
+};
+
+struct Answer {
+  DiagnosisRun run;
+  Diagnosis again;  // of the same readings, with the file that was written
+
+  const Cause* Find(const std::string& effect) const {
+    const auto found = std::ranges::find(run.diagnosis.causes, effect, &Cause::effect);
+    return found == run.diagnosis.causes.end() ? nullptr : &*found;
+  }
+  const ParameterEstimate* Find(const std::string& effect, const std::string& parameter) const {
+    const Cause* const cause = Find(effect);
+    if (!cause) return nullptr;
+    const auto found = std::ranges::find(cause->parameters, parameter, &ParameterEstimate::name);
+    return found == cause->parameters.end() ? nullptr : &*found;
+  }
+  /// In the unit of the catalogue.
+  double Value(const std::string& effect, const std::string& parameter) const {
+    const ParameterEstimate* const p = Find(effect, parameter);
+    return p ? p->value / p->to_SI : kNaN;
+  }
+  double Uncertainty(const std::string& effect, const std::string& parameter) const {
+    const ParameterEstimate* const p = Find(effect, parameter);
+    return p ? p->u / p->to_SI : kNaN;
+  }
+  bool Names(const std::string& effect, double from = 0.8) const {
+    const Cause* const cause = Find(effect);
+    return cause && cause->probability >= from;
+  }
+  std::string Words() const {
+    std::string words = VerdictName(run.diagnosis.verdict);
+    for (const Cause& c : run.diagnosis.causes) words += fmt::format(" [{} {:.2f}]", c.effect, c.probability);
+    return words + " " + run.diagnosis.unknown.signature + " | again: " + VerdictName(again.verdict) + " " +
+           again.unknown.signature;
+  }
+};
+
+inline Answer Ask(const Record& record) {
+  DiagnoseOptions options;
+  options.null_runs = 100;  // of what is far beyond any threshold
+  Answer answer{Diagnose(record.readings, record.Believed(), options), {}};
+  answer.again = Diagnose(record.readings, Extend(record.Believed(), answer.run, "test"), options).diagnosis;
+  return answer;
+}
+
+/// To and fro, as a hand wheel is turned: there and back over `range_deg` in `period_s`.
+struct Swing {
+  double range_deg, period_s;
+  double At(double t_s) const { return 0.5 * range_deg * (1.0 - std::cos(2.0 * units::kPi * t_s / period_s)); }
+  int Direction(double t_s) const { return std::sin(2.0 * units::kPi * t_s / period_s) >= 0.0 ? 1 : -1; }
+  int Pass(double t_s) const { return static_cast<int>(2.0 * t_s / period_s); }
+};
+
+/// Stops of 6 deg, two turns there and back twice; the error is a function of time and angle.
+template <class Error>
+Record Stops(double noise_deg, double step_deg, unsigned seed, Error error_deg) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, noise_deg);
+  Record record;
+  record.kind = "stops";
+  for (int pass = 0; pass < 4; ++pass) {
+    for (int k = 0; k < 120; ++k) {
+      const double reference_deg = 0.4 + 6.0 * (pass % 2 == 0 ? k : 119 - k);
+      const double time_s = 5.0 * static_cast<double>(record.readings.size());
+      double measured_deg = reference_deg + error_deg(time_s, reference_deg) + noise(random);
+      if (step_deg > 0.0) measured_deg = step_deg * std::round(measured_deg / step_deg);
+      record.Add(time_s, reference_deg, measured_deg, pass % 2 == 0 ? 1 : -1, pass);
+    }
+  }
+  return record;
+}
+
+}  // namespace twinbench::diagnose::encoder::lab

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
+#include "twin/core/units.h"
+#include "twin/diagnose/unknown/collector.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+/// What happens where a spot of the scale is passed.
+enum class Passing { kLostForwards, kLostBackwards, kComesBack, kCatchesUp };
+
+std::string WordsOf(Passing passing) {
+  switch (passing) {
+    case Passing::kLostForwards:
+      return "lost counts, the same each time that {:.1f} deg is passed forwards, locked to device angle";
+    case Passing::kLostBackwards:
+      return "lost counts, the same each time that {:.1f} deg is passed backwards, locked to device angle";
+    case Passing::kComesBack:
+      return "lost counts where {:.1f} deg is passed, which come back on the way back, locked to device angle";
+    case Passing::kCatchesUp:
+      break;
+  }
+  return "turn that is not whole and put right at {:.1f} deg, locked to device angle";
+}
+
+/// How often the spot was passed until each reading, or the share of a turn behind it.
+Eigen::VectorXd CourseOf(Passing passing, const Eigen::VectorXd& device_rad, double spot_rad) {
+  const Eigen::ArrayXd turns = (device_rad.array() - spot_rad) / units::turn, whole = turns.floor();
+  if (passing == Passing::kCatchesUp) return turns - whole;
+  if (passing == Passing::kComesBack) return whole - whole[0];
+  Eigen::VectorXd lost = Eigen::VectorXd::Zero(device_rad.size());
+  const double sense = passing == Passing::kLostForwards ? 1.0 : -1.0;
+  for (Eigen::Index i = 1; i < lost.size(); ++i)
+    lost[i] = lost[i - 1] + std::max(0.0, sense * (whole[i] - whole[i - 1]));
+  return lost;
+}
+
+/// Steps that share one size.
+std::vector<Product> StepsOf(const Eigen::VectorXd& course, const std::vector<int>& reading) {
+  std::vector<Product> steps;
+  for (Eigen::Index i = 1; i < course.size(); ++i) {
+    const double step = course[i] - course[i - 1];
+    if (step == 0.0) continue;
+    const int at = reading[static_cast<std::size_t>(i)];
+    steps.push_back({unknown::SignalOf("step", "", {{"at_reading", at}}), 0, false, step});
+  }
+  return steps;
+}
+
+/// Half way between neighbouring readings, all turns on one; thinned evenly.
+std::vector<double> Spots_rad(const Eigen::VectorXd& device_rad) {
+  constexpr std::size_t kMost = 2500;
+  std::vector<double> within;
+  for (const double angle_rad : device_rad)
+    within.push_back(angle_rad - units::turn * std::floor(angle_rad / units::turn));
+  std::ranges::sort(within);
+  std::vector<double> between;
+  for (std::size_t i = 1; i < within.size(); ++i) {
+    if (within[i] - within[i - 1] > units::urad) between.push_back(0.5 * (within[i] + within[i - 1]));
+  }
+  std::vector<double> spots;
+  const std::size_t every = 1 + between.size() / kMost;
+  for (std::size_t i = every / 2; i < between.size(); i += every) spots.push_back(between[i]);
+  return spots;
+}
+
+/// Where something happens more than once: a single step has a name.
+std::vector<double> PassedAgain(Passing passing, const Eigen::VectorXd& device_rad, std::vector<double> spots_rad) {
+  std::erase_if(spots_rad, [&](double spot_rad) {
+    const Eigen::VectorXd course = CourseOf(passing, device_rad, spot_rad);
+    return StepsOf(course, std::vector<int>(static_cast<std::size_t>(course.size()))).size() < 2;
+  });
+  return spots_rad;
+}
+
+}  // namespace
+
+std::vector<Family> LostCountFamilies(const SignalContext& context, const unknown::Design& design) {
+  const Eigen::VectorXd device_rad = context.device_rad;
+  unknown::Collector collect(std::make_shared<const unknown::Design>(design));
+  for (const Passing passing :
+       {Passing::kLostForwards, Passing::kLostBackwards, Passing::kComesBack, Passing::kCatchesUp}) {
+    const std::vector<double> spots_rad = PassedAgain(passing, device_rad, Spots_rad(device_rad));
+    const auto spot_rad = [spots_rad](int g) { return spots_rad[static_cast<std::size_t>(g)]; };
+    collect.Add(
+        "lost counts", static_cast<int>(std::ssize(spots_rad)),
+        [=](int g) { return Eigen::MatrixXd(CourseOf(passing, device_rad, spot_rad(g))); },
+        [=, words = WordsOf(passing)](int g) {
+          return fmt::format(fmt::runtime(words), spot_rad(g) / units::deg);
+        });
+    if (passing == Passing::kCatchesUp) continue;
+    collect.Are([=, reading = context.reading](const Eigen::VectorXd&, int g) {
+      return StepsOf(CourseOf(passing, device_rad, spot_rad(g)), reading);
+    });
+  }
+  return collect.Take();
+}
+
+}  // namespace twinbench::diagnose::encoder
