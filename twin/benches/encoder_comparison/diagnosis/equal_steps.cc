@@ -113,7 +113,7 @@ void TellEqualSteps(DiagnosisRun& result) {
   result.accepted.push_back(std::move(together));
   std::erase_if(d.causes, [](const Cause& cause) { return cause.effect == "slip"; });
   d.verdict = Verdict::kUnknown;
-  d.unknown.probability = tuning::kMostProbable;
+  d.unknown.probability = tuning::kListed;
   d.unknown.signature =
       Words(steps, count, result.run) + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);
 }

@@ -234,6 +234,7 @@ class Search {
     TakeSignals();
     TakeAll();
     DropNeedless();
+    MoveBesideTheRest();
     TellWhatEachShows();
     return std::move(large_);
   }
@@ -282,9 +283,13 @@ class Search {
   static bool IsHeld(const EffectSettings& effect) { return Deviations(effect) > tuning::kHeadline; }
 
   AskedAgain Ask(const std::vector<LargeCause>& causes) const {
-    const LinearRun& plain = large_.first->encoder.run;
+    return AskOf(large_.first->encoder.run.residual, causes);
+  }
+
+  /// @param rows  That the causes have to explain.
+  AskedAgain AskOf(const Eigen::VectorXd& rows, const std::vector<LargeCause>& causes) const {
     return AskAgain([this](const auto& effects) { return Shown(effects); }, EffectsOf(causes), MovableOf(causes),
-                    benches::encoder::Format().effects, plain.residual, plain.sigma, *projector_);
+                    benches::encoder::Format().effects, rows, large_.first->encoder.run.sigma, *projector_);
   }
 
   void Accept(const AskedAgain& asked, std::vector<LargeCause> causes, int most_causes) {
@@ -457,6 +462,15 @@ class Search {
     LeaveFree(asked, encoder.run.nuisance);
     TellSignalZero(asked.effects, encoder.context.device);
     return SearchIn(std::move(encoder), Excluded(causes), how);
+  }
+
+  /// What is small was found with the parameters of the large causes free: these go to where they are best beside it.
+  void MoveBesideTheRest() {
+    const std::vector<Term>& terms = large_.Last().analysis.found.terms;
+    if (large_.causes.empty() || terms.empty()) return;
+    Eigen::VectorXd rows = large_.first->encoder.run.residual;
+    for (const Term& term : terms) rows -= term.columns * term.amplitudes;
+    TakeOver(AskOf(rows, large_.causes), large_.causes);
   }
 
   void TellWhatEachShows() {

@@ -21,7 +21,7 @@ LargeCause Guessed(const std::string& effect, const std::vector<ParameterEstimat
   cause.causes.front().effect = effect;
   cause.causes.front().parameters = parameters;
   for (const std::string& name : doubles) cause.causes.emplace_back().effect = name;
-  for (Cause& c : cause.causes) c.probability = tuning::kMostProbable / static_cast<double>(cause.causes.size());
+  for (Cause& c : cause.causes) c.probability = tuning::kListed / static_cast<double>(cause.causes.size());
   cause.effect = EffectOf(cause.causes.front(), bench, "");
   return cause;
 }
