@@ -13,14 +13,15 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-using test::EncoderScenario;
+using twinbench::test::EncoderScenario;
 
 /// Two mountings, read in motion.
 LinearRun SweepsOf(std::vector<Family>& families) {
   Scenario scenario = EncoderScenario("sweep");
   EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 1.3};
   EncoderOf(scenario).encoder_procedure.interval_s = 0.9;
-  const EncoderRun encoder = RunOf(test::ReadingsWith(scenario, test::EncoderEffect("periodic")), scenario);
+  const EncoderRun encoder =
+      RunOf(twinbench::test::ReadingsWith(scenario, twinbench::test::EncoderEffect("periodic")), scenario);
   families = Families(encoder);
   return encoder.run;
 }

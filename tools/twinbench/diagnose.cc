@@ -19,9 +19,9 @@
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/run_record.h"
+#include "twin/diagnose/disagreement.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/json.h"
-#include "twin/diagnose/misfit.h"
 #include "twin/diagnose/screen/screen.h"
 #include "twin/diagnose/shown.h"
 #include "twin/plausible/check.h"
@@ -132,8 +132,8 @@ void DiagnoseRun(const DiagnoseOptions& options) {
   how.excluded = options.excluded;
   how.cache_folder = CacheFolder(options.cache);
   const diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
-  const diagnose::Misfit misfit = diagnose::MisfitOf(found);
-  if (!misfit.line.empty()) TellDoubts({{!misfit.is_plausible, misfit.line}}, options);
+  const diagnose::Disagreement disagreement = diagnose::DisagreementOf(found);
+  if (!disagreement.line.empty()) TellDoubts({{!disagreement.is_plausible, disagreement.line}}, options);
   if (!options.extended.empty()) {
     WriteFileAtOnce(options.extended,
                     diagnose::ExtendedToml(run.scenario, found, Provenance(options.source, run.readings.size())));
@@ -147,7 +147,8 @@ void DiagnoseRun(const DiagnoseOptions& options) {
     MergeIntoResults(RunFolder{options.source}.results(), json, page);
   }
   if (options.json != "-") fmt::print("{}", report::DiagnosisText(page, {LettersOfStdout(), options.verbose}));
-  if (!misfit.is_plausible) throw InputError(options.source, misfit.line, "readings that the scenario describes");
+  if (!disagreement.is_plausible)
+    throw InputError(options.source, disagreement.line, "readings that the scenario describes");
 }
 
 void Diagnose(const DiagnoseOptions& options) {

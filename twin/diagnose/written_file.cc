@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "twin/core/errors.h"
-#include "twin/diagnose/accepted_columns.h"
-#include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/extend.h"
+#include "twin/diagnose/file_fit.h"
 #include "twin/diagnose/gain.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/diagnose/words.h"
@@ -30,28 +29,31 @@ Eigen::VectorXd RemovedByFile(const std::vector<Reading>& readings, const Scenar
   return result.run.residual - extended.residual;
 }
 
-/// What is said where the file shows clearly less than the fit.
-void TellWhatIsLost(const DiagnosisRun& result, const Columns& fit, const Eigen::VectorXd& removed,
-                    std::vector<std::string>& notes) {
-  constexpr double kClearly = 0.02;  // of what was found
-  const LinearRun& run = result.run;
-  const Projector projector(result.noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
-  const auto power_without = [&](const Eigen::VectorXd& shown) {
-    const Eigen::VectorXd left = run.residual - shown;
-    return projector.Apply(result.noise.Whiten(run, Eigen::MatrixXd(left))).squaredNorm();
-  };
-  const Eigen::MatrixXd y = result.noise.Whiten(run, Eigen::MatrixXd(run.residual));
-  const Eigen::VectorXd amplitudes =
-      FitAmplitudes(projector, result.noise.Whiten(run, fit.S), y, fit.prior_precision);
-  const double found = power_without(fit.S * amplitudes), by_file = power_without(removed);
-  const double explained = power_without(Eigen::VectorXd::Zero(run.Rows())) - found;
-  const double noise = std::max(1.0, found / projector.DegreesOfFreedom());
-  const double lost = by_file - found;
-  if (!(explained > 0.0) || lost < kClearly * explained || lost < tuning::kBaarda * tuning::kBaarda * noise) return;
-  notes.push_back(
-      fmt::format("the written scenario shows {} of what was found; a second diagnosis will find the rest",
-                  Percent(std::max(0.0, 1.0 - lost / explained))));
-}
+/// What the file shows less than the fit did.
+class LostInWriting {
+ public:
+  explicit LostInWriting(const DiagnosisRun& found)
+      : fit_(PowerLeft(found, ShownByFit(found.run, found.accepted))),
+        explained_(PowerLeft(found, Eigen::VectorXd::Zero(found.run.Rows())) - fit_),
+        noise_(std::max(1.0, fit_ / found.run.Rows())) {}
+
+  /// Enough to be found again.
+  bool IsSeen(const DiagnosisRun& found, const Eigen::VectorXd& removed) const {
+    return PowerLeft(found, removed) - fit_ > tuning::kBaarda * tuning::kBaarda * noise_;
+  }
+
+  void Tell(const DiagnosisRun& found, const Eigen::VectorXd& removed, std::vector<std::string>& notes) const {
+    constexpr double kClearly = 0.02;  // of what was found
+    const double lost = PowerLeft(found, removed) - fit_;
+    if (!IsSeen(found, removed) || !(lost > kClearly * explained_)) return;
+    notes.push_back(
+        fmt::format("the written scenario shows {} of what was found; a second diagnosis will find the rest",
+                    Percent(std::max(0.0, 1.0 - lost / explained_))));
+  }
+
+ private:
+  double fit_, explained_, noise_;
+};
 
 /// The unbiased fraction and its interval may lie anywhere; none of a variance can be removed twice, and a model
 /// that adds as much as there was to remove is no better than one that adds more.
@@ -73,12 +75,16 @@ void ProposeOnly(Diagnosis& d) {
 void JudgeByFile(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
                  const AgainstScenario& against, DiagnosisRun& result) {
   if (result.accepted.empty()) return;
+  const RemovedBy removed_by = [&](const DiagnosisRun& found) {
+    return RemovedByFile(readings, scenario, options.model, against, found);
+  };
   Diagnosis& d = result.diagnosis;
-  const Columns fit = ColumnsOf(result.accepted, result.run.Rows());
   try {
-    const Eigen::VectorXd removed = RemovedByFile(readings, scenario, options.model, against, result);
+    const LostInWriting lost(result);
+    Eigen::VectorXd removed = removed_by(result);
+    if (lost.IsSeen(result, removed)) FitThroughFile(removed_by, result, removed);
     d.gain = MeasureGain(result.run, result.noise, result.accepted, removed);
-    TellWhatIsLost(result, fit, removed, d.notes);
+    lost.Tell(result, removed, d.notes);
   } catch (const InputError& refusal) {
     d.gain = MeasureGain(result.run, result.noise, result.accepted, ShownByFit(result.run, result.accepted));
     d.notes.push_back(fmt::format("the gain is that of the fit, for the written scenario cannot be followed: {}",

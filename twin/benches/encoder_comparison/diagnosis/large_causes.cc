@@ -315,7 +315,7 @@ class Search {
     if (causes.empty() || causes.front().effect.name != "signal_clipping" || !(power < 0.5 * power_)) return;
     for (std::size_t k = 0; k < causes.size(); ++k) causes[k].explained = PowerWithout(k, asked) - power;
     for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, causes, asked, power);
-    Accept(asked, std::move(causes));
+    Accept(asked, std::move(causes), kFewCauses);
   }
 
   /// @return true if there were any.

@@ -1,4 +1,4 @@
-#include "twin/diagnose/misfit.h"
+#include "twin/diagnose/disagreement.h"
 
 #include <gmock/gmock.h>
 
@@ -26,22 +26,22 @@ DiagnosisRun Off(double size_m, bool was_found) {
   return found;
 }
 
-TEST(Misfit, OfReadingsOfTheScenarioIsNotWorthALine) {
-  const Misfit misfit = MisfitOf(Off(1e-6, false));
-  EXPECT_TRUE(misfit.is_plausible);
-  EXPECT_THAT(misfit.line, IsEmpty());
+TEST(Disagreement, OfReadingsOfTheScenarioIsNotWorthALine) {
+  const Disagreement disagreement = DisagreementOf(Off(1e-6, false));
+  EXPECT_TRUE(disagreement.is_plausible);
+  EXPECT_THAT(disagreement.line, IsEmpty());
 }
 
-TEST(Misfit, ThatTheCausesExplainIsToldAndNoMore) {
-  const Misfit misfit = MisfitOf(Off(1e-3, true));
-  EXPECT_TRUE(misfit.is_plausible);
-  EXPECT_THAT(misfit.line, HasSubstr("times their noise"));
+TEST(Disagreement, ThatTheCausesExplainIsToldAndNoMore) {
+  const Disagreement disagreement = DisagreementOf(Off(1e-3, true));
+  EXPECT_TRUE(disagreement.is_plausible);
+  EXPECT_THAT(disagreement.line, HasSubstr("times their noise"));
 }
 
-TEST(Misfit, ThatNothingExplainsCannotBeTrusted) {
-  const Misfit misfit = MisfitOf(Off(1e-3, false));
-  EXPECT_FALSE(misfit.is_plausible);
-  EXPECT_THAT(misfit.line, HasSubstr("are they of this bench"));
+TEST(Disagreement, ThatNothingExplainsCannotBeTrusted) {
+  const Disagreement disagreement = DisagreementOf(Off(1e-3, false));
+  EXPECT_FALSE(disagreement.is_plausible);
+  EXPECT_THAT(disagreement.line, HasSubstr("are they of this bench"));
 }
 
 }  // namespace

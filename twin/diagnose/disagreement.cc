@@ -1,0 +1,44 @@
+#include "twin/diagnose/disagreement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "twin/core/distributions.h"
+#include "twin/diagnose/accepted_columns.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr double kMany = 100.0;       // times the noise
+constexpr double kUnexplained = 0.5;  // of the deviation, where the causes found explain less than they leave
+
+/// In units of the noise of each row; by the middle of the sizes, which single values do not move.
+double Typical(const Eigen::VectorXd& left, const Eigen::VectorXd& sigma) {
+  std::vector<double> sizes;
+  for (Eigen::Index k = 0; k < left.size(); ++k) sizes.push_back(std::abs(left[k] / sigma[k]));
+  return sizes.empty() ? 0.0 : Median(std::move(sizes)) / 0.6745;
+}
+
+}  // namespace
+
+Disagreement DisagreementOf(const DiagnosisRun& found) {
+  Disagreement disagreement;
+  if (found.run.noise_free || !found.run.sigma_stated) return disagreement;
+  const LeftOver left = FitAll(found.run, found.noise, found.accepted);
+  disagreement.before = Typical(left.before, found.run.sigma);
+  disagreement.after = Typical(left.after, found.run.sigma);
+  if (disagreement.before < kMany) return disagreement;
+  disagreement.is_plausible = disagreement.after < kMany || disagreement.after < kUnexplained * disagreement.before;
+  disagreement.line = fmt::format(
+      "the readings differ from the scenario by {:.0f} times their noise, and by {:.0f} times "
+      "with all that was found",
+      disagreement.before, disagreement.after);
+  if (!disagreement.is_plausible)
+    disagreement.line += ": are they of this bench, this scenario and in these units?";
+  return disagreement;
+}
+
+}  // namespace twinbench::diagnose
