@@ -211,6 +211,22 @@ void TakeOver(const AskedAgain& asked, std::vector<LargeCause>& causes) {
   }
 }
 
+/// Of very many readings some in a row, and again behind several: neighbours stay neighbours, and every pass begins
+/// with its first, so that what remembers the way still finds it. A large cause shows in these as well.
+std::vector<Reading> PartOf(const std::vector<Reading>& readings) {
+  constexpr std::size_t kEnough = 4000, kInARow = 16;
+  if (readings.size() < 2 * kEnough) return readings;
+  const std::size_t every = readings.size() / kEnough;
+  std::vector<Reading> part;
+  std::size_t in_pass = 0;
+  for (std::size_t i = 0; i < readings.size(); ++i, ++in_pass) {
+    if (i > 0 && (readings[i].pass != readings[i - 1].pass || readings[i].setup != readings[i - 1].setup))
+      in_pass = 0;
+    if (in_pass / kInARow % every == 0) part.push_back(readings[i]);
+  }
+  return part;
+}
+
 class Search {
  public:
   Search(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
@@ -221,19 +237,25 @@ class Search {
         follow_(follow),
         how_(AnalysisOptionsOf(options)) {}
 
-  LargeCauses Go() {
-    large_.first = SearchIn(BuildRun(readings_, scenario_, follow_), options_.excluded, For(kFewCauses));
-    null_ = large_.first->analysis.null;
-    how_.null = &null_;
-    const LinearRun& plain = large_.first->encoder.run;
-    const NoiseModel noise{plain.sigma, 0.0};
-    projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
-    nothing_ = FollowTwin(large_.first->encoder, scenario_, follow_).error_rad;
-    power_ = PowerOf(large_.first->encoder.run.residual);
+  /// @param known  Large causes that a part of the readings has shown.
+  LargeCauses Go(std::vector<LargeCause> known) {
+    Begin(known.empty() ? kFewCauses : 1);
+    TakeKnown(std::move(known));
     TakeAll();
     DropNeedless();
+    EndTies();
     TellWhatEachShows();
     return std::move(large_);
+  }
+
+  /// The large causes alone, to begin with; what they leave is not looked into.
+  std::vector<LargeCause> Look() {
+    null_ = NullCalibration{std::vector<double>(10, 0.0)};  // what is large is far above any threshold
+    how_.null = &null_;
+    Begin(kFewCauses);
+    while (large_.causes.size() < kMostLarge && TakeNext()) {
+    }
+    return large_.causes;
   }
 
  private:
@@ -241,6 +263,34 @@ class Search {
     AnalysisOptions how = how_;
     how.most_causes = most_causes;
     return how;
+  }
+
+  void Begin(int most_causes) {
+    large_.first = SearchIn(BuildRun(readings_, scenario_, follow_), options_.excluded, For(most_causes));
+    most_searched_ = most_causes;
+    null_ = large_.first->analysis.null;
+    how_.null = &null_;
+    const LinearRun& plain = large_.first->encoder.run;
+    const NoiseModel noise{plain.sigma, 0.0};
+    projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
+    nothing_ = FollowTwin(large_.first->encoder, scenario_, follow_).error_rad;
+    power_ = PowerOf(plain.residual);
+  }
+
+  /// Where something began is not known of readings that were left out: onsets are looked for among all.
+  void TakeKnown(std::vector<LargeCause> known) {
+    std::erase_if(known, [](const LargeCause& cause) { return cause.effect.name == "slip"; });
+    if (known.empty()) return;
+    const AskedAgain asked = Ask(known);
+    if (!(PowerOf(asked.left) < power_)) return;
+    double power = power_;
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      const std::vector<EffectSettings> first(asked.effects.begin(), asked.effects.begin() + std::ptrdiff_t(k) + 1);
+      const double left = PowerOf(large_.first->encoder.run.residual - Shown(first));
+      known[k].explained = std::max(0.0, power - left);
+      power = left;
+    }
+    Accept(asked, std::move(known), kFewCauses);
   }
 
   void TakeAll() {
@@ -254,10 +304,10 @@ class Search {
   /// @return false if it did not.
   bool SearchOn() {
     std::unique_ptr<Searched>& last = large_.last ? large_.last : large_.first;
-    if (std::ssize(last->analysis.found.terms) != kFewCauses || searched_on_ == last.get()) return false;
+    if (std::ssize(last->analysis.found.terms) != most_searched_ || most_searched_ == kMostCauses) return false;
     last->analysis.scanner.reset();
     last = SearchIn(std::move(last->encoder), Excluded(large_.causes), For(kMostCauses));
-    searched_on_ = last.get();
+    most_searched_ = kMostCauses;
     return true;
   }
 
@@ -289,6 +339,7 @@ class Search {
     // Its signatures were for the search alone, and the next one has its own.
     (large_.last ? large_.last : large_.first)->analysis.scanner.reset();
     auto searched = SearchWith(asked, causes, For(most_causes));
+    most_searched_ = most_causes;
     TakeOver(asked, causes);
     power_ = PowerOf(asked.left);
     large_.causes = std::move(causes);
@@ -317,49 +368,72 @@ class Search {
     double power = PowerOf(asked.left);
     if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
     causes.back().explained = power_ - power;
-    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, causes, asked, power);
+    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, false, causes, asked, power);
     Accept(asked, std::move(causes), kFewCauses);
     return true;
   }
 
   /// Causes that are one to first order are not beside large ones: the one that leaves least is in the twin.
-  void TryOthers(std::size_t k, std::vector<LargeCause>& causes, AskedAgain& asked, double& power) const {
+  /// @param at_end  All causes are there: what leaves more than another is no tie any more.
+  void TryOthers(std::size_t k, bool at_end, std::vector<LargeCause>& causes, AskedAgain& asked,
+                 double& power) const {
     if (causes.size() < 2) return;
-    const LinearRun& plain = large_.first->encoder.run;
     std::vector<Cause> as_likely = {causes[k].causes.front()};
     for (std::size_t j = 1; j < causes[k].causes.size(); ++j) {
       as_likely.push_back(causes[k].causes[j]);
-      std::vector<EffectSettings> others = asked.effects;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-      const auto family = std::ranges::find_if(large_.first->families, [&](const Family& f) {
-        return f.kind == Kind::kNamed && IsOf(causes[k].causes[j], f);
-      });
-      if (family == large_.first->families.end()) continue;
       std::vector<LargeCause> changed = causes;
-      Cause& cause = changed[k].causes[j];
-      cause.parameters = CauseFrom(*family, 0, plain.residual - Shown(others), plain.sigma, *projector_).parameters;
-      changed[k] = LedBy(changed[k].causes, j, plain.bench);
-      if (MovableOf({changed[k]}).empty()) continue;
-      changed[k].explained = causes[k].explained;
-      for (std::size_t i = 0; i < changed.size(); ++i) {
-        if (i != k) changed[i].effect = asked.effects[i];
-      }
+      if (!LetLead(k, j, asked, changed)) continue;
       AskedAgain again = Ask(changed);
       const double left = PowerOf(again.left);
       constexpr double kBetter = 25.0;  // power, so many units of noise: no chance
       const double noise = std::max(1.0, std::min(left, power) / projector_->DegreesOfFreedom());
       if (left > power + kBetter * noise) as_likely.pop_back();
       if (!(left < power - kBetter * noise)) continue;
-      // The others do not show what is there: they are no tie any more.
-      changed[k].causes.resize(1);
-      changed[k].causes.front().probability = tuning::kMostProbable;
       causes = std::move(changed);
       asked = std::move(again);
       power = left;
-      return;
+      as_likely = {causes[k].causes.front()};
+      if (!at_end) return;
     }
+    if (!at_end) return;
     if (as_likely.size() == 1 && causes[k].causes.size() > 1) as_likely.front().probability = tuning::kMostProbable;
     causes[k].causes = std::move(as_likely);
+  }
+
+  /// Puts the j-th member of the k-th tie into the twin instead of the first, with the size that the others leave
+  /// it.
+  /// @return false if it cannot be asked about.
+  bool LetLead(std::size_t k, std::size_t j, const AskedAgain& asked, std::vector<LargeCause>& causes) const {
+    const LinearRun& plain = large_.first->encoder.run;
+    std::vector<EffectSettings> others = asked.effects;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const auto family = std::ranges::find_if(large_.first->families, [&](const Family& f) {
+      return f.kind == Kind::kNamed && IsOf(causes[k].causes[j], f);
+    });
+    if (family == large_.first->families.end()) return false;
+    const double explained = causes[k].explained;
+    causes[k].causes[j].parameters =
+        CauseFrom(*family, 0, plain.residual - Shown(others), plain.sigma, *projector_).parameters;
+    causes[k].causes.front().parameters.clear();  // it is not what is fitted
+    causes[k] = LedBy(causes[k].causes, j, plain.bench);
+    causes[k].explained = explained;
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      if (i != k) causes[i].effect = asked.effects[i];
+    }
+    return !MovableOf({causes[k]}).empty();
+  }
+
+  void EndTies() {
+    std::vector<LargeCause> causes = large_.causes;
+    AskedAgain asked;
+    asked.effects = EffectsOf(causes);
+    double power = power_;
+    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, true, causes, asked, power);
+    if (power < power_) {
+      Accept(asked, std::move(causes), kMostCauses);
+    } else {
+      large_.causes = std::move(causes);
+    }
   }
 
   /// What stood for something that was found later is not kept.
@@ -397,8 +471,8 @@ class Search {
   AnalysisOptions how_;
   NullCalibration null_;
   LargeCauses large_;
-  const Searched* searched_on_ = nullptr;  // the last that was searched for all causes
-  std::unique_ptr<Projector> projector_;   // with no more than the noise of the readings
+  int most_searched_ = kFewCauses;        // causes that the last search might take
+  std::unique_ptr<Projector> projector_;  // with no more than the noise of the readings
   Eigen::VectorXd nothing_;
   double power_ = 0.0;
 };
@@ -446,7 +520,10 @@ void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& ca
 
 LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options, const model::FollowMaker& follow) {
-  return Search(readings, scenario, options, follow).Go();
+  const std::vector<Reading> part = PartOf(readings);
+  std::vector<LargeCause> known;
+  if (part.size() < readings.size()) known = Search(part, scenario, options, follow).Look();
+  return Search(readings, scenario, options, follow).Go(known);
 }
 
 void AddLargeCauses(const LargeCauses& large, DiagnosisRun& result) {
