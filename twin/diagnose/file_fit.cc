@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "twin/diagnose/accepted_columns.h"
@@ -12,7 +13,7 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr int kMostRounds = 4;
+constexpr int kMostRounds = 5;
 
 Projector ProjectorOf(const DiagnosisRun& found) {
   return {found.noise.Whiten(found.run, found.run.nuisance.jacobian), found.run.nuisance};
@@ -68,21 +69,37 @@ void Move(const Eigen::VectorXd& by, DiagnosisRun& found) {
   }
 }
 
-/// One round: @return true if the file explains more now.
+/// A diagnosis on its way, what its file takes away and what that leaves.
+struct Tried {
+  DiagnosisRun found;
+  Eigen::VectorXd removed;
+  double left;
+};
+
+/// One round: as far as the signatures say, or less far where the twin bends. @return true if the file explains
+/// more.
 bool MoveOnce(const RemovedBy& removed_by, DiagnosisRun& found, Eigen::VectorXd& removed) {
   const Projector projector = ProjectorOf(found);
   const Columns columns = ColumnsOf(found.accepted, found.run.Rows());
   const Eigen::MatrixXd left = found.run.residual - removed;
-  DiagnosisRun moved = found;
-  Move(FitAmplitudes(projector, found.noise.Whiten(found.run, columns.S), found.noise.Whiten(found.run, left),
-                     columns.prior_precision),
-       moved);
-  const Eigen::VectorXd now = removed_by(moved);
-  const double before = PowerLeft(found, removed), after = PowerLeft(found, now);
-  const double noise = std::max(1.0, after / projector.DegreesOfFreedom());
-  if (!(after < before - noise)) return false;
-  found = std::move(moved);
-  removed = now;
+  const Eigen::VectorXd by = FitAmplitudes(projector, found.noise.Whiten(found.run, columns.S),
+                                           found.noise.Whiten(found.run, left), columns.prior_precision);
+  const double before = PowerLeft(found, removed), foreseen = PowerLeft(found, removed + columns.S * by);
+  std::optional<Tried> best;
+  for (const double share : {1.0, 0.5, 0.25}) {
+    Tried tried{found, {}, 0.0};
+    Move(share * by, tried.found);
+    tried.removed = removed_by(tried.found);
+    tried.left = PowerLeft(tried.found, tried.removed);
+    if (best && tried.left > best->left) break;
+    best = std::move(tried);
+    constexpr double kAsForeseen = 0.75;
+    if (before - best->left > kAsForeseen * (before - foreseen)) break;
+  }
+  const double noise = std::max(1.0, best->left / projector.DegreesOfFreedom());
+  if (!(best->left < before - noise)) return false;
+  found = std::move(best->found);
+  removed = std::move(best->removed);
   return true;
 }
 

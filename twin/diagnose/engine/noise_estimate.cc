@@ -63,14 +63,15 @@ double SmallerOrMean(const Scatter& a, const Scatter& b) {
   return std::sqrt((a.count * a.sd * a.sd + b.count * b.sd * b.sd) / (a.count + b.count));
 }
 
-Scatter FromNeighbours(const Schedule& s, const Eigen::VectorXd& y) {
+Scatter FromNeighbours(const Schedule& s, const Eigen::VectorXd& y, const Eigen::VectorXd& variance) {
   std::vector<double> second;
   for (int i = 2; i < s.Readings(); ++i) {
     const bool together = s.pass[i] == s.pass[i - 2] && s.setup[i] == s.setup[i - 2];
-    if (together) second.push_back(y[i] - 2.0 * y[i - 1] + y[i - 2]);
+    if (!together) continue;
+    const double sum = variance[i] + 4.0 * variance[i - 1] + variance[i - 2];
+    second.push_back((y[i] - 2.0 * y[i - 1] + y[i - 2]) / std::sqrt(sum));
   }
-  const Scatter spread = SpreadOf(second);
-  return {spread.sd / std::sqrt(6.0), spread.count};
+  return SpreadOf(second);
 }
 
 /// Set-up, direction, and the stop to a microradian.
@@ -80,7 +81,7 @@ Stop StopOf(const Schedule& s, int i) {
   return {s.setup[i], s.direction[i], std::llround(s.reference_rad[i] / units::urad)};
 }
 
-Scatter FromRepeats(const Schedule& s, const Eigen::VectorXd& y) {
+Scatter FromRepeats(const Schedule& s, const Eigen::VectorXd& y, const Eigen::VectorXd& variance) {
   std::map<Stop, int> seen;
   std::vector<int> first(s.Readings(), -1);  // of the pass before that took the same stop
   for (int i = 0; i < s.Readings(); ++i) {
@@ -91,17 +92,20 @@ Scatter FromRepeats(const Schedule& s, const Eigen::VectorXd& y) {
   for (int i = 1; i < s.Readings(); ++i) {
     const int a = first[i - 1], b = first[i];
     if (a < 0 || b < 0 || a == b || s.pass[i] != s.pass[i - 1]) continue;
-    differences.push_back(y[i] - y[b] - (y[i - 1] - y[a]));
+    const double sum = variance[i] + variance[b] + variance[i - 1] + variance[a];
+    differences.push_back((y[i] - y[b] - (y[i - 1] - y[a])) / std::sqrt(sum));
   }
-  const Scatter spread = SpreadOf(differences);
-  return {spread.sd / 2.0, spread.count};
+  return SpreadOf(differences);
 }
 
 }  // namespace
 
-double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad) {
-  const double estimate_rad =
-      SmallerOrMean(FromNeighbours(schedule, residual_rad), FromRepeats(schedule, residual_rad));
+double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad,
+                         const Eigen::VectorXd& relative) {
+  const Eigen::VectorXd variance =
+      relative.size() > 0 ? relative.cwiseAbs2() : Eigen::VectorXd::Ones(residual_rad.size()).eval();
+  const double estimate_rad = SmallerOrMean(FromNeighbours(schedule, residual_rad, variance),
+                                            FromRepeats(schedule, residual_rad, variance));
   const double range_rad = residual_rad.maxCoeff() - residual_rad.minCoeff();
   const double least_rad = std::max(1e-9 * range_rad, 1e-15);
   return std::isfinite(estimate_rad) ? std::max(estimate_rad, least_rad) : std::max(range_rad, least_rad);

@@ -12,8 +12,12 @@ namespace twinbench::diagnose {
 /// each other, and both where they do not: the smaller of two that differ by chance is too small. Single far values
 /// do not enter. Not below 1e-9 of the range of `residual_rad`, for readings without any noise.
 ///
+/// @param relative  Deviation of each reading in units of the one that is estimated, of readings that are means of
+///                  unlike many; empty: all are alike.
+///
 /// Standard uncertainty with n readings: about 1 / sqrt(n) of the value (600 readings: 4 %).
-double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad);
+double EstimateNoise_rad(const Schedule& schedule, const Eigen::VectorXd& residual_rad,
+                         const Eigen::VectorXd& relative = {});
 
 /// The step of which all values are whole multiples apart; 0 if there is none that can be told. A few values off it
 /// do not count: those before a restart.

@@ -27,9 +27,11 @@ struct LogMean {
       sum = Eigen::ArrayXd::Ones(values.size());
       return;
     }
-    const Eigen::ArrayXd higher = top.max(values);
-    sum = sum * (top - higher).exp() + (values - higher).exp();
-    top = higher;
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      const double above = values[k] - top[k];
+      sum[k] = above > 0.0 ? sum[k] * std::exp(-above) + 1.0 : sum[k] + std::exp(above);
+      top[k] = std::max(top[k], values[k]);
+    }
   }
   Eigen::ArrayXd Value() const { return top + (sum / count).log(); }
 };
@@ -43,14 +45,16 @@ Eigen::VectorXd PriorSds(const Family& family) {
 
 /// A prior that allows one sign only doubles the evidence where the estimate has it and removes most where it has
 /// not: log 2 Phi(t), t the posterior mean over its deviation.
-Eigen::ArrayXd OneSided(const Family& family, const Eigen::RowVectorXd& products, double d2, double prior_scale) {
+void AddOneSided(const Family& family, const Eigen::MatrixXd& products, double d2, double prior_scale,
+                 Eigen::ArrayXd& log_bayes) {
   const Amplitude& a = family.amplitudes.front();
-  if (family.amplitudes.size() != 1 || (a.lower < 0.0 && a.upper > 0.0))
-    return Eigen::ArrayXd::Zero(products.size());
+  if (family.amplitudes.size() != 1 || (a.lower < 0.0 && a.upper > 0.0)) return;
   const double side = a.lower >= 0.0 ? 1.0 : -1.0;
-  const Eigen::ArrayXd t =
-      side * prior_scale * products.transpose().array() / std::sqrt(1.0 + prior_scale * prior_scale * d2);
-  return t.unaryExpr([](double x) { return std::log(std::max(std::erfc(-x / std::sqrt(2.0)), 1e-300)); });
+  const double per_product = side * prior_scale / std::sqrt(1.0 + prior_scale * prior_scale * d2);
+  for (Eigen::Index k = 0; k < log_bayes.size(); ++k) {
+    const double t = per_product * products(0, k);
+    log_bayes[k] += std::log(std::max(std::erfc(-t / std::sqrt(2.0)), 1e-300));
+  }
 }
 
 /// Squared singular values of prior-scaled signatures and the squared coefficients of the data along them.
@@ -59,11 +63,8 @@ struct Spectrum {
   Eigen::ArrayXXd c2;  // p x runs
 };
 
-/// @param gram      S'WS of the member, prior-scaled.
-/// @param products  S'Wy, prior-scaled.
-/// @param raw       Trace of S'S: less than a 1e-10 of it is no signal any more.
-Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products, double raw) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+template <class Eigenvectors>
+Spectrum Along(const Eigenvectors& eigen, const Eigen::MatrixXd& products, double raw) {
   Spectrum s;
   s.d2 = eigen.eigenvalues().array().max(0.0);
   const double least = std::max(1e-10 * s.d2.maxCoeff(), kAbsorbed * raw);
@@ -77,6 +78,17 @@ Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products
     }
   }
   return s;
+}
+
+/// @param gram      S'WS of the member, prior-scaled.
+/// @param products  S'Wy, prior-scaled.
+/// @param raw       Trace of S'S: less than a 1e-10 of it is no signal any more.
+Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products, double raw) {
+  // Most signatures are one column or a wave, and there are thousands of them.
+  if (gram.rows() == 1)
+    return Along(Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 1, 1>>(gram), products, raw);
+  if (gram.rows() == 2) return Along(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(gram), products, raw);
+  return Along(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram), products, raw);
 }
 
 }  // namespace
@@ -149,40 +161,50 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
   const std::vector<int>& members = bundle.Members();
   std::vector<LogMean> mean(members.size());
   std::vector<Eigen::ArrayXd> top(members.size(), Eigen::ArrayXd::Constant(runs, -1.0));
-  Eigen::MatrixXd products, removed;  // of the present chunk
+  std::vector<Eigen::MatrixXd> scaled;  // from the bundle's columns to the member's, prior-scaled
+  for (const int member : members) {
+    const Family& family = families_[static_cast<std::size_t>(member)];
+    const Eigen::MatrixXd sd = PriorSds(family).asDiagonal();
+    scaled.push_back(family.base ? Eigen::MatrixXd(family.map * sd) : sd);
+  }
+  Eigen::MatrixXd products, removed, gram;  // of the present chunk, and grid point
+  Eigen::ArrayXd log_bayes(runs);
   for (int g = 0; g < bundle.Grid(); ++g) {
     if (g % bundle.Step() == 0) {
       products = bundle.Products(g / bundle.Step(), rows);
       if (deflation.Rank() > 0) removed = bundle.Products(g / bundle.Step(), removed_rows);
     }
     const Eigen::Index at = (g % bundle.Step()) * bundle.Columns();
-    Eigen::MatrixXd gram = bundle.Gram(g);
+    gram = bundle.Gram(g);
     if (deflation.Rank() > 0) {
       const auto r = removed.middleRows(at, bundle.Columns());
       gram.noalias() -= r * r.transpose();
     }
     for (std::size_t m = 0; m < members.size(); ++m) {
       const Family& family = families_[static_cast<std::size_t>(members[m])];
-      const Eigen::VectorXd sd = PriorSds(family);
-      Eigen::MatrixXd scaled = sd.asDiagonal();
-      if (family.base) scaled = family.map * sd.asDiagonal();
-      const Eigen::MatrixXd product = scaled.transpose() * products.middleRows(at, bundle.Columns());
-      const double raw = (scaled.transpose() * bundle.Raw(g) * scaled).trace();
-      const Spectrum s = SpectrumOf(scaled.transpose() * gram * scaled, product, raw);
-      const Eigen::ArrayXd explained = s.c2.colwise().sum().transpose();
+      const Eigen::MatrixXd& own = scaled[m];
+      const Eigen::MatrixXd product = own.transpose() * products.middleRows(at, bundle.Columns());
+      const double raw = (own.transpose() * bundle.Raw(g) * own).trace();
+      const Spectrum s = SpectrumOf(own.transpose() * gram * own, product, raw);
       const auto row = static_cast<Eigen::Index>(members[m]);
       for (Eigen::Index k = 0; k < runs; ++k) {
-        if (explained[k] <= top[m][k]) continue;
-        top[m][k] = explained[k];
+        const double explained = s.c2.col(k).sum();
+        if (explained <= top[m][k]) continue;
+        top[m][k] = explained;
         out.grid_point(row, k) = g;
-        out.explained(row, k) = explained[k];
+        out.explained(row, k) = explained;
       }
       for (const double f : tuning::kPriorScales) {
-        const Eigen::ArrayXd d2 = f * f * s.d2;
-        const Eigen::ArrayXd shrunk = (s.c2.colwise() * (d2 / (1.0 + d2))).colwise().sum().transpose();
-        const double occam = 0.5 * (1.0 + d2).log().sum();
-        const Eigen::ArrayXd left = (1.0 - shrunk / power).max(1e-12);
-        mean[m].Add(-occam - half * left.log() + OneSided(family, product.row(0), s.d2[0], f));
+        double occam = 0.0;
+        log_bayes.setZero();
+        for (Eigen::Index i = 0; i < s.d2.size(); ++i) {
+          const double d2 = f * f * s.d2[i];
+          occam += 0.5 * std::log(1.0 + d2);
+          log_bayes += s.c2.row(i).transpose() * (d2 / (1.0 + d2));
+        }
+        log_bayes = -occam - half * (1.0 - log_bayes / power).max(1e-12).log();
+        AddOneSided(family, product, s.d2[0], f, log_bayes);
+        mean[m].Add(log_bayes);
       }
     }
   }

@@ -10,6 +10,7 @@
 #include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/core/distributions.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/noise_estimate.h"
@@ -74,6 +75,14 @@ std::vector<Reading> AsFollowed(std::vector<Reading> used, const Schedule& s) {
   return used;
 }
 
+/// Of means of unlike many samples: deviation of each in units of that of the usual one.
+Eigen::VectorXd RelativeNoise(const std::vector<Reading>& used) {
+  std::vector<double> samples;
+  for (const Reading& reading : used) samples.push_back(std::max(1, reading.n_samples));
+  const double usual = Median(samples);
+  return (usual / Eigen::Map<const Eigen::ArrayXd>(samples.data(), std::ssize(samples))).sqrt();
+}
+
 /// Readings that are rounded err by no less than that.
 void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Reading>& used) {
   Eigen::VectorXd shown_rad(std::ssize(used));
@@ -81,9 +90,12 @@ void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Re
   run.rounding = std::max(device.resolution_rad, CommonStep(shown_rad));
   const double rounded_rad = run.rounding / std::sqrt(12.0);
   run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
-  const double sigma_rad = run.sigma_stated ? std::hypot(device.noise_rad, rounded_rad)
-                                            : std::max(EstimateNoise_rad(run.schedule, run.residual), rounded_rad);
-  run.sigma = Eigen::VectorXd::Constant(run.residual.size(), sigma_rad);
+  const Eigen::VectorXd relative = RelativeNoise(used);
+  const double noise_rad =
+      run.sigma_stated ? device.noise_rad : EstimateNoise_rad(run.schedule, run.residual, relative);
+  const auto and_rounding = [=](double own_rad) { return std::hypot(own_rad, rounded_rad); };
+  run.sigma = relative * noise_rad;
+  run.sigma = run.sigma_stated ? run.sigma.unaryExpr(and_rounding).eval() : run.sigma.cwiseMax(rounded_rad).eval();
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
+#include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/format.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/asked_again.h"
@@ -174,6 +175,15 @@ void LeaveFree(const AskedAgain& asked, Nuisance& nuisance) {
   nuisance.prior_precision.tail(count) = asked.sd.cwiseAbs2().cwiseInverse();
 }
 
+/// Errors of targets may be anything.
+void LeaveFree(const Eigen::MatrixXd& targets, Nuisance& nuisance) {
+  const double precision = nuisance.prior_precision[0];
+  AskedAgain any;
+  any.slopes = targets;
+  any.sd = Eigen::VectorXd::Constant(targets.cols(), 1.0 / std::sqrt(precision));
+  if (targets.cols() > 0) LeaveFree(any, nuisance);
+}
+
 /// Of the many amplitudes and phases of a wave the one with a positive amplitude and a phase from 0 to 360 deg.
 void MakePositive(EffectSettings& effect) {
   const auto phase = effect.parameters.find("phase"), amplitude = effect.parameters.find("amplitude");
@@ -212,31 +222,56 @@ void TakeOver(const AskedAgain& asked, std::vector<LargeCause>& causes) {
   }
 }
 
+/// Of very many readings some in a row, and again behind several: neighbours stay neighbours, and every pass begins
+/// with its first, so that what remembers the way still finds it. A large cause shows in these as well.
+std::vector<Reading> PartOf(const std::vector<Reading>& readings) {
+  constexpr std::size_t kEnough = 4000, kInARow = 16;
+  if (readings.size() < 2 * kEnough) return readings;
+  const std::size_t every = readings.size() / kEnough;
+  std::vector<Reading> part;
+  std::size_t in_pass = 0;
+  for (std::size_t i = 0; i < readings.size(); ++i, ++in_pass) {
+    if (i > 0 && (readings[i].pass != readings[i - 1].pass || readings[i].setup != readings[i - 1].setup))
+      in_pass = 0;
+    if (in_pass / kInARow % every == 0) part.push_back(readings[i]);
+  }
+  return part;
+}
+
 class Search {
  public:
+  /// @param targets  Whose errors are free; may be none.
   Search(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
-         const model::FollowMaker& follow)
+         const model::FollowMaker& follow, const Eigen::MatrixXd& targets)
       : readings_(readings),
         scenario_(scenario),
         options_(options),
         follow_(follow),
-        how_(AnalysisOptionsOf(options)) {}
+        how_(AnalysisOptionsOf(options)) {
+    large_.targets = targets;
+  }
 
-  LargeCauses Go() {
-    large_.first = SearchIn(BuildRun(readings_, scenario_, follow_), options_.excluded, For(kFewCauses));
-    null_ = large_.first->analysis.null;
-    how_.null = &null_;
-    const LinearRun& plain = large_.first->encoder.run;
-    const NoiseModel noise{plain.sigma, 0.0};
-    projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
-    nothing_ = FollowTwin(large_.first->encoder, scenario_, follow_).error_rad;
-    power_ = PowerOf(large_.first->encoder.run.residual);
-    TakeSignals();
+  /// @param known  Large causes that a part of the readings has shown.
+  LargeCauses Go(std::vector<LargeCause> known) {
+    Begin(known.empty() ? kFewCauses : 1);
+    if (!TakeKnown(std::move(known))) TakeSignals();
     TakeAll();
     DropNeedless();
+    EndTies();
     MoveBesideTheRest();
     TellWhatEachShows();
     return std::move(large_);
+  }
+
+  /// The large causes alone, to begin with; what they leave is not looked into.
+  std::vector<LargeCause> Look() {
+    null_ = NullCalibration{std::vector<double>(10, 0.0)};  // what is large is far above any threshold
+    how_.null = &null_;
+    Begin(kFewCauses);
+    TakeSignals();
+    while (large_.causes.size() < kMostLarge && TakeNext()) {
+    }
+    return large_.causes;
   }
 
  private:
@@ -244,6 +279,72 @@ class Search {
     AnalysisOptions how = how_;
     how.most_causes = most_causes;
     return how;
+  }
+
+  void Begin(int most_causes) {
+    EncoderRun begin = BuildRun(readings_, scenario_, follow_);
+    LeaveFree(large_.targets, begin.run.nuisance);
+    large_.first = SearchIn(std::move(begin), options_.excluded, For(most_causes));
+    most_searched_ = most_causes;
+    null_ = large_.first->analysis.null;
+    how_.null = &null_;
+    const LinearRun& plain = large_.first->encoder.run;
+    const NoiseModel noise{plain.sigma, 0.0};
+    projector_ = std::make_unique<Projector>(noise.Whiten(plain, plain.nuisance.jacobian), plain.nuisance);
+    nothing_ = FollowTwin(large_.first->encoder, scenario_, follow_).error_rad;
+    power_ = PowerOf(plain.residual);
+  }
+
+  /// Where something began is not known of readings that were left out: onsets are looked for among all.
+  /// @return false if there was none.
+  bool TakeKnown(std::vector<LargeCause> known) {
+    std::erase_if(known, [](const LargeCause& cause) { return cause.effect.name == "slip"; });
+    if (known.empty()) return false;
+    const AskedAgain asked = Ask(known);
+    if (!(PowerOf(asked.left) < power_)) return false;
+    double power = power_;
+    for (std::size_t k = 0; k < known.size(); ++k) {
+      const std::vector<EffectSettings> first(asked.effects.begin(), asked.effects.begin() + std::ptrdiff_t(k) + 1);
+      const double left = PowerOf(large_.first->encoder.run.residual - Shown(first));
+      known[k].explained = std::max(0.0, power - left);
+      power = left;
+    }
+    Accept(asked, std::move(known), kFewCauses);
+    return true;
+  }
+
+  /// Signals that are cut off have all their faults at once: none of them is found alone.
+  void TakeSignals() {
+    const EncoderRun& encoder = large_.first->encoder;
+    if (power_ < kLarge * kLarge || std::ranges::count(options_.excluded, "signal_clipping") > 0) return;
+    const std::optional<SignalGuess> guess = GuessSignals(encoder.context, encoder.run.residual);
+    if (!guess) return;
+    std::vector<LargeCause> causes = SignalBlock(*guess, encoder, options_.excluded);
+    AskedAgain asked = Ask(causes);
+    while (DropNotHeld(asked, causes)) asked = Ask(causes);
+    double power = PowerOf(asked.left);
+    if (causes.empty() || causes.front().effect.name != "signal_clipping" || !(power < 0.5 * power_)) return;
+    for (std::size_t k = 0; k < causes.size(); ++k) causes[k].explained = PowerWithout(k, asked) - power;
+    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, false, causes, asked, power);
+    Accept(asked, std::move(causes), kFewCauses);
+  }
+
+  /// @return true if there were any.
+  static bool DropNotHeld(const AskedAgain& asked, std::vector<LargeCause>& causes) {
+    const std::size_t before = causes.size();
+    TakeOver(asked, causes);
+    std::erase_if(causes, [](const LargeCause& cause) { return !IsHeld(cause.effect); });
+    return causes.size() < before;
+  }
+
+  double PowerWithout(std::size_t k, const AskedAgain& asked) const {
+    return PowerOf(large_.first->encoder.run.residual - Shown(EffectsWithout(k, asked)));
+  }
+
+  static std::vector<EffectSettings> EffectsWithout(std::size_t k, const AskedAgain& asked) {
+    std::vector<EffectSettings> others = asked.effects;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    return others;
   }
 
   void TakeAll() {
@@ -257,10 +358,10 @@ class Search {
   /// @return false if it did not.
   bool SearchOn() {
     std::unique_ptr<Searched>& last = large_.last ? large_.last : large_.first;
-    if (std::ssize(last->analysis.found.terms) != kFewCauses || searched_on_ == last.get()) return false;
+    if (std::ssize(last->analysis.found.terms) != most_searched_ || most_searched_ == kMostCauses) return false;
     last->analysis.scanner.reset();
     last = SearchIn(std::move(last->encoder), Excluded(large_.causes), For(kMostCauses));
-    searched_on_ = last.get();
+    most_searched_ = kMostCauses;
     return true;
   }
 
@@ -296,38 +397,11 @@ class Search {
     // Its signatures were for the search alone, and the next one has its own.
     (large_.last ? large_.last : large_.first)->analysis.scanner.reset();
     auto searched = SearchWith(asked, causes, For(most_causes));
+    most_searched_ = most_causes;
     TakeOver(asked, causes);
     power_ = PowerOf(asked.left);
     large_.causes = std::move(causes);
     large_.last = std::move(searched);
-  }
-
-  /// Signals that are cut off have all their faults at once: none of them is found alone.
-  void TakeSignals() {
-    const EncoderRun& encoder = large_.first->encoder;
-    if (power_ < kLarge * kLarge || std::ranges::count(options_.excluded, "signal_clipping") > 0) return;
-    const std::optional<SignalGuess> guess = GuessSignals(encoder.context, encoder.run.residual);
-    if (!guess) return;
-    std::vector<LargeCause> causes = SignalBlock(*guess, encoder, options_.excluded);
-    AskedAgain asked = Ask(causes);
-    while (DropNotHeld(asked, causes)) asked = Ask(causes);
-    double power = PowerOf(asked.left);
-    if (causes.empty() || causes.front().effect.name != "signal_clipping" || !(power < 0.5 * power_)) return;
-    for (std::size_t k = 0; k < causes.size(); ++k) causes[k].explained = PowerWithout(k, asked) - power;
-    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, causes, asked, power);
-    Accept(asked, std::move(causes), kFewCauses);
-  }
-
-  /// @return true if there were any.
-  static bool DropNotHeld(const AskedAgain& asked, std::vector<LargeCause>& causes) {
-    const std::size_t before = causes.size();
-    TakeOver(asked, causes);
-    std::erase_if(causes, [](const LargeCause& cause) { return !IsHeld(cause.effect); });
-    return causes.size() < before;
-  }
-
-  double PowerWithout(std::size_t k, const AskedAgain& asked) const {
-    return PowerOf(large_.first->encoder.run.residual - Shown(EffectsWithout(k, asked)));
   }
 
   /// @return false if nothing more is large, or the twin does not show it as the search has it.
@@ -353,6 +427,7 @@ class Search {
     return std::max({Explains(v * v.abs() * t), Explains(v.abs() * t), Explains(v * t * t),
                      Explains(v * v.abs())}) < own;
   }
+
   /// Of what is left, by one column alone.
   double Explains(const Eigen::VectorXd& column) const {
     const Eigen::VectorXd weight = large_.first->encoder.run.sigma.cwiseInverse();
@@ -371,80 +446,70 @@ class Search {
     double power = PowerOf(asked.left);
     if (!(power < power_) || !IsHeld(asked.effects.back())) return false;
     causes.back().explained = power_ - power;
-    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, causes, asked, power);
+    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, false, causes, asked, power);
     Accept(asked, std::move(causes), kFewCauses);
     return true;
   }
 
-  /// Large causes as they are in the twin, and what they leave.
-  struct Tried {
-    std::vector<LargeCause> causes;
-    AskedAgain asked;
-    double power;
-  };
-
-  /// Causes that are one to first order are not beside large ones: the one that leaves least is in the twin, and
-  /// those that leave clearly more do not tie with it.
-  void TryOthers(std::size_t k, std::vector<LargeCause>& causes, AskedAgain& asked, double& power) const {
+  /// Causes that are one to first order are not beside large ones: the one that leaves least is in the twin.
+  /// @param at_end  All causes are there: what leaves more than another is no tie any more.
+  void TryOthers(std::size_t k, bool at_end, std::vector<LargeCause>& causes, AskedAgain& asked,
+                 double& power) const {
     if (causes.size() < 2) return;
-    const std::vector<Cause> doubles(causes[k].causes.begin() + 1, causes[k].causes.end());
-    for (const Cause& other : doubles) {
-      std::optional<Tried> tried = Try(other, k, causes, asked);
-      if (!tried) continue;
+    std::vector<Cause> as_likely = {causes[k].causes.front()};
+    for (std::size_t j = 1; j < causes[k].causes.size(); ++j) {
+      as_likely.push_back(causes[k].causes[j]);
+      std::vector<LargeCause> changed = causes;
+      if (!LetLead(k, j, asked, changed)) continue;
+      AskedAgain again = Ask(changed);
+      const double left = PowerOf(again.left);
       constexpr double kBetter = 25.0;  // power, so many units of noise: no chance
-      const double clearly =
-          kBetter * std::max(1.0, std::min(power, tried->power) / projector_->DegreesOfFreedom());
-      if (std::abs(tried->power - power) < clearly) continue;
-      const bool is_better = tried->power < power;
-      const std::string dropped = is_better ? causes[k].effect.name : other.effect;
-      if (is_better) {
-        causes = std::move(tried->causes);
-        asked = std::move(tried->asked);
-        power = tried->power;
-      }
-      DropDouble(dropped, causes[k].causes);
+      const double noise = std::max(1.0, std::min(left, power) / projector_->DegreesOfFreedom());
+      if (left > power + kBetter * noise) as_likely.pop_back();
+      if (!(left < power - kBetter * noise)) continue;
+      causes = std::move(changed);
+      asked = std::move(again);
+      power = left;
+      as_likely = {causes[k].causes.front()};
+      if (!at_end) return;
     }
+    if (!at_end) return;
+    if (as_likely.size() == 1 && causes[k].causes.size() > 1) as_likely.front().probability = tuning::kListed;
+    causes[k].causes = std::move(as_likely);
   }
 
-  /// Those that are left share what all claimed; one alone has no double any more.
-  static void DropDouble(const std::string& effect, std::vector<Cause>& doubles) {
-    const auto claimed = [&doubles] {
-      double sum = 0.0;
-      for (const Cause& cause : doubles) sum += cause.probability;
-      return sum;
-    };
-    const double before = claimed();
-    std::erase_if(doubles, [&](const Cause& cause) { return cause.effect == effect; });
-    const double share = doubles.size() == 1 ? tuning::kListed / claimed() : before / claimed();
-    for (Cause& cause : doubles) cause.probability *= share;
-  }
-
-  /// The twin with a double in the place of cause k, fitted to what the others leave and then all together.
-  std::optional<Tried> Try(const Cause& other, std::size_t k, const std::vector<LargeCause>& causes,
-                           const AskedAgain& asked) const {
-    const auto family = std::ranges::find_if(
-        large_.first->families, [&](const Family& f) { return f.kind == Kind::kNamed && IsOf(other, f); });
-    if (family == large_.first->families.end()) return std::nullopt;
+  /// Puts the j-th member of the k-th tie into the twin instead of the first, with the size that the others leave
+  /// it.
+  /// @return false if it cannot be asked about.
+  bool LetLead(std::size_t k, std::size_t j, const AskedAgain& asked, std::vector<LargeCause>& causes) const {
     const LinearRun& plain = large_.first->encoder.run;
-    Tried tried{causes, {}, 0.0};
-    for (std::size_t i = 0; i < causes.size(); ++i) tried.causes[i].effect = asked.effects[i];
-    std::vector<Cause>& doubles = tried.causes[k].causes;
-    const auto at = std::ranges::find_if(doubles, [&](const Cause& cause) { return IsOf(cause, *family); });
-    const Eigen::VectorXd left = plain.residual - Shown(EffectsWithout(k, asked));
-    at->parameters = CauseFrom(*family, 0, left, plain.sigma, *projector_).parameters;
-    LargeCause led = LedBy(doubles, static_cast<std::size_t>(at - doubles.begin()), plain.bench);
-    if (MovableOf({led}).empty()) return std::nullopt;
-    led.explained = causes[k].explained;
-    tried.causes[k] = std::move(led);
-    tried.asked = Ask(tried.causes);
-    tried.power = PowerOf(tried.asked.left);
-    return tried;
+    const auto family = std::ranges::find_if(large_.first->families, [&](const Family& f) {
+      return f.kind == Kind::kNamed && IsOf(causes[k].causes[j], f);
+    });
+    if (family == large_.first->families.end()) return false;
+    const double explained = causes[k].explained;
+    causes[k].causes[j].parameters =
+        CauseFrom(*family, 0, plain.residual - Shown(EffectsWithout(k, asked)), plain.sigma, *projector_).parameters;
+    causes[k].causes.front().parameters.clear();  // it is not what is fitted
+    causes[k] = LedBy(causes[k].causes, j, plain.bench);
+    causes[k].explained = explained;
+    for (std::size_t i = 0; i < causes.size(); ++i) {
+      if (i != k) causes[i].effect = asked.effects[i];
+    }
+    return !MovableOf({causes[k]}).empty();
   }
 
-  static std::vector<EffectSettings> EffectsWithout(std::size_t k, const AskedAgain& asked) {
-    std::vector<EffectSettings> others = asked.effects;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-    return others;
+  void EndTies() {
+    std::vector<LargeCause> causes = large_.causes;
+    AskedAgain asked;
+    asked.effects = EffectsOf(causes);
+    double power = power_;
+    for (std::size_t k = 0; k < causes.size(); ++k) TryOthers(k, true, causes, asked, power);
+    if (power < power_) {
+      Accept(asked, std::move(causes), kMostCauses);
+    } else {
+      large_.causes = std::move(causes);
+    }
   }
 
   /// What stood for something that was found later is not kept.
@@ -459,6 +524,7 @@ class Search {
   std::unique_ptr<Searched> SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes,
                                        const AnalysisOptions& how) const {
     EncoderRun encoder = BuildRun(readings_, With(scenario_, asked.effects), follow_);
+    LeaveFree(large_.targets, encoder.run.nuisance);
     LeaveFree(asked, encoder.run.nuisance);
     TellSignalZero(asked.effects, encoder.context.device);
     return SearchIn(std::move(encoder), Excluded(causes), how);
@@ -491,8 +557,8 @@ class Search {
   AnalysisOptions how_;
   NullCalibration null_;
   LargeCauses large_;
-  const Searched* searched_on_ = nullptr;  // the last that was searched for all causes
-  std::unique_ptr<Projector> projector_;   // with no more than the noise of the readings
+  int most_searched_ = kFewCauses;        // causes that the last search might take
+  std::unique_ptr<Projector> projector_;  // with no more than the noise of the readings
   Eigen::VectorXd nothing_;
   double power_ = 0.0;
 };
@@ -540,7 +606,13 @@ void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& ca
 
 LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options, const model::FollowMaker& follow) {
-  return Search(readings, scenario, options, follow).Go();
+  const std::vector<Reading> part = PartOf(readings);
+  std::vector<LargeCause> known;
+  if (part.size() < readings.size()) known = Search(part, scenario, options, follow, {}).Look();
+  LargeCauses plain = Search(readings, scenario, options, follow, {}).Go(known);
+  const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
+  if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
+  return Search(readings, scenario, options, follow, targets).Go(known);
 }
 
 void AddLargeCauses(const LargeCauses& large, DiagnosisRun& result) {

@@ -14,10 +14,6 @@ double Sign(double value) {
   return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0;
 }
 
-double Wrapped(double angle_rad) {
-  return std::remainder(angle_rad, 2.0 * units::kPi);
-}
-
 }  // namespace
 
 SignalContext ContextOf(const Schedule& s, const Eigen::VectorXd& device_rad, const DeviceSettings& device) {
@@ -126,7 +122,12 @@ Eigen::VectorXd SignalError_rad(const Eigen::VectorXd& phase_rad, const SignalFa
 }
 
 Eigen::VectorXd ClippingError_rad(const Eigen::VectorXd& phase_rad, double level) {
-  return SignalError_rad(phase_rad, {.level = level});
+  return phase_rad.unaryExpr([level](double p) {
+    const double sine = std::sin(p), cosine = std::cos(p);
+    if (std::max(std::abs(sine), std::abs(cosine)) <= level) return 0.0;
+    const double y = std::clamp(sine, -level, level), x = std::clamp(cosine, -level, level);
+    return std::atan2(y * cosine - x * sine, x * cosine + y * sine);  // of the cut-off pair from the whole one
+  });
 }
 
 }  // namespace twinbench::diagnose::encoder
