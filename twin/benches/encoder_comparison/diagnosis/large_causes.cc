@@ -10,6 +10,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
+#include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/format.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/asked_again.h"
@@ -178,6 +179,15 @@ void LeaveFree(const AskedAgain& asked, Nuisance& nuisance) {
   nuisance.prior_precision.tail(count) = asked.sd.cwiseAbs2().cwiseInverse();
 }
 
+/// Errors of targets may be anything.
+void LeaveFree(const Eigen::MatrixXd& targets, Nuisance& nuisance) {
+  const double precision = nuisance.prior_precision[0];
+  AskedAgain any;
+  any.slopes = targets;
+  any.sd = Eigen::VectorXd::Constant(targets.cols(), 1.0 / std::sqrt(precision));
+  if (targets.cols() > 0) LeaveFree(any, nuisance);
+}
+
 /// Of the many amplitudes and phases of a wave the one with a positive amplitude and a phase from 0 to 360 deg.
 void MakePositive(EffectSettings& effect) {
   const auto phase = effect.parameters.find("phase"), amplitude = effect.parameters.find("amplitude");
@@ -218,12 +228,17 @@ void TakeOver(const AskedAgain& asked, std::vector<LargeCause>& causes) {
 
 class Search {
  public:
+  /// @param targets  Whose errors are free; may be none.
   Search(const std::vector<Reading>& readings, const Scenario& scenario, const DiagnoseOptions& options,
-         const model::FollowMaker& follow)
-      : readings_(readings), scenario_(scenario), options_(options), follow_(follow), how_(HowToSearch(options)) {}
+         const model::FollowMaker& follow, const Eigen::MatrixXd& targets)
+      : readings_(readings), scenario_(scenario), options_(options), follow_(follow), how_(HowToSearch(options)) {
+    large_.targets = targets;
+  }
 
   LargeCauses Go() {
-    large_.first = SearchIn(BuildRun(readings_, scenario_, follow_), options_.excluded, how_);
+    EncoderRun begin = BuildRun(readings_, scenario_, follow_);
+    LeaveFree(large_.targets, begin.run.nuisance);
+    large_.first = SearchIn(std::move(begin), options_.excluded, how_);
     how_.null = &large_.first->analysis.null;
     const LinearRun& plain = large_.first->encoder.run;
     const NoiseModel noise{plain.sigma, 0.0};
@@ -421,6 +436,7 @@ class Search {
 
   std::unique_ptr<Searched> SearchWith(const AskedAgain& asked, const std::vector<LargeCause>& causes) const {
     EncoderRun encoder = BuildRun(readings_, With(scenario_, asked.effects), follow_);
+    LeaveFree(large_.targets, encoder.run.nuisance);
     LeaveFree(asked, encoder.run.nuisance);
     TellSignalZero(asked.effects, encoder.context.device);
     std::vector<std::string> excluded = ThatAreOnce(causes);
@@ -493,7 +509,10 @@ void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& ca
 
 LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario& scenario,
                             const DiagnoseOptions& options, const model::FollowMaker& follow) {
-  return Search(readings, scenario, options, follow).Go();
+  LargeCauses plain = Search(readings, scenario, options, follow, {}).Go();
+  const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
+  if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
+  return Search(readings, scenario, options, follow, targets).Go();
 }
 
 void AddLargeCauses(const LargeCauses& large, DiagnosisRun& result) {
