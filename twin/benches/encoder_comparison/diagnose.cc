@@ -6,6 +6,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/equal_steps.h"
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
+#include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
 
@@ -35,6 +36,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
       NextMeasurement};
   diagnose::DiagnosisRun result = diagnose::Conclude(searched.encoder.run, searched.analysis, {}, words);
   diagnose::encoder::AddLargeCauses(large, result);
+  diagnose::encoder::AddErrorsOfTargets(large, result);
   diagnose::encoder::TellEqualSteps(result);
   result.diagnosis.left_out = searched.encoder.left_out;
   result.diagnosis.harmonics =

@@ -100,6 +100,13 @@ void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Re
 
 }  // namespace
 
+Nuisance EncoderRun::SetUpsAlone() const {
+  Nuisance nuisance;
+  nuisance.jacobian = setups;
+  nuisance.prior_precision = Eigen::VectorXd::Constant(setups.cols(), 1.0 / (kOffsetPrior_rad * kOffsetPrior_rad));
+  return nuisance;
+}
+
 ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, const model::FollowMaker& follow) {
   constexpr double kSame_rad = 1e-10;
   // What is locked to the device's angle turns with it: each step leaves a tenth of what is wrong, or less.
@@ -109,8 +116,7 @@ ErrorOfTwin FollowTwin(const EncoderRun& encoder, const Scenario& scenario, cons
   for (int step = 0; step < kSteps; ++step) {
     followed.error_rad =
         follow(AsMounted(scenario, s, followed.offset_rad), encoder.used)->Predict().col(0) - s.reference_rad;
-    const Eigen::VectorXd mean_rad =
-        SetUpMeans(encoder.run.nuisance.jacobian, encoder.error_rad - followed.error_rad);
+    const Eigen::VectorXd mean_rad = SetUpMeans(encoder.setups, encoder.error_rad - followed.error_rad);
     if (mean_rad.cwiseAbs().maxCoeff() < kSame_rad) break;
     if (step + 1 < kSteps) followed.offset_rad += mean_rad;
   }
@@ -133,17 +139,16 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   run.unit = told_in.name;
   run.to_SI = told_in.to_SI;
   run.patterns = {{"angle", Eigen::VectorXd::Ones(1)}};
-  run.nuisance.jacobian = SetUpIndicators(run.schedule.setup);
-  run.nuisance.prior_precision =
-      Eigen::VectorXd::Constant(run.nuisance.jacobian.cols(), 1.0 / (kOffsetPrior_rad * kOffsetPrior_rad));
+  encoder.setups = SetUpIndicators(run.schedule.setup);
+  run.nuisance = encoder.SetUpsAlone();
   run.observed = run.schedule.reference_rad + comparison.error_rad;
   encoder.used = AsFollowed(used, run.schedule);
   encoder.error_rad = comparison.error_rad;
-  encoder.offset_rad = SetUpMeans(run.nuisance.jacobian, comparison.error_rad);
+  encoder.offset_rad = SetUpMeans(encoder.setups, comparison.error_rad);
   const ErrorOfTwin followed = FollowTwin(encoder, scenario, follow);
   encoder.offset_rad = followed.offset_rad;
   run.residual = encoder.error_rad - followed.error_rad;
-  run.residual -= SetUpMeans(run.nuisance.jacobian, run.residual);
+  run.residual -= SetUpMeans(encoder.setups, run.residual);
   encoder.context =
       ContextOf(run.schedule, run.schedule.reference_rad + encoder.offset_rad, EncoderOf(scenario).device);
   SetNoise(run, EncoderOf(scenario).device, used);

@@ -17,6 +17,11 @@ struct EncoderRun {
   std::vector<Reading> used;   // as the twin follows them
   Eigen::VectorXd error_rad;   // measured - reference
   Eigen::VectorXd offset_rad;  // where the device stands on the shaft
+
+  Eigen::SparseMatrix<double, Eigen::RowMajor> setups;  // rows x set-ups: 1 where a reading is in one
+
+  /// Free are the offsets of the set-ups and nothing else.
+  Nuisance SetUpsAlone() const;
 };
 
 /// `observed` is the device's angle with the turns that it does not count put back. Where the noise is not known it

@@ -30,6 +30,7 @@ struct LargeCauses {
   std::unique_ptr<Searched> first;  // as if nothing were large
   std::unique_ptr<Searched> last;   // the large ones in the twin, their parameters free; the same if there is none
   std::vector<LargeCause> causes;   // in the order in which they were found
+  Eigen::MatrixXd targets;          // whose errors are free (stop_errors.h): rows x targets; empty: none are
 
   const Searched& Last() const { return last ? *last : *first; }
 };

@@ -1,0 +1,122 @@
+#include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "twin/core/units.h"
+#include "twin/diagnose/gain.h"
+#include "twin/diagnose/tuning.h"
+#include "twin/model/signals.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+/// The target of each reading, counted from the lowest: readings within a fiftieth of a step are at one.
+std::vector<int> TargetOf(const SignalContext& c) {
+  constexpr double kSame = 0.02;
+  const double same_rad = kSame * 2.0 * RunUp_rad(c);
+  std::vector<Eigen::Index> rising(static_cast<std::size_t>(c.Readings()));
+  std::iota(rising.begin(), rising.end(), 0);
+  std::ranges::stable_sort(rising, {}, [&c](Eigen::Index i) { return c.reference_rad[i]; });
+  std::vector<int> target(rising.size());
+  int last = 0;
+  for (std::size_t k = 0; k < rising.size(); ++k) {
+    if (k > 0 && c.reference_rad[rising[k]] - c.reference_rad[rising[k - 1]] > same_rad) ++last;
+    target[static_cast<std::size_t>(rising[k])] = last;
+  }
+  return target;
+}
+
+/// Visits of each target in one sense.
+Eigen::VectorXd Visits(const SignalContext& c, const Eigen::MatrixXd& targets, int sense) {
+  Eigen::VectorXd is(c.Readings());
+  for (Eigen::Index i = 0; i < is.size(); ++i)
+    is[i] = c.direction[static_cast<std::size_t>(i)] == sense ? 1.0 : 0.0;
+  return targets.transpose() * is;
+}
+
+Eigen::VectorXd LeftOver(const LargeCauses& large) {
+  const Searched& last = large.Last();
+  Eigen::VectorXd left = last.encoder.run.residual;
+  for (const Term& term : last.analysis.found.terms) left -= term.columns * term.amplitudes;
+  return left;
+}
+
+/// At each reading, the mean at its target.
+Eigen::VectorXd MeansAt(const Eigen::MatrixXd& targets, const Eigen::VectorXd& rows) {
+  const Eigen::VectorXd count = targets.colwise().sum().transpose();
+  return targets * Eigen::VectorXd((targets.transpose() * rows).cwiseQuotient(count));
+}
+
+/// A shape without a name that goes by the angle.
+bool IsOfAngle(const Family& family) {
+  return family.kind == Kind::kUnknown && (family.effect == "harmonic" || family.effect == "line");
+}
+
+/// The curve as a structure without a name.
+Accepted Curve(const Eigen::VectorXd& error) {
+  Accepted curve;
+  curve.family.kind = Kind::kUnknown;
+  curve.family.effect = "error curve";
+  curve.family.where = "angle";
+  curve.family.amplitudes = {{"strength", "1", 1.0, 1.0}};
+  curve.amplitudes = Eigen::VectorXd::Ones(1);
+  curve.columns = error;
+  return curve;
+}
+
+}  // namespace
+
+Eigen::MatrixXd Targets(const SignalContext& c) {
+  constexpr int kFewest = 5, kTwice = 2;
+  constexpr Eigen::Index kVisits = 4;
+  if (c.Moves() || c.Readings() < kVisits * kFewest) return {};
+  const std::vector<int> target = TargetOf(c);
+  const int count = 1 + std::ranges::max(target);
+  if (count < kFewest || count > c.Readings() / kVisits) return {};
+  Eigen::MatrixXd targets = model::Indicators(target);
+  if (Visits(c, targets, 1).minCoeff() < kTwice || Visits(c, targets, -1).minCoeff() < kTwice) return {};
+  return targets;
+}
+
+bool LeaveErrorsOfTargets(const LargeCauses& large, const Eigen::MatrixXd& targets) {
+  constexpr double kClearly =
+      3.0;  // mean square of what is the same at a target, in what is not: F of 1 in 1e3 runs
+  const Searched& last = large.Last();
+  const bool has_shape = std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
+    return IsOfAngle(last.families[static_cast<std::size_t>(term.family)]);
+  });
+  const Eigen::VectorXd left = LeftOver(large), same = MeansAt(targets, left);
+  const auto stops = static_cast<double>(targets.cols()), rows = static_cast<double>(targets.rows());
+  const double between = same.squaredNorm() / stops, within = (left - same).squaredNorm() / (rows - stops);
+  return has_shape || between > kClearly * within;
+}
+
+void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {
+  if (large.targets.size() == 0) return;
+  Diagnosis& d = result.diagnosis;
+  const Eigen::VectorXd sigma = result.run.sigma;
+  result.run = large.first->encoder.run;
+  result.run.nuisance = large.first->encoder.SetUpsAlone();
+  result.run.sigma = sigma;
+  Eigen::VectorXd left = result.run.residual;
+  for (const Accepted& accepted : result.accepted) left -= accepted.columns * accepted.amplitudes;
+  const Eigen::VectorXd error = MeansAt(large.targets, left);
+  const std::string words = fmt::format(
+      "error of its own at each of {} targets, {:.3g} {} from the least to the largest, the same at every "
+      "visit from either side, locked to reference angle, on angle",
+      large.targets.cols(), (error.maxCoeff() - error.minCoeff()) / result.run.to_SI, result.run.unit);
+  result.accepted.insert(result.accepted.begin(), Curve(error));
+  d.gain = MeasureGain(result.run, result.noise, result.accepted);
+  d.unknown.signature = words + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);
+  if (d.verdict == Verdict::kNone) {
+    d.verdict = Verdict::kUnknown;
+    d.unknown.probability = tuning::kMostProbable;
+  } else {
+    d.notes.push_back("beside these, left free: " + words);
+  }
+}
+
+}  // namespace twinbench::diagnose::encoder
