@@ -37,9 +37,11 @@ class LostInWriting {
         explained_(PowerLeft(found, Eigen::VectorXd::Zero(found.run.Rows())) - fit_),
         noise_(std::max(1.0, fit_ / found.run.Rows())) {}
 
-  /// Enough to be found again.
+  /// Enough to be found again, and no mere rest of slopes that are not the same about the cause.
   bool IsSeen(const DiagnosisRun& found, const Eigen::VectorXd& removed) const {
-    return PowerLeft(found, removed) - fit_ > tuning::kBaarda * tuning::kBaarda * noise_;
+    constexpr double kRest = 0.01;  // of what was found
+    return PowerLeft(found, removed) - fit_ >
+           std::max(tuning::kBaarda * tuning::kBaarda * noise_, kRest * explained_);
   }
 
   void Tell(const DiagnosisRun& found, const Eigen::VectorXd& removed, std::vector<std::string>& notes) const {

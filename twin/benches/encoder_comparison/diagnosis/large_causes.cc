@@ -489,7 +489,8 @@ class Search {
     if (family == large_.first->families.end()) return false;
     const double explained = causes[k].explained;
     causes[k].causes[j].parameters =
-        CauseFrom(*family, 0, plain.residual - Shown(EffectsWithout(k, asked)), plain.sigma, *projector_).parameters;
+        CauseFrom(*family, 0, plain.residual - Shown(EffectsWithout(k, asked)), plain.sigma, *projector_)
+            .parameters;
     causes[k].causes.front().parameters.clear();  // it is not what is fitted
     causes[k] = LedBy(causes[k].causes, j, plain.bench);
     causes[k].explained = explained;
@@ -530,7 +531,8 @@ class Search {
     return SearchIn(std::move(encoder), Excluded(causes), how);
   }
 
-  /// What is small was found with the parameters of the large causes free: these go to where they are best beside it.
+  /// What is small was found with the parameters of the large causes free: these go to where they are best beside
+  /// it.
   void MoveBesideTheRest() {
     const std::vector<Term>& terms = large_.Last().analysis.found.terms;
     if (large_.causes.empty() || terms.empty()) return;

@@ -117,7 +117,8 @@ Eigen::VectorXd SignalError_rad(const Eigen::VectorXd& phase_rad, const SignalFa
   return phase_rad.unaryExpr([&f](double p) {
     const double y = (1.0 + f.ratio) * std::sin(p + f.quadrature_rad) + f.offset_sin,
                  x = std::cos(p) + f.offset_cos;
-    return Wrapped(std::atan2(std::clamp(y, -f.level, f.level), std::clamp(x, -f.level, f.level)) - p);
+    return std::remainder(std::atan2(std::clamp(y, -f.level, f.level), std::clamp(x, -f.level, f.level)) - p,
+                          units::turn);
   });
 }
 

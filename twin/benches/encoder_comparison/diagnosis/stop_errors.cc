@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "twin/core/units.h"
-#include "twin/diagnose/gain.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
 
@@ -109,11 +108,10 @@ void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {
       "visit from either side, locked to reference angle, on angle",
       large.targets.cols(), (error.maxCoeff() - error.minCoeff()) / result.run.to_SI, result.run.unit);
   result.accepted.insert(result.accepted.begin(), Curve(error));
-  d.gain = MeasureGain(result.run, result.noise, result.accepted);
   d.unknown.signature = words + (d.unknown.signature.empty() ? "" : " | " + d.unknown.signature);
   if (d.verdict == Verdict::kNone) {
     d.verdict = Verdict::kUnknown;
-    d.unknown.probability = tuning::kMostProbable;
+    d.unknown.probability = tuning::kListed;
   } else {
     d.notes.push_back("beside these, left free: " + words);
   }
