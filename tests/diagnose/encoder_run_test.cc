@@ -10,6 +10,7 @@
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
+#include "twin/core/stream.h"
 #include "twin/diagnose/engine/projector.h"
 
 namespace twinbench::diagnose::encoder {
@@ -103,6 +104,21 @@ TEST(EncoderRun, EstimatesTheNoiseToThePrecisionThatTheReadingsAllow) {
 TEST(EncoderRun, EstimatesTheNoiseWithoutItsOutliers) {
   for (const char* kind : {"stops", "sweep"})
     EXPECT_NEAR(NoiseRatio(kind, 1, 20.0), NoiseRatio(kind, 1), 0.05) << kind;
+}
+
+TEST(EncoderRun, WeighsReadingsByTheSamplesThatTheyAreMeansOf) {
+  Scenario scenario = EncoderScenario("sweep");
+  auto readings = RunEncoderTwin(scenario).readings;
+  Stream stream(9, "test.samples");
+  constexpr double kOfSample_rad = 1e-4;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    readings[i].n_samples = i % 5 == 0 ? 1 : 100;  // a block that ended at once
+    readings[i].measured_rad += kOfSample_rad / std::sqrt(readings[i].n_samples) * stream.Normal();
+  }
+  const LinearRun run = RunOf(readings, scenario).run;
+  EXPECT_NEAR(run.sigma[0] / run.sigma[1], 10.0, 1e-9);
+  // Some 4000 differences that share readings: 2 % at one standard deviation.
+  EXPECT_NEAR(run.sigma[0] / kOfSample_rad, 1.0, 0.06);
 }
 
 TEST(EncoderRun, TakesTheNoiseThatIsKnown) {

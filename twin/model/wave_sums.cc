@@ -22,7 +22,7 @@ double Spreading(double z) {
 /// Its Fourier integral at a wave of `rad` from one point to the next. The trapezoidal rule is exact to rounding
 /// for a function that is smooth and all but zero at both ends.
 double TransformOf(double rad) {
-  constexpr int kParts = 200;
+  constexpr int kParts = 4 * kReach / 2;  // of a quarter of a point each
   const double half = 0.5 * kReach, width = half / kParts;
   double sum = Spreading(0.0);
   for (int k = 1; k < kParts; ++k)

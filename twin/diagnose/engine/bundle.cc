@@ -6,7 +6,13 @@
 namespace twinbench::diagnose {
 namespace {
 
-constexpr int kChunkColumns = 128;
+/// Columns of a chunk, and values: of long runs there are fewer columns.
+constexpr int kChunkColumns = 128, kChunkValues = 1'000'000;
+
+int StepOf(const LinearRun& run, int columns) {
+  const int most = std::clamp(kChunkValues / std::max(1, run.Rows()), 1, kChunkColumns);
+  return std::max(1, most / std::max(1, columns));
+}
 
 }  // namespace
 
@@ -31,7 +37,7 @@ Bundle::Bundle(const LinearRun& run, const NoiseModel& noise, const Projector& p
     step_ = grid_;
     SumUp(run, noise, projector);
   } else {
-    step_ = std::max(1, kChunkColumns / std::max(1, columns_));
+    step_ = StepOf(run, columns_);
     WriteOut(run, noise, projector, kept_left);
   }
 }

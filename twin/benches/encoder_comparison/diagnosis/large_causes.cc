@@ -253,7 +253,7 @@ class Search {
 
   /// @param known  Large causes that a part of the readings has shown.
   LargeCauses Go(std::vector<LargeCause> known) {
-    Begin(known.empty() ? kFewCauses : 1);
+    Begin(known.empty() ? kFewCauses : 0);
     if (!TakeKnown(std::move(known))) TakeSignals();
     TakeAll();
     DropNeedless();
