@@ -38,6 +38,7 @@ AgainstScenario Showing(const DiagnosisRun& found, double share, std::vector<std
       for (const EffectSettings& effect : scenario.effects) effects->push_back(effect.name);
     }
     LinearRun left = found.run;
+    if (scenario.effects.empty()) return left;
     left.residual -= share * found.accepted.front().columns * found.accepted.front().amplitudes;
     return left;
   };
@@ -80,7 +81,8 @@ TEST(JudgeByFile, AFileThatShowsNothingMakesTheCauseAProposal) {
 
 TEST(JudgeByFile, AFileThatTheBenchRefusesIsToldAndTheFitIsJudged) {
   const DiagnosisRun found = FoundDirection();
-  const Diagnosis d = Judged(found, [](const auto&, const Scenario&, Estimator) -> LinearRun {
+  const Diagnosis d = Judged(found, [&found](const auto&, const Scenario& scenario, Estimator) {
+    if (scenario.effects.empty()) return found.run;
     throw InputError("extended.toml:7", "this cannot be built", "something else");
   });
   EXPECT_NEAR(d.gain.fraction_removed, 1.0, 0.05);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "twin/core/errors.h"
+#include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/file_fit.h"
 #include "twin/diagnose/gain.h"
@@ -20,13 +22,24 @@ Scenario ReadBack(const Scenario& scenario, const DiagnosisRun& result) {
   return ParseScenario(ExtendedToml(scenario, result, ""), "extended.toml", ".");
 }
 
+/// What the written scenario leaves of the readings, in the frame of the diagnosis: free unknowns have other slopes
+/// where a cause is in the twin, and would leave of themselves what no cause has to do with.
+Eigen::VectorXd InItsFrame(const LinearRun& extended, const DiagnosisRun& found) {
+  const Nuisance &own = extended.nuisance, &frame = found.run.nuisance;
+  if (own.jacobian.cols() != frame.jacobian.cols()) return extended.residual;
+  const Projector projector(found.noise.Whiten(extended, own.jacobian), own);
+  const Eigen::MatrixXd y = extended.residual;
+  const Eigen::VectorXd unknowns = projector.Solve(found.noise.Whiten(extended, y));
+  return extended.residual - own.jacobian * unknowns + frame.jacobian * unknowns;
+}
+
 /// What the file takes from the residuals, by row.
 Eigen::VectorXd RemovedByFile(const std::vector<Reading>& readings, const Scenario& scenario, Estimator model,
-                              const AgainstScenario& against, const DiagnosisRun& result) {
-  const LinearRun extended = against(readings, ReadBack(scenario, result), model);
-  if (extended.Rows() != result.run.Rows())
+                              const AgainstScenario& against, const DiagnosisRun& found) {
+  const LinearRun extended = against(readings, ReadBack(scenario, found), model);
+  if (extended.Rows() != found.run.Rows())
     throw InputError("extended.toml", "it shows other readings than the scenario", "the same ones");
-  return result.run.residual - extended.residual;
+  return found.run.residual - InItsFrame(extended, found);
 }
 
 /// What the file shows less than the fit did.
@@ -37,16 +50,19 @@ class LostInWriting {
         explained_(PowerLeft(found, Eigen::VectorXd::Zero(found.run.Rows())) - fit_),
         noise_(std::max(1.0, fit_ / found.run.Rows())) {}
 
+  double Of(const DiagnosisRun& found, const Eigen::VectorXd& removed) const {
+    return PowerLeft(found, removed) - fit_;
+  }
+
   /// Enough to be found again, and no mere rest of slopes that are not the same about the cause.
   bool IsSeen(const DiagnosisRun& found, const Eigen::VectorXd& removed) const {
     constexpr double kRest = 0.01;  // of what was found
-    return PowerLeft(found, removed) - fit_ >
-           std::max(tuning::kBaarda * tuning::kBaarda * noise_, kRest * explained_);
+    return Of(found, removed) > std::max(tuning::kBaarda * tuning::kBaarda * noise_, kRest * explained_);
   }
 
   void Tell(const DiagnosisRun& found, const Eigen::VectorXd& removed, std::vector<std::string>& notes) const {
     constexpr double kClearly = 0.02;  // of what was found
-    const double lost = PowerLeft(found, removed) - fit_;
+    const double lost = Of(found, removed);
     if (!IsSeen(found, removed) || !(lost > kClearly * explained_)) return;
     notes.push_back(
         fmt::format("the written scenario shows {} of what was found; a second diagnosis will find the rest",
@@ -56,6 +72,19 @@ class LostInWriting {
  private:
   double fit_, explained_, noise_;
 };
+
+/// Sizes that the file itself shows best, where they bring back most of what was lost. Less comes of other reasons
+/// than their size.
+void TakeIfItHelps(const LostInWriting& lost, const RemovedBy& removed_by, DiagnosisRun& result,
+                   Eigen::VectorXd& removed) {
+  constexpr double kMost = 0.75;
+  DiagnosisRun moved = result;
+  Eigen::VectorXd now = removed;
+  FitThroughFile(removed_by, moved, now);
+  if (lost.Of(moved, now) > (1.0 - kMost) * lost.Of(result, removed)) return;
+  result = std::move(moved);
+  removed = now;
+}
 
 /// The unbiased fraction and its interval may lie anywhere; none of a variance can be removed twice, and a model
 /// that adds as much as there was to remove is no better than one that adds more.
@@ -84,7 +113,7 @@ void JudgeByFile(const std::vector<Reading>& readings, const Scenario& scenario,
   try {
     const LostInWriting lost(result);
     Eigen::VectorXd removed = removed_by(result);
-    if (lost.IsSeen(result, removed)) FitThroughFile(removed_by, result, removed);
+    if (lost.IsSeen(result, removed)) TakeIfItHelps(lost, removed_by, result, removed);
     d.gain = MeasureGain(result.run, result.noise, result.accepted, removed);
     lost.Tell(result, removed, d.notes);
   } catch (const InputError& refusal) {

@@ -38,20 +38,16 @@ Eigen::VectorXd Visits(const SignalContext& c, const Eigen::MatrixXd& targets, i
 
 Eigen::VectorXd LeftOver(const LargeCauses& large) {
   const Searched& last = large.Last();
-  Eigen::VectorXd left = last.encoder.run.residual;
+  const LinearRun& run = last.encoder.run;
+  Eigen::MatrixXd left = run.residual;
   for (const Term& term : last.analysis.found.terms) left -= term.columns * term.amplitudes;
-  return left;
+  return left - run.nuisance.jacobian * last.analysis.projector->Solve(last.analysis.noise.Whiten(run, left));
 }
 
 /// At each reading, the mean at its target.
 Eigen::VectorXd MeansAt(const Eigen::MatrixXd& targets, const Eigen::VectorXd& rows) {
   const Eigen::VectorXd count = targets.colwise().sum().transpose();
   return targets * Eigen::VectorXd((targets.transpose() * rows).cwiseQuotient(count));
-}
-
-/// A shape without a name that goes by the angle.
-bool IsOfAngle(const Family& family) {
-  return family.kind == Kind::kUnknown && (family.effect == "harmonic" || family.effect == "line");
 }
 
 /// The curve as a structure without a name.
@@ -84,13 +80,16 @@ bool LeaveErrorsOfTargets(const LargeCauses& large, const Eigen::MatrixXd& targe
   constexpr double kClearly =
       3.0;  // mean square of what is the same at a target, in what is not: F of 1 in 1e3 runs
   const Searched& last = large.Last();
-  const bool has_shape = std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
-    return IsOfAngle(last.families[static_cast<std::size_t>(term.family)]);
-  });
   const Eigen::VectorXd left = LeftOver(large), same = MeansAt(targets, left);
   const auto stops = static_cast<double>(targets.cols()), rows = static_cast<double>(targets.rows());
   const double between = same.squaredNorm() / stops, within = (left - same).squaredNorm() / (rows - stops);
-  return has_shape || between > kClearly * within;
+  // What is rounded at a target is rounded so at every visit; and readings without noise are all the same.
+  constexpr double kNothing_rad = 1e-9;
+  const double step = last.encoder.run.rounding, visits = rows / stops;
+  const double chance = within + visits * (step * step / 12.0 + kNothing_rad * kNothing_rad);
+  // So many pieces are no causes: each of a curve that any sum of waves comes close to.
+  constexpr std::size_t kPieces = 6;
+  return large.causes.size() + last.analysis.found.terms.size() >= kPieces || between > kClearly * chance;
 }
 
 void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {
@@ -98,7 +97,6 @@ void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {
   Diagnosis& d = result.diagnosis;
   const Eigen::VectorXd sigma = result.run.sigma;
   result.run = large.first->encoder.run;
-  result.run.nuisance = large.first->encoder.SetUpsAlone();
   result.run.sigma = sigma;
   Eigen::VectorXd left = result.run.residual;
   for (const Accepted& accepted : result.accepted) left -= accepted.columns * accepted.amplitudes;
