@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
 #include <string>
 
+#include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
@@ -89,6 +91,42 @@ TEST(DiagnoseSampling, ASmallCauseIsNamedHoweverItIsSampled) {
   const auto error_deg = [](double angle_rad, int, double) { return 0.005 * std::cos(7.0 * angle_rad + 0.4); };
   for (const Sampling& sampling : Samplings())
     EXPECT_EQ(NamedIn(sampling, error_deg), std::set<std::string>{"periodic"}) << sampling.name;
+}
+
+/// Sine and cosine off centre and cut off, as the device's angle.
+double CutOff_deg(double angle_rad) {
+  const double sine = std::clamp(std::sin(angle_rad) + 0.03, -0.8, 0.8);
+  const double cosine = std::clamp(std::cos(angle_rad) + 0.01, -0.8, 0.8);
+  return std::remainder(std::atan2(sine, cosine) - angle_rad, units::turn) / deg;
+}
+
+TEST(DiagnoseSampling, FaultsThatAreOneToFirstOrderAreTold) {
+  // An offset is an eccentricity but for what it does to the places where signals are cut off.
+  const auto error_deg = [](double angle_rad, int, double) {
+    return CutOff_deg(angle_rad) + 0.1 * std::cos(7.0 * angle_rad + 0.4);
+  };
+  for (const Sampling& sampling : {Sampling{"many", 2000}, Sampling{"very many", 20000}})
+    EXPECT_EQ(NamedIn(sampling, error_deg), (std::set<std::string>{"periodic", "signal_clipping", "signal_offset"}))
+        << sampling.name;
+}
+
+TEST(DiagnoseSampling, APartOfTheReadingsHasNeighboursAndTurningPoints) {
+  const auto none = [](double, int, double) { return 0.0; };
+  const std::vector<Reading> few = ReadAs({"few", 4000}, none), many = ReadAs({"many", 20000}, none);
+  EXPECT_EQ(encoder::PartOf(few).size(), few.size());
+  const std::vector<Reading> part = encoder::PartOf(many);
+  EXPECT_NEAR(static_cast<double>(part.size()), 4000.0, 4 * 16.0);  // a group more or less in each pass
+  std::size_t neighbours = 0, turns = 0;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (i == 0 || part[i].pass != part[i - 1].pass) {
+      EXPECT_EQ(part[i].position, 0);
+      ++turns;
+    } else {
+      neighbours += part[i].reading == part[i - 1].reading + 1;
+    }
+  }
+  EXPECT_EQ(turns, 4U);
+  EXPECT_GT(static_cast<double>(neighbours), 0.9 * static_cast<double>(part.size()));
 }
 
 TEST(DiagnoseSampling, LargeCausesAreNamedHoweverTheyAreSampled) {

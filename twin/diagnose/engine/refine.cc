@@ -61,7 +61,7 @@ Refined RefineShape(const Family& family, int grid_point, const LinearRun& run, 
                     const Projector& projector, const Deflation& others, const Projected& data) {
   const Eigen::VectorXd start = family.ShapeAt(grid_point), rows = data.rows.col(0);
   Eigen::VectorXd shape = start;
-  using Cost = ceres::DynamicNumericDiffCostFunction<ShapeResidual, ceres::FORWARD>;
+  using Cost = ceres::DynamicNumericDiffCostFunction<ShapeResidual, ceres::CENTRAL>;
   auto* cost = new Cost(new ShapeResidual{family, run, noise, projector, others, rows});  // Ceres takes ownership
   cost->AddParameterBlock(static_cast<int>(shape.size()));
   cost->SetNumResiduals(run.Rows());

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
@@ -220,22 +221,6 @@ void TakeOver(const AskedAgain& asked, std::vector<LargeCause>& causes) {
       if (u != asked.effects[k].finding.u.end()) p.u = u->second;
     }
   }
-}
-
-/// Of very many readings some in a row, and again behind several: neighbours stay neighbours, and every pass begins
-/// with its first, so that what remembers the way still finds it. A large cause shows in these as well.
-std::vector<Reading> PartOf(const std::vector<Reading>& readings) {
-  constexpr std::size_t kEnough = 4000, kInARow = 16;
-  if (readings.size() < 2 * kEnough) return readings;
-  const std::size_t every = readings.size() / kEnough;
-  std::vector<Reading> part;
-  std::size_t in_pass = 0;
-  for (std::size_t i = 0; i < readings.size(); ++i, ++in_pass) {
-    if (i > 0 && (readings[i].pass != readings[i - 1].pass || readings[i].setup != readings[i - 1].setup))
-      in_pass = 0;
-    if (in_pass / kInARow % every == 0) part.push_back(readings[i]);
-  }
-  return part;
 }
 
 class Search {

@@ -1,0 +1,26 @@
+#include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
+
+namespace twinbench::diagnose::encoder {
+namespace {
+
+constexpr std::size_t kEnough = 4000, kInARow = 16;
+
+bool BeginsPass(const std::vector<Reading>& readings, std::size_t i) {
+  return i == 0 || readings[i].pass != readings[i - 1].pass || readings[i].setup != readings[i - 1].setup;
+}
+
+}  // namespace
+
+std::vector<Reading> PartOf(const std::vector<Reading>& readings) {
+  if (readings.size() < 2 * kEnough) return readings;
+  const std::size_t every = readings.size() / kEnough;
+  std::vector<Reading> part;
+  std::size_t in_pass = 0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    in_pass = BeginsPass(readings, i) ? 0 : in_pass + 1;
+    if (in_pass / kInARow % every == 0) part.push_back(readings[i]);
+  }
+  return part;
+}
+
+}  // namespace twinbench::diagnose::encoder

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "twin/core/reading.h"
+
+namespace twinbench::diagnose::encoder {
+
+/// Some 4000 of 8000 readings and more, those of fewer all: enough to show a large cause.
+///
+/// They are taken in groups of neighbours, so that distances, speeds and the usual step stay what they are, and
+/// every pass begins with its first reading, so that what remembers the way still finds where it turned: play and
+/// hysteresis do not care how many readings lie on a way that goes on.
+std::vector<Reading> PartOf(const std::vector<Reading>& readings);
+
+}  // namespace twinbench::diagnose::encoder
