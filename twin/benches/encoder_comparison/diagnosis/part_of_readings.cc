@@ -3,7 +3,7 @@
 namespace twinbench::diagnose::encoder {
 namespace {
 
-constexpr std::size_t kEnough = 4000, kInARow = 16;
+constexpr std::size_t kEnoughReadings = 4000, kInARow = 16;
 
 bool BeginsPass(const std::vector<Reading>& readings, std::size_t i) {
   return i == 0 || readings[i].pass != readings[i - 1].pass || readings[i].setup != readings[i - 1].setup;
@@ -12,8 +12,8 @@ bool BeginsPass(const std::vector<Reading>& readings, std::size_t i) {
 }  // namespace
 
 std::vector<Reading> PartOf(const std::vector<Reading>& readings) {
-  if (readings.size() < 2 * kEnough) return readings;
-  const std::size_t every = readings.size() / kEnough;
+  if (readings.size() < 2 * kEnoughReadings) return readings;
+  const std::size_t every = readings.size() / kEnoughReadings;
   std::vector<Reading> part;
   std::size_t in_pass = 0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
