@@ -74,12 +74,13 @@ std::vector<Reading> AsFollowed(std::vector<Reading> used, const Schedule& s) {
   return used;
 }
 
-/// Readings that are rounded err by no less than that.
+/// Readings that are rounded err by no less than that, and all by the arithmetic of many turns.
 void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Reading>& used) {
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
   run.rounding = std::max(device.resolution_rad, CommonStep(shown_rad));
-  const double rounded_rad = run.rounding / std::sqrt(12.0);
+  constexpr double kArithmetic_rad = 1e-12;
+  const double rounded_rad = std::max(run.rounding / std::sqrt(12.0), kArithmetic_rad);
   run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
   const double sigma_rad = run.sigma_stated ? std::hypot(device.noise_rad, rounded_rad)
                                             : std::max(EstimateNoise_rad(run.schedule, run.residual), rounded_rad);

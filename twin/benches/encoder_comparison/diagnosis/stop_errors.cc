@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "twin/core/units.h"
@@ -83,15 +84,23 @@ Eigen::MatrixXd Targets(const SignalContext& c) {
 
 bool LeaveErrorsOfTargets(const LargeCauses& large, const Eigen::MatrixXd& targets) {
   constexpr double kClearly =
-      3.0;  // mean square of what is the same at a target, in what is not: F of 1 in 1e3 runs
+      3.0;                     // mean square of what is the same at a target, in what is not: F of 1 in 1e3 runs
+  constexpr int kSeveral = 2;  // shapes without a name: one alone says more than a table
   const Searched& last = large.Last();
-  const bool has_shape = std::ranges::any_of(last.analysis.found.terms, [&](const Term& term) {
+  const auto shapes = std::ranges::count_if(last.analysis.found.terms, [&](const Term& term) {
     return IsOfAngle(last.families[static_cast<std::size_t>(term.family)]);
   });
   const Eigen::VectorXd left = LeftOver(large), same = MeansAt(targets, left);
   const auto stops = static_cast<double>(targets.cols()), rows = static_cast<double>(targets.rows());
-  const double between = same.squaredNorm() / stops, within = (left - same).squaredNorm() / (rows - stops);
-  return has_shape || between > kClearly * within;
+  constexpr double kRounding_rad = 1e-10;  // of the arithmetic, which is regular too
+  const double least = std::pow(kRounding_rad, 2);
+  const double between = same.squaredNorm() / stops;
+  const double within = std::max(least, (left - same).squaredNorm() / (rows - stops));
+  // Rounding is the same at every visit, too.
+  const double rounding = rows / stops * std::pow(last.encoder.run.rounding, 2) / 12.0;
+  const double all = large.first->encoder.run.residual.squaredNorm();
+  const bool is_small = same.squaredNorm() < tuning::kSmallRest * all;
+  return shapes >= kSeveral || (!is_small && between > kClearly * (within + rounding));
 }
 
 void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {
