@@ -79,11 +79,12 @@ void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Re
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
   run.rounding = std::max(device.resolution_rad, CommonStep(shown_rad));
-  constexpr double kArithmetic_rad = 1e-12;
-  const double rounded_rad = std::max(run.rounding / std::sqrt(12.0), kArithmetic_rad);
+  constexpr double kArithmetic_rad = 1e-12;  // where nothing else says what the noise is
+  const double rounded_rad = run.rounding / std::sqrt(12.0);
   run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
-  const double sigma_rad = run.sigma_stated ? std::hypot(device.noise_rad, rounded_rad)
-                                            : std::max(EstimateNoise_rad(run.schedule, run.residual), rounded_rad);
+  const double sigma_rad =
+      run.sigma_stated ? std::hypot(device.noise_rad, rounded_rad)
+                       : std::max({EstimateNoise_rad(run.schedule, run.residual), rounded_rad, kArithmetic_rad});
   run.sigma = Eigen::VectorXd::Constant(run.residual.size(), sigma_rad);
 }
 
