@@ -24,7 +24,8 @@ std::vector<Design> DesignsFor(const std::string& effect, const std::string& ben
   if (bench == kHobBench) return {Design::kHob};
   if (bench == kCircularBench) return {Design::kCircles};
   if (bench == kFreeformBench) return {Design::kFreeform};
-  if (effect == "latency" || effect == "clock_rate" || effect == "settling") return {Design::kSweep};
+  if (effect == "settling") return {};
+  if (effect == "latency" || effect == "clock_rate") return {Design::kSweep};
   if (NeedsAllKnown(effect)) return {Design::kStopsAllKnown, Design::kSweepAllKnown};
   return {Design::kStops, Design::kSweep};
 }
