@@ -29,10 +29,11 @@ TEST(EffectCatalogue, HasTheEffectsOfTheRotaryBench) {
 TEST(EffectCatalogue, HasTheEffectsOfTheAngleComparison) {
   std::vector<std::string> names;
   for (const EffectEntry& entry : EffectCatalogue("encoder_comparison")) names.push_back(entry.name);
-  EXPECT_THAT(names, testing::UnorderedElementsAre(
-                         "eccentricity", "ellipticity", "signal_offset", "amplitude_mismatch", "quadrature_error",
-                         "signal_clipping", "interpolation", "latency", "clock_rate", "backlash", "hysteresis",
-                         "scale", "drift", "slip", "periodic", "gear_mesh", "reference_fault", "outliers"));
+  EXPECT_THAT(names,
+              testing::UnorderedElementsAre("eccentricity", "ellipticity", "signal_offset", "amplitude_mismatch",
+                                            "quadrature_error", "signal_clipping", "interpolation", "latency",
+                                            "clock_rate", "settling", "backlash", "hysteresis", "scale", "drift",
+                                            "slip", "periodic", "gear_mesh", "reference_fault", "outliers"));
   EXPECT_EQ(FindEffect("psd_gain", "encoder_comparison"), nullptr);
   EXPECT_THROW(EffectCatalogue("lathe"), InputError);
 }

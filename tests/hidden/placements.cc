@@ -16,13 +16,15 @@ bool NeedsAllKnown(const std::string& effect) {
   return effect == "interpolation" || effect == "gear_mesh" || effect == "reference_fault";
 }
 
-/// Designs that can show an effect at all: a device at rest is not late.
+/// Designs that can show an effect at all: a device at rest is not late, and one that is read
+/// once a stop does not show how it comes to rest.
 std::vector<Design> DesignsFor(const std::string& effect, const std::string& bench) {
   if (bench == kRotaryBench) return {Design::kRotary};
   if (bench == kTurntableBench) return {Design::kTurntable};
   if (bench == kHobBench) return {Design::kHob};
   if (bench == kCircularBench) return {Design::kCircles};
   if (bench == kFreeformBench) return {Design::kFreeform};
+  if (effect == "settling") return {};
   if (effect == "latency" || effect == "clock_rate") return {Design::kSweep};
   if (NeedsAllKnown(effect)) return {Design::kStopsAllKnown, Design::kSweepAllKnown};
   return {Design::kStops, Design::kSweep};

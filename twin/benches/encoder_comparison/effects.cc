@@ -86,6 +86,11 @@ std::vector<EffectEntry> MotionEffects() {
         Parameter("settles_over", "deg", 20.0, 1e-6, 36000.0, "travel in which 63 % is reached"),
         Parameter("start", "1", 0.0, -1.0, 1.0, "what it begins with, 1: settled in the upward sense"),
         Approach()}},
+      {"settling",
+       "device that comes to rest after the reference: what is left of a move dies out while it stands",
+       {},
+       {Signed("amplitude", "deg", 0.01, 30.0, "behind, in motion and at the first reading of a stop"),
+        Parameter("time_constant", "s", 1.0, 1e-3, 1e4, "of the decay")}},
       // 1e-6 to 1e-3 for a device without closure
       {"scale",
        "device that counts too much or too little a turn",

@@ -20,6 +20,7 @@ const std::vector<diagnose::Split>& Splits() {
       {{"backlash", "latency", "hysteresis"}, "the same passes at half and at twice the speed, and stops at rest"},
       {{"clock_rate", "latency", "scale", "hysteresis", "backlash"},
        "the same passes at another speed, and again after some minutes without a new start of the clocks"},
+      {{"settling", "hysteresis", "backlash", "latency"}, "several readings at every stop while it comes to rest"},
       {{"interpolation", "gear_mesh", "periodic"}, "the same run with the gear taken out"},
       {{"drift", "slip", "outliers"}, "a quarter of an hour at rest at one angle, and the same passes again"},
       {{"drift", "scale", "backlash"}, "several turns in both directions, with a return to the first angle"}};

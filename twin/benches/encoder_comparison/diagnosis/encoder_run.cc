@@ -83,16 +83,18 @@ Eigen::VectorXd RelativeNoise(const std::vector<Reading>& used) {
   return (usual / Eigen::Map<const Eigen::ArrayXd>(samples.data(), std::ssize(samples))).sqrt();
 }
 
-/// Readings that are rounded err by no less than that.
+/// Readings that are rounded err by no less than that, and all by the arithmetic of many turns.
 void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Reading>& used) {
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
   run.rounding = std::max(device.resolution_rad, CommonStep(shown_rad));
+  constexpr double kArithmetic_rad = 1e-12;  // where nothing else says what the noise is
   const double rounded_rad = run.rounding / std::sqrt(12.0);
   run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
   const Eigen::VectorXd relative = RelativeNoise(used);
-  const double noise_rad =
-      run.sigma_stated ? device.noise_rad : EstimateNoise_rad(run.schedule, run.residual, relative);
+  const double noise_rad = run.sigma_stated
+                               ? device.noise_rad
+                               : std::max(EstimateNoise_rad(run.schedule, run.residual, relative), kArithmetic_rad);
   const auto and_rounding = [=](double own_rad) { return std::hypot(own_rad, rounded_rad); };
   run.sigma = relative * noise_rad;
   run.sigma = run.sigma_stated ? run.sigma.unaryExpr(and_rounding).eval() : run.sigma.cwiseMax(rounded_rad).eval();

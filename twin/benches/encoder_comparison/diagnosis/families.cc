@@ -1,5 +1,6 @@
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -32,6 +33,34 @@ std::vector<double> Spacings_rad(const SignalContext& c) {
   return spacings;
 }
 
+/// How much of what is left, in units of noise, columns explain that the free unknowns cannot.
+double ExplainedBy(const EncoderRun& encoder, const Eigen::MatrixXd& columns) {
+  const Eigen::MatrixXd free = encoder.run.nuisance.jacobian.toDense();
+  const auto without = [fit = free.completeOrthogonalDecomposition(), &free](const Eigen::MatrixXd& rows) {
+    return Eigen::MatrixXd(rows - free * fit.solve(rows));
+  };
+  const Eigen::MatrixXd own = without(columns);
+  const Eigen::VectorXd left = without(encoder.run.residual);
+  return (own * own.completeOrthogonalDecomposition().solve(left)).squaredNorm() /
+         std::pow(encoder.run.sigma.mean(), 2);
+}
+
+/// A clock that runs fast shows in proportion to the speed and to the time. What goes with the speed alone, however
+/// it does, or with another power of either is none, however much it looks like one.
+bool IsNoClock(const EncoderRun& encoder) {
+  constexpr double kClearly = 25.0;  // power, so many units of noise: no chance
+  const SignalContext& c = encoder.context;
+  if (!c.Moves()) return true;
+  const Eigen::ArrayXd v = c.velocity_rad_s / c.velocity_rad_s.cwiseAbs().maxCoeff(), t = c.time_s;
+  Eigen::MatrixXd of_speed(v.size(), 3);
+  of_speed << v.matrix(), (v * v.abs()).matrix(), v.sign().matrix();
+  double others = ExplainedBy(encoder, of_speed);
+  for (const Eigen::ArrayXd& other :
+       {Eigen::ArrayXd(v * v.abs() * t), Eigen::ArrayXd(v.abs() * t), Eigen::ArrayXd(v * t * t)})
+    others = std::max(others, ExplainedBy(encoder, other.matrix()));
+  return others > ExplainedBy(encoder, (v * c.since_start_s.array()).matrix()) + kClearly;
+}
+
 }  // namespace
 
 double FinestSpacing_rad(const SignalContext& context) {
@@ -57,6 +86,8 @@ std::vector<Family> Families(const EncoderRun& encoder, const std::vector<std::s
       TimeSeriesOf(encoder.run.schedule, std::vector<int>(encoder.context.reading.size(), 0), 1);
   std::vector<Family> families = NamedFamilies(context, series, plausible_rad);
   std::erase_if(families, [&](const Family& family) { return Has(excluded, family.effect); });
+  if (IsNoClock(encoder))
+    std::erase_if(families, [](const Family& family) { return family.effect == "clock_rate"; });
   // One mounting cannot tell a fault of the device from the same order of the reference.
   const std::vector<std::string> doubled = {"eccentricity",       "signal_offset",    "ellipticity",
                                             "amplitude_mismatch", "quadrature_error", "periodic"};

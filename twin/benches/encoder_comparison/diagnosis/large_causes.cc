@@ -402,27 +402,7 @@ class Search {
     return Take(LedBy({cause}, 0, last.encoder.run.bench));
   }
 
-  /// A clock that runs fast shows in proportion to the speed and to the time. What goes with another power of
-  /// either is not one, however much it looks like it.
-  bool IsInProportion(const LargeCause& next) const {
-    if (next.effect.name != "clock_rate") return true;
-    const SignalContext& c = large_.Last().encoder.context;
-    const Eigen::ArrayXd v = c.velocity_rad_s, t = c.since_start_s;
-    const double own = Explains(v * t);
-    return std::max({Explains(v * v.abs() * t), Explains(v.abs() * t), Explains(v * t * t),
-                     Explains(v * v.abs())}) < own;
-  }
-
-  /// Of what is left, by one column alone.
-  double Explains(const Eigen::VectorXd& column) const {
-    const Eigen::VectorXd weight = large_.first->encoder.run.sigma.cwiseInverse();
-    const Eigen::VectorXd white = weight.cwiseProduct(column), projected = projector_->Apply(white).col(0);
-    const double shared = projected.dot(weight.cwiseProduct(large_.Last().encoder.run.residual));
-    return shared * shared / std::max(white.dot(projected), 1e-300);
-  }
-
   bool Take(const LargeCause& next) {
-    if (!IsInProportion(next)) return false;
     std::vector<LargeCause> causes = large_.causes;
     causes.push_back(next);
     // Of a cause whose size is not known there is nothing to be asked.

@@ -218,6 +218,25 @@ void AddHysteresis(const Context& context, Candidates& named) {
   family.parameters = AsInCatalogue(named.catalogue(), "hysteresis", "lag", {"settles_over", "start", "approach"});
 }
 
+/// Only where stops were read again and again: else it is play, or something that goes with the speed.
+void AddSettling(const Context& context, Candidates& named) {
+  const Eigen::VectorXd standing_s = Standing_s(*context);
+  const auto again = (standing_s.array() > 0.0).count();
+  constexpr Eigen::Index kFewest = 10;
+  if (context->Moves() || again < kFewest) return;
+  std::vector<double> each_s;
+  for (const double s : standing_s) {
+    if (s > 0.0) each_s.push_back(s);
+  }
+  const double shortest_s = 0.3 * std::ranges::min(each_s), longest_s = 2.0 * std::ranges::max(each_s);
+  Shape time_constant{"time_constant", "s", 1.0, shortest_s, longest_s, Ratios(shortest_s, longest_s, 16)};
+  time_constant.is_inside = true;
+  Family& family =
+      named.AddOver(Shown("settling", -1.0), {"amplitude"}, {time_constant},
+                    [context](const Eigen::VectorXd& s) { return Eigen::MatrixXd(Settling(*context, s[0])); });
+  family.parameters = AsInCatalogue(named.catalogue(), "settling", "amplitude", {"time_constant"});
+}
+
 void AddMotion(const Context& context, Candidates& named) {
   const SignalContext& c = *context;
   const Eigen::VectorXd sense = Senses(c).front();
@@ -229,6 +248,7 @@ void AddMotion(const Context& context, Candidates& named) {
     AddBacklash(context, named);
     AddHysteresis(context, named);
   }
+  AddSettling(context, named);
   named.Add(Shown("scale"), {"ratio"}, c.reference_rad);
 }
 

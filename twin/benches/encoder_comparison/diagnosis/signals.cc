@@ -81,6 +81,30 @@ double RunUp_rad(const SignalContext& context) {
   return steps_rad.empty() ? 0.0 : 0.5 * Median(std::move(steps_rad));
 }
 
+Eigen::VectorXd Standing_s(const SignalContext& c) {
+  constexpr double kStands_rad = 1e-3 * units::deg;  // a reference at rest moves by its noise
+  Eigen::VectorXd standing_s = Eigen::VectorXd::Zero(c.Readings());
+  for (Eigen::Index i = 1; i < standing_s.size(); ++i) {
+    const bool came_back = c.direction[i] * c.direction[i - 1] < 0;  // to the same stop
+    if (came_back || std::abs(c.reference_rad[i] - c.reference_rad[i - 1]) > kStands_rad) continue;
+    standing_s[i] = standing_s[i - 1] + c.time_s[i] - c.time_s[i - 1];
+  }
+  return standing_s;
+}
+
+Eigen::VectorXd Settling(const SignalContext& c, double time_constant_s) {
+  const Eigen::VectorXd standing_s = Standing_s(c);
+  const bool has_run_up = RunUp_rad(c) > 0.0;
+  Eigen::VectorXd left(c.Readings());
+  double sense = has_run_up ? c.direction[0] : 0.0;
+  for (Eigen::Index i = 0; i < left.size(); ++i) {
+    if (i > 0 && standing_s[i] == 0.0)
+      sense = has_run_up ? c.direction[i] : Sign(c.reference_rad[i] - c.reference_rad[i - 1]);
+    left[i] = sense * std::exp(-standing_s[i] / time_constant_s);
+  }
+  return left;
+}
+
 Eigen::VectorXd Play(const SignalContext& context, double crossed_over_rad, double start, double run_up_rad) {
   const double half_rad = 0.5 * crossed_over_rad;
   double follower_rad = context.reference_rad[0] + start * half_rad;

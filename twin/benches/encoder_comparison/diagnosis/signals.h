@@ -50,6 +50,13 @@ Eigen::VectorXd TravelSinceReversal_rad(const SignalContext& context);
 /// approached over the last `run_up_rad` in its direction.
 Eigen::MatrixXd Relaxation(const SignalContext& context, double settles_over_rad, double run_up_rad);
 
+/// What a move leaves, with its sense, and how it dies out while the reference stands: 1 in motion and at the first
+/// reading of a stop.
+Eigen::VectorXd Settling(const SignalContext& context, double time_constant_s);
+
+/// How long the reference had stood at each reading since the first one there [s].
+Eigen::VectorXd Standing_s(const SignalContext& context);
+
 /// Where a follower with play stands behind (-) or before (+) the shaft, in shares of the way `crossed_over_rad`
 /// that the shaft goes until it is dragged along: the play operator, -0.5 to 0.5. `start` is where in the gap it
 /// begins, -1 behind to 1 before; the way between readings is as in Relaxation.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "twin/core/units.h"
@@ -50,6 +51,11 @@ Eigen::VectorXd MeansAt(const Eigen::MatrixXd& targets, const Eigen::VectorXd& r
   return targets * Eigen::VectorXd((targets.transpose() * rows).cwiseQuotient(count));
 }
 
+/// A shape without a name that goes by the angle.
+bool IsOfAngle(const Family& family) {
+  return family.kind == Kind::kUnknown && (family.effect == "harmonic" || family.effect == "line");
+}
+
 /// The curve as a structure without a name.
 Accepted Curve(const Eigen::VectorXd& error) {
   Accepted curve;
@@ -78,18 +84,26 @@ Eigen::MatrixXd Targets(const SignalContext& c) {
 
 bool LeaveErrorsOfTargets(const LargeCauses& large, const Eigen::MatrixXd& targets) {
   constexpr double kClearly =
-      3.0;  // mean square of what is the same at a target, in what is not: F of 1 in 1e3 runs
+      3.0;                     // mean square of what is the same at a target, in what is not: F of 1 in 1e3 runs
+  constexpr int kSeveral = 2;  // shapes without a name: one alone says more than a table
   const Searched& last = large.Last();
+  const auto shapes = std::ranges::count_if(last.analysis.found.terms, [&](const Term& term) {
+    return IsOfAngle(last.families[static_cast<std::size_t>(term.family)]);
+  });
   const Eigen::VectorXd left = LeftOver(large), same = MeansAt(targets, left);
   const auto stops = static_cast<double>(targets.cols()), rows = static_cast<double>(targets.rows());
-  const double between = same.squaredNorm() / stops, within = (left - same).squaredNorm() / (rows - stops);
-  // What is rounded at a target is rounded so at every visit; and readings without noise are all the same.
-  constexpr double kNothing_rad = 1e-9;
-  const double step = last.encoder.run.rounding, visits = rows / stops;
-  const double chance = within + visits * (step * step / 12.0 + kNothing_rad * kNothing_rad);
+  constexpr double kRounding_rad = 1e-10;  // of the arithmetic, which is regular too
+  const double least = std::pow(kRounding_rad, 2);
+  const double between = same.squaredNorm() / stops;
+  const double within = std::max(least, (left - same).squaredNorm() / (rows - stops));
+  // Rounding is the same at every visit, too.
+  const double rounding = rows / stops * std::pow(last.encoder.run.rounding, 2) / 12.0;
+  const double all = large.first->encoder.run.residual.squaredNorm();
+  const bool is_small = same.squaredNorm() < tuning::kSmallRest * all;
   // So many pieces are no causes: each of a curve that any sum of waves comes close to.
   constexpr std::size_t kPieces = 6;
-  return large.causes.size() + last.analysis.found.terms.size() >= kPieces || between > kClearly * chance;
+  const bool in_pieces = large.causes.size() + last.analysis.found.terms.size() >= kPieces;
+  return in_pieces || shapes >= kSeveral || (!is_small && between > kClearly * (within + rounding));
 }
 
 void AddErrorsOfTargets(const LargeCauses& large, DiagnosisRun& result) {

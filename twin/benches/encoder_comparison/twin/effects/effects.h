@@ -17,6 +17,7 @@ AngleEffectPointer MakeLatency(const EffectSettings&);
 AngleEffectPointer MakeClockRate(const EffectSettings&);  // a latency that grows
 AngleEffectPointer MakeGap(const EffectSettings&);        // backlash of the device's shaft
 AngleEffectPointer MakeHysteresis(const EffectSettings&);
+AngleEffectPointer MakeSettling(const EffectSettings&);
 AngleEffectPointer MakeScale(const EffectSettings&);
 AngleEffectPointer MakeZeroDrift(const EffectSettings&);
 AngleEffectPointer MakeZeroSlip(const EffectSettings&);

@@ -35,6 +35,7 @@ AngleEffectPointer MakeAngleEffect(const EffectSettings& effect, const Scenario&
       {"backlash", [&] { return MakeGap(effect); }},
       {"hysteresis", [&] { return MakeHysteresis(effect); }},
       {"signal", [&] { return MakeAngleSignal(effect, scenario); }},
+      {"settling", [&] { return MakeSettling(effect); }},
       {"scale", [&] { return MakeScale(effect); }},
       {"drift", [&] { return MakeZeroDrift(effect); }},
       {"slip", [&] { return MakeZeroSlip(effect); }},
