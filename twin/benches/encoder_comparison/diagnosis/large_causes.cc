@@ -339,11 +339,12 @@ class Search {
     } while (SearchOn());
   }
 
-  /// For more causes, where the last search ended at a few.
+  /// For more causes, where the last search ended at a few, or took for noise what more of them would explain.
   /// @return false if it did not.
   bool SearchOn() {
     std::unique_ptr<Searched>& last = large_.last ? large_.last : large_.first;
-    if (std::ssize(last->analysis.found.terms) != most_searched_ || most_searched_ == kMostCauses) return false;
+    const bool is_cut = std::ssize(last->analysis.found.terms) == most_searched_ || !last->analysis.repairs.empty();
+    if (!is_cut || most_searched_ == kMostCauses) return false;
     last->analysis.scanner.reset();
     last = SearchIn(std::move(last->encoder), Excluded(large_.causes), For(kMostCauses));
     most_searched_ = kMostCauses;
@@ -429,7 +430,9 @@ class Search {
       AskedAgain again = Ask(changed);
       const double left = PowerOf(again.left);
       constexpr double kBetter = 25.0;  // power, so many units of noise: no chance
-      const double noise = std::max(1.0, std::min(left, power) / projector_->DegreesOfFreedom());
+      // Of readings far apart the estimate is too large, structure being in it.
+      const double least = large_.first->encoder.run.sigma_stated ? 1.0 : 1e-4;
+      const double noise = std::max(least, std::min(left, power) / projector_->DegreesOfFreedom());
       if (left > power + kBetter * noise) as_likely.pop_back();
       if (!(left < power - kBetter * noise)) continue;
       causes = std::move(changed);
