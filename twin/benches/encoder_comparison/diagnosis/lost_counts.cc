@@ -71,7 +71,8 @@ std::vector<double> Spots_rad(const Eigen::VectorXd& device_rad) {
 /// Where something happens more than once: a single step has a name.
 std::vector<double> PassedAgain(Passing passing, const Eigen::VectorXd& device_rad, std::vector<double> spots_rad) {
   std::erase_if(spots_rad, [&](double spot_rad) {
-    const Eigen::VectorXd course = CourseOf(passing, device_rad, spot_rad);
+    const Passing jumps = passing == Passing::kCatchesUp ? Passing::kComesBack : passing;
+    const Eigen::VectorXd course = CourseOf(jumps, device_rad, spot_rad);
     return StepsOf(course, std::vector<int>(static_cast<std::size_t>(course.size()))).size() < 2;
   });
   return spots_rad;
