@@ -430,9 +430,7 @@ class Search {
       AskedAgain again = Ask(changed);
       const double left = PowerOf(again.left);
       constexpr double kBetter = 25.0;  // power, so many units of noise: no chance
-      // Of readings far apart the estimate is too large, structure being in it.
-      const double least = large_.first->encoder.run.sigma_stated ? 1.0 : 1e-4;
-      const double noise = std::max(least, std::min(left, power) / projector_->DegreesOfFreedom());
+      const double noise = std::max(1.0, std::min(left, power) / projector_->DegreesOfFreedom());
       if (left > power + kBetter * noise) as_likely.pop_back();
       if (!(left < power - kBetter * noise)) continue;
       causes = std::move(changed);
