@@ -126,7 +126,8 @@ Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidenc
   for (;;) {
     TakeAmong(problem, shapes, evidence, term);
     const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
-    if (term.statistic < problem.threshold) break;
+    const bool all_refused = !(evidence.log_bayes(term.family, 0) > kNever);
+    if (term.statistic < problem.threshold || all_refused) break;
     if (IsInside(family, term.shape) && IsThere(problem, others, data, term)) break;
     evidence.log_bayes(term.family, 0) = as_scanned[term.family] = kNever;
     term.statistic = statistic();
