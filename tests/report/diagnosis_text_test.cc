@@ -6,6 +6,7 @@
 #include "tests/diagnose/found_causes.h"
 #include "tests/report/page_lines.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/words.h"
 #include "twin/report/text_table.h"
 
 namespace twinbench::report {
@@ -143,8 +144,8 @@ TEST(DiagnosisText, KeepsWarningsInTheShortForm) {
   run.diagnosis.gain.positive = false;
   EXPECT_THAT(Page(run), AllOf(HasSubstr("! on passes that it was not fitted to"), Not(HasSubstr("Gain:"))));
   // The diagnosis itself may have said so.
-  run.diagnosis.notes = {"the gain is not above zero"};
-  EXPECT_THAT(Page(run), AllOf(HasSubstr("! the gain is not"), Not(HasSubstr("! on passes"))));
+  run.diagnosis.notes = {diagnose::kNoGainNote};
+  EXPECT_THAT(Page(run), AllOf(HasSubstr("! the gain on held-out"), Not(HasSubstr("! on passes"))));
   DiagnosisRun clean;
   diagnose::ScreenTest loud;
   loud.name = "raw: hum";
