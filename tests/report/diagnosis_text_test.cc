@@ -151,7 +151,8 @@ TEST(DiagnosisText, KeepsWarningsInTheShortForm) {
   loud.name = "raw: hum";
   loud.p = 1e-9;
   const Shown shown = ShownOf({});
-  EXPECT_THAT(DiagnosisText({clean, shown, "run", {loud}}, {}), HasSubstr("! 1 of 1 residual tests stand out nevertheless: raw: hum\n"));
+  EXPECT_THAT(DiagnosisText({clean, shown, "run", {loud}}, {}),
+              HasSubstr("! 1 of 1 residual tests stand out nevertheless: raw: hum\n"));
 }
 
 TEST(DiagnosisText, IsPlainTextOfAtMost80Columns) {

@@ -111,6 +111,8 @@ void JudgeByFile(const std::vector<Reading>& readings, const Scenario& scenario,
   };
   Diagnosis& d = result.diagnosis;
   try {
+    if (options.model != Estimator::kRigorous)
+      throw InputError("extended.toml", "the published equations know no effects", "the rigorous model");
     const LostInWriting lost(result);
     Eigen::VectorXd removed = removed_by(result);
     if (lost.IsSeen(result, removed)) TakeIfItHelps(lost, removed_by, result, removed);
