@@ -87,8 +87,10 @@ Answer Judge(const Truth& truth, const Diagnosis& diagnosis) {
   answer.alarm = diagnosis.verdict != Verdict::kNone;
   FindWrong(diagnosis, truth, answer);
   answer.missing = MissingIn(diagnosis, truth);
-  answer.stated_gain = diagnosis.gain.fraction_removed;
-  answer.stated_interval = diagnosis.gain.interval95;
+  const diagnose::Gain& gain = diagnosis.gain;
+  answer.stated_gain = gain.another_run;
+  answer.stated_interval = gain.interval95;
+  if (gain.another_run != gain.fraction_removed) answer.stated_interval = {gain.another_run, gain.another_run};
   return answer;
 }
 

@@ -22,7 +22,7 @@ struct Answer {
 
   bool was_extended = false;  // a scenario was written
   std::string second;         // what the second diagnosis says of the same readings; empty: nothing
-  double stated_gain = kNaN, file_gain = kNaN;
+  double stated_gain = kNaN, file_gain = kNaN;  // on another run, without tables of the first one
   std::array<double, 2> stated_interval = {kNaN, kNaN};
 };
 

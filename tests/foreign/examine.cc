@@ -40,8 +40,9 @@ void HoldToTheFile(const Machine& machine, const std::vector<Reading>& readings,
   answer.was_extended = true;
   try {
     const std::string text = diagnose::ExtendedToml(machine.believed, found, "foreign case");
-    const Scenario extended = ParseScenario(text, "extended.toml", ".");
+    Scenario extended = ParseScenario(text, "extended.toml", ".");
     answer.second = Again(readings, extended, options);
+    std::erase_if(extended.empiricals, [](const EmpiricalSettings& table) { return table.by == "time"; });
     if (machine.truth.repeats && std::isfinite(answer.stated_gain)) answer.file_gain = GainOn(machine, extended);
   } catch (const InputError& refusal) {
     answer.second = std::string("refused: ") + refusal.what();

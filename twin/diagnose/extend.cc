@@ -192,9 +192,12 @@ EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std:
   return effect;
 }
 
+bool IsTabulated(const Accepted& accepted, const LinearRun& run) {
+  return accepted.family.kind == Kind::kUnknown && SignalsOf(accepted, run).empty();
+}
+
 bool IsRepeatedOnly(const Accepted& accepted, const LinearRun& run) {
-  const Family& family = accepted.family;
-  return family.kind == Kind::kUnknown && !family.goes_by_time && SignalsOf(accepted, run).empty();
+  return !accepted.family.goes_by_time && IsTabulated(accepted, run);
 }
 
 Scenario Extend(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance) {

@@ -25,6 +25,9 @@ EffectSettings EffectOf(const Cause& cause, const std::string& bench, const std:
 /// has its shape, and it goes by more than time.
 bool IsRepeatedOnly(const Accepted& accepted, const LinearRun& run);
 
+/// Whether it becomes a table of this run, by reading or by time: it says nothing of another run.
+bool IsTabulated(const Accepted& accepted, const LinearRun& run);
+
 /// Extend() as TOML, below a comment that says in a line or two what was added.
 std::string ExtendedToml(const Scenario& scenario, const DiagnosisRun& run, const std::string& provenance);
 

@@ -141,8 +141,11 @@ Predicted Predict(const LinearRun& run, const NoiseModel& noise, const Model& mo
   return predicted;
 }
 
+/// Whether a cause predicts nothing of the readings in question.
+using TellsNothing = bool (*)(const Accepted& accepted, const LinearRun& run);
+
 Model ModelOf(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted,
-              const Eigen::VectorXd& written) {
+              const Eigen::VectorXd& written, TellsNothing tells_nothing) {
   Model model{ColumnsOf(accepted, run.Rows()), {}, {}, written};
   const Projector all(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
   const Eigen::MatrixXd y = run.residual;
@@ -151,19 +154,14 @@ Model ModelOf(const LinearRun& run, const NoiseModel& noise, const std::vector<A
   model.repeated.resize(model.amplitudes.size());
   Eigen::Index column = 0;
   for (const Accepted& a : accepted) {
-    model.repeated.segment(column, a.columns.cols()).setConstant(IsRepeatedOnly(a, run) ? 1.0 : 0.0);
+    model.repeated.segment(column, a.columns.cols()).setConstant(tells_nothing(a, run) ? 1.0 : 0.0);
     column += a.columns.cols();
   }
   return model;
 }
 
-}  // namespace
-
-Gain MeasureGain(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted,
-                 const Eigen::VectorXd& written) {
+Gain GainOf(const LinearRun& run, const NoiseModel& noise, const Model& model) {
   Gain gain;
-  if (accepted.empty()) return gain;
-  const Model model = ModelOf(run, noise, accepted, written);
   Predicted predicted = Predict(run, noise, model, MakeFolds(run.schedule));
   if (predicted.least_information < kLeastInformation) {
     Predicted by_time = Predict(run, noise, model, FoldsOfTime(run.schedule));
@@ -172,6 +170,25 @@ Gain MeasureGain(const LinearRun& run, const NoiseModel& noise, const std::vecto
   if (predicted.blocks.empty()) return gain;
   gain.folds = predicted.folds;
   FillGain(predicted.blocks, run.sigma_stated, noise.rho, gain);
+  return gain;
+}
+
+/// Tables by time tell of this run's readings and not of another's.
+double OnAnotherRun(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted,
+                    const Eigen::VectorXd& written, const Gain& gain) {
+  const bool only_here = std::ranges::any_of(
+      accepted, [&](const Accepted& a) { return IsTabulated(a, run) && !IsRepeatedOnly(a, run); });
+  if (!only_here) return gain.fraction_removed;
+  return GainOf(run, noise, ModelOf(run, noise, accepted, written, IsTabulated)).fraction_removed;
+}
+
+}  // namespace
+
+Gain MeasureGain(const LinearRun& run, const NoiseModel& noise, const std::vector<Accepted>& accepted,
+                 const Eigen::VectorXd& written) {
+  if (accepted.empty()) return {};
+  Gain gain = GainOf(run, noise, ModelOf(run, noise, accepted, written, IsRepeatedOnly));
+  gain.another_run = OnAnotherRun(run, noise, accepted, written, gain);
   return gain;
 }
 

@@ -23,6 +23,8 @@ namespace twinbench::diagnose {
 ///
 /// How before, after and floor become fraction_removed and its interval: held_out.h.
 ///
+/// another_run: the same without the tables of this run, by reading or by time.
+///
 /// @param written  What the written scenario takes from the residual, by row [SI].
 /// @return folds = 0 and NaN if nothing was accepted or nothing can be held out.
 /// Not included: that the causes were chosen, and their shapes fitted, on all readings.

@@ -80,6 +80,7 @@ double ShownByYaw(const LinearRun& run) {
 json GainJson(const Gain& gain, const LinearRun& run) {
   json out = {{"fraction_removed", Number(gain.fraction_removed)},
               {"interval95", {Number(gain.interval95[0]), Number(gain.interval95[1])}},
+              {"another_run", Number(gain.another_run)},
               {"positive", gain.positive},
               {"folds", gain.folds}};
   const bool is_length = run.unit == "um";

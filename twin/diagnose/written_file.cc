@@ -89,7 +89,7 @@ void TakeIfItHelps(const LostInWriting& lost, const RemovedBy& removed_by, Diagn
 /// The unbiased fraction and its interval may lie anywhere; none of a variance can be removed twice, and a model
 /// that adds as much as there was to remove is no better than one that adds more.
 void Bound(Gain& gain) {
-  for (double* value : {&gain.fraction_removed, &gain.interval95[0], &gain.interval95[1]})
+  for (double* value : {&gain.fraction_removed, &gain.interval95[0], &gain.interval95[1], &gain.another_run})
     *value = std::clamp(*value, -1.0, 1.0);
 }
 

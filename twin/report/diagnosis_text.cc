@@ -81,10 +81,13 @@ std::string ChanceInWords(const Diagnosis& d) {
 
 std::string RemovedInWords(const diagnose::Gain& gain) {
   if (gain.folds == 0 || !std::isfinite(gain.fraction_removed)) return "";
-  return Sentence("Removed: ",
-                  fmt::format("{} (95 % interval {} to {}) of what a perfect model would remove there",
-                              diagnose::Percent(gain.fraction_removed), diagnose::Percent(gain.interval95[0]),
-                              diagnose::Percent(gain.interval95[1])));
+  std::string text = fmt::format("{} (95 % interval {} to {}) of what a perfect model would remove there",
+                                 diagnose::Percent(gain.fraction_removed), diagnose::Percent(gain.interval95[0]),
+                                 diagnose::Percent(gain.interval95[1]));
+  if (gain.another_run != gain.fraction_removed && std::isfinite(gain.another_run))
+    text += fmt::format("; {} on another run, of which this run's tables say nothing: leave them out there",
+                        diagnose::Percent(gain.another_run));
+  return Sentence("Removed: ", text);
 }
 
 std::string NoiseInWords(const Diagnosis& d) {

@@ -1,159 +1,28 @@
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
 
-#include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_block.h"
 #include "twin/benches/encoder_comparison/diagnosis/signal_guess.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
 #include "twin/benches/encoder_comparison/format.h"
-#include "twin/core/units.h"
-#include "twin/diagnose/asked_again.h"
 #include "twin/diagnose/conclusion.h"
 #include "twin/diagnose/engine/answer.h"
-#include "twin/diagnose/engine/refine.h"
-#include "twin/diagnose/extend.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose::encoder {
 namespace {
 
-/// Length of a signature in units of noise from which it is large: a hundredth of it, which is what first order may
-/// well miss, is then half a deviation.
-constexpr double kLarge = 50.0;
 constexpr std::size_t kMostLarge = 16;
 /// An angle device may well have an error of many orders. As long as something large is found, the first few are
 /// enough: what a large cause leaves to first order is explained by shapes that are gone once the twin has it.
 constexpr int kMostCauses = 8, kFewCauses = 3;
 
-std::unique_ptr<Searched> SearchIn(EncoderRun encoder, const std::vector<std::string>& excluded,
-                                   const AnalysisOptions& how) {
-  auto searched = std::make_unique<Searched>(Searched{std::move(encoder), {}, {}});
-  searched->families = Families(searched->encoder, excluded);
-  searched->analysis = Analyse(searched->encoder.run, searched->families, how);
-  return searched;
-}
-
-bool IsOf(const Cause& cause, const Family& family) {
-  return cause.effect == family.effect && cause.where == family.where;
-}
-
-/// A family at a point of its grid as a cause, from rows that it has to explain alone.
-/// @param sigma  Of every row.
-Cause CauseFrom(const Family& family, int grid_point, const Eigen::VectorXd& rows, const Eigen::VectorXd& sigma,
-                const Projector& projector) {
-  const Eigen::MatrixXd white = sigma.cwiseInverse().asDiagonal() * family.ColumnsAt(grid_point);
-  const Eigen::MatrixXd y = projector.Apply(sigma.cwiseInverse().asDiagonal() * Eigen::MatrixXd(rows));
-  const Explained fit = Explain(white, projector, {}, y.col(0));
-  const Eigen::MatrixXd normal = white.transpose() * fit.projected;
-  const Eigen::VectorXd shape = family.ShapeAt(grid_point);
-  const double left = (y.col(0) - fit.projected * fit.amplitudes).squaredNorm() / projector.DegreesOfFreedom();
-  Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(normal.cols() + shape.size(), normal.cols() + shape.size());
-  cov.topLeftCorner(normal.cols(), normal.cols()) = left * normal.completeOrthogonalDecomposition().pseudoInverse();
-  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    const Range cell = Around(family.shapes[k], shape[at]);
-    cov(normal.cols() + at, normal.cols() + at) = std::pow(0.25 * (cell.upper - cell.lower), 2);
-  }
-  Cause cause;
-  cause.effect = family.effect;
-  cause.where = family.where;
-  cause.probability = family.listed;
-  cause.rho = std::sqrt(fit.power);
-  if (family.parameters) {
-    cause.parameters = family.parameters(shape, fit.amplitudes, cov);
-    return cause;
-  }
-  for (Eigen::Index k = 0; k < normal.cols(); ++k) {
-    const Amplitude& a = family.amplitudes[static_cast<std::size_t>(k)];
-    cause.parameters.push_back(
-        {a.name, a.unit, a.to_SI, fit.amplitudes[k], std::sqrt(cov(k, k)), a.lower, a.upper});
-  }
-  return cause;
-}
-
-LargeCause LedBy(std::vector<Cause> causes, std::size_t leader, const std::string& bench) {
-  std::swap(causes.front(), causes[leader]);
-  const EffectSettings effect = EffectOf(causes.front(), bench, "");
-  return {std::move(causes), effect, 0.0, {}};
-}
-
-/// The largest of what has a name, the one that was fitted first.
-std::optional<LargeCause> LargestNamed(const Searched& searched) {
-  const SearchResult& found = searched.analysis.found;
-  std::optional<LargeCause> largest;
-  double most = kLarge * kLarge;
-  for (std::size_t k = 0; k < found.terms.size(); ++k) {
-    const Family& family = searched.families[static_cast<std::size_t>(found.terms[k].family)];
-    if (family.kind != Kind::kNamed || found.terms[k].explained < most) continue;
-    const std::vector<Cause> causes = AnswerOf(found, k, searched.families).causes;
-    const auto fitted = std::ranges::find_if(causes, [&](const Cause& cause) { return IsOf(cause, family); });
-    if (fitted == causes.end()) continue;
-    most = found.terms[k].explained;
-    largest = LedBy(causes, static_cast<std::size_t>(fitted - causes.begin()), searched.encoder.run.bench);
-  }
-  return largest;
-}
-
-/// A large shape without a name may be a cause whose signature bends: the one that explains nearly as much alone.
-int NamedLikeUnnamed(const Searched& searched) {
-  constexpr double kNearly = 0.9;  // of what it explains
-  const Evidence& alone = searched.analysis.found.alone;
-  int best = -1;
-  double unnamed = kLarge * kLarge, named = 0.0;
-  for (int k = 0; k < std::ssize(searched.families); ++k) {
-    const double explained = alone.explained.size() > 0 ? alone.explained(k, 0) : 0.0;
-    if (searched.families[static_cast<std::size_t>(k)].kind == Kind::kUnknown) {
-      unnamed = std::max(unnamed, explained);
-    } else if (explained > named) {
-      named = explained;
-      best = k;
-    }
-  }
-  return named > kNearly * unnamed ? best : -1;
-}
-
-/// What may be asked for other values: not a whole number, nor how stops were reached, which a longer crossing
-/// imitates.
-std::vector<Movable> MovableOf(const std::vector<LargeCause>& causes) {
-  constexpr std::array kWhole = {"order", "teeth", "at_reading", "approach"};
-  std::vector<Movable> movable;
-  for (std::size_t k = 0; k < causes.size(); ++k) {
-    for (const ParameterEstimate& p : causes[k].causes.front().parameters) {
-      if (!(p.u > 0.0) || std::ranges::count(kWhole, p.name) > 0) continue;
-      movable.push_back({k, p.name, std::max(p.u, 1e-6 * std::abs(p.value))});
-    }
-  }
-  return movable;
-}
-
-std::vector<EffectSettings> EffectsOf(const std::vector<LargeCause>& causes) {
-  std::vector<EffectSettings> effects;
-  for (const LargeCause& cause : causes) effects.push_back(cause.effect);
-  return effects;
-}
-
 Scenario With(Scenario scenario, const std::vector<EffectSettings>& effects) {
   scenario.effects.insert(scenario.effects.end(), effects.begin(), effects.end());
   return scenario;
-}
-
-/// Those of which a bench has no second one. What is not left when it is in the twin was never there twice.
-std::vector<std::string> ThatAreOnce(const std::vector<LargeCause>& causes) {
-  constexpr std::array kSeveral = {"periodic", "reference_fault", "slip", "interpolation"};
-  std::vector<std::string> once;
-  for (const LargeCause& cause : causes) {
-    for (const Cause& c : cause.causes) {
-      if (std::ranges::count(kSeveral, c.effect) == 0) once.push_back(c.effect);
-    }
-  }
-  return once;
 }
 
 /// A device whose signals err says where they begin.
@@ -183,44 +52,6 @@ void LeaveFree(const Eigen::MatrixXd& targets, Nuisance& nuisance) {
   any.slopes = targets;
   any.sd = Eigen::VectorXd::Constant(targets.cols(), 1.0 / std::sqrt(precision));
   if (targets.cols() > 0) LeaveFree(any, nuisance);
-}
-
-/// Of the many amplitudes and phases of a wave the one with a positive amplitude and a phase from 0 to 360 deg.
-void MakePositive(EffectSettings& effect) {
-  const auto phase = effect.parameters.find("phase"), amplitude = effect.parameters.find("amplitude");
-  if (phase == effect.parameters.end() || amplitude == effect.parameters.end()) return;
-  if (amplitude->second < 0.0) phase->second += units::kPi;
-  amplitude->second = std::abs(amplitude->second);
-  phase->second -= units::turn * std::floor(phase->second / units::turn);
-}
-
-/// How many of its uncertainties the size of a cause is away from nothing: from zero, or from signals that are
-/// whole.
-double Deviations(const EffectSettings& effect) {
-  const auto entry = std::ranges::find(benches::encoder::Format().effects, effect.name, &EffectEntry::name);
-  double most = 0.0;
-  for (const EffectParameter& p : entry->parameters) {
-    if (p.name == "zero" || p.name == "phase" || p.name == "start" || p.name == "approach") continue;
-    const auto u = effect.finding.u.find(p.name);
-    if (u == effect.finding.u.end() || !(u->second > 0.0)) continue;
-    const double none = p.name == "level" ? 1.0 : 0.0;
-    most = std::max(most, std::abs(effect.parameters.at(p.name) - none) / u->second);
-    if (p.name != "offset_sin") break;  // the others say how, not how much
-  }
-  return most;
-}
-
-/// What was asked, in the words of the causes.
-void TakeOver(const AskedAgain& asked, std::vector<LargeCause>& causes) {
-  for (std::size_t k = 0; k < causes.size(); ++k) {
-    causes[k].effect = asked.effects[k];
-    MakePositive(causes[k].effect);
-    for (ParameterEstimate& p : causes[k].causes.front().parameters) {
-      p.value = causes[k].effect.parameters.at(p.name);
-      const auto u = asked.effects[k].finding.u.find(p.name);
-      if (u != asked.effects[k].finding.u.end()) p.u = u->second;
-    }
-  }
 }
 
 class Search {
@@ -531,45 +362,6 @@ class Search {
   double power_ = 0.0;
 };
 
-Accepted AcceptedOf(const LargeCause& cause) {
-  Accepted accepted;
-  accepted.family.effect = cause.effect.name;
-  accepted.family.where = cause.effect.where;
-  accepted.family.amplitudes = {{"strength", "1", 1.0, 1.0}};
-  accepted.amplitudes = Eigen::VectorXd::Ones(1);
-  accepted.columns = cause.shown;
-  return accepted;
-}
-
-/// Power of what has no name beside the large causes, in units of the noise that was thought of at first.
-double UnnamedOf(const LargeCauses& large) {
-  const Searched& last = large.Last();
-  double unnamed = 0.0;
-  for (const Term& term : last.analysis.found.terms) {
-    const Family& family = last.families[static_cast<std::size_t>(term.family)];
-    if (family.kind == Kind::kUnknown) unnamed += term.explained;
-  }
-  const double sigma = last.encoder.run.sigma.mean() / large.first->encoder.run.sigma.mean();
-  return unnamed * sigma * sigma;
-}
-
-/// What has no name beside the large causes is said; it makes an unknown of the whole only if it is no small part.
-/// A cause may be no more than a piece of it: it is as sure as it is large beside it.
-void WeighTheRest(const LargeCauses& large, Diagnosis& d, std::vector<Cause>& causes) {
-  if (d.verdict != Verdict::kUnknown) return;
-  const double unnamed = UnnamedOf(large);
-  double all = unnamed;
-  for (const LargeCause& cause : large.causes) all += cause.explained;
-  auto at = causes.begin();
-  for (const LargeCause& cause : large.causes) {
-    for (std::size_t k = 0; k < cause.causes.size(); ++k, ++at)
-      at->probability *= cause.explained / (cause.explained + unnamed);
-  }
-  if (unnamed > tuning::kSmallRest * all) return;
-  d.notes.push_back(fmt::format("beside these, significant but small: {}", d.unknown.signature));
-  d.verdict = Verdict::kNamed;
-}
-
 }  // namespace
 
 LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario& scenario,
@@ -581,26 +373,6 @@ LargeCauses FindLargeCauses(const std::vector<Reading>& readings, const Scenario
   const Eigen::MatrixXd targets = Targets(plain.first->encoder.context);
   if (targets.size() == 0 || !LeaveErrorsOfTargets(plain, targets)) return plain;
   return Search(readings, scenario, options, follow, targets).Go(known);
-}
-
-void AddLargeCauses(const LargeCauses& large, DiagnosisRun& result) {
-  if (large.causes.empty()) return;
-  Diagnosis& d = result.diagnosis;
-  if (d.verdict == Verdict::kNone) d.verdict = Verdict::kNamed;
-  std::vector<Cause> causes;
-  std::vector<Accepted> accepted;
-  for (const LargeCause& cause : large.causes) {
-    causes.insert(causes.end(), cause.causes.begin(), cause.causes.end());
-    accepted.push_back(AcceptedOf(cause));
-  }
-  WeighTheRest(large, d, causes);
-  const bool is_tie = std::ranges::any_of(large.causes, [](const LargeCause& c) { return c.causes.size() > 1; });
-  if (is_tie && d.verdict == Verdict::kNamed) d.verdict = Verdict::kTie;
-  d.causes.insert(d.causes.begin(), causes.begin(), causes.end());
-  d.alarm_p = result.structure_p = large.first->analysis.null.PValue(large.first->analysis.found.first_statistic);
-  result.accepted.insert(result.accepted.begin(), accepted.begin(), accepted.end());
-  result.run = large.first->encoder.run;
-  result.run.sigma = large.Last().encoder.run.sigma;
 }
 
 }  // namespace twinbench::diagnose::encoder

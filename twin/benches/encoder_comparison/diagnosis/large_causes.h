@@ -3,28 +3,11 @@
 #include <memory>
 #include <vector>
 
-#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
-#include "twin/diagnose/diagnose.h"
-#include "twin/diagnose/engine/analysis.h"
+#include "twin/benches/encoder_comparison/diagnosis/large_cause.h"
 
 /// Causes so large that a search to first order does not do: each is given to the twin, all of them are fitted
 /// together by asking it, and what is left is searched again.
 namespace twinbench::diagnose::encoder {
-
-/// A run with its candidates and what the search makes of them; the analysis points into the others.
-struct Searched {
-  EncoderRun encoder;
-  std::vector<Family> families;
-  Analysis analysis;
-};
-
-/// A large cause.
-struct LargeCause {
-  std::vector<Cause> causes;  // the first is in the twin, with its parameters; the others tie with it
-  EffectSettings effect;
-  double explained = 0.0;  // power beyond what those before it explain, in units of the first noise
-  Eigen::VectorXd shown;   // by row: what the twin shows more with it than with those before it, SI
-};
 
 struct LargeCauses {
   std::unique_ptr<Searched> first;  // as if nothing were large

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "twin/benches/encoder_comparison/diagnosis/encoder_run.h"
+#include "twin/diagnose/asked_again.h"
+#include "twin/diagnose/diagnose.h"
+#include "twin/diagnose/engine/analysis.h"
+
+/// A cause that is too large for first order, found in a search and asked of the twin.
+namespace twinbench::diagnose::encoder {
+
+/// Length of a signature in units of noise from which it is large: a hundredth of it, which is what first order may
+/// well miss, is then half a deviation.
+inline constexpr double kLarge = 50.0;
+
+/// A run with its candidates and what the search makes of them; the analysis points into the others.
+struct Searched {
+  EncoderRun encoder;
+  std::vector<Family> families;
+  Analysis analysis;
+};
+
+std::unique_ptr<Searched> SearchIn(EncoderRun encoder, const std::vector<std::string>& excluded,
+                                   const AnalysisOptions& how);
+
+/// A large cause.
+struct LargeCause {
+  std::vector<Cause> causes;  // the first is in the twin, with its parameters; the others tie with it
+  EffectSettings effect;
+  double explained = 0.0;  // power beyond what those before it explain, in units of the first noise
+  Eigen::VectorXd shown;   // by row: what the twin shows more with it than with those before it, SI
+};
+
+bool IsOf(const Cause& cause, const Family& family);
+
+/// A family at a point of its grid as a cause, from rows that it has to explain alone.
+/// @param sigma  Of every row.
+Cause CauseFrom(const Family& family, int grid_point, const Eigen::VectorXd& rows, const Eigen::VectorXd& sigma,
+                const Projector& projector);
+
+/// A tie whose member number `leader` is the one in the twin.
+LargeCause LedBy(std::vector<Cause> causes, std::size_t leader, const std::string& bench);
+
+/// The largest of what has a name, the one that was fitted first.
+std::optional<LargeCause> LargestNamed(const Searched& searched);
+
+/// A large shape without a name may be a cause whose signature bends: the one that explains nearly as much alone.
+/// @return its number among the families; -1 if there is none.
+int NamedLikeUnnamed(const Searched& searched);
+
+/// What may be asked for other values: not a whole number, nor how stops were reached, which a longer crossing
+/// imitates.
+std::vector<Movable> MovableOf(const std::vector<LargeCause>& causes);
+
+std::vector<EffectSettings> EffectsOf(const std::vector<LargeCause>& causes);
+
+/// Those of which a bench has no second one. What is not left when it is in the twin was never there twice.
+std::vector<std::string> ThatAreOnce(const std::vector<LargeCause>& causes);
+
+/// How many of its uncertainties the size of a cause is away from nothing: from zero, or from signals that are
+/// whole.
+double Deviations(const EffectSettings& effect);
+
+/// What was asked, in the words of the causes.
+void TakeOver(const AskedAgain& asked, std::vector<LargeCause>& causes);
+
+}  // namespace twinbench::diagnose::encoder
