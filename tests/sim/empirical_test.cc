@@ -2,6 +2,8 @@
 
 #include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
+#include "twin/benches/rotary_4dof/block_time.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/registry.h"
 #include "twin/sim/empirical_signal.h"
 #include "twin/sim/own_tables.h"
@@ -64,7 +66,8 @@ TEST(Empirical, ByTimeIsShownByTheTwinThatFollows) {
   const EmpiricalSignal signal({table}, "psd_b_y");
   double most_V = 0.0;
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    const double expected_V = 2000.0 * signal.At(readings[i].reading, ToSeconds(readings[i].time));
+    const Duration half_block = BlockTime(RotaryOf(scenario).adc, readings[i].n_samples) / 2;
+    const double expected_V = 2000.0 * signal.At(readings[i].reading, ToSeconds(readings[i].time + half_block));
     EXPECT_NEAR(change(static_cast<Eigen::Index>(i), 3), expected_V, 1e-9) << i;
     most_V = std::max(most_V, std::abs(expected_V));
   }

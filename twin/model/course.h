@@ -7,8 +7,8 @@
 
 namespace twinbench::model {
 
-/// Under which circumstances each reading was taken; one entry a reading, NaN where it was not recorded or where the
-/// bench has nothing of the kind.
+/// Under which circumstances each reading was taken; one entry a reading, NaN where it was not recorded or where
+/// the bench has nothing of the kind.
 struct Course {
   std::vector<int> reading;  // running number in the file
   std::vector<int> setup, pass, direction, position;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "twin/core/errors.h"
 #include "twin/core/signal_effect.h"
+#include "twin/model/block_mean.h"
 
 namespace twinbench::model {
 namespace {
@@ -27,6 +29,10 @@ Product::Product(const EffectSettings& effect, const BenchFormat& bench)
     : effect_(effect), channel_(IndexOf(bench.points, effect.where)) {
   const std::vector<std::string> arguments = SignalArguments(effect.signal, bench);
   if (!arguments.empty()) by_ = IndexOf(arguments, effect.by);
+}
+
+double Product::Shortest_s() const {
+  return effect_.signal == "tone" ? 1.0 / Of("frequency") : std::numeric_limits<double>::infinity();
 }
 
 double Product::Of(const char* parameter) const {
@@ -62,7 +68,8 @@ double Product::Course(const Instant& instant, std::span<const double> shown) co
     phase_rad += Of("order") * instant.angle_rad[0] + Of("with_order") * instant.angle_rad[1];
   if (kind == "tone") phase_rad += units::turn * Of("frequency") * instant.time_s;
   if (kind == "fringes") phase_rad += units::turn * own / Of("period");
-  return Of("amplitude") * std::cos(phase_rad);
+  const double share = kind == "tone" ? ShareLeft(Of("frequency"), instant.averaged_s) : 1.0;
+  return Of("amplitude") * share * std::cos(phase_rad);
 }
 
 double Product::At(const Instant& instant, std::span<const double> shown) const {

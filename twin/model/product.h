@@ -12,6 +12,7 @@ namespace twinbench::model {
 /// What a twin knows at the instant of a reading and a signal may depend on.
 struct Instant {
   double time_s = 0.0;
+  double averaged_s = 0.0;  // over which a mean about time_s is asked for; 0: that very instant
   int reading = 0;
   double direction = 0.0;             // +1, -1: sense of the motion, at rest of the last one
   double velocity_rad_s = 0.0;        // while it is read
@@ -28,6 +29,9 @@ class Product {
 
   /// Index in BenchFormat::points.
   int Channel() const { return channel_; }
+
+  /// Period of a tone; infinite for what changes with the bench alone.
+  double Shortest_s() const;
 
   /// SI of the channel.
   /// @param shown  What each channel shows without signals, SI.

@@ -8,7 +8,7 @@
 namespace twinbench::sim {
 namespace {
 
-constexpr Duration kSettleCheck = std::chrono::milliseconds(1);
+constexpr Duration kSettleCheck = std::chrono::milliseconds(1);  // in which the servos are looked at
 
 }  // namespace
 
@@ -37,6 +37,9 @@ mechanics::StackParameters StackOf(const TableStack& described) {
 
 Axes::Axes(const TableStack& stack, EventQueue& queue)
     : queue_(queue),
+      schedules_{Schedule(queue, "target"), Schedule(queue, "reference")},
+      servo_period_(FromSeconds(stack.mechanics.step_s)),
+      is_driven_(stack.mechanics.fidelity != "kinematic"),
       plant_(mechanics::MakePlant(mechanics::FidelityFromName(stack.mechanics.fidelity), StackOf(stack))) {
   const std::array<const TableSettings*, 2> tables = {&stack.target, &stack.reference};
   for (std::size_t k = 0; k < 2; ++k) {
@@ -58,7 +61,10 @@ bool Axes::StartMove(mechanics::Axis axis, double to_rad) {
   d.commanded_rad = to_rad;
   d.direction = travel_rad > 0.0 ? 1 : -1;
   d.arrival = queue_.Now() + FromSeconds(duration_s);
+  last_departure_ = queue_.Now();
   last_arrival_ = std::max(last_arrival_, d.arrival);
+  schedules_[static_cast<std::size_t>(axis)].At(d.arrival, [this] { CatchUp(); });
+  if (is_driven_ && !serving_) Serve();
   return true;
 }
 
@@ -85,6 +91,21 @@ bool Axes::Settles(mechanics::Axis axis, Duration within) {
   queue_.RunUntil(patience_end);
   d.given_up = patience_end;
   return false;
+}
+
+/// Steps of the servos from a move's begin until both are quiet; at rest nothing happens.
+void Axes::Serve() {
+  serving_ = true;
+  schedules_[0].At(queue_.Now() + kSettleCheck, [this] {
+    CatchUp();
+    serving_ = false;
+    if (IsRestless()) Serve();
+  });
+}
+
+bool Axes::IsRestless() {
+  CatchUp();
+  return !plant_->Settled();
 }
 
 bool Axes::InPosition(mechanics::Axis axis) {

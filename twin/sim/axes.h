@@ -5,7 +5,7 @@
 
 #include "mechanics/plant.h"
 #include "twin/core/shared_settings.h"
-#include "twin/sim/event_queue.h"
+#include "twin/sim/schedule.h"
 
 namespace twinbench::sim {
 
@@ -47,7 +47,13 @@ class Axes {
   mechanics::StackState Look();
 
   int Direction(mechanics::Axis axis) const { return drive(axis).direction; }
+  Time LastDeparture() const { return last_departure_; }
   Time LastArrival() const { return last_arrival_; }
+
+  /// Whether angles may change from servo period to servo period, or nothing moves and the servos are quiet.
+  bool IsRestless();
+  /// In which what moves changes smoothly.
+  Duration ServoPeriod() const { return servo_period_; }
 
  private:
   struct Drive {
@@ -60,12 +66,17 @@ class Axes {
   Drive& drive(mechanics::Axis axis) { return drives_[static_cast<std::size_t>(axis)]; }
   const Drive& drive(mechanics::Axis axis) const { return drives_[static_cast<std::size_t>(axis)]; }
   void CatchUp();
+  void Serve();
 
   EventQueue& queue_;
+  std::array<Schedule, 2> schedules_;
+  Duration servo_period_;
+  bool is_driven_;        // by servos, not straight to where they are told
+  bool serving_ = false;  // a servo step is scheduled
   std::unique_ptr<mechanics::Plant> plant_;
   std::array<Drive, 2> drives_;
   Time plant_time_{};
-  Time last_arrival_{};
+  Time last_departure_{}, last_arrival_{};
 };
 
 }  // namespace twinbench::sim

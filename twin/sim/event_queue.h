@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,6 +31,11 @@ class EventQueue {
 
   Time Now() const { return now_; }
   std::size_t Pending() const { return heap_.size() - n_cancelled_; }
+
+  /// How many events each device has scheduled so far, by its name (schedule.h).
+  const std::map<std::string, std::uint64_t>& Scheduled() const { return scheduled_; }
+  /// A device's count; lives as long as the queue.
+  std::uint64_t& CountOf(const std::string& device) { return scheduled_[device]; }
 
   /// Lets `f()` be called at `when`. O(log n); no allocation for captures up to Callback::kInside bytes.
   /// @throws std::logic_error if `when` has passed.
@@ -85,6 +92,7 @@ class EventQueue {
   void DropCancelledEverywhere();
 
   Time now_{};
+  std::map<std::string, std::uint64_t> scheduled_;
   std::uint64_t last_sequence_ = 0;
   std::vector<Entry> heap_;  // of live and cancelled events, the next one first
   std::size_t n_cancelled_ = 0;

@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-
 namespace twinbench::sim {
 
 nlohmann::json ToJson(const TableErrors& errors) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "twin/benches/rotary_4dof/block_time.h"
 #include "twin/benches/rotary_4dof/diagnosis/configuration.h"
 #include "twin/benches/rotary_4dof/diagnosis/free_parameters.h"
 #include "twin/benches/rotary_4dof/diagnosis/linearisation.h"
@@ -34,7 +35,7 @@ int LeftOut(const std::vector<Reading>& readings, std::size_t used) {
 void SetReadings(const std::vector<Reading>& used, const Scenario& scenario, RotaryRun& rotary) {
   LinearRun& run = rotary.run;
   run.bench = scenario.bench;
-  run.schedule = model::CourseOf(used);
+  run.schedule = model::CourseOf(AtMiddleOfBlocks(used, RotaryOf(scenario).adc));
   run.channels.assign(kChannelNames.begin(), kChannelNames.end());
   run.unit = "um";
   run.to_SI = units::um;

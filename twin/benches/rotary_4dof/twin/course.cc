@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/rotary_4dof/block_time.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
 #include "twin/model/local_level.h"
@@ -149,7 +150,8 @@ class CourseMaker {
     stop.axes = drives_.State();
     stop.moment = MomentOf(r, room_degC, stop.axes);
     stop.mounting = static_cast<int>(course_.stands.size()) - 1;
-    stop.n_samples = r.n_samples > 0 ? r.n_samples : RotaryOf(actual()).adc.samples;
+    stop.start = r.time;
+    stop.n_samples = SamplesOf(r, RotaryOf(actual()).adc);
     stop.swept = std::isfinite(r.autocollimator_yaw_rad + r.autocollimator_tilt_rad);
     const double gain = 1.0 + RotaryOf(actual()).autocollimator.gain_error;
     stop.seen_yaw_rad = r.autocollimator_yaw_rad / gain;
@@ -164,7 +166,9 @@ class CourseMaker {
   Moment MomentOf(const Reading& r, double room_degC, const mechanics::StackState& axes) {
     const double window_s = std::max(RotaryOf(actual()).target.settle_s, RotaryOf(actual()).reference.settle_s);
     Moment moment;
-    moment.now = r.time;
+    const Duration block = BlockTime(RotaryOf(actual()).adc, SamplesOf(r, RotaryOf(actual()).adc));
+    moment.now = r.time + block / 2;
+    moment.averaged_s = ToSeconds(block);
     moment.mounted = mounted_;
     moment.arrived = r.phase == Phase::kFullCircle ? r.time - FromSeconds(OrZero(r.dwell_s) + window_s) : mounted_;
     moment.temperature_K = AboveReference_K(r, room_degC);

@@ -12,6 +12,7 @@ struct RecordedStop {
   Moment moment;
   mechanics::StackState axes;
   int mounting = 0;  // running number of the mounting that it belongs to
+  Time start{};      // of the block; the moment is its middle
   int n_samples = 0;
   // What the scenario's effects do at this reading.
   PoseState pose;

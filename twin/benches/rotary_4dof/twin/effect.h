@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -14,7 +15,9 @@ namespace twinbench::sim {
 struct Moment {
   Time now{};
   Time mounted{};              // end of the last mounting
-  Time arrived{};              // end of the last move of either table
+  Time departed{};             // begin of the last move of either table ...
+  Time arrived{};              // ... and its end, which may be still to come
+  double averaged_s = 0.0;     // 0: this very instant; else the mean over as long about it is asked for
   double temperature_K = 0.0;  // of the room, above environment.reference_degC
   double target_rad = 0.0;     // rotors, unwrapped, without the index error ez
   double reference_rad = 0.0;
@@ -65,6 +68,8 @@ class Effect {
 
   /// Before anything is built: constants of the bench that are not what the scenario says.
   virtual void AlterBench(Scenario& /*actual*/) const {}
+  /// Period, or time constant, of the fastest thing that it does. An A/D block is looked at as often as that needs.
+  virtual double Shortest_s() const { return std::numeric_limits<double>::infinity(); }
   /// Before each look at the bench, be it a block, an autocollimator or a picture, with the time running forwards.
   virtual void Advance(const Moment& /*moment*/) {}
   virtual void AlterMounting(Mounting& /*mounting*/) const {}

@@ -1,5 +1,7 @@
 #include "twin/benches/rotary_4dof/twin/effects_active.h"
 
+#include <algorithm>
+
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effects/effects.h"
 #include "twin/sim/actual_bench.h"
@@ -24,6 +26,12 @@ ActiveEffects::ActiveEffects(const Scenario& scenario) {
 
 Scenario ActiveEffects::ActualBench(const Scenario& nominal) const {
   return ActualBenchOf(nominal, effects_, SilenceRotary);
+}
+
+double ActiveEffects::Shortest_s() const {
+  double shortest_s = std::numeric_limits<double>::infinity();
+  for (const auto& effect : effects_) shortest_s = std::min(shortest_s, effect->Shortest_s());
+  return shortest_s;
 }
 
 void ActiveEffects::Advance(const Moment& moment) {

@@ -16,6 +16,8 @@ class ActiveEffects {
   /// it says noise_free.
   Scenario ActualBench(const Scenario& nominal) const;
 
+  /// Of the fastest of them.
+  double Shortest_s() const;
   void Advance(const Moment& moment);
   Mounting Actual(Mounting nominal) const;
   PoseState Pose(const Moment& moment) const;

@@ -45,12 +45,24 @@ std::array<double, kChannels> Electronics::Amplify(const std::array<double, kCha
   return signal_V;
 }
 
-AdInput Electronics::InScanOrder(const std::array<double, kChannels>& signal_V, Time start) const {
+/// `course` outlives what is returned.
+AdInput Electronics::InScanOrder(const BlockCourse& course, Time start) const {
+  constexpr double kSteady = 1e-3;  // of a code step
+  const double within_V = kSteady * LsbOf(adc_);
+  const bool is_level = course.IsLevel(within_V), is_straight = course.IsStraight(within_V);
   AdInput input;
   for (std::size_t place = 0; place < kChannels; ++place) {
     const std::size_t c = scan_[place];
     ChannelInput& channel = input.channel[place];
-    channel.level_V = signal_V[c];
+    channel.level_V = course.Mean_V(c);
+    if (!is_level && is_straight) {
+      channel.level_V = course.At_V(c, 0.0);
+      channel.slope_V_s = course.Slope_V_s(c);
+    } else if (!is_level) {
+      channel.extra_V = [&course, c, level_V = channel.level_V](double t_s) {
+        return course.At_V(c, t_s) - level_V;
+      };
+    }
     channel.noise_V = amplifier_.noise_V;
     channel.crosstalk = sampling_.crosstalk[c];
     channel.step_V = sampling_.step_V[c];
@@ -75,16 +87,16 @@ Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
   return block;
 }
 
-Acquisition Electronics::Convert(const std::array<double, kChannels>& signal_V, Time start, int reading,
-                                 int n_samples, bool keep_raw) {
+Acquisition Electronics::Convert(const BlockCourse& course, Time start, int reading, int n_samples, bool keep_raw) {
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
   const AdRequest request{n_samples, adc_.every_sample, keep_raw, noise_free_};
-  return InChannelOrder(TakeBlock(adc_, InScanOrder(signal_V, start), request, noise_).ToAcquisition(start));
+  return InChannelOrder(TakeBlock(adc_, InScanOrder(course, start), request, noise_).ToAcquisition(start));
 }
 
 std::array<double, kChannels> Electronics::Expect(const std::array<double, kChannels>& signal_V, Time start,
                                                   int n_samples, double noise_V) const {
-  AdInput input = InScanOrder(signal_V, start);
+  const BlockCourse steady(signal_V);
+  AdInput input = InScanOrder(steady, start);
   const bool blurred = noise_V > 0.0;  // else the block itself says where its samples lie
   for (ChannelInput& channel : input.channel) channel.step_V = blurred ? 0.0 : channel.step_V;
   Stream unused(0, "electronics.expectation");
@@ -97,10 +109,6 @@ std::array<double, kChannels> Electronics::Expect(const std::array<double, kChan
     if (blurred) mean_V[c] += sampling_.step_V[c] * ShareAbove(sampling_.step_at_V[c], level_V, noise_V);
   }
   return mean_V;
-}
-
-Duration Electronics::BlockTime(int n_samples) const {
-  return FromSeconds(static_cast<double>(n_samples) * kChannels / adc_.rate_Hz);
 }
 
 }  // namespace twinbench::sim

@@ -4,6 +4,7 @@
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"
 #include "twin/sim/ad_sampler.h"
+#include "twin/sim/block_course.h"
 
 namespace twinbench::sim {
 
@@ -15,10 +16,10 @@ class Electronics {
   /// Amplifier outputs for spot coordinates [m] in channel order.
   std::array<double, kChannels> Amplify(const std::array<double, kChannels>& spots_m) const;
 
-  /// Converts one block of steady voltages. `reading` enters the noise stream, so that a reading's noise does not
-  /// depend on how many samples the readings before it took.
-  Acquisition Convert(const std::array<double, kChannels>& signal_V, Time start, int reading, int n_samples,
-                      bool keep_raw);
+  /// Converts one block. What changes in it by less than a thousandth of a code step counts as steady, what is that
+  /// near to a straight line as one: then samples need not be asked one by one. `reading` enters the noise stream,
+  /// so that a reading's noise does not depend on how many samples the readings before it took.
+  Acquisition Convert(const BlockCourse& course, Time start, int reading, int n_samples, bool keep_raw);
 
   /// The mean that such a block would have if it were taken again and again: hum and crosstalk as they fall into
   /// it, a step of the converter blurred by the samples' noise, no quantisation. NaN at the ends of the range.
@@ -26,10 +27,8 @@ class Electronics {
   std::array<double, kChannels> Expect(const std::array<double, kChannels>& signal_V, Time start, int n_samples,
                                        double noise_V) const;
 
-  Duration BlockTime(int n_samples) const;
-
  private:
-  AdInput InScanOrder(const std::array<double, kChannels>& signal_V, Time start) const;
+  AdInput InScanOrder(const BlockCourse& course, Time start) const;
   Acquisition InChannelOrder(const Acquisition& scanned) const;
 
   AdcSettings adc_;

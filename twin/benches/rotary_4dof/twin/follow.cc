@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/rotary_4dof/block_time.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/course.h"
 #include "twin/benches/rotary_4dof/twin/points.h"
@@ -38,7 +39,8 @@ Scenario WithFreeTables(Scenario scenario) {
 class RotaryFollow : public PointwiseFollow<RotaryExtra> {
  public:
   RotaryFollow(const Scenario& stated, const std::vector<Reading>& record)
-      : PointwiseFollow(WithFreeTables(Foreseeable(stated, record)), record, RotaryPoints()),
+      : PointwiseFollow(WithFreeTables(Foreseeable(stated, AtMiddleOfBlocks(record, RotaryOf(stated).adc))), record,
+                        RotaryPoints()),
         noise_V_(IfNoisy(stated, RotaryOf(stated).amplifier.noise_V)),
         thermometer_noise_K_(IfNoisy(stated, stated.environment.sensor_noise_K)),
         path_(scenario()),
@@ -95,7 +97,7 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
           (c < 2 ? RotaryOf(scenario()).psd_a : RotaryOf(scenario()).psd_b).sensitivity_V_m;
       signal_V[c] += stop.added_V[c] + sensitivity_V_m * extra.shown_m[c];
     }
-    return ReadOut(path_.electronics().Expect(signal_V, stop.moment.now, stop.n_samples, noise_V_));
+    return ReadOut(path_.electronics().Expect(signal_V, stop.start, stop.n_samples, noise_V_));
   }
 
   std::array<double, kChannels> ReadOut(const std::array<double, kChannels>& mean_V) const {

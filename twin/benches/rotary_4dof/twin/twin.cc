@@ -49,17 +49,24 @@ class TwinAutocollimator : public Autocollimator {
  public:
   explicit TwinAutocollimator(World& world)
       : world_(world),
+        schedule_(world.queue(), "autocollimator"),
         settings_(RotaryOf(world.actual()).autocollimator),
         noise_(world.actual().seed, "autocollimator.noise") {}
 
   AutocollimatorReading Read() override {
+    AutocollimatorReading reading;
+    schedule_.Now([&] { reading = ReadNow(); });
+    return reading;
+  }
+
+ private:
+  AutocollimatorReading ReadNow() {
     const Vector3 normal_L = world_.GratingPose().linear().col(1);
     const double yaw_rad = Show(std::atan2(-normal_L.x(), normal_L.y()));
     const double tilt_rad = Show(std::atan2(normal_L.z(), std::hypot(normal_L.x(), normal_L.y())));
     return {yaw_rad, tilt_rad};
   }
 
- private:
   double Show(double angle_rad) {
     const double noise_rad = settings_.noise_rad > 0.0 ? settings_.noise_rad * noise_.Normal() : 0.0;
     const double shown_rad = (1.0 + settings_.gain_error) * angle_rad + noise_rad;
@@ -67,26 +74,35 @@ class TwinAutocollimator : public Autocollimator {
   }
 
   World& world_;
+  Schedule schedule_;
   AutocollimatorSettings settings_;
   Stream noise_;
 };
 
 class TwinThermometer : public Thermometer {
  public:
-  explicit TwinThermometer(World& world) : world_(world) {}
-  double Read_degC() override { return world_.environment().Measure_degC(world_.queue().Now()); }
+  explicit TwinThermometer(World& world) : world_(world), schedule_(world.queue(), "thermometer") {}
+  double Read_degC() override {
+    double shown_degC = kNaN;
+    schedule_.Now([&] { shown_degC = world_.environment().Measure_degC(world_.queue().Now()); });
+    return shown_degC;
+  }
 
  private:
   World& world_;
+  Schedule schedule_;
 };
 
 class TwinGoniometer : public Goniometer {
  public:
-  explicit TwinGoniometer(World& world) : world_(world) {}
-  void MoveTo(double yaw_rad, double tilt_rad) override { world_.SetGoniometer(yaw_rad, tilt_rad); }
+  explicit TwinGoniometer(World& world) : world_(world), schedule_(world.queue(), "goniometer") {}
+  void MoveTo(double yaw_rad, double tilt_rad) override {
+    schedule_.Now([&] { world_.SetGoniometer(yaw_rad, tilt_rad); });
+  }
 
  private:
   World& world_;
+  Schedule schedule_;
 };
 
 class TwinFixture : public Fixture {
@@ -139,6 +155,10 @@ Truth Twin::TheTruth() const {
   const int positions = RotaryOf(scenario).procedure.positions;
   return {stand.target().Repeatable(positions), stand.reference().Repeatable(positions), scenario.effects,
           scenario.seed};
+}
+
+const std::map<std::string, std::uint64_t>& Twin::ScheduledEvents() const {
+  return impl_->devices->world.Scheduled();
 }
 
 void Twin::WriteIrradiance(const std::string& path) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "twin/core/devices.h"
 #include "twin/core/scenario.h"
@@ -23,6 +26,9 @@ class Twin {
 
   /// What the errors of both tables are at the stops of the scenario's procedure.
   Truth TheTruth() const;
+
+  /// How many events each device has scheduled so far, by its name.
+  const std::map<std::string, std::uint64_t>& ScheduledEvents() const;
 
   /// Writes the irradiance on both PSDs at this moment as one multi-part OpenEXR.
   void WriteIrradiance(const std::string& path);

@@ -1,5 +1,9 @@
 #include "twin/benches/rotary_4dof/twin/world.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "twin/benches/rotary_4dof/block_time.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
 #include "twin/core/device_fault.h"
@@ -31,14 +35,17 @@ void World::Mount(int setup, double clamp_rad, double reseat_rad) {
     throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while a table moves");
   const bool reseats = RotaryOf(actual()).procedure.clamping == "reseat";
   axes_.Mount(path_.stand().Mount(path_.effects().Actual({clamp_rad, reseat_rad, reseats})));
-  mounted_ = queue_.Now();
-  setup_ = setup;
+  fixture_.Now([&] {
+    mounted_ = queue_.Now();
+    setup_ = setup;
+  });
 }
 
 Moment World::Look(const mechanics::StackState& axes) {
   Moment moment;
   moment.now = queue_.Now();
   moment.mounted = mounted_;
+  moment.departed = axes_.LastDeparture();
   moment.arrived = axes_.LastArrival();
   moment.temperature_K = environment_.AboveReference_K(moment.now);
   moment.target_rad = axes.target_rad;
@@ -62,25 +69,53 @@ void World::WriteIrradiance(const std::string& path) {
   path_.light().WriteIrradiance(path, path_.GratingPose(moment, axes), path_.LightAt(moment));
 }
 
-Acquisition World::Acquire(int n_samples, bool keep_raw) {
+/// Period or time constant of the fastest thing that may go on during a block.
+double World::Shortest_s() {
+  constexpr double kStepsAPeriod = BlockCourse::kKnotsAPeriod;
+  const double drives_s =
+      axes_.IsRestless() ? kStepsAPeriod * ToSeconds(axes_.ServoPeriod()) : std::numeric_limits<double>::infinity();
+  return std::min(path_.effects().Shortest_s(), drives_s);
+}
+
+/// What reaches the converter now.
+ReadingStatus World::AddKnot(BlockCourse& course) {
   const mechanics::StackState axes = axes_.Look();
   const Moment moment = Look(axes);
   const Spots spots = path_.light().Trace(path_.GratingPose(moment, axes), path_.LightAt(moment));
+  std::array<double, kChannels> signal_V = path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
+  path_.effects().AlterSignal(moment, signal_V);
+  course.Add(signal_V);
+  return spots.status;
+}
 
-  Acquisition block;
-  if (spots.status == ReadingStatus::kOk) {
-    std::array<double, kChannels> signal_V =
-        path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
-    path_.effects().AlterSignal(moment, signal_V);
-    block = path_.electronics().Convert(signal_V, moment.now, next_reading_, n_samples, keep_raw);
-    path_.effects().AlterReadout(block);
+Acquisition World::Acquire(int n_samples, bool keep_raw) {
+  const Time start = queue_.Now();
+  const Duration block = BlockTime(RotaryOf(actual()).adc, n_samples);
+  const int steps = StepsOf(block, Shortest_s(), kChannels * n_samples);
+  BlockCourse course(block / steps);
+  ReadingStatus status = ReadingStatus::kOk;
+  for (int k = 0; k <= steps; ++k) {
+    adc_.At(start + k * (block / steps), [&] {
+      const ReadingStatus seen = AddKnot(course);
+      if (status == ReadingStatus::kOk) status = seen;
+    });
+  }
+  adc_.RunUntil(start + block);
+  return Converted(course, status, start, n_samples, keep_raw);
+}
+
+Acquisition World::Converted(const BlockCourse& course, ReadingStatus status, Time start, int n_samples,
+                             bool keep_raw) {
+  Acquisition acquired;
+  if (status == ReadingStatus::kOk) {
+    acquired = path_.electronics().Convert(course, start, next_reading_, n_samples, keep_raw);
+    path_.effects().AlterReadout(acquired);
   } else {
-    block.start = moment.now;
-    block.status = spots.status;
+    acquired.start = start;
+    acquired.status = status;
   }
   ++next_reading_;
-  queue_.RunUntil(moment.now + path_.electronics().BlockTime(n_samples));
-  return block;
+  return acquired;
 }
 
 }  // namespace twinbench::sim

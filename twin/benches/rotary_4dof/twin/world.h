@@ -2,6 +2,7 @@
 
 #include "twin/benches/rotary_4dof/twin/optical_path.h"
 #include "twin/sim/axes.h"
+#include "twin/sim/block_course.h"
 #include "twin/sim/environment.h"
 
 namespace twinbench::sim {
@@ -25,7 +26,8 @@ class World {
   /// X_LG now, effects included.
   Pose GratingPose();
 
-  /// Takes one block: the light as it falls at its start, converted while the clock runs to its end.
+  /// Takes one block: light and motion are followed while the clock runs to its end, as closely as the fastest
+  /// thing that is going on needs. A spot that is lost on the way loses the block.
   Acquisition Acquire(int n_samples, bool keep_raw);
 
   /// Pictures of both PSDs as the light falls now.
@@ -33,10 +35,17 @@ class World {
 
   const Stand& stand() const { return path_.stand(); }
 
+  /// Events that each device has scheduled.
+  const std::map<std::string, std::uint64_t>& Scheduled() const { return queue_.Scheduled(); }
+
  private:
   Moment Look(const mechanics::StackState& axes);
+  double Shortest_s();
+  ReadingStatus AddKnot(BlockCourse& course);
+  Acquisition Converted(const BlockCourse& course, ReadingStatus status, Time start, int n_samples, bool keep_raw);
 
   EventQueue queue_;
+  Schedule adc_{queue_, "adc"}, fixture_{queue_, "fixture"};
   OpticalPath path_;
   Environment environment_;
   Axes axes_;

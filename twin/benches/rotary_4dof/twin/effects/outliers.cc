@@ -1,6 +1,6 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effects/effects.h"
-#include "twin/core/stream.h"
+#include "twin/sim/outlier_draw.h"
 
 namespace twinbench::sim {
 namespace {
@@ -9,22 +9,16 @@ namespace {
 class Outliers : public Effect {
  public:
   Outliers(const EffectSettings& e, const Scenario& scenario)
-      : fraction_(Parameter(e, "fraction")),
-        size_m_(Parameter(e, "size")),
-        sensitivity_V_m_(RotaryOf(scenario).psd_a.sensitivity_V_m),
-        stream_(scenario.seed, "effect.outliers") {}
-  void AlterSignal(const Moment&, std::array<double, kChannels>& signal_V) override {
-    const bool hit = stream_.Uniform() < fraction_;
-    const int channel = static_cast<int>(stream_.Uniform() * kChannels);
-    const double size_m = (stream_.Uniform() < 0.5 ? -1.0 : 1.0) * size_m_ * (0.5 + stream_.Uniform());
-    if (hit) signal_V[channel] += size_m * sensitivity_V_m_;
+      : draw_(e, scenario.seed), sensitivity_V_m_(RotaryOf(scenario).psd_a.sensitivity_V_m) {}
+  void AlterSignal(const Moment& moment, std::array<double, kChannels>& signal_V) override {
+    const OutlierDraw::Drawn drawn = draw_.At(moment.reading);
+    const auto channel = static_cast<std::size_t>(drawn.uniform * kChannels);
+    signal_V[channel] += drawn.size * sensitivity_V_m_;
   }
 
  private:
-  double fraction_;
-  double size_m_;
+  OutlierDraw draw_;
   double sensitivity_V_m_;
-  Stream stream_;
 };
 
 }  // namespace

@@ -5,17 +5,24 @@
 namespace twinbench::sim {
 namespace {
 
-/// The target still creeps to its place after the move: behind by `amplitude`, decaying exponentially.
+/// The target still creeps to its place after the move: behind by `amplitude` when the move has ended, decaying
+/// exponentially. On the way it falls behind in proportion to the way.
 class Settling : public Effect {
  public:
   explicit Settling(const EffectSettings& e)
       : amplitude_rad_(Parameter(e, "amplitude")), time_constant_s_(Parameter(e, "time_constant")) {}
   void AlterPose(const Moment& moment, PoseState& pose) const override {
-    const double since_s = ToSeconds(moment.now - moment.arrived);
-    pose.target_yaw_rad -= moment.target_direction * amplitude_rad_ * std::exp(-since_s / time_constant_s_);
+    pose.target_yaw_rad -= moment.target_direction * amplitude_rad_ * ShareBehind(moment);
   }
+  double Shortest_s() const override { return time_constant_s_; }
 
  private:
+  double ShareBehind(const Moment& moment) const {
+    if (moment.now < moment.arrived)
+      return ToSeconds(moment.now - moment.departed) / ToSeconds(moment.arrived - moment.departed);
+    return std::exp(-ToSeconds(moment.now - moment.arrived) / time_constant_s_);
+  }
+
   double amplitude_rad_;
   double time_constant_s_;
 };

@@ -13,12 +13,14 @@ class Signal : public Effect {
         sensitivity_V_m_({RotaryOf(scenario).psd_a.sensitivity_V_m, RotaryOf(scenario).psd_a.sensitivity_V_m,
                           RotaryOf(scenario).psd_b.sensitivity_V_m, RotaryOf(scenario).psd_b.sensitivity_V_m}) {}
 
+  double Shortest_s() const override { return product_.Shortest_s(); }
   double AddedToShown_V(const Moment& moment, const std::array<double, kChannels>& signal_V,
                         int channel) const override {
     if (channel != product_.Channel()) return 0.0;
     std::array<double, kChannels> shown_m{};
     for (std::size_t c = 0; c < shown_m.size(); ++c) shown_m[c] = signal_V[c] / sensitivity_V_m_[c];
     const model::Instant instant{.time_s = ToSeconds(moment.now),
+                                 .averaged_s = moment.averaged_s,
                                  .reading = moment.reading,
                                  .direction = static_cast<double>(moment.target_direction),
                                  .above_K = moment.temperature_K,

@@ -2,6 +2,7 @@
 
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effects/effects.h"
+#include "twin/model/block_mean.h"
 
 namespace twinbench::sim {
 namespace {
@@ -17,9 +18,11 @@ class Tone : public Effect {
       if (Reaches(e.where, c)) amplitude_V_[c] = amplitude_m * sensitivity_V_m;
     }
   }
+  double Shortest_s() const override { return 1.0 / frequency_Hz_; }
   void AlterSignal(const Moment& moment, std::array<double, kChannels>& signal_V) override {
     const double sine = std::sin(2.0 * units::kPi * frequency_Hz_ * ToSeconds(moment.now) + phase_rad_);
-    for (int c = 0; c < kChannels; ++c) signal_V[c] += amplitude_V_[c] * sine;
+    const double mean = model::ShareLeft(frequency_Hz_, moment.averaged_s) * sine;
+    for (int c = 0; c < kChannels; ++c) signal_V[c] += amplitude_V_[c] * mean;
   }
 
  private:

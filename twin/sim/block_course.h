@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "twin/core/reading.h"
+#include "twin/core/time.h"
+
+namespace twinbench::sim {
+
+/// What reaches the A/D converter in the course of one block: the channels' voltages at equally spaced knots,
+/// cubics through four neighbouring knots between them.
+///
+/// With 16 knots a period a sine is met to 6e-4 of its amplitude (error of cubic interpolation,
+/// 3/128 (omega h)^4).
+class BlockCourse {
+ public:
+  using Voltages = std::array<double, kChannels>;
+
+  static constexpr double kKnotsAPeriod = 16.0;
+
+  /// @param step  Between knots; positive.
+  explicit BlockCourse(Duration step) : step_s_(ToSeconds(step)) {}
+  /// Nothing changes.
+  explicit BlockCourse(const Voltages& level_V) : step_s_(1.0) { Add(level_V); }
+
+  void Add(const Voltages& knot_V) { knots_V_.push_back(knot_V); }
+
+  /// @param t_s  Since the first knot; may lie a little outside of the knots.
+  double At_V(std::size_t channel, double t_s) const;
+
+  /// Mean of the knots, with half the weight for the first and the last one.
+  double Mean_V(std::size_t channel) const;
+
+  /// Slope of the chord from the first knot to the last one.
+  double Slope_V_s(std::size_t channel) const;
+
+  /// Whether no channel is anywhere further than this from its mean or, for IsStraight, from its chord.
+  bool IsLevel(double within_V) const;
+  bool IsStraight(double within_V) const;
+
+ private:
+  double Duration_s() const { return step_s_ * static_cast<double>(knots_V_.size() - 1); }
+
+  double step_s_;
+  std::vector<Voltages> knots_V_;
+};
+
+/// How many steps a block is cut into where its fastest content has this period (infinite: nothing is fast), and no
+/// more than `most`.
+int StepsOf(Duration block, double shortest_s, int most);
+
+}  // namespace twinbench::sim
