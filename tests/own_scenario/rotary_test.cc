@@ -29,7 +29,11 @@ std::vector<OwnKey> Psd(const std::string& psd) {
           Change(psd + ".window_reflectance", "0.2", window),
           Change(psd + ".window_wedge_mrad", "4.0", window),  // more: a ghost without extent jumps over the edge
           Change(psd + ".window_coherent", "true", window),
-          Change(psd + ".silicon_reflectance", "0.3")};
+          Change(psd + ".silicon_reflectance", "0.3"),
+          Change(psd + ".responsivity_A_W", "0.001"),
+          Change(psd + ".dark_current_nA", "1e5"),
+          Change(psd + ".electrode_resistance_kohm", "0.01"),
+          Change(psd + ".bandwidth_kHz", "1e5")};
 }
 
 std::vector<OwnKey> Table(const std::string& table) {

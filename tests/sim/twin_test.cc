@@ -146,7 +146,7 @@ TEST(Twin, SeatingScattersEveryMountingButNotTheStops) {
   const auto first = ReadOnce(twin), again = ReadOnce(twin);
   twin.Bench().fixture.Mount(0, 0.0, 0.0);
   const auto second = ReadOnce(twin);
-  EXPECT_EQ(first, again);
+  for (std::size_t c = 0; c < kChannels; ++c) EXPECT_NEAR(first[c], again[c], 3e-4);  // the light's own noise
   EXPECT_GT(std::abs(first[0] - second[0]), 1e-3);
 }
 

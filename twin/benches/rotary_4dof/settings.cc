@@ -61,6 +61,11 @@ void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
   t.Add("window_wedge", kMrad, Within(200), &s.window_wedge_rad, "between the faces");
   t.Flag("window_coherent", s.window_coherent, "interference between the window's faces");
   t.Add("silicon_reflectance", kPure, UpTo(0.99), &s.silicon_reflectance, "above 0: ghosts by way of the grating");
+  t.Add("responsivity", {"A_W"}, Positive(2), &s.responsivity_A_W, "photocurrent over light [A/W]");
+  t.Add("dark_current", {"nA", 1e-9}, UpTo(1e6), &s.dark_current_A, "of the detector");
+  t.Add("electrode_resistance", {"kohm", 1e3}, Positive(1e6), &s.electrode_resistance_ohm,
+        "between the electrodes of an axis");
+  t.Add("bandwidth", kKilohertz, Positive(1e6), &s.bandwidth_Hz, "of the read-out, for the light's own noise");
 }
 
 void AddAmplifier(Keys& keys, AmplifierSettings& s) {

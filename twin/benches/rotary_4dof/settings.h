@@ -55,6 +55,10 @@ struct PsdSettings {          // [psd_a], [psd_b]
   double window_wedge_rad = 0.0;
   bool window_coherent = false;      // interference between the window's faces (etalon)
   double silicon_reflectance = 0.0;  // > 0 switches the PSD -> grating -> PSD ghosts on
+  double responsivity_A_W = 0.45;    // silicon in red light
+  double dark_current_A = 10.0e-9;
+  double electrode_resistance_ohm = 10e3;  // between the two electrodes of an axis
+  double bandwidth_Hz = 100e3;             // of the read-out; with it the light's own noise grows
 };
 
 struct ProcedureSettings {  // [procedure]

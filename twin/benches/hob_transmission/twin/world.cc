@@ -28,43 +28,45 @@ void HobWorld::Run(double hob_speed_rad_s, Duration ramp) {
     direction_ = (hob_speed_rad_s > 0.0) == (HobOf(actual()).transmission.Ratio() > 0.0) ? 1 : -1;
   hob_speed_rad_s_ = hob_speed_rad_s;
   constexpr Duration kRinging = std::chrono::seconds(5);  // 20 Hz servo, torsion with 1 % of damping: long over
-  at_rest_ = now_ + ramp + kRinging;
-  train_->Run(hob_speed_rad_s, ToSeconds(ramp));
+  at_rest_ = Now() + ramp + kRinging;
+  drive_.Now([&] { train_->Run(hob_speed_rad_s, ToSeconds(ramp)); });
 }
 
 void HobWorld::Mount(double head_rad) {
   if (hob_speed_rad_s_ != 0.0)
     throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while the table turns");
-  counters_.SetHead(head_rad);
+  fixture_.Now([&] { counters_.SetHead(head_rad); });
 }
 
 void HobWorld::Arm(int edges, int samples) {
-  counters_.Arm(edges, samples, train_->State().table_rad, direction_);
+  card_.Now([&] { counters_.Arm(edges, samples, train_->State().table_rad, direction_); });
 }
 
 void HobWorld::RunUntil(Time until) {
-  while (now_ < until) {
-    if (StandsStill()) {
-      now_ = until;
-      return;
-    }
+  while (Now() < until) {
+    if (StandsStill()) return drive_.RunUntil(until);
     // While nothing is counted, time may pass in one piece.
     const Time end = hob_speed_rad_s_ == 0.0 ? std::min(until, at_rest_) : until;
-    const Duration piece = counters_.Armed() ? std::min<Duration>(piece_, end - now_) : end - now_;
-    const mechanics::GearTrainState before = train_->State();
-    train_->Advance(ToSeconds(piece));
-    const mechanics::GearTrainState after = train_->State();
-    if (counters_.Armed()) TakeSamples(before, after);
-    path_.Travel(after.table_rad);
-    now_ += piece;
+    const Duration piece = counters_.Armed() ? std::min<Duration>(piece_, end - Now()) : end - Now();
+    drive_.RunUntil(Now() + piece, [&] { Pass(piece); });
   }
 }
 
-void HobWorld::TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after) {
+/// What went on in the piece of time that ends now.
+void HobWorld::Pass(Duration piece) {
+  const mechanics::GearTrainState before = train_->State();
+  train_->Advance(ToSeconds(piece));
+  const mechanics::GearTrainState after = train_->State();
+  if (counters_.Armed()) TakeSamples(before, after, Now() - piece);
+  path_.Travel(after.table_rad);
+}
+
+void HobWorld::TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after,
+                           Time begin) {
   while (counters_.Armed()) {
     const auto time_s = mechanics::PassingTime_s(before, after, counters_.NextTableAngle_rad());
     if (!time_s) return;
-    const Time then = now_ + FromSeconds(*time_s - before.time_s);  // the train's clock stands still with it
+    const Time then = begin + FromSeconds(*time_s - before.time_s);  // the train's clock stands still with it
     counters_.Push(SampleAt(mechanics::Between(before, after, *time_s), then));
   }
 }

@@ -5,6 +5,7 @@
 
 #include "twin/benches/hob_transmission/twin/counters.h"
 #include "twin/benches/hob_transmission/twin/path.h"
+#include "twin/sim/schedule.h"
 
 namespace twinbench::sim {
 
@@ -14,7 +15,9 @@ class HobWorld {
  public:
   explicit HobWorld(const Scenario& nominal);
 
-  Time Now() const { return now_; }
+  Time Now() const { return queue_.Now(); }
+  /// Events that each device has scheduled.
+  const std::map<std::string, std::uint64_t>& Scheduled() const { return queue_.Scheduled(); }
   void RunUntil(Time until);
 
   void Run(double hob_speed_rad_s, Duration ramp);
@@ -28,17 +31,19 @@ class HobWorld {
   std::vector<mechanics::AngleHarmonic> Transmission() const { return path_.Transmission(); }
 
  private:
-  void TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after);
+  void TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after, Time begin);
   CounterSample SampleAt(const mechanics::GearTrainState& at, Time now);
-  bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && now_ >= at_rest_; }
+  bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && Now() >= at_rest_; }
+  void Pass(Duration piece);
   double Interferometer_rad(const mechanics::GearTrainState& at);
 
+  EventQueue queue_;
+  Schedule drive_{queue_, "drive"}, card_{queue_, "counters"}, fixture_{queue_, "fixture"};
   HobPath path_;
   std::unique_ptr<mechanics::GearTrain> train_;
   Counters counters_;
   Stream interferometer_noise_;
   Duration piece_;
-  Time now_{};
   Time at_rest_{};  // from then on nothing moves, unless the drive is told to
   double hob_speed_rad_s_ = 0.0;
   int direction_ = 1;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/psd_noise.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::sim {
@@ -28,7 +29,8 @@ double ShareAbove(double threshold_V, double level_V, double noise_V) {
 }  // namespace
 
 Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
-    : adc_(RotaryOf(actual).adc),
+    : psd_{RotaryOf(actual).psd_a, RotaryOf(actual).psd_b},
+      adc_(RotaryOf(actual).adc),
       amplifier_(RotaryOf(actual).amplifier),
       sensitivity_V_m_{RotaryOf(actual).psd_a.sensitivity_V_m, RotaryOf(actual).psd_a.sensitivity_V_m,
                        RotaryOf(actual).psd_b.sensitivity_V_m, RotaryOf(actual).psd_b.sensitivity_V_m},
@@ -43,6 +45,17 @@ std::array<double, kChannels> Electronics::Amplify(const std::array<double, kCha
     signal_V[c] = sensitivity_V_m_[c] * (1.0 + amplifier_.gain_error[c]) * spots_m[c] + amplifier_.offset_V[c];
   }
   return signal_V;
+}
+
+std::array<double, kChannels> Electronics::LightNoise_V(const Spots& spots) const {
+  std::array<double, kChannels> noise_V{};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const PsdSettings& psd = psd_[c / 2];
+    const double length_m = c % 2 == 0 ? psd.width_m : psd.height_m;
+    const double noise_m = PsdNoise_m(psd, spots.power_W[c / 2], length_m, spots.uv_m[c]);
+    noise_V[c] = sensitivity_V_m_[c] * std::abs(1.0 + amplifier_.gain_error[c]) * noise_m;
+  }
+  return noise_V;
 }
 
 /// `course` outlives what is returned.
@@ -87,10 +100,16 @@ Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
   return block;
 }
 
-Acquisition Electronics::Convert(const BlockCourse& course, Time start, int reading, int n_samples, bool keep_raw) {
+Acquisition Electronics::Convert(const BlockCourse& course, const std::array<double, kChannels>& light_noise_V,
+                                 Time start, int reading, int n_samples, bool keep_raw) {
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
+  AdInput input = InScanOrder(course, start);
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    double& noise_V = input.channel[place].noise_V;
+    noise_V = std::hypot(noise_V, light_noise_V[scan_[place]]);
+  }
   const AdRequest request{n_samples, adc_.every_sample, keep_raw, noise_free_};
-  return InChannelOrder(TakeBlock(adc_, InScanOrder(course, start), request, noise_).ToAcquisition(start));
+  return InChannelOrder(TakeBlock(adc_, input, request, noise_).ToAcquisition(start));
 }
 
 std::array<double, kChannels> Electronics::Expect(const std::array<double, kChannels>& signal_V, Time start,

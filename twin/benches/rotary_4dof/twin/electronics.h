@@ -1,6 +1,8 @@
 #pragma once
 
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effect.h"
+#include "twin/benches/rotary_4dof/twin/light.h"
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"
 #include "twin/sim/ad_sampler.h"
@@ -16,10 +18,15 @@ class Electronics {
   /// Amplifier outputs for spot coordinates [m] in channel order.
   std::array<double, kChannels> Amplify(const std::array<double, kChannels>& spots_m) const;
 
+  /// Of the light itself, one sample, standard deviation at the amplifiers' outputs (psd_noise.h).
+  std::array<double, kChannels> LightNoise_V(const Spots& spots) const;
+
   /// Converts one block. What changes in it by less than a thousandth of a code step counts as steady, what is that
   /// near to a straight line as one: then samples need not be asked one by one. `reading` enters the noise stream,
   /// so that a reading's noise does not depend on how many samples the readings before it took.
-  Acquisition Convert(const BlockCourse& course, Time start, int reading, int n_samples, bool keep_raw);
+  /// @param light_noise_V  Of each channel; comes to the amplifiers' own.
+  Acquisition Convert(const BlockCourse& course, const std::array<double, kChannels>& light_noise_V, Time start,
+                      int reading, int n_samples, bool keep_raw);
 
   /// The mean that such a block would have if it were taken again and again: hum and crosstalk as they fall into
   /// it, a step of the converter blurred by the samples' noise, no quantisation. NaN at the ends of the range.
@@ -31,6 +38,7 @@ class Electronics {
   AdInput InScanOrder(const BlockCourse& course, Time start) const;
   Acquisition InChannelOrder(const Acquisition& scanned) const;
 
+  std::array<PsdSettings, 2> psd_;
   AdcSettings adc_;
   AmplifierSettings amplifier_;
   std::array<double, kChannels> sensitivity_V_m_;

@@ -165,6 +165,7 @@ Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
   for (std::size_t p = 0; p < 2; ++p) {
     spots.uv_m[2 * p] = psd[p]->u_m;
     spots.uv_m[2 * p + 1] = psd[p]->v_m;
+    spots.power_W[p] = psd[p]->power_W;
     const bool dark = psd[p]->power_W < low_light_fraction_ * nominal_power_W_[p];
     const ReadingStatus status = dark ? ReadingStatus::kNoLight : StatusOf(psd[p]->status);
     if (spots.status == ReadingStatus::kOk) spots.status = status;

@@ -11,6 +11,7 @@ namespace twinbench::sim {
 struct Spots {
   ReadingStatus status = ReadingStatus::kOk;
   std::array<double, kChannels> uv_m{};
+  std::array<double, 2> power_W{};  // on PSD A and B
 };
 
 /// Laser, grating and PSDs of a scenario.

@@ -78,14 +78,14 @@ double World::Shortest_s() {
 }
 
 /// What reaches the converter now.
-ReadingStatus World::AddKnot(BlockCourse& course) {
+Spots World::AddKnot(BlockCourse& course) {
   const mechanics::StackState axes = axes_.Look();
   const Moment moment = Look(axes);
   const Spots spots = path_.light().Trace(path_.GratingPose(moment, axes), path_.LightAt(moment));
   std::array<double, kChannels> signal_V = path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
   path_.effects().AlterSignal(moment, signal_V);
   course.Add(signal_V);
-  return spots.status;
+  return spots;
 }
 
 Acquisition World::Acquire(int n_samples, bool keep_raw) {
@@ -93,26 +93,28 @@ Acquisition World::Acquire(int n_samples, bool keep_raw) {
   const Duration block = BlockTime(RotaryOf(actual()).adc, n_samples);
   const int steps = StepsOf(block, Shortest_s(), kChannels * n_samples);
   BlockCourse course(block / steps);
-  ReadingStatus status = ReadingStatus::kOk;
+  Spots seen;  // at the block's begin, or where they were lost
   for (int k = 0; k <= steps; ++k) {
-    adc_.At(start + k * (block / steps), [&] {
-      const ReadingStatus seen = AddKnot(course);
-      if (status == ReadingStatus::kOk) status = seen;
+    adc_.At(start + k * (block / steps), [&, k] {
+      const Spots spots = AddKnot(course);
+      if (k == 0 || (seen.status == ReadingStatus::kOk && spots.status != ReadingStatus::kOk)) seen = spots;
     });
   }
   adc_.RunUntil(start + block);
-  return Converted(course, status, start, n_samples, keep_raw);
+  return Converted(course, seen, start, n_samples, keep_raw);
 }
 
-Acquisition World::Converted(const BlockCourse& course, ReadingStatus status, Time start, int n_samples,
+Acquisition World::Converted(const BlockCourse& course, const Spots& seen, Time start, int n_samples,
                              bool keep_raw) {
   Acquisition acquired;
-  if (status == ReadingStatus::kOk) {
-    acquired = path_.electronics().Convert(course, start, next_reading_, n_samples, keep_raw);
+  if (seen.status == ReadingStatus::kOk) {
+    Electronics& electronics = path_.electronics();
+    acquired =
+        electronics.Convert(course, electronics.LightNoise_V(seen), start, next_reading_, n_samples, keep_raw);
     path_.effects().AlterReadout(acquired);
   } else {
     acquired.start = start;
-    acquired.status = status;
+    acquired.status = seen.status;
   }
   ++next_reading_;
   return acquired;

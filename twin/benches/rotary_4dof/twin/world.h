@@ -41,8 +41,8 @@ class World {
  private:
   Moment Look(const mechanics::StackState& axes);
   double Shortest_s();
-  ReadingStatus AddKnot(BlockCourse& course);
-  Acquisition Converted(const BlockCourse& course, ReadingStatus status, Time start, int n_samples, bool keep_raw);
+  Spots AddKnot(BlockCourse& course);
+  Acquisition Converted(const BlockCourse& course, const Spots& seen, Time start, int n_samples, bool keep_raw);
 
   EventQueue queue_;
   Schedule adc_{queue_, "adc"}, fixture_{queue_, "fixture"};
