@@ -79,8 +79,8 @@ Scenario RichBench() {
 
 // What is left is rounding in the chain and Newton's last step at the autocollimator.
 constexpr double kRounding_m = 1e-12;
-// A rotor in its backlash stands an arcsecond or two beside its stop, where its table errs by some 1e-10 rad more or
-// less than at the stop; TablesOf looks at the stop.
+// A rotor in its backlash stands an arcsecond or two beside its stop, where its table errs by some 1e-10 rad more
+// or less than at the stop; TablesOf looks at the stop.
 constexpr double kBesideTheStop_m = 4e-10;
 
 TEST(RotaryFollow, SaysWhatThePlainTwinShows) {

@@ -16,6 +16,7 @@ struct AmplifierSettings {           // [amplifier]
   std::array<double, 4> offset_V{};  // one a channel
   std::array<double, 4> gain_error{};
   double noise_V = 6.0 * units::mV;  // one sample, white, standard deviation
+  double flicker_V = 0.0;            // 1 / f noise of every channel: standard deviation of one decade
   double hum_V = 0.0;                // amplitude of the mains hum, on all channels
   double hum_Hz = 50.0;
   double low_light_fraction = 0.02;  // below this share of the nominal power: no light
@@ -31,6 +32,9 @@ struct AdcSettings {  // [adc]
   double drain_rate_Hz = 1e6;  // at which it empties the FIFO
   int samples = 100;           // scans a reading
   bool every_sample = true;    // false: draw mean and deviation directly (same distribution)
+  std::string inl_file;        // integral non-linearity: CSV of voltage_V, error_mV; absolute once loaded
+  double jitter_s = 0.0;       // of the instants of conversion, standard deviation
+  double lost_fraction = 0.0;  // of scans that do not arrive
 };
 
 struct TableSettings {  // [target], [reference]; [turntable], [multitooth]

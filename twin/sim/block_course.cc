@@ -34,6 +34,16 @@ double BlockCourse::Slope_V_s(std::size_t channel) const {
   return (knots_V_.back()[channel] - knots_V_.front()[channel]) / Duration_s();
 }
 
+double BlockCourse::RmsSlope_V_s(std::size_t channel) const {
+  if (knots_V_.size() == 1) return 0.0;
+  double squares = 0.0;
+  for (std::size_t k = 1; k < knots_V_.size(); ++k) {
+    const double slope_V_s = (knots_V_[k][channel] - knots_V_[k - 1][channel]) / step_s_;
+    squares += slope_V_s * slope_V_s;
+  }
+  return std::sqrt(squares / static_cast<double>(knots_V_.size() - 1));
+}
+
 bool BlockCourse::IsLevel(double within_V) const {
   for (std::size_t c = 0; c < kChannels; ++c) {
     const double mean_V = Mean_V(c);

@@ -35,6 +35,19 @@ class BlockCourse {
   /// Slope of the chord from the first knot to the last one.
   double Slope_V_s(std::size_t channel) const;
 
+  /// Root mean square of the slope.
+  double RmsSlope_V_s(std::size_t channel) const;
+
+  /// Every voltage as `curve(voltage)`.
+  template <class Curve>
+  BlockCourse Bent(Curve curve) const {
+    BlockCourse bent = *this;
+    for (Voltages& knot_V : bent.knots_V_) {
+      for (double& voltage_V : knot_V) voltage_V = curve(voltage_V);
+    }
+    return bent;
+  }
+
   /// Whether no channel is anywhere further than this from its mean or, for IsStraight, from its chord.
   bool IsLevel(double within_V) const;
   bool IsStraight(double within_V) const;

@@ -73,6 +73,7 @@ void AddAmplifier(Keys& keys, AmplifierSettings& s) {
   t.Add("offset", kMillivolt, Within(20000), List(s.offset_V), "psd_a_x, psd_a_y, psd_b_x, psd_b_y");
   t.Add("gain_error", kPure, Within(0.9), List(s.gain_error), "of the same channels");
   t.Add("noise", kMillivolt, UpTo(10000), &s.noise_V, "of one sample, white, standard deviation");
+  t.Add("flicker", kMillivolt, UpTo(10000), &s.flicker_V, "1/f noise, standard deviation of one decade");
   t.Add("hum", kMillivolt, UpTo(10000), &s.hum_V, "amplitude of the mains hum, on all channels");
   t.Add("hum_frequency", kHz, Positive(1e6), &s.hum_Hz, "of the hum");
   t.Add("low_light_fraction", kPure, UpTo(1), &s.low_light_fraction, "of the nominal power; below: no light");
@@ -88,6 +89,9 @@ void AddAdc(Keys& keys, AdcSettings& s) {
   t.Add("drain_rate", kKilohertz, Positive(1e6), &s.drain_rate_Hz, "at which the computer empties the FIFO");
   t.Add("samples", kPure, {1, 1e7}, &s.samples, "scans a reading");
   t.Flag("every_sample", s.every_sample, "false: draw mean and deviation of a block at once");
+  t.File("inl_file", s.inl_file, "integral non-linearity: CSV of voltage_V, error_mV");
+  t.Add("jitter", kMicrosecond, UpTo(1e6), &s.jitter_s, "of the instants of conversion, standard deviation");
+  t.Add("lost_fraction", kPure, UpTo(0.9), &s.lost_fraction, "of scans that do not arrive");
 }
 
 void AddReferenceMounting(Keys& keys, Scenario& s) {

@@ -10,7 +10,8 @@ namespace twinbench::sim {
 namespace {
 
 void SilenceRotary(RotarySettings& own) {
-  own.amplifier.noise_V = 0.0;
+  own.amplifier.noise_V = own.amplifier.flicker_V = 0.0;
+  own.adc.lost_fraction = 0.0;
   own.autocollimator.noise_rad = 0.0;
   Silence(own.target);
   Silence(own.reference);

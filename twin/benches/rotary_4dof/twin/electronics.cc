@@ -37,7 +37,42 @@ Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
       sampling_(sampling),
       scan_(ScanOf(RotaryOf(actual).adc.scan_list)),
       noise_free_(actual.noise_free),
-      noise_(actual.seed, "amplifier.noise") {}
+      seed_(actual.seed),
+      noise_(actual.seed, "amplifier.noise"),
+      curve_(adc_.inl_file) {
+  for (const char* channel : kChannelNames)
+    flicker_.emplace_back(amplifier_.flicker_V, actual.seed, std::string("amplifier.flicker.") + channel);
+}
+
+double Electronics::Shortest_s() const {
+  return flicker_.front().Shortest_s();
+}
+
+void Electronics::AddFlicker(Time now, std::array<double, kChannels>& signal_V) const {
+  for (std::size_t c = 0; c < kChannels; ++c) signal_V[c] += flicker_[c].At(ToSeconds(now));
+}
+
+/// With the converter's non-linearity, which is smooth over the noise of a sample.
+BlockCourse Electronics::AsConverted(const BlockCourse& course) const {
+  if (curve_.IsStraight()) return course;
+  return course.Bent([this](double voltage_V) { return voltage_V + curve_.Added_V(voltage_V); });
+}
+
+/// What a wrong instant makes of a signal that changes, to first order: slope times jitter.
+double Electronics::JitterNoise_V(const BlockCourse& course, std::size_t channel) const {
+  const double hum_V_s = amplifier_.hum_V * units::turn * amplifier_.hum_Hz / std::sqrt(2.0);
+  return noise_free_ ? 0.0 : adc_.jitter_s * std::hypot(course.RmsSlope_V_s(channel), hum_V_s);
+}
+
+/// Scans of a block that reach the computer; one at least.
+int Electronics::Arriving(int n_samples, int reading) const {
+  if (adc_.lost_fraction == 0.0) return n_samples;
+  Stream lost(seed_, "adc.lost");
+  lost.Seek(static_cast<std::uint64_t>(reading) << 32);
+  int arriving = 0;
+  for (int k = 0; k < n_samples; ++k) arriving += lost.Uniform() < adc_.lost_fraction ? 0 : 1;
+  return std::max(1, arriving);
+}
 
 std::array<double, kChannels> Electronics::Amplify(const std::array<double, kChannels>& spots_m) const {
   std::array<double, kChannels> signal_V{};
@@ -103,18 +138,20 @@ Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
 Acquisition Electronics::Convert(const BlockCourse& course, const std::array<double, kChannels>& light_noise_V,
                                  Time start, int reading, int n_samples, bool keep_raw) {
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
-  AdInput input = InScanOrder(course, start);
+  const BlockCourse converted = AsConverted(course);
+  AdInput input = InScanOrder(converted, start);
   for (std::size_t place = 0; place < kChannels; ++place) {
+    const std::size_t c = scan_[place];
     double& noise_V = input.channel[place].noise_V;
-    noise_V = std::hypot(noise_V, light_noise_V[scan_[place]]);
+    noise_V = std::hypot(noise_V, light_noise_V[c], JitterNoise_V(converted, c));
   }
-  const AdRequest request{n_samples, adc_.every_sample, keep_raw, noise_free_};
+  const AdRequest request{Arriving(n_samples, reading), adc_.every_sample, keep_raw, noise_free_};
   return InChannelOrder(TakeBlock(adc_, input, request, noise_).ToAcquisition(start));
 }
 
 std::array<double, kChannels> Electronics::Expect(const std::array<double, kChannels>& signal_V, Time start,
                                                   int n_samples, double noise_V) const {
-  const BlockCourse steady(signal_V);
+  const BlockCourse steady = AsConverted(BlockCourse(signal_V));
   AdInput input = InScanOrder(steady, start);
   const bool blurred = noise_V > 0.0;  // else the block itself says where its samples lie
   for (ChannelInput& channel : input.channel) channel.step_V = blurred ? 0.0 : channel.step_V;

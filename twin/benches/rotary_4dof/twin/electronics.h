@@ -7,6 +7,8 @@
 #include "twin/core/stream.h"
 #include "twin/sim/ad_sampler.h"
 #include "twin/sim/block_course.h"
+#include "twin/sim/converter_curve.h"
+#include "twin/sim/flicker_noise.h"
 
 namespace twinbench::sim {
 
@@ -17,6 +19,11 @@ class Electronics {
 
   /// Amplifier outputs for spot coordinates [m] in channel order.
   std::array<double, kChannels> Amplify(const std::array<double, kChannels>& spots_m) const;
+
+  /// Period of the fastest thing that the amplifiers add beside noise and hum; infinite if there is none.
+  double Shortest_s() const;
+  /// The amplifiers' 1 / f noise.
+  void AddFlicker(Time now, std::array<double, kChannels>& signal_V) const;
 
   /// Of the light itself, one sample, standard deviation at the amplifiers' outputs (psd_noise.h).
   std::array<double, kChannels> LightNoise_V(const Spots& spots) const;
@@ -35,6 +42,9 @@ class Electronics {
                                        double noise_V) const;
 
  private:
+  BlockCourse AsConverted(const BlockCourse& course) const;
+  double JitterNoise_V(const BlockCourse& course, std::size_t channel) const;
+  int Arriving(int n_samples, int reading) const;
   AdInput InScanOrder(const BlockCourse& course, Time start) const;
   Acquisition InChannelOrder(const Acquisition& scanned) const;
 
@@ -45,7 +55,10 @@ class Electronics {
   SamplingState sampling_;
   std::array<std::size_t, kChannels> scan_;  // channel of each place in the scan
   bool noise_free_;
+  std::uint64_t seed_;
   Stream noise_;
+  std::vector<FlickerNoise> flicker_;  // one a channel
+  ConverterCurve curve_;
 };
 
 }  // namespace twinbench::sim

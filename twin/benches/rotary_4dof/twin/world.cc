@@ -74,7 +74,7 @@ double World::Shortest_s() {
   constexpr double kStepsAPeriod = BlockCourse::kKnotsAPeriod;
   const double drives_s =
       axes_.IsRestless() ? kStepsAPeriod * ToSeconds(axes_.ServoPeriod()) : std::numeric_limits<double>::infinity();
-  return std::min(path_.effects().Shortest_s(), drives_s);
+  return std::min({path_.effects().Shortest_s(), path_.electronics().Shortest_s(), drives_s});
 }
 
 /// What reaches the converter now.
@@ -84,6 +84,7 @@ Spots World::AddKnot(BlockCourse& course) {
   const Spots spots = path_.light().Trace(path_.GratingPose(moment, axes), path_.LightAt(moment));
   std::array<double, kChannels> signal_V = path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
   path_.effects().AlterSignal(moment, signal_V);
+  path_.electronics().AddFlicker(moment.now, signal_V);
   course.Add(signal_V);
   return spots;
 }
