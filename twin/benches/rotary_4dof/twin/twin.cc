@@ -141,6 +141,10 @@ Truth Twin::TheTruth() const {
           scenario.seed};
 }
 
+std::uint64_t Twin::RaysTraced() const {
+  return impl_->devices->world.light().rays();
+}
+
 void Twin::WriteIrradiance(const std::string& path) {
   impl_->devices->world.WriteIrradiance(path);
 }

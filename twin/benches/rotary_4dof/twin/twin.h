@@ -24,6 +24,9 @@ class Twin {
   /// What the errors of both tables are at the stops of the scenario's procedure.
   Truth TheTruth() const;
 
+  /// Rays that Embree has been asked to trace since the last start: what shows that light was traced.
+  std::uint64_t RaysTraced() const;
+
   /// Writes the irradiance on both PSDs at this moment as one multi-part OpenEXR.
   void WriteIrradiance(const std::string& path);
 

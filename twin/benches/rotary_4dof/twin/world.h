@@ -32,6 +32,7 @@ class World {
   void WriteIrradiance(const std::string& path);
 
   const Stand& stand() const { return path_.stand(); }
+  const Light& light() const { return path_.light(); }
 
  private:
   Moment Look(const mechanics::StackState& axes);
