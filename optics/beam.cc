@@ -40,6 +40,16 @@ std::vector<double> EqualSlices(int m) {
   return means;
 }
 
+/// How many pixels of a map go together.
+struct Gathered {
+  int side, step_x, step_y;  // blocks a side of the picture; pixels a block
+
+  Gathered(const IrradianceMap& map, int max_positions)
+      : side(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(max_positions))))),
+        step_x((map.width + side - 1) / side),
+        step_y((map.height + side - 1) / side) {}
+};
+
 struct Block {
   double sum = 0.0, x = 0.0, y = 0.0;
 };
@@ -91,8 +101,7 @@ BeamNodes DenseBundle(double radius_m, double divergence_rad, int m) {
 }
 
 BeamNodes ProfileBundle(const IrradianceMap& map, double divergence_rad, int max_positions) {
-  const int side = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(max_positions))));
-  const int step_x = (map.width + side - 1) / side, step_y = (map.height + side - 1) / side;
+  const auto [side, step_x, step_y] = Gathered(map, max_positions);
   std::vector<Block> blocks(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
   double total = 0.0;
   for (int row = 0; row < map.height; ++row) {
@@ -112,6 +121,11 @@ BeamNodes ProfileBundle(const IrradianceMap& map, double divergence_rad, int max
     AddWithSlopes(nodes, block.x / block.sum, block.y / block.sum, divergence_rad / 2.0, block.sum / total);
   }
   return nodes;
+}
+
+Eigen::Vector2d ProfileBlock_m(const IrradianceMap& map, int max_positions) {
+  const Gathered gathered(map, max_positions);
+  return map.pitch_m * Eigen::Vector2d(gathered.step_x, gathered.step_y);
 }
 
 BeamAxes AxesAcross(const Eigen::Vector3d& direction) {

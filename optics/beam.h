@@ -44,6 +44,9 @@ BeamNodes DenseBundle(double radius_m, double divergence_rad, int m);
 /// @throws std::invalid_argument if the map holds no light.
 BeamNodes ProfileBundle(const IrradianceMap& map, double divergence_rad, int max_positions);
 
+/// What one of these blocks measures across the beam, x and y [m].
+Eigen::Vector2d ProfileBlock_m(const IrradianceMap& map, int max_positions);
+
 /// Axes across a beam: x horizontal (across z_L), y upwards.
 struct BeamAxes {
   Eigen::Vector3d x;

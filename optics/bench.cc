@@ -4,30 +4,24 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "optics/measured_beam.h"
+
 namespace twinbench::optics {
 namespace {
 
-constexpr std::array<int, 2> kOrder = {+1, -1};
-constexpr int kNodesPerAxis = 2;   // 16 rays: centroid to 1e-9 um (moments of a nearly linear map)
-constexpr int kDensePerAxis = 24;  // 2304 rays for a beam over an edge
-constexpr int kProfilePositions = 1024;
+constexpr int kNodesPerAxis = 2;         // 16 rays: centroid to 1e-9 um (moments of a nearly linear map)
+constexpr int kDensePerAxis = 24;        // 2304 rays for a beam over an edge
+constexpr int kProfilePositions = 1024;  // closed: enough for second moments
 
-Scene BlockerScene(const std::vector<Blocker>& blockers, bool riding) {
-  Scene scene;
-  for (const Blocker& blocker : blockers) {
-    if (blocker.rides_on_grating == riding) scene.AddMesh(blocker.mesh, blocker.pose);
-  }
-  scene.Commit();
-  return scene;
+int ProfilePositions(const RotaryOpticsParameters& p) {
+  return p.fidelity == Fidelity::kTraced ? p.beam.profile_rays : kProfilePositions;
 }
 
-bool Any(const std::vector<Blocker>& blockers, bool riding) {
-  return std::ranges::any_of(blockers, [riding](const Blocker& b) { return b.rides_on_grating == riding; });
-}
-
-BeamNodes NodesOf(const BeamParameters& beam) {
+BeamNodes NodesOf(const RotaryOpticsParameters& p) {
+  const BeamParameters& beam = p.beam;
   if (beam.kind == BeamKind::kGaussian) return GaussianBundle(beam.radius_m, beam.divergence_rad, kNodesPerAxis);
-  if (beam.kind == BeamKind::kProfile) return ProfileBundle(*beam.profile, beam.divergence_rad, kProfilePositions);
+  if (beam.kind == BeamKind::kProfile)
+    return ProfileBundle(*beam.profile, beam.divergence_rad, ProfilePositions(p));
   return {BeamNode{}};
 }
 
@@ -37,6 +31,7 @@ void ValidateBeam(const BeamParameters& beam) {
   }
   if (beam.kind == BeamKind::kProfile && !beam.profile) throw std::invalid_argument("beam: the profile is missing");
   if (!(beam.divergence_rad >= 0.0)) throw std::invalid_argument("beam: divergence_rad must not be negative");
+  if (beam.profile_rays < 1) throw std::invalid_argument("beam: profile_rays must be positive");
 }
 
 void ValidateAll(const RotaryOpticsParameters& p) {
@@ -73,30 +68,25 @@ void Paint(const Spot& spot, IrradianceMap& map) {
           static_cast<float>(spot.power_W * share / area);
     }
   }
+  map.power_W += spot.power_W;
 }
 
 /// The direct light of the detector's own order, if it arrived.
 const Deposit* FindDirect(const std::vector<Deposit>& deposits, int detector) {
   const auto found = std::ranges::find_if(deposits, [detector](const Deposit& d) {
-    return d.detector == detector && d.reflections == 0 && d.order == kOrder[static_cast<std::size_t>(detector)];
+    return d.detector == detector && d.reflections == 0 &&
+           d.order == kOrderOfPsd[static_cast<std::size_t>(detector)];
   });
   return found == deposits.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-struct RotaryOptics::OnPlane {
-  bool arrives = false;
-  double u_m = 0.0, v_m = 0.0;
-  Eigen::Vector3d on_grating_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d on_plane_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-};
-
 struct RotaryOptics::Bundle {
   double share = 0.0;                                  // of the power that arrives
   Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();    // in the plane
-  Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();  // from the chief ray
+  double transmission = 1.0;                           // of the window
+  Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();  // from the chief ray; closed only
   Eigen::Matrix2d cov_m2 = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d slopes_per_m = Eigen::Matrix2d::Zero();  // of the direction, by regression on position
 };
@@ -106,17 +96,19 @@ RotaryOptics::RotaryOptics(const RotaryOpticsParameters& parameters) : parameter
   const double angle = std::asin(parameters_.nominal_wavelength_m * parameters_.grating.lines_per_m);
   for (int i = 0; i < 2; ++i) {
     const auto n = static_cast<std::size_t>(i);
-    X_LP_[n] = PsdPose(psd(i), kOrder[n] * angle);
-    planes_[n] = MakeFrame(RectangularPlane(X_LP_[n], psd(i).width_m, psd(i).height_m));
+    X_LP_[n] = PsdPose(psd(i), kOrderOfPsd[n] * angle);
     split_ |= psd(i).window.has_value() || psd(i).silicon_reflectance > 0.0;
   }
-  nodes_ = NodesOf(parameters_.beam);
+  nodes_ = NodesOf(parameters_);
   const BeamParameters& beam = parameters_.beam;
   if (beam.kind == BeamKind::kGaussian)
     dense_nodes_ = DenseBundle(beam.radius_m, beam.divergence_rad, kDensePerAxis);
-  if (Any(parameters_.blockers, false)) fixed_blockers_ = BlockerScene(parameters_.blockers, false);
-  if (Any(parameters_.blockers, true)) riding_blockers_ = BlockerScene(parameters_.blockers, true);
-  chief_only_ = beam.kind == BeamKind::kChiefRay && !split_ && parameters_.blockers.empty();
+  if (parameters_.fidelity == Fidelity::kTraced) {
+    traced_.emplace(parameters_, X_LP_);
+  } else {
+    closed_.emplace(parameters_, X_LP_);
+  }
+  measured_ = traced_ && beam.kind == BeamKind::kProfile;
 }
 
 Ray RotaryOptics::ChiefRay(const SourceState& source) const {
@@ -125,86 +117,109 @@ Ray RotaryOptics::ChiefRay(const SourceState& source) const {
           {c * std::sin(source.yaw_rad), -c * std::cos(source.yaw_rad), std::sin(source.pitch_rad)}};
 }
 
-RotaryOptics::OnPlane RotaryOptics::TraceOrder(const Frame& g, const Ray& ray, double wavelength_m, int i) const {
-  OnPlane result;
-  const auto& o = ray.origin_m;
-  const auto& d = ray.direction;
-  double t, x, y;
-  MeetPlane(g, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), t, x, y);
-  const Eigen::Vector3d normal(g.zx, g.zy, g.zz);
-  if (!(t > 0.0) || !InAperture(g, x, y) || !(d.dot(normal) < 0.0)) return result;
-  const auto n = static_cast<std::size_t>(i);
-  const double shift = kOrder[n] * wavelength_m * parameters_.grating.lines_per_m;
-  const OrderDirection out = Diffract(d, normal, {g.xx, g.xy, g.xz}, shift);
-  if (out.status != OrderStatus::kOk) return result;
-  const Eigen::Vector3d p = o + t * d;
-  MeetPlane(planes_[n], p.x(), p.y(), p.z(), out.direction.x(), out.direction.y(), out.direction.z(), t, x, y);
-  if (!(t > 0.0)) return result;
-  return {true, x, y, p, p + t * out.direction, out.direction};
+Frame RotaryOptics::GratingFrame(const Eigen::Isometry3d& X_LG) const {
+  return MakeFrame(
+      RectangularPlane(SurfacePoseOfGrating(X_LG), parameters_.grating.width_m, parameters_.grating.height_m));
 }
 
-PsdSignal RotaryOptics::TraceChief(const Frame& grating, const Ray& chief, const SourceState& source, int i) const {
-  const OnPlane hit = TraceOrder(grating, chief, source.wavelength_m, i);
-  if (!hit.arrives) return {};
+PsdSignal RotaryOptics::ChiefSignal(const Frame& grating, const Ray& chief, const SourceState& source,
+                                    const Landing& landing, int i) const {
+  if (!landing.arrives) return {};
   const Eigen::Vector3d& d = chief.direction;
   const Eigen::Vector3d d_G(d.x() * grating.xx + d.y() * grating.xy + d.z() * grating.xz, 0.0,
                             -(d.x() * grating.yx + d.y() * grating.yy + d.z() * grating.yz));
   const double share =
-      EfficiencyOf(parameters_.grating, source.wavelength_m, d_G, kOrder[static_cast<std::size_t>(i)]);
-  return RespondToPoint(psd(i), hit.u_m, hit.v_m, source.power_W * share);
+      EfficiencyOf(parameters_.grating, source.wavelength_m, d_G, kOrderOfPsd[static_cast<std::size_t>(i)]);
+  return RespondToPoint(psd(i), landing.u_m, landing.v_m, source.power_W * share);
 }
 
-bool RotaryOptics::Blocked(const Eigen::Isometry3d& X_LG, const Eigen::Vector3d& from_m,
-                           const Eigen::Vector3d& to_m) const {
-  if (fixed_blockers_ && fixed_blockers_->Occluded(from_m, to_m)) return true;
-  if (!riding_blockers_) return false;
-  const Eigen::Isometry3d X_GL = X_LG.inverse();
-  return riding_blockers_->Occluded(X_GL * from_m, X_GL * to_m);
+PsdSignals RotaryOptics::TraceChief(const Eigen::Isometry3d& X_LG, const SourceState& source) const {
+  const Ray chief = ChiefRay(source);
+  const Frame grating = GratingFrame(X_LG);
+  if (closed_) {
+    return {ChiefSignal(grating, chief, source, closed_->Reach(grating, chief, source.wavelength_m, 0), 0),
+            ChiefSignal(grating, chief, source, closed_->Reach(grating, chief, source.wavelength_m, 1), 1)};
+  }
+  const std::array<Landing, 2> landings = traced_->Trace(X_LG, chief, source.wavelength_m);
+  return {ChiefSignal(grating, chief, source, landings[0], 0), ChiefSignal(grating, chief, source, landings[1], 1)};
 }
 
-RotaryOptics::Bundle RotaryOptics::TraceBundle(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG,
-                                               const Ray& chief, double wavelength_m, int i) const {
-  const Frame grating = MakeFrame(
-      RectangularPlane(SurfacePoseOfGrating(X_LG), parameters_.grating.width_m, parameters_.grating.height_m));
+std::array<RotaryOptics::Landings, 2> RotaryOptics::LandingsOf(const BeamNodes& nodes,
+                                                               const Eigen::Isometry3d& X_LG, const Ray& chief,
+                                                               double wavelength_m) const {
   const BeamAxes axes = AxesAcross(chief.direction);
-  const Eigen::Matrix3d& R_LP = X_LP_[static_cast<std::size_t>(i)].linear();
-  const bool blockers = !parameters_.blockers.empty();
-  double share = 0.0;
-  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();  // of (u, v, direction u, direction v)
+  if (traced_) {
+    RayBatch rays;
+    for (const BeamNode& node : nodes) rays.Add(NodeRay(chief, axes, node));
+    return traced_->Trace(GratingPoses({&X_LG, 1}), rays, {&wavelength_m, 1});
+  }
+  const Frame grating = GratingFrame(X_LG);
+  std::array<Landings, 2> landings;
+  for (Landings& on_detector : landings) on_detector.reserve(nodes.size());
   for (const BeamNode& node : nodes) {
     const Ray ray = NodeRay(chief, axes, node);
-    const OnPlane hit = TraceOrder(grating, ray, wavelength_m, i);
+    for (int i = 0; i < 2; ++i)
+      landings[static_cast<std::size_t>(i)].push_back(closed_->Trace(grating, X_LG, ray, wavelength_m, i));
+  }
+  return landings;
+}
+
+RotaryOptics::Bundle RotaryOptics::MomentsOf(const BeamNodes& nodes, const Landings& landings, int i) const {
+  const Eigen::Matrix3d& R_LP = X_LP_[static_cast<std::size_t>(i)].linear();
+  double share = 0.0, transmission = 0.0;
+  Eigen::Vector2d on_silicon = Eigen::Vector2d::Zero();
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();  // of (u, v, direction u, direction v) in air
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Landing& hit = landings[k];
     if (!hit.arrives) continue;
-    if (blockers &&
-        (Blocked(X_LG, ray.origin_m, hit.on_grating_m) || Blocked(X_LG, hit.on_grating_m, hit.on_plane_m))) {
-      continue;
-    }
-    const Eigen::Vector4d state(hit.u_m, hit.v_m, R_LP.col(0).dot(hit.direction), R_LP.col(1).dot(hit.direction));
-    share += node.weight;
-    sum += node.weight * state;
-    squares += node.weight * state * state.transpose();
+    const double weight = nodes[k].weight;
+    const Eigen::Vector4d state(hit.in_air_m.x(), hit.in_air_m.y(), R_LP.col(0).dot(hit.direction),
+                                R_LP.col(1).dot(hit.direction));
+    share += weight;
+    transmission += weight * hit.transmission;
+    on_silicon += weight * Eigen::Vector2d(hit.u_m, hit.v_m);
+    sum += weight * state;
+    squares += weight * state * state.transpose();
   }
   Bundle bundle{.share = share};
   if (!(share > 0.0)) return bundle;
   const Eigen::Vector4d mean = sum / share;
   const Eigen::Matrix4d cov = squares / share - mean * mean.transpose();
-  bundle.mean_m = mean.head<2>();
+  bundle.mean_m = on_silicon / share;
+  bundle.transmission = transmission / share;
   if (nodes.size() > 1) {
     bundle.cov_m2 = cov.topLeftCorner<2, 2>();
     bundle.slopes_per_m = cov.bottomLeftCorner<2, 2>() * bundle.cov_m2.inverse();
   }
-  const OnPlane centre = TraceOrder(grating, chief, wavelength_m, i);
-  if (centre.arrives) bundle.offset_m = bundle.mean_m - Eigen::Vector2d(centre.u_m, centre.v_m);
   return bundle;
 }
 
-/// The few rays of a smooth rule; if one of them is lost, the many of a rule for hard edges.
-RotaryOptics::Bundle RotaryOptics::BundleOn(const Eigen::Isometry3d& X_LG, const Ray& chief, double wavelength_m,
-                                            int i) const {
-  const Bundle smooth = TraceBundle(nodes_, X_LG, chief, wavelength_m, i);
-  if (dense_nodes_.empty() || smooth.share > 1.0 - 1e-9) return smooth;
-  return TraceBundle(dense_nodes_, X_LG, chief, wavelength_m, i);
+std::array<RotaryOptics::Bundle, 2> RotaryOptics::Bundles(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG,
+                                                          const Ray& chief, double wavelength_m) const {
+  const auto landings = LandingsOf(nodes, X_LG, chief, wavelength_m);
+  std::array<Bundle, 2> bundles = {MomentsOf(nodes, landings[0], 0), MomentsOf(nodes, landings[1], 1)};
+  if (!closed_) return bundles;
+  const Frame grating = GratingFrame(X_LG);
+  for (int i = 0; i < 2; ++i) {
+    Bundle& bundle = bundles[static_cast<std::size_t>(i)];
+    const Landing centre = closed_->Reach(grating, chief, wavelength_m, i);
+    if (bundle.share > 0.0 && centre.arrives) bundle.offset_m = bundle.mean_m - centre.in_air_m;
+  }
+  return bundles;
+}
+
+/// The few rays of a smooth rule; for an order that loses one of them, the many of a rule for hard edges.
+std::array<RotaryOptics::Bundle, 2> RotaryOptics::BundlesOf(const Eigen::Isometry3d& X_LG, const Ray& chief,
+                                                            double wavelength_m) const {
+  const auto is_whole = [](const Bundle& b) { return b.share > 1.0 - 1e-9; };
+  std::array<Bundle, 2> bundles = Bundles(nodes_, X_LG, chief, wavelength_m);
+  if (dense_nodes_.empty() || (is_whole(bundles[0]) && is_whole(bundles[1]))) return bundles;
+  const std::array<Bundle, 2> dense = Bundles(dense_nodes_, X_LG, chief, wavelength_m);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!is_whole(bundles[i])) bundles[i] = dense[i];
+  }
+  return bundles;
 }
 
 std::vector<Deposit> RotaryOptics::Deposits(const Eigen::Isometry3d& X_LG, const Ray& chief,
@@ -214,9 +229,12 @@ std::vector<Deposit> RotaryOptics::Deposits(const Eigen::Isometry3d& X_LG, const
                    .wavelength_m = source.wavelength_m,
                    .psd = {&parameters_.psd_a, &parameters_.psd_b},
                    .X_LP = X_LP_,
-                   .blocked = {}};
-  if (!parameters_.blockers.empty()) {
-    bench.blocked = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) { return Blocked(X_LG, from, to); };
+                   .blocked = {},
+                   .scenes = traced_ ? &traced_->scenes() : nullptr};
+  if (closed_ && !parameters_.blockers.empty()) {
+    bench.blocked = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+      return closed_->Blocked(X_LG, from, to);
+    };
   }
   return TraceGhosts(bench, chief, source.power_W, parameters_.ghosts);
 }
@@ -225,14 +243,16 @@ double RotaryOptics::OrderPower(const Eigen::Isometry3d& X_LG, const Ray& chief,
                                 int i) const {
   const Eigen::Vector3d d_G = X_LG.linear().transpose() * chief.direction;
   return source.power_W *
-         EfficiencyOf(parameters_.grating, source.wavelength_m, d_G, kOrder[static_cast<std::size_t>(i)]);
+         EfficiencyOf(parameters_.grating, source.wavelength_m, d_G, kOrderOfPsd[static_cast<std::size_t>(i)]);
 }
 
 std::vector<Spot> RotaryOptics::SpotsOn(int i, const Bundle& bundle, const std::vector<Deposit>& deposits,
                                         double power_W, double wavelength_m) const {
   const Deposit* direct = FindDirect(deposits, i);
   Spot main{bundle.mean_m.x(), bundle.mean_m.y(), power_W * bundle.share, bundle.cov_m2, 1.0 - bundle.share};
-  if (direct) {
+  if (traced_) {
+    main.power_W *= bundle.transmission * (1.0 - psd(i).silicon_reflectance);
+  } else if (direct) {
     main.u_m = direct->u_m + bundle.offset_m.x();
     main.v_m = direct->v_m + bundle.offset_m.y();
     main.power_W = direct->power_W * bundle.share;
@@ -259,47 +279,111 @@ std::array<std::vector<Spot>, 2> RotaryOptics::Spots(const Eigen::Isometry3d& X_
                                                      const SourceState& source) const {
   const Ray chief = ChiefRay(source);
   const std::vector<Deposit> deposits = split_ ? Deposits(X_LG, chief, source) : std::vector<Deposit>{};
+  const std::array<Bundle, 2> bundles = BundlesOf(X_LG, chief, source.wavelength_m);
   std::array<std::vector<Spot>, 2> spots;
   for (int i = 0; i < 2; ++i) {
-    const Bundle bundle = BundleOn(X_LG, chief, source.wavelength_m, i);
+    const auto n = static_cast<std::size_t>(i);
     const double power_W = OrderPower(X_LG, chief, source, i);
-    spots[static_cast<std::size_t>(i)] = SpotsOn(i, bundle, deposits, power_W, source.wavelength_m);
+    spots[n] = SpotsOn(i, bundles[n], deposits, power_W, source.wavelength_m);
   }
   return spots;
 }
 
-PsdSignals RotaryOptics::Trace(const Eigen::Isometry3d& X_LG, const SourceState& source) const {
-  if (chief_only_) {
-    const Ray chief = ChiefRay(source);
-    const Frame grating = MakeFrame(
-        RectangularPlane(SurfacePoseOfGrating(X_LG), parameters_.grating.width_m, parameters_.grating.height_m));
-    return {TraceChief(grating, chief, source, 0), TraceChief(grating, chief, source, 1)};
+std::array<RotaryOptics::Measured, 2> RotaryOptics::MeasuredLight(const Eigen::Isometry3d& X_LG,
+                                                                  const SourceState& source) const {
+  const Ray chief = ChiefRay(source);
+  const std::vector<Deposit> deposits = split_ ? Deposits(X_LG, chief, source) : std::vector<Deposit>{};
+  const auto landings = LandingsOf(nodes_, X_LG, chief, source.wavelength_m);
+  const Eigen::Vector3d normal = X_LG.linear().col(1);
+  std::array<Measured, 2> light;
+  for (int i = 0; i < 2; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const double power_W = OrderPower(X_LG, chief, source, i);
+    const double shift = kOrderOfPsd[n] * source.wavelength_m * parameters_.grating.lines_per_m;
+    const BeamOnDetector beam{.psd = psd(i),
+                              .X_LP = X_LP_[n],
+                              .incident = chief.direction,
+                              .grating_normal = normal,
+                              .order = Diffract(chief.direction, normal, X_LG.linear().col(0), shift).direction,
+                              .pixel_m = ProfileBlock_m(*parameters_.beam.profile, ProfilePositions(parameters_)),
+                              .wavelength_m = source.wavelength_m};
+    light[n].map = MapOf(beam, nodes_, landings[n], power_W);
+    const Bundle bundle = MomentsOf(nodes_, landings[n], i);
+    light[n].others = SpotsOn(i, bundle, deposits, power_W, source.wavelength_m);
+    light[n].others.erase(light[n].others.begin());  // the direct light, which is the map
   }
+  return light;
+}
+
+PsdSignals RotaryOptics::TraceMeasured(const Eigen::Isometry3d& X_LG, const SourceState& source) const {
+  const std::array<Measured, 2> light = MeasuredLight(X_LG, source);
+  return {Respond(parameters_.psd_a, light[0].map, light[0].others),
+          Respond(parameters_.psd_b, light[1].map, light[1].others)};
+}
+
+PsdSignals RotaryOptics::Trace(const Eigen::Isometry3d& X_LG, const SourceState& source) const {
+  // Alone, the chief ray meets the fixtures on its own way; closed, their shadows are asked for below.
+  const bool alone = parameters_.beam.kind == BeamKind::kChiefRay && !split_;
+  if (alone && (traced_ || parameters_.blockers.empty())) return TraceChief(X_LG, source);
+  if (measured_) return TraceMeasured(X_LG, source);
   const auto spots = Spots(X_LG, source);
   return {Respond(parameters_.psd_a, spots[0]), Respond(parameters_.psd_b, spots[1])};
+}
+
+std::vector<PsdSignals> RotaryOptics::Trace(std::span<const Eigen::Isometry3d> X_LG,
+                                            std::span<const SourceState> sources) const {
+  if (X_LG.size() != sources.size()) throw std::invalid_argument("as many sources as poses of the grating");
+  std::vector<PsdSignals> signals;
+  signals.reserve(X_LG.size());
+  if (!traced_ || parameters_.beam.kind != BeamKind::kChiefRay || split_ || X_LG.size() == 1) {
+    for (std::size_t k = 0; k < X_LG.size(); ++k) signals.push_back(Trace(X_LG[k], sources[k]));
+    return signals;
+  }
+  RayBatch chiefs;
+  std::vector<double> wavelength_m;
+  for (const SourceState& source : sources) {
+    chiefs.Add(ChiefRay(source));
+    wavelength_m.push_back(source.wavelength_m);
+  }
+  const auto landings = traced_->Trace(GratingPoses(X_LG), chiefs, wavelength_m);
+  for (std::size_t k = 0; k < X_LG.size(); ++k) {
+    const Frame grating = GratingFrame(X_LG[k]);
+    const Ray chief = chiefs.At(k);
+    signals.push_back({ChiefSignal(grating, chief, sources[k], landings[0][k], 0),
+                       ChiefSignal(grating, chief, sources[k], landings[1][k], 1)});
+  }
+  return signals;
+}
+
+IrradianceMap RotaryOptics::DarkPicture(int i, const SourceState& source, int pixels) const {
+  const auto n = static_cast<std::size_t>(i);
+  IrradianceMap map;
+  map.name = i == 0 ? "psd.p1" : "psd.m1";
+  map.width = pixels;
+  map.pitch_m = psd(i).width_m / pixels;
+  map.height = static_cast<int>(std::lround(psd(i).height_m / map.pitch_m));
+  map.irradiance_W_m2.assign(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height), 0.0f);
+  map.X_LP = X_LP_[n];
+  map.wavelength_m = source.wavelength_m;
+  map.order = kOrderOfPsd[n];
+  return map;
 }
 
 std::vector<IrradianceMap> RotaryOptics::Irradiance(const Eigen::Isometry3d& X_LG, const SourceState& source,
                                                     int pixels) const {
   if (pixels < 1) throw std::invalid_argument("irradiance: at least one pixel");
-  const auto spots = Spots(X_LG, source);
-  std::vector<IrradianceMap> maps;
-  for (int i = 0; i < 2; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    IrradianceMap map;
-    map.name = i == 0 ? "psd.p1" : "psd.m1";
-    map.width = pixels;
-    map.pitch_m = psd(i).width_m / pixels;
-    map.height = static_cast<int>(std::lround(psd(i).height_m / map.pitch_m));
-    map.irradiance_W_m2.assign(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height), 0.0f);
-    map.X_LP = X_LP_[n];
-    map.wavelength_m = source.wavelength_m;
-    map.order = kOrder[n];
-    for (const Spot& spot : spots[n]) {
-      Paint(spot, map);
-      map.power_W += spot.power_W;
+  std::vector<IrradianceMap> maps = {DarkPicture(0, source, pixels), DarkPicture(1, source, pixels)};
+  if (measured_) {
+    const std::array<Measured, 2> light = MeasuredLight(X_LG, source);
+    for (std::size_t i = 0; i < 2; ++i) {
+      optics::Paint(light[i].map, maps[i]);
+      for (const Spot& spot : light[i].others) Paint(spot, maps[i]);
     }
-    maps.push_back(std::move(map));
+    return maps;
+  }
+  const auto spots = Spots(X_LG, source);
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const Spot& spot : spots[i]) Paint(spot, maps[i]);
   }
   return maps;
 }

@@ -1,14 +1,14 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "optics/beam.h"
-#include "optics/ghosts.h"
-#include "optics/kernels.h"
-#include "optics/scene.h"
+#include "optics/bench_parameters.h"
+#include "optics/closed_light.h"
+#include "optics/direct_light.h"
+#include "optics/power_map.h"
 
 /// The optics of the rotary bench: one laser, one grating, detectors for the orders +1 (A) and -1 (B).
 ///
@@ -16,44 +16,16 @@
 /// grooves, y normal, z along the grooves. The laser shines along -y_L.
 namespace twinbench::optics {
 
-/// The laser at one moment. Angles are the whole pointing error: yaw about z_L, then pitch upwards.
-struct SourceState {
-  double wavelength_m = std::numeric_limits<double>::quiet_NaN();  // in the air around
-  double yaw_rad = 0.0;
-  double pitch_rad = 0.0;
-  double power_W = std::numeric_limits<double>::quiet_NaN();
-};
-
-struct BeamParameters {
-  BeamKind kind = BeamKind::kChiefRay;
-  double radius_m = std::numeric_limits<double>::quiet_NaN();  // 1/e^2 of the irradiance, at the laser
-  double divergence_rad = 0.0;                                 // 1/e^2 half angle
-  std::optional<IrradianceMap> profile;                        // for BeamKind::kProfile
-};
-
-/// Something opaque in the way: fixed in L, or riding on the grating with its pose given in G.
-struct Blocker {
-  TriangleMesh mesh;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  bool rides_on_grating = false;
-};
-
-struct RotaryOpticsParameters {
-  double nominal_wavelength_m = std::numeric_limits<double>::quiet_NaN();  // the detectors are placed for it
-  Eigen::Vector3d laser_position_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());  // in L
-  Grating grating;
-  PsdParameters psd_a;
-  PsdParameters psd_b;
-  BeamParameters beam;
-  std::vector<Blocker> blockers;
-  GhostOptions ghosts;
-};
-
 struct PsdSignals {
   PsdSignal a;
   PsdSignal b;
 };
 
+/// Traced, Embree finds every surface that light meets on its ways: grating, windows, silicon, fixtures; a measured
+/// beam falls on the detectors pixel by pixel. Closed, the one way of the light is a formula, fixtures cast
+/// shadows, and a measured beam counts by its second moments. Both agree to a nanometre wherever nothing of the
+/// beam is cut off and it is not a measured one on a detector that is not linear (tests/optics/traced_test.cc).
+///
 /// Immutable after construction; Trace may run in several threads.
 class RotaryOptics {
  public:
@@ -62,13 +34,19 @@ class RotaryOptics {
   explicit RotaryOptics(const RotaryOpticsParameters& parameters);
 
   /// What both detectors show for a grating at X_LG. Takes the cheapest path that is exact for the parameters: the
-  /// chief ray alone; a ray bundle; or all orders, windows, ghosts and blockers.
+  /// chief ray alone; a ray bundle; or all orders, windows and ghosts too.
   PsdSignals Trace(const Eigen::Isometry3d& X_LG, const SourceState& source) const;
+
+  /// The same for many readings: where the chief ray is all, the rays of all readings go together.
+  /// @throws std::invalid_argument if there are not as many sources as poses.
+  std::vector<PsdSignals> Trace(std::span<const Eigen::Isometry3d> X_LG,
+                                std::span<const SourceState> sources) const;
 
   /// The patches of light in each detector's plane, before the detector's own faults; the direct light first.
   ///
-  /// Windows and ghosts are traced for the chief ray; the beam's extent gives every patch its covariance and the
-  /// direct one the bundle's offset from the chief ray. Not included: change of a ghost's size on its way.
+  /// Ghosts are traced for the chief ray; the beam's extent gives every patch its covariance. Closed, the window is
+  /// traced for the chief ray too, and the direct patch has the bundle's offset from it. Not included: change of a
+  /// ghost's size on its way, change of the direct patch's size in the window (2e-4 of it).
   std::array<std::vector<Spot>, 2> Spots(const Eigen::Isometry3d& X_LG, const SourceState& source) const;
 
   /// Irradiance on both detectors, `pixels` along u, square pixels, named "psd.p1" and "psd.m1".
@@ -80,31 +58,49 @@ class RotaryOptics {
 
   Ray ChiefRay(const SourceState& source) const;
 
- private:
-  struct Bundle;   // what a ray bundle does in one detector's plane
-  struct OnPlane;  // one ray in one detector's plane
+  /// Rays that Embree has been asked to trace so far; shadow rays do not count.
+  std::uint64_t rays_traced() const { return traced_ ? traced_->scenes().rays_traced() : 0; }
 
-  const PsdParameters& psd(int i) const { return i == 0 ? parameters_.psd_a : parameters_.psd_b; }
-  PsdSignal TraceChief(const Frame& grating, const Ray& chief, const SourceState& source, int i) const;
-  OnPlane TraceOrder(const Frame& grating, const Ray& ray, double wavelength_m, int i) const;
-  Bundle TraceBundle(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG, const Ray& chief, double wavelength_m,
-                     int i) const;
-  Bundle BundleOn(const Eigen::Isometry3d& X_LG, const Ray& chief, double wavelength_m, int i) const;
-  bool Blocked(const Eigen::Isometry3d& X_LG, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;
+ private:
+  struct Bundle;  // what a ray bundle does in one detector's plane
+  using Landings = std::vector<Landing>;
+
+  const PsdParameters& psd(int i) const { return parameters_.psd(i); }
+  Frame GratingFrame(const Eigen::Isometry3d& X_LG) const;
+
+  PsdSignals TraceChief(const Eigen::Isometry3d& X_LG, const SourceState& source) const;
+  PsdSignals TraceMeasured(const Eigen::Isometry3d& X_LG, const SourceState& source) const;
+  PsdSignal ChiefSignal(const Frame& grating, const Ray& chief, const SourceState& source, const Landing& landing,
+                        int i) const;
+
+  std::array<Landings, 2> LandingsOf(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG, const Ray& chief,
+                                     double wavelength_m) const;
+  Bundle MomentsOf(const BeamNodes& nodes, const Landings& landings, int i) const;
+  std::array<Bundle, 2> Bundles(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG, const Ray& chief,
+                                double wavelength_m) const;
+  std::array<Bundle, 2> BundlesOf(const Eigen::Isometry3d& X_LG, const Ray& chief, double wavelength_m) const;
+
   std::vector<Deposit> Deposits(const Eigen::Isometry3d& X_LG, const Ray& chief, const SourceState& source) const;
   std::vector<Spot> SpotsOn(int i, const Bundle& bundle, const std::vector<Deposit>& deposits, double power_W,
                             double wavelength_m) const;
   double OrderPower(const Eigen::Isometry3d& X_LG, const Ray& chief, const SourceState& source, int i) const;
 
+  /// A measured beam on one detector: its map, and the light of other ways.
+  struct Measured {
+    PowerMap map;
+    std::vector<Spot> others;
+  };
+  std::array<Measured, 2> MeasuredLight(const Eigen::Isometry3d& X_LG, const SourceState& source) const;
+  IrradianceMap DarkPicture(int i, const SourceState& source, int pixels) const;
+
   RotaryOpticsParameters parameters_;
   std::array<Eigen::Isometry3d, 2> X_LP_;
-  std::array<Frame, 2> planes_;
   BeamNodes nodes_;
-  BeamNodes dense_nodes_;  // for a beam that is partly cut off
-  std::optional<Scene> fixed_blockers_;
-  std::optional<Scene> riding_blockers_;
-  bool chief_only_ = false;
-  bool split_ = false;  // windows or reflecting silicon: follow all paths
+  BeamNodes dense_nodes_;              // for a beam that is partly cut off
+  std::optional<DirectLight> traced_;  // one of both
+  std::optional<ClosedLight> closed_;
+  bool split_ = false;     // windows or reflecting silicon: follow all paths
+  bool measured_ = false;  // a measured beam, traced pixel by pixel
 };
 
 }  // namespace twinbench::optics

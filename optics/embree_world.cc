@@ -34,6 +34,7 @@ struct Query {
   void Run(const int* valid, RTCScene scene, RTCRayHit8& packet) {
     rtcIntersect8(valid, scene, &packet, &intersect);
   }
+  void Run(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect); }
   void Run(const int* valid, RTCScene scene, RTCRay16& packet) { rtcOccluded16(valid, scene, &packet, &occluded); }
   void Run(const int* valid, RTCScene scene, RTCRay8& packet) { rtcOccluded8(valid, scene, &packet, &occluded); }
 };
@@ -50,6 +51,7 @@ struct Query {
     rtcIntersect16(valid, scene, &context, &packet);
   }
   void Run(const int* valid, RTCScene scene, RTCRayHit8& packet) { rtcIntersect8(valid, scene, &context, &packet); }
+  void Run(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
   void Run(const int* valid, RTCScene scene, RTCRay16& packet) { rtcOccluded16(valid, scene, &context, &packet); }
   void Run(const int* valid, RTCScene scene, RTCRay8& packet) { rtcOccluded8(valid, scene, &context, &packet); }
 };
@@ -71,10 +73,11 @@ template <std::size_t kWidth, class RayPacket>
   ToFloat<kWidth>(from.dz, ray.dir_z);
 }
 
+constexpr float kFar_m = 1e18f;  // Embree's own limit is a little above
+
 /// Embree must not see a ray that is not finite: some builds of it stop the program. Valid is -1, not valid 0.
 template <std::size_t kWidth, class RayPacket>
 [[gnu::always_inline]] inline void FindFinite(const RayPacket& ray, int* __restrict valid) {
-  constexpr float kFar_m = 1e18f;  // Embree's own limit is a little above
   for (std::size_t i = 0; i < kWidth; ++i) {
     const float size = std::abs(ray.org_x[i]) + std::abs(ray.org_y[i]) + std::abs(ray.org_z[i]) +
                        std::abs(ray.dir_x[i]) + std::abs(ray.dir_y[i]) + std::abs(ray.dir_z[i]);
@@ -214,9 +217,14 @@ RTCGeometry MakeTriangles(RTCDevice device, const TriangleMesh& mesh) {
 }  // namespace
 
 EmbreeWorld::EmbreeWorld(const std::string& options)
-    : device_(rtcNewDevice(("threads=1,set_affinity=0," + options).c_str())) {
+    : EmbreeWorld(rtcNewDevice(("threads=1,set_affinity=0," + options).c_str())) {
+  rtcReleaseDevice(device_);  // this world holds it now
+}
+
+EmbreeWorld::EmbreeWorld(RTCDeviceTy* device) : device_(device) {
   if (!device_)
     throw std::runtime_error("Embree: no device (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+  rtcRetainDevice(device_);
   scene_ = rtcNewScene(device_);
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
   fixtures_ = rtcNewScene(device_);
@@ -277,6 +285,23 @@ void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t
   Query query(order);
   const auto trace = packet_width_ == 16 ? IntersectPackets16 : IntersectPackets8;
   trace(scene_, query, From(rays, begin), near_m, answers, packets);
+}
+
+Answer EmbreeWorld::Intersect(const Ray& ray, float near_m, float far_m) const {
+  const Eigen::Vector3f o = ray.origin_m.cast<float>(), d = ray.direction.cast<float>();
+  if (!(o.cwiseAbs().sum() + d.cwiseAbs().sum() < kFar_m)) return {};  // as FindFinite
+  RTCRayHit one{};
+  one.ray.org_x = o.x() + 0.0f, one.ray.org_y = o.y() + 0.0f, one.ray.org_z = o.z() + 0.0f;
+  one.ray.dir_x = d.x() + 0.0f, one.ray.dir_y = d.y() + 0.0f, one.ray.dir_z = d.z() + 0.0f;
+  one.ray.tnear = near_m;
+  one.ray.tfar = far_m;
+  one.ray.mask = ~0u;
+  one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  Query(RayOrder::kCoherent).Run(scene_, one);
+  if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  const bool proxy = one.hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
+  return {proxy ? static_cast<int>(one.hit.primID) : kFixture, one.ray.tfar};
 }
 
 void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,

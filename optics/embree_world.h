@@ -24,10 +24,18 @@ struct alignas(64) Bounds {
   float far_m[kMaxPacket];
 };
 
+/// What Embree says of one ray.
+struct Answer {
+  int triangle = kNothing;  // of the proxies; kNothing or kFixture
+  float t_m = std::numeric_limits<float>::infinity();
+};
+
 class EmbreeWorld {
  public:
   /// @param options  Embree's own, for instance "max_isa=avx2".
   explicit EmbreeWorld(const std::string& options);
+  /// A world of its own on another's device.
+  explicit EmbreeWorld(RTCDeviceTy* device);
   ~EmbreeWorld();
   EmbreeWorld(const EmbreeWorld&) = delete;
   EmbreeWorld& operator=(const EmbreeWorld&) = delete;
@@ -42,12 +50,16 @@ class EmbreeWorld {
   void Commit();
 
   int packet_width() const { return packet_width_; }
+  RTCDeviceTy* device() const { return device_; }
   RTCSceneTy* scene() const { return scene_; }
 
   /// Nearest triangle beyond `near_m` for `packets` <= kTilePackets whole packets of packet_width() rays from
   /// `begin` on.
   void Intersect(const RayBatch& rays, std::size_t begin, std::size_t packets, float near_m, RayOrder order,
                  Answers answers) const;
+
+  /// Nearest triangle for one ray between two distances, without a packet around it.
+  Answer Intersect(const Ray& ray, float near_m, float far_m) const;
 
   /// Nearest triangle for one packet of `n` <= packet_width() rays, where its bounds allow.
   void Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, const Bounds& bounds,

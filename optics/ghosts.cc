@@ -1,6 +1,9 @@
 #include "optics/ghosts.h"
 
 #include <cmath>
+#include <utility>
+
+#include "optics/rotary_scenes.h"
 
 namespace twinbench::optics {
 namespace {
@@ -32,13 +35,47 @@ class Tracer {
     for (int i = 0; i < 2; ++i) AddDetector(i);
   }
 
+  /// All that becomes of a ray: way by way, or, where Embree is asked, the rays of a generation together.
+  void Trace(const Light& light) {
+    Follow(light);
+    while (!waiting_.empty()) TraceGeneration();
+  }
+
+  std::vector<Deposit> Take() { return std::move(deposits_); }
+
+ private:
+  static constexpr double kOffSurface_m = 1e-6;
+
   void Follow(const Light& light) {
     if (!(light.power_W > floor_W_) || light.reflections > options_.max_reflections) return;
+    if (bench_.scenes) return waiting_.push_back(light);
     const NearestHit nearest = Nearest(surfaces_, light.ray, kOffSurface_m);
     if (nearest.index == kNothing) return;
+    if (bench_.blocked) {
+      const Surface& met = surfaces_[static_cast<std::size_t>(nearest.index)];
+      if (bench_.blocked(light.ray.origin_m, Point(met, nearest.hit.x_m, nearest.hit.y_m))) return;
+    }
+    At(light, nearest);
+  }
+
+  void TraceGeneration() {
+    const std::vector<Light> generation = std::exchange(waiting_, {});
+    RayBatch rays;
+    for (const Light& light : generation) rays.Add(light.ray);
+    const Eigen::Isometry3d X_GL = bench_.X_LG.inverse();
+    std::vector<RotaryHit> hits;
+    bench_.scenes->First({&X_GL, 1}, rays, Meets::kEverything, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const RotaryElement element = hits[i].element;
+      if (element == RotaryElement::kDark || element == RotaryElement::kObstacle) continue;
+      // The grating is the first of the surfaces here; the laboratory's follow in their order.
+      At(generation[i], {element == RotaryElement::kGrating ? 0 : 1 + hits[i].surface, hits[i].hit});
+    }
+  }
+
+  void At(const Light& light, const NearestHit& nearest) {
     const auto index = static_cast<std::size_t>(nearest.index);
     const Eigen::Vector3d point = Point(surfaces_[index], nearest.hit.x_m, nearest.hit.y_m);
-    if (bench_.blocked && bench_.blocked(light.ray.origin_m, point)) return;
     const Eigen::Vector3d normal = surfaces_[index].X_WS.linear().col(2);
     const bool from_front = light.ray.direction.dot(normal) < 0.0;
     if (elements_[index].kind == Kind::kWindowFace)
@@ -47,11 +84,6 @@ class Tracer {
     if (elements_[index].kind == Kind::kGrating) return AtGrating(light, point, normal);
     AtSilicon(light, elements_[index].detector, nearest.hit, point, normal);
   }
-
-  std::vector<Deposit> Take() { return std::move(deposits_); }
-
- private:
-  static constexpr double kOffSurface_m = 1e-6;
 
   void Add(const Surface& surface, Element element) {
     surfaces_.push_back(surface);
@@ -131,6 +163,7 @@ class Tracer {
   double floor_W_;
   std::vector<Surface> surfaces_;
   std::vector<Element> elements_;
+  std::vector<Light> waiting_;
   std::vector<Deposit> deposits_;
 };
 
@@ -139,7 +172,7 @@ class Tracer {
 std::vector<Deposit> TraceGhosts(const GhostBench& bench, const Ray& chief, double power_W,
                                  const GhostOptions& options) {
   Tracer tracer(bench, options, power_W);
-  tracer.Follow({.ray = chief, .power_W = power_W});
+  tracer.Trace({.ray = chief, .power_W = power_W});
   return tracer.Take();
 }
 

@@ -10,6 +10,8 @@
 /// Every way the light takes between grating and detectors, traced and split, never guessed.
 namespace twinbench::optics {
 
+class RotaryScenes;
+
 struct GhostOptions {
   int max_reflections = 3;  // at silicon and window faces; a silicon - grating - silicon round trip is one
   double threshold = 1e-7;  // paths weaker than this share of the laser's power are dropped
@@ -23,6 +25,8 @@ struct GhostBench {
   std::array<const PsdParameters*, 2> psd{};
   std::array<Eigen::Isometry3d, 2> X_LP;
   std::function<bool(const Eigen::Vector3d&, const Eigen::Vector3d&)> blocked;  // empty: nothing in the way
+  const RotaryScenes* scenes =
+      nullptr;  // Embree finds what light meets, fixtures too; null: every surface is tried
 };
 
 /// Light that is absorbed in a detector's plane (also beside the active area, up to the package's edge).

@@ -83,6 +83,20 @@ inline ConstRays From(const RayBatch& rays, std::size_t begin) {
   return in_x & in_y & in_circle;
 }
 
+/// Meets one surface beyond t_min, inside its aperture; t is infinite if there is no such point.
+[[gnu::always_inline]] inline SurfaceHit Meet(const Frame& f, const Ray& ray, double t_min_m) {
+  const Eigen::Vector3d &o = ray.origin_m, &d = ray.direction;
+  SurfaceHit hit;
+  double t;
+  if (f.curvature == 0.0) {
+    MeetPlane(f, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), t, hit.x_m, hit.y_m);
+  } else {
+    MeetConic(f, t_min_m, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), t, hit.x_m, hit.y_m);
+  }
+  if (t > t_min_m && InAperture(f, hit.x_m, hit.y_m)) hit.t_m = t;
+  return hit;
+}
+
 /// Sixteen rays at most are traced together.
 inline constexpr int kMaxPacket = 16;
 

@@ -8,6 +8,9 @@
 namespace twinbench::optics {
 namespace {
 
+/// Less than a millionth of the light is dark for any amplifier; its centroid would be that of the far tail.
+constexpr double kDarkShare = 1e-6;
+
 struct Cut {
   double share = 1.0;
   double shift_m = 0.0;      // of the mean
@@ -46,6 +49,14 @@ struct Sum {
     power += power_W;
     u += power_W * stretch * u_m;
     v += power_W * stretch * v_m;
+  }
+
+  /// The same for an even patch with variances along u and v: the mean of the cubic over it.
+  void AddPatch(const PsdParameters& psd, const PowerPatch& patch, const Eigen::Vector2d& variance_m2) {
+    const double r2 = patch.u_m * patch.u_m + patch.v_m * patch.v_m + variance_m2.sum();
+    power += patch.power_W;
+    u += patch.power_W * patch.u_m * (1.0 + psd.cubic_per_m2 * (r2 + 2.0 * variance_m2.x()));
+    v += patch.power_W * patch.v_m * (1.0 + psd.cubic_per_m2 * (r2 + 2.0 * variance_m2.y()));
   }
 
   PsdSignal Signal(const PsdParameters& psd, PsdStatus status) const {
@@ -92,11 +103,31 @@ PsdSignal Respond(const PsdParameters& psd, std::span<const Spot> spots) {
     if (cut.power_W > 0.0) sum.Add(psd, cut.u_m, cut.v_m, cut.power_W);
   }
   if (!(incident > 0.0)) return {};
-  // Less than a millionth of the light is dark for any amplifier; its centroid would be that of the far tail.
-  if (!(sum.power > 1e-6 * incident)) return {.status = PsdStatus::kMissed};
+  if (!(sum.power > kDarkShare * incident)) return {.status = PsdStatus::kMissed};
   const Spot first = Truncate(spots.front(), psd.width_m, psd.height_m);
   const bool at_edge = first.power_W < (1.0 - kClippedShare) * spots.front().power_W;
   const bool clipped = at_edge || spots.front().lost_share > kClippedShare;
+  return sum.Signal(psd, clipped ? PsdStatus::kClipped : PsdStatus::kOk);
+}
+
+PsdSignal Respond(const PsdParameters& psd, const PowerMap& signal, std::span<const Spot> others) {
+  const double whole_W = signal.power_W();
+  double incident_W = whole_W;
+  const Eigen::Vector2d variance_m2 = signal.half_m.array().square() / 3.0;
+  Sum sum;
+  for (const PowerPatch& patch : signal.patches) {
+    const PowerPatch cut = CutToArea(patch, signal.half_m, psd.width_m, psd.height_m);
+    if (cut.power_W > 0.0) sum.AddPatch(psd, cut, variance_m2);
+  }
+  const bool at_edge = sum.power < (1.0 - kClippedShare) * whole_W;
+  for (const Spot& spot : others) {
+    const Spot cut = Truncate(spot, psd.width_m, psd.height_m);
+    incident_W += spot.power_W;
+    if (cut.power_W > 0.0) sum.Add(psd, cut.u_m, cut.v_m, cut.power_W);
+  }
+  if (!(incident_W > 0.0)) return {};
+  if (!(sum.power > kDarkShare * incident_W)) return {.status = PsdStatus::kMissed};
+  const bool clipped = at_edge || signal.lost_share > kClippedShare;
   return sum.Signal(psd, clipped ? PsdStatus::kClipped : PsdStatus::kOk);
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "optics/power_map.h"
 #include "optics/window.h"
 
 /// A position-sensitive detector: where the centroid of the light on a finite area is, and how much light.
@@ -67,6 +68,10 @@ Spot Truncate(const Spot& spot, double width_m, double height_m);
 /// Each patch is cut at the edges, displaced by the cubic non-linearity and weighted with its power; uniform stray
 /// light f adds power f and pulls the centroid to the centre by 1 / (1 + f).
 PsdSignal Respond(const PsdParameters& psd, std::span<const Spot> spots);
+
+/// The same for a measured beam as it falls, rectangle by rectangle: each is cut at the edges and displaced by the
+/// non-linearity for itself. `others` is light that came on other ways.
+PsdSignal Respond(const PsdParameters& psd, const PowerMap& signal, std::span<const Spot> others);
 
 /// The same for one point-like patch: the hot path.
 PsdSignal RespondToPoint(const PsdParameters& psd, double u_m, double v_m, double power_W);

@@ -38,6 +38,12 @@ double FloatBlur(double extent_m) {
   return 1e-6 + 1e-6 * extent_m;
 }
 
+/// Where to go on behind a proxy at t that deceived: at least a few float steps, or a far one would be found again
+/// and again.
+float Behind(float t_m, float blur_m) {
+  return t_m * (1.0f + 4.0f * std::numeric_limits<float>::epsilon()) + blur_m;
+}
+
 Eigen::AlignedBox3d BoundsOf(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices_m) box.extend(vertex);
@@ -68,6 +74,7 @@ struct SmallSet {
 
 struct Scene::Impl {
   explicit Impl(const std::string& embree_options) : world(embree_options) {}
+  explicit Impl(RTCDeviceTy* device) : world(device) {}
 
   std::vector<Surface> surfaces;
   std::vector<Target> targets;  // as many
@@ -90,6 +97,7 @@ struct Scene::Impl {
   void Pursue(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Answers answers,
               HitBatch& hits) const;
   void Refine(const RayBatch& rays, std::size_t begin, std::size_t n, Answers answers, HitBatch& hits) const;
+  void Refine(const Ray& ray, int triangle, NearestHit& nearest) const;
   bool Continue(std::size_t begin, std::size_t n, Answers answers, const HitBatch& hits, Bounds& bounds) const;
   void TakeSurfaces(const RayBatch& rays, HitBatch& hits) const;
   void Shadow(const RayBatch& rays, std::size_t begin, std::size_t n, HitBatch& hits) const;
@@ -152,6 +160,17 @@ void Scene::Impl::Refine(const RayBatch& rays, std::size_t begin, std::size_t n,
   }
 }
 
+void Scene::Impl::Refine(const Ray& ray, int triangle, NearestHit& nearest) const {
+  const auto take = [&](int surface) {
+    const SurfaceHit hit = Meet(targets[static_cast<std::size_t>(surface)].frame, ray, t_min_m);
+    const bool first = surface < nearest.index && hit.t_m == nearest.hit.t_m;
+    if (hit.t_m < nearest.hit.t_m || (first && std::isfinite(hit.t_m))) nearest = {surface, hit};
+  };
+  const int named = surface_of_triangle[static_cast<std::size_t>(triangle)];
+  take(named);
+  for (const int other : neighbours[static_cast<std::size_t>(named)]) take(other);
+}
+
 /// Closes the lanes whose answer is final; the others go on behind the proxy that deceived them.
 bool Scene::Impl::Continue(std::size_t begin, std::size_t n, Answers answers, const HitBatch& hits,
                            Bounds& bounds) const {
@@ -161,8 +180,7 @@ bool Scene::Impl::Continue(std::size_t begin, std::size_t n, Answers answers, co
     const double best = hits.t_m[begin + i];
     const bool settled = !bounds.valid[i] || answers.triangle[i] < 0 || best <= static_cast<double>(t) + blur_m;
     bounds.valid[i] = settled ? 0 : -1;
-    // At least a few float steps, or a far proxy would be found again and again.
-    bounds.near_m[i] = t * (1.0f + 4.0f * std::numeric_limits<float>::epsilon()) + blur_m;
+    bounds.near_m[i] = Behind(t, blur_m);
     bounds.far_m[i] = static_cast<float>(best) + blur_m;
     any |= !settled;
   }
@@ -232,6 +250,10 @@ void Scene::Impl::Shadow(const RayBatch& rays, std::size_t begin, std::size_t n,
 }
 
 Scene::Scene(const std::string& embree_options) : impl_(std::make_unique<Impl>(embree_options)) {}
+Scene::Scene(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Scene Scene::OnDeviceOf(const Scene& other) {
+  return Scene(std::make_unique<Impl>(other.impl_->world.device()));
+}
 Scene::~Scene() = default;
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
@@ -298,6 +320,21 @@ void Scene::Intersect(const RayBatch& rays, HitBatch& hits, RayOrder order) cons
     begin += packets * width;
   }
   if (begin < rays.size()) impl_->IntersectLast(rays, begin, order, hits);
+}
+
+NearestHit Scene::First(const Ray& ray) const {
+  if (!impl_->committed) throw std::logic_error("Scene::First before Commit");
+  impl_->rays_traced.fetch_add(1, std::memory_order_relaxed);
+  NearestHit nearest;
+  float near_m = kNear;
+  while (true) {
+    const Answer answer = impl_->world.Intersect(ray, near_m, static_cast<float>(nearest.hit.t_m) + impl_->blur_m);
+    if (answer.triangle == kNothing) return nearest;
+    if (answer.triangle >= 0) impl_->Refine(ray, answer.triangle, nearest);
+    if (answer.triangle == kFixture && answer.t_m < nearest.hit.t_m) nearest = {kFixture, {.t_m = answer.t_m}};
+    if (nearest.hit.t_m <= static_cast<double>(answer.t_m) + impl_->blur_m) return nearest;
+    near_m = Behind(answer.t_m, impl_->blur_m);
+  }
 }
 
 void Scene::IntersectAnalytic(const RayBatch& rays, HitBatch& hits) const {

@@ -103,18 +103,7 @@ Frame MakeFrame(const Surface& s) {
 }
 
 SurfaceHit Meet(const Surface& surface, const Ray& ray, double t_min_m) {
-  const Frame f = MakeFrame(surface);
-  const auto& o = ray.origin_m;
-  const auto& d = ray.direction;
-  SurfaceHit hit;
-  double t;
-  if (f.curvature == 0.0) {
-    MeetPlane(f, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), t, hit.x_m, hit.y_m);
-  } else {
-    MeetConic(f, t_min_m, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), t, hit.x_m, hit.y_m);
-  }
-  if (t > t_min_m && InAperture(f, hit.x_m, hit.y_m)) hit.t_m = t;
-  return hit;
+  return Meet(MakeFrame(surface), ray, t_min_m);
 }
 
 NearestHit Nearest(std::span<const Surface> surfaces, const Ray& ray, double t_min_m) {

@@ -47,7 +47,7 @@ struct SurfaceHit {
 SurfaceHit Meet(const Surface& surface, const Ray& ray, double t_min_m);
 
 struct NearestHit {
-  int index = kNothing;
+  int index = kNothing;  // of the surface; kNothing, or kFixture for a mesh
   SurfaceHit hit;
 };
 

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/support/rotary_scenario.h"
@@ -9,11 +10,12 @@
 namespace twinbench {
 namespace {
 
-Scenario OracleScenario(const std::string& clamping) {
+Scenario OracleScenario(const std::string& clamping, const std::string& fidelity) {
   const nlohmann::json truth =
       test::ReadTruthFile(test::DataPath("oracle/full_circle_" + clamping + "_truth.json"));
   Scenario scenario = test::RotaryScenario();
   scenario.noise_free = true;
+  RotaryOf(scenario).optics.fidelity = fidelity;
   RotaryOf(scenario).target.errors = test::ErrorsOfRows(truth.at("target"), false);
   RotaryOf(scenario).reference.errors = test::ErrorsOfRows(truth.at("reference_rotor_frame"), true);
   RotaryOf(scenario).procedure.phases = {"full_circle"};
@@ -22,12 +24,15 @@ Scenario OracleScenario(const std::string& clamping) {
   return scenario;
 }
 
-class FullCircleOracle : public ::testing::TestWithParam<const char*> {};
+class FullCircleOracle : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {};
 
 TEST_P(FullCircleOracle, TheTwinReadsTheIndependentValuesToANanometre) {
-  const Scenario scenario = OracleScenario(GetParam());
-  const auto oracle = ReadReadingsCsv(test::DataPath(std::string("oracle/full_circle_") + GetParam() + ".csv"));
-  const auto readings = test::RunTwin(scenario).readings;
+  const auto [clamping, fidelity] = GetParam();
+  const Scenario scenario = OracleScenario(clamping, fidelity);
+  const auto oracle = ReadReadingsCsv(test::DataPath(std::string("oracle/full_circle_") + clamping + ".csv"));
+  const test::TwinRun run = test::RunTwin(scenario);
+  const std::vector<Reading>& readings = run.readings;
+  EXPECT_EQ(run.rays_traced > 0, std::string(fidelity) == "traced");
   ASSERT_EQ(readings.size(), oracle.size());
   // 1 nm on the PSD; the file itself is rounded to 1 nV, half a femtometre.
   const double one_nm_V = units::nm * RotaryOf(scenario).psd_a.sensitivity_V_m;
@@ -40,7 +45,9 @@ TEST_P(FullCircleOracle, TheTwinReadsTheIndependentValuesToANanometre) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(BothClampings, FullCircleOracle, ::testing::Values("reclamp", "reseat"));
+INSTANTIATE_TEST_SUITE_P(BothClampings, FullCircleOracle,
+                         ::testing::Combine(::testing::Values("reclamp", "reseat"),
+                                            ::testing::Values("traced", "closed")));
 
 }  // namespace
 }  // namespace twinbench

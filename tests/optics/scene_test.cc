@@ -360,5 +360,33 @@ TEST(Scene, RefusesABrokenMesh) {
   EXPECT_THROW(scene.AddMesh({{{0, 0, 0}}, {{0, 1, 2}}}, Isometry3d::Identity()), std::invalid_argument);
 }
 
+TEST(Scene, FindsForOneRayTheBitsThatItFindsForMany) {
+  Dice dice(11);
+  Scene scene = RandomScene(dice, 12);
+  scene.AddMesh(BoxMesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}), dice.Pose(0.1));
+  scene.Commit();
+  int fixtures = 0;
+  for (const RayBatch& rays : {RaysAt(dice, scene, 2000), RaysAtEdges(dice, scene, 2000, 1e-7)}) {
+    HitBatch hits;
+    scene.Intersect(rays, hits);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const NearestHit first = scene.First(rays.At(i));
+      ASSERT_EQ(first.index, hits.surface[i]) << i;
+      fixtures += first.index == kFixture;
+      if (first.index < 0) continue;
+      EXPECT_EQ(first.hit.t_m, hits.t_m[i]);
+      EXPECT_EQ(first.hit.x_m, hits.x_m[i]);
+      EXPECT_EQ(first.hit.y_m, hits.y_m[i]);
+    }
+  }
+  EXPECT_GT(fixtures, 50);
+}
+
+TEST(Scene, MeetsNothingWithARayThatIsNotFinite) {
+  Dice dice(12);
+  const Scene scene = RandomScene(dice, 4);
+  EXPECT_EQ(scene.First({Vector3d::Zero(), Vector3d::Constant(std::nan(""))}).index, kNothing);
+}
+
 }  // namespace
 }  // namespace twinbench::optics

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "optics/irradiance.h"
 #include "tests/support/angle_benches.h"
 #include "tests/support/small_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -102,6 +103,34 @@ TEST(RotaryFollow, SeesThroughAWedgedWindow) {
   RotaryOf(s).psd_a.window = true;
   RotaryOf(s).psd_a.window_wedge_rad = 0.010;
   EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
+}
+
+/// A lopsided beam as a camera would have seen it.
+std::string BeamFile() {
+  optics::IrradianceMap map;
+  map.width = map.height = 64;
+  map.pitch_m = 25.0 * units::um;
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column) {
+      const double x = map.U(column) / (0.2 * units::mm), y = map.V(row) / (0.15 * units::mm);
+      map.irradiance_W_m2.push_back(static_cast<float>(std::exp(-0.5 * (x * x + y * y)) *
+                                                       (1.2 + std::sin(2.0 * x) + 0.2 * std::cos(5.0 * y))));
+    }
+  }
+  const std::string path = testing::TempDir() + "twinbench_beam.exr";
+  optics::WriteIrradianceMaps(path, {map});
+  return path;
+}
+
+TEST(RotaryFollow, SaysWhatAMeasuredBeamShowsToANanometre) {
+  Scenario s = RichBench();
+  RotaryOf(s).laser.beam = "profile";
+  RotaryOf(s).laser.profile_file = BeamFile();
+  RotaryOf(s).psd_a.cubic_per_m2 = RotaryOf(s).psd_b.cubic_per_m2 = 1000.0;
+  RotaryOf(s).procedure.positions = 6;
+  const test::TwinRun run = test::RunTwin(s);
+  EXPECT_GT(run.rays_traced, 4u * 4096u * run.readings.size());  // every pixel, at four slopes
+  EXPECT_LT(Apart_m(run), 1e-9);
 }
 
 TEST(RotaryFollow, KnowsTheDynamicsOfTheLinearStack) {

@@ -24,6 +24,7 @@ struct TwinRun {
   Scenario scenario;
   std::vector<Reading> readings;
   sim::Truth truth;
+  std::uint64_t rays_traced = 0;
 };
 
 inline TwinRun RunTwin(const Scenario& scenario) {
@@ -31,7 +32,7 @@ inline TwinRun RunTwin(const Scenario& scenario) {
   RotaryBench bench = twin.Bench();
   MemorySink sink;
   procedure::CarryOut(bench, scenario, sink);
-  return {scenario, sink.readings, twin.TheTruth()};
+  return {scenario, sink.readings, twin.TheTruth(), twin.RaysTraced()};
 }
 
 /// The same of the bench encoder_comparison; its truth is that of the scenario's effects.
@@ -42,7 +43,7 @@ inline TwinRun RunEncoderTwin(const Scenario& scenario) {
   sim::Truth truth;
   truth.effects = scenario.effects;
   truth.seed = scenario.seed;
-  return {scenario, sink.readings, truth};
+  return {scenario, sink.readings, truth, 0};
 }
 
 /// Readings -> calibration -> motions -> errors of both tables, as `twinbench separate` does it.

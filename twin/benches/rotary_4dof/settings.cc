@@ -42,6 +42,14 @@ void AddGrating(Keys& keys, GratingSettings& s) {
   t.Add("point", kMm, Within(5000), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
 }
 
+void AddOptics(Keys& keys, LightSettings& s) {
+  Table t(keys, "optics");
+  t.Text("fidelity", &s.fidelity, {"traced", "closed"},
+         "how the laser's light is found: by Embree, or by a formula");
+  t.Add("profile_rays", kPure, {1, 1e7}, &s.profile_rays,
+        "traced: places of a measured beam told apart; its pixels are gathered to so many at most");
+}
+
 void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
   Table t(keys, table);
   t.Add("distance", kMm, Positive(10000), &s.distance_m, "from the spot on the grating to the centre");
@@ -174,6 +182,7 @@ void AddKeys(Keys& keys, Scenario& s) {
   RotarySettings& own = RotaryOf(s);
   AddLaser(keys, own.laser);
   AddGrating(keys, own.grating);
+  AddOptics(keys, own.optics);
   AddPsd(keys, "psd_a", own.psd_a);
   AddPsd(keys, "psd_b", own.psd_b);
   AddAmplifier(keys, own.amplifier);

@@ -37,6 +37,12 @@ struct GratingSettings {  // [grating]
   Vector3 point_m{0.0, 0.030, 0.050};  // of the spot, from the reference table's origin
 };
 
+/// How the light is found. Known to the twin only, not to the estimators.
+struct LightSettings {              // [optics]
+  std::string fidelity = "traced";  // traced | closed
+  int profile_rays = 16384;         // traced: places of a measured beam that are told apart
+};
+
 struct PsdSettings {          // [psd_a], [psd_b]
   double distance_m = 0.120;  // spot on the grating -> centre
   double roll_rad = 0.0;      // about the nominal order, right-handed towards the light
@@ -82,6 +88,7 @@ struct ProcedureSettings {  // [procedure]
 struct RotarySettings {
   LaserSettings laser;
   GratingSettings grating;
+  LightSettings optics;
   PsdSettings psd_a;
   PsdSettings psd_b;
   AmplifierSettings amplifier;

@@ -43,7 +43,7 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
                         RotaryPoints()),
         noise_V_(IfNoisy(stated, RotaryOf(stated).amplifier.noise_V)),
         thermometer_noise_K_(IfNoisy(stated, stated.environment.sensor_noise_K)),
-        path_(scenario()),
+        path_(scenario(), LightAsked::kQuickly),
         course_(FollowCourse(record, thermometer_noise_K_, path_)) {}
 
   std::vector<std::string> Unfixed() const override { return course_.unfixed; }

@@ -14,17 +14,24 @@ struct Spots {
   std::array<double, 2> power_W{};  // on PSD A and B
 };
 
+/// Whether light is found as the scenario says, or quickly: by the closed form wherever it shows the same to a
+/// nanometre.
+enum class LightAsked { kAsStated, kQuickly };
+
 /// Laser, grating and PSDs of a scenario.
 class Light {
  public:
   /// @param nominal_wavelength_m  For which the PSDs were placed.
   /// @throws InputError if the beam's profile or the mesh of a fixture cannot be read.
-  Light(const Scenario& actual, double nominal_wavelength_m);
+  Light(const Scenario& actual, double nominal_wavelength_m, LightAsked asked);
 
   /// Wavelength and pointing at this temperature above the reference.
   LightState Nominal(double temperature_K) const;
 
   Spots Trace(const Pose& X_LG, const LightState& light) const;
+
+  /// Rays that Embree has been asked to trace so far.
+  std::uint64_t rays() const { return optics_.rays_traced(); }
 
   /// One multi-part OpenEXR with a picture of each PSD. @throws BenchError if it cannot be written.
   void WriteIrradiance(const std::string& path, const Pose& X_LG, const LightState& light) const;

@@ -14,11 +14,11 @@ double NominalWavelength_m(const Scenario& nominal, const Scenario& actual) {
 
 }  // namespace
 
-OpticalPath::OpticalPath(const Scenario& nominal)
+OpticalPath::OpticalPath(const Scenario& nominal, LightAsked asked)
     : effects_(nominal),
       actual_(effects_.ActualBench(nominal)),
       stand_(actual_),
-      light_(actual_, NominalWavelength_m(nominal, actual_)),
+      light_(actual_, NominalWavelength_m(nominal, actual_), asked),
       electronics_(actual_, effects_.Sampling()) {}
 
 Pose GratingPose(const Stand& stand, const ActiveEffects& effects, const Moment& moment,

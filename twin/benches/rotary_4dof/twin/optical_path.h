@@ -12,7 +12,7 @@ namespace twinbench::sim {
 /// drives. The live bench and the twin that follows a record share it, so that both are one physics.
 class OpticalPath {
  public:
-  explicit OpticalPath(const Scenario& nominal);
+  explicit OpticalPath(const Scenario& nominal, LightAsked asked = LightAsked::kAsStated);
 
   /// The bench as it is, with every effect on its constants.
   const Scenario& actual() const { return actual_; }

@@ -161,6 +161,10 @@ const std::map<std::string, std::uint64_t>& Twin::ScheduledEvents() const {
   return impl_->devices->world.Scheduled();
 }
 
+std::uint64_t Twin::RaysTraced() const {
+  return impl_->devices->world.light().rays();
+}
+
 void Twin::WriteIrradiance(const std::string& path) {
   impl_->devices->world.WriteIrradiance(path);
 }

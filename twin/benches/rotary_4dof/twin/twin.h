@@ -30,6 +30,9 @@ class Twin {
   /// How many events each device has scheduled so far, by its name.
   const std::map<std::string, std::uint64_t>& ScheduledEvents() const;
 
+  /// Rays that Embree has been asked to trace since the last start: what shows that light was traced.
+  std::uint64_t RaysTraced() const;
+
   /// Writes the irradiance on both PSDs at this moment as one multi-part OpenEXR.
   void WriteIrradiance(const std::string& path);
 

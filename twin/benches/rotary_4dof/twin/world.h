@@ -34,6 +34,7 @@ class World {
   void WriteIrradiance(const std::string& path);
 
   const Stand& stand() const { return path_.stand(); }
+  const Light& light() const { return path_.light(); }
 
   /// Events that each device has scheduled.
   const std::map<std::string, std::uint64_t>& Scheduled() const { return queue_.Scheduled(); }
