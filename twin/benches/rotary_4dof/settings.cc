@@ -27,6 +27,11 @@ void AddLaser(Keys& keys, LaserSettings& s) {
   t.Add("divergence", kMrad, UpTo(100), &s.divergence_rad, "1/e^2 half angle");
   t.File("profile_file", s.profile_file, "OpenEXR of the measured beam, for beam = \"profile\"");
   t.Add("wavelength_per_kelvin", kNm, Within(10), &s.wavelength_per_kelvin_m, "against environment.reference_degC");
+  t.Add("mode_hop", {"K"}, UpTo(1000), &s.mode_hop_K,
+        "warming after which the diode hops to its next mode; 0: never");
+  t.Add("mode_spacing", kNm, Within(10), &s.mode_spacing_m, "of neighbouring modes");
+  t.Add("post_growth", {"um_K", units::um}, Within(1000), &s.post_growth_m_K,
+        "of its height, against environment.reference_degC");
   t.Add("pointing_yaw_per_kelvin", kUrad, Within(10000), &s.pointing_yaw_per_kelvin_rad, "likewise");
   t.Add("pointing_pitch_per_kelvin", kUrad, Within(10000), &s.pointing_pitch_per_kelvin_rad, "likewise");
 }
@@ -39,6 +44,7 @@ void AddGrating(Keys& keys, GratingSettings& s) {
   t.Add("efficiency", kPure, UpTo(1), List(s.efficiency), "power share of the orders -2, -1, 0, 1, 2");
   t.File("efficiency_file", s.efficiency_file,
          "instead, by incidence: CSV of sin_incidence, m-2, m-1, m0, m+1, m+2");
+  t.Add("expansion", {"ppm_K", 1e-6}, Within(1000), &s.expansion_per_K, "of the distance of its grooves");
   t.Add("point", kMm, Within(5000), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
 }
 
@@ -69,6 +75,10 @@ void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
   t.Add("window_wedge", kMrad, Within(200), &s.window_wedge_rad, "between the faces");
   t.Flag("window_coherent", s.window_coherent, "interference between the window's faces");
   t.Add("silicon_reflectance", kPure, UpTo(0.99), &s.silicon_reflectance, "above 0: ghosts by way of the grating");
+  t.Add("distance_expansion", {"ppm_K", 1e-6}, Within(1000), &s.distance_expansion_per_K,
+        "of what holds it at its distance");
+  t.Add("post_growth", {"um_K", units::um}, Within(1000), &s.post_growth_m_K,
+        "of its height, against environment.reference_degC");
   t.Add("responsivity", {"A_W"}, Positive(2), &s.responsivity_A_W, "photocurrent over light [A/W]");
   t.Add("dark_current", {"nA", 1e-9}, UpTo(1e6), &s.dark_current_A, "of the detector");
   t.Add("electrode_resistance", {"kohm", 1e3}, Positive(1e6), &s.electrode_resistance_ohm,

@@ -22,6 +22,9 @@ struct LaserSettings {                      // [laser]
   std::string profile_file;                   // OpenEXR of the measured beam, for the beam "profile";
                                               // absolute once loaded
   double wavelength_per_kelvin_m = 0.0;       // against environment.reference_degC
+  double mode_hop_K = 0.0;                    // the diode goes to its next mode whenever it is so much warmer;
+  double mode_spacing_m = 0.25 * units::nm;   // 0: it never hops
+  double post_growth_m_K = 0.0;               // of its height in L
   double pointing_yaw_per_kelvin_rad = 0.0;
   double pointing_pitch_per_kelvin_rad = 0.0;
 };
@@ -35,6 +38,7 @@ struct GratingSettings {  // [grating]
   std::string efficiency_file;         // the same by incidence: CSV of sin_incidence, m-2, m-1, m0, m+1,
                                        // m+2; absolute once loaded
   Vector3 point_m{0.0, 0.030, 0.050};  // of the spot, from the reference table's origin
+  double expansion_per_K = 0.0;        // of the distance of its grooves
 };
 
 /// How the light is found. Known to the twin only, not to the estimators.
@@ -64,6 +68,8 @@ struct PsdSettings {          // [psd_a], [psd_b]
   double responsivity_A_W = 0.45;    // silicon in red light
   double dark_current_A = 10.0e-9;
   double electrode_resistance_ohm = 10e3;  // between the two electrodes of an axis
+  double distance_expansion_per_K = 0.0;   // of what holds it at its distance
+  double post_growth_m_K = 0.0;            // of its height in L
   double bandwidth_Hz = 100e3;             // of the read-out; with it the light's own noise grows
 };
 

@@ -43,6 +43,7 @@ struct LightState {
   double wavelength_m = 0.0;
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;
+  double above_K = 0.0;  // what lengths on the way have grown by
 };
 
 /// How the grating was brought back to the PSDs.

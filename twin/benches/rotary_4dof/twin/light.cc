@@ -14,6 +14,9 @@ namespace {
 /// centroid does not depend on it; on one that is not, by less than a nanometre.
 constexpr int kQuickProfileRays = 1024;
 
+/// Lengths grow by parts in a million: places of spots between two temperatures lie on a straight line to 1e-9.
+constexpr double kWarm_K = 10.0;
+
 /// Of the pictures that Twin::WriteIrradiance makes: 20 um pixels on a 10 mm detector.
 constexpr int kIrradiancePixels = 500;
 
@@ -138,6 +141,26 @@ optics::RotaryOptics OpticsOf(const Scenario& actual, double nominal_wavelength_
   return optics::RotaryOptics(parameters);
 }
 
+bool Grows(const RotarySettings& s) {
+  return s.grating.expansion_per_K != 0.0 || s.psd_a.distance_expansion_per_K != 0.0 ||
+         s.psd_b.distance_expansion_per_K != 0.0 || s.laser.post_growth_m_K != 0.0;
+}
+
+/// As it is `kWarm_K` above the temperature for which its lengths are stated. The PSDs stay in the directions in
+/// which they were placed.
+Scenario Warmed(Scenario actual) {
+  RotarySettings& s = RotaryOf(actual);
+  s.grating.lines_per_m /= 1.0 + s.grating.expansion_per_K * kWarm_K;
+  for (PsdSettings* psd : {&s.psd_a, &s.psd_b}) psd->distance_m *= 1.0 + psd->distance_expansion_per_K * kWarm_K;
+  s.laser.position_m.z() += s.laser.post_growth_m_K * kWarm_K;
+  return actual;
+}
+
+/// For which the PSDs stand where they do, with other grooves.
+double SamePlaces_m(double nominal_wavelength_m, const Scenario& actual, const Scenario& warm) {
+  return nominal_wavelength_m * RotaryOf(actual).grating.lines_per_m / RotaryOf(warm).grating.lines_per_m;
+}
+
 ReadingStatus StatusOf(optics::PsdStatus status) {
   switch (status) {
     case optics::PsdStatus::kOk:
@@ -156,7 +179,12 @@ ReadingStatus StatusOf(optics::PsdStatus status) {
 Light::Light(const Scenario& actual, double nominal_wavelength_m, LightAsked asked)
     : laser_(RotaryOf(actual).laser),
       low_light_fraction_(RotaryOf(actual).amplifier.low_light_fraction),
+      post_growth_m_K_{RotaryOf(actual).psd_a.post_growth_m_K, RotaryOf(actual).psd_b.post_growth_m_K},
       optics_(OpticsOf(actual, nominal_wavelength_m, asked)) {
+  if (Grows(RotaryOf(actual))) {
+    const Scenario warm = Warmed(actual);
+    warm_optics_.emplace(OpticsOf(warm, SamePlaces_m(nominal_wavelength_m, actual, warm), asked));
+  }
   // Without fixtures: what they take away is missing from the nominal power. A power needs no traced light.
   optics::RotaryOpticsParameters unobstructed = optics_.parameters();
   unobstructed.fidelity = optics::Fidelity::kClosed;
@@ -167,9 +195,10 @@ Light::Light(const Scenario& actual, double nominal_wavelength_m, LightAsked ask
 }
 
 LightState Light::Nominal(double temperature_K) const {
-  return {laser_.wavelength_m + laser_.wavelength_per_kelvin_m * temperature_K,
+  const double hops = laser_.mode_hop_K > 0.0 ? std::floor(temperature_K / laser_.mode_hop_K + 0.5) : 0.0;
+  return {laser_.wavelength_m + laser_.wavelength_per_kelvin_m * temperature_K + hops * laser_.mode_spacing_m,
           laser_.yaw_rad + laser_.pointing_yaw_per_kelvin_rad * temperature_K,
-          laser_.pitch_rad + laser_.pointing_pitch_per_kelvin_rad * temperature_K};
+          laser_.pitch_rad + laser_.pointing_pitch_per_kelvin_rad * temperature_K, temperature_K};
 }
 
 optics::SourceState Light::SourceOf(const LightState& light) const {
@@ -188,7 +217,21 @@ Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
     const ReadingStatus status = dark ? ReadingStatus::kNoLight : StatusOf(psd[p]->status);
     if (spots.status == ReadingStatus::kOk) spots.status = status;
   }
+  if (light.above_K != 0.0) Warm(X_LG, light, spots);
   return spots;
+}
+
+/// Moves the spots to where they are with the lengths as they have grown.
+void Light::Warm(const Pose& X_LG, const LightState& light, Spots& spots) const {
+  for (std::size_t p = 0; p < 2; ++p) spots.uv_m[2 * p + 1] -= post_growth_m_K_[p] * light.above_K;
+  if (!warm_optics_) return;
+  const optics::PsdSignals cold = optics_.Trace(X_LG, SourceOf(light)),
+                           warm = warm_optics_->Trace(X_LG, SourceOf(light));
+  const double share = light.above_K / kWarm_K;
+  spots.uv_m[0] += share * (warm.a.u_m - cold.a.u_m);
+  spots.uv_m[1] += share * (warm.a.v_m - cold.a.v_m);
+  spots.uv_m[2] += share * (warm.b.u_m - cold.b.u_m);
+  spots.uv_m[3] += share * (warm.b.v_m - cold.b.v_m);
 }
 
 void Light::WriteIrradiance(const std::string& path, const Pose& X_LG, const LightState& light) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "optics/bench.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effect.h"
@@ -38,10 +40,13 @@ class Light {
 
  private:
   optics::SourceState SourceOf(const LightState& light) const;
+  void Warm(const Pose& X_LG, const LightState& light, Spots& spots) const;
 
   LaserSettings laser_;
   double low_light_fraction_;
+  std::array<double, 2> post_growth_m_K_;  // of the PSDs
   optics::RotaryOptics optics_;
+  std::optional<optics::RotaryOptics> warm_optics_;  // where lengths grow with the temperature: kWarm_K warmer
   std::array<double, 2> nominal_power_W_{};
 };
 

@@ -19,6 +19,10 @@ model::Point Share(const char* name) {
   return {name, "1", 1.0, 1e-4};
 }
 
+model::Point Growth(const char* name) {
+  return {name, "um/K", um, 0.1 * um};
+}
+
 model::Point NotNegative(model::Point point) {
   point.lower = 0.0;
   return point;
@@ -90,6 +94,15 @@ std::vector<RotaryPoint> OfBench() {
            [](Scenario& s) -> double& { return RotaryOf(s).psd_a.stray_fraction; }},
           {NotNegative(Share("psd_b.stray")), nullptr,
            [](Scenario& s) -> double& { return RotaryOf(s).psd_b.stray_fraction; }},
+          {Growth("psd_a.post_growth"), nullptr,
+           [](Scenario& s) -> double& { return RotaryOf(s).psd_a.post_growth_m_K; }},
+          {Growth("psd_b.post_growth"), nullptr,
+           [](Scenario& s) -> double& { return RotaryOf(s).psd_b.post_growth_m_K; }},
+          {Growth("laser.post_growth"), nullptr,
+           [](Scenario& s) -> double& { return RotaryOf(s).laser.post_growth_m_K; }},
+          {{"grating.expansion", "ppm/K", 1e-6, 1e-6},
+           nullptr,
+           [](Scenario& s) -> double& { return RotaryOf(s).grating.expansion_per_K; }},
           {{"grating.lines_per_m", "1/mm", 1e3, 10.0}, nullptr, [](Scenario& s) -> double& {
              return RotaryOf(s).grating.lines_per_m;
            }}};
