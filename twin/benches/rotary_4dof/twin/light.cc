@@ -177,7 +177,20 @@ optics::SourceState Light::SourceOf(const LightState& light) const {
 }
 
 Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
-  const optics::PsdSignals signals = optics_.Trace(X_LG, SourceOf(light));
+  return SpotsOf(optics_.Trace(X_LG, SourceOf(light)));
+}
+
+std::vector<Spots> Light::Trace(const std::vector<Pose>& X_LG, const std::vector<LightState>& lights) const {
+  std::vector<optics::SourceState> sources;
+  sources.reserve(lights.size());
+  for (const LightState& light : lights) sources.push_back(SourceOf(light));
+  std::vector<Spots> spots;
+  spots.reserve(lights.size());
+  for (const optics::PsdSignals& signals : optics_.Trace(X_LG, sources)) spots.push_back(SpotsOf(signals));
+  return spots;
+}
+
+Spots Light::SpotsOf(const optics::PsdSignals& signals) const {
   const std::array<const optics::PsdSignal*, 2> psd = {&signals.a, &signals.b};
   Spots spots;
   for (std::size_t p = 0; p < 2; ++p) {
