@@ -144,36 +144,37 @@ PsdSignals RotaryOptics::TraceChief(const Eigen::Isometry3d& X_LG, const SourceS
   return {ChiefSignal(grating, chief, source, landings[0], 0), ChiefSignal(grating, chief, source, landings[1], 1)};
 }
 
-std::array<RotaryOptics::Landings, 2> RotaryOptics::LandingsOf(const BeamNodes& nodes,
-                                                               const Eigen::Isometry3d& X_LG, const Ray& chief,
-                                                               double wavelength_m) const {
+/// Tile by tile, so that a beam of many rays stays in the cache on its way.
+void RotaryOptics::VisitLandings(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG, const Ray& chief,
+                                 double wavelength_m, const Visit& visit) const {
+  constexpr std::size_t kTile = 256;
   const BeamAxes axes = AxesAcross(chief.direction);
-  if (traced_) {
-    RayBatch rays;
-    for (const BeamNode& node : nodes) rays.Add(NodeRay(chief, axes, node));
-    return traced_->Trace(GratingPoses({&X_LG, 1}), rays, {&wavelength_m, 1});
-  }
   const Frame grating = GratingFrame(X_LG);
-  std::array<Landings, 2> landings;
-  for (Landings& on_detector : landings) on_detector.reserve(nodes.size());
-  for (const BeamNode& node : nodes) {
-    const Ray ray = NodeRay(chief, axes, node);
-    for (int i = 0; i < 2; ++i)
-      landings[static_cast<std::size_t>(i)].push_back(closed_->Trace(grating, X_LG, ray, wavelength_m, i));
+  const GratingPoses poses({&X_LG, 1});
+  RayBatch rays;
+  DirectLight::Landings landings;
+  for (std::size_t begin = 0; begin < nodes.size(); begin += kTile) {
+    const std::size_t n = std::min(kTile, nodes.size() - begin);
+    rays.Resize(n);
+    for (std::size_t k = 0; k < n; ++k) rays.Set(k, NodeRay(chief, axes, nodes[begin + k]));
+    if (traced_) traced_->Trace(poses, rays, {&wavelength_m, 1}, landings);
+    for (int i = 0; i < 2; ++i) {
+      auto& on = landings.on[static_cast<std::size_t>(i)];
+      on.resize(n);
+      for (std::size_t k = 0; closed_ && k < n; ++k)
+        on[k] = closed_->Trace(grating, X_LG, rays.At(k), wavelength_m, i);
+      visit(i, begin, on);
+    }
   }
-  return landings;
 }
 
-RotaryOptics::Bundle RotaryOptics::MomentsOf(const BeamNodes& nodes, const Landings& landings, int i) const {
-  const Eigen::Matrix3d& R_LP = X_LP_[static_cast<std::size_t>(i)].linear();
+struct RotaryOptics::Moments {
   double share = 0.0, transmission = 0.0;
   Eigen::Vector2d on_silicon = Eigen::Vector2d::Zero();
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
   Eigen::Matrix4d squares = Eigen::Matrix4d::Zero();  // of (u, v, direction u, direction v) in air
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const Landing& hit = landings[k];
-    if (!hit.arrives) continue;
-    const double weight = nodes[k].weight;
+
+  void Add(double weight, const Landing& hit, const Eigen::Matrix3d& R_LP) {
     const Eigen::Vector4d state(hit.in_air_m.x(), hit.in_air_m.y(), R_LP.col(0).dot(hit.direction),
                                 R_LP.col(1).dot(hit.direction));
     share += weight;
@@ -182,23 +183,32 @@ RotaryOptics::Bundle RotaryOptics::MomentsOf(const BeamNodes& nodes, const Landi
     sum += weight * state;
     squares += weight * state * state.transpose();
   }
-  Bundle bundle{.share = share};
-  if (!(share > 0.0)) return bundle;
-  const Eigen::Vector4d mean = sum / share;
-  const Eigen::Matrix4d cov = squares / share - mean * mean.transpose();
-  bundle.mean_m = on_silicon / share;
-  bundle.transmission = transmission / share;
-  if (nodes.size() > 1) {
+
+  Bundle Summary(bool is_chief_ray) const {
+    Bundle bundle{.share = share};
+    if (!(share > 0.0)) return bundle;
+    const Eigen::Vector4d mean = sum / share;
+    const Eigen::Matrix4d cov = squares / share - mean * mean.transpose();
+    bundle.mean_m = on_silicon / share;
+    bundle.transmission = transmission / share;
+    if (is_chief_ray) return bundle;
     bundle.cov_m2 = cov.topLeftCorner<2, 2>();
     bundle.slopes_per_m = cov.bottomLeftCorner<2, 2>() * bundle.cov_m2.inverse();
+    return bundle;
   }
-  return bundle;
-}
+};
 
 std::array<RotaryOptics::Bundle, 2> RotaryOptics::Bundles(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG,
                                                           const Ray& chief, double wavelength_m) const {
-  const auto landings = LandingsOf(nodes, X_LG, chief, wavelength_m);
-  std::array<Bundle, 2> bundles = {MomentsOf(nodes, landings[0], 0), MomentsOf(nodes, landings[1], 1)};
+  std::array<Moments, 2> moments;
+  VisitLandings(nodes, X_LG, chief, wavelength_m, [&](int i, std::size_t begin, std::span<const Landing> landings) {
+    const auto n = static_cast<std::size_t>(i);
+    for (std::size_t k = 0; k < landings.size(); ++k) {
+      if (landings[k].arrives) moments[n].Add(nodes[begin + k].weight, landings[k], X_LP_[n].linear());
+    }
+  });
+  const bool alone = nodes.size() == 1;
+  std::array<Bundle, 2> bundles = {moments[0].Summary(alone), moments[1].Summary(alone)};
   if (!closed_) return bundles;
   const Frame grating = GratingFrame(X_LG);
   for (int i = 0; i < 2; ++i) {
@@ -293,9 +303,8 @@ std::array<RotaryOptics::Measured, 2> RotaryOptics::MeasuredLight(const Eigen::I
                                                                   const SourceState& source) const {
   const Ray chief = ChiefRay(source);
   const std::vector<Deposit> deposits = split_ ? Deposits(X_LG, chief, source) : std::vector<Deposit>{};
-  const auto landings = LandingsOf(nodes_, X_LG, chief, source.wavelength_m);
   const Eigen::Vector3d normal = X_LG.linear().col(1);
-  std::array<Measured, 2> light;
+  std::array<std::optional<MapMaker>, 2> makers;
   for (int i = 0; i < 2; ++i) {
     const auto n = static_cast<std::size_t>(i);
     const double power_W = OrderPower(X_LG, chief, source, i);
@@ -307,9 +316,25 @@ std::array<RotaryOptics::Measured, 2> RotaryOptics::MeasuredLight(const Eigen::I
                               .order = Diffract(chief.direction, normal, X_LG.linear().col(0), shift).direction,
                               .pixel_m = ProfileBlock_m(*parameters_.beam.profile, ProfilePositions(parameters_)),
                               .wavelength_m = source.wavelength_m};
-    light[n].map = MapOf(beam, nodes_, landings[n], power_W);
-    const Bundle bundle = MomentsOf(nodes_, landings[n], i);
-    light[n].others = SpotsOn(i, bundle, deposits, power_W, source.wavelength_m);
+    makers[n].emplace(beam, nodes_.size(), power_W);
+  }
+  std::array<Moments, 2> moments;
+  VisitLandings(nodes_, X_LG, chief, source.wavelength_m,
+                [&](int i, std::size_t begin, std::span<const Landing> landings) {
+                  const auto n = static_cast<std::size_t>(i);
+                  for (std::size_t k = 0; k < landings.size(); ++k) {
+                    if (!landings[k].arrives) continue;
+                    const double weight = nodes_[begin + k].weight;
+                    makers[n]->Add(weight, landings[k]);
+                    if (split_) moments[n].Add(weight, landings[k], X_LP_[n].linear());
+                  }
+                });
+  std::array<Measured, 2> light;
+  for (int i = 0; i < 2; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    light[n].map = makers[n]->Take();
+    if (!split_) continue;
+    light[n].others = SpotsOn(i, moments[n].Summary(nodes_.size() == 1), deposits, 0.0, source.wavelength_m);
     light[n].others.erase(light[n].others.begin());  // the direct light, which is the map
   }
   return light;
@@ -345,12 +370,13 @@ std::vector<PsdSignals> RotaryOptics::Trace(std::span<const Eigen::Isometry3d> X
     chiefs.Add(ChiefRay(source));
     wavelength_m.push_back(source.wavelength_m);
   }
-  const auto landings = traced_->Trace(GratingPoses(X_LG), chiefs, wavelength_m);
+  DirectLight::Landings landings;
+  traced_->Trace(GratingPoses(X_LG), chiefs, wavelength_m, landings);
   for (std::size_t k = 0; k < X_LG.size(); ++k) {
     const Frame grating = GratingFrame(X_LG[k]);
     const Ray chief = chiefs.At(k);
-    signals.push_back({ChiefSignal(grating, chief, sources[k], landings[0][k], 0),
-                       ChiefSignal(grating, chief, sources[k], landings[1][k], 1)});
+    signals.push_back({ChiefSignal(grating, chief, sources[k], landings.on[0][k], 0),
+                       ChiefSignal(grating, chief, sources[k], landings.on[1][k], 1)});
   }
   return signals;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -62,8 +63,10 @@ class RotaryOptics {
   std::uint64_t rays_traced() const { return traced_ ? traced_->scenes().rays_traced() : 0; }
 
  private:
-  struct Bundle;  // what a ray bundle does in one detector's plane
-  using Landings = std::vector<Landing>;
+  struct Bundle;   // what a ray bundle does in one detector's plane
+  struct Moments;  // of which it is made
+  /// Takes the landings of some rays in a row, from ray `begin` on, on detector `i`.
+  using Visit = std::function<void(int i, std::size_t begin, std::span<const Landing> landings)>;
 
   const PsdParameters& psd(int i) const { return parameters_.psd(i); }
   Frame GratingFrame(const Eigen::Isometry3d& X_LG) const;
@@ -73,9 +76,8 @@ class RotaryOptics {
   PsdSignal ChiefSignal(const Frame& grating, const Ray& chief, const SourceState& source, const Landing& landing,
                         int i) const;
 
-  std::array<Landings, 2> LandingsOf(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG, const Ray& chief,
-                                     double wavelength_m) const;
-  Bundle MomentsOf(const BeamNodes& nodes, const Landings& landings, int i) const;
+  void VisitLandings(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG, const Ray& chief, double wavelength_m,
+                     const Visit& visit) const;
   std::array<Bundle, 2> Bundles(const BeamNodes& nodes, const Eigen::Isometry3d& X_LG, const Ray& chief,
                                 double wavelength_m) const;
   std::array<Bundle, 2> BundlesOf(const Eigen::Isometry3d& X_LG, const Ray& chief, double wavelength_m) const;

@@ -2,14 +2,6 @@
 
 namespace twinbench::optics {
 
-struct DirectLight::Way {
-  Ray ray;
-  std::size_t index = 0;  // of the ray of the beam
-  bool behind_window = false;
-  bool in_glass = false;
-  Landing landing;
-};
-
 GratingPoses::GratingPoses(std::span<const Eigen::Isometry3d> poses) : X_LG(poses) {
   X_GL.reserve(poses.size());
   for (const Eigen::Isometry3d& X : poses) X_GL.push_back(X.inverse());
@@ -96,49 +88,52 @@ std::array<Landing, 2> DirectLight::Trace(const Eigen::Isometry3d& X_LG, const R
   return landings;
 }
 
+/// From the grating into one order.
+void DirectLight::LeaveAll(const GratingPoses& poses, const RayBatch& rays, std::span<const double> wavelength_m,
+                           int i, Landings& landings) const {
+  landings.ways.resize(rays.size());
+  std::size_t leaving = 0;
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const std::size_t p = poses.Of(k);
+    Way& way = landings.ways[leaving];
+    way = {};
+    way.index = static_cast<std::uint32_t>(k);
+    leaving += Leave(poses.X_LG[p], rays.At(k), landings.on_grating.first[k], wavelength_m[p], i, way) ? 1 : 0;
+  }
+  landings.ways.resize(leaving);
+}
+
 /// All ways of one order, each step of them together.
-void DirectLight::FollowAll(const GratingPoses& poses, std::vector<Way>& ways, int i,
-                            std::vector<Landing>& landings) const {
-  RayBatch rays;
-  std::vector<RotaryHit> hits;
-  std::vector<Eigen::Isometry3d> X_GL = poses.X_GL;
+void DirectLight::FollowAll(const GratingPoses& poses, int i, Landings& landings) const {
+  std::vector<Way>& ways = landings.ways;
+  std::span<const Eigen::Isometry3d> X_GL = poses.X_GL;
   while (!ways.empty()) {
-    rays = {};
-    for (const Way& way : ways) rays.Add(way.ray);
+    landings.rays.Resize(ways.size());
+    for (std::size_t k = 0; k < ways.size(); ++k) landings.rays.Set(k, ways[k].ray);
     if (poses.X_LG.size() > 1) {
-      X_GL.clear();
-      for (const Way& way : ways) X_GL.push_back(poses.X_GL[way.index]);
+      landings.X_GL.clear();
+      for (const Way& way : ways) landings.X_GL.push_back(poses.X_GL[way.index]);
+      X_GL = landings.X_GL;
     }
-    scenes_.First(X_GL, rays, scenes_.behind_grating(), hits);
+    scenes_.First(X_GL, landings.rays, scenes_.behind_grating(), landings.hits);
     std::size_t left = 0;
     for (std::size_t k = 0; k < ways.size(); ++k) {
-      const bool goes_on = Advance(hits[k], i, ways[k]);
-      landings[ways[k].index] = ways[k].landing;
+      const bool goes_on = Advance(landings.hits.first[k], i, ways[k]);
+      landings.on[static_cast<std::size_t>(i)][ways[k].index] = ways[k].landing;
       if (goes_on) ways[left++] = ways[k];
     }
     ways.resize(left);
   }
 }
 
-std::array<std::vector<Landing>, 2> DirectLight::Trace(const GratingPoses& poses, const RayBatch& rays,
-                                                       std::span<const double> wavelength_m) const {
-  std::vector<RotaryHit> on_grating;
-  scenes_.First(poses.X_GL, rays, Meets::kEverything, on_grating);
-  std::array<std::vector<Landing>, 2> landings;
+void DirectLight::Trace(const GratingPoses& poses, const RayBatch& rays, std::span<const double> wavelength_m,
+                        Landings& landings) const {
+  scenes_.First(poses.X_GL, rays, Meets::kEverything, landings.on_grating);
   for (int i = 0; i < 2; ++i) {
-    std::vector<Way> ways;
-    ways.reserve(rays.size());
-    for (std::size_t k = 0; k < rays.size(); ++k) {
-      Way way;
-      way.index = k;
-      const std::size_t p = poses.Of(k);
-      if (Leave(poses.X_LG[p], rays.At(k), on_grating[k], wavelength_m[p], i, way)) ways.push_back(way);
-    }
-    auto& landed = landings[static_cast<std::size_t>(i)];
-    landed.assign(rays.size(), {});
-    FollowAll(poses, ways, i, landed);
+    landings.on[static_cast<std::size_t>(i)].assign(rays.size(), {});
+    LeaveAll(poses, rays, wavelength_m, i, landings);
+    FollowAll(poses, i, landings);
   }
-  return landings;
 }
 
 }  // namespace twinbench::optics

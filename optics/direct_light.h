@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -25,30 +26,49 @@ struct GratingPoses {
 ///
 /// Immutable after construction; const members may run in several threads.
 class DirectLight {
+  /// One ray behind the grating.
+  struct Way {
+    Ray ray;
+    std::uint32_t index = 0;  // of the ray of the beam
+    bool behind_window = false;
+    bool in_glass = false;
+    Landing landing;
+  };
+
  public:
   DirectLight(const RotaryOpticsParameters& parameters, const std::array<Eigen::Isometry3d, 2>& X_LP);
 
   /// One ray on both detectors.
   std::array<Landing, 2> Trace(const Eigen::Isometry3d& X_LG, const Ray& ray, double wavelength_m) const;
 
+  /// Where many rays land on both detectors, and room for finding it.
+  struct Landings {
+    std::array<std::vector<Landing>, 2> on;  // for each detector one for each ray
+
+   private:
+    friend class DirectLight;
+    RotaryScenes::Hits on_grating, hits;
+    RayBatch rays;
+    std::vector<Way> ways;
+    std::vector<Eigen::Isometry3d> X_GL;
+  };
+
   /// Many rays on both detectors, in packets.
-  ///
   /// @param wavelength_m  As many as poses.
-  /// @return for each detector one landing for each ray.
-  std::array<std::vector<Landing>, 2> Trace(const GratingPoses& poses, const RayBatch& rays,
-                                            std::span<const double> wavelength_m) const;
+  void Trace(const GratingPoses& poses, const RayBatch& rays, std::span<const double> wavelength_m,
+             Landings& landings) const;
 
   const RotaryScenes& scenes() const { return scenes_; }
 
  private:
-  struct Way;  // of one ray behind the grating
-
   bool Leave(const Eigen::Isometry3d& X_LG, const Ray& ray, const RotaryHit& hit, double wavelength_m, int i,
              Way& way) const;
   bool Advance(const RotaryHit& hit, int i, Way& way) const;
   bool Refract(const RotaryHit& hit, int i, Way& way) const;
   static void Land(double u_m, double v_m, Way& way);
-  void FollowAll(const GratingPoses& poses, std::vector<Way>& ways, int i, std::vector<Landing>& landings) const;
+  void LeaveAll(const GratingPoses& poses, const RayBatch& rays, std::span<const double> wavelength_m, int i,
+                Landings& landings) const;
+  void FollowAll(const GratingPoses& poses, int i, Landings& landings) const;
 
   RotaryScenes scenes_;
   double lines_per_m_;

@@ -114,34 +114,59 @@ template <std::size_t kWidth, class RayHitPacket>
 
 }  // namespace
 
-// All packets are filled, then traced, then read: so no load waits for the store of a moment ago.
+/// What Embree leaves as it was is written once for all tiles. It names the instance of every hit, so that of an
+/// earlier tile's is never read.
 template <std::size_t kWidth, class Packet>
-[[gnu::always_inline]] inline void IntersectPackets(RTCScene scene, Query& query, ConstRays r, float near_m,
-                                                    Answers answers, std::size_t count) {
-  alignas(64) int valid[kTilePackets][kWidth];
-  Packet packets[kTilePackets];
+[[gnu::always_inline]] inline void PrepareTile(Packet* packets, std::size_t count, float near_m) {
   for (std::size_t p = 0; p < count; ++p) {
-    ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray);
     Prepare<kWidth>(packets[p].ray);
     std::fill_n(packets[p].ray.tnear, kWidth, near_m);
-    std::fill_n(packets[p].ray.tfar, kWidth, std::numeric_limits<float>::infinity());
     Forget<kWidth>(packets[p].hit);
+  }
+}
+
+// All packets are filled, then traced, then read: so no load waits for the store of a moment ago.
+template <std::size_t kWidth, class Packet>
+[[gnu::always_inline]] inline void IntersectTile(RTCScene scene, Query& query, ConstRays r, Packet* packets,
+                                                 std::size_t count, Answers answers) {
+  alignas(64) int valid[kTilePackets][kWidth];
+  for (std::size_t p = 0; p < count; ++p) {
+    ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray);
+    std::fill_n(packets[p].ray.tfar, kWidth, std::numeric_limits<float>::infinity());
+    std::fill_n(packets[p].hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
   }
   for (std::size_t p = 0; p < count; ++p) FindFinite<kWidth>(packets[p].ray, valid[p]);
   for (std::size_t p = 0; p < count; ++p) query.Run(valid[p], scene, packets[p]);
   for (std::size_t p = 0; p < count; ++p) Read<kWidth>(packets[p], answers.From(p * kWidth));
 }
 
+template <std::size_t kWidth, class Packet>
+[[gnu::always_inline]] inline void IntersectPackets(RTCScene scene, Query& query, const RayBatch& rays,
+                                                    float near_m, std::size_t packets,
+                                                    const EmbreeWorld::Tile& tile) {
+  alignas(64) int triangle[kTilePackets * kWidth];
+  alignas(64) float t_m[kTilePackets * kWidth];
+  Packet storage[kTilePackets];
+  PrepareTile<kWidth>(storage, std::min(packets, kTilePackets), near_m);
+  for (std::size_t p = 0; p < packets; p += kTilePackets) {
+    const std::size_t count = std::min(kTilePackets, packets - p);
+    IntersectTile<kWidth>(scene, query, From(rays, p * kWidth), storage, count, {triangle, t_m});
+    tile(p * kWidth, count, {triangle, t_m});
+  }
+}
+
 [[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets16(RTCScene scene, Query& query,
-                                                                             ConstRays r, float near_m,
-                                                                             Answers answers, std::size_t count) {
-  IntersectPackets<16, RTCRayHit16>(scene, query, r, near_m, answers, count);
+                                                                             const RayBatch& rays, float near_m,
+                                                                             std::size_t packets,
+                                                                             const EmbreeWorld::Tile& tile) {
+  IntersectPackets<16, RTCRayHit16>(scene, query, rays, near_m, packets, tile);
 }
 
 [[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets8(RTCScene scene, Query& query,
-                                                                            ConstRays r, float near_m,
-                                                                            Answers answers, std::size_t count) {
-  IntersectPackets<8, RTCRayHit8>(scene, query, r, near_m, answers, count);
+                                                                            const RayBatch& rays, float near_m,
+                                                                            std::size_t packets,
+                                                                            const EmbreeWorld::Tile& tile) {
+  IntersectPackets<8, RTCRayHit8>(scene, query, rays, near_m, packets, tile);
 }
 
 namespace {
@@ -280,11 +305,11 @@ void EmbreeWorld::Commit() {
   if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree: error " + std::to_string(error) + " in a scene");
 }
 
-void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t packets, float near_m,
-                            RayOrder order, Answers answers) const {
+void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t packets, float near_m, RayOrder order,
+                            const Tile& tile) const {
   Query query(order);
   const auto trace = packet_width_ == 16 ? IntersectPackets16 : IntersectPackets8;
-  trace(scene_, query, From(rays, begin), near_m, answers, packets);
+  trace(scene_, query, rays, near_m, packets, tile);
 }
 
 Answer EmbreeWorld::Intersect(const Ray& ray, float near_m, float far_m) const {

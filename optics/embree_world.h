@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -53,10 +54,11 @@ class EmbreeWorld {
   RTCDeviceTy* device() const { return device_; }
   RTCSceneTy* scene() const { return scene_; }
 
-  /// Nearest triangle beyond `near_m` for `packets` <= kTilePackets whole packets of packet_width() rays from
-  /// `begin` on.
-  void Intersect(const RayBatch& rays, std::size_t begin, std::size_t packets, float near_m, RayOrder order,
-                 Answers answers) const;
+  /// What is done with the answers of one tile: `packets` <= kTilePackets whole packets from ray `begin` on.
+  using Tile = std::function<void(std::size_t begin, std::size_t packets, Answers answers)>;
+
+  /// Nearest triangle beyond `near_m` for the first `packets` whole packets of packet_width() rays, tile by tile.
+  void Intersect(const RayBatch& rays, std::size_t packets, float near_m, RayOrder order, const Tile& tile) const;
 
   /// Nearest triangle for one ray between two distances, without a packet around it.
   Answer Intersect(const Ray& ray, float near_m, float far_m) const;

@@ -63,13 +63,14 @@ class Tracer {
     RayBatch rays;
     for (const Light& light : generation) rays.Add(light.ray);
     const Eigen::Isometry3d X_GL = bench_.X_LG.inverse();
-    std::vector<RotaryHit> hits;
+    RotaryScenes::Hits hits;
     bench_.scenes->First({&X_GL, 1}, rays, Meets::kEverything, hits);
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-      const RotaryElement element = hits[i].element;
+    for (std::size_t i = 0; i < generation.size(); ++i) {
+      const RotaryHit& met = hits.first[i];
+      const RotaryElement element = met.element;
       if (element == RotaryElement::kDark || element == RotaryElement::kObstacle) continue;
       // The grating is the first of the surfaces here; the laboratory's follow in their order.
-      At(generation[i], {element == RotaryElement::kGrating ? 0 : 1 + hits[i].surface, hits[i].hit});
+      At(generation[i], {element == RotaryElement::kGrating ? 0 : 1 + met.surface, met.hit});
     }
   }
 

@@ -1,6 +1,7 @@
 #include "optics/measured_beam.h"
 
 #include <cmath>
+#include <utility>
 
 namespace twinbench::optics {
 namespace {
@@ -36,23 +37,22 @@ Eigen::Vector2d HalfPixelOn(const BeamOnDetector& beam) {
   return 0.5 * (x.array().square() + y.array().square()).sqrt();
 }
 
-PowerMap MapOf(const BeamOnDetector& beam, const BeamNodes& nodes, std::span<const Landing> landings,
-               double power_W) {
-  PowerMap map;
-  map.half_m = HalfPixelOn(beam);
-  map.patches.reserve(nodes.size());
-  double arrived = 0.0;
-  const bool interferes = beam.psd.window && beam.psd.window->coherent;
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const Landing& landing = landings[k];
-    if (!landing.arrives) continue;
-    arrived += nodes[k].weight;
-    const double absorbed = landing.transmission * (1.0 - beam.psd.silicon_reflectance);
-    const PowerPatch patch{landing.u_m, landing.v_m, power_W * nodes[k].weight * absorbed};
-    map.patches.push_back(interferes ? ThroughEtalon(beam, landing, map.half_m, patch) : patch);
-  }
-  map.lost_share = 1.0 - arrived;
-  return map;
+MapMaker::MapMaker(const BeamOnDetector& beam, std::size_t rays, double power_W)
+    : beam_(beam), power_W_(power_W), interferes_(beam.psd.window && beam.psd.window->coherent) {
+  map_.half_m = HalfPixelOn(beam);
+  map_.patches.reserve(rays);
+}
+
+void MapMaker::Add(double weight, const Landing& landing) {
+  arrived_ += weight;
+  const double absorbed = landing.transmission * (1.0 - beam_.psd.silicon_reflectance);
+  const PowerPatch patch{landing.u_m, landing.v_m, power_W_ * weight * absorbed};
+  map_.patches.push_back(interferes_ ? ThroughEtalon(beam_, landing, map_.half_m, patch) : patch);
+}
+
+PowerMap MapMaker::Take() {
+  map_.lost_share = 1.0 - arrived_;
+  return std::move(map_);
 }
 
 }  // namespace twinbench::optics

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <span>
-
 #include "optics/bench_parameters.h"
 #include "optics/landing.h"
 #include "optics/power_map.h"
@@ -24,12 +22,25 @@ struct BeamOnDetector {
 /// the parallel projection of the beam along its direction on to the grating, and along the order on to the plane.
 Eigen::Vector2d HalfPixelOn(const BeamOnDetector& beam);
 
-/// The rays of the beam as rectangles of light, each with its power behind the window. Where the window's faces
-/// interfere, each rectangle has the transmission and the shift of its own place and direction.
-///
-/// @param nodes, landings  As many; rays that do not arrive are lost.
-/// @param power_W          Of the whole beam in this order.
-PowerMap MapOf(const BeamOnDetector& beam, const BeamNodes& nodes, std::span<const Landing> landings,
-               double power_W);
+/// Gathers the rays of the beam as rectangles of light, each with its power behind the window. Where the window's
+/// faces interfere, each rectangle has the transmission and the shift of its own place and direction.
+class MapMaker {
+ public:
+  /// @param rays     Expected. @param power_W  Of the whole beam in this order.
+  MapMaker(const BeamOnDetector& beam, std::size_t rays, double power_W);
+
+  /// A ray that arrives, with its share of the beam.
+  void Add(double weight, const Landing& landing);
+
+  /// What has not been added is lost.
+  PowerMap Take();
+
+ private:
+  BeamOnDetector beam_;
+  double power_W_;
+  bool interferes_;
+  double arrived_ = 0.0;
+  PowerMap map_;
+};
 
 }  // namespace twinbench::optics

@@ -18,6 +18,7 @@ struct RayBatch {
   std::vector<double> dx, dy, dz;  // unit direction
 
   std::size_t size() const { return ox.size(); }
+  void Resize(std::size_t size);
   void Add(const Ray& ray);
   void Set(std::size_t i, const Ray& ray);
   Ray At(std::size_t i) const { return {{ox[i], oy[i], oz[i]}, {dx[i], dy[i], dz[i]}}; }

@@ -7,18 +7,13 @@ NearestHit NearestOf(const HitBatch& hits, std::size_t i) {
   return {hits.surface[i], {hits.t_m[i], hits.x_m[i], hits.y_m[i]}};
 }
 
-RayBatch Turned(std::span<const Eigen::Isometry3d> X_GL, const RayBatch& rays) {
-  RayBatch turned = rays;
+void Turn(std::span<const Eigen::Isometry3d> X_GL, const RayBatch& rays, RayBatch& turned) {
+  turned.Resize(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Eigen::Isometry3d& X = X_GL[X_GL.size() == 1 ? 0 : i];
     const Ray ray = rays.At(i);
     turned.Set(i, {X * ray.origin_m, X.linear() * ray.direction});
   }
-  return turned;
-}
-
-const RotaryHit& Nearer(const RotaryHit& a, const RotaryHit& b) {
-  return b.hit.t_m < a.hit.t_m ? b : a;
 }
 
 }  // namespace
@@ -63,18 +58,22 @@ RotaryHit RotaryScenes::InLaboratory(const NearestHit& met) const {
 RotaryHit RotaryScenes::First(const Eigen::Isometry3d& X_GL, const Ray& ray, Meets meets) const {
   const RotaryHit there = InLaboratory(laboratory_.First(ray));
   if (meets == Meets::kLaboratory) return there;
-  return Nearer(there, OnGrating(riding_.First({X_GL * ray.origin_m, X_GL.linear() * ray.direction})));
+  const RotaryHit on_grating = OnGrating(riding_.First({X_GL * ray.origin_m, X_GL.linear() * ray.direction}));
+  return on_grating.hit.t_m < there.hit.t_m ? on_grating : there;
 }
 
 void RotaryScenes::First(std::span<const Eigen::Isometry3d> X_GL, const RayBatch& rays, Meets meets,
-                         std::vector<RotaryHit>& hits) const {
-  HitBatch met;
-  hits.resize(rays.size());
-  laboratory_.Intersect(rays, met);
-  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = InLaboratory(NearestOf(met, i));
+                         Hits& hits) const {
+  hits.first.resize(rays.size());
+  laboratory_.Intersect(rays, hits.met);
+  for (std::size_t i = 0; i < rays.size(); ++i) hits.first[i] = InLaboratory(NearestOf(hits.met, i));
   if (meets == Meets::kLaboratory) return;
-  riding_.Intersect(Turned(X_GL, rays), met);
-  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = Nearer(hits[i], OnGrating(NearestOf(met, i)));
+  Turn(X_GL, rays, hits.turned);
+  riding_.Intersect(hits.turned, hits.met);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RotaryHit on_grating = OnGrating(NearestOf(hits.met, i));
+    if (on_grating.hit.t_m < hits.first[i].hit.t_m) hits.first[i] = on_grating;
+  }
 }
 
 }  // namespace twinbench::optics

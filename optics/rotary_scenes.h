@@ -34,9 +34,15 @@ class RotaryScenes {
   /// The first meeting of a ray given in L, for a grating at X_GL^-1.
   RotaryHit First(const Eigen::Isometry3d& X_GL, const Ray& ray, Meets meets = Meets::kEverything) const;
 
+  /// What many rays meet, and room for finding it.
+  struct Hits {
+    std::vector<RotaryHit> first;  // one for each ray
+    HitBatch met;
+    RayBatch turned;
+  };
+
   /// The same for many, in packets. @param X_GL  One for all rays, or one for each.
-  void First(std::span<const Eigen::Isometry3d> X_GL, const RayBatch& rays, Meets meets,
-             std::vector<RotaryHit>& hits) const;
+  void First(std::span<const Eigen::Isometry3d> X_GL, const RayBatch& rays, Meets meets, Hits& hits) const;
 
   /// What light that has left the grating's front can still meet.
   Meets behind_grating() const { return rides_ ? Meets::kEverything : Meets::kLaboratory; }

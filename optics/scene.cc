@@ -16,10 +16,9 @@ namespace {
 
 constexpr float kNear = static_cast<float>(0.5 * Scene::t_min_m);
 
-template <std::size_t kPackets>
 struct alignas(64) Storage {
-  int triangle[kPackets * kMaxPacket];
-  float t_m[kPackets * kMaxPacket];
+  int triangle[kMaxPacket];
+  float t_m[kMaxPacket];
 
   Answers View() { return {triangle, t_m}; }
 };
@@ -91,8 +90,8 @@ struct Scene::Impl {
   void CommitProxies();
   void FindNeighbours(const std::vector<Eigen::AlignedBox3d>& boxes);
   double Extent() const;
-  void IntersectPackets(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order,
-                        HitBatch& hits) const;
+  void Settle(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order, Answers answers,
+              HitBatch& hits) const;
   void IntersectLast(const RayBatch& rays, std::size_t begin, RayOrder order, HitBatch& hits) const;
   void Pursue(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Answers answers,
               HitBatch& hits) const;
@@ -201,14 +200,10 @@ void Scene::Impl::Pursue(const RayBatch& rays, std::size_t begin, std::size_t n,
   }
 }
 
-/// Whole packets, at most kTilePackets: those on one lone plane together, for there beams are; the others one by
-/// one.
-void Scene::Impl::IntersectPackets(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order,
-                                   HitBatch& hits) const {
-  Storage<kTilePackets> storage;
-  const Answers answers = storage.View();
+/// Decides a tile of whole packets: those on one lone plane together, for there beams are; the others one by one.
+void Scene::Impl::Settle(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order,
+                         Answers answers, HitBatch& hits) const {
   const auto width = static_cast<std::size_t>(world.packet_width());
-  world.Intersect(rays, begin, packets, kNear, order, answers);
   const Targets table{targets.data(), surface_of_triangle.data(), blur_m};
   std::uint32_t unsettled = SettlePlanes(table, rays, begin, packets * width, width, answers, t_min_m, hits);
   for (; unsettled != 0; unsettled &= unsettled - 1) {
@@ -220,7 +215,7 @@ void Scene::Impl::IntersectPackets(const RayBatch& rays, std::size_t begin, std:
 /// The rest, less than a packet.
 void Scene::Impl::IntersectLast(const RayBatch& rays, std::size_t begin, RayOrder order, HitBatch& hits) const {
   const std::size_t n = rays.size() - begin;
-  Storage<1> storage;
+  Storage storage;
   world.Intersect(rays, begin, n, order, WholeRays(n), storage.View());
   Pursue(rays, begin, n, order, storage.View(), hits);
 }
@@ -239,7 +234,7 @@ void Scene::Impl::Shadow(const RayBatch& rays, std::size_t begin, std::size_t n,
   Bounds bounds = WholeRays(n);
   std::fill_n(bounds.near_m, n, static_cast<float>(t_min_m));
   for (std::size_t i = 0; i < n; ++i) bounds.far_m[i] = static_cast<float>(hits.t_m[begin + i]);
-  Storage<1> storage;
+  Storage storage;
   const Answers answers = storage.View();
   world.Occluded(rays, begin, n, bounds, answers);
   for (std::size_t i = 0; i < n; ++i) {
@@ -314,12 +309,11 @@ void Scene::Intersect(const RayBatch& rays, HitBatch& hits, RayOrder order) cons
   hits.Resize(rays.size());
   impl_->rays_traced.fetch_add(rays.size(), std::memory_order_relaxed);
   const auto width = static_cast<std::size_t>(packet_width());
-  std::size_t begin = 0;
-  while (const std::size_t packets = std::min(kTilePackets, (rays.size() - begin) / width)) {
-    impl_->IntersectPackets(rays, begin, packets, order, hits);
-    begin += packets * width;
-  }
-  if (begin < rays.size()) impl_->IntersectLast(rays, begin, order, hits);
+  const std::size_t packets = rays.size() / width;
+  impl_->world.Intersect(rays, packets, kNear, order, [&](std::size_t begin, std::size_t count, Answers answers) {
+    impl_->Settle(rays, begin, count, order, answers, hits);
+  });
+  if (packets * width < rays.size()) impl_->IntersectLast(rays, packets * width, order, hits);
 }
 
 NearestHit Scene::First(const Ray& ray) const {

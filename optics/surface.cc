@@ -17,6 +17,10 @@ void RayBatch::Add(const Ray& ray) {
   dz.push_back(ray.direction.z());
 }
 
+void RayBatch::Resize(std::size_t size) {
+  for (std::vector<double>* array : {&ox, &oy, &oz, &dx, &dy, &dz}) array->resize(size);
+}
+
 void RayBatch::Set(std::size_t i, const Ray& ray) {
   ox[i] = ray.origin_m.x();
   oy[i] = ray.origin_m.y();

@@ -50,9 +50,10 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
 
  protected:
   Eigen::MatrixXd Shown(const std::vector<RotaryExtra>& extra) const override {
+    const std::vector<Spots> spots = SpotsOf(extra);
     Eigen::MatrixXd shown_V(std::ssize(extra), kChannels);
     for (std::size_t i = 0; i < extra.size(); ++i) {
-      const std::array<double, kChannels> reading_V = Shown_V(i, extra[i]);
+      const std::array<double, kChannels> reading_V = Shown_V(i, spots[i], extra[i]);
       for (int c = 0; c < kChannels; ++c) shown_V(static_cast<Eigen::Index>(i), c) = reading_V[c];
     }
     return shown_V;
@@ -82,13 +83,26 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
     return at() * mechanics::ToPose(extra.mount);
   }
 
-  std::array<double, kChannels> Shown_V(std::size_t i, const RotaryExtra& extra) const {
-    const RecordedStop& stop = course_.stops[i];
-    LightState light = stop.light;
+  LightState LightAt(std::size_t i, const RotaryExtra& extra) const {
+    LightState light = course_.stops[i].light;
     light.wavelength_m += extra.light.wavelength_m;
     light.yaw_rad += extra.light.yaw_rad;
     light.pitch_rad += extra.light.pitch_rad;
-    const Spots spots = path_.light().Trace(GratingPose(i, extra), light);
+    return light;
+  }
+
+  std::vector<Spots> SpotsOf(const std::vector<RotaryExtra>& extra) const {
+    std::vector<Pose> X_LG;
+    std::vector<LightState> lights;
+    for (std::size_t i = 0; i < extra.size(); ++i) {
+      X_LG.push_back(GratingPose(i, extra[i]));
+      lights.push_back(LightAt(i, extra[i]));
+    }
+    return path_.light().Trace(X_LG, lights);
+  }
+
+  std::array<double, kChannels> Shown_V(std::size_t i, const Spots& spots, const RotaryExtra& extra) const {
+    const RecordedStop& stop = course_.stops[i];
     if (spots.status != ReadingStatus::kOk) return {kNaN, kNaN, kNaN, kNaN};
     std::array<double, kChannels> signal_V =
         path_.effects().Shown_V(stop.moment, path_.electronics().Amplify(spots.uv_m));

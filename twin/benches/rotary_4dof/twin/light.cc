@@ -206,7 +206,21 @@ optics::SourceState Light::SourceOf(const LightState& light) const {
 }
 
 Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
-  const optics::PsdSignals signals = optics_.Trace(X_LG, SourceOf(light));
+  return SpotsOf(optics_.Trace(X_LG, SourceOf(light)), X_LG, light);
+}
+
+std::vector<Spots> Light::Trace(const std::vector<Pose>& X_LG, const std::vector<LightState>& lights) const {
+  std::vector<optics::SourceState> sources;
+  sources.reserve(lights.size());
+  for (const LightState& light : lights) sources.push_back(SourceOf(light));
+  std::vector<Spots> spots;
+  spots.reserve(lights.size());
+  const std::vector<optics::PsdSignals> signals = optics_.Trace(X_LG, sources);
+  for (std::size_t k = 0; k < signals.size(); ++k) spots.push_back(SpotsOf(signals[k], X_LG[k], lights[k]));
+  return spots;
+}
+
+Spots Light::SpotsOf(const optics::PsdSignals& signals, const Pose& X_LG, const LightState& light) const {
   const std::array<const optics::PsdSignal*, 2> psd = {&signals.a, &signals.b};
   Spots spots;
   for (std::size_t p = 0; p < 2; ++p) {
@@ -217,16 +231,15 @@ Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
     const ReadingStatus status = dark ? ReadingStatus::kNoLight : StatusOf(psd[p]->status);
     if (spots.status == ReadingStatus::kOk) spots.status = status;
   }
-  if (light.above_K != 0.0) Warm(X_LG, light, spots);
+  if (light.above_K != 0.0) Warm(signals, X_LG, light, spots);
   return spots;
 }
 
 /// Moves the spots to where they are with the lengths as they have grown.
-void Light::Warm(const Pose& X_LG, const LightState& light, Spots& spots) const {
+void Light::Warm(const optics::PsdSignals& cold, const Pose& X_LG, const LightState& light, Spots& spots) const {
   for (std::size_t p = 0; p < 2; ++p) spots.uv_m[2 * p + 1] -= post_growth_m_K_[p] * light.above_K;
   if (!warm_optics_) return;
-  const optics::PsdSignals cold = optics_.Trace(X_LG, SourceOf(light)),
-                           warm = warm_optics_->Trace(X_LG, SourceOf(light));
+  const optics::PsdSignals warm = warm_optics_->Trace(X_LG, SourceOf(light));
   const double share = light.above_K / kWarm_K;
   spots.uv_m[0] += share * (warm.a.u_m - cold.a.u_m);
   spots.uv_m[1] += share * (warm.a.v_m - cold.a.v_m);

@@ -31,6 +31,8 @@ class Light {
   LightState Nominal(double temperature_K) const;
 
   Spots Trace(const Pose& X_LG, const LightState& light) const;
+  /// The same for many readings, as many lights as poses: the rays of all go together.
+  std::vector<Spots> Trace(const std::vector<Pose>& X_LG, const std::vector<LightState>& lights) const;
 
   /// Rays that Embree has been asked to trace so far.
   std::uint64_t rays() const { return optics_.rays_traced(); }
@@ -40,7 +42,8 @@ class Light {
 
  private:
   optics::SourceState SourceOf(const LightState& light) const;
-  void Warm(const Pose& X_LG, const LightState& light, Spots& spots) const;
+  void Warm(const optics::PsdSignals& cold, const Pose& X_LG, const LightState& light, Spots& spots) const;
+  Spots SpotsOf(const optics::PsdSignals& signals, const Pose& X_LG, const LightState& light) const;
 
   LaserSettings laser_;
   double low_light_fraction_;
