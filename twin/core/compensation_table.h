@@ -31,7 +31,7 @@ void RequireOneTurn(const CompensationTable& table, const std::string& where);
 /// @throws InputError with file:line for a missing column, a field that is no number or entries that are no turn.
 CompensationTable ReadCompensationTable(const std::string& path);
 
-/// The same format, to the same bits.
+/// The same format, with as many digits as the numbers have.
 /// @param comments  Lines without their #.
 std::string CompensationCsv(const CompensationTable& table, const std::vector<std::string>& comments);
 
