@@ -31,7 +31,7 @@ class HobWorld {
   void TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after);
   CounterSample SampleAt(const mechanics::GearTrainState& at, Time now);
   bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && now_ >= at_rest_; }
-  double Interferometer_rad(const mechanics::GearTrainState& at);
+  double Interferometer_rad(const mechanics::GearTrainState& at, Time now);
 
   HobPath path_;
   std::unique_ptr<mechanics::GearTrain> train_;
