@@ -45,6 +45,16 @@ TableErrors AnyErrors(Random& random) {
   return errors;
 }
 
+CompensationTable AnyCompensation(Random& random) {
+  CompensationTable compensation;
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 12; ++i) {
+    compensation.position_rad.push_back(0.5 * i + 0.01 * std::abs(normal(random)));
+    compensation.correction_rad.push_back(1e-5 * normal(random));
+  }
+  return compensation;
+}
+
 /// Gives every place a random value that the key allows: one overload a type.
 struct Randomise {
   const ScenarioKey& key;
@@ -58,7 +68,7 @@ struct Randomise {
   void operator()(std::string* field) const {
     if (!key.choices.empty() && key.name != "bench") *field = key.choices[random() % key.choices.size()];
     if (key.name == "title") *field = "a \"b\" \\ c\n\t\x01 \xC3\xA9 # [x] = 1";
-    if (key.name.ends_with("_file") && key.name != "errors_file") *field = file;
+    if (key.name.ends_with("_file") && key.name != "errors_file" && key.name != "compensation_file") *field = file;
   }
   void operator()(std::span<double> field) const {
     for (double& entry : field) (*this)(&entry);
@@ -88,6 +98,7 @@ struct Randomise {
                         AnyNumber({-1e-4, 1e-4}, 1, random), AnyNumber({-7, 7}, 1, random)});
   }
   void operator()(std::optional<TableErrors>* field) const { *field = AnyErrors(random); }
+  void operator()(std::optional<CompensationTable>* field) const { *field = AnyCompensation(random); }
   void operator()(const RecordList& list) const {
     list.start_anew(3);
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -121,6 +132,11 @@ struct Bits {
     if (!field->has_value()) return;
     Add((*field)->position_rad);
     for (const auto& column : (*field)->value) Add(column);
+  }
+  void operator()(const std::optional<CompensationTable>* field) {
+    if (!field->has_value()) return;
+    Add((*field)->position_rad);
+    Add((*field)->correction_rad);
   }
   void operator()(const RecordList& list) {
     words.push_back(list.size());
@@ -279,9 +295,11 @@ TEST(WriteScenario, WritesEveryKeyOfTheDescription) {
   scenario.bench = kRotaryBench;
   RotaryOf(scenario).target.errors = RotaryOf(scenario).reference.errors =
       TableErrors{{0.0}, {{{0}, {0}, {0}, {0}, {0}, {0}}}};
+  RotaryOf(scenario).target.compensation = RotaryOf(scenario).reference.compensation =
+      CompensationTable{{0.0}, {0.0}};
   const std::string text = "\n" + WriteScenario(scenario);
   for (const ScenarioKey& key : KeysOf(scenario)) {
-    const bool has_table = key.name == "errors";
+    const bool has_table = key.name == "errors" || key.name == "compensation";
     EXPECT_THAT(text, testing::HasSubstr(has_table ? "\n[" + key.Path() + "]\n" : "\n" + key.Name() + " = "));
   }
 }

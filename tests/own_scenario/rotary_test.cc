@@ -51,7 +51,9 @@ std::vector<OwnKey> Table(const std::string& table) {
       Change(table + ".move_time_s", "2.0"),
       Change(table + ".settle_s", "1.5"),
       Change(table + ".random.orders", "5"),
-      Change(table + ".errors", "{position_deg=[0.0, 90.0, 180.0, 270.0], ez_arcsec=[0.0, 20.0, -5.0, 8.0]}")};
+      Change(table + ".errors", "{position_deg=[0.0, 90.0, 180.0, 270.0], ez_arcsec=[0.0, 20.0, -5.0, 8.0]}"),
+      Change(table + ".compensation",
+             "{position_deg=[0.0, 90.0, 180.0, 270.0], correction_arcsec=[0.0, 20.0, -5.0, 8.0]}")};
   for (const char* component : {"ex_arcsec", "ey_arcsec", "ez_arcsec", "dx_um", "dy_um", "dz_um"}) {
     keys.push_back(Change(table + ".random." + component, "6.0"));
     keys.push_back(Change(table + ".seating." + component, "5.0"));
@@ -163,6 +165,8 @@ std::vector<OwnKey> RotaryKeys() {
                                         {"environment.temperature_file", {}, "needs a file"},
                                         {"target.errors_file", {}, "its content is in target.errors"},
                                         {"reference.errors_file", {}, "its content is in reference.errors"},
+                                        {"target.compensation_file", {}, "its content is in target.compensation"},
+                                        {"reference.compensation_file", {}, "likewise"},
                                         {"adc.fifo_samples", {}, "a FIFO that runs full ends the run"},
                                         {"adc.drain_rate_kHz", {}, "matters only to a FIFO that runs full"}};
   keys.insert(keys.end(), left_out.begin(), left_out.end());

@@ -80,6 +80,9 @@ const std::vector<test::OwnKey>& Keys() {
           "turntable_procedure.phases=[\"full_circle\", \"verification\"]",
           "turntable_procedure.verification_positions=30"}},
     };
+    all.push_back({"turntable.compensation_file", {}, "its content is in turntable.compensation"});
+    all.push_back({"turntable.compensation",
+                   {"turntable.compensation={position_deg=[0, 90, 180, 270], correction_arcsec=[0, 20, -5, 8]}"}});
     for (const std::string table : {"turntable", "multitooth"}) {
       const auto add = [&](const std::string& name, const std::vector<std::string>& settings,
                            const std::string& reason = {}) {

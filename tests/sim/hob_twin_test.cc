@@ -78,6 +78,34 @@ TEST(HobTwin, InterferometerSeesTheMachineAndNotTheEncoder) {
         << "the encoder's 6 arcsec move the angle, 3 x 7 arcsec x 3e-5";
 }
 
+TEST(HobTwin, InterferometerHasErrorsOfItsOwn) {
+  Scenario s = QuietMachine();
+  HobOf(s).transmission.harmonics = {{Component::kEz, 3.0, 7.0 * arcsec, 0.5}};
+  const auto clean = HobReadings(s);
+  InterferometerSettings& i = HobOf(s).interferometer;
+  const InterferometerSettings ideal = i;
+  const auto shown = [&](std::size_t k) { return HobReadings(s).at(k).interferometer_rad; };
+  constexpr std::size_t kLate = 300;
+  const double deviation_rad = clean.at(kLate).interferometer_rad;
+  ASSERT_GT(std::abs(deviation_rad), 1.0 * arcsec);
+
+  i.misalignment_rad = 0.1;  // it sees the way along its beam
+  EXPECT_NEAR(shown(kLate), deviation_rad * std::cos(0.1), 1e-12);
+  i = ideal;
+  i.arm_error_m = 0.01 * i.arm_m;  // a longer arm moves its reflector more
+  EXPECT_NEAR(shown(kLate), deviation_rad * 1.01, 1e-12);
+  i = ideal;
+  i.calibrator = {{Component::kEz, 2.0, 1.5 * arcsec, 0.7}};
+  EXPECT_NEAR(shown(kLate), deviation_rad + 1.5 * arcsec * std::cos(2.0 * clean.at(kLate).measured_rad + 0.7),
+              1e-3 * arcsec)
+      << "the table is off its encoder's angle by arcseconds";
+  i = ideal;
+  i.dead_path_m = 0.3;  // in air that changes by 6 ppm an hour
+  i.index_drift_per_h = 6e-6;
+  const double hours = ToSeconds(clean.at(kLate).time) / 3600.0;
+  EXPECT_NEAR(shown(kLate), deviation_rad * (1.0 + 6e-6 * hours) + 0.3 / i.arm_m * 6e-6 * hours, 1e-12);
+}
+
 TEST(HobTwin, InterferometerSeesWhatTheTableDoesAndNotWhatItsCountersGetWrong) {
   const Scenario s = QuietMachine();
   const auto clean = HobReadings(s);

@@ -12,6 +12,7 @@ void AddServe(CLI::App& app);
 void AddExport(CLI::App& app);
 void AddImport(CLI::App& app);
 void AddSeparate(CLI::App& app);
+void AddCompensate(CLI::App& app);
 void AddDiagnose(CLI::App& app);
 void AddScore(CLI::App& app);
 void AddHelp(CLI::App& app);

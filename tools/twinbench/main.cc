@@ -62,8 +62,8 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(Complaint);
   using namespace twinbench::tools;
-  for (const auto add :
-       {AddRun, AddMeasure, AddServe, AddExport, AddImport, AddSeparate, AddDiagnose, AddScore, AddHelp})
+  for (const auto add : {AddRun, AddMeasure, AddServe, AddExport, AddImport, AddSeparate, AddCompensate,
+                         AddDiagnose, AddScore, AddHelp})
     add(app);
   try {
     app.parse(argc, argv);

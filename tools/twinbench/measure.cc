@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/measure_machine.h"
@@ -73,7 +74,8 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
 }
 
 void Measure(const MeasureOptions& o) {
-  const Scenario scenario = LoadScenario(o.scenario, o.overrides);
+  Scenario scenario = LoadScenario(o.scenario, o.overrides);
+  for (const std::string& table : o.compensations) CommandCompensation(scenario, table);
   if (!BenchOf(scenario).has_controllers)
     throw InputError(o.scenario, "no controllers for the bench " + scenario.bench,
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
@@ -101,6 +103,10 @@ void AddMeasure(CLI::App& app) {
       ->required();
   command->add_option("-o,--output", options->folder, "folder of the run, made by the command");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--compensation", options->compensations,
+                   "target=FILE.csv: corrections that table is commanded with")
       ->allow_extra_args(false);
   command->add_flag("--resume", options->resume, "go on behind the last reading that is kept");
   command->add_flag("--rehearse", options->rehearse,

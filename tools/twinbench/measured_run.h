@@ -11,6 +11,7 @@ namespace twinbench::tools {
 struct MeasureOptions {
   std::string scenario, bench, folder;
   std::vector<std::string> overrides;
+  std::vector<std::string> compensations;  // "target=table.csv"
   bool resume = false, rehearse = false, rehearse_only = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/twin_run.h"
@@ -18,8 +19,9 @@ struct RunOptions {
   bool noise_free = false;
   bool images = false;
   std::string fidelity;
-  std::vector<std::string> errors;     // "target=T.csv"
-  std::vector<std::string> overrides;  // "procedure.positions=12"
+  std::vector<std::string> errors;         // "target=T.csv"
+  std::vector<std::string> overrides;      // "procedure.positions=12"
+  std::vector<std::string> compensations;  // "target=table.csv"
 };
 
 /// The errors of a file take the place of every repeatable error the scenario gives that table.
@@ -51,6 +53,7 @@ Scenario ScenarioOf(const RunOptions& options) {
   if (options.noise_free) overrides.push_back("noise_free=true");
   Scenario scenario = LoadScenario(options.scenario, overrides);
   for (const std::string& errors : options.errors) ReplaceErrors(scenario, errors);
+  for (const std::string& table : options.compensations) CommandCompensation(scenario, table);
   return scenario;
 }
 
@@ -76,6 +79,10 @@ void AddRun(CLI::App& app) {
       ->add_option("--errors", options->errors, "target=FILE.csv or reference=FILE.csv: that table's true errors")
       ->allow_extra_args(false);
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--compensation", options->compensations,
+                   "target=FILE.csv: corrections that table is commanded with")
       ->allow_extra_args(false);
   command->add_flag("--images", options->images, "write the irradiance on the PSDs as OpenEXR");
   command->callback([options] { Run(*options); });

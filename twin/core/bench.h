@@ -18,6 +18,9 @@ enum class Estimator;
 namespace model {
 class Follow;
 }
+namespace separate {
+struct IndexErrors;
+}
 namespace report {
 struct Evaluation;
 struct ScoredRun;
@@ -69,6 +72,10 @@ struct Bench {
   /// A run of the twin against its truth.json. Throws InputError if there is nothing to compare.
   report::ScoredRun (*score)(const Scenario&, const std::vector<Reading>&, const nlohmann::json& truth,
                              Estimator) = nullptr;
+
+  /// The index errors of the table that a compensation can be commanded to, where they were read. Null: the bench
+  /// has no such table. Throws InputError if the readings show none.
+  separate::IndexErrors (*index_errors)(const Scenario&, const std::vector<Reading>&) = nullptr;
 
   diagnose::DiagnosisRun (*diagnose)(const std::vector<Reading>&, const Scenario&,
                                      const diagnose::DiagnoseOptions&) = nullptr;

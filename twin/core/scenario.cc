@@ -369,24 +369,27 @@ std::string NamedFile(const std::string& where, const std::string& key, const st
                    "a readable file, named from the scenario's folder");
 }
 
-/// Moves the content of a table's errors_file to its `errors`. Where both are given the later source counts.
-void LoadErrors(const ScenarioText& text, const std::string& table, const std::string& folder, std::string& name,
-                std::optional<TableErrors>& errors) {
+/// Moves the content of the file that `content`_file names to `content`. Where both are given the later source
+/// counts.
+/// @param content  "target.errors"
+template <class Content>
+void LoadContent(const ScenarioText& text, const std::string& content, const std::string& folder, std::string& name,
+                 Content (*read)(const std::string&), std::optional<Content>& place) {
   if (name.empty()) return;
-  const std::string key = table + ".errors_file";
-  const auto block = text.Find(table + ".errors");
+  const std::string key = content + "_file";
+  const auto block = text.Find(content);
   const auto file = text.Find(key);
   if (block && &block->source() == &file->source())
-    throw InputError(file->Where(), fmt::format("{} is given beside a table {}.errors", key, table), "one of them");
+    throw InputError(file->Where(), fmt::format("{} is given beside a table {}", key, content), "one of them");
   const bool file_is_later = !block || &file->source() > &block->source();
-  if (file_is_later) errors = ReadTableErrors(NamedFile(file->Where(), key, folder, name));
+  if (file_is_later) place = read(NamedFile(file->Where(), key, folder, name));
   name.clear();
 }
 
 /// Where the text of a key is.
 std::string& FileNameAt(const std::vector<ScenarioKey>& keys, const std::string& path) {
   const auto key = std::ranges::find(keys, path, &ScenarioKey::Path);
-  Require(key != keys.end(), "a table with errors names no errors_file");
+  Require(key != keys.end(), "content of a table has no file that could name it");
   return *std::get<std::string*>(key->field);
 }
 
@@ -397,7 +400,10 @@ void LoadFiles(const ScenarioText& text, const std::string& folder, const std::v
       if (!file.empty()) file = NamedFile(text.Where(key.Path(), text.name() + ":1"), key.Path(), folder, file);
     }
     if (auto* const* errors = std::get_if<std::optional<TableErrors>*>(&key.field))
-      LoadErrors(text, key.table, folder, FileNameAt(keys, key.table + ".errors_file"), **errors);
+      LoadContent(text, key.Path(), folder, FileNameAt(keys, key.Path() + "_file"), ReadTableErrors, **errors);
+    if (auto* const* compensation = std::get_if<std::optional<CompensationTable>*>(&key.field))
+      LoadContent(text, key.Path(), folder, FileNameAt(keys, key.Path() + "_file"), ReadCompensationTable,
+                  **compensation);
   }
 }
 

@@ -41,6 +41,7 @@ struct DefaultText {
   }
   std::string operator()(const std::vector<HarmonicSettings>*) const { return "[]"; }
   std::string operator()(const std::optional<TableErrors>*) const { return "none"; }
+  std::string operator()(const std::optional<CompensationTable>*) const { return "none"; }
   std::string operator()(const RecordList& list) const {
     std::string text;
     for (std::size_t i = 0; i < list.size(); ++i) {

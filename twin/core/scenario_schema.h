@@ -41,9 +41,10 @@ struct RecordList {
 };
 
 /// Where a value of a scenario lives. A span is a list of fixed length, a vector one of at least one entry.
-using Field = std::variant<double*, int*, std::uint64_t*, bool*, std::string*, std::span<double>,
-                           std::vector<double>*, std::vector<int>*, std::vector<std::string>*,
-                           std::vector<HarmonicSettings>*, std::optional<TableErrors>*, RecordList>;
+using Field =
+    std::variant<double*, int*, std::uint64_t*, bool*, std::string*, std::span<double>, std::vector<double>*,
+                 std::vector<int>*, std::vector<std::string>*, std::vector<HarmonicSettings>*,
+                 std::optional<TableErrors>*, std::optional<CompensationTable>*, RecordList>;
 
 /// One key of the file format, bound to the scenario that it was asked for.
 struct ScenarioKey {

@@ -124,6 +124,19 @@ TableErrors ReadErrors(const TomlValue& table, const std::string& key) {
   return errors;
 }
 
+CompensationTable ReadCompensation(const TomlValue& table, const std::string& key) {
+  const std::string form = fmt::format("a table of {} and {}", kCompensationPosition, kCompensationCorrection);
+  if (!table.node().is_table()) Refuse(table, key, form);
+  RefuseUnknown(table, key, CompensationKeys(key));
+  const ErrorColumn correction{kCompensationCorrection, units::arcsec};
+  for (const char* column : {kCompensationPosition, kCompensationCorrection}) Demand(table, column, key, form);
+  CompensationTable compensation;
+  compensation.position_rad = ReadErrorColumn(table, key, PositionColumn(), 0);
+  compensation.correction_rad = ReadErrorColumn(table, key, correction, compensation.position_rad.size());
+  RequireOneTurn(compensation, table.Where());
+  return compensation;
+}
+
 /// Reads a value into the place that a key is bound to: one overload a type.
 struct FieldReader {
   const ScenarioKey& key;
@@ -158,6 +171,7 @@ struct FieldReader {
   }
   void operator()(std::vector<HarmonicSettings>* field) const { *field = ReadHarmonics(value, key.Path()); }
   void operator()(std::optional<TableErrors>* field) const { *field = ReadErrors(value, key.Path()); }
+  void operator()(std::optional<CompensationTable>* field) const { *field = ReadCompensation(value, key.Path()); }
   void operator()(const RecordList& list) const;
 };
 
@@ -210,6 +224,7 @@ struct FieldText {
     return fmt::format("a list of {}", kHarmonicForm);
   }
   std::string operator()(const std::optional<TableErrors>*) const { return "a table of lists"; }
+  std::string operator()(const std::optional<CompensationTable>*) const { return "a table of two lists"; }
   std::string operator()(const RecordList& list) const {
     std::string names;
     for (const ScenarioKey& inner : list.example_keys())
@@ -281,6 +296,10 @@ std::vector<KnownKey> ErrorsKeys(const std::string& table) {
     keys.push_back({table, kComponentNames[static_cast<std::size_t>(c)], angle ? "arcsec" : "um"});
   }
   return keys;
+}
+
+std::vector<KnownKey> CompensationKeys(const std::string& table) {
+  return {{table, "position", "deg"}, {table, "correction", "arcsec"}};
 }
 
 std::string Alternatives(const std::vector<std::string>& choices) {

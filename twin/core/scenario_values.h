@@ -31,9 +31,10 @@ void ReadKey(const ScenarioKey& key, const TomlValue& value);
 /// What a key takes, for messages and help: "a number of nm from 200 to 2000".
 std::string Expected(const ScenarioKey& key);
 
-/// The keys inside one entry of `harmonics`, and inside a table of errors.
+/// The keys inside one entry of `harmonics`, and inside a table of errors or of a compensation.
 std::vector<KnownKey> HarmonicKeys();
 std::vector<KnownKey> ErrorsKeys(const std::string& table);
+std::vector<KnownKey> CompensationKeys(const std::string& table);
 
 /// `"a", "b" or "c"`
 std::string Alternatives(const std::vector<std::string>& choices);

@@ -74,7 +74,8 @@ struct ValuePrinter {
     for (const HarmonicSettings& harmonic : *field) text += PrintHarmonic(harmonic);
     return text.empty() ? "[]" : "[\n" + text + "]";
   }
-  std::string operator()(const std::optional<TableErrors>*) const { return ""; }  // has a table of its own
+  std::string operator()(const std::optional<TableErrors>*) const { return ""; }        // has a table of its own
+  std::string operator()(const std::optional<CompensationTable>*) const { return ""; }  // likewise
   std::string operator()(const RecordList& list) const {
     std::string text;
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -88,21 +89,29 @@ struct ValuePrinter {
   }
 };
 
+std::string PrintColumn(const ErrorColumn& column, const std::vector<double>& values) {
+  return fmt::format("{} = {}\n", column.name, Floats(values, column.to_SI));
+}
+
 std::string PrintErrors(const std::string& table, const TableErrors& errors) {
-  const auto line = [](const ErrorColumn& column, const std::vector<double>& values) {
-    return fmt::format("{} = {}\n", column.name, Floats(values, column.to_SI));
-  };
-  std::string text = fmt::format("\n[{}]\n{}", table, line(PositionColumn(), errors.position_rad));
+  std::string text = fmt::format("\n[{}]\n{}", table, PrintColumn(PositionColumn(), errors.position_rad));
   for (int c = 0; c < kComponents; ++c) {
     const auto component = static_cast<Component>(c);
-    text += line(ColumnOf(component), errors[component]);
+    text += PrintColumn(ColumnOf(component), errors[component]);
   }
   return text;
+}
+
+std::string PrintCompensation(const std::string& table, const CompensationTable& compensation) {
+  return fmt::format("\n[{}]\n{}{}", table, PrintColumn(PositionColumn(), compensation.position_rad),
+                     PrintColumn({kCompensationCorrection, units::arcsec}, compensation.correction_rad));
 }
 
 std::string PrintKey(const ScenarioKey& key) {
   if (const auto* const* errors = std::get_if<std::optional<TableErrors>*>(&key.field))
     return (*errors)->has_value() ? PrintErrors(key.Path(), ***errors) : "";
+  if (const auto* const* compensation = std::get_if<std::optional<CompensationTable>*>(&key.field))
+    return (*compensation)->has_value() ? PrintCompensation(key.Path(), ***compensation) : "";
   return fmt::format("{} = {}\n", key.Name(), std::visit(ValuePrinter{key}, key.field));
 }
 
@@ -164,7 +173,8 @@ std::string WriteScenario(const Scenario& scenario) {
   Scenario copy = scenario;  // the description binds to a scenario that may be changed
   std::string text, table;
   for (const ScenarioKey& key : KeysOf(copy)) {
-    const bool own_table = std::holds_alternative<std::optional<TableErrors>*>(key.field);
+    const bool own_table = std::holds_alternative<std::optional<TableErrors>*>(key.field) ||
+                           std::holds_alternative<std::optional<CompensationTable>*>(key.field);
     if (!own_table && key.table != table) text += fmt::format("\n[{}]\n", key.table);
     if (!own_table) table = key.table;
     text += PrintKey(key);

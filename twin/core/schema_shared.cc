@@ -25,12 +25,15 @@ void AddMotion(Table& t, TableSettings& s) {
 
 }  // namespace
 
-void AddTable(Keys& keys, const std::string& table, const std::string& frame, TableSettings& s) {
+void AddTable(Keys& keys, const std::string& table, const std::string& frame, TableSettings& s, bool is_driven) {
   Table t(keys, table);
   t.Add("harmonics", kPure, {}, &s.harmonics,
         "systematic errors " + frame + ", amplitude * cos(order * angle + phase)");
   t.Text("errors_file", &s.errors_file, {}, "CSV of the errors " + frame + ", from the scenario's folder");
   AddMotion(t, s);
+  if (is_driven)
+    t.Text("compensation_file", &s.compensation_file, {},
+           "CSV of position_deg, correction_arcsec: added to the angles that the table is commanded to");
   AddComponents(keys, table + ".random", s.random_rms, "rms of random smooth errors");
   Table random(keys, table + ".random");
   random.Add("orders", kPure, {1, 1000}, &s.random_orders, "they have harmonics 1..orders, falling as 1/order");
@@ -38,6 +41,10 @@ void AddTable(Keys& keys, const std::string& table, const std::string& frame, Ta
   AddComponents(keys, table + ".repeatability", s.repeatability_sd, "scatter of the pose at every stop");
   Table(keys, table)
       .Add("errors", kPure, {}, &s.errors, "the content of errors_file: position_deg, ex_arcsec, ...");
+  if (is_driven)
+    Table(keys, table)
+        .Add("compensation", kPure, {}, &s.compensation,
+             "the content of compensation_file: position_deg, correction_arcsec");
 }
 
 void AddEnvironment(Keys& keys, EnvironmentSettings& s) {

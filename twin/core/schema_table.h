@@ -85,8 +85,10 @@ std::span<double> List(Eigen::Matrix<double, kRows, 1>& vector) {
 }
 
 /// Errors and motion of a rotary table.
-/// @param frame  In which the table's errors are given.
-void AddTable(Keys& keys, const std::string& table, const std::string& frame, TableSettings& s);
+/// @param frame      In which the table's errors are given.
+/// @param is_driven  To any angle, so that a compensation can be commanded; not by whole teeth.
+void AddTable(Keys& keys, const std::string& table, const std::string& frame, TableSettings& s,
+              bool is_driven = true);
 void AddEnvironment(Keys& keys, EnvironmentSettings& s);
 void AddAutocollimator(Keys& keys, AutocollimatorSettings& s);
 

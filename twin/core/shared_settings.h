@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/core/compensation_table.h"
 #include "twin/core/harmonic_settings.h"
 #include "twin/core/table_errors.h"
 #include "twin/core/units.h"
@@ -53,8 +54,10 @@ struct TableSettings {  // [target], [reference]; [turntable], [multitooth]
   double half_frequency_radial_m = 0.0;
   double backlash_rad = 0.0;  // full width, of the servo's encoder against the rotor
   double speed_rad_s = 30.0 * units::deg;
-  double move_time_s = 0.6;  // of one step (quintic profile); longer moves keep the speed
-  double settle_s = 0.4;     // in-position window after the profile
+  double move_time_s = 0.6;                       // of one step (quintic profile); longer moves keep the speed
+  double settle_s = 0.4;                          // in-position window after the profile
+  std::string compensation_file;                  // as errors_file, moved to `compensation`
+  std::optional<CompensationTable> compensation;  // added to the angles that the table is commanded to
 };
 
 struct MechanicsSettings {             // [mechanics]

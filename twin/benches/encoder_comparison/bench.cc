@@ -21,6 +21,7 @@ const Bench& Whole() {
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;
+    b.index_errors = IndexErrorsOf;
     b.score = ScoreRun;
     b.diagnose = Diagnose;
     b.linear_run = Linear;

@@ -139,6 +139,7 @@ nlohmann::json ResultsOf(const HobAnalysis& a) {
   if (!a.encoder_by_interferometer.orders.empty()) {
     json["table_encoder_by_interferometer"] = ToJson(a.encoder_by_interferometer);
     json["table_encoder_against_interferometer"] = ToJson(a.encoder_against_interferometer);
+    json["table_encoder_against_one_place"] = ToJson(a.encoder_against_one_place);
   }
   return json;
 }
@@ -170,12 +171,12 @@ std::string LinesText(const DirectionResult& result) {
   return text + " [arcsec]\n";
 }
 
-std::string ComparisonText(const std::vector<OrderComparison>& comparisons) {
+std::string ComparisonText(const char* with, const std::vector<OrderComparison>& comparisons) {
   std::string text;
   constexpr double kWorthTelling = 5.0;  // of less than so many uncertainties the phase says nothing
   for (const OrderComparison& c : comparisons) {
     if (!(Amplitude(c.reference) > kWorthTelling * AmplitudeUncertainty(c.estimated))) continue;
-    text += fmt::format("table encoder against the interferometer, order {}: {:+.2f} arcsec, {:+.3f} rad\n",
+    text += fmt::format("table encoder against the interferometer{}, order {}: {:+.2f} arcsec, {:+.3f} rad\n", with,
                         c.order, c.amplitude_difference_rad / units::arcsec, c.phase_difference_rad);
   }
   return text;
@@ -199,7 +200,8 @@ std::string SummaryOf(const HobAnalysis& a) {
   if (published) text += OrderText("table encoder, order 1, two positions", a.two_positions->encoder);
   if (!published && separated) text += OrderText("table encoder, order 1", a.encoder.At(1));
   for (const DirectionResult& direction : a.directions) text += LinesText(direction);
-  return text + ComparisonText(a.encoder_against_interferometer) + LostText(a);
+  return text + ComparisonText("", a.encoder_against_interferometer) +
+         ComparisonText(" with the first head alone", a.encoder_against_one_place) + LostText(a);
 }
 
 // --- against the truth ---

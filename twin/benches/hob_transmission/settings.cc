@@ -50,6 +50,14 @@ void AddInterferometer(Keys& keys, InterferometerSettings& s) {
   Table t(keys, "interferometer");
   t.Flag("used", s.used, "the transmission error is compared with it");
   t.Add("noise", kArcsec, UpTo(3600), &s.noise_rad, "of one reading, standard deviation");
+  t.Add("misalignment", kMrad, Within(200), &s.misalignment_rad,
+        "of the beam against the reflector's way: it sees cos of the deviation");
+  t.Add("arm", kMm, Positive(1000), &s.arm_m, "between the two paths of its angle optics");
+  t.Add("arm_error", kUm, Within(1000), &s.arm_error_m, "by which the real arm is longer");
+  t.Add("dead_path", kMm, Within(10000), &s.dead_path_m, "by which one path is longer at zero");
+  t.Add("index_drift", {"ppm_h", 1e-6}, Within(100), &s.index_drift_per_h, "of the air's refractive index");
+  t.Add("calibrator", kPure, {}, &s.calibrator,
+        "error of the calibrator on the table: amplitude * cos(order * table + phase)");
 }
 
 void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
@@ -99,6 +107,7 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   CheckAngles(text, "transmission.harmonics", own.transmission.harmonics);
   CheckAngles(text, "table_encoder.graduation", own.table_encoder.graduation);
   CheckAngles(text, "hob_encoder.graduation", own.hob_encoder.graduation);
+  CheckAngles(text, "interferometer.calibrator", own.interferometer.calibrator);
   if (own.table_encoder.lines % own.hob_procedure.samples_per_turn != 0)
     throw InputError(Place(text, "hob_procedure.samples_per_turn"),
                      fmt::format("{} samples a turn", own.hob_procedure.samples_per_turn),

@@ -45,9 +45,17 @@ struct RingEncoderSettings {  // [table_encoder], [hob_encoder]
   double noise_rad = 0.0;                         // of one reading, white, standard deviation
 };
 
+/// Angle optics on a calibrator that turns back as the table turns: it sees the deviation alone, by the difference
+/// of two paths an arm apart.
 struct InterferometerSettings {  // [interferometer]
   bool used = true;
   double noise_rad = 0.02 * units::arcsec;
+  double misalignment_rad = 0.0;               // of the beam against the way of the reflector: cosine error
+  double arm_m = 30.0 * units::mm;             // between the two paths
+  double arm_error_m = 0.0;                    // the real arm is longer than the stated one by this
+  double dead_path_m = 0.0;                    // by which one path is longer when it is set to zero
+  double index_drift_per_h = 0.0;              // of the air's refractive index: 1e-6 a kelvin
+  std::vector<HarmonicSettings> calibrator{};  // its own error, by turns of the table
 };
 
 struct HobProcedureSettings {  // [hob_procedure]

@@ -23,6 +23,7 @@ const Bench& Whole() {
     b.is_pictured = true;
     b.has_controllers = true;
     b.evaluate = Evaluate;
+    b.index_errors = IndexErrorsOf;
     b.score = ScoreRun;
     b.diagnose = Diagnose;
     b.linear_run = Linear;

@@ -16,6 +16,7 @@ const Bench& Whole();  // constant
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator);
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
                            const nlohmann::json& truth, Estimator estimator);
+separate::IndexErrors IndexErrorsOf(const Scenario& scenario, const std::vector<Reading>& readings);
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options);
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);

@@ -1,5 +1,6 @@
 #include "twin/benches/turntable_autocollimator/bench.h"
 
+#include "twin/benches/turntable_autocollimator/estimators/index_errors.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
@@ -21,6 +22,7 @@ const Bench& Whole() {
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;
+    b.index_errors = separate::turntable::TurntableIndexErrors;
     b.score = ScoreRun;
     b.diagnose = Diagnose;
     b.linear_run = Linear;

@@ -52,7 +52,7 @@ class TurntableRun {
 
   /// Turntable at a tooth plus `offset_rad`, multi-tooth table back by the tooth; one reading.
   void Stop(Phase phase, int direction, int position, int tooth, double offset_rad) {
-    bench_.turntable.StartMove(tooth * tooth_rad() + offset_rad);
+    Send(tooth * tooth_rad() + offset_rad);
     bench_.multitooth.IndexTo(shift_ - tooth);
     bench_.turntable.WaitSettled();
     Reading stop;
@@ -66,11 +66,16 @@ class TurntableRun {
 
   void EndPass() { ++pass_; }
   void Turn(double angle_rad) {
-    bench_.turntable.StartMove(angle_rad);
+    Send(angle_rad);
     bench_.turntable.WaitSettled();
   }
 
  private:
+  /// The reading keeps the angle that is meant; the controller is told what brings the table there.
+  void Send(double angle_rad) {
+    bench_.turntable.StartMove(CommandedAngle_rad(TurntableOf(scenario_).turntable.compensation, angle_rad));
+  }
+
   void Take(Reading stop) {
     const std::vector<double>& dwells_s = settings().dwell_s;
     stop.dwell_s = dwells_s[static_cast<std::size_t>(dwell_.Uniform() * static_cast<double>(dwells_s.size()))];

@@ -14,11 +14,11 @@ namespace {
 
 using separate::turntable::AnalyseTurntable;
 using separate::turntable::AngleSeries;
-using separate::turntable::CompensationCheck;
 using separate::turntable::ErrorSize;
 using separate::turntable::HarmonicModel;
 using separate::turntable::IndexingSeparation;
 using separate::turntable::IndexingStatus;
+using separate::turntable::ModelCheck;
 using separate::turntable::PointStatus;
 using separate::turntable::PointwiseError;
 using separate::turntable::Roll;
@@ -71,7 +71,7 @@ nlohmann::json ToJson(const HarmonicModel& model) {
           {"u_unmodelled_arcsec", report::Arcsec(model.u_unmodelled_rad)}};
 }
 
-nlohmann::json ToJson(const CompensationCheck& check) {
+nlohmann::json ToJson(const ModelCheck& check) {
   nlohmann::json json = {{"before", ToJson(check.before)},
                          {"after", ToJson(check.after)},
                          {"expected_rms_arcsec", report::Arcsec(check.expected_rms_rad)}};
@@ -161,7 +161,7 @@ std::string SummaryOf(const TurntableAnalysis& a) {
   }
   if (a.model) text += fmt::format("harmonic model          orders 1 to {}\n", a.model->highest_order);
   if (a.check) {
-    text += SizeText("check, before", a.check->before) + SizeText("check, compensated", a.check->after);
+    text += SizeText("check, as read", a.check->before) + SizeText("check, less the model", a.check->after);
   }
   for (const std::string& note : a.separation->notes) text += fmt::format("note: {}\n", note);
   if (!a.not_separated.empty()) text += fmt::format("no model: {}\n", a.not_separated);
@@ -218,8 +218,7 @@ report::CurveScore CurveOf(const std::vector<PointwiseError>& pointwise, const n
   return curve;
 }
 
-report::CurveScore CurveOf(const HarmonicModel& model, const CompensationCheck& check,
-                           const nlohmann::json& table) {
+report::CurveScore CurveOf(const HarmonicModel& model, const ModelCheck& check, const nlohmann::json& table) {
   report::CurveScore curve{
       .name = "model at checks", .value = "ez_arcsec", .position = {}, .estimate = {}, .u = {}, .truth = {}};
   double mean = 0.0;

@@ -113,7 +113,7 @@ void AddKeys(Keys& keys, Scenario& s) {
   TurntableSettings& own = TurntableOf(s);
   AddTable(keys, "turntable", "in L", own.turntable);
   AddMultitooth(keys, own.multitooth);
-  AddTable(keys, "multitooth", "in its rotor frame", own.multitooth_table);
+  AddTable(keys, "multitooth", "in its rotor frame", own.multitooth_table, false);
   AddMotionOfTheTurntable(keys, own.mechanics);
   AddMirror(keys, own.mirror);
   AddAutocollimator(keys, own.autocollimator);

@@ -70,10 +70,12 @@ void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions
                 const std::vector<int>& orders, HobAnalysis& analysis) {
   analysis.encoder = EncoderSeries(*analysis.separation);
   if (!HasInterferometer(samples)) return;
-  analysis.encoder_by_interferometer =
-      EncoderByInterferometer(MeasurePositions(samples, options, Signal::kEncodersMinusInterferometer));
+  std::vector<PositionError> seen = MeasurePositions(samples, options, Signal::kEncodersMinusInterferometer);
+  analysis.encoder_by_interferometer = EncoderByInterferometer(seen);
   analysis.encoder_against_interferometer =
       CompareEncoder(*analysis.separation, analysis.encoder_by_interferometer, orders);
+  std::erase_if(seen, [first = samples.front().setup](const PositionError& p) { return p.setup != first; });
+  analysis.encoder_against_one_place = CompareEncoder(*analysis.separation, EncoderByInterferometer(seen), orders);
 }
 
 }  // namespace

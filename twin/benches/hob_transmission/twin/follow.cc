@@ -98,9 +98,9 @@ class HobFollow : public PointwiseFollow<HobExtra> {
     const double scale_rad = rings_.at(r.head_rad).Scale_rad(table_rad);
     const double table_shown_rad =
         encoders_.TableShown_rad(scale_rad, r.head_rad) + stop.added.table_encoder_rad + extra.table_encoder_rad;
-    return {
-        table_shown_rad - ratio * r.reference_rad,
-        path_.Interferometer_rad(table_rad, hob_rad) + stop.added.interferometer_rad + extra.interferometer_rad};
+    return {table_shown_rad - ratio * r.reference_rad, path_.Interferometer_rad(table_rad, hob_rad, r.time) +
+                                                           stop.added.interferometer_rad +
+                                                           extra.interferometer_rad};
   }
 
   HobPath path_;

@@ -1,6 +1,7 @@
 #include "twin/benches/hob_transmission/twin/path.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/sim/actual_bench.h"
@@ -49,7 +50,10 @@ HobPath::HobPath(const Scenario& nominal)
     : effects_(HobEffectsOf(nominal)),
       actual_(ActualBenchOf(nominal, effects_, SilenceHob)),
       train_(TrainOf(actual_, effects_)),
-      empirical_(actual_.empiricals, "transmission") {}
+      empirical_(actual_.empiricals, "transmission") {
+  for (const HarmonicSettings& h : HobOf(actual_).interferometer.calibrator)
+    calibrator_.push_back({h.order, h.amplitude, h.phase_rad});
+}
 
 mechanics::SignalState HobPath::HobSignals() const {
   mechanics::SignalState signals;
@@ -57,8 +61,17 @@ mechanics::SignalState HobPath::HobSignals() const {
   return signals;
 }
 
-double HobPath::Interferometer_rad(double table_rad, double hob_rad) const {
-  return HobOf(actual_).interferometer.used ? table_rad - HobOf(actual_).transmission.Ratio() * hob_rad : kNaN;
+double HobPath::Interferometer_rad(double table_rad, double hob_rad, Time now) const {
+  const InterferometerSettings& i = HobOf(actual_).interferometer;
+  if (!i.used) return kNaN;
+  const double deviation_rad = table_rad - HobOf(actual_).transmission.Ratio() * hob_rad +
+                               mechanics::Evaluate(calibrator_, table_rad).value_rad;
+  // Optical difference of the paths: arm * deviation along the beam, and the dead path in air that changes.
+  const double index_change = i.index_drift_per_h * ToSeconds(now) / 3600.0;
+  const double difference_m =
+      (i.arm_m + i.arm_error_m) * deviation_rad * std::cos(i.misalignment_rad) * (1.0 + index_change) +
+      i.dead_path_m * index_change;
+  return difference_m / i.arm_m;
 }
 
 void HobPath::Travel(double table_rad) {

@@ -22,8 +22,9 @@ class HobPath {
   const mechanics::GearTrainParameters& train() const { return train_; }
   mechanics::SignalState HobSignals() const;
 
-  /// What the interferometer sees; NaN without one.
-  double Interferometer_rad(double table_rad, double hob_rad) const;
+  /// What the interferometer shows of the table's deviation from the ratio, with its own cosine, arm, dead path,
+  /// air and calibrator; NaN without one.
+  double Interferometer_rad(double table_rad, double hob_rad, Time now) const;
 
   /// The table has come here without turning round.
   void Travel(double table_rad);
@@ -38,6 +39,7 @@ class HobPath {
   Scenario actual_;
   mechanics::GearTrainParameters train_;
   EmpiricalSignal empirical_;
+  std::vector<mechanics::AngleHarmonic> calibrator_;
 };
 
 }  // namespace twinbench::sim

@@ -71,9 +71,9 @@ void HobWorld::TakeSamples(const mechanics::GearTrainState& before, const mechan
   }
 }
 
-double HobWorld::Interferometer_rad(const mechanics::GearTrainState& at) {
+double HobWorld::Interferometer_rad(const mechanics::GearTrainState& at, Time now) {
   const double noise_rad = HobOf(actual()).interferometer.noise_rad;
-  return path_.Interferometer_rad(at.table_rad, at.hob_rad) +
+  return path_.Interferometer_rad(at.table_rad, at.hob_rad, now) +
          (HobOf(actual()).interferometer.used && noise_rad > 0.0 ? noise_rad * interferometer_noise_.Normal()
                                                                  : 0.0);
 }
@@ -82,7 +82,7 @@ CounterSample HobWorld::SampleAt(const mechanics::GearTrainState& at, Time now) 
   CounterSample sample = counters_.Count(at);
   sample.time = now;
   sample.velocity_rad_s = HobOf(actual()).transmission.Ratio() * hob_speed_rad_s_;
-  sample.interferometer_rad = Interferometer_rad(at);
+  sample.interferometer_rad = Interferometer_rad(at, now);
   path_.Travel(at.table_rad);
   path_.Disturb({sample.time, next_reading_++, at.table_rad, sample.velocity_rad_s}, sample);
   return sample;

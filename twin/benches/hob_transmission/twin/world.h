@@ -35,7 +35,7 @@ class HobWorld {
   CounterSample SampleAt(const mechanics::GearTrainState& at, Time now);
   bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && Now() >= at_rest_; }
   void Pass(Duration piece);
-  double Interferometer_rad(const mechanics::GearTrainState& at);
+  double Interferometer_rad(const mechanics::GearTrainState& at, Time now);
 
   EventQueue queue_;
   Schedule drive_{queue_, "drive"}, card_{queue_, "counters"}, fixture_{queue_, "fixture"};

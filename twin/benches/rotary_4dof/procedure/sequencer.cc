@@ -51,7 +51,18 @@ void Sequencer::NoteMounting(int setup, double clamp_rad, double reseat_rad) {
 
 void Sequencer::GoTo(double target_rad) {
   target_rad_ = target_rad;
-  MoveBoth(bench(), target_rad, shift_rad_ - target_rad, options_);
+  Send(bench(), target_rad);
+}
+
+Sequencer::Sent Sequencer::SentTo(double target_rad) const {
+  const RotarySettings& own = RotaryOf(scenario_);
+  return {CommandedAngle_rad(own.target.compensation, target_rad),
+          CommandedAngle_rad(own.reference.compensation, shift_rad_ - target_rad)};
+}
+
+void Sequencer::Send(RotaryBench& bench, double target_rad) {
+  const Sent sent = SentTo(target_rad);
+  MoveBoth(bench, sent.target_rad, sent.reference_rad, options_);
 }
 
 void Sequencer::Tilt(double yaw_rad, double tilt_rad) {
@@ -147,12 +158,13 @@ void Sequencer::ReturnToLastStop() {
     if (!table->State().referenced) table->Home();
   }
   const double at_rad = target_rad_, behind_rad = at_rad - last_.direction * settings().run_up_steps * step_rad();
-  const double off_rad = std::max(std::abs(bench.target.EncoderAngle_rad() - at_rad),
-                                  std::abs(bench.reference.EncoderAngle_rad() - (shift_rad_ - at_rad)));
+  const Sent sent = SentTo(at_rad);
+  const double off_rad = std::max(std::abs(bench.target.EncoderAngle_rad() - sent.target_rad),
+                                  std::abs(bench.reference.EncoderAngle_rad() - sent.reference_rad));
   const double near_rad = std::min(options_.target.in_position_rad, options_.reference.in_position_rad);
   if (!(off_rad <= near_rad)) {
-    MoveBoth(bench, behind_rad, shift_rad_ - behind_rad, options_);
-    MoveBoth(bench, at_rad, shift_rad_ - at_rad, options_);
+    Send(bench, behind_rad);
+    Send(bench, at_rad);
   }
   bench.goniometer.MoveTo(yaw_rad_, tilt_rad_);
 }

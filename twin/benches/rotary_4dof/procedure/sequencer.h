@@ -48,6 +48,12 @@ class Sequencer {
   void TakeAfter(Reading stop, double dwell_s, bool with_autocollimator);
 
  private:
+  /// What the controllers are told, so that the tables arrive where they should.
+  struct Sent {
+    double target_rad, reference_rad;
+  };
+  Sent SentTo(double target_rad) const;
+  void Send(RotaryBench& bench, double target_rad);
   bool quiet() const { return next_reading_ < state_.kept; }
   RotaryBench& bench() { return quiet() ? quiet_devices_ : live_devices_; }
   double DrawDwell_s();

@@ -72,7 +72,8 @@ class RecordedDrives {
   static constexpr double kPatience_s = 10.0;
 
   /// @return how long the move takes; 0 if there is nowhere to go.
-  double Start(Axis axis, double to_rad, const TableSettings& table) {
+  double Start(Axis axis, double angle_rad, const TableSettings& table) {
+    const double to_rad = CommandedAngle_rad(table.compensation, angle_rad);
     const double travel_rad = to_rad - plant_->CommandedEnd_rad(axis);
     if (travel_rad == 0.0) return 0.0;
     const double duration_s = Duration_s(table, travel_rad);

@@ -5,7 +5,7 @@
 
 #include "twin/benches/turntable_autocollimator/estimators/indexing.h"
 
-/// The indexing error as a continuous curve (eq. 6 of Guo et al. 2014), and its use as a compensation.
+/// The indexing error as a continuous curve (eq. 6 of Guo et al. 2014).
 namespace twinbench::separate::turntable {
 
 /// amplitude sin(order theta + phase).
@@ -34,8 +34,6 @@ struct HarmonicModel {
   /// The error at any angle. Its uncertainty has u_unmodelled in it, but nothing of orders that n positions cannot
   /// show: order n - k looks like order k there.
   CurvePoint At(double turntable_rad) const;
-  /// What to add to the commanded angle.
-  double Compensation_rad(double turntable_rad) const { return -At(turntable_rad).value_rad; }
 };
 
 /// Highest order that n positions determine, (n - 1) / 2.

@@ -78,8 +78,8 @@ void AddCheck(const std::vector<Reading>& readings, const Scenario& scenario, Tu
   if (stops.empty() || !analysis.model) return;
   const IndexingSeparation& separation = *analysis.separation;
   // The published way knows no roll; its check was done with instruments levelled with care.
-  analysis.check = CheckCompensation(*analysis.model, stops, separation.roll,
-                                     {separation.noise.u_x_rad, TurntableOf(scenario).multitooth.u_tooth_rad});
+  analysis.check = CheckModel(*analysis.model, stops, separation.roll,
+                              {separation.noise.u_x_rad, TurntableOf(scenario).multitooth.u_tooth_rad});
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "twin/benches/turntable_autocollimator/estimators/compensation.h"
 #include "twin/benches/turntable_autocollimator/estimators/equation_5.h"
+#include "twin/benches/turntable_autocollimator/estimators/model_check.h"
 #include "twin/core/estimator.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
@@ -24,7 +24,7 @@ struct TurntableAnalysis {
   std::vector<PointwiseError> pointwise;  // equation 5 on two set-ups of equal shift; empty if there are none
   std::optional<HarmonicModel> model;
   ErrorSize before;  // of the turntable at the positions
-  std::optional<CompensationCheck> check;
+  std::optional<ModelCheck> check;
   std::string not_separated;  // why there is no separation or no model
 };
 

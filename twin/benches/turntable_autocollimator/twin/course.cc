@@ -60,15 +60,19 @@ class CourseMaker {
     return stop;
   }
 
+  void Send(double angle_rad) {
+    axes_.StartMove(Axis::kTarget, CommandedAngle_rad(TurntableOf(actual_).turntable.compensation, angle_rad));
+  }
+
   void Turn(double angle_rad) {
     constexpr Duration kPatience = std::chrono::seconds(100);
-    axes_.StartMove(Axis::kTarget, angle_rad);
+    Send(angle_rad);
     axes_.Settles(Axis::kTarget, kPatience);
   }
 
   void GoTo(const Reading& r, bool new_pass) {
     if (new_pass) Turn(BeforePass_rad(r));
-    axes_.StartMove(Axis::kTarget, r.target_rad);
+    Send(r.target_rad);
     queue_.RunUntil(queue_.Now() + FromSeconds(TurntableOf(actual_).multitooth.index_time_s));
     Turn(r.target_rad);
   }

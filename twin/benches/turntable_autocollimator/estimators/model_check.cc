@@ -1,4 +1,4 @@
-#include "twin/benches/turntable_autocollimator/estimators/compensation.h"
+#include "twin/benches/turntable_autocollimator/estimators/model_check.h"
 
 #include <cmath>
 #include <map>
@@ -71,12 +71,12 @@ ErrorSize DescribeErrors(const Eigen::VectorXd& error_rad) {
           deviation_rad.abs().maxCoeff(), (e - e[0]).abs().maxCoeff()};
 }
 
-CompensationCheck CheckCompensation(const HarmonicModel& model, const std::vector<TurntableStop>& stops,
+ModelCheck CheckModel(const HarmonicModel& model, const std::vector<TurntableStop>& stops,
                                     const Roll& roll, const CheckUncertainty& u) {
   const std::vector<Checked> checked = Correct(model, stops, roll);
   const auto errors = MeansByPlace(checked, [](const Checked& c) { return c.error_rad; });
   const auto rests = MeansByPlace(checked, [](const Checked& c) { return c.error_rad - c.curve_rad; });
-  CompensationCheck check;
+  ModelCheck check;
   Mean variance_rad2;
   for (const auto& [place, mean] : errors) {
     check.position_rad.push_back(static_cast<double>(place) * 1e-6 * 2.0 * units::kPi);

@@ -19,8 +19,10 @@ struct ErrorSize {
 /// Sizes of errors in the order of the positions; NaN are left out, NaN without any.
 ErrorSize DescribeErrors(const Eigen::VectorXd& error_rad);
 
-/// What is left of the indexing error at check positions when the model is taken out.
-struct CompensationCheck {
+/// What is left of the indexing error at check positions when the model is taken out of the readings: the model's
+/// own test. Whether a table comes to where it should with a compensation at work only a measurement with it shows
+/// (separate/compensation.h).
+struct ModelCheck {
   std::vector<double> position_rad;  // distinct turntable angles, ascending
   Eigen::VectorXd error_rad;         // mean of their readings, corrected for roll, less the set-ups' means
   Eigen::VectorXd rest_rad;          // the same for error less model
@@ -37,9 +39,9 @@ struct CheckUncertainty {
 
 /// Compares a model with readings at any positions, which need no grid.
 ///
-/// @param stops  Check readings, taken without compensation. If it was at work, `error_rad` is the result itself.
+/// @param stops  Check readings, at positions that the model was not fitted to.
 /// @param roll   Of the crosshair, unchanged since; not taken out if it is not known.
-CompensationCheck CheckCompensation(const HarmonicModel& model, const std::vector<TurntableStop>& stops,
+ModelCheck CheckModel(const HarmonicModel& model, const std::vector<TurntableStop>& stops,
                                     const Roll& roll, const CheckUncertainty& u);
 
 }  // namespace twinbench::separate::turntable

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/turntable_run.h"
-#include "twin/benches/turntable_autocollimator/estimators/compensation.h"
+#include "twin/benches/turntable_autocollimator/estimators/model_check.h"
 
 namespace twinbench::separate::turntable {
 namespace {
@@ -28,7 +28,7 @@ std::vector<TurntableStop> CheckStops(const TrueBench& bench, const Seat& seat, 
   return stops;
 }
 
-TEST(CheckCompensation, LeavesNothingOfAKnownCurveWithoutNoise) {
+TEST(CheckModel, LeavesNothingOfAKnownCurveWithoutNoise) {
   Stream stream(1, "test.turntable");
   TrueBench bench = PublishedBench(0.0, stream);
   bench.tooth_rad.assign(360, 0.0);
@@ -37,7 +37,7 @@ TEST(CheckCompensation, LeavesNothingOfAKnownCurveWithoutNoise) {
   const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream), options);
   auto stops = CheckStops(bench, TwoTilts()[0], 2, stream);
   stops[7].x_rad = kNaN;
-  const auto check = CheckCompensation(FitHarmonics(found.turntable, 35), stops, found.roll, {});
+  const auto check = CheckModel(FitHarmonics(found.turntable, 35), stops, found.roll, {});
   EXPECT_NEAR(check.before.peak_to_valley_rad, 17.82 * arcsec, 0.3 * arcsec);  // the extremes lie between positions
   EXPECT_LT(check.after.largest_rad, 1e-14);                                   // rounding
   EXPECT_EQ(check.after.count, 144);
@@ -54,7 +54,7 @@ struct Outcome {
 };
 
 /// The published experiment: 72 positions, two tilts, model of the order with the least AICc, 144 check stops.
-Outcome Compensate(double u_rad, int passes, int seeds) {
+Outcome TakeModelOut(double u_rad, int passes, int seeds) {
   Outcome outcome;
   for (int seed = 0; seed < seeds; ++seed) {
     Stream stream(static_cast<std::uint64_t>(seed), "test.turntable");
@@ -63,22 +63,22 @@ Outcome Compensate(double u_rad, int passes, int seeds) {
     options.u_multitooth_rad = 0.3 * arcsec;
     const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream, passes), options);
     const HarmonicModel model = FitHarmonics(found.turntable, ChooseHighestOrder(found.turntable));
-    const auto check = CheckCompensation(model, CheckStops(bench, TwoTilts()[0], passes, stream), found.roll,
+    const auto check = CheckModel(model, CheckStops(bench, TwoTilts()[0], passes, stream), found.roll,
                                          {u_rad, 0.3 * arcsec});
     outcome.range_before += check.before.peak_to_valley_rad / arcsec / seeds;
     outcome.largest_after += check.after.largest_rad / arcsec / seeds;
     outcome.within_2 += check.after.largest_rad <= 2.0 * arcsec;
     outcome.over_expected += check.after.rms_rad / check.expected_rms_rad / seeds;
     for (int i = 0; i < 144; ++i) {
-      const double left_rad = bench.turntable.At(i * 2.5 * deg) + model.Compensation_rad(i * 2.5 * deg);
+      const double left_rad = bench.turntable.At(i * 2.5 * deg) - model.At(i * 2.5 * deg).value_rad;
       outcome.worst_truth = std::max(outcome.worst_truth, std::abs(left_rad) / arcsec);
     }
   }
   return outcome;
 }
 
-TEST(CheckCompensation, BringsThePublishedTurntableBelowTwoArcsec) {
-  const Outcome o = Compensate(0.2 * arcsec, 1, 100);
+TEST(CheckModel, BringsThePublishedTurntableBelowTwoArcsec) {
+  const Outcome o = TakeModelOut(0.2 * arcsec, 1, 100);
   EXPECT_NEAR(o.range_before, 17.82, 0.8);  // 17.82 arcsec and, at its two extremes, noise and teeth
   EXPECT_EQ(o.within_2, 100);               // asked for by the task
   EXPECT_LT(o.largest_after, 1.4);          // 144 normal values of rms 0.43: 2.7 times that
@@ -86,12 +86,12 @@ TEST(CheckCompensation, BringsThePublishedTurntableBelowTwoArcsec) {
   EXPECT_LT(o.worst_truth, 1.2);
 }
 
-TEST(CheckCompensation, NeedsRepeatsWithTheNoisiestAutocollimator) {
+TEST(CheckModel, NeedsRepeatsWithTheNoisiestAutocollimator) {
   // 0.5 arcsec in every check reading beside 0.3 of its tooth: 2 arcsec are 3.1 standard deviations, 144 times.
-  const Outcome once = Compensate(0.5 * arcsec, 1, 100);
+  const Outcome once = TakeModelOut(0.5 * arcsec, 1, 100);
   EXPECT_LT(once.within_2, 90);
-  EXPECT_LT(once.worst_truth, 1.5);  // it is the check that is noisy, not the compensation
-  const Outcome four_times = Compensate(0.5 * arcsec, 4, 100);
+  EXPECT_LT(once.worst_truth, 1.5);  // it is the check that is noisy, not the model
+  const Outcome four_times = TakeModelOut(0.5 * arcsec, 4, 100);
   EXPECT_EQ(four_times.within_2, 100);
   EXPECT_NEAR(four_times.over_expected, 1.0, 0.05);  // as above
 }

@@ -1,0 +1,154 @@
+#include "twin/separate/compensation.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/separate/index_spectrum.h"
+#include "tests/support/angle_benches.h"
+#include "twin/model/follow.h"
+
+// A compensation that the twins are commanded by, and what another measurement then shows.
+namespace twinbench {
+namespace {
+
+using separate::Compensation;
+using separate::CompensationCheck;
+using separate::IndexErrors;
+using separate::LineFate;
+using separate::RootMeanSquare;
+using testing::ElementsAre;
+using units::arcsec, units::deg;
+
+IndexErrors Measured(const Scenario& scenario) {
+  return BenchOf(scenario).index_errors(scenario, test::ReadingsOf(scenario));
+}
+
+/// The same bench measured again with the table at work; noise and teeth are drawn anew.
+Scenario Again(Scenario scenario, const Compensation& compensation) {
+  TurntableOf(scenario).turntable.compensation = compensation.table;
+  scenario.seed += 100000;
+  return scenario;
+}
+
+Scenario Spectrum(const std::vector<std::string>& overrides = {}) {
+  return LoadScenario(test::ScenarioPath("turntable_spectrum.toml"), overrides);
+}
+
+TEST(TurntableSpectrum, AnswersAsItsScenarioSays) {
+  const Scenario scenario = Spectrum();
+  const IndexErrors first = Measured(scenario);
+  const Compensation compensation = Compensate(first);
+  EXPECT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(1, 2, 3, 23, 48, 90, 144));
+  EXPECT_THAT(compensation.Orders(LineFate::kAliased), ElementsAre(160));  // 200 in truth
+  EXPECT_NEAR(compensation.remaining.before_rms_rad / arcsec, 5.8, 0.1);
+  const CompensationCheck check = CheckCompensation(first, compensation, Measured(Again(scenario, compensation)));
+  EXPECT_NEAR(check.remeasured_rms_rad / arcsec, 0.41, 0.04);  // 360 places: 4 %
+  EXPECT_NEAR(check.Ratio(), 1.0, 0.2);
+}
+
+TEST(TurntableSpectrum, RefusesMoreFromThePositionsAlone) {
+  const Scenario scenario = Spectrum({"turntable_procedure.phases=[\"full_circle\"]"});
+  const Compensation compensation = Compensate(Measured(scenario));
+  EXPECT_THAT(compensation.Orders(LineFate::kCompensated), ElementsAre(1, 2, 3));
+  EXPECT_TRUE(compensation.IsAliased());
+  // Measured between the positions, where an order that was taken for another would show: 0.5, 0.6, 1.0, 0.8 and
+  // 0.4 arcsec are left, 1.1 rms, with 0.4 of noise and teeth.
+  Scenario between = Again(Spectrum(), compensation);
+  const IndexErrors after = Measured(between);
+  EXPECT_NEAR(RootMeanSquare(AboutGroups(after, after.value_rad)) / arcsec, 1.15, 0.1);
+}
+
+std::vector<HarmonicSettings> Drawn(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<HarmonicSettings> harmonics;
+  for (const separate::SpectrumLine& line : separate::DrawSpectrum(random, 5))
+    harmonics.push_back({Component::kEz, static_cast<double>(line.order), line.amplitude_rad, line.phase_rad});
+  return harmonics;
+}
+
+TEST(TurntableSpectrum, IsLeftWithWhatWasPredictedOver200Seeds) {
+  Scenario scenario = Spectrum();
+  int off = 0, worse = 0, silent = 0;
+  double lowest = 1.0, highest = 1.0, before = 0.0, after = 0.0;
+  constexpr int kSeeds = 200;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    scenario.seed = static_cast<std::uint64_t>(seed);
+    TurntableOf(scenario).turntable.harmonics = Drawn(scenario.seed);
+    const IndexErrors first = Measured(scenario);
+    const Compensation compensation = Compensate(first);
+    const CompensationCheck check = CheckCompensation(first, compensation, Measured(Again(scenario, compensation)));
+    off += std::abs(check.Ratio() - 1.0) > 0.2;
+    worse += !check.IsBetter();
+    lowest = std::min(lowest, check.Ratio());
+    highest = std::max(highest, check.Ratio());
+    before += check.before_rms_rad / arcsec / kSeeds;
+    after += check.remeasured_rms_rad / arcsec / kSeeds;
+    // Whole degrees tell orders below 160 apart.
+    const auto is_high = [](const HarmonicSettings& h) { return h.order >= 160.0; };
+    silent += std::ranges::any_of(TurntableOf(scenario).turntable.harmonics, is_high) && !compensation.IsAliased();
+  }
+  const std::string figures =
+      fmt::format("before {:.2f}, after {:.2f} arcsec rms on average; predicted / measured again {:.2f} to {:.2f}",
+                  before, after, lowest, highest);
+  RecordProperty("figures", figures);
+  EXPECT_EQ(off, 0) << figures;
+  EXPECT_EQ(worse, 0) << figures;
+  EXPECT_EQ(silent, 0) << figures;
+}
+
+TEST(CommandedCompensation, MovesTheTurntableAndNotTheReading) {
+  Scenario scenario = Spectrum({"noise_free=true", "turntable.repeatability.ez_arcsec=0"});
+  TurntableOf(scenario).turntable.harmonics = {};
+  TurntableOf(scenario).multitooth.tooth_rms_rad = 0.0;
+  const std::vector<Reading> without = test::ReadingsOf(scenario);
+  TurntableOf(scenario).turntable.compensation =
+      CompensationTable{{0.0, 120.0 * deg, 240.0 * deg}, {0.0, 6.0 * arcsec, -3.0 * arcsec}};
+  const std::vector<Reading> with = test::ReadingsOf(scenario);
+  ASSERT_EQ(with.size(), without.size());
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    EXPECT_EQ(with[i].target_rad, without[i].target_rad);
+    const double moved_rad = with[i].autocollimator_yaw_rad - without[i].autocollimator_yaw_rad;
+    const double sent_rad = TurntableOf(scenario).turntable.compensation->At(with[i].target_rad);
+    // The roll of 10 mrad takes 5e-5 of it, the roundness of the crosshair's scale less.
+    EXPECT_NEAR(moved_rad / arcsec, sent_rad / arcsec, 1e-3) << i;
+  }
+}
+
+/// Readings of a noise-free run without errors of tables, against the twin on its course.
+double LargestOff(const Scenario& scenario, const std::vector<double>& shown) {
+  const std::vector<Reading> readings = test::ReadingsOf(scenario);
+  const Eigen::MatrixXd predicted = BenchOf(scenario).follow(scenario, readings)->Predict();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < readings.size(); ++i)
+    largest = std::max(largest, std::abs(predicted(static_cast<Eigen::Index>(i), 0) - shown[i]));
+  return largest;
+}
+
+TEST(CommandedCompensation, IsFollowedByTheTwinOfARecord) {
+  Scenario scenario = Spectrum({"noise_free=true", "turntable.repeatability.ez_arcsec=0"});
+  TurntableOf(scenario).turntable.harmonics = {};
+  TurntableOf(scenario).multitooth.tooth_rms_rad = 0.0;
+  TurntableOf(scenario).turntable.compensation =
+      CompensationTable{{0.0, 120.0 * deg, 240.0 * deg}, {0.0, 6.0 * arcsec, -3.0 * arcsec}};
+  std::vector<double> shown;
+  for (const Reading& reading : test::ReadingsOf(scenario)) shown.push_back(reading.autocollimator_yaw_rad);
+  EXPECT_LT(LargestOff(scenario, shown) / arcsec, 1e-6);
+}
+
+TEST(CommandedCompensation, TakesTheIndexErrorOutOfTheRotaryTarget) {
+  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"), {"adc.every_sample=false"});
+  const IndexErrors first = Measured(scenario);
+  const Compensation compensation = Compensate(first);
+  EXPECT_EQ(first.table, "target");
+  RotaryOf(scenario).target.compensation = compensation.table;
+  const IndexErrors again = Measured(scenario);
+  const CompensationCheck check = CheckCompensation(first, compensation, again);
+  EXPECT_LT(check.remeasured_rms_rad, 0.5 * check.before_rms_rad);
+  EXPECT_NEAR(check.Ratio(), 1.0, 0.2);
+}
+
+}  // namespace
+}  // namespace twinbench

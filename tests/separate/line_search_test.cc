@@ -1,0 +1,107 @@
+#include "twin/separate/line_search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/core/input_error.h"
+#include "tests/separate/index_spectrum.h"
+
+namespace twinbench::separate {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+using units::arcsec;
+
+std::vector<int> OrdersOf(const LineFit& fit) {
+  std::vector<int> orders;
+  for (const IndexLine& line : fit.lines) orders.push_back(line.order);
+  return orders;
+}
+
+SpectrumBench BenchWith(const std::vector<SpectrumLine>& lines, double noise_rad) {
+  return {lines, std::vector<double>(360, 0.0), noise_rad};
+}
+
+TEST(FindLines, FindsKnownLinesAndTheirPhasesWithoutNoise) {
+  std::mt19937_64 random(1);
+  const std::vector<SpectrumLine> lines = {{1, 7 * arcsec, 0.4}, {18, 1 * arcsec, 2.0}, {90, 0.5 * arcsec, -1.0}};
+  const LineFit fit = FindLines(BenchWith(lines, 0.0).Read({EvenPositions(), Between(1)}, random));
+  ASSERT_EQ(OrdersOf(fit), (std::vector<int>{1, 18, 90}));
+  for (std::size_t i = 0; i < 3; ++i) {
+    // Second order of the error itself: the table stands where its error has brought it.
+    EXPECT_NEAR(fit.lines[i].cos_rad, lines[i].amplitude_rad * std::cos(lines[i].phase_rad), 1e-4 * arcsec);
+    EXPECT_NEAR(fit.lines[i].sin_rad, -lines[i].amplitude_rad * std::sin(lines[i].phase_rad), 1e-4 * arcsec);
+    EXPECT_TRUE(fit.lines[i].is_certain);
+  }
+}
+
+TEST(FindLines, FindsNothingInNoise) {
+  int found = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    std::mt19937_64 random(seed);
+    found +=
+        static_cast<int>(std::ssize(FindLines(BenchWith({}, 0.3 * arcsec).Read({EvenPositions()}, random)).lines));
+  }
+  // Odds of 20 : 1 for a line and a prior that makes lines rare: one in a hundred spectra is expected at most.
+  EXPECT_LE(found, 3);
+}
+
+TEST(FindLines, DoesNotTakeOrder90ForOrder18At72Positions) {
+  std::mt19937_64 random(2);
+  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}, {90, 1 * arcsec, 2.0}}, 0.1 * arcsec);
+  const LineFit even = FindLines(bench.Read({EvenPositions()}, random));
+  ASSERT_EQ(OrdersOf(even), (std::vector<int>{1, 18}));
+  EXPECT_TRUE(even.lines[0].is_certain);
+  EXPECT_FALSE(even.lines[1].is_certain);
+  std::vector<int> alike;
+  for (const AlikeOrder& other : even.lines[1].alike) alike.push_back(other.order);
+  EXPECT_EQ(alike, (std::vector<int>{54, 90, 126, 162, 198}));  // 72 m +- 18
+  const LineFit between = FindLines(bench.Read({EvenPositions(), Between(2)}, random));
+  ASSERT_EQ(OrdersOf(between), (std::vector<int>{1, 90}));
+  EXPECT_TRUE(between.lines[1].is_certain);
+}
+
+TEST(FindLines, SaysWhichOrdersThePlacesDoNotShow) {
+  std::mt19937_64 random(3);
+  const SpectrumBench bench = BenchWith({{1, 7 * arcsec, 0.4}}, 0.1 * arcsec);
+  const LineFit even = FindLines(bench.Read({EvenPositions()}, random));
+  EXPECT_EQ(even.unseen, (std::vector<int>{36, 72, 108, 144, 180}));
+  EXPECT_EQ(std::ssize(even.doubled), 198);  // all but 72 and 144, which look like a constant
+  const LineFit degrees = FindLines(bench.Read({EvenPositions(), Between(1)}, random));
+  EXPECT_EQ(degrees.unseen, (std::vector<int>{180}));  // its sine is 0 at whole degrees
+  EXPECT_EQ(degrees.doubled.front(), 160);             // looks like 200
+  EXPECT_EQ(std::ssize(degrees.doubled), 40);
+}
+
+TEST(FindLines, IsNotCertainOfALineThatIsHalfSeen) {
+  std::mt19937_64 random(4);
+  const SpectrumBench bench = BenchWith({{180, 1 * arcsec, 0.3}}, 0.1 * arcsec);
+  const LineFit fit = FindLines(bench.Read({EvenPositions(), Between(1)}, random));
+  ASSERT_EQ(OrdersOf(fit), (std::vector<int>{180}));
+  EXPECT_TRUE(fit.lines[0].is_half_seen);
+  EXPECT_FALSE(fit.lines[0].is_certain);
+}
+
+TEST(FindLines, StatesAnUncertaintyThatMatchesItsScatter) {
+  constexpr int kRuns = 200;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    std::mt19937_64 random(seed);
+    const SpectrumBench bench = BenchWith({{2, 3 * arcsec, 0.0}}, 0.3 * arcsec);
+    const LineFit fit = FindLines(bench.Read({EvenPositions()}, random));
+    ASSERT_FALSE(fit.lines.empty());
+    sum += std::pow((fit.lines[0].sin_rad) / fit.lines[0].u_rad, 2);
+  }
+  // chi-squared of one degree of freedom: mean 1, standard deviation sqrt(2 / 200) = 0.1.
+  EXPECT_NEAR(sum / kRuns, 1.0, 0.3);
+}
+
+TEST(FindLines, RefusesFewPlaces) {
+  IndexErrors errors = MeansByPlace({{0, 0.0, 1.0}, {0, 1.0, 2.0}});
+  EXPECT_THAT(MessageOf([&] { FindLines(errors); }), HasSubstr("at least 8"));
+}
+
+}  // namespace
+}  // namespace twinbench::separate

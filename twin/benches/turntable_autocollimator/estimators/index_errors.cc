@@ -1,0 +1,59 @@
+#include "twin/benches/turntable_autocollimator/estimators/index_errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::separate::turntable {
+namespace {
+
+/// Error of the tooth on which a stop stands, 0 where it was not separated from the turntable.
+double ToothError_rad(const AngleSeries& multitooth, double multitooth_rad) {
+  constexpr double kSame_rad = 1e-6;
+  for (std::size_t i = 0; i < multitooth.position_rad.size(); ++i) {
+    const double away_rad = std::remainder(multitooth_rad - multitooth.position_rad[i], units::turn);
+    if (std::abs(away_rad) < kSame_rad) return multitooth.value_rad[static_cast<Eigen::Index>(i)];
+  }
+  return 0.0;
+}
+
+/// Roll of the crosshair taken out where it is known.
+double Levelled_rad(const Roll& roll, const TurntableStop& stop) {
+  return roll.status == RollStatus::kTiltsAlike ? stop.x_rad : roll.Correct(stop.x_rad, stop.y_rad);
+}
+
+/// What the uncertainty of the roll does to a reading, root mean square: the tilts turn it into an error of
+/// order 1.
+double RollError_rad(const Roll& roll, const std::vector<IndexReading>& tilts) {
+  if (roll.status != RollStatus::kOk || tilts.empty()) return 0.0;
+  const IndexErrors means = MeansByPlace(tilts);
+  return roll.u_gamma_rad * RootMeanSquare(AboutGroups(means, means.value_rad));
+}
+
+}  // namespace
+
+IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Reading>& readings) {
+  const TurntableSettings& own = TurntableOf(scenario);
+  const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, Estimator::kRigorous);
+  if (!analysis.separation) throw InputError("readings", analysis.not_separated, "readings of a full-circle test");
+  std::vector<IndexReading> values, tilts;
+  for (const Phase phase : {Phase::kFullCircle, Phase::kVerification}) {
+    for (const TurntableStop& stop : StopsOf(readings, phase)) {
+      values.push_back({stop.setup, stop.turntable_rad,
+                        Levelled_rad(analysis.separation->roll, stop) -
+                            ToothError_rad(analysis.separation->multitooth, stop.multitooth_rad)});
+      tilts.push_back({stop.setup, stop.turntable_rad, stop.y_rad});
+    }
+  }
+  IndexErrors errors = MeansByPlace(values);
+  errors.table = "turntable";
+  errors.u_place_rad = own.multitooth.u_tooth_rad;
+  errors.u_between_rad = RollError_rad(analysis.separation->roll, tilts);
+  errors.commanded = own.turntable.compensation;
+  return errors;
+}
+
+}  // namespace twinbench::separate::turntable
