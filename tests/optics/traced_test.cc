@@ -241,7 +241,7 @@ TEST(MeasuredBeam, GatheredToFewerRaysKeepsItsCentroid) {
   RotaryOpticsParameters parameters = WithProfile(map, 0.5e-3);
   parameters.psd_a.cubic_per_m2 = parameters.psd_b.cubic_per_m2 = 1000.0;
   RotaryOpticsParameters few = parameters;
-  few.beam.profile_rays = 1024;
+  few.beam.profile_rays = 256;
   const Isometry3d X_LG = RandomPose(dice);
   const PsdSignals all = RotaryOptics(parameters).Trace(X_LG, ExampleSource());
   const PsdSignals gathered = RotaryOptics(few).Trace(X_LG, ExampleSource());
