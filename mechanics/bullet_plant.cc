@@ -1,3 +1,4 @@
+#include "mechanics/adaptive_stack.h"
 #include "mechanics/drives.h"
 #include "mechanics/sag.h"
 
@@ -6,76 +7,48 @@ namespace {
 
 class BulletPlant : public DrivenPlant {
  public:
-  explicit BulletPlant(const StackParameters& p)
-      : DrivenPlant(p),
-        dynamics_(p),
-        feed_forward_(FeedForward(p)),
-        servos_(MakeServos(p)),
-        frictions_(MakeFrictions(p)),
-        sub_steps_(SubSteps(dynamics_)),
-        q_(StaticDeflection(p, 0.0, 0.0)) {}
+  explicit BulletPlant(const StackParameters& p) : DrivenPlant(p), stack_(p, StaticDeflection(p, 0.0, 0.0)) {}
 
  private:
   void Step(Nanoseconds time) override {
-    const Eigen::Vector2d torque = DriveTorques(time);
-    const double h = ToSeconds(period()) / sub_steps_;
-    for (int i = 0; i < sub_steps_; ++i) {
-      dynamics_.Step(parameters().integrator, h, torque + FrictionTorques(h), q_, qd_);
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-      deviation_rad_[Row(i)] = q_[Spin(i)] - commands().At(i, time + period()).position_rad;
-    }
+    stack_.Step(time, commands());
+    for (int t = 0; t < 2; ++t) deviation_rad_[t] = stack_.Spin_rad(t) - Commanded_rad(t, time + period());
   }
 
-  Eigen::Vector2d DriveTorques(Nanoseconds time) {
-    const ProfilePoint command[2] = {commands().At(0, time), commands().At(1, time)};
-    const Eigen::Vector2d feed =
-        feed_forward_ * Eigen::Vector2d(command[0].acceleration_rad_s2, command[1].acceleration_rad_s2);
-    Eigen::Vector2d torque;
-    for (std::size_t i = 0; i < 2; ++i) {
-      torque[Row(i)] = servos_[i].Torque(command[i].position_rad - q_[Spin(i)],
-                                         command[i].velocity_rad_s - qd_[Spin(i)], feed[Row(i)]);
-    }
-    return torque;
-  }
+  void Prepare(Nanoseconds time) override { stack_.Prepare(time, commands()); }
 
-  Eigen::Vector2d FrictionTorques(double step_s) {
-    Eigen::Vector2d torque = Eigen::Vector2d::Zero();
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (frictions_[i].active()) torque[Row(i)] = frictions_[i].Torque(qd_[Spin(i)], step_s);
-    }
-    return torque;
+  Vector12 Coordinates(Nanoseconds time, Nanoseconds since) const override {
+    Vector12 q = stack_.Coordinates(ToSeconds(since));
+    for (int t = 0; t < 2; ++t) q[SpinIndex(t)] -= Commanded_rad(t, time + since);
+    return q;
   }
 
   Eigen::Vector2d Deviation_rad() const override { return deviation_rad_; }
-
-  std::array<BearingPose, 2> Bearings(double, double) const override {
-    return {BearingOf(q_, 0), BearingOf(q_, 1)};
+  std::array<BearingPose, 2> Bearings(const Vector12& q, double, double) const override {
+    return {BearingOf(q, 0), BearingOf(q, 1)};
   }
 
-  /// New bodies at rest, with the rotors where they were and the bearings deflected anew.
-  void OnMount() override {
-    dynamics_ = StackDynamics(parameters());
-    q_ = StaticDeflection(parameters(), q_[SpinIndex(0)], q_[SpinIndex(1)]);
-    qd_.setZero();
+  bool CanRest() const override { return stack_.CanRest(); }
+  void Rest(std::int64_t periods) override {
+    stack_.Rest(periods, {commands().profile(0).to_rad(), commands().profile(1).to_rad()});
   }
 
-  static Eigen::Index Row(std::size_t table) { return static_cast<Eigen::Index>(table); }
-  static Eigen::Index Spin(std::size_t table) { return SpinIndex(static_cast<int>(table)); }
+  void OnStart() override { stack_.Replan(); }
+  void OnWake(Nanoseconds since) override { stack_.Wake(ToSeconds(since)); }
+  void OnMount() override { stack_.Mount(parameters()); }
 
-  StackDynamics dynamics_;
-  Eigen::Matrix2d feed_forward_;
-  std::array<Servo, 2> servos_;
-  std::array<LuGreFriction, 2> frictions_;
-  int sub_steps_;
-  Vector12 q_;
-  Vector12 qd_ = Vector12::Zero();
+  double Commanded_rad(int table, Nanoseconds time) const {
+    return commands().At(static_cast<std::size_t>(table), time).position_rad;
+  }
+
+  AdaptiveStack stack_;
   Eigen::Vector2d deviation_rad_ = Eigen::Vector2d::Zero();
 };
 
 }  // namespace
 
 std::unique_ptr<Plant> MakeBulletPlant(const StackParameters& parameters) {
+  if (parameters.integrator != Integrator::kAdaptive) return MakeFixedStepPlant(parameters);
   return std::make_unique<BulletPlant>(parameters);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mechanics/drive_loads.h"
 #include "mechanics/stack.h"
 
 // A float build of Bullet would add 0.02 arcsec of noise, and mixing the two corrupts memory.
@@ -127,6 +128,7 @@ StackDynamics::StackDynamics(const StackParameters& parameters)
       stiffness_(BearingStiffness(parameters)),
       damping_(BearingDamping(parameters)),
       preload_(BearingPreload(parameters)),
+      loaded_(HasLoads(parameters)),
       bullet_(std::make_unique<Bullet>(parameters)) {}
 
 StackDynamics::~StackDynamics() = default;
@@ -137,6 +139,9 @@ Vector12 StackDynamics::Accelerate(const Vector12& q, const Vector12& qd, const 
   Vector12 force = preload_ - stiffness_.cwiseProduct(q) - damping_.cwiseProduct(qd);
   force[SpinIndex(0)] = torque_Nm[0];
   force[SpinIndex(1)] = torque_Nm[1];
+  if (loaded_) {
+    force += DriveLoads(parameters_, {q[SpinIndex(0)], q[SpinIndex(1)]}, {qd[SpinIndex(0)], qd[SpinIndex(1)]});
+  }
   bullet_->Set(q, qd);
   return bullet_->Solve(force, true);
 }
@@ -161,7 +166,7 @@ Matrix12 StackDynamics::InverseMass(const Vector12& q) {
 
 void StackDynamics::Step(Integrator integrator, double h, const Eigen::Vector2d& torque_Nm, Vector12& q,
                          Vector12& qd) {
-  if (integrator == Integrator::kLeapfrog) {
+  if (integrator != Integrator::kRungeKutta4) {
     q += 0.5 * h * qd;
     qd += h * Accelerate(q, qd, torque_Nm);
     q += 0.5 * h * qd;

@@ -42,6 +42,10 @@ Pose BodyOnTarget(const ChainGeometry& g) {
   return pose;
 }
 
+BearingPose operator+(const BearingPose& a, const BearingPose& b) {
+  return {a.x_m + b.x_m, a.y_m + b.y_m, a.z_m + b.z_m, a.rx_rad + b.rx_rad, a.ry_rad + b.ry_rad};
+}
+
 Pose ToPose(const BearingPose& bearing) {
   Pose pose = Pose::Identity();
   pose.linear() = RotationX(bearing.rx_rad) * RotationY(bearing.ry_rad);

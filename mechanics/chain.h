@@ -31,6 +31,9 @@ struct BearingPose {
   double ry_rad = 0.0;
 };
 
+/// Component by component: right for deflections as small as bearings' are (first order).
+BearingPose operator+(const BearingPose& a, const BearingPose& b);
+
 /// Exact pose of a deflection.
 Pose ToPose(const BearingPose& bearing);
 

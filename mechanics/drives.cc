@@ -62,7 +62,7 @@ DrivenPlant::DrivenPlant(const StackParameters& parameters)
 
 void DrivenPlant::StartMove(Axis axis, double to_rad, double duration_s) {
   commands_.Start(axis, to_rad, duration_s, now_);
-  if (Settled()) stepped_ = now_;
+  if (Settled()) Wake();
   quiet_[Index(axis)] = 0;
   OnStart();
 }
@@ -75,7 +75,21 @@ void DrivenPlant::Stop(Axis axis) {
 
 void DrivenPlant::Advance(double dt_s) {
   now_ += ToNanoseconds(dt_s);
-  while (!Settled() && stepped_ + period_ <= now_) Tick();
+  while (stepped_ + period_ <= now_) {
+    if (Settled() && CanRest()) {
+      const std::int64_t periods = (now_ - stepped_) / period_;
+      Rest(periods);
+      stepped_ += periods * period_;
+    } else {
+      Tick();
+    }
+  }
+  if (stepped_ < now_) Prepare(stepped_);
+}
+
+void DrivenPlant::Wake() {
+  OnWake(now_ - stepped_);
+  stepped_ = now_;
 }
 
 void DrivenPlant::Tick() {
@@ -90,9 +104,18 @@ void DrivenPlant::WatchQuiet() {
   if (!ended[0] && !ended[1]) return;  // neither has been quiet since its move started
   const Eigen::Vector2d deviation = Deviation_rad();
   for (std::size_t i = 0; i < 2; ++i) {
-    const bool near = ended[i] && std::abs(deviation[static_cast<Eigen::Index>(i)]) < kQuiet_rad;
+    const bool near = ended[i] && std::abs(ShownDeviation_rad(i, deviation[static_cast<Eigen::Index>(i)])) <
+                                      std::max(kQuiet_rad, 0.6 * parameters_.table[i].scale.resolution_rad);
     quiet_[i] = near ? quiet_[i] + period_ : 0;
   }
+}
+
+/// What the scale shows of it, before it is cut into steps.
+double DrivenPlant::ShownDeviation_rad(std::size_t table, double deviation_rad) const {
+  const ScaleParameters& scale = parameters_.table[table].scale;
+  if (scale.subdivision_rad == 0.0) return deviation_rad;
+  const double command_rad = commands_.At(table, stepped_).position_rad;
+  return Interpolated_rad(scale, command_rad + deviation_rad) - command_rad;
 }
 
 void DrivenPlant::FollowBacklash() {
@@ -103,13 +126,15 @@ void DrivenPlant::FollowBacklash() {
 }
 
 StackState DrivenPlant::State() const {
-  const Eigen::Vector2d deviation = Deviation_rad();
+  const Vector12 coordinates = Coordinates(stepped_, now_ - stepped_);
   StackState state;
-  state.target_encoder_rad = commands_.At(0, now_).position_rad + deviation[0];
-  state.reference_encoder_rad = commands_.At(1, now_).position_rad + deviation[1];
-  state.target_rad = Backlash(backlash_[0]).Follow(state.target_encoder_rad);
-  state.reference_rad = Backlash(backlash_[1]).Follow(state.reference_encoder_rad);
-  const std::array<BearingPose, 2> bearings = Bearings(state.target_rad, state.reference_rad);
+  const double target_rad = commands_.At(0, now_).position_rad + coordinates[SpinIndex(0)];
+  const double reference_rad = commands_.At(1, now_).position_rad + coordinates[SpinIndex(1)];
+  state.target_encoder_rad = Shown_rad(parameters_.table[0].scale, target_rad);
+  state.reference_encoder_rad = Shown_rad(parameters_.table[1].scale, reference_rad);
+  state.target_rad = Backlash(backlash_[0]).Follow(target_rad);
+  state.reference_rad = Backlash(backlash_[1]).Follow(reference_rad);
+  const std::array<BearingPose, 2> bearings = Bearings(coordinates, state.target_rad, state.reference_rad);
   state.target_bearing = bearings[0];
   state.reference_bearing = bearings[1];
   return state;
@@ -117,6 +142,7 @@ StackState DrivenPlant::State() const {
 
 void DrivenPlant::Mount(const ChainGeometry& geometry) {
   if (!Settled()) throw std::logic_error("plant: mounting needs tables at rest");
+  Wake();
   parameters_.geometry = geometry;
   OnMount();
 }

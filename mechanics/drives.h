@@ -49,7 +49,7 @@ class Commands {
   std::array<Nanoseconds, 2> start_ = {0, 0};
 };
 
-/// A plant that lives from servo period to servo period. A sleeping plant begins its periods anew at the next move.
+/// A plant that lives from servo period to servo period. A plant at rest begins its periods anew at the next move.
 class DrivenPlant : public Plant {
  public:
   explicit DrivenPlant(const StackParameters& parameters);
@@ -67,10 +67,21 @@ class DrivenPlant : public Plant {
   double ProfileLeft_s() const final { return commands_.Left_s(now_); }
   /// Moves the stack through the period that begins at `time`.
   virtual void Step(Nanoseconds time) = 0;
-  /// Encoders minus commands at the end of the last period.
+  /// Makes sure that Coordinates can look into the period that begins at `time`.
+  virtual void Prepare(Nanoseconds) {}
+  /// Encoders' shafts minus commands at the end of the last period.
   virtual Eigen::Vector2d Deviation_rad() const = 0;
+  /// Bodies `since` after the beginning of the period that begins at `time`, in whatever form Bearings takes; but
+  /// the rotors' are encoders' shafts minus commands.
+  virtual Vector12 Coordinates(Nanoseconds time, Nanoseconds since) const = 0;
   /// Bearings for rotors at these angles.
-  virtual std::array<BearingPose, 2> Bearings(double target_rad, double reference_rad) const = 0;
+  virtual std::array<BearingPose, 2> Bearings(const Vector12& coordinates, double target_rad,
+                                              double reference_rad) const = 0;
+  /// Whether any number of periods may pass at once now that both have settled.
+  virtual bool CanRest() const = 0;
+  virtual void Rest(std::int64_t periods) = 0;
+  /// The last period is broken off after `since`: another begins.
+  virtual void OnWake(Nanoseconds) {}
   virtual void OnStart() {}
   virtual void OnMount() {}
 
@@ -81,9 +92,11 @@ class DrivenPlant : public Plant {
  private:
   static constexpr Nanoseconds kQuiet = 10'000'000;
 
+  void Wake();
   void Tick();
   void FollowBacklash();
   void WatchQuiet();
+  double ShownDeviation_rad(std::size_t table, double deviation_rad) const;
 
   StackParameters parameters_;
   Commands commands_;
@@ -98,5 +111,8 @@ class DrivenPlant : public Plant {
 std::unique_ptr<Plant> MakeKinematicPlant(const StackParameters& parameters);
 std::unique_ptr<Plant> MakeLinearPlant(const StackParameters& parameters);
 std::unique_ptr<Plant> MakeBulletPlant(const StackParameters& parameters);
+/// Bullet in the fixed sub-steps of SubSteps, for parameters.integrator other than kAdaptive: what the adaptive one
+/// is measured by.
+std::unique_ptr<Plant> MakeFixedStepPlant(const StackParameters& parameters);
 
 }  // namespace twinbench::mechanics

@@ -1,6 +1,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "mechanics/drive_loads.h"
 #include "mechanics/drives.h"
 #include "mechanics/sag.h"
 
@@ -11,7 +12,8 @@ class KinematicPlant : public Plant {
  public:
   explicit KinematicPlant(const StackParameters& parameters)
       : parameters_((Check(parameters), parameters)),
-        backlash_{Backlash(parameters.table[0].backlash_rad), Backlash(parameters.table[1].backlash_rad)} {
+        backlash_{Backlash(parameters.table[0].backlash_rad), Backlash(parameters.table[1].backlash_rad)},
+        loaded_(HasLoads(parameters)) {
     Mount(parameters.geometry);
   }
 
@@ -24,7 +26,7 @@ class KinematicPlant : public Plant {
 
   void Advance(double dt_s) override {
     now_ += ToNanoseconds(dt_s);
-    for (std::size_t i = 0; i < 2; ++i) backlash_[i].Follow(commands_.At(i, now_).position_rad);
+    for (std::size_t i = 0; i < 2; ++i) backlash_[i].Follow(Shaft_rad(i));
   }
 
   using Plant::Settled;
@@ -36,8 +38,9 @@ class KinematicPlant : public Plant {
     state.reference_rad = backlash_[1].rotor_rad();
     state.target_encoder_rad = commands_.At(0, now_).position_rad;
     state.reference_encoder_rad = commands_.At(1, now_).position_rad;
-    const Vector12 q =
+    Vector12 q =
         constant_sag_ ? *constant_sag_ : StaticDeflection(parameters_, state.target_rad, state.reference_rad);
+    if (loaded_) q += Yielded();
     state.target_bearing = BearingOf(q, 0);
     state.reference_bearing = BearingOf(q, 1);
     return state;
@@ -51,12 +54,29 @@ class KinematicPlant : public Plant {
   }
 
  private:
+  /// A servo without error stands where its scale shows the command.
+  double Shaft_rad(std::size_t table) const {
+    const double command_rad = commands_.At(table, now_).position_rad;
+    const ScaleParameters& scale = parameters_.table[table].scale;
+    return scale.subdivision_rad == 0.0 ? command_rad : AngleShowing_rad(scale, command_rad);
+  }
+
+  /// By which the bearings give way to unbalance, each on its own spring.
+  Vector12 Yielded() const {
+    const ProfilePoint target = commands_.At(0, now_), reference = commands_.At(1, now_);
+    const Vector12 load = DriveLoads(parameters_, {target.position_rad, reference.position_rad},
+                                     {target.velocity_rad_s, reference.velocity_rad_s});
+    const Vector12 stiffness = BearingStiffness(parameters_);
+    return (stiffness.array() > 0.0).select(load.cwiseQuotient(stiffness), 0.0);
+  }
+
   double ProfileLeft_s() const override { return commands_.Left_s(now_); }
 
   StackParameters parameters_;
   Commands commands_;
   std::array<Backlash, 2> backlash_;
   std::optional<Vector12> constant_sag_;
+  bool loaded_;
   Nanoseconds now_ = 0;
 };
 

@@ -7,16 +7,6 @@
 namespace twinbench::mechanics {
 namespace {
 
-/// The stack with its payload on the x axis, nothing turned, shifted or tilted.
-StackParameters InPayloadFrame(StackParameters p) {
-  p.payload.azimuth_rad = 0.0;
-  p.geometry.reseat_rad = 0.0;
-  p.geometry.clamp_rad = 0.0;
-  p.geometry.centring_m.setZero();
-  p.geometry.mount_tilt_rad.setZero();
-  return p;
-}
-
 /// Acceleration of the free stack at zero deflection while its rotors turn.
 Vector12 VelocityTerm(StackDynamics& dynamics, double target_rad_s, double reference_rad_s) {
   Vector12 qd = Vector12::Zero();
@@ -35,8 +25,7 @@ Eigen::Matrix<double, kCoordinates, LinearModel::kInputs> InputAccelerations(Sta
   inputs.col(0) = tt;
   inputs.col(1) = VelocityTerm(dynamics, 1.0, 1.0) - tt - rr;
   inputs.col(2) = rr;
-  inputs.col(3) = inverse_mass.col(SpinIndex(0));
-  inputs.col(4) = inverse_mass.col(SpinIndex(1));
+  inputs.rightCols<kCoordinates>() = inverse_mass;
   return inputs;
 }
 
@@ -52,7 +41,8 @@ LinearModel::LinearModel(const StackParameters& parameters) {
   system.block<kCoordinates, kCoordinates>(kCoordinates, 0) = -inverse_mass * BearingStiffness(p).asDiagonal();
   system.block<kCoordinates, kCoordinates>(kCoordinates, kCoordinates) =
       -inverse_mass * BearingDamping(p).asDiagonal();
-  system.block<kCoordinates, kInputs>(kCoordinates, 2 * kCoordinates) = InputAccelerations(dynamics, inverse_mass);
+  accelerations_ = InputAccelerations(dynamics, inverse_mass);
+  system.block<kCoordinates, kInputs>(kCoordinates, 2 * kCoordinates) = accelerations_;
   const Eigen::MatrixXd propagator = (system * p.servo_period_s).exp();
   transition_ = propagator.topLeftCorner<2 * kCoordinates, 2 * kCoordinates>();
   drive_ = propagator.topRightCorner<2 * kCoordinates, kInputs>();
@@ -66,6 +56,7 @@ Eigen::Matrix2d FeedForward(const StackParameters& p) {
 }
 
 void PeriodCommand::Set(Eigen::Index axis, const ProfilePoint& start, const ProfilePoint& end, double period_s) {
+  position_rad[axis] = start.position_rad;
   acceleration_rad_s2[axis] = start.acceleration_rad_s2;
   speed_rad_s[axis] = start.velocity_rad_s;
   gain_rad_s[axis] = end.velocity_rad_s - start.velocity_rad_s;
@@ -91,25 +82,47 @@ LinearStack::LinearStack(const StackParameters& parameters, const LinearModel& m
       feed_forward_(FeedForward(parameters)),
       servos_(MakeServos(parameters)),
       frictions_(MakeFrictions(parameters)),
+      scales_{parameters.table[0].scale, parameters.table[1].scale},
       period_s_(parameters.servo_period_s) {}
 
-void LinearStack::Step(const PeriodCommand& command) {
+/// What controllers and frictions put in for the coming period.
+LinearModel::Input LinearStack::Inputs(const PeriodCommand& command) {
   const Eigen::Vector2d feed = feed_forward_ * command.acceleration_rad_s2;
   LinearModel::Input input;
-  input << command.speed_products, 0.0, 0.0;
+  input << command.speed_products, command.load;
   for (int t = 0; t < 2; ++t) {
     const auto i = static_cast<std::size_t>(t);
     const double rate_rad_s = state_[kCoordinates + SpinIndex(t)];
-    torque_Nm_[t] = servos_[i].Torque(-state_[SpinIndex(t)], -rate_rad_s, feed[t]);
-    input[3 + t] = torque_Nm_[t];
-    if (frictions_[i].active())
-      input[3 + t] += frictions_[i].Torque(command.speed_rad_s[t] + rate_rad_s, period_s_);
+    double error_rad = -state_[SpinIndex(t)];
+    if (scales_[i].active())
+      error_rad = command.position_rad[t] - Shown_rad(scales_[i], command.position_rad[t] - error_rad);
+    torque_Nm_[t] = servos_[i].Torque(error_rad, -rate_rad_s, feed[t]);
+    double& drive_Nm = input[3 + SpinIndex(t)];
+    drive_Nm += torque_Nm_[t];
+    if (frictions_[i].active()) drive_Nm += frictions_[i].Torque(command.speed_rad_s[t] + rate_rad_s, period_s_);
   }
-  state_ = model_->Step(state_, input);
-  for (int t = 0; t < 2; ++t) {  // the command moves on; nothing else in the stack feels the angle between the two
-    state_[SpinIndex(t)] -= command.lead_rad[t];
-    state_[kCoordinates + SpinIndex(t)] -= command.gain_rad_s[t];
+  return input;
+}
+
+/// The command moves on; nothing else in the stack feels the angle between the two.
+void LinearStack::Lead(const PeriodCommand& command, LinearModel::State& state) {
+  for (int t = 0; t < 2; ++t) {
+    state[SpinIndex(t)] -= command.lead_rad[t];
+    state[kCoordinates + SpinIndex(t)] -= command.gain_rad_s[t];
   }
+}
+
+void LinearStack::Step(const PeriodCommand& command) {
+  state_ = model_->Step(state_, Inputs(command));
+  Lead(command, state_);
+}
+
+LinearModel::State LinearStack::Within(const PeriodCommand& command, const PeriodCommand& so_far,
+                                       const StackPropagator& propagator, double since_s) const {
+  const LinearModel::Input input = LinearStack(*this).Inputs(command);
+  LinearModel::State state = propagator.Within(state_, model_->Accelerations(input), since_s);
+  Lead(so_far, state);
+  return state;
 }
 
 void LinearStack::Add(const LinearModel::State& state, const Eigen::Vector2d& integrals_rad_s) {
@@ -127,6 +140,7 @@ MoveResponse::MoveResponse(const StackParameters& parameters, const LinearModel&
   for (TableParameters& table : linear.table) {
     table.torque_limit_Nm = std::numeric_limits<double>::max();
     table.friction = {};
+    table.scale = {};
   }
   const double period_s = parameters.servo_period_s;
   const QuinticProfile unit(0.0, 1.0, duration_s);

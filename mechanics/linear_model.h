@@ -5,7 +5,7 @@
 
 #include "mechanics/profile.h"
 #include "mechanics/servo.h"
-#include "mechanics/stack.h"
+#include "mechanics/stack_propagator.h"
 
 /// The stack reduced to small deviations from the commanded motion, solved exactly over a servo period.
 namespace twinbench::mechanics {
@@ -20,8 +20,8 @@ namespace twinbench::mechanics {
 class LinearModel {
  public:
   using State = Eigen::Matrix<double, 2 * kCoordinates, 1>;  // deviations, then their rates
-  static constexpr int kInputs = 5;
-  /// Products of commanded speeds tt, tr, rr (centrifugal forces); torques of the two drives.
+  static constexpr int kInputs = 3 + kCoordinates;
+  /// Products of commanded speeds tt, tr, rr (centrifugal forces); forces on the twelve coordinates.
   using Input = Eigen::Matrix<double, kInputs, 1>;
 
   explicit LinearModel(const StackParameters& parameters);
@@ -29,18 +29,24 @@ class LinearModel {
   /// State one servo period later, for inputs that are constant meanwhile and a command that rests.
   State Step(const State& state, const Input& input) const { return transition_ * state + drive_ * input; }
 
+  /// What the inputs accelerate the coordinates by.
+  Vector12 Accelerations(const Input& input) const { return accelerations_ * input; }
+
  private:
+  Eigen::Matrix<double, kCoordinates, kInputs> accelerations_;
   Eigen::Matrix<double, 2 * kCoordinates, 2 * kCoordinates> transition_;
   Eigen::Matrix<double, 2 * kCoordinates, kInputs> drive_;
 };
 
 /// What the two profiles do in one servo period, target first.
 struct PeriodCommand {
-  Eigen::Vector2d acceleration_rad_s2 = Eigen::Vector2d::Zero();  // at its start, where the controller samples it
+  Eigen::Vector2d position_rad = Eigen::Vector2d::Zero();         // at its start, where the controller samples it
+  Eigen::Vector2d acceleration_rad_s2 = Eigen::Vector2d::Zero();  // at its start too
   Eigen::Vector2d speed_rad_s = Eigen::Vector2d::Zero();          // at its start
   Eigen::Vector2d gain_rad_s = Eigen::Vector2d::Zero();           // of speed, over the period
   Eigen::Vector2d lead_rad = Eigen::Vector2d::Zero();             // travel beyond what the speed at its start gives
   Eigen::Vector3d speed_products = Eigen::Vector3d::Zero();       // tt, tr, rr in its middle
+  Vector12 load = Vector12::Zero();                               // DriveLoads in the payload's axes
 
   /// Fills the entries of one axis, all but the speed products.
   void Set(Eigen::Index axis, const ProfilePoint& start, const ProfilePoint& end, double period_s);
@@ -60,6 +66,10 @@ class LinearStack {
   LinearStack(const StackParameters& parameters, const LinearModel& model);
 
   void Step(const PeriodCommand& command);
+  /// State `since_s` after the beginning of the period of `command`. @param so_far  What the profiles do until
+  /// then.
+  LinearModel::State Within(const PeriodCommand& command, const PeriodCommand& so_far,
+                            const StackPropagator& propagator, double since_s) const;
   /// Adds a state of the same kind; right because the equations are linear.
   void Add(const LinearModel::State& state, const Eigen::Vector2d& integrals_rad_s);
 
@@ -68,10 +78,14 @@ class LinearStack {
   const Eigen::Vector2d& torque_Nm() const { return torque_Nm_; }  // of the last period, without friction
 
  private:
+  LinearModel::Input Inputs(const PeriodCommand& command);
+  static void Lead(const PeriodCommand& command, LinearModel::State& state);
+
   const LinearModel* model_;
   Eigen::Matrix2d feed_forward_;
   std::array<Servo, 2> servos_;
   std::array<LuGreFriction, 2> frictions_;
+  std::array<ScaleParameters, 2> scales_;
   double period_s_;
   LinearModel::State state_ = LinearModel::State::Zero();
   Eigen::Vector2d torque_Nm_ = Eigen::Vector2d::Zero();

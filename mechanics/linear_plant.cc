@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <vector>
 
+#include "mechanics/drive_loads.h"
 #include "mechanics/drives.h"
 #include "mechanics/sag.h"
 
@@ -12,13 +14,17 @@ namespace {
 // Longer moves are rare and would need much memory (1 MB a second): they are computed as they happen.
 constexpr double kLongestKept_s = 2.0;
 
+constexpr double kCreep = 5e-10;  // rad/s, m/s
+
 /// State of the stack as a sum: responses of moves from rest, each known beforehand, and whatever does not fit that
 /// form, which is advanced period by period.
 class LinearPlant : public DrivenPlant {
  public:
-  explicit LinearPlant(const StackParameters& p) : DrivenPlant(p), model_(p), rest_(p, model_) {
+  explicit LinearPlant(const StackParameters& p)
+      : DrivenPlant(p), model_(p), rest_(p, model_), loaded_(HasLoads(p)), superposable_(!loaded_) {
     for (const TableParameters& table : p.table) {
-      if (table.friction.coulomb_Nm > 0.0 || table.friction.viscous_Nm_s > 0.0) superposable_ = false;
+      const bool rubs = table.friction.coulomb_Nm > 0.0 || table.friction.viscous_Nm_s > 0.0;
+      if (rubs || table.scale.active()) superposable_ = false;
     }
     OnMount();
   }
@@ -40,15 +46,35 @@ class LinearPlant : public DrivenPlant {
   void Step(Nanoseconds time) override {
     if (launching_) Launch(time);
     for (Contribution& contribution : contributions_) ++contribution.tick;
+    if (commands().Ended(0, time) && commands().Ended(1, time)) driven_ = false;
     if (driven_) {
-      rest_.Step(commands().Period(time, period()));
+      rest_.Step(CommandAt(time));
     } else if (rest_alive_) {
-      LetRestDecay();
+      LetRestDecay(time);
     }
   }
 
-  void LetRestDecay() {
-    rest_.Step(PeriodCommand{});
+  PeriodCommand CommandAt(Nanoseconds time) const {
+    PeriodCommand command = commands().Period(time, period());
+    if (!loaded_) return command;
+    const ProfilePoint target = commands().At(0, time + period() / 2);
+    const ProfilePoint reference = commands().At(1, time + period() / 2);
+    const std::array<double, 2> azimuth_rad = AzimuthsAt(target.position_rad, reference.position_rad);
+    command.load = Turned(DriveLoads(parameters(), {target.position_rad, reference.position_rad},
+                                     {target.velocity_rad_s, reference.velocity_rad_s}),
+                          {-azimuth_rad[0], -azimuth_rad[1]});
+    return command;
+  }
+
+  /// Of the payload, in the laboratory and on the reference's body.
+  std::array<double, 2> AzimuthsAt(double target_rad, double reference_rad) const {
+    const double on_body_rad = reference_rad + parameters().payload.azimuth_rad;
+    return {on_body_rad + parameters().geometry.reseat_rad + target_rad, on_body_rad};
+  }
+
+  void LetRestDecay(Nanoseconds time) {
+    rest_.Step(superposable_ ? PeriodCommand{} : CommandAt(time));
+    if (!superposable_) return;
     if (rest_.state().cwiseAbs().maxCoeff() > 1e-14) return;  // rad, rad/s; 1e-14 rad is 2e-9 arcsec
     rest_ = LinearStack(parameters(), model_);
     rest_alive_ = false;
@@ -67,10 +93,7 @@ class LinearPlant : public DrivenPlant {
         return;
       }
     }
-    for (const Contribution& c : contributions_) {
-      const MoveResponse::Row row = c.response->At(c.tick, c.shapes);
-      rest_.Add(row.head<2 * kCoordinates>(), row.tail<2>());
-    }
+    for (const Contribution& c : contributions_) AddTo(rest_, c);
     contributions_.clear();
     driven_ = rest_alive_ = true;
   }
@@ -118,7 +141,8 @@ class LinearPlant : public DrivenPlant {
     return deviation;
   }
 
-  Vector12 Deviation() const {
+  Vector12 Coordinates(Nanoseconds time, Nanoseconds since) const override {
+    if (since > 0 && IsAlive()) return CoordinatesWithin(time, since);
     Vector12 deviation = rest_.state().head<kCoordinates>();
     for (const Contribution& c : contributions_) {
       deviation += c.response->At(c.tick, c.shapes).head<kCoordinates>();
@@ -126,14 +150,43 @@ class LinearPlant : public DrivenPlant {
     return deviation;
   }
 
-  std::array<BearingPose, 2> Bearings(double target_rad, double reference_rad) const override {
+  bool IsAlive() const {
+    return rest_alive_ || std::any_of(contributions_.begin(), contributions_.end(),
+                                      [](const Contribution& c) { return c.tick < c.response->size(); });
+  }
+
+  Vector12 CoordinatesWithin(Nanoseconds time, Nanoseconds since) const {
+    if (!propagator_) propagator_.emplace(parameters());
+    LinearStack all = rest_;
+    for (const Contribution& c : contributions_) AddTo(all, c);
+    return all.Within(CommandAt(time), commands().Period(time, since), *propagator_, ToSeconds(since))
+        .head<kCoordinates>();
+  }
+
+  static void AddTo(LinearStack& stack, const Contribution& c) {
+    const MoveResponse::Row row = c.response->At(c.tick, c.shapes);
+    stack.Add(row.head<2 * kCoordinates>(), row.tail<2>());
+  }
+
+  std::array<BearingPose, 2> Bearings(const Vector12& deviation, double target_rad,
+                                      double reference_rad) const override {
     Vector12 q = constant_sag_ ? *constant_sag_ : StaticDeflection(parameters(), target_rad, reference_rad);
-    const Vector12 deviation = Deviation();
-    const double on_body_rad = reference_rad + parameters().payload.azimuth_rad;
-    const double in_lab_rad = on_body_rad + parameters().geometry.reseat_rad + target_rad;
-    AddTurned(deviation, 0, in_lab_rad, q);
-    AddTurned(deviation, 1, on_body_rad, q);
+    const std::array<double, 2> azimuth_rad = AzimuthsAt(target_rad, reference_rad);
+    AddTurned(deviation, 0, azimuth_rad[0], q);
+    AddTurned(deviation, 1, azimuth_rad[1], q);
     return {BearingOf(q, 0), BearingOf(q, 1)};
+  }
+
+  /// Friction leaves a remainder that creeps on; what is slower than a ten thousandth of an arcsecond a second
+  /// stands.
+  bool CanRest() const override {
+    return !rest_alive_ || (!superposable_ && rest_.state().tail<kCoordinates>().cwiseAbs().maxCoeff() < kCreep);
+  }
+
+  void Rest(std::int64_t periods) override {
+    for (Contribution& c : contributions_) {
+      c.tick = static_cast<int>(std::min<std::int64_t>(c.tick + periods, c.response->size()));
+    }
   }
 
   /// Turns a bearing's deviation from the payload's axes into its stator's.
@@ -146,11 +199,13 @@ class LinearPlant : public DrivenPlant {
   }
 
   LinearModel model_;
+  mutable std::optional<StackPropagator> propagator_;  // made when somebody first looks into a period
   LinearStack rest_;
   std::map<double, MoveResponse> responses_;  // by duration
   std::vector<Contribution> contributions_;
   std::optional<Vector12> constant_sag_;
-  bool superposable_ = true;
+  bool loaded_;
+  bool superposable_;
   bool launching_ = false;
   bool driven_ = false;      // rest_ is told the commands of the running moves
   bool rest_alive_ = false;  // rest_ still decays

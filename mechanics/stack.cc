@@ -28,6 +28,11 @@ void CheckTable(const TableParameters& table) {
   RequirePositive(table.friction.static_ratio, "stack: friction.static_ratio");
   RequirePositive(table.friction.stribeck_rad_s, "stack: friction.stribeck_rad_s");
   RequirePositive(table.friction.presliding_rad, "stack: friction.presliding_rad");
+  RequireNotNegative(table.friction.viscous_Nm_s, "stack: friction.viscous_Nm_s");
+  RequireNotNegative(table.cable.stiffness_Nm_rad, "stack: cable.stiffness_Nm_rad");
+  RequireNotNegative(table.cable.torque_Nm, "stack: cable.torque_Nm");
+  RequireNotNegative(table.unbalance.kg_m, "stack: unbalance.kg_m");
+  Check(table.scale);
 }
 
 /// Masses above one bearing and their transverse inertia about its origin, payload included.
@@ -112,15 +117,28 @@ BearingPose BearingOf(const Vector12& q, int table) {
   return {b[0], b[1], b[2], b[3], b[4]};
 }
 
-double HighestFrequency(StackDynamics& dynamics) {
+namespace {
+
+/// Squares of all natural frequencies, rising; the two free rotors' come first, zero.
+Vector12 SquaredFrequencies(StackDynamics& dynamics) {
   const Vector12 root = BearingStiffness(dynamics.parameters()).cwiseSqrt();
   const Matrix12 symmetric = root.asDiagonal() * dynamics.InverseMass(Vector12::Zero()) * root.asDiagonal();
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix12>(symmetric).eigenvalues().maxCoeff());
+  return Eigen::SelfAdjointEigenSolver<Matrix12>(symmetric).eigenvalues();
+}
+
+}  // namespace
+
+double HighestFrequency(StackDynamics& dynamics) {
+  return std::sqrt(SquaredFrequencies(dynamics)[kCoordinates - 1]);
+}
+
+double LowestFrequency(StackDynamics& dynamics) {
+  return std::sqrt(SquaredFrequencies(dynamics)[2]);
 }
 
 int SubSteps(StackDynamics& dynamics) {
   const StackParameters& p = dynamics.parameters();
-  const double reach = p.integrator == Integrator::kLeapfrog ? 1.35 : 2.0;
+  const double reach = p.integrator == Integrator::kRungeKutta4 ? 2.0 : 1.35;
   const double longest_s = std::min(p.step_s, reach / HighestFrequency(dynamics));
   return static_cast<int>(std::ceil(p.servo_period_s / longest_s - 1e-9));
 }

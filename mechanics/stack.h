@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "mechanics/chain.h"
+#include "mechanics/scale.h"
 
 /// The stack of two rotary tables as bodies: masses, bearings, drives, and Newton's law for them.
 namespace twinbench::mechanics {
@@ -33,6 +34,19 @@ struct FrictionParameters {
   double viscous_Nm_s = 0.0;
 };
 
+/// Cables and hoses that lead to a rotor: they wind up, and their bend makes a torque once a turn.
+struct CableParameters {
+  double stiffness_Nm_rad = 0.0;
+  double torque_Nm = 0.0;    // amplitude
+  double azimuth_rad = 0.0;  // of the rotor where the latter vanishes, and holds it
+};
+
+/// What a rotor is not balanced by.
+struct Unbalance {
+  double kg_m = 0.0;         // mass times radius
+  double azimuth_rad = 0.0;  // on the rotor
+};
+
 /// A rigid body with its axis of symmetry along z.
 struct SymmetricBody {
   double mass_kg = std::numeric_limits<double>::quiet_NaN();
@@ -50,6 +64,9 @@ struct TableParameters {
   double torque_limit_Nm = std::numeric_limits<double>::quiet_NaN();
   double backlash_rad = 0.0;  // full width, of the encoder against the rotor
   FrictionParameters friction;
+  CableParameters cable;
+  Unbalance unbalance;
+  ScaleParameters scale;  // of the encoder that the controller reads
 };
 
 /// Point mass with a small inertia on the reference rotor.
@@ -61,13 +78,15 @@ struct Payload {
   double inertia_kg_m2 = 1e-3;  // about each axis through its centre; used only with a mass
 };
 
-enum class Integrator { kLeapfrog, kRungeKutta4 };
+/// kAdaptive: strides of servo periods as AdaptiveStack finds them long enough. The others: fixed sub-steps, which
+/// StackDynamics::Step takes too.
+enum class Integrator { kAdaptive, kLeapfrog, kRungeKutta4 };
 
 /// Defaults: a plausible 200 mm air-bearing stack (assumed, not data of a real table).
 struct StackParameters {
   std::array<TableParameters, 2> table = {
-      TableParameters{{12.0, 0.0, 0.060, 0.060}, 200e6, 100e6, 0.60e6, 30.0, 20.0, 0.0, {}},
-      TableParameters{{6.0, 0.0, 0.022, 0.022}, 120e6, 60e6, 0.25e6, 40.0, 10.0, 0.0, {}}};
+      TableParameters{{12.0, 0.0, 0.060, 0.060}, 200e6, 100e6, 0.60e6, 30.0, 20.0, 0.0, {}, {}, {}, {}},
+      TableParameters{{6.0, 0.0, 0.022, 0.022}, 120e6, 60e6, 0.25e6, 40.0, 10.0, 0.0, {}, {}, {}, {}}};
   SymmetricBody housing{9.0, -0.030, 0.045, 0.050};  // of the reference; stands on the target's rotor
   Payload payload;
   ChainGeometry geometry;
@@ -75,8 +94,9 @@ struct StackParameters {
   double reaction_feed_forward = 0.0;  // 1: each drive knows the torque by which the other's motion turns it
   double gravity_m_s2 = 9.81;
   double servo_period_s = 500e-6;
-  double step_s = 250e-6;  // longest sub-step; shortened to divide the servo period and to be stable
-  Integrator integrator = Integrator::kLeapfrog;
+  double step_s = 250e-6;  // longest sub-step, of friction where adaptive; shortened to divide the servo period and
+                           // to be stable
+  Integrator integrator = Integrator::kAdaptive;
 };
 
 /// @throws std::invalid_argument unless masses, stiffnesses, times and bandwidths are positive and all is finite.
@@ -104,7 +124,7 @@ class StackDynamics {
   StackDynamics(StackDynamics&&) noexcept;
   StackDynamics& operator=(StackDynamics&&) noexcept;
 
-  /// Acceleration under springs, damping, weight and the two drives' torques [Nm].
+  /// Acceleration under springs, damping, weight, the two drives' torques [Nm] and DriveLoads.
   Vector12 Accelerate(const Vector12& q, const Vector12& qd, const Eigen::Vector2d& torque_Nm);
 
   /// Acceleration under `force` alone, weightless, and without springs.
@@ -113,7 +133,7 @@ class StackDynamics {
   /// Inverse of the mass matrix at q.
   Matrix12 InverseMass(const Vector12& q);
 
-  /// One step of `step_s` with constant torques.
+  /// One step of `step_s` with constant torques, by leapfrog or Runge and Kutta.
   void Step(Integrator integrator, double step_s, const Eigen::Vector2d& torque_Nm, Vector12& q, Vector12& qd);
 
   /// Poses of the rotors as Bullet sees them, for the test that compares them with Chain.
@@ -131,11 +151,15 @@ class StackDynamics {
   Vector12 stiffness_;
   Vector12 damping_;
   Vector12 preload_;
+  bool loaded_;
   std::unique_ptr<Bullet> bullet_;
 };
 
 /// Highest natural frequency [rad/s] at q = 0; bounds the step of the integrators.
 double HighestFrequency(StackDynamics& dynamics);
+
+/// Lowest natural frequency of the bearings [rad/s] at q = 0, rotors free: nothing on them swings on more slowly.
+double LowestFrequency(StackDynamics& dynamics);
 
 /// Number of equal sub-steps of a servo period: each at most step_s and short enough for the stiffest mode
 /// (1.35/omega for the leapfrog, whose limit is 2/omega; 2/omega for RK4, whose limit is 2.8/omega).

@@ -1,0 +1,157 @@
+#include "mechanics/adaptive_stack.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mechanics/plant.h"
+#include "tests/mechanics/eccentric_stack.h"
+#include "tests/mechanics/test_units.h"
+
+namespace twinbench::mechanics {
+namespace {
+
+constexpr double kTenDegrees = 10.0 * kDegree;
+
+std::array<double, 12> Coordinates(const StackState& s) {
+  const BearingPose &t = s.target_bearing, &r = s.reference_bearing;
+  return {t.x_m, t.y_m, t.z_m, t.rx_rad, t.ry_rad, s.target_rad,
+          r.x_m, r.y_m, r.z_m, r.rx_rad, r.ry_rad, s.reference_rad};
+}
+
+/// Largest differences of two courses.
+struct Apart {
+  double position_m = 0.0, angle_rad = 0.0;
+
+  void Include(const StackState& a, const StackState& b) {
+    const auto x = Coordinates(a), y = Coordinates(b);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      double& worst = i % 6 < 3 ? position_m : angle_rad;
+      worst = std::max(worst, std::abs(x[i] - y[i]));
+    }
+  }
+};
+
+/// Both tables, then the reference alone, each time followed from the start to `after_s` behind the arrival.
+Apart FromFineSteps(StackParameters p, double from_s, double until_s) {
+  const auto adaptive = MakePlant(Fidelity::kBullet, p);
+  p.integrator = Integrator::kRungeKutta4;
+  p.step_s = 62.5e-6;
+  const auto fine = MakePlant(Fidelity::kBullet, p);
+  Apart apart;
+  for (int move = 1; move <= 2; ++move) {
+    for (Plant* plant : {adaptive.get(), fine.get()}) {
+      if (move == 1) plant->StartMove(Axis::kTarget, kTenDegrees, 0.6);
+      plant->StartMove(Axis::kReference, -move * kTenDegrees, 0.6);
+      plant->Advance(from_s);
+    }
+    for (double t_s = from_s; t_s < until_s; t_s += 1e-3) {
+      for (Plant* plant : {adaptive.get(), fine.get()}) plant->Advance(1e-3);
+      apart.Include(adaptive->State(), fine->State());
+    }
+  }
+  return apart;
+}
+
+StackParameters CrookedStack() {
+  StackParameters p = EccentricStack();
+  p.payload.azimuth_rad = 0.6;
+  p.geometry.reseat_rad = -0.7;
+  p.geometry.centring_m << 30e-6, -20e-6;
+  p.geometry.mount_tilt_rad << 100e-6, 150e-6;
+  return p;
+}
+
+TEST(AdaptiveStack, GoesTheWayOfFineSteps) {
+  for (const StackParameters& p : {StackParameters{}, CrookedStack()}) {
+    const Apart moving = FromFineSteps(p, 0.0, 0.6);
+    // Asked of a reading: 1 nm and 0.001 arcsec. RK4 at 62.5 us misses 1e-9 arcsec.
+    EXPECT_LT(moving.position_m, 0.1e-9);
+    EXPECT_LT(moving.angle_rad, 1e-4 * kArcsec);
+    const Apart arrived = FromFineSteps(p, 0.6, 1.2);
+    EXPECT_LT(arrived.position_m, 0.01e-9);
+    EXPECT_LT(arrived.angle_rad, 2e-5 * kArcsec);  // kMiss is 4e-6
+  }
+}
+
+TEST(AdaptiveStack, RestsWhereTheMotionWouldHaveLedTo) {
+  const StackParameters p = CrookedStack();
+  const auto asked_late = MakePlant(Fidelity::kBullet, p);
+  StackParameters fine_p = p;
+  fine_p.integrator = Integrator::kLeapfrog;
+  const auto fine = MakePlant(Fidelity::kBullet, fine_p);
+  for (Plant* plant : {asked_late.get(), fine.get()}) {
+    plant->StartMove(Axis::kTarget, kTenDegrees, 0.3);
+    plant->Advance(2.3);  // the slow pole of 30 Hz, 81 / s, leaves e^-160
+  }
+  Apart apart;
+  apart.Include(asked_late->State(), fine->State());
+  EXPECT_LT(apart.position_m, 1e-13);
+  EXPECT_LT(apart.angle_rad, 1e-7 * kArcsec);  // rounding of 10 deg in 8000 steps
+}
+
+TEST(AdaptiveStack, LooksIntoAPeriodWithoutAStair) {
+  for (const Fidelity fidelity : {Fidelity::kLinear, Fidelity::kBullet}) {
+    const auto plant = MakePlant(fidelity, CrookedStack());
+    plant->StartMove(Axis::kReference, kTenDegrees, 0.1);
+    plant->Advance(0.1);
+    std::vector<double> x_m;
+    for (int i = 0; i < 400; ++i) {
+      plant->Advance(0.1e-3);
+      x_m.push_back(plant->State().reference_bearing.x_m);
+    }
+    // Modes up to 825 Hz swing; a stair of 0.5 ms would repeat four values of five and jump at the fifth.
+    double bend_m = 0.0, largest_m = 0.0;
+    for (std::size_t i = 1; i + 1 < x_m.size(); ++i) {
+      bend_m = std::max(bend_m, std::abs(x_m[i - 1] - 2.0 * x_m[i] + x_m[i + 1]));
+      largest_m = std::max(largest_m, std::abs(x_m[i] - x_m.back()));
+      EXPECT_NE(x_m[i], x_m[i - 1]);
+    }
+    const double most = 2.0 * kPi * 825.0 * 0.1e-3;  // a sine's second difference by its amplitude: (omega h)^2
+    EXPECT_LT(bend_m, most * most * largest_m) << static_cast<int>(fidelity);
+    EXPECT_GT(largest_m, 1e-10);
+  }
+}
+
+TEST(AdaptiveStack, GivesTheSameBitsHoweverOftenItIsLookedAt) {
+  for (const Fidelity fidelity : {Fidelity::kLinear, Fidelity::kBullet}) {
+    std::vector<std::array<double, 12>> found;
+    for (const int pieces : {1, 7, 5000}) {
+      const auto plant = MakePlant(fidelity, CrookedStack());
+      plant->StartMove(Axis::kTarget, kTenDegrees, 0.3);
+      for (int k = 0; k < pieces; ++k) {
+        plant->Advance(0.35 / pieces);
+        plant->State();
+      }
+      plant->StartMove(Axis::kReference, kTenDegrees, 0.3);  // while the servo still rings
+      for (int k = 0; k < pieces; ++k) {
+        plant->Advance(0.14 / pieces);
+        plant->State();
+      }
+      found.push_back(Coordinates(plant->State()));
+    }
+    EXPECT_EQ(found[0], found[1]);
+    EXPECT_EQ(found[0], found[2]);
+  }
+}
+
+TEST(RestDecay, IsTheMotionItStandsFor) {
+  const StackParameters p;
+  const StackPropagator propagator(p);
+  const RestDecay decay(p, propagator);
+  RestDecay::Distance distance = RestDecay::Distance::Zero();
+  distance[SpinIndex(0)] = 1e-6;
+  distance[0] = 1e-7;
+  RestDecay::Distance by_steps = distance;
+  for (int k = 0; k < 137; ++k) by_steps = decay.After(by_steps, 1);
+  EXPECT_LT((decay.After(distance, 137) - by_steps).norm(), 1e-12 * distance.norm());
+  const std::int64_t gone = decay.Gone(distance);
+  EXPECT_GT(gone, 256);  // 0.13 s: e^-10 of 1e-6 are left
+  EXPECT_LT(gone, 4096);
+  EXPECT_EQ(decay.After(distance, std::int64_t{1} << 40), RestDecay::Distance(RestDecay::Distance::Zero()));
+}
+
+}  // namespace
+}  // namespace twinbench::mechanics
