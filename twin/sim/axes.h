@@ -6,6 +6,7 @@
 #include "mechanics/plant.h"
 #include "twin/core/shared_settings.h"
 #include "twin/sim/event_queue.h"
+#include "twin/sim/restlessness.h"
 
 namespace twinbench::sim {
 
@@ -14,6 +15,7 @@ struct TableStack {
   const MechanicsSettings& mechanics;
   const TableSettings &target, &reference;
   mechanics::ChainGeometry geometry = {};
+  std::uint64_t seed = 0;  // of what stirs it by chance
 };
 
 mechanics::StackParameters StackOf(const TableStack& stack);
@@ -63,6 +65,7 @@ class Axes {
 
   EventQueue& queue_;
   std::unique_ptr<mechanics::Plant> plant_;
+  Restlessness restlessness_;
   std::array<Drive, 2> drives_;
   Time plant_time_{};
   Time last_arrival_{};

@@ -12,6 +12,7 @@ void SilenceRotary(RotarySettings& own) {
   own.autocollimator.noise_rad = 0.0;
   Silence(own.target);
   Silence(own.reference);
+  Silence(own.mechanics);
 }
 
 }  // namespace
