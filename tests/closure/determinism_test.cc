@@ -58,7 +58,7 @@ TEST(SameSeed, GivesTheSameBitsInFullDynamics) {
 }
 
 TEST(OneCauseOneStream, SwitchingOneNoiseOffDoesNotChangeAnother) {
-  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"));
+  Scenario scenario = LoadScenario(test::ScenarioPath("rotary_4dof.toml"), {"mechanics.fidelity=kinematic"});
   RotaryOf(scenario).procedure.phases = {"full_circle"};
   RotaryOf(scenario).procedure.shifts = {0};
   RotaryOf(scenario).procedure.passes = {1};

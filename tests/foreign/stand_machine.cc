@@ -61,7 +61,7 @@ SizedFault Sized(const StandFault& fault, const Stand& stand, const StandRun& ru
 
 Scenario Believed(const StandDesign& design) {
   return LoadScenario(test::ScenarioPath("rotary_4dof.toml"),
-                      {fmt::format("procedure.positions={}", design.positions),
+                      {"mechanics.fidelity=kinematic", fmt::format("procedure.positions={}", design.positions),
                        fmt::format("procedure.shifts=[{}]", fmt::join(design.shifts, ", "))});
 }
 

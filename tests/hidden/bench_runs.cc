@@ -112,6 +112,7 @@ std::vector<std::string> OverridesOf(Design design) {
   if (design == Design::kCircles)
     return {"circular_procedure.points=72", "circular_procedure.stops=18", warm[0], warm[1]};
   if (design == Design::kFreeform) return {"freeform_procedure.poses=40", warm[0], warm[1]};
+  if (design == Design::kRotary) return {"mechanics.fidelity=kinematic"};
   return {};
 }
 

@@ -79,7 +79,7 @@ TEST(DriveLoads, UnbalanceDeflectsTheBearingWithTheSquareOfTheSpeed) {
       const double speed_rad_s = 1.875 * 2.0 * kPi / duration_s;
       const double force_N = 0.06 * speed_rad_s * speed_rad_s;
       const BearingPose b = plant->State().target_bearing;
-      // Half a turn: against the azimuth at the start. At 0.5 turns a second and a mode of 152 Hz the answer is
+      // Half a turn: against the azimuth at the start. At 0.5 turns a second and modes above 200 Hz the answer is
       // static.
       const double deflection_m = force_N / p.table[0].radial_stiffness_N_m;
       EXPECT_NEAR(b.x_m / deflection_m, -std::cos(0.5), 0.01) << static_cast<int>(fidelity);
@@ -178,7 +178,7 @@ TEST(RespondToBase, GivesTheTwoMassesOneOverTheOtherTheirVerticalMotion) {
 TEST(RespondToBase, IsTheStaticDeflectionBelowEveryMode) {
   const StackParameters p;
   const ComplexResponse y = RespondToBase(p, 0.5);
-  // 1 m/s^2 on 27 kg above the target's bearing and 0.93 kg m of lever; the lowest mode at 152 Hz adds 1e-5.
+  // 1 m/s^2 on 27 kg above the target's bearing and 0.93 kg m of lever; the lowest mode, above 200 Hz, adds 1e-5.
   EXPECT_NEAR(y(0, 0).real(), -27.0 / 100e6, 1e-4 * 27.0 / 100e6);
   EXPECT_NEAR(y(4, 0).real(), -(9.0 * 0.05 + 6.0 * 0.08) / 0.60e6, 1e-4 * 0.93 / 0.60e6);
   EXPECT_NEAR(y(6, 0).real(), -6.0 / 60e6, 1e-4 * 6.0 / 60e6);

@@ -66,6 +66,7 @@ std::vector<OwnKey> RotaryChanges() {
   const std::vector<std::string> warm = {"environment.drift_K_h=0.5", "laser.pointing_yaw_per_kelvin_urad=20.0"};
   const std::vector<std::string> loaded = {"mechanics.payload_mass_kg=20.0", "mechanics.payload_radius_mm=60.0",
                                            "mechanics.fidelity=linear"};
+  const std::vector<std::string> rubbing = {"mechanics.friction_Nm=[0.5, 0.3]", "mechanics.fidelity=linear"};
   const std::vector<std::string> gaussian = {"laser.beam=gaussian"};
   const std::vector<std::string> hum = {"amplifier.hum_mV=20.0"};
   std::vector<OwnKey> keys = {
@@ -122,6 +123,25 @@ std::vector<OwnKey> RotaryChanges() {
       Change("mechanics.servo_Hz", "[15.0, 18.0]", loaded),
       Change("mechanics.friction_Nm", "[0.5, 0.3]", loaded),
       Change("mechanics.step_us", "500.0", loaded),
+      Change("mechanics.friction_static_ratio", "[1.5, 1.5]", rubbing),
+      Change("mechanics.friction_stribeck_arcsec_s", "[50.0, 50.0]", rubbing),
+      Change("mechanics.friction_presliding_arcsec", "[30.0, 30.0]", rubbing),
+      Change("mechanics.friction_viscous_Nm_s_rad", "[0.5, 0.5]", {"mechanics.fidelity=linear"}),
+      Change("mechanics.cable_stiffness_Nm_rad", "[0.5, 0.5]", {"mechanics.fidelity=linear"}),
+      Change("mechanics.cable_torque_Nm", "[0.3, 0.3]", {"mechanics.fidelity=linear"}),
+      Change("mechanics.cable_azimuth_deg", "[40.0, 70.0]",
+             {"mechanics.fidelity=linear", "mechanics.cable_torque_Nm=[0.3, 0.3]"}),
+      Change("mechanics.unbalance_g_mm", "[60000.0, 30000.0]"),
+      Change("mechanics.unbalance_azimuth_deg", "[30.0, 90.0]", {"mechanics.unbalance_g_mm=[60000.0, 30000.0]"}),
+      Change("mechanics.encoder_resolution_arcsec", "[0.02, 0.02]", {"mechanics.fidelity=linear"}),
+      Change("mechanics.encoder_subdivision_arcsec", "[0.5, 0.3]"),
+      Change("mechanics.encoder_periods", "9001", {"mechanics.encoder_subdivision_arcsec=[0.5, 0.3]"}),
+      Change("mechanics.asynchronous_radial_um", "[0.02, 0.02]"),
+      Change("mechanics.asynchronous_axial_um", "[0.02, 0.02]"),
+      Change("mechanics.asynchronous_tilt_arcsec", "[0.01, 0.01]"),
+      Change("mechanics.vibration", "\"VC-C\""),
+      Change("mechanics.vibration_frequency_Hz", "[10.0, 40.0]", {"mechanics.vibration_velocity_um_s=[5.0, 5.0]"}),
+      Change("mechanics.vibration_velocity_um_s", "[5.0, 5.0]", {"mechanics.vibration_frequency_Hz=[10.0, 40.0]"}),
       Change("environment.temperature_degC", "21.0", warm),
       Change("environment.reference_degC", "19.0", warm),
       Change("environment.drift_K_h", "0.8", warm),
@@ -180,7 +200,7 @@ const std::vector<OwnKey>& Keys() {
 
 // Two thirds of the scenario's stops tell everything apart and take less time.
 const std::vector<std::string> kBase = {"procedure.positions=24", "procedure.shifts=[0, 1, 5, 8]",
-                                        "adc.every_sample=false"};
+                                        "adc.every_sample=false", "mechanics.fidelity=kinematic"};
 
 TEST(RotaryOwnScenario, NoKeyIsForgotten) {
   EXPECT_THAT(test::Forgotten(kRotaryBench, Keys()), testing::IsEmpty());

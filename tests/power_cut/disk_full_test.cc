@@ -13,7 +13,9 @@ class FullDisk : public Program {
  protected:
   FullDisk() {
     Write("own.toml", "kind = \"twin\"\n");
-    Write("raw.toml", "bench = \"rotary_4dof\"\n[adc]\nsamples = 1000\n[procedure]\nkeep_raw = true\n");
+    Write("raw.toml",
+          "bench = \"rotary_4dof\"\n[mechanics]\nfidelity = \"kinematic\"\n[adc]\nsamples = "
+          "1000\n[procedure]\nkeep_raw = true\n");
     Succeed(Measure("undisturbed"));
   }
   static std::vector<std::string> Measure(const std::string& name) {

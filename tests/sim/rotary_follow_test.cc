@@ -140,6 +140,23 @@ TEST(RotaryFollow, KnowsTheDynamicsOfTheLinearStack) {
   EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
 }
 
+TEST(RotaryFollow, SaysWhatBodiesByBulletShow) {
+  Scenario s = RichBench();
+  RotaryOf(s).mechanics.fidelity = "bullet";
+  EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
+  RotaryOf(s).target.backlash_rad = RotaryOf(s).reference.backlash_rad = 0.0;
+  RotaryOf(s).mechanics.cable_stiffness_Nm_rad = {0.3, 0.2};
+  RotaryOf(s).mechanics.encoder_subdivision_rad = {0.3 * units::arcsec, 0.2 * units::arcsec};
+  EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-10);
+}
+
+TEST(RotaryFollow, KnowsFrictionByTheLinearModel) {
+  Scenario s = test::SmallNoiseFree();
+  RotaryOf(s).mechanics.fidelity = "linear";
+  RotaryOf(s).mechanics.friction_Nm = {0.2, 0.1};
+  EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
+}
+
 class RotaryFollowEffect : public testing::TestWithParam<EffectEntry> {};
 
 TEST_P(RotaryFollowEffect, IsFollowed) {

@@ -18,7 +18,8 @@ class KilledRun : public Program {
  protected:
   KilledRun() {
     // 2 * 13 + 2 * 13 + 4 * 4 * 72 = 1204 readings, one transaction each.
-    Write("long.toml", "bench = \"rotary_4dof\"\n[procedure]\npositions = 72\n");
+    Write("long.toml",
+          "bench = \"rotary_4dof\"\n[mechanics]\nfidelity = \"kinematic\"\n[procedure]\npositions = 72\n");
     const auto start = steady_clock::now();
     Succeed({"run", "long.toml", "-o", "undisturbed"});
     duration_ = steady_clock::now() - start;

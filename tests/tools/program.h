@@ -139,6 +139,8 @@ ez_arcsec = 12.0
 dy_um = 2.0
 [reference.seating]
 ez_arcsec = 20.0
+[mechanics]
+fidelity = "kinematic"
 [procedure]
 positions = 12
 shifts = [0, 1, 5]

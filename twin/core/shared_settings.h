@@ -60,7 +60,7 @@ struct TableSettings {  // [target], [reference]; [turntable], [multitooth]
   std::optional<CompensationTable> compensation;  // added to the angles that the table is commanded to
 };
 
-struct MechanicsSettings {             // [mechanics]
+struct MechanicsSettings {             // [mechanics]; lists: target, reference
   std::string fidelity = "kinematic";  // kinematic | linear | bullet
   double payload_mass_kg = 0.0;        // on the reference rotor
   double payload_radius_m = 0.0;       // eccentricity ...
@@ -71,7 +71,25 @@ struct MechanicsSettings {             // [mechanics]
   std::array<double, 2> tilt_stiffness_Nm_rad = {0.60e6, 0.25e6};
   double damping_ratio = 0.03;
   std::array<double, 2> servo_Hz = {30.0, 40.0};
-  std::array<double, 2> friction_Nm = {0.0, 0.0};  // Coulomb level of a LuGre friction
+  std::array<double, 2> friction_Nm = {0.0, 0.0};  // Coulomb level of a LuGre friction, and what belongs to it
+  std::array<double, 2> friction_static_ratio = {1.2, 1.2};
+  std::array<double, 2> friction_stribeck_rad_s = {1e-3, 1e-3};
+  std::array<double, 2> friction_presliding_rad = {50e-6, 50e-6};
+  std::array<double, 2> friction_viscous_Nm_s{};
+  std::array<double, 2> cable_stiffness_Nm_rad{};
+  std::array<double, 2> cable_torque_Nm{};  // amplitude, once a turn
+  std::array<double, 2> cable_azimuth_rad{};
+  std::array<double, 2> unbalance_kg_m{};
+  std::array<double, 2> unbalance_azimuth_rad{};
+  std::array<double, 2> encoder_resolution_rad{};
+  std::array<double, 2> encoder_subdivision_rad{};
+  int encoder_periods = 36000;                    // of both graduations, a turn
+  std::array<double, 2> asynchronous_radial_m{};  // root mean squares
+  std::array<double, 2> asynchronous_axial_m{};
+  std::array<double, 2> asynchronous_tilt_rad{};
+  std::string vibration = "none";              // auto | none | VC-A ... VC-G, unless bands are listed:
+  std::vector<double> vibration_frequency_Hz;  // centres of third-octave bands ...
+  std::vector<double> vibration_velocity_m_s;  // ... and their root mean square velocities
   double step_s = 250.0 * units::us;
 };
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "twin/core/device_fault.h"
+#include "twin/sim/block_course.h"
 
 namespace twinbench::sim {
 namespace {
@@ -23,7 +25,16 @@ mechanics::StackParameters StackOf(const TableStack& described) {
     table.tilt_stiffness_Nm_rad = m.tilt_stiffness_Nm_rad[k];
     table.servo_Hz = m.servo_Hz[k];
     table.backlash_rad = tables[k]->backlash_rad;
-    table.friction.coulomb_Nm = m.friction_Nm[k];
+    table.friction = {.coulomb_Nm = m.friction_Nm[k],
+                      .static_ratio = m.friction_static_ratio[k],
+                      .stribeck_rad_s = m.friction_stribeck_rad_s[k],
+                      .presliding_rad = m.friction_presliding_rad[k],
+                      .viscous_Nm_s = m.friction_viscous_Nm_s[k]};
+    table.cable = {m.cable_stiffness_Nm_rad[k], m.cable_torque_Nm[k], m.cable_azimuth_rad[k]};
+    table.unbalance = {m.unbalance_kg_m[k], m.unbalance_azimuth_rad[k]};
+    table.scale = {.resolution_rad = m.encoder_resolution_rad[k],
+                   .subdivision_rad = m.encoder_subdivision_rad[k],
+                   .periods = m.encoder_periods};
   }
   stack.payload.mass_kg = m.payload_mass_kg;
   stack.payload.radius_m = m.payload_radius_m;
@@ -40,7 +51,8 @@ Axes::Axes(const TableStack& stack, EventQueue& queue)
       schedules_{Schedule(queue, "target"), Schedule(queue, "reference")},
       servo_period_(FromSeconds(stack.mechanics.step_s)),
       is_driven_(stack.mechanics.fidelity != "kinematic"),
-      plant_(mechanics::MakePlant(mechanics::FidelityFromName(stack.mechanics.fidelity), StackOf(stack))) {
+      plant_(mechanics::MakePlant(mechanics::FidelityFromName(stack.mechanics.fidelity), StackOf(stack))),
+      restlessness_(stack.mechanics, StackOf(stack), stack.seed) {
   const std::array<const TableSettings*, 2> tables = {&stack.target, &stack.reference};
   for (std::size_t k = 0; k < 2; ++k) {
     drives_[k].move_time_s = tables[k]->move_time_s;
@@ -108,6 +120,12 @@ bool Axes::IsRestless() {
   return !plant_->Settled();
 }
 
+double Axes::Shortest_s() {
+  const double servos_s = IsRestless() ? BlockCourse::kKnotsAPeriod * ToSeconds(servo_period_)
+                                       : std::numeric_limits<double>::infinity();
+  return std::min(servos_s, restlessness_.Shortest_s());
+}
+
 bool Axes::InPosition(mechanics::Axis axis) {
   CatchUp();
   return queue_.Now() >= drive(axis).arrival + FromSeconds(drive(axis).settle_s) && plant_->Settled(axis);
@@ -135,11 +153,14 @@ bool Axes::ComeToRest() {
 void Axes::Mount(const mechanics::ChainGeometry& geometry) {
   CatchUp();
   plant_->Mount(geometry);
+  restlessness_.Mount(geometry);
 }
 
 mechanics::StackState Axes::Look() {
   CatchUp();
-  return plant_->State();
+  mechanics::StackState state = plant_->State();
+  restlessness_.AddTo(state, queue_.Now());
+  return state;
 }
 
 void Axes::CatchUp() {

@@ -5,6 +5,7 @@
 
 #include "mechanics/plant.h"
 #include "twin/core/shared_settings.h"
+#include "twin/sim/restlessness.h"
 #include "twin/sim/schedule.h"
 
 namespace twinbench::sim {
@@ -14,6 +15,7 @@ struct TableStack {
   const MechanicsSettings& mechanics;
   const TableSettings &target, &reference;
   mechanics::ChainGeometry geometry = {};
+  std::uint64_t seed = 0;  // of what stirs it by chance
 };
 
 mechanics::StackParameters StackOf(const TableStack& stack);
@@ -50,10 +52,11 @@ class Axes {
   Time LastDeparture() const { return last_departure_; }
   Time LastArrival() const { return last_arrival_; }
 
-  /// Whether angles may change from servo period to servo period, or nothing moves and the servos are quiet.
+  /// Whether something moves or a servo is not quiet yet.
   bool IsRestless();
-  /// In which what moves changes smoothly.
-  Duration ServoPeriod() const { return servo_period_; }
+  /// Period of the fastest thing in what Look shows: while servos work, as long as a sine whose knots are their
+  /// periods (block_course.h); at rest that of the floor's vibration; infinite where nothing stirs.
+  double Shortest_s();
 
  private:
   struct Drive {
@@ -74,6 +77,7 @@ class Axes {
   bool is_driven_;        // by servos, not straight to where they are told
   bool serving_ = false;  // a servo step is scheduled
   std::unique_ptr<mechanics::Plant> plant_;
+  Restlessness restlessness_;
   std::array<Drive, 2> drives_;
   Time plant_time_{};
   Time last_departure_{}, last_arrival_{};

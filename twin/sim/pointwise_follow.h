@@ -24,8 +24,8 @@ Scenario Foreseeable(Scenario scenario, const std::vector<Reading>& record);
 /// Errors of a table are what a run leaves free.
 void LeaveFree(TableSettings& table);
 
-/// Bullet gives way to the linear model: the tables' angles differ by nanometres on the grating, at a thousandth of
-/// the cost.
+/// Bullet gives way to the linear model, which has the same following error, settling and ring-down: in the window
+/// of a reading they differ by less than 0.01 nm on the grating.
 void WithoutBullet(MechanicsSettings& mechanics);
 
 /// @tparam Extra  What disturbances add to one reading of the bench.

@@ -12,4 +12,11 @@ void Silence(EnvironmentSettings& environment) {
   environment.random_walk_K_sqrt_h = 0.0;
 }
 
+void Silence(MechanicsSettings& mechanics) {
+  mechanics.asynchronous_radial_m = mechanics.asynchronous_axial_m = mechanics.asynchronous_tilt_rad = {};
+  mechanics.vibration = "none";
+  mechanics.vibration_frequency_Hz.clear();
+  mechanics.vibration_velocity_m_s.clear();
+}
+
 }  // namespace twinbench::sim

@@ -7,5 +7,6 @@ namespace twinbench::sim {
 
 void Silence(TableSettings& table);
 void Silence(EnvironmentSettings& environment);
+void Silence(MechanicsSettings& mechanics);
 
 }  // namespace twinbench::sim

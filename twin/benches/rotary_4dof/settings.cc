@@ -132,8 +132,43 @@ void AddMechanics(Keys& keys, MechanicsSettings& s) {
   t.Add("tilt_stiffness", {"Nm_mrad", 1e3}, Positive(1e9), List(s.tilt_stiffness_Nm_rad), "target, reference");
   t.Add("damping_ratio", kPure, UpTo(2), &s.damping_ratio, "of the bearings");
   t.Add("servo", kHz, Positive(10000), List(s.servo_Hz), "bandwidth: target, reference");
-  t.Add("friction", {"Nm"}, UpTo(10000), List(s.friction_Nm), "Coulomb level: target, reference");
-  t.Add("step", kMicrosecond, Positive(100000), &s.step_s, "of the integration");
+  t.Add("step", kMicrosecond, Positive(100000), &s.step_s, "longest, of friction within a servo period");
+}
+
+/// What acts on the drives; each key has an entry for the target and one for the reference.
+void AddDrives(Keys& keys, MechanicsSettings& s) {
+  Table t(keys, "mechanics");
+  t.Add("friction", {"Nm"}, UpTo(10000), List(s.friction_Nm), "Coulomb level of LuGre bristles: target, reference");
+  t.Add("friction_static_ratio", kPure, {1.0, 10.0}, List(s.friction_static_ratio),
+        "of breakaway to Coulomb torque");
+  t.Add("friction_stribeck", {"arcsec_s", units::arcsec}, Positive(3.6e6), List(s.friction_stribeck_rad_s),
+        "speed over which breakaway falls to Coulomb torque");
+  t.Add("friction_presliding", kArcsec, Positive(3600), List(s.friction_presliding_rad),
+        "by which bristles bend before they slip");
+  t.Add("friction_viscous", {"Nm_s_rad"}, UpTo(10000), List(s.friction_viscous_Nm_s), "torque by speed");
+  t.Add("cable_stiffness", {"Nm_rad"}, UpTo(10000), List(s.cable_stiffness_Nm_rad), "of cables that wind up");
+  t.Add("cable_torque", {"Nm"}, UpTo(10000), List(s.cable_torque_Nm), "of bent cables, amplitude once a turn");
+  t.Add("cable_azimuth", kDeg, Within(360), List(s.cable_azimuth_rad), "of the rotor where the latter holds it");
+  t.Add("unbalance", {"g_mm", 1e-6}, UpTo(1e9), List(s.unbalance_kg_m), "of the rotors; its weight is a payload's");
+  t.Add("unbalance_azimuth", kDeg, Within(360), List(s.unbalance_azimuth_rad), "on the rotors");
+  t.Add("encoder_resolution", kArcsec, UpTo(3600), List(s.encoder_resolution_rad),
+        "of the servos' encoders; 0: none");
+  t.Add("encoder_subdivision", kArcsec, Within(3.0), List(s.encoder_subdivision_rad),
+        "error within a period of their graduation, amplitude");
+  t.Add("encoder_periods", kPure, {1, 1e6}, &s.encoder_periods, "of the graduation, a turn");
+}
+
+void AddRestlessness(Keys& keys, MechanicsSettings& s) {
+  Table t(keys, "mechanics");
+  t.Add("asynchronous_radial", kUm, UpTo(1000), List(s.asynchronous_radial_m),
+        "rms of what does not repeat from turn to turn, along x and y: target, reference");
+  t.Add("asynchronous_axial", kUm, UpTo(1000), List(s.asynchronous_axial_m), "the same along z");
+  t.Add("asynchronous_tilt", kArcsec, UpTo(3600), List(s.asynchronous_tilt_rad), "the same about x and y");
+  t.Text("vibration", &s.vibration, {"auto", "none", "VC-A", "VC-B", "VC-C", "VC-D", "VC-E", "VC-F", "VC-G"},
+         "of the floor; auto: VC-E under bodies by Bullet, else none");
+  t.Add("vibration_frequency", kHz, Positive(1e4), &s.vibration_frequency_Hz,
+        "centres of third octaves, in place of a curve");
+  t.Add("vibration_velocity", {"um_s", units::um}, UpTo(1e6), &s.vibration_velocity_m_s, "rms in each of them");
 }
 
 void AddPlan(Table& t, ProcedureSettings& s) {
@@ -180,6 +215,24 @@ void CheckShifts(const ScenarioText& text, const ProcedureSettings& procedure) {
   }
 }
 
+void CheckEncoders(const ScenarioText& text, const MechanicsSettings& m) {
+  for (const double error_rad : m.encoder_subdivision_rad) {
+    if (std::abs(error_rad) * m.encoder_periods < 0.9) continue;
+    throw InputError(Place(text, "mechanics.encoder_subdivision_arcsec", "mechanics.encoder_periods"),
+                     fmt::format("a subdivision error of {:.3g} arcsec turns a graduation of {} periods back",
+                                 error_rad / units::arcsec, m.encoder_periods),
+                     fmt::format("less than {:.3g} arcsec", 0.9 / m.encoder_periods / units::arcsec));
+  }
+}
+
+void CheckVibration(const ScenarioText& text, const MechanicsSettings& m) {
+  if (m.vibration_frequency_Hz.size() == m.vibration_velocity_m_s.size()) return;
+  throw InputError(Place(text, "mechanics.vibration_velocity_um_s", "mechanics.vibration_frequency_Hz"),
+                   fmt::format("{} frequencies and {} velocities", m.vibration_frequency_Hz.size(),
+                               m.vibration_velocity_m_s.size()),
+                   "one velocity for each frequency");
+}
+
 void CheckProfile(const ScenarioText& text, const LaserSettings& laser) {
   if (laser.beam == "profile" && laser.profile_file.empty())
     throw InputError(Place(text, "laser.beam"), "laser.beam is \"profile\" without a file",
@@ -201,6 +254,8 @@ void AddKeys(Keys& keys, Scenario& s) {
   AddReferenceMounting(keys, s);
   AddTable(keys, "reference", "in its rotor frame", own.reference);
   AddMechanics(keys, own.mechanics);
+  AddDrives(keys, own.mechanics);
+  AddRestlessness(keys, own.mechanics);
   AddEnvironment(keys, s.environment);
   AddAutocollimator(keys, own.autocollimator);
   AddProcedure(keys, own.procedure);
@@ -212,6 +267,8 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   CheckShifts(text, own.procedure);
   CheckPasses(text, "procedure.passes", own.procedure.passes);
   CheckProfile(text, own.laser);
+  CheckEncoders(text, own.mechanics);
+  CheckVibration(text, own.mechanics);
 }
 
 }  // namespace twinbench::benches::rotary

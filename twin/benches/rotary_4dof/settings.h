@@ -91,6 +91,14 @@ struct ProcedureSettings {  // [procedure]
   bool keep_raw = false;
 };
 
+/// What a newcomer gets: bodies by Bullet, on the floor of a quiet laboratory.
+inline MechanicsSettings BodiesOnAQuietFloor() {
+  MechanicsSettings mechanics;
+  mechanics.fidelity = "bullet";
+  mechanics.vibration = "auto";
+  return mechanics;
+}
+
 struct RotarySettings {
   LaserSettings laser;
   GratingSettings grating;
@@ -104,7 +112,7 @@ struct RotarySettings {
   double reference_height_m = 0.080;                     // [reference] height_mm: its origin above the target's
   Eigen::Vector2d centring_m = Eigen::Vector2d::Zero();  // [reference] centring_um: its body on the target rotor
   Eigen::Vector2d mount_tilt_rad = Eigen::Vector2d::Zero();  // [reference] mount_tilt_arcsec: about x and y
-  MechanicsSettings mechanics;
+  MechanicsSettings mechanics = BodiesOnAQuietFloor();
   AutocollimatorSettings autocollimator;
   ProcedureSettings procedure;
 };

@@ -57,13 +57,18 @@ class RecordedDrives {
 
   void Mount(const mechanics::ChainGeometry& geometry) { plant_->Mount(geometry); }
 
-  /// Both tables move at once and settle.
+  /// Both tables move at once, settle, and their in-position windows pass.
   void GoTo(double target_rad, double reference_rad) {
-    const double target_s = Start(Axis::kTarget, target_rad, RotaryOf(actual_).target);
-    const double reference_s = Start(Axis::kReference, reference_rad, RotaryOf(actual_).reference);
+    const RotarySettings& own = RotaryOf(actual_);
+    const double target_s = Start(Axis::kTarget, target_rad, own.target);
+    const double reference_s = Start(Axis::kReference, reference_rad, own.reference);
     const double longest_s = std::max(target_s, reference_s);
-    if (longest_s > 0.0) plant_->AdvanceUntilSettled(longest_s + kPatience_s);
+    if (longest_s == 0.0) return;
+    const double passed_s = plant_->AdvanceUntilSettled(longest_s + kPatience_s);
+    Dwell(std::max(target_s + own.target.settle_s, reference_s + own.reference.settle_s) - passed_s);
   }
+
+  void Dwell(double for_s) { plant_->Advance(std::max(0.0, for_s)); }
 
   mechanics::StackState State() const { return plant_->State(); }
   int Direction(Axis axis) const { return direction_[static_cast<std::size_t>(axis)]; }
@@ -117,6 +122,7 @@ class CourseMaker {
       drives_.GoTo(behind_rad, Shift_rad(r) - behind_rad);
     }
     drives_.GoTo(OrZero(r.target_rad), OrZero(r.reference_rad));
+    drives_.Dwell(OrZero(r.dwell_s));
     course_.stops.push_back(StopOf(r, room_degC_[static_cast<Eigen::Index>(i)]));
   }
 

@@ -15,6 +15,7 @@ void SilenceRotary(RotarySettings& own) {
   own.autocollimator.noise_rad = 0.0;
   Silence(own.target);
   Silence(own.reference);
+  Silence(own.mechanics);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/course.h"
 #include "twin/benches/rotary_4dof/twin/points.h"
+#include "twin/benches/rotary_4dof/twin/table_stack.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::sim {
@@ -28,19 +29,58 @@ double IfNoisy(const Scenario& stated, double noise) {
   return stated.noise_free ? 0.0 : noise;
 }
 
-Scenario WithFreeTables(Scenario scenario) {
+/// Shortest time from the end of a move to a reading [s]; tables that are mounted have long stood.
+double ShortestWait_s(const RotarySettings& own, const std::vector<Reading>& record) {
+  double wait_s = own.procedure.remount_s;
+  for (const Reading& r : record) {
+    if (r.phase == Phase::kFullCircle) wait_s = std::min(wait_s, std::isfinite(r.dwell_s) ? r.dwell_s : 0.0);
+  }
+  return wait_s + std::min(own.target.settle_s, own.reference.settle_s);
+}
+
+/// Rate [1/s] at which what a move leaves decays at least: of the controllers' slowest pole, 0.43 of their
+/// bandwidth (ServoGains), or of the bearings' lowest mode, which has half of the stated damping or more.
+double SlowestDecay_1_s(const Scenario& scenario) {
+  const MechanicsSettings& m = RotaryOf(scenario).mechanics;
+  mechanics::StackDynamics dynamics(StackOf(StackOfBench(scenario)));
+  const double servo_1_s = 0.43 * 2.0 * units::kPi * std::min(m.servo_Hz[0], m.servo_Hz[1]);
+  return std::min(servo_1_s, 0.5 * m.damping_ratio * mechanics::LowestFrequency(dynamics));
+}
+
+/// Whether where the tables stand at a reading depends on nothing but where they were sent: what a move leaves,
+/// some arcsec and a micrometre at most, has fallen below 1e-12 rad and m, e^-16 of it.
+bool StandsStill(const Scenario& scenario, const std::vector<Reading>& record) {
+  const RotarySettings& own = RotaryOf(scenario);
+  const MechanicsSettings& m = own.mechanics;
+  if (own.target.backlash_rad > 0.0 || own.reference.backlash_rad > 0.0) return false;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const bool rubs = m.friction_Nm[i] > 0.0 || m.friction_viscous_Nm_s[i] > 0.0;
+    if (rubs || m.encoder_resolution_rad[i] > 0.0) return false;
+  }
+  return SlowestDecay_1_s(scenario) * ShortestWait_s(own, record) > 16.0;
+}
+
+/// What readings are compared with: the linear model in place of Bullet, and no dynamics where they are long over.
+void ChooseMotion(Scenario& scenario, const std::vector<Reading>& record) {
+  MechanicsSettings& mechanics = RotaryOf(scenario).mechanics;
+  if (mechanics.fidelity != "bullet") return;
+  WithoutBullet(mechanics);
+  if (StandsStill(scenario, record)) mechanics.fidelity = "kinematic";
+}
+
+Scenario WithFreeTables(Scenario scenario, const std::vector<Reading>& record) {
   RotarySettings& own = RotaryOf(scenario);
   LeaveFree(own.target);
   LeaveFree(own.reference);
-  WithoutBullet(own.mechanics);
+  ChooseMotion(scenario, record);
   return scenario;
 }
 
 class RotaryFollow : public PointwiseFollow<RotaryExtra> {
  public:
   RotaryFollow(const Scenario& stated, const std::vector<Reading>& record)
-      : PointwiseFollow(WithFreeTables(Foreseeable(stated, AtMiddleOfBlocks(record, RotaryOf(stated).adc))), record,
-                        RotaryPoints()),
+      : PointwiseFollow(WithFreeTables(Foreseeable(stated, AtMiddleOfBlocks(record, RotaryOf(stated).adc)), record),
+                        record, RotaryPoints()),
         noise_V_(IfNoisy(stated, RotaryOf(stated).amplifier.noise_V)),
         thermometer_noise_K_(IfNoisy(stated, stated.environment.sensor_noise_K)),
         path_(scenario(), LightAsked::kQuickly),

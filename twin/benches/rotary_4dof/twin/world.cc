@@ -71,10 +71,7 @@ void World::WriteIrradiance(const std::string& path) {
 
 /// Period or time constant of the fastest thing that may go on during a block.
 double World::Shortest_s() {
-  constexpr double kStepsAPeriod = BlockCourse::kKnotsAPeriod;
-  const double drives_s =
-      axes_.IsRestless() ? kStepsAPeriod * ToSeconds(axes_.ServoPeriod()) : std::numeric_limits<double>::infinity();
-  return std::min({path_.effects().Shortest_s(), path_.electronics().Shortest_s(), drives_s});
+  return std::min({path_.effects().Shortest_s(), path_.electronics().Shortest_s(), axes_.Shortest_s()});
 }
 
 /// What reaches the converter now.
