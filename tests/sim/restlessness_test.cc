@@ -61,6 +61,7 @@ TEST(BaseVibration, HasTheStatedVelocityInEveryBandAndDirection) {
 TEST(ShakenStack, SwaysAtRestAsItsAnswersAndTheSpectrumSay) {
   for (const std::string fidelity : {"kinematic", "linear", "bullet"}) {
     Scenario s = Bodies(fidelity);
+    RotaryOf(s).mechanics.vibration = "listed";
     RotaryOf(s).mechanics.vibration_frequency_Hz = {10.0, 63.0};
     RotaryOf(s).mechanics.vibration_velocity_m_s = {20.0 * um, 5.0 * um};
     EventQueue queue;

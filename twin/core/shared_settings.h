@@ -87,10 +87,10 @@ struct MechanicsSettings {             // [mechanics]; lists: target, reference
   std::array<double, 2> asynchronous_radial_m{};  // root mean squares
   std::array<double, 2> asynchronous_axial_m{};
   std::array<double, 2> asynchronous_tilt_rad{};
-  std::string vibration = "none";              // auto | none | VC-A ... VC-G, unless bands are listed:
-  std::vector<double> vibration_frequency_Hz;  // centres of third-octave bands ...
-  std::vector<double> vibration_velocity_m_s;  // ... and their root mean square velocities
   double step_s = 250.0 * units::us;
+  std::string vibration = "none";                       // auto | none | VC-A ... VC-G | listed, which is
+  std::vector<double> vibration_frequency_Hz = {10.0};  // centres of third-octave bands ...
+  std::vector<double> vibration_velocity_m_s = {0.0};   // ... and their root mean square velocities
 };
 
 struct EnvironmentSettings {  // [environment]

@@ -6,12 +6,13 @@ namespace twinbench::sim {
 
 std::vector<VibrationBand> VibrationOf(const MechanicsSettings& m) {
   std::vector<VibrationBand> bands;
+  if (m.vibration == "none") return bands;
+  if (m.vibration == "auto") return m.fidelity == "bullet" ? VibrationCriterion("VC-E") : bands;
+  if (m.vibration != "listed") return VibrationCriterion(m.vibration);
   for (std::size_t i = 0; i < m.vibration_frequency_Hz.size(); ++i) {
     bands.push_back({m.vibration_frequency_Hz[i], m.vibration_velocity_m_s[i]});
   }
-  if (!bands.empty() || m.vibration == "none") return bands;
-  if (m.vibration != "auto") return VibrationCriterion(m.vibration);
-  return m.fidelity == "bullet" ? VibrationCriterion("VC-E") : bands;
+  return bands;
 }
 
 Restlessness::Restlessness(const MechanicsSettings& m, const mechanics::StackParameters& parameters,

@@ -15,8 +15,6 @@ void Silence(EnvironmentSettings& environment) {
 void Silence(MechanicsSettings& mechanics) {
   mechanics.asynchronous_radial_m = mechanics.asynchronous_axial_m = mechanics.asynchronous_tilt_rad = {};
   mechanics.vibration = "none";
-  mechanics.vibration_frequency_Hz.clear();
-  mechanics.vibration_velocity_m_s.clear();
 }
 
 }  // namespace twinbench::sim

@@ -164,11 +164,12 @@ void AddRestlessness(Keys& keys, MechanicsSettings& s) {
         "rms of what does not repeat from turn to turn, along x and y: target, reference");
   t.Add("asynchronous_axial", kUm, UpTo(1000), List(s.asynchronous_axial_m), "the same along z");
   t.Add("asynchronous_tilt", kArcsec, UpTo(3600), List(s.asynchronous_tilt_rad), "the same about x and y");
-  t.Text("vibration", &s.vibration, {"auto", "none", "VC-A", "VC-B", "VC-C", "VC-D", "VC-E", "VC-F", "VC-G"},
+  t.Text("vibration", &s.vibration,
+         {"auto", "none", "VC-A", "VC-B", "VC-C", "VC-D", "VC-E", "VC-F", "VC-G", "listed"},
          "of the floor; auto: VC-E under bodies by Bullet, else none");
-  t.Add("vibration_frequency", kHz, Positive(1e4), &s.vibration_frequency_Hz,
-        "centres of third octaves, in place of a curve");
-  t.Add("vibration_velocity", {"um_s", units::um}, UpTo(1e6), &s.vibration_velocity_m_s, "rms in each of them");
+  t.Add("vibration_frequency", kHz, Positive(1e4), &s.vibration_frequency_Hz, "listed: centres of third octaves");
+  t.Add("vibration_velocity", {"um_s", units::um}, UpTo(1e6), &s.vibration_velocity_m_s,
+        "listed: rms in each of them");
 }
 
 void AddPlan(Table& t, ProcedureSettings& s) {
