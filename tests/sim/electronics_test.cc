@@ -67,18 +67,20 @@ TEST(Electronics, SaysWhatIsWrongWithATableOfItsNonLinearity) {
   EXPECT_THROW(Twin{scenario}, InputError);
 }
 
-// A wrong instant t of a sine a sin(w t) is a wrong voltage: standard deviation a w t / sqrt(2).
+// A wrong instant t of a sine a sin(w t) is a wrong voltage: standard deviation a w t / sqrt(2), to first order.
 TEST(Electronics, TurnsJitterIntoNoiseWhereTheSignalChanges) {
+  constexpr int kScans = 100000;  // 8000 periods
+  const double a_V = 0.5, frequency_Hz = 5000.0, jitter_s = 16e-6;
   Scenario scenario = Still();
-  RotaryOf(scenario).adc.jitter_s = 20e-6;
-  const double quiet_V = Block(scenario, 10000).channel[0].std_V;
-  RotaryOf(scenario).amplifier.hum_V = 0.5;
-  RotaryOf(scenario).amplifier.hum_Hz = 50.0;
-  const double sine_V2 = 0.5 * 0.5 * 0.5;  // the hum itself
-  const double expected_V = 0.5 * units::turn * 50.0 * 20e-6 / std::sqrt(2.0);
-  const double shown_V = Block(scenario, 10000).channel[0].std_V;  // eight periods
-  EXPECT_NEAR(std::sqrt(shown_V * shown_V - sine_V2), expected_V, 0.05 * expected_V);
-  EXPECT_LT(quiet_V, 0.2 * expected_V);
+  RotaryOf(scenario).adc.jitter_s = jitter_s;
+  const double quiet_V = Block(scenario, kScans).channel[0].std_V;
+  RotaryOf(scenario).amplifier.hum_V = a_V;
+  RotaryOf(scenario).amplifier.hum_Hz = frequency_Hz;
+  const double expected_V = a_V * units::turn * frequency_Hz * jitter_s / std::sqrt(2.0);
+  const double shown_V = Block(scenario, kScans).channel[0].std_V;
+  // The sine itself is in it too. Products of sine and noise leave 1.3 % by chance.
+  EXPECT_NEAR(std::sqrt(shown_V * shown_V - 0.5 * a_V * a_V), expected_V, 0.05 * expected_V);
+  EXPECT_LT(quiet_V, 0.01 * expected_V);
 }
 
 TEST(Electronics, LosesScans) {
