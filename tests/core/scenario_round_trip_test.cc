@@ -236,6 +236,11 @@ FixtureSettings AnyFixture(bool is_box, Random& random, const std::string& file)
 
 /// What the loader wants of keys together.
 void MakeWholeTeethAndLines(Scenario& s) {
+  if (s.bench == kRotaryBench) {
+    MechanicsSettings& m = RotaryOf(s).mechanics;
+    m.encoder_periods = 100;
+    m.vibration_velocity_m_s.resize(m.vibration_frequency_Hz.size(), 1e-6);
+  }
   if (s.bench == kHobBench) HobOf(s).table_encoder.lines = 5 * HobOf(s).hob_procedure.samples_per_turn;
   // Bodies and the closed form of what they do exclude each other; tests/own_scenario has every key of either.
   if (s.bench == kCircularBench) CircularOf(s).mechanics.fidelity = "kinematic";

@@ -69,11 +69,12 @@ bool Axes::StartMove(mechanics::Axis axis, double to_rad) {
   if (Moving(axis)) throw DeviceFault(FaultKind::kRefused, "table", "a move was asked for while another one runs");
   const double duration_s = std::max(d.move_time_s, std::abs(travel_rad) / d.speed_rad_s);
   CatchUp();
+  d.departed_rad = Encoder_rad(axis);
   plant_->StartMove(axis, to_rad, duration_s);
   d.commanded_rad = to_rad;
   d.direction = travel_rad > 0.0 ? 1 : -1;
   d.arrival = queue_.Now() + FromSeconds(duration_s);
-  last_departure_ = queue_.Now();
+  d.departure = queue_.Now();
   last_arrival_ = std::max(last_arrival_, d.arrival);
   schedules_[static_cast<std::size_t>(axis)].At(d.arrival, [this] { CatchUp(); });
   if (is_driven_ && !serving_) Serve();
@@ -113,6 +114,16 @@ void Axes::Serve() {
     serving_ = false;
     if (IsRestless()) Serve();
   });
+}
+
+double Axes::Encoder_rad(mechanics::Axis axis) const {
+  const mechanics::StackState state = plant_->State();
+  return axis == mechanics::Axis::kTarget ? state.target_encoder_rad : state.reference_encoder_rad;
+}
+
+double Axes::Travelled_rad(mechanics::Axis axis) {
+  CatchUp();
+  return std::abs(Encoder_rad(axis) - drive(axis).departed_rad);
 }
 
 bool Axes::IsRestless() {

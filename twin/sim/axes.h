@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 
 #include "mechanics/plant.h"
@@ -49,7 +50,9 @@ class Axes {
   mechanics::StackState Look();
 
   int Direction(mechanics::Axis axis) const { return drive(axis).direction; }
-  Time LastDeparture() const { return last_departure_; }
+  /// Begin of the axis' last move, and how far its encoder has come since; infinitely far before the first one.
+  Time Departure(mechanics::Axis axis) const { return drive(axis).departure; }
+  double Travelled_rad(mechanics::Axis axis);
   Time LastArrival() const { return last_arrival_; }
 
   /// Whether something moves or a servo is not quiet yet.
@@ -61,6 +64,8 @@ class Axes {
  private:
   struct Drive {
     double commanded_rad = 0.0;
+    double departed_rad = -std::numeric_limits<double>::infinity();
+    Time departure{};
     int direction = 1;
     Time arrival{};
     Time watched_from{}, given_up = Time::min();  // a look for quietness, and when it ended in vain
@@ -68,6 +73,7 @@ class Axes {
   };
   Drive& drive(mechanics::Axis axis) { return drives_[static_cast<std::size_t>(axis)]; }
   const Drive& drive(mechanics::Axis axis) const { return drives_[static_cast<std::size_t>(axis)]; }
+  double Encoder_rad(mechanics::Axis axis) const;
   void CatchUp();
   void Serve();
 
@@ -80,7 +86,7 @@ class Axes {
   Restlessness restlessness_;
   std::array<Drive, 2> drives_;
   Time plant_time_{};
-  Time last_departure_{}, last_arrival_{};
+  Time last_arrival_{};
 };
 
 }  // namespace twinbench::sim

@@ -72,6 +72,8 @@ class RecordedDrives {
 
   mechanics::StackState State() const { return plant_->State(); }
   int Direction(Axis axis) const { return direction_[static_cast<std::size_t>(axis)]; }
+  /// On its last move.
+  double Travelled_rad(Axis axis) const { return travelled_rad_[static_cast<std::size_t>(axis)]; }
 
  private:
   static constexpr double kPatience_s = 10.0;
@@ -84,12 +86,14 @@ class RecordedDrives {
     const double duration_s = Duration_s(table, travel_rad);
     plant_->StartMove(axis, to_rad, duration_s);
     direction_[static_cast<std::size_t>(axis)] = travel_rad > 0.0 ? 1 : -1;
+    travelled_rad_[static_cast<std::size_t>(axis)] = std::abs(travel_rad);
     return duration_s;
   }
 
   const Scenario& actual_;
   std::unique_ptr<mechanics::Plant> plant_;
   std::array<int, 2> direction_ = {1, 1};
+  std::array<double, 2> travelled_rad_ = Moment{}.travelled_rad;
 };
 
 class CourseMaker {
@@ -183,6 +187,8 @@ class CourseMaker {
     moment.reference_rad = axes.reference_rad;
     moment.target_direction = drives_.Direction(Axis::kTarget);
     moment.reference_direction = drives_.Direction(Axis::kReference);
+    moment.departed.fill(r.time);  // before each reading anew, for all that play knows
+    moment.travelled_rad = {drives_.Travelled_rad(Axis::kTarget), drives_.Travelled_rad(Axis::kReference)};
     moment.setup = r.setup;
     moment.reading = r.reading;
     return moment;

@@ -14,15 +14,18 @@ namespace twinbench::sim {
 /// What the twin knows at one instant and an effect may depend on.
 struct Moment {
   Time now{};
-  Time mounted{};              // end of the last mounting
-  Time departed{};             // begin of the last move of either table ...
-  Time arrived{};              // ... and its end, which may be still to come
-  double averaged_s = 0.0;     // 0: this very instant; else the mean over as long about it is asked for
-  double temperature_K = 0.0;  // of the room, above environment.reference_degC
-  double target_rad = 0.0;     // rotors, unwrapped, without the index error ez
+  Time mounted{};                  // end of the last mounting
+  std::array<Time, 2> departed{};  // begin of the last move of target and reference
+  Time arrived{};                  // end of the last move of either, which may be still to come
+  double averaged_s = 0.0;         // 0: this very instant; else the mean over as long about it is asked for
+  double temperature_K = 0.0;      // of the room, above environment.reference_degC
+  double target_rad = 0.0;         // rotors, unwrapped, without the index error ez
   double reference_rad = 0.0;
   int target_direction = 1;  // sense of the last move
   int reference_direction = -1;
+  /// How far target and reference have come on it.
+  std::array<double, 2> travelled_rad = {std::numeric_limits<double>::infinity(),
+                                         std::numeric_limits<double>::infinity()};
   int setup = 0;
   int reading = 0;  // running number of the block being taken
 };

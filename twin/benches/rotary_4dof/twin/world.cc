@@ -45,7 +45,8 @@ Moment World::Look(const mechanics::StackState& axes) {
   Moment moment;
   moment.now = queue_.Now();
   moment.mounted = mounted_;
-  moment.departed = axes_.LastDeparture();
+  moment.departed = {axes_.Departure(Axis::kTarget), axes_.Departure(Axis::kReference)};
+  moment.travelled_rad = {axes_.Travelled_rad(Axis::kTarget), axes_.Travelled_rad(Axis::kReference)};
   moment.arrived = axes_.LastArrival();
   moment.temperature_K = environment_.AboveReference_K(moment.now);
   moment.target_rad = axes.target_rad;

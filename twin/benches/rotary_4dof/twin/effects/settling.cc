@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "twin/benches/rotary_4dof/twin/effects/effects.h"
@@ -18,8 +19,8 @@ class Settling : public Effect {
 
  private:
   double ShareBehind(const Moment& moment) const {
-    if (moment.now < moment.arrived)
-      return ToSeconds(moment.now - moment.departed) / ToSeconds(moment.arrived - moment.departed);
+    const Time departed = std::max(moment.departed[0], moment.departed[1]);
+    if (moment.now < moment.arrived) return ToSeconds(moment.now - departed) / ToSeconds(moment.arrived - departed);
     return std::exp(-ToSeconds(moment.now - moment.arrived) / time_constant_s_);
   }
 
