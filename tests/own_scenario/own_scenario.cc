@@ -43,6 +43,45 @@ void Try(Scenario scenario, const std::string& what, int seeds, Alarms& alarms) 
   }
 }
 
+/// A flag or a word may switch off what other keys say.
+bool IsTriedAlone(const OwnKey& key) {
+  const std::string value = key.settings.back().substr(key.settings.back().find('=') + 1);
+  return value == "true" || value == "false" || value.find('"') != std::string::npos;
+}
+
+std::vector<std::string> Needed(const OwnKey& key) {
+  return {key.settings.begin(), key.settings.end() - 1};
+}
+
+/// Neighbours that need the same beside them are tried in one run.
+std::vector<std::vector<OwnKey>> Grouped(const std::vector<OwnKey>& keys) {
+  constexpr std::size_t kTogether = 4;
+  std::vector<std::vector<OwnKey>> groups;
+  for (const OwnKey& key : keys) {
+    if (key.settings.empty()) continue;
+    const bool joins = !groups.empty() && groups.back().size() < kTogether && !IsTriedAlone(key) &&
+                       !IsTriedAlone(groups.back().front()) && Needed(groups.back().front()) == Needed(key);
+    if (!joins) groups.emplace_back();
+    groups.back().push_back(key);
+  }
+  return groups;
+}
+
+Alarms AlarmsTogether(const std::string& base, std::vector<std::string> settings, const std::vector<OwnKey>& keys,
+                      int seeds) {
+  std::vector<std::string> stated;
+  for (const OwnKey& key : keys) stated.insert(stated.end(), key.settings.begin(), key.settings.end());
+  settings.insert(settings.end(), stated.begin(), stated.end());
+  Alarms alarms;
+  Try(LoadScenario(base, settings), fmt::format("{}", fmt::join(stated, " ")), seeds, alarms);
+  return alarms;
+}
+
+void Add(const Alarms& more, Alarms& alarms) {
+  alarms.runs += more.runs;
+  alarms.raised.insert(alarms.raised.end(), more.raised.begin(), more.raised.end());
+}
+
 }  // namespace
 
 OwnKey Change(const std::string& key, const std::string& value, std::vector<std::string> with) {
@@ -68,11 +107,9 @@ std::string Alarms::InWords() const {
 Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_settings,
                 const std::vector<OwnKey>& keys, int seeds) {
   Alarms alarms;
-  for (const OwnKey& key : keys) {
-    if (key.settings.empty()) continue;
-    std::vector<std::string> settings = base_settings;
-    settings.insert(settings.end(), key.settings.begin(), key.settings.end());
-    Try(LoadScenario(base, settings), fmt::format("{}", fmt::join(key.settings, " ")), seeds, alarms);
+  for (const std::vector<OwnKey>& group : Grouped(keys)) {
+    Add(AlarmsTogether(base, base_settings, group, seeds), alarms);
+    alarms.runs += static_cast<int>(group.size() - 1) * seeds;
   }
   return alarms;
 }

@@ -27,6 +27,7 @@ struct Alarms {
   std::string InWords() const;
 };
 
+/// Neighbours in the list share a run where they can; every key counts as one.
 /// @param base    Scenario and settings that every run has.
 /// @param seeds   How many of each.
 Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_settings,
