@@ -3,7 +3,6 @@
 #include "tests/support/small_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/registry.h"
-#include "twin/benches/rotary_4dof/block_time.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/sim/empirical_signal.h"
 #include "twin/sim/own_tables.h"

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "twin/benches/rotary_4dof/block_time.h"
 #include "twin/benches/rotary_4dof/diagnosis/configuration.h"
 #include "twin/benches/rotary_4dof/diagnosis/free_parameters.h"
 #include "twin/benches/rotary_4dof/diagnosis/linearisation.h"
 #include "twin/benches/rotary_4dof/diagnosis/rotary_readings.h"
+#include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/projector.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "twin/benches/rotary_4dof/block_time.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/course.h"
 #include "twin/benches/rotary_4dof/twin/points.h"

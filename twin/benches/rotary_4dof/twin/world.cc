@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "twin/benches/rotary_4dof/block_time.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
 #include "twin/core/device_fault.h"
