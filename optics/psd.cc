@@ -65,6 +65,35 @@ struct Sum {
   }
 };
 
+/// What falls on a PSD, light by light.
+struct Response {
+  double incident_W = 0.0;
+  Sum seen;
+
+  /// Returns what the area leaves of it.
+  Spot Add(const PsdParameters& psd, const Spot& spot) {
+    const Spot cut = Truncate(spot, psd.width_m, psd.height_m);
+    incident_W += spot.power_W;
+    if (cut.power_W > 0.0) seen.Add(psd, cut.u_m, cut.v_m, cut.power_W);
+    return cut;
+  }
+
+  void Add(const PsdParameters& psd, const PowerMap& map) {
+    incident_W += map.power_W();
+    const Eigen::Vector2d variance_m2 = map.half_m.array().square() / 3.0;
+    for (const PowerPatch& patch : map.patches) {
+      const PowerPatch cut = CutToArea(patch, map.half_m, psd.width_m, psd.height_m);
+      if (cut.power_W > 0.0) seen.AddPatch(psd, cut, variance_m2);
+    }
+  }
+
+  PsdSignal Signal(const PsdParameters& psd, bool clipped) const {
+    if (!(incident_W > 0.0)) return {};
+    if (!(seen.power > kDarkShare * incident_W)) return {.status = PsdStatus::kMissed};
+    return seen.Signal(psd, clipped ? PsdStatus::kClipped : PsdStatus::kOk);
+  }
+};
+
 }  // namespace
 
 Eigen::Isometry3d PsdPose(const PsdParameters& psd, double order_angle_rad) {
@@ -95,40 +124,21 @@ Spot Truncate(const Spot& spot, double width_m, double height_m) {
 }
 
 PsdSignal Respond(const PsdParameters& psd, std::span<const Spot> spots) {
-  double incident = 0.0;
-  Sum sum;
-  for (const Spot& spot : spots) {
-    const Spot cut = Truncate(spot, psd.width_m, psd.height_m);
-    incident += spot.power_W;
-    if (cut.power_W > 0.0) sum.Add(psd, cut.u_m, cut.v_m, cut.power_W);
-  }
-  if (!(incident > 0.0)) return {};
-  if (!(sum.power > kDarkShare * incident)) return {.status = PsdStatus::kMissed};
-  const Spot first = Truncate(spots.front(), psd.width_m, psd.height_m);
-  const bool at_edge = first.power_W < (1.0 - kClippedShare) * spots.front().power_W;
-  const bool clipped = at_edge || spots.front().lost_share > kClippedShare;
-  return sum.Signal(psd, clipped ? PsdStatus::kClipped : PsdStatus::kOk);
+  if (spots.empty()) return {};
+  const Spot& signal = spots.front();
+  Response response;
+  const Spot cut = response.Add(psd, signal);
+  for (const Spot& other : spots.subspan(1)) response.Add(psd, other);
+  const bool at_edge = cut.power_W < (1.0 - kClippedShare) * signal.power_W;
+  return response.Signal(psd, at_edge || signal.lost_share > kClippedShare);
 }
 
 PsdSignal Respond(const PsdParameters& psd, const PowerMap& signal, std::span<const Spot> others) {
-  const double whole_W = signal.power_W();
-  double incident_W = whole_W;
-  const Eigen::Vector2d variance_m2 = signal.half_m.array().square() / 3.0;
-  Sum sum;
-  for (const PowerPatch& patch : signal.patches) {
-    const PowerPatch cut = CutToArea(patch, signal.half_m, psd.width_m, psd.height_m);
-    if (cut.power_W > 0.0) sum.AddPatch(psd, cut, variance_m2);
-  }
-  const bool at_edge = sum.power < (1.0 - kClippedShare) * whole_W;
-  for (const Spot& spot : others) {
-    const Spot cut = Truncate(spot, psd.width_m, psd.height_m);
-    incident_W += spot.power_W;
-    if (cut.power_W > 0.0) sum.Add(psd, cut.u_m, cut.v_m, cut.power_W);
-  }
-  if (!(incident_W > 0.0)) return {};
-  if (!(sum.power > kDarkShare * incident_W)) return {.status = PsdStatus::kMissed};
-  const bool clipped = at_edge || signal.lost_share > kClippedShare;
-  return sum.Signal(psd, clipped ? PsdStatus::kClipped : PsdStatus::kOk);
+  Response response;
+  response.Add(psd, signal);
+  const bool at_edge = response.seen.power < (1.0 - kClippedShare) * response.incident_W;
+  for (const Spot& other : others) response.Add(psd, other);
+  return response.Signal(psd, at_edge || signal.lost_share > kClippedShare);
 }
 
 PsdSignal RespondToPoint(const PsdParameters& psd, double u_m, double v_m, double power_W) {

@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
 #include "twin/benches/hob_transmission/settings.h"
+#include "twin/benches/hob_transmission/twin/world.h"
 #include "twin/benches/names.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/effect_catalogue.h"
@@ -51,6 +53,15 @@ TEST(HobTwin, KeepsOneSampleAtEveryHundredthLineOfTheTablesEncoder) {
     EXPECT_NEAR(readings[i].measured_rad - readings[i - 1].measured_rad, -2.0 * deg, 1e-12);
   EXPECT_EQ(readings[0].direction, 1);
   EXPECT_EQ(readings[200].direction, -1);
+}
+
+TEST(HobTwin, EveryDeviceSchedulesEvents) {
+  sim::HobWorld world(QuietMachine());
+  world.Mount(10.0 * deg);
+  world.Arm(100, 20);
+  world.Run(10.0 * deg, std::chrono::seconds(1));
+  world.RunUntil(world.Now() + std::chrono::seconds(3));
+  for (const char* device : {"fixture", "counters", "drive"}) EXPECT_GT(world.Scheduled().at(device), 0U) << device;
 }
 
 TEST(HobTwin, WithoutErrorsBothEncodersKeepTheRatio) {

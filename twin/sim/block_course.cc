@@ -29,6 +29,12 @@ double BlockCourse::Mean_V(std::size_t channel) const {
   return first_V + sum_V / static_cast<double>(knots_V_.size() - 1);
 }
 
+BlockCourse::Voltages BlockCourse::Means_V() const {
+  Voltages mean_V{};
+  for (std::size_t c = 0; c < kChannels; ++c) mean_V[c] = Mean_V(c);
+  return mean_V;
+}
+
 double BlockCourse::Slope_V_s(std::size_t channel) const {
   if (knots_V_.size() == 1) return 0.0;
   return (knots_V_.back()[channel] - knots_V_.front()[channel]) / Duration_s();

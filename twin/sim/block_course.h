@@ -32,20 +32,20 @@ class BlockCourse {
   /// Mean of the knots, with half the weight for the first and the last one.
   double Mean_V(std::size_t channel) const;
 
+  Voltages Means_V() const;
+
   /// Slope of the chord from the first knot to the last one.
   double Slope_V_s(std::size_t channel) const;
 
   /// Root mean square of the slope.
   double RmsSlope_V_s(std::size_t channel) const;
 
-  /// Every voltage as `curve(voltage)`.
+  /// Every voltage becomes `curve(voltage)`.
   template <class Curve>
-  BlockCourse Bent(Curve curve) const {
-    BlockCourse bent = *this;
-    for (Voltages& knot_V : bent.knots_V_) {
+  void Bend(Curve curve) {
+    for (Voltages& knot_V : knots_V_) {
       for (double& voltage_V : knot_V) voltage_V = curve(voltage_V);
     }
-    return bent;
   }
 
   /// Whether no channel is anywhere further than this from its mean or, for IsStraight, from its chord.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/core/sampled_curve.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::sim {
@@ -18,7 +19,7 @@ class EmpiricalSignal {
 
  private:
   std::map<int, double> by_reading_;
-  std::vector<std::map<double, double>> by_time_;
+  std::vector<SampledCurve> by_time_;
 };
 
 }  // namespace twinbench::sim

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "twin/core/csv.h"
+#include "twin/core/sampled_curve.h"
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"
 #include "twin/core/time.h"
@@ -22,15 +22,13 @@ class Environment {
   double AboveReference_K(Time now) { return Temperature_degC(now) - settings_.reference_degC; }
 
  private:
-  void ReadRecord(const CsvTable& table);
   double RandomWalk_K(double t_s);
-  double Recorded_K(double t_s) const;
 
   EnvironmentSettings settings_;
   Stream walk_steps_;
   Stream sensor_noise_;
   std::vector<double> walk_K_ = {0.0};  // one value a minute, extended when it is asked for
-  std::vector<double> record_s_, record_K_;
+  SampledCurve record_degC_;            // over seconds
 };
 
 }  // namespace twinbench::sim

@@ -67,7 +67,7 @@ double HobPath::Interferometer_rad(double table_rad, double hob_rad, Time now) c
   const double deviation_rad = table_rad - HobOf(actual_).transmission.Ratio() * hob_rad +
                                mechanics::Evaluate(calibrator_, table_rad).value_rad;
   // Optical difference of the paths: arm * deviation along the beam, and the dead path in air that changes.
-  const double index_change = i.index_drift_per_h * ToSeconds(now) / 3600.0;
+  const double index_change = i.index_drift_per_h * ToSeconds(now) / units::hour;
   const double difference_m =
       (i.arm_m + i.arm_error_m) * deviation_rad * std::cos(i.misalignment_rad) * (1.0 + index_change) +
       i.dead_path_m * index_change;

@@ -38,8 +38,9 @@ Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
       scan_(ScanOf(RotaryOf(actual).adc.scan_list)),
       noise_free_(actual.noise_free),
       seed_(actual.seed),
-      noise_(actual.seed, "amplifier.noise"),
-      curve_(adc_.inl_file) {
+      noise_(actual.seed, "amplifier.noise") {
+  if (!adc_.inl_file.empty())
+    non_linearity_V_ = ReadSampledCurve(adc_.inl_file, {"voltage_V"}, {"error_mV", units::mV});
   for (const char* channel : kChannelNames)
     flicker_.emplace_back(amplifier_.flicker_V, actual.seed, std::string("amplifier.flicker.") + channel);
 }
@@ -52,10 +53,9 @@ void Electronics::AddFlicker(Time now, std::array<double, kChannels>& signal_V) 
   for (std::size_t c = 0; c < kChannels; ++c) signal_V[c] += flicker_[c].At(ToSeconds(now));
 }
 
-/// With the converter's non-linearity, which is smooth over the noise of a sample.
-BlockCourse Electronics::AsConverted(const BlockCourse& course) const {
-  if (curve_.IsStraight()) return course;
-  return course.Bent([this](double voltage_V) { return voltage_V + curve_.Added_V(voltage_V); });
+/// With the converter's integral non-linearity, which is smooth over the noise of a sample.
+double Electronics::AsConverted_V(double voltage_V) const {
+  return non_linearity_V_.IsEmpty() ? voltage_V : voltage_V + non_linearity_V_.At(voltage_V);
 }
 
 /// What a wrong instant makes of a signal that changes, to first order: slope times jitter.
@@ -93,24 +93,13 @@ std::array<double, kChannels> Electronics::LightNoise_V(const Spots& spots) cons
   return noise_V;
 }
 
-/// `course` outlives what is returned.
-AdInput Electronics::InScanOrder(const BlockCourse& course, Time start) const {
-  constexpr double kSteady = 1e-3;  // of a code step
-  const double within_V = kSteady * LsbOf(adc_);
-  const bool is_level = course.IsLevel(within_V), is_straight = course.IsStraight(within_V);
+/// Of signals that stand still in the block.
+AdInput Electronics::InScanOrder(const std::array<double, kChannels>& level_V, Time start) const {
   AdInput input;
   for (std::size_t place = 0; place < kChannels; ++place) {
     const std::size_t c = scan_[place];
     ChannelInput& channel = input.channel[place];
-    channel.level_V = course.Mean_V(c);
-    if (!is_level && is_straight) {
-      channel.level_V = course.At_V(c, 0.0);
-      channel.slope_V_s = course.Slope_V_s(c);
-    } else if (!is_level) {
-      channel.extra_V = [&course, c, level_V = channel.level_V](double t_s) {
-        return course.At_V(c, t_s) - level_V;
-      };
-    }
+    channel.level_V = level_V[c];
     channel.noise_V = amplifier_.noise_V;
     channel.crosstalk = sampling_.crosstalk[c];
     channel.step_V = sampling_.step_V[c];
@@ -120,6 +109,26 @@ AdInput Electronics::InScanOrder(const BlockCourse& course, Time start) const {
   const double turns = amplifier_.hum_Hz * ToSeconds(start);
   input.hum = {amplifier_.hum_V, amplifier_.hum_Hz, 2.0 * units::kPi * (turns - std::floor(turns))};
   return input;
+}
+
+/// What the signals do in the block. `course` outlives the input.
+void Electronics::Follow(const BlockCourse& course, AdInput& input) const {
+  constexpr double kSteady = 1e-3;  // of a code step
+  const double within_V = kSteady * LsbOf(adc_);
+  if (course.IsLevel(within_V)) return;
+  const bool is_straight = course.IsStraight(within_V);
+  for (std::size_t place = 0; place < kChannels; ++place) {
+    const std::size_t c = scan_[place];
+    ChannelInput& channel = input.channel[place];
+    if (is_straight) {
+      channel.level_V = course.At_V(c, 0.0);
+      channel.slope_V_s = course.Slope_V_s(c);
+    } else {
+      channel.extra_V = [&course, c, level_V = channel.level_V](double t_s) {
+        return course.At_V(c, t_s) - level_V;
+      };
+    }
+  }
 }
 
 Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
@@ -135,24 +144,25 @@ Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
   return block;
 }
 
-Acquisition Electronics::Convert(const BlockCourse& course, const std::array<double, kChannels>& light_noise_V,
-                                 Time start, int reading, int n_samples, bool keep_raw) {
+Acquisition Electronics::Convert(BlockCourse course, const std::array<double, kChannels>& light_noise_V, Time start,
+                                 int reading, int n_samples, bool keep_raw) {
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
-  const BlockCourse converted = AsConverted(course);
-  AdInput input = InScanOrder(converted, start);
+  course.Bend([this](double voltage_V) { return AsConverted_V(voltage_V); });
+  AdInput input = InScanOrder(course.Means_V(), start);
+  Follow(course, input);
   for (std::size_t place = 0; place < kChannels; ++place) {
     const std::size_t c = scan_[place];
     double& noise_V = input.channel[place].noise_V;
-    noise_V = std::hypot(noise_V, light_noise_V[c], JitterNoise_V(converted, c));
+    noise_V = std::hypot(noise_V, light_noise_V[c], JitterNoise_V(course, c));
   }
   const AdRequest request{Arriving(n_samples, reading), adc_.every_sample, keep_raw, noise_free_};
   return InChannelOrder(TakeBlock(adc_, input, request, noise_).ToAcquisition(start));
 }
 
-std::array<double, kChannels> Electronics::Expect(const std::array<double, kChannels>& signal_V, Time start,
-                                                  int n_samples, double noise_V) const {
-  const BlockCourse steady = AsConverted(BlockCourse(signal_V));
-  AdInput input = InScanOrder(steady, start);
+std::array<double, kChannels> Electronics::Expect(std::array<double, kChannels> signal_V, Time start, int n_samples,
+                                                  double noise_V) const {
+  for (double& voltage_V : signal_V) voltage_V = AsConverted_V(voltage_V);
+  AdInput input = InScanOrder(signal_V, start);
   const bool blurred = noise_V > 0.0;  // else the block itself says where its samples lie
   for (ChannelInput& channel : input.channel) channel.step_V = blurred ? 0.0 : channel.step_V;
   Stream unused(0, "electronics.expectation");

@@ -3,11 +3,11 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effect.h"
 #include "twin/benches/rotary_4dof/twin/light.h"
+#include "twin/core/sampled_curve.h"
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"
 #include "twin/sim/ad_sampler.h"
 #include "twin/sim/block_course.h"
-#include "twin/sim/converter_curve.h"
 #include "twin/sim/flicker_noise.h"
 
 namespace twinbench::sim {
@@ -32,20 +32,21 @@ class Electronics {
   /// near to a straight line as one: then samples need not be asked one by one. `reading` enters the noise stream,
   /// so that a reading's noise does not depend on how many samples the readings before it took.
   /// @param light_noise_V  Of each channel; comes to the amplifiers' own.
-  Acquisition Convert(const BlockCourse& course, const std::array<double, kChannels>& light_noise_V, Time start,
+  Acquisition Convert(BlockCourse course, const std::array<double, kChannels>& light_noise_V, Time start,
                       int reading, int n_samples, bool keep_raw);
 
   /// The mean that such a block would have if it were taken again and again: hum and crosstalk as they fall into
   /// it, a step of the converter blurred by the samples' noise, no quantisation. NaN at the ends of the range.
   /// @param noise_V  Standard deviation of one sample.
-  std::array<double, kChannels> Expect(const std::array<double, kChannels>& signal_V, Time start, int n_samples,
+  std::array<double, kChannels> Expect(std::array<double, kChannels> signal_V, Time start, int n_samples,
                                        double noise_V) const;
 
  private:
-  BlockCourse AsConverted(const BlockCourse& course) const;
+  double AsConverted_V(double voltage_V) const;
   double JitterNoise_V(const BlockCourse& course, std::size_t channel) const;
   int Arriving(int n_samples, int reading) const;
-  AdInput InScanOrder(const BlockCourse& course, Time start) const;
+  AdInput InScanOrder(const std::array<double, kChannels>& level_V, Time start) const;
+  void Follow(const BlockCourse& course, AdInput& input) const;
   Acquisition InChannelOrder(const Acquisition& scanned) const;
 
   std::array<PsdSettings, 2> psd_;
@@ -58,7 +59,7 @@ class Electronics {
   std::uint64_t seed_;
   Stream noise_;
   std::vector<FlickerNoise> flicker_;  // one a channel
-  ConverterCurve curve_;
+  SampledCurve non_linearity_V_;       // what the converter adds, over the voltage
 };
 
 }  // namespace twinbench::sim

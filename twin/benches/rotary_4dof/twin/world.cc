@@ -99,16 +99,15 @@ Acquisition World::Acquire(int n_samples, bool keep_raw) {
     });
   }
   adc_.RunUntil(start + block);
-  return Converted(course, seen, start, n_samples, keep_raw);
+  return Converted(std::move(course), seen, start, n_samples, keep_raw);
 }
 
-Acquisition World::Converted(const BlockCourse& course, const Spots& seen, Time start, int n_samples,
-                             bool keep_raw) {
+Acquisition World::Converted(BlockCourse course, const Spots& seen, Time start, int n_samples, bool keep_raw) {
   Acquisition acquired;
   if (seen.status == ReadingStatus::kOk) {
     Electronics& electronics = path_.electronics();
-    acquired =
-        electronics.Convert(course, electronics.LightNoise_V(seen), start, next_reading_, n_samples, keep_raw);
+    acquired = electronics.Convert(std::move(course), electronics.LightNoise_V(seen), start, next_reading_,
+                                   n_samples, keep_raw);
     path_.effects().AlterReadout(acquired);
   } else {
     acquired.start = start;

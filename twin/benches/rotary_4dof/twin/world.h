@@ -43,7 +43,7 @@ class World {
   Moment Look(const mechanics::StackState& axes);
   double Shortest_s();
   Spots AddKnot(BlockCourse& course);
-  Acquisition Converted(const BlockCourse& course, const Spots& seen, Time start, int n_samples, bool keep_raw);
+  Acquisition Converted(BlockCourse course, const Spots& seen, Time start, int n_samples, bool keep_raw);
 
   EventQueue queue_;
   Schedule adc_{queue_, "adc"}, fixture_{queue_, "fixture"};

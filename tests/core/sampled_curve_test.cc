@@ -1,0 +1,45 @@
+#include "twin/core/sampled_curve.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "tests/core/input_error.h"
+
+namespace twinbench {
+namespace {
+
+TEST(SampledCurve, IsStraightBetweenPlacesAndLevelBeyondTheEnds) {
+  const SampledCurve curve({1.0, 2.0, 4.0}, {10.0, 20.0, 0.0});
+  const std::vector<std::pair<double, double>> expected = {{-5.0, 10.0}, {1.0, 10.0}, {1.5, 15.0}, {2.0, 20.0},
+                                                           {3.0, 10.0},  {4.0, 0.0},  {9.0, 0.0}};
+  for (const auto& [place, value] : expected) EXPECT_DOUBLE_EQ(curve.At(place), value) << place;
+}
+
+TEST(SampledCurve, OnePlaceIsALevel) {
+  const SampledCurve curve({3.0}, {7.0});
+  for (const double place : {-1.0, 3.0, 4.0}) EXPECT_EQ(curve.At(place), 7.0);
+}
+
+TEST(SampledCurve, IsReadFromItsColumnsInSIUnits) {
+  const TemporaryFolder folder;
+  const std::string path = folder.Write("inl.csv", "error_mV,voltage_V\n2,-1\n4,1\n");
+  EXPECT_DOUBLE_EQ(ReadSampledCurve(path, {"voltage_V"}, {"error_mV", 1e-3}).At(0.0), 3e-3);
+}
+
+TEST(SampledCurve, AFileThatCannotBeUsedIsNamedWithItsLine) {
+  const TemporaryFolder folder;
+  const auto message = [&](const std::string& text) {
+    const std::string path = folder.Write("room.csv", text);
+    return MessageOf([&] { ReadSampledCurve(path, {"time_s"}, {"temperature_degC"}); });
+  };
+  EXPECT_NE(message("time_s\n1\n").find("time_s and temperature_degC"), std::string::npos);
+  EXPECT_NE(message("time_s,temperature_degC\n").find("holds no rows"), std::string::npos);
+  const std::string unordered = message("time_s,temperature_degC\n0,20\n5,21\n5,22\n");
+  EXPECT_NE(unordered.find("room.csv:4"), std::string::npos) << unordered;
+  EXPECT_NE(unordered.find("time_s does not increase"), std::string::npos) << unordered;
+}
+
+}  // namespace
+}  // namespace twinbench
