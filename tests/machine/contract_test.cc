@@ -7,6 +7,7 @@
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/driven.h"
 #include "twin/benches/circular_motion/twin/live.h"
+#include "twin/sim/driven_machine.h"
 
 /// Same scenario, same seed, same readings: on the twin in this program and through the network.
 namespace twinbench::test {
@@ -95,6 +96,16 @@ TEST_P(MachineContract, ARealBenchGoesOnWithTheReadingThatIsMissing) {
     for (const ReadingColumn& column : InstrumentColumns(BenchOf(scenario_).format->columns))
       EXPECT_EQ(column.print(log.readings[k]).empty(), column.print(in_process_[k]).empty()) << column.name;
   }
+}
+
+TEST_P(MachineContract, EveryDeviceSchedulesEvents) {
+  const auto twin = BenchOf(scenario_).make_devices(scenario_);
+  MachineBench bench = twin->Devices();
+  MemoryLog log;
+  BenchOf(scenario_).drive(bench, scenario_, log, {}, {});
+  const auto& scheduled = dynamic_cast<const sim::DrivenMachine&>(*twin).Scheduled();
+  EXPECT_GE(scheduled.at("instruments"), log.readings.size());
+  for (const char* device : {"axes", "fixture"}) EXPECT_GT(scheduled.at(device), 0U) << device;
 }
 
 TEST_P(MachineContract, APathBeyondTheTravelIsRefused) {

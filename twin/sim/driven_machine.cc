@@ -8,6 +8,7 @@
 
 #include "twin/core/device_fault.h"
 #include "twin/sim/driven_path.h"
+#include "twin/sim/schedule.h"
 
 namespace twinbench::sim {
 namespace {
@@ -32,10 +33,10 @@ Duration MoveTime(const std::vector<double>& from, const std::vector<double>& to
 
 }  // namespace
 
-/// A trigger that will come.
-struct DrivenTrigger {
-  Time time{};
-  DrivenInstant at;
+/// The machine's clock and what each device has to do with it. Goes anew where the machine is restarted.
+struct DrivenKernel {
+  EventQueue queue;
+  Schedule axes{queue, "axes"}, instruments{queue, "instruments"}, fixture{queue, "fixture"};
 };
 
 struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFixture, Simulation {
@@ -45,8 +46,8 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
   }
 
   // Clock
-  Time Now() const override { return now; }
-  void Wait(Duration duration) override { AdvanceTo(now + duration); }
+  Time Now() const override { return kernel->queue.Now(); }
+  void Wait(Duration duration) override { kernel->queue.RunUntil(Now() + duration); }
 
   // Controller
   const std::vector<MachineAxis>& Axes() const override { return physics->Axes(); }
@@ -55,28 +56,26 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
   void StartMove(const std::vector<double>& to, double its_feed_m_s) override {
     Require(to.size() == Axes().size(), "a move has one coordinate an axis");
     RequireWithinTravel(to);
-    BeginPath(DrivenPath::Line(path.At(now), to, now, MoveTime(path.At(now), to, its_feed_m_s, Axes())),
-              its_feed_m_s, 1);
+    const std::vector<double> from = path.At(Now());
+    kernel->axes.Now([&] {
+      BeginPath(DrivenPath::Line(from, to, Now(), MoveTime(from, to, its_feed_m_s, Axes())), its_feed_m_s, 1);
+    });
   }
 
   void StartArc(const Arc& arc) override {
-    const std::vector<double> from = path.At(now);
+    const std::vector<double> from = path.At(Now());
     RequireArc(arc, from);
-    const double radius_m = std::hypot(from[arc.axes[0]] - arc.centre_m[0], from[arc.axes[1]] - arc.centre_m[1]);
-    BeginPath(DrivenPath::Circular(from, arc, {{now, 1.0}}), arc.feed_m_s, arc.sweep_rad < 0.0 ? -1 : 1);
-    const std::vector<PathKnot> knots =
-        PlaceTriggers(arc, radius_m / (arc.feed_m_s > 0.0 ? arc.feed_m_s : kTraverse_m_s));
-    path = DrivenPath::Circular(from, arc, knots);
+    kernel->axes.Now([&] { BeginArc(arc, from); });
   }
 
   bool Settles(Duration within) override {
-    AdvanceTo(std::min(now + within, std::max(now, path.End())));
-    return now >= path.End();
+    kernel->axes.RunUntil(std::min(Now() + within, std::max(Now(), path.End())), [] {});
+    return Now() >= path.End();
   }
 
   std::vector<AxisState> State() override {
-    const std::vector<double> at = path.At(now);
-    const bool moves = now < path.End();
+    const std::vector<double> at = path.At(Now());
+    const bool moves = Now() < path.End();
     std::vector<AxisState> states(at.size());
     for (std::size_t k = 0; k < at.size(); ++k) {
       states[k].commanded = path.to()[k];
@@ -88,18 +87,22 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
   }
 
   void Stop() override {
-    triggers.clear();
-    path = DrivenPath::Resting(path.At(now), now);
+    kernel->axes.Now([this] { BeginPath(DrivenPath::Resting(path.At(Now()), Now()), feed_m_s, direction); });
   }
 
   void Home() override {
     Stop();
-    AdvanceTo(now + kHoming);
+    Wait(kHoming);
   }
 
   // Instruments
   Reading Read() override {
-    return Show({next_sample, now, setup, direction, now < path.End() ? feed_m_s : 0.0, path.At(now)});
+    Reading shown;
+    kernel->instruments.Now([&] {
+      const double now_feed_m_s = Now() < path.End() ? feed_m_s : 0.0;
+      shown = Show({next_sample, Now(), setup, direction, now_feed_m_s, path.At(Now())});
+    });
+    return shown;
   }
   void Arm(int samples) override {
     latched = {};
@@ -113,7 +116,7 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
     if (its_setup < 0 || its_setup >= physics->Setups())
       throw DeviceFault(FaultKind::kRefused, "fixture",
                         fmt::format("there are {} set-ups, from 0 on; not {}", physics->Setups(), its_setup));
-    setup = its_setup;
+    kernel->fixture.Now([this, its_setup] { setup = its_setup; });
   }
 
   // Simulation
@@ -124,17 +127,17 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
   void SetPaced(bool) override {}  // it never is
 
   void Begin() {
-    now = Time{};
+    triggers.clear();  // of the clock that goes
+    kernel = std::make_unique<DrivenKernel>();
     setup = next_sample = armed = 0;
     direction = 1;
     feed_m_s = 0.0;
     latched = {};
-    triggers.clear();
-    path = DrivenPath::Resting(physics->Start(), now);
+    path = DrivenPath::Resting(physics->Start(), Now());
   }
 
   void BeginPath(DrivenPath next, double its_feed_m_s, int its_direction) {
-    triggers.clear();
+    for (const EventId trigger : std::exchange(triggers, {})) kernel->queue.Cancel(trigger);
     path = std::move(next);
     feed_m_s = its_feed_m_s;
     direction = its_direction;
@@ -147,37 +150,38 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
     return shown;
   }
 
-  void AdvanceTo(Time to) {
-    for (; !triggers.empty() && triggers.front().time <= to; triggers.pop_front()) Latch(triggers.front());
-    now = std::max(now, to);
+  void BeginArc(const Arc& arc, const std::vector<double>& from) {
+    const double radius_m = std::hypot(from[arc.axes[0]] - arc.centre_m[0], from[arc.axes[1]] - arc.centre_m[1]);
+    BeginPath(DrivenPath::Circular(from, arc, {{Now(), 1.0}}), arc.feed_m_s, arc.sweep_rad < 0.0 ? -1 : 1);
+    const std::vector<PathKnot> knots =
+        PlaceTriggers(arc, radius_m / (arc.feed_m_s > 0.0 ? arc.feed_m_s : kTraverse_m_s));
+    path = DrivenPath::Circular(from, arc, knots);
   }
 
-  void Latch(DrivenTrigger& trigger) {
-    now = trigger.time;
+  void Latch(DrivenInstant at) {
     if (armed == 0) return;
     --armed;
-    trigger.at.sample = next_sample;
-    trigger.at.time = trigger.time;
-    latched.samples.push_back(Show(trigger.at));
+    at.sample = next_sample;
+    latched.samples.push_back(Show(at));
   }
 
   /// Puts the arc's triggers where and when they come. @return the times of the whole way.
   /// @param s_per_rad  Of the arc.
   std::vector<PathKnot> PlaceTriggers(const Arc& arc, double s_per_rad) {
     const double length_rad = std::abs(arc.sweep_rad);
-    std::vector<PathKnot> knots = {{now, 0.0}};
+    std::vector<PathKnot> knots = {{Now(), 0.0}};
     double behind_rad = 0.0;  // the last knot
     for (int k = 0; k < arc.triggers; ++k) {
       const double at_rad = arc.first_trigger_rad + k * arc.trigger_step_rad;
       const double share = at_rad / length_rad;
-      DrivenTrigger trigger{now, {next_sample + k, now, setup, direction, arc.feed_m_s, path.AtShare(share)}};
-      const Time first = knots.size() > 1 ? knots[1].time : now;
+      DrivenInstant at{next_sample + k, Now(), setup, direction, arc.feed_m_s, path.AtShare(share)};
+      const Time first = knots.size() > 1 ? knots[1].time : Now();
       const double from_first_rad = k > 0 ? k * arc.trigger_step_rad : at_rad;
-      trigger.time = first + FromSeconds(from_first_rad * s_per_rad);
-      const auto planned = physics->Planned(trigger.at);
-      if (planned && *planned >= knots.back().time) trigger.time = *planned;
-      knots.push_back({trigger.time, share});
-      triggers.push_back(std::move(trigger));
+      const auto planned = physics->Planned(at);
+      at.time = first + FromSeconds(from_first_rad * s_per_rad);
+      if (planned && *planned >= knots.back().time) at.time = *planned;
+      knots.push_back({at.time, share});
+      triggers.push_back(kernel->instruments.At(at.time, [this, at] { Latch(at); }));
       behind_rad = at_rad;
     }
     knots.push_back({knots.back().time + FromSeconds((length_rad - behind_rad) * s_per_rad), 1.0});
@@ -214,11 +218,11 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
 
   std::unique_ptr<DrivenPhysics> physics;
   std::vector<AxisLimits> travel;
-  Time now{};
+  std::unique_ptr<DrivenKernel> kernel;
   int setup = 0, next_sample = 0, armed = 0, direction = 1;
   double feed_m_s = 0.0;
   DrivenPath path;
-  std::deque<DrivenTrigger> triggers;  // still to come
+  std::vector<EventId> triggers;  // of the path, those that have come too
   LatchedSamples latched;
 };
 
@@ -228,6 +232,10 @@ DrivenMachine::~DrivenMachine() = default;
 
 MachineBench DrivenMachine::Devices() {
   return {*parts_, *parts_, *parts_, *parts_, parts_.get()};
+}
+
+const std::map<std::string, std::uint64_t>& DrivenMachine::Scheduled() const {
+  return parts_->kernel->queue.Scheduled();
 }
 
 }  // namespace twinbench::sim

@@ -1,8 +1,10 @@
 #pragma once
 
-#include <deque>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "twin/core/machine.h"
@@ -47,6 +49,9 @@ class DrivenMachine : public MachineDevices {
   explicit DrivenMachine(std::unique_ptr<DrivenPhysics> physics);
   ~DrivenMachine() override;
   MachineBench Devices() override;
+
+  /// Events that each device has scheduled since the machine was started or restarted.
+  const std::map<std::string, std::uint64_t>& Scheduled() const;
 
  private:
   struct Parts;
