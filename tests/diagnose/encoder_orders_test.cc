@@ -49,6 +49,15 @@ TEST(EncoderDiagnosis, NamesSeveralStrongOrdersAtOnceAndNoLineBetweenThem) {
     EXPECT_TRUE(std::ranges::count(d.causes, effect, &Cause::effect)) << effect;
 }
 
+TEST(EncoderDiagnosis, OrdersThatTheReadingsDoNotTellApartGetNoSizes) {
+  auto readings = Comparison([](double th) { return 0.02 * std::cos(30.0 * th); });
+  Scenario scenario;
+  scenario.bench = kEncoderBench;
+  EXPECT_FALSE(Diagnose(readings, scenario).diagnosis.harmonics.empty());
+  std::erase_if(readings, [](const Reading& r) { return r.position > 20; });  // 100 of 360 deg
+  EXPECT_TRUE(Diagnose(readings, scenario).diagnosis.harmonics.empty());
+}
+
 TEST(EncoderDiagnosis, StillFindsALineBetweenTheOrders) {
   const auto readings = Comparison([](double th) { return 0.05 * std::cos(3.4 * th + 0.7); });
   Scenario scenario;

@@ -186,6 +186,20 @@ TEST(Course, CountsAFlyBackAsAPassOfTheSameDirection) {
   EXPECT_EQ(course.direction[12], 1);
 }
 
+/// A servo that takes most of each stop to go where it was told.
+TEST(Following, OfACommandThatWaitsIsToldByItsArrivals) {
+  std::vector<double> command, servo;
+  double at = 0.0;
+  for (const double to : {0.0, 0.1, 0.2, 0.1, 0.0, -0.1, 0.0, 0.1, 0.2}) {
+    for (int i = 0; i < 10; ++i) {
+      command.push_back(to);
+      at += (to - at) * 0.3;
+      servo.push_back(at);
+    }
+  }
+  EXPECT_NEAR(FollowingOf(command, servo).gain, 1.0, 0.1);
+}
+
 TEST(Following, TellsUnitsAndSensesThatDoNotFit) {
   std::vector<double> x, by_57, against, around;
   for (int i = 0; i < 500; ++i) {

@@ -46,14 +46,37 @@ Following LeastSquares(const std::vector<double>& x, const std::vector<double>& 
   return {xy / xx, xy / std::sqrt(xx * yy)};
 }
 
+/// The rows just before a command that waits goes on: a servo is on its way in the others.
+std::vector<std::size_t> Arrivals(const std::vector<double>& command) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 1; i + 1 < command.size(); ++i) {
+    if (command[i] == command[i - 1] && command[i] != command[i + 1]) rows.push_back(i);
+  }
+  return rows;
+}
+
+Following AtArrivals(const std::vector<double>& reference, const std::vector<double>& shown) {
+  std::vector<double> x, y;
+  for (const std::size_t row : Arrivals(reference)) {
+    x.push_back(reference[row]);
+    y.push_back(shown[row]);
+  }
+  constexpr std::size_t kFewest = 4;
+  return x.size() < kFewest ? Following{} : LeastSquares(x, y);
+}
+
+Following Better(const Following& a, const Following& b) {
+  return std::abs(b.correlation) > std::abs(a.correlation) ? b : a;
+}
+
 }  // namespace
 
 Following FollowingOf(const std::vector<double>& reference, const std::vector<double>& shown) {
-  Following best = LeastSquares(reference, shown);
+  Following best = Better(LeastSquares(reference, shown), AtArrivals(reference, shown));
   std::vector<double> unwrapped = shown;
   if (Unwrap(units::turn, unwrapped) > 0) {
-    const Following other = LeastSquares(reference, unwrapped);
-    if (std::abs(other.correlation) > std::abs(best.correlation)) best = other;
+    best = Better(best, LeastSquares(reference, unwrapped));
+    best = Better(best, AtArrivals(reference, unwrapped));
   }
   // The difference of the two may be followed where neither can be: large steps, both going round.
   std::vector<double> difference;
@@ -61,8 +84,7 @@ Following FollowingOf(const std::vector<double>& reference, const std::vector<do
   Unwrap(units::turn, difference);
   for (std::size_t i = 0; i < shown.size(); ++i) difference[i] += reference[i];
   const Following other = LeastSquares(reference, difference);
-  return std::abs(other.correlation) > std::abs(best.correlation) && std::abs(other.gain - 1.0) < 0.2 ? other
-                                                                                                      : best;
+  return std::abs(other.gain - 1.0) < 0.2 ? Better(best, other) : best;
 }
 
 std::string MeaningOfGain(double gain) {

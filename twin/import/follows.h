@@ -11,7 +11,8 @@ struct Following {
   double correlation = 0.0;  // -1 to 1
 };
 
-/// Jumps of whole turns in either are taken out if that makes them agree better.
+/// Jumps of whole turns in either are taken out if that makes them agree better; of a command that waits for the
+/// device only the arrivals count, likewise.
 Following FollowingOf(const std::vector<double>& reference, const std::vector<double>& shown);
 
 /// What a gain far from 1 looks like, "one of them is in rad, the other in deg"; empty if it is no known ratio.

@@ -18,16 +18,13 @@ std::string MeaningOf(int order) {
   switch (order) {
     case 1:
       return "scale or magnet off centre, or an offset of the sine and cosine signals; also a reference that is "
-             "off "
-             "centre. One mounting cannot tell them apart: turn the device on the shaft";
+             "off centre. One mounting cannot tell them apart: turn the device on the shaft";
     case 2:
       return "scale or magnet tilted or out of round, or sine and cosine signals of unequal size or not a quarter "
-             "period "
-             "apart; cannot be told apart at one mounting";
+             "period apart; cannot be told apart at one mounting";
     case 4:
       return "saturated or clipped signals (then orders 8 and 12 come along in fixed ratios), a nonlinear sensor, "
-             "or four "
-             "screws or poles";
+             "or four screws or poles";
     case 8:
     case 12:
       return "goes with order 4 where signals are clipped; else screws, poles or a polygon of this number";
@@ -50,6 +47,13 @@ Harmonic OrderOf(int order, const Eigen::Vector2d& x, const Eigen::Matrix2d& cov
   return {order, polar.size, polar.u_size, polar.phase_rad, polar.u_phase_rad, MeaningOf(order)};
 }
 
+/// Whether the readings tell the columns apart: of less than a turn they do not, and sizes are then a thousand
+/// times too large, each against the next. A column's variance beside the others over that of the column alone.
+bool AreToldApart(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& inverse) {
+  constexpr double kMostInflation = 100.0;
+  return (normal.diagonal().array() * inverse.diagonal().array() < kMostInflation).all();
+}
+
 }  // namespace
 
 std::vector<Harmonic> HarmonicTable(const EncoderRun& encoder, const NoiseModel& noise) {
@@ -59,11 +63,14 @@ std::vector<Harmonic> HarmonicTable(const EncoderRun& encoder, const NoiseModel&
   const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
   const Eigen::MatrixXd S = noise.Whiten(run, Waves(encoder.context.device_rad, orders));
   const Eigen::MatrixXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual)), projected = projector.Apply(S);
-  const Eigen::LDLT<Eigen::MatrixXd> normal(S.transpose() * projected);
-  const Eigen::VectorXd x = normal.solve(projected.transpose() * white.col(0));
+  const Eigen::MatrixXd normal = S.transpose() * projected;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+  const Eigen::MatrixXd inverse = solver.solve(Eigen::MatrixXd::Identity(2 * orders, 2 * orders));
+  if (!AreToldApart(normal, inverse)) return {};
+  const Eigen::VectorXd x = solver.solve(projected.transpose() * white.col(0));
   const Eigen::VectorXd left = projector.Apply(white - S * x).col(0);
   const double scale2 = left.squaredNorm() / std::max(1.0, projector.DegreesOfFreedom() - 2.0 * orders);
-  const Eigen::MatrixXd cov = scale2 * normal.solve(Eigen::MatrixXd::Identity(2 * orders, 2 * orders));
+  const Eigen::MatrixXd cov = scale2 * inverse;
   std::vector<Harmonic> table;
   for (int k = 1; k <= orders; ++k) {
     table.push_back(OrderOf(k, x.segment<2>(2 * k - 2), cov.block<2, 2>(2 * k - 2, 2 * k - 2)));
