@@ -4,6 +4,7 @@
 
 #include "tests/core/input_error.h"
 #include "twin/core/units.h"
+#include "twin/import/blocks.h"
 #include "twin/import/clock.h"
 #include "twin/import/course.h"
 #include "twin/import/expression.h"
@@ -136,6 +137,19 @@ TEST(Course, FindsReversalsAndRests) {
   EXPECT_EQ(course.motion[50], Motion::kSteady);
   EXPECT_NEAR(course.velocity[50], 10.0 * units::deg, 1e-9);
   EXPECT_EQ(course.pass[50] + 1, course.pass[200]);
+}
+
+TEST(Course, OfACommandThatJumpsIsStopsHoweverFewPlacesItKnows) {
+  std::vector<double> x;
+  for (const double to_deg : {0.0, 10.0, 0.0, 10.0, 0.0, 10.0, 0.0, 10.0}) x.insert(x.end(), 40, to_deg * units::deg);
+  const Course course = CourseOf(x, Clocked(x.size()), {}, 0.0);
+  ASSERT_TRUE(course.stop_and_go);
+  const Blocks cut = CutIntoBlocks(course, Clocked(x.size()), 5000, true);
+  EXPECT_EQ(cut.blocks.size(), 24U) << "eight rests of three pieces";
+  for (const Block& block : cut.blocks) {
+    EXPECT_EQ(x[block.begin], x[block.end - 1]);
+    EXPECT_GT(block.begin % 40, 10U) << "the servo is still on its way";
+  }
 }
 
 TEST(Course, IsNotTurnedByNoise) {

@@ -29,21 +29,36 @@ double UsualInterval(const std::vector<double>& time_s) {
   return *middle;
 }
 
-/// Rests become one reading each: their last two thirds, when the axis has settled.
-Blocks CutStops(const Course& course) {
-  Blocks cut;
+/// The last two thirds of each rest, when the axis has settled.
+std::vector<Block> SettledRests(const Course& course) {
+  std::vector<Block> rests;
   for (std::size_t i = 0; i < course.reference.size();) {
     std::size_t end = i;
     while (end < course.reference.size() && course.direction[end] == 0) ++end;
-    if (end > i) {
-      cut.blocks.push_back({i + (end - i) / 3, end});
-      cut.usual_rows = std::max(cut.usual_rows, end - i - (end - i) / 3);
-      i = end;
-    } else {
-      ++cut.left_out;
-      ++i;
-    }
+    if (end > i) rests.push_back({i + (end - i) / 3, end});
+    i = std::max(end, i + 1);
   }
+  return rests;
+}
+
+/// In about equal pieces of three rows at least.
+void AddPieces(const Block& rest, std::size_t pieces, std::vector<Block>& blocks) {
+  constexpr std::size_t kFewestRows = 3;
+  const std::size_t rows = rest.end - rest.begin;
+  pieces = std::clamp<std::size_t>(rows / kFewestRows, 1, pieces);
+  for (std::size_t k = 0; k < pieces; ++k)
+    blocks.push_back({rest.begin + rows * k / pieces, rest.begin + rows * (k + 1) / pieces});
+}
+
+/// Rests become one reading each; several where there would be too few for anything else.
+Blocks CutStops(const Course& course) {
+  constexpr std::size_t kFewest = 12, kWanted = 24;
+  const std::vector<Block> rests = SettledRests(course);
+  const std::size_t pieces = rests.size() < kFewest ? (kWanted + rests.size() - 1) / rests.size() : 1;
+  Blocks cut;
+  for (const Block& rest : rests) AddPieces(rest, pieces, cut.blocks);
+  for (const Block& block : cut.blocks) cut.usual_rows = std::max(cut.usual_rows, block.end - block.begin);
+  cut.left_out = static_cast<std::size_t>(std::ranges::count_if(course.direction, [](int d) { return d != 0; }));
   return cut;
 }
 

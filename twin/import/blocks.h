@@ -22,9 +22,10 @@ struct Blocks {
   std::size_t usual_rows = 1;
 };
 
-/// A recording of stops in time has one block a rest, without the rows in which the axis still settles. One of
-/// motion is cut into at most about `most` blocks that never span a reversal, a rest's end, a gap or a ramp's end;
-/// behind a reversal, where play is crossed, they are an eighth as long.
+/// A recording of stops in time has one block a rest, without the rows in which the axis still settles; several
+/// where there are less than a dozen rests. One of motion is cut into at most about `most` blocks that never span
+/// a reversal, a rest's end, a gap or a ramp's end; behind a reversal, where play is crossed, they are an eighth as
+/// long.
 ///
 /// Stops are kept one by one, unless they are as close as the entries of a firmware's table. Where that would lose
 /// orders below 30, there are up to four times as many.

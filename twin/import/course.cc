@@ -210,11 +210,12 @@ bool IsOneReadingAStop(const Course& swept) {
   return swept.reference.size() < 2000 && swept.rests == 0 && MeetsTheSameAngles(swept);
 }
 
-/// At rest for much of the time, at many places.
+/// At rest for much of the time, at many places; or nearly always, as a command is that jumps from place to place.
 bool GoesFromRestToRest(const Course& swept) {
   constexpr int kFewestRests = 6;
-  constexpr double kRestShare = 0.4;
+  constexpr double kRestShare = 0.4, kNearlyAlways = 0.9;
   if (swept.rests < kFewestRests || swept.rest_share < kRestShare) return false;
+  if (swept.rest_share > kNearlyAlways) return true;
   const auto [low, high] = std::ranges::minmax(swept.reference);
   std::vector<double> places;
   for (const auto& [begin, end] : Runs(swept.direction)) {
