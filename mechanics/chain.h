@@ -16,6 +16,7 @@ struct ChainGeometry {
   Eigen::Vector2d mount_tilt_rad = Eigen::Vector2d::Zero();  // of S on T: Ry(y) Rx(x)
   double reseat_rad = 0.0;                                   // of S on T about its axis, after the tilt
   double clamp_rad = 0.0;                                    // the grating is turned back by this on R
+  bool operator==(const ChainGeometry&) const = default;
 };
 
 /// X_TS: pose of the reference's body on the target's rotor.

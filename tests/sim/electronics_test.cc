@@ -48,8 +48,9 @@ TEST(Electronics, IsFollowedWithItsNonLinearity) {
   const test::TwinRun straight = test::RunTwin(scenario);
   RotaryOf(scenario).adc.inl_file = Written("inl_follow.csv", "voltage_V,error_mV\n-10,5\n0,0\n10,5\n");
   const test::TwinRun bent = test::RunTwin(scenario);
-  const Eigen::MatrixXd followed_V = FollowRotary(bent.scenario, bent.readings)->Predict() -
-                                     FollowRotary(straight.scenario, straight.readings)->Predict();
+  const Eigen::MatrixXd followed_V =
+      FollowRotary(bent.scenario, bent.readings, std::make_shared<DrivesOnce>())->Predict() -
+      FollowRotary(straight.scenario, straight.readings, std::make_shared<DrivesOnce>())->Predict();
   double most_V = 0.0;
   for (std::size_t i = 0; i < bent.readings.size(); ++i) {
     for (int c = 0; c < kChannels; ++c) {

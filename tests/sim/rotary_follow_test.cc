@@ -39,7 +39,8 @@ std::vector<Disturbance> TablesOf(const test::TwinRun& run) {
 
 /// The largest difference between what the twin showed and what it says that it should have shown.
 double Apart_m(const test::TwinRun& run) {
-  const Eigen::MatrixXd followed_V = FollowRotary(run.scenario, run.readings)->Predict(TablesOf(run));
+  const Eigen::MatrixXd followed_V =
+      FollowRotary(run.scenario, run.readings, std::make_shared<DrivesOnce>())->Predict(TablesOf(run));
   double apart_V = 0.0;
   for (std::size_t i = 0; i < run.readings.size(); ++i) {
     if (run.readings[i].status != ReadingStatus::kOk) continue;
@@ -201,7 +202,7 @@ TEST(RotaryFollow, DoesNotForeseeSingleOutliers) {
 // beside the way to the PSD. Signs: formats.md.
 TEST(RotaryFollow, HasTheSlopesOfTheClosedForms) {
   const test::TwinRun run = test::RunTwin(test::SmallNoiseFree());
-  const auto follow = FollowRotary(run.scenario, run.readings);
+  const auto follow = FollowRotary(run.scenario, run.readings, std::make_shared<DrivesOnce>());
   const Eigen::Index stop = std::ssize(run.readings) - 1;
   const double sine = 0.39, cosine = std::sqrt(1.0 - sine * sine), l1_m = 0.120, lever_m = 0.2;
   const auto slope = [&](const char* point) {

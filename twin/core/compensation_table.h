@@ -14,6 +14,8 @@ struct CompensationTable {
 
   /// At any angle, also an unwrapped one.
   double At(double angle_rad) const;
+
+  bool operator==(const CompensationTable&) const = default;
 };
 
 /// Where a table is sent so that it arrives at an angle; the angle itself without a compensation.

@@ -91,6 +91,7 @@ struct MechanicsSettings {             // [mechanics]; lists: target, reference
   std::string vibration = "none";                       // auto | none | VC-A ... VC-G | listed, which is
   std::vector<double> vibration_frequency_Hz = {10.0};  // centres of third-octave bands ...
   std::vector<double> vibration_velocity_m_s = {0.0};   // ... and their root mean square velocities
+  bool operator==(const MechanicsSettings&) const = default;
 };
 
 struct EnvironmentSettings {  // [environment]

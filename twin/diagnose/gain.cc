@@ -74,11 +74,12 @@ FoldErrors PredictFold(const LinearRun& run, const NoiseModel& noise, const Mode
   const Eigen::VectorXd amplitudes = FitAmplitudes(fit, S, train_y, columns.prior_precision);
   FoldErrors errors;
   errors.before = run.residual - run.nuisance.jacobian * fit.Solve(train_y);
-  const Eigen::VectorXd shown = ShownWith(model, amplitudes);
-  const Eigen::MatrixXd left = run.residual - shown;
+  // What is only repeated is out of both: free unknowns that were fitted with it would miss it where it is not.
+  const Eigen::VectorXd predicted =
+      ShownWith(model, amplitudes) - columns.S * model.repeated.cwiseProduct(amplitudes);
+  const Eigen::MatrixXd left = run.residual - predicted;
   const Eigen::MatrixXd train_left = (1.0 - held.array()).matrix().asDiagonal() * noise.Whiten(run, left);
-  const Eigen::VectorXd predicted = shown - columns.S * model.repeated.cwiseProduct(amplitudes);
-  errors.after = run.residual - predicted - run.nuisance.jacobian * fit.Solve(train_left);
+  errors.after = left - run.nuisance.jacobian * fit.Solve(train_left);
   errors.amplitude = RelativeVariances(fit, S, columns.prior_precision);
   errors.variance = VarianceOfHeld(fit, held);
   for (int k = 0; k < run.Rows(); ++k) {

@@ -15,7 +15,7 @@ namespace twinbench::benches::rotary {
 namespace {
 
 diagnose::rotary::ForwardModel ModelOf(Estimator estimator) {
-  return {FollowRecord, estimator == Estimator::kPublished};
+  return {FollowOften(), estimator == Estimator::kPublished};
 }
 
 std::vector<diagnose::Cause> Decided(const std::vector<diagnose::Discrete>& discrete) {

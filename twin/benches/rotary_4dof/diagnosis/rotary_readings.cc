@@ -6,6 +6,7 @@
 #include "twin/benches/rotary_4dof/estimators/calibrate.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/distributions.h"
+#include "twin/diagnose/engine/noise_estimate.h"
 
 namespace twinbench::diagnose::rotary {
 namespace {
@@ -25,6 +26,14 @@ double StatedSigma_m(const std::vector<Reading>& used, int channel, const Scenar
   const double mean_V = std::hypot(RotaryOf(scenario).amplifier.noise_V / std::sqrt(RotaryOf(scenario).adc.samples),
                                    geometry.adc_step_V / std::sqrt(12.0 * RotaryOf(scenario).adc.samples));
   return mean_V / geometry.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
+}
+
+/// Of means that were written down with few digits, or taken by a converter coarser than their noise.
+double RoundingSigma_m(const std::vector<Reading>& used, int channel, const measure::BenchGeometry& geometry) {
+  Eigen::VectorXd shown_V(std::ssize(used));
+  for (std::size_t i = 0; i < used.size(); ++i)
+    shown_V[static_cast<Eigen::Index>(i)] = used[i].mean_V[static_cast<std::size_t>(channel)];
+  return CommonStep(shown_V) / std::sqrt(12.0) / geometry.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
 }
 
 }  // namespace
@@ -65,7 +74,8 @@ double SampleNoise_V(const std::vector<Reading>& used, const Scenario& scenario)
 Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario,
                         const measure::BenchGeometry& geometry, const SweptSlopes& swept) {
   Eigen::Vector4d noise_m;
-  for (int c = 0; c < kChannels; ++c) noise_m[c] = StatedSigma_m(used, c, scenario, geometry);
+  for (int c = 0; c < kChannels; ++c)
+    noise_m[c] = std::hypot(StatedSigma_m(used, c, scenario, geometry), RoundingSigma_m(used, c, geometry));
   const Eigen::VectorXd sweep_m =
       geometry.autocollimator_noise_rad * (swept.of_yaw.cwiseAbs2() + swept.of_tilt.cwiseAbs2()).cwiseSqrt();
   Eigen::VectorXd sigma(kChannels * std::ssize(used));

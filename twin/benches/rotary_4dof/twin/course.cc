@@ -4,15 +4,11 @@
 #include <cmath>
 
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/benches/rotary_4dof/twin/table_stack.h"
 #include "twin/model/local_level.h"
-#include "twin/sim/axes.h"
 #include "twin/sim/environment.h"
 
 namespace twinbench::sim {
 namespace {
-
-using mechanics::Axis;
 
 /// Whether the tables were mounted anew between two readings.
 bool IsRemounted(const Reading& before, const Reading& now) {
@@ -46,96 +42,58 @@ Eigen::VectorXd RoomTemperature_degC(const std::vector<Reading>& record, double 
   return room_degC;
 }
 
-/// The drives as they were sent along a record.
-class RecordedDrives {
- public:
-  explicit RecordedDrives(const Scenario& actual)
-      : actual_(actual),
-        plant_(mechanics::MakePlant(mechanics::FidelityFromName(RotaryOf(actual).mechanics.fidelity),
-                                    StackOf(StackOfBench(actual)))) {}
-
-  void Mount(const mechanics::ChainGeometry& geometry) { plant_->Mount(geometry); }
-
-  /// Both tables move at once, settle, and their in-position windows pass.
-  void GoTo(double target_rad, double reference_rad) {
-    const RotarySettings& own = RotaryOf(actual_);
-    const double target_s = Start(Axis::kTarget, target_rad, own.target);
-    const double reference_s = Start(Axis::kReference, reference_rad, own.reference);
-    const double longest_s = std::max(target_s, reference_s);
-    if (longest_s == 0.0) return;
-    const double passed_s = plant_->AdvanceUntilSettled(longest_s + kPatience_s);
-    Dwell(std::max(target_s + own.target.settle_s, reference_s + own.reference.settle_s) - passed_s);
-  }
-
-  void Dwell(double for_s) { plant_->Advance(std::max(0.0, for_s)); }
-
-  mechanics::StackState State() const { return plant_->State(); }
-  int Direction(Axis axis) const { return direction_[static_cast<std::size_t>(axis)]; }
-  /// On its last move.
-  double Travelled_rad(Axis axis) const { return travelled_rad_[static_cast<std::size_t>(axis)]; }
-
- private:
-  static constexpr double kPatience_s = 10.0;
-
-  /// @return how long the move takes; 0 if there is nowhere to go.
-  double Start(Axis axis, double angle_rad, const TableSettings& table) {
-    const double to_rad = CommandedAngle_rad(table.compensation, angle_rad);
-    const double travel_rad = to_rad - plant_->CommandedEnd_rad(axis);
-    if (travel_rad == 0.0) return 0.0;
-    const double duration_s = Duration_s(table, travel_rad);
-    plant_->StartMove(axis, to_rad, duration_s);
-    direction_[static_cast<std::size_t>(axis)] = travel_rad > 0.0 ? 1 : -1;
-    travelled_rad_[static_cast<std::size_t>(axis)] = std::abs(travel_rad);
-    return duration_s;
-  }
-
-  const Scenario& actual_;
-  std::unique_ptr<mechanics::Plant> plant_;
-  std::array<int, 2> direction_ = {1, 1};
-  std::array<double, 2> travelled_rad_ = Moment{}.travelled_rad;
-};
-
 class CourseMaker {
  public:
   CourseMaker(const std::vector<Reading>& record, double stated_noise_K, OpticalPath& path)
       : record_(record),
         path_(path),
-        drives_(path.actual()),
         room_(path.actual().environment, path.actual().seed),
         step_rad_(2.0 * units::kPi / std::max(1, RotaryOf(path.actual()).procedure.positions)),
         room_degC_(RoomTemperature_degC(record, stated_noise_K)) {}
 
-  RotaryCourse Make() {
-    for (std::size_t i = 0; i < record_.size(); ++i) AddStop(i);
+  RotaryCourse Make(DrivesOnce& drives) {
+    for (std::size_t i = 0; i < record_.size(); ++i) AddWay(i);
+    const DrivesOnce::Stops driven = drives.Along(actual(), steps_);
+    for (std::size_t i = 0; i < record_.size(); ++i) {
+      AddStop(record_[i], ways_[i], (*driven)[ways_[i].step], room_degC_[static_cast<Eigen::Index>(i)]);
+    }
     NoteUnfixed();
     return std::move(course_);
   }
 
  private:
+  /// How a reading was come to.
+  struct Way {
+    std::size_t step = 0;  // of the drives, the last one
+    int mounting = 0;
+    Time mounted{};
+  };
+
   const Scenario& actual() const { return path_.actual(); }
 
-  void AddStop(std::size_t i) {
+  void AddWay(std::size_t i) {
     const Reading& r = record_[i];
     const bool remounted = i == 0 || IsRemounted(record_[i - 1], r);
     if (remounted) Mount(r);
     const bool new_pass = remounted || record_[i - 1].pass != r.pass || record_[i - 1].direction != r.direction;
     if (new_pass && r.phase == Phase::kFullCircle) {
-      const double behind_rad =
-          OrZero(r.target_rad) - r.direction * RotaryOf(actual()).procedure.run_up_steps * step_rad_;
-      drives_.GoTo(behind_rad, Shift_rad(r) - behind_rad);
+      const double behind_rad = BehindFirstStop_rad(r);
+      steps_.push_back({behind_rad, Shift_rad(r) - behind_rad});
     }
-    drives_.GoTo(OrZero(r.target_rad), OrZero(r.reference_rad));
-    drives_.Dwell(OrZero(r.dwell_s));
-    course_.stops.push_back(StopOf(r, room_degC_[static_cast<Eigen::Index>(i)]));
+    steps_.push_back({OrZero(r.target_rad), OrZero(r.reference_rad), std::max(0.0, OrZero(r.dwell_s))});
+    ways_.push_back({steps_.size() - 1, static_cast<int>(course_.stands.size()) - 1, mounted_});
   }
 
   static double Shift_rad(const Reading& r) { return OrZero(r.target_rad) + OrZero(r.reference_rad); }
 
+  double BehindFirstStop_rad(const Reading& r) const {
+    return OrZero(r.target_rad) - r.direction * RotaryOf(actual()).procedure.run_up_steps * step_rad_;
+  }
+
   void Mount(const Reading& r) {
-    drives_.GoTo(0.0, Shift_rad(r));
     const bool reseats = RotaryOf(actual()).procedure.clamping == "reseat";
     const Mounting nominal{reseats ? 0.0 : Shift_rad(r), reseats ? -Shift_rad(r) : 0.0, reseats};
-    drives_.Mount(path_.stand().Mount(path_.effects().Actual(nominal)));
+    steps_.push_back({0.0, Shift_rad(r), 0.0, path_.stand().Mount(path_.effects().Actual(nominal))});
     course_.stands.push_back(path_.stand());
     mounted_ =
         r.time - FromSeconds(RotaryOf(actual()).procedure.remount_s + WayToFirstStop_s(r) + OrZero(r.dwell_s));
@@ -144,9 +102,7 @@ class CourseMaker {
   /// From the mounting position over the run-up to the first stop, with the in-position windows.
   double WayToFirstStop_s(const Reading& r) const {
     if (r.phase != Phase::kFullCircle) return 0.0;
-    const double run_up_rad = RotaryOf(actual()).procedure.run_up_steps * step_rad_;
-    const double behind_rad = OrZero(r.target_rad) - r.direction * run_up_rad;
-    return MoveTime_s(behind_rad) + MoveTime_s(run_up_rad);
+    return MoveTime_s(BehindFirstStop_rad(r)) + MoveTime_s(RotaryOf(actual()).procedure.run_up_steps * step_rad_);
   }
 
   double MoveTime_s(double travel_rad) const {
@@ -155,11 +111,11 @@ class CourseMaker {
     return std::max(of(RotaryOf(actual()).target), of(RotaryOf(actual()).reference));
   }
 
-  RecordedStop StopOf(const Reading& r, double room_degC) {
-    RecordedStop stop;
-    stop.axes = drives_.State();
-    stop.moment = MomentOf(r, room_degC, stop.axes);
-    stop.mounting = static_cast<int>(course_.stands.size()) - 1;
+  void AddStop(const Reading& r, const Way& way, const DrivenStop& driven, double room_degC) {
+    RecordedStop& stop = course_.stops.emplace_back();
+    stop.axes = driven.axes;
+    stop.moment = MomentOf(r, room_degC, driven, way.mounted);
+    stop.mounting = way.mounting;
     stop.start = r.time;
     stop.n_samples = SamplesOf(r, RotaryOf(actual()).adc);
     stop.swept = std::isfinite(r.autocollimator_yaw_rad + r.autocollimator_tilt_rad);
@@ -170,24 +126,23 @@ class CourseMaker {
     stop.pose = path_.effects().Pose(stop.moment);
     stop.light = path_.LightAt(stop.moment);
     path_.effects().AlterSignal(stop.moment, stop.added_V);
-    return stop;
   }
 
-  Moment MomentOf(const Reading& r, double room_degC, const mechanics::StackState& axes) {
+  Moment MomentOf(const Reading& r, double room_degC, const DrivenStop& driven, Time mounted) {
     const double window_s = std::max(RotaryOf(actual()).target.settle_s, RotaryOf(actual()).reference.settle_s);
     Moment moment;
     const Duration block = BlockTime(RotaryOf(actual()).adc, SamplesOf(r, RotaryOf(actual()).adc));
     moment.now = r.time + block / 2;
     moment.averaged_s = ToSeconds(block);
-    moment.mounted = mounted_;
-    moment.arrived = r.phase == Phase::kFullCircle ? r.time - FromSeconds(OrZero(r.dwell_s) + window_s) : mounted_;
+    moment.mounted = mounted;
+    moment.arrived = r.phase == Phase::kFullCircle ? r.time - FromSeconds(OrZero(r.dwell_s) + window_s) : mounted;
     moment.temperature_K = AboveReference_K(r, room_degC);
-    moment.target_rad = axes.target_rad;
-    moment.reference_rad = axes.reference_rad;
-    moment.target_direction = drives_.Direction(Axis::kTarget);
-    moment.reference_direction = drives_.Direction(Axis::kReference);
+    moment.target_rad = driven.axes.target_rad;
+    moment.reference_rad = driven.axes.reference_rad;
+    moment.target_direction = driven.direction[0];
+    moment.reference_direction = driven.direction[1];
     moment.departed.fill(r.time);  // before each reading anew, for all that play knows
-    moment.travelled_rad = {drives_.Travelled_rad(Axis::kTarget), drives_.Travelled_rad(Axis::kReference)};
+    moment.travelled_rad = driven.travelled_rad;
     moment.setup = r.setup;
     moment.reading = r.reading;
     return moment;
@@ -206,19 +161,21 @@ class CourseMaker {
 
   const std::vector<Reading>& record_;
   OpticalPath& path_;
-  RecordedDrives drives_;
   Environment room_;
   double step_rad_;
   Eigen::VectorXd room_degC_;
   Time mounted_{};
+  std::vector<DriveStep> steps_;
+  std::vector<Way> ways_;  // one a reading
   bool without_temperature_ = false;
   RotaryCourse course_;
 };
 
 }  // namespace
 
-RotaryCourse FollowCourse(const std::vector<Reading>& record, double thermometer_noise_K, OpticalPath& path) {
-  return CourseMaker(record, thermometer_noise_K, path).Make();
+RotaryCourse FollowCourse(const std::vector<Reading>& record, double thermometer_noise_K, OpticalPath& path,
+                          DrivesOnce& drives) {
+  return CourseMaker(record, thermometer_noise_K, path).Make(drives);
 }
 
 }  // namespace twinbench::sim

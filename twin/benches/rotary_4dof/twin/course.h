@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "twin/benches/rotary_4dof/twin/drives_along.h"
 #include "twin/benches/rotary_4dof/twin/optical_path.h"
 #include "twin/core/reading.h"
 
@@ -33,6 +34,7 @@ struct RotaryCourse {
 
 /// @param thermometer_noise_K  Standard deviation of a logged temperature.
 /// @param path                 Its effects are led along the course.
-RotaryCourse FollowCourse(const std::vector<Reading>& record, double thermometer_noise_K, OpticalPath& path);
+RotaryCourse FollowCourse(const std::vector<Reading>& record, double thermometer_noise_K, OpticalPath& path,
+                          DrivesOnce& drives);
 
 }  // namespace twinbench::sim

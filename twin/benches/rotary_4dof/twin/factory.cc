@@ -35,7 +35,14 @@ std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
 }
 
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {
-  return sim::FollowRotary(scenario, record);
+  return sim::FollowRotary(scenario, record, std::make_shared<sim::DrivesOnce>());
+}
+
+model::FollowMaker FollowOften() {
+  return
+      [drives = std::make_shared<sim::DrivesOnce>()](const Scenario& scenario, const std::vector<Reading>& record) {
+        return sim::FollowRotary(scenario, record, drives);
+      };
 }
 
 }  // namespace twinbench::benches::rotary

@@ -77,13 +77,14 @@ Scenario WithFreeTables(Scenario scenario, const std::vector<Reading>& record) {
 
 class RotaryFollow : public PointwiseFollow<RotaryExtra> {
  public:
-  RotaryFollow(const Scenario& stated, const std::vector<Reading>& record)
+  RotaryFollow(const Scenario& stated, const std::vector<Reading>& record, std::shared_ptr<DrivesOnce> drives)
       : PointwiseFollow(WithFreeTables(Foreseeable(stated, AtMiddleOfBlocks(record, RotaryOf(stated).adc)), record),
                         record, RotaryPoints()),
         noise_V_(IfNoisy(stated, RotaryOf(stated).amplifier.noise_V)),
         thermometer_noise_K_(IfNoisy(stated, stated.environment.sensor_noise_K)),
         path_(scenario(), LightAsked::kQuickly),
-        course_(FollowCourse(record, thermometer_noise_K_, path_)) {}
+        drives_(std::move(drives)),
+        course_(FollowCourse(record, thermometer_noise_K_, path_, *drives_)) {}
 
   std::vector<std::string> Unfixed() const override { return course_.unfixed; }
 
@@ -101,7 +102,7 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
   std::unique_ptr<model::Follow> On(const Scenario& changed) const override {
     Scenario stated = changed;
     stated.noise_free = noise_V_ == 0.0 && thermometer_noise_K_ == 0.0;
-    return std::make_unique<RotaryFollow>(stated, record());
+    return std::make_unique<RotaryFollow>(stated, record(), drives_);
   }
 
  private:
@@ -162,14 +163,16 @@ class RotaryFollow : public PointwiseFollow<RotaryExtra> {
 
   double noise_V_, thermometer_noise_K_;  // as stated: what a step of the converter, or a log, is blurred by
   OpticalPath path_;
+  std::shared_ptr<DrivesOnce> drives_;
   RotaryCourse course_;
 };
 
 }  // namespace
 
-std::unique_ptr<model::Follow> FollowRotary(const Scenario& scenario, const std::vector<Reading>& record) {
+std::unique_ptr<model::Follow> FollowRotary(const Scenario& scenario, const std::vector<Reading>& record,
+                                            std::shared_ptr<DrivesOnce> drives) {
   try {
-    return std::make_unique<RotaryFollow>(scenario, record);
+    return std::make_unique<RotaryFollow>(scenario, record, std::move(drives));
   } catch (const std::invalid_argument& error) {
     throw InputError("bench " + scenario.bench, error.what(), "a scenario of parts that can be built");
   }

@@ -1,0 +1,103 @@
+#include "twin/benches/rotary_4dof/twin/drives_along.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/effect.h"
+#include "twin/benches/rotary_4dof/twin/table_stack.h"
+#include "twin/core/compensation_table.h"
+
+namespace twinbench::sim {
+namespace {
+
+using mechanics::Axis;
+
+/// What a drive depends on besides its mechanics.
+struct Drive {
+  double backlash_rad, speed_rad_s, move_time_s, settle_s;
+  std::optional<CompensationTable> compensation;
+  bool operator==(const Drive&) const = default;
+};
+
+Drive DriveOf(const TableSettings& table) {
+  return {table.backlash_rad, table.speed_rad_s, table.move_time_s, table.settle_s, table.compensation};
+}
+
+/// The drives as they were sent along a record.
+class RecordedDrives {
+ public:
+  explicit RecordedDrives(const Scenario& actual)
+      : drives_{DriveOf(RotaryOf(actual).target), DriveOf(RotaryOf(actual).reference)},
+        plant_(mechanics::MakePlant(mechanics::FidelityFromName(RotaryOf(actual).mechanics.fidelity),
+                                    StackOf(StackOfBench(actual)))) {}
+
+  DrivenStop Take(const DriveStep& step) {
+    GoTo(step.target_rad, step.reference_rad);
+    plant_->Advance(step.dwell_s);
+    if (step.mounted) plant_->Mount(*step.mounted);
+    stop_.axes = plant_->State();
+    return stop_;
+  }
+
+ private:
+  static constexpr double kPatience_s = 10.0;
+
+  /// Both tables move at once, settle, and their in-position windows pass.
+  void GoTo(double target_rad, double reference_rad) {
+    const double target_s = Start(Axis::kTarget, target_rad);
+    const double reference_s = Start(Axis::kReference, reference_rad);
+    const double longest_s = std::max(target_s, reference_s);
+    if (longest_s == 0.0) return;
+    const double passed_s = plant_->AdvanceUntilSettled(longest_s + kPatience_s);
+    const double over_s = std::max(target_s + drives_[0].settle_s, reference_s + drives_[1].settle_s);
+    plant_->Advance(std::max(0.0, over_s - passed_s));
+  }
+
+  /// @return how long the move takes; 0 if there is nowhere to go.
+  double Start(Axis axis, double angle_rad) {
+    const auto k = static_cast<std::size_t>(axis);
+    const double to_rad = CommandedAngle_rad(drives_[k].compensation, angle_rad);
+    const double travel_rad = to_rad - plant_->CommandedEnd_rad(axis);
+    if (travel_rad == 0.0) return 0.0;
+    const double duration_s = std::max(drives_[k].move_time_s, std::abs(travel_rad) / drives_[k].speed_rad_s);
+    plant_->StartMove(axis, to_rad, duration_s);
+    stop_.direction[k] = travel_rad > 0.0 ? 1 : -1;
+    stop_.travelled_rad[k] = std::abs(travel_rad);
+    return duration_s;
+  }
+
+  std::array<Drive, 2> drives_;
+  std::unique_ptr<mechanics::Plant> plant_;
+  DrivenStop stop_{{}, {1, 1}, Moment{}.travelled_rad};
+};
+
+}  // namespace
+
+std::vector<DrivenStop> DriveAlong(const Scenario& actual, const std::vector<DriveStep>& steps) {
+  RecordedDrives drives(actual);
+  std::vector<DrivenStop> stops;
+  stops.reserve(steps.size());
+  for (const DriveStep& step : steps) stops.push_back(drives.Take(step));
+  return stops;
+}
+
+struct DrivesOnce::Drives {
+  MechanicsSettings mechanics;
+  Drive target, reference;
+  bool operator==(const Drives&) const = default;
+};
+
+DrivesOnce::Stops DrivesOnce::Along(const Scenario& actual, const std::vector<DriveStep>& steps) {
+  const RotarySettings& own = RotaryOf(actual);
+  const Drives drives{own.mechanics, DriveOf(own.target), DriveOf(own.reference)};
+  const std::scoped_lock lock(mutex_);
+  if (!stops_ || !(*last_ == drives) || last_steps_ != steps) {
+    stops_ = std::make_shared<const std::vector<DrivenStop>>(DriveAlong(actual, steps));
+    last_ = std::make_shared<const Drives>(drives);
+    last_steps_ = steps;
+  }
+  return stops_;
+}
+
+}  // namespace twinbench::sim
