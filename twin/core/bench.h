@@ -21,6 +21,9 @@ class Follow;
 namespace separate {
 struct IndexErrors;
 }
+namespace uncertainty {
+struct Contribution;
+}
 namespace report {
 struct Evaluation;
 struct ScoredRun;
@@ -76,6 +79,9 @@ struct Bench {
   /// The index errors of the table that a compensation can be commanded to, where they were read. Null: the bench
   /// has no such table. Throws InputError if the readings show none.
   separate::IndexErrors (*index_errors)(const Scenario&, const std::vector<Reading>&) = nullptr;
+
+  /// What moves and scatters the twin's readings, each with a way to still it.
+  std::vector<uncertainty::Contribution> (*contributions)(const Scenario&) = nullptr;
 
   diagnose::DiagnosisRun (*diagnose)(const std::vector<Reading>&, const Scenario&,
                                      const diagnose::DiagnoseOptions&) = nullptr;

@@ -19,6 +19,7 @@
 #include "twin/core/reading.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_text.h"
+#include "twin/core/scenario_uncertainty.h"
 #include "twin/core/scenario_values.h"
 #include "twin/core/signal_effect.h"
 #include "twin/core/table_errors.h"
@@ -58,6 +59,9 @@ class KeyCheck {
       : source_(source), bench_(bench), known_(KnownKeys(keys)), tables_(KnownTables(keys)) {
     for (const char* blocks : {kEffectTable, kEmpiricalTable}) known_.push_back({"", blocks, ""});
     if (FormatOf(bench).has_fixtures) known_.push_back({"", kFixtureTable, ""});
+    for (const ScenarioKey& key : keys) {
+      if (TakesUncertainty(key)) uncertainties_.insert(UncertaintyPath(key));
+    }
   }
 
   void Check() const { CheckTable(source_.root, ""); }
@@ -78,7 +82,7 @@ class KeyCheck {
     const std::string path = table.empty() ? key : table + "." + key;
     const bool quoted_oddly = key.empty() || key.find('.') != std::string::npos;
     if (quoted_oddly) throw UnknownKey(value.Where(), table, key, known_);
-    if (IsKey(path)) return;
+    if (IsKey(path) || uncertainties_.contains(path)) return;
     if (IsTable(path)) {
       if (!value.node().is_table())
         throw InputError(value.Where(), fmt::format("{} is {}", path, value.Found()),
@@ -103,6 +107,7 @@ class KeyCheck {
   std::string bench_;
   std::vector<KnownKey> known_;
   std::vector<std::string> tables_;  // the first is the top, ""
+  std::set<std::string> uncertainties_;
 };
 
 /// Reads every [[table]] block of the text with `read(block)`.
@@ -425,6 +430,7 @@ Scenario ParseScenario(const std::string& text, const std::string& name, const s
   for (const ScenarioKey& key : keys) {
     if (const auto value = sources.Find(key.Path())) ReadKey(key, *value);
   }
+  scenario.uncertainties = ReadUncertainties(sources, keys);
   scenario.fixtures = ReadBlocks<FixtureSettings>(sources, kFixtureTable, ReadFixture);
   scenario.effects = ReadBlocks<EffectSettings>(
       sources, kEffectTable, [&](const TomlValue& block) { return ReadEffect(block, scenario.bench); });

@@ -9,6 +9,7 @@
 #include "twin/core/frames.h"
 #include "twin/core/own_settings.h"
 #include "twin/core/shared_settings.h"
+#include "twin/core/stated_uncertainty.h"
 #include "twin/core/units.h"
 
 /// A scenario: one measurement on one bench, everything in SI. The structs below are the file format (see
@@ -76,6 +77,7 @@ struct Scenario {
   std::vector<FixtureSettings> fixtures;
   std::vector<EffectSettings> effects;
   std::vector<EmpiricalSettings> empiricals;
+  std::vector<StatedUncertainty> uncertainties;  // of its keys, in their order
 };
 
 /// Reads a scenario of any bench there is (BenchFormats) and applies `overrides`: "procedure.positions=12", in TOML

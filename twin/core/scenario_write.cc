@@ -7,6 +7,7 @@
 #include "twin/core/number_text.h"
 #include "twin/core/scenario.h"
 #include "twin/core/scenario_schema.h"
+#include "twin/core/scenario_uncertainty.h"
 #include "twin/core/signal_effect.h"
 
 namespace twinbench {
@@ -177,7 +178,7 @@ std::string WriteScenario(const Scenario& scenario) {
                            std::holds_alternative<std::optional<CompensationTable>*>(key.field);
     if (!own_table && key.table != table) text += fmt::format("\n[{}]\n", key.table);
     if (!own_table) table = key.table;
-    text += PrintKey(key);
+    text += PrintKey(key) + PrintUncertainty(key, scenario.uncertainties);
   }
   for (const FixtureSettings& fixture : scenario.fixtures) text += PrintFixture(fixture);
   for (const EffectSettings& effect : scenario.effects) text += PrintEffect(effect, scenario.bench);

@@ -41,8 +41,8 @@ std::vector<EffectEntry> DetectorEffects() {
        {Parameter("fraction", "1", 0.01, 0.0, 0.9, "stray light / signal")}},
       // 0.1-1 %; 1 mm of 120 mm is 0.8 %.
       {"psd_distance",
-       "distance from the grating to one PSD",
-       psds,
+       "distance from the grating to one PSD, or to both",
+       {"psd_a", "psd_b", "both"},
        {Signed("distance_error", "mm", 1.0, 50.0, "actual - nominal")}},
   };
 }
