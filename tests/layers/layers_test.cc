@@ -29,11 +29,11 @@ constexpr const char* kTwins = "twin/benches (twin)";
 constexpr const char* kFactories = "twin/benches (twin/factory.h)";
 
 /// Rooms; a longer name wins over its parent ("twin/core" over "twin").
-const std::vector<std::string> kRooms = {"optics",         "mechanics",     "twin/core", "twin/import",
-                                         "twin/plausible", "twin/model",    "twin/sim",  "twin/procedure",
-                                         "twin/separate",  "twin/diagnose", "twin/plan", "twin/campaign",
-                                         "twin/report",    "twin/benches",  kFormats,    kProcedures,
-                                         kEstimators,      kTwins,          kFactories,  "hw_bridge"};
+const std::vector<std::string> kRooms = {
+    "optics",        "mechanics",      "twin/core",     "twin/import",      "twin/plausible", "twin/model",
+    "twin/sim",      "twin/procedure", "twin/separate", "twin/uncertainty", "twin/diagnose",  "twin/plan",
+    "twin/campaign", "twin/report",    "twin/benches",  kFormats,           kProcedures,      kEstimators,
+    kTwins,          kFactories,       "hw_bridge"};
 
 /// The room table: which of our rooms each may include, besides itself.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
@@ -46,10 +46,12 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"twin/sim", {"twin/core", "twin/model", "optics", "mechanics"}},
     {"twin/procedure", {"twin/core"}},
     {"twin/separate", {"twin/core"}},
+    {"twin/uncertainty", {"twin/core", "twin/model"}},
     {"twin/diagnose", {"twin/core", "twin/model"}},
     {"twin/plan", {"twin/core", "twin/model"}},
     {"twin/campaign", {"twin/core", "twin/procedure", "twin/diagnose", "twin/plan", "twin/benches"}},
-    {"twin/report", {"twin/core", "twin/separate", "twin/diagnose", "twin/plan", "twin/campaign"}},
+    {"twin/report",
+     {"twin/core", "twin/separate", "twin/uncertainty", "twin/diagnose", "twin/plan", "twin/campaign"}},
     {kFormats, {"twin/core"}},
     {kProcedures, {"twin/core", "twin/procedure", kFormats}},
     {kEstimators, {"twin/core", "twin/separate", kFormats}},
@@ -58,8 +60,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"twin/core", "twin/model", "twin/sim", "twin/procedure", "optics", "mechanics", kFormats, kProcedures,
       kFactories}},
     {"twin/benches",
-     {"twin/core", "twin/model", "twin/procedure", "twin/separate", "twin/diagnose", "twin/report", kFormats,
-      kProcedures, kEstimators, kFactories}},
+     {"twin/core", "twin/model", "twin/procedure", "twin/separate", "twin/uncertainty", "twin/diagnose",
+      "twin/report", kFormats, kProcedures, kEstimators, kFactories}},
     {"hw_bridge", {"twin/core"}}};
 
 /// Third-party headers that only some rooms may see, by how their path begins.

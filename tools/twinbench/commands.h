@@ -13,6 +13,8 @@ void AddExport(CLI::App& app);
 void AddImport(CLI::App& app);
 void AddSeparate(CLI::App& app);
 void AddCompensate(CLI::App& app);
+void AddUncertainty(CLI::App& app);
+void AddBudget(CLI::App& app);
 void AddDiagnose(CLI::App& app);
 void AddScore(CLI::App& app);
 void AddHelp(CLI::App& app);

@@ -25,6 +25,7 @@ const Bench& Whole() {
     b.evaluate = Evaluate;
     b.index_errors = IndexErrorsOf;
     b.score = ScoreRun;
+    b.contributions = Contributions;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     b.raw_scale = RawScaleOf;

@@ -21,6 +21,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
                                 const diagnose::DiagnoseOptions& options);
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
 diagnose::RawScale RawScaleOf(const Scenario& scenario, const diagnose::LinearRun& run);
+std::vector<uncertainty::Contribution> Contributions(const Scenario& scenario);
 nlohmann::json ChangeOfTables(const diagnose::DiagnosisRun& found, const Scenario& scenario);
 
 /// What would split two causes that a run cannot tell apart, in words; empty if nothing is known.

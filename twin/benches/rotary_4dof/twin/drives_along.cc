@@ -6,21 +6,13 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effect.h"
 #include "twin/benches/rotary_4dof/twin/table_stack.h"
-#include "twin/core/compensation_table.h"
 
 namespace twinbench::sim {
 namespace {
 
 using mechanics::Axis;
 
-/// What a drive depends on besides its mechanics.
-struct Drive {
-  double backlash_rad, speed_rad_s, move_time_s, settle_s;
-  std::optional<CompensationTable> compensation;
-  bool operator==(const Drive&) const = default;
-};
-
-Drive DriveOf(const TableSettings& table) {
+TableDrive DriveOf(const TableSettings& table) {
   return {table.backlash_rad, table.speed_rad_s, table.move_time_s, table.settle_s, table.compensation};
 }
 
@@ -67,7 +59,7 @@ class RecordedDrives {
     return duration_s;
   }
 
-  std::array<Drive, 2> drives_;
+  std::array<TableDrive, 2> drives_;
   std::unique_ptr<mechanics::Plant> plant_;
   DrivenStop stop_{{}, {1, 1}, Moment{}.travelled_rad};
 };
@@ -82,20 +74,15 @@ std::vector<DrivenStop> DriveAlong(const Scenario& actual, const std::vector<Dri
   return stops;
 }
 
-struct DrivesOnce::Drives {
-  MechanicsSettings mechanics;
-  Drive target, reference;
-  bool operator==(const Drives&) const = default;
-};
-
 DrivesOnce::Stops DrivesOnce::Along(const Scenario& actual, const std::vector<DriveStep>& steps) {
   const RotarySettings& own = RotaryOf(actual);
-  const Drives drives{own.mechanics, DriveOf(own.target), DriveOf(own.reference)};
+  const std::array<TableDrive, 2> tables = {DriveOf(own.target), DriveOf(own.reference)};
   const std::scoped_lock lock(mutex_);
-  if (!stops_ || !(*last_ == drives) || last_steps_ != steps) {
+  if (!stops_ || !(mechanics_ == own.mechanics) || tables_ != tables || steps_ != steps) {
     stops_ = std::make_shared<const std::vector<DrivenStop>>(DriveAlong(actual, steps));
-    last_ = std::make_shared<const Drives>(drives);
-    last_steps_ = steps;
+    mechanics_ = own.mechanics;
+    tables_ = tables;
+    steps_ = steps;
   }
   return stops_;
 }

@@ -7,10 +7,18 @@
 #include <vector>
 
 #include "mechanics/plant.h"
+#include "twin/core/compensation_table.h"
 #include "twin/core/scenario.h"
 
 /// The drives of both tables, sent along the course of a record.
 namespace twinbench::sim {
+
+/// What a table's drive depends on besides its mechanics.
+struct TableDrive {
+  double backlash_rad = 0.0, speed_rad_s = 0.0, move_time_s = 0.0, settle_s = 0.0;
+  std::optional<CompensationTable> compensation;
+  bool operator==(const TableDrive&) const = default;
+};
 
 /// What the drives are told, in order.
 struct DriveStep {
@@ -38,10 +46,10 @@ class DrivesOnce {
   Stops Along(const Scenario& actual, const std::vector<DriveStep>& steps);
 
  private:
-  struct Drives;  // all that the drives depend on
   std::mutex mutex_;
-  std::shared_ptr<const Drives> last_;
-  std::vector<DriveStep> last_steps_;
+  MechanicsSettings mechanics_;  // what was driven last depends on these ...
+  std::array<TableDrive, 2> tables_;
+  std::vector<DriveStep> steps_;  // ... and on these
   Stops stops_;
 };
 

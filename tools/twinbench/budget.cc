@@ -1,0 +1,95 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/run_folder.h"
+#include "twin/benches/registry.h"
+#include "twin/core/errors.h"
+#include "twin/core/estimator.h"
+#include "twin/core/run_record.h"
+#include "twin/report/uncertainty_text.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct BudgetOptions {
+  std::string scenario, figures = "stability", json;
+  std::vector<std::string> overrides;
+};
+
+/// A folder for one run, gone at the end of its life.
+class PassingFolder {
+ public:
+  PassingFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "twinbench_budget_XXXXXX").string();
+    if (!mkdtemp(name.data())) throw BenchError("no temporary folder can be made");
+    path_ = name;
+  }
+  ~PassingFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  PassingFolder(const PassingFolder&) = delete;
+  PassingFolder& operator=(const PassingFolder&) = delete;
+  std::string Run() const { return (path_ / "run").string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Numbers at or below a place of results.json, "stability.range.dy_um"; uncertainties are no figures.
+void AddFigures(const nlohmann::json& node, const std::string& path, const std::string& wanted,
+                std::vector<uncertainty::Figure>& figures) {
+  const bool is_wanted = path == wanted || path.starts_with(wanted + ".");
+  if (node.is_number_float() && is_wanted) figures.push_back({path, node.get<double>()});
+  if (!node.is_object()) return;
+  for (const auto& [key, value] : node.items()) {
+    if (!key.starts_with("u_") && key != "diagnosis")
+      AddFigures(value, path.empty() ? key : path + "." + key, wanted, figures);
+  }
+}
+
+std::vector<uncertainty::Figure> FiguresOf(const Scenario& scenario, const std::string& wanted) {
+  const PassingFolder folder;
+  const Bench& bench = BenchOf(scenario);
+  const auto record =
+      RunRecord::Create(folder.Run(), {TWINBENCH_VERSION, "twin", scenario.seed, "", scenario.bench});
+  bench.make_twin(scenario)->CarryOut(*record, {});
+  std::vector<uncertainty::Figure> figures;
+  AddFigures(bench.evaluate(scenario, record->Readings(), Estimator::kRigorous).results, "", wanted, figures);
+  return figures;
+}
+
+void Share(const BudgetOptions& options) {
+  const Scenario scenario = LoadScenario(options.scenario, options.overrides);
+  const Bench& bench = BenchOf(scenario);
+  if (!bench.contributions)
+    throw InputError(options.scenario, "nobody has written down what moves the readings of " + scenario.bench,
+                     BenchesWhere([](const Bench& b) { return b.contributions != nullptr; }));
+  const uncertainty::OneAtATime found = uncertainty::RunOneAtATime(
+      scenario, bench.contributions(scenario), [&](const Scenario& s) { return FiguresOf(s, options.figures); });
+  if (found.total.empty())
+    throw InputError("--of " + options.figures, "results.json has no number there",
+                     "a place of results.json, as stability.range");
+  if (!options.json.empty()) WriteJson(options.json, report::ContributionsJson(found));
+  if (options.json != "-") fmt::print("{}", report::ContributionsText(found));
+}
+
+}  // namespace
+
+void AddBudget(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "budget", "Run a scenario on its twin with one cause after the other silent: which share comes from what");
+  auto options = std::make_shared<BudgetOptions>();
+  command->add_option("scenario", options->scenario, "TOML file")->required();
+  command->add_option("--of", options->figures, "the place in results.json of the figures to be shared out")
+      ->capture_default_str();
+  command->add_option("--json", options->json, "write the result here, - for stdout");
+  command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
+      ->allow_extra_args(false);
+  command->callback([options] { Share(*options); });
+}
+
+}  // namespace twinbench::tools

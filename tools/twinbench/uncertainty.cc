@@ -1,0 +1,72 @@
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/run_folder.h"
+#include "twin/benches/registry.h"
+#include "twin/core/errors.h"
+#include "twin/core/estimator.h"
+#include "twin/report/uncertainty_text.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct UncertaintyOptions {
+  std::string source, scenario, json, estimator = "rigorous";
+  std::vector<std::string> overrides;
+  bool monte_carlo = false;
+  uncertainty::MonteCarloOptions trials;
+};
+
+uncertainty::Evaluate EvaluationOf(const RecordedRun& run, const std::string& estimator) {
+  return [&run, estimator](const Scenario& scenario) {
+    return uncertainty::QuantitiesOf(
+        BenchOf(scenario).evaluate(scenario, run.readings, EstimatorNamed(estimator)).results);
+  };
+}
+
+void State(const UncertaintyOptions& options) {
+  const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
+  const uncertainty::Evaluate evaluate = EvaluationOf(run, options.estimator);
+  const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(run.scenario, evaluate);
+  if (budgets.empty())
+    throw InputError(options.source, "the readings come to no result with an uncertainty", "a run that separates");
+  uncertainty::MonteCarlo trials;
+  if (options.monte_carlo) trials = uncertainty::Propagate(run.scenario, evaluate, options.trials);
+  const uncertainty::MonteCarlo* const drawn = options.monte_carlo ? &trials : nullptr;
+  if (!options.json.empty()) WriteJson(options.json, report::BudgetJson(budgets, drawn));
+  if (options.json == "-") return;
+  if (run.scenario.uncertainties.empty())
+    fmt::print("The scenario states no u_<key> (u_wavelength_nm = 0.01): only what the readings say counts.\n\n");
+  fmt::print("{}", report::BudgetText(budgets, drawn));
+}
+
+}  // namespace
+
+void AddUncertainty(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "uncertainty",
+      "Say how certain the results of a run are, source by source (GUM), and by trials (supplement 1)");
+  auto options = std::make_shared<UncertaintyOptions>();
+  options->trials.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
+  command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
+  command->add_option("--estimator", options->estimator, "how readings become errors")
+      ->check(CLI::IsMember({"rigorous", "published"}))
+      ->capture_default_str();
+  command->add_flag("--monte-carlo", options->monte_carlo, "propagate distributions by trials as well");
+  command->add_option("--trials", options->trials.most_trials, "stop after so many at the latest")
+      ->check(CLI::Range(1000, 100000000))
+      ->capture_default_str();
+  command->add_option("--seed", options->trials.seed, "of the trials")->capture_default_str();
+  command->add_option("--threads", options->trials.threads, "that share the trials; the result is the same")
+      ->check(CLI::Range(1, 1024));
+  command->add_option("--json", options->json, "write the result here, - for stdout");
+  command->add_option("--set", options->overrides, "override a key: laser.u_wavelength_nm=0.01")
+      ->allow_extra_args(false);
+  command->callback([options] { State(*options); });
+}
+
+}  // namespace twinbench::tools

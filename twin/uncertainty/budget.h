@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "twin/core/scenario.h"
+#include "twin/uncertainty/quantities.h"
+
+namespace twinbench::uncertainty {
+
+/// The readings of one run, evaluated with what a scenario says of the bench.
+using Evaluate = std::function<std::vector<Quantity>(const Scenario&)>;
+
+/// One source of uncertainty of one quantity.
+struct Source {
+  std::string name;  // "readings", "psd_a.distance_mm", "grating.point_mm[2]", "second order"
+  char type = 'B';   // GUM: A by statistics, B by other means
+  double u = 0.0;    // what it adds, in the quantity's unit, with the sign of the sensitivity
+  double dof = std::numeric_limits<double>::infinity();
+};
+
+struct Budget {
+  Quantity quantity;  // with the u that the estimator states
+  std::vector<Source> sources;
+  double u = 0.0;                                        // combined standard uncertainty
+  double dof = std::numeric_limits<double>::infinity();  // effective, by Welch and Satterthwaite
+  double k = 2.0;                                        // coverage factor for 95 %
+  double Expanded() const { return k * u; }
+};
+
+/// GUM propagation (JCGM 100, 5.1 and G.4) of every u_<key> of the scenario through the whole evaluation: the same
+/// readings evaluated with the key one standard uncertainty up and down. A source acts on all readings at once, so
+/// what it does to each quantity keeps its sign. Half the sum of both changes is what propagation to first order
+/// leaves out; it is a line of its own (its standard deviation for a normal input).
+///
+/// What the readings themselves leave is taken from the estimator (type A).
+/// Order: quantities as `evaluate` gives them.
+std::vector<Budget> Budgets(const Scenario& scenario, const Evaluate& evaluate);
+
+/// Factor of a two-sided 95 % interval of Student's t.
+double CoverageFactor(double dof);
+
+}  // namespace twinbench::uncertainty

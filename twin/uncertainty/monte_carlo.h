@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "twin/uncertainty/budget.h"
+
+namespace twinbench::uncertainty {
+
+struct MonteCarloOptions {
+  std::uint64_t seed = 1;
+  int most_trials = 20000;
+  int digits = 2;  // of each standard uncertainty that shall be right
+  int threads = 1;
+};
+
+/// Where a quantity may lie, from trials.
+struct Spread {
+  Quantity quantity;  // as the readings say, with the scenario's own values
+  double mean = 0.0, sd = 0.0;
+  std::array<double, 2> symmetric = {};  // probabilistically: 2.5 % on either side
+  std::array<double, 2> shortest = {};   // 95 %
+};
+
+struct MonteCarlo {
+  std::vector<Spread> spreads;
+  int trials = 0;
+  bool settled = false;  // to the digits asked for, before `most_trials`
+};
+
+/// Propagation of distributions (JCGM 101, adaptive as in its 7.9): every u_<key> of the scenario is drawn from its
+/// distribution (a normal one of few degrees of freedom from Student's), the readings are evaluated with what was
+/// drawn, and what the estimator says of the readings' own scatter is drawn on top, from Student's distribution of
+/// its degrees of freedom, for each quantity by itself.
+///
+/// Trial n has its own stretch of every stream: the same bits on any number of threads.
+MonteCarlo Propagate(const Scenario& scenario, const Evaluate& evaluate, const MonteCarloOptions& options);
+
+}  // namespace twinbench::uncertainty
