@@ -48,7 +48,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"twin/separate", {"twin/core"}},
     {"twin/uncertainty", {"twin/core", "twin/model"}},
     {"twin/diagnose", {"twin/core", "twin/model"}},
-    {"twin/plan", {"twin/core", "twin/model"}},
+    {"twin/plan", {"twin/core", "twin/model", "twin/uncertainty"}},
     {"twin/campaign", {"twin/core", "twin/procedure", "twin/diagnose", "twin/plan", "twin/benches"}},
     {"twin/report",
      {"twin/core", "twin/separate", "twin/uncertainty", "twin/diagnose", "twin/plan", "twin/campaign"}},
@@ -60,8 +60,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"twin/core", "twin/model", "twin/sim", "twin/procedure", "optics", "mechanics", kFormats, kProcedures,
       kFactories}},
     {"twin/benches",
-     {"twin/core", "twin/model", "twin/procedure", "twin/separate", "twin/uncertainty", "twin/diagnose",
-      "twin/report", kFormats, kProcedures, kEstimators, kFactories}},
+     {"twin/core", "twin/model", "twin/procedure", "twin/separate", "twin/uncertainty", "twin/plan",
+      "twin/diagnose", "twin/report", kFormats, kProcedures, kEstimators, kFactories}},
     {"hw_bridge", {"twin/core"}}};
 
 /// Third-party headers that only some rooms may see, by how their path begins.

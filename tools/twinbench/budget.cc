@@ -1,14 +1,13 @@
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
-#include "twin/core/run_record.h"
 #include "twin/report/uncertainty_text.h"
 
 namespace twinbench::tools {
@@ -17,26 +16,6 @@ namespace {
 struct BudgetOptions {
   std::string scenario, figures = "stability", json;
   std::vector<std::string> overrides;
-};
-
-/// A folder for one run, gone at the end of its life.
-class PassingFolder {
- public:
-  PassingFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "twinbench_budget_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw BenchError("no temporary folder can be made");
-    path_ = name;
-  }
-  ~PassingFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  PassingFolder(const PassingFolder&) = delete;
-  PassingFolder& operator=(const PassingFolder&) = delete;
-  std::string Run() const { return (path_ / "run").string(); }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// Numbers at or below a place of results.json, "stability.range.dy_um"; uncertainties are no figures.
@@ -52,13 +31,9 @@ void AddFigures(const nlohmann::json& node, const std::string& path, const std::
 }
 
 std::vector<uncertainty::Figure> FiguresOf(const Scenario& scenario, const std::string& wanted) {
-  const PassingFolder folder;
-  const Bench& bench = BenchOf(scenario);
-  const auto record =
-      RunRecord::Create(folder.Run(), {TWINBENCH_VERSION, "twin", scenario.seed, "", scenario.bench});
-  bench.make_twin(scenario)->CarryOut(*record, {});
   std::vector<uncertainty::Figure> figures;
-  AddFigures(bench.evaluate(scenario, record->Readings(), Estimator::kRigorous).results, "", wanted, figures);
+  AddFigures(BenchOf(scenario).evaluate(scenario, ReadingsOfTwin(scenario), Estimator::kRigorous).results, "",
+             wanted, figures);
   return figures;
 }
 

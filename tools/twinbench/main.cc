@@ -63,7 +63,7 @@ int Run(int argc, char** argv) {
   app.failure_message(Complaint);
   using namespace twinbench::tools;
   for (const auto add : {AddRun, AddMeasure, AddServe, AddExport, AddImport, AddSeparate, AddCompensate,
-                         AddUncertainty, AddBudget, AddDiagnose, AddScore, AddHelp})
+                         AddUncertainty, AddBudget, AddPlan, AddDiagnose, AddScore, AddHelp})
     add(app);
   try {
     app.parse(argc, argv);

@@ -24,6 +24,9 @@ struct IndexErrors;
 namespace uncertainty {
 struct Contribution;
 }
+namespace plan {
+struct ShiftDesign;
+}
 namespace report {
 struct Evaluation;
 struct ScoredRun;
@@ -82,6 +85,9 @@ struct Bench {
 
   /// What moves and scatters the twin's readings, each with a way to still it.
   std::vector<uncertainty::Contribution> (*contributions)(const Scenario&) = nullptr;
+
+  /// The shifts that a comparison of two tables is planned by. Null: nothing is shifted.
+  plan::ShiftDesign (*shift_design)(const Scenario&) = nullptr;
 
   diagnose::DiagnosisRun (*diagnose)(const std::vector<Reading>&, const Scenario&,
                                      const diagnose::DiagnoseOptions&) = nullptr;

@@ -3,12 +3,17 @@
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/factory.h"
+#include "twin/plan/shift_sets.h"
 
 namespace twinbench::benches::rotary {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
   return procedure::PlannedReadings(RotaryOf(s).procedure);
+}
+
+plan::ShiftDesign ShiftsOf(const Scenario& s) {
+  return {RotaryOf(s).procedure.positions, RotaryOf(s).procedure.shifts, "procedure.shifts"};
 }
 
 }  // namespace
@@ -26,6 +31,7 @@ const Bench& Whole() {
     b.index_errors = IndexErrorsOf;
     b.score = ScoreRun;
     b.contributions = Contributions;
+    b.shift_design = ShiftsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     b.raw_scale = RawScaleOf;

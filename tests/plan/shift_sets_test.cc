@@ -1,0 +1,66 @@
+#include "twin/plan/shift_sets.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+
+namespace twinbench::plan {
+namespace {
+
+/// Variance of harmonic k of one table by least squares over all readings of all set-ups: both tables' cosine and
+/// sine of that order as unknowns, unit noise; in units of 2 / (n m), what the mean of m set-ups would leave.
+double ByLeastSquares(int n, const std::vector<int>& shifts, int k) {
+  const auto m = static_cast<Eigen::Index>(shifts.size());
+  Eigen::MatrixXd design(n * m, 4);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const double a = 2.0 * std::numbers::pi * k * i / n;
+      const double b = 2.0 * std::numbers::pi * k * (i + shifts[static_cast<std::size_t>(j)]) / n;
+      design.row(j * n + i) << std::cos(a), std::sin(a), std::cos(b), std::sin(b);
+    }
+  }
+  const Eigen::MatrixXd cov = (design.transpose() * design).inverse();
+  return cov(0, 0) / (2.0 / (n * static_cast<double>(m)));
+}
+
+TEST(ShiftSets, VarianceIsThatOfLeastSquares) {
+  for (const std::vector<int>& shifts : {std::vector<int>{0, 1}, {0, 1, 5}, {0, 3, 4, 11}}) {
+    for (const int k : {1, 2, 5, 7}) {
+      const double expected = ByLeastSquares(24, shifts, k);
+      EXPECT_NEAR(VarianceFactor(24, shifts, k), expected, 1e-9 * expected) << k;
+    }
+  }
+}
+
+TEST(ShiftSets, ALostHarmonicIsOneThatEveryShiftTurnsByWholeTurns) {
+  EXPECT_EQ(Judged(12, {0, 4}).lost, (std::vector<int>{3, 6}));
+  EXPECT_TRUE(std::isinf(Judged(12, {0, 4}).mean_factor));
+  EXPECT_TRUE(Judged(12, {0, 1}).lost.empty());
+}
+
+TEST(ShiftSets, TheBestOfASmallCircleIsTheBestOfAll) {
+  const ShiftSet best = BestShifts(12, 3);
+  EXPECT_TRUE(best.exhaustive);
+  for (int a = 1; a < 12; ++a) {
+    for (int b = a + 1; b < 12; ++b) EXPECT_GE(Judged(12, {0, a, b}).mean_factor, best.mean_factor - 1e-12);
+  }
+}
+
+TEST(ShiftSets, FourGoodShiftsBeatTwoThatAreRepeated) {
+  // Two shifts, each taken twice: the same factors as once, of the mean of four set-ups.
+  const double repeated = Judged(36, {0, 1, 0, 1}).mean_factor;
+  EXPECT_GT(repeated / BestShifts(36, 4).mean_factor, 2.9);
+}
+
+TEST(ShiftSets, OfAFineCircleIsFoundByExchangesAndNearWhatNoneCanBeat) {
+  const ShiftSet best = BestShifts(360, 5);
+  EXPECT_FALSE(best.exhaustive);
+  EXPECT_TRUE(best.lost.empty());
+  EXPECT_GE(best.mean_factor, 1.0);
+  EXPECT_LT(best.mean_factor, 1.5);
+}
+
+}  // namespace
+}  // namespace twinbench::plan

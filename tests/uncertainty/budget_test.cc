@@ -1,0 +1,73 @@
+#include "twin/uncertainty/budget.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/uncertainty/stated.h"
+
+namespace twinbench::uncertainty {
+namespace {
+
+using test::FourInputs, test::Input, test::InputKeys;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// The end gauge of GUM, H.1, with its four largest contributions [nm] and their degrees of freedom.
+TEST(Budget, OfTheEndGaugeIsThatOfTheGuide) {
+  const Scenario scenario = FourInputs({{InputKeys()[0], 9.7e-9, Distribution::kNormal, 25.6},
+                                        {InputKeys()[1], 2.9e-9, Distribution::kNormal, 50.0},
+                                        {InputKeys()[2], 16.6e-9, Distribution::kNormal, 2.0}});
+  const auto length_nm = [](const Scenario& s) {
+    return std::vector<Quantity>{{"length_nm", 1e9 * (Input(s, 0) + Input(s, 1) - Input(s, 2)), 25.0, 18.0}};
+  };
+  const Budget budget = Budgets(scenario, length_nm).at(0);
+  EXPECT_NEAR(budget.u, 31.67, 0.01);
+  EXPECT_NEAR(budget.dof, 16.76, 0.01);
+  EXPECT_NEAR(budget.k, 2.112, 0.002) << "Student's t at 16.76 degrees of freedom";
+  ASSERT_EQ(budget.sources.size(), 4U) << "a straight line has no second order";
+  EXPECT_EQ(budget.sources[0].type, 'A');
+  EXPECT_NEAR(budget.sources[3].u, -16.6, 1e-6) << "with the sign of the sensitivity";
+}
+
+TEST(Budget, AddsUpToTheSquareOfU) {
+  const Scenario scenario = FourInputs({{InputKeys()[0], 1e-4}, {InputKeys()[1], 2e-4}});
+  const auto evaluate = [](const Scenario& s) {
+    return std::vector<Quantity>{{"x", std::sin(1e3 * Input(s, 0)) + 50.0 * Input(s, 1), 0.02}};
+  };
+  const Budget budget = Budgets(scenario, evaluate).at(0);
+  double sum2 = 0.0;
+  for (const Source& source : budget.sources) sum2 += source.u * source.u;
+  EXPECT_NEAR(sum2, budget.u * budget.u, 1e-12);
+}
+
+/// y = x^2 about 0: no first order at all; for a normal x the standard deviation is sqrt(2) u^2.
+TEST(Budget, KnowsWhatFirstOrderLeavesOut) {
+  const Scenario scenario = FourInputs({{InputKeys()[0], 1e-3}});
+  const auto square = [](const Scenario& s) {
+    return std::vector<Quantity>{{"y", std::pow(1e3 * Input(s, 0), 2), 0.0}};
+  };
+  EXPECT_NEAR(Budgets(scenario, square).at(0).u, std::sqrt(2.0), 1e-9);
+}
+
+TEST(Budget, TakesEveryNumberOfAList) {
+  const Scenario scenario = FourInputs({{"grating.point_mm", 1e-3}});
+  const auto sum = [](const Scenario& s) {
+    Scenario copy = s;
+    double total = 0.0;
+    for (const double x : NumbersAt(copy, "grating.point_mm")) total += x;
+    return std::vector<Quantity>{{"sum", total, 0.0}};
+  };
+  const Budget budget = Budgets(scenario, sum).at(0);
+  EXPECT_NEAR(budget.u, std::sqrt(3.0) * 1e-3, 1e-12);
+  EXPECT_EQ(budget.sources[2].name, "grating.point_mm[1]");
+}
+
+TEST(CoverageFactor, IsThatOfTheTables) {
+  EXPECT_NEAR(CoverageFactor(kInfinite), 1.960, 0.001);
+  EXPECT_NEAR(CoverageFactor(10.0), 2.228, 0.001);
+  EXPECT_NEAR(CoverageFactor(2.0), 4.303, 0.001);
+}
+
+}  // namespace
+}  // namespace twinbench::uncertainty

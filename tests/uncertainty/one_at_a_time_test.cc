@@ -1,0 +1,38 @@
+#include "twin/uncertainty/one_at_a_time.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/uncertainty/stated.h"
+
+namespace twinbench::uncertainty {
+namespace {
+
+using test::Input, test::InputKeys;
+
+Contribution Of(std::size_t k) {
+  return {InputKeys()[k], [k](Scenario& s) {
+            Scenario usual = test::FourInputs({});
+            NumbersAt(s, InputKeys()[k])[0] = NumbersAt(usual, InputKeys()[k])[0];
+          }};
+}
+
+TEST(OneAtATime, SharesOutWhatAddsInQuadrature) {
+  Scenario scenario = test::FourInputs({});
+  NumbersAt(scenario, InputKeys()[0])[0] += 3e-3;
+  NumbersAt(scenario, InputKeys()[1])[0] += 4e-3;
+  const auto run = [](const Scenario& s) {
+    return std::vector<Figure>{{"sd", std::hypot(1e3 * Input(s, 0), 1e3 * Input(s, 1))}};
+  };
+  const OneAtATime found = RunOneAtATime(scenario, {Of(0), Of(1), Of(2)}, run);
+  EXPECT_NEAR(found.total.at(0).value, 5.0, 1e-9);
+  EXPECT_NEAR(found.none.at(0), 0.0, 1e-9);
+  ASSERT_EQ(found.shares.size(), 2U) << "the third changes nothing";
+  EXPECT_NEAR(found.shares[0].alone.at(0), 3.0, 1e-9);
+  EXPECT_NEAR(found.shares[0].without.at(0), 4.0, 1e-9);
+  EXPECT_NEAR(found.InQuadrature(0), 5.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace twinbench::uncertainty

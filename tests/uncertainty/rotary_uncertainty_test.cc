@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "tests/support/twin_run.h"
+#include "twin/benches/registry.h"
+#include "twin/report/evaluation.h"
+#include "twin/uncertainty/budget.h"
+
+namespace twinbench::uncertainty {
+namespace {
+
+constexpr double kWavelength_nm = 0.02, kDistance_mm = 0.1, kStandard = 2e-3;
+
+Scenario Nominal() {
+  return LoadScenario(test::ScenarioPath("rotary_4dof.toml"),
+                      {"procedure.positions=12", "procedure.shifts=[0, 1, 5]", "mechanics.fidelity=kinematic",
+                       "optics.fidelity=closed", "adc.every_sample=false", "laser.u_wavelength_nm=0.02",
+                       "psd_a.u_distance_mm=0.1", "psd_b.u_distance_mm=0.1", "autocollimator.u_gain_error=0.002"});
+}
+
+EffectSettings Effect(const std::string& name, const std::string& where, const std::string& parameter,
+                      double value) {
+  EffectSettings effect;
+  effect.name = name;
+  effect.where = where;
+  effect.parameters[parameter] = value;
+  return effect;
+}
+
+/// A bench whose standards err by what was drawn; nobody who evaluates knows.
+Scenario Drawn(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  Scenario s = Nominal();
+  s.effects = {Effect("wavelength_offset", "", "wavelength_error", kWavelength_nm * units::nm * normal(random)),
+               Effect("psd_distance", "psd_a", "distance_error", kDistance_mm * units::mm * normal(random)),
+               Effect("psd_distance", "psd_b", "distance_error", kDistance_mm * units::mm * normal(random))};
+  RotaryOf(s).autocollimator.gain_error = kStandard * normal(random);
+  return s;
+}
+
+std::vector<Quantity> Evaluated(const Scenario& scenario, const std::vector<Reading>& readings) {
+  return QuantitiesOf(BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous).results);
+}
+
+double TypeB2(const Budget& budget) {
+  double sum2 = 0.0;
+  for (const Source& source : budget.sources) sum2 += source.type == 'B' ? source.u * source.u : 0.0;
+  return sum2;
+}
+
+/// What standards that err do to the results of the twin, against what the budget says of it: the same seed with
+/// and without their errors, so that noise has no part.
+TEST(RotaryUncertainty, IsWhatStandardsThatErrDo) {
+  const Scenario nominal = Nominal();
+  const std::vector<Reading> readings = test::RunTwin(nominal).readings;
+  const auto budgets = Budgets(nominal, [&](const Scenario& s) { return Evaluated(s, readings); });
+  ASSERT_FALSE(budgets.empty());
+  std::mt19937_64 random(11);
+  std::map<std::string, std::pair<double, int>> ratio2;  // by list: sum of squares and count
+  constexpr int kBenches = 40;
+  for (int bench = 0; bench < kBenches; ++bench) {
+    const std::vector<Quantity> found = Evaluated(nominal, test::RunTwin(Drawn(random)).readings);
+    ASSERT_EQ(found.size(), budgets.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double u2 = TypeB2(budgets[i]), u_readings = budgets[i].sources[0].u;
+      if (u2 < 0.01 * u_readings * u_readings) continue;  // no source of the standards' to speak of
+      const double change = found[i].value - budgets[i].quantity.value;
+      auto& [sum, count] = ratio2[ListOf(budgets[i].quantity.name)];
+      sum += change * change / u2;
+      ++count;
+    }
+  }
+  ASSERT_FALSE(ratio2.empty());
+  for (const auto& [name, sum] : ratio2) {
+    EXPECT_GT(sum.first / sum.second, 0.5) << name;
+    EXPECT_LT(sum.first / sum.second, 1.8) << name;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::uncertainty

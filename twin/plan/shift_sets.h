@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace twinbench::plan {
+
+/// A comparison of two rotary tables at the n stops of a full circle, once for each shift of one against the other.
+struct ShiftDesign {
+  int positions = 0;
+  std::vector<int> shifts;  // in stops
+  std::string key;          // of the scenario, where they stand
+  int unit = 1;             // what the key counts by: so many a stop
+};
+
+/// Variance of one harmonic of one table's error, in units of what the mean of all set-ups would leave of noise
+/// alone: with r_j = a(i) + b(i + s_j) + noise, Fourier's transform has a 2 x 2 normal matrix of m and sum_j exp(2
+/// pi i k s_j / n) (multi-step method; Evans, Hocken & Estler, CIRP Annals 45 (1996) 617). 1 is the best that any
+/// set can do, infinite is a harmonic that no reading tells of one table.
+double VarianceFactor(int positions, const std::vector<int>& shifts, int harmonic);
+
+/// Harmonics 1 to n / 2.
+std::vector<double> VarianceFactors(int positions, const std::vector<int>& shifts);
+
+/// Of a set of shifts.
+struct ShiftSet {
+  std::vector<int> shifts;
+  double mean_factor =
+      0.0;  // over the harmonics that some set of so many shifts tells apart; infinite if one is lost
+  double worst_factor = 0.0;
+  std::vector<int> lost;    // harmonics
+  bool exhaustive = false;  // every set was looked at; else the best that exchanging one shift at a time found
+};
+
+ShiftSet Judged(int positions, const std::vector<int>& shifts);
+
+/// The set of `count` shifts, 0 among them, with the least mean variance (A-optimal). Every set is looked at up to
+/// some millions, which are counted without mirror images; else one shift after the other is exchanged for the best
+/// there is, from many starts, until none is better. How far it is from the best that there could be is told by
+/// mean_factor itself: no set is below 1.
+/// @param count  From 2 to positions.
+ShiftSet BestShifts(int positions, int count);
+
+}  // namespace twinbench::plan
