@@ -19,18 +19,18 @@ using uncertainty::OneAtATime;
 using uncertainty::Source;
 using uncertainty::Spread;
 
-constexpr std::size_t kWidth = 100;
+constexpr std::size_t kBudgetWidth = 100;
 using Rows = std::vector<std::vector<std::string>>;
 using Json = nlohmann::json;
 
 /// Budgets of one list, in the order of the results.
-struct Group {
+struct QuantityList {
   std::string name;
   std::vector<const Budget*> budgets;
 };
 
-std::vector<Group> GroupsOf(const std::vector<Budget>& budgets) {
-  std::vector<Group> groups;
+std::vector<QuantityList> ListsAmong(const std::vector<Budget>& budgets) {
+  std::vector<QuantityList> groups;
   for (const Budget& budget : budgets) {
     const std::string name = uncertainty::ListOf(budget.quantity.name);
     if (groups.empty() || groups.back().name != name) groups.push_back({name, {}});
@@ -40,7 +40,7 @@ std::vector<Group> GroupsOf(const std::vector<Budget>& budgets) {
 }
 
 template <class Of>
-double RootMeanSquare(const Group& group, Of of) {
+double RootMeanSquare(const QuantityList& group, Of of) {
   double sum = 0.0;
   for (const Budget* budget : group.budgets) sum += of(*budget) * of(*budget);
   return std::sqrt(sum / static_cast<double>(group.budgets.size()));
@@ -55,7 +55,7 @@ std::string DofText(double dof) {
   return std::isfinite(dof) ? fmt::format("{:.0f}", dof) : "inf";
 }
 
-std::string SourcesTable(const Group& group) {
+std::string SourcesTable(const QuantityList& group) {
   std::map<std::string, const Source*> sources;
   for (const Budget* budget : group.budgets) {
     for (const Source& source : budget->sources) sources.try_emplace(source.name, &source);
@@ -70,11 +70,11 @@ std::string SourcesTable(const Group& group) {
     rows.push_back({source->name, std::string(1, source->type), fmt::format("{:.3g}", size), DofText(source->dof),
                     fmt::format("{:.1f} %", u > 0.0 ? 100.0 * size * size / (u * u) : 0.0)});
   }
-  return TextTable({{"source"}, {"type"}, {"u", true}, {"dof", true}, {"share of u^2", true}}, rows, kWidth);
+  return TextTable({{"source"}, {"type"}, {"u", true}, {"dof", true}, {"share of u^2", true}}, rows, kBudgetWidth);
 }
 
 /// Root mean square of the trials' standard deviations over a list, and of half their shortest intervals.
-std::string TrialsText(const Group& group, const MonteCarlo& trials) {
+std::string TrialsText(const QuantityList& group, const MonteCarlo& trials) {
   double sd2 = 0.0, half2 = 0.0;
   int count = 0;
   for (const Spread& spread : trials.spreads) {
@@ -128,7 +128,7 @@ std::vector<const uncertainty::Share*> BySize(const OneAtATime& found, std::size
 
 std::string BudgetText(const std::vector<Budget>& budgets, const MonteCarlo* trials) {
   std::string text;
-  for (const Group& group : GroupsOf(budgets)) {
+  for (const QuantityList& group : ListsAmong(budgets)) {
     const double u = RootMeanSquare(group, [](const Budget& b) { return b.u; });
     const double expanded = RootMeanSquare(group, [](const Budget& b) { return b.Expanded(); });
     const std::string count =
@@ -169,7 +169,7 @@ std::string ContributionsText(const OneAtATime& found) {
     }
     rows.push_back({"nothing of these", fmt::format("{:.3g}", found.none[f]), "", ""});
     text += TextTable({{"contribution"}, {"alone", true}, {"without it", true}, {"share of the square", true}},
-                      rows, kWidth);
+                      rows, kBudgetWidth);
     text += fmt::format("in quadrature: {:.3g}\n\n", found.InQuadrature(f));
   }
   return text;
