@@ -40,7 +40,7 @@ Record ThreeStops(const Eigen::Vector2d& mount_rad = Eigen::Vector2d::Zero()) {
 }
 
 Verification Summarise(const Record& record) {
-  return SummariseVerification(record.motions, record.readings);
+  return SummariseVerification(record.motions, record.readings, 1.0);
 }
 
 TEST(SummariseVerification, HasTheClosedFormsOfThreeStops) {
@@ -81,7 +81,7 @@ TEST(SummariseVerification, HasNoNumbersWithFewerThanTwoReadings) {
 }
 
 TEST(SummariseVerification, RefusesReadingsThatAreNotThoseOfTheMotions) {
-  EXPECT_THROW(SummariseVerification(ThreeStops().motions, {}), std::logic_error);
+  EXPECT_THROW(SummariseVerification(ThreeStops().motions, {}, 1.0), std::logic_error);
 }
 
 TEST(SummariseVerification, FindsTheScaleErrorOfAWrongDistance) {

@@ -34,5 +34,23 @@ TEST(OneAtATime, SharesOutWhatAddsInQuadrature) {
   EXPECT_NEAR(found.InQuadrature(0), 5.0, 1e-9);
 }
 
+/// A converter without the noise that stays would round the other away.
+TEST(OneAtATime, KeepsWhatStaysBesideEveryOther) {
+  Scenario scenario = test::FourInputs({});
+  NumbersAt(scenario, InputKeys()[0])[0] += 3e-3;
+  NumbersAt(scenario, InputKeys()[1])[0] += 4e-3;
+  const auto run = [](const Scenario& s) {
+    const double noise = 1e3 * Input(s, 1);
+    return std::vector<Figure>{{"sd", noise > 1e-9 ? std::hypot(1e3 * Input(s, 0), noise) : 0.0}};
+  };
+  Contribution noise = Of(1);
+  noise.stays = true;
+  const OneAtATime found = RunOneAtATime(scenario, {Of(0), noise}, run);
+  EXPECT_NEAR(found.none.at(0), 4.0, 1e-9);
+  EXPECT_NEAR(found.shares[0].alone.at(0), 5.0, 1e-9);
+  EXPECT_TRUE(found.shares[1].alone.empty());
+  EXPECT_NEAR(found.InQuadrature(0), 5.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace twinbench::uncertainty

@@ -22,8 +22,14 @@ inline const std::vector<std::string>& InputKeys() {
 
 /// The value of an input, against what it is by default.
 inline double Input(const Scenario& scenario, std::size_t k) {
-  Scenario copy = scenario, usual = FourInputs({});
-  return NumbersAt(copy, InputKeys()[k])[0] - NumbersAt(usual, InputKeys()[k])[0];
+  static const std::vector<double> usual = [] {
+    Scenario plain = FourInputs({});
+    std::vector<double> values;
+    for (const std::string& key : InputKeys()) values.push_back(NumbersAt(plain, key)[0]);
+    return values;
+  }();
+  Scenario copy = scenario;
+  return NumbersAt(copy, InputKeys()[k])[0] - usual[k];
 }
 
 }  // namespace twinbench::test

@@ -116,11 +116,11 @@ Json BudgetOf(const Budget& budget) {
           {"sources", sources}};
 }
 
-/// Shares of one figure, the largest alone first.
+/// Shares of one figure, first that without which least is left.
 std::vector<const uncertainty::Share*> BySize(const OneAtATime& found, std::size_t figure) {
   std::vector<const uncertainty::Share*> shares;
   for (const uncertainty::Share& share : found.shares) shares.push_back(&share);
-  std::ranges::stable_sort(shares, std::greater<>(), [=](const auto* share) { return share->alone[figure]; });
+  std::ranges::stable_sort(shares, std::less<>(), [=](const auto* share) { return share->without[figure]; });
   return shares;
 }
 
@@ -163,11 +163,11 @@ std::string ContributionsText(const OneAtATime& found) {
     text += fmt::format("{}: {:.3g}\n", found.total[f].name, total);
     Rows rows;
     for (const uncertainty::Share* share : BySize(found, f)) {
-      rows.push_back({share->contribution, fmt::format("{:.3g}", share->alone[f]),
+      rows.push_back({share->contribution, share->alone.empty() ? "" : fmt::format("{:.3g}", share->alone[f]),
                       fmt::format("{:.3g}", share->without[f]),
                       fmt::format("{:.1f} %", 100.0 * (1.0 - std::pow(share->without[f] / total, 2)))});
     }
-    rows.push_back({"nothing of these", fmt::format("{:.3g}", found.none[f]), "", ""});
+    rows.push_back({"electronics and light alone", fmt::format("{:.3g}", found.none[f]), "", ""});
     text += TextTable({{"contribution"}, {"alone", true}, {"without it", true}, {"share of the square", true}},
                       rows, kBudgetWidth);
     text += fmt::format("in quadrature: {:.3g}\n\n", found.InQuadrature(f));
@@ -180,8 +180,9 @@ Json ContributionsJson(const OneAtATime& found) {
   for (std::size_t f = 0; f < found.total.size(); ++f) {
     Json shares = Json::array();
     for (const uncertainty::Share& share : found.shares)
-      shares.push_back(
-          {{"contribution", share.contribution}, {"alone", share.alone[f]}, {"without", share.without[f]}});
+      shares.push_back({{"contribution", share.contribution},
+                        {"alone", share.alone.empty() ? Json() : Json(share.alone[f])},
+                        {"without", share.without[f]}});
     figures.push_back({{"name", found.total[f].name},
                        {"total", found.total[f].value},
                        {"none", found.none[f]},

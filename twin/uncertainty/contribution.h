@@ -11,6 +11,9 @@ namespace twinbench::uncertainty {
 struct Contribution {
   std::string name;                        // "floor", "laser wavelength by temperature"
   std::function<void(Scenario&)> silence;  // takes it out of a scenario
+  /// Electronics: without their noise a converter rounds what is small away, so that they stay where others are
+  /// alone.
+  bool stays = false;
 };
 
 }  // namespace twinbench::uncertainty

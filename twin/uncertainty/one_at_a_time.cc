@@ -17,7 +17,7 @@ std::vector<double> ValuesOf(const std::vector<Figure>& figures) {
 /// @param keep  Which one stays; -1: none.
 Scenario Silent(Scenario scenario, const std::vector<Contribution>& contributions, int keep) {
   for (std::size_t k = 0; k < contributions.size(); ++k) {
-    if (static_cast<int>(k) != keep) contributions[k].silence(scenario);
+    if (static_cast<int>(k) != keep && !contributions[k].stays) contributions[k].silence(scenario);
   }
   return scenario;
 }
@@ -32,7 +32,9 @@ Scenario Without(Scenario scenario, const Contribution& contribution) {
 double OneAtATime::InQuadrature(std::size_t figure) const {
   const double floor2 = none[figure] * none[figure];
   double sum2 = floor2;
-  for (const Share& share : shares) sum2 += std::max(0.0, share.alone[figure] * share.alone[figure] - floor2);
+  for (const Share& share : shares) {
+    if (!share.alone.empty()) sum2 += std::max(0.0, share.alone[figure] * share.alone[figure] - floor2);
+  }
   return std::sqrt(sum2);
 }
 
@@ -50,8 +52,9 @@ OneAtATime RunOneAtATime(const Scenario& scenario, const std::vector<Contributio
   for (std::size_t k = 0; k < contributions.size(); ++k) {
     std::vector<double> without = values(Without(scenario, contributions[k]));
     if (without == total) continue;
-    result.shares.push_back(
-        {contributions[k].name, values(Silent(scenario, contributions, static_cast<int>(k))), std::move(without)});
+    Share share{contributions[k].name, {}, std::move(without)};
+    if (!contributions[k].stays) share.alone = values(Silent(scenario, contributions, static_cast<int>(k)));
+    result.shares.push_back(std::move(share));
   }
   return result;
 }

@@ -20,13 +20,13 @@ using RunFigures = std::function<std::vector<Figure>(const Scenario&)>;
 /// What one contribution does, figure by figure.
 struct Share {
   std::string contribution;
-  std::vector<double> alone;    // with everything else silent
+  std::vector<double> alone;    // with everything else silent but what stays; empty of what stays itself
   std::vector<double> without;  // with everything but it
 };
 
 struct OneAtATime {
   std::vector<Figure> total;  // as the scenario says
-  std::vector<double> none;   // with everything silent: what the list does not know
+  std::vector<double> none;   // with everything silent but what stays: the floor
   std::vector<Share> shares;
 
   /// Root of the sum of the squares of `none` and of what each adds alone beyond it. Meant for standard deviations
@@ -34,8 +34,8 @@ struct OneAtATime {
   double InQuadrature(std::size_t figure) const;
 };
 
-/// Runs the scenario, once with every contribution silent, and twice for each of them. A contribution that the
-/// scenario does not have (silence changes no figure) is left out.
+/// Runs the scenario, once with every contribution silent that does not stay, and twice for each of them. A
+/// contribution that the scenario does not have (silence changes no figure) is left out.
 OneAtATime RunOneAtATime(const Scenario& scenario, const std::vector<Contribution>& contributions,
                          const RunFigures& run);
 

@@ -74,7 +74,7 @@ Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings,
   analysis.calibration = measure::Calibrate(readings, geometry);
   analysis.motions = measure::Measure(readings, geometry, analysis.calibration, estimator);
   analysis.stability = measure::SummariseStability(analysis.motions, geometry);
-  analysis.verification = measure::SummariseVerification(analysis.motions, readings);
+  analysis.verification = measure::SummariseVerification(analysis.motions, readings, geometry.autocollimator_gain);
   if (!HasFullCircle(analysis.motions)) {
     analysis.not_separated = "there are no usable full-circle readings";
     return analysis;

@@ -9,8 +9,8 @@ namespace {
 
 using uncertainty::Contribution;
 
-/// So many codes that a step of them is nothing.
-constexpr int kFinestBits = 24;
+/// As fine as converters of the kind are; the steps of one of 16 bits are part of the floor.
+constexpr int kFinestBits = 16;
 
 void SilenceBearings(Scenario& s) {
   RotarySettings& own = RotaryOf(s);
@@ -61,9 +61,9 @@ std::vector<Contribution> OfTheBench() {
           {"growth of the posts", SilencePosts},
           {"bearings", SilenceBearings},
           {"vibration of the floor", [](Scenario& s) { RotaryOf(s).mechanics.vibration = "none"; }},
-          {"noise of light and detectors", SilenceDetectors},
-          {"amplifiers", SilenceAmplifiers},
-          {"A/D converter", SilenceConverter},
+          {"noise of light and detectors", SilenceDetectors, true},
+          {"amplifiers", SilenceAmplifiers, true},
+          {"A/D converter", SilenceConverter, true},
           {"autocollimator", [](Scenario& s) { RotaryOf(s).autocollimator.noise_rad = 0.0; }}};
 }
 

@@ -58,8 +58,9 @@ Sweep CollectSweep(const std::vector<Reading>& readings, const BenchGeometry& ge
     const auto noise_m2 = SpotVariances(r, geometry);
     sweep.noise_known = sweep.noise_known && noise_m2.has_value();
     const Vector4 variance_m2 = noise_m2.value_or(Vector4::Constant(kAssumedNoise_m * kAssumedNoise_m));
-    sweep.points.push_back({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad, OnSurface(r.mean_V, geometry),
-                            variance_m2 + autocollimator_m2});
+    const double gain = geometry.autocollimator_gain;
+    sweep.points.push_back({r.autocollimator_yaw_rad / gain, r.autocollimator_tilt_rad / gain,
+                            OnSurface(r.mean_V, geometry), variance_m2 + autocollimator_m2});
   }
   return sweep;
 }

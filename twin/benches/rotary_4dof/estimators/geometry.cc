@@ -30,6 +30,7 @@ BenchGeometry NominalGeometry(const Scenario& scenario) {
   geometry.reference_height_m = RotaryOf(scenario).reference_height_m;
   geometry.adc_step_V = AdcStep_V(scenario);
   geometry.autocollimator_noise_rad = RotaryOf(scenario).autocollimator.noise_rad;
+  geometry.autocollimator_gain = 1.0 + RotaryOf(scenario).autocollimator.gain_error;
   Check(geometry);
   return geometry;
 }

@@ -19,6 +19,7 @@ struct BenchGeometry {
   double reference_height_m = kNaN;                      // reference table's origin above the target table's
   double adc_step_V = 0.0;                               // one bit of the A/D converter; 0: not known
   double autocollimator_noise_rad = 0.0;
+  double autocollimator_gain = 1.0;  // shown over true, both axes, as its certificate says
 
   /// sin(theta) of the two nominal orders, at normal incidence.
   double SinTheta() const { return wavelength_m * lines_per_m; }

@@ -27,7 +27,8 @@ Spread SpreadAboutMean(const std::vector<double>& values) {
 
 }  // namespace
 
-Verification SummariseVerification(const std::vector<Motion>& motions, const std::vector<Reading>& readings) {
+Verification SummariseVerification(const std::vector<Motion>& motions, const std::vector<Reading>& readings,
+                                   double autocollimator_gain) {
   Require(motions.size() == readings.size(), "verification needs one motion a reading");
   std::vector<double> yaw_rad, tilt_rad;
   Vector4 variance = Vector4::Zero();
@@ -35,8 +36,8 @@ Verification SummariseVerification(const std::vector<Motion>& motions, const std
     const Motion& motion = motions[k];
     if (motion.phase != Phase::kVerification || motion.status != ReadingStatus::kOk) continue;
     if (std::isnan(readings[k].autocollimator_yaw_rad) || std::isnan(readings[k].autocollimator_tilt_rad)) continue;
-    yaw_rad.push_back(motion.ez_rad - readings[k].autocollimator_yaw_rad);
-    tilt_rad.push_back(motion.ex_rad - readings[k].autocollimator_tilt_rad);
+    yaw_rad.push_back(motion.ez_rad - readings[k].autocollimator_yaw_rad / autocollimator_gain);
+    tilt_rad.push_back(motion.ex_rad - readings[k].autocollimator_tilt_rad / autocollimator_gain);
     variance += motion.cov.diagonal() + motion.cov_systematic.diagonal();
   }
   Verification result;

@@ -18,8 +18,10 @@ struct Verification {
   double u_tilt_rad = kNaN;
 };
 
-/// @param readings  The readings behind `motions`, in the same order.
+/// @param readings            The readings behind `motions`, in the same order.
+/// @param autocollimator_gain  Shown over true.
 /// Reference: Jywe et al. (2007), section 4.3. NaN with fewer than two valid verification readings.
-Verification SummariseVerification(const std::vector<Motion>& motions, const std::vector<Reading>& readings);
+Verification SummariseVerification(const std::vector<Motion>& motions, const std::vector<Reading>& readings,
+                                   double autocollimator_gain);
 
 }  // namespace twinbench::measure
