@@ -20,6 +20,13 @@ find_package(pugixml REQUIRED)
 find_path(ASIO_INCLUDE asio.hpp REQUIRED)
 find_path(BOOST_MATH_INCLUDE boost/math/special_functions/gamma.hpp REQUIRED)  # Boost.Math, headers only
 
+# Campaigns on many machines: a build without MPI refuses --mpi.
+option(TWINBENCH_MPI "Campaigns through MPI, if it is installed" ON)
+if(TWINBENCH_MPI)
+  find_package(MPI COMPONENTS CXX)
+endif()
+set(TWINBENCH_HAS_MPI ${MPI_CXX_FOUND})
+
 if(TWINBENCH_TESTS)
   find_package(GTest REQUIRED)
   find_package(benchmark REQUIRED)

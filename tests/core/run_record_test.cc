@@ -117,6 +117,15 @@ TEST(RunRecord, GivesBackWhatItWasGiven) {
   EXPECT_EQ(record->provenance().clock_origin_utc, "2026-01-02T03:04:05Z");
 }
 
+TEST(RunRecord, GivesBackWhatItWasGivenInMemoryToo) {
+  const auto one = RunRecord::CreateInMemory(AnyProvenance()), other = RunRecord::CreateInMemory(AnyProvenance());
+  for (int k = 0; k < 20; ++k) one->Append(ReadingOf(k), {});
+  const std::vector<Reading> readings = one->Readings();
+  ASSERT_EQ(readings.size(), 20u);
+  for (int k = 0; k < 20; ++k) ExpectSame(readings[static_cast<std::size_t>(k)], ReadingOf(k));
+  EXPECT_TRUE(other->Readings().empty()) << "two records in memory are one";
+}
+
 TEST(RunRecord, KeepsAReadingWithoutNumbers) {
   const TemporaryFolder folder;
   const auto record = RunRecord::Create(folder.path(), AnyProvenance());

@@ -7,6 +7,7 @@
 namespace twinbench::tools {
 
 void AddRun(CLI::App& app);
+void AddCampaign(CLI::App& app);
 void AddMeasure(CLI::App& app);
 void AddServe(CLI::App& app);
 void AddExport(CLI::App& app);

@@ -25,6 +25,9 @@ constexpr const char* kExamples =
     "  twinbench export runs/first --readings readings.csv        hand the readings to somebody else\n"
     "  twinbench separate readings.csv --scenario scenarios/rotary_4dof.toml --json - --estimator published\n"
     "\n"
+    "The same scenario many times:\n"
+    "  twinbench campaign study.toml -o study.sqlite              trials in parallel, one table, a summary\n"
+    "\n"
     "With a bench, or with the twin shown as one:\n"
     "  twinbench serve scenarios/rotary_4dof.toml --speed max --write-bench bench.toml\n"
     "  twinbench measure scenarios/rotary_4dof.toml --bench bench.toml --rehearse -o runs/monday\n"
@@ -62,8 +65,8 @@ int Run(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(Complaint);
   using namespace twinbench::tools;
-  for (const auto add : {AddRun, AddMeasure, AddServe, AddExport, AddImport, AddSeparate, AddCompensate,
-                         AddUncertainty, AddBudget, AddPlan, AddDiagnose, AddScore, AddHelp})
+  for (const auto add : {AddRun, AddCampaign, AddMeasure, AddServe, AddExport, AddImport, AddSeparate,
+                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddDiagnose, AddScore, AddHelp})
     add(app);
   try {
     app.parse(argc, argv);

@@ -8,7 +8,6 @@
 namespace twinbench::tools {
 
 /// The readings of a run of the twin that leaves nothing behind.
-/// @throws BenchError if there is no place for its record while it lasts.
 std::vector<Reading> ReadingsOfTwin(const Scenario& scenario);
 
 }  // namespace twinbench::tools

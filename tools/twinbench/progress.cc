@@ -45,6 +45,28 @@ std::string ProgressLine::Text(int done, int planned, Phase phase, Time bench_ti
                      Clock(ToSeconds(bench_time)), Clock(remaining_s));
 }
 
+TrialsLine::TrialsLine() : on_terminal_(isatty(fileno(stderr)) != 0), started_(WallClock::now()) {}
+
+TrialsLine::~TrialsLine() {
+  if (line_open_) fmt::print(stderr, "\n");
+}
+
+void TrialsLine::Show(std::int64_t done, std::int64_t planned, std::int64_t lost) {
+  const std::int64_t tenth = 10 * done / planned;
+  if (!on_terminal_ && tenth == shown_tenth_) return;
+  shown_tenth_ = tenth;
+  const double elapsed_s = std::chrono::duration<double>(WallClock::now() - started_).count();
+  const double remaining_s = elapsed_s * static_cast<double>(planned - done) / static_cast<double>(done);
+  const std::string text =
+      fmt::format("{:>5} of {} trials, {} lost, {} left", done, planned, lost, Clock(remaining_s));
+  if (on_terminal_)
+    fmt::print(stderr, "\r\033[K{}", text);
+  else
+    fmt::print(stderr, "{}\n", text);
+  line_open_ = on_terminal_;
+  std::fflush(stderr);
+}
+
 procedure::ProgressCallback ShownOn(ProgressLine& line) {
   return [&line](const procedure::Progress& p) {
     line.Show(p.readings_done, p.readings_planned, p.phase, p.bench_time);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 #include "twin/core/reading.h"
@@ -24,6 +25,21 @@ class ProgressLine {
   WallClock::time_point started_;
   WallClock::time_point shown_{};
   int shown_tenth_ = 0;
+  bool line_open_ = false;
+};
+
+/// The same of a campaign, by trials.
+class TrialsLine {
+ public:
+  TrialsLine();
+  ~TrialsLine();
+  void Show(std::int64_t done, std::int64_t planned, std::int64_t lost);
+
+ private:
+  using WallClock = std::chrono::steady_clock;
+  bool on_terminal_;
+  WallClock::time_point started_;
+  std::int64_t shown_tenth_ = 0;
   bool line_open_ = false;
 };
 

@@ -145,6 +145,13 @@ std::unique_ptr<RunRecord> RunRecord::Create(const std::string& directory, const
   return record;
 }
 
+std::unique_ptr<RunRecord> RunRecord::CreateInMemory(const Provenance& provenance) {
+  auto database = std::make_unique<Database>(":memory:", SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+  MakeTables(*database, provenance);
+  database->Prepare();
+  return std::unique_ptr<RunRecord>(new RunRecord(std::move(database)));
+}
+
 std::unique_ptr<RunRecord> RunRecord::Open(const std::string& directory) {
   const std::string path = RecordPath(directory);
   if (!std::filesystem::is_regular_file(path))

@@ -50,6 +50,8 @@ class RunRecord : public ReadingSink, public RunLog {
   /// The record is this program's to write, until it goes.
   /// @throws InputError if DIR already holds a record; BenchError if the disk refuses.
   static std::unique_ptr<RunRecord> Create(const std::string& directory, const Provenance& provenance);
+  /// An empty record that is nowhere on a disk and goes with the object: for one run of thousands.
+  static std::unique_ptr<RunRecord> CreateInMemory(const Provenance& provenance);
   /// Opens a record to be read, also one that another program is still writing.
   /// @throws InputError if there is no record, it is not one of ours, or it is damaged.
   static std::unique_ptr<RunRecord> Open(const std::string& directory);

@@ -81,4 +81,14 @@ nlohmann::json ToJson(const std::vector<CurveScore>& curves) {
   return json;
 }
 
+std::vector<ScoredValue> ValuesOf(const std::vector<CurveScore>& curves) {
+  std::vector<ScoredValue> values;
+  for (const CurveScore& curve : curves) {
+    for (std::size_t k = 0; k < curve.truth.size(); ++k)
+      values.push_back({fmt::format("{}.{}[{}]", curve.name, curve.value, k), curve.estimate[k], curve.u[k],
+                        curve.truth[k]});
+  }
+  return values;
+}
+
 }  // namespace twinbench::report

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "twin/report/evaluation.h"
+
 namespace twinbench::report {
 
 /// An estimated curve against its true one, in the unit of the file.
@@ -20,5 +22,7 @@ std::string ScoreTable(const std::vector<CurveScore>& curves);
 std::string PositionTable(const std::vector<CurveScore>& curves);
 /// {"turntable": {"ez": {"positions": n, "rms_error_arcsec": ..., ...}}}
 nlohmann::json ToJson(const std::vector<CurveScore>& curves);
+/// Every point of every curve: "turntable.ez_arcsec[3]".
+std::vector<ScoredValue> ValuesOf(const std::vector<CurveScore>& curves);
 
 }  // namespace twinbench::report

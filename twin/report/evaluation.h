@@ -23,10 +23,17 @@ struct Evaluation {
   bool Separated() const { return !separation.is_null(); }
 };
 
+/// One estimated number and what it should have been, in the unit of its name.
+struct ScoredValue {
+  std::string name;  // "target.ez_arcsec[3]"
+  double value, u, truth;
+};
+
 /// Compares a run of the twin with its truth.
 struct ScoredRun {
   nlohmann::json json;
-  std::string text, positions;  // for a person; `positions`: one row a position
+  std::string text, positions;           // for a person; `positions`: one row a position
+  std::vector<ScoredValue> values = {};  // those that have a stated uncertainty, one by one
 };
 
 }  // namespace twinbench::report

@@ -48,13 +48,14 @@ PathScore ScorePaths(const CircleAnalysis& a, const json& truth) {
 
 /// Sizes that the run shows, against those of the scenario; phases are left out, they mean little where there is no
 /// size.
-json ErrorScores(const CircleFit& fit, const json& truth, std::string& text) {
+json ErrorScores(const CircleFit& fit, const json& truth, report::ScoredRun& scored) {
   json scores = json::object();
   for (const ErrorValue& e : ErrorsOf(fit)) {
     if (!truth.contains(e.key) || !std::isfinite(e.u) || e.unit == "deg") continue;
-    const double error = e.value - truth.at(e.key).get<double>();
+    const double actual = truth.at(e.key).get<double>(), error = e.value - actual;
+    scored.values.push_back({e.key, e.value, e.u, actual});
     scores[e.key] = {{"error", error}, {"u", e.u}, {"unit", e.unit}};
-    text += fmt::format("{:<34} {:+14.4g}   u {:.2g} {}\n", e.key, error, e.u, e.unit);
+    scored.text += fmt::format("{:<34} {:+14.4g}   u {:.2g} {}\n", e.key, error, e.u, e.unit);
   }
   return scores;
 }
@@ -73,7 +74,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                          {"mean_normed_square", report::In(1.0, path.sum_normed / (2.0 * path.readings))}};
   scored.text = fmt::format("path: off the truth by {:.4f} um rms, {:.4f} um at most\n", path.Rms_m() / units::um,
                             path.largest_m / units::um);
-  if (a.IsFitted()) scored.json["errors"] = ErrorScores(a.fit, truth.at("errors"), scored.text);
+  if (a.IsFitted()) scored.json["errors"] = ErrorScores(a.fit, truth.at("errors"), scored);
   return scored;
 }
 

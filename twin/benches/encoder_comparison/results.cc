@@ -217,7 +217,7 @@ report::ScoredRun ScoreRun(const Scenario&, const std::vector<Reading>& readings
     curves.push_back(ScoreOf("reference", device.curves.reference, truth.at("reference")));
   return {ToJson(curves),
           "against the truth; means are taken out of both\n" + report::ScoreTable(curves) + LostText(device),
-          report::PositionTable(curves)};
+          report::PositionTable(curves), report::ValuesOf(curves)};
 }
 
 }  // namespace twinbench::benches::encoder

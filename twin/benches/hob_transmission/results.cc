@@ -270,7 +270,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
       ToJson(curves),
       "against the truth: both parts of every order; orders that are not told apart have the encoder's share\n" +
           report::ScoreTable(curves),
-      report::PositionTable(curves)};
+      report::PositionTable(curves), report::ValuesOf(curves)};
 }
 
 }  // namespace twinbench::benches::hob

@@ -48,7 +48,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                                  EstimatorName(estimator)) +
                      ScoreTable(score);
   for (const auto& lost : analysis.separation->not_separable) text += fmt::format("not separable: {}\n", lost.what);
-  return {ToJson(score), text, PositionTable(score, *analysis.separation)};
+  return {ToJson(score), text, PositionTable(score, *analysis.separation), ValuesOf(score)};
 }
 
 }  // namespace twinbench::benches::rotary

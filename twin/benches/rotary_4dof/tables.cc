@@ -186,4 +186,16 @@ nlohmann::json ToJson(const Score& score) {
   return json;
 }
 
+std::vector<report::ScoredValue> ValuesOf(const Score& score) {
+  std::vector<report::ScoredValue> values;
+  for (const ComponentScore& row : score.components) {
+    const double unit = UnitOf(row.component);
+    const std::string name = fmt::format("{}.{}_{}", row.table, NameOf(row.component), UnitName(row.component));
+    for (std::size_t k = 0; k < row.estimate.size(); ++k)
+      values.push_back(
+          {fmt::format("{}[{}]", name, k), row.estimate[k] / unit, row.u[k] / unit, row.truth[k] / unit});
+  }
+  return values;
+}
+
 }  // namespace twinbench::benches::rotary

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "twin/benches/rotary_4dof/analysis.h"
+#include "twin/report/evaluation.h"
 
 namespace twinbench::benches::rotary {
 
@@ -35,5 +36,7 @@ std::string ScoreTable(const Score& score);
 /// One row a position: estimate, uncertainty and truth of every component.
 std::string PositionTable(const Score& score, const separate::Separation& separation);
 nlohmann::json ToJson(const Score& score);
+/// Every component at every position.
+std::vector<report::ScoredValue> ValuesOf(const Score& score);
 
 }  // namespace twinbench::benches::rotary

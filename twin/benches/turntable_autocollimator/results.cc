@@ -253,7 +253,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
   if (!analysis.pointwise.empty()) curves.push_back(CurveOf(analysis.pointwise, turntable));
   if (analysis.model && analysis.check) curves.push_back(CurveOf(*analysis.model, *analysis.check, turntable));
   return {ToJson(curves), "against the truth; means are taken out of both\n" + report::ScoreTable(curves),
-          report::PositionTable(curves)};
+          report::PositionTable(curves), report::ValuesOf(curves)};
 }
 
 }  // namespace twinbench::benches::turntable

@@ -1,0 +1,101 @@
+#include "twin/campaign/design.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tests/campaign/small_study.h"
+
+namespace twinbench::campaign {
+namespace {
+
+Design DesignOf(const std::string& lines) {
+  return Design(ParseStudy(StudyOf(lines), "study.toml", ""));
+}
+
+constexpr const char* kTwoUniform = R"([[vary]]
+key = "device.noise_deg"
+distribution = "uniform"
+lower = 0.001
+upper = 0.003
+[[vary]]
+key = "encoder_procedure.start_deg"
+distribution = "uniform"
+lower = 0.0
+upper = 10.0
+)";
+
+TEST(Design, CombinesGridsWithTheLastChangingFastest) {
+  const Design design = DesignOf(R"(trials = 2
+[[vary]]
+key = "device.noise_deg"
+values = [0.001, 0.002]
+[[vary]]
+key = "encoder_procedure.stops_per_turn"
+from = 24
+to = 48
+n = 3
+)");
+  ASSERT_EQ(design.Trials(), 12);
+  using testing::ElementsAre;
+  EXPECT_THAT(design.ValuesOf(0), ElementsAre("0.001", "24"));
+  EXPECT_THAT(design.ValuesOf(1), ElementsAre("0.001", "24"));
+  EXPECT_THAT(design.ValuesOf(2), ElementsAre("0.001", "36"));
+  EXPECT_THAT(design.ValuesOf(5), ElementsAre("0.001", "48"));
+  EXPECT_THAT(design.ValuesOf(6), ElementsAre("0.002", "24"));
+  EXPECT_THAT(design.ValuesOf(11), ElementsAre("0.002", "48"));
+}
+
+TEST(Design, HitsEveryStratumOfALatinHypercubeOnce) {
+  const Design design = DesignOf("trials = 50\nsampling = \"latin_hypercube\"\n" + std::string(kTwoUniform));
+  std::set<int> noise, start;
+  bool same_order = true;
+  for (std::int64_t trial = 0; trial < design.Trials(); ++trial) {
+    const auto values = design.ValuesOf(trial);
+    const int a = static_cast<int>((std::stod(values[0]) - 0.001) / 0.002 * 50.0);
+    const int b = static_cast<int>(std::stod(values[1]) / 10.0 * 50.0);
+    noise.insert(a);
+    start.insert(b);
+    same_order = same_order && a == b;
+  }
+  EXPECT_EQ(noise.size(), 50u);
+  EXPECT_EQ(start.size(), 50u);
+  EXPECT_FALSE(same_order) << "both keys go through their strata in one order";
+}
+
+TEST(Design, SamplesEachKeyIndependently) {
+  const Design design = DesignOf("trials = 2000\n" + std::string(kTwoUniform));
+  double sum_a = 0.0, sum_b = 0.0, sum_ab = 0.0;
+  for (std::int64_t trial = 0; trial < 2000; ++trial) {
+    const auto values = design.ValuesOf(trial);
+    const double a = (std::stod(values[0]) - 0.001) / 0.002 - 0.5, b = std::stod(values[1]) / 10.0 - 0.5;
+    sum_a += a;
+    sum_b += b;
+    sum_ab += a * b;
+  }
+  // Standard deviations of the means: sqrt(1/12/2000) = 0.0065 and (1/12)/sqrt(2000) = 0.0019; four of them.
+  EXPECT_NEAR(sum_a / 2000, 0.0, 0.026);
+  EXPECT_NEAR(sum_b / 2000, 0.0, 0.026);
+  EXPECT_NEAR(sum_ab / 2000, 0.0, 0.0076);
+}
+
+TEST(Design, GivesATrialTheSameWhereverTheStudyEnds) {
+  const Design few = DesignOf("trials = 3\n" + std::string(kTwoUniform));
+  const Design many = DesignOf("trials = 300\n" + std::string(kTwoUniform));
+  for (std::int64_t trial = 0; trial < 3; ++trial) EXPECT_EQ(few.OverridesOf(trial), many.OverridesOf(trial));
+}
+
+TEST(Design, GivesEveryTrialASeedOfItsOwn) {
+  const Design one = DesignOf("trials = 1000\nseed = 1\n"), other = DesignOf("trials = 1000\nseed = 2\n");
+  std::set<std::uint64_t> seeds;
+  for (std::int64_t trial = 0; trial < 1000; ++trial) {
+    seeds.insert(one.SeedOf(trial));
+    seeds.insert(other.SeedOf(trial));
+  }
+  EXPECT_EQ(seeds.size(), 2000u);
+}
+
+}  // namespace
+}  // namespace twinbench::campaign

@@ -1,0 +1,170 @@
+#include "tests/tools/program.h"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <thread>
+
+#include "tests/campaign/small_study.h"
+#include "twin/core/sqlite_database.h"
+
+namespace twinbench::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr const char* kVaried = R"(trials = 40
+sampling = "latin_hypercube"
+[[vary]]
+key = "device.noise_deg"
+distribution = "log_uniform"
+lower = 0.0005
+upper = 0.005
+)";
+
+/// `twinbench campaign` as its users meet it.
+class CampaignProgram : public Program {
+ protected:
+  CampaignProgram() { Write("study.toml", campaign::StudyOf(kVaried)); }
+
+  void MakeTable(const std::string& name, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"campaign", "study.toml", "-o", name};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    Succeed(arguments);
+  }
+
+  /// All that a table holds, in the order of its keys.
+  std::string Dump(const std::string& name) const {
+    SqliteDatabase table(At(name), SQLITE_OPEN_READWRITE);
+    std::string text;
+    for (const auto& [sql, columns] :
+         {std::pair{"SELECT * FROM provenance ORDER BY name", 2},
+          std::pair{"SELECT * FROM trials ORDER BY trial", 5},
+          std::pair{
+              "SELECT trial, name, printf('%!.17g', value), printf('%!.17g', u), printf('%!.17g', error) FROM "
+              "results ORDER BY trial, name",
+              5}}) {
+      SqliteStatement ask(table, sql);
+      while (ask.Step()) {
+        for (int column = 0; column < columns; ++column) text += ask.Text(column) + "|";
+        text += "\n";
+      }
+    }
+    return text;
+  }
+
+  std::string Ask(const std::string& name, const char* sql) const {
+    return SqliteDatabase(At(name), SQLITE_OPEN_READWRITE).Ask(sql);
+  }
+};
+
+TEST_F(CampaignProgram, MakesTheSameTableOnAnyNumberOfThreads) {
+  MakeTable("one.sqlite", {"--threads", "1"});
+  MakeTable("two.sqlite", {"--threads", "2"});
+  MakeTable("five.sqlite", {"--threads", "5"});
+  const std::string one = Dump("one.sqlite");
+  EXPECT_EQ(Ask("one.sqlite", "SELECT count(*) FROM trials WHERE failure = ''"), "40");
+  EXPECT_GT(std::stoi(Ask("one.sqlite", "SELECT count(error) FROM results")), 40);
+  EXPECT_EQ(one, Dump("two.sqlite"));
+  EXPECT_EQ(one, Dump("five.sqlite"));
+}
+
+TEST_F(CampaignProgram, MakesTheSameTableOnTwoRanks) {
+  const std::string mpirun = TWINBENCH_MPIRUN;
+  if (mpirun.empty()) GTEST_SKIP() << "this build has no MPI";
+  MakeTable("alone.sqlite", {"--threads", "1"});
+  for (const char* ranks : {"2", "3"}) {
+    const std::string name = std::string("ranks") + ranks + ".sqlite";
+    const std::string command = "cd '" + At("") + "' && '" + mpirun + "' -n " + ranks + " " + TWINBENCH_PROGRAM +
+                                " campaign study.toml -o " + name + " > mpi.out 2> mpi.err";
+    ASSERT_EQ(std::system(command.c_str()), 0) << Read("mpi.err");
+    EXPECT_EQ(Dump("alone.sqlite"), Dump(name));
+  }
+}
+
+TEST_F(CampaignProgram, SaysOnceWhatIsWrongToAllRanks) {
+  const std::string mpirun = TWINBENCH_MPIRUN;
+  if (mpirun.empty()) GTEST_SKIP() << "this build has no MPI";
+  Write("study.toml", campaign::StudyOf("trails = 4\n"));
+  const std::string command = "cd '" + At("") + "' && timeout 60 '" + mpirun + "' -n 2 " + TWINBENCH_PROGRAM +
+                              " campaign study.toml -o t.sqlite > mpi.out 2> mpi.err";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2) << Read("mpi.err");
+  const std::string said = Read("mpi.err"), once = "study.toml:12: ";
+  EXPECT_EQ(said.find(once), said.rfind(once));
+  EXPECT_NE(said.find(once), std::string::npos);
+}
+
+TEST_F(CampaignProgram, GoesOnAfterAKillAsIfNothingHadHappened) {
+  Write("study.toml", campaign::StudyOf("trials = 300\n"));
+  MakeTable("undisturbed.sqlite", {"--threads", "2"});
+  int cut_short = 0;
+  for (const int tenths : {1, 4, 2}) {
+    Process run(At(""), {"campaign", "study.toml", "-o", "killed.sqlite", "--threads", "2", "--resume"});
+    while (run.Runs() && run.ProgressLines() < tenths) std::this_thread::yield();
+    if (run.Runs()) {
+      run.Kill();
+      ++cut_short;
+    }
+  }
+  EXPECT_GE(cut_short, 2) << "the kills came too late to show anything";
+  const int kept = std::stoi(Ask("killed.sqlite", "SELECT count(*) FROM trials"));
+  EXPECT_GT(kept, 30);
+  EXPECT_LT(kept, 300);
+  MakeTable("killed.sqlite", {"--resume"});
+  EXPECT_EQ(Dump("undisturbed.sqlite"), Dump("killed.sqlite"));
+}
+
+TEST_F(CampaignProgram, DoesNotOverwriteATableOrGoOnWithAnotherStudy) {
+  MakeTable("t.sqlite", {});
+  const std::string before = Dump("t.sqlite");
+  EXPECT_THAT(Call({"campaign", "study.toml", "-o", "t.sqlite"}).err, HasSubstr("--resume"));
+  Write("study.toml", campaign::StudyOf("trials = 41\n"));
+  const Outcome other = Call({"campaign", "study.toml", "-o", "t.sqlite", "--resume"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("another study"));
+  EXPECT_EQ(Dump("t.sqlite"), before);
+}
+
+TEST_F(CampaignProgram, LosesOneRowWithATrialThatFailsAndSaysWhy) {
+  // The interpolation error goes by the lines of the scale: without lines the twin cannot be built.
+  Write("study.toml", campaign::StudyOf(R"(trials = 2
+set = ['effect=[{name = "interpolation"}]']
+[[vary]]
+key = "device.lines_per_turn"
+values = [1024, 0, 2048]
+)"));
+  MakeTable("t.sqlite", {});
+  EXPECT_EQ(Ask("t.sqlite",
+                "SELECT group_concat(trial) FROM (SELECT trial FROM trials WHERE failure <> '' ORDER BY "
+                "trial)"),
+            "2,3");
+  EXPECT_THAT(Ask("t.sqlite", "SELECT failure FROM trials WHERE trial = 2"), HasSubstr("needs the lines"));
+  EXPECT_EQ(Ask("t.sqlite", "SELECT count(*) FROM results WHERE trial IN (2, 3)"), "0");
+  EXPECT_EQ(Ask("t.sqlite", "SELECT count(DISTINCT trial) FROM results"), "4");
+  EXPECT_EQ(Ask("t.sqlite", "SELECT group_concat(\"device.lines_per_turn\") FROM (SELECT * FROM trials ORDER BY trial)"),
+            "1024,1024,0,0,2048,2048");
+}
+
+TEST_F(CampaignProgram, ShowsATrialAgainAsAnOrdinaryScenario) {
+  MakeTable("t.sqlite", {});
+  Write("trial.toml", Succeed({"campaign", "study.toml", "--trial", "17"}));
+  Succeed({"run", "trial.toml", "-o", "again"});
+  const nlohmann::json results = nlohmann::json::parse(Read("again/results.json"));
+  EXPECT_EQ(std::stod(Ask("t.sqlite",
+                          "SELECT printf('%!.17g', value) FROM results WHERE trial = 17 AND name = "
+                          "'device.ez_arcsec[3]'")),
+            results["device"]["ez_arcsec"][3].get<double>());
+}
+
+TEST_F(CampaignProgram, WritesALineATrial) {
+  MakeTable("t.sqlite", {"--csv", "t.csv"});
+  const std::string csv = Read("t.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 41);
+  EXPECT_THAT(csv, testing::StartsWith("trial,seed,failure,verdict,device.noise_deg,"));
+  EXPECT_THAT(csv, AllOf(HasSubstr("device.ez_arcsec[3],u(device.ez_arcsec[3])"),
+                         HasSubstr("error(score.device.ez_arcsec[3])")));
+}
+
+}  // namespace
+}  // namespace twinbench::test

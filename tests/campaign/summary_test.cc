@@ -1,0 +1,62 @@
+#include "twin/campaign/summary.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/campaign/stated_results.h"
+#include "twin/core/reading.h"
+
+namespace twinbench::campaign {
+namespace {
+
+TEST(StatedResults, AreThoseWithAnUncertaintyInEachOfItsForms) {
+  const auto json = nlohmann::json::parse(R"({"a": {"value": 1, "u": 0.1, "unit": "um"},
+    "b": {"value_um": 2, "u_um": 0.2, "bias_um": 9}, "c": {"ez_arcsec": [3, 4], "u_ez_arcsec": [0.3, null],
+    "position_deg": [0, 10]}, "d": [{"D_um": 5, "u_D_um": 0.5, "feed": 7}], "dof": 8})");
+  std::vector<std::string> names;
+  std::vector<double> values;
+  for (const TrialResult& r : StatedResults(json)) {
+    names.push_back(r.name);
+    values.push_back(r.value);
+  }
+  EXPECT_THAT(names, testing::ElementsAre("a", "b_um", "c.ez_arcsec[0]", "c.ez_arcsec[1]", "d[0].D_um"));
+  EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4, 5));
+}
+
+TEST(Summary, HasMeanScatterBiasAndCoverage) {
+  Summary summary;
+  // Values 9, 11, 13, 15 with u = 1 against the truth 10: errors -1, 1, 3, 5, of which two are within 1.96 u.
+  for (int trial = 0; trial < 4; ++trial) {
+    const double value = 9.0 + 2.0 * trial;
+    summary.Add({trial, "", "", {{"a", value, 1.0, value - 10.0}}});
+  }
+  summary.Add({4, "no light", "", {}});
+  const ResultSummary a = summary.Results().at("a");
+  EXPECT_EQ(a.count, 4);
+  EXPECT_DOUBLE_EQ(a.mean, 12.0);
+  EXPECT_DOUBLE_EQ(a.sd, std::sqrt(20.0 / 3.0));
+  EXPECT_DOUBLE_EQ(a.rms_u, 1.0);
+  EXPECT_DOUBLE_EQ(a.bias, 2.0);
+  EXPECT_DOUBLE_EQ(a.coverage95, 0.5);
+  ASSERT_EQ(summary.Lost().size(), 1u);
+  EXPECT_EQ(summary.Lost()[0].trial, 4);
+  ASSERT_EQ(summary.Worst(1).size(), 1u);
+  EXPECT_EQ(summary.Worst(1)[0].trial, 3);
+  EXPECT_DOUBLE_EQ(summary.Worst(1)[0].normed, 5.0);
+}
+
+TEST(Summary, TakesTheNumbersOfAListTogetherEachAboutItsOwnMean) {
+  Summary summary;
+  summary.Add({0, "", "", {{"c[0]", 1.0, 1.0, kNaN}, {"c[1]", 101.0, 1.0, kNaN}}});
+  summary.Add({1, "", "", {{"c[0]", 3.0, 1.0, kNaN}, {"c[1]", 103.0, 1.0, kNaN}}});
+  const ResultSummary c = summary.Results().at("c[]");
+  EXPECT_EQ(c.count, 4);
+  EXPECT_DOUBLE_EQ(c.mean, 52.0);
+  EXPECT_DOUBLE_EQ(c.sd, std::sqrt(2.0));  // each pair has 2 about its mean with one degree of freedom
+  EXPECT_TRUE(std::isnan(c.coverage95));
+}
+
+}  // namespace
+}  // namespace twinbench::campaign

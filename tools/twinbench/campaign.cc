@@ -1,0 +1,109 @@
+#include "twin/campaign/campaign.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/progress.h"
+#include "tools/twinbench/run_folder.h"
+#include "twin/campaign/summary.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct CampaignOptions {
+  std::string study, table, csv;
+  int threads = 0;  // 0: one for each core, or one a rank
+  bool resume = false, mpi = false;
+  std::optional<std::int64_t> trial;
+};
+
+int ThreadsOf(const CampaignOptions& options, const campaign::Ranks& ranks) {
+  if (options.threads > 0) return options.threads;
+  return ranks.Others() > 0 ? 1 : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+campaign::Table TableOf(const CampaignOptions& options, const campaign::Study& study) {
+  const bool goes_on = options.resume && std::filesystem::exists(options.table);
+  return goes_on ? campaign::Table::Continue(options.table, TWINBENCH_VERSION, study)
+                 : campaign::Table::Create(options.table, TWINBENCH_VERSION, study);
+}
+
+/// Study and table of the first rank; whatever is wrong with them is said once and ends all ranks.
+struct Begun {
+  campaign::Study study;
+  campaign::Table table;
+};
+
+Begun Begin(const CampaignOptions& options, campaign::Ranks& ranks) {
+  try {
+    campaign::Study study = campaign::LoadStudy(options.study);
+    campaign::Table table = TableOf(options, study);
+    ranks.Agree(true);
+    return {std::move(study), std::move(table)};
+  } catch (...) {
+    ranks.Agree(false);
+    throw;
+  }
+}
+
+void Report(const campaign::Table& table, const CampaignOptions& options) {
+  campaign::Summary summary;
+  table.ForEach([&](const campaign::TrialRow& row) { summary.Add(row); });
+  fmt::print("{}", campaign::SummaryText(summary, options.study));
+  if (!options.csv.empty()) WriteFileAtOnce(options.csv, table.Csv());
+}
+
+void LeadCampaign(const CampaignOptions& options, campaign::Ranks& ranks) {
+  Begun begun = Begin(options, ranks);
+  TrialsLine line;
+  campaign::RunCampaign(begun.study, begun.table, ThreadsOf(options, ranks), ranks,
+                        [&](const campaign::CampaignProgress& p) { line.Show(p.done, p.planned, p.lost); });
+  Report(begun.table, options);
+}
+
+void FollowFirst(const CampaignOptions& options, campaign::Ranks& ranks) {
+  if (!ranks.Agree(false)) return;  // the first rank has said why
+  const campaign::Study study = campaign::LoadStudy(options.study);
+  const campaign::Design design(study);
+  ranks.WorkForFirst([&](std::int64_t trial) { return campaign::RunTrial(study, design, trial); });
+}
+
+void PrintTrial(const CampaignOptions& options) {
+  const campaign::Study study = campaign::LoadStudy(options.study);
+  const campaign::Design design(study);
+  if (*options.trial < 0 || *options.trial >= design.Trials())
+    throw InputError(fmt::format("--trial {}", *options.trial), "the study has no such trial",
+                     fmt::format("a number from 0 to {}", design.Trials() - 1));
+  fmt::print("{}", WriteScenario(study.With(design.OverridesOf(*options.trial))));
+}
+
+void Campaign(const CampaignOptions& options) {
+  if (options.trial) return PrintTrial(options);
+  if (options.table.empty()) throw InputError("campaign", "there is no table", "-o TABLE.sqlite, or --trial N");
+  campaign::Ranks ranks(options.mpi || campaign::Ranks::StartedAsOneOfMany());
+  if (ranks.IsFirst()) return LeadCampaign(options, ranks);
+  FollowFirst(options, ranks);
+}
+
+}  // namespace
+
+void AddCampaign(CLI::App& app) {
+  auto* command = app.add_subcommand("campaign", "Carry a scenario out many times with other keys and seeds");
+  auto options = std::make_shared<CampaignOptions>();
+  command->add_option("study", options->study, "study file (TOML)")->required();
+  command->add_option("-o,--output", options->table, "table of the results (SQLite), made by the command");
+  command->add_option("--threads", options->threads, "trials at a time in this process; default: one for each core")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("--resume", options->resume, "go on with a table; trials that are in it are not done again");
+  command->add_flag("--mpi", options->mpi, "share the trials with the other ranks; told by itself below mpirun");
+  command->add_option("--csv", options->csv, "also write the table here, a line a trial");
+  command->add_option("--trial", options->trial, "print the scenario of this trial, and do no more");
+  command->callback([options] { Campaign(*options); });
+}
+
+}  // namespace twinbench::tools

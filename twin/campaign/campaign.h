@@ -1,0 +1,20 @@
+#pragma once
+
+#include <functional>
+
+#include "twin/campaign/design.h"
+#include "twin/campaign/ranks.h"
+#include "twin/campaign/table.h"
+
+namespace twinbench::campaign {
+
+struct CampaignProgress {
+  std::int64_t done, planned, lost;  // of this call
+};
+
+/// Carries out every trial that is not yet in the table; rows are written in the order in which they come.
+/// @param ranks  The other processes that take part; this one is the first of them, and works too.
+void RunCampaign(const Study& study, Table& table, int threads, Ranks& ranks,
+                 const std::function<void(const CampaignProgress&)>& progress);
+
+}  // namespace twinbench::campaign

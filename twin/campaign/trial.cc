@@ -1,0 +1,55 @@
+#include "twin/campaign/trial.h"
+
+#include <algorithm>
+#include <exception>
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/registry.h"
+#include "twin/campaign/stated_results.h"
+#include "twin/core/run_record.h"
+#include "twin/procedure/options.h"
+#include "twin/report/evaluation.h"
+
+namespace twinbench::campaign {
+namespace {
+
+std::vector<TrialResult> Scored(const Bench& bench, const Scenario& scenario, const std::vector<Reading>& readings,
+                                const nlohmann::json& truth, Estimator estimator) {
+  std::vector<TrialResult> results;
+  for (const report::ScoredValue& v : bench.score(scenario, readings, truth, estimator).values)
+    results.push_back({"score." + v.name, v.value, v.u, v.value - v.truth});
+  return results;
+}
+
+void CarryOut(const Study& study, const Scenario& scenario, TrialRow& row) {
+  const Bench& bench = BenchOf(scenario);
+  const auto twin = bench.make_twin(scenario);
+  const auto record = RunRecord::CreateInMemory({"", "twin", scenario.seed, "", scenario.bench});
+  twin->CarryOut(*record, [](const procedure::Progress&) {});
+  const std::vector<Reading> readings = record->Readings();
+  const report::Evaluation evaluation = bench.evaluate(scenario, readings, study.estimator);
+  row.results = StatedResults(evaluation.results);
+  if (evaluation.Separated()) {
+    const std::vector<TrialResult> scored = Scored(bench, scenario, readings, twin->Truth(), study.estimator);
+    row.results.insert(row.results.end(), scored.begin(), scored.end());
+  }
+  std::ranges::stable_sort(row.results, {}, &TrialResult::name);
+  if (study.diagnosis)
+    row.verdict = diagnose::VerdictName(diagnose::Diagnose(readings, scenario).diagnosis.verdict);
+}
+
+}  // namespace
+
+TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial) {
+  TrialRow row;
+  row.trial = trial;
+  try {
+    CarryOut(study, study.With(design.OverridesOf(trial)), row);
+  } catch (const std::exception& error) {
+    row.failure = error.what();
+    row.results.clear();
+  }
+  return row;
+}
+
+}  // namespace twinbench::campaign

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "twin/campaign/design.h"
+
+namespace twinbench::campaign {
+
+/// A number that a trial came to, in the unit of its name.
+struct TrialResult {
+  std::string name;        // its path in results.json, or "score." and its name in the score
+  double value, u, error;  // error: against the twin's truth; NaN where that is not known
+};
+
+/// A row of the table.
+struct TrialRow {
+  std::int64_t trial = 0;
+  std::string failure;               // why it was lost; empty if it was not
+  std::string verdict;               // of the diagnosis; empty if none was asked for
+  std::vector<TrialResult> results;  // ordered by name
+};
+
+/// Carries one trial out, from scenario to results, without a file. Whatever it throws is the row's failure.
+TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial);
+
+}  // namespace twinbench::campaign
