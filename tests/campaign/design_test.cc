@@ -81,6 +81,20 @@ TEST(Design, SamplesEachKeyIndependently) {
   EXPECT_NEAR(sum_ab / 2000, 0.0, 0.0076);
 }
 
+TEST(Design, TellsWhatIsHiddenToTheTwinAlone) {
+  const Design design = DesignOf(R"([[vary]]
+key = "device.noise_deg"
+values = [0.002]
+[[vary]]
+key = "title"
+hidden = true
+values = ["secret"]
+)");
+  const std::string seed = "seed=\"" + std::to_string(design.SeedOf(0)) + "\"";
+  EXPECT_THAT(design.OverridesOf(0), testing::ElementsAre("device.noise_deg=0.002", "title=secret", seed));
+  EXPECT_THAT(design.BelievedOf(0), testing::ElementsAre("device.noise_deg=0.002", seed));
+}
+
 TEST(Design, GivesATrialTheSameWhereverTheStudyEnds) {
   const Design few = DesignOf("trials = 3\n" + std::string(kTwoUniform));
   const Design many = DesignOf("trials = 300\n" + std::string(kTwoUniform));

@@ -142,8 +142,9 @@ values = [1024, 0, 2048]
   EXPECT_THAT(Ask("t.sqlite", "SELECT failure FROM trials WHERE trial = 2"), HasSubstr("needs the lines"));
   EXPECT_EQ(Ask("t.sqlite", "SELECT count(*) FROM results WHERE trial IN (2, 3)"), "0");
   EXPECT_EQ(Ask("t.sqlite", "SELECT count(DISTINCT trial) FROM results"), "4");
-  EXPECT_EQ(Ask("t.sqlite", "SELECT group_concat(\"device.lines_per_turn\") FROM (SELECT * FROM trials ORDER BY trial)"),
-            "1024,1024,0,0,2048,2048");
+  EXPECT_EQ(
+      Ask("t.sqlite", "SELECT group_concat(\"device.lines_per_turn\") FROM (SELECT * FROM trials ORDER BY trial)"),
+      "1024,1024,0,0,2048,2048");
 }
 
 TEST_F(CampaignProgram, ShowsATrialAgainAsAnOrdinaryScenario) {
@@ -155,6 +156,19 @@ TEST_F(CampaignProgram, ShowsATrialAgainAsAnOrdinaryScenario) {
                           "SELECT printf('%!.17g', value) FROM results WHERE trial = 17 AND name = "
                           "'device.ez_arcsec[3]'")),
             results["device"]["ez_arcsec"][3].get<double>());
+}
+
+TEST_F(CampaignProgram, KeepsTheVerdictOfADiagnosisThatDoesNotKnowWhatIsHidden) {
+  Write("study.toml", campaign::StudyOf(R"(diagnosis = true
+set = ["encoder_procedure.turns=2", "device.noise_known=true"]
+[[vary]]
+key = "effect"
+hidden = true
+values = ['[]', '[{name = "eccentricity"}]']
+)"));
+  MakeTable("t.sqlite", {});
+  EXPECT_EQ(Ask("t.sqlite", "SELECT verdict FROM trials WHERE trial = 0"), "none");
+  EXPECT_THAT(Ask("t.sqlite", "SELECT verdict FROM trials WHERE trial = 1"), testing::AnyOf("named", "tie"));
 }
 
 TEST_F(CampaignProgram, WritesALineATrial) {

@@ -49,13 +49,23 @@ TEST(Summary, HasMeanScatterBiasAndCoverage) {
 
 TEST(Summary, TakesTheNumbersOfAListTogetherEachAboutItsOwnMean) {
   Summary summary;
-  summary.Add({0, "", "", {{"c[0]", 1.0, 1.0, kNaN}, {"c[1]", 101.0, 1.0, kNaN}}});
-  summary.Add({1, "", "", {{"c[0]", 3.0, 1.0, kNaN}, {"c[1]", 103.0, 1.0, kNaN}}});
+  summary.Add(
+      {0,
+       "",
+       "",
+       {{"c[0]", 1.0, 1.0, kNaN}, {"c[1]", 101.0, 1.0, kNaN}, {"s[0]", 0.0, 1.0, 2.0}, {"s[1]", 0.0, 1.0, -4.0}}});
+  summary.Add(
+      {1,
+       "",
+       "",
+       {{"c[0]", 3.0, 1.0, kNaN}, {"c[1]", 103.0, 1.0, kNaN}, {"s[0]", 0.0, 1.0, 4.0}, {"s[1]", 0.0, 1.0, -2.0}}});
   const ResultSummary c = summary.Results().at("c[]");
   EXPECT_EQ(c.count, 4);
   EXPECT_DOUBLE_EQ(c.mean, 52.0);
   EXPECT_DOUBLE_EQ(c.sd, std::sqrt(2.0));  // each pair has 2 about its mean with one degree of freedom
   EXPECT_TRUE(std::isnan(c.coverage95));
+  // Biases 3 and -3: they would cancel in a mean.
+  EXPECT_DOUBLE_EQ(summary.Results().at("s[]").bias, 3.0);
 }
 
 }  // namespace

@@ -77,12 +77,22 @@ std::vector<std::string> Design::ValuesOf(std::int64_t trial) const {
   return values;
 }
 
-std::vector<std::string> Design::OverridesOf(std::int64_t trial) const {
+std::vector<std::string> Design::Overrides(std::int64_t trial, bool with_hidden) const {
   const std::vector<std::string> values = ValuesOf(trial);
   std::vector<std::string> overrides;
-  for (std::size_t k = 0; k < values.size(); ++k) overrides.push_back(study_.vary[k].key + "=" + values[k]);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (with_hidden || !study_.vary[k].hidden) overrides.push_back(study_.vary[k].key + "=" + values[k]);
+  }
   overrides.push_back(fmt::format("seed=\"{}\"", SeedOf(trial)));
   return overrides;
+}
+
+std::vector<std::string> Design::OverridesOf(std::int64_t trial) const {
+  return Overrides(trial, true);
+}
+
+std::vector<std::string> Design::BelievedOf(std::int64_t trial) const {
+  return Overrides(trial, false);
 }
 
 }  // namespace twinbench::campaign

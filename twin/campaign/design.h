@@ -24,10 +24,13 @@ class Design {
   std::uint64_t SeedOf(std::int64_t trial) const;
   /// One a variation, in their order; text as after "key=".
   std::vector<std::string> ValuesOf(std::int64_t trial) const;
-  /// "key=value" of every variation and the seed.
+  /// "key=value" of every variation and the seed: what the twin has.
   std::vector<std::string> OverridesOf(std::int64_t trial) const;
+  /// The same without what is hidden: what evaluation and diagnosis believe.
+  std::vector<std::string> BelievedOf(std::int64_t trial) const;
 
  private:
+  std::vector<std::string> Overrides(std::int64_t trial, bool with_hidden) const;
   double UniformOf(const std::string& key, std::int64_t trial) const;
   std::int64_t StratumOf(const std::string& key, std::int64_t trial) const;
 

@@ -12,7 +12,6 @@ namespace twinbench::campaign {
 /// object in a program. In a build without MPI all are alone.
 class Ranks {
  public:
-  static bool BuiltIn();
   /// Whether this process was started as one of several, by mpirun or by Slurm through PMI.
   static bool StartedAsOneOfMany();
 

@@ -43,10 +43,6 @@ std::int64_t AskForTrial(const std::vector<std::uint8_t>& row) {
 
 }  // namespace
 
-bool Ranks::BuiltIn() {
-  return true;
-}
-
 Ranks::Ranks(bool with_mpi) : with_mpi_(with_mpi) {
   if (!with_mpi_) return;
   int provided = MPI_THREAD_SINGLE;

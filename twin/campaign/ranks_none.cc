@@ -4,10 +4,6 @@
 /// A build without MPI.
 namespace twinbench::campaign {
 
-bool Ranks::BuiltIn() {
-  return false;
-}
-
 Ranks::Ranks(bool with_mpi) : with_mpi_(with_mpi) {
   if (with_mpi_)
     throw InputError("--mpi", "this twinbench was built without MPI",

@@ -23,6 +23,14 @@ std::string WithoutIndices(const std::string& name) {
   return text;
 }
 
+/// One bias with its sign; of several, which may cancel, their root mean square.
+double BiasOf(const std::vector<double>& biases) {
+  if (biases.size() == 1) return biases.front();
+  double sum = 0.0;
+  for (const double bias : biases) sum += bias * bias;
+  return biases.empty() ? kNaN : std::sqrt(sum / static_cast<double>(biases.size()));
+}
+
 }  // namespace
 
 void Summary::Sums::Add(const TrialResult& r) {
@@ -56,7 +64,8 @@ void Summary::Add(const TrialRow& row) {
 
 std::map<std::string, ResultSummary> Summary::Results() const {
   struct Pool {
-    double sum = 0.0, about_means = 0.0, dof = 0.0, sum_u2 = 0.0, count_u = 0.0, sum_error = 0.0, covered = 0.0;
+    double sum = 0.0, about_means = 0.0, dof = 0.0, sum_u2 = 0.0, count_u = 0.0, covered = 0.0;
+    std::vector<double> biases;
   };
   std::map<std::string, ResultSummary> results;
   std::map<std::string, Pool> pools;
@@ -71,7 +80,7 @@ std::map<std::string, ResultSummary> Summary::Results() const {
     pool.dof += static_cast<double>(s.count - 1);
     pool.sum_u2 += s.sum_u2;
     pool.count_u += static_cast<double>(s.count_u);
-    pool.sum_error += s.sum_error;
+    if (s.scored > 0) pool.biases.push_back(s.sum_error / static_cast<double>(s.scored));
     pool.covered += static_cast<double>(s.covered);
   }
   for (auto& [name, result] : results) {
@@ -80,7 +89,7 @@ std::map<std::string, ResultSummary> Summary::Results() const {
     result.mean = pool.sum / static_cast<double>(result.count);
     result.sd = pool.dof > 0.0 ? std::sqrt(pool.about_means / pool.dof) : kNaN;
     result.rms_u = pool.count_u > 0.0 ? std::sqrt(pool.sum_u2 / pool.count_u) : kNaN;
-    result.bias = pool.sum_error / scored;
+    result.bias = BiasOf(pool.biases);
     result.coverage95 = pool.covered / scored;
   }
   return results;

@@ -21,21 +21,22 @@ std::vector<TrialResult> Scored(const Bench& bench, const Scenario& scenario, co
   return results;
 }
 
-void CarryOut(const Study& study, const Scenario& scenario, TrialRow& row) {
+/// @param believed  By evaluation and diagnosis; what a study hides is in `scenario` alone.
+void CarryOut(const Study& study, const Scenario& scenario, const Scenario& believed, TrialRow& row) {
   const Bench& bench = BenchOf(scenario);
   const auto twin = bench.make_twin(scenario);
   const auto record = RunRecord::CreateInMemory({"", "twin", scenario.seed, "", scenario.bench});
   twin->CarryOut(*record, [](const procedure::Progress&) {});
   const std::vector<Reading> readings = record->Readings();
-  const report::Evaluation evaluation = bench.evaluate(scenario, readings, study.estimator);
+  const report::Evaluation evaluation = bench.evaluate(believed, readings, study.estimator);
   row.results = StatedResults(evaluation.results);
   if (evaluation.Separated()) {
-    const std::vector<TrialResult> scored = Scored(bench, scenario, readings, twin->Truth(), study.estimator);
+    const std::vector<TrialResult> scored = Scored(bench, believed, readings, twin->Truth(), study.estimator);
     row.results.insert(row.results.end(), scored.begin(), scored.end());
   }
   std::ranges::stable_sort(row.results, {}, &TrialResult::name);
   if (study.diagnosis)
-    row.verdict = diagnose::VerdictName(diagnose::Diagnose(readings, scenario).diagnosis.verdict);
+    row.verdict = diagnose::VerdictName(diagnose::Diagnose(readings, believed).diagnosis.verdict);
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial) 
   TrialRow row;
   row.trial = trial;
   try {
-    CarryOut(study, study.With(design.OverridesOf(trial)), row);
+    CarryOut(study, study.With(design.OverridesOf(trial)), study.With(design.BelievedOf(trial)), row);
   } catch (const std::exception& error) {
     row.failure = error.what();
     row.results.clear();

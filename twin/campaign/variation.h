@@ -30,6 +30,7 @@ using Distribution = std::variant<Normal, Uniform, Triangular, LogUniform>;
 struct Variation {
   std::string key;  // as after --set
   std::variant<Grid, Distribution> how;
+  bool hidden = false;   // from evaluation and diagnosis: they believe the base scenario's value
   std::string location;  // "study.toml:7", for messages
 };
 

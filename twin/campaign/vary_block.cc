@@ -24,9 +24,14 @@ double Number(const TomlValue& block, const std::string& key) {
   return ReadNumber(Need(block, key), key, {}, {});
 }
 
-/// The block may have `key` and these.
+bool Flag(const TomlValue& value, const std::string& key) {
+  if (const auto flag = value.node().value_exact<bool>()) return *flag;
+  throw InputError(value.Where(), key + " is " + value.Found(), "true or false");
+}
+
+/// The block may have `key`, `hidden` and these.
 void AllowOnly(const TomlValue& block, const std::vector<std::string>& names) {
-  std::vector<KnownKey> known = {{"", "key", ""}};
+  std::vector<KnownKey> known = {{"", "key", ""}, {"", "hidden", ""}};
   for (const std::string& name : names) known.push_back({"", name, ""});
   RefuseUnknown(block, "vary", known);
 }
@@ -120,6 +125,7 @@ Variation ReadVariation(const TomlValue& block) {
   Variation variation;
   variation.location = Need(block, "key").Where();
   variation.key = ReadText(Need(block, "key"), "key", {});
+  if (const auto hidden = Inside(block, "hidden")) variation.hidden = Flag(*hidden, "hidden");
   if (Inside(block, "values")) {
     variation.how = ReadValues(block);
   } else if (Inside(block, "from")) {
