@@ -27,17 +27,22 @@ Hidden TruthOf(const std::vector<EffectSettings>& effects) {
 
 }  // namespace
 
+Scenario HiddenBench(Design design, std::uint64_t seed, const std::vector<Wanted>& wanted,
+                     const SignatureScale& scale) {
+  Scenario actual = Drawn(design, seed);
+  actual.effects = DrawEffects(wanted, actual, scale);
+  return actual;
+}
+
 Case MakeTwinCase(Design design, std::uint64_t seed, const std::vector<Wanted>& wanted,
                   const SignatureScale& scale) {
-  const Scenario drawn = Drawn(design, seed);
-  Scenario actual = drawn;
-  actual.effects = DrawEffects(wanted, drawn, scale);
+  const Scenario actual = HiddenBench(design, seed, wanted, scale);
   Case made;
   made.scenario = Believed(design);
   made.readings = TakeReadings(actual);
   made.hidden = TruthOf(actual.effects);
-  made.hidden.alike = AlikeOf(actual.effects.front(), drawn, scale);
-  if (wanted.size() == 1 && HasSize(wanted.front().effect, wanted.front().where, drawn.bench))
+  made.hidden.alike = AlikeOf(actual.effects.front(), Drawn(design, seed), scale);
+  if (wanted.size() == 1 && HasSize(wanted.front().effect, wanted.front().where, actual.bench))
     made.hidden.rho = wanted.front().rho;
   return made;
 }

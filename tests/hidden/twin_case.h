@@ -14,6 +14,9 @@ struct Wanted {
   double rho = kNaN;  // wanted length of its signature, in units of noise; not used if it has no size
 };
 
+/// The bench of one case with the wanted effects on.
+Scenario HiddenBench(Design design, std::uint64_t seed, const std::vector<Wanted>& wanted, const SignatureScale& scale);
+
 /// A run of the twin with the wanted effects on, to be diagnosed with the scenario that lacks them.
 ///
 /// @param wanted  One or more; alike are the effects that cannot be told from the first.

@@ -32,7 +32,7 @@ constexpr const char* kFactories = "twin/benches (twin/factory.h)";
 const std::vector<std::string> kRooms = {
     "optics",        "mechanics",      "twin/core",     "twin/import",      "twin/plausible", "twin/model",
     "twin/sim",      "twin/procedure", "twin/separate", "twin/uncertainty", "twin/diagnose",  "twin/plan",
-    "twin/campaign", "twin/report",    "twin/benches",  kFormats,           kProcedures,      kEstimators,
+    "twin/campaign", "twin/investigate", "twin/report",    "twin/benches",  kFormats,           kProcedures,      kEstimators,
     kTwins,          kFactories,       "hw_bridge"};
 
 /// The room table: which of our rooms each may include, besides itself.
@@ -49,8 +49,10 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"twin/uncertainty", {"twin/core", "twin/model"}},
     {"twin/diagnose", {"twin/core", "twin/model"}},
     {"twin/plan", {"twin/core", "twin/model", "twin/uncertainty"}},
+    {"twin/investigate", {"twin/core", "twin/model", "twin/uncertainty", "twin/diagnose", "twin/plan"}},
     {"twin/campaign", {"twin/core", "twin/procedure", "twin/diagnose", "twin/plan", "twin/report", "twin/benches"}},
-    {"twin/report", {"twin/core", "twin/separate", "twin/uncertainty", "twin/diagnose", "twin/plan"}},
+    {"twin/report",
+     {"twin/core", "twin/separate", "twin/uncertainty", "twin/diagnose", "twin/plan", "twin/investigate"}},
     {kFormats, {"twin/core"}},
     {kProcedures, {"twin/core", "twin/procedure", kFormats}},
     {kEstimators, {"twin/core", "twin/separate", kFormats}},

@@ -41,7 +41,7 @@ Eigen::VectorXd Each(const std::vector<Reading>& readings, const std::function<d
 /// What the run leaves free, given at its points.
 std::vector<model::Disturbance> OwnErrors(const test::BenchRun& run) {
   const Scenario& s = run.scenario;
-  const sim::TableMotion multitooth(TurntableOf(s).multitooth_table, s.seed, "multitooth");
+  const sim::TableMotion multitooth(TurntableOf(s).multitooth_table, s, "multitooth");
   const auto teeth = run.truth["multitooth"]["ez_arcsec"].get<std::vector<double>>();
   const auto tooth_rad = [&](const Reading& r) {
     const auto n = static_cast<long>(teeth.size());
@@ -59,7 +59,7 @@ std::vector<model::Disturbance> OwnErrors(const test::BenchRun& run) {
     const std::string name = names[c];
     TableSettings repeats = TurntableOf(s).turntable;
     repeats.half_frequency_tilt_rad = repeats.half_frequency_radial_m = 0.0;  // the twin knows it
-    const sim::TableMotion motion(repeats, s.seed, "turntable");
+    const sim::TableMotion motion(repeats, s, "turntable");
     errors.push_back(
         {"turntable." + name, Each(run.readings, [&](const Reading& r) { return of(motion.At(rotor_rad(r))); })});
     if (name != "ez")

@@ -17,6 +17,7 @@ void AddCompensate(CLI::App& app);
 void AddUncertainty(CLI::App& app);
 void AddBudget(CLI::App& app);
 void AddPlan(CLI::App& app);
+void AddInvestigate(CLI::App& app);
 void AddDiagnose(CLI::App& app);
 void AddScore(CLI::App& app);
 void AddHelp(CLI::App& app);

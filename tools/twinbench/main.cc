@@ -66,7 +66,7 @@ int Run(int argc, char** argv) {
   app.failure_message(Complaint);
   using namespace twinbench::tools;
   for (const auto add : {AddRun, AddCampaign, AddMeasure, AddServe, AddExport, AddImport, AddSeparate,
-                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddDiagnose, AddScore, AddHelp})
+                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddScore, AddHelp})
     add(app);
   try {
     app.parse(argc, argv);

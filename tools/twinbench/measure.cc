@@ -1,9 +1,12 @@
 #include <fmt/core.h>
 
+#include "hw_bridge/program/program_file.h"
 #include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
+#include "tools/twinbench/measure.h"
 #include "tools/twinbench/measure_machine.h"
+#include "tools/twinbench/measure_program.h"
 #include "tools/twinbench/measured_bench.h"
 #include "tools/twinbench/measured_run.h"
 #include "tools/twinbench/progress.h"
@@ -73,9 +76,12 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
   }
 }
 
+}  // namespace
+
 void Measure(const MeasureOptions& o) {
   Scenario scenario = LoadScenario(o.scenario, o.overrides);
   for (const std::string& table : o.compensations) CommandCompensation(scenario, table);
+  if (hw::IsProgramFile(o.bench)) return MeasureByProgram(o, scenario);
   if (!BenchOf(scenario).has_controllers)
     throw InputError(o.scenario, "no controllers for the bench " + scenario.bench,
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
@@ -91,8 +97,6 @@ void Measure(const MeasureOptions& o) {
   if (!resumes || !begun.record->finished()) MeasureInto(folder, scenario, file, std::move(begun), options);
   EvaluateRun(scenario, folder.path);
 }
-
-}  // namespace
 
 void AddMeasure(CLI::App& app) {
   auto* command =

@@ -25,6 +25,7 @@ namespace uncertainty {
 struct Contribution;
 }
 namespace plan {
+struct NextRun;
 struct ShiftDesign;
 }
 namespace report {
@@ -88,6 +89,9 @@ struct Bench {
 
   /// The shifts that a comparison of two tables is planned by. Null: nothing is shifted.
   plan::ShiftDesign (*shift_design)(const Scenario&) = nullptr;
+
+  /// Runs that could be made next, beside the same once more. Null: no others.
+  std::vector<plan::NextRun> (*next_runs)(const Scenario&) = nullptr;
 
   diagnose::DiagnosisRun (*diagnose)(const std::vector<Reading>&, const Scenario&,
                                      const diagnose::DiagnoseOptions&) = nullptr;

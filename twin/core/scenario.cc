@@ -22,6 +22,7 @@
 #include "twin/core/scenario_uncertainty.h"
 #include "twin/core/scenario_values.h"
 #include "twin/core/signal_effect.h"
+#include "twin/core/stream.h"
 #include "twin/core/table_errors.h"
 
 namespace twinbench {
@@ -448,6 +449,18 @@ Scenario LoadScenario(const std::string& path, const std::vector<std::string>& o
 
 std::string BenchOfScenarioFile(const std::string& path) {
   return ReadBench(ScenarioText(TextOf(path), path, {}));
+}
+
+std::uint64_t Scenario::RunSeed() const {
+  if (repeat == 0) return seed;
+  Stream runs(seed, "repeat");
+  runs.Seek(static_cast<std::uint64_t>(repeat));
+  const std::uint64_t high = runs.Word();
+  return high << 32 | runs.Word();
+}
+
+Scenario Altered(const Scenario& scenario, const std::vector<std::string>& sets) {
+  return ParseScenario(WriteScenario(scenario), "the scenario", "", sets);
 }
 
 }  // namespace twinbench

@@ -71,6 +71,7 @@ struct Scenario {
   std::string bench;  // its name; there is no usual one
   std::string title;
   std::uint64_t seed = 1;
+  int repeat = 0;                   // which run of the same bench: chance differs, the bench itself does not
   bool noise_free = false;          // no random contribution and no quantisation
   EnvironmentSettings environment;  // of benches whose readings depend on it
   OwnSettings own;                  // the bench's own tables: settings.h in its folder
@@ -78,6 +79,10 @@ struct Scenario {
   std::vector<EffectSettings> effects;
   std::vector<EmpiricalSettings> empiricals;
   std::vector<StatedUncertainty> uncertainties;  // of its keys, in their order
+
+  /// Of what differs from run to run: noise, seating, the room. `seed` alone is of what stays: the errors that a
+  /// table was made with.
+  std::uint64_t RunSeed() const;
 };
 
 /// Reads a scenario of any bench there is (BenchFormats) and applies `overrides`: "procedure.positions=12", in TOML
@@ -91,6 +96,9 @@ struct Scenario {
 Scenario LoadScenario(const std::string& path, const std::vector<std::string>& overrides = {});
 Scenario ParseScenario(const std::string& text, const std::string& name, const std::string& folder,
                        const std::vector<std::string>& overrides = {});
+
+/// With other values of keys, as `overrides` say. @throws InputError as ParseScenario does.
+Scenario Altered(const Scenario& scenario, const std::vector<std::string>& sets);
 
 /// The bench that a scenario file names; nothing else in it is looked at.
 /// @throws InputError if it is no TOML, or names no bench or an unknown one.

@@ -15,6 +15,7 @@ void AddTop(Keys& keys, Scenario& s) {
   t.Text("bench", &s.bench, BenchNames(), "kind of bench");
   t.Text("title", &s.title, {}, "one line for reports");
   t.Add("seed", kPure, {}, &s.seed, "of every random stream");
+  t.Add("repeat", kPure, {0, 1e9}, &s.repeat, "which run of the same bench: noise differs, what it was made with does not");
   t.Flag("noise_free", s.noise_free, "no random contribution and no quantisation");
 }
 

@@ -62,4 +62,9 @@ KeyPlaces ReadToml(const std::string& text, const std::string& name, const std::
   return TableReader(source.sources().front(), keys).ReadAll();
 }
 
+std::string TextAtTop(const std::string& text, const std::string& name, const std::string& key) {
+  const ScenarioText source(text, name, {});
+  return source.sources().front().root[key].value_or(std::string());
+}
+
 }  // namespace twinbench

@@ -19,4 +19,8 @@ using KeyPlaces = std::map<std::string, std::string>;
 ///         out of bounds, of the wrong type or none of the choices.
 KeyPlaces ReadToml(const std::string& text, const std::string& name, const std::vector<ScenarioKey>& keys);
 
+/// The text of one key at the top, whatever else there is; empty if there is none.
+/// @throws InputError with file:line for a syntax error.
+std::string TextAtTop(const std::string& text, const std::string& name, const std::string& key);
+
 }  // namespace twinbench

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/accepted_columns.h"
+#include "twin/diagnose/engine/posterior.h"
+#include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/recurrence.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/diagnose/tuning.h"
@@ -108,6 +112,30 @@ Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vecto
   return diagnosis;
 }
 
+/// @return named causes by their evidence alone, most probable first, none of them likely.
+std::vector<Cause> SuspectsOf(const Analysis& analysis) {
+  constexpr std::size_t kMostSuspects = 8;
+  const std::vector<Family>& families = analysis.scanner->Families();
+  const Eigen::VectorXd logs = LogPriors(families) + analysis.found.alone.log_bayes;
+  const double all = tuning::kPriorNone + logs.array().exp().sum();
+  std::map<CauseKey, double> probability;
+  for (std::size_t k = 0; k < families.size(); ++k) {
+    if (families[k].kind == Kind::kNamed)
+      probability[{families[k].effect, families[k].where}] += std::exp(logs[static_cast<Eigen::Index>(k)]) / all;
+  }
+  std::vector<Cause> suspects;
+  for (const auto& [key, p] : probability) {
+    Cause cause;
+    cause.effect = key.first;
+    cause.where = key.second;
+    cause.probability = p;
+    suspects.push_back(std::move(cause));
+  }
+  std::ranges::stable_sort(suspects, std::ranges::greater{}, &Cause::probability);
+  if (suspects.size() > kMostSuspects) suspects.resize(kMostSuspects);
+  return suspects;
+}
+
 /// What the rows that recur show, for a scenario that repeats it at these readings.
 void AcceptRecurrent(const Analysis& analysis, DiagnosisRun& result) {
   for (const NoiseCause& repair : analysis.repairs) {
@@ -178,6 +206,7 @@ DiagnosisRun Conclude(const LinearRun& run, const Analysis& analysis, const std:
   result.noise = analysis.noise;
   result.accepted = AcceptedOf(analysis);
   AcceptRecurrent(analysis, result);
+  if (result.diagnosis.verdict == Verdict::kNone) result.suspects = SuspectsOf(analysis);
   AddDetectability(run, analysis, words, result.diagnosis);
   AddNextMeasurements(words, result.diagnosis.causes);
   return result;

@@ -44,6 +44,9 @@ struct DiagnosisRun {
   NoiseModel noise;
   std::vector<Accepted> accepted;  // named causes and empirical terms, in order of acceptance
   double structure_p = kNaN;       // alarm_p without what single far values add to it
+  /// Nothing was found: the named causes that would come first, with what probability they have against nothing. They
+  /// are no part of the answer; a further run may be planned by them.
+  std::vector<Cause> suspects;
 };
 
 }  // namespace twinbench::diagnose

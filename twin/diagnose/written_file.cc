@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "twin/core/errors.h"
-#include "twin/diagnose/engine/projector.h"
 #include "twin/diagnose/extend.h"
 #include "twin/diagnose/file_fit.h"
 #include "twin/diagnose/gain.h"
+#include "twin/diagnose/in_frame.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/diagnose/words.h"
 
@@ -22,24 +22,13 @@ Scenario ReadBack(const Scenario& scenario, const DiagnosisRun& result) {
   return ParseScenario(ExtendedToml(scenario, result, ""), "extended.toml", ".");
 }
 
-/// What the written scenario leaves of the readings, in the frame of the diagnosis: free unknowns have other slopes
-/// where a cause is in the twin, and would leave of themselves what no cause has to do with.
-Eigen::VectorXd InItsFrame(const LinearRun& extended, const DiagnosisRun& found) {
-  const Nuisance &own = extended.nuisance, &frame = found.run.nuisance;
-  if (own.jacobian.cols() != frame.jacobian.cols()) return extended.residual;
-  const Projector projector(found.noise.Whiten(extended, own.jacobian), own);
-  const Eigen::MatrixXd y = extended.residual;
-  const Eigen::VectorXd unknowns = projector.Solve(found.noise.Whiten(extended, y));
-  return extended.residual - own.jacobian * unknowns + frame.jacobian * unknowns;
-}
-
 /// What the file takes from the residuals, by row.
 Eigen::VectorXd RemovedByFile(const std::vector<Reading>& readings, const Scenario& scenario, Estimator model,
                               const AgainstScenario& against, const DiagnosisRun& found) {
   const LinearRun extended = against(readings, ReadBack(scenario, found), model);
   if (extended.Rows() != found.run.Rows())
     throw InputError("extended.toml", "it shows other readings than the scenario", "the same ones");
-  return found.run.residual - InItsFrame(extended, found);
+  return found.run.residual - LeftInFrame(extended, found.run, found.noise);
 }
 
 /// What the file shows less than the fit did.

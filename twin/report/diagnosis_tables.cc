@@ -8,8 +8,8 @@
 
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/words.h"
-#include "twin/report/cause_groups.h"
 #include "twin/report/text_table.h"
 
 namespace twinbench::report {
@@ -39,7 +39,7 @@ std::string SizeLines(const Cause& cause) {
 }
 
 /// Its own size, or how well it stands for the first of its group.
-std::string SizeOfMember(const std::vector<Cause>& causes, const CauseGroup& group, std::size_t member) {
+std::string SizeOfMember(const std::vector<Cause>& causes, const diagnose::CauseGroup& group, std::size_t member) {
   const std::string sizes = SizeLines(causes[group[member]]);
   const double overlap = Imitates(causes, group, member);
   if (!sizes.empty() || member == 0 || !std::isfinite(overlap)) return sizes;
@@ -47,14 +47,14 @@ std::string SizeOfMember(const std::vector<Cause>& causes, const CauseGroup& gro
 }
 
 /// Of whichever of the group was fitted.
-double ShareOf(const CauseGroup& group, const std::vector<double>& share) {
+double ShareOf(const diagnose::CauseGroup& group, const std::vector<double>& share) {
   for (const std::size_t k : group) {
     if (k < share.size() && std::isfinite(share[k])) return share[k];
   }
   return kNaN;
 }
 
-void AddGroup(const DiagnosisRun& found, const CauseGroup& group, double share, Cells& rows) {
+void AddGroup(const DiagnosisRun& found, const diagnose::CauseGroup& group, double share, Cells& rows) {
   const std::vector<Cause>& causes = found.diagnosis.causes;
   for (std::size_t i = 0; i < group.size(); ++i) {
     const Cause& cause = causes[group[i]];
@@ -83,7 +83,7 @@ std::string CauseTable(const DiagnosisRun& found, const diagnose::Shown& shown) 
   if (d.verdict == Verdict::kUnknown)
     rows.push_back({"structure without a name", SignatureLines(d.unknown.signature), Percent(d.unknown.probability),
                     Percent(shown.share_unnamed)});
-  for (const CauseGroup& group : GroupsOf(d.causes)) AddGroup(found, group, ShareOf(group, shown.share), rows);
+  for (const diagnose::CauseGroup& group : GroupsOf(d.causes)) AddGroup(found, group, ShareOf(group, shown.share), rows);
   if (rows.empty()) return "";
   return "Causes (share: of the variance beyond noise)\n" +
          TextTable({{"cause"}, {"size +- u", false, true}, {"probability", true}, {"share", true}}, rows,

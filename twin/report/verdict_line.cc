@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/words.h"
-#include "twin/report/cause_groups.h"
 #include "twin/report/text_table.h"
 
 namespace twinbench::report {
@@ -34,7 +34,7 @@ std::string Alone(const Cause& cause, bool with_size) {
 }
 
 /// "a (61 %) or b (39 %)", "a, b or c (33 % each)".
-std::string Together(const std::vector<Cause>& causes, const CauseGroup& group) {
+std::string Together(const std::vector<Cause>& causes, const diagnose::CauseGroup& group) {
   const std::string first = diagnose::Percent(causes[group.front()].probability);
   bool are_even = true;
   for (const std::size_t k : group) are_even &= diagnose::Percent(causes[k].probability) == first;
@@ -47,7 +47,7 @@ std::string Together(const std::vector<Cause>& causes, const CauseGroup& group) 
   return are_even ? fmt::format("{} ({} each)", text, first) : text;
 }
 
-std::string ShortOf(const std::vector<Cause>& causes, const CauseGroup& group) {
+std::string ShortOf(const std::vector<Cause>& causes, const diagnose::CauseGroup& group) {
   const Cause& first = causes[group.front()];
   const std::string name = fmt::format("{} ({})", NameOf(first), diagnose::Percent(first.probability));
   if (group.size() == 1) return name;
@@ -56,7 +56,7 @@ std::string ShortOf(const std::vector<Cause>& causes, const CauseGroup& group) {
 
 /// As many groups as there is room for.
 std::string Causes(const Diagnosis& d, bool with_sizes, std::size_t room = std::string::npos) {
-  const std::vector<CauseGroup> groups = GroupsOf(d.causes);
+  const std::vector<diagnose::CauseGroup> groups = GroupsOf(d.causes);
   std::string text;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::string more = fmt::format("; and {} more", groups.size() - g);

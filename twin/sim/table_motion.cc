@@ -33,12 +33,12 @@ bool AnyPositive(const std::array<double, kComponents>& sd) {
 
 }  // namespace
 
-TableMotion::TableMotion(const TableSettings& settings, std::uint64_t seed, const std::string& name)
+TableMotion::TableMotion(const TableSettings& settings, const Scenario& of, const std::string& name)
     : settings_(settings),
-      seating_stream_(seed, name + ".seating"),
-      stop_stream_(seed, name + ".repeatability"),
+      seating_stream_(of.RunSeed(), name + ".seating"),
+      stop_stream_(of.RunSeed(), name + ".repeatability"),
       scatters_(AnyPositive(settings.repeatability_sd)) {
-  repeatable_ = mechanics::ErrorMotion(Harmonics(settings, seed, name), Table(settings));
+  repeatable_ = mechanics::ErrorMotion(Harmonics(settings, of.seed, name), Table(settings));
   if (settings.half_frequency_tilt_rad == 0.0 && settings.half_frequency_radial_m == 0.0) return;
   const mechanics::HalfFrequencyMotion half = {settings.half_frequency_order, settings.half_frequency_tilt_rad,
                                                settings.half_frequency_radial_m};

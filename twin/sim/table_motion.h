@@ -14,7 +14,8 @@ namespace twinbench::sim {
 class TableMotion {
  public:
   /// @param name  "target" or "reference": begins the names of its random streams.
-  TableMotion(const TableSettings& settings, std::uint64_t seed, const std::string& name);
+  /// @param of      Whose seed draws what repeats, and whose run draws the rest.
+  TableMotion(const TableSettings& settings, const Scenario& of, const std::string& name);
 
   mechanics::PoseError DrawSeating() { return Draw(settings_.seating_sd, seating_stream_); }
   void BeginStop() {

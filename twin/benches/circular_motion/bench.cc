@@ -3,6 +3,7 @@
 #include "twin/benches/circular_motion/procedure.h"
 #include "twin/benches/circular_motion/procedure/drive.h"
 #include "twin/benches/circular_motion/twin/factory.h"
+#include "twin/plan/next_run.h"
 
 namespace twinbench::benches::circular {
 namespace {
@@ -25,6 +26,7 @@ const Bench& Whole() {
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;
     b.score = ScoreRun;
+    b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     return b;

@@ -16,6 +16,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                            const nlohmann::json& truth, Estimator estimator);
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options);
+std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario);
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
 
 }  // namespace twinbench::benches::circular

@@ -3,6 +3,7 @@
 #include "twin/benches/encoder_comparison/procedure.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
+#include "twin/plan/next_run.h"
 
 namespace twinbench::benches::encoder {
 namespace {
@@ -23,6 +24,7 @@ const Bench& Whole() {
     b.evaluate = Evaluate;
     b.index_errors = IndexErrorsOf;
     b.score = ScoreRun;
+    b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     return b;

@@ -3,6 +3,7 @@
 #include "twin/benches/freeform_five_axis/procedure/drive.h"
 #include "twin/benches/freeform_five_axis/settings.h"
 #include "twin/benches/freeform_five_axis/twin/factory.h"
+#include "twin/plan/next_run.h"
 
 namespace twinbench::benches::freeform {
 namespace {
@@ -26,6 +27,7 @@ const Bench& Whole() {
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;
     b.score = ScoreRun;
+    b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     return b;

@@ -3,6 +3,7 @@
 #include "twin/benches/hob_transmission/procedure.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
+#include "twin/plan/next_run.h"
 
 namespace twinbench::benches::hob {
 namespace {
@@ -22,6 +23,7 @@ const Bench& Whole() {
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;
     b.score = ScoreRun;
+    b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     return b;

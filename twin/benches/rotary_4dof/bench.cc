@@ -4,6 +4,7 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/plan/shift_sets.h"
+#include "twin/plan/next_run.h"
 
 namespace twinbench::benches::rotary {
 namespace {
@@ -32,6 +33,7 @@ const Bench& Whole() {
     b.score = ScoreRun;
     b.contributions = Contributions;
     b.shift_design = ShiftsOf;
+    b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     b.raw_scale = RawScaleOf;

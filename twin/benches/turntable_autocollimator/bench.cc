@@ -4,6 +4,7 @@
 #include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
+#include "twin/plan/next_run.h"
 
 namespace twinbench::benches::turntable {
 namespace {
@@ -24,6 +25,7 @@ const Bench& Whole() {
     b.evaluate = Evaluate;
     b.index_errors = separate::turntable::TurntableIndexErrors;
     b.score = ScoreRun;
+    b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     return b;

@@ -16,7 +16,7 @@ using namespace benches::circular;
 
 /// With the room's temperature, as the bench's thermometer shows it.
 std::vector<Reading> WithTemperatures(std::vector<Reading> course, const Scenario& scenario) {
-  Environment environment(scenario.environment, scenario.seed);
+  Environment environment(scenario.environment, scenario.RunSeed());
   for (Reading& r : course)
     r.temperature_degC =
         scenario.noise_free ? environment.Temperature_degC(r.time) : environment.Measure_degC(r.time);
@@ -28,7 +28,7 @@ std::vector<Reading> CourseOf(const Scenario& scenario) {
 }
 
 Eigen::VectorXd Above_K(const Scenario& scenario, const std::vector<Reading>& course) {
-  Environment environment(scenario.environment, scenario.seed);
+  Environment environment(scenario.environment, scenario.RunSeed());
   Eigen::VectorXd above_K(std::ssize(course));
   for (std::size_t i = 0; i < course.size(); ++i)
     above_K[static_cast<Eigen::Index>(i)] = environment.AboveReference_K(course[i].time);
@@ -76,7 +76,7 @@ CircleRun::CircleRun(const Scenario& scenario)
       twin_(scenario, course_, above_K_, bodies_),
       mounted_(MountedOf(scenario)) {
   for (const EffectSettings& effect : scenario.effects) {
-    if (effect.name == "outliers") outliers_.emplace_back(effect, scenario.seed);
+    if (effect.name == "outliers") outliers_.emplace_back(effect, scenario.RunSeed());
   }
 }
 
@@ -89,7 +89,7 @@ CircleExtra CircleRun::Chance(const Reading& r) const {
   CircleExtra extra = mounted_[static_cast<std::size_t>(r.setup)];
   if (scenario_.noise_free) return extra;
   const CircularSettings& s = CircularOf(scenario_);
-  Stream stream(scenario_.seed, "circular.noise");
+  Stream stream(scenario_.RunSeed(), "circular.noise");
   stream.Seek(2 * static_cast<std::uint64_t>(r.reading));  // a block has two normal numbers
   const bool is_bar = IsBar(r);
   extra.x_m = s.machine.noise_m * stream.Normal();

@@ -23,7 +23,7 @@ AngleMoment MomentOf(const Reading& reading, double run_up_rad) {
 }
 
 double Noise(const Scenario& scenario, int reading) {
-  Stream stream(scenario.seed, "device.noise");
+  Stream stream(scenario.RunSeed(), "device.noise");
   stream.Seek(static_cast<std::uint64_t>(reading));
   return EncoderOf(scenario).device.noise_rad * stream.Normal();
 }

@@ -78,7 +78,7 @@ class FreeformPhysics : public DrivenPhysics {
   }
 
   void Restart() override {
-    room_ = std::make_unique<Environment>(scenario_.environment, scenario_.seed);
+    room_ = std::make_unique<Environment>(scenario_.environment, scenario_.RunSeed());
     twin_ = std::make_unique<FreeformTwin>(scenario_, Draw(scenario_));
   }
 
@@ -122,7 +122,7 @@ class FreeformPhysics : public DrivenPhysics {
   /// It follows from the reading's number alone.
   double Noise(const char* cause, const Reading& reading) const {
     if (scenario_.noise_free) return 0.0;
-    Stream stream(scenario_.seed, cause);
+    Stream stream(scenario_.RunSeed(), cause);
     stream.Seek(static_cast<std::uint64_t>(reading.reading));
     return stream.Normal();
   }

@@ -18,8 +18,8 @@ Counters::Counters(const Scenario& actual, const mechanics::SignalState& hob_sig
       table_edges_({}, HobOf(actual).table_encoder.lines, 1),
       table_noise_rad_(HobOf(actual).table_encoder.noise_rad),
       hob_noise_rad_(HobOf(actual).hob_encoder.noise_rad),
-      table_noise_(actual.seed, "table_encoder.noise"),
-      hob_noise_(actual.seed, "hob_encoder.noise"),
+      table_noise_(actual.RunSeed(), "table_encoder.noise"),
+      hob_noise_(actual.RunSeed(), "hob_encoder.noise"),
       capacity_(static_cast<std::size_t>(HobOf(actual).hob_procedure.fifo_samples)) {}
 
 void Counters::SetHead(double head_rad) {

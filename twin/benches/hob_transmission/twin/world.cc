@@ -20,7 +20,7 @@ HobWorld::HobWorld(const Scenario& nominal)
       train_(
           mechanics::MakeGearTrain(mechanics::FidelityFromName(HobOf(actual()).mechanics.fidelity), path_.train())),
       counters_(actual(), path_.HobSignals()),
-      interferometer_noise_(actual().seed, "interferometer.noise"),
+      interferometer_noise_(actual().RunSeed(), "interferometer.noise"),
       piece_(PieceOf(actual())) {}
 
 void HobWorld::Run(double hob_speed_rad_s, Duration ramp) {

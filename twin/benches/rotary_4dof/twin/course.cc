@@ -47,7 +47,7 @@ class CourseMaker {
   CourseMaker(const std::vector<Reading>& record, double stated_noise_K, OpticalPath& path)
       : record_(record),
         path_(path),
-        room_(path.actual().environment, path.actual().seed),
+        room_(path.actual().environment, path.actual().RunSeed()),
         step_rad_(2.0 * units::kPi / std::max(1, RotaryOf(path.actual()).procedure.positions)),
         room_degC_(RoomTemperature_degC(record, stated_noise_K)) {}
 

@@ -37,12 +37,12 @@ Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
       sampling_(sampling),
       scan_(ScanOf(RotaryOf(actual).adc.scan_list)),
       noise_free_(actual.noise_free),
-      seed_(actual.seed),
-      noise_(actual.seed, "amplifier.noise") {
+      seed_(actual.RunSeed()),
+      noise_(actual.RunSeed(), "amplifier.noise") {
   if (!adc_.inl_file.empty())
     non_linearity_V_ = ReadSampledCurve(adc_.inl_file, {"voltage_V"}, {"error_mV", units::mV});
   for (const char* channel : kChannelNames)
-    flicker_.emplace_back(amplifier_.flicker_V, actual.seed, std::string("amplifier.flicker.") + channel);
+    flicker_.emplace_back(amplifier_.flicker_V, actual.RunSeed(), std::string("amplifier.flicker.") + channel);
 }
 
 double Electronics::Shortest_s() const {

@@ -19,8 +19,8 @@ mechanics::ChainGeometry GeometryOf(const Scenario& actual) {
 Stand::Stand(const Scenario& actual)
     : geometry_(GeometryOf(actual)),
       chain_(geometry_),
-      target_(RotaryOf(actual).target, actual.seed, "target"),
-      reference_(RotaryOf(actual).reference, actual.seed, "reference") {}
+      target_(RotaryOf(actual).target, actual, "target"),
+      reference_(RotaryOf(actual).reference, actual, "reference") {}
 
 const mechanics::ChainGeometry& Stand::Mount(const Mounting& mounting) {
   target_seat_ = target_.DrawSeating();

@@ -13,7 +13,7 @@ inline TableStack StackOfBench(const Scenario& actual) {
   geometry.reference_height_m = own.reference_height_m;
   geometry.centring_m = own.centring_m;
   geometry.mount_tilt_rad = own.mount_tilt_rad;
-  return {own.mechanics, own.target, own.reference, geometry, actual.seed};
+  return {own.mechanics, own.target, own.reference, geometry, actual.RunSeed()};
 }
 
 }  // namespace twinbench::sim

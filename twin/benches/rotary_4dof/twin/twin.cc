@@ -51,7 +51,7 @@ class TwinAutocollimator : public Autocollimator {
       : world_(world),
         schedule_(world.queue(), "autocollimator"),
         settings_(RotaryOf(world.actual()).autocollimator),
-        noise_(world.actual().seed, "autocollimator.noise") {}
+        noise_(world.actual().RunSeed(), "autocollimator.noise") {}
 
   AutocollimatorReading Read() override {
     AutocollimatorReading reading;

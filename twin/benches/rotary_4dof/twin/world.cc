@@ -12,7 +12,7 @@ namespace twinbench::sim {
 using mechanics::Axis;
 
 World::World(const Scenario& nominal)
-    : path_(nominal), environment_(actual().environment, actual().seed), axes_(StackOfBench(actual()), queue_) {}
+    : path_(nominal), environment_(actual().environment, actual().RunSeed()), axes_(StackOfBench(actual()), queue_) {}
 
 void World::StartMove(Axis axis, double to_rad) {
   if (!axes_.StartMove(axis, to_rad)) return;

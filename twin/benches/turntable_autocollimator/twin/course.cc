@@ -25,7 +25,7 @@ class CourseMaker {
   CourseMaker(const std::vector<Reading>& record, const Scenario& actual)
       : record_(record),
         actual_(actual),
-        room_(actual_.environment, actual_.seed),
+        room_(actual_.environment, actual_.RunSeed()),
         axes_(StackOfBench(actual_), queue_),
         pitch_rad_(2.0 * units::kPi / TurntableOf(actual_).multitooth.teeth) {}
 

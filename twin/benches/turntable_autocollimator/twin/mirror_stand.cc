@@ -33,8 +33,8 @@ std::vector<double> ToothErrors(const MultitoothSettings& settings, std::uint64_
 }  // namespace
 
 MirrorStand::MirrorStand(const Scenario& actual)
-    : turntable_(TurntableOf(actual).turntable, actual.seed, "turntable"),
-      multitooth_(TurntableOf(actual).multitooth_table, actual.seed, "multitooth"),
+    : turntable_(TurntableOf(actual).turntable, actual, "turntable"),
+      multitooth_(TurntableOf(actual).multitooth_table, actual, "multitooth"),
       tooth_rad_(ToothErrors(TurntableOf(actual).multitooth, actual.seed)),
       pitch_rad_(2.0 * units::kPi / TurntableOf(actual).multitooth.teeth),
       mirror_radius_m_(TurntableOf(actual).mirror.radius_m) {}

@@ -13,9 +13,9 @@ using mechanics::Axis;
 
 TurntableWorld::TurntableWorld(const Scenario& nominal)
     : path_(nominal),
-      environment_(actual().environment, actual().seed),
+      environment_(actual().environment, actual().RunSeed()),
       axes_(StackOfBench(actual()), queue_),
-      noise_(actual().seed, "autocollimator.noise") {}
+      noise_(actual().RunSeed(), "autocollimator.noise") {}
 
 void TurntableWorld::StartMove(double to_rad) {
   if (axes_.StartMove(Axis::kTarget, to_rad)) path_.stand().BeginTurntableStop();

@@ -6,7 +6,7 @@ namespace {
 
 class AngleOutliers : public AngleEffect {
  public:
-  AngleOutliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.seed) {}
+  AngleOutliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.RunSeed()) {}
   double DeviceError_rad(const AngleMoment& moment, double) const override { return draw_.At(moment.reading).size; }
 
  private:

@@ -122,7 +122,7 @@ class SignalTone : public FreeformEffect {
 
 class Outliers : public FreeformEffect {
  public:
-  Outliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.seed) {}
+  Outliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.RunSeed()) {}
   void Disturb(const FreeformMoment& moment, FreeformExtra& extra) override {
     OwnError(extra.machine, 1) += draw_.At(moment.reading).size;
   }

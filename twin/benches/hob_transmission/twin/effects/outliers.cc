@@ -7,7 +7,7 @@ namespace {
 /// A count that was caught while it changed.
 class CounterOutliers : public HobEffect {
  public:
-  CounterOutliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.seed) {}
+  CounterOutliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.RunSeed()) {}
   ShownError Shown(const HobMoment& moment) override { return {.table_rad = draw_.At(moment.reading).size}; }
 
  private:

@@ -9,7 +9,7 @@ namespace {
 class Outliers : public Effect {
  public:
   Outliers(const EffectSettings& e, const Scenario& scenario)
-      : draw_(e, scenario.seed), sensitivity_V_m_(RotaryOf(scenario).psd_a.sensitivity_V_m) {}
+      : draw_(e, scenario.RunSeed()), sensitivity_V_m_(RotaryOf(scenario).psd_a.sensitivity_V_m) {}
   void AlterSignal(const Moment& moment, std::array<double, kChannels>& signal_V) override {
     const OutlierDraw::Drawn drawn = draw_.At(moment.reading);
     const auto channel = static_cast<std::size_t>(drawn.uniform * kChannels);

@@ -7,7 +7,7 @@ namespace {
 /// A draught in the beam disturbs one axis.
 class AutocollimatorOutliers : public TurntableEffect {
  public:
-  AutocollimatorOutliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.seed) {}
+  AutocollimatorOutliers(const EffectSettings& e, const Scenario& scenario) : draw_(e, scenario.RunSeed()) {}
   Eigen::Vector2d ReadingError_rad(const TurntableMoment& moment, const Eigen::Vector2d&) const override {
     const OutlierDraw::Drawn drawn = draw_.At(moment.reading);
     return OnAxis(drawn.uniform < 0.5 ? "x" : "y", drawn.size);

@@ -1,12 +1,9 @@
-#include "twin/report/cause_groups.h"
+#include "twin/diagnose/cause_groups.h"
 
 #include <algorithm>
 
-namespace twinbench::report {
+namespace twinbench::diagnose {
 namespace {
-
-using diagnose::Cause;
-using diagnose::Rival;
 
 const Rival* RivalryOf(const Cause& cause, const Cause& other) {
   for (const Rival& rival : cause.indistinguishable_from) {
@@ -35,4 +32,4 @@ double Imitates(const std::vector<Cause>& causes, const CauseGroup& group, std::
   return rival ? rival->overlap : kNaN;
 }
 
-}  // namespace twinbench::report
+}  // namespace twinbench::diagnose

@@ -4,15 +4,15 @@
 
 #include "twin/diagnose/diagnosis.h"
 
-namespace twinbench::report {
+namespace twinbench::diagnose {
 
 /// Causes that these readings cannot tell from each other, most probable first; alone if there is no such rival.
 using CauseGroup = std::vector<std::size_t>;  // indices of Diagnosis::causes
 
 /// Every cause once, in the order of its first member.
-std::vector<CauseGroup> GroupsOf(const std::vector<diagnose::Cause>& causes);
+std::vector<CauseGroup> GroupsOf(const std::vector<Cause>& causes);
 
 /// What `member` of the group can imitate of its first cause, from 0 to 1; NaN if nobody said.
-double Imitates(const std::vector<diagnose::Cause>& causes, const CauseGroup& group, std::size_t member);
+double Imitates(const std::vector<Cause>& causes, const CauseGroup& group, std::size_t member);
 
-}  // namespace twinbench::report
+}  // namespace twinbench::diagnose

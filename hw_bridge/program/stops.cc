@@ -1,0 +1,114 @@
+#include "hw_bridge/program/stops.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "twin/core/bench_format.h"
+#include "twin/core/csv.h"
+#include "twin/core/errors.h"
+#include "twin/core/nearest_key.h"
+
+namespace twinbench::hw {
+namespace {
+
+constexpr const char* kReading = "reading";
+
+CsvTable TableOf(const std::vector<Reading>& readings, const std::string& bench) {
+  std::stringstream text;
+  WriteReadingsCsv(readings, bench, text);
+  return ParseCsv(text, "the planned readings");
+}
+
+std::set<std::string> ShownColumns(const std::string& bench) {
+  std::set<std::string> shown;
+  for (const ReadingColumn& column : FormatOf(bench).columns) {
+    if (column.IsShown()) shown.insert(column.name);
+  }
+  return shown;
+}
+
+void PrintLine(std::ostream& out, const std::vector<std::string>& fields) {
+  for (std::size_t k = 0; k < fields.size(); ++k) out << (k == 0 ? "" : ",") << QuoteCsv(fields[k]);
+  out << '\n';
+}
+
+void RequireKnown(const CsvTable& table, const std::vector<std::string>& known) {
+  for (const std::string& column : table.columns) {
+    if (std::ranges::find(known, column) == known.end())
+      throw InputError(table.WhereHeader(), "there is no column " + column,
+                       "columns of readings.csv; the nearest is " + Nearest(column, known));
+  }
+  if (!table.Column(kReading))
+    throw InputError(table.WhereHeader(), "there is no column reading", "the number of the stop, as in stops.csv");
+}
+
+/// The program's rows by the number of their stop, the first of each.
+std::map<std::string, const CsvTable::Row*> RowsByStop(const CsvTable& table) {
+  std::map<std::string, const CsvTable::Row*> rows;
+  const std::size_t at = *table.Column(kReading);
+  for (const CsvTable::Row& row : table.rows) rows.emplace(row.fields[at], &row);
+  return rows;
+}
+
+/// A stop's field as the program has it, or as planned if the bench does not show it.
+std::string FieldOf(const CsvTable& table, const CsvTable::Row& row, const std::string& column, bool is_shown,
+                    const std::string& planned) {
+  const auto at = table.Column(column);
+  if (at && !row.fields[*at].empty()) return row.fields[*at];
+  return is_shown ? "" : planned;
+}
+
+}  // namespace
+
+void WriteStops(const std::vector<Reading>& planned, const std::string& bench, const std::string& path) {
+  const CsvTable table = TableOf(planned, bench);
+  const std::set<std::string> shown = ShownColumns(bench);
+  std::ofstream out(path);
+  const auto print = [&](const std::vector<std::string>& all) {
+    std::vector<std::string> fields;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (!shown.contains(table.columns[k])) fields.push_back(all[k]);
+    }
+    PrintLine(out, fields);
+  };
+  print(table.columns);
+  for (const CsvTable::Row& row : table.rows) print(row.fields);
+  if (!out.flush()) throw BenchError(path + ": cannot be written");
+}
+
+ReadStops ReadStopsBack(const std::string& path, const std::vector<Reading>& planned, const std::string& bench) {
+  if (!std::filesystem::exists(path)) throw BenchError("the program wrote no " + path);
+  const CsvTable written = ReadCsv(path), stops = TableOf(planned, bench);
+  std::vector<std::string> columns = stops.columns;
+  if (!stops.Column(kStatusColumn)) columns.push_back(kStatusColumn);
+  RequireKnown(written, columns);
+  const std::set<std::string> shown = ShownColumns(bench);
+  const std::map<std::string, const CsvTable::Row*> rows = RowsByStop(written);
+  std::stringstream merged;
+  PrintLine(merged, columns);
+  ReadStops back;
+  for (const CsvTable::Row& stop : stops.rows) {
+    const auto row = rows.find(stop.fields[*stops.Column(kReading)]);
+    if (row == rows.end()) {
+      ++back.missing;
+      continue;
+    }
+    std::vector<std::string> fields;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const std::string as_planned = k < stop.fields.size() && columns[k] != kStatusColumn ? stop.fields[k] : "";
+      fields.push_back(FieldOf(written, *row->second, columns[k], shown.contains(columns[k]), as_planned));
+    }
+    PrintLine(merged, fields);
+  }
+  const std::size_t used = stops.rows.size() - static_cast<std::size_t>(back.missing);
+  if (used == 0) throw BenchError(path + ": no row is of a stop that was asked for");
+  back.extra = static_cast<int>(written.rows.size() - used);
+  back.readings = ParseReadingsCsv(merged, path, bench);
+  return back;
+}
+
+}  // namespace twinbench::hw

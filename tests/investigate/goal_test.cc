@@ -1,0 +1,50 @@
+#include "twin/investigate/goal.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/core/input_error.h"
+
+namespace twinbench::investigate {
+namespace {
+
+nlohmann::json Results(double u) {
+  return {{"separation",
+           {{"target",
+             {{"ez_arcsec", {1.0, 2.0}}, {"u_ez_arcsec", {u, u}}, {"dx_um", {0.1, 0.2}}, {"u_dx_um", {9.0, 9.0}}}},
+            {"reference", {{"ez_arcsec", {3.0, 4.0}}, {"u_ez_arcsec", {7.0, 7.0}}}}}}};
+}
+
+TEST(Goal, IsReadWithItsUnit) {
+  const Goal goal = ParseGoal("target.ez 0.1arcsec");
+  EXPECT_EQ(goal.quantity, "target.ez");
+  EXPECT_EQ(goal.unit, "arcsec");
+  EXPECT_EQ(goal.u, 0.1);
+  EXPECT_EQ(ParseGoal("ratio 2e-3").u, 2e-3);
+  for (const char* bad : {"", "target.ez", "0.1arcsec", "target.ez 0arcsec", "target.ez -1arcsec"})
+    EXPECT_THROW(ParseGoal(bad), InputError) << bad;
+}
+
+TEST(Goal, CountsOnlyTheQuantityThatWasAskedFor) {
+  Certainty certainty(ParseGoal("target.ez 0.1arcsec"));
+  EXPECT_TRUE(std::isinf(certainty.u()));
+  EXPECT_TRUE(certainty.Add(Results(0.3)));
+  EXPECT_NEAR(certainty.u(), 0.3, 1e-12);
+  Certainty other(ParseGoal("target.ey 0.1arcsec"));
+  EXPECT_FALSE(other.Add(Results(0.3)));
+}
+
+TEST(Goal, RunsAddUpByTheirInverseVariances) {
+  Certainty certainty(ParseGoal("target.ez 0.2arcsec"));
+  certainty.Add(Results(0.3));
+  EXPECT_FALSE(certainty.IsMet());
+  EXPECT_NEAR(certainty.With(Results(0.3)), 0.3 / std::sqrt(2.0), 1e-12);
+  certainty.Add(Results(0.15));
+  EXPECT_NEAR(certainty.u(), 1.0 / std::sqrt(1.0 / 0.09 + 1.0 / 0.0225), 1e-12);
+  EXPECT_TRUE(certainty.IsMet());
+}
+
+}  // namespace
+}  // namespace twinbench::investigate

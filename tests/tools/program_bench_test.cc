@@ -1,0 +1,104 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/program.h"
+
+namespace twinbench::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A bench that is a program of the user's own, of closed-form physics.
+class ProgramBench : public Program {
+ protected:
+  ProgramBench() {
+    Write("encoder.toml",
+          "bench = \"encoder_comparison\"\nseed = 3\n[device]\nnoise_deg = 0.002\n[encoder_procedure]\n"
+          "stops_per_turn = 36\npasses = [1, -1]\n");
+    std::filesystem::copy(TWINBENCH_TEST_DATA "/program/acquire_encoder.py", At("acquire.py"));
+  }
+
+  /// @param options  Behind {readings}: eccentricity, play, mode.
+  void WriteBench(const std::string& options, double timeout_s = 60.0) {
+    std::string words;
+    for (const std::string word : {"python3", "acquire.py", "{scenario}", "{stops}", "{readings}"})
+      words += "\"" + word + "\", ";
+    Write("bench.toml", "kind = \"program\"\nname = \"our own\"\ncommand = [" + words + options +
+                            "]\ntimeout_s = " + std::to_string(timeout_s) + "\n");
+  }
+
+  Outcome Measure() { return Call({"measure", "encoder.toml", "--bench", "bench.toml", "-o", "run"}); }
+};
+
+TEST_F(ProgramBench, IsMeasuredAndDiagnosedLikeAnyOther) {
+  WriteBench("\"0.02\"");
+  const Outcome measured = Measure();
+  EXPECT_EQ(measured.exit_code, 0) << measured.err;
+  const auto json = Json({"diagnose", "run", "--cache", "cache", "--json", "-"});
+  std::vector<std::string> effects;
+  for (const auto& cause : json.at("causes")) effects.push_back(cause.at("effect"));
+  EXPECT_THAT(effects, testing::Contains("eccentricity")) << json.dump(1);
+  EXPECT_EQ(json.at("readings"), 144);  // 36 stops, two turns, both ways
+}
+
+TEST_F(ProgramBench, StopsWithoutRowsAreSaid) {
+  WriteBench("\"0.02\", \"0\", \"missing\"");
+  const Outcome measured = Measure();
+  EXPECT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_THAT(measured.err, HasSubstr("the program read 130 of 144 stops"));
+}
+
+TEST_F(ProgramBench, RowsThatNobodyAskedForAreLeftOutAndSaid) {
+  WriteBench("\"0.02\", \"0\", \"extra\"");
+  const Outcome measured = Measure();
+  EXPECT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_THAT(measured.err, HasSubstr("1 row is of no stop"));
+  EXPECT_EQ(Json({"diagnose", "run", "--cache", "cache", "--json", "-"}).at("readings"), 144);
+}
+
+TEST_F(ProgramBench, OneThatHangsIsEnded) {
+  WriteBench("\"0.02\", \"0\", \"hang\"", 0.5);
+  const Outcome measured = Measure();
+  EXPECT_EQ(measured.exit_code, 1);
+  EXPECT_THAT(measured.err, HasSubstr("took longer than 0.5 s and was ended"));
+  EXPECT_FALSE(Exists("run/record.sqlite"));
+}
+
+TEST_F(ProgramBench, OneThatFailsOrWritesNothingIsNoRun) {
+  WriteBench("\"0.02\", \"0\", \"fail\"");
+  EXPECT_THAT(Measure().err, HasSubstr("python3 ended with code 3"));
+  WriteBench("\"0.02\", \"0\", \"silent\"");
+  const Outcome silent = Measure();
+  EXPECT_EQ(silent.exit_code, 1);
+  EXPECT_THAT(silent.err, HasSubstr("the program wrote no"));
+  EXPECT_FALSE(Exists("run/record.sqlite"));
+}
+
+TEST_F(ProgramBench, ACommandMustSayWhereTheReadingsGo) {
+  Write("bench.toml", "kind = \"program\"\ncommand = [\"python3\", \"acquire.py\"]\n");
+  const Outcome measured = Measure();
+  EXPECT_EQ(measured.exit_code, 2);
+  EXPECT_THAT(measured.err, AllOf(HasSubstr("bench.toml:2"), HasSubstr("{readings}")));
+}
+
+TEST_F(ProgramBench, IsInvestigated) {
+  WriteBench("\"0\", \"0.01\"");
+  const std::vector<std::string> arguments = {"investigate", "encoder.toml", "--bench", "bench.toml",
+                                              "--budget",    "3h",           "-o",      "inquiry"};
+  Succeed(arguments);
+  const auto found = nlohmann::json::parse(Read("inquiry/investigation.json"));
+  ASSERT_EQ(found.at("told"), "named") << found.dump(1);
+  EXPECT_EQ(found.at("causes").at(0).at("name"), "backlash");
+  const auto& size = found.at("causes").at(0).at("effects").at(0).at("parameters");
+  EXPECT_NEAR(std::abs(size.at("width_deg").get<double>()), 0.01, 4.0 * size.at("u_width_deg").get<double>());
+  // Again, it takes up the runs that are there, and says the same.
+  std::filesystem::remove(At("acquire.py"));
+  Succeed(arguments);
+  EXPECT_EQ(nlohmann::json::parse(Read("inquiry/investigation.json")), found);
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "tools/twinbench/measured_run.h"
+
+namespace twinbench::tools {
+
+/// Carries a scenario out on what the bench file names and evaluates it.
+/// @throws BenchError if it stopped before its end; what was read is kept.
+void Measure(const MeasureOptions& options);
+
+}  // namespace twinbench::tools

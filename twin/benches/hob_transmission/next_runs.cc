@@ -1,0 +1,35 @@
+#include <fmt/format.h>
+
+#include "twin/benches/hob_transmission/bench.h"
+#include "twin/benches/hob_transmission/settings.h"
+#include "twin/plan/next_run.h"
+
+namespace twinbench::benches::hob {
+
+std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario) {
+  const HobProcedureSettings& p = HobOf(scenario).hob_procedure;
+  const double speed_rev_min = p.hob_speeds_rad_s.front() * 60.0 / (2.0 * units::kPi);
+  const std::string two_turns = "hob_procedure.turns=2";
+  return {
+      {"three-heads",
+       "ring and head at three places",
+       {"hob_procedure.heads_deg=[0, 97, 213]", "hob_procedure.passes=[1, -1]", two_turns},
+       plan::kOtherKind},
+      {"two-speeds",
+       "the passes at half and at twice the speed",
+       {fmt::format("hob_procedure.hob_speeds_rev_min=[{:.6g}, {:.6g}]", 0.5 * speed_rev_min, 2.0 * speed_rev_min),
+        "hob_procedure.passes=[1, -1]", two_turns},
+       plan::kOtherKind},
+      {"both-ways", "passes + - - +", {"hob_procedure.passes=[1, -1, -1, 1]", two_turns}, plan::kSameKind},
+      {"many-turns",
+       "eight turns of the table one way",
+       {"hob_procedure.turns=8", "hob_procedure.passes=[1]"},
+       plan::kSameKind},
+      {"one-head",
+       "one place of the head, forth and back",
+       {fmt::format("hob_procedure.heads_deg=[{:.6g}]", p.heads_rad.front() / units::deg),
+        "hob_procedure.passes=[1, -1]", two_turns},
+       plan::kSameKind}};
+}
+
+}  // namespace twinbench::benches::hob

@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/plan/next_run.h"
+#include "twin/plan/shift_sets.h"
+
+namespace twinbench::benches::rotary {
+namespace {
+
+using plan::NextRun;
+
+std::string Shifts(int positions, int count) {
+  return fmt::format("procedure.shifts=[{}]", fmt::join(plan::BestShifts(positions, count).shifts, ", "));
+}
+
+/// Wide, but with the spots still well on both PSDs: a tilt moves them by about twice the distance times it.
+double WideSweep_arcsec(const RotarySettings& own) {
+  constexpr double kShareOfHalf = 0.4, kTimes = 4.0;
+  const auto reach = [](const PsdSettings& psd) {
+    return kShareOfHalf * 0.5 * std::min(psd.width_m, psd.height_m) / (2.0 * psd.distance_m);
+  };
+  const double widest_rad = std::min(reach(own.psd_a), reach(own.psd_b));
+  return std::min(kTimes * own.procedure.sweep_rad, widest_rad) / units::arcsec;
+}
+
+std::vector<NextRun> OfTheSweeps(const RotarySettings& own) {
+  return {{"sweeps",
+           "the target swept in yaw and in tilt beside the autocollimator",
+           {"procedure.phases=[\"calibration\"]", "procedure.sweep_points=25"},
+           plan::kSameKind},
+          {"wide-sweeps",
+           "the same sweeps as wide as the PSDs allow",
+           {"procedure.phases=[\"calibration\"]", "procedure.sweep_points=25",
+            fmt::format("procedure.sweep_arcsec={:.6g}", WideSweep_arcsec(own))},
+           plan::kOtherKind},
+          {"farther-sweeps",
+           "the sweeps with both PSDs half as far again",
+           {"procedure.phases=[\"calibration\"]", "procedure.sweep_points=25",
+            fmt::format("psd_a.distance_mm={}", 1.5 * own.psd_a.distance_m / units::mm),
+            fmt::format("psd_b.distance_mm={}", 1.5 * own.psd_b.distance_m / units::mm)},
+           plan::kOtherKind}};
+}
+
+std::vector<NextRun> OfTheCircle(const RotarySettings& own) {
+  const int n = own.procedure.positions;
+  const std::string circle = "procedure.phases=[\"calibration\", \"full_circle\"]";
+  std::vector<NextRun> runs = {{"dwells",
+                                "two set-ups of the circle with dwells from 0.5 to 20 s",
+                                {circle, Shifts(n, 2), "procedure.dwell_s=[0.5, 2, 8, 20]"},
+                                plan::kOtherKind},
+                               {"two-shifts",
+                                "two set-ups of the circle, forth and back",
+                                {circle, Shifts(n, 2), "procedure.passes=[1, -1]"},
+                                plan::kSameKind},
+                               {"other-shifts",
+                                "four set-ups at the shifts that tell most",
+                                {circle, Shifts(n, std::min(4, n)), "procedure.passes=[1, -1, -1, 1]"},
+                                plan::kSameKind}};
+  if (n % 2 == 0 && n > 6)
+    runs.push_back({"half-the-stops",
+                    "every other stop, six set-ups, forth and back",
+                    {circle, fmt::format("procedure.positions={}", n / 2), Shifts(n / 2, std::min(6, n / 2)),
+                     "procedure.passes=[1, -1]"},
+                    plan::kSameKind});
+  return runs;
+}
+
+}  // namespace
+
+std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
+  const RotarySettings& own = RotaryOf(scenario);
+  const double warm_degC = scenario.environment.temperature_degC + 2.0;
+  std::vector<NextRun> runs = OfTheSweeps(own);
+  for (NextRun& run : OfTheCircle(own)) runs.push_back(std::move(run));
+  runs.push_back({"idle",
+                  "half an hour at rest, nothing moved nor mounted",
+                  {"procedure.phases=[\"calibration\", \"stability\"]", "procedure.stability_s=1800",
+                   "procedure.stability_interval_s=20"},
+                  plan::kOtherKind});
+  runs.push_back({"warming",
+                  "an hour at rest while the room warms by 2 K",
+                  {"procedure.phases=[\"calibration\", \"stability\"]", "procedure.stability_s=3600",
+                   "procedure.stability_interval_s=30", "environment.drift_K_h=2"},
+                  plan::kOtherKind});
+  runs.push_back({"warm",
+                  "the sweeps in a room that is 2 K warmer",
+                  {"procedure.phases=[\"calibration\"]", "procedure.sweep_points=25",
+                   fmt::format("environment.temperature_degC={}", warm_degC)},
+                  plan::kOtherKind});
+  return runs;
+}
+
+}  // namespace twinbench::benches::rotary

@@ -1,0 +1,122 @@
+#include "twin/investigate/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "twin/core/effect_catalogue.h"
+#include "twin/diagnose/tuning.h"
+
+namespace twinbench::investigate {
+namespace {
+
+/// How often a cause that the catalogue lacks and that looks like a listed one in some runs does so in a run of
+/// another kind as well.
+constexpr double kMimicsAgain = 0.3;
+/// Less is not carried on.
+constexpr double kNegligible = 1e-4;
+
+void Normalise(Belief& belief) {
+  double most = -std::numeric_limits<double>::infinity();
+  const auto weight = [](const Open& open) { return open.fit.hypothesis.log_prior + open.fit.log_evidence; };
+  for (const Open& open : belief.open) most = std::max(most, weight(open));
+  double sum = 0.0;
+  for (const Open& open : belief.open) sum += std::exp(weight(open) - most);
+  for (Open& open : belief.open) open.probability = (1.0 - belief.unlisted) * std::exp(weight(open) - most) / sum;
+  std::ranges::stable_sort(belief.open, std::ranges::greater{}, &Open::probability);
+  std::erase_if(belief.open, [&belief](const Open& open) {
+    return open.probability < kNegligible && &open != &belief.open.front();
+  });
+}
+
+/// Members of a tie that were told without sizes, as they are found where the others are struck.
+diagnose::DiagnosisRun WithSizes(diagnose::DiagnosisRun found, const TakenRun& run, const Means& means) {
+  std::vector<diagnose::Cause>& causes = found.diagnosis.causes;
+  for (diagnose::Cause& cause : causes) {
+    if (!cause.parameters.empty()) continue;
+    std::vector<std::string> struck;
+    for (const diagnose::Cause& other : causes) {
+      if (other.effect != cause.effect) struck.push_back(other.effect);
+    }
+    const diagnose::DiagnosisRun alone = means.diagnose(run.readings, run.scenario, struck);
+    const auto same = std::ranges::find_if(alone.diagnosis.causes, [&cause](const diagnose::Cause& other) {
+      return other.effect == cause.effect && other.where == cause.where;
+    });
+    if (same != alone.diagnosis.causes.end()) cause.parameters = same->parameters;
+  }
+  return found;
+}
+
+/// Named causes share what is left when the most of `unlisted` has gone to signals without a name.
+void AddUnnamed(std::vector<Weighed>& open, Belief& belief, const TakenRun& first, const Means& means) {
+  constexpr double kAsSignals = 0.9;
+  const std::vector<std::string> named = EffectsIn(open);
+  if (named.empty() || belief.unlisted <= kNegligible) return;
+  const Hypothesis unnamed = Unnamed(means.diagnose(first.readings, first.scenario, named), first.scenario);
+  if (unnamed.causes.empty()) return;
+  const double as_signals = kAsSignals * belief.unlisted, rest = belief.unlisted - as_signals;
+  for (Weighed& one : open) one.probability *= (1.0 - belief.unlisted) / (1.0 - rest);
+  open.push_back({unnamed, as_signals / (1.0 - rest)});
+  belief.unlisted = rest;
+}
+
+/// Of one further cause of the catalogue against none.
+double LogOddsOfOne(const std::string& bench) {
+  const double causes = static_cast<double>(std::max<std::size_t>(1, EffectCatalogue(bench).size()));
+  return std::log(diagnose::tuning::kPriorNamed / diagnose::tuning::kPriorNone / causes);
+}
+
+}  // namespace
+
+std::vector<double> Belief::Probabilities() const {
+  std::vector<double> probabilities;
+  for (const Open& one : open) probabilities.push_back(one.probability);
+  probabilities.push_back(unlisted);
+  return probabilities;
+}
+
+Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& runs, const Means& means) {
+  Belief belief;
+  const bool is_none = found.diagnosis.verdict == diagnose::Verdict::kNone;
+  belief.unlisted = is_none ? 0.0 : std::clamp(found.diagnosis.unknown.probability, 0.0, 1.0);
+  std::vector<Weighed> open = LeftOpen(WithSizes(found, runs.front(), means), runs.front().scenario);
+  AddUnnamed(open, belief, runs.front(), means);
+  for (const Weighed& weighed : open) {
+    Open fitted{FitJointly(weighed.hypothesis, runs, means)};
+    fitted.fit.hypothesis.log_prior =
+        std::log(std::max(weighed.probability, kNegligible)) - fitted.fit.log_evidence;
+    belief.open.push_back(std::move(fitted));
+  }
+  Normalise(belief);
+  return belief;
+}
+
+void Update(Belief& belief, const std::vector<TakenRun>& runs, const Means& means) {
+  for (Open& open : belief.open) open.fit = FitJointly(open.fit.hypothesis, runs, means);
+  Normalise(belief);
+}
+
+bool TakeIn(Belief& belief, Hypothesis hypothesis, const Hypothesis& beside, const std::vector<TakenRun>& runs,
+            const Means& means) {
+  const auto is_there = [&](const Open& open) { return IsSame(open.fit.hypothesis, hypothesis); };
+  if (std::ranges::any_of(belief.open, is_there)) return false;
+  const double more = static_cast<double>(hypothesis.causes.size()) - static_cast<double>(beside.causes.size());
+  hypothesis.log_prior = beside.log_prior + more * LogOddsOfOne(runs.front().scenario.bench);
+  belief.open.push_back({FitJointly(hypothesis, runs, means)});
+  Normalise(belief);
+  return true;
+}
+
+void Agreed(Belief& belief) {
+  const double odds = kMimicsAgain * belief.unlisted / std::max(1.0 - belief.unlisted, kNegligible);
+  belief.unlisted = odds / (1.0 + odds);
+  Normalise(belief);
+}
+
+void Disagreed(Belief& belief, double unknown) {
+  belief.unlisted = std::max(belief.unlisted, std::clamp(unknown, 0.0, 1.0));
+  Normalise(belief);
+}
+
+}  // namespace twinbench::investigate

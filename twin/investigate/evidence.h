@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "twin/investigate/joint_fit.h"
+
+namespace twinbench::investigate {
+
+/// A hypothesis that is still open, with its share of what is believed.
+struct Open {
+  JointFit fit;
+  double probability = 0.0;  // of all, what the catalogue lacks included
+};
+
+/// What is believed after some runs.
+struct Belief {
+  std::vector<Open> open;  // most probable first
+  double unlisted = 0.0;   // something that the catalogue has no name for
+
+  const Open& Best() const { return open.front(); }
+  std::vector<double> Probabilities() const;  // what the catalogue lacks comes last
+};
+
+/// After the first run: exactly what its diagnosis said. Most of what the catalogue lacks is a hypothesis too,
+/// where the readings can be written as signals without a name: they predict what other runs would show.
+Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& runs, const Means& means);
+
+/// After another run: everything fitted again to all of them.
+void Update(Belief& belief, const std::vector<TakenRun>& runs, const Means& means);
+
+/// Takes a hypothesis in that a later run brought up: one more cause than `beside` has, at the odds that a cause of
+/// the catalogue has before any reading. @return false if it is there already.
+bool TakeIn(Belief& belief, Hypothesis hypothesis, const Hypothesis& beside, const std::vector<TakenRun>& runs,
+            const Means& means);
+
+/// A run of another kind than those before agreed with the best hypothesis, or something was left that nothing open
+/// explains.
+void Agreed(Belief& belief);
+void Disagreed(Belief& belief, double unknown);
+
+}  // namespace twinbench::investigate

@@ -1,0 +1,82 @@
+#include "twin/investigate/goal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "twin/core/errors.h"
+#include "twin/uncertainty/quantities.h"
+
+namespace twinbench::investigate {
+namespace {
+
+constexpr const char* kExpected =
+    "a quantity of results.json and its standard uncertainty: \"target.ez 0.1arcsec\"";
+
+/// "target.ez_arcsec" of the goal is "separation.target.ez_arcsec" of the results.
+bool Ends(const std::string& name, const std::string& wanted) {
+  if (!name.ends_with(wanted)) return false;
+  return name.size() == wanted.size() || name[name.size() - wanted.size() - 1] == '.';
+}
+
+}  // namespace
+
+std::string Goal::Text() const {
+  return fmt::format("u of {} {:.3g}{}{}", quantity, u, unit.empty() ? "" : " ", unit);
+}
+
+Goal ParseGoal(const std::string& text) {
+  static const std::regex pattern(R"(\s*([A-Za-z_][\w.]*)\s+([0-9.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z_/]*)\s*)");
+  std::smatch match;
+  if (!std::regex_match(text, match, pattern)) throw InputError("--goal " + text, "cannot be read", kExpected);
+  Goal goal{match[1], match[3], std::strtod(match[2].str().c_str(), nullptr)};
+  if (!(goal.u > 0.0)) throw InputError("--goal " + text, "asks for nothing", "an uncertainty above 0");
+  return goal;
+}
+
+Certainty::Precision Certainty::Of(const nlohmann::json& results) const {
+  const std::string wanted = goal_.unit.empty() ? goal_.quantity : goal_.quantity + "_" + goal_.unit;
+  Precision precision;
+  for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(results)) {
+    if (Ends(uncertainty::ListOf(q.name), wanted) && q.u > 0.0) precision[q.name] = 1.0 / (q.u * q.u);
+  }
+  return precision;
+}
+
+double Certainty::RootMeanSquare(const Precision& precision) {
+  if (precision.empty()) return std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  for (const auto& [place, p] : precision) sum += 1.0 / p;
+  return std::sqrt(sum / static_cast<double>(precision.size()));
+}
+
+bool Certainty::Add(const nlohmann::json& results) {
+  const Precision more = Of(results);
+  for (const auto& [place, p] : more) precision_[place] += p;
+  return !more.empty();
+}
+
+double Certainty::u() const {
+  return RootMeanSquare(precision_);
+}
+
+double Certainty::With(const nlohmann::json& results) const {
+  Precision both = precision_;
+  for (const auto& [place, p] : Of(results)) both[place] += p;
+  return RootMeanSquare(both);
+}
+
+std::vector<std::string> GoalNames(const nlohmann::json& results) {
+  std::vector<std::string> names;
+  for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(results)) {
+    const std::string list = uncertainty::ListOf(q.name);
+    if (std::ranges::find(names, list) == names.end()) names.push_back(list);
+  }
+  return names;
+}
+
+}  // namespace twinbench::investigate

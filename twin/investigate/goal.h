@@ -1,0 +1,51 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace twinbench::investigate {
+
+/// How certain a result shall be: "target.ez 0.1arcsec".
+struct Goal {
+  std::string quantity;  // "target.ez", as results.json has it, or the end of its name
+  std::string unit;      // "arcsec"; empty: of a pure number
+  double u = 0.0;        // standard uncertainty, root mean square over its values
+
+  std::string Text() const;
+};
+
+/// @throws InputError if it cannot be read.
+Goal ParseGoal(const std::string& text);
+
+/// What the runs so far say of the goal's quantity: at each of its places the inverse variances of runs add up.
+/// What all runs share (a standard's own error) is no part of u.
+class Certainty {
+ public:
+  explicit Certainty(Goal goal) : goal_(std::move(goal)) {}
+
+  /// @return false if the results have no such quantity.
+  bool Add(const nlohmann::json& results);
+
+  /// Root mean square over the places; infinite as long as nothing was added.
+  double u() const;
+  /// With those results as well.
+  double With(const nlohmann::json& results) const;
+  bool IsMet() const { return u() <= goal_.u; }
+  const Goal& goal() const { return goal_; }
+
+ private:
+  using Precision = std::map<std::string, double>;
+  Precision Of(const nlohmann::json& results) const;
+  static double RootMeanSquare(const Precision& precision);
+
+  Goal goal_;
+  Precision precision_;  // by place
+};
+
+/// The lists of numbers in results that a goal can be about: "target.ez_arcsec".
+std::vector<std::string> GoalNames(const nlohmann::json& results);
+
+}  // namespace twinbench::investigate

@@ -1,0 +1,176 @@
+#include "twin/investigate/hypothesis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "twin/core/signal_effect.h"
+#include "twin/diagnose/cause_groups.h"
+#include "twin/diagnose/extend.h"
+
+namespace twinbench::investigate {
+namespace {
+
+using diagnose::Cause;
+
+constexpr std::size_t kMost = 12;
+constexpr const char* kUnnamed = "structure without a name";
+
+bool IsSameCause(const EffectSettings& a, const EffectSettings& b) {
+  return a.name == b.name && a.where == b.where;
+}
+
+/// Signals that the diagnosis writes for structure without a name, where they are more than a table of that run.
+std::vector<EffectSettings> SignalsOf(const diagnose::DiagnosisRun& found, const Scenario& scenario) {
+  std::vector<EffectSettings> signals;
+  const Scenario extended = diagnose::Extend(scenario, found, "");
+  for (std::size_t k = scenario.effects.size(); k < extended.effects.size(); ++k) {
+    if (!extended.effects[k].signal.empty()) signals.push_back(extended.effects[k]);
+  }
+  return signals;
+}
+
+/// A signal is written without uncertainties: its size is known to about a tenth, its phase to as many radians.
+void FreeSizes(EffectSettings& signal, const std::string& bench) {
+  constexpr double kTenth = 0.1;
+  for (const EffectParameter& p : EntryOf(signal, bench).parameters) {
+    const double size = std::abs(signal.parameters.at(p.name));
+    if ((p.name == "amplitude" || p.name == "share") && size > 0.0) signal.finding.u[p.name] = kTenth * size;
+    if (p.name == "phase") signal.finding.u[p.name] = kTenth;
+  }
+}
+
+double Sum(const std::vector<Cause>& causes, const diagnose::CauseGroup& group) {
+  double sum = 0.0;
+  for (const std::size_t k : group) sum += causes[k].probability;
+  return sum;
+}
+
+/// A rival may come without sizes: then they are where the catalogue has them, as uncertain as they are large,
+/// until they are fitted.
+EffectSettings Sized(const Cause& cause, const std::string& bench) {
+  EffectSettings effect = diagnose::EffectOf(cause, bench, "");
+  if (!effect.finding.u.empty()) return effect;
+  const EffectEntry entry = EntryOf(effect, bench);
+  for (const EffectParameter& p : entry.parameters) {
+    if (effect.parameters.contains(p.name)) effect.finding.u[p.name] = entry.Plausible(p);
+  }
+  return effect;
+}
+
+/// Each of `open` with each cause of the group.
+std::vector<Weighed> Times(const std::vector<Weighed>& open, const std::vector<Cause>& causes,
+                           const diagnose::CauseGroup& group, const std::string& bench) {
+  std::vector<Weighed> product;
+  const double sum = Sum(causes, group);
+  for (const Weighed& one : open) {
+    for (const std::size_t k : group) {
+      Weighed more = one;
+      more.hypothesis.causes.push_back(Sized(causes[k], bench));
+      more.probability *= causes[k].probability / sum;
+      product.push_back(std::move(more));
+    }
+  }
+  return product;
+}
+
+/// Nothing was found: each suspect alone beside nothing.
+std::vector<Weighed> NothingOrSuspects(const diagnose::DiagnosisRun& found, const std::string& bench) {
+  constexpr double kWorthASuspicion = 0.01;
+  std::vector<Weighed> open(1);
+  open.front().probability = 1.0;
+  for (const Cause& suspect : found.suspects) {
+    if (suspect.probability < kWorthASuspicion) continue;
+    Weighed one;
+    one.hypothesis.causes.push_back(Sized(suspect, bench));
+    one.probability = suspect.probability;
+    open.front().probability -= suspect.probability;
+    open.push_back(std::move(one));
+  }
+  return open;
+}
+
+void KeepTheMostProbable(std::vector<Weighed>& open) {
+  std::ranges::stable_sort(open, std::ranges::greater{}, &Weighed::probability);
+  if (open.size() > kMost) open.resize(kMost);
+  double sum = 0.0;
+  for (const Weighed& one : open) sum += one.probability;
+  for (Weighed& one : open) one.probability /= sum;
+}
+
+}  // namespace
+
+std::string Hypothesis::Name() const {
+  if (causes.empty()) return besides.empty() ? "nothing" : kUnnamed;
+  if (!causes.front().signal.empty()) return kUnnamed;
+  std::string name;
+  for (const EffectSettings& cause : causes) {
+    name += (name.empty() ? "" : " + ") + cause.name;
+    if (!cause.where.empty()) name += " " + cause.where;
+  }
+  return name;
+}
+
+bool IsSame(const Hypothesis& a, const Hypothesis& b) {
+  const auto has_all = [](const Hypothesis& all, const Hypothesis& of) {
+    return std::ranges::all_of(of.causes, [&all](const EffectSettings& cause) {
+      return std::ranges::any_of(all.causes,
+                                 [&cause](const EffectSettings& other) { return IsSameCause(cause, other); });
+    });
+  };
+  return has_all(a, b) && has_all(b, a) && a.besides.empty() == b.besides.empty();
+}
+
+Hypothesis Together(const Hypothesis& a, const Hypothesis& b) {
+  Hypothesis both = a;
+  for (const EffectSettings& cause : b.causes) {
+    const bool is_there = std::ranges::any_of(
+        both.causes, [&cause](const EffectSettings& other) { return IsSameCause(cause, other); });
+    if (!is_there) both.causes.push_back(cause);
+  }
+  if (both.besides.empty()) both.besides = b.besides;
+  both.since = std::max(a.since, b.since);
+  return both;
+}
+
+std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario) {
+  const std::vector<Cause>& causes = found.diagnosis.causes;
+  if (found.diagnosis.verdict == diagnose::Verdict::kNone) return NothingOrSuspects(found, scenario.bench);
+  std::vector<Weighed> open(1);
+  open.front().probability = 1.0;
+  open.front().hypothesis.besides = SignalsOf(found, scenario);
+  for (const diagnose::CauseGroup& group : diagnose::GroupsOf(causes)) {
+    if (Sum(causes, group) > 0.0) open = Times(open, causes, group, scenario.bench);
+  }
+  KeepTheMostProbable(open);
+  return open;
+}
+
+Hypothesis Unnamed(const diagnose::DiagnosisRun& struck, const Scenario& scenario) {
+  Hypothesis unnamed;
+  if (struck.diagnosis.verdict != diagnose::Verdict::kUnknown) return unnamed;
+  for (EffectSettings signal : SignalsOf(struck, scenario)) {
+    FreeSizes(signal, scenario.bench);
+    unnamed.causes.push_back(std::move(signal));
+  }
+  return unnamed;
+}
+
+std::vector<std::string> EffectsIn(const std::vector<Weighed>& open) {
+  std::vector<std::string> names;
+  for (const Weighed& one : open) {
+    for (const EffectSettings& cause : one.hypothesis.causes) {
+      if (std::ranges::find(names, cause.name) == names.end()) names.push_back(cause.name);
+    }
+  }
+  return names;
+}
+
+Scenario With(const Scenario& scenario, const Hypothesis& hypothesis) {
+  Scenario with = scenario;
+  with.effects.insert(with.effects.end(), hypothesis.causes.begin(), hypothesis.causes.end());
+  with.effects.insert(with.effects.end(), hypothesis.besides.begin(), hypothesis.besides.end());
+  return with;
+}
+
+}  // namespace twinbench::investigate

@@ -1,0 +1,259 @@
+#include "twin/investigate/investigation.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "twin/core/errors.h"
+#include "twin/core/units.h"
+#include "twin/investigate/expected_information.h"
+
+namespace twinbench::investigate {
+namespace {
+
+constexpr double kWorthMeasuring_bit = 0.05;  // of causes
+constexpr double kWorthRefining_bit = 0.005;  // of the goal
+constexpr double kMostlyUnlisted = 0.5;
+/// Of the best: a named rival that is more probable is still in question. Looking again and again until one is past
+/// a limit would otherwise make the limit's share of mistakes.
+constexpr double kOutOfQuestion = 0.01;
+
+class Loop {
+ public:
+  Loop(const Scenario& scenario, const InvestigationOptions& options, const Means& means,
+       const Laboratory& laboratory)
+      : scenario_(scenario), options_(options), means_(means), laboratory_(laboratory) {
+    result_.goal = options.goal;
+    result_.u_goal = kNaN;
+    if (options.goal) certainty_.emplace(*options.goal);
+  }
+
+  Investigation Run() {
+    TakeFirst();
+    while (!IsDone() && TakeNext()) {
+    }
+    result_.told = ToldBy(result_.belief);
+    const bool is_nothing = result_.belief.Best().fit.hypothesis.Name() == Hypothesis{}.Name();
+    if (result_.told == Told::kTied && is_nothing) result_.told = Told::kNothing;  // suspicions are no findings
+    return std::move(result_);
+  }
+
+ private:
+  Told ToldBy(const Belief& belief) const {
+    if (belief.unlisted >= kMostlyUnlisted) return Told::kUnknown;
+    const Open& best = belief.Best();
+    if (best.probability < options_.conclusive || HasRival(belief)) return Told::kTied;
+    if (best.fit.hypothesis.IsNamed()) return Told::kNamed;
+    return best.fit.hypothesis.Name() == Hypothesis{}.Name() ? Told::kNothing : Told::kUnknown;
+  }
+
+  bool HasRival(const Belief& belief) const {
+    const double limit = kOutOfQuestion * belief.Best().probability;
+    return std::any_of(belief.open.begin() + 1, belief.open.end(), [limit](const Open& open) {
+      return open.fit.hypothesis.IsNamed() && open.probability > limit;
+    });
+  }
+
+  bool AreCausesTold() const { return ToldBy(result_.belief) != Told::kTied; }
+
+  bool IsDone() {
+    if (!AreCausesTold() || !result_.IsGoalMet()) return false;
+    result_.ended = Ended::kTold;
+    return true;
+  }
+
+  /// Makes the run and adds it to what is known.
+  void Take(Step& step, const Scenario& scenario) {
+    runs_.push_back(TakenOf(step.run, scenario, laboratory_.measure(step, scenario), means_));
+    step.minutes = runs_.back().minutes;
+    result_.minutes += step.minutes;
+    if (!certainty_) return;
+    try {
+      certainty_->Add(means_.evaluate(runs_.back().readings, scenario));
+    } catch (const InputError&) {  // a run that tells of causes only
+    }
+    result_.u_goal = certainty_->u();
+  }
+
+  void Note(Step step, double entropy_before) {
+    const Belief& belief = result_.belief;
+    for (const Open& open : belief.open) step.believed.emplace_back(open.fit.hypothesis.Name(), open.probability);
+    step.unlisted = belief.unlisted;
+    step.u_goal = result_.u_goal;
+    step.gained_bit = entropy_before - Entropy_bit(belief.Probabilities());
+    result_.steps.push_back(std::move(step));
+    if (laboratory_.told) laboratory_.told(result_);
+  }
+
+  void TakeFirst() {
+    Step step{1, {"first", "the scenario's own run", {}, plan::kSameKind}, "the scenario's own run comes first"};
+    Take(step, scenario_);
+    if (certainty_ && !std::isfinite(certainty_->u())) RefuseGoal();
+    const diagnose::DiagnosisRun found = means_.diagnose(runs_.front().readings, scenario_, {});
+    result_.belief = Begun(found, runs_, means_);
+    Note(std::move(step), Entropy_bit(result_.belief.Probabilities()));
+  }
+
+  [[noreturn]] void RefuseGoal() const {
+    const std::vector<std::string> names = GoalNames(means_.evaluate(runs_.front().readings, scenario_));
+    throw InputError("--goal " + options_.goal->Text(), "the first run's results have no such quantity",
+                     fmt::format("one of {}", fmt::join(names, ", ")));
+  }
+
+  /// @return false if it ends here.
+  bool TakeNext() {
+    if (static_cast<int>(result_.steps.size()) >= options_.most_runs) return End(Ended::kBudget);
+    if (!plans_) {
+      plans_.emplace(scenario_, means_);
+      result_.refused = plans_->refused();
+    }
+    const double left_min = options_.budget_min - result_.minutes;
+    const std::vector<Advice> advice =
+        plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, left_min);
+    if (advice.empty()) return End(Ended::kBudget);
+    const auto useful = std::ranges::find_if(advice, [this](const Advice& a) { return IsUseful(a); });
+    if (useful == advice.end()) return End(IsAnyLeftOut(left_min) ? Ended::kBudget : Ended::kNothingMore);
+    Step step{static_cast<int>(result_.steps.size()) + 1, useful->run, ReasonFor(*useful, advice)};
+    step.expected_bit = useful->of_causes_bit;
+    if (laboratory_.confirm && !laboratory_.confirm(step, advice)) return End(Ended::kDeclined);
+    TakeAndWeigh(std::move(step));
+    return true;
+  }
+
+  bool End(Ended ended) {
+    result_.ended = ended;
+    return false;
+  }
+
+  bool IsUseful(const Advice& a) const {
+    return (!AreCausesTold() && a.of_causes_bit >= kWorthMeasuring_bit) || a.of_goal_bit >= kWorthRefining_bit;
+  }
+
+  /// A run that would tell something takes longer than there is.
+  bool IsAnyLeftOut(double left_min) const {
+    const double all_min = std::numeric_limits<double>::infinity();
+    for (const Advice& a : plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, all_min)) {
+      if (a.minutes > left_min && IsUseful(a)) return true;
+    }
+    return false;
+  }
+
+  std::string ReasonFor(const Advice& best, const std::vector<Advice>& advice) const {
+    std::string reason;
+    if (!AreCausesTold())
+      reason = fmt::format("{:.2f} bit of {:.2f} that are open about the causes", best.of_causes_bit,
+                           Entropy_bit(result_.belief.Probabilities()));
+    if (best.of_goal_bit > 0.0)
+      reason += fmt::format("{}{} to {:.3g}", reason.empty() ? "" : ", ", result_.goal->Text(), best.u_goal);
+    reason += fmt::format(" expected in {:.1f} min", best.minutes);
+    const auto second = std::ranges::find_if(advice, [&](const Advice& a) { return a.run.name != best.run.name; });
+    if (second == advice.end()) return reason;
+    return reason + fmt::format("; per minute the next best, {}, has {:.2g} times as much", second->run.name,
+                                second->PerMinute() / best.PerMinute());
+  }
+
+  void TakeAndWeigh(Step step) {
+    Belief& belief = result_.belief;
+    const double before = Entropy_bit(belief.Probabilities());
+    std::vector<std::string> sets = step.run.sets;
+    sets.push_back(fmt::format("repeat={}", scenario_.repeat + step.number - 1));
+    Take(step, Altered(scenario_, sets));
+    Update(belief, runs_, means_);
+    Compare();
+    Note(std::move(step), before);
+  }
+
+  /// The last run beside the best hypothesis: it agrees, or it brings up more.
+  void Compare() {
+    Belief& belief = result_.belief;
+    const TakenRun& run = runs_.back();
+    const Hypothesis best = belief.Best().fit.hypothesis;
+    const Scenario with = With(run.scenario, best);
+    const diagnose::DiagnosisRun found = means_.diagnose(run.readings, with, {});
+    if (found.diagnosis.verdict == diagnose::Verdict::kNone) {
+      if (IsOfAnotherKind()) Agreed(belief);
+      return;
+    }
+    bool is_new = false;
+    for (const Weighed& more : LeftOpen(found, with)) {
+      if (!more.hypothesis.causes.empty())
+        is_new = TakeIn(belief, Together(best, more.hypothesis), best, runs_, means_) || is_new;
+    }
+    for (const Weighed& other : LeftOpen(means_.diagnose(run.readings, run.scenario, {}), run.scenario)) {
+      if (!other.hypothesis.causes.empty())
+        is_new = TakeIn(belief, other.hypothesis, AsMany(other.hypothesis), runs_, means_) || is_new;
+    }
+    if (!is_new || found.diagnosis.verdict == diagnose::Verdict::kUnknown)
+      Disagreed(belief, found.diagnosis.unknown.probability);
+  }
+
+  bool IsOfAnotherKind() const {
+    if (!runs_.back().asked.is_of_another_kind) return false;
+    return std::none_of(runs_.begin(), runs_.end() - 1,
+                        [this](const TakenRun& run) { return run.asked.sets == runs_.back().asked.sets; });
+  }
+
+  /// An open hypothesis of so many causes, the most probable before; else the best there is.
+  Hypothesis AsMany(const Hypothesis& hypothesis) const {
+    const Open* most = nullptr;
+    for (const Open& open : result_.belief.open) {
+      const Hypothesis& other = open.fit.hypothesis;
+      if (other.causes.size() != hypothesis.causes.size()) continue;
+      if (!most || other.log_prior > most->fit.hypothesis.log_prior) most = &open;
+    }
+    return most ? most->fit.hypothesis : result_.belief.Best().fit.hypothesis;
+  }
+
+  const Scenario& scenario_;
+  const InvestigationOptions& options_;
+  const Means& means_;
+  const Laboratory& laboratory_;
+  std::optional<Certainty> certainty_;
+  std::optional<Plans> plans_;  // once they are needed: each is a run of the twin
+  std::vector<TakenRun> runs_;
+  Investigation result_;
+};
+
+}  // namespace
+
+const char* ToldName(Told told) {
+  switch (told) {
+    case Told::kNothing:
+      return "nothing";
+    case Told::kNamed:
+      return "named";
+    case Told::kTied:
+      return "tied";
+    case Told::kUnknown:
+      return "unknown";
+  }
+  return "";
+}
+
+const char* EndedName(Ended ended) {
+  switch (ended) {
+    case Ended::kTold:
+      return "told";
+    case Ended::kBudget:
+      return "budget spent";
+    case Ended::kNothingMore:
+      return "nothing more can be told";
+    case Ended::kDeclined:
+      return "declined";
+  }
+  return "";
+}
+
+Investigation Investigate(const Scenario& scenario, const InvestigationOptions& options, const Means& means,
+                          const Laboratory& laboratory) {
+  return Loop(scenario, options, means, laboratory).Run();
+}
+
+Scenario Extended(const Scenario& scenario, const Investigation& investigation) {
+  return With(scenario, investigation.belief.Best().fit.hypothesis);
+}
+
+}  // namespace twinbench::investigate

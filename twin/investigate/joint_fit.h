@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "twin/investigate/taken_run.h"
+
+namespace twinbench::investigate {
+
+/// A hypothesis with sizes that all runs so far agree on.
+struct JointFit {
+  Hypothesis hypothesis;  // as fitted
+  Eigen::MatrixXd cov;    // of its sizes, in units of their u: correlations
+  double chi2 = 0.0;      // of all runs, free unknowns of each run fitted
+  double log_evidence = 0.0;
+};
+
+/// Sizes of the causes, each where a diagnosis stated an uncertainty, moved until what they leave of all runs
+/// together is least (Gauss-Newton, the twin asked for slopes), with the u that all runs leave; parameters without
+/// one stay.
+///
+/// Evidence by Laplace's approximation about the fit: noise known as well as tuning::kPseudoDegrees says, sizes
+/// thought of before as their plausible sizes (or as large as they are).
+JointFit FitJointly(const Hypothesis& hypothesis, const std::vector<TakenRun>& runs, const Means& means);
+
+/// One run's change of `LeftBy` for one u of each size: rows x sizes.
+Eigen::MatrixXd SlopesOf(const Hypothesis& hypothesis, const Eigen::VectorXd& left, const TakenRun& run,
+                         const Means& means);
+
+}  // namespace twinbench::investigate

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "twin/diagnose/engine/projector.h"
+#include "twin/investigate/hypothesis.h"
+#include "twin/investigate/means.h"
+
+namespace twinbench::investigate {
+
+/// A run beside what was believed when the investigation began: of the bench, or a planned one of the twin.
+struct TakenRun {
+  plan::NextRun asked;
+  Scenario scenario;  // without any hypothesis
+  std::vector<Reading> readings;
+  double minutes = 0.0;  // by the procedure's own clock
+  diagnose::LinearRun linear;
+  diagnose::NoiseModel noise;
+  std::shared_ptr<const diagnose::Projector> projector;
+  Eigen::VectorXd left;  // white: the residual of `scenario`
+};
+
+/// @throws InputError as Means::against does.
+TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vector<Reading> readings,
+                 const Means& means);
+
+/// What the hypothesis leaves of the run's readings, white, in the run's own frame. Where it cannot be followed, or
+/// shows other readings, it explains nothing.
+Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const Means& means);
+
+/// a' W b, W what is left when the free unknowns have taken their share.
+Eigen::MatrixXd Product(const TakenRun& run, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+}  // namespace twinbench::investigate
