@@ -20,11 +20,11 @@ double Normal(double x, double mean, double sd) {
 /// Mutual information of two normal distributions in one dimension, by the trapezoidal rule.
 double ByIntegral(double p, double mean_a, double sd_a, double mean_b, double sd_b) {
   double bits = 0.0;
-  constexpr double kStep = 0.001;
+  constexpr double kStep = 0.001, kNone = 1e-200;
   for (double x = -40.0; x < 40.0; x += kStep) {
     const double a = p * Normal(x, mean_a, sd_a), b = (1.0 - p) * Normal(x, mean_b, sd_b);
-    if (a > 0.0) bits += kStep * a * std::log2(a / (p * (a + b)));
-    if (b > 0.0) bits += kStep * b * std::log2(b / ((1.0 - p) * (a + b)));
+    if (a > kNone) bits += kStep * a * std::log2(a / (p * (a + b)));
+    if (b > kNone) bits += kStep * b * std::log2(b / ((1.0 - p) * (a + b)));
   }
   return bits;
 }

@@ -1,36 +1,94 @@
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <nlohmann/json.hpp>
 
 #include "tests/investigate/hidden_investigation.h"
+#include "tools/twinbench/bench_means.h"
+#include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/investigate/hidden_run.h"
 
 namespace twinbench::investigate {
 namespace {
 
-Judged Hidden(const std::string& effect, const std::string& where, double rho, double budget_min = 600.0) {
-  static const hidden::SignatureScale scale(hidden::Design::kRotary, "");
+Judged Hidden(hidden::Design design, const std::string& effect, const std::string& where, double rho,
+              double budget_min = 600.0) {
+  const hidden::SignatureScale scale(design, "");
   InvestigationOptions options;
   options.budget_min = budget_min;
-  return InvestigateHidden({effect, where, hidden::Design::kRotary}, 7, rho, scale, options);
+  return InvestigateHidden({effect, where, design}, 7, rho, scale, options);
 }
 
-TEST(Investigate, TellsACauseThatTheFirstRunTiesWithAnother) {
-  const Judged judged = Hidden("backlash", "target", 12.0);
+TEST(Investigate, TellsACauseThatTheFirstRunDoesNotTellFromOthers) {
+  const Judged judged = Hidden(hidden::Design::kSweep, "clock_rate", "", 4.5);
+  ASSERT_TRUE(judged.tied_at_first) << judged.answer;
   EXPECT_EQ(judged.result, Result::kRight) << judged.answer;
   EXPECT_GT(judged.probability, 0.95);
 }
 
-TEST(Investigate, SaysThatWavelengthAndPitchCannotBeTold) {
-  const Judged judged = Hidden("wavelength_offset", "", 15.0);
+TEST(Investigate, SaysThatAnEccentricRingAndAnOffsetOfSignalsCannotBeTold) {
+  const Judged judged = Hidden(hidden::Design::kStops, "eccentricity", "", 15.0);
   EXPECT_EQ(judged.result, Result::kRightTie) << judged.answer;
   EXPECT_EQ(judged.investigation.ended, Ended::kNothingMore);
+  EXPECT_GT(judged.investigation.belief.open.at(1).probability, 0.05) << judged.answer;
 }
 
 TEST(Investigate, EndsWithItsBudget) {
-  const Judged judged = Hidden("backlash", "target", 12.0, 1.0);
+  const Judged judged = Hidden(hidden::Design::kStops, "slip", "", 12.0, 1.0);
   EXPECT_EQ(judged.investigation.steps.size(), 1u);  // the scenario's own run is made in any case
   ASSERT_TRUE(judged.tied_at_first) << judged.answer;
   EXPECT_EQ(judged.investigation.ended, Ended::kBudget);
+}
+
+TEST(Investigate, OneThatFindsNothingSaysSo) {
+  const hidden::SignatureScale scale(hidden::Design::kStops, "");
+  const Scenario believed = hidden::Believed(hidden::Design::kStops);
+  Laboratory laboratory;
+  laboratory.measure = [&](const Step& step, const Scenario& asked) {
+    return hidden::TakeReadings(HiddenRun(believed, believed, step.run, asked.repeat));
+  };
+  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  const Investigation found = Investigate(believed, {}, means, laboratory);
+  EXPECT_EQ(found.told, Told::kNothing);
+}
+
+TEST(HiddenRun, MovesWhatTheRunMovesAndLeavesWhatIsWrong) {
+  const Scenario believed = hidden::Believed(hidden::Design::kRotary);
+  Scenario hidden = believed;
+  hidden.environment.temperature_degC += 1.5;  // the thermometer errs
+  const plan::NextRun warm = {
+      "warm", "", {"environment.temperature_degC=23", "procedure.passes=[1]"}, plan::kOtherKind};
+  const Scenario made = HiddenRun(hidden, believed, warm, 3);
+  EXPECT_NEAR(made.environment.temperature_degC, 24.5, 1e-12);
+  EXPECT_EQ(RotaryOf(made).procedure.passes, std::vector<int>{1});
+  EXPECT_EQ(made.repeat, 3);
+  EXPECT_EQ(made.seed, hidden.seed);
+  EXPECT_FALSE(IsProcedureAlone(warm));
+}
+
+TEST(NextRuns, AreRunsThatTheirBenchCanMake) {
+  for (const char* name : {"rotary_4dof", "encoder_comparison", "turntable_autocollimator", "hob_transmission",
+                           "circular_motion", "freeform_five_axis"}) {
+    const Scenario scenario = LoadScenario(std::string(TWINBENCH_SOURCE_DIR "/scenarios/") + name + ".toml");
+    const std::vector<plan::NextRun> runs = BenchOf(scenario).next_runs(scenario);
+    EXPECT_GE(runs.size(), 4u) << name;
+    for (const plan::NextRun& run : runs) EXPECT_NO_THROW(Altered(scenario, run.sets)) << name << " " << run.name;
+  }
+}
+
+TEST(Repeat, IsAnotherRunOfTheSameBench) {
+  Scenario scenario = hidden::Drawn(hidden::Design::kRotary, 5);
+  const auto target_at = [&](int repeat) {
+    scenario.repeat = repeat;
+    return BenchOf(scenario).make_twin(scenario)->Truth().at("target").dump();
+  };
+  const auto first_V = [&](int repeat) {
+    scenario.repeat = repeat;
+    return hidden::TakeReadings(scenario).front().mean_V[0];
+  };
+  EXPECT_EQ(target_at(0), target_at(4));
+  EXPECT_NE(first_V(0), first_V(4));
+  EXPECT_EQ(first_V(4), first_V(4));
 }
 
 }  // namespace

@@ -29,11 +29,11 @@ double StatedSigma_m(const std::vector<Reading>& used, int channel, const Scenar
 }
 
 /// Of means that were written down with few digits, or taken by a converter coarser than their noise.
-double RoundingSigma_m(const std::vector<Reading>& used, int channel, const measure::BenchGeometry& geometry) {
+double RoundingStepOf_m(const std::vector<Reading>& used, int channel, const measure::BenchGeometry& geometry) {
   Eigen::VectorXd shown_V(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i)
     shown_V[static_cast<Eigen::Index>(i)] = used[i].mean_V[static_cast<std::size_t>(channel)];
-  return CommonStep(shown_V) / std::sqrt(12.0) / geometry.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
+  return CommonStep(shown_V) / geometry.sensitivity_V_m[static_cast<std::size_t>(channel / 2)];
 }
 
 }  // namespace
@@ -71,11 +71,18 @@ double SampleNoise_V(const std::vector<Reading>& used, const Scenario& scenario)
   return Median(std::move(stds_V));
 }
 
+double RoundingStep_m(const std::vector<Reading>& used, const measure::BenchGeometry& geometry) {
+  double largest_m = 0.0;
+  for (int c = 0; c < kChannels; ++c) largest_m = std::max(largest_m, RoundingStepOf_m(used, c, geometry));
+  return largest_m;
+}
+
 Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario,
                         const measure::BenchGeometry& geometry, const SweptSlopes& swept) {
   Eigen::Vector4d noise_m;
   for (int c = 0; c < kChannels; ++c)
-    noise_m[c] = std::hypot(StatedSigma_m(used, c, scenario, geometry), RoundingSigma_m(used, c, geometry));
+    noise_m[c] = std::hypot(StatedSigma_m(used, c, scenario, geometry),
+                            RoundingStepOf_m(used, c, geometry) / std::sqrt(12.0));
   const Eigen::VectorXd sweep_m =
       geometry.autocollimator_noise_rad * (swept.of_yaw.cwiseAbs2() + swept.of_tilt.cwiseAbs2()).cwiseSqrt();
   Eigen::VectorXd sigma(kChannels * std::ssize(used));

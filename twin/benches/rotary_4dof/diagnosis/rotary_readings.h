@@ -22,6 +22,9 @@ struct SweptSlopes {
   Eigen::VectorXd of_yaw, of_tilt;
 };
 
+/// The largest step to which the means of a channel are rounded, on its PSD; 0: none.
+double RoundingStep_m(const std::vector<Reading>& used, const measure::BenchGeometry& geometry);
+
 /// Standard uncertainty of each row [m]: the blocks' deviations pooled by channel, else what the scenario states;
 /// in the calibration phase the autocollimator's as well.
 Eigen::VectorXd SigmaOf(const std::vector<Reading>& used, const Scenario& scenario,

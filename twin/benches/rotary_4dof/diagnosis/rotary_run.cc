@@ -44,6 +44,7 @@ void SetReadings(const std::vector<Reading>& used, const Scenario& scenario, Rot
   const std::vector<Vector4> still(used.size(), Vector4::Zero());
   run.sigma = SigmaOf(used, scenario, rotary.geometry,
                       {rotary.twin->Slope_m("mount.ez", still), rotary.twin->Slope_m("mount.ex", still)});
+  run.rounding = RoundingStep_m(used, rotary.geometry);
   run.noise_free = IsNoiseFree(used);
   rotary.sample_noise_V = SampleNoise_V(used, scenario);
 }
