@@ -142,6 +142,7 @@ const std::vector<OwnKey>& Keys() {
         {"bench", {}, "another bench"},
         {"title", {}, "words"},
         {"seed", {}, "every run has its own"},
+        {"repeat", {"repeat=3"}},
         {"noise_free", {"noise_free=true"}},
         {"environment.temperature_file", {}, "read by another test of the room's temperature"}};
     for (const auto& part : {MachineChanges(), BodyChanges(), InstrumentChanges(), ProcedureChanges()})

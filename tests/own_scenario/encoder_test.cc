@@ -42,6 +42,7 @@ const std::vector<OwnKey>& Keys() {
     all.push_back({"bench", {}, "another bench"});
     all.push_back({"title", {}, "words"});
     all.push_back({"seed", {}, "every run has its own"});
+    all.push_back({"repeat", {"repeat=3"}});
     return all;
   }();
   return keys;

@@ -87,6 +87,7 @@ const std::vector<OwnKey>& Keys() {
         {"bench", {}, "another bench"},
         {"title", {}, "words"},
         {"seed", {}, "every run has its own"},
+        {"repeat", {"repeat=3"}},
         {"noise_free", {"noise_free=true"}},
         {"artefact.form_error", {}, "a picture of heights, in the tests of the bench"},
         {"environment.temperature_file", {}, "read by another test of the room's temperature"}};

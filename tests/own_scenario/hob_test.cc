@@ -25,6 +25,7 @@ const std::vector<test::OwnKey>& Keys() {
         {"bench", {}, "another bench"},
         {"title", {}, "words"},
         {"seed", {"seed=77"}},
+        {"repeat", {"repeat=3"}},
         {"noise_free", {"noise_free=true"}},
         {"transmission.hob_starts", {"transmission.hob_starts=1"}},
         {"transmission.gear_teeth", {"transmission.gear_teeth=60"}},

@@ -200,6 +200,7 @@ std::vector<OwnKey> RotaryKeys() {
   const std::vector<OwnKey> left_out = {{"bench", {}, "another bench"},
                                         {"title", {}, "words"},
                                         {"seed", {}, "every run has its own"},
+                                        {"repeat", {"repeat=3"}},
                                         {"laser.profile_file", {}, "needs an OpenEXR file"},
                                         {"optics.profile_rays", {}, "of a profile"},
                                         {"grating.efficiency_file", {}, "needs a file"},

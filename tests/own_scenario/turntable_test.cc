@@ -27,6 +27,7 @@ const std::vector<test::OwnKey>& Keys() {
         {"bench", {}, "another bench"},
         {"title", {}, "words"},
         {"seed", {"seed=77"}},
+        {"repeat", {"repeat=3"}},
         {"noise_free", {"noise_free=true"}},
         {"multitooth.teeth", {"multitooth.teeth=720"}},
         {"multitooth.tooth_rms_arcsec", {"multitooth.tooth_rms_arcsec=2"}},
