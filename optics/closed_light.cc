@@ -20,12 +20,19 @@ std::optional<Scene> BlockerScene(const std::vector<Blocker>& blockers, bool rid
 
 ClosedLight::ClosedLight(const RotaryOpticsParameters& parameters, const std::array<Eigen::Isometry3d, 2>& X_LP)
     : lines_per_m_(parameters.grating.lines_per_m),
+      form_(parameters.grating.form),
       fixed_blockers_(BlockerScene(parameters.blockers, false)),
       riding_blockers_(BlockerScene(parameters.blockers, true)) {
   for (int i = 0; i < 2; ++i) {
     const auto n = static_cast<std::size_t>(i);
     planes_[n] = MakeFrame(RectangularPlane(X_LP[n], parameters.psd(i).width_m, parameters.psd(i).height_m));
   }
+}
+
+/// y of the surface runs along the grooves backwards (SurfacePoseOfGrating).
+LocalGrating ClosedLight::GratingAt(const Frame& g, double x_m, double y_m) const {
+  const Eigen::Vector3d across(g.xx, g.xy, g.xz), normal(g.zx, g.zy, g.zz), along(-g.yx, -g.yy, -g.yz);
+  return form_ ? LocalGratingAt(*form_, across, normal, along, x_m, -y_m) : LocalGrating{normal, across};
 }
 
 ClosedLight::Way ClosedLight::Follow(const Frame& g, const Ray& ray, double wavelength_m, int i) const {
@@ -38,7 +45,8 @@ ClosedLight::Way ClosedLight::Follow(const Frame& g, const Ray& ray, double wave
   if (!(t > 0.0) || !InAperture(g, x, y) || !(d.dot(normal) < 0.0)) return way;
   const auto n = static_cast<std::size_t>(i);
   const double shift = kOrderOfPsd[n] * wavelength_m * lines_per_m_;
-  const OrderDirection out = Diffract(d, normal, {g.xx, g.xy, g.xz}, shift);
+  const LocalGrating local = GratingAt(g, x, y);
+  const OrderDirection out = Diffract(d, local.normal, local.across, shift);
   if (out.status != OrderStatus::kOk) return way;
   const Eigen::Vector3d p = o + t * d;
   MeetPlane(planes_[n], p.x(), p.y(), p.z(), out.direction.x(), out.direction.y(), out.direction.z(), t, x, y);

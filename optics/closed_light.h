@@ -36,7 +36,10 @@ class ClosedLight {
   };
   Way Follow(const Frame& grating, const Ray& ray, double wavelength_m, int i) const;
 
+  LocalGrating GratingAt(const Frame& grating, double x_m, double y_m) const;
+
   double lines_per_m_;
+  std::optional<GratingForm> form_;
   std::array<Frame, 2> planes_;
   std::optional<Scene> fixed_blockers_;
   std::optional<Scene> riding_blockers_;

@@ -10,6 +10,7 @@ GratingPoses::GratingPoses(std::span<const Eigen::Isometry3d> poses) : X_LG(pose
 DirectLight::DirectLight(const RotaryOpticsParameters& parameters, const std::array<Eigen::Isometry3d, 2>& X_LP)
     : scenes_(parameters, X_LP),
       lines_per_m_(parameters.grating.lines_per_m),
+      form_(parameters.grating.form),
       window_{parameters.psd_a.window, parameters.psd_b.window} {
   for (int i = 0; i < 2; ++i) {
     const auto n = static_cast<std::size_t>(i);
@@ -23,8 +24,10 @@ bool DirectLight::Leave(const Eigen::Isometry3d& X_LG, const Ray& ray, const Rot
   const Eigen::Vector3d normal = X_LG.linear().col(1);
   if (hit.element != RotaryElement::kGrating || !(ray.direction.dot(normal) < 0.0)) return false;
   const double shift = kOrderOfPsd[static_cast<std::size_t>(i)] * wavelength_m * lines_per_m_;
-  const OrderDirection out = Diffract(ray.direction, normal, X_LG.linear().col(0), shift);
+  LocalGrating local{normal, X_LG.linear().col(0)};
   // y of the surface runs along the grooves backwards (SurfacePoseOfGrating).
+  if (form_) local = LocalGratingAt(*form_, local.across, normal, X_LG.linear().col(2), hit.hit.x_m, -hit.hit.y_m);
+  const OrderDirection out = Diffract(ray.direction, local.normal, local.across, shift);
   way.ray = {X_LG * Eigen::Vector3d(hit.hit.x_m, 0.0, -hit.hit.y_m), out.direction};
   return out.status == OrderStatus::kOk;
 }

@@ -72,6 +72,7 @@ class DirectLight {
 
   RotaryScenes scenes_;
   double lines_per_m_;
+  std::optional<GratingForm> form_;
   std::array<std::optional<Window>, 2> window_;
   std::array<Frame, 2> plane_;  // of the silicon
 };

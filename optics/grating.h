@@ -3,9 +3,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "optics/grating_form.h"
 #include "optics/surface.h"
 
 /// Diffraction by a plane grating at any incidence and any orientation (conical diffraction included).
@@ -23,7 +25,8 @@ struct OrderDirection {
 ///
 /// @param d       Unit direction of the incident light.
 /// @param normal  Unit normal, either sign.
-/// @param across  Unit vector in the grating plane, across the grooves; m > 0 deflects towards it.
+/// @param across  Unit vector in the grating plane, across the grooves; m > 0 deflects towards it. Another length
+///                stands for grooves that are denser by it.
 /// @param order_lambda_rho  m * wavelength (in the medium around) * groove density, dimensionless.
 /// @return kEvanescent with NaN if the order does not propagate.
 ///
@@ -61,6 +64,8 @@ struct Grating {
   double height_m = std::numeric_limits<double>::quiet_NaN();  // z
   double reflectance = 1.0;                                    // upper bound of what all orders carry together
   std::vector<EfficiencyRow> table;                            // ascending in sin_incidence; one row: no dependence
+  std::optional<GratingForm> form;  // none: a plane with straight grooves. Ghosts and the
+                                    // shares of the orders know no form
 };
 
 /// Pose of the surface frame (x across, y along the grooves reversed, z normal) for a grating at X_WG.

@@ -21,9 +21,9 @@ TEST(EffectCatalogue, HasTheEffectsOfTheRotaryBench) {
   EXPECT_THAT(names, testing::UnorderedElementsAre("psd_gain", "psd_roll", "psd_nonlinearity", "stray_light",
                                                    "psd_distance", "wavelength_offset", "grating_pitch", "mode_hop",
                                                    "wavelength_temperature", "incidence_offset", "laser_drift",
-                                                   "mount_creep", "thermal_tilt", "backlash", "settling",
-                                                   "reclamp_frame", "bearing_half_frequency", "tone", "slip",
-                                                   "adc_step", "crosstalk", "outliers", "convention"));
+                                                   "post_growth", "mount_creep", "thermal_tilt", "backlash",
+                                                   "settling", "reclamp_frame", "bearing_half_frequency", "tone",
+                                                   "slip", "adc_step", "crosstalk", "outliers", "convention"));
 }
 
 TEST(EffectCatalogue, HasTheEffectsOfTheAngleComparison) {

@@ -98,6 +98,8 @@ std::vector<EffectCase> Cases() {
           {"mount_creep", "tilt", kNaN, 0.98},
           {"thermal_tilt", "yaw", 5 * arcsec, 0.99},
           {"thermal_tilt", "tilt", 5 * arcsec, 0.99},
+          {"post_growth", "psd_a", 2 * um, 0.99},
+          {"post_growth", "psd_b", 2 * um, 0.99},
           {"backlash", "target", 1 * arcsec, 0.999},
           {"backlash", "reference", 1 * arcsec, 0.999},
           {"settling", "", kNaN, 0.95},

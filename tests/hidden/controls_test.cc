@@ -85,6 +85,19 @@ TEST(Controls, ThermalTiltIsNotFoundWhenTheTemperaturesAreShuffled) {
   EXPECT_FALSE(Names(Diagnosed(Shuffled(readings, &Reading::temperature_degC)), "thermal_tilt"));
 }
 
+TEST(Controls, APostThatGrowsIsNamedWithItsSizeUnlessTheTemperaturesAreShuffled) {
+  for (const char* psd : {"psd_a", "psd_b"}) {
+    const auto readings = ReadingsWith(Effect("post_growth", psd, {{"growth_per_kelvin", 5.0 * units::um}}));
+    const Diagnosis as_it_is = Diagnosed(readings);
+    const Cause* cause = Find(as_it_is, "post_growth", psd);
+    ASSERT_NE(cause, nullptr) << psd;
+    EXPECT_GT(cause->probability, 0.5);
+    EXPECT_NEAR(cause->parameters.at(0).value, 5.0 * units::um, 4.0 * cause->parameters.at(0).u) << psd;
+    EXPECT_LT(cause->parameters.at(0).u, 1.0 * units::um);
+    EXPECT_FALSE(Names(Diagnosed(Shuffled(readings, &Reading::temperature_degC)), "post_growth"));
+  }
+}
+
 TEST(Controls, OppositeSizesGiveOppositeEstimates) {
   const auto fitted = [](double size) {
     const Diagnosis d = Diagnosed(ReadingsWith(Effect("psd_roll", "psd_a", {{"roll", size}})));

@@ -24,6 +24,7 @@ const std::map<std::string, std::string>& UsualSizes() {
                                                            {"laser_drift", "drift"},
                                                            {"mount_creep", "amplitude"},
                                                            {"thermal_tilt", "tilt_per_kelvin"},
+                                                           {"post_growth", "growth_per_kelvin"},
                                                            {"settling", "amplitude"},
                                                            {"tone", "amplitude"},
                                                            {"bearing_half_frequency", "tilt"},

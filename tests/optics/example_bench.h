@@ -31,7 +31,8 @@ inline RotaryOpticsParameters ExampleBench() {
                .width_m = 25e-3,
                .height_m = 25e-3,
                .reflectance = 1.0,
-               .table = {{0.0, {-2, {0.1, 0.339, 0.1, 0.339, 0.1}}}}};
+               .table = {{0.0, {-2, {0.1, 0.339, 0.1, 0.339, 0.1}}}},
+               .form = {}};
   p.psd_a = p.psd_b = ExamplePsd();
   return p;
 }

@@ -198,7 +198,8 @@ Grating ExampleGrating() {
           .width_m = 0.025,
           .height_m = 0.025,
           .reflectance = 0.9,
-          .table = {{0.0, SinusoidalEfficiencies(1.84, 2)}}};
+          .table = {{0.0, SinusoidalEfficiencies(1.84, 2)}},
+          .form = {}};
 }
 
 TEST(Efficiencies, OfASinusoidAreSquaredBesselFunctions) {

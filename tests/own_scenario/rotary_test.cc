@@ -34,6 +34,7 @@ std::vector<OwnKey> Psd(const std::string& psd) {
           Change(psd + ".post_growth_um_K", "5.0", {"environment.drift_K_h=0.5"}),
           Change(psd + ".responsivity_A_W", "0.001"),
           Change(psd + ".dark_current_nA", "1e5"),
+          Change(psd + ".background_nA", "5e4", {"laser.pitch_mrad=5.0"}),
           Change(psd + ".electrode_resistance_kohm", "0.01"),
           Change(psd + ".bandwidth_kHz", "1e5")};
 }
@@ -68,6 +69,10 @@ std::vector<OwnKey> RotaryChanges() {
                                            "mechanics.fidelity=linear"};
   const std::vector<std::string> rubbing = {"mechanics.friction_Nm=[0.5, 0.3]", "mechanics.fidelity=linear"};
   const std::vector<std::string> gaussian = {"laser.beam=gaussian"};
+  const std::vector<std::string> lit = {"laser.pitch_mrad=5.0", "psd_a.background_nA=1e5"};
+  const std::vector<std::string> eccentric = {"reference.centring_um=[1000.0, 500.0]"};
+  const std::vector<std::string> rough = {"grating.speckle_um=2.0"};
+  const std::vector<std::string> windy = {"optics.wander_urad=1.0"};
   const std::vector<std::string> hum = {"amplifier.hum_mV=20.0"};
   std::vector<OwnKey> keys = {
       Change("noise_free", "true"),
@@ -86,6 +91,20 @@ std::vector<OwnKey> RotaryChanges() {
       Change("grating.expansion_ppm_K", "20.0", {"environment.drift_K_h=0.5"}),
       Change("laser.pointing_yaw_per_kelvin_urad", "20.0", {"environment.drift_K_h=0.5"}),
       Change("laser.pointing_pitch_per_kelvin_urad", "20.0", {"environment.drift_K_h=0.5"}),
+      Change("laser.rin_dB_Hz", "-80.0", lit),
+      Change("laser.power_drift_percent_h", "-30.0", lit),
+      Change("grating.speckle_um", "2.0"),
+      Change("grating.speckle_correlation_arcsec", "60.0", rough),
+      Change("grating.sphere_nm", "500.0", eccentric),
+      Change("grating.astigmatism_nm", "500.0", eccentric),
+      Change("grating.ruling_chirp_ppm_mm", "50.0", eccentric),
+      Change("grating.ruling_fan_urad_mm", "50.0", eccentric),
+      {"grating.flatness_file", {}, "a file; optics.*FormedGrating*"},
+      {"grating.ruling_file", {}, "a file; optics.*FormedGrating*"},
+      Change("optics.wander_urad", "1.0"),
+      Change("optics.wander_corner_Hz", "20.0", windy),
+      Change("amplifier.low_pass_kHz", "0.5", hum),
+      Change("adc.dnl_lsb", "0.4", {"amplifier.noise_mV=0.2"}),
       Change("grating.lines_per_mm", "620.0"),
       Change("grating.width_mm", "12.0"),
       Change("grating.height_mm", "12.0"),

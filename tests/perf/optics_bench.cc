@@ -191,7 +191,7 @@ RotaryOpticsParameters Bench(BeamKind beam) {
   RotaryOpticsParameters p;
   p.nominal_wavelength_m = 650e-9;
   p.laser_position_m = {0.0, 0.2, 0.0};
-  p.grating = {600e3, 0.025, 0.025, 1.0, {{0.0, {-2, {0.1, 0.339, 0.1, 0.339, 0.1}}}}};
+  p.grating = {600e3, 0.025, 0.025, 1.0, {{0.0, {-2, {0.1, 0.339, 0.1, 0.339, 0.1}}}}, {}};
   p.psd_a.distance_m = 0.120;
   p.psd_a.width_m = p.psd_a.height_m = 0.010;
   p.psd_b = p.psd_a;

@@ -10,6 +10,7 @@
 #include "twin/sim/ad_sampler_direct.h"
 #include "twin/sim/ad_sampler_kernel.h"
 #include "twin/sim/ad_waveform.h"
+#include "twin/sim/code_widths.h"
 
 namespace twinbench::sim {
 namespace {
@@ -79,6 +80,15 @@ void NextNormals(std::size_t n, Stream& noise, Chunk& chunk) {
   noise.FillNormals(std::span(chunk.normals).subspan(kChannels, n));
 }
 
+void QuantiseChunk(const CodeWidths* widths, Simd simd, const Quantiser& quantiser, std::size_t n, Chunk& chunk,
+                   CodeSums& sums) {
+  const std::span<const float> signal = std::span(chunk.signal).first(n);
+  const std::span<const float> normals = std::span(chunk.normals).first(n + kChannels);
+  const std::span<std::int32_t> codes = std::span(chunk.codes).first(n);
+  if (widths != nullptr) return Quantise(*widths, quantiser, signal, normals, codes, sums);
+  Quantise(simd, quantiser, signal, normals, codes, sums);
+}
+
 /// Draws, converts and counts every sample.
 CodeSums CountEverySample(const AdcSettings& adc, const AdInput& input, const AdRequest& request,
                           const Quantiser& quantiser, Stream& noise, std::vector<std::int16_t>& raw) {
@@ -91,8 +101,7 @@ CodeSums CountEverySample(const AdcSettings& adc, const AdInput& input, const Ad
     const auto n = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total - first));
     if (first == 0 || !waveform.IsConstant()) FillSignal(waveform, quantiser, LsbOf(adc), first, n, chunk);
     NextNormals(n, noise, chunk);
-    Quantise(noise.simd(), quantiser, std::span(chunk.signal).first(n),
-             std::span(chunk.normals).first(n + kChannels), std::span(chunk.codes).first(n), sums);
+    QuantiseChunk(input.widths, noise.simd(), quantiser, n, chunk, sums);
     if (!request.keep_raw) continue;
     for (std::size_t i = 0; i < n; ++i) raw.push_back(static_cast<std::int16_t>(chunk.codes[i]));
   }

@@ -18,7 +18,11 @@
 ///     y_i = v_i + crosstalk v_(i-1)              charge that the multiplexer keeps from the channel before
 ///     x_i = y_i + step  if y_i >= threshold      code-dependent error of the converter
 ///     code_i = x_i / LSB to the nearest integer, ties to even (mid-tread), held within the two end codes
+///
+/// Where the widths of codes are stated, the code is that between whose edges x_i / LSB lies.
 namespace twinbench::sim {
+
+class CodeWidths;
 
 /// What reaches one channel of the multiplexer during a block.
 struct ChannelInput {
@@ -41,6 +45,7 @@ struct Hum {
 struct AdInput {
   std::array<ChannelInput, kChannels> channel;
   Hum hum;
+  const CodeWidths* widths = nullptr;  // null: all codes are equally wide
 };
 
 struct AdRequest {
@@ -78,8 +83,8 @@ double LsbOf(const AdcSettings& adc);
 /// are sums of integers.
 ///
 /// Direct drawing is used if no raw codes are wanted, every noise_V is at least LSB / 2 and 4 LSB over the root of
-/// n_samples, no extra_V is set and neither an end code nor the step threshold lies within 8 standard deviations of
-/// the signal; otherwise every sample is drawn. What it leaves out:
+/// n_samples, no extra_V and no widths are set and neither an end code nor the step threshold lies within 8
+/// standard deviations of the signal; otherwise every sample is drawn. What it leaves out:
 /// - means of codes lie on a lattice of LSB / n_samples, direct ones do not;
 /// - quantisation is taken as independent noise of variance LSB^2 / 12. At noise_V = LSB / 2 that is wrong by up to
 ///   0.003 LSB in the mean and 2.5 % in the variance, at noise_V = LSB by less than 2e-8 in both;

@@ -132,6 +132,7 @@ std::array<SignalMoments, kChannels> MomentsOf(const AdcSettings& adc, const AdI
 }
 
 bool CanDrawDirectly(const AdcSettings& adc, const AdInput& input, int n_samples) {
+  if (input.widths != nullptr) return false;
   for (std::size_t k = 0; k < kChannels; ++k) {
     if (!ChannelIsSmooth(adc, input, k, n_samples)) return false;
   }

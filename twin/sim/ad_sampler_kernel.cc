@@ -114,13 +114,6 @@ void QuantiseLanes(Simd simd, const Work& work, LaneSums& sums) {
   }
 }
 
-void AddCode(std::size_t channel, std::int32_t code, std::int64_t deviation, std::int64_t square, CodeSums& sums) {
-  sums.deviation[channel] += deviation;
-  sums.square[channel] += square;
-  sums.lowest[channel] = std::min(sums.lowest[channel], code);
-  sums.highest[channel] = std::max(sums.highest[channel], code);
-}
-
 void AddLanes(const LaneSums& lane_sums, CodeSums& sums) {
   for (std::size_t l = 0; l < kLanes; ++l) {
     AddCode(l % kChannels, lane_sums.lowest[l], lane_sums.deviation[l], lane_sums.square[l], sums);
@@ -133,6 +126,13 @@ void AddLanes(const LaneSums& lane_sums, CodeSums& sums) {
 CodeSums::CodeSums() {
   lowest.fill(std::numeric_limits<std::int32_t>::max());
   highest.fill(std::numeric_limits<std::int32_t>::min());
+}
+
+void AddCode(std::size_t channel, std::int32_t code, std::int64_t deviation, std::int64_t square, CodeSums& sums) {
+  sums.deviation[channel] += deviation;
+  sums.square[channel] += square;
+  sums.lowest[channel] = std::min(sums.lowest[channel], code);
+  sums.highest[channel] = std::max(sums.highest[channel], code);
 }
 
 void Quantise(Simd simd, const Quantiser& quantiser, std::span<const float> signal, std::span<const float> normals,

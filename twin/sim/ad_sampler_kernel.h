@@ -7,7 +7,7 @@
 #include "twin/core/reading.h"
 #include "twin/core/stream_kernel.h"
 
-/// The inner loop of the A/D converter, in units of its codes. Private to ad_sampler.cc and its tests.
+/// The inner loop of the A/D converter, in units of its codes. Private to the converter and its tests.
 namespace twinbench::sim {
 
 inline constexpr int kChunkScans = 256;
@@ -35,6 +35,9 @@ struct CodeSums {
   std::array<std::int32_t, kChannels> highest;  // code
   CodeSums();
 };
+
+/// @param deviation, square  Of the code from the channel's base.
+void AddCode(std::size_t channel, std::int32_t code, std::int64_t deviation, std::int64_t square, CodeSums& sums);
 
 /// Quantises conversions and adds them to `sums`.
 ///

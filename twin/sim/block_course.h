@@ -48,6 +48,14 @@ class BlockCourse {
     }
   }
 
+  /// Comes to the knots, one after the other: `added(channel)`.
+  template <class Added>
+  void Stir(Added added) {
+    for (Voltages& knot_V : knots_V_) {
+      for (std::size_t c = 0; c < kChannels; ++c) knot_V[c] += added(c);
+    }
+  }
+
   /// Whether no channel is anywhere further than this from its mean or, for IsStraight, from its chord.
   bool IsLevel(double within_V) const;
   bool IsStraight(double within_V) const;

@@ -51,8 +51,8 @@ std::vector<DesiredColumn> Desired() {
       {"dwell_s", [](const Reading& r) { return std::isfinite(r.dwell_s); },
        "settling cannot be named: it looks like backlash"},
       {"temperature_degC", [](const Reading& r) { return std::isfinite(r.temperature_degC); },
-       "wavelength_temperature and thermal_tilt cannot be named: they look like laser_drift, mount_creep or "
-       "unknown structure in time"},
+       "wavelength_temperature, thermal_tilt and post_growth cannot be named: they look like laser_drift, "
+       "mount_creep or unknown structure in time"},
       {"n_samples and psd_..._std_V", HasScatter,
        "the noise of a reading is taken from the scenario, so that a wrong noise figure and small structure "
        "without a name look alike"},

@@ -32,10 +32,22 @@ void SilenceConverter(Scenario& s) {
   adc.bits = kFinestBits;
   adc.jitter_s = 0.0;
   adc.inl_file.clear();
+  RotaryOf(s).chain.dnl_lsb = 0.0;
 }
 
 void SilenceDetectors(Scenario& s) {
   for (PsdSettings* psd : {&RotaryOf(s).psd_a, &RotaryOf(s).psd_b}) psd->bandwidth_Hz = 0.0;
+}
+
+void SilenceRoomLight(Scenario& s) {
+  for (PsdSettings* psd : {&RotaryOf(s).psd_a, &RotaryOf(s).psd_b}) psd->background_A = 0.0;
+}
+
+void FlattenGrating(Scenario& s) {
+  GratingSettings& grating = RotaryOf(s).grating;
+  grating.sphere_m = grating.astigmatism_m = grating.ruling_chirp_per_m = grating.ruling_fan_rad_m = 0.0;
+  grating.flatness_file.clear();
+  grating.ruling_file.clear();
 }
 
 void SilenceDistances(Scenario& s) {
@@ -56,6 +68,11 @@ std::vector<Contribution> OfTheBench() {
   return {{"laser wavelength by temperature", [](Scenario& s) { RotaryOf(s).laser.wavelength_per_kelvin_m = 0.0; }},
           {"laser mode hops", [](Scenario& s) { RotaryOf(s).laser.mode_hop_K = 0.0; }},
           {"laser pointing by temperature", SilencePointing},
+          {"laser power drift", [](Scenario& s) { RotaryOf(s).laser.power_drift_per_s = 0.0; }},
+          {"background light", SilenceRoomLight},
+          {"form and ruling of the grating", FlattenGrating},
+          {"speckle", [](Scenario& s) { RotaryOf(s).grating.speckle_m = 0.0; }},
+          {"moving air", [](Scenario& s) { RotaryOf(s).optics.wander_rad = 0.0; }},
           {"grating expansion", [](Scenario& s) { RotaryOf(s).grating.expansion_per_K = 0.0; }},
           {"expansion of the distances", SilenceDistances},
           {"growth of the posts", SilencePosts},

@@ -87,6 +87,11 @@ std::vector<EffectEntry> LightEffects() {
 std::vector<EffectEntry> BodyEffects() {
   const std::vector<std::string> axes = {"yaw", "tilt"};
   return {
+      // 1-4 um/K: 100 to 200 mm of steel or aluminium
+      {"post_growth",
+       "post of a PSD that grows with the temperature",
+       {"psd_a", "psd_b"},
+       {Signed("growth_per_kelvin", "um_K", 2.0, 1000.0, "of its height, against environment.reference_degC")}},
       // 0.2-5"
       {"mount_creep",
        "creep of the grating after every mounting",

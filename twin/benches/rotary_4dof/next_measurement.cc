@@ -19,6 +19,10 @@ std::string NextMeasurement(const std::string& effect, const std::string& rival)
        "product"},
       {{"mode_hop", "slip"},
        "the PSDs at another distance, or order 0 beside them: a hop moves no order 0, a shift of the grating does"},
+      {{"post_growth", "thermal_tilt"},
+       "the warm-up with one detector's post kept at its temperature: the grating tilts both spots, a post lowers "
+       "its own"},
+      {{"laser_drift", "post_growth"}, "a warm-up run with the temperature changed by 1 K"},
       {{"mount_creep", "slip"}, "a repeat of the set-up without re-mounting"},
       {{"backlash", "backlash"}, "a reversal of the target alone"}};
   return diagnose::WhatSplits(splits, effect, rival, "");

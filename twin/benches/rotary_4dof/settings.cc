@@ -34,6 +34,19 @@ void AddLaser(Keys& keys, LaserSettings& s) {
         "of its height, against environment.reference_degC");
   t.Add("pointing_yaw_per_kelvin", kUrad, Within(10000), &s.pointing_yaw_per_kelvin_rad, "likewise");
   t.Add("pointing_pitch_per_kelvin", kUrad, Within(10000), &s.pointing_pitch_per_kelvin_rad, "likewise");
+  t.Add("rin", {"dB_Hz"}, {-250, 0}, &s.rin_dB_Hz, "relative intensity noise, white; 0: none");
+  t.Add("power_drift", {"percent_h", 0.01 / units::hour}, Within(100), &s.power_drift_per_s, "of its power");
+}
+
+void AddRuling(Table& t, GratingSettings& s) {
+  t.Add("sphere", kNm, Within(1e6), &s.sphere_m, "its front at half its width above its middle");
+  t.Add("astigmatism", kNm, Within(1e6), &s.astigmatism_m, "the same along x, as much lower along z");
+  t.Add("ruling_chirp", {"ppm_mm", 1e-6 / units::mm}, Within(1e4), &s.ruling_chirp_per_m,
+        "growth of the grooves' distance");
+  t.Add("ruling_fan", {"urad_mm", units::urad / units::mm}, Within(1e4), &s.ruling_fan_rad_m,
+        "turn of the grooves along x");
+  t.File("flatness_file", s.flatness_file, "OpenEXR of the front's height [um]");
+  t.File("ruling_file", s.ruling_file, "OpenEXR of how far the grooves lie towards +x [um]");
 }
 
 void AddGrating(Keys& keys, GratingSettings& s) {
@@ -45,6 +58,10 @@ void AddGrating(Keys& keys, GratingSettings& s) {
   t.File("efficiency_file", s.efficiency_file,
          "instead, by incidence: CSV of sin_incidence, m-2, m-1, m0, m+1, m+2");
   t.Add("expansion", {"ppm_K", 1e-6}, Within(1000), &s.expansion_per_K, "of the distance of its grooves");
+  t.Add("speckle", kUm, UpTo(1000), &s.speckle_m, "by which speckle moves a spot along each axis, rms");
+  t.Add("speckle_correlation", kArcsec, Positive(36000), &s.speckle_correlation_rad,
+        "turn of the grating after which 1/e of it is the same");
+  AddRuling(t, s);
   t.Add("point", kMm, Within(5000), List(s.point_m), "the spot, from the reference table's origin: x, y, z");
 }
 
@@ -54,6 +71,8 @@ void AddOptics(Keys& keys, LightSettings& s) {
          "how the laser's light is found: by Embree, or by a formula");
   t.Add("profile_rays", kPure, {1, 1e7}, &s.profile_rays,
         "traced: places of a measured beam told apart; its pixels are gathered to so many at most");
+  t.Add("wander", kUrad, UpTo(10000), &s.wander_rad, "of light on a metre of moving air, rms");
+  t.Add("wander_corner", kHz, Positive(1000), &s.wander_corner_Hz, "wind over the beam's diameter");
 }
 
 void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
@@ -81,12 +100,13 @@ void AddPsd(Keys& keys, const std::string& table, PsdSettings& s) {
         "of its height, against environment.reference_degC");
   t.Add("responsivity", {"A_W"}, Positive(2), &s.responsivity_A_W, "photocurrent over light [A/W]");
   t.Add("dark_current", {"nA", 1e-9}, UpTo(1e6), &s.dark_current_A, "of the detector");
+  t.Add("background", {"nA", 1e-9}, UpTo(1e6), &s.background_A, "that counts as signal: light of the room");
   t.Add("electrode_resistance", {"kohm", 1e3}, Positive(1e6), &s.electrode_resistance_ohm,
         "between the electrodes of an axis");
   t.Add("bandwidth", kKilohertz, Positive(1e6), &s.bandwidth_Hz, "of the read-out, for the light's own noise");
 }
 
-void AddAmplifier(Keys& keys, AmplifierSettings& s) {
+void AddAmplifier(Keys& keys, AmplifierSettings& s, ChainSettings& chain) {
   Table t(keys, "amplifier");
   t.Add("offset", kMillivolt, Within(20000), List(s.offset_V), "psd_a_x, psd_a_y, psd_b_x, psd_b_y");
   t.Add("gain_error", kPure, Within(0.9), List(s.gain_error), "of the same channels");
@@ -94,10 +114,11 @@ void AddAmplifier(Keys& keys, AmplifierSettings& s) {
   t.Add("flicker", kMillivolt, UpTo(10000), &s.flicker_V, "1/f noise, standard deviation of one decade");
   t.Add("hum", kMillivolt, UpTo(10000), &s.hum_V, "amplitude of the mains hum, on all channels");
   t.Add("hum_frequency", kHz, Positive(1e6), &s.hum_Hz, "of the hum");
+  t.Add("low_pass", kKilohertz, UpTo(1e6), &chain.low_pass_Hz, "of one pole before the converter; 0: none");
   t.Add("low_light_fraction", kPure, UpTo(1), &s.low_light_fraction, "of the nominal power; below: no light");
 }
 
-void AddAdc(Keys& keys, AdcSettings& s) {
+void AddAdc(Keys& keys, AdcSettings& s, ChainSettings& chain) {
   Table t(keys, "adc");
   t.Text("scan_list", &s.scan_list, {kChannelNames.begin(), kChannelNames.end()}, "order of conversion, each once");
   t.Add("bits", kPure, {4, 16}, &s.bits, "of one conversion");
@@ -108,6 +129,7 @@ void AddAdc(Keys& keys, AdcSettings& s) {
   t.Add("samples", kPure, {1, 1e7}, &s.samples, "scans a reading");
   t.Flag("every_sample", s.every_sample, "false: draw mean and deviation of a block at once");
   t.File("inl_file", s.inl_file, "integral non-linearity: CSV of voltage_V, error_mV");
+  t.Add("dnl", {"lsb"}, UpTo(0.4), &chain.dnl_lsb, "differential non-linearity, rms");
   t.Add("jitter", kMicrosecond, UpTo(1e6), &s.jitter_s, "of the instants of conversion, standard deviation");
   t.Add("lost_fraction", kPure, UpTo(0.9), &s.lost_fraction, "of scans that do not arrive");
 }
@@ -249,8 +271,8 @@ void AddKeys(Keys& keys, Scenario& s) {
   AddOptics(keys, own.optics);
   AddPsd(keys, "psd_a", own.psd_a);
   AddPsd(keys, "psd_b", own.psd_b);
-  AddAmplifier(keys, own.amplifier);
-  AddAdc(keys, own.adc);
+  AddAmplifier(keys, own.amplifier, own.chain);
+  AddAdc(keys, own.adc, own.chain);
   AddTable(keys, "target", "in L", own.target);
   AddReferenceMounting(keys, s);
   AddTable(keys, "reference", "in its rotor frame", own.reference);

@@ -29,6 +29,8 @@ struct LaserSettings {                      // [laser]
   double post_growth_m_K = 0.0;               // of its height in L
   double pointing_yaw_per_kelvin_rad = 0.0;
   double pointing_pitch_per_kelvin_rad = 0.0;
+  double rin_dB_Hz = 0.0;          // relative intensity noise, white; 0: none
+  double power_drift_per_s = 0.0;  // of its power, relative
 };
 
 struct GratingSettings {  // [grating]
@@ -41,12 +43,22 @@ struct GratingSettings {  // [grating]
                                        // m+2; absolute once loaded
   Vector3 point_m{0.0, 0.030, 0.050};  // of the spot, from the reference table's origin
   double expansion_per_K = 0.0;        // of the distance of its grooves
+  double speckle_m = 0.0;              // by which speckle moves a spot along each axis, root mean square ...
+  double speckle_correlation_rad = 130.0 * units::arcsec;  // ... and after which turn by 1/e of it only is the same
+  double sphere_m = 0.0;                                   // its front at half its width above its middle
+  double astigmatism_m = 0.0;                              // the same along x and as much lower along z
+  double ruling_chirp_per_m = 0.0;                         // relative growth of the grooves' distance along x ...
+  double ruling_fan_rad_m = 0.0;                           // ... and turn of the grooves along x
+  std::string flatness_file;                               // OpenEXR of its front's height; absolute once loaded
+  std::string ruling_file;  // OpenEXR of how far the grooves lie from where they should, towards +x
 };
 
 /// How the light is found. Known to the twin only, not to the estimators.
 struct LightSettings {              // [optics]
   std::string fidelity = "traced";  // traced | closed
   int profile_rays = 16384;         // traced: places of a measured beam that are told apart
+  double wander_rad = 0.0;          // of light on a metre of moving air: displacement over length, rms
+  double wander_corner_Hz = 100.0;  // wind over the beam's diameter
 };
 
 struct PsdSettings {          // [psd_a], [psd_b]
@@ -69,6 +81,7 @@ struct PsdSettings {          // [psd_a], [psd_b]
   double silicon_reflectance = 0.0;  // > 0 switches the PSD -> grating -> PSD ghosts on
   double responsivity_A_W = 0.45;    // silicon in red light
   double dark_current_A = 10.0e-9;
+  double background_A = 0.0;               // that the read-out takes for signal: light of the room
   double electrode_resistance_ohm = 10e3;  // between the two electrodes of an axis
   double distance_expansion_per_K = 0.0;   // of what holds it at its distance
   double post_growth_m_K = 0.0;            // of its height in L
@@ -101,6 +114,12 @@ inline MechanicsSettings BodiesOnAQuietFloor() {
   return mechanics;
 }
 
+/// Keys of [amplifier] and [adc] that this bench alone has.
+struct ChainSettings {
+  double low_pass_Hz = 0.0;  // amplifier.low_pass: of one pole; 0: none
+  double dnl_lsb = 0.0;      // adc.dnl: differential non-linearity, root mean square
+};
+
 struct RotarySettings {
   LaserSettings laser;
   GratingSettings grating;
@@ -109,6 +128,7 @@ struct RotarySettings {
   PsdSettings psd_b;
   AmplifierSettings amplifier;
   AdcSettings adc;
+  ChainSettings chain;
   TableSettings target;
   TableSettings reference;
   double reference_height_m = 0.080;                     // [reference] height_mm: its origin above the target's
@@ -127,8 +147,8 @@ inline const RotarySettings& RotaryOf(const Scenario& scenario) {
   return scenario.own.As<RotarySettings>();
 }
 
-// A reading of the rotary bench is the mean of a block of the A/D converter: it tells of the middle of the block, and
-// `time_s` is its begin.
+// A reading of the rotary bench is the mean of a block of the A/D converter: it tells of the middle of the block,
+// and `time_s` is its begin.
 
 inline Duration BlockTime(const AdcSettings& adc, int n_samples) {
   return FromSeconds(static_cast<double>(n_samples) * kChannels / adc.rate_Hz);

@@ -135,6 +135,9 @@ void AddTime(Responses& responses, double reference_degC, Candidates& named) {
   const Eigen::VectorXd above_K = model::Above_K(s, reference_degC);
   const AtPoint laser("wavelength_temperature", "", responses, "laser.wavelength");
   named.Add(laser.showing, {"wavelength_per_kelvin"}, laser.Of(above_K));
+  for (int psd = 0; psd < 2; ++psd)
+    named.Add({"post_growth", psd == 0 ? "psd_a" : "psd_b", -Eigen::Vector4d::Unit(2 * psd + 1)},
+              {"growth_per_kelvin"}, above_K);
   const Shape lag =
       named.catalogue().ShapeOf("thermal_tilt", "lag", {0.0, 150.0, 300.0, 600.0, 900.0, 1350.0, 2000.0, 3000.0});
   for (const char* where : {"yaw", "tilt"}) {

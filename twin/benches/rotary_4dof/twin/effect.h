@@ -46,7 +46,8 @@ struct LightState {
   double wavelength_m = 0.0;
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;
-  double above_K = 0.0;  // what lengths on the way have grown by
+  double above_K = 0.0;       // what lengths on the way have grown by
+  double power_change = 0.0;  // relative, above -1
 };
 
 /// How the grating was brought back to the PSDs.

@@ -12,6 +12,8 @@ namespace {
 void SilenceRotary(RotarySettings& own) {
   own.amplifier.noise_V = own.amplifier.flicker_V = 0.0;
   own.adc.lost_fraction = 0.0;
+  own.laser.rin_dB_Hz = 0.0;
+  own.optics.wander_rad = 0.0;
   own.autocollimator.noise_rad = 0.0;
   Silence(own.target);
   Silence(own.reference);

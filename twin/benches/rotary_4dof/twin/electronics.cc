@@ -30,6 +30,7 @@ double ShareAbove(double threshold_V, double level_V, double noise_V) {
 
 Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
     : psd_{RotaryOf(actual).psd_a, RotaryOf(actual).psd_b},
+      rin_dB_Hz_(RotaryOf(actual).laser.rin_dB_Hz),
       adc_(RotaryOf(actual).adc),
       amplifier_(RotaryOf(actual).amplifier),
       sensitivity_V_m_{RotaryOf(actual).psd_a.sensitivity_V_m, RotaryOf(actual).psd_a.sensitivity_V_m,
@@ -38,7 +39,12 @@ Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
       scan_(ScanOf(RotaryOf(actual).adc.scan_list)),
       noise_free_(actual.noise_free),
       seed_(actual.RunSeed()),
-      noise_(actual.RunSeed(), "amplifier.noise") {
+      noise_(actual.RunSeed(), "amplifier.noise"),
+      low_pass_(RotaryOf(actual).chain.low_pass_Hz),
+      widths_(RotaryOf(actual).chain.dnl_lsb, RotaryOf(actual).adc.bits, actual.seed) {
+  if (!low_pass_.PassesAll()) {
+    for (PsdSettings& psd : psd_) psd.bandwidth_Hz = std::min(psd.bandwidth_Hz, low_pass_.NoiseBand_Hz());
+  }
   if (!adc_.inl_file.empty())
     non_linearity_V_ = ReadSampledCurve(adc_.inl_file, {"voltage_V"}, {"error_mV", units::mV});
   for (const char* channel : kChannelNames)
@@ -82,15 +88,41 @@ std::array<double, kChannels> Electronics::Amplify(const std::array<double, kCha
   return signal_V;
 }
 
-std::array<double, kChannels> Electronics::LightNoise_V(const Spots& spots) const {
-  std::array<double, kChannels> noise_V{};
+LightNoise Electronics::LightNoiseOf(const Spots& spots) const {
+  LightNoise noise;
   for (std::size_t c = 0; c < kChannels; ++c) {
     const PsdSettings& psd = psd_[c / 2];
     const double length_m = c % 2 == 0 ? psd.width_m : psd.height_m;
     const double noise_m = PsdNoise_m(psd, spots.power_W[c / 2], length_m, spots.uv_m[c]);
-    noise_V[c] = sensitivity_V_m_[c] * std::abs(1.0 + amplifier_.gain_error[c]) * noise_m;
+    const double gain_V_m = sensitivity_V_m_[c] * (1.0 + amplifier_.gain_error[c]);
+    noise.own_V[c] = std::abs(gain_V_m) * noise_m;
+    noise.common_V[c] = gain_V_m * IntensityNoise_m(psd, rin_dB_Hz_, spots.power_W[c / 2], spots.uv_m[c]);
   }
-  return noise_V;
+  return noise;
+}
+
+void Electronics::AddPoledNoise(const LightNoise& light_noise, double step_s, int reading,
+                                BlockCourse& course) const {
+  Stream stream(seed_, "light.low_passed");
+  stream.Seek(static_cast<std::uint64_t>(reading) << 32);
+  PoledNoise laser(1.0, step_s, Lag_s());
+  std::vector<PoledNoise> own;
+  for (const double own_V : light_noise.own_V) own.emplace_back(own_V, step_s, Lag_s());
+  double power = 0.0;  // in standard deviations of it
+  course.Stir([&](std::size_t c) {
+    if (c == 0) power = laser.Next(stream);
+    return own[c].Next(stream) + light_noise.common_V[c] * power;
+  });
+}
+
+/// Knots at every conversion.
+BlockCourse Electronics::LowPassed(const BlockCourse& course, const LightNoise& light_noise, int reading,
+                                   int n_samples) const {
+  const int steps = static_cast<int>(kChannels) * n_samples;
+  const Duration step = BlockTime(adc_, n_samples) / steps;
+  BlockCourse passed = low_pass_.Passed(course, step, steps);
+  if (!noise_free_) AddPoledNoise(light_noise, ToSeconds(step), reading, passed);
+  return passed;
 }
 
 /// Of signals that stand still in the block.
@@ -107,6 +139,7 @@ AdInput Electronics::InScanOrder(const std::array<double, kChannels>& level_V, T
   }
   // Whole turns are taken off before the sine sees them, so that the phase keeps its digits after hours.
   const double turns = amplifier_.hum_Hz * ToSeconds(start);
+  if (!widths_.AreEqual()) input.widths = &widths_;
   input.hum = {amplifier_.hum_V, amplifier_.hum_Hz, 2.0 * units::kPi * (turns - std::floor(turns))};
   return input;
 }
@@ -144,16 +177,22 @@ Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
   return block;
 }
 
-Acquisition Electronics::Convert(BlockCourse course, const std::array<double, kChannels>& light_noise_V, Time start,
-                                 int reading, int n_samples, bool keep_raw) {
+Acquisition Electronics::Convert(BlockCourse course, const LightNoise& light_noise, Time start, int reading,
+                                 int n_samples, bool keep_raw) {
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
+  LightNoise fresh = light_noise;  // with every sample
+  if (!low_pass_.PassesAll()) {
+    course = LowPassed(course, light_noise, reading, n_samples);
+    fresh = {};
+  }
   course.Bend([this](double voltage_V) { return AsConverted_V(voltage_V); });
   AdInput input = InScanOrder(course.Means_V(), start);
   Follow(course, input);
   for (std::size_t place = 0; place < kChannels; ++place) {
     const std::size_t c = scan_[place];
     double& noise_V = input.channel[place].noise_V;
-    noise_V = std::hypot(noise_V, light_noise_V[c], JitterNoise_V(course, c));
+    noise_V = std::hypot(noise_V, fresh.own_V[c], JitterNoise_V(course, c));
+    if (fresh.common_V[c] != 0.0) noise_V = std::hypot(noise_V, fresh.common_V[c]);
   }
   const AdRequest request{Arriving(n_samples, reading), adc_.every_sample, keep_raw, noise_free_};
   return InChannelOrder(TakeBlock(adc_, input, request, noise_).ToAcquisition(start));
@@ -172,7 +211,10 @@ std::array<double, kChannels> Electronics::Expect(std::array<double, kChannels> 
     const std::size_t c = scan_[place];
     const double level_V = block.channel[place].mean_V;
     mean_V[c] = level_V;
-    if (blurred) mean_V[c] += sampling_.step_V[c] * ShareAbove(sampling_.step_at_V[c], level_V, noise_V);
+    if (!blurred) continue;
+    mean_V[c] += sampling_.step_V[c] * ShareAbove(sampling_.step_at_V[c], level_V, noise_V);
+    if (!widths_.AreEqual())
+      mean_V[c] += LsbOf(adc_) * widths_.Shift_lsb(level_V / LsbOf(adc_), noise_V / LsbOf(adc_));
   }
   return mean_V;
 }

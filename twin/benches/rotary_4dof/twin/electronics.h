@@ -8,11 +8,20 @@
 #include "twin/core/stream.h"
 #include "twin/sim/ad_sampler.h"
 #include "twin/sim/block_course.h"
+#include "twin/sim/code_widths.h"
 #include "twin/sim/flicker_noise.h"
+#include "twin/sim/low_pass.h"
 
 namespace twinbench::sim {
 
-/// From spots to A/D blocks: amplifiers with gain, offset, noise and hum, then the multiplexed converter.
+/// Noise of the light in one sample, standard deviations at the amplifiers' outputs in channel order.
+struct LightNoise {
+  std::array<double, kChannels> own_V{};     // shot noise and the detectors' thermal noise
+  std::array<double, kChannels> common_V{};  // what one and the same change of the laser's power does; signed
+};
+
+/// From spots to A/D blocks: amplifiers with gain, offset, noise and hum, a low pass, then the
+/// multiplexed converter.
 class Electronics {
  public:
   Electronics(const Scenario& actual, const SamplingState& sampling);
@@ -25,15 +34,19 @@ class Electronics {
   /// The amplifiers' 1 / f noise.
   void AddFlicker(Time now, std::array<double, kChannels>& signal_V) const;
 
-  /// Of the light itself, one sample, standard deviation at the amplifiers' outputs (psd_noise.h).
-  std::array<double, kChannels> LightNoise_V(const Spots& spots) const;
+  /// Of the light itself (psd_noise.h), in the band of the read-out, or of the low pass where that is narrower.
+  LightNoise LightNoiseOf(const Spots& spots) const;
+  /// By which the low pass is late: what changes slowly is shown as it was this long ago.
+  double Lag_s() const { return low_pass_.Lag_s(); }
 
   /// Converts one block. What changes in it by less than a thousandth of a code step counts as steady, what is that
   /// near to a straight line as one: then samples need not be asked one by one. `reading` enters the noise stream,
   /// so that a reading's noise does not depend on how many samples the readings before it took.
-  /// @param light_noise_V  Of each channel; comes to the amplifiers' own.
-  Acquisition Convert(BlockCourse course, const std::array<double, kChannels>& light_noise_V, Time start,
-                      int reading, int n_samples, bool keep_raw);
+  /// @param light_noise  Comes to the amplifiers' own. Conversions follow each other so late that without a low
+  ///                     pass each sees noise of its own; behind one it is correlated in time, and the laser's
+  ///                     moves all channels together.
+  Acquisition Convert(BlockCourse course, const LightNoise& light_noise, Time start, int reading, int n_samples,
+                      bool keep_raw);
 
   /// The mean that such a block would have if it were taken again and again: hum and crosstalk as they fall into
   /// it, a step of the converter blurred by the samples' noise, no quantisation. NaN at the ends of the range.
@@ -42,6 +55,8 @@ class Electronics {
                                        double noise_V) const;
 
  private:
+  BlockCourse LowPassed(const BlockCourse& course, const LightNoise& light_noise, int reading, int n_samples) const;
+  void AddPoledNoise(const LightNoise& light_noise, double step_s, int reading, BlockCourse& course) const;
   double AsConverted_V(double voltage_V) const;
   double JitterNoise_V(const BlockCourse& course, std::size_t channel) const;
   int Arriving(int n_samples, int reading) const;
@@ -50,6 +65,7 @@ class Electronics {
   Acquisition InChannelOrder(const Acquisition& scanned) const;
 
   std::array<PsdSettings, 2> psd_;
+  double rin_dB_Hz_;
   AdcSettings adc_;
   AmplifierSettings amplifier_;
   std::array<double, kChannels> sensitivity_V_m_;
@@ -59,7 +75,9 @@ class Electronics {
   std::uint64_t seed_;
   Stream noise_;
   std::vector<FlickerNoise> flicker_;  // one a channel
-  SampledCurve non_linearity_V_;       // what the converter adds, over the voltage
+  LowPass low_pass_;
+  CodeWidths widths_;
+  SampledCurve non_linearity_V_;  // what the converter adds, over the voltage
 };
 
 }  // namespace twinbench::sim

@@ -73,6 +73,23 @@ std::vector<optics::EfficiencyRow> EfficienciesFrom(const std::string& path) {
   return efficiencies;
 }
 
+std::optional<optics::HeightMap> MapFrom(const std::string& key, const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  try {
+    return optics::ReadHeightMap(path);
+  } catch (const std::runtime_error& error) {
+    throw InputError(key, error.what(), "an OpenEXR file with a channel Y in um and a pixel pitch");
+  }
+}
+
+optics::GratingForm FormOf(const GratingSettings& s) {
+  optics::GratingForm form{
+      0.5 * s.width_m, s.sphere_m, s.astigmatism_m, s.ruling_chirp_per_m, s.ruling_fan_rad_m, {}, {}};
+  form.flatness_um = MapFrom("grating.flatness_file", s.flatness_file);
+  form.ruling_um = MapFrom("grating.ruling_file", s.ruling_file);
+  return form;
+}
+
 optics::Grating GratingOf(const GratingSettings& s) {
   optics::Grating grating;
   grating.lines_per_m = s.lines_per_m;
@@ -80,6 +97,7 @@ optics::Grating GratingOf(const GratingSettings& s) {
   grating.height_m = s.height_m;
   grating.table = {{0.0, {-2, {s.efficiency.begin(), s.efficiency.end()}}}};
   if (!s.efficiency_file.empty()) grating.table = EfficienciesFrom(s.efficiency_file);
+  if (const optics::GratingForm form = FormOf(s); !form.IsPlain()) grating.form = form;
   return grating;
 }
 
@@ -174,12 +192,19 @@ ReadingStatus StatusOf(optics::PsdStatus status) {
   return ReadingStatus::kMissing;
 }
 
+/// Of the light that makes the same current.
+double BackgroundOf_W(const PsdSettings& psd) {
+  return psd.background_A / psd.responsivity_A_W;
+}
+
 }  // namespace
 
 Light::Light(const Scenario& actual, double nominal_wavelength_m, LightAsked asked)
     : laser_(RotaryOf(actual).laser),
       low_light_fraction_(RotaryOf(actual).amplifier.low_light_fraction),
       post_growth_m_K_{RotaryOf(actual).psd_a.post_growth_m_K, RotaryOf(actual).psd_b.post_growth_m_K},
+      background_W_{BackgroundOf_W(RotaryOf(actual).psd_a), BackgroundOf_W(RotaryOf(actual).psd_b)},
+      speckle_(RotaryOf(actual).grating, actual.seed),
       optics_(OpticsOf(actual, nominal_wavelength_m, asked)) {
   if (Grows(RotaryOf(actual))) {
     const Scenario warm = Warmed(actual);
@@ -202,7 +227,7 @@ LightState Light::Nominal(double temperature_K) const {
 }
 
 optics::SourceState Light::SourceOf(const LightState& light) const {
-  return {light.wavelength_m, light.yaw_rad, light.pitch_rad, laser_.power_W};
+  return {light.wavelength_m, light.yaw_rad, light.pitch_rad, laser_.power_W * (1.0 + light.power_change)};
 }
 
 Spots Light::Trace(const Pose& X_LG, const LightState& light) const {
@@ -232,7 +257,17 @@ Spots Light::SpotsOf(const optics::PsdSignals& signals, const Pose& X_LG, const 
     if (spots.status == ReadingStatus::kOk) spots.status = status;
   }
   if (light.above_K != 0.0) Warm(signals, X_LG, light, spots);
+  speckle_.Move(X_LG, spots.uv_m);
+  for (std::size_t p = 0; p < 2; ++p) Dilute(p, spots);
   return spots;
+}
+
+/// A background that counts as signal lies about the detector's middle and draws the place there.
+void Light::Dilute(std::size_t p, Spots& spots) const {
+  if (background_W_[p] == 0.0) return;
+  const double share = spots.power_W[p] / (spots.power_W[p] + background_W_[p]);
+  spots.uv_m[2 * p] *= share;
+  spots.uv_m[2 * p + 1] *= share;
 }
 
 /// Moves the spots to where they are with the lengths as they have grown.

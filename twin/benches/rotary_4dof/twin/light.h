@@ -5,6 +5,7 @@
 #include "optics/bench.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effect.h"
+#include "twin/benches/rotary_4dof/twin/speckle.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::sim {
@@ -43,11 +44,14 @@ class Light {
  private:
   optics::SourceState SourceOf(const LightState& light) const;
   void Warm(const optics::PsdSignals& cold, const Pose& X_LG, const LightState& light, Spots& spots) const;
+  void Dilute(std::size_t p, Spots& spots) const;
   Spots SpotsOf(const optics::PsdSignals& signals, const Pose& X_LG, const LightState& light) const;
 
   LaserSettings laser_;
   double low_light_fraction_;
   std::array<double, 2> post_growth_m_K_;  // of the PSDs
+  std::array<double, 2> background_W_;
+  Speckle speckle_;
   optics::RotaryOptics optics_;
   std::optional<optics::RotaryOptics> warm_optics_;  // where lengths grow with the temperature: kWarm_K warmer
   std::array<double, 2> nominal_power_W_{};

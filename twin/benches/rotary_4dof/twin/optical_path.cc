@@ -1,5 +1,7 @@
 #include "twin/benches/rotary_4dof/twin/optical_path.h"
 
+#include <algorithm>
+
 #include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench::sim {
@@ -17,6 +19,7 @@ double NominalWavelength_m(const Scenario& nominal, const Scenario& actual) {
 OpticalPath::OpticalPath(const Scenario& nominal, LightAsked asked)
     : effects_(nominal),
       actual_(effects_.ActualBench(nominal)),
+      power_drift_per_s_(RotaryOf(actual_).laser.power_drift_per_s),
       stand_(actual_),
       light_(actual_, NominalWavelength_m(nominal, actual_), asked),
       electronics_(actual_, effects_.Sampling()) {}
@@ -34,6 +37,8 @@ Pose OpticalPath::GratingPose(const Moment& moment, const mechanics::StackState&
 
 LightState OpticalPath::LightAt(const Moment& moment) const {
   LightState light = light_.Nominal(moment.temperature_K);
+  // A laser that has drifted away is dark, not negative.
+  light.power_change = std::max(power_drift_per_s_ * ToSeconds(moment.now), 1e-9 - 1.0);
   effects_.AlterLight(moment, light);
   return light;
 }

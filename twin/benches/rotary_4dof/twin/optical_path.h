@@ -31,6 +31,7 @@ class OpticalPath {
  private:
   ActiveEffects effects_;
   Scenario actual_;
+  double power_drift_per_s_;
   Stand stand_;
   Light light_;
   Electronics electronics_;

@@ -12,7 +12,10 @@ namespace twinbench::sim {
 using mechanics::Axis;
 
 World::World(const Scenario& nominal)
-    : path_(nominal), environment_(actual().environment, actual().RunSeed()), axes_(StackOfBench(actual()), queue_) {}
+    : path_(nominal),
+      environment_(actual().environment, actual().RunSeed()),
+      air_(RotaryOf(actual()), actual().RunSeed()),
+      axes_(StackOfBench(actual()), queue_) {}
 
 void World::StartMove(Axis axis, double to_rad) {
   if (!axes_.StartMove(axis, to_rad)) return;
@@ -71,14 +74,24 @@ void World::WriteIrradiance(const std::string& path) {
 
 /// Period or time constant of the fastest thing that may go on during a block.
 double World::Shortest_s() {
-  return std::min({path_.effects().Shortest_s(), path_.electronics().Shortest_s(), axes_.Shortest_s()});
+  return std::min(
+      {path_.effects().Shortest_s(), path_.electronics().Shortest_s(), air_.Shortest_s(), axes_.Shortest_s()});
+}
+
+/// Where the light falls behind moving air.
+Spots World::SpotsNow(const Moment& moment, const mechanics::StackState& axes) {
+  LightState light = path_.LightAt(moment);
+  air_.Turn(moment.now, light);
+  Spots spots = path_.light().Trace(path_.GratingPose(moment, axes), light);
+  air_.Move(moment.now, spots);
+  return spots;
 }
 
 /// What reaches the converter now.
 Spots World::AddKnot(BlockCourse& course) {
   const mechanics::StackState axes = axes_.Look();
   const Moment moment = Look(axes);
-  const Spots spots = path_.light().Trace(path_.GratingPose(moment, axes), path_.LightAt(moment));
+  const Spots spots = SpotsNow(moment, axes);
   std::array<double, kChannels> signal_V = path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
   path_.effects().AlterSignal(moment, signal_V);
   path_.electronics().AddFlicker(moment.now, signal_V);
@@ -106,7 +119,7 @@ Acquisition World::Converted(BlockCourse course, const Spots& seen, Time start, 
   Acquisition acquired;
   if (seen.status == ReadingStatus::kOk) {
     Electronics& electronics = path_.electronics();
-    acquired = electronics.Convert(std::move(course), electronics.LightNoise_V(seen), start, next_reading_,
+    acquired = electronics.Convert(std::move(course), electronics.LightNoiseOf(seen), start, next_reading_,
                                    n_samples, keep_raw);
     path_.effects().AlterReadout(acquired);
   } else {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "twin/benches/rotary_4dof/twin/moving_air.h"
 #include "twin/benches/rotary_4dof/twin/optical_path.h"
 #include "twin/sim/axes.h"
 #include "twin/sim/block_course.h"
@@ -42,6 +43,7 @@ class World {
  private:
   Moment Look(const mechanics::StackState& axes);
   double Shortest_s();
+  Spots SpotsNow(const Moment& moment, const mechanics::StackState& axes);
   Spots AddKnot(BlockCourse& course);
   Acquisition Converted(BlockCourse course, const Spots& seen, Time start, int n_samples, bool keep_raw);
 
@@ -49,6 +51,7 @@ class World {
   Schedule adc_{queue_, "adc"}, fixture_{queue_, "fixture"};
   OpticalPath path_;
   Environment environment_;
+  MovingAir air_;
   Axes axes_;
   Time mounted_{};
   int setup_ = 0;

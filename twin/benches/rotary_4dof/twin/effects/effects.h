@@ -23,6 +23,7 @@ EffectPointer MakeModeHop(const EffectSettings&, const Scenario&);
 EffectPointer MakeWavelengthTemperature(const EffectSettings&, const Scenario&);
 EffectPointer MakeIncidenceOffset(const EffectSettings&, const Scenario&);
 EffectPointer MakeLaserDrift(const EffectSettings&, const Scenario&);
+EffectPointer MakePostGrowth(const EffectSettings&, const Scenario&);
 EffectPointer MakeMountCreep(const EffectSettings&, const Scenario&);
 EffectPointer MakeThermalTilt(const EffectSettings&, const Scenario&);
 EffectPointer MakeBacklash(const EffectSettings&, const Scenario&);

@@ -22,6 +22,7 @@ std::unique_ptr<Effect> MakeEffect(const EffectSettings& effect, const Scenario&
       {"wavelength_temperature", MakeWavelengthTemperature},
       {"incidence_offset", MakeIncidenceOffset},
       {"laser_drift", MakeLaserDrift},
+      {"post_growth", MakePostGrowth},
       {"mount_creep", MakeMountCreep},
       {"thermal_tilt", MakeThermalTilt},
       {"backlash", MakeBacklash},
