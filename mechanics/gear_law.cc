@@ -16,7 +16,10 @@ AngleSeries Linear(double gain, double angle_rad, double scale, const std::vecto
 }  // namespace
 
 GearLaw::GearLaw(const GearTrainParameters& p)
-    : ratio_(p.ratio), hob_encoder_(p.errors.hob_encoder), hob_drive_(p.errors.hob_drive) {
+    : ratio_(p.ratio),
+      correction_(p.correction),
+      hob_encoder_(p.errors.hob_encoder),
+      hob_drive_(p.errors.hob_drive) {
   Append(p.errors.worm_wheel, 1.0, wheel_);
   Append(p.errors.worm, p.WormRatio(), wheel_);
   Append(p.errors.tooth_mesh, p.worm_wheel_teeth, wheel_);
@@ -27,7 +30,13 @@ AngleSeries GearLaw::Wheel(double nominal_rad) const {
 }
 
 AngleSeries GearLaw::Command(double hob_motor_rad) const {
-  return Linear(ratio_, hob_motor_rad, 1.0, hob_encoder_);
+  AngleSeries command = Linear(ratio_, hob_motor_rad, 1.0, hob_encoder_);
+  if (!correction_) return command;
+  const AngleSeries added = correction_(ratio_ * hob_motor_rad);
+  command.value_rad += added.value_rad;
+  command.slope += ratio_ * added.slope;
+  command.bend_1_rad += ratio_ * ratio_ * added.bend_1_rad;
+  return command;
 }
 
 // A hob that is behind by error / ratio leaves the table ahead of it by the error.

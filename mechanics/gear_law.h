@@ -19,6 +19,7 @@ class GearLaw {
 
  private:
   double ratio_;
+  std::function<AngleSeries(double)> correction_;
   std::vector<AngleHarmonic> wheel_;  // all gears of the table by orders of the table
   std::vector<AngleHarmonic> hob_encoder_;
   std::vector<AngleHarmonic> hob_drive_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -50,6 +51,9 @@ struct GearTrainParameters {
   double backlash_rad = 0.0;                            // of the worm, full width at the table
   FrictionParameters friction = {.coulomb_Nm = 100.0};  // on the table; keeps the flanks of the worm together
   GearErrors errors;
+  /// What the electronic gearbox adds to the table's angle that it commands, and the slope, by that angle. Empty:
+  /// nothing. The servo has to follow it.
+  std::function<AngleSeries(double table_rad)> correction;
   double servo_period_s = 1e-3;
   double step_s = 1e-3;  // longest sub-step; shortened to divide the servo period and to be stable
 

@@ -62,7 +62,8 @@ double Off_arcsec(const Scenario& scenario) {
     const Reading& r = readings[static_cast<std::size_t>(i)];
     const double m_rad = r.measured_rad - HobOf(scenario).transmission.Ratio() * r.reference_rad;
     off_rad = std::max(off_rad, std::abs(predicted_rad(i, 0) - m_rad));
-    if (HobOf(scenario).interferometer.used)
+    EXPECT_EQ(std::isfinite(predicted_rad(i, 1)), std::isfinite(r.interferometer_rad)) << i;
+    if (std::isfinite(r.interferometer_rad))
       off_rad = std::max(off_rad, std::abs(predicted_rad(i, 1) - r.interferometer_rad));
   }
   return off_rad / arcsec;
@@ -93,6 +94,13 @@ TEST(HobFollow, KnowsTheKeysOfTheScenario) {
       {"friction", [](Scenario& s) { HobOf(s).transmission.friction_Nm = 100.0; }},
       {"reference mark", [](Scenario& s) { HobOf(s).hob_procedure.encoder_zero = "reference_mark"; }},
       {"no interferometer", [](Scenario& s) { HobOf(s).interferometer.used = false; }},
+      {"interferometer at rest",
+       [](Scenario& s) {
+         HobOf(s).interferometer.stops = 12;
+         HobOf(s).interferometer.misalignment_rad = 0.1;
+         HobOf(s).transmission.friction_Nm = 100.0;
+         HobOf(s).transmission.backlash_rad = 20.0 * arcsec;
+       }},
       {"tilted ring",
        [](Scenario& s) {
          HobOf(s).table_encoder.tilt_rad = 200.0 * arcsec;

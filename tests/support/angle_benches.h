@@ -86,7 +86,7 @@ inline int PlannedReadings(const Scenario& scenario) {
     return static_cast<int>(procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure).size());
   if (scenario.bench == kTurntableBench)
     return procedure::PlannedReadings(TurntableOf(scenario).turntable_procedure);
-  if (scenario.bench == kHobBench) return procedure::PlannedReadings(HobOf(scenario).hob_procedure);
+  if (scenario.bench == kHobBench) return procedure::PlannedReadings(HobOf(scenario));
   if (scenario.bench != kRotaryBench) return BenchOf(scenario).planned_readings(scenario);
   return procedure::PlannedReadings(RotaryOf(scenario).procedure);
 }

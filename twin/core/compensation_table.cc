@@ -24,9 +24,13 @@ std::vector<double> ColumnOfFile(const CsvTable& table, const std::string& name,
   return values;
 }
 
-}  // namespace
+/// Between two entries, and how far along.
+struct Piece {
+  double left = 0.0, right = 0.0, share = 0.0, length_rad = kTurn_rad;
+};
 
-double CompensationTable::At(double angle_rad) const {
+Piece PieceAt(const CompensationTable& table, double angle_rad) {
+  const std::vector<double>& position_rad = table.position_rad;
   double within_rad = std::fmod(angle_rad, kTurn_rad);
   if (within_rad < 0.0) within_rad += kTurn_rad;
   // Entry `after` is the first behind the angle; the turn closes from the last entry to the first.
@@ -36,8 +40,20 @@ double CompensationTable::At(double angle_rad) const {
   const std::size_t left = (after + n - 1) % n, right = after % n;
   const double from_rad = after == 0 ? position_rad[left] - kTurn_rad : position_rad[left];
   const double to_rad = after == n ? position_rad[right] + kTurn_rad : position_rad[right];
-  const double share = (within_rad - from_rad) / (to_rad - from_rad);
-  return correction_rad[left] + share * (correction_rad[right] - correction_rad[left]);
+  return {table.correction_rad[left], table.correction_rad[right], (within_rad - from_rad) / (to_rad - from_rad),
+          to_rad - from_rad};
+}
+
+}  // namespace
+
+double CompensationTable::At(double angle_rad) const {
+  const Piece piece = PieceAt(*this, angle_rad);
+  return piece.left + piece.share * (piece.right - piece.left);
+}
+
+double CompensationTable::SlopeAt(double angle_rad) const {
+  const Piece piece = PieceAt(*this, angle_rad);
+  return (piece.right - piece.left) / piece.length_rad;
 }
 
 double CommandedAngle_rad(const std::optional<CompensationTable>& compensation, double angle_rad) {

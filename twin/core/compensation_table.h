@@ -14,6 +14,8 @@ struct CompensationTable {
 
   /// At any angle, also an unwrapped one.
   double At(double angle_rad) const;
+  /// Of the straight piece there: change of the correction by the angle.
+  double SlopeAt(double angle_rad) const;
 
   bool operator==(const CompensationTable&) const = default;
 };

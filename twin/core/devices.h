@@ -200,6 +200,8 @@ class CounterCard {
   /// Empties the FIFO; the next `samples` samples are kept, one at every `edges`-th line of the table's encoder.
   virtual void Arm(int edges, int samples) = 0;
   virtual CounterSamples Read() = 0;
+  /// Both counts as they stand, and the interferometer; the FIFO is left alone.
+  virtual CounterSample Latch() = 0;
 };
 
 /// The drive of hob spindle and, by the electronic gearbox, of the table.

@@ -220,7 +220,7 @@ class Search {
     Eigen::MatrixXd design = root_.asDiagonal() * GroupColumns(errors_);
     const Eigen::Index first = design.cols();
     for (const int k : orders) design = Joined(design, Columns(k));
-    constexpr double kSingular = 1e-9;  // half the positions: such an order is a cosine alone
+    constexpr double kSingular = 1e-3;  // half the positions: of such an order one phase is seen, or nearly
     const auto n = static_cast<Eigen::Index>(value_.size());
     const RankedSolution solution = SolveRanked(design, Eigen::MatrixXd::Identity(n, n), kSingular);
     const Eigen::VectorXd x_rad = solution.x * value_;

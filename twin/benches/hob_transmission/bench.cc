@@ -1,5 +1,6 @@
 #include "twin/benches/hob_transmission/bench.h"
 
+#include "twin/benches/hob_transmission/estimators/index_errors.h"
 #include "twin/benches/hob_transmission/procedure.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
@@ -9,7 +10,7 @@ namespace twinbench::benches::hob {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
-  return procedure::PlannedReadings(HobOf(s).hob_procedure);
+  return procedure::PlannedReadings(HobOf(s));
 }
 
 }  // namespace
@@ -22,6 +23,7 @@ const Bench& Whole() {
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;
+    b.index_errors = separate::hob::HobIndexErrors;
     b.score = ScoreRun;
     b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;

@@ -13,7 +13,7 @@ class HobRun {
         scenario_(scenario),
         sink_(sink),
         progress_(progress),
-        planned_(PlannedReadings(settings())) {}
+        planned_(PlannedReadings(HobOf(scenario))) {}
 
   const HobProcedureSettings& settings() const { return HobOf(scenario_).hob_procedure; }
 
@@ -36,6 +36,21 @@ class HobRun {
     ++pass_;
   }
 
+  /// One turn from stop to stop; both encoders and the interferometer are read at rest.
+  void Stops(int direction) {
+    const int stops = HobOf(scenario_).interferometer.stops;
+    const double hob_step_rad = units::turn / stops / HobOf(scenario_).transmission.Ratio();
+    for (int position = 0; position < stops; ++position) {
+      // Up over one ramp and down over the next: the mean speed is half of that on top.
+      bench_.drive.Run(direction * hob_step_rad / settings().ramp_s, FromSeconds(settings().ramp_s));
+      bench_.clock.Wait(FromSeconds(settings().ramp_s));
+      bench_.drive.Run(0.0, FromSeconds(settings().ramp_s));
+      bench_.clock.Wait(FromSeconds(settings().ramp_s + settings().rest_s));
+      Append({ReadingOf(bench_.counters.Latch(), direction, position)});
+    }
+    ++pass_;
+  }
+
  private:
   void Collect(int direction, int wanted) {
     int position = 0, looks_in_vain = 0;
@@ -44,15 +59,19 @@ class HobRun {
       const CounterSamples look = bench_.counters.Read();
       std::vector<Reading> readings;
       for (const CounterSample& sample : look.samples) readings.push_back(ReadingOf(sample, direction, position++));
-      sink_.AppendAll(readings);
-      if (progress_ && !readings.empty())
-        progress_({next_reading_, planned_, Phase::kFullCircle, readings.back().time});
+      Append(readings);
       if (look.overrun)
         throw DeviceFault(FaultKind::kOverrun, "counters",
                           "the FIFO ran full; empty it more often (poll_s) or keep fewer edges (samples_per_turn)");
       looks_in_vain = look.samples.empty() ? looks_in_vain + 1 : 0;
       RequireEdges(looks_in_vain);
     }
+  }
+
+  void Append(const std::vector<Reading>& readings) {
+    sink_.AppendAll(readings);
+    if (progress_ && !readings.empty())
+      progress_({next_reading_, planned_, Phase::kFullCircle, readings.back().time});
   }
 
   /// A chain that stands still would keep the program waiting for ever.
@@ -89,19 +108,25 @@ class HobRun {
 
 }  // namespace
 
-int PlannedReadings(const HobProcedureSettings& s) {
+int PlannedReadings(const HobSettings& bench) {
+  const HobProcedureSettings& s = bench.hob_procedure;
   const std::size_t passes = s.heads_rad.size() * s.hob_speeds_rad_s.size() * s.passes.size();
-  return static_cast<int>(passes) * s.turns * s.samples_per_turn;
+  const int at_rest =
+      bench.interferometer.used ? static_cast<int>(s.passes.size()) * bench.interferometer.stops : 0;
+  return static_cast<int>(passes) * s.turns * s.samples_per_turn + at_rest;
 }
 
 void CarryOut(HobBench& bench, const Scenario& scenario, ReadingSink& sink, const ProgressCallback& progress) {
   HobRun run(bench, scenario, sink, progress);
   const HobProcedureSettings& s = HobOf(scenario).hob_procedure;
+  const InterferometerSettings& interferometer = HobOf(scenario).interferometer;
   for (std::size_t setup = 0; setup < s.heads_rad.size(); ++setup) {
     run.Mount(static_cast<int>(setup));
     for (const double speed_rad_s : s.hob_speeds_rad_s) {
       for (const int direction : s.passes) run.Pass(speed_rad_s, direction);
     }
+    if (setup != 0 || !interferometer.used || !interferometer.IsReadAtRest()) continue;
+    for (const int direction : s.passes) run.Stops(direction);
   }
 }
 

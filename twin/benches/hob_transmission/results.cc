@@ -137,9 +137,10 @@ nlohmann::json ResultsOf(const HobAnalysis& a) {
   }
   json["separation"] = SeparationJson(a);
   if (!a.encoder_by_interferometer.orders.empty()) {
+    json["interferometer"] = a.is_interferometer_at_rest ? "at_rest" : "in_motion";
     json["table_encoder_by_interferometer"] = ToJson(a.encoder_by_interferometer);
     json["table_encoder_against_interferometer"] = ToJson(a.encoder_against_interferometer);
-    json["table_encoder_against_one_place"] = ToJson(a.encoder_against_one_place);
+    if (!a.is_interferometer_at_rest) json["table_encoder_against_one_place"] = ToJson(a.encoder_against_one_place);
   }
   return json;
 }
@@ -199,8 +200,10 @@ std::string SummaryOf(const HobAnalysis& a) {
   const bool separated = a.separation->At(1).status == OrderStatus::kSeparated;
   if (published) text += OrderText("table encoder, order 1, two positions", a.two_positions->encoder);
   if (!published && separated) text += OrderText("table encoder, order 1", a.encoder.At(1));
+  if (a.is_interferometer_at_rest)
+    text += OrderText("table encoder, order 1, by the interferometer at rest", a.encoder_by_interferometer.At(1));
   for (const DirectionResult& direction : a.directions) text += LinesText(direction);
-  return text + ComparisonText("", a.encoder_against_interferometer) +
+  return text + ComparisonText(a.is_interferometer_at_rest ? " at rest" : "", a.encoder_against_interferometer) +
          ComparisonText(" with the first head alone", a.encoder_against_one_place) + LostText(a);
 }
 
@@ -266,6 +269,8 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
     first.orders = {analysis.two_positions->encoder};
     curves.push_back(CurveOf("two positions", first, encoder));
   }
+  if (analysis.is_interferometer_at_rest)
+    curves.push_back(CurveOf("interferometer at rest", analysis.encoder_by_interferometer, encoder));
   return {
       ToJson(curves),
       "against the truth: both parts of every order; orders that are not told apart have the encoder's share\n" +

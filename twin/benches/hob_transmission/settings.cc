@@ -12,6 +12,8 @@ namespace {
 
 using namespace schema;
 
+constexpr int kFewestStops = 8;
+
 void AddTransmission(Keys& keys, TransmissionSettings& s) {
   Table t(keys, "transmission");
   t.Add("hob_starts", kPure, {1, 1000}, &s.hob_starts, "of the hob");
@@ -27,6 +29,10 @@ void AddTransmission(Keys& keys, TransmissionSettings& s) {
   t.Add("damping_ratio", kPure, UpTo(2), &s.damping_ratio, "of that torsion");
   t.Add("friction", {"Nm"}, UpTo(1e6), &s.friction_Nm, "on the table: winds the torsion up, by direction");
   t.Add("backlash", kArcsec, UpTo(36000), &s.backlash_rad, "of the worm, full width at the table");
+  t.Text("compensation_file", &s.compensation_file, {},
+         "CSV of position_deg, correction_arcsec: added by the gearbox to the table's angle that it commands");
+  t.Add("compensation", kPure, {}, &s.compensation,
+        "the content of compensation_file: position_deg, correction_arcsec");
 }
 
 void AddRing(Keys& keys, const std::string& table, RingEncoderSettings& s) {
@@ -58,6 +64,11 @@ void AddInterferometer(Keys& keys, InterferometerSettings& s) {
   t.Add("index_drift", {"ppm_h", 1e-6}, Within(100), &s.index_drift_per_h, "of the air's refractive index");
   t.Add("calibrator", kPure, {}, &s.calibrator,
         "error of the calibrator on the table: amplitude * cos(order * table + phase)");
+  t.Add("u_calibrator", kArcsec, UpTo(3600), &s.u_calibrator_rad,
+        "standard uncertainty of that error: of the cosine and of the sine of any order");
+  t.Add(
+      "stops", kPure, {0, 100000}, &s.stops,
+      "a turn at which it is read at rest, in the first set-up behind its passes, each way; 0: with every sample");
 }
 
 void AddHobProcedure(Keys& keys, HobProcedureSettings& s) {
@@ -112,6 +123,10 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
     throw InputError(Place(text, "hob_procedure.samples_per_turn"),
                      fmt::format("{} samples a turn", own.hob_procedure.samples_per_turn),
                      fmt::format("a divisor of the {} lines of the table's encoder", own.table_encoder.lines));
+  const int stops = own.interferometer.stops;
+  if (stops != 0 && stops < kFewestStops)
+    throw InputError(Place(text, "interferometer.stops"), fmt::format("{} stops a turn", stops),
+                     fmt::format("0 or at least {}: so many tell the orders 1 and 2", kFewestStops));
   for (const double speed_rad_s : own.hob_procedure.hob_speeds_rad_s) {
     if (speed_rad_s <= 0.0)
       throw InputError(Place(text, "hob_procedure.hob_speeds_rev_min"), "a speed is 0", "speeds above 0");

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "twin/core/compensation_table.h"
 #include "twin/core/scenario.h"
 
 /// What a scenario of the bench hob_transmission says. Defaults: the machine of Tan et al. with a gear of 44 teeth
@@ -21,8 +23,10 @@ struct TransmissionSettings {  // [transmission]
   double table_inertia_kg_m2 = 20.0;
   double stiffness_Nm_rad = 5e6;  // torsion between worm wheel and table
   double damping_ratio = 0.05;
-  double friction_Nm = 0.0;   // on the table: winds the torsion up, by direction
-  double backlash_rad = 0.0;  // of the worm, full width
+  double friction_Nm = 0.0;                       // on the table: winds the torsion up, by direction
+  double backlash_rad = 0.0;                      // of the worm, full width
+  std::string compensation_file;                  // moved to `compensation` by the loader
+  std::optional<CompensationTable> compensation;  // added by the gearbox to the table's angle that it commands
 
   double Ratio() const { return static_cast<double>(hob_starts) / gear_teeth; }
   double HobOrder() const { return static_cast<double>(gear_teeth) / hob_starts; }  // hob turns in one of the table
@@ -56,6 +60,10 @@ struct InterferometerSettings {  // [interferometer]
   double dead_path_m = 0.0;                    // by which one path is longer when it is set to zero
   double index_drift_per_h = 0.0;              // of the air's refractive index: 1e-6 a kelvin
   std::vector<HarmonicSettings> calibrator{};  // its own error, by turns of the table
+  double u_calibrator_rad = 0.0;               // of either part of an order of that error
+  int stops = 0;                               // a turn, at which it is read; 0: with every sample, in motion
+
+  bool IsReadAtRest() const { return stops > 0; }
 };
 
 struct HobProcedureSettings {  // [hob_procedure]

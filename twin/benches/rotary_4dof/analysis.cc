@@ -65,6 +65,16 @@ nlohmann::json CountByStatus(const std::vector<measure::Motion>& motions) {
   return counts;
 }
 
+/// The rigorous result from the same readings, which says how far the published equations hold on this bench.
+separate::MethodBias JudgePublished(const std::vector<Reading>& readings, const measure::BenchGeometry& geometry,
+                                    separate::SeparateOptions options, const measure::Calibration& calibration,
+                                    separate::Separation& published) {
+  options.estimator = Estimator::kRigorous;
+  const std::vector<measure::Motion> motions =
+      measure::Measure(readings, geometry, calibration, Estimator::kRigorous);
+  return separate::ApplyMethodBias(separate::Separate(motions, geometry, options), published);
+}
+
 }  // namespace
 
 Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
@@ -83,6 +93,8 @@ Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings,
   options.estimator = estimator;
   options.cov_calibration = analysis.calibration.cov;
   analysis.separation = separate::Separate(analysis.motions, geometry, options);
+  if (estimator == Estimator::kPublished)
+    analysis.method_bias = JudgePublished(readings, geometry, options, analysis.calibration, *analysis.separation);
   return analysis;
 }
 
@@ -94,6 +106,7 @@ nlohmann::json ToJson(const Analysis& analysis) {
   if (analysis.verification.readings > 0) json["verification"] = ToJson(analysis.verification);
   if (analysis.separation) {
     json["separation"] = separate::ToJson(*analysis.separation);
+    if (!analysis.method_bias.empty()) json["method_bias"] = separate::ToJson(analysis.method_bias);
   } else {
     json["not_separated"] = analysis.not_separated;
   }

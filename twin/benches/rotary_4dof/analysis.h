@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "twin/benches/rotary_4dof/estimators/measure.h"
+#include "twin/benches/rotary_4dof/estimators/method_bias.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
 #include "twin/benches/rotary_4dof/estimators/stability.h"
 #include "twin/benches/rotary_4dof/estimators/verification.h"
@@ -22,7 +23,8 @@ struct Analysis {
   measure::Stability stability;        // readings = 0 without that phase
   measure::Verification verification;  // the same
   std::optional<separate::Separation> separation;
-  std::string not_separated;  // why there is no separation
+  separate::MethodBias method_bias;  // of the published equations, which it is part of the uncertainty of
+  std::string not_separated;         // why there is no separation
 };
 
 Analysis Analyse(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator);

@@ -26,7 +26,9 @@ constexpr double kFree_rad = 2.0 * units::kPi;
 std::vector<Reading> Usable(const std::vector<Reading>& readings) {
   std::vector<Reading> used;
   std::ranges::copy_if(readings, std::back_inserter(used), [](const Reading& r) {
-    return r.status == ReadingStatus::kOk && std::isfinite(r.measured_rad) && std::isfinite(r.reference_rad);
+    const bool is_at_rest = r.velocity_rad_s == 0.0;  // stops of the interferometer: no sample of a turn
+    return r.status == ReadingStatus::kOk && !is_at_rest && std::isfinite(r.measured_rad) &&
+           std::isfinite(r.reference_rad);
   });
   RefuseTooFew(used.size(), readings.size());
   for (const Reading& r : used) {

@@ -50,6 +50,23 @@ bool HasInterferometer(const std::vector<HobSample>& samples) {
   return std::ranges::any_of(samples, [](const HobSample& s) { return std::isfinite(s.interferometer_rad); });
 }
 
+bool IsAtRest(const HobSample& s) {
+  return s.is_at_rest;
+}
+
+/// Stops fold what repeats with hob and teeth onto other orders: only the lowest are the encoder's.
+TransmissionOptions OptionsAtRest(TransmissionOptions options, const InterferometerSettings& interferometer) {
+  constexpr int kHighestAtRest = 4;
+  options.max_order = std::clamp((interferometer.stops - 1) / 3, 1, kHighestAtRest);
+  return options;
+}
+
+HarmonicSeries WithCalibrator(HarmonicSeries series, double u_calibrator_rad) {
+  for (Coefficient& order : series.orders)
+    order.cov += u_calibrator_rad * u_calibrator_rad * Eigen::Matrix2d::Identity();
+  return series;
+}
+
 void AddDirections(const std::vector<HobSample>& samples, const TransmissionOptions& options,
                    const std::vector<int>& orders, HobAnalysis& analysis) {
   std::vector<PositionError> seen;
@@ -67,15 +84,16 @@ void AddDirections(const std::vector<HobSample>& samples, const TransmissionOpti
 }
 
 void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions& options,
-                const std::vector<int>& orders, HobAnalysis& analysis) {
-  analysis.encoder = EncoderSeries(*analysis.separation);
+                const std::vector<int>& orders, double u_calibrator_rad, HobAnalysis& analysis) {
   if (!HasInterferometer(samples)) return;
   std::vector<PositionError> seen = MeasurePositions(samples, options, Signal::kEncodersMinusInterferometer);
-  analysis.encoder_by_interferometer = EncoderByInterferometer(seen);
+  analysis.encoder_by_interferometer = WithCalibrator(EncoderByInterferometer(seen), u_calibrator_rad);
   analysis.encoder_against_interferometer =
       CompareEncoder(*analysis.separation, analysis.encoder_by_interferometer, orders);
+  if (analysis.is_interferometer_at_rest) return;
   std::erase_if(seen, [first = samples.front().setup](const PositionError& p) { return p.setup != first; });
-  analysis.encoder_against_one_place = CompareEncoder(*analysis.separation, EncoderByInterferometer(seen), orders);
+  analysis.encoder_against_one_place =
+      CompareEncoder(*analysis.separation, WithCalibrator(EncoderByInterferometer(seen), u_calibrator_rad), orders);
 }
 
 }  // namespace
@@ -84,8 +102,8 @@ std::vector<HobSample> SamplesOf(const std::vector<Reading>& readings) {
   std::vector<HobSample> samples;
   for (const Reading& r : readings) {
     if (r.status != ReadingStatus::kOk || r.direction == 0) continue;
-    samples.push_back(
-        {r.setup, r.pass, r.direction, r.measured_rad, r.reference_rad, r.head_rad, r.interferometer_rad});
+    samples.push_back({r.setup, r.pass, r.direction, r.measured_rad, r.reference_rad, r.head_rad,
+                       r.interferometer_rad, r.velocity_rad_s == 0.0});
   }
   return samples;
 }
@@ -93,9 +111,11 @@ std::vector<HobSample> SamplesOf(const std::vector<Reading>& readings) {
 HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator) {
   HobAnalysis analysis;
   analysis.estimator = estimator;
-  const std::vector<HobSample> samples = SamplesOf(readings);
+  std::vector<HobSample> samples = SamplesOf(readings), at_rest;
   analysis.used = static_cast<int>(samples.size());
   analysis.left_out = static_cast<int>(readings.size()) - analysis.used;
+  std::ranges::copy_if(samples, std::back_inserter(at_rest), IsAtRest);
+  std::erase_if(samples, IsAtRest);
   const TransmissionOptions options = OptionsOf(scenario);
   analysis.positions = MeasurePositions(samples, options);
   if (std::ranges::none_of(analysis.positions, HasTurns)) {
@@ -106,7 +126,12 @@ HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& sce
   analysis.separation = SeparateHeads(analysis.positions);
   const std::vector<int> orders = OrdersToCompare(HobOf(scenario).transmission, options.max_order);
   AddDirections(samples, options, orders, analysis);
-  AddEncoder(samples, options, orders, analysis);
+  analysis.encoder = EncoderSeries(*analysis.separation);
+  analysis.is_interferometer_at_rest = HasInterferometer(at_rest);
+  const InterferometerSettings& interferometer = HobOf(scenario).interferometer;
+  AddEncoder(analysis.is_interferometer_at_rest ? at_rest : samples,
+             analysis.is_interferometer_at_rest ? OptionsAtRest(options, interferometer) : options, orders,
+             interferometer.u_calibrator_rad, analysis);
   return analysis;
 }
 

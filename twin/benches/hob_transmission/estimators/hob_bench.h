@@ -37,7 +37,8 @@ struct HobAnalysis {
   /// The same with the first place of the head alone, as published: errors of the interferometer that go with the
   /// table are in it, where the mean over the places turns them against each other.
   std::vector<OrderComparison> encoder_against_one_place;
-  std::string not_separated;  // why there is no separation
+  bool is_interferometer_at_rest = false;  // read from stop to stop, with one place of the head
+  std::string not_separated;               // why there is no separation
 };
 
 /// @throws InputError as MeasurePositions.

@@ -27,6 +27,7 @@ struct HobSample {
   double head_rad = kNaN;  // reading head (and the ring's reference mark) from the table's origin; one a set-up
   double interferometer_rad =
       kNaN;  // optional: transmission error as the interferometer sees it, any constant added
+  bool is_at_rest = false;
 };
 
 /// Where the table encoder counts from.

@@ -16,6 +16,7 @@ Counters::Counters(const Scenario& actual, const mechanics::SignalState& hob_sig
       quantised_(!actual.noise_free),
       table_ring_(encoders_.TableRing(0.0)),
       table_edges_({}, HobOf(actual).table_encoder.lines, 1),
+      table_signals_({}, HobOf(actual).table_encoder.lines, HobOf(actual).table_encoder.interpolation),
       table_noise_rad_(HobOf(actual).table_encoder.noise_rad),
       hob_noise_rad_(HobOf(actual).hob_encoder.noise_rad),
       table_noise_(actual.RunSeed(), "table_encoder.noise"),
@@ -48,7 +49,10 @@ double Counters::TableShown_rad() const {
 
 double Counters::HobShown_rad(double hob_rad) {
   const double scale_rad = encoders_.hob_ring().Scale_rad(hob_rad) + Draw(hob_noise_rad_, hob_noise_);
-  const mechanics::InterpolatedSignal& signals = encoders_.hob_signals();
+  return Counted_rad(encoders_.hob_signals(), scale_rad);
+}
+
+double Counters::Counted_rad(const mechanics::InterpolatedSignal& signals, double scale_rad) const {
   if (!quantised_) return signals.Shown_rad(scale_rad);
   return (static_cast<double>(signals.Steps(scale_rad)) + 0.5) * signals.Step_rad();
 }
@@ -59,6 +63,14 @@ CounterSample Counters::Count(const mechanics::GearTrainState& at) {
   sample.hob_encoder_rad = HobShown_rad(at.hob_rad);
   next_line_ += direction_ * edges_;
   --wanted_;
+  return sample;
+}
+
+CounterSample Counters::Latch(const mechanics::GearTrainState& at) {
+  const double scale_rad = table_ring_.Scale_rad(at.table_rad) + Draw(table_noise_rad_, table_noise_);
+  CounterSample sample;
+  sample.table_encoder_rad = encoders_.TableShown_rad(Counted_rad(table_signals_, scale_rad), head_rad_);
+  sample.hob_encoder_rad = HobShown_rad(at.hob_rad);
   return sample;
 }
 

@@ -26,6 +26,8 @@ class Counters {
   double NextTableAngle_rad() const;
   /// The counts as the table comes to that edge, `at` its state there; then the next one is awaited.
   CounterSample Count(const mechanics::GearTrainState& at);
+  /// The counts as they stand, both as their interpolators have them.
+  CounterSample Latch(const mechanics::GearTrainState& at);
 
   void Push(const CounterSample& sample);
   CounterSamples Empty();
@@ -38,12 +40,13 @@ class Counters {
  private:
   double TableShown_rad() const;
   double HobShown_rad(double hob_rad);
+  double Counted_rad(const mechanics::InterpolatedSignal& signals, double scale_rad) const;
 
   HobEncoders encoders_;
   bool quantised_;
   double head_rad_ = 0.0;
   mechanics::RingEncoder table_ring_;
-  mechanics::InterpolatedSignal table_edges_;
+  mechanics::InterpolatedSignal table_edges_, table_signals_;
   double table_noise_rad_, hob_noise_rad_;
   Stream table_noise_, hob_noise_;
   int edges_ = 1;

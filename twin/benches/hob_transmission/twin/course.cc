@@ -49,6 +49,7 @@ class CourseMaker {
     HobStop stop;
     const double velocity_rad_s = Velocity_rad_s(i);
     if (velocity_rad_s != 0.0) direction_ = velocity_rad_s > 0.0 ? 1 : -1;
+    if (velocity_rad_s == 0.0 && r.direction != 0) direction_ = r.direction;  // it came to rest this way
     stop.direction = direction_;
     stop.hob_speed_rad_s = velocity_rad_s / Ratio();
     if (zero_rad_.contains(r.setup)) stop.zero_rad = zero_rad_.at(r.setup);

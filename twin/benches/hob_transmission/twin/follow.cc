@@ -93,14 +93,15 @@ class HobFollow : public PointwiseFollow<HobExtra> {
     const double hob_shown_rad = stop.hob_shown_rad - extra.hob_encoder_rad;
     if (!std::isfinite(hob_shown_rad) || !std::isfinite(r.head_rad)) return Eigen::RowVector2d::Constant(kNaN);
     const double hob_rad = encoders_.Hob_rad(hob_shown_rad) + stop.zero_rad / ratio;
+    const double velocity_rad_s = ratio * stop.hob_speed_rad_s;
     const double table_rad =
         train_.Table_rad(hob_rad, stop.hob_speed_rad_s, stop.direction) + extra.transmission_rad;
     const double scale_rad = rings_.at(r.head_rad).Scale_rad(table_rad);
     const double table_shown_rad =
         encoders_.TableShown_rad(scale_rad, r.head_rad) + stop.added.table_encoder_rad + extra.table_encoder_rad;
-    return {table_shown_rad - ratio * r.reference_rad, path_.Interferometer_rad(table_rad, hob_rad, r.time) +
-                                                           stop.added.interferometer_rad +
-                                                           extra.interferometer_rad};
+    return {table_shown_rad - ratio * r.reference_rad,
+            path_.Interferometer_rad(table_rad, hob_rad, velocity_rad_s, r.time) + stop.added.interferometer_rad +
+                extra.interferometer_rad};
   }
 
   HobPath path_;

@@ -35,6 +35,11 @@ mechanics::GearTrainParameters TrainOf(const Scenario& actual,
   p.servo_period_s = std::min(p.servo_period_s, 1.0 / (kStepsAPeriodOfTheServo * fastest_Hz));
   for (const HarmonicSettings& h : t.harmonics) p.errors.worm_wheel.push_back({h.order, h.amplitude, h.phase_rad});
   for (const auto& effect : effects) effect->AlterGears(p.errors);
+  if (t.compensation) {
+    p.correction = [table = *t.compensation](double table_rad) {
+      return mechanics::AngleSeries{table.At(table_rad), table.SlopeAt(table_rad), 0.0};
+    };
+  }
   return p;
 }
 
@@ -61,9 +66,9 @@ mechanics::SignalState HobPath::HobSignals() const {
   return signals;
 }
 
-double HobPath::Interferometer_rad(double table_rad, double hob_rad, Time now) const {
+double HobPath::Interferometer_rad(double table_rad, double hob_rad, double velocity_rad_s, Time now) const {
   const InterferometerSettings& i = HobOf(actual_).interferometer;
-  if (!i.used) return kNaN;
+  if (!i.used || (i.IsReadAtRest() && velocity_rad_s != 0.0)) return kNaN;
   const double deviation_rad = table_rad - HobOf(actual_).transmission.Ratio() * hob_rad +
                                mechanics::Evaluate(calibrator_, table_rad).value_rad;
   // Optical difference of the paths: arm * deviation along the beam, and the dead path in air that changes.

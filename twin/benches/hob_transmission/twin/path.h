@@ -23,8 +23,8 @@ class HobPath {
   mechanics::SignalState HobSignals() const;
 
   /// What the interferometer shows of the table's deviation from the ratio, with its own cosine, arm, dead path,
-  /// air and calibrator; NaN without one.
-  double Interferometer_rad(double table_rad, double hob_rad, Time now) const;
+  /// air and calibrator; NaN without one, and in motion where it is read at rest.
+  double Interferometer_rad(double table_rad, double hob_rad, double velocity_rad_s, Time now) const;
 
   /// The table has come here without turning round.
   void Travel(double table_rad);

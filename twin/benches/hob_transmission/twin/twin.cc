@@ -34,6 +34,7 @@ class EdgeCounters : public CounterCard {
   explicit EdgeCounters(HobWorld& world) : world_(world) {}
   void Arm(int edges, int samples) override { world_.Arm(edges, samples); }
   CounterSamples Read() override { return world_.ReadCounters(); }
+  CounterSample Latch() override { return world_.Latch(); }
 
  private:
   HobWorld& world_;

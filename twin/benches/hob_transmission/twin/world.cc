@@ -1,6 +1,7 @@
 #include "twin/benches/hob_transmission/twin/world.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/device_fault.h"
@@ -71,18 +72,28 @@ void HobWorld::TakeSamples(const mechanics::GearTrainState& before, const mechan
   }
 }
 
-double HobWorld::Interferometer_rad(const mechanics::GearTrainState& at, Time now) {
+double HobWorld::Interferometer_rad(const mechanics::GearTrainState& at, double velocity_rad_s, Time now) {
+  const double shown_rad = path_.Interferometer_rad(at.table_rad, at.hob_rad, velocity_rad_s, now);
   const double noise_rad = HobOf(actual()).interferometer.noise_rad;
-  return path_.Interferometer_rad(at.table_rad, at.hob_rad, now) +
-         (HobOf(actual()).interferometer.used && noise_rad > 0.0 ? noise_rad * interferometer_noise_.Normal()
-                                                                 : 0.0);
+  return std::isfinite(shown_rad) && noise_rad > 0.0 ? shown_rad + noise_rad * interferometer_noise_.Normal()
+                                                     : shown_rad;
+}
+
+CounterSample HobWorld::Latch() {
+  CounterSample sample;
+  const mechanics::GearTrainState at = train_->State();
+  card_.Now([&] { sample = Completed(counters_.Latch(at), at, Now()); });
+  return sample;
 }
 
 CounterSample HobWorld::SampleAt(const mechanics::GearTrainState& at, Time now) {
-  CounterSample sample = counters_.Count(at);
+  return Completed(counters_.Count(at), at, now);
+}
+
+CounterSample HobWorld::Completed(CounterSample sample, const mechanics::GearTrainState& at, Time now) {
   sample.time = now;
   sample.velocity_rad_s = HobOf(actual()).transmission.Ratio() * hob_speed_rad_s_;
-  sample.interferometer_rad = Interferometer_rad(at, now);
+  sample.interferometer_rad = Interferometer_rad(at, sample.velocity_rad_s, now);
   path_.Travel(at.table_rad);
   path_.Disturb({sample.time, next_reading_++, at.table_rad, sample.velocity_rad_s}, sample);
   return sample;

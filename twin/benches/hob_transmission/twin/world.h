@@ -24,6 +24,7 @@ class HobWorld {
   void Mount(double head_rad);
   void Arm(int edges, int samples);
   CounterSamples ReadCounters() { return counters_.Empty(); }
+  CounterSample Latch();
 
   const Scenario& actual() const { return path_.actual(); }
   const Counters& counters() const { return counters_; }
@@ -33,9 +34,11 @@ class HobWorld {
  private:
   void TakeSamples(const mechanics::GearTrainState& before, const mechanics::GearTrainState& after, Time begin);
   CounterSample SampleAt(const mechanics::GearTrainState& at, Time now);
+  /// What the counts do not say: time, speed, the interferometer, and what disturbs all of them.
+  CounterSample Completed(CounterSample sample, const mechanics::GearTrainState& at, Time now);
   bool StandsStill() const { return hob_speed_rad_s_ == 0.0 && Now() >= at_rest_; }
   void Pass(Duration piece);
-  double Interferometer_rad(const mechanics::GearTrainState& at, Time now);
+  double Interferometer_rad(const mechanics::GearTrainState& at, double velocity_rad_s, Time now);
 
   EventQueue queue_;
   Schedule drive_{queue_, "drive"}, card_{queue_, "counters"}, fixture_{queue_, "fixture"};
