@@ -3,27 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "twin/campaign/stated_results.h"
 #include "twin/core/reading.h"
 
 namespace twinbench::campaign {
 namespace {
-
-TEST(StatedResults, AreThoseWithAnUncertaintyInEachOfItsForms) {
-  const auto json = nlohmann::json::parse(R"({"a": {"value": 1, "u": 0.1, "unit": "um"},
-    "b": {"value_um": 2, "u_um": 0.2, "bias_um": 9}, "c": {"ez_arcsec": [3, 4], "u_ez_arcsec": [0.3, null],
-    "position_deg": [0, 10]}, "d": [{"D_um": 5, "u_D_um": 0.5, "feed": 7}], "dof": 8})");
-  std::vector<std::string> names;
-  std::vector<double> values;
-  for (const TrialResult& r : StatedResults(json)) {
-    names.push_back(r.name);
-    values.push_back(r.value);
-  }
-  EXPECT_THAT(names, testing::ElementsAre("a", "b_um", "c.ez_arcsec[0]", "c.ez_arcsec[1]", "d[0].D_um"));
-  EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4, 5));
-}
 
 TEST(Summary, HasMeanScatterBiasAndCoverage) {
   Summary summary;

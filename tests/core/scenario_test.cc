@@ -257,6 +257,8 @@ TEST(ScenarioError, NamesTheNearestKnownKey) {
             "s.toml:2: unknown key wavelength_nm; expected a known one; the nearest is laser.wavelength_nm");
   EXPECT_EQ(ErrorOf("[lasr]\nwavelength_nm = 650\n"),
             "s.toml:2: unknown table lasr; expected a known one; the nearest is laser");
+  EXPECT_THAT(ErrorOf("[xyz]\na = 1\n"), testing::Not(EndsWith("is ")))
+      << "the nameless top is no table to be near to";
   EXPECT_EQ(ErrorOf("[target.seeting]\nez_arcsec = 1\n"),
             "s.toml:2: unknown table target.seeting; expected a known one; the nearest is target.seating");
 }

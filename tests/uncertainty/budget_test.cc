@@ -63,6 +63,17 @@ TEST(Budget, TakesEveryNumberOfAList) {
   EXPECT_EQ(budget.sources[2].name, "grating.point_mm[1]");
 }
 
+TEST(Budgets, NameWhatNoResultIsComputedWith) {
+  const Scenario scenario = FourInputs({{"grating.point_mm", 1e-3}, {"laser.wavelength_nm", 1e-11}});
+  const auto first = [](const Scenario& s) {
+    Scenario copy = s;
+    return std::vector<Quantity>{{"first", NumbersAt(copy, "grating.point_mm")[0], 0.1},
+                                 {"wave", 2.0 * NumbersAt(copy, "laser.wavelength_nm")[0], 0.1}};
+  };
+  EXPECT_EQ(SourcesOfNothing(Budgets(scenario, first)),
+            (std::vector<std::string>{"grating.point_mm[1]", "grating.point_mm[2]"}));
+}
+
 TEST(CoverageFactor, IsThatOfTheTables) {
   EXPECT_NEAR(CoverageFactor(kInfinite), 1.960, 0.001);
   EXPECT_NEAR(CoverageFactor(10.0), 2.228, 0.001);

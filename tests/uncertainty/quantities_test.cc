@@ -1,5 +1,6 @@
 #include "twin/uncertainty/quantities.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,6 +25,22 @@ TEST(Quantities, AreTheNumbersWithAnUncertaintyBesideThem) {
   EXPECT_EQ(found[2].u, 0.3);
   EXPECT_EQ(found[3].name, "stability.standard_deviation.dy_um");
   EXPECT_EQ(ListOf(found[2].name), "separation.target.ez_arcsec");
+  EXPECT_EQ(KindOf("iso230_2[2].targets[17].mean_arcsec[3]"), "iso230_2[].targets[].mean_arcsec");
+}
+
+TEST(StatedQuantities, AreThoseWithAnUncertaintyInEachOfItsForms) {
+  const auto json = nlohmann::json::parse(R"({"a": {"value": 1, "u": 0.1, "unit": "um"},
+    "b": {"value_um": 2, "u_um": 0.2, "bias_um": 9}, "c": {"ez_arcsec": [3, 4], "u_ez_arcsec": [0.3, null],
+    "position_deg": [0, 10]}, "d": [{"D_um": 5, "u_D_um": 0.5, "feed": 7}], "dof": 8})");
+  std::vector<std::string> names;
+  std::vector<double> values;
+  for (const Quantity& q : StatedQuantities(json)) {
+    names.push_back(q.name);
+    values.push_back(q.value);
+  }
+  EXPECT_THAT(names, testing::ElementsAre("a", "b_um", "c.ez_arcsec[0]", "c.ez_arcsec[1]", "d[0].D_um"));
+  EXPECT_THAT(values, testing::ElementsAre(1, 2, 3, 4, 5));
+  EXPECT_EQ(QuantitiesOf(json).size(), 4U) << "without the one whose uncertainty is not known";
 }
 
 }  // namespace

@@ -7,17 +7,36 @@
 #include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
 #include "twin/report/evaluation.h"
+#include "twin/report/uncertainty_text.h"
 
 namespace twinbench::tools {
 
+namespace {
+
+/// Every result with what its readings and each constant that is known only so well add to its uncertainty.
+std::vector<uncertainty::Budget> BudgetsOf(const Scenario& scenario, const std::vector<Reading>& readings) {
+  return uncertainty::Budgets(scenario, [&](const Scenario& changed) {
+    return uncertainty::QuantitiesOf(BenchOf(changed).evaluate(changed, readings, Estimator::kRigorous).results);
+  });
+}
+
+}  // namespace
+
+EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Reading>& readings) {
+  EvaluatedRun run = {BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous), {}};
+  const std::vector<uncertainty::Budget> budgets = BudgetsOf(scenario, readings);
+  run.evaluation.results["uncertainty_budget"] = report::BudgetsByList(budgets);
+  run.text = run.evaluation.summary;
+  if (!scenario.uncertainties.empty()) run.text += "\n" + report::BudgetText(budgets, nullptr);
+  return run;
+}
+
 bool EvaluateRun(const Scenario& scenario, const std::string& folder) {
-  const RunFolder run{folder};
-  const report::Evaluation evaluation =
-      BenchOf(scenario).evaluate(scenario, RunRecord::Open(folder)->Readings(), Estimator::kRigorous);
-  WriteJson(run.results(), evaluation.results);
-  WriteTables(folder, evaluation.tables);
-  fmt::print("{}", evaluation.summary);
-  return evaluation.Separated();
+  const EvaluatedRun run = EvaluatedWithBudget(scenario, RunRecord::Open(folder)->Readings());
+  WriteJson(RunFolder{folder}.results(), run.evaluation.results);
+  WriteTables(folder, run.evaluation.tables);
+  fmt::print("{}", run.text);
+  return run.evaluation.Separated();
 }
 
 }  // namespace twinbench::tools

@@ -1,13 +1,24 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "twin/core/reading.h"
 #include "twin/core/scenario.h"
+#include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 
-/// Evaluates a finished run from its record, as any later look at it will, writes results.json
-/// and prints the summary.
+/// What every run's results.json holds, and what is printed of it.
+struct EvaluatedRun {
+  report::Evaluation evaluation;  // with `uncertainty_budget` among its results
+  std::string text;               // the budget too where the scenario says how well its constants are known
+};
+
+EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Reading>& readings);
+
+/// Evaluates a finished run from its record, as any later look at it will, writes results.json and prints the
+/// summary.
 /// @return whether there was enough to separate the tables.
 bool EvaluateRun(const Scenario& scenario, const std::string& folder);
 

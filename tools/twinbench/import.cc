@@ -8,15 +8,14 @@
 #include <sstream>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"
-#include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
 #include "twin/plausible/check.h"
-#include "twin/report/evaluation.h"
 
 namespace twinbench::tools {
 namespace {
@@ -108,8 +107,7 @@ void Write(const Taken& taken, const ImportOptions& options) {
   fmt::print("{}{}", taken.story, plausible::InLines(findings));
   plausible::RefuseFatal(findings, options.files.front());
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
-  const report::Evaluation evaluation =
-      BenchOf(taken.scenario).evaluate(taken.scenario, taken.readings, Estimator::kRigorous);
+  const EvaluatedRun run = EvaluatedWithBudget(taken.scenario, taken.readings);
   const RunFolder folder{options.folder};
   {
     const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.files.front(),
@@ -118,9 +116,9 @@ void Write(const Taken& taken, const ImportOptions& options) {
     record->Finish();
   }
   WriteFileAtOnce(folder.scenario(), WriteScenario(taken.scenario));
-  WriteJson(folder.results(), evaluation.results);
+  WriteJson(folder.results(), run.evaluation.results);
   if (!taken.story.empty()) WriteFileAtOnce(folder.path + "/import.txt", taken.story);
-  fmt::print("{}", evaluation.summary);
+  fmt::print("{}", run.text);
 }
 
 void Import(const ImportOptions& options) {

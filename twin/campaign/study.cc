@@ -22,7 +22,7 @@ struct StudyFile {
   std::vector<std::string> set;
   std::uint64_t seed = 1;
   int trials = 1;
-  bool diagnosis = false;
+  bool diagnosis = false, standards = false;
 };
 
 schema::Keys KeysOf(StudyFile& file) {
@@ -35,6 +35,8 @@ schema::Keys KeysOf(StudyFile& file) {
   top.Add("trials", {}, {1.0, kMostAtAPoint}, &file.trials, "at every point of the grids");
   top.Text("sampling", &file.sampling, {"random", "latin_hypercube"}, "how distributions are sampled");
   top.Text("estimator", &file.estimator, {"published", "rigorous"}, "that evaluates every trial");
+  top.Flag("standards", file.standards,
+           "the twin has every u_<key> drawn, and errors are compared with combined uncertainties");
   top.Flag("diagnosis", file.diagnosis, "also diagnose every trial and keep the verdict");
   return keys;
 }
@@ -109,6 +111,7 @@ Study ParseStudy(const std::string& text, const std::string& name, const std::st
   study.sampling = file.sampling == "random" ? Sampling::kRandom : Sampling::kLatinHypercube;
   study.estimator = EstimatorNamed(file.estimator);
   study.diagnosis = file.diagnosis;
+  study.standards = file.standards;
   study.vary = ReadVariations(source);
   FindScenario(source, file, folder, study);
   CheckStudy(study, source.Where("set", name + ":1"));

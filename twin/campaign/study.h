@@ -24,6 +24,9 @@ struct Study {
   Sampling sampling = Sampling::kRandom;
   Estimator estimator = Estimator::kRigorous;
   bool diagnosis = false;  // also keep its verdict
+  /// The twin has every u_<key> of the scenario drawn, evaluation believes what is written, and what is compared with the
+  /// truth has its combined uncertainty (uncertainty::Budgets) instead of what the readings alone leave.
+  bool standards = false;
   std::vector<Variation> vary;
 
   /// The base scenario with these keys put in.

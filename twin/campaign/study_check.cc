@@ -54,6 +54,9 @@ void CheckStudy(const Study& study, const std::string& set_where) {
     for (const std::string& option : study.set) RefuseAt(set_where, option, error);
     throw;
   }
+  if (study.standards && study.With({}).uncertainties.empty())
+    throw InputError(study.scenario_name, "the scenario states no uncertainty that could be drawn",
+                     "u_<key> beside a key, or no standards = true");
   for (const Variation& variation : study.vary) CheckVariation(study, variation);
 }
 

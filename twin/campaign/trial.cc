@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/registry.h"
-#include "twin/campaign/stated_results.h"
 #include "twin/core/run_record.h"
 #include "twin/procedure/options.h"
 #include "twin/report/evaluation.h"
+#include "twin/uncertainty/monte_carlo.h"
 
 namespace twinbench::campaign {
 namespace {
@@ -21,6 +21,22 @@ std::vector<TrialResult> Scored(const Bench& bench, const Scenario& scenario, co
   return results;
 }
 
+/// The same with what the scenario's standards add to the uncertainty of each.
+std::vector<TrialResult> ScoredWithStandards(const Bench& bench, const Scenario& scenario,
+                                             const std::vector<Reading>& readings, const nlohmann::json& truth,
+                                             Estimator estimator) {
+  std::vector<TrialResult> results = Scored(bench, scenario, readings, truth, estimator);
+  const uncertainty::Evaluate evaluate = [&](const Scenario& changed) {
+    std::vector<uncertainty::Quantity> quantities;
+    for (const TrialResult& r : Scored(bench, changed, readings, truth, estimator))
+      quantities.push_back({r.name, r.value, r.u});
+    return quantities;
+  };
+  const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(scenario, evaluate);
+  for (std::size_t i = 0; i < results.size(); ++i) results[i].u = budgets[i].u;
+  return results;
+}
+
 /// @param believed  By evaluation and diagnosis; what a study hides is in `scenario` alone.
 void CarryOut(const Study& study, const Scenario& scenario, const Scenario& believed, TrialRow& row) {
   const Bench& bench = BenchOf(scenario);
@@ -29,9 +45,11 @@ void CarryOut(const Study& study, const Scenario& scenario, const Scenario& beli
   twin->CarryOut(*record, [](const procedure::Progress&) {});
   const std::vector<Reading> readings = record->Readings();
   const report::Evaluation evaluation = bench.evaluate(believed, readings, study.estimator);
-  row.results = StatedResults(evaluation.results);
+  for (const uncertainty::Quantity& q : uncertainty::StatedQuantities(evaluation.results))
+    row.results.push_back({q.name, q.value, q.u, kNaN});
   if (evaluation.Separated()) {
-    const std::vector<TrialResult> scored = Scored(bench, believed, readings, twin->Truth(), study.estimator);
+    const auto score = study.standards ? ScoredWithStandards : Scored;
+    const std::vector<TrialResult> scored = score(bench, believed, readings, twin->Truth(), study.estimator);
     row.results.insert(row.results.end(), scored.begin(), scored.end());
   }
   std::ranges::stable_sort(row.results, {}, &TrialResult::name);
@@ -45,7 +63,9 @@ TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial) 
   TrialRow row;
   row.trial = trial;
   try {
-    CarryOut(study, study.With(design.OverridesOf(trial)), study.With(design.BelievedOf(trial)), row);
+    Scenario scenario = study.With(design.OverridesOf(trial));
+    if (study.standards) scenario = uncertainty::DrawnScenario(std::move(scenario), study.seed, trial);
+    CarryOut(study, scenario, study.With(design.BelievedOf(trial)), row);
   } catch (const std::exception& error) {
     row.failure = error.what();
     row.results.clear();

@@ -94,7 +94,7 @@ class KeyCheck {
     RefuseOtherBench(path, value);
     if (!value.node().is_table()) throw UnknownKey(value.Where(), table, key, known_);
     throw InputError(value.Where(), fmt::format("unknown table {}", path),
-                     fmt::format("a known one; the nearest is {}", Nearest(path, tables_)));
+                     fmt::format("a known one; the nearest is {}", Nearest(path, {tables_.begin() + 1, tables_.end()})));
   }
 
   void RefuseOtherBench(const std::string& path, const TomlValue& value) const {

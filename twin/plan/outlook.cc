@@ -10,12 +10,12 @@ namespace {
 std::vector<Certainty> CertaintiesOf(const nlohmann::json& results) {
   std::vector<Certainty> all;
   for (const uncertainty::Quantity& quantity : uncertainty::QuantitiesOf(results)) {
-    const std::string name = uncertainty::ListOf(quantity.name);
-    if (all.empty() || all.back().name != name) all.push_back({name});
-    Certainty& one = all.back();
-    ++one.values;
-    one.rms_u += quantity.u * quantity.u;
-    one.worst_u = std::max(one.worst_u, quantity.u);
+    const std::string name = uncertainty::KindOf(quantity.name);
+    auto one = std::ranges::find(all, name, &Certainty::name);
+    if (one == all.end()) one = all.insert(all.end(), Certainty{name, 0, 0.0, 0.0});
+    ++one->values;
+    one->rms_u += quantity.u * quantity.u;
+    one->worst_u = std::max(one->worst_u, quantity.u);
   }
   for (Certainty& one : all) one.rms_u = std::sqrt(one.rms_u / static_cast<double>(one.values));
   return all;

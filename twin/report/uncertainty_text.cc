@@ -23,7 +23,7 @@ constexpr std::size_t kBudgetWidth = 100;
 using Rows = std::vector<std::vector<std::string>>;
 using Json = nlohmann::json;
 
-/// Budgets of one list, in the order of the results.
+/// Budgets of one kind of result, in the order of the results.
 struct QuantityList {
   std::string name;
   std::vector<const Budget*> budgets;
@@ -32,9 +32,10 @@ struct QuantityList {
 std::vector<QuantityList> ListsAmong(const std::vector<Budget>& budgets) {
   std::vector<QuantityList> groups;
   for (const Budget& budget : budgets) {
-    const std::string name = uncertainty::ListOf(budget.quantity.name);
-    if (groups.empty() || groups.back().name != name) groups.push_back({name, {}});
-    groups.back().budgets.push_back(&budget);
+    const std::string name = uncertainty::KindOf(budget.quantity.name);
+    auto group = std::ranges::find(groups, name, &QuantityList::name);
+    if (group == groups.end()) group = groups.insert(groups.end(), QuantityList{name, {}});
+    group->budgets.push_back(&budget);
   }
   return groups;
 }
@@ -55,20 +56,34 @@ std::string DofText(double dof) {
   return std::isfinite(dof) ? fmt::format("{:.0f}", dof) : "inf";
 }
 
-std::string SourcesTable(const QuantityList& group) {
+/// One source over a list: root mean square of what it adds.
+struct ListSource {
+  const Source* source = nullptr;
+  double u = 0.0;
+  double share = 0.0;  // of u^2
+};
+
+/// Largest first.
+std::vector<ListSource> SourcesOf(const QuantityList& group) {
   std::map<std::string, const Source*> sources;
   for (const Budget* budget : group.budgets) {
     for (const Source& source : budget->sources) sources.try_emplace(source.name, &source);
   }
   const double u = RootMeanSquare(group, [](const Budget& b) { return b.u; });
-  std::vector<std::pair<double, const Source*>> by_size;
-  for (const auto& [name, source] : sources)
-    by_size.emplace_back(RootMeanSquare(group, [&](const Budget& b) { return OfSource(b, name); }), source);
-  std::ranges::sort(by_size, std::greater<>(), &std::pair<double, const Source*>::first);
+  std::vector<ListSource> by_size;
+  for (const auto& [name, source] : sources) {
+    const double size = RootMeanSquare(group, [&](const Budget& b) { return OfSource(b, name); });
+    by_size.push_back({source, size, u > 0.0 ? size * size / (u * u) : 0.0});
+  }
+  std::ranges::sort(by_size, std::greater<>(), &ListSource::u);
+  return by_size;
+}
+
+std::string SourcesTable(const QuantityList& group) {
   Rows rows;
-  for (const auto& [size, source] : by_size) {
-    rows.push_back({source->name, std::string(1, source->type), fmt::format("{:.3g}", size), DofText(source->dof),
-                    fmt::format("{:.1f} %", u > 0.0 ? 100.0 * size * size / (u * u) : 0.0)});
+  for (const ListSource& s : SourcesOf(group)) {
+    rows.push_back({s.source->name, std::string(1, s.source->type), fmt::format("{:.3g}", s.u),
+                    DofText(s.source->dof), fmt::format("{:.1f} %", 100.0 * s.share)});
   }
   return TextTable({{"source"}, {"type"}, {"u", true}, {"dof", true}, {"share of u^2", true}}, rows, kBudgetWidth);
 }
@@ -78,7 +93,7 @@ std::string TrialsText(const QuantityList& group, const MonteCarlo& trials) {
   double sd2 = 0.0, half2 = 0.0;
   int count = 0;
   for (const Spread& spread : trials.spreads) {
-    if (uncertainty::ListOf(spread.quantity.name) != group.name) continue;
+    if (uncertainty::KindOf(spread.quantity.name) != group.name) continue;
     sd2 += spread.sd * spread.sd;
     half2 += 0.25 * std::pow(spread.shortest[1] - spread.shortest[0], 2);
     ++count;
@@ -90,6 +105,21 @@ std::string TrialsText(const QuantityList& group, const MonteCarlo& trials) {
 
 Json NumberOrNull(double value) {
   return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json ListJson(const QuantityList& group) {
+  const double u = RootMeanSquare(group, [](const Budget& b) { return b.u; });
+  const double expanded = RootMeanSquare(group, [](const Budget& b) { return b.Expanded(); });
+  Json sources = Json::array();
+  for (const ListSource& s : SourcesOf(group))
+    sources.push_back({{"source", s.source->name},
+                       {"type", std::string(1, s.source->type)},
+                       {"u", NumberOrNull(s.u)},
+                       {"dof", NumberOrNull(s.source->dof)},
+                       {"share", NumberOrNull(s.share)}});
+  return {{"name", group.name},          {"values", group.budgets.size()},
+          {"u", NumberOrNull(u)},        {"k", NumberOrNull(expanded / u)},
+          {"U", NumberOrNull(expanded)}, {"sources", sources}};
 }
 
 Json SpreadJson(const Spread& spread) {
@@ -139,6 +169,11 @@ std::string BudgetText(const std::vector<Budget>& budgets, const MonteCarlo* tri
     if (trials) text += TrialsText(group, *trials);
     text += "\n";
   }
+  for (const std::string& name : uncertainty::SourcesOfNothing(budgets))
+    text += fmt::format(
+        "NOT COUNTED: {}: no result is computed with it; what an error of it does to the readings is "
+        "in no line above\n",
+        name);
   if (trials)
     text += fmt::format("{} trials{}\n", trials->trials,
                         trials->settled ? "" : ", which is too few for two digits of every uncertainty");
@@ -148,11 +183,17 @@ std::string BudgetText(const std::vector<Budget>& budgets, const MonteCarlo* tri
 Json BudgetJson(const std::vector<Budget>& budgets, const MonteCarlo* trials) {
   Json all = Json::array();
   for (const Budget& budget : budgets) all.push_back(BudgetOf(budget));
-  Json json = {{"uncertainty", all}};
+  Json json = {{"uncertainty", all}, {"not_counted", uncertainty::SourcesOfNothing(budgets)}};
   if (!trials) return json;
   Json spreads = Json::array();
   for (const Spread& spread : trials->spreads) spreads.push_back(SpreadJson(spread));
   json["monte_carlo"] = {{"trials", trials->trials}, {"settled", trials->settled}, {"quantities", spreads}};
+  return json;
+}
+
+Json BudgetsByList(const std::vector<Budget>& budgets) {
+  Json json = Json::array();
+  for (const QuantityList& group : ListsAmong(budgets)) json.push_back(ListJson(group));
   return json;
 }
 

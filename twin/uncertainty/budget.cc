@@ -1,5 +1,6 @@
 #include "twin/uncertainty/budget.h"
 
+#include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -53,6 +54,22 @@ void Combine(Budget& budget) {
 }
 
 }  // namespace
+
+std::vector<std::string> SourcesOfNothing(const std::vector<Budget>& budgets) {
+  std::map<std::string, double> largest;
+  for (const Budget& budget : budgets) {
+    for (const Source& source : budget.sources) {
+      if (source.type != 'B' || source.name == kSecondOrder) continue;
+      double& u = largest[source.name];
+      u = std::max(u, std::abs(source.u));
+    }
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, u] : largest) {
+    if (u == 0.0) names.push_back(name);
+  }
+  return names;
+}
 
 double CoverageFactor(double dof) {
   constexpr double kUpper = 0.975;

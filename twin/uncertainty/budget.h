@@ -38,6 +38,10 @@ struct Budget {
 /// Order: quantities as `evaluate` gives them.
 std::vector<Budget> Budgets(const Scenario& scenario, const Evaluate& evaluate);
 
+/// Sources that change none of the quantities, by name: the evaluation makes no use of that number of the scenario,
+/// so that what an error of it does to the readings is in no budget.
+std::vector<std::string> SourcesOfNothing(const std::vector<Budget>& budgets);
+
 /// Factor of a two-sided 95 % interval of Student's t.
 double CoverageFactor(double dof);
 

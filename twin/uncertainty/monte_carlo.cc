@@ -31,18 +31,10 @@ double Drawn(const StatedUncertainty& stated, Stream& stream) {
   return std::isfinite(stated.dof) ? normal / std::sqrt(stream.ChiSquared(stated.dof) / stated.dof) : normal;
 }
 
-Stream StreamOf(std::uint64_t seed, const std::string& name, int trial) {
+Stream StreamOf(std::uint64_t seed, const std::string& name, std::int64_t trial) {
   Stream stream(seed, "uncertainty." + name);
   stream.Seek(static_cast<std::uint64_t>(trial) << 8);
   return stream;
-}
-
-Scenario DrawnScenario(Scenario scenario, std::uint64_t seed, int trial) {
-  for (const StatedUncertainty& stated : scenario.uncertainties) {
-    Stream stream = StreamOf(seed, stated.key, trial);
-    for (double& number : NumbersAt(scenario, stated.key)) number += stated.u * Drawn(stated, stream);
-  }
-  return scenario;
 }
 
 /// One trial's values, in the order of `quantities`; what could not be evaluated is NaN.
@@ -131,6 +123,14 @@ std::vector<double> ColumnOf(const std::vector<std::vector<double>>& trials, std
 }
 
 }  // namespace
+
+Scenario DrawnScenario(Scenario scenario, std::uint64_t seed, std::int64_t trial) {
+  for (const StatedUncertainty& stated : scenario.uncertainties) {
+    Stream stream = StreamOf(seed, stated.key, trial);
+    for (double& number : NumbersAt(scenario, stated.key)) number += stated.u * Drawn(stated, stream);
+  }
+  return scenario;
+}
 
 MonteCarlo Propagate(const Scenario& scenario, const Evaluate& evaluate, const MonteCarloOptions& options) {
   const std::vector<Quantity> quantities = evaluate(scenario);

@@ -29,6 +29,10 @@ struct MonteCarlo {
   bool settled = false;  // to the digits asked for, before `most_trials`
 };
 
+/// The scenario with every u_<key> of it drawn from its distribution: what the constants of one bench may be.
+/// Trials have their own stretches of every stream.
+Scenario DrawnScenario(Scenario scenario, std::uint64_t seed, std::int64_t trial);
+
 /// Propagation of distributions (JCGM 101, adaptive as in its 7.9): every u_<key> of the scenario is drawn from its
 /// distribution (a normal one of few degrees of freedom from Student's), the readings are evaluated with what was
 /// drawn, and what the estimator says of the readings' own scatter is drawn on top, from Student's distribution of

@@ -1,5 +1,6 @@
 #include "twin/uncertainty/quantities.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace twinbench::uncertainty {
@@ -7,20 +8,48 @@ namespace {
 
 using Json = nlohmann::json;
 
+bool IsNumberOrNull(const Json& node) {
+  return node.is_number() || node.is_null();
+}
+
+double NumberOf(const Json& node) {
+  return node.is_number() ? node.get<double>() : std::nan("");
+}
+
+std::string Element(const std::string& name, std::size_t i) {
+  return name + "[" + std::to_string(i) + "]";
+}
+
+/// "value" and "value_um" say only what the path already says, but for the unit.
+std::string NameOf(const std::string& path, const std::string& key) {
+  constexpr std::string_view kValue = "value";
+  if (path.empty()) return key;
+  return key.starts_with(kValue) ? path + key.substr(kValue.size()) : path + "." + key;
+}
+
+/// The key of the uncertainty of `key`: u, u_um, u_ez_arcsec.
+std::string UncertaintyKey(const Json& table, const std::string& key) {
+  constexpr std::string_view kValueIn = "value_";
+  if (key == "value") return "u";
+  const std::string in_unit = key.starts_with(kValueIn) ? "u_" + key.substr(kValueIn.size()) : "";
+  return !in_unit.empty() && table.contains(in_unit) ? in_unit : "u_" + key;
+}
+
 class Collector {
  public:
   void Walk(const Json& node, const std::string& path, double dof) {
+    if (node.is_array()) {
+      for (std::size_t i = 0; i < node.size(); ++i) Walk(node[i], Element(path, i), dof);
+    }
     if (!node.is_object()) return;
     if (const auto own = node.find("dof"); own != node.end() && own->is_number()) dof = own->get<double>();
-    if (IsValueWithU(node)) return Add(node.at("value"), node.at("u"), path, dof);
     for (const auto& [key, value] : node.items()) {
-      if (key == "diagnosis" || key.starts_with("u_")) continue;
-      const std::string name = path.empty() ? key : path + "." + key;
-      const auto u = node.find("u_" + key);
+      if (key == "diagnosis") continue;
+      const auto u = node.find(UncertaintyKey(node, key));
       if (u != node.end()) {
-        Add(value, *u, name, dof);
-      } else {
-        Walk(value, name, dof);
+        Add(value, *u, NameOf(path, key), dof);
+      } else if (!key.starts_with("u_")) {
+        Walk(value, path.empty() ? key : path + "." + key, dof);
       }
     }
   }
@@ -28,14 +57,12 @@ class Collector {
   std::vector<Quantity> found;
 
  private:
-  static bool IsValueWithU(const Json& node) { return node.contains("value") && node.contains("u"); }
-
   /// Numbers side by side, however they are packed. What is null was not measured.
   void Add(const Json& value, const Json& u, const std::string& name, double dof) {
-    if (value.is_number() && u.is_number()) {
-      found.push_back({name, value.get<double>(), u.get<double>(), dof});
+    if (IsNumberOrNull(value) && IsNumberOrNull(u)) {
+      found.push_back({name, NumberOf(value), NumberOf(u), dof});
     } else if (value.is_array() && u.is_array() && value.size() == u.size()) {
-      for (std::size_t i = 0; i < value.size(); ++i) Add(value[i], u[i], name + "[" + std::to_string(i) + "]", dof);
+      for (std::size_t i = 0; i < value.size(); ++i) Add(value[i], u[i], Element(name, i), dof);
     } else if (value.is_object() && u.is_object()) {
       for (const auto& [key, inner] : value.items()) {
         if (u.contains(key)) Add(inner, u.at(key), name + "." + key, dof);
@@ -46,14 +73,31 @@ class Collector {
 
 }  // namespace
 
-std::vector<Quantity> QuantitiesOf(const Json& results) {
+std::vector<Quantity> StatedQuantities(const Json& results) {
   Collector collector;
   collector.Walk(results, "", std::numeric_limits<double>::infinity());
   return collector.found;
 }
 
+std::vector<Quantity> QuantitiesOf(const Json& results) {
+  std::vector<Quantity> determined = StatedQuantities(results);
+  std::erase_if(determined, [](const Quantity& q) { return !std::isfinite(q.value) || !std::isfinite(q.u); });
+  return determined;
+}
+
 std::string ListOf(const std::string& name) {
   return name.ends_with(']') ? name.substr(0, name.rfind('[')) : name;
+}
+
+std::string KindOf(const std::string& name) {
+  std::string kind;
+  bool in_place = false;
+  for (const char c : ListOf(name)) {
+    if (c == ']') in_place = false;
+    if (!in_place) kind += c;
+    if (c == '[') in_place = true;
+  }
+  return kind;
 }
 
 }  // namespace twinbench::uncertainty

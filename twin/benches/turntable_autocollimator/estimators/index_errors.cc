@@ -41,7 +41,7 @@ IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Rea
   if (!analysis.separation) throw InputError("readings", analysis.not_separated, "readings of a full-circle test");
   std::vector<IndexReading> values, tilts;
   for (const Phase phase : {Phase::kFullCircle, Phase::kVerification}) {
-    for (const TurntableStop& stop : StopsOf(readings, phase)) {
+    for (const TurntableStop& stop : StopsOf(readings, scenario, phase)) {
       values.push_back({stop.setup, stop.turntable_rad,
                         Levelled_rad(analysis.separation->roll, stop) -
                             ToothError_rad(analysis.separation->multitooth, stop.multitooth_rad)});

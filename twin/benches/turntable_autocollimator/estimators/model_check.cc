@@ -71,8 +71,8 @@ ErrorSize DescribeErrors(const Eigen::VectorXd& error_rad) {
           deviation_rad.abs().maxCoeff(), (e - e[0]).abs().maxCoeff()};
 }
 
-ModelCheck CheckModel(const HarmonicModel& model, const std::vector<TurntableStop>& stops,
-                                    const Roll& roll, const CheckUncertainty& u) {
+ModelCheck CheckModel(const HarmonicModel& model, const std::vector<TurntableStop>& stops, const Roll& roll,
+                      const CheckUncertainty& u) {
   const std::vector<Checked> checked = Correct(model, stops, roll);
   const auto errors = MeansByPlace(checked, [](const Checked& c) { return c.error_rad; });
   const auto rests = MeansByPlace(checked, [](const Checked& c) { return c.error_rad - c.curve_rad; });

@@ -41,7 +41,7 @@ struct CheckUncertainty {
 ///
 /// @param stops  Check readings, at positions that the model was not fitted to.
 /// @param roll   Of the crosshair, unchanged since; not taken out if it is not known.
-ModelCheck CheckModel(const HarmonicModel& model, const std::vector<TurntableStop>& stops,
-                                    const Roll& roll, const CheckUncertainty& u);
+ModelCheck CheckModel(const HarmonicModel& model, const std::vector<TurntableStop>& stops, const Roll& roll,
+                      const CheckUncertainty& u);
 
 }  // namespace twinbench::separate::turntable

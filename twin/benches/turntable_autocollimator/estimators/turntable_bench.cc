@@ -3,19 +3,16 @@
 #include <algorithm>
 #include <set>
 
+#include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 
 namespace twinbench::separate::turntable {
 namespace {
 
-TurntableStop StopOf(const Reading& r) {
-  return {r.setup,
-          r.pass,
-          r.direction,
-          r.target_rad,
-          r.reference_rad,
-          r.autocollimator_yaw_rad,
-          r.autocollimator_tilt_rad};
+TurntableStop StopOf(const Reading& r, const Scenario& scenario) {
+  const Eigen::Vector2d mirror_rad =
+      MirrorAngles_rad({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad}, scenario);
+  return {r.setup, r.pass, r.direction, r.target_rad, r.reference_rad, mirror_rad.x(), mirror_rad.y()};
 }
 
 struct SetUpPair {
@@ -74,7 +71,7 @@ void AddModel(const AngleSeries& series, TurntableAnalysis& analysis) {
 }
 
 void AddCheck(const std::vector<Reading>& readings, const Scenario& scenario, TurntableAnalysis& analysis) {
-  const std::vector<TurntableStop> stops = StopsOf(readings, Phase::kVerification);
+  const std::vector<TurntableStop> stops = StopsOf(readings, scenario, Phase::kVerification);
   if (stops.empty() || !analysis.model) return;
   const IndexingSeparation& separation = *analysis.separation;
   // The published way knows no roll; its check was done with instruments levelled with care.
@@ -84,10 +81,10 @@ void AddCheck(const std::vector<Reading>& readings, const Scenario& scenario, Tu
 
 }  // namespace
 
-std::vector<TurntableStop> StopsOf(const std::vector<Reading>& readings, Phase phase) {
+std::vector<TurntableStop> StopsOf(const std::vector<Reading>& readings, const Scenario& scenario, Phase phase) {
   std::vector<TurntableStop> stops;
   for (const Reading& reading : readings) {
-    if (reading.phase == phase && reading.status == ReadingStatus::kOk) stops.push_back(StopOf(reading));
+    if (reading.phase == phase && reading.status == ReadingStatus::kOk) stops.push_back(StopOf(reading, scenario));
   }
   return stops;
 }
@@ -98,7 +95,7 @@ TurntableAnalysis AnalyseTurntable(const std::vector<Reading>& readings, const S
   analysis.estimator = estimator;
   analysis.left_out = static_cast<int>(
       std::ranges::count_if(readings, [](const Reading& r) { return r.status != ReadingStatus::kOk; }));
-  const std::vector<TurntableStop> stops = StopsOf(readings, Phase::kFullCircle);
+  const std::vector<TurntableStop> stops = StopsOf(readings, scenario, Phase::kFullCircle);
   analysis.used = static_cast<int>(stops.size());
   if (stops.empty()) {
     analysis.not_separated = "there are no usable full-circle readings";

@@ -13,8 +13,9 @@
 /// From readings of the bench turntable_autocollimator to all that is reported of them.
 namespace twinbench::separate::turntable {
 
-/// The stops of one phase; readings without numbers are left out.
-std::vector<TurntableStop> StopsOf(const std::vector<Reading>& readings, Phase phase);
+/// The stops of one phase, with what the scenario says of the autocollimator's scale taken out; readings without
+/// numbers are left out.
+std::vector<TurntableStop> StopsOf(const std::vector<Reading>& readings, const Scenario& scenario, Phase phase);
 
 struct TurntableAnalysis {
   Estimator estimator = Estimator::kRigorous;

@@ -1,0 +1,19 @@
+#include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
+
+#include "twin/benches/turntable_autocollimator/settings.h"
+
+namespace twinbench::separate::turntable {
+
+Eigen::Vector2d MirrorAngles_rad(const Eigen::Vector2d& shown_rad, const Scenario& scenario) {
+  const AutocollimatorSettings& instrument = TurntableOf(scenario).autocollimator;
+  const double range_rad = instrument.range_rad;
+  const double edge = TurntableOf(scenario).collimator.error_at_edge_rad / range_rad;
+  const Eigen::Vector2d scaled_rad = shown_rad / (1.0 + instrument.gain_error);
+  Eigen::Vector2d angle_rad = scaled_rad;
+  constexpr int kSteps = 8;  // each is closer by the enlargement, a few per cent at most
+  for (int step = 0; step < kSteps; ++step)
+    angle_rad = scaled_rad / (1.0 + edge * angle_rad.squaredNorm() / (range_rad * range_rad));
+  return angle_rad;
+}
+
+}  // namespace twinbench::separate::turntable
