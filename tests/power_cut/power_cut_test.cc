@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -13,18 +14,27 @@ namespace {
 
 constexpr int kReadings = 250;
 
-/// Runs the writer with every change of its files written down, once for all tests here.
+/// Runs the writer with every change of its files written down.
+std::vector<FileChange> ChangesOfAWriter(const std::string& how) {
+  const TemporaryFolder folder;
+  const std::string command = "TWINBENCH_DISK_ROOT=" + folder.File("run") +
+                              " TWINBENCH_DISK_LOG=" + folder.File("log") +
+                              " LD_PRELOAD=" POWER_CUT_DISK " " POWER_CUT_WRITER " " + folder.File("run") + " " +
+                              std::to_string(kReadings) + how;
+  if (std::system(command.c_str()) != 0) throw BenchError("the writer failed: " + command);
+  return ReadWriteLog(folder.File("log"));
+}
+
+/// Of the writer that waits for the disk, once for all tests here.
 const std::vector<FileChange>& WritersChanges() {
-  static const std::vector<FileChange> changes = [] {
-    const TemporaryFolder folder;
-    const std::string command = "TWINBENCH_DISK_ROOT=" + folder.File("run") +
-                                " TWINBENCH_DISK_LOG=" + folder.File("log") +
-                                " LD_PRELOAD=" POWER_CUT_DISK " " POWER_CUT_WRITER " " + folder.File("run") + " " +
-                                std::to_string(kReadings);
-    if (std::system(command.c_str()) != 0) throw BenchError("the writer failed: " + command);
-    return ReadWriteLog(folder.File("log"));
-  }();
+  static const std::vector<FileChange> changes = ChangesOfAWriter("");
   return changes;
+}
+
+int SyncsOfTheLog(const std::vector<FileChange>& changes) {
+  return static_cast<int>(std::ranges::count_if(changes, [](const FileChange& change) {
+    return change.what == 's' && change.path.ends_with("-wal");
+  }));
 }
 
 std::string NameOf(const std::string& path) {
@@ -88,6 +98,29 @@ TEST_P(PowerCut, AtAnyMomentLosesNothingThatWasAcknowledged) {
   EXPECT_GT(with_readings, 250) << "nearly all moments lie within the run";
 }
 
+TEST_P(PowerCut, OfARunThatSparesTheDiskLosesItsLatestReadingsAndNoneOnceItIsFinished) {
+  const std::vector<FileChange> changes = ChangesOfAWriter(" sparing");
+  EXPECT_LT(SyncsOfTheLog(changes), kReadings / 10) << "the disk is not spared";
+  std::mt19937_64 random(2007);
+  ForgetfulDisk disk;
+  const auto intact = [&] {  // a whole record of the first so many, whenever it was
+    const TemporaryFolder folder;
+    LayOut(disk.AfterPowerCut(GetParam(), random), folder);
+    return IntactReadings(folder);
+  };
+  bool finished = false;
+  for (std::size_t done = 0; done < changes.size(); ++done) {
+    disk.Apply(changes[done]);
+    finished = finished || (NameOf(changes[done].path) == "acknowledged" && changes[done].what == 'w');
+    if (finished) {
+      ASSERT_EQ(intact(), kReadings) << "power cut after change " << done;
+    } else if (done % 97 == 0) {
+      EXPECT_GE(intact(), 0);
+    }
+  }
+  EXPECT_TRUE(finished);
+}
+
 INSTANTIATE_TEST_SUITE_P(Disk, PowerCut,
                          ::testing::Values(ForgetfulDisk::Left::kPrefix, ForgetfulDisk::Left::kTornSubset),
                          [](const auto& instance) {
@@ -118,13 +151,10 @@ TEST(ForgetfulDisk, KeepsWhatWasSyncedAndForgetsTheRest) {
 }
 
 TEST(WriteLog, SawTheWriterSyncEveryReading) {
-  int syncs = 0;
-  bool checkpointed = false;
-  for (const FileChange& change : WritersChanges()) {
-    if (change.what == 's' && change.path.ends_with("-wal")) ++syncs;
-    if (change.what == 'w' && change.path.ends_with("record.sqlite")) checkpointed = true;
-  }
-  EXPECT_GE(syncs, kReadings);
+  const bool checkpointed = std::ranges::any_of(WritersChanges(), [](const FileChange& change) {
+    return change.what == 'w' && change.path.ends_with("record.sqlite");
+  });
+  EXPECT_GE(SyncsOfTheLog(WritersChanges()), kReadings);
   EXPECT_TRUE(checkpointed) << "the log was never folded into the database";
 }
 

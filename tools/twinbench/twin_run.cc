@@ -16,6 +16,7 @@ void RunOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
   const std::unique_ptr<BenchTwin> twin = bench.make_twin(scenario);
   const auto record =
       RunRecord::Create(folder.path, {TWINBENCH_VERSION, "twin", scenario.seed, "", scenario.bench});
+  record->SpareTheDisk();
   WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
   WriteJson(folder.truth(), twin->Truth());
   ProgressLine progress;

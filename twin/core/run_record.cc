@@ -173,6 +173,10 @@ std::unique_ptr<RunRecord> RunRecord::Continue(const std::string& directory) {
   return record;
 }
 
+void RunRecord::SpareTheDisk() {
+  database_->Execute("PRAGMA synchronous = NORMAL");
+}
+
 void RunRecord::Append(const Reading& reading, const Acquisition& taken) {
   SqliteTransaction transaction(*database_);
   database_->AppendReading(reading);
@@ -228,6 +232,7 @@ void RunRecord::AppendEvent(Time time, const std::string& device, const std::str
 }
 
 void RunRecord::Finish() {
+  database_->Execute("PRAGMA synchronous = FULL");  // this commit takes all before it to the disk
   SqliteTransaction transaction(*database_);
   database_->AppendCalls(-1);  // behind the last reading
   database_->Execute("INSERT OR IGNORE INTO finished VALUES(1)");

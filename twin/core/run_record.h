@@ -60,6 +60,9 @@ class RunRecord : public ReadingSink, public RunLog {
   static std::unique_ptr<RunRecord> Continue(const std::string& directory);
 
   ~RunRecord() override;
+  /// From here on a reading is kept whatever becomes of this program, and against a power failure with all others by
+  /// Finish: for a run that can be made again, which would wait for the disk most of its time.
+  void SpareTheDisk();
   /// @throws BenchError if the disk refuses or the reading's number is taken; the record is then as it was before.
   void Append(const Reading& reading, const Acquisition& taken) override;
   void AppendAll(const std::vector<Reading>& readings) override;
