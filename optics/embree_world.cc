@@ -37,7 +37,19 @@ struct Query {
   void Run(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect); }
   void Run(const int* valid, RTCScene scene, RTCRay16& packet) { rtcOccluded16(valid, scene, &packet, &occluded); }
   void Run(const int* valid, RTCScene scene, RTCRay8& packet) { rtcOccluded8(valid, scene, &packet, &occluded); }
+
+  /// Embree 4 has no call for many packets.
+  template <std::size_t kWidth, class Packet>
+  void RunAll(RTCScene scene, Packet* packets, std::size_t count) {
+    alignas(64) int valid[kWidth];
+    std::fill_n(valid, kWidth, -1);
+    for (std::size_t p = 0; p < count; ++p) Run(valid, scene, packets[p]);
+  }
 };
+
+bool HasStreams(RTCDevice, int) {
+  return false;
+}
 #else
 struct Query {
   RTCIntersectContext context;
@@ -54,7 +66,21 @@ struct Query {
   void Run(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
   void Run(const int* valid, RTCScene scene, RTCRay16& packet) { rtcOccluded16(valid, scene, &context, &packet); }
   void Run(const int* valid, RTCScene scene, RTCRay8& packet) { rtcOccluded8(valid, scene, &context, &packet); }
+
+  /// Packets of the processor's own width, every ray of them finite: coherent ones go down Embree's tree together.
+  template <std::size_t kWidth, class Packet>
+  void RunAll(RTCScene scene, Packet* packets, std::size_t count) {
+    rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets), kWidth, static_cast<unsigned>(count),
+                   sizeof(Packet));
+  }
 };
+
+bool HasStreams(RTCDevice device, int width) {
+  const auto native = width == 16 ? RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED
+                                  : RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED;
+  return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED) &&
+         rtcGetDeviceProperty(device, native);
+}
 #endif
 
 template <std::size_t kWidth>
@@ -125,48 +151,63 @@ template <std::size_t kWidth, class Packet>
   }
 }
 
+/// How a tile is traced.
+struct Tracing {
+  RTCScene scene;
+  Query& query;
+  bool together;  // all its packets by one call
+  float near_m;
+};
+
 // All packets are filled, then traced, then read: so no load waits for the store of a moment ago.
 template <std::size_t kWidth, class Packet>
-[[gnu::always_inline]] inline void IntersectTile(RTCScene scene, Query& query, ConstRays r, Packet* packets,
+[[gnu::always_inline]] inline void IntersectTile(const Tracing& tracing, ConstRays r, Packet* packets,
                                                  std::size_t count, Answers answers) {
   alignas(64) int valid[kTilePackets][kWidth];
+  int all_valid = -1;
   for (std::size_t p = 0; p < count; ++p) {
     ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray);
     std::fill_n(packets[p].ray.tfar, kWidth, std::numeric_limits<float>::infinity());
     std::fill_n(packets[p].hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
   }
-  for (std::size_t p = 0; p < count; ++p) FindFinite<kWidth>(packets[p].ray, valid[p]);
-  for (std::size_t p = 0; p < count; ++p) query.Run(valid[p], scene, packets[p]);
+  for (std::size_t p = 0; p < count; ++p) {
+    FindFinite<kWidth>(packets[p].ray, valid[p]);
+    for (std::size_t i = 0; i < kWidth; ++i) all_valid &= valid[p][i];
+  }
+  if (tracing.together && all_valid) {
+    tracing.query.template RunAll<kWidth>(tracing.scene, packets, count);
+  } else {
+    for (std::size_t p = 0; p < count; ++p) tracing.query.Run(valid[p], tracing.scene, packets[p]);
+  }
   for (std::size_t p = 0; p < count; ++p) Read<kWidth>(packets[p], answers.From(p * kWidth));
 }
 
 template <std::size_t kWidth, class Packet>
-[[gnu::always_inline]] inline void IntersectPackets(RTCScene scene, Query& query, const RayBatch& rays,
-                                                    float near_m, std::size_t packets,
-                                                    const EmbreeWorld::Tile& tile) {
+[[gnu::always_inline]] inline void IntersectPackets(const Tracing& tracing, const RayBatch& rays,
+                                                    std::size_t packets, const EmbreeWorld::Tile& tile) {
   alignas(64) int triangle[kTilePackets * kWidth];
   alignas(64) float t_m[kTilePackets * kWidth];
   Packet storage[kTilePackets];
-  PrepareTile<kWidth>(storage, std::min(packets, kTilePackets), near_m);
+  PrepareTile<kWidth>(storage, std::min(packets, kTilePackets), tracing.near_m);
   for (std::size_t p = 0; p < packets; p += kTilePackets) {
     const std::size_t count = std::min(kTilePackets, packets - p);
-    IntersectTile<kWidth>(scene, query, From(rays, p * kWidth), storage, count, {triangle, t_m});
+    IntersectTile<kWidth>(tracing, From(rays, p * kWidth), storage, count, {triangle, t_m});
     tile(p * kWidth, count, {triangle, t_m});
   }
 }
 
-[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets16(RTCScene scene, Query& query,
-                                                                             const RayBatch& rays, float near_m,
+[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets16(const Tracing& tracing,
+                                                                             const RayBatch& rays,
                                                                              std::size_t packets,
                                                                              const EmbreeWorld::Tile& tile) {
-  IntersectPackets<16, RTCRayHit16>(scene, query, rays, near_m, packets, tile);
+  IntersectPackets<16, RTCRayHit16>(tracing, rays, packets, tile);
 }
 
-[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets8(RTCScene scene, Query& query,
-                                                                            const RayBatch& rays, float near_m,
+[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets8(const Tracing& tracing,
+                                                                            const RayBatch& rays,
                                                                             std::size_t packets,
                                                                             const EmbreeWorld::Tile& tile) {
-  IntersectPackets<8, RTCRayHit8>(scene, query, rays, near_m, packets, tile);
+  IntersectPackets<8, RTCRayHit8>(tracing, rays, packets, tile);
 }
 
 namespace {
@@ -255,6 +296,7 @@ EmbreeWorld::EmbreeWorld(RTCDeviceTy* device) : device_(device) {
   fixtures_ = rtcNewScene(device_);
   rtcSetSceneFlags(fixtures_, RTC_SCENE_FLAG_DYNAMIC);
   if (!rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) packet_width_ = 8;
+  has_streams_ = HasStreams(device_, packet_width_);
 }
 
 EmbreeWorld::~EmbreeWorld() {
@@ -309,7 +351,7 @@ void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t packets, float nea
                             const Tile& tile) const {
   Query query(order);
   const auto trace = packet_width_ == 16 ? IntersectPackets16 : IntersectPackets8;
-  trace(scene_, query, rays, near_m, packets, tile);
+  trace({scene_, query, has_streams_ && order == RayOrder::kCoherent, near_m}, rays, packets, tile);
 }
 
 Answer EmbreeWorld::Intersect(const Ray& ray, float near_m, float far_m) const {

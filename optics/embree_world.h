@@ -15,8 +15,8 @@ struct RTCGeometryTy;
 /// Embree 3 or 4 behind plain types: triangles in float, packets of rays.
 namespace twinbench::optics {
 
-/// Packets traced by turns: so many stay in the first-level cache together with their rays.
-inline constexpr std::size_t kTilePackets = 8;
+/// Packets traced together: so many stay in the first-level cache with their rays and with what Embree notes of them.
+inline constexpr std::size_t kTilePackets = 4;
 
 /// One packet's bounds, a lane for each ray.
 struct alignas(64) Bounds {
@@ -82,6 +82,7 @@ class EmbreeWorld {
   RTCGeometryTy* proxies_ = nullptr;
   std::vector<Instance> instances_;
   int packet_width_ = kMaxPacket;
+  bool has_streams_ = false;  // a call of Embree's for many packets of this width
 };
 
 }  // namespace twinbench::optics

@@ -325,6 +325,31 @@ TEST(Scene, NoNaNRayHoldsUpItsPacket) {
   EXPECT_EQ(hits.surface[7], kNothing);
 }
 
+/// Rays along the axes, to and fro in one tile, some that pass exactly along a plane.
+RayBatch AxisParallel(Dice& dice, int count) {
+  RayBatch rays;
+  for (int i = 0; i < count; ++i) {
+    Vector3d from = dice.Cube(0.02), direction = Vector3d::Zero();
+    if (i % 5 == 0) from = Vector3d(0.0, 0.0, 0.0);
+    direction(i % 3) = i % 2 == 0 ? 1.0 : -1.0;
+    rays.Add({from, direction});
+  }
+  return rays;
+}
+
+TEST(Scene, MeetsItsPlanesWithRaysAlongTheAxes) {
+  Scene scene;
+  for (int i = 0; i < 6; ++i) {
+    const Vector3d axis = Vector3d::Unit(i % 3) * (i < 3 ? 1.0 : -1.0);
+    Isometry3d X(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis));
+    X.translation() = 0.1 * axis;
+    scene.AddSurface(RectangularPlane(X, 0.03, 0.03));
+  }
+  scene.Commit();
+  Dice dice(18);
+  ExpectEveryPathAgrees(scene, AxisParallel(dice, 5003), 2000);
+}
+
 /// Embree as older processors run it: packets of 8 instead of 16 among other things.
 class SceneOnOldProcessors : public testing::TestWithParam<const char*> {};
 
