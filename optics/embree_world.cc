@@ -83,25 +83,30 @@ bool HasStreams(RTCDevice device, int width) {
 }
 #endif
 
-template <std::size_t kWidth>
-[[gnu::always_inline]] inline void ToFloat(const double* __restrict from, float* __restrict to) {
-  // + 0 turns -0 into +0, so that the sign of a zero never sends a ray to another octant of Embree's packets.
-  for (std::size_t i = 0; i < kWidth; ++i) to[i] = static_cast<float>(from[i]) + 0.0f;
-}
-
-template <std::size_t kWidth, class RayPacket>
-[[gnu::always_inline]] inline void ToFloat(ConstRays from, RayPacket& ray) {
-  ToFloat<kWidth>(from.ox, ray.org_x);
-  ToFloat<kWidth>(from.oy, ray.org_y);
-  ToFloat<kWidth>(from.oz, ray.org_z);
-  ToFloat<kWidth>(from.dx, ray.dir_x);
-  ToFloat<kWidth>(from.dy, ray.dir_y);
-  ToFloat<kWidth>(from.dz, ray.dir_z);
-}
-
 constexpr float kFar_m = 1e18f;  // Embree's own limit is a little above
+/// @return Whether all rays are finite. Embree must not see one that is not: some builds of it stop the program.
+template <std::size_t kWidth, class RayPacket>
+[[gnu::always_inline]] inline bool ToFloat(ConstRays from, RayPacket& ray) {
+  int strange = 0;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    // + 0 turns -0 into +0, so that the sign of a zero never sends a ray to another octant of Embree's packets.
+    const float ox = static_cast<float>(from.ox[i]) + 0.0f, dx = static_cast<float>(from.dx[i]) + 0.0f;
+    const float oy = static_cast<float>(from.oy[i]) + 0.0f, dy = static_cast<float>(from.dy[i]) + 0.0f;
+    const float oz = static_cast<float>(from.oz[i]) + 0.0f, dz = static_cast<float>(from.dz[i]) + 0.0f;
+    ray.org_x[i] = ox;
+    ray.org_y[i] = oy;
+    ray.org_z[i] = oz;
+    ray.dir_x[i] = dx;
+    ray.dir_y[i] = dy;
+    ray.dir_z[i] = dz;
+    const float size =
+        std::abs(ox) + std::abs(oy) + std::abs(oz) + std::abs(dx) + std::abs(dy) + std::abs(dz);
+    strange |= size < kFar_m ? 0 : 1;
+  }
+  return strange == 0;
+}
 
-/// Embree must not see a ray that is not finite: some builds of it stop the program. Valid is -1, not valid 0.
+/// Valid is -1, not valid 0.
 template <std::size_t kWidth, class RayPacket>
 [[gnu::always_inline]] inline void FindFinite(const RayPacket& ray, int* __restrict valid) {
   for (std::size_t i = 0; i < kWidth; ++i) {
@@ -127,21 +132,15 @@ template <std::size_t kWidth, class HitPacket>
 }
 
 template <std::size_t kWidth, class RayHitPacket>
-[[gnu::always_inline]] inline void Read(const RayHitPacket& packet, Answers answers) {
-  for (std::size_t i = 0; i < kWidth; ++i) {
-    // Every load before any choice: no branches, so that this becomes vector code.
-    const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
-    const int primitive = static_cast<int>(packet.hit.primID[i]);
-    const int triangle = instance == RTC_INVALID_GEOMETRY_ID ? primitive : kFixture;
-    answers.triangle[i] = geometry == RTC_INVALID_GEOMETRY_ID ? kNothing : triangle;
-    answers.t_m[i] = packet.ray.tfar[i];
-  }
+[[gnu::always_inline]] inline void Read(const RayHitPacket& packet, RawAnswers answers) {
+  std::copy_n(packet.hit.geomID, kWidth, answers.geometry);
+  std::copy_n(packet.hit.primID, kWidth, answers.primitive);
+  std::copy_n(packet.ray.tfar, kWidth, answers.t_m);
 }
 
 }  // namespace
 
-/// What Embree leaves as it was is written once for all tiles. It names the instance of every hit, so that of an
-/// earlier tile's is never read.
+/// What Embree leaves as it was, and what nobody reads, is written once for all tiles.
 template <std::size_t kWidth, class Packet>
 [[gnu::always_inline]] inline void PrepareTile(Packet* packets, std::size_t count, float near_m) {
   for (std::size_t p = 0; p < count; ++p) {
@@ -159,25 +158,29 @@ struct Tracing {
   float near_m;
 };
 
+template <std::size_t kWidth, class Packet>
+[[gnu::always_inline]] inline void RunOneByOne(const Tracing& tracing, Packet* packets, std::size_t count) {
+  alignas(64) int valid[kWidth];
+  for (std::size_t p = 0; p < count; ++p) {
+    FindFinite<kWidth>(packets[p].ray, valid);
+    tracing.query.Run(valid, tracing.scene, packets[p]);
+  }
+}
+
 // All packets are filled, then traced, then read: so no load waits for the store of a moment ago.
 template <std::size_t kWidth, class Packet>
 [[gnu::always_inline]] inline void IntersectTile(const Tracing& tracing, ConstRays r, Packet* packets,
-                                                 std::size_t count, Answers answers) {
-  alignas(64) int valid[kTilePackets][kWidth];
-  int all_valid = -1;
+                                                 std::size_t count, RawAnswers answers) {
+  bool all_finite = true;
   for (std::size_t p = 0; p < count; ++p) {
-    ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray);
+    all_finite &= ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray);
     std::fill_n(packets[p].ray.tfar, kWidth, std::numeric_limits<float>::infinity());
     std::fill_n(packets[p].hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
   }
-  for (std::size_t p = 0; p < count; ++p) {
-    FindFinite<kWidth>(packets[p].ray, valid[p]);
-    for (std::size_t i = 0; i < kWidth; ++i) all_valid &= valid[p][i];
-  }
-  if (tracing.together && all_valid) {
+  if (tracing.together && all_finite) {
     tracing.query.template RunAll<kWidth>(tracing.scene, packets, count);
   } else {
-    for (std::size_t p = 0; p < count; ++p) tracing.query.Run(valid[p], tracing.scene, packets[p]);
+    RunOneByOne<kWidth>(tracing, packets, count);
   }
   for (std::size_t p = 0; p < count; ++p) Read<kWidth>(packets[p], answers.From(p * kWidth));
 }
@@ -185,14 +188,16 @@ template <std::size_t kWidth, class Packet>
 template <std::size_t kWidth, class Packet>
 [[gnu::always_inline]] inline void IntersectPackets(const Tracing& tracing, const RayBatch& rays,
                                                     std::size_t packets, const EmbreeWorld::Tile& tile) {
-  alignas(64) int triangle[kTilePackets * kWidth];
+  alignas(64) unsigned geometry[kTilePackets * kWidth];
+  alignas(64) unsigned primitive[kTilePackets * kWidth];
   alignas(64) float t_m[kTilePackets * kWidth];
+  const RawAnswers answers{geometry, primitive, t_m};
   Packet storage[kTilePackets];
   PrepareTile<kWidth>(storage, std::min(packets, kTilePackets), tracing.near_m);
   for (std::size_t p = 0; p < packets; p += kTilePackets) {
     const std::size_t count = std::min(kTilePackets, packets - p);
-    IntersectTile<kWidth>(tracing, From(rays, p * kWidth), storage, count, {triangle, t_m});
-    tile(p * kWidth, count, {triangle, t_m});
+    IntersectTile<kWidth>(tracing, From(rays, p * kWidth), storage, count, answers);
+    tile(p * kWidth, count, answers);
   }
 }
 
@@ -241,7 +246,7 @@ void IntersectPacket(RTCScene scene, const RayBatch& rays, std::size_t begin, st
   Fill<kWidth>(rays, begin, n, bounds, packet.ray, valid);
   Forget<kWidth>(packet.hit);
   Query(order).Run(valid, scene, packet);
-  Read<kWidth>(packet, answers);
+  Name({packet.hit.geomID, packet.hit.primID, packet.ray.tfar}, kWidth, answers);
 }
 
 template <std::size_t kWidth, class Packet>
@@ -313,13 +318,14 @@ EmbreeWorld::~EmbreeWorld() {
 void EmbreeWorld::AddMesh(const TriangleMesh& mesh) {
   RTCScene inner = rtcNewScene(device_);
   RTCGeometry triangles = MakeTriangles(device_, mesh);
-  rtcAttachGeometry(inner, triangles);
+  rtcAttachGeometryByID(inner, triangles, kMeshGeometry);
   rtcReleaseGeometry(triangles);
   rtcCommitScene(inner);
   RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(instance, inner);
-  rtcAttachGeometry(scene_, instance);
-  rtcAttachGeometry(fixtures_, instance);
+  const auto id = static_cast<unsigned>(instances_.size()) + kProxyGeometry + 1;
+  rtcAttachGeometryByID(scene_, instance, id);
+  rtcAttachGeometryByID(fixtures_, instance, id);
   instances_.push_back({inner, instance});
 }
 
@@ -337,7 +343,7 @@ void EmbreeWorld::SetProxies(const TriangleMesh& proxies, bool same_topology) {
     return rtcCommitGeometry(proxies_);
   }
   proxies_ = MakeTriangles(device_, proxies);
-  rtcAttachGeometry(scene_, proxies_);
+  rtcAttachGeometryByID(scene_, proxies_, kProxyGeometry);
 }
 
 void EmbreeWorld::Commit() {
@@ -367,8 +373,7 @@ Answer EmbreeWorld::Intersect(const Ray& ray, float near_m, float far_m) const {
   one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   Query(RayOrder::kCoherent).Run(scene_, one);
   if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const bool proxy = one.hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
-  return {proxy ? static_cast<int>(one.hit.primID) : kFixture, one.ray.tfar};
+  return {one.hit.geomID == kProxyGeometry ? static_cast<int>(one.hit.primID) : kFixture, one.ray.tfar};
 }
 
 void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,

@@ -55,7 +55,7 @@ class EmbreeWorld {
   RTCSceneTy* scene() const { return scene_; }
 
   /// What is done with the answers of one tile: `packets` <= kTilePackets whole packets from ray `begin` on.
-  using Tile = std::function<void(std::size_t begin, std::size_t packets, Answers answers)>;
+  using Tile = std::function<void(std::size_t begin, std::size_t packets, RawAnswers answers)>;
 
   /// Nearest triangle beyond `near_m` for the first `packets` whole packets of packet_width() rays, tile by tile.
   void Intersect(const RayBatch& rays, std::size_t packets, float near_m, RayOrder order, const Tile& tile) const;

@@ -59,29 +59,54 @@ void TakeNearest(const Frame& frame, int id, const RayBatch& rays, std::size_t b
 
 /// Rays that all seem to meet one plane.
 /// @return Whether each names one of its triangles and meets it no later than Embree says.
-[[gnu::target_clones("avx512f", "avx2", "default")]] bool MeetLonePlane(const Target& target, int surface,
-                                                                        float blur_m, ConstRays r, std::size_t n,
-                                                                        Answers answers, double t_min,
-                                                                        BestHits best) {
+template <bool kIsRound>
+[[gnu::always_inline]] inline bool MeetLonePlane(const Target& target, int surface, float blur_m, ConstRays r,
+                                                 std::size_t n, RawAnswers answers, double t_min, BestHits best) {
   const Frame f = target.frame;
-  const TriangleRange triangles = target.triangles;
-  int other = 0;
+  const auto first = static_cast<unsigned>(target.triangles.first);
+  const auto triangles = static_cast<unsigned>(target.triangles.end) - first;
+  unsigned other = 0;
   for (std::size_t i = 0; i < n; ++i) {
     best.surface[i] = surface;
-    other |= (answers.triangle[i] < triangles.first) | (answers.triangle[i] >= triangles.end);
+    const unsigned is_other = answers.primitive[i] - first < triangles ? 0 : 1;
+    other |= (answers.geometry[i] - kProxyGeometry) | is_other;
   }
   std::int64_t open = 0;
   for (std::size_t i = 0; i < n; ++i) {
     double t, x, y;
     MeetPlane(f, r.ox[i], r.oy[i], r.oz[i], r.dx[i], r.dy[i], r.dz[i], t, x, y);
     const double t_embree = static_cast<double>(answers.t_m[i]) + blur_m;
-    const bool met = InAperture(f, x, y) & (t > t_min) & (t <= t_embree);
+    const bool inside = kIsRound ? InAperture(f, x, y) : InRectangle(f, x, y);
+    const bool met = inside & (t > t_min) & (t <= t_embree);
     best.t[i] = t;
     best.x[i] = x;
     best.y[i] = y;
     open |= met ? 0 : 1;
   }
   return other == 0 && open == 0;
+}
+
+[[gnu::target_clones("avx512f", "avx2", "default")]] bool MeetLoneRectangle(const Target& target, int surface,
+                                                                            float blur_m, ConstRays r,
+                                                                            std::size_t n, RawAnswers answers,
+                                                                            double t_min, BestHits best) {
+  return MeetLonePlane<false>(target, surface, blur_m, r, n, answers, t_min, best);
+}
+
+[[gnu::target_clones("avx512f", "avx2", "default")]] bool MeetLoneCircle(const Target& target, int surface,
+                                                                         float blur_m, ConstRays r, std::size_t n,
+                                                                         RawAnswers answers, double t_min,
+                                                                         BestHits best) {
+  return MeetLonePlane<true>(target, surface, blur_m, r, n, answers, t_min, best);
+}
+
+void Name(RawAnswers raw, std::size_t n, Answers answers) {
+  for (std::size_t i = 0; i < n; ++i) {
+    answers.triangle[i] = kNothing;
+    if (raw.geometry[i] == kProxyGeometry) answers.triangle[i] = static_cast<int>(raw.primitive[i]);
+    if (raw.geometry[i] == kMeshGeometry) answers.triangle[i] = kFixture;
+    answers.t_m[i] = raw.t_m[i];
+  }
 }
 
 [[gnu::target_clones("avx512f", "avx2", "default")]] bool CompareArrays(Answers answers, float blur_m,
@@ -102,13 +127,16 @@ bool Compare(Answers answers, float blur_m, std::size_t begin, std::size_t n, Hi
 }
 
 std::uint32_t SettlePlanes(const Targets& targets, const RayBatch& rays, std::size_t begin, std::size_t n,
-                           std::size_t width, Answers answers, double t_min, HitBatch& hits) {
+                           std::size_t width, RawAnswers answers, double t_min, HitBatch& hits) {
   const auto named = [&](std::size_t i) {
-    return answers.triangle[i] < 0 ? kNothing : targets.surface_of_triangle[answers.triangle[i]];
+    const bool is_proxy = answers.geometry[i] == kProxyGeometry;
+    return is_proxy ? targets.surface_of_triangle[answers.primitive[i]] : kNothing;
   };
   const auto meet = [&](int surface, std::size_t from, std::size_t to) {
-    return MeetLonePlane(targets.surfaces[surface], surface, targets.blur_m, From(rays, begin + from), to - from,
-                         answers.From(from), t_min, From(hits, begin + from));
+    const Target& target = targets.surfaces[surface];
+    const auto kernel = std::isinf(target.frame.radius2) ? MeetLoneRectangle : MeetLoneCircle;
+    return kernel(target, surface, targets.blur_m, From(rays, begin + from), to - from, answers.From(from), t_min,
+                  From(hits, begin + from));
   };
   std::uint32_t unsettled = 0;
   for (std::size_t from = 0, to; from < n; from = to) {
