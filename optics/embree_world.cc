@@ -140,9 +140,9 @@ template <std::size_t kWidth, class RayHitPacket>
 
 }  // namespace
 
-/// What Embree leaves as it was, and what nobody reads, is written once for all tiles.
+/// What Embree leaves as it was, and what nobody reads, is written once for all rays.
 template <std::size_t kWidth, class Packet>
-[[gnu::always_inline]] inline void PrepareTile(Packet* packets, std::size_t count, float near_m) {
+[[gnu::always_inline]] inline void PrepareAll(Packet* packets, std::size_t count, float near_m) {
   for (std::size_t p = 0; p < count; ++p) {
     Prepare<kWidth>(packets[p].ray);
     std::fill_n(packets[p].ray.tnear, kWidth, near_m);
@@ -169,7 +169,7 @@ template <std::size_t kWidth, class Packet>
 
 // All packets are filled, then traced, then read: so no load waits for the store of a moment ago.
 template <std::size_t kWidth, class Packet>
-[[gnu::always_inline]] inline void IntersectTile(const Tracing& tracing, ConstRays r, Packet* packets,
+[[gnu::always_inline]] inline void IntersectTogether(const Tracing& tracing, ConstRays r, Packet* packets,
                                                  std::size_t count, RawAnswers answers) {
   bool all_finite = true;
   for (std::size_t p = 0; p < count; ++p) {
@@ -188,15 +188,19 @@ template <std::size_t kWidth, class Packet>
 template <std::size_t kWidth, class Packet>
 [[gnu::always_inline]] inline void IntersectPackets(const Tracing& tracing, const RayBatch& rays,
                                                     std::size_t packets, const EmbreeWorld::Tile& tile) {
-  alignas(64) unsigned geometry[kTilePackets * kWidth];
-  alignas(64) unsigned primitive[kTilePackets * kWidth];
-  alignas(64) float t_m[kTilePackets * kWidth];
+  constexpr std::size_t kTile = kTileRays / kWidth;
+  alignas(64) unsigned geometry[kTileRays];
+  alignas(64) unsigned primitive[kTileRays];
+  alignas(64) float t_m[kTileRays];
   const RawAnswers answers{geometry, primitive, t_m};
-  Packet storage[kTilePackets];
-  PrepareTile<kWidth>(storage, std::min(packets, kTilePackets), tracing.near_m);
-  for (std::size_t p = 0; p < packets; p += kTilePackets) {
-    const std::size_t count = std::min(kTilePackets, packets - p);
-    IntersectTile<kWidth>(tracing, From(rays, p * kWidth), storage, count, answers);
+  Packet storage[kTogether];
+  PrepareAll<kWidth>(storage, std::min(packets, kTogether), tracing.near_m);
+  for (std::size_t p = 0; p < packets; p += kTile) {
+    const std::size_t count = std::min(kTile, packets - p);
+    for (std::size_t k = 0; k < count; k += kTogether) {
+      IntersectTogether<kWidth>(tracing, From(rays, (p + k) * kWidth), storage, std::min(kTogether, count - k),
+                                answers.From(k * kWidth));
+    }
     tile(p * kWidth, count, answers);
   }
 }

@@ -128,9 +128,14 @@ bool Compare(Answers answers, float blur_m, std::size_t begin, std::size_t n, Hi
 
 std::uint32_t SettlePlanes(const Targets& targets, const RayBatch& rays, std::size_t begin, std::size_t n,
                            std::size_t width, RawAnswers answers, double t_min, HitBatch& hits) {
-  const auto named = [&](std::size_t i) {
+  const auto surface_of = [&](std::size_t i) {
     const bool is_proxy = answers.geometry[i] == kProxyGeometry;
     return is_proxy ? targets.surface_of_triangle[answers.primitive[i]] : kNothing;
+  };
+  // A beam's neighbours travel together: a packet in which it goes over to another surface has two at its ends.
+  const auto named = [&](std::size_t i) {
+    const int first = surface_of(i);
+    return first == surface_of(i + width - 1) ? first : kNothing;
   };
   const auto meet = [&](int surface, std::size_t from, std::size_t to) {
     const Target& target = targets.surfaces[surface];
