@@ -84,15 +84,18 @@ bool HasStreams(RTCDevice device, int width) {
 #endif
 
 constexpr float kFar_m = 1e18f;  // Embree's own limit is a little above
-/// @return Whether all rays are finite. Embree must not see one that is not: some builds of it stop the program.
+/// Embree must not see a ray that is not finite: some builds of it stop the program.
+/// @param strange  Set where a ray is not; kept lane by lane for several packets.
 template <std::size_t kWidth, class RayPacket>
-[[gnu::always_inline]] inline bool ToFloat(ConstRays from, RayPacket& ray) {
-  int strange = 0;
+[[gnu::always_inline]] inline void ToFloat(ConstRays from, RayPacket& ray, int* __restrict strange) {
   for (std::size_t i = 0; i < kWidth; ++i) {
+    const float ox = static_cast<float>(from.ox[i]);
+    const float oy = static_cast<float>(from.oy[i]);
+    const float oz = static_cast<float>(from.oz[i]);
     // + 0 turns -0 into +0, so that the sign of a zero never sends a ray to another octant of Embree's packets.
-    const float ox = static_cast<float>(from.ox[i]) + 0.0f, dx = static_cast<float>(from.dx[i]) + 0.0f;
-    const float oy = static_cast<float>(from.oy[i]) + 0.0f, dy = static_cast<float>(from.dy[i]) + 0.0f;
-    const float oz = static_cast<float>(from.oz[i]) + 0.0f, dz = static_cast<float>(from.dz[i]) + 0.0f;
+    const float dx = static_cast<float>(from.dx[i]) + 0.0f;
+    const float dy = static_cast<float>(from.dy[i]) + 0.0f;
+    const float dz = static_cast<float>(from.dz[i]) + 0.0f;
     ray.org_x[i] = ox;
     ray.org_y[i] = oy;
     ray.org_z[i] = oz;
@@ -101,9 +104,8 @@ template <std::size_t kWidth, class RayPacket>
     ray.dir_z[i] = dz;
     const float size =
         std::abs(ox) + std::abs(oy) + std::abs(oz) + std::abs(dx) + std::abs(dy) + std::abs(dz);
-    strange |= size < kFar_m ? 0 : 1;
+    strange[i] |= size < kFar_m ? 0 : 1;
   }
-  return strange == 0;
 }
 
 /// Valid is -1, not valid 0.
@@ -171,13 +173,15 @@ template <std::size_t kWidth, class Packet>
 template <std::size_t kWidth, class Packet>
 [[gnu::always_inline]] inline void IntersectTogether(const Tracing& tracing, ConstRays r, Packet* packets,
                                                  std::size_t count, RawAnswers answers) {
-  bool all_finite = true;
+  alignas(64) int strange[kWidth] = {};
   for (std::size_t p = 0; p < count; ++p) {
-    all_finite &= ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray);
+    ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray, strange);
     std::fill_n(packets[p].ray.tfar, kWidth, std::numeric_limits<float>::infinity());
     std::fill_n(packets[p].hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
   }
-  if (tracing.together && all_finite) {
+  int any_strange = 0;
+  for (std::size_t i = 0; i < kWidth; ++i) any_strange |= strange[i];
+  if (tracing.together && any_strange == 0) {
     tracing.query.template RunAll<kWidth>(tracing.scene, packets, count);
   } else {
     RunOneByOne<kWidth>(tracing, packets, count);

@@ -126,32 +126,54 @@ bool Compare(Answers answers, float blur_m, std::size_t begin, std::size_t n, Hi
   return CompareArrays(answers, blur_m, n, From(hits, begin));
 }
 
+/// Of `n` rays' answers, whole packets of `width`.
+struct AnswersInPackets {
+  const Targets& targets;
+  RawAnswers raw;
+  std::size_t n, width;
+
+  int SurfaceOf(std::size_t i) const {
+    return raw.geometry[i] == kProxyGeometry ? targets.surface_of_triangle[raw.primitive[i]] : kNothing;
+  }
+
+  std::size_t NextPacket(std::size_t i) const { return i + width - i % width; }
+
+  /// End of the rays from `begin` on that seem to meet its surface, as far as the ends of the packets show, for
+  /// neighbours of a beam travel together. Where one beam follows on another within a packet, the run ends there.
+  std::size_t RunEnd(std::size_t begin) const {
+    const int surface = SurfaceOf(begin);
+    std::size_t end = begin;
+    while (end < n && SurfaceOf(end) == surface) {
+      const std::size_t next = NextPacket(end);
+      if (SurfaceOf(next - 1) != surface) {
+        while (SurfaceOf(end) == surface) ++end;
+        return end;
+      }
+      end = next;
+    }
+    return end;
+  }
+};
+
 std::uint32_t SettlePlanes(const Targets& targets, const RayBatch& rays, std::size_t begin, std::size_t n,
-                           std::size_t width, RawAnswers answers, double t_min, HitBatch& hits) {
-  const auto surface_of = [&](std::size_t i) {
-    const bool is_proxy = answers.geometry[i] == kProxyGeometry;
-    return is_proxy ? targets.surface_of_triangle[answers.primitive[i]] : kNothing;
-  };
-  // A beam's neighbours travel together: a packet in which it goes over to another surface has two at its ends.
-  const auto named = [&](std::size_t i) {
-    const int first = surface_of(i);
-    return first == surface_of(i + width - 1) ? first : kNothing;
-  };
+                           std::size_t width, RawAnswers raw, double t_min, HitBatch& hits) {
+  const AnswersInPackets answers{targets, raw, n, width};
   const auto meet = [&](int surface, std::size_t from, std::size_t to) {
     const Target& target = targets.surfaces[surface];
     const auto kernel = std::isinf(target.frame.radius2) ? MeetLoneRectangle : MeetLoneCircle;
-    return kernel(target, surface, targets.blur_m, From(rays, begin + from), to - from, answers.From(from), t_min,
+    return kernel(target, surface, targets.blur_m, From(rays, begin + from), to - from, raw.From(from), t_min,
                   From(hits, begin + from));
   };
   std::uint32_t unsettled = 0;
   for (std::size_t from = 0, to; from < n; from = to) {
     // Packets in a row on one surface, as those of a beam are: one call for all.
-    const int surface = named(from);
-    for (to = from + width; to < n && named(to) == surface;) to += width;
+    const int surface = answers.SurfaceOf(from);
+    to = answers.RunEnd(from);
     const bool hopeful = surface != kNothing && targets.surfaces[surface].alone;
     if (hopeful && meet(surface, from, to)) continue;
-    for (std::size_t i = from; i < to; i += width) {
-      const bool settled = hopeful && to - from > width && meet(surface, i, i + width);
+    for (std::size_t i = from, end; i < to; i = end) {
+      end = std::min(to, answers.NextPacket(i));
+      const bool settled = hopeful && to - from > width && meet(surface, i, end);
       unsettled |= static_cast<std::uint32_t>(!settled) << (i / width);
     }
   }

@@ -150,7 +150,7 @@ struct Targets {
 /// Recomputes in double `n` rays, whole packets of `width`, as far as all rays of a packet meet one lone plane.
 /// @return A bit for each of at most 32 packets, set where that is not so; the hits of such packets are undefined.
 std::uint32_t SettlePlanes(const Targets& targets, const RayBatch& rays, std::size_t begin, std::size_t n,
-                           std::size_t width, RawAnswers answers, double t_min, HitBatch& hits);
+                           std::size_t width, RawAnswers raw, double t_min, HitBatch& hits);
 
 /// Puts the meshes that Embree found in front of what `n` rays have met so far.
 /// @return Whether some ray has met nothing as near as Embree says: it passed through the padding and must go on.
