@@ -37,7 +37,19 @@ struct Query {
   void Run(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect); }
   void Run(const int* valid, RTCScene scene, RTCRay16& packet) { rtcOccluded16(valid, scene, &packet, &occluded); }
   void Run(const int* valid, RTCScene scene, RTCRay8& packet) { rtcOccluded8(valid, scene, &packet, &occluded); }
+
+  /// Embree 4 has no call for many packets.
+  template <std::size_t kWidth, class Packet>
+  void RunAll(RTCScene scene, Packet* packets, std::size_t count) {
+    alignas(64) int valid[kWidth];
+    std::fill_n(valid, kWidth, -1);
+    for (std::size_t p = 0; p < count; ++p) Run(valid, scene, packets[p]);
+  }
 };
+
+bool HasStreams(RTCDevice, int) {
+  return false;
+}
 #else
 struct Query {
   RTCIntersectContext context;
@@ -54,28 +66,49 @@ struct Query {
   void Run(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
   void Run(const int* valid, RTCScene scene, RTCRay16& packet) { rtcOccluded16(valid, scene, &context, &packet); }
   void Run(const int* valid, RTCScene scene, RTCRay8& packet) { rtcOccluded8(valid, scene, &context, &packet); }
+
+  /// Packets of the processor's own width, every ray of them finite: coherent ones go down Embree's tree together.
+  template <std::size_t kWidth, class Packet>
+  void RunAll(RTCScene scene, Packet* packets, std::size_t count) {
+    rtcIntersectNM(scene, &context, reinterpret_cast<RTCRayHitN*>(packets), kWidth, static_cast<unsigned>(count),
+                   sizeof(Packet));
+  }
 };
+
+bool HasStreams(RTCDevice device, int width) {
+  const auto native = width == 16 ? RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED
+                                  : RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED;
+  return rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_RAY_STREAM_SUPPORTED) &&
+         rtcGetDeviceProperty(device, native);
+}
 #endif
 
-template <std::size_t kWidth>
-[[gnu::always_inline]] inline void ToFloat(const double* __restrict from, float* __restrict to) {
-  // + 0 turns -0 into +0, so that the sign of a zero never sends a ray to another octant of Embree's packets.
-  for (std::size_t i = 0; i < kWidth; ++i) to[i] = static_cast<float>(from[i]) + 0.0f;
-}
-
-template <std::size_t kWidth, class RayPacket>
-[[gnu::always_inline]] inline void ToFloat(ConstRays from, RayPacket& ray) {
-  ToFloat<kWidth>(from.ox, ray.org_x);
-  ToFloat<kWidth>(from.oy, ray.org_y);
-  ToFloat<kWidth>(from.oz, ray.org_z);
-  ToFloat<kWidth>(from.dx, ray.dir_x);
-  ToFloat<kWidth>(from.dy, ray.dir_y);
-  ToFloat<kWidth>(from.dz, ray.dir_z);
-}
-
 constexpr float kFar_m = 1e18f;  // Embree's own limit is a little above
+/// Embree must not see a ray that is not finite: some builds of it stop the program.
+/// @param strange  Set where a ray is not; kept lane by lane for several packets.
+template <std::size_t kWidth, class RayPacket>
+[[gnu::always_inline]] inline void ToFloat(ConstRays from, RayPacket& ray, int* __restrict strange) {
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    const float ox = static_cast<float>(from.ox[i]);
+    const float oy = static_cast<float>(from.oy[i]);
+    const float oz = static_cast<float>(from.oz[i]);
+    // + 0 turns -0 into +0, so that the sign of a zero never sends a ray to another octant of Embree's packets.
+    const float dx = static_cast<float>(from.dx[i]) + 0.0f;
+    const float dy = static_cast<float>(from.dy[i]) + 0.0f;
+    const float dz = static_cast<float>(from.dz[i]) + 0.0f;
+    ray.org_x[i] = ox;
+    ray.org_y[i] = oy;
+    ray.org_z[i] = oz;
+    ray.dir_x[i] = dx;
+    ray.dir_y[i] = dy;
+    ray.dir_z[i] = dz;
+    const float size =
+        std::abs(ox) + std::abs(oy) + std::abs(oz) + std::abs(dx) + std::abs(dy) + std::abs(dz);
+    strange[i] |= size < kFar_m ? 0 : 1;
+  }
+}
 
-/// Embree must not see a ray that is not finite: some builds of it stop the program. Valid is -1, not valid 0.
+/// Valid is -1, not valid 0.
 template <std::size_t kWidth, class RayPacket>
 [[gnu::always_inline]] inline void FindFinite(const RayPacket& ray, int* __restrict valid) {
   for (std::size_t i = 0; i < kWidth; ++i) {
@@ -101,23 +134,17 @@ template <std::size_t kWidth, class HitPacket>
 }
 
 template <std::size_t kWidth, class RayHitPacket>
-[[gnu::always_inline]] inline void Read(const RayHitPacket& packet, Answers answers) {
-  for (std::size_t i = 0; i < kWidth; ++i) {
-    // Every load before any choice: no branches, so that this becomes vector code.
-    const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
-    const int primitive = static_cast<int>(packet.hit.primID[i]);
-    const int triangle = instance == RTC_INVALID_GEOMETRY_ID ? primitive : kFixture;
-    answers.triangle[i] = geometry == RTC_INVALID_GEOMETRY_ID ? kNothing : triangle;
-    answers.t_m[i] = packet.ray.tfar[i];
-  }
+[[gnu::always_inline]] inline void Read(const RayHitPacket& packet, RawAnswers answers) {
+  std::copy_n(packet.hit.geomID, kWidth, answers.geometry);
+  std::copy_n(packet.hit.primID, kWidth, answers.primitive);
+  std::copy_n(packet.ray.tfar, kWidth, answers.t_m);
 }
 
 }  // namespace
 
-/// What Embree leaves as it was is written once for all tiles. It names the instance of every hit, so that of an
-/// earlier tile's is never read.
+/// What Embree leaves as it was, and what nobody reads, is written once for all rays.
 template <std::size_t kWidth, class Packet>
-[[gnu::always_inline]] inline void PrepareTile(Packet* packets, std::size_t count, float near_m) {
+[[gnu::always_inline]] inline void PrepareAll(Packet* packets, std::size_t count, float near_m) {
   for (std::size_t p = 0; p < count; ++p) {
     Prepare<kWidth>(packets[p].ray);
     std::fill_n(packets[p].ray.tnear, kWidth, near_m);
@@ -125,48 +152,75 @@ template <std::size_t kWidth, class Packet>
   }
 }
 
+/// How a tile is traced.
+struct Tracing {
+  RTCScene scene;
+  Query& query;
+  bool together;  // all its packets by one call
+  float near_m;
+};
+
+template <std::size_t kWidth, class Packet>
+[[gnu::always_inline]] inline void RunOneByOne(const Tracing& tracing, Packet* packets, std::size_t count) {
+  alignas(64) int valid[kWidth];
+  for (std::size_t p = 0; p < count; ++p) {
+    FindFinite<kWidth>(packets[p].ray, valid);
+    tracing.query.Run(valid, tracing.scene, packets[p]);
+  }
+}
+
 // All packets are filled, then traced, then read: so no load waits for the store of a moment ago.
 template <std::size_t kWidth, class Packet>
-[[gnu::always_inline]] inline void IntersectTile(RTCScene scene, Query& query, ConstRays r, Packet* packets,
-                                                 std::size_t count, Answers answers) {
-  alignas(64) int valid[kTilePackets][kWidth];
+[[gnu::always_inline]] inline void IntersectTogether(const Tracing& tracing, ConstRays r, Packet* packets,
+                                                 std::size_t count, RawAnswers answers) {
+  alignas(64) int strange[kWidth] = {};
   for (std::size_t p = 0; p < count; ++p) {
-    ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray);
+    ToFloat<kWidth>(r.From(p * kWidth), packets[p].ray, strange);
     std::fill_n(packets[p].ray.tfar, kWidth, std::numeric_limits<float>::infinity());
     std::fill_n(packets[p].hit.geomID, kWidth, RTC_INVALID_GEOMETRY_ID);
   }
-  for (std::size_t p = 0; p < count; ++p) FindFinite<kWidth>(packets[p].ray, valid[p]);
-  for (std::size_t p = 0; p < count; ++p) query.Run(valid[p], scene, packets[p]);
+  int any_strange = 0;
+  for (std::size_t i = 0; i < kWidth; ++i) any_strange |= strange[i];
+  if (tracing.together && any_strange == 0) {
+    tracing.query.template RunAll<kWidth>(tracing.scene, packets, count);
+  } else {
+    RunOneByOne<kWidth>(tracing, packets, count);
+  }
   for (std::size_t p = 0; p < count; ++p) Read<kWidth>(packets[p], answers.From(p * kWidth));
 }
 
 template <std::size_t kWidth, class Packet>
-[[gnu::always_inline]] inline void IntersectPackets(RTCScene scene, Query& query, const RayBatch& rays,
-                                                    float near_m, std::size_t packets,
-                                                    const EmbreeWorld::Tile& tile) {
-  alignas(64) int triangle[kTilePackets * kWidth];
-  alignas(64) float t_m[kTilePackets * kWidth];
-  Packet storage[kTilePackets];
-  PrepareTile<kWidth>(storage, std::min(packets, kTilePackets), near_m);
-  for (std::size_t p = 0; p < packets; p += kTilePackets) {
-    const std::size_t count = std::min(kTilePackets, packets - p);
-    IntersectTile<kWidth>(scene, query, From(rays, p * kWidth), storage, count, {triangle, t_m});
-    tile(p * kWidth, count, {triangle, t_m});
+[[gnu::always_inline]] inline void IntersectPackets(const Tracing& tracing, const RayBatch& rays,
+                                                    std::size_t packets, const EmbreeWorld::Tile& tile) {
+  constexpr std::size_t kTile = kTileRays / kWidth;
+  alignas(64) unsigned geometry[kTileRays];
+  alignas(64) unsigned primitive[kTileRays];
+  alignas(64) float t_m[kTileRays];
+  const RawAnswers answers{geometry, primitive, t_m};
+  Packet storage[kTogether];
+  PrepareAll<kWidth>(storage, std::min(packets, kTogether), tracing.near_m);
+  for (std::size_t p = 0; p < packets; p += kTile) {
+    const std::size_t count = std::min(kTile, packets - p);
+    for (std::size_t k = 0; k < count; k += kTogether) {
+      IntersectTogether<kWidth>(tracing, From(rays, (p + k) * kWidth), storage, std::min(kTogether, count - k),
+                                answers.From(k * kWidth));
+    }
+    tile(p * kWidth, count, answers);
   }
 }
 
-[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets16(RTCScene scene, Query& query,
-                                                                             const RayBatch& rays, float near_m,
+[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets16(const Tracing& tracing,
+                                                                             const RayBatch& rays,
                                                                              std::size_t packets,
                                                                              const EmbreeWorld::Tile& tile) {
-  IntersectPackets<16, RTCRayHit16>(scene, query, rays, near_m, packets, tile);
+  IntersectPackets<16, RTCRayHit16>(tracing, rays, packets, tile);
 }
 
-[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets8(RTCScene scene, Query& query,
-                                                                            const RayBatch& rays, float near_m,
+[[gnu::target_clones("avx512f", "avx2", "default")]] void IntersectPackets8(const Tracing& tracing,
+                                                                            const RayBatch& rays,
                                                                             std::size_t packets,
                                                                             const EmbreeWorld::Tile& tile) {
-  IntersectPackets<8, RTCRayHit8>(scene, query, rays, near_m, packets, tile);
+  IntersectPackets<8, RTCRayHit8>(tracing, rays, packets, tile);
 }
 
 namespace {
@@ -200,7 +254,7 @@ void IntersectPacket(RTCScene scene, const RayBatch& rays, std::size_t begin, st
   Fill<kWidth>(rays, begin, n, bounds, packet.ray, valid);
   Forget<kWidth>(packet.hit);
   Query(order).Run(valid, scene, packet);
-  Read<kWidth>(packet, answers);
+  Name({packet.hit.geomID, packet.hit.primID, packet.ray.tfar}, kWidth, answers);
 }
 
 template <std::size_t kWidth, class Packet>
@@ -255,6 +309,7 @@ EmbreeWorld::EmbreeWorld(RTCDeviceTy* device) : device_(device) {
   fixtures_ = rtcNewScene(device_);
   rtcSetSceneFlags(fixtures_, RTC_SCENE_FLAG_DYNAMIC);
   if (!rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) packet_width_ = 8;
+  has_streams_ = HasStreams(device_, packet_width_);
 }
 
 EmbreeWorld::~EmbreeWorld() {
@@ -271,13 +326,14 @@ EmbreeWorld::~EmbreeWorld() {
 void EmbreeWorld::AddMesh(const TriangleMesh& mesh) {
   RTCScene inner = rtcNewScene(device_);
   RTCGeometry triangles = MakeTriangles(device_, mesh);
-  rtcAttachGeometry(inner, triangles);
+  rtcAttachGeometryByID(inner, triangles, kMeshGeometry);
   rtcReleaseGeometry(triangles);
   rtcCommitScene(inner);
   RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
   rtcSetGeometryInstancedScene(instance, inner);
-  rtcAttachGeometry(scene_, instance);
-  rtcAttachGeometry(fixtures_, instance);
+  const auto id = static_cast<unsigned>(instances_.size()) + kProxyGeometry + 1;
+  rtcAttachGeometryByID(scene_, instance, id);
+  rtcAttachGeometryByID(fixtures_, instance, id);
   instances_.push_back({inner, instance});
 }
 
@@ -295,7 +351,7 @@ void EmbreeWorld::SetProxies(const TriangleMesh& proxies, bool same_topology) {
     return rtcCommitGeometry(proxies_);
   }
   proxies_ = MakeTriangles(device_, proxies);
-  rtcAttachGeometry(scene_, proxies_);
+  rtcAttachGeometryByID(scene_, proxies_, kProxyGeometry);
 }
 
 void EmbreeWorld::Commit() {
@@ -309,7 +365,7 @@ void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t packets, float nea
                             const Tile& tile) const {
   Query query(order);
   const auto trace = packet_width_ == 16 ? IntersectPackets16 : IntersectPackets8;
-  trace(scene_, query, rays, near_m, packets, tile);
+  trace({scene_, query, has_streams_ && order == RayOrder::kCoherent, near_m}, rays, packets, tile);
 }
 
 Answer EmbreeWorld::Intersect(const Ray& ray, float near_m, float far_m) const {
@@ -325,8 +381,7 @@ Answer EmbreeWorld::Intersect(const Ray& ray, float near_m, float far_m) const {
   one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   Query(RayOrder::kCoherent).Run(scene_, one);
   if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const bool proxy = one.hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
-  return {proxy ? static_cast<int>(one.hit.primID) : kFixture, one.ray.tfar};
+  return {one.hit.geomID == kProxyGeometry ? static_cast<int>(one.hit.primID) : kFixture, one.ray.tfar};
 }
 
 void EmbreeWorld::Intersect(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order,

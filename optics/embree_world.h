@@ -15,8 +15,11 @@ struct RTCGeometryTy;
 /// Embree 3 or 4 behind plain types: triangles in float, packets of rays.
 namespace twinbench::optics {
 
-/// Packets traced by turns: so many stay in the first-level cache together with their rays.
-inline constexpr std::size_t kTilePackets = 8;
+/// Packets that Embree traces together: so many stay in the first-level cache with what it notes of them.
+inline constexpr std::size_t kTogether = 4;
+
+/// Rays whose answers are handed on together.
+inline constexpr std::size_t kTileRays = 128;
 
 /// One packet's bounds, a lane for each ray.
 struct alignas(64) Bounds {
@@ -54,8 +57,8 @@ class EmbreeWorld {
   RTCDeviceTy* device() const { return device_; }
   RTCSceneTy* scene() const { return scene_; }
 
-  /// What is done with the answers of one tile: `packets` <= kTilePackets whole packets from ray `begin` on.
-  using Tile = std::function<void(std::size_t begin, std::size_t packets, Answers answers)>;
+  /// What is done with the answers of one tile: `packets` whole packets, at most kTileRays rays, from ray `begin` on.
+  using Tile = std::function<void(std::size_t begin, std::size_t packets, RawAnswers answers)>;
 
   /// Nearest triangle beyond `near_m` for the first `packets` whole packets of packet_width() rays, tile by tile.
   void Intersect(const RayBatch& rays, std::size_t packets, float near_m, RayOrder order, const Tile& tile) const;
@@ -82,6 +85,7 @@ class EmbreeWorld {
   RTCGeometryTy* proxies_ = nullptr;
   std::vector<Instance> instances_;
   int packet_width_ = kMaxPacket;
+  bool has_streams_ = false;  // a call of Embree's for many packets of this width
 };
 
 }  // namespace twinbench::optics

@@ -77,10 +77,16 @@ inline ConstRays From(const RayBatch& rays, std::size_t begin) {
   y = py + t * qy;
 }
 
+// Named first: no branches, so that the loops over rays become vector code.
+
+[[gnu::always_inline]] inline bool InRectangle(const Frame& f, double x, double y) {
+  const bool in_x = std::abs(x) <= f.half_x, in_y = std::abs(y) <= f.half_y;
+  return in_x & in_y;
+}
+
 [[gnu::always_inline]] inline bool InAperture(const Frame& f, double x, double y) {
-  // Named first: no branches, so that the loops over rays become vector code.
-  const bool in_x = std::abs(x) <= f.half_x, in_y = std::abs(y) <= f.half_y, in_circle = x * x + y * y <= f.radius2;
-  return in_x & in_y & in_circle;
+  const bool in_rectangle = InRectangle(f, x, y), in_circle = x * x + y * y <= f.radius2;
+  return in_rectangle & in_circle;
 }
 
 /// Meets one surface beyond t_min, inside its aperture; t is infinite if there is no such point.
@@ -108,6 +114,21 @@ struct Answers {
   Answers From(std::size_t i) const { return {triangle + i, t_m + i}; }
 };
 
+/// How Embree's scenes number their geometries: all proxies together, and in each mesh's own scene the mesh.
+inline constexpr unsigned kProxyGeometry = 0, kMeshGeometry = 1;
+
+/// The same as Embree says it.
+struct RawAnswers {
+  unsigned* __restrict geometry;   // neither of these numbers: nothing is met
+  unsigned* __restrict primitive;  // undefined for nothing
+  float* __restrict t_m;
+
+  RawAnswers From(std::size_t i) const { return {geometry + i, primitive + i, t_m + i}; }
+};
+
+/// Of `n` rays.
+void Name(RawAnswers raw, std::size_t n, Answers answers);
+
 struct TriangleRange {
   int first = 0, end = 0;
 };
@@ -129,7 +150,7 @@ struct Targets {
 /// Recomputes in double `n` rays, whole packets of `width`, as far as all rays of a packet meet one lone plane.
 /// @return A bit for each of at most 32 packets, set where that is not so; the hits of such packets are undefined.
 std::uint32_t SettlePlanes(const Targets& targets, const RayBatch& rays, std::size_t begin, std::size_t n,
-                           std::size_t width, Answers answers, double t_min, HitBatch& hits);
+                           std::size_t width, RawAnswers raw, double t_min, HitBatch& hits);
 
 /// Puts the meshes that Embree found in front of what `n` rays have met so far.
 /// @return Whether some ray has met nothing as near as Embree says: it passed through the padding and must go on.

@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <vector>
+
+#include "optics/column.h"
 
 /// Light as straight rays, in metres. Directions are unit vectors.
 namespace twinbench::optics {
@@ -14,8 +15,8 @@ struct Ray {
 
 /// Many rays as separate arrays, all of one length, the way the vector units want them.
 struct RayBatch {
-  std::vector<double> ox, oy, oz;  // origin [m]
-  std::vector<double> dx, dy, dz;  // unit direction
+  Column<double> ox{0}, oy{1}, oz{2};  // origin [m]
+  Column<double> dx{3}, dy{4}, dz{5};  // unit direction
 
   std::size_t size() const { return ox.size(); }
   void Resize(std::size_t size);
@@ -33,10 +34,10 @@ inline constexpr int kFixture = -2;  // a mesh: absorbed
 
 /// The first thing each ray meets.
 struct HitBatch {
-  std::vector<int> surface;  // index of the surface, kNothing or kFixture
-  std::vector<double> t_m;   // path length; infinite for kNothing
-  std::vector<double> x_m;   // in the surface's frame; undefined unless a surface was hit
-  std::vector<double> y_m;
+  Column<int> surface{9};  // index of the surface, kNothing or kFixture
+  Column<double> t_m{6};   // path length; infinite for kNothing
+  Column<double> x_m{7};   // in the surface's frame; undefined unless a surface was hit
+  Column<double> y_m{8};
 
   void Resize(std::size_t size);
   /// `n` rays from `begin` on meet nothing.

@@ -90,7 +90,7 @@ struct Scene::Impl {
   void CommitProxies();
   void FindNeighbours(const std::vector<Eigen::AlignedBox3d>& boxes);
   double Extent() const;
-  void Settle(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order, Answers answers,
+  void Settle(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order, RawAnswers answers,
               HitBatch& hits) const;
   void IntersectLast(const RayBatch& rays, std::size_t begin, RayOrder order, HitBatch& hits) const;
   void Pursue(const RayBatch& rays, std::size_t begin, std::size_t n, RayOrder order, Answers answers,
@@ -202,13 +202,15 @@ void Scene::Impl::Pursue(const RayBatch& rays, std::size_t begin, std::size_t n,
 
 /// Decides a tile of whole packets: those on one lone plane together, for there beams are; the others one by one.
 void Scene::Impl::Settle(const RayBatch& rays, std::size_t begin, std::size_t packets, RayOrder order,
-                         Answers answers, HitBatch& hits) const {
+                         RawAnswers answers, HitBatch& hits) const {
   const auto width = static_cast<std::size_t>(world.packet_width());
   const Targets table{targets.data(), surface_of_triangle.data(), blur_m};
   std::uint32_t unsettled = SettlePlanes(table, rays, begin, packets * width, width, answers, t_min_m, hits);
   for (; unsettled != 0; unsettled &= unsettled - 1) {
     const std::size_t i = static_cast<std::size_t>(std::countr_zero(unsettled)) * width;
-    Pursue(rays, begin + i, width, order, answers.From(i), hits);
+    Storage storage;
+    Name(answers.From(i), width, storage.View());
+    Pursue(rays, begin + i, width, order, storage.View(), hits);
   }
 }
 
@@ -310,7 +312,7 @@ void Scene::Intersect(const RayBatch& rays, HitBatch& hits, RayOrder order) cons
   impl_->rays_traced.fetch_add(rays.size(), std::memory_order_relaxed);
   const auto width = static_cast<std::size_t>(packet_width());
   const std::size_t packets = rays.size() / width;
-  impl_->world.Intersect(rays, packets, kNear, order, [&](std::size_t begin, std::size_t count, Answers answers) {
+  impl_->world.Intersect(rays, packets, kNear, order, [&](std::size_t begin, std::size_t count, RawAnswers answers) {
     impl_->Settle(rays, begin, count, order, answers, hits);
   });
   if (packets * width < rays.size()) impl_->IntersectLast(rays, packets * width, order, hits);

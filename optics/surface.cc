@@ -18,7 +18,7 @@ void RayBatch::Add(const Ray& ray) {
 }
 
 void RayBatch::Resize(std::size_t size) {
-  for (std::vector<double>* array : {&ox, &oy, &oz, &dx, &dy, &dz}) array->resize(size);
+  for (Column<double>* array : {&ox, &oy, &oz, &dx, &dy, &dz}) array->resize(size);
 }
 
 void RayBatch::Set(std::size_t i, const Ray& ray) {

@@ -1,12 +1,13 @@
 #include "optics/scene.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <set>
 #include <string>
 
 #include "optics/kernels.h"
@@ -182,7 +183,7 @@ TEST(Scene, AMeshBlocksWhatIsBehindIt) {
   rays.Add({{0.05, 0.0, 0.05}, {0, 0, -1}});  // starts below it
   HitBatch hits;
   scene.Intersect(rays, hits);
-  EXPECT_EQ(hits.surface, (std::vector<int>{kFixture, 0, 0}));
+  EXPECT_THAT(hits.surface, testing::ElementsAre(kFixture, 0, 0));
   EXPECT_NEAR(hits.t_m[0], 0.19, 1e-7);  // float
   ExpectEveryPathAgrees(scene, rays, 2);
   EXPECT_TRUE(scene.Occluded({0.05, 0, 0.3}, {0.05, 0, 0.0}));
@@ -193,7 +194,7 @@ TEST(Scene, AMeshBlocksWhatIsBehindIt) {
   EXPECT_THROW(scene.Intersect(rays, hits), std::logic_error);  // not committed
   scene.Commit();
   scene.Intersect(rays, hits);
-  EXPECT_EQ(hits.surface, (std::vector<int>{0, kFixture, 0}));
+  EXPECT_THAT(hits.surface, testing::ElementsAre(0, kFixture, 0));
 }
 
 TEST(Scene, PathsAgreeWithMeshesInTheScene) {
@@ -300,6 +301,40 @@ TEST(Scene, BeamsOntoPlanesApartHaveTheBitsOfOneRay) {
   EXPECT_GT(std::count(hits.surface.begin(), hits.surface.end(), kNothing), 20);  // some passed the edges
 }
 
+TEST(Scene, BeamsThatChangeThePlaneWithinAPacketHaveTheBitsOfOneRay) {
+  Dice dice(19);
+  const Scene scene = Ring(7);
+  for (const std::size_t length : {3u, 5u, 21u, 37u}) {  // of one beam; packets have 8 or 16 rays
+    const RayBatch beams = BeamsOnto(dice, scene, 7 * static_cast<int>(length));
+    RayBatch rays;
+    for (int turn = 0; turn < 20; ++turn) {
+      for (std::size_t i = 0; i < beams.size(); ++i) rays.Add(beams.At(i));
+    }
+    HitBatch hits;
+    scene.Intersect(rays, hits);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const NearestHit one = Nearest(scene.surfaces(), rays.At(i), Scene::t_min_m);
+      ASSERT_EQ(one.index, hits.surface[i]) << "beams of " << length << ", ray " << i;
+      ASSERT_EQ(one.hit.t_m, hits.t_m[i]);
+      if (one.index < 0) continue;
+      ASSERT_EQ(one.hit.y_m, hits.y_m[i]);
+    }
+  }
+}
+
+TEST(RayBatch, KeepsItsArraysOnCacheLinesAndLargeOnesApartInThePages) {
+  RayBatch rays;
+  rays.Resize(1 << 14);
+  const RayBatch copy = rays;
+  std::set<std::uintptr_t> places;
+  for (const Column<double>* array : {&copy.ox, &copy.oy, &copy.oz, &copy.dx, &copy.dy, &copy.dz}) {
+    const auto address = reinterpret_cast<std::uintptr_t>(array->data());
+    EXPECT_EQ(address % 64, 0u);
+    places.insert(address % 4096);
+  }
+  EXPECT_EQ(places.size(), 6u);
+}
+
 TEST(Scene, ABeamSeesTheFixtureThatCutsIntoIt) {
   Dice dice(16);
   Scene scene = Ring(5);
@@ -323,6 +358,31 @@ TEST(Scene, NoNaNRayHoldsUpItsPacket) {
   scene.IntersectAnalytic(rays, analytic);
   EXPECT_EQ(hits.surface, analytic.surface);
   EXPECT_EQ(hits.surface[7], kNothing);
+}
+
+/// Rays along the axes, to and fro in one tile, some that pass exactly along a plane.
+RayBatch AxisParallel(Dice& dice, int count) {
+  RayBatch rays;
+  for (int i = 0; i < count; ++i) {
+    Vector3d from = dice.Cube(0.02), direction = Vector3d::Zero();
+    if (i % 5 == 0) from = Vector3d(0.0, 0.0, 0.0);
+    direction(i % 3) = i % 2 == 0 ? 1.0 : -1.0;
+    rays.Add({from, direction});
+  }
+  return rays;
+}
+
+TEST(Scene, MeetsItsPlanesWithRaysAlongTheAxes) {
+  Scene scene;
+  for (int i = 0; i < 6; ++i) {
+    const Vector3d axis = Vector3d::Unit(i % 3) * (i < 3 ? 1.0 : -1.0);
+    Isometry3d X(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis));
+    X.translation() = 0.1 * axis;
+    scene.AddSurface(RectangularPlane(X, 0.03, 0.03));
+  }
+  scene.Commit();
+  Dice dice(18);
+  ExpectEveryPathAgrees(scene, AxisParallel(dice, 5003), 2000);
 }
 
 /// Embree as older processors run it: packets of 8 instead of 16 among other things.
