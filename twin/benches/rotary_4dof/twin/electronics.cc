@@ -116,11 +116,11 @@ void Electronics::AddPoledNoise(const LightNoise& light_noise, double step_s, in
 }
 
 /// Knots at every conversion.
-BlockCourse Electronics::LowPassed(const BlockCourse& course, const LightNoise& light_noise, int reading,
-                                   int n_samples) const {
+BlockCourse Electronics::LowPassed(const BlockCourse& course, const std::optional<BlockCourse>& before,
+                                   const LightNoise& light_noise, int reading, int n_samples) const {
   const int steps = static_cast<int>(kChannels) * n_samples;
   const Duration step = BlockTime(adc_, n_samples) / steps;
-  BlockCourse passed = low_pass_.Passed(course, step, steps);
+  BlockCourse passed = low_pass_.Passed(course, step, steps, before);
   if (!noise_free_) AddPoledNoise(light_noise, ToSeconds(step), reading, passed);
   return passed;
 }
@@ -177,12 +177,13 @@ Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
   return block;
 }
 
-Acquisition Electronics::Convert(BlockCourse course, const LightNoise& light_noise, Time start, int reading,
-                                 int n_samples, bool keep_raw) {
+Acquisition Electronics::Convert(BlockCourse course, const std::optional<BlockCourse>& before,
+                                 const LightNoise& light_noise, Time start, int reading, int n_samples,
+                                 bool keep_raw) {
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
   LightNoise fresh = light_noise;  // with every sample
   if (!low_pass_.PassesAll()) {
-    course = LowPassed(course, light_noise, reading, n_samples);
+    course = LowPassed(course, before, light_noise, reading, n_samples);
     fresh = {};
   }
   course.Bend([this](double voltage_V) { return AsConverted_V(voltage_V); });
