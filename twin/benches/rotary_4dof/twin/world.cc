@@ -109,8 +109,8 @@ std::optional<BlockCourse> World::Before() {
   constexpr double kMostKnots = 4096.0;  // of a pole so slow that it sees no more of the fastest than its mean
   if (path_.electronics().Memory_s() == 0.0 || axes_.IsRestless()) return std::nullopt;
   const double shortest_s = Shortest_s();
-  const Duration memory = FromSeconds(
-      std::min(path_.electronics().Memory_s(), kMostKnots / BlockCourse::kKnotsAPeriod * shortest_s));
+  const Duration memory =
+      FromSeconds(std::min(path_.electronics().Memory_s(), kMostKnots / BlockCourse::kKnotsAPeriod * shortest_s));
   const int steps = StepsOf(memory, shortest_s, static_cast<int>(kMostKnots));
   const Time begin = queue_.Now();
   Moment moment = Look(axes_.Look());
@@ -144,8 +144,8 @@ Acquisition World::Converted(Followed block, Time start, int n_samples, bool kee
   Acquisition acquired;
   if (block.seen.status == ReadingStatus::kOk) {
     Electronics& electronics = path_.electronics();
-    acquired = electronics.Convert(std::move(block.course), block.before, electronics.LightNoiseOf(block.seen), start,
-                                   next_reading_, n_samples, keep_raw);
+    acquired = electronics.Convert(std::move(block.course), block.before, electronics.LightNoiseOf(block.seen),
+                                   start, next_reading_, n_samples, keep_raw);
     path_.effects().AlterReadout(acquired);
   } else {
     acquired.start = start;
