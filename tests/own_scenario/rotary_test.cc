@@ -122,6 +122,7 @@ std::vector<OwnKey> RotaryChanges() {
       Change("adc.jitter_us", "2.0", hum),
       Change("adc.lost_fraction", "0.2"),
       {"adc.inl_file", {}, "a file; sim.Electronics*"},
+      {"adc.dnl_file", {}, "a file; sim.CodeWidths*"},
       Change("adc.bits", "12"),
       Change("adc.range_V", "20.0"),
       Change("adc.rate_kHz", "100.0", hum),

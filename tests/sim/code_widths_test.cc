@@ -1,15 +1,21 @@
 #include "twin/sim/code_widths.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <map>
 
+#include "tests/core/input_error.h"
 #include "tests/sim/follow_key.h"
 #include "twin/sim/ad_sampler.h"
+#include "twin/sim/code_width_table.h"
 
 namespace twinbench::sim {
 namespace {
+
+using testing::HasSubstr;
 
 const AdcSettings kConverter;  // 16 bits, +-10 V
 constexpr double kCode_V = 20.0 / 65536.0;
@@ -75,6 +81,70 @@ TEST(CodeWidths, ShiftTheMeanOfANoisyLevelAsTheirEdgesSay) {
   EXPECT_GT(most, 0.05);
 }
 
+/// 6 bits: codes -32 .. 31. Two wide codes, a missing one and a narrow one.
+const std::map<std::int32_t, double> kFew_lsb = {{-3, 0.5}, {0, 0.25}, {4, -1.0}, {5, -0.75}, {31, 0.5}};
+
+TEST(CodeWidths, AsMeasuredAddUpFromTheMiddle) {
+  const CodeWidths widths(kFew_lsb, 6);
+  const std::map<std::int32_t, float> expected = {{-32, -0.5f}, {-3, -0.5f}, {-2, 0.0f}, {0, 0.0f},   {1, 0.25f},
+                                                  {4, 0.25f},   {5, -0.75f}, {6, -1.5f}, {31, -1.5f}, {32, -1.0f}};
+  for (const auto& [code, off_lsb] : expected) EXPECT_EQ(widths.Off_lsb(code), off_lsb) << code;
+  EXPECT_EQ(widths.Off_lsb(-100), -0.5f);
+  EXPECT_EQ(widths.Off_lsb(100), -1.0f);
+}
+
+// The code of a voltage is that between whose edges, written down here, it lies.
+TEST(CodeWidths, AsMeasuredGiveEachVoltageItsCode) {
+  const CodeWidths widths(kFew_lsb, 6);
+  std::vector<double> edge_lsb;  // below codes -31 .. 31
+  for (int code = -31; code <= 31; ++code)
+    edge_lsb.push_back(code - 0.5 +
+                       (code <= -3  ? -0.5
+                        : code <= 0 ? 0.0
+                        : code <= 4 ? 0.25
+                        : code == 5 ? -0.75
+                                    : -1.5));
+  for (double x_lsb = -33.031; x_lsb < 33.0; x_lsb += 0.11) {
+    const auto below = std::count_if(edge_lsb.begin(), edge_lsb.end(), [&](double edge) { return edge <= x_lsb; });
+    const std::int32_t code = widths.CodeOf(7, static_cast<float>(x_lsb - 7.0));
+    EXPECT_EQ(std::clamp(code, -32, 31), -32 + below) << x_lsb;
+    EXPECT_NE(code, 4);  // it is missing
+  }
+}
+
+std::string WidthsFile(const std::string& text) {
+  const std::string path = testing::TempDir() + "widths.csv";
+  std::ofstream(path) << text;
+  return path;
+}
+
+TEST(CodeWidths, AreReadFromATableOfWidthsOrOfTheirExcess) {
+  const std::map<std::int32_t, double> expected = {{-32, 0.25}, {3, -1.0}};
+  EXPECT_EQ(ReadExcessWidths_lsb(WidthsFile("code,width\n-32,1.25\n3,0\n"), 6), expected);
+  EXPECT_EQ(ReadExcessWidths_lsb(WidthsFile("# measured\ncode,dnl_lsb\n-32,0.25\n3,-1\n"), 6), expected);
+}
+
+TEST(CodeWidths, SayWhatIsWrongWithTheirTable) {
+  const auto message = [](const std::string& text) {
+    return MessageOf([&] { ReadExcessWidths_lsb(WidthsFile(text), 6); });
+  };
+  EXPECT_THAT(message("code,width\n1,1\n32,1\n"),
+              testing::AllOf(HasSubstr("widths.csv:3"), HasSubstr("from -32 to 31")));
+  EXPECT_THAT(message("code,width\n1.5,1\n"), HasSubstr("whole number"));
+  EXPECT_THAT(message("code,width\n2,1\n1,1\n"), testing::AllOf(HasSubstr("widths.csv:3"), HasSubstr("order")));
+  EXPECT_THAT(message("code,width\n2,-0.1\n"), HasSubstr("0 or more"));
+  EXPECT_THAT(message("code,dnl_lsb\n2,-1.1\n"), HasSubstr("0 or more"));
+  EXPECT_THAT(message("code,width,dnl_lsb\n2,1,0\n"), HasSubstr("twice"));
+  EXPECT_THAT(message("code,size\n2,1\n"), HasSubstr("code and width"));
+  EXPECT_THAT(message("codes,width\n2,1\n"), HasSubstr("code is missing"));
+  EXPECT_THAT(message("code,width\n"), HasSubstr("no rows"));
+  EXPECT_THAT(MessageOf([] {
+                ParseScenario("bench = \"rotary_4dof\"\n[adc]\ndnl_lsb = 0.1\ndnl_file = \"a.csv\"\n", "a.toml",
+                              "");
+              }),
+              HasSubstr("adc.dnl_file"));
+}
+
 /// Root mean square of what the twin that follows the record leaves [V].
 double Left_V(const Scenario& scenario, const std::vector<Reading>& readings) {
   const Eigen::MatrixXd followed_V = FollowRotary(scenario, readings, std::make_shared<DrivesOnce>())->Predict();
@@ -99,6 +169,26 @@ TEST(CodeWidths, AreFollowed) {
   EXPECT_LT(Left_V(scenario, run.readings), 3e-6);
   RotaryOf(scenario).chain.dnl_lsb = 0.0;
   EXPECT_GT(Left_V(scenario, run.readings), 10e-6);
+}
+
+// Every second code is 0.91 LSB too wide and the next 0.89 too narrow: beside the steps a gain of 0.99.
+TEST(CodeWidths, AreFollowedAsMeasured) {
+  std::string table = "code,dnl_lsb\n";
+  for (int code = -32768; code < 32768; ++code)
+    table += std::to_string(code) + (code % 2 == 0 ? ",0.91\n" : ",-0.89\n");
+  Scenario scenario = test::SmallNoiseFree();
+  scenario.noise_free = false;
+  scenario.environment.sensor_noise_K = 0.0;
+  RotarySettings& own = RotaryOf(scenario);
+  own.autocollimator.noise_rad = 0.0;
+  own.amplifier.noise_V = 0.2e-3;
+  own.adc.samples = 20000;  // noise of a mean: 1.4 uV
+  own.psd_a.bandwidth_Hz = own.psd_b.bandwidth_Hz = 1.0;  // the light's own noise blurs steps, too
+  own.chain.dnl_file = WidthsFile(table);
+  const test::TwinRun run = test::RunTwin(scenario);
+  EXPECT_LT(Left_V(scenario, run.readings), 3e-6);
+  RotaryOf(scenario).chain.dnl_file.clear();
+  EXPECT_GT(Left_V(scenario, run.readings), 30e-6);
 }
 
 }  // namespace

@@ -93,12 +93,119 @@ TEST(LowPass, LeavesABenchAtRestAsItIs) {
   for (std::size_t c = 0; c < kChannels; ++c) EXPECT_EQ(open.channel[c].mean_V, passed.channel[c].mean_V);
 }
 
-// 20 Hz behind 1 kHz: 0.02 rad late, which is followed; 0.02^2 / 2 smaller, which is not: 0.4 uV of 2 mV.
-TEST(LowPass, IsFollowedByItsLag) {
+/// A sine of 137 Hz behind 100 Hz, at its place on the clock, and what the pole makes of it.
+constexpr double kTone_Hz = 137.0, kCorner_Hz = 100.0;
+double LongTone_V(double t_s, double phase_rad) {
+  return std::sin(units::turn * kTone_Hz * t_s + phase_rad);
+}
+
+// Mean over a block, of the output less what a pole shows that has seen the sine for ever.
+double MeanError_V(double phase_rad, bool remembers) {
+  const double step_s = 0.25e-3, block_s = 16e-3;
+  const LowPass low_pass(kCorner_Hz);
+  BlockCourse course(FromSeconds(step_s)), before(FromSeconds(step_s));
+  for (int k = 0; k <= 64; ++k) course.Add({LongTone_V(k * step_s, phase_rad), 0.0, 0.0, 0.0});
+  for (int k = -200; k <= 0; ++k) before.Add({LongTone_V(k * step_s, phase_rad), 0.0, 0.0, 0.0});
+  const BlockCourse passed = remembers ? low_pass.Passed(course, FromSeconds(kStep_s), 4000, before)
+                                       : low_pass.Passed(course, FromSeconds(kStep_s), 4000);
+  const double x = kTone_Hz / kCorner_Hz, rate = units::turn * kTone_Hz, behind_rad = phase_rad - std::atan(x);
+  const double expected_V =
+      (std::cos(behind_rad) - std::cos(rate * block_s + behind_rad)) / (rate * block_s * std::hypot(1.0, x));
+  return std::abs(passed.Mean_V(0) - expected_V);
+}
+
+TEST(LowPass, RemembersWhatWasBeforeTheBlockOrIsWrongByNoMoreThanIsSaid) {
+  const double x2 = std::pow(kTone_Hz / kCorner_Hz, 2), lag_s = LowPass(kCorner_Hz).Lag_s();
+  const double said_V = 2.0 * x2 / (1.0 + x2) * lag_s / 16e-3;
+  double most_V = 0.0;
+  for (const double phase_rad : {0.0, 0.4, 1.2, 1.6, 2.7}) {
+    EXPECT_LT(MeanError_V(phase_rad, true), 1e-4) << phase_rad;  // cubics through the knots
+    most_V = std::max(most_V, MeanError_V(phase_rad, false));
+  }
+  EXPECT_LE(most_V, said_V);
+  EXPECT_GT(most_V, 0.9 * said_V);
+}
+
+struct PassedTone {
+  double frequency_Hz, corner_Hz;
+};
+constexpr double kToneAmplitude_V = 2e-3;  // 1 um
+constexpr int kPassedScans = 1000;         // scans: 16 ms
+constexpr double kScan_s = 16e-6, kConversion_s = 4e-6;
+
+/// Of the mean of a block.
+double LeftOfTone_V(const PassedTone& tone) {
+  const double x = units::kPi * tone.frequency_Hz * kPassedScans * kScan_s;
+  return kToneAmplitude_V * std::abs(std::sin(x) / x) / std::hypot(1.0, tone.frequency_Hz / tone.corner_Hz);
+}
+
+class PassedTones : public testing::TestWithParam<PassedTone> {};
+
+// The pole has seen the tone for long when a block begins: amplitude / hypot(1, f / corner), atan(f / corner) late.
+TEST_P(PassedTones, HaveInABlocksMeanWhatPoleAndBlockLeave) {
+  const PassedTone& tone = GetParam();
+  Scenario scenario = Quiet();
+  scenario.effects.push_back(
+      {"tone", "all", {{"amplitude", 1e-6}, {"frequency", tone.frequency_Hz}, {"phase", 0.4}}, "test"});
+  RotaryOf(scenario).chain.low_pass_Hz = tone.corner_Hz;
+  const double x = tone.frequency_Hz / tone.corner_Hz;
+  Twin twin(scenario);
+  for (int block = 0; block < 5; ++block) {
+    const double start_s = ToSeconds(twin.Bench().clock.Now());
+    const Acquisition read = twin.Bench().adc.Acquire(kPassedScans, false);
+    for (int c = 0; c < kChannels; ++c) {
+      double expected_V = 0.0;
+      for (int k = 0; k < kPassedScans; ++k) {
+        const double time_s = start_s + k * kScan_s + c * kConversion_s;
+        expected_V += kToneAmplitude_V / std::hypot(1.0, x) / kPassedScans *
+                      std::sin(units::turn * tone.frequency_Hz * time_s + 0.4 - std::atan(x));
+      }
+      EXPECT_NEAR(read.channel[c].mean_V, expected_V, 0.01 * LeftOfTone_V(tone))
+          << "block " << block << " channel " << c;
+    }
+    twin.Bench().clock.Wait(FromSeconds(0.0137 * (block + 1)));
+  }
+}
+
+TEST_P(PassedTones, AreFollowed) {
+  const PassedTone& tone = GetParam();
   Scenario scenario = test::SmallNoiseFree();
-  scenario.effects.push_back({"tone", "all", {{"amplitude", 1e-6}, {"frequency", 20.0}, {"phase", 0.4}}, "test"});
+  scenario.effects.push_back(
+      {"tone", "all", {{"amplitude", 1e-6}, {"frequency", tone.frequency_Hz}, {"phase", 0.4}}, "test"});
+  RotaryOf(scenario).adc.samples = kPassedScans;
+  // Channels are converted up to 12 us one after the other, of which the twin that follows knows nothing.
+  const double open_V = LeftOfTone_V({tone.frequency_Hz, 1e9});
+  const double within_V = open_V * units::turn * tone.frequency_Hz * 3.0 * kConversion_s;
   ExpectFollowed(
-      scenario, [](RotarySettings& s) { s.chain.low_pass_Hz = 1000.0; }, 1e-6, 20e-6);
+      scenario, [&](RotarySettings& s) { s.chain.low_pass_Hz = tone.corner_Hz; }, 1.5 * within_V, 0.015 * open_V);
+}
+
+INSTANTIATE_TEST_SUITE_P(LowPass, PassedTones,
+                         testing::Values(PassedTone{20.0, 100.0}, PassedTone{20.0, 1000.0},
+                                         PassedTone{137.0, 100.0}, PassedTone{137.0, 1000.0},
+                                         PassedTone{970.0, 100.0}, PassedTone{970.0, 1000.0}));
+
+TEST(LowPass, IsFollowedThroughASignalOfTheSameKind) {
+  Scenario scenario = test::SmallNoiseFree();
+  EffectSettings signal{"signal", "psd_b_y", {{"amplitude", 1e-6}, {"frequency", 137.0}, {"phase", 0.4}}, "test"};
+  signal.signal = "tone";
+  scenario.effects.push_back(signal);
+  RotaryOf(scenario).adc.samples = kPassedScans;
+  ExpectFollowed(
+      scenario, [](RotarySettings& s) { s.chain.low_pass_Hz = 100.0; }, 3e-6, 50e-6);
+}
+
+// A table that creeps in with exp(-t / constant), long after it has arrived: 1 / (1 - lag / constant) of it.
+TEST(LowPass, IsFollowedAsATableCreepsIn) {
+  for (const double corner_Hz : {5.0, 50.0}) {
+    Scenario scenario = test::SmallNoiseFree();
+    scenario.effects.push_back(
+        {"settling", "", {{"amplitude", 5.0 * units::arcsec}, {"time_constant", 0.2}}, "test"});
+    RotaryOf(scenario).adc.samples = kPassedScans;
+    RotaryOf(scenario).procedure.dwell_s = {0.02};
+    ExpectFollowed(
+        scenario, [=](RotarySettings& s) { s.chain.low_pass_Hz = corner_Hz; }, 1e-6, 20e-6);
+  }
 }
 
 }  // namespace

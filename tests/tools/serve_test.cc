@@ -49,6 +49,41 @@ TEST_F(Served, MeasuresTheReadingsThatRunMakesBitForBit) {
   }
 }
 
+// The procedure commands the correction: a server, which shows a controller, knows nothing of it.
+TEST_F(Served, MeasuresWhatRunMakesWithACompensationAndTheCheckHolds) {
+  std::string lines = kSmall;
+  lines.replace(
+      lines.find("[target.random]"), 15,
+      "[target]\nharmonics = [{component = \"ez\", order = 1, amplitude_arcsec = 40.0, phase_deg = 70.0}]\n"
+      "[target.random]");
+  lines.replace(lines.find("ez_arcsec = 5.0\n"), 16, "");
+  Write("small.toml", lines);
+  Succeed({"run", "small.toml", "-o", "before"});
+  Succeed({"compensate", "before", "-o", "table.csv"});
+  // Other noise, as a second measurement has.
+  const std::vector<std::string> again = {"--set", "seed=6", "--compensation", "target=table.csv"};
+  MakeRun("run_again", again);
+  EXPECT_NE(ReadingsOf("run_again"), ReadingsOf("before"));
+
+  const auto server = Serve({"--speed", "max", "--set", "seed=6"});
+  std::vector<std::string> measure = Measure("measured");
+  measure.insert(measure.end(), again.begin(), again.end());
+  Succeed(measure);
+  EXPECT_EQ(ReadingsOf("measured"), ReadingsOf("run_again"));
+  EXPECT_EQ(Read("measured/results.json"), Read("run_again/results.json"));
+
+  const nlohmann::json check = Json({"compensate", "before", "--check", "measured", "--json", "-"})["check"];
+  EXPECT_EQ(check, Json({"compensate", "before", "--check", "run_again", "--json", "-"})["check"]);
+  EXPECT_TRUE(check["no_worse"]);
+  EXPECT_GT(check["before_rms_arcsec"], 20.0);
+  EXPECT_LT(check["remeasured_rms_arcsec"], 2.0);
+  EXPECT_NEAR(check["ratio"], 1.0, 4.0 * double{check["u_ratio"]});
+
+  const Outcome bare = Call({"compensate", "before", "--check", "before"});
+  EXPECT_EQ(bare.exit_code, 2);
+  EXPECT_THAT(bare.err, HasSubstr("not measured with this compensation"));
+}
+
 TEST_F(Served, KeepsTheRawCountsAndSaysWhoAnswered) {
   const auto server = Serve();
   Succeed(Measure("measured"));

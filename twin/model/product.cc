@@ -62,13 +62,16 @@ double Product::Course(const Instant& instant, std::span<const double> shown) co
     return Of("amplitude") * std::pow(own / range, std::round(Of("exponent"))) *
            std::pow(partner / range, std::round(Of("partner_exponent")));
   }
-  double phase_rad = Of("phase");
+  double phase_rad = Of("phase"), share = 1.0;
   if (kind == "harmonic") phase_rad += Of("order") * instant.angle_rad[static_cast<std::size_t>(by_)];
   if (kind == "interaction")
     phase_rad += Of("order") * instant.angle_rad[0] + Of("with_order") * instant.angle_rad[1];
-  if (kind == "tone") phase_rad += units::turn * Of("frequency") * instant.time_s;
+  if (kind == "tone") {
+    const BehindPole behind = SineBehindPole(Of("frequency"), instant.lag_s);
+    phase_rad += units::turn * Of("frequency") * instant.time_s + behind.ahead_rad;
+    share = behind.share * ShareLeft(Of("frequency"), instant.averaged_s);
+  }
   if (kind == "fringes") phase_rad += units::turn * own / Of("period");
-  const double share = kind == "tone" ? ShareLeft(Of("frequency"), instant.averaged_s) : 1.0;
   return Of("amplitude") * share * std::cos(phase_rad);
 }
 

@@ -13,6 +13,7 @@ namespace twinbench::model {
 struct Instant {
   double time_s = 0.0;
   double averaged_s = 0.0;  // over which a mean about time_s is asked for; 0: that very instant
+  double lag_s = 0.0;       // of a pole that all has passed; time_s is earlier by as much
   int reading = 0;
   double direction = 0.0;             // +1, -1: sense of the motion, at rest of the last one
   double velocity_rad_s = 0.0;        // while it is read

@@ -168,9 +168,13 @@ void Axes::Mount(const mechanics::ChainGeometry& geometry) {
 }
 
 mechanics::StackState Axes::Look() {
+  return LookBack(queue_.Now());
+}
+
+mechanics::StackState Axes::LookBack(Time time) {
   CatchUp();
   mechanics::StackState state = plant_->State();
-  restlessness_.AddTo(state, queue_.Now());
+  restlessness_.AddTo(state, time);
   return state;
 }
 

@@ -48,6 +48,9 @@ class Axes {
 
   /// Angles and deflections at the queue's time.
   mechanics::StackState Look();
+  /// The same at a time before, as far as it is known while the servos are quiet: they stood as they stand, the
+  /// floor shook as it did.
+  mechanics::StackState LookBack(Time time);
 
   int Direction(mechanics::Axis axis) const { return drive(axis).direction; }
   /// Begin of the axis' last move, and how far its encoder has come since; infinitely far before the first one.

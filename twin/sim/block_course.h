@@ -60,9 +60,10 @@ class BlockCourse {
   bool IsLevel(double within_V) const;
   bool IsStraight(double within_V) const;
 
- private:
-  double Duration_s() const { return step_s_ * static_cast<double>(knots_V_.size() - 1); }
+  int Steps() const { return static_cast<int>(knots_V_.size()) - 1; }
+  double Duration_s() const { return step_s_ * Steps(); }
 
+ private:
   double step_s_;
   std::vector<Voltages> knots_V_;
 };

@@ -9,19 +9,29 @@
 namespace twinbench::sim {
 namespace {
 
-/// After which e^-30 is left of whatever was before.
-constexpr double kLongAgo_lags = 30.0;
-
 /// What has been behind one pole when the block begins: turned about its first value, the course of the block lies
 /// before it too, and the chord before that.
-FirstOrderLag OnItsWay(const BlockCourse& course, std::size_t c, double step_s, int steps, double lag_s) {
-  FirstOrderLag lag(lag_s);
+FirstOrderLag Turned(const BlockCourse& course, std::size_t c, double step_s, int steps, const LowPass& low_pass) {
+  FirstOrderLag lag(low_pass.Lag_s());
   const double first_V = course.At_V(c, 0.0);
   const auto before_V = [&](double ago_s) { return 2.0 * first_V - course.At_V(c, ago_s); };
-  const int back = std::min(steps, static_cast<int>(std::ceil(kLongAgo_lags * lag_s / step_s)));
+  const int back = std::min(steps, static_cast<int>(std::ceil(low_pass.Memory_s() / step_s)));
   const double ago_s = back * step_s, slope_V_s = (first_V - before_V(ago_s)) / ago_s;
-  lag.Follow(-ago_s - kLongAgo_lags * lag_s, before_V(ago_s) - slope_V_s * kLongAgo_lags * lag_s);
+  lag.Follow(-ago_s - low_pass.Memory_s(), before_V(ago_s) - slope_V_s * low_pass.Memory_s());
   for (int k = back; k > 0; --k) lag.Follow(-k * step_s, before_V(k * step_s));
+  return lag;
+}
+
+/// The same where it is known what was before.
+FirstOrderLag Remembered(const BlockCourse& before, std::size_t c, double lag_s) {
+  constexpr int kStepsAKnot = 4;  // of a cubic, which are followed as straight: 0.1 % of a sine
+  FirstOrderLag lag(lag_s);
+  const int steps = kStepsAKnot * before.Steps();
+  lag.Follow(-before.Duration_s(), before.Mean_V(c));
+  for (int k = 0; k < steps; ++k) {
+    const double time_s = before.Duration_s() * k / steps;
+    lag.Follow(time_s - before.Duration_s(), before.At_V(c, time_s));
+  }
   return lag;
 }
 
@@ -35,10 +45,12 @@ double LowPass::NoiseBand_Hz() const {
   return 0.5 * units::kPi * corner_Hz_;
 }
 
-BlockCourse LowPass::Passed(const BlockCourse& course, Duration step, int steps) const {
+BlockCourse LowPass::Passed(const BlockCourse& course, Duration step, int steps,
+                            const std::optional<BlockCourse>& before) const {
   const double step_s = ToSeconds(step);
   std::vector<FirstOrderLag> lags;
-  for (std::size_t c = 0; c < kChannels; ++c) lags.push_back(OnItsWay(course, c, step_s, steps, Lag_s()));
+  for (std::size_t c = 0; c < kChannels; ++c)
+    lags.push_back(before ? Remembered(*before, c, Lag_s()) : Turned(course, c, step_s, steps, *this));
   BlockCourse passed(step);
   for (int k = 0; k <= steps; ++k) {
     const double time_s = k * step_s;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "twin/core/stream.h"
 #include "twin/sim/block_course.h"
 
@@ -19,13 +21,23 @@ class LowPass {
   /// Of the rectangular band that lets as much white noise through: pi / 2 of the corner.
   double NoiseBand_Hz() const;
 
+  /// After which e^-30 is left of whatever was before.
+  double Memory_s() const { return kLongAgo_lags * Lag_s(); }
+
   /// What comes out in the course of a block, at knots this far apart; exact where the input is straight between
-  /// them. What was before the block is not known: it is taken for the block's own course turned about its first
-  /// value, which is right for what is level or straight and has a tone's size.
-  /// @param steps  Of the output, positive.
-  BlockCourse Passed(const BlockCourse& course, Duration step, int steps) const;
+  /// them.
+  /// @param steps   Of the output, positive.
+  /// @param before  What came in until the block begins, its last knot; where it begins the pole is where the mean
+  ///                of it is. Without: the block's own course turned about its first value is taken for it, which
+  ///                is right for what is level or straight; of a tone of amplitude 1 the output then begins up to
+  ///                2 x^2 / (1 + x^2) beside where it was, x = f / corner, and the block's mean is wrong by lag
+  ///                over block of that.
+  BlockCourse Passed(const BlockCourse& course, Duration step, int steps,
+                     const std::optional<BlockCourse>& before = std::nullopt) const;
 
  private:
+  static constexpr double kLongAgo_lags = 30.0;
+
   double corner_Hz_;
 };
 

@@ -33,6 +33,7 @@ void SilenceConverter(Scenario& s) {
   adc.jitter_s = 0.0;
   adc.inl_file.clear();
   RotaryOf(s).chain.dnl_lsb = 0.0;
+  RotaryOf(s).chain.dnl_file.clear();
 }
 
 void SilenceDetectors(Scenario& s) {

@@ -130,6 +130,7 @@ void AddAdc(Keys& keys, AdcSettings& s, ChainSettings& chain) {
   t.Flag("every_sample", s.every_sample, "false: draw mean and deviation of a block at once");
   t.File("inl_file", s.inl_file, "integral non-linearity: CSV of voltage_V, error_mV");
   t.Add("dnl", {"lsb"}, UpTo(0.4), &chain.dnl_lsb, "differential non-linearity, rms");
+  t.File("dnl_file", chain.dnl_file, "instead, as measured: CSV of code and width (in LSB), or code and dnl_lsb");
   t.Add("jitter", kMicrosecond, UpTo(1e6), &s.jitter_s, "of the instants of conversion, standard deviation");
   t.Add("lost_fraction", kPure, UpTo(0.9), &s.lost_fraction, "of scans that do not arrive");
 }
@@ -248,6 +249,12 @@ void CheckEncoders(const ScenarioText& text, const MechanicsSettings& m) {
   }
 }
 
+void CheckWidths(const ScenarioText& text, const ChainSettings& chain) {
+  if (chain.dnl_lsb > 0.0 && !chain.dnl_file.empty())
+    throw InputError(Place(text, "adc.dnl_file", "adc.dnl_lsb"),
+                     "both adc.dnl_file and adc.dnl_lsb say how wide codes are", "one of them");
+}
+
 void CheckVibration(const ScenarioText& text, const MechanicsSettings& m) {
   if (m.vibration_frequency_Hz.size() == m.vibration_velocity_m_s.size()) return;
   throw InputError(Place(text, "mechanics.vibration_velocity_um_s", "mechanics.vibration_frequency_Hz"),
@@ -292,6 +299,7 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   CheckProfile(text, own.laser);
   CheckEncoders(text, own.mechanics);
   CheckVibration(text, own.mechanics);
+  CheckWidths(text, own.chain);
 }
 
 }  // namespace twinbench::benches::rotary

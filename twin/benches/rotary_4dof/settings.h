@@ -118,6 +118,7 @@ inline MechanicsSettings BodiesOnAQuietFloor() {
 struct ChainSettings {
   double low_pass_Hz = 0.0;  // amplifier.low_pass: of one pole; 0: none
   double dnl_lsb = 0.0;      // adc.dnl: differential non-linearity, root mean square
+  std::string dnl_file;      // adc.dnl_file: as it was measured, by code; absolute once loaded
 };
 
 struct RotarySettings {

@@ -132,7 +132,8 @@ class CourseMaker {
     const double window_s = std::max(RotaryOf(actual()).target.settle_s, RotaryOf(actual()).reference.settle_s);
     Moment moment;
     const Duration block = BlockTime(RotaryOf(actual()).adc, SamplesOf(r, RotaryOf(actual()).adc));
-    moment.now = r.time + block / 2 - FromSeconds(path_.electronics().Lag_s());
+    moment.lag_s = path_.electronics().Lag_s();
+    moment.now = r.time + block / 2 - FromSeconds(moment.lag_s);
     moment.averaged_s = ToSeconds(block);
     moment.mounted = mounted;
     moment.arrived = r.phase == Phase::kFullCircle ? r.time - FromSeconds(OrZero(r.dwell_s) + window_s) : mounted;

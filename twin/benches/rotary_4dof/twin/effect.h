@@ -18,8 +18,9 @@ struct Moment {
   std::array<Time, 2> departed{};  // begin of the last move of target and reference
   Time arrived{};                  // end of the last move of either, which may be still to come
   double averaged_s = 0.0;         // 0: this very instant; else the mean over as long about it is asked for
-  double temperature_K = 0.0;      // of the room, above environment.reference_degC
-  double target_rad = 0.0;         // rotors, unwrapped, without the index error ez
+  double lag_s = 0.0;          // of a pole before the converter, by which `now` is earlier than what is asked for
+  double temperature_K = 0.0;  // of the room, above environment.reference_degC
+  double target_rad = 0.0;     // rotors, unwrapped, without the index error ez
   double reference_rad = 0.0;
   int target_direction = 1;  // sense of the last move
   int reference_direction = -1;

@@ -6,6 +6,7 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/psd_noise.h"
 #include "twin/core/errors.h"
+#include "twin/sim/code_width_table.h"
 
 namespace twinbench::sim {
 namespace {
@@ -26,6 +27,12 @@ double ShareAbove(double threshold_V, double level_V, double noise_V) {
   return 0.5 * std::erfc((threshold_V - level_V) / (std::sqrt(2.0) * noise_V));
 }
 
+CodeWidths WidthsOf(const RotarySettings& bench, std::uint64_t seed) {
+  const std::string& file = bench.chain.dnl_file;
+  return file.empty() ? CodeWidths(bench.chain.dnl_lsb, bench.adc.bits, seed)
+                      : CodeWidths(ReadExcessWidths_lsb(file, bench.adc.bits), bench.adc.bits);
+}
+
 }  // namespace
 
 Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
@@ -41,7 +48,7 @@ Electronics::Electronics(const Scenario& actual, const SamplingState& sampling)
       seed_(actual.RunSeed()),
       noise_(actual.RunSeed(), "amplifier.noise"),
       low_pass_(RotaryOf(actual).chain.low_pass_Hz),
-      widths_(RotaryOf(actual).chain.dnl_lsb, RotaryOf(actual).adc.bits, actual.seed) {
+      widths_(WidthsOf(RotaryOf(actual), actual.seed)) {
   if (!low_pass_.PassesAll()) {
     for (PsdSettings& psd : psd_) psd.bandwidth_Hz = std::min(psd.bandwidth_Hz, low_pass_.NoiseBand_Hz());
   }
@@ -116,11 +123,11 @@ void Electronics::AddPoledNoise(const LightNoise& light_noise, double step_s, in
 }
 
 /// Knots at every conversion.
-BlockCourse Electronics::LowPassed(const BlockCourse& course, const LightNoise& light_noise, int reading,
-                                   int n_samples) const {
+BlockCourse Electronics::LowPassed(const BlockCourse& course, const std::optional<BlockCourse>& before,
+                                   const LightNoise& light_noise, int reading, int n_samples) const {
   const int steps = static_cast<int>(kChannels) * n_samples;
   const Duration step = BlockTime(adc_, n_samples) / steps;
-  BlockCourse passed = low_pass_.Passed(course, step, steps);
+  BlockCourse passed = low_pass_.Passed(course, step, steps, before);
   if (!noise_free_) AddPoledNoise(light_noise, ToSeconds(step), reading, passed);
   return passed;
 }
@@ -177,12 +184,13 @@ Acquisition Electronics::InChannelOrder(const Acquisition& scanned) const {
   return block;
 }
 
-Acquisition Electronics::Convert(BlockCourse course, const LightNoise& light_noise, Time start, int reading,
-                                 int n_samples, bool keep_raw) {
+Acquisition Electronics::Convert(BlockCourse course, const std::optional<BlockCourse>& before,
+                                 const LightNoise& light_noise, Time start, int reading, int n_samples,
+                                 bool keep_raw) {
   noise_.Seek(static_cast<std::uint64_t>(reading) << 32);
   LightNoise fresh = light_noise;  // with every sample
   if (!low_pass_.PassesAll()) {
-    course = LowPassed(course, light_noise, reading, n_samples);
+    course = LowPassed(course, before, light_noise, reading, n_samples);
     fresh = {};
   }
   course.Bend([this](double voltage_V) { return AsConverted_V(voltage_V); });

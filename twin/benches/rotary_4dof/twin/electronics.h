@@ -38,6 +38,8 @@ class Electronics {
   LightNoise LightNoiseOf(const Spots& spots) const;
   /// By which the low pass is late: what changes slowly is shown as it was this long ago.
   double Lag_s() const { return low_pass_.Lag_s(); }
+  /// Behind which the low pass knows nothing of what was before; 0 without one.
+  double Memory_s() const { return low_pass_.Memory_s(); }
 
   /// Converts one block. What changes in it by less than a thousandth of a code step counts as steady, what is that
   /// near to a straight line as one: then samples need not be asked one by one. `reading` enters the noise stream,
@@ -45,8 +47,9 @@ class Electronics {
   /// @param light_noise  Comes to the amplifiers' own. Conversions follow each other so late that without a low
   ///                     pass each sees noise of its own; behind one it is correlated in time, and the laser's
   ///                     moves all channels together.
-  Acquisition Convert(BlockCourse course, const LightNoise& light_noise, Time start, int reading, int n_samples,
-                      bool keep_raw);
+  /// @param before       What the signals were until the block began, for the low pass (low_pass.h).
+  Acquisition Convert(BlockCourse course, const std::optional<BlockCourse>& before, const LightNoise& light_noise,
+                      Time start, int reading, int n_samples, bool keep_raw);
 
   /// The mean that such a block would have if it were taken again and again: hum and crosstalk as they fall into
   /// it, a step of the converter blurred by the samples' noise, no quantisation. NaN at the ends of the range.
@@ -55,7 +58,8 @@ class Electronics {
                                        double noise_V) const;
 
  private:
-  BlockCourse LowPassed(const BlockCourse& course, const LightNoise& light_noise, int reading, int n_samples) const;
+  BlockCourse LowPassed(const BlockCourse& course, const std::optional<BlockCourse>& before,
+                        const LightNoise& light_noise, int reading, int n_samples) const;
   void AddPoledNoise(const LightNoise& light_noise, double step_s, int reading, BlockCourse& course) const;
   double AsConverted_V(double voltage_V) const;
   double JitterNoise_V(const BlockCourse& course, std::size_t channel) const;

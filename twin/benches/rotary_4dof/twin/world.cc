@@ -87,44 +87,69 @@ Spots World::SpotsNow(const Moment& moment, const mechanics::StackState& axes) {
   return spots;
 }
 
+BlockCourse::Voltages World::SignalOf(const Spots& spots, const Moment& moment) {
+  std::array<double, kChannels> signal_V = path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
+  path_.effects().AlterSignal(moment, signal_V);
+  path_.electronics().AddFlicker(moment.now, signal_V);
+  return signal_V;
+}
+
 /// What reaches the converter now.
 Spots World::AddKnot(BlockCourse& course) {
   const mechanics::StackState axes = axes_.Look();
   const Moment moment = Look(axes);
   const Spots spots = SpotsNow(moment, axes);
-  std::array<double, kChannels> signal_V = path_.effects().Shown_V(moment, path_.electronics().Amplify(spots.uv_m));
-  path_.effects().AlterSignal(moment, signal_V);
-  path_.electronics().AddFlicker(moment.now, signal_V);
-  course.Add(signal_V);
+  course.Add(SignalOf(spots, moment));
   return spots;
+}
+
+/// What was at the low pass before a block that begins now: light, floor and effects as they were at the time, the
+/// tables where they stand. Nothing while a servo works, whose past is gone, or where there was no light.
+std::optional<BlockCourse> World::Before() {
+  constexpr double kMostKnots = 4096.0;  // of a pole so slow that it sees no more of the fastest than its mean
+  if (path_.electronics().Memory_s() == 0.0 || axes_.IsRestless()) return std::nullopt;
+  const double shortest_s = Shortest_s();
+  const Duration memory =
+      FromSeconds(std::min(path_.electronics().Memory_s(), kMostKnots / BlockCourse::kKnotsAPeriod * shortest_s));
+  const int steps = StepsOf(memory, shortest_s, static_cast<int>(kMostKnots));
+  const Time begin = queue_.Now();
+  Moment moment = Look(axes_.Look());
+  BlockCourse before(memory / steps);
+  for (int k = steps; k >= 0; --k) {
+    moment.now = begin - k * (memory / steps);
+    const Spots spots = SpotsNow(moment, axes_.LookBack(moment.now));
+    if (spots.status != ReadingStatus::kOk) return std::nullopt;
+    before.Add(SignalOf(spots, moment));
+  }
+  return before;
 }
 
 Acquisition World::Acquire(int n_samples, bool keep_raw) {
   const Time start = queue_.Now();
   const Duration block = BlockTime(RotaryOf(actual()).adc, n_samples);
   const int steps = StepsOf(block, Shortest_s(), kChannels * n_samples);
-  BlockCourse course(block / steps);
-  Spots seen;  // at the block's begin, or where they were lost
+  Followed followed{Before(), BlockCourse(block / steps), {}};
   for (int k = 0; k <= steps; ++k) {
     adc_.At(start + k * (block / steps), [&, k] {
-      const Spots spots = AddKnot(course);
+      const Spots spots = AddKnot(followed.course);
+      Spots& seen = followed.seen;
       if (k == 0 || (seen.status == ReadingStatus::kOk && spots.status != ReadingStatus::kOk)) seen = spots;
     });
   }
   adc_.RunUntil(start + block);
-  return Converted(std::move(course), seen, start, n_samples, keep_raw);
+  return Converted(std::move(followed), start, n_samples, keep_raw);
 }
 
-Acquisition World::Converted(BlockCourse course, const Spots& seen, Time start, int n_samples, bool keep_raw) {
+Acquisition World::Converted(Followed block, Time start, int n_samples, bool keep_raw) {
   Acquisition acquired;
-  if (seen.status == ReadingStatus::kOk) {
+  if (block.seen.status == ReadingStatus::kOk) {
     Electronics& electronics = path_.electronics();
-    acquired = electronics.Convert(std::move(course), electronics.LightNoiseOf(seen), start, next_reading_,
-                                   n_samples, keep_raw);
+    acquired = electronics.Convert(std::move(block.course), block.before, electronics.LightNoiseOf(block.seen),
+                                   start, next_reading_, n_samples, keep_raw);
     path_.effects().AlterReadout(acquired);
   } else {
     acquired.start = start;
-    acquired.status = seen.status;
+    acquired.status = block.seen.status;
   }
   ++next_reading_;
   return acquired;

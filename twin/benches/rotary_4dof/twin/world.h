@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "twin/benches/rotary_4dof/twin/moving_air.h"
 #include "twin/benches/rotary_4dof/twin/optical_path.h"
 #include "twin/sim/axes.h"
@@ -41,11 +43,20 @@ class World {
   const std::map<std::string, std::uint64_t>& Scheduled() const { return queue_.Scheduled(); }
 
  private:
+  /// What reached the converter, and how the light fell at the block's begin or where it was lost.
+  struct Followed {
+    std::optional<BlockCourse> before;
+    BlockCourse course;
+    Spots seen;
+  };
+
   Moment Look(const mechanics::StackState& axes);
   double Shortest_s();
   Spots SpotsNow(const Moment& moment, const mechanics::StackState& axes);
+  BlockCourse::Voltages SignalOf(const Spots& spots, const Moment& moment);
   Spots AddKnot(BlockCourse& course);
-  Acquisition Converted(BlockCourse course, const Spots& seen, Time start, int n_samples, bool keep_raw);
+  std::optional<BlockCourse> Before();
+  Acquisition Converted(Followed block, Time start, int n_samples, bool keep_raw);
 
   EventQueue queue_;
   Schedule adc_{queue_, "adc"}, fixture_{queue_, "fixture"};

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "twin/benches/rotary_4dof/twin/effects/effects.h"
+#include "twin/model/block_mean.h"
 
 namespace twinbench::sim {
 namespace {
@@ -21,7 +22,8 @@ class Settling : public Effect {
   double ShareBehind(const Moment& moment) const {
     const Time departed = std::max(moment.departed[0], moment.departed[1]);
     if (moment.now < moment.arrived) return ToSeconds(moment.now - departed) / ToSeconds(moment.arrived - departed);
-    return std::exp(-ToSeconds(moment.now - moment.arrived) / time_constant_s_);
+    const double since_s = ToSeconds(moment.now - moment.arrived) + moment.lag_s;
+    return model::DecayMeanBehindPole(since_s, time_constant_s_, moment.averaged_s, moment.lag_s);
   }
 
   double amplitude_rad_;

@@ -21,6 +21,7 @@ class Signal : public Effect {
     for (std::size_t c = 0; c < shown_m.size(); ++c) shown_m[c] = signal_V[c] / sensitivity_V_m_[c];
     const model::Instant instant{.time_s = ToSeconds(moment.now),
                                  .averaged_s = moment.averaged_s,
+                                 .lag_s = moment.lag_s,
                                  .reading = moment.reading,
                                  .direction = static_cast<double>(moment.target_direction),
                                  .above_K = moment.temperature_K,

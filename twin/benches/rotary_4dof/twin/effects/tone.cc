@@ -20,8 +20,10 @@ class Tone : public Effect {
   }
   double Shortest_s() const override { return 1.0 / frequency_Hz_; }
   void AlterSignal(const Moment& moment, std::array<double, kChannels>& signal_V) override {
-    const double sine = std::sin(2.0 * units::kPi * frequency_Hz_ * ToSeconds(moment.now) + phase_rad_);
-    const double mean = model::ShareLeft(frequency_Hz_, moment.averaged_s) * sine;
+    const model::BehindPole behind = model::SineBehindPole(frequency_Hz_, moment.lag_s);
+    const double turned_rad = units::turn * frequency_Hz_ * ToSeconds(moment.now) + behind.ahead_rad;
+    const double share = behind.share * model::ShareLeft(frequency_Hz_, moment.averaged_s);
+    const double mean = share * std::sin(turned_rad + phase_rad_);
     for (int c = 0; c < kChannels; ++c) signal_V[c] += amplitude_V_[c] * mean;
   }
 
