@@ -25,6 +25,11 @@ TEST(ChiSquaredExceedance, KnowsNothingWithoutDegreesOfFreedom) {
   EXPECT_TRUE(std::isnan(ChiSquaredExceedance(5.0, 0.0)));
 }
 
+TEST(ChiSquaredExceedance, IsCertainForNothingInThousandsOfDegreesOfFreedom) {
+  for (const double chi2 : {0.0, 1e-20, 1.0}) EXPECT_EQ(ChiSquaredExceedance(chi2, 10000.0), 1.0) << chi2;
+  EXPECT_NEAR(ChiSquaredExceedance(10000.0, 10000.0), 0.5, 0.003);  // skewed by 2 / (3 sqrt(2 pi dof))
+}
+
 TEST(NormalExceededWith, IsTheInverseOfTheTail) {
   for (const double p : {0.4, 0.025, 1e-9})
     EXPECT_NEAR(0.5 * std::erfc(NormalExceededWith(p) / std::sqrt(2.0)) / p, 1.0, 1e-12);

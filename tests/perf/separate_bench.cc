@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "tests/separate/bench.h"
+#include "twin/separate/shift_separation.h"
 
 namespace {
 
@@ -47,6 +48,45 @@ void FindSeparabilityOfADesign(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(FindSeparability(design).lost.size());
 }
 BENCHMARK(FindSeparabilityOfADesign)->Unit(benchmark::kMillisecond);
+
+/// Five shifts, readings of both curves with noise; a part of them missing, weights within a factor of `spread`.
+struct ShiftedReadings {
+  std::vector<int> shifts;
+  Eigen::MatrixXd value, weight;
+};
+
+ShiftedReadings FiveShifts(int n, double missing, double spread) {
+  ShiftedReadings r{{0, 1, n / 59, n / 9 + 11, n / 3 + 3}, Eigen::MatrixXd(n, 5), Eigen::MatrixXd(n, 5)};
+  Stream stream(1, "bench.shifts");
+  for (double& v : r.value.reshaped()) v = stream.Normal();
+  for (double& w : r.weight.reshaped()) w = stream.Uniform() < missing ? 0.0 : std::pow(spread, stream.Uniform());
+  return r;
+}
+
+/// From readings to both curves: transfers, factorisation, search for what is lost and the solution.
+void SeparateTwoCurves(benchmark::State& state, double missing, double spread) {
+  const ShiftedReadings r = FiveShifts(static_cast<int>(state.range(0)), missing, spread);
+  shifts::ShiftSolution solution;
+  for (auto _ : state) {
+    const shifts::ShiftSeparation separation(r.shifts, shifts::Free::kConstant, r.weight);
+    solution = separation.Solve(r.value);
+  }
+  const double n = static_cast<double>(state.range(0));
+  state.counters["steps"] = solution.convergence.iterations;
+  state.counters["converged"] = solution.convergence.converged ? 1.0 : 0.0;
+  state.counters["s/(n log2 n)"] = benchmark::Counter(
+      n * std::log2(n), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+/// n = 36 007 is a prime.
+void CompleteCurves(benchmark::State& state) {
+  SeparateTwoCurves(state, 0.0, 1.0);
+}
+void CurvesWithGapsAndWeights(benchmark::State& state) {
+  SeparateTwoCurves(state, 0.02, 10.0);
+}
+BENCHMARK(CompleteCurves)->Arg(9000)->Arg(18000)->Arg(36000)->Arg(72000)->Arg(36007)->Unit(benchmark::kMillisecond);
+BENCHMARK(CurvesWithGapsAndWeights)->Arg(9000)->Arg(18000)->Arg(36000)->Arg(72000)->Unit(benchmark::kMillisecond);
 
 void MeasureAReading(benchmark::State& state) {
   Reading reading;
