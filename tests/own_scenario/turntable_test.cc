@@ -81,6 +81,11 @@ const std::vector<test::OwnKey>& Keys() {
           "turntable_procedure.phases=[\"full_circle\", \"verification\"]",
           "turntable_procedure.verification_positions=30"}},
     };
+    for (const char* key :
+         {"polygon.faces", "polygon.face_errors_arcsec", "polygon.face_rms_arcsec", "polygon.pyramid_rms_arcsec",
+          "encoder.noise_arcsec", "encoder.step_arcsec", "autocollimator.deadband_arcsec",
+          "turntable_procedure.polygon_offsets_deg", "turntable_procedure.highest_order"})
+      all.push_back({key, {}, "of a polygon, which has no place in the base's sweeps"});
     all.push_back({"turntable.compensation_file", {}, "its content is in turntable.compensation"});
     all.push_back({"turntable.compensation",
                    {"turntable.compensation={position_deg=[0, 90, 180, 270], correction_arcsec=[0, 20, -5, 8]}"}});
