@@ -248,6 +248,8 @@ void MakeWholeTeethAndLines(Scenario& s) {
   TurntableOf(s).multitooth.teeth = 360;
   TurntableOf(s).turntable_procedure.positions = 72;
   TurntableOf(s).turntable_procedure.verification_positions = 100;
+  TurntableOf(s).polygon.faces = 0;
+  TurntableOf(s).turntable_procedure.polygon_offsets_rad = {0.0};
 }
 
 Scenario AnyScenario(const std::string& bench, Random& random, const std::string& file) {

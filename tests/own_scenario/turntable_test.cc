@@ -81,6 +81,21 @@ const std::vector<test::OwnKey>& Keys() {
           "turntable_procedure.phases=[\"full_circle\", \"verification\"]",
           "turntable_procedure.verification_positions=30"}},
     };
+    const auto add_polygon = [&](const std::string& key, const std::vector<std::string>& more = {}) {
+      all.push_back({key,
+                     {"polygon.faces=24", "turntable_procedure.phases=[\"full_circle\"]",
+                      "turntable_procedure.polygon_offsets_deg=[0, 40]", "autocollimator.noise_arcsec=0.05"}});
+      all.back().settings.insert(all.back().settings.end(), more.begin(), more.end());
+    };
+    add_polygon("polygon.faces");
+    add_polygon("polygon.face_errors_arcsec", {"polygon.face_errors_arcsec=[3]"});
+    add_polygon("polygon.face_rms_arcsec", {"polygon.face_rms_arcsec=3"});
+    add_polygon("polygon.pyramid_rms_arcsec", {"polygon.pyramid_rms_arcsec=5"});
+    add_polygon("encoder.noise_arcsec", {"encoder.noise_arcsec=0.1"});
+    add_polygon("encoder.step_arcsec", {"encoder.step_arcsec=0.05", "encoder.noise_arcsec=0.03"});
+    add_polygon("autocollimator.deadband_arcsec", {"autocollimator.deadband_arcsec=20"});
+    add_polygon("turntable_procedure.polygon_offsets_deg", {"turntable_procedure.polygon_offsets_deg=[7, 350]"});
+    all.push_back({"turntable_procedure.highest_order", {}, "of the evaluation alone"});
     all.push_back({"turntable.compensation_file", {}, "its content is in turntable.compensation"});
     all.push_back({"turntable.compensation",
                    {"turntable.compensation={position_deg=[0, 90, 180, 270], correction_arcsec=[0, 20, -5, 8]}"}});

@@ -51,9 +51,14 @@ mechanics::PoseError TableMotion::At(double label_rad) const {
 }
 
 TableErrors TableMotion::Repeatable(int positions) const {
+  std::vector<double> position_rad;
+  for (int k = 0; k < positions; ++k) position_rad.push_back(2.0 * units::kPi * k / positions);
+  return Repeatable(position_rad);
+}
+
+TableErrors TableMotion::Repeatable(const std::vector<double>& position_rad) const {
   TableErrors errors;
-  for (int k = 0; k < positions; ++k) {
-    const double angle_rad = 2.0 * units::kPi * k / positions;
+  for (const double angle_rad : position_rad) {
     const auto value = repeatable_.Evaluate(angle_rad).Array();
     errors.position_rad.push_back(angle_rad);
     for (int c = 0; c < kComponents; ++c) errors.value[c].push_back(value[c]);

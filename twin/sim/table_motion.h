@@ -27,6 +27,8 @@ class TableMotion {
 
   /// The part that repeats with the angle, at `positions` equal steps from 0.
   TableErrors Repeatable(int positions) const;
+  /// The same at any angles.
+  TableErrors Repeatable(const std::vector<double>& position_rad) const;
 
  private:
   static mechanics::PoseError Draw(const std::array<double, kComponents>& sd, Stream& stream);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/plan/next_run.h"
@@ -39,11 +41,50 @@ NextRun OffCentre(const TurntableProcedureSettings& p) {
           plan::kOtherKind};
 }
 
+/// Circles with a polygon: there is nothing to sweep it against, and no teeth to shift.
+std::vector<NextRun> PolygonRuns(const Scenario& scenario) {
+  const TurntableProcedureSettings& p = TurntableOf(scenario).turntable_procedure;
+  constexpr double kOffCentre_m = 0.3 * units::mm, kAside_rad = 1.7 * units::deg;
+  std::vector<double> tilts = p.tilts_rad, eccentricities = p.eccentricities_m, offsets = p.polygon_offsets_rad;
+  for (double& tilt : tilts) tilt += 60.0 * units::arcsec;
+  for (double& e : eccentricities) e += kOffCentre_m;
+  for (double& offset : offsets) offset = std::fmod(offset + kAside_rad, units::turn);
+  return {{"other-offsets",
+           "the polygon clamped between the places where it was",
+           {Listed("polygon_offsets_deg", offsets, units::deg)},
+           plan::kSameKind},
+          {"other-tilts",
+           "the circle with the polygon tilted by another minute of arc",
+           {Listed("tilts_arcsec", tilts, units::arcsec)},
+           plan::kOtherKind},
+          {"off-centre",
+           "the circle with the polygon 0.3 mm further off the axis",
+           {Listed("eccentricities_um", eccentricities, units::um)},
+           plan::kOtherKind},
+          {"both-ways",
+           "the circle with passes + - - +",
+           {"turntable_procedure.passes=[1, -1, -1, 1]"},
+           plan::kSameKind},
+          {"dwells",
+           "the circle with dwells from 0.5 to 20 s",
+           {"turntable_procedure.dwell_s=[0.5, 2, 8, 20]"},
+           plan::kOtherKind},
+          {"warm",
+           "the circle in a room that is 2 K warmer",
+           {fmt::format("environment.temperature_degC={}", scenario.environment.temperature_degC + 2.0)},
+           plan::kOtherKind},
+          {"warming",
+           "the circle while the room warms by 2 K an hour",
+           {"environment.drift_K_h=2"},
+           plan::kOtherKind}};
+}
+
 }  // namespace
 
 std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
   const TurntableSettings& own = TurntableOf(scenario);
   const TurntableProcedureSettings& p = own.turntable_procedure;
+  if (own.HasPolygon()) return PolygonRuns(scenario);
   constexpr double kOfTheRange = 0.8, kCoarse = 2.0;
   const double wide_arcsec = kOfTheRange * own.autocollimator.range_rad / units::arcsec;
   const double warmer_degC = scenario.environment.temperature_degC + 2.0;

@@ -9,10 +9,19 @@
 namespace twinbench::procedure {
 namespace {
 
+/// The angle that is meant where a controller with this compensation shows `shown_rad`.
+double MeantAngle_rad(const std::optional<CompensationTable>& compensation, double shown_rad) {
+  if (!compensation) return shown_rad;
+  constexpr int kRounds = 4;  // corrections change by less than a thousandth of the angle
+  double meant_rad = shown_rad;
+  for (int round = 0; round < kRounds; ++round) meant_rad = shown_rad - compensation->At(meant_rad);
+  return meant_rad;
+}
+
 /// The steps that all phases share.
 class TurntableRun {
  public:
-  TurntableRun(TurntableBench& bench, const Scenario& scenario, ReadingSink& sink, const ProgressCallback& progress)
+  TurntableRun(NullingTurntableBench& bench, const Scenario& scenario, ReadingSink& sink, const ProgressCallback& progress)
       : bench_(bench),
         scenario_(scenario),
         sink_(sink),
@@ -21,6 +30,7 @@ class TurntableRun {
         planned_(PlannedReadings(settings())) {}
 
   const TurntableProcedureSettings& settings() const { return TurntableOf(scenario_).turntable_procedure; }
+  bool has_polygon() const { return TurntableOf(scenario_).HasPolygon(); }
   int teeth() const { return TurntableOf(scenario_).multitooth.teeth; }
   double tooth_rad() const { return 2.0 * units::kPi / teeth(); }
 
@@ -64,6 +74,31 @@ class TurntableRun {
     Take(stop);
   }
 
+  /// The faces of a pass are nulled one after the other, and the encoder is read.
+  void NullFaces(int direction) {
+    const TurntableSettings& s = TurntableOf(scenario_);
+    const int positions = settings().positions;
+    const int first = direction > 0 ? 0 : positions - 1;
+    const double step_rad = 2.0 * units::kPi / positions;
+    Turn(s.FaceAngle_rad(setup_, s.FaceAt(first)) - direction * settings().run_up_steps * step_rad);
+    for (int k = 0; k < positions; ++k) NullFace(direction, direction > 0 ? k : first - k);
+    ++pass_;
+  }
+
+  void NullFace(int direction, int position) {
+    const TurntableSettings& s = TurntableOf(scenario_);
+    const int face = s.FaceAt(position);
+    Turn(s.FaceAngle_rad(setup_, face));
+    bench_.servo.Null(direction);
+    Reading stop;
+    stop.phase = Phase::kFullCircle;
+    stop.direction = direction;
+    stop.position = position;
+    stop.target_rad = MeantAngle_rad(s.turntable.compensation, bench_.turntable.EncoderAngle_rad());
+    stop.reference_rad = -face * s.Pitch_rad();
+    Take(stop);
+  }
+
   void EndPass() { ++pass_; }
   void Turn(double angle_rad) {
     Send(angle_rad);
@@ -93,7 +128,7 @@ class TurntableRun {
     if (progress_) progress_({next_reading_, planned_, stop.phase, stop.time});
   }
 
-  TurntableBench& bench_;
+  NullingTurntableBench& bench_;
   const Scenario& scenario_;
   ReadingSink& sink_;
   const ProgressCallback& progress_;
@@ -108,7 +143,15 @@ std::vector<int> GridTeeth(int teeth, int positions) {
   return stops;
 }
 
+void NullPolygon(TurntableRun& run) {
+  for (int setup = 0; setup < run.settings().SetUps(); ++setup) {
+    run.Mount(setup);
+    for (const int direction : run.settings().passes) run.NullFaces(direction);
+  }
+}
+
 void MeasureFullCircle(TurntableRun& run) {
+  if (run.has_polygon()) return NullPolygon(run);
   const std::vector<int> stops = GridTeeth(run.teeth(), run.settings().positions);
   for (int setup = 0; setup < run.settings().SetUps(); ++setup) {
     run.Mount(setup);
@@ -177,7 +220,7 @@ int PlannedReadings(const TurntableProcedureSettings& procedure) {
   return readings;
 }
 
-void CarryOut(TurntableBench& bench, const Scenario& scenario, ReadingSink& sink,
+void CarryOut(NullingTurntableBench& bench, const Scenario& scenario, ReadingSink& sink,
               const ProgressCallback& progress) {
   TurntableRun run(bench, scenario, sink, progress);
   for (const std::string& phase : TurntableOf(scenario).turntable_procedure.phases)

@@ -5,6 +5,9 @@
 
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
+#include "twin/benches/turntable_autocollimator/polygon_results.h"
+#include "twin/benches/turntable_autocollimator/series_json.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
@@ -24,19 +27,9 @@ using separate::turntable::PointwiseError;
 using separate::turntable::Roll;
 using separate::turntable::RollStatus;
 using separate::turntable::TurntableAnalysis;
-
-nlohmann::json ToJson(const AngleSeries& series) {
-  nlohmann::json json = {{"position_deg", nlohmann::json::array()},
-                         {"ez_arcsec", nlohmann::json::array()},
-                         {"u_ez_arcsec", nlohmann::json::array()}};
-  for (std::size_t k = 0; k < series.position_rad.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    json["position_deg"].push_back(series.position_rad[k] / units::deg);
-    json["ez_arcsec"].push_back(report::Arcsec(series.value_rad[i]));
-    json["u_ez_arcsec"].push_back(report::Arcsec(series.U_rad(i)));
-  }
-  return json;
-}
+// Besides those below.
+using turntable::CurveOf;
+using turntable::ToJson;
 
 nlohmann::json ToJson(const Roll& roll) {
   const char* status = roll.status == RollStatus::kOk      ? "ok"
@@ -53,22 +46,6 @@ nlohmann::json ToJson(const ErrorSize& size) {
           {"rms_arcsec", report::Arcsec(size.rms_rad)},
           {"largest_arcsec", report::Arcsec(size.largest_rad)},
           {"largest_from_start_arcsec", report::Arcsec(size.largest_from_start_rad)}};
-}
-
-nlohmann::json ToJson(const HarmonicModel& model) {
-  nlohmann::json terms = nlohmann::json::array();
-  for (const auto& term : model.terms) {
-    terms.push_back({{"order", term.order},
-                     {"amplitude_arcsec", report::Arcsec(term.amplitude_rad)},
-                     {"u_amplitude_arcsec", report::Arcsec(term.u_amplitude_rad)},
-                     {"phase_deg", report::In(units::deg, term.phase_rad)},
-                     {"u_phase_deg", report::In(units::deg, term.u_phase_rad)}});
-  }
-  return {{"form", "sum of amplitude sin(order angle + phase)"},
-          {"highest_order", model.highest_order},
-          {"terms", terms},
-          {"residual_rms_arcsec", report::Arcsec(model.residual_rms_rad)},
-          {"u_unmodelled_arcsec", report::Arcsec(model.u_unmodelled_rad)}};
 }
 
 nlohmann::json ToJson(const ModelCheck& check) {
@@ -170,35 +147,6 @@ std::string SummaryOf(const TurntableAnalysis& a) {
 
 // --- against the truth ---
 
-/// True ez at angles that the truth lists, its mean over them taken out.
-std::vector<double> TruthAt(const nlohmann::json& table, const std::vector<double>& position_rad) {
-  const auto angles_deg = table.at("position_deg").get<std::vector<double>>();
-  const auto ez_arcsec = table.at("ez_arcsec").get<std::vector<double>>();
-  const double step_deg = angles_deg.size() > 1 ? angles_deg[1] - angles_deg[0] : 360.0;
-  std::vector<double> truth;
-  double mean = 0.0;
-  for (const double angle_rad : position_rad) {
-    const auto k = static_cast<std::size_t>(std::llround(angle_rad / units::deg / step_deg)) % angles_deg.size();
-    truth.push_back(ez_arcsec[k]);
-    mean += ez_arcsec[k] / static_cast<double>(position_rad.size());
-  }
-  for (double& value : truth) value -= mean;
-  return truth;
-}
-
-report::CurveScore CurveOf(const std::string& name, const AngleSeries& series, const nlohmann::json& table) {
-  report::CurveScore curve{
-      .name = name, .value = "ez_arcsec", .position = {}, .estimate = {}, .u = {}, .truth = {}};
-  for (std::size_t k = 0; k < series.position_rad.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    curve.position.push_back(series.position_rad[k] / units::deg);
-    curve.estimate.push_back(series.value_rad[i] / units::arcsec);
-    curve.u.push_back(series.U_rad(i) / units::arcsec);
-  }
-  curve.truth = TruthAt(table, series.position_rad);
-  return curve;
-}
-
 /// Equation 5 counts from its first position: means are taken out of both.
 report::CurveScore CurveOf(const std::vector<PointwiseError>& pointwise, const nlohmann::json& table) {
   report::CurveScore curve{
@@ -237,6 +185,7 @@ report::CurveScore CurveOf(const HarmonicModel& model, const ModelCheck& check, 
 }  // namespace
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
+  if (TurntableOf(scenario).HasPolygon()) return EvaluatePolygon(scenario, readings, estimator);
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
   const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation) : nlohmann::json();
   return {ResultsOf(analysis), separation, analysis.not_separated, SummaryOf(analysis)};
@@ -244,6 +193,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
                            const nlohmann::json& truth, Estimator estimator) {
+  if (TurntableOf(scenario).HasPolygon()) return ScorePolygon(scenario, readings, truth, estimator);
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full circle");
   const nlohmann::json& turntable = truth.at("turntable");

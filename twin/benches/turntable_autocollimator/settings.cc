@@ -14,12 +14,29 @@ namespace {
 
 using namespace schema;
 
+constexpr int kFewestFaces = 3;
+
 void AddMultitooth(Keys& keys, MultitoothSettings& s) {
   Table t(keys, "multitooth");
   t.Add("teeth", kPure, {3, 100000}, &s.teeth, "a turn");
   t.Add("tooth_rms", kArcsec, UpTo(3600), &s.tooth_rms_rad, "of errors that differ from tooth to tooth");
   t.Add("u_tooth", kArcsec, UpTo(3600), &s.u_tooth_rad, "stated standard uncertainty of a tooth");
   t.Add("index_time", kSecond, Positive(3600), &s.index_time_s, "to lift it, turn it and seat it again");
+}
+
+void AddPolygon(Keys& keys, PolygonSettings& s) {
+  Table t(keys, "polygon");
+  t.Add("faces", kPure, {0, 1000}, &s.faces, "that are nulled instead of indexing a multi-tooth table; 0: no polygon");
+  t.Add("face_errors", kArcsec, Within(3600), &s.face_errors_rad,
+        "of their angles, counter-clockwise, one a face or one for all");
+  t.Add("face_rms", kArcsec, UpTo(3600), &s.face_rms_rad, "of errors drawn on top of them");
+  t.Add("pyramid_rms", kArcsec, UpTo(3600), &s.pyramid_rms_rad, "of their tilts against the polygon's axis");
+}
+
+void AddEncoder(Keys& keys, TurntableEncoderSettings& s) {
+  Table t(keys, "encoder");
+  t.Add("noise", kArcsec, UpTo(3600), &s.noise_rad, "of a reading of the turntable's encoder");
+  t.Add("step", kArcsec, UpTo(3600), &s.step_rad, "its least count");
 }
 
 void AddMirror(Keys& keys, MirrorSettings& s) {
@@ -42,6 +59,7 @@ void AddCollimator(Keys& keys, CollimatorSettings& s) {
   t.Add("interpolation_error", {"px"}, UpTo(0.5), &s.interpolation_error_px, "amplitude, repeats with the pixels");
   t.Add("x_per_kelvin", kArcsec, Within(100), &s.x_per_kelvin_rad, "zero of x, against environment.reference_degC");
   t.Add("y_per_kelvin", kArcsec, Within(100), &s.y_per_kelvin_rad, "zero of y, likewise");
+  t.Add("deadband", kArcsec, Positive(3600), &s.deadband_rad, "x that its servo takes for zero (polygon)");
 }
 
 void AddSetUps(Table& t, TurntableProcedureSettings& s) {
@@ -50,6 +68,8 @@ void AddSetUps(Table& t, TurntableProcedureSettings& s) {
   t.Add("tilt_azimuths", kDeg, Within(360), &s.tilt_azimuths_rad, "on the turntable, where it leans to" + list);
   t.Add("shifts_teeth", kPure, UpTo(99999), &s.shifts, "of the multi-tooth table" + list);
   t.Add("eccentricities", kUm, Within(50000), &s.eccentricities_m, "of its axis, along the azimuth" + list);
+  t.Add("polygon_offsets", kDeg, Within(360), &s.polygon_offsets_rad,
+        "of the turntable where the polygon's face 0 is seen" + list);
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
 }
 
@@ -60,6 +80,7 @@ void AddTurntableProcedure(Keys& keys, TurntableProcedureSettings& s) {
   AddSetUps(t, s);
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions of the full circle: 1 or -1");
   t.Add("dwell", kSecond, UpTo(86400), &s.dwell_s, "drawn at random from this list at every stop");
+  t.Add("highest_order", kPure, {1, 1000}, &s.highest_order, "of the error that is fitted to a polygon's faces");
   t.Add("run_up_steps", kPure, UpTo(1000), &s.run_up_steps, "every pass comes to its first stop from this far");
   t.Add("sweep", kArcsec, Positive(36000), &s.sweep_rad, "calibration: +- this, with the turntable alone");
   t.Add("sweep_points", kPure, {3, 10000}, &s.sweep_points, "of the sweep");
@@ -70,6 +91,36 @@ void AddTurntableProcedure(Keys& keys, TurntableProcedureSettings& s) {
 void AddMotionOfTheTurntable(Keys& keys, MechanicsSettings& s) {
   Table t(keys, "mechanics");
   t.Text("fidelity", &s.fidelity, {"kinematic", "linear", "bullet"}, "how the turntable moves");
+}
+
+/// What only a multi-tooth table can do is refused with a polygon, and the other way round.
+void CheckPolygon(const ScenarioText& text, const Scenario& s) {
+  const PolygonSettings& polygon = TurntableOf(s).polygon;
+  const TurntableProcedureSettings& procedure = TurntableOf(s).turntable_procedure;
+  const auto refuse = [&](const std::string& key, const std::string& problem, const std::string& expected) {
+    throw InputError(Place(text, key), problem, expected);
+  };
+  if (polygon.faces == 0) {
+    if (procedure.polygon_offsets_rad != std::vector{0.0})
+      refuse("turntable_procedure.polygon_offsets_deg", "offsets of a polygon, but there is none", "polygon.faces");
+    return;
+  }
+  if (polygon.faces < kFewestFaces)
+    refuse("polygon.faces", fmt::format("a polygon of {} faces", polygon.faces),
+           fmt::format("{} or more, or 0 for none", kFewestFaces));
+  if (polygon.faces % procedure.positions != 0)
+    refuse("turntable_procedure.positions",
+           fmt::format("{} positions are no whole number of faces apart", procedure.positions),
+           fmt::format("a divisor of the {} faces", polygon.faces));
+  const std::size_t errors = polygon.face_errors_rad.size();
+  if (errors != 1 && errors != static_cast<std::size_t>(polygon.faces))
+    refuse("polygon.face_errors_arcsec", fmt::format("{} errors for {} faces", errors, polygon.faces),
+           fmt::format("1 or {}", polygon.faces));
+  if (procedure.phases != std::vector<std::string>{"full_circle"})
+    refuse("turntable_procedure.phases", "a phase that a polygon is not nulled in", "phases = [\"full_circle\"]");
+  if (procedure.shifts != std::vector{0})
+    refuse("turntable_procedure.shifts_teeth", "shifts of a multi-tooth table with a polygon",
+           "turntable_procedure.polygon_offsets_deg");
 }
 
 void CheckTeeth(const ScenarioText& text, const Scenario& s) {
@@ -105,6 +156,7 @@ void CheckSetUps(const ScenarioText& text, const TurntableProcedureSettings& pro
   check("tilt_azimuths_deg", procedure.tilt_azimuths_rad.size());
   check("shifts_teeth", procedure.shifts.size());
   check("eccentricities_um", procedure.eccentricities_m.size());
+  check("polygon_offsets_deg", procedure.polygon_offsets_rad.size());
 }
 
 }  // namespace
@@ -114,6 +166,8 @@ void AddKeys(Keys& keys, Scenario& s) {
   AddTable(keys, "turntable", "in L", own.turntable);
   AddMultitooth(keys, own.multitooth);
   AddTable(keys, "multitooth", "in its rotor frame", own.multitooth_table, false);
+  AddPolygon(keys, own.polygon);
+  AddEncoder(keys, own.encoder);
   AddMotionOfTheTurntable(keys, own.mechanics);
   AddMirror(keys, own.mirror);
   AddAutocollimator(keys, own.autocollimator);
@@ -126,7 +180,8 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   const TurntableSettings& own = TurntableOf(s);
   CheckPasses(text, "turntable_procedure.passes", own.turntable_procedure.passes);
   CheckPasses(text, "turntable_procedure.verification_passes", own.turntable_procedure.verification_passes);
-  CheckTeeth(text, s);
+  CheckPolygon(text, s);
+  if (!own.HasPolygon()) CheckTeeth(text, s);
   CheckSetUps(text, own.turntable_procedure);
 }
 

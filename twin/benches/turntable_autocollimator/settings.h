@@ -16,6 +16,20 @@ struct MultitoothSettings {  // [multitooth], beside its errors as a table
   double index_time_s = 4.0;                   // to lift, turn and seat it
 };
 
+/// A polygon in the place of the multi-tooth table: its faces, each a mirror as [mirror] says, are nulled one after
+/// the other by turning the turntable.
+struct PolygonSettings {                         // [polygon]
+  int faces = 0;                                 // 0: there is none
+  std::vector<double> face_errors_rad = {0.0};   // of the face angles, one a face or one for all
+  double face_rms_rad = 0.0;                     // of what is drawn on top of them
+  double pyramid_rms_rad = 0.0;                  // of the faces' tilts against the polygon's axis
+};
+
+struct TurntableEncoderSettings {  // [encoder]: what its reading adds to the turntable's errors
+  double noise_rad = 0.0;
+  double step_rad = 0.0;  // least count
+};
+
 struct MirrorSettings {  // [mirror]
   double width_m = 60.0 * units::mm;
   double height_m = 60.0 * units::mm;
@@ -33,6 +47,7 @@ struct CollimatorSettings {  // [autocollimator], beside its noise, range and ga
   double interpolation_error_px = 0.0;  // amplitude, with the period of a pixel
   double x_per_kelvin_rad = 0.0;        // zero, against environment.reference_degC
   double y_per_kelvin_rad = 0.0;
+  double deadband_rad = 0.05 * units::arcsec;  // of the servo that nulls it: x up to this counts as zero
 };
 
 /// Lists with one entry a set-up; one entry alone holds for all of them.
@@ -46,6 +61,8 @@ struct TurntableProcedureSettings {                                   // [turnta
   std::vector<int> passes = {1, -1};                          // directions
   std::vector<double> dwell_s = {1.0};                        // drawn at random from this list at every stop
   double run_up_steps = 0.5;                                  // every pass comes to its first stop from this far
+  std::vector<double> polygon_offsets_rad = {0.0};  // of the turntable where the polygon's face 0 is seen
+  int highest_order = 12;                           // of the encoder's error that is fitted to a polygon's faces
   double remount_s = 600.0;                                   // time a set-up takes
   double sweep_rad = 200.0 * units::arcsec;  // calibration: the turntable alone, +- this about position 0
   int sweep_points = 9;
@@ -61,7 +78,8 @@ struct TurntableProcedureSettings {                                   // [turnta
 
 inline int TurntableProcedureSettings::SetUps() const {
   std::size_t most = tilts_rad.size();
-  for (const std::size_t length : {tilt_azimuths_rad.size(), shifts.size(), eccentricities_m.size()})
+  for (const std::size_t length :
+       {tilt_azimuths_rad.size(), shifts.size(), eccentricities_m.size(), polygon_offsets_rad.size()})
     most = length > most ? length : most;
   return static_cast<int>(most);
 }
@@ -74,7 +92,20 @@ struct TurntableSettings {
   MirrorSettings mirror;
   AutocollimatorSettings autocollimator;
   CollimatorSettings collimator;
+  PolygonSettings polygon;
+  TurntableEncoderSettings encoder;
   TurntableProcedureSettings turntable_procedure;
+
+  bool HasPolygon() const { return polygon.faces > 0; }
+  /// Places, a turn, to which what stands on the turntable turns its mirror: teeth or faces.
+  int Seats() const { return HasPolygon() ? polygon.faces : multitooth.teeth; }
+  double Pitch_rad() const { return units::turn / Seats(); }
+  /// Number of the face that is seen at a position of the circle.
+  int FaceAt(int position) const { return position * (polygon.faces / turntable_procedure.positions); }
+  /// Nominal angle of the turntable at which a face of the polygon is seen; unwrapped.
+  double FaceAngle_rad(int setup, int face) const {
+    return turntable_procedure.Of(turntable_procedure.polygon_offsets_rad, setup) + face * Pitch_rad();
+  }
 };
 
 /// The bench's own part of a scenario. @throws std::logic_error if it is another bench's.

@@ -9,6 +9,7 @@
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/at.h"
 #include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
@@ -56,6 +57,22 @@ double SeatingEffect_rad(const Scenario& scenario) {
     if (e.name == "multitooth_seating") scatter_rad = std::hypot(scatter_rad, e.parameters.at("scatter"));
   }
   return scatter_rad;
+}
+
+/// Of an encoder that is read; beside a multi-tooth table it is not.
+double EncoderScatter_rad(const TurntableSettings& own) {
+  return own.HasPolygon() ? std::hypot(own.encoder.noise_rad, own.encoder.step_rad / std::sqrt(12.0)) : 0.0;
+}
+
+/// The course by nominal angles: where a polygon is nulled the encoder shows each of them with its scatter.
+Schedule AtNominal(Schedule schedule, const TurntableSettings& own) {
+  if (!own.HasPolygon()) return schedule;
+  for (int i = 0; i < schedule.Readings(); ++i) {
+    const int setup = std::clamp(schedule.setup[At(i)], 0, own.turntable_procedure.SetUps() - 1);
+    const int face = static_cast<int>(std::lround(-schedule.reference_rad[i] / own.Pitch_rad()));
+    schedule.target_rad[i] = own.FaceAngle_rad(setup, face);
+  }
+  return schedule;
 }
 
 constexpr double kNoWeight = 1e4;  // times the noise, where the twin shows nothing
@@ -130,6 +147,7 @@ Eigen::VectorXd Sigma_rad(const Followed& twin, const Eigen::MatrixXd& body_rad,
     add(std::string("multitooth.") + kNames[c], TurntableOf(scenario).multitooth_table.repeatability_sd[c]);
   }
   add("multitooth.ez", SeatingEffect_rad(scenario));
+  add("turntable.yaw", EncoderScatter_rad(TurntableOf(scenario)));
   add("room.temperature", scenario.environment.sensor_noise_K);
   return AsRows(variance.cwiseSqrt()).cwiseMax(kLeastNoise_rad);
 }
@@ -149,6 +167,9 @@ void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>
       OrZero(nothing_behind
                  ? shown_rad
                  : Followed(follow, BeforeAdding(scenario), readings, used).Predict(AtPoints(turntable.body_rad)));
+  // A face is nulled: what the prediction shows of x beside zero is the encoder's scatter, which is in what is left
+  // of x as well, and would look like an error that goes with x.
+  if (TurntableOf(scenario).HasPolygon()) turntable.context.shown_rad.col(kX).setZero();
   run.nuisance = AllUnknowns(turntable.places, slopes, turntable.context, scenario,
                              OrZero(twin.Slope("room.temperature", AtPoints(turntable.body_rad))));
 }
@@ -167,7 +188,7 @@ TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scen
   LinearRun& run = turntable.run;
   run.bench = scenario.bench;
   run.schedule = model::CourseOf(used);
-  turntable.places = PlacesOf(run.schedule);
+  turntable.places = PlacesOf(AtNominal(run.schedule, TurntableOf(scenario)));
   turntable.context = ContextOf(run.schedule, scenario);
   run.channels = {kAxisNames.begin(), kAxisNames.end()};
   run.unit = "arcsec";

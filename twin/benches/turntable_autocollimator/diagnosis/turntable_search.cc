@@ -6,6 +6,7 @@
 #include "twin/benches/turntable_autocollimator/diagnosis/families.h"
 #include "twin/benches/turntable_autocollimator/diagnosis/outliers.h"
 #include "twin/benches/turntable_autocollimator/diagnosis/seating.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/units.h"
 
@@ -92,6 +93,7 @@ SearchedTurntable Search(const std::vector<Reading>& readings, const Scenario& s
   const NullCalibration null = searched.analysis.null;
   options.null = &null;
   FollowRipples(readings, scenario, follow, excluded, options, searched);
+  if (TurntableOf(scenario).HasPolygon()) return searched;  // nothing is lifted and seated again
   const TurntableRun stated = *searched.turntable;
   const Seating seating = MeasureSeating(stated, searched.analysis);
   searched.smallest_seating_rad = seating.smallest_rad;

@@ -202,7 +202,7 @@ Nuisance AllUnknowns(const Places& places, const Slopes& slopes, const SignalCon
   Columns columns(places, slopes, context.schedule);
   AddPositions(columns);
   AddSetUps(columns);
-  AddTeeth(columns, TurntableOf(scenario).multitooth.u_tooth_rad);
+  AddTeeth(columns, TurntableOf(scenario).HasPolygon() ? kFree_rad : TurntableOf(scenario).multitooth.u_tooth_rad);
   AddSecondOrder(columns, TurntableOf(scenario).turntable_procedure.tilts_rad);
   AddSlopes(columns, TypicalSlope(places, context));
   AddInterpolation(columns, TurntableOf(scenario).collimator.interpolation_error_px * context.pixel_rad, context);

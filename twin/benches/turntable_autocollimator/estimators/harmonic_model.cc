@@ -10,30 +10,11 @@
 namespace twinbench::separate::turntable {
 namespace {
 
-/// [1, cos theta, sin theta, cos 2 theta, ...] up to an order.
-Eigen::RowVectorXd Basis(double angle_rad, int highest_order) {
-  Eigen::RowVectorXd basis(2 * highest_order + 1);
-  basis[0] = 1.0;
-  for (int k = 1; k <= highest_order; ++k) {
-    basis[2 * k - 1] = std::cos(k * angle_rad);
-    basis[2 * k] = std::sin(k * angle_rad);
-  }
-  return basis;
-}
-
 Eigen::MatrixXd BasisAt(const std::vector<double>& angles_rad, int highest_order) {
   Eigen::MatrixXd basis(std::ssize(angles_rad), 2 * highest_order + 1);
   for (std::size_t i = 0; i < angles_rad.size(); ++i)
-    basis.row(static_cast<Eigen::Index>(i)) = Basis(angles_rad[i], highest_order);
+    basis.row(static_cast<Eigen::Index>(i)) = HarmonicBasis(angles_rad[i], highest_order);
   return basis;
-}
-
-/// c cos + s sin = a sin(k theta + alpha) with a = |(c, s)|, alpha = atan2(c, s).
-HarmonicTerm Term(int order, const Eigen::Vector2d& cs, const Eigen::Matrix2d& cov) {
-  const double amplitude_rad = cs.norm();
-  const Eigen::Vector2d along = cs / amplitude_rad, across(along.y(), -along.x());
-  return {order, amplitude_rad, std::atan2(cs[0], cs[1]), std::sqrt(along.dot(cov * along)),
-          std::sqrt(across.dot(cov * across)) / amplitude_rad};
 }
 
 /// Covariance of the series, or that of independent noise of the size of the residuals if it is not known.
@@ -44,6 +25,24 @@ Eigen::MatrixXd CovarianceOf(const AngleSeries& series, double mean_square_rad2)
 }
 
 }  // namespace
+
+Eigen::RowVectorXd HarmonicBasis(double angle_rad, int highest_order) {
+  Eigen::RowVectorXd basis(2 * highest_order + 1);
+  basis[0] = 1.0;
+  for (int k = 1; k <= highest_order; ++k) {
+    basis[2 * k - 1] = std::cos(k * angle_rad);
+    basis[2 * k] = std::sin(k * angle_rad);
+  }
+  return basis;
+}
+
+HarmonicTerm TermOf(int order, const Eigen::Vector2d& cs, const Eigen::Matrix2d& cov) {
+  // a sin(k theta + alpha) with a = |(c, s)|, alpha = atan2(c, s)
+  const double amplitude_rad = cs.norm();
+  const Eigen::Vector2d along = cs / amplitude_rad, across(along.y(), -along.x());
+  return {order, amplitude_rad, std::atan2(cs[0], cs[1]), std::sqrt(along.dot(cov * along)),
+          std::sqrt(across.dot(cov * across)) / amplitude_rad};
+}
 
 int MostHarmonics(int positions) {
   return (positions - 1) / 2;
@@ -72,12 +71,12 @@ HarmonicModel FitHarmonics(const AngleSeries& series, int highest_order) {
   model.u_unmodelled_rad = std::sqrt(std::max(0.0, mean_square_rad2 - expected_rad2));
   for (int k = 1; k <= highest_order; ++k)
     model.terms.push_back(
-        Term(k, model.coefficients_rad.segment<2>(2 * k - 1), model.cov_rad2.block<2, 2>(2 * k - 1, 2 * k - 1)));
+        TermOf(k, model.coefficients_rad.segment<2>(2 * k - 1), model.cov_rad2.block<2, 2>(2 * k - 1, 2 * k - 1)));
   return model;
 }
 
 CurvePoint HarmonicModel::At(double turntable_rad) const {
-  const Eigen::RowVectorXd basis = Basis(turntable_rad, highest_order);
+  const Eigen::RowVectorXd basis = HarmonicBasis(turntable_rad, highest_order);
   const double variance_rad2 = basis * cov_rad2 * basis.transpose();
   return {basis.dot(coefficients_rad), std::sqrt(variance_rad2 + u_unmodelled_rad * u_unmodelled_rad)};
 }

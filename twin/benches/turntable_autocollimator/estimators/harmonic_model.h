@@ -36,6 +36,12 @@ struct HarmonicModel {
   CurvePoint At(double turntable_rad) const;
 };
 
+/// [1, cos theta, sin theta, cos 2 theta, ...] up to an order.
+Eigen::RowVectorXd HarmonicBasis(double angle_rad, int highest_order);
+
+/// c cos(order theta) + s sin(order theta), and the covariance of c and s, as amplitude and phase.
+HarmonicTerm TermOf(int order, const Eigen::Vector2d& cos_sin_rad, const Eigen::Matrix2d& cov_rad2);
+
 /// Highest order that n positions determine, (n - 1) / 2.
 int MostHarmonics(int positions);
 

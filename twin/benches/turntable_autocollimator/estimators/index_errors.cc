@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "twin/benches/turntable_autocollimator/estimators/polygon_analysis.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
@@ -33,10 +35,29 @@ double RollError_rad(const Roll& roll, const std::vector<IndexReading>& tilts) {
   return roll.u_gamma_rad * RootMeanSquare(AboutGroups(means, means.value_rad));
 }
 
+/// Errors of the encoder wherever a face was nulled, the faces' taken out; every clamping has a constant of its own.
+IndexErrors PolygonIndexErrors(const Scenario& scenario, const std::vector<Reading>& readings) {
+  const PolygonAnalysis analysis = AnalysePolygon(readings, scenario, Estimator::kRigorous);
+  if (!analysis.closure) throw InputError("readings", analysis.not_separated, "clampings that tell encoder and faces apart");
+  const PolygonClosure& closure = *analysis.closure;
+  std::map<int, double> face_rad;
+  for (std::size_t i = 0; i < closure.face.size(); ++i)
+    face_rad[closure.face[i]] = closure.polygon.value_rad[static_cast<Eigen::Index>(i)];
+  std::vector<IndexReading> values;
+  for (const FaceReading& r : FaceReadings(readings, scenario))
+    values.push_back({r.clamping, r.angle_rad, r.value_rad - face_rad.at(r.face)});
+  IndexErrors errors = MeansByPlace(values);
+  errors.table = "turntable";
+  errors.u_place_rad = std::sqrt(closure.polygon.cov_rad2.diagonal().mean());
+  errors.commanded = TurntableOf(scenario).turntable.compensation;
+  return errors;
+}
+
 }  // namespace
 
 IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Reading>& readings) {
   const TurntableSettings& own = TurntableOf(scenario);
+  if (own.HasPolygon()) return PolygonIndexErrors(scenario, readings);
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, Estimator::kRigorous);
   if (!analysis.separation) throw InputError("readings", analysis.not_separated, "readings of a full-circle test");
   std::vector<IndexReading> values, tilts;

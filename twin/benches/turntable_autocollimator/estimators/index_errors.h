@@ -7,7 +7,8 @@ namespace twinbench::separate::turntable {
 
 /// Index error of the turntable wherever it was read, on the grid and between: x of full circle and verification
 /// without the roll of the crosshair and, where the shifts tell them apart, without the teeth.
-/// @throws InputError as SeparateIndexing, or if there are no readings of a full circle.
+/// With a polygon: wherever a face was nulled, without the errors of the faces.
+/// @throws InputError as SeparateIndexing or ClosePolygon, or if there are no readings of a full circle.
 IndexErrors TurntableIndexErrors(const Scenario& scenario, const std::vector<Reading>& readings);
 
 }  // namespace twinbench::separate::turntable

@@ -27,7 +27,7 @@ class CourseMaker {
         actual_(actual),
         room_(actual_.environment, actual_.RunSeed()),
         axes_(StackOfBench(actual_), queue_),
-        pitch_rad_(2.0 * units::kPi / TurntableOf(actual_).multitooth.teeth) {}
+        pitch_rad_(TurntableOf(actual_).Pitch_rad()) {}
 
   TurntableCourse Make() {
     for (std::size_t i = 0; i < record_.size(); ++i) course_.stops.push_back(StopOf(i));
@@ -36,6 +36,7 @@ class CourseMaker {
   }
 
  private:
+  bool HasPolygon() const { return TurntableOf(actual_).HasPolygon(); }
   const TurntableProcedureSettings& procedure() const { return TurntableOf(actual_).turntable_procedure; }
 
   TurntableStop StopOf(std::size_t i) {
@@ -73,7 +74,7 @@ class CourseMaker {
   void GoTo(const Reading& r, bool new_pass) {
     if (new_pass) Turn(BeforePass_rad(r));
     Send(r.target_rad);
-    queue_.RunUntil(queue_.Now() + FromSeconds(TurntableOf(actual_).multitooth.index_time_s));
+    if (!HasPolygon()) queue_.RunUntil(queue_.Now() + FromSeconds(TurntableOf(actual_).multitooth.index_time_s));
     Turn(r.target_rad);
   }
 
@@ -89,9 +90,10 @@ class CourseMaker {
     // In a sweep the turntable is off its teeth.
     const double turntable_rad = r.phase == Phase::kCalibration ? 0.0 : r.target_rad;
     const double shift_rad = std::isfinite(turntable_rad + r.reference_rad) ? turntable_rad + r.reference_rad : 0.0;
+    const double mounted_rad = HasPolygon() ? TurntableOf(actual_).FaceAngle_rad(setup, 0)
+                                            : static_cast<double>(std::lround(shift_rad / pitch_rad_)) * pitch_rad_;
     course_.mountings.push_back({p.Of(p.tilts_rad, setup), p.Of(p.tilt_azimuths_rad, setup),
-                                 p.Of(p.eccentricities_m, setup),
-                                 static_cast<double>(std::lround(shift_rad / pitch_rad_)) * pitch_rad_});
+                                 p.Of(p.eccentricities_m, setup), mounted_rad});
     mounted_here_ = queue_.Now();
   }
 

@@ -79,6 +79,8 @@ const std::vector<TurntablePoint>& TurntablePoints() {
 Scenario WithFreeTables(Scenario scenario) {
   TurntableSettings& own = TurntableOf(scenario);
   own.multitooth.tooth_rms_rad = 0.0;
+  own.polygon.face_rms_rad = own.polygon.pyramid_rms_rad = 0.0;
+  own.polygon.face_errors_rad = {0.0};
   LeaveFree(own.turntable);
   LeaveFree(own.multitooth_table);
   WithoutBullet(own.mechanics);

@@ -61,6 +61,7 @@ ReadingStatus StatusOf(optics::AutocollimatorStatus status) {
 
 void SilenceTurntable(TurntableSettings& own) {
   own.autocollimator.noise_rad = 0.0;
+  own.encoder.noise_rad = 0.0;
   Silence(own.turntable);
   Silence(own.multitooth_table);
 }

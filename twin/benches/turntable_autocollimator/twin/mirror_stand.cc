@@ -22,6 +22,31 @@ Pose FacingAlongY(double radius_m) {
   return pose;
 }
 
+/// Face f is tooth -f.
+std::vector<double> FaceErrors(const PolygonSettings& settings, std::uint64_t seed) {
+  Stream stream(seed, "polygon.faces");
+  const auto faces = static_cast<std::size_t>(settings.faces);
+  std::vector<double> errors_rad(faces);
+  for (std::size_t face = 0; face < faces; ++face) {
+    errors_rad[(faces - face) % faces] = TurntableProcedureSettings::Of(settings.face_errors_rad, static_cast<int>(face)) +
+                                         settings.face_rms_rad * stream.Normal();
+  }
+  return errors_rad;
+}
+
+std::vector<double> Pyramid(const PolygonSettings& settings, std::uint64_t seed) {
+  Stream stream(seed, "polygon.pyramid");
+  std::vector<double> tilts_rad(static_cast<std::size_t>(settings.faces));
+  for (double& tilt_rad : tilts_rad) tilt_rad = settings.pyramid_rms_rad * stream.Normal();
+  return tilts_rad;
+}
+
+/// A polygon is one body: it has no errors but its faces'.
+const TableSettings& SettingsOfUpper(const TurntableSettings& own) {
+  static const TableSettings rigid;
+  return own.HasPolygon() ? rigid : own.multitooth_table;
+}
+
 std::vector<double> ToothErrors(const MultitoothSettings& settings, std::uint64_t seed) {
   std::vector<double> errors_rad(static_cast<std::size_t>(settings.teeth), 0.0);
   if (settings.tooth_rms_rad == 0.0) return errors_rad;
@@ -34,9 +59,11 @@ std::vector<double> ToothErrors(const MultitoothSettings& settings, std::uint64_
 
 MirrorStand::MirrorStand(const Scenario& actual)
     : turntable_(TurntableOf(actual).turntable, actual, "turntable"),
-      multitooth_(TurntableOf(actual).multitooth_table, actual, "multitooth"),
-      tooth_rad_(ToothErrors(TurntableOf(actual).multitooth, actual.seed)),
-      pitch_rad_(2.0 * units::kPi / TurntableOf(actual).multitooth.teeth),
+      multitooth_(SettingsOfUpper(TurntableOf(actual)), actual, "multitooth"),
+      tooth_rad_(TurntableOf(actual).HasPolygon() ? FaceErrors(TurntableOf(actual).polygon, actual.seed)
+                                                  : ToothErrors(TurntableOf(actual).multitooth, actual.seed)),
+      pyramid_rad_(Pyramid(TurntableOf(actual).polygon, actual.seed)),
+      pitch_rad_(TurntableOf(actual).Pitch_rad()),
       mirror_radius_m_(TurntableOf(actual).mirror.radius_m) {}
 
 void MirrorStand::Mount(double tilt_rad, double azimuth_rad, double eccentricity_m, double shift_rad) {
@@ -44,6 +71,7 @@ void MirrorStand::Mount(double tilt_rad, double azimuth_rad, double eccentricity
   X_TB_ = Pose::Identity();
   X_TB_.linear() = Eigen::AngleAxisd(tilt_rad, Vector3::UnitZ().cross(towards)).toRotationMatrix();
   X_TB_.translation() = eccentricity_m * towards;
+  shift_rad_ = shift_rad;
   turntable_seat_ = turntable_.DrawSeating();
   X_RS_ = Turned(mechanics::RotationZ(-shift_rad)) * mechanics::ToPose(multitooth_.DrawSeating());
 }
@@ -51,6 +79,10 @@ void MirrorStand::Mount(double tilt_rad, double azimuth_rad, double eccentricity
 void MirrorStand::Seat(int tooth) {
   tooth_ = tooth;
   multitooth_.BeginStop();
+}
+
+void MirrorStand::SeatFace(double turntable_rad) {
+  tooth_ = static_cast<int>(std::lround((shift_rad_ - turntable_rad) / pitch_rad_));
 }
 
 int MirrorStand::Wrapped(int tooth) const {
@@ -64,7 +96,9 @@ Pose MirrorStand::MirrorPose(double turntable_rad, double yaw_rad, const mechani
   mechanics::PoseError tooth_error = multitooth_.At(multitooth_rad) + extra.multitooth;
   tooth_error.ez_rad += tooth_rad_[static_cast<std::size_t>(Wrapped(tooth_))];
   const mechanics::PoseError turntable_error = turntable_.At(turntable_rad) + turntable_seat_ + extra.turntable;
-  const Pose X_RM = X_RS_ * mechanics::ToPose(extra.mount) * FacingAlongY(mirror_radius_m_);
+  mechanics::PoseError mount = extra.mount;
+  if (!pyramid_rad_.empty()) mount.ex_rad += pyramid_rad_[static_cast<std::size_t>(Wrapped(tooth_))];
+  const Pose X_RM = X_RS_ * mechanics::ToPose(mount) * FacingAlongY(mirror_radius_m_);
   return mechanics::ToPose(bearing) * mechanics::ToPose(turntable_error) *
          Turned(mechanics::RotationZ(turntable_rad + yaw_rad)) * X_TB_ * mechanics::ToPose(extra.axis) *
          Turned(mechanics::RotationZ(multitooth_rad)) * mechanics::ToPose(tooth_error) * X_RM;

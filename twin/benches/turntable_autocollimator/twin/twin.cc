@@ -1,7 +1,8 @@
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
-
 
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/world.h"
@@ -75,6 +76,15 @@ class MultitoothFixture : public TurntableFixture {
   TurntableWorld& world_;
 };
 
+class TableOnAutocollimator : public NullServo {
+ public:
+  explicit TableOnAutocollimator(TurntableWorld& world) : world_(world) {}
+  bool Null(int direction) override { return world_.Null(direction); }
+
+ private:
+  TurntableWorld& world_;
+};
+
 struct TurntableTwin::Impl {
   explicit Impl(const Scenario& its_scenario) : scenario(its_scenario), world(its_scenario) {}
 
@@ -86,6 +96,7 @@ struct TurntableTwin::Impl {
   MirrorAutocollimator autocollimator{world};
   RoomThermometer thermometer{world};
   MultitoothFixture fixture{world};
+  TableOnAutocollimator servo{world};
 };
 
 TurntableTwin::TurntableTwin(const Scenario& scenario) {
@@ -97,17 +108,42 @@ TurntableTwin::TurntableTwin(const Scenario& scenario) {
 }
 TurntableTwin::~TurntableTwin() = default;
 
-TurntableBench TurntableTwin::Bench() {
-  return {impl_->clock,          impl_->turntable,   impl_->multitooth,
-          impl_->autocollimator, impl_->thermometer, impl_->fixture};
+NullingTurntableBench TurntableTwin::Bench() {
+  return {{impl_->clock, impl_->turntable, impl_->multitooth, impl_->autocollimator, impl_->thermometer,
+           impl_->fixture},
+          impl_->servo};
 }
+
+namespace {
+
+/// Angles at which the faces of a polygon are nulled, within a turn, ascending.
+std::vector<double> FaceAngles(const TurntableSettings& own) {
+  constexpr double kSame_rad = 1e-9;
+  std::vector<double> angles_rad;
+  for (int setup = 0; setup < own.turntable_procedure.SetUps(); ++setup) {
+    for (int k = 0; k < own.turntable_procedure.positions; ++k) {
+      const double rest_rad = std::fmod(own.FaceAngle_rad(setup, own.FaceAt(k)), units::turn);
+      angles_rad.push_back(rest_rad < -kSame_rad ? rest_rad + units::turn : rest_rad);
+      if (angles_rad.back() > units::turn - kSame_rad) angles_rad.back() = 0.0;
+    }
+  }
+  std::ranges::sort(angles_rad);
+  const auto same = std::ranges::unique(angles_rad, [](double a, double b) { return b - a < kSame_rad; });
+  angles_rad.erase(same.begin(), same.end());
+  return angles_rad;
+}
+
+}  // namespace
 
 nlohmann::json TurntableTwin::Truth() const {
   const MirrorStand& stand = impl_->world.stand();
   const Scenario& scenario = impl_->scenario;
+  const TurntableSettings& own = TurntableOf(scenario);
+  const TableMotion& turntable = stand.turntable();
   nlohmann::json json = {
-      {"turntable", ToJson(stand.turntable().Repeatable(TurntableOf(scenario).multitooth.teeth))},
-      {"multitooth", ToJson(stand.MultitoothErrors())},
+      {"turntable",
+       ToJson(own.HasPolygon() ? turntable.Repeatable(FaceAngles(own)) : turntable.Repeatable(own.multitooth.teeth))},
+      {own.HasPolygon() ? "polygon" : "multitooth", ToJson(stand.MultitoothErrors())},
       {"effects", nlohmann::json::array()},
       {"seed", scenario.seed}};
   for (const EffectSettings& effect : scenario.effects) json["effects"].push_back(ToJson(effect));

@@ -3,7 +3,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 
-#include "twin/core/devices.h"
+#include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::sim {
@@ -20,9 +20,10 @@ class TurntableTwin {
   ~TurntableTwin();
 
   /// Valid as long as the twin.
-  TurntableBench Bench();
+  NullingTurntableBench Bench();
 
-  /// {"turntable": errors at each tooth angle, "multitooth": errors at its teeth, "effects": [...], "seed": n}
+  /// {"turntable": errors at each tooth angle, "multitooth": errors at its teeth, "effects": [...], "seed": n}; with a
+  /// polygon that is "polygon", and the turntable's errors stand at the angles where its faces are nulled.
   nlohmann::json Truth() const;
 
  private:

@@ -24,16 +24,21 @@ class TurntableWorld {
   void IndexTo(int tooth);
   void Mount(int setup, double tilt_rad, double azimuth_rad, double eccentricity_m, int shift_teeth);
   AutocollimatorReading Look();
+  /// As NullServo says.
+  bool Null(int direction);
 
  private:
   TurntableMoment Moment(int reading);
-  Eigen::Vector2d Noise_rad();
+  void SeatFace();
+  bool Turn(double to_rad);
+  /// What the instrument shows now, for the next reading or on the way to it.
+  AutocollimatorReading Shown(Stream& noise);
 
   EventQueue queue_;
   MirrorPath path_;
   Environment environment_;
   Axes axes_;
-  Stream noise_;
+  Stream noise_, null_noise_, encoder_noise_;
   Time mounted_{};
   int setup_ = 0;
   int next_reading_ = 0;

@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/angle_benches.h"
+#include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/benches/turntable_autocollimator/estimators/polygon_analysis.h"
+#include "twin/diagnose/diagnosis.h"
+#include "twin/plan/next_run.h"
+#include "twin/separate/compensation.h"
+
+// The answer that the scenario of the polygon promises, and what the other commands make of such a run.
+namespace twinbench {
+namespace {
+
+using separate::turntable::AngleSeries;
+using separate::turntable::PolygonAnalysis;
+using units::arcsec;
+
+const std::string kFewClampings = "turntable_procedure.polygon_offsets_deg=[0, 57.6, 129.6, 273.6]";
+
+Scenario PolygonScenario(const std::vector<std::string>& overrides = {}) {
+  return LoadScenario(test::ScenarioPath("turntable_polygon.toml"), overrides);
+}
+
+PolygonAnalysis Closed(const std::vector<Reading>& readings, const Scenario& scenario,
+                       Estimator estimator = Estimator::kRigorous) {
+  return separate::turntable::AnalysePolygon(readings, scenario, estimator);
+}
+
+/// Mean of (error / u)^2, as `score` has it.
+double MeanSquaredScore(const test::BenchRun& run, const char* curve, Estimator estimator = Estimator::kRigorous) {
+  const report::ScoredRun scored =
+      benches::turntable::ScoreRun(run.scenario, run.readings, run.truth, estimator);
+  double sum = 0.0;
+  int count = 0;
+  for (const report::ScoredValue& v : scored.values) {
+    if (!v.name.starts_with(curve)) continue;
+    sum += std::pow((v.value - v.truth) / v.u, 2);
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(TurntablePolygon, KnowsTheEncodersCurveToFourThousandthsOfAnArcsecond) {
+  constexpr int kSeeds = 16;
+  double expanded = 0.0, encoder = 0.0, faces = 0.0, reading = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const test::BenchRun run = test::RunTurntable(PolygonScenario({fmt::format("seed={}", seed)}));
+    const PolygonAnalysis a = Closed(run.readings, run.scenario);
+    ASSERT_TRUE(a.closure);
+    EXPECT_TRUE(a.closure->hidden.empty());
+    expanded += 2.0 * std::sqrt(a.closure->turntable.cov_rad2.diagonal().mean()) / arcsec / kSeeds;
+    reading += a.closure->noise.u_rad / arcsec / kSeeds;
+    encoder += MeanSquaredScore(run, "turntable") / kSeeds;
+    faces += MeanSquaredScore(run, "polygon") / kSeeds;
+  }
+  RecordProperty("figures", fmt::format("U (k = 2) {:.5f} arcsec, reading {:.5f}, (error/u)^2 encoder {:.3f}, faces {:.3f}",
+                                        expanded, reading, encoder, faces));
+  // 0.0297 arcsec stated, of which the encoder's step is no normal scatter but nearly so; 1200 degrees of freedom a run.
+  EXPECT_NEAR(reading, 0.0297, 0.0004);
+  EXPECT_NEAR(expanded, 0.0038, 0.0002);
+  // 10 and 23 degrees of freedom a run: deviations sqrt(2 / 160) and sqrt(2 / 368), three of each.
+  EXPECT_NEAR(encoder, 1.0, 0.34);
+  EXPECT_NEAR(faces, 1.0, 0.23);
+}
+
+/// What faces that are not flat make of the eccentricity is order 1 of the encoder in every clamping.
+TEST(TurntablePolygon, HasTheUnstatedFlatnessOfItsFacesInFull) {
+  const Scenario stated = PolygonScenario(
+      {"mirror.flatness_nm=10", "noise_free=true", "encoder.step_arcsec=0", "autocollimator.deadband_arcsec=0.001"});
+  Scenario unstated = stated;
+  TurntableOf(unstated).mirror.flatness_m = 0.0;
+  const test::BenchRun run = test::RunTurntable(stated);
+  const auto truth = run.truth.at("turntable").at("ez_arcsec").get<std::vector<double>>();
+  const AngleSeries known = Closed(run.readings, stated).closure->turntable;
+  const AngleSeries taken = Closed(run.readings, unstated).closure->turntable;
+  const double walk_arcsec = 8.0 * 10e-9 * 20e-6 / (14e-3 * 14e-3) / arcsec;
+  EXPECT_NEAR(walk_arcsec, 0.0017, 0.0001) << "nine tenths of u from the readings";
+  for (Eigen::Index i = 0; i < taken.value_rad.size(); i += 7) {
+    const auto k = static_cast<std::size_t>(i);
+    EXPECT_NEAR(known.value_rad[i] / arcsec, truth[k], 2e-4);
+    EXPECT_NEAR(taken.value_rad[i] / arcsec, truth[k] - walk_arcsec * std::cos(taken.position_rad[k]), 2e-4);
+  }
+}
+
+TEST(TurntablePolygon, StatesTheBiasOfClosureByMeans) {
+  const Scenario uneven = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0, 57.6, 129.6, 150, 171]"});
+  const test::BenchRun run = test::RunTurntable(uneven);
+  const PolygonAnalysis published = Closed(run.readings, uneven, Estimator::kPublished);
+  const double of_noise_arcsec = 0.03 * std::sqrt(10.0 / 480.0);
+  EXPECT_GT(published.method_bias_rad / arcsec, 10.0 * of_noise_arcsec);
+  EXPECT_LT(MeanSquaredScore(run, "turntable", Estimator::kPublished), 2.0);
+  EXPECT_LT(MeanSquaredScore(run, "turntable"), 2.5) << "10 degrees of freedom";
+}
+
+TEST(TurntablePolygon, SaysWhyOneClampingIsNotEnough) {
+  const Scenario one = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0]"});
+  const report::Evaluation evaluation =
+      benches::turntable::Evaluate(one, test::RunTurntable(one).readings, Estimator::kRigorous);
+  EXPECT_FALSE(evaluation.Separated());
+  EXPECT_THAT(evaluation.not_separated, testing::HasSubstr("more clampings"));
+}
+
+TEST(TurntablePolygon, RefusesReadingsOfAnotherClamping) {
+  const Scenario few = PolygonScenario({kFewClampings});
+  const Scenario other = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0, 67.6, 129.6, 273.6]"});
+  const std::vector<Reading> readings = test::RunTurntable(few).readings;
+  EXPECT_THROW(Closed(readings, other), InputError) << "10 deg off, more than half of a face";
+  EXPECT_THROW(Closed(readings, PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0]"})), InputError);
+}
+
+TEST(TurntablePolygon, CompensatesTheEncoder) {
+  Scenario scenario = PolygonScenario();
+  const auto measured = [](const Scenario& s) { return BenchOf(s).index_errors(s, test::RunTurntable(s).readings); };
+  const separate::IndexErrors first = measured(scenario);
+  const separate::Compensation compensation = Compensate(first);
+  EXPECT_THAT(compensation.Orders(separate::LineFate::kCompensated), testing::ElementsAre(1, 2, 3, 4, 5));
+  TurntableOf(scenario).turntable.compensation = compensation.table;
+  scenario.seed += 1;
+  const auto check = CheckCompensation(first, compensation, measured(scenario));
+  // Of the same kind of readings, four in a mean: 0.015 arcsec.
+  EXPECT_NEAR(check.remeasured_rms_rad / arcsec, 0.015, 0.002);
+  EXPECT_NEAR(check.Ratio(), 1.0, 0.15);
+}
+
+TEST(TurntablePolygon, OffersRunsThatItsScenarioAllows) {
+  const Scenario scenario = PolygonScenario();
+  for (const plan::NextRun& next : benches::turntable::NextRunsOf(scenario))
+    EXPECT_NO_THROW(PolygonScenario(next.sets)) << next.name;
+}
+
+TEST(TurntablePolygon, IsDiagnosed) {
+  const Scenario scenario = PolygonScenario({kFewClampings});
+  const auto diagnosed = [&](const std::string& effect) {
+    std::vector<std::string> overrides = {kFewClampings};
+    if (!effect.empty()) overrides.push_back("effect=[" + effect + "]");
+    const auto readings = test::RunTurntable(PolygonScenario(overrides)).readings;
+    return benches::turntable::Diagnose(readings, scenario, {}).diagnosis;
+  };
+  EXPECT_EQ(diagnosed("").verdict, diagnose::Verdict::kNone);
+  const auto slipped = diagnosed("{name=\"slip\", where=\"x\", step_arcsec=0.1, at_reading=200}");
+  ASSERT_EQ(slipped.verdict, diagnose::Verdict::kNamed);
+  EXPECT_EQ(slipped.causes.front().effect, "slip");
+}
+
+}  // namespace
+}  // namespace twinbench

@@ -1,0 +1,172 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/core/input_error.h"
+#include "tests/separate/nulled_polygon.h"
+#include "twin/benches/turntable_autocollimator/estimators/polygon_closure.h"
+
+namespace twinbench::separate::turntable {
+namespace {
+
+using testing::HasSubstr;
+using units::arcsec;
+
+std::vector<int> OrdersUpTo(int highest) {
+  std::vector<int> orders;
+  for (int k = 1; k <= highest; ++k) orders.push_back(k);
+  return orders;
+}
+
+/// "24c 25p 60l": hidden orders by constants, polygon, lower orders.
+std::string HiddenOf(const PolygonClosure& closure) {
+  std::string text;
+  for (const HiddenOrder& h : closure.hidden) {
+    const char* by = h.by == OrderHidden::kByConstants ? "c" : h.by == OrderHidden::kByPolygon ? "p" : "l";
+    text += (text.empty() ? "" : " ") + std::to_string(h.order) + by;
+  }
+  return text;
+}
+
+/// Largest error of a fitted wave [arcsec].
+double WorstWave_arcsec(const PolygonClosure& closure, const NulledPolygon& truth) {
+  double worst = 0.0;
+  for (const TrueWave& w : truth.encoder) {
+    if (w.order > closure.encoder.highest_order) continue;
+    const Eigen::Vector2d found = closure.encoder.coefficients_rad.segment<2>(2 * w.order - 1);
+    worst = std::max(worst, (found - Eigen::Vector2d(w.cos_rad, w.sin_rad)).norm() / arcsec);
+  }
+  return worst;
+}
+
+double WorstFace_arcsec(const PolygonClosure& closure, const NulledPolygon& truth) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < closure.face.size(); ++i)
+    worst = std::max(worst, std::abs(closure.polygon.value_rad[static_cast<Eigen::Index>(i)] -
+                                     truth.face_rad[static_cast<std::size_t>(closure.face[i])]) /
+                                arcsec);
+  return worst;
+}
+
+constexpr double kExact_arcsec = 1e-8;
+
+TEST(ClosePolygon, FindsEncoderAndFacesExactlyWithoutNoise) {
+  for (const auto& offsets_deg : {EvenOffsets(25), std::vector<double>{0.0, 7.3, 101.0, 215.7}}) {
+    Stream truth(1, "truth"), noise(1, "noise");
+    const NulledPolygon polygon = AnyPolygon(24, offsets_deg, OrdersUpTo(20), truth);
+    const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, 20);
+    EXPECT_EQ(HiddenOf(closure), "");
+    EXPECT_LT(WorstWave_arcsec(closure, polygon), kExact_arcsec);
+    EXPECT_LT(WorstFace_arcsec(closure, polygon), kExact_arcsec);
+  }
+}
+
+TEST(ClosePolygon, PutsAFaceAtItsOwnAngleOnThePolygon) {
+  Stream truth(1, "truth"), noise(1, "noise");
+  const NulledPolygon polygon = AnyPolygon(8, EvenOffsets(3), {1}, truth);
+  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 8, 2);
+  EXPECT_EQ(closure.face, (std::vector<int>{0, 7, 6, 5, 4, 3, 2, 1}));
+  EXPECT_NEAR(closure.polygon.position_rad[1] / units::deg, 45.0, 1e-9) << "face 7 is seen at 315 deg";
+}
+
+TEST(ClosePolygon, NamesWhatConstantsAndFacesHide) {
+  Stream truth(1, "truth"), noise(1, "noise");
+  const auto hidden = [&](const std::vector<double>& offsets_deg, int highest) {
+    return HiddenOf(ClosePolygon(AnyPolygon(24, offsets_deg, {1}, truth).Read(noise), 24, highest));
+  };
+  EXPECT_EQ(hidden(EvenOffsets(25), 60), "24c 25p 48c 50p");
+  EXPECT_EQ(hidden({0.0, 7.3, 101.0, 215.7}, 26), "24c");
+  EXPECT_EQ(hidden({0.0}, 3), "1p 2p 3p") << "one clamping tells nothing apart";
+  EXPECT_EQ(hidden({0.0, 180.0}, 4), "2p 4p");
+}
+
+// 3 clampings of 8 faces are 24 even positions: order k looks like order 24 - k.
+TEST(ClosePolygon, NamesOrdersThatTheAnglesDoNotTellFromLowerOnes) {
+  Stream truth(1, "truth"), noise(1, "noise");
+  const PolygonClosure closure = ClosePolygon(AnyPolygon(8, EvenOffsets(3), {1}, truth).Read(noise), 8, 14);
+  EXPECT_EQ(HiddenOf(closure), "3p 6p 8c 9p 12p 13l 14l");
+  EXPECT_THAT(closure.notes, testing::Contains(HasSubstr("orders 13, 14 of the encoder look like lower orders")));
+}
+
+TEST(ClosePolygon, LeavesTheOtherOrdersAloneWhereOneIsHidden) {
+  Stream truth(2, "truth"), noise(2, "noise");
+  const NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1, 2, 5, 24}, truth);
+  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, 6);
+  EXPECT_LT(WorstWave_arcsec(closure, polygon), kExact_arcsec);
+  EXPECT_LT(WorstFace_arcsec(closure, polygon), kExact_arcsec);
+}
+
+// Waves of N even positions are orthogonal with squares of N / 2: each order adds 2 s^2 / N to the variance of the curve.
+TEST(ClosePolygon, StatesTwiceTheOrdersOverTheReadings) {
+  Stream truth(3, "truth"), noise(3, "noise");
+  NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1}, truth);
+  polygon.noise_rad = 0.03 * arcsec;
+  polygon.passes = 4;
+  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, 5);
+  EXPECT_EQ(closure.noise.dof, 600 * 3);
+  // The scatter is known to sqrt(1 / 3600), 1.7 %.
+  EXPECT_NEAR(closure.noise.u_rad / arcsec, 0.03, 4 * 0.017 * 0.03);
+  const double expected_rad = closure.noise.scale * closure.noise.u_rad * std::sqrt(2.0 * 5 / 2400);
+  for (Eigen::Index i = 0; i < 600; i += 37) EXPECT_NEAR(closure.turntable.U_rad(i) / expected_rad, 1.0, 1e-9);
+  const double face_rad = closure.noise.scale * closure.noise.u_rad * std::sqrt((1.0 - 1.0 / 24) / 100);
+  for (Eigen::Index i = 0; i < 24; i += 5) EXPECT_NEAR(closure.polygon.U_rad(i) / face_rad, 1.0, 1e-9);
+}
+
+// Estler, J. Res. NIST 103 (1998) 141: dual closure, n clampings a face apart, gives every angle with s sqrt(n - 1) / n.
+TEST(ClosePolygon, IsDualClosureWhereClampingsAreAFaceApart) {
+  Stream truth(4, "truth"), noise(4, "noise");
+  NulledPolygon polygon = AnyPolygon(12, EvenOffsets(12), {1, 5}, truth);
+  polygon.noise_rad = 0.1 * arcsec;
+  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 12, 5);
+  EXPECT_FALSE(closure.noise.is_of_repeats);
+  EXPECT_EQ(closure.dof, 144 - 12 - 11 - 10);
+  EXPECT_NEAR(closure.polygon.U_rad(3), closure.noise.u_rad * std::sqrt(11.0) / 12.0, 1e-9 * arcsec);
+}
+
+TEST(ClosePolygon, ScattersAsItStates) {
+  constexpr int kSeeds = 200;
+  double curve = 0.0, faces = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Stream truth(static_cast<std::uint64_t>(seed), "truth"), noise(static_cast<std::uint64_t>(seed), "noise");
+    NulledPolygon polygon = AnyPolygon(12, {0.0, 11.0, 40.0, 147.0, 222.0}, {1, 2, 3}, truth);
+    polygon.noise_rad = 0.05 * arcsec;
+    polygon.passes = 2;
+    const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 12, 3);
+    const Eigen::VectorXd cs = closure.encoder.coefficients_rad.tail(6);
+    Eigen::VectorXd error(6);
+    for (int k = 0; k < 3; ++k) {
+      const TrueWave& w = polygon.encoder[static_cast<std::size_t>(k)];
+      error.segment<2>(2 * k) = cs.segment<2>(2 * k) - Eigen::Vector2d(w.cos_rad, w.sin_rad);
+    }
+    const Eigen::MatrixXd cov = closure.encoder.cov_rad2.bottomRightCorner(6, 6);
+    curve += (error.cwiseAbs2().array() / cov.diagonal().array()).sum() / 6.0 / kSeeds;
+    for (std::size_t i = 0; i < 12; ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const double off_rad = closure.polygon.value_rad[at] - polygon.face_rad[static_cast<std::size_t>(closure.face[i])];
+      faces += std::pow(off_rad / closure.polygon.U_rad(at), 2) / 12.0 / kSeeds;
+    }
+  }
+  // Of 1200 and 2400 squares, some of them correlated; 60 degrees of freedom behind u make 1 / (1 - 2 / 60).
+  EXPECT_NEAR(curve, 1.034, 0.2);
+  EXPECT_NEAR(faces, 1.034, 0.15);
+}
+
+TEST(ClosePolygon, SaysThatThereAreOrdersAboveTheHighest) {
+  Stream truth(5, "truth"), noise(5, "noise");
+  NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1, 9}, truth);
+  polygon.noise_rad = 0.03 * arcsec;
+  polygon.passes = 2;
+  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, 5);
+  EXPECT_GT(closure.noise.scale, 2.0);
+  EXPECT_THAT(closure.notes, testing::Contains(HasSubstr("orders above the highest")));
+}
+
+TEST(ClosePolygon, RefusesClampingsWithoutACommonFace) {
+  Stream truth(6, "truth"), noise(6, "noise");
+  std::vector<FaceReading> readings = AnyPolygon(6, {0.0, 20.0}, {1}, truth).Read(noise);
+  std::erase_if(readings, [](const FaceReading& r) { return (r.clamping == 0) == (r.face < 3); });
+  EXPECT_THAT(MessageOf([&] { ClosePolygon(readings, 6, 1); }), HasSubstr("no face in common"));
+  EXPECT_THAT(MessageOf([&] { ClosePolygon({}, 6, 1); }), HasSubstr("no face was read"));
+}
+
+}  // namespace
+}  // namespace twinbench::separate::turntable

@@ -1,0 +1,72 @@
+#include "twin/benches/turntable_autocollimator/estimators/polygon_analysis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "twin/benches/turntable_autocollimator/estimators/polygon_means.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
+
+namespace twinbench::separate::turntable {
+namespace {
+
+std::vector<StatedScatter> StatedOf(const TurntableSettings& own) {
+  constexpr std::size_t kEz = static_cast<std::size_t>(Component::kEz);
+  std::vector<StatedScatter> stated = {{"encoder.noise_arcsec", own.encoder.noise_rad},
+                                       {"encoder.step_arcsec", own.encoder.step_rad / std::sqrt(12.0)},
+                                       {"autocollimator.noise_arcsec", own.autocollimator.noise_rad},
+                                       {"turntable.repeatability.ez_arcsec", own.turntable.repeatability_sd[kEz]}};
+  std::erase_if(stated, [](const StatedScatter& s) { return s.u_rad == 0.0; });
+  return stated;
+}
+
+/// The published estimate of the rigorous one's readings; what both differ by is in its uncertainties.
+void TakePublished(const std::vector<FaceReading>& faces, const TurntableSettings& own, PolygonAnalysis& analysis) {
+  PolygonClosure published = ClosePolygonByMeans(faces, own.polygon.faces, own.turntable_procedure.highest_order);
+  const PolygonClosure& rigorous = *analysis.closure;
+  analysis.method_bias_rad = ClosureBias_rad(published.turntable, rigorous.turntable);
+  const double of_faces_rad = ClosureBias_rad(published.polygon, rigorous.polygon);
+  published.turntable.cov_rad2.diagonal().array() += std::pow(analysis.method_bias_rad, 2);
+  published.polygon.cov_rad2.diagonal().array() += std::pow(of_faces_rad, 2);
+  published.encoder.u_unmodelled_rad = analysis.method_bias_rad;
+  published.hidden = rigorous.hidden;
+  published.notes.insert(published.notes.begin(), rigorous.notes.begin(), rigorous.notes.end());
+  analysis.closure = std::move(published);
+}
+
+}  // namespace
+
+double PolygonAnalysis::Stated_rad() const {
+  double squares_rad2 = 0.0;
+  for (const StatedScatter& s : stated) squares_rad2 += s.u_rad * s.u_rad;
+  return std::sqrt(squares_rad2);
+}
+
+PolygonAnalysis AnalysePolygon(const std::vector<Reading>& readings, const Scenario& scenario,
+                               Estimator estimator) {
+  const TurntableSettings& own = TurntableOf(scenario);
+  const std::vector<FaceReading> faces = FaceReadings(readings, scenario);
+  PolygonAnalysis analysis;
+  analysis.estimator = estimator;
+  analysis.used = static_cast<int>(faces.size());
+  analysis.left_out = static_cast<int>(readings.size() - faces.size());
+  analysis.stated = StatedOf(own);
+  std::set<int> clampings;
+  for (const FaceReading& r : faces) clampings.insert(r.clamping);
+  analysis.clampings = static_cast<int>(clampings.size());
+  if (faces.empty()) {
+    analysis.not_separated = "there are no usable readings of the polygon";
+    return analysis;
+  }
+  PolygonClosure rigorous = ClosePolygon(faces, own.polygon.faces, own.turntable_procedure.highest_order);
+  if (rigorous.turntable.position_rad.empty()) {
+    analysis.not_separated = "no order of the encoder's error can be told from the polygon's faces: more clampings, at "
+                             "other offsets, would tell them apart";
+    return analysis;
+  }
+  analysis.closure = std::move(rigorous);
+  if (estimator == Estimator::kPublished) TakePublished(faces, own, analysis);
+  return analysis;
+}
+
+}  // namespace twinbench::separate::turntable

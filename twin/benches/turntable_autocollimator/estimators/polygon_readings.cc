@@ -1,0 +1,57 @@
+#include "twin/benches/turntable_autocollimator/estimators/polygon_readings.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::separate::turntable {
+namespace {
+
+int FaceOf(const Reading& r, const TurntableSettings& own) {
+  const int faces = own.polygon.faces;
+  const int face = static_cast<int>(std::lround(-r.reference_rad / own.Pitch_rad())) % faces;
+  return face < 0 ? face + faces : face;
+}
+
+/// What a beam does that meets a hollow face off its middle.
+double BeamWalk_rad(const TurntableSettings& own, int setup, double turntable_rad) {
+  const TurntableProcedureSettings& p = own.turntable_procedure;
+  const double aside_m =
+      p.Of(p.eccentricities_m, setup) * std::cos(turntable_rad + p.Of(p.tilt_azimuths_rad, setup));
+  return -8.0 * own.mirror.flatness_m * aside_m / (own.mirror.width_m * own.mirror.width_m);
+}
+
+FaceReading FaceReadingOf(const Reading& r, const Scenario& scenario) {
+  const TurntableSettings& own = TurntableOf(scenario);
+  const std::string where = fmt::format("reading {}", r.reading);
+  if (r.setup < 0 || r.setup >= own.turntable_procedure.SetUps())
+    throw InputError(where, fmt::format("set-up {} has no offset of the polygon", r.setup),
+                     fmt::format("set-ups 0 to {}", own.turntable_procedure.SetUps() - 1));
+  const int face = FaceOf(r, own);
+  const double nominal_rad = own.FaceAngle_rad(r.setup, face);
+  const double aside_rad = std::remainder(r.target_rad - nominal_rad, units::turn);
+  if (!(std::abs(aside_rad) < 0.5 * own.Pitch_rad()))
+    throw InputError(where, fmt::format("the encoder shows {:.4f} deg", r.target_rad / units::deg),
+                     fmt::format("face {} near {:.4f} deg", face, nominal_rad / units::deg));
+  const Eigen::Vector2d mirror_rad =
+      MirrorAngles_rad({r.autocollimator_yaw_rad, r.autocollimator_tilt_rad}, scenario);
+  const double roll_rad = own.collimator.roll_rad;
+  const double x_rad = std::cos(roll_rad) * mirror_rad.x() - std::sin(roll_rad) * mirror_rad.y();
+  return {r.setup, face, r.direction, nominal_rad, x_rad - BeamWalk_rad(own, r.setup, nominal_rad) - aside_rad};
+}
+
+}  // namespace
+
+std::vector<FaceReading> FaceReadings(const std::vector<Reading>& readings, const Scenario& scenario) {
+  std::vector<FaceReading> faces;
+  for (const Reading& r : readings) {
+    if (r.phase == Phase::kFullCircle && r.status == ReadingStatus::kOk) faces.push_back(FaceReadingOf(r, scenario));
+  }
+  return faces;
+}
+
+}  // namespace twinbench::separate::turntable
