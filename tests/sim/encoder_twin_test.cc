@@ -100,6 +100,61 @@ TEST(EncoderTwin, TellsItsTruth) {
   EXPECT_EQ(truth.at("effects").at(0).at("parameters_SI").at("delay"), 0.001);
 }
 
+TEST(EncoderTwin, ReadsItsRingWithSeveralHeadsAtOneInstant) {
+  Scenario scenario = EncoderScenario();
+  EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 90.0 * deg};
+  EncoderOf(scenario).encoder_procedure.mounting_rad = {0.0, 10.0 * deg};
+  scenario.effects = {test::EncoderEffect("eccentricity", {{"amplitude", 0.1 * deg}})};
+  const auto readings = RunEncoderTwin(scenario).readings;
+  ASSERT_EQ(readings.size(), 2u * 2u * 576u);
+  for (std::size_t i = 0; i < readings.size(); i += 2) {
+    const Reading &first = readings[i], &second = readings[i + 1];
+    EXPECT_EQ(first.time, second.time);
+    EXPECT_EQ(first.setup + 1, second.setup);
+    EXPECT_EQ(second.head_rad, 90.0 * deg);
+    const double at = second.reference_rad + (second.setup == 1 ? 0.0 : 10.0 * deg) - 90.0 * deg;
+    EXPECT_NEAR(second.measured_rad, at + 0.1 * deg * std::cos(at), 1e-12);
+  }
+}
+
+TEST(EncoderTwin, HasOneNoiseOfTheReferenceForAllHeadsOfAnInstant) {
+  Scenario scenario = EncoderScenario();
+  scenario.noise_free = false;
+  EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 90.0 * deg, 100.0 * deg};
+  EncoderOf(scenario).encoder_procedure.reference_noise_rad = 1.0 * deg;
+  const auto readings = RunEncoderTwin(scenario).readings;
+  const auto exact = procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < readings.size(); i += 3) {
+    EXPECT_EQ(readings[i].reference_rad, readings[i + 2].reference_rad);
+    squares += std::pow(readings[i].reference_rad - exact[i].reference_rad, 2);
+  }
+  // 576 instants: 3 % of the deviation; four of these.
+  EXPECT_NEAR(std::sqrt(squares / 576.0) / deg, 1.0, 0.12);
+}
+
+TEST(EncoderTwin, HasTheGraduationOfItsBenchInEveryRun) {
+  Scenario scenario = EncoderScenario();
+  DeviceSettings& device = EncoderOf(scenario).device;
+  device.graduation_rad = 2.0 * units::arcsec;
+  device.graduation_fall = 0.5;
+  device.graduation_orders = 100;
+  const auto curve = [](const Scenario& s) {
+    return sim::EncoderTwin(s).Truth().at("device").at("ez_arcsec").get<std::vector<double>>();
+  };
+  const std::vector<double> first = curve(scenario);
+  scenario.repeat = 3;
+  EXPECT_EQ(curve(scenario), first) << "another run of the same bench";
+  double squares = 0.0;
+  constexpr int kRings = 100;
+  for (int seed = 0; seed < kRings; ++seed) {
+    scenario.seed = static_cast<std::uint64_t>(seed);
+    for (const double value : curve(scenario)) squares += value * value / 360.0 / kRings;
+  }
+  // Order 1 has a fifth of the variance: 100 rings, 2 parts each of some ten orders that count: 3 %.
+  EXPECT_NEAR(std::sqrt(squares), 2.0, 0.2);
+}
+
 /// Amplitude of an order in a curve at every degree.
 double Amplitude_arcsec(const nlohmann::json& curve, int order) {
   std::complex<double> sum = 0.0;

@@ -84,7 +84,8 @@ double HalfWidth(const StatedUncertainty& stated) {
 }
 
 bool TakesUncertainty(const ScenarioKey& key) {
-  return std::holds_alternative<double*>(key.field) || std::holds_alternative<std::span<double>>(key.field);
+  return std::holds_alternative<double*>(key.field) || std::holds_alternative<std::span<double>>(key.field) ||
+         std::holds_alternative<std::vector<double>*>(key.field);
 }
 
 std::string UncertaintyPath(const ScenarioKey& key) {
@@ -117,6 +118,7 @@ std::span<double> NumbersAt(Scenario& scenario, const std::string& key) {
     if (known.Path() != key) continue;
     if (auto* const* number = std::get_if<double*>(&known.field)) return {*number, 1};
     if (const auto* list = std::get_if<std::span<double>>(&known.field)) return *list;
+    if (auto* const* list = std::get_if<std::vector<double>*>(&known.field)) return **list;
   }
   throw std::logic_error("no number of the scenario is called " + key);
 }

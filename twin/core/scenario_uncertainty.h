@@ -9,7 +9,7 @@
 /// The u_<key> of a scenario's keys (stated_uncertainty.h).
 namespace twinbench {
 
-/// Whether a key is a number, or a list of a fixed count of them, that may be known less well than it is written.
+/// Whether a key is a number, or a list of them, that may be known less well than it is written.
 bool TakesUncertainty(const ScenarioKey& key);
 
 /// "psd_a.u_distance_mm"

@@ -16,7 +16,9 @@ std::vector<ReadingColumn> Columns() {
       ShownColumn(
           "measured_deg", units::deg, "deg", [](auto& r) -> auto& { return r.measured_rad; }),
       NumberColumn(
-          "velocity_deg_s", units::deg, ColumnRole::kOptional, [](auto& r) -> auto& { return r.velocity_rad_s; })};
+          "velocity_deg_s", units::deg, ColumnRole::kOptional, [](auto& r) -> auto& { return r.velocity_rad_s; }),
+      NumberColumn(
+          "head_deg", units::deg, ColumnRole::kOptional, [](auto& r) -> auto& { return r.head_rad; })};
   return Joined({CommonColumns(true), angles, ConditionColumns()});
 }
 

@@ -35,15 +35,25 @@ class Schedule {
   explicit Schedule(const EncoderProcedureSettings& procedure) : s_(procedure), shaft_rad_(procedure.start_rad) {}
 
   std::vector<Reading> Make() {
-    for (std::size_t setup = 0; setup < s_.mounting_rad.size(); ++setup) {
-      if (setup > 0) time_s_ += s_.remount_s;
-      s_.kind == "stops" ? AddStops(static_cast<int>(setup)) : AddSweeps(static_cast<int>(setup));
+    for (std::size_t k = 0; k < s_.mounting_rad.size(); ++k) {
+      if (k > 0) time_s_ += s_.remount_s;
+      s_.kind == "stops" ? AddStops(static_cast<int>(k)) : AddSweeps(static_cast<int>(k));
     }
     return readings_;
   }
 
  private:
-  void Add(int setup, int direction, int position, double angle_rad, double velocity_rad_s, double time_s) {
+  /// One reading of every head. Where there are several they are set-ups of their own: nothing is known of the
+  /// zero of one against that of another.
+  void Add(int mounting, int direction, int position, double angle_rad, double velocity_rad_s, double time_s) {
+    const auto heads = static_cast<int>(s_.heads_rad.size());
+    for (int head = 0; head < heads; ++head) {
+      AddOne(mounting * heads + head, direction, position, angle_rad, velocity_rad_s, time_s);
+      if (heads > 1) readings_.back().head_rad = s_.heads_rad[static_cast<std::size_t>(head)];
+    }
+  }
+
+  void AddOne(int setup, int direction, int position, double angle_rad, double velocity_rad_s, double time_s) {
     Reading reading;
     reading.reading = static_cast<int>(readings_.size());
     reading.time = Time(FromSeconds(time_s));
@@ -56,31 +66,31 @@ class Schedule {
     readings_.push_back(reading);
   }
 
-  void AddStops(int setup) {
+  void AddStops(int mounting) {
     const int count = std::max(1, static_cast<int>(std::lround(s_.turns * s_.stops)));
     for (const int direction : s_.passes) {
       for (int k = 0; k < count; ++k) {
         const int position = direction > 0 ? k : count - 1 - k;
-        Add(setup, direction, position, s_.start_rad + position * units::turn / s_.stops, 0.0, time_s_);
+        Add(mounting, direction, position, s_.start_rad + position * units::turn / s_.stops, 0.0, time_s_);
         time_s_ += s_.stop_interval_s;
       }
       ++pass_;
     }
   }
 
-  void AddSweeps(int setup) {
+  void AddSweeps(int mounting) {
     for (const double speed_rad_s : s_.speeds_rad_s) {
-      for (const int direction : s_.passes) AddSweep(setup, direction, speed_rad_s);
+      for (const int direction : s_.passes) AddSweep(mounting, direction, speed_rad_s);
     }
   }
 
-  void AddSweep(int setup, int direction, double speed_rad_s) {
+  void AddSweep(int mounting, int direction, double speed_rad_s) {
     const SweepPass pass{speed_rad_s, s_.ramp_s, s_.turns * units::turn / speed_rad_s};
     const int count = static_cast<int>(std::ceil((pass.Motion_s() + s_.rest_s) / s_.interval_s));
     for (int k = 0; k < count; ++k) {
       const double t_s = k * s_.interval_s;
       const double velocity_rad_s = direction * pass.Speed_rad_s(t_s);
-      Add(setup, velocity_rad_s == 0.0 ? 0 : direction, k, shaft_rad_ + direction * pass.Travel_rad(t_s),
+      Add(mounting, velocity_rad_s == 0.0 ? 0 : direction, k, shaft_rad_ + direction * pass.Travel_rad(t_s),
           velocity_rad_s, time_s_ + t_s);
     }
     time_s_ += count * s_.interval_s;

@@ -12,7 +12,8 @@ namespace twinbench::procedure {
 /// is still empty. Numbers count from 0 in time order.
 ///
 /// Stops: one reading each, evenly spaced, velocity 0; a pass of the other direction goes through the same stops
-/// backwards. Sweep: for each speed all passes; constant acceleration, `turns` at constant speed, the same
+/// backwards. Several heads: as many readings at one time, each with its head's angle and a set-up number of its
+/// own, heads x mounting + head. Sweep: for each speed all passes; constant acceleration, `turns` at constant speed, the same
 /// deceleration, a rest (direction 0); each pass begins where the last one ended.
 std::vector<Reading> AngleSchedule(const EncoderProcedureSettings& procedure);
 

@@ -5,7 +5,10 @@
 
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/comparison.h"
+#include "twin/benches/encoder_comparison/curve_results.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
+#include "twin/benches/encoder_comparison/estimators/head_readings.h"
+#include "twin/benches/encoder_comparison/heads_results.h"
 #include "twin/benches/encoder_comparison/positioning_results.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/errors.h"
@@ -16,44 +19,15 @@ namespace twinbench::benches::encoder {
 namespace {
 
 using separate::encoder::AngleMeans;
-using separate::encoder::Curve;
-using separate::encoder::CurveAt;
 using separate::encoder::DeviceError;
 using separate::encoder::PassResult;
-using separate::harmonics::Coefficient;
 using separate::harmonics::HarmonicSeries;
 
-constexpr int kPoints = 360;  // a degree: enough for the highest order there is
 constexpr const char* kNoReference =
     "with one mounting of the device the difference of both is known; it is counted as the device's";
 constexpr const char* kSeenAlike = "all mountings see only the difference of both; it is counted as the device's";
 
-nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) {
-  const CurveAt curve = Curve(series, kPoints);
-  nlohmann::json json;
-  for (int i = 0; i < kPoints; ++i) {
-    json["position_deg"].push_back(i * 360.0 / kPoints);
-    json[name + "_arcsec"].push_back(report::Arcsec(curve.value_rad[i]));
-    json["u_" + name + "_arcsec"].push_back(report::Arcsec(curve.u_rad[i]));
-  }
-  return json;
-}
-
-nlohmann::json HarmonicsJson(const HarmonicSeries& series) {
-  nlohmann::json json = nlohmann::json::array();
-  for (int k = 1; k <= series.Highest(); ++k) {
-    const Coefficient& c = series.At(k);
-    if (!std::isfinite(c.value.real())) continue;
-    json.push_back({{"order", k},
-                    {"amplitude_arcsec", report::Arcsec(Amplitude(c))},
-                    {"u_amplitude_arcsec", report::Arcsec(AmplitudeUncertainty(c))},
-                    {"phase_deg", report::In(units::deg, separate::harmonics::Phase(c))},
-                    {"u_phase_deg", report::In(units::deg, PhaseUncertainty(c))}});
-  }
-  return json;
-}
-
-nlohmann::json HarmonicsJson(const DeviceError& e) {
+nlohmann::json HarmonicsOfBoth(const DeviceError& e) {
   nlohmann::json json = {{"form", "sum of amplitude cos(order angle + phase)"},
                          {"highest_order", e.highest_order},
                          {"device", HarmonicsJson(e.curves.device)}};
@@ -75,7 +49,7 @@ nlohmann::json NotSeparable(const DeviceError& e) {
 
 nlohmann::json SeparationJson(const DeviceError& e) {
   nlohmann::json json = {{"device", CurveJson(e.curves.device, "ez")},
-                         {"harmonics", HarmonicsJson(e)},
+                         {"harmonics", HarmonicsOfBoth(e)},
                          {"not_separable", NotSeparable(e)},
                          {"residual_rms", {{"x_arcsec", report::Arcsec(e.residual_rms_rad)}}},
                          {"dof", report::In(1.0, e.dof)}};
@@ -135,17 +109,6 @@ void AddDevice(const DeviceError& e, nlohmann::json& json) {
   json["notes"] = e.notes;
 }
 
-std::string LinesText(const char* what, const HarmonicSeries& series, const AxisUnit& unit) {
-  std::string text;
-  for (const int order : FindLines(series)) {
-    const Coefficient& c = series.At(order);
-    text += fmt::format("{:<10} order {:2d}    {:10.3f} +- {:.3f} {}, phase {:+.2f} deg\n", what, order,
-                        Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
-                        separate::harmonics::Phase(c) / units::deg);
-  }
-  return text;
-}
-
 std::string LostText(const DeviceError& e) {
   if (e.curves.reference.orders.empty())
     return fmt::format("not told apart from the reference: {}\n",
@@ -173,25 +136,10 @@ std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
   return text;
 }
 
-/// At the positions of the truth.
-report::CurveScore ScoreOf(const std::string& name, const HarmonicSeries& series, const nlohmann::json& truth) {
-  report::CurveScore curve{.name = name,
-                           .value = "ez_arcsec",
-                           .position = truth.at("position_deg"),
-                           .estimate = {},
-                           .u = {},
-                           .truth = truth.at("ez_arcsec")};
-  const CurveAt at = Curve(series, static_cast<int>(curve.position.size()));
-  for (Eigen::Index i = 0; i < at.value_rad.size(); ++i) {
-    curve.estimate.push_back(at.value_rad[i] / units::arcsec);
-    curve.u.push_back(at.u_rad[i] / units::arcsec);
-  }
-  return curve;
-}
-
 }  // namespace
 
-report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator) {
+report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
+  if (separate::encoder::HaveHeads(readings)) return EvaluateHeads(scenario, readings, estimator);
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
   const DeviceError device = separate::encoder::SeparateDevice(readings);
   const DeviceSettings& device_settings = EncoderOf(scenario).device;
@@ -208,8 +156,9 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   return evaluation;
 }
 
-report::ScoredRun ScoreRun(const Scenario&, const std::vector<Reading>& readings, const nlohmann::json& truth,
-                           Estimator) {
+report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
+                           const nlohmann::json& truth, Estimator estimator) {
+  if (separate::encoder::HaveHeads(readings)) return ScoreHeads(scenario, readings, truth, estimator);
   const DeviceError device = separate::encoder::SeparateDevice(readings);
   if (device.highest_order == 0) throw InputError("the run", device.not_separated, "a run with complete turns");
   std::vector<report::CurveScore> curves = {ScoreOf("device", device.curves.device, truth.at("device"))};

@@ -20,6 +20,9 @@ void AddDevice(Keys& keys, DeviceSettings& s) {
   t.Add("signal_periods", kPure, {1, 100000}, &s.signal_periods, "of its sine and cosine signals a turn");
   t.Add("signal_zero", kDeg, Within(360), &s.signal_zero_rad, "device angle where the sine rises through zero");
   t.Flag("signal_zero_known", s.signal_zero_known, "false: the phase of signal faults is left free");
+  t.Add("graduation", kArcsec, UpTo(36000), &s.graduation_rad, "error of its scale, drawn, root mean square");
+  t.Add("graduation_fall", kPure, UpTo(4), &s.graduation_fall, "of the same: order k has a size as k^-fall");
+  t.Add("graduation_orders", kPure, {1, 2000}, &s.graduation_orders, "of the same: the highest order");
 }
 
 void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
@@ -30,6 +33,9 @@ void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1; a sweep does them at each speed");
   t.Add("mounting", kDeg, Within(360), &s.mounting_rad, "device angle where the reference shows 0, one a set-up");
   t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
+  t.Add("heads", kDeg, Within(360), &s.heads_rad, "where heads read the device's ring, all at once");
+  t.Add("reference_noise", kArcsec, UpTo(36000), &s.reference_noise_rad,
+        "of what the reference shows at one instant, the same for all heads");
   t.Add("stops_per_turn", kPure, {3, 100000}, &s.stops, "stops: evenly spaced");
   t.Add("stop_interval", kSecond, Positive(86400), &s.stop_interval_s, "stops: between readings");
   t.Add("speeds", {"deg_s", units::deg}, Positive(36000), &s.speeds_rad_s, "sweep: one after the other");

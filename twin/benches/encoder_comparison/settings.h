@@ -19,6 +19,10 @@ struct DeviceSettings {                   // [device]
   int signal_periods = 1;        // of its sine and cosine signals a turn
   double signal_zero_rad = 0.0;  // angle of the device at which the sine signal rises through zero
   bool signal_zero_known = false;  // false: the evaluation leaves the phase of signal faults free
+  // Of its scale: drawn with the bench (seed), the same in all its runs; the size of order k falls as k^-fall.
+  double graduation_rad = 0.0;  // root mean square of the curve; 0: none
+  double graduation_fall = 1.0;
+  int graduation_orders = 64;
 };
 
 struct EncoderProcedureSettings {            // [encoder_procedure]
@@ -28,6 +32,8 @@ struct EncoderProcedureSettings {            // [encoder_procedure]
   std::vector<int> passes = {1, -1, -1, 1};  // directions; a sweep does them at each speed
   std::vector<double> mounting_rad = {0.0};  // device angle where the reference shows 0, one a set-up
   double remount_s = 600.0;                  // time a set-up takes
+  std::vector<double> heads_rad = {0.0};     // heads that read the device's ring at once; each is a set-up
+  double reference_noise_rad = 0.0;          // of what the reference shows at one instant, the same for all heads
   int stops = 72;                            // stops: [encoder_procedure] stops_per_turn
   double stop_interval_s = 4.0;
   std::vector<double> speeds_rad_s = {36.0 * units::deg, 12.0 * units::deg};  // sweep

@@ -59,7 +59,9 @@ Eigen::VectorXd SetUpMeans(const Eigen::SparseMatrix<double, Eigen::RowMajor>& i
 
 /// The device stands on the shaft as the readings say: what is locked to its angle must be where they show it.
 Scenario AsMounted(Scenario scenario, const Schedule& s, const Eigen::VectorXd& offset_rad) {
-  std::vector<double>& mounting_rad = EncoderOf(scenario).encoder_procedure.mounting_rad;
+  EncoderProcedureSettings& procedure = EncoderOf(scenario).encoder_procedure;
+  procedure.heads_rad = {0.0};  // they are in the offsets
+  std::vector<double>& mounting_rad = procedure.mounting_rad;
   for (int i = 0; i < s.Readings(); ++i) {
     const auto setup = static_cast<std::size_t>(std::max(0, s.setup[i]));
     if (setup >= mounting_rad.size()) mounting_rad.resize(setup + 1, 0.0);

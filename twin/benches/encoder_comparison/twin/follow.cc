@@ -24,6 +24,12 @@ const std::vector<AnglePoint>& AnglePoints() {
   return points;
 }
 
+/// Nobody foresees how a scale was made.
+Scenario WithoutGraduation(Scenario scenario) {
+  EncoderOf(scenario).device.graduation_rad = 0.0;
+  return scenario;
+}
+
 /// Half the usual way between the stops that were recorded; none if the shaft moved while it was read.
 double RunUp_rad(const std::vector<Reading>& record, const Scenario& scenario) {
   const auto moves = [](const Reading& r) { return std::isfinite(r.velocity_rad_s) && r.velocity_rad_s != 0.0; };
@@ -35,7 +41,7 @@ double RunUp_rad(const std::vector<Reading>& record, const Scenario& scenario) {
 class EncoderFollow : public PointwiseFollow<AngleExtra> {
  public:
   EncoderFollow(const Scenario& stated, const std::vector<Reading>& record)
-      : PointwiseFollow(Foreseeable(stated, record), record, AnglePoints()) {}
+      : PointwiseFollow(WithoutGraduation(Foreseeable(stated, record)), record, AnglePoints()) {}
 
   std::vector<std::string> Unfixed() const override {
     return {"angles of the device on the shaft: free in every set-up"};

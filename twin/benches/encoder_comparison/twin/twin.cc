@@ -28,6 +28,15 @@ double Noise(const Scenario& scenario, int reading) {
   return EncoderOf(scenario).device.noise_rad * stream.Normal();
 }
 
+/// Of what the reference shows at one instant, whatever the count of heads that are read then.
+double ReferenceNoise(const Scenario& scenario, int reading) {
+  const EncoderProcedureSettings& procedure = EncoderOf(scenario).encoder_procedure;
+  if (procedure.reference_noise_rad == 0.0) return 0.0;
+  Stream stream(scenario.RunSeed(), "reference.noise");
+  stream.Seek(static_cast<std::uint64_t>(reading) / procedure.heads_rad.size());
+  return procedure.reference_noise_rad * stream.Normal();
+}
+
 /// A function of the angle at every degree, its mean taken out.
 template <class Error>
 nlohmann::json CurveOf(Error error_rad) {
@@ -54,6 +63,7 @@ EncoderTwin::EncoderTwin(const Scenario& scenario, double run_up_rad)
     : scenario_(scenario),
       run_up_rad_(run_up_rad),
       signal_zero_rad_(EncoderOf(scenario).device.signal_zero_rad),
+      graduation_(scenario),
       empirical_(scenario.empiricals, "angle") {
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
   for (const auto& effect : effects_) {
@@ -62,11 +72,13 @@ EncoderTwin::EncoderTwin(const Scenario& scenario, double run_up_rad)
   }
 }
 
-/// A record of somebody else may have more set-ups than the scenario: where the device stood then is unknown.
+/// As the head of the set-up sees it. A record of somebody else may have more set-ups than the scenario: where the
+/// device stood then is unknown.
 double EncoderTwin::MountingOf_rad(int setup) const {
-  const std::vector<double>& mounting_rad = EncoderOf(scenario_).encoder_procedure.mounting_rad;
-  const auto at = static_cast<std::size_t>(setup);
-  return at < mounting_rad.size() ? mounting_rad[at] : 0.0;
+  const EncoderProcedureSettings& s = EncoderOf(scenario_).encoder_procedure;
+  const std::size_t heads = s.heads_rad.size(), at = static_cast<std::size_t>(setup) / heads;
+  const double mounting_rad = at < s.mounting_rad.size() ? s.mounting_rad[at] : 0.0;
+  return mounting_rad - s.heads_rad[static_cast<std::size_t>(setup) % heads];
 }
 
 void EncoderTwin::Advance(const AngleMoment& moment) {
@@ -86,7 +98,7 @@ double EncoderTwin::ShaftAngle_rad(const AngleMoment& moment) const {
 
 double EncoderTwin::DeviceError_rad(const AngleMoment& moment, double device_rad) const {
   const DeviceSettings& device = EncoderOf(scenario_).device;
-  double error_rad = 0.0;
+  double error_rad = graduation_.Error_rad(device_rad);
   for (const auto& effect : effects_) error_rad += effect->DeviceError_rad(moment, device_rad);
   const double phase_rad = device.signal_periods * (device_rad - signal_zero_rad_);
   return error_rad + mechanics::SignalError_rad(signals_, phase_rad) / device.signal_periods;
@@ -119,6 +131,7 @@ void EncoderTwin::Take(Reading& reading) {
   reading.reference_rad += ReferenceError_rad(moment);
   reading.measured_rad = Shown_rad(moment);
   if (scenario_.noise_free) return;
+  reading.reference_rad += ReferenceNoise(scenario_, reading.reading);
   reading.measured_rad = Quantised(reading.measured_rad + Noise(scenario_, reading.reading),
                                    EncoderOf(scenario_).device.resolution_rad);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "twin/benches/encoder_comparison/twin/effect.h"
+#include "twin/benches/encoder_comparison/twin/graduation.h"
 #include "twin/benches/encoder_comparison/twin/shaft_course.h"
 #include "twin/core/devices.h"
 #include "twin/sim/empirical_signal.h"
@@ -12,6 +13,7 @@
 namespace twinbench::sim {
 
 /// The virtual angle comparison: an ideal device and an ideal reference on one shaft, with the scenario's effects.
+/// A head at b reads the device's ring where a mounting of -b would have it.
 ///
 /// Same scenario, same bits; the noise of a reading follows from its number alone.
 class EncoderTwin : public AngleComparator {
@@ -44,6 +46,7 @@ class EncoderTwin : public AngleComparator {
   Scenario scenario_;
   double run_up_rad_;
   double signal_zero_rad_;
+  Graduation graduation_;
   std::vector<std::unique_ptr<AngleEffect>> effects_;
   ShaftCourse course_;
   SignalState signals_;

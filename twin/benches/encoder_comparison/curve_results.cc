@@ -1,0 +1,74 @@
+#include "twin/benches/encoder_comparison/curve_results.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/encoder_comparison/estimators/device_error.h"
+#include "twin/report/json_units.h"
+
+namespace twinbench::benches::encoder {
+namespace {
+
+constexpr int kPoints = 360;  // a degree
+
+}  // namespace
+
+using separate::encoder::Curve;
+using separate::encoder::CurveAt;
+using separate::harmonics::Coefficient;
+using separate::harmonics::HarmonicSeries;
+
+nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) {
+  const CurveAt curve = Curve(series, kPoints);
+  nlohmann::json json;
+  for (int i = 0; i < kPoints; ++i) {
+    json["position_deg"].push_back(i * 360.0 / kPoints);
+    json[name + "_arcsec"].push_back(report::Arcsec(curve.value_rad[i]));
+    json["u_" + name + "_arcsec"].push_back(report::Arcsec(curve.u_rad[i]));
+  }
+  return json;
+}
+
+nlohmann::json HarmonicsJson(const HarmonicSeries& series) {
+  nlohmann::json json = nlohmann::json::array();
+  for (int k = 1; k <= series.Highest(); ++k) {
+    const Coefficient& c = series.At(k);
+    if (!std::isfinite(c.value.real())) continue;
+    json.push_back({{"order", k},
+                    {"amplitude_arcsec", report::Arcsec(Amplitude(c))},
+                    {"u_amplitude_arcsec", report::Arcsec(AmplitudeUncertainty(c))},
+                    {"phase_deg", report::In(units::deg, separate::harmonics::Phase(c))},
+                    {"u_phase_deg", report::In(units::deg, PhaseUncertainty(c))}});
+  }
+  return json;
+}
+
+std::string LinesText(const char* what, const HarmonicSeries& series, const AxisUnit& unit) {
+  std::string text;
+  for (const int order : FindLines(series)) {
+    const Coefficient& c = series.At(order);
+    text += fmt::format("{:<10} order {:2d}    {:10.3f} +- {:.3f} {}, phase {:+.2f} deg\n", what, order,
+                        Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
+                        separate::harmonics::Phase(c) / units::deg);
+  }
+  return text;
+}
+
+report::CurveScore ScoreOf(const std::string& name, const HarmonicSeries& series, const nlohmann::json& truth) {
+  report::CurveScore curve{.name = name,
+                           .value = "ez_arcsec",
+                           .position = truth.at("position_deg"),
+                           .estimate = {},
+                           .u = {},
+                           .truth = truth.at("ez_arcsec")};
+  const CurveAt at = Curve(series, static_cast<int>(curve.position.size()));
+  for (Eigen::Index i = 0; i < at.value_rad.size(); ++i) {
+    curve.estimate.push_back(at.value_rad[i] / units::arcsec);
+    curve.u.push_back(at.u_rad[i] / units::arcsec);
+  }
+  return curve;
+}
+
+}  // namespace twinbench::benches::encoder

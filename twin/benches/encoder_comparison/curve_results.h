@@ -1,0 +1,26 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "twin/benches/encoder_comparison/axis_unit.h"
+#include "twin/report/curve_score.h"
+#include "twin/separate/series.h"
+
+/// A curve of angle errors as files and persons get it.
+namespace twinbench::benches::encoder {
+
+/// {"position_deg", name + "_arcsec", "u_" + name + "_arcsec"} at every degree.
+nlohmann::json CurveJson(const separate::harmonics::HarmonicSeries& series, const std::string& name);
+
+/// Amplitude and phase of every order that is known, with their uncertainties.
+nlohmann::json HarmonicsJson(const separate::harmonics::HarmonicSeries& series);
+
+/// A row for each order that stands out of the noise.
+std::string LinesText(const char* what, const separate::harmonics::HarmonicSeries& series, const AxisUnit& unit);
+
+/// At the positions of the truth, `truth` of which has them and what was true there.
+report::CurveScore ScoreOf(const std::string& name, const separate::harmonics::HarmonicSeries& series,
+                           const nlohmann::json& truth);
+
+}  // namespace twinbench::benches::encoder

@@ -1,0 +1,192 @@
+#include "twin/benches/encoder_comparison/heads_results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/encoder_comparison/comparison.h"
+#include "twin/benches/encoder_comparison/curve_results.h"
+#include "twin/benches/encoder_comparison/estimators/device_error.h"
+#include "twin/benches/encoder_comparison/estimators/several_heads.h"
+#include "twin/core/errors.h"
+#include "twin/report/json_units.h"
+
+namespace twinbench::benches::encoder {
+namespace {
+
+using separate::encoder::SeveralHeads;
+
+constexpr const char* kAllSeeTheSame = "all heads see the same of it; it is in what the reference shows beside them";
+
+/// With the angles that the scenario states, so that how well they are known counts in a budget.
+std::vector<Reading> WithStatedHeads(const Scenario& scenario, std::vector<Reading> readings) {
+  const std::vector<double>& heads_rad = EncoderOf(scenario).encoder_procedure.heads_rad;
+  if (heads_rad.size() < 2) return readings;
+  for (Reading& reading : readings)
+    reading.head_rad = heads_rad[static_cast<std::size_t>(reading.setup) % heads_rad.size()];
+  return readings;
+}
+
+SeveralHeads Calibrated(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
+  const std::vector<Reading> stated = WithStatedHeads(scenario, readings);
+  return estimator == Estimator::kPublished ? separate::encoder::EqualDivision(stated)
+                                            : separate::encoder::SeparateHeads(stated);
+}
+
+std::string OrdersText(const std::vector<int>& orders) {
+  return fmt::format("{}", fmt::join(orders, ", "));
+}
+
+/// Mean over the turn of the curve's variance, and with what the lost orders may be.
+struct WholeCurve {
+  double u_rad = kNaN, u_whole_rad = kNaN;
+};
+WholeCurve WholeOf(const SeveralHeads& heads) {
+  const Eigen::VectorXd u_rad = separate::encoder::Curve(heads.ring, 360).u_rad;
+  const double mean_rad = std::sqrt(u_rad.squaredNorm() / static_cast<double>(u_rad.size()));
+  return {mean_rad, std::hypot(mean_rad, heads.lost.assumed_rad)};
+}
+
+nlohmann::json NotSeparableOf(const SeveralHeads& heads) {
+  nlohmann::json lost = nlohmann::json::array();
+  for (const int order : heads.lost.orders)
+    lost.push_back({{"what", fmt::format("device, order {}", order)}, {"why", kAllSeeTheSame}});
+  return lost;
+}
+
+nlohmann::json LostJson(const SeveralHeads& heads) {
+  const WholeCurve whole = WholeOf(heads);
+  return {{"orders", heads.lost.orders},
+          {"assumed_rms_arcsec", report::Arcsec(heads.lost.assumed_rad)},
+          {"assumption", "the amplitude of an order falls as 1 / order beside its neighbours"},
+          {"curve_rms_u_arcsec", report::Arcsec(whole.u_rad)},
+          {"whole_curve_rms_u_arcsec", report::Arcsec(whole.u_whole_rad)}};
+}
+
+nlohmann::json HeadsSeparationJson(const SeveralHeads& heads) {
+  nlohmann::json harmonics = {{"form", "sum of amplitude cos(order angle + phase)"},
+                              {"highest_order", heads.Highest()},
+                              {"device", HarmonicsJson(heads.ring)}};
+  nlohmann::json json = {{"device", CurveJson(heads.ring, "ez")},
+                         {"not_separable", NotSeparableOf(heads)},
+                         {"lost", LostJson(heads)},
+                         {"residual_rms",
+                          {{"head_arcsec", report::Arcsec(heads.residual_rms_rad)},
+                           {"reference_arcsec", report::Arcsec(heads.reference_rms_rad)}}},
+                         {"stops", heads.stops},
+                         {"dof", report::In(1.0, heads.dof)}};
+  for (const double head_rad : heads.heads_rad) json["heads_deg"].push_back(head_rad / units::deg);
+  if (!heads.reference.orders.empty()) {
+    json["reference"] = CurveJson(heads.reference, "ez");
+    harmonics["reference"] = HarmonicsJson(heads.reference);
+  }
+  json["harmonics"] = harmonics;
+  return json;
+}
+
+/// The largest orders of a curve, as many as are still looked at.
+std::string LargestText(const char* what, const separate::harmonics::HarmonicSeries& series, const AxisUnit& unit) {
+  constexpr std::size_t kMost = 6;
+  std::vector<int> orders = FindLines(series);
+  const auto size = [&](int order) { return -Amplitude(series.At(order)); };
+  std::ranges::sort(orders, {}, size);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, orders.size()); ++i) {
+    const separate::harmonics::Coefficient& c = series.At(orders[i]);
+    text += fmt::format("{:<10} order {:3d}   {:10.4f} +- {:.4f} {}, phase {:+.2f} deg\n", what, orders[i],
+                        Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
+                        separate::harmonics::Phase(c) / units::deg);
+  }
+  if (orders.size() > kMost)
+    text += fmt::format("{:<10} and {} more orders that stand out of the noise\n", what, orders.size() - kMost);
+  return text;
+}
+
+std::string LostOrdersText(const SeveralHeads& heads, const AxisUnit& unit) {
+  const WholeCurve whole = WholeOf(heads);
+  std::string text = fmt::format("curve of the ring      U = {:.4f} {} (k = 2, root mean square over the turn)\n",
+                                 2.0 * whole.u_rad / unit.to_SI, unit.name);
+  if (heads.lost.orders.empty()) return text;
+  text += fmt::format("not seen by the heads, orders {}: {}\n", OrdersText(heads.lost.orders), kAllSeeTheSame);
+  return text + fmt::format("with these, if they fall as 1 / order beside their neighbours: U = {:.4f} {}\n",
+                            2.0 * whole.u_whole_rad / unit.to_SI, unit.name);
+}
+
+std::string HeadsSummary(const SeveralHeads& heads, const AxisUnit& unit) {
+  if (!heads.not_separated.empty()) return fmt::format("no curve: {}\n", heads.not_separated);
+  std::string text = fmt::format("{} heads at {} stops\n", heads.heads_rad.size(), heads.stops);
+  text += LargestText("ring", heads.ring, unit) + LargestText("reference", heads.reference, unit);
+  text += fmt::format("a head repeats to      {:10.4f} {} (standard deviation)\n",
+                      heads.residual_rms_rad / unit.to_SI, unit.name);
+  if (std::isfinite(heads.reference_rms_rad))
+    text += fmt::format("the reference to       {:10.4f} {}\n", heads.reference_rms_rad / unit.to_SI, unit.name);
+  text += LostOrdersText(heads, unit);
+  for (const std::string& note : heads.notes) text += "note: " + note + "\n";
+  return text;
+}
+
+/// Takes orders out of a curve at even positions of a turn.
+/// @return root mean square of what was taken out.
+double TakeOut(const std::vector<int>& orders, nlohmann::json& curve) {
+  auto values = curve.at("ez_arcsec").get<std::vector<double>>();
+  const auto count = static_cast<double>(values.size());
+  double squares = 0.0;
+  for (const int order : orders) {
+    if (2 * order >= static_cast<int>(values.size())) continue;
+    std::complex<double> c = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      c += 2.0 / count * values[i] * std::polar(1.0, -order * units::turn * static_cast<double>(i) / count);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] -= (c * std::polar(1.0, order * units::turn * static_cast<double>(i) / count)).real();
+    squares += 0.5 * std::norm(c);
+  }
+  curve["ez_arcsec"] = values;
+  return std::sqrt(squares);
+}
+
+}  // namespace
+
+report::Evaluation EvaluateHeads(const Scenario& scenario, const std::vector<Reading>& readings,
+                                 Estimator estimator) {
+  const measure::AngleComparison comparison = measure::CompareAngles(readings);
+  const SeveralHeads heads = Calibrated(scenario, readings, estimator);
+  const DeviceSettings& device = EncoderOf(scenario).device;
+  report::Evaluation evaluation{
+      ToJson(comparison), {}, heads.not_separated, Summary(comparison, CoarseUnit(device))};
+  evaluation.results["estimator"] = EstimatorName(estimator);
+  evaluation.summary += HeadsSummary(heads, FineUnit(device));
+  if (!heads.not_separated.empty()) {
+    evaluation.results["not_separated"] = heads.not_separated;
+    return evaluation;
+  }
+  evaluation.separation = HeadsSeparationJson(heads);
+  evaluation.results.update(evaluation.separation);
+  evaluation.results["notes"] = heads.notes;
+  evaluation.results["separation"] = {{"not_separable", NotSeparableOf(heads)}, {"dof", report::In(1.0, heads.dof)}};
+  return evaluation;
+}
+
+report::ScoredRun ScoreHeads(const Scenario& scenario, const std::vector<Reading>& readings,
+                             const nlohmann::json& truth, Estimator estimator) {
+  const SeveralHeads heads = Calibrated(scenario, readings, estimator);
+  if (!heads.not_separated.empty())
+    throw InputError("the run", heads.not_separated, "a run with two heads or more over a whole turn");
+  nlohmann::json device = truth.at("device"), reference = truth.at("reference");
+  const double lost_arcsec = TakeOut(heads.lost.orders, device);
+  TakeOut(heads.lost.orders, reference);
+  std::vector<report::CurveScore> curves = {ScoreOf("device", heads.ring, device)};
+  if (!heads.reference.orders.empty()) curves.push_back(ScoreOf("reference", heads.reference, reference));
+  nlohmann::json json = report::ToJson(curves);
+  json["lost"] = {{"orders", heads.lost.orders},
+                  {"rms_arcsec", lost_arcsec},
+                  {"assumed_rms_arcsec", report::Arcsec(heads.lost.assumed_rad)}};
+  std::string text = "against the truth, without the orders that no head sees\n" + report::ScoreTable(curves);
+  if (!heads.lost.orders.empty())
+    text += fmt::format("orders {} had {:.4f} arcsec (root mean square), {:.4f} were assumed\n",
+                        OrdersText(heads.lost.orders), lost_arcsec, heads.lost.assumed_rad / units::arcsec);
+  return {json, text, report::PositionTable(curves), report::ValuesOf(curves)};
+}
+
+}  // namespace twinbench::benches::encoder
