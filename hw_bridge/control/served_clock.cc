@@ -2,15 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <thread>
+
 #include "hw_bridge/control/scpi.h"
 
 namespace twinbench::hw {
+namespace {
+
+constexpr int kTries = 20;
+constexpr auto kBetweenTries = std::chrono::milliseconds(100);
+
+}  // namespace
 
 void ScpiClock::Open() const {
   const int opening = line_.Openings();
   if (opening == held_opening_) return;
-  TellScpi(line_, "CLOC:HOLD ON");
+  TakeHold();
   held_opening_ = opening;
+}
+
+/// After a broken connection the server may for a moment take us for another client.
+void ScpiClock::TakeHold() const {
+  for (int left = kTries;; --left) {
+    try {
+      return TellScpi(line_, "CLOC:HOLD ON");
+    } catch (const DeviceFault& fault) {
+      if (fault.kind() != FaultKind::kRefused || left <= 1) throw;
+      std::this_thread::sleep_for(kBetweenTries);
+    }
+  }
 }
 
 Time ScpiClock::Now() const {

@@ -22,6 +22,7 @@ class ScpiClock : public Clock {
 
  private:
   friend class ScpiSimulation;
+  void TakeHold() const;
   mutable DeviceLine line_;  // Now asks
   mutable int held_opening_ = 0;
 };

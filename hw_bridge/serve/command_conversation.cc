@@ -25,6 +25,7 @@ Step CommandConversation::Next(InputBuffer& input) {
 Step CommandConversation::Begin(InputBuffer& input) {
   while (auto line = input.TakeLine("\r\n")) {
     if (line->size() > kLongestLine) return Step::Close(LineTooLong());
+    if (IsHttp(*line)) return Step::Close();  // what follows may be a page's body
     for (std::string& command : SplitOutsideQuotes(*line, ';')) {
       if (!command.empty()) commands_.push_back(std::move(command));
     }

@@ -34,6 +34,7 @@ Step IiodConversation::TakeCommand(InputBuffer& input) {
     if (line->size() > kLongestLine) return Step::Close(fmt::format("{}\n", -EINVAL));
     if (line->ends_with('\r')) line->pop_back();
     if (line->empty()) continue;
+    if (IsHttp(*line)) return Step::Close();
     const Step step = Obey(*line);
     return awaits_value_ ? TakeValue(input) : step;
   }

@@ -77,7 +77,7 @@ void Listener::Begin(tcp::socket socket) {
 bool Listener::MakeRoom() {
   std::shared_ptr<Session> silent;
   for (const auto& session : sessions_) {
-    if (session->Idle() && (!silent || session->last_heard() < silent->last_heard())) silent = session;
+    if (session->IsUnused() && (!silent || session->began() < silent->began())) silent = session;
   }
   if (silent) silent->Close();
   return silent != nullptr;

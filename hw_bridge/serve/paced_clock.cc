@@ -43,11 +43,13 @@ WallClock::duration PacedClock::OnWall(Duration bench_time) const {
       std::chrono::duration<double>(ToSeconds(bench_time) / speed_));
 }
 
-void PacedClock::Hold(const void* who, bool hold) {
+bool PacedClock::Hold(const void* who, bool hold) {
+  if (HeldByAnother(who)) return !hold;
   CatchUp();
-  hold ? void(holders_.insert(who)) : void(holders_.erase(who));
+  holder_ = hold ? who : nullptr;
   ForgetAhead();
   if (!Held()) due_ = WallClock::now();
+  return true;
 }
 
 void PacedClock::SetPaced(const void* who, bool paced) {
@@ -58,7 +60,7 @@ void PacedClock::SetPaced(const void* who, bool paced) {
 
 /// Nobody has to wait for what a client that has gone has taken.
 void PacedClock::Leave(const void* who) {
-  if (holders_.contains(who)) Hold(who, false);
+  if (holder_ == who) Hold(who, false);
   if (unpaced_.contains(who)) SetPaced(who, true);
 }
 

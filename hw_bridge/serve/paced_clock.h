@@ -26,13 +26,15 @@ class PacedClock {
 
   /// Running: brings the bench to where the wall clock is. Called before every look at the bench.
   void CatchUp();
-  bool Held() const { return !holders_.empty(); }
+  bool Held() const { return holder_ != nullptr; }
   bool Timeless() const;
+  bool HeldByAnother(const void* who) const { return Held() && holder_ != who; }
   /// A call that takes bench time takes it at once; otherwise its end has to be waited for.
   bool Immediate() const { return Held() || Timeless(); }
 
-  /// `who` is any address that identifies a client.
-  void Hold(const void* who, bool hold);
+  /// One client at a time. `who` is any address that identifies a client.
+  /// @return false if another one holds it.
+  bool Hold(const void* who, bool hold);
   void SetPaced(const void* who, bool paced);
   void Leave(const void* who);
   void Restart();
@@ -66,7 +68,8 @@ class PacedClock {
   Simulation* simulation_;
   double speed_;
   WallClock::time_point due_ = WallClock::now();
-  std::set<const void*> holders_, unpaced_;
+  const void* holder_ = nullptr;
+  std::set<const void*> unpaced_;
 };
 
 }  // namespace twinbench::hw

@@ -11,13 +11,17 @@ std::string NowText(Served& served) {
   return std::to_string(served.pace().Now().time_since_epoch().count());
 }
 
+[[noreturn]] void RefuseToOthers() {
+  throw ScpiError{-221, "another client holds the clock"};
+}
+
 Outcome Now(const ScpiCall& call) {
   call.served.pace().CatchUp();
   return {NowText(call.served), nullptr};
 }
 
 Outcome Hold(const ScpiCall& call) {
-  call.served.pace().Hold(&call.client, ScpiSwitch(call.parameters[0]));
+  if (!call.served.pace().Hold(&call.client, ScpiSwitch(call.parameters[0]))) RefuseToOthers();
   return {};
 }
 
@@ -30,11 +34,13 @@ Outcome Pass(const ScpiCall& call) {
 }
 
 Outcome Restart(const ScpiCall& call) {
+  if (call.served.pace().HeldByAnother(&call.client)) RefuseToOthers();
   call.served.Restart();
   return {};
 }
 
 Outcome SetPaced(const ScpiCall& call) {
+  if (call.served.pace().HeldByAnother(&call.client)) RefuseToOthers();
   call.served.pace().SetPaced(&call.client, ScpiSwitch(call.parameters[0]));
   return {};
 }

@@ -21,7 +21,22 @@ const Scenario& RequireCounts(const Scenario& scenario) {
   return scenario;
 }
 
+/// As it stands in addresses: an IPv6 address in brackets; of a server at all addresses that of this computer.
+std::string HostToReach(const std::string& bind) {
+  asio::error_code unknown;
+  const auto address = asio::ip::make_address(bind, unknown);
+  if (unknown) return bind;
+  if (address.is_unspecified()) return address.is_v6() ? "[::1]" : "127.0.0.1";
+  return address.is_v6() ? "[" + bind + "]" : bind;
+}
+
 }  // namespace
+
+bool IsOfThisComputerOnly(const std::string& bind) {
+  asio::error_code unknown;
+  const auto address = asio::ip::make_address(bind, unknown);
+  return unknown || address.is_loopback();
+}
 
 struct Server::Impl {
   explicit Impl(const ServeOptions& its_options) : options(its_options) {}
@@ -75,7 +90,7 @@ Server::Server(MachineBench bench, const std::vector<ReadingColumn>& shown, cons
 Server::~Server() = default;
 
 ServedAddresses Server::Addresses() const {
-  return {impl_->options.bind, impl_->iiod ? impl_->iiod->port() : 0, impl_->scpi->port(), impl_->esp->port(),
+  return {HostToReach(impl_->options.bind), impl_->iiod ? impl_->iiod->port() : 0, impl_->scpi->port(), impl_->esp->port(),
           impl_->pty ? impl_->pty->path() : ""};
 }
 

@@ -23,6 +23,9 @@ struct ServeOptions {
   Duration write_limit = std::chrono::seconds(20);  // a client that takes nothing
 };
 
+/// Whether only programs of this computer reach a server at this address.
+bool IsOfThisComputerOnly(const std::string& bind);
+
 /// Shows any rotary bench as hardware: IIOD, SCPI and Newport ESP (docs/protocols.md); any bench with a machine by
 /// SCPI and Newport ESP. One thread: Run serves until
 /// Stop, which may be called from a signal handler's thread.

@@ -42,7 +42,7 @@ void Session::Read() {
 
 void Session::Received(std::size_t n) {
   input_.Commit(n);
-  last_heard_ = WallClock::now();
+  heard_ = true;
   state_ == State::kReading ? GoOn() : Read();  // the latter notices a client that goes away during an operation
 }
 

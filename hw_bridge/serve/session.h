@@ -24,9 +24,9 @@ class Session : public std::enable_shared_from_this<Session> {
           Patience patience, std::function<void()> on_end);
   void Start();
   void Close();
-  /// Waits for its client, not the other way round.
-  bool Idle() const { return state_ == State::kReading; }
-  WallClock::time_point last_heard() const { return last_heard_; }
+  /// Its client has not said a word: nobody loses anything if it goes.
+  bool IsUnused() const { return state_ == State::kReading && !heard_; }
+  WallClock::time_point began() const { return began_; }
 
  private:
   enum class State { kGoing, kReading, kWaiting, kSending };
@@ -47,10 +47,10 @@ class Session : public std::enable_shared_from_this<Session> {
   asio::steady_timer wait_, limit_;
   InputBuffer input_;
   std::string output_;
-  WallClock::time_point last_heard_ = WallClock::now();
+  WallClock::time_point began_ = WallClock::now();
   State state_ = State::kGoing;
   std::uint64_t turn_ = 0;  // of the conversation; tells a late timer that it is over
-  bool reading_ = false, input_ended_ = false, closed_ = false;
+  bool heard_ = false, reading_ = false, input_ended_ = false, closed_ = false;
 };
 
 }  // namespace twinbench::hw

@@ -50,4 +50,9 @@ std::vector<std::string> SplitWords(std::string_view line) {
   return words;
 }
 
+bool IsHttp(std::string_view line) {
+  const auto last = line.rfind(' ');
+  return last != std::string_view::npos && line.substr(last + 1).starts_with("HTTP/");
+}
+
 }  // namespace twinbench::hw

@@ -15,4 +15,7 @@ std::vector<std::string> SplitOutsideQuotes(std::string_view line, char separato
 /// The words between blanks.
 std::vector<std::string> SplitWords(std::string_view line);
 
+/// The first line of what a browser or another program of the web sends.
+bool IsHttp(std::string_view line);
+
 }  // namespace twinbench::hw

@@ -411,6 +411,45 @@ TEST(RunRecord, HasOneWriter) {
   EXPECT_THROW(RunRecord::Continue(folder.path()), InputError);
 }
 
+TEST(RunRecord, SaysWhetherSomebodyWritesIt) {
+  const TemporaryFolder folder;
+  auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  EXPECT_TRUE(RunRecord::HasWriter(folder.path()));
+  record.reset();
+  EXPECT_FALSE(RunRecord::HasWriter(folder.path()));
+}
+
+/// Somebody who is not root, whom permissions do not hold, opens it. @return readings; -1: refused.
+int ReadingsSeenByNobody(const std::string& directory) {
+  const pid_t child = fork();
+  if (child == 0) {
+    constexpr uid_t kNobody = 65534;
+    if (geteuid() == 0 && setuid(kNobody) != 0) _exit(254);
+    try {
+      const auto record = RunRecord::Open(directory);
+      _exit(static_cast<int>(record->Readings().size()));
+    } catch (const std::exception&) {
+      _exit(255);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WEXITSTATUS(status) == 255 ? -1 : WEXITSTATUS(status);
+}
+
+TEST(RunRecord, IsReadWhereNothingMayBeWritten) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  for (int i = 0; i < 100; ++i) record->Append(ReadingOf(i), {});  // all of it in the write-ahead log as yet
+  constexpr auto kRead = fs::perms::owner_read | fs::perms::group_read | fs::perms::others_read;
+  constexpr auto kSearch = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
+  for (const auto& file : fs::directory_iterator(folder.path())) fs::permissions(file, kRead);
+  fs::permissions(folder.path(), kRead | kSearch);
+  EXPECT_EQ(ReadingsSeenByNobody(folder.path()), 100);
+  fs::permissions(folder.path(), kRead | kSearch | fs::perms::owner_write);
+}
+
 void FillRecord(const std::string& directory) {
   const auto record = RunRecord::Create(directory, AnyProvenance());
   for (int i = 0; i < 100; ++i) record->Append(ReadingOf(i), BlockOf(std::vector<std::int16_t>(400, 7)));

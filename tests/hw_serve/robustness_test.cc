@@ -143,17 +143,28 @@ TEST(Robustness, AClientThatTakesNothingIsLeftAndDelaysNobody) {
   EXPECT_FALSE(slow.Send(std::string(1'000'000, '\n')));
 }
 
-TEST(Robustness, WhenAllPlacesAreTakenTheOneSilentLongestGivesWay) {
+TEST(Robustness, WhenAllPlacesAreTakenOneThatHasNeverSpokenGivesWay) {
   hw::ServeOptions options = OnFreePorts(kAtOnce);
   options.max_connections = 3;
   ServedTwin served(options);
   TcpClient first(served.at().scpi_port), second(served.at().scpi_port), third(served.at().scpi_port);
-  for (TcpClient* client : {&first, &second, &third, &first}) client->Ask("*OPC?");
+  for (TcpClient* client : {&first, &third}) client->Ask("*OPC?");
   TcpClient fourth(served.at().scpi_port);
   EXPECT_EQ(fourth.Ask("*OPC?"), "1");
   EXPECT_TRUE(second.Ends());
-  EXPECT_EQ(first.Ask("*OPC?"), "1");
-  EXPECT_EQ(third.Ask("*OPC?"), "1");
+  TcpClient fifth(served.at().scpi_port);
+  EXPECT_TRUE(fifth.Ends()) << "quiet clients were pushed out";
+  for (TcpClient* client : {&first, &third, &fourth}) EXPECT_EQ(client->Ask("*OPC?"), "1");
+}
+
+TEST(Robustness, AnythingOfTheWebEndsTheConnectionBeforeItsBody) {
+  ServedTwin served(OnFreePorts(kAtOnce));
+  for (const int port : {served.at().scpi_port, served.at().esp_port, served.at().iiod_port}) {
+    TcpClient browser(port);
+    browser.Send("POST / HTTP/1.1\r\nHost: localhost\r\n\r\nROT1:ANGL 90\n1PA90\n");
+    EXPECT_TRUE(browser.Ends());
+  }
+  EXPECT_EQ(TcpClient(served.at().scpi_port).Ask("ROT1:ANGL:COMM?"), "0");
 }
 
 TEST(Robustness, AClientThatIsBeingServedKeepsItsPlace) {

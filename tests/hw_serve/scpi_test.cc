@@ -40,6 +40,21 @@ TEST_F(Scpi, ATableGoesToTheBitsOfTheAngleThatWasSent) {
   EXPECT_EQ(ParseInUnit(scpi.Ask("ROTation2:ANGLe?"), units::deg), angle_rad);
 }
 
+TEST_F(Scpi, OneClientHoldsTheClock) {
+  EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;*OPC?"), "1");
+  {
+    TcpClient other(served.at().scpi_port);
+    for (const char* command : {"CLOC:HOLD ON", "SIM:REST", "SIM:PACE OFF"}) {
+      other.Send(std::string(command) + "\n");
+      EXPECT_EQ(other.Ask("SYST:ERR?"), "-221,\"Settings conflict;another client holds the clock\"") << command;
+    }
+    EXPECT_EQ(Error(), "0,\"No error\"");
+    EXPECT_EQ(scpi.Ask("CLOC:HOLD OFF;*OPC?"), "1");
+    other.Send("CLOC:HOLD ON\n");
+    EXPECT_EQ(other.Ask("SYST:ERR?"), "0,\"No error\"") << "it is free again";
+  }
+}
+
 TEST_F(Scpi, OneLineOfQueriesHasOneLineOfAnswers) {
   EXPECT_EQ(scpi.Ask("ROT1:LIM:LOW -10;UPP 20; :ROT1:LIM:LOW?;UPP?"), "-10;20");
   EXPECT_THAT(scpi.Ask("ROT2:ANGL?;*IDN?"), StartsWith("0;twinbench,"));

@@ -18,8 +18,11 @@ class FullDisk : public Program {
           "1000\n[procedure]\nkeep_raw = true\n");
     Succeed(Measure("undisturbed"));
   }
-  static std::vector<std::string> Measure(const std::string& name) {
-    return {"measure", "raw.toml", "--bench", "own.toml", "-o", name, "--resume"};
+  /// Goes on where there is a run.
+  std::vector<std::string> Measure(const std::string& name) const {
+    std::vector<std::string> words = {"measure", "raw.toml", "--bench", "own.toml", "-o", name};
+    if (Exists(name)) words.push_back("--resume");
+    return words;
   }
 
   /// @param tells  Whether the file system says how much room is left.

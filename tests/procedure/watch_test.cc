@@ -25,8 +25,14 @@ struct ScriptedTable : RotaryTable {
     if (while_moving) while_moving(*this);
     return seconds >= settles_after_s;
   }
-  TableState State() override { return state; }
-  void Stop() override { ++stops; }
+  TableState State() override {
+    if (while_looked_at) while_looked_at(*this);
+    return state;
+  }
+  void Stop() override {
+    ++stops;
+    if (obeys) state.moving = false;
+  }
   void Home() override {
     ++homes;
     state.referenced = true;
@@ -35,7 +41,7 @@ struct ScriptedTable : RotaryTable {
   ScriptedTable() { state.encoder_rad = 0.0; }
 
   TableState state;
-  std::function<void(ScriptedTable&)> while_moving;
+  std::function<void(ScriptedTable&)> while_moving, while_looked_at;
   std::vector<double> moves_deg;
   bool obeys = true;
   int seconds = 0, settles_after_s = 0, stops = 0, homes = 0;
@@ -184,6 +190,53 @@ std::vector<double> MovesAfterAFault(ScriptedBench& scripted, const Scenario& sc
   CarryOut(bench, scenario, log, {}, options);
   const auto first = static_cast<long>(moves_after.at(0));
   return {scripted.target.moves_deg.begin() + first, scripted.target.moves_deg.end()};
+}
+
+Standstill AfterTheStop(ScriptedBench& scripted) {
+  RotaryBench bench = scripted.Bench();
+  return StopBoth(bench);
+}
+
+TEST(StopBoth, IsSureOfTablesThatSayThatTheyStandAndDo) {
+  ScriptedBench bench;
+  bench.target.state.moving = bench.reference.state.moving = true;
+  const Standstill stands = AfterTheStop(bench);
+  EXPECT_TRUE(stands.is_sure) << stands.why_not;
+  EXPECT_EQ(bench.target.stops, 1);
+  EXPECT_EQ(bench.reference.stops, 1);
+}
+
+TEST(StopBoth, IsNotSureOfAFrozenControllerThatStillSaysMoving) {
+  ScriptedBench bench;
+  bench.reference.state.moving = true;
+  bench.reference.obeys = false;
+  const Standstill stands = AfterTheStop(bench);
+  EXPECT_FALSE(stands.is_sure);
+  EXPECT_EQ(stands.why_not, "reference still moves after the stop, at 0.000000 deg");
+}
+
+TEST(StopBoth, BelievesTheEncoderMoreThanTheControllersWord) {
+  ScriptedBench bench;
+  bench.target.while_looked_at = [](ScriptedTable& table) { table.state.encoder_rad += 1e-3; };
+  EXPECT_FALSE(AfterTheStop(bench).is_sure);
+}
+
+TEST(StopBoth, WaitsForATableThatTakesTimeToComeToRest) {
+  ScriptedBench bench;
+  int looks = 0;
+  bench.target.while_looked_at = [&looks](ScriptedTable& table) {
+    table.state.encoder_rad += ++looks < 5 ? 1e-3 : 0.0;
+  };
+  EXPECT_TRUE(AfterTheStop(bench).is_sure);
+}
+
+TEST(StopBoth, OneThatDoesNotAnswerKeepsNobodyFromStoppingTheOther) {
+  ScriptedBench bench;
+  bench.target.while_looked_at = [](ScriptedTable&) { throw DeviceFault(FaultKind::kTimeout, "target", "mute"); };
+  const Standstill stands = AfterTheStop(bench);
+  EXPECT_FALSE(stands.is_sure);
+  EXPECT_EQ(stands.why_not, "target: mute");
+  EXPECT_EQ(bench.reference.stops, 1);
 }
 
 TEST(RealBench, IsBroughtBackToTheLastStopFromTheSideItWasApproachedFrom) {

@@ -31,8 +31,11 @@ class ResumedRun : public Program {
     readings_ = ReadingsOf("undisturbed");
   }
 
-  static std::vector<std::string> Measure(const std::string& name) {
-    return {"measure", "long.toml", "--bench", "own.toml", "-o", name, "--resume"};
+  /// Goes on where there is a run.
+  std::vector<std::string> Measure(const std::string& name) const {
+    std::vector<std::string> words = {"measure", "long.toml", "--bench", "own.toml", "-o", name};
+    if (Exists(name)) words.push_back("--resume");
+    return words;
   }
 
   /// Starts or takes up a run and kills it at a random moment.

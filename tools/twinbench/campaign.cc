@@ -84,6 +84,7 @@ void PrintTrial(const CampaignOptions& options) {
 
 void Campaign(const CampaignOptions& options) {
   if (options.trial) return PrintTrial(options);
+  RequireOutput(options.csv, {options.study, options.table});
   if (options.table.empty()) throw InputError("campaign", "there is no table", "-o TABLE.sqlite, or --trial N");
   campaign::Ranks ranks(options.mpi || campaign::Ranks::StartedAsOneOfMany());
   if (ranks.IsFirst()) return LeadCampaign(options, ranks);

@@ -35,6 +35,8 @@ int PointsFor(const CompensateOptions& options) {
 }
 
 void Compensate(const CompensateOptions& options) {
+  for (const std::string& output : {options.table, options.json})
+    RequireOutput(output, {options.source, options.scenario, options.check});
   separate::CompensationOptions how = options.how;
   how.points = PointsFor(options);
   const separate::IndexErrors errors = ErrorsOf(options.source, options.scenario, options.overrides);

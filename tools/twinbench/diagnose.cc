@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -122,6 +123,8 @@ void TellDoubts(const std::vector<plausible::Finding>& findings, const DiagnoseO
 }
 
 void DiagnoseRun(const DiagnoseOptions& options) {
+  for (const std::string& output : {options.json, options.extended})
+    RequireOutput(output, {options.source, options.scenario});
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   CheckExcluded(options.excluded, run.scenario.bench);
   const std::vector<plausible::Finding> findings = plausible::Check(run.readings, run.scenario);
@@ -144,7 +147,11 @@ void DiagnoseRun(const DiagnoseOptions& options) {
   report::DiagnosisPage page{found, shown, options.source};
   if (fs::is_directory(options.source)) {
     Screen(options.source, run, page);
-    MergeIntoResults(RunFolder{options.source}.results(), json, page);
+    if (access(options.source.c_str(), W_OK) == 0)
+      MergeIntoResults(RunFolder{options.source}.results(), json, page);
+    else
+      fmt::print(stderr, "twinbench: {} is read-only: the diagnosis is not put into its results.json\n",
+                 options.source);
   }
   if (options.json != "-") fmt::print("{}", report::DiagnosisText(page, {LettersOfStdout(), options.verbose}));
   if (!disagreement.is_plausible)

@@ -15,6 +15,7 @@ struct ExportOptions {
 };
 
 void Export(const ExportOptions& options) {
+  RequireOutput(options.readings, {});
   const auto record = RunRecord::Open(options.folder);
   const std::vector<Reading> readings = record->Readings();
   const std::string bench = record->provenance().bench;

@@ -110,10 +110,14 @@ class Follower {
     while (!complete_ && interrupted == 0) {
       const auto before = WallClock::now();
       complete_ = record_->finished();  // asked first: readings that come after are looked at in the next round
+      const bool is_abandoned = !complete_ && !RunRecord::HasWriter(options_.folder);  // asked first, too
       Look();
+      if (is_abandoned) break;
       if (!complete_) Pause(WallClock::now() - before);
     }
     Close();
+    if (!complete_ && interrupted == 0)
+      throw BenchError(options_.folder + ": the program that wrote this run ended before it was complete");
   }
 
  private:

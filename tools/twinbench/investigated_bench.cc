@@ -69,7 +69,8 @@ class MeasuredBench : public InvestigatedBench {
       options.scenario = scenario;
       options.bench = bench_;
       options.folder = run.path;
-      options.resume = options.rehearse = true;
+      options.resume = fs::exists(run.record());
+      options.rehearse = true;
       tools::Measure(options);
     }
     return RunRecord::Open(run.path)->Readings();

@@ -1,17 +1,21 @@
 #include <fmt/core.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <iostream>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/terminal.h"
 #include "twin/core/errors.h"
+#include "twin/core/state_unknown.h"
 
 namespace {
 
-enum ExitCode { kDone = 0, kWorldFailed = 1, kBadInput = 2 };
+enum ExitCode { kDone = 0, kWorldFailed = 1, kBadInput = 2, kStateUnknown = 3 };
 
 constexpr const char* kAbout =
     "A virtual test bench for precision rotary tables: a scenario file goes in, the virtual bench carries out the\n"
@@ -37,7 +41,8 @@ constexpr const char* kExamples =
     "  twinbench help bench        every key of a bench file\n"
     "  twinbench help map          every key of a map for importing recordings, and the ready maps\n"
     "\n"
-    "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong.";
+    "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong, 3 something was told\n"
+    "to stop and nobody knows whether it stands.";
 
 std::string Names(const std::vector<const CLI::App*>& commands) {
   std::string text;
@@ -58,6 +63,14 @@ std::string Complaint(const CLI::App* app, const CLI::Error& error) {
   return fmt::format("{}: {}; expected what {} --help lists\n", command, error.what(), command);
 }
 
+/// What was printed may be an answer that somebody keeps.
+/// @throws BenchError if some of it went nowhere: a full disk, a pipe that was closed.
+void RequireAllSaid() {
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout)
+    throw twinbench::BenchError("not all of the answer could be written to stdout");
+}
+
 int Run(int argc, char** argv) {
   CLI::App app(kAbout, "twinbench");
   app.footer(kExamples);
@@ -70,6 +83,7 @@ int Run(int argc, char** argv) {
     add(app);
   try {
     app.parse(argc, argv);
+    RequireAllSaid();
     return kDone;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kBadInput;
@@ -86,6 +100,12 @@ void KeepFreedMemory() {
 #endif
 }
 
+/// Says it even where nobody can read it any more: a closed session must not turn one failure into another.
+int Failed(const std::exception& error, ExitCode code) {
+  std::fputs(fmt::format("twinbench: {}\n", twinbench::tools::ForTerminal(error.what())).c_str(), stderr);
+  return code;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -93,10 +113,10 @@ int main(int argc, char** argv) {
   try {
     return Run(argc, argv);
   } catch (const twinbench::InputError& error) {
-    fmt::print(stderr, "twinbench: {}\n", error.what());
-    return kBadInput;
+    return Failed(error, kBadInput);
+  } catch (const twinbench::StateUnknown& error) {
+    return Failed(error, kStateUnknown);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "twinbench: {}\n", error.what());
-    return kWorldFailed;
+    return Failed(error, kWorldFailed);
   }
 }

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include "hw_bridge/bench_lock.h"
 #include "hw_bridge/program/program_file.h"
 #include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
@@ -13,10 +14,11 @@
 #include "tools/twinbench/rehearsal.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
+#include "tools/twinbench/told_stopped.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
-#include "twin/core/device_fault.h"
 #include "twin/core/run_record.h"
+#include "twin/procedure/watch.h"
 
 namespace twinbench::tools {
 namespace {
@@ -42,17 +44,25 @@ void RehearseFirst(const Scenario& scenario, const procedure::Options& limits, d
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
 }
 
-void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, procedure::Options& options) {
+/// @param kind  Of the bench file: in a replay nothing moves that could be asked.
+void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, procedure::Options& options,
+                const std::string& kind) {
   ProgressLine line;
   options.log = &record;
   if (bench.simulation) bench.simulation->Restart();
-  procedure::CarryOut(bench, scenario, record, ShownOn(line), options);
+  try {
+    procedure::CarryOut(bench, scenario, record, ShownOn(line), options);
+  } catch (const std::exception& fault) {
+    TellStopped(fault, "tables", kind == "replay" ? procedure::Standstill{true, ""} : procedure::StopBoth(bench));
+  }
+  ListenNoMore();
   record.Finish();
 }
 
 void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::BenchFile& file, BegunRun begun,
                  procedure::Options options) {
   const bool resumed = begun.record != nullptr;
+  const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
   const auto bench = OpenAnyBench(file, scenario, SinceBegin(begun));
   if (resumed) {
     TakeUp(begun, bench->Identity());
@@ -65,15 +75,8 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
   };
   note({bench->Identity()});
   note(bench->Configuration());
-  try {
-    CarryOutOn(bench->Bench(), scenario, *record, options);
-    note(bench->Notices());
-  } catch (const DeviceFault& fault) {
-    const std::string why = fault.kind() == FaultKind::kStopped
-                                ? "stopped by the operator"
-                                : fmt::format("stopped: {} ({})", fault.what(), FaultName(fault.kind()));
-    throw BenchError(why + ". The tables were brought to rest; every reading so far is kept. Go on with --resume");
-  }
+  CarryOutOn(bench->Bench(), scenario, *record, options, file.kind);
+  note(bench->Notices());
 }
 
 }  // namespace

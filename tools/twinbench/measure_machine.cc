@@ -2,13 +2,14 @@
 
 #include <fmt/core.h>
 
+#include "hw_bridge/bench_lock.h"
 #include "hw_bridge/open_machine.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/machine_rehearsal.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/stop_signal.h"
+#include "tools/twinbench/told_stopped.h"
 #include "twin/benches/registry.h"
-#include "twin/core/device_fault.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/machine_watch.h"
 
@@ -56,17 +57,6 @@ procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenM
   return options;
 }
 
-/// Whether the axes stand is told as the controller says it now, not as it was asked to.
-[[noreturn]] void TellStopped(const DeviceFault& fault, MachineBench bench) {
-  const procedure::Standstill stands = procedure::StopMachine(bench);
-  const std::string why = fault.kind() == FaultKind::kStopped
-                              ? "stopped by the operator"
-                              : fmt::format("stopped: {} ({})", fault.what(), FaultName(fault.kind()));
-  throw BenchError(fmt::format("{}. {}; every reading so far is kept. Go on with --resume", why,
-                               stands.is_sure ? "The controller says that all axes stand still"
-                                              : "WHETHER THE AXES STAND STILL IS NOT KNOWN: " + stands.why_not));
-}
-
 void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& opened,
                procedure::MachineOptions options) {
   MachineBench bench = opened.Devices();
@@ -75,9 +65,10 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   if (bench.simulation && options.kept.empty()) bench.simulation->Restart();
   try {
     BenchOf(scenario).drive(bench, scenario, record, ShownOn(line), options);
-  } catch (const DeviceFault& fault) {
-    TellStopped(fault, bench);
+  } catch (const std::exception& fault) {
+    TellStopped(fault, "axes", procedure::StopMachine(bench));
   }
+  ListenNoMore();
   record.Finish();
 }
 
@@ -103,6 +94,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario) {
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
   ListenForStop();
   if (!begun.record || !begun.record->finished()) {
+    const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
     const auto bench = OpenAnyMachine(file, scenario, axes, SinceBegin(begun));
     if (o.rehearse) RehearseMachineFirst(scenario, axes, bench->Limits());
     MeasureMachineInto(folder, scenario, file, *bench, std::move(begun));

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "twin/core/errors.h"
+#include "twin/core/nearest_key.h"
 
 namespace twinbench::tools {
 namespace {
@@ -27,6 +28,21 @@ void RequireSameScenario(const Scenario& scenario, const RunFolder& folder) {
   }
 }
 
+/// Names the run beside it that was probably meant.
+InputError NothingToResume(const RunFolder& folder) {
+  namespace fs = std::filesystem;
+  const fs::path asked = fs::absolute(folder.path).lexically_normal();
+  std::vector<std::string> runs;
+  std::error_code unreadable;
+  for (const auto& entry : fs::directory_iterator(asked.parent_path(), unreadable)) {
+    if (fs::exists(entry.path() / "record.sqlite")) runs.push_back(entry.path().filename().string());
+  }
+  const std::string nearest = Nearest(asked.filename().string(), runs);
+  return {"--resume", "there is no run in " + folder.path,
+          "the folder of a run that was begun" + (nearest.empty() ? "" : ", perhaps " + nearest) +
+              "; without --resume a new one is"};
+}
+
 }  // namespace
 
 RunFolder FolderOf(const MeasureOptions& options) {
@@ -35,7 +51,16 @@ RunFolder FolderOf(const MeasureOptions& options) {
 }
 
 BegunRun TakeUpIfAsked(const MeasureOptions& options, const Scenario& scenario, const RunFolder& folder) {
-  if (!options.resume || !std::filesystem::exists(folder.record())) return {};
+  const bool is_begun = std::filesystem::exists(folder.record());
+  if (!options.resume) {
+    RequireRoomFor(folder);
+    return {};
+  }
+  if (!std::filesystem::exists(folder.path)) throw NothingToResume(folder);
+  if (!is_begun) {  // it ended before there was anything to keep
+    if (std::filesystem::exists(folder.scenario())) RequireSameScenario(scenario, folder);
+    return {};
+  }
   BegunRun begun{RunRecord::Continue(folder.path), {}};
   RequireSameScenario(scenario, folder);
   begun.readings = begun.record->Readings();

@@ -24,7 +24,8 @@ struct BegunRun {
 /// @throws InputError if no folder was given.
 RunFolder FolderOf(const MeasureOptions& options);
 
-/// @throws InputError if the run was another scenario's.
+/// Nothing, for a new run, if --resume was not asked for.
+/// @throws InputError if the run was another scenario's, if there is none to resume, or files that a new one would overwrite.
 BegunRun TakeUpIfAsked(const MeasureOptions& options, const Scenario& scenario, const RunFolder& folder);
 
 /// @param kind  Of the bench file.

@@ -54,6 +54,7 @@ void AddBetterShifts(const PlanOptions& options, const plan::ShiftDesign& design
 }
 
 void Plan(const PlanOptions& options) {
+  for (const std::string& output : {options.next, options.json}) RequireOutput(output, {options.scenario});
   const Scenario scenario = With(options, {});
   const Bench& bench = BenchOf(scenario);
   const std::vector<Reading> readings = ReadingsOfTwin(scenario);

@@ -1,6 +1,6 @@
 #include "tools/twinbench/progress.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -14,27 +14,32 @@ std::string Clock(double seconds_s) {
                       : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
+/// A terminal that is gone must not end a measurement.
+void Say(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 }  // namespace
 
 ProgressLine::ProgressLine() : on_terminal_(isatty(fileno(stderr)) != 0), started_(WallClock::now()) {}
 
 ProgressLine::~ProgressLine() {
-  if (line_open_) fmt::print(stderr, "\n");
+  if (line_open_) Say("\n");
 }
 
 void ProgressLine::Show(int done, int planned, Phase phase, Time bench_time) {
   const auto now = WallClock::now();
   if (on_terminal_) {
     if (done < planned && now - shown_ < std::chrono::milliseconds(100)) return;
-    fmt::print(stderr, "\r\033[K{}", Text(done, planned, phase, bench_time));
+    Say("\r\033[K" + Text(done, planned, phase, bench_time));
     line_open_ = true;
   } else {
     const int tenth = planned > 0 ? 10 * done / planned : 10;
     if (tenth == shown_tenth_) return;
     shown_tenth_ = tenth;
-    fmt::print(stderr, "{}\n", Text(done, planned, phase, bench_time));
+    Say(Text(done, planned, phase, bench_time) + "\n");
   }
-  std::fflush(stderr);
   shown_ = now;
 }
 
@@ -48,7 +53,7 @@ std::string ProgressLine::Text(int done, int planned, Phase phase, Time bench_ti
 TrialsLine::TrialsLine() : on_terminal_(isatty(fileno(stderr)) != 0), started_(WallClock::now()) {}
 
 TrialsLine::~TrialsLine() {
-  if (line_open_) fmt::print(stderr, "\n");
+  if (line_open_) Say("\n");
 }
 
 void TrialsLine::Show(std::int64_t done, std::int64_t planned, std::int64_t lost) {
@@ -59,12 +64,8 @@ void TrialsLine::Show(std::int64_t done, std::int64_t planned, std::int64_t lost
   const double remaining_s = elapsed_s * static_cast<double>(planned - done) / static_cast<double>(done);
   const std::string text =
       fmt::format("{:>5} of {} trials, {} lost, {} left", done, planned, lost, Clock(remaining_s));
-  if (on_terminal_)
-    fmt::print(stderr, "\r\033[K{}", text);
-  else
-    fmt::print(stderr, "{}\n", text);
+  Say(on_terminal_ ? "\r\033[K" + text : text + "\n");
   line_open_ = on_terminal_;
-  std::fflush(stderr);
 }
 
 procedure::ProgressCallback ShownOn(ProgressLine& line) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
@@ -14,14 +15,48 @@ namespace twinbench::tools {
 
 namespace fs = std::filesystem;
 
-void WriteFileAtOnce(const std::string& path, const std::string& text) {
-  const std::string beside = path + ".part";
-  {
-    std::ofstream out(beside, std::ios::binary);
-    out << text;
-    out.flush();
-    if (!out) throw BenchError(path + ": cannot be written");
+namespace {
+
+void WriteTo(const std::string& file, const std::string& text, const std::string& path) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.flush();
+  if (!out) throw BenchError(path + ": cannot be written");
+}
+
+bool IsDatabase(const std::string& path) {
+  constexpr std::string_view kBegin = "SQLite format 3";
+  std::string begin(kBegin.size(), '\0');
+  std::ifstream in(path, std::ios::binary);
+  return in.read(begin.data(), static_cast<std::streamsize>(begin.size())) && begin == kBegin;
+}
+
+}  // namespace
+
+void RequireRoomFor(const RunFolder& folder) {
+  for (const std::string& file : {folder.scenario(), folder.truth(), folder.results()}) {
+    if (fs::exists(file) && !fs::exists(folder.record()))  // of a run: the record says so
+      throw InputError(file, "the file is there already, and the run would overwrite it", "a folder without it");
   }
+}
+
+void RequireOutput(const std::string& output, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
+  if (output.empty() || output == "-" || !fs::exists(output, ignored)) return;
+  if (fs::is_directory(output)) throw InputError(output, "this is a folder", "the name of a file to write");
+  for (const std::string& input : inputs) {
+    if (!input.empty() && fs::equivalent(output, input, ignored))
+      throw InputError(output, "the command reads this file and would overwrite it", "another name");
+  }
+  if (fs::is_regular_file(output) && IsDatabase(output))
+    throw InputError(output, "this is a record or another database and would be overwritten", "another name");
+}
+
+void WriteFileAtOnce(const std::string& path, const std::string& text) {
+  std::error_code unknown;
+  if (fs::exists(path, unknown) && !fs::is_regular_file(path)) return WriteTo(path, text, path);
+  const std::string beside = path + ".part";
+  WriteTo(beside, text, path);
   std::error_code error;
   fs::rename(beside, path, error);
   if (error) throw BenchError(path + ": " + error.message());

@@ -20,7 +20,18 @@ struct RunFolder {
   std::string images() const { return path + "/images"; }
 };
 
-/// Writes beside the file and renames, so that a reader sees the old file or the new one, never half of one.
+/// Before a run is made: nothing that lies in the folder may be overwritten by it.
+/// @throws InputError if it holds a file that the run would write.
+void RequireRoomFor(const RunFolder& folder);
+
+/// Before a file is written that the user named.
+/// @param output  Empty or "-": no file.
+/// @param inputs  Files that the command reads. Empty ones are none.
+/// @throws InputError if the output is one of them, a record, or a folder.
+void RequireOutput(const std::string& output, const std::vector<std::string>& inputs);
+
+/// Writes beside the file and renames, so that a reader sees the old file or the new one, never half of one. What is no file (a pipe, a
+/// device) is written to.
 /// @throws BenchError if the disk refuses.
 void WriteFileAtOnce(const std::string& path, const std::string& text);
 

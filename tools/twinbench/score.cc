@@ -20,6 +20,7 @@ struct ScoreOptions {
 
 void PrintScore(const ScoreOptions& options) {
   const RunFolder folder{options.folder};
+  RequireOutput(options.json, {folder.truth(), folder.scenario()});
   if (!std::filesystem::exists(folder.truth()))
     throw InputError(folder.truth(), "is not there",
                      "a run of the twin: what was measured or imported has no truth");

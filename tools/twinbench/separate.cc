@@ -16,6 +16,7 @@ struct SeparateOptions {
 };
 
 void Separate(const SeparateOptions& options) {
+  RequireOutput(options.json, {options.source, options.scenario});
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   const report::Evaluation evaluation =
       BenchOf(run.scenario).evaluate(run.scenario, run.readings, EstimatorNamed(options.estimator));

@@ -74,12 +74,22 @@ void ServeMachine(const ServeArguments& a, const Scenario& scenario) {
              a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields));
 }
 
+void WarnOfOthers(const std::string& bind) {
+  if (hw::IsOfThisComputerOnly(bind)) return;
+  fmt::print(stderr,
+             "twinbench: at {} whoever is on the network can move what is served and inject faults; nobody is asked who "
+             "he is. --bind 127.0.0.1 keeps it on this computer\n",
+             bind);
+}
+
 void Serve(ServeArguments a) {
+  RequireOutput(a.bench_file, {a.scenario});
   const Scenario scenario = LoadScenario(a.scenario, a.overrides);
   if (!BenchOf(scenario).has_controllers)
     throw InputError(a.scenario, "the bench " + scenario.bench + " cannot be served",
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
   a.serve.speed = SpeedOf(a.speed);
+  WarnOfOthers(a.serve.bind);
   a.serve.pty = !a.no_pty;
   BenchOf(scenario).make_devices ? ServeMachine(a, scenario) : ServeRotary(a, scenario);
 }

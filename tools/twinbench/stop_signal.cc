@@ -6,17 +6,23 @@
 namespace twinbench::tools {
 namespace {
 
+constexpr std::initializer_list<int> kStops = {SIGINT, SIGTERM, SIGQUIT, SIGHUP};
+
 volatile std::sig_atomic_t stop_asked = 0;
 
-void Remember(int signal) {
+void Remember(int) {
   stop_asked = 1;
-  std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
 
 void ListenForStop() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, Remember);
+  for (const int signal : kStops) std::signal(signal, Remember);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void ListenNoMore() {
+  for (const int signal : kStops) std::signal(signal, SIG_DFL);
 }
 
 bool StopWasAsked() {

@@ -2,8 +2,11 @@
 
 namespace twinbench::tools {
 
-/// From now on Ctrl-C and SIGTERM do not end the program but are remembered; a second Ctrl-C ends it.
+/// From now on Ctrl-C, SIGTERM, SIGQUIT and a closed session (SIGHUP) do not end the program but are remembered, however
+/// often they come; output that nobody reads any more (SIGPIPE) ends nothing either.
 void ListenForStop();
+/// Nothing can move any more: signals end the program again.
+void ListenNoMore();
 bool StopWasAsked();
 
 }  // namespace twinbench::tools

@@ -30,4 +30,17 @@ report::Letters LettersOfStdout() {
   return is_terminal && has_fonts && IsUtf8Locale() ? report::Letters::kUnicode : report::Letters::kAscii;
 }
 
+std::string ForTerminal(const std::string& text) {
+  std::string clean;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const auto c = static_cast<unsigned char>(text[k]);
+    const auto next = static_cast<unsigned char>(k + 1 < text.size() ? text[k + 1] : 0);
+    const bool is_c1 = c == 0xC2 && next >= 0x80 && next < 0xA0;  // U+0080 to U+009F in UTF-8
+    const bool is_control = (c < 0x20 && c != '\n' && c != '\t') || c == 0x7F;
+    if (is_c1) ++k;
+    clean += is_c1 || is_control ? '?' : text[k];
+  }
+  return clean;
+}
+
 }  // namespace twinbench::tools

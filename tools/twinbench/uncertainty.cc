@@ -28,6 +28,7 @@ uncertainty::Evaluate EvaluationOf(const RecordedRun& run, const std::string& es
 }
 
 void State(const UncertaintyOptions& options) {
+  RequireOutput(options.json, {options.source, options.scenario});
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   const uncertainty::Evaluate evaluate = EvaluationOf(run, options.estimator);
   const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(run.scenario, evaluate);

@@ -14,6 +14,7 @@
 #include "twin/core/device_fault.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
+#include "twin/core/readable_record.h"
 #include "twin/core/record_rows.h"
 #include "twin/core/record_schema.h"
 #include "twin/core/sqlite_database.h"
@@ -75,8 +76,9 @@ class WriterLock {
 };
 
 /// The open file, with the statements that every reading needs.
-struct RunRecord::Database : SqliteDatabase {
-  using SqliteDatabase::SqliteDatabase;
+struct RunRecord::Database : private ReadableRecord, SqliteDatabase {  // in this order: a copy outlives its reader
+  Database(const std::string& path, int flags)
+      : ReadableRecord(path), SqliteDatabase(ReadableRecord::place(), flags) {}
 
   void Prepare() {
     insert_reading.emplace(*this, kInsertReading);
@@ -169,6 +171,8 @@ std::unique_ptr<RunRecord> RunRecord::Open(const std::string& directory) {
 
 std::unique_ptr<RunRecord> RunRecord::Continue(const std::string& directory) {
   auto record = Open(directory);
+  if (record->database_->path() != RecordPath(directory))
+    throw InputError(directory, "the record cannot be written", "a folder that can, to go on in");
   record->database_->lock.emplace(directory);
   return record;
 }
@@ -238,6 +242,15 @@ void RunRecord::Finish() {
   database_->Execute("INSERT OR IGNORE INTO finished VALUES(1)");
   transaction.Commit();
   database_->calls.clear();
+}
+
+bool RunRecord::HasWriter(const std::string& directory) {
+  const std::string path = (std::filesystem::path(directory) / "record.lock").string();
+  const int handle = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (handle < 0) return false;
+  const bool is_free = flock(handle, LOCK_SH | LOCK_NB) == 0;
+  close(handle);
+  return !is_free;
 }
 
 bool RunRecord::finished() const {

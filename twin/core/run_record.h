@@ -52,12 +52,14 @@ class RunRecord : public ReadingSink, public RunLog {
   static std::unique_ptr<RunRecord> Create(const std::string& directory, const Provenance& provenance);
   /// An empty record that is nowhere on a disk and goes with the object: for one run of thousands.
   static std::unique_ptr<RunRecord> CreateInMemory(const Provenance& provenance);
-  /// Opens a record to be read, also one that another program is still writing.
+  /// Opens a record to be read, also one that another program is still writing, and one that may not be written.
   /// @throws InputError if there is no record, it is not one of ours, or it is damaged.
   static std::unique_ptr<RunRecord> Open(const std::string& directory);
   /// Opens a record to be written on.
   /// @throws InputError as Open, and if another program is writing it.
   static std::unique_ptr<RunRecord> Continue(const std::string& directory);
+  /// Whether some program is writing the record of DIR now.
+  static bool HasWriter(const std::string& directory);
 
   ~RunRecord() override;
   /// From here on a reading is kept whatever becomes of this program, and against a power failure with all others by

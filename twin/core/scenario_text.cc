@@ -10,6 +10,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
+#include "twin/core/toml_bounds.h"
 
 namespace twinbench {
 namespace {
@@ -26,6 +27,7 @@ std::string WhereInFile(const std::string& name, const toml::source_region& regi
 }
 
 TomlSource ParseToml(const std::string& text, const std::string& name) {
+  RequireModestKeys(text, name);
   try {
     return {name, false, Lines(text), toml::parse(text, std::string(name))};
   } catch (const toml::parse_error& error) {
@@ -49,6 +51,7 @@ std::optional<toml::table> TryToml(const std::string& text) {
 /// key=value; a value that is a word and no TOML gets its quotes, which a shell takes away too easily.
 TomlSource ParseOverride(const std::string& text) {
   const std::string name = "--set " + text;
+  RequireModestKeys(text, "--set");
   const auto equals = text.find('=');
   if (equals == std::string::npos)
     throw InputError(name, "there is no \"=\"", "key=value, as in laser.wavelength_nm=640");

@@ -15,6 +15,7 @@ constexpr Duration kMachineSlice = std::chrono::seconds(5);
 constexpr Duration kUnwatched = std::chrono::hours(1);
 constexpr int kLooksAtStopping = 20;
 constexpr Duration kBetweenLooks = std::chrono::milliseconds(500);
+constexpr double kCreeps = 5e-5;       // m or rad between two of these looks: more than encoders flicker
 constexpr double kStandsStill = 1e-9;  // m or rad: less than any encoder shows
 
 std::string Place(const MachineAxis& axis, double at) {
@@ -95,20 +96,30 @@ class MachineWatcher {
   double looked_s_ = 0.0, still_s_ = 0.0;
 };
 
+/// Names of the axes that move, by what the controller says or by what their encoders do between two looks.
+std::string Moving(const std::vector<MachineAxis>& axes, const std::vector<AxisState>& before,
+                   const std::vector<AxisState>& now) {
+  std::string names;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const bool crept = k < before.size() && std::abs(now[k].encoder - before[k].encoder) > kCreeps;
+    if (now[k].moving || crept) names += (names.empty() ? "" : ", ") + axes[k].name;
+  }
+  return names;
+}
+
 }  // namespace
 
 Standstill StopMachine(MachineBench& bench) {
   try {
     bench.machine.Stop();
     std::string moving;
+    std::vector<AxisState> before = bench.machine.State();
     for (int look = 0; look < kLooksAtStopping; ++look) {
-      moving.clear();
-      const std::vector<AxisState> states = bench.machine.State();
-      for (std::size_t k = 0; k < states.size(); ++k) {
-        if (states[k].moving) moving += (moving.empty() ? "" : ", ") + bench.machine.Axes()[k].name;
-      }
-      if (moving.empty()) return {true, ""};
       bench.clock.Wait(kBetweenLooks);
+      const std::vector<AxisState> states = bench.machine.State();
+      moving = Moving(bench.machine.Axes(), before, states);
+      if (moving.empty()) return {true, ""};
+      before = states;
     }
     return {false, "still moving after the stop: " + moving};
   } catch (const BenchError& error) {  // it may be the fault that is being dealt with

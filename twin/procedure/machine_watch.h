@@ -1,14 +1,9 @@
 #pragma once
 
 #include "twin/procedure/machine_options.h"
+#include "twin/procedure/standstill.h"
 
 namespace twinbench::procedure {
-
-/// Whether a machine stands, as its controller says.
-struct Standstill {
-  bool is_sure = false;
-  std::string why_not;  // which axis moves, or why nobody knows
-};
 
 /// Tells all axes to stop and asks whether they do: the answer is the controller's, read back within some seconds.
 /// Never throws what the bench throws.

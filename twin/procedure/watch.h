@@ -1,6 +1,7 @@
 #pragma once
 
 #include "twin/procedure/options.h"
+#include "twin/procedure/standstill.h"
 
 namespace twinbench::procedure {
 
@@ -17,8 +18,10 @@ void MoveBoth(RotaryBench& bench, double target_rad, double reference_rad, const
 /// Lets bench time pass in slices, so that an operator who says stop is heard.
 void WaitFor(RotaryBench& bench, Duration duration, const Options& options);
 
-/// Brings both tables to rest, whatever state the bench is in: a table that does not answer is passed over.
-void StopBoth(RotaryBench& bench);
+/// Tells both tables to stop, whatever state the bench is in, and asks whether they do: the answer is the controllers',
+/// read back within some seconds, and no encoder may have moved between two looks. One table that does not answer keeps
+/// nobody from stopping the other. Never throws what the bench throws.
+Standstill StopBoth(RotaryBench& bench);
 
 /// @throws DeviceFault kStopped if the operator said so.
 void HearOperator(const Options& options);

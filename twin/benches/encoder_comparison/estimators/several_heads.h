@@ -45,7 +45,7 @@ double Likeness(const std::vector<double>& heads_rad, int order);
 ///
 /// Uncertainty: white noise of the heads, from the residuals. Not included: what all heads have in common at each
 /// place of the ring (lost orders), motion of the shaft across its axis, orders above the highest.
-/// Reference: docs/theory.md 11.1. For even stops the variance is formula (V) of section 2 there with the heads for
+/// Reference: docs/theory.md 12.1. For even stops the variance is formula (V) of section 2 there with the heads for
 /// shifts.
 SeveralHeads SeparateHeads(const std::vector<Reading>& readings, const HeadOptions& options = {});
 

@@ -1,0 +1,97 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/tools/program.h"
+
+/// What somebody tried who wanted to see it break, or mistyped.
+namespace twinbench::test {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+class Attack : public Program {
+ protected:
+  Attack() { Write("small.toml", kSmall); }
+
+  /// @return what it complains about; the folder must be as it was.
+  std::string Refusal(const std::vector<std::string>& arguments) {
+    const auto before = Snapshot();
+    const Outcome outcome = Call(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_TRUE(before == Snapshot()) << "the folder has changed";
+    return outcome.err;
+  }
+  int ExitOfShell(const std::string& command) const {
+    return WEXITSTATUS(
+        std::system(("cd " + At("") + " && " TWINBENCH_PROGRAM " " + command + " 2> /dev/null").c_str()));
+  }
+  static std::string Dotted(int parts) {
+    std::string key;
+    for (int k = 0; k < parts; ++k) key += "a.";
+    return key + "a = 1";
+  }
+};
+
+TEST_F(Attack, KeysWithoutEndAreRefusedInEveryFile) {
+  Write("bad.toml", kSmall + Dotted(100000) + "\n");
+  EXPECT_THAT(Refusal({"run", "bad.toml", "-o", "out"}), HasSubstr(": a key of 100001 parts; expected at most 64"));
+  Write("bench.toml", "kind = \"twin\"\n" + std::string(200000, 'k') + "= 1\n");
+  EXPECT_THAT(Refusal({"measure", "small.toml", "--bench", "bench.toml", "-o", "out"}),
+              HasSubstr("bench.toml:2: a key of 200000 letters"));
+  EXPECT_THAT(Refusal({"run", "small.toml", "-o", "out", "--set", Dotted(1000)}), HasSubstr("a key of 1001 parts"));
+}
+
+TEST_F(Attack, ARunOverwritesNoFileOfTheUser) {
+  Write("scenario.toml", kSmall);
+  EXPECT_THAT(Refusal({"run", "scenario.toml", "-o", "."}), HasSubstr("scenario.toml: the file is there already"));
+  Write("bench.toml", "kind = \"twin\"\n");
+  EXPECT_THAT(Refusal({"measure", "small.toml", "--bench", "bench.toml", "-o", "."}),
+              HasSubstr("scenario.toml: the file is there already"));
+}
+
+TEST_F(Attack, AnOutputIsNoInputAndNoRecord) {
+  MakeRun("run");
+  EXPECT_THAT(Refusal({"export", "run", "--readings", "run/record.sqlite"}), HasSubstr("this is a record"));
+  Succeed({"export", "run", "--readings", "readings.csv"});
+  for (const char* output : {"small.toml", "readings.csv", "./small.toml"})
+    EXPECT_THAT(Refusal({"separate", "readings.csv", "--scenario", "small.toml", "--json", output}),
+                HasSubstr("reads this file and would overwrite it"));
+  EXPECT_THAT(Refusal({"diagnose", "readings.csv", "--scenario", "small.toml", "-o", "small.toml"}),
+              HasSubstr("reads this file"));
+  EXPECT_THAT(Refusal({"export", "run", "--readings", "run"}), HasSubstr("this is a folder"));
+}
+
+TEST_F(Attack, ADiskThatIsFullIsNoSuccess) {
+  MakeRun("run");
+  EXPECT_EQ(ExitOfShell("export run > /dev/full"), 1);
+  EXPECT_EQ(ExitOfShell("export run --readings /dev/full"), 1);
+  EXPECT_EQ(ExitOfShell("separate run > /dev/full"), 1);
+  EXPECT_EQ(ExitOfShell("separate run --json /dev/full"), 1);
+  EXPECT_EQ(ExitOfShell("score run > /dev/full"), 1);
+  EXPECT_EQ(ExitOfShell("score run > /dev/null"), 0);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_F(Attack, ResumeNamesTheRunThatIsNotThere) {
+  Write("bench.toml", "kind = \"twin\"\n");
+  Succeed({"measure", "small.toml", "--bench", "bench.toml", "-o", "monday"});
+  EXPECT_EQ(Refusal({"measure", "small.toml", "--bench", "bench.toml", "-o", "mondya", "--resume"}),
+            "twinbench: --resume: there is no run in mondya; expected the folder of a run that was begun, perhaps "
+            "monday; without --resume a new one is\n");
+}
+
+TEST_F(Attack, WhoFollowsARunThatWasKilledIsTold) {
+  Process run(At(""), {"run", "small.toml", "-o", "killed", "--set", "procedure.positions=360"}, "killed");
+  while (run.Runs() && !Exists("killed/scenario.toml")) std::this_thread::sleep_for(milliseconds(1));
+  run.Kill();
+  const Outcome outcome = Call({"diagnose", "killed", "--follow", "--scenario", "small.toml"});
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.out;
+  EXPECT_THAT(outcome.out, HasSubstr("not complete"));
+  EXPECT_THAT(outcome.err, HasSubstr("the program that wrote this run ended before it was complete"));
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,30 @@
+#include "tools/twinbench/told_stopped.h"
+
+#include <fmt/format.h>
+
+#include "twin/core/device_fault.h"
+#include "twin/core/state_unknown.h"
+
+namespace twinbench::tools {
+namespace {
+
+std::string Reason(const std::exception& why) {
+  const auto* fault = dynamic_cast<const DeviceFault*>(&why);
+  if (!fault) return fmt::format("stopped: {}", why.what());
+  if (fault->kind() == FaultKind::kStopped) return "stopped by the operator";
+  return fmt::format("stopped: {} ({})", fault->what(), FaultName(fault->kind()));
+}
+
+}  // namespace
+
+void TellStopped(const std::exception& why, const std::string& what, const procedure::Standstill& stands) {
+  constexpr const char* kKept = "every reading so far is kept. Go on with --resume";
+  if (!stands.is_sure)
+    throw StateUnknown(fmt::format("{}. STATE UNKNOWN - USE THE EMERGENCY STOP: whether the {} stand still is not known: "
+                                   "{}; {}",
+                                   Reason(why), what, stands.why_not, kKept));
+  throw BenchError(fmt::format("{}. The {} were brought to rest, as read back from their controllers; {}", Reason(why),
+                               what, kKept));
+}
+
+}  // namespace twinbench::tools
