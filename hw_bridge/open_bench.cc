@@ -48,6 +48,8 @@ class OpenedBench : public OpenBench {
 
   std::vector<std::string> Configuration() const override { return DescribeChannels(adc_->Actual()); }
 
+  std::optional<AgreedLimits> Limits() const override { return AgreedLimits{target_->limits(), reference_->limits()}; }
+
   std::vector<std::string> Notices() const override {
     std::vector<std::string> notices;
     const ClockWatch::Drift drift = adc_->ClockDrift();

@@ -1,13 +1,19 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hw_bridge/bench_file.h"
 #include "twin/core/devices.h"
+#include "twin/core/table_limits.h"
 
 namespace twinbench::hw {
+
+struct AgreedLimits {
+  TableLimits target, reference;
+};
 
 /// The devices of a bench, connected, identified and configured; closed when this goes.
 class OpenBench {
@@ -18,6 +24,9 @@ class OpenBench {
   virtual std::string Identity() const = 0;
   /// What the A/D card agreed to, one line a channel; the record keeps it.
   virtual std::vector<std::string> Configuration() const { return {}; }
+  /// What both tables may be asked to do: the bench file's limits, narrowed to what their controllers allow; none where
+  /// no controller was asked.
+  virtual std::optional<AgreedLimits> Limits() const { return std::nullopt; }
   /// What was noticed during the run without being a fault: drift of the card's clock, mains hum.
   virtual std::vector<std::string> Notices() const { return {}; }
 };

@@ -27,6 +27,7 @@ class ControlledTable : public RotaryTable {
   /// Takes over the controller's own limits where the bench file gives none.
   /// @throws DeviceFault kRefused if the controller allows less than the bench file.
   void AgreeOnLimits();
+  const TableLimits& limits() const { return limits_; }
 
  protected:
   DeviceLine& line() { return line_; }

@@ -49,12 +49,22 @@ IiodBuffer::IiodBuffer(ServedBench& served, std::uint32_t mask) : served_(served
 }
 
 IiodBuffer::~IiodBuffer() {
+  Release();
   served_.paced.RemoveReader();
 }
 
-void IiodBuffer::Ask(std::size_t scans) {
-  block_ = {};
+bool IiodBuffer::Ask(std::size_t scans) {
+  Release();
+  if (served_.scans_asked + scans > kMostScansOfAll) return false;
   wanted_ = scans;
+  served_.scans_asked += scans;
+  return true;
+}
+
+void IiodBuffer::Release() {
+  block_ = {};
+  served_.scans_asked -= wanted_;
+  wanted_ = 0;
 }
 
 bool IiodBuffer::Collect() {

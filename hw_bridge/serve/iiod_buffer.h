@@ -20,7 +20,8 @@ std::size_t ScanBytes(std::uint32_t mask);
 /// A buffer that a client has opened on the converter.
 class IiodBuffer {
  public:
-  static constexpr std::size_t kMostScans = 1u << 20;
+  static constexpr std::size_t kMostScans = 1u << 20;       // of one block
+  static constexpr std::size_t kMostScansOfAll = 4u << 20;  // of all blocks under way
 
   IiodBuffer(ServedBench& served, std::uint32_t mask);
   ~IiodBuffer();
@@ -28,8 +29,10 @@ class IiodBuffer {
   IiodBuffer& operator=(const IiodBuffer&) = delete;
 
   std::uint32_t mask() const { return mask_; }
-  /// Begins a block of `scans` scans.
-  void Ask(std::size_t scans);
+  /// Begins a block of `scans` scans. @return false if all clients together ask for too much.
+  bool Ask(std::size_t scans);
+  /// The block has been delivered: its memory is others' again.
+  void Release();
   /// Takes what there is; held, the whole block at once. @return whether the block is complete.
   bool Collect();
   /// The fault that strikes the block; `block` has suffered it as far as it is one of the card.

@@ -29,10 +29,14 @@ IiodDelivery::IiodDelivery(ServedBench& served, IiodBuffer& buffer, std::size_t 
       asked_bytes_(bytes),
       scans_(bytes / scan_bytes_),
       end_(scans_) {
-  buffer_.Ask(scans_);
+  if (!buffer_.Ask(scans_)) state_ = State::kRefused;
 }
 
 Step IiodDelivery::Next() {
+  if (state_ == State::kRefused) {
+    state_ = State::kDone;
+    return NumberLine(-ENOMEM);
+  }
   if (state_ == State::kCollecting) return Collect();
   if (state_ == State::kAnnouncing) return Announce();
   return sent_ < end_ ? Send({}) : End();
@@ -68,7 +72,7 @@ Step IiodDelivery::Send(std::string bytes) {
 
 Step IiodDelivery::End() {
   state_ = State::kDone;
-  buffer_.Ask(0);
+  buffer_.Release();
   if (fault_ == Injected::kDrop) return Step::Close();
   if (fault_ == Injected::kStall) return Step::Silence();
   if (fault_ == Injected::kError) return NumberLine(-EIO);

@@ -23,7 +23,7 @@ class IiodDelivery {
   bool Done() const { return state_ == State::kDone; }
 
  private:
-  enum class State { kCollecting, kAnnouncing, kSending, kDone };
+  enum class State { kRefused, kCollecting, kAnnouncing, kSending, kDone };
   Step Collect();
   Step Announce();
   Step Send(std::string bytes);

@@ -23,6 +23,7 @@ struct ServedBench : Served {
   PacedBench paced;
   ShownTable target, reference;
   AdcSettings adc;
+  std::size_t scans_asked = 0;  // of blocks that clients are waiting for
 };
 
 }  // namespace twinbench::hw

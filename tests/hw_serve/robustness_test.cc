@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <random>
 
+#include "hw_bridge/serve/iiod_buffer.h"
 #include "tests/hw_serve/serving.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -206,6 +208,27 @@ TEST(Robustness, AThousandClientsLeaveNothingBehind) {
   ExpectAlive(served);
   std::this_thread::sleep_for(milliseconds(200));
   EXPECT_LE(open_files(), before + 2);
+}
+
+TEST(Robustness, BlocksUnderWayHaveABoundTogether) {
+  constexpr std::size_t kScans = hw::IiodBuffer::kMostScans;
+  constexpr auto kMost = static_cast<int>(hw::IiodBuffer::kMostScansOfAll / kScans);
+  ServedTwin served(OnFreePorts(1.0));  // a block of so many takes 17 s
+  std::vector<std::unique_ptr<TcpClient>> clients;
+  for (int k = 0; k <= kMost; ++k) {
+    auto& client = *clients.emplace_back(std::make_unique<TcpClient>(served.at().iiod_port));
+    ASSERT_EQ(client.Ask("OPEN psd-adc16 " + std::to_string(kScans) + " 0000001f"), "0");
+    client.Send("READBUF psd-adc16 " + std::to_string(kScans * 16) + "\n");
+    if (k < kMost) {
+      EXPECT_TRUE(client.Silent(milliseconds(100))) << k;
+    } else {
+      EXPECT_EQ(client.Line(), std::to_string(-ENOMEM));
+    }
+  }
+  clients.erase(clients.begin());
+  std::this_thread::sleep_for(milliseconds(200));
+  clients.back()->Send("READBUF psd-adc16 " + std::to_string(kScans * 16) + "\n");
+  EXPECT_TRUE(clients.back()->Silent(milliseconds(100))) << "one that has left makes room";
 }
 
 TEST(Robustness, AServerThatNobodyReadsFromStaysSmall) {

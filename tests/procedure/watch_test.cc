@@ -280,5 +280,27 @@ TEST(RealBench, FindsItsOriginAgainAfterARestartOfTheController) {
   EXPECT_EQ(log.attempts[0].fault, "restarted");
 }
 
+TEST(RealBench, FindsNoOriginThatNobodyAllowedItToLookFor) {
+  ScriptedBench scripted;
+  test::MemoryLog log;
+  test::TroubledBench troubled(scripted.Bench(), [&](const std::string&, const std::string&, CallAnswer&) {
+    if (log.readings.size() != 5) return;
+    scripted.target.state.referenced = false;
+    scripted.target.state.encoder_rad = 0.0;
+  });
+  RotaryBench bench = troubled.Bench();
+  Options options;
+  options.log = &log;
+  options.may_home = false;
+  try {
+    CarryOut(bench, TwoSetups(), log, {}, options);
+    FAIL() << "it went on";
+  } catch (const DeviceFault& fault) {
+    EXPECT_NE(std::string(fault.what()).find("--allow-homing"), std::string::npos) << fault.what();
+  }
+  EXPECT_EQ(scripted.target.homes, 0);
+  EXPECT_EQ(log.readings.size(), 5u);
+}
+
 }  // namespace
 }  // namespace twinbench::procedure

@@ -44,6 +44,12 @@ TEST_F(Attack, KeysWithoutEndAreRefusedInEveryFile) {
   EXPECT_THAT(Refusal({"run", "small.toml", "-o", "out", "--set", Dotted(1000)}), HasSubstr("a key of 1001 parts"));
 }
 
+TEST_F(Attack, AWatchWithoutEndIsRefusedAndNotCountedWrongly) {
+  EXPECT_THAT(Refusal({"run", "small.toml", "-o", "out", "--set", "procedure.stability_s=1e8", "--set",
+                       "procedure.stability_interval_s=0.01"}),
+              HasSubstr("1e+08 s of stability every 0.01 s are 1e+10 readings"));
+}
+
 TEST_F(Attack, ARunOverwritesNoFileOfTheUser) {
   Write("scenario.toml", kSmall);
   EXPECT_THAT(Refusal({"run", "scenario.toml", "-o", "."}), HasSubstr("scenario.toml: the file is there already"));

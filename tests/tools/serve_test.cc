@@ -212,6 +212,22 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
   EXPECT_FALSE(Exists("narrow"));
 }
 
+TEST_F(Served, ARehearsalAsksTheControllersForTheirLimits) {
+  const auto server = Serve();
+  const std::string file = Read("bench.toml");
+  const auto at = file.find("tcp:127.0.0.1:") + 14;
+  const std::string port = file.substr(at, file.find('"', at) - at);
+  Write("limit.sh", "exec 3<>/dev/tcp/127.0.0.1/" + port + "; echo 'ROT1:LIM:UPP 100;*OPC?' >&3; read -r done <&3\n");
+  ASSERT_EQ(std::system(("bash " + At("limit.sh")).c_str()), 0);
+  for (const char* how : {"--rehearse", "--rehearse-only"}) {
+    const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", how, "-o", "narrow"});
+    EXPECT_EQ(narrow.exit_code, 1) << narrow.err;
+    EXPECT_THAT(narrow.err, HasSubstr(" to 100 deg"));
+    EXPECT_THAT(narrow.err, HasSubstr("target would travel"));
+    EXPECT_FALSE(Exists("narrow"));
+  }
+}
+
 TEST_F(Served, TheKeysOfABenchFileAreExplained) {
   const std::string text = Succeed({"help", "bench"});
   for (const char* key : {"[adc]", "[goniometer]", "in_position_arcsec", "timeout_s", "attempts = 3"})

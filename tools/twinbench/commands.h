@@ -21,5 +21,11 @@ void AddInvestigate(CLI::App& app);
 void AddDiagnose(CLI::App& app);
 void AddScore(CLI::App& app);
 void AddHelp(CLI::App& app);
+void AddNew(CLI::App& app);
+void AddCheck(CLI::App& app);
+void AddList(CLI::App& app);
+void AddExplain(CLI::App& app);
+void AddSchema(CLI::App& app);
+void AddCompletion(CLI::App& app);
 
 }  // namespace twinbench::tools

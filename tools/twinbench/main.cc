@@ -79,7 +79,8 @@ int Run(int argc, char** argv) {
   app.failure_message(Complaint);
   using namespace twinbench::tools;
   for (const auto add : {AddRun, AddCampaign, AddMeasure, AddServe, AddExport, AddImport, AddSeparate,
-                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddScore, AddHelp})
+                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddScore, AddNew,
+                         AddCheck, AddList, AddExplain, AddHelp, AddSchema, AddCompletion})
     add(app);
   try {
     app.parse(argc, argv);

@@ -25,8 +25,9 @@ namespace {
 
 constexpr double kColdest_degC = -20.0, kHottest_degC = 60.0;  // beyond: no room that a bench stands in
 
-procedure::Options Carefulness(const hw::BenchFile& file) {
+procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
   procedure::Options options;
+  options.may_home = allow_homing;
   options.target = file.target_limits;
   options.reference = file.reference_limits;
   options.attempts = file.attempts;
@@ -37,9 +38,21 @@ procedure::Options Carefulness(const hw::BenchFile& file) {
   return options;
 }
 
+/// With what the controllers say about their limits; they are asked, nothing moves.
+procedure::Options WithAgreedLimits(procedure::Options options, const hw::BenchFile& file, const Scenario& scenario) {
+  const hw::BenchLock lock(hw::AddressesOf(file), "rehearse");
+  const auto limits = OpenAnyBench(file, scenario, {})->Limits();
+  if (!limits) return options;
+  options.target = limits->target;
+  options.reference = limits->reference;
+  return options;
+}
+
+/// Nothing moves here.
 /// @throws BenchError if the twin finds that the bench could not do it.
-void RehearseFirst(const Scenario& scenario, const procedure::Options& limits, double mains_Hz) {
-  const Rehearsal rehearsal = Rehearse(scenario, limits, mains_Hz);
+void RehearseFirst(const Scenario& scenario, const procedure::Options& options, const hw::BenchFile& file) {
+  const procedure::Options limits = WithAgreedLimits(options, file, scenario);
+  const Rehearsal rehearsal = Rehearse(scenario, limits, file.adc.mains_Hz);
   fmt::print(stderr, "{}", Summary(rehearsal, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
 }
@@ -90,8 +103,8 @@ void Measure(const MeasureOptions& o) {
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
   if (BenchOf(scenario).drive) return MeasureMachine(o, scenario);
   const hw::BenchFile file = hw::LoadBenchFile(o.bench);
-  const procedure::Options options = Carefulness(file);
-  if (o.rehearse || o.rehearse_only) RehearseFirst(scenario, options, file.adc.mains_Hz);
+  const procedure::Options options = Carefulness(file, o.allow_homing);
+  if (o.rehearse || o.rehearse_only) RehearseFirst(scenario, options, file);
   if (o.rehearse_only) return;
   const RunFolder folder = FolderOf(o);
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
@@ -116,6 +129,8 @@ void AddMeasure(CLI::App& app) {
                    "target=FILE.csv: corrections that table is commanded with")
       ->allow_extra_args(false);
   command->add_flag("--resume", options->resume, "go on behind the last reading that is kept");
+  command->add_flag("--allow-homing", options->allow_homing,
+                    "a table whose controller has lost its origin may be driven to find it");
   command->add_flag("--rehearse", options->rehearse,
                     "first on the twin: travel, spots on the PSDs, time it will take");
   command->add_flag("--rehearse-only", options->rehearse_only, "nothing but that");

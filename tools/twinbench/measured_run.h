@@ -12,7 +12,7 @@ struct MeasureOptions {
   std::string scenario, bench, folder;
   std::vector<std::string> overrides;
   std::vector<std::string> compensations;  // "target=table.csv"
-  bool resume = false, rehearse = false, rehearse_only = false;
+  bool resume = false, rehearse = false, rehearse_only = false, allow_homing = false;
 };
 
 /// The record of a run that was begun before; none: there is nothing to take up.

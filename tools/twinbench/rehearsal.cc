@@ -91,7 +91,7 @@ std::string TravelLine(const char* table, const Rehearsal::Travel& travel, const
                      travel.highest_rad / units::deg,
                      limited ? fmt::format("soft limits {} to {} deg", limits.lower_rad / units::deg,
                                            limits.upper_rad / units::deg)
-                             : "no soft limits in the bench file");
+                             : "no soft limits in the bench file or the controller");
 }
 
 std::string HoursMinutes(double duration_s) {

@@ -2,12 +2,15 @@
 
 #include <cmath>
 
+#include "twin/core/bench_format.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
 #include "twin/core/scenario.h"
+#include "twin/core/scenario_explained.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_uncertainty.h"
+#include "twin/core/scenario_values.h"
 #include "twin/core/signal_effect.h"
 
 namespace twinbench {
@@ -168,14 +171,65 @@ std::string PrintEffect(const EffectSettings& effect, const std::string& bench) 
   return text + PrintFinding(effect.finding, entry);
 }
 
+/// Tables of numbers have files of their own: such a key is not written out.
+bool HasOwnTable(const ScenarioKey& key) {
+  return std::holds_alternative<std::optional<TableErrors>*>(key.field) ||
+         std::holds_alternative<std::optional<CompensationTable>*>(key.field);
+}
+
+/// Every line behind a #, so that taking it away is all there is to do.
+std::string CommentedOut(const std::string& lines) {
+  std::string text;
+  bool at_begin = true;
+  for (const char c : lines) {
+    if (at_begin) text += '#';
+    text += c;
+    at_begin = c == '\n';
+  }
+  return text;
+}
+
+std::string ExplainKey(const ScenarioKey& key) {
+  const std::string what = fmt::format("# {}; {}\n", key.meaning, Expected(key));
+  return what + (key.name == "bench" ? PrintKey(key) : CommentedOut(PrintKey(key)));
+}
+
+std::string NameEffects(const BenchFormat& bench) {
+  std::string text =
+      "\n# What can be hidden in the bench; twinbench explain NAME says what each does. A block looks like this:\n"
+      "#[[effect]]\n";
+  const EffectEntry& first = bench.effects.front();
+  text += fmt::format("#name = \"{}\"\n", first.name);
+  if (!first.places.empty()) text += fmt::format("#where = \"{}\"\n", first.places.front());
+  for (const EffectEntry& effect : bench.effects) text += fmt::format("# {}: {}\n", effect.name, effect.title);
+  return text;
+}
+
 }  // namespace
+
+std::string WriteExplained(const std::string& bench) {
+  const BenchFormat& format = FormatOf(bench);
+  Scenario defaults;
+  defaults.bench = bench;
+  std::string text = fmt::format(
+      "# A scenario of the bench {}: {}.\n"
+      "# Every key stands here with its default, its meaning and its bounds. Take a # away to change one.\n\n",
+      format.name, format.title);
+  std::string table;
+  for (const ScenarioKey& key : KeysOf(defaults)) {
+    if (HasOwnTable(key)) continue;
+    if (key.table != table) text += fmt::format("\n[{}]\n", key.table);
+    table = key.table;
+    text += ExplainKey(key);
+  }
+  return format.effects.empty() ? text : text + NameEffects(format);
+}
 
 std::string WriteScenario(const Scenario& scenario) {
   Scenario copy = scenario;  // the description binds to a scenario that may be changed
   std::string text, table;
   for (const ScenarioKey& key : KeysOf(copy)) {
-    const bool own_table = std::holds_alternative<std::optional<TableErrors>*>(key.field) ||
-                           std::holds_alternative<std::optional<CompensationTable>*>(key.field);
+    const bool own_table = HasOwnTable(key);
     if (!own_table && key.table != table) text += fmt::format("\n[{}]\n", key.table);
     if (!own_table) table = key.table;
     text += PrintKey(key) + PrintUncertainty(key, scenario.uncertainties);

@@ -27,6 +27,7 @@ struct Options {
       std::numeric_limits<double>::infinity();  // between neighbouring stops of a pass; more: implausible
   double coldest_degC = -std::numeric_limits<double>::infinity();  // a thermometer beyond these is broken
   double hottest_degC = std::numeric_limits<double>::infinity();
+  bool may_home = true;  // whether a table that has lost its origin may be driven to find it
   RunLog* log = nullptr;                 // none: only readings are kept, and the first fault ends the run
   std::function<bool()> stop_requested;  // asked between moves, waits and readings
 

@@ -11,6 +11,7 @@
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/estimators/several_heads.h"
 #include "twin/core/errors.h"
+#include "twin/core/written_number.h"
 #include "twin/report/json_units.h"
 
 namespace twinbench::benches::encoder {
@@ -77,7 +78,7 @@ nlohmann::json HeadsSeparationJson(const SeveralHeads& heads) {
                            {"reference_arcsec", report::Arcsec(heads.reference_rms_rad)}}},
                          {"stops", heads.stops},
                          {"dof", report::In(1.0, heads.dof)}};
-  for (const double head_rad : heads.heads_rad) json["heads_deg"].push_back(head_rad / units::deg);
+  for (const double head_rad : heads.heads_rad) json["heads_deg"].push_back(WrittenNumber(head_rad, units::deg));
   if (!heads.reference.orders.empty()) {
     json["reference"] = CurveJson(heads.reference, "ez");
     harmonics["reference"] = HarmonicsJson(heads.reference);

@@ -12,6 +12,7 @@
 #include "twin/benches/encoder_comparison/positioning_results.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/core/errors.h"
+#include "twin/core/written_number.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
 
@@ -70,7 +71,7 @@ nlohmann::json ReversalJson(const DeviceError& e) {
 nlohmann::json ToJson(const AngleMeans& means) {
   nlohmann::json json;
   for (std::size_t i = 0; i < means.count.size(); ++i) {
-    json["position_deg"].push_back(means.position_rad[i] / units::deg);
+    json["position_deg"].push_back(WrittenNumber(means.position_rad[i], units::deg));
     json["ez_arcsec"].push_back(report::Arcsec(means.value_rad[i]));
     json["u_ez_arcsec"].push_back(report::Arcsec(means.u_rad[i]));
     json["readings"].push_back(means.count[i]);
@@ -104,7 +105,7 @@ void AddDevice(const DeviceError& e, nlohmann::json& json) {
   if (!e.curves.reversal.orders.empty()) json["reversal"] = ReversalJson(e);
   json["means"] = MeansJson(e);
   for (const PassResult& pass : e.passes) json["passes"].push_back(ToJson(pass));
-  for (const double mounting_rad : e.mounting_rad) json["mounting_deg"].push_back(mounting_rad / units::deg);
+  for (const double mounting_rad : e.mounting_rad) json["mounting_deg"].push_back(WrittenNumber(mounting_rad, units::deg));
   if (std::isfinite(e.lag_s)) json["lag"] = {{"value_s", e.lag_s}, {"u_s", report::In(1.0, e.u_lag_s)}};
   json["notes"] = e.notes;
 }

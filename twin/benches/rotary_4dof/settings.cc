@@ -263,6 +263,16 @@ void CheckVibration(const ScenarioText& text, const MechanicsSettings& m) {
                    "one velocity for each frequency");
 }
 
+void CheckStability(const ScenarioText& text, const ProcedureSettings& procedure) {
+  constexpr double kMostReadings = 1e7;
+  const double readings = procedure.stability_s / procedure.stability_interval_s;
+  if (readings <= kMostReadings) return;
+  throw InputError(Place(text, "procedure.stability_s", "procedure.stability_interval_s"),
+                   fmt::format("{:.6g} s of stability every {:.6g} s are {:.3g} readings", procedure.stability_s,
+                               procedure.stability_interval_s, readings),
+                   fmt::format("at most {:.0f}", kMostReadings));
+}
+
 void CheckProfile(const ScenarioText& text, const LaserSettings& laser) {
   if (laser.beam == "profile" && laser.profile_file.empty())
     throw InputError(Place(text, "laser.beam"), "laser.beam is \"profile\" without a file",
@@ -296,6 +306,7 @@ void CheckTogether(const ScenarioText& text, const Scenario& s) {
   CheckScanList(text, own.adc);
   CheckShifts(text, own.procedure);
   CheckPasses(text, "procedure.passes", own.procedure.passes);
+  CheckStability(text, own.procedure);
   CheckProfile(text, own.laser);
   CheckEncoders(text, own.mechanics);
   CheckVibration(text, own.mechanics);

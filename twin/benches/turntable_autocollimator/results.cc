@@ -9,6 +9,7 @@
 #include "twin/benches/turntable_autocollimator/series_json.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
+#include "twin/core/written_number.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
 
@@ -54,7 +55,7 @@ nlohmann::json ToJson(const ModelCheck& check) {
                          {"expected_rms_arcsec", report::Arcsec(check.expected_rms_rad)}};
   for (std::size_t k = 0; k < check.position_rad.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    json["position_deg"].push_back(check.position_rad[k] / units::deg);
+    json["position_deg"].push_back(WrittenNumber(check.position_rad[k], units::deg));
     json["error_arcsec"].push_back(report::Arcsec(check.error_rad[i]));
     json["rest_arcsec"].push_back(report::Arcsec(check.rest_rad[i]));
   }
@@ -64,7 +65,7 @@ nlohmann::json ToJson(const ModelCheck& check) {
 nlohmann::json ToJson(const std::vector<PointwiseError>& pointwise) {
   nlohmann::json json = nlohmann::json::object();
   for (const PointwiseError& point : pointwise) {
-    json["position_deg"].push_back(point.turntable_rad / units::deg);
+    json["position_deg"].push_back(WrittenNumber(point.turntable_rad, units::deg));
     json["ez_arcsec"].push_back(report::Arcsec(point.value_rad));
     json["u_ez_arcsec"].push_back(report::Arcsec(point.u_rad));
     json["status"].push_back(point.status == PointStatus::kOk         ? "ok"
@@ -156,7 +157,7 @@ report::CurveScore CurveOf(const std::vector<PointwiseError>& pointwise, const n
   for (const PointwiseError& point : pointwise) {
     if (!std::isfinite(point.value_rad)) continue;
     position_rad.push_back(point.turntable_rad);
-    curve.position.push_back(point.turntable_rad / units::deg);
+    curve.position.push_back(WrittenNumber(point.turntable_rad, units::deg));
     curve.estimate.push_back(point.value_rad / units::arcsec);
     curve.u.push_back(point.u_rad / units::arcsec);
     mean += curve.estimate.back();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "twin/core/units.h"
+#include "twin/core/written_number.h"
 #include "twin/report/json_units.h"
 
 namespace twinbench::benches::turntable {
@@ -26,7 +27,7 @@ nlohmann::json ToJson(const separate::turntable::AngleSeries& series) {
                          {"u_ez_arcsec", nlohmann::json::array()}};
   for (std::size_t k = 0; k < series.position_rad.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    json["position_deg"].push_back(series.position_rad[k] / units::deg);
+    json["position_deg"].push_back(WrittenNumber(series.position_rad[k], units::deg));
     json["ez_arcsec"].push_back(report::Arcsec(series.value_rad[i]));
     json["u_ez_arcsec"].push_back(report::Arcsec(series.U_rad(i)));
   }

@@ -3,6 +3,7 @@
 
 #include "twin/benches/rotary_4dof/estimators/separate.h"
 #include "twin/core/units.h"
+#include "twin/core/written_number.h"
 
 namespace twinbench::separate {
 namespace {
@@ -20,7 +21,7 @@ std::string Key(Component component) {
 
 json Column(const std::vector<double>& values, double unit) {
   json column = json::array();
-  for (const double v : values) column.push_back(std::isfinite(v) ? json(v / unit) : json(nullptr));
+  for (const double v : values) column.push_back(std::isfinite(v) ? json(WrittenNumber(v, unit)) : json(nullptr));
   return column;
 }
 

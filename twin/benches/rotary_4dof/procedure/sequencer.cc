@@ -151,12 +151,21 @@ void Sequencer::RepeatCalls() {
   bench.simulation->SetPaced(true);
 }
 
+/// Finding an origin drives a table through ways that no procedure planned.
+void Sequencer::HomeIfLost(RotaryTable& table, const char* name) {
+  if (table.State().referenced) return;
+  if (!options_.may_home)
+    throw DeviceFault(FaultKind::kRefused, name,
+                      "has lost its origin, and finding it moves the table: look whether it may turn, then agree with "
+                      "--allow-homing");
+  table.Home();
+}
+
 /// The encoders say where the tables really are. The last stop is approached from the side it was approached from.
 void Sequencer::ReturnToLastStop() {
   RotaryBench& bench = journal_.inner();
-  for (RotaryTable* table : {&bench.target, &bench.reference}) {
-    if (!table->State().referenced) table->Home();
-  }
+  HomeIfLost(bench.target, "target");
+  HomeIfLost(bench.reference, "reference");
   const double at_rad = target_rad_, behind_rad = at_rad - last_.direction * settings().run_up_steps * step_rad();
   const Sent sent = SentTo(at_rad);
   const double off_rad = std::max(std::abs(bench.target.EncoderAngle_rad() - sent.target_rad),

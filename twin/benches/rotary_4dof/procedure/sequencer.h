@@ -62,6 +62,7 @@ class Sequencer {
   void GoLive();
   void RepeatCalls();
   void ReturnToLastStop();
+  void HomeIfLost(RotaryTable& table, const char* name);
 
   Journal& journal_;
   const Scenario& scenario_;

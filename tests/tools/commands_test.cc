@@ -1,0 +1,93 @@
+#include <gmock/gmock.h>
+
+#include <regex>
+
+#include "tests/tools/program.h"
+#include "twin/core/bench_format.h"
+#include "twin/core/scenario.h"
+
+/// Commands that explain, list and check.
+namespace twinbench::test {
+namespace {
+
+using testing::HasSubstr;
+
+class Commands : public Program {};
+
+TEST_F(Commands, ANewScenarioSaysWhatTheDefaultsSay) {
+  for (const std::string& bench : BenchNames()) {
+    Succeed({"new", bench, "-o", bench + ".toml"});
+    EXPECT_THAT(Succeed({"check", bench + ".toml"}), HasSubstr(": fine. Bench " + bench));
+    EXPECT_EQ(WriteScenario(LoadScenario(At(bench + ".toml"))),
+              WriteScenario(ParseScenario("bench = \"" + bench + "\"\n", "defaults", "", {})));
+  }
+  EXPECT_EQ(Call({"new", "rotary_4dof", "-o", "rotary_4dof.toml"}).exit_code, 2) << "it is there already";
+  EXPECT_THAT(Call({"new", "rotary_4dog"}).err, HasSubstr("rotary_4dof"));
+}
+
+TEST_F(Commands, EveryKeyOfANewScenarioIsReadWhenItsHashIsTakenAway) {
+  for (const std::string& bench : BenchNames()) {
+    std::istringstream lines(Succeed({"new", bench}));
+    std::string text;
+    int keys = 0;
+    for (std::string line; std::getline(lines, line);) {
+      const bool is_effect = line.starts_with("#[[effect]]");
+      if (is_effect) break;
+      const bool is_key = std::regex_search(line, std::regex("^#( |[a-zA-Z_0-9]+ = |\\])")) && !line.starts_with("# ");
+      keys += is_key;
+      text += (is_key || line.starts_with("#  {") ? line.substr(1) : line) + "\n";
+    }
+    EXPECT_GT(keys, 10) << bench;
+    EXPECT_EQ(WriteScenario(ParseScenario(text, bench, "", {})),
+              WriteScenario(ParseScenario("bench = \"" + bench + "\"\n", "defaults", "", {})));
+  }
+}
+
+TEST_F(Commands, AScenarioThatCannotBeIsNotFine) {
+  Write("bad.toml", "bench = \"rotary_4dof\"\n[laser]\nwavelength_nm = \"red\"\n");
+  const Outcome outcome = Call({"check", "bad.toml"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("bad.toml:3"));
+  Write("small.toml", kSmall);
+  EXPECT_EQ(Json({"check", "small.toml", "--json", "-"}).at("readings"), 124);
+}
+
+TEST_F(Commands, TheListHasEveryBenchAndEffect) {
+  const nlohmann::json benches = Json({"list", "--json"}).at("benches");
+  ASSERT_EQ(benches.size(), BenchFormats().size());
+  const std::string text = Succeed({"list"});
+  for (const auto& bench : benches) {
+    EXPECT_THAT(text, HasSubstr(bench.at("name").get<std::string>()));
+    for (const auto& effect : bench.at("effects"))
+      EXPECT_THAT(text, HasSubstr(effect.at("name").get<std::string>()));
+  }
+}
+
+TEST_F(Commands, AnEffectIsExplainedWithWhatItDoes) {
+  const std::string roll = Succeed({"explain", "psd_roll"});
+  EXPECT_THAT(roll, HasSubstr("roll_mrad = 5 "));
+  EXPECT_THAT(roll, HasSubstr("what it adds to psd_a_"));
+  EXPECT_THAT(Succeed({"explain", "eccentricity", "--bench", "encoder_comparison"}), HasSubstr("deg"));
+  const Outcome unknown = Call({"explain", "psd_rol"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("the nearest is psd_roll"));
+}
+
+TEST_F(Commands, TheSchemaKnowsTheKeysOfEveryBench) {
+  const nlohmann::json schema = Json({"schema"});
+  ASSERT_EQ(schema.at("oneOf").size(), BenchFormats().size());
+  const auto& rotary = schema.at("oneOf").at(0).at("properties");
+  EXPECT_EQ(rotary.at("laser").at("properties").at("wavelength_nm").at("minimum"), 200.0);
+  EXPECT_EQ(rotary.at("target").at("properties").at("random").at("type"), "object");
+}
+
+TEST_F(Commands, BashCompletesCommandsAndOptions) {
+  Write("complete.sh", Succeed({"completion"}) +
+                           "COMP_WORDS=(twinbench di); COMP_CWORD=1; _twinbench; echo \"${COMPREPLY[*]}\"\n"
+                           "COMP_WORDS=(twinbench measure --all); COMP_CWORD=2; _twinbench; echo \"${COMPREPLY[*]}\"\n");
+  ASSERT_EQ(std::system(("bash " + At("complete.sh") + " > " + At("said")).c_str()), 0);
+  EXPECT_EQ(Read("said"), "diagnose\n--allow-homing\n");
+}
+
+}  // namespace
+}  // namespace twinbench::test

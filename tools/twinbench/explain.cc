@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
+
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/terminal.h"
+#include "twin/core/bench_format.h"
+#include "twin/core/errors.h"
+#include "twin/core/nearest_key.h"
+#include "twin/core/scenario.h"
+#include "twin/report/curve_text.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct ExplainOptions {
+  std::string effect, bench;
+};
+
+constexpr int kLeastPlaces = 5;  // of a plot
+
+/// What an effect does to the readings of its bench's usual scenario, without noise.
+struct Signature {
+  std::string column;              // the one that it moves most
+  std::vector<double> difference;  // of each reading, in the column's unit; NaN where there is none
+  double rms = 0.0;
+};
+
+double NumberIn(const ReadingColumn& column, const Reading& reading) {
+  return ParseNumber(column.print(reading)).value_or(kNaN);
+}
+
+Signature SignatureIn(const ReadingColumn& column, const std::vector<Reading>& without,
+                      const std::vector<Reading>& with) {
+  Signature signature{column.name, {}, 0.0};
+  int seen = 0;
+  for (std::size_t k = 0; k < without.size(); ++k) {
+    const double difference = NumberIn(column, with[k]) - NumberIn(column, without[k]);
+    signature.difference.push_back(difference);
+    if (std::isnan(difference)) continue;
+    signature.rms += difference * difference;
+    ++seen;
+  }
+  signature.rms = seen > 0 ? std::sqrt(signature.rms / seen) : 0.0;
+  return signature;
+}
+
+/// Of the columns in which the bench shows something, the one that differs most.
+Signature LargestSignature(const BenchFormat& bench, const std::vector<Reading>& without,
+                           const std::vector<Reading>& with) {
+  Signature largest;
+  for (const ReadingColumn& column : bench.columns) {
+    if (!column.IsShown() || !column.number) continue;
+    Signature found = SignatureIn(column, without, with);
+    if (found.rms > largest.rms) largest = std::move(found);
+  }
+  return largest;
+}
+
+/// Forward and backward means of a signature by one circumstance.
+report::CurveText CurveBy(const ReadingColumn& by, const Signature& signature, const std::vector<Reading>& readings) {
+  struct Sum {
+    double of = 0.0;
+    int n = 0;
+    void Add(double value) { of += value, ++n; }
+    double Mean() const { return n > 0 ? of / n : kNaN; }
+  };
+  std::map<double, std::pair<Sum, Sum>> places;
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const double x = NumberIn(by, readings[k]);
+    if (std::isnan(x) || std::isnan(signature.difference[k])) continue;
+    auto& [forward, backward] = places[x];
+    (readings[k].direction < 0 ? backward : forward).Add(signature.difference[k]);
+  }
+  report::CurveText curve;
+  curve.title = "what it adds to " + signature.column;
+  curve.x_name = by.name;
+  for (const auto& [x, sums] : places) {
+    curve.x.push_back(x);
+    curve.forward.push_back(sums.first.Mean());
+    curve.backward.push_back(sums.second.Mean());
+  }
+  return curve;
+}
+
+double MeanSquare(const std::vector<double>& values) {
+  double squares = 0.0;
+  int n = 0;
+  for (const double value : values) {
+    if (std::isnan(value)) continue;
+    squares += value * value;
+    ++n;
+  }
+  return n > 0 ? squares / n : 0.0;
+}
+
+/// How well a curve says what it is of: the share of the signature that is a function of the place, less what it jumps from
+/// place to place.
+double Clarity(const report::CurveText& curve, const Signature& signature) {
+  double clarity = 0.0;
+  for (const auto& course : {curve.forward, curve.backward}) {
+    std::vector<double> jumps;
+    for (std::size_t k = 1; k < course.size(); ++k) jumps.push_back(course[k] - course[k - 1]);
+    clarity += MeanSquare(course) - MeanSquare(jumps);
+  }
+  return clarity / (signature.rms * signature.rms);
+}
+
+/// Against the circumstance that it goes with.
+std::optional<report::CurveText> Picture(const BenchFormat& bench, const Signature& signature,
+                                         const std::vector<Reading>& readings) {
+  std::optional<report::CurveText> clearest;
+  for (const ReadingColumn& column : bench.columns) {
+    if (column.IsShown() || (!column.number && column.name != "time_s")) continue;
+    const report::CurveText curve = CurveBy(column, signature, readings);
+    if (curve.x.size() < kLeastPlaces) continue;
+    if (!clearest || Clarity(curve, signature) > Clarity(*clearest, signature)) clearest = curve;
+  }
+  return clearest;
+}
+
+/// The test itself, where a run has other parts as well.
+std::vector<Reading> OfTheTest(const std::vector<Reading>& readings) {
+  std::vector<Reading> test;
+  std::ranges::copy_if(readings, std::back_inserter(test),
+                       [](const Reading& reading) { return reading.phase == Phase::kFullCircle; });
+  return test.empty() ? readings : test;
+}
+
+std::string Block(const EffectEntry& effect) {
+  std::string text = fmt::format("name=\"{}\"", effect.name);
+  if (!effect.places.empty())
+    text += fmt::format(", where=\"{}\"",
+                        effect.default_place.empty() ? effect.places.front() : effect.default_place);
+  return "effect=[{" + text + "}]";
+}
+
+Scenario Usual(const BenchFormat& bench, const std::vector<std::string>& overrides) {
+  return ParseScenario(fmt::format("bench = \"{}\"\nnoise_free = true\n", bench.name), "the usual scenario", "",
+                       overrides);
+}
+
+void PrintSignature(const BenchFormat& bench, const EffectEntry& effect) {
+  const std::vector<Reading> without = OfTheTest(ReadingsOfTwin(Usual(bench, {})));
+  const std::vector<Reading> with = OfTheTest(ReadingsOfTwin(Usual(bench, {Block(effect)})));
+  const Signature signature =
+      without.size() == with.size() ? LargestSignature(bench, without, with) : Signature{};
+  if (signature.rms == 0.0) {
+    fmt::print("    At this size it leaves the readings of the usual scenario as they are.\n");
+    return;
+  }
+  fmt::print("    At this size it moves {} most: {:.3g} rms over the usual scenario, without noise.\n\n",
+             signature.column, signature.rms);
+  if (const auto picture = Picture(bench, signature, with))
+    fmt::print("{}\n", report::PlotOf(*picture, LettersOfStdout()));
+}
+
+void Explain(const BenchFormat& bench, const EffectEntry& effect) {
+  fmt::print("{}, on {}: {}\n", effect.name, bench.name, effect.title);
+  for (const EffectParameter& p : effect.parameters)
+    fmt::print("    {} = {:g}   {}; from {:g} to {:g}\n", p.Key(), effect.Plausible(p) / p.to_SI, p.meaning,
+               p.lower_SI / p.to_SI, p.upper_SI / p.to_SI);
+  if (!effect.places.empty()) fmt::print("    where = {}\n", fmt::join(effect.places, ", "));
+  fmt::print("    twinbench run SCENARIO -o RUN --set '{}'\n", Block(effect));
+  PrintSignature(bench, effect);
+}
+
+[[noreturn]] void RefuseEffect(const ExplainOptions& options) {
+  std::vector<std::string> known;
+  for (const BenchFormat* bench : BenchFormats()) {
+    if (!options.bench.empty() && bench->name != options.bench) continue;
+    for (const EffectEntry& effect : bench->effects) known.push_back(effect.name);
+  }
+  throw InputError("explain", "no bench has an effect " + options.effect,
+                   "one that `twinbench list` has; the nearest is " + Nearest(options.effect, known));
+}
+
+void ExplainEverywhere(const ExplainOptions& options) {
+  if (!options.bench.empty() && !FindFormat(options.bench)) throw UnknownBench("--bench", options.bench);
+  bool found = false;
+  for (const BenchFormat* bench : BenchFormats()) {
+    const EffectEntry* effect = FindEffect(options.effect, bench->name);
+    if (!effect || (!options.bench.empty() && bench->name != options.bench)) continue;
+    if (found) fmt::print("\n");
+    Explain(*bench, *effect);
+    found = true;
+  }
+  if (!found) RefuseEffect(options);
+}
+
+}  // namespace
+
+void AddExplain(CLI::App& app) {
+  auto* command = app.add_subcommand("explain", "Say what an effect is, and show what it does to readings");
+  auto options = std::make_shared<ExplainOptions>();
+  command->add_option("effect", options->effect, "its name, as `twinbench list` has it")->required();
+  command->add_option("--bench", options->bench, "on this bench only");
+  command->callback([options] { ExplainEverywhere(*options); });
+}
+
+}  // namespace twinbench::tools
