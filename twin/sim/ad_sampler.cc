@@ -80,13 +80,13 @@ void NextNormals(std::size_t n, Stream& noise, Chunk& chunk) {
   noise.FillNormals(std::span(chunk.normals).subspan(kChannels, n));
 }
 
-void QuantiseChunk(const CodeWidths* widths, Simd simd, const Quantiser& quantiser, std::size_t n, Chunk& chunk,
-                   CodeSums& sums) {
+void QuantiseChunk(const CodeWidths* widths, Simd simd, const Quantiser& quantiser, std::size_t n, bool keep_codes,
+                   Chunk& chunk, CodeSums& sums) {
   const std::span<const float> signal = std::span(chunk.signal).first(n);
   const std::span<const float> normals = std::span(chunk.normals).first(n + kChannels);
   const std::span<std::int32_t> codes = std::span(chunk.codes).first(n);
   if (widths != nullptr) return Quantise(*widths, quantiser, signal, normals, codes, sums);
-  Quantise(simd, quantiser, signal, normals, codes, sums);
+  Quantise(simd, quantiser, signal, normals, keep_codes ? codes : std::span<std::int32_t>{}, sums);
 }
 
 /// Draws, converts and counts every sample.
@@ -101,7 +101,7 @@ CodeSums CountEverySample(const AdcSettings& adc, const AdInput& input, const Ad
     const auto n = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total - first));
     if (first == 0 || !waveform.IsConstant()) FillSignal(waveform, quantiser, LsbOf(adc), first, n, chunk);
     NextNormals(n, noise, chunk);
-    QuantiseChunk(input.widths, noise.simd(), quantiser, n, chunk, sums);
+    QuantiseChunk(input.widths, noise.simd(), quantiser, n, request.keep_raw, chunk, sums);
     if (!request.keep_raw) continue;
     for (std::size_t i = 0; i < n; ++i) raw.push_back(static_cast<std::int16_t>(chunk.codes[i]));
   }
