@@ -74,6 +74,14 @@ void FillSignal(const Waveform& waveform, const Quantiser& quantiser, double lsb
   }
 }
 
+/// Where every scan is the same, one tells them all.
+void RepeatScan(const Waveform& waveform, const Quantiser& quantiser, double lsb_V, std::size_t n, Chunk& chunk) {
+  FillSignal(waveform, quantiser, lsb_V, 0, kChannels, chunk);
+  for (std::size_t done = kChannels; done < n; done *= 2) {
+    std::copy_n(chunk.signal.begin(), std::min(done, n - done), chunk.signal.begin() + std::ptrdiff_t(done));
+  }
+}
+
 /// The last scan of the chunk before becomes the scan in front of this one.
 void NextNormals(std::size_t n, Stream& noise, Chunk& chunk) {
   std::copy_n(chunk.normals.begin() + kChunk, kChannels, chunk.normals.begin());
@@ -97,9 +105,11 @@ CodeSums CountEverySample(const AdcSettings& adc, const AdInput& input, const Ad
   Chunk chunk;
   CodeSums sums;
   noise.FillNormals(std::span(chunk.normals).subspan(kChunk));
+  if (waveform.IsConstant())
+    RepeatScan(waveform, quantiser, LsbOf(adc), static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total)), chunk);
   for (std::int64_t first = 0; first < total; first += kChunk) {
     const auto n = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total - first));
-    if (first == 0 || !waveform.IsConstant()) FillSignal(waveform, quantiser, LsbOf(adc), first, n, chunk);
+    if (!waveform.IsConstant()) FillSignal(waveform, quantiser, LsbOf(adc), first, n, chunk);
     NextNormals(n, noise, chunk);
     QuantiseChunk(input.widths, noise.simd(), quantiser, n, request.keep_raw, chunk, sums);
     if (!request.keep_raw) continue;

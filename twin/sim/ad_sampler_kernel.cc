@@ -167,8 +167,11 @@ void QuantiseLanes(Simd simd, const Work& work, LaneSums& sums) {
 
 void AddLanes(const Lanes& lanes, const LaneSums& lane_sums, CodeSums& sums) {
   for (std::size_t l = 0; l < kLanes; ++l) {
-    AddCode(l % kChannels, lanes.base[l] + lane_sums.lowest[l], lane_sums.deviation[l], lane_sums.square[l], sums);
-    AddCode(l % kChannels, lanes.base[l] + lane_sums.highest[l], 0, 0, sums);
+    const std::size_t k = l % kChannels;
+    sums.deviation[k] += lane_sums.deviation[l];
+    sums.square[k] += lane_sums.square[l];
+    sums.lowest[k] = std::min(sums.lowest[k], lanes.base[l] + lane_sums.lowest[l]);
+    sums.highest[k] = std::max(sums.highest[k], lanes.base[l] + lane_sums.highest[l]);
   }
 }
 
