@@ -19,6 +19,7 @@
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/optical_path.h"
+#include "twin/benches/rotary_4dof/twin/table_stack.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/scenario.h"
 #include "twin/core/stream.h"
@@ -86,7 +87,11 @@ double Median(std::vector<double> values) {
 class Kernels {
  public:
   explicit Kernels(const Scenario& scenario)
-      : scenario_(scenario), path_(scenario), noise_(scenario.seed, "noise"), others_(scenario.seed, "others") {}
+      : scenario_(scenario), path_(scenario), noise_(scenario.seed, "noise"), others_(scenario.seed, "others") {
+    sim::EventQueue queue;
+    const mechanics::StackState rest = sim::Axes(sim::StackOfBench(path_.actual()), queue).Look();
+    bearings_ = {rest.target_bearing, rest.reference_bearing};  // deflected by the weights that they carry
+  }
 
   void Run() {
     const TableSettings& table = RotaryOf(scenario_).target;
@@ -107,7 +112,7 @@ class Kernels {
       sim::Moment moment;
       moment.target_rad = angle_rad + knot;
       moment.reference_rad = -angle_rad;
-      const Pose X_LG = path_.stand().GratingPose(moment, {}, {angle_rad, -angle_rad}, {});
+      const Pose X_LG = path_.stand().GratingPose(moment, {}, {angle_rad, -angle_rad}, bearings_);
       sum_ += path_.light().Trace(X_LG, path_.light().Nominal(0.0)).uv_m[0];
     }
     RotaryOf(scenario_).adc.every_sample ? DrawSamples() : DrawStatistics();
@@ -138,6 +143,7 @@ class Kernels {
   Scenario scenario_;
   sim::OpticalPath path_;
   Stream noise_, others_;
+  std::array<mechanics::BearingPose, 2> bearings_;
   double sum_ = 0.0;
 };
 

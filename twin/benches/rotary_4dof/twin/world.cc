@@ -103,7 +103,7 @@ Acquisition World::Acquire(int n_samples, bool keep_raw) {
   const Time start = queue_.Now();
   const Duration block = BlockTime(RotaryOf(actual()).adc, n_samples);
   const int steps = StepsOf(block, Shortest_s(), kChannels * n_samples);
-  BlockCourse course(block / steps);
+  BlockCourse course(block / steps, steps + 1);
   Spots seen;  // at the block's begin, or where they were lost
   for (int k = 0; k <= steps; ++k) {
     adc_.At(start + k * (block / steps), [&, k] {
