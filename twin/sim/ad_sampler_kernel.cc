@@ -12,20 +12,29 @@ namespace {
 
 constexpr int kLanes = 16;  // four scans side by side: lane l is channel l mod 4
 
-/// The quantiser's constants once per lane.
+/// What the four channels have, once per lane.
+template <class T>
+void ForEachLane(T (&lanes)[kLanes]) {
+  std::copy_n(lanes, kChannels, lanes + kChannels);
+  std::copy_n(lanes, 2 * kChannels, lanes + 2 * kChannels);
+}
+
+/// The quantiser's constants.
 struct Lanes {
   explicit Lanes(const Quantiser& quantiser) {
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      const QuantiserChannel& c = quantiser.channel[l % kChannels];
-      noise[l] = c.noise;
-      noise_before[l] = c.noise_before;
-      step_at[l] = c.step_at;
-      step[l] = c.step;
-      base[l] = c.base;
-      lowest[l] = static_cast<float>(quantiser.lowest - c.base);
-      highest[l] = static_cast<float>(quantiser.highest - c.base);
+    for (std::size_t k = 0; k < kChannels; ++k) {
+      const QuantiserChannel& c = quantiser.channel[k];
+      noise[k] = c.noise;
+      noise_before[k] = c.noise_before;
+      step_at[k] = c.step_at;
+      step[k] = c.step;
+      base[k] = c.base;
+      lowest[k] = static_cast<float>(quantiser.lowest - c.base);
+      highest[k] = static_cast<float>(quantiser.highest - c.base);
       is_plain = is_plain && c.noise_before == 0.0f && c.step == 0.0f;
     }
+    for (auto* constants : {&noise, &noise_before, &step_at, &step, &lowest, &highest}) ForEachLane(*constants);
+    ForEachLane(base);
   }
   float noise[kLanes], noise_before[kLanes], step_at[kLanes], step[kLanes];
   float lowest[kLanes], highest[kLanes];  // end codes less the base: whole numbers
@@ -95,8 +104,9 @@ template <bool kIsPlain>
 
 bool IsNarrow(const LaneSums& sums) {
   constexpr std::int32_t kNarrow = 5792;  // 64 * 5792^2 < 2^31
-  return *std::min_element(sums.lowest, sums.lowest + kLanes) >= -kNarrow &&
-         *std::max_element(sums.highest, sums.highest + kLanes) <= kNarrow;
+  int wide = 0;
+  for (std::size_t l = 0; l < kLanes; ++l) wide |= (sums.lowest[l] < -kNarrow) | (sums.highest[l] > kNarrow);
+  return wide == 0;
 }
 
 [[gnu::always_inline]] inline void ConvertLoop(const Lanes& lanes, std::size_t n, const float* __restrict signal,
