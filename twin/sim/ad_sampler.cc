@@ -77,9 +77,8 @@ void FillSignal(const Waveform& waveform, const Quantiser& quantiser, double lsb
 /// Where every scan is the same, one tells them all.
 void RepeatScan(const Waveform& waveform, const Quantiser& quantiser, double lsb_V, std::size_t n, Chunk& chunk) {
   FillSignal(waveform, quantiser, lsb_V, 0, kChannels, chunk);
-  for (std::size_t done = kChannels; done < n; done *= 2) {
-    std::copy_n(chunk.signal.begin(), std::min(done, n - done), chunk.signal.begin() + std::ptrdiff_t(done));
-  }
+  float* const signal = chunk.signal.data();
+  for (std::size_t done = kChannels; done < n; done *= 2) std::copy_n(signal, std::min(done, n - done), signal + done);
 }
 
 /// The last scan of the chunk before becomes the scan in front of this one.
@@ -105,8 +104,10 @@ CodeSums CountEverySample(const AdcSettings& adc, const AdInput& input, const Ad
   Chunk chunk;
   CodeSums sums;
   noise.FillNormals(std::span(chunk.normals).subspan(kChunk));
-  if (waveform.IsConstant())
-    RepeatScan(waveform, quantiser, LsbOf(adc), static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total)), chunk);
+  if (waveform.IsConstant()) {
+    const auto n = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total));
+    RepeatScan(waveform, quantiser, LsbOf(adc), n, chunk);
+  }
   for (std::int64_t first = 0; first < total; first += kChunk) {
     const auto n = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total - first));
     if (!waveform.IsConstant()) FillSignal(waveform, quantiser, LsbOf(adc), first, n, chunk);
