@@ -259,11 +259,16 @@ TEST(TakeBlock, LosesTheBlockWhenTheFifoRunsOver) {
   EXPECT_EQ(Take(input, {.n_samples = 100000}, 0, adc).status, ReadingStatus::kOk);
 }
 
+bool SameNumber(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
 bool SameBits(const AdBlock& a, const AdBlock& b) {
   bool same = a.raw == b.raw && a.saturated == b.saturated;
   for (std::size_t k = 0; k < 4; ++k) {
-    same = same && a.channel[k].mean_V == b.channel[k].mean_V && a.channel[k].std_V == b.channel[k].std_V &&
-           a.channel[k].min_V == b.channel[k].min_V && a.channel[k].max_V == b.channel[k].max_V;
+    const ChannelBlock &x = a.channel[k], &y = b.channel[k];
+    same = same && SameNumber(x.mean_V, y.mean_V) && SameNumber(x.std_V, y.std_V) &&
+           SameNumber(x.min_V, y.min_V) && SameNumber(x.max_V, y.max_V);
   }
   return same;
 }
@@ -290,6 +295,25 @@ TEST(TakeBlock, RepeatsItselfAndDoesNotDependOnKeepingRawCodes) {
   EXPECT_FALSE(SameBits(with_raw, Take(Rich(6e-3), {.n_samples = 500, .keep_raw = true}, 4)));
   with_raw.raw.clear();
   EXPECT_TRUE(SameBits(with_raw, Take(Rich(6e-3), {.n_samples = 500}, 3)));
+}
+
+/// Noise from less than a code to thousands, whose squares need more than 32 bits, and blocks that clip.
+TEST(TakeBlock, CountsTheSameCodesWithoutKeepingThem) {
+  for (const double noise_V : {1e-4, 6e-3, 0.3, 1.5, 5.0}) {
+    for (const bool is_plain : {true, false}) {
+      const AdInput input = is_plain ? Levels(1.0, -2.0, 3.0, -4.0, noise_V) : Rich(noise_V);
+      for (const int n : {1, 3, 4, 255, 260, 1000}) {
+        AdBlock with_raw = Take(input, {.n_samples = n, .keep_raw = true});
+        with_raw.raw.clear();
+        for (const Simd simd : kAllSimd) {
+          if (!SimdRuns(simd)) continue;
+          Stream noise(42, "adc.noise");
+          noise.UseSimd(simd);
+          EXPECT_TRUE(SameBits(with_raw, TakeBlock(kAdc, input, {.n_samples = n}, noise))) << noise_V << " " << n;
+        }
+      }
+    }
+  }
 }
 
 TEST(TakeBlock, UsesOneStreamBlockAScanAndOneInFront) {

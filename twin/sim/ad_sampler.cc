@@ -74,19 +74,26 @@ void FillSignal(const Waveform& waveform, const Quantiser& quantiser, double lsb
   }
 }
 
+/// Where every scan is the same, one tells them all.
+void RepeatScan(const Waveform& waveform, const Quantiser& quantiser, double lsb_V, std::size_t n, Chunk& chunk) {
+  FillSignal(waveform, quantiser, lsb_V, 0, kChannels, chunk);
+  float* const signal = chunk.signal.data();
+  for (std::size_t done = kChannels; done < n; done *= 2) std::copy_n(signal, std::min(done, n - done), signal + done);
+}
+
 /// The last scan of the chunk before becomes the scan in front of this one.
 void NextNormals(std::size_t n, Stream& noise, Chunk& chunk) {
   std::copy_n(chunk.normals.begin() + kChunk, kChannels, chunk.normals.begin());
   noise.FillNormals(std::span(chunk.normals).subspan(kChannels, n));
 }
 
-void QuantiseChunk(const CodeWidths* widths, Simd simd, const Quantiser& quantiser, std::size_t n, Chunk& chunk,
-                   CodeSums& sums) {
+void QuantiseChunk(const CodeWidths* widths, Simd simd, const Quantiser& quantiser, std::size_t n, bool keep_codes,
+                   Chunk& chunk, CodeSums& sums) {
   const std::span<const float> signal = std::span(chunk.signal).first(n);
   const std::span<const float> normals = std::span(chunk.normals).first(n + kChannels);
   const std::span<std::int32_t> codes = std::span(chunk.codes).first(n);
   if (widths != nullptr) return Quantise(*widths, quantiser, signal, normals, codes, sums);
-  Quantise(simd, quantiser, signal, normals, codes, sums);
+  Quantise(simd, quantiser, signal, normals, keep_codes ? codes : std::span<std::int32_t>{}, sums);
 }
 
 /// Draws, converts and counts every sample.
@@ -97,11 +104,15 @@ CodeSums CountEverySample(const AdcSettings& adc, const AdInput& input, const Ad
   Chunk chunk;
   CodeSums sums;
   noise.FillNormals(std::span(chunk.normals).subspan(kChunk));
+  if (waveform.IsConstant()) {
+    const auto n = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total));
+    RepeatScan(waveform, quantiser, LsbOf(adc), n, chunk);
+  }
   for (std::int64_t first = 0; first < total; first += kChunk) {
     const auto n = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, total - first));
-    if (first == 0 || !waveform.IsConstant()) FillSignal(waveform, quantiser, LsbOf(adc), first, n, chunk);
+    if (!waveform.IsConstant()) FillSignal(waveform, quantiser, LsbOf(adc), first, n, chunk);
     NextNormals(n, noise, chunk);
-    QuantiseChunk(input.widths, noise.simd(), quantiser, n, chunk, sums);
+    QuantiseChunk(input.widths, noise.simd(), quantiser, n, request.keep_raw, chunk, sums);
     if (!request.keep_raw) continue;
     for (std::size_t i = 0; i < n; ++i) raw.push_back(static_cast<std::int16_t>(chunk.codes[i]));
   }

@@ -148,10 +148,13 @@ std::array<ChannelBlock, kChannels> DrawDirectly(const AdcSettings& adc, const A
   std::array<ChannelBlock, kChannels> blocks;
   for (std::size_t k = 0; k < kChannels; ++k) {
     const ChannelInput& own = input.channel[k];
-    const Band band = BandOf(adc, input, k, n_samples);
     const double around =
         mean_noise[k] + own.crosstalk * mean_noise[ChannelBefore(k)] + u_lsb / root_n * noise.Normal();
-    blocks[k].mean_V = moments[k].mean_V + ConstantStep(own, band.low_V, band.high_V) + around;
+    blocks[k].mean_V = moments[k].mean_V + around;
+    if (own.step_V != 0.0) {
+      const Band band = BandOf(adc, input, k, n_samples);
+      blocks[k].mean_V = moments[k].mean_V + ConstantStep(own, band.low_V, band.high_V) + around;
+    }
     if (n_samples < 2) continue;
     const double squares = DrawSquares(moments[k].squares_V2, SampleVariance(adc, input, k), n_samples, noise);
     blocks[k].std_V = std::sqrt(squares / (n_samples - 1.0));

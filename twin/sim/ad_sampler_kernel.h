@@ -43,7 +43,7 @@ void AddCode(std::size_t channel, std::int32_t code, std::int64_t deviation, std
 ///
 /// @param signal   Noise-free deviation from the base code [LSB]; whole scans, at most kChunk.
 /// @param normals  Four more than `signal`: conversion i has normals[i + 4], the one before it normals[i + 3].
-/// @param codes    Out, as long as `signal`.
+/// @param codes    Out, as long as `signal`; or empty where the sums are all that is wanted: quicker.
 void Quantise(Simd simd, const Quantiser& quantiser, std::span<const float> signal, std::span<const float> normals,
               std::span<std::int32_t> codes, CodeSums& sums);
 

@@ -71,6 +71,7 @@ bool Axes::StartMove(mechanics::Axis axis, double to_rad) {
   CatchUp();
   d.departed_rad = Encoder_rad(axis);
   plant_->StartMove(axis, to_rad, duration_s);
+  plant_state_.reset();
   d.commanded_rad = to_rad;
   d.direction = travel_rad > 0.0 ? 1 : -1;
   d.arrival = queue_.Now() + FromSeconds(duration_s);
@@ -116,13 +117,18 @@ void Axes::Serve() {
   });
 }
 
-double Axes::Encoder_rad(mechanics::Axis axis) const {
-  const mechanics::StackState state = plant_->State();
+const mechanics::StackState& Axes::PlantState() {
+  CatchUp();
+  if (!plant_state_) plant_state_ = plant_->State();
+  return *plant_state_;
+}
+
+double Axes::Encoder_rad(mechanics::Axis axis) {
+  const mechanics::StackState& state = PlantState();
   return axis == mechanics::Axis::kTarget ? state.target_encoder_rad : state.reference_encoder_rad;
 }
 
 double Axes::Travelled_rad(mechanics::Axis axis) {
-  CatchUp();
   return std::abs(Encoder_rad(axis) - drive(axis).departed_rad);
 }
 
@@ -146,6 +152,7 @@ void Axes::Stop(mechanics::Axis axis) {
   if (!Moving(axis)) return;
   CatchUp();
   plant_->Stop(axis);
+  plant_state_.reset();
   Drive& d = drive(axis);
   d.commanded_rad = plant_->CommandedEnd_rad(axis);
   d.arrival = queue_.Now() + FromSeconds(mechanics::Plant::kBraking_s);
@@ -164,6 +171,7 @@ bool Axes::ComeToRest() {
 void Axes::Mount(const mechanics::ChainGeometry& geometry) {
   CatchUp();
   plant_->Mount(geometry);
+  plant_state_.reset();
   restlessness_.Mount(geometry);
 }
 
@@ -172,8 +180,7 @@ mechanics::StackState Axes::Look() {
 }
 
 mechanics::StackState Axes::LookBack(Time time) {
-  CatchUp();
-  mechanics::StackState state = plant_->State();
+  mechanics::StackState state = PlantState();
   restlessness_.AddTo(state, time);
   return state;
 }
@@ -182,6 +189,7 @@ void Axes::CatchUp() {
   const Time now = queue_.Now();
   if (now == plant_time_) return;
   plant_->Advance(ToSeconds(now - plant_time_));
+  plant_state_.reset();
   plant_time_ = now;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "mechanics/plant.h"
 #include "twin/core/shared_settings.h"
@@ -76,7 +77,8 @@ class Axes {
   };
   Drive& drive(mechanics::Axis axis) { return drives_[static_cast<std::size_t>(axis)]; }
   const Drive& drive(mechanics::Axis axis) const { return drives_[static_cast<std::size_t>(axis)]; }
-  double Encoder_rad(mechanics::Axis axis) const;
+  double Encoder_rad(mechanics::Axis axis);
+  const mechanics::StackState& PlantState();
   void CatchUp();
   void Serve();
 
@@ -86,6 +88,7 @@ class Axes {
   bool is_driven_;        // by servos, not straight to where they are told
   bool serving_ = false;  // a servo step is scheduled
   std::unique_ptr<mechanics::Plant> plant_;
+  std::optional<mechanics::StackState> plant_state_;  // as long as nothing has happened to the plant since
   Restlessness restlessness_;
   std::array<Drive, 2> drives_;
   Time plant_time_{};

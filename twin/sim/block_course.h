@@ -19,8 +19,11 @@ class BlockCourse {
 
   static constexpr double kKnotsAPeriod = 16.0;
 
-  /// @param step  Between knots; positive.
-  explicit BlockCourse(Duration step) : step_s_(ToSeconds(step)) {}
+  /// @param step   Between knots; positive.
+  /// @param knots  How many are expected.
+  explicit BlockCourse(Duration step, int knots = 0) : step_s_(ToSeconds(step)) {
+    knots_V_.reserve(static_cast<std::size_t>(knots));
+  }
   /// Nothing changes.
   explicit BlockCourse(const Voltages& level_V) : step_s_(1.0) { Add(level_V); }
 

@@ -128,7 +128,7 @@ Acquisition World::Acquire(int n_samples, bool keep_raw) {
   const Time start = queue_.Now();
   const Duration block = BlockTime(RotaryOf(actual()).adc, n_samples);
   const int steps = StepsOf(block, Shortest_s(), kChannels * n_samples);
-  Followed followed{Before(), BlockCourse(block / steps), {}};
+  Followed followed{Before(), BlockCourse(block / steps, steps + 1), {}};
   for (int k = 0; k <= steps; ++k) {
     adc_.At(start + k * (block / steps), [&, k] {
       const Spots spots = AddKnot(followed.course);
