@@ -18,12 +18,12 @@ using testing::ElementsAre;
 TEST(EffectCatalogue, HasTheEffectsOfTheRotaryBench) {
   std::vector<std::string> names;
   for (const EffectEntry& entry : EffectCatalogue(kRotaryBench)) names.push_back(entry.name);
-  EXPECT_THAT(names, testing::UnorderedElementsAre("psd_gain", "psd_roll", "psd_nonlinearity", "stray_light",
-                                                   "psd_distance", "wavelength_offset", "grating_pitch", "mode_hop",
-                                                   "wavelength_temperature", "incidence_offset", "laser_drift",
-                                                   "post_growth", "mount_creep", "thermal_tilt", "backlash",
-                                                   "settling", "reclamp_frame", "bearing_half_frequency", "tone",
-                                                   "slip", "adc_step", "crosstalk", "outliers", "convention"));
+  EXPECT_THAT(names, testing::UnorderedElementsAre(
+                         "psd_gain", "psd_roll", "psd_nonlinearity", "stray_light", "background", "grating_form",
+                         "encoder_subdivision", "psd_distance", "wavelength_offset", "grating_pitch", "mode_hop",
+                         "wavelength_temperature", "incidence_offset", "laser_drift", "post_growth", "mount_creep",
+                         "thermal_tilt", "backlash", "settling", "reclamp_frame", "bearing_half_frequency", "tone",
+                         "slip", "adc_step", "crosstalk", "outliers", "convention"));
 }
 
 TEST(EffectCatalogue, HasTheEffectsOfTheAngleComparison) {

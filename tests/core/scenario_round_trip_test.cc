@@ -239,6 +239,7 @@ void MakeWholeTeethAndLines(Scenario& s) {
   if (s.bench == kRotaryBench) {
     MechanicsSettings& m = RotaryOf(s).mechanics;
     m.encoder_periods = 100;
+    RotaryOf(s).chain.dnl_lsb = 0.0;  // a file says it
     m.vibration_velocity_m_s.resize(m.vibration_frequency_Hz.size(), 1e-6);
   }
   if (s.bench == kHobBench) HobOf(s).table_encoder.lines = 5 * HobOf(s).hob_procedure.samples_per_turn;

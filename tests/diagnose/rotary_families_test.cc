@@ -88,6 +88,7 @@ std::vector<EffectCase> Cases() {
           {"psd_roll", "psd_b", 5e-3, 0.999},
           {"psd_nonlinearity", "psd_a", 180000.0, 0.999},
           {"stray_light", "psd_b", 0.01, 0.999},
+          {"background", "psd_a", 5e-6, 0.999},
           {"psd_distance", "psd_a", 1e-3, 0.999},
           {"wavelength_offset", "", 2e-9, 0.99},
           {"wavelength_temperature", "", 0.25e-9, 0.99},

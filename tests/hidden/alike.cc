@@ -9,7 +9,7 @@ namespace {
 
 /// Signatures of one shape: both axes of a detector too short or too long; on the angle bench, errors of one order.
 std::vector<std::string> AlikeByShape(const std::string& effect) {
-  const std::vector<std::vector<std::string>> sets = {{"psd_distance", "stray_light"},
+  const std::vector<std::vector<std::string>> sets = {{"psd_distance", "stray_light", "background"},
                                                       {"eccentricity", "signal_offset", "tilt"},
                                                       {"bar_gain", "bar_nonlinearity"},
                                                       {"focal_length", "spot_size"},

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,6 +97,62 @@ TEST(Controls, APostThatGrowsIsNamedWithItsSizeUnlessTheTemperaturesAreShuffled)
     EXPECT_LT(cause->parameters.at(0).u, 1.0 * units::um);
     EXPECT_FALSE(Names(Diagnosed(Shuffled(readings, &Reading::temperature_degC)), "post_growth"));
   }
+}
+
+// With a laser of constant power a background is stray light, and both are nearly a PSD that stands too far off.
+TEST(Controls, ABackgroundTiesWithStrayLight) {
+  const Diagnosis d = Diagnosed(ReadingsWith(Effect("background", "psd_b", {{"current", 10e-6}})));
+  SCOPED_TRACE(Judge({}, d).answer);
+  EXPECT_EQ(d.verdict, diagnose::Verdict::kTie);
+  const Cause* const background = Find(d, "background", "psd_b");
+  const Cause* const stray = Find(d, "stray_light", "psd_b");
+  ASSERT_TRUE(background != nullptr && stray != nullptr);
+  EXPECT_NEAR(background->probability, stray->probability, 0.1);
+  // One of both was fitted: the current, or its share of that of the light.
+  const bool is_fitted = !background->parameters.empty();
+  const diagnose::ParameterEstimate& size = (is_fitted ? background : stray)->parameters.at(0);
+  EXPECT_NEAR(size.value, is_fitted ? 10e-6 : 10e-6 / (0.45 * 5e-3 * 0.339), 4.0 * size.u);
+  const auto is_stray = [](const diagnose::Rival& rival) { return rival.effect == "stray_light"; };
+  const auto rival = std::ranges::find_if(background->indistinguishable_from, is_stray);
+  ASSERT_NE(rival, background->indistinguishable_from.end());
+  EXPECT_GT(rival->overlap, 0.99);
+  EXPECT_THAT(background->next_measurement, testing::HasSubstr("power"));
+}
+
+/// What the diagnosis says of a cause that it cannot see.
+std::string CouldBias(const Diagnosis& d, const std::string& effect, const std::string& where) {
+  const auto found = std::ranges::find_if(
+      d.invisible, [&](const diagnose::Invisible& one) { return one.effect == effect && one.where == where; });
+  return found == d.invisible.end() ? "(it says that it would be seen)" : found->could_bias;
+}
+
+// Whatever turns the grating as a function of one table's angle is that table's error, as far as readings go.
+TEST(Controls, AFormOfTheGratingAndAnEncodersSubdivisionAreSaidToHideInTheTables) {
+  Scenario actual = Drawn(Design::kRotary, kSeed);
+  Scenario believed = Believed(Design::kRotary);
+  for (Scenario* s : {&actual, &believed}) {
+    RotaryOf(*s).mechanics.encoder_periods = 36001;  // at 36 stops as once a turn
+    RotaryOf(*s).centring_m = {40e-6, 20e-6};
+  }
+  const EffectSettings subdivision = Effect("encoder_subdivision", "target", {{"amplitude", 2.0 * arcsec}});
+  const EffectSettings sphere = Effect("grating_form", "sphere", {{"height", 600.0 * units::nm}});
+  for (const EffectSettings& effect : {subdivision, sphere}) {
+    actual.effects = {effect};
+    const Diagnosis d = Diagnosed(TakeReadings(actual), believed);
+    SCOPED_TRACE(Judge({}, d).answer);
+    EXPECT_EQ(d.verdict, diagnose::Verdict::kNone) << effect.name;
+    EXPECT_THAT(CouldBias(d, "encoder_subdivision", "target"), testing::HasSubstr("target ez"));
+    EXPECT_THAT(CouldBias(d, "encoder_subdivision", "reference"), testing::HasSubstr("ez"));
+    for (const char* form : {"sphere", "astigmatism"})
+      EXPECT_THAT(CouldBias(d, "grating_form", form), testing::HasSubstr("arcsec")) << form;
+  }
+}
+
+// Unless it is so large that the seats, some 10 um apart, lead the beam over it in another way in every set-up.
+TEST(Controls, AFormOfManyWavesIsSeenAndNotNamed) {
+  Scenario actual = Drawn(Design::kRotary, kSeed);
+  actual.effects = {Effect("grating_form", "sphere", {{"height", 20.0 * units::um}})};
+  EXPECT_EQ(Diagnosed(TakeReadings(actual)).verdict, diagnose::Verdict::kUnknown);
 }
 
 TEST(Controls, OppositeSizesGiveOppositeEstimates) {

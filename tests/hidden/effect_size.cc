@@ -15,6 +15,7 @@ const std::map<std::string, std::string>& UsualSizes() {
                                                            {"psd_roll", "roll"},
                                                            {"psd_nonlinearity", "cubic"},
                                                            {"stray_light", "fraction"},
+                                                           {"background", "current"},
                                                            {"psd_distance", "distance_error"},
                                                            {"wavelength_offset", "wavelength_error"},
                                                            {"grating_pitch", "pitch_error"},

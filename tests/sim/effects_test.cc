@@ -9,6 +9,7 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/effect.h"
 #include "twin/core/effect_catalogue.h"
+#include "twin/core/errors.h"
 
 namespace twinbench::sim {
 namespace {
@@ -112,6 +113,58 @@ TEST(Effects, StrayLightPullsTheSpotToTheCentre) {
   EXPECT_NEAR(pulled[2] / plain[2], 1.0 / 1.01, 1e-12);
   EXPECT_NEAR(pulled[3] / plain[3], 1.0 / 1.01, 1e-12);
   EXPECT_EQ(pulled[0], plain[0]);
+}
+
+TEST(Effects, ABackgroundPullsTheSpotByItsShareOfTheCurrent) {
+  Scenario scenario = Quiet();
+  RotaryOf(scenario).laser.power_drift_per_s = -0.3 / units::hour;
+  const double current_A = 8e-6, light_A = 0.45 * 5e-3 * 0.339;
+  Pair pair(Effect("background", "psd_b", {{"current", current_A}}), scenario);
+  pair.Do(kTurnGrating);
+  for (const double left : {1.0, 0.7}) {
+    const Volts plain = Read(pair.without), pulled = Read(pair.with);
+    EXPECT_NEAR(pulled[2] / plain[2], 1.0 / (1.0 + current_A / (left * light_A)), 1e-7);
+    EXPECT_NEAR(pulled[3] / plain[3], 1.0 / (1.0 + current_A / (left * light_A)), 1e-7);
+    EXPECT_EQ(pulled[0], plain[0]);
+    pair.Do([](RotaryBench bench) { bench.clock.Wait(std::chrono::hours(1)); });
+  }
+}
+
+// The front stands aslant by 2 h x / (half width)^2 where the beam meets it; orders follow as they follow a yaw
+// and, turned the other way along z by a saddle, a tilt.
+TEST(Effects, AGratingOfAnotherFormTurnsTheOrdersWhereTheBeamIsBesideItsMiddle) {
+  Scenario scenario = Quiet();
+  RotaryOf(scenario).laser.position_m.x() = 1.0 * units::mm;
+  RotaryOf(scenario).laser.position_m.z() = 0.5 * units::mm;
+  const double height_m = 600.0 * units::nm, half_m = 12.5 * units::mm;
+  const double x_slope = 2.0 * height_m * 1e-3 / (half_m * half_m), z_slope = 0.5 * x_slope;
+  for (const bool is_sphere : {true, false}) {
+    Pair pair(Effect("grating_form", is_sphere ? "sphere" : "astigmatism", {{"height", height_m}}), scenario);
+    const Volts d = pair.Difference();
+    for (const int psd : {0, 1}) {
+      EXPECT_NEAR(std::abs(d[2 * psd]) / kV_m, kYaw_m * x_slope, 0.02 * kYaw_m * x_slope) << is_sphere;
+      EXPECT_NEAR(std::abs(d[2 * psd + 1]) / kV_m, kTilt_m * z_slope, 0.02 * kTilt_m * z_slope) << is_sphere;
+    }
+  }
+}
+
+TEST(Effects, AnEncodersSubdivisionErrorIsTheTablesIndexError) {
+  Scenario scenario = Quiet();
+  RotaryOf(scenario).mechanics.encoder_periods = 36001;  // at 36 stops as once a turn
+  const double amplitude_rad = 0.1 * units::arcsec;      // 0.017 of a period: the sine is bent by as much
+  for (const char* table : {"target", "reference"}) {
+    Pair pair(Effect("encoder_subdivision", table, {{"amplitude", amplitude_rad}}), scenario);
+    for (const double angle_rad : {10.0 * units::deg, 100.0 * units::deg, 230.0 * units::deg}) {
+      pair.Do([=](RotaryBench bench) { MoveBoth(bench, angle_rad); });
+      const double sine = std::sin(table == std::string("target") ? angle_rad : -angle_rad);
+      // The rotor stands behind by what its encoder shows too much.
+      EXPECT_NEAR(pair.Difference()[0] / kV_m, kYaw_m * amplitude_rad * sine, 0.03 * kYaw_m * amplitude_rad)
+          << table;
+    }
+  }
+  RotaryOf(scenario).mechanics.encoder_periods = 100000;
+  EXPECT_THROW(Pair(Effect("encoder_subdivision", "target", {{"amplitude", 3.0 * units::arcsec}}), scenario),
+               InputError);
 }
 
 TEST(Effects, AFartherPsdSeesLargerMotions) {
@@ -361,6 +414,8 @@ TEST(Effects, EachChangesSomethingAndOnlyWhenItIsOn) {
     Scenario scenario = Quiet();
     scenario.noise_free = true;
     scenario.environment.drift_K_h = 1.0;
+    RotaryOf(scenario).laser.position_m.x() = units::mm;   // a front that is no plane is so beside its middle
+    RotaryOf(scenario).mechanics.encoder_periods = 36001;  // stops are not on whole periods
     RotaryOf(scenario).procedure.positions = 12;
     RotaryOf(scenario).procedure.shifts = {0, 4};
     RotaryOf(scenario).target.random_rms[2] = RotaryOf(scenario).reference.random_rms[0] = 5.0 * units::arcsec;

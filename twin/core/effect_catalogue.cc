@@ -44,6 +44,7 @@ double FactorOf(const std::string& unit) {
                                                  {"K", 1.0},
                                                  {"um_m", um},
                                                  {"um_K", um},
+                                                 {"nA", 1e-9},
                                                  {"um_m_K", um},
                                                  {"per_mm2", 1.0 / (mm * mm)},
                                                  {"rad", 1.0},

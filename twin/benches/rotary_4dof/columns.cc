@@ -61,7 +61,8 @@ std::vector<DesiredColumn> Desired() {
          return std::isfinite(r.autocollimator_yaw_rad) && std::isfinite(r.autocollimator_tilt_rad);
        },
        "the calibration sweeps are lost, and psd_gain, psd_roll, psd_distance, psd_nonlinearity, stray_light, "
-       "wavelength_offset, incidence_offset and crosstalk are hidden in the tables' errors or cannot be told apart",
+       "background, wavelength_offset, incidence_offset and crosstalk are hidden in the tables' errors or cannot be "
+       "told apart",
        true}};
 }
 

@@ -39,6 +39,11 @@ std::vector<EffectEntry> DetectorEffects() {
        "uniform stray light that pulls the spot to the centre",
        psds,
        {Parameter("fraction", "1", 0.01, 0.0, 0.9, "stray light / signal")}},
+      // 1-20 uA: a lamp on a detector without a filter; 5 uA are 0.7 % of the signal of 5 mW of laser
+      {"background",
+       "light of the room on a PSD that counts as signal and pulls the spot to the centre",
+       psds,
+       {Parameter("current", "nA", 5000.0, 0.0, 1e6, "that it makes")}},
       // 0.1-1 %; 1 mm of 120 mm is 0.8 %.
       {"psd_distance",
        "distance from the grating to one PSD, or to both",
@@ -59,6 +64,11 @@ std::vector<EffectEntry> LightEffects() {
        "grooves at another distance than stated",
        {},
        {Signed("pitch_error", "1", 0.003, 0.2, "actual / nominal - 1")}},
+      // 30-600 nm: a twentieth of a wave to a wave; more where a cell strains it
+      {"grating_form",
+       "grating whose front is no plane",
+       {"sphere", "astigmatism"},
+       {Signed("height", "nm", 300.0, 1e6, "of the front at half its width above its middle")}},
       // 0.2-0.5 nm
       {"mode_hop",
        "sudden step of the wavelength",
@@ -104,6 +114,11 @@ std::vector<EffectEntry> BodyEffects() {
        axes,
        {Signed("tilt_per_kelvin", "arcsec_per_K", 5.0, 1000.0, "against environment.reference_degC"),
         Parameter("lag", "s", 900.0, 0.0, 1e6, "time constant of a first-order lag")}},
+      // 0.02-0.5"
+      {"encoder_subdivision",
+       "servo's encoder that errs within the periods of its graduation",
+       {"target", "reference"},
+       {Signed("amplitude", "arcsec", 0.1, 3.0, "of a sine of mechanics.encoder_periods a turn")}},
       // 0.1-20"
       {"backlash",
        "rotor that stays behind its encoder on reversal",

@@ -7,6 +7,12 @@ std::string NextMeasurement(const std::string& effect, const std::string& rival)
   static const std::vector<diagnose::Split> splits = {
       {{"psd_distance", "stray_light"},
        "a reading with the laser off: stray light shows as a signal, a distance does not"},
+      {{"background", "stray_light"},
+       "the sweeps at half the laser's power: a background counts twice as much, stray light of the laser as "
+       "before"},
+      {{"background", "psd_distance"},
+       "a reading with the laser off: a background shows as a current, a distance does not"},
+      {{"background", "psd_gain"}, "a tilt sweep as well as a yaw sweep: a background scales both axes"},
       {{"psd_distance", "psd_gain"}, "a tilt sweep as well as a yaw sweep: a distance scales both axes"},
       {{"psd_gain", "stray_light"}, "a tilt sweep as well as a yaw sweep: stray light scales both axes"},
       {{"incidence_offset", "wavelength_offset"}, "a tilt sweep and a lateral shift of the grating"},

@@ -7,6 +7,7 @@
 #include "twin/benches/rotary_4dof/diagnosis/signals.h"
 #include "twin/benches/rotary_4dof/format.h"
 #include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/compensation_table.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/candidates.h"
 #include "twin/diagnose/tuning.h"
@@ -97,12 +98,14 @@ void AddNonlinearities(const RotaryRun& rotary, Candidates& named) {
 }
 
 /// Effect and parameter of causes that are a wrong constant of the bench.
-constexpr std::array<std::array<const char*, 2>, 7> kBenchConstants = {{{"psd_gain", "gain_error"},
+constexpr std::array<std::array<const char*, 2>, 9> kBenchConstants = {{{"psd_gain", "gain_error"},
                                                                         {"psd_roll", "roll"},
                                                                         {"stray_light", "fraction"},
+                                                                        {"background", "current"},
                                                                         {"psd_distance", "distance_error"},
                                                                         {"wavelength_offset", "wavelength_error"},
                                                                         {"grating_pitch", "pitch_error"},
+                                                                        {"grating_form", "height"},
                                                                         {"incidence_offset", "incidence"}}};
 
 void AddBench(const RotaryRun& rotary, const Scenario& scenario, Candidates& named) {
@@ -176,6 +179,20 @@ void AddHalfFrequency(Responses& responses, Candidates& named) {
       };
     }
   }
+}
+
+/// A servo stands where its encoder shows the command, wherever the command lies in a period of the graduation.
+void AddSubdivision(Responses& responses, const RotarySettings& own, Candidates& named) {
+  const Schedule& s = responses.rotary().run.schedule;
+  const auto add = [&](const char* where, const TableSettings& table, const Eigen::VectorXd& angle_rad) {
+    const AtPoint at("encoder_subdivision", where, responses, std::string(where) + ".yaw", -1.0);
+    const auto sine = [&](double told_rad) {
+      return std::sin(own.mechanics.encoder_periods * CommandedAngle_rad(table.compensation, told_rad));
+    };
+    named.Add(at.showing, {"amplitude"}, at.Of(angle_rad.unaryExpr(sine)));
+  };
+  add("target", own.target, s.target_rad);
+  add("reference", own.reference, s.reference_rad);
 }
 
 /// A rotor that lags stays behind on the side it came from; the reference turns against the target.
@@ -289,13 +306,15 @@ std::vector<Family> NamedFamilies(const RotaryRun& rotary, const Scenario& scena
   AddBench(rotary, scenario, named);
   AddTime(responses, scenario.environment.reference_degC, named);
   AddTravel(responses, std::max(RotaryOf(scenario).target.settle_s, RotaryOf(scenario).reference.settle_s), named);
+  AddSubdivision(responses, RotaryOf(scenario), named);
   for (int channel = 0; channel < kChannels; ++channel) AddSteps(rotary, channel, named);
   AddCrosstalk(rotary, RotaryOf(scenario).adc.scan_list, named);
   AddPatterns(responses, series, named);
   std::vector<Family> families = named.Take();
   for (Family& family : families) {
     // A wrong sensitivity of both axes of a PSD looks the same.
-    if (family.effect == "stray_light" || family.effect == "psd_distance") family.listed = tuning::kListedDoubled;
+    if (family.effect == "stray_light" || family.effect == "background" || family.effect == "psd_distance")
+      family.listed = tuning::kListedDoubled;
   }
   return families;
 }
