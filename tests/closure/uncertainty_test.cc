@@ -72,7 +72,7 @@ TEST_P(Scatter, MatchesTheStatedUncertaintyOver200Seeds) {
           separate::RemoveNotSeparable(target ? run.truth.target : run.truth.reference,
                                        target ? Table::kTarget : Table::kReference, s.not_separable);
       const Eigen::VectorXd error = Stack(estimate.value, estimate.components) - Stack(truth, estimate.components);
-      const auto [sum, rank] = ChiSquared(error, estimate.cov);
+      const auto [sum, rank] = ChiSquared(error, estimate.cov.ToDense());
       chi2 += sum;
       dof += rank;
     }

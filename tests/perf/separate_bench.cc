@@ -16,15 +16,27 @@ std::vector<Motion> FullCircles(int n) {
   return motions;
 }
 
-/// Measured once on one core of a shared two-core machine: n = 36: 4.7 ms, 72: 18 ms, 180: 0.18 s, 360: 1.2 s.
-void SeparateFromScratch(benchmark::State& state) {
+/// @param lost  Every so many-th reading is missing; 0: none.
+void SeparateAll(benchmark::State& state, std::size_t lost) {
   const int n = static_cast<int>(state.range(0));
-  const auto motions = FullCircles(n);
+  auto motions = FullCircles(n);
+  for (std::size_t i = 0; lost > 0 && i < motions.size(); i += lost) motions[i].status = ReadingStatus::kMissing;
   const BenchGeometry geometry = Bench();
   const SeparateOptions options = Options(n, Clamping::kReseat);
   for (auto _ : state) benchmark::DoNotOptimize(Separate(motions, geometry, options).dof);
+  state.counters["s/position"] =
+      benchmark::Counter(n, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(SeparateFromScratch)->Arg(36)->Arg(72)->Arg(180)->Arg(360)->Unit(benchmark::kMillisecond);
+
+void SeparateFromScratch(benchmark::State& state) {
+  SeparateAll(state, 0);
+}
+/// One reading in 300.
+void SeparateWithGaps(benchmark::State& state) {
+  SeparateAll(state, 300);
+}
+BENCHMARK(SeparateFromScratch)->Arg(36)->Arg(72)->Arg(180)->Arg(360)->Arg(720)->Unit(benchmark::kMillisecond);
+BENCHMARK(SeparateWithGaps)->Arg(36)->Arg(72)->Arg(180)->Arg(360)->Unit(benchmark::kMillisecond);
 
 /// No noise stated: the weights come from a first solution, so that the matrix is factorised twice.
 void SeparateWithoutStatedNoise(benchmark::State& state) {

@@ -46,7 +46,7 @@ TEST_P(MonteCarlo, StatesACovarianceThatMatchesTheScatter) {
   const auto zero = EmptyMotions(n, {0, 1, 4}, 2, ReadingCovariance());
   const Separator separator(zero, Bench(), Options(n, GetParam()));
   const Separation at_zero = separator.Separate(zero);
-  const Whitened target = Whiten(at_zero.target.cov), reference = Whiten(at_zero.reference.cov);
+  const Whitened target = Whiten(at_zero.target.cov.ToDense()), reference = Whiten(at_zero.reference.cov.ToDense());
   Stream stream(21, "test.noise");
   double sum_target = 0.0, sum_reference = 0.0, sum_chi2 = 0.0;
   for (int run = 0; run < kRuns; ++run) {

@@ -24,7 +24,7 @@ TableEstimate TargetOf(int n, const std::vector<int>& shifts, Clamping clamping,
 Eigen::MatrixXd BlockOf(const TableEstimate& estimate, Component component, int n) {
   const auto found = std::find(estimate.components.begin(), estimate.components.end(), component);
   const auto first = n * (found - estimate.components.begin());
-  return estimate.cov.block(first, first, n, n);
+  return estimate.cov.ToDense().block(first, first, n, n);
 }
 
 double Gain(const Eigen::MatrixXd& cov) {
@@ -96,7 +96,8 @@ TEST(Separator, HasTheNoiseGainsOfOneRadialComponent) {
 TEST(Separator, UsesTheRankForItsDegreesOfFreedom) {
   const auto motions = EmptyMotions(12, {0, 1, 4}, 2, EqualNoise());
   const Separator separator(motions, Bench(), Options(12, Clamping::kReclamp));
-  const int rank = separator.design().Unknowns() - static_cast<int>(separator.separability().null_space.cols());
+  const int rank = separator.design().Unknowns() -
+                   static_cast<int>(NullSpace(separator.design(), separator.separability().orders).cols());
   const Separation found = separator.Separate(motions);
   EXPECT_EQ(found.dof, 4 * 72 - rank);
   EXPECT_NEAR(found.dof_of.sum(), found.dof, 1e-6);  // rounding of traces

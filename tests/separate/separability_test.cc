@@ -19,7 +19,7 @@ TEST(FindSeparability, FindsVectorsThatChangeNoReading) {
   for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
     for (const int n : {12, 15}) {
       const Design design = MakeDesign(n, {0, 3}, clamping, Bench());
-      const Eigen::MatrixXd null = FindSeparability(design).null_space;
+      const Eigen::MatrixXd null = NullSpace(design, FindSeparability(design).orders);
       ASSERT_GT(null.cols(), 0);
       const auto identity = Eigen::MatrixXd::Identity(null.cols(), null.cols());
       EXPECT_LT((null.transpose() * null - identity).cwiseAbs().maxCoeff(), 1e-12);  // rounding

@@ -53,8 +53,8 @@ const char* StatusName(MethodStatus status) {
   return "";
 }
 
-/// What noise leaves of the published values. Of readings whose noise is not known the rigorous result estimates it;
-/// elimination makes sqrt 2 more of it (docs/theory.md 2).
+/// What noise leaves of the published values. Of readings whose noise is not known the rigorous result estimates
+/// it; elimination makes sqrt 2 more of it (docs/theory.md 2).
 double PublishedNoise(const std::vector<double>& u_published, const std::vector<double>& u_rigorous) {
   const double stated = FiniteRms(u_published);
   return std::isfinite(stated) ? stated : std::numbers::sqrt2 * FiniteRms(u_rigorous);
@@ -77,7 +77,7 @@ void AddUncertainty(const ComponentBias& bias, std::size_t block, TableEstimate&
   for (std::size_t i = 0; i < u.size(); ++i) {
     u[i] = std::hypot(std::isfinite(u[i]) ? u[i] : bias.u_noise, bias.rms);
     const auto row = first + static_cast<Eigen::Index>(i);
-    estimate.cov_systematic(row, row) += bias.rms * bias.rms;
+    estimate.cov_systematic.AddVariance(row, bias.rms * bias.rms);
   }
 }
 

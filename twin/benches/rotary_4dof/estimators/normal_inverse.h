@@ -15,6 +15,9 @@ struct NormalInverse {
   Eigen::MatrixXd inverse;      // Unknowns x Unknowns
   Eigen::MatrixXd extra_null;   // directions lost because readings are missing, one a column
   std::vector<bool> supported;  // unknowns that some reading touches
+
+  Eigen::MatrixXd operator*(const Eigen::MatrixXd& right) const { return inverse * right; }
+  void Scale(double variance) { inverse *= variance; }
 };
 
 /// Inverts the normal matrix sum of d^T W d over the stops.
@@ -24,7 +27,7 @@ struct NormalInverse {
 /// weights of the four motions have no say in it. The known null space is pinned beforehand.
 ///
 /// @param models      First-order model of each cell.
-/// @param null_space  Directions that change no reading of a complete circle (Separability::null_space).
+/// @param null_space  Directions that change no reading of a complete circle (NullSpace).
 NormalInverse InvertNormal(const Design& design, const std::vector<Cell>& cells,
                            const std::vector<StopModel>& models, const Eigen::MatrixXd& null_space);
 

@@ -92,8 +92,7 @@ TableEstimate EmptyEstimate(const Design& design, Table table) {
   for (auto& column : estimate.value.value) column.assign(static_cast<std::size_t>(design.n), kNaN);
   estimate.u = estimate.value;
   estimate.components = {Component::kEx, Component::kEy, Component::kEz, Component::kDy};
-  estimate.cov = Eigen::MatrixXd::Zero(4 * design.n, 4 * design.n);
-  estimate.cov_systematic = estimate.cov;
+  estimate.cov_systematic = CurveCovariance::Dense(Eigen::MatrixXd::Zero(4 * design.n, 4 * design.n));
   return estimate;
 }
 
@@ -103,8 +102,9 @@ std::size_t BlockOf(const TableEstimate& estimate, Component component) {
 }
 
 /// Puts stop-ordered values and their covariance where the table's own angle ascends.
+/// @param whole  Covariance of all of the table's components.
 void Place(const Eigen::VectorXd& value, const Eigen::MatrixXd& cov, const std::vector<int>& place,
-           Component component, TableEstimate& estimate) {
+           Component component, TableEstimate& estimate, Eigen::MatrixXd& whole) {
   const auto n = static_cast<int>(place.size());
   const int first = n * static_cast<int>(BlockOf(estimate, component));
   for (int i = 0; i < n; ++i) {
@@ -112,7 +112,7 @@ void Place(const Eigen::VectorXd& value, const Eigen::MatrixXd& cov, const std::
     estimate.value[component][to] = value[i];
     estimate.u[component][to] = std::sqrt(cov(i, i));
     for (int k = 0; k < n; ++k) {
-      estimate.cov(first + static_cast<int>(to), first + place[static_cast<std::size_t>(k)]) = cov(i, k);
+      whole(first + static_cast<int>(to), first + place[static_cast<std::size_t>(k)]) = cov(i, k);
     }
   }
 }
@@ -176,6 +176,7 @@ Separation SeparatePublished(const std::vector<Motion>& motions, const BenchGeom
   result.readings = static_cast<int>(layout.samples.size());
   result.residuals.assign(motions.size(), Vector4::Constant(kNaN));
   const int n = layout.design.n;
+  Eigen::MatrixXd cov_target = Eigen::MatrixXd::Zero(4 * n, 4 * n), cov_reference = cov_target;
   for (int d = 0; d < measure::kDofs; ++d) {
     const Eigen::MatrixXd map = ReadingsToErrors(n, d == 0);
     Eigen::VectorXd readings(2 * n), variance(2 * n);
@@ -184,10 +185,12 @@ Separation SeparatePublished(const std::vector<Motion>& motions, const BenchGeom
     const Eigen::VectorXd errors = map * readings;
     const Eigen::MatrixXd cov = map * variance.asDiagonal() * map.transpose();
     const Component c = kComponentOf[static_cast<std::size_t>(d)];
-    Place(errors.head(n), cov.topLeftCorner(n, n), places.target, c, result.target);
-    Place(errors.tail(n), cov.bottomRightCorner(n, n), places.reference, c, result.reference);
+    Place(errors.head(n), cov.topLeftCorner(n, n), places.target, c, result.target, cov_target);
+    Place(errors.tail(n), cov.bottomRightCorner(n, n), places.reference, c, result.reference, cov_reference);
     AddResiduals(errors, test_1, test_2, d, result);
   }
+  result.target.cov = CurveCovariance::Dense(std::move(cov_target));
+  result.reference.cov = CurveCovariance::Dense(std::move(cov_reference));
   if (layout.design.setups.size() > 2) result.notes.push_back("published method: only two of the set-ups are used");
   return result;
 }

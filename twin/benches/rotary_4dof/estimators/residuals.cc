@@ -11,6 +11,15 @@ constexpr double kTooUnlikely = 0.001;
 constexpr double kBand = 0.01;  // of the largest of the four scales
 constexpr double kLeastScale = 1e-9;
 
+/// @param fitted  Variance of each cell's prediction.
+Vector4 LeftOver(const Weights& weights, const std::vector<Vector4>& fitted) {
+  Vector4 dof = Vector4::Zero();
+  for (std::size_t k = 0; k < weights.cell_of.size(); ++k) {
+    dof += Vector4::Ones() - fitted[weights.cell_of[k]].cwiseQuotient(weights.sample_cov[k].diagonal());
+  }
+  return dof;
+}
+
 double BirgeRatio(const Separation& result, int dof) {
   return std::sqrt(result.chi2[dof] / result.dof_of[dof]);
 }
@@ -19,17 +28,18 @@ double BirgeRatio(const Separation& result, int dof) {
 
 Vector4 DegreesOfFreedom(const Weights& weights, const std::vector<StopModel>& models,
                          const NormalInverse& normal) {
-  std::vector<Vector4> fitted;  // variance of each cell's prediction
+  std::vector<Vector4> fitted;
   for (const StopModel& model : models) {
     const std::vector<int> columns(model.column.begin(), model.column.begin() + model.columns);
     const Eigen::MatrixXd d = model.d.leftCols(model.columns);
     fitted.push_back((d * normal.inverse(columns, columns)).cwiseProduct(d).rowwise().sum());
   }
-  Vector4 dof = Vector4::Zero();
-  for (std::size_t k = 0; k < weights.cell_of.size(); ++k) {
-    dof += Vector4::Ones() - fitted[weights.cell_of[k]].cwiseQuotient(weights.sample_cov[k].diagonal());
-  }
-  return dof;
+  return LeftOver(weights, fitted);
+}
+
+Vector4 DegreesOfFreedom(const Weights& weights, const std::vector<StopModel>& models,
+                         const OrderInverse& inverse) {
+  return LeftOver(weights, inverse.FittedVariances(weights.cells, models));
 }
 
 void AddResiduals(const std::vector<Motion>& motions, const Layout& layout, const Weights& weights,

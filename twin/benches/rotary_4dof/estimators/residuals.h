@@ -4,12 +4,14 @@
 #include <vector>
 
 #include "twin/benches/rotary_4dof/estimators/normal_inverse.h"
+#include "twin/benches/rotary_4dof/estimators/order_inverse.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
 
 namespace twinbench::separate {
 
 /// Expected sum of squared residuals over variance, by motion: samples minus the leverage of the fit.
 Vector4 DegreesOfFreedom(const Weights& weights, const std::vector<StopModel>& models, const NormalInverse& normal);
+Vector4 DegreesOfFreedom(const Weights& weights, const std::vector<StopModel>& models, const OrderInverse& inverse);
 
 /// Fills residuals, their rms and chi2, readings and degrees of freedom of a result.
 /// @param predicted  PredictCells() of the solution.

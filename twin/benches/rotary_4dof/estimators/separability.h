@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "twin/benches/rotary_4dof/estimators/design.h"
+#include "twin/benches/rotary_4dof/estimators/order_blocks.h"
 #include "twin/core/table_errors.h"
 
 namespace twinbench::separate {
@@ -27,17 +27,14 @@ struct NotSeparable {
 /// What a design can and cannot see.
 struct Separability {
   std::vector<NotSeparable> lost;
-  /// Orthonormal basis of the directions in the unknowns (columns of Design, lengths in kLengthUnit_m) that change
-  /// no reading of a complete full circle.
-  Eigen::MatrixXd null_space;
+  std::vector<OrderBlock> orders;  // the equations behind it, of the orders 0 to n/2
 };
 
 /// Finds the null space of a design, order by order.
 ///
-/// On an even grid with a constant shift a set-up couples only equal orders of the unknown series, so the design
-/// falls into small real blocks (9 series x cos, sin; 4 motions x set-ups), plus the mounting constants at order 0
-/// and the seats at order 1. The null space of each block comes from a singular value decomposition; a component is
-/// lost if its unit vector has a part in it. Reference: docs/theory.md 3, 4.
+/// The null space of each order's block (9 series x cos, sin; 4 motions x set-ups, plus the mounting constants at
+/// order 0 and the seats at order 1) comes from a singular value decomposition; a component is lost if its unit
+/// vector has a part in it. Reference: docs/theory.md 3, 4.
 Separability FindSeparability(const Design& design);
 
 /// Takes out of `errors` what cannot be separated: least squares over the finite positions of each series, so that

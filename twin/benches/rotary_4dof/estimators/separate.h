@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/benches/rotary_4dof/estimators/curve_covariance.h"
 #include "twin/benches/rotary_4dof/estimators/design.h"
 #include "twin/benches/rotary_4dof/estimators/measure.h"
 #include "twin/benches/rotary_4dof/estimators/separability.h"
@@ -37,8 +38,8 @@ struct TableEstimate {
   TableErrors value;                  // dx, dy, dz that are not determined: NaN
   TableErrors u;                      // standard uncertainty: random and systematic together
   std::vector<Component> components;  // determined ones, in the order of the blocks of both matrices
-  Eigen::MatrixXd cov;             // random part; row s * n + i is components[s] at position i [rad^2, rad m, m^2]
-  Eigen::MatrixXd cov_systematic;  // of the calibration, and of the model's second order
+  CurveCovariance cov;             // random part; row s * n + i is components[s] at position i [rad^2, rad m, m^2]
+  CurveCovariance cov_systematic;  // of the calibration, and of the model's second order
 };
 
 /// Mean motion of a set-up over its positions minus that of the first: zero if nothing was re-mounted differently
@@ -83,7 +84,7 @@ struct Separation {
 /// Uncertainty: first-order propagation of readings and calibration, and a floor for products of errors with what
 /// the bench does not read (UnreadSecondOrder, about 1 milliarcsec): far below real noise, all there is without
 /// noise. Not included: drift, effects that are not of the form target + reference; they show in chi2 when there
-/// are more than two set-ups. Reference: docs/theory.md 2-4.
+/// are more than two set-ups. Reference: docs/theory.md 2-4, 11.5.
 Separation Separate(const std::vector<Motion>& motions, const BenchGeometry& geometry,
                     const SeparateOptions& options);
 

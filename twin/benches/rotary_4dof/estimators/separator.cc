@@ -1,6 +1,7 @@
 #include "twin/benches/rotary_4dof/estimators/separator.h"
 
 #include <cmath>
+#include <utility>
 
 #include "twin/benches/rotary_4dof/estimators/prediction.h"
 #include "twin/benches/rotary_4dof/estimators/residuals.h"
@@ -40,10 +41,25 @@ void Separator::Factorise(const std::vector<Motion>& motions) {
   weights_ = CollectWeights(motions, layout_, geometry_, scale_);
   models_.clear();
   for (const Cell& cell : weights_.cells) models_.push_back(ModelStop(design(), cell.setup, cell.target));
-  normal_ = InvertNormal(design(), weights_.cells, models_, separability_.null_space);
-  dof_of_ = DegreesOfFreedom(weights_, models_, normal_);
-  target_ = MakeTablePart(design(), Table::kTarget, separability_.lost, normal_);
-  reference_ = MakeTablePart(design(), Table::kReference, separability_.lost, normal_);
+  Invert();
+  std::visit(
+      [this](const auto& inverse) {
+        target_ = MakeTablePart(design(), Table::kTarget, separability_.lost, inverse);
+        reference_ = MakeTablePart(design(), Table::kReference, separability_.lost, inverse);
+      },
+      normal_);
+}
+
+/// Order by order if little is missing; else as one matrix.
+void Separator::Invert() {
+  if (auto by_order = OrderInverse::Of(design(), separability_.orders, weights_.cells)) {
+    dof_of_ = DegreesOfFreedom(weights_, models_, *by_order);
+    normal_ = *std::move(by_order);
+    return;
+  }
+  auto inverse = InvertNormal(design(), weights_.cells, models_, NullSpace(design(), separability_.orders));
+  dof_of_ = DegreesOfFreedom(weights_, models_, inverse);
+  normal_ = std::move(inverse);
 }
 
 void Separator::Rescale(const std::vector<Motion>& motions, const Vector4& factor) {
@@ -53,9 +69,9 @@ void Separator::Rescale(const std::vector<Motion>& motions, const Vector4& facto
   const double variance = factor[0] * factor[0];
   for (Matrix4& cov : weights_.sample_cov) cov *= variance;
   for (Cell& cell : weights_.cells) cell.weight /= variance;
-  normal_.inverse *= variance;
-  target_.cov *= variance;
-  reference_.cov *= variance;
+  std::visit([variance](auto& inverse) { inverse.Scale(variance); }, normal_);
+  target_.cov = target_.cov * variance;
+  reference_.cov = reference_.cov * variance;
 }
 
 bool Separator::Fits(const std::vector<Motion>& motions) const {
@@ -82,7 +98,7 @@ Eigen::MatrixXd Separator::Propagate(const Eigen::MatrixXd& cell_values) const {
       right.row(models_[k].column[c]) += models_[k].d.col(c).transpose() * weighted;
     }
   }
-  return normal_.inverse * right;
+  return std::visit([&right](const auto& inverse) -> Eigen::MatrixXd { return inverse * right; }, normal_);
 }
 
 /// Gauss-Newton with the first-order model as fixed Jacobian: each round gains a factor of the errors' size (1e-4).

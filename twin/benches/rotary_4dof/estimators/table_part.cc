@@ -1,6 +1,10 @@
 #include "twin/benches/rotary_4dof/estimators/table_part.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate {
 namespace {
@@ -71,16 +75,61 @@ void FindLostValues(const Eigen::MatrixXd& extra_null, TablePart& part) {
   }
 }
 
+/// R with R R^T = cov; rounding may have left negative eigenvalues.
+Eigen::MatrixXd SquareRootOf(const Eigen::MatrixXd& cov) {
+  const auto [values, vectors] = EigenOfSymmetric(cov);
+  return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+/// All but the covariance; every position counts as usable.
+TablePart EmptyPart(const Design& design, Table table, const std::vector<NotSeparable>& lost) {
+  TablePart part;
+  part.table = table;
+  part.components = ComponentsOf(table, lost);
+  part.position_rad = Positions(design, table);
+  for (const Component c : part.components) {
+    for (int i = 0; i < design.n; ++i) part.columns.push_back(design.Column(SeriesOf(table, c), i));
+  }
+  part.usable.assign(part.columns.size(), true);
+  return part;
+}
+
+/// What is taken out of one order of a table: orthonormal columns in the coefficients of its components
+/// (LostBasis).
+Eigen::MatrixXd LostOfOrder(const TablePart& part, const std::vector<NotSeparable>& lost, int order, int parts) {
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(parts * std::ssize(part.components), 0);
+  for (const NotSeparable& entry : lost) {
+    if (entry.table != part.table || entry.all) continue;
+    std::vector<Eigen::Index> at;
+    for (const Component c : entry.components) {
+      at.push_back(parts *
+                   (std::find(part.components.begin(), part.components.end(), c) - part.components.begin()));
+    }
+    for (const int signed_order : entry.orders) {
+      if (std::abs(signed_order) != order) continue;
+      const double sign = signed_order < 0 ? -1.0 : 1.0;
+      columns.conservativeResize(Eigen::NoChange, columns.cols() + 2);
+      auto added = columns.rightCols(2);
+      added.setZero();
+      added(at[0], 0) = 1.0;  // x: cos and -sin
+      if (parts == 2) added(at[0] + 1, 1) = -sign;
+      if (at.size() == 2 && parts == 2) added(at[1] + 1, 0) = sign;  // y: sin and cos
+      if (at.size() == 2) added(at[1], 1) = 1.0;
+    }
+  }
+  return columns.cols() == 0 ? columns : OrthonormalBasisOf(columns, 1e-9);
+}
+
 /// Empty columns of values and uncertainties, and both covariances.
 TableEstimate Prepare(const TablePart& part, const Systematic& systematic) {
   TableEstimate estimate;
   estimate.components = part.components;
   estimate.cov = part.cov;
-  estimate.cov_systematic = systematic.second_order * part.cov;
+  estimate.cov_systematic = part.cov * systematic.second_order;
   if (systematic.d_calibration.cols() > 0) {
     const Eigen::MatrixXd shift =
         UnitsOf(part).asDiagonal() * Without(part.removed, systematic.d_calibration(part.columns, Eigen::all));
-    estimate.cov_systematic += shift * systematic.cov_calibration * shift.transpose();
+    estimate.cov_systematic.AddProduct(shift * SquareRootOf(systematic.cov_calibration));
   }
   estimate.value.position_rad = estimate.u.position_rad = part.position_rad;
   for (auto& column : estimate.value.value) column.assign(part.position_rad.size(), kNaN);
@@ -92,21 +141,39 @@ TableEstimate Prepare(const TablePart& part, const Systematic& systematic) {
 
 TablePart MakeTablePart(const Design& design, Table table, const std::vector<NotSeparable>& lost,
                         const NormalInverse& normal) {
-  TablePart part;
-  part.table = table;
-  part.components = ComponentsOf(table, lost);
-  part.position_rad = Positions(design, table);
-  for (const Component c : part.components) {
-    for (int i = 0; i < design.n; ++i) {
-      part.columns.push_back(design.Column(SeriesOf(table, c), i));
-      part.usable.push_back(normal.supported[static_cast<std::size_t>(part.columns.back())]);
-    }
+  TablePart part = EmptyPart(design, table, lost);
+  for (std::size_t r = 0; r < part.columns.size(); ++r) {
+    part.usable[r] = normal.supported[static_cast<std::size_t>(part.columns[r])];
   }
   part.removed = LostBasis(table, lost, part.components, part.position_rad, part.usable);
   FindLostValues(normal.extra_null, part);
   const Eigen::VectorXd unit = UnitsOf(part);
-  part.cov = unit.asDiagonal() * ProjectBothSides(normal.inverse(part.columns, part.columns), part.removed) *
-             unit.asDiagonal();
+  part.cov = CurveCovariance::Dense(unit.asDiagonal() *
+                                    ProjectBothSides(normal.inverse(part.columns, part.columns), part.removed) *
+                                    unit.asDiagonal());
+  return part;
+}
+
+TablePart MakeTablePart(const Design& design, Table table, const std::vector<NotSeparable>& lost,
+                        const OrderInverse& inverse) {
+  TablePart part = EmptyPart(design, table, lost);
+  part.removed = LostBasis(table, lost, part.components, part.position_rad, part.usable);
+  std::vector<Series> series;
+  for (const Component c : part.components) series.push_back(SeriesOf(table, c));
+  std::vector<Eigen::MatrixXd> removed;
+  for (int m = 0; 2 * m <= design.n; ++m) {
+    removed.push_back(LostOfOrder(part, lost, m, OrderBasis(m, design.n).parts));
+  }
+  Eigen::MatrixXd lags = inverse.Lags(series, removed);
+  const auto unit_of = [&](std::size_t s) { return IsAngle(part.components[s]) ? 1.0 : kLengthUnit_m; };
+  for (std::size_t p = 0; p < series.size(); ++p) {
+    for (std::size_t q = 0; q < series.size(); ++q) {
+      lags.col(static_cast<Eigen::Index>(p * series.size() + q)) *= unit_of(p) * unit_of(q);
+    }
+  }
+  part.cov = CurveCovariance::Circulant(std::move(lags), std::ssize(series));
+  part.cov.AddProduct(UnitsOf(part).asDiagonal() *
+                      Without(part.removed, inverse.Missing()(part.columns, Eigen::all)));
   return part;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "twin/benches/rotary_4dof/estimators/normal_inverse.h"
+#include "twin/benches/rotary_4dof/estimators/order_inverse.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
 
 namespace twinbench::separate {
@@ -16,11 +17,14 @@ struct TablePart {
   std::vector<bool> usable;          // false: no reading determines this value
   std::vector<double> position_rad;  // own angles
   Eigen::MatrixXd removed;           // orthonormal, see LostBasis
-  Eigen::MatrixXd cov;               // random part after removal [rad^2, rad m, m^2]
+  CurveCovariance cov;               // random part after removal [rad^2, rad m, m^2]
 };
 
 TablePart MakeTablePart(const Design& design, Table table, const std::vector<NotSeparable>& lost,
                         const NormalInverse& normal);
+/// The same order by order: everything is determined.
+TablePart MakeTablePart(const Design& design, Table table, const std::vector<NotSeparable>& lost,
+                        const OrderInverse& inverse);
 
 /// What is not from the noise of the readings.
 struct Systematic {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace twinbench::separate {
+
+/// Covariance of several curves over the same n positions, row s * n + i being curve s at position i.
+///
+/// Dense, or as small as a full circle leaves it: where all positions are alike, curves covary by how many
+/// positions lie between two values (curves^2 x n numbers). Something of low rank and something on the diagonal may
+/// be added.
+class CurveCovariance {
+ public:
+  CurveCovariance() = default;
+  static CurveCovariance Dense(Eigen::MatrixXd matrix);
+  /// @param lags  n x curves^2: column p * curves + q is cov(curve p at i, curve q at i + row).
+  static CurveCovariance Circulant(Eigen::MatrixXd lags, Eigen::Index curves);
+
+  Eigen::Index rows() const;
+  double operator()(Eigen::Index row, Eigen::Index col) const;
+  Eigen::VectorXd diagonal() const;
+  Eigen::MatrixXd ToDense() const;
+
+  CurveCovariance operator*(double factor) const;
+  /// Adds factor factor^T.
+  void AddProduct(const Eigen::MatrixXd& factor);
+  void AddVariance(Eigen::Index row, double variance);
+
+ private:
+  Eigen::MatrixXd dense_;  // or empty, and then
+  Eigen::MatrixXd lags_;
+  Eigen::Index curves_ = 0;
+  Eigen::MatrixXd factor_;    // rows x rank; no columns if nothing was added
+  Eigen::VectorXd diagonal_;  // beside the others; may be empty
+};
+
+}  // namespace twinbench::separate
