@@ -33,8 +33,7 @@ PolygonAnalysis Closed(const std::vector<Reading>& readings, const Scenario& sce
 
 /// Mean of (error / u)^2, as `score` has it.
 double MeanSquaredScore(const test::BenchRun& run, const char* curve, Estimator estimator = Estimator::kRigorous) {
-  const report::ScoredRun scored =
-      benches::turntable::ScoreRun(run.scenario, run.readings, run.truth, estimator);
+  const report::ScoredRun scored = benches::turntable::ScoreRun(run.scenario, run.readings, run.truth, estimator);
   double sum = 0.0;
   int count = 0;
   for (const report::ScoredValue& v : scored.values) {
@@ -58,9 +57,11 @@ TEST(TurntablePolygon, KnowsTheEncodersCurveToFourThousandthsOfAnArcsecond) {
     encoder += MeanSquaredScore(run, "turntable") / kSeeds;
     faces += MeanSquaredScore(run, "polygon") / kSeeds;
   }
-  RecordProperty("figures", fmt::format("U (k = 2) {:.5f} arcsec, reading {:.5f}, (error/u)^2 encoder {:.3f}, faces {:.3f}",
-                                        expanded, reading, encoder, faces));
-  // 0.0297 arcsec stated, of which the encoder's step is no normal scatter but nearly so; 1200 degrees of freedom a run.
+  RecordProperty("figures",
+                 fmt::format("U (k = 2) {:.5f} arcsec, reading {:.5f}, (error/u)^2 encoder {:.3f}, faces {:.3f}",
+                             expanded, reading, encoder, faces));
+  // 0.0297 arcsec stated, of which the encoder's step is no normal scatter but nearly so; 1200 degrees of freedom a
+  // run.
   EXPECT_NEAR(reading, 0.0297, 0.0004);
   EXPECT_NEAR(expanded, 0.0038, 0.0002);
   // 10 and 23 degrees of freedom a run: deviations sqrt(2 / 160) and sqrt(2 / 368), three of each.
@@ -70,8 +71,8 @@ TEST(TurntablePolygon, KnowsTheEncodersCurveToFourThousandthsOfAnArcsecond) {
 
 /// What faces that are not flat make of the eccentricity is order 1 of the encoder in every clamping.
 TEST(TurntablePolygon, HasTheUnstatedFlatnessOfItsFacesInFull) {
-  const Scenario stated = PolygonScenario(
-      {"mirror.flatness_nm=10", "noise_free=true", "encoder.step_arcsec=0", "autocollimator.deadband_arcsec=0.001"});
+  const Scenario stated = PolygonScenario({"mirror.flatness_nm=10", "noise_free=true", "encoder.step_arcsec=0",
+                                           "autocollimator.deadband_arcsec=0.001"});
   Scenario unstated = stated;
   TurntableOf(unstated).mirror.flatness_m = 0.0;
   const test::BenchRun run = test::RunTurntable(stated);
@@ -94,6 +95,11 @@ TEST(TurntablePolygon, StatesTheBiasOfClosureByMeans) {
   const double of_noise_arcsec = 0.03 * std::sqrt(10.0 / 480.0);
   EXPECT_GT(published.method_bias_rad / arcsec, 10.0 * of_noise_arcsec);
   EXPECT_LT(MeanSquaredScore(run, "turntable", Estimator::kPublished), 2.0);
+  for (const auto& term : published.closure->encoder.terms) {
+    const HarmonicSettings& truth =
+        TurntableOf(uneven).turntable.harmonics[static_cast<std::size_t>(term.order - 1)];
+    EXPECT_LT(std::abs(term.amplitude_rad - truth.amplitude), 3.0 * term.u_amplitude_rad) << term.order;
+  }
   EXPECT_LT(MeanSquaredScore(run, "turntable"), 2.5) << "10 degrees of freedom";
 }
 
@@ -115,7 +121,9 @@ TEST(TurntablePolygon, RefusesReadingsOfAnotherClamping) {
 
 TEST(TurntablePolygon, CompensatesTheEncoder) {
   Scenario scenario = PolygonScenario();
-  const auto measured = [](const Scenario& s) { return BenchOf(s).index_errors(s, test::RunTurntable(s).readings); };
+  const auto measured = [](const Scenario& s) {
+    return BenchOf(s).index_errors(s, test::RunTurntable(s).readings);
+  };
   const separate::IndexErrors first = measured(scenario);
   const separate::Compensation compensation = Compensate(first);
   EXPECT_THAT(compensation.Orders(separate::LineFate::kCompensated), testing::ElementsAre(1, 2, 3, 4, 5));
@@ -145,6 +153,8 @@ TEST(TurntablePolygon, IsDiagnosed) {
   const auto slipped = diagnosed("{name=\"slip\", where=\"x\", step_arcsec=0.1, at_reading=200}");
   ASSERT_EQ(slipped.verdict, diagnose::Verdict::kNamed);
   EXPECT_EQ(slipped.causes.front().effect, "slip");
+  for (const diagnose::Invisible& unseen : slipped.invisible)
+    EXPECT_THAT(unseen.could_bias, testing::Not(testing::HasSubstr("left seated"))) << unseen.effect;
 }
 
 }  // namespace

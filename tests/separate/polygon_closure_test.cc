@@ -1,9 +1,10 @@
+#include "twin/benches/turntable_autocollimator/estimators/polygon_closure.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
 #include "tests/separate/nulled_polygon.h"
-#include "twin/benches/turntable_autocollimator/estimators/polygon_closure.h"
 
 namespace twinbench::separate::turntable {
 namespace {
@@ -95,7 +96,8 @@ TEST(ClosePolygon, LeavesTheOtherOrdersAloneWhereOneIsHidden) {
   EXPECT_LT(WorstFace_arcsec(closure, polygon), kExact_arcsec);
 }
 
-// Waves of N even positions are orthogonal with squares of N / 2: each order adds 2 s^2 / N to the variance of the curve.
+// Waves of N even positions are orthogonal with squares of N / 2: each order adds 2 s^2 / N to the variance of the
+// curve.
 TEST(ClosePolygon, StatesTwiceTheOrdersOverTheReadings) {
   Stream truth(3, "truth"), noise(3, "noise");
   NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1}, truth);
@@ -111,7 +113,8 @@ TEST(ClosePolygon, StatesTwiceTheOrdersOverTheReadings) {
   for (Eigen::Index i = 0; i < 24; i += 5) EXPECT_NEAR(closure.polygon.U_rad(i) / face_rad, 1.0, 1e-9);
 }
 
-// Estler, J. Res. NIST 103 (1998) 141: dual closure, n clampings a face apart, gives every angle with s sqrt(n - 1) / n.
+// Estler, J. Res. NIST 103 (1998) 141: dual closure, n clampings a face apart, gives every angle with s sqrt(n - 1)
+// / n.
 TEST(ClosePolygon, IsDualClosureWhereClampingsAreAFaceApart) {
   Stream truth(4, "truth"), noise(4, "noise");
   NulledPolygon polygon = AnyPolygon(12, EvenOffsets(12), {1, 5}, truth);
@@ -141,7 +144,8 @@ TEST(ClosePolygon, ScattersAsItStates) {
     curve += (error.cwiseAbs2().array() / cov.diagonal().array()).sum() / 6.0 / kSeeds;
     for (std::size_t i = 0; i < 12; ++i) {
       const auto at = static_cast<Eigen::Index>(i);
-      const double off_rad = closure.polygon.value_rad[at] - polygon.face_rad[static_cast<std::size_t>(closure.face[i])];
+      const double off_rad =
+          closure.polygon.value_rad[at] - polygon.face_rad[static_cast<std::size_t>(closure.face[i])];
       faces += std::pow(off_rad / closure.polygon.U_rad(at), 2) / 12.0 / kSeeds;
     }
   }

@@ -1,7 +1,8 @@
+#include "twin/benches/turntable_autocollimator/estimators/polygon_means.h"
+
 #include <gtest/gtest.h>
 
 #include "tests/separate/nulled_polygon.h"
-#include "twin/benches/turntable_autocollimator/estimators/polygon_means.h"
 
 namespace twinbench::separate::turntable {
 namespace {

@@ -44,7 +44,8 @@ double Value_arcsec(const Scenario& s, const Reading& r) {
   return (r.autocollimator_yaw_rad - (r.target_rad - Nominal_rad(s, r))) / arcsec;
 }
 
-// The autocollimator reads half the tangent of the doubled angle, and the encoder has its own error at the nulled place.
+// The autocollimator reads half the tangent of the doubled angle, and the encoder has its own error at the nulled
+// place.
 constexpr double kSecondOrder_arcsec = 2e-4;
 
 TEST(PolygonTwin, ReadsTheErrorOfTheTurntableWhereAFaceIsNulled) {
@@ -132,7 +133,8 @@ TEST(PolygonTwin, WalksOverItsFacesWhereItIsEccentric) {
   TurntableOf(s).mirror.flatness_m = 100e-9;
   TurntableOf(s).turntable_procedure.eccentricities_m = {1e-3};
   TurntableOf(s).turntable_procedure.tilt_azimuths_rad = {30.0 * deg};
-  // 8 h e / H^2 = 2e-6 rad; a hollow face that stands off to the right is met left of its middle and leans to the right.
+  // 8 h e / H^2 = 2e-6 rad; a hollow face that stands off to the right is met left of its middle and leans to the
+  // right.
   for (const Reading& r : test::RunTurntable(s).readings) {
     const double walk_arcsec = -2e-6 * std::cos(Nominal_rad(s, r) + 30.0 * deg) / arcsec;
     EXPECT_NEAR(Value_arcsec(s, r), walk_arcsec, 0.002) << r.reading;
@@ -177,7 +179,8 @@ TEST(PolygonTwin, KeepsTheAngleThatIsMeantWhereACompensationIsAtWork) {
   TurntableOf(s).turntable.compensation = table;
   // The table goes where the correction leads it: that is its error now.
   for (const Reading& r : test::RunTurntable(s).readings)
-    EXPECT_NEAR(Value_arcsec(s, r), table.At(Nominal_rad(s, r)) / arcsec, 0.005) << "20 arcsec of 20 arcsec a third of a radian";
+    EXPECT_NEAR(Value_arcsec(s, r), table.At(Nominal_rad(s, r)) / arcsec, 0.005)
+        << "20 arcsec of 20 arcsec a third of a radian";
 }
 
 std::string Parsed(const std::string& more) {
@@ -192,7 +195,8 @@ TEST(PolygonScenario, RefusesWhatOnlyAMultitoothTableCanDo) {
               HasSubstr("2 errors for 24 faces; expected 1 or 24"));
   EXPECT_THAT(problem(Parsed(circle + "positions = 7\n")), HasSubstr("expected a divisor of the 24 faces"));
   EXPECT_THAT(problem(Parsed(circle + "positions = 24\nshifts_teeth = [0, 1]\n")), HasSubstr("shifts"));
-  EXPECT_THAT(problem(Parsed("[turntable_procedure]\npositions = 24\ntilts_arcsec = [0]\n")), HasSubstr("a phase that"));
+  EXPECT_THAT(problem(Parsed("[turntable_procedure]\npositions = 24\ntilts_arcsec = [0]\n")),
+              HasSubstr("a phase that"));
   EXPECT_THAT(problem("bench = \"turntable_autocollimator\"\n[turntable_procedure]\ntilts_arcsec = [0]\n"
                       "polygon_offsets_deg = [0, 14]\n"),
               HasSubstr("offsets of a polygon, but there is none"));

@@ -22,8 +22,8 @@ std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario);
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
 
 /// What would split two causes that a run cannot tell apart, in words; empty if nothing is known.
-std::string NextMeasurement(const std::string& effect, const std::string& rival);
+std::string NextMeasurement(const std::string& effect, const std::string& rival, bool has_polygon = false);
 /// What would show a cause that a run cannot see; empty if nothing simple does.
-std::string WhatWouldShow(const std::string& effect);
+std::string WhatWouldShow(const std::string& effect, bool has_polygon = false);
 
 }  // namespace twinbench::benches::turntable

@@ -5,19 +5,22 @@
 #include "twin/benches/turntable_autocollimator/diagnosis/seating.h"
 #include "twin/benches/turntable_autocollimator/diagnosis/turntable_run.h"
 #include "twin/benches/turntable_autocollimator/diagnosis/turntable_search.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
 
 namespace twinbench::benches::turntable {
 namespace {
 
-diagnose::AnswerWords Words(const diagnose::turntable::Places& places) {
-  return {[places](const std::string& effect, const Eigen::VectorXd& unknowns) {
+diagnose::AnswerWords Words(const diagnose::turntable::Places& places, bool has_polygon) {
+  return {[places, has_polygon](const std::string& effect, const Eigen::VectorXd& unknowns) {
             const std::string bias = diagnose::turntable::BiasInWords(places, unknowns);
-            const std::string shown_by = WhatWouldShow(effect);
+            const std::string shown_by = WhatWouldShow(effect, has_polygon);
             return shown_by.empty() ? bias : bias + "; would be shown by " + shown_by;
           },
-          NextMeasurement};
+          [has_polygon](const std::string& effect, const std::string& rival) {
+            return NextMeasurement(effect, rival, has_polygon);
+          }};
 }
 
 /// Sizes were measured in the usual deviation of the run.
@@ -35,8 +38,8 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
   const diagnose::turntable::TurntableRun& turntable = *searched.turntable;
   std::vector<diagnose::Cause> first = searched.first;
   if (searched.outlying) first.push_back(DisturbedCause(*searched.outlying, turntable.run));
-  diagnose::DiagnosisRun result =
-      diagnose::Conclude(turntable.run, searched.analysis, first, Words(turntable.places));
+  diagnose::DiagnosisRun result = diagnose::Conclude(turntable.run, searched.analysis, first,
+                                                     Words(turntable.places, TurntableOf(scenario).HasPolygon()));
   if (searched.outlying) result.diagnosis.noise.push_back(searched.outlying->words);
   result.diagnosis.left_out = turntable.left_out;
   if (searched.first.empty() && std::isfinite(searched.smallest_seating_rad))

@@ -76,9 +76,8 @@ nlohmann::json PolygonJson(const PolygonAnalysis& a) {
   json["separation"] = ClosureJson(*a.closure);
   json["model"] = ToJson(a.closure->encoder);
   json["reading"] = ReadingJson(a);
-  json["expanded_k2"] = {
-      {"turntable_arcsec", report::Arcsec(2.0 * RootMeanSquareU_rad(a.closure->turntable))},
-      {"polygon_arcsec", report::Arcsec(2.0 * RootMeanSquareU_rad(a.closure->polygon))}};
+  json["expanded_k2"] = {{"turntable_arcsec", report::Arcsec(2.0 * RootMeanSquareU_rad(a.closure->turntable))},
+                         {"polygon_arcsec", report::Arcsec(2.0 * RootMeanSquareU_rad(a.closure->polygon))}};
   if (a.estimator == Estimator::kPublished) json["method_bias_arcsec"] = report::Arcsec(a.method_bias_rad);
   json["notes"] = a.closure->notes;
   return json;
@@ -136,7 +135,8 @@ report::Evaluation EvaluatePolygon(const Scenario& scenario, const std::vector<R
 report::ScoredRun ScorePolygon(const Scenario& scenario, const std::vector<Reading>& readings,
                                const nlohmann::json& truth, Estimator estimator) {
   const PolygonAnalysis a = separate::turntable::AnalysePolygon(readings, scenario, estimator);
-  if (!a.closure) throw InputError("the run", a.not_separated, "a run in which encoder and polygon can be told apart");
+  if (!a.closure)
+    throw InputError("the run", a.not_separated, "a run in which encoder and polygon can be told apart");
   const std::vector<report::CurveScore> curves = {CurveOf("turntable", a.closure->turntable, truth.at("turntable")),
                                                   CurveOf("polygon", a.closure->polygon, truth.at("polygon"))};
   return {report::ToJson(curves), "against the truth; means are taken out of both\n" + report::ScoreTable(curves),

@@ -21,7 +21,8 @@ double MeantAngle_rad(const std::optional<CompensationTable>& compensation, doub
 /// The steps that all phases share.
 class TurntableRun {
  public:
-  TurntableRun(NullingTurntableBench& bench, const Scenario& scenario, ReadingSink& sink, const ProgressCallback& progress)
+  TurntableRun(NullingTurntableBench& bench, const Scenario& scenario, ReadingSink& sink,
+               const ProgressCallback& progress)
       : bench_(bench),
         scenario_(scenario),
         sink_(sink),

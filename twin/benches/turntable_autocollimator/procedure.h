@@ -9,8 +9,8 @@
 
 /// How the bench turntable_autocollimator is measured: at every stop the turntable has turned by a whole number of
 /// teeth, the multi-tooth table has turned the mirror back by as many, and the autocollimator reads what is left. A
-/// polygon has a face for every stop instead; the turntable is turned until the autocollimator shows zero of it, and
-/// its encoder is read.
+/// polygon has a face for every stop instead; the turntable is turned until the autocollimator shows zero of it,
+/// and its encoder is read.
 namespace twinbench {
 
 /// The turntable's drive in one loop with the autocollimator: the instrument's error signal turns the table.
@@ -36,11 +36,11 @@ namespace twinbench::procedure {
 /// it is made.
 ///
 /// full_circle: each set-up is mounted (tilt, azimuth, eccentricity, shift) and all passes go through the
-/// positions. With a polygon a set-up is a clamping of it, and a reading's turntable angle is what the encoder shows
-/// with the face nulled, its multi-tooth angle that of the face on the polygon; a face that could not be nulled is
-/// read as it is. calibration: the turntable alone sweeps `sweep_rad` about position 0, always upwards. verification:
-/// stops at whole teeth that are no position. These two stay in the set-up that is there; the first is mounted if
-/// none is.
+/// positions. With a polygon a set-up is a clamping of it, and a reading's turntable angle is what the encoder
+/// shows with the face nulled, its multi-tooth angle that of the face on the polygon; a face that could not be
+/// nulled is read as it is. calibration: the turntable alone sweeps `sweep_rad` about position 0, always upwards.
+/// verification: stops at whole teeth that are no position. These two stay in the set-up that is there; the first
+/// is mounted if none is.
 ///
 /// @throws BenchError from the devices; what was appended before stays in the sink.
 /// Reference: Guo et al. (2014), sections 1, 3 and 5; Kinnane et al., Metrologia 52 (2015) 244 (polygon).

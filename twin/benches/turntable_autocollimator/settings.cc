@@ -26,7 +26,8 @@ void AddMultitooth(Keys& keys, MultitoothSettings& s) {
 
 void AddPolygon(Keys& keys, PolygonSettings& s) {
   Table t(keys, "polygon");
-  t.Add("faces", kPure, {0, 1000}, &s.faces, "that are nulled instead of indexing a multi-tooth table; 0: no polygon");
+  t.Add("faces", kPure, {0, 1000}, &s.faces,
+        "that are nulled instead of indexing a multi-tooth table; 0: no polygon");
   t.Add("face_errors", kArcsec, Within(3600), &s.face_errors_rad,
         "of their angles, counter-clockwise, one a face or one for all");
   t.Add("face_rms", kArcsec, UpTo(3600), &s.face_rms_rad, "of errors drawn on top of them");

@@ -18,11 +18,11 @@ struct MultitoothSettings {  // [multitooth], beside its errors as a table
 
 /// A polygon in the place of the multi-tooth table: its faces, each a mirror as [mirror] says, are nulled one after
 /// the other by turning the turntable.
-struct PolygonSettings {                         // [polygon]
-  int faces = 0;                                 // 0: there is none
-  std::vector<double> face_errors_rad = {0.0};   // of the face angles, one a face or one for all
-  double face_rms_rad = 0.0;                     // of what is drawn on top of them
-  double pyramid_rms_rad = 0.0;                  // of the faces' tilts against the polygon's axis
+struct PolygonSettings {                        // [polygon]
+  int faces = 0;                                // 0: there is none
+  std::vector<double> face_errors_rad = {0.0};  // of the face angles, one a face or one for all
+  double face_rms_rad = 0.0;                    // of what is drawn on top of them
+  double pyramid_rms_rad = 0.0;                 // of the faces' tilts against the polygon's axis
 };
 
 struct TurntableEncoderSettings {  // [encoder]: what its reading adds to the turntable's errors
@@ -61,9 +61,9 @@ struct TurntableProcedureSettings {                                   // [turnta
   std::vector<int> passes = {1, -1};                          // directions
   std::vector<double> dwell_s = {1.0};                        // drawn at random from this list at every stop
   double run_up_steps = 0.5;                                  // every pass comes to its first stop from this far
-  std::vector<double> polygon_offsets_rad = {0.0};  // of the turntable where the polygon's face 0 is seen
-  int highest_order = 12;                           // of the encoder's error that is fitted to a polygon's faces
-  double remount_s = 600.0;                                   // time a set-up takes
+  std::vector<double> polygon_offsets_rad = {0.0};            // of the turntable where the polygon's face 0 is seen
+  int highest_order = 12;                    // of the encoder's error that is fitted to a polygon's faces
+  double remount_s = 600.0;                  // time a set-up takes
   double sweep_rad = 200.0 * units::arcsec;  // calibration: the turntable alone, +- this about position 0
   int sweep_points = 9;
   int verification_positions = 144;  // whole teeth off the grid of positions

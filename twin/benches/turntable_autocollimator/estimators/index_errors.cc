@@ -35,10 +35,12 @@ double RollError_rad(const Roll& roll, const std::vector<IndexReading>& tilts) {
   return roll.u_gamma_rad * RootMeanSquare(AboutGroups(means, means.value_rad));
 }
 
-/// Errors of the encoder wherever a face was nulled, the faces' taken out; every clamping has a constant of its own.
+/// Errors of the encoder wherever a face was nulled, the faces' taken out; every clamping has a constant of its
+/// own.
 IndexErrors PolygonIndexErrors(const Scenario& scenario, const std::vector<Reading>& readings) {
   const PolygonAnalysis analysis = AnalysePolygon(readings, scenario, Estimator::kRigorous);
-  if (!analysis.closure) throw InputError("readings", analysis.not_separated, "clampings that tell encoder and faces apart");
+  if (!analysis.closure)
+    throw InputError("readings", analysis.not_separated, "clampings that tell encoder and faces apart");
   const PolygonClosure& closure = *analysis.closure;
   std::map<int, double> face_rad;
   for (std::size_t i = 0; i < closure.face.size(); ++i)

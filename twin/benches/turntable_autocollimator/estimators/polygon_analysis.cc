@@ -20,15 +20,28 @@ std::vector<StatedScatter> StatedOf(const TurntableSettings& own) {
   return stated;
 }
 
+/// What an order differs by from the rigorous one is a standard deviation of both its phases together.
+void AddBias(const HarmonicModel& rigorous, HarmonicModel& published) {
+  published.terms.clear();
+  for (int k = 1; k <= published.highest_order; ++k) {
+    const Eigen::Index at = 2 * k - 1;
+    const Eigen::Vector2d off_rad =
+        published.coefficients_rad.segment<2>(at) - rigorous.coefficients_rad.segment<2>(at);
+    published.cov_rad2.diagonal().segment<2>(at).array() += 0.5 * off_rad.squaredNorm();
+    published.terms.push_back(
+        TermOf(k, published.coefficients_rad.segment<2>(at), published.cov_rad2.block<2, 2>(at, at)));
+  }
+}
+
 /// The published estimate of the rigorous one's readings; what both differ by is in its uncertainties.
 void TakePublished(const std::vector<FaceReading>& faces, const TurntableSettings& own, PolygonAnalysis& analysis) {
   PolygonClosure published = ClosePolygonByMeans(faces, own.polygon.faces, own.turntable_procedure.highest_order);
   const PolygonClosure& rigorous = *analysis.closure;
   analysis.method_bias_rad = ClosureBias_rad(published.turntable, rigorous.turntable);
-  const double of_faces_rad = ClosureBias_rad(published.polygon, rigorous.polygon);
-  published.turntable.cov_rad2.diagonal().array() += std::pow(analysis.method_bias_rad, 2);
-  published.polygon.cov_rad2.diagonal().array() += std::pow(of_faces_rad, 2);
-  published.encoder.u_unmodelled_rad = analysis.method_bias_rad;
+  AddBias(rigorous.encoder, published.encoder);
+  published.turntable = CurveAt(published.encoder, published.turntable.position_rad);
+  published.polygon.cov_rad2.diagonal().array() +=
+      std::pow(ClosureBias_rad(published.polygon, rigorous.polygon), 2);
   published.hidden = rigorous.hidden;
   published.notes.insert(published.notes.begin(), rigorous.notes.begin(), rigorous.notes.end());
   analysis.closure = std::move(published);
@@ -60,8 +73,9 @@ PolygonAnalysis AnalysePolygon(const std::vector<Reading>& readings, const Scena
   }
   PolygonClosure rigorous = ClosePolygon(faces, own.polygon.faces, own.turntable_procedure.highest_order);
   if (rigorous.turntable.position_rad.empty()) {
-    analysis.not_separated = "no order of the encoder's error can be told from the polygon's faces: more clampings, at "
-                             "other offsets, would tell them apart";
+    analysis.not_separated =
+        "no order of the encoder's error can be told from the polygon's faces: more clampings, at "
+        "other offsets, would tell them apart";
     return analysis;
   }
   analysis.closure = std::move(rigorous);

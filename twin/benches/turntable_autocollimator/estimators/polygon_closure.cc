@@ -150,9 +150,9 @@ HarmonicModel CurveOf(const ClosureDesign& design, const NormalSolution& solutio
 FaceSeries FacesOf(const ClosureDesign& design, const NormalSolution& solution, double variance_rad2, int faces) {
   const Eigen::MatrixXd& closing = design.closing();
   const Eigen::Index first = design.FirstOfPolygon(), count = closing.cols();
-  return ByOwnAngle(design.faces().Names(), closing * solution.x.segment(first, count),
-                    variance_rad2 * closing * solution.inverse.block(first, first, count, count) * closing.transpose(),
-                    faces);
+  return ByOwnAngle(
+      design.faces().Names(), closing * solution.x.segment(first, count),
+      variance_rad2 * closing * solution.inverse.block(first, first, count, count) * closing.transpose(), faces);
 }
 
 std::string ListedOrders(const std::vector<HiddenOrder>& hidden, OrderHidden by) {
@@ -205,8 +205,7 @@ PolygonClosure ClosePolygon(const std::vector<FaceReading>& readings, int faces,
   if (readings.empty()) throw InputError("readings", "no face was read", "a full circle of a polygon");
   const ClosureDesign design(readings, highest_order);
   Eigen::VectorXd value_rad(std::ssize(readings));
-  for (std::size_t i = 0; i < readings.size(); ++i)
-    value_rad[static_cast<Eigen::Index>(i)] = readings[i].value_rad;
+  for (std::size_t i = 0; i < readings.size(); ++i) value_rad[static_cast<Eigen::Index>(i)] = readings[i].value_rad;
   const Eigen::MatrixXd& a = design.columns();
   const NormalSolution solution = SolveNormal(a.transpose() * a, a.transpose() * value_rad);
   PolygonClosure result;

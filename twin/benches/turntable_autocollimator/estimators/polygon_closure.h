@@ -32,9 +32,9 @@ struct ReadingNoise {
 struct PolygonClosure {
   HarmonicModel encoder;            // error of the turntable; orders that are not told are zero
   std::vector<HiddenOrder> hidden;  // up to the highest order asked for
-  AngleSeries turntable;            // that curve at every angle at which a face was nulled; empty if no order is told
-  AngleSeries polygon;              // errors of the faces, by their own angle on the polygon; zero mean
-  std::vector<int> face;            // their numbers
+  AngleSeries turntable;  // that curve at every angle at which a face was nulled; empty if no order is told
+  AngleSeries polygon;    // errors of the faces, by their own angle on the polygon; zero mean
+  std::vector<int> face;  // their numbers
   ReadingNoise noise;
   Eigen::VectorXd residual_rad;  // one a reading
   double residual_rms_rad = kNaN;
@@ -46,18 +46,18 @@ struct PolygonClosure {
 /// zero, all readings of equal weight.
 ///
 /// An order whose waves the constants, the faces and the lower orders can make is left out and named: multiples of
-/// the number of faces whatever the clampings are, multiples of c where c clampings stand evenly round the circle. What
-/// there is of it enters what it looks like.
+/// the number of faces whatever the clampings are, multiples of c where c clampings stand evenly round the circle.
+/// What there is of it enters what it looks like.
 ///
 /// @param faces  Of the polygon, read or not.
 /// @throws InputError if there is no reading, or clampings that have no face in common.
 ///
 /// Uncertainty: scatter of repeats (same clamping, face, direction), or of the residuals where these exceed it
 /// (p < 0.001) or nothing was read twice; 2 M / N of its square for M orders of N readings spread evenly. Not
-/// included: what is the same in every clamping as the encoder's error is, such as the roll of the crosshair times a
-/// tilt of the polygon and the flatness of its faces times its eccentricity; orders above the highest.
-/// Reference: docs/theory.md 5.4; Kinnane et al., Metrologia 52 (2015) 244 (the procedure); Estler, J. Res. NIST 103
-/// (1998) 141 (dual closure).
+/// included: what is the same in every clamping as the encoder's error is, such as the roll of the crosshair times
+/// a tilt of the polygon and the flatness of its faces times its eccentricity; orders above the highest. Reference:
+/// docs/theory.md 5.4; Kinnane et al., Metrologia 52 (2015) 244 (the procedure); Estler, J. Res. NIST 103 (1998)
+/// 141 (dual closure).
 PolygonClosure ClosePolygon(const std::vector<FaceReading>& readings, int faces, int highest_order);
 
 /// Scatter of readings of the same clamping, face and direction.

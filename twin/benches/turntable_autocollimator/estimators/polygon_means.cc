@@ -21,7 +21,8 @@ struct RunningMean {
 /// Takes the means of a label's values out of all values.
 /// @return the means.
 template <class Label>
-std::map<int, double> TakeOutMeans(const std::vector<FaceReading>& readings, Label label, Eigen::VectorXd& value_rad) {
+std::map<int, double> TakeOutMeans(const std::vector<FaceReading>& readings, Label label,
+                                   Eigen::VectorXd& value_rad) {
   std::map<int, RunningMean> running;
   for (std::size_t i = 0; i < readings.size(); ++i)
     running[label(readings[i])].Add(value_rad[static_cast<Eigen::Index>(i)]);
@@ -45,7 +46,8 @@ HarmonicModel SummedWaves(const std::vector<FaceReading>& readings, const Eigen:
   return curve;
 }
 
-Eigen::VectorXd RestOf(const std::vector<FaceReading>& readings, const HarmonicModel& curve, Eigen::VectorXd value_rad) {
+Eigen::VectorXd RestOf(const std::vector<FaceReading>& readings, const HarmonicModel& curve,
+                       Eigen::VectorXd value_rad) {
   for (std::size_t i = 0; i < readings.size(); ++i)
     value_rad[static_cast<Eigen::Index>(i)] -=
         HarmonicBasis(readings[i].angle_rad, curve.highest_order).dot(curve.coefficients_rad);
@@ -55,7 +57,8 @@ Eigen::VectorXd RestOf(const std::vector<FaceReading>& readings, const HarmonicM
 /// As if all waves were orthogonal.
 void StateUncertainties(double u_reading_rad, Eigen::Index readings, HarmonicModel& curve) {
   const double variance_rad2 = 2.0 * u_reading_rad * u_reading_rad / static_cast<double>(readings);
-  curve.cov_rad2 = variance_rad2 * Eigen::MatrixXd::Identity(curve.coefficients_rad.size(), curve.coefficients_rad.size());
+  curve.cov_rad2 =
+      variance_rad2 * Eigen::MatrixXd::Identity(curve.coefficients_rad.size(), curve.coefficients_rad.size());
   curve.cov_rad2(0, 0) = 0.0;
   for (int k = 1; k <= curve.highest_order; ++k)
     curve.terms.push_back(
@@ -72,9 +75,9 @@ FaceSeries MeansOfFaces(const std::map<int, double>& means, double u_reading_rad
   }
   const auto n = static_cast<double>(means.size());
   value_rad.array() -= value_rad.mean();
-  const Eigen::MatrixXd centring =
-      Eigen::MatrixXd::Identity(value_rad.size(), value_rad.size()).array() - 1.0 / n;
-  return ByOwnAngle(names, value_rad, u_reading_rad * u_reading_rad * n / static_cast<double>(readings) * centring, faces);
+  const Eigen::MatrixXd centring = Eigen::MatrixXd::Identity(value_rad.size(), value_rad.size()).array() - 1.0 / n;
+  return ByOwnAngle(names, value_rad, u_reading_rad * u_reading_rad * n / static_cast<double>(readings) * centring,
+                    faces);
 }
 
 }  // namespace
@@ -83,13 +86,15 @@ PolygonClosure ClosePolygonByMeans(const std::vector<FaceReading>& readings, int
   if (readings.empty()) throw InputError("readings", "no face was read", "a full circle of a polygon");
   Eigen::VectorXd value_rad(std::ssize(readings));
   for (std::size_t i = 0; i < readings.size(); ++i) value_rad[static_cast<Eigen::Index>(i)] = readings[i].value_rad;
-  const auto constants = TakeOutMeans(readings, [](const FaceReading& r) { return r.clamping; }, value_rad);
-  const auto of_faces = TakeOutMeans(readings, [](const FaceReading& r) { return r.face; }, value_rad);
+  const auto constants = TakeOutMeans(
+      readings, [](const FaceReading& r) { return r.clamping; }, value_rad);
+  const auto of_faces = TakeOutMeans(
+      readings, [](const FaceReading& r) { return r.face; }, value_rad);
   PolygonClosure result;
   result.encoder = SummedWaves(readings, value_rad, highest_order);
   result.residual_rad = RestOf(readings, result.encoder, value_rad);
-  result.dof = static_cast<double>(readings.size()) - static_cast<double>(constants.size() + of_faces.size()) + 1.0 -
-               2.0 * highest_order;
+  result.dof = static_cast<double>(readings.size()) - static_cast<double>(constants.size() + of_faces.size()) +
+               1.0 - 2.0 * highest_order;
   result.noise = JudgedNoise(NoiseOfNulledFaces(readings), result.residual_rad.squaredNorm(), result.dof);
   const double u_rad = result.noise.scale * result.noise.u_rad;
   result.residual_rms_rad = std::sqrt(result.residual_rad.squaredNorm() / static_cast<double>(readings.size()));

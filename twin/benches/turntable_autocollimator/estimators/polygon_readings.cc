@@ -49,7 +49,8 @@ FaceReading FaceReadingOf(const Reading& r, const Scenario& scenario) {
 std::vector<FaceReading> FaceReadings(const std::vector<Reading>& readings, const Scenario& scenario) {
   std::vector<FaceReading> faces;
   for (const Reading& r : readings) {
-    if (r.phase == Phase::kFullCircle && r.status == ReadingStatus::kOk) faces.push_back(FaceReadingOf(r, scenario));
+    if (r.phase == Phase::kFullCircle && r.status == ReadingStatus::kOk)
+      faces.push_back(FaceReadingOf(r, scenario));
   }
   return faces;
 }

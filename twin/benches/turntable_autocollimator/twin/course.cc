@@ -92,8 +92,8 @@ class CourseMaker {
     const double shift_rad = std::isfinite(turntable_rad + r.reference_rad) ? turntable_rad + r.reference_rad : 0.0;
     const double mounted_rad = HasPolygon() ? TurntableOf(actual_).FaceAngle_rad(setup, 0)
                                             : static_cast<double>(std::lround(shift_rad / pitch_rad_)) * pitch_rad_;
-    course_.mountings.push_back({p.Of(p.tilts_rad, setup), p.Of(p.tilt_azimuths_rad, setup),
-                                 p.Of(p.eccentricities_m, setup), mounted_rad});
+    course_.mountings.push_back(
+        {p.Of(p.tilts_rad, setup), p.Of(p.tilt_azimuths_rad, setup), p.Of(p.eccentricities_m, setup), mounted_rad});
     mounted_here_ = queue_.Now();
   }
 

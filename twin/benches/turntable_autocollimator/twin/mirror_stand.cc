@@ -28,8 +28,9 @@ std::vector<double> FaceErrors(const PolygonSettings& settings, std::uint64_t se
   const auto faces = static_cast<std::size_t>(settings.faces);
   std::vector<double> errors_rad(faces);
   for (std::size_t face = 0; face < faces; ++face) {
-    errors_rad[(faces - face) % faces] = TurntableProcedureSettings::Of(settings.face_errors_rad, static_cast<int>(face)) +
-                                         settings.face_rms_rad * stream.Normal();
+    errors_rad[(faces - face) % faces] =
+        TurntableProcedureSettings::Of(settings.face_errors_rad, static_cast<int>(face)) +
+        settings.face_rms_rad * stream.Normal();
   }
   return errors_rad;
 }

@@ -15,8 +15,9 @@ struct MirrorExtra {
   mechanics::PoseError mount;       // of the mirror, facing along y, on its seat
 };
 
-/// Turntable, multi-tooth table and mirror on top of each other: from angles to the pose of the mirror. A polygon is
-/// a multi-tooth table with one seat a face that is never lifted: face f is what tooth -f would turn the mirror to.
+/// Turntable, multi-tooth table and mirror on top of each other: from angles to the pose of the mirror. A polygon
+/// is a multi-tooth table with one seat a face that is never lifted: face f is what tooth -f would turn the mirror
+/// to.
 ///
 /// L: z = turntable's axis, up; the autocollimator looks along -y; origin at the height of the beam. The mirror's
 /// body M has its normal along z_M and y_M up.

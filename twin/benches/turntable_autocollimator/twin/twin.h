@@ -22,8 +22,8 @@ class TurntableTwin {
   /// Valid as long as the twin.
   NullingTurntableBench Bench();
 
-  /// {"turntable": errors at each tooth angle, "multitooth": errors at its teeth, "effects": [...], "seed": n}; with a
-  /// polygon that is "polygon", and the turntable's errors stand at the angles where its faces are nulled.
+  /// {"turntable": errors at each tooth angle, "multitooth": errors at its teeth, "effects": [...], "seed": n};
+  /// with a polygon that is "polygon", and the turntable's errors stand at the angles where its faces are nulled.
   nlohmann::json Truth() const;
 
  private:
