@@ -18,7 +18,8 @@ std::vector<ReadingColumn> Columns() {
       NumberColumn(
           "velocity_deg_s", units::deg, ColumnRole::kOptional, [](auto& r) -> auto& { return r.velocity_rad_s; }),
       NumberColumn(
-          "head_deg", units::deg, ColumnRole::kOptional, [](auto& r) -> auto& { return r.head_rad; })};
+          "head_deg", units::deg, ColumnRole::kOptional, [](auto& r) -> auto& { return r.head_rad; }),
+      NumberColumn("stamp_s", 1.0, ColumnRole::kOptional, Quantity{"stamp_s"})};
   return Joined({CommonColumns(true), angles, ConditionColumns()});
 }
 

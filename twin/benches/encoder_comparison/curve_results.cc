@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -53,6 +54,23 @@ std::string LinesText(const char* what, const HarmonicSeries& series, const Axis
                         Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
                         separate::harmonics::Phase(c) / units::deg);
   }
+  return text;
+}
+
+std::string LargestText(const char* what, const HarmonicSeries& series, const AxisUnit& unit) {
+  constexpr std::size_t kMost = 6;
+  std::vector<int> orders = FindLines(series);
+  const auto size = [&](int order) { return -Amplitude(series.At(order)); };
+  std::ranges::sort(orders, {}, size);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, orders.size()); ++i) {
+    const Coefficient& c = series.At(orders[i]);
+    text += fmt::format("{:<10} order {:3d}   {:10.4f} +- {:.4f} {}, phase {:+.2f} deg\n", what, orders[i],
+                        Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
+                        separate::harmonics::Phase(c) / units::deg);
+  }
+  if (orders.size() > kMost)
+    text += fmt::format("{:<10} and {} more orders that stand out of the noise\n", what, orders.size() - kMost);
   return text;
 }
 

@@ -19,6 +19,9 @@ nlohmann::json HarmonicsJson(const separate::harmonics::HarmonicSeries& series);
 /// A row for each order that stands out of the noise.
 std::string LinesText(const char* what, const separate::harmonics::HarmonicSeries& series, const AxisUnit& unit);
 
+/// A row for each of the six largest of them, and how many more there are.
+std::string LargestText(const char* what, const separate::harmonics::HarmonicSeries& series, const AxisUnit& unit);
+
 /// At the positions of the truth, `truth` of which has them and what was true there.
 report::CurveScore ScoreOf(const std::string& name, const separate::harmonics::HarmonicSeries& series,
                            const nlohmann::json& truth);

@@ -7,6 +7,7 @@
 #include "twin/benches/encoder_comparison/diagnosis/harmonic_table.h"
 #include "twin/benches/encoder_comparison/diagnosis/large_causes.h"
 #include "twin/benches/encoder_comparison/diagnosis/stop_errors.h"
+#include "twin/benches/encoder_comparison/estimators/coast_passes.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/diagnose/conclusion.h"
 
@@ -24,10 +25,16 @@ void TellLengths(const AxisUnit& unit, diagnose::Diagnosis& diagnosis) {
   for (diagnose::Detectable& seen : diagnosis.detectable) tell(seen.smallest);
 }
 
+/// Times of lines as the comparison of angles that they come to.
+std::vector<Reading> AnglesOf(const std::vector<Reading>& readings) {
+  return separate::encoder::HaveStamps(readings) ? separate::encoder::AsComparison(readings) : readings;
+}
+
 }  // namespace
 
-diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
+diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& recorded, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options) {
+  const std::vector<Reading> readings = AnglesOf(recorded);
   const diagnose::encoder::LargeCauses large =
       diagnose::encoder::FindLargeCauses(readings, scenario, options, FollowRecord);
   const diagnose::encoder::Searched& searched = large.Last();
@@ -47,7 +54,7 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
 }
 
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::encoder::BuildRun(readings, scenario, FollowRecord).run;
+  return diagnose::encoder::BuildRun(AnglesOf(readings), scenario, FollowRecord).run;
 }
 
 }  // namespace twinbench::benches::encoder

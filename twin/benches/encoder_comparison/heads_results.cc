@@ -87,24 +87,6 @@ nlohmann::json HeadsSeparationJson(const SeveralHeads& heads) {
   return json;
 }
 
-/// The largest orders of a curve, as many as are still looked at.
-std::string LargestText(const char* what, const separate::harmonics::HarmonicSeries& series, const AxisUnit& unit) {
-  constexpr std::size_t kMost = 6;
-  std::vector<int> orders = FindLines(series);
-  const auto size = [&](int order) { return -Amplitude(series.At(order)); };
-  std::ranges::sort(orders, {}, size);
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kMost, orders.size()); ++i) {
-    const separate::harmonics::Coefficient& c = series.At(orders[i]);
-    text += fmt::format("{:<10} order {:3d}   {:10.4f} +- {:.4f} {}, phase {:+.2f} deg\n", what, orders[i],
-                        Amplitude(c) / unit.to_SI, AmplitudeUncertainty(c) / unit.to_SI, unit.name,
-                        separate::harmonics::Phase(c) / units::deg);
-  }
-  if (orders.size() > kMost)
-    text += fmt::format("{:<10} and {} more orders that stand out of the noise\n", what, orders.size() - kMost);
-  return text;
-}
-
 std::string LostOrdersText(const SeveralHeads& heads, const AxisUnit& unit) {
   const WholeCurve whole = WholeOf(heads);
   std::string text = fmt::format("curve of the ring      U = {:.4f} {} (k = 2, root mean square over the turn)\n",

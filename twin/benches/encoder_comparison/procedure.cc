@@ -37,7 +37,9 @@ class Schedule {
   std::vector<Reading> Make() {
     for (std::size_t k = 0; k < s_.mounting_rad.size(); ++k) {
       if (k > 0) time_s_ += s_.remount_s;
-      s_.kind == "stops" ? AddStops(static_cast<int>(k)) : AddSweeps(static_cast<int>(k));
+      if (s_.kind == "stops") AddStops(static_cast<int>(k));
+      if (s_.kind == "sweep") AddSweeps(static_cast<int>(k));
+      if (s_.kind == "coast") AddCoasts(static_cast<int>(k));
     }
     return readings_;
   }
@@ -84,6 +86,23 @@ class Schedule {
     }
   }
 
+  /// Times are those of a spindle that loses nothing: the bench knows the others.
+  void AddCoasts(int mounting) {
+    const int count = static_cast<int>(std::lround(s_.turns * s_.stamps));
+    const double step_rad = units::turn / s_.stamps;
+    for (const double speed_rad_s : s_.speeds_rad_s) {
+      for (const int direction : s_.passes) {
+        for (int k = 0; k <= count; ++k) {
+          const double line_rad = s_.start_rad + direction * k * step_rad;
+          Add(mounting, direction, k, line_rad, direction * speed_rad_s, time_s_ + k * step_rad / speed_rad_s);
+          readings_.back().measured_rad = line_rad;
+        }
+        time_s_ += count * step_rad / speed_rad_s + s_.rest_s;
+        ++pass_;
+      }
+    }
+  }
+
   void AddSweep(int mounting, int direction, double speed_rad_s) {
     const SweepPass pass{speed_rad_s, s_.ramp_s, s_.turns * units::turn / speed_rad_s};
     const int count = static_cast<int>(std::ceil((pass.Motion_s() + s_.rest_s) / s_.interval_s));
@@ -114,7 +133,7 @@ std::vector<Reading> AngleSchedule(const EncoderProcedureSettings& procedure) {
 void CarryOut(AngleComparator& bench, const Scenario& scenario, ReadingSink& sink,
               const ProgressCallback& progress) {
   // In motion readings come too fast to be waited for one by one.
-  const std::size_t together = EncoderOf(scenario).encoder_procedure.kind == "sweep" ? 256 : 1;
+  const std::size_t together = EncoderOf(scenario).encoder_procedure.kind == "stops" ? 1 : 256;
   const std::vector<Reading> schedule = AngleSchedule(EncoderOf(scenario).encoder_procedure);
   std::vector<Reading> taken;
   for (Reading reading : schedule) {

@@ -14,7 +14,8 @@ namespace twinbench::procedure {
 /// Stops: one reading each, evenly spaced, velocity 0; a pass of the other direction goes through the same stops
 /// backwards. Several heads: as many readings at one time, each with its head's angle and a set-up number of its
 /// own, heads x mounting + head. Sweep: for each speed all passes; constant acceleration, `turns` at constant speed, the same
-/// deceleration, a rest (direction 0); each pass begins where the last one ended.
+/// deceleration, a rest (direction 0); each pass begins where the last one ended. Coast: for each speed all passes; one
+/// reading a line, reference and measured both its angle on the scale; the bench enters when it passed.
 std::vector<Reading> AngleSchedule(const EncoderProcedureSettings& procedure);
 
 /// Carries out the schedule on any bench; every stop goes to `sink` as soon as it is made, readings in motion go in

@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/encoder_comparison/bench.h"
+#include "twin/benches/encoder_comparison/coast_results.h"
 #include "twin/benches/encoder_comparison/comparison.h"
 #include "twin/benches/encoder_comparison/curve_results.h"
+#include "twin/benches/encoder_comparison/estimators/coast_passes.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/estimators/head_readings.h"
 #include "twin/benches/encoder_comparison/heads_results.h"
@@ -141,6 +143,7 @@ std::string SummaryOf(const DeviceError& e, const AxisUnit& unit) {
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   if (separate::encoder::HaveHeads(readings)) return EvaluateHeads(scenario, readings, estimator);
+  if (separate::encoder::HaveStamps(readings)) return EvaluateCoast(scenario, readings, estimator);
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
   const DeviceError device = separate::encoder::SeparateDevice(readings);
   const DeviceSettings& device_settings = EncoderOf(scenario).device;
@@ -160,6 +163,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
                            const nlohmann::json& truth, Estimator estimator) {
   if (separate::encoder::HaveHeads(readings)) return ScoreHeads(scenario, readings, truth, estimator);
+  if (separate::encoder::HaveStamps(readings)) return ScoreCoast(readings, truth, estimator);
   const DeviceError device = separate::encoder::SeparateDevice(readings);
   if (device.highest_order == 0) throw InputError("the run", device.not_separated, "a run with complete turns");
   std::vector<report::CurveScore> curves = {ScoreOf("device", device.curves.device, truth.at("device"))};

@@ -1,7 +1,11 @@
 #include "twin/benches/encoder_comparison/settings.h"
 
+#include <fmt/core.h>
+
 #include "twin/benches/encoder_comparison/format.h"
+#include "twin/core/errors.h"
 #include "twin/core/scenario_together.h"
+#include "twin/core/scenario_text.h"
 #include "twin/core/schema_table.h"
 
 namespace twinbench::benches::encoder {
@@ -17,6 +21,7 @@ void AddDevice(Keys& keys, DeviceSettings& s) {
   t.Add("turn", kMm, UpTo(1e7), &s.turn_m, "linear axis: the way that counts as one turn; 0: the axis turns");
   t.Add("lines_per_turn", kPure, UpTo(10000000), &s.lines, "of its scale; 0: not known");
   t.Add("teeth", kPure, UpTo(100000), &s.teeth, "of a gear between reference and device; 0: none known");
+  t.Add("stamp_noise", {"ns", 1e-9}, UpTo(1e6), &s.stamp_noise_s, "coast: of the time at which a line passes");
   t.Add("signal_periods", kPure, {1, 100000}, &s.signal_periods, "of its sine and cosine signals a turn");
   t.Add("signal_zero", kDeg, Within(360), &s.signal_zero_rad, "device angle where the sine rises through zero");
   t.Flag("signal_zero_known", s.signal_zero_known, "false: the phase of signal faults is left free");
@@ -27,7 +32,8 @@ void AddDevice(Keys& keys, DeviceSettings& s) {
 
 void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
   Table t(keys, "encoder_procedure");
-  t.Text("kind", &s.kind, {"stops", "sweep"}, "readings at rest, or in motion");
+  t.Text("kind", &s.kind, {"stops", "sweep", "coast"},
+         "readings at rest, in motion, or times of lines while the spindle runs down");
   t.Add("turns", kPure, Positive(1000), &s.turns, "of a pass");
   t.Add("start", kDeg, Within(360000), &s.start_rad, "where the first pass begins");
   t.Add("passes", kPure, {-1, 1}, &s.passes, "directions: 1 or -1; a sweep does them at each speed");
@@ -38,10 +44,42 @@ void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
         "of what the reference shows at one instant, the same for all heads");
   t.Add("stops_per_turn", kPure, {3, 100000}, &s.stops, "stops: evenly spaced");
   t.Add("stop_interval", kSecond, Positive(86400), &s.stop_interval_s, "stops: between readings");
-  t.Add("speeds", {"deg_s", units::deg}, Positive(36000), &s.speeds_rad_s, "sweep: one after the other");
+  t.Add("speeds", {"deg_s", units::deg}, Positive(36000), &s.speeds_rad_s, "sweep: one after the other; coast: at the start");
   t.Add("ramp", kSecond, Positive(3600), &s.ramp_s, "sweep: to reach the speed and to stop");
-  t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "sweep: behind every pass");
+  t.Add("rest", kSecond, UpTo(86400), &s.rest_s, "sweep, coast: behind every pass");
   t.Add("interval", kSecond, Positive(3600), &s.interval_s, "sweep: between readings");
+  t.Add("stamps_per_turn", kPure, {8, 100000}, &s.stamps, "coast: lines whose times are taken");
+}
+
+void AddSpindle(Keys& keys, SpindleSettings& s) {
+  const Unit acceleration{"deg_s2", units::deg};
+  Table t(keys, "spindle");
+  t.Add("friction", acceleration, UpTo(36000), &s.friction_rad_s2, "coast: what it loses at any speed");
+  t.Add("viscous", {"per_s"}, UpTo(10), &s.viscous_per_s, "coast: by speed");
+  t.Add("drag", {"per_turn", 1.0 / units::turn}, UpTo(10), &s.drag_per_rad, "coast: by the speed's square");
+  t.Add("torque", acceleration, UpTo(36000), &s.torque_rad_s2, "coast: of magnets or unbalance, as cos(order angle)");
+  t.Add("torque_order", kPure, {1, 2000}, &s.torque_order, "of the same");
+  t.Add("ripple", acceleration, UpTo(36000), &s.ripple_rad_s2, "coast: of the friction, as cos(order angle)");
+  t.Add("ripple_order", kPure, {1, 2000}, &s.ripple_order, "of the same");
+}
+
+/// @throws InputError if the spindle would stand still within a pass, or several heads are read.
+void CheckCoast(const ScenarioText& text, const EncoderSettings& own) {
+  const EncoderProcedureSettings& p = own.encoder_procedure;
+  if (p.kind != "coast") return;
+  if (p.heads_rad.size() > 1)
+    throw InputError(text.Where("encoder_procedure.heads_deg", text.name() + ":1"), "encoder_procedure.heads_deg has several heads",
+                     "one, where the spindle coasts");
+  const SpindleSettings& d = own.spindle;
+  for (const double speed_rad_s : p.speeds_rad_s) {
+    const double loss = d.friction_rad_s2 / speed_rad_s + d.viscous_per_s + d.drag_per_rad * speed_rad_s;
+    const double lost_rad_s = loss * p.turns * units::turn;
+    if (lost_rad_s > 0.5 * speed_rad_s)
+      throw InputError(text.Where("encoder_procedure.speeds_deg_s", text.name() + ":1"),
+                       fmt::format("at {:.4g} deg/s the spindle would lose {:.4g} deg/s in {:.4g} turns",
+                                   speed_rad_s / units::deg, lost_rad_s / units::deg, p.turns),
+                       "no more than half of its speed in a pass");
+  }
 }
 
 }  // namespace
@@ -50,11 +88,13 @@ void AddKeys(Keys& keys, Scenario& s) {
   EncoderSettings& own = EncoderOf(s);
   AddDevice(keys, own.device);
   AddEncoderProcedure(keys, own.encoder_procedure);
+  AddSpindle(keys, own.spindle);
 }
 
 void CheckTogether(const ScenarioText& text, const Scenario& s) {
   const EncoderSettings& own = EncoderOf(s);
   CheckPasses(text, "encoder_procedure.passes", own.encoder_procedure.passes);
+  CheckCoast(text, own);
 }
 
 }  // namespace twinbench::benches::encoder

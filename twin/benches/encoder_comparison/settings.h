@@ -16,6 +16,7 @@ struct DeviceSettings {                   // [device]
   double turn_m = 0.0;           // [device] turn_mm of a linear axis: the way that counts as one turn; 0: it turns
   int lines = 0;                 // [device] lines_per_turn; 0: not known
   int teeth = 0;                 // of a gear between reference and device; 0: none known
+  double stamp_noise_s = 2e-9;   // of the time at which a line passes, standard deviation
   int signal_periods = 1;        // of its sine and cosine signals a turn
   double signal_zero_rad = 0.0;  // angle of the device at which the sine signal rises through zero
   bool signal_zero_known = false;  // false: the evaluation leaves the phase of signal faults free
@@ -26,7 +27,7 @@ struct DeviceSettings {                   // [device]
 };
 
 struct EncoderProcedureSettings {            // [encoder_procedure]
-  std::string kind = "stops";                // stops | sweep
+  std::string kind = "stops";                // stops | sweep | coast
   double turns = 2.0;                        // of a pass
   double start_rad = 0.0;                    // where the first pass begins
   std::vector<int> passes = {1, -1, -1, 1};  // directions; a sweep does them at each speed
@@ -40,11 +41,25 @@ struct EncoderProcedureSettings {            // [encoder_procedure]
   double ramp_s = 0.6;       // at constant acceleration, up and down
   double rest_s = 2.0;       // behind every pass
   double interval_s = 0.08;  // between readings
+  int stamps = 1024;         // coast: lines of a turn whose times are taken
+};
+
+/// A spindle without its drive: phi'' = - s (friction + viscous w + drag w^2 + ripple cos(order phi)) + torque cos(order
+/// phi), w the speed's size and s its sign.
+struct SpindleSettings {            // [spindle]
+  double friction_rad_s2 = 0.0;
+  double viscous_per_s = 1.0 / 600.0;
+  double drag_per_rad = 0.0;
+  double torque_rad_s2 = 0.0;  // of magnets, of an unbalance: the same in both directions
+  int torque_order = 12;
+  double ripple_rad_s2 = 0.0;  // of the friction: against the motion
+  int ripple_order = 3;
 };
 
 struct EncoderSettings {
   DeviceSettings device;
   EncoderProcedureSettings encoder_procedure;
+  SpindleSettings spindle;
 };
 
 /// The bench's own part of a scenario. @throws std::logic_error if it is another bench's.

@@ -136,22 +136,4 @@ void EnterReference(const HeadReadings& sorted, const HeadSolution& solution, co
   result.reference_rms_rad = std::sqrt(std::max(0.0, reference.Variance_rad2() - of_heads_rad2));
 }
 
-void AddMethodBias(const SeveralHeads& rigorous, SeveralHeads& published) {
-  constexpr double kTwice = 4.0;  // of the noise, in variance
-  std::string biased;
-  for (int order = 1; order <= published.Highest(); ++order) {
-    if (!IsSeen(published.ring, order) || !IsSeen(rigorous.ring, order)) continue;
-    harmonics::Coefficient& own = published.ring.At(order);
-    const harmonics::Coefficient& other = rigorous.ring.At(order);
-    const double noise_rad2 = std::max(0.0, 0.5 * (own.cov - other.cov).trace());
-    const double distance_rad2 = 0.5 * std::norm(own.value - other.value);
-    if (distance_rad2 <= kTwice * noise_rad2) continue;
-    own.cov += (distance_rad2 - noise_rad2) * Eigen::Matrix2d::Identity();
-    biased += fmt::format("{}{}", biased.empty() ? "" : ", ", order);
-  }
-  if (!biased.empty())
-    published.notes.push_back("BIASED: the published equations err in orders " + biased +
-                              " by more than twice the noise; it is part of their uncertainty");
-}
-
 }  // namespace twinbench::separate::encoder

@@ -68,8 +68,4 @@ void EnterCurve(const HeadSolution& solution, const OrdersToFit& orders, Several
 void EnterReference(const HeadReadings& sorted, const HeadSolution& solution, const OrdersToFit& orders,
                     SeveralHeads& result);
 
-/// Widens the covariance of each order by its distance to the least-squares result, where that is above twice the
-/// noise of the distance.
-void AddMethodBias(const SeveralHeads& rigorous, SeveralHeads& published);
-
 }  // namespace twinbench::separate::encoder

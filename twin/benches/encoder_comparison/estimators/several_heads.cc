@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/estimators/head_fit.h"
+#include "twin/benches/encoder_comparison/estimators/method_distance.h"
 
 namespace twinbench::separate::encoder {
 namespace {
@@ -55,7 +56,8 @@ SeveralHeads EqualDivision(const std::vector<Reading>& readings, const HeadOptio
   EnterCurve(solution, orders, result);
   result.residual_rms_rad *= std::sqrt(heads / (heads - 1.0));  // of the difference: one head less 1 / N of itself
   EnterReference(sorted, WithMeanOfHeads(solution), orders, result);
-  AddMethodBias(SeparateHeads(readings, options), result);
+  const std::string biased = WidenByDistance(SeparateHeads(readings, options).ring, result.ring);
+  if (!biased.empty()) result.notes.push_back(BiasNote(biased));
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/core/reading_column.h"
 #include "twin/core/stream.h"
 #include "twin/sim/truth.h"
 
@@ -64,6 +65,7 @@ EncoderTwin::EncoderTwin(const Scenario& scenario, double run_up_rad)
       run_up_rad_(run_up_rad),
       signal_zero_rad_(EncoderOf(scenario).device.signal_zero_rad),
       graduation_(scenario),
+      spindle_(EncoderOf(scenario)),
       empirical_(scenario.empiricals, "angle") {
   for (const EffectSettings& effect : scenario.effects) effects_.push_back(MakeAngleEffect(effect, scenario));
   for (const auto& effect : effects_) {
@@ -125,7 +127,31 @@ double EncoderTwin::DeviceAt_rad(const Reading& reading, double shaft_rad) {
   return Shown_rad(moment);
 }
 
+/// When the line that the reading names passes the head: the shaft then stands where the scale shows its angle.
+void EncoderTwin::TakeStamp(Reading& reading) {
+  AngleMoment moment = MomentOf(reading, 0.0);
+  moment.now = Time(FromSeconds(spindle_.Now_s()));
+  const double mounting_rad = MountingOf_rad(reading.setup);
+  constexpr int kSteps = 3;  // of a curve that falls by a thousandth and less
+  for (int k = 0; k < kSteps; ++k) {
+    const double device_rad = moment.shaft_rad + mounting_rad;
+    moment.shaft_rad += reading.reference_rad - device_rad - DeviceError_rad(moment, device_rad);
+  }
+  double stamp_s = spindle_.PassesAt_s(reading.pass, moment.shaft_rad, reading.velocity_rad_s);
+  if (!scenario_.noise_free) {
+    Stream stream(scenario_.RunSeed(), "stamp.noise");
+    stream.Seek(static_cast<std::uint64_t>(reading.reading));
+    stamp_s += EncoderOf(scenario_).device.stamp_noise_s * stream.Normal();
+  }
+  reading.time = Time(FromSeconds(stamp_s));
+  Quantity{"stamp_s"}(reading) = stamp_s;
+}
+
 void EncoderTwin::Take(Reading& reading) {
+  if (EncoderOf(scenario_).encoder_procedure.kind == "coast") {
+    TakeStamp(reading);
+    return;
+  }
   const AngleMoment moment = MomentOf(reading, run_up_rad_);
   Advance(moment);
   reading.reference_rad += ReferenceError_rad(moment);

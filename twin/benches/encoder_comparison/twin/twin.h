@@ -7,6 +7,7 @@
 #include "twin/benches/encoder_comparison/twin/effect.h"
 #include "twin/benches/encoder_comparison/twin/graduation.h"
 #include "twin/benches/encoder_comparison/twin/shaft_course.h"
+#include "twin/benches/encoder_comparison/twin/spindle.h"
 #include "twin/core/devices.h"
 #include "twin/sim/empirical_signal.h"
 
@@ -36,6 +37,7 @@ class EncoderTwin : public AngleComparator {
   nlohmann::json Truth() const;
 
  private:
+  void TakeStamp(Reading& reading);
   double MountingOf_rad(int setup) const;
   double Shown_rad(const AngleMoment& moment) const;
   void Advance(const AngleMoment& moment);
@@ -47,6 +49,7 @@ class EncoderTwin : public AngleComparator {
   double run_up_rad_;
   double signal_zero_rad_;
   Graduation graduation_;
+  CoastingSpindle spindle_;
   std::vector<std::unique_ptr<AngleEffect>> effects_;
   ShaftCourse course_;
   SignalState signals_;
