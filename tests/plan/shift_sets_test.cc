@@ -48,6 +48,19 @@ TEST(ShiftSets, TheBestOfASmallCircleIsTheBestOfAll) {
   }
 }
 
+TEST(ShiftSets, NoSetIsBelowWhatParsevalLeaves) {
+  // {0, 1, 3} is a cyclic difference set of 7: all orders alike, and the bound is reached.
+  EXPECT_NEAR(Judged(7, {0, 1, 3}).mean_factor, LeastPossible(7, 3), 1e-9);
+  for (const int n : {11, 12}) {
+    for (const int m : {2, 3, 4}) EXPECT_GE(BestShifts(n, m).mean_factor, LeastPossible(n, m) - 1e-9) << n << " " << m;
+  }
+}
+
+TEST(ShiftSets, OneMoreShiftIsTheBestThereIs) {
+  const ShiftSet more = WithOneMore(12, {0, 1});
+  for (int s = 2; s < 12; ++s) EXPECT_GE(Judged(12, {0, 1, s}).mean_factor, more.mean_factor - 1e-12);
+}
+
 TEST(ShiftSets, FourGoodShiftsBeatTwoThatAreRepeated) {
   // Two shifts, each taken twice: the same factors as once, of the mean of four set-ups.
   for (const auto& [positions, by] : {std::pair{36, 2.9}, {360, 8.0}}) {

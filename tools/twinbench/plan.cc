@@ -1,76 +1,128 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/plan_advice.h"
+#include "tools/twinbench/planned_run.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
-#include "twin/core/estimator.h"
 #include "twin/report/plan_text.h"
 
 namespace twinbench::tools {
 namespace {
 
 struct PlanOptions {
-  std::string scenario, json, next;
+  std::string scenario, json, next, goal;
   std::vector<std::string> overrides;
   int setups = 0;
+  double minutes = 0.0, readings = 0.0;
 };
 
-/// The scenario with other overrides on top of those of the command line.
-Scenario With(const PlanOptions& options, const std::vector<std::string>& more) {
-  std::vector<std::string> overrides = options.overrides;
-  overrides.insert(overrides.end(), more.begin(), more.end());
-  return LoadScenario(options.scenario, overrides);
-}
+/// What is told of a scenario.
+struct Planned {
+  std::vector<report::PlannedRun> runs;
+  report::PlannedEffects effects;
+  std::vector<report::Mending> mendings;
+  std::vector<plan::Advice> advice;
+  std::vector<report::PlannedProgramme> programme;  // one or none
+};
 
-report::PlannedRun Look(const std::string& words, const Scenario& scenario, const std::vector<Reading>& readings) {
-  const nlohmann::json results = BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous).results;
-  const double last_s = readings.empty() ? 0.0 : ToSeconds(readings.back().time);
-  return {words, {}, plan::OutlookOf(results, static_cast<int>(readings.size()), last_s)};
-}
-
-std::string SettingOf(const plan::ShiftDesign& design, const std::vector<int>& shifts) {
-  std::vector<int> counted = shifts;
-  for (int& shift : counted) shift *= design.unit;
-  return design.key + "=[" + report::ShiftList(counted) + "]";
-}
-
-/// The same number of set-ups (or as many as asked for) at the shifts that tell most.
-void AddBetterShifts(const PlanOptions& options, const plan::ShiftDesign& design,
-                     std::vector<report::PlannedRun>& runs, std::string& setting) {
-  runs.front().shifts = plan::Judged(design.positions, design.shifts);
+/// How many set-ups there shall be; 0: nothing is shifted on this bench.
+/// @throws InputError if that many cannot be.
+int SetupsOf(const PlanOptions& options, const Bench& bench, const Scenario& scenario) {
+  if (!bench.shift_design) {
+    if (options.setups > 0)
+      throw InputError("--setups", "the bench " + scenario.bench + " shifts nothing",
+                       BenchesWhere([](const Bench& b) { return b.shift_design != nullptr; }));
+    return 0;
+  }
+  const plan::ShiftDesign design = bench.shift_design(scenario);
   const int count = options.setups > 0 ? options.setups : static_cast<int>(design.shifts.size());
-  if (count < 2 || count > design.positions)
+  if (options.setups > 0 && (count < 2 || count > design.positions))
     throw InputError("--setups", fmt::format("{} set-ups", count),
                      fmt::format("from 2 to the {} positions", design.positions));
-  const plan::ShiftSet best = plan::BestShifts(design.positions, count);
-  setting = SettingOf(design, best.shifts);
-  const Scenario scenario = With(options, {setting});
-  runs.push_back(Look("shifts " + report::ShiftList(best.shifts), scenario, ReadingsOfTwin(scenario)));
-  runs.back().shifts = best;
+  return std::clamp(count, 2, std::max(2, design.positions));
+}
+
+/// The scenario's own run, and beside it the one at the shifts that tell most.
+std::vector<report::PlannedRun> RunsOf(const Bench& bench, const Scenario& scenario,
+                                       const std::vector<Reading>& readings, int setups,
+                                       const std::vector<LookedAt>& others) {
+  std::vector<report::PlannedRun> runs = {LookAt("as the scenario says", scenario, readings)};
+  if (!bench.shift_design) return runs;
+  const plan::ShiftDesign design = bench.shift_design(scenario);
+  runs.front().shifts = plan::Judged(design.positions, design.shifts);
+  const auto best = std::ranges::find_if(others, [](const LookedAt& one) { return one.run.name == kBestShifts; });
+  if (best == others.end()) return runs;
+  const plan::ShiftSet shifts = plan::BestShifts(design.positions, setups);
+  const Scenario quick = Quick(Altered(scenario, best->run.sets));
+  runs.push_back(LookAt("shifts " + report::ShiftList(shifts.shifts), quick, ReadingsOfTwin(quick)));
+  runs.back().shifts = shifts;
+  return runs;
+}
+
+report::PlanBudget BudgetOf(const PlanOptions& options) {
+  return options.readings > 0.0 ? report::PlanBudget{options.readings, true} : report::PlanBudget{options.minutes, false};
+}
+
+Planned PlanOf(const PlanOptions& options, const Scenario& scenario) {
+  const Bench& bench = BenchOf(scenario);
+  const int setups = SetupsOf(options, bench, scenario);
+  const std::vector<Reading> readings = ReadingsOfTwin(scenario);
+  const LookedAt own = LookAtOwn(scenario);
+  const std::vector<LookedAt> others = LookAtOthers(scenario, setups);
+  Planned planned;
+  planned.runs = RunsOf(bench, scenario, readings, setups, others);
+  planned.effects = EffectsIn(scenario, readings);
+  planned.mendings = Mendings(scenario, own);
+  planned.advice = AdviceOf(own, others, options.goal);
+  const report::PlanBudget budget = BudgetOf(options);
+  if (budget.amount > 0.0) planned.programme.push_back(ProgrammeOf(own, others, budget, options.goal));
+  return planned;
+}
+
+/// Asked for set-ups: these. What cannot be separated is mended first; then comes the first run of the programme, or the
+/// one that buys most per minute.
+plan::NextRun NextOf(const PlanOptions& options, const Planned& planned) {
+  const auto named = std::ranges::find_if(planned.advice,
+                                          [](const plan::Advice& one) { return one.run.name == kBestShifts; });
+  if (options.setups > 0 && named != planned.advice.end()) return named->run;
+  if (!planned.mendings.empty()) return planned.mendings.front().run;
+  if (planned.programme.empty()) return planned.advice.front().run;
+  const report::PlannedProgramme& programme = planned.programme.front();
+  const auto most = std::ranges::max_element(programme.best.times);
+  return programme.runs[static_cast<std::size_t>(most - programme.best.times.begin())].run;
+}
+
+nlohmann::json JsonOf(const Planned& planned, const plan::NextRun& next) {
+  nlohmann::json json = report::PlanJson(planned.runs, planned.effects);
+  json["mendings"] = report::MendingJson(planned.mendings);
+  json["advice"] = report::PlanAdviceJson(planned.advice);
+  if (!planned.programme.empty()) json["programme"] = report::ProgrammeJson(planned.programme.front());
+  json["next"] = next.name;
+  return json;
+}
+
+std::string TextOf(const Planned& planned) {
+  std::string text = report::PlanText(planned.runs, planned.effects) + "\n" + report::MendingText(planned.mendings);
+  if (!planned.mendings.empty()) text += "\n";
+  text += report::PlanAdviceText(planned.advice);
+  if (!planned.programme.empty()) text += "\n" + report::ProgrammeText(planned.programme.front());
+  return text;
 }
 
 void Plan(const PlanOptions& options) {
   for (const std::string& output : {options.next, options.json}) RequireOutput(output, {options.scenario});
-  const Scenario scenario = With(options, {});
-  const Bench& bench = BenchOf(scenario);
-  const std::vector<Reading> readings = ReadingsOfTwin(scenario);
-  std::vector<report::PlannedRun> runs = {Look("as the scenario says", scenario, readings)};
-  std::string setting;
-  if (bench.shift_design) {
-    AddBetterShifts(options, bench.shift_design(scenario), runs, setting);
-  } else if (options.setups > 0 || !options.next.empty()) {
-    throw InputError(options.setups > 0 ? "--setups" : "--output",
-                     "the bench " + scenario.bench + " shifts nothing",
-                     BenchesWhere([](const Bench& b) { return b.shift_design != nullptr; }));
-  }
-  const diagnose::Diagnosis seen = bench.diagnose(readings, scenario, {}).diagnosis;
-  if (!options.next.empty()) WriteFileAtOnce(options.next, WriteScenario(With(options, {setting})));
-  if (!options.json.empty()) WriteJson(options.json, report::PlanJson(runs, seen));
-  if (options.json != "-") fmt::print("{}", report::PlanText(runs, seen));
+  const Scenario scenario = LoadScenario(options.scenario, options.overrides);
+  const Planned planned = PlanOf(options, scenario);
+  const plan::NextRun next = NextOf(options, planned);
+  if (!options.next.empty()) WriteFileAtOnce(options.next, WriteScenario(Altered(scenario, next.sets)));
+  if (!options.json.empty()) WriteJson(options.json, JsonOf(planned, next));
+  if (options.json != "-") fmt::print("{}", TextOf(planned));
 }
 
 }  // namespace
@@ -78,12 +130,19 @@ void Plan(const PlanOptions& options) {
 void AddPlan(CLI::App& app) {
   auto* command = app.add_subcommand(
       "plan",
-      "Say what a run would give and what it would not see, and which shifts of the tables would give more");
+      "Say what a run would give and what it would not see, and which run would give more for its time");
   auto options = std::make_shared<PlanOptions>();
   command->add_option("scenario", options->scenario, "TOML file")->required();
   command->add_option("--setups", options->setups, "how many there may be; left out: as many as the scenario has")
       ->check(CLI::Range(2, 100000));
-  command->add_option("-o,--output", options->next, "write the scenario with the better shifts here");
+  auto* const minutes =
+      command->add_option("--minutes", options->minutes, "budget for further runs, by the procedure's clock")
+          ->check(CLI::PositiveNumber);
+  command->add_option("--readings", options->readings, "budget for further runs, in readings")
+      ->check(CLI::PositiveNumber)
+      ->excludes(minutes);
+  command->add_option("--goal", options->goal, "the result that counts: target.ez; left out: all");
+  command->add_option("-o,--output", options->next, "write the scenario of the run to be made next here");
   command->add_option("--json", options->json, "write the result here, - for stdout");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);

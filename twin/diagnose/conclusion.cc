@@ -12,6 +12,7 @@
 #include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/engine/posterior.h"
 #include "twin/diagnose/engine/prior.h"
+#include "twin/diagnose/isolability.h"
 #include "twin/diagnose/recurrence.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/diagnose/tuning.h"
@@ -155,7 +156,7 @@ void AcceptRecurrent(const Analysis& analysis, DiagnosisRun& result) {
 }  // namespace
 
 AnalysisOptions AnalysisOptionsOf(const DiagnoseOptions& options) {
-  return {options.null_runs, options.cache_folder, 4, nullptr};
+  return {options.null_runs, options.cache_folder, 4, nullptr, options.design_only};
 }
 
 bool IsExcluded(const DiagnoseOptions& options, const std::string& effect) {
@@ -208,6 +209,7 @@ DiagnosisRun Conclude(const LinearRun& run, const Analysis& analysis, const std:
   AcceptRecurrent(analysis, result);
   if (result.diagnosis.verdict == Verdict::kNone) result.suspects = SuspectsOf(analysis);
   AddDetectability(run, analysis, words, result.diagnosis);
+  if (analysis.design_only) result.isolability = std::make_shared<const Isolability>(IsolabilityOf(run, analysis));
   AddNextMeasurements(words, result.diagnosis.causes);
   return result;
 }

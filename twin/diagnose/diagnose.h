@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,11 @@ struct DiagnoseOptions {
   std::vector<std::string> excluded;       // effects taken out of the catalogue (leave-one-cause-out tests)
   int null_runs = 500;                     // simulated runs without effect, for thresholds and p-values
   std::string cache_folder;                // calibrations are kept here by design; empty: nowhere
+  /// Nothing is searched for: the answer says what readings of this design could tell (DiagnosisRun::isolability).
+  bool design_only = false;
 };
+
+struct Isolability;  // isolability.h
 
 /// A cause in the model after the search, with its signature at the fitted shape.
 struct Accepted {
@@ -47,6 +52,7 @@ struct DiagnosisRun {
   /// Nothing was found: the named causes that would come first, with what probability they have against nothing. They
   /// are no part of the answer; a further run may be planned by them.
   std::vector<Cause> suspects;
+  std::shared_ptr<const Isolability> isolability;  // null unless `design_only` was asked for
 };
 
 }  // namespace twinbench::diagnose

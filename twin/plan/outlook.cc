@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "twin/plan/harmonics.h"
+
 namespace twinbench::plan {
 namespace {
 
@@ -22,17 +24,23 @@ std::vector<Certainty> CertaintiesOf(const nlohmann::json& results) {
 }
 
 /// Lists of words, or of what and why.
-std::vector<std::string> LostOf(const nlohmann::json& separation) {
-  std::vector<std::string> lost;
-  if (!separation.is_object() || !separation.contains("not_separable")) return lost;
+void TakeLost(const nlohmann::json& separation, Outlook& outlook) {
+  if (!separation.is_object() || !separation.contains("not_separable")) return;
+  outlook.separates = true;
   for (const auto& one : separation.at("not_separable")) {
     if (one.is_string()) {
-      lost.push_back(one.get<std::string>());
+      outlook.lost.push_back(one.get<std::string>());
+      outlook.not_separable.push_back(outlook.lost.back());
     } else if (one.contains("what") && one.contains("why")) {
-      lost.push_back(one.at("what").get<std::string>() + ": " + one.at("why").get<std::string>());
+      outlook.lost.push_back(one.at("what").get<std::string>());
+      outlook.not_separable.push_back(outlook.lost.back() + ": " + one.at("why").get<std::string>());
     }
   }
-  return lost;
+}
+
+/// Where the bench says what it cannot separate: of the whole run where nothing is a separation by name.
+const nlohmann::json& SeparationOf(const nlohmann::json& results) {
+  return results.contains("separation") && results.at("separation").is_object() ? results.at("separation") : results;
 }
 
 }  // namespace
@@ -44,12 +52,50 @@ Outlook OutlookOf(const nlohmann::json& results, int readings, double last_s) {
   outlook.minutes = last_s / kMinute_s;
   outlook.dof = std::nan("");
   outlook.results = CertaintiesOf(results);
-  if (!results.contains("separation")) return outlook;
-  const nlohmann::json& separation = results.at("separation");
-  outlook.not_separable = LostOf(separation);
-  if (separation.is_object() && separation.contains("dof") && separation.at("dof").is_number())
-    outlook.dof = separation.at("dof").get<double>();
+  outlook.harmonics = HarmonicsOf(results);
+  const nlohmann::json& separation = SeparationOf(results);
+  TakeLost(separation, outlook);
+  if (separation.contains("dof") && separation.at("dof").is_number()) outlook.dof = separation.at("dof").get<double>();
   return outlook;
+}
+
+Outlook MeanOf(const std::vector<Outlook>& runs) {
+  Outlook mean = runs.front();
+  const auto mean_of = [&runs](auto u_in) {
+    double sum = 0.0, count = 0.0;
+    for (const Outlook& run : runs) {
+      const double u = u_in(run);
+      if (!std::isfinite(u)) continue;
+      sum += u * u;
+      ++count;
+    }
+    return count > 0.0 ? std::sqrt(sum / count) : std::nan("");
+  };
+  for (Certainty& result : mean.results) {
+    result.rms_u = mean_of([&](const Outlook& run) {
+      const auto same = std::ranges::find(run.results, result.name, &Certainty::name);
+      return same == run.results.end() ? std::nan("") : same->rms_u;
+    });
+  }
+  for (std::size_t c = 0; c < mean.harmonics.size(); ++c) {
+    for (std::size_t k = 0; k < mean.harmonics[c].u.size(); ++k) {
+      mean.harmonics[c].u[k] = mean_of([&](const Outlook& run) {
+        const bool has = c < run.harmonics.size() && run.harmonics[c].orders == mean.harmonics[c].orders;
+        return has ? run.harmonics[c].u[k] : std::nan("");
+      });
+    }
+  }
+  return mean;
+}
+
+double LargestDifference(const Outlook& a, const Outlook& b) {
+  double largest = 0.0;
+  for (const Certainty& result : a.results) {
+    const auto same = std::ranges::find(b.results, result.name, &Certainty::name);
+    if (same != b.results.end() && result.rms_u > 0.0)
+      largest = std::max(largest, std::abs(same->rms_u / result.rms_u - 1.0));
+  }
+  return largest;
 }
 
 }  // namespace twinbench::plan

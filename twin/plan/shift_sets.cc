@@ -145,9 +145,16 @@ std::vector<double> VarianceFactors(int positions, const std::vector<int>& shift
   return factors;
 }
 
+double LeastPossible(int positions, int count) {
+  const double n = positions, m = count;
+  const double mean_of_squares = (n * m - m * m) / (positions % 2 == 0 ? n : n - 1.0);
+  return 1.0 / (1.0 - mean_of_squares / (m * m));
+}
+
 ShiftSet Judged(int positions, const std::vector<int>& shifts) {
   ShiftSet set;
   set.shifts = shifts;
+  set.least_possible = LeastPossible(positions, static_cast<int>(shifts.size()));
   const std::vector<double> factors = VarianceFactors(positions, shifts);
   for (std::size_t k = 0; k < factors.size(); ++k) {
     set.mean_factor += factors[k] / static_cast<double>(factors.size());
@@ -173,6 +180,19 @@ ShiftSet BestShifts(int positions, int count) {
   ShiftSet set = Judged(positions, best.shifts);
   set.exhaustive = exhaustive;
   return set;
+}
+
+ShiftSet WithOneMore(int positions, const std::vector<int>& shifts) {
+  ShiftSet best;
+  for (int s = 0; s < positions; ++s) {
+    if (std::ranges::count(shifts, s) > 0) continue;
+    std::vector<int> more = shifts;
+    more.push_back(s);
+    ShiftSet set = Judged(positions, more);
+    const auto rank = [](const ShiftSet& one) { return std::pair(one.lost.size(), one.mean_factor); };
+    if (best.shifts.empty() || rank(set) < rank(best)) best = std::move(set);
+  }
+  return best;
 }
 
 }  // namespace twinbench::plan

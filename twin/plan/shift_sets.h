@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "twin/plan/next_run.h"
 
 namespace twinbench::plan {
 
@@ -9,8 +12,9 @@ namespace twinbench::plan {
 struct ShiftDesign {
   int positions = 0;
   std::vector<int> shifts;  // in stops
-  std::string key;          // of the scenario, where they stand
-  int unit = 1;             // what the key counts by: so many a stop
+  /// Keys of the scenario for other shifts: "procedure.shifts=[0, 7]".
+  std::function<std::vector<std::string>(const std::vector<int>&)> sets = {};
+  std::vector<NextRun> other_ways = {};  // of making the same set-ups
 };
 
 /// Variance of one harmonic of one table's error, in units of what the mean of all set-ups would leave of noise
@@ -28,9 +32,14 @@ struct ShiftSet {
   double mean_factor =
       0.0;  // over the harmonics that some set of so many shifts tells apart; infinite if one is lost
   double worst_factor = 0.0;
+  double least_possible = 1.0;  // mean_factor that no set of so many shifts is below (LeastPossible)
   std::vector<int> lost;    // harmonics
   bool exhaustive = false;  // every set was looked at; else the best that exchanging one shift at a time found
 };
+
+/// Mean variance that no set of m shifts is below: the squared sums of all orders add up to n m - m^2 whatever the
+/// shifts (Parseval), and 1 / (1 - x) is convex (Jensen). Sets that reach it are cyclic difference sets.
+double LeastPossible(int positions, int count);
 
 ShiftSet Judged(int positions, const std::vector<int>& shifts);
 
@@ -40,5 +49,8 @@ ShiftSet Judged(int positions, const std::vector<int>& shifts);
 /// mean_factor itself: no set is below 1.
 /// @param count  From 2 to positions.
 ShiftSet BestShifts(int positions, int count);
+
+/// `shifts` and the one more that leaves the least mean variance.
+ShiftSet WithOneMore(int positions, const std::vector<int>& shifts);
 
 }  // namespace twinbench::plan

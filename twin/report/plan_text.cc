@@ -4,16 +4,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "twin/report/diagnosis_tables.h"
 #include "twin/report/text_table.h"
 
 namespace twinbench::report {
 namespace {
 
 using plan::Certainty;
+using plan::HarmonicCertainty;
 using plan::Outlook;
 using plan::ShiftSet;
 using Json = nlohmann::json;
@@ -39,6 +40,7 @@ std::string RunsTable(const std::vector<PlannedRun>& runs) {
     rows.push_back({run.words, fmt::format("{}", run.outlook.readings), fmt::format("{:.0f}", run.outlook.minutes),
                     DegreesOfFreedom(run.outlook.dof), run.shifts ? FactorText(run.shifts->mean_factor) : "",
                     run.shifts ? FactorText(run.shifts->worst_factor) : "",
+                    run.shifts ? FactorText(run.shifts->least_possible) : "",
                     run.shifts && !run.shifts->lost.empty() ? ShiftList(run.shifts->lost) : ""});
   return TextTable({{"run"},
                     {"readings", true},
@@ -46,6 +48,7 @@ std::string RunsTable(const std::vector<PlannedRun>& runs) {
                     {"dof left", true},
                     {"variance, mean", true},
                     {"worst", true},
+                    {"no set below", true},
                     {"harmonics lost"}},
                    rows, kPlanWidth);
 }
@@ -66,6 +69,51 @@ std::string CertaintyTable(const std::vector<PlannedRun>& runs) {
   return TextTable(columns, rows, kPlanWidth);
 }
 
+constexpr std::array kOrdersTold = {1, 2, 3, 4, 6, 9, 12, 18};
+
+std::string UncertaintyAt(const HarmonicCertainty& curve, int order) {
+  const auto at = std::ranges::find(curve.orders, order);
+  if (at == curve.orders.end()) return "";
+  const double u = curve.u[static_cast<std::size_t>(at - curve.orders.begin())];
+  return std::isfinite(u) ? fmt::format("{:.2g}", u) : "-";
+}
+
+/// "0.21 (17)": the largest, and its order.
+std::string WorstOrder(const HarmonicCertainty& curve) {
+  std::size_t worst = 0;
+  for (std::size_t k = 1; k < curve.u.size(); ++k) {
+    if (!(curve.u[k] <= curve.u[worst])) worst = k;
+  }
+  if (curve.u.empty() || !std::isfinite(curve.u[worst])) return "-";
+  return fmt::format("{:.2g} ({})", curve.u[worst], curve.orders[worst]);
+}
+
+/// A row a curve: standard uncertainties of some orders and of the worst.
+std::string HarmonicsOfRun(const Outlook& outlook) {
+  std::vector<TextColumn> columns = {{"standard uncertainty at order"}};
+  for (const int order : kOrdersTold) columns.push_back({fmt::format("{}", order), true});
+  columns.push_back({"worst (order)", true});
+  std::vector<std::vector<std::string>> rows;
+  for (const HarmonicCertainty& curve : outlook.harmonics) {
+    std::vector<std::string> row = {curve.name};
+    for (const int order : kOrdersTold) row.push_back(UncertaintyAt(curve, order));
+    row.push_back(WorstOrder(curve));
+    rows.push_back(std::move(row));
+  }
+  const std::string table = TextTable(columns, rows, kPlanWidth);
+  return table.empty() ? "" : table + "\n";
+}
+
+Json HarmonicsJson(const Outlook& outlook) {
+  Json list = Json::array();
+  for (const HarmonicCertainty& curve : outlook.harmonics) {
+    Json u = Json::array();
+    for (const double one : curve.u) u.push_back(std::isfinite(one) ? Json(one) : Json());
+    list.push_back({{"name", curve.name}, {"order", curve.orders}, {"u", u}});
+  }
+  return list;
+}
+
 Json OutlookJson(const PlannedRun& run) {
   Json results = Json::array();
   for (const Certainty& result : run.outlook.results)
@@ -76,11 +124,13 @@ Json OutlookJson(const PlannedRun& run) {
                {"minutes", run.outlook.minutes},
                {"dof", std::isfinite(run.outlook.dof) ? Json(run.outlook.dof) : Json()},
                {"results", results},
+               {"harmonics", HarmonicsJson(run.outlook)},
                {"not_separable", run.outlook.not_separable}};
   if (!run.shifts) return json;
   const auto number = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
   json["shifts"] = {{"shifts", run.shifts->shifts},
                     {"mean_variance_factor", number(run.shifts->mean_factor)},
+                    {"least_possible_mean_factor", run.shifts->least_possible},
                     {"worst_variance_factor", number(run.shifts->worst_factor)},
                     {"lost_harmonics", run.shifts->lost},
                     {"every_set_looked_at", run.shifts->exhaustive}};
@@ -93,30 +143,21 @@ std::string ShiftList(const std::vector<int>& shifts) {
   return fmt::format("{}", fmt::join(shifts, ", "));
 }
 
-std::string PlanText(const std::vector<PlannedRun>& runs, const diagnose::Diagnosis& seen) {
+std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects) {
   std::string text = RunsTable(runs);
   const bool shifted = std::ranges::any_of(runs, [](const PlannedRun& run) { return run.shifts.has_value(); });
   if (shifted)
-    text += "variance: of one table's harmonic over that of the mean of all set-ups; no set of shifts is below 1\n";
-  text += "\n" + CertaintyTable(runs) + "\n";
+    text += "variance: of one table's harmonic over that of the mean of all set-ups\n";
+  text += "\n" + CertaintyTable(runs) + "\n" + HarmonicsOfRun(runs.front().outlook);
   for (const std::string& lost : runs.front().outlook.not_separable)
     text += Paragraph("Not separable: ", lost, 4, kPlanWidth);
-  return text + "\n" + DetectableTable(seen) + "\n" + InvisibleTable(seen);
+  return text + "\n" + PlannedEffectsText(effects);
 }
 
-Json PlanJson(const std::vector<PlannedRun>& runs, const diagnose::Diagnosis& seen) {
-  Json json = {{"runs", Json::array()}, {"detectable", Json::array()}, {"invisible", Json::array()}};
+Json PlanJson(const std::vector<PlannedRun>& runs, const PlannedEffects& effects) {
+  Json json = PlannedEffectsJson(effects);
+  json["runs"] = Json::array();
   for (const PlannedRun& run : runs) json["runs"].push_back(OutlookJson(run));
-  for (const diagnose::Detectable& one : seen.detectable) {
-    if (std::isfinite(one.smallest.value))
-      json["detectable"].push_back({{"effect", one.effect},
-                                    {"where", one.where},
-                                    {"parameter", one.smallest.name},
-                                    {"unit", one.smallest.unit},
-                                    {"smallest", one.smallest.value / one.smallest.to_SI}});
-  }
-  for (const diagnose::Invisible& one : seen.invisible)
-    json["invisible"].push_back({{"effect", one.effect}, {"where", one.where}, {"could_bias", one.could_bias}});
   return json;
 }
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "twin/diagnose/diagnosis.h"
 #include "twin/plan/outlook.h"
 #include "twin/plan/shift_sets.h"
+#include "twin/report/plan_effects.h"
 
 namespace twinbench::report {
 
@@ -19,9 +19,9 @@ struct PlannedRun {
 };
 
 /// What the first run would give and would not see, and what the others would give instead.
-/// @param seen  Of a run of the twin in order: sizes that would be found, causes that would not.
-std::string PlanText(const std::vector<PlannedRun>& runs, const diagnose::Diagnosis& seen);
-nlohmann::json PlanJson(const std::vector<PlannedRun>& runs, const diagnose::Diagnosis& seen);
+/// @param effects  Of the first run.
+std::string PlanText(const std::vector<PlannedRun>& runs, const PlannedEffects& effects);
+nlohmann::json PlanJson(const std::vector<PlannedRun>& runs, const PlannedEffects& effects);
 
 /// "0, 1, 10, 28"
 std::string ShiftList(const std::vector<int>& shifts);

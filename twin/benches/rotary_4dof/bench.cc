@@ -1,5 +1,8 @@
 #include "twin/benches/rotary_4dof/bench.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/factory.h"
@@ -14,7 +17,17 @@ int PlannedReadings(const Scenario& s) {
 }
 
 plan::ShiftDesign ShiftsOf(const Scenario& s) {
-  return {RotaryOf(s).procedure.positions, RotaryOf(s).procedure.shifts, "procedure.shifts"};
+  const ProcedureSettings& p = RotaryOf(s).procedure;
+  plan::ShiftDesign design{p.positions, p.shifts, [](const std::vector<int>& shifts) {
+                             return std::vector<std::string>{
+                                 fmt::format("procedure.shifts=[{}]", fmt::join(shifts, ", "))};
+                           }};
+  if (p.clamping == "reclamp")
+    design.other_ways = {{"reseated",
+                          "the same set-ups, the reference's body turned back on the target instead of the grating on it",
+                          {"procedure.clamping=reseat"},
+                          plan::kSameKind}};
+  return design;
 }
 
 }  // namespace

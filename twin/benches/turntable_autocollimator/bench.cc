@@ -1,16 +1,45 @@
 #include "twin/benches/turntable_autocollimator/bench.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "twin/benches/turntable_autocollimator/estimators/index_errors.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
-#include "twin/plan/next_run.h"
+#include "twin/plan/shift_sets.h"
 
 namespace twinbench::benches::turntable {
 namespace {
 
 int PlannedReadings(const Scenario& s) {
   return procedure::PlannedReadings(TurntableOf(s).turntable_procedure);
+}
+
+/// One value a set-up, the scenario's in turn.
+std::string InTurn(const char* key, const std::vector<double>& values, double unit, std::size_t count) {
+  std::vector<double> taken;
+  for (std::size_t k = 0; k < count; ++k) taken.push_back(values[k % values.size()] / unit);
+  return fmt::format("turntable_procedure.{}=[{:.9g}]", key, fmt::join(taken, ", "));
+}
+
+/// Of the multi-tooth table, in stops of the turntable.
+plan::ShiftDesign ShiftsOf(const Scenario& s) {
+  const TurntableProcedureSettings& p = TurntableOf(s).turntable_procedure;
+  const int teeth_a_stop = TurntableOf(s).multitooth.teeth / p.positions;
+  plan::ShiftDesign design;
+  design.positions = p.positions;
+  for (int setup = 0; setup < p.SetUps(); ++setup) design.shifts.push_back(p.Of(p.shifts, setup) / teeth_a_stop);
+  design.sets = [p, teeth_a_stop](const std::vector<int>& shifts) {
+    std::vector<int> teeth = shifts;
+    for (int& shift : teeth) shift *= teeth_a_stop;
+    return std::vector<std::string>{
+        fmt::format("turntable_procedure.shifts_teeth=[{}]", fmt::join(teeth, ", ")),
+        InTurn("tilts_arcsec", p.tilts_rad, units::arcsec, shifts.size()),
+        InTurn("tilt_azimuths_deg", p.tilt_azimuths_rad, units::deg, shifts.size()),
+        InTurn("eccentricities_um", p.eccentricities_m, units::um, shifts.size())};
+  };
+  return design;
 }
 
 }  // namespace
@@ -25,6 +54,7 @@ const Bench& Whole() {
     b.evaluate = Evaluate;
     b.index_errors = separate::turntable::TurntableIndexErrors;
     b.score = ScoreRun;
+    b.shift_design = ShiftsOf;
     b.next_runs = NextRunsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;

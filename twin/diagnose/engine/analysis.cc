@@ -70,11 +70,26 @@ const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
   return nullptr;
 }
 
+/// As if nothing had been found, by thresholds that nobody passes.
+void FindNothing(Analysis& analysis) {
+  constexpr int kFewest = 10;
+  const auto families = std::ssize(analysis.scanner->Families());
+  analysis.design_only = true;
+  analysis.null = {std::vector<double>(kFewest, 0.0)};
+  analysis.found.alone = {Eigen::MatrixXd::Zero(families, 1), Eigen::MatrixXi::Zero(families, 1),
+                          Eigen::MatrixXd::Zero(families, 1)};
+}
+
 }  // namespace
 
 Analysis Analyse(const LinearRun& run, const std::vector<Family>& families, const AnalysisOptions& options) {
   Analysis analysis;
   analysis.noise = {run.sigma, 0.0};
+  if (options.design_only) {
+    Prepare(run, families, analysis);
+    FindNothing(analysis);
+    return analysis;
+  }
   const Eigen::VectorXd log_priors = LogPriors(families);
   for (int repairs = 0;; ++repairs) {
     Prepare(run, families, analysis);

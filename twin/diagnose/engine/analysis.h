@@ -15,6 +15,7 @@ struct AnalysisOptions {
   std::string cache_folder;
   int most_causes = 4;
   const NullCalibration* null = nullptr;  // of a design that is the same but for its unknowns; else simulated
+  bool design_only = false;               // no search
 };
 
 /// A run searched with a noise model that its own residuals do not refute.
@@ -25,7 +26,8 @@ struct Analysis {
   std::unique_ptr<Scanner> scanner;
   NullCalibration null;
   double threshold = 0.0;
-  SearchResult found;
+  bool design_only = false;
+  SearchResult found;  // nothing if `design_only`
   double power = 0.0;                    // y'Wy before any cause
   std::vector<NoiseCause> repairs;       // in order
   std::vector<NoiseCause> observations;  // noted only: nothing was chosen on this noise model

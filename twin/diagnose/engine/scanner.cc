@@ -244,15 +244,22 @@ std::vector<Scanner::Fit> Scanner::FitEach(int family, int first, int last, cons
   return fits;
 }
 
-double Scanner::Information(int family) const {
-  const Bundle& bundle = BundleOf(family);
+double Scanner::Information(int family, int grid_point) const {
+  const Eigen::MatrixXd& gram = BundleOf(family).Gram(grid_point);
   const Family& f = families_[static_cast<std::size_t>(family)];
-  double most = 0.0;
-  for (int g = 0; g < bundle.Grid(); ++g) {
-    const Eigen::MatrixXd& gram = bundle.Gram(g);
-    most = std::max(most, f.base ? f.map.col(0).dot(gram * f.map.col(0)) : gram(0, 0));
+  return f.base ? f.map.col(0).dot(gram * f.map.col(0)) : gram(0, 0);
+}
+
+double Scanner::Information(int family) const {
+  return std::max(0.0, Information(family, MostTelling(family)));
+}
+
+int Scanner::MostTelling(int family) const {
+  int best = 0;
+  for (int g = 1; g < BundleOf(family).Grid(); ++g) {
+    if (Information(family, g) > Information(family, best)) best = g;
   }
-  return most;
+  return best;
 }
 
 Evidence Scanner::Scan(const Projected& data, const Deflation& deflation) const {

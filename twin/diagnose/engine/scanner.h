@@ -83,9 +83,12 @@ class Scanner {
   /// Squared length of a family's projected signature per unit of its first amplitude [1 / SI^2]: the largest over
   /// the grid.
   double Information(int family) const;
+  /// The grid point where it is that large.
+  int MostTelling(int family) const;
 
  private:
   const Bundle& BundleOf(int family) const;
+  double Information(int family, int grid_point) const;
   void ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows, const Deflation& deflation,
                   const Unwhitened& removed, Evidence& sums) const;
 

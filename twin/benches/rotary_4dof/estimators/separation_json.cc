@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "twin/benches/rotary_4dof/estimators/harmonic_u.h"
 #include "twin/benches/rotary_4dof/estimators/separate.h"
 #include "twin/core/units.h"
 #include "twin/core/written_number.h"
@@ -25,6 +26,15 @@ json Column(const std::vector<double>& values, double unit) {
   return column;
 }
 
+/// Orders 1 to n/2, and of each component how well their amplitudes are known.
+json HarmonicsJson(const TableEstimate& estimate) {
+  json harmonics = {{"order", json::array()}};
+  for (std::size_t k = 1; k <= estimate.value.position_rad.size() / 2; ++k) harmonics["order"].push_back(k);
+  for (const Component c : estimate.components)
+    harmonics[Key(c)] = Column(HarmonicUncertainties(estimate, c), FileUnit(c));
+  return harmonics;
+}
+
 json TableJson(const TableEstimate& estimate) {
   json table;
   table["position_deg"] = Column(estimate.value.position_rad, units::deg);
@@ -32,6 +42,7 @@ json TableJson(const TableEstimate& estimate) {
     table[Key(c)] = Column(estimate.value[c], FileUnit(c));
     table["u_" + Key(c)] = Column(estimate.u[c], FileUnit(c));
   }
+  table["u_harmonics"] = HarmonicsJson(estimate);
   return table;
 }
 

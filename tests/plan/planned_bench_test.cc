@@ -1,0 +1,167 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/plan_advice.h"
+#include "tools/twinbench/planned_run.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/estimator.h"
+#include "twin/diagnose/isolability.h"
+#include "twin/report/evaluation.h"
+
+namespace twinbench::tools {
+namespace {
+
+using diagnose::Isolability;
+
+/// 12 stops, two set-ups, on the quick twin.
+Scenario SmallRotary(const std::string& clamping) {
+  Scenario scenario;
+  scenario.bench = kRotaryBench;
+  scenario.seed = 41;
+  RotarySettings& own = RotaryOf(scenario);
+  own.mechanics.fidelity = "kinematic";
+  own.optics.fidelity = "closed";
+  own.procedure.positions = 12;
+  own.procedure.shifts = {0, 1};
+  own.procedure.passes = {1, -1};
+  own.procedure.clamping = clamping;
+  return scenario;
+}
+
+std::size_t IndexOf(const Isolability& isolability, const std::string& effect) {
+  const auto found = std::ranges::find(isolability.causes, effect, &diagnose::ShownCause::effect);
+  EXPECT_NE(found, isolability.causes.end()) << effect;
+  return static_cast<std::size_t>(found - isolability.causes.begin());
+}
+
+bool HasRadial(const nlohmann::json& results) {
+  const nlohmann::json& target = results.at("separation").at("target");
+  return target.contains("dy_um") && std::ranges::all_of(target.at("u_dy_um"), [](const nlohmann::json& u) {
+           return u.is_number() && std::isfinite(u.get<double>());
+         });
+}
+
+/// Two re-clamped set-ups do not separate the radial errors; every addition that a plan names does,
+/// on the twin with the noise of another run, and within what it says of itself.
+TEST(Mendings, AreConfirmedByTheTwinEachAndEvery) {
+  const Scenario scenario = SmallRotary("reclamp");
+  const LookedAt own = LookAtOwn(scenario);
+  EXPECT_THAT(own.planned.outlook.lost, testing::Contains("target dy"));
+  EXPECT_FALSE(HasRadial(own.results));
+  const std::vector<report::Mending> mendings = Mendings(scenario, own);
+  ASSERT_GE(mendings.size(), 5u);
+  EXPECT_EQ(mendings.front().run.name, "reseated");  // takes no more time
+  EXPECT_NEAR(mendings.front().more_minutes, 0.0, 0.5);
+  for (const report::Mending& mending : mendings) {
+    EXPECT_THAT(mending.mended, testing::Contains("target dy")) << mending.run.name;
+    Scenario with = Altered(scenario, mending.run.sets);
+    with.seed = 977;
+    const Bench& bench = BenchOf(with);
+    const std::vector<Reading> readings = ReadingsOfTwin(with);
+    EXPECT_TRUE(HasRadial(bench.evaluate(with, readings, Estimator::kRigorous).results)) << mending.run.name;
+    const nlohmann::json truth = bench.make_twin(with)->Truth();
+    double chi2 = 0.0;
+    int count = 0;
+    for (const report::ScoredValue& v : bench.score(with, readings, truth, Estimator::kRigorous).values) {
+      if (v.name.find("target.dy_um") == std::string::npos) continue;
+      chi2 += (v.value - v.truth) * (v.value - v.truth) / (v.u * v.u);
+      ++count;
+    }
+    ASSERT_EQ(count, 12) << mending.run.name;
+    EXPECT_LT(chi2 / count, 4.0) << mending.run.name;  // smooth curves: about 3 independent values at worst
+  }
+}
+
+/// A half turn shows the reference's rotor in opposite azimuths only.
+TEST(Mendings, DoNotNameWhatDoesNotMend) {
+  const Scenario scenario = SmallRotary("reclamp");
+  for (const report::Mending& mending : Mendings(scenario, LookAtOwn(scenario))) EXPECT_NE(mending.run.name, "shift-6");
+}
+
+TEST(Mendings, AreNotNeededByARunThatSeparatesAllThatCanBe) {
+  const Scenario scenario = SmallRotary("reseat");
+  EXPECT_TRUE(Mendings(scenario, LookAtOwn(scenario)).empty());
+}
+
+/// Both scale the same angle of diffraction; a gain of one channel scales that channel alone.
+TEST(IsolabilityOf, NamesWhatNoReadingTellsApartAndNothingThatOneDoes) {
+  const Scenario scenario = SmallRotary("reseat");
+  const std::vector<Reading> readings = ReadingsOfTwin(scenario);
+  const Isolability isolability = *SeenBy(scenario, readings).isolability;
+  const std::size_t wavelength = IndexOf(isolability, "wavelength_offset");
+  const std::size_t pitch = IndexOf(isolability, "grating_pitch"), gain = IndexOf(isolability, "psd_gain");
+  const auto together = [&](std::size_t a, std::size_t b) {
+    return std::ranges::any_of(NeverTold(isolability), [&](const std::vector<std::size_t>& set) {
+      return std::ranges::count(set, a) > 0 && std::ranges::count(set, b) > 0;
+    });
+  };
+  EXPECT_TRUE(together(wavelength, pitch));
+  EXPECT_FALSE(together(wavelength, gain));
+  EXPECT_TRUE(MayBeBlamed(isolability, wavelength, pitch, 100.0 * isolability.causes[wavelength].smallest.value));
+}
+
+TEST(IsolabilityOf, SizesAreThoseOfADiagnosis) {
+  const Scenario scenario = SmallRotary("reseat");
+  const std::vector<Reading> readings = ReadingsOfTwin(scenario);
+  const diagnose::DiagnosisRun seen = SeenBy(scenario, readings);
+  for (const diagnose::Detectable& one : seen.diagnosis.detectable) {
+    const auto cause = std::ranges::find_if(seen.isolability->causes, [&one](const diagnose::ShownCause& c) {
+      return c.effect == one.effect && c.where == one.where && c.smallest.name == one.smallest.name;
+    });
+    if (cause != seen.isolability->causes.end()) {
+      EXPECT_LE(cause->smallest.value, 1.001 * one.smallest.value) << one.effect;
+    }
+  }
+}
+
+/// A gain error of one PSD axis that is just not found moves what that axis measures.
+TEST(UnseenEffects, MoveResults) {
+  const Scenario scenario = SmallRotary("reseat");
+  const std::vector<Reading> readings = ReadingsOfTwin(scenario);
+  diagnose::DiagnosisRun seen = SeenBy(scenario, readings);
+  Isolability one = *seen.isolability;
+  const diagnose::ShownCause distance = one.causes[IndexOf(one, "psd_distance")];
+  one.causes = {distance};
+  seen.isolability = std::make_shared<const Isolability>(one);
+  const std::vector<plan::Unseen> unseen = UnseenEffects(scenario, seen);
+  ASSERT_EQ(unseen.size(), 1u);
+  EXPECT_EQ(unseen.front().not_known, "");
+  ASSERT_FALSE(unseen.front().biases.empty());
+  EXPECT_GT(unseen.front().biases.front().per_u, 0.5);
+}
+
+/// The paper's own test has no redundancy: a plan says so instead of sizes.
+TEST(EffectsIn, SaysWhyNothingWouldBeFound) {
+  Scenario scenario = SmallRotary("reclamp");
+  RotaryOf(scenario).procedure.positions = 36;
+  RotaryOf(scenario).procedure.passes = {1};
+  const report::PlannedEffects effects = EffectsIn(scenario, ReadingsOfTwin(scenario));
+  EXPECT_THAT(effects.refused, testing::HasSubstr("degrees of freedom"));
+  EXPECT_THAT(PlannedEffectsText(effects), testing::StartsWith("No cause would be found"));
+}
+
+TEST(AdviceOf, IsInOrderOfWhatItBuysAndAProgrammeKeepsItsBudget) {
+  const Scenario scenario = SmallRotary("reseat");
+  const LookedAt own = LookAtOwn(scenario);
+  const std::vector<LookedAt> others = LookAtOthers(scenario, 2);
+  const std::vector<plan::Advice> advice = AdviceOf(own, others, "target.ez");
+  ASSERT_GT(advice.size(), 5u);
+  for (std::size_t k = 1; k < advice.size(); ++k) EXPECT_GE(advice[k - 1].PerMinute(), advice[k].PerMinute());
+  const auto again = std::ranges::find_if(advice, [](const plan::Advice& one) { return one.run.name == "again"; });
+  ASSERT_EQ(again->gains.size(), 1u);
+  EXPECT_NEAR(again->gains.front().ratio, std::sqrt(0.5), 1e-9);  // the same run once more
+  const report::PlannedProgramme programme = ProgrammeOf(own, others, {600.0, true}, "target.ez");
+  EXPECT_LE(programme.best.cost, 600.0);
+  EXPECT_GT(programme.best.cost, 300.0);
+  EXPECT_GT(programme.best.efficiency, 0.5);
+  EXPECT_LE(programme.best.efficiency, 1.0);
+}
+
+}  // namespace
+}  // namespace twinbench::tools

@@ -1,0 +1,107 @@
+#include "tools/twinbench/planned_run.h"
+
+#include <nlohmann/json.hpp>
+
+#include "tools/twinbench/passing_run.h"
+#include "twin/benches/registry.h"
+#include "twin/core/errors.h"
+#include "twin/core/estimator.h"
+#include "twin/diagnose/isolability.h"
+#include "twin/report/evaluation.h"
+
+namespace twinbench::tools {
+namespace {
+
+nlohmann::json ResultsOf(const Scenario& scenario, const std::vector<Reading>& readings) {
+  return BenchOf(scenario).evaluate(scenario, readings, Estimator::kRigorous).results;
+}
+
+plan::Outlook OutlookOf(const Scenario& scenario, const std::vector<Reading>& readings) {
+  const double last_s = readings.empty() ? 0.0 : ToSeconds(readings.back().time);
+  return plan::OutlookOf(ResultsOf(scenario, readings), static_cast<int>(readings.size()), last_s);
+}
+
+/// A twin without a cause, to be held against one that has it.
+struct Plain {
+  explicit Plain(const Scenario& s) : scenario(s), readings(ReadingsOfTwin(s)), results(ResultsOf(s, readings)) {}
+
+  Scenario scenario;
+  std::vector<Reading> readings;
+  nlohmann::json results;
+};
+
+/// The cause is in the twin only: the evaluation believes the scenario.
+std::vector<plan::Bias> BiasesBy(const EffectSettings& effect, const Plain& plain) {
+  Scenario with = plain.scenario;
+  with.effects.push_back(effect);
+  return plan::BiasesOf(plain.results, ResultsOf(plain.scenario, ReadingsOfTwin(with)));
+}
+
+bool MoveNothing(const std::vector<plan::Bias>& biases) {
+  return biases.empty() || biases.front().rms == 0.0;
+}
+
+plan::Unseen UnseenBy(const diagnose::ShownCause& cause, const Plain& quick, const Scenario& scenario) {
+  plan::Unseen unseen{cause.effect, cause.where, diagnose::AsEffect(cause, scenario.bench), {}, ""};
+  try {
+    unseen.biases = BiasesBy(unseen.as, quick);
+    if (MoveNothing(unseen.biases)) unseen.biases = BiasesBy(unseen.as, Plain(scenario));
+  } catch (const InputError& refusal) {
+    unseen.not_known = refusal.what();
+  }
+  return unseen;
+}
+
+}  // namespace
+
+Scenario Quick(const Scenario& scenario) {
+  Scenario quick = scenario;
+  for (const char* set : {"mechanics.fidelity=kinematic", "optics.fidelity=closed"}) {
+    try {
+      quick = Altered(quick, {set});
+    } catch (const InputError&) {  // the bench has no such choice
+    }
+  }
+  return quick;
+}
+
+report::PlannedRun LookAt(const std::string& words, const Scenario& scenario,
+                          const std::vector<Reading>& readings) {
+  constexpr double kSame = 0.02;      // of u: it does not depend on the run's own noise
+  constexpr std::size_t kMost = 16;   // u that scatters by 15 % is then known to 4 %
+  std::vector<plan::Outlook> outlooks = {OutlookOf(scenario, readings)};
+  for (Scenario other = Quick(scenario); outlooks.size() < kMost;) {
+    ++other.seed;
+    outlooks.push_back(OutlookOf(other, ReadingsOfTwin(other)));
+    if (plan::LargestDifference(outlooks[0], outlooks[1]) < kSame) break;
+  }
+  return {words, {}, plan::MeanOf(outlooks)};
+}
+
+diagnose::DiagnosisRun SeenBy(const Scenario& scenario, const std::vector<Reading>& readings) {
+  diagnose::DiagnoseOptions options;
+  options.design_only = true;
+  return BenchOf(scenario).diagnose(readings, scenario, options);
+}
+
+report::PlannedEffects EffectsIn(const Scenario& scenario, const std::vector<Reading>& readings) {
+  report::PlannedEffects effects;
+  try {
+    effects.seen = SeenBy(scenario, readings);
+    effects.unseen = UnseenEffects(scenario, effects.seen);
+  } catch (const InputError& refusal) {
+    effects.refused = refusal.what();
+  }
+  return effects;
+}
+
+std::vector<plan::Unseen> UnseenEffects(const Scenario& scenario, const diagnose::DiagnosisRun& seen) {
+  const Plain quick(Quick(scenario));
+  std::vector<plan::Unseen> all;
+  for (const diagnose::ShownCause& cause : seen.isolability->causes) {
+    if (!cause.at_smallest.empty()) all.push_back(UnseenBy(cause, quick, scenario));
+  }
+  return all;
+}
+
+}  // namespace twinbench::tools

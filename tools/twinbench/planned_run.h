@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+#include "twin/diagnose/diagnose.h"
+#include "twin/plan/unseen.h"
+#include "twin/report/plan_text.h"
+
+namespace twinbench::tools {
+
+/// The scenario with the quickest twin that takes the same readings, where the bench has a choice: what differs is
+/// below the noise.
+Scenario Quick(const Scenario& scenario);
+
+/// What the scenario's run on the twin would give: uncertainties as the mean over runs with other noise, where they depend
+/// on it.
+report::PlannedRun LookAt(const std::string& words, const Scenario& scenario, const std::vector<Reading>& readings);
+
+/// What readings of that design could tell of causes (DiagnosisRun::isolability).
+/// @throws InputError as a diagnosis does.
+diagnose::DiagnosisRun SeenBy(const Scenario& scenario, const std::vector<Reading>& readings);
+
+/// All that such a run would show of causes; why not, where its design has no redundancy.
+report::PlannedEffects EffectsIn(const Scenario& scenario, const std::vector<Reading>& readings);
+
+/// Each cause in the smallest size that would be found, carried out on the twin, and what that moves: the same
+/// noise in both runs. A cause that the quick twin does not show is asked of the scenario's own.
+std::vector<plan::Unseen> UnseenEffects(const Scenario& scenario, const diagnose::DiagnosisRun& seen);
+
+}  // namespace twinbench::tools

@@ -1,0 +1,242 @@
+#include "twin/diagnose/isolability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "twin/core/effect_catalogue.h"
+#include "twin/core/errors.h"
+#include "twin/diagnose/engine/prior.h"
+#include "twin/diagnose/tuning.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr double kInfiniteSize = std::numeric_limits<double>::infinity();
+
+/// The family that shows a cause best, where it does.
+struct BestShown {
+  int family = 0, grid_point = 0;
+};
+
+using FamiliesByCause = std::vector<std::pair<ShownCause, BestShown>>;
+
+/// Of the catalogue, where the first amplitude has that size and the shape is that of a grid point.
+std::vector<ParameterEstimate> ParametersAt(const Family& family, int grid_point, double size) {
+  const Eigen::VectorXd shape = family.ShapeAt(grid_point);
+  const auto count = std::ssize(family.amplitudes);
+  const Eigen::VectorXd amplitudes = size * Eigen::VectorXd::Unit(count, 0);
+  if (family.parameters)
+    return family.parameters(shape, amplitudes, Eigen::MatrixXd::Zero(count + shape.size(), count + shape.size()));
+  std::vector<ParameterEstimate> parameters;
+  for (std::size_t k = 0; k < family.amplitudes.size(); ++k) {
+    const Amplitude& a = family.amplitudes[k];
+    parameters.push_back({a.name, a.unit, a.to_SI, amplitudes[static_cast<Eigen::Index>(k)], 0.0, a.lower, a.upper});
+  }
+  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
+    const Shape& s = family.shapes[k];
+    parameters.push_back({s.name, s.unit, s.to_SI, shape[static_cast<Eigen::Index>(k)], 0.0, s.lower, s.upper});
+  }
+  return parameters;
+}
+
+ShownCause CauseShownBy(const Family& family, double information, int grid_point) {
+  const Amplitude& a = family.amplitudes.front();
+  ShownCause cause;
+  cause.effect = family.effect;
+  cause.where = family.where;
+  cause.plausible_SI = a.prior_sd;
+  cause.largest_SI = std::min(tuning::kPlausibleTop * a.prior_sd, std::max(a.upper, -a.lower));
+  const double smallest = tuning::kBaarda / std::sqrt(std::max(information, 1e-300));
+  const bool is_seen = smallest <= tuning::kPlausibleTop * a.prior_sd;
+  cause.smallest = {a.name, a.unit, a.to_SI, is_seen ? smallest : kNaN, kNaN, a.lower, a.upper};
+  if (is_seen) cause.at_smallest = ParametersAt(family, grid_point, smallest);
+  return cause;
+}
+
+/// Every cause once, in the families' order.
+FamiliesByCause CausesOf(const Scanner& scanner) {
+  FamiliesByCause causes;
+  std::vector<double> most;  // information about a plausible size
+  for (int k = 0; k < std::ssize(scanner.Families()); ++k) {
+    const Family& family = scanner.Families()[static_cast<std::size_t>(k)];
+    if (family.kind != Kind::kNamed || family.amplitudes.empty()) continue;
+    const double information = scanner.Information(k), sd = family.amplitudes.front().prior_sd;
+    const double of_plausible = information * sd * sd;
+    const BestShown shown{k, scanner.MostTelling(k)};
+    const auto known = std::ranges::find_if(causes, [&family](const auto& one) {
+      return one.first.effect == family.effect && one.first.where == family.where;
+    });
+    const auto at = static_cast<std::size_t>(known - causes.begin());
+    if (known == causes.end()) {
+      causes.emplace_back(CauseShownBy(family, information, shown.grid_point), shown);
+      most.push_back(of_plausible);
+    } else if (of_plausible > most[at]) {
+      *known = {CauseShownBy(family, information, shown.grid_point), shown};
+      most[at] = of_plausible;
+    }
+  }
+  return causes;
+}
+
+/// Signatures of unit size, whitened: rows x causes.
+Eigen::MatrixXd WhiteSignatures(const LinearRun& run, const NoiseModel& noise, const std::vector<Family>& families,
+                                const FamiliesByCause& causes) {
+  Eigen::MatrixXd columns(run.Rows(), std::ssize(causes));
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    const BestShown& shown = causes[k].second;
+    const Family& family = families[static_cast<std::size_t>(shown.family)];
+    columns.col(static_cast<Eigen::Index>(k)) = family.ColumnsAt(shown.grid_point).col(0);
+  }
+  return noise.Whiten(run, columns);
+}
+
+/// One cause in one size.
+struct Trial {
+  std::size_t cause;
+  double times;  // its smallest size
+};
+
+/// From the smallest size by octaves to the largest plausible one.
+std::vector<Trial> TrialsOf(const FamiliesByCause& causes) {
+  constexpr double kMostTimes = 32.0;
+  std::vector<Trial> trials;
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    const ShownCause& cause = causes[k].first;
+    if (!std::isfinite(cause.smallest.value)) continue;
+    const double most = std::clamp(cause.largest_SI / cause.smallest.value, 1.0, kMostTimes);
+    for (double times = 1.0; times < most; times *= 2.0) trials.push_back({k, times});
+    trials.push_back({k, most});
+  }
+  return trials;
+}
+
+/// Causes x trials, all families of a cause together.
+struct Weighed {
+  Eigen::MatrixXd log_posterior;  // odds against no cause
+  Eigen::MatrixXd explained;      // of the power, the amplitudes free
+};
+
+Weighed WeighedBy(const Scanner& scanner, const Evidence& evidence, const FamiliesByCause& causes) {
+  const std::vector<Family>& families = scanner.Families();
+  const Eigen::MatrixXd logs = evidence.log_bayes.colwise() + LogPriors(families);
+  Weighed weighed;
+  weighed.log_posterior.resize(std::ssize(causes), logs.cols());
+  weighed.explained.resize(std::ssize(causes), logs.cols());
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    std::vector<Eigen::Index> own;
+    for (std::size_t f = 0; f < families.size(); ++f) {
+      const bool same = families[f].kind == Kind::kNamed && families[f].effect == causes[k].first.effect &&
+                        families[f].where == causes[k].first.where;
+      if (same) own.push_back(static_cast<Eigen::Index>(f));
+    }
+    for (Eigen::Index j = 0; j < logs.cols(); ++j) {
+      weighed.log_posterior(static_cast<Eigen::Index>(k), j) = LogSum(logs.col(j)(own));
+      weighed.explained(static_cast<Eigen::Index>(k), j) = evidence.explained.col(j)(own).maxCoeff();
+    }
+  }
+  return weighed;
+}
+
+/// Whether evidence that is `expected` in favour of what is there may leave the other cause in the answer.
+bool MayShareTheAnswer(double expected) {
+  constexpr double kOf95 = 1.645;
+  const double least = expected - kOf95 * std::sqrt(2.0 * std::max(0.0, expected));
+  return least < std::log(tuning::kNamedFrom / (1.0 - tuning::kNamedFrom));
+}
+
+/// @param trials  Those of one cause in ascending size.
+std::vector<Confusable> ConfusableOf(const std::vector<Trial>& trials, const Weighed& weighed) {
+  constexpr double kImitates = 0.1;  // of the power: what explains less is no rival, however small the cause
+  std::map<std::pair<std::size_t, std::size_t>, double> told_from;
+  for (std::size_t j = 0; j < trials.size(); ++j) {
+    const Trial& trial = trials[j];
+    const bool is_last = j + 1 == trials.size() || trials[j + 1].cause != trial.cause;
+    const auto column = static_cast<Eigen::Index>(j);
+    const auto present = static_cast<Eigen::Index>(trial.cause);
+    for (Eigen::Index other = 0; other < weighed.explained.rows(); ++other) {
+      if (other == present) continue;
+      const double expected = weighed.log_posterior(present, column) - weighed.log_posterior(other, column);
+      const double imitated = weighed.explained(other, column) / weighed.explained(present, column);
+      if (imitated >= kImitates && MayShareTheAnswer(expected))
+        told_from[{trial.cause, static_cast<std::size_t>(other)}] = is_last ? kInfiniteSize : trials[j + 1].times;
+    }
+  }
+  std::vector<Confusable> confusable;
+  for (const auto& [pair, times] : told_from) confusable.push_back({pair.first, pair.second, times});
+  return confusable;
+}
+
+std::vector<Confusable> ConfusableOf(const Scanner& scanner, const Projector& projector,
+                                     const FamiliesByCause& causes, const Eigen::MatrixXd& white) {
+  const std::vector<Trial> trials = TrialsOf(causes);
+  if (trials.empty()) return {};
+  Eigen::MatrixXd data(white.rows(), std::ssize(trials));
+  for (std::size_t j = 0; j < trials.size(); ++j)
+    data.col(static_cast<Eigen::Index>(j)) = trials[j].times * causes[trials[j].cause].first.smallest.value *
+                                             white.col(static_cast<Eigen::Index>(trials[j].cause));
+  Projected projected = Project(projector, {}, data);
+  projected.power.array() += projector.DegreesOfFreedom();
+  const Evidence evidence = scanner.Scan(projected, {});
+  return ConfusableOf(trials, WeighedBy(scanner, evidence, causes));
+}
+
+}  // namespace
+
+Isolability IsolabilityOf(const LinearRun& run, const Analysis& analysis) {
+  // The analysis may have been moved since its own scanner was made, which then refers to a noise model that is gone.
+  const Scanner scanner(run, analysis.noise, *analysis.projector, analysis.scanner->Families());
+  const FamiliesByCause causes = CausesOf(scanner);
+  Isolability isolability;
+  Eigen::VectorXd plausible(std::ssize(causes));
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    isolability.causes.push_back(causes[k].first);
+    plausible[static_cast<Eigen::Index>(k)] = causes[k].first.plausible_SI;
+  }
+  const Eigen::MatrixXd white = WhiteSignatures(run, analysis.noise, scanner.Families(), causes);
+  const Eigen::MatrixXd sized = white * plausible.asDiagonal();
+  isolability.information = sized.transpose() * analysis.projector->Apply(sized);
+  isolability.confusable = ConfusableOf(scanner, *analysis.projector, causes, white);
+  return isolability;
+}
+
+EffectSettings AsEffect(const ShownCause& cause, const std::string& bench) {
+  EffectSettings effect;
+  effect.name = cause.effect;
+  effect.where = cause.where;
+  const EffectEntry* const entry = FindEffect(cause.effect, bench);
+  Require(entry != nullptr, "a cause that a run shows is in the bench's catalogue");
+  for (const EffectParameter& p : entry->parameters) {
+    if (p.BelongsTo(cause.where)) effect.parameters[p.name] = p.default_SI;
+  }
+  for (const ParameterEstimate& p : cause.at_smallest) effect.parameters[p.name] = p.value;
+  return effect;
+}
+
+bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double size_SI) {
+  const double smallest = isolability.causes[present].smallest.value;
+  return std::ranges::any_of(isolability.confusable, [&](const Confusable& pair) {
+    return pair.present == present && pair.blamed == blamed && std::abs(size_SI) < pair.told_from * smallest;
+  });
+}
+
+std::vector<std::vector<std::size_t>> NeverTold(const Isolability& isolability) {
+  std::vector<std::size_t> set_of(isolability.causes.size());
+  for (std::size_t k = 0; k < set_of.size(); ++k) set_of[k] = k;
+  for (const Confusable& pair : isolability.confusable) {
+    if (std::isfinite(pair.told_from)) continue;
+    const auto [from, to] = std::minmax(set_of[pair.present], set_of[pair.blamed]);
+    std::ranges::replace(set_of, std::size_t{to}, std::size_t{from});
+  }
+  std::map<std::size_t, std::vector<std::size_t>> sets;
+  for (std::size_t k = 0; k < set_of.size(); ++k) sets[set_of[k]].push_back(k);
+  std::vector<std::vector<std::size_t>> never;
+  for (auto& [first, members] : sets) {
+    if (members.size() > 1) never.push_back(std::move(members));
+  }
+  return never;
+}
+
+}  // namespace twinbench::diagnose
