@@ -20,7 +20,7 @@ double Rest(double t_s, double over_s) {
 
 StandFault BothDistances(Dice& dice, const StandRun&) {
   const double sign = dice.Sign();
-  Truth truth = Unlisted({"psd_distance", "stray_light"});
+  Truth truth = Unlisted({"psd_distance", "stray_light", "background"});
   truth.never_wrong = true;
   StandFault fault{truth};
   fault.of_body = [sign](const StandRun&, double size, std::vector<Disturbed>& all) {
