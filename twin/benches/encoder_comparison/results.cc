@@ -8,6 +8,7 @@
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/positioning_results.h"
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/encoder_comparison/uncertainty_parts.h"
 #include "twin/core/errors.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
@@ -28,9 +29,10 @@ constexpr const char* kNoReference =
     "with one mounting of the device the difference of both is known; it is counted as the device's";
 constexpr const char* kSeenAlike = "all mountings see only the difference of both; it is counted as the device's";
 
-nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) {
+nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name, const DeviceError& e,
+                         const DeviceSettings& settings) {
   const CurveAt curve = Curve(series, kPoints);
-  nlohmann::json json;
+  nlohmann::json json = {{"u_parts", {{name + "_arcsec", CurveParts(series, e, settings, kPoints)}}}};
   for (int i = 0; i < kPoints; ++i) {
     json["position_deg"].push_back(i * 360.0 / kPoints);
     json[name + "_arcsec"].push_back(report::Arcsec(curve.value_rad[i]));
@@ -39,7 +41,7 @@ nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) 
   return json;
 }
 
-nlohmann::json HarmonicsJson(const HarmonicSeries& series) {
+nlohmann::json HarmonicsJson(const HarmonicSeries& series, const DeviceError& e, const DeviceSettings& settings) {
   nlohmann::json json = nlohmann::json::array();
   for (int k = 1; k <= series.Highest(); ++k) {
     const Coefficient& c = series.At(k);
@@ -48,16 +50,18 @@ nlohmann::json HarmonicsJson(const HarmonicSeries& series) {
                     {"amplitude_arcsec", report::Arcsec(Amplitude(c))},
                     {"u_amplitude_arcsec", report::Arcsec(AmplitudeUncertainty(c))},
                     {"phase_deg", report::In(units::deg, separate::harmonics::Phase(c))},
-                    {"u_phase_deg", report::In(units::deg, PhaseUncertainty(c))}});
+                    {"u_phase_deg", report::In(units::deg, PhaseUncertainty(c))},
+                    {"u_parts", OrderParts(k, e, settings)}});
   }
   return json;
 }
 
-nlohmann::json HarmonicsJson(const DeviceError& e) {
+nlohmann::json HarmonicsJson(const DeviceError& e, const DeviceSettings& settings) {
   nlohmann::json json = {{"form", "sum of amplitude cos(order angle + phase)"},
                          {"highest_order", e.highest_order},
-                         {"device", HarmonicsJson(e.curves.device)}};
-  if (!e.curves.reference.orders.empty()) json["reference"] = HarmonicsJson(e.curves.reference);
+                         {"device", HarmonicsJson(e.curves.device, e, settings)}};
+  if (!e.curves.reference.orders.empty()) 
+    json["reference"] = HarmonicsJson(e.curves.reference, e, settings);
   return json;
 }
 
@@ -73,19 +77,20 @@ nlohmann::json NotSeparable(const DeviceError& e) {
   return lost;
 }
 
-nlohmann::json SeparationJson(const DeviceError& e) {
-  nlohmann::json json = {{"device", CurveJson(e.curves.device, "ez")},
-                         {"harmonics", HarmonicsJson(e)},
+nlohmann::json SeparationJson(const DeviceError& e, const DeviceSettings& settings) {
+  nlohmann::json json = {{"device", CurveJson(e.curves.device, "ez", e, settings)},
+                         {"harmonics", HarmonicsJson(e, settings)},
                          {"not_separable", NotSeparable(e)},
                          {"residual_rms", {{"x_arcsec", report::Arcsec(e.residual_rms_rad)}}},
                          {"dof", report::In(1.0, e.dof)}};
-  if (!e.curves.reference.orders.empty()) json["reference"] = CurveJson(e.curves.reference, "ez");
+  if (!e.curves.reference.orders.empty()) 
+    json["reference"] = CurveJson(e.curves.reference, "ez", e, settings);
   return json;
 }
 
 /// By the device's angle: the mean, and the curve with it.
-nlohmann::json ReversalJson(const DeviceError& e) {
-  nlohmann::json json = CurveJson(e.curves.reversal, "reversal");
+nlohmann::json ReversalJson(const DeviceError& e, const DeviceSettings& settings) {
+  nlohmann::json json = CurveJson(e.curves.reversal, "reversal", e, settings);
   for (auto& value : json["reversal_arcsec"]) value = value.get<double>() + e.reversal.value_rad / units::arcsec;
   json["mean_arcsec"] = report::Arcsec(e.reversal.value_rad);
   json["u_mean_arcsec"] = report::Arcsec(e.reversal.u_rad);
@@ -121,13 +126,13 @@ nlohmann::json ToJson(const PassResult& p) {
           {"slope_arcsec_per_turn", report::Arcsec(p.slope_rad_per_turn)}};
 }
 
-void AddDevice(const DeviceError& e, nlohmann::json& json) {
+void AddDevice(const DeviceError& e, const DeviceSettings& settings, nlohmann::json& json) {
   if (e.highest_order == 0) {
     json["not_separated"] = e.not_separated;
     return;
   }
-  json.update(SeparationJson(e));
-  if (!e.curves.reversal.orders.empty()) json["reversal"] = ReversalJson(e);
+  json.update(SeparationJson(e, settings));
+  if (!e.curves.reversal.orders.empty()) json["reversal"] = ReversalJson(e, settings);
   json["means"] = MeansJson(e);
   for (const PassResult& pass : e.passes) json["passes"].push_back(ToJson(pass));
   for (const double mounting_rad : e.mounting_rad) json["mounting_deg"].push_back(mounting_rad / units::deg);
@@ -181,6 +186,7 @@ report::CurveScore ScoreOf(const std::string& name, const HarmonicSeries& series
                            .estimate = {},
                            .u = {},
                            .truth = truth.at("ez_arcsec")};
+  curve.dof = series.dof;
   const CurveAt at = Curve(series, static_cast<int>(curve.position.size()));
   for (Eigen::Index i = 0; i < at.value_rad.size(); ++i) {
     curve.estimate.push_back(at.value_rad[i] / units::arcsec);
@@ -198,8 +204,13 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   report::Evaluation evaluation{
       ToJson(comparison), {}, device.not_separated, Summary(comparison, CoarseUnit(device_settings))};
   evaluation.summary += SummaryOf(device, FineUnit(device_settings));
-  AddDevice(device, evaluation.results);
-  if (device.highest_order > 0) evaluation.separation = SeparationJson(device);
+  AddDevice(device, device_settings, evaluation.results);
+  if (device.highest_order > 0) {
+    evaluation.separation = SeparationJson(device, device_settings);
+    evaluation.joints.push_back(CurveJoint("device", device.curves.device, kPoints));
+    if (!device.curves.reference.orders.empty())
+      evaluation.joints.push_back(CurveJoint("reference", device.curves.reference, kPoints));
+  }
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
     const PositioningResults positioning = EvaluateStops(readings, device_settings);
     evaluation.results["iso230_2"] = positioning.json;

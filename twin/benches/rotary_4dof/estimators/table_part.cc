@@ -76,6 +76,7 @@ TableEstimate Prepare(const TablePart& part, const Systematic& systematic) {
   TableEstimate estimate;
   estimate.components = part.components;
   estimate.cov = part.cov;
+  estimate.second_order = systematic.second_order;
   estimate.cov_systematic = systematic.second_order * part.cov;
   if (systematic.d_calibration.cols() > 0) {
     const Eigen::MatrixXd shift =
