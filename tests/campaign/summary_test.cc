@@ -31,6 +31,14 @@ TEST(Summary, HasMeanScatterBiasAndCoverage) {
   EXPECT_DOUBLE_EQ(summary.Worst(1)[0].normed, 5.0);
 }
 
+/// An error of 2.5 u is inside the interval of 5 degrees of freedom (k = 2.57) and outside that of many.
+TEST(Summary, CountsByTheCoverageFactorOfEachResult) {
+  Summary summary;
+  summary.Add({0, "", "", {{"few", 0.0, 1.0, 2.5, 2.57}, {"many", 0.0, 1.0, 2.5}}});
+  EXPECT_DOUBLE_EQ(summary.Results().at("few").coverage95, 1.0);
+  EXPECT_DOUBLE_EQ(summary.Results().at("many").coverage95, 0.0);
+}
+
 TEST(Summary, TakesTheNumbersOfAListTogetherEachAboutItsOwnMean) {
   Summary summary;
   summary.Add(

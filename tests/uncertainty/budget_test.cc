@@ -74,6 +74,37 @@ TEST(Budgets, NameWhatNoResultIsComputedWith) {
             (std::vector<std::string>{"grating.point_mm[1]", "grating.point_mm[2]"}));
 }
 
+/// 0.3 arcsec per um of a distance that is known to 2 um.
+TEST(Budget, StatesSensitivitiesInTheUnitOfTheKey) {
+  const Scenario scenario = FourInputs({{InputKeys()[0], 2e-6}});
+  const auto line = [](const Scenario& s) {
+    return std::vector<Quantity>{{"ez_arcsec", -0.3e6 * Input(s, 0), 0.1}};
+  };
+  const Source source = Budgets(scenario, line).at(0).sources.at(1);
+  EXPECT_NEAR(source.u_input, 2e-3, 1e-12) << "mm, as distance_mm";
+  EXPECT_EQ(source.input_unit, "mm");
+  EXPECT_NEAR(source.sensitivity, -300.0, 1e-6) << "arcsec per mm";
+  EXPECT_NEAR(source.u, source.sensitivity * source.u_input, 1e-12);
+}
+
+/// What an estimator tells apart stands line by line, but its degrees of freedom are those of one estimate.
+TEST(Budget, HasThePartsOfTheReadings) {
+  const Scenario scenario = FourInputs({{InputKeys()[0], 1e-3, Distribution::kNormal, 5.0}});
+  const auto evaluate = [](const Scenario& s) {
+    const double x = 1e3 * Input(s, 0);
+    return std::vector<Quantity>{
+        {"y", x + x * x, 2.0, 10.0, {{"noise", 0.5}, {"quantisation", 0.25}, {"second order", 0.25}}}};
+  };
+  const Budget budget = Budgets(scenario, evaluate).at(0);
+  ASSERT_EQ(budget.sources.size(), 4U) << "both second orders in one line";
+  EXPECT_EQ(budget.sources[0].type, 'A');
+  EXPECT_EQ(budget.sources[1].type, 'B');
+  EXPECT_NEAR(budget.sources[0].u, std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(budget.sources[2].u, std::sqrt(1.0 + 2.0), 1e-9) << "0.25 of 4, and 2 x 1^2 of the key";
+  EXPECT_NEAR(budget.u * budget.u, 4.0 + 1.0 + 2.0, 1e-9);
+  EXPECT_NEAR(budget.dof, 49.0 / (16.0 / 10.0 + 1.0 / 5.0), 1e-6);
+}
+
 TEST(CoverageFactor, IsThatOfTheTables) {
   EXPECT_NEAR(CoverageFactor(kInfinite), 1.960, 0.001);
   EXPECT_NEAR(CoverageFactor(10.0), 2.228, 0.001);

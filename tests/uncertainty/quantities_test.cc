@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 namespace twinbench::uncertainty {
@@ -26,6 +28,35 @@ TEST(Quantities, AreTheNumbersWithAnUncertaintyBesideThem) {
   EXPECT_EQ(found[3].name, "stability.standard_deviation.dy_um");
   EXPECT_EQ(ListOf(found[2].name), "separation.target.ez_arcsec");
   EXPECT_EQ(KindOf("iso230_2[2].targets[17].mean_arcsec[3]"), "iso230_2[].targets[].mean_arcsec");
+}
+
+TEST(Quantities, HaveTheirPartsNearestAbove) {
+  const auto json = nlohmann::json::parse(R"({
+    "map": {"ez_arcsec": [1.0, 2.0], "u_ez_arcsec": [0.1, 0.2], "u_parts": {"noise": [0.25, 1.0], "drift": [0.75, null]}},
+    "table": {"ex_arcsec": [1.0], "u_ex_arcsec": [0.1], "dy_um": [1.0], "u_dy_um": [0.1],
+              "u_parts": {"ex_arcsec": {"noise": 1.0}}},
+    "errors": {"u_parts": {"noise": 0.5}, "a": {"value": 1.0, "u": 0.1}},
+    "plain": {"value": 1.0, "u": 0.1}})");
+  const std::vector<Quantity> found = QuantitiesOf(json);
+  ASSERT_EQ(found.size(), 6U) << "u_parts is no result";
+  const auto parts_of = [&](const std::string& name) {
+    std::map<std::string, double> parts;
+    for (const Part& p : std::ranges::find(found, name, &Quantity::name)->parts) parts[p.name] = p.share;
+    return parts;
+  };
+  using Parts = std::map<std::string, double>;
+  EXPECT_EQ(parts_of("map.ez_arcsec[0]"), (Parts{{"noise", 0.25}, {"drift", 0.75}}));
+  EXPECT_EQ(parts_of("map.ez_arcsec[1]"), (Parts{{"noise", 1.0}}));
+  EXPECT_EQ(parts_of("table.ex_arcsec[0]"), (Parts{{"noise", 1.0}}));
+  EXPECT_EQ(parts_of("table.dy_um[0]"), Parts{}) << "only that of another key is stated";
+  EXPECT_EQ(parts_of("errors.a"), (Parts{{"noise", 0.5}}));
+  EXPECT_EQ(parts_of("plain"), Parts{});
+}
+
+TEST(Quantities, EndInTheirUnits) {
+  EXPECT_EQ(UnitOf("separation.target.ez_arcsec[3]"), "arcsec");
+  EXPECT_EQ(UnitOf("setups[0].offset_x_um"), "um");
+  EXPECT_EQ(UnitOf("calibration.gain.psd_a_x"), "") << "x is no unit";
 }
 
 TEST(StatedQuantities, AreThoseWithAnUncertaintyInEachOfItsForms) {

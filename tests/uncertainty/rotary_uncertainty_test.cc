@@ -47,7 +47,7 @@ std::vector<Quantity> Evaluated(const Scenario& scenario, const std::vector<Read
 
 double TypeB2(const Budget& budget) {
   double sum2 = 0.0;
-  for (const Source& source : budget.sources) sum2 += source.type == 'B' ? source.u * source.u : 0.0;
+  for (const Source& source : budget.sources) sum2 += !IsOfReadings(source) ? source.u * source.u : 0.0;
   return sum2;
 }
 
@@ -65,7 +65,7 @@ TEST(RotaryUncertainty, IsWhatStandardsThatErrDo) {
     const std::vector<Quantity> found = Evaluated(nominal, test::RunTwin(Drawn(random)).readings);
     ASSERT_EQ(found.size(), budgets.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const double u2 = TypeB2(budgets[i]), u_readings = budgets[i].sources[0].u;
+      const double u2 = TypeB2(budgets[i]), u_readings = budgets[i].quantity.u;
       if (u2 < 0.01 * u_readings * u_readings) continue;  // no source of the standards' to speak of
       const double change = found[i].value - budgets[i].quantity.value;
       auto& [sum, count] = ratio2[ListOf(budgets[i].quantity.name)];

@@ -27,7 +27,7 @@ EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Rea
   const std::vector<uncertainty::Budget> budgets = BudgetsOf(scenario, readings);
   run.evaluation.results["uncertainty_budget"] = report::BudgetsByList(budgets);
   run.text = run.evaluation.summary;
-  if (!scenario.uncertainties.empty()) run.text += "\n" + report::BudgetText(budgets, nullptr);
+  if (!scenario.uncertainties.empty()) run.text += "\n" + report::BudgetText(budgets);
   return run;
 }
 

@@ -8,6 +8,7 @@
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
+#include "twin/report/evaluation.h"
 #include "twin/report/uncertainty_text.h"
 
 namespace twinbench::tools {
@@ -27,6 +28,18 @@ uncertainty::Evaluate EvaluationOf(const RecordedRun& run, const std::string& es
   };
 }
 
+/// What the readings leave uncertain together, of the quantities that have a budget.
+std::vector<uncertainty::Joint> JointsOf(const RecordedRun& run, const std::string& estimator,
+                                         const std::vector<uncertainty::Budget>& budgets) {
+  std::vector<std::string> names;
+  for (const uncertainty::Budget& budget : budgets) names.push_back(budget.quantity.name);
+  std::vector<uncertainty::Joint> joints;
+  for (const uncertainty::Joint& joint :
+       BenchOf(run.scenario).evaluate(run.scenario, run.readings, EstimatorNamed(estimator)).joints)
+    joints.push_back(Determined(joint, names));
+  return joints;
+}
+
 void State(const UncertaintyOptions& options) {
   RequireOutput(options.json, {options.source, options.scenario});
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
@@ -34,14 +47,21 @@ void State(const UncertaintyOptions& options) {
   const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(run.scenario, evaluate);
   if (budgets.empty())
     throw InputError(options.source, "the readings come to no result with an uncertainty", "a run that separates");
+  const std::vector<uncertainty::Joint> stated = JointsOf(run, options.estimator, budgets);
+  std::vector<uncertainty::Joint> joints;
+  for (const uncertainty::Joint& joint : stated) joints.push_back(Combined(joint, budgets));
   uncertainty::MonteCarlo trials;
-  if (options.monte_carlo) trials = uncertainty::Propagate(run.scenario, evaluate, options.trials);
+  if (options.monte_carlo) {
+    uncertainty::MonteCarloOptions how = options.trials;
+    how.joints = stated;
+    trials = uncertainty::Propagate(run.scenario, evaluate, how);
+  }
   const uncertainty::MonteCarlo* const drawn = options.monte_carlo ? &trials : nullptr;
-  if (!options.json.empty()) WriteJson(options.json, report::BudgetJson(budgets, drawn));
+  if (!options.json.empty()) WriteJson(options.json, report::BudgetJson(budgets, joints, drawn));
   if (options.json == "-") return;
   if (run.scenario.uncertainties.empty())
     fmt::print("The scenario states no u_<key> (u_wavelength_nm = 0.01): only what the readings say counts.\n\n");
-  fmt::print("{}", report::BudgetText(budgets, drawn));
+  fmt::print("{}", report::BudgetText(budgets, joints, drawn));
 }
 
 }  // namespace

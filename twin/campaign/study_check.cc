@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "twin/core/errors.h"
+#include "twin/uncertainty/standards.h"
 #include "twin/core/number_text.h"
 
 namespace twinbench::campaign {
@@ -54,7 +55,7 @@ void CheckStudy(const Study& study, const std::string& set_where) {
     for (const std::string& option : study.set) RefuseAt(set_where, option, error);
     throw;
   }
-  if (study.standards && study.With({}).uncertainties.empty())
+  if (study.standards && !uncertainty::StatesStandards(study.With({})))
     throw InputError(study.scenario_name, "the scenario states no uncertainty that could be drawn",
                      "u_<key> beside a key, or no standards = true");
   for (const Variation& variation : study.vary) CheckVariation(study, variation);

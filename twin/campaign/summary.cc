@@ -9,8 +9,6 @@
 namespace twinbench::campaign {
 namespace {
 
-constexpr double kCoverageFactor = 1.959963984540054;  // two-sided 95 % of a normal variable
-
 /// "a[3].b[7]" is one number of "a[].b[]".
 std::string WithoutIndices(const std::string& name) {
   std::string text;
@@ -46,7 +44,7 @@ void Summary::Sums::Add(const TrialResult& r) {
   if (!std::isfinite(r.error) || !std::isfinite(r.u)) return;
   ++scored;
   sum_error += r.error;
-  covered += std::abs(r.error) <= kCoverageFactor * r.u ? 1 : 0;
+  covered += std::abs(r.error) <= r.k * r.u ? 1 : 0;
 }
 
 void Summary::Add(const TrialRow& row) {

@@ -17,7 +17,7 @@ struct ResultSummary {
   double rms_u = 0.0;
   std::int64_t scored = 0;  // those whose error is known
   double bias = 0.0;        // mean error; of a list, root mean square of those of its numbers
-  double coverage95 = 0.0;  // share of errors within 1.96 u
+  double coverage95 = 0.0;  // share of errors within their k u
 };
 
 struct WorstTrial {

@@ -42,7 +42,7 @@ std::string SummaryText(const Summary& summary, const std::string& study_path) {
       fmt::format("{} trials, {} lost\n", summary.Trials(), summary.Lost().size()) + LostText(summary);
   for (const auto& [verdict, count] : summary.Verdicts()) text += fmt::format("diagnosis {}: {}\n", verdict, count);
   text += fmt::format("{:<44} {:>8} {:>12} {:>10} {:>10} {:>11} {:>9}\n", "result ([]: all of a list)", "count",
-                      "mean", "sd", "rms u", "bias", "in 1.96 u");
+                      "mean", "sd", "rms u", "bias", "in k u");
   for (const auto& [name, result] : summary.Results()) text += ResultLine(name, result);
   const std::string worst = WorstText(summary);
   text += worst;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kTableId = 0x7442434D;  // "tBCM"
 constexpr const char* kAskRows =
-    "SELECT t.trial, t.failure, t.verdict, r.name, r.value, r.u, r.error FROM trials t "
+    "SELECT t.trial, t.failure, t.verdict, r.name, r.value, r.u, r.error, r.k FROM trials t "
     "LEFT JOIN results r USING(trial) ORDER BY t.trial, r.name";
 
 /// A name as SQL takes it, whatever is in it.
@@ -43,7 +43,7 @@ void MakeCampaignTables(SqliteDatabase& database, const std::string& version, co
                   keys)
           .c_str());
   database.Execute(
-      "CREATE TABLE results(trial INTEGER NOT NULL, name TEXT NOT NULL, value REAL, u REAL, error REAL, "
+      "CREATE TABLE results(trial INTEGER NOT NULL, name TEXT NOT NULL, value REAL, u REAL, error REAL, k REAL, "
       "PRIMARY KEY(trial, name)) WITHOUT ROWID");
   SqliteStatement insert(database, "INSERT INTO provenance VALUES(?, ?)");
   for (const auto& [name, value] : ProvenanceOf(version, study)) {
@@ -151,13 +151,14 @@ void Table::Write(const TrialRow& row, std::uint64_t seed, const std::vector<std
   trial.Bind(3, row.verdict);
   for (std::size_t k = 0; k < values.size(); ++k) trial.Bind(4 + static_cast<int>(k), values[k]);
   trial.Run();
-  SqliteStatement result(*database_, "INSERT INTO results VALUES(?, ?, ?, ?, ?)");
+  SqliteStatement result(*database_, "INSERT INTO results VALUES(?, ?, ?, ?, ?, ?)");
   for (const TrialResult& r : row.results) {
     result.Bind(0, row.trial);
     result.Bind(1, r.name);
     result.Bind(2, r.value);
     result.Bind(3, r.u);
     result.Bind(4, r.error);
+    result.Bind(5, r.k);
     result.Run();
   }
   transaction.Commit();
@@ -182,7 +183,7 @@ void Table::ForEach(const std::function<void(const TrialRow&)>& look) const {
     if (!open) row = {ask.Integer(0), ask.Text(1), ask.Text(2), {}};
     open = true;
     if (const std::string name = ask.Text(3); !name.empty())
-      row.results.push_back({name, ask.Real(4), ask.Real(5), ask.Real(6)});
+      row.results.push_back({name, ask.Real(4), ask.Real(5), ask.Real(6), ask.Real(7)});
   }
   if (open) look(row);
 }

@@ -8,7 +8,8 @@
 #include "twin/core/run_record.h"
 #include "twin/procedure/options.h"
 #include "twin/report/evaluation.h"
-#include "twin/uncertainty/monte_carlo.h"
+#include "twin/uncertainty/budget.h"
+#include "twin/uncertainty/standards.h"
 
 namespace twinbench::campaign {
 namespace {
@@ -17,7 +18,7 @@ std::vector<TrialResult> Scored(const Bench& bench, const Scenario& scenario, co
                                 const nlohmann::json& truth, Estimator estimator) {
   std::vector<TrialResult> results;
   for (const report::ScoredValue& v : bench.score(scenario, readings, truth, estimator).values)
-    results.push_back({"score." + v.name, v.value, v.u, v.value - v.truth});
+    results.push_back({"score." + v.name, v.value, v.u, v.value - v.truth, uncertainty::CoverageFactor(v.dof)});
   return results;
 }
 
@@ -28,12 +29,15 @@ std::vector<TrialResult> ScoredWithStandards(const Bench& bench, const Scenario&
   std::vector<TrialResult> results = Scored(bench, scenario, readings, truth, estimator);
   const uncertainty::Evaluate evaluate = [&](const Scenario& changed) {
     std::vector<uncertainty::Quantity> quantities;
-    for (const TrialResult& r : Scored(bench, changed, readings, truth, estimator))
-      quantities.push_back({r.name, r.value, r.u});
+    for (const report::ScoredValue& v : bench.score(changed, readings, truth, estimator).values)
+      quantities.push_back({"score." + v.name, v.value, v.u, v.dof});
     return quantities;
   };
   const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(scenario, evaluate);
-  for (std::size_t i = 0; i < results.size(); ++i) results[i].u = budgets[i].u;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    results[i].u = budgets[i].u;
+    results[i].k = budgets[i].k;
+  }
   return results;
 }
 
@@ -64,7 +68,7 @@ TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial) 
   row.trial = trial;
   try {
     Scenario scenario = study.With(design.OverridesOf(trial));
-    if (study.standards) scenario = uncertainty::DrawnScenario(std::move(scenario), study.seed, trial);
+    if (study.standards) scenario = uncertainty::StandardsDrawn(std::move(scenario), study.seed, trial);
     CarryOut(study, scenario, study.With(design.BelievedOf(trial)), row);
   } catch (const std::exception& error) {
     row.failure = error.what();

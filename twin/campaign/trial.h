@@ -8,10 +8,14 @@
 
 namespace twinbench::campaign {
 
+/// Coverage factor of a two-sided 95 % interval of a normal variable.
+inline constexpr double kNormalCoverage = 1.959963984540054;
+
 /// A number that a trial came to, in the unit of its name.
 struct TrialResult {
-  std::string name;        // its path in results.json, or "score." and its name in the score
-  double value, u, error;  // error: against the twin's truth; NaN where that is not known
+  std::string name;             // its path in results.json, or "score." and its name in the score
+  double value, u, error;       // error: against the twin's truth; NaN where that is not known
+  double k = kNormalCoverage;   // value +- k u is the stated 95 % interval, by the degrees of freedom behind u
 };
 
 /// A row of the table.

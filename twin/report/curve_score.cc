@@ -86,7 +86,7 @@ std::vector<ScoredValue> ValuesOf(const std::vector<CurveScore>& curves) {
   for (const CurveScore& curve : curves) {
     for (std::size_t k = 0; k < curve.truth.size(); ++k)
       values.push_back({fmt::format("{}.{}[{}]", curve.name, curve.value, k), curve.estimate[k], curve.u[k],
-                        curve.truth[k]});
+                        curve.truth[k], curve.dof});
   }
   return values;
 }

@@ -14,6 +14,7 @@ struct CurveScore {
   std::string value;  // "ez_arcsec"
   std::string position_name = "position_deg";
   std::vector<double> position, estimate, u, truth;  // equally long; u may be NaN
+  double dof = std::numeric_limits<double>::infinity();  // behind u
 };
 
 /// A row a curve: root mean squares, the worst error, the stated uncertainty and the mean of (error / u)^2.

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "twin/uncertainty/joint.h"
 
 namespace twinbench::report {
 
@@ -19,6 +22,7 @@ struct Evaluation {
   std::string not_separated;  // why
   std::string summary;        // for a person
   std::vector<ResultTable> tables = {};
+  std::vector<uncertainty::Joint> joints = {};  // results that the readings leave uncertain together
 
   bool Separated() const { return !separation.is_null(); }
 };
@@ -27,6 +31,7 @@ struct Evaluation {
 struct ScoredValue {
   std::string name;  // "target.ez_arcsec[3]"
   double value, u, truth;
+  double dof = std::numeric_limits<double>::infinity();  // behind u
 };
 
 /// Compares a run of the twin with its truth.

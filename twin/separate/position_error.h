@@ -22,6 +22,7 @@ struct PositionError {
   double residual_rms_rad = kNaN;    // of a sample about its own turn's fit: noise, and orders above max_order
   double drift_rad_per_turn = kNaN;  // in the direction of travel; NaN if no pass has three turns
   double u_drift_rad_per_turn = kNaN;
+  std::vector<double> of_drift_rad2 = {};  // [k - 1]: of the variance of either part of order k, what that leaves
 };
 
 }  // namespace twinbench::separate::harmonics

@@ -6,12 +6,13 @@
 #include <cmath>
 #include <map>
 
+#include "twin/core/scenario_schema.h"
 #include "twin/core/scenario_uncertainty.h"
 
 namespace twinbench::uncertainty {
 namespace {
 
-constexpr const char* kReadings = "readings";
+constexpr const char* kReadings = "readings";  // not told apart
 constexpr const char* kSecondOrder = "second order";
 
 using Values = std::map<std::string, double>;
@@ -28,6 +29,34 @@ std::string NameOf(const StatedUncertainty& stated, std::size_t element, std::si
   return count == 1 ? stated.key : stated.key + "[" + std::to_string(element) + "]";
 }
 
+/// A line of the budget for one number of a key, without what it adds.
+Source LineOf(const StatedUncertainty& stated, std::size_t element, std::size_t count, const Unit& unit) {
+  Source line{NameOf(stated, element, count), 'B', 0.0, stated.dof};
+  line.u_input = stated.u / unit.to_SI;
+  line.input_unit = unit.suffix;
+  return line;
+}
+
+Unit UnitOfKey(Scenario scenario, const std::string& key) {
+  for (const ScenarioKey& known : KeysOf(scenario)) {
+    if (known.Path() == key) return known.unit;
+  }
+  return {};
+}
+
+/// What the estimator states, part by part.
+std::vector<Source> OfReadings(const Quantity& quantity) {
+  static const std::vector<std::string> not_by_statistics = {"quantisation", "standard", "second order", "model"};
+  if (quantity.parts.empty()) return {{kReadings, 'A', quantity.u, quantity.dof}};
+  std::vector<Source> sources;
+  for (const Part& part : quantity.parts) {
+    const bool is_b = std::ranges::find(not_by_statistics, part.name) != not_by_statistics.end();
+    if (part.share > 0.0)
+      sources.push_back({part.name, is_b ? 'B' : 'A', quantity.u * std::sqrt(part.share), quantity.dof});
+  }
+  return sources;
+}
+
 /// What one number of a key does to every quantity; the second-order parts are gathered.
 void AddSource(const Source& source, const Values& up, const Values& down, std::vector<Budget>& budgets,
                std::vector<double>& second_order2) {
@@ -36,17 +65,32 @@ void AddSource(const Source& source, const Values& up, const Values& down, std::
     if (!up.contains(name) || !down.contains(name)) continue;
     Source line = source;
     line.u = 0.5 * (up.at(name) - down.at(name));
+    line.sensitivity = line.u / line.u_input;
     budgets[i].sources.push_back(line);
     const double bend = 0.5 * (up.at(name) + down.at(name)) - budgets[i].quantity.value;
     second_order2[i] += 2.0 * bend * bend;
   }
 }
 
+/// In a line with what the estimator says of its own second order, if it does.
+void AddSecondOrder(double variance, Budget& budget) {
+  if (!(variance > 0.0)) return;
+  const auto own = std::ranges::find(budget.sources, kSecondOrder, &Source::name);
+  if (own != budget.sources.end())
+    own->u = std::hypot(own->u, std::sqrt(variance));
+  else
+    budget.sources.push_back({kSecondOrder, 'B', std::sqrt(variance)});
+}
+
 void Combine(Budget& budget) {
   double u2 = 0.0, over_dof = 0.0;
+  const auto add_dof = [&](double u, double dof) {
+    if (std::isfinite(dof) && dof > 0.0) over_dof += std::pow(u, 4) / dof;
+  };
+  add_dof(budget.quantity.u, budget.quantity.dof);
   for (const Source& source : budget.sources) {
     u2 += source.u * source.u;
-    if (std::isfinite(source.dof) && source.dof > 0.0) over_dof += std::pow(source.u, 4) / source.dof;
+    if (!IsOfReadings(source)) add_dof(source.u, source.dof);
   }
   budget.u = std::sqrt(u2);
   if (over_dof > 0.0) budget.dof = u2 * u2 / over_dof;
@@ -55,11 +99,15 @@ void Combine(Budget& budget) {
 
 }  // namespace
 
+bool IsOfReadings(const Source& source) {
+  return !std::isfinite(source.u_input);
+}
+
 std::vector<std::string> SourcesOfNothing(const std::vector<Budget>& budgets) {
   std::map<std::string, double> largest;
   for (const Budget& budget : budgets) {
     for (const Source& source : budget.sources) {
-      if (source.type != 'B' || source.name == kSecondOrder) continue;
+      if (IsOfReadings(source)) continue;
       double& u = largest[source.name];
       u = std::max(u, std::abs(source.u));
     }
@@ -80,19 +128,20 @@ double CoverageFactor(double dof) {
 std::vector<Budget> Budgets(const Scenario& scenario, const Evaluate& evaluate) {
   std::vector<Budget> budgets;
   for (const Quantity& quantity : evaluate(scenario))
-    budgets.push_back({quantity, {{kReadings, 'A', quantity.u, quantity.dof}}});
+    budgets.push_back({quantity, OfReadings(quantity)});
   std::vector<double> second_order2(budgets.size(), 0.0);
   for (const StatedUncertainty& stated : scenario.uncertainties) {
     Scenario copy = scenario;
     const std::size_t count = NumbersAt(copy, stated.key).size();
+    const Unit unit = UnitOfKey(scenario, stated.key);
     for (std::size_t element = 0; element < count; ++element) {
       const Values up = ValuesWith(scenario, stated.key, element, stated.u, evaluate),
                    down = ValuesWith(scenario, stated.key, element, -stated.u, evaluate);
-      AddSource({NameOf(stated, element, count), 'B', 0.0, stated.dof}, up, down, budgets, second_order2);
+      AddSource(LineOf(stated, element, count, unit), up, down, budgets, second_order2);
     }
   }
   for (std::size_t i = 0; i < budgets.size(); ++i) {
-    if (second_order2[i] > 0.0) budgets[i].sources.push_back({kSecondOrder, 'B', std::sqrt(second_order2[i])});
+    AddSecondOrder(second_order2[i], budgets[i]);
     Combine(budgets[i]);
   }
   return budgets;

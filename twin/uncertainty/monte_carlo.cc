@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <thread>
 
 #include "twin/core/scenario_uncertainty.h"
 #include "twin/core/stream.h"
+#include "twin/uncertainty/agreement.h"
 
 namespace twinbench::uncertainty {
 namespace {
@@ -37,33 +39,83 @@ Stream StreamOf(std::uint64_t seed, const std::string& name, std::int64_t trial)
   return stream;
 }
 
-/// One trial's values, in the order of `quantities`; what could not be evaluated is NaN.
-std::vector<double> Trial(const Scenario& scenario, const Evaluate& evaluate,
-                          const std::vector<Quantity>& quantities, std::uint64_t seed, int trial) {
+/// Quantities of a joint by their places, and what independent numbers become them.
+struct DrawnTogether {
+  std::vector<std::size_t> places;
+  Eigen::MatrixXd root;
+  double dof = std::numeric_limits<double>::infinity();
+};
+
+/// What stays the same from trial to trial.
+struct Trials {
+  const Scenario& scenario;
+  const Evaluate& evaluate;
+  const MonteCarloOptions& options;
+  std::vector<Quantity> quantities;
+  std::vector<DrawnTogether> together;
+};
+
+std::vector<std::string> NamesOf(const std::vector<Quantity>& quantities) {
+  std::vector<std::string> names;
+  for (const Quantity& q : quantities) names.push_back(q.name);
+  return names;
+}
+
+DrawnTogether TogetherOf(const Joint& joint, const std::vector<Quantity>& quantities) {
+  DrawnTogether drawn{{}, RootOf(joint.cov)};
+  for (const std::string& name : joint.names) {
+    const auto q = std::ranges::find(quantities, name, &Quantity::name);
+    drawn.places.push_back(static_cast<std::size_t>(q - quantities.begin()));
+    drawn.dof = std::min(drawn.dof, q->dof);
+  }
+  return drawn;
+}
+
+/// One standard deviation's length of Student's distribution over that of the normal one.
+double TailOf(double dof, Stream& stream) {
+  return std::isfinite(dof) ? std::sqrt(dof / stream.ChiSquared(dof)) : 1.0;
+}
+
+/// What the readings might have done to every quantity.
+std::vector<double> OfReadingsDrawn(const Trials& trials, Stream& stream) {
+  std::vector<double> change;
+  for (const Quantity& q : trials.quantities)
+    change.push_back(q.u * Drawn({"", 1.0, Distribution::kNormal, q.dof}, stream));
+  for (const DrawnTogether& together : trials.together) {
+    Eigen::VectorXd normal(together.root.cols());
+    for (double& x : normal) x = stream.Normal();
+    const Eigen::VectorXd drawn = TailOf(together.dof, stream) * (together.root * normal);
+    for (std::size_t i = 0; i < together.places.size(); ++i)
+      change[together.places[i]] = drawn[static_cast<Eigen::Index>(i)];
+  }
+  return change;
+}
+
+/// One trial's values, in the order of the quantities; what could not be evaluated is NaN.
+std::vector<double> Trial(const Trials& trials, int trial) {
   std::map<std::string, double> drawn;
-  for (const Quantity& q : evaluate(DrawnScenario(scenario, seed, trial))) drawn[q.name] = q.value;
-  Stream stream = StreamOf(seed, "readings", trial);
-  std::vector<double> values;
-  for (const Quantity& q : quantities) {
-    const auto found = drawn.find(q.name);
-    const double own = Drawn({"", 1.0, Distribution::kNormal, q.dof}, stream);
-    values.push_back(found == drawn.end() ? std::nan("") : found->second + q.u * own);
+  for (const Quantity& q : trials.evaluate(DrawnScenario(trials.scenario, trials.options.seed, trial)))
+    drawn[q.name] = q.value;
+  Stream stream = StreamOf(trials.options.seed, "readings", trial);
+  std::vector<double> values = OfReadingsDrawn(trials, stream);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto found = drawn.find(trials.quantities[i].name);
+    values[i] += found == drawn.end() ? std::nan("") : found->second;
   }
   return values;
 }
 
 /// Trials [begin, begin + kBlock), shared among threads.
-void AddBlock(const Scenario& scenario, const Evaluate& evaluate, const std::vector<Quantity>& quantities,
-              const MonteCarloOptions& options, std::vector<std::vector<double>>& trials) {
+void AddBlock(const Trials& of, std::vector<std::vector<double>>& trials) {
   const int begin = static_cast<int>(trials.size());
   trials.resize(trials.size() + kBlock);
   std::atomic<int> next = begin;
   const auto work = [&] {
     for (int trial = next++; trial < begin + kBlock; trial = next++)
-      trials[static_cast<std::size_t>(trial)] = Trial(scenario, evaluate, quantities, options.seed, trial);
+      trials[static_cast<std::size_t>(trial)] = Trial(of, trial);
   };
   std::vector<std::jthread> others;
-  for (int k = 1; k < options.threads; ++k) others.emplace_back(work);
+  for (int k = 1; k < of.options.threads; ++k) others.emplace_back(work);
   work();
 }
 
@@ -80,11 +132,6 @@ double DeviationOf(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
-/// Half of one in the last of so many digits of `u` (JCGM 101, 7.9.2).
-double Tolerance(double u, int digits) {
-  return 0.5 * std::pow(10.0, std::floor(std::log10(u)) - (digits - 1));
-}
-
 /// Whether the standard deviation no longer moves between blocks by more than its digits allow.
 bool IsSettled(const std::vector<double>& values, int digits) {
   const std::size_t blocks = values.size() / kBlock;
@@ -96,7 +143,7 @@ bool IsSettled(const std::vector<double>& values, int digits) {
   }
   const double u = DeviationOf(values);
   return !(u > 0.0) ||
-         2.0 * DeviationOf(deviations) / std::sqrt(static_cast<double>(blocks)) < Tolerance(u, digits);
+         2.0 * DeviationOf(deviations) / std::sqrt(static_cast<double>(blocks)) < NumericalTolerance(u, digits);
 }
 
 Spread SpreadOf(const Quantity& quantity, std::vector<double> values) {
@@ -112,6 +159,22 @@ Spread SpreadOf(const Quantity& quantity, std::vector<double> values) {
   }
   spread.shortest = {values[best], values[best + inside - 1]};
   return spread;
+}
+
+/// Of the quantities of a joint that every trial could evaluate.
+JointSpread TogetherFrom(const Joint& joint, const DrawnTogether& drawn,
+                         const std::vector<std::vector<double>>& trials) {
+  Joint whole{joint.name, {}, {}};
+  Eigen::MatrixXd values(std::ssize(trials), std::ssize(drawn.places));
+  Eigen::Index kept = 0;
+  for (std::size_t i = 0; i < drawn.places.size(); ++i) {
+    for (std::size_t t = 0; t < trials.size(); ++t)
+      values(static_cast<Eigen::Index>(t), kept) = trials[t][drawn.places[i]];
+    if (!values.col(kept).allFinite()) continue;
+    whole.names.push_back(joint.names[i]);
+    ++kept;
+  }
+  return SpreadOfTrials(whole, values.leftCols(kept));
 }
 
 std::vector<double> ColumnOf(const std::vector<std::vector<double>>& trials, std::size_t quantity) {
@@ -133,20 +196,27 @@ Scenario DrawnScenario(Scenario scenario, std::uint64_t seed, std::int64_t trial
 }
 
 MonteCarlo Propagate(const Scenario& scenario, const Evaluate& evaluate, const MonteCarloOptions& options) {
-  const std::vector<Quantity> quantities = evaluate(scenario);
+  Trials of{scenario, evaluate, options, evaluate(scenario), {}};
+  std::vector<Joint> joints;
+  for (const Joint& joint : options.joints) {
+    joints.push_back(Determined(joint, NamesOf(of.quantities)));
+    of.together.push_back(TogetherOf(joints.back(), of.quantities));
+  }
   std::vector<std::vector<double>> trials;
   MonteCarlo result;
   while (!result.settled && static_cast<int>(trials.size()) + kBlock <= options.most_trials) {
-    AddBlock(scenario, evaluate, quantities, options, trials);
+    AddBlock(of, trials);
     result.settled = true;
-    for (std::size_t i = 0; i < quantities.size() && result.settled; ++i)
+    for (std::size_t i = 0; i < of.quantities.size() && result.settled; ++i)
       result.settled = IsSettled(ColumnOf(trials, i), options.digits);
   }
   result.trials = static_cast<int>(trials.size());
-  for (std::size_t i = 0; i < quantities.size(); ++i) {
+  for (std::size_t i = 0; i < of.quantities.size(); ++i) {
     std::vector<double> values = ColumnOf(trials, i);
-    if (values.size() > 1) result.spreads.push_back(SpreadOf(quantities[i], std::move(values)));
+    if (values.size() > 1) result.spreads.push_back(SpreadOf(of.quantities[i], std::move(values)));
   }
+  for (std::size_t j = 0; j < joints.size() && trials.size() > 1; ++j)
+    result.together.push_back(TogetherFrom(joints[j], of.together[j], trials));
   return result;
 }
 

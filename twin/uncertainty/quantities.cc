@@ -35,21 +35,47 @@ std::string UncertaintyKey(const Json& table, const std::string& key) {
   return !in_unit.empty() && table.contains(in_unit) ? in_unit : "u_" + key;
 }
 
+/// What stands beside or above a number and speaks of its uncertainty.
+struct Context {
+  double dof = std::numeric_limits<double>::infinity();
+  const Json* parts = nullptr;
+
+  /// The parts of one key, where they differ from key to key.
+  const Json* PartsOf(const std::string& key) const {
+    if (!parts) return nullptr;
+    const auto own = parts->find(key);
+    return own != parts->end() && own->is_object() ? &*own : parts;
+  }
+};
+
+/// @param place  In the innermost list.
+std::vector<Part> PartsAt(const Json* parts, std::size_t place) {
+  std::vector<Part> all;
+  if (!parts) return all;
+  for (const auto& [name, share] : parts->items()) {
+    const bool is_list = share.is_array() && place < share.size();
+    const double number = NumberOf(is_list ? share[place] : share);
+    if (std::isfinite(number)) all.push_back({name, number});
+  }
+  return all;
+}
+
 class Collector {
  public:
-  void Walk(const Json& node, const std::string& path, double dof) {
+  void Walk(const Json& node, const std::string& path, Context context) {
     if (node.is_array()) {
-      for (std::size_t i = 0; i < node.size(); ++i) Walk(node[i], Element(path, i), dof);
+      for (std::size_t i = 0; i < node.size(); ++i) Walk(node[i], Element(path, i), context);
     }
     if (!node.is_object()) return;
-    if (const auto own = node.find("dof"); own != node.end() && own->is_number()) dof = own->get<double>();
+    if (const auto own = node.find("dof"); own != node.end() && own->is_number()) context.dof = own->get<double>();
+    if (const auto own = node.find("u_parts"); own != node.end()) context.parts = &*own;
     for (const auto& [key, value] : node.items()) {
       if (key == "diagnosis") continue;
       const auto u = node.find(UncertaintyKey(node, key));
       if (u != node.end()) {
-        Add(value, *u, NameOf(path, key), dof);
+        Add(value, *u, NameOf(path, key), {context.dof, context.PartsOf(key)}, 0);
       } else if (!key.starts_with("u_")) {
-        Walk(value, path.empty() ? key : path + "." + key, dof);
+        Walk(value, path.empty() ? key : path + "." + key, context);
       }
     }
   }
@@ -58,14 +84,14 @@ class Collector {
 
  private:
   /// Numbers side by side, however they are packed. What is null was not measured.
-  void Add(const Json& value, const Json& u, const std::string& name, double dof) {
+  void Add(const Json& value, const Json& u, const std::string& name, const Context& context, std::size_t place) {
     if (IsNumberOrNull(value) && IsNumberOrNull(u)) {
-      found.push_back({name, NumberOf(value), NumberOf(u), dof});
+      found.push_back({name, NumberOf(value), NumberOf(u), context.dof, PartsAt(context.parts, place)});
     } else if (value.is_array() && u.is_array() && value.size() == u.size()) {
-      for (std::size_t i = 0; i < value.size(); ++i) Add(value[i], u[i], Element(name, i), dof);
+      for (std::size_t i = 0; i < value.size(); ++i) Add(value[i], u[i], Element(name, i), context, i);
     } else if (value.is_object() && u.is_object()) {
       for (const auto& [key, inner] : value.items()) {
-        if (u.contains(key)) Add(inner, u.at(key), name + "." + key, dof);
+        if (u.contains(key)) Add(inner, u.at(key), name + "." + key, {context.dof, context.PartsOf(key)}, place);
       }
     }
   }
@@ -75,7 +101,7 @@ class Collector {
 
 std::vector<Quantity> StatedQuantities(const Json& results) {
   Collector collector;
-  collector.Walk(results, "", std::numeric_limits<double>::infinity());
+  collector.Walk(results, "", {});
   return collector.found;
 }
 
@@ -83,6 +109,13 @@ std::vector<Quantity> QuantitiesOf(const Json& results) {
   std::vector<Quantity> determined = StatedQuantities(results);
   std::erase_if(determined, [](const Quantity& q) { return !std::isfinite(q.value) || !std::isfinite(q.u); });
   return determined;
+}
+
+std::string UnitOf(const std::string& name) {
+  static const std::vector<std::string> units = {"arcsec", "mrad", "rad", "deg", "pm", "nm", "um", "mm", "m",
+                                                 "mV",     "V",    "px",  "ms",  "s",  "K",  "mK", "ppm"};
+  const std::string list = ListOf(name), last = list.substr(list.rfind('_') + 1);
+  return list.find('_') != std::string::npos && std::ranges::find(units, last) != units.end() ? last : "";
 }
 
 std::string ListOf(const std::string& name) {

@@ -1,6 +1,7 @@
 #include "twin/benches/circular_motion/analysis.h"
 
 #include <algorithm>
+#include <array>
 
 #include "twin/core/errors.h"
 
@@ -47,6 +48,20 @@ bool IsIdentified(const CircleFit& fit, Eigen::Index k) {
   return fit.identified[static_cast<std::size_t>(k)];
 }
 
+/// Slope and shares of the variance of an error that is made of some unknowns.
+/// @param along  Its slopes by those [its unit / SI].
+void SetShares(const CircleFit& fit, const std::vector<Eigen::Index>& at, const Eigen::VectorXd& along,
+               ErrorValue& error) {
+  const SharedUncertainty& shared = fit.shared;
+  const auto part = [&](const Eigen::MatrixXd& cov) { return along.dot(cov(at, at) * along); };
+  const double all = part(shared.cov);
+  error.slope = Eigen::VectorXd::Zero(shared.cov.rows());
+  error.slope(at) = along;
+  error.quantisation = part(shared.of_steps) / all;
+  error.repeatability = part(shared.of_machine) / all + shared.excess;
+  error.noise = 1.0 - error.quantisation - error.repeatability;
+}
+
 void AddWave(const CircleFit& fit, const WaveKeys& wave, std::vector<ErrorValue>& errors) {
   const Eigen::Index i = IndexOf(fit, wave.cosine), j = IndexOf(fit, wave.sine);
   if (i < 0 || j < 0) return;
@@ -60,8 +75,10 @@ void AddWave(const CircleFit& fit, const WaveKeys& wave, std::vector<ErrorValue>
   const bool known = IsIdentified(fit, i) && IsIdentified(fit, j);
   errors.push_back(
       {wave.amplitude, wave.unit, amplitude / to_SI, known ? std::sqrt(along.dot(cov * along)) / to_SI : kNaN});
+  SetShares(fit, at, along / to_SI, errors.back());
   errors.push_back({wave.azimuth, "deg", wave.sign * angle_rad / wave.order / units::deg,
                     known ? std::sqrt(across.dot(cov * across)) / amplitude / wave.order / units::deg : kNaN});
+  SetShares(fit, at, wave.sign / amplitude / wave.order / units::deg * across, errors.back());
 }
 
 bool IsOfWave(const std::string& key) {
@@ -72,6 +89,67 @@ void Fit(const Scenario& scenario, CircleAnalysis& a) {
   const CircleConstants known = ConstantsOf(CircularOf(scenario));
   a.fit = FitCircles(a.points, known);
   a.paths = RigorousPaths(a.points, a.fit, known);
+  a.deviations = CircularDeviations(a.paths, a.fit.shared);
+}
+
+/// Squares of what two paths differ by, along the radius and across it.
+PathBias BiasOf(const CirclePath& published, const CirclePath& rigorous) {
+  PathBias bias{published.setup, published.pass};
+  Eigen::Vector2d differ(0.0, 0.0), noise(0.0, 0.0);
+  for (std::size_t i = 0; i < published.points.size(); ++i) {
+    const PathPoint &p = published.points[i], &r = rigorous.points[i];
+    differ += Eigen::Vector2d(p.Radial_m() - r.Radial_m(), p.Tangential_m() - r.Tangential_m()).cwiseAbs2();
+    noise += r.u_own_m.cwiseAbs2();
+  }
+  const auto count = static_cast<double>(published.points.size());
+  bias.radial_m = std::sqrt(differ.x() / count);
+  bias.tangential_m = std::sqrt(differ.y() / count);
+  bias.u_radial_m = std::sqrt(noise.x() / count);
+  bias.u_tangential_m = std::sqrt(noise.y() / count);
+  return bias;
+}
+
+/// Gives published paths the noise of their readings and what they are off by.
+void ApplyBias(const std::vector<CirclePath>& rigorous, CircleAnalysis& a) {
+  for (CirclePath& path : a.paths) {
+    const auto same = std::ranges::find_if(
+        rigorous, [&](const CirclePath& r) { return r.setup == path.setup && r.pass == path.pass; });
+    const PathBias bias = BiasOf(path, *same);
+    for (std::size_t i = 0; i < path.points.size(); ++i)
+      path.points[i].u_own_m = {std::hypot(same->points[i].u_own_m.x(), bias.radial_m),
+                                std::hypot(same->points[i].u_own_m.y(), bias.tangential_m)};
+    a.method_bias.push_back(bias);
+  }
+}
+
+constexpr std::array kIsoValues = {&Iso230_4::G_ccw,    &Iso230_4::G_cw,    &Iso230_4::G_b,     &Iso230_4::Fmax_ccw,
+                                  &Iso230_4::Fmin_ccw, &Iso230_4::Fmax_cw, &Iso230_4::Fmin_cw, &Iso230_4::Fmax_b,
+                                  &Iso230_4::Fmin_b,   &Iso230_4::D,       &Iso230_4::H};
+
+/// Likewise for the deviations: each is as wrong as it differs from that of the rigorous paths.
+void ApplyBias(const std::vector<Iso230_4>& rigorous, std::vector<Iso230_4>& published) {
+  for (Iso230_4& d : published) {
+    const auto same = std::ranges::find_if(
+        rigorous, [&](const Iso230_4& r) { return r.setup == d.setup && r.feed_m_s == d.feed_m_s; });
+    for (const auto value : kIsoValues)
+      (d.*value).u_m = std::hypot(((*same).*value).u_m, (d.*value).value_m - ((*same).*value).value_m);
+  }
+}
+
+/// The published evaluation, and how far it is from the rigorous one.
+void Publish(const Scenario& scenario, CircleAnalysis& a) {
+  a.paths = PublishedPaths(a.points);
+  a.deviations = CircularDeviations(a.paths, {});
+  const CircleConstants known = ConstantsOf(CircularOf(scenario));
+  CircleFit fit;
+  try {
+    fit = FitCircles(a.points, known);
+  } catch (const InputError&) {
+    return;  // too few readings: what the equations are wrong by is not known
+  }
+  const std::vector<CirclePath> rigorous = RigorousPaths(a.points, fit, known);
+  ApplyBias(rigorous, a);
+  ApplyBias(CircularDeviations(rigorous, fit.shared), a.deviations);
 }
 
 }  // namespace
@@ -83,8 +161,7 @@ CircleAnalysis Analyse(const Scenario& scenario, const std::vector<Reading>& rea
   if (estimator == Estimator::kRigorous)
     Fit(scenario, a);
   else
-    a.paths = PublishedPaths(a.points);
-  a.deviations = CircularDeviations(a.paths, a.fit.shared);
+    Publish(scenario, a);
   for (const CirclePoint& p : a.points) {
     if (p.is_bar && !a.published_offset_m.contains(p.setup))
       a.published_offset_m[p.setup] = PublishedOffsetOf_m(a.points, p.setup);
@@ -100,9 +177,33 @@ std::vector<ErrorValue> ErrorsOf(const CircleFit& fit) {
     const auto at = static_cast<Eigen::Index>(k);
     errors.push_back({unknown.key, unknown.unit, Fitted(fit, at) / unknown.to_SI,
                       IsIdentified(fit, at) ? std::sqrt(fit.shared.cov(at, at)) / unknown.to_SI : kNaN});
+    SetShares(fit, {at}, Eigen::VectorXd::Constant(1, 1.0 / unknown.to_SI), errors.back());
   }
   for (const WaveKeys& wave : Waves()) AddWave(fit, wave, errors);
   return errors;
+}
+
+double WavePart::Of(double amplitude_of_wave, double azimuth_deg) const {
+  const double angle_rad = sign * order * azimuth_deg * units::deg;
+  // A sin(x - angle) = -A sin(angle) cos(x) + A cos(angle) sin(x); A cos(x - angle) likewise.
+  const double cosine = wave_of_sine ? -std::sin(angle_rad) : std::cos(angle_rad),
+               sine = wave_of_sine ? std::cos(angle_rad) : std::sin(angle_rad);
+  return amplitude_of_wave * (is_cosine ? cosine : sine);
+}
+
+std::vector<WavePart> WavePartsOf(const CircleFit& fit) {
+  std::vector<WavePart> parts;
+  for (const WaveKeys& wave : Waves()) {
+    const Eigen::Index i = IndexOf(fit, wave.cosine), j = IndexOf(fit, wave.sine);
+    if (i < 0 || j < 0 || !IsIdentified(fit, i) || !IsIdentified(fit, j)) continue;
+    for (const Eigen::Index k : {i, j}) {
+      const CircleUnknown& unknown = CircleUnknowns()[fit.fitted[static_cast<std::size_t>(k)]];
+      parts.push_back({{unknown.key, wave.unit, Fitted(fit, k) / unknown.to_SI,
+                        std::sqrt(fit.shared.cov(k, k)) / unknown.to_SI},
+                       wave.amplitude, wave.azimuth, wave.order, wave.sign, wave.of_sine, k == i});
+    }
+  }
+  return parts;
 }
 
 }  // namespace twinbench::benches::circular

@@ -10,6 +10,15 @@
 
 namespace twinbench::benches::circular {
 
+/// What the published equations do to the path of one pass beyond noise: against the rigorous fit of the same
+/// readings.
+struct PathBias {
+  int setup = 0, pass = 0;
+  double radial_m = kNaN, tangential_m = kNaN;  // rms
+  double u_radial_m = kNaN, u_tangential_m = kNaN;  // noise of a reading, rms
+  bool IsBiased() const { return radial_m > 2.0 * u_radial_m || tangential_m > 2.0 * u_tangential_m; }
+};
+
 /// What either estimator makes of a run.
 struct CircleAnalysis {
   std::vector<separate::circular::CirclePoint> points;
@@ -17,6 +26,8 @@ struct CircleAnalysis {
   std::vector<separate::circular::CirclePath> paths;
   std::vector<separate::circular::Iso230_4> deviations;
   std::map<int, Eigen::Vector2d> published_offset_m;  // by set-up, of the bar
+  std::vector<PathBias> method_bias;  // published: part of the uncertainty of paths and deviations, which have none
+                                      // where the readings are too few for the rigorous fit
 
   bool IsFitted() const { return fit.shared.IsKnown(); }
 };
@@ -28,8 +39,26 @@ CircleAnalysis Analyse(const Scenario& scenario, const std::vector<Reading>& rea
 struct ErrorValue {
   std::string key, unit;
   double value = kNaN, u = kNaN;
+  /// Shares of u^2: noise and quanta of the instruments, and what does not repeat: the machine's stated noise, and
+  /// whatever is left over beyond all that is stated.
+  double noise = kNaN, quantisation = kNaN, repeatability = kNaN;
+  Eigen::VectorXd slope = {};  // by the unknowns of the fit, in its unit
 };
 /// Waves as amplitude and azimuth, as the scenario has them.
 std::vector<ErrorValue> ErrorsOf(const separate::circular::CircleFit& fit);
+
+/// Cosine or sine part of a wave. Unlike its amplitude, which is never below zero, a part is as likely too small as
+/// too large however small the wave is: it is what an interval of +- U is right for.
+struct WavePart {
+  ErrorValue part;
+  std::string amplitude, azimuth;  // keys of the scenario
+  double order = 1.0, sign = 1.0;
+  bool wave_of_sine = false, is_cosine = true;
+
+  /// What the part is of a wave of this amplitude (in the unit of the part) and azimuth.
+  double Of(double amplitude, double azimuth_deg) const;
+};
+/// Of those waves of which the run shows both parts.
+std::vector<WavePart> WavePartsOf(const separate::circular::CircleFit& fit);
 
 }  // namespace twinbench::benches::circular

@@ -8,6 +8,7 @@
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/report/json_units.h"
 #include "twin/report/polar_text.h"
+#include "twin/report/uncertainty_parts.h"
 
 namespace twinbench::benches::circular {
 namespace {
@@ -71,8 +72,29 @@ json SetupsJson(const CircleAnalysis& a) {
 json ErrorsJson(const std::vector<ErrorValue>& errors) {
   json all = json::object();
   for (const ErrorValue& e : errors)
-    all[e.key] = {{"value", In(1.0, e.value)}, {"u", In(1.0, e.u)}, {"unit", e.unit}};
+    all[e.key] = {{"value", In(1.0, e.value)},
+                  {"u", In(1.0, e.u)},
+                  {"unit", e.unit},
+                  {"u_parts", report::PartsJson({{"noise", e.noise},
+                                                 {"quantisation", e.quantisation},
+                                                 {"repeatability", e.repeatability}})}};
   return all;
+}
+
+/// All errors that the run shows, together: they are made of the same unknowns.
+uncertainty::Joint JointOf(const CircleFit& fit) {
+  uncertainty::Joint joint{"errors", {}, {}};
+  std::vector<Eigen::VectorXd> slopes;
+  for (const ErrorValue& e : ErrorsOf(fit)) {
+    if (!std::isfinite(e.u)) continue;
+    joint.names.push_back("errors." + e.key);
+    slopes.push_back(e.slope);
+  }
+  Eigen::MatrixXd by_unknowns(std::ssize(slopes), fit.shared.cov.rows());
+  for (std::size_t i = 0; i < slopes.size(); ++i)
+    by_unknowns.row(static_cast<Eigen::Index>(i)) = slopes[i].transpose();
+  joint.cov = by_unknowns * fit.shared.cov * by_unknowns.transpose();
+  return joint;
 }
 
 json PathJson(const CirclePath& path, const SharedUncertainty& shared) {
@@ -99,6 +121,34 @@ json IsoJson(const Iso230_4& d) {
     entry["u_" + name + "_um"] = In(um, value.u_m);
   }
   return entry;
+}
+
+json BiasJson(const std::vector<PathBias>& all) {
+  json list = json::array();
+  for (const PathBias& b : all)
+    list.push_back({{"setup", b.setup},
+                    {"pass", b.pass},
+                    {"radial_rms_um", In(um, b.radial_m)},
+                    {"tangential_rms_um", In(um, b.tangential_m)},
+                    {"noise_radial_um", In(um, b.u_radial_m)},
+                    {"noise_tangential_um", In(um, b.u_tangential_m)},
+                    {"status", b.IsBiased() ? "biased" : "within_noise"}});
+  return list;
+}
+
+std::string BiasText(const CircleAnalysis& a) {
+  if (a.IsFitted()) return "";
+  if (a.method_bias.empty())
+    return "published: the readings are too few to say how far the equations hold; no uncertainties\n";
+  std::string text;
+  for (const PathBias& b : a.method_bias) {
+    if (b.IsBiased())
+      text += fmt::format(
+          "published path, set-up {}, pass {}: BIASED, {:.3g} um along and {:.3g} um across the radius from the "
+          "rigorous one, where a reading's noise is {:.2g} and {:.2g}; its uncertainty holds that\n",
+          b.setup, b.pass, b.radial_m / um, b.tangential_m / um, b.u_radial_m / um, b.u_tangential_m / um);
+  }
+  return text;
 }
 
 json SeparationJson(const CircleAnalysis& a) {
@@ -179,8 +229,11 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
                         {"comparison", evaluation.separation["comparison"]}};
   evaluation.summary = fmt::format("{} of {} readings have radius and angle\n", a.points.size(), readings.size());
   if (a.IsFitted()) evaluation.summary += ErrorsText(a);
+  if (!a.method_bias.empty()) evaluation.results["method_bias"] = BiasJson(a.method_bias);
+  evaluation.summary += BiasText(a);
   evaluation.summary += DeviationsText(a);
   evaluation.tables = {{"polar.txt", PolarsOf(a)}};
+  if (a.IsFitted()) evaluation.joints = {JointOf(a.fit)};
   return evaluation;
 }
 

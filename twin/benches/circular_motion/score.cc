@@ -23,6 +23,22 @@ struct PathScore {
   double Rms_m() const { return std::sqrt(sum_m2 / (2.0 * readings)); }
 };
 
+/// Some of the points of a pass, one by one.
+void AddValues(std::size_t pass, const CirclePath& path, const json& truth, const SharedUncertainty& shared,
+               report::ScoredRun& scored) {
+  constexpr std::size_t kPoints = 12;
+  if (truth.at("dx_um").size() != path.points.size()) return;
+  const std::size_t every = std::max<std::size_t>(1, path.points.size() / kPoints);
+  for (std::size_t i = 0; i < path.points.size(); i += every) {
+    const Eigen::Vector2d d_um = path.points[i].d_m / units::um, u_um = Uncertainty_m(path.points[i], shared) / units::um;
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const std::string key = c == 0 ? "dx_um" : "dy_um";
+      scored.values.push_back(
+          {fmt::format("path[{}].{}[{}]", pass, key, i), d_um[c], u_um[c], truth.at(key)[i].get<double>()});
+    }
+  }
+}
+
 void AddPass(const CirclePath& path, const json& truth, const SharedUncertainty& shared, PathScore& score) {
   const json &x_um = truth.at("dx_um"), &y_um = truth.at("dy_um");
   if (x_um.size() != path.points.size()) return;  // readings that are missing shift the rest
@@ -36,24 +52,36 @@ void AddPass(const CirclePath& path, const json& truth, const SharedUncertainty&
   }
 }
 
-PathScore ScorePaths(const CircleAnalysis& a, const json& truth) {
+PathScore ScorePaths(const CircleAnalysis& a, const json& truth, report::ScoredRun& scored) {
   PathScore score;
-  for (const CirclePath& path : a.paths) {
+  for (std::size_t k = 0; k < a.paths.size(); ++k) {
+    const CirclePath& path = a.paths[k];
     const auto same = [&](const json& t) { return t.at("setup") == path.setup && t.at("pass") == path.pass; };
     const auto found = std::ranges::find_if(truth.at("path"), same);
-    if (found != truth.at("path").end()) AddPass(path, *found, a.fit.shared, score);
+    if (found == truth.at("path").end()) continue;
+    AddPass(path, *found, a.fit.shared, score);
+    AddValues(k, path, *found, a.fit.shared, scored);
   }
   return score;
 }
 
 /// Sizes that the run shows, against those of the scenario; phases are left out, they mean little where there is no
-/// size.
+/// size. Value by value, waves are compared by their parts.
 json ErrorScores(const CircleFit& fit, const json& truth, report::ScoredRun& scored) {
   json scores = json::object();
+  const std::vector<WavePart> parts = WavePartsOf(fit);
+  const auto is_wave = [&](const std::string& key) {
+    return std::ranges::find(parts, key, &WavePart::amplitude) != parts.end();
+  };
+  for (const WavePart& p : parts) {
+    if (!truth.contains(p.amplitude) || !truth.contains(p.azimuth)) continue;
+    const double actual = p.Of(truth.at(p.amplitude).get<double>(), truth.at(p.azimuth).get<double>());
+    scored.values.push_back({p.part.key, p.part.value, p.part.u, actual});
+  }
   for (const ErrorValue& e : ErrorsOf(fit)) {
     if (!truth.contains(e.key) || !std::isfinite(e.u) || e.unit == "deg") continue;
     const double actual = truth.at(e.key).get<double>(), error = e.value - actual;
-    scored.values.push_back({e.key, e.value, e.u, actual});
+    if (!is_wave(e.key)) scored.values.push_back({e.key, e.value, e.u, actual});
     scores[e.key] = {{"error", error}, {"u", e.u}, {"unit", e.unit}};
     scored.text += fmt::format("{:<34} {:+14.4g}   u {:.2g} {}\n", e.key, error, e.u, e.unit);
   }
@@ -65,9 +93,9 @@ json ErrorScores(const CircleFit& fit, const json& truth, report::ScoredRun& sco
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings, const json& truth,
                            Estimator estimator) {
   const CircleAnalysis a = Analyse(scenario, readings, estimator);
-  const PathScore path = ScorePaths(a, truth);
-  if (path.readings == 0) throw InputError("the run", "none of its passes is in the truth", "a run of the twin");
   report::ScoredRun scored;
+  const PathScore path = ScorePaths(a, truth, scored);
+  if (path.readings == 0) throw InputError("the run", "none of its passes is in the truth", "a run of the twin");
   scored.json["path"] = {{"readings", path.readings},
                          {"rms_error_um", path.Rms_m() / units::um},
                          {"largest_error_um", path.largest_m / units::um},

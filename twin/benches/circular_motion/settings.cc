@@ -220,7 +220,8 @@ StatedNoise StatedNoiseOf(const CircularSettings& s, bool is_bar, double radius_
   if (!is_bar) return {with_machine(s.grid.noise_m), with_machine(s.grid.noise_m)};
   const double quantum = 1.0 / std::sqrt(12.0), step_rad = units::turn / s.encoder.lines / s.encoder.interpolation;
   return {with_machine(std::hypot(s.bar.noise_m, quantum * s.bar.resolution_m)),
-          with_machine(radius_m * std::hypot(s.encoder.noise_rad, quantum * step_rad))};
+          with_machine(radius_m * std::hypot(s.encoder.noise_rad, quantum * step_rad)),
+          quantum * s.bar.resolution_m, radius_m * quantum * step_rad};
 }
 
 }  // namespace twinbench

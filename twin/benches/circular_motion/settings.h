@@ -141,6 +141,7 @@ struct CircularSettings {
 /// Standard deviation of one reading as the scenario states it: of the instrument, its quantum, and the machine.
 struct StatedNoise {
   double radial_m, tangential_m;
+  double radial_steps_m = 0.0, tangential_steps_m = 0.0;  // of it, of the instrument's quantum
 };
 StatedNoise StatedNoiseOf(const CircularSettings& settings, bool is_bar, double radius_m);
 

@@ -81,6 +81,7 @@ report::CurveScore ScoreOf(const std::string& name, const HarmonicSeries& series
                            .estimate = {},
                            .u = {},
                            .truth = truth.at("ez_arcsec")};
+  curve.dof = series.dof;
   const CurveAt at = Curve(series, static_cast<int>(curve.position.size()));
   for (Eigen::Index i = 0; i < at.value_rad.size(); ++i) {
     curve.estimate.push_back(at.value_rad[i] / units::arcsec);

@@ -13,6 +13,7 @@
 #include "twin/benches/encoder_comparison/heads_results.h"
 #include "twin/benches/encoder_comparison/positioning_results.h"
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/encoder_comparison/uncertainty_parts.h"
 #include "twin/core/errors.h"
 #include "twin/core/written_number.h"
 #include "twin/report/curve_score.h"
@@ -30,11 +31,25 @@ constexpr const char* kNoReference =
     "with one mounting of the device the difference of both is known; it is counted as the device's";
 constexpr const char* kSeenAlike = "all mountings see only the difference of both; it is counted as the device's";
 
-nlohmann::json HarmonicsOfBoth(const DeviceError& e) {
+nlohmann::json CurveOfDevice(const HarmonicSeries& series, const std::string& name, const DeviceError& e,
+                             const DeviceSettings& settings) {
+  nlohmann::json json = CurveJson(series, name);
+  json["u_parts"] = {{name + "_arcsec", CurveParts(series, e, settings, static_cast<int>(json["position_deg"].size()))}};
+  return json;
+}
+
+nlohmann::json OrdersOfDevice(const HarmonicSeries& series, const DeviceError& e, const DeviceSettings& settings) {
+  nlohmann::json json = HarmonicsJson(series);
+  for (nlohmann::json& line : json) line["u_parts"] = OrderParts(line.at("order"), e, settings);
+  return json;
+}
+
+nlohmann::json HarmonicsOfBoth(const DeviceError& e, const DeviceSettings& settings) {
   nlohmann::json json = {{"form", "sum of amplitude cos(order angle + phase)"},
                          {"highest_order", e.highest_order},
-                         {"device", HarmonicsJson(e.curves.device)}};
-  if (!e.curves.reference.orders.empty()) json["reference"] = HarmonicsJson(e.curves.reference);
+                         {"device", OrdersOfDevice(e.curves.device, e, settings)}};
+  if (!e.curves.reference.orders.empty())
+    json["reference"] = OrdersOfDevice(e.curves.reference, e, settings);
   return json;
 }
 
@@ -50,19 +65,20 @@ nlohmann::json NotSeparable(const DeviceError& e) {
   return lost;
 }
 
-nlohmann::json SeparationJson(const DeviceError& e) {
-  nlohmann::json json = {{"device", CurveJson(e.curves.device, "ez")},
-                         {"harmonics", HarmonicsOfBoth(e)},
+nlohmann::json SeparationJson(const DeviceError& e, const DeviceSettings& settings) {
+  nlohmann::json json = {{"device", CurveOfDevice(e.curves.device, "ez", e, settings)},
+                         {"harmonics", HarmonicsOfBoth(e, settings)},
                          {"not_separable", NotSeparable(e)},
                          {"residual_rms", {{"x_arcsec", report::Arcsec(e.residual_rms_rad)}}},
                          {"dof", report::In(1.0, e.dof)}};
-  if (!e.curves.reference.orders.empty()) json["reference"] = CurveJson(e.curves.reference, "ez");
+  if (!e.curves.reference.orders.empty())
+    json["reference"] = CurveOfDevice(e.curves.reference, "ez", e, settings);
   return json;
 }
 
 /// By the device's angle: the mean, and the curve with it.
-nlohmann::json ReversalJson(const DeviceError& e) {
-  nlohmann::json json = CurveJson(e.curves.reversal, "reversal");
+nlohmann::json ReversalJson(const DeviceError& e, const DeviceSettings& settings) {
+  nlohmann::json json = CurveOfDevice(e.curves.reversal, "reversal", e, settings);
   for (auto& value : json["reversal_arcsec"]) value = value.get<double>() + e.reversal.value_rad / units::arcsec;
   json["mean_arcsec"] = report::Arcsec(e.reversal.value_rad);
   json["u_mean_arcsec"] = report::Arcsec(e.reversal.u_rad);
@@ -98,13 +114,13 @@ nlohmann::json ToJson(const PassResult& p) {
           {"slope_arcsec_per_turn", report::Arcsec(p.slope_rad_per_turn)}};
 }
 
-void AddDevice(const DeviceError& e, nlohmann::json& json) {
+void AddDevice(const DeviceError& e, const DeviceSettings& settings, nlohmann::json& json) {
   if (e.highest_order == 0) {
     json["not_separated"] = e.not_separated;
     return;
   }
-  json.update(SeparationJson(e));
-  if (!e.curves.reversal.orders.empty()) json["reversal"] = ReversalJson(e);
+  json.update(SeparationJson(e, settings));
+  if (!e.curves.reversal.orders.empty()) json["reversal"] = ReversalJson(e, settings);
   json["means"] = MeansJson(e);
   for (const PassResult& pass : e.passes) json["passes"].push_back(ToJson(pass));
   for (const double mounting_rad : e.mounting_rad) json["mounting_deg"].push_back(WrittenNumber(mounting_rad, units::deg));
@@ -150,8 +166,13 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   report::Evaluation evaluation{
       ToJson(comparison), {}, device.not_separated, Summary(comparison, CoarseUnit(device_settings))};
   evaluation.summary += SummaryOf(device, FineUnit(device_settings));
-  AddDevice(device, evaluation.results);
-  if (device.highest_order > 0) evaluation.separation = SeparationJson(device);
+  AddDevice(device, device_settings, evaluation.results);
+  if (device.highest_order > 0) {
+    evaluation.separation = SeparationJson(device, device_settings);
+    evaluation.joints.push_back(CurveJoint("device", device.curves.device, kPoints));
+    if (!device.curves.reference.orders.empty())
+      evaluation.joints.push_back(CurveJoint("reference", device.curves.reference, kPoints));
+  }
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
     const PositioningResults positioning = EvaluateStops(readings, device_settings);
     evaluation.results["iso230_2"] = positioning.json;

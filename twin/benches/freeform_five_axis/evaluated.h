@@ -15,4 +15,20 @@ estimators::Identification IdentifyBy(const FreeformSettings& bench, const std::
 /// Root mean square of the lengths of columns.
 double RmsLength(const Eigen::Matrix3Xd& vectors);
 
+/// What the published equations do to the map of the tip's errors beyond the noise: against the rigorous
+/// identification of the same readings, component by component, rms over the poses.
+struct MapBias {
+  Eigen::Vector3d rms_um = Eigen::Vector3d::Zero(), u_noise_um = Eigen::Vector3d::Zero();
+  bool IsBiased(Eigen::Index component) const { return rms_um[component] > 2.0 * u_noise_um[component]; }
+};
+
+/// A published map with that in its uncertainty.
+struct PublishedMap {
+  estimators::VolumetricErrors errors;
+  MapBias bias;
+};
+PublishedMap PredictPublished(const FreeformSettings& bench, const std::vector<estimators::PoseRead>& poses,
+                              const estimators::Identification& published,
+                              const estimators::Identification& rigorous);
+
 }  // namespace twinbench::benches::freeform

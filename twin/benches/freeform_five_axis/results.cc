@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "twin/benches/freeform_five_axis/bench.h"
 #include "twin/benches/freeform_five_axis/evaluated.h"
@@ -88,13 +90,16 @@ std::string SummaryOf(const Identification& found) {
 struct Unseen {
   std::vector<PoseRead> poses;
   VolumetricErrors errors;
+  std::optional<MapBias> bias;  // published
 };
 
 Unseen UnseenOf(const FreeformSettings& bench, const std::vector<PoseRead>& seen, const Identification& found,
                 Estimator estimator) {
   constexpr int kPoses = 200;
   const std::vector<PoseRead> poses = UnseenPoses(seen, bench, kPoses);
-  return {poses, PredictErrors(bench, poses, found, estimator)};
+  if (estimator != Estimator::kPublished) return {poses, PredictErrors(bench, poses, found, estimator), {}};
+  const PublishedMap map = PredictPublished(bench, poses, found, Identify(bench, seen));
+  return {poses, map.errors, map.bias};
 }
 
 nlohmann::json VolumetricJson(const Unseen& unseen) {
@@ -104,6 +109,76 @@ nlohmann::json VolumetricJson(const Unseen& unseen) {
           {"machine_max", v.error_um.colwise().norm().maxCoeff()},
           {"u_compensated_rms", RmsLength(v.u_um)},
           {"u_compensated_max", v.u_um.colwise().norm().maxCoeff()}};
+}
+
+constexpr std::size_t kMapPoses = 100;
+constexpr std::array kMapKeys = {"dx_um", "dy_um", "dz_um"};
+
+/// The error of the tip at the first of the unseen poses, one by one, with its uncertainty. All of that is noise of
+/// quadrants and camera.
+nlohmann::json MapJson(const Unseen& unseen) {
+  nlohmann::json map;
+  if (!unseen.bias) map["u_parts"] = {{"noise", 1.0}};
+  for (std::size_t p = 0; p < std::min(kMapPoses, unseen.poses.size()); ++p) {
+    const auto& at = unseen.poses[p].at;
+    const auto k = static_cast<Eigen::Index>(p);
+    map["x_mm"].push_back(at[0] / units::mm);
+    map["y_mm"].push_back(at[1] / units::mm);
+    map["z_mm"].push_back(at[2] / units::mm);
+    map["a_deg"].push_back(at[3] / units::deg);
+    map["b_deg"].push_back(at[4] / units::deg);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const std::string key = kMapKeys[static_cast<std::size_t>(c)];
+      map[key].push_back(unseen.errors.error_um(c, k));
+      map["u_" + key].push_back(unseen.errors.u_um(c, k));
+    }
+  }
+  return map;
+}
+
+/// The same poses' components together.
+uncertainty::Joint MapJoint(const Unseen& unseen) {
+  const std::size_t poses = std::min(kMapPoses, unseen.poses.size());
+  const Eigen::MatrixXd root = unseen.errors.root_um.topRows(3 * static_cast<Eigen::Index>(poses));
+  uncertainty::Joint joint{"error_map", {}, root * root.transpose()};
+  for (std::size_t p = 0; p < poses; ++p) {
+    for (const char* key : kMapKeys) joint.names.push_back(fmt::format("error_map.{}[{}]", key, p));
+  }
+  return joint;
+}
+
+nlohmann::json BiasJson(const MapBias& bias) {
+  nlohmann::json json;
+  for (Eigen::Index c = 0; c < 3; ++c)
+    json[kMapKeys[static_cast<std::size_t>(c)]] = {{"rms", bias.rms_um[c]},
+                                                   {"u_noise", bias.u_noise_um[c]},
+                                                   {"status", bias.IsBiased(c) ? "biased" : "within_noise"}};
+  return json;
+}
+
+std::string BiasText(const MapBias& bias) {
+  std::string text;
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    if (bias.IsBiased(c))
+      text += fmt::format(
+          "published {} of the map: BIASED, {:.3g} rms from the rigorous result, where noise makes {:.2g}; its "
+          "uncertainty holds that\n",
+          kMapKeys[static_cast<std::size_t>(c)], bias.rms_um[c], bias.u_noise_um[c]);
+  }
+  return text + "published coefficients and squareness: INVALID one by one, their errors go into each other\n";
+}
+
+/// Those that the readings decide by themselves.
+nlohmann::json IdentifiedSquareness(const Identification& found) {
+  nlohmann::json all = {{"u_parts", {{"noise", 1.0}}}};
+  for (int k = 0; k < kSquarenesses; ++k) {
+    const int unknown = SquarenessAt(k);
+    if (!found.identified[static_cast<std::size_t>(unknown)]) continue;
+    const std::string key = kSquarenessNames[static_cast<std::size_t>(k)] + std::string("_arcsec");
+    all[key] = found.unknowns[unknown];
+    all["u_" + key] = found.u[unknown];
+  }
+  return all;
 }
 
 /// The same on regular grids.
@@ -153,19 +228,27 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const Unseen unseen = UnseenOf(bench, seen, found, estimator);
   const Mapped map = MapOf(bench, seen, found, estimator);
   const nlohmann::json separation = SeparationJson(found);
-  const nlohmann::json results = {{"rank", separation.at("rank")},
+  nlohmann::json results = {{"rank", separation.at("rank")},
                                   {"unknowns", separation.at("unknowns")},
                                   {"residual_rms", separation.at("residual_rms")},
                                   {"dof", separation.at("dof")},
                                   {"volumetric_um", VolumetricJson(unseen)},
+                                  {"error_map", MapJson(unseen)},
                                   {"converged", found.converged}};
+  if (unseen.bias)
+    results["method_bias"] = BiasJson(*unseen.bias);
+  else
+    results["squareness"] = IdentifiedSquareness(found);
+  std::vector<uncertainty::Joint> joints;
+  if (!unseen.bias) joints.push_back(MapJoint(unseen));
   return {results,
           separation,
           "",
-          SummaryOf(found) + VolumetricWords(unseen) + MapWords(map),
+          SummaryOf(found) + VolumetricWords(unseen) + MapWords(map) + (unseen.bias ? BiasText(*unseen.bias) : ""),
           {{"volumetric.csv", VolumetricCsv(unseen.poses, unseen.errors)},
            {"volumetric_grid.csv", VolumetricCsv(map.poses, map.errors)},
-           {"compensation.csv", CompensationCsv(bench, seen, found)}}};
+           {"compensation.csv", CompensationCsv(bench, seen, found)}},
+          joints};
 }
 
 }  // namespace twinbench::benches::freeform

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -72,13 +74,34 @@ struct Compensated {
   VolumetricErrors left;
 };
 
-Compensated CompensatedAt(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
-                          const Identification& found, const Eigen::VectorXd& truth, Estimator estimator) {
-  Compensated at{{}, PredictErrors(bench, poses, found, estimator)};
+/// Published: with what the equations are wrong by in the uncertainty.
+VolumetricErrors PredictBy(const FreeformSettings& bench, const std::vector<PoseRead>& seen,
+                           const std::vector<PoseRead>& poses, const Identification& found, Estimator estimator) {
+  if (estimator == Estimator::kPublished)
+    return PredictPublished(bench, poses, found, Identify(bench, seen)).errors;
+  return PredictErrors(bench, poses, found, estimator);
+}
+
+Compensated CompensatedAt(const FreeformSettings& bench, const std::vector<PoseRead>& seen,
+                          const std::vector<PoseRead>& poses, const Identification& found,
+                          const Eigen::VectorXd& truth, Estimator estimator) {
+  Compensated at{{}, PredictBy(bench, seen, poses, found, estimator)};
   const Eigen::Matrix3Xd& nominal = at.left.nominal_um;
   at.actual_um = WithoutRigidMotion(nominal, Tips_um(bench, poses, truth, Estimator::kRigorous) - nominal);
   at.left.error_um = WithoutRigidMotion(nominal, at.actual_um - at.left.error_um);
   return at;
+}
+
+/// The first poses, one by one: `error_um` of `left` is actual less estimated.
+std::vector<report::ScoredValue> ValuesOf(const Compensated& at) {
+  constexpr Eigen::Index kPoses = 100;
+  std::vector<report::ScoredValue> values;
+  for (Eigen::Index k = 0; k < std::min(kPoses, at.actual_um.cols()); ++k) {
+    for (Eigen::Index c = 0; c < 3; ++c)
+      values.push_back({fmt::format("error_map.{}_um[{}]", std::array{"dx", "dy", "dz"}[static_cast<std::size_t>(c)], k),
+                        at.actual_um(c, k) - at.left.error_um(c, k), at.left.u_um(c, k), at.actual_um(c, k)});
+  }
+  return values;
 }
 
 /// On grids over X, Y and Z: before, and after.
@@ -90,7 +113,7 @@ struct ScoredGrids {
 ScoredGrids ScoreGrids(const FreeformSettings& bench, const std::vector<PoseRead>& seen,
                        const Identification& found, const Eigen::VectorXd& truth, Estimator estimator) {
   const std::vector<Grid> grids = GridsOf(seen, bench, kGridNodes);
-  const Compensated all = CompensatedAt(bench, PosesOnGrids(grids), found, truth, estimator);
+  const Compensated all = CompensatedAt(bench, seen, PosesOnGrids(grids), found, truth, estimator);
   ScoredGrids scored;
   Eigen::Index from = 0;
   for (const Grid& grid : grids) {
@@ -115,7 +138,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
   const std::vector<PoseRead> seen = SeenPoses(scenario, readings), unseen = UnseenPoses(seen, bench, kPoses);
   const Identification found = IdentifyBy(bench, seen, estimator);
   const Eigen::VectorXd true_x = TruthOf(truth, found);
-  const Compensated at = CompensatedAt(bench, unseen, found, true_x, estimator);
+  const Compensated at = CompensatedAt(bench, seen, unseen, found, true_x, estimator);
   const Eigen::Matrix3Xd& actual = at.actual_um;
   const VolumetricErrors& left = at.left;
   const ScoredGrids grids = ScoreGrids(bench, seen, found, true_x, estimator);
@@ -136,7 +159,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
                   "what is identified by itself is off by {:.2f} of its uncertainty, rms\n",
                   unseen.size(), RmsLength(actual), RmsLength(left.error_um), most, RmsLength(left.u_um), pulls) +
           grids.text,
-      VolumetricCsv(unseen, left)};
+      VolumetricCsv(unseen, left), ValuesOf(at)};
 }
 
 }  // namespace twinbench::benches::freeform

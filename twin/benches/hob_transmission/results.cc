@@ -7,6 +7,7 @@
 
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
+#include "twin/benches/hob_transmission/uncertainty_parts.h"
 #include "twin/core/errors.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
@@ -59,8 +60,18 @@ nlohmann::json ToJson(const std::vector<OrderComparison>& comparisons) {
   return json;
 }
 
-nlohmann::json ToJson(const DirectionResult& result) {
+/// Positions with turns, of one direction or (0) of both.
+std::vector<const PositionError*> UsedOf(const std::vector<PositionError>& positions, int direction) {
+  std::vector<const PositionError*> used;
+  for (const PositionError& p : positions) {
+    if (p.status == PositionStatus::kOk && (direction == 0 || p.direction == direction)) used.push_back(&p);
+  }
+  return used;
+}
+
+nlohmann::json ToJson(const DirectionResult& result, const HobAnalysis& a, const HobSettings& settings) {
   nlohmann::json json = ToJson(result.transmission);
+  json["u_parts"] = PartsOf(UsedOf(a.positions, result.direction), StepVariance_rad2(settings, false), true);
   json["direction"] = result.direction;
   json["lines"] = result.lines;
   if (!result.against_interferometer.empty())
@@ -68,8 +79,9 @@ nlohmann::json ToJson(const DirectionResult& result) {
   return json;
 }
 
-nlohmann::json ToJson(const PositionError& p) {
+nlohmann::json ToJson(const PositionError& p, const HobSettings& settings) {
   nlohmann::json json = ToJson(p.series);
+  if (p.status == PositionStatus::kOk) json["u_parts"] = PartsOf({&p}, StepVariance_rad2(settings, false), false);
   json.update({{"setup", p.setup},
                {"direction", p.direction},
                {"head_deg", p.head_rad / units::deg},
@@ -116,29 +128,35 @@ double ResidualRms_rad(const HobAnalysis& a) {
   return samples > 0 ? std::sqrt(sum / samples) : kNaN;
 }
 
-nlohmann::json SeparationJson(const HobAnalysis& a) {
+nlohmann::json SeparationJson(const HobAnalysis& a, const HobSettings& settings) {
   nlohmann::json json = {{"estimator", EstimatorName(a.estimator)},
                          {"transmission", nlohmann::json::array()},
                          {"table_encoder", ToJson(a.encoder)},
                          {"not_separable", NotSeparable(a)},
                          {"residual_rms", {{"sample_arcsec", report::Arcsec(ResidualRms_rad(a))}}},
                          {"dof", report::In(1.0, a.separation->dof)}};
-  for (const DirectionResult& direction : a.directions) json["transmission"].push_back(ToJson(direction));
+  json["table_encoder"]["u_parts"] = PartsOf(UsedOf(a.positions, 0), StepVariance_rad2(settings, false), true);
+  for (const DirectionResult& direction : a.directions)
+    json["transmission"].push_back(ToJson(direction, a, settings));
   if (a.two_positions) json["two_positions"] = TwoPositionsJson(*a.two_positions);
   return json;
 }
 
-nlohmann::json ResultsOf(const HobAnalysis& a) {
+nlohmann::json ResultsOf(const HobAnalysis& a, const HobSettings& settings) {
   nlohmann::json json = {{"readings", a.used}, {"left_out", a.left_out}, {"positions", nlohmann::json::array()}};
-  for (const PositionError& position : a.positions) json["positions"].push_back(ToJson(position));
+  for (const PositionError& position : a.positions) json["positions"].push_back(ToJson(position, settings));
   if (!a.separation) {
     json["not_separated"] = a.not_separated;
     return json;
   }
-  json["separation"] = SeparationJson(a);
+  json["separation"] = SeparationJson(a, settings);
   if (!a.encoder_by_interferometer.orders.empty()) {
     json["interferometer"] = a.is_interferometer_at_rest ? "at_rest" : "in_motion";
     json["table_encoder_by_interferometer"] = ToJson(a.encoder_by_interferometer);
+    json["table_encoder_by_interferometer"]["u_parts"] =
+        WithStandard(PartsOf(UsedOf(a.by_interferometer, 0),
+                             StepVariance_rad2(settings, a.is_interferometer_at_rest), false),
+                     a.encoder_by_interferometer, settings.interferometer.u_calibrator_rad);
     json["table_encoder_against_interferometer"] = ToJson(a.encoder_against_interferometer);
     if (!a.is_interferometer_at_rest) json["table_encoder_against_one_place"] = ToJson(a.encoder_against_one_place);
   }
@@ -228,6 +246,7 @@ report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series
   curve.name = name;
   curve.value = "amplitude_arcsec";
   curve.position_name = "order";
+  curve.dof = series.dof;
   const auto add = [&](int order, double estimate_rad, double variance, double true_arcsec) {
     curve.position.push_back(order);
     curve.estimate.push_back(estimate_rad / units::arcsec);
@@ -249,8 +268,8 @@ report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
-  const nlohmann::json separation = analysis.separation ? SeparationJson(analysis) : nlohmann::json();
-  return {ResultsOf(analysis), separation, analysis.not_separated, SummaryOf(analysis)};
+  const nlohmann::json separation = analysis.separation ? SeparationJson(analysis, HobOf(scenario)) : nlohmann::json();
+  return {ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis)};
 }
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
@@ -267,6 +286,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
   if (analysis.two_positions) {
     HarmonicSeries first;
     first.orders = {analysis.two_positions->encoder};
+    first.dof = analysis.separation->dof;
     curves.push_back(CurveOf("two positions", first, encoder));
   }
   if (analysis.is_interferometer_at_rest)

@@ -4,6 +4,7 @@
 #include "twin/benches/rotary_4dof/analysis.h"
 #include "twin/benches/rotary_4dof/bench.h"
 #include "twin/benches/rotary_4dof/tables.h"
+#include "twin/benches/rotary_4dof/uncertainty_parts.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::benches::rotary {
@@ -35,7 +36,11 @@ TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const Analysis analysis = Analyse(scenario, readings, estimator);
   const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation) : nlohmann::json();
-  return {ToJson(analysis), separation, analysis.not_separated, Summary(analysis)};
+  nlohmann::json results = ToJson(analysis);
+  if (analysis.separation) AddParts(analysis, readings, scenario, results["separation"]);
+  report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
+  if (analysis.separation) evaluation.joints = JointsOf(*analysis.separation);
+  return evaluation;
 }
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,

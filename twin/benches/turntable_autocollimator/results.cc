@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
@@ -12,6 +13,7 @@
 #include "twin/core/written_number.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
+#include "twin/report/uncertainty_parts.h"
 
 namespace twinbench::benches::turntable {
 namespace {
@@ -31,6 +33,21 @@ using separate::turntable::TurntableAnalysis;
 // Besides those below.
 using turntable::CurveOf;
 using turntable::ToJson;
+
+/// The scatter of the readings is noise as far as the autocollimator is stated to have it; the rest, seating and
+/// what else changes from pass to pass, is repeatability.
+nlohmann::json PartsOf(const AngleSeries& series, const IndexingSeparation& s, double stated_noise_rad) {
+  const double scatter_rad = s.scale * s.noise.u_x_rad;
+  const double of_noise = std::min(1.0, std::pow(stated_noise_rad / scatter_rad, 2));
+  const auto list = [](const Eigen::VectorXd& variance) {
+    return std::vector<double>(variance.begin(), variance.end());
+  };
+  return report::PartsJson(list(series.cov_rad2.diagonal()),
+                           {{"noise", list(of_noise * series.of_readings_rad2)},
+                            {"repeatability", list((1.0 - of_noise) * series.of_readings_rad2)},
+                            {"roll", list(series.of_roll_rad2)},
+                            {"standard", list(series.of_teeth_rad2)}});
+}
 
 nlohmann::json ToJson(const Roll& roll) {
   const char* status = roll.status == RollStatus::kOk      ? "ok"
@@ -75,6 +92,19 @@ nlohmann::json ToJson(const std::vector<PointwiseError>& pointwise) {
   return json;
 }
 
+uncertainty::Joint JointOf(const std::string& name, const AngleSeries& series) {
+  uncertainty::Joint joint{name, {}, series.cov_rad2 / (units::arcsec * units::arcsec)};
+  for (std::size_t i = 0; i < series.position_rad.size(); ++i)
+    joint.names.push_back(fmt::format("{}.ez_arcsec[{}]", name, i));
+  return joint;
+}
+
+std::vector<uncertainty::Joint> JointsOf(const IndexingSeparation& s) {
+  std::vector<uncertainty::Joint> joints = {JointOf("separation.turntable", s.turntable)};
+  if (!s.multitooth.position_rad.empty()) joints.push_back(JointOf("separation.multitooth", s.multitooth));
+  return joints;
+}
+
 nlohmann::json NotSeparable(const IndexingSeparation& s) {
   nlohmann::json lost = nlohmann::json::array();
   if (s.status == IndexingStatus::kSumOnly) {
@@ -89,20 +119,24 @@ nlohmann::json NotSeparable(const IndexingSeparation& s) {
   return lost;
 }
 
-nlohmann::json SeparationJson(const IndexingSeparation& s) {
+nlohmann::json SeparationJson(const IndexingSeparation& s, const Scenario& scenario) {
+  const double stated_noise_rad = TurntableOf(scenario).autocollimator.noise_rad;
   nlohmann::json json = {{"turntable", ToJson(s.turntable)},
                          {"not_separable", NotSeparable(s)},
                          {"residual_rms", {{"x_arcsec", report::Arcsec(s.residual_rms_rad)}}},
                          {"dof", report::In(1.0, s.dof)},
                          {"roll", ToJson(s.roll)}};
-  if (!s.multitooth.position_rad.empty()) json["multitooth"] = ToJson(s.multitooth);
+  json["turntable"]["u_parts"] = PartsOf(s.turntable, s, stated_noise_rad);
+  if (s.multitooth.position_rad.empty()) return json;
+  json["multitooth"] = ToJson(s.multitooth);
+  json["multitooth"]["u_parts"] = PartsOf(s.multitooth, s, stated_noise_rad);
   return json;
 }
 
-nlohmann::json ResultsOf(const TurntableAnalysis& a) {
+nlohmann::json ResultsOf(const TurntableAnalysis& a, const Scenario& scenario) {
   nlohmann::json json = {{"estimator", EstimatorName(a.estimator)}, {"readings", a.used}, {"left_out", a.left_out}};
   if (a.separation) {
-    json["separation"] = SeparationJson(*a.separation);
+    json["separation"] = SeparationJson(*a.separation, scenario);
     json["noise"] = {{"u_x_arcsec", report::Arcsec(a.separation->noise.u_x_rad)},
                      {"u_y_arcsec", report::Arcsec(a.separation->noise.u_y_rad)},
                      {"dof", a.separation->noise.dof}};
@@ -148,22 +182,33 @@ std::string SummaryOf(const TurntableAnalysis& a) {
 
 // --- against the truth ---
 
-/// Equation 5 counts from its first position: means are taken out of both.
-report::CurveScore CurveOf(const std::vector<PointwiseError>& pointwise, const nlohmann::json& table) {
+/// Behind the noise that the uncertainties are made of.
+double DofOf(const IndexingSeparation& s) {
+  return s.noise.dof > 0 ? s.noise.dof : std::numeric_limits<double>::infinity();
+}
+
+report::CurveScore WithDof(report::CurveScore curve, double dof) {
+  curve.dof = dof;
+  return curve;
+}
+
+/// Equation 5 counts from its first position, and so does the truth here. Where it is invalid it is not compared.
+report::CurveScore CurveOf(const std::vector<PointwiseError>& pointwise, double dof, const nlohmann::json& table) {
   report::CurveScore curve{
       .name = "equation 5", .value = "ez_arcsec", .position = {}, .estimate = {}, .u = {}, .truth = {}};
-  std::vector<double> position_rad;
-  double mean = 0.0;
-  for (const PointwiseError& point : pointwise) {
-    if (!std::isfinite(point.value_rad)) continue;
-    position_rad.push_back(point.turntable_rad);
+  std::vector<double> position_rad, truth;
+  for (const PointwiseError& point : pointwise) position_rad.push_back(point.turntable_rad);
+  truth = TruthAt(table, position_rad);
+  const auto start = std::ranges::find(pointwise, 0.0, &PointwiseError::u_rad);
+  for (std::size_t k = 0; k < pointwise.size(); ++k) {
+    const PointwiseError& point = pointwise[k];
+    if (!(point.u_rad > 0.0) || start == pointwise.end()) continue;
     curve.position.push_back(WrittenNumber(point.turntable_rad, units::deg));
     curve.estimate.push_back(point.value_rad / units::arcsec);
     curve.u.push_back(point.u_rad / units::arcsec);
-    mean += curve.estimate.back();
+    curve.truth.push_back(truth[k] - truth[static_cast<std::size_t>(start - pointwise.begin())]);
   }
-  for (double& value : curve.estimate) value -= mean / static_cast<double>(curve.estimate.size());
-  curve.truth = TruthAt(table, position_rad);
+  curve.dof = dof;
   return curve;
 }
 
@@ -188,8 +233,11 @@ report::CurveScore CurveOf(const HarmonicModel& model, const ModelCheck& check, 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   if (TurntableOf(scenario).HasPolygon()) return EvaluatePolygon(scenario, readings, estimator);
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
-  const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation) : nlohmann::json();
-  return {ResultsOf(analysis), separation, analysis.not_separated, SummaryOf(analysis)};
+  const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation, scenario) : nlohmann::json();
+  report::Evaluation evaluation{ResultsOf(analysis, scenario), separation, analysis.not_separated,
+                                SummaryOf(analysis)};
+  if (analysis.separation) evaluation.joints = JointsOf(*analysis.separation);
+  return evaluation;
 }
 
 report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>& readings,
@@ -198,10 +246,12 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full circle");
   const nlohmann::json& turntable = truth.at("turntable");
-  std::vector<report::CurveScore> curves = {CurveOf("turntable", analysis.separation->turntable, turntable)};
+  const double dof = DofOf(*analysis.separation);
+  std::vector<report::CurveScore> curves = {WithDof(CurveOf("turntable", analysis.separation->turntable, turntable), dof)};
   const AngleSeries& multitooth = analysis.separation->multitooth;
-  if (!multitooth.position_rad.empty()) curves.push_back(CurveOf("multitooth", multitooth, truth.at("multitooth")));
-  if (!analysis.pointwise.empty()) curves.push_back(CurveOf(analysis.pointwise, turntable));
+  if (!multitooth.position_rad.empty())
+    curves.push_back(WithDof(CurveOf("multitooth", multitooth, truth.at("multitooth")), dof));
+  if (!analysis.pointwise.empty()) curves.push_back(CurveOf(analysis.pointwise, dof, turntable));
   if (analysis.model && analysis.check) curves.push_back(CurveOf(*analysis.model, *analysis.check, turntable));
   return {ToJson(curves), "against the truth; means are taken out of both\n" + report::ScoreTable(curves),
           report::PositionTable(curves), report::ValuesOf(curves)};

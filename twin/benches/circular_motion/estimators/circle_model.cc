@@ -145,6 +145,10 @@ void SetNoise(const CircularSettings& s, CirclePoint& p) {
   const StatedNoise noise = StatedNoiseOf(s, p.is_bar, p.radius_m);
   p.u_radial_m = noise.radial_m;
   p.u_tangential_m = noise.tangential_m;
+  const Eigen::Array2d u(noise.radial_m, noise.tangential_m), steps(noise.radial_steps_m, noise.tangential_steps_m);
+  if (!(u > 0.0).all()) return;
+  p.of_machine = (s.machine.noise_m / u).square();
+  p.of_steps = (steps / u).square();
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ struct CirclePoint {
   double above_K = 0.0;                         // temperature above that of reference
   double radial_m = kNaN, tangential_m = kNaN;  // shown, from the commanded point
   double u_radial_m = kNaN, u_tangential_m = kNaN;
+  Eigen::Vector2d of_machine{0.0, 0.0}, of_steps{0.0, 0.0};  // shares of both variances
 
   Eigen::Vector2d Commanded_m() const {
     return {radius_m * std::cos(commanded_rad), radius_m * std::sin(commanded_rad)};

@@ -82,7 +82,7 @@ std::vector<Index> OfWhatTheBarShows(const CircleFit& fit) {
 
 /// The equations of one round: normal matrix of unit columns, and their lengths.
 struct Equations {
-  MatrixXd normal;
+  MatrixXd normal, of_machine, of_steps;  // the latter with each row by its share of the variance
   VectorXd right, scale;
   Index empty = 0;  // unknowns that no reading has: the length of a bar where the grid measures
   double chi2 = 0.0;
@@ -93,13 +93,15 @@ Equations EquationsAt(const std::vector<CirclePoint>& points, const CircleFit& f
                       const std::vector<Index>& held) {
   const Index unknowns = UnknownsOf(fit);
   MatrixXd slope(2 * std::ssize(points), unknowns);
-  VectorXd left(slope.rows());
+  VectorXd left(slope.rows()), of_machine(slope.rows()), of_steps(slope.rows());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const CirclePoint& p = points[i];
     const Index row = 2 * static_cast<Index>(i);
     const Eigen::Vector2d weight(1.0 / p.u_radial_m, 1.0 / p.u_tangential_m);
     const Eigen::Vector2d shown_m = Shown_m(p, fit.errors, fit.MountingOf(p.setup), known);
     left.segment<2>(row) = weight.cwiseProduct(Eigen::Vector2d(p.radial_m, p.tangential_m) - shown_m);
+    of_machine.segment<2>(row) = p.of_machine;
+    of_steps.segment<2>(row) = p.of_steps;
     slope.middleRows<2>(row) = weight.asDiagonal() * SlopeOf(Shown_m, p, fit, known);
   }
   slope(Eigen::all, held).setZero();
@@ -110,6 +112,8 @@ Equations EquationsAt(const std::vector<CirclePoint>& points, const CircleFit& f
   equations.scale = (equations.scale.array() > 0.0).select(equations.scale, 1.0);
   slope *= equations.scale.cwiseInverse().asDiagonal();
   equations.normal = slope.transpose() * slope;
+  equations.of_machine = slope.transpose() * of_machine.asDiagonal() * slope;
+  equations.of_steps = slope.transpose() * of_steps.asDiagonal() * slope;
   equations.normal.diagonal().array() += is_empty;  // they stay 0
   equations.right = slope.transpose() * left;
   equations.chi2 = left.squaredNorm();
@@ -223,8 +227,14 @@ CircleFit FitCircles(const std::vector<CirclePoint>& points, const CircleConstan
   fit.dof = 2 * std::ssize(points) - unknowns + solved.hidden.cols() + equations.empty;
   fit.chi = std::sqrt(equations.chi2 / static_cast<double>(fit.dof));
   const MatrixXd unscale = equations.scale.cwiseInverse().asDiagonal();
-  fit.shared = {std::pow(std::max(1.0, fit.chi), 2) * unscale * solved.inverse * unscale, unscale * solved.hidden,
-                equations.scale.cwiseInverse()};
+  const double widening = std::pow(std::max(1.0, fit.chi), 2);
+  const MatrixXd from_right = unscale * solved.inverse;
+  fit.shared = {widening * from_right * unscale,
+                unscale * solved.hidden,
+                equations.scale.cwiseInverse(),
+                from_right * equations.of_machine * from_right.transpose(),
+                from_right * equations.of_steps * from_right.transpose(),
+                1.0 - 1.0 / widening};
   NameHidden(solved.hidden, fit);
   SetResiduals(points, known, fit);
   return fit;

@@ -12,6 +12,9 @@ struct SharedUncertainty {
   Eigen::MatrixXd cov = {};      // SI; empty: nothing was fitted
   Eigen::MatrixXd hidden = {};   // directions that the readings do not show, as columns, SI
   Eigen::VectorXd typical = {};  // of each unknown: what the readings would just show of it alone, SI
+  // Of `cov`, what the stated noise of the machine and the instruments' quanta make:
+  Eigen::MatrixXd of_machine = {}, of_steps = {};
+  double excess = 0.0;  // of it, what is left over beyond the stated noise: a share, the same everywhere
 
   bool IsKnown() const { return cov.size() > 0; }
   /// Of a result with these slopes; NaN if it goes with something that the readings do not show.

@@ -105,10 +105,18 @@ DeviceError SeparateDevice(const std::vector<Reading>& readings, const DeviceOpt
   FillLag(fitted, result);
   result.residual_rms_rad = std::sqrt(fitted.noise.white_rad2);
   result.low_order_scatter = std::sqrt(fitted.noise.variance_rad2[0] / fitted.noise.white_rad2);
+  for (const double variance_rad2 : fitted.noise.variance_rad2)
+    result.white_share.push_back(std::min(1.0, fitted.noise.white_rad2 / variance_rad2));
   result.dof = 0.0;
   for (const FittedGroup& group : fitted.groups) result.dof += group.fit.dof;
   AddNotes(groups, fitted, result);
   return result;
+}
+
+harmonics::HarmonicSeries OfWhiteNoise(harmonics::HarmonicSeries series, const DeviceError& device) {
+  for (int k = 1; k <= series.Highest(); ++k)
+    series.At(k).cov *= device.white_share.at(static_cast<std::size_t>(k - 1));
+  return series;
 }
 
 CurveAt Curve(const harmonics::HarmonicSeries& series, int points) {

@@ -34,8 +34,12 @@ struct DeviceError {
   double residual_rms_rad = kNaN;   // of a reading about its fit: noise, and what does not repeat
   double low_order_scatter = kNaN;  // order 1 scatters so many times more between turns than white noise would
   double dof = kNaN;
+  std::vector<double> white_share;  // [k - 1]: of the variance of order k, what white noise of the readings makes; 0 to 1
   std::vector<std::string> notes;
 };
+
+/// The series with the covariance that white noise alone would leave of it.
+harmonics::HarmonicSeries OfWhiteNoise(harmonics::HarmonicSeries series, const DeviceError& device);
 
 /// Takes measured - reference apart into the device's repeatable error, the reference's and what belongs to single
 /// passes: a constant, a steady drift or a wrong scale (slope), a delay (lag).

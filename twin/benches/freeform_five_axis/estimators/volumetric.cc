@@ -101,8 +101,9 @@ VolumetricErrors PredictErrors(const FreeformSettings& bench, const std::vector<
     slopes.col(k) = WithoutRigidMotion(errors.nominal_um, slope).reshaped();
   }
   const Eigen::MatrixXd covariance = found.covariance.topLeftCorner(kOfMachine, kOfMachine);
-  const Eigen::VectorXd variance = (slopes * covariance).cwiseProduct(slopes).rowwise().sum();
-  errors.u_um = variance.cwiseMax(0.0).cwiseSqrt().reshaped(3, std::ssize(poses));
+  const SymmetricEigen eigen = EigenOfSymmetric(covariance);
+  errors.root_um = slopes * eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  errors.u_um = errors.root_um.rowwise().norm().reshaped(3, std::ssize(poses));
   return errors;
 }
 

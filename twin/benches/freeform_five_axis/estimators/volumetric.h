@@ -37,6 +37,9 @@ Eigen::Matrix3Xd Tips_um(const FreeformSettings& bench, const std::vector<PoseRe
 /// Volumetric error at poses, best rigid motion taken out [um]: 3 x poses.
 struct VolumetricErrors {
   Eigen::Matrix3Xd nominal_um, error_um, u_um;
+  /// Square root of the covariance of all components, pose by pose: cov = R R^T. As many columns as the machine has
+  /// unknowns.
+  Eigen::MatrixXd root_um = {};
 };
 
 /// Uncertainty: noise of the readings, first order. Not included: what the readings leave open.

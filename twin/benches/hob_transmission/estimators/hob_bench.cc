@@ -88,6 +88,7 @@ void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions
   if (!HasInterferometer(samples)) return;
   std::vector<PositionError> seen = MeasurePositions(samples, options, Signal::kEncodersMinusInterferometer);
   analysis.encoder_by_interferometer = WithCalibrator(EncoderByInterferometer(seen), u_calibrator_rad);
+  analysis.by_interferometer = seen;
   analysis.encoder_against_interferometer =
       CompareEncoder(*analysis.separation, analysis.encoder_by_interferometer, orders);
   if (analysis.is_interferometer_at_rest) return;

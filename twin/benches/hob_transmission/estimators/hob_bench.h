@@ -33,6 +33,7 @@ struct HobAnalysis {
   std::vector<DirectionResult> directions;
   HarmonicSeries encoder;                    // psi in the encoder's own angle; orders not seen are NaN
   HarmonicSeries encoder_by_interferometer;  // empty without one
+  std::vector<PositionError> by_interferometer;  // what that is a mean of
   std::vector<OrderComparison> encoder_against_interferometer;
   /// The same with the first place of the head alone, as published: errors of the interferometer that go with the
   /// table are in it, where the mean over the places turns them against each other.

@@ -57,9 +57,10 @@ void FillFromSeveralTurns(const std::vector<FittedPass>& passes, const Transmiss
   const Eigen::MatrixXcd stack = Stack(passes, position.turns, options.max_order);
   const Eigen::VectorXd variance = ScatterVariance(stack, options.pooled_orders);
   for (Eigen::Index k = 0; k < stack.cols(); ++k) {
-    const Eigen::Matrix2d cov =
-        variance[k] * Eigen::Matrix2d::Identity() + DriftCovariance(passes, position.turns, k);
+    const Eigen::Matrix2d of_drift = DriftCovariance(passes, position.turns, k);
+    const Eigen::Matrix2d cov = variance[k] * Eigen::Matrix2d::Identity() + of_drift;
     position.series.orders.push_back({stack.col(k).mean(), cov});
+    position.of_drift_rad2.push_back(0.5 * of_drift.trace());
   }
   const int pooled = std::min(options.pooled_orders + 1, options.max_order);  // at either end of the spectrum
   position.series.dof = 2.0 * (position.turns - 1) * pooled;

@@ -39,7 +39,8 @@ struct TableEstimate {
   TableErrors u;                      // standard uncertainty: random and systematic together
   std::vector<Component> components;  // determined ones, in the order of the blocks of both matrices
   CurveCovariance cov;             // random part; row s * n + i is components[s] at position i [rad^2, rad m, m^2]
-  CurveCovariance cov_systematic;  // of the calibration, and of the model's second order
+  CurveCovariance cov_systematic;  // of the calibration, of the model's second order, and of published equations
+  double second_order = 0.0;       // variance of the model's second order, as a part of the random one
 };
 
 /// Mean motion of a set-up over its positions minus that of the first: zero if nothing was re-mounted differently

@@ -125,6 +125,7 @@ TableEstimate Prepare(const TablePart& part, const Systematic& systematic) {
   TableEstimate estimate;
   estimate.components = part.components;
   estimate.cov = part.cov;
+  estimate.second_order = systematic.second_order;
   estimate.cov_systematic = part.cov * systematic.second_order;
   if (systematic.d_calibration.cols() > 0) {
     const Eigen::MatrixXd shift =

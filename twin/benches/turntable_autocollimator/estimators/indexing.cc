@@ -48,8 +48,13 @@ Eigen::MatrixXd MultitoothPart(const StopGrid& grid, int common_steps, double u_
   return cov;
 }
 
+/// Covariance of the unknowns, by what it comes from.
+struct UnknownsCovariance {
+  Eigen::MatrixXd of_readings_rad2, of_roll_rad2, of_teeth_rad2;
+};
+
 /// Those of the unknowns from `first` on that were read, by ascending angle.
-AngleSeries MakeSeries(const Eigen::VectorXd& unknowns, const Eigen::MatrixXd& cov_rad2, int first,
+AngleSeries MakeSeries(const Eigen::VectorXd& unknowns, const UnknownsCovariance& cov, int first,
                        const std::map<double, int>& read) {
   AngleSeries series;
   std::vector<int> columns;
@@ -58,7 +63,10 @@ AngleSeries MakeSeries(const Eigen::VectorXd& unknowns, const Eigen::MatrixXd& c
     columns.push_back(first + index);
   }
   series.value_rad = unknowns(columns);
-  series.cov_rad2 = cov_rad2(columns, columns);
+  series.cov_rad2 = (cov.of_readings_rad2 + cov.of_roll_rad2 + cov.of_teeth_rad2)(columns, columns);
+  series.of_readings_rad2 = cov.of_readings_rad2.diagonal()(columns);
+  series.of_roll_rad2 = cov.of_roll_rad2.diagonal()(columns);
+  series.of_teeth_rad2 = cov.of_teeth_rad2.diagonal()(columns);
   return series;
 }
 
@@ -92,27 +100,28 @@ Roll Given(Roll roll) {
   return roll;
 }
 
-/// Covariance of the unknowns.
-/// @param d_roll  Their change with the roll [rad / rad].
-Eigen::MatrixXd Covariance(const StopGrid& grid, const ShiftFit& fit, const Eigen::VectorXd& d_roll,
-                           double gamma_rad, const IndexingOptions& options, const IndexingSeparation& result) {
+/// @param d_roll  Change of the unknowns with the roll [rad / rad].
+UnknownsCovariance Covariance(const StopGrid& grid, const ShiftFit& fit, const Eigen::VectorXd& d_roll,
+                              double gamma_rad, const IndexingOptions& options, const IndexingSeparation& result) {
   const double variance = result.scale * result.scale * Variance(result.noise, gamma_rad);
   const double u_roll_rad = std::isfinite(result.roll.u_gamma_rad) ? result.roll.u_gamma_rad : 0.0;
   const Eigen::VectorXd of_roll = u_roll_rad * d_roll;
-  Eigen::MatrixXd cov_rad2 = variance * fit.cofactor() + of_roll * of_roll.transpose();
-  cov_rad2.topLeftCorner(grid.n, grid.n) += MultitoothPart(grid, fit.common_steps(), options.u_multitooth_rad);
-  return cov_rad2;
+  UnknownsCovariance cov{variance * fit.cofactor(), of_roll * of_roll.transpose(),
+                         Eigen::MatrixXd::Zero(d_roll.size(), d_roll.size())};
+  cov.of_teeth_rad2.topLeftCorner(grid.n, grid.n) =
+      MultitoothPart(grid, fit.common_steps(), options.u_multitooth_rad);
+  return cov;
 }
 
-void FillTables(const StopGrid& grid, const Eigen::VectorXd& unknowns, const Eigen::MatrixXd& cov_rad2,
+void FillTables(const StopGrid& grid, const Eigen::VectorXd& unknowns, const UnknownsCovariance& cov,
                 IndexingSeparation& result) {
   std::map<double, int> positions, teeth;
   for (const GridStop& stop : grid.stops) {
     positions[grid.Position_rad(stop.position)] = stop.position;
     teeth[grid.Tooth_rad(stop.tooth)] = stop.tooth;
   }
-  result.turntable = MakeSeries(unknowns, cov_rad2, 0, positions);
-  if (result.status != IndexingStatus::kSumOnly) result.multitooth = MakeSeries(unknowns, cov_rad2, grid.n, teeth);
+  result.turntable = MakeSeries(unknowns, cov, 0, positions);
+  if (result.status != IndexingStatus::kSumOnly) result.multitooth = MakeSeries(unknowns, cov, grid.n, teeth);
 }
 
 /// Values of the grid's stops, spread over all stops handed in.

@@ -17,6 +17,8 @@ struct AngleSeries {
   std::vector<double> position_rad;
   Eigen::VectorXd value_rad;
   Eigen::MatrixXd cov_rad2;
+  // What its diagonal is made of; empty where that is not known:
+  Eigen::VectorXd of_readings_rad2 = {}, of_roll_rad2 = {}, of_teeth_rad2 = {};
 
   double U_rad(Eigen::Index i) const { return std::sqrt(cov_rad2(i, i)); }  // standard uncertainty
 };

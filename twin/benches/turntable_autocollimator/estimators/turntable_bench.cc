@@ -1,6 +1,10 @@
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include "twin/benches/turntable_autocollimator/estimators/collimator_scale.h"
@@ -44,6 +48,24 @@ std::optional<SetUpPair> PairForEquation5(const StopGrid& grid, const Readings& 
     }
   }
   return best;
+}
+
+/// A value of equation 5 holds the error of its tooth less that of the first; and near a pole it is a number but no
+/// result: nothing that propagates noise describes how it scatters.
+void MakeHonest(double u_multitooth_rad, TurntableAnalysis& analysis) {
+  int invalid = 0;
+  for (PointwiseError& point : analysis.pointwise) {
+    const bool is_start = point.value_rad == 0.0 && point.u_rad == 0.0;
+    if (point.status == PointStatus::kNearPole && !is_start) {
+      point.u_rad = kNaN;
+      ++invalid;
+    } else if (!is_start) {
+      point.u_rad = std::hypot(point.u_rad, std::numbers::sqrt2 * u_multitooth_rad);
+    }
+  }
+  if (invalid > 0)
+    analysis.separation->notes.push_back(fmt::format(
+        "equation 5: INVALID at {} of {} positions, where the two tilts look alike", invalid, analysis.pointwise.size()));
 }
 
 /// What equation 5 gave, as a series that a model can be fitted to; without uncertainty.
@@ -109,6 +131,7 @@ TurntableAnalysis AnalyseTurntable(const std::vector<Reading>& readings, const S
   const StopGrid grid = FindGrid(stops, positions);
   if (const auto pair = PairForEquation5(grid, Collect(stops, grid)))
     analysis.pointwise = SolveEquation5(stops, pair->first, pair->second, analysis.separation->noise, positions);
+  MakeHonest(options.u_multitooth_rad, analysis);
   const bool published = estimator == Estimator::kPublished;
   const AngleSeries series = published ? SeriesOf(analysis.pointwise) : analysis.separation->turntable;
   analysis.before = DescribeErrors(series.value_rad);

@@ -22,7 +22,9 @@ struct TurntableAnalysis {
   int used = 0;      // readings of the full circle
   int left_out = 0;  // readings of any phase without numbers
   std::optional<IndexingSeparation> separation;
-  std::vector<PointwiseError> pointwise;  // equation 5 on two set-ups of equal shift; empty if there are none
+  /// Equation 5 on two set-ups of equal shift; empty if there are none. With the teeth in its uncertainties, and
+  /// without any near a pole: INVALID.
+  std::vector<PointwiseError> pointwise;
   std::optional<HarmonicModel> model;
   ErrorSize before;  // of the turntable at the positions
   std::optional<ModelCheck> check;

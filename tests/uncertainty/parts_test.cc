@@ -1,0 +1,118 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tests/uncertainty/bench_budget.h"
+#include "twin/benches/rotary_4dof/settings.h"
+
+/// What the readings leave, by source: on every bench, and against what the scenario says of its instruments.
+namespace twinbench::uncertainty {
+namespace {
+
+using test::BudgetsOf, test::Small, test::SmallBench, test::SmallBenches;
+
+/// Sum over the quantities of a list of the variance of one source, over that of u.
+double ShareOf(const std::vector<Budget>& budgets, const std::string& kind, const std::string& source) {
+  double of_source = 0.0, all = 0.0;
+  for (const Budget& budget : budgets) {
+    if (KindOf(budget.quantity.name) != kind) continue;
+    all += budget.u * budget.u;
+    for (const Source& s : budget.sources) of_source += s.name == source ? s.u * s.u : 0.0;
+  }
+  EXPECT_GT(all, 0.0) << "no " << kind;
+  return of_source / all;
+}
+
+double ShareOf(const Scenario& scenario, const std::string& kind, const std::string& source) {
+  return ShareOf(BudgetsOf(scenario), kind, source);
+}
+
+/// The lists of results that a bench is built for; every number of theirs has its parts.
+const std::vector<std::string> kLists = {"separation.target.ez_arcsec",      "separation.reference.dy_um",
+                                         "separation.turntable.ez_arcsec",   "separation.table_encoder.amplitude_arcsec",
+                                         "errors.machine.squareness_arcsec", "error_map.dx_um",
+                                         "device.ez_arcsec"};
+
+class OfEveryBench : public testing::TestWithParam<SmallBench> {};
+
+/// The parts are shares that the estimator finds each for itself; nobody makes them sum to one.
+TEST_P(OfEveryBench, AddUpToTheSquareOfU) {
+  int told_apart = 0, of_lists = 0;
+  for (const Budget& budget : BudgetsOf(Small(GetParam()))) {
+    const Quantity& q = budget.quantity;
+    of_lists += std::ranges::find(kLists, KindOf(q.name)) != kLists.end() ? 1 : 0;
+    if (q.parts.empty()) continue;
+    ++told_apart;
+    const double sum =
+        std::accumulate(q.parts.begin(), q.parts.end(), 0.0, [](double s, const Part& p) { return s + p.share; });
+    EXPECT_NEAR(sum, 1.0, 0.01) << q.name;
+    EXPECT_NEAR(budget.u, q.u, 0.005 * q.u) << q.name;
+    for (const Part& part : q.parts) EXPECT_GE(part.share, -1e-9) << q.name << " " << part.name;
+  }
+  EXPECT_GE(of_lists, 1);
+  EXPECT_GE(told_apart, of_lists);
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, OfEveryBench, testing::ValuesIn(SmallBenches()), [](const auto& of) {
+  return of.param.file.substr(0, of.param.file.find('.'));
+});
+
+/// A converter of 12 bits over +-10 V has steps of 4.9 mV; noise of 6 mV spreads over them, and the step's share of
+/// what a sample scatters by is LSB^2 / 12 of noise^2 + LSB^2 / 12.
+TEST(Parts, OfAConverterAreTheStepsOverTwelve) {
+  const double lsb = 20.0 / 4096.0, share = lsb * lsb / 12.0 / (36e-6 + lsb * lsb / 12.0);
+  const Scenario scenario = Small(SmallBenches()[0], {"adc.bits=12", "amplifier.noise_mV=6.0", "adc.every_sample=true"});
+  const std::vector<Budget> budgets = BudgetsOf(scenario);
+  const double steps = ShareOf(budgets, "separation.target.ez_arcsec", "quantisation"),
+               noise = ShareOf(budgets, "separation.target.ez_arcsec", "noise");
+  EXPECT_NEAR(steps / (steps + noise), share, 0.15 * share) << "other noise than the amplifier's is small";
+}
+
+/// Noise as large as a step dithers it: a thirteenth of what a reading scatters by is the step's.
+TEST(Parts, OfAnEncoderAreItsStepsOverTwelve) {
+  const double share = (1.0 / 12.0) / (1.0 + 1.0 / 12.0);
+  const Scenario scenario = Small(SmallBenches()[5], {"device.resolution_deg=0.002", "device.noise_deg=0.002"});
+  const std::vector<Budget> budgets = BudgetsOf(scenario);
+  const double steps = ShareOf(budgets, "device.ez_arcsec", "quantisation"),
+               noise = ShareOf(budgets, "device.ez_arcsec", "noise");
+  EXPECT_NEAR(steps / (steps + noise), share, 0.35 * share) << "noise is what is left of 144 residuals";
+}
+
+/// Seating of 0.3 arcsec beside 0.1 arcsec of the autocollimator is nine tenths of the scatter.
+TEST(Parts, OfSeatingAreRepeatability) {
+  const Scenario scenario = Small(SmallBenches()[1], {"autocollimator.noise_arcsec=0.1", "multitooth.repeatability.ez_arcsec=0.3",
+                                                      "multitooth.u_tooth_arcsec=0.0"});
+  const std::vector<Budget> budgets = BudgetsOf(scenario);
+  const double noise = ShareOf(budgets, "separation.turntable.ez_arcsec", "noise"),
+               seating = ShareOf(budgets, "separation.turntable.ez_arcsec", "repeatability");
+  // 48 degrees of freedom: a fifth of the variance.
+  EXPECT_NEAR(seating / noise, 9.0, 5.0);
+}
+
+/// One shift leaves the teeth in the turntable's errors: their stated uncertainty is type B.
+TEST(Parts, OfTheTeethAreTheStandards) {
+  const std::vector<Budget> budgets = BudgetsOf(Small(SmallBenches()[1], {"multitooth.u_tooth_arcsec=0.5"}));
+  EXPECT_GT(ShareOf(budgets, "separation.turntable.ez_arcsec", "standard"), 0.8);
+  const std::vector<Source>& sources = budgets.back().sources;
+  const auto teeth = std::ranges::find(sources, "standard", &Source::name);
+  ASSERT_NE(teeth, sources.end());
+  EXPECT_EQ(teeth->type, 'B');
+}
+
+/// A machine that repeats to nothing leaves noise and quanta of the instruments.
+TEST(Parts, OfAMachineThatRepeatsAreNoiseAndQuanta) {
+  const std::string kind = "errors.machine.squareness_arcsec";
+  EXPECT_GT(ShareOf(Small(SmallBenches()[3]), kind, "repeatability"), 0.3) << "0.2 um a reading as it stands";
+  EXPECT_LT(ShareOf(Small(SmallBenches()[3], {"machine.noise_um=0.0"}), kind, "repeatability"), 0.15);
+}
+
+/// The calibrator of the hobbing machine's interferometer is stated, and far larger than what is read at rest.
+TEST(Parts, OfACalibratorAreTheStandards) {
+  const std::vector<Budget> budgets = BudgetsOf(Small(SmallBenches()[2]));
+  EXPECT_GT(ShareOf(budgets, "table_encoder_by_interferometer.amplitude_arcsec", "standard"), 0.9);
+}
+
+}  // namespace
+}  // namespace twinbench::uncertainty
