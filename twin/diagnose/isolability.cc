@@ -42,6 +42,16 @@ std::vector<ParameterEstimate> ParametersAt(const Family& family, int grid_point
   return parameters;
 }
 
+/// The twin can carry it out: its size and all parameters are the catalogue's. A family may go by another size, of which
+/// a small one need not be a small effect of the twin.
+bool IsOfCatalogue(const ShownCause& cause, const std::string& bench) {
+  const EffectEntry* const entry = FindEffect(cause.effect, bench);
+  const auto has = [entry](const ParameterEstimate& p) {
+    return std::ranges::count(entry->parameters, p.name, &EffectParameter::name) > 0;
+  };
+  return entry != nullptr && has(cause.smallest) && std::ranges::all_of(cause.at_smallest, has);
+}
+
 ShownCause CauseShownBy(const Family& family, double information, int grid_point) {
   const Amplitude& a = family.amplitudes.front();
   ShownCause cause;
@@ -194,6 +204,9 @@ Isolability IsolabilityOf(const LinearRun& run, const Analysis& analysis) {
   for (std::size_t k = 0; k < causes.size(); ++k) {
     isolability.causes.push_back(causes[k].first);
     plausible[static_cast<Eigen::Index>(k)] = causes[k].first.plausible_SI;
+  }
+  for (ShownCause& cause : isolability.causes) {
+    if (!IsOfCatalogue(cause, run.bench)) cause.at_smallest.clear();
   }
   const Eigen::MatrixXd white = WhiteSignatures(run, analysis.noise, scanner.Families(), causes);
   const Eigen::MatrixXd sized = white * plausible.asDiagonal();
