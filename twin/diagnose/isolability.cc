@@ -42,6 +42,21 @@ std::vector<ParameterEstimate> ParametersAt(const Family& family, int grid_point
   return parameters;
 }
 
+/// The twin can carry it out: all parameters are the catalogue's, and one of them is as large as the family's amplitude,
+/// which for a wave is told by cosine and sine. What goes by another size (a level that signals are cut off at) need not
+/// be small in the twin where its signature is.
+bool IsOfCatalogue(const ShownCause& cause, const std::string& bench) {
+  const EffectEntry* const entry = FindEffect(cause.effect, bench);
+  const auto has = [entry](const ParameterEstimate& p) {
+    return std::ranges::count(entry->parameters, p.name, &EffectParameter::name) > 0;
+  };
+  const auto is_size = [&cause](const ParameterEstimate& p) {
+    return std::abs(p.value - cause.smallest.value) <= 1e-6 * std::abs(cause.smallest.value);
+  };
+  return entry != nullptr && std::ranges::all_of(cause.at_smallest, has) &&
+         std::ranges::any_of(cause.at_smallest, is_size);
+}
+
 ShownCause CauseShownBy(const Family& family, double information, int grid_point) {
   const Amplitude& a = family.amplitudes.front();
   ShownCause cause;
@@ -194,6 +209,9 @@ Isolability IsolabilityOf(const LinearRun& run, const Analysis& analysis) {
   for (std::size_t k = 0; k < causes.size(); ++k) {
     isolability.causes.push_back(causes[k].first);
     plausible[static_cast<Eigen::Index>(k)] = causes[k].first.plausible_SI;
+  }
+  for (ShownCause& cause : isolability.causes) {
+    if (!IsOfCatalogue(cause, run.bench)) cause.at_smallest.clear();
   }
   const Eigen::MatrixXd white = WhiteSignatures(run, analysis.noise, scanner.Families(), causes);
   const Eigen::MatrixXd sized = white * plausible.asDiagonal();

@@ -89,16 +89,21 @@ std::vector<std::string> ProgrammeRow(const char* name, const PlannedProgramme& 
 }  // namespace
 
 std::string MendingText(const std::vector<Mending>& mendings) {
+  constexpr std::size_t kMostShown = 6;
   std::vector<std::vector<std::string>> rows;
   for (const Mending& one : mendings) {
+    if (rows.size() == kMostShown) break;
     std::string certain;
     for (const plan::Gain& result : one.certain)
       certain += fmt::format("{}u({}) = {:.3g}", certain.empty() ? "" : "\n", result.name, result.ratio);
     rows.push_back({one.run.words + "\n" + SetLines(one.run), fmt::format("{:+.0f}", one.more_minutes),
                     fmt::format("{}", fmt::join(one.mended, "\n")), certain});
   }
-  return TextTable({{"what would separate it"}, {"minutes more", true}, {"separates"}, {"how certain it gets"}}, rows,
-                   kAdviceWidth);
+  const std::string table =
+      TextTable({{"what would separate it"}, {"minutes more", true}, {"separates"}, {"how certain it gets"}}, rows,
+                kAdviceWidth);
+  const bool are_more = mendings.size() > kMostShown;
+  return table + (are_more ? fmt::format("and {} more, all in the JSON\n", mendings.size() - kMostShown) : "");
 }
 
 Json MendingJson(const std::vector<Mending>& mendings) {
