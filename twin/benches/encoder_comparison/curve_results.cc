@@ -10,11 +10,6 @@
 #include "twin/report/json_units.h"
 
 namespace twinbench::benches::encoder {
-namespace {
-
-constexpr int kPoints = 360;  // a degree
-
-}  // namespace
 
 using separate::encoder::Curve;
 using separate::encoder::CurveAt;
@@ -22,10 +17,10 @@ using separate::harmonics::Coefficient;
 using separate::harmonics::HarmonicSeries;
 
 nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) {
-  const CurveAt curve = Curve(series, kPoints);
+  const CurveAt curve = Curve(series, kCurvePoints);
   nlohmann::json json;
-  for (int i = 0; i < kPoints; ++i) {
-    json["position_deg"].push_back(i * 360.0 / kPoints);
+  for (int i = 0; i < kCurvePoints; ++i) {
+    json["position_deg"].push_back(i * 360.0 / kCurvePoints);
     json[name + "_arcsec"].push_back(report::Arcsec(curve.value_rad[i]));
     json["u_" + name + "_arcsec"].push_back(report::Arcsec(curve.u_rad[i]));
   }

@@ -10,6 +10,8 @@
 /// A curve of angle errors as files and persons get it.
 namespace twinbench::benches::encoder {
 
+inline constexpr int kCurvePoints = 360;  // a degree
+
 /// {"position_deg", name + "_arcsec", "u_" + name + "_arcsec"} at every degree.
 nlohmann::json CurveJson(const separate::harmonics::HarmonicSeries& series, const std::string& name);
 

@@ -34,7 +34,7 @@ constexpr const char* kSeenAlike = "all mountings see only the difference of bot
 nlohmann::json CurveOfDevice(const HarmonicSeries& series, const std::string& name, const DeviceError& e,
                              const DeviceSettings& settings) {
   nlohmann::json json = CurveJson(series, name);
-  json["u_parts"] = {{name + "_arcsec", CurveParts(series, e, settings, static_cast<int>(json["position_deg"].size()))}};
+  json["u_parts"] = {{name + "_arcsec", CurveParts(series, e, settings, kCurvePoints)}};
   return json;
 }
 
@@ -169,9 +169,9 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   AddDevice(device, device_settings, evaluation.results);
   if (device.highest_order > 0) {
     evaluation.separation = SeparationJson(device, device_settings);
-    evaluation.joints.push_back(CurveJoint("device", device.curves.device, kPoints));
+    evaluation.joints.push_back(CurveJoint("device", device.curves.device, kCurvePoints));
     if (!device.curves.reference.orders.empty())
-      evaluation.joints.push_back(CurveJoint("reference", device.curves.reference, kPoints));
+      evaluation.joints.push_back(CurveJoint("reference", device.curves.reference, kCurvePoints));
   }
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
     const PositioningResults positioning = EvaluateStops(readings, device_settings);
