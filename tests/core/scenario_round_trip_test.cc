@@ -9,6 +9,7 @@
 
 #include "tests/core/input_error.h"
 #include "twin/benches/circular_motion/settings.h"
+#include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -242,6 +243,9 @@ void MakeWholeTeethAndLines(Scenario& s) {
     RotaryOf(s).chain.dnl_lsb = 0.0;  // a file says it
     m.vibration_velocity_m_s.resize(m.vibration_frequency_Hz.size(), 1e-6);
   }
+  // A spindle that coasts must not stop; tests/own_scenario has its keys.
+  if (s.bench == kEncoderBench && EncoderOf(s).encoder_procedure.kind == "coast")
+    EncoderOf(s).encoder_procedure.kind = "sweep";
   if (s.bench == kHobBench) HobOf(s).table_encoder.lines = 5 * HobOf(s).hob_procedure.samples_per_turn;
   // Bodies and the closed form of what they do exclude each other; tests/own_scenario has every key of either.
   if (s.bench == kCircularBench) CircularOf(s).mechanics.fidelity = "kinematic";

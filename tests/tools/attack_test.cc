@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tests/tools/program.h"
+#include "twin/core/run_record.h"
 
 /// What somebody tried who wanted to see it break, or mistyped.
 namespace twinbench::test {
@@ -83,8 +84,14 @@ TEST_F(Attack, ADiskThatIsFullIsNoSuccess) {
 
 TEST_F(Attack, ResumeNamesTheRunThatIsNotThere) {
   Write("bench.toml", "kind = \"twin\"\n");
-  Succeed({"measure", "small.toml", "--bench", "bench.toml", "-o", "monday"});
-  EXPECT_EQ(Refusal({"measure", "small.toml", "--bench", "bench.toml", "-o", "mondya", "--resume"}),
+  const auto measure = [](const std::string& folder) {
+    return std::vector<std::string>{"measure", "small.toml", "--bench", "bench.toml", "-o", folder, "--resume"};
+  };
+  const Outcome anew = Call(measure("tuesday"));
+  EXPECT_EQ(anew.exit_code, 0);
+  EXPECT_THAT(anew.err, HasSubstr("there is no run in tuesday to resume; a new one begins"));
+  RunRecord::Create(At("monday"), {"test", "twin", 5, "", "rotary_4dof"});  // begun, and ended before its first reading
+  EXPECT_EQ(Refusal(measure("mondya")),
             "twinbench: --resume: there is no run in mondya; expected the folder of a run that was begun, perhaps "
             "monday; without --resume a new one is\n");
 }

@@ -108,7 +108,8 @@ TEST_P(ServedMachineProgram, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
   AwaitProgress(run);
   server->Kill();
   const Outcome outcome = run.Wait();
-  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("STATE UNKNOWN - USE THE EMERGENCY STOP"));
   EXPECT_THAT(outcome.err, HasSubstr("WHETHER THE AXES STAND STILL IS NOT KNOWN"));
   server = Serve("max");
   Succeed(Measure("cut"));

@@ -135,7 +135,7 @@ TEST_F(Served, EverySignalHoweverOftenStopsTheTablesAndTheRunCanBeResumed) {
     for (int k = 0; k < 3; ++k) run.Signal(signal);
     const Outcome outcome = run.Wait();
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("tables were brought to rest, as read back"));
+    EXPECT_THAT(outcome.err, HasSubstr("tables were brought to rest. The controller says that all tables stand"));
   }
   Succeed(Measure("stopped"));
   EXPECT_EQ(ReadingsOf("stopped"), readings_);

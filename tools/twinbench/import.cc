@@ -109,7 +109,7 @@ void Write(const Taken& taken, const ImportOptions& options) {
   // Evaluated first: a file that cannot be evaluated leaves no folder behind.
   const EvaluatedRun run = EvaluatedWithBudget(taken.scenario, taken.readings);
   const RunFolder folder{options.folder};
-  RequireRoomFor(folder);
+  RequireRoomFor(folder, taken.scenario);
   {
     const auto record = RunRecord::Create(folder.path, {TWINBENCH_VERSION, "import: " + options.files.front(),
                                                         taken.scenario.seed, "", taken.scenario.bench});

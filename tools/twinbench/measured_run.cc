@@ -28,19 +28,28 @@ void RequireSameScenario(const Scenario& scenario, const RunFolder& folder) {
   }
 }
 
-/// Names the run beside it that was probably meant.
-InputError NothingToResume(const RunFolder& folder) {
+/// A run beside a folder that is not there, begun and not finished, whose name differs by a slip of the finger: the one that
+/// was probably meant. Empty: there is none.
+std::string RunProbablyMeant(const RunFolder& folder) {
   namespace fs = std::filesystem;
+  constexpr int kSlip = 2;
   const fs::path asked = fs::absolute(folder.path).lexically_normal();
-  std::vector<std::string> runs;
   std::error_code unreadable;
   for (const auto& entry : fs::directory_iterator(asked.parent_path(), unreadable)) {
-    if (fs::exists(entry.path() / "record.sqlite")) runs.push_back(entry.path().filename().string());
+    const std::string name = entry.path().filename().string();
+    if (EditDistance(asked.filename().string(), name) > kSlip || !fs::exists(entry.path() / "record.sqlite")) continue;
+    if (!RunRecord::Open(entry.path().string())->finished()) return name;
   }
-  const std::string nearest = Nearest(asked.filename().string(), runs);
-  return {"--resume", "there is no run in " + folder.path,
-          "the folder of a run that was begun" + (nearest.empty() ? "" : ", perhaps " + nearest) +
-              "; without --resume a new one is"};
+  return "";
+}
+
+/// @throws InputError if another folder was probably meant.
+void BeginAnewInsteadOfResuming(const RunFolder& folder) {
+  const std::string meant = RunProbablyMeant(folder);
+  if (!meant.empty())
+    throw InputError("--resume", "there is no run in " + folder.path,
+                     "the folder of a run that was begun, perhaps " + meant + "; without --resume a new one is");
+  fmt::print(stderr, "twinbench: there is no run in {} to resume; a new one begins\n", folder.path);
 }
 
 }  // namespace
@@ -53,10 +62,10 @@ RunFolder FolderOf(const MeasureOptions& options) {
 BegunRun TakeUpIfAsked(const MeasureOptions& options, const Scenario& scenario, const RunFolder& folder) {
   const bool is_begun = std::filesystem::exists(folder.record());
   if (!options.resume) {
-    RequireRoomFor(folder);
+    RequireRoomFor(folder, scenario);
     return {};
   }
-  if (!std::filesystem::exists(folder.path)) throw NothingToResume(folder);
+  if (!std::filesystem::exists(folder.path)) BeginAnewInsteadOfResuming(folder);
   if (!is_begun) {  // it ended before there was anything to keep
     if (std::filesystem::exists(folder.scenario())) RequireSameScenario(scenario, folder);
     return {};

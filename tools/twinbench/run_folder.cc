@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string_view>
 
 #include "twin/core/errors.h"
@@ -33,9 +34,13 @@ bool IsDatabase(const std::string& path) {
 
 }  // namespace
 
-void RequireRoomFor(const RunFolder& folder) {
+void RequireRoomFor(const RunFolder& folder, const Scenario& scenario) {
+  if (fs::exists(folder.record())) return;  // the record says so itself
+  std::ostringstream left;
+  left << std::ifstream(folder.scenario()).rdbuf();
+  if (left.str() == WriteScenario(scenario)) return;
   for (const std::string& file : {folder.scenario(), folder.truth(), folder.results()}) {
-    if (fs::exists(file) && !fs::exists(folder.record()))  // of a run: the record says so
+    if (fs::exists(file))
       throw InputError(file, "the file is there already, and the run would overwrite it", "a folder without it");
   }
 }

@@ -20,9 +20,10 @@ struct RunFolder {
   std::string images() const { return path + "/images"; }
 };
 
-/// Before a run is made: nothing that lies in the folder may be overwritten by it.
-/// @throws InputError if it holds a file that the run would write.
-void RequireRoomFor(const RunFolder& folder);
+/// Before a run is made: nothing that lies in the folder may be overwritten by it, but what a run of the same scenario
+/// that came to nothing has left.
+/// @throws InputError if it holds another file that the run would write.
+void RequireRoomFor(const RunFolder& folder, const Scenario& scenario);
 
 /// Before a file is written that the user named.
 /// @param output  Empty or "-": no file.

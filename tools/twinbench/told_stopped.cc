@@ -20,11 +20,11 @@ std::string Reason(const std::exception& why) {
 void TellStopped(const std::exception& why, const std::string& what, const procedure::Standstill& stands) {
   constexpr const char* kKept = "every reading so far is kept. Go on with --resume";
   if (!stands.is_sure)
-    throw StateUnknown(fmt::format("{}. STATE UNKNOWN - USE THE EMERGENCY STOP: whether the {} stand still is not known: "
+    throw StateUnknown(fmt::format("{}. STATE UNKNOWN - USE THE EMERGENCY STOP. WHETHER THE {} STAND STILL IS NOT KNOWN: "
                                    "{}; {}",
-                                   Reason(why), what, stands.why_not, kKept));
-  throw BenchError(fmt::format("{}. The {} were brought to rest, as read back from their controllers; {}", Reason(why),
-                               what, kKept));
+                                   Reason(why), what == "axes" ? "AXES" : "TABLES", stands.why_not, kKept));
+  throw BenchError(fmt::format("{}. The {} were brought to rest. The controller says that all {} stand still; {}",
+                               Reason(why), what, what, kKept));
 }
 
 }  // namespace twinbench::tools

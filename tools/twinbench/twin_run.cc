@@ -11,7 +11,7 @@ namespace twinbench::tools {
 
 void RunOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
   const Bench& bench = BenchOf(scenario);
-  RequireRoomFor(folder);
+  RequireRoomFor(folder, scenario);
   if (images && !bench.is_pictured)
     throw InputError("--images", "the bench " + scenario.bench + " has no light on PSDs", "a run without images");
   const std::unique_ptr<BenchTwin> twin = bench.make_twin(scenario);

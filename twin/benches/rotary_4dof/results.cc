@@ -11,8 +11,7 @@ namespace twinbench::benches::rotary {
 namespace {
 
 /// What others script against (formats.md); results.json of a run has the rest.
-nlohmann::json SeparationJson(const separate::Separation& separation) {
-  const nlohmann::json all = separate::ToJson(separation);
+nlohmann::json Agreed(const nlohmann::json& all) {
   nlohmann::json agreed;
   for (const char* key : {"target", "reference", "not_separable", "residual_rms", "dof"}) agreed[key] = all.at(key);
   return agreed;
@@ -35,9 +34,9 @@ TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const Analysis analysis = Analyse(scenario, readings, estimator);
-  const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation) : nlohmann::json();
   nlohmann::json results = ToJson(analysis);
   if (analysis.separation) AddParts(analysis, readings, scenario, results["separation"]);
+  const nlohmann::json separation = analysis.separation ? Agreed(results["separation"]) : nlohmann::json();
   report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
   if (analysis.separation) evaluation.joints = JointsOf(*analysis.separation);
   return evaluation;
