@@ -89,7 +89,7 @@ TEST_F(Attack, ResumeNamesTheRunThatIsNotThere) {
   };
   const Outcome anew = Call(measure("tuesday"));
   EXPECT_EQ(anew.exit_code, 0);
-  EXPECT_THAT(anew.err, HasSubstr("there is no run in tuesday to resume; a new one begins"));
+  EXPECT_THAT(anew.out, HasSubstr("there is no run in tuesday to resume; a new one begins"));
   RunRecord::Create(At("monday"), {"test", "twin", 5, "", "rotary_4dof"});  // begun, and ended before its first reading
   EXPECT_EQ(Refusal(measure("mondya")),
             "twinbench: --resume: there is no run in mondya; expected the folder of a run that was begun, perhaps "

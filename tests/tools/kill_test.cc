@@ -17,9 +17,9 @@ using std::chrono::steady_clock;
 class KilledRun : public Program {
  protected:
   KilledRun() {
-    // 2 * 13 + 2 * 13 + 4 * 4 * 72 = 1204 readings, one transaction each.
+    // 2 * 13 + 2 * 13 + 4 * 4 * 360 = 5812 readings, one transaction each.
     Write("long.toml",
-          "bench = \"rotary_4dof\"\n[mechanics]\nfidelity = \"kinematic\"\n[procedure]\npositions = 72\n");
+          "bench = \"rotary_4dof\"\n[mechanics]\nfidelity = \"kinematic\"\n[procedure]\npositions = 360\n");
     const auto start = steady_clock::now();
     Succeed({"run", "long.toml", "-o", "undisturbed"});
     duration_ = steady_clock::now() - start;

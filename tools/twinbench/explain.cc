@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <optional>
 
@@ -124,12 +123,28 @@ std::optional<report::CurveText> Picture(const BenchFormat& bench, const Signatu
   return clearest;
 }
 
-/// The test itself, where a run has other parts as well.
-std::vector<Reading> OfTheTest(const std::vector<Reading>& readings) {
-  std::vector<Reading> test;
-  std::ranges::copy_if(readings, std::back_inserter(test),
-                       [](const Reading& reading) { return reading.phase == Phase::kFullCircle; });
-  return test.empty() ? readings : test;
+/// Two runs of the twin, reading by reading.
+struct Pair {
+  std::vector<Reading> without, with;
+
+  Pair OfPhase(Phase phase) const {
+    Pair part;
+    for (std::size_t k = 0; k < without.size(); ++k) {
+      if (without[k].phase != phase) continue;
+      part.without.push_back(without[k]);
+      part.with.push_back(with[k]);
+    }
+    return part;
+  }
+};
+
+/// The test itself, unless the effect is next to nothing there: calibration shows what tables without errors do not.
+Pair WhereItIsSeen(const BenchFormat& bench, const Pair& whole) {
+  constexpr double kNextToNothing = 1e-3;
+  const Pair test = whole.OfPhase(Phase::kFullCircle);
+  const double in_test = LargestSignature(bench, test.without, test.with).rms;
+  const double in_all = LargestSignature(bench, whole.without, whole.with).rms;
+  return in_test > kNextToNothing * in_all ? test : whole;
 }
 
 std::string Block(const EffectEntry& effect) {
@@ -146,17 +161,18 @@ Scenario Usual(const BenchFormat& bench, const std::vector<std::string>& overrid
 }
 
 void PrintSignature(const BenchFormat& bench, const EffectEntry& effect) {
-  const std::vector<Reading> without = OfTheTest(ReadingsOfTwin(Usual(bench, {})));
-  const std::vector<Reading> with = OfTheTest(ReadingsOfTwin(Usual(bench, {Block(effect)})));
-  const Signature signature =
-      without.size() == with.size() ? LargestSignature(bench, without, with) : Signature{};
+  Pair seen{ReadingsOfTwin(Usual(bench, {})), ReadingsOfTwin(Usual(bench, {Block(effect)}))};
+  if (seen.without.size() == seen.with.size()) seen = WhereItIsSeen(bench, seen);
+  const Signature signature = seen.without.size() == seen.with.size()
+                                  ? LargestSignature(bench, seen.without, seen.with)
+                                  : Signature{};
   if (signature.rms == 0.0) {
     fmt::print("    At this size it leaves the readings of the usual scenario as they are.\n");
     return;
   }
   fmt::print("    At this size it moves {} most: {:.3g} rms over the usual scenario, without noise.\n\n",
              signature.column, signature.rms);
-  if (const auto picture = Picture(bench, signature, with))
+  if (const auto picture = Picture(bench, signature, seen.with))
     fmt::print("{}\n", report::PlotOf(*picture, LettersOfStdout()));
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 
@@ -49,7 +50,8 @@ void BeginAnewInsteadOfResuming(const RunFolder& folder) {
   if (!meant.empty())
     throw InputError("--resume", "there is no run in " + folder.path,
                      "the folder of a run that was begun, perhaps " + meant + "; without --resume a new one is");
-  fmt::print(stderr, "twinbench: there is no run in {} to resume; a new one begins\n", folder.path);
+  fmt::print("there is no run in {} to resume; a new one begins\n", folder.path);
+  std::fflush(stdout);
 }
 
 }  // namespace
