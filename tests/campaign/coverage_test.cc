@@ -2,7 +2,7 @@
 
 #include "twin/campaign/summary.h"
 
-/// Whether the stated 95 % intervals hold the truth, on every bench: the studies of studies/, fewer trials of them
+/// Whether the stated 95 % intervals hold the truth, on every bench: the studies of scenarios/studies/, fewer trials of them
 /// (docs/campaign.md has the figures of all), with the standards' errors drawn where that takes little time.
 namespace twinbench::campaign {
 namespace {
@@ -20,7 +20,7 @@ class Coverage : public testing::TestWithParam<Covered> {};
 /// Numbers of one trial go together (one draw of a gain moves all), so that few trials leave a share that wanders by
 /// several percent; what is wrong by a factor of 1.5 covers 81 %.
 TEST_P(Coverage, IsThatOfTheStatedIntervals) {
-  Study study = LoadStudy(std::string(TWINBENCH_SOURCE_DIR) + "/studies/" + GetParam().study);
+  Study study = LoadStudy(std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/studies/" + GetParam().study);
   study.set.insert(study.set.end(), GetParam().set.begin(), GetParam().set.end());
   study.standards = GetParam().standards;
   const Design design(study);
