@@ -35,10 +35,7 @@ std::vector<OwnKey> EncoderChanges() {
           Change("encoder_procedure.rest_s", "5.0", sweep),
           Change("encoder_procedure.interval_s", "0.15", sweep),
           Change("encoder_procedure.heads_deg", "[0.0, 90.0, 217.0]"),
-          Change("encoder_procedure.reference_noise_arcsec", "5.0", {"encoder_procedure.heads_deg=[0.0, 90.0, 217.0]"}),
-          Change("device.graduation_arcsec", "40.0"),
-          Change("device.graduation_fall", "0.5", {"device.graduation_arcsec=40.0"}),
-          Change("device.graduation_orders", "20", {"device.graduation_arcsec=40.0"})};
+          Change("encoder_procedure.reference_noise_arcsec", "5.0", {"encoder_procedure.heads_deg=[0.0, 90.0, 217.0]"})};
 }
 
 /// A coast is read by the times of lines; the readings are compared as the mean angle errors of each pass.
@@ -50,17 +47,17 @@ std::vector<OwnKey> CoastChanges() {
           Change("encoder_procedure.stamps_per_turn", "128", {coast[0], coast[1], coast[2]}),
           Change("spindle.friction_deg_s2", "2.0", coast),
           Change("spindle.viscous_per_s", "3e-3", coast),
-          Change("spindle.drag_per_turn", "1e-5", coast),
-          Change("spindle.torque_deg_s2", "3.0", coast),
-          Change("spindle.torque_order", "5", {coast[0], coast[1], coast[2], coast[3], "spindle.torque_deg_s2=3.0"}),
-          Change("spindle.ripple_deg_s2", "0.4", coast),
-          Change("spindle.ripple_order", "5", {coast[0], coast[1], coast[2], coast[3], "spindle.ripple_deg_s2=0.4"})};
+          Change("spindle.drag_per_turn", "1e-5", coast)};
 }
 
 const std::vector<OwnKey>& Keys() {
   static const std::vector<OwnKey> keys = [] {
     std::vector<OwnKey> all = EncoderChanges();
     for (const OwnKey& key : CoastChanges()) all.push_back(key);
+    for (const char* key : {"device.graduation_arcsec", "device.graduation_fall", "device.graduation_orders"})
+      all.push_back({key, {}, "the ring's errors are drawn: a diagnosis finds them, no scenario says which they are"});
+    for (const char* key : {"spindle.torque_deg_s2", "spindle.torque_order", "spindle.ripple_deg_s2", "spindle.ripple_order"})
+      all.push_back({key, {}, "not followed yet: in the mean turns that are compared, what they move the shaft by counts as the ring's"});
     all.push_back({"bench", {}, "another bench"});
     all.push_back({"title", {}, "words"});
     all.push_back({"seed", {}, "every run has its own"});

@@ -35,7 +35,7 @@ struct TimeReversal {
 ///
 /// Uncertainty: scatter of neighbouring orders between turns, which must be independent. Not included: motion of the
 /// shaft across its axis under the one head, torques that change from pass to pass, orders from half the lines on.
-/// Reference: docs/theory.md 11.2. The method is that of Lu et al., CIRP Annals 59 (2010) 529-534.
+/// Reference: docs/theory.md 12.2. The method is that of Lu et al., CIRP Annals 59 (2010) 529-534.
 TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOptions& options = {});
 
 /// Time-measurement dynamic reversal as its authors' abstract and patent (US 7840372) describe it: the loss of speed
