@@ -156,14 +156,21 @@ double Left_V(const Scenario& scenario, const std::vector<Reading>& readings) {
   return std::sqrt(squares_V2 / (kChannels * double(readings.size())));
 }
 
-TEST(CodeWidths, AreFollowed) {
+/// A mean has a noise of 1.4 uV, and nothing else any.
+Scenario WithLittleNoise() {
   Scenario scenario = test::SmallNoiseFree();
   scenario.noise_free = false;
   scenario.environment.sensor_noise_K = 0.0;
   RotarySettings& own = RotaryOf(scenario);
   own.autocollimator.noise_rad = 0.0;
   own.amplifier.noise_V = 0.2e-3;
-  own.adc.samples = 20000;  // noise of a mean: 1.4 uV
+  own.adc.samples = 20000;
+  return scenario;
+}
+
+TEST(CodeWidths, AreFollowed) {
+  Scenario scenario = WithLittleNoise();
+  RotarySettings& own = RotaryOf(scenario);
   own.chain.dnl_lsb = 0.4;
   const test::TwinRun run = test::RunTwin(scenario);
   EXPECT_LT(Left_V(scenario, run.readings), 3e-6);
@@ -176,13 +183,8 @@ TEST(CodeWidths, AreFollowedAsMeasured) {
   std::string table = "code,dnl_lsb\n";
   for (int code = -32768; code < 32768; ++code)
     table += std::to_string(code) + (code % 2 == 0 ? ",0.91\n" : ",-0.89\n");
-  Scenario scenario = test::SmallNoiseFree();
-  scenario.noise_free = false;
-  scenario.environment.sensor_noise_K = 0.0;
+  Scenario scenario = WithLittleNoise();
   RotarySettings& own = RotaryOf(scenario);
-  own.autocollimator.noise_rad = 0.0;
-  own.amplifier.noise_V = 0.2e-3;
-  own.adc.samples = 20000;  // noise of a mean: 1.4 uV
   own.psd_a.bandwidth_Hz = own.psd_b.bandwidth_Hz = 1.0;  // the light's own noise blurs steps, too
   own.chain.dnl_file = WidthsFile(table);
   const test::TwinRun run = test::RunTwin(scenario);

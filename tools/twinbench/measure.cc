@@ -38,8 +38,9 @@ procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
   return options;
 }
 
-/// With what the controllers say about their limits; they are asked, nothing moves.
+/// With what the controllers of a real bench say about their limits; they are asked, nothing moves.
 procedure::Options WithAgreedLimits(procedure::Options options, const hw::BenchFile& file, const Scenario& scenario) {
+  if (file.kind != "hardware") return options;
   const hw::BenchLock lock(hw::AddressesOf(file), "rehearse");
   const auto limits = OpenAnyBench(file, scenario, {})->Limits();
   if (!limits) return options;

@@ -38,6 +38,10 @@ std::string RecordPath(const std::string& directory) {
   return (std::filesystem::path(directory) / "record.sqlite").string();
 }
 
+std::string LockPath(const std::string& directory) {
+  return (std::filesystem::path(directory) / "record.lock").string();
+}
+
 /// Write-ahead log, and the disk has it before a commit returns.
 void MakeSafe(SqliteDatabase& database) {
   database.Execute("PRAGMA journal_mode = WAL");
@@ -58,7 +62,7 @@ void SyncDirectory(const std::string& directory) {
 class WriterLock {
  public:
   explicit WriterLock(const std::string& directory) {
-    const std::string path = (std::filesystem::path(directory) / "record.lock").string();
+    const std::string path = LockPath(directory);
     handle_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (handle_ < 0) throw BenchError(path + ": cannot be made");
     if (flock(handle_, LOCK_EX | LOCK_NB) == 0) return;
@@ -245,7 +249,7 @@ void RunRecord::Finish() {
 }
 
 bool RunRecord::HasWriter(const std::string& directory) {
-  const std::string path = (std::filesystem::path(directory) / "record.lock").string();
+  const std::string path = LockPath(directory);
   const int handle = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (handle < 0) return false;
   const bool is_free = flock(handle, LOCK_SH | LOCK_NB) == 0;

@@ -80,10 +80,7 @@ report::Evaluation EvaluateCoast(const Scenario& scenario, const std::vector<Rea
     evaluation.results["not_separated"] = timed.not_separated;
     return evaluation;
   }
-  evaluation.separation = CoastSeparationJson(timed);
-  evaluation.results.update(evaluation.separation);
-  evaluation.results["notes"] = timed.notes;
-  evaluation.results["separation"] = {{"not_separable", timed.not_separable}, {"dof", report::In(1.0, timed.dof)}};
+  AddCalibration(CoastSeparationJson(timed), timed.notes, evaluation);
   return evaluation;
 }
 

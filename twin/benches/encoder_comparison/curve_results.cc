@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/report/json_units.h"
@@ -25,6 +26,14 @@ nlohmann::json CurveJson(const HarmonicSeries& series, const std::string& name) 
     json["u_" + name + "_arcsec"].push_back(report::Arcsec(curve.u_rad[i]));
   }
   return json;
+}
+
+void AddCalibration(nlohmann::json separation, const std::vector<std::string>& notes, report::Evaluation& evaluation) {
+  evaluation.separation = std::move(separation);
+  evaluation.results.update(evaluation.separation);
+  evaluation.results["notes"] = notes;
+  for (const char* key : {"not_separable", "dof"})
+    evaluation.results["separation"][key] = evaluation.separation.at(key);
 }
 
 nlohmann::json HarmonicsJson(const HarmonicSeries& series) {

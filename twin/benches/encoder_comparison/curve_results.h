@@ -2,9 +2,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/report/curve_score.h"
+#include "twin/report/evaluation.h"
 #include "twin/separate/series.h"
 
 /// A curve of angle errors as files and persons get it.
@@ -14,6 +16,9 @@ inline constexpr int kCurvePoints = 360;  // a degree
 
 /// {"position_deg", name + "_arcsec", "u_" + name + "_arcsec"} at every degree.
 nlohmann::json CurveJson(const separate::harmonics::HarmonicSeries& series, const std::string& name);
+
+/// A calibration without a standard as results.json has it: what separation.json says, with notes beside it.
+void AddCalibration(nlohmann::json separation, const std::vector<std::string>& notes, report::Evaluation& evaluation);
 
 /// Amplitude and phase of every order that is known, with their uncertainties.
 nlohmann::json HarmonicsJson(const separate::harmonics::HarmonicSeries& series);

@@ -144,10 +144,7 @@ report::Evaluation EvaluateHeads(const Scenario& scenario, const std::vector<Rea
     evaluation.results["not_separated"] = heads.not_separated;
     return evaluation;
   }
-  evaluation.separation = HeadsSeparationJson(heads);
-  evaluation.results.update(evaluation.separation);
-  evaluation.results["notes"] = heads.notes;
-  evaluation.results["separation"] = {{"not_separable", NotSeparableOf(heads)}, {"dof", report::In(1.0, heads.dof)}};
+  AddCalibration(HeadsSeparationJson(heads), heads.notes, evaluation);
   return evaluation;
 }
 

@@ -1,9 +1,9 @@
 #include "twin/benches/encoder_comparison/estimators/comparison_fit.h"
+#include "twin/separate/mean.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "twin/benches/encoder_comparison/estimators/mean.h"
 
 namespace twinbench::separate::encoder {
 namespace {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <map>
 
-#include "twin/benches/encoder_comparison/estimators/mean.h"
 #include "twin/benches/encoder_comparison/estimators/method_distance.h"
 #include "twin/benches/encoder_comparison/estimators/turn_orders.h"
+#include "twin/separate/mean.h"
 
 namespace twinbench::separate::encoder {
 namespace {

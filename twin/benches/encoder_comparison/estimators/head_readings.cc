@@ -6,8 +6,8 @@
 #include <set>
 
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
-#include "twin/benches/encoder_comparison/estimators/mean.h"
 #include "twin/core/units.h"
+#include "twin/separate/mean.h"
 
 namespace twinbench::separate::encoder {
 namespace {

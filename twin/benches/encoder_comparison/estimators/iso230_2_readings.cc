@@ -7,15 +7,15 @@
 
 #include "twin/benches/encoder_comparison/estimators/angle_comparison.h"
 #include "twin/benches/encoder_comparison/estimators/iso230_2.h"
-#include "twin/benches/encoder_comparison/estimators/mean.h"
 #include "twin/core/units.h"
+#include "twin/separate/mean.h"
 
 namespace twinbench::measure {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-using separate::encoder::Mean;
+using separate::Mean;
 
 /// The readings at one position.
 struct Stop {

@@ -4,16 +4,10 @@
 #include <map>
 
 #include "twin/core/units.h"
+#include "twin/separate/mean.h"
 
 namespace twinbench::separate::turntable {
 namespace {
-
-struct Mean {
-  double sum = 0.0;
-  int count = 0;
-  void Add(double value) { sum += value, ++count; }
-  double Value() const { return sum / count; }
-};
 
 /// One usable check reading.
 struct Checked {

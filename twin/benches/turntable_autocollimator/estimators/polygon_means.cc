@@ -4,30 +4,21 @@
 #include <map>
 
 #include "twin/core/errors.h"
+#include "twin/separate/mean.h"
 
 namespace twinbench::separate::turntable {
 namespace {
-
-struct RunningMean {
-  double sum = 0.0;
-  int count = 0;
-  void Add(double value) {
-    sum += value;
-    ++count;
-  }
-  double Mean() const { return sum / count; }
-};
 
 /// Takes the means of a label's values out of all values.
 /// @return the means.
 template <class Label>
 std::map<int, double> TakeOutMeans(const std::vector<FaceReading>& readings, Label label,
                                    Eigen::VectorXd& value_rad) {
-  std::map<int, RunningMean> running;
+  std::map<int, Mean> running;
   for (std::size_t i = 0; i < readings.size(); ++i)
     running[label(readings[i])].Add(value_rad[static_cast<Eigen::Index>(i)]);
   std::map<int, double> means;
-  for (const auto& [name, mean] : running) means[name] = mean.Mean();
+  for (const auto& [name, mean] : running) means[name] = mean.Value();
   for (std::size_t i = 0; i < readings.size(); ++i)
     value_rad[static_cast<Eigen::Index>(i)] -= means.at(label(readings[i]));
   return means;

@@ -1,7 +1,8 @@
 #pragma once
 
-namespace twinbench::separate::encoder {
+namespace twinbench::separate {
 
+/// The mean of numbers that come one after the other.
 struct Mean {
   double sum = 0.0;
   int count = 0;
@@ -13,4 +14,4 @@ struct Mean {
   double Value() const { return sum / count; }
 };
 
-}  // namespace twinbench::separate::encoder
+}  // namespace twinbench::separate
