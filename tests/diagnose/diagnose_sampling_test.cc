@@ -76,7 +76,7 @@ std::set<std::string> NamedIn(const Sampling& sampling, Error error_deg) {
 const std::vector<Sampling>& Samplings() {
   static const std::vector<Sampling> samplings = {{"a few", 360},
                                                   {"many", 2000},
-                                                  {"very many", 20000},
+                                                  {"very many", 10000},
                                                   {"uneven", 2000, 1.0, 0.9},
                                                   {"several turns", 2000, 3.3, 0.9}};
   return samplings;
@@ -105,7 +105,7 @@ TEST(DiagnoseSampling, FaultsThatAreOneToFirstOrderAreTold) {
   const auto error_deg = [](double angle_rad, int, double) {
     return CutOff_deg(angle_rad) + 0.1 * std::cos(7.0 * angle_rad + 0.4);
   };
-  for (const Sampling& sampling : {Sampling{"many", 2000}, Sampling{"very many", 20000}})
+  for (const Sampling& sampling : {Sampling{"many", 2000}, Sampling{"very many", 10000}})
     EXPECT_EQ(NamedIn(sampling, error_deg), (std::set<std::string>{"periodic", "signal_clipping", "signal_offset"}))
         << sampling.name;
 }
