@@ -15,6 +15,7 @@
 #include "tools/twinbench/follow.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/terminal.h"
+#include "twin/benches/diagnosis_json.h"
 #include "twin/benches/registry.h"
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
@@ -71,15 +72,6 @@ void CheckExcluded(const std::vector<std::string>& excluded, const std::string& 
 std::string Provenance(const std::string& source, std::size_t readings) {
   return fmt::format("twinbench {} diagnosed {} ({} readings) on {:%Y-%m-%d}", TWINBENCH_VERSION, source, readings,
                      fmt::gmtime(std::chrono::system_clock::now()));
-}
-
-/// diagnosis.json, with what the accepted causes change in the separated errors.
-nlohmann::json JsonOf(const diagnose::DiagnosisRun& found, const Scenario& scenario, const std::string& extended) {
-  nlohmann::json json = diagnose::ToJson(found, extended);
-  const auto change_of_tables = BenchOf(scenario).change_of_tables;
-  if (change_of_tables && !found.accepted.empty())
-    json["gain"]["change_of_tables"] = change_of_tables(found, scenario);
-  return json;
 }
 
 /// Raw blocks of the readings that have numbers.
@@ -141,7 +133,7 @@ void DiagnoseRun(const DiagnoseOptions& options) {
     WriteFileAtOnce(options.extended,
                     diagnose::ExtendedToml(run.scenario, found, Provenance(options.source, run.readings.size())));
   }
-  const nlohmann::json json = JsonOf(found, run.scenario, options.extended);
+  const nlohmann::json json = DiagnosisJson(found, run.scenario, options.extended);
   if (!options.json.empty()) WriteJson(options.json, json);
   const diagnose::Shown shown = diagnose::ShownBy(found);
   report::DiagnosisPage page{found, shown, options.source};

@@ -1,0 +1,197 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/python/follow_class.h"
+#include "tools/python/json_values.h"
+#include "tools/python/own_bench.h"
+#include "tools/python/readings_columns.h"
+#include "tools/twinbench/evaluated_run.h"
+#include "tools/twinbench/run_folder.h"
+#include "twin/benches/diagnosis_json.h"
+#include "twin/benches/encoder_comparison/procedure.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/core/errors.h"
+#include "twin/core/estimator.h"
+#include "twin/core/run_record.h"
+#include "twin/diagnose/extend.h"
+#include "twin/model/follow.h"
+#include "twin/report/evaluation.h"
+
+// The compiled half of the package; what users call, with docstrings, is in twinbench/*.py.
+namespace twinbench::python {
+namespace {
+
+namespace py = pybind11;
+using NoLock = py::call_guard<py::gil_scoped_release>;
+
+/// Readings and the name of their bench, which says what their columns are.
+struct Readings {
+  std::string bench;
+  std::vector<Reading> readings;
+};
+
+/// Ctrl-C ends a long run.
+void Interrupted(const procedure::Progress& /*progress*/) {
+  py::gil_scoped_acquire lock;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+std::unique_ptr<RunRecord> NewRecord(const Scenario& scenario, const char* backend) {
+  return RunRecord::CreateInMemory({TWINBENCH_VERSION, backend, scenario.seed, "", scenario.bench});
+}
+
+struct TwinRun {
+  Readings readings;
+  nlohmann::json truth;
+};
+
+TwinRun RunTwin(const Scenario& scenario) {
+  const std::unique_ptr<BenchTwin> twin = BenchOf(scenario).make_twin(scenario);
+  const auto record = NewRecord(scenario, "twin");
+  twin->CarryOut(*record, Interrupted);
+  return {{scenario.bench, record->Readings()}, twin->Truth()};
+}
+
+/// The procedure of the scenario on a bench of somebody's own.
+Readings Drive(const py::object& bench, const Scenario& scenario) {
+  const auto record = NewRecord(scenario, "python");
+  if (scenario.bench == kRotaryBench) {
+    OwnRotaryBench own(bench);
+    py::gil_scoped_release unlocked;
+    RotaryBench devices = own.Bench();
+    procedure::CarryOut(devices, scenario, *record, Interrupted);
+  } else if (scenario.bench == kEncoderBench) {
+    OwnAngleComparator own(bench);
+    py::gil_scoped_release unlocked;
+    procedure::CarryOut(own, scenario, *record, Interrupted);
+  } else {
+    throw InputError("drive", "the bench " + scenario.bench + " cannot be one of Python's yet",
+                     std::string(kRotaryBench) + " or " + kEncoderBench);
+  }
+  return {scenario.bench, record->Readings()};
+}
+
+report::Evaluation Separated(const Scenario& scenario, const Readings& r, const std::string& estimator) {
+  report::Evaluation evaluation = BenchOf(scenario).evaluate(scenario, r.readings, EstimatorNamed(estimator));
+  if (!evaluation.Separated())
+    throw InputError("the readings", evaluation.not_separated, "readings of a full-circle test");
+  return evaluation;
+}
+
+struct Diagnosed {
+  nlohmann::json json;
+  std::string extended_toml;
+};
+
+Diagnosed DiagnosedBy(const Scenario& scenario, const Readings& r, const std::string& model,
+                      const std::vector<std::string>& excluded, const std::string& cache_folder) {
+  diagnose::DiagnoseOptions options;
+  options.model = EstimatorNamed(model);
+  options.excluded = excluded;
+  options.cache_folder = cache_folder;
+  const diagnose::DiagnosisRun found = diagnose::Diagnose(r.readings, scenario, options);
+  return {DiagnosisJson(found, scenario, ""),
+          diagnose::ExtendedToml(scenario, found, "twinbench " TWINBENCH_VERSION ", Python")};
+}
+
+std::string CsvOf(const Readings& r) {
+  std::ostringstream text;
+  WriteReadingsCsv(r.readings, r.bench, text);
+  return text.str();
+}
+
+Readings FromCsv(const std::string& text, const std::string& name, const std::string& bench) {
+  std::istringstream in(text);
+  return {bench, ParseReadingsCsv(in, name, bench)};
+}
+
+void AddScenario(py::module_& m) {
+  py::class_<Scenario>(m, "Scenario")
+      .def_static("load", &LoadScenario, py::arg("path"), py::arg("overrides") = std::vector<std::string>())
+      .def_static(
+          "parse",
+          [](const std::string& text, const std::string& name, const std::string& folder) {
+            return ParseScenario(text, name, folder);
+          },
+          py::arg("text"), py::arg("name") = "scenario", py::arg("folder") = ".")
+      .def("altered", &Altered, py::arg("overrides"))
+      .def("toml", &WriteScenario)
+      .def_readonly("bench", &Scenario::bench)
+      .def_readonly("title", &Scenario::title)
+      .def_readonly("seed", &Scenario::seed);
+}
+
+void AddReadings(py::module_& m) {
+  py::class_<Readings>(m, "Readings")
+      .def_static("from_csv_text", &FromCsv, py::arg("text"), py::arg("name"), py::arg("bench"))
+      .def("csv_text", &CsvOf)
+      .def("columns", [](const Readings& r) { return ColumnsOf(r.readings, r.bench); })
+      .def("__len__", [](const Readings& r) { return r.readings.size(); })
+      .def_readonly("bench", &Readings::bench);
+}
+
+void AddFunctions(py::module_& m) {
+  m.def("run_twin", [](const Scenario& scenario) {
+    const TwinRun run = [&] {
+      py::gil_scoped_release unlocked;
+      return RunTwin(scenario);
+    }();
+    return py::make_tuple(run.readings, ValueOf(run.truth));
+  });
+  m.def("load_run", [](const std::string& source, const std::string& scenario) {
+    tools::RecordedRun run = tools::LoadRecordedRun(source, scenario, {});
+    Readings readings{run.scenario.bench, std::move(run.readings)};
+    return py::make_tuple(std::move(run.scenario), std::move(readings));
+  });
+  m.def("drive", &Drive, py::arg("bench"), py::arg("scenario"));
+  m.def("evaluate", [](const Scenario& scenario, const Readings& r) {
+    const tools::EvaluatedRun run = [&] {
+      py::gil_scoped_release unlocked;
+      return tools::EvaluatedWithBudget(scenario, r.readings);
+    }();
+    return ValueOf(run.evaluation.results);
+  });
+  m.def("separate", [](const Scenario& scenario, const Readings& r, const std::string& estimator) {
+    const report::Evaluation evaluation = [&] {
+      py::gil_scoped_release unlocked;
+      return Separated(scenario, r, estimator);
+    }();
+    return ValueOf(evaluation.separation);
+  });
+  m.def("score", [](const Scenario& scenario, const Readings& r, const py::object& truth,
+                    const std::string& estimator) {
+    return ValueOf(BenchOf(scenario).score(scenario, r.readings, JsonOf(truth), EstimatorNamed(estimator)).json);
+  });
+  m.def("diagnose", [](const Scenario& scenario, const Readings& r, const std::string& model,
+                       const std::vector<std::string>& excluded, const std::string& cache_folder) {
+    const Diagnosed diagnosed = [&] {
+      py::gil_scoped_release unlocked;
+      return DiagnosedBy(scenario, r, model, excluded, cache_folder);
+    }();
+    return py::make_tuple(ValueOf(diagnosed.json), diagnosed.extended_toml);
+  });
+  m.def(
+      "follow",
+      [](const Scenario& scenario, const Readings& r) { return BenchOf(scenario).follow(scenario, r.readings); },
+      NoLock());
+}
+
+}  // namespace
+}  // namespace twinbench::python
+
+PYBIND11_MODULE(_core, m) {
+  using namespace twinbench::python;
+  m.attr("__version__") = TWINBENCH_VERSION;
+  pybind11::register_exception<twinbench::InputError>(m, "InputError", PyExc_ValueError);
+  pybind11::register_exception<twinbench::BenchError>(m, "BenchError", PyExc_RuntimeError);
+  AddFollow(m);
+  AddScenario(m);
+  AddReadings(m);
+  AddFunctions(m);
+}

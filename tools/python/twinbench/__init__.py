@@ -1,0 +1,25 @@
+"""twinbench: a virtual bench for calibrating rotary tables, in Python.
+
+    import twinbench as tb
+
+    scenario = tb.Scenario("scenarios/rotary_4dof.toml", {"procedure.positions": 12})
+    run = tb.run(scenario)                        # on the twin
+    run.readings["target_deg"]                    # a numpy array; run.readings.frame(): pandas
+    run.results["separation"]["target"]           # as in results.json
+    tb.diagnose(scenario, run.readings)["verdict"]
+
+Everything is what the command line does, to the same bits. Angles and lengths carry their unit in their name; what has
+none in its name is SI. Wrong input raises InputError with where, what and what was expected; a failing bench raises
+BenchError. Long calls let other threads run.
+"""
+
+from ._core import BenchError, InputError, __version__
+from .benches import AngleBench, RotaryBench, TableState
+from .readings import Readings
+from .run import Diagnosis, Follow, Run, diagnose, drive, frame, load, run, score, separate
+from .scenario import Scenario
+
+__all__ = [
+    "AngleBench", "BenchError", "Diagnosis", "Follow", "InputError", "Readings", "RotaryBench", "Run", "Scenario",
+    "TableState", "__version__", "diagnose", "drive", "frame", "load", "run", "score", "separate",
+]
