@@ -2,6 +2,7 @@
 
 #include "hw_bridge/open_bench.h"
 #include "hw_bridge/replay/replay_bench.h"
+#include "tests/contract/python_backend.h"
 #include "tests/contract/rotary_bench.h"
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
@@ -117,7 +118,8 @@ std::vector<BenchBackend> Backends() {
           HardwareBy("iio", "esp"),
           HardwareBy("iio", "pty"),
           HardwareBy("comedi", "scpi"),
-          BenchBackend{"Replay", recorded, true}};
+          BenchBackend{"Replay", recorded, true},
+          PythonBackend()};
 }
 
 }  // namespace twinbench::test

@@ -51,6 +51,8 @@ class RotaryBench:
     """
 
     speed_rad_s = math.radians(10.0)
+    rate_Hz = 250e3  # of scans
+    range_V, bits = 10.0, 16  # of the converter: +- range_V
 
     def __init__(self) -> None:
         self._now_s = 0.0
@@ -61,8 +63,8 @@ class RotaryBench:
     # --- to be overridden ---
 
     def volts(self, target_rad: float, reference_rad: float, n_samples: int) -> Any:
-        """What the converter shows with the tables at these angles: n_samples x 4 [V], in the order psd_a_x, psd_a_y,
-        psd_b_x, psd_b_y; or the name of a status: "no_light", "saturated", "clipped_spot", "overrun"."""
+        """What lies at the converter with the tables at these angles: n_samples x 4 [V], in the order psd_a_x, psd_a_y,
+        psd_b_x, psd_b_y; or the name of a status: "no_light", "clipped_spot", "overrun"."""
         raise NotImplementedError("volts(target_rad, reference_rad, n_samples)")
 
     # --- the devices ---
@@ -99,10 +101,16 @@ class RotaryBench:
 
     def acquire(self, n_samples: int, keep_raw: bool) -> Any:
         """A block: n_samples x 4 volts, or (volts, int16 codes) where counts are kept, or the name of a status."""
-        time_s = self.now_s()
-        angles = [self._tables[table].at(time_s) for table in ("target", "reference")]
-        samples = self.volts(*angles, n_samples)
-        return samples if isinstance(samples, str) else np.asarray(samples, dtype=float)
+        angles = [self._tables[table].at(self.now_s()) for table in ("target", "reference")]
+        volts = self.volts(*angles, n_samples)
+        self.wait(n_samples / self.rate_Hz)
+        if isinstance(volts, str):
+            return volts
+        step_V, last = 2.0 * self.range_V / 2**self.bits, 2 ** (self.bits - 1)
+        codes = np.clip(np.rint(np.asarray(volts) / step_V), -last, last - 1)
+        if np.isin(codes, (-last, last - 1)).any():
+            return "saturated"
+        return codes * step_V, codes.astype(np.int16)
 
     def autocollimator(self) -> tuple[float, float] | None:
         """Yaw and tilt of the grating [rad]; None: it sees nothing."""

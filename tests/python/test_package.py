@@ -1,0 +1,206 @@
+"""The Python package beside the command line, whose numbers it must give, and a bench of its own."""
+
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import twinbench as tb
+from closed_form_bench import ClosedFormBench
+from twinbench.values import plain, toml
+
+PROGRAM = os.environ["TWINBENCH_PROGRAM"]
+SCENARIOS = pathlib.Path(os.environ["TWINBENCH_SCENARIOS"])
+
+# A small run of every bench.
+SMALL = {
+    "rotary_4dof": {"procedure.positions": 12},
+    "turntable_autocollimator": {"turntable_procedure.positions": 12},
+    "encoder_comparison": {"encoder_procedure.turns": 1},
+    "hob_transmission": {"hob_procedure.samples_per_turn": 90, "mechanics.fidelity": "kinematic"},
+    "circular_motion": {},
+    "freeform_five_axis": {"freeform_procedure.poses": 60},
+}
+
+
+def small(bench: str) -> tb.Scenario:
+    return tb.Scenario(SCENARIOS / f"{bench}.toml", SMALL[bench])
+
+
+def command(*arguments: str) -> None:
+    subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True)
+
+
+class SameAsTheCommandLine(unittest.TestCase):
+    def test_every_bench_to_the_bit(self):
+        for bench, changes in SMALL.items():
+            with self.subTest(bench), tempfile.TemporaryDirectory() as folder:
+                sets = [part for key, value in changes.items() for part in ("--set", f"{key}={toml(value)}")]
+                command("run", SCENARIOS / f"{bench}.toml", "-o", f"{folder}/run", *sets)
+                command("export", f"{folder}/run", "--readings", f"{folder}/readings.csv")
+                run = tb.run(small(bench))
+                run.readings.to_csv(f"{folder}/own.csv")
+                own, theirs = (pathlib.Path(folder, name).read_text().splitlines() for name in ("own.csv", "readings.csv"))
+                self.assertEqual(own, [line for line in theirs if not line.startswith("#")])
+                results = json.loads(pathlib.Path(folder, "run/results.json").read_text())
+                self.assertEqual(plain(run.results), results)
+                again = tb.load(f"{folder}/run")
+                self.assertEqual(again.scenario.toml(), run.scenario.toml())
+
+    def test_a_diagnosis_to_the_bit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            effect = [{"name": "periodic", "order": 5, "amplitude_deg": 0.05}]
+            scenario = small("encoder_comparison")
+            changed = scenario.changed({"device.noise_deg": 0.002})
+            readings = tb.run(changed.changed({"effect": effect})).readings
+            readings.to_csv(f"{folder}/readings.csv")
+            pathlib.Path(folder, "scenario.toml").write_text(changed.toml())
+            command("diagnose", f"{folder}/readings.csv", "--scenario", f"{folder}/scenario.toml",
+                    "--json", f"{folder}/diagnosis.json", "--cache", f"{folder}/cache")
+            found = tb.diagnose(changed, readings)
+            theirs = json.loads(pathlib.Path(folder, "diagnosis.json").read_text())
+            self.assertEqual(plain(dict(found)), theirs)
+            self.assertEqual(found["causes"][0]["effect"], "periodic")
+            self.assertIn("periodic", found.extended.toml())
+
+
+class Values(unittest.TestCase):
+    def test_keys_are_read_and_set_in_their_units(self):
+        scenario = small("rotary_4dof")
+        scenario["laser.wavelength_nm"] = 633.0
+        self.assertEqual(scenario["laser.wavelength_nm"], 633.0)
+        self.assertEqual(scenario["procedure"]["positions"], 12)
+        with self.assertRaisesRegex(tb.InputError, "wavelength_nm"):
+            scenario["laser.wavelength_mn"] = 1.0
+        with self.assertRaises(TypeError):
+            scenario["laser.wavelength_nm"] = float("nan")
+        self.assertEqual(scenario["laser.wavelength_nm"], 633.0)
+        with self.assertRaises(KeyError):
+            scenario["laser.colour"]
+
+    def test_readings_survive_columns_and_frames(self):
+        for bench in SMALL:
+            with self.subTest(bench):
+                readings = tb.run(small(bench)).readings
+                back = tb.Readings.from_columns(readings.frame(), bench)
+                self.assertEqual(list(back), list(readings))
+                for name in readings:
+                    np.testing.assert_array_equal(back[name], readings[name])
+
+    def test_a_wrong_column_is_named(self):
+        readings = tb.run(small("encoder_comparison")).readings
+        broken = readings["time_s"].copy()
+        broken[5] = broken[4] - 1.0
+        with self.assertRaisesRegex(tb.InputError, "time"):
+            readings.with_columns(time_s=broken)
+
+    def test_hdf5_holds_the_columns_with_their_units(self):
+        import h5py
+
+        readings = tb.run(small("turntable_autocollimator")).readings
+        with tempfile.TemporaryDirectory() as folder:
+            readings.to_hdf5(f"{folder}/readings.nxs")
+            with h5py.File(f"{folder}/readings.nxs") as file:
+                data = file["readings/data"]
+                np.testing.assert_array_equal(data["time_s"][:], readings["time_s"])
+                self.assertEqual(data["time_s"].attrs["units"], "s")
+            with self.assertRaises(FileExistsError):
+                readings.to_hdf5(f"{folder}/readings.nxs")
+
+
+class Following(unittest.TestCase):
+    def test_a_slope_is_the_difference_of_two_predictions(self):
+        scenario = small("rotary_4dof")
+        readings = tb.run(scenario).readings
+        follow = tb.Follow(scenario, readings)
+        step = np.full(readings.count, 1e-6)
+        by_hand = (follow.predict({"laser.yaw": step}) - follow.predict({"laser.yaw": -step})) / 2e-6
+        np.testing.assert_allclose(follow.slope("laser.yaw"), by_hand, rtol=1e-5, atol=1e-6)
+        with self.assertRaisesRegex(tb.InputError, "laser.yaw"):
+            follow.slope("laser.yaww")
+        with self.assertRaisesRegex(tb.InputError, "one a reading"):
+            follow.predict({"laser.yaw": np.zeros(3)})
+
+
+class OwnBench(unittest.TestCase):
+    def test_closed_form_optics_are_separated_to_what_was_put_in(self):
+        scenario = tb.Scenario(SCENARIOS / "rotary_4dof.toml", {
+            "procedure.positions": 24, "target.random.ez_arcsec": 0.0, "amplifier.noise_mV": 0.5})
+        run = tb.drive(ClosedFormBench(scenario.toml()), scenario)
+        self.assertEqual(set(run.readings["status"]), {"ok"})
+        for table, truth in (("target", ClosedFormBench.target_arcsec), ("reference", ClosedFormBench.reference_arcsec)):
+            errors = tb.separate(scenario, run.readings)[table]
+            expected = truth(np.radians(errors["position_deg"]))
+            off = (errors["ez_arcsec"] - errors["ez_arcsec"].mean()) - (expected - expected.mean())
+            self.assertLess(np.sqrt(np.mean((off / errors["u_ez_arcsec"]) ** 2)), 1.5)
+            self.assertLess(np.abs(off).max(), 0.1)
+
+    def test_an_angle_device_of_ones_own(self):
+        class Device(tb.AngleBench):
+            random = np.random.default_rng(5)
+
+            def take(self, time_s, reference_rad, velocity_rad_s, direction):
+                error_rad = math.radians(20.0 / 3600.0) * math.cos(3.0 * reference_rad)
+                return reference_rad, reference_rad + error_rad + 1e-6 * self.random.standard_normal()
+
+        third = tb.drive(Device(), small("encoder_comparison")).results["harmonics"]["device"][2]
+        self.assertAlmostEqual(third["amplitude_arcsec"], 20.0, delta=4.0 * third["u_amplitude_arcsec"])
+
+    def test_what_a_bench_raises_ends_the_run_in_its_words(self):
+        class Broken(ClosedFormBench):
+            def temperature_degC(self):
+                raise ValueError("the thermometer has fallen off")
+
+        scenario = small("rotary_4dof")
+        with self.assertRaisesRegex(tb.BenchError, "the thermometer has fallen off"):
+            tb.drive(Broken(scenario.toml()), scenario)
+        with self.assertRaisesRegex(tb.InputError, "has no method now_s"):
+            tb.drive(object(), scenario)
+
+
+class Examples(unittest.TestCase):
+    def output_of(self, name: str) -> str:
+        path = SCENARIOS.parent / "tools/python/examples" / f"{name}.py"
+        return subprocess.run([sys.executable, path], check=True, capture_output=True, text=True).stdout
+
+    def test_both_estimators_hold_their_uncertainty(self):
+        values = [float(line.split("=")[1].split()[0]) for line in self.output_of("validate_separation").splitlines()]
+        self.assertEqual(len(values), 2)
+        self.assertTrue(all(0.2 < value < 2.0 for value in values), values)
+
+    def test_a_longer_run_shows_a_smaller_drift(self):
+        values = [float(line.split()[6]) for line in self.output_of("design_experiment").splitlines()]
+        self.assertEqual(values, sorted(values, reverse=True))
+
+
+class Threads(unittest.TestCase):
+    def test_others_run_meanwhile(self):
+        scenario = small("freeform_five_axis")
+        beats = 0
+        done = threading.Event()
+
+        def count():
+            nonlocal beats
+            while not done.is_set():
+                beats += 1
+                time.sleep(1e-3)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        started_s = time.monotonic()
+        tb.run(scenario)
+        took_s = time.monotonic() - started_s
+        done.set()
+        thread.join()
+        self.assertGreater(beats, 0.2 * took_s / 1.5e-3)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv)
