@@ -161,8 +161,10 @@ class OwnBench(unittest.TestCase):
         scenario = small("rotary_4dof")
         with self.assertRaisesRegex(tb.BenchError, "the thermometer has fallen off"):
             tb.drive(Broken(scenario.toml()), scenario)
-        with self.assertRaisesRegex(tb.InputError, "has no method now_s"):
+        with self.assertRaisesRegex(tb.InputError, "the Python bench of none"):
             tb.drive(object(), scenario)
+        with self.assertRaisesRegex(tb.InputError, "of encoder_comparison"):
+            tb.drive(tb.AngleBench(), scenario)
 
 
 class Examples(unittest.TestCase):

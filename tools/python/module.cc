@@ -13,7 +13,6 @@
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/diagnosis_json.h"
 #include "twin/benches/encoder_comparison/procedure.h"
-#include "twin/benches/names.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/core/errors.h"
@@ -58,21 +57,26 @@ TwinRun RunTwin(const Scenario& scenario) {
   return {{scenario.bench, record->Readings()}, twin->Truth()};
 }
 
+void RequireSameBench(const py::object& bench, const Scenario& scenario) {
+  const std::string own = py::str(py::getattr(bench, "bench", py::str("none"))).cast<std::string>();
+  if (own != scenario.bench)
+    throw InputError("drive", "the scenario is of " + scenario.bench + ", the Python bench of " + own,
+                     "a twinbench.RotaryBench or twinbench.AngleBench, and a scenario of its kind");
+}
+
 /// The procedure of the scenario on a bench of somebody's own.
 Readings Drive(const py::object& bench, const Scenario& scenario) {
+  RequireSameBench(bench, scenario);
   const auto record = NewRecord(scenario, "python");
-  if (scenario.bench == kRotaryBench) {
-    OwnRotaryBench own(bench);
-    py::gil_scoped_release unlocked;
-    RotaryBench devices = own.Bench();
-    procedure::CarryOut(devices, scenario, *record, Interrupted);
-  } else if (scenario.bench == kEncoderBench) {
+  if (py::hasattr(bench, "take")) {
     OwnAngleComparator own(bench);
     py::gil_scoped_release unlocked;
     procedure::CarryOut(own, scenario, *record, Interrupted);
   } else {
-    throw InputError("drive", "the bench " + scenario.bench + " cannot be one of Python's yet",
-                     std::string(kRotaryBench) + " or " + kEncoderBench);
+    OwnRotaryBench own(bench);
+    py::gil_scoped_release unlocked;
+    RotaryBench devices = own.Bench();
+    procedure::CarryOut(devices, scenario, *record, Interrupted);
   }
   return {scenario.bench, record->Readings()};
 }

@@ -50,6 +50,7 @@ class RotaryBench:
     times in s from when the bench was made. What a method raises ends the run; readings made before are kept by it.
     """
 
+    bench = "rotary_4dof"
     speed_rad_s = math.radians(10.0)
     rate_Hz = 250e3  # of scans
     range_V, bits = 10.0, 16  # of the converter: +- range_V
@@ -132,6 +133,8 @@ class RotaryBench:
 
 class AngleBench:
     """A bench of the kind encoder_comparison: an angle device and the reference that it is compared with."""
+
+    bench = "encoder_comparison"
 
     def take(self, time_s: float, reference_rad: float, velocity_rad_s: float, direction: int) -> tuple[float, float]:
         """Brings the shaft to the angle, speed and time of the schedule (a stop is approached in its direction).
