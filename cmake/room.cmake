@@ -8,7 +8,11 @@ function(twinbench_room name)
   add_library(twinbench_${name} STATIC ${ROOM_SOURCES} ${ROOM_KERNELS})
   set_source_files_properties(${ROOM_KERNELS} PROPERTIES
     COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
-  target_include_directories(twinbench_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_include_directories(twinbench_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/twinbench>)
+  target_compile_features(twinbench_${name} INTERFACE cxx_std_20)
+  set_target_properties(twinbench_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY TWINBENCH_ROOMS twinbench_${name})
   foreach(room IN LISTS ROOM_ROOMS)
     target_link_libraries(twinbench_${name} PUBLIC twinbench_${room})
   endforeach()
