@@ -87,6 +87,9 @@ TEST_F(BadInput, InAnOptionIsNamed) {
 }
 
 TEST_F(BadInput, OfACommandNamesTheCommands) {
+  EXPECT_THAT(Refusal({"run", "s.toml", "-o", "x", "--noisefree"}),
+              HasSubstr("run: there is no option --noisefree; the nearest is --noise-free"));
+  EXPECT_THAT(Refusal({"run", "s.toml", "-o", "x", "--set", "a=1", "b=2"}), HasSubstr("there is no place for \"b=2\""));
   EXPECT_THAT(Refusal({"seperate"}), HasSubstr("unknown command seperate; expected one of run, "));
   EXPECT_THAT(Refusal({}), HasSubstr("there is no command; expected one of run, "));
 }

@@ -11,6 +11,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/terminal.h"
 #include "twin/core/errors.h"
+#include "twin/core/nearest_key.h"
 #include "twin/core/state_unknown.h"
 
 namespace {
@@ -50,6 +51,25 @@ std::string Names(const std::vector<const CLI::App*>& commands) {
   return text;
 }
 
+/// The first word that a command does not take, with what comes nearest.
+std::string NotTaken(const CLI::App& command, const std::string& word) {
+  if (!word.starts_with("-"))
+    return fmt::format("there is no place for \"{}\": an option takes one value, and is given again for another",
+                       twinbench::tools::ForTerminal(word));
+  std::vector<std::string> options;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  return fmt::format("there is no option {}; the nearest is {}", twinbench::tools::ForTerminal(word),
+                     twinbench::Nearest(word.substr(0, word.find('=')), options));
+}
+
+std::string InWords(const CLI::App& command, const CLI::Error& error) {
+  const std::vector<std::string> left = command.remaining();
+  const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !left.empty();
+  return is_extra ? NotTaken(command, left.front()) : error.what();
+}
+
 /// A wrong command line in one line, like any other bad input.
 std::string Complaint(const CLI::App* app, const CLI::Error& error) {
   const std::vector<CLI::App*> chosen = app->get_subcommands();
@@ -60,7 +80,7 @@ std::string Complaint(const CLI::App* app, const CLI::Error& error) {
                        Names(app->get_subcommands([](const CLI::App*) { return true; })));
   }
   const std::string command = "twinbench " + chosen.front()->get_name();
-  return fmt::format("{}: {}; expected what {} --help lists\n", command, error.what(), command);
+  return fmt::format("{}: {}; expected what {} --help lists\n", command, InWords(*chosen.front(), error), command);
 }
 
 /// What was printed may be an answer that somebody keeps.
