@@ -38,7 +38,7 @@ TEST(ValueTable, ShowsTruthBesideAValueThatWasScored) {
 
 TEST(BudgetFigure, StacksTheSharesOfEverySource) {
   const Figure figure = BudgetFigure(kEvaluated);
-  EXPECT_THAT(figure.categories, ElementsAre("calibration roll mrad psd a", "ez arcsec"));
+  EXPECT_THAT(figure.categories, ElementsAre("calibration roll mrad psd a", "ez"));
   ASSERT_EQ(figure.series.size(), 2u);
   EXPECT_EQ(figure.series[0].name, "drift");
   EXPECT_THAT(figure.series[0].y, ElementsAre(0.25, 0.0));

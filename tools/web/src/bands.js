@@ -1,13 +1,11 @@
 // y +- k u: a band along a curve, whiskers on bars. Drawn in the coordinates of the chart, so they zoom with it.
 
-const inside = (series, k) => Number.isFinite(series.y[k]) && Number.isFinite(series.u[k]);
-
 /** Runs of points that follow each other without a gap. */
 function runs(series) {
   const found = [];
   let run = [];
   for (let k = 0; k < series.y.length; ++k) {
-    if (series.y[k] !== null && series.u[k] !== null && inside(series, k)) run.push(k);
+    if (series.y[k] !== null && series.u[k] !== null) run.push(k);
     else if (run.length) found.push(run.splice(0));
   }
   return run.length ? [...found, run] : found;
@@ -34,16 +32,17 @@ export function band(series, at, how) {
   };
 }
 
-export function whiskers(series, places, how) {
+/** @param placeOf  x -> its place on the axis: a number, or the index of a category. */
+export function whiskers(series, placeOf, how) {
+  const with_u = series.y.map((_, k) => k).filter((k) => series.y[k] !== null && series.u[k] !== null);
   return {
-    type: "custom", ...how, silent: true, z: 5, tooltip: { show: false }, animation: false,
-    data: places.map((x, k) => [x, series.y[k]]).filter((_, k) => inside(series, k)),
+    type: "custom", ...how, silent: true, z: 5, tooltip: { show: false }, animation: false, clip: true,
+    data: with_u.map((k) => [placeOf(series.x[k]), series.y[k]]),
     renderItem: (params, api) => {
-      const k = params.dataIndexInside;
-      const x = api.value(0);
-      const at = places.indexOf(x);
-      const low = Math.max(series.y[at] - series.k * series.u[at], how.lowest ?? -Infinity);
-      const [top, foot] = [api.coord([x, series.y[at] + series.k * series.u[at]]), api.coord([x, low])];
+      const k = with_u[params.dataIndex];
+      const half = series.k * series.u[k];
+      const low = Math.max(series.y[k] - half, how.lowest ?? -Infinity);
+      const [top, foot] = [api.coord([api.value(0), series.y[k] + half]), api.coord([api.value(0), low])];
       const style = { stroke: how.colour, lineWidth: 1 };
       const line = (x1, y1, x2, y2) => ({ type: "line", shape: { x1, y1, x2, y2 }, style });
       return {

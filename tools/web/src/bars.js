@@ -1,6 +1,7 @@
 // Spectra and histograms: a bar for each place on the axis.
 import { whiskers } from "./bands.js";
 import { axis, base, grid, zoom } from "./common.js";
+import { number } from "./format.js";
 import { headAt, tipElement, valuesAt } from "./tip.js";
 import { palette } from "./theme.js";
 
@@ -31,12 +32,12 @@ export function barsOption(figure, shown, looks, logarithmic) {
         borderType: look.dash,
       },
     });
-    if (s.u && visible.length === 1) series.push(whiskers({ ...s, x: s.x }, s.x.map(String), { colour: palette().ink, lowest }));
+    if (s.u && visible.length === 1) series.push(whiskers(s, (x) => places.indexOf(x), { colour: palette().ink, lowest }));
   });
   return {
     ...base(),
     grid,
-    xAxis: axis(figure.x, { type: "category", data: places.map(String), splitLine: { show: false } }),
+    xAxis: axis(figure.x, { type: "category", data: places.map(String), splitLine: { show: false }, axisLabel: { color: palette().soft, fontSize: 11, formatter: (x) => number(Number(x)), hideOverlap: true } }),
     yAxis: axis(figure.y, { nameGap: 46, scale: false, ...(logarithmic ? { type: "log", min: lowest } : {}) }),
     dataZoom: zoom({ xAxisIndex: 0 }),
     tooltip: {

@@ -47,11 +47,17 @@ void AddTruth(const json& score, const std::string& path, const std::vector<doub
   if (!truth.empty()) series.push_back({of.empty() ? "truth" : "truth, " + of, SeriesRole::kTruth, x, truth, {}});
 }
 
+/// A list of objects is "model.terms[]" in the budget.
+bool IsNameOf(std::string name, const std::string& path) {
+  if (const std::size_t at = name.find("[]"); at != std::string::npos) name.erase(at, 2);
+  return name == path;
+}
+
 /// The coverage factor that the budget of results.json states for a list; 2 if it has none.
 double CoverageOf(const json& results, const std::string& path) {
   if (!results.is_object() || !results.contains("uncertainty_budget")) return 2.0;
   for (const json& budget : results.at("uncertainty_budget")) {
-    if (budget.value("name", "") == path && budget.contains("k") && budget.at("k").is_number())
+    if (IsNameOf(budget.value("name", ""), path) && budget.contains("k") && budget.at("k").is_number())
       return budget.at("k").get<double>();
   }
   return 2.0;

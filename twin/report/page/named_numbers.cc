@@ -17,6 +17,12 @@ constexpr std::array kUnits = {"um_m_K", "um_m",  "um_K", "mm_min", "deg_s", "pe
                                "ms",     "minutes", "V",  "s",      "m"};
 constexpr std::array kPlaces = {"separation.", "results.", "values."};
 
+/// "terms[]" are the terms.
+std::string WithoutBrackets(std::string path) {
+  for (std::size_t at = path.find("[]"); at != std::string::npos; at = path.find("[]")) path.erase(at, 2);
+  return path;
+}
+
 std::string Spaced(std::string text) {
   std::replace(text.begin(), text.end(), '_', ' ');
   return text;
@@ -49,7 +55,7 @@ std::optional<std::vector<double>> NumbersAt(const nlohmann::json& object, const
 }
 
 std::string PathInWords(const std::string& path) {
-  std::string words = path;
+  std::string words = WithoutBrackets(path);
   for (const std::string place : kPlaces) {
     if (words.starts_with(place)) words = words.substr(place.size());
   }

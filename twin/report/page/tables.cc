@@ -177,7 +177,7 @@ Figure BudgetFigure(const json& results) {
   const json& budgets = results.at("uncertainty_budget");
   std::map<std::string, std::vector<double>> shares;
   for (std::size_t k = 0; k < budgets.size(); ++k) {
-    figure.categories.push_back(PathInWords(budgets[k].value("name", "")));
+    figure.categories.push_back(PathInWords(NameAndUnit(budgets[k].value("name", "")).name));
     for (const json& source : budgets[k].value("sources", json::array())) {
       std::vector<double>& share = shares[source.value("source", "")];
       share.resize(budgets.size(), 0.0);
