@@ -64,7 +64,7 @@ TEST(NumberText, HasTwoDigitsOfItsUncertainty) {
 }
 
 TEST(NameAndUnit, TakesTheLongestUnitAtTheEnd) {
-  EXPECT_EQ(NameAndUnit("expansion_um_m_K").unit, "um_m_K");
+  EXPECT_EQ(NameAndUnit("expansion_um_m_K").unit, "um/m/K");
   EXPECT_EQ(NameAndUnit("ez_arcsec").name, "ez");
   EXPECT_EQ(NameAndUnit("dwell_s").unit, "s");
   EXPECT_EQ(NameAndUnit("setups").unit, "");

@@ -1,4 +1,5 @@
 // Reads the page's data and puts its sections one below the other.
+import { choiceCard } from "./choice.js";
 import { button, element, slug } from "./dom.js";
 import { figureCard } from "./figure.js";
 import { tableCard } from "./table.js";
@@ -6,7 +7,7 @@ import { textCard } from "./text.js";
 import { isDark, setTheme } from "./theme.js";
 
 const page = JSON.parse(document.getElementById("data").textContent);
-const cards = { figure: figureCard, table: tableCard, text: textCard };
+const cards = { choice: choiceCard, figure: figureCard, table: tableCard, text: textCard };
 
 function themeButton() {
   const word = () => (isDark() ? "Light" : "Dark");

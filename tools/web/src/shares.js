@@ -30,7 +30,7 @@ export function sharesOption(figure, shown, looks) {
     },
     series: figure.series
       .map((s, k) => ({
-        type: "bar", stack: "all", name: s.name, data: s.y, barMaxWidth: 14,
+        type: "bar", stack: "all", name: s.name, data: s.y, barMaxWidth: 14, barMinHeight: 2,
         itemStyle: {
           color: looks[k].colour, borderColor: colours.paper, borderWidth: 1,
           decal: stripes[k % stripes.length] ? { color: "rgba(255,255,255,.35)", symbol: "rect", ...stripes[k % stripes.length] } : undefined,

@@ -55,7 +55,15 @@ struct PageText {
   std::string title, text;
 };
 
-using PageBlock = std::variant<Figure, PageTable, PageText>;
+/// Many figures of one kind, of which one is shown at a time: "before and after the extension", against "dwell", of "psd_a_x".
+struct PageChoice {
+  std::string title, note;
+  std::vector<std::string> questions;             // "against", "of"
+  std::vector<std::vector<std::string>> answers;  // of each figure, one a question
+  std::vector<Figure> figures;                    // the first is shown first
+};
+
+using PageBlock = std::variant<Figure, PageTable, PageText, PageChoice>;
 
 struct PageSection {
   std::string title, lead;

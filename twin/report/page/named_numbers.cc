@@ -7,14 +7,21 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace twinbench::report {
 namespace {
 
 /// Longer ones first: "um_m_K" ends in "K" too.
-constexpr std::array kUnits = {"um_m_K", "um_m",  "um_K", "mm_min", "deg_s", "per_mm2", "arcsec", "mrad", "degC",
-                               "deg",    "rad",   "um",   "nm",     "mm",    "pm",      "px",     "mV",   "ns",
-                               "ms",     "minutes", "V",  "s",      "m"};
+struct WrittenUnit {
+  std::string_view in_key, spoken;
+};
+constexpr auto kUnits = std::to_array<WrittenUnit>({{"um_m_K", "um/m/K"}, {"um_m", "um/m"},   {"um_K", "um/K"}, {"mm_min", "mm/min"},
+                                                    {"deg_s", "deg/s"},   {"per_mm2", "mm-2"}, {"arcsec", "arcsec"}, {"mrad", "mrad"},
+                                                    {"degC", "degC"},     {"deg", "deg"},     {"rad", "rad"},   {"um", "um"},
+                                                    {"nm", "nm"},         {"mm", "mm"},       {"pm", "pm"},     {"px", "px"},
+                                                    {"mV", "mV"},         {"ns", "ns"},       {"ms", "ms"},     {"V", "V"},
+                                                    {"s", "s"},           {"m", "m"}});
 constexpr std::array kPlaces = {"separation.", "results.", "values."};
 
 /// "terms[]" are the terms.
@@ -31,10 +38,10 @@ std::string Spaced(std::string text) {
 }  // namespace
 
 NamedUnit NameAndUnit(const std::string& key) {
-  for (const std::string unit : kUnits) {
-    const std::string ending = "_" + unit;
+  for (const WrittenUnit& unit : kUnits) {
+    const std::string ending = "_" + std::string(unit.in_key);
     if (key.size() > ending.size() && key.ends_with(ending))
-      return {Spaced(key.substr(0, key.size() - ending.size())), unit};
+      return {Spaced(key.substr(0, key.size() - ending.size())), std::string(unit.spoken)};
   }
   return {Spaced(key), ""};
 }
@@ -52,6 +59,16 @@ std::optional<std::vector<double>> NumbersOf(const nlohmann::json& node) {
 
 std::optional<std::vector<double>> NumbersAt(const nlohmann::json& object, const std::string& key) {
   return object.is_object() && object.contains(key) ? NumbersOf(object.at(key)) : std::nullopt;
+}
+
+double NumberAt(const nlohmann::json& object, const std::string& key) {
+  return object.is_object() && object.contains(key) && object.at(key).is_number()
+             ? object.at(key).get<double>()
+             : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string TextAt(const nlohmann::json& object, const std::string& key) {
+  return object.is_object() && object.contains(key) && object.at(key).is_string() ? object.at(key).get<std::string>() : "";
 }
 
 std::string PathInWords(const std::string& path) {

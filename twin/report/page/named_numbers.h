@@ -8,7 +8,7 @@
 /// Numbers of results.json and what their keys say about them.
 namespace twinbench::report {
 
-/// "ez_arcsec" is the quantity "ez" in "arcsec"; underscores of the rest become spaces.
+/// "ez_arcsec" is the quantity "ez" in "arcsec", "scale_um_m" the "scale" in "um/m"; underscores of the rest become spaces.
 struct NamedUnit {
   std::string name, unit;
 };
@@ -22,6 +22,12 @@ std::optional<std::vector<double>> NumbersAt(const nlohmann::json& object, const
 
 /// "separation.target" as a person says it: "target". What only says where in the file it stood is left out.
 std::string PathInWords(const std::string& path);
+
+/// A number of an object; NaN if it has none of that name.
+double NumberAt(const nlohmann::json& object, const std::string& key);
+
+/// A text of an object; empty if it has none of that name.
+std::string TextAt(const nlohmann::json& object, const std::string& key);
 
 /// A number with as many digits as `u` makes sense of (two of `u`), or six if there is no u.
 std::string NumberText(double value);

@@ -72,6 +72,13 @@ Json BlockJson(const PageText& text) {
   return {{"type", "text"}, {"title", text.title}, {"text", text.text}};
 }
 
+Json BlockJson(const PageChoice& choice) {
+  Json made = {{"type", "choice"}, {"title", choice.title}, {"note", choice.note}, {"questions", choice.questions},
+               {"answers", choice.answers}, {"figures", Json::array()}};
+  for (const Figure& figure : choice.figures) made["figures"].push_back(BlockJson(figure));
+  return made;
+}
+
 Json SectionJson(const PageSection& section) {
   Json made = {{"title", section.title}, {"lead", section.lead}, {"blocks", Json::array()}};
   for (const PageBlock& block : section.blocks)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "twin/report/page/curves.h"
+#include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/harmonics_of.h"
 #include "twin/report/page/tables.h"
 
@@ -79,6 +80,11 @@ Page RunPage(const PageSource& source, const nlohmann::json& results, const nloh
   Page page{source.name, "", "", VerdictTone::kPlain, {}};
   page.subtitle = source.provenance.bench;
   if (source.provenance.source == "twin") page.subtitle += ", simulated: the readings are those of the twin";
+  if (results.contains("diagnosis")) {
+    const PageVerdict verdict = VerdictOf(results.at("diagnosis"));
+    page.verdict = verdict.text, page.tone = verdict.tone;
+    page.sections = DiagnosisSections(results.at("diagnosis"));
+  }
   for (PageSection& section : std::vector{CurveSection(curves), SpectrumSection(curves, SpectrumFigures(results, score)),
                                           ValueSection(results, score), BudgetSection(results)}) {
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));

@@ -17,11 +17,10 @@ struct PageSource {
   std::vector<std::pair<std::string, std::string>> digests;  // file, SHA-256
 };
 
-/// A run: curves, spectra, values, budget, what cannot be told, provenance.
+/// A run: its diagnosis if there is one, curves, spectra, values, budget, what cannot be told, provenance.
 ///
 /// @param results  results.json.
 /// @param score    score.json; null if the run was not scored. The only place that truth is taken from.
-/// @param text     What a person is told of it on the terminal.
 Page RunPage(const PageSource& source, const nlohmann::json& results, const nlohmann::json& score);
 
 /// Versions, seed, digests.

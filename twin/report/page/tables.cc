@@ -16,10 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-double NumberAt(const json& object, const std::string& key) {
-  return object.contains(key) && object.at(key).is_number() ? object.at(key).get<double>()
-                                                            : std::numeric_limits<double>::quiet_NaN();
-}
+constexpr std::size_t kMostRowsOfASpectrum = 20;
 
 const json* BudgetOf(const json& results, const std::string& path) {
   if (!results.contains("uncertainty_budget")) return nullptr;
@@ -128,6 +125,11 @@ bool IsListOfObjects(const json& node) {
          std::all_of(node.begin(), node.end(), [](const json& e) { return e.is_object(); });
 }
 
+/// Orders with their amplitudes are a spectrum, which has a figure.
+bool IsSpectrum(const json& list) {
+  return list.front().contains("order") && list.size() > kMostRowsOfASpectrum;
+}
+
 std::string ColumnTitle(const std::string& key) {
   const auto [name, unit] = NameAndUnit(key);
   return unit.empty() ? name : name + " [" + unit + "]";
@@ -210,7 +212,8 @@ std::vector<PageTable> ObjectTables(const json& results) {
   std::vector<PageTable> tables;
   ForEachObject(results, [&](const std::string& path, const json& object) {
     for (const auto& [key, value] : object.items()) {
-      if (key == "not_separable" || key == "uncertainty_budget" || key == "diagnosis" || !IsListOfObjects(value)) continue;
+      if (key == "not_separable" || key == "uncertainty_budget" || key == "diagnosis" || !IsListOfObjects(value) || IsSpectrum(value))
+        continue;
       if (auto table = TableOfObjects(PathInWords(Joined(path, key)), value)) tables.push_back(std::move(*table));
     }
   });

@@ -1,0 +1,88 @@
+#include "twin/report/page/residual_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/report/page/named_numbers.h"
+
+namespace twinbench::report {
+namespace {
+
+using nlohmann::json;
+
+struct Chosen {
+  Figure figure;
+  std::vector<std::string> answers;
+  double loudness = 0.0;  // mean of (residual / u)^2 before the extension
+};
+
+std::string UnitOf(const json& plots, const std::string& channel) {
+  if (plots.contains("units") && plots.at("units").contains(channel)) return TextAt(plots.at("units"), channel);
+  return TextAt(plots, "unit");
+}
+
+double LoudnessOf(const std::vector<double>& residuals, const std::vector<double>& u) {
+  double sum = 0.0;
+  int n = 0;
+  for (std::size_t k = 0; k < std::min(residuals.size(), u.size()); ++k) {
+    if (!std::isfinite(residuals[k]) || !(u[k] > 0.0)) continue;
+    sum += std::pow(residuals[k] / u[k], 2);
+    ++n;
+  }
+  return n > 0 ? sum / n : 0.0;
+}
+
+void AddAgainst(const json& plots, std::vector<Chosen>& chosen) {
+  const json against = plots.value("against", json::object());
+  for (const auto& [circumstance, channels] : against.items()) {
+    for (const auto& [channel, curve] : channels.items()) {
+      const auto x = NumbersAt(curve, "x"), before = NumbersAt(curve, "before"), after = NumbersAt(curve, "after");
+      if (!x || !before || !after || x->size() < 2) continue;
+      const std::vector<double> u = NumbersAt(curve, "u").value_or(std::vector<double>());
+      const auto [name, unit] = NameAndUnit(circumstance);
+      Figure figure{FigureForm::kLine, "Residual of " + NameAndUnit(channel).name + " against " + name, "means with their uncertainty",
+                    {name, unit}, {channel, UnitOf(plots, channel)},
+                    {{"before", SeriesRole::kBefore, *x, *before, u}, {"after", SeriesRole::kAfter, *x, *after, u}}};
+      chosen.push_back({figure, {name, channel}, LoudnessOf(*before, u)});
+    }
+  }
+}
+
+/// A value for each position and set-up.
+void AddMaps(const json& plots, std::vector<Chosen>& chosen) {
+  const json maps = plots.value("maps", json::object());
+  for (const auto& [channel, map] : maps.items()) {
+    const auto position = NumbersAt(map, "position"), setup = NumbersAt(map, "setup");
+    if (!position || !setup || position->size() < 2) continue;
+    for (std::size_t s = 0; s < setup->size(); ++s) {
+      const auto before = NumbersOf(map.at("before").at(s)), after = NumbersOf(map.at("after").at(s));
+      if (!before || !after || before->size() != position->size()) continue;
+      const std::string where = fmt::format("position in set-up {:g}", (*setup)[s]);
+      Figure figure{FigureForm::kLine, "Residual of " + NameAndUnit(channel).name + " against " + where, "", {"position", ""},
+                    {channel, UnitOf(plots, channel)},
+                    {{"before", SeriesRole::kBefore, *position, *before, {}}, {"after", SeriesRole::kAfter, *position, *after, {}}}};
+      chosen.push_back({figure, {where, channel}, 0.0});
+    }
+  }
+}
+
+}  // namespace
+
+PageChoice ResidualChoice(const json& plots) {
+  std::vector<Chosen> chosen;
+  AddAgainst(plots, chosen);
+  AddMaps(plots, chosen);
+  const auto loudest = std::max_element(chosen.begin(), chosen.end(), [](const Chosen& a, const Chosen& b) { return a.loudness < b.loudness; });
+  if (loudest != chosen.end()) std::rotate(chosen.begin(), loudest, loudest + 1);
+  PageChoice choice{"Residuals before and after the extension", "", {"against", "of"}, {}, {}};
+  for (Chosen& one : chosen) {
+    choice.answers.push_back(one.answers);
+    choice.figures.push_back(std::move(one.figure));
+  }
+  return choice;
+}
+
+}  // namespace twinbench::report
