@@ -40,6 +40,27 @@ function equalRanges(figure, shown, box) {
   return [about(x, width), about(y, height)];
 }
 
+/** Room for the bands, which the library does not see. */
+function rangeWithBands(figure, shown) {
+  let [low, high] = [Infinity, -Infinity];
+  figure.series.forEach((series, s) => {
+    if (!shown[s] || !series.u) return;
+    series.y.forEach((y, k) => {
+      if (y === null || series.u[k] === null) return;
+      low = Math.min(low, y - series.k * series.u[k]);
+      high = Math.max(high, y + series.k * series.u[k]);
+    });
+  });
+  if (low > high) return {};
+  return { min: (of) => nice(Math.min(low, of.min), low, high, Math.floor), max: (of) => nice(Math.max(high, of.max), low, high, Math.ceil) };
+}
+
+/** The next round number outwards. */
+function nice(value, low, high, outwards) {
+  const unit = 10 ** Math.floor(Math.log10(high - low || Math.abs(high) || 1)) / 2;
+  return Number((outwards(value / unit) * unit).toPrecision(12));
+}
+
 export function planeOption(figure, shown, looks, box) {
   const colours = palette();
   const series = [];
@@ -53,8 +74,8 @@ export function planeOption(figure, shown, looks, box) {
   return {
     ...base(),
     grid,
-    xAxis: axis(figure.x, { ...x, ...(figure.form === "angle" ? { min: "dataMin", max: "dataMax" } : {}) }),
-    yAxis: axis(figure.y, { nameGap: 46, ...y }),
+    xAxis: axis(figure.x, { ...x, ...(trigger === "axis" ? { min: "dataMin", max: "dataMax" } : {}) }),
+    yAxis: axis(figure.y, { nameGap: 46, ...(figure.form === "track" ? y : rangeWithBands(figure, shown)) }),
     dataZoom: [...zoom({ xAxisIndex: 0 }), ...zoom({ yAxisIndex: 0 })],
     tooltip: {
       ...base().tooltip, trigger,

@@ -16,7 +16,8 @@ using nlohmann::json;
 struct Chosen {
   Figure figure;
   std::vector<std::string> answers;
-  double loudness = 0.0;  // mean of (residual / u)^2 before the extension
+  double explained = 0.0;  // by the extension
+  double loudness = 0.0;   // mean of (residual / u)^2, where there is no extension
 };
 
 std::string UnitOf(const json& plots, const std::string& channel) {
@@ -24,15 +25,27 @@ std::string UnitOf(const json& plots, const std::string& channel) {
   return TextAt(plots, "unit");
 }
 
-double LoudnessOf(const std::vector<double>& residuals, const std::vector<double>& u) {
+double SquaresOf(const std::vector<double>& values, const std::vector<double>& u) {
   double sum = 0.0;
-  int n = 0;
-  for (std::size_t k = 0; k < std::min(residuals.size(), u.size()); ++k) {
-    if (!std::isfinite(residuals[k]) || !(u[k] > 0.0)) continue;
-    sum += std::pow(residuals[k] / u[k], 2);
-    ++n;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double scaled = u.empty() ? values[k] : values[k] / u[k];
+    if (std::isfinite(scaled)) sum += scaled * scaled;
   }
-  return n > 0 ? sum / n : 0.0;
+  return sum;
+}
+
+/// How much of the residual the extension explains, as the logarithm of a likelihood ratio: with the stated uncertainty of each
+/// point, or, where there is none, with what is left after it.
+double ExplainedIn(const std::vector<double>& before, const std::vector<double>& after, const std::vector<double>& u) {
+  if (!u.empty()) return 0.5 * (SquaresOf(before, u) - SquaresOf(after, u));
+  const double ratio = SquaresOf(before, {}) / SquaresOf(after, {});
+  return ratio > 0.0 && std::isfinite(ratio) ? 0.5 * static_cast<double>(before.size()) * std::log(ratio) : 0.0;
+}
+
+/// Against a room that kept its temperature there is nothing to be seen.
+bool Changes(const std::vector<double>& x) {
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  return *high - *low > 1e-9 * std::max(std::abs(*low), std::abs(*high));
 }
 
 void AddAgainst(const json& plots, std::vector<Chosen>& chosen) {
@@ -40,13 +53,14 @@ void AddAgainst(const json& plots, std::vector<Chosen>& chosen) {
   for (const auto& [circumstance, channels] : against.items()) {
     for (const auto& [channel, curve] : channels.items()) {
       const auto x = NumbersAt(curve, "x"), before = NumbersAt(curve, "before"), after = NumbersAt(curve, "after");
-      if (!x || !before || !after || x->size() < 2) continue;
+      if (!x || !before || !after || x->size() < 2 || !Changes(*x)) continue;
       const std::vector<double> u = NumbersAt(curve, "u").value_or(std::vector<double>());
       const auto [name, unit] = NameAndUnit(circumstance);
       Figure figure{FigureForm::kLine, "Residual of " + NameAndUnit(channel).name + " against " + name, "means with their uncertainty",
                     {name, unit}, {channel, UnitOf(plots, channel)},
                     {{"before", SeriesRole::kBefore, *x, *before, u}, {"after", SeriesRole::kAfter, *x, *after, u}}};
-      chosen.push_back({figure, {name, channel}, LoudnessOf(*before, u)});
+      chosen.push_back({figure, {name, channel}, ExplainedIn(*before, *after, u),
+                        u.empty() ? 0.0 : SquaresOf(*before, u) / static_cast<double>(before->size())});
     }
   }
 }
@@ -64,7 +78,7 @@ void AddMaps(const json& plots, std::vector<Chosen>& chosen) {
       Figure figure{FigureForm::kLine, "Residual of " + NameAndUnit(channel).name + " against " + where, "", {"position", ""},
                     {channel, UnitOf(plots, channel)},
                     {{"before", SeriesRole::kBefore, *position, *before, {}}, {"after", SeriesRole::kAfter, *position, *after, {}}}};
-      chosen.push_back({figure, {where, channel}, 0.0});
+      chosen.push_back({figure, {where, channel}, ExplainedIn(*before, *after, {}), 0.0});
     }
   }
 }
@@ -75,7 +89,10 @@ PageChoice ResidualChoice(const json& plots) {
   std::vector<Chosen> chosen;
   AddAgainst(plots, chosen);
   AddMaps(plots, chosen);
-  const auto loudest = std::max_element(chosen.begin(), chosen.end(), [](const Chosen& a, const Chosen& b) { return a.loudness < b.loudness; });
+  const auto tells_less = [](const Chosen& a, const Chosen& b) {
+    return std::pair(a.explained, a.loudness) < std::pair(b.explained, b.loudness);
+  };
+  const auto loudest = std::max_element(chosen.begin(), chosen.end(), tells_less);
   if (loudest != chosen.end()) std::rotate(chosen.begin(), loudest, loudest + 1);
   PageChoice choice{"Residuals before and after the extension", "", {"against", "of"}, {}, {}};
   for (Chosen& one : chosen) {
