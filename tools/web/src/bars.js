@@ -1,6 +1,6 @@
 // Spectra and histograms: a bar for each place on the axis.
 import { whiskers } from "./bands.js";
-import { axis, base, grid, zoom } from "./common.js";
+import { axis, base, grid, lineStyle, zoom } from "./common.js";
 import { number } from "./format.js";
 import { headAt, tipElement, valuesAt } from "./tip.js";
 import { palette } from "./theme.js";
@@ -24,6 +24,10 @@ export function barsOption(figure, shown, looks, logarithmic) {
   visible.forEach(({ series: s, look }) => {
     const at = new Map(s.x.map((x, k) => [x, k]));
     const size = (x) => (at.has(x) ? s.y[at.get(x)] : null);
+    if (figure.form === "histogram" && s.role === "expected") {
+      series.push({ type: "line", name: s.name, data: places.map((x) => [String(x), size(x)]), symbol: "none", lineStyle: lineStyle(look), itemStyle: { color: look.colour } });
+      return;
+    }
     series.push({
       type: "bar", name: s.name, data: places.map((x) => [String(x), size(x)]), barMaxWidth: 22, barGap: "15%",
       barCategoryGap: figure.form === "histogram" ? "4%" : "30%",

@@ -6,7 +6,7 @@ export function looks(figure) {
   const colours = palette();
   let next = 0;
   return figure.series.map((series) => {
-    if (series.role === "truth") return { colour: colours.ink, dash: [2, 4], symbol: "diamond", open: true, width: 1.5 };
+    if (series.role === "truth" || series.role === "expected") return { colour: colours.ink, dash: [2, 4], symbol: "diamond", open: true, width: 1.5 };
     const k = next++ % colours.series.length;
     return { colour: colours.series[k], dash: dashes[k], symbol: symbols[k], open: series.role === "before", width: 2 };
   });

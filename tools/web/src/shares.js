@@ -1,11 +1,14 @@
 // Parts of a whole for each category, as lying bars.
 import { axis, base } from "./common.js";
+import { number, withUnit } from "./format.js";
 import { tipElement } from "./tip.js";
 import { palette } from "./theme.js";
 
 export const sharesHeight = (figure) => 76 + 24 * figure.categories.length;
 
 const percent = (share) => `${(100 * share).toPrecision(3)} %`;
+const isShare = (figure) => figure.form === "shares";
+const valueText = (figure, value) => (isShare(figure) ? percent(value) : withUnit(number(value), figure.y.unit));
 
 /** Stripes beside colours, for those who see fewer of them. */
 const stripes = [null, { rotation: 0.6, dashArrayX: [1, 0], dashArrayY: [3, 4] }, { rotation: -0.6, dashArrayX: [1, 0], dashArrayY: [2, 6] }, { dashArrayX: [2, 3], dashArrayY: [2, 3] }];
@@ -15,7 +18,7 @@ export function sharesOption(figure, shown, looks) {
   return {
     ...base(),
     grid: { left: 12, right: 24, top: 8, bottom: 44, containLabel: true },
-    xAxis: axis(figure.y, { scale: false, max: 1, axisLabel: { color: colours.soft, formatter: (x) => `${Math.round(100 * x)} %` } }),
+    xAxis: axis(figure.y, { scale: false, ...(isShare(figure) ? { max: 1, axisLabel: { color: colours.soft, formatter: (x) => `${Math.round(100 * x)} %` } } : {}) }),
     yAxis: axis({ name: "", unit: "" }, {
       type: "category", data: figure.categories, inverse: true, splitLine: { show: false },
       axisLabel: { color: colours.ink, fontSize: 12, width: 260, overflow: "truncate", interval: 0 },
@@ -25,7 +28,7 @@ export function sharesOption(figure, shown, looks) {
       formatter: (points) =>
         tipElement(
           figure.categories[points[0].dataIndex],
-          points.filter((p) => p.value > 0).sort((a, b) => b.value - a.value).map((p) => [p.seriesName, percent(p.value)]),
+          points.filter((p) => p.value > 0).sort((a, b) => b.value - a.value).map((p) => [p.seriesName, valueText(figure, p.value)]),
         ),
     },
     series: figure.series

@@ -10,6 +10,8 @@ const bars = { name: "Linear", option: (figure, shown, looks) => barsOption(figu
 const logarithmic = { name: "Logarithmic", option: (figure, shown, looks) => barsOption(figure, shown, looks, true), zooms: true };
 const shares = { name: "Shares", option: (figure, shown, looks) => sharesOption(figure, shown, looks), height: sharesHeight, wide: true };
 
+const ranks = { ...shares, name: "Ranks" };
+
 const views = {
   angle: [polar, plane],
   line: [plane],
@@ -18,6 +20,7 @@ const views = {
   bars: [bars, logarithmic],
   histogram: [bars],
   shares: [shares],
+  ranks: [ranks],
 };
 
 export const viewsOf = (figure) => views[figure.form] ?? [plane];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "twin/report/page/causes.h"
 #include "twin/report/page/named_numbers.h"
 #include "twin/report/page/residual_figures.h"
 
@@ -13,15 +14,6 @@ namespace twinbench::report {
 namespace {
 
 using nlohmann::json;
-
-json ListAt(const json& object, const std::string& key) {
-  return object.is_object() && object.contains(key) && object.at(key).is_array() ? object.at(key) : json::array();
-}
-
-std::string NameOfCause(const json& cause) {
-  const std::string where = TextAt(cause, "where");
-  return TextAt(cause, "effect") + (where.empty() ? "" : " at " + where);
-}
 
 std::string ParametersOf(const json& cause) {
   std::string text;
@@ -91,22 +83,6 @@ PageTable GainTable(const json& diagnosis) {
   return table;
 }
 
-PageTable DetectableTable(const json& diagnosis) {
-  PageTable table{"Smallest sizes that this run would show", {"effect", "parameter", "smallest", "unit"}, {}};
-  for (const json& seen : ListAt(diagnosis, "detectable")) {
-    const std::string unit = TextAt(seen, "unit");
-    table.rows.push_back({NameOfCause(seen), NameAndUnit(TextAt(seen, "parameter")).name,
-                          fmt::format("{:.3g}", NumberAt(seen, "smallest")), unit == "1" ? "" : unit});
-  }
-  return table;
-}
-
-PageTable InvisibleTable(const json& diagnosis) {
-  PageTable table{"What this run cannot see", {"effect", "could bias"}, {}};
-  for (const json& lost : ListAt(diagnosis, "invisible")) table.rows.push_back({NameOfCause(lost), TextAt(lost, "could_bias")});
-  return table;
-}
-
 PageTable ScreenTable(const json& diagnosis) {
   PageTable table{"Residual tests", {"test", "p", "what it says"}, {}};
   for (const json& test : ListAt(diagnosis, "screen"))
@@ -114,18 +90,14 @@ PageTable ScreenTable(const json& diagnosis) {
   return table;
 }
 
-void Add(PageTable table, PageSection& section) {
-  if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
-}
-
 PageSection CauseSection(const json& diagnosis) {
   PageSection section{"Diagnosis", "", {}};
   const double p = NumberAt(diagnosis, "alarm_p");
   if (std::isfinite(p)) section.lead = fmt::format("Probability of so large a difference where readings and scenario agree: {:.2g}.", p);
   if (Figure causes = ProbabilityFigure(diagnosis); !causes.series.empty()) section.blocks.emplace_back(std::move(causes));
-  Add(CauseTable(diagnosis), section);
-  Add(TieTable(diagnosis), section);
-  Add(GainTable(diagnosis), section);
+  AddFilled(CauseTable(diagnosis), section);
+  AddFilled(TieTable(diagnosis), section);
+  AddFilled(GainTable(diagnosis), section);
   return section;
 }
 
@@ -134,14 +106,14 @@ PageSection ResidualSection(const json& diagnosis) {
   if (diagnosis.contains("plots")) {
     if (PageChoice choice = ResidualChoice(diagnosis.at("plots")); !choice.figures.empty()) section.blocks.emplace_back(std::move(choice));
   }
-  Add(ScreenTable(diagnosis), section);
+  AddFilled(ScreenTable(diagnosis), section);
   return section;
 }
 
 PageSection SightSection(const json& diagnosis) {
   PageSection section{"Detectability", "", {}};
-  Add(DetectableTable(diagnosis), section);
-  Add(InvisibleTable(diagnosis), section);
+  AddFilled(DetectableTable(diagnosis), section);
+  AddFilled(InvisibleTable(diagnosis), section);
   if (const std::string words = TextAt(diagnosis, "in_words"); !words.empty())
     section.blocks.emplace_back(PageText{"The diagnosis in words", words});
   return section;

@@ -14,8 +14,8 @@ struct FigureAxis {
   std::string name, unit;
 };
 
-/// What a series is. Truth is known of a twin only and is drawn unlike anything that was estimated.
-enum class SeriesRole { kEstimate, kTruth, kBefore, kAfter };
+/// What a series is. Truth is known of a twin only and is, like what chance would do, drawn unlike anything that was estimated.
+enum class SeriesRole { kEstimate, kTruth, kExpected, kBefore, kAfter };
 
 /// Points of one curve, or bars.
 struct FigureSeries {
@@ -33,6 +33,7 @@ enum class FigureForm {
   kTrack,      // like kPoints, but both axes have the same scale
   kBars,       // a bar for each x
   kShares,     // a bar for each category, the series stacked; they add up to at most 1
+  kRanks,      // a bar for each category, of any length
   kHistogram,  // a bar for each bin of equal width; x is its middle
 };
 

@@ -21,6 +21,7 @@ const char* Word(FigureForm form) {
     case FigureForm::kTrack: return "track";
     case FigureForm::kBars: return "bars";
     case FigureForm::kShares: return "shares";
+    case FigureForm::kRanks: return "ranks";
     case FigureForm::kHistogram: return "histogram";
   }
   return "";
@@ -30,6 +31,7 @@ const char* Word(SeriesRole role) {
   switch (role) {
     case SeriesRole::kEstimate: return "estimate";
     case SeriesRole::kTruth: return "truth";
+    case SeriesRole::kExpected: return "expected";
     case SeriesRole::kBefore: return "before";
     case SeriesRole::kAfter: return "after";
   }
