@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tools/twinbench/light_pictures.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/campaign/campaign_page.h"
 #include "twin/core/errors.h"
@@ -51,10 +52,19 @@ nlohmann::json ScoreOf(const RunFolder& folder, const std::string& named) {
   return {};
 }
 
+/// results.json, and what `separate --json` has left beside it where that says more.
+nlohmann::json ResultsOf(const RunFolder& folder) {
+  nlohmann::json results = ReadJson(folder.results());
+  const std::string separation = folder.path + "/separation.json";
+  if (!results.contains("separation") && fs::exists(separation)) results["separation"] = ReadJson(separation);
+  return results;
+}
+
 report::Page OfRun(const RunFolder& folder, const std::string& score) {
   report::PageSource source = SourceOf(folder.path, {folder.scenario(), folder.record(), folder.results()});
-  source.provenance = RunRecord::Open(folder.path)->provenance();
-  return report::RunPage(source, ReadJson(folder.results()), ScoreOf(folder, score));
+  const auto record = RunRecord::Open(folder.path);
+  source.provenance = record->provenance();
+  return report::RunPage(source, ResultsOf(folder), ScoreOf(folder, score), record->Readings(), LightPictures(folder.images()));
 }
 
 report::Page OfDiagnosis(const report::PageSource& source, const nlohmann::json& diagnosis) {

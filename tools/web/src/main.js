@@ -1,13 +1,15 @@
 // Reads the page's data and puts its sections one below the other.
 import { choiceCard } from "./choice.js";
+import { columnsCard } from "./columns.js";
 import { button, element, slug } from "./dom.js";
 import { figureCard } from "./figure.js";
+import { imageCard } from "./image.js";
 import { tableCard } from "./table.js";
 import { textCard } from "./text.js";
 import { isDark, setTheme } from "./theme.js";
 
 const page = JSON.parse(document.getElementById("data").textContent);
-const cards = { choice: choiceCard, figure: figureCard, table: tableCard, text: textCard };
+const cards = { choice: choiceCard, columns: columnsCard, image: imageCard, figure: figureCard, table: tableCard, text: textCard };
 
 function themeButton() {
   const word = () => (isDark() ? "Light" : "Dark");

@@ -1,6 +1,7 @@
 // y against x: lines, points, and tracks whose axes have one scale.
 import { band } from "./bands.js";
 import { axis, base, grid, itemStyle, lineStyle, zoom } from "./common.js";
+import { shadeCss } from "./colours.js";
 import { number, withUnit } from "./format.js";
 import { headAt, tipElement, valuesAt } from "./tip.js";
 import { palette } from "./theme.js";
@@ -11,6 +12,13 @@ function drawn(figure, series, look, paper) {
   const data = series.x.map((x, k) => [x, series.y[k]]);
   const many = data.length > kMany;
   if (figure.form === "points" || figure.form === "track") {
+    if (series.shade) {
+      const [low, high] = figure.shades;
+      return {
+        type: "scatter", name: series.name, symbol: look.symbol, symbolSize: 8,
+        data: data.map((value, k) => ({ value: [...value, series.shade[k]], itemStyle: { color: shadeCss((series.shade[k] - low) / (high - low || 1)) } })),
+      };
+    }
     return {
       type: "scatter", name: series.name, data, symbol: look.symbol, symbolSize: many ? 3 : 6, large: many, largeThreshold: kMany,
       itemStyle: { ...itemStyle(look, paper), opacity: many ? 0.6 : 0.9 }, emphasis: { scale: 1.6 },
@@ -85,6 +93,7 @@ export function planeOption(figure, shown, looks, box) {
         return tipElement(point.seriesName, [
           [figure.x.name, withUnit(number(point.value[0]), figure.x.unit)],
           [figure.y.name, withUnit(number(point.value[1]), figure.y.unit)],
+          ...(figure.shaded ? [[figure.shaded.name, withUnit(number(point.value[2]), figure.shaded.unit)]] : []),
         ]);
       },
     },

@@ -64,7 +64,29 @@ struct PageChoice {
   std::vector<Figure> figures;                    // the first is shown first
 };
 
-using PageBlock = std::variant<Figure, PageTable, PageText, PageChoice>;
+/// Columns as long as each other, of which the reader of the page chooses which to plot against which.
+struct PageColumns {
+  struct Column {
+    std::string name, unit;
+    std::vector<double> values;  // NaN: not available
+  };
+  std::string title, note;
+  std::vector<Column> columns;
+  int x = 0, y = 1;  // what is plotted first
+  int colour = -1;   // points have the colour of its values; -1: none
+  int group = -1;    // points with the same value of it are one series; -1: all
+};
+
+/// A picture with physical size, row by row from the top.
+struct PageImage {
+  std::string title, note;
+  int width = 0, height = 0;  // [pixels]
+  double pitch_mm = 0.0;      // of a pixel
+  std::string unit;           // of the values
+  std::vector<double> values;
+};
+
+using PageBlock = std::variant<Figure, PageTable, PageText, PageChoice, PageColumns, PageImage>;
 
 struct PageSection {
   std::string title, lead;

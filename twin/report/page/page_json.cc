@@ -81,6 +81,19 @@ Json BlockJson(const PageChoice& choice) {
   return made;
 }
 
+Json BlockJson(const PageColumns& columns) {
+  Json made = {{"type", "columns"}, {"title", columns.title}, {"note", columns.note}, {"columns", Json::array()},
+               {"x", columns.x}, {"y", columns.y}, {"colour", columns.colour}, {"group", columns.group}};
+  for (const PageColumns::Column& column : columns.columns)
+    made["columns"].push_back({{"name", column.name}, {"unit", column.unit}, {"values", column.values}});
+  return made;
+}
+
+Json BlockJson(const PageImage& image) {
+  return {{"type", "image"}, {"title", image.title}, {"note", image.note}, {"width", image.width}, {"height", image.height},
+          {"pitch_mm", image.pitch_mm}, {"unit", image.unit}, {"values", image.values}};
+}
+
 Json SectionJson(const PageSection& section) {
   Json made = {{"title", section.title}, {"lead", section.lead}, {"blocks", Json::array()}};
   for (const PageBlock& block : section.blocks)
@@ -117,8 +130,8 @@ std::string PageJson(const Page& page) {
   return made.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string ForScriptElement(const std::string& json) {
-  return WithReplaced(json, {{'<', "\\u003c"}, {'>', "\\u003e"}, {'&', "\\u0026"}});
+std::string ForScriptElement(const std::string& text) {
+  return WithReplaced(text, {{'<', "\\u003c"}, {'>', "\\u003e"}, {'&', "\\u0026"}});
 }
 
 std::string ForHtml(const std::string& text) {

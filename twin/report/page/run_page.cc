@@ -5,7 +5,9 @@
 #include "twin/report/page/curves.h"
 #include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/harmonics_of.h"
+#include "twin/report/page/readings_page.h"
 #include "twin/report/page/tables.h"
+#include "twin/report/page/volumetric.h"
 
 namespace twinbench::report {
 namespace {
@@ -50,6 +52,18 @@ PageSection ValueSection(const nlohmann::json& results, const nlohmann::json& sc
   return section;
 }
 
+PageSection VolumetricSection(const nlohmann::json& results) {
+  PageSection section{"In space", "Each point is a place that was looked at; its colour is the error that is chosen.", {}};
+  for (PageColumns& columns : VolumetricColumns(results)) section.blocks.emplace_back(std::move(columns));
+  return section;
+}
+
+PageSection ImageSection(const std::vector<PageImage>& images) {
+  PageSection section{"Light", "Irradiance on the detectors as the run has left it, cut to where there is light.", {}};
+  for (const PageImage& image : images) section.blocks.emplace_back(image);
+  return section;
+}
+
 PageSection BudgetSection(const nlohmann::json& results) {
   PageSection section{"Uncertainty", "", {}};
   if (Figure budget = BudgetFigure(results); !budget.series.empty()) section.blocks.emplace_back(std::move(budget));
@@ -75,7 +89,8 @@ PageSection ProvenanceSection(const PageSource& source) {
   return {"Provenance", "", {table}};
 }
 
-Page RunPage(const PageSource& source, const nlohmann::json& results, const nlohmann::json& score) {
+Page RunPage(const PageSource& source, const nlohmann::json& results, const nlohmann::json& score, const std::vector<Reading>& readings,
+             const std::vector<PageImage>& images) {
   const std::vector<Figure> curves = CurveFigures(results, score);
   Page page{source.name, "", "", VerdictTone::kPlain, {}};
   page.subtitle = source.provenance.bench;
@@ -86,7 +101,8 @@ Page RunPage(const PageSource& source, const nlohmann::json& results, const nloh
     page.sections = DiagnosisSections(results.at("diagnosis"));
   }
   for (PageSection& section : std::vector{CurveSection(curves), SpectrumSection(curves, SpectrumFigures(results, score)),
-                                          ValueSection(results, score), BudgetSection(results)}) {
+                                          VolumetricSection(results), ValueSection(results, score), BudgetSection(results),
+                                          ReadingsSection(readings, source.provenance.bench), ImageSection(images)}) {
     if (!section.blocks.empty()) page.sections.push_back(std::move(section));
   }
   page.sections.push_back(ProvenanceSection(source));

@@ -21,7 +21,10 @@ struct PageSource {
 ///
 /// @param results  results.json.
 /// @param score    score.json; null if the run was not scored. The only place that truth is taken from.
-Page RunPage(const PageSource& source, const nlohmann::json& results, const nlohmann::json& score);
+/// @param readings Of its record.
+/// @param images   Of the light, where it was pictured.
+Page RunPage(const PageSource& source, const nlohmann::json& results, const nlohmann::json& score, const std::vector<Reading>& readings = {},
+             const std::vector<PageImage>& images = {});
 
 /// Versions, seed, digests.
 PageSection ProvenanceSection(const PageSource& source);
