@@ -34,6 +34,14 @@ Window LitWindow(const optics::IrradianceMap& map) {
   return window.top < window.bottom ? window : Window{0, map.height, 0, map.width};
 }
 
+/// With dark about the light, so that its edge can be seen; a fine beam is one pixel.
+Window WithMargin(Window window, const optics::IrradianceMap& map) {
+  constexpr int kLeast = 20;
+  const int margin = std::max({kLeast, (window.bottom - window.top) / 5, (window.right - window.left) / 5});
+  return {std::max(0, window.top - margin), std::min(map.height, window.bottom + margin), std::max(0, window.left - margin),
+          std::min(map.width, window.right + margin)};
+}
+
 /// Mean over `factor` by `factor` pixels.
 double CoarsePixel(const optics::IrradianceMap& map, int row, int column, int factor) {
   double sum = 0.0;
@@ -50,7 +58,7 @@ double Rounded(double value) {
 }
 
 report::PageImage PictureOf(const optics::IrradianceMap& map, const std::string& file) {
-  const Window window = LitWindow(map);
+  const Window window = WithMargin(LitWindow(map), map);
   const int size = std::max(window.bottom - window.top, window.right - window.left);
   const int factor = std::max(1, (size + kMostPixels - 1) / kMostPixels);
   report::PageImage image{map.name + ", " + file, "", 0, 0, map.pitch_m * 1e3 * factor, "W/mm2", {}};

@@ -4,6 +4,7 @@ import { rangeOf } from "./colours.js";
 import { element, slug } from "./dom.js";
 import { figureCard } from "./figure.js";
 import { axisTitle } from "./format.js";
+import { onThemeChange } from "./theme.js";
 
 /** Points with the same value of the group are one series. */
 function seriesOf({ columns, group }, x, y, colour) {
@@ -12,7 +13,7 @@ function seriesOf({ columns, group }, x, y, colour) {
   return kinds.map((kind) => {
     const of = (c) => columns[c].values.filter((_, k) => !all || all[k] === kind);
     return {
-      name: kind === null ? columns[y].name : `${columns[group].name} ${kind}`, role: "estimate", x: of(x), y: of(y),
+      name: kind === null ? "points" : `${columns[group].name} ${kind}`, role: "estimate", x: of(x), y: of(y),
       ...(colour >= 0 ? { shade: of(colour) } : {}),
     };
   });
@@ -39,6 +40,7 @@ export function columnsCard(block) {
     return element("label", { for: made.id }, `${word} `, made);
   };
   show();
+  onThemeChange(show);
   return element(
     "section", { class: "choice wide" },
     element("div", { class: "questions" }, element("h3", {}, block.title), list("y", "plot"), list("x", "against"), list("colour", "coloured by", block.group >= 0 ? block.columns[block.group].name : "nothing")),

@@ -14,7 +14,7 @@ function painted({ width, height, values }, [low, high]) {
 }
 
 export function imageCard(image) {
-  const range = rangeOf(image.values);
+  const range = [0, rangeOf(image.values)[1]];
   const canvas = painted(image, range);
   const readout = element("p", { class: "readout", role: "status" });
   let [column, row] = [image.width >> 1, image.height >> 1];
@@ -46,7 +46,7 @@ export function imageCard(image) {
     element("figcaption", {}, element("div", {}, element("h3", {}, image.title), element("p", { class: "note" }, image.note))),
     frame,
     element("p", { class: "note" }, `${number(image.width * image.pitch_mm)} by ${number(image.height * image.pitch_mm)} mm`),
-    colourScale("irradiance", image.unit, range),
+    colourScale("irradiance", image.unit, range, (share) => `rgb(${shade(share).join(" ")})`),
     readout,
   );
 }

@@ -45,7 +45,8 @@ function equalRanges(figure, shown, box) {
   const height = Math.max(50, box.height - grid.top - grid.bottom);
   const scale = 1.1 * Math.max((x[1] - x[0]) / width, (y[1] - y[0]) / height) || 1 / width;
   const about = ([low, high], length) => ({ min: (low + high - scale * length) / 2, max: (low + high + scale * length) / 2 });
-  return [about(x, width), about(y, height)];
+  const ends = { axisLabel: { color: palette().soft, fontSize: 11, formatter: number, hideOverlap: true, showMinLabel: false, showMaxLabel: false } };
+  return [{ ...about(x, width), ...ends }, { ...about(y, height), ...ends }];
 }
 
 /** Room for the bands, which the library does not see. */
@@ -83,7 +84,7 @@ export function planeOption(figure, shown, looks, box) {
     ...base(),
     grid,
     xAxis: axis(figure.x, { ...x, ...(trigger === "axis" ? { min: "dataMin", max: "dataMax" } : {}) }),
-    yAxis: axis(figure.y, { nameGap: 46, ...(figure.form === "track" ? y : rangeWithBands(figure, shown)) }),
+    yAxis: axis(figure.y, { nameGap: 48, ...(figure.form === "track" ? y : rangeWithBands(figure, shown)) }),
     dataZoom: [...zoom({ xAxisIndex: 0 }), ...zoom({ yAxisIndex: 0 })],
     tooltip: {
       ...base().tooltip, trigger,

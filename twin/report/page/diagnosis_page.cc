@@ -102,7 +102,7 @@ PageSection CauseSection(const json& diagnosis) {
 }
 
 PageSection ResidualSection(const json& diagnosis) {
-  PageSection section{"Residuals", "What scenario and extension leave of the readings, against each circumstance. The one of which the extension explains most comes first.", {}};
+  PageSection section{"Residuals", "What the model leaves of the readings, against each circumstance.", {}};
   if (diagnosis.contains("plots")) {
     if (PageChoice choice = ResidualChoice(diagnosis.at("plots")); !choice.figures.empty()) section.blocks.emplace_back(std::move(choice));
   }

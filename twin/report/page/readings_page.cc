@@ -56,19 +56,18 @@ PageColumns ColumnsOf(const std::vector<Reading>& readings, const BenchFormat& f
 std::map<std::string, std::pair<const ReadingColumn*, const ReadingColumn*>> PairsOf(const BenchFormat& format) {
   std::map<std::string, std::pair<const ReadingColumn*, const ReadingColumn*>> pairs;
   for (const ReadingColumn& column : format.columns) {
-    for (const bool is_x : {true, false}) {
-      const std::size_t at = column.name.find(is_x ? "_x_" : "_y_");
-      if (!column.IsShown() || at == std::string::npos) continue;
-      auto& pair = pairs[column.name.substr(0, at)];
-      (is_x ? pair.first : pair.second) = &column;
-    }
+    const std::string name = NameAndUnit(column.name).name;
+    const bool is_x = name.ends_with(" x");
+    if (!column.IsShown() || !(is_x || name.ends_with(" y"))) continue;
+    auto& pair = pairs[name.substr(0, name.size() - 2)];
+    (is_x ? pair.first : pair.second) = &column;
   }
   std::erase_if(pairs, [](const auto& pair) { return !pair.second.first || !pair.second.second; });
   return pairs;
 }
 
 Figure TrackOf(const std::string& name, const ReadingColumn& x, const ReadingColumn& y, const std::vector<Reading>& readings) {
-  Figure figure{FigureForm::kTrack, "Track on " + NameAndUnit(name).name, "a point a reading",
+  Figure figure{FigureForm::kTrack, "Track on " + name, "a point a reading",
                 {NameAndUnit(x.name).name, NameAndUnit(x.name).unit}, {NameAndUnit(y.name).name, NameAndUnit(y.name).unit}, {}};
   std::map<int, FigureSeries> setups;
   for (const Reading& reading : readings) {

@@ -48,6 +48,18 @@ bool Changes(const std::vector<double>& x) {
   return *high - *low > 1e-9 * std::max(std::abs(*low), std::abs(*high));
 }
 
+/// Bits alike, gaps too.
+bool AreAlike(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+/// One curve where nothing was extended, else both.
+std::vector<FigureSeries> BeforeAndAfter(const std::vector<double>& x, const std::vector<double>& before, const std::vector<double>& after,
+                                         const std::vector<double>& u) {
+  if (AreAlike(before, after)) return {{"residual", SeriesRole::kEstimate, x, before, u}};
+  return {{"before", SeriesRole::kBefore, x, before, u}, {"after", SeriesRole::kAfter, x, after, u}};
+}
+
 void AddAgainst(const json& plots, std::vector<Chosen>& chosen) {
   const json against = plots.value("against", json::object());
   for (const auto& [circumstance, channels] : against.items()) {
@@ -58,7 +70,7 @@ void AddAgainst(const json& plots, std::vector<Chosen>& chosen) {
       const auto [name, unit] = NameAndUnit(circumstance);
       Figure figure{FigureForm::kLine, "Residual of " + NameAndUnit(channel).name + " against " + name, "means with their uncertainty",
                     {name, unit}, {channel, UnitOf(plots, channel)},
-                    {{"before", SeriesRole::kBefore, *x, *before, u}, {"after", SeriesRole::kAfter, *x, *after, u}}};
+                    BeforeAndAfter(*x, *before, *after, u)};
       chosen.push_back({figure, {name, channel}, ExplainedIn(*before, *after, u),
                         u.empty() ? 0.0 : SquaresOf(*before, u) / static_cast<double>(before->size())});
     }
@@ -77,7 +89,7 @@ void AddMaps(const json& plots, std::vector<Chosen>& chosen) {
       const std::string where = fmt::format("position in set-up {:g}", (*setup)[s]);
       Figure figure{FigureForm::kLine, "Residual of " + NameAndUnit(channel).name + " against " + where, "", {"position", ""},
                     {channel, UnitOf(plots, channel)},
-                    {{"before", SeriesRole::kBefore, *position, *before, {}}, {"after", SeriesRole::kAfter, *position, *after, {}}}};
+                    BeforeAndAfter(*position, *before, *after, {})};
       chosen.push_back({figure, {where, channel}, ExplainedIn(*before, *after, {}), 0.0});
     }
   }
@@ -94,7 +106,8 @@ PageChoice ResidualChoice(const json& plots) {
   };
   const auto loudest = std::max_element(chosen.begin(), chosen.end(), tells_less);
   if (loudest != chosen.end()) std::rotate(chosen.begin(), loudest, loudest + 1);
-  PageChoice choice{"Residuals before and after the extension", "", {"against", "of"}, {}, {}};
+  const bool is_extended = std::any_of(chosen.begin(), chosen.end(), [](const Chosen& c) { return c.figure.series.size() > 1; });
+  PageChoice choice{is_extended ? "Residuals before and after the extension" : "Residuals", "", {"against", "of"}, {}, {}};
   for (Chosen& one : chosen) {
     choice.answers.push_back(one.answers);
     choice.figures.push_back(std::move(one.figure));
