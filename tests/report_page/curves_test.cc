@@ -56,13 +56,17 @@ TEST(CurveFigures, KeepCurvesOfOtherLengthsApartFromTheirAngles) {
   EXPECT_TRUE(CurveFigures(odd, {}).empty());
 }
 
-TEST(CurveFigures, PutTheCurvesOfSeveralPassesIntoOneFigure) {
-  json two = json::array();
-  for (const int pass : {0, 1}) two.push_back({{"pass", pass}, {"commanded_deg", {0, 1, 2}}, {"dx_um", {pass, 2, 3}}});
-  const std::vector<Figure> figures = CurveFigures({{"path", two}}, {});
-  ASSERT_EQ(figures.size(), 1u);
-  ASSERT_EQ(figures[0].series.size(), 2u);
-  EXPECT_EQ(figures[0].series[1].name, "pass 1");
+TEST(CurveFigures, PutThePassesOfASetUpIntoOneFigure) {
+  json paths = json::array();
+  for (const int setup : {0, 1}) {
+    for (const int pass : {0, 1})
+      paths.push_back({{"setup", setup}, {"pass", pass}, {"commanded_deg", {0, 1, 2}}, {"dx_um", {pass, 2, 3}}});
+  }
+  const std::vector<Figure> figures = CurveFigures({{"path", paths}}, {});
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_EQ(figures[1].title, "path, dx, set-up 1");
+  ASSERT_EQ(figures[1].series.size(), 2u);
+  EXPECT_EQ(figures[1].series[1].name, "pass 1");
 }
 
 TEST(SpectrumFigures, ReadListsAndListsOfTerms) {

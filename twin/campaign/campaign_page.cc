@@ -79,13 +79,15 @@ Figure PullHistogram(const std::string& name, const Sample& sample) {
   return figure;
 }
 
+/// Those whose truth is known first.
 PageChoice Histograms(const std::map<std::string, Sample>& samples) {
   PageChoice choice{"Distributions", "", {"of", "show"}, {}, {}};
   for (const auto& [name, sample] : samples) {
-    if (sample.pull.size() > 1) {
-      choice.answers.push_back({name, "error / u"});
-      choice.figures.push_back(PullHistogram(name, sample));
-    }
+    if (sample.pull.size() < 2) continue;
+    choice.answers.push_back({name, "error / u"});
+    choice.figures.push_back(PullHistogram(name, sample));
+  }
+  for (const auto& [name, sample] : samples) {
     if (!sample.of_list && sample.value.size() > 1) {
       choice.answers.push_back({name, "value"});
       choice.figures.push_back(ValueHistogram(name, sample));

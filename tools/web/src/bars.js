@@ -29,7 +29,7 @@ export function barsOption(figure, shown, looks, logarithmic) {
       return;
     }
     series.push({
-      type: "bar", name: s.name, data: places.map((x) => [String(x), size(x)]), barMaxWidth: 22, barGap: "15%",
+      type: "bar", name: s.name, data: places.map((x) => [String(x), size(x)]), barMaxWidth: figure.form === "histogram" ? undefined : 22, barGap: "15%",
       barCategoryGap: figure.form === "histogram" ? "4%" : "30%",
       itemStyle: {
         color: look.open ? "transparent" : look.colour, borderColor: look.colour, borderWidth: look.open ? 1.5 : 0,
@@ -41,7 +41,7 @@ export function barsOption(figure, shown, looks, logarithmic) {
   return {
     ...base(),
     grid,
-    xAxis: axis(figure.x, { type: "category", data: places.map(String), splitLine: { show: false }, axisLabel: { color: palette().soft, fontSize: 11, formatter: (x) => number(Number(x)), hideOverlap: true } }),
+    xAxis: axis(figure.x, { type: "category", data: places.map(String), splitLine: { show: false }, axisLabel: { color: palette().soft, fontSize: 11, formatter: (x) => number(Number(Number(x).toPrecision(3))), hideOverlap: true } }),
     yAxis: axis(figure.y, { nameGap: 46, scale: false, ...(logarithmic ? { type: "log", min: lowest } : {}) }),
     dataZoom: zoom({ xAxisIndex: 0 }),
     tooltip: {

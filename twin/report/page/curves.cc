@@ -1,6 +1,7 @@
 #include "twin/report/page/curves.h"
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -21,15 +22,26 @@ bool IsUncertainty(const std::string& key) {
   return key.starts_with("u_");
 }
 
-/// What tells one of several objects of a list from the others: "set-up 1, pass 3".
-std::string Circumstances(const json& object) {
+struct Circumstance {
+  const char *key, *spoken;
+};
+
+std::string Spoken(const json& object, const std::vector<Circumstance>& circumstances) {
   std::string words;
-  for (const auto& [key, spoken] : std::array<std::pair<const char*, const char*>, 4>{
-           {{"setup", "set-up"}, {"pass", "pass"}, {"direction", "direction"}, {"head_deg", "head [deg]"}}}) {
-    if (object.contains(key) && object.at(key).is_number())
-      words += (words.empty() ? "" : ", ") + std::string(spoken) + " " + NumberText(object.at(key).get<double>());
+  for (const auto& [key, spoken] : circumstances) {
+    if (const double value = NumberAt(object, key); std::isfinite(value))
+      words += (words.empty() ? "" : ", ") + std::string(spoken) + " " + NumberText(value);
   }
   return words;
+}
+
+/// What tells one of several objects of a list from the others: passes are curves of the figure of their set-up.
+std::string FigureOf(const json& object) {
+  return object.contains("pass") ? Spoken(object, {{"setup", "set-up"}}) : "";
+}
+std::string SeriesOf(const json& object) {
+  if (object.contains("pass")) return Spoken(object, {{"pass", "pass"}});
+  return Spoken(object, {{"setup", "set-up"}, {"direction", "direction"}, {"head_deg", "head [deg]"}});
 }
 
 /// The figure with that title and unit, made if there is none.
@@ -78,8 +90,8 @@ void AddList(const Lists& lists, const json& object, const std::string& key, con
   if (!y || y->size() != x.size()) return;
   const std::string path = lists.path + "." + key;
   const auto [name, unit] = NameAndUnit(key);
-  Figure figure{lists.form, PathInWords(lists.path) + ", " + name, "", lists.x, {name, unit}, {}};
-  const std::string of = Circumstances(object);
+  const std::string where = FigureOf(object), of = SeriesOf(object);
+  Figure figure{lists.form, PathInWords(lists.path) + ", " + name + (where.empty() ? "" : ", " + where), "", lists.x, {name, unit}, {}};
   FigureSeries series{of.empty() ? "estimate" : of, SeriesRole::kEstimate, x, *y, {}, CoverageOf(lists.results, path)};
   if (const auto u = NumbersAt(object, "u_" + key); u && u->size() == x.size()) series.u = *u;
   Figure& to = FigureFor(figures, figure);

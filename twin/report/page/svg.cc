@@ -141,12 +141,27 @@ void DrawSeries(const FigureSeries& series, const Ink& ink, bool joined, const A
   for (const auto& [x, y] : middle) canvas.Dot(x, y, ink, IsOpen(series));
 }
 
+/// The shorter of two ranges is made longer about its middle until both have one scale.
+void MakeEqual(Range& x, Range& y, double width_px, double height_px) {
+  if (x.IsEmpty() || y.IsEmpty()) return;
+  const double scale = std::max((x.high - x.low) / width_px, (y.high - y.low) / height_px);
+  const auto about = [scale](Range& range, double length_px) {
+    const double middle = (range.low + range.high) / 2;
+    range = {middle - scale * length_px / 2, middle + scale * length_px / 2};
+  };
+  about(x, width_px);
+  about(y, height_px);
+}
+
 std::string PlaneSvg(const Figure& figure) {
   SvgCanvas canvas(kWidth_px, kHeight_px);
   DrawHead(figure, canvas);
   const bool joined = figure.form == FigureForm::kLine || figure.form == FigureForm::kAngle;
-  const Scale x = ScaleFor(RangeOfX(figure), kLeft_px, kWidth_px - kRight_px, !joined);
-  const Scale y = ScaleFor(RangeWithBands(figure), kHeight_px - kBottom_px, kTop_px, true);
+  const bool equal = figure.form == FigureForm::kTrack;
+  Range x_range = RangeOfX(figure), y_range = RangeWithBands(figure);
+  if (equal) MakeEqual(x_range, y_range, kWidth_px - kRight_px - kLeft_px, kHeight_px - kBottom_px - kTop_px);
+  const Scale x = ScaleFor(x_range, kLeft_px, kWidth_px - kRight_px, !joined && !equal);
+  const Scale y = ScaleFor(y_range, kHeight_px - kBottom_px, kTop_px, !equal);
   DrawAxes(figure, x, y, canvas);
   for (std::size_t s = 0; s < figure.series.size(); ++s) {
     const FigureSeries& series = figure.series[s];
