@@ -32,9 +32,9 @@ export function makeRun(name, toml, ...more) {
 let browser;
 
 /** Opens a page; whatever it says on the console is kept in `said`. */
-export async function open(file, colorScheme = "light") {
+export async function open(file) {
   browser ??= await chromium.launch({ executablePath: TWINBENCH_CHROMIUM, args: ["--no-sandbox"] });
-  const context = await browser.newContext({ viewport: { width: 1300, height: 900 }, colorScheme });
+  const context = await browser.newContext({ viewport: { width: 1300, height: 900 } });
   const page = await context.newPage();
   page.said = [];
   page.on("console", (message) => page.said.push(`${message.type()}: ${message.text()}`));
@@ -47,8 +47,8 @@ export async function open(file, colorScheme = "light") {
 
 /** What the checker of accessibility has against the page, contrast among it. */
 export async function faultsOf(page) {
-  await page.evaluate(axe);
-  const found = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"] }));
+  if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(axe);
+  const found = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"], resultTypes: ["violations"] }));
   return found.violations.map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map((node) => node.html.slice(0, 120)).join(" | ")}`);
 }
 
