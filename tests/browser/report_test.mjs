@@ -104,6 +104,21 @@ test("by keys alone a plot is reached, read, zoomed and shown whole again, and a
   await page.close();
 });
 
+test("on a polar plot pointer and cursor keys show the value at an angle", async () => {
+  const page = await open("turntable/report.html");
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "turntable, ez", exact: true }) });
+  await card.locator(".plot").focus();
+  for (let n = 0; n < 5; ++n) await page.keyboard.press("ArrowRight");
+  await card.locator(".tip").waitFor();
+  const byKeys = await card.locator(".tip").innerText();
+  assert.match(byKeys, /position 40 deg\s+estimate\s+\S+ ± \S+ arcsec\s+truth/);
+  const box = await card.locator(".plot").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 60);
+  await page.waitForTimeout(200);
+  assert.match(await card.locator(".tip").innerText(), /position 90 deg/);
+  await page.close();
+});
+
 test("wheel with Ctrl zooms, wheel alone does not", async () => {
   const page = await open("turntable/report.html");
   const card = page.locator("figure.card").first();

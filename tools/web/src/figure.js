@@ -37,9 +37,12 @@ class Card {
     onThemeChange(() => this.legendElement.replaceWith(this.legend()));
   }
 
+  box() {
+    return { width: this.plot.clientWidth, height: this.plot.clientHeight, zoomed: this.zoomed };
+  }
+
   option() {
-    const box = { width: this.plot.clientWidth, height: this.plot.clientHeight, zoomed: this.zoomed };
-    return this.view.option(this.figure, this.shown, looks(this.figure), box);
+    return this.view.option(this.figure, this.shown, looks(this.figure), this.box());
   }
 
   size() {
@@ -116,12 +119,17 @@ class Card {
   pointAt(s, k) {
     const chart = this.chart.get();
     if (!chart) return;
-    const name = this.figure.series[s].name;
-    const seriesIndex = chart.getOption().series.findIndex((series) => series.name === name && series.type !== "custom");
     const series = this.figure.series[s];
+    if (this.view.place) {
+      if (series.y[k] !== null) chart.dispatchAction({ type: "showTip", ...this.view.place(this.figure, this.shown, this.box(), series.x[k], series.y[k]) });
+      return;
+    }
+    const name = series.name;
+    const seriesIndex = chart.getOption().series.findIndex((series) => series.name === name && series.type !== "custom");
     const ascending = this.figure.form === "bars" || this.figure.form === "histogram";
     const places = ascending ? [...new Set(this.figure.series.flatMap((other) => other.x))].sort((a, b) => a - b) : undefined;
-    chart.dispatchAction({ type: "showTip", seriesIndex, dataIndex: places ? places.indexOf(series.x[k]) : k });
+    const dataIndex = places ? places.indexOf(series.x[k]) : k;
+    chart.dispatchAction({ type: "showTip", seriesIndex, dataIndex });
   }
 
   leave() {

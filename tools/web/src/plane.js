@@ -26,7 +26,7 @@ function drawn(figure, series, look, paper) {
   }
   return {
     type: "line", name: series.name, data, sampling: many ? "lttb" : undefined, symbol: look.symbol, symbolSize: 5,
-    showSymbol: data.length <= 100, lineStyle: lineStyle(look), itemStyle: itemStyle(look, paper), z: look.open ? 4 : 3, connectNulls: false,
+    showSymbol: data.length <= 100, lineStyle: lineStyle(look), itemStyle: itemStyle(look, paper), z: look.open ? 4 : 3, connectNulls: false, emphasis: { scale: 2, lineStyle: { width: look.width } },
   };
 }
 

@@ -30,12 +30,26 @@ function closed(series) {
   return Math.abs(way + gap - 360) < gap / 2 ? [...points, points[0]] : points;
 }
 
-export function polarOption(figure, shown, looks, zoomed = 1) {
-  const colours = palette();
+const kRadius = 0.82; // of the half side
+
+function radii(figure, shown, zoomed) {
   const size = largest(figure, shown) / zoomed;
   const tick = step(size);
   const outer = Math.ceil((size * 1.02) / tick) * tick;
-  const inner = -outer - tick;
+  return { tick, outer, inner: -outer - tick };
+}
+
+/** Where on the plot a point is drawn [px]. */
+export function polarPlace(figure, shown, box, x, y) {
+  const { inner, outer } = radii(figure, shown, box.zoomed);
+  const r = ((kRadius * Math.min(box.width, box.height)) / 2) * ((y - inner) / (outer - inner));
+  const a = (x * Math.PI) / 180;
+  return { x: box.width / 2 + r * Math.cos(a), y: box.height / 2 - r * Math.sin(a) };
+}
+
+export function polarOption(figure, shown, looks, zoomed = 1) {
+  const colours = palette();
+  const { tick, outer, inner } = radii(figure, shown, zoomed);
   const series = [
     {
       type: "line", coordinateSystem: "polar", silent: true, symbol: "none", tooltip: { show: false }, z: 0,
@@ -48,12 +62,12 @@ export function polarOption(figure, shown, looks, zoomed = 1) {
     if (s.u) series.push(band(s, (x, y) => [Math.max(inner, Math.min(outer, y)), x], { coordinateSystem: "polar", colour: looks[k].colour }));
     series.push({
       type: "line", coordinateSystem: "polar", name: s.name, data: closed(s), symbol: looks[k].symbol, symbolSize: 5,
-      showSymbol: s.x.length <= 100, lineStyle: lineStyle(looks[k]), itemStyle: itemStyle(looks[k], colours.paper), clip: true, z: looks[k].open ? 4 : 3,
+      showSymbol: s.x.length <= 100, emphasis: { scale: 2.4, lineStyle: { width: looks[k].width } }, lineStyle: lineStyle(looks[k]), itemStyle: itemStyle(looks[k], colours.paper), clip: true, z: looks[k].open ? 4 : 3,
     });
   });
   return {
     ...base(),
-    polar: { radius: "82%" },
+    polar: { radius: `${100 * kRadius}%` },
     angleAxis: {
       type: "value", min: 0, max: 360, interval: 30, startAngle: 0, clockwise: false,
       axisLabel: { color: colours.soft, fontSize: 11, formatter: (a) => (a === 360 ? "" : `${a}\u00b0`) },

@@ -18,7 +18,7 @@ export function sharesOption(figure, shown, looks) {
   return {
     ...base(),
     grid: { left: 12, right: 24, top: 8, bottom: 44, containLabel: true },
-    xAxis: axis(figure.y, { scale: false, ...(isShare(figure) ? { max: 1, axisLabel: { color: colours.soft, formatter: (x) => `${Math.round(100 * x)} %` } } : {}) }),
+    xAxis: axis(figure.y, { scale: false, ...(isShare(figure) ? { max: 1, axisLabel: { color: colours.soft, hideOverlap: true, formatter: (x) => `${Math.round(100 * x)} %` } } : {}) }),
     yAxis: axis({ name: "", unit: "" }, {
       type: "category", data: figure.categories, inverse: true, splitLine: { show: false },
       axisLabel: { color: colours.ink, fontSize: 12, width: 260, overflow: "truncate", interval: 0 },
