@@ -7,7 +7,7 @@ import { close, faultsOf, folder, makeRun, open, scenario, twinbench, write } fr
 const kEvil = "</script><script>document.title='caught'</script><img src=x onerror=\"document.title='caught'\">";
 
 before(() => {
-  makeRun("rotary", scenario("rotary_4dof"));
+  makeRun("rotary", scenario("rotary_4dof"), "--images");
   makeRun("turntable", scenario("turntable_shifts"));
   const small = ["--set", "procedure.positions=12", "--set", "procedure.shifts=[0,1,5]", "--set", "procedure.passes=[1,-1]"];
   makeRun("diagnosed", scenario("rotary_4dof"), ...small, "--set", 'effect=[{name="psd_roll", where="psd_b", roll_mrad=20.0}]');
@@ -145,6 +145,39 @@ test("choosing another residual draws another plot", async () => {
   assert.notEqual(await title(), before);
   assert.match(await page.locator(".verdict").innerText(), /psd_roll at psd_b/);
   await page.close();
+});
+
+test("a picture of the light tells its values by cursor keys and under the pointer", async () => {
+  const page = await open("rotary/report.html");
+  const card = page.locator("#light figure.card").first();
+  await card.locator(".picture").focus();
+  await page.keyboard.press("ArrowLeft");
+  assert.match(await card.locator(".readout").innerText(), /^\S+, \S+ mm from the middle of the picture: \S+ W\/mm2$/);
+  const painted = await card.locator("canvas").evaluate((canvas) => new Set(new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size);
+  assert.ok(painted > 1);
+  await card.locator("canvas").hover({ position: { x: 5, y: 5 } });
+  assert.match(await card.locator(".readout").innerText(), /: 0 W\/mm2$/);
+  await page.close();
+});
+
+test("pages of plans and investigations are drawn and pass the same checks", async () => {
+  const cause = (effect) => ({ effect, where: "" });
+  const planned = { name: "separation.target.ez_arcsec", order: [1, 2, 3], u: [0.01, 0.02, 0.015] };
+  write("plan.json", JSON.stringify({
+    runs: [{ run: "own", readings: 10, minutes: 5, dof: 3, shifts: {}, results: [{ name: planned.name, rms_u: 0.05 }], harmonics: [planned], not_separable: ["dx"] }],
+    next: "best", advice: [{ name: "best", words: "two more set-ups", bit_per_minute: 0.5, sets: [] }, { name: "same", words: "the same again", bit_per_minute: 0.1, sets: [] }],
+    ties: [{ present: cause("a"), blamed: cause("b"), told_from: 0.1, unit: "um" }], never_told_apart: [[cause("a"), cause("c")]], detectable: [], invisible: [],
+  }));
+  const step = (number, p) => ({ number, run: "r", words: "w", reason: "y", minutes: 5, expected_bit: 0.5, gained_bit: 0.4, u_goal: null, unlisted: 0, believed: [{ name: "a", probability: p }, { name: "b", probability: 1 - p }] });
+  write("investigation.json", JSON.stringify({ told: "tied", ended: "budget spent", minutes: 10, goal: null, causes: [{ name: "a", probability: 0.9, chi2: 1 }], unlisted: 0, steps: [step(1, 0.5), step(2, 0.9)], refused: [] }));
+  for (const name of ["plan", "investigation"]) {
+    twinbench("report", `${name}.json`);
+    const page = await open(`${name}.html`);
+    assert.equal(await plots(page).count(), 2);
+    assert.deepEqual(await faultsOf(page), []);
+    assert.deepEqual(page.said, []);
+    await page.close();
+  }
 });
 
 test("nothing that results or a folder's name say is read as markup or script", async () => {
