@@ -19,6 +19,7 @@ void AddBudget(CLI::App& app);
 void AddPlan(CLI::App& app);
 void AddInvestigate(CLI::App& app);
 void AddDiagnose(CLI::App& app);
+void AddReport(CLI::App& app);
 void AddScore(CLI::App& app);
 void AddHelp(CLI::App& app);
 void AddNew(CLI::App& app);

@@ -26,6 +26,7 @@ constexpr const char* kExamples =
     "A first session:\n"
     "  twinbench run scenarios/rotary_4dof.toml -o runs/first     carry out, measure, separate\n"
     "  twinbench score runs/first                                 compare with the truth\n"
+    "  twinbench report runs/first                                a page of plots and tables that opens offline\n"
     "  twinbench diagnose runs/first                              does the scenario describe the bench?\n"
     "  twinbench export runs/first --readings readings.csv        hand the readings to somebody else\n"
     "  twinbench separate readings.csv --scenario scenarios/rotary_4dof.toml --json - --estimator published\n"
@@ -99,7 +100,7 @@ int Run(int argc, char** argv) {
   app.failure_message(Complaint);
   using namespace twinbench::tools;
   for (const auto add : {AddRun, AddCampaign, AddMeasure, AddServe, AddExport, AddImport, AddSeparate,
-                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddScore, AddNew,
+                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddReport, AddScore, AddNew,
                          AddCheck, AddList, AddExplain, AddHelp, AddSchema, AddCompletion})
     add(app);
   try {

@@ -9,6 +9,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/report/evaluation.h"
+#include "twin/report/page/scored.h"
 
 namespace twinbench::tools {
 namespace {
@@ -17,6 +18,13 @@ struct ScoreOptions {
   std::string folder, json, estimator = "rigorous";
   bool positions = false;
 };
+
+/// The score with every number beside its truth: pages of results take truth from here.
+nlohmann::json WithValues(const report::ScoredRun& score) {
+  nlohmann::json json = score.json;
+  if (!score.values.empty()) json["values"] = report::ScoredValuesJson(score.values);
+  return json;
+}
 
 void PrintScore(const ScoreOptions& options) {
   const RunFolder folder{options.folder};
@@ -28,7 +36,7 @@ void PrintScore(const ScoreOptions& options) {
   const RecordedRun run = LoadRecordedRun(folder.path, "", {});
   const report::ScoredRun score =
       BenchOf(run.scenario).score(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
-  if (!options.json.empty()) WriteJson(options.json, score.json);
+  if (!options.json.empty()) WriteJson(options.json, WithValues(score));
   if (options.json == "-") return;
   if (options.positions) fmt::print("{}\n", score.positions);
   fmt::print("{}", score.text);

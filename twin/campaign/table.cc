@@ -195,6 +195,25 @@ std::vector<std::string> Table::Keys() const {
   return keys;
 }
 
+std::vector<VariedKey> Table::Varied() const {
+  std::vector<VariedKey> varied;
+  for (const std::string& key : Keys()) {
+    VariedKey found{key, {}};
+    SqliteStatement ask(*database_, fmt::format("SELECT trial, {} FROM trials", Quoted(key)));
+    while (ask.Step()) {
+      if (const auto number = ParseNumber(ask.Text(1))) found.values[ask.Integer(0)] = *number;
+    }
+    if (!found.values.empty()) varied.push_back(std::move(found));
+  }
+  return varied;
+}
+
+std::string Table::Made(const std::string& name) const {
+  SqliteStatement ask(*database_, "SELECT value FROM provenance WHERE name = ?");
+  ask.Bind(0, name);
+  return ask.Step() ? ask.Text(0) : "";
+}
+
 std::string Table::Csv() const {
   const std::vector<std::string> keys = Keys();
   const std::map<std::string, bool> names = ResultNames(*database_);

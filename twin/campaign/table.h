@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,6 +12,12 @@
 #include "twin/core/sqlite_database.h"
 
 namespace twinbench::campaign {
+
+/// A key that differs from trial to trial and is a number.
+struct VariedKey {
+  std::string name;
+  std::map<std::int64_t, double> values;  // by trial
+};
 
 /// The results of a study in one SQLite file (docs/campaign.md): `provenance`, `trials` with the values of the
 /// varied keys, and `results`, one row a number, because trials need not come to the same numbers. Each trial is
@@ -31,6 +38,10 @@ class Table {
   std::vector<std::int64_t> Done() const;
   /// Calls `look(row)` with every trial, ascending.
   void ForEach(const std::function<void(const TrialRow&)>& look) const;
+  /// The varied keys whose values are numbers.
+  std::vector<VariedKey> Varied() const;
+  /// "version", "bench", "scenario" or "study", as the table was made; empty if it has no such thing.
+  std::string Made(const std::string& name) const;
   /// A line a trial: number, seed, failure, verdict, varied keys, then value, u and error of every result.
   std::string Csv() const;
 

@@ -1,0 +1,59 @@
+// What the browser tests share: runs made by the program, and their pages opened in one browser.
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+const { TWINBENCH_PROGRAM, TWINBENCH_SOURCE_DIR, TWINBENCH_CHROMIUM, TWINBENCH_MODULES } = process.env;
+const load = createRequire(join(TWINBENCH_MODULES, "package.json"));
+const { chromium } = load("playwright-core");
+const axe = readFileSync(load.resolve("axe-core/axe.min.js"), "utf8");
+
+export const folder = mkdtempSync(join(tmpdir(), "twinbench-browser-"));
+
+export function twinbench(...words) {
+  return execFileSync(TWINBENCH_PROGRAM, words, { cwd: folder, encoding: "utf8", stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, XDG_CACHE_HOME: folder } });
+}
+
+export const scenario = (name) => join(TWINBENCH_SOURCE_DIR, "scenarios", `${name}.toml`);
+
+export function write(name, text) {
+  writeFileSync(join(folder, name), text);
+}
+
+/** A run of the twin with its score, made once. */
+export function makeRun(name, toml, ...more) {
+  twinbench("run", toml, "-o", name, ...more);
+  twinbench("score", name, "--json", join(name, "score.json"));
+  return name;
+}
+
+let browser;
+
+/** Opens a page; whatever it says on the console is kept in `said`. */
+export async function open(file) {
+  browser ??= await chromium.launch({ executablePath: TWINBENCH_CHROMIUM, args: ["--no-sandbox"] });
+  const context = await browser.newContext({ viewport: { width: 1300, height: 900 } });
+  const page = await context.newPage();
+  page.said = [];
+  page.on("console", (message) => page.said.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => page.said.push(`error: ${error.message}`));
+  page.on("request", (request) => request.url().startsWith("http") && page.said.push(`request: ${request.url()}`));
+  await page.goto(`file://${join(folder, file)}`);
+  await page.waitForFunction(() => [...document.querySelectorAll(".plot")].every((plot) => plot.dataset.drawn));
+  return page;
+}
+
+/** What the checker of accessibility has against the page, contrast among it. Insides of plots, which it takes for pictures, have the colours of the
+ * page's text. */
+export async function faultsOf(page) {
+  if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(axe);
+  const found = await page.evaluate(() => window.axe.run({ exclude: [".plot svg"] }, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"], resultTypes: ["violations"] }));
+  return found.violations.map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map((node) => node.html.slice(0, 120)).join(" | ")}`);
+}
+
+export async function close() {
+  await browser?.close();
+  rmSync(folder, { recursive: true });
+}

@@ -1,0 +1,221 @@
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { close, faultsOf, folder, makeRun, open, scenario, twinbench, write } from "./bench.mjs";
+
+const kEvil = "</script><script>document.title='caught'</script><img src=x onerror=\"document.title='caught'\">";
+
+before(() => {
+  makeRun("rotary", scenario("rotary_4dof"), "--images");
+  makeRun("turntable", scenario("turntable_shifts"));
+  const small = ["--set", "procedure.positions=12", "--set", "procedure.shifts=[0,1,5]", "--set", "procedure.passes=[1,-1]"];
+  makeRun("diagnosed", scenario("rotary_4dof"), ...small, "--set", 'effect=[{name="psd_roll", where="psd_b", roll_mrad=20.0}]');
+  twinbench("diagnose", "diagnosed", "--scenario", scenario("rotary_4dof"), ...small);
+  for (const run of ["rotary", "turntable", "diagnosed"]) twinbench("report", run);
+});
+after(close);
+
+const plots = (page) => page.locator(".plot");
+
+for (const run of ["rotary", "turntable", "diagnosed"]) {
+  test(`${run}: every plot is drawn, the console is silent, contrast and names of all controls pass in light and dark`, async () => {
+    const page = await open(`${run}/report.html`);
+    assert.ok((await plots(page).count()) >= 4);
+    const marks = await plots(page).evaluateAll((all) => all.map((plot) => plot.querySelectorAll("svg path, svg polygon, svg polyline, canvas").length));
+    assert.ok(marks.every((n) => n > 3), `marks in each plot: ${marks}`);
+    assert.deepEqual(await faultsOf(page), []);
+    const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    const light = await paper();
+    await page.emulateMedia({ colorScheme: "dark" });
+    assert.notEqual(await paper(), light);
+    assert.deepEqual(await faultsOf(page), []);
+    assert.deepEqual(page.said, []);
+    await page.close();
+  });
+}
+
+test("a page of four shifts is below 3 MB and made within a second", () => {
+  const begun = performance.now();
+  twinbench("report", "rotary");
+  assert.ok(performance.now() - begun < 1000);
+  assert.ok(statSync(join(folder, "rotary/report.html")).size < 3e6);
+});
+
+test("the pointer on a plot shows value, uncertainty and truth", async () => {
+  const page = await open("turntable/report.html");
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "turntable, ez", exact: true }) });
+  await card.getByRole("button", { name: "Linear" }).click();
+  const box = await card.locator(".plot").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  const tip = card.locator(".tip");
+  await tip.waitFor();
+  const text = await tip.innerText();
+  assert.match(text, /position \d+ deg/);
+  assert.match(text, /estimate\s+\S+ ± \S+ arcsec/);
+  assert.match(text, /truth\s+\S+ arcsec/);
+  await page.close();
+});
+
+test("the plotted numbers are those of results.json", async () => {
+  const page = await open("turntable/report.html");
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "turntable, ez", exact: true }) });
+  await card.getByRole("button", { name: "Numbers" }).click();
+  const shown = await card.locator(".numbers tbody tr").first().locator("td").allInnerTexts();
+  const { default: results } = await import(join(folder, "turntable/results.json"), { with: { type: "json" } });
+  const table = results.separation.turntable;
+  assert.equal(Number(shown[0].replace("−", "-")), table.position_deg[0]);
+  assert.equal(Number(shown[1].replace("−", "-")), Number(table.ez_arcsec[0].toPrecision(6)));
+  assert.equal(Number(shown[2]), Number(table.u_ez_arcsec[0].toPrecision(6)));
+  await page.close();
+});
+
+test("by keys alone a plot is reached, read, zoomed and shown whole again, and a series hidden", async () => {
+  const page = await open("rotary/report.html");
+  const focused = () => page.evaluate(() => [document.activeElement.className, document.activeElement.innerText, document.activeElement.getAttribute("role")]);
+  const tabTo = async (wanted) => {
+    for (let n = 0; n < 60; ++n) {
+      await page.keyboard.press("Tab");
+      const [name, text, role] = await focused();
+      if (wanted({ name, text, role })) return;
+    }
+    assert.fail("Tab does not lead there");
+  };
+  await tabTo(({ text }) => text === "Linear");
+  await page.keyboard.press("Enter");
+  await tabTo(({ text }) => text.trim() === "truth");
+  await page.keyboard.press("Space");
+  const truth = page.locator("figure.card").first().getByRole("button", { name: "truth" });
+  assert.equal(await truth.getAttribute("aria-pressed"), "false");
+  await tabTo(({ role }) => role === "application");
+  await page.keyboard.press("ArrowRight");
+  const readout = page.locator("figure.card").first().locator(".readout");
+  const first = await readout.innerText();
+  await page.keyboard.press("ArrowRight");
+  assert.match(first, /estimate, position 0 deg: \S+ ± \S+ um/);
+  assert.notEqual(await readout.innerText(), first);
+  const labels = () => page.locator("figure.card").first().locator(".plot svg text").allInnerTexts();
+  const whole = await labels();
+  await page.keyboard.press("+");
+  assert.notDeepEqual(await labels(), whole);
+  await page.keyboard.press("0");
+  assert.deepEqual(await labels(), whole);
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
+test("on a polar plot pointer and cursor keys show the value at an angle", async () => {
+  const page = await open("turntable/report.html");
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: "turntable, ez", exact: true }) });
+  await card.locator(".plot").focus();
+  for (let n = 0; n < 5; ++n) await page.keyboard.press("ArrowRight");
+  await card.locator(".tip").waitFor();
+  const byKeys = await card.locator(".tip").innerText();
+  assert.match(byKeys, /position 40 deg\s+estimate\s+\S+ ± \S+ arcsec\s+truth/);
+  const box = await card.locator(".plot").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2 - 60);
+  await page.waitForTimeout(200);
+  assert.match(await card.locator(".tip").innerText(), /position 90 deg/);
+  await page.close();
+});
+
+test("wheel with Ctrl zooms, wheel alone does not", async () => {
+  const page = await open("turntable/report.html");
+  const card = page.locator("figure.card").first();
+  await card.getByRole("button", { name: "Linear" }).click();
+  const labels = () => card.locator(".plot svg text").allInnerTexts();
+  const box = await card.locator(".plot").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  const whole = await labels();
+  await page.keyboard.down("Control");
+  await page.mouse.wheel(0, -300);
+  await page.keyboard.up("Control");
+  await page.waitForTimeout(200);
+  assert.notDeepEqual(await labels(), whole);
+  await page.close();
+});
+
+test("choosing another residual draws another plot", async () => {
+  const page = await open("diagnosed/report.html");
+  const choice = page.locator("#residuals .choice");
+  const title = () => choice.locator("figcaption h3").innerText();
+  const before = await title();
+  const other = await choice.locator("select").first().evaluate((list) => [...list.options].find((option) => !option.selected).value);
+  await choice.locator("select").first().selectOption(other);
+  assert.notEqual(await title(), before);
+  assert.match(await page.locator(".verdict").innerText(), /psd_roll at psd_b/);
+  await page.close();
+});
+
+test("a picture of the light tells its values by cursor keys and under the pointer", async () => {
+  const page = await open("rotary/report.html");
+  const card = page.locator("#light figure.card").first();
+  await card.locator(".picture").focus();
+  await page.keyboard.press("ArrowLeft");
+  assert.match(await card.locator(".readout").innerText(), /^\S+, \S+ mm from the middle of the picture: \S+ W\/mm2$/);
+  const painted = await card.locator("canvas").evaluate((canvas) => new Set(new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size);
+  assert.ok(painted > 1);
+  await card.locator("canvas").hover({ position: { x: 5, y: 5 } });
+  assert.match(await card.locator(".readout").innerText(), /: 0 W\/mm2$/);
+  await page.close();
+});
+
+test("pages of plans and investigations are drawn and pass the same checks", async () => {
+  const cause = (effect) => ({ effect, where: "" });
+  const planned = { name: "separation.target.ez_arcsec", order: [1, 2, 3], u: [0.01, 0.02, 0.015] };
+  write("plan.json", JSON.stringify({
+    runs: [{ run: "own", readings: 10, minutes: 5, dof: 3, shifts: {}, results: [{ name: planned.name, rms_u: 0.05 }], harmonics: [planned], not_separable: ["dx"] }],
+    next: "best", advice: [{ name: "best", words: "two more set-ups", bit_per_minute: 0.5, sets: [] }, { name: "same", words: "the same again", bit_per_minute: 0.1, sets: [] }],
+    ties: [{ present: cause("a"), blamed: cause("b"), told_from: 0.1, unit: "um" }], never_told_apart: [[cause("a"), cause("c")]], detectable: [], invisible: [],
+  }));
+  const step = (number, p) => ({ number, run: "r", words: "w", reason: "y", minutes: 5, expected_bit: 0.5, gained_bit: 0.4, u_goal: null, unlisted: 0, believed: [{ name: "a", probability: p }, { name: "b", probability: 1 - p }] });
+  write("investigation.json", JSON.stringify({ told: "tied", ended: "budget spent", minutes: 10, goal: null, causes: [{ name: "a", probability: 0.9, chi2: 1 }], unlisted: 0, steps: [step(1, 0.5), step(2, 0.9)], refused: [] }));
+  for (const name of ["plan", "investigation"]) {
+    twinbench("report", `${name}.json`);
+    const page = await open(`${name}.html`);
+    assert.equal(await plots(page).count(), 2);
+    assert.deepEqual(await faultsOf(page), []);
+    assert.deepEqual(page.said, []);
+    await page.close();
+  }
+});
+
+test("nothing that results or a folder's name say is read as markup or script", async () => {
+  makeRun("evil", scenario("turntable_shifts"));
+  const results = JSON.parse((await import("node:fs")).readFileSync(join(folder, "evil/results.json"), "utf8"));
+  results[kEvil] = 3;
+  results.separation.turntable[`${kEvil}_arcsec`] = results.separation.turntable.ez_arcsec;
+  results.separation.not_separable = [{ what: kEvil, why: kEvil }];
+  results.diagnosis = { verdict: "named", in_words: kEvil, causes: [{ effect: kEvil, where: "", probability: 1, parameters: {}, next_measurement: kEvil }] };
+  write("evil/results.json", JSON.stringify(results));
+  twinbench("report", "evil");
+  const page = await open("evil/report.html");
+  assert.equal(await page.title(), "evil");
+  assert.equal(await page.locator("img").count(), 0);
+  assert.equal(await page.locator(".verdict").innerText(), kEvil);
+  const plot = page.locator("#figure-causes .plot, figure.card .plot").first();
+  await plot.focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForTimeout(100);
+  assert.equal(await page.title(), "evil");
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
+test("a hundred thousand points are drawn and answer within a second", async () => {
+  const n = 100000;
+  const x = Array.from({ length: n }, (_, k) => (360 * k) / n);
+  const results = { many: { position_deg: x, ez_arcsec: x.map((a) => Math.sin(a)) } };
+  makeRun("many", scenario("turntable_shifts"));
+  write("many/results.json", JSON.stringify(results));
+  twinbench("report", "many");
+  const page = await open("many/report.html");
+  const card = page.locator("figure.card").first();
+  await card.getByRole("button", { name: "Linear" }).click();
+  const begun = performance.now();
+  await card.getByRole("button", { name: "Zoom in" }).click();
+  await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  assert.ok(performance.now() - begun < 1000);
+  assert.deepEqual(page.said, []);
+  await page.close();
+});

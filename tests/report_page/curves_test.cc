@@ -1,0 +1,110 @@
+#include "twin/report/page/curves.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "twin/report/page/harmonics_of.h"
+#include "twin/report/page/scored.h"
+
+namespace twinbench::report {
+namespace {
+
+using nlohmann::json;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::Pointwise;
+
+const json kResults = json::parse(R"({
+  "separation": {"table": {"position_deg": [0, 90, 180], "ez_arcsec": [1.5, null, -2.5], "u_ez_arcsec": [0.1, 0.2, 0.3],
+                           "u_harmonics": {"order": [1, 2], "ez_arcsec": [0.01, 0.02]}}},
+  "model": {"terms": [{"order": 1, "amplitude_arcsec": 6.5, "u_amplitude_arcsec": 0.5, "phase_deg": 10},
+                      {"order": 7, "amplitude_arcsec": 0.25, "u_amplitude_arcsec": 0.125, "phase_deg": 20}]},
+  "uncertainty_budget": [{"name": "separation.table.ez_arcsec", "k": 2.25, "u": 0.2, "U": 0.45, "values": 3}]})");
+
+TEST(CurveFigures, HoldTheNumbersOfResultsWithTheirUncertaintyAndItsCoverage) {
+  const std::vector<Figure> figures = CurveFigures(kResults, {});
+  ASSERT_EQ(figures.size(), 1u);
+  EXPECT_EQ(figures[0].title, "table, ez");
+  EXPECT_EQ(figures[0].y.unit, "arcsec");
+  ASSERT_EQ(figures[0].series.size(), 1u);
+  const FigureSeries& curve = figures[0].series[0];
+  EXPECT_THAT(curve.x, ElementsAre(0, 90, 180));
+  EXPECT_EQ(curve.y[0], 1.5);
+  EXPECT_TRUE(std::isnan(curve.y[1]));
+  EXPECT_EQ(curve.y[2], -2.5);
+  EXPECT_THAT(curve.u, ElementsAre(0.1, 0.2, 0.3));
+  EXPECT_EQ(curve.k, 2.25);
+}
+
+TEST(CurveFigures, ShowTruthOnlyWhereTheScoreHasIt) {
+  const json score = {{"values", ScoredValuesJson({{"table.ez_arcsec[0]", 1.5, 0.1, 1.25}, {"table.ez_arcsec[2]", -2.5, 0.3, -2.75}})}};
+  const std::vector<Figure> figures = CurveFigures(kResults, score);
+  ASSERT_EQ(figures[0].series.size(), 2u);
+  const FigureSeries& truth = figures[0].series[1];
+  EXPECT_EQ(truth.role, SeriesRole::kTruth);
+  EXPECT_EQ(truth.name, "truth");
+  EXPECT_EQ(truth.y[0], 1.25);
+  EXPECT_TRUE(std::isnan(truth.y[1]));  // what was not scored has none
+  EXPECT_EQ(truth.y[2], -2.75);
+}
+
+TEST(CurveFigures, KeepCurvesOfOtherLengthsApartFromTheirAngles) {
+  const json odd = {{"a", {{"position_deg", {0, 1, 2}}, {"ez_arcsec", {1.0, 2.0}}}}};
+  EXPECT_TRUE(CurveFigures(odd, {}).empty());
+}
+
+TEST(CurveFigures, PutThePassesOfASetUpIntoOneFigure) {
+  json paths = json::array();
+  for (const int setup : {0, 1}) {
+    for (const int pass : {0, 1})
+      paths.push_back({{"setup", setup}, {"pass", pass}, {"commanded_deg", {0, 1, 2}}, {"dx_um", {pass, 2, 3}}});
+  }
+  const std::vector<Figure> figures = CurveFigures({{"path", paths}}, {});
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_EQ(figures[1].title, "path, dx, set-up 1");
+  ASSERT_EQ(figures[1].series.size(), 2u);
+  EXPECT_EQ(figures[1].series[1].name, "pass 1");
+}
+
+TEST(SpectrumFigures, ReadListsAndListsOfTerms) {
+  const std::vector<Figure> figures = SpectrumFigures(kResults, {});
+  ASSERT_EQ(figures.size(), 2u);
+  EXPECT_EQ(figures[0].title, "model terms, amplitude");
+  EXPECT_THAT(figures[0].series[0].x, ElementsAre(1, 7));
+  EXPECT_THAT(figures[0].series[0].y, ElementsAre(6.5, 0.25));
+  EXPECT_THAT(figures[0].series[0].u, ElementsAre(0.5, 0.125));
+  EXPECT_EQ(figures[1].note, "standard uncertainty of each order");
+  EXPECT_THAT(figures[1].series[0].y, ElementsAre(0.01, 0.02));
+}
+
+Figure CurveOf(int n, double amplitude, int order) {
+  FigureSeries series{"a", SeriesRole::kEstimate, {}, {}, {}};
+  for (int k = 0; k < n; ++k) {
+    series.x.push_back(360.0 * k / n);
+    series.y.push_back(5.0 + amplitude * std::cos(2.0 * std::numbers::pi * order * k / n + 0.3));
+  }
+  return {FigureForm::kAngle, "t", "", {"position", "deg"}, {"ez", "arcsec"}, {series}};
+}
+
+TEST(HarmonicsOf, AWaveIsItsAmplitudeAtItsOrderAndNothingElse) {
+  const auto figure = HarmonicsOf(CurveOf(20, 3.0, 4));
+  ASSERT_TRUE(figure.has_value());
+  EXPECT_THAT(figure->series[0].x, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
+  // Rounding of a sum of 20 terms: 1e-14.
+  EXPECT_THAT(figure->series[0].y, Pointwise(DoubleNear(1e-12), {0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
+}
+
+TEST(HarmonicsOf, ThereAreNoneOfACurveWithAGapOrOfPartOfACircle) {
+  Figure gap = CurveOf(20, 3.0, 4);
+  gap.series[0].y[5] = std::nan("");
+  EXPECT_FALSE(HarmonicsOf(gap).has_value());
+  Figure part = CurveOf(20, 3.0, 4);
+  for (double& x : part.series[0].x) x /= 2.0;
+  EXPECT_FALSE(HarmonicsOf(part).has_value());
+}
+
+}  // namespace
+}  // namespace twinbench::report

@@ -1,0 +1,78 @@
+#include "twin/report/page/diagnosis_page.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+namespace twinbench::report {
+namespace {
+
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+
+const json kDiagnosis = json::parse(R"({
+  "verdict": "tie", "alarm_p": 0.0004,
+  "causes": [
+    {"effect": "eccentricity", "where": "", "probability": 0.5, "next_measurement": "turn the device by 90 degrees",
+     "parameters": {"amplitude_arcsec": {"value": 12.345, "u": 0.5, "unit": "arcsec"}},
+     "indistinguishable_from": [{"effect": "tilt", "where": "x", "overlap": 0.99}]},
+    {"effect": "tilt", "where": "x", "probability": 0.45, "parameters": {}, "indistinguishable_from": [], "next_measurement": ""}],
+  "unknown": {"probability": 0.05, "signature": ""},
+  "detectable": [{"effect": "tilt", "where": "x", "parameter": "tilt", "smallest": 0.25, "unit": "mrad"}],
+  "invisible": [{"effect": "grating_form", "where": "sphere", "could_bias": "nothing"}],
+  "plots": {"unit": "um", "against": {"dwell_s": {"a": {"x": [1, 2], "before": [0.1, 0.1], "after": [0, 0], "u": [0.1, 0.1], "n": [5, 5]},
+                                                  "b": {"x": [1, 2], "before": [0.5, -0.5], "after": [0, 0.1], "u": [0.1, 0.1], "n": [5, 5]}}},
+            "maps": {"a": {"position": [0, 1, 2], "setup": [3], "before": [[1, null, 3]], "after": [[0, 0, 0]]}}}})");
+
+template <class Block>
+const Block& BlockIn(const std::vector<PageSection>& sections, const std::string& title) {
+  for (const PageSection& section : sections) {
+    for (const PageBlock& block : section.blocks) {
+      if (const auto* found = std::get_if<Block>(&block); found && found->title == title) return *found;
+    }
+  }
+  throw std::runtime_error("no block " + title);
+}
+
+TEST(VerdictOf, SaysATieWithAllItsMembers) {
+  EXPECT_EQ(VerdictOf(kDiagnosis).text, "One of: eccentricity or tilt at x");
+  EXPECT_EQ(VerdictOf({{"verdict", "none"}}).tone, VerdictTone::kGood);
+  EXPECT_EQ(VerdictOf({{"verdict", "named"}, {"in_words", "Named: roll\nmore"}}).text, "Named: roll");
+}
+
+TEST(DiagnosisSections, StateEveryCauseWithItsSizeAndProbability) {
+  const std::vector<PageSection> sections = DiagnosisSections(kDiagnosis);
+  const Figure& causes = BlockIn<Figure>(sections, "Causes");
+  EXPECT_THAT(causes.categories, ElementsAre("eccentricity", "tilt at x", "something without a name"));
+  EXPECT_THAT(causes.series[0].y, ElementsAre(0.5, 0.45, 0.05));
+  EXPECT_THAT(BlockIn<PageTable>(sections, "Sizes").rows[0],
+              ElementsAre("eccentricity", "amplitude 12.35 ± 0.50 arcsec", "50 %", "turn the device by 90 degrees"));
+}
+
+TEST(DiagnosisSections, NameTheDoublesOfACause) {
+  EXPECT_THAT(BlockIn<PageTable>(DiagnosisSections(kDiagnosis), "What looks the same in this run").rows,
+              ElementsAre(ElementsAre("eccentricity", "tilt at x", "0.99")));
+}
+
+TEST(DiagnosisSections, SayWhatIsSeenFromWhichSizeOnAndWhatIsNot) {
+  const std::vector<PageSection> sections = DiagnosisSections(kDiagnosis);
+  EXPECT_THAT(BlockIn<PageTable>(sections, "Smallest sizes that this run would show").rows,
+              Contains(ElementsAre("tilt at x", "tilt", "0.25", "mrad")));
+  EXPECT_THAT(BlockIn<PageTable>(sections, "What this run cannot see").rows,
+              Contains(ElementsAre("grating_form at sphere", "nothing")));
+}
+
+TEST(DiagnosisSections, ShowTheLoudestResidualFirstAndAllOthersToo) {
+  const std::vector<PageSection> sections = DiagnosisSections(kDiagnosis);
+  const PageChoice& choice = BlockIn<PageChoice>(sections, "Residuals before and after the extension");
+  EXPECT_THAT(choice.answers, ElementsAre(ElementsAre("dwell", "b"), ElementsAre("dwell", "a"),
+                                          ElementsAre("position in set-up 3", "a")));
+  EXPECT_THAT(choice.figures[0].series[0].y, ElementsAre(0.5, -0.5));
+  EXPECT_EQ(choice.figures[0].series[0].role, SeriesRole::kBefore);
+  EXPECT_EQ(choice.figures[0].x.unit, "s");
+  EXPECT_EQ(choice.figures[0].y.unit, "um");
+}
+
+}  // namespace
+}  // namespace twinbench::report

@@ -1,0 +1,74 @@
+#include "twin/report/page/tables.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "twin/report/page/named_numbers.h"
+
+namespace twinbench::report {
+namespace {
+
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+
+const json kEvaluated = json::parse(R"({
+  "calibration": {"roll_mrad": {"psd_a": {"value": 0.0612, "u": 0.1892}}},
+  "separation": {"not_separable": [{"what": "target dx", "why": "nobody reads it"}], "ez_arcsec": [1, 2]},
+  "errors": {"machine.scale_x_um_m": {"value": 12.345, "u": 0.5, "unit": "um/m"}},
+  "setups": [{"setup": 0, "offset_x_um": {"value": 4.7720, "u": 0.018}}, {"setup": 1, "offset_x_um": {"value": -3.1, "u": 0.2}}],
+  "uncertainty_budget": [
+    {"name": "calibration.roll_mrad.psd_a", "u": 0.2, "k": 1.972, "U": 0.3944, "values": 1,
+     "sources": [{"source": "noise", "share": 0.75}, {"source": "drift", "share": 0.25}]},
+    {"name": "separation.ez_arcsec", "u": 0.05, "k": 1.96, "U": 0.098, "values": 2, "sources": [{"source": "noise", "share": 1.0}]}]})");
+
+TEST(ValueTable, GivesValuesWithUnitAndUncertaintyOfTheBudgetWhereThereIsOne) {
+  const PageTable table = ValueTable(kEvaluated, {});
+  EXPECT_THAT(table.columns, ElementsAre("quantity", "value", "unit", "u", "k", "U"));
+  EXPECT_THAT(table.rows, Contains(ElementsAre("calibration roll psd a", "0.06", "mrad", "0.20", "1.972", "0.39")));
+  EXPECT_THAT(table.rows, Contains(ElementsAre("errors machine scale x", "12.35", "um/m", "0.50", "", "")));
+}
+
+TEST(ValueTable, ShowsTruthBesideAValueThatWasScored) {
+  const json score = {{"values", {{"calibration.roll_mrad.psd_a", {{"value", {0.06}}, {"u", {0.2}}, {"truth", {0.11}}}}}}};
+  EXPECT_THAT(ValueTable(kEvaluated, score).rows,
+              Contains(ElementsAre("calibration roll psd a", "0.06", "mrad", "0.20", "1.972", "0.39", "0.11")));
+}
+
+TEST(BudgetFigure, StacksTheSharesOfEverySource) {
+  const Figure figure = BudgetFigure(kEvaluated);
+  EXPECT_THAT(figure.categories, ElementsAre("calibration roll mrad psd a", "ez"));
+  ASSERT_EQ(figure.series.size(), 2u);
+  EXPECT_EQ(figure.series[0].name, "drift");
+  EXPECT_THAT(figure.series[0].y, ElementsAre(0.25, 0.0));
+  EXPECT_THAT(figure.series[1].y, ElementsAre(0.75, 1.0));
+}
+
+TEST(NotSeparableTable, SaysWhatAndWhy) {
+  EXPECT_THAT(NotSeparableTable(kEvaluated).rows, ElementsAre(ElementsAre("target dx", "nobody reads it")));
+}
+
+TEST(ObjectTables, HaveARowAnObjectWithItsMeasuredValues) {
+  const std::vector<PageTable> tables = ObjectTables(kEvaluated);
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_EQ(tables[0].title, "setups");
+  EXPECT_THAT(tables[0].columns, ElementsAre("offset x [um]", "setup"));
+  EXPECT_THAT(tables[0].rows[0], ElementsAre("4.772 ± 0.018", "0"));
+}
+
+TEST(NumberText, HasTwoDigitsOfItsUncertainty) {
+  EXPECT_EQ(NumberText(1234.5678, 0.0123), "1234.568");
+  EXPECT_EQ(NumberText(1234.5678, 250.0), "1234.57");
+  EXPECT_EQ(NumberText(0.5, 0.0), "0.5");
+}
+
+TEST(NameAndUnit, TakesTheLongestUnitAtTheEnd) {
+  EXPECT_EQ(NameAndUnit("expansion_um_m_K").unit, "um/m/K");
+  EXPECT_EQ(NameAndUnit("ez_arcsec").name, "ez");
+  EXPECT_EQ(NameAndUnit("dwell_s").unit, "s");
+  EXPECT_EQ(NameAndUnit("setups").unit, "");
+}
+
+}  // namespace
+}  // namespace twinbench::report

@@ -1,0 +1,62 @@
+#include <fmt/core.h>
+
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/reported.h"
+#include "tools/twinbench/run_folder.h"
+#include "tools/web/bundle.h"
+#include "twin/core/errors.h"
+#include "twin/report/page/page_json.h"
+#include "twin/report/page/svg.h"
+
+namespace twinbench::tools {
+namespace {
+
+struct ReportOptions {
+  std::string source, score, output, pictures;
+};
+
+/// One file a picture, into a folder that is made if it is not there.
+void WritePictures(const report::Page& page, const std::string& folder) {
+  std::vector<report::ResultTable> files;
+  for (const auto& [name, svg] : report::SvgPictures(page)) files.push_back({name, svg});
+  if (files.empty()) throw InputError(folder, "the page has no plots", "a page with plots");
+  WriteTables(folder, files);
+  fmt::print("{}: {} pictures\n", folder, files.size());
+}
+
+void WritePage(const report::Page& page, const ReportOptions& options) {
+  const std::string output = options.output.empty() ? UsualPagePath(options.source) : options.output;
+  RequireOutput(output, {options.source, options.score, RunFolder{options.source}.results()});
+  const std::string html = report::PageHtml(page, web::PageMarkup());
+  if (output == "-") {
+    fmt::print("{}", html);
+  } else {
+    WriteFileAtOnce(output, html);
+    fmt::print("{} ({:.1f} MB): open it with a browser\n", output, 1e-6 * static_cast<double>(html.size()));
+  }
+}
+
+void MakeReport(const ReportOptions& options) {
+  const bool wants_page = options.pictures.empty() || !options.output.empty();
+  if (wants_page && web::PageMarkup().empty())
+    throw InputError("report", "this program was built without pages",
+                     "--svg DIR, or a program that was built where npm is installed, without -DTWINBENCH_REPORT=OFF");
+  const report::Page page = PageOf(options.source, options.score);
+  if (!options.pictures.empty()) WritePictures(page, options.pictures);
+  if (wants_page) WritePage(page, options);
+}
+
+}  // namespace
+
+void AddReport(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "report", "Make a page of plots and tables of a run, a diagnosis, a plan, a campaign or an investigation: one file that opens offline");
+  auto options = std::make_shared<ReportOptions>();
+  command->add_option("source", options->source, "folder of a run or an investigation, diagnosis.json, plan's JSON, or a campaign's table")->required();
+  command->add_option("--score", options->score, "what `score --json` has written; else score.json of the folder, if there");
+  command->add_option("-o,--output", options->output, "write the page here, - for stdout; else report.html in the folder, or beside the file");
+  command->add_option("--svg", options->pictures, "write every plot as an SVG picture into this folder; without -o no page is made");
+  command->callback([options] { MakeReport(*options); });
+}
+
+}  // namespace twinbench::tools

@@ -1,0 +1,115 @@
+#include "tools/twinbench/reported.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/twinbench/light_pictures.h"
+#include "tools/twinbench/run_folder.h"
+#include "twin/campaign/campaign_page.h"
+#include "twin/core/errors.h"
+#include "twin/core/run_record.h"
+#include "twin/report/page/diagnosis_page.h"
+#include "twin/report/page/digest.h"
+#include "twin/report/page/investigation_page.h"
+#include "twin/report/page/plan_page.h"
+#include "twin/report/page/run_page.h"
+
+namespace twinbench::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExpected =
+    "the folder of a run or an investigation, diagnosis.json, what plan --json has written, or a campaign's table";
+
+std::string DigestOfFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return report::Sha256(text.str());
+}
+
+report::PageSource SourceOf(const std::string& path, const std::vector<std::string>& files) {
+  report::PageSource source;
+  source.name = fs::weakly_canonical(path).filename().string();
+  source.program_version = TWINBENCH_VERSION;
+  for (const std::string& file : files) {
+    if (fs::exists(file)) source.digests.emplace_back(fs::path(file).filename().string(), DigestOfFile(file));
+  }
+  return source;
+}
+
+/// The score of a run, where `score --json` has left it or the user says it is.
+nlohmann::json ScoreOf(const RunFolder& folder, const std::string& named) {
+  const std::string path = named.empty() ? folder.path + "/score.json" : named;
+  if (!named.empty() || fs::exists(path)) return ReadJson(path);
+  if (fs::exists(folder.truth()))
+    fmt::print(stderr, "the run has not been scored: the page shows no truth (twinbench score {} --json {})\n", folder.path, path);
+  return {};
+}
+
+/// results.json, and what `separate --json` has left beside it where that says more.
+nlohmann::json ResultsOf(const RunFolder& folder) {
+  nlohmann::json results = ReadJson(folder.results());
+  const std::string separation = folder.path + "/separation.json";
+  if (!results.contains("separation") && fs::exists(separation)) results["separation"] = ReadJson(separation);
+  return results;
+}
+
+report::Page OfRun(const RunFolder& folder, const std::string& score) {
+  report::PageSource source = SourceOf(folder.path, {folder.scenario(), folder.record(), folder.results()});
+  const auto record = RunRecord::Open(folder.path);
+  source.provenance = record->provenance();
+  return report::RunPage(source, ResultsOf(folder), ScoreOf(folder, score), record->Readings(), LightPictures(folder.images()));
+}
+
+report::Page OfDiagnosis(const report::PageSource& source, const nlohmann::json& diagnosis) {
+  const report::PageVerdict verdict = report::VerdictOf(diagnosis);
+  report::Page page{source.name, "diagnosis", verdict.text, verdict.tone, report::DiagnosisSections(diagnosis)};
+  page.sections.push_back(report::ProvenanceSection(source));
+  return page;
+}
+
+report::Page OfJson(const std::string& path) {
+  const nlohmann::json json = ReadJson(path);
+  const report::PageSource source = SourceOf(path, {path});
+  if (json.contains("verdict")) return OfDiagnosis(source, json);
+  if (json.contains("runs") && json.contains("advice")) return report::PlanPage(source, json);
+  if (json.contains("steps")) return report::InvestigationPage(source, json);
+  throw InputError(path, "there is nothing in it that a page is made of", kExpected);
+}
+
+report::Page OfCampaign(const std::string& path) {
+  const campaign::Table table = campaign::Table::Open(path);
+  report::PageSource source = SourceOf(path, {path});
+  source.provenance.bench = table.Made("bench");
+  source.provenance.program_version = table.Made("version");
+  report::Page page{source.name, "campaign on " + source.provenance.bench, "", report::VerdictTone::kPlain, campaign::CampaignSections(table)};
+  if (const std::string study = table.Made("study"); !study.empty())
+    page.sections.push_back({"Study", "", {report::PageText{"The study file", study}}});
+  page.sections.push_back(report::ProvenanceSection(source));
+  return page;
+}
+
+}  // namespace
+
+report::Page PageOf(const std::string& source, const std::string& score) {
+  const RunFolder folder{source};
+  const std::string investigation = source + "/investigation.json";
+  if (fs::exists(investigation)) return report::InvestigationPage(SourceOf(source, {investigation}), ReadJson(investigation));
+  if (fs::exists(folder.results())) return OfRun(folder, score);
+  if (!fs::exists(source)) throw InputError(source, "does not exist", kExpected);
+  if (fs::is_directory(source)) throw InputError(source, "there is no results.json", kExpected);
+  return source.ends_with(".json") ? OfJson(source) : OfCampaign(source);
+}
+
+std::string UsualPagePath(const std::string& source) {
+  if (fs::is_directory(source)) return source + "/report.html";
+  return fs::path(source).replace_extension(".html").string();
+}
+
+}  // namespace twinbench::tools

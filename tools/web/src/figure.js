@@ -1,0 +1,167 @@
+// A figure as a card: title, views, legend, plot, the line that says what the cursor is on, and its numbers.
+import { addCursor } from "./cursor.js";
+import { makeChart } from "./chart.js";
+import { button, element, slug } from "./dom.js";
+import { axisTitle } from "./format.js";
+import { looks, swatch } from "./looks.js";
+import { numbersTable } from "./table.js";
+import { isDark, onThemeChange, palette } from "./theme.js";
+import { viewsOf } from "./views.js";
+
+const kHeight = 320;
+
+function pressed(made, is) {
+  made.setAttribute("aria-pressed", String(is));
+}
+
+class Card {
+  constructor(figure) {
+    this.figure = figure;
+    this.shown = figure.series.map(() => true);
+    this.views = viewsOf(figure);
+    this.view = this.views[0];
+    this.zoomed = 1;
+    this.points = figure.series.reduce((sum, series) => sum + series.y.length, 0);
+    this.plot = element("div", {
+      class: "plot", tabindex: 0, role: "application",
+      "aria-label": `${figure.title}, ${axisTitle(figure.y)} against ${axisTitle(figure.x) || "categories"}. Arrow keys read the values, + and - zoom, 0 shows all.`,
+    });
+    this.readout = element("p", { class: "readout", role: "status" });
+    this.element = element("figure", { class: "card", id: `figure-${slug(figure.title)}` }, this.head(), this.legend(), this.plot, this.readout, this.numbers());
+    if (this.view.wide) this.element.classList.add("wide");
+    this.size();
+    addCursor(this.plot, figure, this);
+    this.chart = makeChart(this.plot, this.points, () => this.option());
+    this.plot.addEventListener("dblclick", () => this.unzoom());
+    this.plot.addEventListener("blur", () => this.leave());
+    onThemeChange(() => this.legendElement.replaceWith(this.legend()));
+  }
+
+  box() {
+    return { width: this.plot.clientWidth, height: this.plot.clientHeight, zoomed: this.zoomed };
+  }
+
+  option() {
+    return this.view.option(this.figure, this.shown, looks(this.figure), this.box());
+  }
+
+  size() {
+    this.plot.style.height = `${this.view.height?.(this.figure) ?? (this.view.square ? kHeight + 60 : kHeight)}px`;
+  }
+
+  head() {
+    const tools = element("div", { class: "tools", role: "group", "aria-label": `View of ${this.figure.title}` });
+    if (this.views.length > 1) tools.append(...this.viewButtons());
+    if (this.view.zooms || this.view.square) {
+      tools.append(
+        button("+", () => this.zoom(0.6), { "aria-label": "Zoom in", title: "Zoom in (Ctrl + wheel)" }),
+        button("\u2212", () => this.zoom(1 / 0.6), { "aria-label": "Zoom out", title: "Zoom out" }),
+        button("All", () => this.unzoom(), { title: "Show all (double click)" }),
+      );
+    }
+    tools.append(this.numbersButton(), button("Save", () => this.save(), { title: "Save this picture" }));
+    return element(
+      "figcaption", {},
+      element("div", {}, element("h3", {}, this.figure.title), this.figure.note ? element("p", { class: "note" }, this.figure.note) : ""),
+      tools,
+    );
+  }
+
+  viewButtons() {
+    const buttons = this.views.map((view) =>
+      button(view.name, () => {
+        this.view = view;
+        this.zoomed = 1;
+        buttons.forEach((other, k) => pressed(other, this.views[k] === view));
+        this.size();
+        this.chart.draw();
+      }, { "aria-pressed": String(view === this.view) }),
+    );
+    return buttons;
+  }
+
+  legend() {
+    const look = looks(this.figure);
+    const entries = this.figure.series.map((series, s) => {
+      const entry = button("", () => {
+        this.shown[s] = !this.shown[s];
+        pressed(entry, this.shown[s]);
+        this.chart.draw();
+      }, { "aria-pressed": String(this.shown[s]), class: "entry" });
+      entry.append(swatch(look[s]), element("span", {}, series.name));
+      return entry;
+    });
+    const bands = this.figure.series.find((series) => series.u);
+    const note = bands ? element("span", { class: "band" }, `${bands.x.length && this.figure.form === "bars" ? "whisker" : "band"}: U, k = ${bands.k.toFixed(2)}`) : "";
+    this.legendElement = element("div", { class: "legend", role: "group", "aria-label": `Series of ${this.figure.title}` }, ...entries, note);
+    return this.legendElement;
+  }
+
+  numbersButton() {
+    this.toNumbers = button("Numbers", () => {
+      this.table.hidden = !this.table.hidden;
+      if (!this.table.hidden && !this.table.firstChild) this.table.append(numbersTable(this.figure));
+      this.toNumbers.setAttribute("aria-expanded", String(!this.table.hidden));
+    }, { "aria-expanded": "false", title: "The numbers behind this plot" });
+    return this.toNumbers;
+  }
+
+  numbers() {
+    this.table = element("div", { class: "numbers", hidden: true });
+    return this.table;
+  }
+
+  say(text) {
+    this.readout.textContent = text;
+  }
+
+  /** Shows the library's tip at a point of the figure. */
+  pointAt(s, k) {
+    const chart = this.chart.get();
+    if (!chart) return;
+    const series = this.figure.series[s];
+    if (this.view.place) {
+      if (series.y[k] !== null) chart.dispatchAction({ type: "showTip", ...this.view.place(this.figure, this.shown, this.box(), series.x[k], series.y[k]) });
+      return;
+    }
+    const name = series.name;
+    const seriesIndex = chart.getOption().series.findIndex((series) => series.name === name && series.type !== "custom");
+    const ascending = this.figure.form === "bars" || this.figure.form === "histogram";
+    const places = ascending ? [...new Set(this.figure.series.flatMap((other) => other.x))].sort((a, b) => a - b) : undefined;
+    const dataIndex = places ? places.indexOf(series.x[k]) : k;
+    chart.dispatchAction({ type: "showTip", seriesIndex, dataIndex });
+  }
+
+  leave() {
+    this.chart.get()?.dispatchAction({ type: "hideTip" });
+  }
+
+  zoom(by) {
+    if (!this.view.zooms) {
+      this.zoomed = Math.max(1, this.zoomed / by);
+      return this.chart.draw();
+    }
+    const chart = this.chart.get();
+    chart.getOption().dataZoom.forEach(({ start, end }, dataZoomIndex) => {
+      const [middle, half] = [(start + end) / 2, Math.min(50, ((end - start) / 2) * by)];
+      const from = Math.max(0, Math.min(100 - 2 * half, middle - half));
+      chart.dispatchAction({ type: "dataZoom", dataZoomIndex, start: from, end: from + 2 * half });
+    });
+    this.plot.dataset.zoomed = "yes";
+  }
+
+  unzoom() {
+    this.zoomed = 1;
+    delete this.plot.dataset.zoomed;
+    this.chart.draw();
+  }
+
+  save() {
+    const chart = this.chart.get();
+    const type = this.points <= 4000 ? "svg" : "png";
+    const address = chart.getDataURL({ type, pixelRatio: 2, backgroundColor: isDark() ? palette().paper : "#fff" });
+    element("a", { href: address, download: `${slug(this.figure.title)}.${type}` }).click();
+  }
+}
+
+export const figureCard = (figure) => new Card(figure).element;

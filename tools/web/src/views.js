@@ -1,0 +1,26 @@
+// The ways in which each form of figure can be looked at; the first is how it opens.
+import { barsOption } from "./bars.js";
+import { planeOption } from "./plane.js";
+import { polarOption, polarPlace } from "./polar.js";
+import { sharesHeight, sharesOption } from "./shares.js";
+
+const plane = { name: "Linear", option: (figure, shown, looks, box) => planeOption(figure, shown, looks, box), zooms: true };
+const polar = { name: "Polar", option: (figure, shown, looks, box) => polarOption(figure, shown, looks, box.zoomed), place: polarPlace, square: true };
+const bars = { name: "Linear", option: (figure, shown, looks) => barsOption(figure, shown, looks, false), zooms: true };
+const logarithmic = { name: "Logarithmic", option: (figure, shown, looks) => barsOption(figure, shown, looks, true), zooms: true };
+const shares = { name: "Shares", option: (figure, shown, looks) => sharesOption(figure, shown, looks), height: sharesHeight, wide: true };
+
+const ranks = { ...shares, name: "Ranks" };
+
+const views = {
+  angle: [polar, plane],
+  line: [plane],
+  points: [plane],
+  track: [plane],
+  bars: [bars, logarithmic],
+  histogram: [bars],
+  shares: [shares],
+  ranks: [ranks],
+};
+
+export const viewsOf = (figure) => views[figure.form] ?? [plane];

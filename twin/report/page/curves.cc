@@ -1,0 +1,180 @@
+#include "twin/report/page/curves.h"
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "twin/report/page/named_numbers.h"
+#include "twin/report/page/scored.h"
+#include "twin/report/page/walk.h"
+
+namespace twinbench::report {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array kAngles = {"position_deg", "commanded_deg"};
+constexpr std::size_t kLeastPoints = 3;
+
+bool IsUncertainty(const std::string& key) {
+  return key.starts_with("u_");
+}
+
+struct Circumstance {
+  const char *key, *spoken;
+};
+
+std::string Spoken(const json& object, const std::vector<Circumstance>& circumstances) {
+  std::string words;
+  for (const auto& [key, spoken] : circumstances) {
+    if (const double value = NumberAt(object, key); std::isfinite(value))
+      words += (words.empty() ? "" : ", ") + std::string(spoken) + " " + NumberText(value);
+  }
+  return words;
+}
+
+/// What tells one of several objects of a list from the others: passes are curves of the figure of their set-up.
+std::string FigureOf(const json& object) {
+  return object.contains("pass") ? Spoken(object, {{"setup", "set-up"}}) : "";
+}
+std::string SeriesOf(const json& object) {
+  if (object.contains("pass")) return Spoken(object, {{"pass", "pass"}});
+  return Spoken(object, {{"setup", "set-up"}, {"direction", "direction"}, {"head_deg", "head [deg]"}});
+}
+
+/// The figure with that title and unit, made if there is none.
+Figure& FigureFor(std::vector<Figure>& figures, const Figure& wanted) {
+  for (Figure& figure : figures) {
+    if (figure.title == wanted.title && figure.y.unit == wanted.y.unit) return figure;
+  }
+  figures.push_back(wanted);
+  return figures.back();
+}
+
+void AddTruth(const json& score, const std::string& path, const std::vector<double>& x, const std::string& of,
+              std::vector<FigureSeries>& series) {
+  std::vector<double> truth = TruthOf(score, path, x.size());
+  if (!truth.empty()) series.push_back({of.empty() ? "truth" : "truth, " + of, SeriesRole::kTruth, x, truth, {}});
+}
+
+/// A list of objects is "model.terms[]" in the budget.
+bool IsNameOf(std::string name, const std::string& path) {
+  if (const std::size_t at = name.find("[]"); at != std::string::npos) name.erase(at, 2);
+  return name == path;
+}
+
+/// The coverage factor that the budget of results.json states for a list; 2 if it has none.
+double CoverageOf(const json& results, const std::string& path) {
+  if (!results.is_object() || !results.contains("uncertainty_budget")) return 2.0;
+  for (const json& budget : results.at("uncertainty_budget")) {
+    if (IsNameOf(budget.value("name", ""), path) && budget.contains("k") && budget.at("k").is_number())
+      return budget.at("k").get<double>();
+  }
+  return 2.0;
+}
+
+/// All lists of one object that go with its list `by`.
+struct Lists {
+  const json& results;  // the whole file
+  const json& score;
+  std::string path, by;
+  FigureForm form;
+  FigureAxis x;
+};
+
+void AddList(const Lists& lists, const json& object, const std::string& key, const std::vector<double>& x,
+             std::vector<Figure>& figures) {
+  const auto y = NumbersAt(object, key);
+  if (!y || y->size() != x.size()) return;
+  const std::string path = lists.path + "." + key;
+  const auto [name, unit] = NameAndUnit(key);
+  const std::string where = FigureOf(object), of = SeriesOf(object);
+  Figure figure{lists.form, PathInWords(lists.path) + ", " + name + (where.empty() ? "" : ", " + where), "", lists.x, {name, unit}, {}};
+  FigureSeries series{of.empty() ? "estimate" : of, SeriesRole::kEstimate, x, *y, {}, CoverageOf(lists.results, path)};
+  if (const auto u = NumbersAt(object, "u_" + key); u && u->size() == x.size()) series.u = *u;
+  Figure& to = FigureFor(figures, figure);
+  to.series.push_back(series);
+  AddTruth(lists.score, path, x, of, to.series);
+}
+
+std::optional<std::string> AngleOf(const json& object) {
+  for (const char* angle : kAngles) {
+    if (const auto x = NumbersAt(object, angle); x && x->size() >= kLeastPoints) return angle;
+  }
+  return {};
+}
+
+bool IsCounter(const std::string& key) {
+  return key == "readings" || key == "face" || key == "lines";
+}
+
+// Spectra ------------------------------------------------------------------------------------------------------------
+
+bool IsAmplitude(const std::string& key) {
+  return !IsUncertainty(key) && !key.starts_with("phase") && !key.starts_with("order");
+}
+
+/// [{ "order": 1, "amplitude_arcsec": 6.1, ...}, ...] as lists beside each other.
+json ListsOf(const json& terms) {
+  json lists = json::object();
+  for (const json& term : terms) {
+    if (!term.is_object() || !term.contains("order") || !term.at("order").is_number()) return {};
+    for (const auto& [key, value] : term.items()) {
+      if (value.is_number() || value.is_null()) lists[key].push_back(value);
+    }
+  }
+  return lists;
+}
+
+void AddSpectrum(const Lists& lists, const json& object, std::vector<Figure>& figures) {
+  const auto orders = NumbersAt(object, "order");
+  if (!orders) return;
+  const bool of_uncertainties = lists.path.ends_with("u_harmonics");
+  for (const auto& [key, value] : object.items()) {
+    if (!IsAmplitude(key)) continue;
+    const std::size_t before = figures.size();
+    AddList(lists, object, key, *orders, figures);
+    if (of_uncertainties && figures.size() > before) figures.back().note = "standard uncertainty of each order";
+  }
+}
+
+/// Lists of terms, which are objects of their own.
+void AddTerms(const json& results, const json& score, const std::string& path, const json& object,
+              std::vector<Figure>& figures) {
+  for (const auto& [key, value] : object.items()) {
+    if (!value.is_array() || value.empty() || !value.front().is_object()) continue;
+    const json lists = ListsOf(value);
+    const std::string inside = path.empty() ? key : path + "." + key;
+    if (lists.is_object())
+      AddSpectrum({results, score, inside, "order", FigureForm::kBars, {"order", ""}}, lists, figures);
+  }
+}
+
+}  // namespace
+
+std::vector<Figure> CurveFigures(const json& results, const json& score) {
+  std::vector<Figure> figures;
+  ForEachObject(results, [&](const std::string& path, const json& object) {
+    const auto angle = AngleOf(object);
+    if (!angle) return;
+    const Lists lists{results, score, path, *angle, FigureForm::kAngle, {NameAndUnit(*angle).name, "deg"}};
+    for (const auto& [key, value] : object.items()) {
+      if (key != *angle && !IsUncertainty(key) && !IsCounter(key))
+        AddList(lists, object, key, *NumbersAt(object, *angle), figures);
+    }
+  });
+  return figures;
+}
+
+std::vector<Figure> SpectrumFigures(const json& results, const json& score) {
+  std::vector<Figure> figures;
+  ForEachObject(results, [&](const std::string& path, const json& object) {
+    AddSpectrum({results, score, path, "order", FigureForm::kBars, {"order", ""}}, object, figures);
+    AddTerms(results, score, path, object, figures);
+  });
+  return figures;
+}
+
+}  // namespace twinbench::report

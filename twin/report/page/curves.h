@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "twin/report/page/figure.h"
+
+namespace twinbench::report {
+
+/// Every curve of results.json: a list beside a `position_deg` (or `commanded_deg`) of its length is plotted against it, with
+/// its `u_` as band and the truth of the score where there is one.
+///
+/// @param results  results.json, or a part of it.
+/// @param score    score.json; null if there is none.
+/// @return a figure a curve, in the order of the file; passes of the same curve in one figure.
+std::vector<Figure> CurveFigures(const nlohmann::json& results, const nlohmann::json& score);
+
+/// Every spectrum: lists beside `order`, and lists of objects that have an `order` each.
+std::vector<Figure> SpectrumFigures(const nlohmann::json& results, const nlohmann::json& score);
+
+}  // namespace twinbench::report

@@ -1,0 +1,144 @@
+#include "twin/report/page/diagnosis_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "twin/report/page/causes.h"
+#include "twin/report/page/named_numbers.h"
+#include "twin/report/page/residual_figures.h"
+
+namespace twinbench::report {
+namespace {
+
+using nlohmann::json;
+
+std::string ParametersOf(const json& cause) {
+  std::string text;
+  if (!cause.contains("parameters")) return text;
+  for (const auto& [name, p] : cause.at("parameters").items()) {
+    const double u = NumberAt(p, "u");
+    const std::string unit = TextAt(p, "unit");
+    text += fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", NameAndUnit(name).name, NumberText(NumberAt(p, "value"), u),
+                        std::isfinite(u) ? " ± " + NumberText(u, u) : "", unit == "1" ? "" : " " + unit);
+  }
+  return text;
+}
+
+std::string Percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.3g} %", 100.0 * share) : "";
+}
+
+Figure ProbabilityFigure(const json& diagnosis) {
+  Figure figure{FigureForm::kShares, "Causes", "how probable each is by these readings", {"", ""}, {"probability", ""}, {}};
+  FigureSeries bars{"probability", SeriesRole::kEstimate, {}, {}, {}};
+  for (const json& cause : ListAt(diagnosis, "causes")) {
+    figure.categories.push_back(NameOfCause(cause));
+    bars.y.push_back(NumberAt(cause, "probability"));
+  }
+  const double unknown = diagnosis.contains("unknown") ? NumberAt(diagnosis.at("unknown"), "probability") : 0.0;
+  if (unknown > 0.0) {
+    figure.categories.push_back("something without a name");
+    bars.y.push_back(unknown);
+  }
+  if (!figure.categories.empty()) figure.series.push_back(bars);
+  return figure;
+}
+
+PageTable CauseTable(const json& diagnosis) {
+  PageTable table{"Sizes", {"cause", "size", "probability", "measure next"}, {}};
+  for (const json& cause : ListAt(diagnosis, "causes"))
+    table.rows.push_back({NameOfCause(cause), ParametersOf(cause), Percent(NumberAt(cause, "probability")), TextAt(cause, "next_measurement")});
+  return table;
+}
+
+PageTable TieTable(const json& diagnosis) {
+  PageTable table{"What looks the same in this run", {"cause", "cannot be told from", "overlap"}, {}};
+  for (const json& cause : ListAt(diagnosis, "causes")) {
+    for (const json& rival : ListAt(cause, "indistinguishable_from"))
+      table.rows.push_back({NameOfCause(cause), NameOfCause(rival), NumberText(NumberAt(rival, "overlap"))});
+  }
+  return table;
+}
+
+PageTable GainTable(const json& diagnosis) {
+  PageTable table{"What the extension gains on readings that it was not fitted to", {"what", "is", "unit"}, {}};
+  if (!diagnosis.contains("gain")) return table;
+  const json& gain = diagnosis.at("gain");
+  for (const auto& [key, spoken] : std::vector<std::pair<std::string, std::string>>{
+           {"heldout_rms_before", "rms before"}, {"heldout_rms_after", "rms after"}, {"noise_floor", "noise alone leaves"}}) {
+    for (const std::string unit : {"um", "arcsec"}) {
+      const double value = NumberAt(gain, key + "_" + unit);
+      if (std::isfinite(value)) table.rows.push_back({spoken, NumberText(value), unit});
+    }
+  }
+  if (const double removed = NumberAt(gain, "fraction_removed"); std::isfinite(removed)) {
+    const auto interval = NumbersAt(gain, "interval95");
+    const bool is_known = interval && interval->size() == 2 && std::isfinite((*interval)[0]);
+    table.rows.push_back({"share removed of what is no noise", Percent(removed), ""});
+    if (is_known) table.rows.push_back({"its 95 % interval", Percent((*interval)[0]) + " to " + Percent((*interval)[1]), ""});
+  }
+  return table;
+}
+
+PageTable ScreenTable(const json& diagnosis) {
+  PageTable table{"Residual tests", {"test", "p", "what it says"}, {}};
+  for (const json& test : ListAt(diagnosis, "screen"))
+    table.rows.push_back({TextAt(test, "test"), fmt::format("{:.2g}", NumberAt(test, "p")), TextAt(test, "reading")});
+  return table;
+}
+
+PageSection CauseSection(const json& diagnosis) {
+  PageSection section{"Diagnosis", "", {}};
+  const double p = NumberAt(diagnosis, "alarm_p");
+  if (std::isfinite(p)) section.lead = fmt::format("Probability of so large a difference where readings and scenario agree: {:.2g}.", p);
+  if (Figure causes = ProbabilityFigure(diagnosis); !causes.series.empty()) section.blocks.emplace_back(std::move(causes));
+  AddFilled(CauseTable(diagnosis), section);
+  AddFilled(TieTable(diagnosis), section);
+  AddFilled(GainTable(diagnosis), section);
+  return section;
+}
+
+PageSection ResidualSection(const json& diagnosis) {
+  PageSection section{"Residuals", "What the model leaves of the readings, against each circumstance.", {}};
+  if (diagnosis.contains("plots")) {
+    if (PageChoice choice = ResidualChoice(diagnosis.at("plots")); !choice.figures.empty()) section.blocks.emplace_back(std::move(choice));
+  }
+  AddFilled(ScreenTable(diagnosis), section);
+  return section;
+}
+
+PageSection SightSection(const json& diagnosis) {
+  PageSection section{"Detectability", "", {}};
+  AddFilled(DetectableTable(diagnosis), section);
+  AddFilled(InvisibleTable(diagnosis), section);
+  if (const std::string words = TextAt(diagnosis, "in_words"); !words.empty())
+    section.blocks.emplace_back(PageText{"The diagnosis in words", words});
+  return section;
+}
+
+}  // namespace
+
+PageVerdict VerdictOf(const json& diagnosis) {
+  const std::string verdict = TextAt(diagnosis, "verdict");
+  const std::string words = TextAt(diagnosis, "in_words");
+  const VerdictTone tone = verdict == "none" ? VerdictTone::kGood : verdict == "unknown" ? VerdictTone::kBad : VerdictTone::kDoubt;
+  if (!words.empty()) return {words.substr(0, words.find('\n')), tone};
+  if (verdict == "none") return {"Readings and scenario agree.", tone};
+  if (verdict == "unknown") return {"Something without a name: " + TextAt(diagnosis.value("unknown", json()), "signature"), tone};
+  std::string names;
+  for (const json& cause : ListAt(diagnosis, "causes")) names += (names.empty() ? "" : verdict == "tie" ? " or " : ", ") + NameOfCause(cause);
+  return {(verdict == "tie" ? "One of: " : "Named: ") + names, tone};
+}
+
+std::vector<PageSection> DiagnosisSections(const json& diagnosis) {
+  std::vector<PageSection> sections;
+  for (PageSection& section : std::vector{CauseSection(diagnosis), ResidualSection(diagnosis), SightSection(diagnosis)}) {
+    if (!section.blocks.empty() || section.title == "Diagnosis") sections.push_back(std::move(section));
+  }
+  return sections;
+}
+
+}  // namespace twinbench::report

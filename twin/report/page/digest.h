@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace twinbench::report {
+
+/// SHA-256 as 64 hexadecimal digits (FIPS 180-4).
+std::string Sha256(const std::string& bytes);
+
+}  // namespace twinbench::report

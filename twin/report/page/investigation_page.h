@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "twin/report/page/run_page.h"
+
+namespace twinbench::report {
+
+/// An investigation: what was believed after every run, what each run told, how near the goal is.
+/// @param investigation  investigation.json.
+Page InvestigationPage(const PageSource& source, const nlohmann::json& investigation);
+
+}  // namespace twinbench::report

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Numbers of results.json and what their keys say about them.
+namespace twinbench::report {
+
+/// "ez_arcsec" is the quantity "ez" in "arcsec", "scale_um_m" the "scale" in "um/m"; underscores of the rest become spaces.
+struct NamedUnit {
+  std::string name, unit;
+};
+NamedUnit NameAndUnit(const std::string& key);
+
+/// @return the numbers of a list, null as NaN; nothing if it is no list, empty, or holds anything else.
+std::optional<std::vector<double>> NumbersOf(const nlohmann::json& node);
+
+/// @return the numbers of member `key`, or nothing.
+std::optional<std::vector<double>> NumbersAt(const nlohmann::json& object, const std::string& key);
+
+/// "separation.target" as a person says it: "target". What only says where in the file it stood is left out.
+std::string PathInWords(const std::string& path);
+
+/// A number of an object; NaN if it has none of that name.
+double NumberAt(const nlohmann::json& object, const std::string& key);
+
+/// A text of an object; empty if it has none of that name.
+std::string TextAt(const nlohmann::json& object, const std::string& key);
+
+/// A number with as many digits as `u` makes sense of (two of `u`), or six if there is no u.
+std::string NumberText(double value);
+std::string NumberText(double value, double u);
+
+}  // namespace twinbench::report

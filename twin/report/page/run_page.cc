@@ -1,0 +1,112 @@
+#include "twin/report/page/run_page.h"
+
+#include <fmt/format.h>
+
+#include "twin/report/page/curves.h"
+#include "twin/report/page/diagnosis_page.h"
+#include "twin/report/page/harmonics_of.h"
+#include "twin/report/page/readings_page.h"
+#include "twin/report/page/tables.h"
+#include "twin/report/page/volumetric.h"
+
+namespace twinbench::report {
+namespace {
+
+void AddFigures(const std::vector<Figure>& figures, PageSection& section) {
+  for (const Figure& figure : figures) section.blocks.emplace_back(figure);
+}
+
+bool HasTruth(const std::vector<Figure>& figures) {
+  for (const Figure& figure : figures) {
+    for (const FigureSeries& series : figure.series) {
+      if (series.role == SeriesRole::kTruth) return true;
+    }
+  }
+  return false;
+}
+
+PageSection CurveSection(const std::vector<Figure>& curves) {
+  PageSection section{"Errors",
+                      "Each curve with its expanded uncertainty as a band. Polar: how far from the dashed circle is the error.",
+                      {}};
+  if (HasTruth(curves)) section.lead += " Truth is what the twin injected, as the score compares it: without what the design cannot tell.";
+  AddFigures(curves, section);
+  return section;
+}
+
+PageSection SpectrumSection(const std::vector<Figure>& curves, const std::vector<Figure>& spectra) {
+  PageSection section{"Spectra", "Amplitudes order by order.", {}};
+  for (const Figure& curve : curves) {
+    if (const auto harmonics = HarmonicsOf(curve)) section.blocks.emplace_back(*harmonics);
+  }
+  AddFigures(spectra, section);
+  return section;
+}
+
+PageSection ValueSection(const nlohmann::json& results, const nlohmann::json& score) {
+  PageSection section{"Results", "u: standard uncertainty, U = k u: an interval that holds the value in 95 % of cases.", {}};
+  for (PageTable& table : std::vector{ListTable(results), ValueTable(results, score)}) {
+    if (!table.rows.empty()) section.blocks.emplace_back(std::move(table));
+  }
+  for (PageTable& table : ObjectTables(results)) section.blocks.emplace_back(std::move(table));
+  return section;
+}
+
+PageSection VolumetricSection(const nlohmann::json& results) {
+  PageSection section{"In space", "Each point is a place that was looked at; its colour is the error that is chosen.", {}};
+  for (PageColumns& columns : VolumetricColumns(results)) section.blocks.emplace_back(std::move(columns));
+  return section;
+}
+
+PageSection ImageSection(const std::vector<PageImage>& images) {
+  PageSection section{"Light", "Irradiance on the detectors as the run has left it, cut to where there is light.", {}};
+  for (const PageImage& image : images) section.blocks.emplace_back(image);
+  return section;
+}
+
+PageSection BudgetSection(const nlohmann::json& results) {
+  PageSection section{"Uncertainty", "", {}};
+  if (Figure budget = BudgetFigure(results); !budget.series.empty()) section.blocks.emplace_back(std::move(budget));
+  if (PageTable lost = NotSeparableTable(results); !lost.rows.empty()) section.blocks.emplace_back(std::move(lost));
+  return section;
+}
+
+}  // namespace
+
+PageSection ProvenanceSection(const PageSource& source) {
+  const Provenance& from = source.provenance;
+  PageTable table{"Provenance", {"what", "is"}, {}};
+  const auto add = [&table](const std::string& what, const std::string& is) {
+    if (!is.empty()) table.rows.push_back({what, is});
+  };
+  add("bench", from.bench);
+  add("readings from", from.source);
+  if (from.source == "twin") add("seed", fmt::format("{}", from.seed));
+  add("began at (UTC)", from.clock_origin_utc);
+  add("recorded by twinbench", from.program_version);
+  add("page made by twinbench", source.program_version);
+  for (const auto& [file, digest] : source.digests) add("SHA-256 of " + file, digest);
+  return {"Provenance", "", {table}};
+}
+
+Page RunPage(const PageSource& source, const nlohmann::json& results, const nlohmann::json& score, const std::vector<Reading>& readings,
+             const std::vector<PageImage>& images) {
+  const std::vector<Figure> curves = CurveFigures(results, score);
+  Page page{source.name, "", "", VerdictTone::kPlain, {}};
+  page.subtitle = source.provenance.bench;
+  if (source.provenance.source == "twin") page.subtitle += ", simulated: the readings are those of the twin";
+  if (results.contains("diagnosis")) {
+    const PageVerdict verdict = VerdictOf(results.at("diagnosis"));
+    page.verdict = verdict.text, page.tone = verdict.tone;
+    page.sections = DiagnosisSections(results.at("diagnosis"));
+  }
+  for (PageSection& section : std::vector{CurveSection(curves), SpectrumSection(curves, SpectrumFigures(results, score)),
+                                          VolumetricSection(results), ValueSection(results, score), BudgetSection(results),
+                                          ReadingsSection(readings, source.provenance.bench), ImageSection(images)}) {
+    if (!section.blocks.empty()) page.sections.push_back(std::move(section));
+  }
+  page.sections.push_back(ProvenanceSection(source));
+  return page;
+}
+
+}  // namespace twinbench::report
