@@ -14,7 +14,9 @@ namespace {
 
 using nlohmann::json;
 using ::testing::DoubleNear;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::Pointwise;
 
 const json kResults = json::parse(R"({
@@ -49,6 +51,15 @@ TEST(CurveFigures, ShowTruthOnlyWhereTheScoreHasIt) {
   EXPECT_EQ(truth.y[0], 1.25);
   EXPECT_TRUE(std::isnan(truth.y[1]));  // what was not scored has none
   EXPECT_EQ(truth.y[2], -2.75);
+}
+
+TEST(CurveFigures, BeginWithTheTurnOfWhatIsUnderTest) {
+  const json table = {{"position_deg", {0.0, 120.0, 240.0}}, {"dx_um", {1.0, 2.0, 3.0}}, {"ez_arcsec", {3.0, 2.0, 1.0}}};
+  const std::vector<Figure> figures = CurveFigures({{"separation", {{"reference", table}, {"target", table}}}}, {});
+  ASSERT_EQ(figures.size(), 4U);
+  EXPECT_THAT(figures[0].title, AllOf(HasSubstr("target"), HasSubstr("ez")));
+  EXPECT_THAT(figures[1].title, AllOf(HasSubstr("target"), HasSubstr("dx")));
+  EXPECT_THAT(figures[2].title, AllOf(HasSubstr("reference"), HasSubstr("ez")));
 }
 
 TEST(CurveFigures, KeepCurvesOfOtherLengthsApartFromTheirAngles) {
