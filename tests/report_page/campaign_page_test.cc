@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <numeric>
 
 #include "tests/core/input_error.h"

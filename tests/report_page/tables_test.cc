@@ -68,6 +68,7 @@ TEST(NameAndUnit, TakesTheLongestUnitAtTheEnd) {
   EXPECT_EQ(NameAndUnit("ez_arcsec").name, "ez");
   EXPECT_EQ(NameAndUnit("dwell_s").unit, "s");
   EXPECT_EQ(NameAndUnit("setups").unit, "");
+  EXPECT_EQ(NameAndUnit("score.ez_arcsec[]").unit, "arcsec");
 }
 
 }  // namespace

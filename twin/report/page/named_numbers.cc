@@ -37,7 +37,8 @@ std::string Spaced(std::string text) {
 
 }  // namespace
 
-NamedUnit NameAndUnit(const std::string& key) {
+NamedUnit NameAndUnit(const std::string& path) {
+  const std::string key = WithoutBrackets(path);
   for (const WrittenUnit& unit : kUnits) {
     const std::string ending = "_" + std::string(unit.in_key);
     if (key.size() > ending.size() && key.ends_with(ending))

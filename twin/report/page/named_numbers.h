@@ -8,11 +8,12 @@
 /// Numbers of results.json and what their keys say about them.
 namespace twinbench::report {
 
-/// "ez_arcsec" is the quantity "ez" in "arcsec", "scale_um_m" the "scale" in "um/m"; underscores of the rest become spaces.
+/// "ez_arcsec" is the quantity "ez" in "arcsec", "scale_um_m" the "scale" in "um/m"; underscores of the rest become spaces. A list
+/// "ez_arcsec[]" is called like one of its numbers.
 struct NamedUnit {
   std::string name, unit;
 };
-NamedUnit NameAndUnit(const std::string& key);
+NamedUnit NameAndUnit(const std::string& path);
 
 /// @return the numbers of a list, null as NaN; nothing if it is no list, empty, or holds anything else.
 std::optional<std::vector<double>> NumbersOf(const nlohmann::json& node);
