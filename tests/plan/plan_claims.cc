@@ -6,9 +6,12 @@
 #include "tests/hidden/effect_size.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/planned_run.h"
+#include "twin/benches/names.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/diagnosis/free_parameters.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
+#include "twin/core/stream.h"
 #include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
@@ -65,11 +68,27 @@ struct Against {
   diagnose::Projector projector;
 };
 
+/// Constants of the bench that the diagnosis takes for uncertain, each drawn with the deviation that it believes, as
+/// causes in the twin: what a plan says of sizes allows for them.
+std::vector<EffectSettings> DrawnConstants(const Scenario& scenario, std::uint64_t run) {
+  std::vector<EffectSettings> effects;
+  if (scenario.bench != kRotaryBench) return effects;
+  Stream stream(run, "plan.constants");
+  for (const diagnose::rotary::Calibrated& constant : diagnose::rotary::CalibratedConstants()) {
+    EffectSettings effect;
+    effect.name = constant.constant.effect;
+    effect.where = constant.constant.where;
+    effect.parameters[constant.constant.parameter] = constant.sd * stream.Normal();
+    effects.push_back(effect);
+  }
+  return effects;
+}
+
 }  // namespace
 
 Isolability ForetoldOf(hidden::Design design) {
   const Scenario believed = hidden::Believed(design);
-  return *tools::SeenBy(believed, hidden::TakeReadings(believed)).isolability;
+  return *tools::SeenUnderChance(believed, hidden::TakeReadings(believed)).isolability;
 }
 
 TieCase DiagnoseHidden(const hidden::Placement& at, std::uint64_t seed, double rho, const hidden::SignatureScale& scale,
@@ -119,6 +138,7 @@ std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs) {
   for (int run = 0; run < runs; ++run) {
     Scenario other = scenario;
     other.seed = scenario.seed + 1000 + static_cast<std::uint64_t>(run);
+    for (EffectSettings& effect : DrawnConstants(scenario, other.seed)) other.effects.push_back(std::move(effect));
     const Eigen::VectorXd y = against.Left(scenario, tools::ReadingsOfTwin(other));
     for (std::size_t k = 0; k < projected.size(); ++k) {
       const double t = projected[k].dot(y);

@@ -121,6 +121,62 @@ TEST(IsolabilityOf, SizesAreThoseOfADiagnosis) {
   }
 }
 
+TEST(IsolabilityOf, CountsAPairAsSurelyToldOnlyInEveryShape) {
+  const Scenario scenario = SmallRotary("reseat");
+  const Isolability isolability = *SeenBy(scenario, ReadingsOfTwin(scenario)).isolability;
+  int in_another_shape = 0;
+  for (const diagnose::Confusable& pair : isolability.confusable) {
+    EXPECT_GE(pair.surely_told_from, pair.told_from);
+    in_another_shape += pair.told_from == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(in_another_shape, 0);
+}
+
+TEST(IsolabilityOf, IsThatOfTheRunThatTellsLeast) {
+  Isolability one, other;
+  for (const char* name : {"drift", "creep", "scale"}) {
+    one.causes.push_back({name, "", {}});
+    one.causes.back().smallest.value = 1.0;
+  }
+  other.causes = {one.causes[2], one.causes[0], one.causes[1]};  // in another order
+  one.confusable = {{0, 1, 2.0, 4.0}};
+  other.confusable = {{1, 2, 8.0, 16.0}, {2, 0, 2.0, 2.0}};  // drift as creep, creep as scale
+  KeepSurelyTold(other, one);
+  EXPECT_TRUE(MayBeBlamed(one, 0, 1, 15.0));
+  EXPECT_FALSE(MayBeBlamed(one, 0, 1, 17.0));
+  EXPECT_TRUE(MayBeBlamed(one, 1, 2, 1.5));
+  EXPECT_FALSE(MayBeBlamed(one, 2, 1, 1.5));
+  EXPECT_EQ(one.confusable.front().told_from, 2.0);
+}
+
+/// Four heads at equal division lose every fourth order, and the twin says so; the four that tell most lose none.
+TEST(ShiftDesignOf, TakesHeadsForShifts) {
+  const std::string folder = std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/";
+  const Scenario scenario = LoadScenario(folder + "encoder_heads.toml", {});
+  const plan::ShiftDesign design = ShiftDesignOf(scenario).value();
+  EXPECT_EQ(plan::Judged(design.positions, design.shifts).lost.front(), 4);
+  const plan::ShiftSet best = plan::BestShifts(design.positions, 4);
+  EXPECT_TRUE(best.lost.empty());
+  const auto lost_on_twin = [](const Scenario& s) {
+    const nlohmann::json results = BenchOf(s).evaluate(s, ReadingsOfTwin(s), Estimator::kRigorous).results;
+    return plan::OutlookOf(results, 0, 0.0).lost;
+  };
+  EXPECT_FALSE(lost_on_twin(scenario).empty());
+  EXPECT_TRUE(lost_on_twin(Altered(scenario, design.sets(best.shifts))).empty());
+}
+
+TEST(ShiftDesignOf, IsOfMountingsAndOfPlacesOfAHeadWhereThereAreSeveral) {
+  const std::string folder = std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/";
+  EXPECT_FALSE(ShiftDesignOf(LoadScenario(folder + "encoder_comparison.toml", {})).has_value());
+  for (const char* file : {"encoder_mountings.toml", "hob_transmission.toml"}) {
+    const Scenario scenario = LoadScenario(folder + file, {});
+    const plan::ShiftDesign design = ShiftDesignOf(scenario).value();
+    ASSERT_GT(design.shifts.size(), 1u) << file;
+    const Scenario other = Altered(scenario, design.sets({0, 3, 7}));
+    EXPECT_EQ(ShiftDesignOf(other).value().shifts, (std::vector<int>{0, 3, 7})) << file;
+  }
+}
+
 /// A gain error of one PSD axis that is just not found moves what that axis measures.
 TEST(UnseenEffects, MoveResults) {
   const Scenario scenario = SmallRotary("reseat");

@@ -8,13 +8,15 @@
 
 namespace twinbench::plan {
 
-/// A comparison of two rotary tables at the n stops of a full circle, once for each shift of one against the other.
+/// A comparison of two rotary tables at the n stops of a full circle, once for each shift of one against the other; or of
+/// a ring with what it is read against by several heads, on n places where a head may stand.
 struct ShiftDesign {
-  int positions = 0;
-  std::vector<int> shifts;  // in stops
+  int positions = 0;        // 0: this scenario shifts nothing
+  std::vector<int> shifts;  // in stops, or places of heads
   /// Keys of the scenario for other shifts: "procedure.shifts=[0, 7]".
   std::function<std::vector<std::string>(const std::vector<int>&)> sets = {};
   std::vector<NextRun> other_ways = {};  // of making the same set-ups
+  std::string words = "set-ups at the shifts";  // what stands before a list of them
 };
 
 /// Variances of the harmonics 1 to n / 2 of one table's error, in units of what the mean of all set-ups would leave of

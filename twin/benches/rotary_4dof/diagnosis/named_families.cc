@@ -121,7 +121,12 @@ void AddBench(const RotaryRun& rotary, const Scenario& scenario, Candidates& nam
   AddNonlinearities(rotary, named);
 }
 
-void AddTime(Responses& responses, double reference_degC, Candidates& named) {
+/// A set-up takes its time between the mounting and the first reading, in which the mount has crept already.
+Eigen::VectorXd SinceMounting_s(const Schedule& s, double remount_s) {
+  return model::SinceFirst_s(s).array() + remount_s;
+}
+
+void AddTime(Responses& responses, const Scenario& scenario, Candidates& named) {
   const Schedule& s = responses.rotary().run.schedule;
   for (const char* where : {"yaw", "pitch"})
     named.AddDrift(AtPoint("laser_drift", where, responses, std::string("laser.") + where).showing, "drift",
@@ -130,12 +135,12 @@ void AddTime(Responses& responses, double reference_degC, Candidates& named) {
   for (const char* where : {"yaw", "tilt"}) {
     const AtPoint at("mount_creep", where, responses, std::string("grating.") + where);
     named.AddOver(at.showing, {"amplitude"}, {time_constant},
-                  [at, since_s = model::SinceFirst_s(s)](const Eigen::VectorXd& tau_s) {
+                  [at, since_s = SinceMounting_s(s, RotaryOf(scenario).procedure.remount_s)](const Eigen::VectorXd& tau_s) {
                     return at.Of((since_s.array() / tau_s[0]).log1p().matrix());
                   });
   }
   if (!model::HasTemperature(s)) return;
-  const Eigen::VectorXd above_K = model::Above_K(s, reference_degC);
+  const Eigen::VectorXd above_K = model::Above_K(s, scenario.environment.reference_degC);
   const AtPoint laser("wavelength_temperature", "", responses, "laser.wavelength");
   named.Add(laser.showing, {"wavelength_per_kelvin"}, laser.Of(above_K));
   for (int psd = 0; psd < 2; ++psd)
@@ -304,7 +309,7 @@ std::vector<Family> NamedFamilies(const RotaryRun& rotary, const Scenario& scena
   Candidates named(Catalogue(benches::rotary::Format().effects), kChannels);
   Responses responses(rotary);
   AddBench(rotary, scenario, named);
-  AddTime(responses, scenario.environment.reference_degC, named);
+  AddTime(responses, scenario, named);
   AddTravel(responses, std::max(RotaryOf(scenario).target.settle_s, RotaryOf(scenario).reference.settle_s), named);
   AddSubdivision(responses, RotaryOf(scenario), named);
   for (int channel = 0; channel < kChannels; ++channel) AddSteps(rotary, channel, named);
