@@ -34,8 +34,7 @@ std::size_t IndexOf(const Isolability& isolability, const std::string& effect, c
 bool IsForetold(const Isolability& foretold, const EffectSettings& truth, const diagnose::Cause& blamed, double rho) {
   const std::size_t a = IndexOf(foretold, truth.name, truth.where), b = IndexOf(foretold, blamed.effect, blamed.where);
   if (a == foretold.causes.size() || b == foretold.causes.size()) return false;
-  const double size_SI = rho / diagnose::tuning::kBaarda * foretold.causes[a].smallest.value;
-  return MayBeBlamed(foretold, a, b, size_SI);
+  return MayBeBlamed(foretold, a, b, rho / diagnose::tuning::kBaarda);
 }
 
 /// Of the group that has the truth in it; without one, of the first.
@@ -113,7 +112,7 @@ TieCase DiagnoseHidden(const hidden::Placement& at, std::uint64_t seed, double r
   return result;
 }
 
-std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs) {
+std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs, const std::vector<std::string>& effects) {
   const std::vector<Reading> own = tools::ReadingsOfTwin(scenario);
   const Isolability isolability = *tools::SeenBy(scenario, own).isolability;
   const Against against(scenario, own);
@@ -123,6 +122,7 @@ std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs) {
   Eigen::VectorXd length2(std::ssize(isolability.causes));
   for (const diagnose::ShownCause& cause : isolability.causes) {
     if (cause.at_smallest.empty()) continue;
+    if (!effects.empty() && std::ranges::count(effects, cause.effect) == 0) continue;
     Scenario with = scenario;
     with.effects.push_back(diagnose::AsEffect(cause, scenario.bench));
     try {

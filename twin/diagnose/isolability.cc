@@ -295,10 +295,9 @@ EffectSettings AsEffect(const ShownCause& cause, const std::string& bench) {
   return effect;
 }
 
-bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double size_SI) {
-  const double smallest = isolability.causes[present].smallest.value;
+bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double times) {
   return std::ranges::any_of(isolability.confusable, [&](const Confusable& pair) {
-    return pair.present == present && pair.blamed == blamed && std::abs(size_SI) < pair.surely_told_from * smallest;
+    return pair.present == present && pair.blamed == blamed && times < pair.surely_told_from;
   });
 }
 

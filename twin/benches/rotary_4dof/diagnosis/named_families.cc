@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "twin/benches/rotary_4dof/diagnosis/families.h"
 #include "twin/benches/rotary_4dof/diagnosis/signals.h"
@@ -258,6 +259,17 @@ void AddCrosstalk(const RotaryRun& rotary, const std::vector<std::string>& scan_
   }
 }
 
+/// Steps as a point shows them: while the calibration is read, the autocollimator follows a grating that slips.
+TimeSeries ShownSteps(const TimeSeries& series, const Eigen::VectorXd& share) {
+  TimeSeries shown = series;
+  if (!series.steps || share.isOnes()) return shown;
+  auto steps = std::make_shared<Base>(*series.steps);
+  steps->series = [of_all = series.steps->series, share](int k) { return model::Times(of_all(k), share); };
+  steps->sums = {};
+  shown.steps = steps;
+  return shown;
+}
+
 void AddPatterns(Responses& responses, const TimeSeries& series, Candidates& named) {
   for (int channel = 0; channel < kChannels; ++channel)
     named.AddTone({"tone", ChannelName(channel), Eigen::Vector4d::Unit(channel)}, series, true);
@@ -265,9 +277,10 @@ void AddPatterns(Responses& responses, const TimeSeries& series, Candidates& nam
   named.AddTone({"tone", "tilt", Eigen::Vector4d(0.0, 1.0, 0.0, 1.0)}, series, true);
   named.AddTone({"tone", "all", Eigen::Vector4d::Ones()}, series, true);
   AddFreeTone(series, named);
-  for (const char* where : {"yaw", "tilt", "lateral"})
-    named.AddStep(AtPoint("slip", where, responses, std::string("grating.") + where).showing,
-                  std::string(where) == "lateral" ? "shift" : "angle", series);
+  for (const char* where : {"yaw", "tilt", "lateral"}) {
+    const AtPoint at("slip", where, responses, std::string("grating.") + where);
+    named.AddStep(at.showing, std::string(where) == "lateral" ? "shift" : "angle", ShownSteps(series, at.share));
+  }
   named.AddStep(AtPoint("mode_hop", "", responses, "laser.wavelength").showing, "wavelength_step", series);
 }
 
