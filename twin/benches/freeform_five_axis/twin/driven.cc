@@ -81,6 +81,7 @@ class FreeformPhysics : public DrivenPhysics {
     room_ = std::make_unique<Environment>(scenario_.environment, scenario_.RunSeed());
     twin_ = std::make_unique<FreeformTwin>(scenario_, Draw(scenario_));
   }
+  void BeRun(int repeat) override { scenario_.repeat = repeat; }
 
  private:
   const FreeformSettings& own() const { return FreeformOf(scenario_); }

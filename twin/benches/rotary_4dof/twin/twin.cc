@@ -4,6 +4,7 @@
 
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/world.h"
+#include "twin/core/numbered_runs.h"
 
 namespace twinbench::sim {
 
@@ -117,7 +118,7 @@ class TwinFixture : public Fixture {
 };
 
 /// The devices are rebuilt in their place: whoever holds them keeps them over a restart.
-struct Twin::Impl : public Simulation {
+struct Twin::Impl : public Simulation, public NumberedRuns {
   struct Devices {
     explicit Devices(const Scenario& scenario) : world(scenario) {}
 
@@ -134,6 +135,7 @@ struct Twin::Impl : public Simulation {
 
   explicit Impl(const Scenario& its_scenario) : scenario(its_scenario) { devices.emplace(scenario); }
   void Restart() override { devices.emplace(scenario); }
+  void BeRun(int repeat) override { scenario.repeat = repeat; }
   void SetPaced(bool) override {}  // in a program's own twin no time is ever waited for
 
   Scenario scenario;
