@@ -17,7 +17,7 @@ class ProgramBench : public Program {
   ProgramBench() {
     Write("encoder.toml",
           "bench = \"encoder_comparison\"\nseed = 3\n[device]\nnoise_deg = 0.002\n[encoder_procedure]\n"
-          "stops_per_turn = 36\npasses = [1, -1]\ninterval_s = 0.5\n");
+          "stops_per_turn = 36\npasses = [1, -1]\n");
     std::filesystem::copy(TWINBENCH_TEST_DATA "/program/acquire_encoder.py", At("acquire.py"));
   }
 
