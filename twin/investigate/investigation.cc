@@ -67,7 +67,7 @@ class Loop {
 
   /// Makes the run and adds it to what is known.
   void Take(Step& step, const Scenario& scenario) {
-    runs_.push_back(TakenOf(step.run, scenario, laboratory_.measure(step, scenario), means_));
+    runs_.push_back(TakenOf(step.run, scenario, laboratory_.measure(step, scenario), means_, step.number - 1));
     step.minutes = runs_.back().minutes;
     result_.minutes += step.minutes;
     if (!certainty_) return;
@@ -171,18 +171,18 @@ class Loop {
     Belief& belief = result_.belief;
     const TakenRun& run = runs_.back();
     const Hypothesis best = belief.Best().fit.hypothesis;
-    const Scenario with = With(run.scenario, best);
+    const Scenario with = With(run.scenario, best, run.number);
     const diagnose::DiagnosisRun found = means_.diagnose(run.readings, with, {});
     if (found.diagnosis.verdict == diagnose::Verdict::kNone) {
       if (IsOfAnotherKind()) Agreed(belief);
       return;
     }
     bool is_new = false;
-    for (const Weighed& more : LeftOpen(found, with)) {
+    for (const Weighed& more : LeftOpen(found, with, run.number)) {
       if (!more.hypothesis.causes.empty())
         is_new = TakeIn(belief, Together(best, more.hypothesis), best, runs_, means_) || is_new;
     }
-    for (const Weighed& other : LeftOpen(means_.diagnose(run.readings, run.scenario, {}), run.scenario)) {
+    for (const Weighed& other : LeftOpen(means_.diagnose(run.readings, run.scenario, {}), run.scenario, run.number)) {
       if (!other.hypothesis.causes.empty())
         is_new = TakeIn(belief, other.hypothesis, AsMany(other.hypothesis), runs_, means_) || is_new;
     }

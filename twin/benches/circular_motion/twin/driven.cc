@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "twin/benches/circular_motion/twin/live.h"
+#include "twin/core/happened_once.h"
 
 namespace twinbench::sim {
 namespace {
@@ -19,7 +20,7 @@ constexpr int kBesideThePlan = -1;   // a pass
 class CirclePhysics : public DrivenPhysics {
  public:
   explicit CirclePhysics(const Scenario& scenario)
-      : scenario_(scenario), run_(scenario), settings_(CircularOf(scenario)) {}
+      : scenario_(scenario), repeat_(scenario.repeat), run_(scenario), settings_(CircularOf(scenario)) {}
 
   const std::vector<MachineAxis>& Axes() const override { return axes_; }
   int Setups() const override { return static_cast<int>(settings_.procedure.setups.size()); }
@@ -56,9 +57,8 @@ class CirclePhysics : public DrivenPhysics {
 
   void Restart() override { course_.clear(); }
   void BeRun(int repeat) override {
-    if (repeat == scenario_.repeat) return;
-    scenario_.repeat = repeat;
-    run_.emplace(scenario_);
+    if (repeat != repeat_) run_.emplace(InRun(scenario_, repeat));
+    repeat_ = repeat;
   }
 
  private:
@@ -76,6 +76,7 @@ class CirclePhysics : public DrivenPhysics {
   }
 
   Scenario scenario_;
+  int repeat_;  // of run_
   std::optional<CircleRun> run_;
   CircularSettings settings_;
   std::vector<MachineAxis> axes_ = {{"x"}, {"y"}};
