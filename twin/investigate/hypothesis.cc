@@ -62,6 +62,13 @@ EffectSettings Sized(const Cause& cause, const std::string& bench) {
   return effect;
 }
 
+/// @param run  That it was found in.
+Supposed Suppose(const Cause& cause, const std::string& bench, int run) {
+  Supposed supposed{Sized(cause, bench)};
+  if (HappensOnce(supposed)) supposed.happened_in = run;
+  return supposed;
+}
+
 /// Each of `open` with each cause of the group.
 std::vector<Weighed> Times(const std::vector<Weighed>& open, const std::vector<Cause>& causes,
                            const diagnose::CauseGroup& group, const std::string& bench, int run) {
@@ -70,7 +77,7 @@ std::vector<Weighed> Times(const std::vector<Weighed>& open, const std::vector<C
   for (const Weighed& one : open) {
     for (const std::size_t k : group) {
       Weighed more = one;
-      more.hypothesis.causes.push_back({Sized(causes[k], bench), run});
+      more.hypothesis.causes.push_back(Suppose(causes[k], bench, run));
       more.probability *= causes[k].probability / sum;
       product.push_back(std::move(more));
     }
@@ -86,7 +93,7 @@ std::vector<Weighed> NothingOrSuspects(const diagnose::DiagnosisRun& found, cons
   for (const Cause& suspect : found.suspects) {
     if (suspect.probability < kWorthASuspicion) continue;
     Weighed one;
-    one.hypothesis.causes.push_back({Sized(suspect, bench), run});
+    one.hypothesis.causes.push_back(Suppose(suspect, bench, run));
     one.probability = suspect.probability;
     open.front().probability -= suspect.probability;
     open.push_back(std::move(one));

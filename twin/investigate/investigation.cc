@@ -10,6 +10,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/investigate/expected_information.h"
+#include "twin/uncertainty/budget.h"
 
 namespace twinbench::investigate {
 namespace {
@@ -32,6 +33,7 @@ class Loop {
   }
 
   Investigation Run() {
+    RefuseGoalsOutOfReach(scenario_, means_.twin);
     TakeFirst();
     while (!IsDone() && TakeNext()) {
     }
@@ -91,16 +93,32 @@ class Loop {
   void TakeFirst() {
     Step step{1, {"first", "the scenario's own run", {}, plan::kSameKind}, "the scenario's own run comes first"};
     Take(step, scenario_);
-    if (certainty_ && !std::isfinite(certainty_->u())) RefuseGoal();
+    const auto taken = [this](const Scenario&) { return runs_.front().readings; };
+    RefuseGoalsOutOfReach(scenario_, taken);
+    result_.u_goal = certainty_ ? certainty_->u() : kNaN;
     const diagnose::DiagnosisRun found = means_.diagnose(runs_.front().readings, scenario_, {});
     result_.belief = Begun(found, runs_, means_);
     Note(std::move(step), Entropy_bit(result_.belief.Probabilities()));
   }
 
-  [[noreturn]] void RefuseGoal() const {
-    const std::vector<std::string> names = GoalNames(means_.evaluate(runs_.front().readings, scenario_));
-    throw InputError("--goal " + options_.goal->Text(), "the first run's results have no such quantity",
-                     fmt::format("one of {}", fmt::join(names, ", ")));
+  /// What nobody can reach is not measured for: first by a run of the twin, then by the first one.
+  /// @throws InputError if the results have no such quantity, or standards alone leave more than the goal.
+  void RefuseGoalsOutOfReach(const Scenario& scenario,
+                             const std::function<std::vector<Reading>(const Scenario&)>& readings_of) {
+    if (!certainty_) return;
+    const std::vector<Reading> readings = readings_of(scenario);
+    const nlohmann::json results = means_.evaluate(readings, scenario);
+    if (!Certainty(*options_.goal).Add(results))
+      throw InputError("--goal " + options_.goal->Text(), "the first run's results have no such quantity",
+                       fmt::format("one of {}", fmt::join(GoalNames(results), ", ")));
+    certainty_->Share(uncertainty::Budgets(scenario, [&](const Scenario& other) {
+      return uncertainty::QuantitiesOf(means_.evaluate(readings, other));
+    }));
+    if (certainty_->SharedU() >= options_.goal->u)
+      throw InputError("--goal " + options_.goal->Text(),
+                       fmt::format("cannot be reached by any number of runs: what they share leaves {:.3g} {}, most of it {}",
+                                   certainty_->SharedU(), options_.goal->unit, certainty_->LargestShared()),
+                       "an uncertainty above that, or a better standard");
   }
 
   /// @return false if it ends here.
