@@ -27,6 +27,14 @@ TEST(Goal, IsReadWithItsUnit) {
     EXPECT_THROW(ParseGoal(bad), InputError) << bad;
 }
 
+TEST(Goal, NamesWhatCanBeAskedFor) {
+  nlohmann::json results = Results(0.3);
+  results["terms"] = {{{"amplitude_arcsec", 1.0}, {"u_amplitude_arcsec", 0.1}}};
+  EXPECT_EQ(GoalNames(results),
+            (std::vector<std::string>{"separation.reference.ez_arcsec", "separation.target.dx_um",
+                                      "separation.target.ez_arcsec"}));
+}
+
 TEST(Goal, CountsOnlyTheQuantityThatWasAskedFor) {
   Certainty certainty(ParseGoal("target.ez 0.1arcsec"));
   EXPECT_TRUE(std::isinf(certainty.u()));

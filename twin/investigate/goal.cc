@@ -117,7 +117,8 @@ std::vector<std::string> GoalNames(const nlohmann::json& results) {
   std::vector<std::string> names;
   for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(results)) {
     const std::string list = uncertainty::ListOf(q.name);
-    if (std::ranges::find(names, list) == names.end()) names.push_back(list);
+    const bool can_be_asked_for = list.find('[') == std::string::npos;
+    if (can_be_asked_for && std::ranges::find(names, list) == names.end()) names.push_back(list);
   }
   return names;
 }
