@@ -44,7 +44,7 @@ struct Truth {
   std::string words;
 };
 
-/// A quantity of results.json and how many times more certain than after the first run it shall be.
+/// A quantity of results.json ("target.ez_arcsec") and how many times more certain than after the first run it shall be.
 struct Wish {
   std::string quantity;
   double times = 2.0;

@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
   app.add_option("--budget-min", options.budget_min);
   app.add_option("--only", options.only);
   app.add_option("--unlisted", options.unlisted);
-  app.add_option("--goal", options.wish.quantity, "target.ez");
+  app.add_option("--goal", options.wish.quantity, "target.ez_arcsec");
   app.add_option("--times", options.wish.times, "as certain as after the first run");
   app.add_option("--program", options.program, "tests/data/program/acquire_hidden.py");
   app.add_option("--dump", options.dump);

@@ -9,6 +9,7 @@
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
+#include "twin/investigate/evidence.h"
 
 namespace twinbench::investigate {
 namespace {
@@ -98,6 +99,18 @@ TEST_F(JointFits, HoldASlipForOneOfItsRun) {
   slip.causes.front().happened_in = 1;
   EXPECT_GT(FitJointly(slip, runs, means_).chi2, of_first.chi2 + 100.0);
   EXPECT_EQ(slip.Name(), "slip in run 2");
+}
+
+// A wave of 0.01 deg in 72 readings of 0.002 deg is 30 standard deviations long: that something else had the same size
+// by chance is 1 to 30. What nobody could have seen says nothing.
+TEST_F(JointFits, HoldAMimicForAsUnlikelyAsItWouldHaveToHitTheSize) {
+  const auto runs = RunsWith("[[effect]]\nname = \"eccentricity\"\namplitude_deg = 0.01\nphase_deg = 30\n", 1);
+  const Hypothesis found = Fit("eccentricity", runs).hypothesis;
+  EXPECT_NEAR(MimicFactor(found, runs.front(), means_), 1.0 / std::sqrt(1.0 + 25.0 * 36.0), 0.01);
+  Hypothesis other = found;  // ten times as large as it is
+  other.causes.front().parameters["amplitude"] *= 10.0;
+  EXPECT_GT(MimicFactor(other, runs.front(), means_), 1e3);
+  EXPECT_NEAR(MimicFactor({}, runs.front(), means_), 1.0, 1e-12);
 }
 
 TEST(Hypotheses, ShowWhatHappenedOnceInItsRunAndWhatItLeavesBehindLater) {

@@ -11,9 +11,6 @@
 namespace twinbench::investigate {
 namespace {
 
-/// How often a cause that the catalogue lacks and that looks like a listed one in some runs does so in a run of
-/// another kind as well.
-constexpr double kMimicsAgain = 0.3;
 /// Less is not carried on.
 constexpr double kNegligible = 1e-4;
 
@@ -108,8 +105,16 @@ bool TakeIn(Belief& belief, Hypothesis hypothesis, const Hypothesis& beside, con
   return true;
 }
 
-void Agreed(Belief& belief) {
-  const double odds = kMimicsAgain * belief.unlisted / std::max(1.0 - belief.unlisted, kNegligible);
+double MimicFactor(const Hypothesis& best, const TakenRun& run, const Means& means) {
+  const Eigen::VectorXd left = LeftBy(best, run, means), shown = run.left - left;
+  const double length = Product(run, shown, shown)(0, 0), along = Product(run, shown, left)(0, 0);
+  constexpr double kMost = 20.0;  // beyond that nothing is left of the best hypothesis
+  return std::exp(std::min(kMost, 0.5 * along * along / (1.0 + length))) / std::sqrt(1.0 + length);
+}
+
+void Agreed(Belief& belief, const TakenRun& run, const Means& means) {
+  const double factor = MimicFactor(belief.Best().fit.hypothesis, run, means);
+  const double odds = factor * belief.unlisted / std::max(1.0 - belief.unlisted, kNegligible);
   belief.unlisted = odds / (1.0 + odds);
   Normalise(belief);
 }

@@ -33,9 +33,15 @@ void Update(Belief& belief, const std::vector<TakenRun>& runs, const Means& mean
 bool TakeIn(Belief& belief, Hypothesis hypothesis, const Hypothesis& beside, const std::vector<TakenRun>& runs,
             const Means& means);
 
+/// What the catalogue lacks and looked like the best hypothesis so far shows in a run of another kind in another size:
+/// as large on average, give or take as much (as OfCauses_bit expects). @return the likelihood of the run's readings
+/// under that over the one under the best: with s = S' W S of its signature S and r = S' W e of what it leaves,
+/// exp(r^2 / 2 (1 + s)) / sqrt(1 + s). A run in which it would not be seen says nothing: 1.
+double MimicFactor(const Hypothesis& best, const TakenRun& run, const Means& means);
+
 /// A run of another kind than those before agreed with the best hypothesis, or something was left that nothing open
 /// explains.
-void Agreed(Belief& belief);
+void Agreed(Belief& belief, const TakenRun& run, const Means& means);
 void Disagreed(Belief& belief, double unknown);
 
 }  // namespace twinbench::investigate

@@ -37,16 +37,19 @@ class Loop {
     TakeFirst();
     while (!IsDone() && TakeNext()) {
     }
-    result_.told = ToldBy(result_.belief);
+    result_.told = ToldBy(result_.belief, kMostlyUnlisted);
     const bool is_nothing = result_.belief.Best().fit.hypothesis.Name() == Hypothesis{}.Name();
     if (result_.told == Told::kTied && is_nothing) result_.told = Told::kNothing;  // suspicions are no findings
     return std::move(result_);
   }
 
  private:
-  Told ToldBy(const Belief& belief) const {
-    if (belief.unlisted >= kMostlyUnlisted) return Told::kUnknown;
+  /// @param unlisted  From which probability on it is something that the catalogue lacks.
+  Told ToldBy(const Belief& belief, double unlisted) const {
     const Open& best = belief.Best();
+    const bool is_unnamed = !best.fit.hypothesis.causes.empty() && !best.fit.hypothesis.IsNamed();
+    if (belief.unlisted + (is_unnamed ? best.probability : 0.0) >= unlisted && belief.unlisted > best.probability)
+      return Told::kUnknown;
     if (best.probability < options_.conclusive || HasRival(belief)) return Told::kTied;
     if (best.fit.hypothesis.IsNamed()) return Told::kNamed;
     return best.fit.hypothesis.Name() == Hypothesis{}.Name() ? Told::kNothing : Told::kUnknown;
@@ -59,7 +62,7 @@ class Loop {
     });
   }
 
-  bool AreCausesTold() const { return ToldBy(result_.belief) != Told::kTied; }
+  bool AreCausesTold() const { return ToldBy(result_.belief, options_.conclusive) != Told::kTied; }
 
   bool IsDone() {
     if (!AreCausesTold() || !result_.IsGoalMet()) return false;
@@ -192,7 +195,7 @@ class Loop {
     const Scenario with = With(run.scenario, best, run.number);
     const diagnose::DiagnosisRun found = means_.diagnose(run.readings, with, {});
     if (found.diagnosis.verdict == diagnose::Verdict::kNone) {
-      if (IsOfAnotherKind()) Agreed(belief);
+      if (IsOfAnotherKind()) Agreed(belief, run, means_);
       return;
     }
     bool is_new = false;
