@@ -135,13 +135,28 @@ class Loop {
     const std::vector<Advice> advice =
         plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, left_min);
     if (advice.empty()) return End(Ended::kBudget);
-    const auto useful = std::ranges::find_if(advice, [this](const Advice& a) { return IsUseful(a); });
+    auto useful = std::ranges::find_if(advice, [this](const Advice& a) { return IsUseful(a); });
+    if (useful == advice.end()) useful = Exploring(advice);
     if (useful == advice.end()) return End(IsAnyLeftOut(left_min) ? Ended::kBudget : Ended::kNothingMore);
     Step step{static_cast<int>(result_.steps.size()) + 1, useful->run, ReasonFor(*useful, advice)};
     step.expected_bit = useful->of_causes_bit;
     if (laboratory_.confirm && !laboratory_.confirm(step, advice)) return End(Ended::kDeclined);
     TakeAndWeigh(std::move(step));
     return true;
+  }
+
+  /// Something is there and nothing open says what any run would show of it: the shortest run of a kind that was not
+  /// made yet, to be diagnosed for itself.
+  std::vector<Advice>::const_iterator Exploring(const std::vector<Advice>& advice) const {
+    auto shortest = advice.end();
+    if (AreCausesTold() || result_.belief.unlisted < kMostlyUnlisted) return shortest;
+    for (auto a = advice.begin(); a != advice.end(); ++a) {
+      const bool is_new = a->run.is_of_another_kind && std::ranges::none_of(runs_, [a](const TakenRun& run) {
+        return run.asked.sets == a->run.sets;
+      });
+      if (is_new && (shortest == advice.end() || a->minutes < shortest->minutes)) shortest = a;
+    }
+    return shortest;
   }
 
   bool End(Ended ended) {
@@ -169,6 +184,7 @@ class Loop {
                            Entropy_bit(result_.belief.Probabilities()));
     if (best.of_goal_bit > 0.0)
       reason += fmt::format("{}{} to {:.3g}", reason.empty() ? "" : ", ", result_.goal->Text(), best.u_goal);
+    if (!IsUseful(best)) return "nothing open says what this is: the shortest run of a kind that was not made yet";
     reason += fmt::format(" expected in {:.1f} min", best.minutes);
     const auto second = std::ranges::find_if(advice, [&](const Advice& a) { return a.run.name != best.run.name; });
     if (second == advice.end()) return reason;
@@ -198,15 +214,13 @@ class Loop {
       if (IsOfAnotherKind()) Agreed(belief, run, means_);
       return;
     }
-    bool is_new = false;
-    for (const Weighed& more : LeftOpen(found, with, run.number)) {
-      if (!more.hypothesis.causes.empty())
-        is_new = TakeIn(belief, Together(best, more.hypothesis), best, runs_, means_) || is_new;
-    }
-    for (const Weighed& other : LeftOpen(means_.diagnose(run.readings, run.scenario, {}), run.scenario, run.number)) {
-      if (!other.hypothesis.causes.empty())
-        is_new = TakeIn(belief, other.hypothesis, AsMany(other.hypothesis), runs_, means_) || is_new;
-    }
+    std::vector<Weighed> more = LeftOpen(found, with, run.number);
+    std::erase_if(more, [](const Weighed& one) { return one.hypothesis.causes.empty(); });
+    for (Weighed& one : more) one.hypothesis = Together(best, one.hypothesis);
+    bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
+    const std::vector<Weighed> others =
+        LeftOpen(means_.diagnose(run.readings, run.scenario, {}), run.scenario, run.number);
+    is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
     if (!is_new || found.diagnosis.verdict == diagnose::Verdict::kUnknown)
       Disagreed(belief, found.diagnosis.unknown.probability);
   }
