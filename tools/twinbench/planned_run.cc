@@ -83,12 +83,25 @@ report::PlannedRun LookAt(const std::string& words, const Scenario& scenario,
   return {words, {}, plan::MeanOf(outlooks)};
 }
 
+/// Stops at which the errors of both tables are free; 0: the bench shifts nothing.
+int FreeStops(const Scenario& scenario) {
+  const Bench& bench = BenchOf(scenario);
+  if (!bench.shift_design) return 0;
+  const plan::ShiftDesign design = bench.shift_design(scenario);
+  return design.shifts.size() > 1 ? design.positions : 0;
+}
+
+/// @throws InputError if what all causes would show is too much to be weighed: with a table error that is free at every
+///         stop, by a matrix of readings x stops.
+void RequireWeighable(const Scenario& scenario, std::size_t readings) {
+  constexpr double kMostReadings = 20000, kMostProducts = 1e10;  // half a minute
+  const double count = static_cast<double>(readings);
+  if (count > kMostReadings || count * std::pow(FreeStops(scenario), 2) > kMostProducts)
+    throw InputError("plan", fmt::format("{} readings", readings), "fewer to say what causes would show");
+}
+
 diagnose::DiagnosisRun SeenBy(const Scenario& scenario, const std::vector<Reading>& readings) {
-  // A table error is free at every stop: what all causes would show is weighed with a matrix of readings x unknowns.
-  constexpr std::size_t kMost = 20000;
-  if (readings.size() > kMost)
-    throw InputError("plan", fmt::format("{} readings", readings.size()),
-                     fmt::format("at most {} to say what causes would show", kMost));
+  RequireWeighable(scenario, readings.size());
   diagnose::DiagnoseOptions options;
   options.design_only = true;
   return BenchOf(scenario).diagnose(readings, scenario, options);
