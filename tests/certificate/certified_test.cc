@@ -4,11 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "twin/benches/certified_parts.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::certificate {
 namespace {
 
+using benches::CertifiedPartsOf;
 using nlohmann::json;
 
 Certified Take(const std::string& bench, const json& results) {

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -40,6 +41,7 @@ TEST_F(CertificateCommand, StatesTheNumbersOfTheResultsAndThatTheyAreSimulated) 
 }
 
 TEST_F(CertificateCommand, IsWrittenOnlyIfItSatisfiesTheSchema) {
+  for (const char* folder : {"good", "bad", "broken"}) std::filesystem::create_directory(At(folder));
   Write("good/dcc.xsd", SchemaFor("3.3.0"));
   Write("bad/dcc.xsd", SchemaFor("2.0.0"));
   Write("broken/dcc.xsd", "no schema");

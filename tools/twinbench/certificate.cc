@@ -10,6 +10,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/xmllint.h"
+#include "twin/benches/certified_parts.h"
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
 #include "twin/report/certificate/certificate_xml.h"
@@ -74,7 +75,7 @@ CertificateContent ContentOf(const CertificateOptions& options) {
   const auto record = RunRecord::Open(folder.path);
   if (!record->finished()) throw InputError(folder.record(), "the run is not finished", "a complete run");
   const twinbench::Provenance provenance = record->provenance();
-  const CertifiedBench& bench = CertifiedPartsOf(provenance.bench, folder.path);
+  const CertifiedBench& bench = benches::CertifiedPartsOf(provenance.bench, folder.path);
   content.certified = CertifiedOf(folder, bench);
   content.method = bench.method;
   content.run = std::filesystem::weakly_canonical(folder.path).filename().string();

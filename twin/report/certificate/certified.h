@@ -4,9 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "twin/report/certificate/certified_parts.h"
-
 namespace twinbench::certificate {
+
+/// A part of results.json that a certificate may state, and what it says of which thing.
+struct CertifiedPart {
+  std::string path;     // "separation.target"; "[]" after a list
+  std::string subject;  // as `not_separable` names it; empty: it is none of several
+  std::string title;
+  std::string norm;     // that defines the values; may be empty
+};
+
+/// How a bench measures, and what of its results is a result of a calibration.
+struct CertifiedBench {
+  std::string bench, method;
+  std::vector<CertifiedPart> parts;
+};
 
 /// Where a list of values was taken: "position" in \degree.
 struct Abscissa {

@@ -1,11 +1,14 @@
-#include "twin/report/certificate/certified_parts.h"
+#include "twin/benches/certified_parts.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "twin/core/errors.h"
 
-namespace twinbench::certificate {
+namespace twinbench::benches {
 namespace {
+
+using certificate::CertifiedBench;
 
 const std::vector<CertifiedBench>& All() {
   static const std::vector<CertifiedBench> all = {
@@ -48,4 +51,4 @@ const CertifiedBench& CertifiedPartsOf(const std::string& bench, const std::stri
   throw InputError(where, "a run of the bench \"" + bench + "\", of whose results none are known to be a calibration's", "a run of " + names);
 }
 
-}  // namespace twinbench::certificate
+}  // namespace twinbench::benches
