@@ -37,7 +37,8 @@ const std::vector<CertifiedBench>& All() {
         {"reference", "reference", "reference", ""},
         {"harmonics.device[]", "device", "orders of the device", ""},
         {"harmonics.reference[]", "reference", "orders of the reference", ""},
-        {"iso230_2[].axis", "", "positioning against the reference", "ISO 230-2"}}}};
+        {"iso230_2[].axis", "", "positioning against the reference", "ISO 230-2"},
+        {"vdi3441[].axis", "", "positioning against the reference, VDI/DGQ 3441", "VDI/DGQ 3441"}}}};
   return all;
 }
 
