@@ -9,6 +9,8 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "twin/report/certificate/xml_text.h"
+
 namespace twinbench::certificate {
 namespace {
 
@@ -121,6 +123,21 @@ TEST(CertificateXml, TakesMarkupOfAScenarioAsText) {
   const pugi::xml_document document = Parsed(CertificateXml(Content()));
   EXPECT_EQ(TextAt(document, "//dcc:measurementResult/dcc:description/dcc:content"), "a]]><script>alert(1)</script>&amp;\"'  <!-- é");
   EXPECT_FALSE(document.select_node("//script"));
+}
+
+TEST(CertificateXml, TakesBytesThatAreNoTextAsQuestionMarks) {
+  EXPECT_EQ(XmlText(" caf\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x98\x80\n"), "caf\xC3\xA9 \xE2\x82\xAC \xF0\x9F\x98\x80");
+  EXPECT_EQ(XmlText("a\xFF\x80z"), "a??z");          // no first byte
+  EXPECT_EQ(XmlText("\xE2\x82"), "??");              // cut off
+  EXPECT_EQ(XmlText("\xC0\xAF"), "??");              // "/" written too long
+  EXPECT_EQ(XmlText("\xED\xA0\x80"), "???");         // half of a surrogate pair
+  EXPECT_EQ(XmlText("\xEF\xBF\xBF\x1B"), "???");      // U+FFFF; a control character
+}
+
+TEST(CertificateXml, RepeatsWhatADiagnosisHasFound) {
+  CertificateContent content = Content();
+  content.diagnosis = "Named: drift";
+  EXPECT_EQ(TextAt(Parsed(CertificateXml(content)), "//dcc:statement[3]/dcc:declaration/dcc:content"), "Named: drift");
 }
 
 TEST(CertificateXml, SaysWhatIsSimulatedInEveryPlaceAndClaimsNoTraceability) {

@@ -14,6 +14,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
 #include "twin/report/certificate/certificate_xml.h"
+#include "twin/report/page/diagnosis_page.h"
 #include "twin/report/page/digest.h"
 
 namespace twinbench::tools {
@@ -60,8 +61,8 @@ void RequireTraceability(const CertificateContent& content, const std::string& l
     throw InputError(laboratory_file, "there is no traceability.statement", "to which standards the results are traceable");
 }
 
-Certified CertifiedOf(const RunFolder& folder, const CertifiedBench& bench) {
-  Certified certified = TakeCertified(ReadJson(folder.results()), bench);
+Certified CertifiedOf(const RunFolder& folder, const nlohmann::json& results, const CertifiedBench& bench) {
+  Certified certified = TakeCertified(results, bench);
   if (!certified.quantities.empty()) return certified;
   std::string why;
   if (!certified.left_out.empty()) why = ": " + certified.left_out.front().what + ", " + certified.left_out.front().why;
@@ -76,7 +77,9 @@ CertificateContent ContentOf(const CertificateOptions& options) {
   if (!record->finished()) throw InputError(folder.record(), "the run is not finished", "a complete run");
   const twinbench::Provenance provenance = record->provenance();
   const CertifiedBench& bench = benches::CertifiedPartsOf(provenance.bench, folder.path);
-  content.certified = CertifiedOf(folder, bench);
+  const nlohmann::json results = ReadJson(folder.results());
+  content.certified = CertifiedOf(folder, results, bench);
+  if (results.contains("diagnosis")) content.diagnosis = report::VerdictOf(results.at("diagnosis")).text;
   content.method = bench.method;
   content.run = std::filesystem::weakly_canonical(folder.path).filename().string();
   content.scenario_title = LoadScenario(folder.scenario()).title;

@@ -19,7 +19,7 @@ const std::vector<CertifiedBench>& All() {
       {"turntable_autocollimator",
        "Comparison of a turntable with a multi-tooth table or a polygon by an autocollimator",
        {{"separation.turntable", "turntable", "turntable", ""},
-        {"separation.multi_tooth", "multi-tooth table", "multi-tooth table", ""},
+        {"separation.multitooth", "multi-tooth table", "multi-tooth table", ""},
         {"separation.polygon", "polygon", "polygon", ""}}},
       {"hob_transmission",
        "Comparison of the angles of hob spindle and worktable by ring encoders whose heads are read in several places",

@@ -131,6 +131,7 @@ class Writer {
     AddStatement(node, "uncertainty",
                  "The uncertainties are expanded ones: standard uncertainties after JCGM 100:2008 (GUM) times the coverage factor stated beside them, for "
                  "a coverage probability of 95 %.");
+    if (!content_.diagnosis.empty()) AddStatement(node, "diagnosis of the readings", content_.diagnosis);
     for (const auto& [what, why] : content_.certified.left_out) AddStatement(node, "not certified: " + what, why.empty() ? "not told apart" : why);
   }
 

@@ -24,6 +24,7 @@ struct CertificateContent {
   std::string run, scenario_title, readings_from, recorded_by, program_version;
   bool simulated = false;
   Temperature temperature;
+  std::string diagnosis;  // what `diagnose` has found in the readings; may be empty
   std::vector<std::pair<std::string, std::string>> digests;  // file, SHA-256
 };
 

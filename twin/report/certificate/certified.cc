@@ -175,7 +175,7 @@ class Taker {
     if (!kept.values.empty()) taken_.quantities.push_back(kept);
   }
 
-  bool IsLostLine(const Candidate& candidate, int order) const {
+  bool IsLostLine(const Candidate& candidate, double order) const {
     return std::ranges::any_of(lost_, [&](const NotToldApart& one) {
       return one.order == order && !candidate.part.subject.empty() && one.Concerns(candidate.part.subject, candidate.quantity);
     });
@@ -186,7 +186,7 @@ class Taker {
     if (!std::isfinite(c.values[i])) return "not available";
     if (!std::isfinite(c.u[i]) || c.u[i] <= 0.0) return "no uncertainty is stated";
     if (!c.status.empty() && c.status[i] != "ok") return "its status is " + c.status[i];
-    if (is_spectrum && IsLostLine(c, static_cast<int>(c.where.front().values[i]))) return "the order is not told apart";
+    if (is_spectrum && IsLostLine(c, c.where.front().values[i])) return "the order is not told apart";
     if (c.unit == "deg" && (c.quantity.starts_with("phase") || c.title.ends_with("azimuth_deg")) && k * c.u[i] >= 180.0) return "known to half a turn or worse";
     return "";
   }
