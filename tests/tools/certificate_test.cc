@@ -40,6 +40,18 @@ TEST_F(CertificateCommand, StatesTheNumbersOfTheResultsAndThatTheyAreSimulated) 
   EXPECT_THAT(xml, HasSubstr("<si:valueXMLList>" + results.at("separation").at("target").at("ez_arcsec").at(0).dump() + " "));
 }
 
+TEST_F(CertificateCommand, StatesBothTablesWhereTheShiftsTellThemApartAndNeitherWhereTheyDoNot) {
+  Succeed({"new", "turntable_autocollimator", "-o", "sum.toml"});
+  Succeed({"run", "sum.toml", "-o", "sum"});
+  const Outcome sum = Call({"certificate", "sum", "--with", "laboratory.toml"});
+  EXPECT_EQ(sum.exit_code, 2);
+  EXPECT_THAT(sum.err, HasSubstr("nothing in it can be certified: turntable, ez"));
+  Succeed({"run", TWINBENCH_SOURCE_DIR "/scenarios/turntable_shifts.toml", "-o", "apart"});
+  const std::string xml = Succeed({"certificate", "apart", "--with", "laboratory.toml"});
+  EXPECT_THAT(xml, HasSubstr("SIMULATED turntable, ez"));
+  EXPECT_THAT(xml, HasSubstr("SIMULATED multi-tooth table, ez"));
+}
+
 TEST_F(CertificateCommand, IsWrittenOnlyIfItSatisfiesTheSchema) {
   for (const char* folder : {"good", "bad", "broken"}) std::filesystem::create_directory(At(folder));
   Write("good/dcc.xsd", SchemaFor("3.3.0"));
