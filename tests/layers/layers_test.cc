@@ -80,7 +80,7 @@ const std::map<std::string, std::set<std::string>> kOwners = {{"embree", {"optic
                                                               {"asio", {"hw_bridge"}},
                                                               {"iio", {"hw_bridge"}},
                                                               {"comedi", {"hw_bridge"}},
-                                                              {"pugi", {"hw_bridge"}}};
+                                                              {"pugi", {"hw_bridge", "twin/report"}}};
 
 std::string RoomOf(const std::string& path) {
   static const std::vector<std::pair<std::regex, const char*>> parts = {
