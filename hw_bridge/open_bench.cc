@@ -26,9 +26,9 @@ void TellOperator(const std::string& notice) {
 
 class OpenedBench : public OpenBench {
  public:
-  OpenedBench(const BenchFile& file, const AdcSettings& adc, double noise_V, Duration elapsed)
+  OpenedBench(const BenchFile& file, const AdcSettings& adc, double noise_V, Duration elapsed, int run)
       : file_(file), hands_(std::cin, std::cerr) {
-    OpenClock(elapsed);  // first: a served twin's time stands still from here on
+    OpenClock(elapsed, run);  // first: a served twin's time stands still from here on
     target_ = OpenTable("target", file.target, file.target_limits);
     reference_ = OpenTable("reference", file.reference, file.reference_limits);
     OpenInstruments();
@@ -68,14 +68,14 @@ class OpenedBench : public OpenBench {
   }
 
  private:
-  void OpenClock(Duration elapsed) {
+  void OpenClock(Duration elapsed, int run) {
     if (file_.clock.kind != "scpi") {
       clock_ = std::make_unique<HostClock>(elapsed, TellOperator);
       return;
     }
     auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", file_.clock));
     clock->Open();
-    if (clock->IsTwin()) simulation_ = std::make_unique<ScpiSimulation>(*clock);
+    if (clock->IsTwin()) simulation_ = std::make_unique<ScpiSimulation>(*clock, run);
     clock_ = std::move(clock);
   }
 
@@ -128,9 +128,9 @@ class OpenedBench : public OpenBench {
 }  // namespace
 
 std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const AdcSettings& adc, double noise_V,
-                                        Duration elapsed) {
+                                        Duration elapsed, int run) {
   Require(file.kind == "hardware", "only a bench of hardware is opened");
-  return std::make_unique<OpenedBench>(file, adc, noise_V, elapsed);
+  return std::make_unique<OpenedBench>(file, adc, noise_V, elapsed, run);
 }
 
 }  // namespace twinbench::hw

@@ -34,8 +34,9 @@ class OpenBench {
 /// Opens a bench of kind "hardware".
 /// @param scenario  Says which rate, range, resolution and block length the A/D must give.
 /// @param elapsed   Time 0 of the run was so long ago (a resumed run); 0 for a new one.
+/// @param run       Which run of its bench a served twin makes, as Scenario::repeat; 0: its own.
 /// @throws DeviceFault if a device does not answer, is not the one named or cannot do what is asked.
 std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const AdcSettings& adc, double noise_V,
-                                        Duration elapsed = {});
+                                        Duration elapsed = {}, int run = 0);
 
 }  // namespace twinbench::hw

@@ -19,9 +19,9 @@ namespace {
 class OpenedMachine : public OpenMachine {
  public:
   OpenedMachine(const MachineFile& file, const std::vector<MachineAxis>& axes,
-                const std::vector<ReadingColumn>& columns, Duration elapsed)
+                const std::vector<ReadingColumn>& columns, Duration elapsed, int run)
       : name_(file.name),
-        clock_(OpenClock(file.clock, elapsed)),
+        clock_(OpenClock(file.clock, elapsed, run)),
         machine_(OpenAxes(file, axes)),
         instruments_(OpenInstruments(file, columns), *clock_),
         fixture_(OpenFixture(file.fixture)) {}
@@ -37,14 +37,14 @@ class OpenedMachine : public OpenMachine {
 
  private:
   /// First of all: a served twin's time stands still from here on.
-  std::unique_ptr<Clock> OpenClock(const ControlSettings& settings, Duration elapsed) {
+  std::unique_ptr<Clock> OpenClock(const ControlSettings& settings, Duration elapsed, int run) {
     if (settings.kind != "scpi") {
       const auto tell = [](const std::string& notice) { fmt::print(stderr, "twinbench: {}\n", notice); };
       return std::make_unique<HostClock>(elapsed, tell);
     }
     auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", settings));
     clock->Open();
-    if (clock->IsTwin()) simulation_ = std::make_unique<ScpiSimulation>(*clock);
+    if (clock->IsTwin()) simulation_ = std::make_unique<ScpiSimulation>(*clock, run);
     return clock;
   }
 
@@ -84,9 +84,10 @@ class OpenedMachine : public OpenMachine {
 }  // namespace
 
 std::unique_ptr<OpenMachine> OpenMachineHardware(const MachineFile& file, const std::vector<MachineAxis>& axes,
-                                                 const std::vector<ReadingColumn>& columns, Duration elapsed) {
+                                                 const std::vector<ReadingColumn>& columns, Duration elapsed,
+                                                 int run) {
   Require(file.kind == "hardware", "only a bench of hardware is opened");
-  return std::make_unique<OpenedMachine>(file, axes, columns, elapsed);
+  return std::make_unique<OpenedMachine>(file, axes, columns, elapsed, run);
 }
 
 }  // namespace twinbench::hw

@@ -45,7 +45,7 @@ void ScpiClock::Wait(Duration duration) {
 
 void ScpiSimulation::Restart() {
   clock_.Open();
-  TellScpi(clock_.line_, "SIM:REST");
+  TellScpi(clock_.line_, run_ == 0 ? "SIM:REST" : fmt::format("SIM:REST {}", run_));
 }
 
 void ScpiSimulation::SetPaced(bool paced) {

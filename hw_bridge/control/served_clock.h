@@ -28,14 +28,16 @@ class ScpiClock : public Clock {
 };
 
 /// What only a twin can do. Shares the clock's connection, with which pacing ends too.
+/// @param run  Which of the twin's runs every restart begins, as Scenario::repeat; 0: its own.
 class ScpiSimulation : public Simulation {
  public:
-  explicit ScpiSimulation(ScpiClock& clock) : clock_(clock) {}
+  explicit ScpiSimulation(ScpiClock& clock, int run = 0) : clock_(clock), run_(run) {}
   void Restart() override;
   void SetPaced(bool paced) override;
 
  private:
   ScpiClock& clock_;
+  int run_;
 };
 
 }  // namespace twinbench::hw

@@ -6,6 +6,7 @@ namespace twinbench::hw {
 namespace {
 
 constexpr long long kLongestWait_ns = 10'000'000'000'000'000;
+constexpr long long kMostRuns = 1'000'000;
 
 std::string NowText(Served& served) {
   return std::to_string(served.pace().Now().time_since_epoch().count());
@@ -35,7 +36,9 @@ Outcome Pass(const ScpiCall& call) {
 
 Outcome Restart(const ScpiCall& call) {
   if (call.served.pace().HeldByAnother(&call.client)) RefuseToOthers();
-  call.served.Restart();
+  std::optional<int> run;
+  if (!call.parameters.empty()) run = static_cast<int>(ScpiWholeNumber(call.parameters[0], 0, kMostRuns));
+  call.served.Restart(run);
   return {};
 }
 
@@ -61,7 +64,7 @@ constexpr ScpiCommand kTimeCommands[] = {
     {"CLOCk:NOW", true, 0, 0, Now},
     {"CLOCk:HOLD", false, 1, 0, Hold},
     {"CLOCk:WAIT", true, 1, 0, Pass},
-    {"SIMulation:RESTart", false, 0, 0, Restart},
+    {"SIMulation:RESTart", false, 0, 1, Restart},
     {"SIMulation:PACE", false, 1, 0, SetPaced},
     {"SIMulation:FAULt", false, 2, 1, Fault},
     {"SIMulation:FAULt", true, 0, 0, WaitingFaults},

@@ -4,6 +4,9 @@
 
 #include <cstdint>
 
+#include "twin/core/errors.h"
+#include "twin/core/numbered_runs.h"
+
 namespace twinbench::hw {
 namespace {
 
@@ -17,7 +20,12 @@ std::string SerialOf(const Scenario& scenario) {
 }  // namespace
 
 Served::Served(std::string its_name, const Scenario& scenario)
-    : name(std::move(its_name)), serial(SerialOf(scenario)) {}
+    : name(std::move(its_name)), serial(SerialOf(scenario)), own_run_(scenario.repeat) {}
+
+void Served::BeRun(std::optional<int> run, Simulation& simulation) const {
+  if (auto* runs = dynamic_cast<NumberedRuns*>(&simulation)) return runs->BeRun(run.value_or(own_run_));
+  if (run) throw BenchError("bench: its runs have no numbers");
+}
 
 Poll Served::AtRest(const std::string& answer) {
   return [this, answer]() -> std::optional<std::string> {

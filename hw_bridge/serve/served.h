@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,8 +28,9 @@ class Served {
   /// Lets what moves get on where time does not pass by itself.
   virtual void LetGetOn() = 0;
   virtual void StopAll() = 0;
+  /// @param run  Which of the bench's runs begins, as Scenario::repeat; none: its scenario's own.
   /// @throws BenchError on a bench that cannot.
-  virtual void Restart() = 0;
+  virtual void Restart(std::optional<int> run) = 0;
 
   /// `answer` when nothing moves.
   Poll AtRest(const std::string& answer);
@@ -36,6 +38,13 @@ class Served {
   std::string name;
   std::string serial;  // made from bench, scenario and seed
   Faults faults;
+
+ protected:
+  /// @throws BenchError if it is asked for a run that the simulation cannot be.
+  void BeRun(std::optional<int> run, Simulation& simulation) const;
+
+ private:
+  int own_run_;
 };
 
 }  // namespace twinbench::hw

@@ -39,8 +39,9 @@ void ServedBench::LetGetOn() {
   }
 }
 
-void ServedBench::Restart() {
+void ServedBench::Restart(std::optional<int> run) {
   if (!bench().simulation) throw BenchError("bench: it cannot be started again");
+  BeRun(run, *bench().simulation);
   paced.Restart();
   target.Restore();
   reference.Restore();

@@ -18,7 +18,7 @@ struct ServedBench : Served {
   void StopAll() override;
   bool Moves() override;
   void LetGetOn() override;
-  void Restart() override;
+  void Restart(std::optional<int> run) override;
 
   PacedBench paced;
   ShownTable target, reference;

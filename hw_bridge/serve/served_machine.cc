@@ -27,7 +27,8 @@ void ServedMachine::LetGetOn() {
   paced.LetGetOn([this](Duration within) { return machine.Settles(within); });
 }
 
-void ServedMachine::Restart() {
+void ServedMachine::Restart(std::optional<int> run) {
+  BeRun(run, *bench.simulation);
   paced.Restart();
   machine.Restore();
   latched.clear();

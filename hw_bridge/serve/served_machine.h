@@ -21,7 +21,7 @@ struct ServedMachine : Served {
   bool Moves() override;
   void LetGetOn() override;
   void StopAll() override { machine.Stop(); }
-  void Restart() override;
+  void Restart(std::optional<int> run) override;
 
   /// Takes what was latched into `latched`.
   void Collect();

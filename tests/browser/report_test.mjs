@@ -95,7 +95,7 @@ test("by keys alone a plot is reached, read, zoomed and shown whole again, and a
   const readout = page.locator("figure.card").first().locator(".readout");
   const first = await readout.innerText();
   await page.keyboard.press("ArrowRight");
-  assert.match(first, /estimate, position 0 deg: \S+ ± \S+ um/);
+  assert.match(first, /estimate, position 0 deg: \S+ ± \S+ arcsec/);
   assert.notEqual(await readout.innerText(), first);
   const labels = () => page.locator("figure.card").first().locator(".plot svg text").allTextContents();
   const whole = await labels();

@@ -33,7 +33,9 @@ Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::ui
   return made;
 }
 
-const std::vector<UnlistedCause>& CausesOf(const std::string& bench) {
+}  // namespace
+
+const std::vector<UnlistedCause>& UnlistedCausesOf(const std::string& bench) {
   if (bench == kRotaryBench) return RotaryUnlistedCauses();
   if (bench == kTurntableBench) return TurntableUnlistedCauses();
   if (bench == kCircularBench) return CircularUnlistedCauses();
@@ -41,14 +43,12 @@ const std::vector<UnlistedCause>& CausesOf(const std::string& bench) {
   return bench == kHobBench ? HobUnlistedCauses() : EncoderUnlistedCauses();
 }
 
-}  // namespace
-
 std::vector<Plan> UnlistedPlans(const std::string& bench, const TwinOptions& options) {
   std::vector<Plan> plans;
   std::uint64_t seed = 400000 + options.first_seed;
   for (const Design design : PlainDesigns(bench)) {
     const auto scale = std::make_shared<const SignatureScale>(design, options.cache_folder);
-    for (const UnlistedCause& cause : CausesOf(bench)) {
+    for (const UnlistedCause& cause : UnlistedCausesOf(bench)) {
       for (int k = 0; k < options.magnitudes * options.seeds; ++k) {
         ++seed;
         const double rho = options.RhoOf(k);

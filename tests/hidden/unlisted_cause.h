@@ -56,6 +56,7 @@ struct UnlistedCause {
   std::string name;
   UnlistedSignal (*draw)(const Draw& draw);
 };
+const std::vector<UnlistedCause>& UnlistedCausesOf(const std::string& bench);
 const std::vector<UnlistedCause>& RotaryUnlistedCauses();
 const std::vector<UnlistedCause>& EncoderUnlistedCauses();
 const std::vector<UnlistedCause>& TurntableUnlistedCauses();

@@ -86,6 +86,19 @@ TEST_P(HeldClock, ARestartedBenchRepeatsItsBits) {
   EXPECT_EQ(again.stamps_ns, first.stamps_ns);
 }
 
+TEST_P(HeldClock, ARestartAsAnotherRunIsThatRunOfTheTwin) {
+  Scenario third = Its();
+  third.repeat = 3;
+  sim::Twin other(third);
+  const Scans own = adc.Read(100);
+  EXPECT_EQ(scpi.AskNumber("SIM:REST 3;CLOC:NOW?"), 0);
+  const Scans scans = adc.Read(100);
+  EXPECT_NE(scans.raw, own.raw);
+  EXPECT_EQ(scans.raw, other.Bench().adc.Acquire(100, true).raw);
+  scpi.Ask("SIM:REST;*OPC?");
+  EXPECT_EQ(adc.Read(100).raw, own.raw);
+}
+
 INSTANTIATE_TEST_SUITE_P(Fidelities, HeldClock, testing::Values("kinematic", "linear"),
                          [](const auto& fidelity) { return std::string(fidelity.param); });
 

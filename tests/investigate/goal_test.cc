@@ -27,6 +27,14 @@ TEST(Goal, IsReadWithItsUnit) {
     EXPECT_THROW(ParseGoal(bad), InputError) << bad;
 }
 
+TEST(Goal, NamesWhatCanBeAskedFor) {
+  nlohmann::json results = Results(0.3);
+  results["terms"] = {{{"amplitude_arcsec", 1.0}, {"u_amplitude_arcsec", 0.1}}};
+  EXPECT_EQ(GoalNames(results),
+            (std::vector<std::string>{"separation.reference.ez_arcsec", "separation.target.dx_um",
+                                      "separation.target.ez_arcsec"}));
+}
+
 TEST(Goal, CountsOnlyTheQuantityThatWasAskedFor) {
   Certainty certainty(ParseGoal("target.ez 0.1arcsec"));
   EXPECT_TRUE(std::isinf(certainty.u()));
@@ -44,6 +52,39 @@ TEST(Goal, RunsAddUpByTheirInverseVariances) {
   certainty.Add(Results(0.15));
   EXPECT_NEAR(certainty.u(), 1.0 / std::sqrt(1.0 / 0.09 + 1.0 / 0.0225), 1e-12);
   EXPECT_TRUE(certainty.IsMet());
+}
+
+uncertainty::Budget Budget(int place, double standard, double rounding) {
+  uncertainty::Budget budget;
+  budget.quantity.name = "separation.target.ez_arcsec[" + std::to_string(place) + "]";
+  budget.sources.resize(3);
+  budget.sources[0].name = "noise";
+  budget.sources[0].type = 'A';
+  budget.sources[0].u = 0.5;
+  budget.sources[1].name = "autocollimator.gain_error";
+  budget.sources[1].u = standard;
+  budget.sources[2].name = "quantisation";
+  budget.sources[2].u = rounding;
+  return budget;
+}
+
+TEST(Goal, WhatAllRunsShareIsAddedAndNeverGrowsLess) {
+  Certainty certainty(ParseGoal("target.ez 0.2arcsec"));
+  certainty.Share({Budget(0, -0.3, 0.1), Budget(1, 0.4, 0.1)});
+  EXPECT_NEAR(certainty.SharedU(), std::sqrt((0.09 + 0.16) / 2.0), 1e-12);
+  EXPECT_EQ(certainty.LargestShared(), "autocollimator.gain_error");
+  for (int run = 1; run <= 4; ++run) {
+    certainty.Add(Results(0.6));
+    EXPECT_NEAR(certainty.u(), std::sqrt(0.36 / run + 0.125), 1e-12);
+  }
+}
+
+TEST(Goal, OfWhatARunStatesTheStandardsPartIsNotCountedAgain) {
+  nlohmann::json results = Results(0.5);
+  results["separation"]["u_parts"] = {{"noise", 0.36}, {"standard", 0.64}};
+  Certainty certainty(ParseGoal("target.ez 0.2arcsec"));
+  certainty.Add(results);
+  EXPECT_NEAR(certainty.u(), 0.3, 1e-12);
 }
 
 }  // namespace

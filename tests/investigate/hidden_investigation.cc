@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "tools/twinbench/bench_means.h"
 #include "twin/benches/registry.h"
@@ -12,24 +13,25 @@
 namespace twinbench::investigate {
 namespace {
 
-bool IsTruth(const Hypothesis& hypothesis, const EffectSettings& truth) {
-  return hypothesis.causes.size() == 1 && hypothesis.causes.front().name == truth.name &&
-         hypothesis.causes.front().where == truth.where;
+bool IsTruth(const Hypothesis& hypothesis, const Truth& truth) {
+  if (truth.effect.empty()) return !hypothesis.causes.empty() && !hypothesis.IsNamed();
+  return hypothesis.causes.size() == 1 && hypothesis.causes.front().name == truth.effect &&
+         hypothesis.causes.front().where == truth.where && hypothesis.causes.front().happened_in == 0;
 }
 
-bool HasTruth(const Belief& belief, const EffectSettings& truth) {
+bool HasTruth(const Belief& belief, const Truth& truth) {
   constexpr double kLeft = 0.02;
-  return std::ranges::any_of(belief.open, [&truth](const Open& open) {
-    return open.probability >= kLeft && IsTruth(open.fit.hypothesis, truth);
-  });
+  double left = truth.effect.empty() ? belief.unlisted : 0.0;
+  for (const Open& open : belief.open) left += IsTruth(open.fit.hypothesis, truth) ? open.probability : 0.0;
+  return left >= kLeft;
 }
 
-Result ResultOf(const Investigation& found, const EffectSettings& truth) {
+Result ResultOf(const Investigation& found, const Truth& truth) {
   switch (found.told) {
     case Told::kNothing:
       return Result::kMissed;
     case Told::kUnknown:
-      return Result::kUnnamed;
+      return truth.effect.empty() ? Result::kRight : Result::kUnnamed;
     case Told::kNamed:
       return IsTruth(found.belief.Best().fit.hypothesis, truth) ? Result::kRight : Result::kWrong;
     case Told::kTied:
@@ -37,6 +39,16 @@ Result ResultOf(const Investigation& found, const EffectSettings& truth) {
   }
   if (!HasTruth(found.belief, truth)) return Result::kWrongTie;
   return found.ended == Ended::kNothingMore ? Result::kRightTie : Result::kUnfinished;
+}
+
+/// As certain as wished: its uncertainty of the first run, divided.
+Goal GoalOf(const Wish& wish, const Scenario& believed, const Measure& measure, const Means& means) {
+  Goal goal = ParseGoal(wish.quantity + " 1");
+  const std::vector<Reading> first = measure({1, {"first", "", {}, plan::kSameKind}, ""}, believed);
+  Certainty certainty(goal);
+  certainty.Add(means.evaluate(first, believed));
+  goal.u = certainty.u() / wish.times;
+  return goal;
 }
 
 std::string AnswerOf(const Belief& belief) {
@@ -71,27 +83,57 @@ const char* ResultName(Result result) {
   return "";
 }
 
-Judged InvestigateHidden(const hidden::Placement& at, std::uint64_t seed, double rho,
-                         const hidden::SignatureScale& scale, const InvestigationOptions& options) {
+Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
+                        InvestigationOptions options, const std::optional<Wish>& wish) {
   const auto begin = std::chrono::steady_clock::now();
-  const Scenario hidden = hidden::HiddenBench(at.design, seed, {{at.effect, at.where, rho}}, scale);
-  const Scenario believed = hidden::Believed(at.design);
   const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  if (wish) options.goal = GoalOf(*wish, believed, measure, means);
   Laboratory laboratory;
-  laboratory.measure = [&](const Step& step, const Scenario& asked) {
-    return hidden::TakeReadings(HiddenRun(hidden, believed, step.run, asked.repeat));
-  };
+  laboratory.measure = measure;
   Judged judged;
   judged.investigation = Investigate(believed, options, means, laboratory);
-  const EffectSettings& truth = hidden.effects.front();
-  judged.truth = fmt::format("{} {} rho {:.1f}", truth.name, truth.where, rho);
+  judged.truth = truth.words;
   judged.result = ResultOf(judged.investigation, truth);
   judged.answer = AnswerOf(judged.investigation.belief);
-  const auto& first = judged.investigation.steps.front().believed;
-  judged.tied_at_first = first.size() > 1 && first.front().second < options.conclusive;
+  const std::vector<Step>& steps = judged.investigation.steps;
+  judged.tied_at_first = steps.front().believed.size() > 1 && steps.front().believed.front().second < options.conclusive;
   judged.probability = judged.investigation.belief.Best().probability;
+  if (wish && judged.investigation.IsGoalMet())
+    judged.minutes_ratio = judged.investigation.minutes / (steps.front().minutes * std::ceil(wish->times * wish->times));
   judged.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return judged;
+}
+
+Judged InvestigateHidden(const hidden::Placement& at, std::uint64_t seed, double rho,
+                         const hidden::SignatureScale& scale, const InvestigationOptions& options,
+                         const std::optional<Wish>& wish) {
+  const Scenario hidden = hidden::HiddenBench(at.design, seed, {{at.effect, at.where, rho}}, scale);
+  const Scenario believed = hidden::Believed(at.design);
+  const EffectSettings& truth = hidden.effects.front();
+  const auto measure = [&](const Step& step, const Scenario& asked) {
+    return hidden::TakeReadings(HiddenRun(hidden, believed, step.run, asked.repeat));
+  };
+  return InvestigateBench(believed, {truth.name, truth.where, fmt::format("{} {} rho {:.1f}", truth.name, truth.where, rho)},
+                          measure, options, wish);
+}
+
+Judged InvestigateUnlisted(hidden::Design design, const hidden::UnlistedCause& cause, std::uint64_t seed, double rho,
+                           const hidden::SignatureScale& scale, const InvestigationOptions& options) {
+  constexpr double kUnit = 1e-6;
+  const Scenario drawn = hidden::Drawn(design, seed), believed = hidden::Believed(design);
+  const std::string& bench = hidden::BenchOf(design);
+  const auto shown = [&](const std::vector<Reading>& clean, double size) {
+    Stream stream(seed, "hidden.unlisted");
+    std::vector<Reading> with = clean;
+    hidden::AddTo(bench, size * cause.draw({clean, stream}).signal, with);
+    return with;
+  };
+  const std::vector<Reading> first = hidden::TakeReadings(drawn);
+  const double size = kUnit * rho / scale.Rho(shown(first, kUnit), first, seed);
+  const auto measure = [&](const Step& step, const Scenario& asked) {
+    return shown(hidden::TakeReadings(HiddenRun(drawn, believed, step.run, asked.repeat)), size);
+  };
+  return InvestigateBench(believed, {"", "", fmt::format("unlisted {} rho {:.1f}", cause.name, rho)}, measure, options);
 }
 
 }  // namespace twinbench::investigate

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_case.h"
+#include "tests/hidden/unlisted_cause.h"
+#include "twin/core/units.h"
 #include "twin/investigate/investigation.h"
 
 /// Investigations of twins with something hidden, without a disk.
@@ -16,7 +20,7 @@ enum class Result {
   kRightTie,    // "cannot be told", and it is among those that are left
   kUnfinished,  // the budget was spent with it among those that are left
   kMissed,      // nothing found
-  kUnnamed,     // said to be something that the catalogue has no name for
+  kUnnamed,     // said to be something that the catalogue has no name for; right if it is
   kWrongTie,    // left open without it
   kWrong        // another cause
 };
@@ -28,13 +32,37 @@ struct Judged {
   std::string truth, answer;
   bool tied_at_first = false;  // more than one cause was left after the first run
   double probability = 0.0;    // of the answer
+  double minutes_ratio = kNaN;  // to the wish, over those of the first run repeated until it is met
   double seconds = 0.0;
 
   bool IsRight() const { return result == Result::kRight || result == Result::kRightTie; }
 };
 
+/// What is hidden in a bench.
+struct Truth {
+  std::string effect, where;  // of the catalogue; no effect: something that it lacks
+  std::string words;
+};
+
+/// A quantity of results.json ("target.ez_arcsec") and how many times more certain than after the first run it shall be.
+struct Wish {
+  std::string quantity;
+  double times = 2.0;
+};
+
+using Measure = std::function<std::vector<Reading>(const Step&, const Scenario&)>;
+
+/// @param measure  The bench. With a wish, its first run is asked for twice.
+Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
+                        InvestigationOptions options, const std::optional<Wish>& wish = {});
+
 /// @param rho  Size of the cause in the first run, in units of noise after projection.
 Judged InvestigateHidden(const hidden::Placement& at, std::uint64_t seed, double rho,
-                         const hidden::SignatureScale& scale, const InvestigationOptions& options);
+                         const hidden::SignatureScale& scale, const InvestigationOptions& options,
+                         const std::optional<Wish>& wish = {});
+
+/// A signal that the catalogue has no name for, the same one in every run.
+Judged InvestigateUnlisted(hidden::Design design, const hidden::UnlistedCause& cause, std::uint64_t seed, double rho,
+                           const hidden::SignatureScale& scale, const InvestigationOptions& options);
 
 }  // namespace twinbench::investigate

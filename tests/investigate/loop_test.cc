@@ -1,7 +1,9 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "tests/core/input_error.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tools/twinbench/bench_means.h"
 #include "twin/benches/registry.h"
@@ -50,6 +52,21 @@ TEST(Investigate, OneThatFindsNothingSaysSo) {
   const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
   const Investigation found = Investigate(believed, {}, means, laboratory);
   EXPECT_EQ(found.told, Told::kNothing);
+}
+
+TEST(Investigate, RefusesAGoalThatAStandardPutsOutOfReachBeforeAnythingIsMeasured) {
+  const Scenario believed = LoadScenario(TWINBENCH_SOURCE_DIR "/scenarios/turntable_autocollimator.toml",
+                                         {"autocollimator.u_gain_error=0.05"});
+  Laboratory laboratory;
+  laboratory.measure = [](const Step&, const Scenario&) -> std::vector<Reading> {
+    throw std::logic_error("nothing shall be measured");
+  };
+  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  InvestigationOptions options;
+  options.goal = ParseGoal("turntable.ez 0.1arcsec");
+  const std::string message = MessageOf([&] { Investigate(believed, options, means, laboratory); });
+  EXPECT_THAT(message, testing::HasSubstr("cannot be reached"));
+  EXPECT_THAT(message, testing::HasSubstr("autocollimator.gain_error"));
 }
 
 TEST(HiddenRun, MovesWhatTheRunMovesAndLeavesWhatIsWrong) {

@@ -48,7 +48,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"twin/separate", {"twin/core"}},
     {"twin/uncertainty", {"twin/core", "twin/model"}},
     {"twin/diagnose", {"twin/core", "twin/model"}},
-    {"twin/plan", {"twin/core", "twin/model", "twin/uncertainty"}},
+    {"twin/plan", {"twin/core", "twin/model", "twin/separate", "twin/uncertainty"}},
     {"twin/investigate", {"twin/core", "twin/model", "twin/uncertainty", "twin/diagnose", "twin/plan"}},
     {"twin/campaign",
      {"twin/core", "twin/procedure", "twin/uncertainty", "twin/diagnose", "twin/plan", "twin/report", "twin/benches"}},
@@ -80,7 +80,7 @@ const std::map<std::string, std::set<std::string>> kOwners = {{"embree", {"optic
                                                               {"asio", {"hw_bridge"}},
                                                               {"iio", {"hw_bridge"}},
                                                               {"comedi", {"hw_bridge"}},
-                                                              {"pugi", {"hw_bridge"}}};
+                                                              {"pugi", {"hw_bridge", "twin/report"}}};
 
 std::string RoomOf(const std::string& path) {
   static const std::vector<std::pair<std::regex, const char*>> parts = {

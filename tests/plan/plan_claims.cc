@@ -6,9 +6,12 @@
 #include "tests/hidden/effect_size.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/planned_run.h"
+#include "twin/benches/names.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/rotary_4dof/diagnosis/free_parameters.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
+#include "twin/core/stream.h"
 #include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
@@ -31,8 +34,7 @@ std::size_t IndexOf(const Isolability& isolability, const std::string& effect, c
 bool IsForetold(const Isolability& foretold, const EffectSettings& truth, const diagnose::Cause& blamed, double rho) {
   const std::size_t a = IndexOf(foretold, truth.name, truth.where), b = IndexOf(foretold, blamed.effect, blamed.where);
   if (a == foretold.causes.size() || b == foretold.causes.size()) return false;
-  const double size_SI = rho / diagnose::tuning::kBaarda * foretold.causes[a].smallest.value;
-  return MayBeBlamed(foretold, a, b, size_SI);
+  return MayBeBlamed(foretold, a, b, rho / diagnose::tuning::kBaarda);
 }
 
 /// Of the group that has the truth in it; without one, of the first.
@@ -65,11 +67,27 @@ struct Against {
   diagnose::Projector projector;
 };
 
+/// Constants of the bench that the diagnosis takes for uncertain, each drawn with the deviation that it believes, as
+/// causes in the twin: what a plan says of sizes allows for them.
+std::vector<EffectSettings> DrawnConstants(const Scenario& scenario, std::uint64_t run) {
+  std::vector<EffectSettings> effects;
+  if (scenario.bench != kRotaryBench) return effects;
+  Stream stream(run, "plan.constants");
+  for (const diagnose::rotary::Calibrated& constant : diagnose::rotary::CalibratedConstants()) {
+    EffectSettings effect;
+    effect.name = constant.constant.effect;
+    effect.where = constant.constant.where;
+    effect.parameters[constant.constant.parameter] = constant.sd * stream.Normal();
+    effects.push_back(effect);
+  }
+  return effects;
+}
+
 }  // namespace
 
 Isolability ForetoldOf(hidden::Design design) {
   const Scenario believed = hidden::Believed(design);
-  return *tools::SeenBy(believed, hidden::TakeReadings(believed)).isolability;
+  return *tools::SeenUnderChance(believed, hidden::TakeReadings(believed)).isolability;
 }
 
 TieCase DiagnoseHidden(const hidden::Placement& at, std::uint64_t seed, double rho, const hidden::SignatureScale& scale,
@@ -94,7 +112,7 @@ TieCase DiagnoseHidden(const hidden::Placement& at, std::uint64_t seed, double r
   return result;
 }
 
-std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs) {
+std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs, const std::vector<std::string>& effects) {
   const std::vector<Reading> own = tools::ReadingsOfTwin(scenario);
   const Isolability isolability = *tools::SeenBy(scenario, own).isolability;
   const Against against(scenario, own);
@@ -104,6 +122,7 @@ std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs) {
   Eigen::VectorXd length2(std::ssize(isolability.causes));
   for (const diagnose::ShownCause& cause : isolability.causes) {
     if (cause.at_smallest.empty()) continue;
+    if (!effects.empty() && std::ranges::count(effects, cause.effect) == 0) continue;
     Scenario with = scenario;
     with.effects.push_back(diagnose::AsEffect(cause, scenario.bench));
     try {
@@ -119,6 +138,7 @@ std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs) {
   for (int run = 0; run < runs; ++run) {
     Scenario other = scenario;
     other.seed = scenario.seed + 1000 + static_cast<std::uint64_t>(run);
+    for (EffectSettings& effect : DrawnConstants(scenario, other.seed)) other.effects.push_back(std::move(effect));
     const Eigen::VectorXd y = against.Left(scenario, tools::ReadingsOfTwin(other));
     for (std::size_t k = 0; k < projected.size(); ++k) {
       const double t = projected[k].dot(y);

@@ -39,7 +39,9 @@ struct SizeCheck {
 };
 
 /// With noise of so many runs each: t = s'Wy / sqrt(s'Ws) of the twin's own signature s in the size of the plan has a
-/// mean of sqrt(s'Ws) and some standard deviation; a size that is found so often makes the mean 4.13 of those.
-std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs);
+/// mean of sqrt(s'Ws) and some standard deviation; a size that is found so often makes the mean 4.13 of those. Constants
+/// that the diagnosis of rotary_4dof allows for (gains, distances, wavelength) are drawn in every run as it believes them.
+/// @param effects  Of these alone; empty: of all.
+std::vector<SizeCheck> CheckSizes(const Scenario& scenario, int runs, const std::vector<std::string>& effects = {});
 
 }  // namespace twinbench::plan

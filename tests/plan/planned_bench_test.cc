@@ -104,7 +104,7 @@ TEST(IsolabilityOf, NamesWhatNoReadingTellsApartAndNothingThatOneDoes) {
   };
   EXPECT_TRUE(together(wavelength, pitch));
   EXPECT_FALSE(together(wavelength, gain));
-  EXPECT_TRUE(MayBeBlamed(isolability, wavelength, pitch, 100.0 * isolability.causes[wavelength].smallest.value));
+  EXPECT_TRUE(MayBeBlamed(isolability, wavelength, pitch, 100.0));
 }
 
 TEST(IsolabilityOf, SizesAreThoseOfADiagnosis) {
@@ -118,6 +118,61 @@ TEST(IsolabilityOf, SizesAreThoseOfADiagnosis) {
     if (cause != seen.isolability->causes.end()) {
       EXPECT_LE(cause->smallest.value, 1.001 * one.smallest.value) << one.effect;
     }
+  }
+}
+
+TEST(IsolabilityOf, CountsAPairAsSurelyToldOnlyInEveryShape) {
+  const Scenario scenario = SmallRotary("reseat");
+  const Isolability isolability = *SeenBy(scenario, ReadingsOfTwin(scenario)).isolability;
+  int in_another_shape = 0;
+  for (const diagnose::Confusable& pair : isolability.confusable) {
+    EXPECT_GE(pair.surely_told_from, pair.told_from);
+    in_another_shape += pair.told_from == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(in_another_shape, 0);
+}
+
+TEST(IsolabilityOf, IsThatOfTheRunThatTellsLeast) {
+  Isolability one, other;
+  for (const char* name : {"drift", "creep", "scale"}) {
+    one.causes.push_back({name, "", {}});
+  }
+  other.causes = {one.causes[2], one.causes[0], one.causes[1]};  // in another order
+  one.confusable = {{0, 1, 2.0, 4.0}};
+  other.confusable = {{1, 2, 8.0, 16.0}, {2, 0, 2.0, 2.0}};  // drift as creep, creep as scale
+  KeepSurelyTold(other, one);
+  EXPECT_TRUE(MayBeBlamed(one, 0, 1, 15.0));
+  EXPECT_FALSE(MayBeBlamed(one, 0, 1, 17.0));
+  EXPECT_TRUE(MayBeBlamed(one, 1, 2, 1.5));
+  EXPECT_FALSE(MayBeBlamed(one, 2, 1, 1.5));
+  EXPECT_EQ(one.confusable.front().told_from, 2.0);
+}
+
+/// Four heads at equal division lose every fourth order, and the twin says so; the four that tell most lose none.
+TEST(ShiftDesignOf, TakesHeadsForShifts) {
+  const std::string folder = std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/";
+  const Scenario scenario = LoadScenario(folder + "encoder_heads.toml", {});
+  const plan::ShiftDesign design = ShiftDesignOf(scenario).value();
+  EXPECT_EQ(plan::Judged(design.positions, design.shifts).lost.front(), 4);
+  const plan::ShiftSet best = plan::BestShifts(design.positions, 4);
+  EXPECT_TRUE(best.lost.empty());
+  const auto lost_on_twin = [](const Scenario& s) {
+    const nlohmann::json results = BenchOf(s).evaluate(s, ReadingsOfTwin(s), Estimator::kRigorous).results;
+    return plan::OutlookOf(results, 0, 0.0).lost;
+  };
+  EXPECT_FALSE(lost_on_twin(scenario).empty());
+  EXPECT_TRUE(lost_on_twin(Altered(scenario, design.sets(best.shifts))).empty());
+}
+
+TEST(ShiftDesignOf, IsOfMountingsAndOfPlacesOfAHeadWhereThereAreSeveral) {
+  const std::string folder = std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/";
+  EXPECT_FALSE(ShiftDesignOf(LoadScenario(folder + "encoder_comparison.toml", {})).has_value());
+  for (const char* file : {"encoder_mountings.toml", "hob_transmission.toml"}) {
+    const Scenario scenario = LoadScenario(folder + file, {});
+    const plan::ShiftDesign design = ShiftDesignOf(scenario).value();
+    ASSERT_GT(design.shifts.size(), 1u) << file;
+    const Scenario other = Altered(scenario, design.sets({0, 3, 7}));
+    EXPECT_EQ(ShiftDesignOf(other).value().shifts, (std::vector<int>{0, 3, 7})) << file;
   }
 }
 
@@ -178,6 +233,18 @@ TEST(CheckSizes, OfAnEncoderAreWhatManyRunsOfTheTwinSay) {
   const std::vector<plan::SizeCheck> checks = plan::CheckSizes(scenario, 200);
   EXPECT_GE(checks.size(), 8u);
   for (const plan::SizeCheck& check : checks) EXPECT_NEAR(check.ratio, 1.0, 0.25) << check.cause;
+}
+
+/// A mount creeps before the first reading is taken; a grating that slips while the calibration is read is followed by the
+/// autocollimator and shows nothing: neither is as small as the twin could not have it.
+TEST(CheckSizes, OfCreepAndSlipAreWhatManyRunsOfTheTwinSay) {
+  Scenario scenario = SmallRotary("reseat");
+  RotaryOf(scenario).procedure.shifts = {0, 1, 4};
+  constexpr int kRuns = 60;
+  const std::vector<plan::SizeCheck> checks = plan::CheckSizes(scenario, kRuns, {"mount_creep", "slip", "psd_distance"});
+  EXPECT_GE(checks.size(), 7u);
+  // A standard deviation of 60 runs is known to 9 %; four times that.
+  for (const plan::SizeCheck& check : checks) EXPECT_NEAR(check.ratio, 1.0, 0.36) << check.cause;
 }
 
 /// The paper's own test has no redundancy: a plan says so instead of sizes.

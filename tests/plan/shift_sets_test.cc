@@ -27,9 +27,10 @@ double ByLeastSquares(int n, const std::vector<int>& shifts, int k) {
 
 TEST(ShiftSets, VarianceIsThatOfLeastSquares) {
   for (const std::vector<int>& shifts : {std::vector<int>{0, 1}, {0, 1, 5}, {0, 3, 4, 11}}) {
+    const std::vector<double> factors = VarianceFactors(24, shifts);
     for (const int k : {1, 2, 5, 7}) {
       const double expected = ByLeastSquares(24, shifts, k);
-      EXPECT_NEAR(VarianceFactor(24, shifts, k), expected, 1e-9 * expected) << k;
+      EXPECT_NEAR(factors.at(static_cast<std::size_t>(k - 1)), expected, 1e-9 * expected) << k;
     }
   }
 }
@@ -38,6 +39,26 @@ TEST(ShiftSets, ALostHarmonicIsOneThatEveryShiftTurnsByWholeTurns) {
   EXPECT_EQ(Judged(12, {0, 4}).lost, (std::vector<int>{3, 6}));
   EXPECT_TRUE(std::isinf(Judged(12, {0, 4}).mean_factor));
   EXPECT_TRUE(Judged(12, {0, 1}).lost.empty());
+}
+
+TEST(ShiftSets, TwoNeighboursAtManyPositionsLoseNothing) {
+  // 1 / sin^2(pi k / n): at n = 10^6 the first order has 1e11 times the noise, and is not lost.
+  for (const int n : {100000, 1000000}) {
+    const std::vector<double> factors = VarianceFactors(n, {0, 1});
+    for (const int k : {1, 2, n / 3, n / 2}) {
+      const double expected = 1.0 / std::pow(std::sin(std::numbers::pi * k / n), 2);
+      EXPECT_NEAR(factors.at(static_cast<std::size_t>(k - 1)) / expected, 1.0, 1e-10) << n << ' ' << k;
+    }
+    EXPECT_TRUE(Judged(n, {0, 1}).lost.empty());
+    // The sum over all n - 1 orders of 1 / sin^2(pi k / n) is (n^2 - 1) / 3; n / 2 is counted once.
+    EXPECT_NEAR(Judged(n, {0, 1}).mean_factor / (((n * 1.0 * n - 1.0) / 3.0 + 1.0) / n), 1.0, 1e-9);
+  }
+}
+
+TEST(ShiftSets, OneMoreOfAThousandPositionsTakesWhatIsNearlyLostForTold) {
+  const ShiftSet more = WithOneMore(1000, {0, 1});
+  EXPECT_TRUE(more.lost.empty());
+  for (const int s : {2, 31, 367, 500, 999}) EXPECT_GE(Judged(1000, {0, 1, s}).mean_factor, more.mean_factor * (1 - 1e-12));
 }
 
 TEST(ShiftSets, TheBestOfASmallCircleIsTheBestOfAll) {

@@ -11,7 +11,7 @@ namespace {
 AngleSeries Sampled(const TrueCurve& curve, int n, double u_rad, Stream& noise) {
   AngleSeries series;
   series.value_rad.resize(n);
-  series.cov_rad2 = u_rad * u_rad * Eigen::MatrixXd::Identity(n, n);
+  series.cov_rad2 = CurveCovariance::Dense(u_rad * u_rad * Eigen::MatrixXd::Identity(n, n));
   for (int i = 0; i < n; ++i) {
     series.position_rad.push_back(i * 2.0 * units::kPi / n);
     series.value_rad[i] = curve.At(series.position_rad.back()) + u_rad * noise.Normal();
@@ -54,7 +54,7 @@ TEST(FitHarmonics, StatesAnUncertaintyThatMatchesItsScatterBetweenThePositions) 
     AngleSeries series = Sampled(curve, 72, 0.3 * arcsec, stream);
     const CurvePoint point = FitHarmonics(series, 8).At(2.5 * deg);
     stated += std::pow((point.value_rad - curve.At(2.5 * deg)) / point.u_rad, 2) / kRuns;
-    series.cov_rad2.setConstant(kNaN);
+    series.cov_rad2 = CurveCovariance::Dense(Eigen::MatrixXd::Constant(series.value_rad.size(), series.value_rad.size(), kNaN));
     const CurvePoint blind = FitHarmonics(series, 8).At(2.5 * deg);
     from_residuals += std::pow((blind.value_rad - curve.At(2.5 * deg)) / blind.u_rad, 2) / kRuns;
   }
@@ -99,7 +99,7 @@ TEST(FitHarmonics, BearsPositionsThatAreMissing) {
   Eigen::VectorXd left(69);
   left << series.value_rad.head(20), series.value_rad.tail(49);
   series.value_rad = left;
-  series.cov_rad2 = Eigen::MatrixXd::Zero(69, 69);
+  series.cov_rad2 = CurveCovariance::Dense(Eigen::MatrixXd::Zero(69, 69));
   EXPECT_NEAR(FitHarmonics(series, 6).At(105 * deg).value_rad, curve.At(105 * deg), 1e-15);
 }
 

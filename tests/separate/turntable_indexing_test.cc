@@ -70,8 +70,8 @@ double Gain(int n, const std::vector<int>& shifts) {
   Stream stream(2, "test.turntable");
   const auto stops = ReadCircles({}, Seats(n, shifts), n, stream);
   const auto found = SeparateIndexing(stops, Options(1e-6));
-  EXPECT_NEAR(found.multitooth.cov_rad2.trace() / found.turntable.cov_rad2.trace(), 1.0, 1e-9);
-  return std::sqrt(found.turntable.cov_rad2.trace() / n) / 1e-6;
+  EXPECT_NEAR(found.multitooth.cov_rad2.diagonal().sum() / found.turntable.cov_rad2.diagonal().sum(), 1.0, 1e-9);
+  return std::sqrt(found.turntable.cov_rad2.diagonal().sum() / n) / 1e-6;
 }
 
 TEST(SeparateIndexing, HasTheNoiseGainsOfTheShiftTables) {
@@ -102,7 +102,7 @@ TEST(SeparateIndexing, PropagatesTheNoiseOfEveryHarmonicAsTheClosedFormSays) {
   for (int k = 1; k < 36; ++k) {
     Eigen::VectorXcd f(36);
     for (int i = 0; i < 36; ++i) f[i] = std::polar(1.0 / 36, 2 * units::kPi * k * i / 36);
-    const double variance = (f.adjoint() * found.turntable.cov_rad2.cast<Complex>() * f)(0, 0).real() / 1e-12;
+    const double variance = (f.adjoint() * found.turntable.cov_rad2.ToDense().cast<Complex>() * f)(0, 0).real() / 1e-12;
     EXPECT_NEAR(variance / ClosedForm(36, shifts, k), 1.0, 1e-9) << k;  // rounding
   }
 }
@@ -171,7 +171,7 @@ TEST(SeparateIndexing, AddsTheTeethToTheUncertaintyOfASum) {
   const auto half = SeparateIndexing(ReadCircles({}, Seats(72, {0, 36}), 72, stream), options);
   Eigen::VectorXcd f(72);
   for (int i = 0; i < 72; ++i) f[i] = std::polar(1.0 / 72, 2 * units::kPi * 2 * i / 72);
-  const double order_2 = (f.adjoint() * half.turntable.cov_rad2.cast<Complex>() * f)(0, 0).real();
+  const double order_2 = (f.adjoint() * half.turntable.cov_rad2.ToDense().cast<Complex>() * f)(0, 0).real();
   EXPECT_NEAR(order_2 / (arcsec * arcsec), (0.04 / 2 + 0.09) / 72, 1e-9);  // mean of two readings, and the teeth
 }
 
@@ -195,7 +195,7 @@ TEST(SeparateIndexing, AveragesOverTeethBetweenTheSteps) {
 double ChiSquared(const AngleSeries& series, const Eigen::VectorXd& truth_rad) {
   const auto n = truth_rad.size();
   const Eigen::MatrixXd whole =
-      series.cov_rad2 + Eigen::MatrixXd::Constant(n, n, series.cov_rad2.trace() / static_cast<double>(n * n));
+      series.cov_rad2.ToDense() + Eigen::MatrixXd::Constant(n, n, series.cov_rad2.diagonal().sum() / static_cast<double>(n * n));
   const Eigen::VectorXd error = series.value_rad - truth_rad;
   return error.dot(whole.ldlt().solve(error));
 }

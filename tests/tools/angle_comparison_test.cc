@@ -151,6 +151,10 @@ TEST_F(AngleComparison, GivesTheIsoValuesOfAPublicTestOfAnAxis) {
       {"E-", 3.30e-5}, {"E", 3.68e-5},     {"M", 2.77e-5},   {"A+", 6.428e-5}, {"A-", 8.881e-5}, {"A", 8.881e-5}};
   for (const auto& [name, value] : published_deg)  // half a unit of the last digit printed, and rounding
     EXPECT_NEAR(iso.at("axis").at(name).at("value_arcsec"), value * 3600.0, 0.51e-8 * 3600.0) << name;
+  EXPECT_THAT(text, HasSubstr("VDI/DGQ 3441, arcsec: P "));
+  const auto vdi = nlohmann::json::parse(Read("b/results.json")).at("vdi3441").at(0);
+  EXPECT_EQ(vdi.at("axis").at("Pa").at("value_arcsec"), iso.at("axis").at("M").at("value_arcsec"));
+  EXPECT_THAT(vdi.at("missing"), testing::IsEmpty());
 }
 
 TEST_F(AngleComparison, RefusesReadingsOfAnotherBench) {

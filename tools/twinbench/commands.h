@@ -20,6 +20,7 @@ void AddPlan(CLI::App& app);
 void AddInvestigate(CLI::App& app);
 void AddDiagnose(CLI::App& app);
 void AddReport(CLI::App& app);
+void AddCertificate(CLI::App& app);
 void AddScore(CLI::App& app);
 void AddHelp(CLI::App& app);
 void AddNew(CLI::App& app);

@@ -98,7 +98,7 @@ int Run(int argc, char** argv) {
   app.failure_message(Complaint);
   using namespace twinbench::tools;
   for (const auto add : {AddRun, AddCampaign, AddMeasure, AddServe, AddExport, AddImport, AddSeparate,
-                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddReport, AddScore, AddNew,
+                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddReport, AddCertificate, AddScore, AddNew,
                          AddCheck, AddList, AddExplain, AddHelp, AddSchema, AddCompletion})
     add(app);
   try {

@@ -68,7 +68,8 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
   try {
     procedure::CarryOut(bench, scenario, record, page.ShownToo(ShownOn(line)), options);
   } catch (const std::exception& fault) {
-    TellStopped(fault, "tables", kind == "replay" ? procedure::Standstill{true, ""} : procedure::StopBoth(bench));
+    if (kind == "replay") throw;  // of a recording's tables nothing can be asked
+    TellStopped(fault, "tables", procedure::StopBoth(bench));
   }
   ListenNoMore();
   record.Finish();

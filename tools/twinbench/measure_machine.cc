@@ -34,7 +34,7 @@ std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, con
                                                 const std::vector<MachineAxis>& axes, Duration elapsed) {
   const Bench& bench = BenchOf(scenario);
   if (file.kind == "twin") return std::make_unique<OwnMachine>(bench.make_devices(scenario));
-  return hw::OpenMachineHardware(file, axes, InstrumentColumns(bench.format->columns), elapsed);
+  return hw::OpenMachineHardware(file, axes, InstrumentColumns(bench.format->columns), elapsed, scenario.repeat);
 }
 
 /// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.

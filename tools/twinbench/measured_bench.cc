@@ -34,7 +34,8 @@ std::unique_ptr<hw::OpenBench> OpenAnyBench(const hw::BenchFile& file, const Sce
   if (file.kind == "twin") return std::make_unique<OwnTwin>(scenario);
   if (file.kind == "replay") return std::make_unique<Recording>(file.record);
   const RotarySettings& own = RotaryOf(scenario);
-  return hw::OpenHardware(file, own.adc, scenario.noise_free ? 0.0 : own.amplifier.noise_V, elapsed);
+  const double noise_V = scenario.noise_free ? 0.0 : own.amplifier.noise_V;
+  return hw::OpenHardware(file, own.adc, noise_V, elapsed, scenario.repeat);
 }
 
 }  // namespace twinbench::tools

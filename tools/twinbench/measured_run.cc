@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <optional>
 
+#include "twin/core/elapsed_time.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
 
@@ -54,6 +56,18 @@ void BeginAnewInsteadOfResuming(const RunFolder& folder) {
   std::fflush(stdout);
 }
 
+constexpr const char* kClock = "clock";
+
+/// What the computer's clocks showed at Time 0; of an old record UTC alone. Nothing: it is not of a real bench.
+std::optional<ClockMark> BeginOf(const RunRecord& record) {
+  for (const RecordedEvent& event : record.Events()) {
+    if (event.device == kClock) return ParseClockMark(event.text);
+  }
+  std::tm utc{};
+  if (!strptime(record.provenance().clock_origin_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &utc)) return {};
+  return ClockMark{"", 0.0, static_cast<double>(timegm(&utc))};
+}
+
 }  // namespace
 
 RunFolder FolderOf(const MeasureOptions& options) {
@@ -83,16 +97,22 @@ std::unique_ptr<RunRecord> BeginRun(const Scenario& scenario, const RunFolder& f
   const std::string origin = kind == "hardware" ? UtcText(std::time(nullptr)) : "";
   auto record =
       RunRecord::Create(folder.path, {TWINBENCH_VERSION, identity, scenario.seed, origin, scenario.bench});
+  if (!origin.empty()) record->AppendEvent(Time{}, kClock, TextOf(ClockMarkNow()));
   WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
   return record;
 }
 
 Duration SinceBegin(const BegunRun& begun) {
   if (!begun.record) return {};
-  const Duration last = begun.readings.empty() ? Duration{} : begun.readings.back().time.time_since_epoch();
-  std::tm utc{};
-  if (!strptime(begun.record->provenance().clock_origin_utc.c_str(), "%Y-%m-%dT%H:%M:%SZ", &utc)) return last;
-  return std::max<Duration>(last, std::chrono::seconds(std::time(nullptr) - timegm(&utc)));
+  const Time last = begun.readings.empty() ? Time{} : begun.readings.back().time;
+  const std::optional<ClockMark> begin = BeginOf(*begun.record);
+  if (!begin) return last.time_since_epoch();
+  const Elapsed elapsed = Between(*begin, ClockMarkNow());
+  if (!elapsed.note.empty()) {
+    begun.record->AppendEvent(last, kClock, elapsed.note);
+    fmt::print(stderr, "twinbench: {}\n", elapsed.note);
+  }
+  return std::max<Duration>(last.time_since_epoch(), elapsed.time);
 }
 
 void TakeUp(const BegunRun& begun, const std::string& identity) {

@@ -1,7 +1,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/passing_run.h"
@@ -33,32 +35,32 @@ struct Planned {
 
 /// How many set-ups there shall be; 0: nothing is shifted on this bench.
 /// @throws InputError if that many cannot be.
-int SetupsOf(const PlanOptions& options, const Bench& bench, const Scenario& scenario) {
-  if (!bench.shift_design) {
+int SetupsOf(const PlanOptions& options, const Scenario& scenario) {
+  const std::optional<plan::ShiftDesign> design = ShiftDesignOf(scenario);
+  if (!design) {
     if (options.setups > 0)
-      throw InputError("--setups", "the bench " + scenario.bench + " shifts nothing",
-                       BenchesWhere([](const Bench& b) { return b.shift_design != nullptr; }));
+      throw InputError("--setups", "this scenario of " + scenario.bench + " shifts nothing",
+                       "several set-ups, mountings or heads on a bench that has them: " +
+                           BenchesWhere([](const Bench& b) { return b.shift_design != nullptr; }));
     return 0;
   }
-  const plan::ShiftDesign design = bench.shift_design(scenario);
-  const int count = options.setups > 0 ? options.setups : static_cast<int>(design.shifts.size());
-  if (options.setups > 0 && (count < 2 || count > design.positions))
+  const int count = options.setups > 0 ? options.setups : static_cast<int>(design->shifts.size());
+  if (options.setups > 0 && (count < 2 || count > design->positions))
     throw InputError("--setups", fmt::format("{} set-ups", count),
-                     fmt::format("from 2 to the {} positions", design.positions));
-  return std::clamp(count, 2, std::max(2, design.positions));
+                     fmt::format("from 2 to the {} positions", design->positions));
+  return std::clamp(count, 2, std::max(2, design->positions));
 }
 
 /// The scenario's own run, and beside it the one at the shifts that tell most.
-std::vector<report::PlannedRun> RunsOf(const Bench& bench, const Scenario& scenario,
-                                       const std::vector<Reading>& readings, int setups,
+std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const std::vector<Reading>& readings, int setups,
                                        const std::vector<LookedAt>& others) {
   std::vector<report::PlannedRun> runs = {LookAt("as the scenario says", scenario, readings)};
-  if (!bench.shift_design) return runs;
-  const plan::ShiftDesign design = bench.shift_design(scenario);
-  runs.front().shifts = plan::Judged(design.positions, design.shifts);
+  const std::optional<plan::ShiftDesign> design = ShiftDesignOf(scenario);
+  if (!design) return runs;
+  runs.front().shifts = plan::Judged(design->positions, design->shifts);
   const auto best = std::ranges::find_if(others, [](const LookedAt& one) { return one.run.name == kBestShifts; });
   if (best == others.end()) return runs;
-  const plan::ShiftSet shifts = plan::BestShifts(design.positions, setups);
+  const plan::ShiftSet shifts = plan::BestShifts(design->positions, setups);
   const Scenario quick = Quick(Altered(scenario, best->run.sets));
   runs.push_back(LookAt("shifts " + report::ShiftList(shifts.shifts), quick, ReadingsOfTwin(quick)));
   runs.back().shifts = shifts;
@@ -70,13 +72,12 @@ report::PlanBudget BudgetOf(const PlanOptions& options) {
 }
 
 Planned PlanOf(const PlanOptions& options, const Scenario& scenario) {
-  const Bench& bench = BenchOf(scenario);
-  const int setups = SetupsOf(options, bench, scenario);
+  const int setups = SetupsOf(options, scenario);
   const std::vector<Reading> readings = ReadingsOfTwin(scenario);
   const LookedAt own = LookAtOwn(scenario);
   const std::vector<LookedAt> others = LookAtOthers(scenario, setups);
   Planned planned;
-  planned.runs = RunsOf(bench, scenario, readings, setups, others);
+  planned.runs = RunsOf(scenario, readings, setups, others);
   planned.effects = EffectsIn(scenario, readings);
   planned.mendings = Mendings(scenario, own);
   planned.advice = AdviceOf(own, others, options.goal);
@@ -85,25 +86,55 @@ Planned PlanOf(const PlanOptions& options, const Scenario& scenario) {
   return planned;
 }
 
-/// Asked for set-ups: these. What cannot be separated is mended first; then comes the first run of the programme, or the
-/// one that buys most per minute.
-plan::NextRun NextOf(const PlanOptions& options, const Planned& planned) {
-  const auto named = std::ranges::find_if(planned.advice,
-                                          [](const plan::Advice& one) { return one.run.name == kBestShifts; });
-  if (options.setups > 0 && named != planned.advice.end()) return named->run;
-  if (!planned.mendings.empty()) return planned.mendings.front().run;
-  if (planned.programme.empty()) return planned.advice.front().run;
-  const report::PlannedProgramme& programme = planned.programme.front();
-  const auto most = std::ranges::max_element(programme.best.times);
-  return programme.runs[static_cast<std::size_t>(most - programme.best.times.begin())].run;
+/// All runs of a programme, each as often as it has it: those that buy most per minute first.
+std::vector<plan::NextRun> RunsInOrder(const report::PlannedProgramme& programme) {
+  std::vector<plan::Advice> chosen;
+  for (std::size_t k = 0; k < programme.runs.size(); ++k)
+    chosen.insert(chosen.end(), static_cast<std::size_t>(programme.best.times[k]), programme.runs[k]);
+  plan::Rank(chosen);
+  std::vector<plan::NextRun> runs;
+  for (const plan::Advice& advice : chosen) runs.push_back(advice.run);
+  return runs;
 }
 
-nlohmann::json JsonOf(const Planned& planned, const plan::NextRun& next) {
+/// Asked for set-ups: these. What cannot be separated is mended first; then comes the programme, or the run that buys
+/// most per minute.
+std::vector<plan::NextRun> NextOf(const PlanOptions& options, const Planned& planned) {
+  const auto named = std::ranges::find_if(planned.advice,
+                                          [](const plan::Advice& one) { return one.run.name == kBestShifts; });
+  if (options.setups > 0 && named != planned.advice.end()) return {named->run};
+  if (!planned.mendings.empty()) return {planned.mendings.front().run};
+  if (planned.programme.empty()) return {planned.advice.front().run};
+  std::vector<plan::NextRun> runs = RunsInOrder(planned.programme.front());
+  return runs.empty() ? std::vector<plan::NextRun>{planned.advice.front().run} : runs;
+}
+
+/// "next.toml" of a single run; "next-1-of-3-again.toml" and so on of several.
+std::string FileOf(const std::string& output, std::size_t at, std::size_t count, const plan::NextRun& run) {
+  if (count == 1) return output;
+  const std::filesystem::path path(output);
+  const std::size_t digits = std::to_string(count).size();
+  const std::string name =
+      fmt::format("{}-{:0{}}-of-{}-{}{}", path.stem().string(), at + 1, digits, count, run.name, path.extension().string());
+  return (path.parent_path() / name).string();
+}
+
+/// Each run of several has a seed of its own: a run that is made twice is another draw of chance on the twin.
+void WriteNext(const std::string& output, const std::vector<plan::NextRun>& runs, const Scenario& scenario) {
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    Scenario next = Altered(scenario, runs[k].sets);
+    next.seed += k;
+    WriteFileAtOnce(FileOf(output, k, runs.size(), runs[k]), WriteScenario(next));
+  }
+}
+
+nlohmann::json JsonOf(const Planned& planned, const std::vector<plan::NextRun>& next) {
   nlohmann::json json = report::PlanJson(planned.runs, planned.effects);
   json["mendings"] = report::MendingJson(planned.mendings);
   json["advice"] = report::PlanAdviceJson(planned.advice);
   if (!planned.programme.empty()) json["programme"] = report::ProgrammeJson(planned.programme.front());
-  json["next"] = next.name;
+  json["next"] = next.front().name;
+  for (const plan::NextRun& run : next) json["next_runs"].push_back(run.name);
   return json;
 }
 
@@ -119,8 +150,8 @@ void Plan(const PlanOptions& options) {
   for (const std::string& output : {options.next, options.json}) RequireOutput(output, {options.scenario});
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const Planned planned = PlanOf(options, scenario);
-  const plan::NextRun next = NextOf(options, planned);
-  if (!options.next.empty()) WriteFileAtOnce(options.next, WriteScenario(Altered(scenario, next.sets)));
+  const std::vector<plan::NextRun> next = NextOf(options, planned);
+  if (!options.next.empty()) WriteNext(options.next, next, scenario);
   if (!options.json.empty()) WriteJson(options.json, JsonOf(planned, next));
   if (options.json != "-") fmt::print("{}", TextOf(planned));
 }
@@ -142,7 +173,7 @@ void AddPlan(CLI::App& app) {
       ->check(CLI::PositiveNumber)
       ->excludes(minutes);
   command->add_option("--goal", options->goal, "the result that counts: target.ez; left out: all");
-  command->add_option("-o,--output", options->next, "write the scenario of the run to be made next here");
+  command->add_option("-o,--output", options->next, "write the scenario of the run to be made next here; of a programme all, as next-1-of-3-NAME.toml");
   command->add_option("--json", options->json, "write the result here, - for stdout");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);

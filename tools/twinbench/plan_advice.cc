@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <tuple>
+#include <utility>
 
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"
@@ -64,7 +65,7 @@ LookedAt Look(const plan::NextRun& run, const Scenario& scenario) {
 }
 
 plan::NextRun WithShifts(const std::string& name, const plan::ShiftDesign& design, std::vector<int> shifts) {
-  return {name, "set-ups at the shifts " + report::ShiftList(shifts), design.sets(shifts), plan::kSameKind};
+  return {name, design.words + " " + report::ShiftList(shifts), design.sets(shifts), plan::kSameKind};
 }
 
 std::vector<plan::NextRun> ShiftRuns(const plan::ShiftDesign& design, int setups) {
@@ -212,6 +213,13 @@ plan::Advice AdviceOf(const LookedAt& own, const LookedAt& other, const std::str
 
 }  // namespace
 
+std::optional<plan::ShiftDesign> ShiftDesignOf(const Scenario& scenario) {
+  const Bench& bench = BenchOf(scenario);
+  if (!bench.shift_design) return std::nullopt;
+  plan::ShiftDesign design = bench.shift_design(scenario);
+  return design.positions > 0 ? std::optional(std::move(design)) : std::nullopt;
+}
+
 LookedAt LookAtOwn(const Scenario& scenario) {
   return Look({"again", "the same run once more", {}, plan::kSameKind}, scenario);
 }
@@ -219,10 +227,9 @@ LookedAt LookAtOwn(const Scenario& scenario) {
 std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups) {
   const Bench& bench = BenchOf(scenario);
   std::vector<plan::NextRun> runs;
-  if (bench.shift_design) {
-    const plan::ShiftDesign design = bench.shift_design(scenario);
-    runs = ShiftRuns(design, setups);
-    runs.insert(runs.end(), design.other_ways.begin(), design.other_ways.end());
+  if (const auto design = ShiftDesignOf(scenario)) {
+    runs = ShiftRuns(*design, setups);
+    runs.insert(runs.end(), design->other_ways.begin(), design->other_ways.end());
   }
   if (bench.next_runs) {
     for (plan::NextRun& run : bench.next_runs(scenario)) runs.push_back(std::move(run));
@@ -238,13 +245,12 @@ std::vector<LookedAt> LookAtOthers(const Scenario& scenario, int setups) {
 }
 
 std::vector<report::Mending> Mendings(const Scenario& scenario, const LookedAt& own) {
-  const Bench& bench = BenchOf(scenario);
-  if (!bench.shift_design) return {};
-  const plan::ShiftDesign design = bench.shift_design(scenario);
-  const LookedAt good = LookAtGood(scenario, design);
+  const std::optional<plan::ShiftDesign> design = ShiftDesignOf(scenario);
+  if (!design) return {};
+  const LookedAt good = LookAtGood(scenario, *design);
   if (MendedBy(own, good).empty()) return {};
   std::vector<report::Mending> mendings;
-  for (const plan::NextRun& run : Additions(design)) {
+  for (const plan::NextRun& run : Additions(*design)) {
     const LookedAt other = LookAtResults(run, scenario);
     report::Mending mending;
     mending.run = run;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ namespace twinbench::tools {
 
 /// The name of the run at the shifts that tell most.
 inline constexpr const char* kBestShifts = "best-shifts";
+
+/// What the scenario shifts; none if the bench, or this scenario, shifts nothing.
+std::optional<plan::ShiftDesign> ShiftDesignOf(const Scenario& scenario);
 
 /// A run that could be made, as its twin shows it.
 struct LookedAt {

@@ -1,5 +1,10 @@
 #include "tools/twinbench/planned_run.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/passing_run.h"
@@ -78,16 +83,51 @@ report::PlannedRun LookAt(const std::string& words, const Scenario& scenario,
   return {words, {}, plan::MeanOf(outlooks)};
 }
 
+/// Stops at which the errors of both tables are free; 0: the bench shifts nothing.
+int FreeStops(const Scenario& scenario) {
+  const Bench& bench = BenchOf(scenario);
+  if (!bench.shift_design) return 0;
+  const plan::ShiftDesign design = bench.shift_design(scenario);
+  return design.shifts.size() > 1 ? design.positions : 0;
+}
+
+/// @throws InputError if what all causes would show is too much to be weighed: with a table error that is free at every
+///         stop, by a matrix of readings x stops.
+void RequireWeighable(const Scenario& scenario, std::size_t readings) {
+  constexpr double kMostReadings = 20000, kMostProducts = 1e10;  // half a minute
+  const double count = static_cast<double>(readings);
+  if (count > kMostReadings || count * std::pow(FreeStops(scenario), 2) > kMostProducts)
+    throw InputError("plan", fmt::format("{} readings", readings), "fewer to say what causes would show");
+}
+
 diagnose::DiagnosisRun SeenBy(const Scenario& scenario, const std::vector<Reading>& readings) {
+  RequireWeighable(scenario, readings.size());
   diagnose::DiagnoseOptions options;
   options.design_only = true;
   return BenchOf(scenario).diagnose(readings, scenario, options);
 }
 
+diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vector<Reading>& readings) {
+  constexpr std::array kDrift_K_h = {0.0, 0.2, -0.2};  // more than stated: few rooms stand still
+  diagnose::DiagnosisRun seen = SeenBy(scenario, readings);
+  const auto [coolest, warmest] = std::ranges::minmax(readings, {}, &Reading::temperature_degC);
+  if (!seen.isolability || !(warmest.temperature_degC > coolest.temperature_degC)) return seen;
+  auto surely = std::make_shared<diagnose::Isolability>(*seen.isolability);
+  Scenario other = Quick(scenario);
+  for (const double drift_K_h : kDrift_K_h) {
+    ++other.seed;
+    other.environment.drift_K_h = scenario.environment.drift_K_h + drift_K_h;
+    const diagnose::DiagnosisRun of_other = SeenBy(other, ReadingsOfTwin(other));
+    diagnose::KeepSurelyTold(*of_other.isolability, *surely);
+  }
+  seen.isolability = surely;
+  return seen;
+}
+
 report::PlannedEffects EffectsIn(const Scenario& scenario, const std::vector<Reading>& readings) {
   report::PlannedEffects effects;
   try {
-    effects.seen = SeenBy(scenario, readings);
+    effects.seen = SeenUnderChance(scenario, readings);
     effects.unseen = UnseenEffects(scenario, effects.seen);
   } catch (const InputError& refusal) {
     effects.refused = refusal.what();

@@ -20,8 +20,12 @@ Scenario Quick(const Scenario& scenario);
 report::PlannedRun LookAt(const std::string& words, const Scenario& scenario, const std::vector<Reading>& readings);
 
 /// What readings of that design could tell of causes (DiagnosisRun::isolability).
-/// @throws InputError as a diagnosis does.
+/// @throws InputError as a diagnosis does, and for more than 20 000 readings.
 diagnose::DiagnosisRun SeenBy(const Scenario& scenario, const std::vector<Reading>& readings);
+
+/// The same over runs under other chance: what a cause that goes with the room's temperature looks like depends on the
+/// course that the room takes.
+diagnose::DiagnosisRun SeenUnderChance(const Scenario& scenario, const std::vector<Reading>& readings);
 
 /// All that such a run would show of causes; why not, where its design has no redundancy.
 report::PlannedEffects EffectsIn(const Scenario& scenario, const std::vector<Reading>& readings);

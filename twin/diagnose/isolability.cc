@@ -96,34 +96,68 @@ FamiliesByCause CausesOf(const Scanner& scanner) {
   return causes;
 }
 
-/// Signatures of unit size, whitened: rows x causes.
+/// Signatures of unit size, whitened: rows x shapes.
 Eigen::MatrixXd WhiteSignatures(const LinearRun& run, const NoiseModel& noise, const std::vector<Family>& families,
-                                const FamiliesByCause& causes) {
-  Eigen::MatrixXd columns(run.Rows(), std::ssize(causes));
-  for (std::size_t k = 0; k < causes.size(); ++k) {
-    const BestShown& shown = causes[k].second;
-    const Family& family = families[static_cast<std::size_t>(shown.family)];
-    columns.col(static_cast<Eigen::Index>(k)) = family.ColumnsAt(shown.grid_point).col(0);
+                                const std::vector<BestShown>& shapes) {
+  Eigen::MatrixXd columns(run.Rows(), std::ssize(shapes));
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const Family& family = families[static_cast<std::size_t>(shapes[k].family)];
+    columns.col(static_cast<Eigen::Index>(k)) = family.ColumnsAt(shapes[k].grid_point).col(0);
   }
   return noise.Whiten(run, columns);
 }
 
-/// One cause in one size.
+bool IsFamilyOf(const Family& family, const ShownCause& cause) {
+  return family.kind == Kind::kNamed && family.effect == cause.effect && family.where == cause.where;
+}
+
+/// One shape of a cause.
+struct ShapeOfCause {
+  std::size_t cause = 0;
+  BestShown at;
+  bool shows_most = false;
+  double smallest_SI = kNaN;  // size that is found in this shape
+};
+
+/// Of each cause the shape that shows most, and some others of the grids of its families, evenly spread.
+std::vector<ShapeOfCause> ShapesOf(const Scanner& scanner, const FamiliesByCause& causes) {
+  constexpr std::size_t kMostOthers = 6;
+  std::vector<ShapeOfCause> shapes;
+  for (std::size_t k = 0; k < causes.size(); ++k) {
+    const auto& [cause, best] = causes[k];
+    if (!std::isfinite(cause.smallest.value)) continue;
+    shapes.push_back({k, best, true, cause.smallest.value});
+    std::vector<ShapeOfCause> others;
+    for (int f = 0; f < std::ssize(scanner.Families()); ++f) {
+      const Family& family = scanner.Families()[static_cast<std::size_t>(f)];
+      if (!IsFamilyOf(family, cause)) continue;
+      for (int g = 0; g < family.grid; ++g) {
+        const double smallest_SI = tuning::kBaarda / std::sqrt(std::max(scanner.Information(f, g), 1e-300));
+        const bool is_best = f == best.family && g == best.grid_point;
+        if (!is_best && smallest_SI <= cause.largest_SI) others.push_back({k, {f, g}, false, smallest_SI});
+      }
+    }
+    const std::size_t count = std::min(kMostOthers, others.size());
+    for (std::size_t i = 0; i < count; ++i) shapes.push_back(others[(2 * i + 1) * others.size() / (2 * count)]);
+  }
+  return shapes;
+}
+
+/// One shape of a cause in one size.
 struct Trial {
-  std::size_t cause;
-  double times;  // its smallest size
+  std::size_t shape;
+  double times, next_times;  // its smallest size; infinite: there is no larger plausible one
 };
 
 /// From the smallest size by octaves to the largest plausible one.
-std::vector<Trial> TrialsOf(const FamiliesByCause& causes) {
+std::vector<Trial> TrialsOf(const FamiliesByCause& causes, const std::vector<ShapeOfCause>& shapes) {
   constexpr double kMostTimes = 32.0;
   std::vector<Trial> trials;
-  for (std::size_t k = 0; k < causes.size(); ++k) {
-    const ShownCause& cause = causes[k].first;
-    if (!std::isfinite(cause.smallest.value)) continue;
-    const double most = std::clamp(cause.largest_SI / cause.smallest.value, 1.0, kMostTimes);
-    for (double times = 1.0; times < most; times *= 2.0) trials.push_back({k, times});
-    trials.push_back({k, most});
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const ShownCause& cause = causes[shapes[k].cause].first;
+    const double most = std::clamp(cause.largest_SI / shapes[k].smallest_SI, 1.0, kMostTimes);
+    for (double times = 1.0; times < most; times *= 2.0) trials.push_back({k, times, std::min(2.0 * times, most)});
+    trials.push_back({k, most, kInfiniteSize});
   }
   return trials;
 }
@@ -143,9 +177,7 @@ Weighed WeighedBy(const Scanner& scanner, const Evidence& evidence, const Famili
   for (std::size_t k = 0; k < causes.size(); ++k) {
     std::vector<Eigen::Index> own;
     for (std::size_t f = 0; f < families.size(); ++f) {
-      const bool same = families[f].kind == Kind::kNamed && families[f].effect == causes[k].first.effect &&
-                        families[f].where == causes[k].first.where;
-      if (same) own.push_back(static_cast<Eigen::Index>(f));
+      if (IsFamilyOf(families[f], causes[k].first)) own.push_back(static_cast<Eigen::Index>(f));
     }
     for (Eigen::Index j = 0; j < logs.cols(); ++j) {
       weighed.log_posterior(static_cast<Eigen::Index>(k), j) = LogSum(logs.col(j)(own));
@@ -162,62 +194,92 @@ bool MayShareTheAnswer(double expected) {
   return least < std::log(tuning::kNamedFrom / (1.0 - tuning::kNamedFrom));
 }
 
-/// @param trials  Those of one cause in ascending size.
-std::vector<Confusable> ConfusableOf(const std::vector<Trial>& trials, const Weighed& weighed) {
+/// @param trials  Those of one shape in ascending size.
+std::vector<Confusable> ConfusableOf(const std::vector<ShapeOfCause>& shapes, const std::vector<Trial>& trials,
+                                     const Weighed& weighed) {
   constexpr double kImitates = 0.1;  // of the power: what explains less is no rival, however small the cause
-  std::map<std::pair<std::size_t, std::size_t>, double> told_from;
+  std::map<std::pair<std::size_t, std::size_t>, Confusable> pairs;
   for (std::size_t j = 0; j < trials.size(); ++j) {
-    const Trial& trial = trials[j];
-    const bool is_last = j + 1 == trials.size() || trials[j + 1].cause != trial.cause;
+    const ShapeOfCause& shape = shapes[trials[j].shape];
     const auto column = static_cast<Eigen::Index>(j);
-    const auto present = static_cast<Eigen::Index>(trial.cause);
+    const auto present = static_cast<Eigen::Index>(shape.cause);
     for (Eigen::Index other = 0; other < weighed.explained.rows(); ++other) {
       if (other == present) continue;
       const double expected = weighed.log_posterior(present, column) - weighed.log_posterior(other, column);
       const double imitated = weighed.explained(other, column) / weighed.explained(present, column);
-      if (imitated >= kImitates && MayShareTheAnswer(expected))
-        told_from[{trial.cause, static_cast<std::size_t>(other)}] = is_last ? kInfiniteSize : trials[j + 1].times;
+      if (imitated < kImitates || !MayShareTheAnswer(expected)) continue;
+      Confusable& pair = pairs[{shape.cause, static_cast<std::size_t>(other)}];
+      pair.present = shape.cause;
+      pair.blamed = static_cast<std::size_t>(other);
+      if (shape.shows_most) pair.told_from = trials[j].next_times;
+      pair.surely_told_from = std::max(pair.surely_told_from, trials[j].next_times);
     }
   }
   std::vector<Confusable> confusable;
-  for (const auto& [pair, times] : told_from) confusable.push_back({pair.first, pair.second, times});
+  for (const auto& [names, pair] : pairs) confusable.push_back(pair);
   return confusable;
 }
 
-std::vector<Confusable> ConfusableOf(const Scanner& scanner, const Projector& projector,
-                                     const FamiliesByCause& causes, const Eigen::MatrixXd& white) {
-  const std::vector<Trial> trials = TrialsOf(causes);
+std::vector<Confusable> ConfusableOf(const LinearRun& run, const Analysis& analysis, const FamiliesByCause& causes) {
+  const Scanner& scanner = *analysis.scanner;
+  const std::vector<ShapeOfCause> shapes = ShapesOf(scanner, causes);
+  const std::vector<Trial> trials = TrialsOf(causes, shapes);
   if (trials.empty()) return {};
+  std::vector<BestShown> at;
+  for (const ShapeOfCause& shape : shapes) at.push_back(shape.at);
+  const Eigen::MatrixXd white = WhiteSignatures(run, analysis.noise, scanner.Families(), at);
   Eigen::MatrixXd data(white.rows(), std::ssize(trials));
   for (std::size_t j = 0; j < trials.size(); ++j)
-    data.col(static_cast<Eigen::Index>(j)) = trials[j].times * causes[trials[j].cause].first.smallest.value *
-                                             white.col(static_cast<Eigen::Index>(trials[j].cause));
-  Projected projected = Project(projector, {}, data);
-  projected.power.array() += projector.DegreesOfFreedom();
+    data.col(static_cast<Eigen::Index>(j)) = trials[j].times * shapes[trials[j].shape].smallest_SI *
+                                             white.col(static_cast<Eigen::Index>(trials[j].shape));
+  Projected projected = Project(*analysis.projector, {}, data);
+  projected.power.array() += analysis.projector->DegreesOfFreedom();
   const Evidence evidence = scanner.Scan(projected, {});
-  return ConfusableOf(trials, WeighedBy(scanner, evidence, causes));
+  return ConfusableOf(shapes, trials, WeighedBy(scanner, evidence, causes));
 }
 
 }  // namespace
 
 Isolability IsolabilityOf(const LinearRun& run, const Analysis& analysis) {
-  // The analysis may have been moved since its own scanner was made, which then refers to a noise model that is gone.
-  const Scanner scanner(run, analysis.noise, *analysis.projector, analysis.scanner->Families());
+  const Scanner& scanner = *analysis.scanner;
   const FamiliesByCause causes = CausesOf(scanner);
   Isolability isolability;
   Eigen::VectorXd plausible(std::ssize(causes));
+  std::vector<BestShown> best;
   for (std::size_t k = 0; k < causes.size(); ++k) {
     isolability.causes.push_back(causes[k].first);
     plausible[static_cast<Eigen::Index>(k)] = causes[k].first.plausible_SI;
+    best.push_back(causes[k].second);
   }
   for (ShownCause& cause : isolability.causes) {
     if (!IsOfCatalogue(cause, run.bench)) cause.at_smallest.clear();
   }
-  const Eigen::MatrixXd white = WhiteSignatures(run, analysis.noise, scanner.Families(), causes);
+  const Eigen::MatrixXd white = WhiteSignatures(run, analysis.noise, scanner.Families(), best);
   const Eigen::MatrixXd sized = white * plausible.asDiagonal();
   isolability.information = sized.transpose() * analysis.projector->Apply(sized);
-  isolability.confusable = ConfusableOf(scanner, *analysis.projector, causes, white);
+  isolability.confusable = ConfusableOf(run, analysis, causes);
   return isolability;
+}
+
+void KeepSurelyTold(const Isolability& other, Isolability& isolability) {
+  const auto index_of = [&isolability](const ShownCause& cause) {
+    return std::ranges::find_if(isolability.causes, [&cause](const ShownCause& one) {
+             return one.effect == cause.effect && one.where == cause.where;
+           }) - isolability.causes.begin();
+  };
+  for (const Confusable& pair : other.confusable) {
+    const auto present = static_cast<std::size_t>(index_of(other.causes[pair.present]));
+    const auto blamed = static_cast<std::size_t>(index_of(other.causes[pair.blamed]));
+    if (std::max(present, blamed) == isolability.causes.size()) continue;
+    const auto known = std::ranges::find_if(isolability.confusable, [&](const Confusable& one) {
+      return one.present == present && one.blamed == blamed;
+    });
+    if (known == isolability.confusable.end()) {
+      isolability.confusable.push_back({present, blamed, 0.0, pair.surely_told_from});
+    } else {
+      known->surely_told_from = std::max(known->surely_told_from, pair.surely_told_from);
+    }
+  }
 }
 
 EffectSettings AsEffect(const ShownCause& cause, const std::string& bench) {
@@ -233,10 +295,9 @@ EffectSettings AsEffect(const ShownCause& cause, const std::string& bench) {
   return effect;
 }
 
-bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double size_SI) {
-  const double smallest = isolability.causes[present].smallest.value;
+bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double times) {
   return std::ranges::any_of(isolability.confusable, [&](const Confusable& pair) {
-    return pair.present == present && pair.blamed == blamed && std::abs(size_SI) < pair.told_from * smallest;
+    return pair.present == present && pair.blamed == blamed && times < pair.surely_told_from;
   });
 }
 

@@ -26,8 +26,12 @@ EffectSettings AsEffect(const ShownCause& cause, const std::string& bench);
 /// If one cause is at work another may be blamed for it.
 struct Confusable {
   std::size_t present = 0, blamed = 0;  // of `causes`
-  /// Size from which the present one is told from the other, in its own smallest sizes; infinite: no plausible one.
-  double told_from = kNaN;
+  /// Size from which the present one is told from the other, in its own smallest sizes; infinite: no plausible one;
+  /// 0: any that is found.
+  double told_from = 0.0;
+  /// The same in the shape (period, time constant) in which they are most alike, in smallest sizes of that shape; of
+  /// several runs, in the one that tells least. Never less.
+  double surely_told_from = 0.0;
 };
 
 /// What readings of one design could tell: of each cause, and of each two of them.
@@ -41,13 +45,18 @@ struct Isolability {
 /// plausible one, are weighed against the whole catalogue as a diagnosis does (Scanner::Scan), the noise by its
 /// expectation. Evidence of a difference D in favour of what is there comes out as D - 1.645 sqrt(2 D) or better in
 /// 95 of 100 runs; below log odds of tuning::kNamedFrom the other cause may share the answer, if it explains a tenth of
-/// what is there at all.
+/// what is there at all. Done for the shape of each cause that shows most, and for some others of its grid.
 ///
-/// Not included: shapes are those of the grid, not refined; structure without a name is not counted as a rival.
+/// Not included: shapes are not refined; structure without a name is not counted as a rival.
 Isolability IsolabilityOf(const LinearRun& run, const Analysis& analysis);
 
-/// Whether `blamed` may be taken for `present` of that size [SI].
-bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double size_SI);
+/// Counts a pair as told apart only where other runs of the same design, under other chance (another course of the
+/// room's temperature), tell it apart too: `surely_told_from` becomes the largest of all.
+void KeepSurelyTold(const Isolability& other, Isolability& isolability);
+
+/// Whether `blamed` may be taken for `present` in whatever shape, of so many times the smallest size that is found in
+/// that shape.
+bool MayBeBlamed(const Isolability& isolability, std::size_t present, std::size_t blamed, double times);
 
 /// Causes that no plausible size tells apart: sets of two or more in which each may be taken for another,
 /// neighbours of neighbours too.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "twin/core/effect_catalogue.h"
@@ -11,9 +12,6 @@
 namespace twinbench::investigate {
 namespace {
 
-/// How often a cause that the catalogue lacks and that looks like a listed one in some runs does so in a run of
-/// another kind as well.
-constexpr double kMimicsAgain = 0.3;
 /// Less is not carried on.
 constexpr double kNegligible = 1e-4;
 
@@ -97,19 +95,42 @@ void Update(Belief& belief, const std::vector<TakenRun>& runs, const Means& mean
   Normalise(belief);
 }
 
-bool TakeIn(Belief& belief, Hypothesis hypothesis, const Hypothesis& beside, const std::vector<TakenRun>& runs,
-            const Means& means) {
-  const auto is_there = [&](const Open& open) { return IsSame(open.fit.hypothesis, hypothesis); };
-  if (std::ranges::any_of(belief.open, is_there)) return false;
-  const double more = static_cast<double>(hypothesis.causes.size()) - static_cast<double>(beside.causes.size());
-  hypothesis.log_prior = beside.log_prior + more * LogOddsOfOne(runs.front().scenario.bench);
-  belief.open.push_back({FitJointly(hypothesis, runs, means)});
+bool TakeIn(Belief& belief, const std::vector<Weighed>& found, const std::vector<TakenRun>& runs, const Means& means,
+            const std::function<Hypothesis(const Hypothesis&)>& beside) {
+  const double odds = LogOddsOfOne(runs.front().scenario.bench);
+  const std::size_t before = belief.open.size();
+  std::vector<double> logs;  // of the weights that they are to have beside each other
+  for (const Weighed& one : found) {
+    const auto is_there = [&one](const Open& open) { return IsSame(open.fit.hypothesis, one.hypothesis); };
+    if (one.hypothesis.causes.empty() || std::ranges::any_of(belief.open, is_there)) continue;
+    Open open{FitJointly(one.hypothesis, runs, means)};
+    const Hypothesis other = beside(one.hypothesis);
+    const double more = static_cast<double>(one.hypothesis.causes.size()) - static_cast<double>(other.causes.size());
+    open.fit.hypothesis.log_prior = other.log_prior + more * odds;
+    logs.push_back(std::log(std::max(one.probability, kNegligible)));
+    belief.open.push_back(std::move(open));
+  }
+  if (logs.empty()) return false;
+  const std::span<Open> taken(belief.open.begin() + static_cast<std::ptrdiff_t>(before), belief.open.end());
+  const auto weight = [](const Open& open) { return open.fit.hypothesis.log_prior + open.fit.log_evidence; };
+  const auto best = std::ranges::max_element(taken, {}, weight);
+  const double most = weight(*best) - logs[static_cast<std::size_t>(best - taken.begin())];
+  for (std::size_t k = 0; k < taken.size(); ++k)
+    taken[k].fit.hypothesis.log_prior = most + logs[k] - taken[k].fit.log_evidence;
   Normalise(belief);
   return true;
 }
 
-void Agreed(Belief& belief) {
-  const double odds = kMimicsAgain * belief.unlisted / std::max(1.0 - belief.unlisted, kNegligible);
+double MimicFactor(const Hypothesis& best, const TakenRun& run, const Means& means) {
+  const Eigen::VectorXd left = LeftBy(best, run, means), shown = run.left - left;
+  const double length = Product(run, shown, shown)(0, 0), along = Product(run, shown, left)(0, 0);
+  constexpr double kMost = 20.0;  // beyond that nothing is left of the best hypothesis
+  return std::exp(std::min(kMost, 0.5 * along * along / (1.0 + length))) / std::sqrt(1.0 + length);
+}
+
+void Agreed(Belief& belief, const TakenRun& run, const Means& means) {
+  const double factor = MimicFactor(belief.Best().fit.hypothesis, run, means);
+  const double odds = factor * belief.unlisted / std::max(1.0 - belief.unlisted, kNegligible);
   belief.unlisted = odds / (1.0 + odds);
   Normalise(belief);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "twin/investigate/joint_fit.h"
@@ -28,14 +29,21 @@ Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& r
 /// After another run: everything fitted again to all of them.
 void Update(Belief& belief, const std::vector<TakenRun>& runs, const Means& means);
 
-/// Takes a hypothesis in that a later run brought up: one more cause than `beside` has, at the odds that a cause of
-/// the catalogue has before any reading. @return false if it is there already.
-bool TakeIn(Belief& belief, Hypothesis hypothesis, const Hypothesis& beside, const std::vector<TakenRun>& runs,
-            const Means& means);
+/// Takes in what the diagnosis of a later run brought up, at the odds that a cause of the catalogue has before any
+/// reading for each that it has more than `beside` it. Beside each other they weigh as that diagnosis says: rivals that
+/// no reading tells apart stay so. @return false if all are there already.
+bool TakeIn(Belief& belief, const std::vector<Weighed>& found, const std::vector<TakenRun>& runs, const Means& means,
+            const std::function<Hypothesis(const Hypothesis&)>& beside);
+
+/// What the catalogue lacks and looked like the best hypothesis so far shows in a run of another kind in another size:
+/// as large on average, give or take as much (as OfCauses_bit expects). @return the likelihood of the run's readings
+/// under that over the one under the best: with s = S' W S of its signature S and r = S' W e of what it leaves,
+/// exp(r^2 / 2 (1 + s)) / sqrt(1 + s). A run in which it would not be seen says nothing: 1.
+double MimicFactor(const Hypothesis& best, const TakenRun& run, const Means& means);
 
 /// A run of another kind than those before agreed with the best hypothesis, or something was left that nothing open
 /// explains.
-void Agreed(Belief& belief);
+void Agreed(Belief& belief, const TakenRun& run, const Means& means);
 void Disagreed(Belief& belief, double unknown);
 
 }  // namespace twinbench::investigate

@@ -23,6 +23,17 @@ bool Ends(const std::string& name, const std::string& wanted) {
   return name.size() == wanted.size() || name[name.size() - wanted.size() - 1] == '.';
 }
 
+constexpr const char* kRounding = "quantisation";  // of type B, but another one in every reading
+
+/// Of u^2, without what an instrument's standard or the model has in it: another run has the same again.
+double OwnShare(const uncertainty::Quantity& q) {
+  double own = 1.0;
+  for (const uncertainty::Part& part : q.parts) {
+    if (part.name == "standard" || part.name == "second order" || part.name == "model") own -= part.share;
+  }
+  return own;
+}
+
 }  // namespace
 
 std::string Goal::Text() const {
@@ -38,19 +49,51 @@ Goal ParseGoal(const std::string& text) {
   return goal;
 }
 
-Certainty::Precision Certainty::Of(const nlohmann::json& results) const {
+bool Certainty::IsOfGoal(const std::string& quantity) const {
   const std::string wanted = goal_.unit.empty() ? goal_.quantity : goal_.quantity + "_" + goal_.unit;
+  return Ends(uncertainty::ListOf(quantity), wanted);
+}
+
+Certainty::Precision Certainty::Of(const nlohmann::json& results) const {
   Precision precision;
   for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(results)) {
-    if (Ends(uncertainty::ListOf(q.name), wanted) && q.u > 0.0) precision[q.name] = 1.0 / (q.u * q.u);
+    const double own = OwnShare(q);
+    if (IsOfGoal(q.name) && q.u > 0.0 && own > 0.0) precision[q.name] = 1.0 / (own * q.u * q.u);
   }
   return precision;
 }
 
-double Certainty::RootMeanSquare(const Precision& precision) {
+void Certainty::Share(const std::vector<uncertainty::Budget>& budgets) {
+  shared_.clear();
+  shared_by_source_.clear();
+  for (const uncertainty::Budget& budget : budgets) {
+    if (!IsOfGoal(budget.quantity.name)) continue;
+    for (const uncertainty::Source& source : budget.sources) {
+      if (source.type != 'B' || source.name == kRounding) continue;
+      shared_[budget.quantity.name] += source.u * source.u;
+      shared_by_source_[source.name] += source.u * source.u;
+    }
+  }
+}
+
+double Certainty::SharedU() const {
+  double sum = 0.0;
+  for (const auto& [place, variance] : shared_) sum += variance;
+  return shared_.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(std::max(shared_.size(), precision_.size())));
+}
+
+std::string Certainty::LargestShared() const {
+  const auto most = std::ranges::max_element(shared_by_source_, {}, [](const auto& s) { return s.second; });
+  return most == shared_by_source_.end() ? "" : most->first;
+}
+
+double Certainty::RootMeanSquare(const Precision& precision) const {
   if (precision.empty()) return std::numeric_limits<double>::infinity();
   double sum = 0.0;
-  for (const auto& [place, p] : precision) sum += 1.0 / p;
+  for (const auto& [place, p] : precision) {
+    const auto shared = shared_.find(place);
+    sum += 1.0 / p + (shared == shared_.end() ? 0.0 : shared->second);
+  }
   return std::sqrt(sum / static_cast<double>(precision.size()));
 }
 
@@ -74,7 +117,8 @@ std::vector<std::string> GoalNames(const nlohmann::json& results) {
   std::vector<std::string> names;
   for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(results)) {
     const std::string list = uncertainty::ListOf(q.name);
-    if (std::ranges::find(names, list) == names.end()) names.push_back(list);
+    const bool can_be_asked_for = list.find('[') == std::string::npos;
+    if (can_be_asked_for && std::ranges::find(names, list) == names.end()) names.push_back(list);
   }
   return names;
 }

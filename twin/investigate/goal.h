@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "twin/uncertainty/budget.h"
+
 namespace twinbench::investigate {
 
 /// How certain a result shall be: "target.ez 0.1arcsec".
@@ -20,14 +22,21 @@ struct Goal {
 /// @throws InputError if it cannot be read.
 Goal ParseGoal(const std::string& text);
 
-/// What the runs so far say of the goal's quantity: at each of its places the inverse variances of runs add up.
-/// What all runs share (a standard's own error) is no part of u.
+/// What the runs so far say of the goal's quantity: at each of its places the inverse variances of runs add up, and
+/// what all runs share - errors of the standards, of type B - is added to it and never grows less.
 class Certainty {
  public:
   explicit Certainty(Goal goal) : goal_(std::move(goal)) {}
 
   /// @return false if the results have no such quantity.
   bool Add(const nlohmann::json& results);
+
+  /// What all runs share, from the budgets of one of them: every source of type B but the rounding of readings.
+  void Share(const std::vector<uncertainty::Budget>& budgets);
+  /// Root mean square over the places of what they share: no number of runs is more certain.
+  double SharedU() const;
+  /// The source that has most of it: "laser.wavelength_nm"; empty if they share nothing.
+  std::string LargestShared() const;
 
   /// Root mean square over the places; infinite as long as nothing was added.
   double u() const;
@@ -39,10 +48,13 @@ class Certainty {
  private:
   using Precision = std::map<std::string, double>;
   Precision Of(const nlohmann::json& results) const;
-  static double RootMeanSquare(const Precision& precision);
+  double RootMeanSquare(const Precision& precision) const;
+  bool IsOfGoal(const std::string& quantity) const;
 
   Goal goal_;
-  Precision precision_;  // by place
+  Precision precision_;                             // by place
+  std::map<std::string, double> shared_;            // variance by place
+  std::map<std::string, double> shared_by_source_;  // variance, all places together
 };
 
 /// The lists of numbers in results that a goal can be about: "target.ez_arcsec".

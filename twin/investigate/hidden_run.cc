@@ -1,12 +1,11 @@
 #include "twin/investigate/hidden_run.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <sstream>
 #include <variant>
 
 #include "twin/core/errors.h"
+#include "twin/core/happened_once.h"
 #include "twin/core/scenario_schema.h"
 
 namespace twinbench::investigate {
@@ -63,8 +62,8 @@ Scenario HiddenRun(const Scenario& hidden, const Scenario& believed, const plan:
   for (const std::string& set : run.sets) {
     if (!TableOfSet(set).ends_with(kProcedure) && !IsNumber(before, set)) sets.push_back(set);
   }
-  sets.push_back(fmt::format("repeat={}", repeat));
-  Scenario made = Altered(hidden, sets);
+  Scenario made = InRun(Altered(hidden, sets), hidden.repeat + repeat - believed.repeat);
+  made.repeat = repeat;
   const std::vector<double*> to = NumbersOf(made), from = NumbersOf(asked), base = NumbersOf(before);
   for (std::size_t k = 0; k < to.size(); ++k) *to[k] += *from[k] - *base[k];
   return Altered(made, {});  // refuses what has left its bounds

@@ -1,10 +1,14 @@
 #include "twin/investigate/hypothesis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "twin/core/happened_once.h"
 #include "twin/core/signal_effect.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/cause_groups.h"
 #include "twin/diagnose/extend.h"
 
@@ -16,8 +20,8 @@ using diagnose::Cause;
 constexpr std::size_t kMost = 12;
 constexpr const char* kUnnamed = "structure without a name";
 
-bool IsSameCause(const EffectSettings& a, const EffectSettings& b) {
-  return a.name == b.name && a.where == b.where;
+bool IsSameCause(const Supposed& a, const Supposed& b) {
+  return a.name == b.name && a.where == b.where && (a.happened_in == b.happened_in || !HappensOnce(a));
 }
 
 /// Signals that the diagnosis writes for structure without a name, where they are more than a table of that run.
@@ -36,7 +40,7 @@ void FreeSizes(EffectSettings& signal, const std::string& bench) {
   for (const EffectParameter& p : EntryOf(signal, bench).parameters) {
     const double size = std::abs(signal.parameters.at(p.name));
     if ((p.name == "amplitude" || p.name == "share") && size > 0.0) signal.finding.u[p.name] = kTenth * size;
-    if (p.name == "phase") signal.finding.u[p.name] = kTenth;
+    if (p.name == kPhase) signal.finding.u[p.name] = kTenth;
   }
 }
 
@@ -53,20 +57,27 @@ EffectSettings Sized(const Cause& cause, const std::string& bench) {
   if (!effect.finding.u.empty()) return effect;
   const EffectEntry entry = EntryOf(effect, bench);
   for (const EffectParameter& p : entry.parameters) {
-    if (effect.parameters.contains(p.name)) effect.finding.u[p.name] = entry.Plausible(p);
+    if (effect.parameters.contains(p.name)) effect.finding.u[p.name] = ThoughtOf(p, entry);
   }
   return effect;
 }
 
+/// @param run  That it was found in.
+Supposed Suppose(const Cause& cause, const std::string& bench, int run) {
+  Supposed supposed{Sized(cause, bench)};
+  if (HappensOnce(supposed)) supposed.happened_in = run;
+  return supposed;
+}
+
 /// Each of `open` with each cause of the group.
 std::vector<Weighed> Times(const std::vector<Weighed>& open, const std::vector<Cause>& causes,
-                           const diagnose::CauseGroup& group, const std::string& bench) {
+                           const diagnose::CauseGroup& group, const std::string& bench, int run) {
   std::vector<Weighed> product;
   const double sum = Sum(causes, group);
   for (const Weighed& one : open) {
     for (const std::size_t k : group) {
       Weighed more = one;
-      more.hypothesis.causes.push_back(Sized(causes[k], bench));
+      more.hypothesis.causes.push_back(Suppose(causes[k], bench, run));
       more.probability *= causes[k].probability / sum;
       product.push_back(std::move(more));
     }
@@ -75,14 +86,14 @@ std::vector<Weighed> Times(const std::vector<Weighed>& open, const std::vector<C
 }
 
 /// Nothing was found: each suspect alone beside nothing.
-std::vector<Weighed> NothingOrSuspects(const diagnose::DiagnosisRun& found, const std::string& bench) {
+std::vector<Weighed> NothingOrSuspects(const diagnose::DiagnosisRun& found, const std::string& bench, int run) {
   constexpr double kWorthASuspicion = 0.01;
   std::vector<Weighed> open(1);
   open.front().probability = 1.0;
   for (const Cause& suspect : found.suspects) {
     if (suspect.probability < kWorthASuspicion) continue;
     Weighed one;
-    one.hypothesis.causes.push_back(Sized(suspect, bench));
+    one.hypothesis.causes.push_back(Suppose(suspect, bench, run));
     one.probability = suspect.probability;
     open.front().probability -= suspect.probability;
     open.push_back(std::move(one));
@@ -100,22 +111,27 @@ void KeepTheMostProbable(std::vector<Weighed>& open) {
 
 }  // namespace
 
+double ThoughtOf(const EffectParameter& parameter, const EffectEntry& entry) {
+  return parameter.name == kPhase ? units::kPi / std::sqrt(3.0) : entry.Plausible(parameter);
+}
+
 std::string Hypothesis::Name() const {
   if (causes.empty()) return besides.empty() ? "nothing" : kUnnamed;
   if (!causes.front().signal.empty()) return kUnnamed;
   std::string name;
-  for (const EffectSettings& cause : causes) {
+  for (const Supposed& cause : causes) {
     name += (name.empty() ? "" : " + ") + cause.name;
     if (!cause.where.empty()) name += " " + cause.where;
+    if (HappensOnce(cause) && cause.happened_in > 0) name += fmt::format(" in run {}", cause.happened_in + 1);
   }
   return name;
 }
 
 bool IsSame(const Hypothesis& a, const Hypothesis& b) {
   const auto has_all = [](const Hypothesis& all, const Hypothesis& of) {
-    return std::ranges::all_of(of.causes, [&all](const EffectSettings& cause) {
+    return std::ranges::all_of(of.causes, [&all](const Supposed& cause) {
       return std::ranges::any_of(all.causes,
-                                 [&cause](const EffectSettings& other) { return IsSameCause(cause, other); });
+                                 [&cause](const Supposed& other) { return IsSameCause(cause, other); });
     });
   };
   return has_all(a, b) && has_all(b, a) && a.besides.empty() == b.besides.empty();
@@ -123,24 +139,23 @@ bool IsSame(const Hypothesis& a, const Hypothesis& b) {
 
 Hypothesis Together(const Hypothesis& a, const Hypothesis& b) {
   Hypothesis both = a;
-  for (const EffectSettings& cause : b.causes) {
-    const bool is_there = std::ranges::any_of(
-        both.causes, [&cause](const EffectSettings& other) { return IsSameCause(cause, other); });
+  for (const Supposed& cause : b.causes) {
+    const bool is_there =
+        std::ranges::any_of(both.causes, [&cause](const Supposed& other) { return IsSameCause(cause, other); });
     if (!is_there) both.causes.push_back(cause);
   }
   if (both.besides.empty()) both.besides = b.besides;
-  both.since = std::max(a.since, b.since);
   return both;
 }
 
-std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario) {
+std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run) {
   const std::vector<Cause>& causes = found.diagnosis.causes;
-  if (found.diagnosis.verdict == diagnose::Verdict::kNone) return NothingOrSuspects(found, scenario.bench);
+  if (found.diagnosis.verdict == diagnose::Verdict::kNone) return NothingOrSuspects(found, scenario.bench, run);
   std::vector<Weighed> open(1);
   open.front().probability = 1.0;
   open.front().hypothesis.besides = SignalsOf(found, scenario);
   for (const diagnose::CauseGroup& group : diagnose::GroupsOf(causes)) {
-    if (Sum(causes, group) > 0.0) open = Times(open, causes, group, scenario.bench);
+    if (Sum(causes, group) > 0.0) open = Times(open, causes, group, scenario.bench, run);
   }
   KeepTheMostProbable(open);
   return open;
@@ -151,7 +166,7 @@ Hypothesis Unnamed(const diagnose::DiagnosisRun& struck, const Scenario& scenari
   if (struck.diagnosis.verdict != diagnose::Verdict::kUnknown) return unnamed;
   for (EffectSettings signal : SignalsOf(struck, scenario)) {
     FreeSizes(signal, scenario.bench);
-    unnamed.causes.push_back(std::move(signal));
+    unnamed.causes.push_back({std::move(signal)});
   }
   return unnamed;
 }
@@ -159,16 +174,21 @@ Hypothesis Unnamed(const diagnose::DiagnosisRun& struck, const Scenario& scenari
 std::vector<std::string> EffectsIn(const std::vector<Weighed>& open) {
   std::vector<std::string> names;
   for (const Weighed& one : open) {
-    for (const EffectSettings& cause : one.hypothesis.causes) {
+    for (const Supposed& cause : one.hypothesis.causes) {
       if (std::ranges::find(names, cause.name) == names.end()) names.push_back(cause.name);
     }
   }
   return names;
 }
 
-Scenario With(const Scenario& scenario, const Hypothesis& hypothesis) {
+Scenario With(const Scenario& scenario, const Hypothesis& hypothesis, int run) {
   Scenario with = scenario;
-  with.effects.insert(with.effects.end(), hypothesis.causes.begin(), hypothesis.causes.end());
+  for (const Supposed& cause : hypothesis.causes) {
+    const bool is_elsewhere = HappensOnce(cause) && run != cause.happened_in;
+    if (is_elsewhere && run < cause.happened_in) continue;
+    const EffectSettings& effect = cause;
+    with.effects.push_back(is_elsewhere ? AsHappened(effect) : effect);
+  }
   with.effects.insert(with.effects.end(), hypothesis.besides.begin(), hypothesis.besides.end());
   return with;
 }

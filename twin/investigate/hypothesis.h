@@ -3,19 +3,28 @@
 #include <string>
 #include <vector>
 
+#include "twin/core/effect_catalogue.h"
 #include "twin/core/scenario.h"
 #include "twin/diagnose/diagnose.h"
 
 namespace twinbench::investigate {
 
+/// What the parameter is called that says where a wave begins.
+inline constexpr const char* kPhase = "phase";
+
+/// A cause that may be at work. What happens once (HappensOnce) does so in one run: those before lack it, those after
+/// are behind it.
+struct Supposed : EffectSettings {
+  int happened_in = 0;  // run, from 0 on
+};
+
 /// One way in which the scenario may be wrong: all causes at work together. None: it is right.
 struct Hypothesis {
-  std::vector<EffectSettings> causes;   // by name, or signals instead of one, with what is known of their sizes
+  std::vector<Supposed> causes;         // by name, or signals instead of one, with what is known of their sizes
   std::vector<EffectSettings> besides;  // structure without a name that goes with every hypothesis of its run
   double log_prior = 0.0;
-  std::size_t since = 0;  // the run that brought it up
 
-  /// "nothing", "psd_roll psd_a", "psd_roll psd_a + slip", "structure without a name".
+  /// "nothing", "psd_roll psd_a", "psd_roll psd_a + slip in run 2", "structure without a name".
   std::string Name() const;
   bool IsNamed() const { return !causes.empty() && causes.front().signal.empty(); }
 };
@@ -26,6 +35,9 @@ bool IsSame(const Hypothesis& a, const Hypothesis& b);
 /// The causes of both, each once.
 Hypothesis Together(const Hypothesis& a, const Hypothesis& b);
 
+/// How large a parameter is thought to be before any reading [SI]: as the catalogue has it. A phase is any.
+double ThoughtOf(const EffectParameter& parameter, const EffectEntry& entry);
+
 /// A hypothesis and what a diagnosis gives it, of all that is in the catalogue.
 struct Weighed {
   Hypothesis hypothesis;
@@ -34,7 +46,8 @@ struct Weighed {
 
 /// What a diagnosis leaves open: of causes that it cannot tell apart one each, of causes that are at work together
 /// all; the most probable dozen. A diagnosis that found nothing leaves "nothing".
-std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario);
+/// @param run  Which of the investigation's was diagnosed, from 0 on.
+std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run = 0);
 
 /// What the diagnosis says of the same readings when every effect that it names is struck: the signals that it
 /// would write instead, with sizes that are free. No causes if there are none that predict another run.
@@ -43,7 +56,8 @@ Hypothesis Unnamed(const diagnose::DiagnosisRun& struck, const Scenario& scenari
 /// Names of the effects in any of them.
 std::vector<std::string> EffectsIn(const std::vector<Weighed>& open);
 
-/// Scenario with the hypothesis' causes in it.
-Scenario With(const Scenario& scenario, const Hypothesis& hypothesis);
+/// Scenario of a run with the hypothesis' causes in it.
+/// @param run  Which of the investigation's, from 0 on; what happened once has happened in those that are to come.
+Scenario With(const Scenario& scenario, const Hypothesis& hypothesis, int run = 0);
 
 }  // namespace twinbench::investigate

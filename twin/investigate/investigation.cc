@@ -10,6 +10,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/investigate/expected_information.h"
+#include "twin/uncertainty/budget.h"
 
 namespace twinbench::investigate {
 namespace {
@@ -32,19 +33,23 @@ class Loop {
   }
 
   Investigation Run() {
+    RefuseGoalsOutOfReach(scenario_, means_.twin);
     TakeFirst();
     while (!IsDone() && TakeNext()) {
     }
-    result_.told = ToldBy(result_.belief);
+    result_.told = ToldBy(result_.belief, kMostlyUnlisted);
     const bool is_nothing = result_.belief.Best().fit.hypothesis.Name() == Hypothesis{}.Name();
     if (result_.told == Told::kTied && is_nothing) result_.told = Told::kNothing;  // suspicions are no findings
     return std::move(result_);
   }
 
  private:
-  Told ToldBy(const Belief& belief) const {
-    if (belief.unlisted >= kMostlyUnlisted) return Told::kUnknown;
+  /// @param unlisted  From which probability on it is something that the catalogue lacks.
+  Told ToldBy(const Belief& belief, double unlisted) const {
     const Open& best = belief.Best();
+    const bool is_unnamed = !best.fit.hypothesis.causes.empty() && !best.fit.hypothesis.IsNamed();
+    if (belief.unlisted + (is_unnamed ? best.probability : 0.0) >= unlisted && belief.unlisted > best.probability)
+      return Told::kUnknown;
     if (best.probability < options_.conclusive || HasRival(belief)) return Told::kTied;
     if (best.fit.hypothesis.IsNamed()) return Told::kNamed;
     return best.fit.hypothesis.Name() == Hypothesis{}.Name() ? Told::kNothing : Told::kUnknown;
@@ -57,7 +62,7 @@ class Loop {
     });
   }
 
-  bool AreCausesTold() const { return ToldBy(result_.belief) != Told::kTied; }
+  bool AreCausesTold() const { return ToldBy(result_.belief, options_.conclusive) != Told::kTied; }
 
   bool IsDone() {
     if (!AreCausesTold() || !result_.IsGoalMet()) return false;
@@ -67,7 +72,7 @@ class Loop {
 
   /// Makes the run and adds it to what is known.
   void Take(Step& step, const Scenario& scenario) {
-    runs_.push_back(TakenOf(step.run, scenario, laboratory_.measure(step, scenario), means_));
+    runs_.push_back(TakenOf(step.run, scenario, laboratory_.measure(step, scenario), means_, step.number - 1));
     step.minutes = runs_.back().minutes;
     result_.minutes += step.minutes;
     if (!certainty_) return;
@@ -91,16 +96,32 @@ class Loop {
   void TakeFirst() {
     Step step{1, {"first", "the scenario's own run", {}, plan::kSameKind}, "the scenario's own run comes first"};
     Take(step, scenario_);
-    if (certainty_ && !std::isfinite(certainty_->u())) RefuseGoal();
+    const auto taken = [this](const Scenario&) { return runs_.front().readings; };
+    RefuseGoalsOutOfReach(scenario_, taken);
+    result_.u_goal = certainty_ ? certainty_->u() : kNaN;
     const diagnose::DiagnosisRun found = means_.diagnose(runs_.front().readings, scenario_, {});
     result_.belief = Begun(found, runs_, means_);
     Note(std::move(step), Entropy_bit(result_.belief.Probabilities()));
   }
 
-  [[noreturn]] void RefuseGoal() const {
-    const std::vector<std::string> names = GoalNames(means_.evaluate(runs_.front().readings, scenario_));
-    throw InputError("--goal " + options_.goal->Text(), "the first run's results have no such quantity",
-                     fmt::format("one of {}", fmt::join(names, ", ")));
+  /// What nobody can reach is not measured for: first by a run of the twin, then by the first one.
+  /// @throws InputError if the results have no such quantity, or standards alone leave more than the goal.
+  void RefuseGoalsOutOfReach(const Scenario& scenario,
+                             const std::function<std::vector<Reading>(const Scenario&)>& readings_of) {
+    if (!certainty_) return;
+    const std::vector<Reading> readings = readings_of(scenario);
+    const nlohmann::json results = means_.evaluate(readings, scenario);
+    if (!Certainty(*options_.goal).Add(results))
+      throw InputError("--goal " + options_.goal->Text(), "the first run's results have no such quantity",
+                       fmt::format("one of {}", fmt::join(GoalNames(results), ", ")));
+    certainty_->Share(uncertainty::Budgets(scenario, [&](const Scenario& other) {
+      return uncertainty::QuantitiesOf(means_.evaluate(readings, other));
+    }));
+    if (certainty_->SharedU() >= options_.goal->u)
+      throw InputError("--goal " + options_.goal->Text(),
+                       fmt::format("cannot be reached by any number of runs: what they share leaves {:.3g} {}, most of it {}",
+                                   certainty_->SharedU(), options_.goal->unit, certainty_->LargestShared()),
+                       "an uncertainty above that, or a better standard");
   }
 
   /// @return false if it ends here.
@@ -114,13 +135,28 @@ class Loop {
     const std::vector<Advice> advice =
         plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, left_min);
     if (advice.empty()) return End(Ended::kBudget);
-    const auto useful = std::ranges::find_if(advice, [this](const Advice& a) { return IsUseful(a); });
+    auto useful = std::ranges::find_if(advice, [this](const Advice& a) { return IsUseful(a); });
+    if (useful == advice.end()) useful = Exploring(advice);
     if (useful == advice.end()) return End(IsAnyLeftOut(left_min) ? Ended::kBudget : Ended::kNothingMore);
     Step step{static_cast<int>(result_.steps.size()) + 1, useful->run, ReasonFor(*useful, advice)};
     step.expected_bit = useful->of_causes_bit;
     if (laboratory_.confirm && !laboratory_.confirm(step, advice)) return End(Ended::kDeclined);
     TakeAndWeigh(std::move(step));
     return true;
+  }
+
+  /// Something is there and nothing open says what any run would show of it: the shortest run of a kind that was not
+  /// made yet, to be diagnosed for itself.
+  std::vector<Advice>::const_iterator Exploring(const std::vector<Advice>& advice) const {
+    auto shortest = advice.end();
+    if (AreCausesTold() || result_.belief.unlisted < kMostlyUnlisted) return shortest;
+    for (auto a = advice.begin(); a != advice.end(); ++a) {
+      const bool is_new = a->run.is_of_another_kind && std::ranges::none_of(runs_, [a](const TakenRun& run) {
+        return run.asked.sets == a->run.sets;
+      });
+      if (is_new && (shortest == advice.end() || a->minutes < shortest->minutes)) shortest = a;
+    }
+    return shortest;
   }
 
   bool End(Ended ended) {
@@ -148,6 +184,7 @@ class Loop {
                            Entropy_bit(result_.belief.Probabilities()));
     if (best.of_goal_bit > 0.0)
       reason += fmt::format("{}{} to {:.3g}", reason.empty() ? "" : ", ", result_.goal->Text(), best.u_goal);
+    if (!IsUseful(best)) return "nothing open says what this is: the shortest run of a kind that was not made yet";
     reason += fmt::format(" expected in {:.1f} min", best.minutes);
     const auto second = std::ranges::find_if(advice, [&](const Advice& a) { return a.run.name != best.run.name; });
     if (second == advice.end()) return reason;
@@ -171,21 +208,19 @@ class Loop {
     Belief& belief = result_.belief;
     const TakenRun& run = runs_.back();
     const Hypothesis best = belief.Best().fit.hypothesis;
-    const Scenario with = With(run.scenario, best);
+    const Scenario with = With(run.scenario, best, run.number);
     const diagnose::DiagnosisRun found = means_.diagnose(run.readings, with, {});
     if (found.diagnosis.verdict == diagnose::Verdict::kNone) {
-      if (IsOfAnotherKind()) Agreed(belief);
+      if (IsOfAnotherKind()) Agreed(belief, run, means_);
       return;
     }
-    bool is_new = false;
-    for (const Weighed& more : LeftOpen(found, with)) {
-      if (!more.hypothesis.causes.empty())
-        is_new = TakeIn(belief, Together(best, more.hypothesis), best, runs_, means_) || is_new;
-    }
-    for (const Weighed& other : LeftOpen(means_.diagnose(run.readings, run.scenario, {}), run.scenario)) {
-      if (!other.hypothesis.causes.empty())
-        is_new = TakeIn(belief, other.hypothesis, AsMany(other.hypothesis), runs_, means_) || is_new;
-    }
+    std::vector<Weighed> more = LeftOpen(found, with, run.number);
+    std::erase_if(more, [](const Weighed& one) { return one.hypothesis.causes.empty(); });
+    for (Weighed& one : more) one.hypothesis = Together(best, one.hypothesis);
+    bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
+    const std::vector<Weighed> others =
+        LeftOpen(means_.diagnose(run.readings, run.scenario, {}), run.scenario, run.number);
+    is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
     if (!is_new || found.diagnosis.verdict == diagnose::Verdict::kUnknown)
       Disagreed(belief, found.diagnosis.unknown.probability);
   }

@@ -3,11 +3,14 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 #include <utility>
 
+#include "twin/core/happened_once.h"
 #include "twin/core/signal_effect.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::investigate {
@@ -29,7 +32,7 @@ std::vector<Size> SizesOf(const Hypothesis& hypothesis, const std::string& bench
     for (const EffectParameter& p : entry.parameters) {
       const auto u = hypothesis.causes[k].finding.u.find(p.name);
       if (u == hypothesis.causes[k].finding.u.end() || !(u->second > 0.0)) continue;
-      sizes.push_back({k, p.name, u->second, p.lower_SI, p.upper_SI, entry.Plausible(p)});
+      sizes.push_back({k, p.name, u->second, p.lower_SI, p.upper_SI, ThoughtOf(p, entry)});
     }
   }
   return sizes;
@@ -46,6 +49,17 @@ Hypothesis Moved(Hypothesis hypothesis, const std::vector<Size>& sizes, const Ei
     value = std::clamp(value + by[static_cast<Eigen::Index>(k)] * sizes[k].u, sizes[k].lower, sizes[k].upper);
   }
   return hypothesis;
+}
+
+/// Change of what is left of one run for one u of a size.
+Eigen::VectorXd SlopeOf(const Hypothesis& hypothesis, const Size& size, const Eigen::VectorXd& left,
+                        const TakenRun& run, const Means& means) {
+  constexpr double kStep = 0.25;  // of u; away from the nearer bound
+  const double value = ValueOf(hypothesis, size);
+  const double step = size.upper - value > value - size.lower ? kStep : -kStep;
+  const Hypothesis moved = Moved(hypothesis, {size}, Eigen::VectorXd::Constant(1, step));
+  const double went = (ValueOf(moved, size) - value) / size.u;
+  return (LeftBy(moved, run, means) - left) / (went == 0.0 ? step : went);
 }
 
 /// What the hypothesis leaves of every run.
@@ -67,15 +81,16 @@ Left LeftOf(const Hypothesis& hypothesis, const std::vector<TakenRun>& runs, con
 struct Normal {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd gradient;
+  std::vector<Eigen::MatrixXd> slopes;  // of each run
 };
 
 Normal NormalOf(const Hypothesis& hypothesis, const Left& left, const std::vector<TakenRun>& runs,
                 const Means& means, Eigen::Index sizes) {
-  Normal normal{Eigen::MatrixXd::Zero(sizes, sizes), Eigen::VectorXd::Zero(sizes)};
+  Normal normal{Eigen::MatrixXd::Zero(sizes, sizes), Eigen::VectorXd::Zero(sizes), {}};
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    const Eigen::MatrixXd slopes = SlopesOf(hypothesis, left.of[k], runs[k], means);
-    normal.matrix += Product(runs[k], slopes, slopes);
-    normal.gradient += Product(runs[k], slopes, left.of[k]);
+    normal.slopes.push_back(SlopesOf(hypothesis, left.of[k], runs[k], means));
+    normal.matrix += Product(runs[k], normal.slopes[k], normal.slopes[k]);
+    normal.gradient += Product(runs[k], normal.slopes[k], left.of[k]);
   }
   return normal;
 }
@@ -95,19 +110,99 @@ Eigen::VectorXd Breadth(const Hypothesis& hypothesis, const std::vector<Size>& s
   return breadth;
 }
 
-double LogEvidence(double chi2, double rows, const Eigen::MatrixXd& normal, const Eigen::VectorXd& breadth) {
+/// Of what is left, noise known as well as tuning::kPseudoDegrees says.
+double LogLikelihood(double chi2, double rows) {
   const double trust = diagnose::tuning::kPseudoDegrees;
-  const double fit = -0.5 * (trust + rows) * std::log(trust + chi2);
-  if (breadth.size() == 0) return fit;
+  return -0.5 * (trust + rows) * std::log(trust + chi2);
+}
+
+/// Laplace's factor: how much of what was thought of the sizes before the readings leave.
+double LogShareLeft(const Eigen::MatrixXd& normal, const Eigen::VectorXd& breadth) {
+  if (breadth.size() == 0) return 0.0;
   const Eigen::MatrixXd widened = Eigen::MatrixXd::Identity(normal.rows(), normal.cols()) +
                                   breadth.asDiagonal() * normal * breadth.asDiagonal();
-  return fit - widened.llt().matrixLLT().diagonal().array().log().sum();
+  return -widened.llt().matrixLLT().diagonal().array().log().sum();
 }
 
 /// Directions that no run shows keep the uncertainty that was thought of before.
 Eigen::MatrixXd CovarianceOf(const Eigen::MatrixXd& normal, const Eigen::VectorXd& breadth) {
   const Eigen::MatrixXd before = breadth.array().square().inverse().matrix().asDiagonal();
   return (normal + before).llt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols()));
+}
+
+/// The nearer one [SI].
+double BoundOf(const Hypothesis& hypothesis, const Size& size) {
+  const double value = ValueOf(hypothesis, size);
+  return size.upper - value < value - size.lower ? size.upper : size.lower;
+}
+
+/// Sizes that the readings do not tell from one of their bounds.
+std::vector<Eigen::Index> NearBounds(const Hypothesis& hypothesis, const std::vector<Size>& sizes,
+                                     const Eigen::MatrixXd& cov) {
+  constexpr double kNear = 2.0;  // standard uncertainties
+  std::vector<Eigen::Index> near;
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const double off = std::abs(ValueOf(hypothesis, sizes[k]) - BoundOf(hypothesis, sizes[k])) / sizes[k].u;
+    if (sizes[k].name != kHappenedAt && off <= kNear * std::sqrt(cov(row, row))) near.push_back(row);
+  }
+  return near;
+}
+
+/// What the sizes that are `fixed` no longer say.
+void Strike(const std::vector<Eigen::Index>& fixed, Normal& normal) {
+  for (const Eigen::Index k : fixed) {
+    normal.matrix.row(k).setZero();
+    normal.matrix.col(k).setZero();
+    normal.gradient[k] = 0.0;
+    for (Eigen::MatrixXd& slopes : normal.slopes) slopes.col(k).setZero();
+  }
+}
+
+/// chi2 of what is left when the sizes have followed it by their slopes.
+double FollowedBy(const Left& left, const Normal& normal, const Eigen::VectorXd& breadth,
+                  const std::vector<TakenRun>& runs) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(normal.gradient.size());
+  for (std::size_t k = 0; k < runs.size(); ++k) gradient += Product(runs[k], normal.slopes[k], left.of[k]);
+  return left.chi2 - gradient.dot(CovarianceOf(normal.matrix, breadth) * gradient);
+}
+
+/// What the readings leave of a size near a bound.
+struct NearBound {
+  double log_share = 0.0;  // of what was thought of it before
+  double u = 0.0;          // root mean square of the distance from its fit, in units of u
+};
+
+/// Slopes say little of a size near a bound: a gap that is crossed at once looks the same up to the distance of two
+/// readings, and like nothing beyond. So its likelihood is summed over distances, the other sizes following it by
+/// their slopes, against half a normal distribution of its breadth.
+NearBound SummedFrom(const Hypothesis& at, const Size& size, double breadth, double chi2,
+                     const std::function<double(const Hypothesis&)>& chi2_of, double rows) {
+  constexpr int kHalvings = 7;
+  constexpr double kFarthest = 3.0, kGone = 12.0;  // of breadth; of log likelihood
+  const double bound = BoundOf(at, size), room = (size.upper - size.lower) / size.u;
+  const double from = (bound - ValueOf(at, size)) / size.u, sign = bound == size.lower ? 1.0 : -1.0;
+  const double best = LogLikelihood(chi2, rows);
+  const auto likelihood_at = [&](double distance) {
+    const Hypothesis moved = Moved(at, {size}, Eigen::VectorXd::Constant(1, from + sign * distance));
+    return std::exp(std::min(0.0, LogLikelihood(chi2_of(moved), rows) - best));
+  };
+  const auto squared_off = [&](double distance) { return std::pow(from + sign * distance, 2); };
+  const double farthest = std::min(room, kFarthest * breadth);
+  double before = 0.0, mass = 0.0, thought = 0.0, squares = 0.0, last = likelihood_at(0.0);
+  for (int halving = kHalvings; halving >= 0; --halving) {
+    const double distance = std::ldexp(farthest, -halving);
+    const double likelihood = distance > std::abs(from) && last < std::exp(-kGone) ? 0.0 : likelihood_at(distance);
+    const double prior_before = std::exp(-0.5 * std::pow(before / breadth, 2)),
+                 prior = std::exp(-0.5 * std::pow(distance / breadth, 2)), step = 0.5 * (distance - before);
+    thought += step * (prior_before + prior);
+    mass += step * (prior_before * last + prior * likelihood);
+    squares += step * (squared_off(before) * prior_before * last + squared_off(distance) * prior * likelihood);
+    before = distance;
+    last = likelihood;
+  }
+  mass = std::max(mass, thought * std::exp(-kGone));
+  return {std::log(mass / thought), std::sqrt(squares / mass)};
 }
 
 /// The whole step, or as much less as the twin bends.
@@ -159,11 +254,12 @@ std::pair<Hypothesis, Left> BestOneByOne(const Hypothesis& from, const Left& at,
 }
 
 /// A bound that is not far may be where a size belongs: a state one way or the other, a gap that is crossed at
-/// once. Slopes do not lead there.
+/// once. Slopes do not lead there. When something happened has no such place: before the first reading it is not seen.
 void TryEnds(const std::vector<Size>& sizes, const std::vector<TakenRun>& runs, const Means& means,
              Hypothesis& hypothesis, Left& left) {
   constexpr double kNotFar = 6.0;  // u
   for (const Size& size : sizes) {
+    if (size.name == kHappenedAt) continue;
     for (const double end : {size.lower, size.upper}) {
       const double steps = (end - ValueOf(hypothesis, size)) / size.u;
       const bool is_nothing = end == size.lower && end >= 0.0;  // no gap, no time: worth a look from anywhere
@@ -177,6 +273,42 @@ void TryEnds(const std::vector<Size>& sizes, const std::vector<TakenRun>& runs, 
   }
 }
 
+/// One size by its slope, the others as they are.
+std::pair<Hypothesis, Left> BestOf(const Size& size, const Hypothesis& from, const std::vector<TakenRun>& runs,
+                                   const Means& means) {
+  Left at = LeftOf(from, runs, means);
+  double curvature = 0.0, gradient = 0.0;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const Eigen::VectorXd slope = SlopeOf(from, size, at.of[k], runs[k], means);
+    curvature += Product(runs[k], slope, slope)(0, 0);
+    gradient += Product(runs[k], slope, at.of[k])(0, 0);
+  }
+  if (!(curvature > 0.0)) return {from, std::move(at)};
+  auto best = BestAlong(from, {size}, Eigen::VectorXd::Constant(1, -gradient / curvature), runs, means);
+  return best.second.chi2 < at.chi2 ? std::move(best) : std::pair{from, std::move(at)};
+}
+
+/// A wave whose phase may be any: where it begins or a quarter of a turn on, as large as it fits best. From one of
+/// them slopes lead there.
+void TryQuarterTurns(const std::vector<Size>& sizes, const std::vector<TakenRun>& runs, const Means& means,
+                     Hypothesis& hypothesis, Left& left) {
+  constexpr double kAnywhere_rad = 0.5;
+  const Hypothesis from = hypothesis;
+  for (const Size& phase : sizes) {
+    if (phase.name != kPhase || phase.u < kAnywhere_rad) continue;
+    for (const Size& size : sizes) {
+      if (size.cause != phase.cause || size.name == kPhase) continue;
+      for (const double turned_rad : {0.0, 0.5 * units::kPi}) {
+        const Hypothesis turned = Moved(from, {phase}, Eigen::VectorXd::Constant(1, turned_rad / phase.u));
+        auto [moved, now] = BestOf(size, turned, runs, means);
+        if (!(now.chi2 < left.chi2)) continue;
+        hypothesis = std::move(moved);
+        left = std::move(now);
+      }
+    }
+  }
+}
+
 /// @param cov  In units of the u that the sizes came with.
 void StateUncertainties(const Eigen::MatrixXd& cov, const std::vector<Size>& sizes, JointFit& fit) {
   const Eigen::VectorXd u = cov.diagonal().cwiseSqrt();
@@ -185,21 +317,34 @@ void StateUncertainties(const Eigen::MatrixXd& cov, const std::vector<Size>& siz
     fit.hypothesis.causes[sizes[k].cause].finding.u[sizes[k].name] = u[static_cast<Eigen::Index>(k)] * sizes[k].u;
 }
 
+/// Evidence and uncertainties of a fit that has ended.
+void StateCertainty(const std::vector<Size>& sizes, Normal normal, const std::vector<TakenRun>& runs,
+                    const Means& means, JointFit& fit) {
+  const Eigen::VectorXd breadth = Breadth(fit.hypothesis, sizes);
+  const std::vector<Eigen::Index> near = NearBounds(fit.hypothesis, sizes, CovarianceOf(normal.matrix, breadth));
+  Strike(near, normal);
+  Eigen::MatrixXd cov = CovarianceOf(normal.matrix, breadth);
+  fit.log_evidence = LogLikelihood(fit.chi2, Rows(runs)) + LogShareLeft(normal.matrix, breadth);
+  const auto chi2_of = [&](const Hypothesis& moved) {
+    return FollowedBy(LeftOf(moved, runs, means), normal, breadth, runs);
+  };
+  for (const Eigen::Index k : near) {
+    const Size& size = sizes[static_cast<std::size_t>(k)];
+    const NearBound left_of = SummedFrom(fit.hypothesis, size, breadth[k], fit.chi2, chi2_of, Rows(runs));
+    fit.log_evidence += left_of.log_share;
+    cov(k, k) = left_of.u * left_of.u;
+  }
+  StateUncertainties(cov, sizes, fit);
+}
+
 }  // namespace
 
 Eigen::MatrixXd SlopesOf(const Hypothesis& hypothesis, const Eigen::VectorXd& left, const TakenRun& run,
                          const Means& means) {
   const std::vector<Size> sizes = SizesOf(hypothesis, run.scenario.bench);
   Eigen::MatrixXd slopes(left.size(), std::ssize(sizes));
-  for (Eigen::Index k = 0; k < slopes.cols(); ++k) {
-    const Size& size = sizes[static_cast<std::size_t>(k)];
-    constexpr double kStep = 0.25;  // of u; away from the nearer bound
-    const double value = ValueOf(hypothesis, size);
-    const double step = size.upper - value > value - size.lower ? kStep : -kStep;
-    const Hypothesis moved = Moved(hypothesis, {size}, Eigen::VectorXd::Constant(1, step));
-    const double went = (ValueOf(moved, size) - value) / size.u;
-    slopes.col(k) = (LeftBy(moved, run, means) - left) / (went == 0.0 ? step : went);
-  }
+  for (Eigen::Index k = 0; k < slopes.cols(); ++k)
+    slopes.col(k) = SlopeOf(hypothesis, sizes[static_cast<std::size_t>(k)], left, run, means);
   return slopes;
 }
 
@@ -211,6 +356,7 @@ JointFit FitJointly(const Hypothesis& hypothesis, const std::vector<TakenRun>& r
   fit.hypothesis = hypothesis;
   Left left = LeftOf(hypothesis, runs, means);
   TryEnds(sizes, runs, means, fit.hypothesis, left);
+  TryQuarterTurns(sizes, runs, means, fit.hypothesis, left);
   Normal normal = NormalOf(fit.hypothesis, left, runs, means, std::ssize(sizes));
   for (int round = 0; round < kMostRounds && !sizes.empty(); ++round) {
     auto [moved, now] = BestAlong(fit.hypothesis, sizes, StepOf(normal, fit.hypothesis, sizes), runs, means);
@@ -223,10 +369,8 @@ JointFit FitJointly(const Hypothesis& hypothesis, const std::vector<TakenRun>& r
     if (gained < kStill) break;
     normal = NormalOf(fit.hypothesis, left, runs, means, std::ssize(sizes));
   }
-  const Eigen::VectorXd breadth = Breadth(fit.hypothesis, sizes);
   fit.chi2 = left.chi2;
-  fit.log_evidence = LogEvidence(fit.chi2, Rows(runs), normal.matrix, breadth);
-  StateUncertainties(CovarianceOf(normal.matrix, breadth), sizes, fit);
+  StateCertainty(sizes, std::move(normal), runs, means, fit);
   return fit;
 }
 

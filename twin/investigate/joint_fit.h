@@ -20,7 +20,9 @@ struct JointFit {
 /// one stay.
 ///
 /// Evidence by Laplace's approximation about the fit: noise known as well as tuning::kPseudoDegrees says, sizes
-/// thought of before as their plausible sizes (or as large as they are).
+/// thought of before as their plausible sizes (or as large as they are). A size that ends on a bound, where slopes say
+/// little, is summed over instead: a cause that contains another one as its limit is as likely as the room that it
+/// leaves itself there.
 JointFit FitJointly(const Hypothesis& hypothesis, const std::vector<TakenRun>& runs, const Means& means);
 
 /// One run's change of `LeftBy` for one u of each size: rows x sizes.

@@ -9,8 +9,9 @@
 namespace twinbench::investigate {
 
 TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vector<Reading> readings,
-                 const Means& means) {
+                 const Means& means, int number) {
   TakenRun run;
+  run.number = number;
   run.asked = asked;
   run.scenario = scenario;
   run.readings = std::move(readings);
@@ -28,7 +29,7 @@ TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vect
 Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const Means& means) {
   if (hypothesis.causes.empty() && hypothesis.besides.empty()) return run.left;
   try {
-    const diagnose::LinearRun with = means.against(run.readings, With(run.scenario, hypothesis));
+    const diagnose::LinearRun with = means.against(run.readings, With(run.scenario, hypothesis, run.number));
     if (with.Rows() != run.linear.Rows()) return run.left;
     const Eigen::MatrixXd left = diagnose::LeftInFrame(with, run.linear, run.noise);
     return run.noise.Whiten(run.linear, left);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,9 +12,13 @@
 
 namespace twinbench::investigate {
 
+/// The number of a run that was not made yet.
+inline constexpr int kToCome = std::numeric_limits<int>::max();
+
 /// A run beside what was believed when the investigation began: of the bench, or a planned one of the twin.
 struct TakenRun {
   plan::NextRun asked;
+  int number = kToCome;  // which of the investigation's, from 0 on
   Scenario scenario;  // without any hypothesis
   std::vector<Reading> readings;
   double minutes = 0.0;  // by the procedure's own clock
@@ -23,9 +28,10 @@ struct TakenRun {
   Eigen::VectorXd left;  // white: the residual of `scenario`
 };
 
+/// @param number  Which of the investigation's, from 0 on.
 /// @throws InputError as Means::against does.
 TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vector<Reading> readings,
-                 const Means& means);
+                 const Means& means, int number = kToCome);
 
 /// What the hypothesis leaves of the run's readings, white, in the run's own frame. Where it cannot be followed, or
 /// shows other readings, it explains nothing.

@@ -4,19 +4,21 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <numeric>
 
 #include "twin/core/errors.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
+#include "twin/separate/shift_transfer.h"
 
 namespace twinbench::plan {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kLost = 1e-9;     // of the determinant, in units of m^2
 constexpr double kMostSets = 4e6;  // that are all looked at
 
-using Phasors = std::vector<std::complex<double>>;
+using Phasor = std::complex<double>;
+using Phasors = std::vector<Phasor>;
 
 /// exp(2 pi i j / n)
 Phasors PhasorsOf(int n) {
@@ -25,9 +27,10 @@ Phasors PhasorsOf(int n) {
   return phasors;
 }
 
+/// Rounding of the difference is 1e-16 of m^2, so that it tells sets apart up to some millions of positions. What is
+/// lost is known beforehand, in integers.
 double FactorOf(double m, double sum2) {
-  const double share = 1.0 - sum2 / (m * m);
-  return share > kLost ? 1.0 / share : kInfinite;
+  return 1.0 / (1.0 - sum2 / (m * m));
 }
 
 /// Sums over the shifts that stay, harmonic by harmonic, so that trying one more costs one addition each.
@@ -35,32 +38,55 @@ class Sums {
  public:
   explicit Sums(int n) : n_(n), phasors_(PhasorsOf(n)), sums_(static_cast<std::size_t>(n / 2)) {}
 
-  void Add(int shift, double sign = 1.0) {
-    count_ += sign;
-    for (int k = 1; k <= n_ / 2; ++k) sums_[Index(k)] += sign * Phasor(k, shift);
+  void Add(int shift) {
+    shifts_.push_back(shift);
+    ForAll(shift, [this](int k, const Phasor& z) { sums_[Index(k)] += z; });
+  }
+  void TakeLast() {
+    ForAll(shifts_.back(), [this](int k, const Phasor& z) { sums_[Index(k)] -= z; });
+    shifts_.pop_back();
   }
 
-  /// Of the harmonics, with one more shift. A lost one counts so much that the fewest are lost first.
+  /// Of the harmonics, with one more shift. A lost one counts so much that the fewest are lost first: all that two
+  /// shifts see add up to n^2 / 6 at the most, if none is lost.
   double MeanWith(int shift) const {
-    constexpr double kLostWeight = 1e6;
+    const double of_lost = static_cast<double>(n_) * n_;
+    const double count = static_cast<double>(shifts_.size()) + 1.0;
+    const int step = FirstLostWith(shift);
+    int lost = step;
     double sum = 0.0;
-    for (int k = 1; k <= n_ / 2; ++k) {
-      const double factor = FactorOf(count_ + 1.0, std::norm(sums_[Index(k)] + Phasor(k, shift)));
-      sum += std::isfinite(factor) ? factor : kLostWeight;
-    }
+    ForAll(shift, [&](int k, const Phasor& z) {
+      sum += k == lost ? of_lost : FactorOf(count, std::norm(sums_[Index(k)] + z));
+      if (k == lost) lost += step;
+    });
     return sum / (n_ / 2);
   }
 
  private:
   static std::size_t Index(int harmonic) { return static_cast<std::size_t>(harmonic - 1); }
-  const std::complex<double>& Phasor(int harmonic, int shift) const {
-    return phasors_[static_cast<std::size_t>(static_cast<long long>(harmonic) * shift % n_)];
+
+  /// Calls visit(k, exp(2 pi i k shift / n)) for all harmonics.
+  template <typename Visit>
+  void ForAll(int shift, const Visit& visit) const {
+    const int by = (shift % n_ + n_) % n_;
+    for (int k = 1, at = by; k <= n_ / 2; ++k) {
+      visit(k, phasors_[static_cast<std::size_t>(at)]);
+      at += by;
+      if (at >= n_) at -= n_;
+    }
+  }
+
+  /// Its multiples are lost (separate::shifts::CommonDivisor).
+  int FirstLostWith(int shift) const {
+    int common = n_;
+    for (const int s : shifts_) common = std::gcd(common, shift - s);
+    return n_ / common;
   }
 
   int n_;
   Phasors phasors_;
-  double count_ = 0.0;
-  std::vector<std::complex<double>> sums_;
+  std::vector<int> shifts_;
+  Phasors sums_;
 };
 
 struct Found {
@@ -81,7 +107,7 @@ void Look(int n, int missing, std::vector<int>& shifts, Sums& sums, Found& best)
     shifts.push_back(s);
     sums.Add(s);
     Look(n, missing - 1, shifts, sums, best);
-    sums.Add(s, -1.0);
+    sums.TakeLast();
     shifts.pop_back();
   }
 }
@@ -115,11 +141,17 @@ Found Exchanged(int n, std::vector<int> shifts) {
   return best;
 }
 
+/// A start costs some n^2 per shift, several times over.
+int StartsFor(int n) {
+  constexpr int kMost = 24;
+  constexpr double kMostLooked = 1e7;  // sums of one harmonic
+  return std::clamp(static_cast<int>(kMostLooked / (static_cast<double>(n) * n)), 1, kMost);
+}
+
 Found FromManyStarts(int n, int count) {
-  constexpr int kStarts = 24;
   Stream random(1, "plan.shifts");
   Found best;
-  for (int start = 0; start < kStarts; ++start) {
+  for (int start = 0, starts = StartsFor(n); start < starts; ++start) {
     std::vector<int> shifts = {0};
     while (static_cast<int>(shifts.size()) < count) {
       const int s = 1 + static_cast<int>(random.Uniform() * (n - 1));
@@ -133,15 +165,12 @@ Found FromManyStarts(int n, int count) {
 
 }  // namespace
 
-double VarianceFactor(int positions, const std::vector<int>& shifts, int harmonic) {
-  std::complex<double> sum = 0.0;
-  for (const int s : shifts) sum += std::polar(1.0, 2.0 * units::kPi * harmonic * s / positions);
-  return FactorOf(static_cast<double>(shifts.size()), std::norm(sum));
-}
-
 std::vector<double> VarianceFactors(int positions, const std::vector<int>& shifts) {
+  const std::vector<double> alike(shifts.size(), 1.0);
   std::vector<double> factors;
-  for (int k = 1; k <= positions / 2; ++k) factors.push_back(VarianceFactor(positions, shifts, k));
+  for (const auto& transfer : separate::shifts::Transfers({positions, shifts, alike})) {
+    if (transfer.order > 0) factors.push_back(transfer.VarianceFactor());
+  }
   return factors;
 }
 
@@ -183,16 +212,21 @@ ShiftSet BestShifts(int positions, int count) {
 }
 
 ShiftSet WithOneMore(int positions, const std::vector<int>& shifts) {
-  ShiftSet best;
+  Require(std::ssize(shifts) < positions, "there is one more shift");
+  Sums sums(positions);
+  for (const int s : shifts) sums.Add(s);
+  int best = -1;
+  double least = kInfinite;
   for (int s = 0; s < positions; ++s) {
     if (std::ranges::count(shifts, s) > 0) continue;
-    std::vector<int> more = shifts;
-    more.push_back(s);
-    ShiftSet set = Judged(positions, more);
-    const auto rank = [](const ShiftSet& one) { return std::pair(one.lost.size(), one.mean_factor); };
-    if (best.shifts.empty() || rank(set) < rank(best)) best = std::move(set);
+    const double mean = sums.MeanWith(s);
+    if (!(mean < least)) continue;
+    least = mean;
+    best = s;
   }
-  return best;
+  std::vector<int> more = shifts;
+  more.push_back(best);
+  return Judged(positions, more);
 }
 
 }  // namespace twinbench::plan

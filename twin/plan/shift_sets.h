@@ -8,22 +8,20 @@
 
 namespace twinbench::plan {
 
-/// A comparison of two rotary tables at the n stops of a full circle, once for each shift of one against the other.
+/// A comparison of two rotary tables at the n stops of a full circle, once for each shift of one against the other; or of
+/// a ring with what it is read against by several heads, on n places where a head may stand.
 struct ShiftDesign {
-  int positions = 0;
-  std::vector<int> shifts;  // in stops
+  int positions = 0;        // 0: this scenario shifts nothing
+  std::vector<int> shifts;  // in stops, or places of heads
   /// Keys of the scenario for other shifts: "procedure.shifts=[0, 7]".
   std::function<std::vector<std::string>(const std::vector<int>&)> sets = {};
   std::vector<NextRun> other_ways = {};  // of making the same set-ups
+  std::string words = "set-ups at the shifts";  // what stands before a list of them
 };
 
-/// Variance of one harmonic of one table's error, in units of what the mean of all set-ups would leave of noise
-/// alone: with r_j = a(i) + b(i + s_j) + noise, Fourier's transform has a 2 x 2 normal matrix of m and sum_j exp(2
-/// pi i k s_j / n) (multi-step method; Evans, Hocken & Estler, CIRP Annals 45 (1996) 617). 1 is the best that any
-/// set can do, infinite is a harmonic that no reading tells of one table.
-double VarianceFactor(int positions, const std::vector<int>& shifts, int harmonic);
-
-/// Harmonics 1 to n / 2.
+/// Variances of the harmonics 1 to n / 2 of one table's error, in units of what the mean of all set-ups would leave of
+/// noise alone (separate::shifts::HarmonicTransfer). 1 is the best that any set can do, infinite is a harmonic that no
+/// reading tells of one table.
 std::vector<double> VarianceFactors(int positions, const std::vector<int>& shifts);
 
 /// Of a set of shifts.
@@ -45,12 +43,12 @@ ShiftSet Judged(int positions, const std::vector<int>& shifts);
 
 /// The set of `count` shifts, 0 among them, with the least mean variance (A-optimal). Every set is looked at up to
 /// some millions, which are counted without mirror images; else one shift after the other is exchanged for the best
-/// there is, from many starts, until none is better. How far it is from the best that there could be is told by
+/// there is, from up to 24 starts (one alone above some 2000 positions), until none is better. How far it is from the best that there could be is told by
 /// mean_factor itself: no set is below 1.
 /// @param count  From 2 to positions.
 ShiftSet BestShifts(int positions, int count);
 
-/// `shifts` and the one more that leaves the least mean variance.
+/// `shifts` and the one more that loses the fewest harmonics, and of these leaves the least mean variance.
 ShiftSet WithOneMore(int positions, const std::vector<int>& shifts);
 
 }  // namespace twinbench::plan

@@ -54,14 +54,17 @@ std::string BiasLines(const plan::Unseen& unseen) {
   return lines.empty() ? "no result by 0.1 u" : lines;
 }
 
+constexpr double kSurelyFound = 2.0;  // times the smallest size
+
 /// The longest first. What is told apart as soon as it is surely found is not worth a line.
 std::vector<Confusable> RivalsOf(const Isolability& isolability, std::size_t present) {
-  constexpr double kSurelyFound = 2.0;  // times the smallest size
   std::vector<Confusable> rivals;
   for (const Confusable& pair : isolability.confusable) {
-    if (pair.present == present && pair.told_from > kSurelyFound) rivals.push_back(pair);
+    if (pair.present == present && pair.surely_told_from > kSurelyFound) rivals.push_back(pair);
   }
-  std::ranges::stable_sort(rivals, std::ranges::greater{}, &Confusable::told_from);
+  std::ranges::stable_sort(rivals, std::ranges::greater{}, [](const Confusable& pair) {
+    return std::pair(pair.told_from, pair.surely_told_from);
+  });
   return rivals;
 }
 
@@ -71,8 +74,11 @@ std::string RivalLines(const Isolability& isolability, std::size_t present) {
   std::string lines;
   for (std::size_t k = 0; k < std::min(kMostNamed, rivals.size()); ++k) {
     lines += (lines.empty() ? "" : "\n") + PlaceOf(isolability.causes[rivals[k].blamed]);
-    if (std::isfinite(rivals[k].told_from))
+    if (rivals[k].told_from <= kSurelyFound) {
+      lines += " in another shape";
+    } else if (std::isfinite(rivals[k].told_from)) {
       lines += fmt::format(" below {}", SizeOf(isolability.causes[present], rivals[k].told_from));
+    }
   }
   if (rivals.size() > kMostNamed) lines += fmt::format("\nand {} more", rivals.size() - kMostNamed);
   return lines;
@@ -149,15 +155,18 @@ Json DetectableJson(const PlannedEffects& effects) {
   return list;
 }
 
-/// @return both causes, and from which size of the first on they are told apart; null: no plausible one.
+/// @return both causes, and from which size of the first on they are told apart (0: any that is found), in the shape that
+///         shows most and in the one that is most alike; null: no plausible one.
 Json TieJson(const Isolability& isolability, const Confusable& pair) {
   const ShownCause& present = isolability.causes[pair.present];
-  const double from = pair.told_from * present.smallest.value / present.smallest.to_SI;
+  const double unit = present.smallest.value / present.smallest.to_SI;
+  const double from = pair.told_from * unit, surely_from = pair.surely_told_from * unit;
   return {{"present", CauseJson(present)},
           {"blamed", CauseJson(isolability.causes[pair.blamed])},
           {"parameter", present.smallest.name},
           {"unit", present.smallest.unit},
-          {"told_from", std::isfinite(from) ? Json(from) : Json()}};
+          {"told_from", std::isfinite(from) ? Json(from) : Json()},
+          {"told_from_in_any_shape", std::isfinite(surely_from) ? Json(surely_from) : Json()}};
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "twin/separate/even_inverse.h"
 
 #include <algorithm>
-#include <complex>
 #include <utility>
 
 #include "twin/core/errors.h"
@@ -16,32 +15,23 @@ constexpr double kSameDirection = 1e-6;  // of a unit column
 
 using Complex = std::complex<double>;
 
-/// One harmonic of both curves from its right-hand sides.
-std::pair<Complex, Complex> SolveHarmonic(const HarmonicTransfer& t, Complex right_a, Complex right_b) {
-  const double W = t.total;
-  if (!t.lost) {
-    return {(W * right_a - t.sum * right_b) / t.determinant,
-            (W * right_b - std::conj(t.sum) * right_a) / t.determinant};
+/// Weight of a in each harmonic, b eliminated; 0 where every row has lost it.
+std::vector<double> WeightsOfA(const std::vector<std::vector<HarmonicTransfer>>& rows) {
+  std::vector<double> weights(rows.front().size(), 0.0);
+  for (const std::vector<HarmonicTransfer>& row : rows) {
+    for (std::size_t k = 0; k < row.size(); ++k) weights[k] += row[k].lost ? 0.0 : row[k].determinant / row[k].total;
   }
-  const Complex a = (W * right_a + t.sum * right_b) / (4.0 * W * W);
-  return {a, std::conj(t.sum) / W * a};
+  return weights;
 }
 
 /// Part of the largest weight that rounding may leave where there should be none.
-double NoWeight(const std::vector<HarmonicTransfer>& transfers) {
-  double worst = 1.0;
-  for (const HarmonicTransfer& t : transfers) {
-    if (!t.lost) worst = std::max(worst, t.VarianceFactor());
+double NoWeight(const std::vector<std::vector<HarmonicTransfer>>& rows, const std::vector<double>& weight_of_a) {
+  double total = 0.0, worst = 1.0;
+  for (const std::vector<HarmonicTransfer>& row : rows) total += row.front().total;
+  for (const double weight : weight_of_a) {
+    if (weight > 0.0) worst = std::max(worst, total / weight);
   }
   return std::max(kNoWeightLeft, kRounding * worst);
-}
-
-/// values[(i + shift) mod n] at i.
-Eigen::VectorXd Turned(const Eigen::VectorXd& values, int shift) {
-  const Eigen::Index n = values.size(), by = ((shift % n) + n) % n;
-  Eigen::VectorXd turned(n);
-  turned << values.tail(n - by), values.head(by);
-  return turned;
 }
 
 Eigen::MatrixXd WithoutClassMeans(int classes, const Eigen::MatrixXd& columns) {
@@ -74,51 +64,77 @@ Eigen::MatrixXd TermsAtStops(int n, Free free) {
   return terms;
 }
 
-EvenInverse::EvenInverse(ShiftSet set, Free free)
-    : set_(std::move(set)), fourier_(set_.n), transfers_(Transfers(set_)) {
+EvenInverse::EvenInverse(ShiftSet set, Free free) : set_(std::move(set)), fourier_(set_.n) {
+  for (int row = 0; row < set_.Rows(); ++row) rows_.push_back(Transfers(set_.OfRow(row)));
+  weight_of_a_ = WeightsOfA(rows_);
   EliminateFree(TermsAtStops(set_.n, free));
 }
 
-/// Both curves are real and go through one transform as a + j b.
+/// Two real curves go through one transform as x + j y.
 Eigen::VectorXd EvenInverse::InvertCurves(const Eigen::VectorXd& right) const {
-  const int n = set_.n;
-  Eigen::VectorXcd both(n);
-  both.real() = right.head(n);
-  both.imag() = right.segment(n, n);
-  Eigen::VectorXcd Z = fourier_.Forward(both);
-  for (const HarmonicTransfer& t : transfers_) {
-    const int k = t.order, mirror = (n - k) % n;
-    const Complex right_a = 0.5 * (Z[k] + std::conj(Z[mirror]));
-    const Complex right_b = Complex(0.0, -0.5) * (Z[k] - std::conj(Z[mirror]));
-    const auto [a, b] = SolveHarmonic(t, right_a, right_b);
-    Z[k] = a + Complex(0.0, 1.0) * b;
-    Z[mirror] = std::conj(a) + Complex(0.0, 1.0) * std::conj(b);
+  const int n = set_.n, count = curves();
+  std::vector<Eigen::VectorXcd> pairs;
+  for (int c = 0; c < count; c += 2) {
+    Eigen::VectorXcd both = right.segment(c * n, n).cast<Complex>();
+    if (c + 1 < count) both.imag() = right.segment((c + 1) * n, n);
+    pairs.push_back(fourier_.Forward(both));
   }
-  both = fourier_.Backward(Z) / n;
-  Eigen::VectorXd curves(2 * n);
-  curves << both.real(), both.imag();
-  return curves;
+  std::vector<Complex> wave(static_cast<std::size_t>(count));
+  for (int k = 0; 2 * k <= n; ++k) {
+    const int mirror = (n - k) % n;
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const Complex z = pairs[p][k], z_mirror = std::conj(pairs[p][mirror]);
+      wave[2 * p] = 0.5 * (z + z_mirror);
+      if (2 * p + 1 < wave.size()) wave[2 * p + 1] = Complex(0.0, -0.5) * (z - z_mirror);
+    }
+    SolveHarmonic(k, wave);
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      const Complex x = wave[2 * p], y = 2 * p + 1 < wave.size() ? wave[2 * p + 1] : Complex();
+      pairs[p][k] = x + Complex(0.0, 1.0) * y;
+      pairs[p][mirror] = std::conj(x) + Complex(0.0, 1.0) * std::conj(y);
+    }
+  }
+  Eigen::VectorXd solved(count * n);
+  for (int c = 0; c < count; c += 2) {
+    const Eigen::VectorXcd both = fourier_.Backward(pairs[static_cast<std::size_t>(c / 2)]) / n;
+    solved.segment(c * n, n) = both.real();
+    if (c + 1 < count) solved.segment((c + 1) * n, n) = both.imag();
+  }
+  return solved;
+}
+
+/// Of a and the rows' b, from right-hand sides to solutions.
+void EvenInverse::SolveHarmonic(int order, std::vector<Complex>& wave) const {
+  const auto k = static_cast<std::size_t>(order);
+  Complex a = wave[0];
+  for (std::size_t r = 0; r < rows_.size(); ++r) a -= rows_[r][k].sum / rows_[r][k].total * wave[r + 1];
+  a = weight_of_a_[k] > 0.0 ? a / weight_of_a_[k] : Complex();
+  for (std::size_t r = 0; r < rows_.size(); ++r)
+    wave[r + 1] = (wave[r + 1] - std::conj(rows_[r][k].sum) * a) / rows_[r][k].total;
+  wave[0] = a;
 }
 
 void EvenInverse::EliminateFree(const Eigen::MatrixXd& terms) {
   const Eigen::Index n = set_.n, count = terms.cols(), setups = std::ssize(set_.shifts);
-  free_columns_.resize(2 * n, count * setups);
-  eliminated_.resize(2 * n, count * setups);
+  free_columns_ = Eigen::MatrixXd::Zero(curves() * n, count * setups);
+  eliminated_.resize(curves() * n, count * setups);
   Eigen::MatrixXd own = Eigen::MatrixXd::Zero(count * setups, count * setups);
   for (Eigen::Index j = 0; j < setups; ++j) {
     const double weight = set_.weights[static_cast<std::size_t>(j)];
+    const Eigen::Index row = set_.rows.empty() ? 0 : set_.rows[static_cast<std::size_t>(j)];
     own.block(j * count, j * count, count, count) = weight * terms.transpose() * terms;
     for (Eigen::Index q = 0; q < count; ++q) {
       auto column = free_columns_.col(j * count + q);
-      column << weight * terms.col(q), weight * Turned(terms.col(q), -set_.shifts[static_cast<std::size_t>(j)]);
+      column.head(n) = weight * terms.col(q);
+      column.segment((1 + row) * n, n) = weight * Turned(terms.col(q), -set_.shifts[static_cast<std::size_t>(j)]);
       eliminated_.col(j * count + q) = InvertCurves(column);
     }
   }
-  Eigen::MatrixXd null(2 * n, 0);
+  Eigen::MatrixXd null(curves() * n, 0);
   free_inverse_.resize(own.rows(), own.cols());
   if (own.rows() > 0) {
     const auto [values, vectors] = EigenOfSymmetric(own - free_columns_.transpose() * eliminated_);
-    const Eigen::Index none = (values.array() <= NoWeight(transfers_) * own.diagonal().maxCoeff()).count();
+    const Eigen::Index none = (values.array() <= NoWeight(rows_, weight_of_a_) * own.diagonal().maxCoeff()).count();
     const auto kept = vectors.rightCols(values.size() - none);
     free_inverse_ = kept * values.tail(values.size() - none).cwiseInverse().asDiagonal() * kept.transpose();
     null = eliminated_ * vectors.leftCols(none);
@@ -130,17 +146,27 @@ void EvenInverse::FindLostCurves(const Eigen::MatrixXd& null) {
   const int classes = CommonDivisor(set_);
   null_directions_ = classes + static_cast<int>(null.cols());
   lost_of_a_ = Directions(WithoutClassMeans(classes, null.topRows(set_.n)));
-  lost_of_b_ = Directions(WithoutClassMeans(classes, null.bottomRows(set_.n)));
+  Eigen::MatrixXd null_of_b = null.bottomRows(null.rows() - set_.n);
+  for (Eigen::Index row = 0; row < null_of_b.rows(); row += set_.n)
+    null_of_b.middleRows(row, set_.n) = WithoutClassMeans(classes, null_of_b.middleRows(row, set_.n));
+  lost_of_b_ = Directions(null_of_b);
 }
 
 Eigen::VectorXd EvenInverse::Apply(const Eigen::VectorXd& right) const {
   Require(right.size() == unknowns(), "one value an unknown");
-  const int curves = 2 * set_.n;
+  const int values = curves() * set_.n;
   Eigen::VectorXd x(right.size());
-  x.tail(right.size() - curves) =
-      free_inverse_ * (right.tail(right.size() - curves) - eliminated_.transpose() * right.head(curves));
-  x.head(curves) = InvertCurves(right.head(curves)) - eliminated_ * x.tail(right.size() - curves);
+  x.tail(right.size() - values) =
+      free_inverse_ * (right.tail(right.size() - values) - eliminated_.transpose() * right.head(values));
+  x.head(values) = InvertCurves(right.head(values)) - eliminated_ * x.tail(right.size() - values);
   return x;
+}
+
+Eigen::VectorXd Turned(const Eigen::VectorXd& values, int shift) {
+  const Eigen::Index n = values.size(), by = ((shift % n) + n) % n;
+  Eigen::VectorXd turned(n);
+  turned << values.tail(n - by), values.head(by);
+  return turned;
 }
 
 void RemoveClassMeans(int classes, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 #include <vector>
 
 #include "twin/separate/fourier.h"
@@ -24,9 +25,10 @@ Eigen::MatrixXd TermsAtStops(int n, Free free);
 /// A generalised inverse of the normal matrix of complete circles in which all readings of a set-up weigh the same,
 /// harmonic by harmonic: n log n to apply.
 ///
-/// Unknowns stand in one vector: a (n values), b (n values), then the terms of the first set-up, of the second and
-/// so on. Curves fall into 2 x 2 blocks (HarmonicTransfer), of which a lost harmonic's has a pseudo-inverse; what
-/// is free in the set-ups is eliminated (Schur complement of set-ups x terms unknowns). Directions whose weight in
+/// Unknowns stand in one vector: a (n values), b (n values a row), then the terms of the first set-up, of the second
+/// and so on. Each harmonic is a block of its own, of a and the rows' b: with b eliminated, a has the weight
+/// sum over the rows of (W^2 - |S|^2) / W (HarmonicTransfer); of a lost one a stays 0. What is free in the set-ups is
+/// eliminated (Schur complement of set-ups x terms unknowns). Directions whose weight in
 /// it is below 1e-10 of the largest, or below what rounding leaves of it, count as lost: with kAffine a ramp of a
 /// looks like the same drift in all set-ups, and two set-ups leave a parabola open as well.
 class EvenInverse {
@@ -35,29 +37,35 @@ class EvenInverse {
 
   Eigen::VectorXd Apply(const Eigen::VectorXd& right) const;
 
-  /// Directions, besides the constants of the curves and lost harmonics, in which the curve a (or b) is lost:
-  /// orthonormal columns of n values, their means over the classes of stops (CommonDivisor) removed.
+  /// Directions, besides the constants of the curves and lost harmonics, in which the curve a (or those of b) is
+  /// lost: orthonormal columns, their means over the classes of stops (CommonDivisor) removed.
   const Eigen::MatrixXd& lost_of_a() const { return lost_of_a_; }
   const Eigen::MatrixXd& lost_of_b() const { return lost_of_b_; }
   /// Directions of all unknowns that change no reading.
   int null_directions() const { return null_directions_; }
   const ShiftSet& set() const { return set_; }
-  int unknowns() const { return 2 * set_.n + static_cast<int>(free_columns_.cols()); }
+  int curves() const { return 1 + static_cast<int>(rows_.size()); }
+  int unknowns() const { return curves() * set_.n + static_cast<int>(free_columns_.cols()); }
 
  private:
   Eigen::VectorXd InvertCurves(const Eigen::VectorXd& right) const;
+  void SolveHarmonic(int order, std::vector<std::complex<double>>& wave) const;
   void EliminateFree(const Eigen::MatrixXd& terms);
   void FindLostCurves(const Eigen::MatrixXd& null);
 
   ShiftSet set_;
   Fourier fourier_;
-  std::vector<HarmonicTransfer> transfers_;
+  std::vector<std::vector<HarmonicTransfer>> rows_;  // of each row
+  std::vector<double> weight_of_a_;                  // each harmonic's, b eliminated; 0 if it is lost
   Eigen::MatrixXd free_columns_;  // of the normal matrix, in the rows of the curves
   Eigen::MatrixXd eliminated_;    // InvertCurves of them
   Eigen::MatrixXd free_inverse_;  // of the Schur complement
   Eigen::MatrixXd lost_of_a_, lost_of_b_;
   int null_directions_ = 0;
 };
+
+/// values[(i + shift) mod n] at i.
+Eigen::VectorXd Turned(const Eigen::VectorXd& values, int shift);
 
 /// Takes the means of the classes i mod `classes` off the values that are to be used; the others become zero.
 void RemoveClassMeans(int classes, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values);

@@ -33,12 +33,13 @@ std::vector<Eigen::Index> SetUpsRead(const Eigen::MatrixXd& weight, Eigen::Index
   return read;
 }
 
-ShiftSet MeanWeights(const std::vector<int>& shifts, const Eigen::MatrixXd& weight,
+ShiftSet MeanWeights(const std::vector<int>& shifts, const std::vector<int>& rows, const Eigen::MatrixXd& weight,
                      const std::vector<Eigen::Index>& read) {
   ShiftSet set{static_cast<int>(weight.rows()), {}, {}};
   for (const Eigen::Index j : read) {
     set.shifts.push_back(shifts[static_cast<std::size_t>(j)]);
     set.weights.push_back(weight.col(j).mean());
+    if (!rows.empty()) set.rows.push_back(rows[static_cast<std::size_t>(j)]);
   }
   return set;
 }
@@ -61,7 +62,7 @@ double MedianOf(std::vector<double> values) {
 }
 
 /// Most values of a class have come back with the same constant, which those that have not must not move.
-void RemoveClassMedians(int classes, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values) {
+void RemoveClassMediansOfRow(int classes, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values) {
   const Eigen::Index n = values.size();
   for (Eigen::Index r = 0; r < classes; ++r) {
     std::vector<double> of_class;
@@ -76,10 +77,31 @@ void RemoveClassMedians(int classes, const std::vector<bool>& used, Eigen::Ref<E
   }
 }
 
+/// Calls remove(used, values) for each n values of rows that stand one behind the other.
+template <typename Remove>
+void ForEachRow(Eigen::Index n, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values,
+                const Remove& remove) {
+  for (Eigen::Index first = 0; first < values.size(); first += n)
+    remove(std::vector<bool>(used.begin() + first, used.begin() + first + n), values.segment(first, n));
+}
+
+void RemoveMeans(int classes, Eigen::Index n, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values) {
+  ForEachRow(n, used, values, [&](const std::vector<bool>& of_row, Eigen::Ref<Eigen::VectorXd> row) {
+    RemoveClassMeans(classes, of_row, row);
+  });
+}
+
+void RemoveMedians(int classes, Eigen::Index n, const std::vector<bool>& used, Eigen::Ref<Eigen::VectorXd> values) {
+  ForEachRow(n, used, values, [&](const std::vector<bool>& of_row, Eigen::Ref<Eigen::VectorXd> row) {
+    RemoveClassMediansOfRow(classes, of_row, row);
+  });
+}
+
 /// Lost directions over the values that are used only.
-Eigen::MatrixXd Restricted(int classes, const std::vector<bool>& used, const Eigen::MatrixXd& directions) {
+Eigen::MatrixXd Restricted(int classes, Eigen::Index n, const std::vector<bool>& used,
+                           const Eigen::MatrixXd& directions) {
   Eigen::MatrixXd left = directions;
-  for (Eigen::Index c = 0; c < left.cols(); ++c) RemoveClassMeans(classes, used, left.col(c));
+  for (Eigen::Index c = 0; c < left.cols(); ++c) RemoveMeans(classes, n, used, left.col(c));
   if (left.cols() == 0 || left.norm() < kCameBack) return Eigen::MatrixXd::Zero(left.rows(), 0);
   return OrthonormalBasisOf(left, kCameBack);
 }
@@ -98,12 +120,12 @@ struct NotBack {
   Eigen::VectorXd open;   // the same without class means, which keeps sums what they are
 };
 
-NotBack WhatIsNotBack(int classes, const std::vector<bool>& seen, const Eigen::MatrixXd& lost,
+NotBack WhatIsNotBack(int classes, Eigen::Index n, const std::vector<bool>& seen, const Eigen::MatrixXd& lost,
                       const Eigen::VectorXd& difference) {
-  const Eigen::MatrixXd known = Restricted(classes, seen, lost);
+  const Eigen::MatrixXd known = Restricted(classes, n, seen, lost);
   Eigen::VectorXd about_median = difference, about_mean = difference;
-  RemoveClassMedians(classes, seen, about_median);
-  RemoveClassMeans(classes, seen, about_mean);
+  RemoveMedians(classes, n, seen, about_median);
+  RemoveMeans(classes, n, seen, about_mean);
   about_median -= known * (known.transpose() * about_median);
   about_mean -= known * (known.transpose() * about_mean);
   NotBack result{std::vector<bool>(seen.size()), about_mean};
@@ -130,28 +152,38 @@ Eigen::VectorXd Normals(Eigen::Index count, int probe) {
 
 }  // namespace
 
-ShiftSeparation::ShiftSeparation(std::vector<int> shifts, Free free, Eigen::MatrixXd weight, int most_steps)
+ShiftSeparation::ShiftSeparation(std::vector<int> shifts, Free free, Eigen::MatrixXd weight, int most_steps,
+                                 std::vector<int> rows)
     : n_(weight.rows()),
       shifts_(std::move(shifts)),
+      rows_(std::move(rows)),
       most_steps_(most_steps),
       weight_(CheckedWeights(shifts_, std::move(weight))),
       terms_(TermsAtStops(static_cast<int>(n_), free)),
       read_(SetUpsRead(weight_, terms_.cols())),
-      inverse_(MeanWeights(shifts_, weight_, read_), free),
+      inverse_(MeanWeights(shifts_, rows_, weight_, read_), free),
       determined_a_(static_cast<std::size_t>(n_), false),
-      determined_b_(static_cast<std::size_t>(n_), false) {
+      determined_b_(static_cast<std::size_t>(CurveValues() - n_), false) {
+  Require(rows_.empty() || rows_.size() == shifts_.size(), "one row a set-up");
   for (const Eigen::Index j : read_) {
     even_ = even_ && weight_.col(j).minCoeff() == weight_.col(j).maxCoeff();
     for (Eigen::Index i = 0; i < n_; ++i) {
       if (weight_(i, j) == 0.0) continue;
       determined_a_[static_cast<std::size_t>(i)] = true;
-      determined_b_[static_cast<std::size_t>(Place(i, shifts_[static_cast<std::size_t>(j)], n_))] = true;
+      const Eigen::Index place = Place(i, shifts_[static_cast<std::size_t>(j)], n_);
+      const Eigen::Index row = rows_.empty() ? 0 : rows_[static_cast<std::size_t>(j)];
+      determined_b_[static_cast<std::size_t>(row * n_ + place)] = true;
     }
   }
   FindUndetermined();
   const int classes = CommonDivisor(inverse_.set());
-  lost_of_a_ = Restricted(classes, determined_a_, inverse_.lost_of_a());
-  lost_of_b_ = Restricted(classes, determined_b_, inverse_.lost_of_b());
+  lost_of_a_ = Restricted(classes, n_, determined_a_, inverse_.lost_of_a());
+  lost_of_b_ = Restricted(classes, n_, determined_b_, inverse_.lost_of_b());
+}
+
+/// Row of one of the set-ups that were read.
+Eigen::Index ShiftSeparation::RowAt(Eigen::Index column) const {
+  return inverse_.set().rows.empty() ? 0 : inverse_.set().rows[static_cast<std::size_t>(column)];
 }
 
 /// Readings of the set-ups that were read, one column each.
@@ -160,11 +192,12 @@ Eigen::MatrixXd ShiftSeparation::Predict(const Eigen::VectorXd& x) const {
   const Eigen::Index count = terms_.cols();
   for (Eigen::Index c = 0; c < readings.cols(); ++c) {
     const Eigen::Index by = Place(0, inverse_.set().shifts[static_cast<std::size_t>(c)], n_);
+    const Eigen::Index b = (1 + RowAt(c)) * n_;
     auto column = readings.col(c);
     column = x.head(n_);
-    column.head(n_ - by) += x.segment(n_ + by, n_ - by);
-    column.tail(by) += x.segment(n_, by);
-    if (count > 0) column += terms_ * x.segment(2 * n_ + c * count, count);
+    column.head(n_ - by) += x.segment(b + by, n_ - by);
+    column.tail(by) += x.segment(b, by);
+    if (count > 0) column += terms_ * x.segment(CurveValues() + c * count, count);
   }
   return readings;
 }
@@ -175,11 +208,12 @@ Eigen::VectorXd ShiftSeparation::Gather(const Eigen::MatrixXd& weighted) const {
   const Eigen::Index count = terms_.cols();
   for (Eigen::Index c = 0; c < weighted.cols(); ++c) {
     const Eigen::Index by = Place(0, inverse_.set().shifts[static_cast<std::size_t>(c)], n_);
+    const Eigen::Index b = (1 + RowAt(c)) * n_;
     const auto column = weighted.col(c);
     sums.head(n_) += column;
-    sums.segment(n_ + by, n_ - by) += column.head(n_ - by);
-    sums.segment(n_, by) += column.tail(by);
-    if (count > 0) sums.segment(2 * n_ + c * count, count) = terms_.transpose() * column;
+    sums.segment(b + by, n_ - by) += column.head(n_ - by);
+    sums.segment(b, by) += column.tail(by);
+    if (count > 0) sums.segment(CurveValues() + c * count, count) = terms_.transpose() * column;
   }
   return sums;
 }
@@ -222,10 +256,11 @@ Eigen::VectorXd ShiftSeparation::Minimise(const Eigen::MatrixXd& values, Converg
 Eigen::VectorXd ShiftSeparation::Estimable(const Eigen::VectorXd& curves) const {
   const int classes = CommonDivisor(inverse_.set());
   Eigen::VectorXd left = curves;
-  RemoveClassMeans(classes, determined_a_, left.head(n_));
-  RemoveClassMeans(classes, determined_b_, left.tail(n_));
+  const Eigen::Index of_b = curves.size() - n_;
+  RemoveMeans(classes, n_, determined_a_, left.head(n_));
+  RemoveMeans(classes, n_, determined_b_, left.tail(of_b));
   left.head(n_) -= lost_of_a_ * (lost_of_a_.transpose() * left.head(n_));
-  left.tail(n_) -= lost_of_b_ * (lost_of_b_.transpose() * left.tail(n_));
+  left.tail(of_b) -= lost_of_b_ * (lost_of_b_.transpose() * left.tail(of_b));
   return left;
 }
 
@@ -254,15 +289,15 @@ void ShiftSeparation::FindUndetermined() {
   const int classes = CommonDivisor(inverse_.set());
   const std::vector<bool> seen_a = determined_a_, seen_b = determined_b_;
   const Eigen::MatrixXd weight = Chosen(weight_, read_);
-  Eigen::MatrixXd open(2 * n_, 0);
+  Eigen::MatrixXd open(CurveValues(), 0);
   Eigen::Index lost = 0;
   for (int probe = 0; !even_ && probe < kProbes && lost == open.cols(); ++probe) {
     const Eigen::VectorXd drawn = Normals(inverse_.unknowns(), probe);
     Convergence convergence;
     const Eigen::VectorXd difference = Minimise(Predict(drawn), convergence) - drawn;
     search_converged_ = search_converged_ && convergence.converged;
-    const NotBack a = WhatIsNotBack(classes, seen_a, inverse_.lost_of_a(), difference.head(n_));
-    const NotBack b = WhatIsNotBack(classes, seen_b, inverse_.lost_of_b(), difference.segment(n_, n_));
+    const NotBack a = WhatIsNotBack(classes, n_, seen_a, inverse_.lost_of_a(), difference.head(n_));
+    const NotBack b = WhatIsNotBack(classes, n_, seen_b, inverse_.lost_of_b(), difference.segment(n_, CurveValues() - n_));
     Strike(a.far, determined_a_);
     Strike(b.far, determined_b_);
     open.conservativeResize(Eigen::NoChange, open.cols() + 1);
@@ -282,13 +317,11 @@ ShiftSolution ShiftSeparation::Solve(const Eigen::MatrixXd& values) const {
   const Eigen::MatrixXd chosen = (weight.array() > 0.0).select(Chosen(values, read_), 0.0);
   ShiftSolution solution;
   const Eigen::VectorXd x = Minimise(chosen, solution.convergence);
-  const Eigen::VectorXd curves = Estimable(x.head(2 * n_));
+  Eigen::VectorXd curves = Estimable(x.head(CurveValues()));
+  MarkUndetermined(curves);
+  solution.unknowns = x;
   solution.a = curves.head(n_);
-  solution.b = curves.tail(n_);
-  for (Eigen::Index i = 0; i < n_; ++i) {
-    if (!determined_a_[static_cast<std::size_t>(i)]) solution.a[i] = kNaN;
-    if (!determined_b_[static_cast<std::size_t>(i)]) solution.b[i] = kNaN;
-  }
+  solution.b = curves.tail(CurveValues() - n_);
   const Eigen::MatrixXd left = chosen - Predict(x);
   solution.chi2 = left.cwiseAbs2().cwiseProduct(weight).sum();
   solution.residuals = Eigen::MatrixXd::Constant(n_, weight_.cols(), kNaN);
@@ -296,28 +329,32 @@ ShiftSolution ShiftSeparation::Solve(const Eigen::MatrixXd& values) const {
   for (Eigen::Index c = 0; c < std::ssize(read_); ++c) {
     const Eigen::Index j = read_[static_cast<std::size_t>(c)];
     solution.residuals.col(j) = (weight.col(c).array() > 0.0).select(left.col(c), kNaN);
-    solution.free.col(j) = x.segment(2 * n_ + c * terms_.cols(), terms_.cols());
+    solution.free.col(j) = x.segment(CurveValues() + c * terms_.cols(), terms_.cols());
   }
   return solution;
 }
 
+/// NaN where nothing is determined.
+void ShiftSeparation::MarkUndetermined(Eigen::VectorXd& curves) const {
+  for (Eigen::Index i = 0; i < curves.size(); ++i) {
+    if (!IsDetermined(i < n_ ? Curve::kA : Curve::kB, static_cast<int>(i < n_ ? i : i - n_))) curves[i] = kNaN;
+  }
+}
+
 Eigen::VectorXd ShiftSeparation::CovarianceWith(Curve curve, int stop) const {
-  Require(stop >= 0 && stop < n_, "a stop is one of n");
+  Require(stop >= 0 && stop < (curve == Curve::kA ? n_ : CurveValues() - n_), "a stop is one of n");
+  if (!IsDetermined(curve, stop)) return Eigen::VectorXd::Constant(CurveValues(), kNaN);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(inverse_.unknowns());
   right[curve == Curve::kA ? stop : n_ + stop] = 1.0;
-  right.head(2 * n_) = Estimable(right.head(2 * n_));
-  const bool known = IsDetermined(curve, stop);
-  Eigen::VectorXd column = Estimable(SolveNormalEquations(right).head(2 * n_));
-  for (Eigen::Index i = 0; i < n_; ++i) {
-    if (!known || !determined_a_[static_cast<std::size_t>(i)]) column[i] = kNaN;
-    if (!known || !determined_b_[static_cast<std::size_t>(i)]) column[n_ + i] = kNaN;
-  }
+  right.head(CurveValues()) = Estimable(right.head(CurveValues()));
+  Eigen::VectorXd column = Estimable(SolveNormalEquations(right).head(CurveValues()));
+  MarkUndetermined(column);
   return column;
 }
 
 LagCovariance ShiftSeparation::Lags() const {
-  Require(even_ && lost_of_a_.cols() == 0 && lost_of_b_.cols() == 0 && terms_.cols() < 2,
-          "lags alone decide for complete, evenly weighted circles without ramps");
+  Require(even_ && lost_of_a_.cols() == 0 && lost_of_b_.cols() == 0 && terms_.cols() < 2 && inverse_.curves() == 2,
+          "lags alone decide for complete, evenly weighted circles of one row without ramps");
   const Eigen::VectorXd with_first = CovarianceWith(Curve::kA, 0);
   return {with_first.head(n_), with_first.tail(n_)};
 }

@@ -6,7 +6,7 @@
 #include "twin/core/reading.h"
 #include "twin/separate/even_inverse.h"
 
-/// Front door of what separates two curves that were read against each other at several shifts.
+/// Front door of what separates curves that were read against each other at several shifts.
 namespace twinbench::separate::shifts {
 
 enum class Curve { kA, kB };
@@ -21,8 +21,12 @@ struct Convergence {
 };
 
 struct ShiftSolution {
-  /// Values at the stops: means and what no reading tells are taken out; NaN where nothing is determined.
+  /// Values at the stops: means and what no reading tells are taken out; NaN where nothing is determined. b has n
+  /// values a row.
   Eigen::VectorXd a, b;
+  /// a, b and what is free, in the order of EvenInverse, as the steps left them: they fit the readings, and have
+  /// something in the directions that no reading tells.
+  Eigen::VectorXd unknowns;
   Eigen::MatrixXd free;       // terms x set-ups; the curves' constants, and what else is lost, are in them too
   Eigen::MatrixXd residuals;  // n x set-ups; NaN where nothing was read
   double chi2 = kNaN;         // weighted sum of their squares
@@ -37,7 +41,7 @@ struct LagCovariance {
 };
 
 /// Least squares of r_j(i) = a(i) + b(i + s_j) + free terms of set-up j, for any shifts, missing readings and
-/// unequal weights.
+/// unequal weights; b is another curve in every row of set-ups.
 ///
 /// Solved by conjugate gradients on the normal equations (CGLS; Hestenes & Stiefel, J. Res. NBS 49 (1952) 409),
 /// with the inverse of the evenly weighted, complete problem as preconditioner (EvenInverse). Where that is the
@@ -46,7 +50,8 @@ struct LagCovariance {
 /// weights within a factor of ten: some sixty). A step costs two Fourier transforms of n and some passes through the
 /// readings.
 ///
-/// What is lost. Harmonics by the shifts (LostHarmonics), named without any arithmetic in doubles. By missing
+/// What is lost. Harmonics by the shifts (LostHarmonics), named without any arithmetic in doubles; of several rows what
+/// those of two rows differ by is taken out as well. By missing
 /// readings, or by weights so far apart that doubles see nothing of the small ones: unknowns drawn at random are
 /// read and solved for again; a value that does not come back is not determined. A set-up with no more readings
 /// than free terms tells nothing and counts as not read.
@@ -59,19 +64,26 @@ class ShiftSeparation {
   /// @param weight  n x set-ups: 1 / variance of each reading; 0 where there is none.
   /// @param most_steps  Of conjugate gradients, before they start again from the true residuals; four times at the
   /// most.
+  /// @param rows  Of each set-up, from 0 on; empty: all the same.
   /// @throws std::logic_error if sizes contradict each other, a weight is negative or not finite, or nothing was
-  /// read.
-  ShiftSeparation(std::vector<int> shifts, Free free, Eigen::MatrixXd weight, int most_steps = 2000);
+  /// read, or nothing of a row.
+  ShiftSeparation(std::vector<int> shifts, Free free, Eigen::MatrixXd weight, int most_steps = 2000,
+                  std::vector<int> rows = {});
 
   /// @param values  n x set-ups; what stands where the weight is 0 is not looked at.
   ShiftSolution Solve(const Eigen::MatrixXd& values) const;
 
-  /// Covariance of the value of one curve at one stop with all values of a (first n) and b (last n); NaN where they
+  /// Covariance of the value of one curve at one stop with all values of a (first n) and b (behind); NaN where they
   /// are not determined. One solution.
+  /// @param stop  Of b: row n + stop.
   Eigen::VectorXd CovarianceWith(Curve curve, int stop) const;
-  /// The same for all stops at once; only if IsEven().
+  /// The same for all stops at once; only if IsEven(), of one row.
   LagCovariance Lags() const;
 
+  /// x of N x = right for a right-hand side in the range of the normal matrix N; the unknowns are EvenInverse's.
+  Eigen::VectorXd SolveNormalEquations(const Eigen::VectorXd& right) const;
+
+  /// Complete circles, each evenly weighted.
   bool IsEven() const { return even_; }
   bool IsDetermined(Curve curve, int stop) const;
   /// Whether the search for values that are not determined has converged: else too many may be taken for them.
@@ -86,12 +98,14 @@ class ShiftSeparation {
   Eigen::MatrixXd Predict(const Eigen::VectorXd& x) const;
   Eigen::VectorXd Gather(const Eigen::MatrixXd& weighted) const;
   Eigen::VectorXd Minimise(const Eigen::MatrixXd& values, Convergence& convergence) const;
-  Eigen::VectorXd SolveNormalEquations(const Eigen::VectorXd& right) const;
   Eigen::VectorXd Estimable(const Eigen::VectorXd& curves) const;
   void FindUndetermined();
+  void MarkUndetermined(Eigen::VectorXd& curves) const;
+  Eigen::Index RowAt(Eigen::Index column) const;
+  Eigen::Index CurveValues() const { return inverse_.curves() * n_; }
 
   Eigen::Index n_;
-  std::vector<int> shifts_;
+  std::vector<int> shifts_, rows_;
   int most_steps_;
   Eigen::MatrixXd weight_;
   Eigen::MatrixXd terms_;

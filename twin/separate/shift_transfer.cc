@@ -1,5 +1,6 @@
 #include "twin/separate/shift_transfer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -56,14 +57,32 @@ HarmonicTransfer TransferAt(const ShiftSet& set, const Circle& circle, int order
 void CheckShiftSet(const ShiftSet& set) {
   Require(set.n > 0 && !set.shifts.empty(), "there is at least one set-up of at least one stop");
   Require(set.weights.size() == set.shifts.size(), "one weight a set-up");
+  Require(set.rows.empty(), "one row has transfers");
   for (const double w : set.weights) Require(w > 0.0, "weights are positive");
 }
 
 }  // namespace
 
+int ShiftSet::Rows() const {
+  return rows.empty() ? 1 : *std::ranges::max_element(rows) + 1;
+}
+
+ShiftSet ShiftSet::OfRow(int row) const {
+  ShiftSet one{n, {}, {}};
+  for (std::size_t j = 0; j < shifts.size(); ++j) {
+    if (!rows.empty() && rows[j] != row) continue;
+    one.shifts.push_back(shifts[j]);
+    one.weights.push_back(weights[j]);
+  }
+  return one;
+}
+
 int CommonDivisor(const ShiftSet& set) {
   int common = set.n;
-  for (const int shift : set.shifts) common = std::gcd(common, shift - set.shifts.front());
+  for (int row = 0; row < set.Rows(); ++row) {
+    const ShiftSet one = set.OfRow(row);
+    for (const int shift : one.shifts) common = std::gcd(common, shift - one.shifts.front());
+  }
   return common;
 }
 

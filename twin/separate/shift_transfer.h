@@ -5,7 +5,8 @@
 #include <vector>
 
 /// Two curves read against each other: r_j(i) = a(i) + b(i + s_j) + what is free in set-up j, at n even stops i of
-/// a full circle and for shifts s_j of whole stops. docs/theory.md, 11.
+/// a full circle and for shifts s_j of whole stops. Where b was read at places between the stops too, every row of
+/// such places is a curve b of its own. docs/theory.md, 11.
 namespace twinbench::separate::shifts {
 
 /// Shifts of the set-ups, and the weight (1 / variance) that every reading of a set-up has.
@@ -13,6 +14,11 @@ struct ShiftSet {
   int n = 0;
   std::vector<int> shifts;      // in stops, of any sign
   std::vector<double> weights;  // positive
+  std::vector<int> rows = {};   // which curve b each set-up meets, from 0 on; empty: all the same
+
+  int Rows() const;
+  /// The set-ups of one row, as a set that has no other.
+  ShiftSet OfRow(int row) const;
 };
 
 /// What the set-ups together say of one harmonic of both curves: their normal matrix is
@@ -32,15 +38,15 @@ struct HarmonicTransfer {
   }
 };
 
-/// Greatest common divisor of n and all differences of shifts: the stops fall into so many classes that no set-up
-/// connects, and the harmonics that are multiples of n divided by it are lost.
+/// Greatest common divisor of n and all differences of shifts within a row: the stops fall into so many classes that
+/// no set-up connects, and the harmonics that are multiples of n divided by it are lost.
 int CommonDivisor(const ShiftSet& set);
 
 /// Harmonics 1 to n / 2 that are lost.
 std::vector<int> LostHarmonics(const ShiftSet& set);
 
-/// Harmonics 0 to n / 2. Cost: n times the number of shifts.
-/// @throws std::logic_error if there is no set-up or a weight is not positive.
+/// Harmonics 0 to n / 2 of a set of one row. Cost: n times the number of shifts.
+/// @throws std::logic_error if there is no set-up, more than one row, or a weight is not positive.
 std::vector<HarmonicTransfer> Transfers(const ShiftSet& set);
 
 /// Variance of a value of either curve at any stop, mean and lost harmonics removed: (1 / n) sum_k W / (W^2 -

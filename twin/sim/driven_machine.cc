@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "twin/core/device_fault.h"
+#include "twin/core/numbered_runs.h"
 #include "twin/sim/driven_path.h"
 #include "twin/sim/schedule.h"
 
@@ -39,7 +40,7 @@ struct DrivenKernel {
   Schedule axes{queue, "axes"}, instruments{queue, "instruments"}, fixture{queue, "fixture"};
 };
 
-struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFixture, Simulation {
+struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFixture, Simulation, NumberedRuns {
   explicit Parts(std::unique_ptr<DrivenPhysics> its_physics)
       : physics(std::move(its_physics)), travel(physics->Travel()) {
     Begin();
@@ -124,6 +125,7 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
     physics->Restart();
     Begin();
   }
+  void BeRun(int repeat) override { physics->BeRun(repeat); }
   void SetPaced(bool) override {}  // it never is
 
   void Begin() {

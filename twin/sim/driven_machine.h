@@ -37,6 +37,8 @@ class DrivenPhysics {
   /// What the instruments show. Asked once for each sample, in order.
   virtual Reading Show(const DrivenInstant& at) = 0;
   virtual void Restart() = 0;
+  /// Which run of its bench it is, as NumberedRuns.
+  virtual void BeRun(int repeat) = 0;
 };
 
 /// A machine whose axes go exactly where they are told at a constant feed, and what stands on it, in virtual time.

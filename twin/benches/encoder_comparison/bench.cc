@@ -25,6 +25,7 @@ const Bench& Whole() {
     b.index_errors = IndexErrorsOf;
     b.score = ScoreRun;
     b.next_runs = NextRunsOf;
+    b.shift_design = ShiftsOf;
     b.diagnose = Diagnose;
     b.linear_run = Linear;
     return b;

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
 
 #include "twin/benches/encoder_comparison/bench.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/plan/next_run.h"
+#include "twin/plan/shift_sets.h"
 
 namespace twinbench::benches::encoder {
 namespace {
@@ -16,7 +20,41 @@ std::string Speeds(double first, double second) {
   return fmt::format("encoder_procedure.speeds_deg_s=[{:.6g}, {:.6g}]", first, second);
 }
 
+/// Heads on one ring, at whole degrees here: the ring's curve and what is read at one instant alike by all heads are two
+/// curves, and the heads' places shifts.
+plan::ShiftDesign HeadsDesign(const std::vector<double>& heads_rad) {
+  plan::ShiftDesign design;
+  design.positions = 360;
+  for (const double head_rad : heads_rad) design.shifts.push_back(static_cast<int>(std::lround(head_rad / units::deg)));
+  design.sets = [](const std::vector<int>& heads_deg) {
+    return std::vector{fmt::format("encoder_procedure.heads_deg=[{}]", fmt::join(heads_deg, ", "))};
+  };
+  design.words = "heads at [deg]";
+  return design;
+}
+
+/// Mountings of the device on the shaft, by whole stops.
+plan::ShiftDesign MountingsDesign(const EncoderProcedureSettings& p) {
+  plan::ShiftDesign design;
+  design.positions = p.stops;
+  for (const double at_rad : p.mounting_rad)
+    design.shifts.push_back(static_cast<int>(std::lround(at_rad / units::turn * p.stops)));
+  design.sets = [stops = p.stops](const std::vector<int>& shifts) {
+    std::vector<double> mounting_deg;
+    for (const int shift : shifts) mounting_deg.push_back(360.0 * shift / stops);
+    return std::vector{fmt::format("encoder_procedure.mounting_deg=[{:.9g}]", fmt::join(mounting_deg, ", "))};
+  };
+  design.words = "mountings at the shifts";
+  return design;
+}
+
 }  // namespace
+
+plan::ShiftDesign ShiftsOf(const Scenario& scenario) {
+  const EncoderProcedureSettings& p = EncoderOf(scenario).encoder_procedure;
+  if (p.heads_rad.size() > 1) return HeadsDesign(p.heads_rad);
+  return p.mounting_rad.size() > 1 && p.kind == "stops" ? MountingsDesign(p) : plan::ShiftDesign{};
+}
 
 std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
   const EncoderProcedureSettings& p = EncoderOf(scenario).encoder_procedure;

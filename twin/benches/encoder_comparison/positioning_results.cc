@@ -2,12 +2,15 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "twin/benches/encoder_comparison/axis_unit.h"
 #include "twin/benches/encoder_comparison/estimators/iso230_2.h"
+#include "twin/benches/encoder_comparison/estimators/vdi3441.h"
 #include "twin/core/units.h"
 #include "twin/report/json_units.h"
 
@@ -45,11 +48,27 @@ nlohmann::json ToJson(const TargetPositioning& t) {
           {"repeatability", ToJson(t.repeatability)}};
 }
 
-nlohmann::json AxisJson(const AxisPositioning& positioning) {
+template <std::size_t kSize>
+nlohmann::json AxisJson(const std::array<const char*, kSize>& names, const std::array<ScatteredValue, kSize>& axis) {
   nlohmann::json json = nlohmann::json::object();
-  for (std::size_t i = 0; i < measure::kAxisValues; ++i)
-    json[measure::kAxisValueNames[i]] = ToJson(positioning.axis[i]);
+  for (std::size_t i = 0; i < kSize; ++i) json[names[i]] = ToJson(axis[i]);
   return json;
+}
+
+/// What a test lacks of VDI/DGQ 3441: five runs from both sides. Not checked: how many targets, how they are spaced.
+std::vector<std::string> MissingForVdi3441(const std::vector<TargetPositioning>& targets) {
+  constexpr int kRuns = 5;
+  for (const TargetPositioning& t : targets) {
+    if (const int runs = std::min(t.forward.runs, t.backward.runs); runs < kRuns)
+      return {fmt::format("{} runs from one side to the target at {:.4g} deg; VDI/DGQ 3441 wants {}", runs, t.position / units::deg, kRuns)};
+  }
+  return {};
+}
+
+void AppendVdi(int setup, const std::vector<TargetPositioning>& targets, const measure::ToldIn& told, PositioningResults& results) {
+  const measure::VdiPositioning vdi = measure::EvaluateVdi3441(targets);
+  results.vdi.push_back({{"setup", setup}, {"axis", AxisJson(measure::kVdiValueNames, vdi.axis)}, {"missing", MissingForVdi3441(targets)}});
+  results.text += VdiText(vdi, told);
 }
 
 void Append(int setup, const measure::PositioningStops& stops, const DeviceSettings& device,
@@ -65,7 +84,7 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
   nlohmann::json targets = nlohmann::json::array();
   for (const TargetPositioning& target : positioning.targets) targets.push_back(ToJson(target));
   results.json.push_back({{"setup", setup},
-                          {"axis", AxisJson(positioning)},
+                          {"axis", AxisJson(measure::kAxisValueNames, positioning.axis)},
                           {"targets", targets},
                           {"left_out", stops.left_out},
                           {"missing", missing},
@@ -73,6 +92,7 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
   results.text += fmt::format("set-up {}, {} targets over {:.4g} {}\n", setup, targets.size(),
                               travel_rad / coarse.to_SI, coarse.name);
   results.text += targets.size() <= kMostRows ? PositioningText(positioning, told) : AxisText(positioning, told);
+  AppendVdi(setup, positioning.targets, told, results);
   for (const std::string& what : missing) results.text += "missing: " + what + "\n";
 }
 
@@ -80,7 +100,7 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
 
 PositioningResults EvaluateStops(const std::vector<Reading>& readings, const DeviceSettings& device) {
   PositioningResults results;
-  results.json = nlohmann::json::array();
+  results.json = results.vdi = nlohmann::json::array();
   std::set<int> setups;
   for (const Reading& reading : readings) setups.insert(reading.setup);
   for (const int setup : setups) {

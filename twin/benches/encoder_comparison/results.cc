@@ -176,6 +176,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
     const PositioningResults positioning = EvaluateStops(readings, device_settings);
     evaluation.results["iso230_2"] = positioning.json;
+    evaluation.results["vdi3441"] = positioning.vdi;
     evaluation.summary += positioning.text;
   }
   return evaluation;

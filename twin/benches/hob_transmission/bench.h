@@ -19,6 +19,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
 diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scenario& scenario,
                                 const diagnose::DiagnoseOptions& options);
 std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario);
+plan::ShiftDesign ShiftsOf(const Scenario& scenario);
 diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
 
 /// What would split two causes that a run cannot tell apart, in words; empty if nothing is known.

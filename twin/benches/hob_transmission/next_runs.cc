@@ -1,8 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
 
 #include "twin/benches/hob_transmission/bench.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/plan/next_run.h"
+#include "twin/plan/shift_sets.h"
 
 namespace twinbench::benches::hob {
 
@@ -30,6 +34,21 @@ std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario) {
        {fmt::format("hob_procedure.heads_deg=[{:.6g}]", p.heads_rad.front() / units::deg),
         "hob_procedure.passes=[1, -1]", two_turns},
        plan::kSameKind}};
+}
+
+/// The gears' error by the table's angle and the ring's by where it stands under the head: two curves, and the places of
+/// the head are shifts. Heads stand at whole degrees here.
+plan::ShiftDesign ShiftsOf(const Scenario& scenario) {
+  const HobProcedureSettings& p = HobOf(scenario).hob_procedure;
+  plan::ShiftDesign design;
+  if (p.heads_rad.size() < 2) return design;
+  design.positions = 360;
+  for (const double head_rad : p.heads_rad) design.shifts.push_back(static_cast<int>(std::lround(head_rad / units::deg)));
+  design.sets = [](const std::vector<int>& heads_deg) {
+    return std::vector{fmt::format("hob_procedure.heads_deg=[{}]", fmt::join(heads_deg, ", "))};
+  };
+  design.words = "head at [deg]";
+  return design;
 }
 
 }  // namespace twinbench::benches::hob

@@ -93,7 +93,7 @@ nlohmann::json ToJson(const std::vector<PointwiseError>& pointwise) {
 }
 
 uncertainty::Joint JointOf(const std::string& name, const AngleSeries& series) {
-  uncertainty::Joint joint{name, {}, series.cov_rad2 / (units::arcsec * units::arcsec)};
+  uncertainty::Joint joint{name, {}, series.cov_rad2.ToDense() / (units::arcsec * units::arcsec)};
   for (std::size_t i = 0; i < series.position_rad.size(); ++i)
     joint.names.push_back(fmt::format("{}.ez_arcsec[{}]", name, i));
   return joint;

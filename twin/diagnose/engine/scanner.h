@@ -64,7 +64,8 @@ double PseudoDegrees(const LinearRun& run);
 /// points and prior scales is the look-elsewhere correction (Bayer & Seljak 2020).
 class Scanner {
  public:
-  /// Keeps references: run, noise and projector must outlive the scanner.
+  /// Keeps references: run, projector and families must outlive the scanner; the noise model is copied, for an
+  /// analysis that has both may be moved.
   Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
           const std::vector<Family>& families);
 
@@ -85,15 +86,16 @@ class Scanner {
   double Information(int family) const;
   /// The grid point where it is that large.
   int MostTelling(int family) const;
+  /// The same at one grid point.
+  double Information(int family, int grid_point) const;
 
  private:
   const Bundle& BundleOf(int family) const;
-  double Information(int family, int grid_point) const;
   void ScanBundle(const Bundle& bundle, const Projected& data, const Unwhitened& rows, const Deflation& deflation,
                   const Unwhitened& removed, Evidence& sums) const;
 
   const LinearRun& run_;
-  const NoiseModel& noise_;
+  const NoiseModel noise_;
   const Projector& projector_;
   const std::vector<Family>& families_;
   std::vector<Bundle> bundles_;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "twin/benches/circular_motion/twin/live.h"
+#include "twin/core/happened_once.h"
 
 namespace twinbench::sim {
 namespace {
@@ -17,7 +19,8 @@ constexpr int kBesideThePlan = -1;   // a pass
 
 class CirclePhysics : public DrivenPhysics {
  public:
-  explicit CirclePhysics(const Scenario& scenario) : run_(scenario), settings_(CircularOf(scenario)) {}
+  explicit CirclePhysics(const Scenario& scenario)
+      : scenario_(scenario), repeat_(scenario.repeat), run_(scenario), settings_(CircularOf(scenario)) {}
 
   const std::vector<MachineAxis>& Axes() const override { return axes_; }
   int Setups() const override { return static_cast<int>(settings_.procedure.setups.size()); }
@@ -30,13 +33,13 @@ class CirclePhysics : public DrivenPhysics {
   }
 
   std::vector<double> Start() const override {
-    const Reading& first = run_.Planned(0);
+    const Reading& first = run_->Planned(0);
     return {kCommandedX_m(first), kCommandedY_m(first)};
   }
 
   std::optional<Time> Planned(const DrivenInstant& at) const override {
-    if (at.sample >= run_.Readings()) return std::nullopt;
-    const Reading& planned = run_.Planned(at.sample);
+    if (at.sample >= run_->Readings()) return std::nullopt;
+    const Reading& planned = run_->Planned(at.sample);
     const double off_m =
         std::hypot(kCommandedX_m(planned) - at.commanded[0], kCommandedY_m(planned) - at.commanded[1]);
     const bool same = planned.setup == at.setup && planned.direction == at.direction && off_m < kSame_m &&
@@ -47,12 +50,16 @@ class CirclePhysics : public DrivenPhysics {
   Reading Show(const DrivenInstant& at) override {
     const std::optional<Time> planned = Planned(at);
     const bool as_planned = planned && std::chrono::abs(*planned - at.time) <= kSameTime;
-    Reading shown = as_planned ? run_.Take(at.sample) : run_.TakeBeside(course_, Commanded(at));
+    Reading shown = as_planned ? run_->Take(at.sample) : run_->TakeBeside(course_, Commanded(at));
     course_.push_back(shown);
     return shown;
   }
 
   void Restart() override { course_.clear(); }
+  void BeRun(int repeat) override {
+    if (repeat != repeat_) run_.emplace(InRun(scenario_, repeat));
+    repeat_ = repeat;
+  }
 
  private:
   static Reading Commanded(const DrivenInstant& at) {
@@ -68,7 +75,9 @@ class CirclePhysics : public DrivenPhysics {
     return r;
   }
 
-  CircleRun run_;
+  Scenario scenario_;
+  int repeat_;  // of run_
+  std::optional<CircleRun> run_;
   CircularSettings settings_;
   std::vector<MachineAxis> axes_ = {{"x"}, {"y"}};
   std::vector<Reading> course_;  // what was taken

@@ -4,22 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "twin/benches/encoder_comparison/estimators/positioning_scatter.h"
 #include "twin/core/errors.h"
-#include "twin/core/stream.h"
 
 namespace twinbench::measure {
 namespace {
 
 using Eigen::ArrayXd;
 constexpr auto kNaNWins = Eigen::PropagateNaN;  // one value that is not available makes the largest not available
-
-/// All targets from one side, one entry a target; NaN where runs are too few.
-struct Side {
-  ArrayXd runs, mean, deviation;
-
-  ArrayXd Low() const { return mean - 2.0 * deviation; }
-  ArrayXd High() const { return mean + 2.0 * deviation; }
-};
 
 double LargestOf(const ArrayXd& values) {
   return values.maxCoeff<kNaNWins>();
@@ -83,47 +75,6 @@ TargetPositioning Summarise(const PositioningTarget& target) {
   return t;
 }
 
-Side SideOf(const std::vector<TargetPositioning>& targets, ApproachPositioning TargetPositioning::*approach) {
-  const Eigen::Index size = std::ssize(targets);
-  Side side{ArrayXd(size), ArrayXd(size), ArrayXd(size)};
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const ApproachPositioning& a = targets[static_cast<std::size_t>(i)].*approach;
-    side.runs[i] = a.runs;
-    side.mean[i] = a.mean;
-    side.deviation[i] = a.deviation;
-  }
-  return side;
-}
-
-/// What the same number of runs could have given: mean normal, variance chi-squared.
-Side Again(const Side& side, Stream& stream) {
-  Side again = side;
-  for (Eigen::Index i = 0; i < side.mean.size(); ++i) {
-    const double freedom = side.runs[i] - 1.0;
-    const double chi_squared = freedom > 0.0 ? stream.ChiSquared(freedom) : kNaN;
-    again.mean[i] += side.deviation[i] / std::sqrt(side.runs[i]) * stream.Normal();
-    again.deviation[i] *= std::sqrt(chi_squared / freedom);
-  }
-  return again;
-}
-
-std::vector<ScatteredValue> WithScatter(const Side& f, const Side& b, const PositioningBootstrap& bootstrap) {
-  const ArrayXd values = Characteristics(f, b);
-  Stream stream(bootstrap.seed, "iso230_2.bootstrap");
-  ArrayXd sum = ArrayXd::Zero(values.size()), squares = sum;
-  for (int k = 0; k < bootstrap.replicas; ++k) {
-    const Side again_f = Again(f, stream), again_b = Again(b, stream);
-    const ArrayXd change = Characteristics(again_f, again_b) - values;
-    sum += change;
-    squares += change.square();
-  }
-  const double n = bootstrap.replicas;
-  const ArrayXd bias = sum / n, u = (squares / n - bias.square()).abs().sqrt();  // rounding may give -0
-  std::vector<ScatteredValue> scattered;
-  for (Eigen::Index i = 0; i < values.size(); ++i) scattered.push_back({values[i], u[i], bias[i]});
-  return scattered;
-}
-
 }  // namespace
 
 AxisPositioning EvaluatePositioning(const std::vector<PositioningTarget>& targets,
@@ -131,9 +82,7 @@ AxisPositioning EvaluatePositioning(const std::vector<PositioningTarget>& target
   AxisPositioning result;
   if (targets.empty()) return result;
   for (const PositioningTarget& target : targets) result.targets.push_back(Summarise(target));
-  const Side forward = SideOf(result.targets, &TargetPositioning::forward);
-  const Side backward = SideOf(result.targets, &TargetPositioning::backward);
-  const std::vector<ScatteredValue> values = WithScatter(forward, backward, bootstrap);
+  const std::vector<ScatteredValue> values = WithScatter(result.targets, Characteristics, bootstrap, "iso230_2.bootstrap");
   std::copy_n(values.begin(), kAxisValues, result.axis.begin());
   for (std::size_t i = 0; i < targets.size(); ++i) result.targets[i].repeatability = values[kAxisValues + i];
   return result;

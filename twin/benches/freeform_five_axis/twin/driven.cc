@@ -7,6 +7,7 @@
 #include "twin/benches/freeform_five_axis/procedure.h"
 #include "twin/benches/freeform_five_axis/twin/chain.h"
 #include "twin/benches/freeform_five_axis/twin/twin.h"
+#include "twin/core/happened_once.h"
 #include "twin/core/stream.h"
 #include "twin/sim/environment.h"
 #include "twin/sim/silence.h"
@@ -27,7 +28,7 @@ Scenario WithItsRoom(Scenario scenario) {
 class FreeformPhysics : public DrivenPhysics {
  public:
   explicit FreeformPhysics(const Scenario& scenario)
-      : scenario_(WithItsRoom(scenario)), plan_(procedure::FreeformSchedule(scenario)) {
+      : begun_(WithItsRoom(scenario)), scenario_(begun_), plan_(procedure::FreeformSchedule(scenario)) {
     for (int axis = 0; axis < kMachineAxes; ++axis)
       axes_.push_back({kAxisNames[static_cast<std::size_t>(axis)], IsRotaryAxis(axis)});
     Restart();
@@ -81,6 +82,7 @@ class FreeformPhysics : public DrivenPhysics {
     room_ = std::make_unique<Environment>(scenario_.environment, scenario_.RunSeed());
     twin_ = std::make_unique<FreeformTwin>(scenario_, Draw(scenario_));
   }
+  void BeRun(int repeat) override { scenario_ = InRun(begun_, repeat); }
 
  private:
   const FreeformSettings& own() const { return FreeformOf(scenario_); }
@@ -127,7 +129,7 @@ class FreeformPhysics : public DrivenPhysics {
     return stream.Normal();
   }
 
-  Scenario scenario_;
+  Scenario begun_, scenario_;  // as it is, in the run that it makes
   std::vector<Reading> plan_;
   std::vector<MachineAxis> axes_;
   std::unique_ptr<Environment> room_;

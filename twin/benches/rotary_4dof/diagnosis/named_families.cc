@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "twin/benches/rotary_4dof/diagnosis/families.h"
 #include "twin/benches/rotary_4dof/diagnosis/signals.h"
@@ -121,7 +122,12 @@ void AddBench(const RotaryRun& rotary, const Scenario& scenario, Candidates& nam
   AddNonlinearities(rotary, named);
 }
 
-void AddTime(Responses& responses, double reference_degC, Candidates& named) {
+/// A set-up takes its time between the mounting and the first reading, in which the mount has crept already.
+Eigen::VectorXd SinceMounting_s(const Schedule& s, double remount_s) {
+  return model::SinceFirst_s(s).array() + remount_s;
+}
+
+void AddTime(Responses& responses, const Scenario& scenario, Candidates& named) {
   const Schedule& s = responses.rotary().run.schedule;
   for (const char* where : {"yaw", "pitch"})
     named.AddDrift(AtPoint("laser_drift", where, responses, std::string("laser.") + where).showing, "drift",
@@ -130,12 +136,12 @@ void AddTime(Responses& responses, double reference_degC, Candidates& named) {
   for (const char* where : {"yaw", "tilt"}) {
     const AtPoint at("mount_creep", where, responses, std::string("grating.") + where);
     named.AddOver(at.showing, {"amplitude"}, {time_constant},
-                  [at, since_s = model::SinceFirst_s(s)](const Eigen::VectorXd& tau_s) {
+                  [at, since_s = SinceMounting_s(s, RotaryOf(scenario).procedure.remount_s)](const Eigen::VectorXd& tau_s) {
                     return at.Of((since_s.array() / tau_s[0]).log1p().matrix());
                   });
   }
   if (!model::HasTemperature(s)) return;
-  const Eigen::VectorXd above_K = model::Above_K(s, reference_degC);
+  const Eigen::VectorXd above_K = model::Above_K(s, scenario.environment.reference_degC);
   const AtPoint laser("wavelength_temperature", "", responses, "laser.wavelength");
   named.Add(laser.showing, {"wavelength_per_kelvin"}, laser.Of(above_K));
   for (int psd = 0; psd < 2; ++psd)
@@ -253,6 +259,17 @@ void AddCrosstalk(const RotaryRun& rotary, const std::vector<std::string>& scan_
   }
 }
 
+/// Steps as a point shows them: while the calibration is read, the autocollimator follows a grating that slips.
+TimeSeries ShownSteps(const TimeSeries& series, const Eigen::VectorXd& share) {
+  TimeSeries shown = series;
+  if (!series.steps || share.isOnes()) return shown;
+  auto steps = std::make_shared<Base>(*series.steps);
+  steps->series = [of_all = series.steps->series, share](int k) { return model::Times(of_all(k), share); };
+  steps->sums = {};
+  shown.steps = steps;
+  return shown;
+}
+
 void AddPatterns(Responses& responses, const TimeSeries& series, Candidates& named) {
   for (int channel = 0; channel < kChannels; ++channel)
     named.AddTone({"tone", ChannelName(channel), Eigen::Vector4d::Unit(channel)}, series, true);
@@ -260,9 +277,10 @@ void AddPatterns(Responses& responses, const TimeSeries& series, Candidates& nam
   named.AddTone({"tone", "tilt", Eigen::Vector4d(0.0, 1.0, 0.0, 1.0)}, series, true);
   named.AddTone({"tone", "all", Eigen::Vector4d::Ones()}, series, true);
   AddFreeTone(series, named);
-  for (const char* where : {"yaw", "tilt", "lateral"})
-    named.AddStep(AtPoint("slip", where, responses, std::string("grating.") + where).showing,
-                  std::string(where) == "lateral" ? "shift" : "angle", series);
+  for (const char* where : {"yaw", "tilt", "lateral"}) {
+    const AtPoint at("slip", where, responses, std::string("grating.") + where);
+    named.AddStep(at.showing, std::string(where) == "lateral" ? "shift" : "angle", ShownSteps(series, at.share));
+  }
   named.AddStep(AtPoint("mode_hop", "", responses, "laser.wavelength").showing, "wavelength_step", series);
 }
 
@@ -304,7 +322,7 @@ std::vector<Family> NamedFamilies(const RotaryRun& rotary, const Scenario& scena
   Candidates named(Catalogue(benches::rotary::Format().effects), kChannels);
   Responses responses(rotary);
   AddBench(rotary, scenario, named);
-  AddTime(responses, scenario.environment.reference_degC, named);
+  AddTime(responses, scenario, named);
   AddTravel(responses, std::max(RotaryOf(scenario).target.settle_s, RotaryOf(scenario).reference.settle_s), named);
   AddSubdivision(responses, RotaryOf(scenario), named);
   for (int channel = 0; channel < kChannels; ++channel) AddSteps(rotary, channel, named);

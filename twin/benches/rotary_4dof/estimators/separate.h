@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "twin/benches/rotary_4dof/estimators/curve_covariance.h"
 #include "twin/benches/rotary_4dof/estimators/design.h"
 #include "twin/benches/rotary_4dof/estimators/measure.h"
 #include "twin/benches/rotary_4dof/estimators/separability.h"
 #include "twin/core/scenario.h"
 #include "twin/core/table_errors.h"
+#include "twin/separate/curve_covariance.h"
 
 /// Front door of the room: from motions of the grating to the errors of both tables.
 namespace twinbench::separate {

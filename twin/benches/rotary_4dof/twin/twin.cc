@@ -4,6 +4,8 @@
 
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/world.h"
+#include "twin/core/happened_once.h"
+#include "twin/core/numbered_runs.h"
 
 namespace twinbench::sim {
 
@@ -117,7 +119,7 @@ class TwinFixture : public Fixture {
 };
 
 /// The devices are rebuilt in their place: whoever holds them keeps them over a restart.
-struct Twin::Impl : public Simulation {
+struct Twin::Impl : public Simulation, public NumberedRuns {
   struct Devices {
     explicit Devices(const Scenario& scenario) : world(scenario) {}
 
@@ -132,11 +134,13 @@ struct Twin::Impl : public Simulation {
     TwinFixture fixture{world};
   };
 
-  explicit Impl(const Scenario& its_scenario) : scenario(its_scenario) { devices.emplace(scenario); }
+  explicit Impl(const Scenario& its_scenario) : own(its_scenario), scenario(own) { devices.emplace(scenario); }
   void Restart() override { devices.emplace(scenario); }
+  void BeRun(int repeat) override { scenario = InRun(own, repeat); }
   void SetPaced(bool) override {}  // in a program's own twin no time is ever waited for
 
-  Scenario scenario;
+  const Scenario own;
+  Scenario scenario;  // own, or another run of it
   std::optional<Devices> devices;
 };
 

@@ -88,7 +88,7 @@ SearchedTurntable Search(const std::vector<Reading>& readings, const Scenario& s
   const auto is_struck = [&](const char* effect) { return std::ranges::find(excluded, effect) != excluded.end(); };
   SearchedTurntable searched;
   auto first = std::make_unique<TurntableRun>(BuildRun(readings, scenario, follow));
-  if (!is_struck("outliers")) searched.outlying = FindOutliers(first->run);
+  if (!options.design_only && !is_struck("outliers")) searched.outlying = FindOutliers(first->run);
   Analyse(std::move(first), excluded, options, searched);
   const NullCalibration null = searched.analysis.null;
   options.null = &null;

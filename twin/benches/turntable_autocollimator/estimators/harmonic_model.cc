@@ -1,14 +1,20 @@
 #include "twin/benches/turntable_autocollimator/estimators/harmonic_model.h"
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <string>
 
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
+#include "twin/core/units.h"
+#include "twin/separate/fourier.h"
 
 namespace twinbench::separate::turntable {
 namespace {
+
+constexpr int kMostOfUneven = 200;  // orders that are looked at; they cost n times their square
 
 Eigen::MatrixXd BasisAt(const std::vector<double>& angles_rad, int highest_order) {
   Eigen::MatrixXd basis(std::ssize(angles_rad), 2 * highest_order + 1);
@@ -18,10 +24,41 @@ Eigen::MatrixXd BasisAt(const std::vector<double>& angles_rad, int highest_order
 }
 
 /// Covariance of the series, or that of independent noise of the size of the residuals if it is not known.
-Eigen::MatrixXd CovarianceOf(const AngleSeries& series, double mean_square_rad2) {
-  if (series.cov_rad2.allFinite()) return series.cov_rad2;
+CurveCovariance CovarianceOf(const AngleSeries& series, double mean_square_rad2) {
+  if (series.cov_rad2.diagonal().allFinite()) return series.cov_rad2;
+  Eigen::VectorXd lags = Eigen::VectorXd::Zero(std::ssize(series.position_rad));
+  lags[0] = mean_square_rad2;
+  return CurveCovariance::Circulant(lags, 1);
+}
+
+/// Positions that divide the circle evenly.
+bool IsEvenCircle(const std::vector<double>& angles_rad) {
+  constexpr double kSame_rad = 1e-9;
+  const double step_rad = units::turn / static_cast<double>(angles_rad.size());
+  for (std::size_t i = 1; i < angles_rad.size(); ++i) {
+    if (!(std::abs(angles_rad[i] - angles_rad[i - 1] - step_rad) < kSame_rad)) return false;
+  }
+  return true;
+}
+
+/// Square of what the orders 0 to k leave of a series, for each k from 0 to `highest_order`.
+Eigen::VectorXd LeftByOrders(const AngleSeries& series, int highest_order) {
   const auto n = std::ssize(series.position_rad);
-  return mean_square_rad2 * Eigen::MatrixXd::Identity(n, n);
+  Eigen::VectorXd left(highest_order + 1);
+  if (!IsEvenCircle(series.position_rad)) {
+    // Orders are nested: a model of order k leaves the part of Q^T value that lies behind its 2 k + 1 columns.
+    const Eigen::VectorXd rotated_rad = RotatedByQ(BasisAt(series.position_rad, highest_order), series.value_rad);
+    for (int k = 0; k <= highest_order; ++k) left[k] = rotated_rad.tail(n - 2 * k - 1).squaredNorm();
+    return left;
+  }
+  const Eigen::VectorXcd wave =
+      Fourier(static_cast<int>(n)).Forward(series.value_rad.cast<std::complex<double>>());
+  double sum = 0.0;
+  for (Eigen::Index k = n / 2; k >= 0; --k) {
+    if (k <= highest_order) left[k] = sum;
+    sum += (2 * k == n ? 1.0 : 2.0) * std::norm(wave[k]) / static_cast<double>(n);
+  }
+  return left;
 }
 
 }  // namespace
@@ -62,12 +99,13 @@ HarmonicModel FitHarmonics(const AngleSeries& series, int highest_order) {
   const Eigen::VectorXd rest_rad = series.value_rad - basis * model.coefficients_rad;
   const double left = std::max(1.0, static_cast<double>(n - basis.cols()));
   const double mean_square_rad2 = rest_rad.squaredNorm() / left;
-  const Eigen::MatrixXd cov_rad2 = CovarianceOf(series, mean_square_rad2);
-  model.cov_rad2 = to_coefficients * cov_rad2 * to_coefficients.transpose();
+  const CurveCovariance cov_rad2 = CovarianceOf(series, mean_square_rad2);
+  const Eigen::MatrixXd across_rad2 = cov_rad2.Times(to_coefficients.transpose());
+  model.cov_rad2 = to_coefficients * across_rad2;
   model.residual_rms_rad = std::sqrt(rest_rad.squaredNorm() / n);
   // Expected sum of squared residuals: trace of (1 - H) cov, with H = basis * to_coefficients.
   const double expected_rad2 =
-      (cov_rad2.trace() - (basis.transpose() * cov_rad2 * to_coefficients.transpose()).trace()) / left;
+      (cov_rad2.diagonal().sum() - basis.cwiseProduct(across_rad2).sum()) / left;
   model.u_unmodelled_rad = std::sqrt(std::max(0.0, mean_square_rad2 - expected_rad2));
   for (int k = 1; k <= highest_order; ++k)
     model.terms.push_back(
@@ -83,13 +121,13 @@ CurvePoint HarmonicModel::At(double turntable_rad) const {
 
 int ChooseHighestOrder(const AngleSeries& series) {
   const auto n = static_cast<int>(series.position_rad.size());
-  const Eigen::MatrixXd basis = BasisAt(series.position_rad, MostHarmonics(n));
-  // Orders are nested: a model of order k leaves the part of Q^T value that lies behind its 2 k + 1 columns.
-  const Eigen::VectorXd rotated_rad = RotatedByQ(basis, series.value_rad);
+  const bool even = IsEvenCircle(series.position_rad);
+  const int highest = even ? MostHarmonics(n) : std::min(MostHarmonics(n), kMostOfUneven);
+  const Eigen::VectorXd left_rad2 = LeftByOrders(series, highest);
   int best = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (int order = 0; 2 * order + 3 < n; ++order) {
-    const double mean_square_rad2 = rotated_rad.tail(n - 2 * order - 1).squaredNorm() / n;
+  for (int order = 0; order <= highest && 2 * order + 3 < n; ++order) {
+    const double mean_square_rad2 = left_rad2[order] / n;
     const double parameters = 2.0 * order + 2.0;  // the noise is one of them
     const double aicc = n * std::log(mean_square_rad2) + 2.0 * parameters * n / (n - parameters - 1.0);
     if (!(aicc < least)) continue;

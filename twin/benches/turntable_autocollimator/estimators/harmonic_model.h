@@ -51,7 +51,7 @@ int MostHarmonics(int positions);
 HarmonicModel FitHarmonics(const AngleSeries& series, int highest_order);
 
 /// The highest order with the least corrected information criterion AICc (Hurvich and Tsai 1989), noise of unknown
-/// size assumed. The correction keeps it from using up all positions.
+/// size assumed. The correction keeps it from using up all positions. Of a circle that lacks positions 200 at the most.
 int ChooseHighestOrder(const AngleSeries& series);
 
 }  // namespace twinbench::separate::turntable

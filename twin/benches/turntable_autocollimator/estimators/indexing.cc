@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <map>
+#include <utility>
 
 #include "twin/benches/turntable_autocollimator/estimators/lost_harmonics.h"
 #include "twin/core/distributions.h"
@@ -36,38 +38,66 @@ void JudgeNoise(const Eigen::VectorXd& residual_rad, double gamma_rad, IndexingS
       "the residuals are {:.2f} times what the noise explains: uncertainties are scaled", result.scale));
 }
 
-/// Covariance of what the turntable holds of the multi-tooth table: the part that looks alike at positions of the
-/// same remainder by the common steps, of a mean over the rows of teeth.
-Eigen::MatrixXd MultitoothPart(const StopGrid& grid, int common_steps, double u_multitooth_rad) {
+/// Covariance, by how many positions lie between, of what the turntable holds of the multi-tooth table: the part that
+/// looks alike at positions of the same remainder by the common steps, of a mean over the rows of teeth.
+Eigen::VectorXd MultitoothLags(const StopGrid& grid, int common_steps, double u_multitooth_rad) {
   const double variance = u_multitooth_rad * u_multitooth_rad / static_cast<double>(grid.row_offset_rad.size());
-  Eigen::MatrixXd cov(grid.n, grid.n);
-  for (int i = 0; i < grid.n; ++i) {
-    for (int j = 0; j < grid.n; ++j)
-      cov(i, j) = variance / grid.n * (((i - j) % common_steps == 0 ? common_steps : 0) - 1);
-  }
-  return cov;
+  Eigen::VectorXd lags(grid.n);
+  for (int lag = 0; lag < grid.n; ++lag)
+    lags[lag] = variance / grid.n * ((lag % common_steps == 0 ? common_steps : 0) - 1);
+  return lags;
 }
 
-/// Covariance of the unknowns, by what it comes from.
-struct UnknownsCovariance {
-  Eigen::MatrixXd of_readings_rad2, of_roll_rad2, of_teeth_rad2;
+/// The same for the positions that were read.
+CurveCovariance MultitoothPart(const Eigen::VectorXd& lags, const std::vector<int>& positions) {
+  const Eigen::Index n = lags.size(), count = std::ssize(positions);
+  if (count == n) return CurveCovariance::Circulant(lags, 1);
+  Eigen::MatrixXd cov(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j)
+      cov(i, j) = lags[std::abs(positions[static_cast<std::size_t>(i)] - positions[static_cast<std::size_t>(j)])];
+  }
+  return CurveCovariance::Dense(std::move(cov));
+}
+
+/// Places of one table that were read, by ascending angle: their unknowns of the fit.
+struct ReadPlaces {
+  std::vector<double> angle_rad;
+  std::vector<int> unknown;
 };
 
-/// Those of the unknowns from `first` on that were read, by ascending angle.
-AngleSeries MakeSeries(const Eigen::VectorXd& unknowns, const UnknownsCovariance& cov, int first,
-                       const std::map<double, int>& read) {
-  AngleSeries series;
-  std::vector<int> columns;
-  for (const auto& [angle_rad, index] : read) {
-    series.position_rad.push_back(angle_rad);
-    columns.push_back(first + index);
+ReadPlaces PlacesOf(const std::map<double, int>& read) {
+  ReadPlaces places;
+  for (const auto& [angle_rad, unknown] : read) {
+    places.angle_rad.push_back(angle_rad);
+    places.unknown.push_back(unknown);
   }
-  series.value_rad = unknowns(columns);
-  series.cov_rad2 = (cov.of_readings_rad2 + cov.of_roll_rad2 + cov.of_teeth_rad2)(columns, columns);
-  series.of_readings_rad2 = cov.of_readings_rad2.diagonal()(columns);
-  series.of_roll_rad2 = cov.of_roll_rad2.diagonal()(columns);
-  series.of_teeth_rad2 = cov.of_teeth_rad2.diagonal()(columns);
+  return places;
+}
+
+/// What the uncertainty of both tables is made of.
+struct Sources {
+  double of_reading_rad2 = kNaN;  // variance of one
+  Eigen::VectorXd of_roll_rad;    // change of each unknown with one standard uncertainty of the roll
+};
+
+AngleSeries MakeSeries(const ShiftFit& fit, const Eigen::VectorXd& unknowns, const Sources& sources,
+                       const ReadPlaces& places) {
+  AngleSeries series;
+  series.position_rad = places.angle_rad;
+  series.value_rad = unknowns(places.unknown);
+  series.cov_rad2 = fit.Cofactor(places.unknown) * sources.of_reading_rad2;
+  series.of_readings_rad2 = series.cov_rad2.diagonal();
+  const Eigen::VectorXd of_roll_rad = sources.of_roll_rad(places.unknown);
+  series.cov_rad2.AddProduct(of_roll_rad);
+  series.of_roll_rad2 = of_roll_rad.cwiseAbs2();
+  series.of_teeth_rad2 = Eigen::VectorXd::Zero(series.value_rad.size());
   return series;
+}
+
+void AddTeeth(const CurveCovariance& of_teeth_rad2, AngleSeries& series) {
+  series.cov_rad2.Add(of_teeth_rad2);
+  series.of_teeth_rad2 = of_teeth_rad2.diagonal();
 }
 
 IndexingStatus StatusOf(const ShiftFit& fit, int n) {
@@ -101,27 +131,24 @@ Roll Given(Roll roll) {
 }
 
 /// @param d_roll  Change of the unknowns with the roll [rad / rad].
-UnknownsCovariance Covariance(const StopGrid& grid, const ShiftFit& fit, const Eigen::VectorXd& d_roll,
-                              double gamma_rad, const IndexingOptions& options, const IndexingSeparation& result) {
-  const double variance = result.scale * result.scale * Variance(result.noise, gamma_rad);
+Sources SourcesOf(const Eigen::VectorXd& d_roll, double gamma_rad, const IndexingSeparation& result) {
   const double u_roll_rad = std::isfinite(result.roll.u_gamma_rad) ? result.roll.u_gamma_rad : 0.0;
-  const Eigen::VectorXd of_roll = u_roll_rad * d_roll;
-  UnknownsCovariance cov{variance * fit.cofactor(), of_roll * of_roll.transpose(),
-                         Eigen::MatrixXd::Zero(d_roll.size(), d_roll.size())};
-  cov.of_teeth_rad2.topLeftCorner(grid.n, grid.n) =
-      MultitoothPart(grid, fit.common_steps(), options.u_multitooth_rad);
-  return cov;
+  return {result.scale * result.scale * Variance(result.noise, gamma_rad), u_roll_rad * d_roll};
 }
 
-void FillTables(const StopGrid& grid, const Eigen::VectorXd& unknowns, const UnknownsCovariance& cov,
-                IndexingSeparation& result) {
+void FillTables(const StopGrid& grid, const ShiftFit& fit, const Eigen::VectorXd& unknowns, const Sources& sources,
+                double u_multitooth_rad, IndexingSeparation& result) {
   std::map<double, int> positions, teeth;
   for (const GridStop& stop : grid.stops) {
     positions[grid.Position_rad(stop.position)] = stop.position;
-    teeth[grid.Tooth_rad(stop.tooth)] = stop.tooth;
+    teeth[grid.Tooth_rad(stop.tooth)] = grid.n + stop.tooth;
   }
-  result.turntable = MakeSeries(unknowns, cov, 0, positions);
-  if (result.status != IndexingStatus::kSumOnly) result.multitooth = MakeSeries(unknowns, cov, grid.n, teeth);
+  const ReadPlaces turntable = PlacesOf(positions);
+  result.turntable = MakeSeries(fit, unknowns, sources, turntable);
+  AddTeeth(MultitoothPart(MultitoothLags(grid, fit.common_steps(), u_multitooth_rad), turntable.unknown),
+           result.turntable);
+  if (result.status != IndexingStatus::kSumOnly)
+    result.multitooth = MakeSeries(fit, unknowns, sources, PlacesOf(teeth));
 }
 
 /// Values of the grid's stops, spread over all stops handed in.
@@ -153,7 +180,7 @@ IndexingSeparation SeparateIndexing(const std::vector<TurntableStop>& stops, con
   const Eigen::VectorXd residual_rad = fit.Residuals(x_rad);
   JudgeNoise(residual_rad, gamma_rad, result);
   result.residual_rad = ByStop(residual_rad, grid, std::ssize(stops));
-  FillTables(grid, fit.Solve(x_rad), Covariance(grid, fit, d_roll, gamma_rad, options, result), result);
+  FillTables(grid, fit, fit.Solve(x_rad), SourcesOf(d_roll, gamma_rad, result), options.u_multitooth_rad, result);
   AddNotes(d_roll, grid.n, result);
   return result;
 }

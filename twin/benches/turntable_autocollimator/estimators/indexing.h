@@ -8,6 +8,7 @@
 
 #include "twin/benches/turntable_autocollimator/estimators/noise.h"
 #include "twin/benches/turntable_autocollimator/estimators/roll.h"
+#include "twin/separate/curve_covariance.h"
 
 /// Front door of the bench turntable_autocollimator: from readings to the indexing errors of both tables.
 namespace twinbench::separate::turntable {
@@ -16,7 +17,7 @@ namespace twinbench::separate::turntable {
 struct AngleSeries {
   std::vector<double> position_rad;
   Eigen::VectorXd value_rad;
-  Eigen::MatrixXd cov_rad2;
+  CurveCovariance cov_rad2;
   // What its diagonal is made of; empty where that is not known:
   Eigen::VectorXd of_readings_rad2 = {}, of_roll_rad2 = {}, of_teeth_rad2 = {};
 

@@ -40,8 +40,9 @@ void TakePublished(const std::vector<FaceReading>& faces, const TurntableSetting
   analysis.method_bias_rad = ClosureBias_rad(published.turntable, rigorous.turntable);
   AddBias(rigorous.encoder, published.encoder);
   published.turntable = CurveAt(published.encoder, published.turntable.position_rad);
-  published.polygon.cov_rad2.diagonal().array() +=
-      std::pow(ClosureBias_rad(published.polygon, rigorous.polygon), 2);
+  const double bias_rad2 = std::pow(ClosureBias_rad(published.polygon, rigorous.polygon), 2);
+  for (Eigen::Index face = 0; face < published.polygon.value_rad.size(); ++face)
+    published.polygon.cov_rad2.AddVariance(face, bias_rad2);
   published.hidden = rigorous.hidden;
   published.notes.insert(published.notes.begin(), rigorous.notes.begin(), rigorous.notes.end());
   analysis.closure = std::move(published);

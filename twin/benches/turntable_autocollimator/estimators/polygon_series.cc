@@ -29,7 +29,7 @@ AngleSeries CurveAt(const HarmonicModel& curve, const std::vector<double>& angle
   const Eigen::RowVectorXd mean = basis.colwise().mean();
   basis.rowwise() -= mean;
   series.value_rad = basis * curve.coefficients_rad;
-  series.cov_rad2 = basis * curve.cov_rad2 * basis.transpose();
+  series.cov_rad2 = CurveCovariance::Dense(basis * curve.cov_rad2 * basis.transpose());
   return series;
 }
 
@@ -47,7 +47,7 @@ FaceSeries ByOwnAngle(const std::vector<int>& names, const Eigen::VectorXd& valu
     order.push_back(k);
   }
   series.errors.value_rad = value_rad(order);
-  series.errors.cov_rad2 = cov_rad2(order, order);
+  series.errors.cov_rad2 = CurveCovariance::Dense(cov_rad2(order, order));
   return series;
 }
 

@@ -80,7 +80,7 @@ AngleSeries SeriesOf(const std::vector<PointwiseError>& pointwise) {
   const auto n = static_cast<Eigen::Index>(values_rad.size());
   series.value_rad = Eigen::Map<const Eigen::VectorXd>(values_rad.data(), n);
   if (n > 0) series.value_rad.array() -= series.value_rad.mean();
-  series.cov_rad2 = Eigen::MatrixXd::Constant(n, n, kNaN);
+  series.cov_rad2 = CurveCovariance::Circulant(Eigen::VectorXd::Constant(n, kNaN), 1);
   return series;
 }
 

@@ -20,18 +20,27 @@ class CurveCovariance {
   double operator()(Eigen::Index row, Eigen::Index col) const;
   Eigen::VectorXd diagonal() const;
   Eigen::MatrixXd ToDense() const;
+  /// The matrix times columns; n log n a column and curve where it is circulant.
+  Eigen::MatrixXd Times(const Eigen::MatrixXd& columns) const;
 
   CurveCovariance operator*(double factor) const;
+  /// Adds one of as many rows; circulant if both are.
+  void Add(const CurveCovariance& other);
   /// Adds factor factor^T.
   void AddProduct(const Eigen::MatrixXd& factor);
+  /// Takes factor factor^T off.
+  void SubtractProduct(const Eigen::MatrixXd& factor);
   void AddVariance(Eigen::Index row, double variance);
 
  private:
+  bool IsCirculant() const { return curves_ > 0; }
+  Eigen::MatrixXd TimesCirculant(const Eigen::MatrixXd& columns) const;
+
   Eigen::MatrixXd dense_;  // or empty, and then
   Eigen::MatrixXd lags_;
   Eigen::Index curves_ = 0;
-  Eigen::MatrixXd factor_;    // rows x rank; no columns if nothing was added
-  Eigen::VectorXd diagonal_;  // beside the others; may be empty
+  Eigen::MatrixXd factor_, taken_;  // rows x rank; no columns if nothing was added or taken off
+  Eigen::VectorXd diagonal_;        // beside the others; may be empty
 };
 
 }  // namespace twinbench::separate

@@ -1,0 +1,128 @@
+#include "twin/report/certificate/certified.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "twin/benches/certified_parts.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::certificate {
+namespace {
+
+using benches::CertifiedPartsOf;
+using nlohmann::json;
+
+Certified Take(const std::string& bench, const json& results) {
+  return TakeCertified(results, CertifiedPartsOf(bench, "run"));
+}
+
+const CertifiedQuantity* Find(const Certified& certified, const std::string& title) {
+  for (const CertifiedQuantity& quantity : certified.quantities)
+    if (quantity.title == title) return &quantity;
+  return nullptr;
+}
+
+std::string WhyNot(const Certified& certified, const std::string& what) {
+  for (const LeftOut& one : certified.left_out)
+    if (one.what == what) return one.why;
+  return "";
+}
+
+json OneTable() {
+  return json::parse(R"({"separation": {
+    "target": {"position_deg": [0, 120, 240], "ez_arcsec": [1.5, -0.25, 3.125], "u_ez_arcsec": [0.1, 0.2, 0.3],
+               "dy_um": [0.5, null, 0.75], "u_dy_um": [0.25, null, 0.0]}},
+    "uncertainty_budget": [{"name": "separation.target.ez_arcsec", "k": 2.5}]})");
+}
+
+TEST(Certified, StatesTheValuesOfTheFileWithTheBudgetsCoverageFactor) {
+  const Certified certified = Take("rotary_4dof", OneTable());
+  const CertifiedQuantity* ez = Find(certified, "table under test, ez");
+  ASSERT_TRUE(ez);
+  EXPECT_EQ(ez->values, (std::vector{1.5, -0.25, 3.125}));
+  EXPECT_EQ(ez->expanded, (std::vector{2.5 * 0.1, 2.5 * 0.2, 2.5 * 0.3}));
+  EXPECT_EQ(ez->dsi_unit, "\\arcsecond");
+  EXPECT_FALSE(ez->is_normal);
+  ASSERT_EQ(ez->where.size(), 1u);
+  EXPECT_EQ(ez->where[0].values, (std::vector{0.0, 120.0, 240.0}));
+}
+
+TEST(Certified, LeavesOutWhatHasNoValueOrNoUncertainty) {
+  const Certified certified = Take("rotary_4dof", OneTable());
+  const CertifiedQuantity* dy = Find(certified, "table under test, dy");
+  ASSERT_TRUE(dy);
+  EXPECT_EQ(dy->values, std::vector{0.5});
+  EXPECT_EQ(dy->where[0].values, std::vector{0.0});
+  EXPECT_TRUE(dy->is_normal);  // no budget
+  EXPECT_EQ(WhyNot(certified, "table under test, dy"), "1 of 3 values: not available");
+}
+
+TEST(Certified, LeavesOutAThingThatIsKnownInASumOnly) {
+  json results = OneTable();
+  results["separation"]["not_separable"] = {{{"what", "target and reference"}, {"why", "one set-up"}}};
+  const Certified certified = Take("rotary_4dof", results);
+  EXPECT_TRUE(certified.quantities.empty());
+  EXPECT_EQ(WhyNot(certified, "table under test, ez"), "target and reference: one set-up");
+}
+
+TEST(Certified, SaysWhichOrderACurveDoesNotHold) {
+  json results = OneTable();
+  results["separation"]["not_separable"] = {{{"what", "target ex,ez order +1"}, {"why", "it looks like a mounting"}}};
+  const Certified certified = Take("rotary_4dof", results);
+  EXPECT_EQ(Find(certified, "table under test, ez")->note, "not in these values: order 1, it looks like a mounting");
+  EXPECT_EQ(Find(certified, "table under test, dy")->note, "");
+}
+
+json TwoOrders() {
+  return json::parse(R"({"device": {"position_deg": [0, 180], "ez_arcsec": [1, 2], "u_ez_arcsec": [0.1, 0.1]},
+    "harmonics": {"device": [
+      {"order": 1, "amplitude_arcsec": 3.0, "u_amplitude_arcsec": 0.1, "phase_deg": 20.0, "u_phase_deg": 100.0},
+      {"order": 2, "amplitude_arcsec": 4.0, "u_amplitude_arcsec": 0.1, "phase_deg": 30.0, "u_phase_deg": 1.0}]},
+    "not_separable": [{"what": "device and reference, order 2", "why": "all mountings see the sum"}]})");
+}
+
+TEST(Certified, LeavesOutTheLineOfASumAndTheCurveThatHoldsIt) {
+  const Certified certified = Take("encoder_comparison", TwoOrders());
+  EXPECT_FALSE(Find(certified, "device, ez"));
+  const CertifiedQuantity* amplitude = Find(certified, "orders of the device, amplitude");
+  ASSERT_TRUE(amplitude);
+  EXPECT_EQ(amplitude->values, std::vector{3.0});
+  EXPECT_EQ(amplitude->where[0].values, std::vector{1.0});
+}
+
+TEST(Certified, LeavesOutAPhaseKnownToHalfATurn) {
+  json results = TwoOrders();
+  results.erase("not_separable");
+  const Certified certified = Take("encoder_comparison", results);
+  EXPECT_EQ(Find(certified, "orders of the device, phase")->values, std::vector{30.0});
+  EXPECT_EQ(Find(certified, "device, ez")->values.size(), 2u);
+}
+
+TEST(Certified, LeavesOutPointsThatAreInvalidAndUnitsThatNobodyKnows) {
+  const json results = json::parse(R"({"separation": {"turntable": {"position_deg": [0, 5], "ez_arcsec": [1, 2], "u_ez_arcsec": [0.1, 0.1],
+    "status": ["near_pole", "ok"], "spot_px": [1, 2], "u_spot_px": [1, 2]}}})");
+  const Certified certified = Take("turntable_autocollimator", results);
+  EXPECT_EQ(Find(certified, "turntable, ez")->values, std::vector{2.0});
+  EXPECT_EQ(WhyNot(certified, "turntable, ez"), "1 of 2 values: its status is near_pole");
+  EXPECT_EQ(WhyNot(certified, "turntable, spot"), "its unit, px, is none that the D-SI knows");
+}
+
+TEST(Certified, NamesAStandardOnlyWhereTheReadingsAreAllThatItAsksFor) {
+  json results = json::parse(R"({"iso230_2": [{"setup": 0, "missing": [], "axis": {"A": {"value_arcsec": 9.5, "u_arcsec": 0.5, "bias_arcsec": 0.25}}}]})");
+  const std::string title = "positioning against the reference, set-up 0, A", bias = "scatter of the readings adds an estimated 0.25 arcsec to the value, which is not taken out";
+  const Certified complete = Take("encoder_comparison", results);
+  EXPECT_EQ(Find(complete, title)->norm, "ISO 230-2");
+  EXPECT_EQ(Find(complete, title)->note, bias);
+  results["iso230_2"][0]["missing"] = {"2 runs"};
+  const Certified wanting = Take("encoder_comparison", results);
+  EXPECT_EQ(Find(wanting, title)->norm, "");
+  EXPECT_EQ(Find(wanting, title)->note, bias + "; not in full after ISO 230-2: 2 runs");
+}
+
+TEST(Certified, RefusesABenchOfWhoseResultsNothingIsSaid) {
+  EXPECT_THROW(CertifiedPartsOf("own", "run"), InputError);
+}
+
+}  // namespace
+}  // namespace twinbench::certificate

@@ -1,0 +1,78 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "tests/tools/program.h"
+
+namespace twinbench::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A schema of our own in the place of the PTB's: only that the root is there and whether it may be this version.
+std::string SchemaFor(const std::string& version) {
+  return R"(<xs:schema xmlns:xs="http://www.w3.org/2001/XMLSchema" targetNamespace="https://ptb.de/dcc" elementFormDefault="qualified">
+<xs:element name="digitalCalibrationCertificate"><xs:complexType>
+<xs:sequence><xs:any minOccurs="0" maxOccurs="unbounded" processContents="skip"/></xs:sequence>
+<xs:attribute name="schemaVersion" fixed=")" + version + R"("/></xs:complexType></xs:element></xs:schema>)";
+}
+
+class CertificateCommand : public Program {
+ protected:
+  CertificateCommand() {
+    Write("small.toml", kSmall);
+    MakeRun("run");
+    Succeed({"certificate", "--template", "-o", "empty.toml"});
+    std::string text = std::regex_replace(Read("empty.toml"), std::regex("country = \"\""), "country = \"DE\"");
+    text = std::regex_replace(text, std::regex("(begin|end) = \"\""), "$1 = \"2026-02-28\"");
+    Write("laboratory.toml", std::regex_replace(text, std::regex("\"\"(  # [^\n]*; needed)"), "\"something\"$1"));
+  }
+};
+
+TEST_F(CertificateCommand, StatesTheNumbersOfTheResultsAndThatTheyAreSimulated) {
+  EXPECT_THAT(Succeed({"certificate", "run", "--with", "laboratory.toml", "-o", "c.xml"}), HasSubstr("SIMULATED"));
+  const std::string xml = Read("c.xml");
+  EXPECT_THAT(xml, HasSubstr("SIMULATED table under test, ez"));
+  EXPECT_THAT(xml, HasSubstr("<dcc:traceable>false</dcc:traceable>"));
+  const auto results = nlohmann::json::parse(Read("run/results.json"));
+  EXPECT_THAT(xml, HasSubstr("<si:valueXMLList>" + results.at("separation").at("target").at("ez_arcsec").at(0).dump() + " "));
+}
+
+TEST_F(CertificateCommand, StatesBothTablesWhereTheShiftsTellThemApartAndNeitherWhereTheyDoNot) {
+  Succeed({"new", "turntable_autocollimator", "-o", "sum.toml"});
+  Succeed({"run", "sum.toml", "-o", "sum"});
+  const Outcome sum = Call({"certificate", "sum", "--with", "laboratory.toml"});
+  EXPECT_EQ(sum.exit_code, 2);
+  EXPECT_THAT(sum.err, HasSubstr("nothing in it can be certified: turntable, ez"));
+  Succeed({"run", TWINBENCH_SOURCE_DIR "/scenarios/turntable_shifts.toml", "-o", "apart"});
+  const std::string xml = Succeed({"certificate", "apart", "--with", "laboratory.toml"});
+  EXPECT_THAT(xml, HasSubstr("SIMULATED turntable, ez"));
+  EXPECT_THAT(xml, HasSubstr("SIMULATED multi-tooth table, ez"));
+}
+
+TEST_F(CertificateCommand, IsWrittenOnlyIfItSatisfiesTheSchema) {
+  for (const char* folder : {"good", "bad", "broken"}) std::filesystem::create_directory(At(folder));
+  Write("good/dcc.xsd", SchemaFor("3.3.0"));
+  Write("bad/dcc.xsd", SchemaFor("2.0.0"));
+  Write("broken/dcc.xsd", "no schema");
+  Succeed({"certificate", "run", "--with", "laboratory.toml", "--schema", "good", "-o", "c.xml"});
+  EXPECT_TRUE(Exists("c.xml"));
+  const Outcome bad = Call({"certificate", "run", "--with", "laboratory.toml", "--schema", "bad", "-o", "d.xml"});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("does not satisfy bad/dcc.xsd; nothing was written"));
+  EXPECT_FALSE(Exists("d.xml"));
+  EXPECT_THAT(Call({"certificate", "run", "--with", "laboratory.toml", "--schema", "broken"}).err, HasSubstr("could not read the schema"));
+  EXPECT_THAT(Call({"certificate", "run", "--with", "laboratory.toml", "--schema", "none"}).err, HasSubstr("holds no dcc.xsd"));
+}
+
+TEST_F(CertificateCommand, SaysWhatIsMissingAndOverwritesNoInput) {
+  EXPECT_THAT(Call({"certificate", "run"}).err, HasSubstr("--with laboratory.toml"));
+  EXPECT_THAT(Call({"certificate", "run", "--with", "empty.toml"}).err, HasSubstr("empty.toml: there is no certificate.identifier, certificate.country"));
+  EXPECT_EQ(Call({"certificate", "run", "--with", "laboratory.toml", "-o", "laboratory.toml"}).exit_code, 2);
+  EXPECT_EQ(Call({"certificate", "nothing", "--with", "laboratory.toml"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,134 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/xmllint.h"
+#include "twin/benches/certified_parts.h"
+#include "twin/core/errors.h"
+#include "twin/core/run_record.h"
+#include "twin/report/certificate/certificate_xml.h"
+#include "twin/report/page/diagnosis_page.h"
+#include "twin/report/page/digest.h"
+
+namespace twinbench::tools {
+namespace {
+
+using namespace certificate;
+
+struct CertificateOptions {
+  std::string run, laboratory, output = "-", schema;
+  bool wants_template = false;
+};
+
+std::string WholeFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path, "cannot be read", "a file");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+Temperature TemperatureOf(const std::vector<Reading>& readings, const Laboratory& laboratory, const std::string& laboratory_file) {
+  if (std::isfinite(laboratory.temperature_degC))
+    return {laboratory.temperature_degC, laboratory.expanded_temperature_degC, "as the laboratory states it"};
+  double sum = 0.0, lowest = INFINITY, highest = -INFINITY;
+  int count = 0;
+  for (const Reading& reading : readings) {
+    if (!std::isfinite(reading.temperature_degC)) continue;
+    sum += reading.temperature_degC, ++count;
+    lowest = std::min(lowest, reading.temperature_degC), highest = std::max(highest, reading.temperature_degC);
+  }
+  if (count == 0)
+    throw InputError(laboratory_file, "there is no temperature, and the readings have none", "conditions.temperature_degC and its uncertainty");
+  return {sum / count, 0.0, fmt::format("mean of {} readings, {:.3f} to {:.3f} degC; no uncertainty is stated", count, lowest, highest)};
+}
+
+/// The twin by itself, and the twin shown as a bench, which says that it is one.
+bool IsSimulated(const twinbench::Provenance& provenance, const Laboratory& laboratory) {
+  const std::string& from = provenance.source;
+  return laboratory.simulated || from == "twin" || from.find("simulated") != std::string::npos || from.find("twinbench") != std::string::npos;
+}
+
+void RequireTraceability(const CertificateContent& content, const std::string& laboratory_file) {
+  if (!content.simulated && content.laboratory.traceability.empty())
+    throw InputError(laboratory_file, "there is no traceability.statement", "to which standards the results are traceable");
+}
+
+Certified CertifiedOf(const RunFolder& folder, const nlohmann::json& results, const CertifiedBench& bench) {
+  Certified certified = TakeCertified(results, bench);
+  if (!certified.quantities.empty()) return certified;
+  std::string why;
+  if (!certified.left_out.empty()) why = ": " + certified.left_out.front().what + ", " + certified.left_out.front().why;
+  throw InputError(folder.results(), "nothing in it can be certified" + why, "results with uncertainties that are told apart");
+}
+
+CertificateContent ContentOf(const CertificateOptions& options) {
+  const RunFolder folder{options.run};
+  CertificateContent content;
+  content.laboratory = ReadLaboratory(WholeFile(options.laboratory), options.laboratory);
+  const auto record = RunRecord::Open(folder.path);
+  if (!record->finished()) throw InputError(folder.record(), "the run is not finished", "a complete run");
+  const twinbench::Provenance provenance = record->provenance();
+  const CertifiedBench& bench = benches::CertifiedPartsOf(provenance.bench, folder.path);
+  const nlohmann::json results = ReadJson(folder.results());
+  content.certified = CertifiedOf(folder, results, bench);
+  if (results.contains("diagnosis")) content.diagnosis = report::VerdictOf(results.at("diagnosis")).text;
+  content.method = bench.method;
+  content.run = std::filesystem::weakly_canonical(folder.path).filename().string();
+  content.scenario_title = LoadScenario(folder.scenario()).title;
+  content.readings_from = provenance.source, content.recorded_by = provenance.program_version;
+  content.program_version = TWINBENCH_VERSION;
+  content.simulated = IsSimulated(provenance, content.laboratory);
+  content.temperature = TemperatureOf(record->Readings(), content.laboratory, options.laboratory);
+  for (const std::string& file : {folder.results(), folder.scenario(), folder.record()})
+    content.digests.emplace_back(std::filesystem::path(file).filename().string(), report::Sha256(WholeFile(file)));
+  RequireTraceability(content, options.laboratory);
+  return content;
+}
+
+void Write(const std::string& path, const std::string& text, const std::string& what) {
+  if (path == "-") {
+    fmt::print("{}", text);
+    return;
+  }
+  WriteFileAtOnce(path, text);
+  fmt::print("{}: {}\n", path, what);
+}
+
+void MakeCertificate(const CertificateOptions& options) {
+  if (options.wants_template) return Write(options.output, LaboratoryTemplate(), "fill in what is empty, then --with " + options.output);
+  if (options.run.empty()) throw InputError("certificate", "there is no run", "the folder of a run, or --template");
+  if (options.laboratory.empty())
+    throw InputError("certificate", "nothing is known of the laboratory", "--with laboratory.toml; --template writes one to fill in");
+  RequireOutput(options.output, {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()});
+  const CertificateContent content = ContentOf(options);
+  const std::string xml = CertificateXml(content);
+  if (!options.schema.empty() && !SatisfiesSchema(xml, options.schema))
+    throw InputError(options.output, "the certificate does not satisfy " + options.schema + "/dcc.xsd; nothing was written", "what xmllint says above");
+  const std::size_t left_out = content.certified.left_out.size();
+  Write(options.output, xml,
+        fmt::format("{} results certified{}{}", content.certified.quantities.size(), left_out ? fmt::format(", {} left out and named", left_out) : "",
+                    content.simulated ? "; SIMULATED, which it says" : ""));
+}
+
+}  // namespace
+
+void AddCertificate(CLI::App& app) {
+  auto* command = app.add_subcommand("certificate", "Write a run's results as a digital calibration certificate (DCC 3.3.0, XML)");
+  auto options = std::make_shared<CertificateOptions>();
+  command->add_option("run", options->run, "folder of a run that is finished");
+  command->add_option("--with", options->laboratory, "TOML file of what only the laboratory knows");
+  command->add_option("-o,--output", options->output, "file to write, - for stdout")->capture_default_str();
+  command->add_option("--schema", options->schema, "folder with dcc.xsd and the schemas that it imports: validate with xmllint first, and write nothing if it fails");
+  command->add_flag("--template", options->wants_template, "write the TOML file to fill in instead");
+  command->callback([options] { MakeCertificate(*options); });
+}
+
+}  // namespace twinbench::tools
