@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 #include <pthread.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -50,7 +47,6 @@ constexpr auto kTick = milliseconds(20);
 constexpr std::size_t kPiece_B = 64 * 1024;  // at most that is on its way to a browser
 constexpr std::size_t kWaiting = 4096;       // events between measurement and server
 constexpr std::size_t kKept = 20000;         // events for pages that come later
-constexpr int kNiceness = 10;                // a measurement comes first
 
 struct Told {
   const char* kind;
@@ -249,7 +245,6 @@ struct Server::State {
 
   /// What goes wrong here ends the page and nothing else.
   void Work() noexcept {
-    setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNiceness);
     try {
       io.run();
     } catch (...) {
