@@ -26,11 +26,14 @@ void TellOperator(const std::string& notice) {
 
 class OpenedBench : public OpenBench {
  public:
-  OpenedBench(const BenchFile& file, const AdcSettings& adc, double noise_V, Duration elapsed, int run)
+  OpenedBench(const BenchFile& file, const AdcSettings& adc, double noise_V, Duration elapsed, int run,
+              const std::function<bool()>& stop_asked)
       : file_(file), hands_(std::cin, std::cerr) {
     OpenClock(elapsed, run);  // first: a served twin's time stands still from here on
     target_ = OpenTable("target", file.target, file.target_limits);
     reference_ = OpenTable("reference", file.reference, file.reference_limits);
+    target_->HearStop(stop_asked);
+    reference_->HearStop(stop_asked);
     OpenInstruments();
     adc_ = MakeAdConverter(file.adc, adc, *clock_, noise_V);
   }
@@ -128,9 +131,9 @@ class OpenedBench : public OpenBench {
 }  // namespace
 
 std::unique_ptr<OpenBench> OpenHardware(const BenchFile& file, const AdcSettings& adc, double noise_V,
-                                        Duration elapsed, int run) {
+                                        Duration elapsed, int run, const std::function<bool()>& stop_asked) {
   Require(file.kind == "hardware", "only a bench of hardware is opened");
-  return std::make_unique<OpenedBench>(file, adc, noise_V, elapsed, run);
+  return std::make_unique<OpenedBench>(file, adc, noise_V, elapsed, run, stop_asked);
 }
 
 }  // namespace twinbench::hw

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/core/number_text.h"
@@ -11,6 +12,7 @@ namespace twinbench::hw {
 namespace {
 
 constexpr Duration kLook = std::chrono::seconds(1);  // between two looks at a table that finds its origin
+constexpr Duration kHears = std::chrono::milliseconds(50);  // a stop while a table moves; as long as a held poll of ESP
 constexpr double kAllDigits_deg = 1e-9;              // 4 microarcsec: what decimal text may lose on its way
 
 /// As far as a controller that was told all digits, or so many decimals, may be from what was meant.
@@ -59,9 +61,20 @@ void ControlledTable::RequireUnderstood(double angle_rad, const TableState& now)
 }
 
 bool ControlledTable::Settles(Duration within) {
-  if (!AwaitSettled(within)) return false;
+  if (!AwaitSettledOrStop(within)) return false;
   RequireOrigin(State());
   return true;
+}
+
+bool ControlledTable::AwaitSettledOrStop(Duration within) {
+  if (!stop_asked_) return AwaitSettled(within);
+  do {
+    if (stop_asked_()) throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
+    const Duration piece = std::min(within, kHears);
+    if (AwaitSettled(piece)) return true;
+    within -= piece;
+  } while (within > Duration(0));
+  return false;
 }
 
 TableState ControlledTable::State() {

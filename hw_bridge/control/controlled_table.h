@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "hw_bridge/control/device_line.h"
@@ -28,6 +29,9 @@ class ControlledTable : public RotaryTable {
   /// @throws DeviceFault kRefused if the controller allows less than the bench file.
   void AgreeOnLimits();
   const TableLimits& limits() const { return limits_; }
+  /// From here on Settles asks `stop_asked` every 50 ms of bench time, and ends with a DeviceFault kStopped where it says so: nobody waits
+  /// out the second that a procedure watches a moving table for.
+  void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
 
  protected:
   DeviceLine& line() { return line_; }
@@ -42,6 +46,7 @@ class ControlledTable : public RotaryTable {
   virtual double ReadLowerLimit_rad() = 0;
   virtual double ReadUpperLimit_rad() = 0;
 
+  bool AwaitSettledOrStop(Duration within);
   void RequireWithinLimits(double angle_rad) const;
   void RequireOrigin(const TableState& now) const;
   void RequireUnderstood(double angle_rad, const TableState& now);
@@ -50,6 +55,7 @@ class ControlledTable : public RotaryTable {
   DeviceLine line_;
   TableLimits limits_;
   int decimals_;
+  std::function<bool()> stop_asked_;
 };
 
 }  // namespace twinbench::hw

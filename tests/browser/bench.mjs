@@ -1,5 +1,5 @@
 // What the browser tests share: runs made by the program, and their pages opened in one browser.
-import { execFileSync } from "node:child_process";
+import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
@@ -31,14 +31,36 @@ export function makeRun(name, toml, ...more) {
 
 let browser;
 
-/** Opens a page; whatever it says on the console is kept in `said`. */
-export async function open(file) {
+/** The program in the background: `err` is what it has said so far, `ended` promises its exit code. */
+export function begin(...words) {
+  const process_ = spawn(TWINBENCH_PROGRAM, words, { cwd: folder, stdio: ["ignore", "ignore", "pipe"], env: { ...process.env, XDG_CACHE_HOME: folder } });
+  const program = { err: "", id: process_.pid, kill: () => process_.kill("SIGKILL") };
+  process_.stderr.on("data", (text) => (program.err += text));
+  program.ended = new Promise((done) => process_.on("close", done));
+  return program;
+}
+
+/** A page that says on the console whatever it has against what it is shown; kept in `said`. */
+async function blank() {
   browser ??= await chromium.launch({ executablePath: TWINBENCH_CHROMIUM, args: ["--no-sandbox"] });
   const context = await browser.newContext({ viewport: { width: 1300, height: 900 } });
   const page = await context.newPage();
   page.said = [];
   page.on("console", (message) => page.said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => page.said.push(`error: ${error.message}`));
+  return page;
+}
+
+/** Opens a page of the program's own server. */
+export async function openAddress(address) {
+  const page = await blank();
+  await page.goto(address);
+  return page;
+}
+
+/** Opens a page of results, which asks nothing of any network. */
+export async function open(file) {
+  const page = await blank();
   page.on("request", (request) => request.url().startsWith("http") && page.said.push(`request: ${request.url()}`));
   await page.goto(`file://${join(folder, file)}`);
   await page.waitForFunction(() => [...document.querySelectorAll(".plot")].every((plot) => plot.dataset.drawn));

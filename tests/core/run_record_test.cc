@@ -334,6 +334,22 @@ TEST(RunRecord, KeepsManyReadingsInOneTransactionOrNone) {
   EXPECT_EQ(record->Readings().size(), 3u);
 }
 
+TEST(RunRecord, TellsOfEveryReadingThatIsSafeAndOfNoOther) {
+  const TemporaryFolder folder;
+  const auto record = RunRecord::Create(folder.path(), AnyProvenance());
+  std::vector<int> heard;
+  record->TellOf([&](const Reading& r) {
+    heard.push_back(r.reading);
+    EXPECT_EQ(RunRecord::Open(folder.path())->Readings().back().reading, record->Readings().back().reading)
+        << "another program sees it too";
+  });
+  record->Append(ReadingOf(0), BlockOf({1, 2, 3, 4}));
+  EXPECT_THROW(record->Append(ReadingOf(0), BlockOf({1, 2, 3, 4})), BenchError) << "a number is taken";
+  record->AppendAll({ReadingOf(1), ReadingOf(2)});
+  EXPECT_THROW(record->AppendAll({ReadingOf(3), ReadingOf(1)}), BenchError);
+  EXPECT_THAT(heard, testing::ElementsAre(0, 1, 2));
+}
+
 TEST(RunRecord, OfTheVersionWithoutCallsAndAttemptsIsBroughtUpToDate) {
   const TemporaryFolder folder;
   RunRecord::Create(folder.path(), AnyProvenance())->Append(ReadingOf(0), BlockOf({1, 2, 3, 4}));

@@ -45,6 +45,22 @@ class OpenedBench : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Tables, OpenedBench, testing::Values("scpi", "esp", "pty"),
                          [](const auto& tables) { return std::string(tables.param); });
 
+TEST_P(OpenedBench, HearsAStopWithinATenthOfASecondWhileATableMoves) {
+  const Scenario scenario = Noisy();
+  ServedTwin served(scenario);
+  const RotarySettings& own = RotaryOf(scenario);
+  bool is_asked = false;
+  const auto opened = OpenHardware(FileOf(served, GetParam()), own.adc, own.amplifier.noise_V, {}, 0, [&] { return is_asked; });
+  const RotaryBench bench = opened->Bench();
+  bench.target.StartMove(1.5);  // takes seconds
+  EXPECT_FALSE(bench.target.Settles(std::chrono::milliseconds(300)));
+  const Time asked = bench.clock.Now();
+  is_asked = true;
+  EXPECT_EQ(KindOf([&] { bench.target.Settles(std::chrono::seconds(1)); }), FaultKind::kStopped);
+  EXPECT_LE(bench.clock.Now() - asked, std::chrono::milliseconds(100));
+  EXPECT_TRUE(bench.target.State().moving) << "stopping is for whoever caught it";
+}
+
 TEST_P(OpenedBench, TakesTheBlocksThatTheTwinTakesInTheProgramItself) {
   const Scenario scenario = Noisy();
   ServedTwin served(scenario);

@@ -47,7 +47,8 @@ class HiddenTwin : public InvestigatedBench {
   void MakeAnew(const RunFolder& run, const investigate::Step& step, const Scenario& asked) const {
     std::error_code ignored;
     fs::remove_all(run.path, ignored);
-    RunOnTwin(investigate::HiddenRun(hidden_, believed_, step.run, asked.repeat), run, false);
+    LivePage none;
+    RunOnTwin(investigate::HiddenRun(hidden_, believed_, step.run, asked.repeat), run, false, none);
     WriteFileAtOnce(run.scenario(), WriteScenario(asked));  // what is believed; the rest is in truth.json
   }
 
@@ -71,7 +72,8 @@ class MeasuredBench : public InvestigatedBench {
       options.folder = run.path;
       options.resume = fs::exists(run.record());
       options.rehearse = true;
-      tools::Measure(options);
+      LivePage none;
+      tools::Measure(options, none);
     }
     return RunRecord::Open(run.path)->Readings();
   }

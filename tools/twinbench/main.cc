@@ -9,14 +9,12 @@
 #endif
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/exit_code.h"
 #include "tools/twinbench/terminal.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
-#include "twin/core/state_unknown.h"
 
 namespace {
-
-enum ExitCode { kDone = 0, kWorldFailed = 1, kBadInput = 2, kStateUnknown = 3 };
 
 constexpr const char* kAbout =
     "A virtual test bench for precision rotary tables: a scenario file goes in, the virtual bench carries out the\n"
@@ -123,9 +121,9 @@ void KeepFreedMemory() {
 }
 
 /// Says it even where nobody can read it any more: a closed session must not turn one failure into another.
-int Failed(const std::exception& error, ExitCode code) {
-  std::fputs(fmt::format("twinbench: {}\n", twinbench::tools::ForTerminal(error.what())).c_str(), stderr);
-  return code;
+int Failed(const std::exception& error) {
+  std::fputs((twinbench::tools::FailureText(error) + "\n").c_str(), stderr);
+  return twinbench::tools::ExitCodeOf(error);
 }
 
 }  // namespace
@@ -134,11 +132,7 @@ int main(int argc, char** argv) {
   KeepFreedMemory();
   try {
     return Run(argc, argv);
-  } catch (const twinbench::InputError& error) {
-    return Failed(error, kBadInput);
-  } catch (const twinbench::StateUnknown& error) {
-    return Failed(error, kStateUnknown);
   } catch (const std::exception& error) {
-    return Failed(error, kWorldFailed);
+    return Failed(error);
   }
 }

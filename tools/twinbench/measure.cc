@@ -5,6 +5,7 @@
 #include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
+#include "tools/twinbench/live_page.h"
 #include "tools/twinbench/measure.h"
 #include "tools/twinbench/measure_machine.h"
 #include "tools/twinbench/measure_program.h"
@@ -60,12 +61,12 @@ void RehearseFirst(const Scenario& scenario, const procedure::Options& options, 
 
 /// @param kind  Of the bench file: in a replay nothing moves that could be asked.
 void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, procedure::Options& options,
-                const std::string& kind) {
+                const std::string& kind, LivePage& page) {
   ProgressLine line;
   options.log = &record;
   if (bench.simulation) bench.simulation->Restart();
   try {
-    procedure::CarryOut(bench, scenario, record, ShownOn(line), options);
+    procedure::CarryOut(bench, scenario, record, page.ShownToo(ShownOn(line)), options);
   } catch (const std::exception& fault) {
     if (kind == "replay") throw;  // of a recording's tables nothing can be asked
     TellStopped(fault, "tables", procedure::StopBoth(bench));
@@ -75,7 +76,7 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
 }
 
 void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::BenchFile& file, BegunRun begun,
-                 procedure::Options options) {
+                 procedure::Options options, LivePage& page) {
   const bool resumed = begun.record != nullptr;
   const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
   const auto bench = OpenAnyBench(file, scenario, SinceBegin(begun));
@@ -85,25 +86,26 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
     options.calls_done = begun.record->Calls();
   }
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench->Identity());
+  page.Watch(*record, scenario, folder.path);
   const auto note = [&](const std::vector<std::string>& lines) {
     for (const std::string& line : lines) record->AppendEvent(bench->Bench().clock.Now(), "adc", line);
   };
   note({bench->Identity()});
   note(bench->Configuration());
-  CarryOutOn(bench->Bench(), scenario, *record, options, file.kind);
+  CarryOutOn(bench->Bench(), scenario, *record, options, file.kind, page);
   note(bench->Notices());
 }
 
 }  // namespace
 
-void Measure(const MeasureOptions& o) {
+void Measure(const MeasureOptions& o, LivePage& page) {
   Scenario scenario = LoadScenario(o.scenario, o.overrides);
   for (const std::string& table : o.compensations) CommandCompensation(scenario, table);
-  if (hw::IsProgramFile(o.bench)) return MeasureByProgram(o, scenario);
+  if (hw::IsProgramFile(o.bench)) return MeasureByProgram(o, scenario, page);
   if (!BenchOf(scenario).has_controllers)
     throw InputError(o.scenario, "no controllers for the bench " + scenario.bench,
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
-  if (BenchOf(scenario).drive) return MeasureMachine(o, scenario);
+  if (BenchOf(scenario).drive) return MeasureMachine(o, scenario, page);
   const hw::BenchFile file = hw::LoadBenchFile(o.bench);
   const procedure::Options options = Carefulness(file, o.allow_homing);
   if (o.rehearse || o.rehearse_only) RehearseFirst(scenario, options, file);
@@ -112,7 +114,7 @@ void Measure(const MeasureOptions& o) {
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
   const bool resumes = begun.record != nullptr;
   ListenForStop();
-  if (!resumes || !begun.record->finished()) MeasureInto(folder, scenario, file, std::move(begun), options);
+  if (!resumes || !begun.record->finished()) MeasureInto(folder, scenario, file, std::move(begun), options, page);
   EvaluateRun(scenario, folder.path);
 }
 
@@ -136,7 +138,10 @@ void AddMeasure(CLI::App& app) {
   command->add_flag("--rehearse", options->rehearse,
                     "first on the twin: travel, spots on the PSDs, time it will take");
   command->add_flag("--rehearse-only", options->rehearse_only, "nothing but that");
-  command->callback([options] { Measure(*options); });
+  AddWebOption(*command, options->web);
+  command->callback([options] {
+    WithLivePage(options->web, "measure", [&](LivePage& page) { Measure(*options, page); });
+  });
 }
 
 }  // namespace twinbench::tools

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "tools/twinbench/live_page.h"
 #include "tools/twinbench/measured_run.h"
 
 namespace twinbench::tools {
 
 /// Carries a scenario out on what the bench file names and evaluates it.
+/// @param page  Shows it.
 /// @throws BenchError if it stopped before its end; what was read is kept.
-void Measure(const MeasureOptions& options);
+void Measure(const MeasureOptions& options, LivePage& page);
 
 }  // namespace twinbench::tools

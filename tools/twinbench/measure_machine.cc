@@ -58,13 +58,13 @@ procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenM
 }
 
 void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& opened,
-               procedure::MachineOptions options) {
+               procedure::MachineOptions options, LivePage& page) {
   MachineBench bench = opened.Devices();
   ProgressLine line;
   options.log = &record;
   if (bench.simulation && options.kept.empty()) bench.simulation->Restart();
   try {
-    BenchOf(scenario).drive(bench, scenario, record, ShownOn(line), options);
+    BenchOf(scenario).drive(bench, scenario, record, page.ShownToo(ShownOn(line)), options);
   } catch (const std::exception& fault) {
     TellStopped(fault, "axes", procedure::StopMachine(bench));
   }
@@ -73,18 +73,19 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
 }
 
 void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const hw::MachineFile& file,
-                        hw::OpenMachine& bench, BegunRun begun) {
+                        hw::OpenMachine& bench, BegunRun begun, LivePage& page) {
   const bool resumed = begun.record != nullptr;
   if (resumed) TakeUp(begun, bench.Identity());
   const procedure::MachineOptions options = Carefully(file, bench, begun);
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench.Identity());
   record->AppendEvent(bench.Devices().clock.Now(), "bench", bench.Identity());
-  DriveInto(*record, scenario, bench, options);
+  page.Watch(*record, scenario, folder.path);
+  DriveInto(*record, scenario, bench, options, page);
 }
 
 }  // namespace
 
-void MeasureMachine(const MeasureOptions& o, const Scenario& scenario) {
+void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage& page) {
   const auto twin = BenchOf(scenario).make_devices(scenario);
   const std::vector<MachineAxis> axes = twin->Devices().machine.Axes();
   const hw::MachineFile file = hw::LoadMachineFile(o.bench, axes);
@@ -97,7 +98,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario) {
     const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
     const auto bench = OpenAnyMachine(file, scenario, axes, SinceBegin(begun));
     if (o.rehearse) RehearseMachineFirst(scenario, axes, bench->Limits());
-    MeasureMachineInto(folder, scenario, file, *bench, std::move(begun));
+    MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), page);
   }
   EvaluateRun(scenario, folder.path);
 }

@@ -43,7 +43,7 @@ void Tell(const hw::ReadStops& back, std::size_t asked) {
 
 }  // namespace
 
-void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario) {
+void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario, LivePage& page) {
   const hw::ProgramFile file = hw::LoadProgramFile(options.bench);
   if (options.rehearse_only) {
     fmt::print(stderr, "a program is not rehearsed: {} readings are planned\n", ReadingsOfTwin(scenario).size());
@@ -60,6 +60,7 @@ void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario) {
     Tell(back, back.readings.size() + static_cast<std::size_t>(back.missing));
     const std::string identity = "program: " + (file.name.empty() ? file.command.front() : file.name);
     const auto record = BeginRun(scenario, folder, "hardware", identity);
+    page.Watch(*record, scenario, folder.path);
     record->AppendAll(back.readings);
     record->Finish();
   }

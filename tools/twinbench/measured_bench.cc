@@ -1,6 +1,7 @@
 #include "tools/twinbench/measured_bench.h"
 
 #include "hw_bridge/replay/replay_bench.h"
+#include "tools/twinbench/stop_signal.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 
@@ -35,7 +36,7 @@ std::unique_ptr<hw::OpenBench> OpenAnyBench(const hw::BenchFile& file, const Sce
   if (file.kind == "replay") return std::make_unique<Recording>(file.record);
   const RotarySettings& own = RotaryOf(scenario);
   const double noise_V = scenario.noise_free ? 0.0 : own.amplifier.noise_V;
-  return hw::OpenHardware(file, own.adc, noise_V, elapsed, scenario.repeat);
+  return hw::OpenHardware(file, own.adc, noise_V, elapsed, scenario.repeat, StopWasAsked);
 }
 
 }  // namespace twinbench::tools

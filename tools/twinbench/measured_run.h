@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "tools/twinbench/run_folder.h"
 #include "twin/core/run_record.h"
@@ -12,6 +13,7 @@ struct MeasureOptions {
   std::string scenario, bench, folder;
   std::vector<std::string> overrides;
   std::vector<std::string> compensations;  // "target=table.csv"
+  std::optional<int> web;                  // port of the live page
   bool resume = false, rehearse = false, rehearse_only = false, allow_homing = false;
 };
 

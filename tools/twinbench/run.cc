@@ -5,6 +5,7 @@
 #include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
+#include "tools/twinbench/live_page.h"
 #include "tools/twinbench/twin_run.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
@@ -18,6 +19,7 @@ struct RunOptions {
   std::optional<std::string> seed;
   bool noise_free = false;
   bool images = false;
+  std::optional<int> web;  // port of the live page
   std::string fidelity;
   std::vector<std::string> errors;         // "target=T.csv"
   std::vector<std::string> overrides;      // "procedure.positions=12"
@@ -57,10 +59,10 @@ Scenario ScenarioOf(const RunOptions& options) {
   return scenario;
 }
 
-void Run(const RunOptions& options) {
+void Run(const RunOptions& options, LivePage& page) {
   const Scenario scenario = ScenarioOf(options);
   const RunFolder folder{options.folder};
-  RunOnTwin(scenario, folder, options.images);
+  RunOnTwin(scenario, folder, options.images, page);
   if (EvaluateRun(scenario, folder.path)) fmt::print("compare with the truth: twinbench score {}\n", folder.path);
 }
 
@@ -85,7 +87,10 @@ void AddRun(CLI::App& app) {
                    "target=FILE.csv: corrections that table is commanded with")
       ->allow_extra_args(false);
   command->add_flag("--images", options->images, "write the irradiance on the PSDs as OpenEXR");
-  command->callback([options] { Run(*options); });
+  AddWebOption(*command, options->web);
+  command->callback([options] {
+    WithLivePage(options->web, "run", [&](LivePage& page) { Run(*options, page); });
+  });
 }
 
 }  // namespace twinbench::tools

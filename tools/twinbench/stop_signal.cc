@@ -1,5 +1,6 @@
 #include "tools/twinbench/stop_signal.h"
 
+#include <atomic>
 #include <csignal>
 #include <initializer_list>
 
@@ -8,10 +9,11 @@ namespace {
 
 constexpr std::initializer_list<int> kStops = {SIGINT, SIGTERM, SIGQUIT, SIGHUP};
 
-volatile std::sig_atomic_t stop_asked = 0;
+std::atomic<bool> stop_asked = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal may come while it is being written");
 
 void Remember(int) {
-  stop_asked = 1;
+  stop_asked = true;
 }
 
 }  // namespace
@@ -26,7 +28,11 @@ void ListenNoMore() {
 }
 
 bool StopWasAsked() {
-  return stop_asked != 0;
+  return stop_asked;
+}
+
+void AskToStop() {
+  stop_asked = true;
 }
 
 }  // namespace twinbench::tools

@@ -8,5 +8,7 @@ void ListenForStop();
 /// Nothing can move any more: signals end the program again.
 void ListenNoMore();
 bool StopWasAsked();
+/// The same as Ctrl-C after ListenForStop, from any thread.
+void AskToStop();
 
 }  // namespace twinbench::tools

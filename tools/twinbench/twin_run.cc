@@ -1,15 +1,31 @@
 #include "tools/twinbench/twin_run.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 #include "tools/twinbench/progress.h"
+#include "tools/twinbench/stop_signal.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::tools {
+namespace {
 
-void RunOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
+/// Nothing but the twin moves here, and what is made of it can be made again.
+procedure::ProgressCallback UnlessStopped(procedure::ProgressCallback shown) {
+  return [shown](const procedure::Progress& p) {
+    shown(p);
+    if (StopWasAsked())
+      throw BenchError(fmt::format("stopped by the operator behind reading {} of {}; nothing but the twin has moved",
+                                   p.readings_done, p.readings_planned));
+  };
+}
+
+}  // namespace
+
+void RunOnTwin(const Scenario& scenario, const RunFolder& folder, bool images, LivePage& page) {
   const Bench& bench = BenchOf(scenario);
   RequireRoomFor(folder, scenario);
   if (images && !bench.is_pictured)
@@ -21,7 +37,8 @@ void RunOnTwin(const Scenario& scenario, const RunFolder& folder, bool images) {
   WriteFileAtOnce(folder.scenario(), WriteScenario(scenario));
   WriteJson(folder.truth(), twin->Truth());
   ProgressLine progress;
-  twin->CarryOut(*record, ShownOn(progress));
+  page.Watch(*record, scenario, folder.path);
+  twin->CarryOut(*record, UnlessStopped(page.ShownToo(ShownOn(progress))));
   record->Finish();
   if (!images) return;
   std::filesystem::create_directories(folder.images());

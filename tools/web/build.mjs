@@ -1,5 +1,5 @@
-// Bundles the page: one HTML file with its script and style inside, and the hashes of both in its content security policy.
-// Usage: node build.mjs FOLDER_OF_NODE_MODULES OUT.html
+// Bundles the pages: each one HTML file with its script and style inside, and the hashes of both in its content security policy.
+// Usage: node build.mjs FOLDER_OF_NODE_MODULES PAGE.html LIVE.html
 import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
@@ -7,7 +7,7 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [modules, out] = process.argv.slice(2);
+const [modules, page, live] = process.argv.slice(2);
 const esbuild = createRequire(join(resolve(modules), "package.json"))("esbuild");
 
 async function bundled(entry) {
@@ -28,22 +28,28 @@ async function bundled(entry) {
 
 const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base64")}'`;
 
-const [markup, script, style] = await Promise.all([
-  readFile(join(here, "src", "page.html"), "utf8"),
-  bundled("main.js"),
-  bundled("style.css"),
+/** @param more  Of its policy. */
+async function write(out, name, entry, more) {
+  const [markup, script, style] = await Promise.all([
+    readFile(join(here, "src", name), "utf8"),
+    bundled(entry),
+    bundled("style.css"),
+  ]);
+  const policy = [
+    "default-src 'none'",
+    `script-src ${hash(script)}`,
+    `style-src-elem ${hash(style)}`,
+    "style-src-attr 'unsafe-inline'", // the plotting library places its elements by style attributes
+    "img-src data: blob:",
+    "base-uri 'none'",
+    "form-action 'none'",
+    ...more,
+  ].join("; ");
+  const parts = { "<!--POLICY-->": policy, "<!--STYLE-->": style, "<!--SCRIPT-->": script };
+  await writeFile(out, markup.replace(/<!--(POLICY|STYLE|SCRIPT)-->/g, (mark) => parts[mark]));
+}
+
+await Promise.all([
+  write(page, "page.html", "main.js", []),
+  write(live, "live.html", "live.js", ["connect-src 'self'"]), // its program, and nobody else
 ]);
-const policy = [
-  "default-src 'none'",
-  `script-src ${hash(script)}`,
-  `style-src-elem ${hash(style)}`,
-  "style-src-attr 'unsafe-inline'", // the plotting library places its elements by style attributes
-  "img-src data: blob:",
-  "base-uri 'none'",
-  "form-action 'none'",
-].join("; ");
-const parts = { "<!--POLICY-->": policy, "<!--STYLE-->": style, "<!--SCRIPT-->": script };
-await writeFile(
-  out,
-  markup.replace(/<!--(POLICY|STYLE|SCRIPT)-->/g, (mark) => parts[mark]),
-);

@@ -8,4 +8,7 @@ namespace twinbench::web {
 /// if the program was built without (TWINBENCH_REPORT=OFF, or npm was not there).
 std::string_view PageMarkup();
 
+/// The page that shows a measurement while it goes on (tools/live/server.h), whole. Empty if the program was built without.
+std::string_view LiveMarkup();
+
 }  // namespace twinbench::web

@@ -192,6 +192,7 @@ void RunRecord::Append(const Reading& reading, const Acquisition& taken) {
   database_->AppendCalls(reading.reading);
   transaction.Commit();
   database_->calls.clear();
+  if (listener_) listener_(reading);
 }
 
 void RunRecord::AppendAll(const std::vector<Reading>& readings) {
@@ -202,6 +203,8 @@ void RunRecord::AppendAll(const std::vector<Reading>& readings) {
     database_->calls.clear();
   }
   transaction.Commit();
+  if (!listener_) return;
+  for (const Reading& reading : readings) listener_(reading);
 }
 
 void RunRecord::Called(const DeviceCall& call) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "twin/core/devices.h"
@@ -65,6 +67,8 @@ class RunRecord : public ReadingSink, public RunLog {
   /// From here on a reading is kept whatever becomes of this program, and against a power failure with all others by
   /// Finish: for a run that can be made again, which would wait for the disk most of its time.
   void SpareTheDisk();
+  /// From here on `listener` hears of every reading once it is safe, on the thread that appends it. It must not throw.
+  void TellOf(std::function<void(const Reading&)> listener) { listener_ = std::move(listener); }
   /// @throws BenchError if the disk refuses or the reading's number is taken; the record is then as it was before.
   void Append(const Reading& reading, const Acquisition& taken) override;
   void AppendAll(const std::vector<Reading>& readings) override;
@@ -92,6 +96,7 @@ class RunRecord : public ReadingSink, public RunLog {
   struct Database;
   explicit RunRecord(std::unique_ptr<Database> database);
   std::unique_ptr<Database> database_;
+  std::function<void(const Reading&)> listener_;
 };
 
 }  // namespace twinbench

@@ -1,0 +1,100 @@
+import assert from "node:assert/strict";
+import { existsSync, readFileSync } from "node:fs";
+import { connect } from "node:net";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { begin, close, faultsOf, folder, openAddress, scenario } from "./bench.mjs";
+
+const begun = [];
+after(async () => {
+  begun.forEach((program) => program.kill());
+  await close();
+});
+
+function start(...words) {
+  begun.push(begin(...words));
+  return begun.at(-1);
+}
+
+async function until(what, told) {
+  for (let k = 0; k < 400; ++k) {
+    const found = await what();
+    if (found) return found;
+    await new Promise((done) => setTimeout(done, 25));
+  }
+  throw new Error(`not within 10 s: ${told()}`);
+}
+
+/** The address that a program prints. */
+const addressOf = (program) => until(() => program.err.match(/http:\/\/127\.0\.0\.1:\d+\/\?token=\w+/)?.[0], () => program.err);
+
+/** Answers of the served twin's controllers. */
+function ask(port, ...questions) {
+  return new Promise((done, fail) => {
+    const answers = [];
+    let text = "";
+    const line = connect(port, "127.0.0.1", () => line.write(`${questions[0]}\n`));
+    line.on("error", fail);
+    line.on("data", (data) => {
+      text += data;
+      if (!text.endsWith("\n")) return;
+      answers.push(text.trim());
+      text = "";
+      if (answers.length < questions.length) return line.write(`${questions[answers.length]}\n`);
+      line.end();
+      done(answers);
+    });
+  });
+}
+
+const kServed = ["--set", "procedure.positions=12", "--set", 'mechanics.fidelity="linear"'];
+
+test("a served twin is seen while it is measured, and stopped by the page as by Ctrl-C", async () => {
+  start("serve", scenario("rotary_4dof"), ...kServed, "--speed", "400", "--iiod-port", "0", "--scpi-port", "0", "--esp-port", "0", "--no-pty", "--write-bench", "bench.toml");
+  await until(() => existsSync(join(folder, "bench.toml")), () => "no bench file");
+  const port = Number(readFileSync(join(folder, "bench.toml"), "utf8").match(/kind = "scpi"[^[]*tcp:127\.0\.0\.1:(\d+)/)[1]);
+  const measure = start("measure", scenario("rotary_4dof"), ...kServed, "--bench", "bench.toml", "-o", "seen", "--web", "0");
+  const page = await openAddress(await addressOf(measure));
+
+  await page.locator("#live-psd-a .plot[data-points]").waitFor();
+  const points = () => page.locator("#live-psd-a .plot").getAttribute("data-points").then(Number);
+  const first = await points();
+  await until(async () => (await points()) > first, () => "no further readings");
+  assert.match(await page.locator("#counted").innerText(), /^\d+ of \d+ readings, bench time [\d:]+, [\d:]+ left$/);
+  assert.deepEqual(await faultsOf(page), []);
+
+  const stop = page.locator("#stop");
+  await stop.click();
+  await page.locator("#stop-not").click();
+  const still = await points();
+  await until(async () => (await points()) > still, () => "it stopped without being told");
+  await stop.click();
+  await page.locator("#stop-sure").click();
+  const code = await measure.ended;
+  const words = "stopped by the operator. The tables were brought to rest. The controller says that all tables stand still; every reading so far is kept.";
+  assert.equal(code, 1);
+  assert.ok(measure.err.includes(words), measure.err);
+  const verdict = await page.locator("#state").innerText();
+  assert.ok(verdict.startsWith("The program ended with exit code 1."), verdict);
+  assert.ok(verdict.includes(words), verdict);
+  assert.ok(await stop.isDisabled());
+  assert.deepEqual(page.said, []);
+
+  const look = async () => (await ask(port, "ROT1:STAT?", "ROT2:STAT?")).map((answer) => answer.split(","));
+  const [before, then] = [await look(), await look()];
+  for (const table of [0, 1]) {
+    assert.equal(before[table][2], "0", "the controller says that it does not move");
+    assert.ok(Math.abs(before[table][1] - then[table][1]) < 1e-3, "its encoder stands");
+  }
+  await page.close();
+});
+
+test("a page without the token, or with another, is refused and moves nothing", async () => {
+  const run = start("run", scenario("rotary_4dof"), "-o", "refused", "--web", "0");
+  const address = new URL(await addressOf(run));
+  const stop = (token, headers = {}) => fetch(`${address.origin}/stop?token=${token}`, { method: "POST", headers });
+  const token = address.searchParams.get("token");
+  for (const answer of [await fetch(address.origin), await stop(""), await stop(`${token}0`), await stop(token, { Origin: "http://evil.example" })])
+    assert.equal(answer.status, 403);
+  assert.equal(await run.ended, 0, run.err);
+});

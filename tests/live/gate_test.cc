@@ -1,0 +1,89 @@
+#include "tools/live/gate.h"
+
+#include <gtest/gtest.h>
+
+#include "tools/live/token.h"
+
+namespace twinbench::live {
+namespace {
+
+const Gate kGate = {"0123456789abcdef", 8080};
+
+Request Good(const std::string& method = "GET", const std::string& path = "/") {
+  return {method, path + "?token=" + kGate.token, "127.0.0.1:8080", "", "", ""};
+}
+
+/// 0: it is let in.
+int StatusOf(const Request& request) {
+  const auto judged = kGate.Judge(request);
+  const auto* refused = std::get_if<Refused>(&judged);
+  return refused ? refused->status : 0;
+}
+
+TEST(Gate, LetsInWhoeverHasTheToken) {
+  EXPECT_EQ(StatusOf(Good()), 0);
+  EXPECT_EQ(StatusOf(Good("GET", "/events")), 0);
+  EXPECT_EQ(std::get<Granted>(kGate.Judge(Good("POST", "/stop"))).wish, Wish::kStop);
+  Request by_name = Good("POST", "/stop");
+  by_name.host = "localhost:8080";
+  by_name.origin = "http://localhost:8080";
+  by_name.fetch_site = "same-origin";
+  EXPECT_EQ(StatusOf(by_name), 0);
+}
+
+TEST(Gate, RefusesEveryTokenButTheRightOne) {
+  for (const char* query : {"", "?token=", "?token=0123456789abcde", "?token=0123456789abcdef0", "?token=0123456789abcdeF",
+                            "?other=0123456789abcdef", "?x=1&token=0123456789abcdef", "?token=0123456789abcdef&x=1"}) {
+    Request request = Good("POST", "/stop");
+    request.target = std::string("/stop") + query;
+    EXPECT_EQ(StatusOf(request), 403) << query;
+  }
+}
+
+TEST(Gate, RefusesPagesOfOtherOriginsWhateverTheyKnow) {
+  for (const char* origin : {"http://evil.example", "null", "https://127.0.0.1:8080", "http://127.0.0.1:8081", "http://localhost:8080"}) {
+    Request request = Good("POST", "/stop");
+    request.origin = origin;
+    EXPECT_EQ(StatusOf(request), 403) << origin;
+  }
+  for (const char* site : {"cross-site", "same-site"}) {
+    Request request = Good();
+    request.fetch_site = site;
+    EXPECT_EQ(StatusOf(request), 403) << site;
+  }
+}
+
+TEST(Gate, RefusesNamesThatWereMadeToLeadHere) {
+  for (const char* host : {"evil.example:8080", "", "127.0.0.1", "127.0.0.1:8081", "127.0.0.1:8080.evil.example"}) {
+    Request request = Good();
+    request.host = host;
+    EXPECT_EQ(StatusOf(request), 403) << host;
+  }
+}
+
+TEST(Gate, StopsByPostAlone) {
+  EXPECT_EQ(StatusOf(Good("GET", "/stop")), 405);
+  EXPECT_EQ(StatusOf(Good("POST", "/events")), 405);
+  EXPECT_EQ(StatusOf(Good("GET", "/etc/passwd")), 404);
+  EXPECT_EQ(StatusOf(Good("GET", "//")), 404);
+}
+
+TEST(Gate, TakesAPageUpWhereItWasCutOff) {
+  Request request = Good("GET", "/events");
+  request.last_event = "41";
+  EXPECT_EQ(std::get<Granted>(kGate.Judge(request)).next_event, 42u);
+  for (const char* nonsense : {"", "-1", "1x", "18446744073709551615", "99999999999999999999"}) {
+    request.last_event = nonsense;
+    EXPECT_EQ(std::get<Granted>(kGate.Judge(request)).next_event, 0u) << nonsense;
+  }
+}
+
+TEST(Token, IsLongAndNeverTheSame) {
+  const std::string token = NewToken();
+  EXPECT_EQ(token.size(), 64u);
+  EXPECT_NE(token, NewToken());
+  EXPECT_TRUE(IsToken(token, token));
+}
+
+}  // namespace
+}  // namespace twinbench::live

@@ -1,0 +1,122 @@
+#include "tools/twinbench/live_page.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tools/live/server.h"
+#include "tools/twinbench/exit_code.h"
+#include "tools/twinbench/stop_signal.h"
+#include "tools/web/bundle.h"
+#include "twin/core/bench_format.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::tools {
+namespace {
+
+constexpr auto kBetweenProgress = std::chrono::milliseconds(50);
+
+/// Names and texts may come from anybody's files: bytes that are no text are replaced.
+std::string OneLine(const nlohmann::json& json) {
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// Columns that hold numbers of the bench itself: where the axes were sent, what was shown, circumstances.
+std::vector<const ReadingColumn*> Shown(const BenchFormat& format) {
+  std::vector<const ReadingColumn*> columns;
+  for (const ReadingColumn& column : format.columns) {
+    if (column.number) columns.push_back(&column);
+  }
+  return columns;
+}
+
+const char* RoleName(const ReadingColumn& column) {
+  if (column.role == ColumnRole::kRequired) return "axis";
+  return column.IsShown() ? "shown" : "circumstance";
+}
+
+/// Text of a number, as it stands in readings.csv; nothing is null.
+std::string NumberOrNull(const std::string& text) {
+  return text.empty() ? "null" : text;
+}
+
+std::string ReadingJson(const Reading& r, const std::vector<const ReadingColumn*>& columns) {
+  std::string values;
+  for (const ReadingColumn* column : columns)
+    values += (values.empty() ? "" : ",") + NumberOrNull(column->print(r));
+  return fmt::format(R"({{"n":{},"t":{},"setup":{},"pass":{},"phase":"{}","status":"{}","v":[{}]}})", r.reading,
+                     PrintTime(r.time), r.setup, r.pass, PhaseName(r.phase), ReadingStatusName(r.status), values);
+}
+
+}  // namespace
+
+LivePage::LivePage() = default;
+
+LivePage::LivePage(int port, const std::string& command) : command_(command) {
+  if (web::LiveMarkup().empty())
+    throw InputError("--web", "this program was built without pages",
+                     "a program that was built where npm is installed, without -DTWINBENCH_REPORT=OFF");
+  server_ = std::make_unique<live::Server>(live::Server::Settings{port, web::LiveMarkup(), AskToStop});
+  fmt::print(stderr, "live page, for this computer and whoever has this address: {}\n", server_->address());
+}
+
+LivePage::~LivePage() = default;
+
+void LivePage::Watch(RunRecord& record, const Scenario& scenario, const std::string& folder) {
+  if (!server_) return;
+  const std::vector<const ReadingColumn*> columns = Shown(FormatOf(scenario.bench));
+  nlohmann::json named = nlohmann::json::array();
+  for (const ReadingColumn* column : columns) named.push_back({{"name", column->name}, {"role", RoleName(*column)}});
+  server_->Begin(OneLine({{"command", command_}, {"bench", scenario.bench}, {"folder", folder}, {"columns", named}}));
+  record.TellOf([this, columns](const Reading& r) { server_->Tell("reading", ReadingJson(r, columns)); });
+}
+
+procedure::ProgressCallback LivePage::ShownToo(procedure::ProgressCallback line) {
+  if (!server_) return line;
+  using Clock = std::chrono::steady_clock;
+  return [this, line, begun = Clock::now(), told = Clock::time_point{}](const procedure::Progress& p) mutable {
+    line(p);
+    const auto now = Clock::now();
+    const bool is_last = p.readings_done == p.readings_planned;
+    if (!is_last && now - told < kBetweenProgress) return;
+    told = now;
+    const double elapsed_s = std::chrono::duration<double>(now - begun).count();
+    const double left_s = p.readings_done > 0 ? elapsed_s * (p.readings_planned - p.readings_done) / p.readings_done : -1.0;
+    server_->Tell("progress", fmt::format(R"({{"done":{},"planned":{},"phase":"{}","bench_s":{:.3f},"left_s":{:.1f}}})",
+                                          p.readings_done, p.readings_planned, PhaseName(p.phase),
+                                          ToSeconds(p.bench_time), left_s));
+  };
+}
+
+void LivePage::Ended(int exit_code, const std::string& words) {
+  if (!server_) return;
+  server_->Tell("end", OneLine({{"code", exit_code}, {"words", words}}));
+  server_->Finish();
+}
+
+void AddWebOption(CLI::App& command, std::optional<int>& port) {
+  command
+      .add_option("--web", port,
+                  "show the run on a page of this computer: a port, or 0 for any that is free; the address is printed")
+      ->check(CLI::Range(0, 65535));
+}
+
+void WithLivePage(const std::optional<int>& port, const std::string& command,
+                  const std::function<void(LivePage&)>& work) {
+  if (!port) {
+    LivePage none;
+    return work(none);
+  }
+  LivePage page(*port, command);
+  try {
+    work(page);
+  } catch (const std::exception& error) {
+    page.Ended(ExitCodeOf(error), FailureText(error));
+    throw;
+  }
+  page.Ended(kDone, "");
+}
+
+}  // namespace twinbench::tools

@@ -1,0 +1,112 @@
+// Shows a measurement while it goes on, and stops it. What a bench does is said only in the words of the program that reads it.
+import { button, element } from "./dom.js";
+import { liveFigures } from "./live_figures.js";
+import { stopPanel } from "./live_stop.js";
+import { number } from "./format.js";
+import { isDark, setTheme } from "./theme.js";
+
+const token = new URLSearchParams(location.search).get("token") ?? "";
+const address = (path) => `${path}?token=${encodeURIComponent(token)}`;
+const kBetweenDrawings_ms = 400;
+const kSilence_ms = 12000; // the program gives a sign of life every 5 s
+
+const title = element("h1", {}, "Waiting for the measurement");
+const subtitle = element("p", { class: "subtitle" }, "");
+const verdict = element("p", { class: "verdict", role: "status", id: "state" }, "Connecting");
+const bar = element("progress", { max: 1, value: 0, "aria-label": "Readings done" });
+const counted = element("p", { class: "subtitle", id: "counted" }, "");
+const axes = element("dl", { class: "now", "aria-label": "Last reading" });
+const cards = element("div", { class: "cards" });
+const stop = stopPanel(() => fetch(address("/stop"), { method: "POST" }));
+
+let figures = null;
+let columns = [];
+let ended = false;
+let heard = performance.now();
+let changed = false;
+
+function say(tone, text) {
+  verdict.className = `verdict ${tone}`;
+  verdict.textContent = text;
+}
+
+function clock(seconds) {
+  const whole = Math.round(seconds);
+  const two = (n) => String(n).padStart(2, "0");
+  return whole < 3600 ? `${Math.floor(whole / 60)}:${two(whole % 60)}` : `${Math.floor(whole / 3600)}:${two(Math.floor(whole / 60) % 60)}:${two(whole % 60)}`;
+}
+
+/** "target_deg" -> ["target", "deg"] */
+function parted(name) {
+  const at = name.lastIndexOf("_");
+  return at > 0 ? [name.slice(0, at).replaceAll("_", " "), name.slice(at + 1)] : [name, ""];
+}
+
+function begin({ command, bench, folder, columns: named }) {
+  title.textContent = `${bench}: ${command} into ${folder}`;
+  columns = named.map((column) => {
+    const [name, unit] = parted(column.name);
+    return { ...column, name, unit, column: column.name };
+  });
+  figures = liveFigures(columns);
+  axes.replaceChildren(...columns.map(({ name }) => element("div", {}, element("dt", {}, name), element("dd", {}, "\u2013"))));
+  cards.replaceChildren(...figures.cards);
+  if (!ended) say("", "The measurement goes on");
+}
+
+function reading(r) {
+  figures?.add(r);
+  columns.forEach(({ unit }, c) => (axes.children[c].lastChild.textContent = `${number(r.v[c])} ${unit}`));
+  subtitle.textContent = `reading ${r.n}: ${r.phase.replace("_", " ")}, set-up ${r.setup}, pass ${r.pass}, ${r.status.replace("_", " ")}`;
+  changed = true;
+}
+
+function progress({ done, planned, bench_s, left_s }) {
+  bar.max = planned;
+  bar.value = done;
+  counted.textContent = `${done} of ${planned} readings, bench time ${clock(bench_s)}, ${left_s < 0 ? "time left not known yet" : `${clock(left_s)} left`}`;
+}
+
+function end({ code, words }) {
+  ended = true;
+  events.close();
+  stop.over();
+  if (code === 0) return say("good", "The measurement is complete: the program ended with exit code 0");
+  say(code === 3 ? "bad" : "doubt", `The program ended with exit code ${code}. ${words}`);
+}
+
+const events = new EventSource(address("/events"));
+function on(kind, handle) {
+  events.addEventListener(kind, (event) => {
+    heard = performance.now();
+    handle(JSON.parse(event.data));
+  });
+}
+on("begin", begin);
+on("reading", reading);
+on("progress", progress);
+on("asked", () => stop.asked());
+on("left_out", (lost) => (subtitle.textContent = `${lost} messages came too fast to be shown; the record has every reading`));
+on("end", end);
+on("beat", () => {});
+events.onerror = () => {
+  if (!ended) say("bad", "No connection to the program. Whether anything moves is not known here: look at the terminal and at the bench");
+};
+events.onopen = () => {
+  heard = performance.now();
+  if (!ended) say("", figures ? "The measurement goes on" : "Connected; nothing is being measured yet");
+};
+setInterval(() => {
+  if (changed) (changed = false), figures.draw();
+  if (!ended && performance.now() - heard > kSilence_ms) events.onerror();
+}, kBetweenDrawings_ms);
+
+const theme = button(isDark() ? "Light" : "Dark", () => {
+  setTheme(isDark() ? "light" : "dark");
+  theme.textContent = isDark() ? "Light" : "Dark";
+}, { class: "theme", "aria-label": "Light or dark" });
+
+document.getElementById("page").append(
+  element("header", {}, element("div", { class: "brand" }, element("span", {}, "twinbench, live"), theme), title, subtitle, verdict),
+  element("main", { id: "content", tabindex: -1 }, stop.element, element("section", { class: "part" }, bar, counted, axes), cards),
+);
