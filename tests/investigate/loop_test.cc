@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/core/input_error.h"
+#include "tests/hidden/unlisted.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tools/twinbench/bench_means.h"
 #include "twin/benches/registry.h"
@@ -42,6 +44,21 @@ TEST(Investigate, EndsWithItsBudget) {
   EXPECT_EQ(judged.investigation.ended, Ended::kBudget);
 }
 
+TEST(Investigate, LooksAgainWhereOneRunMayHideACause) {
+  const std::vector<hidden::UnlistedCause> causes = hidden::UnlistedCausesOf("encoder_comparison");
+  const auto line = std::ranges::find(causes, "non-integer line", &hidden::UnlistedCause::name);
+  ASSERT_NE(line, causes.end());
+  InvestigationOptions options;
+  options.budget_min = 600.0;
+  const hidden::SignatureScale scale(hidden::Design::kSweep, "");
+  const Judged judged = InvestigateUnlisted(hidden::Design::kSweep, *line, 7, 4.0, scale, options);
+  const std::vector<Step>& steps = judged.investigation.steps;
+  EXPECT_EQ(steps.front().believed.front().first, "nothing");
+  EXPECT_EQ(judged.result, Result::kRight) << judged.answer;
+  ASSERT_GT(steps.size(), 1u);
+  EXPECT_THAT(steps[1].reason, testing::HasSubstr("nothing found so far: 7 such runs"));
+}
+
 TEST(Investigate, OneThatFindsNothingSaysSo) {
   const hidden::SignatureScale scale(hidden::Design::kStops, "");
   const Scenario believed = hidden::Believed(hidden::Design::kStops);
@@ -50,8 +67,11 @@ TEST(Investigate, OneThatFindsNothingSaysSo) {
     return hidden::TakeReadings(HiddenRun(believed, believed, step.run, asked.repeat));
   };
   const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
-  const Investigation found = Investigate(believed, {}, means, laboratory);
+  InvestigationOptions options;
+  options.budget_min = 600.0;
+  const Investigation found = Investigate(believed, options, means, laboratory);
   EXPECT_EQ(found.told, Told::kNothing);
+  EXPECT_EQ(found.steps.size(), 7u);  // (5 / 2)^2: of what two standard deviations in one run are
 }
 
 TEST(Investigate, RefusesAGoalThatAStandardPutsOutOfReachBeforeAnythingIsMeasured) {

@@ -22,6 +22,7 @@ struct InvestigateOptions {
   std::string scenario, twin, bench, goal, folder, json, budget = "2h";
   std::vector<std::string> overrides;
   double conclusive = 0.95;
+  std::optional<double> faint;
   int most_runs = 20;
   bool ask = false;
 };
@@ -66,6 +67,7 @@ void Investigate(const InvestigateOptions& options) {
   how.budget_min = BudgetMinutes(options.budget);
   how.conclusive = options.conclusive;
   how.most_runs = options.most_runs;
+  how.faint = options.faint ? *options.faint : how.goal ? 0.0 : how.faint;
   const std::unique_ptr<InvestigatedBench> bench = Open(options, scenario);
   const auto alone = [&](const plan::NextRun& run) { return options.ask || bench->CanMakeAlone(run); };
   const investigate::Means means = MeansOf(BenchOf(scenario), alone);
@@ -103,6 +105,10 @@ void AddInvestigate(CLI::App& app) {
   command->add_option("--runs", options->most_runs, "no more than so many")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command->add_option("--faint", options->faint,
+                      "where nothing is found, measure on until a cause of so many noise standard deviations in one run "
+                      "would show; 0: believe the first run. 2 unless there is a goal")
+      ->check(CLI::Range(0.0, 100.0));
   command->add_option("-o,--output", options->folder, "folder of the investigation; goes on if it was begun");
   command->add_option("--json", options->json, "write investigation.json here as well, - for stdout");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")

@@ -6,6 +6,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/noise_estimate.h"
+#include "twin/diagnose/mean_of_runs.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/model/signals.h"
 
@@ -115,6 +116,7 @@ Compared Compare(const std::vector<Reading>& readings, const Scenario& scenario,
                      "a scenario of the bench that the readings come from");
   run.sigma = StatedNoise(used, scenario, comparison, run);
   run.sigma_stated = run.sigma.minCoeff() > 0.0;
+  ScaleToMean(used, run);
   constexpr double kHold = 10.0;  // what is left must be nearly linear in whatever the constants may be besides
   const Eigen::VectorXd weights =
       run.sigma_stated ? Eigen::VectorXd(run.sigma.cwiseInverse()) : Eigen::VectorXd::Ones(run.observed.size());

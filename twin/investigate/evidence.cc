@@ -59,6 +59,17 @@ void AddUnnamed(std::vector<Weighed>& open, Belief& belief, const TakenRun& firs
   belief.unlisted = rest;
 }
 
+/// More runs may show other sizes of the same causes - another order of a wave - than those that were fitted from the
+/// first one on. @return whether they explain all runs better.
+bool FitAnew(const Hypothesis& from, const std::vector<TakenRun>& runs, const Means& means, JointFit& fit) {
+  constexpr double kBetter = 1.0;  // of log evidence
+  JointFit anew = FitJointly(from, runs, means);
+  if (anew.log_evidence < fit.log_evidence + kBetter) return false;
+  anew.hypothesis.log_prior = fit.hypothesis.log_prior;
+  fit = std::move(anew);
+  return true;
+}
+
 /// Of one further cause of the catalogue against none.
 double LogOddsOfOne(const std::string& bench) {
   const double causes = static_cast<double>(std::max<std::size_t>(1, EffectCatalogue(bench).size()));
@@ -100,9 +111,15 @@ bool TakeIn(Belief& belief, const std::vector<Weighed>& found, const std::vector
   const double odds = LogOddsOfOne(runs.front().scenario.bench);
   const std::size_t before = belief.open.size();
   std::vector<double> logs;  // of the weights that they are to have beside each other
+  bool is_better = false;
   for (const Weighed& one : found) {
-    const auto is_there = [&one](const Open& open) { return IsSame(open.fit.hypothesis, one.hypothesis); };
-    if (one.hypothesis.causes.empty() || std::ranges::any_of(belief.open, is_there)) continue;
+    if (one.hypothesis.causes.empty()) continue;
+    const auto there = std::ranges::find_if(
+        belief.open, [&one](const Open& open) { return IsSame(open.fit.hypothesis, one.hypothesis); });
+    if (there != belief.open.end()) {
+      is_better = FitAnew(one.hypothesis, runs, means, there->fit) || is_better;
+      continue;
+    }
     Open open{FitJointly(one.hypothesis, runs, means)};
     const Hypothesis other = beside(one.hypothesis);
     const double more = static_cast<double>(one.hypothesis.causes.size()) - static_cast<double>(other.causes.size());
@@ -110,7 +127,10 @@ bool TakeIn(Belief& belief, const std::vector<Weighed>& found, const std::vector
     logs.push_back(std::log(std::max(one.probability, kNegligible)));
     belief.open.push_back(std::move(open));
   }
-  if (logs.empty()) return false;
+  if (logs.empty()) {
+    if (is_better) Normalise(belief);
+    return is_better;
+  }
   const std::span<Open> taken(belief.open.begin() + static_cast<std::ptrdiff_t>(before), belief.open.end());
   const auto weight = [](const Open& open) { return open.fit.hypothesis.log_prior + open.fit.log_evidence; };
   const auto best = std::ranges::max_element(taken, {}, weight);

@@ -31,7 +31,8 @@ void Update(Belief& belief, const std::vector<TakenRun>& runs, const Means& mean
 
 /// Takes in what the diagnosis of a later run brought up, at the odds that a cause of the catalogue has before any
 /// reading for each that it has more than `beside` it. Beside each other they weigh as that diagnosis says: rivals that
-/// no reading tells apart stay so. @return false if all are there already.
+/// no reading tells apart stay so. One that is there already is fitted from its new sizes too. @return false if nothing
+/// of it is new.
 bool TakeIn(Belief& belief, const std::vector<Weighed>& found, const std::vector<TakenRun>& runs, const Means& means,
             const std::function<Hypothesis(const Hypothesis&)>& beside);
 

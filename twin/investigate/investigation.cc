@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "twin/core/errors.h"
+#include "twin/core/happened_once.h"
 #include "twin/core/units.h"
+#include "twin/diagnose/mean_of_runs.h"
 #include "twin/investigate/expected_information.h"
 #include "twin/uncertainty/budget.h"
 
@@ -18,6 +20,7 @@ namespace {
 constexpr double kWorthMeasuring_bit = 0.05;  // of causes
 constexpr double kWorthRefining_bit = 0.005;  // of the goal
 constexpr double kMostlyUnlisted = 0.5;
+constexpr double kStandsOut = 5.0;  // noise standard deviations: such a cause is mostly found among all the others
 /// Of the best: a named rival that is more probable is still in question. Looking again and again until one is past
 /// a limit would otherwise make the limit's share of mistakes.
 constexpr double kOutOfQuestion = 0.01;
@@ -65,9 +68,27 @@ class Loop {
   bool AreCausesTold() const { return ToldBy(result_.belief, options_.conclusive) != Told::kTied; }
 
   bool IsDone() {
-    if (!AreCausesTold() || !result_.IsGoalMet()) return false;
+    if (!AreCausesTold() || !result_.IsGoalMet() || MayBeFaint()) return false;
     result_.ended = Ended::kTold;
     return true;
+  }
+
+  bool IsNothingFound() const {
+    return result_.belief.Best().fit.hypothesis.Name() == Hypothesis{}.Name() && result_.belief.unlisted < kMostlyUnlisted;
+  }
+
+  /// Nothing is found, and a cause of the size that is asked for could still hide in the noise.
+  bool MayBeFaint() const {
+    return IsNothingFound() && RunsLikeFirst() < RunsToShowFaint();
+  }
+
+  int RunsLikeFirst() const {
+    return static_cast<int>(std::ranges::count_if(runs_, [](const TakenRun& run) { return run.asked.sets.empty(); }));
+  }
+
+  /// So many in the mean have the noise in which the cause stands out.
+  int RunsToShowFaint() const {
+    return options_.faint > 0.0 ? static_cast<int>(std::ceil(std::pow(kStandsOut / options_.faint, 2))) : 1;
   }
 
   /// Makes the run and adds it to what is known.
@@ -137,6 +158,7 @@ class Loop {
     if (advice.empty()) return End(Ended::kBudget);
     auto useful = std::ranges::find_if(advice, [this](const Advice& a) { return IsUseful(a); });
     if (useful == advice.end()) useful = Exploring(advice);
+    if (useful == advice.end()) useful = LookingCloser(advice);
     if (useful == advice.end()) return End(IsAnyLeftOut(left_min) ? Ended::kBudget : Ended::kNothingMore);
     Step step{static_cast<int>(result_.steps.size()) + 1, useful->run, ReasonFor(*useful, advice)};
     step.expected_bit = useful->of_causes_bit;
@@ -159,6 +181,12 @@ class Loop {
     return shortest;
   }
 
+  /// The first run once more, where its noise may hide what is looked for.
+  std::vector<Advice>::const_iterator LookingCloser(const std::vector<Advice>& advice) const {
+    if (!MayBeFaint()) return advice.end();
+    return std::ranges::find_if(advice, [](const Advice& a) { return a.run.sets.empty(); });
+  }
+
   bool End(Ended ended) {
     result_.ended = ended;
     return false;
@@ -172,7 +200,7 @@ class Loop {
   bool IsAnyLeftOut(double left_min) const {
     const double all_min = std::numeric_limits<double>::infinity();
     for (const Advice& a : plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, all_min)) {
-      if (a.minutes > left_min && IsUseful(a)) return true;
+      if (a.minutes > left_min && (IsUseful(a) || (MayBeFaint() && a.run.sets.empty()))) return true;
     }
     return false;
   }
@@ -184,12 +212,20 @@ class Loop {
                            Entropy_bit(result_.belief.Probabilities()));
     if (best.of_goal_bit > 0.0)
       reason += fmt::format("{}{} to {:.3g}", reason.empty() ? "" : ", ", result_.goal->Text(), best.u_goal);
-    if (!IsUseful(best)) return "nothing open says what this is: the shortest run of a kind that was not made yet";
+    if (!IsUseful(best)) return ReasonToLook();
     reason += fmt::format(" expected in {:.1f} min", best.minutes);
     const auto second = std::ranges::find_if(advice, [&](const Advice& a) { return a.run.name != best.run.name; });
     if (second == advice.end()) return reason;
     return reason + fmt::format("; per minute the next best, {}, has {:.2g} times as much", second->run.name,
                                 second->PerMinute() / best.PerMinute());
+  }
+
+  /// For a run that no open hypothesis asks for.
+  std::string ReasonToLook() const {
+    if (!MayBeFaint()) return "nothing open says what this is: the shortest run of a kind that was not made yet";
+    return fmt::format(
+        "nothing found so far: {} such runs together show what is {:.3g} standard deviations strong in one, this is number {}",
+        RunsToShowFaint(), options_.faint, RunsLikeFirst() + 1);
   }
 
   void TakeAndWeigh(Step step) {
@@ -203,26 +239,38 @@ class Loop {
     Note(std::move(step), before);
   }
 
-  /// The last run beside the best hypothesis: it agrees, or it brings up more.
+  /// The last run, and all like it together, beside the best hypothesis: they agree, or they bring up more.
   void Compare() {
     Belief& belief = result_.belief;
     const TakenRun& run = runs_.back();
     const Hypothesis best = belief.Best().fit.hypothesis;
     const Scenario with = With(run.scenario, best, run.number);
-    const diagnose::DiagnosisRun found = means_.diagnose(run.readings, with, {});
-    if (found.diagnosis.verdict == diagnose::Verdict::kNone) {
-      if (IsOfAnotherKind()) Agreed(belief, run, means_);
-      return;
-    }
+    const std::vector<Reading> readings = WithThoseLike(run, best);
+    const diagnose::DiagnosisRun found = means_.diagnose(readings, with, {});
     std::vector<Weighed> more = LeftOpen(found, with, run.number);
     std::erase_if(more, [](const Weighed& one) { return one.hypothesis.causes.empty(); });
     for (Weighed& one : more) one.hypothesis = Together(best, one.hypothesis);
     bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
+    if (found.diagnosis.verdict == diagnose::Verdict::kNone) {
+      if (IsOfAnotherKind()) Agreed(belief, run, means_);
+      return;
+    }
     const std::vector<Weighed> others =
-        LeftOpen(means_.diagnose(run.readings, run.scenario, {}), run.scenario, run.number);
+        LeftOpen(means_.diagnose(readings, run.scenario, {}), run.scenario, run.number);
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
     if (!is_new || found.diagnosis.verdict == diagnose::Verdict::kUnknown)
       Disagreed(belief, found.diagnosis.unknown.probability);
+  }
+
+  /// The mean of the runs of its plan: it shows smaller causes than any of them. What happened once did so in one of
+  /// them, and another is behind it.
+  std::vector<Reading> WithThoseLike(const TakenRun& run, const Hypothesis& best) const {
+    if (std::ranges::any_of(best.causes, HappensOnce)) return run.readings;
+    std::vector<const std::vector<Reading>*> alike;
+    for (const TakenRun& other : runs_) {
+      if (other.asked.sets == run.asked.sets) alike.push_back(&other.readings);
+    }
+    return diagnose::MeanOfRuns(alike, FormatOf(run.scenario.bench)).value_or(run.readings);
   }
 
   bool IsOfAnotherKind() const {

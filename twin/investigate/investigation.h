@@ -17,6 +17,9 @@ struct InvestigationOptions {
   double budget_min = 120.0;  // of the procedures' own clocks
   double conclusive = 0.95;   // a cause of that probability is told, if it has no rival within a hundredth of it
   int most_runs = 20;
+  /// Where nothing is found, the first run is made again until all of them together would show a cause of so many noise
+  /// standard deviations in the first run; 0: the first run is believed.
+  double faint = 2.0;
 };
 
 /// A run that was chosen, and what was believed after it.

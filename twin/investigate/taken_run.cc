@@ -26,13 +26,36 @@ TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vect
   return run;
 }
 
+namespace {
+
+/// The run's own twin set to that scenario, white. Unknowns that have to move for it do so once, by the run's slopes.
+Eigen::MatrixXd LeftByItsTwin(const Scenario& with, const TakenRun& run) {
+  const auto left_where = [&](const Eigen::VectorXd& unknowns) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd left = run.linear.left_by_another(with, unknowns);
+    return left.size() == 0 ? left : run.noise.Whiten(run.linear, left);
+  };
+  const Eigen::MatrixXd first = left_where(Eigen::VectorXd::Zero(run.linear.nuisance.jacobian.cols()));
+  return first.size() == 0 ? first : left_where(run.projector->Solve(first));
+}
+
+/// A run made anew against that scenario, white in the frame of this one.
+Eigen::MatrixXd LeftByAnotherRun(const Scenario& with, const TakenRun& run, const Means& means) {
+  const diagnose::LinearRun other = means.against(run.readings, with);
+  if (other.Rows() != run.linear.Rows()) return {};
+  const Eigen::MatrixXd left = diagnose::LeftInFrame(other, run.linear, run.noise);
+  return run.noise.Whiten(run.linear, left);
+}
+
+}  // namespace
+
 Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const Means& means) {
   if (hypothesis.causes.empty() && hypothesis.besides.empty()) return run.left;
   try {
-    const diagnose::LinearRun with = means.against(run.readings, With(run.scenario, hypothesis, run.number));
-    if (with.Rows() != run.linear.Rows()) return run.left;
-    const Eigen::MatrixXd left = diagnose::LeftInFrame(with, run.linear, run.noise);
-    return run.noise.Whiten(run.linear, left);
+    const Scenario with = With(run.scenario, hypothesis, run.number);
+    Eigen::MatrixXd left;
+    if (run.linear.left_by_another) left = LeftByItsTwin(with, run);
+    if (left.size() == 0) left = LeftByAnotherRun(with, run, means);
+    return left.size() == 0 ? run.left : Eigen::VectorXd(left);
   } catch (const InputError&) {
     return run.left;
   }

@@ -2,11 +2,16 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "twin/core/errors.h"
 #include "twin/model/course.h"
+
+namespace twinbench {
+struct Scenario;
+}
 
 /// A run as the engine sees it: no bench, only readings x channels, what the model predicted, and which directions
 /// of the data the free unknowns can absorb.
@@ -41,6 +46,12 @@ struct ChannelUnit {
   double to_SI = 1.0;  // factor from there to SI
 };
 
+/// What another scenario leaves of a run's readings [SI, by row] where the free unknowns have moved `by` from where the
+/// jacobian was taken; what they do by the jacobian is put back. One prediction: no slopes are asked for. Empty if the
+/// scenario has other unknowns.
+/// @throws InputError if it cannot be followed.
+using LeftByAnother = std::function<Eigen::VectorXd(const Scenario& other, const Eigen::VectorXd& by)>;
+
 /// Row of reading i (of the schedule) and channel c: i * channels + c.
 struct LinearRun {
   std::string bench;  // its name: of the catalogue that names the causes
@@ -58,6 +69,7 @@ struct LinearRun {
   bool noise_free = false;   // a simulation without noise: its residuals say nothing about sigma
   Nuisance nuisance;
   std::vector<Pattern> patterns;
+  LeftByAnother left_by_another = {};  // none: another scenario makes another run
 
   /// Best prediction, SI. Regress on this, never on `observed`: that has the residual in it.
   Eigen::VectorXd Predicted() const {

@@ -14,6 +14,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/noise_estimate.h"
+#include "twin/diagnose/mean_of_runs.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/model/course.h"
 
@@ -89,7 +90,7 @@ Eigen::VectorXd RelativeNoise(const std::vector<Reading>& used) {
 void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Reading>& used) {
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
-  run.rounding = std::max(device.resolution_rad, CommonStep(shown_rad));
+  run.rounding = std::max(device.resolution_rad, RunsIn(used) * CommonStep(shown_rad));
   constexpr double kArithmetic_rad = 1e-12;  // where nothing else says what the noise is
   const double rounded_rad = run.rounding / std::sqrt(12.0);
   run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
@@ -100,6 +101,7 @@ void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Re
   const auto and_rounding = [=](double own_rad) { return std::hypot(own_rad, rounded_rad); };
   run.sigma = relative * noise_rad;
   run.sigma = run.sigma_stated ? run.sigma.unaryExpr(and_rounding).eval() : run.sigma.cwiseMax(rounded_rad).eval();
+  ScaleToMean(used, run);
 }
 
 }  // namespace

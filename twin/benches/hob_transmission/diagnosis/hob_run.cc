@@ -13,6 +13,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/followed.h"
+#include "twin/diagnose/mean_of_runs.h"
 #include "twin/diagnose/redundancy.h"
 #include "twin/model/course.h"
 #include "twin/model/signals.h"
@@ -234,6 +235,7 @@ HobRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, 
   }
   hob.context.groups = ChooseGroups(hob.context);
   hob.run = RunOf(hob.context, left_rad, gear_rad(), scenario);
+  ScaleToMean(used, hob.run);
   hob.second_order_rad = SecondOrder_rad(hob.context);
   return hob;
 }

@@ -11,6 +11,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/projector.h"
+#include "twin/diagnose/mean_of_runs.h"
 #include "twin/model/course.h"
 
 namespace twinbench::diagnose::rotary {
@@ -45,6 +46,7 @@ void SetReadings(const std::vector<Reading>& used, const Scenario& scenario, Rot
   run.sigma = SigmaOf(used, scenario, rotary.geometry,
                       {rotary.twin->Slope_m("mount.ez", still), rotary.twin->Slope_m("mount.ex", still)});
   run.rounding = RoundingStep_m(used, rotary.geometry);
+  ScaleToMean(used, run);
   run.noise_free = IsNoiseFree(used);
   rotary.sample_noise_V = SampleNoise_V(used, scenario);
 }
@@ -84,7 +86,8 @@ Eigen::VectorXd Improved(const Eigen::VectorXd& x, const LinearRun& run) {
 }
 
 /// Slopes hardly vary within some arcminutes: they are looked up again once.
-void Fit(const std::vector<Configuration>& configurations, const RotaryTwin* without_effects, RotaryRun& rotary) {
+/// @return the unknowns.
+Eigen::VectorXd Fit(const std::vector<Configuration>& configurations, const RotaryTwin* without_effects, RotaryRun& rotary) {
   constexpr int kLookUps = 2, kSteps = 2;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(UnknownsOf(rotary.design));
   Compare(configurations, x, without_effects, rotary);
@@ -96,6 +99,42 @@ void Fit(const std::vector<Configuration>& configurations, const RotaryTwin* wit
     }
   }
   Linearise(configurations, true, rotary);
+  return x;
+}
+
+/// Everything of a run but its fit.
+RotaryRun Unfitted(const std::vector<Reading>& used, const Scenario& scenario, const ForwardModel& model,
+                   std::vector<Configuration>& of_reading) {
+  RotaryRun rotary;
+  rotary.geometry = measure::NominalGeometry(scenario);
+  rotary.published = model.published;
+  rotary.twin = std::make_shared<const RotaryTwin>(model.follow, scenario, used, rotary.geometry);
+  SetReadings(used, scenario, rotary);
+  Configurations configurations = FindConfigurations(used, scenario, rotary.geometry, rotary.published);
+  of_reading = std::move(configurations.of_reading);
+  SetUnknowns(std::move(configurations.design), rotary);
+  return rotary;
+}
+
+/// Tables and mountings move as the unknowns say; the calibrated constants are held and act by their slopes.
+LeftByAnother LeftByAnotherOf(const std::vector<Reading>& used, const ForwardModel& model, const RotaryRun& rotary,
+                              const Eigen::VectorXd& x) {
+  struct Asked {
+    std::vector<Reading> used;
+    ForwardModel model;
+    Eigen::SparseMatrix<double, Eigen::RowMajor> jacobian;
+    Eigen::VectorXd x;
+  };
+  const auto asked = std::make_shared<const Asked>(Asked{used, model, rotary.run.nuisance.jacobian, x});
+  return [asked](const Scenario& other, const Eigen::VectorXd& by) -> Eigen::VectorXd {
+    std::vector<Configuration> configurations;
+    RotaryRun of_other = Unfitted(asked->used, other, asked->model, configurations);
+    if (UnknownsOf(of_other.design) != asked->x.size()) return {};
+    Eigen::VectorXd moved = by;
+    moved.tail(kCalibrated).setZero();
+    Compare(configurations, asked->x + moved, nullptr, of_other);
+    return of_other.run.residual + asked->jacobian * moved;
+  };
 }
 
 Scenario WithoutEffects(Scenario scenario) {
@@ -117,20 +156,16 @@ Response RotaryRun::ResponseTo(const std::string& point) const {
 
 RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const ForwardModel& model) {
   const std::vector<Reading> used = UsedOf(readings);
-  RotaryRun rotary;
+  std::vector<Configuration> configurations;
+  RotaryRun rotary = Unfitted(used, scenario, model, configurations);
   rotary.left_out = LeftOut(readings, used.size());
-  rotary.geometry = measure::NominalGeometry(scenario);
-  rotary.published = model.published;
-  rotary.twin = std::make_shared<const RotaryTwin>(model.follow, scenario, used, rotary.geometry);
-  SetReadings(used, scenario, rotary);
-  Configurations configurations = FindConfigurations(used, scenario, rotary.geometry, rotary.published);
-  SetUnknowns(std::move(configurations.design), rotary);
   const Scenario bare = WithoutEffects(scenario);
   std::unique_ptr<const RotaryTwin> without_effects;
   if (model.published && scenario.effects.size() + scenario.empiricals.size() > 0)
     without_effects = std::make_unique<const RotaryTwin>(model.follow, bare, used, rotary.geometry);
-  Fit(configurations.of_reading, without_effects.get(), rotary);
+  const Eigen::VectorXd x = Fit(configurations, without_effects.get(), rotary);
   SetPatterns(rotary);
+  if (!model.published) rotary.run.left_by_another = LeftByAnotherOf(used, model, rotary, x);
   return rotary;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "twin/benches/turntable_autocollimator/diagnosis/unknowns.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
@@ -13,6 +14,7 @@
 #include "twin/diagnose/engine/followed.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
+#include "twin/diagnose/mean_of_runs.h"
 #include "twin/model/course.h"
 #include "twin/model/signals.h"
 
@@ -162,6 +164,7 @@ void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>
   const Eigen::MatrixXd shown_rad = twin.Predict(AtPoints(turntable.body_rad));
   run.sigma = Sigma_rad(twin, turntable.body_rad, scenario);
   run.sigma = AsRows(shown_rad).array().isFinite().select(run.sigma, kNoWeight * run.sigma);
+  ScaleToMean(used, run);
   const bool nothing_behind = scenario.empiricals.empty() && std::ranges::none_of(scenario.effects, IsAddedBehind);
   turntable.context.shown_rad =
       OrZero(nothing_behind
@@ -172,6 +175,28 @@ void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>
   if (TurntableOf(scenario).HasPolygon()) turntable.context.shown_rad.col(kX).setZero();
   run.nuisance = AllUnknowns(turntable.places, slopes, turntable.context, scenario,
                              OrZero(twin.Slope("room.temperature", AtPoints(turntable.body_rad))));
+}
+
+/// The mirror moves as the free unknowns say; all others (the standard's, the room's) are small and act by their slopes.
+diagnose::LeftByAnother LeftByAnotherOf(const std::vector<Reading>& readings, const std::vector<Reading>& used,
+                                        const model::FollowMaker& follow, const TurntableRun& turntable) {
+  struct Asked {
+    std::vector<Reading> readings, used;
+    Nuisance moved, free;
+    Eigen::VectorXd observed;
+    Eigen::MatrixXd body_rad;
+  };
+  const LinearRun& run = turntable.run;
+  auto asked = std::make_shared<Asked>(Asked{readings, used,
+                                             FreeUnknowns(turntable.places, StraightSlopes(run.schedule.Readings()), run.schedule),
+                                             run.nuisance, run.observed, turntable.body_rad});
+  return [asked, follow](const Scenario& other, const Eigen::VectorXd& by) -> Eigen::VectorXd {
+    const Eigen::Index mirror = asked->moved.jacobian.cols();
+    const Eigen::VectorXd of_mirror = by.head(mirror);
+    const Eigen::MatrixXd body_rad = asked->body_rad + ByReading(asked->moved.jacobian * of_mirror);
+    const Eigen::MatrixXd shown_rad = Followed(follow, other, asked->readings, asked->used).Predict(AtPoints(body_rad));
+    return OrZero(asked->observed - AsRows(shown_rad)) + asked->free.jacobian.leftCols(mirror) * of_mirror;
+  };
 }
 
 double StandardDeviation(const Eigen::VectorXd& values) {
@@ -196,6 +221,7 @@ TurntableRun BuildRun(const std::vector<Reading>& readings, const Scenario& scen
   run.noise_free = scenario.noise_free;
   run.observed = AsRows(AsRead_rad(used));
   FollowTwin(readings, used, scenario, follow, turntable);
+  run.left_by_another = LeftByAnotherOf(readings, used, follow, turntable);
   return turntable;
 }
 
