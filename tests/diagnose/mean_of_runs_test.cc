@@ -88,7 +88,7 @@ TEST(ScaleToMean, SaysWhatNoiseAndRoundingLeaveInTheMean) {
     run.rounding = step;
     run.sigma = Eigen::VectorXd::Constant(12, std::hypot(noise, step / std::sqrt(12.0)));
     ScaleToMean(mean, run);
-    EXPECT_NEAR(run.sigma[0] / DrawnOfMean(noise, step, kRuns), 1.0, 0.1) << noise;
+    EXPECT_NEAR(run.sigma[0] / DrawnOfMean(noise, step, kRuns), 1.0, 0.05) << noise;
   }
 }
 

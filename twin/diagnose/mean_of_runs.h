@@ -22,8 +22,9 @@ std::optional<std::vector<Reading>> MeanOfRuns(const std::vector<const std::vect
 int RunsIn(const std::vector<Reading>& readings);
 
 /// Stated uncertainties become those of the mean. Where noise is smaller than the step of rounding, every run is
-/// rounded alike: of the rounding's variance step^2 / 12 the share exp(-4 pi^2 (noise / step)^2) repeats (Widrow &
-/// Kollar, Quantization Noise, 2008, 5) and stays. Uncertainties that were estimated come from the mean itself.
+/// rounded alike, and of the variance step^2 / 12 a part repeats and stays: sum over k of (step / pi k)^2 / 2
+/// exp(-(2 pi k noise / step)^2) (Widrow & Kollar, Quantization Noise, 2008, 5). Uncertainties that were estimated come
+/// from the mean itself.
 void ScaleToMean(const std::vector<Reading>& used, LinearRun& run);
 
 }  // namespace twinbench::diagnose
