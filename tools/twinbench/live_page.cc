@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -134,6 +135,20 @@ Pause::Ears LivePage::Ears() {
             tell("over", {{"reading", reading}});
             note_(fmt::format("goes on behind {} readings", reading));
           }};
+}
+
+void LivePage::Serve(const std::string& bench, const std::string& where, const std::vector<std::string>& axes) {
+  if (!server_) return;
+  nlohmann::json columns = nlohmann::json::array();
+  for (const std::string& axis : axes) columns.push_back({{"name", axis}, {"role", "axis"}});
+  server_->Begin(OneLine({{"command", command_}, {"bench", bench}, {"folder", where}, {"can_pause", false}, {"columns", columns}}));
+}
+
+void LivePage::Axes(Time now, const std::vector<double>& at, bool is_moving) {
+  if (!server_) return;
+  nlohmann::json values = nlohmann::json::array();
+  for (const double value : at) values.push_back(std::isfinite(value) ? nlohmann::json(value) : nlohmann::json());
+  server_->Tell("axes", OneLine({{"t", ToSeconds(now)}, {"v", values}, {"moving", is_moving}}));
 }
 
 void LivePage::Told(const char* kind, const nlohmann::json& json) {

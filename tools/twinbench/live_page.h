@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/twinbench/pause.h"
 #include "twin/core/run_record.h"
@@ -38,6 +39,11 @@ class LivePage {
   /// `line` and the page. Holds the run between two readings while the page wants a pause.
   /// @param stands  Whether what moves stands.
   procedure::ProgressCallback ShownToo(procedure::ProgressCallback line, StandingCheck stands = {});
+  /// Shows axes that others move, instead of a record.
+  /// @param where  What is shown there: addresses.  @param axes  "target_deg", one each.
+  void Serve(const std::string& bench, const std::string& where, const std::vector<std::string>& axes);
+  /// Where these axes are at a time of the bench, in the units of their names.
+  void Axes(Time now, const std::vector<double>& at, bool is_moving);
   /// What else happens, beside the readings. @param kind  A word that the page knows.
   void Told(const char* kind, const nlohmann::json& json);
   /// The last that the page says: what the program ends with, in its words.

@@ -29,6 +29,7 @@ const pause = pausePanel(send);
 const steps = inquiry();
 
 let figures = null;
+let serves = false;
 let shown = null; // folder
 let residuals = null;
 let predicted = 0;
@@ -63,7 +64,13 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
   predicted = raised = 0;
   residualCards.replaceChildren();
   alarms.replaceChildren();
-  title.textContent = `${bench}: ${command} into ${folder}`;
+  serves = command === "serve";
+  title.textContent = serves ? `${bench}, served as hardware` : `${bench}: ${command} into ${folder}`;
+  if (serves) {
+    counted.textContent = folder;
+    bar.hidden = residualPart.hidden = true;
+    stop.isOf("Stop serving", "Stop serving?", "The program closes every connection and ends. What clients were told to do is theirs to take up again.");
+  }
   columns = named.map((column) => {
     const [name, unit] = parted(column.name);
     return { ...column, name, unit, column: column.name };
@@ -71,7 +78,17 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
   figures = liveFigures(columns);
   axes.replaceChildren(...columns.map(({ name }) => element("div", {}, element("dt", {}, name), element("dd", {}, "\u2013"))));
   cards.replaceChildren(...figures.cards);
-  if (!ended) say("", "The measurement goes on");
+  if (!ended) say("", goesOn());
+}
+
+const goesOn = () => (serves ? "The twin is served" : "The measurement goes on");
+
+/** Axes that others move. */
+function moved({ t, v, moving }) {
+  figures?.add({ t, v });
+  columns.forEach(({ unit }, c) => (axes.children[c].lastChild.textContent = `${number(v[c])} ${unit}`));
+  subtitle.textContent = `bench time ${clock(t)}, ${moving ? "moving" : "at rest"}`;
+  changed = true;
 }
 
 function reading(r) {
@@ -115,7 +132,7 @@ function end({ code, words }) {
   events.close();
   stop.over();
   pause.over();
-  if (code === 0) return say("good", "The measurement is complete: the program ended with exit code 0");
+  if (code === 0) return say("good", serves ? "Nothing is served any more: the program ended with exit code 0" : "The measurement is complete: the program ended with exit code 0");
   say(code === 3 ? "bad" : "doubt", `The program ended with exit code ${code}. ${words}`);
 }
 
@@ -132,6 +149,7 @@ on("step", steps.step);
 on("believed", steps.believed);
 on("reading", reading);
 on("progress", progress);
+on("axes", moved);
 on("residuals", compare);
 on("alarm", alarm);
 on("unjudged", ({ why }) => (judged.textContent = `Readings are not compared with the twin: ${why}`));
@@ -145,7 +163,7 @@ events.onerror = () => {
 };
 events.onopen = () => {
   heard = performance.now();
-  if (!ended) say("", figures ? "The measurement goes on" : "Connected; nothing is being measured yet");
+  if (!ended) say("", figures ? goesOn() : "Connected; nothing is being measured yet");
 };
 setInterval(() => {
   if (changed) (changed = false), figures?.draw(), residuals?.draw();
