@@ -3,7 +3,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { connect } from "node:net";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { begin, close, faultsOf, folder, openAddress, scenario, write } from "./bench.mjs";
+import { begin, close, faultsOf, folder, openAddress, scenario, twinbench, write } from "./bench.mjs";
 
 const begun = [];
 after(async () => {
@@ -135,12 +135,34 @@ test("a served twin shows where clients have moved its tables, and is stopped fr
   await page.close();
 });
 
+/** A second or two by bodies. */
+const kSmallRun = 'bench = "rotary_4dof"\n[procedure]\nphases = ["full_circle"]\nshifts = [0, 1, 3]\npositions = 8\n[mechanics]\nfidelity = "bullet"\n';
+
 /** An investigation whose first run takes a second or two: long enough to be told something meanwhile. */
 function startInquiry(name) {
-  write("inquiry.toml", 'bench = "rotary_4dof"\n[procedure]\nphases = ["full_circle"]\nshifts = [0, 1, 3]\npositions = 8\n[mechanics]\nfidelity = "bullet"\n');
+  write("inquiry.toml", kSmallRun);
   return start("investigate", "inquiry.toml", "--twin", "inquiry.toml", "-o", name, "--web", "0");
 }
 const tell = (address, wish) => fetch(`${address.origin}/${wish}${address.search}`, { method: "POST" }).then((answer) => answer.status);
+
+test("a pause changes no bit of a twin's run", async () => {
+  write("held.toml", kSmallRun);
+  const run = start("run", "held.toml", "-o", "held", "--web", "0");
+  const address = new URL(await addressOf(run));
+  assert.equal(await tell(address, "pause"), 202);
+  const told = (await fetch(`${address.origin}/events${address.search}`)).body.pipeThrough(new TextDecoderStream()).getReader();
+  for (let text = ""; !text.includes('"state":"paused"'); ) {
+    const { value, done } = await told.read();
+    assert.ok(!done, `it ended without a pause: ${text}`);
+    text += value;
+  }
+  assert.equal(await tell(address, "resume"), 202);
+  assert.equal(await run.ended, 0, run.err);
+  await told.cancel();
+  twinbench("run", "held.toml", "-o", "unheld");
+  const readings = (name) => twinbench("export", name);
+  assert.equal(readings("held"), readings("unheld"));
+});
 
 test("an investigation shows its step and what is believed", async () => {
   const inquiry = startInquiry("inquiry");
