@@ -33,7 +33,7 @@ class OpenBench {
 };
 
 /// Opens a bench of kind "hardware".
-/// @param scenario  Says which rate, range, resolution and block length the A/D must give.
+/// @param adc       Says which rate, range, resolution and block length the A/D must give.
 /// @param elapsed   Time 0 of the run was so long ago (a resumed run); 0 for a new one.
 /// @param run       Which run of its bench a served twin makes, as Scenario::repeat; 0: its own.
 /// @param stop_asked  Asked while tables move, see ControlledTable::HearStop; none: nobody stops them then.

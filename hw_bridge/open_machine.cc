@@ -19,12 +19,15 @@ namespace {
 class OpenedMachine : public OpenMachine {
  public:
   OpenedMachine(const MachineFile& file, const std::vector<MachineAxis>& axes,
-                const std::vector<ReadingColumn>& columns, Duration elapsed, int run)
+                const std::vector<ReadingColumn>& columns, Duration elapsed, int run,
+                const std::function<bool()>& stop_asked)
       : name_(file.name),
         clock_(OpenClock(file.clock, elapsed, run)),
         machine_(OpenAxes(file, axes)),
         instruments_(OpenInstruments(file, columns), *clock_),
-        fixture_(OpenFixture(file.fixture)) {}
+        fixture_(OpenFixture(file.fixture)) {
+    machine_.HearStop(stop_asked);
+  }
 
   MachineBench Devices() override { return {*clock_, machine_, instruments_, *fixture_, simulation_.get()}; }
   std::vector<AxisLimits> Limits() const override { return machine_.limits(); }
@@ -85,9 +88,9 @@ class OpenedMachine : public OpenMachine {
 
 std::unique_ptr<OpenMachine> OpenMachineHardware(const MachineFile& file, const std::vector<MachineAxis>& axes,
                                                  const std::vector<ReadingColumn>& columns, Duration elapsed,
-                                                 int run) {
+                                                 int run, const std::function<bool()>& stop_asked) {
   Require(file.kind == "hardware", "only a bench of hardware is opened");
-  return std::make_unique<OpenedMachine>(file, axes, columns, elapsed, run);
+  return std::make_unique<OpenedMachine>(file, axes, columns, elapsed, run, stop_asked);
 }
 
 }  // namespace twinbench::hw

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "hw_bridge/machine_file.h"
@@ -19,11 +20,12 @@ class OpenMachine : public MachineDevices {
 /// @param columns  What its instruments may show.
 /// @param elapsed  Time 0 of the run was so long ago (a resumed run); 0 for a new one.
 /// @param run      Which run of its bench a served twin makes, as Scenario::repeat; 0: its own.
+/// @param stop_asked  Asked while axes move, see EspMachine::HearStop; none: nobody stops them then.
 /// @throws DeviceFault if a device does not answer, is not the one named or allows less than the file; InputError
 /// if
 ///         an instrument is said to show what the bench has not.
 std::unique_ptr<OpenMachine> OpenMachineHardware(const MachineFile& file, const std::vector<MachineAxis>& axes,
                                                  const std::vector<ReadingColumn>& columns, Duration elapsed = {},
-                                                 int run = 0);
+                                                 int run = 0, const std::function<bool()>& stop_asked = {});
 
 }  // namespace twinbench::hw

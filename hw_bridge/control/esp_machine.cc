@@ -157,6 +157,7 @@ bool EspMachine::AskDone() {
 bool EspMachine::PollRunning(Duration within) {
   const auto end = std::chrono::steady_clock::now() + within;
   while (!AskDone()) {
+    if (stop_asked_ && stop_asked_()) throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
     const Duration left = end - std::chrono::steady_clock::now();
     if (left <= Duration(0)) return false;
     std::this_thread::sleep_for(std::min(left, kPollMachine));

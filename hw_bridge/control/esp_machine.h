@@ -28,6 +28,9 @@ class EspMachine : public MachineController {
   void AgreeOnLimits();
   const std::vector<AxisLimits>& limits() const { return limits_; }
 
+  /// From here on Settles on a bench of real time asks `stop_asked` every 20 ms, and ends with a DeviceFault kStopped where it says so.
+  void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
+
   const std::vector<MachineAxis>& Axes() const override { return axes_; }
   std::vector<AxisLimits> Travel() override;
   void StartMove(const std::vector<double>& to, double feed_m_s) override;
@@ -53,6 +56,7 @@ class EspMachine : public MachineController {
   std::vector<MachineAxis> axes_;
   std::vector<AxisLimits> limits_;
   EspMachineManner manner_;
+  std::function<bool()> stop_asked_;
   int prepared_opening_ = 0;
   bool knows_status_ = true;  // MS?
 };

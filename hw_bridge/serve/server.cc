@@ -69,6 +69,21 @@ struct Server::Impl {
                    std::move(make)) {}
   };
 
+  Served& served() { return rotary ? static_cast<Served&>(*rotary) : *machine; }
+
+  /// A bench that cannot get on says so to the client who asks next.
+  void LookAgain() {
+    try {
+      served().pace().CatchUp();
+      look();
+    } catch (const BenchError&) {
+    }
+    looks.expires_after(between_looks);
+    looks.async_wait([this](asio::error_code error) {
+      if (!error) LookAgain();
+    });
+  }
+
   ServeOptions options;
   Patience patience{options.idle_limit, options.write_limit};
   std::unique_ptr<ServedBench> rotary;  // one of the two
@@ -76,6 +91,9 @@ struct Server::Impl {
   asio::io_context io{1};
   std::optional<Port> iiod, scpi, esp;
   std::optional<PseudoTerminal> pty;
+  asio::steady_timer looks{io};
+  std::chrono::milliseconds between_looks{};
+  std::function<void()> look;
 };
 
 Server::Server(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc, const ServeOptions& options)
@@ -92,6 +110,12 @@ Server::~Server() = default;
 ServedAddresses Server::Addresses() const {
   return {HostToReach(impl_->options.bind), impl_->iiod ? impl_->iiod->port() : 0, impl_->scpi->port(), impl_->esp->port(),
           impl_->pty ? impl_->pty->path() : ""};
+}
+
+void Server::LookEvery(std::chrono::milliseconds period, std::function<void()> look) {
+  impl_->between_looks = period;
+  impl_->look = std::move(look);
+  impl_->LookAgain();
 }
 
 void Server::Run() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -39,6 +40,9 @@ class Server {
          const ServeOptions& options);
   ~Server();
   ServedAddresses Addresses() const;
+  /// From here on `look` is called every `period` of real time, on the thread of Run and between two calls of clients, with the bench where
+  /// the wall clock has brought it. Call it before Run.
+  void LookEvery(std::chrono::milliseconds period, std::function<void()> look);
   void Run();
   void Stop();
 

@@ -3,7 +3,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { connect } from "node:net";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { begin, close, faultsOf, folder, openAddress, scenario } from "./bench.mjs";
+import { begin, close, faultsOf, folder, openAddress, scenario, twinbench, write } from "./bench.mjs";
 
 const begun = [];
 after(async () => {
@@ -63,6 +63,25 @@ test("a served twin is seen while it is measured, and stopped by the page as by 
   assert.match(await page.locator("#counted").innerText(), /^\d+ of \d+ readings, bench time [\d:]+, [\d:]+ left$/);
   assert.deepEqual(await faultsOf(page), []);
 
+  await page.locator("#live-residual-of-psd-a-x .plot[data-points]").waitFor();
+  assert.match(await page.locator("#judged").innerText(), /^\d+ readings predicted by those before them; no alarm at a false-alarm rate of 1 % a run$/);
+
+  const pause = page.locator("#pause"), paused = page.locator("#pause-said");
+  await pause.click();
+  await page.locator('#pause-said[data-state="paused"]').waitFor();
+  const k = Number((await paused.innerText()).match(/^Paused at reading (\d+): everything stands$/)[1]);
+  const look = async () => (await ask(port, "ROT1:STAT?", "ROT2:STAT?")).map((answer) => answer.split(","));
+  for (const state of await look()) assert.equal(state[2], "0", "the controller says that it does not move");
+  const held = await page.locator("#counted").innerText();
+  await new Promise((done) => setTimeout(done, 700)); // at this speed some twenty readings, and one more look at the tables
+  assert.equal(await page.locator("#counted").innerText(), held);
+  assert.match(held, new RegExp(`^${k} of `));
+  assert.match(await paused.innerText(), /everything stands/);
+  assert.equal(await pause.innerText(), "Go on");
+  await pause.press("Enter");
+  await until(async () => (await page.locator("#counted").innerText()) !== held, () => "it did not go on");
+  assert.equal(await pause.innerText(), "Pause");
+
   const stop = page.locator("#stop");
   await stop.click();
   await page.locator("#stop-not").click();
@@ -80,7 +99,6 @@ test("a served twin is seen while it is measured, and stopped by the page as by 
   assert.ok(await stop.isDisabled());
   assert.deepEqual(page.said, []);
 
-  const look = async () => (await ask(port, "ROT1:STAT?", "ROT2:STAT?")).map((answer) => answer.split(","));
   const [before, then] = [await look(), await look()];
   for (const table of [0, 1]) {
     assert.equal(before[table][2], "0", "the controller says that it does not move");
@@ -97,4 +115,76 @@ test("a page without the token, or with another, is refused and moves nothing", 
   for (const answer of [await fetch(address.origin), await stop(""), await stop(`${token}0`), await stop(token, { Origin: "http://evil.example" })])
     assert.equal(answer.status, 403);
   assert.equal(await run.ended, 0, run.err);
+});
+
+test("a served twin shows where clients have moved its tables, and is stopped from its page", async () => {
+  const serve = start("serve", scenario("rotary_4dof"), ...kServed, "--speed", "100", "--iiod-port", "0", "--scpi-port", "0", "--esp-port", "0", "--no-pty", "--write-bench", "watched.toml", "--web", "0");
+  const page = await openAddress(await addressOf(serve));
+  await until(() => existsSync(join(folder, "watched.toml")), () => "no bench file");
+  const port = Number(readFileSync(join(folder, "watched.toml"), "utf8").match(/kind = "scpi"[^[]*tcp:127\.0\.0\.1:(\d+)/)[1]);
+  const target = page.locator(".now dd").first();
+  await until(async () => /^0(\.0+)? deg$/.test(await target.innerText()), () => "the target does not begin at 0");
+  await ask(port, "ROT1:ANGL 30;STAT?");
+  await until(async () => /^(30(\.0+)?|29\.99+\d*|30\.00+\d*) deg$/.test(await target.innerText()), () => "the target is not seen to get to 30 deg");
+  assert.deepEqual(await faultsOf(page), []);
+  await page.getByRole("button", { name: "Stop serving" }).click();
+  await page.locator("#stop-sure").click();
+  assert.equal(await serve.ended, 0, serve.err);
+  assert.equal(await page.locator("#state").innerText(), "Nothing is served any more: the program ended with exit code 0");
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
+/** A second or two by bodies. */
+const kSmallRun = 'bench = "rotary_4dof"\n[procedure]\nphases = ["full_circle"]\nshifts = [0, 1, 3]\npositions = 8\n[mechanics]\nfidelity = "bullet"\n';
+
+/** An investigation whose first run takes a second or two: long enough to be told something meanwhile. */
+function startInquiry(name) {
+  write("inquiry.toml", kSmallRun);
+  return start("investigate", "inquiry.toml", "--twin", "inquiry.toml", "-o", name, "--web", "0");
+}
+const tell = (address, wish) => fetch(`${address.origin}/${wish}${address.search}`, { method: "POST" }).then((answer) => answer.status);
+
+test("a pause changes no bit of a twin's run", async () => {
+  write("held.toml", kSmallRun);
+  const run = start("run", "held.toml", "-o", "held", "--web", "0");
+  const address = new URL(await addressOf(run));
+  assert.equal(await tell(address, "pause"), 202);
+  const told = (await fetch(`${address.origin}/events${address.search}`)).body.pipeThrough(new TextDecoderStream()).getReader();
+  for (let text = ""; !text.includes('"state":"paused"'); ) {
+    const { value, done } = await told.read();
+    assert.ok(!done, `it ended without a pause: ${text}`);
+    text += value;
+  }
+  assert.equal(await tell(address, "resume"), 202);
+  assert.equal(await run.ended, 0, run.err);
+  await told.cancel();
+  twinbench("run", "held.toml", "-o", "unheld");
+  const readings = (name) => twinbench("export", name);
+  assert.equal(readings("held"), readings("unheld"));
+});
+
+test("an investigation shows its step and what is believed", async () => {
+  const inquiry = startInquiry("inquiry");
+  const address = new URL(await addressOf(inquiry));
+  assert.equal(await tell(address, "pause"), 202);
+  const page = await openAddress(address.href);
+  await page.locator('#pause-said[data-state="paused"]').waitFor();
+  assert.match(await page.locator("#step").innerText(), /^Step 1: /);
+  await page.locator("#pause").click();
+  await page.locator("#causes tbody tr").first().waitFor({ timeout: 120000 }); // a diagnosis on a busy machine
+  assert.equal(await page.locator("#believed").innerText(), "Believed after step 1");
+  const probabilities = await page.locator("#causes td:nth-child(2)").allInnerTexts();
+  assert.ok(probabilities.every((text) => /^(< 0\.1|\d+\.\d) %$/.test(text)), probabilities.join());
+  assert.equal(await inquiry.ended, 0, inquiry.err);
+  assert.deepEqual(await faultsOf(page), []);
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
+test("a stop passes to the run of an investigation that is under way", async () => {
+  const inquiry = startInquiry("stopped");
+  assert.equal(await tell(new URL(await addressOf(inquiry)), "stop"), 202);
+  assert.equal(await inquiry.ended, 1);
+  assert.match(inquiry.err, /stopped by the operator behind reading \d+ of 96/);
 });

@@ -120,6 +120,16 @@ TEST(Certified, NamesAStandardOnlyWhereTheReadingsAreAllThatItAsksFor) {
   EXPECT_EQ(Find(wanting, title)->note, bias + "; not in full after ISO 230-2: 2 runs");
 }
 
+TEST(Certified, SaysWhoseErrorMotionItIsAndThatTheTableStood) {
+  const json results = json::parse(R"({"iso230_7": [{"table": "target", "motion": "tilt_fixed_x", "missing": ["the axis stood"],
+    "values": {"synchronous": {"value_arcsec": 9.5, "u_arcsec": 0.1, "bias_arcsec": 0.01, "u_parts": {"noise": 1.0}}}, "turns": 16}]})");
+  const Certified certified = Take("rotary_4dof", results);
+  const CertifiedQuantity* one = Find(certified, "error motion, target, tilt_fixed_x, synchronous");
+  EXPECT_EQ(one->values, std::vector{9.5});
+  EXPECT_EQ(one->norm, "");
+  EXPECT_NE(one->note.find("not in full after ISO 230-7: the axis stood"), std::string::npos);
+}
+
 TEST(Certified, RefusesABenchOfWhoseResultsNothingIsSaid) {
   EXPECT_THROW(CertifiedPartsOf("own", "run"), InputError);
 }

@@ -74,6 +74,25 @@ TEST(Watch, JudgesWhatTheReadingsBeforeDetermine) {
   EXPECT_EQ(Watch(Clean(3)).judged, (8 - 1) + 2 * 3 * 12 + (4 * 12 - 1));
 }
 
+TEST(Watch, StatesOfEveryReadingWhatItDeviatesByAndHowWellThatIsPredicted) {
+  const WatchReport report = Watch(Clean(5));
+  double sum = 0.0;
+  int count = 0, whole = 0;
+  for (const PredictedReading& p : report.predicted) {
+    whole += p.deviation.allFinite();
+    for (Eigen::Index c = 0; c < p.deviation.size(); ++c) {
+      EXPECT_EQ(std::isnan(p.deviation[c]), std::isnan(p.u[c]));
+      if (std::isnan(p.u[c])) continue;
+      sum += std::pow(p.deviation[c] / p.u[c], 2);
+      ++count;
+    }
+  }
+  EXPECT_EQ(static_cast<int>(report.predicted.size()), Clean(5).schedule.Readings());
+  EXPECT_EQ(whole, report.judged);
+  // Channels of one reading share what is not known: they count as half as many numbers.
+  EXPECT_NEAR(sum / count, 1.0, 4.0 * std::sqrt(2.0 / (count / 2.0)));
+}
+
 /// Adds a step to channel a (and to b) from reading `from` on.
 LinearRun WithStep(std::uint64_t seed, int from, double size_m, bool on_b) {
   LinearRun run = Clean(seed);

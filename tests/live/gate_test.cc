@@ -68,6 +68,13 @@ TEST(Gate, StopsByPostAlone) {
   EXPECT_EQ(StatusOf(Good("GET", "//")), 404);
 }
 
+TEST(Gate, PausesByPostAlone) {
+  EXPECT_EQ(std::get<Granted>(kGate.Judge(Good("POST", "/pause"))).wish, Wish::kPause);
+  EXPECT_EQ(std::get<Granted>(kGate.Judge(Good("POST", "/resume"))).wish, Wish::kResume);
+  EXPECT_EQ(StatusOf(Good("GET", "/pause")), 405);
+  EXPECT_EQ(StatusOf(Good("GET", "/resume")), 405);
+}
+
 TEST(Gate, TakesAPageUpWhereItWasCutOff) {
   Request request = Good("GET", "/events");
   request.last_event = "41";

@@ -103,6 +103,26 @@ TEST_F(Live, NothingIsStoppedWithoutTheTokenOrFromElsewhere) {
   EXPECT_EQ(stops_, 1);
 }
 
+TEST_F(Live, PassesOnAPauseToWhoeverCanPause) {
+  EXPECT_THAT(Ask(Asking("POST", Target("/pause"))), StartsWith("HTTP/1.1 409")) << "this one cannot";
+  std::vector<bool> wishes;
+  Server other({0, kMarkup, [] {}, [&](bool pauses) { wishes.push_back(pauses); }});
+  const std::string query = other.address().substr(other.address().find('?'));
+  for (const char* path : {"/pause", "/resume"}) {
+    Client client(other.port());
+    client.Say(fmt::format("POST {}{} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nConnection: close\r\n\r\n", path, query, other.port()));
+    EXPECT_THAT(client.HearAll(), StartsWith("HTTP/1.1 202"));
+  }
+  EXPECT_EQ(wishes, (std::vector<bool>{true, false}));
+}
+
+TEST_F(Live, IsToldFromOtherThreadsToo) {
+  std::jthread([this] { server_.Post("alarm", "1"); }).join();
+  Client client(server_.port());
+  client.Say(Asking("GET", Target("/events")));
+  EXPECT_THAT(client.HearUntil("data: 1\n\n"), HasSubstr("event: alarm"));
+}
+
 TEST_F(Live, OversizedRequestsAreRefused) {
   EXPECT_THAT(Ask(Asking("POST", Target("/stop"), "Content-Length: 1000000\r\n")), StartsWith("HTTP/1.1 413"));
   Client client(server_.port());

@@ -1,9 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
 #include "twin/procedure/machine_watch.h"
+#include "twin/procedure/standing.h"
 
 /// What goes wrong with a machine and its instruments, and what becomes of the run.
 namespace twinbench::test {
@@ -83,6 +87,31 @@ TEST(MachineFaults, AStopIsReadBack) {
   const procedure::Standstill unknown = procedure::StopMachine(devices);
   EXPECT_FALSE(unknown.is_sure);
   EXPECT_THAT(unknown.why_not, HasSubstr("no answer in time"));
+}
+
+/// A served twin at the pace of the world whose clock nobody holds is what hardware is.
+TEST(MachineFaults, AStopIsHeardAtOnceInRealTime) {
+  const Scenario scenario = ShortCircles();
+  const ServedMachineTwin served(scenario, 1.0);
+  const std::vector<MachineAxis> axes = {{"x"}, {"y"}};
+  hw::MachineFile file = hw::ParseMachineFile(served.BenchFile(), "served.toml", axes);
+  file.clock.kind = "system";
+  std::atomic<bool> is_asked = false;
+  const auto opened = hw::OpenMachineHardware(file, axes, InstrumentColumns(FormatOf(kCircularBench).columns), {}, 0,
+                                              [&] { return is_asked.load(); });
+  MachineBench devices = opened->Devices();
+  const std::vector<AxisState> at = devices.machine.State();
+  devices.machine.StartMove({at[0].encoder + 1e-3, at[1].encoder}, 1e-4);  // takes 10 s
+  EXPECT_FALSE(procedure::WhetherMachineStands(devices).is_sure);
+  std::jthread operator_([&is_asked] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    is_asked = true;
+  });
+  const auto begun = std::chrono::steady_clock::now();
+  EXPECT_THROW(devices.machine.Settles(std::chrono::seconds(1)), DeviceFault);
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::milliseconds(500)) << "not the second that it may take";
+  EXPECT_TRUE(procedure::StopMachine(devices).is_sure);
+  EXPECT_TRUE(procedure::WhetherMachineStands(devices).is_sure);
 }
 
 TEST(MachineFaults, AnOperatorWhoSaysStopIsHeardInTheMiddleOfASweep) {

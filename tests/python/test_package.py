@@ -71,6 +71,58 @@ class SameAsTheCommandLine(unittest.TestCase):
             self.assertIn("periodic", found.extended.toml())
 
 
+    def test_a_plan_to_the_bit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scenario = small("encoder_comparison").changed({
+                "encoder_procedure.kind": "sweep", "encoder_procedure.interval_s": 2.0, "encoder_procedure.speeds_deg_s": [36.0]})
+            pathlib.Path(folder, "scenario.toml").write_text(scenario.toml())
+            command("plan", f"{folder}/scenario.toml", "--minutes", "60", "--json", f"{folder}/plan.json", "-o", f"{folder}/next.toml")
+            made = tb.plan(scenario, minutes=60)
+            self.assertEqual(plain(dict(made)), json.loads(pathlib.Path(folder, "plan.json").read_text()))
+            written = sorted(path for path in pathlib.Path(folder).glob("next*.toml"))
+            self.assertEqual([run.toml() for run in made.next], [path.read_text() for path in written])
+            with self.assertRaises(tb.InputError):
+                tb.plan(scenario, minutes=60, readings=100)
+
+    def test_a_campaign_to_the_bit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "scenario.toml").write_text(small("encoder_comparison").toml())
+            study = pathlib.Path(folder, "study.toml")
+            study.write_text('scenario = "scenario.toml"\nseed = 5\ntrials = 3\n[[vary]]\nkey = "device.noise_deg"\n'
+                             'distribution = "uniform"\nlower = 0.001\nupper = 0.01\n')
+            command("campaign", study, "-o", f"{folder}/theirs.sqlite", "--csv", f"{folder}/theirs.csv", "--threads", "1")
+            own = tb.campaign(study, f"{folder}/own.sqlite", threads=2)
+            self.assertEqual(own.csv, pathlib.Path(folder, "theirs.csv").read_text())
+            self.assertEqual(len(own.frame()), 3)
+            self.assertIn("3 trials, 0 lost", own.summary)
+            self.assertEqual(tb.campaign(study, own.table, resume=True).csv, own.csv)
+            with self.assertRaises(tb.InputError):
+                tb.campaign(study, own.table)
+
+    def test_an_investigation_to_the_bit_and_by_a_function(self):
+        with tempfile.TemporaryDirectory() as folder:
+            believed = small("encoder_comparison")
+            hidden = believed.changed({"effect": [{"name": "periodic", "order": 5, "amplitude_deg": 0.05}]})
+            for name, scenario in (("believed", believed), ("hidden", hidden)):
+                pathlib.Path(folder, f"{name}.toml").write_text(scenario.toml())
+            command("investigate", f"{folder}/believed.toml", "--twin", f"{folder}/hidden.toml", "-o", f"{folder}/inquiry",
+                    "--runs", "1", "--json", f"{folder}/found.json")
+            found = tb.investigate(believed, hidden, most_runs=1)
+            self.assertEqual(plain(dict(found)), json.loads(pathlib.Path(folder, "found.json").read_text()))
+            self.assertIn("periodic", found.extended.toml())
+            asked = []
+
+            def measure(scenario):
+                asked.append(scenario)
+                return tb.run(hidden.changed({"seed": scenario.seed})).readings
+
+            by_function = tb.investigate(believed, measure, most_runs=1)
+            self.assertEqual(len(asked), 1)
+            self.assertEqual(by_function["causes"][0]["name"], found["causes"][0]["name"])
+            with self.assertRaises(TypeError):
+                tb.investigate(believed, "no bench")
+
+
 class Values(unittest.TestCase):
     def test_keys_are_read_and_set_in_their_units(self):
         scenario = small("rotary_4dof")

@@ -57,6 +57,17 @@ TEST(ObjectTables, HaveARowAnObjectWithItsMeasuredValues) {
   EXPECT_THAT(tables[0].rows[0], ElementsAre("4.772 ± 0.018", "0"));
 }
 
+TEST(ObjectTables, ShowValuesInGroupsWithTheUnitsOfTheirKeys) {
+  const nlohmann::json results = nlohmann::json::parse(R"({"iso230_7": [
+    {"motion": "tilt_fixed_x", "values": {"total": {"value_arcsec": 9.5123, "u_arcsec": 0.12}, "synchronous": {"value_arcsec": 8.0, "u_arcsec": null}}},
+    {"motion": "radial_fixed_y", "values": {"total": {"value_um": 3.0, "u_um": 0.5}}}]})");
+  const std::vector<PageTable> tables = ObjectTables(results);
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_THAT(tables[0].columns, ElementsAre("motion", "synchronous [arcsec]", "total [arcsec]", "total [um]"));
+  EXPECT_THAT(tables[0].rows[0], ElementsAre("tilt_fixed_x", "8", "9.51 ± 0.12", ""));
+  EXPECT_THAT(tables[0].rows[1], ElementsAre("radial_fixed_y", "", "", "3.00 ± 0.50"));
+}
+
 TEST(NumberText, HasTwoDigitsOfItsUncertainty) {
   EXPECT_EQ(NumberText(1234.5678, 0.0123), "1234.568");
   EXPECT_EQ(NumberText(1234.5678, 250.0), "1234.57");

@@ -33,6 +33,10 @@ class CertificateCommand : public Program {
 
 TEST_F(CertificateCommand, StatesTheNumbersOfTheResultsAndThatTheyAreSimulated) {
   EXPECT_THAT(Succeed({"certificate", "run", "--with", "laboratory.toml", "-o", "c.xml"}), HasSubstr("SIMULATED"));
+  const nlohmann::json told = Json({"certificate", "run", "--with", "laboratory.toml", "-o", "c.xml", "--json", "-"});
+  EXPECT_TRUE(told.at("simulated"));
+  EXPECT_FALSE(told.at("certified").empty());
+  EXPECT_EQ(Call({"certificate", "run", "--with", "laboratory.toml", "--json", "-"}).exit_code, 2) << "both to stdout";
   const std::string xml = Read("c.xml");
   EXPECT_THAT(xml, HasSubstr("SIMULATED table under test, ez"));
   EXPECT_THAT(xml, HasSubstr("<dcc:traceable>false</dcc:traceable>"));

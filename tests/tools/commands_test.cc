@@ -73,6 +73,27 @@ TEST_F(Commands, AnEffectIsExplainedWithWhatItDoes) {
   EXPECT_THAT(unknown.err, HasSubstr("the nearest is psd_roll"));
 }
 
+TEST_F(Commands, WhatIsExplainedIsThereForProgramsToo) {
+  const nlohmann::json benches = Json({"explain", "eccentricity", "--bench", "encoder_comparison", "--json", "-"}).at("benches");
+  ASSERT_EQ(benches.size(), 1u);
+  const nlohmann::json& told = benches.at(0);
+  EXPECT_EQ(told.at("effect"), "eccentricity");
+  EXPECT_FALSE(told.at("parameters").empty());
+  const nlohmann::json& signature = told.at("signature");
+  EXPECT_GT(signature.at("rms"), 0.0);
+  EXPECT_EQ(signature.at("x").size(), signature.at("forward").size());
+  EXPECT_NO_THROW(ParseScenario("bench = \"encoder_comparison\"\n", "usual", "", {told.at("set").get<std::string>()}));
+}
+
+TEST_F(Commands, ACampaignIsSummedUpForProgramsToo) {
+  Write("small.toml", "bench = \"encoder_comparison\"\n[encoder_procedure]\nturns = 1\nstops_per_turn = 12\npasses = [1, -1]\n");
+  Write("study.toml", "scenario = \"small.toml\"\ntrials = 3\n");
+  const nlohmann::json summary = Json({"campaign", "study.toml", "-o", "t.sqlite", "--json", "-"});
+  EXPECT_EQ(summary.at("trials"), 3);
+  EXPECT_TRUE(summary.at("lost").empty());
+  EXPECT_EQ(summary.at("results").at("means.both.ez_arcsec[]").at("count"), 3 * 12);
+}
+
 TEST_F(Commands, TheSchemaKnowsTheKeysOfEveryBench) {
   const nlohmann::json schema = Json({"schema"});
   ASSERT_EQ(schema.at("oneOf").size(), BenchFormats().size());

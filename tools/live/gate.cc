@@ -34,7 +34,8 @@ struct Place {
   Wish wish;
 };
 constexpr std::array kPlaces = {Place{"/", "GET", Wish::kPage}, Place{"/events", "GET", Wish::kEvents},
-                                Place{"/stop", "POST", Wish::kStop}};
+                                Place{"/stop", "POST", Wish::kStop}, Place{"/pause", "POST", Wish::kPause},
+                                Place{"/resume", "POST", Wish::kResume}};
 
 }  // namespace
 

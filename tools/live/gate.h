@@ -13,7 +13,7 @@ struct Request {
   std::string last_event;              // of a page that comes back: the last event that it has seen
 };
 
-enum class Wish { kPage, kEvents, kStop };
+enum class Wish { kPage, kEvents, kStop, kPause, kResume };
 
 struct Granted {
   Wish wish = Wish::kPage;

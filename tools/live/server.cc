@@ -48,7 +48,7 @@ constexpr std::size_t kPiece_B = 64 * 1024;  // at most that is on its way to a 
 constexpr std::size_t kWaiting = 4096;       // events between measurement and server
 constexpr std::size_t kKept = 20000;         // events for pages that come later
 
-struct Told {
+struct ToldEvent {
   const char* kind;
   std::string json;
 };
@@ -69,6 +69,7 @@ struct Shared {
   std::string_view markup;
   std::string policy;
   std::function<void()> stop;
+  std::function<void(bool)> pause;
   Feed feed{kKept};
 };
 
@@ -137,9 +138,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void Grant(const Granted& granted) {
     if (granted.wish == Wish::kPage) return Send(200, "text/html; charset=utf-8", std::string(shared_.markup));
     if (granted.wish == Wish::kEvents) return Listen(granted.next_event);
-    shared_.stop();
-    shared_.feed.Add("asked", "{\"what\":\"stop\"}");
-    Send(202, "text/plain; charset=utf-8", "the program was told to stop; what came of it is on the page\n");
+    if (granted.wish == Wish::kStop) return PassOn("stop", shared_.stop);
+    if (!shared_.pause) return Refuse({409, "what is shown cannot be paused", true}, false);
+    const bool pauses = granted.wish == Wish::kPause;
+    PassOn(pauses ? "pause" : "resume", [&] { shared_.pause(pauses); });
+  }
+
+  /// Passes a wish on and says so to every page.
+  void PassOn(const std::string& wish, const std::function<void()>& pass_on) {
+    pass_on();
+    shared_.feed.Add("asked", "{\"what\":\"" + wish + "\"}");
+    Send(202, "text/plain; charset=utf-8", "the program was told to " + wish + "; what came of it is on the page\n");
   }
 
   void Refuse(const Refused& refused, bool and_close) {
@@ -230,6 +239,7 @@ struct Server::State {
     shared.markup = settings.markup;
     shared.policy = PolicyOf(settings.markup);
     shared.stop = std::move(settings.stop);
+    shared.pause = std::move(settings.pause);
     Accept();
     Tick();
   }
@@ -283,9 +293,9 @@ struct Server::State {
   }
 
   void TakeWhatWasTold() {
-    Told* told = nullptr;
+    ToldEvent* told = nullptr;
     while (queue.pop(told)) {
-      const std::unique_ptr<Told> owned(told);
+      const std::unique_ptr<ToldEvent> owned(told);
       if (owned->kind == kBeginning) shared.feed.Begin(owned->json);
       else shared.feed.Add(owned->kind, owned->json);
     }
@@ -297,7 +307,7 @@ struct Server::State {
   }
 
   void Push(const char* kind, const std::string& json) {
-    auto told = std::make_unique<Told>(Told{kind, json});
+    auto told = std::make_unique<ToldEvent>(ToldEvent{kind, json});
     if (queue.push(told.get())) told.release();
     else ++left_out;
   }
@@ -308,7 +318,7 @@ struct Server::State {
   asio::steady_timer tick;
   Shared shared;
   std::list<std::shared_ptr<Connection>> connections;
-  boost::lockfree::spsc_queue<Told*, boost::lockfree::capacity<kWaiting>> queue;
+  boost::lockfree::spsc_queue<ToldEvent*, boost::lockfree::capacity<kWaiting>> queue;
   std::atomic<std::uint64_t> left_out{0};
   std::atomic<bool> is_dead{false};
   std::promise<void> all_told;
@@ -341,6 +351,10 @@ void Server::Begin(const std::string& json) {
 
 void Server::Tell(const char* kind, const std::string& json) {
   state_->Push(kind, json);
+}
+
+void Server::Post(const char* kind, const std::string& json) {
+  asio::post(state_->io, [this, kind, json] { state_->shared.feed.Add(kind, json); });
 }
 
 void Server::Finish() {

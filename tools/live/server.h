@@ -15,6 +15,7 @@ class Server {
     int port = 0;                         // 0: any that is free
     std::string_view markup;              // of the page, with its content security policy; outlives the server
     std::function<void()> stop;           // called on the server's thread; must return at once
+    std::function<void(bool)> pause = {};  // true: pause, false: go on; likewise. None: nothing can be paused
   };
   /// @throws InputError if the port is taken.
   explicit Server(Settings settings);
@@ -31,6 +32,8 @@ class Server {
   /// and counted.
   /// @param kind  A word.  @param json  One line.
   void Tell(const char* kind, const std::string& json);
+  /// The same of any thread; it may wait for the server's.
+  void Post(const char* kind, const std::string& json);
   /// Returns when every page has been told everything, at the latest after a second.
   void Finish();
 

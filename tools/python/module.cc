@@ -9,6 +9,7 @@
 #include "tools/python/json_values.h"
 #include "tools/python/own_bench.h"
 #include "tools/python/readings_columns.h"
+#include "tools/python/studies.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/diagnosis_json.h"
@@ -28,12 +29,6 @@ namespace {
 
 namespace py = pybind11;
 using NoLock = py::call_guard<py::gil_scoped_release>;
-
-/// Readings and the name of their bench, which says what their columns are.
-struct Readings {
-  std::string bench;
-  std::vector<Reading> readings;
-};
 
 /// Ctrl-C ends a long run.
 void Interrupted(const procedure::Progress& /*progress*/) {
@@ -198,4 +193,5 @@ PYBIND11_MODULE(_core, m) {
   AddScenario(m);
   AddReadings(m);
   AddFunctions(m);
+  AddStudies(m);
 }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
@@ -16,7 +17,7 @@ namespace twinbench::tools {
 namespace {
 
 struct CampaignOptions {
-  std::string study, table, csv;
+  std::string study, table, csv, json;
   int threads = 0;  // 0: one for each core, or one a rank
   bool resume = false, mpi = false;
   std::optional<std::int64_t> trial;
@@ -51,10 +52,26 @@ Begun Begin(const CampaignOptions& options, campaign::Ranks& ranks) {
   }
 }
 
+nlohmann::json SummaryJson(const campaign::Summary& summary) {
+  constexpr std::size_t kMostWorst = 10;
+  nlohmann::json json = {{"trials", summary.Trials()},
+                         {"lost", nlohmann::json::array()},
+                         {"verdicts", summary.Verdicts()},
+                         {"results", nlohmann::json::object()},
+                         {"worst", nlohmann::json::array()}};
+  for (const campaign::TrialRow& row : summary.Lost()) json["lost"].push_back({{"trial", row.trial}, {"failure", row.failure}});
+  for (const auto& [name, r] : summary.Results())
+    json["results"][name] = {{"count", r.count}, {"mean", r.mean}, {"sd", r.sd}, {"rms_u", r.rms_u}, {"scored", r.scored}, {"bias", r.bias}, {"coverage95", r.coverage95}};
+  for (const campaign::WorstTrial& worst : summary.Worst(kMostWorst))
+    json["worst"].push_back({{"trial", worst.trial}, {"result", worst.result}, {"error_over_u", worst.normed}});
+  return json;
+}
+
 void Report(const campaign::Table& table, const CampaignOptions& options) {
   campaign::Summary summary;
   table.ForEach([&](const campaign::TrialRow& row) { summary.Add(row); });
-  fmt::print("{}", campaign::SummaryText(summary, options.study));
+  if (!options.json.empty()) WriteJson(options.json, SummaryJson(summary));
+  if (options.json != "-") fmt::print("{}", campaign::SummaryText(summary, options.study));
   if (!options.csv.empty()) WriteFileAtOnce(options.csv, table.Csv());
 }
 
@@ -84,7 +101,7 @@ void PrintTrial(const CampaignOptions& options) {
 
 void Campaign(const CampaignOptions& options) {
   if (options.trial) return PrintTrial(options);
-  RequireOutput(options.csv, {options.study, options.table});
+  for (const std::string& output : {options.csv, options.json}) RequireOutput(output, {options.study, options.table});
   if (options.table.empty()) throw InputError("campaign", "there is no table", "-o TABLE.sqlite, or --trial N");
   campaign::Ranks ranks(options.mpi || campaign::Ranks::StartedAsOneOfMany());
   if (ranks.IsFirst()) return LeadCampaign(options, ranks);
@@ -103,6 +120,7 @@ void AddCampaign(CLI::App& app) {
   command->add_flag("--resume", options->resume, "go on with a table; trials that are in it are not done again");
   command->add_flag("--mpi", options->mpi, "share the trials with the other ranks; told by itself below mpirun");
   command->add_option("--csv", options->csv, "also write the table here, a line a trial");
+  command->add_option("--json", options->json, "write the summary here, - for stdout");
   command->add_option("--trial", options->trial, "print the scenario of this trial, and do no more");
   command->callback([options] { Campaign(*options); });
 }

@@ -23,7 +23,7 @@ namespace {
 using namespace certificate;
 
 struct CertificateOptions {
-  std::string run, laboratory, output = "-", schema;
+  std::string run, laboratory, output = "-", schema, json;
   bool wants_template = false;
 };
 
@@ -93,13 +93,21 @@ CertificateContent ContentOf(const CertificateOptions& options) {
   return content;
 }
 
-void Write(const std::string& path, const std::string& text, const std::string& what) {
+void Write(const std::string& path, const std::string& text, const std::string& what, bool is_told = true) {
   if (path == "-") {
     fmt::print("{}", text);
     return;
   }
   WriteFileAtOnce(path, text);
-  fmt::print("{}: {}\n", path, what);
+  if (is_told) fmt::print("{}: {}\n", path, what);
+}
+
+nlohmann::json ToldJson(const CertificateContent& content, const std::string& output) {
+  nlohmann::json json = {{"certificate", output}, {"simulated", content.simulated}, {"certified", nlohmann::json::array()}, {"left_out", nlohmann::json::array()}};
+  for (const CertifiedQuantity& one : content.certified.quantities)
+    json["certified"].push_back({{"title", one.title}, {"norm", one.norm}, {"values", one.values.size()}, {"unit", one.unit}, {"note", one.note}});
+  for (const LeftOut& one : content.certified.left_out) json["left_out"].push_back({{"what", one.what}, {"why", one.why}});
+  return json;
 }
 
 void MakeCertificate(const CertificateOptions& options) {
@@ -107,6 +115,9 @@ void MakeCertificate(const CertificateOptions& options) {
   if (options.run.empty()) throw InputError("certificate", "there is no run", "the folder of a run, or --template");
   if (options.laboratory.empty())
     throw InputError("certificate", "nothing is known of the laboratory", "--with laboratory.toml; --template writes one to fill in");
+  if (options.json == "-" && options.output == "-")
+    throw InputError("certificate", "certificate and --json both go to stdout", "-o FILE, or --json FILE");
+  RequireOutput(options.json, {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()});
   RequireOutput(options.output, {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()});
   const CertificateContent content = ContentOf(options);
   const std::string xml = CertificateXml(content);
@@ -115,7 +126,9 @@ void MakeCertificate(const CertificateOptions& options) {
   const std::size_t left_out = content.certified.left_out.size();
   Write(options.output, xml,
         fmt::format("{} results certified{}{}", content.certified.quantities.size(), left_out ? fmt::format(", {} left out and named", left_out) : "",
-                    content.simulated ? "; SIMULATED, which it says" : ""));
+                    content.simulated ? "; SIMULATED, which it says" : ""),
+        options.json != "-");
+  if (!options.json.empty()) WriteJson(options.json, ToldJson(content, options.output));
 }
 
 }  // namespace
@@ -127,6 +140,7 @@ void AddCertificate(CLI::App& app) {
   command->add_option("--with", options->laboratory, "TOML file of what only the laboratory knows");
   command->add_option("-o,--output", options->output, "file to write, - for stdout")->capture_default_str();
   command->add_option("--schema", options->schema, "folder with dcc.xsd and the schemas that it imports: validate with xmllint first, and write nothing if it fails");
+  command->add_option("--json", options->json, "write what was certified and what was left out here, - for stdout");
   command->add_flag("--template", options->wants_template, "write the TOML file to fill in instead");
   command->callback([options] { MakeCertificate(*options); });
 }

@@ -3,22 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/passing_run.h"
+#include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/terminal.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
 #include "twin/core/scenario.h"
 #include "twin/report/curve_text.h"
+#include "twin/report/json_units.h"
 
 namespace twinbench::tools {
 namespace {
 
 struct ExplainOptions {
-  std::string effect, bench;
+  std::string effect, bench, json;
 };
 
 constexpr int kLeastPlaces = 5;  // of a plot
@@ -160,30 +163,73 @@ Scenario Usual(const BenchFormat& bench, const std::vector<std::string>& overrid
                        overrides);
 }
 
-void PrintSignature(const BenchFormat& bench, const EffectEntry& effect) {
+/// What is told of an effect on one bench.
+struct Explained {
+  const BenchFormat& bench;
+  const EffectEntry& effect;
+  Signature signature;                       // rms 0: the readings of the usual scenario stay as they are
+  std::optional<report::CurveText> picture;  // where it has one
+};
+
+Explained OnBench(const BenchFormat& bench, const EffectEntry& effect) {
+  Explained told{bench, effect, {}, {}};
   Pair seen{ReadingsOfTwin(Usual(bench, {})), ReadingsOfTwin(Usual(bench, {Block(effect)}))};
-  if (seen.without.size() == seen.with.size()) seen = WhereItIsSeen(bench, seen);
-  const Signature signature = seen.without.size() == seen.with.size()
-                                  ? LargestSignature(bench, seen.without, seen.with)
-                                  : Signature{};
-  if (signature.rms == 0.0) {
+  if (seen.without.size() != seen.with.size()) return told;
+  seen = WhereItIsSeen(bench, seen);
+  told.signature = LargestSignature(bench, seen.without, seen.with);
+  if (told.signature.rms > 0.0) told.picture = Picture(bench, told.signature, seen.with);
+  return told;
+}
+
+void PrintSignature(const Explained& told) {
+  if (told.signature.rms == 0.0) {
     fmt::print("    At this size it leaves the readings of the usual scenario as they are.\n");
     return;
   }
   fmt::print("    At this size it moves {} most: {:.3g} rms over the usual scenario, without noise.\n\n",
-             signature.column, signature.rms);
-  if (const auto picture = Picture(bench, signature, seen.with))
-    fmt::print("{}\n", report::PlotOf(*picture, LettersOfStdout()));
+             told.signature.column, told.signature.rms);
+  if (told.picture) fmt::print("{}\n", report::PlotOf(*told.picture, LettersOfStdout()));
 }
 
-void Explain(const BenchFormat& bench, const EffectEntry& effect) {
-  fmt::print("{}, on {}: {}\n", effect.name, bench.name, effect.title);
+void Print(const Explained& told) {
+  const EffectEntry& effect = told.effect;
+  fmt::print("{}, on {}: {}\n", effect.name, told.bench.name, effect.title);
   for (const EffectParameter& p : effect.parameters)
     fmt::print("    {} = {:g}   {}; from {:g} to {:g}\n", p.Key(), effect.Plausible(p) / p.to_SI, p.meaning,
                p.lower_SI / p.to_SI, p.upper_SI / p.to_SI);
   if (!effect.places.empty()) fmt::print("    where = {}\n", fmt::join(effect.places, ", "));
   fmt::print("    twinbench run SCENARIO -o RUN --set '{}'\n", Block(effect));
-  PrintSignature(bench, effect);
+  PrintSignature(told);
+}
+
+nlohmann::json ParametersJson(const EffectEntry& effect) {
+  nlohmann::json parameters = nlohmann::json::array();
+  for (const EffectParameter& p : effect.parameters)
+    parameters.push_back({{"key", p.Key()},
+                          {"plausible", report::In(p.to_SI, effect.Plausible(p))},
+                          {"lower", report::In(p.to_SI, p.lower_SI)},
+                          {"upper", report::In(p.to_SI, p.upper_SI)},
+                          {"meaning", p.meaning}});
+  return parameters;
+}
+
+nlohmann::json PictureJson(const report::CurveText& curve) {
+  const auto list = [](const std::vector<double>& values) {
+    nlohmann::json numbers = nlohmann::json::array();
+    for (const double value : values) numbers.push_back(report::In(1.0, value));
+    return numbers;
+  };
+  return {{"against", curve.x_name}, {"x", list(curve.x)}, {"forward", list(curve.forward)}, {"backward", list(curve.backward)}};
+}
+
+nlohmann::json ExplainedJson(const Explained& told) {
+  nlohmann::json json = {{"effect", told.effect.name},  {"bench", told.bench.name},    {"title", told.effect.title},
+                         {"where", told.effect.places}, {"set", Block(told.effect)},   {"parameters", ParametersJson(told.effect)},
+                         {"signature", nullptr}};
+  if (told.signature.rms == 0.0) return json;
+  json["signature"] = {{"column", told.signature.column}, {"rms", told.signature.rms}};
+  if (told.picture) json["signature"].update(PictureJson(*told.picture));
+  return json;
 }
 
 [[noreturn]] void RefuseEffect(const ExplainOptions& options) {
@@ -198,15 +244,21 @@ void Explain(const BenchFormat& bench, const EffectEntry& effect) {
 
 void ExplainEverywhere(const ExplainOptions& options) {
   if (!options.bench.empty() && !FindFormat(options.bench)) throw UnknownBench("--bench", options.bench);
+  nlohmann::json all = nlohmann::json::array();
   bool found = false;
   for (const BenchFormat* bench : BenchFormats()) {
     const EffectEntry* effect = FindEffect(options.effect, bench->name);
     if (!effect || (!options.bench.empty() && bench->name != options.bench)) continue;
-    if (found) fmt::print("\n");
-    Explain(*bench, *effect);
+    const Explained told = OnBench(*bench, *effect);
+    if (!options.json.empty()) all.push_back(ExplainedJson(told));
+    if (options.json != "-") {
+      if (found) fmt::print("\n");
+      Print(told);
+    }
     found = true;
   }
   if (!found) RefuseEffect(options);
+  if (!options.json.empty()) WriteJson(options.json, {{"benches", all}});
 }
 
 }  // namespace
@@ -216,6 +268,7 @@ void AddExplain(CLI::App& app) {
   auto options = std::make_shared<ExplainOptions>();
   command->add_option("effect", options->effect, "its name, as `twinbench list` has it")->required();
   command->add_option("--bench", options->bench, "on this bench only");
+  command->add_option("--json", options->json, "write it here, - for stdout");
   command->callback([options] { ExplainEverywhere(*options); });
 }
 

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "tools/twinbench/alarm_text.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -44,44 +45,9 @@ class InterruptGuard {
   void (*before_)(int);
 };
 
-/// The state of a watch after some readings.
-struct Watched {
-  diagnose::WatchReport report;
-  std::vector<std::string> channels;
-  std::vector<diagnose::ChannelUnit> units;  // of each channel
-
-  /// Of a channel; of a pattern that of the first.
-  const diagnose::ChannelUnit& UnitOf(const std::string& series) const {
-    const auto found = std::ranges::find(channels, series);
-    return units.at(found == channels.end() ? 0 : static_cast<std::size_t>(found - channels.begin()));
-  }
-};
-
-Watched Seen(const diagnose::LinearRun& run, const diagnose::WatchOptions& how) {
-  Watched watched{diagnose::Watch(run, how), run.channels, {}};
-  for (int c = 0; c < run.Channels(); ++c) watched.units.push_back(run.UnitOf(c));
-  return watched;
-}
-
 void PrintAlarm(const diagnose::Alarm& alarm, const Watched& watched, std::FILE* to) {
-  const diagnose::ChannelUnit& unit = watched.UnitOf(alarm.series);
-  const std::string since = alarm.lasting ? fmt::format("since reading {}", alarm.since) : "in this reading";
-  fmt::print(to, "alarm at reading {}: {} deviates by {:.3g} +- {:.2g} {}, {} (statistic {:.1f}, limit {:.1f})\n",
-             alarm.reading, alarm.series, alarm.size / unit.to_SI, alarm.u_size / unit.to_SI, unit.name, since,
-             alarm.z, alarm.limit);
+  fmt::print(to, "{}\n", AlarmText(alarm, watched));
   std::fflush(to);
-}
-
-nlohmann::json ToJson(const diagnose::Alarm& alarm, const Watched& watched) {
-  const diagnose::ChannelUnit& unit = watched.UnitOf(alarm.series);
-  return {{"reading", alarm.reading},
-          {"since", alarm.since},
-          {"series", alarm.series},
-          {"lasting", alarm.lasting},
-          {"size_" + unit.name, alarm.size / unit.to_SI},
-          {"u_size_" + unit.name, alarm.u_size / unit.to_SI},
-          {"statistic", alarm.z},
-          {"limit", alarm.limit}};
 }
 
 nlohmann::json ToJson(const Watched& watched, const FollowOptions& options, std::size_t readings, bool complete) {
@@ -91,7 +57,7 @@ nlohmann::json ToJson(const Watched& watched, const FollowOptions& options, std:
                          {"false_alarm_rate", options.false_alarm_rate},
                          {"noise_scale", watched.report.noise_scale},
                          {"alarms", nlohmann::json::array()}};
-  for (const diagnose::Alarm& alarm : watched.report.alarms) json["alarms"].push_back(ToJson(alarm, watched));
+  for (const diagnose::Alarm& alarm : watched.report.alarms) json["alarms"].push_back(AlarmJson(alarm, watched));
   return json;
 }
 

@@ -3,12 +3,15 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <regex>
 
 #include "tools/twinbench/bench_means.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/investigated_bench.h"
+#include "tools/twinbench/live_page.h"
 #include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/stop_signal.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/investigate/investigation.h"
@@ -25,6 +28,7 @@ struct InvestigateOptions {
   std::optional<double> faint;
   int most_runs = 20;
   bool ask = false;
+  std::optional<int> web;  // port of the live page
 };
 
 /// "2h", "90min", "1800s".
@@ -50,17 +54,28 @@ void Keep(const InvestigateOptions& options, const Scenario& scenario, const inv
   WriteJson(options.folder + "/investigation.json", investigate::ToJson(so_far, scenario.bench));
 }
 
-std::unique_ptr<InvestigatedBench> Open(const InvestigateOptions& options, const Scenario& scenario) {
+nlohmann::json BelievedJson(const investigate::Step& step) {
+  nlohmann::json causes = nlohmann::json::array();
+  for (const auto& [name, probability] : step.believed) causes.push_back({{"name", name}, {"probability", probability}});
+  return {{"number", step.number}, {"run", step.run.name}, {"minutes", step.minutes}, {"causes", causes}, {"unlisted", step.unlisted}};
+}
+
+std::unique_ptr<InvestigatedBench> Open(const InvestigateOptions& options, const Scenario& scenario, LivePage& page) {
   if (options.twin.empty() == options.bench.empty())
     throw InputError("investigate", options.twin.empty() ? "there is no bench" : "there are two benches",
                      "--twin HIDDEN.toml or --bench BENCH.toml");
   if (options.folder.empty()) throw InputError("investigate", "there is no -o", "-o DIR, a folder for its runs");
   std::filesystem::create_directories(options.folder);
-  if (!options.twin.empty()) return OpenHiddenTwin(options.twin, scenario, options.folder);
-  return OpenMeasuredBench(options.bench, options.folder);
+  if (!options.twin.empty()) return OpenHiddenTwin(options.twin, scenario, options.folder, page);
+  return OpenMeasuredBench(options.bench, options.folder, page);
 }
 
-void Investigate(const InvestigateOptions& options) {
+/// Between two runs nothing moves; what was found so far is kept.
+void HearPage() {
+  if (StopWasAsked()) throw BenchError("stopped by the operator between two runs; go on with the same command");
+}
+
+void Investigate(const InvestigateOptions& options, LivePage& page) {
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   investigate::InvestigationOptions how;
   if (!options.goal.empty()) how.goal = investigate::ParseGoal(options.goal);
@@ -68,16 +83,19 @@ void Investigate(const InvestigateOptions& options) {
   how.conclusive = options.conclusive;
   how.most_runs = options.most_runs;
   how.faint = options.faint ? *options.faint : how.goal ? 0.0 : how.faint;
-  const std::unique_ptr<InvestigatedBench> bench = Open(options, scenario);
+  const std::unique_ptr<InvestigatedBench> bench = Open(options, scenario, page);
   const auto alone = [&](const plan::NextRun& run) { return options.ask || bench->CanMakeAlone(run); };
   const investigate::Means means = MeansOf(BenchOf(scenario), alone);
   investigate::Laboratory laboratory;
-  laboratory.measure = [&bench](const investigate::Step& step, const Scenario& asked) {
+  laboratory.measure = [&](const investigate::Step& step, const Scenario& asked) {
+    HearPage();
+    page.Told("step", {{"number", step.number}, {"run", step.run.name}, {"reason", step.reason}});
     return bench->Measure(step, asked);
   };
   if (options.ask) laboratory.confirm = Ask;
   laboratory.told = [&](const investigate::Investigation& so_far) {
     Keep(options, scenario, so_far);
+    page.Told("believed", BelievedJson(so_far.steps.back()));
     fmt::print("{}", report::StepText(so_far.steps.back(), so_far.goal));
     std::fflush(stdout);
   };
@@ -115,7 +133,10 @@ void AddInvestigate(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_flag("--ask", options->ask,
                     "confirm every run; also offers those for which somebody has to change the bench or its room");
-  command->callback([options] { Investigate(*options); });
+  AddWebOption(*command, options->web);
+  command->callback([options] {
+    WithLivePage(options->web, "investigate", [&](LivePage& page) { Investigate(*options, page); });
+  });
 }
 
 }  // namespace twinbench::tools

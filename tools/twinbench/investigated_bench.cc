@@ -32,8 +32,8 @@ bool IsFinished(const RunFolder& run, const Scenario& asked) {
 
 class HiddenTwin : public InvestigatedBench {
  public:
-  HiddenTwin(const std::string& hidden, const Scenario& believed, const std::string& folder)
-      : hidden_(LoadScenario(hidden)), believed_(believed), folder_(folder) {}
+  HiddenTwin(const std::string& hidden, const Scenario& believed, const std::string& folder, LivePage& page)
+      : hidden_(LoadScenario(hidden)), believed_(believed), folder_(folder), page_(page) {}
 
   std::vector<Reading> Measure(const investigate::Step& step, const Scenario& asked) override {
     const RunFolder run = FolderOf(folder_, step);
@@ -44,21 +44,22 @@ class HiddenTwin : public InvestigatedBench {
 
  private:
   /// What was begun is made again: a twin gives the same bits.
-  void MakeAnew(const RunFolder& run, const investigate::Step& step, const Scenario& asked) const {
+  void MakeAnew(const RunFolder& run, const investigate::Step& step, const Scenario& asked) {
     std::error_code ignored;
     fs::remove_all(run.path, ignored);
-    LivePage none;
-    RunOnTwin(investigate::HiddenRun(hidden_, believed_, step.run, asked.repeat), run, false, none);
+    RunOnTwin(investigate::HiddenRun(hidden_, believed_, step.run, asked.repeat), run, false, page_);
     WriteFileAtOnce(run.scenario(), WriteScenario(asked));  // what is believed; the rest is in truth.json
   }
 
   Scenario hidden_, believed_;
   std::string folder_;
+  LivePage& page_;
 };
 
 class MeasuredBench : public InvestigatedBench {
  public:
-  MeasuredBench(const std::string& bench_file, const std::string& folder) : bench_(bench_file), folder_(folder) {}
+  MeasuredBench(const std::string& bench_file, const std::string& folder, LivePage& page)
+      : bench_(bench_file), folder_(folder), page_(page) {}
 
   std::vector<Reading> Measure(const investigate::Step& step, const Scenario& asked) override {
     const RunFolder run = FolderOf(folder_, step);
@@ -72,8 +73,7 @@ class MeasuredBench : public InvestigatedBench {
       options.folder = run.path;
       options.resume = fs::exists(run.record());
       options.rehearse = true;
-      LivePage none;
-      tools::Measure(options, none);
+      tools::Measure(options, page_);
     }
     return RunRecord::Open(run.path)->Readings();
   }
@@ -81,17 +81,19 @@ class MeasuredBench : public InvestigatedBench {
 
  private:
   std::string bench_, folder_;
+  LivePage& page_;
 };
 
 }  // namespace
 
 std::unique_ptr<InvestigatedBench> OpenHiddenTwin(const std::string& hidden, const Scenario& believed,
-                                                  const std::string& folder) {
-  return std::make_unique<HiddenTwin>(hidden, believed, folder);
+                                                  const std::string& folder, LivePage& page) {
+  return std::make_unique<HiddenTwin>(hidden, believed, folder, page);
 }
 
-std::unique_ptr<InvestigatedBench> OpenMeasuredBench(const std::string& bench_file, const std::string& folder) {
-  return std::make_unique<MeasuredBench>(bench_file, folder);
+std::unique_ptr<InvestigatedBench> OpenMeasuredBench(const std::string& bench_file, const std::string& folder,
+                                                     LivePage& page) {
+  return std::make_unique<MeasuredBench>(bench_file, folder, page);
 }
 
 }  // namespace twinbench::tools

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/twinbench/live_page.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/investigate/investigation.h"
@@ -22,11 +23,13 @@ class InvestigatedBench {
   virtual bool CanMakeAlone(const plan::NextRun& run) const = 0;
 };
 
+/// Both show their runs on `page`, which outlives them.
 /// A twin that has something hidden; what `believed` says it is, it need not be.
 std::unique_ptr<InvestigatedBench> OpenHiddenTwin(const std::string& hidden, const Scenario& believed,
-                                                  const std::string& folder);
+                                                  const std::string& folder, LivePage& page);
 
 /// What a bench file names: devices, the own twin, a program.
-std::unique_ptr<InvestigatedBench> OpenMeasuredBench(const std::string& bench_file, const std::string& folder);
+std::unique_ptr<InvestigatedBench> OpenMeasuredBench(const std::string& bench_file, const std::string& folder,
+                                                     LivePage& page);
 
 }  // namespace twinbench::tools

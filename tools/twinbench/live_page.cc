@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "tools/live/server.h"
 #include "tools/twinbench/exit_code.h"
+#include "tools/twinbench/live_judge.h"
 #include "tools/twinbench/stop_signal.h"
 #include "tools/web/bundle.h"
 #include "twin/core/bench_format.h"
@@ -52,46 +54,110 @@ std::string ReadingJson(const Reading& r, const std::vector<const ReadingColumn*
 
 }  // namespace
 
-LivePage::LivePage() = default;
+LivePage::LivePage() : pause_({}) {}
 
-LivePage::LivePage(int port, const std::string& command) : command_(command) {
+LivePage::LivePage(int port, const std::string& command) : command_(command), pause_(Ears()) {
   if (web::LiveMarkup().empty())
     throw InputError("--web", "this program was built without pages",
                      "a program that was built where npm is installed, without -DTWINBENCH_REPORT=OFF");
-  server_ = std::make_unique<live::Server>(live::Server::Settings{port, web::LiveMarkup(), AskToStop});
+  server_ = std::make_unique<live::Server>(live::Server::Settings{
+      port, web::LiveMarkup(), AskToStop, [this](bool pauses) { pause_.Ask(pauses); }});
   fmt::print(stderr, "live page, for this computer and whoever has this address: {}\n", server_->address());
 }
 
 LivePage::~LivePage() = default;
 
-void LivePage::Watch(RunRecord& record, const Scenario& scenario, const std::string& folder) {
+void LivePage::Watch(RunRecord& record, const Scenario& scenario, const std::string& folder, bool can_pause) {
   if (!server_) return;
+  judge_ = std::make_unique<LiveJudge>(
+      scenario, [this](const char* kind, const std::string& json) { server_->Post(kind, json); });
   const std::vector<const ReadingColumn*> columns = Shown(FormatOf(scenario.bench));
   nlohmann::json named = nlohmann::json::array();
   for (const ReadingColumn* column : columns) named.push_back({{"name", column->name}, {"role", RoleName(*column)}});
-  server_->Begin(OneLine({{"command", command_}, {"bench", scenario.bench}, {"folder", folder}, {"columns", named}}));
-  record.TellOf([this, columns](const Reading& r) { server_->Tell("reading", ReadingJson(r, columns)); });
+  const std::string run = OneLine(
+      {{"command", command_}, {"bench", scenario.bench}, {"folder", folder}, {"can_pause", can_pause}, {"columns", named}});
+  server_->Begin(run);
+  server_->Tell("run", run);  // in its place among the events: an investigation makes several
+  record.TellOf([this, columns](const Reading& r) {
+    last_ = r.time;
+    judge_->Hear(r);
+    server_->Tell("reading", ReadingJson(r, columns));
+  });
+  note_ = [this, &record](const std::string& text) { record.AppendEvent(last_, "operator", text); };
 }
 
-procedure::ProgressCallback LivePage::ShownToo(procedure::ProgressCallback line) {
+procedure::ProgressCallback LivePage::ShownToo(procedure::ProgressCallback line, StandingCheck stands) {
   if (!server_) return line;
-  using Clock = std::chrono::steady_clock;
-  return [this, line, begun = Clock::now(), told = Clock::time_point{}](const procedure::Progress& p) mutable {
+  begun_ = std::chrono::steady_clock::now();
+  told_ = {};
+  paused_ = {};
+  return [this, line, stands](const procedure::Progress& p) {
     line(p);
-    const auto now = Clock::now();
+    progress_ = p;
     const bool is_last = p.readings_done == p.readings_planned;
-    if (!is_last && now - told < kBetweenProgress) return;
-    told = now;
-    const double elapsed_s = std::chrono::duration<double>(now - begun).count();
-    const double left_s = p.readings_done > 0 ? elapsed_s * (p.readings_planned - p.readings_done) / p.readings_done : -1.0;
-    server_->Tell("progress", fmt::format(R"({{"done":{},"planned":{},"phase":"{}","bench_s":{:.3f},"left_s":{:.1f}}})",
-                                          p.readings_done, p.readings_planned, PhaseName(p.phase),
-                                          ToSeconds(p.bench_time), left_s));
+    if (is_last || std::chrono::steady_clock::now() - told_ >= kBetweenProgress) ShowProgress();
+    if (!is_last) HoldIfWanted(stands);
   };
+}
+
+void LivePage::ShowProgress() {
+  const procedure::Progress& p = progress_;
+  const auto now = std::chrono::steady_clock::now();
+  told_ = now;
+  const double elapsed_s = std::chrono::duration<double>(now - begun_ - paused_).count();
+  const double left_s = p.readings_done > 0 ? elapsed_s * (p.readings_planned - p.readings_done) / p.readings_done : -1.0;
+  server_->Tell("progress", fmt::format(R"({{"done":{},"planned":{},"phase":"{}","bench_s":{:.3f},"left_s":{:.1f}}})",
+                                        p.readings_done, p.readings_planned, PhaseName(p.phase),
+                                        ToSeconds(p.bench_time), left_s));
+}
+
+void LivePage::HoldIfWanted(const StandingCheck& stands) {
+  const auto begun = std::chrono::steady_clock::now();
+  pause_.HoldIfAsked(progress_.readings_done, stands, StopWasAsked);
+  paused_ += std::chrono::steady_clock::now() - begun;
+}
+
+/// What came of a pause: on the page, and in the record.
+Pause::Ears LivePage::Ears() {
+  const auto tell = [this](const char* state, const nlohmann::json& more) {
+    nlohmann::json json = {{"state", state}};
+    json.update(more);
+    server_->Tell("pause", OneLine(json));
+  };
+  return {[=, this](int reading) {
+            ShowProgress();
+            tell("paused", {{"reading", reading}});
+            note_(fmt::format("paused behind {} readings; everything stands", reading));
+          },
+          [=](const std::string& why) { tell("not_yet", {{"why", why}}); },
+          [=](const std::string& why) { tell("restless", {{"why", why}}); },
+          [=, this](int reading) {
+            tell("over", {{"reading", reading}});
+            note_(fmt::format("goes on behind {} readings", reading));
+          }};
+}
+
+void LivePage::Serve(const std::string& bench, const std::string& where, const std::vector<std::string>& axes) {
+  if (!server_) return;
+  nlohmann::json columns = nlohmann::json::array();
+  for (const std::string& axis : axes) columns.push_back({{"name", axis}, {"role", "axis"}});
+  server_->Begin(OneLine({{"command", command_}, {"bench", bench}, {"folder", where}, {"can_pause", false}, {"columns", columns}}));
+}
+
+void LivePage::Axes(Time now, const std::vector<double>& at, bool is_moving) {
+  if (!server_) return;
+  nlohmann::json values = nlohmann::json::array();
+  for (const double value : at) values.push_back(std::isfinite(value) ? nlohmann::json(value) : nlohmann::json());
+  server_->Tell("axes", OneLine({{"t", ToSeconds(now)}, {"v", values}, {"moving", is_moving}}));
+}
+
+void LivePage::Told(const char* kind, const nlohmann::json& json) {
+  if (server_) server_->Tell(kind, OneLine(json));
 }
 
 void LivePage::Ended(int exit_code, const std::string& words) {
   if (!server_) return;
+  if (exit_code == kDone) judge_.reset();  // of a run that was stopped the end is what counts
   server_->Tell("end", OneLine({{"code", exit_code}, {"words", words}}));
   server_->Finish();
 }

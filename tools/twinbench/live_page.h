@@ -1,11 +1,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "tools/twinbench/pause.h"
 #include "twin/core/run_record.h"
 #include "twin/core/scenario.h"
 #include "twin/procedure/options.h"
@@ -15,6 +19,8 @@ class Server;
 }
 
 namespace twinbench::tools {
+
+class LiveJudge;
 
 /// A command's window: a page on this computer that shows what is being measured (docs/live-page.md). One that was not asked for
 /// shows nothing and costs nothing.
@@ -28,15 +34,35 @@ class LivePage {
   ~LivePage();
 
   /// Shows what this record takes from now on.
-  void Watch(RunRecord& record, const Scenario& scenario, const std::string& folder);
-  /// `line` and the page.
-  procedure::ProgressCallback ShownToo(procedure::ProgressCallback line);
+  /// @param can_pause  Whether the run goes through ShownToo.
+  void Watch(RunRecord& record, const Scenario& scenario, const std::string& folder, bool can_pause = true);
+  /// `line` and the page. Holds the run between two readings while the page wants a pause.
+  /// @param stands  Whether what moves stands.
+  procedure::ProgressCallback ShownToo(procedure::ProgressCallback line, StandingCheck stands = {});
+  /// Shows axes that others move, instead of a record.
+  /// @param where  What is shown there: addresses.  @param axes  "target_deg", one each.
+  void Serve(const std::string& bench, const std::string& where, const std::vector<std::string>& axes);
+  /// Where these axes are at a time of the bench, in the units of their names.
+  void Axes(Time now, const std::vector<double>& at, bool is_moving);
+  /// What else happens, beside the readings. @param kind  A word that the page knows.
+  void Told(const char* kind, const nlohmann::json& json);
   /// The last that the page says: what the program ends with, in its words.
   void Ended(int exit_code, const std::string& words);
 
  private:
+  void ShowProgress();
+  void HoldIfWanted(const StandingCheck& stands);
+  Pause::Ears Ears();
+
   std::string command_;
-  std::unique_ptr<live::Server> server_;
+  Pause pause_;
+  procedure::Progress progress_;
+  std::chrono::steady_clock::time_point begun_{}, told_{};  // of the run, and its progress last
+  std::chrono::steady_clock::duration paused_{};            // altogether
+  Time last_{};                                             // reading
+  std::function<void(const std::string&)> note_;            // writes into the record, in time
+  std::unique_ptr<live::Server> server_;                    // behind what it calls
+  std::unique_ptr<LiveJudge> judge_;                        // behind what it tells
 };
 
 /// --web PORT of a command.

@@ -122,7 +122,9 @@ void KeepFreedMemory() {
 
 /// Says it even where nobody can read it any more: a closed session must not turn one failure into another.
 int Failed(const std::exception& error) {
-  std::fputs((twinbench::tools::FailureText(error) + "\n").c_str(), stderr);
+  const std::string text = twinbench::tools::FailureText(error);
+  const bool is_red = twinbench::tools::MayColour(stderr);
+  std::fputs((is_red ? "\033[31m" + text + "\033[0m\n" : text + "\n").c_str(), stderr);
   return twinbench::tools::ExitCodeOf(error);
 }
 

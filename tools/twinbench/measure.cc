@@ -19,6 +19,7 @@
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/core/run_record.h"
+#include "twin/procedure/standing.h"
 #include "twin/procedure/watch.h"
 
 namespace twinbench::tools {
@@ -65,8 +66,10 @@ void CarryOutOn(RotaryBench bench, const Scenario& scenario, RunRecord& record, 
   ProgressLine line;
   options.log = &record;
   if (bench.simulation) bench.simulation->Restart();
+  StandingCheck stands;
+  if (kind != "replay") stands = [&bench] { return procedure::WhetherBothStand(bench); };
   try {
-    procedure::CarryOut(bench, scenario, record, page.ShownToo(ShownOn(line)), options);
+    procedure::CarryOut(bench, scenario, record, page.ShownToo(ShownOn(line), stands), options);
   } catch (const std::exception& fault) {
     if (kind == "replay") throw;  // of a recording's tables nothing can be asked
     TellStopped(fault, "tables", procedure::StopBoth(bench));

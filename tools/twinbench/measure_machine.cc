@@ -12,6 +12,7 @@
 #include "twin/benches/registry.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/machine_watch.h"
+#include "twin/procedure/standing.h"
 
 namespace twinbench::tools {
 namespace {
@@ -34,7 +35,8 @@ std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, con
                                                 const std::vector<MachineAxis>& axes, Duration elapsed) {
   const Bench& bench = BenchOf(scenario);
   if (file.kind == "twin") return std::make_unique<OwnMachine>(bench.make_devices(scenario));
-  return hw::OpenMachineHardware(file, axes, InstrumentColumns(bench.format->columns), elapsed, scenario.repeat);
+  return hw::OpenMachineHardware(file, axes, InstrumentColumns(bench.format->columns), elapsed, scenario.repeat,
+                                 StopWasAsked);
 }
 
 /// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.
@@ -62,9 +64,10 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
   MachineBench bench = opened.Devices();
   ProgressLine line;
   options.log = &record;
+  const StandingCheck stands = [&bench] { return procedure::WhetherMachineStands(bench); };
   if (bench.simulation && options.kept.empty()) bench.simulation->Restart();
   try {
-    BenchOf(scenario).drive(bench, scenario, record, page.ShownToo(ShownOn(line)), options);
+    BenchOf(scenario).drive(bench, scenario, record, page.ShownToo(ShownOn(line), stands), options);
   } catch (const std::exception& fault) {
     TellStopped(fault, "axes", procedure::StopMachine(bench));
   }

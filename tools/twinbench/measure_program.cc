@@ -60,7 +60,7 @@ void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario, L
     Tell(back, back.readings.size() + static_cast<std::size_t>(back.missing));
     const std::string identity = "program: " + (file.name.empty() ? file.command.front() : file.name);
     const auto record = BeginRun(scenario, folder, "hardware", identity);
-    page.Watch(*record, scenario, folder.path);
+    page.Watch(*record, scenario, folder.path, false);
     record->AppendAll(back.readings);
     record->Finish();
   }

@@ -9,6 +9,7 @@
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/plan_advice.h"
 #include "tools/twinbench/planned_run.h"
+#include "tools/twinbench/planning.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -17,11 +18,9 @@
 namespace twinbench::tools {
 namespace {
 
-struct PlanOptions {
-  std::string scenario, json, next, goal;
+struct PlanOptions : PlanWish {
+  std::string scenario, json, next;
   std::vector<std::string> overrides;
-  int setups = 0;
-  double minutes = 0.0, readings = 0.0;
 };
 
 /// What is told of a scenario.
@@ -35,7 +34,7 @@ struct Planned {
 
 /// How many set-ups there shall be; 0: nothing is shifted on this bench.
 /// @throws InputError if that many cannot be.
-int SetupsOf(const PlanOptions& options, const Scenario& scenario) {
+int SetupsOf(const PlanWish& options, const Scenario& scenario) {
   const std::optional<plan::ShiftDesign> design = ShiftDesignOf(scenario);
   if (!design) {
     if (options.setups > 0)
@@ -67,11 +66,11 @@ std::vector<report::PlannedRun> RunsOf(const Scenario& scenario, const std::vect
   return runs;
 }
 
-report::PlanBudget BudgetOf(const PlanOptions& options) {
+report::PlanBudget BudgetOf(const PlanWish& options) {
   return options.readings > 0.0 ? report::PlanBudget{options.readings, true} : report::PlanBudget{options.minutes, false};
 }
 
-Planned PlanOf(const PlanOptions& options, const Scenario& scenario) {
+Planned PlanOf(const PlanWish& options, const Scenario& scenario) {
   const int setups = SetupsOf(options, scenario);
   const std::vector<Reading> readings = ReadingsOfTwin(scenario);
   const LookedAt own = LookAtOwn(scenario);
@@ -99,7 +98,7 @@ std::vector<plan::NextRun> RunsInOrder(const report::PlannedProgramme& programme
 
 /// Asked for set-ups: these. What cannot be separated is mended first; then comes the programme, or the run that buys
 /// most per minute.
-std::vector<plan::NextRun> NextOf(const PlanOptions& options, const Planned& planned) {
+std::vector<plan::NextRun> NextOf(const PlanWish& options, const Planned& planned) {
   const auto named = std::ranges::find_if(planned.advice,
                                           [](const plan::Advice& one) { return one.run.name == kBestShifts; });
   if (options.setups > 0 && named != planned.advice.end()) return {named->run};
@@ -120,12 +119,19 @@ std::string FileOf(const std::string& output, std::size_t at, std::size_t count,
 }
 
 /// Each run of several has a seed of its own: a run that is made twice is another draw of chance on the twin.
-void WriteNext(const std::string& output, const std::vector<plan::NextRun>& runs, const Scenario& scenario) {
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    Scenario next = Altered(scenario, runs[k].sets);
-    next.seed += k;
-    WriteFileAtOnce(FileOf(output, k, runs.size(), runs[k]), WriteScenario(next));
+std::vector<Scenario> ScenariosOf(const std::vector<plan::NextRun>& runs, const Scenario& scenario) {
+  std::vector<Scenario> next;
+  for (const plan::NextRun& run : runs) {
+    next.push_back(Altered(scenario, run.sets));
+    next.back().seed += next.size() - 1;
   }
+  return next;
+}
+
+void WriteNext(const std::string& output, const std::vector<plan::NextRun>& runs, const Scenario& scenario) {
+  const std::vector<Scenario> next = ScenariosOf(runs, scenario);
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    WriteFileAtOnce(FileOf(output, k, runs.size(), runs[k]), WriteScenario(next[k]));
 }
 
 nlohmann::json JsonOf(const Planned& planned, const std::vector<plan::NextRun>& next) {
@@ -157,6 +163,12 @@ void Plan(const PlanOptions& options) {
 }
 
 }  // namespace
+
+PlanMade MakePlan(const Scenario& scenario, const PlanWish& wish) {
+  const Planned planned = PlanOf(wish, scenario);
+  const std::vector<plan::NextRun> next = NextOf(wish, planned);
+  return {JsonOf(planned, next), ScenariosOf(next, scenario)};
+}
 
 void AddPlan(CLI::App& app) {
   auto* command = app.add_subcommand(

@@ -1,12 +1,16 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <optional>
 #include <thread>
 
 #include "hw_bridge/machine_file.h"
 #include "hw_bridge/serve/server.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/live_page.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
 #include "twin/benches/registry.h"
@@ -23,6 +27,7 @@ struct ServeArguments {
   std::vector<std::string> overrides;
   hw::ServeOptions serve;
   bool no_pty = false;
+  std::optional<int> web;  // port of the live page
 };
 
 double SpeedOf(const std::string& text) {
@@ -38,6 +43,13 @@ std::string Told(const hw::ServedAddresses& at) {
   return at.pty.empty() ? text : text + fmt::format("esp  {}\n", at.pty);
 }
 
+/// For the page: without the lines that a terminal has.
+std::string AddressLine(const hw::ServedAddresses& at) {
+  std::string line = Told(at);
+  std::ranges::replace(line, '\n', ' ');
+  return line;
+}
+
 /// Runs until a stop is asked for.
 void ServeUntilStopped(hw::Server& server) {
   std::jthread watch([&server](std::stop_token ended) {
@@ -45,6 +57,26 @@ void ServeUntilStopped(hw::Server& server) {
     server.Stop();
   });
   server.Run();
+}
+
+/// Where the axes of a served bench are, as their controllers would say it.
+struct AxesSeen {
+  Time now{};
+  std::vector<double> at;  // in the units that the page was told
+  bool is_moving = false;
+
+  bool operator==(const AxesSeen& other) const { return at == other.at && is_moving == other.is_moving; }
+};
+
+/// Shows them on the page whenever they have changed. Who looks asks nothing of the bench that takes time.
+void ShowAxes(hw::Server& server, LivePage& page, const std::function<AxesSeen()>& see) {
+  constexpr auto kBetweenLooks = std::chrono::milliseconds(200);
+  server.LookEvery(kBetweenLooks, [&page, see, before = AxesSeen{}]() mutable {
+    const AxesSeen seen = see();
+    if (seen == before) return;
+    page.Axes(seen.now, seen.at, seen.is_moving);
+    before = seen;
+  });
 }
 
 /// Writes the bench file, says where the server is and serves. Who has read the file may already stop the server.
@@ -56,19 +88,39 @@ void ServeShown(hw::Server& server, const ServeArguments& a, const std::string& 
   ServeUntilStopped(server);
 }
 
-void ServeRotary(const ServeArguments& a, const Scenario& scenario) {
+void ServeRotary(const ServeArguments& a, const Scenario& scenario, LivePage& page) {
   sim::Twin twin(scenario);
   hw::Server server(twin.Bench(), scenario, RotaryOf(scenario).adc, a.serve);
+  page.Serve(scenario.bench, AddressLine(server.Addresses()), {"target_deg", "reference_deg"});
+  if (a.web)
+    ShowAxes(server, page, [bench = twin.Bench()] {
+      const TableState target = bench.target.State(), reference = bench.reference.State();
+      return AxesSeen{bench.clock.Now(), {target.encoder_rad / units::deg, reference.encoder_rad / units::deg}, target.moving || reference.moving};
+    });
   ServeShown(server, a, a.bench_file.empty() ? "" : hw::WriteServedBenchFile(server.Addresses(), a.tables));
 }
 
-void ServeMachine(const ServeArguments& a, const Scenario& scenario) {
+void ServeMachine(const ServeArguments& a, const Scenario& scenario, LivePage& page) {
   const Bench& bench = BenchOf(scenario);
   const std::vector<ReadingColumn> shown = InstrumentColumns(bench.format->columns);
   std::vector<std::string> fields = {"time_ns", "status"};
   for (const ReadingColumn& column : shown) fields.push_back(column.name);
   const auto twin = bench.make_devices(scenario);
   hw::Server server(twin->Devices(), shown, scenario, a.serve);
+  const std::vector<MachineAxis> axes = twin->Devices().machine.Axes();
+  std::vector<std::string> names;
+  for (const MachineAxis& axis : axes) names.push_back(axis.name + "_" + axis.unit());
+  page.Serve(scenario.bench, AddressLine(server.Addresses()), names);
+  if (a.web)
+    ShowAxes(server, page, [bench = twin->Devices(), axes] {
+      AxesSeen seen{bench.clock.Now(), {}, false};
+      const std::vector<AxisState> states = bench.machine.State();
+      for (std::size_t k = 0; k < states.size(); ++k) {
+        seen.at.push_back(states[k].encoder / axes[k].to_SI());
+        seen.is_moving = seen.is_moving || states[k].moving;
+      }
+      return seen;
+    });
   const std::string language = a.tables == "pty" ? "pty" : "esp";
   ServeShown(server, a,
              a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields));
@@ -82,7 +134,7 @@ void WarnOfOthers(const std::string& bind) {
              bind);
 }
 
-void Serve(ServeArguments a) {
+void Serve(ServeArguments a, LivePage& page) {
   RequireOutput(a.bench_file, {a.scenario});
   const Scenario scenario = LoadScenario(a.scenario, a.overrides);
   if (!BenchOf(scenario).has_controllers)
@@ -91,7 +143,7 @@ void Serve(ServeArguments a) {
   a.serve.speed = SpeedOf(a.speed);
   WarnOfOthers(a.serve.bind);
   a.serve.pty = !a.no_pty;
-  BenchOf(scenario).make_devices ? ServeMachine(a, scenario) : ServeRotary(a, scenario);
+  BenchOf(scenario).make_devices ? ServeMachine(a, scenario, page) : ServeRotary(a, scenario, page);
 }
 
 void AddPort(CLI::App& command, const char* name, int& port, const char* what) {
@@ -115,7 +167,10 @@ void AddServe(CLI::App& app) {
   command->add_option("--write-bench", arguments->bench_file, "write the bench file that drives what is served");
   command->add_option("--tables", arguments->tables, "what that bench file drives the tables by: scpi, esp or pty")
       ->check(CLI::IsMember({"scpi", "esp", "pty"}));
-  command->callback([arguments] { Serve(*arguments); });
+  AddWebOption(*command, arguments->web);
+  command->callback([arguments] {
+    WithLivePage(arguments->web, "serve", [&](LivePage& page) { Serve(*arguments, page); });
+  });
 }
 
 }  // namespace twinbench::tools

@@ -20,11 +20,21 @@ bool IsUtf8Locale() {
   return is_utf8;
 }
 
+std::string_view Terminal() {
+  const char* const name = std::getenv("TERM");
+  return name ? name : "dumb";
+}
+
 }  // namespace
 
+bool MayColour(std::FILE* to) {
+  const char* const unwanted = std::getenv("NO_COLOR");
+  const bool is_unwanted = unwanted && *unwanted;
+  return !is_unwanted && Terminal() != "dumb" && isatty(fileno(to)) != 0;
+}
+
 report::Letters LettersOfStdout() {
-  const char* const name = std::getenv("TERM");
-  const std::string_view terminal = name ? name : "dumb";
+  const std::string_view terminal = Terminal();
   const bool has_fonts = terminal != "dumb" && terminal != "linux";
   const bool is_terminal = isatty(fileno(stdout)) != 0;
   return is_terminal && has_fonts && IsUtf8Locale() ? report::Letters::kUnicode : report::Letters::kAscii;

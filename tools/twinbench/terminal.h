@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <string>
 
 #include "twin/report/curve_text.h"
@@ -9,6 +10,9 @@ namespace twinbench::tools {
 /// What stdout can show: Unicode on a terminal whose locale is UTF-8 and that has the fonts for it (not the Linux
 /// console, not a dumb one); ASCII else, as into a file or a pipe.
 report::Letters LettersOfStdout();
+
+/// Whether what is written to `to` may be coloured: it is a terminal, not a dumb one, and nobody has set NO_COLOR to anything (no-color.org).
+bool MayColour(std::FILE* to);
 
 /// Text that a device or a file may have written, with nothing in it that a terminal obeys: control characters but
 /// line ends and tabs become question marks.

@@ -15,7 +15,8 @@ const std::vector<CertifiedBench>& All() {
       {"rotary_4dof",
        "Four-degree-of-freedom measurement with a laser, a diffraction grating on a reference table and two position-sensitive detectors, after "
        "Jywe et al., Int. J. Machine Tools & Manufacture 47 (2007) 1978-1987; errors of both tables from shifted full-circle tests",
-       {{"separation.target", "target", "table under test", ""}, {"separation.reference", "reference", "reference table", ""}}},
+       {{"separation.target", "target", "table under test", ""}, {"separation.reference", "reference", "reference table", ""},
+        {"iso230_7[].values", "", "error motion", "ISO 230-7"}}},
       {"turntable_autocollimator",
        "Comparison of a turntable with a multi-tooth table or a polygon by an autocollimator",
        {{"separation.turntable", "turntable", "turntable", ""},

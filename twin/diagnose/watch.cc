@@ -91,6 +91,13 @@ struct Innovation {
   bool Determines(const Eigen::VectorXd& weight) const {
     return (weight.array() == 0.0 || covariance.diagonal().array() < kDeterminedVariance).all();
   }
+  PredictedReading Told(int reading) const {
+    PredictedReading told{reading, error.cwiseProduct(sigma), covariance.diagonal().cwiseSqrt().cwiseProduct(sigma)};
+    for (Eigen::Index c = 0; c < error.size(); ++c) {
+      if (!(covariance(c, c) < kDeterminedVariance)) told.deviation[c] = told.u[c] = kNaN;
+    }
+    return told;
+  }
   /// Channels by themselves; patterns by their best estimate.
   Deviation Of(const WatchedSeries& series) const {
     Eigen::Index channel = 0;
@@ -250,6 +257,7 @@ WatchReport Watch(const LinearRun& run, const WatchOptions& options) {
   RunningNoiseScale scale;
   for (int i = 0; i < readings; ++i) {
     const Innovation innovation = predictor.Predict(i);
+    report.predicted.push_back(innovation.Told(run.schedule.reading[static_cast<std::size_t>(i)]));
     predictor.Learn(innovation, limits.single * scale.value());
     if (!innovation.Determines(Eigen::VectorXd::Ones(run.Channels()))) continue;
     ++report.judged;

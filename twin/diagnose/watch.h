@@ -26,7 +26,15 @@ struct Alarm {
   double limit = kNaN;  // ... and the limit that it passed
 };
 
+/// A reading against what those before it predict.
+struct PredictedReading {
+  int reading = 0;            // running number
+  Eigen::VectorXd deviation;  // a channel: reading - prediction, SI; NaN where those before do not determine it
+  Eigen::VectorXd u;          // of the deviation, by the stated noise
+};
+
 struct WatchReport {
+  std::vector<PredictedReading> predicted;  // every reading of the run, in its order
   std::vector<Alarm> alarms;  // in the order in which they came
   int judged = 0;             // readings that those before them determine
   double noise_scale = 1.0;   // readings' scatter about their predictions / what is stated

@@ -32,7 +32,7 @@ struct Course {
 int Unwrap(double wrap_rad, std::vector<double>& angle);
 
 /// @param time_s  Empty: rows without a clock are stops.
-/// @param wrap    The period at which `reference` starts again; 0: none.
+/// @param wrap_rad  The period at which `reference` starts again; 0: none.
 Course CourseOf(std::vector<double> reference, const std::vector<double>& time_s, const CourseSettings& settings,
                 double wrap_rad);
 

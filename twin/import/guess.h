@@ -11,7 +11,7 @@ namespace twinbench::imports {
 /// Fills in the columns that the map does not give: those that are called like the bench's own, then those whose
 /// names speak of them ("commanded", "actual", "encoder", ...), then, where there are just two, in their order.
 /// What was guessed is put into `remarks`.
-/// @param base_names  Two quantities at most that are compared: "reference_deg", "measured_deg".
+/// @param compared  Two quantities at most that are compared: "reference_deg", "measured_deg".
 /// @throws InputError that lists the columns, if one cannot be found.
 void FillIn(const std::vector<Recording>& recordings, const BenchFormat& bench,
             const std::vector<std::string>& compared, Map& map, std::vector<std::string>& remarks);

@@ -18,8 +18,10 @@ from .benches import AngleBench, RotaryBench, TableState
 from .readings import Readings
 from .run import Diagnosis, Follow, Run, diagnose, drive, frame, load, run, score, separate
 from .scenario import Scenario
+from .studies import Campaign, Investigation, Plan, campaign, investigate, plan
 
 __all__ = [
-    "AngleBench", "BenchError", "Diagnosis", "Follow", "InputError", "Readings", "RotaryBench", "Run", "Scenario",
-    "TableState", "__version__", "diagnose", "drive", "frame", "load", "run", "score", "separate",
+    "AngleBench", "BenchError", "Campaign", "Diagnosis", "Follow", "InputError", "Investigation", "Plan", "Readings", "RotaryBench",
+    "Run", "Scenario", "TableState", "__version__", "campaign", "diagnose", "drive", "frame", "investigate", "load", "plan", "run", "score",
+    "separate",
 ]

@@ -1,5 +1,6 @@
 """The compiled half of the package: use what twinbench/__init__.py offers."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -49,3 +50,9 @@ def diagnose(
     scenario: Scenario, readings: Readings, model: str, excluded: list[str], cache_folder: str
 ) -> tuple[dict[str, Any], str]: ...
 def follow(scenario: Scenario, readings: Readings) -> Follow: ...
+def plan(scenario: Scenario, setups: int, minutes: float, readings: float, goal: str) -> tuple[dict[str, Any], list[Scenario]]: ...
+def campaign(study: str, table: str, threads: int, resume: bool) -> tuple[str, str]: ...
+def investigate(
+    scenario: Scenario, hidden: Scenario | None, measure: Callable[[Scenario], Readings] | None, goal: str, budget_min: float,
+    conclusive: float, most_runs: int,
+) -> tuple[dict[str, Any], Scenario]: ...

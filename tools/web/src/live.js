@@ -1,6 +1,8 @@
 // Shows a measurement while it goes on, and stops it. What a bench does is said only in the words of the program that reads it.
 import { button, element } from "./dom.js";
-import { liveFigures } from "./live_figures.js";
+import { liveFigures, residualFigures } from "./live_figures.js";
+import { inquiry } from "./live_inquiry.js";
+import { pausePanel } from "./live_pause.js";
 import { stopPanel } from "./live_stop.js";
 import { number } from "./format.js";
 import { isDark, setTheme } from "./theme.js";
@@ -17,9 +19,21 @@ const bar = element("progress", { max: 1, value: 0, "aria-label": "Readings done
 const counted = element("p", { class: "subtitle", id: "counted" }, "");
 const axes = element("dl", { class: "now", "aria-label": "Last reading" });
 const cards = element("div", { class: "cards" });
-const stop = stopPanel(() => fetch(address("/stop"), { method: "POST" }));
+const residualCards = element("div", { class: "cards" });
+const judged = element("p", { class: "subtitle", id: "judged" }, "No reading is predicted by those before it yet");
+const alarms = element("ol", { class: "alarms", id: "alarms", role: "log", "aria-label": "Alarms" });
+const residualPart = element("section", { class: "part", "aria-label": "Residuals" }, element("h2", {}, "Against the twin's prediction"), judged, alarms, residualCards);
+const send = (path) => fetch(address(path), { method: "POST" });
+const stop = stopPanel(() => send("/stop"));
+const pause = pausePanel(send);
+const steps = inquiry();
 
 let figures = null;
+let serves = false;
+let shown = null; // folder
+let residuals = null;
+let predicted = 0;
+let raised = 0;
 let columns = [];
 let ended = false;
 let heard = performance.now();
@@ -42,8 +56,21 @@ function parted(name) {
   return at > 0 ? [name.slice(0, at).replaceAll("_", " "), name.slice(at + 1)] : [name, ""];
 }
 
-function begin({ command, bench, folder, columns: named }) {
-  title.textContent = `${bench}: ${command} into ${folder}`;
+function begin({ command, bench, folder, can_pause, columns: named }) {
+  pause.offer(can_pause && !ended);
+  if (folder === shown) return; // the connection is back; what was shown goes on
+  shown = folder;
+  residuals = null;
+  predicted = raised = 0;
+  residualCards.replaceChildren();
+  alarms.replaceChildren();
+  serves = command === "serve";
+  title.textContent = serves ? `${bench}, served as hardware` : `${bench}: ${command} into ${folder}`;
+  if (serves) {
+    counted.textContent = folder;
+    bar.hidden = residualPart.hidden = true;
+    stop.isOf("Stop serving", "Stop serving?", "The program closes every connection and ends. What clients were told to do is theirs to take up again.");
+  }
   columns = named.map((column) => {
     const [name, unit] = parted(column.name);
     return { ...column, name, unit, column: column.name };
@@ -51,7 +78,17 @@ function begin({ command, bench, folder, columns: named }) {
   figures = liveFigures(columns);
   axes.replaceChildren(...columns.map(({ name }) => element("div", {}, element("dt", {}, name), element("dd", {}, "\u2013"))));
   cards.replaceChildren(...figures.cards);
-  if (!ended) say("", "The measurement goes on");
+  if (!ended) say("", goesOn());
+}
+
+const goesOn = () => (serves ? "The twin is served" : "The measurement goes on");
+
+/** Axes that others move. */
+function moved({ t, v, moving }) {
+  figures?.add({ t, v });
+  columns.forEach(({ unit }, c) => (axes.children[c].lastChild.textContent = `${number(v[c])} ${unit}`));
+  subtitle.textContent = `bench time ${clock(t)}, ${moving ? "moving" : "at rest"}`;
+  changed = true;
 }
 
 function reading(r) {
@@ -67,11 +104,35 @@ function progress({ done, planned, bench_s, left_s }) {
   counted.textContent = `${done} of ${planned} readings, bench time ${clock(bench_s)}, ${left_s < 0 ? "time left not known yet" : `${clock(left_s)} left`}`;
 }
 
+/** What the twin, set to the readings before, said that these should be. */
+function compare({ channels, readings }) {
+  if (!residuals) {
+    residuals = residualFigures(channels);
+    residualCards.replaceChildren(...residuals.cards);
+  }
+  residuals.add(readings);
+  predicted += readings.filter(({ v }) => v.some((value) => value !== null)).length;
+  sayJudged();
+  changed = true;
+}
+
+function sayJudged() {
+  const told = raised === 0 ? "no alarm" : raised === 1 ? "1 alarm" : `${raised} alarms`;
+  judged.textContent = `${predicted} readings predicted by those before them; ${told} at a false-alarm rate of 1 % a run`;
+}
+
+function alarm({ words }) {
+  raised += 1;
+  alarms.append(element("li", {}, words));
+  sayJudged();
+}
+
 function end({ code, words }) {
   ended = true;
   events.close();
   stop.over();
-  if (code === 0) return say("good", "The measurement is complete: the program ended with exit code 0");
+  pause.over();
+  if (code === 0) return say("good", serves ? "Nothing is served any more: the program ended with exit code 0" : "The measurement is complete: the program ended with exit code 0");
   say(code === 3 ? "bad" : "doubt", `The program ended with exit code ${code}. ${words}`);
 }
 
@@ -83,9 +144,17 @@ function on(kind, handle) {
   });
 }
 on("begin", begin);
+on("run", begin);
+on("step", steps.step);
+on("believed", steps.believed);
 on("reading", reading);
 on("progress", progress);
-on("asked", () => stop.asked());
+on("axes", moved);
+on("residuals", compare);
+on("alarm", alarm);
+on("unjudged", ({ why }) => (judged.textContent = `Readings are not compared with the twin: ${why}`));
+on("asked", ({ what }) => (what === "stop" ? stop.asked() : pause.asked(what)));
+on("pause", pause.heard);
 on("left_out", (lost) => (subtitle.textContent = `${lost} messages came too fast to be shown; the record has every reading`));
 on("end", end);
 on("beat", () => {});
@@ -94,10 +163,10 @@ events.onerror = () => {
 };
 events.onopen = () => {
   heard = performance.now();
-  if (!ended) say("", figures ? "The measurement goes on" : "Connected; nothing is being measured yet");
+  if (!ended) say("", figures ? goesOn() : "Connected; nothing is being measured yet");
 };
 setInterval(() => {
-  if (changed) (changed = false), figures.draw();
+  if (changed) (changed = false), figures?.draw(), residuals?.draw();
   if (!ended && performance.now() - heard > kSilence_ms) events.onerror();
 }, kBetweenDrawings_ms);
 
@@ -108,5 +177,5 @@ const theme = button(isDark() ? "Light" : "Dark", () => {
 
 document.getElementById("page").append(
   element("header", {}, element("div", { class: "brand" }, element("span", {}, "twinbench, live"), theme), title, subtitle, verdict),
-  element("main", { id: "content", tabindex: -1 }, stop.element, element("section", { class: "part" }, bar, counted, axes), cards),
+  element("main", { id: "content", tabindex: -1 }, stop.element, pause.element, steps.element, element("section", { class: "part" }, bar, counted, axes), cards, residualPart),
 );

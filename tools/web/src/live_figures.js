@@ -70,6 +70,20 @@ function timeCards(columns, role, title) {
   });
 }
 
+/** What the readings deviate by from their prediction, one plot a channel, with twice the standard uncertainty about it. */
+export function residualFigures(channels) {
+  const cards = channels.map(({ name, unit }, c) => new LiveCard(
+    { form: "line", title: `Residual of ${name.replaceAll("_", " ")}`, x: { name: "reading", unit: "" }, y: { name: "reading - prediction", unit },
+      series: [empty("residual"), empty("+2 u"), empty("-2 u")] },
+    ({ n, v, u }) => [[n, v[c]], [n, u[c] === null ? null : 2 * u[c]], [n, u[c] === null ? null : -2 * u[c]]],
+  ));
+  return {
+    cards: cards.map((card) => card.element),
+    add: (readings) => readings.forEach((reading) => cards.forEach((card) => card.add(reading))),
+    draw: () => cards.forEach((card) => card.chart.draw()),
+  };
+}
+
 /** @param columns  Of the readings: name, unit, role. */
 export function liveFigures(columns) {
   const all = [...pairs(columns).map((pair) => trackCard(columns, pair)), ...timeCards(columns, "axis", "Axes"), ...timeCards(columns, "shown", "Shown")];

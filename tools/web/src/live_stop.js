@@ -16,13 +16,17 @@ export function stopPanel(send) {
       said.textContent = `The program did not take the stop (${error.message}). Use Ctrl-C in the terminal, or the emergency stop`;
     }
   }, { class: "stop", id: "stop-sure" });
-  dialog.append(
-    element("h2", { id: "stop-question" }, "Stop the measurement?"),
-    element("p", {}, "The program tells whatever moves to stop, as after Ctrl-C, and asks it whether it stands. Readings so far are kept."),
-    element("div", { class: "tools" }, sure, button("Go on measuring", () => dialog.close(), { id: "stop-not" })),
-  );
+  const question = element("h2", { id: "stop-question" }, "Stop the measurement?");
+  const means = element("p", {}, "The program tells whatever moves to stop, as after Ctrl-C, and asks it whether it stands. Readings so far are kept.");
+  dialog.append(question, means, element("div", { class: "tools" }, sure, button("Go on", () => dialog.close(), { id: "stop-not" })));
   return {
     element: element("section", { class: "halt", "aria-label": "Stop" }, ask, said, dialog),
+    /** What is stopped, where it is no measurement. */
+    isOf: (name, asks, says) => {
+      ask.textContent = name;
+      question.textContent = asks;
+      means.textContent = says;
+    },
     asked: () => (said.textContent = `The program was told to stop at ${new Date().toLocaleTimeString()}; it has not said yet what came of it`),
     over: () => {
       dialog.close();

@@ -55,6 +55,11 @@ nlohmann::json AxisJson(const std::array<const char*, kSize>& names, const std::
   return json;
 }
 
+/// All uncertainties here are made of what the runs scatter by (`u_parts`).
+nlohmann::json OfScatterAlone() {
+  return {{"repeatability", 1.0}};
+}
+
 /// What a test lacks of VDI/DGQ 3441: five runs from both sides. Not checked: how many targets, how they are spaced.
 std::vector<std::string> MissingForVdi3441(const std::vector<TargetPositioning>& targets) {
   constexpr int kRuns = 5;
@@ -67,7 +72,7 @@ std::vector<std::string> MissingForVdi3441(const std::vector<TargetPositioning>&
 
 void AppendVdi(int setup, const std::vector<TargetPositioning>& targets, const measure::ToldIn& told, PositioningResults& results) {
   const measure::VdiPositioning vdi = measure::EvaluateVdi3441(targets);
-  results.vdi.push_back({{"setup", setup}, {"axis", AxisJson(measure::kVdiValueNames, vdi.axis)}, {"missing", MissingForVdi3441(targets)}});
+  results.vdi.push_back({{"setup", setup}, {"axis", AxisJson(measure::kVdiValueNames, vdi.axis)}, {"u_parts", OfScatterAlone()}, {"missing", MissingForVdi3441(targets)}});
   results.text += VdiText(vdi, told);
 }
 
@@ -86,6 +91,7 @@ void Append(int setup, const measure::PositioningStops& stops, const DeviceSetti
   results.json.push_back({{"setup", setup},
                           {"axis", AxisJson(measure::kAxisValueNames, positioning.axis)},
                           {"targets", targets},
+                          {"u_parts", OfScatterAlone()},
                           {"left_out", stops.left_out},
                           {"missing", missing},
                           {"notes", stops.notes}});

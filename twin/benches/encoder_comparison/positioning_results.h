@@ -12,7 +12,7 @@ namespace twinbench::benches::encoder {
 /// The stops of an angle comparison evaluated as ISO 230-2 and VDI/DGQ 3441 do a rotary axis, for each set-up.
 struct PositioningResults {
   nlohmann::json json;  // [{"setup", "axis": {"A": {"value_arcsec", "u_arcsec", "bias_arcsec"}, ...}, "targets",
-                        // "missing", "notes"}]; empty without stops
+                        // "u_parts", "missing", "notes"}]; empty without stops
   nlohmann::json vdi;   // [{"setup", "axis": {"P": {"value_arcsec", "u_arcsec", "bias_arcsec"}, ...}, "missing"}]
   std::string text;     // for a person; of many targets the values of the axis only
 };

@@ -3,6 +3,7 @@
 
 #include "twin/benches/rotary_4dof/analysis.h"
 #include "twin/benches/rotary_4dof/bench.h"
+#include "twin/benches/rotary_4dof/error_motion_results.h"
 #include "twin/benches/rotary_4dof/tables.h"
 #include "twin/benches/rotary_4dof/uncertainty_parts.h"
 #include "twin/core/errors.h"
@@ -38,7 +39,11 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (analysis.separation) AddParts(analysis, readings, scenario, results["separation"]);
   const nlohmann::json separation = analysis.separation ? Agreed(results["separation"]) : nlohmann::json();
   report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
-  if (analysis.separation) evaluation.joints = JointsOf(*analysis.separation);
+  if (!analysis.separation) return evaluation;
+  evaluation.joints = JointsOf(*analysis.separation);
+  const ErrorMotionResults motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
+  evaluation.results["iso230_7"] = motions.json;
+  evaluation.summary += motions.text;
   return evaluation;
 }
 

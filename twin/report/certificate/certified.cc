@@ -85,6 +85,9 @@ class Taker {
   /// What tells one object of a list from the others.
   static std::string WhichOf(const json& object) {
     std::string words;
+    for (const char* key : {"table", "motion"}) {
+      if (const std::string value = report::TextAt(object, key); !value.empty()) words += ", " + value;
+    }
     for (const auto& [key, spoken] : std::initializer_list<std::pair<const char*, const char*>>{
              {"setup", "set-up"}, {"direction", "direction"}, {"feed_mm_min", "feed [mm/min]"}, {"head_deg", "head [deg]"}}) {
       if (const double value = NumberAt(object, key); std::isfinite(value)) words += fmt::format(", {} {}", spoken, value);

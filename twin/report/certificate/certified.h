@@ -20,7 +20,7 @@ struct CertifiedBench {
   std::vector<CertifiedPart> parts;
 };
 
-/// Where a list of values was taken: "position" in \degree.
+/// Where a list of values was taken: "position" in the unit \\degree.
 struct Abscissa {
   std::string name, dsi_unit;
   std::vector<double> values;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "twin/report/page/named_numbers.h"
 #include "twin/report/page/scored.h"
@@ -107,10 +108,33 @@ bool IsPlain(const json& value) {
   return value.is_string() || value.is_number() || value.is_boolean();
 }
 
-/// Plain members of an object, and the values of its measured ones.
+/// {"value_um": 3, "u_um": 1}: the unit; nothing if it is none of these.
+std::optional<std::string> UnitOfValue(const json& node) {
+  constexpr std::string_view kValueIn = "value_";
+  if (!node.is_object()) return {};
+  for (const auto& [key, value] : node.items())
+    if (key.starts_with(kValueIn) && (value.is_number() || value.is_null())) return key.substr(kValueIn.size());
+  return {};
+}
+
+/// The members of a group whose values have their unit in their keys: {"total": {"value_um", "u_um"}, ...}.
+void AddGroup(const json& group, std::map<std::string, std::string>& cells) {
+  if (!group.is_object()) return;
+  for (const auto& [key, member] : group.items()) {
+    const std::optional<std::string> unit = UnitOfValue(member);
+    if (!unit) continue;
+    const double value = NumberAt(member, "value_" + *unit), u = NumberAt(member, "u_" + *unit);
+    std::string& cell = cells[key + "_" + *unit];
+    cell = std::isfinite(value) ? NumberText(value, u) : "";
+    if (std::isfinite(u)) cell += " ± " + NumberText(u, u);
+  }
+}
+
+/// Plain members of an object, the values of its measured ones, and those of groups of such.
 std::map<std::string, std::string> CellsOf(const json& object) {
   std::map<std::string, std::string> cells;
   for (const auto& [key, value] : object.items()) {
+    AddGroup(value, cells);
     if (IsPlain(value)) cells[key] = CellText(value);
     if (IsMeasured(value)) {
       cells[key] = NumberText(NumberAt(value, "value"), NumberAt(value, "u"));

@@ -1,0 +1,15 @@
+# The API reference is made, and what a header says of a function stands in it: that of a separation as a witness.
+execute_process(COMMAND ${DOXYGEN} ${CONFIGURATION} RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "doxygen ends with ${result}")
+endif()
+file(STRINGS ${PAGES}/html/namespacetwinbench_1_1separate.html witness REGEX "Separates full-circle motions into the errors of target and reference")
+if(NOT witness)
+  message(FATAL_ERROR "the reference says nothing of separate::Separate")
+endif()
+# Comments that doxygen does not understand are ours to mend; things without one are only listed.
+file(STRINGS ${PAGES}/undocumented.txt misunderstood REGEX "warning: (unbalanced|Unsupported|unexpected|end of file|argument|Found unknown)")
+if(misunderstood)
+  list(JOIN misunderstood "\n" lines)
+  message(FATAL_ERROR "${lines}")
+endif()

@@ -1,0 +1,110 @@
+#include "twin/benches/rotary_4dof/error_motion_results.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/separate/bench.h"
+
+/// ISO 230-7 of both tables, from motions made by the exact chain.
+namespace twinbench::benches::rotary {
+namespace {
+
+using namespace separate;
+
+constexpr int kPositions = 36;
+
+/// Width of a contour on evenly spread angles about its least-squares circle: without orders 0 and 1.
+double WidthAboutCircle(const std::vector<double>& contour) {
+  const auto n = static_cast<double>(contour.size());
+  double mean = 0.0, c = 0.0, s = 0.0;
+  for (std::size_t i = 0; i < contour.size(); ++i) {
+    const double angle = units::turn * static_cast<double>(i) / n;
+    mean += contour[i] / n;
+    c += 2.0 * contour[i] * std::cos(angle) / n;
+    s += 2.0 * contour[i] * std::sin(angle) / n;
+  }
+  double most = -1.0, least = 1.0;
+  for (std::size_t i = 0; i < contour.size(); ++i) {
+    const double angle = units::turn * static_cast<double>(i) / n, left = contour[i] - mean - c * std::cos(angle) - s * std::sin(angle);
+    most = std::max(most, left);
+    least = std::min(least, left);
+  }
+  return most - least;
+}
+
+/// x cos + y sin of `sense` times the angle.
+std::vector<double> Turned(const std::vector<double>& x, const std::vector<double>& y, double sense) {
+  std::vector<double> r;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double angle = sense * units::turn * static_cast<double>(i) / static_cast<double>(x.size());
+    r.push_back(x[i] * std::cos(angle) + y[i] * std::sin(angle));
+  }
+  return r;
+}
+
+struct Evaluated {
+  Truth truth;
+  Separation separation;
+  nlohmann::json json;
+
+  const nlohmann::json& Of(const std::string& table, const std::string& motion) const {
+    for (const nlohmann::json& one : json)
+      if (one.at("table") == table && one.at("motion") == motion) return one;
+    throw std::runtime_error("no " + motion);
+  }
+  double Synchronous(const std::string& table, const std::string& motion, const std::string& unit) const {
+    return Of(table, motion).at("values").at("synchronous").at("value_" + unit);
+  }
+};
+
+/// @param scatter_rad  That the first pass shows more of ex everywhere, and the second less.
+Evaluated Evaluate(double scatter_rad) {
+  Stream stream(11, "test.truth");
+  Evaluated e{RandomTruth(kPositions, stream), {}, {}};
+  std::vector<Motion> motions = EmptyMotions(kPositions, {0, 1, 7, 11}, 2, ReadingCovariance());
+  FillExact(motions, e.truth, Layouts(kPositions, Clamping::kReclamp), Bench());
+  for (Motion& m : motions) m.ex_rad += m.pass % 2 == 0 ? scatter_rad : -scatter_rad;
+  e.separation = Separate(motions, Bench(), Options(kPositions, Clamping::kReclamp));
+  e.json = EvaluateErrorMotions(e.separation, motions).json;
+  return e;
+}
+
+TEST(ErrorMotions, SynchronousOnesAreThoseOfTheTrueCurves) {
+  const Evaluated e = Evaluate(0.0);
+  const TableErrors &t = e.truth.target, &r = e.truth.reference;
+  // The chain's second order reaches 0.005 arcsec and um rms (Separate.DoesWithoutSomeReadings); a width has two ends.
+  constexpr double kNear = 0.03;
+  const auto expect = [&](const char* table, const char* motion, const std::vector<double>& contour, bool is_angle) {
+    const double unit = is_angle ? units::arcsec : units::um;
+    EXPECT_NEAR(e.Synchronous(table, motion, is_angle ? "arcsec" : "um"), WidthAboutCircle(contour) / unit, kNear) << table << " " << motion;
+  };
+  expect("target", "radial_fixed_y", t[Component::kDy], false);
+  expect("target", "tilt_fixed_x", t[Component::kEx], true);
+  expect("target", "tilt_fixed_y", t[Component::kEy], true);
+  expect("target", "tilt_rotating_x", Turned(t[Component::kEx], t[Component::kEy], 1.0), true);
+  expect("reference", "radial_rotating_y", r[Component::kDy], false);
+  expect("reference", "radial_fixed_x", Turned(r[Component::kDx], r[Component::kDy], -1.0), false);
+  expect("reference", "tilt_fixed_x", Turned(r[Component::kEx], r[Component::kEy], -1.0), true);
+}
+
+TEST(ErrorMotions, AsynchronousOnesAreWhatPassesShowBeyondTheModel) {
+  const double scatter_rad = 0.5 * units::arcsec;
+  const Evaluated e = Evaluate(scatter_rad);
+  const nlohmann::json& tilt = e.Of("target", "tilt_fixed_x");
+  const double dof = e.separation.dof_of[static_cast<int>(measure::Dof::kEx)];
+  EXPECT_NEAR(tilt.at("values").at("asynchronous").at("value_arcsec"), 2.0 * 0.5 * std::sqrt(e.separation.readings / dof), 0.02)
+      << "both passes of every set-up, for the unknowns that were fitted";
+  EXPECT_EQ(tilt.at("turns"), 8) << "two passes of four set-ups";
+  EXPECT_LT(e.Of("target", "tilt_fixed_y").at("values").at("asynchronous").at("value_arcsec"), 0.05);
+  const nlohmann::json& total = tilt.at("values").at("total");
+  EXPECT_GT(total.at("value_arcsec"), tilt.at("values").at("synchronous").at("value_arcsec"));
+  EXPECT_GT(total.at("u_arcsec"), 0.0);
+  EXPECT_FALSE(e.Of("reference", "tilt_fixed_x").at("values").contains("asynchronous")) << "nothing tells it from the target's";
+  double shares = 0.0;
+  for (const auto& [name, share] : total.at("u_parts").items()) shares += share.get<double>();
+  EXPECT_NEAR(shares, 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace twinbench::benches::rotary

@@ -1,0 +1,91 @@
+"""What is made of many runs: plans, campaigns, investigations."""
+
+from __future__ import annotations
+
+import io
+import os
+from typing import TYPE_CHECKING, Any, Callable
+
+from . import _core
+from .readings import Readings
+from .scenario import Scenario
+
+if TYPE_CHECKING:
+    import pandas
+
+
+class Plan(dict):
+    """What `twinbench plan --json` writes, as a dict, and `next`: scenarios of the runs to be made next, in their order."""
+
+    def __init__(self, made: dict[str, Any], following: list[_core.Scenario]):
+        super().__init__(made)
+        self.next = [Scenario._of(core) for core in following]
+
+
+def plan(scenario: Scenario, setups: int = 0, minutes: float = 0.0, readings: float = 0.0, goal: str = "") -> Plan:
+    """What a run would give, what it would not see, and which run would give more for its time.
+
+    setups: how many there may be, 0: as many as the scenario has. minutes or readings: budget for further runs, not both.
+    goal: the result that counts ("target.ez"), "": all. Raises InputError as the command does.
+    """
+    if minutes and readings:
+        raise _core.InputError("plan: there are two budgets; expected minutes or readings")
+    return Plan(*_core.plan(scenario._core, setups, minutes, readings, goal))
+
+
+class Campaign:
+    """The table of a campaign: `csv` is what `twinbench campaign --csv` writes, `summary` what it prints."""
+
+    def __init__(self, table: str, csv: str, summary: str):
+        self.table = table  # the SQLite file
+        self.csv = csv
+        self.summary = summary
+
+    def frame(self) -> pandas.DataFrame:
+        """A pandas frame with a row a trial, from the text of `csv`."""
+        import pandas
+
+        return pandas.read_csv(io.StringIO(self.csv), comment="#", float_precision="round_trip")
+
+
+def campaign(study: str | os.PathLike, table: str | os.PathLike, threads: int = 1, resume: bool = False) -> Campaign:
+    """Carries out a study file (docs/campaign.md) into a SQLite table, which is made. Whatever `threads` is, the numbers are the same.
+
+    resume: go on with a table; trials that are in it are not done again. Raises InputError if the table is there without it.
+    """
+    table = os.fspath(table)
+    return Campaign(table, *_core.campaign(os.fspath(study), table, threads, resume and os.path.exists(table)))
+
+
+class Investigation(dict):
+    """investigation.json as a dict, and `extended`: the scenario with the causes that were told."""
+
+    def __init__(self, found: dict[str, Any], extended: _core.Scenario):
+        super().__init__(found)
+        self.extended = Scenario._of(extended)
+
+
+def investigate(
+    scenario: Scenario,
+    bench: Scenario | Callable[[Scenario], Readings],
+    goal: str = "",
+    budget_min: float = 120.0,
+    conclusive: float = 0.95,
+    most_runs: int = 20,
+) -> Investigation:
+    """Measures, diagnoses and chooses the run that tells most per minute, until the causes are told apart.
+
+    scenario: what is believed. bench: a scenario with something hidden, whose twin is measured; or a function that carries out the
+    scenario that it is given and returns its readings, ``lambda asked: tb.drive(my_bench, asked).readings``. Of a function only runs are asked
+    that nobody has to change the bench or its room for. goal: "target.ez 0.1arcsec". budget_min: of the procedures' own clocks.
+    """
+    hidden = bench._core if isinstance(bench, Scenario) else None
+    if hidden is None and not callable(bench):
+        raise TypeError("bench is neither a Scenario nor a function from a Scenario to Readings")
+
+    def measure(asked: _core.Scenario) -> _core.Readings:
+        return bench(Scenario._of(asked))._core
+
+    return Investigation(
+        *_core.investigate(scenario._core, hidden, None if hidden else measure, goal, budget_min, conclusive, most_runs)
+    )

@@ -1,0 +1,235 @@
+#include "twin/benches/rotary_4dof/error_motion_results.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "twin/report/json_units.h"
+#include "twin/report/uncertainty_parts.h"
+#include "twin/separate/error_motion.h"
+
+namespace twinbench::benches::rotary {
+namespace {
+
+using separate::ErrorMotion;
+using separate::ErrorMotionValue;
+using separate::ErrorMotionValues;
+using separate::TableEstimate;
+
+constexpr Eigen::Index kMostWithUncertainty = 720;  // positions; a covariance of more takes longer to draw from than to measure
+constexpr const char* kAtStops = "the axis stood at every reading; the standard measures while it turns";
+
+/// Covariances of a contour: of the readings, and of what is common to all of them.
+struct ContourCovariance {
+  Eigen::MatrixXd random, systematic;
+};
+
+/// One sensitive direction with what it is told in.
+struct Directed {
+  const char* name;
+  bool is_angle;
+  ErrorMotion motion;
+  Eigen::MatrixXd random;  // part of its covariance
+};
+
+std::optional<Eigen::Index> BlockOf(const TableEstimate& estimate, Component component) {
+  const auto found = std::ranges::find(estimate.components, component);
+  if (found == estimate.components.end()) return std::nullopt;
+  return found - estimate.components.begin();
+}
+
+/// Positions at which a component has a value.
+std::vector<Eigen::Index> Determined(const TableEstimate& estimate, const std::vector<Component>& components) {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < estimate.value.position_rad.size(); ++i) {
+    if (std::ranges::all_of(components, [&](Component c) { return std::isfinite(estimate.value[c][i]); }))
+      rows.push_back(static_cast<Eigen::Index>(i));
+  }
+  return rows;
+}
+
+Eigen::MatrixXd Picked(const separate::CurveCovariance& cov, const std::vector<Eigen::Index>& rows) {
+  if (cov.rows() == 0) return Eigen::MatrixXd::Zero(std::ssize(rows), std::ssize(rows));
+  Eigen::MatrixXd picked(std::ssize(rows), std::ssize(rows));
+  for (Eigen::Index r = 0; r < picked.rows(); ++r) {
+    for (Eigen::Index c = 0; c < picked.cols(); ++c) picked(r, c) = cov(rows[static_cast<std::size_t>(r)], rows[static_cast<std::size_t>(c)]);
+  }
+  return picked;
+}
+
+/// Of some components at some positions, one component after the other; empty where it is not known.
+ContourCovariance CovarianceOf(const TableEstimate& estimate, const std::vector<Component>& components,
+                               const std::vector<Eigen::Index>& at) {
+  const auto n = static_cast<Eigen::Index>(estimate.value.position_rad.size());
+  if (n > kMostWithUncertainty) return {};
+  std::vector<Eigen::Index> rows;
+  for (const Component c : components) {
+    for (const Eigen::Index i : at) rows.push_back(*BlockOf(estimate, c) * n + i);
+  }
+  ContourCovariance cov{Picked(estimate.cov, rows), Picked(estimate.cov_systematic, rows)};
+  if (!cov.random.allFinite() || !cov.systematic.allFinite()) return {};
+  return cov;
+}
+
+/// What each pass shows beyond the model, by the target's position.
+class PassesBeyond {
+ public:
+  PassesBeyond(const separate::Separation& separation, const std::vector<measure::Motion>& motions)
+      : separation_(separation), motions_(motions) {}
+
+  /// @return one list a position of the target; empty ones if the fit leaves nothing to judge by.
+  std::vector<std::vector<double>> Of(Component component) const {
+    const std::vector<double>& angle_rad = separation_.target.value.position_rad;
+    std::vector<std::vector<double>> at(angle_rad.size());
+    const auto d = static_cast<Eigen::Index>(std::ranges::find(separate::kComponentOf, component) - separate::kComponentOf.begin());
+    const double dof = separation_.dof_of[d], readings = separation_.readings;
+    if (!(dof > 0.0)) return at;
+    const double scale = std::sqrt(readings / dof);
+    for (std::size_t k = 0; k < motions_.size(); ++k) {
+      const double beyond = separation_.residuals[k][d];
+      if (std::isfinite(beyond)) at[Nearest(angle_rad, motions_[k].target_rad)].push_back(scale * beyond);
+    }
+    return at;
+  }
+
+ private:
+  static std::size_t Nearest(const std::vector<double>& angle_rad, double turned_rad) {
+    const auto off = [&](double at_rad) { return std::abs(std::remainder(turned_rad - at_rad, units::turn)); };
+    return static_cast<std::size_t>(
+        std::ranges::min_element(angle_rad, {}, off) - angle_rad.begin());
+  }
+
+  const separate::Separation& separation_;
+  const std::vector<measure::Motion>& motions_;
+};
+
+std::vector<std::vector<double>> At(const std::vector<Eigen::Index>& positions, const std::vector<std::vector<double>>& all) {
+  std::vector<std::vector<double>> some;
+  for (const Eigen::Index i : positions) some.push_back(all.empty() ? std::vector<double>{} : all[static_cast<std::size_t>(i)]);
+  return some;
+}
+
+ErrorMotion MotionOf(const TableEstimate& estimate, Component component, const std::vector<Eigen::Index>& at,
+                     const std::vector<std::vector<double>>& scatter) {
+  ErrorMotion motion{Eigen::VectorXd(std::ssize(at)), Eigen::VectorXd(std::ssize(at)), {}, At(at, scatter)};
+  for (Eigen::Index k = 0; k < std::ssize(at); ++k) {
+    const auto i = static_cast<std::size_t>(at[static_cast<std::size_t>(k)]);
+    motion.angle_rad[k] = estimate.value.position_rad[i];
+    motion.contour[k] = estimate.value[component][i];
+  }
+  return motion;
+}
+
+/// A component as it stands.
+void AppendSingle(const char* name, const TableEstimate& estimate, Component component, const std::vector<std::vector<double>>& scatter,
+                  std::vector<Directed>& all) {
+  if (!BlockOf(estimate, component)) return;
+  const std::vector<Eigen::Index> at = Determined(estimate, {component});
+  const ContourCovariance cov = CovarianceOf(estimate, {component}, at);
+  Directed directed{name, IsAngle(component), MotionOf(estimate, component, at, scatter), cov.random};
+  directed.motion.cov = cov.random + cov.systematic;
+  all.push_back(directed);
+}
+
+/// x and y along a direction that turns forward (+1: with the rotor, seen from the laboratory) or back (-1).
+void AppendTurned(const char* name, const TableEstimate& estimate, Component x, Component y, double sense,
+                  const std::vector<std::vector<double>>& scatter_x, const std::vector<std::vector<double>>& scatter_y,
+                  std::vector<Directed>& all) {
+  if (!BlockOf(estimate, x) || !BlockOf(estimate, y)) return;
+  const std::vector<Eigen::Index> at = Determined(estimate, {x, y});
+  const ContourCovariance cov = CovarianceOf(estimate, {x, y}, at);
+  ErrorMotion along_x = MotionOf(estimate, x, at, scatter_x), along_y = MotionOf(estimate, y, at, scatter_y);
+  along_x.angle_rad *= sense;
+  along_y.angle_rad *= sense;
+  all.push_back({name, IsAngle(x), Rotating(along_x, along_y, cov.random + cov.systematic), Rotating(along_x, along_y, cov.random).cov});
+}
+
+std::vector<Directed> OfTarget(const separate::Separation& s, const std::vector<measure::Motion>& motions) {
+  const PassesBeyond passes(s, motions);
+  const auto ex = passes.Of(Component::kEx), ey = passes.Of(Component::kEy);
+  std::vector<Directed> all;
+  AppendSingle("radial_fixed_y", s.target, Component::kDy, passes.Of(Component::kDy), all);
+  AppendSingle("tilt_fixed_x", s.target, Component::kEx, ex, all);
+  AppendSingle("tilt_fixed_y", s.target, Component::kEy, ey, all);
+  AppendTurned("tilt_rotating_x", s.target, Component::kEx, Component::kEy, +1.0, ex, ey, all);
+  return all;
+}
+
+std::vector<Directed> OfReference(const TableEstimate& reference) {
+  std::vector<Directed> all;
+  AppendSingle("radial_rotating_x", reference, Component::kDx, {}, all);
+  AppendSingle("radial_rotating_y", reference, Component::kDy, {}, all);
+  AppendTurned("radial_fixed_x", reference, Component::kDx, Component::kDy, -1.0, {}, {}, all);
+  AppendSingle("tilt_rotating_x", reference, Component::kEx, {}, all);
+  AppendSingle("tilt_rotating_y", reference, Component::kEy, {}, all);
+  AppendTurned("tilt_fixed_x", reference, Component::kEx, Component::kEy, -1.0, {}, {}, all);
+  return all;
+}
+
+double UnitOfDirection(const Directed& d) {
+  return d.is_angle ? units::arcsec : units::um;
+}
+
+nlohmann::json ToJson(const ErrorMotionValue& v, const Directed& d, const std::vector<std::pair<std::string, double>>& shares) {
+  const std::string unit = d.is_angle ? "arcsec" : "um";
+  nlohmann::json json = {{"value_" + unit, report::In(UnitOfDirection(d), v.value)},
+                         {"u_" + unit, report::In(UnitOfDirection(d), v.u)},
+                         {"bias_" + unit, report::In(UnitOfDirection(d), v.bias)}};
+  if (std::isfinite(v.u) && v.u > 0.0) json["u_parts"] = report::PartsJson(shares);
+  return json;
+}
+
+/// How much of the uncertainty of the contour is the readings'.
+double ShareOfNoise(const Directed& d, const ErrorMotionValues& values) {
+  const double all = d.motion.cov.size() > 0 ? values.slope.dot(d.motion.cov * values.slope) : 0.0;
+  return all > 0.0 ? std::clamp(values.slope.dot(d.random * values.slope) / all, 0.0, 1.0) : 0.0;
+}
+
+nlohmann::json ValuesJson(const Directed& d, const ErrorMotionValues& values) {
+  const double noise = ShareOfNoise(d, values), of_contour = std::min(1.0, std::pow(values.synchronous.u / values.total.u, 2));
+  nlohmann::json json = {{"synchronous", ToJson(values.synchronous, d, {{"noise", noise}, {"calibration", 1.0 - noise}})}};
+  if (std::isnan(values.total.value)) return json;
+  json["total"] = ToJson(values.total, d,
+                         {{"noise", of_contour * noise}, {"calibration", of_contour * (1.0 - noise)}, {"repeatability", 1.0 - of_contour}});
+  if (std::isfinite(values.asynchronous.value)) json["asynchronous"] = ToJson(values.asynchronous, d, {{"repeatability", 1.0}});
+  return json;
+}
+
+std::string Text(const Directed& d, const ErrorMotionValues& values) {
+  std::string words = d.name;
+  std::ranges::replace(words, '_', ' ');
+  std::string text = fmt::format("  {:18}", words);
+  const auto add = [&](const char* name, const ErrorMotionValue& v) {
+    if (std::isnan(v.value)) return;
+    text += fmt::format(" {} {:.3f}", name, v.value / UnitOfDirection(d));
+    if (std::isfinite(v.u)) text += fmt::format(" +- {:.3f}", v.u / UnitOfDirection(d));
+  };
+  add("synchronous", values.synchronous);
+  add("asynchronous", values.asynchronous);
+  add("total", values.total);
+  return text + (d.is_angle ? " arcsec\n" : " um\n");
+}
+
+void Append(const char* table, const std::vector<Directed>& directions, ErrorMotionResults& results) {
+  if (!directions.empty()) results.text += fmt::format("ISO 230-7, {}\n", table);
+  for (const Directed& d : directions) {
+    const ErrorMotionValues values = EvaluateErrorMotion(d.motion, separate::PlotCentre::kLeastSquares);
+    if (std::isnan(values.synchronous.value)) continue;
+    results.json.push_back({{"table", table}, {"motion", d.name}, {"values", ValuesJson(d, values)}, {"missing", {kAtStops}}});
+    if (values.turns > 0) results.json.back()["turns"] = values.turns;
+    results.text += Text(d, values);
+  }
+}
+
+}  // namespace
+
+ErrorMotionResults EvaluateErrorMotions(const separate::Separation& separation, const std::vector<measure::Motion>& motions) {
+  ErrorMotionResults results{nlohmann::json::array(), ""};
+  Append("target", OfTarget(separation, motions), results);
+  Append("reference", OfReference(separation.reference), results);
+  return results;
+}
+
+}  // namespace twinbench::benches::rotary
