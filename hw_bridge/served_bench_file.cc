@@ -1,5 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+#include <string_view>
+
 #include "hw_bridge/bench_file.h"
 #include "twin/core/errors.h"
 
@@ -24,6 +29,24 @@ std::string InstrumentText(const std::string& table, const ServedAddresses& a) {
 }
 
 }  // namespace
+
+std::string WithToken(const std::string& bench_file, const std::string& token) {
+  if (token.empty()) return bench_file;
+  constexpr std::string_view kBehind = "identity = ";
+  std::istringstream lines(bench_file);
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    text += line + "\n";
+    if (line.starts_with(kBehind)) text += fmt::format("token = \"{}\"\n", token);
+  }
+  return text;
+}
+
+void RequireTokenText(const std::string& where, const std::string& token) {
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0; };
+  if (!std::ranges::all_of(token, is_plain))
+    throw InputError(where, "a token has something else in it than letters and digits", "what serve printed");
+}
 
 std::string WriteServedBenchFile(const ServedAddresses& addresses, const std::string& tables) {
   Require(tables == "scpi" || tables == "esp" || tables == "pty", "tables are driven by scpi, esp or pty");

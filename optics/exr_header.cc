@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+#include <string_view>
 
 namespace twinbench::optics {
 namespace {
@@ -15,6 +16,20 @@ constexpr std::array<char, 4> kExrMagic = {0x76, 0x2f, 0x31, 0x01};
 constexpr std::uint32_t kMultiPart = 0x1000;
 constexpr std::int64_t kMostBytesAByte = 1032, kLeastPixel_B = 2;  // of a half
 constexpr std::size_t kLongestName = 255;
+
+/// Types whose values the library reads by themselves, whatever size the header gives them.
+struct ExrType {
+  std::string_view name;
+  int size_B;
+};
+constexpr std::array kFixedTypes = {
+    ExrType{"box2f", 16},     ExrType{"box2i", 16},    ExrType{"chromaticities", 32}, ExrType{"compression", 1},
+    ExrType{"deepImageState", 1}, ExrType{"double", 8}, ExrType{"envmap", 1},          ExrType{"float", 4},
+    ExrType{"int", 4},        ExrType{"keycode", 28},  ExrType{"lineOrder", 1},       ExrType{"m33d", 72},
+    ExrType{"m33f", 36},      ExrType{"m44d", 128},    ExrType{"m44f", 64},           ExrType{"rational", 8},
+    ExrType{"tiledesc", 9},   ExrType{"timecode", 8},  ExrType{"v2d", 16},            ExrType{"v2f", 8},
+    ExrType{"v2i", 8},        ExrType{"v3d", 24},      ExrType{"v3f", 12},            ExrType{"v3i", 12}};
+constexpr std::int64_t kChannel_B = 16;  // behind its name
 
 class ExrHeader {
  public:
@@ -57,15 +72,45 @@ class ExrHeader {
   bool CheckAttribute() {
     const std::string name = TakeName();
     if (name.empty()) return false;
-    TakeName();  // its type
+    const std::string type = TakeName();
     const auto size = Take<std::int32_t>();
     const std::int64_t begin = in_.tellg();
     if (size < 0 || begin + size > bytes_) throw std::runtime_error("its attribute " + name + " is longer than the file");
+    if (!HasItsSize(type, size, begin + size)) throw std::runtime_error("its attribute " + name + " is damaged");
+    in_.seekg(begin);
     if (name == "dataWindow") CheckWindow();
     if (name == "tiles") CheckTile();
-    if (name == "channels" && size > kMostExrChannels_B) throw std::runtime_error("it has too many channels");
     in_.seekg(begin + size);
     return true;
+  }
+
+  /// Whether the library takes as many bytes for the value as the header says.
+  bool HasItsSize(const std::string& type, std::int64_t size, std::int64_t end) {
+    const auto fixed = std::ranges::find(kFixedTypes, type, &ExrType::name);
+    if (fixed != kFixedTypes.end()) return size == fixed->size_B;
+    if (type == "chlist") return size <= kMostExrChannels_B && EndsWithItsChannels(end);
+    if (type == "stringvector") return EndsWithItsStrings(end);
+    if (type != "preview") return true;  // strings and what is not known are taken by the size
+    if (size < 8) return false;
+    const auto side = Take<std::array<std::uint32_t, 2>>();
+    return side[0] <= bytes_ && side[1] <= bytes_ && size == 8 + std::int64_t{4} * side[0] * side[1];
+  }
+
+  bool EndsWithItsChannels(std::int64_t end) {
+    while (in_.tellg() < end) {
+      if (TakeName().empty()) return in_.tellg() == end;
+      in_.seekg(kChannel_B, std::ios::cur);
+    }
+    return false;
+  }
+
+  bool EndsWithItsStrings(std::int64_t end) {
+    while (in_.tellg() < end) {
+      const auto length = Take<std::int32_t>();
+      if (length < 0 || in_.tellg() + std::int64_t{length} > end) return false;
+      in_.seekg(length, std::ios::cur);
+    }
+    return in_.tellg() == end;
   }
 
   /// Of the next picture: x and y of its first and its last pixel.

@@ -17,6 +17,8 @@ class Dialogue {
   /// @param identity_query  "*IDN?", "VE?".
   /// @param identity        What its answer must begin with.
   Dialogue(Address address, std::string identity_query, std::string identity);
+  /// Said to whoever has been identified, after every opening: a command and a query of its error, which must be answered by "0,...".
+  void IntroduceBy(std::string introduction) { introduction_ = std::move(introduction); }
 
   /// Opens the connection unless it is open.
   /// @param device  Whose call it is, for messages.
@@ -39,6 +41,7 @@ class Dialogue {
  private:
   void Connect(const std::string& device, Duration patience);
   void Identify(const std::string& device, Duration patience);
+  void Introduce(const std::string& device, Duration patience);
   std::string AwaitIdentity(const std::string& device, Duration patience);
   void Send(const std::string& device, const std::string& text, Duration patience);
   [[noreturn]] void Fail(FaultKind kind, const std::string& device, const std::string& why);
@@ -49,6 +52,7 @@ class Dialogue {
   std::string identity_query_;
   std::string identity_;         // as much as is known of it
   bool identity_known_ = false;  // all of it
+  std::string introduction_;     // empty: none
   std::unique_ptr<LineLink> link_;
   int openings_ = 0;
 };

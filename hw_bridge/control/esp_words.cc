@@ -27,6 +27,10 @@ void TellEsp(DeviceLine& line, const std::string& command) {
             fmt::format("\"{}\" was refused: {}", command, answer));
 }
 
+std::string EspIntroduction(const std::string& token) {
+  return "XK" + token + "\n" + kEspErrorQuery;
+}
+
 bool EspKnows(DeviceLine& line, const std::string& query) {
   const std::string answer = line.Ask(query + "\n" + kEspIdentity);
   if (answer == line.identity()) {

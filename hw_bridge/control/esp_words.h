@@ -11,6 +11,9 @@ inline constexpr const char* kEspIdentity = "VE?";
 /// @throws DeviceFault kLimit for a limit of an axis, kRefused for another error; what DeviceLine throws.
 void TellEsp(DeviceLine& line, const std::string& command);
 
+/// What a client with a token says first to a served twin, for Dialogue::IntroduceBy.
+std::string EspIntroduction(const std::string& token);
+
 /// Whether the controller knows a query: one that it does not know is not answered, so what comes first then is the
 /// answer to the next.
 bool EspKnows(DeviceLine& line, const std::string& query);

@@ -24,6 +24,10 @@ void TellScpi(DeviceLine& line, const std::string& command, Duration beyond) {
             fmt::format("\"{}\" was refused: {}", command, answer));
 }
 
+std::string ScpiIntroduction(const std::string& token) {
+  return "SYST:TOK \"" + token + "\"\n" + kScpiErrorQuery;
+}
+
 std::optional<double> ParseScpiNumber(const std::string& text, double to_SI) {
   if (ParseNumber(text) == kScpiNotANumber) return kNaN;
   return ParseInUnit(text, to_SI);

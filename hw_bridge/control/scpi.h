@@ -14,6 +14,9 @@ inline constexpr const char* kScpiIdentity = "*IDN?";
 /// @throws DeviceFault kLimit for -222, kRefused for another error; what DeviceLine throws.
 void TellScpi(DeviceLine& line, const std::string& command, Duration beyond = {});
 
+/// What a client with a token says first to a served twin, for Dialogue::IntroduceBy.
+std::string ScpiIntroduction(const std::string& token);
+
 /// The number in `text` times `to_SI`; NaN for 9.91E37, which is SCPI's "not a number".
 /// @return nothing if there is anything else in it.
 std::optional<double> ParseScpiNumber(const std::string& text, double to_SI);

@@ -4,6 +4,7 @@
 
 #include "hw_bridge/serve/words.h"
 #include "twin/core/errors.h"
+#include "twin/core/secret_token.h"
 
 namespace twinbench::hw {
 namespace {
@@ -61,6 +62,11 @@ void CommandConversation::RunCommands() {
 void CommandConversation::Take(Outcome outcome) {
   if (!outcome.answer.empty()) answers_.push_back(std::move(outcome.answer));
   poll_ = std::move(outcome.poll);
+}
+
+bool CommandConversation::Show(std::string_view token) {
+  trusted_ = IsToken(token, served_.token);
+  return MayChange();
 }
 
 void CommandConversation::Asks(const std::string& device) {

@@ -32,6 +32,10 @@ class CommandConversation : public Conversation {
   virtual std::string Join(const std::vector<std::string>& answers) const = 0;
   virtual std::string LineTooLong() = 0;
   Served& served() { return served_; }
+  /// A client shows its token. @return whether it is the one.
+  bool Show(std::string_view token);
+  /// Whether this client may do more than look and stop.
+  bool MayChange() const { return trusted_ || served_.token.empty(); }
   /// Faults of a device strike the line in which a query of it stands.
   void Asks(const std::string& device);
 
@@ -44,6 +48,7 @@ class CommandConversation : public Conversation {
   Step Reply();
 
   Served& served_;
+  bool trusted_ = false;
   State state_ = State::kIdle;
   std::deque<std::string> commands_;
   std::vector<std::string> answers_;

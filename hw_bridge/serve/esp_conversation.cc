@@ -57,6 +57,7 @@ Outcome EspConversation::Execute(const std::string& text) {
   try {
     const EspEntry* entry = command ? Find(*command) : nullptr;
     if (!entry) throw EspError{kEspUnknownCommand};
+    if (!IsEspOpenToAll(command->name, command->query) && !MayChange()) throw EspError{kEspNoToken};
     if (command->axis == 0 && entry->axis == EspAxis::kNeeded) throw EspError{kEspAxisMissing};
     if (command->axis > 2) throw EspError{kEspAxisOutOfRange};
     if (entry->value && command->value.empty()) throw EspError{kEspParameterMissing};

@@ -28,6 +28,7 @@ class EspConversation : public CommandConversation {
  public:
   explicit EspConversation(ServedBench& served) : CommandConversation(served), served_(served) {}
 
+  using CommandConversation::Show;
   /// Adds to the error buffer; it keeps the oldest ten, like the controller.
   void Report(int number);
   int NextError();  // 0: none

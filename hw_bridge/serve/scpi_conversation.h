@@ -10,7 +10,9 @@ class ScpiConversation : public CommandConversation {
  public:
   using CommandConversation::Asks;
   using CommandConversation::CommandConversation;
+  using CommandConversation::MayChange;
   using CommandConversation::served;
+  using CommandConversation::Show;
 
   ScpiErrorQueue& errors() { return errors_; }
   /// Standard event status register and its masks, as in IEEE 488.2.

@@ -37,6 +37,7 @@ class Served {
 
   std::string name;
   std::string serial;  // made from bench, scenario and seed
+  std::string token;   // whoever moves or spoils anything must have shown it; empty: anybody may
   Faults faults;
 
  protected:

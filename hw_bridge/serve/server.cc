@@ -43,12 +43,14 @@ struct Server::Impl {
 
   void Show(RotaryBench bench, const Scenario& scenario, const AdcSettings& adc) {
     auto& served = *(rotary = std::make_unique<ServedBench>(bench, RequireCounts(scenario), adc, options.speed));
+    served.token = options.token;
     iiod.emplace(Maker<IiodConversation>(served), options.iiod_port, *this);
     Listen<EspConversation>(served);
   }
   void Show(MachineBench bench, const std::vector<ReadingColumn>& shown, const Scenario& scenario) {
-    Listen<EspMachineConversation>(
-        *(machine = std::make_unique<ServedMachine>(bench, shown, scenario, options.speed)));
+    machine = std::make_unique<ServedMachine>(bench, shown, scenario, options.speed);
+    machine->token = options.token;
+    Listen<EspMachineConversation>(*machine);
   }
 
   template <class Esp, class Kind>

@@ -14,6 +14,7 @@
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
+#include "twin/core/secret_token.h"
 
 namespace twinbench::tools {
 namespace {
@@ -22,7 +23,7 @@ struct ServeArguments {
   std::string scenario, bench_file, tables = "scpi", speed = "1";
   std::vector<std::string> overrides;
   hw::ServeOptions serve;
-  bool no_pty = false;
+  bool no_pty = false, token = false, no_token = false;
 };
 
 double SpeedOf(const std::string& text) {
@@ -50,8 +51,9 @@ void ServeUntilStopped(hw::Server& server) {
 /// Writes the bench file, says where the server is and serves. Who has read the file may already stop the server.
 void ServeShown(hw::Server& server, const ServeArguments& a, const std::string& bench_file) {
   ListenForStop();
-  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, bench_file);
-  fmt::print("{}", Told(server.Addresses()));
+  const std::string& token = a.serve.token;
+  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, hw::WithToken(bench_file, token));
+  fmt::print("{}{}", Told(server.Addresses()), token.empty() ? "" : "token " + token + "\n");
   std::fflush(stdout);
   ServeUntilStopped(server);
 }
@@ -74,12 +76,19 @@ void ServeMachine(const ServeArguments& a, const Scenario& scenario) {
              a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields));
 }
 
-void WarnOfOthers(const std::string& bind) {
+void WarnOfOthers(const std::string& bind, bool asks_token) {
   if (hw::IsOfThisComputerOnly(bind)) return;
   fmt::print(stderr,
-             "twinbench: at {} whoever is on the network can move what is served and inject faults; nobody is asked who "
-             "he is. --bind 127.0.0.1 keeps it on this computer\n",
-             bind);
+             "twinbench: at {} whoever is on the network can {}; nothing is encrypted. --bind 127.0.0.1 keeps it on this "
+             "computer\n",
+             bind,
+             asks_token ? "read what is served, and whoever hears the token can move it"
+                        : "move what is served and inject faults; nobody is asked who he is");
+}
+
+/// Programs of this computer that know nothing of tokens are served as ever unless one is asked for; others are asked.
+bool AsksToken(const ServeArguments& a) {
+  return a.token || (!a.no_token && !hw::IsOfThisComputerOnly(a.serve.bind));
 }
 
 void Serve(ServeArguments a) {
@@ -89,7 +98,8 @@ void Serve(ServeArguments a) {
     throw InputError(a.scenario, "the bench " + scenario.bench + " cannot be served",
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
   a.serve.speed = SpeedOf(a.speed);
-  WarnOfOthers(a.serve.bind);
+  if (AsksToken(a)) a.serve.token = NewToken();
+  WarnOfOthers(a.serve.bind, AsksToken(a));
   a.serve.pty = !a.no_pty;
   BenchOf(scenario).make_devices ? ServeMachine(a, scenario) : ServeRotary(a, scenario);
 }
@@ -111,6 +121,10 @@ void AddServe(CLI::App& app) {
   AddPort(*command, "--iiod-port", arguments->serve.iiod_port, "A/D converter, IIOD; 0: any free port");
   AddPort(*command, "--scpi-port", arguments->serve.scpi_port, "tables and instruments, SCPI");
   AddPort(*command, "--esp-port", arguments->serve.esp_port, "tables, Newport ESP");
+  auto* token = command->add_flag("--token", arguments->token,
+                                  "whoever moves or spoils anything must show the token that is printed and written into the bench file; "
+                                  "with --bind beyond this computer the default");
+  command->add_flag("--no-token", arguments->no_token, "everybody may move and spoil everything")->excludes(token);
   command->add_flag("--no-pty", arguments->no_pty, "no pseudo-terminal with ESP");
   command->add_option("--write-bench", arguments->bench_file, "write the bench file that drives what is served");
   command->add_option("--tables", arguments->tables, "what that bench file drives the tables by: scpi, esp or pty")
