@@ -121,9 +121,10 @@ class FileCheck {
   void CheckPair(const std::string& name_a, const ControlSettings& a, const std::string& name_b,
                  const ControlSettings& b) const {
     if (a.address.empty() || a.address != b.address) return;
-    if (a.kind == b.kind && a.identity == b.identity && a.token == b.token) return;
+    if (a.kind == b.kind && a.identity == b.identity && a.token == b.token && a.watchdog == b.watchdog)
+      return;
     throw InputError(Where(name_b + ".address"), fmt::format("{} shares the address of {}", name_b, name_a),
-                     "the same kind, identity and token, then");
+                     "the same kind, identity, token and watchdog, then");
   }
 
   const BenchFile& file_;

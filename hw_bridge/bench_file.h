@@ -32,6 +32,7 @@ struct ControlSettings {                     // [target], [reference], [autocoll
   int axis = 1;
   std::string identity = "";                 // what *IDN? or VE? must begin with; empty: any, but the same all along
   std::string token = "";                    // shown to a served twin that asks for one, before anything is moved
+  std::string watchdog = "";                 // command that arms the controller's own; empty: it has none
   double timeout_s = 2.0;                    // of one answer
   int decimals = -1;                         // digits behind the point in commands; -1: all that matter
 };
@@ -72,8 +73,9 @@ struct ServedAddresses {
   int iiod_port = 0, scpi_port = 0, esp_port = 0;
   std::string pty;                           // empty: none
 };
-/// A bench file that shows `token` on every connection that has an identity. @param token  Empty: as it was.
-std::string WithToken(const std::string& bench_file, const std::string& token);
+/// A served twin's bench file that shows `token` on every connection that has an identity, and arms the watchdog there.
+/// @param token  Empty: none.
+std::string WithGuards(const std::string& bench_file, const std::string& token);
 /// @throws InputError at `where` unless it can be said in any of the languages: letters and digits, or nothing.
 void RequireTokenText(const std::string& where, const std::string& token);
 /// @param tables  How the tables are driven: "scpi", "esp" (over TCP) or "pty" (ESP over the pseudo-terminal).

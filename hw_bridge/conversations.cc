@@ -10,8 +10,8 @@ DeviceLine Conversations::LineOf(const std::string& device, const ControlSetting
   const auto found =
       by_address_.try_emplace(settings.address, ParseAddress(settings.address).value(), query, settings.identity);
   Dialogue& dialogue = found.first->second;
-  if (!settings.token.empty())
-    dialogue.IntroduceBy(settings.kind == "esp" ? EspIntroduction(settings.token) : ScpiIntroduction(settings.token));
+  const auto introductions = settings.kind == "esp" ? EspIntroductions : ScpiIntroductions;
+  dialogue.IntroduceBy(introductions(settings.token, settings.watchdog));
   DeviceLine line(dialogue, device, FromSeconds(settings.timeout_s));
   line.Openings();
   return line;

@@ -44,6 +44,7 @@ class MachineKeys {
     Text("address", &s.address, {}, "where it is reached");
     Text("identity", &s.identity, {}, "what its answer to *IDN? or VE? must begin with; empty: any");
     Text("token", &s.token, {}, "of a served twin that asks for one; empty: none");
+    Text("watchdog", &s.watchdog, {}, "command that arms the controller's own, after every opening; empty: it has none");
     Add("timeout", kSeconds, Above(0.0, 3600.0), &s.timeout_s, "of one answer");
   }
 

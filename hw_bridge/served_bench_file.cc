@@ -11,6 +11,7 @@
 namespace twinbench::hw {
 namespace {
 
+constexpr int kWatchdog_s = 10;
 constexpr const char* kScpiIdentity = "twinbench,rotary-bench,";
 constexpr const char* kEspIdentity = "ESP301 twinbench ";
 
@@ -30,14 +31,15 @@ std::string InstrumentText(const std::string& table, const ServedAddresses& a) {
 
 }  // namespace
 
-std::string WithToken(const std::string& bench_file, const std::string& token) {
-  if (token.empty()) return bench_file;
-  constexpr std::string_view kBehind = "identity = ";
+std::string WithGuards(const std::string& bench_file, const std::string& token) {
   std::istringstream lines(bench_file);
-  std::string text;
+  std::string text, watchdog;
   for (std::string line; std::getline(lines, line);) {
     text += line + "\n";
-    if (line.starts_with(kBehind)) text += fmt::format("token = \"{}\"\n", token);
+    if (line.starts_with("kind = ")) watchdog = line == "kind = \"esp\"" ? "XW" : "SYST:WATC ";
+    if (!line.starts_with("identity = ")) continue;
+    text += fmt::format("watchdog = \"{}{}\"\n", watchdog, kWatchdog_s);
+    if (!token.empty()) text += fmt::format("token = \"{}\"\n", token);
   }
   return text;
 }

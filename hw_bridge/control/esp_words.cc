@@ -27,8 +27,11 @@ void TellEsp(DeviceLine& line, const std::string& command) {
             fmt::format("\"{}\" was refused: {}", command, answer));
 }
 
-std::string EspIntroduction(const std::string& token) {
-  return "XK" + token + "\n" + kEspErrorQuery;
+std::vector<std::string> EspIntroductions(const std::string& token, const std::string& watchdog) {
+  std::vector<std::string> said;
+  if (!token.empty()) said.push_back("XK" + token + "\n" + kEspErrorQuery);
+  if (!watchdog.empty()) said.push_back(watchdog + "\n" + kEspErrorQuery);
+  return said;
 }
 
 bool EspKnows(DeviceLine& line, const std::string& query) {

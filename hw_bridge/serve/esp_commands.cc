@@ -196,6 +196,11 @@ Outcome ShowToken(const EspCall& call) {
   return {};
 }
 
+Outcome ArmWatchdog(const EspCall& call) {
+  call.client.BeMissed(EspPatience_s(call.command.value));
+  return {};
+}
+
 // --- common queries of IEEE 488.2
 
 Outcome OperationComplete(const EspCall& call) {
@@ -236,6 +241,7 @@ constexpr EspEntry kEspCommands[] = {
     {"SN", false, EspAxis::kNeeded, true, SetUnit},
     {"SN", true, EspAxis::kNeeded, false, Unit},
     {kEspShowToken, false, EspAxis::kNone, true, ShowToken},
+    {kEspWatchdog, false, EspAxis::kNone, true, ArmWatchdog},
     {"ID", true, EspAxis::kNeeded, false, StageIdentity},
     {"VE", true, EspAxis::kNone, false, Version},
     {"TE", true, EspAxis::kNone, false, ErrorNumber},

@@ -5,6 +5,7 @@
 
 #include "hw_bridge/serve/esp_commands.h"
 #include "hw_bridge/serve/words.h"
+#include "twin/core/number_text.h"
 
 namespace twinbench::hw {
 namespace {
@@ -39,6 +40,13 @@ std::optional<EspCommand> ParseEspCommand(const std::string& text) {
   command.query = EspOnlyAsks(command.name) || command.value == "?";
   if (command.value == "?") command.value.clear();
   return command;
+}
+
+double EspPatience_s(const std::string& value) {
+  const auto patience_s = ParseNumber(value);
+  if (!patience_s || !(*patience_s >= 0.0 && *patience_s <= CommandConversation::kLongestPatience_s))
+    throw EspError{kEspOutOfRange};
+  return *patience_s;
 }
 
 void EspConversation::Report(int number) {

@@ -31,7 +31,8 @@ constexpr std::array kAxisErrors = {EspErrorEntry{kEspAxisParameter, "PARAMETER 
 }  // namespace
 
 bool IsEspOpenToAll(const std::string& name, bool query) {
-  constexpr std::array<std::string_view, 8> kOpen = {"ST", "AB", "HS", "WS", "WT", "HN", "SN", kEspShowToken};
+  constexpr std::array<std::string_view, 9> kOpen = {"ST", "AB", "HS", "WS",          "WT",
+                                                     "HN", "SN", kEspShowToken, kEspWatchdog};
   return query || std::ranges::find(kOpen, name) != kOpen.end();
 }
 

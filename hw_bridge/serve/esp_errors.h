@@ -5,7 +5,7 @@
 /// Error numbers of the Newport ESP300/301, as its manual and PyMeasure's driver have them.
 namespace twinbench::hw {
 
-inline constexpr const char* kEspShowToken = "XK";  // of no controller
+inline constexpr const char *kEspShowToken = "XK", *kEspWatchdog = "XW";  // of no controller
 
 struct EspError {
   int number;

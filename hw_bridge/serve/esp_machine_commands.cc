@@ -211,6 +211,11 @@ Outcome ShowMachineToken(const EspMachineCall& call) {
   return {};
 }
 
+Outcome ArmMachineWatchdog(const EspMachineCall& call) {
+  call.client.BeMissed(EspPatience_s(call.command.value));
+  return {};
+}
+
 // clang-format off
 constexpr EspMachineEntry kEspMachineCommands[] = {
     {"HN", false, EspPart::kGroup, MakeGroup},
@@ -235,6 +240,7 @@ constexpr EspMachineEntry kEspMachineCommands[] = {
     {"SR", true, EspPart::kAxis, [](const EspMachineCall& call) { return SoftLimit(call, &AxisLimits::upper); }},
     {"ID", true, EspPart::kAxis, AxisName},
     {kEspShowToken, false, EspPart::kController, ShowMachineToken},
+    {kEspWatchdog, false, EspPart::kController, ArmMachineWatchdog},
     {"OR", false, EspPart::kController, HomeMachine},
     {"ST", false, EspPart::kController, StopMachine},
     {"AB", false, EspPart::kController, StopMachine},

@@ -9,8 +9,10 @@ namespace twinbench::hw {
 class ScpiConversation : public CommandConversation {
  public:
   using CommandConversation::Asks;
+  using CommandConversation::BeMissed;
   using CommandConversation::CommandConversation;
   using CommandConversation::MayChange;
+  using CommandConversation::Patience_s;
   using CommandConversation::served;
   using CommandConversation::Show;
 

@@ -88,6 +88,17 @@ Outcome MayChange(const ScpiCall& call) {
   return {call.client.MayChange() ? "1" : "0", nullptr};
 }
 
+Outcome ArmWatchdog(const ScpiCall& call) {
+  const double patience_s = ScpiNumber(call.parameters[0], 1.0);
+  if (!(patience_s >= 0.0 && patience_s <= CommandConversation::kLongestPatience_s)) throw ScpiError{-222, ""};
+  call.client.BeMissed(patience_s);
+  return {};
+}
+
+Outcome WatchdogPatience(const ScpiCall& call) {
+  return {PrintScpi(call.client.Patience_s(), 1.0), nullptr};
+}
+
 // clang-format off
 constexpr ScpiCommand kStatusCommands[] = {
     {"*IDN", true, 0, 0, Identify},
@@ -106,6 +117,8 @@ constexpr ScpiCommand kStatusCommands[] = {
     {"SYSTem:ERRor", true, 0, 0, NextError},
     {"SYSTem:ERRor:NEXT", true, 0, 0, NextError},
     {"SYSTem:VERSion", true, 0, 0, ScpiVersion},
+    {"SYSTem:WATChdog", false, 1, 0, ArmWatchdog},
+    {"SYSTem:WATChdog", true, 0, 0, WatchdogPatience},
     {"SYSTem:TOKen", false, 1, 0, ShowToken},
     {"SYSTem:TOKen", true, 0, 0, MayChange},
     {"ABORt", false, 0, 0, StopScpiDevices},

@@ -71,13 +71,12 @@ TEST_F(Guarded, ItsBenchFileCarriesTheTokenOnEveryConnection) {
   for (const char* tables : {"scpi", "esp", "pty"}) {
     const std::string text = hw::WriteServedBenchFile(served_.at(), tables);
     EXPECT_THROW(OpenHardware(hw::ParseBenchFile(text, "bench.toml", "."), RotaryScenario()), BenchError) << tables;
-    const auto bench = OpenHardware(hw::ParseBenchFile(hw::WithToken(text, kToken), "bench.toml", "."), RotaryScenario());
+    const auto bench = OpenHardware(hw::ParseBenchFile(hw::WithGuards(text, kToken), "bench.toml", "."), RotaryScenario());
     bench->Bench().target.StartMove(0.1);
     EXPECT_TRUE(bench->Bench().target.Settles(std::chrono::minutes(1))) << tables;
-    EXPECT_THROW(OpenHardware(hw::ParseBenchFile(hw::WithToken(text, "wrong"), "bench.toml", "."), RotaryScenario()),
+    EXPECT_THROW(OpenHardware(hw::ParseBenchFile(hw::WithGuards(text, "wrong"), "bench.toml", "."), RotaryScenario()),
                  BenchError);
   }
-  EXPECT_EQ(hw::WithToken("a = 1\n", ""), "a = 1\n");
 }
 
 TEST(Unguarded, AServerThatAsksForNoTokenTakesAny) {

@@ -52,7 +52,7 @@ void ServeUntilStopped(hw::Server& server) {
 void ServeShown(hw::Server& server, const ServeArguments& a, const std::string& bench_file) {
   ListenForStop();
   const std::string& token = a.serve.token;
-  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, hw::WithToken(bench_file, token));
+  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, hw::WithGuards(bench_file, token));
   fmt::print("{}{}", Told(server.Addresses()), token.empty() ? "" : "token " + token + "\n");
   std::fflush(stdout);
   ServeUntilStopped(server);
