@@ -67,6 +67,8 @@ BenchFile LoadBenchFile(const std::string& path);
 /// @param folder  From which the files that it names are found.
 BenchFile ParseBenchFile(const std::string& text, const std::string& name, const std::string& folder);
 
+/// How such a file begins.
+inline constexpr const char* kServedBenchFile = "# What `twinbench serve` shows, as `twinbench measure --bench` takes it.\n";
 /// The bench file that drives what `twinbench serve` shows at these ports.
 struct ServedAddresses {
   std::string host = "127.0.0.1";

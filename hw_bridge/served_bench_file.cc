@@ -54,11 +54,10 @@ std::string WriteServedBenchFile(const ServedAddresses& addresses, const std::st
   Require(tables == "scpi" || tables == "esp" || tables == "pty", "tables are driven by scpi, esp or pty");
   Require(tables != "pty" || !addresses.pty.empty(), "there is no pseudo-terminal");
   std::string text = fmt::format(
-      "# What `twinbench serve` shows, as `twinbench measure --bench` takes it.\n"
-      "kind = \"hardware\"\nname = \"served twin\"\n\n"
+      "{}kind = \"hardware\"\nname = \"served twin\"\n\n"
       "[adc]\nkind = \"iio\"\nuri = \"ip:{}:{}\"\ndevice = \"psd-adc16\"\n"
       "channels = [\"voltage0\", \"voltage1\", \"voltage2\", \"voltage3\"]\nlight = \"light\"\n",
-      addresses.host, addresses.iiod_port);
+      kServedBenchFile, addresses.host, addresses.iiod_port);
   text += TableText("target", 1, addresses, tables) + TableText("reference", 2, addresses, tables);
   for (const char* table : {"autocollimator", "thermometer", "goniometer", "fixture", "clock"})
     text += InstrumentText(table, addresses);

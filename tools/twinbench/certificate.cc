@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/xmllint.h"
 #include "twin/benches/certified_parts.h"
 #include "twin/core/errors.h"
@@ -24,7 +24,7 @@ using namespace certificate;
 
 struct CertificateOptions {
   std::string run, laboratory, output = "-", schema;
-  bool wants_template = false;
+  bool wants_template = false, force = false;
 };
 
 std::string WholeFile(const std::string& path) {
@@ -103,11 +103,14 @@ void Write(const std::string& path, const std::string& text, const std::string& 
 }
 
 void MakeCertificate(const CertificateOptions& options) {
-  if (options.wants_template) return Write(options.output, LaboratoryTemplate(), "fill in what is empty, then --with " + options.output);
+  if (options.wants_template) {
+    RequireFree(options.output, {}, options.force);
+    return Write(options.output, LaboratoryTemplate(), "fill in what is empty, then --with " + options.output);
+  }
   if (options.run.empty()) throw InputError("certificate", "there is no run", "the folder of a run, or --template");
   if (options.laboratory.empty())
     throw InputError("certificate", "nothing is known of the laboratory", "--with laboratory.toml; --template writes one to fill in");
-  RequireOutput(options.output, {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()});
+  RequireFree(options.output, {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()}, options.force);
   const CertificateContent content = ContentOf(options);
   const std::string xml = CertificateXml(content);
   if (!options.schema.empty() && !SatisfiesSchema(xml, options.schema))
@@ -128,6 +131,7 @@ void AddCertificate(CLI::App& app) {
   command->add_option("-o,--output", options->output, "file to write, - for stdout")->capture_default_str();
   command->add_option("--schema", options->schema, "folder with dcc.xsd and the schemas that it imports: validate with xmllint first, and write nothing if it fails");
   command->add_flag("--template", options->wants_template, "write the TOML file to fill in instead");
+  AddForce(*command, options->force);
   command->callback([options] { MakeCertificate(*options); });
 }
 

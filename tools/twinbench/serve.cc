@@ -7,7 +7,7 @@
 #include "hw_bridge/machine_file.h"
 #include "hw_bridge/serve/server.h"
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/stop_signal.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -23,7 +23,7 @@ struct ServeArguments {
   std::string scenario, bench_file, tables = "scpi", speed = "1";
   std::vector<std::string> overrides;
   hw::ServeOptions serve;
-  bool no_pty = false, token = false, no_token = false;
+  bool no_pty = false, token = false, no_token = false, force = false;
 };
 
 double SpeedOf(const std::string& text) {
@@ -92,7 +92,7 @@ bool AsksToken(const ServeArguments& a) {
 }
 
 void Serve(ServeArguments a) {
-  RequireOutput(a.bench_file, {a.scenario});
+  RequireFree(a.bench_file, {a.scenario}, a.force, hw::kServedBenchFile);
   const Scenario scenario = LoadScenario(a.scenario, a.overrides);
   if (!BenchOf(scenario).has_controllers)
     throw InputError(a.scenario, "the bench " + scenario.bench + " cannot be served",
@@ -129,6 +129,7 @@ void AddServe(CLI::App& app) {
   command->add_option("--write-bench", arguments->bench_file, "write the bench file that drives what is served");
   command->add_option("--tables", arguments->tables, "what that bench file drives the tables by: scpi, esp or pty")
       ->check(CLI::IsMember({"scpi", "esp", "pty"}));
+  AddForce(*command, arguments->force);
   command->callback([arguments] { Serve(*arguments); });
 }
 
