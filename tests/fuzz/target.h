@@ -27,5 +27,6 @@ const Target* TargetOf(std::string_view name);
 std::span<const Target> TextTargets();
 std::span<const Target> FileTargets();
 std::span<const Target> ConversationTargets();
+std::span<const Target> JsonTargets();
 
 }  // namespace twinbench::fuzz

@@ -7,7 +7,7 @@ namespace twinbench::fuzz {
 std::span<const Target> Targets() {
   static const std::vector<Target> all = [] {
     std::vector<Target> targets;
-    for (const auto family : {TextTargets(), FileTargets(), ConversationTargets()})
+    for (const auto family : {TextTargets(), FileTargets(), ConversationTargets(), JsonTargets()})
       targets.insert(targets.end(), family.begin(), family.end());
     return targets;
   }();
