@@ -19,6 +19,15 @@ if(TWINBENCH_WERROR)
   add_compile_options(-Werror)
 endif()
 
+# Instrumented for libFuzzer, every fault an end: tests/fuzz.
+if(TWINBENCH_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "TWINBENCH_FUZZ needs clang: cmake --preset fuzz")
+  endif()
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
 # Most of a source's time goes into its headers: sixteen sources read them once.
 set(CMAKE_UNITY_BUILD ${TWINBENCH_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)

@@ -94,6 +94,7 @@ class FileCheck {
                        "an address of \"scpi\" or \"esp\"");
     if (HasConnection(s.kind) && !ParseAddress(s.address))
       throw InputError(Where(key), fmt::format("{} is \"{}\"", key, s.address), kAddressForm);
+    RequireTokenText(Where(table + ".token"), s.token);
   }
 
   /// Who shares an address shares a connection: one language, one identity. The clock has its own.
@@ -120,9 +121,10 @@ class FileCheck {
   void CheckPair(const std::string& name_a, const ControlSettings& a, const std::string& name_b,
                  const ControlSettings& b) const {
     if (a.address.empty() || a.address != b.address) return;
-    if (a.kind == b.kind && a.identity == b.identity) return;
+    if (a.kind == b.kind && a.identity == b.identity && a.token == b.token && a.watchdog == b.watchdog)
+      return;
     throw InputError(Where(name_b + ".address"), fmt::format("{} shares the address of {}", name_b, name_a),
-                     "the same kind and identity, then");
+                     "the same kind, identity, token and watchdog, then");
   }
 
   const BenchFile& file_;

@@ -31,6 +31,8 @@ struct ControlSettings {                     // [target], [reference], [autocoll
   std::string address = "";                  // "tcp:HOST:PORT", "serial:/dev/ttyUSB0:19200"
   int axis = 1;
   std::string identity = "";                 // what *IDN? or VE? must begin with; empty: any, but the same all along
+  std::string token = "";                    // shown to a served twin that asks for one, before anything is moved
+  std::string watchdog = "";                 // command that arms the controller's own; empty: it has none
   double timeout_s = 2.0;                    // of one answer
   int decimals = -1;                         // digits behind the point in commands; -1: all that matter
 };
@@ -65,12 +67,19 @@ BenchFile LoadBenchFile(const std::string& path);
 /// @param folder  From which the files that it names are found.
 BenchFile ParseBenchFile(const std::string& text, const std::string& name, const std::string& folder);
 
+/// How such a file begins.
+inline constexpr const char* kServedBenchFile = "# What `twinbench serve` shows, as `twinbench measure --bench` takes it.\n";
 /// The bench file that drives what `twinbench serve` shows at these ports.
 struct ServedAddresses {
   std::string host = "127.0.0.1";
   int iiod_port = 0, scpi_port = 0, esp_port = 0;
   std::string pty;                           // empty: none
 };
+/// A served twin's bench file that shows `token` on every connection that has an identity, and arms the watchdog there.
+/// @param token  Empty: none.
+std::string WithGuards(const std::string& bench_file, const std::string& token);
+/// @throws InputError at `where` unless it can be said in any of the languages: letters and digits, or nothing.
+void RequireTokenText(const std::string& where, const std::string& token);
 /// @param tables  How the tables are driven: "scpi", "esp" (over TCP) or "pty" (ESP over the pseudo-terminal).
 std::string WriteServedBenchFile(const ServedAddresses& addresses, const std::string& tables);
 

@@ -60,6 +60,8 @@ Table AddConnection(Keys& keys, const std::string& table, ControlSettings& s, co
   t.Text("kind", &s.kind, kinds, "language, or who does it");
   t.Text("address", &s.address, {}, "where the controller is reached");
   t.Text("identity", &s.identity, {}, "what its answer to *IDN? or VE? must begin with; empty: any");
+  t.Text("token", &s.token, {}, "of a served twin that asks for one; empty: none");
+  t.Text("watchdog", &s.watchdog, {}, "command that arms the controller's own, after every opening; empty: it has none");
   t.Number("timeout", kSecond, Positive(3600), &s.timeout_s, "of one answer");
   return t;
 }

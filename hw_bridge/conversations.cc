@@ -9,7 +9,10 @@ DeviceLine Conversations::LineOf(const std::string& device, const ControlSetting
   const std::string query = settings.kind == "esp" ? kEspIdentity : kScpiIdentity;
   const auto found =
       by_address_.try_emplace(settings.address, ParseAddress(settings.address).value(), query, settings.identity);
-  DeviceLine line(found.first->second, device, FromSeconds(settings.timeout_s));
+  Dialogue& dialogue = found.first->second;
+  const auto introductions = settings.kind == "esp" ? EspIntroductions : ScpiIntroductions;
+  dialogue.IntroduceBy(introductions(settings.token, settings.watchdog));
+  DeviceLine line(dialogue, device, FromSeconds(settings.timeout_s));
   line.Openings();
   return line;
 }

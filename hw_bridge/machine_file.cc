@@ -43,6 +43,8 @@ class MachineKeys {
     Text("kind", &s.kind, std::move(kinds), "language, or who does it");
     Text("address", &s.address, {}, "where it is reached");
     Text("identity", &s.identity, {}, "what its answer to *IDN? or VE? must begin with; empty: any");
+    Text("token", &s.token, {}, "of a served twin that asks for one; empty: none");
+    Text("watchdog", &s.watchdog, {}, "command that arms the controller's own, after every opening; empty: it has none");
     Add("timeout", kSeconds, Above(0.0, 3600.0), &s.timeout_s, "of one answer");
   }
 
@@ -87,6 +89,7 @@ class MachineFileCheck {
       throw InputError(Where(key), fmt::format("{} with kind = \"{}\"", key, s.kind), "no address");
     if (connected && !ParseAddress(s.address))
       throw InputError(Where(key), fmt::format("{} is \"{}\"", key, s.address), kAddressForm);
+    RequireTokenText(Where(table + ".token"), s.token);
   }
 
   void CheckAxis(const MachineAxis& axis, const AxisLimits& limits) const {

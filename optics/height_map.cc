@@ -13,6 +13,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "optics/exr_header.h"
+
 namespace twinbench::optics {
 namespace {
 
@@ -44,6 +46,7 @@ double PixelPitch_m(const Imf::Header& header) {
 }
 
 HeightMap Read(const std::string& path) {
+  RequirePlausibleExr(path);
   Imf::InputFile file(path.c_str());
   if (!file.header().channels().findChannel("Y")) throw std::runtime_error("no channel Y (height)");
   const Imath::Box2i window = file.header().dataWindow();

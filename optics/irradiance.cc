@@ -19,6 +19,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "optics/exr_header.h"
+
 namespace twinbench::optics {
 namespace {
 
@@ -191,6 +193,7 @@ void WriteIrradianceMaps(const std::string& path, const std::vector<IrradianceMa
 
 std::vector<IrradianceMap> ReadIrradianceMaps(const std::string& path) {
   try {
+    RequirePlausibleExr(path);
     Imf::MultiPartInputFile file(path.c_str());
     std::vector<IrradianceMap> maps;
     for (int i = 0; i < file.parts(); ++i) maps.push_back(ReadPart(file, i));

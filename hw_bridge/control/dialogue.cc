@@ -40,6 +40,7 @@ void Dialogue::Open(const std::string& device, Duration patience) {
   if (link_) return;
   Connect(device, patience);
   Identify(device, patience);
+  for (const std::string& introduction : introductions_) Introduce(device, introduction, patience);
   ++openings_;
 }
 
@@ -58,6 +59,13 @@ void Dialogue::Identify(const std::string& device, Duration patience) {
   if (IsSerial()) link_->ReadAway(kQuiet, patience);  // the answer may have been that to an older query
   identity_ = answer;
   identity_known_ = true;
+}
+
+void Dialogue::Introduce(const std::string& device, const std::string& introduction, Duration patience) {
+  Send(device, introduction + "\n", patience);
+  const std::string answer = NextLine(device, patience);
+  if (!answer.starts_with("0,"))
+    Fail(FaultKind::kRefused, device, fmt::format("token or watchdog of the bench file are refused: {}", answer));
 }
 
 /// The first line; on a serial line the first that is the identity, or else the last.

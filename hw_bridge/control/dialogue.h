@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hw_bridge/control/line_link.h"
 
@@ -17,6 +18,8 @@ class Dialogue {
   /// @param identity_query  "*IDN?", "VE?".
   /// @param identity        What its answer must begin with.
   Dialogue(Address address, std::string identity_query, std::string identity);
+  /// Said to whoever has been identified, after every opening: commands, each with a query of its error that must be answered by "0,...".
+  void IntroduceBy(std::vector<std::string> introductions) { introductions_ = std::move(introductions); }
 
   /// Opens the connection unless it is open.
   /// @param device  Whose call it is, for messages.
@@ -39,6 +42,7 @@ class Dialogue {
  private:
   void Connect(const std::string& device, Duration patience);
   void Identify(const std::string& device, Duration patience);
+  void Introduce(const std::string& device, const std::string& introduction, Duration patience);
   std::string AwaitIdentity(const std::string& device, Duration patience);
   void Send(const std::string& device, const std::string& text, Duration patience);
   [[noreturn]] void Fail(FaultKind kind, const std::string& device, const std::string& why);
@@ -49,6 +53,7 @@ class Dialogue {
   std::string identity_query_;
   std::string identity_;         // as much as is known of it
   bool identity_known_ = false;  // all of it
+  std::vector<std::string> introductions_;
   std::unique_ptr<LineLink> link_;
   int openings_ = 0;
 };

@@ -27,6 +27,13 @@ void TellEsp(DeviceLine& line, const std::string& command) {
             fmt::format("\"{}\" was refused: {}", command, answer));
 }
 
+std::vector<std::string> EspIntroductions(const std::string& token, const std::string& watchdog) {
+  std::vector<std::string> said;
+  if (!token.empty()) said.push_back("XK" + token + "\n" + kEspErrorQuery);
+  if (!watchdog.empty()) said.push_back(watchdog + "\n" + kEspErrorQuery);
+  return said;
+}
+
 bool EspKnows(DeviceLine& line, const std::string& query) {
   const std::string answer = line.Ask(query + "\n" + kEspIdentity);
   if (answer == line.identity()) {

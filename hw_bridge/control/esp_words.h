@@ -11,6 +11,10 @@ inline constexpr const char* kEspIdentity = "VE?";
 /// @throws DeviceFault kLimit for a limit of an axis, kRefused for another error; what DeviceLine throws.
 void TellEsp(DeviceLine& line, const std::string& command);
 
+/// Commands with the query of their errors, for Dialogue::IntroduceBy: the token of a served twin, and a watchdog as the bench file words it.
+/// @param token, watchdog  Empty: none.
+std::vector<std::string> EspIntroductions(const std::string& token, const std::string& watchdog);
+
 /// Whether the controller knows a query: one that it does not know is not answered, so what comes first then is the
 /// answer to the next.
 bool EspKnows(DeviceLine& line, const std::string& query);

@@ -24,6 +24,13 @@ void TellScpi(DeviceLine& line, const std::string& command, Duration beyond) {
             fmt::format("\"{}\" was refused: {}", command, answer));
 }
 
+std::vector<std::string> ScpiIntroductions(const std::string& token, const std::string& watchdog) {
+  std::vector<std::string> said;
+  if (!token.empty()) said.push_back("SYST:TOK \"" + token + "\"\n" + kScpiErrorQuery);
+  if (!watchdog.empty()) said.push_back(watchdog + "\n" + kScpiErrorQuery);
+  return said;
+}
+
 std::optional<double> ParseScpiNumber(const std::string& text, double to_SI) {
   if (ParseNumber(text) == kScpiNotANumber) return kNaN;
   return ParseInUnit(text, to_SI);

@@ -14,6 +14,10 @@ inline constexpr const char* kScpiIdentity = "*IDN?";
 /// @throws DeviceFault kLimit for -222, kRefused for another error; what DeviceLine throws.
 void TellScpi(DeviceLine& line, const std::string& command, Duration beyond = {});
 
+/// Commands with the query of their errors, for Dialogue::IntroduceBy: the token of a served twin, and a watchdog as the bench file words it.
+/// @param token, watchdog  Empty: none.
+std::vector<std::string> ScpiIntroductions(const std::string& token, const std::string& watchdog);
+
 /// The number in `text` times `to_SI`; NaN for 9.91E37, which is SCPI's "not a number".
 /// @return nothing if there is anything else in it.
 std::optional<double> ParseScpiNumber(const std::string& text, double to_SI);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <thread>
 
 #include "hw_bridge/control/scpi.h"
@@ -9,6 +10,7 @@
 namespace twinbench::hw {
 namespace {
 
+constexpr std::string_view kHeldByAnother = "-221,";  // SCPI's settings conflict
 constexpr int kTries = 20;
 constexpr auto kBetweenTries = std::chrono::milliseconds(100);
 
@@ -27,7 +29,8 @@ void ScpiClock::TakeHold() const {
     try {
       return TellScpi(line_, "CLOC:HOLD ON");
     } catch (const DeviceFault& fault) {
-      if (fault.kind() != FaultKind::kRefused || left <= 1) throw;
+      const bool another_has_it = std::string_view(fault.what()).find(kHeldByAnother) != std::string_view::npos;
+      if (!another_has_it || left <= 1) throw;
       std::this_thread::sleep_for(kBetweenTries);
     }
   }

@@ -4,6 +4,7 @@
 
 #include "hw_bridge/serve/words.h"
 #include "twin/core/errors.h"
+#include "twin/core/secret_token.h"
 
 namespace twinbench::hw {
 namespace {
@@ -12,9 +13,27 @@ constexpr auto kLate = std::chrono::seconds(3);
 
 }  // namespace
 
+CommandConversation::~CommandConversation() {
+  served_.pace().Leave(this);
+  if (!served_.watchdog.Leave(this)) return;
+  try {
+    served_.StopIfMoving();
+  } catch (const BenchError&) {  // whoever looks next is told
+  }
+}
+
+void CommandConversation::BeMissed(double patience_s) {
+  served_.watchdog.Arm(this, std::chrono::duration_cast<WallClock::duration>(std::chrono::duration<double>(patience_s)));
+}
+
+double CommandConversation::Patience_s() const {
+  return std::chrono::duration<double>(served_.watchdog.PatienceOf(this)).count();
+}
+
 Step CommandConversation::Next(InputBuffer& input) {
   if (state_ == State::kIdle) return Begin(input);
   if (state_ == State::kRunning) {
+    served_.watchdog.Hear(this);
     RunCommands();
     if (poll_) return Step::Wait(kPollEvery);
     Prepare();
@@ -61,6 +80,11 @@ void CommandConversation::RunCommands() {
 void CommandConversation::Take(Outcome outcome) {
   if (!outcome.answer.empty()) answers_.push_back(std::move(outcome.answer));
   poll_ = std::move(outcome.poll);
+}
+
+bool CommandConversation::Show(std::string_view token) {
+  trusted_ = IsToken(token, served_.token);
+  return MayChange();
 }
 
 void CommandConversation::Asks(const std::string& device) {

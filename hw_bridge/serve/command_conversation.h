@@ -20,9 +20,10 @@ struct Outcome {
 class CommandConversation : public Conversation {
  public:
   static constexpr std::size_t kLongestLine = 4096;
+  static constexpr double kLongestPatience_s = 3600.0;  // of a watchdog
 
   explicit CommandConversation(Served& served) : served_(served) {}
-  ~CommandConversation() override { served_.pace().Leave(this); }
+  ~CommandConversation() override;
   Step Next(InputBuffer& input) override;
 
  protected:
@@ -32,6 +33,13 @@ class CommandConversation : public Conversation {
   virtual std::string Join(const std::vector<std::string>& answers) const = 0;
   virtual std::string LineTooLong() = 0;
   Served& served() { return served_; }
+  /// A client shows its token. @return whether it is the one.
+  bool Show(std::string_view token);
+  /// Whether this client may do more than look and stop.
+  bool MayChange() const { return trusted_ || served_.token.empty(); }
+  /// From here on whatever moves is stopped when this client goes away or falls silent. @param patience_s  0: no more.
+  void BeMissed(double patience_s);
+  double Patience_s() const;
   /// Faults of a device strike the line in which a query of it stands.
   void Asks(const std::string& device);
 
@@ -44,6 +52,7 @@ class CommandConversation : public Conversation {
   Step Reply();
 
   Served& served_;
+  bool trusted_ = false;
   State state_ = State::kIdle;
   std::deque<std::string> commands_;
   std::vector<std::string> answers_;

@@ -5,6 +5,7 @@
 
 #include "hw_bridge/serve/esp_commands.h"
 #include "hw_bridge/serve/words.h"
+#include "twin/core/number_text.h"
 
 namespace twinbench::hw {
 namespace {
@@ -41,6 +42,13 @@ std::optional<EspCommand> ParseEspCommand(const std::string& text) {
   return command;
 }
 
+double EspPatience_s(const std::string& value) {
+  const auto patience_s = ParseNumber(value);
+  if (!patience_s || !(*patience_s >= 0.0 && *patience_s <= CommandConversation::kLongestPatience_s))
+    throw EspError{kEspOutOfRange};
+  return *patience_s;
+}
+
 void EspConversation::Report(int number) {
   if (errors_.size() < kMostErrors) errors_.push_back(number);
 }
@@ -57,6 +65,7 @@ Outcome EspConversation::Execute(const std::string& text) {
   try {
     const EspEntry* entry = command ? Find(*command) : nullptr;
     if (!entry) throw EspError{kEspUnknownCommand};
+    if (!IsEspOpenToAll(command->name, command->query) && !MayChange()) throw EspError{kEspNoToken};
     if (command->axis == 0 && entry->axis == EspAxis::kNeeded) throw EspError{kEspAxisMissing};
     if (command->axis > 2) throw EspError{kEspAxisOutOfRange};
     if (entry->value && command->value.empty()) throw EspError{kEspParameterMissing};

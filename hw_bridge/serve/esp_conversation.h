@@ -20,6 +20,9 @@ struct EspCommand {
 ///         IEEE 488.2.
 std::optional<EspCommand> ParseEspCommand(const std::string& text);
 
+/// What XW takes: seconds from 0 to an hour. @throws EspError for anything else.
+double EspPatience_s(const std::string& value);
+
 /// Newport ESP300/301. Axis 1 is the target, 2 the reference; degrees. Its commands are a table in esp_commands.cc.
 ///
 /// Errors: numbers of the manual, those of an axis are axis * 100 + code. The table of errors is as in PyMeasure's
@@ -28,6 +31,8 @@ class EspConversation : public CommandConversation {
  public:
   explicit EspConversation(ServedBench& served) : CommandConversation(served), served_(served) {}
 
+  using CommandConversation::BeMissed;
+  using CommandConversation::Show;
   /// Adds to the error buffer; it keeps the oldest ten, like the controller.
   void Report(int number);
   int NextError();  // 0: none

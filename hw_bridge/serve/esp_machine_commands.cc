@@ -206,6 +206,16 @@ Outcome AllDone(const EspMachineCall& call) {
   return {"", call.served.AtRest("1")};
 }
 
+Outcome ShowMachineToken(const EspMachineCall& call) {
+  if (!call.client.Show(call.command.value)) throw EspError{kEspNoToken};
+  return {};
+}
+
+Outcome ArmMachineWatchdog(const EspMachineCall& call) {
+  call.client.BeMissed(EspPatience_s(call.command.value));
+  return {};
+}
+
 // clang-format off
 constexpr EspMachineEntry kEspMachineCommands[] = {
     {"HN", false, EspPart::kGroup, MakeGroup},
@@ -229,6 +239,8 @@ constexpr EspMachineEntry kEspMachineCommands[] = {
     {"SR", false, EspPart::kAxis, [](const EspMachineCall& call) { return SetSoftLimit(call, &AxisLimits::upper); }},
     {"SR", true, EspPart::kAxis, [](const EspMachineCall& call) { return SoftLimit(call, &AxisLimits::upper); }},
     {"ID", true, EspPart::kAxis, AxisName},
+    {kEspShowToken, false, EspPart::kController, ShowMachineToken},
+    {kEspWatchdog, false, EspPart::kController, ArmMachineWatchdog},
     {"OR", false, EspPart::kController, HomeMachine},
     {"ST", false, EspPart::kController, StopMachine},
     {"AB", false, EspPart::kController, StopMachine},

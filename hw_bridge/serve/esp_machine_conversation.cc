@@ -45,6 +45,7 @@ Outcome EspMachineConversation::Execute(const std::string& text) {
   try {
     const EspMachineEntry* entry = command ? FindEntry(*command) : nullptr;
     if (!entry) throw EspError{kEspUnknownCommand};
+    if (!IsEspOpenToAll(command->name, command->query) && !MayChange()) throw EspError{kEspNoToken};
     const std::size_t axis = RequirePart(*command, entry->part, served_.machine.Axes().size());
     served_.paced.CatchUp();
     served_.machine.StrikeRestart();

@@ -13,6 +13,8 @@ class EspMachineConversation : public CommandConversation {
  public:
   explicit EspMachineConversation(ServedMachine& served) : CommandConversation(served), served_(served) {}
 
+  using CommandConversation::BeMissed;
+  using CommandConversation::Show;
   void Report(int number);
   int NextError();  // 0: none
 

@@ -30,6 +30,12 @@ IiodAttribute Settled(const std::string& name, double value) {
           [value](const std::string& text) { return ParseNumber(text) == value; }};
 }
 
+/// An attribute that moves or spoils something. IIOD has no place for a token: where one is asked for it can only be read.
+IiodAttribute Changing(const ServedBench& served, IiodAttribute attribute) {
+  if (!served.token.empty()) attribute.write = nullptr;
+  return attribute;
+}
+
 IiodChannel Voltage(const ServedBench& served, int k) {
   const double lsb_V = served.adc.range_V / static_cast<double>(1 << (served.adc.bits - 1));
   IiodChannel channel{fmt::format("voltage{}", k), kChannelNames[k]};
@@ -52,8 +58,8 @@ IiodDevice Adc(ServedBench& served) {
                     Settled("range_V", served.adc.range_V),
                     Settled("sampling_frequency", ScanRate_Hz(served.adc)),
                     Constant("serial", served.serial)};
-  adc.debug = {{"fault", [&served] { return served.faults.Waiting(); },
-                [&served](const std::string& text) { return served.faults.Add("adc", text); }}};
+  adc.debug = {Changing(served, {"fault", [&served] { return served.faults.Waiting(); },
+                                 [&served](const std::string& text) { return served.faults.Add("adc", text); }})};
   return adc;
 }
 
@@ -73,8 +79,9 @@ bool Move(ServedBench& served, ShownTable& table, const std::string& text) {
 IiodDevice Table(ServedBench& served, ShownTable& table, const std::string& id) {
   IiodDevice device{id, "rotary-" + table.name()};
   const auto state = [&served, &table] { return StateOf(served, table); };
-  device.attributes = {{"angle_deg", [state] { return Print(state().encoder_rad, units::deg); },
-                        [&served, &table](const std::string& text) { return Move(served, table, text); }},
+  device.attributes = {
+      Changing(served, {"angle_deg", [state] { return Print(state().encoder_rad, units::deg); },
+                        [&served, &table](const std::string& text) { return Move(served, table, text); }}),
                        {"commanded_deg", [state] { return Print(state().commanded_rad, units::deg); }},
                        {"in_position", [state] { return std::string(state().in_position ? "1" : "0"); }},
                        {"moving", [state] { return std::string(state().moving ? "1" : "0"); }}};

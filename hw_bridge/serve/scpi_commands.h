@@ -30,6 +30,9 @@ std::span<const ScpiCommand> ScpiInstrumentCommands();
 std::span<const ScpiCommand> ScpiMachineCommands();
 std::span<const ScpiCommand> ScpiTimeCommands();
 
+/// Whoever has no token may ask, keep his own status and stop everything; all else changes the bench.
+bool IsOpenToAll(const ScpiCommand& command);
+
 struct ScpiFound {
   const ScpiCommand* command = nullptr;
   int number = 0;

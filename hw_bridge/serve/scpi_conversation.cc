@@ -42,6 +42,7 @@ Outcome ScpiConversation::Run(const ScpiUnit& unit) {
     found = FindScpiCommand(served(), header, unit.query);
   }
   if (!found.command) throw ScpiError{-113, ""};
+  if (!IsOpenToAll(*found.command) && !MayChange()) throw ScpiError{-203, "SYST:TOK first"};
   if (!header.front().starts_with('*')) path_.assign(header.begin(), header.end() - 1);
   const std::size_t needed = found.command->parameters;
   if (unit.parameters.size() < needed) throw ScpiError{-109, ""};

@@ -9,8 +9,12 @@ namespace twinbench::hw {
 class ScpiConversation : public CommandConversation {
  public:
   using CommandConversation::Asks;
+  using CommandConversation::BeMissed;
   using CommandConversation::CommandConversation;
+  using CommandConversation::MayChange;
+  using CommandConversation::Patience_s;
   using CommandConversation::served;
+  using CommandConversation::Show;
 
   ScpiErrorQueue& errors() { return errors_; }
   /// Standard event status register and its masks, as in IEEE 488.2.

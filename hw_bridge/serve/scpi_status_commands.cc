@@ -74,6 +74,31 @@ Outcome ScpiVersion(const ScpiCall&) {
   return {"1999.0", nullptr};
 }
 
+std::string_view WithoutQuotes(std::string_view text) {
+  const bool quoted = text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+Outcome ShowToken(const ScpiCall& call) {
+  if (!call.client.Show(WithoutQuotes(call.parameters[0]))) throw ScpiError{-203, "this is not the token"};
+  return {};
+}
+
+Outcome MayChange(const ScpiCall& call) {
+  return {call.client.MayChange() ? "1" : "0", nullptr};
+}
+
+Outcome ArmWatchdog(const ScpiCall& call) {
+  const double patience_s = ScpiNumber(call.parameters[0], 1.0);
+  if (!(patience_s >= 0.0 && patience_s <= CommandConversation::kLongestPatience_s)) throw ScpiError{-222, ""};
+  call.client.BeMissed(patience_s);
+  return {};
+}
+
+Outcome WatchdogPatience(const ScpiCall& call) {
+  return {PrintScpi(call.client.Patience_s(), 1.0), nullptr};
+}
+
 // clang-format off
 constexpr ScpiCommand kStatusCommands[] = {
     {"*IDN", true, 0, 0, Identify},
@@ -92,6 +117,10 @@ constexpr ScpiCommand kStatusCommands[] = {
     {"SYSTem:ERRor", true, 0, 0, NextError},
     {"SYSTem:ERRor:NEXT", true, 0, 0, NextError},
     {"SYSTem:VERSion", true, 0, 0, ScpiVersion},
+    {"SYSTem:WATChdog", false, 1, 0, ArmWatchdog},
+    {"SYSTem:WATChdog", true, 0, 0, WatchdogPatience},
+    {"SYSTem:TOKen", false, 1, 0, ShowToken},
+    {"SYSTem:TOKen", true, 0, 0, MayChange},
     {"ABORt", false, 0, 0, StopScpiDevices},
 };
 // clang-format on

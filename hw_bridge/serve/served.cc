@@ -27,6 +27,10 @@ void Served::BeRun(std::optional<int> run, Simulation& simulation) const {
   if (run) throw BenchError("bench: its runs have no numbers");
 }
 
+void Served::StopIfMoving() {
+  if (Moves()) StopAll();
+}
+
 Poll Served::AtRest(const std::string& answer) {
   return [this, answer]() -> std::optional<std::string> {
     if (!Moves()) return answer;

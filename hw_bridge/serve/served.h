@@ -7,6 +7,7 @@
 
 #include "hw_bridge/serve/faults.h"
 #include "hw_bridge/serve/paced_clock.h"
+#include "hw_bridge/serve/watchdog.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::hw {
@@ -32,12 +33,17 @@ class Served {
   /// @throws BenchError on a bench that cannot.
   virtual void Restart(std::optional<int> run) = 0;
 
+  /// Stops everything if something moves.
+  void StopIfMoving();
+
   /// `answer` when nothing moves.
   Poll AtRest(const std::string& answer);
 
   std::string name;
   std::string serial;  // made from bench, scenario and seed
+  std::string token;   // whoever moves or spoils anything must have shown it; empty: anybody may
   Faults faults;
+  Watchdog watchdog;
 
  protected:
   /// @throws BenchError if it is asked for a run that the simulation cannot be.

@@ -14,6 +14,8 @@
 namespace twinbench::hw {
 namespace {
 
+constexpr auto kGuardEvery = std::chrono::milliseconds(100);
+
 const Scenario& RequireCounts(const Scenario& scenario) {
   if (scenario.noise_free) {
     throw InputError("noise_free", "a bench without quantisation has no counts to serve", "noise_free = false");
@@ -47,15 +49,29 @@ struct Server::Impl {
     Listen<EspConversation>(served);
   }
   void Show(MachineBench bench, const std::vector<ReadingColumn>& shown, const Scenario& scenario) {
-    Listen<EspMachineConversation>(
-        *(machine = std::make_unique<ServedMachine>(bench, shown, scenario, options.speed)));
+    machine = std::make_unique<ServedMachine>(bench, shown, scenario, options.speed);
+    Listen<EspMachineConversation>(*machine);
   }
 
   template <class Esp, class Kind>
   void Listen(Kind& served) {
+    served.token = options.token;
+    Guard(served);
     scpi.emplace(Maker<ScpiConversation>(served), options.scpi_port, *this);
     esp.emplace(Maker<Esp>(served), options.esp_port, *this);
     if (options.pty) pty.emplace(io, patience, Maker<Esp>(served));
+  }
+  /// Looks for those who ought to be there.
+  void Guard(Served& served) {
+    guard.expires_after(kGuardEvery);
+    guard.async_wait([this, &served](const asio::error_code& stopped) {
+      if (stopped) return;
+      try {
+        if (served.watchdog.IsMissingThem()) served.StopIfMoving();
+      } catch (const BenchError&) {  // whoever looks next is told
+      }
+      Guard(served);
+    });
   }
   template <class Speaks, class Kind>
   static MakeConversation Maker(Kind& served) {
@@ -89,6 +105,7 @@ struct Server::Impl {
   std::unique_ptr<ServedBench> rotary;  // one of the two
   std::unique_ptr<ServedMachine> machine;
   asio::io_context io{1};
+  asio::steady_timer guard{io};
   std::optional<Port> iiod, scpi, esp;
   std::optional<PseudoTerminal> pty;
   asio::steady_timer looks{io};

@@ -17,6 +17,7 @@ namespace twinbench::hw {
 struct ServeOptions {
   std::string bind = "127.0.0.1";
   int iiod_port = 30431, scpi_port = 5025, esp_port = 5026;  // 0: any that is free
+  std::string token;                                         // clients must show it to change anything; empty: none
   bool pty = true;                                           // also ESP on a pseudo-terminal
   double speed = 1.0;                               // bench seconds a real second; infinity: as fast as it goes
   int max_connections = 32;                         // of one protocol

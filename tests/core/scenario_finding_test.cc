@@ -33,7 +33,7 @@ TEST(ScenarioFinding, TakesUncertaintiesToSIAndKeepsTheRest) {
 }
 
 TEST(ScenarioFinding, IsNotNeeded) {
-  const EffectFinding& finding =
+  const EffectFinding finding =
       ParseFinding("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n").effects.at(0).finding;
   EXPECT_TRUE(finding.u.empty());
   EXPECT_TRUE(std::isnan(finding.probability));

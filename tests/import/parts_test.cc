@@ -4,6 +4,7 @@
 
 #include "tests/core/input_error.h"
 #include "twin/core/units.h"
+#include "twin/import/array.h"
 #include "twin/import/blocks.h"
 #include "twin/import/clock.h"
 #include "twin/import/course.h"
@@ -81,6 +82,16 @@ std::vector<double> Evaluate(const std::string& text, const std::vector<double>&
     EXPECT_THAT(name, testing::AnyOf("x", "a long name [V]", "Pixel scale"));
     return {name == "Pixel scale" ? std::vector{2.0} : x, nullptr};
   });
+}
+
+TEST(Array, NeedsABracketOnEitherSide) {
+  for (const char* text : {"const] = { 1, 2 }", "= { 1, 2 }", "] = { 1, 2 }"}) {
+    Recording recording;
+    EXPECT_THROW(ReadArray(text, "", recording), InputError) << text;
+  }
+  Recording recording;
+  ReadArray("const int table[2] = { 1, 2 };", "", recording);
+  EXPECT_EQ(recording.tracks.at(0).name, "table");
 }
 
 TEST(Expression, TakesColumnsThroughArithmetic) {

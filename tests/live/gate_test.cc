@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/live/token.h"
+#include "twin/core/secret_token.h"
 
 namespace twinbench::live {
 namespace {

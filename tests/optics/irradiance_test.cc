@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 namespace twinbench::optics {
 namespace {
@@ -87,6 +88,31 @@ TEST(IrradianceMaps, NameTheFileThatIsCutShort) {
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   EXPECT_THAT(MessageOfReading(path), HasSubstr(path));
   std::filesystem::remove(path);
+}
+
+/// The file of a map with the bytes behind `before` replaced.
+std::string WithHeader(const std::string& before, std::size_t behind, const std::string& bytes) {
+  const std::string path = TemporaryFile("header.exr");
+  WriteIrradianceMaps(path, {SpotMap("psd", 0, 0)});
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  std::string file = text.str();
+  file.replace(file.find(before) + before.size() + behind, bytes.size(), bytes);
+  std::ofstream(path, std::ios::binary) << file;
+  const std::string message = MessageOfReading(path);
+  std::filesystem::remove(path);
+  return message;
+}
+
+TEST(IrradianceMaps, AreRefusedBeforeTheyAreGivenMemoryThatTheFileCannotFill) {
+  const std::string window("dataWindow\0box2i\0", 17), units("bench:units\0string\0", 19);
+  // 16000 x 16000 and -2^31 to 2^31 - 1, behind the attribute's own size of four bytes.
+  EXPECT_THAT(WithHeader(window, 12, std::string("\x7f\x3e\0\0\x7f\x3e\0\0", 8)),
+              HasSubstr("16000 x 16000 pixels"));
+  EXPECT_THAT(WithHeader(window, 4, std::string("\0\0\0\x80\0\0\0\x80\xff\xff\xff\x7f\xff\xff\xff\x7f", 16)),
+              HasSubstr("4294967296 x 4294967296 pixels"));
+  EXPECT_THAT(WithHeader(units, 0, std::string("\0\0\0\x30", 4)),
+              HasSubstr("its attribute bench:units is longer than the file"));
 }
 
 TEST(IrradianceMaps, RefuseNegativeLight) {

@@ -65,6 +65,14 @@ TEST(Plausible, RefusesPositionsThatAreAllTheSame) {
   EXPECT_THAT(Lines(readings), HasSubstr("cannot be: 198 of 200 readings have the position of another one"));
 }
 
+TEST(Plausible, RefusesAnAngleThatNothingTurnsToInTheTime) {
+  std::vector<Reading> readings = Readings();
+  readings[150].reference_rad = 1e17 * units::deg;
+  EXPECT_THAT(Lines(readings), HasSubstr("cannot be: reference_deg is 2.78e+14 turns from where it was 1 s before, in reading 150"));
+  for (Reading& r : readings) r.reference_rad = r.reading * 1000.0 * units::turn;  // 60 000 turns a minute
+  EXPECT_THAT(Lines(readings), testing::Not(HasSubstr("turns from where it was")));
+}
+
 TEST(Plausible, DoubtsDirectionsThatTheAnglesContradict) {
   std::vector<Reading> readings = Readings();
   for (Reading& r : readings) r.direction = -r.direction;

@@ -97,6 +97,17 @@ TEST(Watch, OnALimitSwitchOnlyTheWayBackIsOpen) {
   EXPECT_EQ(FaultOf(bench, -10.0), "none");
 }
 
+TEST(Watch, TakesNoMoveForDoneThatEndsOnALimitSwitch) {
+  for (const double to_deg : {0.0, 10.0, -10.0}) {  // without a way, the switch closes as it begins
+    ScriptedBench bench;
+    bench.target.while_moving = [&](ScriptedTable& table) { table.state.limit = to_deg < 0.0 ? -1 : 1; };
+    Options options;
+    options.target.in_position_rad = 1.0 * units::arcsec;
+    EXPECT_EQ(FaultOf(bench, to_deg, options), "limit of target") << to_deg;
+    EXPECT_EQ(FaultOf(bench, to_deg), "limit of target") << to_deg << ", without a tolerance";
+  }
+}
+
 TEST(Watch, NoticesALimitSwitchThatIsHitOnTheWay) {
   ScriptedBench bench;
   bench.target.settles_after_s = 100;

@@ -71,6 +71,36 @@ TEST_F(Attack, AnOutputIsNoInputAndNoRecord) {
   EXPECT_THAT(Refusal({"export", "run", "--readings", "run"}), HasSubstr("this is a folder"));
 }
 
+TEST_F(Attack, WhatIsThereStaysUnlessForceIsSaid) {
+  MakeRun("run");
+  Write("notes.txt", "three weeks of work");
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"export", "run", "--readings", "notes.txt"},
+           {"new", "rotary_4dof", "-o", "notes.txt"},
+           {"plan", "small.toml", "-o", "notes.txt"},
+           {"certificate", "--template", "-o", "notes.txt"},
+           {"serve", "small.toml", "--write-bench", "notes.txt"}})
+    EXPECT_THAT(Refusal(command), HasSubstr("notes.txt: the file is there already; expected a name that is not taken, or --force"))
+        << command.front();
+  Succeed({"export", "run", "--readings", "notes.txt", "--force"});
+  EXPECT_EQ(Read("notes.txt"), ReadingsOf("run"));
+  Write("place", "");  // made by somebody who wanted a name of his own
+  Succeed({"new", "rotary_4dof", "-o", "place"});
+}
+
+TEST_F(Attack, OnlyARunOfTheTwinIsMadeAgain) {
+  MakeRun("run");
+  const std::string before = ReadingsOf("run");
+  EXPECT_THAT(Refusal({"run", "small.toml", "-o", "run", "--seed", "6"}), HasSubstr("--force to make the twin's run again"));
+  Succeed({"run", "small.toml", "-o", "run", "--seed", "6", "--force"});
+  EXPECT_NE(ReadingsOf("run"), before);
+  Succeed({"export", "run", "--readings", "readings.csv"});
+  Succeed({"import", "readings.csv", "--scenario", "small.toml", "-o", "imported"});
+  EXPECT_THAT(Refusal({"run", "small.toml", "-o", "imported", "--force"}), HasSubstr("cannot be made again; --force is not for it"));
+  Write("scenario.toml", kSmall);
+  EXPECT_THAT(Refusal({"run", "scenario.toml", "-o", ".", "--force"}), HasSubstr("reads this file and would overwrite it"));
+}
+
 TEST_F(Attack, ADiskThatIsFullIsNoSuccess) {
   MakeRun("run");
   EXPECT_EQ(ExitOfShell("export run > /dev/full"), 1);

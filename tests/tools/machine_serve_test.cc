@@ -40,7 +40,7 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
     std::filesystem::remove(At("bench.toml"));
     auto server = std::make_unique<Process>(
         At(""),
-        std::vector<std::string>{"serve", "small.toml", "--scpi-port", "0", "--esp-port", "0", "--write-bench",
+        std::vector<std::string>{"serve", "small.toml", "--scpi-port", "0", "--esp-port", "0", "--token", "--write-bench",
                                  "bench.toml", "--speed", speed, "--tables", machine},
         "server");
     for (int k = 0; k < 500 && !Exists("bench.toml"); ++k) std::this_thread::sleep_for(milliseconds(20));

@@ -45,7 +45,9 @@ class Served : public Program {
 
 TEST_F(Served, MeasuresTheReadingsThatRunMakesBitForBit) {
   for (const char* tables : {"scpi", "esp", "pty"}) {
-    const auto server = Serve({"--speed", "max", "--tables", tables});
+    const bool asks_token = std::string(tables) != "scpi";
+    const auto server = Serve({"--speed", "max", "--tables", tables, asks_token ? "--token" : "--no-token"});
+    EXPECT_EQ(Read("bench.toml").find("token = ") != std::string::npos, asks_token);
     Succeed(Measure(tables));
     EXPECT_EQ(ReadingsOf(tables), readings_) << tables;
     EXPECT_EQ(Read(std::string(tables) + "/results.json"), Read("run/results.json"));

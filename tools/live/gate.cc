@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "tools/live/token.h"
+#include "twin/core/secret_token.h"
 
 namespace twinbench::live {
 namespace {

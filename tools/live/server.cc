@@ -23,7 +23,7 @@
 
 #include "tools/live/feed.h"
 #include "tools/live/gate.h"
-#include "tools/live/token.h"
+#include "twin/core/secret_token.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::live {

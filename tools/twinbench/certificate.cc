@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/xmllint.h"
 #include "twin/benches/certified_parts.h"
 #include "twin/core/errors.h"
@@ -24,7 +24,7 @@ using namespace certificate;
 
 struct CertificateOptions {
   std::string run, laboratory, output = "-", schema, json;
-  bool wants_template = false;
+  bool wants_template = false, force = false;
 };
 
 std::string WholeFile(const std::string& path) {
@@ -111,14 +111,18 @@ nlohmann::json ToldJson(const CertificateContent& content, const std::string& ou
 }
 
 void MakeCertificate(const CertificateOptions& options) {
-  if (options.wants_template) return Write(options.output, LaboratoryTemplate(), "fill in what is empty, then --with " + options.output);
+  if (options.wants_template) {
+    RequireFree(options.output, {}, options.force);
+    return Write(options.output, LaboratoryTemplate(), "fill in what is empty, then --with " + options.output);
+  }
   if (options.run.empty()) throw InputError("certificate", "there is no run", "the folder of a run, or --template");
   if (options.laboratory.empty())
     throw InputError("certificate", "nothing is known of the laboratory", "--with laboratory.toml; --template writes one to fill in");
   if (options.json == "-" && options.output == "-")
     throw InputError("certificate", "certificate and --json both go to stdout", "-o FILE, or --json FILE");
-  RequireOutput(options.json, {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()});
-  RequireOutput(options.output, {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()});
+  const std::vector<std::string> inputs = {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()};
+  RequireOutput(options.json, inputs);
+  RequireFree(options.output, inputs, options.force);
   const CertificateContent content = ContentOf(options);
   const std::string xml = CertificateXml(content);
   if (!options.schema.empty() && !SatisfiesSchema(xml, options.schema))
@@ -142,6 +146,7 @@ void AddCertificate(CLI::App& app) {
   command->add_option("--schema", options->schema, "folder with dcc.xsd and the schemas that it imports: validate with xmllint first, and write nothing if it fails");
   command->add_option("--json", options->json, "write what was certified and what was left out here, - for stdout");
   command->add_flag("--template", options->wants_template, "write the TOML file to fill in instead");
+  AddForce(*command, options->force);
   command->callback([options] { MakeCertificate(*options); });
 }
 

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/overwriting.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::tools {
@@ -12,10 +12,11 @@ namespace {
 struct ExportOptions {
   std::string folder;
   std::string readings = "-";
+  bool force = false;
 };
 
 void Export(const ExportOptions& options) {
-  RequireOutput(options.readings, {});
+  RequireFree(options.readings, {}, options.force);
   const auto record = RunRecord::Open(options.folder);
   const std::vector<Reading> readings = record->Readings();
   const std::string bench = record->provenance().bench;
@@ -31,6 +32,7 @@ void AddExport(CLI::App& app) {
   auto options = std::make_shared<ExportOptions>();
   command->add_option("run", options->folder, "folder of the run")->required();
   command->add_option("--readings", options->readings, "file to write, - for stdout")->capture_default_str();
+  AddForce(*command, options->force);
   command->callback([options] { Export(*options); });
 }
 

@@ -1,9 +1,7 @@
 #include <fmt/core.h>
 
-#include <filesystem>
-
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/overwriting.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
 #include "twin/core/scenario_explained.h"
@@ -13,17 +11,17 @@ namespace {
 
 struct NewOptions {
   std::string bench, file = "-";
+  bool force = false;
 };
 
 void MakeNew(const NewOptions& options) {
   if (!FindFormat(options.bench)) throw UnknownBench("new", options.bench);
+  RequireFree(options.file, {}, options.force);
   const std::string text = WriteExplained(options.bench);
   if (options.file == "-") {
     fmt::print("{}", text);
     return;
   }
-  if (std::filesystem::exists(options.file))
-    throw InputError(options.file, "the file is there already", "a name that is not taken");
   WriteFileAtOnce(options.file, text);
   fmt::print("{}: every key of {} with its default; twinbench check {} says whether it fits together\n", options.file,
              options.bench, options.file);
@@ -36,6 +34,7 @@ void AddNew(CLI::App& app) {
   auto options = std::make_shared<NewOptions>();
   command->add_option("bench", options->bench, "name of the bench, as `twinbench list` has it")->required();
   command->add_option("-o,--output", options->file, "file to write, - for stdout")->capture_default_str();
+  AddForce(*command, options->force);
   command->callback([options] { MakeNew(*options); });
 }
 

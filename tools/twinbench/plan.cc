@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/plan_advice.h"
 #include "tools/twinbench/planned_run.h"
@@ -21,6 +22,7 @@ namespace {
 struct PlanOptions : PlanWish {
   std::string scenario, json, next;
   std::vector<std::string> overrides;
+  bool force = false;
 };
 
 /// What is told of a scenario.
@@ -118,6 +120,13 @@ std::string FileOf(const std::string& output, std::size_t at, std::size_t count,
   return (path.parent_path() / name).string();
 }
 
+/// Before anything is written: every file of the programme.
+void RequireFreeNext(const PlanOptions& options, const std::vector<plan::NextRun>& runs) {
+  if (options.next.empty()) return;
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    RequireFree(FileOf(options.next, k, runs.size(), runs[k]), {options.scenario}, options.force);
+}
+
 /// Each run of several has a seed of its own: a run that is made twice is another draw of chance on the twin.
 std::vector<Scenario> ScenariosOf(const std::vector<plan::NextRun>& runs, const Scenario& scenario) {
   std::vector<Scenario> next;
@@ -153,10 +162,12 @@ std::string TextOf(const Planned& planned) {
 }
 
 void Plan(const PlanOptions& options) {
-  for (const std::string& output : {options.next, options.json}) RequireOutput(output, {options.scenario});
+  RequireFree(options.next, {options.scenario}, options.force);
+  RequireOutput(options.json, {options.scenario});
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const Planned planned = PlanOf(options, scenario);
   const std::vector<plan::NextRun> next = NextOf(options, planned);
+  RequireFreeNext(options, next);
   if (!options.next.empty()) WriteNext(options.next, next, scenario);
   if (!options.json.empty()) WriteJson(options.json, JsonOf(planned, next));
   if (options.json != "-") fmt::print("{}", TextOf(planned));
@@ -189,6 +200,7 @@ void AddPlan(CLI::App& app) {
   command->add_option("--json", options->json, "write the result here, - for stdout");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
+  AddForce(*command, options->force);
   command->callback([options] { Plan(*options); });
 }
 

@@ -2,7 +2,7 @@
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/reported.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/overwriting.h"
 #include "tools/web/bundle.h"
 #include "twin/core/errors.h"
 #include "twin/report/page/page_json.h"
@@ -11,8 +11,12 @@
 namespace twinbench::tools {
 namespace {
 
+/// Within the first lines of every page of ours: one takes the place of another.
+constexpr std::string_view kOwnPage = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'sha256-";
+
 struct ReportOptions {
   std::string source, score, output, pictures;
+  bool force = false;
 };
 
 /// One file a picture, into a folder that is made if it is not there.
@@ -26,7 +30,7 @@ void WritePictures(const report::Page& page, const std::string& folder) {
 
 void WritePage(const report::Page& page, const ReportOptions& options) {
   const std::string output = options.output.empty() ? UsualPagePath(options.source) : options.output;
-  RequireOutput(output, {options.source, options.score, RunFolder{options.source}.results()});
+  RequireFree(output, {options.source, options.score, RunFolder{options.source}.results()}, options.force, kOwnPage);
   const std::string html = report::PageHtml(page, web::PageMarkup());
   if (output == "-") {
     fmt::print("{}", html);
@@ -56,6 +60,7 @@ void AddReport(CLI::App& app) {
   command->add_option("--score", options->score, "what `score --json` has written; else score.json of the folder, if there");
   command->add_option("-o,--output", options->output, "write the page here, - for stdout; else report.html in the folder, or beside the file");
   command->add_option("--svg", options->pictures, "write every plot as an SVG picture into this folder; without -o no page is made");
+  AddForce(*command, options->force);
   command->callback([options] { MakeReport(*options); });
 }
 

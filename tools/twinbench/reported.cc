@@ -95,9 +95,7 @@ report::Page OfCampaign(const std::string& path) {
   return page;
 }
 
-}  // namespace
-
-report::Page PageOf(const std::string& source, const std::string& score) {
+report::Page PageOfWhatIsThere(const std::string& source, const std::string& score) {
   const RunFolder folder{source};
   const std::string investigation = source + "/investigation.json";
   if (fs::exists(investigation)) return report::InvestigationPage(SourceOf(source, {investigation}), ReadJson(investigation));
@@ -105,6 +103,16 @@ report::Page PageOf(const std::string& source, const std::string& score) {
   if (!fs::exists(source)) throw InputError(source, "does not exist", kExpected);
   if (fs::is_directory(source)) throw InputError(source, "there is no results.json", kExpected);
   return source.ends_with(".json") ? OfJson(source) : OfCampaign(source);
+}
+
+}  // namespace
+
+report::Page PageOf(const std::string& source, const std::string& score) {
+  try {
+    return PageOfWhatIsThere(source, score);
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(source, std::string("a result in it is not as it is written: ") + error.what(), kExpected);
+  }
 }
 
 std::string UsualPagePath(const std::string& source) {

@@ -6,6 +6,7 @@
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/live_page.h"
+#include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/twin_run.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
@@ -19,6 +20,7 @@ struct RunOptions {
   std::optional<std::string> seed;
   bool noise_free = false;
   bool images = false;
+  bool force = false;
   std::optional<int> web;  // port of the live page
   std::string fidelity;
   std::vector<std::string> errors;         // "target=T.csv"
@@ -62,6 +64,7 @@ Scenario ScenarioOf(const RunOptions& options) {
 void Run(const RunOptions& options, LivePage& page) {
   const Scenario scenario = ScenarioOf(options);
   const RunFolder folder{options.folder};
+  MakeWayForRun(folder, options.scenario, options.force);
   RunOnTwin(scenario, folder, options.images, page);
   if (EvaluateRun(scenario, folder.path)) fmt::print("compare with the truth: twinbench score {}\n", folder.path);
 }
@@ -87,6 +90,7 @@ void AddRun(CLI::App& app) {
                    "target=FILE.csv: corrections that table is commanded with")
       ->allow_extra_args(false);
   command->add_flag("--images", options->images, "write the irradiance on the PSDs as OpenEXR");
+  AddForce(*command, options->force);
   AddWebOption(*command, options->web);
   command->callback([options] {
     WithLivePage(options->web, "run", [&](LivePage& page) { Run(*options, page); });

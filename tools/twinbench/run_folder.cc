@@ -11,6 +11,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/core/run_record.h"
+#include "twin/report/page/modest_json.h"
 
 namespace twinbench::tools {
 
@@ -87,11 +88,9 @@ void WriteTables(const std::string& folder, const std::vector<report::ResultTabl
 nlohmann::json ReadJson(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw InputError(path, "cannot be opened", "a file of a twinbench run");
-  try {
-    return nlohmann::json::parse(in);
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(path, error.what(), "JSON as twinbench writes it");
-  }
+  std::ostringstream text;
+  text << in.rdbuf();
+  return report::ParseModestJson(text.str(), path);
 }
 
 RecordedRun LoadRecordedRun(const std::string& source, const std::string& scenario_path,

@@ -11,13 +11,14 @@
 #include "hw_bridge/serve/server.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/live_page.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/stop_signal.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/errors.h"
 #include "twin/core/number_text.h"
+#include "twin/core/secret_token.h"
 
 namespace twinbench::tools {
 namespace {
@@ -26,7 +27,7 @@ struct ServeArguments {
   std::string scenario, bench_file, tables = "scpi", speed = "1";
   std::vector<std::string> overrides;
   hw::ServeOptions serve;
-  bool no_pty = false;
+  bool no_pty = false, token = false, no_token = false, force = false;
   std::optional<int> web;  // port of the live page
 };
 
@@ -82,8 +83,9 @@ void ShowAxes(hw::Server& server, LivePage& page, const std::function<AxesSeen()
 /// Writes the bench file, says where the server is and serves. Who has read the file may already stop the server.
 void ServeShown(hw::Server& server, const ServeArguments& a, const std::string& bench_file) {
   ListenForStop();
-  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, bench_file);
-  fmt::print("{}", Told(server.Addresses()));
+  const std::string& token = a.serve.token;
+  if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, hw::WithGuards(bench_file, token));
+  fmt::print("{}{}", Told(server.Addresses()), token.empty() ? "" : "token " + token + "\n");
   std::fflush(stdout);
   ServeUntilStopped(server);
 }
@@ -126,22 +128,30 @@ void ServeMachine(const ServeArguments& a, const Scenario& scenario, LivePage& p
              a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields));
 }
 
-void WarnOfOthers(const std::string& bind) {
+void WarnOfOthers(const std::string& bind, bool asks_token) {
   if (hw::IsOfThisComputerOnly(bind)) return;
   fmt::print(stderr,
-             "twinbench: at {} whoever is on the network can move what is served and inject faults; nobody is asked who "
-             "he is. --bind 127.0.0.1 keeps it on this computer\n",
-             bind);
+             "twinbench: at {} whoever is on the network can {}; nothing is encrypted. --bind 127.0.0.1 keeps it on this "
+             "computer\n",
+             bind,
+             asks_token ? "read what is served, and whoever hears the token can move it"
+                        : "move what is served and inject faults; nobody is asked who he is");
+}
+
+/// Programs of this computer that know nothing of tokens are served as ever unless one is asked for; others are asked.
+bool AsksToken(const ServeArguments& a) {
+  return a.token || (!a.no_token && !hw::IsOfThisComputerOnly(a.serve.bind));
 }
 
 void Serve(ServeArguments a, LivePage& page) {
-  RequireOutput(a.bench_file, {a.scenario});
+  RequireFree(a.bench_file, {a.scenario}, a.force, hw::kServedBenchFile);
   const Scenario scenario = LoadScenario(a.scenario, a.overrides);
   if (!BenchOf(scenario).has_controllers)
     throw InputError(a.scenario, "the bench " + scenario.bench + " cannot be served",
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
   a.serve.speed = SpeedOf(a.speed);
-  WarnOfOthers(a.serve.bind);
+  if (AsksToken(a)) a.serve.token = NewToken();
+  WarnOfOthers(a.serve.bind, AsksToken(a));
   a.serve.pty = !a.no_pty;
   BenchOf(scenario).make_devices ? ServeMachine(a, scenario, page) : ServeRotary(a, scenario, page);
 }
@@ -163,10 +173,15 @@ void AddServe(CLI::App& app) {
   AddPort(*command, "--iiod-port", arguments->serve.iiod_port, "A/D converter, IIOD; 0: any free port");
   AddPort(*command, "--scpi-port", arguments->serve.scpi_port, "tables and instruments, SCPI");
   AddPort(*command, "--esp-port", arguments->serve.esp_port, "tables, Newport ESP");
+  auto* token = command->add_flag("--token", arguments->token,
+                                  "whoever moves or spoils anything must show the token that is printed and written into the bench file; "
+                                  "with --bind beyond this computer the default");
+  command->add_flag("--no-token", arguments->no_token, "everybody may move and spoil everything")->excludes(token);
   command->add_flag("--no-pty", arguments->no_pty, "no pseudo-terminal with ESP");
   command->add_option("--write-bench", arguments->bench_file, "write the bench file that drives what is served");
   command->add_option("--tables", arguments->tables, "what that bench file drives the tables by: scpi, esp or pty")
       ->check(CLI::IsMember({"scpi", "esp", "pty"}));
+  AddForce(*command, arguments->force);
   AddWebOption(*command, arguments->web);
   command->callback([arguments] {
     WithLivePage(arguments->web, "serve", [&](LivePage& page) { Serve(*arguments, page); });

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -74,7 +75,10 @@ Reading TakeReading(const SqliteStatement& row, const std::string& path) {
   for (double* value : {&r.measured_rad, &r.velocity_rad_s, &r.head_rad, &r.interferometer_rad})
     *value = take_real();
   const nlohmann::json extra = ObjectIn(extra_text), quantities = ObjectIn(row.Text(column++));
-  if (!phase || !status || extra.is_null() || quantities.is_null())
+  const auto is_text = [](const nlohmann::json& value) { return value.is_string(); };
+  const auto is_number = [](const nlohmann::json& value) { return value.is_number(); };
+  if (!phase || !status || extra.is_null() || quantities.is_null() || !std::ranges::all_of(extra, is_text) ||
+      !std::ranges::all_of(quantities, is_number))
     throw InputError(path, fmt::format("reading {} of the record is damaged", r.reading), "names and JSON of ours");
   r.phase = *phase;
   r.status = *status;

@@ -57,10 +57,11 @@ std::vector<Column> ArraysIn(std::string_view code) {
   std::vector<Column> arrays;
   for (std::size_t brace = 0; (brace = code.find('{', brace)) != std::string_view::npos; ++brace) {
     const std::size_t equals = code.find_last_not_of(" \t\r\n", brace - (brace > 0 ? 1 : 0));
-    if (brace == 0 || equals == std::string_view::npos || code[equals] != '=') continue;
+    if (brace == 0 || equals == std::string_view::npos || equals == 0 || code[equals] != '=') continue;
     const std::size_t close = code.find_last_not_of(" \t\r\n", equals - 1);
     if (close == std::string_view::npos || code[close] != ']') continue;
     const std::size_t open = code.rfind('[', close);
+    if (open == std::string_view::npos) continue;
     const std::size_t end = std::min(code.find('}', brace), code.size());
     Column array{WordBefore(code, open), "", NumbersIn(code.substr(brace + 1, end - brace - 1)), {}};
     if (!array.value.empty()) arrays.push_back(std::move(array));

@@ -20,6 +20,7 @@ constexpr std::size_t kFewestToJudge = 12;  // of a channel
 constexpr double kStuckShare = 0.1;         // of the readings in a row with the very same value
 constexpr std::size_t kShortestStuck = 10;
 constexpr double kContradicted = 0.3;  // of the labels of a run
+constexpr double kFastest_rad_s = 1e6 * units::turn / 60.0;  // a million turns a minute: no spindle does
 
 /// One column of numbers, those that are there.
 struct Channel {
@@ -195,6 +196,18 @@ void CheckPositions(const std::vector<Reading>& readings, const ReadingColumn& a
                    wrong, judged, angle.name, example)});
 }
 
+/// An angle that nothing turns to in the time since the reading before. The twin would follow it there, step by step.
+void CheckSpeed(const std::vector<Reading>& readings, const ReadingColumn& angle, std::vector<Finding>& findings) {
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    const double way = ValueOf(angle, readings[i]) - ValueOf(angle, readings[i - 1]);
+    const double time_s = std::max(ToSeconds(readings[i].time - readings[i - 1].time), 1.0);  // of clocks that stand
+    if (!(std::abs(way) > kFastest_rad_s * time_s)) continue;
+    findings.push_back({true, fmt::format("{} is {:.3g} turns from where it was {:.3g} s before, in reading {}", angle.name,
+                                          way / units::turn, time_s, readings[i].reading)});
+    return;
+  }
+}
+
 /// The label says which way the angle went.
 void CheckDirections(const std::vector<Reading>& readings, const ReadingColumn& angle,
                      std::vector<Finding>& findings) {
@@ -242,6 +255,10 @@ std::vector<Finding> Check(const std::vector<Reading>& readings, const Scenario&
   if (const ReadingColumn* angle = LabelledAngle(bench)) {
     CheckPositions(readings, *angle, findings);
     CheckDirections(readings, *angle, findings);
+  }
+  for (const ReadingColumn& column : bench.columns) {
+    if (column.role == ColumnRole::kRequired && column.number && column.name.ends_with("_deg"))
+      CheckSpeed(readings, column, findings);
   }
   CheckClock(readings, findings);
   std::ranges::stable_sort(findings, {}, [](const Finding& f) { return !f.fatal; });

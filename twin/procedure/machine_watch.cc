@@ -68,10 +68,11 @@ class MachineWatcher {
       const MachineAxis& axis = bench_.machine.Axes()[k];
       CheckHealth(axis, states[k]);
       const double off = states[k].encoder - states[k].commanded;
-      if (std::abs(off) <= LimitsOf(options_, k).in_position || std::isnan(off)) continue;
-      throw DeviceFault(states[k].limit != 0 ? FaultKind::kLimit : FaultKind::kNotInPosition, axis.name,
-                        fmt::format("was sent to {} and stands at {}", Place(axis, states[k].commanded),
-                                    Place(axis, states[k].encoder)));
+      const bool on_switch = states[k].limit != 0;  // some controllers count it as the end of a motion
+      if (!on_switch && (std::abs(off) <= LimitsOf(options_, k).in_position || std::isnan(off))) continue;
+      throw DeviceFault(on_switch ? FaultKind::kLimit : FaultKind::kNotInPosition, axis.name,
+                        fmt::format("was sent to {} and stands at {}{}", Place(axis, states[k].commanded),
+                                    Place(axis, states[k].encoder), on_switch ? ", on a limit switch" : ""));
     }
   }
 

@@ -37,9 +37,9 @@ class Watched {
     const TableState state = table_.State();
     CheckHealth(state);
     last_rad_ = state.encoder_rad;
-    nearest_rad_ = std::abs(to_rad_ - state.encoder_rad);
-    const bool further = state.limit * (to_rad_ - state.encoder_rad) > 0.0;
-    if (further) Fail(FaultKind::kLimit, "stands on a limit switch and would be driven further onto it");
+    way_rad_ = to_rad_ - state.encoder_rad;
+    nearest_rad_ = std::abs(way_rad_);
+    if (state.limit * way_rad_ > 0.0) Fail(FaultKind::kLimit, "stands on a limit switch and would be driven further onto it");
   }
 
   void Start() { table_.StartMove(to_rad_); }
@@ -60,9 +60,10 @@ class Watched {
   void CheckArrival() {
     const TableState state = table_.State();
     CheckHealth(state);
-    if (state.limit != 0 && limits_.in_position_rad < std::abs(state.encoder_rad - to_rad_))
-      Fail(FaultKind::kLimit, "ran onto a limit switch");
     const double off_rad = state.encoder_rad - to_rad_;
+    // Some controllers count a switch as the end of a motion. Where the way led off it the switch may not have opened yet.
+    const bool leaves_it = state.limit * way_rad_ < 0.0 && std::abs(off_rad) <= limits_.in_position_rad;
+    if (state.limit != 0 && !leaves_it) Fail(FaultKind::kLimit, "stands on a limit switch");
     if (std::abs(off_rad) <= limits_.in_position_rad || std::isnan(off_rad)) return;
     Fail(FaultKind::kNotInPosition,
          fmt::format("was sent to {:.6f} deg and stands at {:.6f} deg, {:.3g} arcsec off", Deg(to_rad_),
@@ -97,7 +98,7 @@ class Watched {
   RotaryTable& table_;
   const char* name_;
   const TableLimits& limits_;
-  double to_rad_;
+  double to_rad_, way_rad_ = 0.0;
   double last_rad_ = kNaN, nearest_rad_ = kNaN;
   double still_s_ = 0.0, looked_s_ = 0.0;
 };

@@ -123,7 +123,7 @@ IndexErrors MeansByPlace(const std::vector<IndexReading>& readings) {
   }
   std::vector<int> distinct = groups;
   std::ranges::sort(distinct);
-  const auto connected = table.setups - (std::ranges::unique(distinct).begin() - distinct.begin());
+  const auto connected = table.setups - (std::unique(distinct.begin(), distinct.end()) - distinct.begin());
   const auto dof = table.readings - static_cast<long>(n) - connected;
   if (dof <= 0) return errors;
   errors.dof = static_cast<double>(dof);

@@ -1,4 +1,4 @@
-#include "tools/live/token.h"
+#include "twin/core/secret_token.h"
 
 #include <fmt/format.h>
 #include <sys/random.h>
@@ -7,12 +7,12 @@
 
 #include "twin/core/errors.h"
 
-namespace twinbench::live {
+namespace twinbench {
 
 std::string NewToken() {
   std::array<unsigned char, 32> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw BenchError("the system gives no random numbers for the live page's token");
+    throw BenchError("the system gives no random numbers for a token");
   std::string token;
   for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
   return token;
@@ -27,4 +27,4 @@ bool IsToken(std::string_view asked, std::string_view token) {
   return differs == 0;
 }
 
-}  // namespace twinbench::live
+}  // namespace twinbench

@@ -1,0 +1,141 @@
+#include <sstream>
+
+#include "hw_bridge/bench_file.h"
+#include "hw_bridge/control/address.h"
+#include "hw_bridge/control/scpi.h"
+#include "hw_bridge/control/scpi_table.h"
+#include "hw_bridge/machine_file.h"
+#include "hw_bridge/program/program_file.h"
+#include "tests/fuzz/file_of_bytes.h"
+#include "tests/fuzz/target.h"
+#include "twin/core/compensation_table.h"
+#include "twin/core/errors.h"
+#include "twin/core/reading.h"
+#include "twin/core/scenario.h"
+#include "twin/core/table_errors.h"
+#include "twin/import/import.h"
+
+/// What people and other programs write as text.
+namespace twinbench::fuzz {
+namespace {
+
+constexpr const char* kName = "fuzz";
+constexpr std::string_view kMapEnd = "---\n";  // a map, and the recording that it is of
+
+/// A scenario that is taken must come back from its own text.
+void ReadScenario(std::string_view bytes) {
+  Scenario scenario;
+  try {
+    scenario = ParseScenario(std::string(bytes), kName, "/nowhere");
+  } catch (const InputError&) {
+    return;
+  }
+  const std::string text = WriteScenario(scenario);
+  try {
+    Require(WriteScenario(ParseScenario(text, "written", "/nowhere")) == text, "a scenario does not come back as it was");
+  } catch (const InputError& error) {
+    throw std::logic_error(std::string("what WriteScenario wrote is refused: ") + error.what());
+  }
+}
+
+/// The first line is one --set, the rest the scenario.
+void ReadOverride(std::string_view bytes) {
+  const auto end = bytes.find('\n');
+  if (end == bytes.npos) return;
+  try {
+    ParseScenario(std::string(bytes.substr(end + 1)), kName, "/nowhere", {std::string(bytes.substr(0, end))});
+  } catch (const InputError&) {
+  }
+}
+
+void ReadReadings(std::string_view bytes) {
+  std::istringstream in{std::string(bytes)};
+  try {
+    ParseReadingsCsv(in, kName);
+  } catch (const InputError&) {
+  }
+}
+
+/// A map and a recording, or a recording alone.
+void ReadRecording(std::string_view bytes) {
+  const auto split = bytes.find(kMapEnd);
+  const bool has_map = split != bytes.npos;
+  const FileOfBytes file(has_map ? bytes.substr(split + kMapEnd.size()) : bytes);
+  imports::Map map;
+  try {
+    if (has_map) map = imports::ParseMap(std::string(bytes.substr(0, split)), kName);
+  } catch (const InputError&) {
+    return;
+  }
+  try {
+    imports::Look({file.Path()}, map);
+  } catch (const InputError&) {
+  }
+  try {
+    imports::Import({file.Path()}, map);
+  } catch (const InputError&) {
+  }
+}
+
+void ReadErrorsMap(std::string_view bytes) {
+  const FileOfBytes file(bytes);
+  try {
+    ReadTableErrors(file.Path());
+  } catch (const InputError&) {
+  }
+  try {
+    ReadCompensationTable(file.Path());
+  } catch (const InputError&) {
+  }
+}
+
+void ReadBenchFile(std::string_view bytes) {
+  try {
+    hw::ParseBenchFile(std::string(bytes), kName, "/nowhere");
+  } catch (const InputError&) {
+  }
+}
+
+void ReadMachineFile(std::string_view bytes) {
+  try {
+    hw::ParseMachineFile(std::string(bytes), kName, {{"x", false}, {"y", false}, {"a", true}});
+  } catch (const InputError&) {
+  }
+}
+
+void ReadProgramFile(std::string_view bytes) {
+  const FileOfBytes file(bytes);
+  try {
+    if (hw::IsProgramFile(file.Path())) hw::LoadProgramFile(file.Path());
+  } catch (const InputError&) {
+  }
+}
+
+/// A line that a device answered, as every dialogue takes it.
+void ReadAnswer(std::string_view bytes) {
+  const std::string answer(bytes);
+  hw::ParseScpiState(answer);
+  hw::SplitScpi(answer);
+  hw::ParseScpiNumber(answer, 1.0);
+  hw::ParseAddress(answer);
+}
+
+constexpr Target kTextTargets[] = {
+    {"scenario", ReadScenario, "scenarios"},
+    {"override", ReadOverride, ""},
+    {"readings", ReadReadings, ""},
+    {"recording", ReadRecording, ""},
+    {"errors_map", ReadErrorsMap, ""},
+    {"bench_file", ReadBenchFile, ""},
+    {"machine_file", ReadMachineFile, ""},
+    {"program_file", ReadProgramFile, ""},
+    {"answer", ReadAnswer, ""},
+};
+
+}  // namespace
+
+std::span<const Target> TextTargets() {
+  return kTextTargets;
+}
+
+}  // namespace twinbench::fuzz
