@@ -42,9 +42,11 @@ std::string EspMachine::Place(std::size_t axis, double at) const {
 void EspMachine::Prepare() {
   const int opening = line_.Openings();
   if (opening == prepared_opening_) return;
-  std::string group = "1HN1";
-  for (std::size_t k = 1; k < axes_.size(); ++k) group += "," + std::to_string(k + 1);
-  TellEsp(line_, group);  // first: a controller of other axes says no
+  if (IsGroup()) {
+    std::string group = "1HN1";
+    for (std::size_t k = 1; k < axes_.size(); ++k) group += "," + std::to_string(k + 1);
+    TellEsp(line_, group);  // first: a controller of other axes says no
+  }
   knows_status_ = EspKnows(line_, "1MS?");
   for (std::size_t k = 0; k < axes_.size(); ++k) {
     const int unit = axes_[k].is_rotary ? kUnitDegree : kUnitMillimetre;
@@ -101,8 +103,8 @@ void EspMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
   Require(to.size() == axes_.size(), "a move has one coordinate an axis");
   for (std::size_t k = 0; k < to.size(); ++k) RequireWithinLimits(k, to[k]);
   RequireReady(State());
-  SetFeed(feed_m_s);
-  std::string command = "1HL";
+  if (IsGroup()) SetFeed(feed_m_s);
+  std::string command = IsGroup() ? "1HL" : "1PA";
   for (std::size_t k = 0; k < to.size(); ++k) command += (k > 0 ? "," : "") + PrintInUnit(to[k], axes_[k].to_SI());
   TellEsp(line_, command);
   RequireUnderstood(to);

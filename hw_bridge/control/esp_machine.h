@@ -13,7 +13,7 @@ struct EspMachineManner {
   bool polls_pass_time = false;  // the bench is a served twin with its clock held
 };
 
-/// A machine whose axes 1 to N are group 1 of a Newport ESP controller (docs/protocols.md).
+/// A machine whose axes 1 to N are group 1 of a Newport ESP controller (docs/protocols.md), or its axis 1 alone.
 ///
 /// A move beyond the soft limits sends nothing, and one that was understood otherwise is stopped. An axis that has
 /// lost its origin is not moved before Home: kRestarted.
@@ -38,6 +38,7 @@ class EspMachine : public MachineController {
   void Home() override;
 
  private:
+  bool IsGroup() const { return axes_.size() > 1; }  // one axis alone goes by itself, as fast as it was set up
   void Prepare();
   void SetFeed(double feed_m_s);
   AxisState ReadAxis(std::size_t axis, const std::function<std::string()>& next_answer);

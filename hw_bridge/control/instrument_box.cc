@@ -80,12 +80,11 @@ Reading InstrumentBox::Sample(const std::string& query, const std::vector<std::s
   return sample;
 }
 
-Reading InstrumentBox::Read() {
-  const std::string answer = line_.Ask(words_.read);
-  const std::vector<std::string> texts = Fields(words_.read, answer);
-  if (texts.size() != fields_.size())
-    line_.FailProtocol(words_.read, answer, fmt::format("{} fields", fields_.size()));
-  return Sample(words_.read, texts, 0);
+Reading InstrumentBox::Ask(const std::string& query) {
+  const std::string answer = line_.Ask(query);
+  const std::vector<std::string> texts = Fields(query, answer);
+  if (texts.size() != fields_.size()) line_.FailProtocol(query, answer, fmt::format("{} fields", fields_.size()));
+  return Sample(query, texts, 0);
 }
 
 void InstrumentBox::Arm(int samples) {
@@ -120,9 +119,17 @@ void InstrumentBox::Merge(const Reading& sample, Reading& into) const {
 }
 
 Reading InstrumentBoxes::Read() {
+  return AllNow(&InstrumentBox::Read);
+}
+
+Reading InstrumentBoxes::Look() {
+  return AllNow(&InstrumentBox::Look);
+}
+
+Reading InstrumentBoxes::AllNow(Reading (InstrumentBox::*show)()) {
   Reading all;
   all.time = clock_.Now();
-  for (InstrumentBox& box : boxes_) box.Merge(box.Read(), all);
+  for (InstrumentBox& box : boxes_) box.Merge((box.*show)(), all);
   return all;
 }
 

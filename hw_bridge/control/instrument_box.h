@@ -16,6 +16,7 @@ struct InstrumentWords {
   std::vector<std::string> fields;
   std::vector<double> scale;               // a field times this is in its column's unit; empty: all 1
   std::string read = "INST:READ?";         // answered by one sample
+  std::string look;                        // the same on the way to a reading; empty: as read
   std::string arm = "INST:ARM {samples}";  // empty: it cannot latch, and is read with every look
   std::string fetch = "INST:FETC?";        // answered by how many samples, 1 if some are lost, and the samples
 };
@@ -30,7 +31,8 @@ class InstrumentBox {
 
   bool Latches() const { return !words_.arm.empty(); }
   /// What it shows now.
-  Reading Read();
+  Reading Read() { return Ask(words_.read); }
+  Reading Look() { return Ask(words_.look.empty() ? words_.read : words_.look); }
   void Arm(int samples);
   /// Takes what was latched into `waiting`. @return false if some are lost.
   bool Fetch();
@@ -47,6 +49,7 @@ class InstrumentBox {
     ReadingColumn column;  // without a name: none
     double scale = 1.0;
   };
+  Reading Ask(const std::string& query);
   Reading Sample(const std::string& query, const std::vector<std::string>& texts, std::size_t from);
   bool Put(const Field& field, const std::string& text, Reading& sample) const;
   std::vector<std::string> Fields(const std::string& query, const std::string& answer);
@@ -61,11 +64,13 @@ class InstrumentBoxes : public InstrumentSet {
  public:
   InstrumentBoxes(std::vector<InstrumentBox> boxes, Clock& clock) : boxes_(std::move(boxes)), clock_(clock) {}
   Reading Read() override;
+  Reading Look() override;
   /// @throws DeviceFault kRefused if no instrument can latch.
   void Arm(int samples) override;
   LatchedSamples Latched() override;
 
  private:
+  Reading AllNow(Reading (InstrumentBox::*show)());
   bool AllHaveOne() const;
   Reading TakeOne(const std::vector<Reading>& now);
 

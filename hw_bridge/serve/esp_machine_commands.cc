@@ -65,6 +65,16 @@ Outcome Line(const EspMachineCall& call) {
   return {};
 }
 
+/// The others stay where they were sent.
+Outcome OneAxis(const EspMachineCall& call) {
+  std::vector<double> to;
+  for (const AxisState& axis : call.served.machine.State()) to.push_back(axis.commanded);
+  to[call.axis] = Number(Values(call, 1)[0], AxisOf(call).to_SI());
+  RequireAllowed(call, to);
+  call.served.paced.Spend([&] { call.served.machine.StartMove(to, call.client.feed_m_s); });
+  return {};
+}
+
 Outcome GroupArc(const EspMachineCall& call) {
   const std::vector<std::string> values = Values(call, 3);
   Arc arc;
@@ -220,6 +230,7 @@ constexpr EspMachineEntry kEspMachineCommands[] = {
     {"XT", true, EspPart::kGroup, Triggers},
     {"XD", true, EspPart::kGroup, SettledWithin},
     {"TP", true, EspPart::kAxis, AxisPosition},
+    {"PA", false, EspPart::kAxis, OneAxis},
     {"PA", true, EspPart::kAxis, AxisTarget},
     {"MD", true, EspPart::kAxis, AxisDone},
     {"MS", true, EspPart::kAxis, AxisStatus},

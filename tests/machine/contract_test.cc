@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/machine/benches.h"
+#include "tests/support/angle_benches.h"
 #include "tests/support/machine_run.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/driven.h"
@@ -13,9 +14,19 @@
 namespace twinbench::test {
 namespace {
 
-class MachineContract : public ::testing::TestWithParam<Scenario (*)()> {
+/// A bench of few readings, and its name.
+struct ShortBench {
+  const char* name;
+  Scenario (*scenario)();
+};
+
+std::string NameOf(const ::testing::TestParamInfo<ShortBench>& bench) {
+  return bench.param.name;
+}
+
+class MachineContract : public ::testing::TestWithParam<ShortBench> {
  protected:
-  const Scenario scenario_ = GetParam()();
+  const Scenario scenario_ = GetParam().scenario();
   const std::vector<Reading> in_process_ = DrivenInProcess(scenario_);
 };
 
@@ -32,6 +43,10 @@ TEST_P(MachineContract, GivesTheSameBitsThroughTheNetwork) {
     EXPECT_EQ(TextOf(run.log.readings, scenario_), TextOf(in_process_, scenario_)) << machine;
     EXPECT_TRUE(run.log.attempts.empty());
   }
+}
+
+TEST_P(MachineContract, IsWhatRunCarriesOut) {
+  EXPECT_EQ(TextOf(ReadingsByRecord(scenario_), scenario_), TextOf(in_process_, scenario_));
 }
 
 TEST_P(MachineContract, WritesDownWhatItAskedOfTheDevices) {
@@ -98,7 +113,10 @@ TEST_P(MachineContract, ARealBenchGoesOnWithTheReadingThatIsMissing) {
   }
 }
 
-TEST_P(MachineContract, EveryDeviceSchedulesEvents) {
+/// Those whose axes go along lines and arcs.
+using DrivenContract = MachineContract;
+
+TEST_P(DrivenContract, EveryDeviceSchedulesEvents) {
   const auto twin = BenchOf(scenario_).make_devices(scenario_);
   MachineBench bench = twin->Devices();
   MemoryLog log;
@@ -121,16 +139,21 @@ TEST_P(MachineContract, AStopLeavesTheAxesWhereTheyAre) {
   const auto twin = BenchOf(scenario_).make_devices(scenario_);
   MachineBench bench = twin->Devices();
   std::vector<double> to;
-  for (const AxisState& axis : bench.machine.State()) to.push_back(axis.encoder - 0.02);
+  const std::vector<AxisState> before = bench.machine.State();
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const double way = bench.machine.Axes()[k].is_rotary ? 1.0 : 0.02;  // rad or m
+    to.push_back(before[k].encoder - std::min(way, 0.5 * (before[k].encoder - bench.machine.Travel()[k].lower)));
+  }
   bench.machine.StartMove(to, 0.01);
   EXPECT_FALSE(bench.machine.Settles(std::chrono::seconds(1)));
   bench.machine.Stop();
+  bench.clock.Wait(std::chrono::seconds(5));  // bodies come to rest
   const std::vector<AxisState> stopped = bench.machine.State();
   bench.clock.Wait(std::chrono::seconds(5));
   for (std::size_t k = 0; k < stopped.size(); ++k) {
     EXPECT_FALSE(stopped[k].moving);
     EXPECT_GT(std::abs(stopped[k].encoder - to[k]), 0.01) << "it was on its way";
-    EXPECT_EQ(bench.machine.State()[k].encoder, stopped[k].encoder);
+    EXPECT_NEAR(bench.machine.State()[k].encoder, stopped[k].encoder, 1e-6);
   }
 }
 
@@ -145,8 +168,45 @@ TEST_P(MachineContract, AReadingBesideThePlanIsOneToo) {
   EXPECT_TRUE(std::ranges::any_of(columns, [&](const ReadingColumn& c) { return !c.print(sample).empty(); }));
 }
 
-INSTANTIATE_TEST_SUITE_P(Benches, MachineContract, ::testing::Values(ShortCircles, ShortFreeform),
-                         [](const auto& bench) { return bench.index == 0 ? "Circles" : "Freeform"; });
+constexpr ShortBench kDriven[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}};
+constexpr ShortBench kOthers[] = {{"Turntable", ShortTurntable}, {"Polygon", ShortPolygon}};
+INSTANTIATE_TEST_SUITE_P(Driven, MachineContract, ::testing::ValuesIn(kDriven), NameOf);
+INSTANTIATE_TEST_SUITE_P(Others, MachineContract, ::testing::ValuesIn(kOthers), NameOf);
+INSTANTIATE_TEST_SUITE_P(Driven, DrivenContract, ::testing::ValuesIn(kDriven), NameOf);
+
+/// Somebody who turns the multi-tooth table by hand is not asked to while the turntable moves.
+TEST(MultitoothByHand, IsTurnedOnceTheTurntableStands) {
+  const Scenario scenario = ShortTurntable();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  struct Hands : Indexer {
+    Hands(MachineBench& its_bench) : bench(its_bench), inner(*its_bench.indexer) {}
+    void IndexTo(int tooth, double angle_rad) override {
+      EXPECT_FALSE(bench.machine.State()[0].moving);
+      EXPECT_NEAR(angle_rad, tooth * units::deg, 1e-12);
+      EXPECT_NEAR(std::remainder(bench.machine.State()[0].commanded + angle_rad, units::deg), 0.0, 300 * units::arcsec);
+      inner.IndexTo(tooth, angle_rad);
+      ++times;
+    }
+    bool IsByHand() const override { return true; }
+    MachineBench& bench;
+    Indexer& inner;
+    int times = 0;
+  } hands(bench);
+  bench.indexer = &hands;
+  MemoryLog log;
+  BenchOf(scenario).drive(bench, scenario, log, {}, {});
+  EXPECT_EQ(hands.times, 33) << "a stop each";
+}
+
+TEST(MultitoothByHand, WithoutAnIndexerIsRefused) {
+  const Scenario scenario = ShortTurntable();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  bench.indexer = nullptr;
+  MemoryLog log;
+  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, {}), DeviceFault);
+}
 
 /// Off the plan everything is computed anew from what was taken before; on it the plan's own course is used. Both
 /// must be one physics: 3 ns beside every planned instant the machine shows the same to 1 pm, for it needs

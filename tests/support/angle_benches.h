@@ -14,6 +14,7 @@
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
+#include "twin/benches/turntable_autocollimator/procedure/drive.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
@@ -39,7 +40,11 @@ BenchRun RunBench(const Scenario& scenario) {
 }
 
 inline BenchRun RunTurntable(const Scenario& scenario) {
-  return RunBench<sim::TurntableTwin>(scenario);
+  sim::TurntableTwin twin(scenario);
+  MachineBench bench = twin.Devices();
+  MemorySink sink;
+  procedure::DriveTurntable(bench, scenario, sink, {}, {});
+  return {scenario, sink.readings, twin.Truth()};
 }
 inline BenchRun RunHob(const Scenario& scenario) {
   return RunBench<sim::HobTwin>(scenario);

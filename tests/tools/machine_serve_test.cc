@@ -28,10 +28,23 @@ mounts = [ { }, { z_mm = 60.0, yaw_deg = 90.0 } ]
 poses = 24
 )";
 
-class ServedMachineProgram : public Program, public ::testing::WithParamInterface<const char*> {
+constexpr const char* kTurntable = R"(bench = "turntable_autocollimator"
+seed = 7
+[turntable_procedure]
+positions = 24
+tilts_arcsec = [60.0, 100.0]
+verification_positions = 12
+)";
+
+/// A bench, one of its axes and limits that are too narrow for it.
+struct Machine {
+  const char *name, *scenario, *axis, *limits;
+};
+
+class ServedMachineProgram : public Program, public ::testing::WithParamInterface<Machine> {
  protected:
   ServedMachineProgram() {
-    Write("small.toml", GetParam());
+    Write("small.toml", GetParam().scenario);
     Succeed({"run", "small.toml", "-o", "run"});
     readings_ = ReadingsOf("run");
   }
@@ -120,12 +133,12 @@ TEST_P(ServedMachineProgram, ARehearsalAsksTheControllerAndMovesNothing) {
   const auto server = Serve("max");
   const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
-  EXPECT_THAT(fine.err, HasSubstr("axis x"));
+  EXPECT_THAT(fine.err, HasSubstr(std::string("axis ") + GetParam().axis));
   EXPECT_THAT(fine.err, HasSubstr("limits "));
-  Write("bench.toml", Read("bench.toml") + "\n[axis_x]\nlower_mm = -20.0\nupper_mm = 20.0\n");
+  Write("bench.toml", Read("bench.toml") + "\n[axis_" + GetParam().axis + "]\n" + GetParam().limits);
   const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "narrow"});
   EXPECT_EQ(narrow.exit_code, 1);
-  EXPECT_THAT(narrow.err, HasSubstr("PROBLEM: axis x would travel"));
+  EXPECT_THAT(narrow.err, HasSubstr(std::string("PROBLEM: axis ") + GetParam().axis + " would travel"));
   EXPECT_FALSE(Exists("narrow"));
 }
 
@@ -135,8 +148,12 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
   EXPECT_EQ(ReadingsOf("own"), readings_);
 }
 
-INSTANTIATE_TEST_SUITE_P(Benches, ServedMachineProgram, ::testing::Values(kCircles, kFreeform),
-                         [](const auto& bench) { return bench.index == 0 ? "Circles" : "Freeform"; });
+constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n", *kNarrow_deg = "lower_deg = -20.0\nupper_deg = 20.0\n";
+INSTANTIATE_TEST_SUITE_P(Benches, ServedMachineProgram,
+                         ::testing::Values(Machine{"Circles", kCircles, "x", kNarrow_mm},
+                                           Machine{"Freeform", kFreeform, "x", kNarrow_mm},
+                                           Machine{"Turntable", kTurntable, "turntable", kNarrow_deg}),
+                         [](const auto& bench) { return std::string(bench.param.name); });
 
 }  // namespace
 }  // namespace twinbench::test

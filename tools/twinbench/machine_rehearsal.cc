@@ -85,7 +85,7 @@ MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<Axi
   const auto twin = bench.make_devices(scenario);
   MachineBench inner = twin->Devices();
   TravelWatch machine(inner.machine, rehearsal.travel);
-  MachineBench watched{inner.clock, machine, inner.instruments, inner.fixture, inner.simulation};
+  MachineBench watched{inner.clock, machine, inner.instruments, inner.fixture, inner.simulation, inner.indexer};
   ReadingCount count(rehearsal);
   bench.drive(watched, scenario, count, {}, {});
   rehearsal.duration_s = ToSeconds(inner.clock.Now());

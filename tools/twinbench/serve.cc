@@ -71,7 +71,7 @@ void ServeMachine(const ServeArguments& a, const Scenario& scenario) {
   hw::Server server(twin->Devices(), shown, scenario, a.serve);
   const std::string language = a.tables == "pty" ? "pty" : "esp";
   ServeShown(server, a,
-             a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields));
+             a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields, twin->Devices().indexer != nullptr));
 }
 
 void WarnOfOthers(const std::string& bind) {

@@ -94,6 +94,9 @@ class InstrumentSet {
   virtual ~InstrumentSet() = default;
   /// Reads the resting machine now.
   virtual Reading Read() = 0;
+  /// Shows what Read would, on the way to a reading: where something is brought to zero by what it shows. A simulated
+  /// set takes it for none of its readings.
+  virtual Reading Look() { return Read(); }
   /// Empties the memory; the next `samples` triggers are latched.
   virtual void Arm(int samples) = 0;
   /// Those latched since the last look.
@@ -110,6 +113,18 @@ class MachineFixture {
   virtual void Mount(int setup, const std::string& what) = 0;
 };
 
+/// A table whose rings of face teeth mesh, turned by an indexer or by hand.
+class Indexer {
+ public:
+  virtual ~Indexer() = default;
+  /// Lifts it, turns it and seats it at a tooth, also at the one where it is; counter-clockwise positive seen from above,
+  /// unwrapped. Returns when it is seated.
+  /// @param angle_rad  Of the same tooth.
+  virtual void IndexTo(int tooth, double angle_rad) = 0;
+  /// Somebody has his hands on it: nothing else may move meanwhile.
+  virtual bool IsByHand() const { return false; }
+};
+
 /// The devices of a bench whose machine is driven along a plan. Does not own them.
 struct MachineBench {
   Clock& clock;
@@ -117,6 +132,7 @@ struct MachineBench {
   InstrumentSet& instruments;
   MachineFixture& fixture;
   Simulation* simulation = nullptr;  // none on a real bench
+  Indexer* indexer = nullptr;        // none: the bench has no multi-tooth table
 };
 
 /// What owns the devices of a MachineBench.

@@ -16,7 +16,7 @@ namespace {
 
 /// The plan counts in nanoseconds that are rounded; so much later is in time.
 constexpr Duration kInTime = std::chrono::microseconds(1);
-constexpr double kTraverseAtLeast_m_s = 1e-3;
+constexpr double kTraverseAtLeast_m_s = 1e-3, kTurnAtLeast_rad_s = 1.0 * units::deg;
 
 /// A run on a real bench keeps what it has at once; simulated readings come too fast to be waited for one by one.
 constexpr std::size_t kTogetherWatched = 32, kTogetherAlone = 256;
@@ -50,6 +50,10 @@ void MachineSequencer::Mount(int setup, const std::string& what) {
     options_.log->AppendEvent(bench_.clock.Now(), "fixture", fmt::format("mounted set-up {}: {}", setup, what));
 }
 
+void MachineSequencer::LetHandsWork(Duration duration) {
+  if (bench_.simulation) WaitFor(bench_, duration, options_);
+}
+
 void MachineSequencer::Rest(int reading, Duration duration) {
   if (reading == 0) return;
   const Time until = plan()[static_cast<std::size_t>(reading) - 1].time + duration;
@@ -57,13 +61,32 @@ void MachineSequencer::Rest(int reading, Duration duration) {
 }
 
 void MachineSequencer::MoveTo(const std::vector<double>& to) {
+  Move(to, [] {});
+}
+
+void MachineSequencer::Move(const std::vector<double>& to, const std::function<void()>& meanwhile) {
   HearOperator(options_);
   RequireMayGo(bench_, to, options_);
   const std::vector<double> from = Where();
-  double way_m = 0.0;
-  for (std::size_t k = 0; k < to.size(); ++k) way_m += axes()[k].is_rotary ? 0.0 : std::abs(to[k] - from[k]);
+  double takes_s = 0.0;
+  for (std::size_t k = 0; k < to.size(); ++k)
+    takes_s += std::abs(to[k] - from[k]) / (axes()[k].is_rotary ? kTurnAtLeast_rad_s : kTraverseAtLeast_m_s);
   bench_.machine.StartMove(to, 0.0);
-  Watch(bench_, way_m / kTraverseAtLeast_m_s, options_);
+  meanwhile();
+  Watch(bench_, takes_s, options_);
+}
+
+void MachineSequencer::MoveAndIndex(const std::vector<double>& to, int tooth, double tooth_rad) {
+  if (!bench_.indexer)
+    throw DeviceFault(FaultKind::kRefused, "indexer", "there is none; the multi-tooth table cannot be turned");
+  if (!bench_.indexer->IsByHand()) return Move(to, [&] { Index(tooth, tooth_rad); });
+  MoveTo(to);
+  Index(tooth, tooth_rad);
+}
+
+void MachineSequencer::Index(int tooth, double tooth_rad) {
+  HearOperator(options_);
+  bench_.indexer->IndexTo(tooth, tooth_rad);
 }
 
 double MachineSequencer::PathTime_s(const Arc& arc) {
@@ -102,10 +125,15 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
         fmt::format("the path has ended and {} of {} triggers latched nothing", end - next, end - first));
 }
 
-void MachineSequencer::TakeAtRest(int reading, Duration dwell) {
+void MachineSequencer::TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter) {
   if (options_.log) options_.log->RequireRoom();
   WaitUntilDue(reading, dwell);
-  Keep(reading, bench_.instruments.Read());
+  Keep(reading, bench_.instruments.Read(), enter);
+}
+
+Reading MachineSequencer::Look() {
+  HearOperator(options_);
+  return bench_.instruments.Look();
 }
 
 void MachineSequencer::WaitUntilDue(int reading, Duration dwell) {
@@ -127,8 +155,9 @@ Reading MachineSequencer::Joined(const Reading& planned, const Reading& sample) 
   return joined;
 }
 
-void MachineSequencer::Keep(int number, const Reading& sample) {
+void MachineSequencer::Keep(int number, const Reading& sample, const std::function<void(Reading&)>& enter) {
   Reading reading = Joined(plan()[static_cast<std::size_t>(number)], sample);
+  if (enter) enter(reading);
   if (plan_.complete) plan_.complete(reading);
   const double room_degC = reading.temperature_degC;
   if (room_degC < options_.coldest_degC || room_degC > options_.hottest_degC)

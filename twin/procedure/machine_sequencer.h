@@ -42,24 +42,35 @@ class MachineSequencer {
   /// Takes off what is mounted.
   void Clear();
   void Mount(int setup, const std::string& what);
+  /// What a hand needs passes on a simulated bench; on a real one it takes the time that it takes.
+  void LetHandsWork(Duration duration);
   /// Waits until the bench has rested so long since the last reading that was due before `reading`.
   void Rest(int reading, Duration duration);
 
   /// Goes straight to a place, as fast as the machine goes.
   void MoveTo(const std::vector<double>& to);
+  /// The same while the indexer turns its table; behind it where somebody does that by hand.
+  /// @throws DeviceFault kRefused if the bench has no indexer.
+  void MoveAndIndex(const std::vector<double>& to, int tooth, double tooth_rad);
   /// Goes round without taking anything.
   void Go(const Arc& arc);
   /// Goes round; the arc's triggers take the readings [first, end).
   void Sweep(const Arc& arc, int first, int end);
   /// Takes a reading when it is due, and so long behind the end of the last move that nothing settles any more.
-  void TakeAtRest(int reading, Duration dwell);
+  /// @param enter  What the way knows by now and the plan did not.
+  void TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter = {});
+  /// What the instruments show on the way to a reading.
+  Reading Look();
 
   /// Keeps what has been taken. Called by itself every now and then; to be called at the end and behind a fault.
   void Flush();
 
  private:
+  void Index(int tooth, double tooth_rad);
+  /// @param meanwhile  Once the move has begun.
+  void Move(const std::vector<double>& to, const std::function<void()>& meanwhile);
   void WaitUntilDue(int reading, Duration dwell);
-  void Keep(int reading, const Reading& sample);
+  void Keep(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
   Reading Joined(const Reading& planned, const Reading& sample) const;
   void RequireSame(const Reading& reading) const;
   double PathTime_s(const Arc& arc);
