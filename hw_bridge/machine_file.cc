@@ -58,7 +58,7 @@ void AddInstrument(std::vector<ScenarioKey>& keys, std::size_t number, Instrumen
   t.Add("scale", kOne, {}, &s.words.scale, "field times this is in the column's unit, one a field; without it 1");
   t.Text("read", &s.words.read, {}, "query that is answered by one sample");
   t.Text("look", &s.words.look, {}, "the same on the way to a reading, where something is nulled; empty: as read");
-  t.Text("arm", &s.words.arm, {}, "command that makes the next {samples} triggers latch; empty: it cannot");
+  t.Text("arm", &s.words.arm, {}, "command that lets it latch {samples}, at triggers or every {lines} lines; empty: it cannot");
   t.Text("fetch", &s.words.fetch, {}, "query that is answered by <samples>,<1: some are lost>,<the samples>");
 }
 
@@ -201,7 +201,7 @@ std::string WriteServedMachineFile(const ServedAddresses& a, const std::string& 
       "# What `twinbench serve` shows, as `twinbench measure --bench` takes it.\n"
       "kind = \"hardware\"\nname = \"served twin\"\n\n"
       "[machine]\nkind = \"esp\"\naddress = \"{}\"\nidentity = \"ESP301 twinbench \"\ntraverse_mm_s = 200.0\n\n"
-      "[instrument_1]\n{}look = \"INST:LOOK?\"\nfields = [{}]\n\n{}[fixture]\n{}\n[clock]\n{}",
+      "[instrument_1]\n{}look = \"INST:LOOK?\"\narm = \"INST:ARM {{samples}},{{lines}}\"\nfields = [{}]\n\n{}[fixture]\n{}\n[clock]\n{}",
       esp, scpi, list, indexer ? "[indexer]\n" + scpi + "\n" : "", scpi, scpi);
 }
 

@@ -137,6 +137,12 @@ void EspMachine::StartArc(const Arc& arc) {
                              PrintInUnit(arc.centre_m[1], units::mm), PrintInUnit(arc.sweep_rad, units::deg)));
 }
 
+void EspMachine::StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) {
+  RequireReady(State());
+  TellEsp(line_, fmt::format("{}{},{}", OfAxis(axis, "XV"), PrintInUnit(speed_rad_s, units::deg),
+                             PrintInUnit(ToSeconds(ramp) * 1e3, 1.0)));
+}
+
 bool EspMachine::Settles(Duration within) {
   Prepare();
   if (!manner_.polls_pass_time) return PollRunning(within);

@@ -29,10 +29,9 @@ ReadingColumn ColumnOf(const std::string& field, const std::vector<ReadingColumn
                    fmt::format("\"{}\"", Nearest(field, known)));
 }
 
-std::string WithSamples(std::string command, int samples) {
-  const std::string place = "{samples}";
+std::string Filled(std::string command, const std::string& place, int number) {
   if (const auto at = command.find(place); at != std::string::npos)
-    command.replace(at, place.size(), std::to_string(samples));
+    command.replace(at, place.size(), std::to_string(number));
   return command;
 }
 
@@ -87,9 +86,11 @@ Reading InstrumentBox::Ask(const std::string& query) {
   return Sample(query, texts, 0);
 }
 
-void InstrumentBox::Arm(int samples) {
+void InstrumentBox::Arm(int samples, int lines) {
   waiting.clear();
-  TellScpi(line_, WithSamples(words_.arm, samples));
+  if (lines > 0 && words_.arm.find("{lines}") == std::string::npos)
+    line_.Fail(FaultKind::kRefused, "latches at triggers only: its `arm` has no place for {lines}");
+  TellScpi(line_, Filled(Filled(words_.arm, "{samples}", samples), "{lines}", lines));
 }
 
 /// One answer holds no more than fits in a line: it is asked until there are no more.
@@ -133,15 +134,15 @@ Reading InstrumentBoxes::AllNow(Reading (InstrumentBox::*show)()) {
   return all;
 }
 
-void InstrumentBoxes::Arm(int samples) {
+void InstrumentBoxes::Arm(int samples, int lines) {
   bool any = false;
   for (InstrumentBox& box : boxes_) {
-    if (box.Latches()) box.Arm(samples);
+    if (box.Latches()) box.Arm(samples, lines);
     any = any || box.Latches();
   }
   if (!any)
     throw DeviceFault(FaultKind::kRefused, "instruments",
-                      "none of the bench file's can be latched by the machine's triggers");
+                      "none of the bench file's can be latched");
 }
 
 LatchedSamples InstrumentBoxes::Latched() {

@@ -17,7 +17,9 @@ struct InstrumentWords {
   std::vector<double> scale;               // a field times this is in its column's unit; empty: all 1
   std::string read = "INST:READ?";         // answered by one sample
   std::string look;                        // the same on the way to a reading; empty: as read
-  std::string arm = "INST:ARM {samples}";  // empty: it cannot latch, and is read with every look
+  /// At the machine's triggers, or at every {lines}-th line that it counts. Empty: it cannot latch, and is read with every
+  /// look.
+  std::string arm = "INST:ARM {samples}";
   std::string fetch = "INST:FETC?";        // answered by how many samples, 1 if some are lost, and the samples
 };
 
@@ -33,7 +35,8 @@ class InstrumentBox {
   /// What it shows now.
   Reading Read() { return Ask(words_.read); }
   Reading Look() { return Ask(words_.look.empty() ? words_.read : words_.look); }
-  void Arm(int samples);
+  /// @throws DeviceFault kRefused for lines where its words have no place for them.
+  void Arm(int samples, int lines);
   /// Takes what was latched into `waiting`. @return false if some are lost.
   bool Fetch();
 
@@ -66,7 +69,7 @@ class InstrumentBoxes : public InstrumentSet {
   Reading Read() override;
   Reading Look() override;
   /// @throws DeviceFault kRefused if no instrument can latch.
-  void Arm(int samples) override;
+  void Arm(int samples, int lines) override;
   LatchedSamples Latched() override;
 
  private:

@@ -75,6 +75,14 @@ Outcome OneAxis(const EspMachineCall& call) {
   return {};
 }
 
+Outcome TurnOn(const EspMachineCall& call) {
+  const std::vector<std::string> values = Values(call, 2);
+  const double speed_rad_s = Number(values[0], units::deg), ramp_ms = Number(values[1], 1.0);
+  if (ramp_ms < 0.0 || ramp_ms > kLongestSettling_ms) throw EspError{kEspOutOfRange};
+  call.served.paced.Spend([&] { call.served.machine.StartTurning(call.axis, speed_rad_s, FromSeconds(ramp_ms * 1e-3)); });
+  return {};
+}
+
 Outcome GroupArc(const EspMachineCall& call) {
   const std::vector<std::string> values = Values(call, 3);
   Arc arc;
@@ -229,6 +237,7 @@ constexpr EspMachineEntry kEspMachineCommands[] = {
     {"XT", false, EspPart::kGroup, SetTriggers},
     {"XT", true, EspPart::kGroup, Triggers},
     {"XD", true, EspPart::kGroup, SettledWithin},
+    {"XV", false, EspPart::kAxis, TurnOn},
     {"TP", true, EspPart::kAxis, AxisPosition},
     {"PA", false, EspPart::kAxis, OneAxis},
     {"PA", true, EspPart::kAxis, AxisTarget},

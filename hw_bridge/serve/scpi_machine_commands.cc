@@ -9,7 +9,7 @@
 namespace twinbench::hw {
 namespace {
 
-constexpr long long kMostSamples = 1'000'000, kMostTeeth = 1'000'000;
+constexpr long long kMostSamples = 1'000'000, kMostLines = 1'000'000, kMostTeeth = 1'000'000;
 constexpr std::size_t kMostAtOnce = 100;  // a line stays within what clients read as one
 
 ServedMachine& MachineOf(const ScpiCall& call) {
@@ -65,7 +65,9 @@ Outcome Index(const ScpiCall& call) {
 Outcome Arm(const ScpiCall& call) {
   ServedMachine& served = MachineOf(call);
   served.paced.CatchUp();
-  served.bench.instruments.Arm(static_cast<int>(ScpiWholeNumber(call.parameters[0], 1, kMostSamples)));
+  const int samples = static_cast<int>(ScpiWholeNumber(call.parameters[0], 1, kMostSamples));
+  const bool at_lines = call.parameters.size() > 1;
+  served.bench.instruments.Arm(samples, at_lines ? static_cast<int>(ScpiWholeNumber(call.parameters[1], 0, kMostLines)) : 0);
   served.latched.clear();
   served.overrun = false;
   return {};
@@ -102,7 +104,7 @@ constexpr ScpiCommand kMachineCommands[] = {
     {"INSTrument:CHANnels", true, 0, 0, Channels},
     {"INSTrument:READ", true, 0, 0, ReadNow},
     {"INSTrument:LOOK", true, 0, 0, LookNow},
-    {"INSTrument:ARM", false, 1, 0, Arm},
+    {"INSTrument:ARM", false, 1, 1, Arm},
     {"INSTrument:FETCh", true, 0, 0, Fetch},
     {"INDexer:MOVE", false, 2, 0, Index},
     {"FIXTure:CLEar", false, 0, 0, ClearFixture},

@@ -92,4 +92,39 @@ width_arcsec = 1.0
                        "short_polygon.toml", "");
 }
 
+/// Two mountings of a device that lags in its play, read at stops there and back: 2 * 2 * 12 = 48 readings.
+inline Scenario ShortStops() {
+  return ParseScenario(R"(bench = "encoder_comparison"
+seed = 5
+[encoder_procedure]
+kind = "stops"
+turns = 1.0
+stops_per_turn = 12
+passes = [1, -1]
+mounting_deg = [0.0, 180.0]
+[[effect]]
+name = "backlash"
+width_deg = 0.001
+[[effect]]
+name = "drift"
+)",
+                       "short_stops.toml", "");
+}
+
+/// Two places of the head, a turn there and back at one speed, and stops for the interferometer: 2 * 2 * 12 + 2 * 8 = 64
+/// readings.
+inline Scenario ShortHob() {
+  return ParseScenario(R"(bench = "hob_transmission"
+seed = 3
+[interferometer]
+stops = 8
+[hob_procedure]
+heads_deg = [0.0, 180.0]
+turns = 1
+samples_per_turn = 12
+rest_s = 7.0
+)",
+                       "short_hob.toml", "");
+}
+
 }  // namespace twinbench::test

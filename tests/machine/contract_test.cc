@@ -8,6 +8,7 @@
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/driven.h"
 #include "twin/benches/circular_motion/twin/live.h"
+#include "twin/procedure/machine_watch.h"
 #include "twin/sim/driven_machine.h"
 
 /// Same scenario, same seed, same readings: on the twin in this program and through the network.
@@ -72,7 +73,7 @@ TEST_P(MachineContract, AResumedRunMakesTheSameReadings) {
 
 TEST_P(MachineContract, ARecordOfAnotherBenchIsNotGoneOnWith) {
   std::vector<Reading> before(in_process_.begin(), in_process_.begin() + 3);
-  before[1].temperature_degC += 1e-9;
+  before[1].time += Duration(1);
   const ServedMachineTwin served(scenario_);
   EXPECT_THROW(RunServedMachine(served, scenario_, served.BenchFile(), {}, before), InputError);
 }
@@ -126,7 +127,10 @@ TEST_P(DrivenContract, EveryDeviceSchedulesEvents) {
   for (const char* device : {"axes", "fixture"}) EXPECT_GT(scheduled.at(device), 0U) << device;
 }
 
-TEST_P(MachineContract, APathBeyondTheTravelIsRefused) {
+/// Those whose axes can be sent somewhere.
+using SentContract = MachineContract;
+
+TEST_P(SentContract, APathBeyondTheTravelIsRefused) {
   const auto twin = BenchOf(scenario_).make_devices(scenario_);
   MachineController& machine = twin->Devices().machine;
   std::vector<double> to;
@@ -135,7 +139,7 @@ TEST_P(MachineContract, APathBeyondTheTravelIsRefused) {
   for (const AxisState& axis : machine.State()) EXPECT_FALSE(axis.moving);
 }
 
-TEST_P(MachineContract, AStopLeavesTheAxesWhereTheyAre) {
+TEST_P(SentContract, AStopLeavesTheAxesWhereTheyAre) {
   const auto twin = BenchOf(scenario_).make_devices(scenario_);
   MachineBench bench = twin->Devices();
   std::vector<double> to;
@@ -145,7 +149,7 @@ TEST_P(MachineContract, AStopLeavesTheAxesWhereTheyAre) {
     to.push_back(before[k].encoder - std::min(way, 0.5 * (before[k].encoder - bench.machine.Travel()[k].lower)));
   }
   bench.machine.StartMove(to, 0.01);
-  EXPECT_FALSE(bench.machine.Settles(std::chrono::seconds(1)));
+  EXPECT_FALSE(bench.machine.Settles(std::chrono::milliseconds(100)));
   bench.machine.Stop();
   bench.clock.Wait(std::chrono::seconds(5));  // bodies come to rest
   const std::vector<AxisState> stopped = bench.machine.State();
@@ -164,15 +168,57 @@ TEST_P(MachineContract, AReadingBesideThePlanIsOneToo) {
   bench.clock.Wait(std::chrono::seconds(3));  // no reading is due now
   const Reading sample = bench.instruments.Read();
   EXPECT_EQ(sample.time, bench.clock.Now());
-  EXPECT_TRUE(std::isfinite(sample.temperature_degC));
+  EXPECT_EQ(std::isfinite(sample.temperature_degC), std::isfinite(in_process_[0].temperature_degC));
   EXPECT_TRUE(std::ranges::any_of(columns, [&](const ReadingColumn& c) { return !c.print(sample).empty(); }));
 }
 
-constexpr ShortBench kDriven[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}};
-constexpr ShortBench kOthers[] = {{"Turntable", ShortTurntable}, {"Polygon", ShortPolygon}};
+constexpr ShortBench kDriven[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}, {"Stops", ShortStops}};
+constexpr ShortBench kSentByItself[] = {{"Turntable", ShortTurntable}, {"Polygon", ShortPolygon}};
+constexpr ShortBench kTurning[] = {{"Hob", ShortHob}};
 INSTANTIATE_TEST_SUITE_P(Driven, MachineContract, ::testing::ValuesIn(kDriven), NameOf);
-INSTANTIATE_TEST_SUITE_P(Others, MachineContract, ::testing::ValuesIn(kOthers), NameOf);
+INSTANTIATE_TEST_SUITE_P(SentByItself, MachineContract, ::testing::ValuesIn(kSentByItself), NameOf);
+INSTANTIATE_TEST_SUITE_P(Turning, MachineContract, ::testing::ValuesIn(kTurning), NameOf);
+INSTANTIATE_TEST_SUITE_P(Driven, SentContract, ::testing::ValuesIn(kDriven), NameOf);
+INSTANTIATE_TEST_SUITE_P(SentByItself, SentContract, ::testing::ValuesIn(kSentByItself), NameOf);
 INSTANTIATE_TEST_SUITE_P(Driven, DrivenContract, ::testing::ValuesIn(kDriven), NameOf);
+
+/// A spindle that was told to turn does until it is stopped, and the stop is read back; it cannot be sent anywhere.
+TEST(TurningAxis, TurnsUntilItIsStopped) {
+  const Scenario scenario = ShortHob();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  EXPECT_THROW(bench.machine.StartMove({1.0}, 0.0), DeviceFault);
+  bench.machine.StartTurning(0, 5.0, std::chrono::seconds(2));
+  EXPECT_FALSE(bench.machine.Settles(std::chrono::seconds(10)));
+  EXPECT_TRUE(bench.machine.State()[0].moving);
+  EXPECT_NEAR(bench.machine.State()[0].encoder, 45.0, 0.01) << "5 in the mean of the ramp, 40 behind it";
+  EXPECT_TRUE(procedure::StopMachine(bench).is_sure);
+  EXPECT_FALSE(bench.machine.State()[0].moving);
+}
+
+TEST(TurningAxis, IsNoneOfAMachineThatIsSent) {
+  const Scenario scenario = ShortStops();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  EXPECT_THROW(twin->Devices().machine.StartTurning(0, 1.0, std::chrono::seconds(1)), DeviceFault);
+}
+
+TEST(Comparison, InMotionCannotBeDriven) {
+  Scenario scenario = ShortStops();
+  EncoderOf(scenario).encoder_procedure.kind = "sweep";
+  EXPECT_THROW(BenchOf(scenario).make_devices(scenario), InputError);
+}
+
+TEST(Comparison, SeveralHeadsAreReadOnATwinOnly) {
+  Scenario scenario = ShortStops();
+  EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 1.0};
+  const std::vector<Reading> driven = DrivenInProcess(scenario);
+  EXPECT_EQ(TextOf(driven, scenario), TextOf(ReadingsByRecord(scenario), scenario));
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  bench.simulation = nullptr;
+  MemoryLog log;
+  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, {}), DeviceFault);
+}
 
 /// Somebody who turns the multi-tooth table by hand is not asked to while the turntable moves.
 TEST(MultitoothByHand, IsTurnedOnceTheTurntableStands) {

@@ -14,12 +14,13 @@
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
-#include "twin/benches/turntable_autocollimator/procedure/drive.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/core/effect_catalogue.h"
+#include "twin/core/machine.h"
 #include "twin/core/run_record.h"
+#include "twin/procedure/machine_options.h"
 
 /// Runs of the turntable's and the hobbing machine's twins without a disk.
 namespace twinbench::test {
@@ -33,18 +34,14 @@ struct BenchRun {
 template <class Twin>
 BenchRun RunBench(const Scenario& scenario) {
   Twin twin(scenario);
-  auto bench = twin.Bench();
+  MachineBench bench = twin.Devices();
   MemorySink sink;
-  procedure::CarryOut(bench, scenario, sink);
+  BenchOf(scenario).drive(bench, scenario, sink, {}, {});
   return {scenario, sink.readings, twin.Truth()};
 }
 
 inline BenchRun RunTurntable(const Scenario& scenario) {
-  sim::TurntableTwin twin(scenario);
-  MachineBench bench = twin.Devices();
-  MemorySink sink;
-  procedure::DriveTurntable(bench, scenario, sink, {}, {});
-  return {scenario, sink.readings, twin.Truth()};
+  return RunBench<sim::TurntableTwin>(scenario);
 }
 inline BenchRun RunHob(const Scenario& scenario) {
   return RunBench<sim::HobTwin>(scenario);

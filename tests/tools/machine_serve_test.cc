@@ -36,6 +36,22 @@ tilts_arcsec = [60.0, 100.0]
 verification_positions = 12
 )";
 
+constexpr const char* kStops = R"(bench = "encoder_comparison"
+seed = 5
+[encoder_procedure]
+turns = 1.0
+stops_per_turn = 36
+passes = [1, -1]
+mounting_deg = [0.0, 180.0]
+)";
+
+constexpr const char* kHob = R"(bench = "hob_transmission"
+seed = 3
+[hob_procedure]
+turns = 1
+samples_per_turn = 72
+)";
+
 /// A bench, one of its axes and limits that are too narrow for it.
 struct Machine {
   const char *name, *scenario, *axis, *limits;
@@ -152,7 +168,9 @@ constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n", *kNarr
 INSTANTIATE_TEST_SUITE_P(Benches, ServedMachineProgram,
                          ::testing::Values(Machine{"Circles", kCircles, "x", kNarrow_mm},
                                            Machine{"Freeform", kFreeform, "x", kNarrow_mm},
-                                           Machine{"Turntable", kTurntable, "turntable", kNarrow_deg}),
+                                           Machine{"Turntable", kTurntable, "turntable", kNarrow_deg},
+                                           Machine{"Stops", kStops, "shaft", kNarrow_deg},
+                                           Machine{"Hob", kHob, "hob", kNarrow_deg}),
                          [](const auto& bench) { return std::string(bench.param.name); });
 
 }  // namespace

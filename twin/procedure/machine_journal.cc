@@ -39,6 +39,10 @@ struct MachineJournal::Devices : Clock, MachineController, InstrumentSet, Machin
     inner.machine.StartArc(arc);
     Note("machine", Text(arc));
   }
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override {
+    inner.machine.StartTurning(axis, speed_rad_s, ramp);
+    Note("machine", fmt::format("turn {} {} {}", axis, speed_rad_s, ramp.count()));
+  }
   void Stop() override {
     inner.machine.Stop();
     Note("machine", "stop");
@@ -58,9 +62,9 @@ struct MachineJournal::Devices : Clock, MachineController, InstrumentSet, Machin
     Note("instruments", "look");
     return shown;
   }
-  void Arm(int samples) override {
-    inner.instruments.Arm(samples);
-    Note("instruments", fmt::format("arm {}", samples));
+  void Arm(int samples, int lines) override {
+    inner.instruments.Arm(samples, lines);
+    Note("instruments", fmt::format("arm {} {}", samples, lines));
   }
   LatchedSamples Latched() override { return inner.instruments.Latched(); }
 

@@ -50,6 +50,10 @@ void MachineSequencer::Mount(int setup, const std::string& what) {
     options_.log->AppendEvent(bench_.clock.Now(), "fixture", fmt::format("mounted set-up {}: {}", setup, what));
 }
 
+void MachineSequencer::Pause(Duration duration) {
+  WaitFor(bench_, duration, options_);
+}
+
 void MachineSequencer::LetHandsWork(Duration duration) {
   if (bench_.simulation) WaitFor(bench_, duration, options_);
 }
@@ -107,7 +111,7 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
   if (options_.log) options_.log->RequireRoom();
   const double takes_s = PathTime_s(arc);
   int next = first;
-  bench_.instruments.Arm(end - first);
+  bench_.instruments.Arm(end - first, 0);
   bench_.machine.StartArc(arc);
   Watch(bench_, takes_s, options_, [&] {
     const LatchedSamples latched = bench_.instruments.Latched();
@@ -123,6 +127,37 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
     throw DeviceFault(
         FaultKind::kGap, "instruments",
         fmt::format("the path has ended and {} of {} triggers latched nothing", end - next, end - first));
+}
+
+void MachineSequencer::Turn(std::size_t axis, double speed_rad_s, Duration ramp) {
+  HearOperator(options_);
+  RequireHealth(bench_);
+  bench_.machine.StartTurning(axis, speed_rad_s, ramp);
+  WaitFor(bench_, ramp, options_);
+}
+
+void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
+  constexpr Duration kNothingComes = std::chrono::minutes(1);
+  HearOperator(options_);
+  if (options_.log) options_.log->RequireRoom();
+  bench_.instruments.Arm(end - first, lines);
+  Duration in_vain{0};
+  for (int next = first; next < end;) {
+    WaitFor(bench_, poll, options_);
+    RequireHealth(bench_);
+    const LatchedSamples latched = bench_.instruments.Latched();
+    for (const Reading& sample : latched.samples) {
+      if (next == end)
+        throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than they were armed for");
+      Keep(next++, sample);
+    }
+    if (latched.overrun)
+      throw DeviceFault(FaultKind::kOverrun, "instruments",
+                        "their memory ran full; look at it more often (poll_s) or keep fewer lines (samples_per_turn)");
+    in_vain = latched.samples.empty() ? in_vain + poll : Duration(0);
+    if (in_vain > kNothingComes)
+      throw DeviceFault(FaultKind::kStalled, "instruments", "no line of the encoder for a minute");
+  }
 }
 
 void MachineSequencer::TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter) {
@@ -149,7 +184,7 @@ Reading MachineSequencer::Joined(const Reading& planned, const Reading& sample) 
   joined.temperature_degC = sample.temperature_degC;
   Reading shown = sample;
   for (const ReadingColumn& column : FormatOf(plan_.bench).columns) {
-    if (column.IsShown() && column.number && !column.print(sample).empty())
+    if (IsOfInstruments(column) && !column.print(sample).empty())
       column.number(joined) = column.number(shown);
   }
   return joined;

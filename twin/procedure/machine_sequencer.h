@@ -30,6 +30,7 @@ class MachineSequencer {
 
   const std::vector<Reading>& plan() const { return plan_.readings; }
   const std::vector<MachineAxis>& axes() const { return bench_.machine.Axes(); }
+  bool IsSimulated() const { return bench_.simulation != nullptr; }
   /// Where the axes stand, by their encoders.
   std::vector<double> Where();
 
@@ -42,6 +43,8 @@ class MachineSequencer {
   /// Takes off what is mounted.
   void Clear();
   void Mount(int setup, const std::string& what);
+  /// Lets time pass.
+  void Pause(Duration duration);
   /// What a hand needs passes on a simulated bench; on a real one it takes the time that it takes.
   void LetHandsWork(Duration duration);
   /// Waits until the bench has rested so long since the last reading that was due before `reading`.
@@ -56,6 +59,13 @@ class MachineSequencer {
   void Go(const Arc& arc);
   /// Goes round; the arc's triggers take the readings [first, end).
   void Sweep(const Arc& arc, int first, int end);
+  /// Lets an axis go over to a speed, and waits until it has.
+  void Turn(std::size_t axis, double speed_rad_s, Duration ramp);
+  /// Takes the readings [first, end) from the instruments' memory, one at every so many lines of the encoder that they
+  /// count, while an axis turns.
+  /// @param poll  From look to look.
+  /// @throws DeviceFault kOverrun if their memory ran full between two looks; kStalled if nothing comes for a minute.
+  void Collect(int first, int end, int lines, Duration poll);
   /// Takes a reading when it is due, and so long behind the end of the last move that nothing settles any more.
   /// @param enter  What the way knows by now and the plan did not.
   void TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter = {});

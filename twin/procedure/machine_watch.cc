@@ -157,6 +157,15 @@ void RequireMayGo(MachineBench& bench, const std::vector<double>& to, const Mach
   }
 }
 
+void RequireHealth(MachineBench& bench) {
+  const std::vector<AxisState> states = bench.machine.State();
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const MachineAxis& axis = bench.machine.Axes()[k];
+    CheckHealth(axis, states[k]);
+    if (states[k].limit != 0) throw DeviceFault(FaultKind::kLimit, axis.name, "stands on a limit switch");
+  }
+}
+
 void Watch(MachineBench& bench, double takes_s, const MachineOptions& options, const std::function<void()>& look) {
   MachineWatcher watcher(bench, takes_s, options);
   while (!bench.machine.Settles(options.log ? kMachineLook : kUnwatched)) {

@@ -23,7 +23,7 @@ constexpr double kTravel_rad = 10.0 * units::turn;
 }  // namespace
 
 struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFixture, Indexer, Simulation, NumberedRuns {
-  explicit Impl(const Scenario& its_scenario) : scenario(its_scenario) { Begin(); }
+  explicit Impl(const Scenario& its_scenario) : begun(its_scenario), scenario(its_scenario) { Begin(); }
 
   void Begin() { world = std::make_unique<TurntableWorld>(scenario); }
 
@@ -57,7 +57,7 @@ struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFix
     return sample;
   }
   Reading Look() override { return Sample(world->LookOnTheWay()); }
-  void Arm(int) override {
+  void Arm(int, int) override {
     throw DeviceFault(FaultKind::kRefused, "instruments", "an autocollimator is read at rest, not latched");
   }
   LatchedSamples Latched() override { return {}; }
@@ -77,7 +77,7 @@ struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFix
 
   // Simulation
   void Restart() override { Begin(); }
-  void BeRun(int repeat) override { scenario = InRun(scenario, repeat); }
+  void BeRun(int repeat) override { scenario = InRun(begun, repeat); }
   void SetPaced(bool) override {}  // it never is
 
   Reading Sample(const AutocollimatorReading& shown) {
@@ -89,7 +89,7 @@ struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFix
     return sample;
   }
 
-  Scenario scenario;
+  Scenario begun, scenario;  // as it was made, and in its present run
   std::vector<MachineAxis> axes = {{"turntable", true}};
   std::unique_ptr<TurntableWorld> world;
 };
