@@ -131,7 +131,7 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
 
 void MachineSequencer::Turn(std::size_t axis, double speed_rad_s, Duration ramp) {
   HearOperator(options_);
-  RequireHealth(bench_);
+  RequireMayTurn(bench_, options_);
   bench_.machine.StartTurning(axis, speed_rad_s, ramp);
   WaitFor(bench_, ramp, options_);
 }
@@ -144,7 +144,7 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
   Duration in_vain{0};
   for (int next = first; next < end;) {
     WaitFor(bench_, poll, options_);
-    RequireHealth(bench_);
+    RequireMayTurn(bench_, options_);
     const LatchedSamples latched = bench_.instruments.Latched();
     for (const Reading& sample : latched.samples) {
       if (next == end)
