@@ -20,15 +20,18 @@ struct Failing {
   std::vector<Reading> readings = DrivenInProcess(scenario);
   std::string undisturbed = TextOf(readings, scenario);
 
-  /// @param alter  Of the bench file.
-  MachineRun Run(std::map<int, std::string> faults, const std::vector<Reading>& kept = {}) {
+  /// Who is silent shall not be waited for long.
+  std::string BenchFile() const {
     std::string file = served.BenchFile();
     for (auto at = file.find("kind = \"scpi\""); at != std::string::npos;
          at = file.find("kind = \"scpi\"", at + 20))
       file.insert(at, "timeout_s = 0.5\n");
     const auto machine = file.find("kind = \"esp\"");
     file.insert(machine, "timeout_s = 0.5\n");
-    return RunServedMachine(served, scenario, file, std::move(faults), kept);
+    return file;
+  }
+  MachineRun Run(std::map<int, std::string> faults, const std::vector<Reading>& kept = {}) {
+    return RunServedMachine(served, scenario, BenchFile(), std::move(faults), kept);
   }
   void ExpectGoneOn(const MachineRun& run, const std::string& fault) {
     EXPECT_EQ(run.stopped_by, "") << run.said;
@@ -123,7 +126,7 @@ TEST(MachineFaults, ALimitSwitchEndsTheRun) {
 TEST(MachineFaults, AStopIsReadBack) {
   Failing bench;
   const std::vector<MachineAxis> axes = {{"x"}, {"y"}};
-  const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench.served.BenchFile(), "served.toml", axes),
+  const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench.BenchFile(), "served.toml", axes),
                                               axes, InstrumentColumns(FormatOf(kCircularBench).columns));
   MachineBench devices = opened->Devices();
   devices.simulation->Restart();

@@ -5,7 +5,8 @@
 #include "tests/tools/program.h"
 #include "twin/core/run_record.h"
 
-/// `serve` and `measure` of benches with a machine, as two programs that only share a network.
+/// `serve` and `measure` of every bench, as two programs that only share a network; what only the benches with a machine do.
+/// serve_test.cc has what only the rotary one does.
 namespace twinbench::test {
 namespace {
 
@@ -17,15 +18,15 @@ seed = 7
 [circular_procedure]
 setups = [ { instrument = "bar", radius_mm = 110.230 }, { instrument = "grid", radius_mm = 90.0 } ]
 feeds_mm_min = [1000.0]
-points = 24
-stops = 6
+points = 20
+stops = 4
 )";
 
 constexpr const char* kFreeform = R"(bench = "freeform_five_axis"
 seed = 9
 [freeform_procedure]
 mounts = [ { }, { z_mm = 60.0, yaw_deg = 90.0 } ]
-poses = 24
+poses = 18
 )";
 
 constexpr const char* kTurntable = R"(bench = "turntable_autocollimator"
@@ -52,6 +53,15 @@ turns = 1
 samples_per_turn = 72
 )";
 
+constexpr const char* kRotary = R"(bench = "rotary_4dof"
+seed = 5
+[mechanics]
+fidelity = "kinematic"
+[procedure]
+positions = 12
+shifts = [0, 5]
+)";
+
 /// A bench, one of its axes and limits that are too narrow for it.
 struct Machine {
   const char *name, *scenario, *axis, *limits;
@@ -69,8 +79,8 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
     std::filesystem::remove(At("bench.toml"));
     auto server = std::make_unique<Process>(
         At(""),
-        std::vector<std::string>{"serve", "small.toml", "--scpi-port", "0", "--esp-port", "0", "--write-bench",
-                                 "bench.toml", "--speed", speed, "--tables", machine},
+        std::vector<std::string>{"serve", "small.toml", "--iiod-port", "0", "--scpi-port", "0", "--esp-port", "0",
+                                 "--write-bench", "bench.toml", "--speed", speed, "--tables", machine},
         "server");
     for (int k = 0; k < 500 && !Exists("bench.toml"); ++k) std::this_thread::sleep_for(milliseconds(20));
     EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
@@ -95,16 +105,18 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
   std::string readings_;
 };
 
-TEST_P(ServedMachineProgram, MeasuresTheReadingsThatRunMakesBitForBit) {
+using EveryBench = ServedMachineProgram;
+
+TEST_P(EveryBench, MeasuresTheReadingsThatRunMakesBitForBit) {
   const auto server = Serve("max", "pty");
   Succeed(Measure("measured"));
   EXPECT_EQ(ReadingsOf("measured"), readings_);
   EXPECT_EQ(Read("measured/results.json"), Read("run/results.json"));
   EXPECT_FALSE(Exists("measured/truth.json")) << "nobody at a real bench knows the truth";
-  EXPECT_THAT(RunRecord::Open(At("measured"))->provenance().source, HasSubstr("twinbench,machine-bench"));
+  EXPECT_THAT(RunRecord::Open(At("measured"))->provenance().source, HasSubstr("twinbench,"));
 }
 
-TEST_P(ServedMachineProgram, AKilledMeasurementGoesOnToTheSameReadings) {
+TEST_P(EveryBench, AKilledMeasurementGoesOnToTheSameReadings) {
   const auto server = Serve("1000");
   Process run(At(""), Measure("killed"));
   AwaitProgress(run);
@@ -164,14 +176,19 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
   EXPECT_EQ(ReadingsOf("own"), readings_);
 }
 
-constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n", *kNarrow_deg = "lower_deg = -20.0\nupper_deg = 20.0\n";
-INSTANTIATE_TEST_SUITE_P(Benches, ServedMachineProgram,
-                         ::testing::Values(Machine{"Circles", kCircles, "x", kNarrow_mm},
-                                           Machine{"Freeform", kFreeform, "x", kNarrow_mm},
-                                           Machine{"Turntable", kTurntable, "turntable", kNarrow_deg},
-                                           Machine{"Stops", kStops, "shaft", kNarrow_deg},
-                                           Machine{"Hob", kHob, "hob", kNarrow_deg}),
-                         [](const auto& bench) { return std::string(bench.param.name); });
+constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n",
+                     *kNarrow_deg = "lower_deg = -20.0\nupper_deg = 20.0\n";
+constexpr Machine kMachines[] = {{"Circles", kCircles, "x", kNarrow_mm},
+                                 {"Freeform", kFreeform, "x", kNarrow_mm},
+                                 {"Turntable", kTurntable, "turntable", kNarrow_deg},
+                                 {"Stops", kStops, "shaft", kNarrow_deg},
+                                 {"Hob", kHob, "hob", kNarrow_deg}};
+std::string NameOfMachine(const ::testing::TestParamInfo<Machine>& machine) {
+  return machine.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(Machines, EveryBench, ::testing::ValuesIn(kMachines), NameOfMachine);
+INSTANTIATE_TEST_SUITE_P(Tables, EveryBench, ::testing::Values(Machine{"Rotary", kRotary, "", ""}), NameOfMachine);
+INSTANTIATE_TEST_SUITE_P(Machines, ServedMachineProgram, ::testing::ValuesIn(kMachines), NameOfMachine);
 
 }  // namespace
 }  // namespace twinbench::test
