@@ -178,8 +178,8 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
 
 constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n",
                      *kNarrow_deg = "lower_deg = -20.0\nupper_deg = 20.0\n";
+constexpr Machine kFreeformMachine = {"Freeform", kFreeform, "x", kNarrow_mm};  // as circles, and takes longest
 constexpr Machine kMachines[] = {{"Circles", kCircles, "x", kNarrow_mm},
-                                 {"Freeform", kFreeform, "x", kNarrow_mm},
                                  {"Turntable", kTurntable, "turntable", kNarrow_deg},
                                  {"Stops", kStops, "shaft", kNarrow_deg},
                                  {"Hob", kHob, "hob", kNarrow_deg}};
@@ -187,7 +187,8 @@ std::string NameOfMachine(const ::testing::TestParamInfo<Machine>& machine) {
   return machine.param.name;
 }
 INSTANTIATE_TEST_SUITE_P(Machines, EveryBench, ::testing::ValuesIn(kMachines), NameOfMachine);
-INSTANTIATE_TEST_SUITE_P(Tables, EveryBench, ::testing::Values(Machine{"Rotary", kRotary, "", ""}), NameOfMachine);
+INSTANTIATE_TEST_SUITE_P(Others, EveryBench, ::testing::Values(kFreeformMachine, Machine{"Rotary", kRotary, "", ""}),
+                         NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Machines, ServedMachineProgram, ::testing::ValuesIn(kMachines), NameOfMachine);
 
 }  // namespace
