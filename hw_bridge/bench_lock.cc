@@ -73,7 +73,7 @@ std::set<std::string> AddressesOf(const BenchFile& file) {
 std::set<std::string> AddressesOf(const MachineFile& file) {
   std::set<std::string> addresses;
   if (file.kind != "hardware") return addresses;
-  for (const ControlSettings* settings : {&file.machine, &file.fixture, &file.clock})
+  for (const ControlSettings* settings : {&file.machine, &file.indexer, &file.fixture, &file.clock})
     AddAddress(addresses, *settings);
   for (const InstrumentSettings& instrument : file.instruments) AddAddress(addresses, instrument.connection);
   return addresses;

@@ -59,8 +59,17 @@ void AddInstrument(std::vector<ScenarioKey>& keys, std::size_t number, Instrumen
   t.Text("fields", &s.words.fields, {}, "of a sample, in order: columns, time_ns, status, ignored");
   t.Add("scale", kOne, {}, &s.words.scale, "field times this is in the column's unit, one a field; without it 1");
   t.Text("read", &s.words.read, {}, "query that is answered by one sample");
-  t.Text("arm", &s.words.arm, {}, "command that makes the next {samples} triggers latch; empty: it cannot");
+  t.Text("look", &s.words.look, {}, "the same on the way to a reading, where something is nulled; empty: as read");
+  t.Text("arm", &s.words.arm, {}, "command that lets it latch {samples}, at triggers or every {lines} lines; empty: it cannot");
   t.Text("fetch", &s.words.fetch, {}, "query that is answered by <samples>,<1: some are lost>,<the samples>");
+}
+
+void AddIndexer(std::vector<ScenarioKey>& keys, MachineFile& file) {
+  MachineKeys t(keys, "indexer");
+  t.Connection(file.indexer, {"scpi", "console", "none"});
+  t.Text("move", &file.indexer_words.move, {}, "command that seats it at {tooth}, which is at {deg}");
+  t.Text("done", &file.indexer_words.done, {}, "query that is answered by 1 once it is seated; empty: none");
+  t.Add("move_timeout", kSeconds, Above(0.0, 3600.0), &file.indexer_words.move_timeout_s, "of one seating");
 }
 
 /// What keys say together.
@@ -75,6 +84,7 @@ class MachineFileCheck {
       throw InputError(Where("machine"), "there is no [machine] with a kind", "kind = \"esp\"");
     for (std::size_t k = 0; k < axes.size(); ++k) CheckAxis(axes[k], file_.axes[k]);
     CheckInstruments();
+    CheckConnection("indexer", file_.indexer);
     CheckConnection("fixture", file_.fixture);
     CheckConnection("clock", file_.clock);
   }
@@ -154,6 +164,7 @@ std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis
     t.Add("in_position", fine, Above(0.0, 1e9), &file.axes[k].in_position, "encoder against command when settled");
   }
   for (std::size_t k = 0; k < kMostInstruments; ++k) AddInstrument(keys, k, file.instruments[k]);
+  AddIndexer(keys, file);
   MachineKeys(keys, "fixture").Connection(file.fixture, {"scpi", "console"});
   MachineKeys(keys, "clock").Connection(file.clock, {"host", "scpi"});
   return keys;
@@ -181,7 +192,7 @@ MachineFile LoadMachineFile(const std::string& path, const std::vector<MachineAx
 }
 
 std::string WriteServedMachineFile(const ServedAddresses& a, const std::string& machine,
-                                   const std::vector<std::string>& fields) {
+                                   const std::vector<std::string>& fields, bool indexer) {
   Require(machine == "esp" || machine == "pty", "a machine is driven by esp or pty");
   Require(machine != "pty" || !a.pty.empty(), "there is no pseudo-terminal");
   const std::string scpi = fmt::format(
@@ -193,8 +204,8 @@ std::string WriteServedMachineFile(const ServedAddresses& a, const std::string& 
       "# What `twinbench serve` shows, as `twinbench measure --bench` takes it.\n"
       "kind = \"hardware\"\nname = \"served twin\"\n\n"
       "[machine]\nkind = \"esp\"\naddress = \"{}\"\nidentity = \"ESP301 twinbench \"\ntraverse_mm_s = 200.0\n\n"
-      "[instrument_1]\n{}fields = [{}]\n\n[fixture]\n{}\n[clock]\n{}",
-      esp, scpi, list, scpi, scpi);
+      "[instrument_1]\n{}look = \"INST:LOOK?\"\narm = \"INST:ARM {{samples}},{{lines}}\"\nfields = [{}]\n\n{}[fixture]\n{}\n[clock]\n{}",
+      esp, scpi, list, indexer ? "[indexer]\n" + scpi + "\n" : "", scpi, scpi);
 }
 
 }  // namespace twinbench::hw

@@ -4,6 +4,7 @@
 
 #include "hw_bridge/bench_file.h"
 #include "hw_bridge/control/instrument_box.h"
+#include "hw_bridge/control/scpi_instruments.h"
 #include "twin/core/machine.h"
 
 /// bench.toml of a bench whose machine is driven. docs/hardware.md lists every key.
@@ -27,6 +28,8 @@ struct MachineFile {
   double stall_s = AxisLimits{}.stall_s, move_timeout_s = AxisLimits{}.move_timeout_s;
   std::vector<AxisLimits> axes;  // one an axis
   std::array<InstrumentSettings, kMostInstruments> instruments;
+  ControlSettings indexer{"none"};     // scpi | console | none
+  IndexerWords indexer_words;
   ControlSettings fixture{"console"};  // scpi | console
   ControlSettings clock{"host"};       // host | scpi
 };
@@ -42,7 +45,8 @@ MachineFile ParseMachineFile(const std::string& text, const std::string& name,
 /// The bench file that drives what `twinbench serve` shows of such a bench.
 /// @param machine  How the machine is driven: "esp" (over TCP) or "pty" (over the pseudo-terminal).
 /// @param fields   Of a sample.
+/// @param indexer  Whether there is one.
 std::string WriteServedMachineFile(const ServedAddresses& addresses, const std::string& machine,
-                                   const std::vector<std::string>& fields);
+                                   const std::vector<std::string>& fields, bool indexer = false);
 
 }  // namespace twinbench::hw

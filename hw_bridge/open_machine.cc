@@ -25,11 +25,14 @@ class OpenedMachine : public OpenMachine {
         clock_(OpenClock(file.clock, elapsed, run)),
         machine_(OpenAxes(file, axes)),
         instruments_(OpenInstruments(file, columns), *clock_),
+        indexer_(OpenIndexer(file)),
         fixture_(OpenFixture(file.fixture)) {
     machine_.HearStop(stop_asked);
   }
 
-  MachineBench Devices() override { return {*clock_, machine_, instruments_, *fixture_, simulation_.get()}; }
+  MachineBench Devices() override {
+    return {*clock_, machine_, instruments_, *fixture_, simulation_.get(), indexer_.get()};
+  }
   std::vector<AxisLimits> Limits() const override { return machine_.limits(); }
 
   std::string Identity() const override {
@@ -69,6 +72,12 @@ class OpenedMachine : public OpenMachine {
     return boxes;
   }
 
+  std::unique_ptr<Indexer> OpenIndexer(const MachineFile& file) {
+    if (file.indexer.kind == "none") return nullptr;
+    if (file.indexer.kind == "console") return std::make_unique<ConsoleIndexer>(Operator(std::cin, std::cerr));
+    return std::make_unique<ScpiIndexer>(conversations_.LineOf("indexer", file.indexer), file.indexer_words);
+  }
+
   std::unique_ptr<MachineFixture> OpenFixture(const ControlSettings& settings) {
     if (settings.kind == "console") return std::make_unique<ConsoleMachineFixture>(Operator(std::cin, std::cerr));
     return std::make_unique<ScpiMachineFixture>(conversations_.LineOf("fixture", settings));
@@ -81,6 +90,7 @@ class OpenedMachine : public OpenMachine {
   std::unique_ptr<Clock> clock_;
   EspMachine machine_;
   InstrumentBoxes instruments_;
+  std::unique_ptr<Indexer> indexer_;
   std::unique_ptr<MachineFixture> fixture_;
 };
 

@@ -42,9 +42,11 @@ std::string EspMachine::Place(std::size_t axis, double at) const {
 void EspMachine::Prepare() {
   const int opening = line_.Openings();
   if (opening == prepared_opening_) return;
-  std::string group = "1HN1";
-  for (std::size_t k = 1; k < axes_.size(); ++k) group += "," + std::to_string(k + 1);
-  TellEsp(line_, group);  // first: a controller of other axes says no
+  if (IsGroup()) {
+    std::string group = "1HN1";
+    for (std::size_t k = 1; k < axes_.size(); ++k) group += "," + std::to_string(k + 1);
+    TellEsp(line_, group);  // first: a controller of other axes says no
+  }
   knows_status_ = EspKnows(line_, "1MS?");
   for (std::size_t k = 0; k < axes_.size(); ++k) {
     const int unit = axes_[k].is_rotary ? kUnitDegree : kUnitMillimetre;
@@ -101,8 +103,8 @@ void EspMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
   Require(to.size() == axes_.size(), "a move has one coordinate an axis");
   for (std::size_t k = 0; k < to.size(); ++k) RequireWithinLimits(k, to[k]);
   RequireReady(State());
-  SetFeed(feed_m_s);
-  std::string command = "1HL";
+  if (IsGroup()) SetFeed(feed_m_s);
+  std::string command = IsGroup() ? "1HL" : "1PA";
   for (std::size_t k = 0; k < to.size(); ++k) command += (k > 0 ? "," : "") + PrintInUnit(to[k], axes_[k].to_SI());
   TellEsp(line_, command);
   RequireUnderstood(to);
@@ -133,6 +135,12 @@ void EspMachine::StartArc(const Arc& arc) {
                                PrintInUnit(arc.trigger_step_rad, units::deg)));
   TellEsp(line_, fmt::format("1HC{},{},{}", PrintInUnit(arc.centre_m[0], units::mm),
                              PrintInUnit(arc.centre_m[1], units::mm), PrintInUnit(arc.sweep_rad, units::deg)));
+}
+
+void EspMachine::StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) {
+  RequireReady(State());
+  TellEsp(line_, fmt::format("{}{},{}", OfAxis(axis, "XV"), PrintInUnit(speed_rad_s, units::deg),
+                             PrintInUnit(ToSeconds(ramp) * 1e3, 1.0)));
 }
 
 bool EspMachine::Settles(Duration within) {

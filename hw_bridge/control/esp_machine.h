@@ -13,7 +13,7 @@ struct EspMachineManner {
   bool polls_pass_time = false;  // the bench is a served twin with its clock held
 };
 
-/// A machine whose axes 1 to N are group 1 of a Newport ESP controller (docs/protocols.md).
+/// A machine whose axes 1 to N are group 1 of a Newport ESP controller (docs/protocols.md), or its axis 1 alone.
 ///
 /// A move beyond the soft limits sends nothing, and one that was understood otherwise is stopped. An axis that has
 /// lost its origin is not moved before Home: kRestarted.
@@ -35,12 +35,14 @@ class EspMachine : public MachineController {
   std::vector<AxisLimits> Travel() override;
   void StartMove(const std::vector<double>& to, double feed_m_s) override;
   void StartArc(const Arc& arc) override;
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override;
   bool Settles(Duration within) override;
   std::vector<AxisState> State() override;
   void Stop() override;
   void Home() override;
 
  private:
+  bool IsGroup() const { return axes_.size() > 1; }  // one axis alone goes by itself, as fast as it was set up
   void Prepare();
   void SetFeed(double feed_m_s);
   AxisState ReadAxis(std::size_t axis, const std::function<std::string()>& next_answer);

@@ -29,10 +29,9 @@ ReadingColumn ColumnOf(const std::string& field, const std::vector<ReadingColumn
                    fmt::format("\"{}\"", Nearest(field, known)));
 }
 
-std::string WithSamples(std::string command, int samples) {
-  const std::string place = "{samples}";
+std::string Filled(std::string command, const std::string& place, int number) {
   if (const auto at = command.find(place); at != std::string::npos)
-    command.replace(at, place.size(), std::to_string(samples));
+    command.replace(at, place.size(), std::to_string(number));
   return command;
 }
 
@@ -80,17 +79,18 @@ Reading InstrumentBox::Sample(const std::string& query, const std::vector<std::s
   return sample;
 }
 
-Reading InstrumentBox::Read() {
-  const std::string answer = line_.Ask(words_.read);
-  const std::vector<std::string> texts = Fields(words_.read, answer);
-  if (texts.size() != fields_.size())
-    line_.FailProtocol(words_.read, answer, fmt::format("{} fields", fields_.size()));
-  return Sample(words_.read, texts, 0);
+Reading InstrumentBox::Ask(const std::string& query) {
+  const std::string answer = line_.Ask(query);
+  const std::vector<std::string> texts = Fields(query, answer);
+  if (texts.size() != fields_.size()) line_.FailProtocol(query, answer, fmt::format("{} fields", fields_.size()));
+  return Sample(query, texts, 0);
 }
 
-void InstrumentBox::Arm(int samples) {
+void InstrumentBox::Arm(int samples, int lines) {
   waiting.clear();
-  TellScpi(line_, WithSamples(words_.arm, samples));
+  if (lines > 0 && words_.arm.find("{lines}") == std::string::npos)
+    line_.Fail(FaultKind::kRefused, "latches at triggers only: its `arm` has no place for {lines}");
+  TellScpi(line_, Filled(Filled(words_.arm, "{samples}", samples), "{lines}", lines));
 }
 
 /// One answer holds no more than fits in a line: it is asked until there are no more.
@@ -120,21 +120,29 @@ void InstrumentBox::Merge(const Reading& sample, Reading& into) const {
 }
 
 Reading InstrumentBoxes::Read() {
+  return AllNow(&InstrumentBox::Read);
+}
+
+Reading InstrumentBoxes::Look() {
+  return AllNow(&InstrumentBox::Look);
+}
+
+Reading InstrumentBoxes::AllNow(Reading (InstrumentBox::*show)()) {
   Reading all;
   all.time = clock_.Now();
-  for (InstrumentBox& box : boxes_) box.Merge(box.Read(), all);
+  for (InstrumentBox& box : boxes_) box.Merge((box.*show)(), all);
   return all;
 }
 
-void InstrumentBoxes::Arm(int samples) {
+void InstrumentBoxes::Arm(int samples, int lines) {
   bool any = false;
   for (InstrumentBox& box : boxes_) {
-    if (box.Latches()) box.Arm(samples);
+    if (box.Latches()) box.Arm(samples, lines);
     any = any || box.Latches();
   }
   if (!any)
     throw DeviceFault(FaultKind::kRefused, "instruments",
-                      "none of the bench file's can be latched by the machine's triggers");
+                      "none of the bench file's can be latched");
 }
 
 LatchedSamples InstrumentBoxes::Latched() {

@@ -16,7 +16,10 @@ struct InstrumentWords {
   std::vector<std::string> fields;
   std::vector<double> scale;               // a field times this is in its column's unit; empty: all 1
   std::string read = "INST:READ?";         // answered by one sample
-  std::string arm = "INST:ARM {samples}";  // empty: it cannot latch, and is read with every look
+  std::string look;                        // the same on the way to a reading; empty: as read
+  /// At the machine's triggers, or at every {lines}-th line that it counts. Empty: it cannot latch, and is read with every
+  /// look.
+  std::string arm = "INST:ARM {samples}";
   std::string fetch = "INST:FETC?";        // answered by how many samples, 1 if some are lost, and the samples
 };
 
@@ -30,8 +33,10 @@ class InstrumentBox {
 
   bool Latches() const { return !words_.arm.empty(); }
   /// What it shows now.
-  Reading Read();
-  void Arm(int samples);
+  Reading Read() { return Ask(words_.read); }
+  Reading Look() { return Ask(words_.look.empty() ? words_.read : words_.look); }
+  /// @throws DeviceFault kRefused for lines where its words have no place for them.
+  void Arm(int samples, int lines);
   /// Takes what was latched into `waiting`. @return false if some are lost.
   bool Fetch();
 
@@ -47,6 +52,7 @@ class InstrumentBox {
     ReadingColumn column;  // without a name: none
     double scale = 1.0;
   };
+  Reading Ask(const std::string& query);
   Reading Sample(const std::string& query, const std::vector<std::string>& texts, std::size_t from);
   bool Put(const Field& field, const std::string& text, Reading& sample) const;
   std::vector<std::string> Fields(const std::string& query, const std::string& answer);
@@ -61,11 +67,13 @@ class InstrumentBoxes : public InstrumentSet {
  public:
   InstrumentBoxes(std::vector<InstrumentBox> boxes, Clock& clock) : boxes_(std::move(boxes)), clock_(clock) {}
   Reading Read() override;
+  Reading Look() override;
   /// @throws DeviceFault kRefused if no instrument can latch.
-  void Arm(int samples) override;
+  void Arm(int samples, int lines) override;
   LatchedSamples Latched() override;
 
  private:
+  Reading AllNow(Reading (InstrumentBox::*show)());
   bool AllHaveOne() const;
   Reading TakeOne(const std::vector<Reading>& now);
 

@@ -29,6 +29,12 @@ void ConsoleMachineFixture::Mount(int setup, const std::string& what) {
   hands_.DoAndConfirm("fixture", fmt::format("Set-up {}: mount {}.", setup, what));
 }
 
+void ConsoleIndexer::IndexTo(int tooth, double angle_rad) {
+  hands_.DoAndConfirm("indexer",
+                      fmt::format("Lift the multi-tooth table, turn it to tooth {} ({:.6g} deg) and seat it.", tooth,
+                                  angle_rad / units::deg));
+}
+
 void ConsoleGoniometer::MoveTo(double yaw_rad, double tilt_rad) {
   hands_.DoAndConfirm("goniometer", fmt::format("Turn the grating to yaw {:.2f} arcsec, tilt {:.2f} arcsec.",
                                                 yaw_rad / units::arcsec, tilt_rad / units::arcsec));

@@ -41,6 +41,16 @@ class ConsoleMachineFixture : public MachineFixture {
   Operator hands_;
 };
 
+class ConsoleIndexer : public Indexer {
+ public:
+  explicit ConsoleIndexer(Operator hands) : hands_(hands) {}
+  void IndexTo(int tooth, double angle_rad) override;
+  bool IsByHand() const override { return true; }
+
+ private:
+  Operator hands_;
+};
+
 class ConsoleGoniometer : public Goniometer {
  public:
   explicit ConsoleGoniometer(Operator hands) : hands_(hands) {}

@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <thread>
+
 #include "hw_bridge/control/scpi.h"
 #include "twin/core/number_text.h"
 #include "twin/core/units.h"
 
 namespace twinbench::hw {
+namespace {
+
+constexpr Duration kLookAtIndexer = std::chrono::milliseconds(50);
+
+}  // namespace
 
 AutocollimatorReading ScpiAutocollimator::Read() {
   const std::string query = "AUT:READ?";
@@ -35,6 +42,22 @@ void ScpiGoniometer::MoveTo(double yaw_rad, double tilt_rad) {
 void ScpiFixture::Mount(int setup, double clamp_rad, double reseat_rad) {
   TellScpi(line_, fmt::format("FIXT:MOUN {},{},{}", setup, PrintInUnit(clamp_rad, units::deg),
                               PrintInUnit(reseat_rad, units::deg)));
+}
+
+void ScpiIndexer::IndexTo(int tooth, double angle_rad) {
+  const auto end = std::chrono::steady_clock::now() + FromSeconds(words_.move_timeout_s);
+  std::string command = words_.move;
+  for (const auto& [place, text] : {std::pair<std::string, std::string>{"{tooth}", std::to_string(tooth)},
+                                    {"{deg}", PrintInUnit(angle_rad, units::deg)}}) {
+    if (const auto at = command.find(place); at != std::string::npos) command.replace(at, place.size(), text);
+  }
+  TellScpi(line_, command, FromSeconds(words_.move_timeout_s));
+  while (!words_.done.empty() && line_.AskWholeNumber(words_.done) != 1) {
+    if (std::chrono::steady_clock::now() > end)
+      line_.Fail(FaultKind::kNotInPosition,
+                 fmt::format("tooth {} is not seated after {:g} s", tooth, words_.move_timeout_s));
+    std::this_thread::sleep_for(kLookAtIndexer);
+  }
 }
 
 void ScpiMachineFixture::Clear() {

@@ -43,6 +43,25 @@ class ScpiFixture : public Fixture {
   DeviceLine line_;
 };
 
+/// What is said to an indexer, as a bench file describes it.
+struct IndexerWords {
+  std::string move = "IND:MOVE {tooth},{deg}";  // lifts, turns and seats it
+  std::string done;                       // query that is answered by 1 once it is seated; empty: it answers when it is
+  double move_timeout_s = 60.0;
+};
+
+/// A line of SCPI in one thing: the command is followed by SYST:ERR?.
+class ScpiIndexer : public Indexer {
+ public:
+  ScpiIndexer(DeviceLine line, IndexerWords words) : line_(std::move(line)), words_(std::move(words)) {}
+  /// @throws DeviceFault kNotInPosition too, if it does not say within its time that it is seated.
+  void IndexTo(int tooth, double angle_rad) override;
+
+ private:
+  DeviceLine line_;
+  IndexerWords words_;
+};
+
 class ScpiMachineFixture : public MachineFixture {
  public:
   explicit ScpiMachineFixture(DeviceLine line) : line_(std::move(line)) {}

@@ -65,6 +65,24 @@ Outcome Line(const EspMachineCall& call) {
   return {};
 }
 
+/// The others stay where they were sent.
+Outcome OneAxis(const EspMachineCall& call) {
+  std::vector<double> to;
+  for (const AxisState& axis : call.served.machine.State()) to.push_back(axis.commanded);
+  to[call.axis] = Number(Values(call, 1)[0], AxisOf(call).to_SI());
+  RequireAllowed(call, to);
+  call.served.paced.Spend([&] { call.served.machine.StartMove(to, call.client.feed_m_s); });
+  return {};
+}
+
+Outcome TurnOn(const EspMachineCall& call) {
+  const std::vector<std::string> values = Values(call, 2);
+  const double speed_rad_s = Number(values[0], units::deg), ramp_ms = Number(values[1], 1.0);
+  if (ramp_ms < 0.0 || ramp_ms > kLongestSettling_ms) throw EspError{kEspOutOfRange};
+  call.served.paced.Spend([&] { call.served.machine.StartTurning(call.axis, speed_rad_s, FromSeconds(ramp_ms * 1e-3)); });
+  return {};
+}
+
 Outcome GroupArc(const EspMachineCall& call) {
   const std::vector<std::string> values = Values(call, 3);
   Arc arc;
@@ -229,7 +247,9 @@ constexpr EspMachineEntry kEspMachineCommands[] = {
     {"XT", false, EspPart::kGroup, SetTriggers},
     {"XT", true, EspPart::kGroup, Triggers},
     {"XD", true, EspPart::kGroup, SettledWithin},
+    {"XV", false, EspPart::kAxis, TurnOn},
     {"TP", true, EspPart::kAxis, AxisPosition},
+    {"PA", false, EspPart::kAxis, OneAxis},
     {"PA", true, EspPart::kAxis, AxisTarget},
     {"MD", true, EspPart::kAxis, AxisDone},
     {"MS", true, EspPart::kAxis, AxisStatus},

@@ -3,12 +3,13 @@
 #include "hw_bridge/serve/scpi_commands.h"
 #include "hw_bridge/serve/scpi_parameters.h"
 #include "hw_bridge/serve/served_machine.h"
+#include "twin/core/units.h"
 
 /// The instruments on a machine, and who mounts them. The machine itself speaks ESP.
 namespace twinbench::hw {
 namespace {
 
-constexpr long long kMostSamples = 1'000'000;
+constexpr long long kMostSamples = 1'000'000, kMostLines = 1'000'000, kMostTeeth = 1'000'000;
 constexpr std::size_t kMostAtOnce = 100;  // a line stays within what clients read as one
 
 ServedMachine& MachineOf(const ScpiCall& call) {
@@ -45,10 +46,28 @@ Outcome ReadNow(const ScpiCall& call) {
   return {SampleText(served, sample), nullptr};
 }
 
+Outcome LookNow(const ScpiCall& call) {
+  ServedMachine& served = AskedInstruments(call);
+  Reading sample;
+  served.paced.Spend([&] { sample = served.bench.instruments.Look(); });
+  return {SampleText(served, sample), nullptr};
+}
+
+Outcome Index(const ScpiCall& call) {
+  ServedMachine& served = MachineOf(call);
+  if (!served.bench.indexer) throw ScpiError{-241, "no indexer"};
+  const int tooth = static_cast<int>(ScpiWholeNumber(call.parameters[0], -kMostTeeth, kMostTeeth));
+  const double angle_rad = ScpiNumber(call.parameters[1], units::deg);
+  served.paced.Spend([&] { served.bench.indexer->IndexTo(tooth, angle_rad); });
+  return {};
+}
+
 Outcome Arm(const ScpiCall& call) {
   ServedMachine& served = MachineOf(call);
   served.paced.CatchUp();
-  served.bench.instruments.Arm(static_cast<int>(ScpiWholeNumber(call.parameters[0], 1, kMostSamples)));
+  const int samples = static_cast<int>(ScpiWholeNumber(call.parameters[0], 1, kMostSamples));
+  const bool at_lines = call.parameters.size() > 1;
+  served.bench.instruments.Arm(samples, at_lines ? static_cast<int>(ScpiWholeNumber(call.parameters[1], 0, kMostLines)) : 0);
   served.latched.clear();
   served.overrun = false;
   return {};
@@ -84,8 +103,10 @@ Outcome MountOnMachine(const ScpiCall& call) {
 constexpr ScpiCommand kMachineCommands[] = {
     {"INSTrument:CHANnels", true, 0, 0, Channels},
     {"INSTrument:READ", true, 0, 0, ReadNow},
-    {"INSTrument:ARM", false, 1, 0, Arm},
+    {"INSTrument:LOOK", true, 0, 0, LookNow},
+    {"INSTrument:ARM", false, 1, 1, Arm},
     {"INSTrument:FETCh", true, 0, 0, Fetch},
+    {"INDexer:MOVE", false, 2, 0, Index},
     {"FIXTure:CLEar", false, 0, 0, ClearFixture},
     {"FIXTure:MOUNt", false, 1, 1, MountOnMachine},
 };

@@ -30,6 +30,11 @@ void ShownMachine::StartArc(const Arc& arc) {
   Begin();
 }
 
+void ShownMachine::StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) {
+  machine_.StartTurning(axis, speed_rad_s, ramp);
+  Begin();
+}
+
 /// The machine stops in the middle of its way, if it has not come to the end of it before.
 void ShownMachine::Strike() {
   if (!Stops(mishap_.kind) || IsStuck() || clock_.Now() < mishap_.strikes) return;

@@ -21,6 +21,7 @@ class ShownMachine : public MachineController {
   std::vector<AxisLimits> Travel() override { return limits_; }
   void StartMove(const std::vector<double>& to, double feed_m_s) override;
   void StartArc(const Arc& arc) override;
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override;
   bool Settles(Duration within) override;
   std::vector<AxisState> State() override;
   void Stop() override;

@@ -3,19 +3,31 @@
 #include <cmath>
 
 #include "tests/machine/benches.h"
+#include "tests/support/angle_benches.h"
 #include "tests/support/machine_run.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/driven.h"
 #include "twin/benches/circular_motion/twin/live.h"
+#include "twin/procedure/machine_watch.h"
 #include "twin/sim/driven_machine.h"
 
 /// Same scenario, same seed, same readings: on the twin in this program and through the network.
 namespace twinbench::test {
 namespace {
 
-class MachineContract : public ::testing::TestWithParam<Scenario (*)()> {
+/// A bench of few readings, and its name.
+struct ShortBench {
+  const char* name;
+  Scenario (*scenario)();
+};
+
+std::string NameOf(const ::testing::TestParamInfo<ShortBench>& bench) {
+  return bench.param.name;
+}
+
+class MachineContract : public ::testing::TestWithParam<ShortBench> {
  protected:
-  const Scenario scenario_ = GetParam()();
+  const Scenario scenario_ = GetParam().scenario();
   const std::vector<Reading> in_process_ = DrivenInProcess(scenario_);
 };
 
@@ -32,6 +44,10 @@ TEST_P(MachineContract, GivesTheSameBitsThroughTheNetwork) {
     EXPECT_EQ(TextOf(run.log.readings, scenario_), TextOf(in_process_, scenario_)) << machine;
     EXPECT_TRUE(run.log.attempts.empty());
   }
+}
+
+TEST_P(MachineContract, IsWhatRunCarriesOut) {
+  EXPECT_EQ(TextOf(ReadingsByRecord(scenario_), scenario_), TextOf(in_process_, scenario_));
 }
 
 TEST_P(MachineContract, WritesDownWhatItAskedOfTheDevices) {
@@ -57,7 +73,7 @@ TEST_P(MachineContract, AResumedRunMakesTheSameReadings) {
 
 TEST_P(MachineContract, ARecordOfAnotherBenchIsNotGoneOnWith) {
   std::vector<Reading> before(in_process_.begin(), in_process_.begin() + 3);
-  before[1].temperature_degC += 1e-9;
+  before[1].time += Duration(1);
   const ServedMachineTwin served(scenario_);
   EXPECT_THROW(RunServedMachine(served, scenario_, served.BenchFile(), {}, before), InputError);
 }
@@ -98,7 +114,10 @@ TEST_P(MachineContract, ARealBenchGoesOnWithTheReadingThatIsMissing) {
   }
 }
 
-TEST_P(MachineContract, EveryDeviceSchedulesEvents) {
+/// Those whose axes go along lines and arcs.
+using DrivenContract = MachineContract;
+
+TEST_P(DrivenContract, EveryDeviceSchedulesEvents) {
   const auto twin = BenchOf(scenario_).make_devices(scenario_);
   MachineBench bench = twin->Devices();
   MemoryLog log;
@@ -108,7 +127,10 @@ TEST_P(MachineContract, EveryDeviceSchedulesEvents) {
   for (const char* device : {"axes", "fixture"}) EXPECT_GT(scheduled.at(device), 0U) << device;
 }
 
-TEST_P(MachineContract, APathBeyondTheTravelIsRefused) {
+/// Those whose axes can be sent somewhere.
+using SentContract = MachineContract;
+
+TEST_P(SentContract, APathBeyondTheTravelIsRefused) {
   const auto twin = BenchOf(scenario_).make_devices(scenario_);
   MachineController& machine = twin->Devices().machine;
   std::vector<double> to;
@@ -117,20 +139,25 @@ TEST_P(MachineContract, APathBeyondTheTravelIsRefused) {
   for (const AxisState& axis : machine.State()) EXPECT_FALSE(axis.moving);
 }
 
-TEST_P(MachineContract, AStopLeavesTheAxesWhereTheyAre) {
+TEST_P(SentContract, AStopLeavesTheAxesWhereTheyAre) {
   const auto twin = BenchOf(scenario_).make_devices(scenario_);
   MachineBench bench = twin->Devices();
   std::vector<double> to;
-  for (const AxisState& axis : bench.machine.State()) to.push_back(axis.encoder - 0.02);
+  const std::vector<AxisState> before = bench.machine.State();
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const double way = bench.machine.Axes()[k].is_rotary ? 1.0 : 0.02;  // rad or m
+    to.push_back(before[k].encoder - std::min(way, 0.5 * (before[k].encoder - bench.machine.Travel()[k].lower)));
+  }
   bench.machine.StartMove(to, 0.01);
-  EXPECT_FALSE(bench.machine.Settles(std::chrono::seconds(1)));
+  EXPECT_FALSE(bench.machine.Settles(std::chrono::milliseconds(100)));
   bench.machine.Stop();
+  bench.clock.Wait(std::chrono::seconds(5));  // bodies come to rest
   const std::vector<AxisState> stopped = bench.machine.State();
   bench.clock.Wait(std::chrono::seconds(5));
   for (std::size_t k = 0; k < stopped.size(); ++k) {
     EXPECT_FALSE(stopped[k].moving);
     EXPECT_GT(std::abs(stopped[k].encoder - to[k]), 0.01) << "it was on its way";
-    EXPECT_EQ(bench.machine.State()[k].encoder, stopped[k].encoder);
+    EXPECT_NEAR(bench.machine.State()[k].encoder, stopped[k].encoder, 1e-6);
   }
 }
 
@@ -141,12 +168,91 @@ TEST_P(MachineContract, AReadingBesideThePlanIsOneToo) {
   bench.clock.Wait(std::chrono::seconds(3));  // no reading is due now
   const Reading sample = bench.instruments.Read();
   EXPECT_EQ(sample.time, bench.clock.Now());
-  EXPECT_TRUE(std::isfinite(sample.temperature_degC));
+  EXPECT_EQ(std::isfinite(sample.temperature_degC), std::isfinite(in_process_[0].temperature_degC));
   EXPECT_TRUE(std::ranges::any_of(columns, [&](const ReadingColumn& c) { return !c.print(sample).empty(); }));
 }
 
-INSTANTIATE_TEST_SUITE_P(Benches, MachineContract, ::testing::Values(ShortCircles, ShortFreeform),
-                         [](const auto& bench) { return bench.index == 0 ? "Circles" : "Freeform"; });
+constexpr ShortBench kDriven[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}, {"Stops", ShortStops}};
+constexpr ShortBench kSentByItself[] = {{"Turntable", ShortTurntable}, {"Polygon", ShortPolygon}};
+constexpr ShortBench kTurning[] = {{"Hob", ShortHob}};
+INSTANTIATE_TEST_SUITE_P(Driven, MachineContract, ::testing::ValuesIn(kDriven), NameOf);
+INSTANTIATE_TEST_SUITE_P(SentByItself, MachineContract, ::testing::ValuesIn(kSentByItself), NameOf);
+INSTANTIATE_TEST_SUITE_P(Turning, MachineContract, ::testing::ValuesIn(kTurning), NameOf);
+INSTANTIATE_TEST_SUITE_P(Driven, SentContract, ::testing::ValuesIn(kDriven), NameOf);
+INSTANTIATE_TEST_SUITE_P(SentByItself, SentContract, ::testing::ValuesIn(kSentByItself), NameOf);
+INSTANTIATE_TEST_SUITE_P(Driven, DrivenContract, ::testing::ValuesIn(kDriven), NameOf);
+
+/// A spindle that was told to turn does until it is stopped, and the stop is read back; it cannot be sent anywhere.
+TEST(TurningAxis, TurnsUntilItIsStopped) {
+  const Scenario scenario = ShortHob();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  EXPECT_THROW(bench.machine.StartMove({1.0}, 0.0), DeviceFault);
+  bench.machine.StartTurning(0, 5.0, std::chrono::seconds(2));
+  EXPECT_FALSE(bench.machine.Settles(std::chrono::seconds(10)));
+  EXPECT_TRUE(bench.machine.State()[0].moving);
+  EXPECT_NEAR(bench.machine.State()[0].encoder, 45.0, 0.01) << "5 in the mean of the ramp, 40 behind it";
+  EXPECT_TRUE(procedure::StopMachine(bench).is_sure);
+  EXPECT_FALSE(bench.machine.State()[0].moving);
+}
+
+TEST(TurningAxis, IsNoneOfAMachineThatIsSent) {
+  const Scenario scenario = ShortStops();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  EXPECT_THROW(twin->Devices().machine.StartTurning(0, 1.0, std::chrono::seconds(1)), DeviceFault);
+}
+
+TEST(Comparison, InMotionCannotBeDriven) {
+  Scenario scenario = ShortStops();
+  EncoderOf(scenario).encoder_procedure.kind = "sweep";
+  EXPECT_THROW(BenchOf(scenario).make_devices(scenario), InputError);
+}
+
+TEST(Comparison, SeveralHeadsAreReadOnATwinOnly) {
+  Scenario scenario = ShortStops();
+  EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 1.0};
+  const std::vector<Reading> driven = DrivenInProcess(scenario);
+  EXPECT_EQ(TextOf(driven, scenario), TextOf(ReadingsByRecord(scenario), scenario));
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  bench.simulation = nullptr;
+  MemoryLog log;
+  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, {}), DeviceFault);
+}
+
+/// Somebody who turns the multi-tooth table by hand is not asked to while the turntable moves.
+TEST(MultitoothByHand, IsTurnedOnceTheTurntableStands) {
+  const Scenario scenario = ShortTurntable();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  struct Hands : Indexer {
+    Hands(MachineBench& its_bench) : bench(its_bench), inner(*its_bench.indexer) {}
+    void IndexTo(int tooth, double angle_rad) override {
+      EXPECT_FALSE(bench.machine.State()[0].moving);
+      EXPECT_NEAR(angle_rad, tooth * units::deg, 1e-12);
+      EXPECT_NEAR(std::remainder(bench.machine.State()[0].commanded + angle_rad, units::deg), 0.0, 300 * units::arcsec);
+      inner.IndexTo(tooth, angle_rad);
+      ++times;
+    }
+    bool IsByHand() const override { return true; }
+    MachineBench& bench;
+    Indexer& inner;
+    int times = 0;
+  } hands(bench);
+  bench.indexer = &hands;
+  MemoryLog log;
+  BenchOf(scenario).drive(bench, scenario, log, {}, {});
+  EXPECT_EQ(hands.times, 33) << "a stop each";
+}
+
+TEST(MultitoothByHand, WithoutAnIndexerIsRefused) {
+  const Scenario scenario = ShortTurntable();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  bench.indexer = nullptr;
+  MemoryLog log;
+  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, {}), DeviceFault);
+}
 
 /// Off the plan everything is computed anew from what was taken before; on it the plan's own course is used. Both
 /// must be one physics: 3 ns beside every planned instant the machine shows the same to 1 pm, for it needs

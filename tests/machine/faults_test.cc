@@ -6,6 +6,7 @@
 
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/procedure/machine_watch.h"
 #include "twin/procedure/standing.h"
 
@@ -16,19 +17,25 @@ namespace {
 using testing::HasSubstr;
 
 struct Failing {
-  Scenario scenario = ShortCircles();
-  ServedMachineTwin served{scenario};
-  std::string undisturbed = TextOf(DrivenInProcess(scenario), scenario);
+  explicit Failing(Scenario (*make)() = ShortCircles) : scenario(make()) {}
 
-  /// @param alter  Of the bench file.
-  MachineRun Run(std::map<int, std::string> faults, const std::vector<Reading>& kept = {}) {
+  Scenario scenario;
+  ServedMachineTwin served{scenario};
+  std::vector<Reading> readings = DrivenInProcess(scenario);
+  std::string undisturbed = TextOf(readings, scenario);
+
+  /// Who is silent shall not be waited for long.
+  std::string BenchFile() const {
     std::string file = served.BenchFile();
     for (auto at = file.find("kind = \"scpi\""); at != std::string::npos;
          at = file.find("kind = \"scpi\"", at + 20))
       file.insert(at, "timeout_s = 0.5\n");
     const auto machine = file.find("kind = \"esp\"");
     file.insert(machine, "timeout_s = 0.5\n");
-    return RunServedMachine(served, scenario, file, std::move(faults), kept);
+    return file;
+  }
+  MachineRun Run(std::map<int, std::string> faults, const std::vector<Reading>& kept = {}) {
+    return RunServedMachine(served, scenario, BenchFile(), std::move(faults), kept);
   }
   void ExpectGoneOn(const MachineRun& run, const std::string& fault) {
     EXPECT_EQ(run.stopped_by, "") << run.said;
@@ -47,6 +54,55 @@ TEST(MachineFaults, ThatPassCostOneAttemptAndNoBit) {
   bench.ExpectGoneOn(bench.Run({{32, "machine,restart"}}), "restarted");
   bench.ExpectGoneOn(bench.Run({{32, "instruments,mute"}}), "timeout");
   bench.ExpectGoneOn(bench.Run({{32, "instruments,gap"}}), "overrun");
+}
+
+/// Faults of connections and controllers, wherever they meet a bench.
+class FaultsOfEveryBench : public ::testing::TestWithParam<Scenario (*)()> {};
+
+TEST_P(FaultsOfEveryBench, CostOneAttemptAndNoBit) {
+  Failing bench(GetParam());
+  constexpr int kTogether = 32;  // readings of a simulation are kept so many at a time
+  const int when = std::ssize(bench.readings) > kTogether ? kTogether : 0;
+  bench.ExpectGoneOn(bench.Run({{when, "machine,disconnect"}}), "dropped");
+  bench.ExpectGoneOn(bench.Run({{when, "machine,restart"}}), "restarted");
+  bench.ExpectGoneOn(bench.Run({{when, "instruments,mute"}}), "timeout");
+}
+
+INSTANTIATE_TEST_SUITE_P(Benches, FaultsOfEveryBench,
+                         ::testing::Values(ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortHob));
+
+TEST(MachineFaults, ASpindleThatTurnsBeyondItsLimitsIsStopped) {
+  const Scenario scenario = ShortHob();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  MemoryLog log;
+  procedure::MachineOptions options;
+  options.log = &log;
+  options.axes = {AxisLimits{.lower = -1.0, .upper = 100.0}};
+  try {
+    BenchOf(scenario).drive(bench, scenario, log, {}, options);
+    FAIL() << "a turn of the table takes more";
+  } catch (const DeviceFault& fault) {
+    EXPECT_EQ(fault.kind(), FaultKind::kLimit);
+  }
+  EXPECT_FALSE(bench.machine.State()[0].moving);
+  EXPECT_FALSE(log.readings.empty()) << "what was taken before is kept";
+}
+
+TEST(MachineFaults, CountersThatNobodyEmptiesInTimeEndARun) {
+  Scenario scenario = ShortHob();
+  HobOf(scenario).hob_procedure.fifo_samples = 2;
+  HobOf(scenario).hob_procedure.poll_s = 60.0;
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  MemoryLog log;
+  try {
+    BenchOf(scenario).drive(bench, scenario, log, {}, {});
+    FAIL() << "two places are not enough";
+  } catch (const DeviceFault& fault) {
+    EXPECT_EQ(fault.kind(), FaultKind::kOverrun);
+  }
+  EXPECT_EQ(log.readings.size(), 2u) << "those behind them are lost, those before are not";
 }
 
 /// What ends a run keeps what was taken, and the run can be gone on with.
@@ -74,7 +130,7 @@ TEST(MachineFaults, ALimitSwitchEndsTheRun) {
 TEST(MachineFaults, AStopIsReadBack) {
   Failing bench;
   const std::vector<MachineAxis> axes = {{"x"}, {"y"}};
-  const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench.served.BenchFile(), "served.toml", axes),
+  const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench.BenchFile(), "served.toml", axes),
                                               axes, InstrumentColumns(FormatOf(kCircularBench).columns));
   MachineBench devices = opened->Devices();
   devices.simulation->Restart();

@@ -18,7 +18,9 @@
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 #include "twin/core/effect_catalogue.h"
+#include "twin/core/machine.h"
 #include "twin/core/run_record.h"
+#include "twin/procedure/machine_options.h"
 
 /// Runs of the turntable's and the hobbing machine's twins without a disk.
 namespace twinbench::test {
@@ -32,9 +34,9 @@ struct BenchRun {
 template <class Twin>
 BenchRun RunBench(const Scenario& scenario) {
   Twin twin(scenario);
-  auto bench = twin.Bench();
+  MachineBench bench = twin.Devices();
   MemorySink sink;
-  procedure::CarryOut(bench, scenario, sink);
+  BenchOf(scenario).drive(bench, scenario, sink, {}, {});
   return {scenario, sink.readings, twin.Truth()};
 }
 

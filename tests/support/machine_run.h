@@ -37,7 +37,7 @@ class ServedMachineTwin {
   std::string BenchFile(const std::string& machine = "esp") const {
     std::vector<std::string> fields = {"time_ns", "status"};
     for (const ReadingColumn& column : columns_) fields.push_back(column.name);
-    return hw::WriteServedMachineFile(at(), machine, fields);
+    return hw::WriteServedMachineFile(at(), machine, fields, devices_->Devices().indexer != nullptr);
   }
   /// One answer of its SCPI port.
   std::string Ask(const std::string& line) const {

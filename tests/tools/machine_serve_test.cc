@@ -5,7 +5,8 @@
 #include "tests/tools/program.h"
 #include "twin/core/run_record.h"
 
-/// `serve` and `measure` of benches with a machine, as two programs that only share a network.
+/// `serve` and `measure` of every bench, as two programs that only share a network; what only the benches with a machine do.
+/// serve_test.cc has what only the rotary one does.
 namespace twinbench::test {
 namespace {
 
@@ -17,21 +18,59 @@ seed = 7
 [circular_procedure]
 setups = [ { instrument = "bar", radius_mm = 110.230 }, { instrument = "grid", radius_mm = 90.0 } ]
 feeds_mm_min = [1000.0]
-points = 24
-stops = 6
+points = 20
+stops = 4
 )";
 
 constexpr const char* kFreeform = R"(bench = "freeform_five_axis"
 seed = 9
 [freeform_procedure]
 mounts = [ { }, { z_mm = 60.0, yaw_deg = 90.0 } ]
-poses = 24
+poses = 18
 )";
 
-class ServedMachineProgram : public Program, public ::testing::WithParamInterface<const char*> {
+constexpr const char* kTurntable = R"(bench = "turntable_autocollimator"
+seed = 7
+[turntable_procedure]
+positions = 24
+tilts_arcsec = [60.0, 100.0]
+verification_positions = 12
+)";
+
+constexpr const char* kStops = R"(bench = "encoder_comparison"
+seed = 5
+[encoder_procedure]
+turns = 1.0
+stops_per_turn = 36
+passes = [1, -1]
+mounting_deg = [0.0, 180.0]
+)";
+
+constexpr const char* kHob = R"(bench = "hob_transmission"
+seed = 3
+[hob_procedure]
+turns = 1
+samples_per_turn = 72
+)";
+
+constexpr const char* kRotary = R"(bench = "rotary_4dof"
+seed = 5
+[mechanics]
+fidelity = "kinematic"
+[procedure]
+positions = 12
+shifts = [0, 5]
+)";
+
+/// A bench, one of its axes and limits that are too narrow for it.
+struct Machine {
+  const char *name, *scenario, *axis, *limits;
+};
+
+class ServedMachineProgram : public Program, public ::testing::WithParamInterface<Machine> {
  protected:
   ServedMachineProgram() {
-    Write("small.toml", GetParam());
+    Write("small.toml", GetParam().scenario);
     Succeed({"run", "small.toml", "-o", "run"});
     readings_ = ReadingsOf("run");
   }
@@ -40,8 +79,8 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
     std::filesystem::remove(At("bench.toml"));
     auto server = std::make_unique<Process>(
         At(""),
-        std::vector<std::string>{"serve", "small.toml", "--scpi-port", "0", "--esp-port", "0", "--token", "--write-bench",
-                                 "bench.toml", "--speed", speed, "--tables", machine},
+        std::vector<std::string>{"serve", "small.toml", "--iiod-port", "0", "--scpi-port", "0", "--esp-port", "0", "--token",
+                                 "--write-bench", "bench.toml", "--speed", speed, "--tables", machine},
         "server");
     for (int k = 0; k < 500 && !Exists("bench.toml"); ++k) std::this_thread::sleep_for(milliseconds(20));
     EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
@@ -66,16 +105,18 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
   std::string readings_;
 };
 
-TEST_P(ServedMachineProgram, MeasuresTheReadingsThatRunMakesBitForBit) {
+using EveryBench = ServedMachineProgram;
+
+TEST_P(EveryBench, MeasuresTheReadingsThatRunMakesBitForBit) {
   const auto server = Serve("max", "pty");
   Succeed(Measure("measured"));
   EXPECT_EQ(ReadingsOf("measured"), readings_);
   EXPECT_EQ(Read("measured/results.json"), Read("run/results.json"));
   EXPECT_FALSE(Exists("measured/truth.json")) << "nobody at a real bench knows the truth";
-  EXPECT_THAT(RunRecord::Open(At("measured"))->provenance().source, HasSubstr("twinbench,machine-bench"));
+  EXPECT_THAT(RunRecord::Open(At("measured"))->provenance().source, HasSubstr("twinbench,"));
 }
 
-TEST_P(ServedMachineProgram, AKilledMeasurementGoesOnToTheSameReadings) {
+TEST_P(EveryBench, AKilledMeasurementGoesOnToTheSameReadings) {
   const auto server = Serve("1000");
   Process run(At(""), Measure("killed"));
   AwaitProgress(run);
@@ -120,12 +161,12 @@ TEST_P(ServedMachineProgram, ARehearsalAsksTheControllerAndMovesNothing) {
   const auto server = Serve("max");
   const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
-  EXPECT_THAT(fine.err, HasSubstr("axis x"));
+  EXPECT_THAT(fine.err, HasSubstr(std::string("axis ") + GetParam().axis));
   EXPECT_THAT(fine.err, HasSubstr("limits "));
-  Write("bench.toml", Read("bench.toml") + "\n[axis_x]\nlower_mm = -20.0\nupper_mm = 20.0\n");
+  Write("bench.toml", Read("bench.toml") + "\n[axis_" + GetParam().axis + "]\n" + GetParam().limits);
   const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "narrow"});
   EXPECT_EQ(narrow.exit_code, 1);
-  EXPECT_THAT(narrow.err, HasSubstr("PROBLEM: axis x would travel"));
+  EXPECT_THAT(narrow.err, HasSubstr(std::string("PROBLEM: axis ") + GetParam().axis + " would travel"));
   EXPECT_FALSE(Exists("narrow"));
 }
 
@@ -135,8 +176,20 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
   EXPECT_EQ(ReadingsOf("own"), readings_);
 }
 
-INSTANTIATE_TEST_SUITE_P(Benches, ServedMachineProgram, ::testing::Values(kCircles, kFreeform),
-                         [](const auto& bench) { return bench.index == 0 ? "Circles" : "Freeform"; });
+constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n",
+                     *kNarrow_deg = "lower_deg = -20.0\nupper_deg = 20.0\n";
+constexpr Machine kFreeformMachine = {"Freeform", kFreeform, "x", kNarrow_mm};  // as circles, and takes longest
+constexpr Machine kMachines[] = {{"Circles", kCircles, "x", kNarrow_mm},
+                                 {"Turntable", kTurntable, "turntable", kNarrow_deg},
+                                 {"Stops", kStops, "shaft", kNarrow_deg},
+                                 {"Hob", kHob, "hob", kNarrow_deg}};
+std::string NameOfMachine(const ::testing::TestParamInfo<Machine>& machine) {
+  return machine.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(Machines, EveryBench, ::testing::ValuesIn(kMachines), NameOfMachine);
+INSTANTIATE_TEST_SUITE_P(Others, EveryBench, ::testing::Values(kFreeformMachine, Machine{"Rotary", kRotary, "", ""}),
+                         NameOfMachine);
+INSTANTIATE_TEST_SUITE_P(Machines, ServedMachineProgram, ::testing::ValuesIn(kMachines), NameOfMachine);
 
 }  // namespace
 }  // namespace twinbench::test

@@ -35,8 +35,17 @@ class TravelWatch : public MachineController {
     }
     machine_.StartArc(arc);
   }
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override {
+    machine_.StartTurning(axis, speed_rad_s, ramp);
+    turning_ = true;
+  }
   bool Settles(Duration within) override { return machine_.Settles(within); }
-  std::vector<AxisState> State() override { return machine_.State(); }
+  /// How far an axis comes that turns on and on is seen where it is looked at.
+  std::vector<AxisState> State() override {
+    std::vector<AxisState> states = machine_.State();
+    for (std::size_t k = 0; turning_ && k < states.size(); ++k) Note(k, states[k].encoder);
+    return states;
+  }
   void Stop() override { machine_.Stop(); }
   void Home() override { machine_.Home(); }
 
@@ -48,6 +57,7 @@ class TravelWatch : public MachineController {
 
   MachineController& machine_;
   std::vector<AxisLimits>& travel_;
+  bool turning_ = false;
 };
 
 class ReadingCount : public ReadingSink {
@@ -85,7 +95,7 @@ MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<Axi
   const auto twin = bench.make_devices(scenario);
   MachineBench inner = twin->Devices();
   TravelWatch machine(inner.machine, rehearsal.travel);
-  MachineBench watched{inner.clock, machine, inner.instruments, inner.fixture, inner.simulation};
+  MachineBench watched{inner.clock, machine, inner.instruments, inner.fixture, inner.simulation, inner.indexer};
   ReadingCount count(rehearsal);
   bench.drive(watched, scenario, count, {}, {});
   rehearsal.duration_s = ToSeconds(inner.clock.Now());

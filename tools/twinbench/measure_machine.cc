@@ -35,8 +35,11 @@ std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, con
                                                 const std::vector<MachineAxis>& axes, Duration elapsed) {
   const Bench& bench = BenchOf(scenario);
   if (file.kind == "twin") return std::make_unique<OwnMachine>(bench.make_devices(scenario));
+  if (bench.make_devices(scenario)->Devices().indexer && file.indexer.kind == "none")
+    throw InputError(file.path, "there is no [indexer] to turn the multi-tooth table",
+                     "[indexer] with kind = \"scpi\" or \"console\"");
   return hw::OpenMachineHardware(file, axes, InstrumentColumns(bench.format->columns), elapsed, scenario.repeat,
-                                 StopWasAsked);
+                                StopWasAsked);
 }
 
 /// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.

@@ -125,7 +125,7 @@ void ServeMachine(const ServeArguments& a, const Scenario& scenario, LivePage& p
     });
   const std::string language = a.tables == "pty" ? "pty" : "esp";
   ServeShown(server, a,
-             a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields));
+             a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields, twin->Devices().indexer != nullptr));
 }
 
 void WarnOfOthers(const std::string& bind, bool asks_token) {

@@ -65,6 +65,9 @@ class MachineController {
   /// @param feed_m_s  0: as fast as the machine goes.
   virtual void StartMove(const std::vector<double>& to, double feed_m_s) = 0;
   virtual void StartArc(const Arc& arc) = 0;
+  /// Lets a rotary axis turn on and on: it goes over to a speed within `ramp`; returns at once. 0 brings it to rest.
+  /// @throws DeviceFault kRefused of a controller that cannot.
+  virtual void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp);
   /// Lets at most `within` pass.
   /// @return true as soon as the path has ended and every axis is in position, false if they are not.
   virtual bool Settles(Duration within) = 0;
@@ -83,8 +86,12 @@ struct LatchedSamples {
 };
 
 inline constexpr const char* kTemperatureColumn = "temperature_degC";
+inline constexpr const char* kReferenceColumn = "reference_deg";  // of a comparison
 
-/// Of a bench's columns those that an instrument may fill: what is shown, and the temperature.
+/// Whether an instrument may fill a column of a bench with a machine: what is shown, what a device is compared with, and
+/// the temperature.
+bool IsOfInstruments(const ReadingColumn& column);
+/// Of a bench's columns those.
 std::vector<ReadingColumn> InstrumentColumns(const std::vector<ReadingColumn>& columns);
 
 /// The instruments of a bench as one set of named channels: InstrumentColumns of its readings. A sample is
@@ -94,8 +101,13 @@ class InstrumentSet {
   virtual ~InstrumentSet() = default;
   /// Reads the resting machine now.
   virtual Reading Read() = 0;
-  /// Empties the memory; the next `samples` triggers are latched.
-  virtual void Arm(int samples) = 0;
+  /// Shows what Read would, on the way to a reading: where something is brought to zero by what it shows. A simulated
+  /// set takes it for none of its readings.
+  virtual Reading Look() { return Read(); }
+  /// Empties the memory; the next `samples` are latched.
+  /// @param lines  One at every so many lines of the encoder that the instruments count; 0: one at each of the
+  ///               machine's triggers.
+  virtual void Arm(int samples, int lines) = 0;
   /// Those latched since the last look.
   virtual LatchedSamples Latched() = 0;
 };
@@ -110,6 +122,18 @@ class MachineFixture {
   virtual void Mount(int setup, const std::string& what) = 0;
 };
 
+/// A table whose rings of face teeth mesh, turned by an indexer or by hand.
+class Indexer {
+ public:
+  virtual ~Indexer() = default;
+  /// Lifts it, turns it and seats it at a tooth, also at the one where it is; counter-clockwise positive seen from above,
+  /// unwrapped. Returns when it is seated.
+  /// @param angle_rad  Of the same tooth.
+  virtual void IndexTo(int tooth, double angle_rad) = 0;
+  /// Somebody has his hands on it: nothing else may move meanwhile.
+  virtual bool IsByHand() const { return false; }
+};
+
 /// The devices of a bench whose machine is driven along a plan. Does not own them.
 struct MachineBench {
   Clock& clock;
@@ -117,6 +141,7 @@ struct MachineBench {
   InstrumentSet& instruments;
   MachineFixture& fixture;
   Simulation* simulation = nullptr;  // none on a real bench
+  Indexer* indexer = nullptr;        // none: the bench has no multi-tooth table
 };
 
 /// What owns the devices of a MachineBench.

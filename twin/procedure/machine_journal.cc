@@ -18,7 +18,7 @@ std::string Text(const Arc& a) {
 
 }  // namespace
 
-struct MachineJournal::Devices : Clock, MachineController, InstrumentSet, MachineFixture {
+struct MachineJournal::Devices : Clock, MachineController, InstrumentSet, MachineFixture, Indexer {
   Devices(MachineBench& its_inner, RunLog& its_log) : inner(its_inner), log(its_log) {}
 
   Time Now() const override { return inner.clock.Now(); }
@@ -39,6 +39,10 @@ struct MachineJournal::Devices : Clock, MachineController, InstrumentSet, Machin
     inner.machine.StartArc(arc);
     Note("machine", Text(arc));
   }
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override {
+    inner.machine.StartTurning(axis, speed_rad_s, ramp);
+    Note("machine", fmt::format("turn {} {} {}", axis, speed_rad_s, ramp.count()));
+  }
   void Stop() override {
     inner.machine.Stop();
     Note("machine", "stop");
@@ -53,9 +57,14 @@ struct MachineJournal::Devices : Clock, MachineController, InstrumentSet, Machin
     Note("instruments", "read");
     return shown;
   }
-  void Arm(int samples) override {
-    inner.instruments.Arm(samples);
-    Note("instruments", fmt::format("arm {}", samples));
+  Reading Look() override {
+    Reading shown = inner.instruments.Look();
+    Note("instruments", "look");
+    return shown;
+  }
+  void Arm(int samples, int lines) override {
+    inner.instruments.Arm(samples, lines);
+    Note("instruments", fmt::format("arm {} {}", samples, lines));
   }
   LatchedSamples Latched() override { return inner.instruments.Latched(); }
 
@@ -67,6 +76,12 @@ struct MachineJournal::Devices : Clock, MachineController, InstrumentSet, Machin
     inner.fixture.Mount(setup, what);
     Note("fixture", fmt::format("mount {} {}", setup, what));
   }
+
+  void IndexTo(int tooth, double angle_rad) override {
+    inner.indexer->IndexTo(tooth, angle_rad);
+    Note("indexer", fmt::format("index {}", tooth));
+  }
+  bool IsByHand() const override { return inner.indexer->IsByHand(); }
 
   void Note(const char* device, const std::string& request) {
     log.Called({inner.clock.Now(), device, request, ""});
@@ -82,7 +97,8 @@ MachineJournal::~MachineJournal() = default;
 
 MachineBench MachineJournal::Bench() {
   if (!devices_) return inner_;
-  return {*devices_, *devices_, *devices_, *devices_, inner_.simulation};
+  Indexer* indexer = inner_.indexer ? devices_.get() : nullptr;
+  return {*devices_, *devices_, *devices_, *devices_, inner_.simulation, indexer};
 }
 
 }  // namespace twinbench::procedure

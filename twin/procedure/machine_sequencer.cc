@@ -16,7 +16,7 @@ namespace {
 
 /// The plan counts in nanoseconds that are rounded; so much later is in time.
 constexpr Duration kInTime = std::chrono::microseconds(1);
-constexpr double kTraverseAtLeast_m_s = 1e-3;
+constexpr double kTraverseAtLeast_m_s = 1e-3, kTurnAtLeast_rad_s = 1.0 * units::deg;
 
 /// A run on a real bench keeps what it has at once; simulated readings come too fast to be waited for one by one.
 constexpr std::size_t kTogetherWatched = 32, kTogetherAlone = 256;
@@ -50,6 +50,14 @@ void MachineSequencer::Mount(int setup, const std::string& what) {
     options_.log->AppendEvent(bench_.clock.Now(), "fixture", fmt::format("mounted set-up {}: {}", setup, what));
 }
 
+void MachineSequencer::Pause(Duration duration) {
+  WaitFor(bench_, duration, options_);
+}
+
+void MachineSequencer::LetHandsWork(Duration duration) {
+  if (bench_.simulation) WaitFor(bench_, duration, options_);
+}
+
 void MachineSequencer::Rest(int reading, Duration duration) {
   if (reading == 0) return;
   const Time until = plan()[static_cast<std::size_t>(reading) - 1].time + duration;
@@ -57,13 +65,32 @@ void MachineSequencer::Rest(int reading, Duration duration) {
 }
 
 void MachineSequencer::MoveTo(const std::vector<double>& to) {
+  Move(to, [] {});
+}
+
+void MachineSequencer::Move(const std::vector<double>& to, const std::function<void()>& meanwhile) {
   HearOperator(options_);
   RequireMayGo(bench_, to, options_);
   const std::vector<double> from = Where();
-  double way_m = 0.0;
-  for (std::size_t k = 0; k < to.size(); ++k) way_m += axes()[k].is_rotary ? 0.0 : std::abs(to[k] - from[k]);
+  double takes_s = 0.0;
+  for (std::size_t k = 0; k < to.size(); ++k)
+    takes_s += std::abs(to[k] - from[k]) / (axes()[k].is_rotary ? kTurnAtLeast_rad_s : kTraverseAtLeast_m_s);
   bench_.machine.StartMove(to, 0.0);
-  Watch(bench_, way_m / kTraverseAtLeast_m_s, options_);
+  meanwhile();
+  Watch(bench_, takes_s, options_);
+}
+
+void MachineSequencer::MoveAndIndex(const std::vector<double>& to, int tooth, double tooth_rad) {
+  if (!bench_.indexer)
+    throw DeviceFault(FaultKind::kRefused, "indexer", "there is none; the multi-tooth table cannot be turned");
+  if (!bench_.indexer->IsByHand()) return Move(to, [&] { Index(tooth, tooth_rad); });
+  MoveTo(to);
+  Index(tooth, tooth_rad);
+}
+
+void MachineSequencer::Index(int tooth, double tooth_rad) {
+  HearOperator(options_);
+  bench_.indexer->IndexTo(tooth, tooth_rad);
 }
 
 double MachineSequencer::PathTime_s(const Arc& arc) {
@@ -84,7 +111,7 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
   if (options_.log) options_.log->RequireRoom();
   const double takes_s = PathTime_s(arc);
   int next = first;
-  bench_.instruments.Arm(end - first);
+  bench_.instruments.Arm(end - first, 0);
   bench_.machine.StartArc(arc);
   Watch(bench_, takes_s, options_, [&] {
     const LatchedSamples latched = bench_.instruments.Latched();
@@ -102,10 +129,46 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
         fmt::format("the path has ended and {} of {} triggers latched nothing", end - next, end - first));
 }
 
-void MachineSequencer::TakeAtRest(int reading, Duration dwell) {
+void MachineSequencer::Turn(std::size_t axis, double speed_rad_s, Duration ramp) {
+  HearOperator(options_);
+  RequireMayTurn(bench_, options_);
+  bench_.machine.StartTurning(axis, speed_rad_s, ramp);
+  WaitFor(bench_, ramp, options_);
+}
+
+void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
+  constexpr Duration kNothingComes = std::chrono::minutes(1);
+  HearOperator(options_);
+  if (options_.log) options_.log->RequireRoom();
+  bench_.instruments.Arm(end - first, lines);
+  Duration in_vain{0};
+  for (int next = first; next < end;) {
+    WaitFor(bench_, poll, options_);
+    RequireMayTurn(bench_, options_);
+    const LatchedSamples latched = bench_.instruments.Latched();
+    for (const Reading& sample : latched.samples) {
+      if (next == end)
+        throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than they were armed for");
+      Keep(next++, sample);
+    }
+    if (latched.overrun)
+      throw DeviceFault(FaultKind::kOverrun, "instruments",
+                        "their memory ran full; look at it more often (poll_s) or keep fewer lines (samples_per_turn)");
+    in_vain = latched.samples.empty() ? in_vain + poll : Duration(0);
+    if (in_vain > kNothingComes)
+      throw DeviceFault(FaultKind::kStalled, "instruments", "no line of the encoder for a minute");
+  }
+}
+
+void MachineSequencer::TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter) {
   if (options_.log) options_.log->RequireRoom();
   WaitUntilDue(reading, dwell);
-  Keep(reading, bench_.instruments.Read());
+  Keep(reading, bench_.instruments.Read(), enter);
+}
+
+Reading MachineSequencer::Look() {
+  HearOperator(options_);
+  return bench_.instruments.Look();
 }
 
 void MachineSequencer::WaitUntilDue(int reading, Duration dwell) {
@@ -121,14 +184,15 @@ Reading MachineSequencer::Joined(const Reading& planned, const Reading& sample) 
   joined.temperature_degC = sample.temperature_degC;
   Reading shown = sample;
   for (const ReadingColumn& column : FormatOf(plan_.bench).columns) {
-    if (column.IsShown() && column.number && !column.print(sample).empty())
+    if (IsOfInstruments(column) && !column.print(sample).empty())
       column.number(joined) = column.number(shown);
   }
   return joined;
 }
 
-void MachineSequencer::Keep(int number, const Reading& sample) {
+void MachineSequencer::Keep(int number, const Reading& sample, const std::function<void(Reading&)>& enter) {
   Reading reading = Joined(plan()[static_cast<std::size_t>(number)], sample);
+  if (enter) enter(reading);
   if (plan_.complete) plan_.complete(reading);
   const double room_degC = reading.temperature_degC;
   if (room_degC < options_.coldest_degC || room_degC > options_.hottest_degC)

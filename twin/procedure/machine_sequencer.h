@@ -30,6 +30,7 @@ class MachineSequencer {
 
   const std::vector<Reading>& plan() const { return plan_.readings; }
   const std::vector<MachineAxis>& axes() const { return bench_.machine.Axes(); }
+  bool IsSimulated() const { return bench_.simulation != nullptr; }
   /// Where the axes stand, by their encoders.
   std::vector<double> Where();
 
@@ -42,24 +43,44 @@ class MachineSequencer {
   /// Takes off what is mounted.
   void Clear();
   void Mount(int setup, const std::string& what);
+  /// Lets time pass.
+  void Pause(Duration duration);
+  /// What a hand needs passes on a simulated bench; on a real one it takes the time that it takes.
+  void LetHandsWork(Duration duration);
   /// Waits until the bench has rested so long since the last reading that was due before `reading`.
   void Rest(int reading, Duration duration);
 
   /// Goes straight to a place, as fast as the machine goes.
   void MoveTo(const std::vector<double>& to);
+  /// The same while the indexer turns its table; behind it where somebody does that by hand.
+  /// @throws DeviceFault kRefused if the bench has no indexer.
+  void MoveAndIndex(const std::vector<double>& to, int tooth, double tooth_rad);
   /// Goes round without taking anything.
   void Go(const Arc& arc);
   /// Goes round; the arc's triggers take the readings [first, end).
   void Sweep(const Arc& arc, int first, int end);
+  /// Lets an axis go over to a speed, and waits until it has.
+  void Turn(std::size_t axis, double speed_rad_s, Duration ramp);
+  /// Takes the readings [first, end) from the instruments' memory, one at every so many lines of the encoder that they
+  /// count, while an axis turns.
+  /// @param poll  From look to look.
+  /// @throws DeviceFault kOverrun if their memory ran full between two looks; kStalled if nothing comes for a minute.
+  void Collect(int first, int end, int lines, Duration poll);
   /// Takes a reading when it is due, and so long behind the end of the last move that nothing settles any more.
-  void TakeAtRest(int reading, Duration dwell);
+  /// @param enter  What the way knows by now and the plan did not.
+  void TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter = {});
+  /// What the instruments show on the way to a reading.
+  Reading Look();
 
   /// Keeps what has been taken. Called by itself every now and then; to be called at the end and behind a fault.
   void Flush();
 
  private:
+  void Index(int tooth, double tooth_rad);
+  /// @param meanwhile  Once the move has begun.
+  void Move(const std::vector<double>& to, const std::function<void()>& meanwhile);
   void WaitUntilDue(int reading, Duration dwell);
-  void Keep(int reading, const Reading& sample);
+  void Keep(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
   Reading Joined(const Reading& planned, const Reading& sample) const;
   void RequireSame(const Reading& reading) const;
   double PathTime_s(const Arc& arc);

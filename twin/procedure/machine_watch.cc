@@ -158,6 +158,20 @@ void RequireMayGo(MachineBench& bench, const std::vector<double>& to, const Mach
   }
 }
 
+void RequireMayTurn(MachineBench& bench, const MachineOptions& options) {
+  const std::vector<AxisState> states = bench.machine.State();
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    const MachineAxis& axis = bench.machine.Axes()[k];
+    CheckHealth(axis, states[k]);
+    if (states[k].limit != 0) throw DeviceFault(FaultKind::kLimit, axis.name, "stands on a limit switch");
+    const AxisLimits limits = LimitsOf(options, k);
+    if (states[k].encoder < limits.lower || states[k].encoder > limits.upper)
+      throw DeviceFault(FaultKind::kLimit, axis.name,
+                        fmt::format("has come to {}, outside the soft limits {} to {}", Place(axis, states[k].encoder),
+                                    Place(axis, limits.lower), Place(axis, limits.upper)));
+  }
+}
+
 void Watch(MachineBench& bench, double takes_s, const MachineOptions& options, const std::function<void()>& look) {
   MachineWatcher watcher(bench, takes_s, options);
   while (!bench.machine.Settles(options.log ? kMachineLook : kUnwatched)) {

@@ -20,6 +20,10 @@ void WaitFor(MachineBench& bench, Duration duration, const MachineOptions& optio
 ///         further; kRestarted for one that has lost its origin; kRefused for one that reports a fault.
 void RequireMayGo(MachineBench& bench, const std::vector<double>& to, const MachineOptions& options);
 
+/// Whatever speaks against going on with what turns.
+/// @throws DeviceFault kLimit for an axis on a limit switch or outside its soft limits, kRestarted, kRefused as above.
+void RequireMayTurn(MachineBench& bench, const MachineOptions& options);
+
 /// Returns when the path that was begun has ended with every axis in position.
 /// @param takes_s   What the path should take.
 /// @param look      Called at least every second of bench time on the way.

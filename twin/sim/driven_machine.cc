@@ -14,11 +14,11 @@
 namespace twinbench::sim {
 namespace {
 
-constexpr double kTraverse_m_s = 0.2, kTraverse_rad_s = 0.5;
+constexpr double kTraverse_m_s = 0.2;
 constexpr Duration kHoming = std::chrono::seconds(10);
 
 Duration MoveTime(const std::vector<double>& from, const std::vector<double>& to, double feed_m_s,
-                  const std::vector<MachineAxis>& axes) {
+                  const std::vector<MachineAxis>& axes, double traverse_rad_s) {
   double square_m2 = 0.0, turn_rad = 0.0;
   for (std::size_t k = 0; k < to.size(); ++k) {
     const double way = to[k] - from[k];
@@ -29,7 +29,7 @@ Duration MoveTime(const std::vector<double>& from, const std::vector<double>& to
     }
   }
   const double speed_m_s = feed_m_s > 0.0 ? feed_m_s : kTraverse_m_s;
-  return FromSeconds(std::max(std::sqrt(square_m2) / speed_m_s, turn_rad / kTraverse_rad_s));
+  return FromSeconds(std::max(std::sqrt(square_m2) / speed_m_s, turn_rad / traverse_rad_s));
 }
 
 }  // namespace
@@ -59,7 +59,8 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
     RequireWithinTravel(to);
     const std::vector<double> from = path.At(Now());
     kernel->axes.Now([&] {
-      BeginPath(DrivenPath::Line(from, to, Now(), MoveTime(from, to, its_feed_m_s, Axes())), its_feed_m_s, 1);
+      BeginPath(DrivenPath::Line(from, to, Now(), MoveTime(from, to, its_feed_m_s, Axes(), physics->Traverse_rad_s())),
+                its_feed_m_s, 1);
     });
   }
 
@@ -105,7 +106,9 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
     });
     return shown;
   }
-  void Arm(int samples) override {
+  void Arm(int samples, int lines) override {
+    if (lines > 0)
+      throw DeviceFault(FaultKind::kRefused, "instruments", "they latch at the machine's triggers, not at lines");
     latched = {};
     armed = samples;
   }

@@ -31,6 +31,8 @@ class DrivenPhysics {
   virtual int Setups() const = 0;
   /// Where the machine stands at Time 0.
   virtual std::vector<double> Start() const = 0;
+  /// Of its rotary axes.
+  virtual double Traverse_rad_s() const { return 0.5; }
   /// When the plan of the bench's scenario takes just this sample, whatever time the instant says; nothing if it
   /// takes another one or none.
   virtual std::optional<Time> Planned(const DrivenInstant& at) const = 0;

@@ -1,6 +1,7 @@
 #include "twin/benches/encoder_comparison/bench.h"
 
 #include "twin/benches/encoder_comparison/procedure.h"
+#include "twin/benches/encoder_comparison/procedure/drive.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/encoder_comparison/twin/factory.h"
 #include "twin/plan/next_run.h"
@@ -19,6 +20,9 @@ const Bench& Whole() {
     Bench b;
     b.format = &Format();
     b.make_twin = MakeTwin;
+    b.has_controllers = true;
+    b.make_devices = MakeDevices;
+    b.drive = procedure::DriveComparison;
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;

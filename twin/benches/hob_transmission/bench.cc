@@ -2,6 +2,7 @@
 
 #include "twin/benches/hob_transmission/estimators/index_errors.h"
 #include "twin/benches/hob_transmission/procedure.h"
+#include "twin/benches/hob_transmission/procedure/drive.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/factory.h"
 #include "twin/plan/next_run.h"
@@ -20,6 +21,9 @@ const Bench& Whole() {
     Bench b;
     b.format = &Format();
     b.make_twin = MakeTwin;
+    b.has_controllers = true;
+    b.make_devices = MakeDevices;
+    b.drive = procedure::DriveHob;
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;

@@ -1,23 +1,29 @@
 #pragma once
 
-#include "twin/benches/hob_transmission/settings.h"
-#include "twin/core/devices.h"
-#include "twin/core/scenario.h"
-#include "twin/procedure/options.h"
+#include <vector>
 
-/// How the bench hob_transmission is measured: the chain runs, and a card keeps both encoders' counts at edges of
-/// the table's encoder.
+#include "twin/benches/hob_transmission/settings.h"
+#include "twin/core/reading.h"
+
+/// What the bench hob_transmission is to read: the chain runs, and a card keeps both encoders' counts at lines of the
+/// table's encoder. procedure/drive.h is how.
 namespace twinbench::procedure {
 
-/// For each head position, speed and direction: runs up, keeps `turns` turns of samples, runs down and rests. The
-/// samples of a look into the FIFO become readings together; each is numbered, and its position is its place in the
-/// pass. Where the interferometer is read at rest, the first set-up ends with a turn of stops in each direction of
-/// its passes, every one approached in that direction.
-///
-/// @throws BenchError from the devices; DeviceFault (overrun) when the FIFO ran full, which the settings can avoid,
-///         and (stalled) when no edge comes. What was appended before stays in the sink.
+/// Some turns at one speed, or one from stop to stop.
+struct HobPass {
+  int setup = 0, direction = 1;
+  double hob_speed_rad_s = 0.0;  // with its sign; 0: stops
+  int readings = 0;
+};
+
+/// For each head position, speed and direction `turns` turns of samples. Where the interferometer is read at rest, the
+/// first set-up ends with a turn of stops in each direction of its passes.
 /// Reference: Tan et al., section 1 and figure 1; the interferometer at stops as in their section 4.
-void CarryOut(HobBench& bench, const Scenario& scenario, ReadingSink& sink, const ProgressCallback& progress = {});
+std::vector<HobPass> HobPasses(const HobSettings& bench);
+
+/// The readings of the passes in their order; a reading's position is its place in the pass. Times and angles are not
+/// known before they are taken.
+std::vector<Reading> HobSchedule(const HobSettings& bench);
 
 int PlannedReadings(const HobSettings& bench);
 

@@ -5,6 +5,7 @@
 
 #include "twin/benches/turntable_autocollimator/estimators/index_errors.h"
 #include "twin/benches/turntable_autocollimator/procedure.h"
+#include "twin/benches/turntable_autocollimator/procedure/drive.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/factory.h"
 #include "twin/plan/shift_sets.h"
@@ -49,6 +50,9 @@ const Bench& Whole() {
     Bench b;
     b.format = &Format();
     b.make_twin = MakeTwin;
+    b.has_controllers = true;
+    b.make_devices = MakeDevices;
+    b.drive = procedure::DriveTurntable;
     b.follow = FollowRecord;
     b.planned_readings = PlannedReadings;
     b.evaluate = Evaluate;

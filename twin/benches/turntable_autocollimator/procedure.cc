@@ -2,141 +2,11 @@
 
 #include <map>
 
-#include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
 #include "twin/core/stream.h"
 
 namespace twinbench::procedure {
 namespace {
-
-/// The angle that is meant where a controller with this compensation shows `shown_rad`.
-double MeantAngle_rad(const std::optional<CompensationTable>& compensation, double shown_rad) {
-  if (!compensation) return shown_rad;
-  constexpr int kRounds = 4;  // corrections change by less than a thousandth of the angle
-  double meant_rad = shown_rad;
-  for (int round = 0; round < kRounds; ++round) meant_rad = shown_rad - compensation->At(meant_rad);
-  return meant_rad;
-}
-
-/// The steps that all phases share.
-class TurntableRun {
- public:
-  TurntableRun(NullingTurntableBench& bench, const Scenario& scenario, ReadingSink& sink,
-               const ProgressCallback& progress)
-      : bench_(bench),
-        scenario_(scenario),
-        sink_(sink),
-        progress_(progress),
-        dwell_(scenario.seed, "procedure.dwell"),
-        planned_(PlannedReadings(settings())) {}
-
-  const TurntableProcedureSettings& settings() const { return TurntableOf(scenario_).turntable_procedure; }
-  bool has_polygon() const { return TurntableOf(scenario_).HasPolygon(); }
-  int teeth() const { return TurntableOf(scenario_).multitooth.teeth; }
-  double tooth_rad() const { return 2.0 * units::kPi / teeth(); }
-
-  void Mount(int setup) {
-    if (setup == setup_) return;
-    if (setup_ >= 0) bench_.clock.Wait(FromSeconds(settings().remount_s));
-    const TurntableProcedureSettings& s = settings();
-    setup_ = setup;
-    shift_ = s.Of(s.shifts, setup);
-    Turn(0.0);
-    bench_.fixture.Mount(setup, s.Of(s.tilts_rad, setup), s.Of(s.tilt_azimuths_rad, setup),
-                         s.Of(s.eccentricities_m, setup), shift_);
-  }
-  void MountIfNothingIs() {
-    if (setup_ < 0) Mount(0);
-  }
-
-  /// All stops of one pass, given in teeth, from behind.
-  void Pass(Phase phase, const std::vector<int>& stops, int direction) {
-    const double step_rad = 2.0 * units::kPi / settings().positions;
-    const int first = direction > 0 ? stops.front() : stops.back();
-    Turn(first * tooth_rad() - direction * settings().run_up_steps * step_rad);
-    for (std::size_t k = 0; k < stops.size(); ++k) {
-      const std::size_t position = direction > 0 ? k : stops.size() - 1 - k;
-      Stop(phase, direction, static_cast<int>(position), stops[position], 0.0);
-    }
-    ++pass_;
-  }
-
-  /// Turntable at a tooth plus `offset_rad`, multi-tooth table back by the tooth; one reading.
-  void Stop(Phase phase, int direction, int position, int tooth, double offset_rad) {
-    Send(tooth * tooth_rad() + offset_rad);
-    bench_.multitooth.IndexTo(shift_ - tooth);
-    bench_.turntable.WaitSettled();
-    Reading stop;
-    stop.phase = phase;
-    stop.direction = direction;
-    stop.position = position;
-    stop.target_rad = tooth * tooth_rad() + offset_rad;
-    stop.reference_rad = (shift_ - tooth) * tooth_rad();
-    Take(stop);
-  }
-
-  /// The faces of a pass are nulled one after the other, and the encoder is read.
-  void NullFaces(int direction) {
-    const TurntableSettings& s = TurntableOf(scenario_);
-    const int positions = settings().positions;
-    const int first = direction > 0 ? 0 : positions - 1;
-    const double step_rad = 2.0 * units::kPi / positions;
-    Turn(s.FaceAngle_rad(setup_, s.FaceAt(first)) - direction * settings().run_up_steps * step_rad);
-    for (int k = 0; k < positions; ++k) NullFace(direction, direction > 0 ? k : first - k);
-    ++pass_;
-  }
-
-  void NullFace(int direction, int position) {
-    const TurntableSettings& s = TurntableOf(scenario_);
-    const int face = s.FaceAt(position);
-    Turn(s.FaceAngle_rad(setup_, face));
-    bench_.servo.Null(direction);
-    Reading stop;
-    stop.phase = Phase::kFullCircle;
-    stop.direction = direction;
-    stop.position = position;
-    stop.target_rad = MeantAngle_rad(s.turntable.compensation, bench_.turntable.EncoderAngle_rad());
-    stop.reference_rad = -face * s.Pitch_rad();
-    Take(stop);
-  }
-
-  void EndPass() { ++pass_; }
-  void Turn(double angle_rad) {
-    Send(angle_rad);
-    bench_.turntable.WaitSettled();
-  }
-
- private:
-  /// The reading keeps the angle that is meant; the controller is told what brings the table there.
-  void Send(double angle_rad) {
-    bench_.turntable.StartMove(CommandedAngle_rad(TurntableOf(scenario_).turntable.compensation, angle_rad));
-  }
-
-  void Take(Reading stop) {
-    const std::vector<double>& dwells_s = settings().dwell_s;
-    stop.dwell_s = dwells_s[static_cast<std::size_t>(dwell_.Uniform() * static_cast<double>(dwells_s.size()))];
-    bench_.clock.Wait(FromSeconds(stop.dwell_s));
-    stop.reading = next_reading_++;
-    stop.time = bench_.clock.Now();
-    stop.setup = setup_;
-    stop.pass = pass_;
-    const AutocollimatorReading shown = bench_.autocollimator.Read();
-    stop.status = shown.status;
-    stop.autocollimator_yaw_rad = shown.yaw_rad;
-    stop.autocollimator_tilt_rad = shown.tilt_rad;
-    stop.temperature_degC = bench_.thermometer.Read_degC();
-    sink_.Append(stop, {});
-    if (progress_) progress_({next_reading_, planned_, stop.phase, stop.time});
-  }
-
-  NullingTurntableBench& bench_;
-  const Scenario& scenario_;
-  ReadingSink& sink_;
-  const ProgressCallback& progress_;
-  Stream dwell_;
-  int planned_;
-  int setup_ = -1, shift_ = 0, pass_ = 0, next_reading_ = 0;
-};
 
 std::vector<int> GridTeeth(int teeth, int positions) {
   std::vector<int> stops;
@@ -144,41 +14,84 @@ std::vector<int> GridTeeth(int teeth, int positions) {
   return stops;
 }
 
-void NullPolygon(TurntableRun& run) {
-  for (int setup = 0; setup < run.settings().SetUps(); ++setup) {
-    run.Mount(setup);
-    for (const int direction : run.settings().passes) run.NullFaces(direction);
+/// Adds readings in the order in which they are taken.
+class TurntableReadings {
+ public:
+  explicit TurntableReadings(const Scenario& scenario)
+      : bench_(TurntableOf(scenario)), s_(bench_.turntable_procedure), dwell_(scenario.seed, "procedure.dwell") {}
+
+  std::vector<Reading> Make();
+
+  void AddCircles() {
+    for (int setup = 0; setup < s_.SetUps(); ++setup) {
+      setup_ = setup;
+      for (const int direction : s_.passes) bench_.HasPolygon() ? AddFaces(direction) : AddGrid(direction);
+    }
   }
-}
 
-void MeasureFullCircle(TurntableRun& run) {
-  if (run.has_polygon()) return NullPolygon(run);
-  const std::vector<int> stops = GridTeeth(run.teeth(), run.settings().positions);
-  for (int setup = 0; setup < run.settings().SetUps(); ++setup) {
-    run.Mount(setup);
-    for (const int direction : run.settings().passes) run.Pass(Phase::kFullCircle, stops, direction);
+  void AddSweep() {
+    for (int k = 0; k < s_.sweep_points; ++k)
+      AddStop(Phase::kCalibration, 1, k, 0, s_.sweep_rad * (2.0 * k / (s_.sweep_points - 1) - 1.0));
+    ++pass_;
   }
-}
 
-void SweepTurntable(TurntableRun& run) {
-  run.MountIfNothingIs();
-  const int points = run.settings().sweep_points;
-  const double sweep_rad = run.settings().sweep_rad;
-  run.Turn(-2.0 * sweep_rad);
-  for (int k = 0; k < points; ++k)
-    run.Stop(Phase::kCalibration, 1, k, 0, sweep_rad * (2.0 * k / (points - 1) - 1.0));
-  run.EndPass();
-}
+  void AddChecks() {
+    const std::vector<int> stops = CheckTeeth(bench_.multitooth.teeth, s_.positions, s_.verification_positions);
+    for (const int direction : s_.verification_passes) AddPass(Phase::kVerification, stops, direction);
+  }
 
-void VerifyBetweenPositions(TurntableRun& run) {
-  run.MountIfNothingIs();
-  const TurntableProcedureSettings& s = run.settings();
-  const std::vector<int> stops = CheckTeeth(run.teeth(), s.positions, s.verification_positions);
-  for (const int direction : s.verification_passes) run.Pass(Phase::kVerification, stops, direction);
-}
+ private:
+  void AddGrid(int direction) {
+    AddPass(Phase::kFullCircle, GridTeeth(bench_.multitooth.teeth, s_.positions), direction);
+  }
+
+  /// All stops of one pass, given in teeth.
+  void AddPass(Phase phase, const std::vector<int>& stops, int direction) {
+    for (std::size_t k = 0; k < stops.size(); ++k) {
+      const std::size_t position = direction > 0 ? k : stops.size() - 1 - k;
+      AddStop(phase, direction, static_cast<int>(position), stops[position], 0.0);
+    }
+    ++pass_;
+  }
+
+  /// Turntable at a tooth plus `offset_rad`, multi-tooth table back by the tooth.
+  void AddStop(Phase phase, int direction, int position, int tooth, double offset_rad) {
+    const double tooth_rad = 2.0 * units::kPi / bench_.multitooth.teeth;
+    const int shift = s_.Of(s_.shifts, setup_);
+    Add(phase, direction, position, tooth * tooth_rad + offset_rad, (shift - tooth) * tooth_rad);
+  }
+
+  void AddFaces(int direction) {
+    for (int k = 0; k < s_.positions; ++k) {
+      const int position = direction > 0 ? k : s_.positions - 1 - k, face = bench_.FaceAt(position);
+      Add(Phase::kFullCircle, direction, position, bench_.FaceAngle_rad(setup_, face), -face * bench_.Pitch_rad());
+    }
+    ++pass_;
+  }
+
+  void Add(Phase phase, int direction, int position, double turntable_rad, double multitooth_rad) {
+    Reading stop;
+    stop.reading = static_cast<int>(readings_.size());
+    stop.setup = setup_;
+    stop.pass = pass_;
+    stop.phase = phase;
+    stop.direction = direction;
+    stop.position = position;
+    stop.target_rad = turntable_rad;
+    stop.reference_rad = multitooth_rad;
+    stop.dwell_s = s_.dwell_s[static_cast<std::size_t>(dwell_.Uniform() * static_cast<double>(s_.dwell_s.size()))];
+    readings_.push_back(stop);
+  }
+
+  const TurntableSettings& bench_;
+  const TurntableProcedureSettings& s_;
+  Stream dwell_;
+  std::vector<Reading> readings_;
+  int setup_ = 0, pass_ = 0;
+};
 
 struct TurntablePhase {
-  void (*carry_out)(TurntableRun&);
+  void (TurntableReadings::*add)();
   int (*readings)(const TurntableProcedureSettings&);
 };
 
@@ -194,12 +107,17 @@ int CheckReadings(const TurntableProcedureSettings& s) {
 
 const TurntablePhase& PhaseNamed(const std::string& name) {
   static const std::map<std::string, TurntablePhase> phases = {
-      {"calibration", {SweepTurntable, SweepReadings}},
-      {"full_circle", {MeasureFullCircle, TurntableCircleReadings}},
-      {"verification", {VerifyBetweenPositions, CheckReadings}}};
+      {"calibration", {&TurntableReadings::AddSweep, SweepReadings}},
+      {"full_circle", {&TurntableReadings::AddCircles, TurntableCircleReadings}},
+      {"verification", {&TurntableReadings::AddChecks, CheckReadings}}};
   const auto found = phases.find(name);
   Require(found != phases.end(), "turntable_procedure.phases holds a phase that does not exist");
   return found->second;
+}
+
+std::vector<Reading> TurntableReadings::Make() {
+  for (const std::string& phase : s_.phases) (this->*PhaseNamed(phase).add)();
+  return std::move(readings_);
 }
 
 }  // namespace
@@ -221,11 +139,8 @@ int PlannedReadings(const TurntableProcedureSettings& procedure) {
   return readings;
 }
 
-void CarryOut(NullingTurntableBench& bench, const Scenario& scenario, ReadingSink& sink,
-              const ProgressCallback& progress) {
-  TurntableRun run(bench, scenario, sink, progress);
-  for (const std::string& phase : TurntableOf(scenario).turntable_procedure.phases)
-    PhaseNamed(phase).carry_out(run);
+std::vector<Reading> TurntableSchedule(const Scenario& scenario) {
+  return TurntableReadings(scenario).Make();
 }
 
 }  // namespace twinbench::procedure

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/encoder_comparison/procedure.h"
+#include "twin/benches/encoder_comparison/procedure/drive.h"
+#include "twin/benches/encoder_comparison/twin/driven.h"
 #include "twin/benches/encoder_comparison/twin/follow.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
 #include "twin/core/run_record.h"
@@ -28,6 +30,11 @@ class Twin : public BenchTwin {
 
 std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
   return std::make_unique<Twin>(scenario);
+}
+
+std::unique_ptr<MachineDevices> MakeDevices(const Scenario& scenario) {
+  procedure::RequireStops(scenario);
+  return std::make_unique<sim::DrivenMachine>(sim::MakeShaftPhysics(scenario));
 }
 
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record) {

@@ -1,12 +1,17 @@
 #pragma once
 
 #include "twin/core/bench.h"
+#include "twin/core/machine.h"
 #include "twin/model/follow.h"
 
 namespace twinbench::benches::encoder {
 
 /// @throws InputError if the scenario's parts cannot be built.
 std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario);
+
+/// A comparison at stops as devices that can be driven.
+/// @throws InputError likewise, and for one in motion.
+std::unique_ptr<MachineDevices> MakeDevices(const Scenario& scenario);
 
 /// @throws InputError likewise.
 std::unique_ptr<model::Follow> FollowRecord(const Scenario& scenario, const std::vector<Reading>& record);

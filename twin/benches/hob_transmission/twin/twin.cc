@@ -1,55 +1,24 @@
 #include "twin/benches/hob_transmission/twin/twin.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <complex>
 #include <nlohmann/json.hpp>
 
+#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/world.h"
-#include "twin/core/errors.h"
+#include "twin/core/device_fault.h"
+#include "twin/core/happened_once.h"
+#include "twin/core/numbered_runs.h"
 #include "twin/sim/truth.h"
 
 namespace twinbench::sim {
-// Not in the unnamed namespace: a type of the header holds them, and would be local to this file as well.
-
-class MachineClock : public Clock {
- public:
-  explicit MachineClock(HobWorld& world) : world_(world) {}
-  Time Now() const override { return world_.Now(); }
-  void Wait(Duration duration) override { world_.RunUntil(Now() + duration); }
-
- private:
-  HobWorld& world_;
-};
-
-class SpindleDrive : public HobDrive {
- public:
-  explicit SpindleDrive(HobWorld& world) : world_(world) {}
-  void Run(double hob_speed_rad_s, Duration ramp) override { world_.Run(hob_speed_rad_s, ramp); }
-
- private:
-  HobWorld& world_;
-};
-
-class EdgeCounters : public CounterCard {
- public:
-  explicit EdgeCounters(HobWorld& world) : world_(world) {}
-  void Arm(int edges, int samples) override { world_.Arm(edges, samples); }
-  CounterSamples Read() override { return world_.ReadCounters(); }
-  CounterSample Latch() override { return world_.Latch(); }
-
- private:
-  HobWorld& world_;
-};
-
-class HeadFixture : public HobFixture {
- public:
-  explicit HeadFixture(HobWorld& world) : world_(world) {}
-  void Mount(int /*setup*/, double head_rad) override { world_.Mount(head_rad); }
-
- private:
-  HobWorld& world_;
-};
 
 namespace {
+
+constexpr double kTravel_rad = 1e6 * units::turn;  // what its counter holds
 
 nlohmann::json HarmonicJson(double order, double amplitude_rad, double phase_rad) {
   return {
@@ -74,15 +43,88 @@ nlohmann::json RingHarmonics(const Counters& counters) {
 
 }  // namespace
 
-struct HobTwin::Impl {
-  explicit Impl(const Scenario& its_scenario) : scenario(its_scenario), world(its_scenario) {}
+struct HobTwin::Impl : Clock, MachineController, InstrumentSet, MachineFixture, Simulation, NumberedRuns {
+  explicit Impl(const Scenario& its_scenario) : begun(its_scenario), scenario(its_scenario) { Begin(); }
 
-  Scenario scenario;
-  HobWorld world;
-  MachineClock clock{world};
-  SpindleDrive drive{world};
-  EdgeCounters counters{world};
-  HeadFixture fixture{world};
+  void Begin() { world = std::make_unique<HobWorld>(scenario); }
+
+  // Clock
+  Time Now() const override { return world->Now(); }
+  void Wait(Duration duration) override { world->RunUntil(Now() + duration); }
+
+  // Controller
+  const std::vector<MachineAxis>& Axes() const override { return axes; }
+  std::vector<AxisLimits> Travel() override { return {{.lower = -kTravel_rad, .upper = kTravel_rad}}; }
+  void StartMove(const std::vector<double>&, double) override {
+    throw DeviceFault(FaultKind::kRefused, axes[0].name, "it turns, and is sent nowhere");
+  }
+  void StartArc(const Arc&) override { StartMove({}, 0.0); }
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override {
+    Require(axis == 0, "there is one axis");
+    if (!std::isfinite(speed_rad_s) || ramp <= Duration(0))
+      throw DeviceFault(FaultKind::kRefused, axes[0].name, "no speed, or no time to go over to it");
+    world->Run(speed_rad_s, ramp);
+  }
+  /// Nobody waits for an axis that turns on and on.
+  bool Settles(Duration within) override {
+    const Time until = Now() + within;
+    world->RunUntil(world->Turns() ? until : std::min(until, std::max(Now(), world->SlowedDown())));
+    return !world->Moves();
+  }
+  std::vector<AxisState> State() override {
+    AxisState hob;
+    hob.encoder = world->Hob_rad();
+    hob.moving = world->Moves();
+    hob.in_position = !hob.moving;
+    return {hob};
+  }
+  void Stop() override {
+    if (world->Turns()) world->Run(0.0, FromSeconds(HobOf(scenario).hob_procedure.ramp_s));
+  }
+  void Home() override { Stop(); }  // it never loses its origin
+
+  // Instruments
+  Reading Read() override { return ReadingOf(world->Latch()); }
+  void Arm(int samples, int lines) override {
+    if (lines <= 0)
+      throw DeviceFault(FaultKind::kRefused, "instruments", "the card latches at lines of the table's encoder");
+    world->Arm(lines, samples);
+  }
+  LatchedSamples Latched() override {
+    const CounterSamples look = world->ReadCounters();
+    LatchedSamples latched;
+    latched.overrun = look.overrun;
+    for (const CounterSample& sample : look.samples) latched.samples.push_back(ReadingOf(sample));
+    return latched;
+  }
+
+  // Fixture
+  void Clear() override {}
+  void Mount(int setup, const std::string&) override {
+    const std::vector<double>& heads_rad = HobOf(scenario).hob_procedure.heads_rad;
+    if (setup < 0 || setup >= std::ssize(heads_rad))
+      throw DeviceFault(FaultKind::kRefused, "fixture",
+                        fmt::format("there are {} set-ups, from 0 on; not {}", heads_rad.size(), setup));
+    world->Mount(heads_rad[static_cast<std::size_t>(setup)]);
+  }
+
+  // Simulation
+  void Restart() override { Begin(); }
+  void BeRun(int repeat) override { scenario = InRun(begun, repeat); }
+  void SetPaced(bool) override {}  // it never is
+
+  static Reading ReadingOf(const CounterSample& sample) {
+    Reading reading;
+    reading.time = sample.time;
+    reading.measured_rad = sample.table_encoder_rad;
+    reading.reference_rad = sample.hob_encoder_rad;
+    reading.interferometer_rad = sample.interferometer_rad;
+    return reading;
+  }
+
+  Scenario begun, scenario;  // as it was made, and in its present run
+  std::vector<MachineAxis> axes = {{"hob", true}};
+  std::unique_ptr<HobWorld> world;
 };
 
 HobTwin::HobTwin(const Scenario& scenario) {
@@ -94,16 +136,16 @@ HobTwin::HobTwin(const Scenario& scenario) {
 }
 HobTwin::~HobTwin() = default;
 
-HobBench HobTwin::Bench() {
-  return {impl_->clock, impl_->drive, impl_->counters, impl_->fixture};
+MachineBench HobTwin::Devices() {
+  return {*impl_, *impl_, *impl_, *impl_, impl_.get()};
 }
 
 nlohmann::json HobTwin::Truth() const {
   nlohmann::json json = {{"transmission", nlohmann::json::array()},
-                         {"table_encoder", RingHarmonics(impl_->world.counters())},
+                         {"table_encoder", RingHarmonics(impl_->world->counters())},
                          {"effects", nlohmann::json::array()},
                          {"seed", impl_->scenario.seed}};
-  for (const mechanics::AngleHarmonic& h : impl_->world.Transmission())
+  for (const mechanics::AngleHarmonic& h : impl_->world->Transmission())
     json["transmission"].push_back(HarmonicJson(h.order, h.amplitude_rad, h.phase_rad));
   for (const EffectSettings& effect : impl_->scenario.effects) json["effects"].push_back(ToJson(effect));
   return json;

@@ -3,7 +3,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 
-#include "twin/core/devices.h"
+#include "twin/core/machine.h"
 #include "twin/core/scenario.h"
 
 namespace twinbench::sim {
@@ -12,14 +12,14 @@ namespace twinbench::sim {
 /// interferometer that a procedure can drive, and the truth that it may not see.
 ///
 /// Same scenario, same bits: every random number comes from Stream(scenario.seed, name of its cause).
-class HobTwin {
+class HobTwin : public MachineDevices {
  public:
   /// @throws InputError if the machine cannot be built as the scenario says.
   explicit HobTwin(const Scenario& scenario);
-  ~HobTwin();
+  ~HobTwin() override;
 
-  /// Valid as long as the twin.
-  HobBench Bench();
+  /// One axis that turns on and on, the hob; its place is the one of the last time that anything was asked of the chain.
+  MachineBench Devices() override;
 
   /// {"transmission": [{order, amplitude_arcsec, phase_deg}], "table_encoder": [the same], "effects": [...],
   ///  "seed": n}: harmonics of cosines. The transmission error is quasi-static; the encoder's is that of its

@@ -29,7 +29,8 @@ void HobWorld::Run(double hob_speed_rad_s, Duration ramp) {
     direction_ = (hob_speed_rad_s > 0.0) == (HobOf(actual()).transmission.Ratio() > 0.0) ? 1 : -1;
   hob_speed_rad_s_ = hob_speed_rad_s;
   constexpr Duration kRinging = std::chrono::seconds(5);  // 20 Hz servo, torsion with 1 % of damping: long over
-  at_rest_ = Now() + ramp + kRinging;
+  slowed_down_ = Now() + ramp;
+  at_rest_ = slowed_down_ + kRinging;
   drive_.Now([&] { train_->Run(hob_speed_rad_s, ToSeconds(ramp)); });
 }
 

@@ -26,6 +26,12 @@ class HobWorld {
   CounterSamples ReadCounters() { return counters_.Empty(); }
   CounterSample Latch();
 
+  double Hob_rad() const { return train_->State().hob_rad; }
+  /// Whether the drive was told a speed.
+  bool Turns() const { return hob_speed_rad_s_ != 0.0; }
+  bool Moves() const { return Turns() || Now() < slowed_down_; }
+  Time SlowedDown() const { return slowed_down_; }
+
   const Scenario& actual() const { return path_.actual(); }
   const Counters& counters() const { return counters_; }
   /// Of the gears, by turns of the table: what the chain would err if it ran infinitely slowly.
@@ -47,6 +53,7 @@ class HobWorld {
   Counters counters_;
   Stream interferometer_noise_;
   Duration piece_;
+  Time slowed_down_{};  // the last change of speed has ended
   Time at_rest_{};  // from then on nothing moves, unless the drive is told to
   double hob_speed_rad_s_ = 0.0;
   int direction_ = 1;

@@ -1,102 +1,97 @@
 #include "twin/benches/turntable_autocollimator/twin/twin.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/world.h"
+#include "twin/core/device_fault.h"
 #include "twin/core/errors.h"
+#include "twin/core/happened_once.h"
+#include "twin/core/numbered_runs.h"
 #include "twin/sim/truth.h"
 
 namespace twinbench::sim {
 
-using mechanics::Axis;
+namespace {
 
-// Not in the unnamed namespace: a type of the header holds them, and would be local to this file as well.
+constexpr double kTravel_rad = 10.0 * units::turn;
 
-class TurntableClock : public Clock {
- public:
-  explicit TurntableClock(TurntableWorld& world) : world_(world) {}
-  Time Now() const override { return world_.queue().Now(); }
-  void Wait(Duration duration) override { world_.queue().RunUntil(Now() + duration); }
+}  // namespace
 
- private:
-  TurntableWorld& world_;
-};
+struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFixture, Indexer, Simulation, NumberedRuns {
+  explicit Impl(const Scenario& its_scenario) : begun(its_scenario), scenario(its_scenario) { Begin(); }
 
-class Turntable : public RotaryTable {
- public:
-  explicit Turntable(TurntableWorld& world) : world_(world) {}
-  void StartMove(double angle_rad) override { world_.StartMove(angle_rad); }
-  bool Settles(Duration within) override { return world_.axes().Settles(Axis::kTarget, within); }
-  TableState State() override { return world_.TurntableState(); }
-  void Stop() override { world_.axes().Stop(Axis::kTarget); }
-  void Home() override {}  // it never loses its origin
+  void Begin() { world = std::make_unique<TurntableWorld>(scenario); }
 
- private:
-  TurntableWorld& world_;
-};
+  // Clock
+  Time Now() const override { return world->queue().Now(); }
+  void Wait(Duration duration) override { world->queue().RunUntil(Now() + duration); }
 
-class Multitooth : public IndexingTable {
- public:
-  explicit Multitooth(TurntableWorld& world) : world_(world) {}
-  void IndexTo(int tooth) override { world_.IndexTo(tooth); }
+  // Controller
+  const std::vector<MachineAxis>& Axes() const override { return axes; }
+  std::vector<AxisLimits> Travel() override { return {{.lower = -kTravel_rad, .upper = kTravel_rad}}; }
+  void StartMove(const std::vector<double>& to, double /*feed_m_s*/) override {
+    Require(to.size() == axes.size(), "a move has one coordinate an axis");
+    if (!(std::abs(to[0]) <= kTravel_rad))
+      throw DeviceFault(FaultKind::kLimit, axes[0].name,
+                        fmt::format("{:.6g} deg lies outside its travel of {:.6g} deg either way", to[0] / units::deg,
+                                    kTravel_rad / units::deg));
+    world->StartMove(to[0]);
+  }
+  void StartArc(const Arc&) override {
+    throw DeviceFault(FaultKind::kRefused, axes[0].name, "one axis goes no arc");
+  }
+  bool Settles(Duration within) override { return world->Settles(within); }
+  std::vector<AxisState> State() override { return {world->TurntableState()}; }
+  void Stop() override { world->Stop(); }
+  void Home() override { Stop(); }  // it never loses its origin
 
- private:
-  TurntableWorld& world_;
-};
+  // Instruments
+  Reading Read() override {
+    Reading sample = Sample(world->Look());
+    sample.temperature_degC = world->environment().Measure_degC(Now());
+    return sample;
+  }
+  Reading Look() override { return Sample(world->LookOnTheWay()); }
+  void Arm(int, int) override {
+    throw DeviceFault(FaultKind::kRefused, "instruments", "an autocollimator is read at rest, not latched");
+  }
+  LatchedSamples Latched() override { return {}; }
 
-class MirrorAutocollimator : public Autocollimator {
- public:
-  explicit MirrorAutocollimator(TurntableWorld& world) : world_(world) {}
-  AutocollimatorReading Read() override { return world_.Look(); }
-
- private:
-  TurntableWorld& world_;
-};
-
-class RoomThermometer : public Thermometer {
- public:
-  explicit RoomThermometer(TurntableWorld& world) : world_(world) {}
-  double Read_degC() override { return world_.environment().Measure_degC(world_.queue().Now()); }
-
- private:
-  TurntableWorld& world_;
-};
-
-class MultitoothFixture : public TurntableFixture {
- public:
-  explicit MultitoothFixture(TurntableWorld& world) : world_(world) {}
-  void Mount(int setup, double tilt_rad, double azimuth_rad, double eccentricity_m, int shift_teeth) override {
-    world_.Mount(setup, tilt_rad, azimuth_rad, eccentricity_m, shift_teeth);
+  // Fixture
+  void Clear() override {}
+  void Mount(int setup, const std::string&) override {
+    const int setups = TurntableOf(scenario).turntable_procedure.SetUps();
+    if (setup < 0 || setup >= setups)
+      throw DeviceFault(FaultKind::kRefused, "fixture",
+                        fmt::format("there are {} set-ups, from 0 on; not {}", setups, setup));
+    world->Mount(setup);
   }
 
- private:
-  TurntableWorld& world_;
-};
+  // Indexer
+  void IndexTo(int tooth, double) override { world->IndexTo(tooth); }
 
-class TableOnAutocollimator : public NullServo {
- public:
-  explicit TableOnAutocollimator(TurntableWorld& world) : world_(world) {}
-  bool Null(int direction) override { return world_.Null(direction); }
+  // Simulation
+  void Restart() override { Begin(); }
+  void BeRun(int repeat) override { scenario = InRun(begun, repeat); }
+  void SetPaced(bool) override {}  // it never is
 
- private:
-  TurntableWorld& world_;
-};
+  Reading Sample(const AutocollimatorReading& shown) {
+    Reading sample;
+    sample.time = Now();
+    sample.status = shown.status;
+    sample.autocollimator_yaw_rad = shown.yaw_rad;
+    sample.autocollimator_tilt_rad = shown.tilt_rad;
+    return sample;
+  }
 
-struct TurntableTwin::Impl {
-  explicit Impl(const Scenario& its_scenario) : scenario(its_scenario), world(its_scenario) {}
-
-  Scenario scenario;
-  TurntableWorld world;
-  TurntableClock clock{world};
-  Turntable turntable{world};
-  Multitooth multitooth{world};
-  MirrorAutocollimator autocollimator{world};
-  RoomThermometer thermometer{world};
-  MultitoothFixture fixture{world};
-  TableOnAutocollimator servo{world};
+  Scenario begun, scenario;  // as it was made, and in its present run
+  std::vector<MachineAxis> axes = {{"turntable", true}};
+  std::unique_ptr<TurntableWorld> world;
 };
 
 TurntableTwin::TurntableTwin(const Scenario& scenario) {
@@ -108,10 +103,9 @@ TurntableTwin::TurntableTwin(const Scenario& scenario) {
 }
 TurntableTwin::~TurntableTwin() = default;
 
-NullingTurntableBench TurntableTwin::Bench() {
-  return {{impl_->clock, impl_->turntable, impl_->multitooth, impl_->autocollimator, impl_->thermometer,
-           impl_->fixture},
-          impl_->servo};
+MachineBench TurntableTwin::Devices() {
+  const bool has_teeth = !TurntableOf(impl_->scenario).HasPolygon();
+  return {*impl_, *impl_, *impl_, *impl_, impl_.get(), has_teeth ? impl_.get() : nullptr};
 }
 
 namespace {
@@ -136,7 +130,7 @@ std::vector<double> FaceAngles(const TurntableSettings& own) {
 }  // namespace
 
 nlohmann::json TurntableTwin::Truth() const {
-  const MirrorStand& stand = impl_->world.stand();
+  const MirrorStand& stand = impl_->world->stand();
   const Scenario& scenario = impl_->scenario;
   const TurntableSettings& own = TurntableOf(scenario);
   const TableMotion& turntable = stand.turntable();

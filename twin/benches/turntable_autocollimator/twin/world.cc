@@ -11,8 +11,6 @@ namespace {
 
 using mechanics::Axis;
 
-constexpr Duration kPatience = std::chrono::seconds(60);
-
 double Rounded(double value, double step) {
   return step > 0.0 ? std::round(value / step) * step : value;
 }
@@ -37,13 +35,19 @@ void TurntableWorld::StartMove(double to_rad) {
   if (axes_.StartMove(Axis::kTarget, to_rad)) path_.stand().BeginTurntableStop();
 }
 
-TableState TurntableWorld::TurntableState() {
-  TableState state;
-  state.commanded_rad = axes_.Commanded_rad(Axis::kTarget);
-  const TurntableEncoderSettings& encoder = TurntableOf(actual()).encoder;
-  double noise_rad = 0.0;
-  if (encoder.noise_rad > 0.0) noise_rad = encoder.noise_rad * encoder_noise_.Normal();
-  state.encoder_rad = Rounded(axes_.Look().target_encoder_rad + noise_rad, encoder.step_rad);
+/// Drawn once a reading, however often the encoder is looked at.
+double TurntableWorld::EncoderNoise_rad() {
+  const double noise_rad = TurntableOf(actual()).encoder.noise_rad;
+  if (noise_rad == 0.0) return 0.0;
+  for (; encoder_noises_ <= next_reading_; ++encoder_noises_) encoder_noise_rad_ = noise_rad * encoder_noise_.Normal();
+  return encoder_noise_rad_;
+}
+
+AxisState TurntableWorld::TurntableState() {
+  AxisState state;
+  state.commanded = axes_.Commanded_rad(Axis::kTarget);
+  state.encoder =
+      Rounded(axes_.Look().target_encoder_rad + EncoderNoise_rad(), TurntableOf(actual()).encoder.step_rad);
   state.moving = axes_.Moving(Axis::kTarget);
   state.in_position = axes_.InPosition(Axis::kTarget);
   return state;
@@ -54,12 +58,15 @@ void TurntableWorld::IndexTo(int tooth) {
   path_.stand().Seat(tooth);
 }
 
-void TurntableWorld::Mount(int setup, double tilt_rad, double azimuth_rad, double eccentricity_m, int shift_teeth) {
+void TurntableWorld::Mount(int setup) {
   if (!axes_.ComeToRest())
     throw DeviceFault(FaultKind::kRefused, "fixture", "nothing can be mounted while the turntable moves");
   const TurntableSettings& own = TurntableOf(actual());
+  const TurntableProcedureSettings& s = own.turntable_procedure;
+  const int shift_teeth = s.Of(s.shifts, setup);
   const double shift_rad = own.HasPolygon() ? own.FaceAngle_rad(setup, 0) : shift_teeth * own.Pitch_rad();
-  path_.stand().Mount(tilt_rad, azimuth_rad, eccentricity_m, shift_rad);
+  path_.stand().Mount(s.Of(s.tilts_rad, setup), s.Of(s.tilt_azimuths_rad, setup), s.Of(s.eccentricities_m, setup),
+                      shift_rad);
   path_.stand().Seat(shift_teeth);
   mounted_ = queue_.Now();
   setup_ = setup;
@@ -84,25 +91,6 @@ AutocollimatorReading TurntableWorld::Look() {
   const AutocollimatorReading shown = Shown(noise_);
   ++next_reading_;
   return shown;
-}
-
-bool TurntableWorld::Turn(double to_rad) {
-  StartMove(to_rad);
-  return axes_.Settles(Axis::kTarget, kPatience);
-}
-
-bool TurntableWorld::Null(int direction) {
-  constexpr int kMostMoves = 6;  // a table that comes back no better than the deadband is not chased for ever
-  constexpr double kFromBehind_rad = 60.0 * units::arcsec;
-  for (int moves = 0;; ++moves) {
-    const AutocollimatorReading shown = Shown(null_noise_);
-    if (shown.status != ReadingStatus::kOk) return false;
-    if (std::abs(shown.yaw_rad) <= TurntableOf(actual()).collimator.deadband_rad) return true;
-    if (moves == kMostMoves) return false;
-    const double to_rad = axes_.Commanded_rad(Axis::kTarget) - shown.yaw_rad;
-    if (direction * shown.yaw_rad > 0.0 && !Turn(to_rad - direction * kFromBehind_rad)) return false;
-    if (!Turn(to_rad)) return false;
-  }
 }
 
 }  // namespace twinbench::sim

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "twin/benches/turntable_autocollimator/twin/mirror_path.h"
-#include "twin/core/devices.h"
+#include "twin/core/machine.h"
 #include "twin/sim/axes.h"
 #include "twin/sim/environment.h"
 
@@ -19,19 +19,21 @@ class TurntableWorld {
   const MirrorStand& stand() const { return path_.stand(); }
 
   void StartMove(double to_rad);
-  TableState TurntableState();
+  bool Settles(Duration within) { return axes_.Settles(mechanics::Axis::kTarget, within); }
+  void Stop() { axes_.Stop(mechanics::Axis::kTarget); }
+  AxisState TurntableState();
   /// Lets the time pass that it takes.
   void IndexTo(int tooth);
-  void Mount(int setup, double tilt_rad, double azimuth_rad, double eccentricity_m, int shift_teeth);
+  void Mount(int setup);
+  /// What the autocollimator shows for the next reading.
   AutocollimatorReading Look();
-  /// As NullServo says.
-  bool Null(int direction);
+  /// What it shows on the way there.
+  AutocollimatorReading LookOnTheWay() { return Shown(null_noise_); }
 
  private:
   TurntableMoment Moment(int reading);
   void SeatFace();
-  bool Turn(double to_rad);
-  /// What the instrument shows now, for the next reading or on the way to it.
+  double EncoderNoise_rad();
   AutocollimatorReading Shown(Stream& noise);
 
   EventQueue queue_;
@@ -39,6 +41,8 @@ class TurntableWorld {
   Environment environment_;
   Axes axes_;
   Stream noise_, null_noise_, encoder_noise_;
+  double encoder_noise_rad_ = 0.0;  // of the next reading
+  int encoder_noises_ = 0;          // drawn so far
   Time mounted_{};
   int setup_ = 0;
   int next_reading_ = 0;
