@@ -3,8 +3,8 @@
 #include <deque>
 
 #include "mechanics/gear_train.h"
+#include "twin/benches/hob_transmission/twin/counter_samples.h"
 #include "twin/benches/hob_transmission/twin/encoders.h"
-#include "twin/core/devices.h"
 #include "twin/core/stream.h"
 
 namespace twinbench::sim {

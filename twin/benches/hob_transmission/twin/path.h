@@ -5,8 +5,8 @@
 
 #include "mechanics/encoder_signal.h"
 #include "mechanics/gear_train.h"
+#include "twin/benches/hob_transmission/twin/counter_samples.h"
 #include "twin/benches/hob_transmission/twin/effect.h"
-#include "twin/core/devices.h"
 #include "twin/sim/empirical_signal.h"
 
 namespace twinbench::sim {
