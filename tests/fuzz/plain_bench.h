@@ -91,10 +91,14 @@ class PlainRotary : public AdConverter, public Autocollimator, public Thermomete
   PlainTable target_{clock_}, reference_{clock_};
 };
 
-/// Three axes, and an instrument with the columns that it is told.
-class PlainMachine : public MachineController, public InstrumentSet, public MachineFixture, public Simulation {
+/// Three axes, a multi-tooth table, and an instrument with the columns that it is told.
+class PlainMachine : public MachineController,
+                     public InstrumentSet,
+                     public Indexer,
+                     public MachineFixture,
+                     public Simulation {
  public:
-  MachineBench Bench() { return {clock_, *this, *this, *this, this}; }
+  MachineBench Bench() { return {clock_, *this, *this, *this, this, this}; }
 
   const std::vector<MachineAxis>& Axes() const override { return axes_; }
   std::vector<AxisLimits> Travel() override { return std::vector<AxisLimits>(3, {.lower = -1.0, .upper = 1.0}); }
@@ -102,6 +106,8 @@ class PlainMachine : public MachineController, public InstrumentSet, public Mach
     for (std::size_t k = 0; k < to.size(); ++k) place_[k].Start(to[k]);
   }
   void StartArc(const Arc& arc) override { place_[0].Start(arc.centre_m[0]); }
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration) override { place_.at(axis).Start(speed_rad_s); }
+  void IndexTo(int, double angle_rad) override { place_[2].Start(angle_rad); }
   bool Settles(Duration within) override { return place_[0].Settles(within); }
   std::vector<AxisState> State() override {
     std::vector<AxisState> states;
@@ -118,7 +124,7 @@ class PlainMachine : public MachineController, public InstrumentSet, public Mach
     reading.time = clock_.Now();
     return reading;
   }
-  void Arm(int samples) override { armed_ = samples; }
+  void Arm(int samples, int) override { armed_ = samples; }
   LatchedSamples Latched() override {
     LatchedSamples latched;
     for (; armed_ > 0 && latched.samples.size() < 1000; --armed_) latched.samples.push_back(Read());
