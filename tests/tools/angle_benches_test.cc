@@ -93,15 +93,5 @@ TEST_F(AngleBenches, AreDiagnosedWithWhatIsHiddenInThem) {
   EXPECT_EQ(hob.at("causes").at(0).at("effect"), "slip");
 }
 
-TEST_F(AngleBenches, CannotBeMeasuredOnHardwareYetAndSaySo) {
-  Write("bench.toml", "kind = \"twin\"\n");
-  for (const char* scenario : {"turntable.toml", "hob.toml"}) {
-    const Outcome outcome = Call({"measure", scenario, "--bench", "bench.toml", "-o", "m"});
-    EXPECT_EQ(outcome.exit_code, 2) << scenario;
-    EXPECT_THAT(outcome.err, HasSubstr("rotary_4dof")) << scenario;
-    EXPECT_FALSE(Exists("m"));
-  }
-}
-
 }  // namespace
 }  // namespace twinbench::test

@@ -33,7 +33,7 @@ class CertificateCommand : public Program {
 
 TEST_F(CertificateCommand, StatesTheNumbersOfTheResultsAndThatTheyAreSimulated) {
   EXPECT_THAT(Succeed({"certificate", "run", "--with", "laboratory.toml", "-o", "c.xml"}), HasSubstr("SIMULATED"));
-  const nlohmann::json told = Json({"certificate", "run", "--with", "laboratory.toml", "-o", "c.xml", "--json", "-"});
+  const nlohmann::json told = Json({"certificate", "run", "--with", "laboratory.toml", "-o", "c.xml", "--force", "--json", "-"});
   EXPECT_TRUE(told.at("simulated"));
   EXPECT_FALSE(told.at("certified").empty());
   EXPECT_EQ(Call({"certificate", "run", "--with", "laboratory.toml", "--json", "-"}).exit_code, 2) << "both to stdout";

@@ -247,14 +247,14 @@ class Loop {
     const Scenario with = With(run.scenario, best, run.number);
     const std::vector<Reading> readings = WithThoseLike(run, best);
     const diagnose::DiagnosisRun found = means_.diagnose(readings, with, {});
-    std::vector<Weighed> more = LeftOpen(found, with, run.number);
+    const bool agrees = found.diagnosis.verdict == diagnose::Verdict::kNone;
+    if (agrees && IsOfAnotherKind()) Agreed(belief, run, means_);
+    if (agrees && !best.causes.empty()) return;
+    std::vector<Weighed> more = LeftOpen(found, with, run.number);  // where nothing is found: what would come first
     std::erase_if(more, [](const Weighed& one) { return one.hypothesis.causes.empty(); });
     for (Weighed& one : more) one.hypothesis = Together(best, one.hypothesis);
     bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
-    if (found.diagnosis.verdict == diagnose::Verdict::kNone) {
-      if (IsOfAnotherKind()) Agreed(belief, run, means_);
-      return;
-    }
+    if (agrees) return;
     const std::vector<Weighed> others =
         LeftOpen(means_.diagnose(readings, run.scenario, {}), run.scenario, run.number);
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
