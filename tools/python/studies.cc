@@ -84,11 +84,14 @@ py::tuple Investigate(const Scenario& scenario, const std::optional<Scenario>& h
                       const std::string& goal, double budget_min, double conclusive, int most_runs) {
   const Measured bench(scenario, hidden, measure);
   investigate::InvestigationOptions how;
-  if (!goal.empty()) how.goal = investigate::ParseGoal(goal);
+  if (!goal.empty()) {
+    how.goal = investigate::ParseGoal(goal);
+    how.faint = 0.0;  // as on the command line
+  }
   how.budget_min = budget_min;
   how.conclusive = conclusive;
   how.most_runs = most_runs;
-  const auto [json, extended] = [&] {
+  const auto [told, extended] = [&] {
     py::gil_scoped_release unlocked;
     const investigate::Means means =
         tools::MeansOf(BenchOf(scenario), [&bench](const plan::NextRun& run) { return bench.CanMake(run); });
@@ -97,7 +100,7 @@ py::tuple Investigate(const Scenario& scenario, const std::optional<Scenario>& h
     const investigate::Investigation found = investigate::Investigate(scenario, how, means, laboratory);
     return std::pair(investigate::ToJson(found, scenario.bench), investigate::Extended(scenario, found));
   }();
-  return py::make_tuple(ValueOf(json), extended);
+  return py::make_tuple(ValueOf(told), extended);
 }
 
 }  // namespace
