@@ -87,10 +87,7 @@ Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Meas
                         InvestigationOptions options, const std::optional<Wish>& wish) {
   const auto begin = std::chrono::steady_clock::now();
   const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
-  if (wish) {
-    options.goal = GoalOf(*wish, believed, measure, means);
-    options.faint = 0.0;
-  }
+  if (wish) options.goal = GoalOf(*wish, believed, measure, means);
   Laboratory laboratory;
   laboratory.measure = measure;
   Judged judged;

@@ -84,10 +84,7 @@ py::tuple Investigate(const Scenario& scenario, const std::optional<Scenario>& h
                       const std::string& goal, double budget_min, double conclusive, int most_runs) {
   const Measured bench(scenario, hidden, measure);
   investigate::InvestigationOptions how;
-  if (!goal.empty()) {
-    how.goal = investigate::ParseGoal(goal);
-    how.faint = 0.0;  // as on the command line
-  }
+  if (!goal.empty()) how.goal = investigate::ParseGoal(goal);
   how.budget_min = budget_min;
   how.conclusive = conclusive;
   how.most_runs = most_runs;

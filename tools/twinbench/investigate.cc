@@ -82,7 +82,7 @@ void Investigate(const InvestigateOptions& options, LivePage& page) {
   how.budget_min = BudgetMinutes(options.budget);
   how.conclusive = options.conclusive;
   how.most_runs = options.most_runs;
-  how.faint = options.faint ? *options.faint : how.goal ? 0.0 : how.faint;
+  how.faint = options.faint;
   const std::unique_ptr<InvestigatedBench> bench = Open(options, scenario, page);
   const auto alone = [&](const plan::NextRun& run) { return options.ask || bench->CanMakeAlone(run); };
   const investigate::Means means = MeansOf(BenchOf(scenario), alone);

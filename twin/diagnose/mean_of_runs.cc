@@ -39,14 +39,13 @@ bool IsAngle(const ReadingColumn& column) {
 /// Changes `mean`, the last of the runs, at one stop.
 void Average(const std::vector<const std::vector<Reading>*>& runs, std::size_t at, const BenchFormat& format,
              Reading& mean) {
+  std::vector<Reading> ones;
+  for (const std::vector<Reading>* run : runs) ones.push_back((*run)[at]);
   for (const ReadingColumn& column : format.columns) {
     if (!column.number) continue;
     double& value = column.number(mean);
     double more = 0.0;
-    for (const std::vector<Reading>* run : runs) {
-      Reading one = (*run)[at];
-      more += Difference(column.number(one), value, IsAngle(column));
-    }
+    for (Reading& one : ones) more += Difference(column.number(one), value, IsAngle(column));
     value += more / static_cast<double>(runs.size());
   }
 }

@@ -116,7 +116,7 @@ double ThoughtOf(const EffectParameter& parameter, const EffectEntry& entry) {
 }
 
 std::string Hypothesis::Name() const {
-  if (causes.empty()) return besides.empty() ? "nothing" : kUnnamed;
+  if (causes.empty()) return IsNothing() ? "nothing" : kUnnamed;
   if (!causes.front().signal.empty()) return kUnnamed;
   std::string name;
   for (const Supposed& cause : causes) {

@@ -26,6 +26,7 @@ struct Hypothesis {
 
   /// "nothing", "psd_roll psd_a", "psd_roll psd_a + slip in run 2", "structure without a name".
   std::string Name() const;
+  bool IsNothing() const { return causes.empty() && besides.empty(); }
   bool IsNamed() const { return !causes.empty() && causes.front().signal.empty(); }
 };
 

@@ -20,6 +20,7 @@ namespace {
 constexpr double kWorthMeasuring_bit = 0.05;  // of causes
 constexpr double kWorthRefining_bit = 0.005;  // of the goal
 constexpr double kMostlyUnlisted = 0.5;
+constexpr double kUsuallyFaint = 2.0;
 constexpr double kStandsOut = 5.0;  // noise standard deviations: such a cause is mostly found among all the others
 /// Of the best: a named rival that is more probable is still in question. Looking again and again until one is past
 /// a limit would otherwise make the limit's share of mistakes.
@@ -41,8 +42,8 @@ class Loop {
     while (!IsDone() && TakeNext()) {
     }
     result_.told = ToldBy(result_.belief, kMostlyUnlisted);
-    const bool is_nothing = result_.belief.Best().fit.hypothesis.Name() == Hypothesis{}.Name();
-    if (result_.told == Told::kTied && is_nothing) result_.told = Told::kNothing;  // suspicions are no findings
+    if (result_.told == Told::kTied && result_.belief.Best().fit.hypothesis.IsNothing())
+      result_.told = Told::kNothing;  // suspicions are no findings
     return std::move(result_);
   }
 
@@ -55,7 +56,7 @@ class Loop {
       return Told::kUnknown;
     if (best.probability < options_.conclusive || HasRival(belief)) return Told::kTied;
     if (best.fit.hypothesis.IsNamed()) return Told::kNamed;
-    return best.fit.hypothesis.Name() == Hypothesis{}.Name() ? Told::kNothing : Told::kUnknown;
+    return best.fit.hypothesis.IsNothing() ? Told::kNothing : Told::kUnknown;
   }
 
   bool HasRival(const Belief& belief) const {
@@ -74,7 +75,7 @@ class Loop {
   }
 
   bool IsNothingFound() const {
-    return result_.belief.Best().fit.hypothesis.Name() == Hypothesis{}.Name() && result_.belief.unlisted < kMostlyUnlisted;
+    return result_.belief.Best().fit.hypothesis.IsNothing() && result_.belief.unlisted < kMostlyUnlisted;
   }
 
   /// Nothing is found, and a cause of the size that is asked for could still hide in the noise.
@@ -86,9 +87,11 @@ class Loop {
     return static_cast<int>(std::ranges::count_if(runs_, [](const TakenRun& run) { return run.asked.sets.empty(); }));
   }
 
+  double Faint() const { return options_.faint.value_or(options_.goal ? 0.0 : kUsuallyFaint); }
+
   /// So many in the mean have the noise in which the cause stands out.
   int RunsToShowFaint() const {
-    return options_.faint > 0.0 ? static_cast<int>(std::ceil(std::pow(kStandsOut / options_.faint, 2))) : 1;
+    return Faint() > 0.0 ? static_cast<int>(std::ceil(std::pow(kStandsOut / Faint(), 2))) : 1;
   }
 
   /// Makes the run and adds it to what is known.
@@ -225,7 +228,7 @@ class Loop {
     if (!MayBeFaint()) return "nothing open says what this is: the shortest run of a kind that was not made yet";
     return fmt::format(
         "nothing found so far: {} such runs together show what is {:.3g} standard deviations strong in one, this is number {}",
-        RunsToShowFaint(), options_.faint, RunsLikeFirst() + 1);
+        RunsToShowFaint(), Faint(), RunsLikeFirst() + 1);
   }
 
   void TakeAndWeigh(Step step) {
@@ -255,8 +258,8 @@ class Loop {
     for (Weighed& one : more) one.hypothesis = Together(best, one.hypothesis);
     bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
     if (agrees) return;
-    const std::vector<Weighed> others =
-        LeftOpen(means_.diagnose(readings, run.scenario, {}), run.scenario, run.number);
+    const std::vector<Weighed> others =  // instead of the best; beside nothing that was just asked
+        LeftOpen(best.IsNothing() ? found : means_.diagnose(readings, run.scenario, {}), run.scenario, run.number);
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
     if (!is_new || found.diagnosis.verdict == diagnose::Verdict::kUnknown)
       Disagreed(belief, found.diagnosis.unknown.probability);

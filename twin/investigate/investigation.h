@@ -18,8 +18,8 @@ struct InvestigationOptions {
   double conclusive = 0.95;   // a cause of that probability is told, if it has no rival within a hundredth of it
   int most_runs = 20;
   /// Where nothing is found, the first run is made again until all of them together would show a cause of so many noise
-  /// standard deviations in the first run; 0: the first run is believed.
-  double faint = 2.0;
+  /// standard deviations in the first run; 0: the first run is believed. Not said: 2, and 0 where there is a goal.
+  std::optional<double> faint;
 };
 
 /// A run that was chosen, and what was believed after it.

@@ -30,12 +30,14 @@ namespace {
 
 /// The run's own twin set to that scenario, white. Unknowns that have to move for it do so once, by the run's slopes.
 Eigen::MatrixXd LeftByItsTwin(const Scenario& with, const TakenRun& run) {
-  const auto left_where = [&](const Eigen::VectorXd& unknowns) -> Eigen::MatrixXd {
-    const Eigen::MatrixXd left = run.linear.left_by_another(with, unknowns);
-    return left.size() == 0 ? left : run.noise.Whiten(run.linear, left);
+  const diagnose::LeftWhere left_where = run.linear.left_by_another(with);
+  if (!left_where) return {};
+  const auto white = [&](const Eigen::VectorXd& unknowns) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd left = left_where(unknowns);
+    return run.noise.Whiten(run.linear, left);
   };
-  const Eigen::MatrixXd first = left_where(Eigen::VectorXd::Zero(run.linear.nuisance.jacobian.cols()));
-  return first.size() == 0 ? first : left_where(run.projector->Solve(first));
+  const Eigen::VectorXd unmoved = Eigen::VectorXd::Zero(run.linear.nuisance.jacobian.cols());
+  return white(run.projector->Solve(white(unmoved)));
 }
 
 /// A run made anew against that scenario, white in the frame of this one.
@@ -49,7 +51,7 @@ Eigen::MatrixXd LeftByAnotherRun(const Scenario& with, const TakenRun& run, cons
 }  // namespace
 
 Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const Means& means) {
-  if (hypothesis.causes.empty() && hypothesis.besides.empty()) return run.left;
+  if (hypothesis.IsNothing()) return run.left;
   try {
     const Scenario with = With(run.scenario, hypothesis, run.number);
     Eigen::MatrixXd left;

@@ -47,10 +47,11 @@ struct ChannelUnit {
 };
 
 /// What another scenario leaves of a run's readings [SI, by row] where the free unknowns have moved `by` from where the
-/// jacobian was taken; what they do by the jacobian is put back. One prediction: no slopes are asked for. Empty if the
-/// scenario has other unknowns.
+/// jacobian was taken; what they do by the jacobian is put back. One prediction: no slopes are asked for.
+using LeftWhere = std::function<Eigen::VectorXd(const Eigen::VectorXd& by)>;
+/// That of the run's own twin set to another scenario; none if that has other unknowns.
 /// @throws InputError if it cannot be followed.
-using LeftByAnother = std::function<Eigen::VectorXd(const Scenario& other, const Eigen::VectorXd& by)>;
+using LeftByAnother = std::function<LeftWhere(const Scenario& other)>;
 
 /// Row of reading i (of the schedule) and channel c: i * channels + c.
 struct LinearRun {

@@ -40,7 +40,6 @@ void SetReadings(const std::vector<Reading>& used, const Scenario& scenario, Rot
   run.channels.assign(kChannelNames.begin(), kChannelNames.end());
   run.unit = "um";
   run.to_SI = units::um;
-  run.observed = ObservedOf(used, rotary.geometry);
   run.residual = run.observed;
   const std::vector<Vector4> still(used.size(), Vector4::Zero());
   run.sigma = SigmaOf(used, scenario, rotary.geometry,
@@ -102,14 +101,14 @@ Eigen::VectorXd Fit(const std::vector<Configuration>& configurations, const Rota
   return x;
 }
 
-/// Everything of a run but its fit.
-RotaryRun Unfitted(const std::vector<Reading>& used, const Scenario& scenario, const ForwardModel& model,
-                   std::vector<Configuration>& of_reading) {
+/// A run that is asked with its unknowns anywhere: twin, light and unknowns, no noise, no fit.
+RotaryRun Asked(const std::vector<Reading>& used, const Scenario& scenario, const ForwardModel& model,
+                std::vector<Configuration>& of_reading) {
   RotaryRun rotary;
   rotary.geometry = measure::NominalGeometry(scenario);
   rotary.published = model.published;
   rotary.twin = std::make_shared<const RotaryTwin>(model.follow, scenario, used, rotary.geometry);
-  SetReadings(used, scenario, rotary);
+  rotary.run.observed = ObservedOf(used, rotary.geometry);
   Configurations configurations = FindConfigurations(used, scenario, rotary.geometry, rotary.published);
   of_reading = std::move(configurations.of_reading);
   SetUnknowns(std::move(configurations.design), rotary);
@@ -119,21 +118,24 @@ RotaryRun Unfitted(const std::vector<Reading>& used, const Scenario& scenario, c
 /// Tables and mountings move as the unknowns say; the calibrated constants are held and act by their slopes.
 LeftByAnother LeftByAnotherOf(const std::vector<Reading>& used, const ForwardModel& model, const RotaryRun& rotary,
                               const Eigen::VectorXd& x) {
-  struct Asked {
+  struct Fitted {
     std::vector<Reading> used;
     ForwardModel model;
     Eigen::SparseMatrix<double, Eigen::RowMajor> jacobian;
     Eigen::VectorXd x;
   };
-  const auto asked = std::make_shared<const Asked>(Asked{used, model, rotary.run.nuisance.jacobian, x});
-  return [asked](const Scenario& other, const Eigen::VectorXd& by) -> Eigen::VectorXd {
+  const auto fitted = std::make_shared<const Fitted>(Fitted{used, model, rotary.run.nuisance.jacobian, x});
+  return [fitted](const Scenario& other) -> LeftWhere {
     std::vector<Configuration> configurations;
-    RotaryRun of_other = Unfitted(asked->used, other, asked->model, configurations);
-    if (UnknownsOf(of_other.design) != asked->x.size()) return {};
-    Eigen::VectorXd moved = by;
-    moved.tail(kCalibrated).setZero();
-    Compare(configurations, asked->x + moved, nullptr, of_other);
-    return of_other.run.residual + asked->jacobian * moved;
+    const RotaryRun of_other = Asked(fitted->used, other, fitted->model, configurations);
+    if (UnknownsOf(of_other.design) != fitted->x.size()) return {};
+    return [fitted, configurations, of_other](const Eigen::VectorXd& by) -> Eigen::VectorXd {
+      Eigen::VectorXd moved = by;
+      moved.tail(kCalibrated).setZero();
+      RotaryRun there = of_other;
+      Compare(configurations, fitted->x + moved, nullptr, there);
+      return there.run.residual + fitted->jacobian * moved;
+    };
   };
 }
 
@@ -157,7 +159,8 @@ Response RotaryRun::ResponseTo(const std::string& point) const {
 RotaryRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenario, const ForwardModel& model) {
   const std::vector<Reading> used = UsedOf(readings);
   std::vector<Configuration> configurations;
-  RotaryRun rotary = Unfitted(used, scenario, model, configurations);
+  RotaryRun rotary = Asked(used, scenario, model, configurations);
+  SetReadings(used, scenario, rotary);
   rotary.left_out = LeftOut(readings, used.size());
   const Scenario bare = WithoutEffects(scenario);
   std::unique_ptr<const RotaryTwin> without_effects;

@@ -190,12 +190,15 @@ diagnose::LeftByAnother LeftByAnotherOf(const std::vector<Reading>& readings, co
   auto asked = std::make_shared<Asked>(Asked{readings, used,
                                              FreeUnknowns(turntable.places, StraightSlopes(run.schedule.Readings()), run.schedule),
                                              run.nuisance, run.observed, turntable.body_rad});
-  return [asked, follow](const Scenario& other, const Eigen::VectorXd& by) -> Eigen::VectorXd {
-    const Eigen::Index mirror = asked->moved.jacobian.cols();
-    const Eigen::VectorXd of_mirror = by.head(mirror);
-    const Eigen::MatrixXd body_rad = asked->body_rad + ByReading(asked->moved.jacobian * of_mirror);
-    const Eigen::MatrixXd shown_rad = Followed(follow, other, asked->readings, asked->used).Predict(AtPoints(body_rad));
-    return OrZero(asked->observed - AsRows(shown_rad)) + asked->free.jacobian.leftCols(mirror) * of_mirror;
+  return [asked, follow](const Scenario& other) -> LeftWhere {
+    const auto twin = std::make_shared<const Followed>(follow, other, asked->readings, asked->used);
+    return [asked, twin](const Eigen::VectorXd& by) -> Eigen::VectorXd {
+      const Eigen::Index mirror = asked->moved.jacobian.cols();
+      const Eigen::VectorXd of_mirror = by.head(mirror);
+      const Eigen::MatrixXd body_rad = asked->body_rad + ByReading(asked->moved.jacobian * of_mirror);
+      return OrZero(asked->observed - AsRows(twin->Predict(AtPoints(body_rad)))) +
+             asked->free.jacobian.leftCols(mirror) * of_mirror;
+    };
   };
 }
 
