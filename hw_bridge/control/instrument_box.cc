@@ -29,12 +29,6 @@ ReadingColumn ColumnOf(const std::string& field, const std::vector<ReadingColumn
                    fmt::format("\"{}\"", Nearest(field, known)));
 }
 
-std::string Filled(std::string command, const std::string& place, int number) {
-  if (const auto at = command.find(place); at != std::string::npos)
-    command.replace(at, place.size(), std::to_string(number));
-  return command;
-}
-
 }  // namespace
 
 InstrumentBox::InstrumentBox(DeviceLine line, InstrumentWords words, const std::vector<ReadingColumn>& columns)
@@ -90,7 +84,7 @@ void InstrumentBox::Arm(int samples, int lines) {
   waiting.clear();
   if (lines > 0 && words_.arm.find("{lines}") == std::string::npos)
     line_.Fail(FaultKind::kRefused, "latches at triggers only: its `arm` has no place for {lines}");
-  TellScpi(line_, Filled(Filled(words_.arm, "{samples}", samples), "{lines}", lines));
+  TellScpi(line_, Filled(words_.arm, {{"{samples}", std::to_string(samples)}, {"{lines}", std::to_string(lines)}}));
 }
 
 /// One answer holds no more than fits in a line: it is asked until there are no more.

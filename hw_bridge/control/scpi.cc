@@ -24,6 +24,13 @@ void TellScpi(DeviceLine& line, const std::string& command, Duration beyond) {
             fmt::format("\"{}\" was refused: {}", command, answer));
 }
 
+std::string Filled(std::string command, const std::vector<std::pair<std::string, std::string>>& places) {
+  for (const auto& [place, text] : places) {
+    if (const auto at = command.find(place); at != std::string::npos) command.replace(at, place.size(), text);
+  }
+  return command;
+}
+
 std::vector<std::string> ScpiIntroductions(const std::string& token, const std::string& watchdog) {
   std::vector<std::string> said;
   if (!token.empty()) said.push_back("SYST:TOK \"" + token + "\"\n" + kScpiErrorQuery);

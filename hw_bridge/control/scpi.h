@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hw_bridge/control/device_line.h"
@@ -13,6 +14,10 @@ inline constexpr const char* kScpiIdentity = "*IDN?";
 /// Sends a command and asks the error queue how it went.
 /// @throws DeviceFault kLimit for -222, kRefused for another error; what DeviceLine throws.
 void TellScpi(DeviceLine& line, const std::string& command, Duration beyond = {});
+
+/// A command as a bench file words it, with what stands for its places: {"{tooth}", "12"}. A place that it has not is left
+/// out.
+std::string Filled(std::string command, const std::vector<std::pair<std::string, std::string>>& places);
 
 /// Commands with the query of their errors, for Dialogue::IntroduceBy: the token of a served twin, and a watchdog as the bench file words it.
 /// @param token, watchdog  Empty: none.

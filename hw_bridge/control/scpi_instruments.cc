@@ -46,11 +46,8 @@ void ScpiFixture::Mount(int setup, double clamp_rad, double reseat_rad) {
 
 void ScpiIndexer::IndexTo(int tooth, double angle_rad) {
   const auto end = std::chrono::steady_clock::now() + FromSeconds(words_.move_timeout_s);
-  std::string command = words_.move;
-  for (const auto& [place, text] : {std::pair<std::string, std::string>{"{tooth}", std::to_string(tooth)},
-                                    {"{deg}", PrintInUnit(angle_rad, units::deg)}}) {
-    if (const auto at = command.find(place); at != std::string::npos) command.replace(at, place.size(), text);
-  }
+  const std::string command =
+      Filled(words_.move, {{"{tooth}", std::to_string(tooth)}, {"{deg}", PrintInUnit(angle_rad, units::deg)}});
   TellScpi(line_, command, FromSeconds(words_.move_timeout_s));
   while (!words_.done.empty() && line_.AskWholeNumber(words_.done) != 1) {
     if (std::chrono::steady_clock::now() > end)

@@ -191,16 +191,6 @@ Outcome ControllerStatus(const EspCall& call) {
   return {std::string(1, static_cast<char>('P' + moving)), nullptr};
 }
 
-Outcome ShowToken(const EspCall& call) {
-  if (!call.client.Show(call.command.value)) throw EspError{kEspNoToken};
-  return {};
-}
-
-Outcome ArmWatchdog(const EspCall& call) {
-  call.client.BeMissed(EspPatience_s(call.command.value));
-  return {};
-}
-
 // --- common queries of IEEE 488.2
 
 Outcome OperationComplete(const EspCall& call) {
@@ -240,8 +230,8 @@ constexpr EspEntry kEspCommands[] = {
     {"MF", true, EspAxis::kNeeded, false, MotorOn},
     {"SN", false, EspAxis::kNeeded, true, SetUnit},
     {"SN", true, EspAxis::kNeeded, false, Unit},
-    {kEspShowToken, false, EspAxis::kNone, true, ShowToken},
-    {kEspWatchdog, false, EspAxis::kNone, true, ArmWatchdog},
+    {kEspShowToken, false, EspAxis::kNone, true, ShowEspToken<EspCall>},
+    {kEspWatchdog, false, EspAxis::kNone, true, ArmEspWatchdog<EspCall>},
     {"ID", true, EspAxis::kNeeded, false, StageIdentity},
     {"VE", true, EspAxis::kNone, false, Version},
     {"TE", true, EspAxis::kNone, false, ErrorNumber},

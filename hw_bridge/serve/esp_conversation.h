@@ -3,6 +3,7 @@
 #include <deque>
 
 #include "hw_bridge/serve/command_conversation.h"
+#include "hw_bridge/serve/esp_errors.h"
 #include "hw_bridge/serve/served_bench.h"
 
 namespace twinbench::hw {
@@ -22,6 +23,19 @@ std::optional<EspCommand> ParseEspCommand(const std::string& text);
 
 /// What XW takes: seconds from 0 to an hour. @throws EspError for anything else.
 double EspPatience_s(const std::string& value);
+
+/// XK and XW, the same on tables and on a machine.
+/// @tparam Call  EspCall or EspMachineCall.
+template <class Call>
+Outcome ShowEspToken(const Call& call) {
+  if (!call.client.Show(call.command.value)) throw EspError{kEspNoToken};
+  return {};
+}
+template <class Call>
+Outcome ArmEspWatchdog(const Call& call) {
+  call.client.BeMissed(EspPatience_s(call.command.value));
+  return {};
+}
 
 /// Newport ESP300/301. Axis 1 is the target, 2 the reference; degrees. Its commands are a table in esp_commands.cc.
 ///

@@ -224,16 +224,6 @@ Outcome AllDone(const EspMachineCall& call) {
   return {"", call.served.AtRest("1")};
 }
 
-Outcome ShowMachineToken(const EspMachineCall& call) {
-  if (!call.client.Show(call.command.value)) throw EspError{kEspNoToken};
-  return {};
-}
-
-Outcome ArmMachineWatchdog(const EspMachineCall& call) {
-  call.client.BeMissed(EspPatience_s(call.command.value));
-  return {};
-}
-
 // clang-format off
 constexpr EspMachineEntry kEspMachineCommands[] = {
     {"HN", false, EspPart::kGroup, MakeGroup},
@@ -259,8 +249,8 @@ constexpr EspMachineEntry kEspMachineCommands[] = {
     {"SR", false, EspPart::kAxis, [](const EspMachineCall& call) { return SetSoftLimit(call, &AxisLimits::upper); }},
     {"SR", true, EspPart::kAxis, [](const EspMachineCall& call) { return SoftLimit(call, &AxisLimits::upper); }},
     {"ID", true, EspPart::kAxis, AxisName},
-    {kEspShowToken, false, EspPart::kController, ShowMachineToken},
-    {kEspWatchdog, false, EspPart::kController, ArmMachineWatchdog},
+    {kEspShowToken, false, EspPart::kController, ShowEspToken<EspMachineCall>},
+    {kEspWatchdog, false, EspPart::kController, ArmEspWatchdog<EspMachineCall>},
     {"OR", false, EspPart::kController, HomeMachine},
     {"ST", false, EspPart::kController, StopMachine},
     {"AB", false, EspPart::kController, StopMachine},

@@ -8,7 +8,6 @@
 #include "tests/support/machine_run.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/procedure/machine_watch.h"
-#include "twin/procedure/standing.h"
 
 /// What goes wrong with a machine and its instruments, and what becomes of the run.
 namespace twinbench::test {

@@ -19,7 +19,6 @@
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/core/run_record.h"
-#include "twin/procedure/standing.h"
 #include "twin/procedure/watch.h"
 
 namespace twinbench::tools {

@@ -12,7 +12,6 @@
 #include "twin/benches/registry.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/machine_watch.h"
-#include "twin/procedure/standing.h"
 
 namespace twinbench::tools {
 namespace {
@@ -31,15 +30,27 @@ class OwnMachine : public hw::OpenMachine {
   std::unique_ptr<MachineDevices> twin_;
 };
 
+/// What the bench of a scenario must have, by its twin.
+struct MachineParts {
+  std::vector<MachineAxis> axes;
+  bool indexer = false;
+};
+
+MachineParts PartsOf(const Scenario& scenario) {
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  const MachineBench devices = twin->Devices();
+  return {devices.machine.Axes(), devices.indexer != nullptr};
+}
+
 std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, const Scenario& scenario,
-                                                const std::vector<MachineAxis>& axes, Duration elapsed) {
+                                                const MachineParts& parts, Duration elapsed) {
   const Bench& bench = BenchOf(scenario);
   if (file.kind == "twin") return std::make_unique<OwnMachine>(bench.make_devices(scenario));
-  if (bench.make_devices(scenario)->Devices().indexer && file.indexer.kind == "none")
+  if (parts.indexer && file.indexer.kind == "none")
     throw InputError(file.path, "there is no [indexer] to turn the multi-tooth table",
                      "[indexer] with kind = \"scpi\" or \"console\"");
-  return hw::OpenMachineHardware(file, axes, InstrumentColumns(bench.format->columns), elapsed, scenario.repeat,
-                                StopWasAsked);
+  return hw::OpenMachineHardware(file, parts.axes, InstrumentColumns(bench.format->columns), elapsed, scenario.repeat,
+                                 StopWasAsked);
 }
 
 /// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.
@@ -92,18 +103,17 @@ void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const
 }  // namespace
 
 void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage& page) {
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  const std::vector<MachineAxis> axes = twin->Devices().machine.Axes();
-  const hw::MachineFile file = hw::LoadMachineFile(o.bench, axes);
+  const MachineParts parts = PartsOf(scenario);
+  const hw::MachineFile file = hw::LoadMachineFile(o.bench, parts.axes);
   if (o.rehearse_only)
-    return RehearseMachineFirst(scenario, axes, OpenAnyMachine(file, scenario, axes, {})->Limits());
+    return RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits());
   const RunFolder folder = FolderOf(o);
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
   ListenForStop();
   if (!begun.record || !begun.record->finished()) {
     const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
-    const auto bench = OpenAnyMachine(file, scenario, axes, SinceBegin(begun));
-    if (o.rehearse) RehearseMachineFirst(scenario, axes, bench->Limits());
+    const auto bench = OpenAnyMachine(file, scenario, parts, SinceBegin(begun));
+    if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, bench->Limits());
     MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), page);
   }
   EvaluateRun(scenario, folder.path);

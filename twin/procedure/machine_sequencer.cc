@@ -38,6 +38,16 @@ int MachineSequencer::From(int first, int end) const {
   return bench_.simulation ? first : std::clamp(static_cast<int>(state_.kept.size()), first, end);
 }
 
+void MachineSequencer::ThroughPasses(const std::function<void(int first, int end)>& take) {
+  const int readings = static_cast<int>(plan().size());
+  const auto pass_of = [this](int reading) { return plan()[static_cast<std::size_t>(reading)].pass; };
+  for (int first = 0, end = 0; first < readings; first = end) {
+    while (end < readings && pass_of(end) == pass_of(first)) ++end;
+    const int from = From(first, end);
+    if (from < end) take(from, end);
+  }
+}
+
 void MachineSequencer::Clear() {
   bench_.fixture.Clear();
   state_.mounted.reset();
@@ -262,6 +272,11 @@ void StartAgain(MachineBench& bench, const MachineRunState& state) {
 }
 
 }  // namespace
+
+void RequireOneRotaryAxis(const std::vector<MachineAxis>& axes, const std::string& axis) {
+  if (axes.size() != 1 || !axes[0].is_rotary)
+    throw DeviceFault(FaultKind::kRefused, "machine", "this bench has one axis, " + axis);
+}
 
 void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay& way, ReadingSink& sink,
                   const ProgressCallback& progress, const MachineOptions& options) {

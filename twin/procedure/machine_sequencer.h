@@ -36,6 +36,9 @@ class MachineSequencer {
 
   /// The first reading of [first, end) that is to be gone for; `end` if there is none.
   int From(int first, int end) const;
+  /// One pass after the other, where passes are numbered through the whole plan: the readings [first, end) of each that
+  /// are to be gone for.
+  void ThroughPasses(const std::function<void(int first, int end)>& take);
   /// Whether the set-up has to be mounted first.
   bool NeedsMounting(int setup) const { return state_.mounted != setup; }
   /// Whether anything stands in the way that was mounted for another set-up.
@@ -94,6 +97,11 @@ class MachineSequencer {
   MachineRunState& state_;
   std::vector<Reading> taken_;  // not yet kept
 };
+
+/// For a bench of one axis that turns.
+/// @param axis  What it is: "the turntable".
+/// @throws DeviceFault kRefused if the machine is another.
+void RequireOneRotaryAxis(const std::vector<MachineAxis>& axes, const std::string& axis);
 
 /// The way of one bench through its plan.
 using MachineWay = std::function<void(MachineSequencer&)>;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "twin/core/device_fault.h"
 
@@ -126,6 +127,16 @@ Standstill StopMachine(MachineBench& bench) {
   } catch (const BenchError& error) {  // it may be the fault that is being dealt with
     return {false, error.what()};
   }
+}
+
+Standstill WhetherMachineStands(MachineBench& bench) {
+  const std::vector<AxisState> before = bench.machine.State();
+  std::string moving = Moving(bench.machine.Axes(), {}, before);
+  if (moving.empty()) {  // else the rest of the way need not wait for a second look
+    std::this_thread::sleep_for(kBetweenTwoLooks);
+    moving = Moving(bench.machine.Axes(), before, bench.machine.State());
+  }
+  return {moving.empty(), moving.empty() ? "" : moving + " moves"};
 }
 
 void HearOperator(const MachineOptions& options) {

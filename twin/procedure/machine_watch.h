@@ -9,6 +9,11 @@ namespace twinbench::procedure {
 /// Never throws what the bench throws.
 Standstill StopMachine(MachineBench& bench);
 
+/// Whether all axes stand: nothing is told to them, the controller is asked twice, and no encoder may have moved between
+/// the two looks.
+/// @throws DeviceFault, BenchError where it does not answer.
+Standstill WhetherMachineStands(MachineBench& bench);
+
 /// @throws DeviceFault kStopped if the operator said so.
 void HearOperator(const MachineOptions& options);
 

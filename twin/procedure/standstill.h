@@ -1,8 +1,13 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 
 namespace twinbench::procedure {
+
+/// Real time between the two looks of who asks whether something stands that nobody told to stop. A simulated bench's own
+/// time stands between its calls anyway.
+inline constexpr auto kBetweenTwoLooks = std::chrono::milliseconds(50);
 
 /// Whether what was told to stop stands, as its controller says.
 struct Standstill {

@@ -142,6 +142,17 @@ class Stopping {
   std::string why_not_;
 };
 
+/// Names of the tables that move, by what their controllers say or by what their encoders do between two looks.
+std::string Moving(const std::array<TableState, 2>& before, const std::array<TableState, 2>& now) {
+  constexpr std::array kNames = {"target", "reference"};
+  std::string names;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const bool crept = std::abs(now[k].encoder_rad - before[k].encoder_rad) > kCreeps_rad;
+    if (now[k].moving || crept) names += (names.empty() ? "" : ", ") + std::string(kNames[k]);
+  }
+  return names;
+}
+
 /// A bench whose clock fails too is a real one.
 void Pause(Clock& clock) {
   try {
@@ -196,6 +207,17 @@ Standstill StopBoth(RotaryBench& bench) {
     if (!table.stands()) why_not += (why_not.empty() ? "" : "; ") + table.why_not();
   }
   return {why_not.empty(), why_not};
+}
+
+Standstill WhetherBothStand(RotaryBench& bench) {
+  const auto look = [&bench] { return std::array{bench.target.State(), bench.reference.State()}; };
+  const std::array<TableState, 2> before = look();
+  std::string moving = Moving(before, before);
+  if (moving.empty()) {  // else the rest of the way need not wait for a second look
+    std::this_thread::sleep_for(kBetweenTwoLooks);
+    moving = Moving(before, look());
+  }
+  return {moving.empty(), moving.empty() ? "" : moving + " moves"};
 }
 
 }  // namespace twinbench::procedure

@@ -23,6 +23,11 @@ void WaitFor(RotaryBench& bench, Duration duration, const Options& options);
 /// nobody from stopping the other. Never throws what the bench throws.
 Standstill StopBoth(RotaryBench& bench);
 
+/// Whether both tables stand: nothing is told to them, their controllers are asked twice, and no encoder may have moved
+/// between the two looks.
+/// @throws DeviceFault, BenchError where a controller does not answer.
+Standstill WhetherBothStand(RotaryBench& bench);
+
 /// @throws DeviceFault kStopped if the operator said so.
 void HearOperator(const Options& options);
 

@@ -10,6 +10,7 @@
 #include "twin/core/numbered_runs.h"
 #include "twin/sim/driven_path.h"
 #include "twin/sim/schedule.h"
+#include "twin/sim/setup_check.h"
 
 namespace twinbench::sim {
 namespace {
@@ -117,9 +118,7 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
   // Fixture
   void Clear() override {}
   void Mount(int its_setup, const std::string&) override {
-    if (its_setup < 0 || its_setup >= physics->Setups())
-      throw DeviceFault(FaultKind::kRefused, "fixture",
-                        fmt::format("there are {} set-ups, from 0 on; not {}", physics->Setups(), its_setup));
+    RequireSetup(its_setup, physics->Setups());
     kernel->fixture.Now([this, its_setup] { setup = its_setup; });
   }
 

@@ -12,23 +12,18 @@ class ComparisonDrive {
  public:
   ComparisonDrive(MachineSequencer& sequencer, const EncoderProcedureSettings& settings)
       : sequencer_(sequencer), s_(settings), heads_(static_cast<int>(settings.heads_rad.size())) {
-    if (sequencer.axes().size() != 1 || !sequencer.axes()[0].is_rotary)
-      throw DeviceFault(FaultKind::kRefused, "machine", "this bench has one axis, the shaft");
+    RequireOneRotaryAxis(sequencer.axes(), "the shaft");
     if (heads_ > 1 && !sequencer.IsSimulated())
       throw DeviceFault(FaultKind::kRefused, "instruments", "they show one head of the device, and the scenario has several");
   }
 
   void CarryOut() {
-    const int readings = static_cast<int>(sequencer_.plan().size());
-    for (int first = 0, end = 0; first < readings; first = end) {
-      while (end < readings && At(end).pass == At(first).pass) ++end;
-      const int from = sequencer_.From(first, end);
-      if (from == end) continue;
-      const int mounting = At(from).setup / heads_;
+    sequencer_.ThroughPasses([this](int first, int end) {
+      const int mounting = At(first).setup / heads_;
       if (sequencer_.NeedsMounting(mounting)) sequencer_.Mount(mounting, InWords(mounting));
-      if (!BeginsThere(from)) sequencer_.MoveTo({At(from).reference_rad - At(from).direction * 0.5 * units::turn / s_.stops});
-      for (int k = from; k < end; ++k) Stop(k);
-    }
+      if (!BeginsThere(first)) sequencer_.MoveTo({At(first).reference_rad - At(first).direction * 0.5 * units::turn / s_.stops});
+      for (int k = first; k < end; ++k) Stop(k);
+    });
   }
 
  private:

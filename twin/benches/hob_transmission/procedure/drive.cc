@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "twin/benches/hob_transmission/procedure.h"
-#include "twin/core/device_fault.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -14,8 +13,7 @@ class HobDrive {
  public:
   HobDrive(MachineSequencer& sequencer, const HobSettings& bench)
       : sequencer_(sequencer), bench_(bench), s_(bench.hob_procedure), ramp_(FromSeconds(s_.ramp_s)) {
-    if (sequencer.axes().size() != 1 || !sequencer.axes()[0].is_rotary)
-      throw DeviceFault(FaultKind::kRefused, "machine", "this bench has one axis, the hob");
+    RequireOneRotaryAxis(sequencer.axes(), "the hob");
   }
 
   void CarryOut() {

@@ -1,7 +1,5 @@
 #include "twin/benches/hob_transmission/twin/twin.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -12,6 +10,7 @@
 #include "twin/core/device_fault.h"
 #include "twin/core/happened_once.h"
 #include "twin/core/numbered_runs.h"
+#include "twin/sim/setup_check.h"
 #include "twin/sim/truth.h"
 
 namespace twinbench::sim {
@@ -102,9 +101,7 @@ struct HobTwin::Impl : Clock, MachineController, InstrumentSet, MachineFixture, 
   void Clear() override {}
   void Mount(int setup, const std::string&) override {
     const std::vector<double>& heads_rad = HobOf(scenario).hob_procedure.heads_rad;
-    if (setup < 0 || setup >= std::ssize(heads_rad))
-      throw DeviceFault(FaultKind::kRefused, "fixture",
-                        fmt::format("there are {} set-ups, from 0 on; not {}", heads_rad.size(), setup));
+    RequireSetup(setup, static_cast<int>(std::ssize(heads_rad)));
     world->Mount(heads_rad[static_cast<std::size_t>(setup)]);
   }
 

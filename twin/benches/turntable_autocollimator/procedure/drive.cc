@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "twin/benches/turntable_autocollimator/procedure.h"
-#include "twin/core/device_fault.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -27,20 +26,15 @@ class TurntableDrive {
  public:
   TurntableDrive(MachineSequencer& sequencer, const TurntableSettings& bench)
       : sequencer_(sequencer), bench_(bench), s_(bench.turntable_procedure) {
-    if (sequencer.axes().size() != 1 || !sequencer.axes()[0].is_rotary)
-      throw DeviceFault(FaultKind::kRefused, "machine", "this bench has one axis, the turntable");
+    RequireOneRotaryAxis(sequencer.axes(), "the turntable");
   }
 
   void CarryOut() {
-    const int readings = static_cast<int>(sequencer_.plan().size());
-    for (int first = 0, end = 0; first < readings; first = end) {
-      while (end < readings && At(end).pass == At(first).pass) ++end;
-      const int from = sequencer_.From(first, end);
-      if (from == end) continue;
-      if (sequencer_.NeedsMounting(At(from).setup)) Mount(At(from).setup);
-      Turn(BeforePass_rad(At(from)));
-      for (int k = from; k < end; ++k) bench_.HasPolygon() ? NullFace(k) : Stop(k);
-    }
+    sequencer_.ThroughPasses([this](int first, int end) {
+      if (sequencer_.NeedsMounting(At(first).setup)) Mount(At(first).setup);
+      Turn(BeforePass_rad(At(first)));
+      for (int k = first; k < end; ++k) bench_.HasPolygon() ? NullFace(k) : Stop(k);
+    });
   }
 
  private:

@@ -12,6 +12,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/happened_once.h"
 #include "twin/core/numbered_runs.h"
+#include "twin/sim/setup_check.h"
 #include "twin/sim/truth.h"
 
 namespace twinbench::sim {
@@ -65,10 +66,7 @@ struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFix
   // Fixture
   void Clear() override {}
   void Mount(int setup, const std::string&) override {
-    const int setups = TurntableOf(scenario).turntable_procedure.SetUps();
-    if (setup < 0 || setup >= setups)
-      throw DeviceFault(FaultKind::kRefused, "fixture",
-                        fmt::format("there are {} set-ups, from 0 on; not {}", setups, setup));
+    RequireSetup(setup, TurntableOf(scenario).turntable_procedure.SetUps());
     world->Mount(setup);
   }
 

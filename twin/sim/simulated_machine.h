@@ -1,0 +1,31 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "twin/core/bench.h"
+#include "twin/core/machine.h"
+#include "twin/core/run_record.h"
+#include "twin/core/scenario.h"
+
+namespace twinbench::sim {
+
+/// A twin that is the devices of a MachineBench and knows its truth, driven by the bench's own procedure.
+/// @tparam SimTwin  MachineDevices with Truth(), made of a scenario.
+/// @tparam kDrive   As Bench::drive.
+template <class SimTwin, auto kDrive>
+class SimulatedMachine : public BenchTwin {
+ public:
+  explicit SimulatedMachine(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
+
+  nlohmann::json Truth() const override { return twin_.Truth(); }
+  void CarryOut(RunRecord& record, const std::function<void(const procedure::Progress&)>& progress) override {
+    MachineBench bench = twin_.Devices();
+    kDrive(bench, scenario_, record, progress, {});
+  }
+
+ private:
+  Scenario scenario_;
+  SimTwin twin_;
+};
+
+}  // namespace twinbench::sim
