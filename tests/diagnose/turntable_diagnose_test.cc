@@ -91,6 +91,20 @@ TEST(TurntableDiagnosis, NamesWhatMovesTheZeroInTime) {
   }
 }
 
+// Whose size and time constant stand for each other: neither is known, but that is no reason to believe in a drift.
+TEST(TurntableDiagnosis, LeavesASlowCreepOpenBesideADrift) {
+  for (const std::uint64_t seed : {21u, 22u, 23u, 24u}) {
+    Wrong creep;
+    creep.creep_rad[1] = 0.3 * arcsec;
+    creep.creep_s = 300.0;
+    const DiagnosisRun run = DiagnosisOf(CarefulScenario(), creep, seed);
+    std::vector<Cause> open = run.diagnosis.causes;
+    open.insert(open.end(), run.less_likely.begin(), run.less_likely.end());
+    const auto is_creep = [](const Cause& c) { return c.effect == "mount_creep" && c.where == "y"; };
+    EXPECT_TRUE(std::ranges::any_of(open, is_creep)) << seed << "\n" << test::Told(run);
+  }
+}
+
 TEST(TurntableDiagnosis, NamesWhatTheTurntableDoes) {
   Wrong gap, late;
   gap.backlash_rad = 0.5 * arcsec;

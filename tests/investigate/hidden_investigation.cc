@@ -9,6 +9,7 @@
 #include "tools/twinbench/bench_means.h"
 #include "twin/benches/registry.h"
 #include "twin/investigate/hidden_run.h"
+#include "twin/uncertainty/budget.h"
 
 namespace twinbench::investigate {
 namespace {
@@ -41,13 +42,17 @@ Result ResultOf(const Investigation& found, const Truth& truth) {
   return found.ended == Ended::kNothingMore ? Result::kRightTie : Result::kUnfinished;
 }
 
-/// As certain as wished: its uncertainty of the first run, divided.
+/// As certain as wished: what runs do not share of the first one's uncertainty, divided.
 Goal GoalOf(const Wish& wish, const Scenario& believed, const Measure& measure, const Means& means) {
   Goal goal = ParseGoal(wish.quantity + " 1");
   const std::vector<Reading> first = measure({1, {"first", "", {}, plan::kSameKind}, ""}, believed);
   Certainty certainty(goal);
   certainty.Add(means.evaluate(first, believed));
-  goal.u = certainty.u() / wish.times;
+  const double own = certainty.u();
+  certainty.Share(uncertainty::Budgets(believed, [&](const Scenario& other) {
+    return uncertainty::QuantitiesOf(means.evaluate(first, other));
+  }));
+  goal.u = std::hypot(certainty.SharedU(), own / wish.times);
   return goal;
 }
 

@@ -15,7 +15,7 @@
 namespace twinbench::test {
 namespace {
 
-constexpr int kNullRuns = 200;  // enough for a threshold; twice as quick as by default
+constexpr int kNullRuns = 100;  // enough for a threshold, and what a scan takes at once
 
 std::string CauseOf(const diagnose::Diagnosis& d) {
   if (d.causes.empty()) return fmt::format("unknown {}", d.unknown.signature);

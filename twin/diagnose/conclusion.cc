@@ -137,6 +137,26 @@ std::vector<Cause> SuspectsOf(const Analysis& analysis) {
   return suspects;
 }
 
+/// @return of every place that has a name, the names that the answer leaves out.
+std::vector<Cause> LessLikelyOf(const Analysis& analysis) {
+  constexpr double kLeast = 0.01;
+  std::vector<Cause> less_likely;
+  for (const Term& term : analysis.found.terms) {
+    const Posterior posterior = PosteriorOf(term, analysis.scanner->Families());
+    const std::vector<Share> listed = CredibleSet(posterior);
+    if (listed.empty() || posterior.unknown > 0.5) continue;
+    for (const auto& [key, probability] : OutsideCredibleSet(posterior, kLeast)) {
+      Cause cause;
+      cause.effect = key.first;
+      cause.where = key.second;
+      cause.probability = probability;
+      cause.indistinguishable_from = {{listed.front().first.first, listed.front().first.second}};
+      less_likely.push_back(std::move(cause));
+    }
+  }
+  return less_likely;
+}
+
 /// What the rows that recur show, for a scenario that repeats it at these readings.
 void AcceptRecurrent(const Analysis& analysis, DiagnosisRun& result) {
   for (const NoiseCause& repair : analysis.repairs) {
@@ -208,6 +228,7 @@ DiagnosisRun Conclude(const LinearRun& run, const Analysis& analysis, const std:
   result.accepted = AcceptedOf(analysis);
   AcceptRecurrent(analysis, result);
   if (result.diagnosis.verdict == Verdict::kNone) result.suspects = SuspectsOf(analysis);
+  result.less_likely = LessLikelyOf(analysis);
   AddDetectability(run, analysis, words, result.diagnosis);
   if (analysis.design_only) result.isolability = std::make_shared<const Isolability>(IsolabilityOf(run, analysis));
   AddNextMeasurements(words, result.diagnosis.causes);

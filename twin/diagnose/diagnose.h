@@ -52,6 +52,9 @@ struct DiagnosisRun {
   /// Nothing was found: the named causes that would come first, with what probability they have against nothing. They
   /// are no part of the answer; a further run may be planned by them.
   std::vector<Cause> suspects;
+  /// Something was found: the named causes that are too unlikely for the answer to list, from a hundredth on. Each is
+  /// indistinguishable from the first cause of its place.
+  std::vector<Cause> less_likely;
   std::shared_ptr<const Isolability> isolability;  // null unless `design_only` was asked for
 };
 

@@ -89,7 +89,7 @@ Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& r
   Belief belief;
   const bool is_none = found.diagnosis.verdict == diagnose::Verdict::kNone;
   belief.unlisted = is_none ? 0.0 : std::clamp(found.diagnosis.unknown.probability, 0.0, 1.0);
-  std::vector<Weighed> open = LeftOpen(WithSizes(found, runs.front(), means), runs.front().scenario);
+  std::vector<Weighed> open = LeftOpen(WithSizes(WithLessLikely(found), runs.front(), means), runs.front().scenario);
   AddUnnamed(open, belief, runs.front(), means);
   for (const Weighed& weighed : open) {
     Open fitted{FitJointly(weighed.hypothesis, runs, means)};

@@ -148,6 +148,22 @@ Hypothesis Together(const Hypothesis& a, const Hypothesis& b) {
   return both;
 }
 
+diagnose::DiagnosisRun WithLessLikely(diagnose::DiagnosisRun found) {
+  std::vector<Cause>& causes = found.diagnosis.causes;
+  const auto find = [&causes](const std::string& effect, const std::string& where) {
+    return std::ranges::find_if(causes, [&](const Cause& c) { return c.effect == effect && c.where == where; });
+  };
+  for (const Cause& cause : found.less_likely) {
+    const diagnose::Rival& beside = cause.indistinguishable_from.front();
+    const auto first = find(beside.effect, beside.where);
+    if (first == causes.end() || find(cause.effect, cause.where) != causes.end()) continue;
+    first->indistinguishable_from.push_back({cause.effect, cause.where});
+    causes.push_back(cause);
+  }
+  found.less_likely.clear();
+  return found;
+}
+
 std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run) {
   const std::vector<Cause>& causes = found.diagnosis.causes;
   if (found.diagnosis.verdict == diagnose::Verdict::kNone) return NothingOrSuspects(found, scenario.bench, run);

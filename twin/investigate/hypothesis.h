@@ -45,6 +45,10 @@ struct Weighed {
   double probability = 0.0;
 };
 
+/// The diagnosis with the causes that it found too unlikely to list, each among those that it cannot be told from: a
+/// further run may find them likely.
+diagnose::DiagnosisRun WithLessLikely(diagnose::DiagnosisRun found);
+
 /// What a diagnosis leaves open: of causes that it cannot tell apart one each, of causes that are at work together
 /// all; the most probable dozen. A diagnosis that found nothing leaves "nothing".
 /// @param run  Which of the investigation's was diagnosed, from 0 on.

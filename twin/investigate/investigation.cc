@@ -253,13 +253,14 @@ class Loop {
     const bool agrees = found.diagnosis.verdict == diagnose::Verdict::kNone;
     if (agrees && IsOfAnotherKind()) Agreed(belief, run, means_);
     if (agrees && !best.causes.empty()) return;
-    std::vector<Weighed> more = LeftOpen(found, with, run.number);  // where nothing is found: what would come first
+    std::vector<Weighed> more = LeftOpen(WithLessLikely(found), with, run.number);  // where nothing is found: what would come first
     std::erase_if(more, [](const Weighed& one) { return one.hypothesis.causes.empty(); });
     for (Weighed& one : more) one.hypothesis = Together(best, one.hypothesis);
     bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
     if (agrees) return;
     const std::vector<Weighed> others =  // instead of the best; beside nothing that was just asked
-        LeftOpen(best.IsNothing() ? found : means_.diagnose(readings, run.scenario, {}), run.scenario, run.number);
+        LeftOpen(WithLessLikely(best.IsNothing() ? found : means_.diagnose(readings, run.scenario, {})), run.scenario,
+                 run.number);
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
     if (!is_new || found.diagnosis.verdict == diagnose::Verdict::kUnknown)
       Disagreed(belief, found.diagnosis.unknown.probability);

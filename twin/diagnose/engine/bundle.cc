@@ -14,10 +14,17 @@ int StepOf(const LinearRun& run, int columns) {
   return std::max(1, most / std::max(1, columns));
 }
 
+/// A'A of few columns, too few for a matrix product by blocks to pay.
+Eigen::MatrixXd SmallGram(const Eigen::MatrixXd& A) {
+  constexpr Eigen::Index kFew = 8;
+  if (A.cols() > kFew) return A.transpose() * A;
+  return A.transpose().lazyProduct(A);
+}
+
 }  // namespace
 
 Unwhitened::Unwhitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& white)
-    : rows_(noise.WhitenTransposed(run, white)) {
+    : rows_(noise.WhitenTransposed(run, white)), by_row_(rows_) {
   const Eigen::Index readings = run.schedule.Readings(), channels = run.Channels();
   if (channels == 1) return;
   using Stride = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
@@ -62,8 +69,8 @@ void Bundle::WriteOut(const LinearRun& run, const NoiseModel& noise, const Proje
     for (Eigen::Index k = 0; k < S.cols() / columns_; ++k) {
       const std::vector<Eigen::Index> of_point = ColumnsOf(k, S.cols());
       const Eigen::MatrixXd s = S(Eigen::all, of_point), h = H(Eigen::all, of_point);
-      raw_.push_back(s.transpose() * s);
-      gram_.push_back(raw_.back() - h.transpose() * h);
+      raw_.push_back(SmallGram(s));
+      gram_.push_back(raw_.back() - SmallGram(h));
     }
     if (std::ssize(kept_) < chunk || made.size() > kept_left) continue;
     kept_left -= made.size();
@@ -94,17 +101,17 @@ Eigen::MatrixXd Bundle::Whitened(const LinearRun& run, const NoiseModel& noise, 
   return noise.Whiten(run, family_.base ? OnEachChannel(made, family_.base->channels) : made);
 }
 
-Eigen::MatrixXd Bundle::Products(int chunk, const Unwhitened& Y) const {
+RunsByRow Bundle::Products(int chunk, const Unwhitened& Y) const {
   if (sums_) return sums_->Products(Y.Rows());
   const bool is_kept = chunk < std::ssize(kept_);
   const Eigen::MatrixXd again = is_kept ? Eigen::MatrixXd() : Make(chunk);
   const Eigen::MatrixXd& made = is_kept ? kept_[static_cast<std::size_t>(chunk)] : again;
-  if (!family_.base) return made.transpose() * Y.Rows();
+  if (!family_.base) return TransposedProduct(made, Y.ByRow());
   const int channels = family_.base->channels;
   const Eigen::Index series = columns_ / channels;
-  Eigen::MatrixXd products(made.cols() * channels, Y.Rows().cols());
+  RunsByRow products(made.cols() * channels, Y.Rows().cols());
   for (int c = 0; c < channels; ++c) {
-    const Eigen::MatrixXd of_channel = made.transpose() * Y.Channel(c);
+    const RunsByRow of_channel = TransposedProduct(made, Y.Channel(c));
     for (Eigen::Index at = 0; at < made.cols(); at += series) {
       products.middleRows(at * channels + c * series, series) = of_channel.middleRows(at, series);
     }

@@ -8,6 +8,7 @@
 #include "twin/diagnose/engine/linear_run.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
+#include "twin/diagnose/engine/scan_kernels.h"
 
 namespace twinbench::diagnose {
 
@@ -18,13 +19,15 @@ class Unwhitened {
   Unwhitened(const LinearRun& run, const NoiseModel& noise, const Eigen::MatrixXd& white);
 
   const Eigen::MatrixXd& Rows() const { return rows_; }  // F'Y
-  const Eigen::MatrixXd& Channel(int c) const {          // readings x any
-    return channel_.empty() ? rows_ : channel_[static_cast<std::size_t>(c)];
+  const RunsByRow& ByRow() const { return by_row_; }     // the same
+  const RunsByRow& Channel(int c) const {                // readings x any
+    return channel_.empty() ? by_row_ : channel_[static_cast<std::size_t>(c)];
   }
 
  private:
   Eigen::MatrixXd rows_;
-  std::vector<Eigen::MatrixXd> channel_;  // empty: the only one has all rows
+  RunsByRow by_row_;
+  std::vector<RunsByRow> channel_;  // empty: the only one has all rows
 };
 
 /// Families that share their columns, with what depends on the design only. Grid points come in chunks that fit
@@ -45,7 +48,7 @@ class Bundle {
   const Eigen::MatrixXd& Raw(int g) const { return raw_[static_cast<std::size_t>(g)]; }    // S'S
 
   /// S'Y of all grid points of one chunk: their columns one after the other x columns of Y.
-  Eigen::MatrixXd Products(int chunk, const Unwhitened& Y) const;
+  RunsByRow Products(int chunk, const Unwhitened& Y) const;
 
  private:
   void SumUp(const LinearRun& run, const NoiseModel& noise, const Projector& projector);

@@ -49,4 +49,11 @@ std::vector<Share> CredibleSet(const Posterior& posterior) {
   return {ranked.front()};
 }
 
+std::vector<Share> OutsideCredibleSet(const Posterior& posterior, double least) {
+  std::vector<Share> ranked = Ranked(posterior);
+  ranked.erase(ranked.begin(), ranked.begin() + std::ssize(CredibleSet(posterior)));
+  std::erase_if(ranked, [least](const Share& share) { return share.second < least; });
+  return ranked;
+}
+
 }  // namespace twinbench::diagnose

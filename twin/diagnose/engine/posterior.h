@@ -24,4 +24,7 @@ Posterior PosteriorOf(const Term& term, const std::vector<Family>& families);
 /// smallest set that holds nearly all of what is not unknown.
 std::vector<Share> CredibleSet(const Posterior& posterior);
 
+/// The other causes, from `least` on, most probable first.
+std::vector<Share> OutsideCredibleSet(const Posterior& posterior, double least);
+
 }  // namespace twinbench::diagnose

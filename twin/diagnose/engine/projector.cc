@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "twin/core/errors.h"
+#include "twin/diagnose/engine/scan_kernels.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -51,45 +52,12 @@ bool AreSeparate(const Eigen::MatrixXd& normal, int blocks, int size) {
   return true;
 }
 
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-constexpr Eigen::Index kRowsAtOnce = 8;  // so many rows of S stay in the first-level cache
-
-/// gathered += J' S of kRowsAtOnce rows: each sum is loaded and stored once for all of them.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void AddRows(const double* __restrict J, Eigen::Index unknowns,
-                                                                  const double* __restrict S, Eigen::Index columns,
-                                                                  double* __restrict gathered) {
-  for (Eigen::Index j = 0; j < unknowns; ++j) {
-    double a[kRowsAtOnce];
-    for (Eigen::Index r = 0; r < kRowsAtOnce; ++r) a[r] = J[r * unknowns + j];
-    double* const sum = gathered + j * columns;
-    for (Eigen::Index c = 0; c < columns; ++c) {
-      double more = 0.0;
-      for (Eigen::Index r = 0; r < kRowsAtOnce; ++r) more += a[r] * S[r * columns + c];
-      sum[c] += more;
-    }
-  }
-}
-
-/// J' S where every reading shows nearly every unknown.
-Eigen::MatrixXd GatherDense(const Sparse& jacobian, const Eigen::MatrixXd& S) {
-  const Eigen::Index rows = (S.rows() + kRowsAtOnce - 1) / kRowsAtOnce * kRowsAtOnce;
-  RowMajorMatrix J = RowMajorMatrix::Zero(rows, jacobian.cols()), by_row = RowMajorMatrix::Zero(rows, S.cols());
-  J.topRows(S.rows()) = jacobian;
-  by_row.topRows(S.rows()) = S;
-  RowMajorMatrix gathered = RowMajorMatrix::Zero(jacobian.cols(), S.cols());
-  for (Eigen::Index row = 0; row < rows; row += kRowsAtOnce)
-    AddRows(J.row(row).data(), J.cols(), by_row.row(row).data(), by_row.cols(), gathered.data());
-  return gathered;
-}
-
 /// J' S, a row of S at a time. Most signatures are zero on most rows (other channels, before a step): what lies
 /// beside the first and last of a row that are not costs nothing here.
 Eigen::MatrixXd Gather(const Sparse& jacobian, const Eigen::MatrixXd& S) {
-  if (IsDense(jacobian)) return GatherDense(jacobian, S);
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const RowMajor by_row = S;
-  RowMajor gathered = RowMajor::Zero(jacobian.cols(), S.cols());
+  if (IsDense(jacobian)) return TransposedProduct(Eigen::MatrixXd(jacobian), S);
+  const RunsByRow by_row = S;
+  RunsByRow gathered = RunsByRow::Zero(jacobian.cols(), S.cols());
   for (Eigen::Index row = 0; row < by_row.rows(); ++row) {
     const double* const begin = by_row.row(row).data();
     const double* const end = begin + by_row.cols();
@@ -98,9 +66,8 @@ Eigen::MatrixXd Gather(const Sparse& jacobian, const Eigen::MatrixXd& S) {
     if (first == end) continue;
     const double* const last =
         std::find_if(std::make_reverse_iterator(end), std::make_reverse_iterator(first), is_there).base();
-    const Eigen::Map<const Eigen::RowVectorXd> values(first, last - first);
     for (Sparse::InnerIterator j(jacobian, row); j; ++j)
-      gathered.row(j.col()).segment(first - begin, values.size()) += j.value() * values;
+      AddScaled(j.value(), first, last - first, gathered.row(j.col()).data() + (first - begin));
   }
   return gathered;
 }

@@ -16,26 +16,6 @@ constexpr Eigen::Index kMostKeptValues = 40'000'000;  // of signatures: 320 MB
 constexpr double kAbsorbed = 1e-10;  // share of a signature's power below which only priors and rounding are left
 constexpr double kDependent = 1e-4;  // share of a signature's power that must survive projection
 
-/// Running log of a mean of exponentials over a grid that arrives piece by piece.
-struct LogMean {
-  Eigen::ArrayXd top, sum;
-  int count = 0;
-
-  void Add(const Eigen::ArrayXd& values) {
-    if (count++ == 0) {
-      top = values;
-      sum = Eigen::ArrayXd::Ones(values.size());
-      return;
-    }
-    for (Eigen::Index k = 0; k < values.size(); ++k) {
-      const double above = values[k] - top[k];
-      sum[k] = above > 0.0 ? sum[k] * std::exp(-above) + 1.0 : sum[k] + std::exp(above);
-      top[k] = std::max(top[k], values[k]);
-    }
-  }
-  Eigen::ArrayXd Value() const { return top + (sum / count).log(); }
-};
-
 Eigen::VectorXd PriorSds(const Family& family) {
   Eigen::VectorXd sd(std::ssize(family.amplitudes));
   std::transform(family.amplitudes.begin(), family.amplitudes.end(), sd.begin(),
@@ -45,7 +25,7 @@ Eigen::VectorXd PriorSds(const Family& family) {
 
 /// A prior that allows one sign only doubles the evidence where the estimate has it and removes most where it has
 /// not: log 2 Phi(t), t the posterior mean over its deviation.
-void AddOneSided(const Family& family, const Eigen::MatrixXd& products, double d2, double prior_scale,
+void AddOneSided(const Family& family, const RunsByRow& products, double d2, double prior_scale,
                  Eigen::ArrayXd& log_bayes) {
   const Amplitude& a = family.amplitudes.front();
   if (family.amplitudes.size() != 1 || (a.lower < 0.0 && a.upper > 0.0)) return;
@@ -60,15 +40,16 @@ void AddOneSided(const Family& family, const Eigen::MatrixXd& products, double d
 /// Squared singular values of prior-scaled signatures and the squared coefficients of the data along them.
 struct Spectrum {
   Eigen::ArrayXd d2;   // size p
-  Eigen::ArrayXXd c2;  // p x runs
+  RunsByRow c2;        // p x runs
 };
 
 template <class Eigenvectors>
-Spectrum Along(const Eigenvectors& eigen, const Eigen::MatrixXd& products, double raw) {
+Spectrum Along(const Eigenvectors& eigen, const RunsByRow& products, double raw) {
   Spectrum s;
   s.d2 = eigen.eigenvalues().array().max(0.0);
   const double least = std::max(1e-10 * s.d2.maxCoeff(), kAbsorbed * raw);
-  s.c2 = (eigen.eigenvectors().transpose() * products).array().square();
+  s.c2 = eigen.eigenvectors().transpose().lazyProduct(products);
+  s.c2 = s.c2.array().square();
   for (Eigen::Index i = 0; i < s.d2.size(); ++i) {
     if (s.d2[i] > least) {
       s.c2.row(i) /= s.d2[i];
@@ -83,7 +64,7 @@ Spectrum Along(const Eigenvectors& eigen, const Eigen::MatrixXd& products, doubl
 /// @param gram      S'WS of the member, prior-scaled.
 /// @param products  S'Wy, prior-scaled.
 /// @param raw       Trace of S'S: less than a 1e-10 of it is no signal any more.
-Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& products, double raw) {
+Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const RunsByRow& products, double raw) {
   // Most signatures are one column or a wave, and there are thousands of them.
   if (gram.rows() == 1)
     return Along(Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 1, 1>>(gram), products, raw);
@@ -159,7 +140,7 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
   const double half = 0.5 * (nu + projector_.DegreesOfFreedom() - deflation.Rank());
   const Eigen::ArrayXd power = nu + data.power.array();
   const std::vector<int>& members = bundle.Members();
-  std::vector<LogMean> mean(members.size());
+  std::vector<LogMean> mean(members.size(), LogMean(runs));
   std::vector<Eigen::ArrayXd> top(members.size(), Eigen::ArrayXd::Constant(runs, -1.0));
   std::vector<Eigen::MatrixXd> scaled;  // from the bundle's columns to the member's, prior-scaled
   for (const int member : members) {
@@ -167,7 +148,8 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
     const Eigen::MatrixXd sd = PriorSds(family).asDiagonal();
     scaled.push_back(family.base ? Eigen::MatrixXd(family.map * sd) : sd);
   }
-  Eigen::MatrixXd products, removed, gram;  // of the present chunk, and grid point
+  RunsByRow products, removed;  // of the present chunk
+  Eigen::MatrixXd gram;         // of the grid point
   Eigen::ArrayXd log_bayes(runs);
   for (int g = 0; g < bundle.Grid(); ++g) {
     if (g % bundle.Step() == 0) {
@@ -183,7 +165,7 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
     for (std::size_t m = 0; m < members.size(); ++m) {
       const Family& family = families_[static_cast<std::size_t>(members[m])];
       const Eigen::MatrixXd& own = scaled[m];
-      const Eigen::MatrixXd product = own.transpose() * products.middleRows(at, bundle.Columns());
+      const RunsByRow product = own.transpose().lazyProduct(products.middleRows(at, bundle.Columns()));
       const double raw = (own.transpose() * bundle.Raw(g) * own).trace();
       const Spectrum s = SpectrumOf(own.transpose() * gram * own, product, raw);
       const auto row = static_cast<Eigen::Index>(members[m]);
@@ -195,14 +177,9 @@ void Scanner::ScanBundle(const Bundle& bundle, const Projected& data, const Unwh
         out.explained(row, k) = explained;
       }
       for (const double f : tuning::kPriorScales) {
-        double occam = 0.0;
-        log_bayes.setZero();
-        for (Eigen::Index i = 0; i < s.d2.size(); ++i) {
-          const double d2 = f * f * s.d2[i];
-          occam += 0.5 * std::log(1.0 + d2);
-          log_bayes += s.c2.row(i).transpose() * (d2 / (1.0 + d2));
-        }
-        log_bayes = -occam - half * (1.0 - log_bayes / power).max(1e-12).log();
+        const Eigen::ArrayXd d2 = f * f * s.d2;
+        const double occam = 0.5 * (1.0 + d2).log().sum();
+        LogBayesOf(d2 / (1.0 + d2), s.c2, power, occam, half, log_bayes);
         AddOneSided(family, product, s.d2[0], f, log_bayes);
         mean[m].Add(log_bayes);
       }
@@ -223,7 +200,7 @@ std::vector<Scanner::Fit> Scanner::FitEach(int family, int first, int last, cons
   const Family& f = families_[static_cast<std::size_t>(family)];
   const Bundle& bundle = BundleOf(family);
   const Unwhitened rows(run_, noise_, data.rows.col(0)), removed_rows(run_, noise_, deflation.BasisOf(run_.Rows()));
-  Eigen::MatrixXd products, removed;
+  RunsByRow products, removed;
   std::vector<Fit> fits;
   for (int g = first; g <= last; ++g) {
     if (g == first || g % bundle.Step() == 0) {

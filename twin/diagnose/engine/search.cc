@@ -95,15 +95,20 @@ bool IsThere(const Problem& problem, const Deflation& others, const Projected& d
   return with - without > tuning::kHeadline * tuning::kHeadline * noise;
 }
 
+/// log of the posterior of each family and, last, of nothing.
+Eigen::VectorXd LogPosterior(const Problem& problem, const Evidence& evidence) {
+  Eigen::VectorXd logs(evidence.log_bayes.rows() + 1);
+  logs << evidence.log_bayes.col(0) + problem.log_priors, std::log(tuning::kPriorNone);
+  logs.array() -= LogSum(logs);
+  return logs;
+}
+
 /// The most probable of what is left.
 void TakeAmong(const Problem& problem, const std::map<int, Eigen::VectorXd>& shapes, const Evidence& evidence,
                Term& term) {
-  const Eigen::VectorXd joint = evidence.log_bayes.col(0) + problem.log_priors;
-  term.log_posterior.resize(joint.size() + 1);
-  term.log_posterior << joint, std::log(tuning::kPriorNone);
-  term.log_posterior.array() -= LogSum(term.log_posterior);
+  term.log_posterior = LogPosterior(problem, evidence);
   Eigen::Index best = 0;
-  joint.maxCoeff(&best);
+  term.log_posterior.head(evidence.log_bayes.rows()).maxCoeff(&best);
   term.family = static_cast<int>(best);
   term.grid_point = evidence.grid_point(best, 0);
   const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
@@ -123,15 +128,24 @@ Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidenc
   term.statistic = statistic();  // as calibrated: without refinement
   if (term.statistic >= problem.threshold) RefineLeaders(problem, others, data, evidence, shapes);
   // A name that does not hold leaves its probability to the others.
+  std::map<int, double> of_unknown_size;
   for (;;) {
     TakeAmong(problem, shapes, evidence, term);
     const Family& family = problem.scanner.Families()[static_cast<std::size_t>(term.family)];
-    const bool all_refused = !(evidence.log_bayes(term.family, 0) > kNever);
+    double& log_bayes = evidence.log_bayes(term.family, 0);
+    const bool all_refused = !(log_bayes > kNever);
     if (term.statistic < problem.threshold || all_refused) break;
-    if (IsInside(family, term.shape) && IsThere(problem, others, data, term)) break;
-    evidence.log_bayes(term.family, 0) = as_scanned[term.family] = kNever;
+    if (IsInside(family, term.shape)) {
+      if (IsThere(problem, others, data, term)) break;
+      of_unknown_size[term.family] = log_bayes;
+    }
+    log_bayes = as_scanned[term.family] = kNever;
     term.statistic = statistic();
   }
+  // Beside another name it is a rival: that its size and its shape stand for each other does not tell the two apart.
+  if (problem.scanner.Families()[static_cast<std::size_t>(term.family)].kind != Kind::kNamed) return term;
+  for (const auto& [family, log_bayes] : of_unknown_size) evidence.log_bayes(family, 0) = log_bayes;
+  term.log_posterior = LogPosterior(problem, evidence);
   return term;
 }
 

@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+
+#include "twin/benches/names.h"
+#include "twin/investigate/hypothesis.h"
+
+namespace twinbench::investigate {
+namespace {
+
+using diagnose::Cause;
+
+Cause Named(const std::string& effect, double probability) {
+  Cause cause;
+  cause.effect = effect;
+  cause.where = "y";
+  cause.probability = probability;
+  return cause;
+}
+
+/// A drift that the answer names, beside a creep that it is too sure of to list.
+diagnose::DiagnosisRun DriftFound() {
+  diagnose::DiagnosisRun found;
+  found.diagnosis.verdict = diagnose::Verdict::kNamed;
+  found.diagnosis.causes = {Named("autocollimator_drift", 0.85)};
+  Cause creep = Named("mount_creep", 0.1);
+  creep.indistinguishable_from = {{"autocollimator_drift", "y"}};
+  found.less_likely = {creep};
+  return found;
+}
+
+Scenario Turntable() {
+  Scenario scenario;
+  scenario.bench = kTurntableBench;
+  return scenario;
+}
+
+TEST(LessLikely, IsOpenBesideWhatTheAnswerNames) {
+  const std::vector<Weighed> open = LeftOpen(WithLessLikely(DriftFound()), Turntable());
+  ASSERT_EQ(open.size(), 2u);
+  EXPECT_EQ(open[0].hypothesis.Name(), "autocollimator_drift y");
+  EXPECT_EQ(open[1].hypothesis.Name(), "mount_creep y");
+  EXPECT_NEAR(open[1].probability / open[0].probability, 0.1 / 0.85, 1e-12);
+}
+
+TEST(LessLikely, OfACauseThatIsNoLongerToldIsLeftOut) {
+  diagnose::DiagnosisRun found = DriftFound();
+  found.diagnosis.causes = {Named("tone", 0.9)};
+  EXPECT_EQ(WithLessLikely(found).diagnosis.causes.size(), 1u);
+}
+
+TEST(LessLikely, ThatTheAnswerListsIsNotListedTwice) {
+  diagnose::DiagnosisRun found = DriftFound();
+  found.diagnosis.causes.push_back(Named("mount_creep", 0.4));
+  EXPECT_EQ(WithLessLikely(found).diagnosis.causes.size(), 2u);
+}
+
+}  // namespace
+}  // namespace twinbench::investigate

@@ -1,0 +1,89 @@
+#include "twin/diagnose/engine/scan_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "twin/diagnose/engine/vector_math.h"
+
+namespace twinbench::diagnose {
+namespace {
+
+constexpr Eigen::Index kRowsAtOnce = 8;  // so many rows of B stay in the first-level cache
+
+/// product += A'B of kRowsAtOnce rows: each sum is loaded and stored once for all of them.
+[[gnu::target_clones("avx512f", "avx2", "default")]] void AddRows(const double* __restrict A, Eigen::Index stride,
+                                                                  Eigen::Index m, const double* __restrict B,
+                                                                  Eigen::Index columns, double* __restrict product) {
+  for (Eigen::Index j = 0; j < m; ++j) {
+    const double* const a = A + j * stride;
+    double* const sum = product + j * columns;
+    for (Eigen::Index c = 0; c < columns; ++c) {
+      double more = 0.0;
+      for (Eigen::Index r = 0; r < kRowsAtOnce; ++r) more += a[r] * B[r * columns + c];
+      sum[c] += more;
+    }
+  }
+}
+
+[[gnu::target_clones("avx512f", "avx2", "default")]] void LogOfShareLeft(const double* __restrict explained,
+                                                                         const double* __restrict power, double occam,
+                                                                         double half, Eigen::Index runs,
+                                                                         double* __restrict log_bayes) {
+  for (Eigen::Index k = 0; k < runs; ++k) {
+    const double left = std::max(1.0 - explained[k] / power[k], 1e-12);
+    log_bayes[k] = -occam - half * LogOfPositive(left);
+  }
+}
+
+[[gnu::target_clones("avx512f", "avx2", "default")]] void AddExponentials(const double* __restrict values,
+                                                                          Eigen::Index runs, double* __restrict top,
+                                                                          double* __restrict sum) {
+  for (Eigen::Index k = 0; k < runs; ++k) {
+    const double above = values[k] - top[k], e = ExpOfNegative(-std::abs(above));
+    sum[k] = above > 0.0 ? sum[k] * e + 1.0 : sum[k] + e;
+    top[k] = std::max(top[k], values[k]);
+  }
+}
+
+}  // namespace
+
+RunsByRow TransposedProduct(const Eigen::Ref<const Eigen::MatrixXd>& A, const RunsByRow& B) {
+  RunsByRow product = RunsByRow::Zero(A.cols(), B.cols());
+  const Eigen::Index whole = A.rows() / kRowsAtOnce * kRowsAtOnce, rest = A.rows() - whole;
+  for (Eigen::Index row = 0; row < whole; row += kRowsAtOnce)
+    AddRows(A.data() + row, A.outerStride(), A.cols(), B.row(row).data(), B.cols(), product.data());
+  if (rest == 0) return product;
+  Eigen::MatrixXd last_A = Eigen::MatrixXd::Zero(kRowsAtOnce, A.cols());
+  RunsByRow last_B = RunsByRow::Zero(kRowsAtOnce, B.cols());
+  last_A.topRows(rest) = A.bottomRows(rest);
+  last_B.topRows(rest) = B.bottomRows(rest);
+  AddRows(last_A.data(), kRowsAtOnce, A.cols(), last_B.data(), B.cols(), product.data());
+  return product;
+}
+
+[[gnu::target_clones("avx512f", "avx2", "default")]] void AddScaled(double factor, const double* __restrict values,
+                                                                    Eigen::Index count, double* __restrict sum) {
+  for (Eigen::Index k = 0; k < count; ++k) sum[k] += factor * values[k];
+}
+
+void LogBayesOf(const Eigen::VectorXd& weight, const RunsByRow& c2, const Eigen::ArrayXd& power, double occam,
+                double half, Eigen::ArrayXd& log_bayes) {
+  log_bayes.setZero(c2.cols());
+  for (Eigen::Index i = 0; i < weight.size(); ++i) log_bayes += weight[i] * c2.row(i).transpose().array();
+  const Eigen::ArrayXd explained = log_bayes;
+  LogOfShareLeft(explained.data(), power.data(), occam, half, explained.size(), log_bayes.data());
+}
+
+LogMean::LogMean(Eigen::Index runs)
+    : top_(Eigen::ArrayXd::Constant(runs, -1e300)), sum_(Eigen::ArrayXd::Zero(runs)) {}
+
+void LogMean::Add(const Eigen::ArrayXd& values) {
+  AddExponentials(values.data(), values.size(), top_.data(), sum_.data());
+  ++count_;
+}
+
+Eigen::ArrayXd LogMean::Value() const {
+  return top_ + (sum_ / count_).log();
+}
+
+}  // namespace twinbench::diagnose
