@@ -158,9 +158,12 @@ Naming Name(const SearchResult& found, const std::vector<Family>& families, doub
   if (noise_free) std::erase_if(answered.answers, [&](const Answer& a) { return answered.IsSmall(a); });
   Naming naming{VerdictOf(answered), CausesOf(answered), UnknownOf(answered)};
   const double one_unknown = ChanceOfOneUnknown(found, families);
-  Doubt(one_unknown, naming);
+  Doubt(std::max(one_unknown, found.overtones), naming);
   if (!std::ranges::all_of(naming.causes, IsPossible)) {
     DeclareUnknown("as the cause named here, in a size that is not possible for it", UnnamedPower(answered),
+                   naming);
+  } else if (found.overtones > 0.5) {
+    DeclareUnknown("something that repeats as the wave named here and is no sine, locked to time", UnnamedPower(answered),
                    naming);
   } else if (LeavesStructure(answered, found.last_statistic, threshold) || one_unknown > 0.5) {
     DeclareUnknown("structure that the causes named here do not explain", UnnamedPower(answered), naming);

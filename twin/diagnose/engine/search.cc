@@ -8,6 +8,7 @@
 #include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/estimate.h"
 #include "twin/diagnose/engine/prior.h"
+#include "twin/diagnose/engine/overtones.h"
 #include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/tuning.h"
 
@@ -275,6 +276,8 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
   TryCausesFirst(problem, result);
   MeasureShares(problem, result.terms);
   EstimateTerms(run, noise, projector, scanner, problem.white, result.terms);
+  result.overtones = ProbabilityOfOvertones(run, noise, projector, scanner.Families(), result.terms,
+                                            ColumnsWithout(problem, result.terms, -1));
   return result;
 }
 

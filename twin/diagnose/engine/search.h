@@ -25,6 +25,7 @@ struct SearchResult {
   double first_statistic = 0.0;  // alarm statistic of the whole run
   double last_statistic = 0.0;   // of what remains
   double joint_evidence = 0.0;   // of all terms together: each given those before it
+  double overtones = 0.0;        // probability that a named wave repeats and is no sine (overtones.h)
   Evidence alone;                // the first scan
 };
 
