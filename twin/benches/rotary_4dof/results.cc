@@ -36,6 +36,7 @@ TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const Analysis analysis = Analyse(scenario, readings, estimator);
   nlohmann::json results = ToJson(analysis);
+  AddCalibrationParts(analysis, readings, scenario, results["calibration"]);
   if (analysis.separation) AddParts(analysis, readings, scenario, results["separation"]);
   const nlohmann::json separation = analysis.separation ? Agreed(results["separation"]) : nlohmann::json();
   report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
