@@ -243,7 +243,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   evaluation.summary += BiasText(a);
   evaluation.summary += DeviationsText(a);
   evaluation.tables = {{"polar.txt", PolarsOf(a)}};
-  if (a.IsFitted()) evaluation.joints = {JointOf(a.fit)};
+  if (a.IsFitted()) evaluation.joints = [fit = a.fit] { return std::vector<uncertainty::Joint>{JointOf(fit)}; };
   return evaluation;
 }
 

@@ -129,6 +129,12 @@ void AddDevice(const DeviceError& e, const DeviceSettings& settings, nlohmann::j
   json["notes"] = e.notes;
 }
 
+std::vector<uncertainty::Joint> JointsOf(const separate::encoder::SeparatedCurves& curves) {
+  std::vector<uncertainty::Joint> joints = {CurveJoint("device", curves.device, kCurvePoints)};
+  if (!curves.reference.orders.empty()) joints.push_back(CurveJoint("reference", curves.reference, kCurvePoints));
+  return joints;
+}
+
 std::string LostText(const DeviceError& e) {
   if (e.curves.reference.orders.empty())
     return fmt::format("not told apart from the reference: {}\n",
@@ -170,9 +176,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   AddDevice(device, device_settings, evaluation.results);
   if (device.highest_order > 0) {
     evaluation.separation = SeparationJson(device, device_settings);
-    evaluation.joints.push_back(CurveJoint("device", device.curves.device, kCurvePoints));
-    if (!device.curves.reference.orders.empty())
-      evaluation.joints.push_back(CurveJoint("reference", device.curves.reference, kCurvePoints));
+    evaluation.joints = [curves = device.curves] { return JointsOf(curves); };
   }
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
     const PositioningResults positioning = EvaluateStops(readings, device_settings);

@@ -41,7 +41,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const nlohmann::json separation = analysis.separation ? Agreed(results["separation"]) : nlohmann::json();
   report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
   if (!analysis.separation) return evaluation;
-  evaluation.joints = JointsOf(*analysis.separation);
+  evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   const ErrorMotionResults motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
   evaluation.results["iso230_7"] = motions.json;
   evaluation.summary += motions.text;

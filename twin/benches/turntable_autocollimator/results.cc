@@ -236,7 +236,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation, scenario) : nlohmann::json();
   report::Evaluation evaluation{ResultsOf(analysis, scenario), separation, analysis.not_separated,
                                 SummaryOf(analysis)};
-  if (analysis.separation) evaluation.joints = JointsOf(*analysis.separation);
+  if (analysis.separation) evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   return evaluation;
 }
 
