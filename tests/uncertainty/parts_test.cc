@@ -129,6 +129,7 @@ TEST(Parts, OfSeatingAreRepeatability) {
                seating = ShareOf(budgets, "separation.turntable.ez_arcsec", "repeatability");
   // 48 degrees of freedom: a fifth of the variance.
   EXPECT_NEAR(seating / noise, 9.0, 5.0);
+  EXPECT_NEAR(ShareOf(budgets, "separation.roll.gamma_mrad", "repeatability"), 0.9, 0.07) << "the same readings show the roll";
 }
 
 /// One shift leaves the teeth in the turntable's errors: their stated uncertainty is type B.
