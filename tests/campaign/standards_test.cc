@@ -5,6 +5,7 @@
 #include "tests/campaign/small_study.h"
 #include "tests/core/input_error.h"
 #include "twin/campaign/trial.h"
+#include "twin/core/scenario_uncertainty.h"
 
 namespace twinbench::campaign {
 namespace {
@@ -63,6 +64,20 @@ TEST(Standards, AreDrawnInTheTwinAndCountedInTheStatedUncertainty) {
   EXPECT_NEAR(with.mean_square, 1.0, 0.5);
   const double gain_arcsec = 0.05 * 6.6 * std::sqrt(0.5);
   EXPECT_NEAR(with.rms_u, std::hypot(without.rms_u, gain_arcsec), 0.1 * with.rms_u);
+}
+
+TEST(Standards, AreInTheTwinOfATrialAsTheyWereDrawn) {
+  const Study study = ParseStudy(std::string(kStudy) + "standards = true\ntrials = 100\n", "study.toml", "");
+  const Design design(study);
+  const auto gain_error = [&](std::int64_t trial) {
+    Scenario scenario = TwinOf(study, design, trial);
+    return NumbersAt(scenario, "autocollimator.gain_error")[0];
+  };
+  double squares = 0.0;
+  for (int trial = 0; trial < kTrials; ++trial) squares += std::pow(gain_error(trial), 2);
+  EXPECT_NEAR(std::sqrt(squares / kTrials), 0.05, 4.0 * 0.05 / std::sqrt(2.0 * kTrials));
+  EXPECT_EQ(gain_error(7), gain_error(7));
+  EXPECT_NE(gain_error(7), gain_error(8));
 }
 
 TEST(Standards, AreRefusedWhereTheScenarioStatesNone) {

@@ -56,6 +56,28 @@ TEST(Calibrate, DeterminesGainsToAFewTenThousandths) {
   EXPECT_NEAR(std::sqrt(found.cov(1, 1)), 2.8e-4, 0.2e-4);
 }
 
+/// Gains from evenly noisy readings: the autocollimator has the share of a gain's variance that it has of a reading's; the prior, a sixth observation
+/// of 2 %, that of its information.
+TEST(Calibrate, TellsNoiseOfTheAutocollimatorAndThePriorApart) {
+  constexpr double kNoise_m = 0.3e-6;
+  BenchGeometry geometry = Bench();
+  geometry.autocollimator_noise_rad = 1.0 * units::urad;
+  Stream noise(6, "test.calibration");
+  const Calibration found = Calibrate(CalibrationSweeps(Imperfect(kNoise_m), kMount, &noise), geometry);
+  const double cos_theta = std::sqrt(1.0 - std::pow(geometry.SinTheta(), 2)), l1_m = geometry.psd_distance_m[0];
+  const auto share = [&](double lever_m) {
+    const double of_angle = std::pow(lever_m * geometry.autocollimator_noise_rad, 2);
+    return of_angle / (of_angle + kNoise_m * kNoise_m);
+  };
+  EXPECT_NEAR(found.of_autocollimator[0], share(l1_m * (1.0 + 1.0 / cos_theta)), 0.01);
+  EXPECT_NEAR(found.of_autocollimator[1], share(l1_m * (1.0 + cos_theta)), 0.01);
+  EXPECT_NEAR(found.of_prior[0], found.cov(0, 0) / (kPriorGain * kPriorGain), 0.05 * found.of_prior[0]) << "gains hardly know of each other";
+  auto yaw_only = CalibrationSweeps(Imperfect(kNoise_m), kMount, nullptr);
+  yaw_only.resize(26);
+  EXPECT_GT(Calibrate(yaw_only, geometry).of_prior[1], 0.9) << "nothing was tilted";
+  EXPECT_EQ(Calibrate({}, geometry).of_prior[1], 1.0);
+}
+
 TEST(Calibrate, StatesItsPriorWithoutCalibrationReadings) {
   const Calibration prior = Calibrate({}, Bench());
   EXPECT_FALSE(prior.measured);

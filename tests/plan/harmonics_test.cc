@@ -41,5 +41,16 @@ TEST(MeanOf, AveragesVariancesOfRunsThatStateThem) {
   EXPECT_NEAR(LargestDifference(a, b), 1.0 / 3.0, 1e-12);
 }
 
+TEST(MeanOf, IsKnownByTheScatterOfTheRunsButForPhases) {
+  std::vector<Outlook> runs;
+  for (const double u : {0.9, 1.1, 0.9, 1.1}) {
+    Outlook& run = runs.emplace_back();
+    run.results = {{"ez_arcsec", 1, u, u}, {"terms[].phase_deg", 1, u > 1.0 ? 50.0 : 1.0, 50.0}};
+  }
+  // Standard deviation 0.1 sqrt(4 / 3), of the mean of four half of it; the mean is 1.
+  EXPECT_NEAR(UncertaintyOfMean(runs), 0.05 * std::sqrt(4.0 / 3.0), 1e-12);
+  EXPECT_NEAR(LargestDifference(runs[0], runs[1]), 0.2 / 0.9, 1e-12);
+}
+
 }  // namespace
 }  // namespace twinbench::plan

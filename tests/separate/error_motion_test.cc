@@ -66,12 +66,12 @@ TEST(ErrorMotion, DependsOnTheSensitiveDirection) {
   // x = cos 2t alone: 2 in a fixed direction; along one that turns cos t cos 2t = (cos t + cos 3t) / 2, of which cos t is the centre.
   const ErrorMotion x = Motion((2.0 * t).cos(), {-0.1, 0.1});
   EXPECT_NEAR(EvaluateErrorMotion(x, PlotCentre::kLeastSquares).synchronous.value / kUm, 2.0, kRoundingUm);
-  const ErrorMotionValues turned = EvaluateErrorMotion(Rotating(x, none, {}), PlotCentre::kLeastSquares);
+  const ErrorMotionValues turned = EvaluateErrorMotion(Rotating(x, none), PlotCentre::kLeastSquares);
   EXPECT_NEAR(turned.synchronous.value / kUm, 1.0, kRoundingUm);
   EXPECT_NEAR(turned.asynchronous.value / kUm, 0.2, kRoundingUm) << "at 0 deg, where it looks along x";
   // An eccentric artefact stands still beside a tool that turns with it.
   const ErrorMotion ex = Motion(5.0 * (t + 0.3).cos()), ey = Motion(5.0 * (t + 0.3).sin());
-  EXPECT_NEAR(EvaluateErrorMotion(Rotating(ex, ey, {}), PlotCentre::kLeastSquares).synchronous.value / kUm, 0.0, kRoundingUm);
+  EXPECT_NEAR(EvaluateErrorMotion(Rotating(ex, ey), PlotCentre::kLeastSquares).synchronous.value / kUm, 0.0, kRoundingUm);
 }
 
 /// Where two points stand out far, the width is their difference and its uncertainty in closed form.

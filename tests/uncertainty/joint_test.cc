@@ -110,7 +110,7 @@ TEST_P(JointOfEveryBench, HasTheStatedUncertainties) {
   std::vector<std::string> names;
   for (const Quantity& q : quantities) names.push_back(q.name);
   int compared = 0;
-  for (const Joint& stated : evaluation.joints) {
+  for (const Joint& stated : evaluation.Joints()) {
     const Joint joint = Determined(stated, names);
     for (std::size_t i = 0; i < joint.names.size(); ++i) {
       const double u = std::ranges::find(quantities, joint.names[i], &Quantity::name)->u;

@@ -80,6 +80,46 @@ TEST(Parts, OfAnEncoderAreItsStepsOverTwelve) {
   EXPECT_NEAR(steps / (steps + noise), share, 0.35 * share) << "noise is what is left of 144 residuals";
 }
 
+/// Means by angle scatter by the same: noise of a step's size, a thirteenth of it the step's; what passes differ by is repeatability.
+TEST(Parts, OfMeansAreThoseOfTheirReadings) {
+  const std::vector<std::string> coarse = {"device.resolution_deg=0.002", "device.noise_deg=0.002"};
+  const std::vector<Budget> budgets = BudgetsOf(Small(SmallBenches()[5], coarse));
+  const double steps = ShareOf(budgets, "means.both.ez_arcsec", "quantisation"), noise = ShareOf(budgets, "means.both.ez_arcsec", "noise");
+  EXPECT_NEAR(steps / (steps + noise), 1.0 / 13.0, 0.35 / 13.0);
+  const double in_reversal = ShareOf(budgets, "reversal.mean_arcsec", "quantisation");
+  EXPECT_GT(in_reversal, 0.0);
+  EXPECT_LE(in_reversal, 1.35 / 13.0);
+}
+
+/// The gains of the rotary bench's detectors: of their readings and of the autocollimator, as both are stated.
+TEST(Parts, OfGainsKnowTheAutocollimator) {
+  const std::string kind = "calibration.gain.psd_a_x";
+  const double quiet = ShareOf(Small(SmallBenches()[0], {"autocollimator.noise_arcsec=0.002"}), kind, "standard"),
+               loud = ShareOf(Small(SmallBenches()[0], {"autocollimator.noise_arcsec=1.0"}), kind, "standard");
+  EXPECT_LT(quiet, 1e-3);
+  EXPECT_GT(loud, 0.5);
+}
+
+/// Equal-division averaging with a head 5 deg off equal division errs by far more than its readings scatter.
+TEST(Parts, OfPublishedHeadsHoldWhatTheirEquationsAreWrongBy) {
+  const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_heads.toml"),
+                                         {"encoder_procedure.heads_deg=[0.0, 95.0, 180.0, 270.0]", "encoder_procedure.stops_per_turn=72"});
+  double largest = 0.0;
+  int of_ring = 0;
+  for (const Quantity& q : test::QuantitiesFrom(scenario, test::ReadingsOf(scenario), Estimator::kPublished)) {
+    if (!KindOf(q.name).starts_with("device") && !KindOf(q.name).starts_with("harmonics")) continue;
+    ++of_ring;
+    double sum = 0.0;
+    for (const Part& part : q.parts) {
+      sum += part.share;
+      if (part.name == "model") largest = std::max(largest, part.share);
+    }
+    EXPECT_NEAR(sum, 1.0, 0.01) << q.name;
+  }
+  EXPECT_GT(of_ring, 360);
+  EXPECT_GT(largest, 0.9);
+}
+
 /// Seating of 0.3 arcsec beside 0.1 arcsec of the autocollimator is nine tenths of the scatter.
 TEST(Parts, OfSeatingAreRepeatability) {
   const Scenario scenario = Small(SmallBenches()[1], {"autocollimator.noise_arcsec=0.1", "multitooth.repeatability.ez_arcsec=0.3",
@@ -89,6 +129,7 @@ TEST(Parts, OfSeatingAreRepeatability) {
                seating = ShareOf(budgets, "separation.turntable.ez_arcsec", "repeatability");
   // 48 degrees of freedom: a fifth of the variance.
   EXPECT_NEAR(seating / noise, 9.0, 5.0);
+  EXPECT_NEAR(ShareOf(budgets, "separation.roll.gamma_mrad", "repeatability"), 0.9, 0.07) << "the same readings show the roll";
 }
 
 /// One shift leaves the teeth in the turntable's errors: their stated uncertainty is type B.

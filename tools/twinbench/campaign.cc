@@ -11,6 +11,7 @@
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/campaign/summary.h"
+#include "twin/campaign/trial.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::tools {
@@ -96,7 +97,7 @@ void PrintTrial(const CampaignOptions& options) {
   if (*options.trial < 0 || *options.trial >= design.Trials())
     throw InputError(fmt::format("--trial {}", *options.trial), "the study has no such trial",
                      fmt::format("a number from 0 to {}", design.Trials() - 1));
-  fmt::print("{}", WriteScenario(study.With(design.OverridesOf(*options.trial))));
+  fmt::print("{}", WriteScenario(campaign::TwinOf(study, design, *options.trial)));
 }
 
 void Campaign(const CampaignOptions& options) {

@@ -35,7 +35,7 @@ std::vector<uncertainty::Joint> JointsOf(const RecordedRun& run, const std::stri
   for (const uncertainty::Budget& budget : budgets) names.push_back(budget.quantity.name);
   std::vector<uncertainty::Joint> joints;
   for (const uncertainty::Joint& joint :
-       BenchOf(run.scenario).evaluate(run.scenario, run.readings, EstimatorNamed(estimator)).joints)
+       BenchOf(run.scenario).evaluate(run.scenario, run.readings, EstimatorNamed(estimator)).Joints())
     joints.push_back(Determined(joint, names));
   return joints;
 }

@@ -63,13 +63,16 @@ void CarryOut(const Study& study, const Scenario& scenario, const Scenario& beli
 
 }  // namespace
 
+Scenario TwinOf(const Study& study, const Design& design, std::int64_t trial) {
+  Scenario scenario = study.With(design.OverridesOf(trial));
+  return study.standards ? uncertainty::StandardsDrawn(std::move(scenario), study.seed, trial) : scenario;
+}
+
 TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial) {
   TrialRow row;
   row.trial = trial;
   try {
-    Scenario scenario = study.With(design.OverridesOf(trial));
-    if (study.standards) scenario = uncertainty::StandardsDrawn(std::move(scenario), study.seed, trial);
-    CarryOut(study, scenario, study.With(design.BelievedOf(trial)), row);
+    CarryOut(study, TwinOf(study, design, trial), study.With(design.BelievedOf(trial)), row);
   } catch (const std::exception& error) {
     row.failure = error.what();
     row.results.clear();

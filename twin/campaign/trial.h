@@ -26,6 +26,9 @@ struct TrialRow {
   std::vector<TrialResult> results;  // ordered by name
 };
 
+/// What the twin of a trial has: every key and seed, what is hidden and the standards as they were drawn.
+Scenario TwinOf(const Study& study, const Design& design, std::int64_t trial);
+
 /// Carries one trial out, from scenario to results, without a file. Whatever it throws is the row's failure.
 TrialRow RunTrial(const Study& study, const Design& design, std::int64_t trial);
 

@@ -38,7 +38,9 @@ MatrixXd SolveLeastSquares(const MatrixXd& a, const MatrixXd& b) {
 }
 
 MatrixXd PseudoInverseOf(const MatrixXd& a) {
-  return a.householderQr().solve(MatrixXd::Identity(a.rows(), a.rows()));
+  const Eigen::HouseholderQR<MatrixXd> qr(a);
+  const MatrixXd q = qr.householderQ() * MatrixXd::Identity(a.rows(), a.cols());  // its first columns: rows x columns^2, not rows^2
+  return qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>().solve(q.transpose());
 }
 
 VectorXd RotatedByQ(const MatrixXd& a, const VectorXd& v) {

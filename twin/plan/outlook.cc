@@ -1,5 +1,6 @@
 #include "twin/plan/outlook.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -88,12 +89,42 @@ Outlook MeanOf(const std::vector<Outlook>& runs) {
   return mean;
 }
 
+namespace {
+
+bool IsPhase(const std::string& result) {
+  return result.find("phase") != std::string::npos;
+}
+
+/// rms uncertainty of one result in those runs that have it.
+Eigen::ArrayXd RmsIn(const std::vector<Outlook>& runs, const std::string& result) {
+  std::vector<double> all;
+  for (const Outlook& run : runs) {
+    const auto same = std::ranges::find(run.results, result, &Certainty::name);
+    if (same != run.results.end()) all.push_back(same->rms_u);
+  }
+  return Eigen::Map<const Eigen::ArrayXd>(all.data(), std::ssize(all));
+}
+
+}  // namespace
+
 double LargestDifference(const Outlook& a, const Outlook& b) {
   double largest = 0.0;
   for (const Certainty& result : a.results) {
+    if (IsPhase(result.name)) continue;
     const auto same = std::ranges::find(b.results, result.name, &Certainty::name);
     if (same != b.results.end() && result.rms_u > 0.0)
       largest = std::max(largest, std::abs(same->rms_u / result.rms_u - 1.0));
+  }
+  return largest;
+}
+
+double UncertaintyOfMean(const std::vector<Outlook>& runs) {
+  double largest = 0.0;
+  for (const Certainty& result : runs.front().results) {
+    const Eigen::ArrayXd u = RmsIn(runs, result.name);
+    if (IsPhase(result.name) || u.size() < 2 || !(u.mean() > 0.0)) continue;
+    const auto count = static_cast<double>(u.size());
+    largest = std::max(largest, std::sqrt((u - u.mean()).square().sum() / (count - 1.0) / count) / u.mean());
   }
   return largest;
 }

@@ -42,7 +42,12 @@ Outlook OutlookOf(const nlohmann::json& results, int readings, double last_s);
 /// the readings, one run's uncertainties scatter by themselves.
 Outlook MeanOf(const std::vector<Outlook>& runs);
 
-/// The largest relative difference of rms uncertainties between two runs of the same scenario.
+/// The largest relative difference of rms uncertainties between two runs of the same scenario. Phases do not count, here and below: theirs go with
+/// amplitudes that may be mere noise, and never settle.
 double LargestDifference(const Outlook& a, const Outlook& b);
+
+/// How well MeanOf is known by the scatter of the runs: the largest relative standard deviation of the mean of a result's rms uncertainty.
+/// @param runs  Two at least.
+double UncertaintyOfMean(const std::vector<Outlook>& runs);
 
 }  // namespace twinbench::plan

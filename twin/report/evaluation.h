@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,9 +23,12 @@ struct Evaluation {
   std::string not_separated;  // why
   std::string summary;        // for a person
   std::vector<ResultTable> tables = {};
-  std::vector<uncertainty::Joint> joints = {};  // results that the readings leave uncertain together
+  /// Results that the readings leave uncertain together; empty: none. Asked for only where somebody wants their matrices, as large as the square of the
+  /// results.
+  std::function<std::vector<uncertainty::Joint>()> joints = {};
 
   bool Separated() const { return !separation.is_null(); }
+  std::vector<uncertainty::Joint> Joints() const { return joints ? joints() : std::vector<uncertainty::Joint>(); }
 };
 
 /// One estimated number and what it should have been, in the unit of its name.

@@ -104,6 +104,24 @@ Eigen::MatrixXd CurveCovariance::TimesCirculant(const Eigen::MatrixXd& columns) 
   return product;
 }
 
+Eigen::VectorXd CurveCovariance::OrderSums(Eigen::Index curve, Eigen::Index n) const {
+  Eigen::VectorXd lags = Eigen::VectorXd::Zero(n);  // sums along the diagonals of the curve's block
+  if (IsCirculant()) {
+    lags = static_cast<double>(n) * lags_.col(curve * curves_ + curve);
+  } else {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) lags[(j - i + n) % n] += dense_(curve * n + i, curve * n + j);
+    }
+  }
+  if (diagonal_.size() > 0) lags[0] += diagonal_.segment(curve * n, n).sum();
+  const Fourier fourier(static_cast<int>(n));
+  const auto forward = [&](const Eigen::VectorXd& x) { return fourier.Forward(x.cast<std::complex<double>>()); };
+  Eigen::VectorXd sums = forward(lags).real();
+  for (Eigen::Index c = 0; c < factor_.cols(); ++c) sums += forward(factor_.col(c).segment(curve * n, n)).cwiseAbs2();
+  for (Eigen::Index c = 0; c < taken_.cols(); ++c) sums -= forward(taken_.col(c).segment(curve * n, n)).cwiseAbs2();
+  return sums.head(n / 2 + 1);
+}
+
 void CurveCovariance::Add(const CurveCovariance& other) {
   Require(rows() == other.rows(), "covariances of as many values");
   if (IsCirculant() && other.IsCirculant() && curves_ == other.curves_) {

@@ -23,6 +23,11 @@ class CurveCovariance {
   /// The matrix times columns; n log n a column and curve where it is circulant.
   Eigen::MatrixXd Times(const Eigen::MatrixXd& columns) const;
 
+  /// Sum over positions i, j of cov(curve at i, curve at j) cos(2 pi order (i - j) / n), for the orders 0 to n / 2: n^2 / 2 times the mean variance of both
+  /// parts of an order, n^2 times at n / 2. n log n, and n^2 where it is dense.
+  /// @param n  Positions.
+  Eigen::VectorXd OrderSums(Eigen::Index curve, Eigen::Index n) const;
+
   CurveCovariance operator*(double factor) const;
   /// Adds one of as many rows; circulant if both are.
   void Add(const CurveCovariance& other);

@@ -3,20 +3,16 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "twin/core/errors.h"
-#include "twin/core/stream.h"
+#include "twin/separate/widest_range.h"
 
 namespace twinbench::separate {
 namespace {
 
 constexpr double kRounding = 1e-12;  // of the largest variance: what is taken out of a contour leaves its covariance singular
-constexpr int kValues = 5;           // of ErrorMotionValues, in its order
-using Values = std::array<double, kValues>;
 
 /// 1, cos, sin at each angle: the least-squares circle of a polar plot, whose radius is large beside the error motion.
 Eigen::MatrixXd CircleBasis(const Eigen::VectorXd& angle_rad) {
@@ -25,39 +21,25 @@ Eigen::MatrixXd CircleBasis(const Eigen::VectorXd& angle_rad) {
   return basis;
 }
 
-double Width(const Eigen::VectorXd& values) {
-  return values.maxCoeff() - values.minCoeff();
+/// Largest less smallest number of each column.
+Eigen::RowVectorXd Widths(const Eigen::MatrixXd& contours) {
+  return contours.colwise().maxCoeff() - contours.colwise().minCoeff();
 }
 
-/// One plot: what is asked of it again and again.
+/// Polar plots on the same angles; contours are columns.
 class Plot {
  public:
-  Plot(const Eigen::VectorXd& angle_rad, PlotCentre centre) : centre_(centre), basis_(CircleBasis(angle_rad)), solver_(basis_) {}
+  Plot(const Eigen::VectorXd& angle_rad, PlotCentre centre)
+      : is_axial_(centre == PlotCentre::kPolarChart),
+        basis_(CircleBasis(angle_rad)),
+        fit_(basis_.completeOrthogonalDecomposition().pseudoInverse()) {}
 
-  /// The contour about the centre.
-  Eigen::VectorXd Centred(const Eigen::VectorXd& contour) const {
-    return centre_ == PlotCentre::kLeastSquares ? WithoutCircle(contour) : contour;
-  }
-  Eigen::VectorXd WithoutCircle(const Eigen::VectorXd& contour) const { return contour - basis_ * solver_.solve(contour); }
-  double Fundamental(const Eigen::VectorXd& contour) const { return 2.0 * solver_.solve(contour).tail<2>().norm(); }
-
-  Values Of(const Eigen::VectorXd& contour, const std::vector<std::vector<double>>& scatter) const {
-    const bool is_axial = centre_ == PlotCentre::kPolarChart;
-    const Eigen::VectorXd centred = Centred(contour);
-    double highest = -std::numeric_limits<double>::infinity(), lowest = -highest, widest = 0.0;
-    bool has_turns = true, has_pairs = true;
-    for (Eigen::Index i = 0; i < centred.size(); ++i) {
-      const std::vector<double>& turns = scatter[static_cast<std::size_t>(i)];
-      has_turns = has_turns && !turns.empty();
-      has_pairs = has_pairs && turns.size() > 1;
-      if (turns.empty()) continue;
-      const auto [least, most] = std::ranges::minmax(turns);
-      highest = std::max(highest, centred[i] + most);
-      lowest = std::min(lowest, centred[i] + least);
-      widest = std::max(widest, most - least);
-    }
-    return {has_turns ? highest - lowest : kNaN, Width(centred), has_pairs ? widest : kNaN, is_axial ? Fundamental(contour) : kNaN,
-            is_axial ? Width(WithoutCircle(contour)) : kNaN};
+  bool IsAxial() const { return is_axial_; }
+  /// The contours about the centre.
+  Eigen::MatrixXd Centred(const Eigen::MatrixXd& contours) const { return is_axial_ ? contours : WithoutCircle(contours); }
+  Eigen::MatrixXd WithoutCircle(const Eigen::MatrixXd& contours) const { return contours - basis_ * (fit_ * contours); }
+  Eigen::RowVectorXd Fundamentals(const Eigen::MatrixXd& contours) const {
+    return 2.0 * (fit_.bottomRows<2>() * contours).colwise().norm();
   }
 
   /// d (width of the contour) / d contour.
@@ -73,9 +55,8 @@ class Plot {
   }
 
  private:
-  PlotCentre centre_;
-  Eigen::MatrixXd basis_;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver_;
+  bool is_axial_;
+  Eigen::MatrixXd basis_, fit_;
 };
 
 double StandardDeviation(const std::vector<double>& values) {
@@ -84,37 +65,88 @@ double StandardDeviation(const std::vector<double>& values) {
   return std::sqrt((all - all.mean()).square().sum() / static_cast<double>(all.size() - 1));
 }
 
-/// Draws the test again.
-class Repeated {
- public:
-  Repeated(const ErrorMotion& motion, std::uint64_t seed) : motion_(motion), normal_(seed, "iso230_7.replicas") {
-    const double largest = motion.cov.size() > 0 ? motion.cov.diagonal().maxCoeff() : 0.0;
-    if (largest > 0.0)
-      root_ = Eigen::LLT<Eigen::MatrixXd>(motion.cov + kRounding * largest * Eigen::MatrixXd::Identity(motion.cov.rows(), motion.cov.cols())).matrixL();
-    for (const std::vector<double>& turns : motion.scatter) deviation_.push_back(StandardDeviation(turns));
-  }
-
-  Eigen::VectorXd Contour() {
-    if (root_.size() == 0) return motion_.contour;
-    Eigen::VectorXd drawn(motion_.contour.size());
-    for (double& d : drawn) d = normal_.Normal();
-    return motion_.contour + root_ * drawn;
-  }
-
-  std::vector<std::vector<double>> Scatter() {
-    std::vector<std::vector<double>> drawn = motion_.scatter;
-    for (std::size_t i = 0; i < drawn.size(); ++i) {
-      for (double& turn : drawn[i]) turn = deviation_[i] * normal_.Normal();
-    }
-    return drawn;
-  }
-
- private:
-  const ErrorMotion& motion_;
-  Stream normal_;
-  Eigen::MatrixXd root_;
-  std::vector<double> deviation_;
+/// What the turns show at each angle.
+struct Turns {
+  std::vector<int> number;
+  Eigen::VectorXd most, least, deviation;  // NaN, NaN, 0 where there are none
+  int fewest = std::numeric_limits<int>::max();
 };
+
+Turns TurnsOf(const std::vector<std::vector<double>>& scatter) {
+  const auto n = std::ssize(scatter);
+  Turns turns{{}, Eigen::VectorXd::Constant(n, kNaN), Eigen::VectorXd::Constant(n, kNaN), Eigen::VectorXd::Zero(n)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const std::vector<double>& here = scatter[static_cast<std::size_t>(i)];
+    turns.number.push_back(static_cast<int>(here.size()));
+    turns.fewest = std::min(turns.fewest, turns.number.back());
+    if (here.empty()) continue;
+    const auto [least, most] = std::ranges::minmax(here);
+    turns.least[i] = least;
+    turns.most[i] = most;
+    turns.deviation[i] = StandardDeviation(here);
+  }
+  return turns;
+}
+
+/// A value that came out as `drawn` when the test was repeated.
+ErrorMotionValue Repeated(double value, const Eigen::ArrayXd& drawn) {
+  const double mean = drawn.mean();
+  return {value, std::sqrt((drawn - mean).square().sum() / static_cast<double>(drawn.size() - 1)), mean - value};
+}
+
+/// Draws the contour by its covariance.
+Eigen::MatrixXd Contours(const ErrorMotion& motion, ErrorMotionDraws& draws) {
+  const Eigen::MatrixXd& normal = draws.Contour(motion.contour.size());
+  const double largest = motion.cov.diagonal().maxCoeff();
+  Eigen::MatrixXd drawn = Eigen::MatrixXd::Zero(normal.rows(), normal.cols());
+  if (largest > 0.0) {
+    const Eigen::LLT<Eigen::MatrixXd> root(motion.cov + kRounding * largest * Eigen::MatrixXd::Identity(motion.cov.rows(), motion.cov.cols()));
+    drawn = root.matrixL() * normal;
+  }
+  return drawn.colwise() + motion.contour;
+}
+
+/// Width of the ring that holds every turn, of each drawn test.
+Eigen::RowVectorXd Totals(const Eigen::MatrixXd& centred, const Turns& turns, ErrorMotionDraws& draws) {
+  const ErrorMotionDraws::Extremes& drawn = draws.Turns(turns.number);
+  return (centred + turns.deviation.asDiagonal() * drawn.most).colwise().maxCoeff() -
+         (centred + turns.deviation.asDiagonal() * drawn.least).colwise().minCoeff();
+}
+
+ErrorMotionValue Asynchronous(const Turns& turns) {
+  if (turns.fewest < 2) return {};
+  std::vector<NormalSample> samples;
+  for (std::size_t i = 0; i < turns.number.size(); ++i) samples.push_back({turns.deviation[static_cast<Eigen::Index>(i)], turns.number[i]});
+  const double value = (turns.most - turns.least).maxCoeff();
+  const WidestRange widest = WidestOf(samples);
+  return {value, widest.deviation, widest.mean - value};
+}
+
+/// Values without their uncertainties.
+ErrorMotionValues AsTheyStand(const ErrorMotion& motion, const Plot& plot, const Turns& turns) {
+  const Eigen::VectorXd centred = plot.Centred(motion.contour);
+  ErrorMotionValues found;
+  found.turns = turns.fewest;
+  found.slope = plot.Slope(motion.contour);
+  found.synchronous.value = Widths(centred)[0];
+  if (turns.fewest > 0) found.total.value = (centred + turns.most).maxCoeff() - (centred + turns.least).minCoeff();
+  if (plot.IsAxial()) {
+    found.fundamental.value = plot.Fundamentals(motion.contour)[0];
+    found.residual.value = Widths(plot.WithoutCircle(motion.contour))[0];
+  }
+  found.asynchronous = Asynchronous(turns);
+  return found;
+}
+
+/// Adds what repeated tests say of the values that know of the contour.
+void Repeat(const ErrorMotion& motion, const Plot& plot, const Turns& turns, ErrorMotionDraws& draws, ErrorMotionValues& found) {
+  const Eigen::MatrixXd contours = Contours(motion, draws), centred = plot.Centred(contours);
+  found.synchronous = Repeated(found.synchronous.value, Widths(centred));
+  if (turns.fewest > 0) found.total = Repeated(found.total.value, Totals(centred, turns, draws));
+  if (!plot.IsAxial()) return;
+  found.fundamental = Repeated(found.fundamental.value, plot.Fundamentals(contours));
+  found.residual = Repeated(found.residual.value, Widths(plot.WithoutCircle(contours)));
+}
 
 void RequireWhole(const ErrorMotion& m) {
   const Eigen::Index n = m.angle_rad.size();
@@ -125,37 +157,13 @@ void RequireWhole(const ErrorMotion& m) {
     Require(std::ranges::all_of(turns, [](double t) { return std::isfinite(t); }), "the scatter is finite");
 }
 
-/// Standard deviation and bias of every value over the replicas.
-std::array<ErrorMotionValue, kValues> WithReplicas(const ErrorMotion& motion, const Plot& plot, const Values& values,
-                                                   const ErrorMotionReplicas& replicas) {
-  Eigen::ArrayXXd drawn(replicas.number, kValues);
-  Repeated test(motion, replicas.seed);
-  for (int r = 0; r < replicas.number; ++r) {
-    const Eigen::VectorXd contour = test.Contour();
-    const Values again = plot.Of(contour, test.Scatter());
-    for (int v = 0; v < kValues; ++v) drawn(r, v) = again[static_cast<std::size_t>(v)];
-  }
-  std::array<ErrorMotionValue, kValues> with;
-  for (int v = 0; v < kValues; ++v) {
-    const double mean = drawn.col(v).mean(), value = values[static_cast<std::size_t>(v)];
-    with[static_cast<std::size_t>(v)] = {value, std::sqrt((drawn.col(v) - mean).square().sum() / (replicas.number - 1)), mean - value};
-  }
-  return with;
-}
-
 }  // namespace
 
-ErrorMotion Rotating(const ErrorMotion& x, const ErrorMotion& y, const Eigen::MatrixXd& cov) {
+ErrorMotion Rotating(const ErrorMotion& x, const ErrorMotion& y) {
   Require(x.angle_rad.size() == y.angle_rad.size() && x.angle_rad == y.angle_rad, "x and y are at the same angles");
-  const Eigen::Index n = x.angle_rad.size();
   const Eigen::ArrayXd c = x.angle_rad.array().cos(), s = x.angle_rad.array().sin();
   ErrorMotion r{x.angle_rad, (c * x.contour.array() + s * y.contour.array()).matrix(), {}, {}};
-  if (cov.size() > 0) {
-    Eigen::MatrixXd turn(n, 2 * n);
-    turn << Eigen::MatrixXd(c.matrix().asDiagonal()), Eigen::MatrixXd(s.matrix().asDiagonal());
-    r.cov = turn * cov * turn.transpose();
-  }
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < x.angle_rad.size(); ++i) {
     const std::vector<double>&dx = x.scatter[static_cast<std::size_t>(i)], &dy = y.scatter[static_cast<std::size_t>(i)];
     Require(dx.size() == dy.size(), "every turn shows x and y");
     std::vector<double>& turns = r.scatter.emplace_back();
@@ -164,20 +172,28 @@ ErrorMotion Rotating(const ErrorMotion& x, const ErrorMotion& y, const Eigen::Ma
   return r;
 }
 
-ErrorMotionValues EvaluateErrorMotion(const ErrorMotion& motion, PlotCentre centre, const ErrorMotionReplicas& replicas) {
+Eigen::MatrixXd RotatingCovariance(const Eigen::VectorXd& angle_rad, const Eigen::MatrixXd& cov) {
+  const Eigen::Index n = angle_rad.size();
+  Require(cov.rows() == 2 * n && cov.cols() == 2 * n, "the covariance has a row for x and for y at every angle");
+  const Eigen::VectorXd c = angle_rad.array().cos(), s = angle_rad.array().sin();
+  return c.asDiagonal() * cov.topLeftCorner(n, n) * c.asDiagonal() + Eigen::MatrixXd(c.asDiagonal() * cov.topRightCorner(n, n) * s.asDiagonal()) +
+         Eigen::MatrixXd(s.asDiagonal() * cov.bottomLeftCorner(n, n) * c.asDiagonal()) +
+         Eigen::MatrixXd(s.asDiagonal() * cov.bottomRightCorner(n, n) * s.asDiagonal());
+}
+
+ErrorMotionValues EvaluateErrorMotion(const ErrorMotion& motion, PlotCentre centre, ErrorMotionDraws& draws) {
   RequireWhole(motion);
-  ErrorMotionValues found;
-  if (motion.angle_rad.size() < 3) return found;
+  if (motion.angle_rad.size() < 3) return {};
   const Plot plot(motion.angle_rad, centre);
-  const Values values = plot.Of(motion.contour, motion.scatter);
-  std::array<ErrorMotionValue, kValues> with = WithReplicas(motion, plot, values, replicas);
-  constexpr std::size_t kAsynchronous = 2;  // alone knows nothing of the contour
-  for (std::size_t v = 0; v < kValues; ++v) {
-    if (motion.cov.size() == 0 && v != kAsynchronous) with[v].u = with[v].bias = kNaN;
-  }
-  found = {with[0], with[1], with[2], with[3], with[4], std::numeric_limits<int>::max(), plot.Slope(motion.contour)};
-  for (const std::vector<double>& turns : motion.scatter) found.turns = std::min(found.turns, static_cast<int>(turns.size()));
+  const Turns turns = TurnsOf(motion.scatter);
+  ErrorMotionValues found = AsTheyStand(motion, plot, turns);
+  if (motion.cov.size() > 0) Repeat(motion, plot, turns, draws, found);
   return found;
+}
+
+ErrorMotionValues EvaluateErrorMotion(const ErrorMotion& motion, PlotCentre centre, const ErrorMotionReplicas& replicas) {
+  ErrorMotionDraws draws(replicas);
+  return EvaluateErrorMotion(motion, centre, draws);
 }
 
 }  // namespace twinbench::separate

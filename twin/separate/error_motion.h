@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <vector>
 
 #include "twin/core/reading.h"
+#include "twin/separate/error_motion_draws.h"
 
 /// Error motions of an axis of rotation in the terms of ISO 230-7 (and ANSI/ASME B89.3.4). Radial, axial or tilt: every number here has the
 /// unit of what was put in, m or rad. The formulas are those in common use; the text of the standard was not at hand.
@@ -25,9 +25,13 @@ struct ErrorMotion {
 };
 
 /// The error motion along a direction that turns: cos(angle) x + sin(angle) y at each angle (rotating sensitive direction, a tool that turns).
-/// @param cov  2 n x 2 n, x before y; empty: not known.
+/// Its covariance is left empty.
 /// @throws std::logic_error unless both have the same angles.
-ErrorMotion Rotating(const ErrorMotion& x, const ErrorMotion& y, const Eigen::MatrixXd& cov);
+ErrorMotion Rotating(const ErrorMotion& x, const ErrorMotion& y);
+
+/// Covariance of cos(angle) x + sin(angle) y.
+/// @param cov  2 n x 2 n, x before y.
+Eigen::MatrixXd RotatingCovariance(const Eigen::VectorXd& angle_rad, const Eigen::MatrixXd& cov);
 
 /// A value of the plot and what scatter and uncertainty of the contour do to it.
 struct ErrorMotionValue {
@@ -46,11 +50,6 @@ struct ErrorMotionValues {
   Eigen::VectorXd slope;          // d synchronous / d contour, n: what of the contour's uncertainty goes into it
 };
 
-struct ErrorMotionReplicas {
-  int number = 200;  // gives u to 5 %
-  std::uint64_t seed = 1;
-};
-
 /// Evaluates one sensitive direction. Widths are those of the points, not of a curve through them.
 ///
 /// @return NaN what needs more than there is: scatter, covariances, three angles.
@@ -58,8 +57,9 @@ struct ErrorMotionReplicas {
 ///
 /// Uncertainty: values are largest minus smallest, which no derivative describes, so the test is repeated with random numbers: the contour
 /// by its covariance, the turns at each angle as normal scatter of their own standard deviation. u is the standard deviation of what comes
-/// out, bias its mean - value. Not included: that turns and contour vary together (on the safe side); scatter that is not normal or
-/// runs on from angle to angle.
+/// out, bias its mean - value; of the asynchronous motion they are known without draws (WidestOf). Not included: that turns and contour vary
+/// together (on the safe side); scatter that is not normal or runs on from angle to angle.
+ErrorMotionValues EvaluateErrorMotion(const ErrorMotion& motion, PlotCentre centre, ErrorMotionDraws& draws);
 ErrorMotionValues EvaluateErrorMotion(const ErrorMotion& motion, PlotCentre centre, const ErrorMotionReplicas& replicas = {});
 
 }  // namespace twinbench::separate

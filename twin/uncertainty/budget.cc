@@ -46,7 +46,7 @@ Unit UnitOfKey(Scenario scenario, const std::string& key) {
 
 /// What the estimator states, part by part.
 std::vector<Source> OfReadings(const Quantity& quantity) {
-  static const std::vector<std::string> not_by_statistics = {"quantisation", "standard", "second order", "model"};
+  static const std::vector<std::string> not_by_statistics = {"quantisation", "standard", "second order", "model", "prior"};
   if (quantity.parts.empty()) return {{kReadings, 'A', quantity.u, quantity.dof}};
   std::vector<Source> sources;
   for (const Part& part : quantity.parts) {

@@ -52,13 +52,11 @@ bool IsIdentified(const CircleFit& fit, Eigen::Index k) {
 /// @param along  Its slopes by those [its unit / SI].
 void SetShares(const CircleFit& fit, const std::vector<Eigen::Index>& at, const Eigen::VectorXd& along,
                ErrorValue& error) {
-  const SharedUncertainty& shared = fit.shared;
-  const auto part = [&](const Eigen::MatrixXd& cov) { return along.dot(cov(at, at) * along); };
-  const double all = part(shared.cov);
-  error.slope = Eigen::VectorXd::Zero(shared.cov.rows());
+  error.slope = Eigen::VectorXd::Zero(fit.shared.cov.rows());
   error.slope(at) = along;
-  error.quantisation = part(shared.of_steps) / all;
-  error.repeatability = part(shared.of_machine) / all + shared.excess;
+  const PartedVariance variance = fit.shared.Parted(error.slope);
+  error.quantisation = variance.of_steps / variance.all;
+  error.repeatability = variance.of_machine / variance.all;
   error.noise = 1.0 - error.quantisation - error.repeatability;
 }
 
@@ -126,13 +124,19 @@ constexpr std::array kIsoValues = {&Iso230_4::G_ccw,    &Iso230_4::G_cw,    &Iso
                                   &Iso230_4::Fmin_ccw, &Iso230_4::Fmax_cw, &Iso230_4::Fmin_cw, &Iso230_4::Fmax_b,
                                   &Iso230_4::Fmin_b,   &Iso230_4::D,       &Iso230_4::H};
 
+/// A published value, which is as uncertain as the rigorous one and as wrong as both differ by.
+Iso230_4Value Biased(const Iso230_4Value& rigorous, double published_m) {
+  const double bias_m = published_m - rigorous.value_m, u_m = std::hypot(rigorous.u_m, bias_m);
+  const double left = std::pow(rigorous.u_m / u_m, 2);
+  return {published_m, u_m, left * rigorous.quantisation, left * rigorous.repeatability, 1.0 - left};
+}
+
 /// Likewise for the deviations: each is as wrong as it differs from that of the rigorous paths.
 void ApplyBias(const std::vector<Iso230_4>& rigorous, std::vector<Iso230_4>& published) {
   for (Iso230_4& d : published) {
     const auto same = std::ranges::find_if(
         rigorous, [&](const Iso230_4& r) { return r.setup == d.setup && r.feed_m_s == d.feed_m_s; });
-    for (const auto value : kIsoValues)
-      (d.*value).u_m = std::hypot(((*same).*value).u_m, (d.*value).value_m - ((*same).*value).value_m);
+    for (const auto member : kIsoValues) (d.*member) = Biased((*same).*member, (d.*member).value_m);
   }
 }
 

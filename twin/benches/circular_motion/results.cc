@@ -22,6 +22,14 @@ json WithUncertainty(double value, double u, double unit) {
   return {{"value", In(unit, value)}, {"u", In(unit, u)}};
 }
 
+/// Shares of u^2; the rest is noise of the instruments.
+json PartsOf(double quantisation, double repeatability, double model) {
+  return report::PartsJson({{"noise", 1.0 - quantisation - repeatability - model},
+                            {"quantisation", quantisation},
+                            {"repeatability", repeatability},
+                            {"model", model}});
+}
+
 bool IsBarSetup(const CircleAnalysis& a, int setup) {
   const auto point = std::ranges::find(a.points, setup, &CirclePoint::setup);
   return point != a.points.end() && point->is_bar;
@@ -37,7 +45,10 @@ void AddMounting(const CircleFit& fit, int setup, bool is_bar, json& entry) {
   const Eigen::Index first = fit.UnknownOf(setup);
   const auto value = [&](Eigen::Index k, double of, double unit) {
     const bool known = fit.identified[static_cast<std::size_t>(first + k)];
-    return WithUncertainty(of, known ? std::sqrt(fit.shared.cov(first + k, first + k)) : kNaN, unit);
+    const PartedVariance variance = fit.shared.Parted(Eigen::VectorXd::Unit(fit.shared.cov.rows(), first + k));
+    json entry_of = WithUncertainty(of, known ? std::sqrt(variance.all) : kNaN, unit);
+    if (known) entry_of["u_parts"] = PartsOf(variance.of_steps / variance.all, variance.of_machine / variance.all, 0.0);
+    return entry_of;
   };
   entry["offset_x_um"] = value(0, m.offset_m[0], um);
   entry["offset_y_um"] = value(1, m.offset_m[1], um);
@@ -75,9 +86,7 @@ json ErrorsJson(const std::vector<ErrorValue>& errors) {
     all[e.key] = {{"value", In(1.0, e.value)},
                   {"u", In(1.0, e.u)},
                   {"unit", e.unit},
-                  {"u_parts", report::PartsJson({{"noise", e.noise},
-                                                 {"quantisation", e.quantisation},
-                                                 {"repeatability", e.repeatability}})}};
+                  {"u_parts", PartsOf(e.quantisation, e.repeatability, 0.0)}};
   return all;
 }
 
@@ -119,6 +128,7 @@ json IsoJson(const Iso230_4& d) {
   for (const auto& [name, value] : NamedValues(d)) {
     entry[name + "_um"] = In(um, value.value_m);
     entry["u_" + name + "_um"] = In(um, value.u_m);
+    if (std::isfinite(value.u_m)) entry["u_parts"][name + "_um"] = PartsOf(value.quantisation, value.repeatability, value.model);
   }
   return entry;
 }
@@ -233,7 +243,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   evaluation.summary += BiasText(a);
   evaluation.summary += DeviationsText(a);
   evaluation.tables = {{"polar.txt", PolarsOf(a)}};
-  if (a.IsFitted()) evaluation.joints = {JointOf(a.fit)};
+  if (a.IsFitted()) evaluation.joints = [fit = a.fit] { return std::vector<uncertainty::Joint>{JointOf(fit)}; };
   return evaluation;
 }
 

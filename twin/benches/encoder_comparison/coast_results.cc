@@ -9,6 +9,7 @@
 #include "twin/benches/encoder_comparison/curve_results.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/estimators/time_reversal.h"
+#include "twin/benches/encoder_comparison/uncertainty_parts.h"
 #include "twin/core/errors.h"
 #include "twin/report/json_units.h"
 
@@ -27,17 +28,31 @@ double CurveRms_rad(const TimeReversal& timed) {
   return std::sqrt(u_rad.squaredNorm() / static_cast<double>(u_rad.size()));
 }
 
+/// Orders that the noise of the times alone makes uncertain.
+nlohmann::json OrdersByNoiseJson(const separate::harmonics::HarmonicSeries& series) {
+  nlohmann::json lines = HarmonicsJson(series);
+  AddPublishedOrderParts(series, series, 0.0, lines);
+  return lines;
+}
+
+nlohmann::json CoastRingJson(const TimeReversal& timed) {
+  nlohmann::json json = CurveJson(timed.ring, "ez");
+  json["u_parts"] = PublishedCurveParts(timed.ring, timed.ring_by_noise, 0.0, kCurvePoints);
+  return json;
+}
+
 nlohmann::json CoastHarmonicsJson(const TimeReversal& timed) {
   nlohmann::json json = {{"form", "sum of amplitude cos(order angle + phase)"},
                          {"highest_order", timed.ring.Highest()},
                          {"device", HarmonicsJson(timed.ring)}};
-  if (!timed.torque.orders.empty()) json["torque"] = HarmonicsJson(timed.torque);
-  if (!timed.friction.orders.empty()) json["friction"] = HarmonicsJson(timed.friction);
+  AddPublishedOrderParts(timed.ring, timed.ring_by_noise, 0.0, json["device"]);
+  if (!timed.torque.orders.empty()) json["torque"] = OrdersByNoiseJson(timed.torque);
+  if (!timed.friction.orders.empty()) json["friction"] = OrdersByNoiseJson(timed.friction);
   return json;
 }
 
 nlohmann::json CoastSeparationJson(const TimeReversal& timed) {
-  return {{"device", CurveJson(timed.ring, "ez")},
+  return {{"device", CoastRingJson(timed)},
           {"harmonics", CoastHarmonicsJson(timed)},
           {"reference_speed_deg_s", report::In(units::deg, timed.reference_speed_rad_s)},
           {"stamp_noise_ns", report::In(1e-9, timed.stamp_noise_s)},

@@ -10,14 +10,17 @@
 #include "twin/benches/encoder_comparison/curve_results.h"
 #include "twin/benches/encoder_comparison/estimators/device_error.h"
 #include "twin/benches/encoder_comparison/estimators/several_heads.h"
+#include "twin/benches/encoder_comparison/uncertainty_parts.h"
 #include "twin/core/errors.h"
 #include "twin/core/written_number.h"
 #include "twin/report/json_units.h"
+#include "twin/report/uncertainty_parts.h"
 
 namespace twinbench::benches::encoder {
 namespace {
 
 using separate::encoder::SeveralHeads;
+using separate::harmonics::HarmonicSeries;
 
 constexpr const char* kAllSeeTheSame = "all heads see the same of it; it is in what the reference shows beside them";
 
@@ -66,11 +69,31 @@ nlohmann::json LostJson(const SeveralHeads& heads) {
           {"whole_curve_rms_u_arcsec", report::Arcsec(whole.u_whole_rad)}};
 }
 
-nlohmann::json HeadsSeparationJson(const SeveralHeads& heads) {
+nlohmann::json RingJson(const SeveralHeads& heads, double of_steps) {
+  nlohmann::json json = CurveJson(heads.ring, "ez");
+  json["u_parts"] = PublishedCurveParts(heads.ring, heads.ring_by_noise, of_steps, kCurvePoints);
+  return json;
+}
+
+nlohmann::json OrdersJson(const HarmonicSeries& series, const HarmonicSeries& by_noise, double of_steps) {
+  nlohmann::json lines = HarmonicsJson(series);
+  AddPublishedOrderParts(series, by_noise, of_steps, lines);
+  return lines;
+}
+
+/// The reference beside the heads: steps of the heads are told from its own noise by nobody.
+nlohmann::json ReferenceJson(const SeveralHeads& heads) {
+  nlohmann::json json = CurveJson(heads.reference, "ez");
+  json["u_parts"] = report::PartsJson({{"noise", 1.0}});
+  return json;
+}
+
+nlohmann::json HeadsSeparationJson(const SeveralHeads& heads, const DeviceSettings& settings) {
+  const double of_steps = StepShare(heads.residual_rms_rad, settings);
   nlohmann::json harmonics = {{"form", "sum of amplitude cos(order angle + phase)"},
                               {"highest_order", heads.Highest()},
-                              {"device", HarmonicsJson(heads.ring)}};
-  nlohmann::json json = {{"device", CurveJson(heads.ring, "ez")},
+                              {"device", OrdersJson(heads.ring, heads.ring_by_noise, of_steps)}};
+  nlohmann::json json = {{"device", RingJson(heads, of_steps)},
                          {"not_separable", NotSeparableOf(heads)},
                          {"lost", LostJson(heads)},
                          {"residual_rms",
@@ -80,8 +103,8 @@ nlohmann::json HeadsSeparationJson(const SeveralHeads& heads) {
                          {"dof", report::In(1.0, heads.dof)}};
   for (const double head_rad : heads.heads_rad) json["heads_deg"].push_back(WrittenNumber(head_rad, units::deg));
   if (!heads.reference.orders.empty()) {
-    json["reference"] = CurveJson(heads.reference, "ez");
-    harmonics["reference"] = HarmonicsJson(heads.reference);
+    json["reference"] = ReferenceJson(heads);
+    harmonics["reference"] = OrdersJson(heads.reference, heads.reference, 0.0);
   }
   json["harmonics"] = harmonics;
   return json;
@@ -144,7 +167,7 @@ report::Evaluation EvaluateHeads(const Scenario& scenario, const std::vector<Rea
     evaluation.results["not_separated"] = heads.not_separated;
     return evaluation;
   }
-  AddCalibration(HeadsSeparationJson(heads), heads.notes, evaluation);
+  AddCalibration(HeadsSeparationJson(heads, device), heads.notes, evaluation);
   return evaluation;
 }
 

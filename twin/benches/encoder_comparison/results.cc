@@ -82,12 +82,13 @@ nlohmann::json ReversalJson(const DeviceError& e, const DeviceSettings& settings
   for (auto& value : json["reversal_arcsec"]) value = value.get<double>() + e.reversal.value_rad / units::arcsec;
   json["mean_arcsec"] = report::Arcsec(e.reversal.value_rad);
   json["u_mean_arcsec"] = report::Arcsec(e.reversal.u_rad);
+  if (std::isfinite(e.reversal.u_rad)) json["u_parts"]["mean_arcsec"] = ReversalParts(e, settings);
   return json;
 }
 
 /// What was read, by degrees.
-nlohmann::json ToJson(const AngleMeans& means) {
-  nlohmann::json json;
+nlohmann::json ToJson(const AngleMeans& means, const DeviceError& e, const DeviceSettings& settings) {
+  nlohmann::json json = {{"u_parts", MeansParts(means, e, settings)}};
   for (std::size_t i = 0; i < means.count.size(); ++i) {
     json["position_deg"].push_back(WrittenNumber(means.position_rad[i], units::deg));
     json["ez_arcsec"].push_back(report::Arcsec(means.value_rad[i]));
@@ -97,10 +98,10 @@ nlohmann::json ToJson(const AngleMeans& means) {
   return json;
 }
 
-nlohmann::json MeansJson(const DeviceError& e) {
-  nlohmann::json json = {{"both", ToJson(e.both)}};
-  if (!e.forward.count.empty()) json["forward"] = ToJson(e.forward);
-  if (!e.backward.count.empty()) json["backward"] = ToJson(e.backward);
+nlohmann::json MeansJson(const DeviceError& e, const DeviceSettings& settings) {
+  nlohmann::json json = {{"both", ToJson(e.both, e, settings)}};
+  if (!e.forward.count.empty()) json["forward"] = ToJson(e.forward, e, settings);
+  if (!e.backward.count.empty()) json["backward"] = ToJson(e.backward, e, settings);
   return json;
 }
 
@@ -121,11 +122,17 @@ void AddDevice(const DeviceError& e, const DeviceSettings& settings, nlohmann::j
   }
   json.update(SeparationJson(e, settings));
   if (!e.curves.reversal.orders.empty()) json["reversal"] = ReversalJson(e, settings);
-  json["means"] = MeansJson(e);
+  json["means"] = MeansJson(e, settings);
   for (const PassResult& pass : e.passes) json["passes"].push_back(ToJson(pass));
   for (const double mounting_rad : e.mounting_rad) json["mounting_deg"].push_back(WrittenNumber(mounting_rad, units::deg));
   if (std::isfinite(e.lag_s)) json["lag"] = {{"value_s", e.lag_s}, {"u_s", report::In(1.0, e.u_lag_s)}};
   json["notes"] = e.notes;
+}
+
+std::vector<uncertainty::Joint> JointsOf(const separate::encoder::SeparatedCurves& curves) {
+  std::vector<uncertainty::Joint> joints = {CurveJoint("device", curves.device, kCurvePoints)};
+  if (!curves.reference.orders.empty()) joints.push_back(CurveJoint("reference", curves.reference, kCurvePoints));
+  return joints;
 }
 
 std::string LostText(const DeviceError& e) {
@@ -169,9 +176,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   AddDevice(device, device_settings, evaluation.results);
   if (device.highest_order > 0) {
     evaluation.separation = SeparationJson(device, device_settings);
-    evaluation.joints.push_back(CurveJoint("device", device.curves.device, kCurvePoints));
-    if (!device.curves.reference.orders.empty())
-      evaluation.joints.push_back(CurveJoint("reference", device.curves.reference, kCurvePoints));
+    evaluation.joints = [curves = device.curves] { return JointsOf(curves); };
   }
   if (EncoderOf(scenario).encoder_procedure.kind == "stops") {
     const PositioningResults positioning = EvaluateStops(readings, device_settings);

@@ -239,8 +239,10 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
     results["method_bias"] = BiasJson(*unseen.bias);
   else
     results["squareness"] = IdentifiedSquareness(found);
-  std::vector<uncertainty::Joint> joints;
-  if (!unseen.bias) joints.push_back(MapJoint(unseen));
+  const bool has_joint = !unseen.bias;
+  const auto joints = [has_joint, unseen] {
+    return has_joint ? std::vector<uncertainty::Joint>{MapJoint(unseen)} : std::vector<uncertainty::Joint>();
+  };
   return {results,
           separation,
           "",

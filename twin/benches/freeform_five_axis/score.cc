@@ -82,10 +82,10 @@ VolumetricErrors PredictBy(const FreeformSettings& bench, const std::vector<Pose
   return PredictErrors(bench, poses, found, estimator);
 }
 
-Compensated CompensatedAt(const FreeformSettings& bench, const std::vector<PoseRead>& seen,
-                          const std::vector<PoseRead>& poses, const Identification& found,
-                          const Eigen::VectorXd& truth, Estimator estimator) {
-  Compensated at{{}, PredictBy(bench, seen, poses, found, estimator)};
+/// @param estimated  At these poses.
+Compensated CompensatedAt(const FreeformSettings& bench, const std::vector<PoseRead>& poses, const VolumetricErrors& estimated,
+                          const Eigen::VectorXd& truth) {
+  Compensated at{{}, estimated};
   const Eigen::Matrix3Xd& nominal = at.left.nominal_um;
   at.actual_um = WithoutRigidMotion(nominal, Tips_um(bench, poses, truth, Estimator::kRigorous) - nominal);
   at.left.error_um = WithoutRigidMotion(nominal, at.actual_um - at.left.error_um);
@@ -113,7 +113,8 @@ struct ScoredGrids {
 ScoredGrids ScoreGrids(const FreeformSettings& bench, const std::vector<PoseRead>& seen,
                        const Identification& found, const Eigen::VectorXd& truth, Estimator estimator) {
   const std::vector<Grid> grids = GridsOf(seen, bench, kGridNodes);
-  const Compensated all = CompensatedAt(bench, seen, PosesOnGrids(grids), found, truth, estimator);
+  const std::vector<PoseRead> poses = PosesOnGrids(grids);
+  const Compensated all = CompensatedAt(bench, poses, PredictErrorsAlone(bench, poses, found, estimator), truth);
   ScoredGrids scored;
   Eigen::Index from = 0;
   for (const Grid& grid : grids) {
@@ -138,7 +139,7 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
   const std::vector<PoseRead> seen = SeenPoses(scenario, readings), unseen = UnseenPoses(seen, bench, kPoses);
   const Identification found = IdentifyBy(bench, seen, estimator);
   const Eigen::VectorXd true_x = TruthOf(truth, found);
-  const Compensated at = CompensatedAt(bench, seen, unseen, found, true_x, estimator);
+  const Compensated at = CompensatedAt(bench, unseen, PredictBy(bench, seen, unseen, found, estimator), true_x);
   const Eigen::Matrix3Xd& actual = at.actual_um;
   const VolumetricErrors& left = at.left;
   const ScoredGrids grids = ScoreGrids(bench, seen, found, true_x, estimator);

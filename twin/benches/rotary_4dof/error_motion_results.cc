@@ -18,7 +18,7 @@ using separate::ErrorMotionValue;
 using separate::ErrorMotionValues;
 using separate::TableEstimate;
 
-constexpr Eigen::Index kMostWithUncertainty = 720;  // positions; a covariance of more takes longer to draw from than to measure
+constexpr Eigen::Index kMostWithUncertainty = 720;  // positions; a covariance of more takes long to take the root of
 constexpr const char* kAtStops = "the axis stood at every reading; the standard measures while it turns";
 
 /// Covariances of a contour: of the readings, and of what is common to all of them.
@@ -73,6 +73,29 @@ ContourCovariance CovarianceOf(const TableEstimate& estimate, const std::vector<
   return cov;
 }
 
+/// Which of some angles lies nearest to another, turns apart.
+class NearestOnCircle {
+ public:
+  /// @param angle_rad  Not empty, in any order.
+  explicit NearestOnCircle(const std::vector<double>& angle_rad) {
+    for (std::size_t i = 0; i < angle_rad.size(); ++i) sorted_.emplace_back(WithinTurn(angle_rad[i]), i);
+    std::ranges::sort(sorted_);
+  }
+
+  std::size_t operator()(double angle_rad) const {
+    const double within = WithinTurn(angle_rad);
+    const auto above = std::ranges::lower_bound(sorted_, within, {}, [](const auto& one) { return one.first; });
+    const auto& next = above == sorted_.end() ? sorted_.front() : *above;
+    const auto& last = above == sorted_.begin() ? sorted_.back() : *(above - 1);
+    return std::abs(std::remainder(within - next.first, units::turn)) < std::abs(std::remainder(within - last.first, units::turn)) ? next.second
+                                                                                                                          : last.second;
+  }
+
+ private:
+  static double WithinTurn(double angle_rad) { return angle_rad - units::turn * std::floor(angle_rad / units::turn); }
+  std::vector<std::pair<double, std::size_t>> sorted_;
+};
+
 /// What each pass shows beyond the model, by the target's position.
 class PassesBeyond {
  public:
@@ -86,21 +109,16 @@ class PassesBeyond {
     const auto d = static_cast<Eigen::Index>(std::ranges::find(separate::kComponentOf, component) - separate::kComponentOf.begin());
     const double dof = separation_.dof_of[d], readings = separation_.readings;
     if (!(dof > 0.0)) return at;
+    const NearestOnCircle nearest(angle_rad);
     const double scale = std::sqrt(readings / dof);
     for (std::size_t k = 0; k < motions_.size(); ++k) {
       const double beyond = separation_.residuals[k][d];
-      if (std::isfinite(beyond)) at[Nearest(angle_rad, motions_[k].target_rad)].push_back(scale * beyond);
+      if (std::isfinite(beyond)) at[nearest(motions_[k].target_rad)].push_back(scale * beyond);
     }
     return at;
   }
 
  private:
-  static std::size_t Nearest(const std::vector<double>& angle_rad, double turned_rad) {
-    const auto off = [&](double at_rad) { return std::abs(std::remainder(turned_rad - at_rad, units::turn)); };
-    return static_cast<std::size_t>(
-        std::ranges::min_element(angle_rad, {}, off) - angle_rad.begin());
-  }
-
   const separate::Separation& separation_;
   const std::vector<measure::Motion>& motions_;
 };
@@ -143,7 +161,12 @@ void AppendTurned(const char* name, const TableEstimate& estimate, Component x, 
   ErrorMotion along_x = MotionOf(estimate, x, at, scatter_x), along_y = MotionOf(estimate, y, at, scatter_y);
   along_x.angle_rad *= sense;
   along_y.angle_rad *= sense;
-  all.push_back({name, IsAngle(x), Rotating(along_x, along_y, cov.random + cov.systematic), Rotating(along_x, along_y, cov.random).cov});
+  Directed turned{name, IsAngle(x), Rotating(along_x, along_y), {}};
+  if (cov.random.size() > 0) {
+    turned.random = separate::RotatingCovariance(along_x.angle_rad, cov.random);
+    turned.motion.cov = turned.random + separate::RotatingCovariance(along_x.angle_rad, cov.systematic);
+  }
+  all.push_back(turned);
 }
 
 std::vector<Directed> OfTarget(const separate::Separation& s, const std::vector<measure::Motion>& motions) {
@@ -212,10 +235,10 @@ std::string Text(const Directed& d, const ErrorMotionValues& values) {
   return text + (d.is_angle ? " arcsec\n" : " um\n");
 }
 
-void Append(const char* table, const std::vector<Directed>& directions, ErrorMotionResults& results) {
+void Append(const char* table, const std::vector<Directed>& directions, separate::ErrorMotionDraws& draws, ErrorMotionResults& results) {
   if (!directions.empty()) results.text += fmt::format("ISO 230-7, {}\n", table);
   for (const Directed& d : directions) {
-    const ErrorMotionValues values = EvaluateErrorMotion(d.motion, separate::PlotCentre::kLeastSquares);
+    const ErrorMotionValues values = EvaluateErrorMotion(d.motion, separate::PlotCentre::kLeastSquares, draws);
     if (std::isnan(values.synchronous.value)) continue;
     results.json.push_back({{"table", table}, {"motion", d.name}, {"values", ValuesJson(d, values)}, {"missing", {kAtStops}}});
     if (values.turns > 0) results.json.back()["turns"] = values.turns;
@@ -227,8 +250,9 @@ void Append(const char* table, const std::vector<Directed>& directions, ErrorMot
 
 ErrorMotionResults EvaluateErrorMotions(const separate::Separation& separation, const std::vector<measure::Motion>& motions) {
   ErrorMotionResults results{nlohmann::json::array(), ""};
-  Append("target", OfTarget(separation, motions), results);
-  Append("reference", OfReference(separation.reference), results);
+  separate::ErrorMotionDraws draws;
+  Append("target", OfTarget(separation, motions), draws, results);
+  Append("reference", OfReference(separation.reference), draws, results);
   return results;
 }
 

@@ -36,11 +36,12 @@ TableErrors ErrorsOf(const nlohmann::json& truth, const std::string& table) {
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const Analysis analysis = Analyse(scenario, readings, estimator);
   nlohmann::json results = ToJson(analysis);
+  AddCalibrationParts(analysis, readings, scenario, results["calibration"]);
   if (analysis.separation) AddParts(analysis, readings, scenario, results["separation"]);
   const nlohmann::json separation = analysis.separation ? Agreed(results["separation"]) : nlohmann::json();
   report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
   if (!analysis.separation) return evaluation;
-  evaluation.joints = JointsOf(*analysis.separation);
+  evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   const ErrorMotionResults motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
   evaluation.results["iso230_7"] = motions.json;
   evaluation.summary += motions.text;

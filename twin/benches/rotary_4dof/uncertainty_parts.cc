@@ -20,12 +20,13 @@ struct OfScatter {
 };
 
 /// Mean share that a step of the converter has of a block's variance; nothing if no block states one.
-std::optional<double> QuantisationShare(const std::vector<Reading>& readings, const measure::BenchGeometry& geometry) {
+std::optional<double> QuantisationShare(const std::vector<Reading>& readings, Phase phase,
+                                        const measure::BenchGeometry& geometry) {
   double sum = 0.0;
   int count = 0;
   for (const Reading& r : readings) {
     const auto variance_m2 = measure::SpotVariances(r, geometry);
-    if (r.phase != Phase::kFullCircle || r.status != ReadingStatus::kOk || !variance_m2) continue;
+    if (r.phase != phase || r.status != ReadingStatus::kOk || !variance_m2) continue;
     for (int c = 0; c < kChannels; ++c) {
       const double step_V = geometry.adc_step_V, std_V = r.std_V[static_cast<std::size_t>(c)];
       const double averaged = std_V < step_V ? 1.0 : r.n_samples;  // noise of more than a step dithers it
@@ -94,7 +95,25 @@ nlohmann::json PartsOf(const separate::TableEstimate& estimate, std::size_t bloc
   return report::PartsJson(u2, {noise, steps, passes, calibration, second, model});
 }
 
+/// @param k  Of gains and rolls.
+nlohmann::json CalibrationParts(const measure::Calibration& calibration, Eigen::Index k, double of_steps) {
+  const double prior = calibration.of_prior[k], standard = calibration.of_autocollimator[k], detectors = 1.0 - prior - standard;
+  return report::PartsJson({{"noise", (1.0 - of_steps) * detectors},
+                            {"quantisation", of_steps * detectors},
+                            {"standard", standard},
+                            {"prior", prior}});
+}
+
 }  // namespace
+
+void AddCalibrationParts(const Analysis& analysis, const std::vector<Reading>& readings, const Scenario& scenario,
+                         nlohmann::json& calibration) {
+  const double of_steps = QuantisationShare(readings, Phase::kCalibration, measure::NominalGeometry(scenario)).value_or(0.0);
+  for (int c = 0; c < kChannels; ++c)
+    calibration["gain"][kChannelNames[c]]["u_parts"] = CalibrationParts(analysis.calibration, c, of_steps);
+  for (int p = 0; p < 2; ++p)
+    calibration["roll_mrad"][p == 0 ? "psd_a" : "psd_b"]["u_parts"] = CalibrationParts(analysis.calibration, kChannels + p, of_steps);
+}
 
 std::vector<uncertainty::Joint> JointsOf(const separate::Separation& separation) {
   return {JointOf("separation.target", separation.target), JointOf("separation.reference", separation.reference)};
@@ -102,7 +121,7 @@ std::vector<uncertainty::Joint> JointsOf(const separate::Separation& separation)
 
 void AddParts(const Analysis& analysis, const std::vector<Reading>& readings, const Scenario& scenario,
               nlohmann::json& separation) {
-  const std::optional<double> of_steps = QuantisationShare(readings, measure::NominalGeometry(scenario));
+  const std::optional<double> of_steps = QuantisationShare(readings, Phase::kFullCircle, measure::NominalGeometry(scenario));
   for (const Table table : {Table::kTarget, Table::kReference}) {
     const separate::TableEstimate& estimate =
         table == Table::kTarget ? analysis.separation->target : analysis.separation->reference;

@@ -18,6 +18,11 @@ namespace twinbench::benches::rotary {
 void AddParts(const Analysis& analysis, const std::vector<Reading>& readings, const Scenario& scenario,
               nlohmann::json& separation);
 
+/// Adds `u_parts` to gains and rolls of `calibration` (ToJson of this analysis): noise of the detectors, of it steps of the converter; noise of the
+/// autocollimator (standard); what was believed before.
+void AddCalibrationParts(const Analysis& analysis, const std::vector<Reading>& readings, const Scenario& scenario,
+                         nlohmann::json& calibration);
+
 /// All values of a table together, by both of its covariances, in the units of separation.json.
 std::vector<uncertainty::Joint> JointsOf(const separate::Separation& separation);
 

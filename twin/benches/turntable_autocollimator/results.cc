@@ -36,9 +36,17 @@ using turntable::ToJson;
 
 /// The scatter of the readings is noise as far as the autocollimator is stated to have it; the rest, seating and
 /// what else changes from pass to pass, is repeatability.
+double NoiseShare(const IndexingSeparation& s, double stated_noise_rad) {
+  return std::min(1.0, std::pow(stated_noise_rad / (s.scale * s.noise.u_x_rad), 2));
+}
+
+/// Of what the scatter of the readings alone makes uncertain.
+nlohmann::json PartsOfScatter(double of_noise) {
+  return report::PartsJson({{"noise", of_noise}, {"repeatability", 1.0 - of_noise}});
+}
+
 nlohmann::json PartsOf(const AngleSeries& series, const IndexingSeparation& s, double stated_noise_rad) {
-  const double scatter_rad = s.scale * s.noise.u_x_rad;
-  const double of_noise = std::min(1.0, std::pow(stated_noise_rad / scatter_rad, 2));
+  const double of_noise = NoiseShare(s, stated_noise_rad);
   const auto list = [](const Eigen::VectorXd& variance) {
     return std::vector<double>(variance.begin(), variance.end());
   };
@@ -127,6 +135,7 @@ nlohmann::json SeparationJson(const IndexingSeparation& s, const Scenario& scena
                          {"dof", report::In(1.0, s.dof)},
                          {"roll", ToJson(s.roll)}};
   json["turntable"]["u_parts"] = PartsOf(s.turntable, s, stated_noise_rad);
+  if (std::isfinite(s.roll.u_gamma_rad)) json["roll"]["u_parts"] = PartsOfScatter(NoiseShare(s, stated_noise_rad));
   if (s.multitooth.position_rad.empty()) return json;
   json["multitooth"] = ToJson(s.multitooth);
   json["multitooth"]["u_parts"] = PartsOf(s.multitooth, s, stated_noise_rad);
@@ -144,6 +153,8 @@ nlohmann::json ResultsOf(const TurntableAnalysis& a, const Scenario& scenario) {
     json["before"] = ToJson(a.before);
   }
   if (!a.pointwise.empty()) json["equation_5"] = ToJson(a.pointwise);
+  if (!a.pointwise.empty() && a.separation)
+    json["equation_5"]["u_parts"] = PartsOfScatter(NoiseShare(*a.separation, TurntableOf(scenario).autocollimator.noise_rad));
   if (a.model) json["model"] = ToJson(*a.model);
   if (a.check) json["verification"] = ToJson(*a.check);
   if (!a.not_separated.empty()) json["not_separated"] = a.not_separated;
@@ -236,7 +247,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation, scenario) : nlohmann::json();
   report::Evaluation evaluation{ResultsOf(analysis, scenario), separation, analysis.not_separated,
                                 SummaryOf(analysis)};
-  if (analysis.separation) evaluation.joints = JointsOf(*analysis.separation);
+  if (analysis.separation) evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   return evaluation;
 }
 

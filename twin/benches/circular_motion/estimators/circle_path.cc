@@ -67,6 +67,8 @@ std::vector<CirclePath> RigorousPaths(const std::vector<CirclePoint>& points, co
     return PathPoint{p.commanded_rad,
                      Deviation_m(p, fit.errors, fit.MountingOf(p.setup), known),
                      {p.u_radial_m, p.u_tangential_m},
+                     p.of_machine,
+                     p.of_steps,
                      SlopeOf(Deviation_m, p, fit, known)};
   });
 }

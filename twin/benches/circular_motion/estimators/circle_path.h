@@ -12,6 +12,7 @@ struct PathPoint {
   double commanded_rad = kNaN;
   Eigen::Vector2d d_m{kNaN, kNaN};      // actual minus commanded, x and y
   Eigen::Vector2d u_own_m{kNaN, kNaN};  // standard uncertainty of radius and tangent that is this reading's own
+  Eigen::Vector2d of_machine{0.0, 0.0}, of_steps{0.0, 0.0};  // shares of its squares (CirclePoint)
   Eigen::Matrix2Xd slope = {};          // d_m by the unknowns of the fit; empty: none were fitted
 
   double Radial_m() const { return std::cos(commanded_rad) * d_m.x() + std::sin(commanded_rad) * d_m.y(); }

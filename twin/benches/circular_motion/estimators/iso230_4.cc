@@ -11,10 +11,14 @@ using Eigen::Index, Eigen::VectorXd;
 
 /// Radii about the commanded centre, less the nominal one, of one or two paths; and what they lean on.
 struct Radii {
-  VectorXd deviation_m, u_own_m, angle_rad;
+  VectorXd deviation_m, u_own_m, of_machine, of_steps, angle_rad;  // of_: shares of the square of u_own_m
   Eigen::MatrixXd slope;  // rows x unknowns
 
   Index Count() const { return deviation_m.size(); }
+  PartedVariance Own(Index i) const {
+    const double all = u_own_m[i] * u_own_m[i];
+    return {all, of_steps[i] * all, of_machine[i] * all};
+  }
 };
 
 Radii RadiiOf(const std::vector<const CirclePath*>& paths) {
@@ -30,6 +34,8 @@ Radii RadiiOf(const std::vector<const CirclePath*>& paths) {
   const Index count = std::ssize(points);
   radii.deviation_m.resize(count);
   radii.u_own_m.resize(count);
+  radii.of_machine.resize(count);
+  radii.of_steps.resize(count);
   radii.angle_rad.resize(count);
   radii.slope.resize(count, points.empty() ? 0 : points.front()->slope.cols());
   for (Index i = 0; i < count; ++i) {
@@ -38,19 +44,31 @@ Radii RadiiOf(const std::vector<const CirclePath*>& paths) {
     const double c = std::cos(point.commanded_rad), s = std::sin(point.commanded_rad);
     radii.deviation_m[i] = std::hypot(radius_m * c + point.d_m.x(), radius_m * s + point.d_m.y()) - radius_m;
     radii.u_own_m[i] = point.u_own_m.x();
+    radii.of_machine[i] = point.of_machine.x();
+    radii.of_steps[i] = point.of_steps.x();
     radii.angle_rad[i] = point.commanded_rad;
     if (radii.slope.cols() > 0) radii.slope.row(i) = c * point.slope.row(0) + s * point.slope.row(1);
   }
   return radii;
 }
 
+Iso230_4Value With(double value_m, const PartedVariance& variance) {
+  return {value_m, std::sqrt(variance.all), variance.of_steps / variance.all, variance.of_machine / variance.all};
+}
+
 /// A sum of radii with these weights.
 Iso230_4Value Weighted(const Radii& radii, const VectorXd& weight, const SharedUncertainty& shared) {
-  Iso230_4Value value{weight.dot(radii.deviation_m), kNaN};
-  if (!shared.IsKnown()) return value;
-  value.u_m = std::sqrt(weight.cwiseProduct(radii.u_own_m).squaredNorm() +
-                        shared.Variance(radii.slope.transpose() * weight));
-  return value;
+  const double value_m = weight.dot(radii.deviation_m);
+  if (!shared.IsKnown()) return {value_m};
+  const VectorXd slope = radii.slope.transpose() * weight;
+  PartedVariance variance = shared.Parted(slope);
+  variance.all = shared.Variance(slope);
+  for (Index i = 0; i < radii.Count(); ++i) {
+    const double square = weight[i] * weight[i];
+    const PartedVariance own = radii.Own(i);
+    variance = variance + PartedVariance{square * own.all, square * own.of_steps, square * own.of_machine};
+  }
+  return With(value_m, variance);
 }
 
 VectorXd Only(const Radii& radii, Index i) {
@@ -81,9 +99,8 @@ Iso230_4Value Circular(const Radii& radii, const SharedUncertainty& shared) {
   if (radii.Count() == 0) return {};
   const VectorXd about_m = AboutOwnCentre(radii);
   const Extremes at = ExtremesOf(about_m);
-  Iso230_4Value value{about_m[at.largest] - about_m[at.smallest], kNaN};
-  if (shared.IsKnown()) value.u_m = std::hypot(radii.u_own_m[at.largest], radii.u_own_m[at.smallest]);
-  return value;
+  const double value_m = about_m[at.largest] - about_m[at.smallest];
+  return shared.IsKnown() ? With(value_m, radii.Own(at.largest) + radii.Own(at.smallest)) : Iso230_4Value{value_m};
 }
 
 struct Radial {
@@ -113,8 +130,7 @@ Iso230_4Value Hysteresis(const Radii& ccw, const Radii& cw, const SharedUncertai
       if (Apart_rad(ccw.angle_rad[i], cw.angle_rad[j]) > kSame_rad) continue;
       const double apart_m = std::abs(ccw.deviation_m[i] - cw.deviation_m[j]);
       if (apart_m <= largest.value_m) continue;
-      largest.value_m = apart_m;
-      if (shared.IsKnown()) largest.u_m = std::hypot(ccw.u_own_m[i], cw.u_own_m[j]);
+      largest = shared.IsKnown() ? With(apart_m, ccw.Own(i) + cw.Own(j)) : Iso230_4Value{apart_m};
     }
   }
   return largest;

@@ -11,6 +11,8 @@ namespace twinbench::separate::circular {
 
 struct Iso230_4Value {
   double value_m = kNaN, u_m = kNaN;  // u: NaN without one
+  /// Shares of u^2, of which the rest is noise of the instruments: see PartedVariance; and what published equations are wrong by.
+  double quantisation = 0.0, repeatability = 0.0, model = 0.0;
 };
 
 /// Of one set-up and feed; NaN where a direction is missing.

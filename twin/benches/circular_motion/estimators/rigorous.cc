@@ -178,6 +178,11 @@ double SharedUncertainty::Variance(const VectorXd& slope) const {
   return slope.dot(cov * slope);
 }
 
+PartedVariance SharedUncertainty::Parted(const VectorXd& slope) const {
+  const double all = slope.dot(cov * slope);
+  return {all, slope.dot(of_steps * slope), slope.dot(of_machine * slope) + excess * all};
+}
+
 const CircleMounting& CircleFit::MountingOf(int setup) const {
   return mountings[static_cast<std::size_t>(std::ranges::find(setups, setup) - setups.begin())];
 }

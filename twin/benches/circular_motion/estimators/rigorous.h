@@ -7,6 +7,16 @@
 /// The vector form: every unknown of machine, instruments and set-ups in one least-squares fit of radius and angle.
 namespace twinbench::separate::circular {
 
+/// A variance, and what of it the instruments' quanta make, and what does not repeat: the machine's stated noise, and whatever is left over beyond all
+/// that is stated. The rest is noise of the instruments.
+struct PartedVariance {
+  double all = 0.0, of_steps = 0.0, of_machine = 0.0;
+
+  PartedVariance operator+(const PartedVariance& other) const {
+    return {all + other.all, of_steps + other.of_steps, of_machine + other.of_machine};
+  }
+};
+
 /// What results share: the unknowns behind them.
 struct SharedUncertainty {
   Eigen::MatrixXd cov = {};      // SI; empty: nothing was fitted
@@ -19,6 +29,8 @@ struct SharedUncertainty {
   bool IsKnown() const { return cov.size() > 0; }
   /// Of a result with these slopes; NaN if it goes with something that the readings do not show.
   double Variance(const Eigen::VectorXd& slope) const;
+  /// The same by source, and without a look at what the readings do not show.
+  PartedVariance Parted(const Eigen::VectorXd& slope) const;
 };
 
 struct CircleFit {

@@ -22,7 +22,7 @@ double ConstantVariance(const ComparisonFit& fitted) {
 
 struct SetUpReversal {
   double forward_rad = kNaN, backward_rad = kNaN;
-  double variance = 0.0;
+  double variance = 0.0, white = 0.0;  // all of it, and what white noise makes
 };
 
 std::map<int, SetUpReversal> ReversalsOf(const ComparisonFit& fitted) {
@@ -33,7 +33,9 @@ std::map<int, SetUpReversal> ReversalsOf(const ComparisonFit& fitted) {
     for (const PassTerm& pass : group.fit.passes) constant.Add(pass.constant_rad);
     SetUpReversal& reversal = reversals[group.group->setup];
     (group.group->direction > 0 ? reversal.forward_rad : reversal.backward_rad) = constant.Value();
-    reversal.variance += std::max(variance / constant.count, fitted.noise.white_rad2 * group.fit.constant_cofactor);
+    const double white = fitted.noise.white_rad2 * group.fit.constant_cofactor;
+    reversal.variance += std::max(variance / constant.count, white);
+    reversal.white += white;
   }
   return reversals;
 }
@@ -42,15 +44,16 @@ std::map<int, SetUpReversal> ReversalsOf(const ComparisonFit& fitted) {
 
 MeanReversal ReversalOf(const ComparisonFit& fitted) {
   Mean reversal;
-  double variance = 0.0;
+  double variance = 0.0, white = 0.0;
   for (const auto& [setup, r] : ReversalsOf(fitted)) {
     const double difference_rad = r.forward_rad - r.backward_rad;
     if (!std::isfinite(difference_rad)) continue;
     reversal.Add(difference_rad);
     variance += r.variance;
+    white += r.white;
   }
   if (reversal.count == 0) return {};
-  return {reversal.Value(), std::sqrt(variance) / reversal.count};
+  return {reversal.Value(), std::sqrt(variance) / reversal.count, white / variance};
 }
 
 }  // namespace twinbench::separate::encoder

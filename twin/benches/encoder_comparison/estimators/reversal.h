@@ -7,6 +7,7 @@ namespace twinbench::separate::encoder {
 struct MeanReversal {
   double value_rad = kNaN;  // NaN if no set-up went both ways
   double u_rad = kNaN;      // NaN if no direction of a set-up has two passes
+  double white_share = kNaN;  // of its square: what white noise of the readings makes
 };
 
 /// Mean over the turn of forward - backward, and over the set-ups: from the constants of the passes.

@@ -33,6 +33,7 @@ SeveralHeads SeparateHeads(const std::vector<Reading>& readings, const HeadOptio
   const HeadSolution solution = equations.Solve();
   EnterCurve(solution, orders, result);
   EnterReference(sorted, solution, orders, result);
+  result.ring_by_noise = result.ring;
   return result;
 }
 
@@ -56,6 +57,7 @@ SeveralHeads EqualDivision(const std::vector<Reading>& readings, const HeadOptio
   EnterCurve(solution, orders, result);
   result.residual_rms_rad *= std::sqrt(heads / (heads - 1.0));  // of the difference: one head less 1 / N of itself
   EnterReference(sorted, WithMeanOfHeads(solution), orders, result);
+  result.ring_by_noise = result.ring;
   const std::string biased = WidenByDistance(SeparateHeads(readings, options).ring, result.ring);
   if (!biased.empty()) result.notes.push_back(BiasNote(biased));
   return result;

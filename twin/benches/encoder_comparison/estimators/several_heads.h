@@ -24,6 +24,7 @@ struct LostOrders {
 struct SeveralHeads {
   std::string not_separated;           // why there is no curve; the rest is then empty
   harmonics::HarmonicSeries ring;      // lost orders are NaN
+  harmonics::HarmonicSeries ring_by_noise;  // the same without what published equations are known to be wrong by in its uncertainty
   harmonics::HarmonicSeries reference;  // what it shows too much, by its own angle; likewise; empty: too few stops
   LostOrders lost;
   std::vector<double> heads_rad;

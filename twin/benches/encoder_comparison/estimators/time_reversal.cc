@@ -79,6 +79,7 @@ TimeReversal SeparateByTime(const std::vector<Reading>& readings, const CoastOpt
     result.friction =
         SeriesOfRow(x.row(model.friction), unit_rad2 * cofactor(model.friction, model.friction), result.dof);
   SayWhatIsNotTold(model, result);
+  result.ring_by_noise = result.ring;
   return result;
 }
 

@@ -18,6 +18,7 @@ struct CoastOptions {
 struct TimeReversal {
   std::string not_separated;  // why there is no curve; the rest is then empty
   harmonics::HarmonicSeries ring;
+  harmonics::HarmonicSeries ring_by_noise;  // the same without what published equations are known to be wrong by in its uncertainty
   /// What acts on the spindle and repeats with its angle, as the angle by which it stands beside its smooth course at
   /// `reference_speed_rad_s`; at other speeds as the inverse square. Empty: not told from the ring.
   harmonics::HarmonicSeries torque;    // the same in both directions

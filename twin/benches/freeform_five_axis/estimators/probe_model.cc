@@ -10,10 +10,23 @@ namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
 
+struct SinCos {
+  double sin, cos;
+};
+
+/// Errors are angles so small that the next term of the series is below the last digit.
+SinCos SinCosOf(double angle) {
+  constexpr double kSmall = 1e-3;
+  if (std::abs(angle) > kSmall) return {std::sin(angle), std::cos(angle)};
+  const double square = angle * angle;
+  return {angle * (1.0 - square / 6.0 * (1.0 - square / 20.0)), 1.0 - 0.5 * square * (1.0 - square / 12.0 * (1.0 - square / 30.0))};
+}
+
 /// Rz(z) Ry(y) Rx(x), multiplied out.
 Matrix3d Turn(double x, double y, double z) {
-  const double cx = std::cos(x), sx = std::sin(x), cy = std::cos(y), sy = std::sin(y), cz = std::cos(z),
-               sz = std::sin(z);
+  const auto [sx, cx] = SinCosOf(x);
+  const auto [sy, cy] = SinCosOf(y);
+  const auto [sz, cz] = SinCosOf(z);
   Matrix3d R;
   R << cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx,  //
       sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx,   //
@@ -99,6 +112,36 @@ double StepOf(int input) {
   return IsRotation(error) ? units::arcsec : units::um;
 }
 
+/// d of / d unknown by central differences over a um and an arcsec: 3 rows a pose.
+/// @param of  Of a pose and its inputs: three numbers.
+template <class Of>
+Eigen::MatrixXd SlopesBy(const Of& of, const std::vector<PoseRead>& poses, const Eigen::VectorXd& unknowns) {
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * std::ssize(poses), unknowns.size());
+  for (std::size_t p = 0; p < poses.size(); ++p) {
+    const PoseRead& pose = poses[p];
+    const Inputs at = InputsAt(pose, unknowns);
+    const auto rows = Eigen::seqN(3 * static_cast<Eigen::Index>(p), 3);
+    for (int k = 0; k < kInputs; ++k) {
+      Inputs above = at, below = at;
+      above[k] += StepOf(k);
+      below[k] -= StepOf(k);
+      const Vector3d slope = 0.5 * (of(pose, above) - of(pose, below));
+      if (k >= kMachineAxes * kBodyErrors) {
+        const int own = k - kMachineAxes * kBodyErrors;
+        const int unknown = own < kSquarenesses ? SquarenessAt(own) : MountingAt(pose.setup, own - kSquarenesses);
+        J(rows, unknown) = slope;
+        continue;
+      }
+      double power = 1.0;
+      for (int term = 0; term < kCubicTerms; ++term) {
+        J(rows, k * kCubicTerms + term) = power * slope;
+        power *= pose.t[static_cast<std::size_t>(k / kBodyErrors)];
+      }
+    }
+  }
+  return J;
+}
+
 }  // namespace
 
 std::vector<PoseRead> PosesOf(const std::vector<Reading>& readings, const FreeformSettings& bench) {
@@ -171,32 +214,15 @@ Eigen::Vector3d Predicted(const FreeformSettings& bench, const PoseRead& pose, c
   return {bench.qpd.sum_V * x[0] * y[1], bench.qpd.sum_V * y[0] * x[1], CameraPlace_px(bench.ccd, distance_m)};
 }
 
+Eigen::MatrixXd TipSlopes_um(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                             const Eigen::VectorXd& unknowns) {
+  const auto tip_um = [&](const PoseRead& pose, const Inputs& inputs) -> Vector3d { return Tip_m(bench, pose, inputs) / units::um; };
+  return SlopesBy(tip_um, poses, unknowns).leftCols(kOfMachine);
+}
+
 Eigen::MatrixXd Jacobian(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
                          const Eigen::VectorXd& unknowns) {
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * std::ssize(poses), unknowns.size());
-  for (std::size_t p = 0; p < poses.size(); ++p) {
-    const PoseRead& pose = poses[p];
-    const Inputs at = InputsAt(pose, unknowns);
-    const auto rows = Eigen::seqN(3 * static_cast<Eigen::Index>(p), 3);
-    for (int k = 0; k < kInputs; ++k) {
-      Inputs above = at, below = at;
-      above[k] += StepOf(k);
-      below[k] -= StepOf(k);
-      const Vector3d slope = 0.5 * (Predicted(bench, pose, above) - Predicted(bench, pose, below));
-      if (k >= kMachineAxes * kBodyErrors) {
-        const int own = k - kMachineAxes * kBodyErrors;
-        const int unknown = own < kSquarenesses ? SquarenessAt(own) : MountingAt(pose.setup, own - kSquarenesses);
-        J(rows, unknown) = slope;
-        continue;
-      }
-      double power = 1.0;
-      for (int term = 0; term < kCubicTerms; ++term) {
-        J(rows, k * kCubicTerms + term) = power * slope;
-        power *= pose.t[static_cast<std::size_t>(k / kBodyErrors)];
-      }
-    }
-  }
-  return J;
+  return SlopesBy([&](const PoseRead& pose, const Inputs& inputs) { return Predicted(bench, pose, inputs); }, poses, unknowns);
 }
 
 }  // namespace twinbench::benches::freeform::estimators

@@ -36,6 +36,10 @@ double SpotAt_m(double share, const QuadrantSettings& qpd);
 /// The tip in the X slide's frame [m].
 Eigen::Vector3d Tip_m(const FreeformSettings& bench, const PoseRead& pose, const Inputs& inputs);
 
+/// d tip / d unknown of the machine by central differences over a um and an arcsec [um]: 3 poses x kOfMachine.
+Eigen::MatrixXd TipSlopes_um(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                             const Eigen::VectorXd& unknowns);
+
 /// d reading / d unknown by central differences over a um and an arcsec: 3 readings each x unknowns.
 Eigen::MatrixXd Jacobian(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
                          const Eigen::VectorXd& unknowns);

@@ -8,7 +8,7 @@
 
 namespace twinbench::benches::freeform::estimators {
 
-Eigen::Matrix3Xd WithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& vectors) {
+Eigen::MatrixXd ColumnsWithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen::MatrixXd& vectors) {
   const Eigen::Vector3d middle = points.rowwise().mean();
   Eigen::MatrixXd motion(3 * points.cols(), 6);
   for (Eigen::Index k = 0; k < points.cols(); ++k) {
@@ -18,9 +18,11 @@ Eigen::Matrix3Xd WithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen:
     motion.middleRows(3 * k, 3) << Eigen::Matrix3d::Identity(), turned;
   }
   constexpr double kRank = 1e-12;
-  const Eigen::VectorXd flat = vectors.reshaped();
-  const Eigen::VectorXd left = flat - motion * SolveRanked(motion, flat, kRank).x;
-  return left.reshaped(3, points.cols());
+  return vectors - motion * SolveRanked(motion, vectors, kRank).x;
+}
+
+Eigen::Matrix3Xd WithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& vectors) {
+  return ColumnsWithoutRigidMotion(points, vectors.reshaped()).reshaped(3, points.cols());
 }
 
 std::vector<PoseRead> UnseenPoses(const std::vector<PoseRead>& seen, const FreeformSettings& bench, int count) {
@@ -88,18 +90,35 @@ Eigen::Matrix3Xd Tips_um(const FreeformSettings& bench, const std::vector<PoseRe
   return is_published ? Eigen::Matrix3Xd(tips + PublishedErrors_um(poses, unknowns)) : tips;
 }
 
-VolumetricErrors PredictErrors(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
-                               const Identification& found, Estimator estimator) {
+namespace {
+
+/// By all unknowns of the machine, each a um or an arcsec.
+Eigen::MatrixXd SlopesOfTips_um(const FreeformSettings& bench, const std::vector<PoseRead>& poses, const Identification& found,
+                                Estimator estimator) {
+  if (estimator == Estimator::kRigorous) return TipSlopes_um(bench, poses, found.unknowns);
+  Eigen::MatrixXd slopes(3 * std::ssize(poses), kOfMachine);
+  for (Eigen::Index k = 0; k < kOfMachine; ++k) {
+    const Eigen::VectorXd one = Eigen::VectorXd::Unit(found.unknowns.size(), k);
+    slopes.col(k) = 0.5 * (Tips_um(bench, poses, found.unknowns + one, estimator) - Tips_um(bench, poses, found.unknowns - one, estimator)).reshaped();
+  }
+  return slopes;
+}
+
+}  // namespace
+
+VolumetricErrors PredictErrorsAlone(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                                    const Identification& found, Estimator estimator) {
   const auto tips = [&](const Eigen::VectorXd& x) { return Tips_um(bench, poses, x, estimator); };
   VolumetricErrors errors;
   errors.nominal_um = tips(Eigen::VectorXd::Zero(found.unknowns.size()));
   errors.error_um = WithoutRigidMotion(errors.nominal_um, tips(found.unknowns) - errors.nominal_um);
-  Eigen::MatrixXd slopes(3 * std::ssize(poses), kOfMachine);
-  for (Eigen::Index k = 0; k < kOfMachine; ++k) {
-    const Eigen::VectorXd one = Eigen::VectorXd::Unit(found.unknowns.size(), k);
-    const Eigen::Matrix3Xd slope = 0.5 * (tips(found.unknowns + one) - tips(found.unknowns - one));
-    slopes.col(k) = WithoutRigidMotion(errors.nominal_um, slope).reshaped();
-  }
+  return errors;
+}
+
+VolumetricErrors PredictErrors(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                               const Identification& found, Estimator estimator) {
+  VolumetricErrors errors = PredictErrorsAlone(bench, poses, found, estimator);
+  const Eigen::MatrixXd slopes = ColumnsWithoutRigidMotion(errors.nominal_um, SlopesOfTips_um(bench, poses, found, estimator));
   const Eigen::MatrixXd covariance = found.covariance.topLeftCorner(kOfMachine, kOfMachine);
   const SymmetricEigen eigen = EigenOfSymmetric(covariance);
   errors.root_um = slopes * eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();

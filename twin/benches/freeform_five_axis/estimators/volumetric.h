@@ -12,6 +12,8 @@ namespace twinbench::benches::freeform::estimators {
 /// out: the errors of two models may differ by it without saying anything else.
 /// @param points, vectors  3 x count.
 Eigen::Matrix3Xd WithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& vectors);
+/// The same of many sets of vectors, each a column: 3 count x sets.
+Eigen::MatrixXd ColumnsWithoutRigidMotion(const Eigen::Matrix3Xd& points, const Eigen::MatrixXd& vectors);
 
 /// Poses that a run had not, anywhere where it had been; the same for every run of the same range.
 std::vector<PoseRead> UnseenPoses(const std::vector<PoseRead>& seen, const FreeformSettings& bench, int count);
@@ -44,6 +46,9 @@ struct VolumetricErrors {
 
 /// Uncertainty: noise of the readings, first order. Not included: what the readings leave open.
 VolumetricErrors PredictErrors(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
+                               const Identification& found, Estimator estimator);
+/// The same without their uncertainties, which take most of the time.
+VolumetricErrors PredictErrorsAlone(const FreeformSettings& bench, const std::vector<PoseRead>& poses,
                                const Identification& found, Estimator estimator);
 
 }  // namespace twinbench::benches::freeform::estimators

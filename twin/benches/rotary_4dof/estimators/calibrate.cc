@@ -22,6 +22,7 @@ struct SweepPoint {
   double tilt_rad;
   Vector4 shown_m;
   Vector4 variance_m2;
+  Vector4 of_autocollimator;  // share of it
 };
 
 bool IsUsable(const Reading& reading) {
@@ -60,7 +61,8 @@ Sweep CollectSweep(const std::vector<Reading>& readings, const BenchGeometry& ge
     const Vector4 variance_m2 = noise_m2.value_or(Vector4::Constant(kAssumedNoise_m * kAssumedNoise_m));
     const double gain = geometry.autocollimator_gain;
     sweep.points.push_back({r.autocollimator_yaw_rad / gain, r.autocollimator_tilt_rad / gain,
-                            OnSurface(r.mean_V, geometry), variance_m2 + autocollimator_m2});
+                            OnSurface(r.mean_V, geometry), variance_m2 + autocollimator_m2,
+                            autocollimator_m2.cwiseQuotient(variance_m2 + autocollimator_m2)});
   }
   return sweep;
 }
@@ -101,6 +103,7 @@ Normal PriorInformation(double scale) {
 struct SweepFit {
   Unknowns x = PriorValues();
   Normal cov = Normal::Zero();
+  Normal of_autocollimator = Normal::Zero();  // of the normal matrix, what its noise would make alone
   Vector4 squares_m2 = Vector4::Zero();
   double chi2 = 0.0;
 };
@@ -109,10 +112,12 @@ struct SweepFit {
 void Step(const Sweep& sweep, const BenchGeometry& geometry, SweepFit& fit) {
   Normal normal = PriorInformation(1.0);
   Unknowns right = normal * (PriorValues() - fit.x);
+  fit.of_autocollimator.setZero();
   for (const SweepPoint& point : sweep.points) {
     const Block jacobian = PredictJacobian(fit.x, point, geometry);
     const Vector4 weight = point.variance_m2.cwiseInverse();
     normal += jacobian.transpose() * weight.asDiagonal() * jacobian;
+    fit.of_autocollimator += jacobian.transpose() * weight.cwiseProduct(point.of_autocollimator).asDiagonal() * jacobian;
     right += jacobian.transpose() * weight.asDiagonal() * (point.shown_m - Predict(fit.x, point, geometry));
   }
   const Eigen::LDLT<Normal> ldlt(normal);
@@ -139,6 +144,11 @@ SweepFit FitSweep(const Sweep& sweep, const BenchGeometry& geometry) {
   return fit;
 }
 
+/// Diagonal of N^-1 (part of N) N^-1 over that of N^-1, for gains and rolls.
+CalibrationVector ShareOfCovariance(const Normal& part, const Normal& cov) {
+  return (cov * part * cov).diagonal().cwiseQuotient(cov.diagonal()).head<kCalibrationParameters>();
+}
+
 Calibration Summary(const Sweep& sweep, const SweepFit& fit) {
   Calibration c;
   c.measured = true;
@@ -150,6 +160,8 @@ Calibration Summary(const Sweep& sweep, const SweepFit& fit) {
   c.residual_rms_m = (fit.squares_m2 / static_cast<double>(c.readings)).cwiseSqrt();
   const double scale = sweep.noise_known || c.dof < 1 ? 1.0 : fit.chi2 / c.dof;
   c.cov = scale * fit.cov.topLeftCorner<kCalibrationParameters, kCalibrationParameters>();
+  c.of_prior = ShareOfCovariance(PriorInformation(1.0), fit.cov);
+  c.of_autocollimator = ShareOfCovariance(fit.of_autocollimator, fit.cov);
   if (sweep.noise_known) c.chi2 = fit.chi2;
   if (!sweep.noise_known)
     c.notes.push_back("calibration: noise of the readings not known, scaled by the residuals");

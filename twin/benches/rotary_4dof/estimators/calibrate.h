@@ -14,6 +14,8 @@ namespace twinbench::measure {
 inline constexpr double kPriorGain = 0.02;
 inline constexpr double kPriorRoll_rad = 0.02;
 
+using CalibrationVector = Eigen::Matrix<double, kCalibrationParameters, 1>;  // [gain, roll]
+
 /// What a calibration sweep says of the PSDs: reading_V = sensitivity * gain * coordinate in axes turned by roll.
 /// Roll is right-handed about the PSD's normal that points to the light.
 struct Calibration {
@@ -21,6 +23,8 @@ struct Calibration {
   Eigen::Vector4d gain = Eigen::Vector4d::Ones();      // channels in scan order
   Eigen::Vector2d roll_rad = Eigen::Vector2d::Zero();  // PSD A, B
   Matrix6 cov = PriorCovariance();                     // of [gain, roll]
+  /// Shares of its diagonal: what was believed before, and the stated noise of the autocollimator. The rest is that of the detectors.
+  CalibrationVector of_prior = CalibrationVector::Ones(), of_autocollimator = CalibrationVector::Zero();
   Vector4 mount = Vector4::Constant(kNaN);             // constants of the calibration phase [ez, ex, ey, dy]
   int readings = 0;                                    // used
   int dof = 0;

@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "twin/core/stream.h"
+#include "twin/core/units.h"
+#include "twin/separate/curve_covariance.h"
+
+namespace twinbench::separate {
+namespace {
+
+Eigen::MatrixXd Random(Eigen::Index rows, Eigen::Index cols, Stream& stream) {
+  return Eigen::MatrixXd::NullaryExpr(rows, cols, [&] { return stream.Normal(); });
+}
+
+/// Two curves at n positions: circulant, with something added, taken off and on the diagonal.
+CurveCovariance OfTwoCurves(Eigen::Index n, Stream& stream) {
+  Eigen::MatrixXd lags = Random(n, 4, stream);
+  for (Eigen::Index i = 1; i < n; ++i) {  // a curve with itself: the same either way round
+    for (const Eigen::Index c : {0, 3}) lags(i, c) = lags(n - i, c);
+  }
+  CurveCovariance covariance = CurveCovariance::Circulant(lags, 2);
+  covariance.AddProduct(Random(2 * n, 2, stream));
+  covariance.SubtractProduct(Random(2 * n, 1, stream));
+  covariance.AddVariance(n + 2, 0.7);
+  return covariance;
+}
+
+TEST(CurveCovarianceOrderSums, AreTheDoubleSumsOverThePositions) {
+  Stream stream(8, "test.order_sums");
+  for (const Eigen::Index n : {7, 12}) {
+    const CurveCovariance covariance = OfTwoCurves(n, stream);
+    const Eigen::MatrixXd dense = covariance.ToDense();
+    for (const Eigen::Index curve : {0, 1}) {
+      const Eigen::VectorXd sums = covariance.OrderSums(curve, n), of_dense = CurveCovariance::Dense(dense).OrderSums(curve, n);
+      ASSERT_EQ(sums.size(), n / 2 + 1);
+      for (Eigen::Index k = 0; k < sums.size(); ++k) {
+        double expected = 0.0;
+        for (Eigen::Index i = 0; i < n; ++i) {
+          for (Eigen::Index j = 0; j < n; ++j)
+            expected += dense(curve * n + i, curve * n + j) * std::cos(units::turn * static_cast<double>(k * (i - j)) / static_cast<double>(n));
+        }
+        EXPECT_NEAR(sums[k], expected, 1e-11) << n << " order " << k;
+        EXPECT_NEAR(of_dense[k], expected, 1e-11) << n << " order " << k;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::separate
