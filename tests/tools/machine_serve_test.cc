@@ -97,6 +97,10 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
   static std::vector<std::string> Measure(const std::string& name) {
     return {"measure", "small.toml", "--bench", "bench.toml", "-o", name, "--resume"};
   }
+  void Replay(const std::string& record, const std::string& name) {
+    Write("replay.toml", "kind = \"replay\"\nrecord = \"" + record + "\"\n");
+    Succeed({"measure", "small.toml", "--bench", "replay.toml", "-o", name});
+  }
   /// Waits until a run has kept something.
   static void AwaitProgress(Process& run) {
     while (run.Runs() && run.ProgressLines() < 1) std::this_thread::sleep_for(milliseconds(2));
@@ -126,6 +130,9 @@ TEST_P(EveryBench, AKilledMeasurementGoesOnToTheSameReadings) {
   EXPECT_GT(kept, 0u);
   Succeed(Measure("killed"));
   EXPECT_EQ(ReadingsOf("killed"), readings_);
+  Replay("killed", "played");
+  EXPECT_EQ(ReadingsOf("played"), readings_);
+  EXPECT_EQ(Read("played/results.json"), Read("run/results.json"));
 }
 
 TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
@@ -174,6 +181,18 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
   Write("bench.toml", "kind = \"twin\"\n");
   Succeed(Measure("own"));
   EXPECT_EQ(ReadingsOf("own"), readings_);
+}
+
+TEST_F(Program, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
+  Write("small.toml", kStops);
+  Write("bench.toml", "kind = \"twin\"\n");
+  Write("replay.toml", "kind = \"replay\"\nrecord = \"own\"\n");
+  Succeed({"measure", "small.toml", "--bench", "bench.toml", "-o", "own"});
+  const Outcome other = Call({"measure", "small.toml", "--bench", "replay.toml", "-o", "other", "--set",
+                              "encoder_procedure.stop_interval_s=7.0"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("\"clock: wait 5000000000\" is not in the recording at this place"));
+  EXPECT_THAT(other.err, testing::Not(HasSubstr("stand"))) << "of a recording's axes nothing can be asked";
 }
 
 constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n",

@@ -280,13 +280,14 @@ void RequireOneRotaryAxis(const std::vector<MachineAxis>& axes, const std::strin
 
 void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay& way, ReadingSink& sink,
                   const ProgressCallback& progress, const MachineOptions& options) {
-  MachineJournal journal(bench, options.log);
+  MachineJournal journal(bench, InstrumentColumns(FormatOf(plan.bench).columns), options.log);
   MachineRunState state = StateBehind(bench, options);
   Attempts attempts(options.attempts);
   for (bool anew = !state.kept.empty();; anew = true) {
     MachineSequencer sequencer(journal.Bench(), plan, sink, options, progress, state);
     try {
       if (anew) StartAgain(bench, state);
+      journal.BeginAttempt();
       if (bench.simulation) state.mounted.reset();
       way(sequencer);
       return sequencer.Flush();
