@@ -133,8 +133,8 @@ class FileCheck {
 BenchFile ParseBenchFile(const std::string& text, const std::string& name, const std::string& folder) {
   BenchFile file;
   file.path = name;
-  const KeyPlaces places = ReadToml(text, name, KeysOf(file));
-  FileCheck(file, places).Check();
+  file.places = ReadToml(text, name, KeysOf(file));
+  FileCheck(file, file.places).Check();
   MakeAbsolute(folder, file.record);
   MakeAbsolute(folder, file.adc.calibration_file);
   return file;

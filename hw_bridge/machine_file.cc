@@ -177,8 +177,8 @@ MachineFile ParseMachineFile(const std::string& text, const std::string& name,
                              const std::vector<MachineAxis>& axes) {
   MachineFile file;
   file.path = name;
-  const KeyPlaces places = ReadToml(text, name, KeysOf(file, axes));
-  MachineFileCheck(file, places).Check(axes);
+  file.places = ReadToml(text, name, KeysOf(file, axes));
+  MachineFileCheck(file, file.places).Check(axes);
   for (AxisLimits& limits : file.axes) {
     limits.stall_s = file.stall_s;
     limits.move_timeout_s = file.move_timeout_s;

@@ -20,6 +20,7 @@ struct InstrumentSettings {
 
 struct MachineFile {
   std::string path;               // for messages
+  KeyPlaces places;               // of the keys that it has
   std::string kind = "hardware";  // hardware | twin | replay
   std::string name;               // for the record
   std::string record;             // replay: folder of the run; as in the file, or absolute once loaded

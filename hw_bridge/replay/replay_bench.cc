@@ -6,6 +6,12 @@
 
 namespace twinbench::hw {
 
+bool LooksAtEncoders(const std::string& record_folder) {
+  const std::vector<DeviceCall> calls = RunRecord::Open(record_folder)->Calls();
+  const auto block = std::ranges::find(calls, "adc", &DeviceCall::device);
+  return block != calls.begin() && block != calls.end() && std::prev(block)->request == "state";
+}
+
 ReplayBench::ReplayBench(const std::string& record_folder)
     : folder_(record_folder), calls_(record_folder, RunRecord::Open(record_folder)->Calls()) {
   const auto record = RunRecord::Open(record_folder);

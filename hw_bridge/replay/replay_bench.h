@@ -9,6 +9,9 @@
 
 namespace twinbench::hw {
 
+/// Whether the run's tables were looked at about every block: older versions did not, and a replay of theirs must not.
+bool LooksAtEncoders(const std::string& record_folder);
+
 /// A recorded run as a bench: it answers what it was asked then, in the order in which it was asked.
 class ReplayBench : private Simulation {
  public:

@@ -1,10 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hw_bridge/replay/replay_bench.h"
 #include "hw_bridge/replay/replay_machine.h"
 #include "tests/core/input_error.h"
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
 
 /// Recordings of benches that cannot begin again: machine_serve_test.cc plays those of simulated ones.
 namespace twinbench::test {
@@ -81,6 +84,39 @@ TEST_P(ReplayOfARealBench, GoesOnWhereTheRunDidAfterItWasStopped) {
 
 INSTANTIATE_TEST_SUITE_P(Benches, ReplayOfARealBench,
                          ::testing::Values(ShortCircles, ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortHob));
+
+/// The rotary bench's run by a version that did not look at encoders about a block.
+TEST(ReplayBench, PlaysARecordThatKnowsNoLooksAtEncoders) {
+  const Scenario scenario = ParseScenario(
+      "bench = \"rotary_4dof\"\nseed = 5\n[mechanics]\nfidelity = \"kinematic\"\n[procedure]\npositions = 3\nshifts = [0]\n",
+      "short.toml", "");
+  const TemporaryFolder folder;
+  std::vector<Reading> readings[2];
+  for (const bool looks : {false, true}) {
+    const std::string name = folder.File(looks ? "new" : "old");
+    const auto record = RunRecord::Create(name, {"test", "twin", scenario.seed, "", scenario.bench});
+    record->SpareTheDisk();
+    procedure::Options options;
+    options.log = record.get();
+    options.looks_at_encoders = looks;
+    sim::Twin twin(scenario);
+    RotaryBench bench = twin.Bench();
+    procedure::CarryOut(bench, scenario, *record, {}, options);
+    record->Finish();
+    EXPECT_EQ(hw::LooksAtEncoders(name), looks);
+    hw::ReplayBench replay(name);
+    RotaryBench played = replay.Bench();
+    MemoryLog log;
+    options.log = &log;
+    procedure::CarryOut(played, scenario, log, {}, options);
+    EXPECT_EQ(TextOf(log.readings), TextOf(record->Readings()));
+    readings[looks] = log.readings;
+  }
+  EXPECT_TRUE(readings[0].front().extra.empty());
+  for (std::vector<Reading>* both : {&readings[0], &readings[1]})
+    for (Reading& reading : *both) reading.extra.clear();
+  EXPECT_EQ(TextOf(readings[0]), TextOf(readings[1])) << "a look changes no bit of what is measured";
+}
 
 TEST(ReplayMachine, ARecordThatEndsTooEarlySaysSo) {
   const Scenario scenario = ShortStops();

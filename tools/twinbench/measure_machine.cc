@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "hw_bridge/bench_lock.h"
+#include "hw_bridge/in_position.h"
 #include "hw_bridge/open_machine.h"
 #include "hw_bridge/replay/replay_machine.h"
 #include "tools/twinbench/evaluated_run.h"
@@ -10,6 +11,7 @@
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/stop_signal.h"
 #include "tools/twinbench/told_stopped.h"
+#include "twin/benches/claims.h"
 #include "twin/benches/registry.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/machine_watch.h"
@@ -137,7 +139,10 @@ void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const
 
 void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage& page) {
   const MachineParts parts = PartsOf(scenario);
-  const hw::MachineFile file = hw::LoadMachineFile(o.bench, parts.axes);
+  hw::MachineFile file = hw::LoadMachineFile(o.bench, parts.axes);
+  if (file.kind == "hardware") {
+    for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, parts.axes, claim.axis, claim.u);
+  }
   if (o.rehearse_only)
     return RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits());
   const RunFolder folder = FolderOf(o);

@@ -173,7 +173,26 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
 void MachineSequencer::TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter) {
   if (options_.log) options_.log->RequireRoom();
   WaitUntilDue(reading, dwell);
-  Keep(reading, bench_.instruments.Read(), enter);
+  std::vector<Stood> stood;
+  const Reading sample = ReadAtRest(stood);
+  for (const Stood& axis : stood) RequireStood(axis);
+  Keep(reading, sample, [&](Reading& r) {
+    for (const Stood& axis : stood) EnterInto(r, axis);
+    if (enter) enter(r);
+  });
+}
+
+/// @param stood  Becomes where they stood, one entry an axis.
+Reading MachineSequencer::ReadAtRest(std::vector<Stood>& stood) {
+  const std::vector<AxisState> before = bench_.machine.State();
+  Reading sample = bench_.instruments.Read();
+  const std::vector<AxisState> after = bench_.machine.State();
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const double tolerance = k < options_.axes.size() ? options_.axes[k].in_position : AxisLimits{}.in_position;
+    stood.push_back({axes()[k].name, axes()[k].is_rotary, before[k].commanded, before[k].encoder, after[k].encoder,
+                     tolerance});
+  }
+  return sample;
 }
 
 Reading MachineSequencer::Look() {

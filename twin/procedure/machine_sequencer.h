@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "twin/procedure/machine_options.h"
+#include "twin/procedure/stood.h"
 
 namespace twinbench::procedure {
 
@@ -83,6 +84,7 @@ class MachineSequencer {
   /// @param meanwhile  Once the move has begun.
   void Move(const std::vector<double>& to, const std::function<void()>& meanwhile);
   void WaitUntilDue(int reading, Duration dwell);
+  Reading ReadAtRest(std::vector<Stood>& stood);
   void Keep(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
   Reading Joined(const Reading& planned, const Reading& sample) const;
   void RequireSame(const Reading& reading) const;
