@@ -15,14 +15,11 @@
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/control/served_clock.h"
+#include "hw_bridge/clock_notices.h"
 #include "hw_bridge/conversations.h"
 
 namespace twinbench::hw {
 namespace {
-
-void TellOperator(const std::string& notice) {
-  fmt::print(stderr, "twinbench: {}\n", notice);
-}
 
 class OpenedBench : public OpenBench {
  public:
@@ -53,6 +50,8 @@ class OpenedBench : public OpenBench {
 
   std::optional<AgreedLimits> Limits() const override { return AgreedLimits{target_->limits(), reference_->limits()}; }
 
+  void HearClock(std::function<void(const std::string&)> listener) override { clock_notices_.listener = std::move(listener); }
+
   std::vector<std::string> Notices() const override {
     std::vector<std::string> notices;
     const ClockWatch::Drift drift = adc_->ClockDrift();
@@ -73,7 +72,7 @@ class OpenedBench : public OpenBench {
  private:
   void OpenClock(Duration elapsed, int run) {
     if (file_.clock.kind != "scpi") {
-      clock_ = std::make_unique<HostClock>(elapsed, TellOperator);
+      clock_ = std::make_unique<HostClock>(elapsed, [this](const std::string& notice) { clock_notices_.Tell(notice); });
       return;
     }
     auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", file_.clock));
@@ -118,6 +117,7 @@ class OpenedBench : public OpenBench {
   Operator hands_;
   Conversations own_conversation_;  // the clock's
   Conversations conversations_;
+  ClockNotices clock_notices_;
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<ControlledTable> target_, reference_;

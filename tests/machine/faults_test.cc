@@ -125,15 +125,24 @@ class Pushed : InstrumentSet, MachineController {
   MachineBench Bench() {
     return {inner_.clock, *this, *this, inner_.fixture, inner_.simulation, inner_.indexer};
   }
-  int times = 1;  // to go
+  int times = 1;               // to go
+  Duration stamped_late_by{};  // by a clock of the instruments' own
 
  private:
   Reading Read() override {
     is_pushed_ = times-- > 0;
-    return inner_.instruments.Read();
+    return Stamped(inner_.instruments.Read());
   }
   void Arm(int samples, int lines) override { inner_.instruments.Arm(samples, lines); }
-  LatchedSamples Latched() override { return inner_.instruments.Latched(); }
+  LatchedSamples Latched() override {
+    LatchedSamples latched = inner_.instruments.Latched();
+    for (Reading& sample : latched.samples) sample = Stamped(sample);
+    return latched;
+  }
+  Reading Stamped(Reading sample) const {
+    sample.time += stamped_late_by;
+    return sample;
+  }
   const std::vector<MachineAxis>& Axes() const override { return inner_.machine.Axes(); }
   std::vector<AxisLimits> Travel() override { return inner_.machine.Travel(); }
   void StartMove(const std::vector<double>& to, double feed_m_s) override {
@@ -179,6 +188,32 @@ TEST(MachineFaults, AnAxisThatLeavesItsStopWhileItIsReadCostsAnAttempt) {
       const auto& extra = log.readings[0].extra;
       EXPECT_NEAR(std::stod(extra.at("y_encoder_after_mm")) - std::stod(extra.at("y_encoder_before_mm")), 0.9e-3, 1e-9);
       EXPECT_EQ(extra.size(), 10u) << "five axes, before and after; " << extra.begin()->first;
+    }
+  }
+}
+
+/// At rest (the first readings of the freeform bench) and in motion (those of the circles).
+TEST(MachineFaults, AnInstrumentsOwnClockGoesIntoNoReading) {
+  for (Scenario (*make)() : {ShortFreeform, ShortCircles}) {
+    const Scenario scenario = make();
+    const auto twin = BenchOf(scenario).make_devices(scenario);
+    for (const Duration late_by : {Duration(std::chrono::milliseconds(90)), Duration(std::chrono::hours(1)), -Duration(std::chrono::hours(1))}) {
+      Pushed late(twin->Devices(), 0, 0.0);
+      late.stamped_late_by = late_by;
+      MachineBench bench = late.Bench();
+      bench.simulation->Restart();
+      MemoryLog log;
+      procedure::MachineOptions options;
+      options.log = &log;
+      const auto drive = [&] { BenchOf(scenario).drive(bench, scenario, log, {}, options); };
+      if (std::chrono::abs(late_by) < std::chrono::seconds(1)) {
+        EXPECT_NO_THROW(drive()) << "what a connection takes";
+        continue;
+      }
+      EXPECT_THROW(drive(), DeviceFault);
+      EXPECT_TRUE(log.readings.empty());
+      ASSERT_EQ(log.attempts.size(), 3u);
+      EXPECT_EQ(log.attempts[0].fault, "clock");
     }
   }
 }

@@ -95,6 +95,7 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
   }
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench->Identity());
   page.Watch(*record, scenario, folder.path);
+  bench->HearClock([&](const std::string& notice) { record->AppendEvent(bench->Bench().clock.Now(), "clock", notice); });
   const auto note = [&](const std::vector<std::string>& lines) {
     for (const std::string& line : lines) record->AppendEvent(bench->Bench().clock.Now(), "adc", line);
   };

@@ -130,6 +130,7 @@ void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const
   if (resumed) TakeUp(begun, bench.Identity());
   const procedure::MachineOptions options = Carefully(file, bench, begun);
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench.Identity());
+  bench.HearClock([&](const std::string& notice) { record->AppendEvent(bench.Devices().clock.Now(), "clock", notice); });
   record->AppendEvent(bench.Devices().clock.Now(), "bench", bench.Identity());
   page.Watch(*record, scenario, folder.path);
   DriveInto(*record, scenario, bench, options, file.kind, page);
