@@ -1,9 +1,13 @@
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include "tests/tools/program.h"
 #include "twin/core/run_record.h"
+#include "twin/core/stream.h"
 
 /// `serve` and `measure` of every bench, as two programs that only share a network; what only the benches with a machine do.
 /// serve_test.cc has what only the rotary one does.
@@ -133,6 +137,46 @@ TEST_P(EveryBench, AKilledMeasurementGoesOnToTheSameReadings) {
   Replay("killed", "played");
   EXPECT_EQ(ReadingsOf("played"), readings_);
   EXPECT_EQ(Read("played/results.json"), Read("run/results.json"));
+}
+
+/// By hand, for it takes minutes: TWINBENCH_KILLS=100 test_machine_tools --gtest_also_run_disabled_tests --gtest_filter='*AsOften*'.
+/// A run is killed at any moment and taken up, again and again, until it is whole; then the next one begins.
+TEST_P(EveryBench, DISABLED_KilledAsOftenAsAskedItEndsWithTheSameReadings) {
+  const char* asked = std::getenv("TWINBENCH_KILLS");
+  const int kills = asked ? std::stoi(asked) : 20;
+  const auto server = Serve("max");
+  const auto begun = std::chrono::steady_clock::now();
+  Succeed(Measure("whole"));
+  const double takes_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  Stream moment(11, "kill");
+  int killed = 0, whole = 0, without_record = 0, killed_within = 0;
+  std::size_t kept = 0;
+  while (killed < kills || kept > 0) {
+    const std::string name = "run" + std::to_string(whole);
+    Process run(At(""), Measure(name));
+    if (killed < kills) std::this_thread::sleep_for(std::chrono::duration<double>(takes_s * moment.Uniform()));
+    if (killed < kills && run.Runs()) {
+      run.Kill();
+      ++killed;
+      if (!Exists(name + "/record.sqlite")) {
+        ++without_record;
+        continue;
+      }
+      const std::size_t now = RunRecord::Open(At(name))->Readings().size();
+      ASSERT_GE(now, kept) << "what was kept is never lost";
+      killed_within += now > 0 ? 1 : 0;
+      kept = std::max<std::size_t>(now, 1);
+      continue;
+    }
+    const Outcome outcome = run.Wait();
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    ASSERT_EQ(ReadingsOf(name), readings_) << "behind " << killed << " kills";
+    ASSERT_EQ(Read(name + "/results.json"), Read("run/results.json"));
+    ++whole;
+    kept = 0;
+  }
+  std::printf("%s: %d kills (%d before there was a record, %d behind a kept reading), %d runs ended whole, all of them bit-equal\n",
+              GetParam().name, killed, without_record, killed_within, whole);
 }
 
 TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
