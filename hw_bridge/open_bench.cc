@@ -17,6 +17,7 @@
 #include "hw_bridge/control/served_clock.h"
 #include "hw_bridge/clock_notices.h"
 #include "hw_bridge/conversations.h"
+#include "hw_bridge/watched_adc.h"
 
 namespace twinbench::hw {
 namespace {
@@ -33,10 +34,14 @@ class OpenedBench : public OpenBench {
     reference_->HearStop(stop_asked);
     OpenInstruments();
     adc_ = MakeAdConverter(file.adc, adc, *clock_, noise_V);
+    if (file.clock.kind != "host") return;  // a served twin's time stands while its tables are asked
+    watched_.emplace(*adc_, StandingTable{"target", *target_, file.target_limits.in_position_rad},
+                     StandingTable{"reference", *reference_, file.reference_limits.in_position_rad});
   }
 
   RotaryBench Bench() override {
-    return {*clock_,      *target_,  *reference_,      *adc_, *autocollimator_, *thermometer_,
+    AdConverter& adc = watched_ ? static_cast<AdConverter&>(*watched_) : *adc_;
+    return {*clock_,      *target_,  *reference_,      adc, *autocollimator_, *thermometer_,
             *goniometer_, *fixture_, simulation_.get()};
   }
 
@@ -66,6 +71,10 @@ class OpenedBench : public OpenBench {
       notices.push_back(fmt::format("{}: mains hum of at most {:.3g} mV at {} Hz", kChannelNames[k],
                                     1e3 * mains_V[k], file_.adc.mains_Hz));
     }
+    if (!watched_) return notices;
+    for (const StandingTable& table : watched_->tables())
+      notices.push_back(fmt::format("{}: at most {:+.3g} arcsec off its stop while blocks were taken", table.name,
+                                    table.furthest_rad / units::arcsec));
     return notices;
   }
 
@@ -122,6 +131,7 @@ class OpenedBench : public OpenBench {
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<ControlledTable> target_, reference_;
   std::unique_ptr<AdFrontEnd> adc_;
+  std::optional<WatchedAdc> watched_;  // none: on a served twin
   std::unique_ptr<Autocollimator> autocollimator_;
   std::unique_ptr<Thermometer> thermometer_;
   std::unique_ptr<Goniometer> goniometer_;
