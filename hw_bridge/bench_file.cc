@@ -28,10 +28,7 @@ class FileCheck {
 
   void Check() const {
     if (file_.kind != "hardware") RefuseDevices(places_, file_.kind, {"kind", "name", "record", "attempts"});
-    if (file_.kind == "replay" && file_.record.empty())
-      throw InputError(Where("kind"), "kind is \"replay\" without a record", "record = \"folder of the run\"");
-    if (file_.kind != "replay" && !file_.record.empty())
-      throw InputError(Where("record"), "there is a record in a bench of another kind", "kind = \"replay\"");
+    CheckRecord(places_, file_.path, file_.kind, file_.record);
     if (file_.kind == "hardware") CheckDevices();
   }
 
@@ -131,18 +128,13 @@ class FileCheck {
   const KeyPlaces& places_;
 };
 
-void MakeAbsolute(const std::string& folder, std::string& path) {
-  if (!path.empty())
-    path = std::filesystem::absolute(std::filesystem::path(folder) / path).lexically_normal().string();
-}
-
 }  // namespace
 
 BenchFile ParseBenchFile(const std::string& text, const std::string& name, const std::string& folder) {
   BenchFile file;
   file.path = name;
-  const KeyPlaces places = ReadToml(text, name, KeysOf(file));
-  FileCheck(file, places).Check();
+  file.places = ReadToml(text, name, KeysOf(file));
+  FileCheck(file, file.places).Check();
   MakeAbsolute(folder, file.record);
   MakeAbsolute(folder, file.adc.calibration_file);
   return file;

@@ -6,6 +6,7 @@
 
 #include "twin/core/scenario_schema.h"
 #include "twin/core/table_limits.h"
+#include "twin/core/toml_reader.h"
 
 /// bench.toml: which devices stand on the table and how they are reached. docs/hardware.md lists every key.
 namespace twinbench::hw {
@@ -42,6 +43,7 @@ inline constexpr TableLimits kHardwareLimits = {.in_position_rad = 1.0 * units::
 
 struct BenchFile {
   std::string path;                          // for messages
+  KeyPlaces places;                          // of the keys that it has
   std::string kind = "hardware";             // hardware | twin | replay
   std::string name;                          // for the record
   std::string record;                        // replay: folder of the run; absolute once loaded

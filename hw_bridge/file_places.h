@@ -16,4 +16,11 @@ std::string WhereIn(const KeyPlaces& places, const std::string& file, const std:
 /// @throws InputError at the first other one.
 void RefuseDevices(const KeyPlaces& places, const std::string& kind, const std::set<std::string>& kept);
 
+/// Of the top of every bench file.
+/// @throws InputError for a replay of no record, or a record in a bench of another kind.
+void CheckRecord(const KeyPlaces& places, const std::string& file, const std::string& kind, const std::string& record);
+
+/// Makes a path that a file names from its own folder absolute; an empty one stays.
+void MakeAbsolute(const std::string& folder, std::string& path);
+
 }  // namespace twinbench::hw

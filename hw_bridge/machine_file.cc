@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -78,7 +79,8 @@ class MachineFileCheck {
   MachineFileCheck(const MachineFile& file, const KeyPlaces& places) : file_(file), places_(places) {}
 
   void Check(const std::vector<MachineAxis>& axes) const {
-    if (file_.kind != "hardware") return RefuseDevices(places_, file_.kind, {"kind", "name", "attempts"});
+    CheckRecord(places_, file_.path, file_.kind, file_.record);
+    if (file_.kind != "hardware") return RefuseDevices(places_, file_.kind, {"kind", "name", "record", "attempts"});
     CheckConnection("machine", file_.machine);
     if (file_.machine.kind.empty())
       throw InputError(Where("machine"), "there is no [machine] with a kind", "kind = \"esp\"");
@@ -144,8 +146,9 @@ class MachineFileCheck {
 std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis>& axes) {
   std::vector<ScenarioKey> keys;
   MachineKeys top(keys, "");
-  top.Text("kind", &file.kind, {"hardware", "twin"}, "what stands there");
+  top.Text("kind", &file.kind, {"hardware", "twin", "replay"}, "what stands there");
   top.Text("name", &file.name, {}, "of the bench, for the record");
+  top.Text("record", &file.record, {}, "replay: folder of the recorded run, from the bench file's folder");
   top.Add("attempts", kOne, {1, 100}, &file.attempts, "at one reading, before the run stops");
   MachineKeys machine(keys, "machine");
   machine.Connection(file.machine, {"esp"});
@@ -174,8 +177,8 @@ MachineFile ParseMachineFile(const std::string& text, const std::string& name,
                              const std::vector<MachineAxis>& axes) {
   MachineFile file;
   file.path = name;
-  const KeyPlaces places = ReadToml(text, name, KeysOf(file, axes));
-  MachineFileCheck(file, places).Check(axes);
+  file.places = ReadToml(text, name, KeysOf(file, axes));
+  MachineFileCheck(file, file.places).Check(axes);
   for (AxisLimits& limits : file.axes) {
     limits.stall_s = file.stall_s;
     limits.move_timeout_s = file.move_timeout_s;
@@ -188,7 +191,9 @@ MachineFile LoadMachineFile(const std::string& path, const std::vector<MachineAx
   std::ostringstream text;
   if (!in || !(text << in.rdbuf()))
     throw InputError(path, "the file cannot be read or is empty", "a bench file in TOML");
-  return ParseMachineFile(text.str(), path, axes);
+  MachineFile file = ParseMachineFile(text.str(), path, axes);
+  MakeAbsolute(std::filesystem::path(path).parent_path().string(), file.record);
+  return file;
 }
 
 std::string WriteServedMachineFile(const ServedAddresses& a, const std::string& machine,

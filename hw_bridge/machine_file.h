@@ -20,8 +20,10 @@ struct InstrumentSettings {
 
 struct MachineFile {
   std::string path;               // for messages
-  std::string kind = "hardware";  // hardware | twin
+  KeyPlaces places;               // of the keys that it has
+  std::string kind = "hardware";  // hardware | twin | replay
   std::string name;               // for the record
+  std::string record;             // replay: folder of the run; as in the file, or absolute once loaded
   int attempts = 3;               // at one reading, before the run stops
   ControlSettings machine;        // kind esp
   double traverse_m_s = kTraverse_m_s;

@@ -15,14 +15,12 @@
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/control/served_clock.h"
+#include "hw_bridge/clock_notices.h"
 #include "hw_bridge/conversations.h"
+#include "hw_bridge/watched_adc.h"
 
 namespace twinbench::hw {
 namespace {
-
-void TellOperator(const std::string& notice) {
-  fmt::print(stderr, "twinbench: {}\n", notice);
-}
 
 class OpenedBench : public OpenBench {
  public:
@@ -36,10 +34,14 @@ class OpenedBench : public OpenBench {
     reference_->HearStop(stop_asked);
     OpenInstruments();
     adc_ = MakeAdConverter(file.adc, adc, *clock_, noise_V);
+    if (file.clock.kind != "host") return;  // a served twin's time stands while its tables are asked
+    watched_.emplace(*adc_, StandingTable{"target", *target_, file.target_limits.in_position_rad},
+                     StandingTable{"reference", *reference_, file.reference_limits.in_position_rad});
   }
 
   RotaryBench Bench() override {
-    return {*clock_,      *target_,  *reference_,      *adc_, *autocollimator_, *thermometer_,
+    AdConverter& adc = watched_ ? static_cast<AdConverter&>(*watched_) : *adc_;
+    return {*clock_,      *target_,  *reference_,      adc, *autocollimator_, *thermometer_,
             *goniometer_, *fixture_, simulation_.get()};
   }
 
@@ -52,6 +54,8 @@ class OpenedBench : public OpenBench {
   std::vector<std::string> Configuration() const override { return DescribeChannels(adc_->Actual()); }
 
   std::optional<AgreedLimits> Limits() const override { return AgreedLimits{target_->limits(), reference_->limits()}; }
+
+  void HearClock(std::function<void(const std::string&)> listener) override { clock_notices_.listener = std::move(listener); }
 
   std::vector<std::string> Notices() const override {
     std::vector<std::string> notices;
@@ -67,13 +71,17 @@ class OpenedBench : public OpenBench {
       notices.push_back(fmt::format("{}: mains hum of at most {:.3g} mV at {} Hz", kChannelNames[k],
                                     1e3 * mains_V[k], file_.adc.mains_Hz));
     }
+    if (!watched_) return notices;
+    for (const StandingTable& table : watched_->tables())
+      notices.push_back(fmt::format("{}: at most {:+.3g} arcsec off its stop while blocks were taken", table.name,
+                                    table.furthest_rad / units::arcsec));
     return notices;
   }
 
  private:
   void OpenClock(Duration elapsed, int run) {
     if (file_.clock.kind != "scpi") {
-      clock_ = std::make_unique<HostClock>(elapsed, TellOperator);
+      clock_ = std::make_unique<HostClock>(elapsed, [this](const std::string& notice) { clock_notices_.Tell(notice); });
       return;
     }
     auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", file_.clock));
@@ -118,10 +126,12 @@ class OpenedBench : public OpenBench {
   Operator hands_;
   Conversations own_conversation_;  // the clock's
   Conversations conversations_;
+  ClockNotices clock_notices_;
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<ControlledTable> target_, reference_;
   std::unique_ptr<AdFrontEnd> adc_;
+  std::optional<WatchedAdc> watched_;  // none: on a served twin
   std::unique_ptr<Autocollimator> autocollimator_;
   std::unique_ptr<Thermometer> thermometer_;
   std::unique_ptr<Goniometer> goniometer_;

@@ -28,6 +28,8 @@ class OpenBench {
   /// What both tables may be asked to do: the bench file's limits, narrowed to what their controllers allow; none where
   /// no controller was asked.
   virtual std::optional<AgreedLimits> Limits() const { return std::nullopt; }
+  /// From here on `listener` is told at once what the computer's clocks do: "the wall clock has gone ...".
+  virtual void HearClock(std::function<void(const std::string&)> /*listener*/) {}
   /// What was noticed during the run without being a fault: drift of the card's clock, mains hum.
   virtual std::vector<std::string> Notices() const { return {}; }
 };

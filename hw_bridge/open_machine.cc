@@ -10,6 +10,7 @@
 #include "hw_bridge/control/operator_devices.h"
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/served_clock.h"
+#include "hw_bridge/clock_notices.h"
 #include "hw_bridge/conversations.h"
 #include "twin/core/errors.h"
 
@@ -35,6 +36,8 @@ class OpenedMachine : public OpenMachine {
   }
   std::vector<AxisLimits> Limits() const override { return machine_.limits(); }
 
+  void HearClock(std::function<void(const std::string&)> listener) override { clock_notices_.listener = std::move(listener); }
+
   std::string Identity() const override {
     std::string text;
     for (const std::string& identity : conversations_.Identities()) text += (text.empty() ? "" : "; ") + identity;
@@ -45,8 +48,7 @@ class OpenedMachine : public OpenMachine {
   /// First of all: a served twin's time stands still from here on.
   std::unique_ptr<Clock> OpenClock(const ControlSettings& settings, Duration elapsed, int run) {
     if (settings.kind != "scpi") {
-      const auto tell = [](const std::string& notice) { fmt::print(stderr, "twinbench: {}\n", notice); };
-      return std::make_unique<HostClock>(elapsed, tell);
+      return std::make_unique<HostClock>(elapsed, [this](const std::string& notice) { clock_notices_.Tell(notice); });
     }
     auto clock = std::make_unique<ScpiClock>(own_conversation_.LineOf("clock", settings));
     clock->Open();
@@ -87,6 +89,7 @@ class OpenedMachine : public OpenMachine {
   Conversations own_conversation_;  // the clock's
   Conversations conversations_;
   std::unique_ptr<Simulation> simulation_;
+  ClockNotices clock_notices_;
   std::unique_ptr<Clock> clock_;
   EspMachine machine_;
   InstrumentBoxes instruments_;

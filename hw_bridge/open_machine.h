@@ -12,6 +12,8 @@ class OpenMachine : public MachineDevices {
  public:
   /// Who answered; the record keeps it.
   virtual std::string Identity() const = 0;
+  /// As OpenBench::HearClock.
+  virtual void HearClock(std::function<void(const std::string&)> /*listener*/) {}
   /// Soft limits that the bench file and the controller agree on, one entry an axis.
   virtual std::vector<AxisLimits> Limits() const = 0;
 };

@@ -1,21 +1,22 @@
 #include "hw_bridge/replay/replay_bench.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "twin/core/errors.h"
 
 namespace twinbench::hw {
 
-ReplayBench::ReplayBench(const std::string& record_folder) : folder_(record_folder) {
+bool LooksAtEncoders(const std::string& record_folder) {
+  const std::vector<DeviceCall> calls = RunRecord::Open(record_folder)->Calls();
+  const auto block = std::ranges::find(calls, "adc", &DeviceCall::device);
+  return block != calls.begin() && block != calls.end() && std::prev(block)->request == "state";
+}
+
+ReplayBench::ReplayBench(const std::string& record_folder)
+    : folder_(record_folder), calls_(record_folder, RunRecord::Open(record_folder)->Calls()) {
   const auto record = RunRecord::Open(record_folder);
-  calls_ = record->Calls();
   readings_ = record->Readings();
   blocks_ = record->RawBlocks();
-  if (calls_.empty())
-    throw InputError(record_folder, "the record does not say what was asked of the devices",
-                     "a run that twinbench carried out, not an imported file");
   asked_ = std::make_unique<AskedBench>(
       [this](const std::string& device, const std::string& request) { return Answer(device, request); },
       [this] { return now_; }, static_cast<Simulation*>(this));
@@ -28,23 +29,13 @@ RotaryBench ReplayBench::Bench() {
 }
 
 void ReplayBench::Restart() {
-  next_ = next_reading_ = 0;
+  calls_.GoTo(0);
+  next_reading_ = 0;
   now_ = Time{};
 }
 
-const DeviceCall& ReplayBench::Next(const std::string& device, const std::string& request) {
-  const std::string asked = fmt::format("\"{}: {}\"", device, request);
-  if (next_ == calls_.size()) throw BenchError(fmt::format("{}: the recording ends before {}", folder_, asked));
-  const DeviceCall& call = calls_[next_];
-  if (call.device != device || call.request != request)
-    throw BenchError(fmt::format("{}: {} is not in the recording at this place, \"{}: {}\" is (call {})", folder_,
-                                 asked, call.device, call.request, next_));
-  ++next_;
-  return call;
-}
-
 CallAnswer ReplayBench::Answer(const std::string& device, const std::string& request) {
-  const DeviceCall& call = Next(device, request);
+  const DeviceCall& call = calls_.Next(device, request);
   now_ = call.time;
   return {call.answer, device == "adc" ? BlockOf(call) : Acquisition{}};
 }

@@ -4,10 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "twin/core/device_call.h"
+#include "hw_bridge/replay/recorded_calls.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::hw {
+
+/// Whether the run's tables were looked at about every block: older versions did not, and a replay of theirs must not.
+bool LooksAtEncoders(const std::string& record_folder);
 
 /// A recorded run as a bench: it answers what it was asked then, in the order in which it was asked.
 class ReplayBench : private Simulation {
@@ -19,16 +22,15 @@ class ReplayBench : private Simulation {
 
  private:
   CallAnswer Answer(const std::string& device, const std::string& request);
-  const DeviceCall& Next(const std::string& device, const std::string& request);
   Acquisition BlockOf(const DeviceCall& call);
   void Restart() override;
   void SetPaced(bool) override {}  // a recording takes no time
 
   std::string folder_;
-  std::vector<DeviceCall> calls_;
+  RecordedCalls calls_;
   std::vector<Reading> readings_;
   std::vector<RawBlock> blocks_;
-  std::size_t next_ = 0, next_reading_ = 0;
+  std::size_t next_reading_ = 0;
   Time now_{};
   std::unique_ptr<AskedBench> asked_;
 };

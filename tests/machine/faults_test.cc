@@ -118,6 +118,106 @@ void ExpectStopped(const std::string& fault, const std::string& kind, const std:
   EXPECT_EQ(TextOf(rest.log.readings, bench.scenario), bench.undisturbed);
 }
 
+/// The axes of a twin, of which one is pushed off its place whenever something is read.
+class Pushed : InstrumentSet, MachineController {
+ public:
+  Pushed(MachineBench inner, std::size_t axis, double by) : inner_(inner), axis_(axis), by_(by) {}
+  MachineBench Bench() {
+    return {inner_.clock, *this, *this, inner_.fixture, inner_.simulation, inner_.indexer};
+  }
+  int times = 1;               // to go
+  Duration stamped_late_by{};  // by a clock of the instruments' own
+
+ private:
+  Reading Read() override {
+    is_pushed_ = times-- > 0;
+    return Stamped(inner_.instruments.Read());
+  }
+  void Arm(int samples, int lines) override { inner_.instruments.Arm(samples, lines); }
+  LatchedSamples Latched() override {
+    LatchedSamples latched = inner_.instruments.Latched();
+    for (Reading& sample : latched.samples) sample = Stamped(sample);
+    return latched;
+  }
+  Reading Stamped(Reading sample) const {
+    sample.time += stamped_late_by;
+    return sample;
+  }
+  const std::vector<MachineAxis>& Axes() const override { return inner_.machine.Axes(); }
+  std::vector<AxisLimits> Travel() override { return inner_.machine.Travel(); }
+  void StartMove(const std::vector<double>& to, double feed_m_s) override {
+    is_pushed_ = false;
+    inner_.machine.StartMove(to, feed_m_s);
+  }
+  void StartArc(const Arc& arc) override { inner_.machine.StartArc(arc); }
+  bool Settles(Duration within) override { return inner_.machine.Settles(within); }
+  std::vector<AxisState> State() override {
+    std::vector<AxisState> states = inner_.machine.State();
+    if (is_pushed_) states[axis_].encoder += by_;
+    return states;
+  }
+  void Stop() override {
+    is_pushed_ = false;
+    inner_.machine.Stop();
+  }
+  void Home() override { inner_.machine.Home(); }
+
+  MachineBench inner_;
+  std::size_t axis_;
+  double by_;
+  bool is_pushed_ = false;
+};
+
+TEST(MachineFaults, AnAxisThatLeavesItsStopWhileItIsReadCostsAnAttempt) {
+  const Scenario scenario = ShortFreeform();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  for (const double by_um : {0.9, 1.1}) {
+    Pushed pushed(twin->Devices(), 1, by_um * 1e-6);
+    MachineBench bench = pushed.Bench();
+    bench.simulation->Restart();
+    MemoryLog log;
+    procedure::MachineOptions options;
+    options.log = &log;
+    options.axes.assign(5, AxisLimits{.in_position = 1e-6});
+    BenchOf(scenario).drive(bench, scenario, log, {}, options);
+    ASSERT_EQ(log.attempts.size(), by_um > 1.0 ? 1u : 0u);
+    if (by_um > 1.0) {
+      EXPECT_EQ(log.attempts[0].fault, "moved");
+      EXPECT_THAT(log.attempts[0].text, HasSubstr("y: does not stand at its stop"));
+    } else {
+      const auto& extra = log.readings[0].extra;
+      EXPECT_NEAR(std::stod(extra.at("y_encoder_after_mm")) - std::stod(extra.at("y_encoder_before_mm")), 0.9e-3, 1e-9);
+      EXPECT_EQ(extra.size(), 10u) << "five axes, before and after; " << extra.begin()->first;
+    }
+  }
+}
+
+/// At rest (the first readings of the freeform bench) and in motion (those of the circles).
+TEST(MachineFaults, AnInstrumentsOwnClockGoesIntoNoReading) {
+  for (Scenario (*make)() : {ShortFreeform, ShortCircles}) {
+    const Scenario scenario = make();
+    const auto twin = BenchOf(scenario).make_devices(scenario);
+    for (const Duration late_by : {Duration(std::chrono::milliseconds(90)), Duration(std::chrono::hours(1)), -Duration(std::chrono::hours(1))}) {
+      Pushed late(twin->Devices(), 0, 0.0);
+      late.stamped_late_by = late_by;
+      MachineBench bench = late.Bench();
+      bench.simulation->Restart();
+      MemoryLog log;
+      procedure::MachineOptions options;
+      options.log = &log;
+      const auto drive = [&] { BenchOf(scenario).drive(bench, scenario, log, {}, options); };
+      if (std::chrono::abs(late_by) < std::chrono::seconds(1)) {
+        EXPECT_NO_THROW(drive()) << "what a connection takes";
+        continue;
+      }
+      EXPECT_THROW(drive(), DeviceFault);
+      EXPECT_TRUE(log.readings.empty());
+      ASSERT_EQ(log.attempts.size(), 3u);
+      EXPECT_EQ(log.attempts[0].fault, "clock");
+    }
+  }
+}
+
 TEST(MachineFaults, AMachineThatFreezesInMidMoveIsStalled) {
   ExpectStopped("machine,stall", "stalled", "on its way");
 }

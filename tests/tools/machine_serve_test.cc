@@ -1,9 +1,13 @@
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include "tests/tools/program.h"
 #include "twin/core/run_record.h"
+#include "twin/core/stream.h"
 
 /// `serve` and `measure` of every bench, as two programs that only share a network; what only the benches with a machine do.
 /// serve_test.cc has what only the rotary one does.
@@ -97,6 +101,10 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
   static std::vector<std::string> Measure(const std::string& name) {
     return {"measure", "small.toml", "--bench", "bench.toml", "-o", name, "--resume"};
   }
+  void Replay(const std::string& record, const std::string& name) {
+    Write("replay.toml", "kind = \"replay\"\nrecord = \"" + record + "\"\n");
+    Succeed({"measure", "small.toml", "--bench", "replay.toml", "-o", name});
+  }
   /// Waits until a run has kept something.
   static void AwaitProgress(Process& run) {
     while (run.Runs() && run.ProgressLines() < 1) std::this_thread::sleep_for(milliseconds(2));
@@ -126,6 +134,52 @@ TEST_P(EveryBench, AKilledMeasurementGoesOnToTheSameReadings) {
   EXPECT_GT(kept, 0u);
   Succeed(Measure("killed"));
   EXPECT_EQ(ReadingsOf("killed"), readings_);
+  Replay("killed", "played");
+  EXPECT_EQ(ReadingsOf("played"), readings_);
+  EXPECT_EQ(Read("played/results.json"), Read("run/results.json"));
+}
+
+/// By hand, for it takes minutes: TWINBENCH_KILLS=100 test_machine_tools --gtest_also_run_disabled_tests --gtest_filter='*AsOften*'.
+/// A run is killed at any moment and taken up, again and again, until it is whole; then the next one begins.
+TEST_P(EveryBench, DISABLED_KilledAsOftenAsAskedItEndsWithTheSameReadings) {
+  const char* asked = std::getenv("TWINBENCH_KILLS");
+  const int kills = asked ? std::stoi(asked) : 20;
+  const auto server = Serve("max");
+  const auto begun = std::chrono::steady_clock::now();
+  Succeed(Measure("whole"));
+  const double takes_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  Stream moment(11, "kill");
+  int killed = 0, whole = 0, without_record = 0, killed_within = 0;
+  std::size_t kept = 0;
+  bool is_begun = false;
+  while (killed < kills || is_begun) {
+    const std::string name = "run" + std::to_string(whole);
+    Process run(At(""), Measure(name));
+    if (killed < kills) std::this_thread::sleep_for(std::chrono::duration<double>(takes_s * moment.Uniform()));
+    if (killed < kills && run.Runs()) {
+      run.Kill();
+      ++killed;
+      if (!Exists(name + "/record.sqlite")) {
+        ++without_record;
+        continue;
+      }
+      const std::size_t now = RunRecord::Open(At(name))->Readings().size();
+      ASSERT_GE(now, kept) << "what was kept is never lost";
+      killed_within += now > 0 ? 1 : 0;
+      kept = now;
+      is_begun = true;
+      continue;
+    }
+    const Outcome outcome = run.Wait();
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    ASSERT_EQ(ReadingsOf(name), readings_) << "behind " << killed << " kills";
+    ASSERT_EQ(Read(name + "/results.json"), Read("run/results.json"));
+    ++whole;
+    kept = 0;
+    is_begun = false;
+  }
+  std::printf("%s: %d kills (%d before there was a record, %d behind a kept reading), %d runs ended whole, all of them bit-equal\n",
+              GetParam().name, killed, without_record, killed_within, whole);
 }
 
 TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
@@ -174,6 +228,18 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
   Write("bench.toml", "kind = \"twin\"\n");
   Succeed(Measure("own"));
   EXPECT_EQ(ReadingsOf("own"), readings_);
+}
+
+TEST_F(Program, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
+  Write("small.toml", kStops);
+  Write("bench.toml", "kind = \"twin\"\n");
+  Write("replay.toml", "kind = \"replay\"\nrecord = \"own\"\n");
+  Succeed({"measure", "small.toml", "--bench", "bench.toml", "-o", "own"});
+  const Outcome other = Call({"measure", "small.toml", "--bench", "replay.toml", "-o", "other", "--set",
+                              "encoder_procedure.stop_interval_s=7.0"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.err, HasSubstr("\"clock: wait 5000000000\" is not in the recording at this place"));
+  EXPECT_THAT(other.err, testing::Not(HasSubstr("stand"))) << "of a recording's axes nothing can be asked";
 }
 
 constexpr const char *kNarrow_mm = "lower_mm = -20.0\nupper_mm = 20.0\n",

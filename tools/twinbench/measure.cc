@@ -1,7 +1,9 @@
 #include <fmt/core.h>
 
 #include "hw_bridge/bench_lock.h"
+#include "hw_bridge/in_position.h"
 #include "hw_bridge/program/program_file.h"
+#include "hw_bridge/replay/replay_bench.h"
 #include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
@@ -16,6 +18,7 @@
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
 #include "tools/twinbench/told_stopped.h"
+#include "twin/benches/claims.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/core/run_record.h"
@@ -36,6 +39,9 @@ procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
   options.coldest_degC = kColdest_degC;
   options.hottest_degC = kHottest_degC;
   options.stop_requested = StopWasAsked;
+  if (file.kind == "replay")  // what was recorded was in position
+    options.target.in_position_rad = options.reference.in_position_rad = std::numeric_limits<double>::infinity();
+  options.looks_at_encoders = file.kind != "replay" || hw::LooksAtEncoders(file.record);
   return options;
 }
 
@@ -89,6 +95,7 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
   }
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench->Identity());
   page.Watch(*record, scenario, folder.path);
+  bench->HearClock([&](const std::string& notice) { record->AppendEvent(bench->Bench().clock.Now(), "clock", notice); });
   const auto note = [&](const std::vector<std::string>& lines) {
     for (const std::string& line : lines) record->AppendEvent(bench->Bench().clock.Now(), "adc", line);
   };
@@ -108,7 +115,10 @@ void Measure(const MeasureOptions& o, LivePage& page) {
     throw InputError(o.scenario, "no controllers for the bench " + scenario.bench,
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
   if (BenchOf(scenario).drive) return MeasureMachine(o, scenario, page);
-  const hw::BenchFile file = hw::LoadBenchFile(o.bench);
+  hw::BenchFile file = hw::LoadBenchFile(o.bench);
+  if (file.kind == "hardware") {
+    for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, claim.axis, claim.u);
+  }
   const procedure::Options options = Carefulness(file, o.allow_homing);
   if (o.rehearse || o.rehearse_only) RehearseFirst(scenario, options, file);
   if (o.rehearse_only) return;

@@ -3,12 +3,15 @@
 #include <fmt/core.h>
 
 #include "hw_bridge/bench_lock.h"
+#include "hw_bridge/in_position.h"
 #include "hw_bridge/open_machine.h"
+#include "hw_bridge/replay/replay_machine.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/machine_rehearsal.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/stop_signal.h"
 #include "tools/twinbench/told_stopped.h"
+#include "twin/benches/claims.h"
 #include "twin/benches/registry.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/procedure/machine_watch.h"
@@ -30,6 +33,27 @@ class OwnMachine : public hw::OpenMachine {
   std::unique_ptr<MachineDevices> twin_;
 };
 
+/// A recorded run. What its devices were allowed was asked when it was recorded.
+class RecordedMachine : public hw::OpenMachine {
+ public:
+  RecordedMachine(std::string folder, const std::vector<MachineAxis>& axes, const std::vector<ReadingColumn>& columns,
+                  bool indexer)
+      : folder_(std::move(folder)), replay_(folder_, axes, columns, indexer), axes_(axes.size()) {}
+  MachineBench Devices() override { return replay_.Devices(); }
+  std::string Identity() const override { return "replay of " + folder_; }
+  std::vector<AxisLimits> Limits() const override {
+    constexpr double kAny = std::numeric_limits<double>::infinity();
+    return std::vector<AxisLimits>(axes_, {.stall_s = kAny, .move_timeout_s = kAny});
+  }
+  int Attempts() const { return replay_.Attempts(); }
+  bool IsOfSimulation() const { return replay_.IsOfSimulation(); }
+
+ private:
+  std::string folder_;
+  hw::ReplayMachine replay_;
+  std::size_t axes_;
+};
+
 /// What the bench of a scenario must have, by its twin.
 struct MachineParts {
   std::vector<MachineAxis> axes;
@@ -46,11 +70,13 @@ std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, con
                                                 const MachineParts& parts, Duration elapsed) {
   const Bench& bench = BenchOf(scenario);
   if (file.kind == "twin") return std::make_unique<OwnMachine>(bench.make_devices(scenario));
+  const std::vector<ReadingColumn> columns = InstrumentColumns(bench.format->columns);
+  if (file.kind == "replay")
+    return std::make_unique<RecordedMachine>(file.record, parts.axes, columns, parts.indexer);
   if (parts.indexer && file.indexer.kind == "none")
     throw InputError(file.path, "there is no [indexer] to turn the multi-tooth table",
                      "[indexer] with kind = \"scpi\" or \"console\"");
-  return hw::OpenMachineHardware(file, parts.axes, InstrumentColumns(bench.format->columns), elapsed, scenario.repeat,
-                                 StopWasAsked);
+  return hw::OpenMachineHardware(file, parts.axes, columns, elapsed, scenario.repeat, StopWasAsked);
 }
 
 /// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.
@@ -70,19 +96,28 @@ procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenM
   options.hottest_degC = kHottestRoom_degC;
   options.stop_requested = StopWasAsked;
   options.kept = begun.readings;
+  if (const auto* replay = dynamic_cast<const RecordedMachine*>(&bench)) {
+    options.attempts = replay->Attempts();
+    if (!replay->IsOfSimulation() && !options.kept.empty())
+      throw InputError("--resume", "the replay of a real bench's run begins at its first reading",
+                       "another folder for it");
+  }
   return options;
 }
 
+/// @param kind  Of the bench file: in a replay nothing moves that could be asked.
 void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& opened,
-               procedure::MachineOptions options, LivePage& page) {
+               procedure::MachineOptions options, const std::string& kind, LivePage& page) {
   MachineBench bench = opened.Devices();
   ProgressLine line;
   options.log = &record;
-  const StandingCheck stands = [&bench] { return procedure::WhetherMachineStands(bench); };
+  StandingCheck stands;
+  if (kind != "replay") stands = [&bench] { return procedure::WhetherMachineStands(bench); };
   if (bench.simulation && options.kept.empty()) bench.simulation->Restart();
   try {
     BenchOf(scenario).drive(bench, scenario, record, page.ShownToo(ShownOn(line), stands), options);
   } catch (const std::exception& fault) {
+    if (kind == "replay") throw;  // of a recording's axes nothing can be asked
     TellStopped(fault, "axes", procedure::StopMachine(bench));
   }
   ListenNoMore();
@@ -95,16 +130,20 @@ void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const
   if (resumed) TakeUp(begun, bench.Identity());
   const procedure::MachineOptions options = Carefully(file, bench, begun);
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench.Identity());
+  bench.HearClock([&](const std::string& notice) { record->AppendEvent(bench.Devices().clock.Now(), "clock", notice); });
   record->AppendEvent(bench.Devices().clock.Now(), "bench", bench.Identity());
   page.Watch(*record, scenario, folder.path);
-  DriveInto(*record, scenario, bench, options, page);
+  DriveInto(*record, scenario, bench, options, file.kind, page);
 }
 
 }  // namespace
 
 void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage& page) {
   const MachineParts parts = PartsOf(scenario);
-  const hw::MachineFile file = hw::LoadMachineFile(o.bench, parts.axes);
+  hw::MachineFile file = hw::LoadMachineFile(o.bench, parts.axes);
+  if (file.kind == "hardware") {
+    for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, parts.axes, claim.axis, claim.u);
+  }
   if (o.rehearse_only)
     return RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits());
   const RunFolder folder = FolderOf(o);

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "twin/core/elapsed_time.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
 
@@ -102,12 +101,12 @@ std::unique_ptr<RunRecord> BeginRun(const Scenario& scenario, const RunFolder& f
   return record;
 }
 
-Duration SinceBegin(const BegunRun& begun) {
+Duration SinceBegin(const BegunRun& begun, const ClockMark& now) {
   if (!begun.record) return {};
   const Time last = begun.readings.empty() ? Time{} : begun.readings.back().time;
   const std::optional<ClockMark> begin = BeginOf(*begun.record);
   if (!begin) return last.time_since_epoch();
-  const Elapsed elapsed = Between(*begin, ClockMarkNow());
+  const Elapsed elapsed = Between(*begin, now);
   if (!elapsed.note.empty()) {
     begun.record->AppendEvent(last, kClock, elapsed.note);
     fmt::print(stderr, "twinbench: {}\n", elapsed.note);

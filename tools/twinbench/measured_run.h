@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "tools/twinbench/run_folder.h"
+#include "twin/core/elapsed_time.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::tools {
@@ -35,8 +36,9 @@ std::unique_ptr<RunRecord> BeginRun(const Scenario& scenario, const RunFolder& f
                                     const std::string& identity);
 
 /// How long ago the run began. The wall clock is all that outlives a power failure; if it was set back meanwhile,
-/// the run still goes on behind its last reading. 0 for a new run.
-Duration SinceBegin(const BegunRun& begun);
+/// the run still goes on behind its last reading. 0 for a new run. What was wrong with a clock is an event of the record.
+/// @param now  What this computer's clocks show.
+Duration SinceBegin(const BegunRun& begun, const ClockMark& now = ClockMarkNow());
 
 /// What was kept is not measured again; whatever was tried after it counts as an attempt that failed.
 /// @throws BenchError if the run was begun on another bench.

@@ -5,7 +5,7 @@
 
 #include "twin/core/devices.h"
 
-/// The words of device calls. Private to device_call.cc and asked_bench.cc.
+/// The words of device calls. Private to device_call.cc, machine_call.cc, asked_bench.cc, asked_machine.cc and sample_text.cc.
 namespace twinbench {
 
 /// Words and numbers with blanks between them; numbers in the shortest form that comes back to the same bits.
@@ -30,6 +30,7 @@ class CallReader {
   std::int64_t Integer();
   /// All that is left, blanks and all.
   std::string Rest();
+  bool AtEnd() const { return at_ >= text_.size(); }
 
  private:
   const std::string& text_;

@@ -22,13 +22,14 @@ enum class FaultKind {
   kStalled,       // a table that does not get on
   kFollowing,     // encoder and command are further apart than allowed
   kNotInPosition, // the move is over and the table is not there
+  kMoved,         // it did not stand at its stop while a reading was taken
   kLimit,         // outside the limits, or on a switch
   kImplausible,   // an angle or voltage that cannot be
   kClock,         // clocks of computer and device part
   kDisk,          // the record cannot be kept safe
   kStopped        // the operator said stop
 };
-inline constexpr int kFaultKinds = 19;
+inline constexpr int kFaultKinds = 20;
 const char* FaultName(FaultKind kind);  // "timeout", "dropped", "channel_slip", ...
 
 /// A device failed in a way that has a name. What to do about it is the procedure's business.

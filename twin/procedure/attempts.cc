@@ -13,6 +13,7 @@ bool IsWorthAnotherAttempt(FaultKind kind) {
     case FaultKind::kChannelSlip:
     case FaultKind::kStuck:
     case FaultKind::kNotInPosition:
+    case FaultKind::kMoved:
     case FaultKind::kClock:
       return true;
     case FaultKind::kRefused:

@@ -10,6 +10,7 @@
 #include "twin/procedure/attempts.h"
 #include "twin/procedure/machine_journal.h"
 #include "twin/procedure/machine_watch.h"
+#include "twin/procedure/plausible.h"
 
 namespace twinbench::procedure {
 namespace {
@@ -121,10 +122,10 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
   if (options_.log) options_.log->RequireRoom();
   const double takes_s = PathTime_s(arc);
   int next = first;
-  bench_.instruments.Arm(end - first, 0);
+  Arm(end - first, 0);
   bench_.machine.StartArc(arc);
   Watch(bench_, takes_s, options_, [&] {
-    const LatchedSamples latched = bench_.instruments.Latched();
+    const LatchedSamples latched = Latched();
     if (latched.overrun)
       throw DeviceFault(FaultKind::kOverrun, "instruments", "their memory ran full; samples are lost");
     for (const Reading& sample : latched.samples) {
@@ -139,6 +140,18 @@ void MachineSequencer::Sweep(const Arc& arc, int first, int end) {
         fmt::format("the path has ended and {} of {} triggers latched nothing", end - next, end - first));
 }
 
+void MachineSequencer::Arm(int samples, int lines) {
+  armed_ = bench_.clock.Now();
+  bench_.instruments.Arm(samples, lines);
+}
+
+LatchedSamples MachineSequencer::Latched() {
+  LatchedSamples latched = bench_.instruments.Latched();
+  const Time now = bench_.clock.Now();
+  for (const Reading& sample : latched.samples) RequireTimely(sample, armed_, now);
+  return latched;
+}
+
 void MachineSequencer::Turn(std::size_t axis, double speed_rad_s, Duration ramp) {
   HearOperator(options_);
   RequireMayTurn(bench_, options_);
@@ -150,12 +163,12 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
   constexpr Duration kNothingComes = std::chrono::minutes(1);
   HearOperator(options_);
   if (options_.log) options_.log->RequireRoom();
-  bench_.instruments.Arm(end - first, lines);
+  Arm(end - first, lines);
   Duration in_vain{0};
   for (int next = first; next < end;) {
     WaitFor(bench_, poll, options_);
     RequireMayTurn(bench_, options_);
-    const LatchedSamples latched = bench_.instruments.Latched();
+    const LatchedSamples latched = Latched();
     for (const Reading& sample : latched.samples) {
       if (next == end)
         throw DeviceFault(FaultKind::kProtocol, "instruments", "more samples came than they were armed for");
@@ -173,7 +186,28 @@ void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {
 void MachineSequencer::TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter) {
   if (options_.log) options_.log->RequireRoom();
   WaitUntilDue(reading, dwell);
-  Keep(reading, bench_.instruments.Read(), enter);
+  std::vector<Stood> stood;
+  const Reading sample = ReadAtRest(stood);
+  for (const Stood& axis : stood) RequireStood(axis);
+  Keep(reading, sample, [&](Reading& r) {
+    for (const Stood& axis : stood) EnterInto(r, axis);
+    if (enter) enter(r);
+  });
+}
+
+/// @param stood  Becomes where they stood, one entry an axis.
+Reading MachineSequencer::ReadAtRest(std::vector<Stood>& stood) {
+  const std::vector<AxisState> before = bench_.machine.State();
+  const Time asked = bench_.clock.Now();
+  Reading sample = bench_.instruments.Read();
+  RequireTimely(sample, asked, bench_.clock.Now());
+  const std::vector<AxisState> after = bench_.machine.State();
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const double tolerance = k < options_.axes.size() ? options_.axes[k].in_position : AxisLimits{}.in_position;
+    stood.push_back({axes()[k].name, axes()[k].is_rotary, before[k].commanded, before[k].encoder, after[k].encoder,
+                     tolerance});
+  }
+  return sample;
 }
 
 Reading MachineSequencer::Look() {
@@ -280,13 +314,14 @@ void RequireOneRotaryAxis(const std::vector<MachineAxis>& axes, const std::strin
 
 void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay& way, ReadingSink& sink,
                   const ProgressCallback& progress, const MachineOptions& options) {
-  MachineJournal journal(bench, options.log);
+  MachineJournal journal(bench, InstrumentColumns(FormatOf(plan.bench).columns), options.log);
   MachineRunState state = StateBehind(bench, options);
   Attempts attempts(options.attempts);
   for (bool anew = !state.kept.empty();; anew = true) {
     MachineSequencer sequencer(journal.Bench(), plan, sink, options, progress, state);
     try {
       if (anew) StartAgain(bench, state);
+      journal.BeginAttempt();
       if (bench.simulation) state.mounted.reset();
       way(sequencer);
       return sequencer.Flush();

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "twin/procedure/machine_options.h"
+#include "twin/procedure/stood.h"
 
 namespace twinbench::procedure {
 
@@ -82,7 +83,10 @@ class MachineSequencer {
   void Index(int tooth, double tooth_rad);
   /// @param meanwhile  Once the move has begun.
   void Move(const std::vector<double>& to, const std::function<void()>& meanwhile);
+  void Arm(int samples, int lines);
+  LatchedSamples Latched();
   void WaitUntilDue(int reading, Duration dwell);
+  Reading ReadAtRest(std::vector<Stood>& stood);
   void Keep(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
   Reading Joined(const Reading& planned, const Reading& sample) const;
   void RequireSame(const Reading& reading) const;
@@ -96,6 +100,7 @@ class MachineSequencer {
   const ProgressCallback& progress_;
   MachineRunState& state_;
   std::vector<Reading> taken_;  // not yet kept
+  Time armed_{};                // when the instruments last were
 };
 
 /// For a bench of one axis that turns.

@@ -28,6 +28,7 @@ struct Options {
   double coldest_degC = -std::numeric_limits<double>::infinity();  // a thermometer beyond these is broken
   double hottest_degC = std::numeric_limits<double>::infinity();
   bool may_home = true;  // whether a table that has lost its origin may be driven to find it
+  bool looks_at_encoders = true;  // about every block; false: of a recording that knows no such looks
   RunLog* log = nullptr;                 // none: only readings are kept, and the first fault ends the run
   std::function<bool()> stop_requested;  // asked between moves, waits and readings
 

@@ -34,6 +34,14 @@ void RequirePlausible(const Reading& reading, const Reading& before, const Optio
   }
 }
 
+void RequireTimely(const Reading& sample, Time from, Time to) {
+  if (sample.time >= from - kClockTolerance && sample.time <= to + kClockTolerance) return;
+  throw DeviceFault(FaultKind::kClock, "instruments",
+                    fmt::format("a sample is stamped {:.6f} s and was taken between {:.6f} and {:.6f} s of the bench's clock; a "
+                                "field with an instrument's own time is \"ignored\"",
+                                ToSeconds(sample.time), ToSeconds(from), ToSeconds(to)));
+}
+
 void RequireTimely(const Acquisition& block, Time asked, Time answered) {
   if (block.start >= asked - kClockTolerance && block.start <= answered + kClockTolerance) return;
   throw DeviceFault(

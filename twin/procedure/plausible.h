@@ -7,6 +7,9 @@ namespace twinbench::procedure {
 /// @throws DeviceFault kImplausible for a room that no bench stands in, or a spot that jumped from one stop to the
 ///         next of the same pass; kClock for a block that began outside the time in which it was asked for.
 void RequirePlausible(const Reading& reading, const Reading& before, const Options& options);
+/// @throws DeviceFault kClock for a sample of an instrument that is stamped outside the time in which it was taken: by a clock
+///         of its own, or one that has jumped.
+void RequireTimely(const Reading& sample, Time from, Time to);
 void RequireTimely(const Acquisition& block, Time asked, Time answered);
 
 }  // namespace twinbench::procedure

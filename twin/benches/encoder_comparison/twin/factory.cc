@@ -17,8 +17,13 @@ class Twin : public BenchTwin {
  public:
   explicit Twin(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
   nlohmann::json Truth() const override { return twin_.Truth(); }
+  /// Stops are driven to as on a bench of devices; in motion the device is a function of its schedule's times.
   void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
-    procedure::CarryOut(twin_, scenario_, record, progress);
+    if (EncoderOf(scenario_).encoder_procedure.kind != "stops")
+      return procedure::CarryOut(twin_, scenario_, record, progress);
+    const auto devices = MakeDevices(scenario_);
+    MachineBench bench = devices->Devices();
+    procedure::DriveComparison(bench, scenario_, record, progress, {});
   }
 
  private:

@@ -8,6 +8,7 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/device_fault.h"
 #include "twin/procedure/plausible.h"
+#include "twin/procedure/stood.h"
 #include "twin/procedure/watch.h"
 
 namespace twinbench::procedure {
@@ -104,9 +105,7 @@ Acquisition Sequencer::Measure(Reading& stop, double dwell_s, bool with_autocoll
     stop.autocollimator_yaw_rad = angles.yaw_rad;
     stop.autocollimator_tilt_rad = angles.tilt_rad;
   }
-  const Time asked = bench().clock.Now();
-  Acquisition block = bench().adc.Acquire(RotaryOf(scenario_).adc.samples, settings().keep_raw);
-  RequireTimely(block, asked, bench().clock.Now());
+  Acquisition block = TakeBlock(stop);
   if (block.status == ReadingStatus::kOverrun) {
     throw DeviceFault(
         FaultKind::kOverrun, "adc",
@@ -122,6 +121,28 @@ Acquisition Sequencer::Measure(Reading& stop, double dwell_s, bool with_autocoll
     }
   }
   return block;
+}
+
+/// The tables' encoders are looked at about the block, as near to it as they can be asked.
+Acquisition Sequencer::TakeBlock(Reading& stop) {
+  const std::array<double, 2> before_rad = LookAtEncoders();
+  const Time asked = bench().clock.Now();
+  Acquisition block = bench().adc.Acquire(RotaryOf(scenario_).adc.samples, settings().keep_raw);
+  RequireTimely(block, asked, bench().clock.Now());
+  const std::array<double, 2> after_rad = LookAtEncoders();
+  const Sent sent = SentTo(target_rad_);
+  const std::array<Stood, 2> tables = {
+      Stood{"target", true, sent.target_rad, before_rad[0], after_rad[0], options_.target.in_position_rad},
+      Stood{"reference", true, sent.reference_rad, before_rad[1], after_rad[1], options_.reference.in_position_rad}};
+  for (const Stood& table : tables) EnterInto(stop, table);
+  for (const Stood& table : tables) RequireStood(table);
+  return block;
+}
+
+std::array<double, 2> Sequencer::LookAtEncoders() {
+  if (!options_.looks_at_encoders) return {kNaN, kNaN};
+  const double target_rad = bench().target.State().encoder_rad;
+  return {target_rad, bench().reference.State().encoder_rad};
 }
 
 double Sequencer::DrawDwell_s() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
@@ -58,6 +59,9 @@ class Sequencer {
   RotaryBench& bench() { return quiet() ? quiet_devices_ : live_devices_; }
   double DrawDwell_s();
   Acquisition Measure(Reading& stop, double dwell_s, bool with_autocollimator);
+  Acquisition TakeBlock(Reading& stop);
+  /// Angles [rad] that the encoders of target and reference show; NaN where nobody looks.
+  std::array<double, 2> LookAtEncoders();
   void NoteMounting(int setup, double clamp_rad, double reseat_rad);
   void GoLive();
   void RepeatCalls();

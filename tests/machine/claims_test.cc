@@ -1,0 +1,104 @@
+#include "twin/benches/claims.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hw_bridge/in_position.h"
+#include "tests/core/input_error.h"
+#include "twin/benches/registry.h"
+#include "twin/core/estimator.h"
+#include "twin/core/run_record.h"
+#include "twin/report/evaluation.h"
+
+/// What results claim of the places of axes, and what a bench file may allow there.
+namespace twinbench::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// The mean of a list of uncertainties in the results that a run of the twin gives.
+double MeanU_arcsec(const Scenario& scenario, const std::string& place) {
+  const Bench& bench = BenchOf(scenario);
+  const auto record = RunRecord::CreateInMemory({"test", "twin", scenario.seed, "", scenario.bench});
+  bench.make_twin(scenario)->CarryOut(*record, {});
+  const nlohmann::json u =
+      bench.evaluate(scenario, record->Readings(), Estimator::kRigorous).results.at(nlohmann::json::json_pointer(place));
+  double sum = 0.0;
+  for (const double one : u) sum += one;
+  return sum / static_cast<double>(u.size());
+}
+
+double Claimed_arcsec(const Scenario& scenario, const std::string& axis) {
+  for (const Claim& claim : ClaimsOf(scenario)) {
+    if (claim.axis == axis) return claim.u / units::arcsec;
+  }
+  return 0.0;
+}
+
+Scenario Rotary(const std::string& procedure) {
+  return ParseScenario("bench = \"rotary_4dof\"\nseed = 5\n[mechanics]\nfidelity = \"kinematic\"\n[optics]\nfidelity = "
+                       "\"closed\"\n[procedure]\n" + procedure,
+                       "claims.toml", "");
+}
+
+TEST(Claims, OfTwoTablesAreWhatTheSeparationStates) {
+  for (const char* procedure : {"positions = 12\nshifts = [0, 1, 5]\npasses = [1, -1]\n",
+                                "positions = 18\nshifts = [0, 1, 5, 7]\npasses = [1, -1, -1, 1]\n"}) {
+    const Scenario scenario = Rotary(procedure);
+    // The errors' mean is taken out, and with it one of `positions` parts of the variance: 4 % of 12. The samples' own scatter is
+    // the weight: of some hundred blocks of 100 samples, to a per cent or two.
+    const double stated = MeanU_arcsec(scenario, "/separation/target/u_ez_arcsec");
+    EXPECT_NEAR(Claimed_arcsec(scenario, "target") / stated, 1.03, 0.04) << procedure;
+    EXPECT_EQ(Claimed_arcsec(scenario, "reference"), Claimed_arcsec(scenario, "target"));
+  }
+}
+
+TEST(Claims, OfAComparisonAtStopsAreWhatItsCurveStates) {
+  const Scenario scenario = ParseScenario(
+      "bench = \"encoder_comparison\"\nseed = 5\n[device]\nnoise_known = true\n[encoder_procedure]\nturns = 1.0\n"
+      "stops_per_turn = 36\npasses = [1, -1, -1, 1]\n",
+      "claims.toml", "");
+  EXPECT_NEAR(Claimed_arcsec(scenario, "shaft") / MeanU_arcsec(scenario, "/device/u_ez_arcsec"), 1.0, 0.05);
+}
+
+TEST(Claims, ThereAreNoneWhereNothingIsClaimedAtAStop) {
+  Scenario scenario = Rotary("positions = 12\n");
+  scenario.noise_free = true;
+  EXPECT_TRUE(ClaimsOf(scenario).empty());
+  EXPECT_TRUE(ClaimsOf(ParseScenario("bench = \"hob_transmission\"\n", "hob.toml", "")).empty());
+}
+
+constexpr const char* kTurntableFile = R"([machine]
+kind = "esp"
+address = "serial:/dev/ttyUSB0:19200"
+[axis_turntable]
+lower_deg = -30.0
+[instrument_1]
+kind = "scpi"
+address = "tcp:collimator.lab:5025"
+fields = ["autocollimator_x_arcsec"]
+arm = ""
+)";
+
+TEST(InPosition, IsTheClaimUnlessTheFileAsksForLess) {
+  const std::vector<MachineAxis> axes = {{"turntable", true}};
+  hw::MachineFile file = hw::ParseMachineFile(kTurntableFile, "bench.toml", axes);
+  EXPECT_TRUE(std::isinf(file.axes[0].in_position));
+  hw::TieToClaim(file, axes, "shaft", 0.1 * units::arcsec);
+  EXPECT_TRUE(std::isinf(file.axes[0].in_position)) << "another axis";
+  hw::TieToClaim(file, axes, "turntable", 0.1 * units::arcsec);
+  EXPECT_EQ(file.axes[0].in_position, 0.1 * units::arcsec);
+  std::string text = kTurntableFile;
+  text.replace(text.find("lower_deg = -30.0"), 17, "in_position_arcsec = 0.04");
+  file = hw::ParseMachineFile(text, "bench.toml", axes);
+  hw::TieToClaim(file, axes, "turntable", 0.1 * units::arcsec);
+  EXPECT_DOUBLE_EQ(file.axes[0].in_position, 0.04 * units::arcsec);
+  EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "turntable", 0.03 * units::arcsec); }),
+              testing::AllOf(HasSubstr("bench.toml:5"), HasSubstr("in_position_arcsec is 0.04"), HasSubstr("certain to 0.03 arcsec"),
+                             HasSubstr("at most 0.03")));
+}
+
+}  // namespace
+}  // namespace twinbench::test

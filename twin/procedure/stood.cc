@@ -1,0 +1,55 @@
+#include "twin/procedure/stood.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "twin/core/device_fault.h"
+#include "twin/core/number_text.h"
+#include "twin/core/units.h"
+
+namespace twinbench::procedure {
+namespace {
+
+struct InFiles {
+  double to_SI;
+  const char* unit;
+};
+
+InFiles PlaceOf(const Stood& stood) {
+  return stood.is_rotary ? InFiles{units::deg, "deg"} : InFiles{units::mm, "mm"};
+}
+
+InFiles DistanceOf(const Stood& stood) {
+  return stood.is_rotary ? InFiles{units::arcsec, "arcsec"} : InFiles{units::um, "um"};
+}
+
+void EnterPlace(Reading& reading, const Stood& stood, const char* when, double at) {
+  const InFiles place = PlaceOf(stood);
+  if (std::isfinite(at))
+    reading.extra[fmt::format("{}_encoder_{}_{}", stood.axis, when, place.unit)] = PrintInUnit(at, place.to_SI);
+}
+
+}  // namespace
+
+double Stood::Off() const {
+  return std::fmax(std::abs(before - sent), std::abs(after - sent));
+}
+
+void EnterInto(Reading& reading, const Stood& stood) {
+  EnterPlace(reading, stood, "before", stood.before);
+  EnterPlace(reading, stood, "after", stood.after);
+}
+
+void RequireStood(const Stood& stood) {
+  if (!(stood.Off() > stood.tolerance)) return;
+  const InFiles place = PlaceOf(stood), distance = DistanceOf(stood);
+  const auto off = [&](double at) { return fmt::format("{:.3g} {}", (at - stood.sent) / distance.to_SI, distance.unit); };
+  throw DeviceFault(FaultKind::kMoved, stood.axis,
+                    fmt::format("does not stand at its stop, {:.6f} {}: {} off before the reading, {} off behind it, and {:.3g} "
+                                "{} are allowed",
+                                stood.sent / place.to_SI, place.unit, off(stood.before), off(stood.after),
+                                stood.tolerance / distance.to_SI, distance.unit));
+}
+
+}  // namespace twinbench::procedure

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "twin/core/reading.h"
+
+namespace twinbench::procedure {
+
+/// Where an axis stood about a reading, by its encoder. Angles [rad], places of a linear axis [m]; NaN: not known.
+struct Stood {
+  std::string axis;  // "target", "x"
+  bool is_rotary = true;
+  double sent = kNaN;                   // where the controller was told to bring it
+  double before = kNaN, after = kNaN;   // encoder, at once before and behind what was read
+  double tolerance = std::numeric_limits<double>::infinity();  // of encoder against sent
+
+  /// The largest of both distances from where it was sent; NaN: not known.
+  double Off() const;
+};
+
+/// Adds what the encoder showed to the reading: columns <axis>_encoder_before_deg and <axis>_encoder_after_deg, or _mm. They are
+/// columns beside those of the bench: files without them are whole.
+void EnterInto(Reading& reading, const Stood& stood);
+
+/// @throws DeviceFault kMoved if it stood further from its stop than its tolerance, before what was read or behind it.
+void RequireStood(const Stood& stood);
+
+}  // namespace twinbench::procedure
