@@ -43,7 +43,7 @@ TEST(Overtones, ASineStaysATone) {
 
 TEST(Overtones, WhatSwitchesIsNoTone) {
   for (const std::uint64_t seed : {31u, 32u, 33u}) {
-    const Diagnosis d = DiagnosisWith(Switching, 0.6 * arcsec, seed);
+    const Diagnosis d = DiagnosisWith(Switching, 0.3 * arcsec, seed);
     EXPECT_EQ(d.verdict, Verdict::kUnknown) << seed;
     EXPECT_GT(d.unknown.probability, 0.5) << seed;
   }
