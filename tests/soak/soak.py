@@ -25,7 +25,7 @@ FAULTS = [
     "adc,slip", "adc,stuck", "adc,drop", "adc,stall", "adc,short", "adc,error", "clock,step", "target,mute", "reference,late",
     "target,partial", "target,disconnect", "target,restart", "reference,lost_step", "target,not_in_position",
 ]  # fmt: skip
-MOST_RESUMES = 20
+MOST_RESUMES = 100  # faults that have not struck yet wait for the next attempt
 WARM_UP_RUNS = 10
 ALLOWED_GROWTH = 0.05  # of the server's memory between the end of the warm-up and the end
 

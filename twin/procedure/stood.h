@@ -19,7 +19,7 @@ struct Stood {
   double Off() const;
 };
 
-/// Adds what the encoder showed to the reading: columns <axis>_encoder_before_deg and <axis>_encoder_after_deg, or _mm. They are
+/// Adds what the encoder showed to the reading: columns AXIS_encoder_before_deg and AXIS_encoder_after_deg, or _mm. They are
 /// columns beside those of the bench: files without them are whole.
 void EnterInto(Reading& reading, const Stood& stood);
 
