@@ -1,0 +1,167 @@
+#include "tests/support/foreign_bench.h"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <numeric>
+
+#include "tests/tools/program.h"
+#include "twin/core/run_record.h"
+
+/// `measure` on benches that others have written, in real time: their controllers, instruments and physics.
+namespace twinbench::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr double kCoverage = 3.0;  // of standard uncertainties: a score of values of one seed, all of them within it
+
+/// `measure` of a scenario on a bench whose file has `{device}` where a device's address belongs.
+class ForeignBenchProgram : public Program {
+ protected:
+  ForeignBenchProgram(const std::string& program, const std::string& scenario, std::string bench_file)
+      : program_(program), bench_file_(std::move(bench_file)) {
+    Write("foreign.toml", scenario);
+  }
+
+  /// @param faults  The bench is troubled by them, as line_devices.py writes them.
+  Outcome MeasureWith(const std::vector<std::string>& faults) {
+    const ForeignBench bench(program_, At(""), faults);
+    hidden_ = bench.told();
+    std::string text = bench_file_;
+    for (const auto& [device, port] : hidden_.at("ports").items()) {
+      const std::string place = "{" + device + "}";
+      for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
+        text.replace(at, place.size(), bench.Address(device));
+    }
+    Write("bench.toml", text);
+    return Call({"measure", "foreign.toml", "--bench", "bench.toml", "-o", "measured"});
+  }
+
+  nlohmann::json Separated() {
+    Write("readings.csv", ReadingsOf("measured"));
+    return Json({"separate", "readings.csv", "--scenario", "foreign.toml", "--json", "-"});
+  }
+
+  std::size_t Kept() const { return RunRecord::Open(At("measured"))->Readings().size(); }
+
+  /// How often each fault cost an attempt. On a computer that is short of time an answer may also be late by itself, which is
+  /// survived too: counts are at least what was scripted.
+  std::map<std::string, int> FailedAttemptsByFault() const {
+    std::map<std::string, int> counts;
+    for (const FailedAttempt& failed : RunRecord::Open(At("measured"))->FailedAttempts()) ++counts[failed.fault];
+    return counts;
+  }
+
+  static void ExpectStateUnknown(const Outcome& measured) {
+    EXPECT_EQ(measured.exit_code, 3);
+    EXPECT_THAT(measured.err, AllOf(HasSubstr("STATE UNKNOWN - USE THE EMERGENCY STOP"),
+                                    HasSubstr("WHETHER THE AXES STAND STILL IS NOT KNOWN"), HasSubstr("--resume")));
+  }
+
+  const nlohmann::json& hidden() const { return hidden_; }
+
+ private:
+  std::string program_, bench_file_;
+  nlohmann::json hidden_;
+};
+
+// --- a turntable ---
+
+constexpr const char* kForeignTurntable = R"(bench = "turntable_autocollimator"
+[multitooth]
+teeth = 360
+u_tooth_arcsec = 0.2
+[autocollimator]
+noise_arcsec = 0.05
+range_arcsec = 300.0
+[turntable_procedure]
+phases = ["full_circle"]
+positions = 6
+tilts_arcsec = [40.0, 200.0, 150.0]
+tilt_azimuths_deg = [25.0, 25.0, 140.0]
+shifts_teeth = [0, 0, 60]
+passes = [1, -1]
+dwell_s = [0.01]
+)";
+
+// Waits are short, so that faults are; the indexer may be silent for its move_timeout_s. It answers in microradians.
+constexpr const char* kForeignTurntableBench = R"(kind = "hardware"
+[machine]
+kind = "esp"
+address = "{controller}"
+identity = "ESP301 Version 3"
+timeout_s = 0.3
+stall_s = 0.5
+[axis_turntable]
+lower_deg = -30.0
+upper_deg = 390.0
+in_position_arcsec = 0.1
+[instrument_1]
+kind = "scpi"
+address = "{autocollimator}"
+identity = "FOREIGN OPTICS,AC300,"
+timeout_s = 0.3
+fields = ["autocollimator_x_arcsec", "autocollimator_y_arcsec", "ignored"]
+scale = [0.20626480624709636, 0.20626480624709636, 1.0]
+read = "MEAS:ANGL?"
+arm = ""
+[indexer]
+kind = "scpi"
+address = "{indexer}"
+timeout_s = 0.3
+move = "SEAT {tooth}"
+done = "SEAT?"
+move_timeout_s = 0.3
+[fixture]
+kind = "scpi"
+address = "{indexer}"
+timeout_s = 0.3
+)";
+
+class ForeignTurntable : public ForeignBenchProgram {
+ protected:
+  ForeignTurntable() : ForeignBenchProgram("turntable_bench.py", kForeignTurntable, kForeignTurntableBench) {}
+
+  /// Values of a table have no mean.
+  void ExpectRecovered(const nlohmann::json& table, const std::string& what) const {
+    const auto hidden_arcsec = hidden().at(what + "_arcsec").get<std::vector<double>>();
+    ASSERT_EQ(table.at("ez_arcsec").size(), hidden_arcsec.size()) << what;
+    const double mean_arcsec =
+        std::accumulate(hidden_arcsec.begin(), hidden_arcsec.end(), 0.0) / static_cast<double>(hidden_arcsec.size());
+    for (std::size_t k = 0; k < hidden_arcsec.size(); ++k) {
+      const double u_arcsec = table.at("u_ez_arcsec")[k];
+      EXPECT_NEAR(table.at("ez_arcsec")[k].get<double>(), hidden_arcsec[k] - mean_arcsec, kCoverage * u_arcsec) << what << " " << k;
+      EXPECT_LT(u_arcsec, 0.1) << what << " " << k;  // errors of an arcsec and more: an interval that says something
+    }
+  }
+};
+
+TEST_F(ForeignTurntable, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
+  const Outcome measured = MeasureWith({"controller.mute@3", "controller.unsettled@9", "controller.drop@15",
+                                        "autocollimator.late@14", "indexer.drop@30"});
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_EQ(Kept(), 36u);
+  std::map<std::string, int> failed = FailedAttemptsByFault();
+  EXPECT_GE(failed["timeout"], 2) << "a mute controller, a late autocollimator";
+  EXPECT_GE(failed["dropped"], 2);
+  EXPECT_GE(failed["not_in_position"], 1);
+
+  const nlohmann::json separation = Separated();
+  ExpectRecovered(separation.at("turntable"), "turntable");
+  ExpectRecovered(separation.at("multitooth"), "multitooth");
+  const auto& roll = separation.at("roll");
+  const double u_mrad = roll.at("u_gamma_mrad");
+  EXPECT_NEAR(roll.at("gamma_mrad").get<double>(), hidden().at("roll_mrad").get<double>(), kCoverage * u_mrad);
+  EXPECT_LT(u_mrad, 0.5);
+}
+
+TEST_F(ForeignTurntable, AControllerThatFreezesWhileTheTableTurnsIsToldSo) {
+  ExpectStateUnknown(MeasureWith({"controller.freeze@9"}));
+  EXPECT_GT(Kept(), 0u);
+  EXPECT_LT(Kept(), 8u) << "what was kept are ends of moves 1 to 8 at most, one of which was the run-up";
+}
+
+}  // namespace
+}  // namespace twinbench::test
