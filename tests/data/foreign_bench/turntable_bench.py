@@ -47,13 +47,18 @@ class Stand:
         self.axis = axis
         self.set_up, self.tooth, self.seated_s = None, 0, 0.0
         self.seating_arcsec = 0.0
-        self.chance = random.Random(20)
+        self.seatings = {}  # by set-up and tooth: how often
+        self.chance = random.Random()
 
     def is_seated(self):
         return time.monotonic() >= self.seated_s
 
     def seat(self, tooth):
+        """Chance is that of this seating, whatever went wrong before."""
         self.tooth = tooth
+        place = (self.set_up, tooth)
+        self.seatings[place] = self.seatings.get(place, 0) + 1
+        self.chance.seed(f"{place} {self.seatings[place]}")
         self.seating_arcsec = self.chance.gauss(0.0, SEATING_ARCSEC)
         self.seated_s = time.monotonic() + 0.03
 
