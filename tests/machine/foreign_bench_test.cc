@@ -94,7 +94,7 @@ dwell_s = [0.01]
 constexpr const char* kForeignTurntableBench = R"(kind = "hardware"
 [machine]
 kind = "esp"
-address = "{controller}"
+address = "tcp:{controller}"
 identity = "ESP301 Version 3"
 timeout_s = 0.3
 stall_s = 0.5
@@ -104,7 +104,7 @@ upper_deg = 390.0
 in_position_arcsec = 0.1
 [instrument_1]
 kind = "scpi"
-address = "{autocollimator}"
+address = "tcp:{autocollimator}"
 identity = "FOREIGN OPTICS,AC300,"
 timeout_s = 0.3
 fields = ["autocollimator_x_arcsec", "autocollimator_y_arcsec", "ignored"]
@@ -113,14 +113,14 @@ read = "MEAS:ANGL?"
 arm = ""
 [indexer]
 kind = "scpi"
-address = "{indexer}"
+address = "tcp:{indexer}"
 timeout_s = 0.3
 move = "SEAT {tooth}"
 done = "SEAT?"
 move_timeout_s = 0.3
 [fixture]
 kind = "scpi"
-address = "{indexer}"
+address = "tcp:{indexer}"
 timeout_s = 0.3
 )";
 
@@ -193,12 +193,12 @@ poll_s = 0.05
 constexpr const char* kForeignHobBench = R"(kind = "hardware"
 [machine]
 kind = "esp"
-address = "{controller}"
+address = "tcp:{controller}"
 identity = "ESP301 Version 3"
 timeout_s = 0.3
 [instrument_1]
 kind = "scpi"
-address = "{counters}"
+address = "tcp:{counters}"
 identity = "FOREIGN COUNTING,IK2,"
 timeout_s = 0.3
 fields = ["table_encoder_deg", "hob_encoder_deg"]
@@ -208,7 +208,7 @@ arm = "LATCH {samples},{lines}"
 fetch = "LATCHED?"
 [fixture]
 kind = "scpi"
-address = "{counters}"
+address = "tcp:{counters}"
 timeout_s = 0.3
 )";
 
@@ -247,6 +247,84 @@ TEST_F(ForeignHob, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
 TEST_F(ForeignHob, AControllerThatFreezesWhileTheHobTurnsOnIsToldSo) {
   ExpectStateUnknown(MeasureWith({"controller.freeze@3"}, 1));
   EXPECT_EQ(Kept(), 150u) << "the first pass; event 3 begins the second";
+}
+
+// --- two rotary tables ---
+
+constexpr const char* kForeignRotary = R"(bench = "rotary_4dof"
+[procedure]
+phases = ["full_circle"]
+positions = 6
+shifts = [0, 1]
+passes = [1, -1]
+clamping = "reseat"
+dwell_s = [0.01]
+remount_s = 0.0
+)";
+
+constexpr const char* kForeignRotaryBench = R"(kind = "hardware"
+[adc]
+kind = "iio"
+uri = "ip:{adc}"
+device = "foreign-adc"
+channels = ["voltage0", "voltage1", "voltage2", "voltage3"]
+serial = "F-0815"
+timeout_s = 0.5
+[target]
+kind = "esp"
+address = "tcp:{controller}"
+identity = "ESP301 Version 3"
+axis = 1
+decimals = 6
+timeout_s = 0.3
+[reference]
+kind = "esp"
+address = "tcp:{controller}"
+identity = "ESP301 Version 3"
+axis = 2
+decimals = 6
+timeout_s = 0.3
+[fixture]
+kind = "scpi"
+address = "tcp:{fixture}"
+timeout_s = 0.3
+)";
+
+class ForeignRotary : public ForeignBenchProgram {
+ protected:
+  ForeignRotary() : ForeignBenchProgram("rotary_bench.py", kForeignRotary, kForeignRotaryBench) {}
+
+  /// What a component of a table is, but for its constant.
+  void ExpectRecovered(const nlohmann::json& separation, const std::string& table, const std::string& component,
+                       double u_most) const {
+    const auto truth = hidden().at(table + "." + component).get<std::vector<double>>();
+    const double mean = std::accumulate(truth.begin(), truth.end(), 0.0) / static_cast<double>(truth.size());
+    const nlohmann::json &values = separation.at(table).at(component), &u = separation.at(table).at("u_" + component);
+    ASSERT_EQ(values.size(), truth.size());
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      EXPECT_NEAR(values[k].get<double>(), truth[k] - mean, kCoverage * u[k].get<double>()) << table << component << k;
+      EXPECT_LT(u[k].get<double>(), u_most) << table << component << k;
+    }
+  }
+};
+
+/// Its bench file has no goniometer: a full circle needs none, also behind a fault.
+TEST_F(ForeignRotary, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
+  const Outcome measured =
+      MeasureWith({"controller.mute@5", "controller.drop@16", "adc.gap@3", "adc.drop@9", "adc.mute@14"});
+  if (measured.err.find("made without the driver") != std::string::npos) GTEST_SKIP() << measured.err;
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_EQ(Kept(), 24u);
+  std::map<std::string, int> failed = FailedAttemptsByFault();
+  EXPECT_GE(failed["timeout"], 2) << "a mute controller, a mute card";
+  EXPECT_GE(failed["dropped"], 2);
+  EXPECT_GE(failed["gap"], 1);
+
+  const nlohmann::json separation = Separated();
+  ExpectRecovered(separation, "target", "ez_arcsec", 0.3);
+  ExpectRecovered(separation, "reference", "ez_arcsec", 0.3);
+  ExpectRecovered(separation, "target", "ex_arcsec", 0.6);
+  ExpectRecovered(separation, "target", "dy_um", 0.5);
 }
 
 }  // namespace

@@ -44,9 +44,9 @@ class ForeignBench {
     waitpid(id_, nullptr, 0);
   }
 
-  /// As a bench file has it.
+  /// HOST:PORT.
   std::string Address(const std::string& device) const {
-    return "tcp:127.0.0.1:" + std::to_string(told_.at("ports").at(device).get<int>());
+    return "127.0.0.1:" + std::to_string(told_.at("ports").at(device).get<int>());
   }
   /// What is hidden in it, in its own numbers.
   const nlohmann::json& told() const { return told_; }

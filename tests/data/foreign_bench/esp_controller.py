@@ -1,4 +1,4 @@
-"""A motion controller of one rotary axis that is spoken to in Newport's ESP commands, as docs/hardware.md needs them.
+"""A motion controller of rotary axes that is spoken to in Newport's ESP commands, as docs/hardware.md needs them.
 
 Angles are in degrees and in steps of a millionth of one. It knows no MS?, as the ESP301 does not.
 """
@@ -53,63 +53,68 @@ class EspController(Device):
     name = "controller"
     line_end = "\r\n"
 
-    def __init__(self, script):
+    def __init__(self, script, axes=None):
         super().__init__(script)
-        self.axis = Axis()
-        self.lower_deg, self.upper_deg = -400.0, 400.0
+        self.axes = axes or [Axis()]  # 1, 2, ...
+        self.lower_deg, self.upper_deg = -800.0, 800.0
         self.errors = []
 
     def obey(self, command):
         words = COMMAND.match(command.upper())
         if not words:
             return self._refuse(NO_COMMAND)
-        axis, word, rest = words.groups()
-        if axis not in ("", "1"):
+        number, word, rest = words.groups()
+        if number and not 1 <= int(number) <= len(self.axes):
             return self._refuse(NO_AXIS)
+        axis = self.axes[int(number or "1") - 1]
         if rest == "?":
-            return self._tell(word)
-        return self._do(word, rest)
+            return self._tell(axis, word)
+        if word in ("ST", "AB"):
+            for each in [axis] if number else self.axes:
+                each.stop()
+            return None
+        return self._do(axis, word, rest)
 
     def _refuse(self, error):
         self.errors.append(error)
         return None
 
-    def _tell(self, word):
+    def _tell(self, axis, word):
         if word in ("VE", "*IDN"):
             return IDENTITY
         if word in ("TB", "TE"):
             error = self.errors.pop(0) if self.errors else 0
             return f"{error}, {int(time.monotonic() * 1e3)}, {TEXTS[error]}" if word == "TB" else str(error)
-        numbers = {"TP": self.axis.place_deg, "PA": lambda: self.axis.end_deg, "SL": lambda: self.lower_deg,
+        numbers = {"TP": axis.place_deg, "PA": lambda: axis.end_deg, "SL": lambda: self.lower_deg,
                    "SR": lambda: self.upper_deg}
         if word in numbers:
             return f"{numbers[word]():.6f}"
+        if word == "TS":
+            return chr(0x50 + sum(1 << k for k, each in enumerate(self.axes[:4]) if not each.is_done()))
         if word == "MD":
-            return "1" if self.axis.is_done() else "0"
+            return "1" if axis.is_done() else "0"
         return {"SN": "7", "MO": "1", "ID": "FOREIGN-RV120"}.get(word) or self._refuse(NO_COMMAND)
 
-    def _do(self, word, rest):
-        if word in ("ST", "AB"):
-            self.axis.stop()
-        elif word == "OR":
-            self.axis.go(0.0)
+    def _do(self, axis, word, rest):
+        if word == "OR":
+            axis.go(0.0)
         elif word == "PA":
-            return self._move(rest)
+            return self._move(axis, rest)
         elif word not in ("SN", "MO"):
             return self._refuse(NO_COMMAND)
         return None
 
-    def _move(self, text):
+    def _move(self, axis, text):
         try:
             to_deg = round(float(text), 6)
         except ValueError:
             return self._refuse(NO_PARAMETER)
         if not self.lower_deg <= to_deg <= self.upper_deg:
             return self._refuse(BEYOND_LOWER if to_deg < self.lower_deg else BEYOND_UPPER)
-        self.axis.go(to_deg)
+        axis.go(to_deg)
         own = self.happen()
         if own == "unsettled":
-            self.axis.settles = False
+            axis.settles = False
         if own == "freeze":
-            self.axis.takes_s *= 100.0  # it is on its way for long
+            axis.takes_s *= 100.0  # it is on its way for long
         return None

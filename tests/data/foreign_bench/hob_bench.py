@@ -71,15 +71,14 @@ class HobController(EspController):
     """Its events are changes of speed."""
 
     def __init__(self, script):
-        super().__init__(script)
-        self.axis = TurningAxis()
+        super().__init__(script, [TurningAxis()])
         self.lower_deg, self.upper_deg = -1e6, 1e6
 
-    def _do(self, word, rest):
+    def _do(self, axis, word, rest):
         if word != "XV":
-            return super()._do(word, rest)
+            return super()._do(axis, word, rest)
         speed_deg_s, ramp_ms = (float(text) for text in rest.split(","))
-        self.axis.go_over(speed_deg_s, 1e-3 * ramp_ms)
+        axis.go_over(speed_deg_s, 1e-3 * ramp_ms)
         self.happen()
         return None
 
@@ -159,7 +158,7 @@ def main():
     controller = HobController(sys.argv[2:])
     hidden = {"transmission": [{"order": k, "amplitude_arcsec": size, "phase_deg": math.degrees(phase)} for k, size, phase in TRANSMISSION],
               "ring": [{"order": k, "amplitude_arcsec": size, "phase_deg": math.degrees(phase)} for k, size, phase in RING]}
-    show([controller, Counters(sys.argv[2:], controller.axis, Chain())], hidden, sys.argv[1])
+    show([controller, Counters(sys.argv[2:], controller.axes[0], Chain())], hidden, sys.argv[1])
 
 
 main()

@@ -120,7 +120,7 @@ class _Port(socketserver.ThreadingTCPServer):
     daemon_threads = True
 
     def __init__(self, device, lock):
-        super().__init__(("127.0.0.1", 0), _Conversation)
+        super().__init__(("127.0.0.1", 0), getattr(device, "conversation", _Conversation))
         self.device, self.lock = device, lock
 
 

@@ -128,7 +128,7 @@ class Indexer(ScpiDevice):
 
 def main():
     controller = EspController(sys.argv[2:])
-    stand = Stand(controller.axis)
+    stand = Stand(controller.axes[0])
     positions = [k * 360.0 / POSITIONS for k in range(POSITIONS)]
     hidden = {"position_deg": positions, "turntable_arcsec": [turntable_arcsec(at) for at in positions],
               "multitooth_arcsec": [tooth_arcsec(k * TEETH // POSITIONS) for k in range(POSITIONS)], "roll_mrad": ROLL_MRAD}
