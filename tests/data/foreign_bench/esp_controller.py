@@ -18,7 +18,7 @@ IDENTITY = "ESP301 Version 3.0.1 foreign"
 class Axis:
     """A servo that goes from rest to rest along half a cosine, at most at SPEED, and settles for a moment."""
 
-    SPEED_DEG_S = 1500.0
+    SPEED_DEG_S = 5000.0
     SHORTEST_S = 0.02
     SETTLING_S = 0.01
 
