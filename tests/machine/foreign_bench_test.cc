@@ -15,10 +15,10 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Of standard uncertainties. A turntable's noise is the same in every run.
+/// Of standard uncertainties. The noise of benches that are read at stops is the same in every run.
 constexpr double kCoverage = 3.0;
 /// Of a machine that turns on, when a path begins is a matter of the computer's time, and so is what is drawn: 14 values in every
-/// run, with 20 degrees of freedom at the least; Student's t leaves 1 run in 10 000 outside.
+/// run, with 20 degrees of freedom or more; Student's t leaves 1 run in 10 000 outside.
 constexpr double kCoverageByChance = 6.0;
 
 /// `measure` of a scenario on a bench whose file has `{device}` where a device's address belongs.
