@@ -87,6 +87,27 @@ TEST(MeasurePositions, LeavesOutTheTurnThatWasNotFinished) {
   EXPECT_EQ(none.at(0).status, PositionStatus::kNoTurn);
 }
 
+// A counter that latches at lines gives angles a whole turn apart, but for the rounding of their decimals.
+TEST(MeasurePositions, TakesEveryTurnOfLinesThatLieWholeTurnsApart) {
+  constexpr int kTurns = 5, kLines = 30, kStarts = 200;  // orders 1 to 14 need 29 of them
+  constexpr double kStep_deg = 360.0 / kLines;
+  for (int start = 0; start < kStarts; ++start) {
+    const int direction = start % 2 == 0 ? 1 : -1;
+    std::vector<HobSample> samples;
+    for (int k = 0; k < kTurns * kLines; ++k) {
+      HobSample sample{.direction = direction, .head_rad = 0.0};
+      sample.table_encoder_rad = (0.02 * start + direction * k * kStep_deg) * units::deg;
+      sample.hob_encoder_rad = 10.0 * sample.table_encoder_rad;
+      samples.push_back(sample);
+    }
+    TransmissionOptions options = OrdersUpTo(14);
+    options.table_turns_per_hob_turn = 0.1;
+    const auto positions = MeasurePositions(samples, options);
+    EXPECT_EQ(positions.at(0).turns, kTurns) << "start " << start;
+    EXPECT_EQ(positions.at(0).turns_left_out, 0) << "start " << start;
+  }
+}
+
 TEST(MeasurePositions, StatesTheScatterOfTheMeanOfItsTurns) {
   HobMachine machine = Machine();
   machine.encoder.clear();

@@ -59,9 +59,20 @@ void CheckHeads(const std::vector<Pass>& passes) {
   }
 }
 
+/// Half the usual way from sample to sample. Turns are cut so far ahead of their first sample: a sample that lies a whole turn
+/// behind the first, as a counter's lines do, would fall on either side by rounding or noise, and an end a sample short is no turn.
+double HalfStep_rad(const Pass& pass) {
+  std::vector<double> steps_rad;
+  for (std::size_t i = 1; i < pass.th_rad.size(); ++i) steps_rad.push_back(std::abs(pass.th_rad[i] - pass.th_rad[i - 1]));
+  if (steps_rad.empty()) return 0.0;
+  const auto middle = steps_rad.begin() + std::ssize(steps_rad) / 2;
+  std::ranges::nth_element(steps_rad, middle);
+  return 0.5 * *middle;
+}
+
 /// Turns since the pass began; a sample that jitters back over the start belongs to the first one.
-int TurnOf(const Pass& pass, double th_rad) {
-  const double turns = pass.direction * (th_rad - pass.th_rad.front()) / units::turn;
+int TurnOf(const Pass& pass, double th_rad, double half_step_rad) {
+  const double turns = (pass.direction * (th_rad - pass.th_rad.front()) + half_step_rad) / units::turn;
   return std::max(0, static_cast<int>(std::floor(turns)));
 }
 
@@ -89,8 +100,10 @@ std::vector<Pass> SortPasses(const std::vector<HobSample>& samples, const Transm
 }
 
 std::vector<Turn> CutIntoTurns(const Pass& pass) {
+  const double half_step_rad = HalfStep_rad(pass);
   std::map<int, std::vector<std::size_t>> samples_of;
-  for (std::size_t i = 0; i < pass.th_rad.size(); ++i) samples_of[TurnOf(pass, pass.th_rad[i])].push_back(i);
+  for (std::size_t i = 0; i < pass.th_rad.size(); ++i)
+    samples_of[TurnOf(pass, pass.th_rad[i], half_step_rad)].push_back(i);
   std::vector<Turn> turns;
   for (const auto& [index, picked] : samples_of) {
     const double middle_rad = pass.th_rad.front() + pass.direction * (index + 0.5) * units::turn;

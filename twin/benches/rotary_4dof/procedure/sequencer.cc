@@ -69,6 +69,7 @@ void Sequencer::Send(RotaryBench& bench, double target_rad) {
 void Sequencer::Tilt(double yaw_rad, double tilt_rad) {
   yaw_rad_ = yaw_rad;
   tilt_rad_ = tilt_rad;
+  has_tilted_ = true;
   bench().goniometer.MoveTo(yaw_rad, tilt_rad);
 }
 
@@ -196,7 +197,7 @@ void Sequencer::ReturnToLastStop() {
     Send(bench, behind_rad);
     Send(bench, at_rad);
   }
-  bench.goniometer.MoveTo(yaw_rad_, tilt_rad_);
+  if (has_tilted_) bench.goniometer.MoveTo(yaw_rad_, tilt_rad_);
 }
 
 }  // namespace twinbench::procedure

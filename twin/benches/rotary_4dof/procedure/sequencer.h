@@ -80,6 +80,7 @@ class Sequencer {
   int planned_;
   int next_reading_ = 0;
   double shift_rad_ = 0.0, target_rad_ = 0.0, yaw_rad_ = 0.0, tilt_rad_ = 0.0;
+  bool has_tilted_ = false;  // the goniometer; a bench whose procedure never does may have none
   Reading last_;
 };
 

@@ -1,0 +1,120 @@
+"""A motion controller of rotary axes that is spoken to in Newport's ESP commands, as docs/hardware.md needs them.
+
+Angles are in degrees and in steps of a millionth of one. It knows no MS?, as the ESP301 does not.
+"""
+import math
+import re
+import time
+
+from line_devices import Device
+
+COMMAND = re.compile(r"^(\d*)(\*IDN|[A-Z]{2})(\?|[-+0-9.eE,]*)$")
+NO_COMMAND, NO_AXIS, NO_PARAMETER, BEYOND_LOWER, BEYOND_UPPER = 6, 9, 38, 107, 106
+TEXTS = {0: "NO ERROR DETECTED", NO_COMMAND: "COMMAND DOES NOT EXIST", NO_AXIS: "AXIS NUMBER OUT OF RANGE",
+         NO_PARAMETER: "COMMAND PARAMETER MISSING", BEYOND_LOWER: "AXIS-1 BELOW ITS TRAVEL", BEYOND_UPPER: "AXIS-1 ABOVE ITS TRAVEL"}
+IDENTITY = "ESP301 Version 3.0.1 foreign"
+
+
+class Axis:
+    """A servo that goes from rest to rest along half a cosine, at most at SPEED, and settles for a moment."""
+
+    SPEED_DEG_S = 5000.0
+    SHORTEST_S = 0.02
+    SETTLING_S = 0.01
+
+    def __init__(self):
+        self.begin_deg = self.end_deg = 0.0
+        self.begin_s, self.takes_s = time.monotonic(), 0.0
+        self.settles = True
+
+    def place_deg(self):
+        done = (time.monotonic() - self.begin_s) / self.takes_s if self.takes_s > 0.0 else 1.0
+        share = 0.5 - 0.5 * math.cos(math.pi * min(done, 1.0))
+        return self.begin_deg + (self.end_deg - self.begin_deg) * share
+
+    def go(self, to_deg):
+        self.begin_deg, self.end_deg = self.place_deg(), to_deg
+        way_deg = abs(self.end_deg - self.begin_deg)
+        self.takes_s = max(self.SHORTEST_S, 0.5 * math.pi * way_deg / self.SPEED_DEG_S)  # fastest in the middle
+        self.begin_s = time.monotonic()
+        self.settles = True
+
+    def stop(self):
+        self.begin_deg = self.end_deg = round(self.place_deg(), 6)
+        self.takes_s, self.settles = 0.0, True
+
+    def is_done(self):
+        return self.settles and time.monotonic() - self.begin_s >= self.takes_s + self.SETTLING_S
+
+
+class EspController(Device):
+    """Its events are moves. A fault of its own: `unsettled`, a move that ends where it should and is never called done."""
+
+    name = "controller"
+    line_end = "\r\n"
+
+    def __init__(self, script, axes=None):
+        super().__init__(script)
+        self.axes = axes or [Axis()]  # 1, 2, ...
+        self.lower_deg, self.upper_deg = -800.0, 800.0
+        self.errors = []
+
+    def obey(self, command):
+        words = COMMAND.match(command.upper())
+        if not words:
+            return self._refuse(NO_COMMAND)
+        number, word, rest = words.groups()
+        if number and not 1 <= int(number) <= len(self.axes):
+            return self._refuse(NO_AXIS)
+        axis = self.axes[int(number or "1") - 1]
+        if rest == "?":
+            return self._tell(axis, word)
+        if word in ("ST", "AB"):
+            for each in [axis] if number else self.axes:
+                each.stop()
+            return None
+        return self._do(axis, word, rest)
+
+    def _refuse(self, error):
+        self.errors.append(error)
+        return None
+
+    def _tell(self, axis, word):
+        if word in ("VE", "*IDN"):
+            return IDENTITY
+        if word in ("TB", "TE"):
+            error = self.errors.pop(0) if self.errors else 0
+            return f"{error}, {int(time.monotonic() * 1e3)}, {TEXTS[error]}" if word == "TB" else str(error)
+        numbers = {"TP": axis.place_deg, "PA": lambda: axis.end_deg, "SL": lambda: self.lower_deg,
+                   "SR": lambda: self.upper_deg}
+        if word in numbers:
+            return f"{numbers[word]():.6f}"
+        if word == "TS":
+            return chr(0x50 + sum(1 << k for k, each in enumerate(self.axes[:4]) if not each.is_done()))
+        if word == "MD":
+            return "1" if axis.is_done() else "0"
+        return {"SN": "7", "MO": "1", "ID": "FOREIGN-RV120"}.get(word) or self._refuse(NO_COMMAND)
+
+    def _do(self, axis, word, rest):
+        if word == "OR":
+            axis.go(0.0)
+        elif word == "PA":
+            return self._move(axis, rest)
+        elif word not in ("SN", "MO"):
+            return self._refuse(NO_COMMAND)
+        return None
+
+    def _move(self, axis, text):
+        try:
+            to_deg = round(float(text), 6)
+        except ValueError:
+            return self._refuse(NO_PARAMETER)
+        if not self.lower_deg <= to_deg <= self.upper_deg:
+            return self._refuse(BEYOND_LOWER if to_deg < self.lower_deg else BEYOND_UPPER)
+        axis.go(to_deg)
+        own = self.happen()
+        if own == "unsettled":
+            axis.settles = False
+        if own == "freeze":
+            axis.takes_s *= 100.0  # it is on its way for long
+        return None

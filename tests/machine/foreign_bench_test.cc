@@ -1,0 +1,329 @@
+#include "tests/support/foreign_bench.h"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <numeric>
+
+#include "tests/tools/program.h"
+#include "twin/core/run_record.h"
+
+/// `measure` on benches that others have written, in real time: their controllers, instruments and physics.
+namespace twinbench::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Of standard uncertainties. The noise of benches that are read at stops is the same in every run.
+constexpr double kCoverage = 3.0;
+/// Of a machine that turns on, when a path begins is a matter of the computer's time, and so is what is drawn: 14 values in every
+/// run, with 20 degrees of freedom or more; Student's t leaves 1 run in 10 000 outside.
+constexpr double kCoverageByChance = 6.0;
+
+/// `measure` of a scenario on a bench whose file has `{device}` where a device's address belongs.
+class ForeignBenchProgram : public Program {
+ protected:
+  ForeignBenchProgram(const std::string& program, const std::string& scenario, std::string bench_file)
+      : program_(program), bench_file_(std::move(bench_file)) {
+    Write("foreign.toml", scenario);
+  }
+
+  /// @param faults  The bench is troubled by them, as line_devices.py writes them.
+  Outcome MeasureWith(const std::vector<std::string>& faults, int attempts = 5) {
+    const ForeignBench bench(program_, At(""), faults);
+    hidden_ = bench.told();
+    std::string text = "attempts = " + std::to_string(attempts) + "\n" + bench_file_;
+    for (const auto& [device, port] : hidden_.at("ports").items()) {
+      const std::string place = "{" + device + "}";
+      for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
+        text.replace(at, place.size(), bench.Address(device));
+    }
+    Write("bench.toml", text);
+    return Call({"measure", "foreign.toml", "--bench", "bench.toml", "-o", "measured"});
+  }
+
+  nlohmann::json Separated() {
+    Write("readings.csv", ReadingsOf("measured"));
+    return Json({"separate", "readings.csv", "--scenario", "foreign.toml", "--json", "-"});
+  }
+
+  std::size_t Kept() const { return RunRecord::Open(At("measured"))->Readings().size(); }
+
+  /// How often each fault cost an attempt. On a computer that is short of time an answer may also be late by itself, which is
+  /// survived too: counts are at least what was scripted.
+  std::map<std::string, int> FailedAttemptsByFault() const {
+    std::map<std::string, int> counts;
+    for (const FailedAttempt& failed : RunRecord::Open(At("measured"))->FailedAttempts()) ++counts[failed.fault];
+    return counts;
+  }
+
+  static void ExpectStateUnknown(const Outcome& measured) {
+    EXPECT_EQ(measured.exit_code, 3);
+    EXPECT_THAT(measured.err, AllOf(HasSubstr("STATE UNKNOWN - USE THE EMERGENCY STOP"),
+                                    HasSubstr("WHETHER THE AXES STAND STILL IS NOT KNOWN"), HasSubstr("--resume")));
+  }
+
+  const nlohmann::json& hidden() const { return hidden_; }
+
+ private:
+  std::string program_, bench_file_;
+  nlohmann::json hidden_;
+};
+
+// --- a turntable ---
+
+constexpr const char* kForeignTurntable = R"(bench = "turntable_autocollimator"
+[multitooth]
+teeth = 360
+u_tooth_arcsec = 0.2
+[autocollimator]
+noise_arcsec = 0.05
+range_arcsec = 300.0
+[turntable_procedure]
+phases = ["full_circle"]
+positions = 6
+tilts_arcsec = [40.0, 200.0, 150.0]
+tilt_azimuths_deg = [25.0, 25.0, 140.0]
+shifts_teeth = [0, 0, 60]
+passes = [1, -1]
+dwell_s = [0.01]
+)";
+
+// Waits are short, so that faults are; the indexer may be silent for its move_timeout_s. It answers in microradians.
+constexpr const char* kForeignTurntableBench = R"(kind = "hardware"
+[machine]
+kind = "esp"
+address = "tcp:{controller}"
+identity = "ESP301 Version 3"
+timeout_s = 0.3
+stall_s = 0.5
+[axis_turntable]
+lower_deg = -30.0
+upper_deg = 390.0
+in_position_arcsec = 0.1
+[instrument_1]
+kind = "scpi"
+address = "tcp:{autocollimator}"
+identity = "FOREIGN OPTICS,AC300,"
+timeout_s = 0.3
+fields = ["autocollimator_x_arcsec", "autocollimator_y_arcsec", "ignored"]
+scale = [0.20626480624709636, 0.20626480624709636, 1.0]
+read = "MEAS:ANGL?"
+arm = ""
+[indexer]
+kind = "scpi"
+address = "tcp:{indexer}"
+timeout_s = 0.3
+move = "SEAT {tooth}"
+done = "SEAT?"
+move_timeout_s = 0.3
+[fixture]
+kind = "scpi"
+address = "tcp:{indexer}"
+timeout_s = 0.3
+)";
+
+class ForeignTurntable : public ForeignBenchProgram {
+ protected:
+  ForeignTurntable() : ForeignBenchProgram("turntable_bench.py", kForeignTurntable, kForeignTurntableBench) {}
+
+  /// Values of a table have no mean.
+  void ExpectRecovered(const nlohmann::json& table, const std::string& what) const {
+    const auto hidden_arcsec = hidden().at(what + "_arcsec").get<std::vector<double>>();
+    ASSERT_EQ(table.at("ez_arcsec").size(), hidden_arcsec.size()) << what;
+    const double mean_arcsec =
+        std::accumulate(hidden_arcsec.begin(), hidden_arcsec.end(), 0.0) / static_cast<double>(hidden_arcsec.size());
+    for (std::size_t k = 0; k < hidden_arcsec.size(); ++k) {
+      const double u_arcsec = table.at("u_ez_arcsec")[k];
+      EXPECT_NEAR(table.at("ez_arcsec")[k].get<double>(), hidden_arcsec[k] - mean_arcsec, kCoverage * u_arcsec) << what << " " << k;
+      EXPECT_LT(u_arcsec, 0.1) << what << " " << k;  // errors of an arcsec and more: an interval that says something
+    }
+  }
+};
+
+TEST_F(ForeignTurntable, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
+  const Outcome measured = MeasureWith(
+      {"controller.mute@3", "controller.unsettled@9", "autocollimator.late@14", "indexer.drop@30"});
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_EQ(Kept(), 36u);
+  std::map<std::string, int> failed = FailedAttemptsByFault();
+  EXPECT_GE(failed["timeout"], 2) << "a mute controller, a late autocollimator";
+  EXPECT_GE(failed["dropped"], 1);
+  EXPECT_GE(failed["not_in_position"], 1);
+
+  const nlohmann::json separation = Separated();
+  ExpectRecovered(separation.at("turntable"), "turntable");
+  ExpectRecovered(separation.at("multitooth"), "multitooth");
+  const auto& roll = separation.at("roll");
+  const double u_mrad = roll.at("u_gamma_mrad");
+  EXPECT_NEAR(roll.at("gamma_mrad").get<double>(), hidden().at("roll_mrad").get<double>(), kCoverage * u_mrad);
+  EXPECT_LT(u_mrad, 0.5);
+}
+
+TEST_F(ForeignTurntable, AControllerThatFreezesWhileTheTableTurnsIsToldSo) {
+  ExpectStateUnknown(MeasureWith({"controller.freeze@9"}, 1));
+  EXPECT_GT(Kept(), 0u);
+  EXPECT_LT(Kept(), 8u) << "what was kept are ends of moves 1 to 8 at most, one of which was the run-up";
+}
+
+// --- a hobbing machine ---
+
+constexpr const char* kForeignHob = R"(bench = "hob_transmission"
+[transmission]
+hob_starts = 2
+gear_teeth = 20
+worm_wheel_teeth = 36
+[hob_encoder]
+lines = 10000
+interpolation = 100
+[interferometer]
+used = false
+[hob_procedure]
+heads_deg = [0.0, 100.0]
+hob_speeds_rev_min = [9600.0]
+turns = 5
+samples_per_turn = 30
+ramp_s = 0.1
+rest_s = 0.0
+poll_s = 0.05
+)";
+
+// The counters answer in lines of the table's encoder, 18000 a turn, and in millionths of a turn of the hob.
+constexpr const char* kForeignHobBench = R"(kind = "hardware"
+[machine]
+kind = "esp"
+address = "tcp:{controller}"
+identity = "ESP301 Version 3"
+timeout_s = 0.3
+[instrument_1]
+kind = "scpi"
+address = "tcp:{counters}"
+identity = "FOREIGN COUNTING,IK2,"
+timeout_s = 0.3
+fields = ["table_encoder_deg", "hob_encoder_deg"]
+scale = [0.02, 0.00036]
+read = "NOW?"
+arm = "LATCH {samples},{lines}"
+fetch = "LATCHED?"
+[fixture]
+kind = "scpi"
+address = "tcp:{counters}"
+timeout_s = 0.3
+)";
+
+class ForeignHob : public ForeignBenchProgram {
+ protected:
+  ForeignHob() : ForeignBenchProgram("hob_bench.py", kForeignHob, kForeignHobBench) {}
+
+  /// Every order that is hidden in a curve, with its phase.
+  void ExpectRecovered(const nlohmann::json& curve, const std::string& what) const {
+    for (const auto& wave : hidden().at(what)) {
+      const auto at = wave.at("order").get<std::size_t>() - 1;
+      const double u_arcsec = curve.at("u_amplitude_arcsec")[at], u_deg = curve.at("u_phase_deg")[at];
+      EXPECT_NEAR(curve.at("amplitude_arcsec")[at].get<double>(), wave.at("amplitude_arcsec").get<double>(), kCoverageByChance * u_arcsec)
+          << what << wave;
+      EXPECT_NEAR(curve.at("phase_deg")[at].get<double>(), wave.at("phase_deg").get<double>(), kCoverageByChance * u_deg) << what << wave;
+      EXPECT_LT(u_arcsec, 0.1) << what << wave;  // of arcsecs
+    }
+  }
+};
+
+TEST_F(ForeignHob, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
+  const Outcome measured = MeasureWith({"counters.lost@4", "controller.drop@4"});
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_EQ(Kept(), 600u);
+  std::map<std::string, int> failed = FailedAttemptsByFault();
+  EXPECT_GE(failed["dropped"], 1);
+  EXPECT_GE(failed["overrun"], 1) << "a sample that was lost";
+
+  const nlohmann::json separation = Separated();
+  ExpectRecovered(separation.at("table_encoder"), "ring");
+  ASSERT_EQ(separation.at("transmission").size(), 2u) << "both directions";
+  for (const auto& direction : separation.at("transmission")) ExpectRecovered(direction, "transmission");
+}
+
+TEST_F(ForeignHob, AControllerThatFreezesWhileTheHobTurnsOnIsToldSo) {
+  ExpectStateUnknown(MeasureWith({"controller.freeze@3"}, 1));
+  EXPECT_EQ(Kept(), 150u) << "the first pass; event 3 begins the second";
+}
+
+// --- two rotary tables ---
+
+constexpr const char* kForeignRotary = R"(bench = "rotary_4dof"
+[procedure]
+phases = ["full_circle"]
+positions = 6
+shifts = [0, 1]
+passes = [1, -1]
+clamping = "reseat"
+dwell_s = [0.01]
+remount_s = 0.0
+)";
+
+constexpr const char* kForeignRotaryBench = R"(kind = "hardware"
+[adc]
+kind = "iio"
+uri = "ip:{adc}"
+device = "foreign-adc"
+channels = ["voltage0", "voltage1", "voltage2", "voltage3"]
+serial = "F-0815"
+timeout_s = 0.5
+[target]
+kind = "esp"
+address = "tcp:{controller}"
+identity = "ESP301 Version 3"
+axis = 1
+decimals = 6
+timeout_s = 0.3
+[reference]
+kind = "esp"
+address = "tcp:{controller}"
+identity = "ESP301 Version 3"
+axis = 2
+decimals = 6
+timeout_s = 0.3
+[fixture]
+kind = "scpi"
+address = "tcp:{fixture}"
+timeout_s = 0.3
+)";
+
+class ForeignRotary : public ForeignBenchProgram {
+ protected:
+  ForeignRotary() : ForeignBenchProgram("rotary_bench.py", kForeignRotary, kForeignRotaryBench) {}
+
+  /// What a component of a table is, but for its constant.
+  void ExpectRecovered(const nlohmann::json& separation, const std::string& table, const std::string& component,
+                       double u_most) const {
+    const auto truth = hidden().at(table + "." + component).get<std::vector<double>>();
+    const double mean = std::accumulate(truth.begin(), truth.end(), 0.0) / static_cast<double>(truth.size());
+    const nlohmann::json &values = separation.at(table).at(component), &u = separation.at(table).at("u_" + component);
+    ASSERT_EQ(values.size(), truth.size());
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      EXPECT_NEAR(values[k].get<double>(), truth[k] - mean, kCoverage * u[k].get<double>()) << table << component << k;
+      EXPECT_LT(u[k].get<double>(), u_most) << table << component << k;
+    }
+  }
+};
+
+/// Its bench file has no goniometer: a full circle needs none, also behind a fault.
+TEST_F(ForeignRotary, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
+  const Outcome measured = MeasureWith({"controller.mute@5", "adc.gap@3", "adc.drop@9"});
+  if (measured.err.find("made without the driver") != std::string::npos) GTEST_SKIP() << measured.err;
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_EQ(Kept(), 24u);
+  std::map<std::string, int> failed = FailedAttemptsByFault();
+  EXPECT_GE(failed["timeout"], 1);
+  EXPECT_GE(failed["dropped"], 1);
+  EXPECT_GE(failed["gap"], 1);
+
+  const nlohmann::json separation = Separated();
+  ExpectRecovered(separation, "target", "ez_arcsec", 0.3);
+  ExpectRecovered(separation, "reference", "ez_arcsec", 0.3);
+  ExpectRecovered(separation, "target", "ex_arcsec", 0.6);
+  ExpectRecovered(separation, "target", "dy_um", 0.5);
+}
+
+}  // namespace
+}  // namespace twinbench::test
