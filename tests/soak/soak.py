@@ -90,6 +90,17 @@ def readings_of(how, run):
     return table.read_text()
 
 
+def tell_difference(name, table, expected):
+    """@return whether there is one; its first lines are printed."""
+    if table == expected:
+        return False
+    apart = [pair for pair in zip(expected.splitlines(), table.splitlines()) if pair[0] != pair[1]]
+    print(f"{name}: {len(apart)} lines differ of {len(expected.splitlines())}, {len(table.splitlines())} in all", flush=True)
+    for line, other in apart[:3]:
+        print(f"  run     {line}\n  measure {other}", flush=True)
+    return True
+
+
 def measure(how, server, run, chance):
     """Until it is whole. @return (faults, kills, resumes), or None if it did not become so."""
     faults = kills = 0
@@ -139,7 +150,7 @@ def soak(how, server, folder, expected, chance):
             unfinished += 1
         else:
             faults, kills, resumes = faults + done[0], kills + done[1], resumes + done[2]
-            different += readings_of(how, run) != expected
+            different += tell_difference(run.name, readings_of(how, run), expected)
         subprocess.run(["rm", "-rf", run, folder / (run.name + ".csv")], check=True)
         largest_kB = max(largest_kB, server.memory_kB())
         if runs == WARM_UP_RUNS:
