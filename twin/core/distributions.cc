@@ -30,8 +30,13 @@ double NormalLogDensity(double value, double scale) {
   return -0.5 * value * value / (scale * scale) - std::log(scale) - 0.5 * std::log(2.0 * std::numbers::pi);
 }
 
+double LogGamma(double x) {
+  int sign = 0;
+  return ::lgamma_r(x, &sign);
+}
+
 double StudentLogDensity(double value, double dof, double scale) {
-  return std::lgamma(0.5 * (dof + 1.0)) - std::lgamma(0.5 * dof) - 0.5 * std::log(dof * std::numbers::pi) -
+  return LogGamma(0.5 * (dof + 1.0)) - LogGamma(0.5 * dof) - 0.5 * std::log(dof * std::numbers::pi) -
          std::log(scale) - 0.5 * (dof + 1.0) * std::log1p(value * value / (dof * scale * scale));
 }
 

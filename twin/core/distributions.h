@@ -11,6 +11,9 @@ inline constexpr double kLeastDof = 0.5;
 /// unless dof > 0. Exact to rounding (Boost.Math's regularised incomplete gamma function).
 double ChiSquaredExceedance(double chi2, double dof);
 
+/// ln Gamma(x), x > 0. From several threads at once, which std::lgamma must not be: it writes a sign for all of them.
+double LogGamma(double x);
+
 /// The value that a standard normal variable exceeds with this probability, between 0 and 1.
 double NormalExceededWith(double probability);
 

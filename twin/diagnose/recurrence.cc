@@ -31,7 +31,7 @@ double PoissonTail(int count, double mean) {
 double BinomialTail(int count, int trials, double p) {
   double tail = 0.0;
   for (int k = count; k <= trials; ++k)
-    tail += std::exp(std::lgamma(trials + 1.0) - std::lgamma(k + 1.0) - std::lgamma(trials - k + 1.0) +
+    tail += std::exp(LogGamma(trials + 1.0) - LogGamma(k + 1.0) - LogGamma(trials - k + 1.0) +
                      k * std::log(p) + (trials - k) * std::log1p(-p));
   return tail;
 }

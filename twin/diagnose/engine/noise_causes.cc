@@ -116,7 +116,7 @@ double Farthest(const Standardised& s) {
 double LikelihoodWithout(std::size_t left_out, const Standardised& rest, const Standardised& s) {
   const auto count = static_cast<double>(left_out), all = static_cast<double>(s.rows.size());
   const double chosen =
-      std::lgamma(all + 1) - std::lgamma(count + 1) - std::lgamma(all - count + 1) + std::log1p(count);
+      LogGamma(all + 1) - LogGamma(count + 1) - LogGamma(all - count + 1) + std::log1p(count);
   return NormalLikelihood(rest) - count * std::log(2.0 * std::max(1.0, Farthest(s))) - chosen;
 }
 
