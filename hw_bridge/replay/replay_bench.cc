@@ -13,10 +13,13 @@ bool LooksAtEncoders(const std::string& record_folder) {
 }
 
 ReplayBench::ReplayBench(const std::string& record_folder)
-    : folder_(record_folder), calls_(record_folder, RunRecord::Open(record_folder)->Calls()) {
-  const auto record = RunRecord::Open(record_folder);
-  readings_ = record->Readings();
-  blocks_ = record->RawBlocks();
+    : ReplayBench(record_folder, *RunRecord::Open(record_folder)) {}
+
+ReplayBench::ReplayBench(const std::string& record_folder, const RunRecord& record)
+    : folder_(record_folder),
+      calls_(record_folder, record.Calls()),
+      readings_(record.Readings()),
+      blocks_(record.RawBlocks()) {
   asked_ = std::make_unique<AskedBench>(
       [this](const std::string& device, const std::string& request) { return Answer(device, request); },
       [this] { return now_; }, static_cast<Simulation*>(this));

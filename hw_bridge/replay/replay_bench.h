@@ -21,6 +21,7 @@ class ReplayBench : private Simulation {
   RotaryBench Bench();
 
  private:
+  ReplayBench(const std::string& record_folder, const RunRecord& record);
   CallAnswer Answer(const std::string& device, const std::string& request);
   Acquisition BlockOf(const DeviceCall& call);
   void Restart() override;

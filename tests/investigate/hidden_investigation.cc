@@ -9,7 +9,6 @@
 #include "tools/twinbench/bench_means.h"
 #include "twin/benches/registry.h"
 #include "twin/investigate/hidden_run.h"
-#include "twin/uncertainty/budget.h"
 
 namespace twinbench::investigate {
 namespace {
@@ -49,9 +48,7 @@ Goal GoalOf(const Wish& wish, const Scenario& believed, const Measure& measure, 
   Certainty certainty(goal);
   certainty.Add(means.evaluate(first, believed));
   const double own = certainty.u();
-  certainty.Share(uncertainty::Budgets(believed, [&](const Scenario& other) {
-    return uncertainty::QuantitiesOf(means.evaluate(first, other));
-  }));
+  certainty.Share(BudgetsOf(first, believed, means));
   goal.u = std::hypot(certainty.SharedU(), own / wish.times);
   return goal;
 }

@@ -58,6 +58,20 @@ class ForeignBenchProgram : public Program {
     return counts;
   }
 
+  /// Values of a table have no mean.
+  /// @param u_most  Of an interval that says something.
+  static void ExpectRecoveredButForMean(const nlohmann::json& table, const std::string& component, const nlohmann::json& hidden,
+                                        double u_most) {
+    const auto truth = hidden.get<std::vector<double>>();
+    const nlohmann::json &values = table.at(component), &u = table.at("u_" + component);
+    ASSERT_EQ(values.size(), truth.size());
+    const double mean = std::accumulate(truth.begin(), truth.end(), 0.0) / static_cast<double>(truth.size());
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      EXPECT_NEAR(values[k].get<double>(), truth[k] - mean, kCoverage * u[k].get<double>()) << k;
+      EXPECT_LT(u[k].get<double>(), u_most) << k;
+    }
+  }
+
   static void ExpectStateUnknown(const Outcome& measured) {
     EXPECT_EQ(measured.exit_code, 3);
     EXPECT_THAT(measured.err, AllOf(HasSubstr("STATE UNKNOWN - USE THE EMERGENCY STOP"),
@@ -128,17 +142,9 @@ class ForeignTurntable : public ForeignBenchProgram {
  protected:
   ForeignTurntable() : ForeignBenchProgram("turntable_bench.py", kForeignTurntable, kForeignTurntableBench) {}
 
-  /// Values of a table have no mean.
-  void ExpectRecovered(const nlohmann::json& table, const std::string& what) const {
-    const auto hidden_arcsec = hidden().at(what + "_arcsec").get<std::vector<double>>();
-    ASSERT_EQ(table.at("ez_arcsec").size(), hidden_arcsec.size()) << what;
-    const double mean_arcsec =
-        std::accumulate(hidden_arcsec.begin(), hidden_arcsec.end(), 0.0) / static_cast<double>(hidden_arcsec.size());
-    for (std::size_t k = 0; k < hidden_arcsec.size(); ++k) {
-      const double u_arcsec = table.at("u_ez_arcsec")[k];
-      EXPECT_NEAR(table.at("ez_arcsec")[k].get<double>(), hidden_arcsec[k] - mean_arcsec, kCoverage * u_arcsec) << what << " " << k;
-      EXPECT_LT(u_arcsec, 0.1) << what << " " << k;  // errors of an arcsec and more: an interval that says something
-    }
+  void ExpectRecovered(const nlohmann::json& separation, const std::string& table) const {
+    SCOPED_TRACE(table);
+    ExpectRecoveredButForMean(separation.at(table), "ez_arcsec", hidden().at(table + "_arcsec"), 0.1);
   }
 };
 
@@ -153,8 +159,8 @@ TEST_F(ForeignTurntable, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
   EXPECT_GE(failed["not_in_position"], 1);
 
   const nlohmann::json separation = Separated();
-  ExpectRecovered(separation.at("turntable"), "turntable");
-  ExpectRecovered(separation.at("multitooth"), "multitooth");
+  ExpectRecovered(separation, "turntable");
+  ExpectRecovered(separation, "multitooth");
   const auto& roll = separation.at("roll");
   const double u_mrad = roll.at("u_gamma_mrad");
   EXPECT_NEAR(roll.at("gamma_mrad").get<double>(), hidden().at("roll_mrad").get<double>(), kCoverage * u_mrad);
@@ -293,17 +299,10 @@ class ForeignRotary : public ForeignBenchProgram {
  protected:
   ForeignRotary() : ForeignBenchProgram("rotary_bench.py", kForeignRotary, kForeignRotaryBench) {}
 
-  /// What a component of a table is, but for its constant.
   void ExpectRecovered(const nlohmann::json& separation, const std::string& table, const std::string& component,
                        double u_most) const {
-    const auto truth = hidden().at(table + "." + component).get<std::vector<double>>();
-    const double mean = std::accumulate(truth.begin(), truth.end(), 0.0) / static_cast<double>(truth.size());
-    const nlohmann::json &values = separation.at(table).at(component), &u = separation.at(table).at("u_" + component);
-    ASSERT_EQ(values.size(), truth.size());
-    for (std::size_t k = 0; k < truth.size(); ++k) {
-      EXPECT_NEAR(values[k].get<double>(), truth[k] - mean, kCoverage * u[k].get<double>()) << table << component << k;
-      EXPECT_LT(u[k].get<double>(), u_most) << table << component << k;
-    }
+    SCOPED_TRACE(table + "." + component);
+    ExpectRecoveredButForMean(separation.at(table), component, hidden().at(table + "." + component), u_most);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "twin/core/effect_catalogue.h"
@@ -113,6 +114,13 @@ Diagnosis DiagnosisOf(const LinearRun& run, const Analysis& analysis, std::vecto
   return diagnosis;
 }
 
+Cause UnfittedCause(const CauseKey& key, double probability) {
+  Cause cause;
+  std::tie(cause.effect, cause.where) = key;
+  cause.probability = probability;
+  return cause;
+}
+
 /// @return named causes by their evidence alone, most probable first, none of them likely.
 std::vector<Cause> SuspectsOf(const Analysis& analysis) {
   constexpr std::size_t kMostSuspects = 8;
@@ -125,13 +133,7 @@ std::vector<Cause> SuspectsOf(const Analysis& analysis) {
       probability[{families[k].effect, families[k].where}] += std::exp(logs[static_cast<Eigen::Index>(k)]) / all;
   }
   std::vector<Cause> suspects;
-  for (const auto& [key, p] : probability) {
-    Cause cause;
-    cause.effect = key.first;
-    cause.where = key.second;
-    cause.probability = p;
-    suspects.push_back(std::move(cause));
-  }
+  for (const auto& [key, p] : probability) suspects.push_back(UnfittedCause(key, p));
   std::ranges::stable_sort(suspects, std::ranges::greater{}, &Cause::probability);
   if (suspects.size() > kMostSuspects) suspects.resize(kMostSuspects);
   return suspects;
@@ -145,13 +147,9 @@ std::vector<Cause> LessLikelyOf(const Analysis& analysis) {
     const Posterior posterior = PosteriorOf(term, analysis.scanner->Families());
     const std::vector<Share> listed = CredibleSet(posterior);
     if (listed.empty() || posterior.unknown > 0.5) continue;
-    for (const auto& [key, probability] : OutsideCredibleSet(posterior, kLeast)) {
-      Cause cause;
-      cause.effect = key.first;
-      cause.where = key.second;
-      cause.probability = probability;
-      cause.indistinguishable_from = {{listed.front().first.first, listed.front().first.second}};
-      less_likely.push_back(std::move(cause));
+    for (const auto& [key, p] : Outside(listed, posterior, kLeast)) {
+      less_likely.push_back(UnfittedCause(key, p));
+      less_likely.back().indistinguishable_from = {{listed.front().first.first, listed.front().first.second}};
     }
   }
   return less_likely;

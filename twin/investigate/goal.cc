@@ -113,6 +113,12 @@ double Certainty::With(const nlohmann::json& results) const {
   return RootMeanSquare(both);
 }
 
+std::vector<uncertainty::Budget> BudgetsOf(const std::vector<Reading>& readings, const Scenario& scenario, const Means& means) {
+  return uncertainty::Budgets(scenario, [&](const Scenario& other) {
+    return uncertainty::QuantitiesOf(means.evaluate(readings, other));
+  });
+}
+
 std::vector<std::string> GoalNames(const nlohmann::json& results) {
   std::vector<std::string> names;
   for (const uncertainty::Quantity& q : uncertainty::QuantitiesOf(results)) {

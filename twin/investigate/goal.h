@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "twin/investigate/means.h"
 #include "twin/uncertainty/budget.h"
 
 namespace twinbench::investigate {
@@ -56,6 +57,9 @@ class Certainty {
   std::map<std::string, double> shared_;            // variance by place
   std::map<std::string, double> shared_by_source_;  // variance, all places together
 };
+
+/// Of the results of these readings.
+std::vector<uncertainty::Budget> BudgetsOf(const std::vector<Reading>& readings, const Scenario& scenario, const Means& means);
 
 /// The lists of numbers in results that a goal can be about: "target.ez_arcsec".
 std::vector<std::string> GoalNames(const nlohmann::json& results);

@@ -12,7 +12,6 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/mean_of_runs.h"
 #include "twin/investigate/expected_information.h"
-#include "twin/uncertainty/budget.h"
 
 namespace twinbench::investigate {
 namespace {
@@ -138,9 +137,7 @@ class Loop {
     if (!Certainty(*options_.goal).Add(results))
       throw InputError("--goal " + options_.goal->Text(), "the first run's results have no such quantity",
                        fmt::format("one of {}", fmt::join(GoalNames(results), ", ")));
-    certainty_->Share(uncertainty::Budgets(scenario, [&](const Scenario& other) {
-      return uncertainty::QuantitiesOf(means_.evaluate(readings, other));
-    }));
+    certainty_->Share(BudgetsOf(readings, scenario, means_));
     if (certainty_->SharedU() >= options_.goal->u)
       throw InputError("--goal " + options_.goal->Text(),
                        fmt::format("cannot be reached by any number of runs: what they share leaves {:.3g} {}, most of it {}",

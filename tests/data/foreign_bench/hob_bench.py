@@ -14,7 +14,7 @@ import sys
 import time
 
 from esp_controller import EspController
-from line_devices import ScpiDevice, show
+from line_devices import ScpiDevice, mounted, show
 
 ARCSEC_DEG = 1.0 / 3600.0
 RATIO = 2.0 / 20.0  # starts of the hob over teeth of the gear
@@ -114,8 +114,8 @@ class Counters(ScpiDevice):
         self.wanted, self.every, self.line, self.direction = 0, 1, 0, 1
 
     def do(self, word):
-        if word.startswith("FIXT:MOUN "):
-            self.chain.head_deg = HEADS_DEG[int(word.split()[1].split(",")[0])]
+        if (set_up := mounted(word)) is not None:
+            self.chain.head_deg = HEADS_DEG[set_up]
             return True
         if word == "FIXT:CLE":
             return True

@@ -64,8 +64,9 @@ class ScpiDevice(Device):
 
     identity = ""
 
-    def __init__(self, script):
+    def __init__(self, script, stand=None):
         super().__init__(script)
+        self.stand = stand  # what the device is part of
         self.errors = []
 
     def obey(self, command):
@@ -81,6 +82,11 @@ class ScpiDevice(Device):
 
     def do(self, word):
         raise NotImplementedError
+
+
+def mounted(word):
+    """The number of the set-up that a hand is told to mount, or None if the command is another."""
+    return int(word.split()[1].split(",")[0]) if word.startswith("FIXT:MOUN ") else None
 
 
 class _Conversation(socketserver.StreamRequestHandler):

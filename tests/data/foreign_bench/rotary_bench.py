@@ -18,7 +18,7 @@ import sys
 import time
 
 from esp_controller import Axis, EspController
-from line_devices import Device, ScpiDevice, show
+from line_devices import Device, ScpiDevice, mounted, show
 
 ARCSEC = math.pi / 180.0 / 3600.0
 POSITIONS = 6
@@ -55,14 +55,11 @@ class Fixture(ScpiDevice):
     name = "fixture"
     identity = "FOREIGN HANDS,2,0,1"
 
-    def __init__(self, script, stack):
-        super().__init__(script)
-        self.stack = stack
-
     def do(self, word):
-        if not word.startswith("FIXT:MOUN "):
+        set_up = mounted(word)
+        if set_up is None:
             return None
-        self.stack.seat_arcsec = 7.0 * math.sin(1.0 + 2.0 * int(word.split()[1].split(",")[0]))
+        self.stand.seat_arcsec = 7.0 * math.sin(1.0 + 2.0 * set_up)
         return True
 
 

@@ -19,7 +19,7 @@ import sys
 import time
 
 from esp_controller import EspController
-from line_devices import ScpiDevice, show
+from line_devices import ScpiDevice, mounted, show
 
 ARCSEC_DEG = 1.0 / 3600.0
 MICRORAD_ARCSEC = 1e-6 * 180.0 * 3600.0 / math.pi
@@ -89,10 +89,6 @@ class Autocollimator(ScpiDevice):
     name = "autocollimator"
     identity = "FOREIGN OPTICS,AC300,0007,2.1"
 
-    def __init__(self, script, stand):
-        super().__init__(script)
-        self.stand = stand
-
     def do(self, word):
         if word != "MEAS:ANGL?":
             return None
@@ -109,10 +105,6 @@ class Indexer(ScpiDevice):
     name = "indexer"
     identity = "FOREIGN MECHANICS,HIRTH360,12,1.0"
 
-    def __init__(self, script, stand):
-        super().__init__(script)
-        self.stand = stand
-
     def do(self, word):
         if word == "SEAT?":
             return "1" if self.stand.is_seated() else "0"
@@ -120,8 +112,8 @@ class Indexer(ScpiDevice):
             self.happen()
             self.stand.seat(int(word.split()[1]))
             return True
-        if word.startswith("FIXT:MOUN "):
-            self.stand.set_up = int(word.split()[1].split(",")[0])
+        if (set_up := mounted(word)) is not None:
+            self.stand.set_up = set_up
             return True
         return True if word == "FIXT:CLE" else None
 

@@ -4,13 +4,17 @@
 
 namespace twinbench::diagnose {
 
+/// Whether any of the terms is a named wave of one frequency.
+bool HasNamedWave(const std::vector<Family>& families, const std::vector<Term>& terms);
+
 /// Probability that a named wave of one frequency is the fundamental of something that repeats as often and is no sine - a pump
 /// that switches, a cam -, from what waves of twice to five times its frequency explain of what all terms leave: the odds before
 /// (tuning::kNoSine) times the Bayes factor of overtones that are a sixth to two thirds as strong as the fundamental, against none.
 /// That they are as well seen as it is, is assumed. Zero where no wave was found.
+/// @param white    The residual, whitened, rows x 1.
 /// @param columns  Of all terms, with the slopes of their shapes, whitened.
 double ProbabilityOfOvertones(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
-                              const std::vector<Family>& families, const std::vector<Term>& terms,
-                              const Eigen::MatrixXd& columns);
+                              const std::vector<Family>& families, const Eigen::MatrixXd& white,
+                              const std::vector<Term>& terms, const Eigen::MatrixXd& columns);
 
 }  // namespace twinbench::diagnose

@@ -49,9 +49,9 @@ std::vector<Share> CredibleSet(const Posterior& posterior) {
   return {ranked.front()};
 }
 
-std::vector<Share> OutsideCredibleSet(const Posterior& posterior, double least) {
+std::vector<Share> Outside(const std::vector<Share>& set, const Posterior& posterior, double least) {
   std::vector<Share> ranked = Ranked(posterior);
-  ranked.erase(ranked.begin(), ranked.begin() + std::ssize(CredibleSet(posterior)));
+  ranked.erase(ranked.begin(), ranked.begin() + std::ssize(set));
   std::erase_if(ranked, [least](const Share& share) { return share.second < least; });
   return ranked;
 }

@@ -25,6 +25,7 @@ Posterior PosteriorOf(const Term& term, const std::vector<Family>& families);
 std::vector<Share> CredibleSet(const Posterior& posterior);
 
 /// The other causes, from `least` on, most probable first.
-std::vector<Share> OutsideCredibleSet(const Posterior& posterior, double least);
+/// @param set  CredibleSet of the same.
+std::vector<Share> Outside(const std::vector<Share>& set, const Posterior& posterior, double least);
 
 }  // namespace twinbench::diagnose

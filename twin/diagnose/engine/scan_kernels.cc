@@ -25,13 +25,13 @@ constexpr Eigen::Index kRowsAtOnce = 8;  // so many rows of B stay in the first-
   }
 }
 
-[[gnu::target_clones("avx512f", "avx2", "default")]] void LogOfShareLeft(const double* __restrict explained,
-                                                                         const double* __restrict power, double occam,
+/// From what is explained of each run to its log Bayes factor, in place.
+[[gnu::target_clones("avx512f", "avx2", "default")]] void LogOfShareLeft(const double* __restrict power, double occam,
                                                                          double half, Eigen::Index runs,
-                                                                         double* __restrict log_bayes) {
+                                                                         double* __restrict values) {
   for (Eigen::Index k = 0; k < runs; ++k) {
-    const double left = std::max(1.0 - explained[k] / power[k], 1e-12);
-    log_bayes[k] = -occam - half * LogOfPositive(left);
+    const double left = std::max(1.0 - values[k] / power[k], 1e-12);
+    values[k] = -occam - half * LogOfPositive(left);
   }
 }
 
@@ -70,8 +70,7 @@ void LogBayesOf(const Eigen::VectorXd& weight, const RunsByRow& c2, const Eigen:
                 double half, Eigen::ArrayXd& log_bayes) {
   log_bayes.setZero(c2.cols());
   for (Eigen::Index i = 0; i < weight.size(); ++i) log_bayes += weight[i] * c2.row(i).transpose().array();
-  const Eigen::ArrayXd explained = log_bayes;
-  LogOfShareLeft(explained.data(), power.data(), occam, half, explained.size(), log_bayes.data());
+  LogOfShareLeft(power.data(), occam, half, log_bayes.size(), log_bayes.data());
 }
 
 LogMean::LogMean(Eigen::Index runs)

@@ -7,8 +7,8 @@
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/estimate.h"
-#include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/engine/overtones.h"
+#include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/tuning.h"
 
@@ -144,7 +144,8 @@ Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidenc
     term.statistic = statistic();
   }
   // Beside another name it is a rival: that its size and its shape stand for each other does not tell the two apart.
-  if (problem.scanner.Families()[static_cast<std::size_t>(term.family)].kind != Kind::kNamed) return term;
+  const bool is_named = problem.scanner.Families()[static_cast<std::size_t>(term.family)].kind == Kind::kNamed;
+  if (of_unknown_size.empty() || !is_named) return term;
   for (const auto& [family, log_bayes] : of_unknown_size) evidence.log_bayes(family, 0) = log_bayes;
   term.log_posterior = LogPosterior(problem, evidence);
   return term;
@@ -276,8 +277,9 @@ SearchResult Search(const LinearRun& run, const NoiseModel& noise, const Project
   TryCausesFirst(problem, result);
   MeasureShares(problem, result.terms);
   EstimateTerms(run, noise, projector, scanner, problem.white, result.terms);
-  result.overtones = ProbabilityOfOvertones(run, noise, projector, scanner.Families(), result.terms,
-                                            ColumnsWithout(problem, result.terms, -1));
+  if (HasNamedWave(scanner.Families(), result.terms))
+    result.overtones = ProbabilityOfOvertones(run, noise, projector, scanner.Families(), problem.white, result.terms,
+                                              ColumnsWithout(problem, result.terms, -1));
   return result;
 }
 
