@@ -106,6 +106,15 @@ class Cases {
   InvestigationOptions how_;
 };
 
+/// What was believed after each run.
+void PrintSteps(const Investigation& investigation) {
+  for (const Step& step : investigation.steps) {
+    fmt::print("      {} {} ({:.0f} min):", step.number, step.run.name, step.minutes);
+    for (const auto& [name, probability] : step.believed) fmt::print(" {} {:.3f},", name, probability);
+    fmt::print(" unlisted {:.3f}\n", step.unlisted);
+  }
+}
+
 void PrintSummary(const ScoreOptions& options, Counts counts) {
   fmt::print("{}: right {} of {}, of those tied after the first run {} of {}, wrong above 0.95: {}\n",
              options.program.empty() ? options.bench : options.program, counts.right, counts.cases, counts.tied_right,
@@ -127,6 +136,7 @@ void Score(const ScoreOptions& options) {
     fmt::print("{:>3} {:<10} {:<40} {} runs {:.0f} min {:.1f} s {}: {}\n", k, ResultName(judged.result),
                judged.truth, judged.investigation.steps.size(), judged.investigation.minutes, judged.seconds,
                judged.tied_at_first ? "tied" : "", judged.answer);
+    if (options.only >= 0) PrintSteps(judged.investigation);
     std::fflush(stdout);
   }
   PrintSummary(options, std::move(counts));

@@ -70,6 +70,24 @@ bool FitAnew(const Hypothesis& from, const std::vector<TakenRun>& runs, const Me
   return true;
 }
 
+/// A weight over the evidence of the runs that it was drawn from.
+void WeighBy(double log_weight, std::size_t runs, Open& open) {
+  open.by = {runs, open.fit.chi2, open.fit.log_evidence};
+  open.fit.hypothesis.log_prior = log_weight - open.fit.log_evidence;
+}
+
+/// Sizes that later runs led to may fit the runs of its weight better than the ones that were found then - a slow decay
+/// where a fast one was tried. Their evidence was in the weight already: it is no news that they bring.
+void WeighByBetterSizes(const std::vector<TakenRun>& runs, const Means& means, Open& open) {
+  constexpr double kBetter = 1.0;  // of chi2
+  const std::span<const TakenRun> then = std::span(runs).first(std::min(open.by.runs, runs.size()));
+  if (then.empty() || Chi2Of(open.fit.hypothesis, then, means) > open.by.chi2 - kBetter) return;
+  const JointFit better = FitJointly(open.fit.hypothesis, then, means);
+  if (better.log_evidence <= open.by.log_evidence) return;
+  open.fit.hypothesis.log_prior -= better.log_evidence - open.by.log_evidence;
+  open.by = {open.by.runs, better.chi2, better.log_evidence};
+}
+
 /// Of one further cause of the catalogue against none.
 double LogOddsOfOne(const std::string& bench) {
   const double causes = static_cast<double>(std::max<std::size_t>(1, EffectCatalogue(bench).size()));
@@ -93,8 +111,7 @@ Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& r
   AddUnnamed(open, belief, runs.front(), means);
   for (const Weighed& weighed : open) {
     Open fitted{FitJointly(weighed.hypothesis, runs, means)};
-    fitted.fit.hypothesis.log_prior =
-        std::log(std::max(weighed.probability, kNegligible)) - fitted.fit.log_evidence;
+    WeighBy(std::log(std::max(weighed.probability, kNegligible)), runs.size(), fitted);
     belief.open.push_back(std::move(fitted));
   }
   Normalise(belief);
@@ -102,7 +119,10 @@ Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& r
 }
 
 void Update(Belief& belief, const std::vector<TakenRun>& runs, const Means& means) {
-  for (Open& open : belief.open) open.fit = FitJointly(open.fit.hypothesis, runs, means);
+  for (Open& open : belief.open) {
+    open.fit = FitJointly(open.fit.hypothesis, runs, means);
+    WeighByBetterSizes(runs, means, open);
+  }
   Normalise(belief);
 }
 
@@ -117,7 +137,9 @@ bool TakeIn(Belief& belief, const std::vector<Weighed>& found, const std::vector
     const auto there = std::ranges::find_if(
         belief.open, [&one](const Open& open) { return IsSame(open.fit.hypothesis, one.hypothesis); });
     if (there != belief.open.end()) {
-      is_better = FitAnew(one.hypothesis, runs, means, there->fit) || is_better;
+      if (!FitAnew(one.hypothesis, runs, means, there->fit)) continue;
+      WeighByBetterSizes(runs, means, *there);
+      is_better = true;
       continue;
     }
     Open open{FitJointly(one.hypothesis, runs, means)};
@@ -135,8 +157,9 @@ bool TakeIn(Belief& belief, const std::vector<Weighed>& found, const std::vector
   const auto weight = [](const Open& open) { return open.fit.hypothesis.log_prior + open.fit.log_evidence; };
   const auto best = std::ranges::max_element(taken, {}, weight);
   const double most = weight(*best) - logs[static_cast<std::size_t>(best - taken.begin())];
-  for (std::size_t k = 0; k < taken.size(); ++k)
-    taken[k].fit.hypothesis.log_prior = most + logs[k] - taken[k].fit.log_evidence;
+  for (std::size_t k = 0; k < taken.size(); ++k) {
+    if (&taken[k] != &*best) WeighBy(most + logs[k], runs.size(), taken[k]);
+  }
   Normalise(belief);
   return true;
 }
@@ -153,6 +176,10 @@ void Agreed(Belief& belief, const TakenRun& run, const Means& means) {
   const double odds = factor * belief.unlisted / std::max(1.0 - belief.unlisted, kNegligible);
   belief.unlisted = odds / (1.0 + odds);
   Normalise(belief);
+}
+
+void NamedByFits(Belief& belief) {
+  Disagreed(belief, 1.0 - diagnose::tuning::kListed);
 }
 
 void Disagreed(Belief& belief, double unknown) {

@@ -7,9 +7,17 @@
 
 namespace twinbench::investigate {
 
+/// What a hypothesis made of the runs that a diagnosis weighed it by. Its prior is that weight over this evidence, so
+/// it must be the best that the hypothesis has to say of them.
+struct WeighedBy {
+  std::size_t runs = 0;  // the first ones; 0: its prior was not drawn from readings
+  double chi2 = 0.0, log_evidence = 0.0;
+};
+
 /// A hypothesis that is still open, with its share of what is believed.
 struct Open {
   JointFit fit;
+  WeighedBy by = {};
   double probability = 0.0;  // of all, what the catalogue lacks included
 };
 
@@ -46,5 +54,9 @@ double MimicFactor(const Hypothesis& best, const TakenRun& run, const Means& mea
 /// explains.
 void Agreed(Belief& belief, const TakenRun& run, const Means& means);
 void Disagreed(Belief& belief, double unknown);
+
+/// The best hypothesis came up in fits of all runs together, before any diagnosis named it: of what looks exactly like
+/// it, the share that no diagnosis would call it either (tuning::kListed) is what the catalogue lacks.
+void NamedByFits(Belief& belief);
 
 }  // namespace twinbench::investigate

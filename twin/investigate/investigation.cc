@@ -124,6 +124,7 @@ class Loop {
     result_.u_goal = certainty_ ? certainty_->u() : kNaN;
     const diagnose::DiagnosisRun found = means_.diagnose(runs_.front().readings, scenario_, {});
     result_.belief = Begun(found, runs_, means_);
+    is_name_doubted_ = found.diagnosis.verdict != diagnose::Verdict::kNone;
     Note(std::move(step), Entropy_bit(result_.belief.Probabilities()));
   }
 
@@ -236,7 +237,16 @@ class Loop {
     Take(step, Altered(scenario_, sets));
     Update(belief, runs_, means_);
     Compare();
+    DoubtAName();
     Note(std::move(step), before);
+  }
+
+  /// Once, and behind the run that brought it up: that one says nothing against its doubles.
+  void DoubtAName() {
+    Belief& belief = result_.belief;
+    if (is_name_doubted_ || !belief.Best().fit.hypothesis.IsNamed()) return;
+    NamedByFits(belief);
+    is_name_doubted_ = true;
   }
 
   /// The last run, and all like it together, beside the best hypothesis: they agree, or they bring up more.
@@ -298,6 +308,7 @@ class Loop {
   std::optional<Certainty> certainty_;
   std::optional<Plans> plans_;  // once they are needed: each is a run of the twin
   std::vector<TakenRun> runs_;
+  bool is_name_doubted_ = false;  // a diagnosis has said how likely it is that the catalogue lacks the cause
   Investigation result_;
 };
 

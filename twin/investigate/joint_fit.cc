@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -68,7 +69,7 @@ struct Left {
   double chi2 = 0.0;
 };
 
-Left LeftOf(const Hypothesis& hypothesis, const std::vector<TakenRun>& runs, const Means& means) {
+Left LeftOf(const Hypothesis& hypothesis, std::span<const TakenRun> runs, const Means& means) {
   Left left;
   for (const TakenRun& run : runs) {
     left.of.push_back(LeftBy(hypothesis, run, means));
@@ -84,7 +85,7 @@ struct Normal {
   std::vector<Eigen::MatrixXd> slopes;  // of each run
 };
 
-Normal NormalOf(const Hypothesis& hypothesis, const Left& left, const std::vector<TakenRun>& runs,
+Normal NormalOf(const Hypothesis& hypothesis, const Left& left, std::span<const TakenRun> runs,
                 const Means& means, Eigen::Index sizes) {
   Normal normal{Eigen::MatrixXd::Zero(sizes, sizes), Eigen::VectorXd::Zero(sizes), {}};
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -95,7 +96,7 @@ Normal NormalOf(const Hypothesis& hypothesis, const Left& left, const std::vecto
   return normal;
 }
 
-double Rows(const std::vector<TakenRun>& runs) {
+double Rows(std::span<const TakenRun> runs) {
   double rows = 0.0;
   for (const TakenRun& run : runs) rows += run.projector->DegreesOfFreedom();
   return rows;
@@ -161,7 +162,7 @@ void Strike(const std::vector<Eigen::Index>& fixed, Normal& normal) {
 
 /// chi2 of what is left when the sizes have followed it by their slopes.
 double FollowedBy(const Left& left, const Normal& normal, const Eigen::VectorXd& breadth,
-                  const std::vector<TakenRun>& runs) {
+                  std::span<const TakenRun> runs) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(normal.gradient.size());
   for (std::size_t k = 0; k < runs.size(); ++k) gradient += Product(runs[k], normal.slopes[k], left.of[k]);
   return left.chi2 - gradient.dot(CovarianceOf(normal.matrix, breadth) * gradient);
@@ -207,7 +208,7 @@ NearBound SummedFrom(const Hypothesis& at, const Size& size, double breadth, dou
 
 /// The whole step, or as much less as the twin bends.
 std::pair<Hypothesis, Left> BestAlong(const Hypothesis& from, const std::vector<Size>& sizes,
-                                      const Eigen::VectorXd& by, const std::vector<TakenRun>& runs,
+                                      const Eigen::VectorXd& by, std::span<const TakenRun> runs,
                                       const Means& means) {
   std::pair<Hypothesis, Left> best;
   best.second.chi2 = std::numeric_limits<double>::infinity();
@@ -240,7 +241,7 @@ Eigen::VectorXd StepOf(const Normal& normal, const Hypothesis& hypothesis, const
 
 /// Each size by itself after the other, where the twin bends too much for all together.
 std::pair<Hypothesis, Left> BestOneByOne(const Hypothesis& from, const Left& at, const std::vector<Size>& sizes,
-                                         const Normal& normal, const std::vector<TakenRun>& runs,
+                                         const Normal& normal, std::span<const TakenRun> runs,
                                          const Means& means) {
   std::pair<Hypothesis, Left> best = {from, at};
   for (std::size_t k = 0; k < sizes.size(); ++k) {
@@ -255,7 +256,7 @@ std::pair<Hypothesis, Left> BestOneByOne(const Hypothesis& from, const Left& at,
 
 /// A bound that is not far may be where a size belongs: a state one way or the other, a gap that is crossed at
 /// once. Slopes do not lead there. When something happened has no such place: before the first reading it is not seen.
-void TryEnds(const std::vector<Size>& sizes, const std::vector<TakenRun>& runs, const Means& means,
+void TryEnds(const std::vector<Size>& sizes, std::span<const TakenRun> runs, const Means& means,
              Hypothesis& hypothesis, Left& left) {
   constexpr double kNotFar = 6.0;  // u
   for (const Size& size : sizes) {
@@ -274,7 +275,7 @@ void TryEnds(const std::vector<Size>& sizes, const std::vector<TakenRun>& runs, 
 }
 
 /// One size by its slope, the others as they are.
-std::pair<Hypothesis, Left> BestOf(const Size& size, const Hypothesis& from, const std::vector<TakenRun>& runs,
+std::pair<Hypothesis, Left> BestOf(const Size& size, const Hypothesis& from, std::span<const TakenRun> runs,
                                    const Means& means) {
   Left at = LeftOf(from, runs, means);
   double curvature = 0.0, gradient = 0.0;
@@ -290,7 +291,7 @@ std::pair<Hypothesis, Left> BestOf(const Size& size, const Hypothesis& from, con
 
 /// A wave whose phase may be any: where it begins or a quarter of a turn on, as large as it fits best. From one of
 /// them slopes lead there.
-void TryQuarterTurns(const std::vector<Size>& sizes, const std::vector<TakenRun>& runs, const Means& means,
+void TryQuarterTurns(const std::vector<Size>& sizes, std::span<const TakenRun> runs, const Means& means,
                      Hypothesis& hypothesis, Left& left) {
   constexpr double kAnywhere_rad = 0.5;
   const Hypothesis from = hypothesis;
@@ -318,7 +319,7 @@ void StateUncertainties(const Eigen::MatrixXd& cov, const std::vector<Size>& siz
 }
 
 /// Evidence and uncertainties of a fit that has ended.
-void StateCertainty(const std::vector<Size>& sizes, Normal normal, const std::vector<TakenRun>& runs,
+void StateCertainty(const std::vector<Size>& sizes, Normal normal, std::span<const TakenRun> runs,
                     const Means& means, JointFit& fit) {
   const Eigen::VectorXd breadth = Breadth(fit.hypothesis, sizes);
   const std::vector<Eigen::Index> near = NearBounds(fit.hypothesis, sizes, CovarianceOf(normal.matrix, breadth));
@@ -348,7 +349,11 @@ Eigen::MatrixXd SlopesOf(const Hypothesis& hypothesis, const Eigen::VectorXd& le
   return slopes;
 }
 
-JointFit FitJointly(const Hypothesis& hypothesis, const std::vector<TakenRun>& runs, const Means& means) {
+double Chi2Of(const Hypothesis& hypothesis, std::span<const TakenRun> runs, const Means& means) {
+  return LeftOf(hypothesis, runs, means).chi2;
+}
+
+JointFit FitJointly(const Hypothesis& hypothesis, std::span<const TakenRun> runs, const Means& means) {
   constexpr int kMostRounds = 6;
   constexpr double kStill = 0.05;  // of chi2: less is no better
   const std::vector<Size> sizes = SizesOf(hypothesis, runs.front().scenario.bench);

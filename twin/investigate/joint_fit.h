@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
+#include <span>
 
 #include "twin/investigate/taken_run.h"
 
@@ -23,7 +23,10 @@ struct JointFit {
 /// thought of before as their plausible sizes (or as large as they are). A size that ends on a bound, where slopes say
 /// little, is summed over instead: a cause that contains another one as its limit is as likely as the room that it
 /// leaves itself there.
-JointFit FitJointly(const Hypothesis& hypothesis, const std::vector<TakenRun>& runs, const Means& means);
+JointFit FitJointly(const Hypothesis& hypothesis, std::span<const TakenRun> runs, const Means& means);
+
+/// Of what the hypothesis leaves of all these runs with the sizes that it has.
+double Chi2Of(const Hypothesis& hypothesis, std::span<const TakenRun> runs, const Means& means);
 
 /// One run's change of `LeftBy` for one u of each size: rows x sizes.
 Eigen::MatrixXd SlopesOf(const Hypothesis& hypothesis, const Eigen::VectorXd& left, const TakenRun& run,
