@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "twin/benches/names.h"
@@ -127,12 +128,22 @@ std::vector<Reading> NoiseFree(Scenario scenario, const std::vector<EffectSettin
 }
 
 EffectSettings SizedTo(double rho, EffectSettings effect, const Scenario& drawn, const SignatureScale& scale) {
-  constexpr int kMostSteps = 4;  // one is enough where the signature is proportional to the size
+  // One step is enough where the signature is proportional to the size. Where it begins at once - a clipping that
+  // stops are near or not - steps leap over it, and halving between those that are known leads there.
+  constexpr int kMostSteps = 4, kMostHalvings = 12;
+  constexpr double kClose = 0.03;
   const std::vector<Reading> without = NoiseFree(drawn, {});
-  for (int step = 0; step < kMostSteps; ++step) {
+  double size = 1.0, smaller = 0.0, larger = std::numeric_limits<double>::infinity();
+  const auto is_bracketed = [&] { return smaller > 0.0 && std::isfinite(larger); };
+  for (int step = 0; step < (is_bracketed() ? kMostHalvings : kMostSteps); ++step) {
     const double factor = rho / scale.Rho(NoiseFree(drawn, {effect}), without, drawn.seed);
-    if (!std::isfinite(factor) || std::abs(factor - 1.0) < 0.03) break;
-    effect = Scaled(effect, factor, drawn.bench);
+    if (std::abs(factor - 1.0) < kClose) break;
+    (factor > 1.0 ? smaller : larger) = size;
+    const bool leaps = !(factor * size > smaller && factor * size < larger);
+    if (leaps && !is_bracketed()) break;
+    const double next = leaps ? std::sqrt(smaller * larger) : factor * size;
+    effect = Scaled(effect, next / size, drawn.bench);
+    size = next;
   }
   return effect;
 }

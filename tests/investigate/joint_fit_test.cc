@@ -19,7 +19,7 @@ constexpr double kDeg = units::deg;
 Scenario Small(const std::string& effect = "") {
   return ParseScenario(
       "bench = \"encoder_comparison\"\nseed = 4\n[device]\nnoise_deg = 0.002\n[encoder_procedure]\n"
-      "stops_per_turn = 36\npasses = [1, -1]\nturns = 1.0\n" +
+      "stops_per_turn = 36\nstart_deg = 1.3\npasses = [1, -1]\nturns = 1.0\n" +
           effect,
       "small.toml", ".");
 }
@@ -83,6 +83,17 @@ TEST_F(JointFits, WeighACauseThatContainsAnotherByTheRoomThatIsLeftToIt) {
   EXPECT_LT(gradual.log_evidence, play.log_evidence - 0.7);
   EXPECT_GT(gradual.log_evidence, play.log_evidence - 5.0);
   EXPECT_NEAR(FitJointly(gradual.hypothesis, runs, means_).log_evidence, gradual.log_evidence, 1.0);
+}
+
+// At nine tenths and a half of the amplitude most stops are cut, at the whole none is: one that cuts a few stops by
+// three noise standard deviations lies in between, and no slope leads there from either.
+TEST_F(JointFits, FindAClippingThatFewStopsAreNear) {
+  constexpr double kLevel = 0.9975;
+  const auto runs =
+      RunsWith(fmt::format("[[effect]]\nname = \"signal_clipping\"\nlevel = {}\n", kLevel), 2);
+  const JointFit clipped = Fit("signal_clipping", runs);
+  EXPECT_NEAR(clipped.hypothesis.causes.front().parameters.at("level"), kLevel, 0.001);
+  EXPECT_LT(clipped.chi2, 200.0);  // of 2 x 72 readings
 }
 
 TEST_F(JointFits, HoldASlipForOneOfItsRun) {

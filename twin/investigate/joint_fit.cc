@@ -254,6 +254,28 @@ std::pair<Hypothesis, Left> BestOneByOne(const Hypothesis& from, const Left& at,
   return best;
 }
 
+/// The best place between a size and a bound, each halfway on from the one before; where something begins at once - a
+/// clipping that readings are near or not - neither end nor slopes say where.
+struct Between {
+  std::pair<Hypothesis, Left> best;
+  double off = 0.0;  // of the bound [SI]
+};
+
+Between BestBetween(const Hypothesis& from, const Size& size, double end, std::pair<Hypothesis, Left> at_end,
+                    std::span<const TakenRun> runs, const Means& means) {
+  constexpr int kHalvings = 10;
+  const double off = ValueOf(from, size) - end;
+  Between between{std::move(at_end)};
+  for (int halving = 1; halving <= kHalvings; ++halving) {
+    const double to = std::ldexp(off, -halving);
+    Hypothesis moved = Moved(from, {size}, Eigen::VectorXd::Constant(1, (to - off) / size.u));
+    Left now = LeftOf(moved, runs, means);
+    if (!(now.chi2 < between.best.second.chi2)) continue;
+    between = {{std::move(moved), std::move(now)}, std::abs(to)};
+  }
+  return between;
+}
+
 /// A bound that is not far may be where a size belongs: a state one way or the other, a gap that is crossed at
 /// once. Slopes do not lead there. When something happened has no such place: before the first reading it is not seen.
 void TryEnds(const std::vector<Size>& sizes, std::span<const TakenRun> runs, const Means& means,
@@ -268,8 +290,11 @@ void TryEnds(const std::vector<Size>& sizes, std::span<const TakenRun> runs, con
       Hypothesis moved = Moved(hypothesis, {size}, Eigen::VectorXd::Constant(1, steps));
       Left now = LeftOf(moved, runs, means);
       if (!(now.chi2 < left.chi2)) continue;
-      hypothesis = std::move(moved);
-      left = std::move(now);
+      Between between = BestBetween(hypothesis, size, end, {std::move(moved), std::move(now)}, runs, means);
+      std::tie(hypothesis, left) = std::move(between.best);
+      // Slopes of what begins there are those of steps that are small beside its size.
+      double& u = hypothesis.causes[size.cause].finding.u.at(size.name);
+      if (between.off > 0.0) u = std::min(u, 0.5 * between.off);
     }
   }
 }
@@ -356,11 +381,12 @@ double Chi2Of(const Hypothesis& hypothesis, std::span<const TakenRun> runs, cons
 JointFit FitJointly(const Hypothesis& hypothesis, std::span<const TakenRun> runs, const Means& means) {
   constexpr int kMostRounds = 6;
   constexpr double kStill = 0.05;  // of chi2: less is no better
-  const std::vector<Size> sizes = SizesOf(hypothesis, runs.front().scenario.bench);
+  const std::string& bench = runs.front().scenario.bench;
   JointFit fit;
   fit.hypothesis = hypothesis;
   Left left = LeftOf(hypothesis, runs, means);
-  TryEnds(sizes, runs, means, fit.hypothesis, left);
+  TryEnds(SizesOf(hypothesis, bench), runs, means, fit.hypothesis, left);
+  const std::vector<Size> sizes = SizesOf(fit.hypothesis, bench);
   TryQuarterTurns(sizes, runs, means, fit.hypothesis, left);
   Normal normal = NormalOf(fit.hypothesis, left, runs, means, std::ssize(sizes));
   for (int round = 0; round < kMostRounds && !sizes.empty(); ++round) {
