@@ -3,6 +3,7 @@
 #include "tests/hidden/bench_runs.h"
 #include "tools/twinbench/bench_means.h"
 #include "twin/benches/registry.h"
+#include "twin/core/units.h"
 #include "twin/investigate/taken_run.h"
 
 /// A run asks its own twin what another scenario leaves; a run that is built anew against that scenario, with slopes and
@@ -34,6 +35,17 @@ TEST_P(LeftByAnotherScenario, IsWhatARunBuiltAnewLeaves) {
   const auto length = [&run](const Eigen::VectorXd& white) { return std::sqrt(Product(run, white, white)(0, 0)); };
   EXPECT_GT(length(asked - run.left), 5.0);
   EXPECT_LT(length(asked - anew), 0.1);  // noise standard deviations, of all readings together
+}
+
+// Mirrors turned out of an autocollimator's range would show nothing. Readings that were there speak against that.
+TEST(LeftByAScenario, ThatShowsNothingIsTheWhole) {
+  const Scenario believed = hidden::Believed(hidden::Design::kTurntable);
+  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  const TakenRun run = TakenOf({}, believed, hidden::TakeReadings(believed), means, 0);
+  Supposed cause;
+  cause.name = "settling";
+  cause.parameters = {{"amplitude", 1.0 * units::deg}, {"time_constant", 1000.0}};
+  EXPECT_EQ(LeftBy({{cause}, {}, 0.0}, run, means), run.left);
 }
 
 INSTANTIATE_TEST_SUITE_P(Benches, LeftByAnotherScenario,

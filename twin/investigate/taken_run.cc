@@ -36,8 +36,8 @@ Eigen::MatrixXd LeftByItsTwin(const Scenario& with, const TakenRun& run) {
     const Eigen::MatrixXd left = left_where(unknowns);
     return run.noise.Whiten(run.linear, left);
   };
-  const Eigen::VectorXd unmoved = Eigen::VectorXd::Zero(run.linear.nuisance.jacobian.cols());
-  return white(run.projector->Solve(white(unmoved)));
+  const Eigen::MatrixXd unmoved = white(Eigen::VectorXd::Zero(run.linear.nuisance.jacobian.cols()));
+  return unmoved.allFinite() ? white(run.projector->Solve(unmoved)) : unmoved;
 }
 
 /// A run made anew against that scenario, white in the frame of this one.
@@ -57,7 +57,8 @@ Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const 
     Eigen::MatrixXd left;
     if (run.linear.left_by_another) left = LeftByItsTwin(with, run);
     if (left.size() == 0) left = LeftByAnotherRun(with, run, means);
-    return left.size() == 0 ? run.left : Eigen::VectorXd(left);
+    const bool is_told = left.size() > 0 && left.allFinite();  // it may show no light where there was some
+    return is_told ? Eigen::VectorXd(left) : run.left;
   } catch (const InputError&) {
     return run.left;
   }

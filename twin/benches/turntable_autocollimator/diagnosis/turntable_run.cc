@@ -163,7 +163,8 @@ void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>
   const Slopes slopes = FitTwin(twin, turntable);
   const Eigen::MatrixXd shown_rad = twin.Predict(AtPoints(turntable.body_rad));
   run.sigma = Sigma_rad(twin, turntable.body_rad, scenario);
-  run.sigma = AsRows(shown_rad).array().isFinite().select(run.sigma, kNoWeight * run.sigma);
+  turntable.is_shown = AsRows(shown_rad).array().isFinite();
+  run.sigma = turntable.is_shown.select(run.sigma, kNoWeight * run.sigma);
   ScaleToMean(used, run);
   const bool nothing_behind = scenario.empiricals.empty() && std::ranges::none_of(scenario.effects, IsAddedBehind);
   turntable.context.shown_rad =
@@ -177,6 +178,11 @@ void FollowTwin(const std::vector<Reading>& readings, const std::vector<Reading>
                              OrZero(twin.Slope("room.temperature", AtPoints(turntable.body_rad))));
 }
 
+/// What the run's twin does not show is no reading of the comparison; what another's alone does not show is not known.
+Eigen::VectorXd LeftWhereShown(const Eigen::VectorXd& observed, const Eigen::VectorXd& shown, const Eigen::ArrayX<bool>& compared) {
+  return compared.select(observed - shown, 0.0);
+}
+
 /// The mirror moves as the free unknowns say; all others (the standard's, the room's) are small and act by their slopes.
 diagnose::LeftByAnother LeftByAnotherOf(const std::vector<Reading>& readings, const std::vector<Reading>& used,
                                         const model::FollowMaker& follow, const TurntableRun& turntable) {
@@ -185,18 +191,20 @@ diagnose::LeftByAnother LeftByAnotherOf(const std::vector<Reading>& readings, co
     Nuisance moved, free;
     Eigen::VectorXd observed;
     Eigen::MatrixXd body_rad;
+    Eigen::ArrayX<bool> compared;  // the run's own twin shows it
   };
   const LinearRun& run = turntable.run;
   auto asked = std::make_shared<Asked>(Asked{readings, used,
                                              FreeUnknowns(turntable.places, StraightSlopes(run.schedule.Readings()), run.schedule),
-                                             run.nuisance, run.observed, turntable.body_rad});
+                                             run.nuisance, run.observed, turntable.body_rad,
+                                             turntable.is_shown});
   return [asked, follow](const Scenario& other) -> LeftWhere {
     const auto twin = std::make_shared<const Followed>(follow, other, asked->readings, asked->used);
     return [asked, twin](const Eigen::VectorXd& by) -> Eigen::VectorXd {
       const Eigen::Index mirror = asked->moved.jacobian.cols();
       const Eigen::VectorXd of_mirror = by.head(mirror);
       const Eigen::MatrixXd body_rad = asked->body_rad + ByReading(asked->moved.jacobian * of_mirror);
-      return OrZero(asked->observed - AsRows(twin->Predict(AtPoints(body_rad)))) +
+      return LeftWhereShown(asked->observed, AsRows(twin->Predict(AtPoints(body_rad))), asked->compared) +
              asked->free.jacobian.leftCols(mirror) * of_mirror;
     };
   };

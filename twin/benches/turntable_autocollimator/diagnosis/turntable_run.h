@@ -18,6 +18,7 @@ struct TurntableRun {
   Places places;
   int left_out = 0;          // readings without a value
   Eigen::MatrixXd body_rad;  // readings x axes: turn and tilt of the mirror by the free unknowns
+  Eigen::ArrayX<bool> is_shown;  // rows: the twin predicts a reading there
 };
 
 /// x = T(position) + R(tooth) + constant of the set-up; y = tilt of the turntable(position) + constant + wave of
