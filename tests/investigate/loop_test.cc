@@ -74,6 +74,32 @@ TEST(Investigate, OneThatFindsNothingSaysSo) {
   EXPECT_EQ(found.steps.size(), 7u);  // (5 / 2)^2: of what two standard deviations in one run are
 }
 
+// Two set-ups of one pass leave nothing to find causes by. One that does comes next; both count.
+TEST(Investigate, MakesARunThatCanBeDiagnosedWhereTheFirstCannot) {
+  Scenario believed = hidden::Believed(hidden::Design::kRotary);
+  RotaryOf(believed).procedure.positions = 12;
+  RotaryOf(believed).procedure.shifts = {0, 1};
+  RotaryOf(believed).procedure.passes = {1};
+  Scenario hidden = believed;
+  EffectSettings roll;
+  roll.name = "psd_roll";
+  roll.where = "psd_a";
+  roll.parameters["roll"] = 5e-3;
+  hidden.effects.push_back(roll);
+  Laboratory laboratory;
+  laboratory.measure = [&](const Step& step, const Scenario& asked) {
+    return hidden::TakeReadings(HiddenRun(hidden, believed, step.run, asked.repeat));
+  };
+  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  InvestigationOptions options;
+  options.budget_min = 600.0;
+  const Investigation found = Investigate(believed, options, means, laboratory);
+  ASSERT_GT(found.steps.size(), 1u);
+  EXPECT_EQ(found.steps.front().believed.front().first, "nothing");
+  EXPECT_THAT(found.steps[1].reason, testing::HasSubstr("the runs so far cannot be diagnosed: "));
+  EXPECT_EQ(found.belief.Best().fit.hypothesis.Name(), "psd_roll psd_a");
+}
+
 TEST(Investigate, RefusesAGoalThatAStandardPutsOutOfReachBeforeAnythingIsMeasured) {
   const Scenario believed = LoadScenario(TWINBENCH_SOURCE_DIR "/scenarios/turntable_autocollimator.toml",
                                          {"autocollimator.u_gain_error=0.05"});

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/separate/bench.h"
@@ -86,6 +87,23 @@ TEST(ErrorMotions, SynchronousOnesAreThoseOfTheTrueCurves) {
   expect("reference", "radial_rotating_y", r[Component::kDy], false);
   expect("reference", "radial_fixed_x", Turned(r[Component::kDx], r[Component::kDy], -1.0), false);
   expect("reference", "tilt_fixed_x", Turned(r[Component::kEx], r[Component::kEy], -1.0), true);
+}
+
+// Two set-ups of one pass leave something to judge one of the tilts by and nothing the other: no scatter of a direction
+// that turns through both.
+TEST(ErrorMotions, OfTwoSetUpsOfOnePassAreSynchronousOnly) {
+  Stream stream(11, "test.truth");
+  const Truth truth = RandomTruth(kPositions, stream);
+  std::vector<Motion> motions = EmptyMotions(kPositions, {0, 1}, 1, ReadingCovariance());
+  FillExact(motions, truth, Layouts(kPositions, Clamping::kReseat), Bench());
+  const Separation separation = Separate(motions, Bench(), Options(kPositions, Clamping::kReseat));
+  const nlohmann::json json = EvaluateErrorMotions(separation, motions).json;
+  const auto turning = std::ranges::find_if(json, [](const nlohmann::json& one) {
+    return one.at("table") == "target" && one.at("motion") == "tilt_rotating_x";
+  });
+  ASSERT_NE(turning, json.end());
+  EXPECT_TRUE(turning->at("values").contains("synchronous"));
+  EXPECT_FALSE(turning->at("values").contains("asynchronous"));
 }
 
 TEST(ErrorMotions, AsynchronousOnesAreWhatPassesShowBeyondTheModel) {

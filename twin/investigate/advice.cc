@@ -116,6 +116,17 @@ Plans::Plans(const Scenario& scenario, const Means& means) : means_(means) {
   }
 }
 
+bool Plans::CanBeDiagnosed(const plan::NextRun& run) const {
+  const auto planned = std::ranges::find_if(planned_, [&run](const Planned& p) { return p.run.asked.sets == run.sets; });
+  if (planned == planned_.end()) return false;
+  try {
+    means_.diagnose(planned->run.readings, planned->run.scenario, {});
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 std::vector<Advice> Plans::For(const Belief& belief, const Certainty* goal, const std::vector<TakenRun>& taken,
                                double minutes_left) const {
   std::vector<Advice> advice;

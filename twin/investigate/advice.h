@@ -30,6 +30,9 @@ class Plans {
   std::vector<Advice> For(const Belief& belief, const Certainty* goal, const std::vector<TakenRun>& taken,
                           double minutes_left) const;
 
+  /// Whether what the twin shows of that run leaves something to find causes by.
+  bool CanBeDiagnosed(const plan::NextRun& run) const;
+
   const std::vector<std::string>& refused() const { return refused_; }
 
  private:

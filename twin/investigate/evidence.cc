@@ -105,13 +105,14 @@ std::vector<double> Belief::Probabilities() const {
 
 Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& runs, const Means& means) {
   Belief belief;
+  const std::span<const TakenRun> diagnosed = std::span(runs).first(1);
   const bool is_none = found.diagnosis.verdict == diagnose::Verdict::kNone;
   belief.unlisted = is_none ? 0.0 : std::clamp(found.diagnosis.unknown.probability, 0.0, 1.0);
-  std::vector<Weighed> open = LeftOpen(WithSizes(WithLessLikely(found), runs.front(), means), runs.front().scenario);
+  std::vector<Weighed> open = LeftOpen(WithSizes(WithLessLikely(found), runs.front(), means), runs.front().scenario, runs.front().number);
   AddUnnamed(open, belief, runs.front(), means);
   for (const Weighed& weighed : open) {
-    Open fitted{FitJointly(weighed.hypothesis, runs, means)};
-    WeighBy(std::log(std::max(weighed.probability, kNegligible)), runs.size(), fitted);
+    Open fitted{FitJointly(weighed.hypothesis, diagnosed, means)};
+    WeighBy(std::log(std::max(weighed.probability, kNegligible)), diagnosed.size(), fitted);
     belief.open.push_back(std::move(fitted));
   }
   Normalise(belief);

@@ -30,7 +30,7 @@ struct Belief {
   std::vector<double> Probabilities() const;  // what the catalogue lacks comes last
 };
 
-/// After the first run: exactly what its diagnosis said. Most of what the catalogue lacks is a hypothesis too,
+/// After a diagnosis of the first of the runs: exactly what it said. Most of what the catalogue lacks is a hypothesis too,
 /// where the readings can be written as signals without a name: they predict what other runs would show.
 Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& runs, const Means& means);
 

@@ -68,7 +68,7 @@ class Loop {
   bool AreCausesTold() const { return ToldBy(result_.belief, options_.conclusive) != Told::kTied; }
 
   bool IsDone() {
-    if (!AreCausesTold() || !result_.IsGoalMet() || MayBeFaint()) return false;
+    if (!WasAnyDiagnosed() || !AreCausesTold() || !result_.IsGoalMet() || MayBeFaint()) return false;
     result_.ended = Ended::kTold;
     return true;
   }
@@ -82,9 +82,12 @@ class Loop {
     return IsNothingFound() && RunsLikeFirst() < RunsToShowFaint();
   }
 
+  /// Runs of the plan that was diagnosed first; mostly the scenario's own.
   int RunsLikeFirst() const {
-    return static_cast<int>(std::ranges::count_if(runs_, [](const TakenRun& run) { return run.asked.sets.empty(); }));
+    return static_cast<int>(std::ranges::count_if(runs_, [this](const TakenRun& run) { return IsLikeFirst(run.asked); }));
   }
+
+  bool IsLikeFirst(const plan::NextRun& run) const { return run.sets == runs_.front().asked.sets; }
 
   double Faint() const { return options_.faint.value_or(options_.goal ? 0.0 : kUsuallyFaint); }
 
@@ -122,10 +125,32 @@ class Loop {
     const auto taken = [this](const Scenario&) { return runs_.front().readings; };
     RefuseGoalsOutOfReach(scenario_, taken);
     result_.u_goal = certainty_ ? certainty_->u() : kNaN;
-    const diagnose::DiagnosisRun found = means_.diagnose(runs_.front().readings, scenario_, {});
-    result_.belief = Begun(found, runs_, means_);
-    is_name_doubted_ = found.diagnosis.verdict != diagnose::Verdict::kNone;
+    Begin();
     Note(std::move(step), Entropy_bit(result_.belief.Probabilities()));
+  }
+
+  /// By the diagnosis of the first run in the list. One without redundancy - two set-ups of one pass - leaves nothing to
+  /// find causes by: "nothing" is open, and another run has to come.
+  void Begin() {
+    not_diagnosed_.clear();
+    std::optional<diagnose::DiagnosisRun> found =
+        DiagnosisOf(runs_.front().readings, runs_.front().scenario, not_diagnosed_);
+    if (!found) found.emplace().diagnosis.verdict = diagnose::Verdict::kNone;
+    result_.belief = Begun(*found, runs_, means_);
+    is_name_doubted_ = found->diagnosis.verdict != diagnose::Verdict::kNone;
+  }
+
+  bool WasAnyDiagnosed() const { return not_diagnosed_.empty(); }
+
+  /// @param refusal  Why there is none.
+  std::optional<diagnose::DiagnosisRun> DiagnosisOf(const std::vector<Reading>& readings, const Scenario& scenario,
+                                                    std::string& refusal) const {
+    try {
+      return means_.diagnose(readings, scenario, {});
+    } catch (const InputError& error) {
+      refusal = error.what();
+      return std::nullopt;
+    }
   }
 
   /// What nobody can reach is not measured for: first by a run of the twin, then by the first one.
@@ -156,16 +181,32 @@ class Loop {
     const double left_min = options_.budget_min - result_.minutes;
     const std::vector<Advice> advice =
         plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, left_min);
+    if (!WasAnyDiagnosed()) return TakeToDiagnose(advice);
     if (advice.empty()) return End(Ended::kBudget);
     auto useful = std::ranges::find_if(advice, [this](const Advice& a) { return IsUseful(a); });
     if (useful == advice.end()) useful = Exploring(advice);
     if (useful == advice.end()) useful = LookingCloser(advice);
     if (useful == advice.end()) return End(IsAnyLeftOut(left_min) ? Ended::kBudget : Ended::kNothingMore);
-    Step step{static_cast<int>(result_.steps.size()) + 1, useful->run, ReasonFor(*useful, advice)};
-    step.expected_bit = useful->of_causes_bit;
+    return TakeConfirmed(*useful, ReasonFor(*useful, advice), advice);
+  }
+
+  bool TakeConfirmed(const Advice& chosen, std::string reason, const std::vector<Advice>& advice) {
+    Step step{static_cast<int>(result_.steps.size()) + 1, chosen.run, std::move(reason)};
+    step.expected_bit = chosen.of_causes_bit;
     if (laboratory_.confirm && !laboratory_.confirm(step, advice)) return End(Ended::kDeclined);
     TakeAndWeigh(std::move(step));
     return true;
+  }
+
+  /// The run that tells most of the goal per minute, or the shortest, of those that can be diagnosed.
+  /// @throws InputError if there is none within the budget.
+  bool TakeToDiagnose(std::vector<Advice> advice) {
+    if (!certainty_) std::ranges::stable_sort(advice, {}, &Advice::minutes);
+    const auto first = std::ranges::find_if(advice, [this](const Advice& a) { return plans_->CanBeDiagnosed(a.run); });
+    if (first == advice.end())
+      throw InputError("investigate", "no run that the bench can make within the budget can be diagnosed. " + not_diagnosed_,
+                       "another first run, or a longer --budget");
+    return TakeConfirmed(*first, "the runs so far cannot be diagnosed: " + not_diagnosed_, advice);
   }
 
   /// Something is there and nothing open says what any run would show of it: the shortest run of a kind that was not
@@ -185,7 +226,7 @@ class Loop {
   /// The first run once more, where its noise may hide what is looked for.
   std::vector<Advice>::const_iterator LookingCloser(const std::vector<Advice>& advice) const {
     if (!MayBeFaint()) return advice.end();
-    return std::ranges::find_if(advice, [](const Advice& a) { return a.run.sets.empty(); });
+    return std::ranges::find_if(advice, [this](const Advice& a) { return IsLikeFirst(a.run); });
   }
 
   bool End(Ended ended) {
@@ -201,7 +242,7 @@ class Loop {
   bool IsAnyLeftOut(double left_min) const {
     const double all_min = std::numeric_limits<double>::infinity();
     for (const Advice& a : plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, all_min)) {
-      if (a.minutes > left_min && (IsUseful(a) || (MayBeFaint() && a.run.sets.empty()))) return true;
+      if (a.minutes > left_min && (IsUseful(a) || (MayBeFaint() && IsLikeFirst(a.run)))) return true;
     }
     return false;
   }
@@ -235,9 +276,15 @@ class Loop {
     std::vector<std::string> sets = step.run.sets;
     sets.push_back(fmt::format("repeat={}", scenario_.repeat + step.number - 1));
     Take(step, Altered(scenario_, sets));
-    Update(belief, runs_, means_);
-    Compare();
-    DoubtAName();
+    if (WasAnyDiagnosed()) {
+      Update(belief, runs_, means_);
+      Compare();
+      DoubtAName();
+    } else {
+      std::rotate(runs_.begin(), runs_.end() - 1, runs_.end());
+      Begin();
+      Update(belief, runs_, means_);
+    }
     Note(std::move(step), before);
   }
 
@@ -256,7 +303,10 @@ class Loop {
     const Hypothesis best = belief.Best().fit.hypothesis;
     const Scenario with = With(run.scenario, best, run.number);
     const std::vector<Reading> readings = WithThoseLike(run, best);
-    const diagnose::DiagnosisRun found = means_.diagnose(readings, with, {});
+    std::string refusal;
+    const std::optional<diagnose::DiagnosisRun> diagnosed = DiagnosisOf(readings, with, refusal);
+    if (!diagnosed) return;
+    const diagnose::DiagnosisRun& found = *diagnosed;
     const bool agrees = found.diagnosis.verdict == diagnose::Verdict::kNone;
     if (agrees && IsOfAnotherKind()) Agreed(belief, run, means_);
     if (agrees && !best.causes.empty()) return;
@@ -308,6 +358,7 @@ class Loop {
   std::optional<Certainty> certainty_;
   std::optional<Plans> plans_;  // once they are needed: each is a run of the twin
   std::vector<TakenRun> runs_;
+  std::string not_diagnosed_;     // why none of the runs so far could be
   bool is_name_doubted_ = false;  // a diagnosis has said how likely it is that the catalogue lacks the cause
   Investigation result_;
 };

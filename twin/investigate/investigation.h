@@ -62,8 +62,9 @@ struct Laboratory {
   std::function<void(const Investigation&)> told = {};
 };
 
-/// @param scenario  What is believed of the bench; its own run is the first.
-/// @throws InputError if the first run cannot be diagnosed, or has no such quantity as the goal asks for.
+/// @param scenario  What is believed of the bench; its own run is the first. Where it leaves nothing to find causes by,
+///     one that does comes next.
+/// @throws InputError if no run can be diagnosed, or the first has no such quantity as the goal asks for.
 Investigation Investigate(const Scenario& scenario, const InvestigationOptions& options, const Means& means,
                           const Laboratory& laboratory);
 

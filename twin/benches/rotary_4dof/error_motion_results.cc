@@ -102,23 +102,31 @@ class PassesBeyond {
   PassesBeyond(const separate::Separation& separation, const std::vector<measure::Motion>& motions)
       : separation_(separation), motions_(motions) {}
 
-  /// @return one list a position of the target; empty ones if the fit leaves nothing to judge by.
-  std::vector<std::vector<double>> Of(Component component) const {
+  std::vector<std::vector<double>> Of(Component component) const { return Of(component, component); }
+
+  /// Of the readings that show both components, as a direction that turns needs them.
+  /// @return one list a position of the target; empty ones if the fit leaves nothing to judge one of the two by.
+  std::vector<std::vector<double>> Of(Component component, Component beside) const {
     const std::vector<double>& angle_rad = separation_.target.value.position_rad;
     std::vector<std::vector<double>> at(angle_rad.size());
-    const auto d = static_cast<Eigen::Index>(std::ranges::find(separate::kComponentOf, component) - separate::kComponentOf.begin());
+    const Eigen::Index d = IndexOf(component), other = IndexOf(beside);
     const double dof = separation_.dof_of[d], readings = separation_.readings;
-    if (!(dof > 0.0)) return at;
+    if (!(dof > 0.0) || !(separation_.dof_of[other] > 0.0)) return at;
     const NearestOnCircle nearest(angle_rad);
     const double scale = std::sqrt(readings / dof);
     for (std::size_t k = 0; k < motions_.size(); ++k) {
       const double beyond = separation_.residuals[k][d];
-      if (std::isfinite(beyond)) at[nearest(motions_[k].target_rad)].push_back(scale * beyond);
+      if (std::isfinite(beyond) && std::isfinite(separation_.residuals[k][other]))
+        at[nearest(motions_[k].target_rad)].push_back(scale * beyond);
     }
     return at;
   }
 
  private:
+  static Eigen::Index IndexOf(Component component) {
+    return std::ranges::find(separate::kComponentOf, component) - separate::kComponentOf.begin();
+  }
+
   const separate::Separation& separation_;
   const std::vector<measure::Motion>& motions_;
 };
@@ -171,12 +179,12 @@ void AppendTurned(const char* name, const TableEstimate& estimate, Component x, 
 
 std::vector<Directed> OfTarget(const separate::Separation& s, const std::vector<measure::Motion>& motions) {
   const PassesBeyond passes(s, motions);
-  const auto ex = passes.Of(Component::kEx), ey = passes.Of(Component::kEy);
   std::vector<Directed> all;
   AppendSingle("radial_fixed_y", s.target, Component::kDy, passes.Of(Component::kDy), all);
-  AppendSingle("tilt_fixed_x", s.target, Component::kEx, ex, all);
-  AppendSingle("tilt_fixed_y", s.target, Component::kEy, ey, all);
-  AppendTurned("tilt_rotating_x", s.target, Component::kEx, Component::kEy, +1.0, ex, ey, all);
+  AppendSingle("tilt_fixed_x", s.target, Component::kEx, passes.Of(Component::kEx), all);
+  AppendSingle("tilt_fixed_y", s.target, Component::kEy, passes.Of(Component::kEy), all);
+  AppendTurned("tilt_rotating_x", s.target, Component::kEx, Component::kEy, +1.0, passes.Of(Component::kEx, Component::kEy),
+               passes.Of(Component::kEy, Component::kEx), all);
   return all;
 }
 
