@@ -24,7 +24,7 @@ Case MakeUnlisted(Design design, const UnlistedCause& cause, double rho, std::ui
   made.scenario = Believed(design);
   made.readings = TakeReadings(Drawn(design, seed));
   Stream stream(seed, "hidden.unlisted");
-  const UnlistedSignal drawn = cause.draw({made.readings, stream});
+  const UnlistedSignal drawn = cause.draw({made.readings, stream, stream});
   AddWithLength(rho, BenchOf(design), drawn.signal, scale, seed, made.readings);
   made.hidden.unlisted = cause.name;
   made.hidden.locks = drawn.locks;

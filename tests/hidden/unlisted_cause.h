@@ -16,10 +16,11 @@ struct UnlistedSignal {
   Eigen::MatrixXd signal;             // readings x channels
 };
 
-/// Readings with the random stream of one case.
+/// Readings with the random stream of one case, and the one of what is another in every run: where a draught goes.
 struct Draw {
   const std::vector<Reading>& readings;
   Stream& stream;
+  Stream& of_run;
 
   int Whole(int first, int last) const { return first + static_cast<int>(stream.Uniform() * (last - first + 1)); }
   double Phase() const { return 2.0 * units::kPi * stream.Uniform(); }

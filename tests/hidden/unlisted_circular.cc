@@ -26,7 +26,7 @@ UnlistedSignal TravelledLine(const Draw& draw) {
 /// A seat that is a little elsewhere every time a pass begins.
 UnlistedSignal SeatOfEachPass(const Draw& draw) {
   std::vector<double> seats;
-  for (int k = 0; k < 200; ++k) seats.push_back(draw.stream.Normal());
+  for (int k = 0; k < 200; ++k) seats.push_back(draw.of_run.Normal());
   const auto seat = [&](std::size_t i) {
     return seats[static_cast<std::size_t>(10 * draw.readings[i].setup + draw.readings[i].pass)];
   };
@@ -46,7 +46,7 @@ UnlistedSignal CircleDirectionMap(const Draw& draw) {
 UnlistedSignal CircleWander(const Draw& draw) {
   const double minutes = UniformIn(draw.stream, 4.0, 9.0);
   std::vector<double> levels;
-  for (int k = 0; k < 200; ++k) levels.push_back(draw.stream.Normal());
+  for (int k = 0; k < 200; ++k) levels.push_back(draw.of_run.Normal());
   const auto wander = [&](std::size_t i) {
     const double at = 60.0 * draw.Hours(i) / minutes;
     const auto k = static_cast<std::size_t>(at) % (levels.size() - 1);

@@ -11,7 +11,7 @@ UnlistedSignal PassOffset(const Draw& draw) {
   std::map<std::pair<int, int>, double> offset;
   const auto of_pass = [&](std::size_t i) {
     const std::pair pass{draw.readings[i].setup, draw.readings[i].pass};
-    if (!offset.contains(pass)) offset[pass] = draw.stream.Normal();
+    if (!offset.contains(pass)) offset[pass] = draw.of_run.Normal();
     return offset[pass];
   };
   const Eigen::VectorXd series = draw.FullCircleSeries(of_pass);
@@ -69,7 +69,7 @@ UnlistedSignal Fringe(const Draw& draw) {
 
 UnlistedSignal RandomWalk(const Draw& draw) {
   double at = 0.0;
-  const auto walk = [&](std::size_t i) { return at += std::sqrt(draw.StepHours(i)) * draw.stream.Normal(); };
+  const auto walk = [&](std::size_t i) { return at += std::sqrt(draw.StepHours(i)) * draw.of_run.Normal(); };
   return OnPattern("tilt", {"time"}, draw.Series(walk));
 }
 
@@ -77,11 +77,11 @@ UnlistedSignal RandomWalk(const Draw& draw) {
 UnlistedSignal Flicker(const Draw& draw) {
   const Eigen::VectorXd constants_h{{0.005, 0.02, 0.08, 0.32, 1.3}};
   Eigen::VectorXd state(constants_h.size());
-  for (double& s : state) s = draw.stream.Normal();
+  for (double& s : state) s = draw.of_run.Normal();
   const Eigen::VectorXd series = draw.Series([&](std::size_t i) {
     for (Eigen::Index k = 0; k < state.size(); ++k) {
       const double keep = std::exp(-draw.StepHours(i) / constants_h[k]);
-      state[k] = keep * state[k] + std::sqrt(1.0 - keep * keep) * draw.stream.Normal();
+      state[k] = keep * state[k] + std::sqrt(1.0 - keep * keep) * draw.of_run.Normal();
     }
     return state.sum();
   });

@@ -25,7 +25,7 @@ UnlistedSignal SlowWander(const Draw& draw) {
   const std::string axis = AnyAxis(draw);
   const double minutes = UniformIn(draw.stream, 3.0, 8.0);
   std::vector<double> levels;
-  for (int k = 0; k < 200; ++k) levels.push_back(draw.stream.Normal());
+  for (int k = 0; k < 200; ++k) levels.push_back(draw.of_run.Normal());
   const auto wander = [&](std::size_t i) {
     const double at = 60.0 * draw.Hours(i) / minutes;
     const auto k = static_cast<std::size_t>(at) % (levels.size() - 1);

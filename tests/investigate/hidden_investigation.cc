@@ -124,16 +124,16 @@ Judged InvestigateUnlisted(hidden::Design design, const hidden::UnlistedCause& c
   constexpr double kUnit = 1e-6;
   const Scenario drawn = hidden::Drawn(design, seed), believed = hidden::Believed(design);
   const std::string& bench = hidden::BenchOf(design);
-  const auto shown = [&](const std::vector<Reading>& clean, double size) {
-    Stream stream(seed, "hidden.unlisted");
+  const auto shown = [&](const std::vector<Reading>& clean, int run, double size) {
+    Stream stream(seed, "hidden.unlisted"), of_run(seed, fmt::format("hidden.unlisted.run{}", run));
     std::vector<Reading> with = clean;
-    hidden::AddTo(bench, size * cause.draw({clean, stream}).signal, with);
+    hidden::AddTo(bench, size * cause.draw({clean, stream, of_run}).signal, with);
     return with;
   };
   const std::vector<Reading> first = hidden::TakeReadings(drawn);
-  const double size = kUnit * rho / scale.Rho(shown(first, kUnit), first, seed);
+  const double size = kUnit * rho / scale.Rho(shown(first, 1, kUnit), first, seed);
   const auto measure = [&](const Step& step, const Scenario& asked) {
-    return shown(hidden::TakeReadings(HiddenRun(drawn, believed, step.run, asked.repeat)), size);
+    return shown(hidden::TakeReadings(HiddenRun(drawn, believed, step.run, asked.repeat)), step.number, size);
   };
   return InvestigateBench(believed, {"", "", fmt::format("unlisted {} rho {:.1f}", cause.name, rho)}, measure, options);
 }

@@ -137,7 +137,12 @@ class Loop {
         DiagnosisOf(runs_.front().readings, runs_.front().scenario, not_diagnosed_);
     if (!found) found.emplace().diagnosis.verdict = diagnose::Verdict::kNone;
     result_.belief = Begun(*found, runs_, means_);
-    is_name_doubted_ = found->diagnosis.verdict != diagnose::Verdict::kNone;
+    if (found->diagnosis.verdict != diagnose::Verdict::kNone) NoteTold();
+  }
+
+  /// All that is open came from a diagnosis.
+  void NoteTold() {
+    for (const Open& open : result_.belief.open) told_by_diagnosis_.push_back(open.fit.hypothesis.Name());
   }
 
   bool WasAnyDiagnosed() const { return not_diagnosed_.empty(); }
@@ -288,12 +293,19 @@ class Loop {
     Note(std::move(step), before);
   }
 
-  /// Once, and behind the run that brought it up: that one says nothing against its doubles.
+  /// A name that fits of all runs brought up and no diagnosis: what else would look like it is asked for, and some of it
+  /// the catalogue lacks. That run says nothing against doubles of its own.
   void DoubtAName() {
     Belief& belief = result_.belief;
-    if (is_name_doubted_ || !belief.Best().fit.hypothesis.IsNamed()) return;
+    const Hypothesis best = belief.Best().fit.hypothesis;
+    if (!best.IsNamed() || std::ranges::find(told_by_diagnosis_, best.Name()) != told_by_diagnosis_.end()) return;
+    told_by_diagnosis_.push_back(best.Name());
+    const TakenRun& run = runs_.back();
+    std::string refusal;
+    if (const auto alone = DiagnosisOf(WithThoseLike(run, best), run.scenario, refusal))
+      TakeIn(belief, LeftOpen(WithLessLikely(*alone), run.scenario, run.number), runs_, means_,
+             [this](const Hypothesis& other) { return AsMany(other); });
     NamedByFits(belief);
-    is_name_doubted_ = true;
   }
 
   /// The last run, and all like it together, beside the best hypothesis: they agree, or they bring up more.
@@ -315,10 +327,12 @@ class Loop {
     for (Weighed& one : more) one.hypothesis = Together(best, one.hypothesis);
     bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
     if (agrees) return;
+    const diagnose::DiagnosisRun alone = best.IsNothing() ? found : means_.diagnose(readings, run.scenario, {});
     const std::vector<Weighed> others =  // instead of the best; beside nothing that was just asked
-        LeftOpen(WithLessLikely(best.IsNothing() ? found : means_.diagnose(readings, run.scenario, {})), run.scenario,
-                 run.number);
+        LeftOpen(WithLessLikely(alone), run.scenario, run.number);
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
+    // Several causes together are a coincidence that one without a name does not need.
+    if (belief.Best().fit.hypothesis.causes.size() > 1) Disagreed(belief, alone.diagnosis.unknown.probability);
     if (!is_new || found.diagnosis.verdict == diagnose::Verdict::kUnknown)
       Disagreed(belief, found.diagnosis.unknown.probability);
   }
@@ -359,7 +373,7 @@ class Loop {
   std::optional<Plans> plans_;  // once they are needed: each is a run of the twin
   std::vector<TakenRun> runs_;
   std::string not_diagnosed_;     // why none of the runs so far could be
-  bool is_name_doubted_ = false;  // a diagnosis has said how likely it is that the catalogue lacks the cause
+  std::vector<std::string> told_by_diagnosis_;  // names whose rivals and doubles a diagnosis was asked for
   Investigation result_;
 };
 
