@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/campaign/summary.h"
@@ -18,7 +19,7 @@ namespace twinbench::tools {
 namespace {
 
 struct CampaignOptions {
-  std::string study, table, csv, json;
+  std::string study, table, csv;
   int threads = 0;  // 0: one for each core, or one a rank
   bool resume = false, mpi = false;
   std::optional<std::int64_t> trial;
@@ -68,20 +69,20 @@ nlohmann::json SummaryJson(const campaign::Summary& summary) {
   return json;
 }
 
-void Report(const campaign::Table& table, const CampaignOptions& options) {
+void Report(const campaign::Table& table, const CampaignOptions& options, JsonAnswer& answer) {
   campaign::Summary summary;
   table.ForEach([&](const campaign::TrialRow& row) { summary.Add(row); });
-  if (!options.json.empty()) WriteJson(options.json, SummaryJson(summary));
-  if (options.json != "-") fmt::print("{}", campaign::SummaryText(summary, options.study));
+  answer.Write(SummaryJson(summary));
+  if (!answer.IsOnStdout()) fmt::print("{}", campaign::SummaryText(summary, options.study));
   if (!options.csv.empty()) WriteFileAtOnce(options.csv, table.Csv());
 }
 
-void LeadCampaign(const CampaignOptions& options, campaign::Ranks& ranks) {
+void LeadCampaign(const CampaignOptions& options, campaign::Ranks& ranks, JsonAnswer& answer) {
   Begun begun = Begin(options, ranks);
   TrialsLine line;
   campaign::RunCampaign(begun.study, begun.table, ThreadsOf(options, ranks), ranks,
                         [&](const campaign::CampaignProgress& p) { line.Show(p.done, p.planned, p.lost); });
-  Report(begun.table, options);
+  Report(begun.table, options, answer);
 }
 
 void FollowFirst(const CampaignOptions& options, campaign::Ranks& ranks) {
@@ -91,21 +92,23 @@ void FollowFirst(const CampaignOptions& options, campaign::Ranks& ranks) {
   ranks.WorkForFirst([&](std::int64_t trial) { return campaign::RunTrial(study, design, trial); });
 }
 
-void PrintTrial(const CampaignOptions& options) {
+void PrintTrial(const CampaignOptions& options, JsonAnswer& answer) {
   const campaign::Study study = campaign::LoadStudy(options.study);
   const campaign::Design design(study);
   if (*options.trial < 0 || *options.trial >= design.Trials())
     throw InputError(fmt::format("--trial {}", *options.trial), "the study has no such trial",
                      fmt::format("a number from 0 to {}", design.Trials() - 1));
-  fmt::print("{}", WriteScenario(campaign::TwinOf(study, design, *options.trial)));
+  const std::string toml = WriteScenario(campaign::TwinOf(study, design, *options.trial));
+  answer.Write({{"trial", *options.trial}, {"scenario_toml", toml}});
+  if (!answer.IsOnStdout()) fmt::print("{}", toml);
 }
 
-void Campaign(const CampaignOptions& options) {
-  if (options.trial) return PrintTrial(options);
-  for (const std::string& output : {options.csv, options.json}) RequireOutput(output, {options.study, options.table});
+void Campaign(const CampaignOptions& options, JsonAnswer& answer) {
+  if (options.trial) return PrintTrial(options, answer);
+  for (const std::string& output : {options.csv, answer.to()}) RequireOutput(output, {options.study, options.table});
   if (options.table.empty()) throw InputError("campaign", "there is no table", "-o TABLE.sqlite, or --trial N");
   campaign::Ranks ranks(options.mpi || campaign::Ranks::StartedAsOneOfMany());
-  if (ranks.IsFirst()) return LeadCampaign(options, ranks);
+  if (ranks.IsFirst()) return LeadCampaign(options, ranks, answer);
   FollowFirst(options, ranks);
 }
 
@@ -121,9 +124,8 @@ void AddCampaign(CLI::App& app) {
   command->add_flag("--resume", options->resume, "go on with a table; trials that are in it are not done again");
   command->add_flag("--mpi", options->mpi, "share the trials with the other ranks; told by itself below mpirun");
   command->add_option("--csv", options->csv, "also write the table here, a line a trial");
-  command->add_option("--json", options->json, "write the summary here, - for stdout");
   command->add_option("--trial", options->trial, "print the scenario of this trial, and do no more");
-  command->callback([options] { Campaign(*options); });
+  AnswerWith(*command, "the summary", [options](JsonAnswer& answer) { Campaign(*options, answer); });
 }
 
 }  // namespace twinbench::tools
