@@ -2,16 +2,15 @@
 
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
+#include "tools/twinbench/campaign_table.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
-#include "twin/campaign/summary.h"
 #include "twin/campaign/trial.h"
 #include "twin/core/errors.h"
 
@@ -30,12 +29,6 @@ int ThreadsOf(const CampaignOptions& options, const campaign::Ranks& ranks) {
   return ranks.Others() > 0 ? 1 : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-campaign::Table TableOf(const CampaignOptions& options, const campaign::Study& study) {
-  const bool goes_on = options.resume && std::filesystem::exists(options.table);
-  return goes_on ? campaign::Table::Continue(options.table, TWINBENCH_VERSION, study)
-                 : campaign::Table::Create(options.table, TWINBENCH_VERSION, study);
-}
-
 /// Study and table of the first rank; whatever is wrong with them is said once and ends all ranks.
 struct Begun {
   campaign::Study study;
@@ -45,7 +38,7 @@ struct Begun {
 Begun Begin(const CampaignOptions& options, campaign::Ranks& ranks) {
   try {
     campaign::Study study = campaign::LoadStudy(options.study);
-    campaign::Table table = TableOf(options, study);
+    campaign::Table table = OpenTable(options.table, study, options.resume);
     ranks.Agree(true);
     return {std::move(study), std::move(table)};
   } catch (...) {
@@ -54,24 +47,8 @@ Begun Begin(const CampaignOptions& options, campaign::Ranks& ranks) {
   }
 }
 
-nlohmann::json SummaryJson(const campaign::Summary& summary) {
-  constexpr std::size_t kMostWorst = 10;
-  nlohmann::json json = {{"trials", summary.Trials()},
-                         {"lost", nlohmann::json::array()},
-                         {"verdicts", summary.Verdicts()},
-                         {"results", nlohmann::json::object()},
-                         {"worst", nlohmann::json::array()}};
-  for (const campaign::TrialRow& row : summary.Lost()) json["lost"].push_back({{"trial", row.trial}, {"failure", row.failure}});
-  for (const auto& [name, r] : summary.Results())
-    json["results"][name] = {{"count", r.count}, {"mean", r.mean}, {"sd", r.sd}, {"rms_u", r.rms_u}, {"scored", r.scored}, {"bias", r.bias}, {"coverage95", r.coverage95}};
-  for (const campaign::WorstTrial& worst : summary.Worst(kMostWorst))
-    json["worst"].push_back({{"trial", worst.trial}, {"result", worst.result}, {"error_over_u", worst.normed}});
-  return json;
-}
-
 void Report(const campaign::Table& table, const CampaignOptions& options, JsonAnswer& answer) {
-  campaign::Summary summary;
-  table.ForEach([&](const campaign::TrialRow& row) { summary.Add(row); });
+  const campaign::Summary summary = SummaryOf(table);
   answer.Write(SummaryJson(summary));
   if (!answer.IsOnStdout()) fmt::print("{}", campaign::SummaryText(summary, options.study));
   if (!options.csv.empty()) WriteFileAtOnce(options.csv, table.Csv());
