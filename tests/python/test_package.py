@@ -1,5 +1,6 @@
 """The Python package beside the command line, whose numbers it must give, and a bench of its own."""
 
+import importlib.util
 import json
 import math
 import os
@@ -168,6 +169,30 @@ class Values(unittest.TestCase):
                 self.assertEqual(data["time_s"].attrs["units"], "s")
             with self.assertRaises(FileExistsError):
                 readings.to_hdf5(f"{folder}/readings.nxs")
+
+
+class Parquet(unittest.TestCase):
+    def setUp(self):
+        self.readings = tb.run(small("turntable_autocollimator")).readings
+
+    @unittest.skipUnless(importlib.util.find_spec("pyarrow"), "pyarrow is not there: no Parquet is written")
+    def test_a_file_has_the_columns_to_the_bit_with_their_units(self):
+        import pyarrow.parquet
+
+        with tempfile.TemporaryDirectory() as folder:
+            self.readings.to_parquet(f"{folder}/readings.parquet")
+            self.assertEqual(pyarrow.parquet.read_schema(f"{folder}/readings.parquet").field("time_s").metadata[b"units"], b"s")
+            again = tb.Readings.read_parquet(f"{folder}/readings.parquet")
+            self.assertEqual(again._core.csv_text(), self.readings._core.csv_text())
+            with self.assertRaises(FileExistsError):
+                self.readings.to_parquet(f"{folder}/readings.parquet")
+
+    @unittest.skipIf(importlib.util.find_spec("pyarrow"), "pyarrow is there")
+    def test_without_pyarrow_it_is_said_what_is_missing_and_no_file_is_left(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(ModuleNotFoundError, "needs pyarrow.*to_hdf5 or to_csv"):
+                self.readings.to_parquet(f"{folder}/readings.parquet")
+            self.assertEqual(os.listdir(folder), [])
 
 
 class Following(unittest.TestCase):
