@@ -144,6 +144,80 @@ test("wheel with Ctrl zooms, wheel alone does not", async () => {
   await page.close();
 });
 
+/** Numbers at the axis below a plot, in its own minus signs. */
+const numbersBelow = async (card) => {
+  const box = await card.locator(".plot").boundingBox();
+  const texts = await card.locator(".plot svg text").evaluateAll((all) => all.map((text) => ({ text: text.textContent, at: text.getBoundingClientRect() })));
+  return texts.filter(({ at }) => at.y > box.y + box.height - 46 && at.y < box.y + box.height - 25).map(({ text }) => Number(text.replace("\u2212", "-"))).filter(Number.isFinite);
+};
+const linear = async (page, heading) => {
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: heading, exact: true }) });
+  await card.getByRole("button", { name: "Linear" }).click();
+  await drawnAgain(page);
+  return card;
+};
+
+test("a rectangle is zoomed into by pointer, by button and by Shift, and shown whole again", async () => {
+  const page = await open("turntable/report.html");
+  const card = await linear(page, "turntable, ez");
+  const plot = card.locator(".plot");
+  const box = await plot.boundingBox();
+  const drag = async (from, to) => {
+    const at = ([x, y]) => [box.x + 62 + x * (box.width - 80), box.y + 14 + y * (box.height - 60)]; // in the rectangle of the axes
+    await page.mouse.move(...at(from));
+    await page.mouse.down();
+    await page.mouse.move(...at([(from[0] + to[0]) / 2, (from[1] + to[1]) / 2]));
+    await page.mouse.move(...at(to));
+    await page.mouse.up();
+    await drawnAgain(page);
+  };
+  const within = (numbers, low, high) => assert.ok(numbers.length > 1 && numbers.every((x) => x >= low && x <= high), `${numbers} in ${low} to ${high}`);
+  const whole = await numbersBelow(card);
+  assert.ok(Math.max(...whole) - Math.min(...whole) >= 300);
+  await card.getByRole("button", { name: "Rectangle" }).click();
+  assert.equal(await card.getByRole("button", { name: "Rectangle" }).getAttribute("aria-pressed"), "true");
+  await drag([0.2, 0.3], [0.4, 0.7]); // of 0 to 350 deg
+  within(await numbersBelow(card), 0.2 * 350 - 2, 0.4 * 350 + 2);
+  assert.equal(await card.locator(".sheet").count(), 0);
+  await card.getByRole("button", { name: "All" }).click();
+  await drawnAgain(page);
+  assert.deepEqual(await numbersBelow(card), whole);
+  await page.keyboard.down("Shift");
+  await drag([0.8, 0.8], [0.6, 0.2]); // from any corner
+  await page.keyboard.up("Shift");
+  within(await numbersBelow(card), 0.6 * 350 - 2, 0.8 * 350 + 2);
+  assert.deepEqual(await faultsOf(page), []);
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
+test("a rectangle is moved, sized and zoomed into by keys alone, told in words, and left by Escape", async () => {
+  const page = await open("turntable/report.html");
+  const card = await linear(page, "turntable, ez");
+  const plot = card.locator(".plot");
+  const whole = await numbersBelow(card);
+  const readout = () => card.locator(".readout").innerText();
+  await plot.focus();
+  await page.keyboard.press("z");
+  assert.match(await readout(), /^position \[deg\] 87.5 to 262.5, .* Enter zooms, Escape leaves\.$/);
+  assert.deepEqual(await faultsOf(page), []);
+  await page.keyboard.press("Escape");
+  assert.deepEqual(await numbersBelow(card), whole);
+  await page.keyboard.press("z");
+  for (let n = 0; n < 3; ++n) await page.keyboard.press("ArrowRight"); // 5 % each
+  for (let n = 0; n < 2; ++n) await page.keyboard.press("Shift+ArrowLeft");
+  assert.match(await readout(), /^position \[deg\] 140 to 280, /);
+  await page.keyboard.press("Enter");
+  await drawnAgain(page);
+  const shown = await numbersBelow(card);
+  assert.ok(shown.length > 1 && shown.every((x) => x >= 140 && x <= 280), String(shown));
+  await page.keyboard.press("0");
+  await drawnAgain(page);
+  assert.deepEqual(await numbersBelow(card), whole);
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
 test("choosing another residual draws another plot", async () => {
   const page = await open("diagnosed/report.html");
   const choice = page.locator("#residuals .choice");

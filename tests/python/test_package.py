@@ -209,6 +209,29 @@ class Following(unittest.TestCase):
             follow.predict({"laser.yaw": np.zeros(3)})
 
 
+class ErrorMotions(unittest.TestCase):
+    angle_deg = np.arange(0.0, 360.0, 10.0)
+
+    def test_of_an_axial_motion_have_fundamental_and_residual_and_of_a_radial_one_no_circle(self):
+        angle_rad = np.radians(self.angle_deg)
+        motion_um = 3.0 * np.cos(angle_rad) + np.cos(2.0 * angle_rad)
+        turns = np.stack([motion_um + 0.25, motion_um - 0.25])  # two turns, half a um apart
+        axial = tb.error_motion(self.angle_deg, turns, axial=True)
+        self.assertAlmostEqual(axial["fundamental"]["value"], 6.0)
+        self.assertAlmostEqual(axial["residual"]["value"], 2.0)
+        self.assertAlmostEqual(axial["synchronous"]["value"], np.ptp(motion_um))
+        self.assertAlmostEqual(axial["asynchronous"]["value"], 0.5)
+        self.assertAlmostEqual(axial["total"]["value"], np.ptp(motion_um) + 0.5)
+        radial = tb.error_motion(self.angle_deg, turns)
+        self.assertAlmostEqual(radial["synchronous"]["value"], 2.0)
+        self.assertNotIn("fundamental", radial)
+        self.assertEqual(set(tb.error_motion(self.angle_deg, motion_um)), {"total", "synchronous"})
+
+    def test_of_shapes_that_do_not_fit_are_refused(self):
+        with self.assertRaisesRegex(tb.InputError, "36 angles and turns of 2 x 35"):
+            tb.error_motion(self.angle_deg, np.zeros((2, 35)))
+
+
 class OwnBench(unittest.TestCase):
     def test_closed_form_optics_are_separated_to_what_was_put_in(self):
         scenario = tb.Scenario(SCENARIOS / "rotary_4dof.toml", {

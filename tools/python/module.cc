@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -25,6 +27,7 @@
 #include "twin/model/follow.h"
 #include "twin/procedure/machine_options.h"
 #include "twin/report/evaluation.h"
+#include "twin/separate/error_motion.h"
 
 // The compiled half of the package; what users call, with docstrings, is in twinbench/*.py.
 namespace twinbench::python {
@@ -128,6 +131,26 @@ Readings FromCsv(const std::string& text, const std::string& name, const std::st
   return {bench, ParseReadingsCsv(in, name, bench)};
 }
 
+/// {"synchronous": {"value", "u", "bias"}, ...} of what is known.
+py::dict ErrorMotionOf(const Eigen::VectorXd& angle_rad, const Eigen::MatrixXd& turns, bool is_axial) {
+  if (angle_rad.size() < 3 || turns.cols() != angle_rad.size() || turns.rows() < 1)
+    throw InputError("error_motion", fmt::format("{} angles and turns of {} x {}", angle_rad.size(), turns.rows(), turns.cols()),
+                     "three angles or more and turns x angles values");
+  if (!angle_rad.allFinite() || !turns.allFinite()) throw InputError("error_motion", "not all is finite", "numbers");
+  const separate::ErrorMotionValues found = separate::EvaluateErrorMotion(
+      separate::OfTurns(angle_rad, turns), is_axial ? separate::PlotCentre::kPolarChart : separate::PlotCentre::kLeastSquares);
+  py::dict values;
+  const auto add = [&](const char* name, const separate::ErrorMotionValue& v) {
+    if (std::isfinite(v.value)) values[name] = py::dict(py::arg("value") = v.value, py::arg("u") = v.u, py::arg("bias") = v.bias);
+  };
+  add("total", found.total);
+  add("synchronous", found.synchronous);
+  add("asynchronous", found.asynchronous);
+  add("fundamental", found.fundamental);
+  add("residual", found.residual);
+  return values;
+}
+
 void AddScenario(py::module_& m) {
   py::class_<Scenario>(m, "Scenario")
       .def_static("load", &LoadScenario, py::arg("path"), py::arg("overrides") = std::vector<std::string>())
@@ -168,6 +191,7 @@ void AddFunctions(py::module_& m) {
   });
   m.def("drive", &Drive, py::arg("bench"), py::arg("scenario"));
   m.def("machine_parts", &PartsForPython, py::arg("scenario"));
+  m.def("error_motion", &ErrorMotionOf, py::arg("angle_rad"), py::arg("turns"), py::arg("is_axial"));
   m.def("evaluate", [](const Scenario& scenario, const Readings& r) {
     const tools::EvaluatedRun run = [&] {
       py::gil_scoped_release unlocked;
