@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { close, faultsOf, folder, makeRun, open, scenario, twinbench, write } from "./bench.mjs";
+import { close, faintOf, faultsOf, folder, makeRun, open, scenario, twinbench, write } from "./bench.mjs";
 
 const kEvil = "</script><script>document.title='caught'</script><img src=x onerror=\"document.title='caught'\">";
 
@@ -28,11 +28,16 @@ for (const run of ["rotary", "turntable", "diagnosed"]) {
     const marks = await plots(page).evaluateAll((all) => all.map((plot) => plot.querySelectorAll("svg path, svg polygon, svg polyline, canvas").length));
     assert.ok(marks.every((n) => n > 3), `marks in each plot: ${marks}`);
     assert.deepEqual(await faultsOf(page), []);
+    const inPlots = await faintOf(page);
+    assert.ok(inPlots.letters > 20 && inPlots.marks > 4, JSON.stringify(inPlots));
+    assert.deepEqual(inPlots.faint, []);
     const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     const light = await paper();
     await page.emulateMedia({ colorScheme: "dark" });
     assert.notEqual(await paper(), light);
     assert.deepEqual(await faultsOf(page), []);
+    await drawnAgain(page);
+    assert.deepEqual((await faintOf(page)).faint, []);
     assert.deepEqual(page.said, []);
     await page.close();
   });

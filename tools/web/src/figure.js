@@ -99,6 +99,10 @@ class Card {
     return Boolean(this.view.zooms && this.chart.get());
   }
 
+  frame() {
+    return this.chart.get().getModel().getComponent("grid").coordinateSystem.getRect();
+  }
+
   onRectangle(is) {
     if (this.toRectangle) pressed(this.toRectangle, is);
     if (is) this.leave();

@@ -1,5 +1,4 @@
 // A rectangle to zoom into: drawn by the pointer (button, or Shift held), or moved and sized by keys.
-import { grid } from "./common.js";
 import { element } from "./dom.js";
 import { axisTitle, number } from "./format.js";
 
@@ -10,8 +9,9 @@ const clamp = (value, low, high) => Math.max(low, Math.min(high, value));
 
 /** Of the plot's own rectangle, between 0 and 1 from its upper left corner. */
 class Rectangle {
-  constructor(plot) {
+  constructor(plot, frame) {
     this.plot = plot;
+    this.frame = frame;
     this.set(0.25, 0.25, 0.75, 0.75);
   }
   set(left, top, right, bottom) {
@@ -28,10 +28,6 @@ class Rectangle {
   get isSmall() {
     return this.right - this.left < kSmallest || this.bottom - this.top < kSmallest;
   }
-  /** Where the axes are drawn, in pixels of the plot. */
-  frame() {
-    return { x: grid.left, y: grid.top, width: this.plot.clientWidth - grid.left - grid.right, height: this.plot.clientHeight - grid.top - grid.bottom };
-  }
   pixels() {
     const { x, y, width, height } = this.frame();
     return { left: x + this.left * width, top: y + this.top * height, right: x + this.right * width, bottom: y + this.bottom * height };
@@ -44,14 +40,14 @@ class Rectangle {
 }
 
 /**
- * @param card  Says what the rectangle holds, and zooms: `rangeOf(pixels)`, `zoomInto(pixels)`, `say(text)`, `onRectangle(is)`.
+ * @param card  Says what the rectangle holds, and zooms: `takesRectangle()`, `frame()`: where the axes are drawn in the plot [px], `rangeOf(pixels)`, `zoomInto(pixels)`, `say(text)`, `onRectangle(is)`.
  * @return begin(): the rectangle, or off with it if it is there; end().
  */
 export function addRectangle(plot, figure, card) {
   let sheet;
   let drawn;
   let from;
-  const rectangle = new Rectangle(plot);
+  const rectangle = new Rectangle(plot, () => card.frame());
 
   const show = () => {
     const { left, top, right, bottom } = rectangle.pixels();
