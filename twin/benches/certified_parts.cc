@@ -22,7 +22,7 @@ const std::vector<CertifiedBench>& All() {
        {{"separation.turntable", "turntable", "turntable", ""},
         {"separation.multitooth", "multi-tooth table", "multi-tooth table", ""},
         {"separation.polygon", "polygon", "polygon", ""},
-        {"iso230_7[].values", "", "error motion", "ISO 230-7"}}},
+        {"iso230_7[].values", "turntable", "error motion", "ISO 230-7"}}},
       {"hob_transmission",
        "Comparison of the angles of hob spindle and worktable by ring encoders whose heads are read in several places",
        {{"separation.transmission[]", "transmission", "transmission chain", ""},
