@@ -8,6 +8,7 @@
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
+#include "twin/report/evaluation.h"
 #include "twin/report/uncertainty_text.h"
 
 namespace twinbench::tools {

@@ -6,11 +6,13 @@
 #include <optional>
 #include <thread>
 
+#include "tools/twinbench/campaign_page.h"
 #include "tools/twinbench/campaign_table.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/stop_signal.h"
 #include "twin/campaign/trial.h"
 #include "twin/core/errors.h"
 
@@ -22,6 +24,8 @@ struct CampaignOptions {
   int threads = 0;  // 0: one for each core, or one a rank
   bool resume = false, mpi = false;
   std::optional<std::int64_t> trial;
+  std::optional<int> web;         // port of the live page
+  std::vector<std::string> show;  // results on it
 };
 
 int ThreadsOf(const CampaignOptions& options, const campaign::Ranks& ranks) {
@@ -54,11 +58,19 @@ void Report(const campaign::Table& table, const CampaignOptions& options, JsonAn
   if (!options.csv.empty()) WriteFileAtOnce(options.csv, table.Csv());
 }
 
-void LeadCampaign(const CampaignOptions& options, campaign::Ranks& ranks, JsonAnswer& answer) {
+void LeadCampaign(const CampaignOptions& options, campaign::Ranks& ranks, LivePage& page, JsonAnswer& answer) {
   Begun begun = Begin(options, ranks);
-  TrialsLine line;
-  campaign::RunCampaign(begun.study, begun.table, ThreadsOf(options, ranks), ranks,
-                        [&](const campaign::CampaignProgress& p) { line.Show(p.done, p.planned, p.lost); });
+  bool is_complete = false;
+  {
+    TrialsLine line;
+    CampaignPage shown(page, options.study + " into " + options.table, begun.table, options.show);
+    const auto tell = [&](const campaign::CampaignProgress& p) {
+      line.Show(p.done, p.planned, p.lost);
+      shown.Hear(p);
+    };
+    is_complete = campaign::RunCampaign(begun.study, begun.table, ThreadsOf(options, ranks), ranks, tell, StopWasAsked);
+  }
+  if (!is_complete) throw BenchError("stopped by the operator; trials that had begun are in " + options.table + ". Go on with --resume");
   Report(begun.table, options, answer);
 }
 
@@ -83,9 +95,11 @@ void PrintTrial(const CampaignOptions& options, JsonAnswer& answer) {
 void Campaign(const CampaignOptions& options, JsonAnswer& answer) {
   if (options.trial) return PrintTrial(options, answer);
   for (const std::string& output : {options.csv, answer.to()}) RequireOutput(output, {options.study, options.table});
+  if (!options.show.empty() && !options.web) throw InputError("--show", "there is no page to show it on", "--web PORT beside it");
   if (options.table.empty()) throw InputError("campaign", "there is no table", "-o TABLE.sqlite, or --trial N");
   campaign::Ranks ranks(options.mpi || campaign::Ranks::StartedAsOneOfMany());
-  if (ranks.IsFirst()) return LeadCampaign(options, ranks, answer);
+  if (ranks.IsFirst())
+    return WithLivePage(options.web, "campaign", [&](LivePage& page) { LeadCampaign(options, ranks, page, answer); });
   FollowFirst(options, ranks);
 }
 
@@ -102,6 +116,8 @@ void AddCampaign(CLI::App& app) {
   command->add_flag("--mpi", options->mpi, "share the trials with the other ranks; told by itself below mpirun");
   command->add_option("--csv", options->csv, "also write the table here, a line a trial");
   command->add_option("--trial", options->trial, "print the scenario of this trial, and do no more");
+  AddWebOption(*command, options->web);
+  command->add_option("--show", options->show, "result whose mean the page shows, as the summary names it; left out: the first few")->allow_extra_args(false);
   AnswerWith(*command, "the summary", [options](JsonAnswer& answer) { Campaign(*options, answer); });
 }
 
