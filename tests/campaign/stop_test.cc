@@ -8,7 +8,7 @@ namespace twinbench::campaign {
 namespace {
 
 TEST(RunCampaign, ThatIsStoppedKeepsWhatHasBegunAndGoesOnToTheSameTable) {
-  const test::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const Study study = ParseStudy(StudyOf("trials = 20\n"), "study.toml", "");
   Ranks alone(false);
   Table whole = Table::Create(folder.File("whole.sqlite"), "1", study);
