@@ -145,6 +145,17 @@ TEST_F(JsonAnswers, OfAnExportAreTheNumbersOfReadingsCsv) {
     }
 }
 
+TEST_F(JsonAnswers, OfWhatWasOnlyLookedAtSayWhatWasSeen) {
+  for (const char* scenario : {"s.toml", "small.toml"}) {
+    const nlohmann::json rehearsal = nlohmann::json::parse(Answer("measure", {scenario, "--bench", "bench.toml", "--rehearse-only"}).out).at("rehearsal");
+    EXPECT_GT(rehearsal.at("readings"), 0) << scenario;
+    EXPECT_TRUE(rehearsal.at("problems").empty()) << scenario;
+  }
+  EXPECT_THAT(nlohmann::json::parse(Answer("import", {"readings.csv", "--look"}).out).at("look").get<std::string>(), HasSubstr("reference_deg"));
+  EXPECT_THAT(nlohmann::json::parse(Answer("campaign", {"study.toml", "--trial", "1"}).out).at("scenario_toml").get<std::string>(),
+              HasSubstr("bench = \"encoder_comparison\""));
+}
+
 TEST_F(JsonAnswers, OfAServedBenchComeAsSoonAsItCanBeReached) {
   Process server(At(""), {"serve", "s.toml", "--scpi-port", "0", "--esp-port", "0", "--no-pty", "--write-bench", "served.toml", "--token", "--json"}, "s");
   while (server.Runs() && Contents(At("") + "s.out").find("}\n") == std::string::npos) usleep(10000);

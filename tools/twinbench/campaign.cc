@@ -58,19 +58,21 @@ void Report(const campaign::Table& table, const CampaignOptions& options, JsonAn
   if (!options.csv.empty()) WriteFileAtOnce(options.csv, table.Csv());
 }
 
+/// @return whether every trial is in the table.
+bool CarryOutShown(Begun& begun, const CampaignOptions& options, campaign::Ranks& ranks, LivePage& page) {
+  TrialsLine line;
+  CampaignPage shown(page, options.study + " into " + options.table, begun.table, options.show);
+  const auto tell = [&](const campaign::CampaignProgress& p) {
+    line.Show(p.done, p.planned, p.lost);
+    shown.Hear(p);
+  };
+  return campaign::RunCampaign(begun.study, begun.table, ThreadsOf(options, ranks), ranks, tell, StopWasAsked);
+}
+
 void LeadCampaign(const CampaignOptions& options, campaign::Ranks& ranks, LivePage& page, JsonAnswer& answer) {
   Begun begun = Begin(options, ranks);
-  bool is_complete = false;
-  {
-    TrialsLine line;
-    CampaignPage shown(page, options.study + " into " + options.table, begun.table, options.show);
-    const auto tell = [&](const campaign::CampaignProgress& p) {
-      line.Show(p.done, p.planned, p.lost);
-      shown.Hear(p);
-    };
-    is_complete = campaign::RunCampaign(begun.study, begun.table, ThreadsOf(options, ranks), ranks, tell, StopWasAsked);
-  }
-  if (!is_complete) throw BenchError("stopped by the operator; trials that had begun are in " + options.table + ". Go on with --resume");
+  if (!CarryOutShown(begun, options, ranks, page))
+    throw BenchError("stopped by the operator; trials that had begun are in " + options.table + ". Go on with --resume");
   Report(begun.table, options, answer);
 }
 

@@ -1,7 +1,5 @@
 #include "tools/twinbench/run_folder.h"
 
-#include <fmt/core.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
