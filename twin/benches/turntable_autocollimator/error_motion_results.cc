@@ -17,7 +17,7 @@ using separate::turntable::Roll;
 using separate::turntable::ShiftFit;
 using separate::turntable::StopGrid;
 
-constexpr int kMostPositions = 720;  // a covariance of more takes long to take the root of
+constexpr std::size_t kMostPositions = 720;  // a covariance of more takes long to take the root of
 constexpr int kOfCircle = 3;         // unknowns: centre and radius
 constexpr const char* kStopsOnly = "the axis stood at every reading; the standard measures while it turns";
 constexpr const char* kTeethInIt = "one shift of the teeth: what the multi-tooth table tilts is in it";
@@ -53,7 +53,7 @@ report::DirectedMotion TiltOf(const StopGrid& grid, const ShiftFit& fit, const E
   report::DirectedMotion tilt{"tilt_fixed_x", true, {Eigen::VectorXd(grid.n), fit.Solve(y_rad).head(grid.n), {}, {}}};
   tilt.motion.scatter.resize(static_cast<std::size_t>(grid.n));
   for (int i = 0; i < grid.n; ++i) tilt.motion.angle_rad[i] = grid.Position_rad(i);
-  if (!(dof > 0.0) || grid.n > kMostPositions) return tilt;
+  if (!(dof > 0.0)) return tilt;
   const Eigen::VectorXd beyond = fit.Residuals(y_rad);
   for (std::size_t k = 0; k < grid.stops.size(); ++k)
     tilt.motion.scatter[static_cast<std::size_t>(grid.stops[k].position)].push_back(std::sqrt(readings / dof) * beyond[static_cast<Eigen::Index>(k)]);
@@ -69,9 +69,10 @@ report::DirectedMotion TiltOf(const StopGrid& grid, const ShiftFit& fit, const E
 
 report::ErrorMotionTexts EvaluateTilt(const std::vector<separate::turntable::TurntableStop>& stops, int positions,
                                       const IndexingSeparation& separation, double stated_noise_rad) {
+  report::ErrorMotionTexts told;
+  if (separation.turntable.position_rad.size() > kMostPositions) return told;
   const StopGrid grid = FindGrid(stops, positions);
   const ShiftFit fit(grid);
-  report::ErrorMotionTexts told;
   if (!fit.determined()) return told;
   const Eigen::VectorXd y_rad = WithoutLean(grid, Upright(Collect(stops, grid), separation.roll));
   const report::DirectedMotion tilt = TiltOf(grid, fit, y_rad, stated_noise_rad * stated_noise_rad);

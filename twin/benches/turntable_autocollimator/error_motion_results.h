@@ -16,8 +16,8 @@ namespace twinbench::benches::turntable {
 ///
 /// @param positions       n; 0: count them.
 /// @param stated_noise_rad  Of the autocollimator: as much of the scatter is noise, the rest repeatability.
-/// Uncertainty: scatter of the readings (separate::EvaluateErrorMotion); none above 720 positions, where no turns are told either. Not
-/// included: roll of the crosshair where it is not known, flatness of the mirror.
+/// @return nothing above 720 positions, whose covariance takes long to draw from.
+/// Uncertainty: scatter of the readings (separate::EvaluateErrorMotion). Not included: roll of the crosshair where it is not known, flatness of the mirror.
 report::ErrorMotionTexts EvaluateTilt(const std::vector<separate::turntable::TurntableStop>& stops, int positions,
                                       const separate::turntable::IndexingSeparation& separation, double stated_noise_rad);
 
