@@ -1,5 +1,6 @@
 """The Python package beside the command line, whose numbers it must give, and a bench of its own."""
 
+import ast
 import importlib.util
 import json
 import math
@@ -343,6 +344,19 @@ class Examples(unittest.TestCase):
     def test_a_longer_run_shows_a_smaller_drift(self):
         values = [float(line.split()[6]) for line in self.output_of("design_experiment").splitlines()]
         self.assertEqual(values, sorted(values, reverse=True))
+
+
+class Stubs(unittest.TestCase):
+    def test_name_what_the_compiled_half_has_and_nothing_else(self):
+        stub = ast.parse(pathlib.Path(tb._core.__file__).with_name("_core.pyi").read_text())
+        public = lambda names: {name for name in names if not name.startswith("_")}
+        defined = [node for node in stub.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))]
+        self.assertEqual(public(node.name for node in defined), public(vars(tb._core)))
+        for node in defined:
+            if isinstance(node, ast.ClassDef) and not issubclass(getattr(tb._core, node.name), Exception):
+                fields = {field.target.id for field in node.body if isinstance(field, ast.AnnAssign)}
+                methods = {method.name for method in node.body if isinstance(method, ast.FunctionDef)}
+                self.assertEqual(public(fields | methods), public(vars(getattr(tb._core, node.name))), node.name)
 
 
 class Threads(unittest.TestCase):
