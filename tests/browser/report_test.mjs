@@ -223,6 +223,32 @@ test("a rectangle is moved, sized and zoomed into by keys alone, told in words, 
   await page.close();
 });
 
+test("every plot with axes takes a rectangle, bars along their places, and no other does", async () => {
+  const page = await open("turntable/report.html");
+  const cards = page.locator("figure.card").filter({ has: page.getByRole("button", { name: "Zoom in" }) });
+  const told = { plane: 0, bars: 0, none: 0 };
+  for (let k = 0; k < (await cards.count()); ++k) {
+    const card = cards.nth(k);
+    const can = await card.getByRole("button", { name: "Rectangle" }).isVisible();
+    await card.locator(".plot").focus();
+    await page.keyboard.press("z");
+    assert.equal(await card.locator(".sheet").count(), can ? 1 : 0);
+    if (!can) {
+      ++told.none;
+      continue;
+    }
+    const words = await card.locator(".readout").innerText();
+    const range = words.match(/^.*? (\S+) to (\S+?)(, .* \S+ to \S+)?\. Arrows/);
+    assert.ok(range && range.slice(1, 3).every((end) => Number.isFinite(Number(end.replace("\u2212", "-")))), words);
+    ++told[range[3] ? "plane" : "bars"];
+    await page.keyboard.press("Enter");
+    assert.equal(await card.locator(".plot").getAttribute("data-zoomed"), "yes");
+  }
+  assert.ok(told.plane > 0 && told.bars > 0 && told.none > 0, JSON.stringify(told));
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
 test("choosing another residual draws another plot", async () => {
   const page = await open("diagnosed/report.html");
   const choice = page.locator("#residuals .choice");
