@@ -117,6 +117,9 @@ TEST_F(JsonAnswers, OfABadInputNameFileLineAndKey) {
   EXPECT_EQ(key.at("key"), "encoder_procedure.stop_per_turn");
   EXPECT_THAT(key.at("expected").get<std::string>(), HasSubstr("stops_per_turn"));
   EXPECT_EQ(fault("check", {"s.toml", "--set", "encoder_procedure.turns=0"}).at("key"), "encoder_procedure.turns");
+  Write("seed.toml", "bench = \"encoder_comparison\"\nseed = \"many\"\n");
+  EXPECT_EQ(fault("check", {"seed.toml"}).at("key"), "seed");
+  EXPECT_FALSE(fault("check", {"none.toml"}).contains("key"));
   EXPECT_EQ(fault("run", {"s.toml", "-o", "x", "--seed", "-1"}).at("key"), "--seed");
   EXPECT_EQ(fault("separate", {"bad.csv", "--scenario", "s.toml"}).at("line"), 2);
   EXPECT_EQ(fault("run", {"s.toml"}).at("kind"), "command_line");

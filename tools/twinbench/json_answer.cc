@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -10,7 +11,9 @@
 
 #include "tools/twinbench/exit_code.h"
 #include "tools/twinbench/run_folder.h"
+#include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
+#include "twin/core/scenario_schema.h"
 
 namespace twinbench::tools {
 namespace {
@@ -56,6 +59,13 @@ InputFault PartsOf(const std::string& text) {
   return fault;
 }
 
+/// Of a scenario, above its tables: "seed".
+bool IsTopKey(const std::string& word) {
+  Scenario any;
+  any.bench = BenchFormats().front()->name;
+  return std::ranges::any_of(KeysOf(any), [&](const ScenarioKey& key) { return key.table.empty() && key.Name() == word; });
+}
+
 /// The key that a fault is about: "unknown key laser.x", "laser.x is 3", "laser.x: the file ...".
 std::string KeyOf(const InputFault& fault) {
   static const std::regex named("^unknown (?:key|table) ([A-Za-z0-9_.]+)"),
@@ -63,6 +73,7 @@ std::string KeyOf(const InputFault& fault) {
   std::smatch match;
   for (const std::regex& pattern : {named, dotted})
     if (std::regex_search(fault.what, match, pattern)) return match[1];
+  if (const std::string word = fault.what.substr(0, fault.what.find_first_of(" :")); IsTopKey(word)) return word;
   if (!std::regex_search(fault.where, match, option)) return "";
   return match[2].matched ? match[2] : match[1];
 }
