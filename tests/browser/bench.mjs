@@ -67,12 +67,39 @@ export async function open(file) {
   return page;
 }
 
-/** What the checker of accessibility has against the page, contrast among it. Insides of plots, which it takes for pictures, have the colours of the
- * page's text. */
+/** What the checker of accessibility has against the page, contrast among it; of the letters in plots, which it does not judge, see faintOf. */
 export async function faultsOf(page) {
   if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(axe);
-  const found = await page.evaluate(() => window.axe.run({ exclude: [".plot svg"] }, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"], resultTypes: ["violations"] }));
+  const found = await page.evaluate(() => window.axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"], resultTypes: ["violations"] }));
   return found.violations.map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map((node) => node.html.slice(0, 120)).join(" | ")}`);
+}
+
+/** What stands out too little in the plots, by the checker's own measure, which leaves text of SVG for people to judge: letters below 4.5 to 1 on what is behind the
+ * plot (WCAG 1.4.3), and the colours of series, as the legends show them, below 3 to 1 (1.4.11). Plots of many points are one canvas and have none. */
+export async function faintOf(page) {
+  if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(axe);
+  return page.evaluate(() => {
+    const { Color, flattenColors, getContrast } = window.axe.commons.color;
+    const painted = (element, property) => {
+      const style = getComputedStyle(element);
+      if (style[property] === "none") return undefined;
+      const colour = new Color();
+      colour.parseString(style[property]);
+      colour.alpha *= Number(style[`${property}Opacity`] ?? 1) * Number(style.opacity);
+      return colour;
+    };
+    const behind = (element) => painted(element.closest(".card"), "backgroundColor");
+    const tooFaint = (element, property, least) => {
+      const colour = painted(element, property);
+      if (!colour || colour.alpha === 0) return false;
+      return getContrast(behind(element), flattenColors(colour, behind(element))) < least;
+    };
+    const letters = [...document.querySelectorAll(".plot svg text")];
+    const marks = [...document.querySelectorAll('.legend .entry[aria-pressed="true"] svg *')].filter((mark) => !mark.children.length);
+    const faint = letters.filter((text) => tooFaint(text, "fill", 4.5)).map((text) => `letters ${text.textContent}`);
+    for (const mark of marks) if (tooFaint(mark, "stroke", 3) && tooFaint(mark, "fill", 3)) faint.push(`series ${mark.outerHTML}`);
+    return { letters: letters.length, marks: marks.length, faint };
+  });
 }
 
 export async function close() {

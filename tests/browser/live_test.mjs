@@ -47,6 +47,12 @@ function ask(port, ...questions) {
   });
 }
 
+/** What the page says at its end, which comes to it after the program has gone. */
+const verdictOf = (page) => until(async () => {
+  const said = await page.locator("#state").innerText();
+  return /exit code/.test(said) && said;
+}, () => "the page does not say how it ended");
+
 const kServed = ["--set", "procedure.positions=12", "--set", 'mechanics.fidelity="linear"'];
 
 test("a served twin is seen while it is measured, and stopped by the page as by Ctrl-C", async () => {
@@ -93,7 +99,7 @@ test("a served twin is seen while it is measured, and stopped by the page as by 
   const words = "stopped by the operator. The tables were brought to rest. The controller says that all tables stand still; every reading so far is kept.";
   assert.equal(code, 1);
   assert.ok(measure.err.includes(words), measure.err);
-  const verdict = await page.locator("#state").innerText();
+  const verdict = await verdictOf(page);
   assert.ok(verdict.startsWith("The program ended with exit code 1."), verdict);
   assert.ok(verdict.includes(words), verdict);
   assert.ok(await stop.isDisabled());
@@ -130,7 +136,7 @@ test("a served twin shows where clients have moved its tables, and is stopped fr
   await page.getByRole("button", { name: "Stop serving" }).click();
   await page.locator("#stop-sure").click();
   assert.equal(await serve.ended, 0, serve.err);
-  assert.equal(await page.locator("#state").innerText(), "Nothing is served any more: the program ended with exit code 0");
+  assert.equal(await verdictOf(page), "Nothing is served any more: the program ended with exit code 0");
   assert.deepEqual(page.said, []);
   await page.close();
 });
@@ -187,4 +193,63 @@ test("a stop passes to the run of an investigation that is under way", async () 
   assert.equal(await tell(new URL(await addressOf(inquiry)), "stop"), 202);
   assert.equal(await inquiry.ended, 1);
   assert.match(inquiry.err, /stopped by the operator behind reading \d+ of 96/);
+});
+
+const kStudy = (trials, more = "") => `scenario_text = '''
+bench = "encoder_comparison"
+[encoder_procedure]
+turns = 1
+stops_per_turn = 12
+passes = [1, -1]
+${more}'''
+seed = 1
+trials = ${trials}
+`;
+
+test("a campaign is seen with its means and lost trials, stopped by the page, and gone on with to the same table", async () => {
+  write("long.toml", kStudy(20000));
+  const first = start("campaign", "long.toml", "-o", "long.sqlite", "--threads", "1", "--web", "0", "--show", "reversal.mean_arcsec", "--show", "score.device.ez_arcsec[]");
+  const page = await openAddress(await addressOf(first));
+  await page.locator("#live-mean-of-reversal-mean-arcsec .plot[data-points]").waitFor();
+  const cells = () => page.locator("#results tbody tr").first().locator("th, td").allInnerTexts();
+  const points = () => page.locator("#live-mean-of-reversal-mean-arcsec .plot").getAttribute("data-points").then(Number);
+  const before = await points();
+  await until(async () => (await points()) > before, () => "the mean does not go on");
+  assert.equal((await cells())[0], "reversal.mean_arcsec");
+  assert.match((await cells())[2], /^\S+ \u00b1 \S+$/);
+  assert.match(await page.locator("#counted").innerText(), /^\d+ of 20000 trials, 0 lost, [\d:]+ left$/);
+  assert.match(await page.locator("h1").innerText(), /^campaign: long\.toml into long\.sqlite$/);
+  assert.deepEqual(await faultsOf(page), []);
+  await page.locator("#stop").click();
+  assert.match(await page.locator("#stop-question").innerText(), /Stop the campaign\?/);
+  await page.locator("#stop-sure").click();
+  assert.equal(await first.ended, 1, first.err);
+  assert.match(first.err, /stopped by the operator; trials that had begun are in long\.sqlite\. Go on with --resume/);
+  assert.match(await verdictOf(page), /^The program ended with exit code 1\./);
+  assert.deepEqual(page.said, []);
+  await page.close();
+
+  write("short.toml", kStudy(40));
+  twinbench("campaign", "short.toml", "-o", "whole.sqlite", "--csv", "whole.csv", "--threads", "1");
+  const seen = start("campaign", "short.toml", "-o", "seen.sqlite", "--csv", "seen.csv", "--threads", "2", "--web", "0");
+  assert.equal(await seen.ended, 0, seen.err);
+  assert.equal(readFileSync(join(folder, "seen.csv"), "utf8"), readFileSync(join(folder, "whole.csv"), "utf8"));
+});
+
+test("lost trials of a campaign are told with their reasons", async () => {
+  // What repeats with the lines of a scale loses the trials of a scale of which no lines are stated.
+  write("lost.toml", `${kStudy(1000)}set = ['effect=[{name = "interpolation"}]']
+[[vary]]
+key = "device.lines_per_turn"
+values = [0, 1024]
+`);
+  const lost = start("campaign", "lost.toml", "-o", "lost.sqlite", "--threads", "1", "--web", "0");
+  const page = await openAddress(await addressOf(lost));
+  await page.locator("#lost li").first().waitFor();
+  assert.match(await page.locator("#lost li").first().innerText(), /^trial \d+: .*needs the lines/);
+  await until(async () => / [1-9]\d* lost, /.test(await page.locator("#counted").innerText()), () => "no lost trial is counted");
+  assert.deepEqual(await faultsOf(page), []);
+  assert.deepEqual(page.said, []);
+  lost.kill();
+  await page.close();
 });

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { close, faultsOf, folder, makeRun, open, scenario, twinbench, write } from "./bench.mjs";
+import { close, faintOf, faultsOf, folder, makeRun, open, scenario, twinbench, write } from "./bench.mjs";
 
 const kEvil = "</script><script>document.title='caught'</script><img src=x onerror=\"document.title='caught'\">";
 
@@ -28,11 +28,16 @@ for (const run of ["rotary", "turntable", "diagnosed"]) {
     const marks = await plots(page).evaluateAll((all) => all.map((plot) => plot.querySelectorAll("svg path, svg polygon, svg polyline, canvas").length));
     assert.ok(marks.every((n) => n > 3), `marks in each plot: ${marks}`);
     assert.deepEqual(await faultsOf(page), []);
+    const inPlots = await faintOf(page);
+    assert.ok(inPlots.letters > 20 && inPlots.marks > 4, JSON.stringify(inPlots));
+    assert.deepEqual(inPlots.faint, []);
     const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     const light = await paper();
     await page.emulateMedia({ colorScheme: "dark" });
     assert.notEqual(await paper(), light);
     assert.deepEqual(await faultsOf(page), []);
+    await drawnAgain(page);
+    assert.deepEqual((await faintOf(page)).faint, []);
     assert.deepEqual(page.said, []);
     await page.close();
   });
@@ -141,6 +146,106 @@ test("wheel with Ctrl zooms, wheel alone does not", async () => {
   await page.keyboard.up("Control");
   await drawnAgain(page);
   assert.notDeepEqual(await labels(), whole);
+  await page.close();
+});
+
+/** Numbers at the axis below a plot, in its own minus signs. */
+const numbersBelow = async (card) => {
+  const box = await card.locator(".plot").boundingBox();
+  const texts = await card.locator(".plot svg text").evaluateAll((all) => all.map((text) => ({ text: text.textContent, at: text.getBoundingClientRect() })));
+  return texts.filter(({ at }) => at.y > box.y + box.height - 46 && at.y < box.y + box.height - 25).map(({ text }) => Number(text.replace("\u2212", "-"))).filter(Number.isFinite);
+};
+const linear = async (page, heading) => {
+  const card = page.locator("figure.card").filter({ has: page.getByRole("heading", { name: heading, exact: true }) });
+  await card.getByRole("button", { name: "Linear" }).click();
+  await drawnAgain(page);
+  return card;
+};
+
+test("a rectangle is zoomed into by pointer, by button and by Shift, and shown whole again", async () => {
+  const page = await open("turntable/report.html");
+  const card = await linear(page, "turntable, ez");
+  const plot = card.locator(".plot");
+  const box = await plot.boundingBox();
+  const drag = async (from, to) => {
+    const at = ([x, y]) => [box.x + 62 + x * (box.width - 80), box.y + 14 + y * (box.height - 60)]; // in the rectangle of the axes
+    await page.mouse.move(...at(from));
+    await page.mouse.down();
+    await page.mouse.move(...at([(from[0] + to[0]) / 2, (from[1] + to[1]) / 2]));
+    await page.mouse.move(...at(to));
+    await page.mouse.up();
+    await drawnAgain(page);
+  };
+  const within = (numbers, low, high) => assert.ok(numbers.length > 1 && numbers.every((x) => x >= low && x <= high), `${numbers} in ${low} to ${high}`);
+  const whole = await numbersBelow(card);
+  assert.ok(Math.max(...whole) - Math.min(...whole) >= 300);
+  await card.getByRole("button", { name: "Rectangle" }).click();
+  assert.equal(await card.getByRole("button", { name: "Rectangle" }).getAttribute("aria-pressed"), "true");
+  await drag([0.2, 0.3], [0.4, 0.7]); // of 0 to 350 deg
+  within(await numbersBelow(card), 0.2 * 350 - 2, 0.4 * 350 + 2);
+  assert.equal(await card.locator(".sheet").count(), 0);
+  await card.getByRole("button", { name: "All" }).click();
+  await drawnAgain(page);
+  assert.deepEqual(await numbersBelow(card), whole);
+  await page.keyboard.down("Shift");
+  await drag([0.8, 0.8], [0.6, 0.2]); // from any corner
+  await page.keyboard.up("Shift");
+  within(await numbersBelow(card), 0.6 * 350 - 2, 0.8 * 350 + 2);
+  assert.deepEqual(await faultsOf(page), []);
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
+test("a rectangle is moved, sized and zoomed into by keys alone, told in words, and left by Escape", async () => {
+  const page = await open("turntable/report.html");
+  const card = await linear(page, "turntable, ez");
+  const plot = card.locator(".plot");
+  const whole = await numbersBelow(card);
+  const readout = () => card.locator(".readout").innerText();
+  await plot.focus();
+  await page.keyboard.press("z");
+  assert.match(await readout(), /^position \[deg\] 87.5 to 262.5, .* Enter zooms, Escape leaves\.$/);
+  assert.deepEqual(await faultsOf(page), []);
+  await page.keyboard.press("Escape");
+  assert.deepEqual(await numbersBelow(card), whole);
+  await page.keyboard.press("z");
+  for (let n = 0; n < 3; ++n) await page.keyboard.press("ArrowRight"); // 5 % each
+  for (let n = 0; n < 2; ++n) await page.keyboard.press("Shift+ArrowLeft");
+  assert.match(await readout(), /^position \[deg\] 140 to 280, /);
+  await page.keyboard.press("Enter");
+  await drawnAgain(page);
+  const shown = await numbersBelow(card);
+  assert.ok(shown.length > 1 && shown.every((x) => x >= 140 && x <= 280), String(shown));
+  await page.keyboard.press("0");
+  await drawnAgain(page);
+  assert.deepEqual(await numbersBelow(card), whole);
+  assert.deepEqual(page.said, []);
+  await page.close();
+});
+
+test("every plot with axes takes a rectangle, bars along their places, and no other does", async () => {
+  const page = await open("turntable/report.html");
+  const cards = page.locator("figure.card").filter({ has: page.getByRole("button", { name: "Zoom in" }) });
+  const told = { plane: 0, bars: 0, none: 0 };
+  for (let k = 0; k < (await cards.count()); ++k) {
+    const card = cards.nth(k);
+    const can = await card.getByRole("button", { name: "Rectangle" }).isVisible();
+    await card.locator(".plot").focus();
+    await page.keyboard.press("z");
+    assert.equal(await card.locator(".sheet").count(), can ? 1 : 0);
+    if (!can) {
+      ++told.none;
+      continue;
+    }
+    const words = await card.locator(".readout").innerText();
+    const range = words.match(/^.*? (\S+) to (\S+?)(, .* \S+ to \S+)?\. Arrows/);
+    assert.ok(range && range.slice(1, 3).every((end) => Number.isFinite(Number(end.replace("\u2212", "-")))), words);
+    ++told[range[3] ? "plane" : "bars"];
+    await page.keyboard.press("Enter");
+    assert.equal(await card.locator(".plot").getAttribute("data-zoomed"), "yes");
+  }
+  assert.ok(told.plane > 0 && told.bars > 0 && told.none > 0, JSON.stringify(told));
+  assert.deepEqual(page.said, []);
   await page.close();
 });
 

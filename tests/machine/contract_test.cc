@@ -8,7 +8,6 @@
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/driven.h"
 #include "twin/benches/circular_motion/twin/live.h"
-#include "twin/procedure/machine_watch.h"
 #include "twin/sim/driven_machine.h"
 
 /// Same scenario, same seed, same readings: on the twin in this program and through the network.
@@ -86,34 +85,6 @@ TEST_P(MachineContract, RunsInRealTimeAsWithoutAny) {
   EXPECT_EQ(TextOf(run.log.readings, scenario_), TextOf(in_process_, scenario_));
 }
 
-/// A bench that cannot begin again goes on where it is, also in the middle of a sweep: nothing is taken twice, and
-/// what is mounted stays mounted.
-TEST_P(MachineContract, ARealBenchGoesOnWithTheReadingThatIsMissing) {
-  const auto twin = BenchOf(scenario_).make_devices(scenario_);
-  MachineBench bench = twin->Devices();
-  bench.simulation = nullptr;
-  MemoryLog log;
-  for (const std::size_t stop_at : {std::size_t{5}, std::size_t{17}, in_process_.size() + 1}) {
-    procedure::MachineOptions options;
-    options.log = &log;
-    options.kept = log.readings;
-    options.stop_requested = [&] { return log.readings.size() >= stop_at; };
-    if (stop_at > in_process_.size()) {
-      BenchOf(scenario_).drive(bench, scenario_, log, {}, options);
-    } else {
-      EXPECT_THROW(BenchOf(scenario_).drive(bench, scenario_, log, {}, options), DeviceFault);
-      EXPECT_EQ(log.readings.size(), stop_at) << "every reading is kept before the operator is heard";
-    }
-  }
-  ASSERT_EQ(log.readings.size(), in_process_.size());
-  EXPECT_EQ(log.events.size(), 2u) << "each set-up was mounted once";
-  for (std::size_t k = 0; k < in_process_.size(); ++k) {
-    EXPECT_EQ(log.readings[k].reading, static_cast<int>(k));
-    for (const ReadingColumn& column : InstrumentColumns(BenchOf(scenario_).format->columns))
-      EXPECT_EQ(column.print(log.readings[k]).empty(), column.print(in_process_[k]).empty()) << column.name;
-  }
-}
-
 /// Those whose axes go along lines and arcs.
 using DrivenContract = MachineContract;
 
@@ -127,73 +98,17 @@ TEST_P(DrivenContract, EveryDeviceSchedulesEvents) {
   for (const char* device : {"axes", "fixture"}) EXPECT_GT(scheduled.at(device), 0U) << device;
 }
 
-/// Those whose axes can be sent somewhere.
-using SentContract = MachineContract;
-
-TEST_P(SentContract, APathBeyondTheTravelIsRefused) {
-  const auto twin = BenchOf(scenario_).make_devices(scenario_);
-  MachineController& machine = twin->Devices().machine;
-  std::vector<double> to;
-  for (const AxisLimits& axis : machine.Travel()) to.push_back(axis.upper + 1e-3);
-  EXPECT_THROW(machine.StartMove(to, 0.0), DeviceFault);
-  for (const AxisState& axis : machine.State()) EXPECT_FALSE(axis.moving);
-}
-
-TEST_P(SentContract, AStopLeavesTheAxesWhereTheyAre) {
-  const auto twin = BenchOf(scenario_).make_devices(scenario_);
-  MachineBench bench = twin->Devices();
-  std::vector<double> to;
-  const std::vector<AxisState> before = bench.machine.State();
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    const double way = bench.machine.Axes()[k].is_rotary ? 1.0 : 0.02;  // rad or m
-    to.push_back(before[k].encoder - std::min(way, 0.5 * (before[k].encoder - bench.machine.Travel()[k].lower)));
-  }
-  bench.machine.StartMove(to, 0.01);
-  EXPECT_FALSE(bench.machine.Settles(std::chrono::milliseconds(100)));
-  bench.machine.Stop();
-  bench.clock.Wait(std::chrono::seconds(5));  // bodies come to rest
-  const std::vector<AxisState> stopped = bench.machine.State();
-  bench.clock.Wait(std::chrono::seconds(5));
-  for (std::size_t k = 0; k < stopped.size(); ++k) {
-    EXPECT_FALSE(stopped[k].moving);
-    EXPECT_GT(std::abs(stopped[k].encoder - to[k]), 0.01) << "it was on its way";
-    EXPECT_NEAR(bench.machine.State()[k].encoder, stopped[k].encoder, 1e-6);
-  }
-}
-
-TEST_P(MachineContract, AReadingBesideThePlanIsOneToo) {
-  const auto twin = BenchOf(scenario_).make_devices(scenario_);
-  MachineBench bench = twin->Devices();
-  const std::vector<ReadingColumn> columns = InstrumentColumns(BenchOf(scenario_).format->columns);
-  bench.clock.Wait(std::chrono::seconds(3));  // no reading is due now
-  const Reading sample = bench.instruments.Read();
-  EXPECT_EQ(sample.time, bench.clock.Now());
-  EXPECT_EQ(std::isfinite(sample.temperature_degC), std::isfinite(in_process_[0].temperature_degC));
-  EXPECT_TRUE(std::ranges::any_of(columns, [&](const ReadingColumn& c) { return !c.print(sample).empty(); }));
-}
-
 constexpr ShortBench kDriven[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}, {"Stops", ShortStops}};
 constexpr ShortBench kSentByItself[] = {{"Turntable", ShortTurntable}, {"Polygon", ShortPolygon}};
 constexpr ShortBench kTurning[] = {{"Hob", ShortHob}};
 INSTANTIATE_TEST_SUITE_P(Driven, MachineContract, ::testing::ValuesIn(kDriven), NameOf);
 INSTANTIATE_TEST_SUITE_P(SentByItself, MachineContract, ::testing::ValuesIn(kSentByItself), NameOf);
 INSTANTIATE_TEST_SUITE_P(Turning, MachineContract, ::testing::ValuesIn(kTurning), NameOf);
-INSTANTIATE_TEST_SUITE_P(Driven, SentContract, ::testing::ValuesIn(kDriven), NameOf);
-INSTANTIATE_TEST_SUITE_P(SentByItself, SentContract, ::testing::ValuesIn(kSentByItself), NameOf);
 INSTANTIATE_TEST_SUITE_P(Driven, DrivenContract, ::testing::ValuesIn(kDriven), NameOf);
 
-/// A spindle that was told to turn does until it is stopped, and the stop is read back; it cannot be sent anywhere.
-TEST(TurningAxis, TurnsUntilItIsStopped) {
-  const Scenario scenario = ShortHob();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
-  EXPECT_THROW(bench.machine.StartMove({1.0}, 0.0), DeviceFault);
-  bench.machine.StartTurning(0, 5.0, std::chrono::seconds(2));
-  EXPECT_FALSE(bench.machine.Settles(std::chrono::seconds(10)));
-  EXPECT_TRUE(bench.machine.State()[0].moving);
-  EXPECT_NEAR(bench.machine.State()[0].encoder, 45.0, 0.01) << "5 in the mean of the ramp, 40 behind it";
-  EXPECT_TRUE(procedure::StopMachine(bench).is_sure);
-  EXPECT_FALSE(bench.machine.State()[0].moving);
+TEST(TurningAxis, CannotBeSentAnywhereOnTheTwin) {
+  const auto twin = BenchOf(ShortHob()).make_devices(ShortHob());
+  EXPECT_THROW(twin->Devices().machine.StartMove({1.0}, 0.0), DeviceFault);
 }
 
 TEST(TurningAxis, IsNoneOfAMachineThatIsSent) {

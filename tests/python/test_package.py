@@ -1,5 +1,7 @@
 """The Python package beside the command line, whose numbers it must give, and a bench of its own."""
 
+import ast
+import importlib.util
 import json
 import math
 import os
@@ -12,6 +14,7 @@ import time
 import unittest
 
 import numpy as np
+import own_machines
 import twinbench as tb
 from closed_form_bench import ClosedFormBench
 from twinbench.values import plain, toml
@@ -34,8 +37,8 @@ def small(bench: str) -> tb.Scenario:
     return tb.Scenario(SCENARIOS / f"{bench}.toml", SMALL[bench])
 
 
-def command(*arguments: str) -> None:
-    subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True)
+def command(*arguments: str) -> str:
+    return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
 
 
 class SameAsTheCommandLine(unittest.TestCase):
@@ -95,6 +98,8 @@ class SameAsTheCommandLine(unittest.TestCase):
             self.assertEqual(own.csv, pathlib.Path(folder, "theirs.csv").read_text())
             self.assertEqual(len(own.frame()), 3)
             self.assertIn("3 trials, 0 lost", own.summary)
+            self.assertEqual(own.results["trials"], 3)
+            self.assertEqual(json.loads(command("campaign", study, "-o", f"{folder}/third.sqlite", "--json")), plain(own.results))
             self.assertEqual(tb.campaign(study, own.table, resume=True).csv, own.csv)
             with self.assertRaises(tb.InputError):
                 tb.campaign(study, own.table)
@@ -167,6 +172,30 @@ class Values(unittest.TestCase):
                 readings.to_hdf5(f"{folder}/readings.nxs")
 
 
+class Parquet(unittest.TestCase):
+    def setUp(self):
+        self.readings = tb.run(small("turntable_autocollimator")).readings
+
+    @unittest.skipUnless(importlib.util.find_spec("pyarrow"), "pyarrow is not there: no Parquet is written")
+    def test_a_file_has_the_columns_to_the_bit_with_their_units(self):
+        import pyarrow.parquet
+
+        with tempfile.TemporaryDirectory() as folder:
+            self.readings.to_parquet(f"{folder}/readings.parquet")
+            self.assertEqual(pyarrow.parquet.read_schema(f"{folder}/readings.parquet").field("time_s").metadata[b"units"], b"s")
+            again = tb.Readings.read_parquet(f"{folder}/readings.parquet")
+            self.assertEqual(again._core.csv_text(), self.readings._core.csv_text())
+            with self.assertRaises(FileExistsError):
+                self.readings.to_parquet(f"{folder}/readings.parquet")
+
+    @unittest.skipIf(importlib.util.find_spec("pyarrow"), "pyarrow is there")
+    def test_without_pyarrow_it_is_said_what_is_missing_and_no_file_is_left(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(ModuleNotFoundError, "needs pyarrow.*to_hdf5 or to_csv"):
+                self.readings.to_parquet(f"{folder}/readings.parquet")
+            self.assertEqual(os.listdir(folder), [])
+
+
 class Following(unittest.TestCase):
     def test_a_slope_is_the_difference_of_two_predictions(self):
         scenario = small("rotary_4dof")
@@ -179,6 +208,29 @@ class Following(unittest.TestCase):
             follow.slope("laser.yaww")
         with self.assertRaisesRegex(tb.InputError, "one a reading"):
             follow.predict({"laser.yaw": np.zeros(3)})
+
+
+class ErrorMotions(unittest.TestCase):
+    angle_deg = np.arange(0.0, 360.0, 10.0)
+
+    def test_of_an_axial_motion_have_fundamental_and_residual_and_of_a_radial_one_no_circle(self):
+        angle_rad = np.radians(self.angle_deg)
+        motion_um = 3.0 * np.cos(angle_rad) + np.cos(2.0 * angle_rad)
+        turns = np.stack([motion_um + 0.25, motion_um - 0.25])  # two turns, half a um apart
+        axial = tb.error_motion(self.angle_deg, turns, axial=True)
+        self.assertAlmostEqual(axial["fundamental"]["value"], 6.0)
+        self.assertAlmostEqual(axial["residual"]["value"], 2.0)
+        self.assertAlmostEqual(axial["synchronous"]["value"], np.ptp(motion_um))
+        self.assertAlmostEqual(axial["asynchronous"]["value"], 0.5)
+        self.assertAlmostEqual(axial["total"]["value"], np.ptp(motion_um) + 0.5)
+        radial = tb.error_motion(self.angle_deg, turns)
+        self.assertAlmostEqual(radial["synchronous"]["value"], 2.0)
+        self.assertNotIn("fundamental", radial)
+        self.assertEqual(set(tb.error_motion(self.angle_deg, motion_um)), {"total", "synchronous"})
+
+    def test_of_shapes_that_do_not_fit_are_refused(self):
+        with self.assertRaisesRegex(tb.InputError, "36 angles and turns of 2 x 35"):
+            tb.error_motion(self.angle_deg, np.zeros((2, 35)))
 
 
 class OwnBench(unittest.TestCase):
@@ -204,6 +256,66 @@ class OwnBench(unittest.TestCase):
 
         third = tb.drive(Device(), small("encoder_comparison")).results["harmonics"]["device"][2]
         self.assertAlmostEqual(third["amplitude_arcsec"], 20.0, delta=4.0 * third["u_amplitude_arcsec"])
+
+    def assert_within_u(self, errors, truth_arcsec):
+        """Best constant taken out: 1.5 is far beyond the rms of normed deviations of some dozens of positions."""
+        expected = truth_arcsec(np.radians(errors["position_deg"]))
+        off = (errors["ez_arcsec"] - errors["ez_arcsec"].mean()) - (expected - expected.mean())
+        self.assertLess(np.sqrt(np.mean((off / errors["u_ez_arcsec"]) ** 2)), 1.5)
+        self.assertLess(np.abs(off).max(), 0.2)
+
+    def test_a_turntable_of_ones_own_is_told_from_its_multitooth_table(self):
+        scenario = tb.Scenario.from_toml(
+            'bench = "turntable_autocollimator"\n[turntable_procedure]\nphases = ["full_circle"]\npositions = 36\n'
+            "shifts_teeth = [0, 10, 70, 110]\ntilts_arcsec = [0.0]\n")
+        separation = tb.drive(own_machines.Turntable(scenario), scenario).results["separation"]
+        self.assert_within_u(separation["turntable"], own_machines.Turntable.turntable_arcsec)
+        self.assert_within_u(separation["multitooth"], own_machines.Turntable.multitooth_arcsec)
+
+    def test_a_hobbing_machine_of_ones_own_is_told_from_its_ring(self):
+        scenario = tb.Scenario.from_toml(
+            'bench = "hob_transmission"\n[hob_procedure]\nheads_deg = [12.0, 187.0]\npasses = [1]\nturns = 1\nsamples_per_turn = 180\n')
+        found = tb.drive(own_machines.HobbingMachine(scenario), scenario).results["separation"]["two_positions"]
+        for part, amplitude_arcsec, phase_rad in (("transmission_order_1", 9.0, 0.7), ("table_encoder_order_1", 5.0, -1.1)):
+            told = found[part]
+            self.assertAlmostEqual(told["amplitude_arcsec"], amplitude_arcsec, delta=4.0 * told["u_amplitude_arcsec"])
+            self.assertAlmostEqual(told["phase_rad"], phase_rad, delta=4.0 * told["u_phase_rad"])
+
+    def test_a_machine_tool_of_ones_own_has_the_errors_that_its_circles_show(self):
+        scenario = tb.Scenario.from_toml(
+            'bench = "circular_motion"\n[circular_procedure]\nfeeds_mm_min = [1000.0]\npoints = 36\nstops = 8\n'
+            'setups = [{ instrument = "bar", radius_mm = 110.230 }, { instrument = "grid", radius_mm = 90.0 }]\n')
+        errors = tb.drive(own_machines.Circles(scenario), scenario).results["errors"]
+        for name, truth in (("squareness_arcsec", 10.0), ("scale_x_um_m", 20.0), ("scale_y_um_m", 0.0)):
+            told = errors[f"machine.{name}"]
+            self.assertAlmostEqual(told["value"], truth, delta=2.0 * told["u"])
+
+    def test_a_five_axis_machine_of_ones_own_shows_that_its_slide_sags(self):
+        scenario = tb.Scenario.from_toml('bench = "freeform_five_axis"\n[freeform_procedure]\nposes = 25\n')
+        results = tb.drive(own_machines.FiveAxes(scenario), scenario).results
+        self.assertTrue(results["converged"])
+        errors = results["error_map"]
+        off_um = errors["dz_um"] - own_machines.FiveAxes.sag_um * (errors["x_mm"] / scenario["machine.x_half_mm"]) ** 2
+        plane = np.stack([np.ones_like(off_um), errors["x_mm"], errors["y_mm"]], axis=1)  # how the artefact stands is not the machine's
+        off_um -= plane @ np.linalg.lstsq(plane, off_um, rcond=None)[0]
+        self.assertLess(np.sqrt(np.mean((off_um / errors["u_dz_um"]) ** 2)), 1.5)
+        self.assertLess(np.std(off_um), 0.3 * np.std(errors["dz_um"]))
+
+    def test_a_shaft_of_ones_own_is_driven_from_stop_to_stop(self):
+        scenario = tb.Scenario.from_toml('bench = "encoder_comparison"\n[encoder_procedure]\nturns = 1.0\nstops_per_turn = 24\n')
+        third = tb.drive(own_machines.Shaft(scenario), scenario).results["harmonics"]["device"][2]
+        self.assertAlmostEqual(third["amplitude_arcsec"], 20.0, delta=4.0 * third["u_amplitude_arcsec"])
+
+    def test_a_machine_that_shows_what_its_bench_does_not_have_is_refused(self):
+        class Wrong(own_machines.Shaft):
+            def show(self, at):
+                return {"mesured_deg": 0.0}
+
+        scenario = tb.Scenario.from_toml('bench = "encoder_comparison"\n[encoder_procedure]\nturns = 1.0\nstops_per_turn = 24\n')
+        with self.assertRaisesRegex(tb.BenchError, "shows mesured_deg; the instruments of this bench show reference_deg, measured_deg"):
+            tb.drive(Wrong(scenario), scenario)
+        with self.assertRaisesRegex(tb.InputError, "no machine that is driven"):
+            tb.MachineBench(small("rotary_4dof"))
 
     def test_what_a_bench_raises_ends_the_run_in_its_words(self):
         class Broken(ClosedFormBench):
@@ -232,6 +344,19 @@ class Examples(unittest.TestCase):
     def test_a_longer_run_shows_a_smaller_drift(self):
         values = [float(line.split()[6]) for line in self.output_of("design_experiment").splitlines()]
         self.assertEqual(values, sorted(values, reverse=True))
+
+
+class Stubs(unittest.TestCase):
+    def test_name_what_the_compiled_half_has_and_nothing_else(self):
+        stub = ast.parse(pathlib.Path(tb._core.__file__).with_name("_core.pyi").read_text())
+        public = lambda names: {name for name in names if not name.startswith("_")}
+        defined = [node for node in stub.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))]
+        self.assertEqual(public(node.name for node in defined), public(vars(tb._core)))
+        for node in defined:
+            if isinstance(node, ast.ClassDef) and not issubclass(getattr(tb._core, node.name), Exception):
+                fields = {field.target.id for field in node.body if isinstance(field, ast.AnnAssign)}
+                methods = {method.name for method in node.body if isinstance(method, ast.FunctionDef)}
+                self.assertEqual(public(fields | methods), public(vars(getattr(tb._core, node.name))), node.name)
 
 
 class Threads(unittest.TestCase):

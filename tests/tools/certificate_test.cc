@@ -54,6 +54,7 @@ TEST_F(CertificateCommand, StatesBothTablesWhereTheShiftsTellThemApartAndNeither
   const std::string xml = Succeed({"certificate", "apart", "--with", "laboratory.toml"});
   EXPECT_THAT(xml, HasSubstr("SIMULATED turntable, ez"));
   EXPECT_THAT(xml, HasSubstr("SIMULATED multi-tooth table, ez"));
+  EXPECT_THAT(xml, HasSubstr("error motion, turntable, tilt_fixed_x, synchronous"));
 }
 
 TEST_F(CertificateCommand, IsWrittenOnlyIfItSatisfiesTheSchema) {

@@ -94,6 +94,17 @@ TEST_F(Commands, ACampaignIsSummedUpForProgramsToo) {
   EXPECT_EQ(summary.at("results").at("means.both.ez_arcsec[]").at("count"), 3 * 12);
 }
 
+TEST_F(Commands, ACampaignShowsResultsThatThereAreAndOnAPageOnly) {
+  Write("small.toml", "bench = \"encoder_comparison\"\n[encoder_procedure]\nturns = 1\nstops_per_turn = 12\npasses = [1, -1]\n");
+  Write("study.toml", "scenario = \"small.toml\"\ntrials = 3\n");
+  EXPECT_THAT(Call({"campaign", "study.toml", "-o", "t.sqlite", "--show", "reversal.mean_arcsec"}).err, HasSubstr("expected --web PORT"));
+  EXPECT_FALSE(Exists("t.sqlite"));
+  const Outcome unknown = Call({"campaign", "study.toml", "-o", "t.sqlite", "--web", "0", "--show", "reversal.mean_arcsek"});
+  if (unknown.err.find("built without pages") != std::string::npos) GTEST_SKIP() << "no pages in this build";
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("the nearest is reversal.mean_arcsec"));
+}
+
 TEST_F(Commands, TheSchemaKnowsTheKeysOfEveryBench) {
   const nlohmann::json schema = Json({"schema"});
   ASSERT_EQ(schema.at("oneOf").size(), BenchFormats().size());

@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+#include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -8,6 +11,7 @@
 #include "tools/python/follow_class.h"
 #include "tools/python/json_values.h"
 #include "tools/python/own_bench.h"
+#include "tools/python/own_machine.h"
 #include "tools/python/readings_columns.h"
 #include "tools/python/studies.h"
 #include "tools/twinbench/evaluated_run.h"
@@ -21,7 +25,9 @@
 #include "twin/core/run_record.h"
 #include "twin/diagnose/extend.h"
 #include "twin/model/follow.h"
+#include "twin/procedure/machine_options.h"
 #include "twin/report/evaluation.h"
+#include "twin/separate/error_motion.h"
 
 // The compiled half of the package; what users call, with docstrings, is in twinbench/*.py.
 namespace twinbench::python {
@@ -56,7 +62,7 @@ void RequireSameBench(const py::object& bench, const Scenario& scenario) {
   const std::string own = py::str(py::getattr(bench, "bench", py::str("none"))).cast<std::string>();
   if (own != scenario.bench)
     throw InputError("drive", "the scenario is of " + scenario.bench + ", the Python bench of " + own,
-                     "a twinbench.RotaryBench or twinbench.AngleBench, and a scenario of its kind");
+                     "a twinbench.RotaryBench, twinbench.MachineBench or twinbench.AngleBench, and a scenario of its kind");
 }
 
 /// The procedure of the scenario on a bench of somebody's own.
@@ -67,6 +73,11 @@ Readings Drive(const py::object& bench, const Scenario& scenario) {
     OwnAngleComparator own(bench);
     py::gil_scoped_release unlocked;
     procedure::CarryOut(own, scenario, *record, Interrupted);
+  } else if (py::hasattr(bench, "start_arc")) {
+    OwnMachineBench own(bench, scenario);
+    py::gil_scoped_release unlocked;
+    MachineBench devices = own.Devices();
+    BenchOf(scenario).drive(devices, scenario, *record, Interrupted, {});
   } else {
     OwnRotaryBench own(bench);
     py::gil_scoped_release unlocked;
@@ -74,6 +85,16 @@ Readings Drive(const py::object& bench, const Scenario& scenario) {
     procedure::CarryOut(devices, scenario, *record, Interrupted);
   }
   return {scenario.bench, record->Readings()};
+}
+
+/// (name, is rotary) of each axis, (lower, upper) of each with None where there is no limit, where they begin, columns of the instruments.
+py::tuple PartsForPython(const Scenario& scenario) {
+  const MachineParts parts = PartsOf(scenario);
+  const auto limit = [](double at) { return std::isfinite(at) ? py::object(py::float_(at)) : py::object(py::none()); };
+  py::list axes, travel;
+  for (const MachineAxis& axis : parts.axes) axes.append(py::make_tuple(axis.name, axis.is_rotary));
+  for (const AxisLimits& axis : parts.travel) travel.append(py::make_tuple(limit(axis.lower), limit(axis.upper)));
+  return py::make_tuple(axes, travel, parts.start, parts.columns);
 }
 
 report::Evaluation Separated(const Scenario& scenario, const Readings& r, const std::string& estimator) {
@@ -108,6 +129,26 @@ std::string CsvOf(const Readings& r) {
 Readings FromCsv(const std::string& text, const std::string& name, const std::string& bench) {
   std::istringstream in(text);
   return {bench, ParseReadingsCsv(in, name, bench)};
+}
+
+/// {"synchronous": {"value", "u", "bias"}, ...} of what is known.
+py::dict ErrorMotionOf(const Eigen::VectorXd& angle_rad, const Eigen::MatrixXd& turns, bool is_axial) {
+  if (angle_rad.size() < 3 || turns.cols() != angle_rad.size() || turns.rows() < 1)
+    throw InputError("error_motion", fmt::format("{} angles and turns of {} x {}", angle_rad.size(), turns.rows(), turns.cols()),
+                     "three angles or more and turns x angles values");
+  if (!angle_rad.allFinite() || !turns.allFinite()) throw InputError("error_motion", "not all is finite", "numbers");
+  const separate::ErrorMotionValues found = separate::EvaluateErrorMotion(
+      separate::OfTurns(angle_rad, turns), is_axial ? separate::PlotCentre::kPolarChart : separate::PlotCentre::kLeastSquares);
+  py::dict values;
+  const auto add = [&](const char* name, const separate::ErrorMotionValue& v) {
+    if (std::isfinite(v.value)) values[name] = py::dict(py::arg("value") = v.value, py::arg("u") = v.u, py::arg("bias") = v.bias);
+  };
+  add("total", found.total);
+  add("synchronous", found.synchronous);
+  add("asynchronous", found.asynchronous);
+  add("fundamental", found.fundamental);
+  add("residual", found.residual);
+  return values;
 }
 
 void AddScenario(py::module_& m) {
@@ -149,6 +190,8 @@ void AddFunctions(py::module_& m) {
     return py::make_tuple(std::move(run.scenario), std::move(readings));
   });
   m.def("drive", &Drive, py::arg("bench"), py::arg("scenario"));
+  m.def("machine_parts", &PartsForPython, py::arg("scenario"));
+  m.def("error_motion", &ErrorMotionOf, py::arg("angle_rad"), py::arg("turns"), py::arg("is_axial"));
   m.def("evaluate", [](const Scenario& scenario, const Readings& r) {
     const tools::EvaluatedRun run = [&] {
       py::gil_scoped_release unlocked;

@@ -1,12 +1,12 @@
 #include "tools/python/own_bench.h"
 
 #include <pybind11/numpy.h>
-#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "tools/python/own_calls.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::python {
@@ -15,36 +15,6 @@ namespace {
 namespace py = pybind11;
 using Samples = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Codes = py::array_t<std::int16_t, py::array::c_style | py::array::forcecast>;
-
-void RequireMethods(const py::object& bench, const std::initializer_list<const char*>& names) {
-  for (const char* name : names) {
-    if (!py::hasattr(bench, name))
-      throw InputError("the bench " + py::str(py::type::of(bench)).cast<std::string>(),
-                       std::string("has no method ") + name,
-                       "those of twinbench.RotaryBench or twinbench.AngleBench");
-  }
-}
-
-/// What Python raises is a failure of the bench, with Python's own words and place.
-template <class Call>
-auto Asked(const char* method, Call call) {
-  py::gil_scoped_acquire lock;
-  try {
-    return call();
-  } catch (const py::error_already_set& error) {
-    throw BenchError(std::string(method) + "() of the Python bench: " + error.what());
-  } catch (const py::cast_error&) {
-    throw BenchError(std::string(method) + "() of the Python bench: returned something of another type");
-  }
-}
-
-template <class Answer = void, class... Arguments>
-Answer Ask(const py::object& bench, const char* method, Arguments... arguments) {
-  return Asked(method, [&] {
-    const py::object answer = bench.attr(method)(arguments...);
-    if constexpr (!std::is_void_v<Answer>) return answer.template cast<Answer>();
-  });
-}
 
 }  // namespace
 

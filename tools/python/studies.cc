@@ -8,11 +8,11 @@
 
 #include "tools/python/json_values.h"
 #include "tools/twinbench/bench_means.h"
+#include "tools/twinbench/campaign_table.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/planning.h"
 #include "twin/benches/registry.h"
 #include "twin/campaign/campaign.h"
-#include "twin/campaign/summary.h"
 #include "twin/core/errors.h"
 #include "twin/investigate/hidden_run.h"
 #include "twin/investigate/investigation.h"
@@ -37,19 +37,17 @@ void HearInterrupt() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
-/// @return the table as CSV, and what the command prints.
-py::tuple Campaign(const std::string& path, const std::string& table_path, int threads, bool goes_on) {
+/// @return the table as CSV, what the command prints, and what it answers to programs.
+py::tuple Campaign(const std::string& path, const std::string& table_path, int threads, bool resume) {
   py::gil_scoped_release unlocked;
   const campaign::Study study = campaign::LoadStudy(path);
-  campaign::Table table = goes_on ? campaign::Table::Continue(table_path, TWINBENCH_VERSION, study)
-                                  : campaign::Table::Create(table_path, TWINBENCH_VERSION, study);
+  campaign::Table table = tools::OpenTable(table_path, study, resume);
   campaign::Ranks alone(false);
   campaign::RunCampaign(study, table, threads, alone, [](const campaign::CampaignProgress&) { HearInterrupt(); });
-  campaign::Summary summary;
-  table.ForEach([&](const campaign::TrialRow& row) { summary.Add(row); });
+  const campaign::Summary summary = tools::SummaryOf(table);
   const std::string csv = table.Csv(), text = campaign::SummaryText(summary, path);
   py::gil_scoped_acquire lock;
-  return py::make_tuple(csv, text);
+  return py::make_tuple(csv, text, ValueOf(tools::SummaryJson(summary)));
 }
 
 /// The bench of an investigation: a twin that has something hidden, or whatever a Python function measures.

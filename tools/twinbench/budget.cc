@@ -3,18 +3,19 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/passing_run.h"
-#include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
+#include "twin/report/evaluation.h"
 #include "twin/report/uncertainty_text.h"
 
 namespace twinbench::tools {
 namespace {
 
 struct BudgetOptions {
-  std::string scenario, figures = "stability", json;
+  std::string scenario, figures = "stability";
   std::vector<std::string> overrides;
 };
 
@@ -37,7 +38,7 @@ std::vector<uncertainty::Figure> FiguresOf(const Scenario& scenario, const std::
   return figures;
 }
 
-void Share(const BudgetOptions& options) {
+void Share(const BudgetOptions& options, JsonAnswer& answer) {
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const Bench& bench = BenchOf(scenario);
   if (!bench.contributions)
@@ -48,8 +49,8 @@ void Share(const BudgetOptions& options) {
   if (found.total.empty())
     throw InputError("--of " + options.figures, "results.json has no number there",
                      "a place of results.json, as stability.range");
-  if (!options.json.empty()) WriteJson(options.json, report::ContributionsJson(found));
-  if (options.json != "-") fmt::print("{}", report::ContributionsText(found));
+  answer.Write(report::ContributionsJson(found));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::ContributionsText(found));
 }
 
 }  // namespace
@@ -61,10 +62,9 @@ void AddBudget(CLI::App& app) {
   command->add_option("scenario", options->scenario, "TOML file")->required();
   command->add_option("--of", options->figures, "the place in results.json of the figures to be shared out")
       ->capture_default_str();
-  command->add_option("--json", options->json, "write the result here, - for stdout");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
-  command->callback([options] { Share(*options); });
+  AnswerWith(*command, "the result", [options](JsonAnswer& answer) { Share(*options, answer); });
 }
 
 }  // namespace twinbench::tools

@@ -2,15 +2,17 @@
 
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
+#include "tools/twinbench/campaign_page.h"
+#include "tools/twinbench/campaign_table.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/run_folder.h"
-#include "twin/campaign/summary.h"
+#include "tools/twinbench/stop_signal.h"
 #include "twin/campaign/trial.h"
 #include "twin/core/errors.h"
 
@@ -18,21 +20,17 @@ namespace twinbench::tools {
 namespace {
 
 struct CampaignOptions {
-  std::string study, table, csv, json;
+  std::string study, table, csv;
   int threads = 0;  // 0: one for each core, or one a rank
   bool resume = false, mpi = false;
   std::optional<std::int64_t> trial;
+  std::optional<int> web;         // port of the live page
+  std::vector<std::string> show;  // results on it
 };
 
 int ThreadsOf(const CampaignOptions& options, const campaign::Ranks& ranks) {
   if (options.threads > 0) return options.threads;
   return ranks.Others() > 0 ? 1 : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
-campaign::Table TableOf(const CampaignOptions& options, const campaign::Study& study) {
-  const bool goes_on = options.resume && std::filesystem::exists(options.table);
-  return goes_on ? campaign::Table::Continue(options.table, TWINBENCH_VERSION, study)
-                 : campaign::Table::Create(options.table, TWINBENCH_VERSION, study);
 }
 
 /// Study and table of the first rank; whatever is wrong with them is said once and ends all ranks.
@@ -44,7 +42,7 @@ struct Begun {
 Begun Begin(const CampaignOptions& options, campaign::Ranks& ranks) {
   try {
     campaign::Study study = campaign::LoadStudy(options.study);
-    campaign::Table table = TableOf(options, study);
+    campaign::Table table = OpenTable(options.table, study, options.resume);
     ranks.Agree(true);
     return {std::move(study), std::move(table)};
   } catch (...) {
@@ -53,35 +51,29 @@ Begun Begin(const CampaignOptions& options, campaign::Ranks& ranks) {
   }
 }
 
-nlohmann::json SummaryJson(const campaign::Summary& summary) {
-  constexpr std::size_t kMostWorst = 10;
-  nlohmann::json json = {{"trials", summary.Trials()},
-                         {"lost", nlohmann::json::array()},
-                         {"verdicts", summary.Verdicts()},
-                         {"results", nlohmann::json::object()},
-                         {"worst", nlohmann::json::array()}};
-  for (const campaign::TrialRow& row : summary.Lost()) json["lost"].push_back({{"trial", row.trial}, {"failure", row.failure}});
-  for (const auto& [name, r] : summary.Results())
-    json["results"][name] = {{"count", r.count}, {"mean", r.mean}, {"sd", r.sd}, {"rms_u", r.rms_u}, {"scored", r.scored}, {"bias", r.bias}, {"coverage95", r.coverage95}};
-  for (const campaign::WorstTrial& worst : summary.Worst(kMostWorst))
-    json["worst"].push_back({{"trial", worst.trial}, {"result", worst.result}, {"error_over_u", worst.normed}});
-  return json;
-}
-
-void Report(const campaign::Table& table, const CampaignOptions& options) {
-  campaign::Summary summary;
-  table.ForEach([&](const campaign::TrialRow& row) { summary.Add(row); });
-  if (!options.json.empty()) WriteJson(options.json, SummaryJson(summary));
-  if (options.json != "-") fmt::print("{}", campaign::SummaryText(summary, options.study));
+void Report(const campaign::Table& table, const CampaignOptions& options, JsonAnswer& answer) {
+  const campaign::Summary summary = SummaryOf(table);
+  answer.Write(SummaryJson(summary));
+  if (!answer.IsOnStdout()) fmt::print("{}", campaign::SummaryText(summary, options.study));
   if (!options.csv.empty()) WriteFileAtOnce(options.csv, table.Csv());
 }
 
-void LeadCampaign(const CampaignOptions& options, campaign::Ranks& ranks) {
-  Begun begun = Begin(options, ranks);
+/// @return whether every trial is in the table.
+bool CarryOutShown(Begun& begun, const CampaignOptions& options, campaign::Ranks& ranks, LivePage& page) {
   TrialsLine line;
-  campaign::RunCampaign(begun.study, begun.table, ThreadsOf(options, ranks), ranks,
-                        [&](const campaign::CampaignProgress& p) { line.Show(p.done, p.planned, p.lost); });
-  Report(begun.table, options);
+  CampaignPage shown(page, options.study + " into " + options.table, begun.table, options.show);
+  const auto tell = [&](const campaign::CampaignProgress& p) {
+    line.Show(p.done, p.planned, p.lost);
+    shown.Hear(p);
+  };
+  return campaign::RunCampaign(begun.study, begun.table, ThreadsOf(options, ranks), ranks, tell, StopWasAsked);
+}
+
+void LeadCampaign(const CampaignOptions& options, campaign::Ranks& ranks, LivePage& page, JsonAnswer& answer) {
+  Begun begun = Begin(options, ranks);
+  if (!CarryOutShown(begun, options, ranks, page))
+    throw BenchError("stopped by the operator; trials that had begun are in " + options.table + ". Go on with --resume");
+  Report(begun.table, options, answer);
 }
 
 void FollowFirst(const CampaignOptions& options, campaign::Ranks& ranks) {
@@ -91,21 +83,25 @@ void FollowFirst(const CampaignOptions& options, campaign::Ranks& ranks) {
   ranks.WorkForFirst([&](std::int64_t trial) { return campaign::RunTrial(study, design, trial); });
 }
 
-void PrintTrial(const CampaignOptions& options) {
+void PrintTrial(const CampaignOptions& options, JsonAnswer& answer) {
   const campaign::Study study = campaign::LoadStudy(options.study);
   const campaign::Design design(study);
   if (*options.trial < 0 || *options.trial >= design.Trials())
     throw InputError(fmt::format("--trial {}", *options.trial), "the study has no such trial",
                      fmt::format("a number from 0 to {}", design.Trials() - 1));
-  fmt::print("{}", WriteScenario(campaign::TwinOf(study, design, *options.trial)));
+  const std::string toml = WriteScenario(campaign::TwinOf(study, design, *options.trial));
+  answer.Write({{"trial", *options.trial}, {"scenario_toml", toml}});
+  if (!answer.IsOnStdout()) fmt::print("{}", toml);
 }
 
-void Campaign(const CampaignOptions& options) {
-  if (options.trial) return PrintTrial(options);
-  for (const std::string& output : {options.csv, options.json}) RequireOutput(output, {options.study, options.table});
+void Campaign(const CampaignOptions& options, JsonAnswer& answer) {
+  if (options.trial) return PrintTrial(options, answer);
+  for (const std::string& output : {options.csv, answer.to()}) RequireOutput(output, {options.study, options.table});
+  if (!options.show.empty() && !options.web) throw InputError("--show", "there is no page to show it on", "--web PORT beside it");
   if (options.table.empty()) throw InputError("campaign", "there is no table", "-o TABLE.sqlite, or --trial N");
   campaign::Ranks ranks(options.mpi || campaign::Ranks::StartedAsOneOfMany());
-  if (ranks.IsFirst()) return LeadCampaign(options, ranks);
+  if (ranks.IsFirst())
+    return WithLivePage(options.web, "campaign", [&](LivePage& page) { LeadCampaign(options, ranks, page, answer); });
   FollowFirst(options, ranks);
 }
 
@@ -121,9 +117,10 @@ void AddCampaign(CLI::App& app) {
   command->add_flag("--resume", options->resume, "go on with a table; trials that are in it are not done again");
   command->add_flag("--mpi", options->mpi, "share the trials with the other ranks; told by itself below mpirun");
   command->add_option("--csv", options->csv, "also write the table here, a line a trial");
-  command->add_option("--json", options->json, "write the summary here, - for stdout");
   command->add_option("--trial", options->trial, "print the scenario of this trial, and do no more");
-  command->callback([options] { Campaign(*options); });
+  AddWebOption(*command, options->web);
+  command->add_option("--show", options->show, "result whose mean the page shows, as the summary names it; left out: the first few")->allow_extra_args(false);
+  AnswerWith(*command, "the summary", [options](JsonAnswer& answer) { Campaign(*options, answer); });
 }
 
 }  // namespace twinbench::tools

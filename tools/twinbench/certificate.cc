@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/xmllint.h"
 #include "twin/benches/certified_parts.h"
@@ -23,7 +24,7 @@ namespace {
 using namespace certificate;
 
 struct CertificateOptions {
-  std::string run, laboratory, output = "-", schema, json;
+  std::string run, laboratory, output = "-", schema;
   bool wants_template = false, force = false;
 };
 
@@ -93,13 +94,13 @@ CertificateContent ContentOf(const CertificateOptions& options) {
   return content;
 }
 
-void Write(const std::string& path, const std::string& text, const std::string& what, bool is_told = true) {
+void Write(const std::string& path, const std::string& text, const std::string& what) {
   if (path == "-") {
     fmt::print("{}", text);
     return;
   }
   WriteFileAtOnce(path, text);
-  if (is_told) fmt::print("{}: {}\n", path, what);
+  fmt::print("{}: {}\n", path, what);
 }
 
 nlohmann::json ToldJson(const CertificateContent& content, const std::string& output) {
@@ -110,18 +111,25 @@ nlohmann::json ToldJson(const CertificateContent& content, const std::string& ou
   return json;
 }
 
-void MakeCertificate(const CertificateOptions& options) {
-  if (options.wants_template) {
-    RequireFree(options.output, {}, options.force);
-    return Write(options.output, LaboratoryTemplate(), "fill in what is empty, then --with " + options.output);
-  }
+void RequireTwoPlaces(const CertificateOptions& options, const JsonAnswer& answer) {
+  if (answer.IsOnStdout() && options.output == "-")
+    throw InputError("certificate", "what is written and --json both go to stdout", "-o FILE, or --json FILE");
+}
+
+void MakeTemplate(const CertificateOptions& options, JsonAnswer& answer) {
+  RequireFree(options.output, {}, options.force);
+  Write(options.output, LaboratoryTemplate(), "fill in what is empty, then --with " + options.output);
+  answer.Write({{"template", options.output}});
+}
+
+void MakeCertificate(const CertificateOptions& options, JsonAnswer& answer) {
+  RequireTwoPlaces(options, answer);
+  if (options.wants_template) return MakeTemplate(options, answer);
   if (options.run.empty()) throw InputError("certificate", "there is no run", "the folder of a run, or --template");
   if (options.laboratory.empty())
     throw InputError("certificate", "nothing is known of the laboratory", "--with laboratory.toml; --template writes one to fill in");
-  if (options.json == "-" && options.output == "-")
-    throw InputError("certificate", "certificate and --json both go to stdout", "-o FILE, or --json FILE");
   const std::vector<std::string> inputs = {options.laboratory, RunFolder{options.run}.results(), RunFolder{options.run}.scenario()};
-  RequireOutput(options.json, inputs);
+  RequireOutput(answer.to(), inputs);
   RequireFree(options.output, inputs, options.force);
   const CertificateContent content = ContentOf(options);
   const std::string xml = CertificateXml(content);
@@ -130,9 +138,8 @@ void MakeCertificate(const CertificateOptions& options) {
   const std::size_t left_out = content.certified.left_out.size();
   Write(options.output, xml,
         fmt::format("{} results certified{}{}", content.certified.quantities.size(), left_out ? fmt::format(", {} left out and named", left_out) : "",
-                    content.simulated ? "; SIMULATED, which it says" : ""),
-        options.json != "-");
-  if (!options.json.empty()) WriteJson(options.json, ToldJson(content, options.output));
+                    content.simulated ? "; SIMULATED, which it says" : ""));
+  answer.Write(ToldJson(content, options.output));
 }
 
 }  // namespace
@@ -144,10 +151,9 @@ void AddCertificate(CLI::App& app) {
   command->add_option("--with", options->laboratory, "TOML file of what only the laboratory knows");
   command->add_option("-o,--output", options->output, "file to write, - for stdout")->capture_default_str();
   command->add_option("--schema", options->schema, "folder with dcc.xsd and the schemas that it imports: validate with xmllint first, and write nothing if it fails");
-  command->add_option("--json", options->json, "write what was certified and what was left out here, - for stdout");
   command->add_flag("--template", options->wants_template, "write the TOML file to fill in instead");
   AddForce(*command, options->force);
-  command->callback([options] { MakeCertificate(*options); });
+  AnswerWith(*command, "what was certified and what was left out", [options](JsonAnswer& answer) { MakeCertificate(*options, answer); });
 }
 
 }  // namespace twinbench::tools

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -13,7 +14,7 @@ namespace twinbench::tools {
 namespace {
 
 struct CompensateOptions {
-  std::string source, scenario, table, json, check, form = "plain", axis = "C";
+  std::string source, scenario, table, check, form = "plain", axis = "C";
   std::vector<std::string> overrides;
   separate::CompensationOptions how;
 };
@@ -34,8 +35,8 @@ int PointsFor(const CompensateOptions& options) {
   return options.how.points == 0 && most > 0 ? most - 1 : options.how.points;
 }
 
-void Compensate(const CompensateOptions& options) {
-  for (const std::string& output : {options.table, options.json})
+void Compensate(const CompensateOptions& options, JsonAnswer& answer) {
+  for (const std::string& output : {options.table, answer.to()})
     RequireOutput(output, {options.source, options.scenario, options.check});
   separate::CompensationOptions how = options.how;
   how.points = PointsFor(options);
@@ -48,9 +49,8 @@ void Compensate(const CompensateOptions& options) {
     WriteFileAtOnce(options.table,
                     report::ControllerTable(options.form, compensation.table, options.axis,
                                             report::CompensationComments(compensation, options.source)));
-  if (!options.json.empty())
-    WriteJson(options.json, report::CompensationJson(errors, compensation, check ? &*check : nullptr));
-  if (options.json == "-") return;
+  answer.Write(report::CompensationJson(errors, compensation, check ? &*check : nullptr));
+  if (answer.IsOnStdout()) return;
   fmt::print("{}", report::CompensationText(errors, compensation));
   if (check) fmt::print("{}", report::CompensationCheckText(*check));
 }
@@ -86,10 +86,9 @@ void AddCompensate(CLI::App& app) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--check", options->check, "a run with this table at work: compare it with the prediction");
-  command->add_option("--json", options->json, "write the result here, - for stdout");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
-  command->callback([options] { Compensate(*options); });
+  AnswerWith(*command, "the result", [options](JsonAnswer& answer) { Compensate(*options, answer); });
 }
 
 }  // namespace twinbench::tools

@@ -1,6 +1,9 @@
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 
 namespace twinbench::tools {
 namespace {
@@ -40,7 +43,10 @@ std::string ForBash(const CLI::App& app) {
 
 void AddCompletion(CLI::App& app) {
   auto* command = app.add_subcommand("completion", "Print what bash needs to complete commands and options");
-  command->callback([&app] { fmt::print("{}", ForBash(app)); });
+  AnswerWith(*command, "it", [&app](JsonAnswer& answer) {
+    if (!answer.IsOnStdout()) fmt::print("{}", ForBash(app));
+    answer.Write({{"shell", "bash"}, {"script", ForBash(app)}});
+  });
 }
 
 }  // namespace twinbench::tools

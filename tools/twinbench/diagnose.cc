@@ -13,6 +13,7 @@
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/follow.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/terminal.h"
 #include "twin/benches/diagnosis_json.h"
@@ -35,7 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DiagnoseOptions {
-  std::string source, scenario, json, extended, cache, model = "rigorous";
+  std::string source, scenario, extended, cache, model = "rigorous";
   std::vector<std::string> overrides, excluded;
   bool follow = false, verbose = false;
   double false_alarm_rate = 0.01;
@@ -110,17 +111,17 @@ void MergeIntoResults(const std::string& path, nlohmann::json diagnosis, const r
 }
 
 /// What speaks against the readings themselves, where whoever reads the answer sees it first.
-void TellDoubts(const std::vector<plausible::Finding>& findings, const DiagnoseOptions& options) {
-  fmt::print(options.json == "-" ? stderr : stdout, "{}", plausible::InLines(findings));
+void TellDoubts(const std::vector<plausible::Finding>& findings) {
+  fmt::print("{}", plausible::InLines(findings));
 }
 
-void DiagnoseRun(const DiagnoseOptions& options) {
-  for (const std::string& output : {options.json, options.extended})
+void DiagnoseRun(const DiagnoseOptions& options, JsonAnswer& answer) {
+  for (const std::string& output : {answer.to(), options.extended})
     RequireOutput(output, {options.source, options.scenario});
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   CheckExcluded(options.excluded, run.scenario.bench);
   const std::vector<plausible::Finding> findings = plausible::Check(run.readings, run.scenario);
-  TellDoubts(findings, options);
+  TellDoubts(findings);
   plausible::RefuseFatal(findings, options.source);
   diagnose::DiagnoseOptions how;
   how.model = EstimatorNamed(options.model);
@@ -128,13 +129,13 @@ void DiagnoseRun(const DiagnoseOptions& options) {
   how.cache_folder = CacheFolder(options.cache);
   const diagnose::DiagnosisRun found = diagnose::Diagnose(run.readings, run.scenario, how);
   const diagnose::Disagreement disagreement = diagnose::DisagreementOf(found);
-  if (!disagreement.line.empty()) TellDoubts({{!disagreement.is_plausible, disagreement.line}}, options);
+  if (!disagreement.line.empty()) TellDoubts({{!disagreement.is_plausible, disagreement.line}});
   if (!options.extended.empty()) {
     WriteFileAtOnce(options.extended,
                     diagnose::ExtendedToml(run.scenario, found, Provenance(options.source, run.readings.size())));
   }
   const nlohmann::json json = DiagnosisJson(found, run.scenario, options.extended);
-  if (!options.json.empty()) WriteJson(options.json, json);
+  answer.Write(json);
   const diagnose::Shown shown = diagnose::ShownBy(found);
   report::DiagnosisPage page{found, shown, options.source};
   if (fs::is_directory(options.source)) {
@@ -145,15 +146,14 @@ void DiagnoseRun(const DiagnoseOptions& options) {
       fmt::print(stderr, "twinbench: {} is read-only: the diagnosis is not put into its results.json\n",
                  options.source);
   }
-  if (options.json != "-") fmt::print("{}", report::DiagnosisText(page, {LettersOfStdout(), options.verbose}));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::DiagnosisText(page, {LettersOfStdout(), options.verbose}));
   if (!disagreement.is_plausible)
     throw InputError(options.source, disagreement.line, "readings that the scenario describes");
 }
 
-void Diagnose(const DiagnoseOptions& options) {
-  if (!options.follow) return DiagnoseRun(options);
-  Follow({options.source, options.scenario, options.json, options.overrides, options.false_alarm_rate,
-          EstimatorNamed(options.model)});
+void Diagnose(const DiagnoseOptions& options, JsonAnswer& answer) {
+  if (!options.follow) return DiagnoseRun(options, answer);
+  Follow({options.source, options.scenario, options.overrides, options.false_alarm_rate, EstimatorNamed(options.model)}, answer);
 }
 
 }  // namespace
@@ -163,7 +163,6 @@ void AddDiagnose(CLI::App& app) {
   auto options = std::make_shared<DiagnoseOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
-  command->add_option("--json", options->json, "write diagnosis.json here, - for stdout");
   command->add_option("-o,--output", options->extended, "write the scenario extended by what was found");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
@@ -176,7 +175,7 @@ void AddDiagnose(CLI::App& app) {
   command->add_flag("--verbose", options->verbose, "print all there is to be said, not what matters first");
   command->add_flag("--follow", options->follow, "watch a run while it is recorded and raise alarms");
   command->add_option("--false-alarm-rate", options->false_alarm_rate, "of --follow, a run")->capture_default_str();
-  command->callback([options] { Diagnose(*options); });
+  AnswerWith(*command, "diagnosis.json", [options](JsonAnswer& answer) { Diagnose(*options, answer); });
 }
 
 }  // namespace twinbench::tools

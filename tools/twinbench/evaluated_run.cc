@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
-#include "tools/twinbench/run_folder.h"
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "twin/benches/registry.h"
 #include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
@@ -31,11 +33,26 @@ EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Rea
   return run;
 }
 
-bool EvaluateRun(const Scenario& scenario, const std::string& folder) {
-  const EvaluatedRun run = EvaluatedWithBudget(scenario, RunRecord::Open(folder)->Readings());
+nlohmann::json RunJson(const RunFolder& folder, const Scenario& scenario, const std::vector<Reading>& readings, const EvaluatedRun& run) {
+  nlohmann::json json = {{"run", folder.path},
+                         {"bench", scenario.bench},
+                         {"title", scenario.title},
+                         {"seed", scenario.seed},
+                         {"readings", readings.size()},
+                         {"readings_ok", std::ranges::count(readings, ReadingStatus::kOk, &Reading::status)},
+                         {"separated", run.evaluation.Separated()},
+                         {"results", run.evaluation.results}};
+  if (!run.evaluation.Separated()) json["not_separated"] = run.evaluation.not_separated;
+  return json;
+}
+
+bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer& answer) {
+  const std::vector<Reading> readings = RunRecord::Open(folder)->Readings();
+  const EvaluatedRun run = EvaluatedWithBudget(scenario, readings);
   WriteJson(RunFolder{folder}.results(), run.evaluation.results);
   WriteTables(folder, run.evaluation.tables);
   fmt::print("{}", run.text);
+  answer.Write(RunJson({folder}, scenario, readings, run));
   return run.evaluation.Separated();
 }
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/twinbench/json_answer.h"
+#include "tools/twinbench/run_folder.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 #include "twin/report/evaluation.h"
@@ -17,9 +19,12 @@ struct EvaluatedRun {
 
 EvaluatedRun EvaluatedWithBudget(const Scenario& scenario, const std::vector<Reading>& readings);
 
-/// Evaluates a finished run from its record, as any later look at it will, writes results.json and prints the
-/// summary.
+/// Evaluates a finished run from its record, as any later look at it will, writes results.json, prints the summary and answers with both.
 /// @return whether there was enough to separate the tables.
-bool EvaluateRun(const Scenario& scenario, const std::string& folder);
+bool EvaluateRun(const Scenario& scenario, const std::string& folder, JsonAnswer& answer);
+
+/// What a command that makes a run answers: {"run", "bench", "title", "seed", "readings", "readings_ok", "separated", "results"}, the last as
+/// in results.json; "not_separated" says why, where it is not.
+nlohmann::json RunJson(const RunFolder& folder, const Scenario& scenario, const std::vector<Reading>& readings, const EvaluatedRun& run);
 
 }  // namespace twinbench::tools

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/passing_run.h"
-#include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/terminal.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
@@ -21,7 +21,7 @@ namespace twinbench::tools {
 namespace {
 
 struct ExplainOptions {
-  std::string effect, bench, json;
+  std::string effect, bench;
 };
 
 constexpr int kLeastPlaces = 5;  // of a plot
@@ -242,7 +242,7 @@ nlohmann::json ExplainedJson(const Explained& told) {
                    "one that `twinbench list` has; the nearest is " + Nearest(options.effect, known));
 }
 
-void ExplainEverywhere(const ExplainOptions& options) {
+void ExplainEverywhere(const ExplainOptions& options, JsonAnswer& answer) {
   if (!options.bench.empty() && !FindFormat(options.bench)) throw UnknownBench("--bench", options.bench);
   nlohmann::json all = nlohmann::json::array();
   bool found = false;
@@ -250,15 +250,15 @@ void ExplainEverywhere(const ExplainOptions& options) {
     const EffectEntry* effect = FindEffect(options.effect, bench->name);
     if (!effect || (!options.bench.empty() && bench->name != options.bench)) continue;
     const Explained told = OnBench(*bench, *effect);
-    if (!options.json.empty()) all.push_back(ExplainedJson(told));
-    if (options.json != "-") {
+    if (answer.IsWanted()) all.push_back(ExplainedJson(told));
+    if (!answer.IsOnStdout()) {
       if (found) fmt::print("\n");
       Print(told);
     }
     found = true;
   }
   if (!found) RefuseEffect(options);
-  if (!options.json.empty()) WriteJson(options.json, {{"benches", all}});
+  answer.Write({{"benches", all}});
 }
 
 }  // namespace
@@ -268,8 +268,7 @@ void AddExplain(CLI::App& app) {
   auto options = std::make_shared<ExplainOptions>();
   command->add_option("effect", options->effect, "its name, as `twinbench list` has it")->required();
   command->add_option("--bench", options->bench, "on this bench only");
-  command->add_option("--json", options->json, "write it here, - for stdout");
-  command->callback([options] { ExplainEverywhere(*options); });
+  AnswerWith(*command, "it", [options](JsonAnswer& answer) { ExplainEverywhere(*options, answer); });
 }
 
 }  // namespace twinbench::tools

@@ -45,9 +45,9 @@ class InterruptGuard {
   void (*before_)(int);
 };
 
-void PrintAlarm(const diagnose::Alarm& alarm, const Watched& watched, std::FILE* to) {
-  fmt::print(to, "{}\n", AlarmText(alarm, watched));
-  std::fflush(to);
+void PrintAlarm(const diagnose::Alarm& alarm, const Watched& watched) {
+  fmt::print("{}\n", AlarmText(alarm, watched));
+  std::fflush(stdout);
 }
 
 nlohmann::json ToJson(const Watched& watched, const FollowOptions& options, std::size_t readings, bool complete) {
@@ -64,8 +64,9 @@ nlohmann::json ToJson(const Watched& watched, const FollowOptions& options, std:
 /// Follows one record.
 class Follower {
  public:
-  explicit Follower(const FollowOptions& options)
+  Follower(const FollowOptions& options, JsonAnswer& answer)
       : options_(options),
+        answer_(answer),
         record_(RunRecord::Open(options.folder)),
         scenario_(LoadScenario(options.scenario.empty() ? RunFolder{options.folder}.scenario() : options.scenario,
                                options.overrides)) {}
@@ -95,7 +96,7 @@ class Follower {
     if (!watched) return;
     last_ = *watched;
     for (; alarms_ < last_.report.alarms.size(); ++alarms_)
-      PrintAlarm(last_.report.alarms[alarms_], last_, options_.json == "-" ? stderr : stdout);
+      PrintAlarm(last_.report.alarms[alarms_], last_);
   }
 
   /// Nothing while there are too few readings to predict from.
@@ -118,8 +119,8 @@ class Follower {
   }
 
   void Close() const {
-    if (!options_.json.empty()) WriteJson(options_.json, ToJson(last_, options_, seen_, complete_));
-    if (options_.json == "-") return;
+    answer_.Write(ToJson(last_, options_, seen_, complete_));
+    if (answer_.IsOnStdout()) return;
     fmt::print("{} readings, {}; {} judged by those before them; {} at a false-alarm rate of {:g} % a run\n", seen_,
                complete_ ? "complete" : "not complete", last_.report.judged,
                alarms_ == 0 ? "no alarm" : fmt::format("{} alarm{}", alarms_, alarms_ == 1 ? "" : "s"),
@@ -127,6 +128,7 @@ class Follower {
   }
 
   FollowOptions options_;
+  JsonAnswer& answer_;
   std::unique_ptr<RunRecord> record_;
   Scenario scenario_;
   std::size_t seen_ = 0, alarms_ = 0;
@@ -136,14 +138,14 @@ class Follower {
 
 }  // namespace
 
-void Follow(const FollowOptions& options) {
+void Follow(const FollowOptions& options, JsonAnswer& answer) {
   if (!(options.false_alarm_rate > 0.0 && options.false_alarm_rate < 1.0))
     throw InputError("--false-alarm-rate", fmt::format("{:g}", options.false_alarm_rate),
                      "a number between 0 and 1");
   if (!std::filesystem::is_directory(options.folder))
     throw InputError(options.folder, "this is not the folder of a run", "one with a record.sqlite");
   const InterruptGuard guard;
-  Follower(options).Run();
+  Follower(options, answer).Run();
 }
 
 }  // namespace twinbench::tools

@@ -1,7 +1,10 @@
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 #include "hw_bridge/machine_file.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
 #include "twin/core/signal_effect.h"
@@ -18,58 +21,60 @@ std::string Join(const std::vector<std::string>& words) {
   return text;
 }
 
-void PrintParameters(const EffectEntry& effect) {
+std::string ParametersText(const EffectEntry& effect) {
+  std::string text;
   for (const EffectParameter& p : effect.parameters)
-    fmt::print("    {} = {:g}   {}\n", p.Key(), p.default_SI / p.to_SI, p.meaning);
+    text += fmt::format("    {} = {:g}   {}\n", p.Key(), p.default_SI / p.to_SI, p.meaning);
+  return text;
 }
 
 /// Structure that no other effect has: a block says its point and its kind.
-void PrintSignals(const BenchFormat& bench) {
-  fmt::print("{}: structure that has no name: what enters at a point, times its course\n", kSignalEffect);
-  fmt::print("    point = {}\n", Join(bench.points));
+std::string SignalsText(const BenchFormat& bench) {
+  std::string text = fmt::format("{}: structure that has no name: what enters at a point, times its course\n", kSignalEffect);
+  text += fmt::format("    point = {}\n", Join(bench.points));
   for (const std::string& kind : SignalKinds()) {
     const std::vector<std::string> by = SignalArguments(kind, bench);
-    fmt::print("  signal = \"{}\"{}\n", kind, by.empty() ? "" : "   by = " + Join(by));
-    PrintParameters(SignalEntry(kind, "", bench));
+    text += fmt::format("  signal = \"{}\"{}\n", kind, by.empty() ? "" : "   by = " + Join(by));
+    text += ParametersText(SignalEntry(kind, "", bench));
   }
-  fmt::print("  times = {}   what its size follows; all but direction with about_... and per_...\n",
-             Join(SignalFactors()));
+  return text + fmt::format("  times = {}   what its size follows; all but direction with about_... and per_...\n",
+                            Join(SignalFactors()));
 }
 
-void PrintEffects(const BenchFormat& bench) {
-  fmt::print("\nBench {}\n\n", bench.name);
+std::string EffectsText(const BenchFormat& bench) {
+  std::string text = fmt::format("\nBench {}\n\n", bench.name);
   for (const EffectEntry& effect : bench.effects) {
-    fmt::print("{}: {}\n", effect.name, effect.title);
-    if (!effect.places.empty()) fmt::print("    where = {}\n", Join(effect.places));
-    PrintParameters(effect);
+    text += fmt::format("{}: {}\n", effect.name, effect.title);
+    if (!effect.places.empty()) text += fmt::format("    where = {}\n", Join(effect.places));
+    text += ParametersText(effect);
   }
-  PrintSignals(bench);
+  return text + SignalsText(bench);
 }
 
-void PrintAllEffects() {
-  fmt::print("An [[effect]] block hides one of these in the bench: name, where, and any of the parameters.\n");
-  for (const BenchFormat* bench : BenchFormats()) PrintEffects(*bench);
+std::string AllEffectsText() {
+  std::string text = "An [[effect]] block hides one of these in the bench: name, where, and any of the parameters.\n";
+  for (const BenchFormat* bench : BenchFormats()) text += EffectsText(*bench);
+  return text;
 }
 
-void PrintBenchKeys() {
-  fmt::print("bench.toml: which devices stand on the table and how they are reached (docs/hardware.md)\n\n");
+std::string BenchKeysText() {
   hw::BenchFile defaults;
-  fmt::print("{}", DescribeKeys(hw::KeysOf(defaults)));
   hw::MachineFile machine;
-  fmt::print(
-      "\n# Of a bench whose machine is driven: a table for each axis and instrument, here for the axes x and "
-      "a\n\n");
-  fmt::print("{}", DescribeKeys(hw::KeysOf(machine, {{"x", false}, {"a", true}})));
+  return "bench.toml: which devices stand on the table and how they are reached (docs/hardware.md)\n\n" + DescribeKeys(hw::KeysOf(defaults)) +
+         "\n# Of a bench whose machine is driven: a table for each axis and instrument, here for the axes x and a\n\n" +
+         DescribeKeys(hw::KeysOf(machine, {{"x", false}, {"a", true}}));
 }
 
-void PrintHelp(const std::string& topic) {
-  if (topic == "effects") return PrintAllEffects();
-  if (topic == "bench") return PrintBenchKeys();
-  if (topic == "map") {
-    fmt::print("{}", imports::DescribeMaps());
-    return;
-  }
-  fmt::print("{}", DescribeScenarioKeys());
+std::string HelpText(const std::string& topic) {
+  if (topic == "effects") return AllEffectsText();
+  if (topic == "bench") return BenchKeysText();
+  return topic == "map" ? imports::DescribeMaps() : DescribeScenarioKeys();
+}
+
+void Help(const std::string& topic, JsonAnswer& answer) {
+  const std::string text = HelpText(topic);
+  if (!answer.IsOnStdout()) fmt::print("{}", text);
+  answer.Write({{"topic", topic}, {"text", text}});
 }
 
 }  // namespace
@@ -79,7 +84,7 @@ void AddHelp(CLI::App& app) {
   auto topic = std::make_shared<std::string>("scenario");
   command->add_option("topic", *topic, "scenario, effects, bench or map")
       ->check(CLI::IsMember({"scenario", "effects", "bench", "map"}));
-  command->callback([topic] { PrintHelp(*topic); });
+  AnswerWith(*command, "the same", [topic](JsonAnswer& answer) { Help(*topic, answer); });
 }
 
 }  // namespace twinbench::tools

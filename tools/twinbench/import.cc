@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tools/twinbench/commands.h"
@@ -102,7 +103,7 @@ Taken TakeAnything(const ImportOptions& options) {
   return {ScenarioOf(options, imported), std::move(imported.readings), std::move(imported.story)};
 }
 
-void Write(const Taken& taken, const ImportOptions& options) {
+void Write(const Taken& taken, const ImportOptions& options, JsonAnswer& answer) {
   const std::vector<plausible::Finding> findings = plausible::Check(taken.readings, taken.scenario);
   fmt::print("{}{}", taken.story, plausible::InLines(findings));
   plausible::RefuseFatal(findings, options.files.front());
@@ -120,18 +121,29 @@ void Write(const Taken& taken, const ImportOptions& options) {
   WriteJson(folder.results(), run.evaluation.results);
   if (!taken.story.empty()) WriteFileAtOnce(folder.path + "/import.txt", taken.story);
   fmt::print("{}", run.text);
+  nlohmann::json json = RunJson(folder, taken.scenario, taken.readings, run);
+  json["doubts"] = nlohmann::json::array();
+  for (const plausible::Finding& finding : findings) json["doubts"].push_back(finding.line);
+  if (!taken.story.empty()) json["story"] = taken.story;
+  answer.Write(json);
 }
 
-void Import(const ImportOptions& options) {
-  if (options.look) {
-    fmt::print("{}", imports::Look(options.files, MapOf(options)));
-    return;
-  }
+void LookOnly(const ImportOptions& options, JsonAnswer& answer) {
+  const std::string seen = imports::Look(options.files, MapOf(options));
+  fmt::print("{}", seen);
+  answer.Write({{"look", seen}});
+}
+
+void Import(const ImportOptions& options, JsonAnswer& answer) {
+  std::vector<std::string> inputs = options.files;
+  inputs.insert(inputs.end(), {options.scenario, options.map});
+  RequireOutput(answer.to(), inputs);
+  if (options.look) return LookOnly(options, answer);
   if (options.folder.empty())
     throw InputError("-o", "it is not said where the run goes",
                      "-o FOLDER, or --look to see what would be imported");
   const std::string bench = TakenAsItIs(options);
-  Write(bench.empty() ? TakeAnything(options) : TakeReadings(options, bench), options);
+  Write(bench.empty() ? TakeAnything(options) : TakeReadings(options, bench), options, answer);
 }
 
 }  // namespace
@@ -149,7 +161,7 @@ void AddImport(CLI::App& app) {
   command->add_option("--most-readings", options->most_readings, "longer recordings are averaged in blocks");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
-  command->callback([options] { Import(*options); });
+  AnswerWith(*command, "what came of the import", [options](JsonAnswer& answer) { Import(*options, answer); });
 }
 
 }  // namespace twinbench::tools

@@ -9,6 +9,7 @@
 #include "tools/twinbench/bench_means.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/investigated_bench.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/live_page.h"
 #include "tools/twinbench/run_folder.h"
 #include "tools/twinbench/stop_signal.h"
@@ -22,7 +23,7 @@ namespace twinbench::tools {
 namespace {
 
 struct InvestigateOptions {
-  std::string scenario, twin, bench, goal, folder, json, budget = "2h";
+  std::string scenario, twin, bench, goal, folder, budget = "2h";
   std::vector<std::string> overrides;
   double conclusive = 0.95;
   std::optional<double> faint;
@@ -75,7 +76,7 @@ void HearPage() {
   if (StopWasAsked()) throw BenchError("stopped by the operator between two runs; go on with the same command");
 }
 
-void Investigate(const InvestigateOptions& options, LivePage& page) {
+void Investigate(const InvestigateOptions& options, LivePage& page, JsonAnswer& answer) {
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   investigate::InvestigationOptions how;
   if (!options.goal.empty()) how.goal = investigate::ParseGoal(options.goal);
@@ -102,8 +103,8 @@ void Investigate(const InvestigateOptions& options, LivePage& page) {
   const investigate::Investigation found = investigate::Investigate(scenario, how, means, laboratory);
   Keep(options, scenario, found);
   WriteFileAtOnce(options.folder + "/extended.toml", WriteScenario(investigate::Extended(scenario, found)));
-  if (!options.json.empty()) WriteJson(options.json, investigate::ToJson(found, scenario.bench));
-  if (options.json != "-") fmt::print("{}", report::InvestigationText(found, scenario.bench));
+  answer.Write(investigate::ToJson(found, scenario.bench));
+  if (!answer.IsOnStdout()) fmt::print("{}", report::InvestigationText(found, scenario.bench));
 }
 
 }  // namespace
@@ -128,14 +129,13 @@ void AddInvestigate(CLI::App& app) {
                       "would show; 0: believe the first run. 2 unless there is a goal")
       ->check(CLI::Range(0.0, 100.0));
   command->add_option("-o,--output", options->folder, "folder of the investigation; goes on if it was begun");
-  command->add_option("--json", options->json, "write investigation.json here as well, - for stdout");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
   command->add_flag("--ask", options->ask,
                     "confirm every run; also offers those for which somebody has to change the bench or its room");
   AddWebOption(*command, options->web);
-  command->callback([options] {
-    WithLivePage(options->web, "investigate", [&](LivePage& page) { Investigate(*options, page); });
+  AnswerWith(*command, "investigation.json", [options](JsonAnswer& answer) {
+    WithLivePage(options->web, "investigate", [&](LivePage& page) { Investigate(*options, page, answer); });
   });
 }
 

@@ -73,7 +73,8 @@ class MeasuredBench : public InvestigatedBench {
       options.folder = run.path;
       options.resume = fs::exists(run.record());
       options.rehearse = true;
-      tools::Measure(options, page_);
+      JsonAnswer nobody_asks;
+      tools::Measure(options, page_, nobody_asks);
     }
     return RunRecord::Open(run.path)->Readings();
   }

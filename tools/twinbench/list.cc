@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/json_answer.h"
 #include "twin/core/bench_format.h"
 
 namespace twinbench::tools {
@@ -16,15 +16,16 @@ nlohmann::json EffectsOf(const BenchFormat& bench) {
   return effects;
 }
 
-void ListAsJson() {
+nlohmann::json ListJson() {
   nlohmann::json benches = nlohmann::json::array();
   for (const BenchFormat* bench : BenchFormats())
     benches.push_back({{"name", bench->name}, {"title", bench->title}, {"effects", EffectsOf(*bench)}});
-  WriteJson("-", {{"benches", benches}});
+  return {{"benches", benches}};
 }
 
-void ListAll(bool as_json) {
-  if (as_json) return ListAsJson();
+void ListAll(JsonAnswer& answer) {
+  answer.Write(ListJson());
+  if (answer.IsOnStdout()) return;
   for (const BenchFormat* bench : BenchFormats()) {
     fmt::print("{}: {}\n", bench->name, bench->title);
     for (const EffectEntry& effect : bench->effects) fmt::print("    {:<24} {}\n", effect.name, effect.title);
@@ -35,9 +36,7 @@ void ListAll(bool as_json) {
 
 void AddList(CLI::App& app) {
   auto* command = app.add_subcommand("list", "List the benches and what can be hidden in each");
-  auto as_json = std::make_shared<bool>(false);
-  command->add_flag("--json", *as_json, "for programs");
-  command->callback([as_json] { ListAll(*as_json); });
+  AnswerWith(*command, "the list", ListAll);
 }
 
 }  // namespace twinbench::tools

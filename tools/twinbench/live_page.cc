@@ -141,7 +141,14 @@ void LivePage::Serve(const std::string& bench, const std::string& where, const s
   if (!server_) return;
   nlohmann::json columns = nlohmann::json::array();
   for (const std::string& axis : axes) columns.push_back({{"name", axis}, {"role", "axis"}});
-  server_->Begin(OneLine({{"command", command_}, {"bench", bench}, {"folder", where}, {"can_pause", false}, {"columns", columns}}));
+  Begin({{"bench", bench}, {"folder", where}, {"columns", columns}});
+}
+
+void LivePage::Begin(nlohmann::json about) {
+  if (!server_) return;
+  about["command"] = command_;
+  about["can_pause"] = false;
+  server_->Begin(OneLine(about));
 }
 
 void LivePage::Axes(Time now, const std::vector<double>& at, bool is_moving) {

@@ -39,6 +39,10 @@ class LivePage {
   /// `line` and the page. Holds the run between two readings while the page wants a pause.
   /// @param stands  Whether what moves stands.
   procedure::ProgressCallback ShownToo(procedure::ProgressCallback line, StandingCheck stands = {});
+  /// Whether somebody asked for it.
+  bool IsOpen() const { return server_ != nullptr; }
+  /// Shows something else than a record. @param about  What the page knows the command by: "folder", "columns", ...
+  void Begin(nlohmann::json about);
   /// Shows axes that others move, instead of a record.
   /// @param where  What is shown there: addresses.  @param axes  "target_deg", one each.
   void Serve(const std::string& bench, const std::string& where, const std::vector<std::string>& axes);

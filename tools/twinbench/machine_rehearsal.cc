@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "twin/benches/registry.h"
 #include "twin/procedure/machine_options.h"
@@ -118,6 +119,18 @@ std::string Summary(const MachineRehearsal& r, const std::vector<MachineAxis>& a
   }
   for (const std::string& problem : r.problems) text += "  PROBLEM: " + problem + "\n";
   return text;
+}
+
+nlohmann::json RehearsalJson(const MachineRehearsal& r, const std::vector<MachineAxis>& axes) {
+  nlohmann::json travel = nlohmann::json::object();
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    travel[axes[k].name + "_" + axes[k].unit()] = {r.travel[k].lower / axes[k].to_SI(), r.travel[k].upper / axes[k].to_SI()};
+  return {{"rehearsal",
+           {{"readings", r.readings},
+            {"without_numbers", r.without_numbers},
+            {"duration_s", r.duration_s},
+            {"travel", travel},
+            {"problems", r.problems}}}};
 }
 
 }  // namespace twinbench::tools

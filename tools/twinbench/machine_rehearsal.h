@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,8 @@ MachineRehearsal RehearseMachine(const Scenario& scenario, const std::vector<Axi
 /// A table for people, one problem a line at its end.
 std::string Summary(const MachineRehearsal& rehearsal, const std::vector<MachineAxis>& axes,
                     const std::vector<AxisLimits>& limits);
+
+/// The same for programs: {"rehearsal": {"readings", "without_numbers", "duration_s", "travel": {axis_unit: [from, to]}, "problems"}}.
+nlohmann::json RehearsalJson(const MachineRehearsal& rehearsal, const std::vector<MachineAxis>& axes);
 
 }  // namespace twinbench::tools

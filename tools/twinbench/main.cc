@@ -4,12 +4,14 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/exit_code.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/terminal.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
@@ -82,6 +84,13 @@ std::string Complaint(const CLI::App* app, const CLI::Error& error) {
   return fmt::format("{}: {}; expected what {} --help lists\n", command, InWords(*chosen.front(), error), command);
 }
 
+/// Without "twinbench: " before it and the end of the line behind.
+std::string OneLine(std::string complaint) {
+  while (complaint.ends_with('\n')) complaint.pop_back();
+  constexpr std::string_view kName = "twinbench: ";
+  return complaint.starts_with(kName) ? complaint.substr(kName.size()) : complaint;
+}
+
 /// What was printed may be an answer that somebody keeps.
 /// @throws BenchError if some of it went nowhere: a full disk, a pipe that was closed.
 void RequireAllSaid() {
@@ -106,7 +115,9 @@ int Run(int argc, char** argv) {
     RequireAllSaid();
     return kDone;
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kBadInput;
+    const bool is_wrong = app.exit(error) != 0;
+    if (is_wrong && AsksJsonOnStdout(argc, argv)) JsonAnswer("-").Write(WrongCommandLineJson(OneLine(Complaint(&app, error))));
+    return is_wrong ? kBadInput : kDone;
   }
 }
 

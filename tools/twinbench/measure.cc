@@ -58,11 +58,12 @@ procedure::Options WithAgreedLimits(procedure::Options options, const hw::BenchF
 
 /// Nothing moves here.
 /// @throws BenchError if the twin finds that the bench could not do it.
-void RehearseFirst(const Scenario& scenario, const procedure::Options& options, const hw::BenchFile& file) {
+Rehearsal RehearseFirst(const Scenario& scenario, const procedure::Options& options, const hw::BenchFile& file) {
   const procedure::Options limits = WithAgreedLimits(options, file, scenario);
   const Rehearsal rehearsal = Rehearse(scenario, limits, file.adc.mains_Hz);
   fmt::print(stderr, "{}", Summary(rehearsal, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
+  return rehearsal;
 }
 
 /// @param kind  Of the bench file: in a replay nothing moves that could be asked.
@@ -107,27 +108,28 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
 
 }  // namespace
 
-void Measure(const MeasureOptions& o, LivePage& page) {
+void Measure(const MeasureOptions& o, LivePage& page, JsonAnswer& answer) {
+  RequireOutput(answer.to(), {o.scenario, o.bench});
   Scenario scenario = LoadScenario(o.scenario, o.overrides);
   for (const std::string& table : o.compensations) CommandCompensation(scenario, table);
-  if (hw::IsProgramFile(o.bench)) return MeasureByProgram(o, scenario, page);
+  if (hw::IsProgramFile(o.bench)) return MeasureByProgram(o, scenario, page, answer);
   if (!BenchOf(scenario).has_controllers)
     throw InputError(o.scenario, "no controllers for the bench " + scenario.bench,
                      BenchesWhere([](const Bench& bench) { return bench.has_controllers; }));
-  if (BenchOf(scenario).drive) return MeasureMachine(o, scenario, page);
+  if (BenchOf(scenario).drive) return MeasureMachine(o, scenario, page, answer);
   hw::BenchFile file = hw::LoadBenchFile(o.bench);
   if (file.kind == "hardware") {
     for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, claim.axis, claim.u);
   }
   const procedure::Options options = Carefulness(file, o.allow_homing);
-  if (o.rehearse || o.rehearse_only) RehearseFirst(scenario, options, file);
-  if (o.rehearse_only) return;
+  if (o.rehearse_only) return answer.Write(RehearsalJson(RehearseFirst(scenario, options, file)));
+  if (o.rehearse) RehearseFirst(scenario, options, file);
   const RunFolder folder = FolderOf(o);
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
   const bool resumes = begun.record != nullptr;
   ListenForStop();
   if (!resumes || !begun.record->finished()) MeasureInto(folder, scenario, file, std::move(begun), options, page);
-  EvaluateRun(scenario, folder.path);
+  EvaluateRun(scenario, folder.path, answer);
 }
 
 void AddMeasure(CLI::App& app) {
@@ -151,8 +153,8 @@ void AddMeasure(CLI::App& app) {
                     "first on the twin: travel, spots on the PSDs, time it will take");
   command->add_flag("--rehearse-only", options->rehearse_only, "nothing but that");
   AddWebOption(*command, options->web);
-  command->callback([options] {
-    WithLivePage(options->web, "measure", [&](LivePage& page) { Measure(*options, page); });
+  AnswerWith(*command, "what came of the run", [options](JsonAnswer& answer) {
+    WithLivePage(options->web, "measure", [&](LivePage& page) { Measure(*options, page, answer); });
   });
 }
 

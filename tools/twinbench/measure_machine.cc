@@ -80,11 +80,12 @@ std::unique_ptr<hw::OpenMachine> OpenAnyMachine(const hw::MachineFile& file, con
 }
 
 /// Nothing moves here. @throws BenchError if the twin finds that the bench could not do it.
-void RehearseMachineFirst(const Scenario& scenario, const std::vector<MachineAxis>& axes,
+MachineRehearsal RehearseMachineFirst(const Scenario& scenario, const std::vector<MachineAxis>& axes,
                           const std::vector<AxisLimits>& limits) {
   const MachineRehearsal rehearsal = RehearseMachine(scenario, limits);
   fmt::print(stderr, "{}", Summary(rehearsal, axes, limits));
   if (!rehearsal.problems.empty()) throw BenchError("the rehearsal found problems; nothing was moved");
+  return rehearsal;
 }
 
 procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenMachine& bench,
@@ -138,14 +139,14 @@ void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const
 
 }  // namespace
 
-void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage& page) {
+void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage& page, JsonAnswer& answer) {
   const MachineParts parts = PartsOf(scenario);
   hw::MachineFile file = hw::LoadMachineFile(o.bench, parts.axes);
   if (file.kind == "hardware") {
     for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, parts.axes, claim.axis, claim.u);
   }
   if (o.rehearse_only)
-    return RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits());
+    return answer.Write(RehearsalJson(RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits()), parts.axes));
   const RunFolder folder = FolderOf(o);
   BegunRun begun = TakeUpIfAsked(o, scenario, folder);
   ListenForStop();
@@ -155,7 +156,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
     if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, bench->Limits());
     MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), page);
   }
-  EvaluateRun(scenario, folder.path);
+  EvaluateRun(scenario, folder.path, answer);
 }
 
 }  // namespace twinbench::tools

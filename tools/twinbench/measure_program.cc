@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "hw_bridge/program/program_file.h"
 #include "hw_bridge/program/program_run.h"
@@ -43,11 +44,12 @@ void Tell(const hw::ReadStops& back, std::size_t asked) {
 
 }  // namespace
 
-void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario, LivePage& page) {
+void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario, LivePage& page, JsonAnswer& answer) {
   const hw::ProgramFile file = hw::LoadProgramFile(options.bench);
   if (options.rehearse_only) {
-    fmt::print(stderr, "a program is not rehearsed: {} readings are planned\n", ReadingsOfTwin(scenario).size());
-    return;
+    const std::size_t planned = ReadingsOfTwin(scenario).size();
+    fmt::print(stderr, "a program is not rehearsed: {} readings are planned\n", planned);
+    return answer.Write({{"rehearsal", {{"readings", planned}}}});
   }
   const RunFolder folder = tools::FolderOf(options);
   const BegunRun begun = TakeUpIfAsked(options, scenario, folder);
@@ -64,7 +66,7 @@ void MeasureByProgram(const MeasureOptions& options, const Scenario& scenario, L
     record->AppendAll(back.readings);
     record->Finish();
   }
-  EvaluateRun(scenario, folder.path);
+  EvaluateRun(scenario, folder.path, answer);
 }
 
 }  // namespace twinbench::tools

@@ -1,6 +1,9 @@
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/errors.h"
@@ -14,17 +17,19 @@ struct NewOptions {
   bool force = false;
 };
 
-void MakeNew(const NewOptions& options) {
+void MakeNew(const NewOptions& options, JsonAnswer& answer) {
+  RequireOutput(answer.to(), {options.file});
   if (!FindFormat(options.bench)) throw UnknownBench("new", options.bench);
   RequireFree(options.file, {}, options.force);
   const std::string text = WriteExplained(options.bench);
   if (options.file == "-") {
-    fmt::print("{}", text);
-    return;
+    if (!answer.IsOnStdout()) fmt::print("{}", text);
+    return answer.Write({{"bench", options.bench}, {"scenario_toml", text}});
   }
   WriteFileAtOnce(options.file, text);
   fmt::print("{}: every key of {} with its default; twinbench check {} says whether it fits together\n", options.file,
              options.bench, options.file);
+  answer.Write({{"bench", options.bench}, {"file", options.file}});
 }
 
 }  // namespace
@@ -35,7 +40,7 @@ void AddNew(CLI::App& app) {
   command->add_option("bench", options->bench, "name of the bench, as `twinbench list` has it")->required();
   command->add_option("-o,--output", options->file, "file to write, - for stdout")->capture_default_str();
   AddForce(*command, options->force);
-  command->callback([options] { MakeNew(*options); });
+  AnswerWith(*command, "what was written", [options](JsonAnswer& answer) { MakeNew(*options, answer); });
 }
 
 }  // namespace twinbench::tools

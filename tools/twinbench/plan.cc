@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/plan_advice.h"
@@ -20,7 +21,7 @@ namespace twinbench::tools {
 namespace {
 
 struct PlanOptions : PlanWish {
-  std::string scenario, json, next;
+  std::string scenario, next;
   std::vector<std::string> overrides;
   bool force = false;
 };
@@ -161,16 +162,16 @@ std::string TextOf(const Planned& planned) {
   return text;
 }
 
-void Plan(const PlanOptions& options) {
+void Plan(const PlanOptions& options, JsonAnswer& answer) {
   RequireFree(options.next, {options.scenario}, options.force);
-  RequireOutput(options.json, {options.scenario});
+  RequireOutput(answer.to(), {options.scenario});
   const Scenario scenario = LoadScenario(options.scenario, options.overrides);
   const Planned planned = PlanOf(options, scenario);
   const std::vector<plan::NextRun> next = NextOf(options, planned);
   RequireFreeNext(options, next);
   if (!options.next.empty()) WriteNext(options.next, next, scenario);
-  if (!options.json.empty()) WriteJson(options.json, JsonOf(planned, next));
-  if (options.json != "-") fmt::print("{}", TextOf(planned));
+  answer.Write(JsonOf(planned, next));
+  if (!answer.IsOnStdout()) fmt::print("{}", TextOf(planned));
 }
 
 }  // namespace
@@ -197,11 +198,10 @@ void AddPlan(CLI::App& app) {
       ->excludes(minutes);
   command->add_option("--goal", options->goal, "the result that counts: target.ez; left out: all");
   command->add_option("-o,--output", options->next, "write the scenario of the run to be made next here; of a programme all, as next-1-of-3-NAME.toml");
-  command->add_option("--json", options->json, "write the result here, - for stdout");
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
   AddForce(*command, options->force);
-  command->callback([options] { Plan(*options); });
+  AnswerWith(*command, "the result", [options](JsonAnswer& answer) { Plan(*options, answer); });
 }
 
 }  // namespace twinbench::tools

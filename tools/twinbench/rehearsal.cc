@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
@@ -126,6 +127,17 @@ std::string Summary(const Rehearsal& r, const procedure::Options& limits) {
   for (const std::string& hint : r.hints) text += "  note: " + hint + "\n";
   for (const std::string& problem : r.problems) text += "  PROBLEM: " + problem + "\n";
   return text;
+}
+
+nlohmann::json RehearsalJson(const Rehearsal& r) {
+  const auto travel = [](const Rehearsal::Travel& of) { return nlohmann::json{of.lowest_rad / units::deg, of.highest_rad / units::deg}; };
+  return {{"rehearsal",
+           {{"readings", r.readings},
+            {"without_numbers", r.not_ok},
+            {"duration_s", r.duration_s},
+            {"travel_deg", {{"target", travel(r.target)}, {"reference", travel(r.reference)}}},
+            {"hints", r.hints},
+            {"problems", r.problems}}}};
 }
 
 }  // namespace twinbench::tools

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -26,5 +27,8 @@ Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, d
 
 /// A table for people, one problem a line at its end.
 std::string Summary(const Rehearsal& rehearsal, const procedure::Options& limits);
+
+/// The same for programs: {"rehearsal": {"readings", "without_numbers", "duration_s", "travel_deg", "hints", "problems"}}.
+nlohmann::json RehearsalJson(const Rehearsal& rehearsal);
 
 }  // namespace twinbench::tools

@@ -1,6 +1,9 @@
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/reported.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/web/bundle.h"
@@ -20,16 +23,25 @@ struct ReportOptions {
 };
 
 /// One file a picture, into a folder that is made if it is not there.
-void WritePictures(const report::Page& page, const std::string& folder) {
+/// @return their names.
+std::vector<std::string> WritePictures(const report::Page& page, const std::string& folder) {
   std::vector<report::ResultTable> files;
   for (const auto& [name, svg] : report::SvgPictures(page)) files.push_back({name, svg});
   if (files.empty()) throw InputError(folder, "the page has no plots", "a page with plots");
   WriteTables(folder, files);
   fmt::print("{}: {} pictures\n", folder, files.size());
+  std::vector<std::string> names;
+  for (const report::ResultTable& file : files) names.push_back(file.file);
+  return names;
+}
+
+/// Where the page goes.
+std::string OutputOf(const ReportOptions& options) {
+  return options.output.empty() ? UsualPagePath(options.source) : options.output;
 }
 
 void WritePage(const report::Page& page, const ReportOptions& options) {
-  const std::string output = options.output.empty() ? UsualPagePath(options.source) : options.output;
+  const std::string output = OutputOf(options);
   RequireFree(output, {options.source, options.score, RunFolder{options.source}.results()}, options.force, kOwnPage);
   const std::string html = report::PageHtml(page, web::PageMarkup());
   if (output == "-") {
@@ -40,14 +52,21 @@ void WritePage(const report::Page& page, const ReportOptions& options) {
   }
 }
 
-void MakeReport(const ReportOptions& options) {
+void MakeReport(const ReportOptions& options, JsonAnswer& answer) {
+  RequireOutput(answer.to(), {options.source, options.score, RunFolder{options.source}.results()});
+  if (options.output == "-" && answer.IsOnStdout()) throw InputError("report", "page and --json both go to stdout", "-o FILE, or --json FILE");
   const bool wants_page = options.pictures.empty() || !options.output.empty();
   if (wants_page && web::PageMarkup().empty())
     throw InputError("report", "this program was built without pages",
                      "--svg DIR, or a program that was built where npm is installed, without -DTWINBENCH_REPORT=OFF");
   const report::Page page = PageOf(options.source, options.score);
-  if (!options.pictures.empty()) WritePictures(page, options.pictures);
-  if (wants_page) WritePage(page, options);
+  nlohmann::json json = {{"source", options.source}};
+  if (!options.pictures.empty()) json["pictures"] = {{"folder", options.pictures}, {"files", WritePictures(page, options.pictures)}};
+  if (wants_page) {
+    WritePage(page, options);
+    json["page"] = OutputOf(options);
+  }
+  answer.Write(json);
 }
 
 }  // namespace
@@ -61,7 +80,7 @@ void AddReport(CLI::App& app) {
   command->add_option("-o,--output", options->output, "write the page here, - for stdout; else report.html in the folder, or beside the file");
   command->add_option("--svg", options->pictures, "write every plot as an SVG picture into this folder; without -o no page is made");
   AddForce(*command, options->force);
-  command->callback([options] { MakeReport(*options); });
+  AnswerWith(*command, "what was written", [options](JsonAnswer& answer) { MakeReport(*options, answer); });
 }
 
 }  // namespace twinbench::tools

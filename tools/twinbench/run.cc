@@ -5,6 +5,7 @@
 #include "tools/twinbench/commanded.h"
 #include "tools/twinbench/commands.h"
 #include "tools/twinbench/evaluated_run.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/live_page.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/twin_run.h"
@@ -61,12 +62,13 @@ Scenario ScenarioOf(const RunOptions& options) {
   return scenario;
 }
 
-void Run(const RunOptions& options, LivePage& page) {
+void Run(const RunOptions& options, LivePage& page, JsonAnswer& answer) {
   const Scenario scenario = ScenarioOf(options);
   const RunFolder folder{options.folder};
+  RequireOutput(answer.to(), {options.scenario});
   MakeWayForRun(folder, options.scenario, options.force);
   RunOnTwin(scenario, folder, options.images, page);
-  if (EvaluateRun(scenario, folder.path)) fmt::print("compare with the truth: twinbench score {}\n", folder.path);
+  if (EvaluateRun(scenario, folder.path, answer)) fmt::print("compare with the truth: twinbench score {}\n", folder.path);
 }
 
 }  // namespace
@@ -92,8 +94,8 @@ void AddRun(CLI::App& app) {
   command->add_flag("--images", options->images, "write the irradiance on the PSDs as OpenEXR");
   AddForce(*command, options->force);
   AddWebOption(*command, options->web);
-  command->callback([options] {
-    WithLivePage(options->web, "run", [&](LivePage& page) { Run(*options, page); });
+  AnswerWith(*command, "what came of the run", [options](JsonAnswer& answer) {
+    WithLivePage(options->web, "run", [&](LivePage& page) { Run(*options, page, answer); });
   });
 }
 

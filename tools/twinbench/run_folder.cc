@@ -1,7 +1,5 @@
 #include "tools/twinbench/run_folder.h"
 
-#include <fmt/core.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -69,12 +67,7 @@ void WriteFileAtOnce(const std::string& path, const std::string& text) {
 }
 
 void WriteJson(const std::string& path, const nlohmann::json& json) {
-  const std::string text = json.dump(1) + "\n";
-  if (path == "-") {
-    fmt::print("{}", text);
-  } else {
-    WriteFileAtOnce(path, text);
-  }
+  WriteFileAtOnce(path, json.dump(1) + "\n");
 }
 
 void WriteTables(const std::string& folder, const std::vector<report::ResultTable>& tables) {

@@ -36,7 +36,7 @@ void RequireOutput(const std::string& output, const std::vector<std::string>& in
 /// @throws BenchError if the disk refuses.
 void WriteFileAtOnce(const std::string& path, const std::string& text);
 
-/// "-" is stdout.
+/// A file of ours; what a command answers goes through JsonAnswer.
 void WriteJson(const std::string& path, const nlohmann::json& json);
 
 /// Each into the folder, which is made if it is not there.

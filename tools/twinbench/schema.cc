@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
-#include "tools/twinbench/run_folder.h"
+#include "tools/twinbench/json_answer.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/scenario_schema.h"
 
@@ -82,19 +82,20 @@ nlohmann::json SchemaOf(const BenchFormat& bench) {
   return schema;
 }
 
-void PrintSchema() {
+nlohmann::json SchemaOfAll() {
   nlohmann::json benches = nlohmann::json::array();
   for (const BenchFormat* bench : BenchFormats()) benches.push_back(SchemaOf(*bench));
-  WriteJson("-", {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                  {"title", "scenario of twinbench"},
-                  {"oneOf", benches}});
+  return {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "scenario of twinbench"}, {"oneOf", benches}};
 }
 
 }  // namespace
 
 void AddSchema(CLI::App& app) {
   auto* command = app.add_subcommand("schema", "Print the JSON schema of scenarios, for editors");
-  command->callback([] { PrintSchema(); });
+  AnswerWith(*command, "the schema", [](JsonAnswer& answer) {
+    answer.Write(SchemaOfAll());
+    if (!answer.IsWanted()) JsonAnswer("-").Write(SchemaOfAll());
+  });
 }
 
 }  // namespace twinbench::tools

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -15,7 +16,7 @@ namespace twinbench::tools {
 namespace {
 
 struct ScoreOptions {
-  std::string folder, json, estimator = "rigorous";
+  std::string folder, estimator = "rigorous";
   bool positions = false;
 };
 
@@ -26,9 +27,9 @@ nlohmann::json WithValues(const report::ScoredRun& score) {
   return json;
 }
 
-void PrintScore(const ScoreOptions& options) {
+void PrintScore(const ScoreOptions& options, JsonAnswer& answer) {
   const RunFolder folder{options.folder};
-  RequireOutput(options.json, {folder.truth(), folder.scenario()});
+  RequireOutput(answer.to(), {folder.truth(), folder.scenario()});
   if (!std::filesystem::exists(folder.truth()))
     throw InputError(folder.truth(), "is not there",
                      "a run of the twin: what was measured or imported has no truth");
@@ -36,8 +37,8 @@ void PrintScore(const ScoreOptions& options) {
   const RecordedRun run = LoadRecordedRun(folder.path, "", {});
   const report::ScoredRun score =
       BenchOf(run.scenario).score(run.scenario, run.readings, truth, EstimatorNamed(options.estimator));
-  if (!options.json.empty()) WriteJson(options.json, WithValues(score));
-  if (options.json == "-") return;
+  answer.Write(WithValues(score));
+  if (answer.IsOnStdout()) return;
   if (options.positions) fmt::print("{}\n", score.positions);
   fmt::print("{}", score.text);
 }
@@ -51,9 +52,8 @@ void AddScore(CLI::App& app) {
   command->add_option("--estimator", options->estimator, "published or rigorous")
       ->check(CLI::IsMember({"published", "rigorous"}))
       ->capture_default_str();
-  command->add_option("--json", options->json, "write the score here, - for stdout");
   command->add_flag("--positions", options->positions, "also list every position");
-  command->callback([options] { PrintScore(*options); });
+  AnswerWith(*command, "the score", [options](JsonAnswer& answer) { PrintScore(*options, answer); });
 }
 
 }  // namespace twinbench::tools

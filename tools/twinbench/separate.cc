@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -11,20 +12,20 @@ namespace twinbench::tools {
 namespace {
 
 struct SeparateOptions {
-  std::string source, scenario, json, tables, estimator = "rigorous";
+  std::string source, scenario, tables, estimator = "rigorous";
   std::vector<std::string> overrides;
 };
 
-void Separate(const SeparateOptions& options) {
-  RequireOutput(options.json, {options.source, options.scenario});
+void Separate(const SeparateOptions& options, JsonAnswer& answer) {
+  RequireOutput(answer.to(), {options.source, options.scenario});
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   const report::Evaluation evaluation =
       BenchOf(run.scenario).evaluate(run.scenario, run.readings, EstimatorNamed(options.estimator));
   if (!evaluation.Separated())
     throw InputError(options.source, evaluation.not_separated, "readings of a full-circle test");
-  if (!options.json.empty()) WriteJson(options.json, evaluation.separation);
+  answer.Write(evaluation.separation);
   if (!options.tables.empty()) WriteTables(options.tables, evaluation.tables);
-  if (options.json != "-") fmt::print("{}", evaluation.summary);
+  if (!answer.IsOnStdout()) fmt::print("{}", evaluation.summary);
 }
 
 }  // namespace
@@ -35,7 +36,6 @@ void AddSeparate(CLI::App& app) {
   auto options = std::make_shared<SeparateOptions>();
   command->add_option("source", options->source, "folder of a run, or a readings.csv")->required();
   command->add_option("--scenario", options->scenario, "bench and procedure behind a readings.csv");
-  command->add_option("--json", options->json, "write separation.json here, - for stdout");
   command->add_option("--tables", options->tables,
                       "write the results' tables (CSV) into this folder, if there are any");
   command->add_option("--estimator", options->estimator, "published: the paper's equations; rigorous: ours")
@@ -43,7 +43,7 @@ void AddSeparate(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--set", options->overrides, "override a key of the scenario: procedure.positions=12")
       ->allow_extra_args(false);
-  command->callback([options] { Separate(*options); });
+  AnswerWith(*command, "separation.json", [options](JsonAnswer& answer) { Separate(*options, answer); });
 }
 
 }  // namespace twinbench::tools

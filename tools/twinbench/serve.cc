@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
 #include "hw_bridge/machine_file.h"
 #include "hw_bridge/serve/server.h"
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/live_page.h"
 #include "tools/twinbench/overwriting.h"
 #include "tools/twinbench/stop_signal.h"
@@ -42,6 +44,16 @@ std::string Told(const hw::ServedAddresses& at) {
   std::string text = at.iiod_port == 0 ? "" : fmt::format("iiod {}:{}\n", at.host, at.iiod_port);
   text += fmt::format("scpi {}:{}\nesp  {}:{}\n", at.host, at.scpi_port, at.host, at.esp_port);
   return at.pty.empty() ? text : text + fmt::format("esp  {}\n", at.pty);
+}
+
+/// For programs; a port that is not there is left out.
+nlohmann::json AddressesJson(const hw::ServedAddresses& at, const ServeArguments& a) {
+  nlohmann::json json = {{"scenario", a.scenario}, {"host", at.host}, {"scpi_port", at.scpi_port}, {"esp_port", at.esp_port}};
+  if (at.iiod_port != 0) json["iiod_port"] = at.iiod_port;
+  if (!at.pty.empty()) json["pty"] = at.pty;
+  if (!a.serve.token.empty()) json["token"] = a.serve.token;
+  if (!a.bench_file.empty()) json["bench_file"] = a.bench_file;
+  return json;
 }
 
 /// For the page: without the lines that a terminal has.
@@ -81,16 +93,17 @@ void ShowAxes(hw::Server& server, LivePage& page, const std::function<AxesSeen()
 }
 
 /// Writes the bench file, says where the server is and serves. Who has read the file may already stop the server.
-void ServeShown(hw::Server& server, const ServeArguments& a, const std::string& bench_file) {
+void ServeShown(hw::Server& server, const ServeArguments& a, const std::string& bench_file, JsonAnswer& answer) {
   ListenForStop();
   const std::string& token = a.serve.token;
   if (!a.bench_file.empty()) WriteFileAtOnce(a.bench_file, hw::WithGuards(bench_file, token));
   fmt::print("{}{}", Told(server.Addresses()), token.empty() ? "" : "token " + token + "\n");
   std::fflush(stdout);
+  answer.Write(AddressesJson(server.Addresses(), a));
   ServeUntilStopped(server);
 }
 
-void ServeRotary(const ServeArguments& a, const Scenario& scenario, LivePage& page) {
+void ServeRotary(const ServeArguments& a, const Scenario& scenario, LivePage& page, JsonAnswer& answer) {
   sim::Twin twin(scenario);
   hw::Server server(twin.Bench(), scenario, RotaryOf(scenario).adc, a.serve);
   page.Serve(scenario.bench, AddressLine(server.Addresses()), {"target_deg", "reference_deg"});
@@ -99,10 +112,10 @@ void ServeRotary(const ServeArguments& a, const Scenario& scenario, LivePage& pa
       const TableState target = bench.target.State(), reference = bench.reference.State();
       return AxesSeen{bench.clock.Now(), {target.encoder_rad / units::deg, reference.encoder_rad / units::deg}, target.moving || reference.moving};
     });
-  ServeShown(server, a, a.bench_file.empty() ? "" : hw::WriteServedBenchFile(server.Addresses(), a.tables));
+  ServeShown(server, a, a.bench_file.empty() ? "" : hw::WriteServedBenchFile(server.Addresses(), a.tables), answer);
 }
 
-void ServeMachine(const ServeArguments& a, const Scenario& scenario, LivePage& page) {
+void ServeMachine(const ServeArguments& a, const Scenario& scenario, LivePage& page, JsonAnswer& answer) {
   const Bench& bench = BenchOf(scenario);
   const std::vector<ReadingColumn> shown = InstrumentColumns(bench.format->columns);
   std::vector<std::string> fields = {"time_ns", "status"};
@@ -125,7 +138,7 @@ void ServeMachine(const ServeArguments& a, const Scenario& scenario, LivePage& p
     });
   const std::string language = a.tables == "pty" ? "pty" : "esp";
   ServeShown(server, a,
-             a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields, twin->Devices().indexer != nullptr));
+             a.bench_file.empty() ? "" : hw::WriteServedMachineFile(server.Addresses(), language, fields, twin->Devices().indexer != nullptr), answer);
 }
 
 void WarnOfOthers(const std::string& bind, bool asks_token) {
@@ -143,7 +156,8 @@ bool AsksToken(const ServeArguments& a) {
   return a.token || (!a.no_token && !hw::IsOfThisComputerOnly(a.serve.bind));
 }
 
-void Serve(ServeArguments a, LivePage& page) {
+void Serve(ServeArguments a, LivePage& page, JsonAnswer& answer) {
+  RequireOutput(answer.to(), {a.scenario, a.bench_file});
   RequireFree(a.bench_file, {a.scenario}, a.force, hw::kServedBenchFile);
   const Scenario scenario = LoadScenario(a.scenario, a.overrides);
   if (!BenchOf(scenario).has_controllers)
@@ -153,7 +167,7 @@ void Serve(ServeArguments a, LivePage& page) {
   if (AsksToken(a)) a.serve.token = NewToken();
   WarnOfOthers(a.serve.bind, AsksToken(a));
   a.serve.pty = !a.no_pty;
-  BenchOf(scenario).make_devices ? ServeMachine(a, scenario, page) : ServeRotary(a, scenario, page);
+  BenchOf(scenario).make_devices ? ServeMachine(a, scenario, page, answer) : ServeRotary(a, scenario, page, answer);
 }
 
 void AddPort(CLI::App& command, const char* name, int& port, const char* what) {
@@ -183,8 +197,8 @@ void AddServe(CLI::App& app) {
       ->check(CLI::IsMember({"scpi", "esp", "pty"}));
   AddForce(*command, arguments->force);
   AddWebOption(*command, arguments->web);
-  command->callback([arguments] {
-    WithLivePage(arguments->web, "serve", [&](LivePage& page) { Serve(*arguments, page); });
+  AnswerWith(*command, "where it is reached, as soon as it can be,", [arguments](JsonAnswer& answer) {
+    WithLivePage(arguments->web, "serve", [&](LivePage& page) { Serve(*arguments, page, answer); });
   });
 }
 

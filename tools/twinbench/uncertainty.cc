@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tools/twinbench/commands.h"
+#include "tools/twinbench/json_answer.h"
 #include "tools/twinbench/run_folder.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
@@ -15,7 +16,7 @@ namespace twinbench::tools {
 namespace {
 
 struct UncertaintyOptions {
-  std::string source, scenario, json, estimator = "rigorous";
+  std::string source, scenario, estimator = "rigorous";
   std::vector<std::string> overrides;
   bool monte_carlo = false;
   uncertainty::MonteCarloOptions trials;
@@ -40,8 +41,8 @@ std::vector<uncertainty::Joint> JointsOf(const RecordedRun& run, const std::stri
   return joints;
 }
 
-void State(const UncertaintyOptions& options) {
-  RequireOutput(options.json, {options.source, options.scenario});
+void State(const UncertaintyOptions& options, JsonAnswer& answer) {
+  RequireOutput(answer.to(), {options.source, options.scenario});
   const RecordedRun run = LoadRecordedRun(options.source, options.scenario, options.overrides);
   const uncertainty::Evaluate evaluate = EvaluationOf(run, options.estimator);
   const std::vector<uncertainty::Budget> budgets = uncertainty::Budgets(run.scenario, evaluate);
@@ -57,8 +58,8 @@ void State(const UncertaintyOptions& options) {
     trials = uncertainty::Propagate(run.scenario, evaluate, how);
   }
   const uncertainty::MonteCarlo* const drawn = options.monte_carlo ? &trials : nullptr;
-  if (!options.json.empty()) WriteJson(options.json, report::BudgetJson(budgets, joints, drawn));
-  if (options.json == "-") return;
+  answer.Write(report::BudgetJson(budgets, joints, drawn));
+  if (answer.IsOnStdout()) return;
   if (run.scenario.uncertainties.empty())
     fmt::print("The scenario states no u_<key> (u_wavelength_nm = 0.01): only what the readings say counts.\n\n");
   fmt::print("{}", report::BudgetText(budgets, joints, drawn));
@@ -84,10 +85,9 @@ void AddUncertainty(CLI::App& app) {
   command->add_option("--seed", options->trials.seed, "of the trials")->capture_default_str();
   command->add_option("--threads", options->trials.threads, "that share the trials; the result is the same")
       ->check(CLI::Range(1, 1024));
-  command->add_option("--json", options->json, "write the result here, - for stdout");
   command->add_option("--set", options->overrides, "override a key: laser.u_wavelength_nm=0.01")
       ->allow_extra_args(false);
-  command->callback([options] { State(*options); });
+  AnswerWith(*command, "the result", [options](JsonAnswer& answer) { State(*options, answer); });
 }
 
 }  // namespace twinbench::tools

@@ -10,11 +10,14 @@ namespace twinbench::campaign {
 
 struct CampaignProgress {
   std::int64_t done, planned, lost;  // of this call
+  const TrialRow* row = nullptr;     // that has come last
 };
 
 /// Carries out every trial that is not yet in the table; rows are written in the order in which they come.
-/// @param ranks  The other processes that take part; this one is the first of them, and works too.
-void RunCampaign(const Study& study, Table& table, int threads, Ranks& ranks,
-                 const std::function<void(const CampaignProgress&)>& progress);
+/// @param ranks           The other processes that take part; this one is the first of them, and works too.
+/// @param stop_requested  Asked ten times a second: once it says so, trials that have begun are finished and kept, and no others begin.
+/// @return whether every trial is in the table.
+bool RunCampaign(const Study& study, Table& table, int threads, Ranks& ranks, const std::function<void(const CampaignProgress&)>& progress,
+                 const std::function<bool()>& stop_requested = {});
 
 }  // namespace twinbench::campaign

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -24,7 +25,8 @@ class PendingTrials {
 
   /// Nothing once all were taken, or after Close.
   std::optional<std::int64_t> Take();
-  void Close() { next_ = trials_.size(); }
+  /// No others are taken. @return how many have been.
+  std::size_t Close() { return std::min(next_.exchange(trials_.size()), trials_.size()); }
   std::size_t Total() const { return trials_.size(); }
 
  private:

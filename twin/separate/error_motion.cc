@@ -159,6 +159,17 @@ void RequireWhole(const ErrorMotion& m) {
 
 }  // namespace
 
+ErrorMotion OfTurns(const Eigen::VectorXd& angle_rad, const Eigen::MatrixXd& turns) {
+  Require(turns.rows() > 0 && turns.cols() == angle_rad.size(), "a turn has a value an angle");
+  ErrorMotion motion{angle_rad, turns.colwise().mean().transpose(), {}, {}};
+  const Eigen::MatrixXd beside = turns.rowwise() - turns.colwise().mean();
+  for (const auto& at : beside.colwise()) motion.scatter.emplace_back(at.begin(), at.end());
+  if (turns.rows() == 1) return motion;
+  const double variance = beside.squaredNorm() / static_cast<double>((turns.rows() - 1) * turns.cols());
+  motion.cov = variance / static_cast<double>(turns.rows()) * Eigen::MatrixXd::Identity(turns.cols(), turns.cols());
+  return motion;
+}
+
 ErrorMotion Rotating(const ErrorMotion& x, const ErrorMotion& y) {
   Require(x.angle_rad.size() == y.angle_rad.size() && x.angle_rad == y.angle_rad, "x and y are at the same angles");
   const Eigen::ArrayXd c = x.angle_rad.array().cos(), s = x.angle_rad.array().sin();

@@ -24,6 +24,14 @@ struct ErrorMotion {
   std::vector<std::vector<double>> scatter;  // n lists: what each turn shows there - contour; empty lists: not known
 };
 
+/// The error motion of whole turns of an axis that were read at the same angles.
+///
+/// @param turns  One row a turn, one column an angle.
+/// @throws std::logic_error unless there are a turn and a value an angle.
+///
+/// Uncertainty: of the contour, the scatter of all turns beside it, pooled over the angles; empty of one turn.
+ErrorMotion OfTurns(const Eigen::VectorXd& angle_rad, const Eigen::MatrixXd& turns);
+
 /// The error motion along a direction that turns: cos(angle) x + sin(angle) y at each angle (rotating sensitive direction, a tool that turns).
 /// Its covariance is left empty.
 /// @throws std::logic_error unless both have the same angles.

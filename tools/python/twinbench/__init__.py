@@ -15,13 +15,15 @@ BenchError. Long calls let other threads run.
 
 from ._core import BenchError, InputError, __version__
 from .benches import AngleBench, RotaryBench, TableState
+from .machines import AxisState, MachineBench
+from .motions import error_motion
 from .readings import Readings
 from .run import Diagnosis, Follow, Run, diagnose, drive, frame, load, run, score, separate
 from .scenario import Scenario
 from .studies import Campaign, Investigation, Plan, campaign, investigate, plan
 
 __all__ = [
-    "AngleBench", "BenchError", "Campaign", "Diagnosis", "Follow", "InputError", "Investigation", "Plan", "Readings", "RotaryBench",
-    "Run", "Scenario", "TableState", "__version__", "campaign", "diagnose", "drive", "frame", "investigate", "load", "plan", "run", "score",
+    "AngleBench", "AxisState", "BenchError", "Campaign", "Diagnosis", "Follow", "InputError", "Investigation", "MachineBench", "Plan", "Readings", "RotaryBench",
+    "Run", "Scenario", "TableState", "__version__", "campaign", "diagnose", "drive", "error_motion", "frame", "investigate", "load", "plan", "run", "score",
     "separate",
 ]

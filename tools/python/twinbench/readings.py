@@ -31,6 +31,13 @@ class Readings(Mapping):
             return cls(_core.Readings.from_csv_text(file.read(), os.fspath(path), bench))
 
     @classmethod
+    def read_parquet(cls, path: str | os.PathLike) -> Readings:
+        """Reads a file of `to_parquet`. Needs pyarrow."""
+        from .parquet import read
+
+        return cls.from_columns(*read(path))
+
+    @classmethod
     def from_columns(cls, columns: Mapping[str, Any], bench: str) -> Readings:
         """From a dict of arrays, or a pandas frame, with the columns of readings.csv of that bench.
 
@@ -80,6 +87,15 @@ class Readings(Mapping):
         Needs h5py. The file must not be there yet.
         """
         from .nexus import write
+
+        write(self, path)
+
+    def to_parquet(self, path: str | os.PathLike) -> None:
+        """Writes a Parquet file: one column a column, its unit in the column's metadata `units`.
+
+        Needs pyarrow; raises ModuleNotFoundError that says so where there is none. The file must not be there yet.
+        """
+        from .parquet import write
 
         write(self, path)
 

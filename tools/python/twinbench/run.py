@@ -46,7 +46,7 @@ def load(source: str | os.PathLike, scenario: str | os.PathLike = "") -> Run:
 
 
 def drive(bench: Any, scenario: Scenario) -> Run:
-    """Carries a scenario's procedure out on a bench of one's own: a RotaryBench or an AngleBench.
+    """Carries a scenario's procedure out on a bench of one's own: a RotaryBench, a MachineBench or an AngleBench.
 
     Raises BenchError with what the bench raised. A lost reading has its status; a failing device is tried again as
     on real hardware.

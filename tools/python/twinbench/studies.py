@@ -34,12 +34,13 @@ def plan(scenario: Scenario, setups: int = 0, minutes: float = 0.0, readings: fl
 
 
 class Campaign:
-    """The table of a campaign: `csv` is what `twinbench campaign --csv` writes, `summary` what it prints."""
+    """The table of a campaign: `csv` is what `twinbench campaign --csv` writes, `summary` what it prints, `results` what `--json` has."""
 
-    def __init__(self, table: str, csv: str, summary: str):
+    def __init__(self, table: str, csv: str, summary: str, results: dict[str, Any]):
         self.table = table  # the SQLite file
         self.csv = csv
         self.summary = summary
+        self.results = results
 
     def frame(self) -> pandas.DataFrame:
         """A pandas frame with a row a trial, from the text of `csv`."""
@@ -54,7 +55,7 @@ def campaign(study: str | os.PathLike, table: str | os.PathLike, threads: int = 
     resume: go on with a table; trials that are in it are not done again. Raises InputError if the table is there without it.
     """
     table = os.fspath(table)
-    return Campaign(table, *_core.campaign(os.fspath(study), table, threads, resume and os.path.exists(table)))
+    return Campaign(table, *_core.campaign(os.fspath(study), table, threads, resume))
 
 
 class Investigation(dict):

@@ -1,4 +1,4 @@
-// Cursor keys on a plot: left and right walk along the points, up and down change the series, + - 0 zoom.
+// Cursor keys on a plot: left and right walk along the points, up and down change the series, + - 0 zoom, z draws a rectangle.
 import { measured, withUnit } from "./format.js";
 import { headAt } from "./tip.js";
 
@@ -38,6 +38,7 @@ export function addCursor(plot, figure, card) {
     "+": () => card.zoom(0.6),
     "-": () => card.zoom(1 / 0.6),
     0: () => card.unzoom(),
+    z: () => card.takesRectangle() && card.rectangle.begin(),
     Escape: () => card.leave(),
   };
   plot.addEventListener("keydown", (event) => {

@@ -4,6 +4,7 @@ import { makeChart } from "./chart.js";
 import { button, element, slug } from "./dom.js";
 import { axisTitle } from "./format.js";
 import { looks, swatch } from "./looks.js";
+import { addRectangle } from "./rectangle.js";
 import { numbersTable } from "./table.js";
 import { isDark, onThemeChange, palette } from "./theme.js";
 import { viewsOf } from "./views.js";
@@ -24,12 +25,13 @@ class Card {
     this.points = figure.series.reduce((sum, series) => sum + series.y.length, 0);
     this.plot = element("div", {
       class: "plot", tabindex: 0, role: "application",
-      "aria-label": `${figure.title}, ${axisTitle(figure.y)} against ${axisTitle(figure.x) || "categories"}. Arrow keys read the values, + and - zoom, 0 shows all.`,
+      "aria-label": `${figure.title}, ${axisTitle(figure.y)} against ${axisTitle(figure.x) || "categories"}. Arrow keys read the values, + and - zoom, Z draws a rectangle to zoom into, 0 shows all.`,
     });
     this.readout = element("p", { class: "readout", role: "status" });
     this.element = element("figure", { class: "card", id: `figure-${slug(figure.title)}` }, this.head(), this.legend(), this.plot, this.readout, this.numbers());
     if (this.view.wide) this.element.classList.add("wide");
     this.size();
+    this.rectangle = addRectangle(this.plot, figure, this);
     addCursor(this.plot, figure, this);
     this.chart = makeChart(this.plot, this.points, () => this.option());
     this.plot.addEventListener("dblclick", () => this.unzoom());
@@ -56,6 +58,7 @@ class Card {
       tools.append(
         button("+", () => this.zoom(0.6), { "aria-label": "Zoom in", title: "Zoom in (Ctrl + wheel)" }),
         button("\u2212", () => this.zoom(1 / 0.6), { "aria-label": "Zoom out", title: "Zoom out" }),
+        this.rectangleButton(),
         button("All", () => this.unzoom(), { title: "Show all (double click)" }),
       );
     }
@@ -72,12 +75,54 @@ class Card {
       button(view.name, () => {
         this.view = view;
         this.zoomed = 1;
+        this.rectangle.end();
+        this.toRectangle.hidden = !view.zooms;
         buttons.forEach((other, k) => pressed(other, this.views[k] === view));
         this.size();
         this.chart.draw();
       }, { "aria-pressed": String(view === this.view) }),
     );
     return buttons;
+  }
+
+  rectangleButton() {
+    this.toRectangle = button("Rectangle", () => {
+      this.rectangle.begin();
+      this.plot.focus();
+    }, { "aria-pressed": "false", title: "Zoom into a rectangle (Shift and drag, or Z in the plot)" });
+    this.toRectangle.hidden = !this.view.zooms;
+    return this.toRectangle;
+  }
+
+  /** A polar plot has no rectangles. */
+  takesRectangle() {
+    return Boolean(this.view.zooms && this.chart.get());
+  }
+
+  frame() {
+    return this.chart.get().getModel().getComponent("grid").coordinateSystem.getRect();
+  }
+
+  onRectangle(is) {
+    if (this.toRectangle) pressed(this.toRectangle, is);
+    if (is) this.leave();
+  }
+
+  /** What lies in a rectangle of the plot; bars have places along x only. */
+  rangeOf({ left, top, right, bottom }) {
+    const chart = this.chart.get();
+    const [[x0, y1], [x1, y0]] = [[left, top], [right, bottom]].map((at) => chart.convertFromPixel({ gridIndex: 0 }, at));
+    const hasY = chart.getOption().dataZoom.length > 1;
+    const place = (x) => (this.figure.form === "bars" || this.figure.form === "histogram" ? Number(chart.getOption().xAxis[0].data[x]) : x);
+    return { x: [place(x0), place(x1)], y: hasY ? [y0, y1] : undefined, ends: hasY ? [[x0, x1], [y0, y1]] : [[x0, x1]] };
+  }
+
+  zoomInto(pixels) {
+    const { ends } = this.rangeOf(pixels);
+    this.chart.get().dispatchAction({
+      type: "dataZoom", batch: ends.map(([startValue, endValue], dataZoomIndex) => ({ dataZoomIndex, startValue, endValue })),
+    });
+    this.plot.dataset.zoomed = "yes";
   }
 
   legend() {

@@ -1,5 +1,6 @@
 // Shows a measurement while it goes on, and stops it. What a bench does is said only in the words of the program that reads it.
 import { button, element } from "./dom.js";
+import { campaign } from "./live_campaign.js";
 import { liveFigures, residualFigures } from "./live_figures.js";
 import { inquiry } from "./live_inquiry.js";
 import { pausePanel } from "./live_pause.js";
@@ -21,15 +22,17 @@ const axes = element("dl", { class: "now", "aria-label": "Last reading" });
 const cards = element("div", { class: "cards" });
 const residualCards = element("div", { class: "cards" });
 const judged = element("p", { class: "subtitle", id: "judged" }, "No reading is predicted by those before it yet");
-const alarms = element("ol", { class: "alarms", id: "alarms", role: "log", "aria-label": "Alarms" });
-const residualPart = element("section", { class: "part", "aria-label": "Residuals" }, element("h2", {}, "Against the twin's prediction"), judged, alarms, residualCards);
+const alarms = element("ol", { class: "alarms", id: "alarms" });
+const residualPart = element("section", { class: "part", "aria-label": "Residuals" }, element("h2", {}, "Against the twin's prediction"), judged, element("div", { role: "log", "aria-label": "Alarms" }, alarms), residualCards);
 const send = (path) => fetch(address(path), { method: "POST" });
 const stop = stopPanel(() => send("/stop"));
 const pause = pausePanel(send);
 const steps = inquiry();
+const trials = campaign(clock);
 
 let figures = null;
 let serves = false;
+let counts = false; // trials of a campaign
 let shown = null; // folder
 let residuals = null;
 let predicted = 0;
@@ -65,11 +68,18 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
   residualCards.replaceChildren();
   alarms.replaceChildren();
   serves = command === "serve";
-  title.textContent = serves ? `${bench}, served as hardware` : `${bench}: ${command} into ${folder}`;
+  counts = command === "campaign";
+  title.textContent = counts ? `campaign: ${folder}` : serves ? `${bench}, served as hardware` : `${bench}: ${command} into ${folder}`;
   if (serves) {
     counted.textContent = folder;
     bar.hidden = residualPart.hidden = true;
     stop.isOf("Stop serving", "Stop serving?", "The program closes every connection and ends. What clients were told to do is theirs to take up again.");
+  }
+  if (counts) {
+    trials.begin();
+    residualPart.hidden = true;
+    bar.setAttribute("aria-label", "Trials done");
+    stop.isOf("Stop the campaign", "Stop the campaign?", "Trials that have begun are finished and kept, and no others begin. The same command with --resume goes on.");
   }
   columns = named.map((column) => {
     const [name, unit] = parted(column.name);
@@ -81,7 +91,7 @@ function begin({ command, bench, folder, can_pause, columns: named }) {
   if (!ended) say("", goesOn());
 }
 
-const goesOn = () => (serves ? "The twin is served" : "The measurement goes on");
+const goesOn = () => (counts ? "The campaign goes on" : serves ? "The twin is served" : "The measurement goes on");
 
 /** Axes that others move. */
 function moved({ t, v, moving }) {
@@ -132,6 +142,7 @@ function end({ code, words }) {
   events.close();
   stop.over();
   pause.over();
+  if (code === 0 && counts) return say("good", "The campaign is complete: the program ended with exit code 0");
   if (code === 0) return say("good", serves ? "Nothing is served any more: the program ended with exit code 0" : "The measurement is complete: the program ended with exit code 0");
   say(code === 3 ? "bad" : "doubt", `The program ended with exit code ${code}. ${words}`);
 }
@@ -150,6 +161,12 @@ on("believed", steps.believed);
 on("reading", reading);
 on("progress", progress);
 on("axes", moved);
+on("trials", (told) => {
+  [bar.max, bar.value] = [told.planned, told.done];
+  counted.textContent = trials.trials(told);
+  changed = true;
+});
+on("lost_trial", trials.lost);
 on("residuals", compare);
 on("alarm", alarm);
 on("unjudged", ({ why }) => (judged.textContent = `Readings are not compared with the twin: ${why}`));
@@ -166,7 +183,7 @@ events.onopen = () => {
   if (!ended) say("", figures ? goesOn() : "Connected; nothing is being measured yet");
 };
 setInterval(() => {
-  if (changed) (changed = false), figures?.draw(), residuals?.draw();
+  if (changed) (changed = false), figures?.draw(), residuals?.draw(), trials.draw();
   if (!ended && performance.now() - heard > kSilence_ms) events.onerror();
 }, kBetweenDrawings_ms);
 
@@ -177,5 +194,5 @@ const theme = button(isDark() ? "Light" : "Dark", () => {
 
 document.getElementById("page").append(
   element("header", {}, element("div", { class: "brand" }, element("span", {}, "twinbench, live"), theme), title, subtitle, verdict),
-  element("main", { id: "content", tabindex: -1 }, stop.element, pause.element, steps.element, element("section", { class: "part" }, bar, counted, axes), cards, residualPart),
+  element("main", { id: "content", tabindex: -1 }, stop.element, pause.element, steps.element, element("section", { class: "part" }, bar, counted, axes), trials.element, cards, residualPart),
 );

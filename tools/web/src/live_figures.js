@@ -84,6 +84,23 @@ export function residualFigures(channels) {
   };
 }
 
+/** Means over the trials so far, one plot a result, with the standard uncertainty of the mean about it where there is one. */
+export function meanFigures(names) {
+  const cards = names.map((name, r) => new LiveCard(
+    { form: "line", title: `Mean of ${name}`, x: { name: "trials", unit: "" }, y: { name: "mean", unit: "" }, series: [empty("mean"), empty("+ u"), empty("- u")] },
+    ({ trials, results }) => {
+      const { mean, u_mean } = results[r];
+      const edge = (way) => [trials, mean === null || u_mean === null ? null : mean + way * u_mean];
+      return [[trials, mean], edge(1), edge(-1)];
+    },
+  ));
+  return {
+    cards: cards.map((card) => card.element),
+    add: (told) => cards.forEach((card, r) => told.results[r] && card.add(told)),
+    draw: () => cards.forEach((card) => card.chart.draw()),
+  };
+}
+
 /** @param columns  Of the readings: name, unit, role. */
 export function liveFigures(columns) {
   const all = [...pairs(columns).map((pair) => trackCard(columns, pair)), ...timeCards(columns, "axis", "Axes"), ...timeCards(columns, "shown", "Shown")];

@@ -1,21 +1,16 @@
 #include "twin/benches/rotary_4dof/error_motion_results.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "twin/report/json_units.h"
-#include "twin/report/uncertainty_parts.h"
 #include "twin/separate/error_motion.h"
 
 namespace twinbench::benches::rotary {
 namespace {
 
+using report::DirectedMotion;
 using separate::ErrorMotion;
-using separate::ErrorMotionValue;
-using separate::ErrorMotionValues;
 using separate::TableEstimate;
 
 constexpr Eigen::Index kMostWithUncertainty = 720;  // positions; a covariance of more takes long to take the root of
@@ -24,14 +19,6 @@ constexpr const char* kAtStops = "the axis stood at every reading; the standard 
 /// Covariances of a contour: of the readings, and of what is common to all of them.
 struct ContourCovariance {
   Eigen::MatrixXd random, systematic;
-};
-
-/// One sensitive direction with what it is told in.
-struct Directed {
-  const char* name;
-  bool is_angle;
-  ErrorMotion motion;
-  Eigen::MatrixXd random;  // part of its covariance
 };
 
 std::optional<Eigen::Index> BlockOf(const TableEstimate& estimate, Component component) {
@@ -150,36 +137,38 @@ ErrorMotion MotionOf(const TableEstimate& estimate, Component component, const s
 
 /// A component as it stands.
 void AppendSingle(const char* name, const TableEstimate& estimate, Component component, const std::vector<std::vector<double>>& scatter,
-                  std::vector<Directed>& all) {
+                  std::vector<DirectedMotion>& all) {
   if (!BlockOf(estimate, component)) return;
   const std::vector<Eigen::Index> at = Determined(estimate, {component});
   const ContourCovariance cov = CovarianceOf(estimate, {component}, at);
-  Directed directed{name, IsAngle(component), MotionOf(estimate, component, at, scatter), cov.random};
+  DirectedMotion directed{name, IsAngle(component), MotionOf(estimate, component, at, scatter)};
   directed.motion.cov = cov.random + cov.systematic;
+  if (cov.random.size() > 0) directed.parts = {{"noise", cov.random}, {"calibration", cov.systematic}};
   all.push_back(directed);
 }
 
 /// x and y along a direction that turns forward (+1: with the rotor, seen from the laboratory) or back (-1).
 void AppendTurned(const char* name, const TableEstimate& estimate, Component x, Component y, double sense,
                   const std::vector<std::vector<double>>& scatter_x, const std::vector<std::vector<double>>& scatter_y,
-                  std::vector<Directed>& all) {
+                  std::vector<DirectedMotion>& all) {
   if (!BlockOf(estimate, x) || !BlockOf(estimate, y)) return;
   const std::vector<Eigen::Index> at = Determined(estimate, {x, y});
   const ContourCovariance cov = CovarianceOf(estimate, {x, y}, at);
   ErrorMotion along_x = MotionOf(estimate, x, at, scatter_x), along_y = MotionOf(estimate, y, at, scatter_y);
   along_x.angle_rad *= sense;
   along_y.angle_rad *= sense;
-  Directed turned{name, IsAngle(x), Rotating(along_x, along_y), {}};
+  DirectedMotion turned{name, IsAngle(x), Rotating(along_x, along_y)};
   if (cov.random.size() > 0) {
-    turned.random = separate::RotatingCovariance(along_x.angle_rad, cov.random);
-    turned.motion.cov = turned.random + separate::RotatingCovariance(along_x.angle_rad, cov.systematic);
+    turned.parts = {{"noise", separate::RotatingCovariance(along_x.angle_rad, cov.random)},
+                    {"calibration", separate::RotatingCovariance(along_x.angle_rad, cov.systematic)}};
+    turned.motion.cov = turned.parts[0].second + turned.parts[1].second;
   }
   all.push_back(turned);
 }
 
-std::vector<Directed> OfTarget(const separate::Separation& s, const std::vector<measure::Motion>& motions) {
+std::vector<DirectedMotion> OfTarget(const separate::Separation& s, const std::vector<measure::Motion>& motions) {
   const PassesBeyond passes(s, motions);
-  std::vector<Directed> all;
+  std::vector<DirectedMotion> all;
   AppendSingle("radial_fixed_y", s.target, Component::kDy, passes.Of(Component::kDy), all);
   AppendSingle("tilt_fixed_x", s.target, Component::kEx, passes.Of(Component::kEx), all);
   AppendSingle("tilt_fixed_y", s.target, Component::kEy, passes.Of(Component::kEy), all);
@@ -188,8 +177,8 @@ std::vector<Directed> OfTarget(const separate::Separation& s, const std::vector<
   return all;
 }
 
-std::vector<Directed> OfReference(const TableEstimate& reference) {
-  std::vector<Directed> all;
+std::vector<DirectedMotion> OfReference(const TableEstimate& reference) {
+  std::vector<DirectedMotion> all;
   AppendSingle("radial_rotating_x", reference, Component::kDx, {}, all);
   AppendSingle("radial_rotating_y", reference, Component::kDy, {}, all);
   AppendTurned("radial_fixed_x", reference, Component::kDx, Component::kDy, -1.0, {}, {}, all);
@@ -199,68 +188,13 @@ std::vector<Directed> OfReference(const TableEstimate& reference) {
   return all;
 }
 
-double UnitOfDirection(const Directed& d) {
-  return d.is_angle ? units::arcsec : units::um;
-}
-
-nlohmann::json ToJson(const ErrorMotionValue& v, const Directed& d, const std::vector<std::pair<std::string, double>>& shares) {
-  const std::string unit = d.is_angle ? "arcsec" : "um";
-  nlohmann::json json = {{"value_" + unit, report::In(UnitOfDirection(d), v.value)},
-                         {"u_" + unit, report::In(UnitOfDirection(d), v.u)},
-                         {"bias_" + unit, report::In(UnitOfDirection(d), v.bias)}};
-  if (std::isfinite(v.u) && v.u > 0.0) json["u_parts"] = report::PartsJson(shares);
-  return json;
-}
-
-/// How much of the uncertainty of the contour is the readings'.
-double ShareOfNoise(const Directed& d, const ErrorMotionValues& values) {
-  const double all = d.motion.cov.size() > 0 ? values.slope.dot(d.motion.cov * values.slope) : 0.0;
-  return all > 0.0 ? std::clamp(values.slope.dot(d.random * values.slope) / all, 0.0, 1.0) : 0.0;
-}
-
-nlohmann::json ValuesJson(const Directed& d, const ErrorMotionValues& values) {
-  const double noise = ShareOfNoise(d, values), of_contour = std::min(1.0, std::pow(values.synchronous.u / values.total.u, 2));
-  nlohmann::json json = {{"synchronous", ToJson(values.synchronous, d, {{"noise", noise}, {"calibration", 1.0 - noise}})}};
-  if (std::isnan(values.total.value)) return json;
-  json["total"] = ToJson(values.total, d,
-                         {{"noise", of_contour * noise}, {"calibration", of_contour * (1.0 - noise)}, {"repeatability", 1.0 - of_contour}});
-  if (std::isfinite(values.asynchronous.value)) json["asynchronous"] = ToJson(values.asynchronous, d, {{"repeatability", 1.0}});
-  return json;
-}
-
-std::string Text(const Directed& d, const ErrorMotionValues& values) {
-  std::string words = d.name;
-  std::ranges::replace(words, '_', ' ');
-  std::string text = fmt::format("  {:18}", words);
-  const auto add = [&](const char* name, const ErrorMotionValue& v) {
-    if (std::isnan(v.value)) return;
-    text += fmt::format(" {} {:.3f}", name, v.value / UnitOfDirection(d));
-    if (std::isfinite(v.u)) text += fmt::format(" +- {:.3f}", v.u / UnitOfDirection(d));
-  };
-  add("synchronous", values.synchronous);
-  add("asynchronous", values.asynchronous);
-  add("total", values.total);
-  return text + (d.is_angle ? " arcsec\n" : " um\n");
-}
-
-void Append(const char* table, const std::vector<Directed>& directions, separate::ErrorMotionDraws& draws, ErrorMotionResults& results) {
-  if (!directions.empty()) results.text += fmt::format("ISO 230-7, {}\n", table);
-  for (const Directed& d : directions) {
-    const ErrorMotionValues values = EvaluateErrorMotion(d.motion, separate::PlotCentre::kLeastSquares, draws);
-    if (std::isnan(values.synchronous.value)) continue;
-    results.json.push_back({{"table", table}, {"motion", d.name}, {"values", ValuesJson(d, values)}, {"missing", {kAtStops}}});
-    if (values.turns > 0) results.json.back()["turns"] = values.turns;
-    results.text += Text(d, values);
-  }
-}
-
 }  // namespace
 
-ErrorMotionResults EvaluateErrorMotions(const separate::Separation& separation, const std::vector<measure::Motion>& motions) {
-  ErrorMotionResults results{nlohmann::json::array(), ""};
+report::ErrorMotionTexts EvaluateErrorMotions(const separate::Separation& separation, const std::vector<measure::Motion>& motions) {
+  report::ErrorMotionTexts results;
   separate::ErrorMotionDraws draws;
-  Append("target", OfTarget(separation, motions), draws, results);
-  Append("reference", OfReference(separation.reference), draws, results);
+  AppendErrorMotions("target", OfTarget(separation, motions), {kAtStops}, draws, results);
+  AppendErrorMotions("reference", OfReference(separation.reference), {kAtStops}, draws, results);
   return results;
 }
 

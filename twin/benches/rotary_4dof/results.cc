@@ -42,7 +42,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   report::Evaluation evaluation{results, separation, analysis.not_separated, Summary(analysis)};
   if (!analysis.separation) return evaluation;
   evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
-  const ErrorMotionResults motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
+  const report::ErrorMotionTexts motions = EvaluateErrorMotions(*analysis.separation, analysis.motions);
   evaluation.results["iso230_7"] = motions.json;
   evaluation.summary += motions.text;
   return evaluation;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "twin/benches/turntable_autocollimator/bench.h"
+#include "twin/benches/turntable_autocollimator/error_motion_results.h"
 #include "twin/benches/turntable_autocollimator/estimators/turntable_bench.h"
 #include "twin/benches/turntable_autocollimator/polygon_results.h"
 #include "twin/benches/turntable_autocollimator/series_json.h"
@@ -191,6 +192,13 @@ std::string SummaryOf(const TurntableAnalysis& a) {
   return text;
 }
 
+void AddTilt(const TurntableAnalysis& a, const Scenario& scenario, report::Evaluation& evaluation) {
+  const TurntableSettings& bench = TurntableOf(scenario);
+  const report::ErrorMotionTexts tilt = EvaluateTilt(a.stops, bench.turntable_procedure.positions, *a.separation, bench.autocollimator.noise_rad);
+  if (!tilt.json.empty()) evaluation.results["iso230_7"] = tilt.json;
+  evaluation.summary += tilt.text;
+}
+
 // --- against the truth ---
 
 /// Behind the noise that the uncertainties are made of.
@@ -247,6 +255,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation, scenario) : nlohmann::json();
   report::Evaluation evaluation{ResultsOf(analysis, scenario), separation, analysis.not_separated,
                                 SummaryOf(analysis)};
+  if (analysis.separation) AddTilt(analysis, scenario, evaluation);
   if (analysis.separation) evaluation.joints = [separation = *analysis.separation] { return JointsOf(separation); };
   return evaluation;
 }

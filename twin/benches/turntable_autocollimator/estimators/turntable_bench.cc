@@ -117,7 +117,8 @@ TurntableAnalysis AnalyseTurntable(const std::vector<Reading>& readings, const S
   analysis.estimator = estimator;
   analysis.left_out = static_cast<int>(
       std::ranges::count_if(readings, [](const Reading& r) { return r.status != ReadingStatus::kOk; }));
-  const std::vector<TurntableStop> stops = StopsOf(readings, scenario, Phase::kFullCircle);
+  analysis.stops = StopsOf(readings, scenario, Phase::kFullCircle);
+  const std::vector<TurntableStop>& stops = analysis.stops;
   analysis.used = static_cast<int>(stops.size());
   if (stops.empty()) {
     analysis.not_separated = "there are no usable full-circle readings";
