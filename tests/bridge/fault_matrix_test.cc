@@ -95,6 +95,44 @@ TEST(FaultMatrix, AFaultThatStaysUsesUpTheAttemptsAndTheRunCanBeResumed) {
   EXPECT_EQ(resumed.Readings(), InProcess(scenario)) << resumed.said;
 }
 
+/// A controller that restarts while nothing moves is met by the next look at its encoder: that before the block or that behind it.
+struct RestartedAboutABlock {
+  const char* tables;
+  const char* table;
+  const char* when;  // the last device that is asked before it
+  friend void PrintTo(const RestartedAboutABlock& row, std::ostream* out) {
+    *out << row.tables << "_" << row.table << "_" << row.when;
+  }
+};
+
+class RestartAboutABlock : public ::testing::TestWithParam<RestartedAboutABlock> {};
+
+TEST_P(RestartAboutABlock, CostsOneAttemptAndLeavesNoCellEmpty) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.tables = GetParam().tables;
+  bool struck = false;
+  options.before_call = [&](const std::string& device, const std::string&, int kept) {
+    if (struck || kept != kAt || device != GetParam().when) return;
+    struck = true;
+    Inject(served, std::string(GetParam().table) + ",restart");
+  };
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, "") << run.said;
+  EXPECT_EQ(run.Readings(), InProcess(scenario));
+  ASSERT_EQ(run.log.attempts.size(), 1u);
+  EXPECT_EQ(run.log.attempts[0].reading, kAt);
+  EXPECT_EQ(run.log.attempts[0].fault, "restarted");
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, RestartAboutABlock,
+                         ::testing::Values(RestartedAboutABlock{"scpi", "target", "thermometer"},
+                                           RestartedAboutABlock{"scpi", "reference", "adc"},
+                                           RestartedAboutABlock{"esp", "reference", "thermometer"},
+                                           RestartedAboutABlock{"esp", "target", "adc"}),
+                         testing::PrintToStringParamName());
+
 // --- what ends the run until a hand has helped ---
 
 struct NeedsAHand {

@@ -291,6 +291,29 @@ TEST(RealBench, FindsItsOriginAgainAfterARestartOfTheController) {
   EXPECT_EQ(log.attempts[0].fault, "restarted");
 }
 
+TEST(RealBench, KeepsNoReadingAboutWhichATableHadLostItsOrigin) {
+  for (const char* asked_last : {"thermometer", "adc"}) {  // before the look before the block, and the one behind it
+    ScriptedBench scripted;
+    test::MemoryLog log;
+    bool restarted = false;
+    test::TroubledBench troubled(scripted.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
+      if (restarted || log.readings.size() != 5 || device != asked_last) return;
+      restarted = true;
+      scripted.reference.state.referenced = false;
+      scripted.reference.state.encoder_rad = kNaN;
+    });
+    RotaryBench bench = troubled.Bench();
+    Options options;
+    options.log = &log;
+    CarryOut(bench, TwoSetups(), log, {}, options);
+    EXPECT_EQ(scripted.reference.homes, 1) << asked_last;
+    ASSERT_EQ(log.attempts.size(), 1u);
+    EXPECT_EQ(log.attempts[0].fault, "restarted");
+    EXPECT_EQ(log.attempts[0].reading, 5);
+    for (const Reading& reading : log.readings) EXPECT_EQ(reading.extra.size(), 4u) << "two tables, before and behind";
+  }
+}
+
 TEST(RealBench, FindsNoOriginThatNobodyAllowedItToLookFor) {
   ScriptedBench scripted;
   test::MemoryLog log;

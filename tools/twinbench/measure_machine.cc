@@ -88,8 +88,9 @@ void RehearseMachineFirst(const Scenario& scenario, const std::vector<MachineAxi
 }
 
 procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenMachine& bench,
-                                    const BegunRun& begun) {
+                                    const BegunRun& begun, bool allow_homing) {
   procedure::MachineOptions options;
+  options.may_home = allow_homing;
   options.axes = bench.Limits();
   options.attempts = file.attempts;
   options.coldest_degC = kColdestRoom_degC;
@@ -125,10 +126,10 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
 }
 
 void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const hw::MachineFile& file,
-                        hw::OpenMachine& bench, BegunRun begun, LivePage& page) {
+                        hw::OpenMachine& bench, BegunRun begun, bool allow_homing, LivePage& page) {
   const bool resumed = begun.record != nullptr;
   if (resumed) TakeUp(begun, bench.Identity());
-  const procedure::MachineOptions options = Carefully(file, bench, begun);
+  const procedure::MachineOptions options = Carefully(file, bench, begun, allow_homing);
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench.Identity());
   bench.HearClock([&](const std::string& notice) { record->AppendEvent(bench.Devices().clock.Now(), "clock", notice); });
   record->AppendEvent(bench.Devices().clock.Now(), "bench", bench.Identity());
@@ -153,7 +154,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
     const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
     const auto bench = OpenAnyMachine(file, scenario, parts, SinceBegin(begun));
     if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, bench->Limits());
-    MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), page);
+    MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), o.allow_homing, page);
   }
   EvaluateRun(scenario, folder.path);
 }

@@ -142,8 +142,8 @@ Acquisition Sequencer::TakeBlock(Reading& stop) {
 
 std::array<double, 2> Sequencer::LookAtEncoders() {
   if (!options_.looks_at_encoders) return {kNaN, kNaN};
-  const double target_rad = bench().target.State().encoder_rad;
-  return {target_rad, bench().reference.State().encoder_rad};
+  const double target_rad = StoodAt("target", bench().target.State());
+  return {target_rad, StoodAt("reference", bench().reference.State())};
 }
 
 double Sequencer::DrawDwell_s() {
