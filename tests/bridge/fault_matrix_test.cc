@@ -164,6 +164,54 @@ INSTANTIATE_TEST_SUITE_P(Matrix, FaultThatNeedsAHand,
                                            NeedsAHand{"TableThatStandsStill", "target,stall", "stalled"}),
                          [](const auto& row) { return row.param.name; });
 
+// --- what waits at a resume, and strikes while the bench is brought back to where the run was ---
+
+class FaultPendingAtAResume : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(FaultPendingAtAResume, IsNotTakenForARecordThatDoesNotFit) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = "target,limit";  // ends the run
+  const ServedRun run = RunServed(served, scenario, options);
+  ASSERT_EQ(run.stopped_by, "limit") << run.said;
+  RunOptions pending;
+  pending.faults[0] = GetParam();  // of this program: before anything is asked
+  const ServedRun resumed = RunServed(served, scenario, pending, &run);
+  if (std::string(GetParam()) == "adc,float") {
+    EXPECT_EQ(resumed.stopped_by, "signal_lost");
+    EXPECT_THAT(resumed.said, HasSubstr("check the cable"));
+    return;
+  }
+  EXPECT_EQ(resumed.stopped_by, "") << resumed.said;
+  EXPECT_EQ(resumed.Readings(), InProcess(scenario));
+  ASSERT_GT(resumed.log.attempts.size(), run.log.attempts.size()) << "and what it cost is written down";
+  EXPECT_EQ(resumed.log.attempts.back().reading, kAt);
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, FaultPendingAtAResume,
+                         ::testing::Values("adc,drop", "adc,short", "adc,error", "adc,gap", "adc,saturate", "adc,float",
+                                           "adc,stuck", "adc,hum", "adc,slip", "adc,no_light", "adc,saturate,2",
+                                           "clock,step", "target,mute", "target,restart", "reference,restart", "target,disconnect", "target,lost_step",
+                                           "reference,not_in_position", "target,limit", "reference,stall"));
+
+TEST(FaultMatrix, AFaultThatStrikesAtEveryAttemptOfAResumeSaysWhatToDo) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = "target,limit";
+  const ServedRun run = RunServed(served, scenario, options);
+  RunOptions pending;
+  pending.faults[0] = "adc,no_light,3";
+  try {
+    RunServed(served, scenario, pending, &run);
+    FAIL() << "three attempts, three faults";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("as before, in 3 attempts"));
+    EXPECT_THAT(error.what(), HasSubstr("look at the bench and go on with --resume"));
+  }
+}
+
 // --- what is measured all the same ---
 
 TEST(FaultMatrix, ASaturatedBlockIsFlaggedAndNeverAveraged) {

@@ -210,6 +210,24 @@ void ExpectStopped(const std::string& fault, const std::string& kind, const std:
   EXPECT_EQ(TextOf(rest.log.readings, bench.scenario), bench.undisturbed);
 }
 
+TEST(MachineFaults, ThatWaitAtAResumeAreNotTakenForARecordThatDoesNotFit) {
+  Failing bench;
+  const std::vector<Reading> kept(bench.readings.begin(), bench.readings.begin() + 32);
+  for (const char* fault : {"machine,disconnect", "machine,restart", "machine,not_in_position", "instruments,disconnect",
+                            "instruments,gap"}) {
+    const MachineRun run = bench.Run({{0, fault}}, kept);
+    EXPECT_EQ(run.stopped_by, "") << fault << ": " << run.said;
+    EXPECT_EQ(TextOf(run.log.readings, bench.scenario), bench.undisturbed) << fault;
+    EXPECT_EQ(run.log.attempts.size(), 1u) << fault;
+  }
+  for (const std::string fault : {"limit", "stall"}) {  // a hand is needed; then it goes on
+    const MachineRun run = bench.Run({{0, "machine," + fault}}, kept);
+    EXPECT_EQ(run.stopped_by, fault == "stall" ? "stalled" : fault) << run.said;
+    EXPECT_EQ(run.log.readings.size(), 32u);
+  }
+  EXPECT_EQ(TextOf(bench.Run({}, kept).log.readings, bench.scenario), bench.undisturbed);
+}
+
 /// The axes of a twin, of which one is pushed off its place whenever something is read.
 class Pushed : InstrumentSet, MachineController {
  public:
