@@ -1,10 +1,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <ostream>
 
+#include "hw_bridge/ad/block_checks.h"
+#include "hw_bridge/ad/lost_word.h"
+#include "hw_bridge/ad/negotiation.h"
 #include "tests/support/served_run.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/sim/ad_sampler.h"
 
 /// Faults of real benches, each struck on a served twin while the real procedure drives it through the real
 /// backends. Where trying again is the answer, the readings are those of a run without any fault, to the bit.
@@ -132,6 +139,61 @@ INSTANTIATE_TEST_SUITE_P(Matrix, RestartAboutABlock,
                                            RestartedAboutABlock{"esp", "reference", "thermometer"},
                                            RestartedAboutABlock{"esp", "target", "adc"}),
                          testing::PrintToStringParamName());
+
+// --- a lost word where the levels of the channels are alike ---
+
+/// What a word that is lost half-way through the block of a reading does, as it is foretold.
+hw::LostWord Foretold(const Reading& reading, const AdcSettings& adc) {
+  std::array<double, kChannels> level_lsb{}, noise_lsb{};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    level_lsb[c] = reading.mean_V[c] / sim::LsbOf(adc);
+    noise_lsb[c] = reading.std_V[c] / sim::LsbOf(adc);
+  }
+  return hw::IfAWordWereLost(level_lsb, hw::ScanOrderOf(adc), hw::UsualNoise_lsb(noise_lsb), adc.samples, 1e-9);
+}
+
+/// The restless bench with amplifiers whose offsets bring the levels of reading kAt so far apart.
+Scenario WithLevels(const std::array<double, kChannels>& levels_V) {
+  Scenario scenario = RestlessBench();
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  MemoryLog log;
+  procedure::CarryOut(bench, scenario, log);
+  for (std::size_t c = 0; c < kChannels; ++c)
+    RotaryOf(scenario).amplifier.offset_V[c] = levels_V[c] - log.readings[kAt].mean_V[c];
+  return scenario;
+}
+
+TEST(FaultMatrix, AWordIsLostUnseenWhereTheLevelsAreAlikeAndShiftsNoMeanByMoreThanSaid) {
+  const Scenario scenario = WithLevels({0.0, 0.004, 0.008, 0.004});  // noise: 0.006 V a sample
+  const AdcSettings& adc = RotaryOf(scenario).adc;
+  const ServedTwin served(scenario);
+  const ServedRun undisturbed = RunServed(served, scenario);
+  const Reading& whole = undisturbed.log.readings.at(kAt);
+  const hw::LostWord word = Foretold(whole, adc);
+  ASSERT_FALSE(word.shows);
+  RunOptions options;
+  options.faults[kAt] = "adc,slip";
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_TRUE(run.log.attempts.empty());
+  const Reading& hit = run.log.readings.at(kAt);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const double chance_V = 3.0 * whole.std_V[c] / std::sqrt(adc.samples);  // of two halves of two channels
+    EXPECT_NE(hit.mean_V[c], whole.mean_V[c]);
+    EXPECT_NEAR(hit.mean_V[c], whole.mean_V[c], word.shift_lsb * sim::LsbOf(adc) + chance_V);
+  }
+}
+
+TEST(FaultMatrix, AWordIsNeverLostUnseenWhereOffsetsKeepTheLevelsApart) {
+  const Scenario scenario = WithLevels({-1.5, -0.5, 0.5, 1.5});
+  const ServedTwin served(scenario);
+  RunOptions options;
+  for (int at = 0; at < 36; at += 5) options.faults[at] = "adc,slip";
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.log.attempts.size(), options.faults.size());
+  EXPECT_EQ(run.Readings(), InProcess(scenario));
+  for (const Reading& reading : run.log.readings) EXPECT_TRUE(Foretold(reading, RotaryOf(scenario).adc).shows);
+}
 
 // --- what ends the run until a hand has helped ---
 

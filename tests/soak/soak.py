@@ -25,6 +25,8 @@ FAULTS = [
     "adc,slip", "adc,stuck", "adc,drop", "adc,stall", "adc,short", "adc,error", "clock,step", "target,mute", "reference,late",
     "target,partial", "target,disconnect", "target,restart", "reference,lost_step", "target,not_in_position",
 ]  # fmt: skip
+# A lost word is seen by the channels' levels, where they are not alike (docs/hardware.md, "A/D cards").
+LEVELS_APART = "amplifier.offset_mV=[-1500, -500, 500, 1500]"
 MOST_RESUMES = 100  # faults that have not struck yet wait for the next attempt
 WARM_UP_RUNS = 10
 ALLOWED_GROWTH = 0.05  # of the server's memory between the end of the warm-up and the end
@@ -80,7 +82,7 @@ class Server:
 
 
 def sets(how):
-    return [word for key in how.set for word in ("--set", key)]
+    return [word for key in [LEVELS_APART, *how.set] for word in ("--set", key)]
 
 
 def readings_of(how, run):
