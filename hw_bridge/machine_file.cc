@@ -152,6 +152,8 @@ std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis
   top.Add("attempts", kOne, {1, 100}, &file.attempts, "at one reading, before the run stops");
   MachineKeys machine(keys, "machine");
   machine.Connection(file.machine, {"esp"});
+  machine.Add("decimals", kOne, {-1, 15}, &file.machine.decimals,
+              "behind the point of a number that the controller understands; -1: all that matter");
   machine.Add("traverse", kMillimetresASecond, Above(0.0, 1e4), &file.traverse_m_s, "feed of moves without a feed");
   machine.Add("stall", kSeconds, Above(0.0, 3600.0), &file.stall_s, "it may stand still so long during a move");
   machine.Add("move_timeout", kSeconds, Above(0.0, 36000.0), &file.move_timeout_s, "beyond what a path takes");

@@ -58,7 +58,9 @@ class OpenedMachine : public OpenMachine {
 
   EspMachine OpenAxes(const MachineFile& file, const std::vector<MachineAxis>& axes) {
     EspMachine machine(conversations_.LineOf("machine", file.machine), axes, file.axes,
-                       {.traverse_m_s = file.traverse_m_s, .polls_pass_time = file.clock.kind == "scpi"});
+                       {.traverse_m_s = file.traverse_m_s,
+                        .polls_pass_time = file.clock.kind == "scpi",
+                        .decimals = file.machine.decimals});
     machine.AgreeOnLimits();
     return machine;
   }

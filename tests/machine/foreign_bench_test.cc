@@ -40,7 +40,7 @@ class ForeignBenchProgram : public Program {
         text.replace(at, place.size(), bench.Address(device));
     }
     Write("bench.toml", text);
-    return Call({"measure", "foreign.toml", "--bench", "bench.toml", "-o", "measured"});
+    return Call({"measure", "foreign.toml", "--bench", "bench.toml", "-o", "measured", "--allow-homing"});
   }
 
   nlohmann::json Separated() {
@@ -110,6 +110,7 @@ constexpr const char* kForeignTurntableBench = R"(kind = "hardware"
 kind = "esp"
 address = "tcp:{controller}"
 identity = "ESP301 Version 3"
+decimals = 6
 timeout_s = 0.3
 stall_s = 0.5
 [axis_turntable]
@@ -150,13 +151,14 @@ class ForeignTurntable : public ForeignBenchProgram {
 
 TEST_F(ForeignTurntable, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
   const Outcome measured = MeasureWith(
-      {"controller.mute@3", "controller.unsettled@9", "autocollimator.late@14", "indexer.drop@30"});
+      {"controller.mute@3", "controller.unsettled@9", "autocollimator.late@14", "controller.restart@20", "indexer.drop@30"});
   ASSERT_EQ(measured.exit_code, 0) << measured.err;
   EXPECT_EQ(Kept(), 36u);
   std::map<std::string, int> failed = FailedAttemptsByFault();
   EXPECT_GE(failed["timeout"], 2) << "a mute controller, a late autocollimator";
   EXPECT_GE(failed["dropped"], 1);
   EXPECT_GE(failed["not_in_position"], 1);
+  EXPECT_GE(failed["restarted"], 1) << "told by its motors, for it has no MS?";
 
   const nlohmann::json separation = Separated();
   ExpectRecovered(separation, "turntable");

@@ -271,6 +271,25 @@ TEST(RealBench, IsNotMountedAgainWhenAFaultComesAfterTheMounting) {
   EXPECT_EQ(log.readings.size(), 72u);
 }
 
+TEST(RealBench, WaitsForNoMountingThatAPersonSaysIsDone) {
+  Scenario scenario = TwoSetups();
+  RotaryOf(scenario).procedure.remount_s = 1000.0;
+  for (const bool by_hand : {false, true}) {
+    ScriptedBench scripted;
+    test::MemoryLog log;
+    RotaryBench bench = scripted.Bench();
+    Options options;
+    options.log = &log;
+    options.hand_ends_mounting = by_hand;
+    CarryOut(bench, scenario, log, {}, options);
+    const double took_s = ToSeconds(log.readings.back().time.time_since_epoch());
+    EXPECT_EQ(took_s > 2000.0, !by_hand) << "twice remount_s, or none";
+    EXPECT_EQ(took_s < 1000.0, by_hand) << took_s;
+    const bool is_said = log.events[0].text.find(kMountedByHand) != std::string::npos;
+    EXPECT_EQ(is_said, by_hand) << log.events[0].text;
+  }
+}
+
 TEST(RealBench, FindsItsOriginAgainAfterARestartOfTheController) {
   ScriptedBench scripted;
   test::MemoryLog log;

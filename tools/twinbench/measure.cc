@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "hw_bridge/bench_lock.h"
 #include "hw_bridge/in_position.h"
 #include "hw_bridge/program/program_file.h"
@@ -29,6 +31,13 @@ namespace {
 
 constexpr double kColdest_degC = -20.0, kHottest_degC = 60.0;  // beyond: no room that a bench stands in
 
+/// Whether a person said when the mountings of a recorded run were done, so that nobody waited for them by the clock.
+bool HandEndedMounting(const std::string& record_folder) {
+  return std::ranges::any_of(RunRecord::Open(record_folder)->Events(), [](const RecordedEvent& event) {
+    return event.device == "fixture" && event.text.find(procedure::kMountedByHand) != std::string::npos;
+  });
+}
+
 procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
   procedure::Options options;
   options.may_home = allow_homing;
@@ -41,6 +50,8 @@ procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
   options.stop_requested = StopWasAsked;
   if (file.kind == "replay")  // what was recorded was in position
     options.target.in_position_rad = options.reference.in_position_rad = std::numeric_limits<double>::infinity();
+  options.hand_ends_mounting = file.kind == "replay" ? HandEndedMounting(file.record)
+                                                     : file.kind == "hardware" && file.fixture.kind == "console";
   options.looks_at_encoders = file.kind != "replay" || hw::LooksAtEncoders(file.record);
   return options;
 }

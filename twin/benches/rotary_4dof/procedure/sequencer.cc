@@ -39,7 +39,7 @@ void Sequencer::Mount(int setup, int shift_steps) {
   const double clamp_rad = reclamp ? shift_rad_ : 0.0, reseat_rad = reclamp ? 0.0 : -shift_rad_;
   bench().fixture.Mount(setup, clamp_rad, reseat_rad);
   if (!quiet()) NoteMounting(setup, clamp_rad, reseat_rad);
-  WaitFor(bench(), FromSeconds(settings().remount_s), options_);
+  if (!options_.hand_ends_mounting) WaitFor(bench(), FromSeconds(settings().remount_s), options_);
   if (!quiet() && !bench().simulation) state_.mounted_for = next_reading_;
 }
 
@@ -47,8 +47,8 @@ void Sequencer::NoteMounting(int setup, double clamp_rad, double reseat_rad) {
   if (!options_.log) return;
   options_.log->AppendEvent(
       bench().clock.Now(), "fixture",
-      fmt::format("mounted set-up {}: grating clamped at {:.6g} deg, body seated at {:.6g} deg", setup,
-                  clamp_rad / units::deg, reseat_rad / units::deg));
+      fmt::format("mounted set-up {}{}: grating clamped at {:.6g} deg, body seated at {:.6g} deg", setup,
+                  options_.hand_ends_mounting ? kMountedByHand : "", clamp_rad / units::deg, reseat_rad / units::deg));
 }
 
 void Sequencer::GoTo(double target_rad) {
