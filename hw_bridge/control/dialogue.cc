@@ -30,7 +30,7 @@ void Dialogue::Connect(const std::string& device, Duration patience) {
   for (Duration pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
     OpenedLink opened = OpenLink(address_, patience);
     link_ = std::move(opened.link);
-    if (link_) return link_->EndLinesWith(line_.answer_ends);
+    if (link_) return link_->EndLinesWith(EndOfLine(line_.answer_ends));
     if (SteadyClock::now() + pause > end) Fail(*opened.failure, device, opened.why);
     std::this_thread::sleep_for(pause);
   }
@@ -82,8 +82,9 @@ std::string Dialogue::AwaitIdentity(const std::string& device, Duration patience
 }
 
 void Dialogue::Send(const std::string& device, const std::string& text, Duration patience) {
+  const std::string end = EndOfLine(line_.ends);
   std::string with_ends;
-  for (const char c : text) c == '\n' ? with_ends += line_.ends : with_ends += c;
+  for (const char c : text) c == '\n' ? with_ends += end : with_ends += c;
   const LinkResult sent = link_->Send(with_ends, patience);
   if (sent.failure) Fail(*sent.failure, device, sent.why);
 }

@@ -19,7 +19,7 @@ class Dialogue {
   /// @param identity_query  "*IDN?", "VE?"; empty: it does not tell who it is, and nobody asks.
   /// @param identity        What its answer must begin with.
   Dialogue(Address address, std::string identity_query, std::string identity);
-  /// What lines look like on this connection, where it is not "\n" at their ends.
+  /// What lines look like on this connection, where they do not end in LF.
   void Speak(const LineWords& line) { line_ = line; }
   /// Said to whoever has been identified, after every opening: commands, each with a query of its error that must be answered by "0,...".
   void IntroduceBy(std::vector<std::string> introductions) { introductions_ = std::move(introductions); }

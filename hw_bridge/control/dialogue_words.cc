@@ -117,12 +117,12 @@ std::string NamesOfReady() {
 }  // namespace
 
 std::vector<ScenarioKey> DialogueWords::Keys() {
-  const std::vector<std::string> ends = {"\n", "\r", "\r\n"};
+  const std::vector<std::string> ends = {"LF", "CR", "CRLF"};
   return {
       TextKey("", "title", &title, "what it is"),
       TextKey("", "identify", &identify, "query that tells who it is; empty: it does not"),
       TextKey("line", "ends", &line.ends, "of a line that is sent", ends),
-      TextKey("line", "answer_ends", &line.answer_ends, "of a line that comes; with LF a CR before it counts to it", ends),
+      TextKey("line", "answer_ends", &line.answer_ends, "of a line that comes; a CR before an LF counts to it", ends),
       TextKey("line", "answer_begins", &line.answer_begins, "what every answer begins with; taken off"),
       TextKey("line", "separator", &line.separator, "between the fields of an answer; blanks count once"),
       TextKey("errors", "ask", &errors.ask, "query behind a command; empty: there is none"),
@@ -172,6 +172,11 @@ DialogueWords LoadDialogue(const std::string& name_or_path, const std::string& f
   if (!in || !(text << in.rdbuf()))
     throw InputError(where, fmt::format("the dialogue {} cannot be read or is empty", path), "a dialogue in TOML");
   return ParseDialogue(text.str(), path);
+}
+
+std::string EndOfLine(const std::string& name) {
+  if (name == "CRLF") return "\r\n";
+  return name == "CR" ? "\r" : "\n";
 }
 
 double UnitToSI(const std::string& unit, const std::string& where) {

@@ -11,8 +11,8 @@ namespace twinbench::hw {
 
 /// What its lines look like.
 struct LineWords {
-  std::string ends = "\n";         // of a line that is sent
-  std::string answer_ends = "\n";  // of a line that comes; with "\n" a CR before it counts to it
+  std::string ends = "LF";         // of a line that is sent: LF, CR, CRLF
+  std::string answer_ends = "LF";  // of a line that comes; a CR before an LF counts to it
   std::string answer_begins;       // every answer does; taken off
   std::string separator = ",";     // between fields; blanks count once
   bool operator==(const LineWords&) const = default;
@@ -68,6 +68,9 @@ DialogueWords ReadyDialogueNamed(const std::string& name);
 /// @param folder  From which a path is found.
 /// @param where   Of the key that asks for it, for messages.
 DialogueWords LoadDialogue(const std::string& name_or_path, const std::string& folder, const std::string& where);
+
+/// The bytes of LF, CR or CRLF.
+std::string EndOfLine(const std::string& name);
 
 /// What a number in this unit is in SI; 1 for "". @throws InputError at `where` for one that there is not.
 double UnitToSI(const std::string& unit, const std::string& where);

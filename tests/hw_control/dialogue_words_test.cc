@@ -52,7 +52,7 @@ TEST(DialogueWords, WhatIsWrongIsToldWithFileLineAndTheNearestRightThing) {
   EXPECT_THAT(WhatIsWrongWith("[move]\ncommand = \"GOTO {toth}\"\n"),
               AllOf(HasSubstr("my.toml:2"), HasSubstr("no place {toth}"), HasSubstr("expected {tooth}")));
   EXPECT_THAT(WhatIsWrongWith(whole + "[latch]\narm = \"ARM {samples}\"\n"), HasSubstr("only one of arm and fetch"));
-  EXPECT_THAT(WhatIsWrongWith(whole + "[line]\nends = \"\\n\\r\"\n"), HasSubstr("my.toml:7"));
+  EXPECT_THAT(WhatIsWrongWith(whole + "[line]\nends = \"LFCR\"\n"), AllOf(HasSubstr("my.toml:7"), HasSubstr("\"CRLF\"")));
   EXPECT_THAT(WhatIsWrongWith(whole + "[line]\nseparator = \"\"\n"), HasSubstr("my.toml:7"));
   EXPECT_THAT(WhatIsWrongWith("title = \"mute\"\n"), HasSubstr("nothing that can be asked"));
 }

@@ -254,6 +254,8 @@ TEST_F(Served, TheKeysOfABenchFileAreExplained) {
   const std::string text = Succeed({"help", "bench"});
   for (const char* key : {"[adc]", "[goniometer]", "in_position_arcsec", "timeout_s", "attempts = 3"})
     EXPECT_THAT(text, HasSubstr(key));
+  const std::string dialogue = Succeed({"help", "dialogue"});
+  for (const char* key : {"elcomat ", "answer_ends = \"LF\"", "[tilt]"}) EXPECT_THAT(dialogue, HasSubstr(key));
 }
 
 TEST_F(Served, WithoutNoiseItIsRefusedForThereAreNoCounts) {

@@ -62,9 +62,18 @@ void PrintBenchKeys() {
   fmt::print("{}", DescribeKeys(hw::KeysOf(machine, {{"x", false}, {"a", true}})));
 }
 
+void PrintDialogueKeys() {
+  fmt::print("A dialogue says what is said to an instrument and what it answers (docs/hardware.md). Ready ones:\n\n");
+  for (const hw::ReadyDialogue& ready : hw::ReadyDialogues())
+    fmt::print("  {:<24} {}\n", ready.name, hw::ParseDialogue(ready.text, ready.name).title);
+  hw::DialogueWords defaults;
+  fmt::print("\nKeys of a dialogue:\n\n{}", DescribeKeys(defaults.Keys()));
+}
+
 void PrintHelp(const std::string& topic) {
   if (topic == "effects") return PrintAllEffects();
   if (topic == "bench") return PrintBenchKeys();
+  if (topic == "dialogue") return PrintDialogueKeys();
   if (topic == "map") {
     fmt::print("{}", imports::DescribeMaps());
     return;
@@ -75,10 +84,10 @@ void PrintHelp(const std::string& topic) {
 }  // namespace
 
 void AddHelp(CLI::App& app) {
-  auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects, bench files or maps");
+  auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects, bench files, dialogues or maps");
   auto topic = std::make_shared<std::string>("scenario");
-  command->add_option("topic", *topic, "scenario, effects, bench or map")
-      ->check(CLI::IsMember({"scenario", "effects", "bench", "map"}));
+  command->add_option("topic", *topic, "scenario, effects, bench, dialogue or map")
+      ->check(CLI::IsMember({"scenario", "effects", "bench", "dialogue", "map"}));
   command->callback([topic] { PrintHelp(*topic); });
 }
 
