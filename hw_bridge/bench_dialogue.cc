@@ -47,16 +47,18 @@ bool HasConnection(const std::string& kind) {
   return kind == "scpi" || kind == "esp" || kind == kDialogueKind;
 }
 
-void TakeWords(const std::string& file, const KeyPlaces& places, const std::string& folder, const std::string& table,
-               DialogueRole role, ControlSettings& settings) {
+void TakeWords(const std::string& file, const KeyPlaces& places, const std::string& folder,
+               const std::string& table, DialogueRole role, ControlSettings& settings) {
   const std::string where = WhereIn(places, file, table + ".dialogue");
   const Need need = NeedOf(role);
   if (settings.kind != kDialogueKind && !settings.dialogue.empty())
-    throw InputError(where, fmt::format("{}.dialogue with kind = \"{}\"", table, settings.kind), "kind = \"dialogue\"");
+    throw InputError(where, fmt::format("{}.dialogue with kind = \"{}\"", table, settings.kind),
+                     "kind = \"dialogue\"");
   if (settings.kind == "scpi" && *need.served) settings.words = ReadyDialogueNamed(need.served);
   if (settings.kind != kDialogueKind) return;
   if (settings.dialogue.empty())
-    throw InputError(where, fmt::format("{}.dialogue is missing", table), "a ready one by its name, or a file that ends in .toml");
+    throw InputError(where, fmt::format("{}.dialogue is missing", table),
+                     "a ready one by its name, or a file that ends in .toml");
   for (const char* key : {"token", "watchdog"}) {
     if (places.contains(table + "." + key))
       throw InputError(places.at(table + "." + key), fmt::format("{}.{} with kind = \"dialogue\"", table, key),
@@ -64,7 +66,8 @@ void TakeWords(const std::string& file, const KeyPlaces& places, const std::stri
   }
   settings.words = LoadDialogue(settings.dialogue, folder, where);
   if (!Has(settings.words, need))
-    throw InputError(where, fmt::format("dialogue {} does not say what [{}] needs", settings.dialogue, table), need.missing);
+    throw InputError(where, fmt::format("dialogue {} does not say what [{}] needs", settings.dialogue, table),
+                     need.missing);
 }
 
 bool SpeakAlike(const ControlSettings& a, const ControlSettings& b) {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr Duration kLookAtIndexer = std::chrono::milliseconds(50);
 
-[[noreturn]] void Refused(const DeviceLine& line, FaultKind kind, const std::string& said, const std::string& answer) {
+[[noreturn]] void Refused(const DeviceLine& line, FaultKind kind, const std::string& said,
+                          const std::string& answer) {
   line.Fail(kind, fmt::format("\"{}\" was refused: {}", said, answer));
 }
 
@@ -29,7 +30,8 @@ bool IsNothing(const std::string& text, const std::vector<std::string>& nothing)
   return std::ranges::any_of(nothing, [&](const std::string& other) { return IsSame(text, other); });
 }
 
-bool ShowsSomething(const std::vector<std::string>& texts, std::size_t from, const std::vector<std::string>& valid) {
+bool ShowsSomething(const std::vector<std::string>& texts, std::size_t from,
+                    const std::vector<std::string>& valid) {
   for (std::size_t k = 0; k < valid.size(); ++k) {
     if (!valid[k].empty() && !IsSame(texts[from + k], valid[k])) return false;
   }
@@ -101,8 +103,9 @@ AutocollimatorReading DescribedAutocollimator::Read() {
 
 void DescribedGoniometer::MoveTo(double yaw_rad, double tilt_rad) {
   const double to_SI = UnitToSI(words_.tilt_unit, words_.name);
-  TellDescribed(line_, words_.errors,
-                Filled(words_.tilt, {{"{yaw}", PrintInUnit(yaw_rad, to_SI)}, {"{tilt}", PrintInUnit(tilt_rad, to_SI)}}));
+  TellDescribed(
+      line_, words_.errors,
+      Filled(words_.tilt, {{"{yaw}", PrintInUnit(yaw_rad, to_SI)}, {"{tilt}", PrintInUnit(tilt_rad, to_SI)}}));
 }
 
 void DescribedIndexer::IndexTo(int tooth, double angle_rad) {
@@ -112,7 +115,8 @@ void DescribedIndexer::IndexTo(int tooth, double angle_rad) {
   TellDescribed(line_, words_.errors, command, FromSeconds(move_timeout_s_));
   while (!words_.done.empty() && !IsSame(AskDescribed(line_, words_.errors, words_.done), words_.seated)) {
     if (std::chrono::steady_clock::now() > end)
-      line_.Fail(FaultKind::kNotInPosition, fmt::format("tooth {} is not seated after {:g} s", tooth, move_timeout_s_));
+      line_.Fail(FaultKind::kNotInPosition,
+                 fmt::format("tooth {} is not seated after {:g} s", tooth, move_timeout_s_));
     std::this_thread::sleep_for(kLookAtIndexer);
   }
 }

@@ -15,7 +15,8 @@ namespace twinbench::hw {
 void TellDescribed(DeviceLine& line, const ErrorWords& errors, const std::string& command, Duration beyond = {});
 
 /// The answer to a query. @throws DeviceFault kRefused too, where it is a refusal.
-std::string AskDescribed(DeviceLine& line, const ErrorWords& errors, const std::string& query, Duration beyond = {});
+std::string AskDescribed(DeviceLine& line, const ErrorWords& errors, const std::string& query,
+                         Duration beyond = {});
 
 /// The fields of an answer: a text in quotes holds no separator and loses them, blanks that separate count once.
 /// @return nothing if a quote is not closed.

@@ -23,18 +23,19 @@ struct DialogueUnit {
   double to_SI;
 };
 
+// clang-format off
 constexpr std::array kDialogueUnits = std::to_array<DialogueUnit>({
-    {"deg", 'a', units::deg},        {"arcmin", 'a', units::deg / 60.0}, {"arcsec", 'a', units::arcsec},
-    {"rad", 'a', 1.0},               {"mrad", 'a', units::mrad},         {"urad", 'a', units::urad},
-    {"turn", 'a', units::turn},      {"m", 'l', 1.0},                    {"mm", 'l', units::mm},
-    {"um", 'l', units::um},          {"nm", 'l', units::nm},             {"inch", 'l', 0.0254},
-    {"degC", 't', 1.0},              {"V", 'v', 1.0},                    {"mV", 'v', 1e-3},
-    {"s", 's', 1.0},                 {"ms", 's', 1e-3},                  {"us", 's', 1e-6},
-    {"ns", 's', 1e-9},
+    {"deg", 'a', units::deg}, {"arcmin", 'a', units::deg / 60.0}, {"arcsec", 'a', units::arcsec},
+    {"rad", 'a', 1.0}, {"mrad", 'a', units::mrad}, {"urad", 'a', units::urad}, {"turn", 'a', units::turn},
+    {"m", 'l', 1.0}, {"mm", 'l', units::mm}, {"um", 'l', units::um}, {"nm", 'l', units::nm}, {"inch", 'l', 0.0254},
+    {"degC", 't', 1.0}, {"V", 'v', 1.0}, {"mV", 'v', 1e-3},
+    {"s", 's', 1.0}, {"ms", 's', 1e-3}, {"us", 's', 1e-6}, {"ns", 's', 1e-9},
 });
+// clang-format on
 
 const DialogueUnit* UnitWith(const std::string& name) {
-  const auto* found = std::ranges::find_if(kDialogueUnits, [&](const DialogueUnit& unit) { return name == unit.name; });
+  const auto* found =
+      std::ranges::find_if(kDialogueUnits, [&](const DialogueUnit& unit) { return name == unit.name; });
   return found == kDialogueUnits.end() ? nullptr : found;
 }
 
@@ -81,7 +82,8 @@ class DialogueCheck {
   void CheckRead() const {
     const ReadWords& read = words_.read;
     if (read.ask.empty() != read.fields.empty())
-      throw InputError(Where("read"), "[read] has only one of ask and fields", "the query, and the fields of its answer");
+      throw InputError(Where("read"), "[read] has only one of ask and fields",
+                       "the query, and the fields of its answer");
     CheckCount("read.units", read.units.size());
     CheckCount("read.scale", read.scale.size());
     CheckCount("read.valid", read.valid.size());
@@ -90,12 +92,14 @@ class DialogueCheck {
 
   void CheckCount(const std::string& key, std::size_t entries) const {
     if (entries == 0 || entries == words_.read.fields.size()) return;
-    throw InputError(Where(key), fmt::format("{} has {} entries for {} fields", key, entries, words_.read.fields.size()),
+    throw InputError(Where(key),
+                     fmt::format("{} has {} entries for {} fields", key, entries, words_.read.fields.size()),
                      "one a field");
   }
 
   /// What stands in braces is filled in; a misspelt place would be said to the device.
-  void CheckPlaces(const std::string& key, const std::string& command, const std::vector<std::string>& known) const {
+  void CheckPlaces(const std::string& key, const std::string& command,
+                   const std::vector<std::string>& known) const {
     for (auto at = command.find('{'); at != std::string::npos; at = command.find('{', at + 1)) {
       const std::string place = command.substr(at, command.find('}', at) - at + 1);
       if (std::ranges::find(known, place) == known.end())
@@ -122,13 +126,15 @@ std::vector<ScenarioKey> DialogueWords::Keys() {
       TextKey("", "title", &title, "what it is"),
       TextKey("", "identify", &identify, "query that tells who it is; empty: it does not"),
       TextKey("line", "ends", &line.ends, "of a line that is sent", ends),
-      TextKey("line", "answer_ends", &line.answer_ends, "of a line that comes; a CR before an LF counts to it", ends),
+      TextKey("line", "answer_ends", &line.answer_ends, "of a line that comes; a CR before an LF counts to it",
+              ends),
       TextKey("line", "answer_begins", &line.answer_begins, "what every answer begins with; taken off"),
       TextKey("line", "separator", &line.separator, "between the fields of an answer; blanks count once"),
       TextKey("errors", "ask", &errors.ask, "query behind a command; empty: there is none"),
       TextKey("errors", "none", &errors.none, "what its answer begins with where all is well"),
       TextKey("errors", "limit", &errors.limit, "... where the command would go beyond a limit"),
-      TextKey("errors", "acknowledged", &errors.acknowledged, "a command is answered by a line that begins so; empty: by none"),
+      TextKey("errors", "acknowledged", &errors.acknowledged,
+              "a command is answered by a line that begins so; empty: by none"),
       TextKey("errors", "refusals", &errors.refusals, "an answer that begins so is a refusal"),
       TextKey("read", "ask", &read.ask, "query that is answered by one sample"),
       TextKey("read", "look", &read.look, "the same on the way to a reading; empty: as ask"),
@@ -189,7 +195,8 @@ double ScaleToColumn(const std::string& unit, const std::string& column, const s
   if (unit.empty() || unit == ending || !of_column) return 1.0;
   const DialogueUnit& told = UnitAt(unit, where);
   if (told.kind != of_column->kind)
-    throw InputError(where, fmt::format("the field for {} is told in {}", column, unit), "a unit that can be told in " + ending);
+    throw InputError(where, fmt::format("the field for {} is told in {}", column, unit),
+                     "a unit that can be told in " + ending);
   return told.to_SI / of_column->to_SI;
 }
 

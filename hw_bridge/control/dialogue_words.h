@@ -28,10 +28,11 @@ struct ErrorWords {
   bool operator==(const ErrorWords&) const = default;
 };
 
-/// A sample.
+/// A sample. Fields: "x", "y", "temperature", a column of readings.csv, "time_ns", "status", "ignored", or a name to which the
+/// bench file gives a column.
 struct ReadWords {
-  std::string ask, look;             // look: on the way to a reading, where something is nulled; empty: as ask
-  std::vector<std::string> fields;   // "x", "y", "temperature", a column of readings.csv, "time_ns", "status", "ignored"
+  std::string ask, look;            // look: on the way to a reading, where something is nulled; empty: as ask
+  std::vector<std::string> fields;
   std::vector<std::string> units;    // one a field; empty: a pure number, or the column's unit
   std::vector<double> scale;         // one a field; without it 1
   std::vector<std::string> valid;    // what a field's text must be, else nothing is shown; empty: anything
@@ -40,21 +41,21 @@ struct ReadWords {
 
 struct DialogueWords {
   std::string name, title;
-  std::string identify = "*IDN?";      // query that tells who it is; empty: it does not
+  std::string identify = "*IDN?";  // query that tells who it is; empty: it does not
   LineWords line;
   ErrorWords errors;
   ReadWords read;
-  std::string arm, fetch;              // of a memory, as InstrumentWords
-  std::string move, done;              // an indexer: seats at {tooth}, which is at {deg}; query whether it is seated
-  std::string seated = "1";            // what `done` is answered then
+  std::string arm, fetch;    // of a memory, as InstrumentWords
+  std::string move, done;    // an indexer: seats at {tooth}, which is at {deg}; query whether it is seated
+  std::string seated = "1";  // what `done` is answered then
   std::string tilt, tilt_unit = "arcsec";  // a goniometer: turns to {yaw}, {tilt}
 
   std::vector<ScenarioKey> Keys();
 };
 
 /// @param name  Of the file, for messages.
-/// @throws InputError with file:line for a syntax error, an unknown key, a unit or a place in braces that there is not (naming
-///         the nearest), lists of another length than the fields, a file that describes nothing.
+/// @throws InputError with file:line for a syntax error, an unknown key, unit or place in braces (naming the
+///         nearest), lists of another length than the fields, a file that describes nothing.
 DialogueWords ParseDialogue(const std::string& text, const std::string& name);
 
 struct ReadyDialogue {

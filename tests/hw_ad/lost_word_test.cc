@@ -56,7 +56,8 @@ TEST(LostWord, IsSeenWhereItIsSaidToBeAndNotMuchBelow) {
 
 TEST(LostWord, ShiftsAMeanByHalfOfWhatTheLevelsDiffer) {
   EXPECT_EQ(IfAWordWereLost({5.0, 11.0, 9.0, 2.0}, kAsWired, 20.0, 100, kOneInABillion).shift_lsb, 3.5) << "9 to 2";
-  EXPECT_EQ(IfAWordWereLost({5.0, 11.0, 9.0, 2.0}, {0, 2, 1, 3}, 20.0, 100, kOneInABillion).shift_lsb, 4.5) << "11 to 2";
+  EXPECT_EQ(IfAWordWereLost({5.0, 11.0, 9.0, 2.0}, {0, 2, 1, 3}, 20.0, 100, kOneInABillion).shift_lsb, 4.5)
+      << "11 to 2";
 }
 
 TEST(LostWord, IsHiddenAmongLevelsThatDifferByLessThanFourCodesWhateverTheirNoise) {

@@ -11,7 +11,8 @@
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/units.h"
 
-/// Instruments by their ready dialogues, each against a counterpart of its own on a serial line, and what a dialogue can say besides.
+/// Instruments by their ready dialogues, each against a counterpart of its own on a serial line, and what a
+/// dialogue can say besides.
 namespace twinbench::hw {
 namespace {
 
@@ -42,7 +43,8 @@ FakeController::Reply Elcomat(const std::string& line, const std::string& state)
 
 TEST(Elcomat, ShowsAbsoluteAndRelativeAnglesAndNothingInAnotherState) {
   std::string state = "003";
-  FakeController device([&](const std::string& line) { return Elcomat(line, state); }, FakeController::Wire::kPseudoTerminal);
+  FakeController device([&](const std::string& line) { return Elcomat(line, state); },
+                        FakeController::Wire::kPseudoTerminal);
   Spoken absolute(device, ReadyDialogueNamed("elcomat"));
   DescribedAutocollimator collimator(absolute.Line(), absolute.words);
   EXPECT_NEAR(collimator.Read().yaw_rad / units::arcsec, 12.34, 1e-12);
@@ -67,7 +69,8 @@ TEST(Elcomat, AnAnswerOfAnotherFormIsNone) {
 
 /// A column in degrees, as a comparison's reference.
 std::vector<ReadingColumn> Degrees() {
-  return {ShownColumn("reference_deg", units::deg, "deg", [](auto& r) -> auto& { return r.reference_rad; })};
+  return {ShownColumn(
+      "reference_deg", units::deg, "deg", [](auto& r) -> auto& { return r.reference_rad; })};
 }
 
 /// ND 28x: commands behind ESC with CR at their ends, answers between STX and CR LF.
@@ -89,8 +92,9 @@ TEST(HeidenhainNd287, IsACounterInUnitsOfItsLastDigit) {
 }
 
 TEST(InstrumentWithDialogue, GoesFromTheDialoguesUnitToTheColumns) {
-  const DialogueWords words =
-      ParseDialogue("[read]\nask = \"P?\"\nfields = [\"position\"]\nunits = [\"urad\"]\nscale = [-0.5]\nnothing = [\"---\"]\n", "my.toml");
+  const DialogueWords words = ParseDialogue(
+      "[read]\nask = \"P?\"\nfields = [\"position\"]\nunits = [\"urad\"]\nscale = [-0.5]\nnothing = [\"---\"]\n",
+      "my.toml");
   std::string answer = "2.0e6";
   FakeController device([&](const std::string& line) {
     return FakeController::Reply{(line == "*IDN?" ? "counter" : answer) + "\n"};
@@ -124,7 +128,8 @@ TEST(DescribedIndexer, KnowsAnAcknowledgementFromARefusal) {
     return {};
   });
   const DialogueWords words = ParseDialogue(
-      "identify = \"\"\n[errors]\nacknowledged = \"OK\"\n[move]\ncommand = \"GO {tooth}\"\ndone = \"POS?\"\n", "my.toml");
+      "identify = \"\"\n[errors]\nacknowledged = \"OK\"\n[move]\ncommand = \"GO {tooth}\"\ndone = \"POS?\"\n",
+      "my.toml");
   Spoken spoken(device, words);
   DescribedIndexer indexer(spoken.Line(), words, 5.0);
   indexer.IndexTo(12, 12.0 * units::deg);
@@ -139,7 +144,8 @@ TEST(DescribedDevices, ARefusalIsNoNumberAndALimitIsOne) {
   });
   const DialogueWords words = ParseDialogue(
       "identify = \"\"\n[errors]\nask = \"LAST?\"\nnone = \"E0\"\nlimit = \"E42\"\nrefusals = [\"?\"]\n"
-      "[read]\nask = \"T?\"\nfields = [\"temperature\"]\n[tilt]\ncommand = \"TURN {yaw} {tilt}\"\nunit = \"mrad\"\n",
+      "[read]\nask = \"T?\"\nfields = [\"temperature\"]\n[tilt]\ncommand = \"TURN {yaw} {tilt}\"\nunit = "
+      "\"mrad\"\n",
       "my.toml");
   Spoken spoken(device, words);
   DescribedThermometer thermometer(spoken.Line(), words);

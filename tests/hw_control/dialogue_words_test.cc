@@ -42,17 +42,21 @@ TEST(DialogueWords, AWholeOneIsTakenAsItStands) {
 
 TEST(DialogueWords, WhatIsWrongIsToldWithFileLineAndTheNearestRightThing) {
   const std::string whole = kWhole;
-  EXPECT_THAT(WhatIsWrongWith(whole + "unitts = 3\n"), AllOf(HasSubstr("my.toml:6"), HasSubstr("nearest is read.units")));
+  EXPECT_THAT(WhatIsWrongWith(whole + "unitts = 3\n"),
+              AllOf(HasSubstr("my.toml:6"), HasSubstr("nearest is read.units")));
   EXPECT_THAT(WhatIsWrongWith("[raed]\nask = \"A?\"\n"), AllOf(HasSubstr("my.toml:1"), HasSubstr("read")));
   EXPECT_THAT(WhatIsWrongWith("[read]\nask = \"A?\"\nfields = [\"x\"]\nunits = [\"arcsecs\"]\n"),
               AllOf(HasSubstr("my.toml:4"), HasSubstr("\"arcsecs\" is no unit; expected \"arcsec\"")));
   EXPECT_THAT(WhatIsWrongWith("[read]\nask = \"A?\"\nfields = [\"x\", \"y\"]\nvalid = [\"4\"]\n"),
               AllOf(HasSubstr("my.toml:4"), HasSubstr("1 entries for 2 fields")));
-  EXPECT_THAT(WhatIsWrongWith("[read]\nfields = [\"x\"]\n"), AllOf(HasSubstr("my.toml:1"), HasSubstr("only one of ask and fields")));
+  EXPECT_THAT(WhatIsWrongWith("[read]\nfields = [\"x\"]\n"),
+              AllOf(HasSubstr("my.toml:1"), HasSubstr("only one of ask and fields")));
   EXPECT_THAT(WhatIsWrongWith("[move]\ncommand = \"GOTO {toth}\"\n"),
               AllOf(HasSubstr("my.toml:2"), HasSubstr("no place {toth}"), HasSubstr("expected {tooth}")));
-  EXPECT_THAT(WhatIsWrongWith(whole + "[latch]\narm = \"ARM {samples}\"\n"), HasSubstr("only one of arm and fetch"));
-  EXPECT_THAT(WhatIsWrongWith(whole + "[line]\nends = \"LFCR\"\n"), AllOf(HasSubstr("my.toml:7"), HasSubstr("\"CRLF\"")));
+  EXPECT_THAT(WhatIsWrongWith(whole + "[latch]\narm = \"ARM {samples}\"\n"),
+              HasSubstr("only one of arm and fetch"));
+  EXPECT_THAT(WhatIsWrongWith(whole + "[line]\nends = \"LFCR\"\n"),
+              AllOf(HasSubstr("my.toml:7"), HasSubstr("\"CRLF\"")));
   EXPECT_THAT(WhatIsWrongWith(whole + "[line]\nseparator = \"\"\n"), HasSubstr("my.toml:7"));
   EXPECT_THAT(WhatIsWrongWith("title = \"mute\"\n"), HasSubstr("nothing that can be asked"));
 }
@@ -65,8 +69,9 @@ TEST(DialogueWords, ReadyOnesAreTheseAndAllAreWhole) {
     names.insert(ready.name);
     EXPECT_FALSE(ParseDialogue(ready.text, ready.name).title.empty()) << ready.name;
   }
-  EXPECT_EQ(names, (std::set<std::string>{"elcomat", "elcomat_relative", "heidenhain_nd287", "served_autocollimator",
-                                          "served_goniometer", "served_indexer", "served_thermometer"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{"elcomat", "elcomat_relative", "heidenhain_nd287", "served_autocollimator",
+                                   "served_goniometer", "served_indexer", "served_thermometer"}));
 }
 
 TEST(DialogueWords, UnitsOfOneKindAreToldInEachOther) {
@@ -79,9 +84,10 @@ TEST(DialogueWords, UnitsOfOneKindAreToldInEachOther) {
 
 /// The bench file of a turntable with what its instrument is said.
 std::string WhatIsWrongWithTable(const std::string& table, const std::string& folder = "") {
-  const std::string file = "[adc]\nkind = \"iio\"\ndevice = \"d\"\nchannels = [\"a\", \"b\", \"c\", \"d\"]\n"
-                           "[target]\nkind = \"esp\"\naddress = \"tcp:a:1\"\n"
-                           "[reference]\nkind = \"esp\"\naddress = \"tcp:b:1\"\n";
+  const std::string file =
+      "[adc]\nkind = \"iio\"\ndevice = \"d\"\nchannels = [\"a\", \"b\", \"c\", \"d\"]\n"
+      "[target]\nkind = \"esp\"\naddress = \"tcp:a:1\"\n"
+      "[reference]\nkind = \"esp\"\naddress = \"tcp:b:1\"\n";
   try {
     ParseBenchFile(file + table, "bench.toml", folder);
   } catch (const InputError& error) {
@@ -94,21 +100,29 @@ TEST(BenchFileWithDialogue, FindsAReadyOneAndAFileBesideTheBenchFile) {
   const TemporaryFolder folder;
   std::ofstream(folder.File("my.toml")) << kWhole;
   const std::string address = "address = \"serial:/dev/ttyUSB0:9600:7E2\"\n";
-  EXPECT_EQ(WhatIsWrongWithTable("[autocollimator]\nkind = \"dialogue\"\ndialogue = \"elcomat\"\n" + address), "nothing");
-  EXPECT_EQ(WhatIsWrongWithTable("[autocollimator]\nkind = \"dialogue\"\ndialogue = \"my.toml\"\n" + address, folder.path()),
+  EXPECT_EQ(WhatIsWrongWithTable("[autocollimator]\nkind = \"dialogue\"\ndialogue = \"elcomat\"\n" + address),
+            "nothing");
+  EXPECT_EQ(WhatIsWrongWithTable("[autocollimator]\nkind = \"dialogue\"\ndialogue = \"my.toml\"\n" + address,
+                                 folder.path()),
             "nothing");
 }
 
 TEST(BenchFileWithDialogue, SaysWhichKeyIsWrongAndWhatWouldBeRight) {
   const std::string begin = "[autocollimator]\naddress = \"tcp:c:1\"\nkind = \"dialogue\"\n";
-  EXPECT_THAT(WhatIsWrongWithTable(begin), AllOf(HasSubstr("bench.toml:11"), HasSubstr("autocollimator.dialogue is missing")));
-  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"elcomatt\"\n"),
-              AllOf(HasSubstr("bench.toml:14"), HasSubstr("no ready dialogue \"elcomatt\""), HasSubstr("elcomat,")));
-  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"mine.toml\"\n", "/nowhere"), HasSubstr("/nowhere/mine.toml cannot be read"));
-  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"heidenhain_nd287\"\n"), HasSubstr("fields \"x\" and \"y\""));
-  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"elcomat\"\ntoken = \"abc\"\n"), HasSubstr("autocollimator.token"));
-  EXPECT_THAT(WhatIsWrongWithTable("[thermometer]\nkind = \"scpi\"\naddress = \"tcp:c:1\"\ndialogue = \"elcomat\"\n"),
-              HasSubstr("expected kind = \"dialogue\""));
+  EXPECT_THAT(WhatIsWrongWithTable(begin),
+              AllOf(HasSubstr("bench.toml:11"), HasSubstr("autocollimator.dialogue is missing")));
+  EXPECT_THAT(
+      WhatIsWrongWithTable(begin + "dialogue = \"elcomatt\"\n"),
+      AllOf(HasSubstr("bench.toml:14"), HasSubstr("no ready dialogue \"elcomatt\""), HasSubstr("elcomat,")));
+  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"mine.toml\"\n", "/nowhere"),
+              HasSubstr("/nowhere/mine.toml cannot be read"));
+  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"heidenhain_nd287\"\n"),
+              HasSubstr("fields \"x\" and \"y\""));
+  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"elcomat\"\ntoken = \"abc\"\n"),
+              HasSubstr("autocollimator.token"));
+  EXPECT_THAT(
+      WhatIsWrongWithTable("[thermometer]\nkind = \"scpi\"\naddress = \"tcp:c:1\"\ndialogue = \"elcomat\"\n"),
+      HasSubstr("expected kind = \"dialogue\""));
 }
 
 }  // namespace

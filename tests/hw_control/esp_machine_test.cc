@@ -33,7 +33,8 @@ struct EspGroupModel {
     std::string answers;
     for (std::size_t from = 0; from <= line.size();) {
       const std::size_t end = std::min(line.find(';', from), line.size());
-      if (const std::string answer = Answer(line.substr(from, end - from)); !answer.empty()) answers += answer + "\r\n";
+      if (const std::string answer = Answer(line.substr(from, end - from)); !answer.empty())
+        answers += answer + "\r\n";
       from = end + 1;
     }
     return {answers};

@@ -6,8 +6,8 @@
 
 namespace twinbench::test {
 
-/// A bench with a machine between which and its user somebody sits who may throw, or answer something else: TroubledBench is
-/// the same for tables.
+/// A bench with a machine between which and its user somebody sits who may throw, or answer something else:
+/// TroubledBench is the same for tables.
 class TroubledMachine {
  public:
   using Trouble = std::function<void(const std::string& device, const std::string& request, std::string& answer)>;
