@@ -65,6 +65,11 @@ void TakeWords(const std::string& file, const KeyPlaces& places, const std::stri
                        "kind = \"scpi\", which has a word for it");
   }
   settings.words = LoadDialogue(settings.dialogue, folder, where);
+  if (settings.words.identify.empty() && !settings.identity.empty())
+    throw InputError(
+        WhereIn(places, file, table + ".identity"),
+        fmt::format("{}.identity with dialogue {}, whose device does not tell who it is", table, settings.dialogue),
+        "no identity, or identify in the dialogue");
   if (!Has(settings.words, need))
     throw InputError(where, fmt::format("dialogue {} does not say what [{}] needs", settings.dialogue, table),
                      need.missing);

@@ -118,6 +118,8 @@ TEST(BenchFileWithDialogue, SaysWhichKeyIsWrongAndWhatWouldBeRight) {
               HasSubstr("/nowhere/mine.toml cannot be read"));
   EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"heidenhain_nd287\"\n"),
               HasSubstr("fields \"x\" and \"y\""));
+  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"elcomat\"\nidentity = \"ELCOMAT\"\n"),
+              HasSubstr("does not tell who it is"));
   EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"elcomat\"\ntoken = \"abc\"\n"),
               HasSubstr("autocollimator.token"));
   EXPECT_THAT(

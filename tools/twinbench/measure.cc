@@ -157,7 +157,7 @@ void AddMeasure(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_flag("--resume", options->resume, "go on behind the last reading that is kept");
   command->add_flag("--allow-homing", options->allow_homing,
-                    "a table whose controller has lost its origin may be driven to find it");
+                    "a table or machine whose controller has lost its origin may be driven to find it");
   command->add_flag("--rehearse", options->rehearse,
                     "first on the twin: travel, spots on the PSDs, time it will take");
   command->add_flag("--rehearse-only", options->rehearse_only, "nothing but that");
