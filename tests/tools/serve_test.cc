@@ -218,6 +218,10 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
   const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
   EXPECT_THAT(fine.err, HasSubstr("124 readings"));
+  EXPECT_THAT(fine.err, HasSubstr("a word lost by the card might not show"));
+  const Outcome apart = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only", "--set",
+                              "amplifier.offset_mV=[-1500, -500, 500, 1500]"});
+  EXPECT_THAT(apart.err, testing::Not(HasSubstr("a word lost by the card")));
   const Outcome off = Call(
       {"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "off", "--set", "psd_a.width_mm=0.2"});
   EXPECT_EQ(off.exit_code, 1);
