@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <iterator>
 #include <set>
 
 #include "hw_bridge/bench_file.h"
@@ -72,6 +73,20 @@ TEST(DialogueWords, ReadyOnesAreTheseAndAllAreWhole) {
   EXPECT_EQ(names,
             (std::set<std::string>{"elcomat", "elcomat_relative", "heidenhain_nd287", "served_autocollimator",
                                    "served_goniometer", "served_indexer", "served_thermometer"}));
+}
+
+TEST(DialogueWords, EveryKeyStandsInTheDocumentation) {
+  std::ifstream in(TWINBENCH_SOURCE_DIR "/docs/hardware.md");
+  const std::string whole{std::istreambuf_iterator<char>(in), {}};
+  const auto begin = whole.find("## An instrument in words");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string section = whole.substr(begin, whole.find("\n## ", begin + 1) - begin);
+  DialogueWords words;
+  for (const ScenarioKey& key : words.Keys()) {
+    EXPECT_THAT(section, HasSubstr("`" + key.name + "`")) << key.Path();
+    EXPECT_THAT(section, HasSubstr(key.table.empty() ? "`" : "`[" + key.table + "]`"));
+  }
+  for (const ReadyDialogue& ready : ReadyDialogues()) EXPECT_THAT(section, HasSubstr("`" + ready.name + "`"));
 }
 
 TEST(DialogueWords, UnitsOfOneKindAreToldInEachOther) {

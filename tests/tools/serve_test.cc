@@ -33,6 +33,15 @@ class Served : public Program {
     return server;
   }
 
+  /// A SCPI command to the server of bench.toml, by somebody who is none of our programs.
+  void Say(const std::string& command) {
+    const std::string file = Read("bench.toml"), before = "kind = \"scpi\"\naddress = \"tcp:127.0.0.1:";
+    const auto at = file.find(before) + before.size();
+    const std::string port = file.substr(at, file.find('"', at) - at);
+    Write("say.sh", "exec 3<>/dev/tcp/127.0.0.1/" + port + "; echo '" + command + ";*OPC?' >&3; read -r done <&3\n");
+    ASSERT_EQ(std::system(("bash " + At("say.sh")).c_str()), 0);
+  }
+
   /// Goes on where there is a run.
   std::vector<std::string> Measure(const std::string& name) const {
     std::vector<std::string> words = {"measure", "small.toml", "--bench", "bench.toml", "-o", name};
@@ -159,7 +168,8 @@ TEST_F(Served, EverySignalHoweverOftenStopsTheTablesAndTheRunCanBeResumed) {
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("tables were brought to rest. The controller says that all tables stand"));
   }
-  Succeed(Measure("stopped"));
+  Say("SIM:FAUL target,disconnect");  // waits for whoever opens the bench
+  EXPECT_THAT(Call(Measure("stopped")).err, HasSubstr("(dropped); the bench is opened again"));
   EXPECT_EQ(ReadingsOf("stopped"), readings_);
 }
 
@@ -240,11 +250,7 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
 
 TEST_F(Served, ARehearsalAsksTheControllersForTheirLimits) {
   const auto server = Serve();
-  const std::string file = Read("bench.toml");
-  const auto at = file.find("tcp:127.0.0.1:") + 14;
-  const std::string port = file.substr(at, file.find('"', at) - at);
-  Write("limit.sh", "exec 3<>/dev/tcp/127.0.0.1/" + port + "; echo 'ROT1:LIM:UPP 100;*OPC?' >&3; read -r done <&3\n");
-  ASSERT_EQ(std::system(("bash " + At("limit.sh")).c_str()), 0);
+  Say("ROT1:LIM:UPP 100");
   for (const char* how : {"--rehearse", "--rehearse-only"}) {
     const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", how, "-o", "narrow"});
     EXPECT_EQ(narrow.exit_code, 1) << narrow.err;

@@ -15,6 +15,7 @@
 #include "tools/twinbench/measure_program.h"
 #include "tools/twinbench/measured_bench.h"
 #include "tools/twinbench/measured_run.h"
+#include "tools/twinbench/opened_again.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/rehearsal.h"
 #include "tools/twinbench/run_folder.h"
@@ -98,7 +99,9 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
                  procedure::Options options, LivePage& page) {
   const bool resumed = begun.record != nullptr;
   const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
-  const auto bench = OpenAnyBench(file, scenario, SinceBegin(begun));
+  const Duration since_begin = SinceBegin(begun);
+  const auto bench =
+      OpenedAgain(resumed ? file.attempts : 1, [&] { return OpenAnyBench(file, scenario, since_begin); });
   if (resumed) {
     TakeUp(begun, bench->Identity());
     options.readings_done = static_cast<int>(begun.readings.size());

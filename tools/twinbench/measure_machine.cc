@@ -8,6 +8,7 @@
 #include "hw_bridge/replay/replay_machine.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/machine_rehearsal.h"
+#include "tools/twinbench/opened_again.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/stop_signal.h"
 #include "tools/twinbench/told_stopped.h"
@@ -152,7 +153,9 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
   ListenForStop();
   if (!begun.record || !begun.record->finished()) {
     const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
-    const auto bench = OpenAnyMachine(file, scenario, parts, SinceBegin(begun));
+    const Duration since_begin = SinceBegin(begun);
+    const auto bench = OpenedAgain(begun.record ? file.attempts : 1,
+                                   [&] { return OpenAnyMachine(file, scenario, parts, since_begin); });
     if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, bench->Limits());
     MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), o.allow_homing, page);
   }
