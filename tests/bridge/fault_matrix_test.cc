@@ -239,6 +239,9 @@ TEST_P(FaultPendingAtAResume, IsNotTakenForARecordThatDoesNotFit) {
   ASSERT_EQ(run.stopped_by, "limit") << run.said;
   RunOptions pending;
   pending.faults[0] = GetParam();  // of this program: before anything is asked
+  pending.alter = [](hw::BenchFile& file) {  // who is mute is not waited for long
+    for (hw::ControlSettings* device : {&file.target, &file.reference}) device->timeout_s = 0.5;
+  };
   const ServedRun resumed = RunServed(served, scenario, pending, &run);
   if (std::string(GetParam()) == "adc,float") {
     EXPECT_EQ(resumed.stopped_by, "signal_lost");
