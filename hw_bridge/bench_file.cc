@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "hw_bridge/ad/ad_source.h"
+#include "hw_bridge/bench_dialogue.h"
 #include "hw_bridge/control/address.h"
 #include "hw_bridge/file_places.h"
 #include "twin/core/errors.h"
@@ -16,10 +17,6 @@
 
 namespace twinbench::hw {
 namespace {
-
-bool HasConnection(const std::string& kind) {
-  return kind == "scpi" || kind == "esp";
-}
 
 /// What keys say together.
 class FileCheck {
@@ -88,7 +85,7 @@ class FileCheck {
     const std::string key = table + ".address";
     if (!HasConnection(s.kind) && !s.address.empty())
       throw InputError(Where(key), fmt::format("{} with kind = \"{}\"", key, s.kind),
-                       "an address of \"scpi\" or \"esp\"");
+                       "an address of \"scpi\", \"esp\" or \"dialogue\"");
     if (HasConnection(s.kind) && !ParseAddress(s.address))
       throw InputError(Where(key), fmt::format("{} is \"{}\"", key, s.address), kAddressForm);
     RequireTokenText(Where(table + ".token"), s.token);
@@ -118,10 +115,9 @@ class FileCheck {
   void CheckPair(const std::string& name_a, const ControlSettings& a, const std::string& name_b,
                  const ControlSettings& b) const {
     if (a.address.empty() || a.address != b.address) return;
-    if (a.kind == b.kind && a.identity == b.identity && a.token == b.token && a.watchdog == b.watchdog)
-      return;
+    if (SpeakAlike(a, b)) return;
     throw InputError(Where(name_b + ".address"), fmt::format("{} shares the address of {}", name_b, name_a),
-                     "the same kind, identity, token and watchdog, then");
+                     "the same kind, identity, token, watchdog and way of speaking, then");
   }
 
   const BenchFile& file_;
@@ -134,6 +130,12 @@ BenchFile ParseBenchFile(const std::string& text, const std::string& name, const
   BenchFile file;
   file.path = name;
   file.places = ReadToml(text, name, KeysOf(file));
+  const auto take = [&](const char* table, DialogueRole role, ControlSettings& s) {
+    TakeWords(name, file.places, folder, table, role, s);
+  };
+  take("autocollimator", DialogueRole::kAutocollimator, file.autocollimator);
+  take("thermometer", DialogueRole::kThermometer, file.thermometer);
+  take("goniometer", DialogueRole::kGoniometer, file.goniometer);
   FileCheck(file, file.places).Check();
   MakeAbsolute(folder, file.record);
   MakeAbsolute(folder, file.adc.calibration_file);

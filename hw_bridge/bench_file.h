@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hw_bridge/control/dialogue_words.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/core/table_limits.h"
 #include "twin/core/toml_reader.h"
@@ -36,6 +37,8 @@ struct ControlSettings {                     // [target], [reference], [autocoll
   std::string watchdog = "";                 // command that arms the controller's own; empty: it has none
   double timeout_s = 2.0;                    // of one answer
   int decimals = -1;                         // digits behind the point in commands; -1: all that matter
+  std::string dialogue = "";                 // kind dialogue: a ready one, or a file
+  DialogueWords words = {};                  // of instruments that are spoken to by one
 };
 
 /// What is asked of a real table unless the file says otherwise.

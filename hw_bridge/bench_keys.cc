@@ -66,6 +66,11 @@ Table AddConnection(Keys& keys, const std::string& table, ControlSettings& s, co
   return t;
 }
 
+void AddDescribed(Keys& keys, const std::string& table, ControlSettings& s, const Choices& kinds) {
+  AddConnection(keys, table, s, kinds)
+      .Text("dialogue", &s.dialogue, {}, "kind dialogue: a ready one, or a file that ends in .toml, from the bench file's folder");
+}
+
 void AddTable(Keys& keys, const std::string& table, ControlSettings& s, TableLimits& limits) {
   Table t = AddConnection(keys, table, s, {"scpi", "esp"});
   t.Number("axis", kPure, {1, 99}, &s.axis, "of the controller");
@@ -88,9 +93,9 @@ std::vector<ScenarioKey> KeysOf(BenchFile& file) {
   AddAd(keys, file.adc);
   AddTable(keys, "target", file.target, file.target_limits);
   AddTable(keys, "reference", file.reference, file.reference_limits);
-  AddConnection(keys, "autocollimator", file.autocollimator, {"scpi", "none"});
-  AddConnection(keys, "thermometer", file.thermometer, {"scpi", "none"});
-  AddConnection(keys, "goniometer", file.goniometer, {"scpi", "console", "none"});
+  AddDescribed(keys, "autocollimator", file.autocollimator, {"scpi", "dialogue", "none"});
+  AddDescribed(keys, "thermometer", file.thermometer, {"scpi", "dialogue", "none"});
+  AddDescribed(keys, "goniometer", file.goniometer, {"scpi", "dialogue", "console", "none"});
   AddConnection(keys, "fixture", file.fixture, {"scpi", "console"});
   AddConnection(keys, "clock", file.clock, {"host", "scpi"});
   return keys;

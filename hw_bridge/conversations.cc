@@ -6,12 +6,13 @@
 namespace twinbench::hw {
 
 DeviceLine Conversations::LineOf(const std::string& device, const ControlSettings& settings) {
-  const std::string query = settings.kind == "esp" ? kEspIdentity : kScpiIdentity;
-  const auto found =
-      by_address_.try_emplace(settings.address, ParseAddress(settings.address).value(), query, settings.identity);
+  const bool is_described = settings.kind == "dialogue";
+  const std::string query = is_described ? settings.words.identify : settings.kind == "esp" ? kEspIdentity : kScpiIdentity;
+  const std::string identity = query.empty() ? settings.words.title : settings.identity;
+  const auto found = by_address_.try_emplace(settings.address, ParseAddress(settings.address).value(), query, identity);
   Dialogue& dialogue = found.first->second;
   const auto introductions = settings.kind == "esp" ? EspIntroductions : ScpiIntroductions;
-  dialogue.IntroduceBy(introductions(settings.token, settings.watchdog));
+  is_described ? dialogue.Speak(settings.words.line) : dialogue.IntroduceBy(introductions(settings.token, settings.watchdog));
   DeviceLine line(dialogue, device, FromSeconds(settings.timeout_s));
   line.Openings();
   return line;

@@ -10,32 +10,39 @@
 namespace twinbench::hw {
 namespace {
 
-/// @param key  "target.in_position_arcsec".
-void Tie(const KeyPlaces& places, const std::string& path, const std::string& key, double u_rad, double& in_position_rad) {
+struct InFile {
+  const char* unit;
+  double to_SI;
+  const char* what;
+};
+constexpr InFile kTable{"arcsec", units::arcsec, "table"}, kRotaryAxis{"arcsec", units::arcsec, "axis"}, kLinearAxis{"um", units::um, "axis"};
+
+/// @param table  "target", "axis_x".
+void Tie(const KeyPlaces& places, const std::string& path, const std::string& table, const InFile& in, double u, double& in_position) {
+  const std::string key = fmt::format("{}.in_position_{}", table, in.unit);
   if (!places.contains(key)) {
-    in_position_rad = std::min(in_position_rad, u_rad);
+    in_position = std::min(in_position, u);
     return;
   }
-  if (in_position_rad <= u_rad) return;
+  if (in_position <= u) return;
   throw InputError(WhereIn(places, path, key),
-                   fmt::format("{} is {:.3g}, and the results of this scenario claim to be certain to {:.3g} arcsec: nobody "
-                               "would see that the table stands elsewhere",
-                               key, in_position_rad / units::arcsec, u_rad / units::arcsec),
-                   fmt::format("at most {:.3g}, or no such key: then it is the claim", u_rad / units::arcsec));
+                   fmt::format("{} is {:.3g}, and the results of this scenario claim to be certain to {:.3g} {}: nobody "
+                               "would see that the {} stands elsewhere",
+                               key, in_position / in.to_SI, u / in.to_SI, in.unit, in.what),
+                   fmt::format("at most {:.3g}, or no such key: then it is the claim", u / in.to_SI));
 }
 
 }  // namespace
 
 void TieToClaim(BenchFile& file, const std::string& name, double u_rad) {
-  const std::string key = name + ".in_position_arcsec";
-  if (name == "target") Tie(file.places, file.path, key, u_rad, file.target_limits.in_position_rad);
-  if (name == "reference") Tie(file.places, file.path, key, u_rad, file.reference_limits.in_position_rad);
+  if (name == "target") Tie(file.places, file.path, name, kTable, u_rad, file.target_limits.in_position_rad);
+  if (name == "reference") Tie(file.places, file.path, name, kTable, u_rad, file.reference_limits.in_position_rad);
 }
 
-void TieToClaim(MachineFile& file, const std::vector<MachineAxis>& axes, const std::string& name, double u_rad) {
+void TieToClaim(MachineFile& file, const std::vector<MachineAxis>& axes, const std::string& name, double u) {
   for (std::size_t k = 0; k < axes.size(); ++k) {
-    if (axes[k].name != name || !axes[k].is_rotary) continue;
-    Tie(file.places, file.path, "axis_" + name + ".in_position_arcsec", u_rad, file.axes[k].in_position);
+    if (axes[k].name != name) continue;
+    Tie(file.places, file.path, "axis_" + name, axes[k].is_rotary ? kRotaryAxis : kLinearAxis, u, file.axes[k].in_position);
   }
 }
 

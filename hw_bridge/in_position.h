@@ -14,6 +14,7 @@ namespace twinbench::hw {
 /// @throws InputError with file and line where the file allows more than that.
 void TieToClaim(BenchFile& file, const std::string& name, double u_rad);
 /// @param axes  Of the bench, in the order of the file.
-void TieToClaim(MachineFile& file, const std::vector<MachineAxis>& axes, const std::string& name, double u_rad);
+/// @param u     Of a linear axis [m].
+void TieToClaim(MachineFile& file, const std::vector<MachineAxis>& axes, const std::string& name, double u);
 
 }  // namespace twinbench::hw

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "hw_bridge/bench_dialogue.h"
 #include "hw_bridge/control/address.h"
 #include "hw_bridge/file_places.h"
 #include "twin/core/errors.h"
@@ -40,6 +41,10 @@ class MachineKeys {
   void Text(const std::string& name, Field field, std::vector<std::string> choices, const std::string& meaning) {
     keys_.push_back({table_, name, {}, {}, std::move(choices), field, meaning});
   }
+  void Described(ControlSettings& s, std::vector<std::string> kinds) {
+    Connection(s, std::move(kinds));
+    Text("dialogue", &s.dialogue, {}, "kind dialogue: a ready one, or a file that ends in .toml, from the bench file's folder");
+  }
   void Connection(ControlSettings& s, std::vector<std::string> kinds) {
     Text("kind", &s.kind, std::move(kinds), "language, or who does it");
     Text("address", &s.address, {}, "where it is reached");
@@ -56,7 +61,7 @@ class MachineKeys {
 
 void AddInstrument(std::vector<ScenarioKey>& keys, std::size_t number, InstrumentSettings& s) {
   MachineKeys t(keys, InstrumentTable(number));
-  t.Connection(s.connection, {"scpi", "none"});
+  t.Described(s.connection, {"scpi", "dialogue", "none"});
   t.Text("fields", &s.words.fields, {}, "of a sample, in order: columns, time_ns, status, ignored");
   t.Add("scale", kOne, {}, &s.words.scale, "field times this is in the column's unit, one a field; without it 1");
   t.Text("read", &s.words.read, {}, "query that is answered by one sample");
@@ -67,10 +72,10 @@ void AddInstrument(std::vector<ScenarioKey>& keys, std::size_t number, Instrumen
 
 void AddIndexer(std::vector<ScenarioKey>& keys, MachineFile& file) {
   MachineKeys t(keys, "indexer");
-  t.Connection(file.indexer, {"scpi", "console", "none"});
-  t.Text("move", &file.indexer_words.move, {}, "command that seats it at {tooth}, which is at {deg}");
-  t.Text("done", &file.indexer_words.done, {}, "query that is answered by 1 once it is seated; empty: none");
-  t.Add("move_timeout", kSeconds, Above(0.0, 3600.0), &file.indexer_words.move_timeout_s, "of one seating");
+  t.Described(file.indexer, {"scpi", "dialogue", "console", "none"});
+  t.Text("move", &file.indexer.words.move, {}, "command that seats it at {tooth}, which is at {deg}");
+  t.Text("done", &file.indexer.words.done, {}, "query that is answered by 1 once it is seated; empty: none");
+  t.Add("move_timeout", kSeconds, Above(0.0, 3600.0), &file.indexer_timeout_s, "of one seating");
 }
 
 /// What keys say together.
@@ -87,6 +92,8 @@ class MachineFileCheck {
     for (std::size_t k = 0; k < axes.size(); ++k) CheckAxis(axes[k], file_.axes[k]);
     CheckInstruments();
     CheckConnection("indexer", file_.indexer);
+    if (file_.indexer.kind == "dialogue") RefuseWords("indexer", {"move", "done"});
+    CheckPairs();
     CheckConnection("fixture", file_.fixture);
     CheckConnection("clock", file_.clock);
   }
@@ -95,7 +102,7 @@ class MachineFileCheck {
   std::string Where(const std::string& path) const { return WhereIn(places_, file_.path, path); }
 
   void CheckConnection(const std::string& table, const ControlSettings& s) const {
-    const bool connected = s.kind == "scpi" || s.kind == "esp";
+    const bool connected = HasConnection(s.kind);
     const std::string key = table + ".address";
     if (!connected && !s.address.empty())
       throw InputError(Where(key), fmt::format("{} with kind = \"{}\"", key, s.kind), "no address");
@@ -119,9 +126,11 @@ class MachineFileCheck {
       CheckConnection(table, s.connection);
       if (s.connection.kind == "none") continue;
       any = true;
-      if (s.words.fields.empty())
+      const bool is_described = s.connection.kind == "dialogue";
+      if (is_described) RefuseWords(table, {"read", "look", "arm", "fetch"});
+      if (s.words.fields.empty() && !is_described)
         throw InputError(Where(table), fmt::format("{}.fields is missing", table), "the fields of its answer");
-      if (!s.words.scale.empty() && s.words.scale.size() != s.words.fields.size())
+      if (!is_described && !s.words.scale.empty() && s.words.scale.size() != s.words.fields.size())
         throw InputError(Where(table + ".scale"),
                          fmt::format("{} scales for {} fields", s.words.scale.size(), s.words.fields.size()),
                          "one a field");
@@ -130,11 +139,33 @@ class MachineFileCheck {
     if (!any) throw InputError(file_.path + ":1", "there is no instrument", "[instrument_1] with kind = \"scpi\"");
   }
 
+  /// What stands in a dialogue stands there only.
+  void RefuseWords(const std::string& table, const std::vector<std::string>& keys) const {
+    for (const std::string& key : keys) {
+      if (places_.contains(table + "." + key))
+        throw InputError(Where(table + "." + key), fmt::format("{}.{} beside a dialogue", table, key), "it in the dialogue");
+    }
+  }
+
   /// Who shares an address shares a connection: one language, one identity.
   void CheckShared(const std::string& table, const ControlSettings& s) const {
     if (s.address != file_.machine.address) return;
     throw InputError(Where(table + ".address"), fmt::format("{} shares the address of the machine", table),
                      "an address of its own: the machine speaks another language");
+  }
+
+  void CheckPairs() const {
+    std::vector<std::pair<std::string, const ControlSettings*>> devices = {{"indexer", &file_.indexer}};
+    for (std::size_t k = 0; k < kMostInstruments; ++k)
+      devices.emplace_back(InstrumentTable(k), &file_.instruments[k].connection);
+    for (auto a = devices.begin(); a != devices.end(); ++a) {
+      for (auto b = a + 1; b != devices.end(); ++b) {
+        const bool is_shared = !a->second->address.empty() && a->second->address == b->second->address;
+        if (is_shared && !SpeakAlike(*a->second, *b->second))
+          throw InputError(Where(b->first + ".address"), fmt::format("{} shares the address of {}", b->first, a->first),
+                           "the same kind, identity, token, watchdog and way of speaking, then");
+      }
+    }
   }
 
   const MachineFile& file_;
@@ -145,6 +176,7 @@ class MachineFileCheck {
 
 std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis>& axes) {
   std::vector<ScenarioKey> keys;
+  file.indexer.words.move = ReadyDialogueNamed("served_indexer").move;  // unless the file says otherwise
   MachineKeys top(keys, "");
   top.Text("kind", &file.kind, {"hardware", "twin", "replay"}, "what stands there");
   top.Text("name", &file.name, {}, "of the bench, for the record");
@@ -152,6 +184,8 @@ std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis
   top.Add("attempts", kOne, {1, 100}, &file.attempts, "at one reading, before the run stops");
   MachineKeys machine(keys, "machine");
   machine.Connection(file.machine, {"esp"});
+  machine.Add("decimals", kOne, {-1, 15}, &file.machine.decimals,
+              "behind the point of a number that the controller understands; -1: all that matter");
   machine.Add("traverse", kMillimetresASecond, Above(0.0, 1e4), &file.traverse_m_s, "feed of moves without a feed");
   machine.Add("stall", kSeconds, Above(0.0, 3600.0), &file.stall_s, "it may stand still so long during a move");
   machine.Add("move_timeout", kSeconds, Above(0.0, 36000.0), &file.move_timeout_s, "beyond what a path takes");
@@ -173,11 +207,16 @@ std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis
   return keys;
 }
 
-MachineFile ParseMachineFile(const std::string& text, const std::string& name,
-                             const std::vector<MachineAxis>& axes) {
+MachineFile ParseMachineFile(const std::string& text, const std::string& name, const std::vector<MachineAxis>& axes,
+                             const std::string& folder) {
   MachineFile file;
   file.path = name;
   file.places = ReadToml(text, name, KeysOf(file, axes));
+  TakeWords(name, file.places, folder, "indexer", DialogueRole::kIndexer, file.indexer);
+  for (std::size_t k = 0; k < kMostInstruments; ++k) {
+    file.instruments[k].words.where = WhereIn(file.places, name, InstrumentTable(k) + ".fields");
+    TakeWords(name, file.places, folder, InstrumentTable(k), DialogueRole::kInstrument, file.instruments[k].connection);
+  }
   MachineFileCheck(file, file.places).Check(axes);
   for (AxisLimits& limits : file.axes) {
     limits.stall_s = file.stall_s;
@@ -191,8 +230,9 @@ MachineFile LoadMachineFile(const std::string& path, const std::vector<MachineAx
   std::ostringstream text;
   if (!in || !(text << in.rdbuf()))
     throw InputError(path, "the file cannot be read or is empty", "a bench file in TOML");
-  MachineFile file = ParseMachineFile(text.str(), path, axes);
-  MakeAbsolute(std::filesystem::path(path).parent_path().string(), file.record);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  MachineFile file = ParseMachineFile(text.str(), path, axes, folder);
+  MakeAbsolute(folder, file.record);
   return file;
 }
 

@@ -4,7 +4,6 @@
 
 #include "hw_bridge/bench_file.h"
 #include "hw_bridge/control/instrument_box.h"
-#include "hw_bridge/control/scpi_instruments.h"
 #include "twin/core/machine.h"
 
 /// bench.toml of a bench whose machine is driven. docs/hardware.md lists every key.
@@ -14,7 +13,7 @@ inline constexpr std::size_t kMostInstruments = 4;  // [instrument_1] to [instru
 inline constexpr double kTraverse_m_s = 1000.0 * units::mm / 60.0;
 
 struct InstrumentSettings {
-  ControlSettings connection{"none"};  // scpi | none
+  ControlSettings connection{"none"};  // scpi | dialogue | none
   InstrumentWords words;
 };
 
@@ -30,8 +29,8 @@ struct MachineFile {
   double stall_s = AxisLimits{}.stall_s, move_timeout_s = AxisLimits{}.move_timeout_s;
   std::vector<AxisLimits> axes;  // one an axis
   std::array<InstrumentSettings, kMostInstruments> instruments;
-  ControlSettings indexer{"none"};     // scpi | console | none
-  IndexerWords indexer_words;
+  ControlSettings indexer{"none"};     // scpi | dialogue | console | none
+  double indexer_timeout_s = 60.0;     // of one seating
   ControlSettings fixture{"console"};  // scpi | console
   ControlSettings clock{"host"};       // host | scpi
 };
@@ -41,8 +40,9 @@ std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis
 
 /// @throws InputError with file:line, as LoadBenchFile does.
 MachineFile LoadMachineFile(const std::string& path, const std::vector<MachineAxis>& axes);
-MachineFile ParseMachineFile(const std::string& text, const std::string& name,
-                             const std::vector<MachineAxis>& axes);
+/// @param folder  From which the files that it names are found.
+MachineFile ParseMachineFile(const std::string& text, const std::string& name, const std::vector<MachineAxis>& axes,
+                             const std::string& folder = "");
 
 /// The bench file that drives what `twinbench serve` shows of such a bench.
 /// @param machine  How the machine is driven: "esp" (over TCP) or "pty" (over the pseudo-terminal).

@@ -8,7 +8,9 @@
 
 #include "hw_bridge/ad/ad_converter.h"
 #include "hw_bridge/ad/negotiation.h"
+#include "hw_bridge/bench_dialogue.h"
 #include "hw_bridge/control/absent.h"
+#include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/esp_table.h"
 #include "hw_bridge/control/host_clock.h"
 #include "hw_bridge/control/operator_devices.h"
@@ -106,9 +108,9 @@ class OpenedBench : public OpenBench {
 
   void OpenInstruments() {
     autocollimator_ =
-        Open<Autocollimator, ScpiAutocollimator, NoAutocollimator>("autocollimator", file_.autocollimator);
-    thermometer_ = Open<Thermometer, ScpiThermometer, NoThermometer>("thermometer", file_.thermometer);
-    goniometer_ = Open<Goniometer, ScpiGoniometer, NoGoniometer>("goniometer", file_.goniometer);
+        Open<Autocollimator, DescribedAutocollimator, NoAutocollimator>("autocollimator", file_.autocollimator);
+    thermometer_ = Open<Thermometer, DescribedThermometer, NoThermometer>("thermometer", file_.thermometer);
+    goniometer_ = Open<Goniometer, DescribedGoniometer, NoGoniometer>("goniometer", file_.goniometer);
     if (file_.goniometer.kind == "console") goniometer_ = std::make_unique<ConsoleGoniometer>(hands_);
     if (file_.fixture.kind == "console")
       fixture_ = std::make_unique<ConsoleFixture>(hands_);
@@ -116,9 +118,9 @@ class OpenedBench : public OpenBench {
       fixture_ = std::make_unique<ScpiFixture>(conversations_.LineOf("fixture", file_.fixture));
   }
 
-  template <class Device, class Scpi, class None>
+  template <class Device, class Described, class None>
   std::unique_ptr<Device> Open(const std::string& name, const ControlSettings& s) {
-    if (s.kind == "scpi") return std::make_unique<Scpi>(conversations_.LineOf(name, s));
+    if (HasConnection(s.kind)) return std::make_unique<Described>(conversations_.LineOf(name, s), s.words);
     return std::make_unique<None>();
   }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/esp_machine.h"
 #include "hw_bridge/control/host_clock.h"
 #include "hw_bridge/control/operator_devices.h"
@@ -58,7 +59,9 @@ class OpenedMachine : public OpenMachine {
 
   EspMachine OpenAxes(const MachineFile& file, const std::vector<MachineAxis>& axes) {
     EspMachine machine(conversations_.LineOf("machine", file.machine), axes, file.axes,
-                       {.traverse_m_s = file.traverse_m_s, .polls_pass_time = file.clock.kind == "scpi"});
+                       {.traverse_m_s = file.traverse_m_s,
+                        .polls_pass_time = file.clock.kind == "scpi",
+                        .decimals = file.machine.decimals});
     machine.AgreeOnLimits();
     return machine;
   }
@@ -68,8 +71,9 @@ class OpenedMachine : public OpenMachine {
     for (std::size_t k = 0; k < kMostInstruments; ++k) {
       const InstrumentSettings& s = file.instruments[k];
       if (s.connection.kind == "none") continue;
-      boxes.emplace_back(conversations_.LineOf(fmt::format("instrument_{}", k + 1), s.connection), s.words,
-                         columns);
+      const bool is_described = s.connection.kind == "dialogue";
+      boxes.emplace_back(conversations_.LineOf(fmt::format("instrument_{}", k + 1), s.connection),
+                         is_described ? WithDialogue(s.words, s.connection.words, columns) : s.words, columns);
     }
     return boxes;
   }
@@ -77,7 +81,8 @@ class OpenedMachine : public OpenMachine {
   std::unique_ptr<Indexer> OpenIndexer(const MachineFile& file) {
     if (file.indexer.kind == "none") return nullptr;
     if (file.indexer.kind == "console") return std::make_unique<ConsoleIndexer>(Operator(std::cin, std::cerr));
-    return std::make_unique<ScpiIndexer>(conversations_.LineOf("indexer", file.indexer), file.indexer_words);
+    return std::make_unique<DescribedIndexer>(conversations_.LineOf("indexer", file.indexer), file.indexer.words,
+                                              file.indexer_timeout_s);
   }
 
   std::unique_ptr<MachineFixture> OpenFixture(const ControlSettings& settings) {

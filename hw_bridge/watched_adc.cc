@@ -40,6 +40,8 @@ void WatchedAdc::LookWhile(const std::stop_token& block_lasts) {
 
 void WatchedAdc::Look(StandingTable& table) {
   const TableState state = table.table.State();
+  if (!state.referenced)
+    throw DeviceFault(FaultKind::kRestarted, table.name, "lost its origin while a block was taken");
   const double off_rad = state.encoder_rad - state.commanded_rad;
   if (!(std::abs(off_rad) > std::abs(table.furthest_rad))) return;
   if (std::abs(off_rad) > table.tolerance_rad)

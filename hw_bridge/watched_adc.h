@@ -26,8 +26,8 @@ class WatchedAdc : public AdConverter {
   WatchedAdc(AdConverter& inner, StandingTable target, StandingTable reference)
       : inner_(inner), tables_{std::move(target), std::move(reference)} {}
 
-  /// @throws DeviceFault kMoved if a table stood further from where it was sent than its tolerance; what a look throws; else as the
-  ///         converter.
+  /// @throws DeviceFault kMoved if a table stood further from where it was sent than its tolerance; kRestarted if it has lost its
+  ///         origin; what a look throws; else as the converter.
   Acquisition Acquire(int n_samples, bool keep_raw) override;
   const std::array<StandingTable, 2>& tables() const { return tables_; }
 

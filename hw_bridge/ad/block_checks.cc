@@ -135,13 +135,12 @@ int FloatingMask(const Views& views, const PerChannel& mains_lsb, double scans, 
   return mask;
 }
 
-/// Noise that the channels have in common, for the slip: the median, and never less than rounding alone makes.
-double UsualNoise_lsb(PerChannel noise_lsb) {
+}  // namespace
+
+double UsualNoise_lsb(std::array<double, kChannels> noise_lsb) {
   std::sort(noise_lsb.begin(), noise_lsb.end());
   return std::max(0.5 * (noise_lsb[1] + noise_lsb[2]), kRoundingNoise_lsb);
 }
-
-}  // namespace
 
 BlockFindings CheckBlock(std::span<const std::int16_t> raw, const CheckSettings& settings) {
   Require(raw.size() >= kChannels && raw.size() % kChannels == 0, "a block has whole scans");

@@ -30,6 +30,9 @@ struct BlockFindings {
   std::array<double, kChannels> mains_lsb{};  // amplitude; NaN in blocks shorter than a period
 };
 
+/// Noise that the channels have in common, for the slip: the median, and never less than rounding alone makes.
+double UsualNoise_lsb(std::array<double, kChannels> noise_lsb);
+
 /// Stuck: the longest run of r equal codes among n. Noise of s codes leaves one code with at most p = erf(1 / (s
 /// sqrt 8)), so n p^(r-1) bounds the probability of such a run; s is half of the least to expect, which is the
 /// expected noise or, if that is not known, that of the channel with the second smallest, where over 1 code.

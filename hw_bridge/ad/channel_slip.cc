@@ -112,19 +112,30 @@ struct Needed {
 };
 
 bool IsSlip(const Change& change, const Needed& needed) {
-  constexpr double kLeastCodes = 4.0;
   return change.gain > needed.gain && change.gain - needed.ramp_gain > needed.gain &&
-         change.free_gain - change.gain < needed.any_change && change.exchanged >= kLeastCodes;
+         change.free_gain - change.gain < needed.any_change && change.exchanged >= kLeastSlip_lsb;
+}
+
+double NeededForGroups(int groups, double false_alarms) {
+  return 2.0 * std::log((kChannels - 1.0) * groups / false_alarms);
+}
+
+int ScansAGroup(int scans) {
+  return (scans + kGroups - 1) / kGroups;
 }
 
 }  // namespace
+
+double NeededForSlip(int scans, double false_alarms) {
+  return NeededForGroups(scans / ScansAGroup(scans), false_alarms);
+}
 
 ChannelSlip FindChannelSlip(std::span<const std::int16_t> raw, const std::array<std::size_t, kChannels>& scan_order,
                             double noise_lsb, double false_alarms) {
   constexpr double kAnyChange = 40.0;  // chi-squared of 4: exceeded in 4e-8 of all slips
   const Block block(raw, scan_order);
   const double variance = noise_lsb * noise_lsb;
-  const Needed needed{2.0 * std::log((kChannels - 1.0) * block.groups() / false_alarms) * variance,
+  const Needed needed{NeededForGroups(block.groups(), false_alarms) * variance,
                       block.RampGain(), kAnyChange * variance};
   ChannelSlip found;
   double most = 0.0;

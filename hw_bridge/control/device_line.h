@@ -17,6 +17,8 @@ class DeviceLine {
   /// @param beyond  The answer may take so much longer than the timeout.
   /// @throws DeviceFault as Dialogue::Ask.
   std::string Ask(const std::string& query, Duration beyond = {});
+  /// Says something that is not answered.
+  void Tell(const std::string& command) { dialogue_->Tell(device_, command + "\n", timeout_); }
   /// @throws DeviceFault kProtocol too, unless the whole answer is the number.
   double AskNumber(const std::string& query, double to_SI);
   long long AskWholeNumber(const std::string& query, Duration beyond = {});

@@ -30,7 +30,7 @@ void Dialogue::Connect(const std::string& device, Duration patience) {
   for (Duration pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
     OpenedLink opened = OpenLink(address_, patience);
     link_ = std::move(opened.link);
-    if (link_) return;
+    if (link_) return link_->EndLinesWith(EndOfLine(line_.answer_ends));
     if (SteadyClock::now() + pause > end) Fail(*opened.failure, device, opened.why);
     std::this_thread::sleep_for(pause);
   }
@@ -50,6 +50,7 @@ bool Dialogue::IsExpected(const std::string& answer) const {
 
 void Dialogue::Identify(const std::string& device, Duration patience) {
   if (IsSerial()) link_->ReadAway(kQuiet, patience);
+  if (identity_query_.empty()) return;
   Send(device, identity_query_ + "\n", patience);
   const std::string answer = AwaitIdentity(device, patience);
   if (!IsExpected(answer))
@@ -81,14 +82,24 @@ std::string Dialogue::AwaitIdentity(const std::string& device, Duration patience
 }
 
 void Dialogue::Send(const std::string& device, const std::string& text, Duration patience) {
-  const LinkResult sent = link_->Send(text, patience);
+  const std::string end = EndOfLine(line_.ends);
+  std::string with_ends;
+  for (const char c : text) c == '\n' ? with_ends += end : with_ends += c;
+  const LinkResult sent = link_->Send(with_ends, patience);
   if (sent.failure) Fail(*sent.failure, device, sent.why);
 }
 
 std::string Dialogue::NextLine(const std::string& device, Duration patience) {
   LinkResult answer = link_->ReadLine(patience);
   if (answer.failure) Fail(*answer.failure, device, answer.why);
-  return std::move(answer.line);
+  if (!answer.line.starts_with(line_.answer_begins))
+    Fail(FaultKind::kProtocol, device, fmt::format("\"{}\" came; every answer begins otherwise", answer.line));
+  return answer.line.substr(line_.answer_begins.size());
+}
+
+void Dialogue::Tell(const std::string& device, const std::string& text, Duration patience) {
+  Open(device, patience);
+  Send(device, text, patience);
 }
 
 std::string Dialogue::Ask(const std::string& device, const std::string& text, Duration patience) {

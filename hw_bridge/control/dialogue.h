@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hw_bridge/control/dialogue_words.h"
 #include "hw_bridge/control/line_link.h"
 
 namespace twinbench::hw {
@@ -15,9 +16,11 @@ namespace twinbench::hw {
 /// the one from before. On a serial line, which outlives its connections, old answers are read away first.
 class Dialogue {
  public:
-  /// @param identity_query  "*IDN?", "VE?".
+  /// @param identity_query  "*IDN?", "VE?"; empty: it does not tell who it is, and nobody asks.
   /// @param identity        What its answer must begin with.
   Dialogue(Address address, std::string identity_query, std::string identity);
+  /// What lines look like on this connection, where they do not end in LF.
+  void Speak(const LineWords& line) { line_ = line; }
   /// Said to whoever has been identified, after every opening: commands, each with a query of its error that must be answered by "0,...".
   void IntroduceBy(std::vector<std::string> introductions) { introductions_ = std::move(introductions); }
 
@@ -29,6 +32,8 @@ class Dialogue {
   /// Sends `text`, lines with their ends, and returns the line that comes back.
   /// @throws DeviceFault kTimeout, kDropped, kProtocol, and what Open throws.
   std::string Ask(const std::string& device, const std::string& text, Duration patience);
+  /// Sends `text`, which is not answered.
+  void Tell(const std::string& device, const std::string& text, Duration patience);
   /// Takes one more line, of an answer that has several.
   std::string NextLine(const std::string& device, Duration patience);
 
@@ -54,6 +59,7 @@ class Dialogue {
   std::string identity_;         // as much as is known of it
   bool identity_known_ = false;  // all of it
   std::vector<std::string> introductions_;
+  LineWords line_;
   std::unique_ptr<LineLink> link_;
   int openings_ = 0;
 };

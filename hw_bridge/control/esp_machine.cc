@@ -22,16 +22,27 @@ std::string OfAxis(std::size_t axis, const char* command) {
   return std::to_string(axis + 1) + command;
 }
 
-double Slack(const MachineAxis& axis) {
-  return kAllDigits * axis.to_SI();
-}
-
 }  // namespace
 
 EspMachine::EspMachine(DeviceLine line, std::vector<MachineAxis> axes, std::vector<AxisLimits> limits,
                        EspMachineManner manner)
-    : line_(std::move(line)), axes_(std::move(axes)), limits_(std::move(limits)), manner_(manner) {
+    : line_(std::move(line)),
+      axes_(std::move(axes)),
+      limits_(std::move(limits)),
+      manner_(manner),
+      lost_origin_(axes_.size(), false) {
   Require(limits_.size() == axes_.size(), "limits are one entry an axis");
+}
+
+/// Of a command.
+std::string EspMachine::Text(double value_SI, double to_SI) const {
+  return manner_.decimals < 0 ? PrintInUnit(value_SI, to_SI) : fmt::format("{:.{}f}", value_SI / to_SI, manner_.decimals);
+}
+
+/// As far as a controller that was told all digits, or so many decimals, may be from what was meant.
+double EspMachine::Understood(const MachineAxis& axis) const {
+  const double half_decimal = manner_.decimals < 0 ? 0.0 : 0.5 * std::pow(10.0, -manner_.decimals);
+  return (half_decimal + kAllDigits) * axis.to_SI();
 }
 
 std::string EspMachine::Place(std::size_t axis, double at) const {
@@ -48,11 +59,14 @@ void EspMachine::Prepare() {
     TellEsp(line_, group);  // first: a controller of other axes says no
   }
   knows_status_ = EspKnows(line_, "1MS?");
-  for (std::size_t k = 0; k < axes_.size(); ++k) {
-    const int unit = axes_[k].is_rotary ? kUnitDegree : kUnitMillimetre;
-    if (line_.AskWholeNumber(OfAxis(k, "SN?")) != unit) TellEsp(line_, OfAxis(k, "SN") + std::to_string(unit));
-  }
+  for (std::size_t k = 0; k < axes_.size(); ++k) PrepareAxis(k);
   prepared_opening_ = opening;
+}
+
+void EspMachine::PrepareAxis(std::size_t k) {
+  const int unit = axes_[k].is_rotary ? kUnitDegree : kUnitMillimetre;
+  if (line_.AskWholeNumber(OfAxis(k, "SN?")) != unit) TellEsp(line_, OfAxis(k, "SN") + std::to_string(unit));
+  if (!knows_status_ && line_.AskWholeNumber(OfAxis(k, "MO?")) == 0) lost_origin_[k] = true;
 }
 
 std::vector<AxisLimits> EspMachine::Travel() {
@@ -71,7 +85,7 @@ void EspMachine::AgreeOnLimits() {
     AxisLimits& ours = limits_[k];
     if (std::isinf(ours.lower)) ours.lower = travel[k].lower;
     if (std::isinf(ours.upper)) ours.upper = travel[k].upper;
-    const double slack = Slack(axes_[k]);
+    const double slack = Understood(axes_[k]);
     if (ours.lower >= travel[k].lower - slack && ours.upper <= travel[k].upper + slack) continue;
     line_.Fail(FaultKind::kRefused, fmt::format("the controller allows axis {} {} to {}; the bench file {} to {}",
                                                 axes_[k].name, Place(k, travel[k].lower), Place(k, travel[k].upper),
@@ -80,7 +94,7 @@ void EspMachine::AgreeOnLimits() {
 }
 
 void EspMachine::RequireWithinLimits(std::size_t axis, double to) {
-  const double slack = Slack(axes_[axis]);
+  const double slack = Understood(axes_[axis]);
   if (to >= limits_[axis].lower - slack && to <= limits_[axis].upper + slack) return;
   line_.Fail(FaultKind::kLimit,
              fmt::format("a move of axis {} to {} was not sent: its limits are {} and {}", axes_[axis].name,
@@ -96,7 +110,7 @@ void EspMachine::RequireReady(const std::vector<AxisState>& states) {
 }
 
 void EspMachine::SetFeed(double feed_m_s) {
-  TellEsp(line_, "1HV" + PrintInUnit(feed_m_s > 0.0 ? feed_m_s : manner_.traverse_m_s, units::mm));
+  TellEsp(line_, "1HV" + Text(feed_m_s > 0.0 ? feed_m_s : manner_.traverse_m_s, units::mm));
 }
 
 void EspMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
@@ -105,7 +119,7 @@ void EspMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
   RequireReady(State());
   if (IsGroup()) SetFeed(feed_m_s);
   std::string command = IsGroup() ? "1HL" : "1PA";
-  for (std::size_t k = 0; k < to.size(); ++k) command += (k > 0 ? "," : "") + PrintInUnit(to[k], axes_[k].to_SI());
+  for (std::size_t k = 0; k < to.size(); ++k) command += (k > 0 ? "," : "") + Text(to[k], axes_[k].to_SI());
   TellEsp(line_, command);
   RequireUnderstood(to);
 }
@@ -113,7 +127,9 @@ void EspMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
 void EspMachine::RequireUnderstood(const std::vector<double>& to) {
   const std::vector<AxisState> states = State();
   for (std::size_t k = 0; k < to.size(); ++k) {
-    if (std::abs(states[k].commanded - to[k]) <= Slack(axes_[k])) continue;
+    if (!states[k].referenced)
+      StopAndFail(FaultKind::kRestarted, fmt::format("axis {} lost its origin as the move began", axes_[k].name));
+    if (std::abs(states[k].commanded - to[k]) <= Understood(axes_[k])) continue;
     StopAndFail(FaultKind::kRefused, fmt::format("axis {} was told {} and understood {}", axes_[k].name,
                                                  Place(k, to[k]), Place(k, states[k].commanded)));
   }
@@ -131,15 +147,15 @@ void EspMachine::StartArc(const Arc& arc) {
   }
   SetFeed(arc.feed_m_s);
   if (arc.triggers > 0)
-    TellEsp(line_, fmt::format("1XT{},{},{}", arc.triggers, PrintInUnit(arc.first_trigger_rad, units::deg),
-                               PrintInUnit(arc.trigger_step_rad, units::deg)));
-  TellEsp(line_, fmt::format("1HC{},{},{}", PrintInUnit(arc.centre_m[0], units::mm),
-                             PrintInUnit(arc.centre_m[1], units::mm), PrintInUnit(arc.sweep_rad, units::deg)));
+    TellEsp(line_, fmt::format("1XT{},{},{}", arc.triggers, Text(arc.first_trigger_rad, units::deg),
+                               Text(arc.trigger_step_rad, units::deg)));
+  TellEsp(line_, fmt::format("1HC{},{},{}", Text(arc.centre_m[0], units::mm), Text(arc.centre_m[1], units::mm),
+                             Text(arc.sweep_rad, units::deg)));
 }
 
 void EspMachine::StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) {
   RequireReady(State());
-  TellEsp(line_, fmt::format("{}{},{}", OfAxis(axis, "XV"), PrintInUnit(speed_rad_s, units::deg),
+  TellEsp(line_, fmt::format("{}{},{}", OfAxis(axis, "XV"), Text(speed_rad_s, units::deg),
                              PrintInUnit(ToSeconds(ramp) * 1e3, 1.0)));
 }
 
@@ -179,7 +195,7 @@ std::vector<AxisState> EspMachine::State() {
   std::string questions;
   for (std::size_t k = 0; k < axes_.size(); ++k) {
     for (const char* query : {"PA?", "TP?", "MD?"}) questions += (questions.empty() ? "" : ";") + OfAxis(k, query);
-    if (knows_status_) questions += ";" + OfAxis(k, "MS?");
+    questions += ";" + OfAxis(k, knows_status_ ? "MS?" : "MO?");
   }
   std::string answer = line_.Ask(questions);
   const std::function<std::string()> next = [&, first = true]() mutable {
@@ -205,7 +221,12 @@ AxisState EspMachine::ReadAxis(std::size_t k, const std::function<std::string()>
   state.encoder = number("TP?", axes_[k].to_SI());
   state.in_position = number("MD?", 1.0) == 1.0;
   state.moving = !state.in_position;
-  if (!knows_status_) return state;
+  if (!knows_status_) {
+    if (number("MO?", 1.0) == 0.0) lost_origin_[k] = true;
+    state.referenced = !lost_origin_[k];
+    if (!state.referenced) state.commanded = state.encoder = kNaN;
+    return state;
+  }
   const auto bits = static_cast<long long>(number("MS?", 1.0));
   state.referenced = (bits & kReferenced) != 0;
   state.limit = (bits & kLower) != 0 ? -1 : (bits & kUpper) != 0 ? 1 : 0;
@@ -221,7 +242,9 @@ void EspMachine::Stop() {
 
 void EspMachine::Home() {
   Prepare();
+  for (std::size_t k = 0; k < axes_.size() && !knows_status_; ++k) TellEsp(line_, OfAxis(k, "MO"));
   TellEsp(line_, "OR");
+  lost_origin_.assign(axes_.size(), false);
   double longest_s = 0.0, passed_s = 0.0;
   for (const AxisLimits& limits : limits_) longest_s = std::max(longest_s, limits.move_timeout_s);
   while (!Settles(kHomingLook)) {

@@ -11,12 +11,14 @@ namespace twinbench::hw {
 struct EspMachineManner {
   double traverse_m_s = 0.0;     // of moves that have no feed
   bool polls_pass_time = false;  // the bench is a served twin with its clock held
+  int decimals = -1;             // digits behind the point of a number in a command; -1: all that matter
 };
 
 /// A machine whose axes 1 to N are group 1 of a Newport ESP controller (docs/protocols.md), or its axis 1 alone.
 ///
 /// A move beyond the soft limits sends nothing, and one that was understood otherwise is stopped. An axis that has
-/// lost its origin is not moved before Home: kRestarted.
+/// lost its origin is not moved before Home, and its places are NaN: kRestarted. A controller without MS? (the ESP301 has
+/// none) tells a restart by the motor of an axis, which is off after it.
 class EspMachine : public MachineController {
  public:
   /// @param limits  Of the bench file, one entry an axis; infinite: the controller's own.
@@ -44,6 +46,9 @@ class EspMachine : public MachineController {
  private:
   bool IsGroup() const { return axes_.size() > 1; }  // one axis alone goes by itself, as fast as it was set up
   void Prepare();
+  void PrepareAxis(std::size_t axis);
+  std::string Text(double value_SI, double to_SI) const;
+  double Understood(const MachineAxis& axis) const;
   void SetFeed(double feed_m_s);
   AxisState ReadAxis(std::size_t axis, const std::function<std::string()>& next_answer);
   bool AskDone();
@@ -61,6 +66,7 @@ class EspMachine : public MachineController {
   std::function<bool()> stop_asked_;
   int prepared_opening_ = 0;
   bool knows_status_ = true;  // MS?
+  std::vector<bool> lost_origin_;  // of each axis, so far as its motor tells
 };
 
 }  // namespace twinbench::hw

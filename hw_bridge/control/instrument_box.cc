@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/scpi.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/nearest_key.h"
@@ -18,31 +19,69 @@ constexpr const char* kStatusField = "status";
 constexpr const char* kIgnoredField = "ignored";
 constexpr std::size_t kFetchHeader = 2;  // how many, some lost
 
-ReadingColumn ColumnOf(const std::string& field, const std::vector<ReadingColumn>& columns) {
+ReadingColumn ColumnOf(const std::string& field, const std::vector<ReadingColumn>& columns, const std::string& where) {
   std::vector<std::string> known = {kTimeField, kStatusField, kIgnoredField};
   if (std::ranges::find(known, field) != known.end()) return {};
   for (const ReadingColumn& column : columns) {
     if (column.name == field) return column;
     known.push_back(column.name);
   }
-  throw InputError("fields", fmt::format("\"{}\" is no column that an instrument of this bench shows", field),
+  throw InputError(where, fmt::format("\"{}\" is no column that an instrument of this bench shows", field),
                    fmt::format("\"{}\"", Nearest(field, known)));
 }
 
+/// The column of a field for which the bench file names none.
+std::string UsualColumn(const std::string& field) {
+  if (field == "x") return "autocollimator_x_arcsec";
+  if (field == "y") return "autocollimator_y_arcsec";
+  return field == "temperature" ? kTemperatureColumn : field;
+}
+
 }  // namespace
+
+InstrumentWords WithDialogue(const InstrumentWords& file, const DialogueWords& dialogue,
+                             const std::vector<ReadingColumn>& columns) {
+  const ReadWords& read = dialogue.read;
+  const std::size_t fields = read.fields.size();
+  if (!file.fields.empty() && file.fields.size() != fields)
+    throw InputError(file.where, fmt::format("{} fields for an answer of {} by dialogue {}", file.fields.size(), fields, dialogue.name),
+                     "one a field of the dialogue, or none where its own are columns");
+  if (!file.scale.empty() && file.scale.size() != fields)
+    throw InputError(file.where, fmt::format("{} scales for an answer of {} fields by dialogue {}", file.scale.size(), fields,
+                                             dialogue.name),
+                     "one a field of the dialogue");
+  InstrumentWords words = file;
+  words.scale.resize(fields, 1.0);
+  words.fields.clear();
+  for (std::size_t k = 0; k < fields; ++k) {
+    words.fields.push_back(file.fields.empty() ? UsualColumn(read.fields[k]) : file.fields[k]);
+    if (!ColumnOf(words.fields[k], columns, file.where).number) continue;
+    if (!read.units.empty()) words.scale[k] *= ScaleToColumn(read.units[k], words.fields[k], file.where);
+    if (!read.scale.empty()) words.scale[k] *= read.scale[k];
+  }
+  words.read = read.ask;
+  words.look = read.look;
+  words.arm = dialogue.arm;
+  words.fetch = dialogue.fetch;
+  words.separator = dialogue.line.separator;
+  words.valid = read.valid;
+  words.nothing = read.nothing;
+  words.errors = dialogue.errors;
+  return words;
+}
 
 InstrumentBox::InstrumentBox(DeviceLine line, InstrumentWords words, const std::vector<ReadingColumn>& columns)
     : line_(std::move(line)), words_(std::move(words)) {
   for (std::size_t k = 0; k < words_.fields.size(); ++k) {
     const std::string& name = words_.fields[k];
-    fields_.push_back({name, ColumnOf(name, columns), k < words_.scale.size() ? words_.scale[k] : 1.0});
+    fields_.push_back({name, ColumnOf(name, columns, words_.where), k < words_.scale.size() ? words_.scale[k] : 1.0});
     stamps = stamps || name == kTimeField;
   }
 }
 
 std::vector<std::string> InstrumentBox::Fields(const std::string& query, const std::string& answer) {
-  const auto fields = SplitScpi(answer);
-  if (!fields) line_.FailProtocol(query, answer, "fields with commas between them");
+  const auto fields = SplitAnswer(answer, words_.separator);
+  if (!fields || fields->empty()) line_.FailProtocol(query, answer, "fields with \"" + words_.separator + "\" between them");
   return *fields;
 }
 
@@ -59,13 +98,18 @@ bool InstrumentBox::Put(const Field& field, const std::string& text, Reading& sa
     if (status) sample.status = *status;
     return status.has_value();
   }
-  const auto number = ParseScpiNumber(text, 1.0);
-  if (!number || std::isnan(*number)) return number.has_value();
+  if (IsNothing(text, words_.nothing)) return true;
+  const auto number = ParseNumber(text);
+  if (!number) return false;
   return field.column.parse(sample, field.scale == 1.0 ? text : PrintInUnit(*number * field.scale, 1.0));
 }
 
 Reading InstrumentBox::Sample(const std::string& query, const std::vector<std::string>& texts, std::size_t from) {
   Reading sample;
+  if (!ShowsSomething(texts, from, words_.valid)) {
+    sample.status = ReadingStatus::kNoLight;
+    return sample;
+  }
   for (std::size_t k = 0; k < fields_.size(); ++k) {
     if (!Put(fields_[k], texts[from + k], sample))
       line_.FailProtocol(query, texts[from + k], "a " + fields_[k].name);
@@ -74,7 +118,7 @@ Reading InstrumentBox::Sample(const std::string& query, const std::vector<std::s
 }
 
 Reading InstrumentBox::Ask(const std::string& query) {
-  const std::string answer = line_.Ask(query);
+  const std::string answer = AskDescribed(line_, words_.errors, query);
   const std::vector<std::string> texts = Fields(query, answer);
   if (texts.size() != fields_.size()) line_.FailProtocol(query, answer, fmt::format("{} fields", fields_.size()));
   return Sample(query, texts, 0);
@@ -84,7 +128,7 @@ void InstrumentBox::Arm(int samples, int lines) {
   waiting.clear();
   if (lines > 0 && words_.arm.find("{lines}") == std::string::npos)
     line_.Fail(FaultKind::kRefused, "latches at triggers only: its `arm` has no place for {lines}");
-  TellScpi(line_, Filled(words_.arm, {{"{samples}", std::to_string(samples)}, {"{lines}", std::to_string(lines)}}));
+  TellDescribed(line_, words_.errors, Filled(words_.arm, {{"{samples}", std::to_string(samples)}, {"{lines}", std::to_string(lines)}}));
 }
 
 /// One answer holds no more than fits in a line: it is asked until there are no more.

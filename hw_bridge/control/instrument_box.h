@@ -3,6 +3,7 @@
 #include <deque>
 
 #include "hw_bridge/control/device_line.h"
+#include "hw_bridge/control/dialogue_words.h"
 #include "twin/core/machine.h"
 #include "twin/core/reading_column.h"
 
@@ -21,10 +22,22 @@ struct InstrumentWords {
   /// look.
   std::string arm = "INST:ARM {samples}";
   std::string fetch = "INST:FETC?";        // answered by how many samples, 1 if some are lost, and the samples
+  std::string separator = ",";             // of the fields
+  std::vector<std::string> valid;          // as in ReadWords
+  std::vector<std::string> nothing = {"9.91E37"};
+  ErrorWords errors;
+  std::string where = "fields";            // the bench file says what the fields are
 };
 
-/// One instrument with some of the columns of a bench's readings. Its line is SCPI's in one thing: a command is
-/// followed by SYST:ERR?.
+/// What a bench file says of an instrument, with what its dialogue says. Fields of the dialogue are columns of the same name unless the
+/// file names others; x, y and temperature are those of an autocollimator and a thermometer.
+/// @param file     Its fields and scale, one a field of the dialogue, or none; `where` they stand.
+/// @param columns  Those of the bench that an instrument may fill.
+/// @throws InputError at file.where for another number of fields, a unit of another kind than the column's.
+InstrumentWords WithDialogue(const InstrumentWords& file, const DialogueWords& dialogue,
+                             const std::vector<ReadingColumn>& columns);
+
+/// One instrument with some of the columns of a bench's readings.
 class InstrumentBox {
  public:
   /// @param columns  Those of the bench that an instrument may fill.

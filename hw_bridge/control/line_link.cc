@@ -54,14 +54,16 @@ class StreamLink : public LineLink {
 
   LinkResult ReadLine(Duration patience) override {
     auto buffer = asio::dynamic_buffer(unread_, kLongestLine);
-    const auto error = Run(patience, [&](auto done) { asio::async_read_until(stream_, buffer, '\n', done); });
-    const auto end = unread_.find('\n');
+    const auto error = Run(patience, [&](auto done) { asio::async_read_until(stream_, buffer, end_, done); });
+    const auto end = unread_.find(end_);
     if (end == std::string::npos) return Describe(error);
     LinkResult result{unread_.substr(0, end), {}, ""};
-    unread_.erase(0, end + 1);
-    if (result.line.ends_with('\r')) result.line.pop_back();
+    unread_.erase(0, end + end_.size());
+    if (end_ == "\n" && result.line.ends_with('\r')) result.line.pop_back();
     return result;
   }
+
+  void EndLinesWith(const std::string& end) override { end_ = end; }
 
   bool HasUnread() override {
     int waiting = 0;
@@ -96,7 +98,7 @@ class StreamLink : public LineLink {
 
   asio::io_context io_;
   Stream stream_;
-  std::string unread_;
+  std::string unread_, end_ = "\n";
 };
 
 OpenedLink Opened(std::unique_ptr<LineLink> link, const asio::error_code& error) {
@@ -126,6 +128,11 @@ OpenedLink OpenTcp(const Address& address, Duration patience) {
   return Opened(std::move(link), error);
 }
 
+asio::serial_port::parity::type ParityOf(char letter) {
+  using Parity = asio::serial_port::parity;
+  return letter == 'E' ? Parity::even : letter == 'O' ? Parity::odd : Parity::none;
+}
+
 OpenedLink OpenSerial(const Address& address) {
   using Port = asio::serial_port;
   auto link = std::make_unique<StreamLink<Port>>();
@@ -135,9 +142,9 @@ OpenedLink OpenSerial(const Address& address) {
   };
   link->stream().open(address.place, error);
   set(Port::baud_rate(static_cast<unsigned>(address.number)));
-  set(Port::character_size(8));
-  set(Port::parity(Port::parity::none));
-  set(Port::stop_bits(Port::stop_bits::one));
+  set(Port::character_size(static_cast<unsigned>(address.frame[0] - '0')));
+  set(Port::parity(ParityOf(address.frame[1])));
+  set(Port::stop_bits(address.frame[2] == '2' ? Port::stop_bits::two : Port::stop_bits::one));
   set(Port::flow_control(Port::flow_control::none));
   return Opened(std::move(link), error);
 }

@@ -25,8 +25,10 @@ class LineLink {
   virtual ~LineLink() = default;
   /// Sends `text` as it is.
   virtual LinkResult Send(const std::string& text, Duration patience) = 0;
-  /// A line counts only with its end, LF or CR LF.
+  /// A line counts only with its end: LF or CR LF, unless another was named.
   virtual LinkResult ReadLine(Duration patience) = 0;
+  /// @param end  Of every line that comes from here on.
+  virtual void EndLinesWith(const std::string& end) = 0;
   /// Whether something has come that no ReadLine has taken.
   virtual bool HasUnread() = 0;
   /// Reads and forgets until nothing has come for `quiet`, or `patience` is over.

@@ -1,10 +1,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <ostream>
 
+#include "hw_bridge/ad/block_checks.h"
+#include "hw_bridge/ad/lost_word.h"
+#include "hw_bridge/ad/negotiation.h"
 #include "tests/support/served_run.h"
+#include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/rotary_4dof/twin/twin.h"
+#include "twin/sim/ad_sampler.h"
 
 /// Faults of real benches, each struck on a served twin while the real procedure drives it through the real
 /// backends. Where trying again is the answer, the readings are those of a run without any fault, to the bit.
@@ -95,6 +102,99 @@ TEST(FaultMatrix, AFaultThatStaysUsesUpTheAttemptsAndTheRunCanBeResumed) {
   EXPECT_EQ(resumed.Readings(), InProcess(scenario)) << resumed.said;
 }
 
+/// A controller that restarts while nothing moves is met by the next look at its encoder: that before the block or that behind it.
+struct RestartedAboutABlock {
+  const char* tables;
+  const char* table;
+  const char* when;  // the last device that is asked before it
+  friend void PrintTo(const RestartedAboutABlock& row, std::ostream* out) {
+    *out << row.tables << "_" << row.table << "_" << row.when;
+  }
+};
+
+class RestartAboutABlock : public ::testing::TestWithParam<RestartedAboutABlock> {};
+
+TEST_P(RestartAboutABlock, CostsOneAttemptAndLeavesNoCellEmpty) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.tables = GetParam().tables;
+  bool struck = false;
+  options.before_call = [&](const std::string& device, const std::string&, int kept) {
+    if (struck || kept != kAt || device != GetParam().when) return;
+    struck = true;
+    Inject(served, std::string(GetParam().table) + ",restart");
+  };
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.stopped_by, "") << run.said;
+  EXPECT_EQ(run.Readings(), InProcess(scenario));
+  ASSERT_EQ(run.log.attempts.size(), 1u);
+  EXPECT_EQ(run.log.attempts[0].reading, kAt);
+  EXPECT_EQ(run.log.attempts[0].fault, "restarted");
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, RestartAboutABlock,
+                         ::testing::Values(RestartedAboutABlock{"scpi", "target", "thermometer"},
+                                           RestartedAboutABlock{"scpi", "reference", "adc"},
+                                           RestartedAboutABlock{"esp", "reference", "thermometer"},
+                                           RestartedAboutABlock{"esp", "target", "adc"}),
+                         testing::PrintToStringParamName());
+
+// --- a lost word where the levels of the channels are alike ---
+
+/// What a word that is lost half-way through the block of a reading does, as it is foretold.
+hw::LostWord Foretold(const Reading& reading, const AdcSettings& adc) {
+  std::array<double, kChannels> level_lsb{}, noise_lsb{};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    level_lsb[c] = reading.mean_V[c] / sim::LsbOf(adc);
+    noise_lsb[c] = reading.std_V[c] / sim::LsbOf(adc);
+  }
+  return hw::IfAWordWereLost(level_lsb, hw::ScanOrderOf(adc), hw::UsualNoise_lsb(noise_lsb), adc.samples, 1e-9);
+}
+
+/// The restless bench with amplifiers whose offsets bring the levels of reading kAt so far apart.
+Scenario WithLevels(const std::array<double, kChannels>& levels_V) {
+  Scenario scenario = RestlessBench();
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  MemoryLog log;
+  procedure::CarryOut(bench, scenario, log);
+  for (std::size_t c = 0; c < kChannels; ++c)
+    RotaryOf(scenario).amplifier.offset_V[c] = levels_V[c] - log.readings[kAt].mean_V[c];
+  return scenario;
+}
+
+TEST(FaultMatrix, AWordIsLostUnseenWhereTheLevelsAreAlikeAndShiftsNoMeanByMoreThanSaid) {
+  const Scenario scenario = WithLevels({0.0, 0.004, 0.008, 0.004});  // noise: 0.006 V a sample
+  const AdcSettings& adc = RotaryOf(scenario).adc;
+  const ServedTwin served(scenario);
+  const ServedRun undisturbed = RunServed(served, scenario);
+  const Reading& whole = undisturbed.log.readings.at(kAt);
+  const hw::LostWord word = Foretold(whole, adc);
+  ASSERT_FALSE(word.shows);
+  RunOptions options;
+  options.faults[kAt] = "adc,slip";
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_TRUE(run.log.attempts.empty());
+  const Reading& hit = run.log.readings.at(kAt);
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const double chance_V = 3.0 * whole.std_V[c] / std::sqrt(adc.samples);  // of two halves of two channels
+    EXPECT_NE(hit.mean_V[c], whole.mean_V[c]);
+    EXPECT_NEAR(hit.mean_V[c], whole.mean_V[c], word.shift_lsb * sim::LsbOf(adc) + chance_V);
+  }
+}
+
+TEST(FaultMatrix, AWordIsNeverLostUnseenWhereOffsetsKeepTheLevelsApart) {
+  const Scenario scenario = WithLevels({-1.5, -0.5, 0.5, 1.5});
+  const ServedTwin served(scenario);
+  RunOptions options;
+  for (int at = 0; at < 36; at += 5) options.faults[at] = "adc,slip";
+  const ServedRun run = RunServed(served, scenario, options);
+  EXPECT_EQ(run.log.attempts.size(), options.faults.size());
+  EXPECT_EQ(run.Readings(), InProcess(scenario));
+  for (const Reading& reading : run.log.readings) EXPECT_TRUE(Foretold(reading, RotaryOf(scenario).adc).shows);
+}
+
 // --- what ends the run until a hand has helped ---
 
 struct NeedsAHand {
@@ -125,6 +225,57 @@ INSTANTIATE_TEST_SUITE_P(Matrix, FaultThatNeedsAHand,
                                            NeedsAHand{"LimitSwitch", "target,limit", "limit"},
                                            NeedsAHand{"TableThatStandsStill", "target,stall", "stalled"}),
                          [](const auto& row) { return row.param.name; });
+
+// --- what waits at a resume, and strikes while the bench is brought back to where the run was ---
+
+class FaultPendingAtAResume : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(FaultPendingAtAResume, IsNotTakenForARecordThatDoesNotFit) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = "target,limit";  // ends the run
+  const ServedRun run = RunServed(served, scenario, options);
+  ASSERT_EQ(run.stopped_by, "limit") << run.said;
+  RunOptions pending;
+  pending.faults[0] = GetParam();  // of this program: before anything is asked
+  pending.alter = [](hw::BenchFile& file) {  // who is mute is not waited for long
+    for (hw::ControlSettings* device : {&file.target, &file.reference}) device->timeout_s = 0.5;
+  };
+  const ServedRun resumed = RunServed(served, scenario, pending, &run);
+  if (std::string(GetParam()) == "adc,float") {
+    EXPECT_EQ(resumed.stopped_by, "signal_lost");
+    EXPECT_THAT(resumed.said, HasSubstr("check the cable"));
+    return;
+  }
+  EXPECT_EQ(resumed.stopped_by, "") << resumed.said;
+  EXPECT_EQ(resumed.Readings(), InProcess(scenario));
+  ASSERT_GT(resumed.log.attempts.size(), run.log.attempts.size()) << "and what it cost is written down";
+  EXPECT_EQ(resumed.log.attempts.back().reading, kAt);
+}
+
+INSTANTIATE_TEST_SUITE_P(Matrix, FaultPendingAtAResume,
+                         ::testing::Values("adc,drop", "adc,short", "adc,error", "adc,gap", "adc,saturate", "adc,float",
+                                           "adc,stuck", "adc,hum", "adc,slip", "adc,no_light", "adc,saturate,2",
+                                           "clock,step", "target,mute", "target,restart", "reference,restart", "target,disconnect", "target,lost_step",
+                                           "reference,not_in_position", "target,limit", "reference,stall"));
+
+TEST(FaultMatrix, AFaultThatStrikesAtEveryAttemptOfAResumeSaysWhatToDo) {
+  const Scenario scenario = RestlessBench();
+  const ServedTwin served(scenario);
+  RunOptions options;
+  options.faults[kAt] = "target,limit";
+  const ServedRun run = RunServed(served, scenario, options);
+  RunOptions pending;
+  pending.faults[0] = "adc,no_light,3";
+  try {
+    RunServed(served, scenario, pending, &run);
+    FAIL() << "three attempts, three faults";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("as before, in 3 attempts"));
+    EXPECT_THAT(error.what(), HasSubstr("look at the bench and go on with --resume"));
+  }
+}
 
 // --- what is measured all the same ---
 

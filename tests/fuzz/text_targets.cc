@@ -2,6 +2,7 @@
 
 #include "hw_bridge/bench_file.h"
 #include "hw_bridge/control/address.h"
+#include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/scpi.h"
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/machine_file.h"
@@ -103,6 +104,13 @@ void ReadMachineFile(std::string_view bytes) {
   }
 }
 
+void ReadDialogue(std::string_view bytes) {
+  try {
+    hw::ParseDialogue(std::string(bytes), kName);
+  } catch (const InputError&) {
+  }
+}
+
 void ReadProgramFile(std::string_view bytes) {
   const FileOfBytes file(bytes);
   try {
@@ -116,6 +124,7 @@ void ReadAnswer(std::string_view bytes) {
   const std::string answer(bytes);
   hw::ParseScpiState(answer);
   hw::SplitScpi(answer);
+  for (const char* separator : {" ", ";", "\r\n"}) hw::SplitAnswer(answer, separator);
   hw::ParseScpiNumber(answer, 1.0);
   hw::ParseAddress(answer);
 }
@@ -128,6 +137,7 @@ constexpr Target kTextTargets[] = {
     {"errors_map", ReadErrorsMap, ""},
     {"bench_file", ReadBenchFile, ""},
     {"machine_file", ReadMachineFile, ""},
+    {"dialogue", ReadDialogue, "hw_bridge/dialogues"},
     {"program_file", ReadProgramFile, ""},
     {"answer", ReadAnswer, ""},
 };

@@ -65,7 +65,7 @@ ReservedPort::~ReservedPort() {
   ::close(fd_);
 }
 
-FakeController::FakeController(Handler handler, Wire wire, int port) : handler_(std::move(handler)) {
+FakeController::FakeController(Handler handler, Wire wire, int port, char end) : handler_(std::move(handler)), end_(end) {
   const bool is_terminal = wire == Wire::kPseudoTerminal;
   fd_ = is_terminal ? OpenTerminal(address_, terminal_) : Listen(address_, port);
   thread_ = std::thread([this, is_terminal] { is_terminal ? Converse(fd_, true) : AcceptAll(); });
@@ -105,7 +105,7 @@ void FakeController::Converse(int fd, bool is_terminal) {
     const auto n = ::read(fd, bytes, sizeof bytes);
     if (n <= 0) return;
     unread.append(bytes, static_cast<std::size_t>(n));
-    for (auto end = unread.find('\n'); end != std::string::npos; end = unread.find('\n')) {
+    for (auto end = unread.find(end_); end != std::string::npos; end = unread.find(end_)) {
       const std::string line = unread.substr(0, end);
       unread.erase(0, end + 1);
       if (!Take(fd, line, is_terminal)) return;

@@ -22,7 +22,8 @@ class FakeController {
 
   enum class Wire { kTcp, kPseudoTerminal };
   /// @param port  0: any that is free.
-  explicit FakeController(Handler handler, Wire wire = Wire::kTcp, int port = 0);
+  /// @param end   Of the lines that come.
+  explicit FakeController(Handler handler, Wire wire = Wire::kTcp, int port = 0, char end = '\n');
   ~FakeController();
 
   std::string Address() const { return address_; }
@@ -39,6 +40,7 @@ class FakeController {
 
   Handler handler_;
   std::string address_;
+  char end_;
   int fd_ = -1, terminal_ = -1;
   mutable std::mutex mutex_;
   std::vector<std::string> lines_;

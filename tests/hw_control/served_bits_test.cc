@@ -3,6 +3,7 @@
 
 #include "hw_bridge/control/esp_table.h"
 #include "hw_bridge/control/scpi.h"
+#include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/scpi_table.h"
 #include "hw_bridge/control/served_clock.h"
@@ -114,9 +115,9 @@ class Driven {
         clock_talk_(ParseAddress(served.ScpiAddress()).value(), kScpiIdentity, "twinbench,"),
         clock_({clock_talk_, "clock", kAmpleTime}),
         simulation_(clock_),
-        autocollimator_({scpi_, "autocollimator", kAmpleTime}),
-        thermometer_({scpi_, "thermometer", kAmpleTime}),
-        goniometer_({scpi_, "goniometer", kAmpleTime}),
+        autocollimator_({scpi_, "autocollimator", kAmpleTime}, ReadyDialogueNamed("served_autocollimator")),
+        thermometer_({scpi_, "thermometer", kAmpleTime}, ReadyDialogueNamed("served_thermometer")),
+        goniometer_({scpi_, "goniometer", kAmpleTime}, ReadyDialogueNamed("served_goniometer")),
         fixture_({scpi_, "fixture", kAmpleTime}) {
     clock_.Open();
     simulation_.Restart();
@@ -142,9 +143,9 @@ class Driven {
   std::unique_ptr<Dialogue> esp_;
   ScpiClock clock_;
   ScpiSimulation simulation_;
-  ScpiAutocollimator autocollimator_;
-  ScpiThermometer thermometer_;
-  ScpiGoniometer goniometer_;
+  DescribedAutocollimator autocollimator_;
+  DescribedThermometer thermometer_;
+  DescribedGoniometer goniometer_;
   ScpiFixture fixture_;
   std::unique_ptr<RotaryTable> target_, reference_;
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <thread>
 
 #include "twin/core/device_fault.h"
@@ -12,7 +13,7 @@
 namespace twinbench::hw {
 namespace {
 
-/// A table that stands off its stop from some look on.
+/// A table that stands off its stop from some look on; nobody knows how far (NaN): it has lost its origin.
 class CreepingTable : public RotaryTable {
  public:
   CreepingTable(int from_look, double off_rad) : from_look_(from_look), off_rad_(off_rad) {}
@@ -21,6 +22,7 @@ class CreepingTable : public RotaryTable {
     TableState state;
     state.commanded_rad = 1.0;
     state.encoder_rad = 1.0 + (++looks >= from_look_ ? off_rad_ : 0.0);
+    state.referenced = !std::isnan(state.encoder_rad);
     return state;
   }
   void StartMove(double) override {}
@@ -70,6 +72,11 @@ TEST(WatchedAdc, SeesATableThatLeavesItsStopInTheMiddleOfABlock) {
   CreepingTable creeping(3, 0.06 * units::arcsec);
   EXPECT_EQ(HowABlockEnds(creeping), FaultKind::kMoved);
   EXPECT_GE(creeping.looks, 3);
+}
+
+TEST(WatchedAdc, SeesAControllerThatRestartsInTheMiddleOfABlock) {
+  CreepingTable restarted(3, kNaN);
+  EXPECT_EQ(HowABlockEnds(restarted), FaultKind::kRestarted);
 }
 
 TEST(WatchedAdc, TellsWhatALookFailedOf) {

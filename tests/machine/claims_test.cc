@@ -7,6 +7,9 @@
 
 #include "hw_bridge/in_position.h"
 #include "tests/core/input_error.h"
+#include "twin/benches/freeform_five_axis/columns.h"
+#include "twin/benches/freeform_five_axis/procedure.h"
+#include "twin/benches/freeform_five_axis/twin/twin.h"
 #include "twin/benches/registry.h"
 #include "twin/core/estimator.h"
 #include "twin/core/run_record.h"
@@ -63,11 +66,40 @@ TEST(Claims, OfAComparisonAtStopsAreWhatItsCurveStates) {
   EXPECT_NEAR(Claimed_arcsec(scenario, "shaft") / MeanU_arcsec(scenario, "/device/u_ez_arcsec"), 1.0, 0.05);
 }
 
+/// Slopes of what the twin shows where one axis of the ideal machine after the other is moved off its pose.
+TEST(Claims, OfFiveAxesAreWhatTheTwinsReadingsSay) {
+  const Scenario scenario = ParseScenario(
+      "bench = \"freeform_five_axis\"\nseed = 4\n[optics]\nfidelity = \"closed\"\n[artefact]\nmounting_um = 0.0\nmounting_arcsec = 0.0\n"
+      "[machine.random]\ntranslation_um = 0.0\nrotation_arcsec = 0.0\nsquareness_arcsec = 0.0\n"
+      "[freeform_procedure]\nmounts = [ { } ]\nposes = 8\n",
+      "claims.toml", "");
+  const std::vector<Claim> claims = ClaimsOf(scenario);
+  ASSERT_EQ(claims.size(), 5u);
+  const FreeformSettings& own = FreeformOf(scenario);
+  sim::FreeformTwin twin(scenario, sim::Draw(scenario));
+  const auto shown = [&](Reading pose, std::size_t axis, double by) {
+    benches::freeform::kCommanded[axis](pose) += by;
+    const sim::ProbeSignals signals = twin.Show(pose, 0.0);
+    return Eigen::Vector3d(signals.qpd_x_V / own.qpd.noise_V, signals.qpd_y_V / own.qpd.noise_V, signals.ccd_px / own.ccd.noise_px);
+  };
+  const std::vector<Reading> plan = procedure::FreeformSchedule(scenario);
+  for (std::size_t axis = 0; axis < claims.size(); ++axis) {
+    const double step = axis < 3 ? 1e-6 : units::arcsec;
+    double information = 0.0;
+    for (const Reading& pose : plan) information += ((shown(pose, axis, step) - shown(pose, axis, -step)) / (2.0 * step)).squaredNorm();
+    const double u = 1.0 / std::sqrt(2.0 * information / static_cast<double>(plan.size()));
+    EXPECT_NEAR(claims[axis].u / u, 1.0, 1e-3) << claims[axis].axis;
+  }
+  EXPECT_LT(claims[0].u, 1e-6) << "fractions of a um";
+  EXPECT_LT(claims[3].u, 5.0 * units::arcsec);
+}
+
 TEST(Claims, ThereAreNoneWhereNothingIsClaimedAtAStop) {
   Scenario scenario = Rotary("positions = 12\n");
   scenario.noise_free = true;
   EXPECT_TRUE(ClaimsOf(scenario).empty());
   EXPECT_TRUE(ClaimsOf(ParseScenario("bench = \"hob_transmission\"\n", "hob.toml", "")).empty());
+  EXPECT_TRUE(ClaimsOf(ParseScenario("bench = \"circular_motion\"\n", "circular.toml", "")).empty());
 }
 
 constexpr const char* kTurntableFile = R"([machine]
@@ -98,6 +130,17 @@ TEST(InPosition, IsTheClaimUnlessTheFileAsksForLess) {
   EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "turntable", 0.03 * units::arcsec); }),
               testing::AllOf(HasSubstr("bench.toml:5"), HasSubstr("in_position_arcsec is 0.04"), HasSubstr("certain to 0.03 arcsec"),
                              HasSubstr("at most 0.03")));
+}
+
+TEST(InPosition, OfALinearAxisIsToldInMicrometres) {
+  const std::vector<MachineAxis> axes = {{"x"}};
+  std::string text = kTurntableFile;
+  text.replace(text.find("[axis_turntable]\nlower_deg = -30.0"), 34, "[axis_x]\nin_position_um = 0.3");
+  hw::MachineFile file = hw::ParseMachineFile(text, "bench.toml", axes);
+  hw::TieToClaim(file, axes, "x", 0.4 * units::um);
+  EXPECT_DOUBLE_EQ(file.axes[0].in_position, 0.3 * units::um);
+  EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "x", 0.2 * units::um); }),
+              testing::AllOf(HasSubstr("axis_x.in_position_um is 0.3"), HasSubstr("certain to 0.2 um")));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
 #include "twin/benches/hob_transmission/settings.h"
+#include "twin/core/sample_text.h"
 #include "twin/procedure/machine_watch.h"
 
 /// What goes wrong with a machine and its instruments, and what becomes of the run.
@@ -70,6 +71,97 @@ TEST_P(FaultsOfEveryBench, CostOneAttemptAndNoBit) {
 INSTANTIATE_TEST_SUITE_P(Benches, FaultsOfEveryBench,
                          ::testing::Values(ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortHob));
 
+/// The wait before a reading at rest and the reading itself are the last that is asked before the looks about it.
+TEST(MachineFaults, ARestartAboutAReadingAtRestCostsAnAttemptAndLeavesNoCellEmpty) {
+  for (Scenario (*make)() : {ShortFreeform, ShortTurntable}) {
+    Failing bench(make);
+    for (const std::string asked_last : {"clock", "instruments"}) {
+      int times = 0;
+      const auto restart = [&](const std::string& device, const std::string& request, std::string&) {
+        const bool is_next = device == asked_last && (request == "read" || request.starts_with("wait"));
+        if (is_next && ++times == 10) bench.served.Inject("machine,restart");
+      };
+      bench.ExpectGoneOn(RunServedMachine(bench.served, bench.scenario, bench.BenchFile(), {}, {}, restart), "restarted");
+    }
+  }
+}
+
+/// A twin that does not say it is one, whose controller restarts once, in the reading number `restarts_in`.
+struct Restarting {
+  Restarting(const Scenario& its_scenario, int restarts_in)
+      : scenario(its_scenario),
+        twin(BenchOf(scenario).make_devices(scenario)),
+        troubled(Unsimulated(), InstrumentColumns(FormatOf(scenario.bench).columns), {},
+                 [this, restarts_in](const std::string& device, const std::string& request, std::string& answer) {
+                   if (request == "read" && ++reads == restarts_in) is_lost = true;
+                   if (request == "home") Home();
+                   if (device == "machine" && request == "state" && is_lost) answer = WithoutOrigin(answer);
+                 }) {}
+  void Home() {
+    ++homes;
+    is_lost = false;
+  }
+  static std::string WithoutOrigin(const std::string& answer) {
+    std::vector<AxisState> states = ParseStates(answer);
+    for (AxisState& state : states) {
+      state.referenced = false;
+      state.commanded = state.encoder = kNaN;
+    }
+    return StatesText(states);
+  }
+  MachineBench Unsimulated() {
+    const MachineBench inner = twin->Devices();
+    return {inner.clock, inner.machine, inner.instruments, inner.fixture, nullptr, inner.indexer};
+  }
+  MachineRun Run(bool may_home) {
+    MachineRun run;
+    procedure::MachineOptions options;
+    options.log = &run.log;
+    options.may_home = may_home;
+    MachineBench bench = troubled.Bench();
+    try {
+      BenchOf(scenario).drive(bench, scenario, run.log, {}, options);
+    } catch (const DeviceFault& fault) {
+      run.stopped_by = FaultName(fault.kind());
+      run.said = fault.what();
+    }
+    return run;
+  }
+
+  Scenario scenario;
+  std::unique_ptr<MachineDevices> twin;
+  TroubledMachine troubled;
+  int reads = 0, homes = 0;
+  bool is_lost = false;
+};
+
+TEST(MachineFaults, ARealTurntableFindsItsOriginAgainIfItMay) {
+  Restarting bench(ShortTurntable(), 8);
+  const MachineRun run = bench.Run(true);
+  EXPECT_EQ(run.stopped_by, "") << run.said;
+  EXPECT_EQ(bench.homes, 1);
+  EXPECT_EQ(std::ssize(run.log.readings), BenchOf(bench.scenario).planned_readings(bench.scenario));
+  for (const Reading& reading : run.log.readings) EXPECT_EQ(reading.extra.size(), 2u) << reading.reading;
+  ASSERT_EQ(run.log.attempts.size(), 1u);
+  EXPECT_EQ(run.log.attempts[0].fault, "restarted");
+  EXPECT_EQ(run.log.attempts[0].reading, 7);
+
+  Restarting forbidden(ShortTurntable(), 8);
+  const MachineRun stopped = forbidden.Run(false);
+  EXPECT_EQ(stopped.stopped_by, "refused");
+  EXPECT_THAT(stopped.said, HasSubstr("--allow-homing"));
+  EXPECT_EQ(forbidden.homes, 0);
+  EXPECT_EQ(stopped.log.readings.size(), 7u);
+}
+
+TEST(MachineFaults, ARealMachineIsNotHomedWithAnInstrumentMounted) {
+  Restarting bench(ShortCircles(), 2);
+  const MachineRun run = bench.Run(true);
+  EXPECT_EQ(run.stopped_by, "refused");
+  EXPECT_THAT(run.said, HasSubstr("with an instrument mounted: take it off"));
+  EXPECT_EQ(bench.homes, 0);
+}
+
 TEST(MachineFaults, ASpindleThatTurnsBeyondItsLimitsIsStopped) {
   const Scenario scenario = ShortHob();
   const auto twin = BenchOf(scenario).make_devices(scenario);
@@ -116,6 +208,24 @@ void ExpectStopped(const std::string& fault, const std::string& kind, const std:
   const MachineRun rest = bench.Run({}, run.log.readings);
   EXPECT_EQ(rest.stopped_by, "") << rest.said;
   EXPECT_EQ(TextOf(rest.log.readings, bench.scenario), bench.undisturbed);
+}
+
+TEST(MachineFaults, ThatWaitAtAResumeAreNotTakenForARecordThatDoesNotFit) {
+  Failing bench;
+  const std::vector<Reading> kept(bench.readings.begin(), bench.readings.begin() + 32);
+  for (const char* fault : {"machine,disconnect", "machine,restart", "machine,not_in_position", "instruments,disconnect",
+                            "instruments,gap"}) {
+    const MachineRun run = bench.Run({{0, fault}}, kept);
+    EXPECT_EQ(run.stopped_by, "") << fault << ": " << run.said;
+    EXPECT_EQ(TextOf(run.log.readings, bench.scenario), bench.undisturbed) << fault;
+    EXPECT_EQ(run.log.attempts.size(), 1u) << fault;
+  }
+  for (const std::string fault : {"limit", "stall"}) {  // a hand is needed; then it goes on
+    const MachineRun run = bench.Run({{0, "machine," + fault}}, kept);
+    EXPECT_EQ(run.stopped_by, fault == "stall" ? "stalled" : fault) << run.said;
+    EXPECT_EQ(run.log.readings.size(), 32u);
+  }
+  EXPECT_EQ(TextOf(bench.Run({}, kept).log.readings, bench.scenario), bench.undisturbed);
 }
 
 /// The axes of a twin, of which one is pushed off its place whenever something is read.

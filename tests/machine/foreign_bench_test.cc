@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -33,14 +35,17 @@ class ForeignBenchProgram : public Program {
   Outcome MeasureWith(const std::vector<std::string>& faults, int attempts = 5) {
     const ForeignBench bench(program_, At(""), faults);
     hidden_ = bench.told();
-    std::string text = "attempts = " + std::to_string(attempts) + "\n" + bench_file_;
-    for (const auto& [device, port] : hidden_.at("ports").items()) {
-      const std::string place = "{" + device + "}";
+    std::string text = bench_file_;
+    if (const auto at = text.find("attempts = "); at != std::string::npos) text.erase(at, text.find('\n', at) + 1 - at);
+    text = "attempts = " + std::to_string(attempts) + "\n" + text;
+    const auto fill = [&](const std::string& place, const std::string& device) {
       for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
         text.replace(at, place.size(), bench.Address(device));
-    }
+    };
+    for (const auto& [device, port] : hidden_.at("ports").items()) fill("{" + device + "}", device);
+    fill("{fixture}", "indexer");  // where no device of that name is a hand
     Write("bench.toml", text);
-    return Call({"measure", "foreign.toml", "--bench", "bench.toml", "-o", "measured"});
+    return Call({"measure", "foreign.toml", "--bench", "bench.toml", "-o", "measured", "--allow-homing"});
   }
 
   nlohmann::json Separated() {
@@ -104,43 +109,22 @@ passes = [1, -1]
 dwell_s = [0.01]
 )";
 
-// Waits are short, so that faults are; the indexer may be silent for its move_timeout_s. It answers in microradians.
-constexpr const char* kForeignTurntableBench = R"(kind = "hardware"
-[machine]
-kind = "esp"
-address = "tcp:{controller}"
-identity = "ESP301 Version 3"
-timeout_s = 0.3
-stall_s = 0.5
-[axis_turntable]
-lower_deg = -30.0
-upper_deg = 390.0
-in_position_arcsec = 0.1
-[instrument_1]
-kind = "scpi"
-address = "tcp:{autocollimator}"
-identity = "FOREIGN OPTICS,AC300,"
-timeout_s = 0.3
-fields = ["autocollimator_x_arcsec", "autocollimator_y_arcsec", "ignored"]
-scale = [0.20626480624709636, 0.20626480624709636, 1.0]
-read = "MEAS:ANGL?"
-arm = ""
-[indexer]
-kind = "scpi"
-address = "tcp:{indexer}"
-timeout_s = 0.3
-move = "SEAT {tooth}"
-done = "SEAT?"
-move_timeout_s = 0.3
-[fixture]
-kind = "scpi"
-address = "tcp:{indexer}"
-timeout_s = 0.3
-)";
+/// A TOML text of docs/hardware.md, by the comment that it begins with. Waits are short there, so that faults are.
+std::string Documented(const std::string& name) {
+  std::ifstream in(TWINBENCH_SOURCE_DIR "/docs/hardware.md");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string fence = "```toml\n# " + name + "\n";
+  const auto begin = text.find(fence);
+  if (begin == std::string::npos) throw BenchError("docs/hardware.md has no " + name);
+  const auto from = begin + fence.size();
+  return text.substr(from, text.find("```", from) - from);
+}
 
 class ForeignTurntable : public ForeignBenchProgram {
  protected:
-  ForeignTurntable() : ForeignBenchProgram("turntable_bench.py", kForeignTurntable, kForeignTurntableBench) {}
+  ForeignTurntable() : ForeignBenchProgram("turntable_bench.py", kForeignTurntable, Documented("bench.toml")) {
+    for (const char* dialogue : {"ac300.toml", "hirth360.toml"}) Write(dialogue, Documented(dialogue));
+  }
 
   void ExpectRecovered(const nlohmann::json& separation, const std::string& table) const {
     SCOPED_TRACE(table);
@@ -150,13 +134,14 @@ class ForeignTurntable : public ForeignBenchProgram {
 
 TEST_F(ForeignTurntable, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
   const Outcome measured = MeasureWith(
-      {"controller.mute@3", "controller.unsettled@9", "autocollimator.late@14", "indexer.drop@30"});
+      {"controller.mute@3", "controller.unsettled@9", "autocollimator.late@14", "controller.restart@20", "indexer.drop@30"});
   ASSERT_EQ(measured.exit_code, 0) << measured.err;
   EXPECT_EQ(Kept(), 36u);
   std::map<std::string, int> failed = FailedAttemptsByFault();
   EXPECT_GE(failed["timeout"], 2) << "a mute controller, a late autocollimator";
   EXPECT_GE(failed["dropped"], 1);
   EXPECT_GE(failed["not_in_position"], 1);
+  EXPECT_GE(failed["restarted"], 1) << "told by its motors, for it has no MS?";
 
   const nlohmann::json separation = Separated();
   ExpectRecovered(separation, "turntable");

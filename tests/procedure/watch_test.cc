@@ -271,6 +271,25 @@ TEST(RealBench, IsNotMountedAgainWhenAFaultComesAfterTheMounting) {
   EXPECT_EQ(log.readings.size(), 72u);
 }
 
+TEST(RealBench, WaitsForNoMountingThatAPersonSaysIsDone) {
+  Scenario scenario = TwoSetups();
+  RotaryOf(scenario).procedure.remount_s = 1000.0;
+  for (const bool by_hand : {false, true}) {
+    ScriptedBench scripted;
+    test::MemoryLog log;
+    RotaryBench bench = scripted.Bench();
+    Options options;
+    options.log = &log;
+    options.hand_ends_mounting = by_hand;
+    CarryOut(bench, scenario, log, {}, options);
+    const double took_s = ToSeconds(log.readings.back().time.time_since_epoch());
+    EXPECT_EQ(took_s > 2000.0, !by_hand) << "twice remount_s, or none";
+    EXPECT_EQ(took_s < 1000.0, by_hand) << took_s;
+    const bool is_said = log.events[0].text.find(kMountedByHand) != std::string::npos;
+    EXPECT_EQ(is_said, by_hand) << log.events[0].text;
+  }
+}
+
 TEST(RealBench, FindsItsOriginAgainAfterARestartOfTheController) {
   ScriptedBench scripted;
   test::MemoryLog log;
@@ -289,6 +308,29 @@ TEST(RealBench, FindsItsOriginAgainAfterARestartOfTheController) {
   EXPECT_EQ(scripted.reference.homes, 0);
   EXPECT_EQ(log.attempts.size(), 1u);
   EXPECT_EQ(log.attempts[0].fault, "restarted");
+}
+
+TEST(RealBench, KeepsNoReadingAboutWhichATableHadLostItsOrigin) {
+  for (const char* asked_last : {"thermometer", "adc"}) {  // before the look before the block, and the one behind it
+    ScriptedBench scripted;
+    test::MemoryLog log;
+    bool restarted = false;
+    test::TroubledBench troubled(scripted.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
+      if (restarted || log.readings.size() != 5 || device != asked_last) return;
+      restarted = true;
+      scripted.reference.state.referenced = false;
+      scripted.reference.state.encoder_rad = kNaN;
+    });
+    RotaryBench bench = troubled.Bench();
+    Options options;
+    options.log = &log;
+    CarryOut(bench, TwoSetups(), log, {}, options);
+    EXPECT_EQ(scripted.reference.homes, 1) << asked_last;
+    ASSERT_EQ(log.attempts.size(), 1u);
+    EXPECT_EQ(log.attempts[0].fault, "restarted");
+    EXPECT_EQ(log.attempts[0].reading, 5);
+    for (const Reading& reading : log.readings) EXPECT_EQ(reading.extra.size(), 4u) << "two tables, before and behind";
+  }
 }
 
 TEST(RealBench, FindsNoOriginThatNobodyAllowedItToLookFor) {

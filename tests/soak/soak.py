@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Serve and measure for a long time, with faults at random: same readings every time, memory and handles flat.
 
-    tests/soak/soak.py build/tools/twinbench scenarios/rotary_4dof.toml --minutes 60
+    tests/soak/soak.py build/tools/twinbench scenarios/rotary_4dof.toml --minutes 60    (or of any other bench)
 
 One `serve` stays up; `measure` runs on it again and again while faults strike at random moments and some measurements
 are killed. Every run is resumed until it is whole, and its readings are compared with those of `run`, text by text.
@@ -20,11 +20,16 @@ import tempfile
 import threading
 import time
 
-# Device and kind of faults after which a reading is taken again.
-FAULTS = [
+# Device and kind of faults after which a reading is taken again: of two tables and a card, and of a machine.
+TABLE_FAULTS = [
     "adc,slip", "adc,stuck", "adc,drop", "adc,stall", "adc,short", "adc,error", "clock,step", "target,mute", "reference,late",
     "target,partial", "target,disconnect", "target,restart", "reference,lost_step", "target,not_in_position",
 ]  # fmt: skip
+# A lost word is seen by the channels' levels, where they are not alike (docs/hardware.md, "A/D cards").
+LEVELS_APART = "amplifier.offset_mV=[-1500, -500, 500, 1500]"
+MACHINE_FAULTS = [
+    f"{device},{kind}" for device in ("machine", "instruments") for kind in ("mute", "late", "partial", "disconnect")
+] + ["machine,restart", "machine,not_in_position", "instruments,gap"]  # fmt: skip
 MOST_RESUMES = 100  # faults that have not struck yet wait for the next attempt
 WARM_UP_RUNS = 10
 ALLOWED_GROWTH = 0.05  # of the server's memory between the end of the warm-up and the end
@@ -55,7 +60,7 @@ class Server:
             if self.process.poll() is not None or time.monotonic() > until:
                 sys.exit("serve did not come up: " + (folder / "serve.log").read_text())
             time.sleep(0.05)
-        host, port = re.search(r'"tcp:([\d.]+):(\d+)"', self.bench.read_text()).groups()
+        host, port = re.search(r'kind = "scpi"\naddress = "tcp:([\d.]+):(\d+)"', self.bench.read_text()).groups()
         self.address = (host, int(port))
 
     def memory_kB(self):
@@ -79,8 +84,13 @@ class Server:
         self.log.close()
 
 
+def has_tables(how):
+    return re.search(r'^bench = "rotary_4dof"', pathlib.Path(how.scenario).read_text(), re.MULTILINE) is not None
+
+
 def sets(how):
-    return [word for key in how.set for word in ("--set", key)]
+    own = [LEVELS_APART] if has_tables(how) else []
+    return [word for key in [*own, *how.set] for word in ("--set", key)]
 
 
 def readings_of(how, run):
@@ -120,7 +130,7 @@ def measure(how, server, run, chance):
                     process.kill()
                     kills += 1
                 elif attempt < 3:  # it must be able to end
-                    server.strike(chance.choice(FAULTS))
+                    server.strike(chance.choice(TABLE_FAULTS if has_tables(how) else MACHINE_FAULTS))
                     faults += 1
             if process.wait() == 0:
                 return faults, kills, attempt

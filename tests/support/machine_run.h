@@ -12,6 +12,7 @@
 #include "hw_bridge/open_machine.h"
 #include "hw_bridge/serve/server.h"
 #include "tests/support/memory_log.h"
+#include "tests/support/troubled_machine.h"
 #include "twin/benches/registry.h"
 #include "twin/core/device_fault.h"
 #include "twin/procedure/machine_options.h"
@@ -87,10 +88,12 @@ inline std::vector<Reading> DrivenInProcess(const Scenario& scenario) {
   return log.readings;
 }
 
-/// @param faults  Injected when so many readings are kept.
+/// @param faults       Injected when so many readings are kept.
+/// @param before_call  Called before every call of a device; may be empty.
 inline MachineRun RunServedMachine(const ServedMachineTwin& served, const Scenario& scenario,
                                    const std::string& bench_file, std::map<int, std::string> faults = {},
-                                   const std::vector<Reading>& kept = {}) {
+                                   const std::vector<Reading>& kept = {},
+                                   const TroubledMachine::Trouble& before_call = {}) {
   class Sink : public ReadingSink {
    public:
     Sink(MachineRun& run, std::function<void(int)> on_kept) : run_(run), on_kept_(std::move(on_kept)) {
@@ -112,7 +115,8 @@ inline MachineRun RunServedMachine(const ServedMachineTwin& served, const Scenar
     const std::vector<MachineAxis> axes = whole.make_devices(scenario)->Devices().machine.Axes();
     const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench_file, "served.toml", axes), axes,
                                                 InstrumentColumns(whole.format->columns));
-    MachineBench bench = opened->Devices();
+    TroubledMachine watched(opened->Devices(), InstrumentColumns(whole.format->columns), before_call);
+    MachineBench bench = watched.Bench();
     if (kept.empty()) bench.simulation->Restart();
     procedure::MachineOptions options;
     options.axes = opened->Limits();

@@ -28,6 +28,8 @@ struct RunOptions {
   std::string tables = "scpi";        // scpi | esp | pty
   std::map<int, std::string> faults;  // injected when so many readings are kept
   std::function<void(hw::BenchFile&)> alter;
+  /// Called before every call of a device, with the number of readings that are kept.
+  std::function<void(const std::string& device, const std::string& request, int kept)> before_call;
 };
 
 /// Why comedi cannot be tried here; empty if it can.

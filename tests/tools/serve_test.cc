@@ -33,6 +33,15 @@ class Served : public Program {
     return server;
   }
 
+  /// A SCPI command to the server of bench.toml, by somebody who is none of our programs.
+  void Say(const std::string& command) {
+    const std::string file = Read("bench.toml"), before = "kind = \"scpi\"\naddress = \"tcp:127.0.0.1:";
+    const auto at = file.find(before) + before.size();
+    const std::string port = file.substr(at, file.find('"', at) - at);
+    Write("say.sh", "exec 3<>/dev/tcp/127.0.0.1/" + port + "; echo '" + command + ";*OPC?' >&3; read -r done <&3\n");
+    ASSERT_EQ(std::system(("bash " + At("say.sh")).c_str()), 0);
+  }
+
   /// Goes on where there is a run.
   std::vector<std::string> Measure(const std::string& name) const {
     std::vector<std::string> words = {"measure", "small.toml", "--bench", "bench.toml", "-o", name};
@@ -159,7 +168,8 @@ TEST_F(Served, EverySignalHoweverOftenStopsTheTablesAndTheRunCanBeResumed) {
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
     EXPECT_THAT(outcome.err, HasSubstr("tables were brought to rest. The controller says that all tables stand"));
   }
-  Succeed(Measure("stopped"));
+  Say("SIM:FAUL target,disconnect");  // waits for whoever opens the bench
+  EXPECT_THAT(Call(Measure("stopped")).err, HasSubstr("(dropped); the bench is opened again"));
   EXPECT_EQ(ReadingsOf("stopped"), readings_);
 }
 
@@ -218,6 +228,10 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
   const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
   EXPECT_THAT(fine.err, HasSubstr("124 readings"));
+  EXPECT_THAT(fine.err, HasSubstr("a word lost by the card might not show"));
+  const Outcome apart = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only", "--set",
+                              "amplifier.offset_mV=[-1500, -500, 500, 1500]"});
+  EXPECT_THAT(apart.err, testing::Not(HasSubstr("a word lost by the card")));
   const Outcome off = Call(
       {"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "off", "--set", "psd_a.width_mm=0.2"});
   EXPECT_EQ(off.exit_code, 1);
@@ -236,11 +250,7 @@ TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
 
 TEST_F(Served, ARehearsalAsksTheControllersForTheirLimits) {
   const auto server = Serve();
-  const std::string file = Read("bench.toml");
-  const auto at = file.find("tcp:127.0.0.1:") + 14;
-  const std::string port = file.substr(at, file.find('"', at) - at);
-  Write("limit.sh", "exec 3<>/dev/tcp/127.0.0.1/" + port + "; echo 'ROT1:LIM:UPP 100;*OPC?' >&3; read -r done <&3\n");
-  ASSERT_EQ(std::system(("bash " + At("limit.sh")).c_str()), 0);
+  Say("ROT1:LIM:UPP 100");
   for (const char* how : {"--rehearse", "--rehearse-only"}) {
     const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", how, "-o", "narrow"});
     EXPECT_EQ(narrow.exit_code, 1) << narrow.err;
@@ -254,6 +264,8 @@ TEST_F(Served, TheKeysOfABenchFileAreExplained) {
   const std::string text = Succeed({"help", "bench"});
   for (const char* key : {"[adc]", "[goniometer]", "in_position_arcsec", "timeout_s", "attempts = 3"})
     EXPECT_THAT(text, HasSubstr(key));
+  const std::string dialogue = Succeed({"help", "dialogue"});
+  for (const char* key : {"elcomat ", "answer_ends = \"LF\"", "[tilt]"}) EXPECT_THAT(dialogue, HasSubstr(key));
 }
 
 TEST_F(Served, WithoutNoiseItIsRefusedForThereAreNoCounts) {

@@ -65,9 +65,18 @@ std::string BenchKeysText() {
          DescribeKeys(hw::KeysOf(machine, {{"x", false}, {"a", true}}));
 }
 
+std::string DialogueKeysText() {
+  std::string text = "A dialogue says what is said to an instrument and what it answers (docs/hardware.md). Ready ones:\n\n";
+  for (const hw::ReadyDialogue& ready : hw::ReadyDialogues())
+    text += fmt::format("  {:<24} {}\n", ready.name, hw::ParseDialogue(ready.text, ready.name).title);
+  hw::DialogueWords defaults;
+  return text + "\nKeys of a dialogue:\n\n" + DescribeKeys(defaults.Keys());
+}
+
 std::string HelpText(const std::string& topic) {
   if (topic == "effects") return AllEffectsText();
   if (topic == "bench") return BenchKeysText();
+  if (topic == "dialogue") return DialogueKeysText();
   return topic == "map" ? imports::DescribeMaps() : DescribeScenarioKeys();
 }
 
@@ -80,10 +89,10 @@ void Help(const std::string& topic, JsonAnswer& answer) {
 }  // namespace
 
 void AddHelp(CLI::App& app) {
-  auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects, bench files or maps");
+  auto* command = app.add_subcommand("help", "Explain the keys of scenarios, effects, bench files, dialogues or maps");
   auto topic = std::make_shared<std::string>("scenario");
-  command->add_option("topic", *topic, "scenario, effects, bench or map")
-      ->check(CLI::IsMember({"scenario", "effects", "bench", "map"}));
+  command->add_option("topic", *topic, "scenario, effects, bench, dialogue or map")
+      ->check(CLI::IsMember({"scenario", "effects", "bench", "dialogue", "map"}));
   AnswerWith(*command, "the same", [topic](JsonAnswer& answer) { Help(*topic, answer); });
 }
 

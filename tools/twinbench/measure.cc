@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "hw_bridge/bench_lock.h"
 #include "hw_bridge/in_position.h"
 #include "hw_bridge/program/program_file.h"
@@ -13,6 +15,7 @@
 #include "tools/twinbench/measure_program.h"
 #include "tools/twinbench/measured_bench.h"
 #include "tools/twinbench/measured_run.h"
+#include "tools/twinbench/opened_again.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/rehearsal.h"
 #include "tools/twinbench/run_folder.h"
@@ -29,6 +32,13 @@ namespace {
 
 constexpr double kColdest_degC = -20.0, kHottest_degC = 60.0;  // beyond: no room that a bench stands in
 
+/// Whether a person said when the mountings of a recorded run were done, so that nobody waited for them by the clock.
+bool HandEndedMounting(const std::string& record_folder) {
+  return std::ranges::any_of(RunRecord::Open(record_folder)->Events(), [](const RecordedEvent& event) {
+    return event.device == "fixture" && event.text.find(procedure::kMountedByHand) != std::string::npos;
+  });
+}
+
 procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
   procedure::Options options;
   options.may_home = allow_homing;
@@ -41,6 +51,8 @@ procedure::Options Carefulness(const hw::BenchFile& file, bool allow_homing) {
   options.stop_requested = StopWasAsked;
   if (file.kind == "replay")  // what was recorded was in position
     options.target.in_position_rad = options.reference.in_position_rad = std::numeric_limits<double>::infinity();
+  options.hand_ends_mounting = file.kind == "replay" ? HandEndedMounting(file.record)
+                                                     : file.kind == "hardware" && file.fixture.kind == "console";
   options.looks_at_encoders = file.kind != "replay" || hw::LooksAtEncoders(file.record);
   return options;
 }
@@ -88,7 +100,9 @@ void MeasureInto(const RunFolder& folder, const Scenario& scenario, const hw::Be
                  procedure::Options options, LivePage& page) {
   const bool resumed = begun.record != nullptr;
   const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
-  const auto bench = OpenAnyBench(file, scenario, SinceBegin(begun));
+  const Duration since_begin = SinceBegin(begun);
+  const auto bench =
+      OpenedAgain(resumed ? file.attempts : 1, [&] { return OpenAnyBench(file, scenario, since_begin); });
   if (resumed) {
     TakeUp(begun, bench->Identity());
     options.readings_done = static_cast<int>(begun.readings.size());
@@ -148,7 +162,7 @@ void AddMeasure(CLI::App& app) {
       ->allow_extra_args(false);
   command->add_flag("--resume", options->resume, "go on behind the last reading that is kept");
   command->add_flag("--allow-homing", options->allow_homing,
-                    "a table whose controller has lost its origin may be driven to find it");
+                    "a table or machine whose controller has lost its origin may be driven to find it");
   command->add_flag("--rehearse", options->rehearse,
                     "first on the twin: travel, spots on the PSDs, time it will take");
   command->add_flag("--rehearse-only", options->rehearse_only, "nothing but that");

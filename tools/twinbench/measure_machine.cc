@@ -8,6 +8,7 @@
 #include "hw_bridge/replay/replay_machine.h"
 #include "tools/twinbench/evaluated_run.h"
 #include "tools/twinbench/machine_rehearsal.h"
+#include "tools/twinbench/opened_again.h"
 #include "tools/twinbench/progress.h"
 #include "tools/twinbench/stop_signal.h"
 #include "tools/twinbench/told_stopped.h"
@@ -89,8 +90,9 @@ MachineRehearsal RehearseMachineFirst(const Scenario& scenario, const std::vecto
 }
 
 procedure::MachineOptions Carefully(const hw::MachineFile& file, const hw::OpenMachine& bench,
-                                    const BegunRun& begun) {
+                                    const BegunRun& begun, bool allow_homing) {
   procedure::MachineOptions options;
+  options.may_home = allow_homing;
   options.axes = bench.Limits();
   options.attempts = file.attempts;
   options.coldest_degC = kColdestRoom_degC;
@@ -126,10 +128,10 @@ void DriveInto(RunRecord& record, const Scenario& scenario, hw::OpenMachine& ope
 }
 
 void MeasureMachineInto(const RunFolder& folder, const Scenario& scenario, const hw::MachineFile& file,
-                        hw::OpenMachine& bench, BegunRun begun, LivePage& page) {
+                        hw::OpenMachine& bench, BegunRun begun, bool allow_homing, LivePage& page) {
   const bool resumed = begun.record != nullptr;
   if (resumed) TakeUp(begun, bench.Identity());
-  const procedure::MachineOptions options = Carefully(file, bench, begun);
+  const procedure::MachineOptions options = Carefully(file, bench, begun, allow_homing);
   const auto record = resumed ? std::move(begun.record) : BeginRun(scenario, folder, file.kind, bench.Identity());
   bench.HearClock([&](const std::string& notice) { record->AppendEvent(bench.Devices().clock.Now(), "clock", notice); });
   record->AppendEvent(bench.Devices().clock.Now(), "bench", bench.Identity());
@@ -152,9 +154,11 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
   ListenForStop();
   if (!begun.record || !begun.record->finished()) {
     const hw::BenchLock lock(hw::AddressesOf(file), "measure into " + folder.path);
-    const auto bench = OpenAnyMachine(file, scenario, parts, SinceBegin(begun));
+    const Duration since_begin = SinceBegin(begun);
+    const auto bench = OpenedAgain(begun.record ? file.attempts : 1,
+                                   [&] { return OpenAnyMachine(file, scenario, parts, since_begin); });
     if (o.rehearse) RehearseMachineFirst(scenario, parts.axes, bench->Limits());
-    MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), page);
+    MeasureMachineInto(folder, scenario, file, *bench, std::move(begun), o.allow_homing, page);
   }
   EvaluateRun(scenario, folder.path, answer);
 }

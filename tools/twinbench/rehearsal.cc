@@ -6,6 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hw_bridge/ad/block_checks.h"
+#include "hw_bridge/ad/lost_word.h"
+#include "hw_bridge/ad/negotiation.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/call_text.h"
@@ -25,6 +28,7 @@ class Watcher : public ReadingSink, public RunLog {
     ++r_.readings;
     if (reading.status != ReadingStatus::kOk) ++r_.not_ok;
     for (std::size_t c = 0; c < kChannels; ++c) NoteSpot(c, reading.mean_V[c]);
+    if (reading.status == ReadingStatus::kOk) NoteLostWord(reading);
   }
   void Called(const DeviceCall& call) override {
     r_.duration_s = ToSeconds(call.time);
@@ -48,6 +52,21 @@ class Watcher : public ReadingSink, public RunLog {
     const double share = std::abs(mean_V) / psd.sensitivity_V_m / half_m;
     double& widest = r_.widest_share[channel / 2];
     if (share > widest) widest = share;
+  }
+
+  void NoteLostWord(const Reading& reading) {
+    const AdcSettings& adc = RotaryOf(scenario_).adc;
+    const double lsb_V = adc.range_V / static_cast<double>(1 << (adc.bits - 1));
+    std::array<double, kChannels> level_lsb{}, noise_lsb{};
+    for (std::size_t c = 0; c < kChannels; ++c) {
+      level_lsb[c] = reading.mean_V[c] / lsb_V;
+      noise_lsb[c] = reading.std_V[c] / lsb_V;
+    }
+    const hw::LostWord word = hw::IfAWordWereLost(level_lsb, hw::ScanOrderOf(adc), hw::UsualNoise_lsb(noise_lsb),
+                                                  adc.samples, hw::CheckSettings{}.false_alarms);
+    if (word.shows) return;
+    ++r_.hide_lost_words;
+    r_.lost_word_shift_V = std::max(r_.lost_word_shift_V, word.shift_lsb * lsb_V);
   }
 
   const Scenario& scenario_;
@@ -86,6 +105,14 @@ void JudgeMains(const Scenario& scenario, double mains_Hz, std::vector<std::stri
                   periods, mains_Hz, RotaryOf(scenario).adc.rate_Hz / kChannels / mains_Hz));
 }
 
+void JudgeLostWords(const Rehearsal& r, std::vector<std::string>& hints) {
+  if (r.hide_lost_words == 0) return;
+  hints.push_back(fmt::format(
+      "at {} of {} readings the four levels are so alike that a word lost by the card might not show, and would shift a mean by up to "
+      "{:.2g} mV; amplifiers whose offsets keep the levels apart show every one",
+      r.hide_lost_words, r.readings, r.lost_word_shift_V / units::mV));
+}
+
 std::string TravelLine(const char* table, const Rehearsal::Travel& travel, const TableLimits& limits) {
   const bool limited = std::isfinite(limits.lower_rad) || std::isfinite(limits.upper_rad);
   return fmt::format("  {:<10}{:>10.3f} to {:>10.3f} deg   {}\n", table, travel.lowest_rad / units::deg,
@@ -114,6 +141,7 @@ Rehearsal Rehearse(const Scenario& scenario, const procedure::Options& limits, d
   JudgeTravel("reference", rehearsal.reference, limits.reference, rehearsal.problems);
   JudgeLight(rehearsal, rehearsal.problems);
   JudgeMains(scenario, mains_Hz, rehearsal.hints);
+  JudgeLostWords(rehearsal, rehearsal.hints);
   return rehearsal;
 }
 

@@ -17,6 +17,8 @@ struct Rehearsal {
   Travel target, reference;
   int readings = 0;
   int not_ok = 0;  // readings without numbers
+  int hide_lost_words = 0;      // readings in whose blocks a word that the card loses might not be seen
+  double lost_word_shift_V = 0.0;  // of a mean, at most, by one that is lost half-way through such a block
   double duration_s = 0.0;
   double widest_share[2] = {};  // of half the active width, the spot that came nearest to the edge of PSD a and b
   std::vector<std::string> hints, problems;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/benches/freeform_five_axis/place_noise.h"
 #include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
@@ -45,10 +46,18 @@ std::vector<Claim> OfATurntable(const TurntableSettings& s) {
   return {{"turntable", std::hypot(s.multitooth.u_tooth_rad, s.autocollimator.noise_rad / std::sqrt(readings))}};
 }
 
+std::vector<Claim> OfFiveAxes(const Scenario& scenario) {
+  std::vector<Claim> claims;
+  const auto u = benches::freeform::PlaceNoise(scenario);
+  for (std::size_t axis = 0; axis < u.size(); ++axis) claims.push_back({kAxisNames[axis], u[axis]});
+  return claims;
+}
+
 std::vector<Claim> StatedClaims(const Scenario& scenario) {
   if (scenario.bench == kRotaryBench) return OfTwoTables(RotaryOf(scenario));
   if (scenario.bench == kEncoderBench) return OfAComparison(EncoderOf(scenario));
   if (scenario.bench == kTurntableBench) return OfATurntable(TurntableOf(scenario));
+  if (scenario.bench == kFreeformBench) return OfFiveAxes(scenario);
   return {};
 }
 

@@ -15,6 +15,7 @@ struct MachineOptions {
   int attempts = 3;                   // at one reading, before the run stops
   double coldest_degC = -std::numeric_limits<double>::infinity();  // a thermometer beyond these is broken
   double hottest_degC = std::numeric_limits<double>::infinity();
+  bool may_home = true;  // whether axes that have lost their origin may be driven to find it
   RunLog* log = nullptr;                      // none: only readings are kept, and the first fault ends the run
   std::function<bool()> stop_requested = {};  // asked between moves, waits and readings
   std::vector<Reading> kept = {};             // of a resumed run, which goes on behind these

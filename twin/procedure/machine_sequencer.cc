@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "twin/core/bench_format.h"
 #include "twin/core/device_fault.h"
@@ -197,17 +198,24 @@ void MachineSequencer::TakeAtRest(int reading, Duration dwell, const std::functi
 
 /// @param stood  Becomes where they stood, one entry an axis.
 Reading MachineSequencer::ReadAtRest(std::vector<Stood>& stood) {
-  const std::vector<AxisState> before = bench_.machine.State();
+  LookAtAxes(stood, &Stood::before);
   const Time asked = bench_.clock.Now();
   Reading sample = bench_.instruments.Read();
   RequireTimely(sample, asked, bench_.clock.Now());
-  const std::vector<AxisState> after = bench_.machine.State();
-  for (std::size_t k = 0; k < before.size(); ++k) {
-    const double tolerance = k < options_.axes.size() ? options_.axes[k].in_position : AxisLimits{}.in_position;
-    stood.push_back({axes()[k].name, axes()[k].is_rotary, before[k].commanded, before[k].encoder, after[k].encoder,
-                     tolerance});
-  }
+  LookAtAxes(stood, &Stood::after);
   return sample;
+}
+
+/// @param stood  One entry an axis; made by the first look.
+void MachineSequencer::LookAtAxes(std::vector<Stood>& stood, double Stood::*when) {
+  const std::vector<AxisState> states = bench_.machine.State();
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    if (k == stood.size()) {
+      const double tolerance = k < options_.axes.size() ? options_.axes[k].in_position : AxisLimits{}.in_position;
+      stood.push_back({axes()[k].name, axes()[k].is_rotary, states[k].commanded, kNaN, kNaN, tolerance});
+    }
+    stood[k].*when = StoodAt(axes()[k], states[k]);
+  }
 }
 
 Reading MachineSequencer::Look() {
@@ -305,6 +313,21 @@ void StartAgain(MachineBench& bench, const MachineRunState& state) {
   bench.simulation->SetPaced(state.kept.empty());
 }
 
+/// Finding origins drives axes through ways that no procedure planned, and what is mounted goes with them.
+void HomeAgain(MachineBench& bench, const MachineRunState& state, const MachineOptions& options) {
+  const bool turns_alone = std::ranges::all_of(bench.machine.Axes(), &MachineAxis::is_rotary);
+  if (!turns_alone && state.mounted)
+    throw DeviceFault(FaultKind::kRefused, "machine",
+                      "has lost its origin with an instrument mounted: take it off, find the origins, put it back and go on with "
+                      "--resume");
+  if (!options.may_home)
+    throw DeviceFault(FaultKind::kRefused, "machine",
+                      "has lost its origin, and finding it moves the machine: look whether it may, then agree with "
+                      "--allow-homing");
+  bench.machine.Home();
+  if (options.log) options.log->AppendEvent(bench.clock.Now(), "machine", "has found its origin again");
+}
+
 }  // namespace
 
 void RequireOneRotaryAxis(const std::vector<MachineAxis>& axes, const std::string& axis) {
@@ -321,6 +344,7 @@ void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay
     MachineSequencer sequencer(journal.Bench(), plan, sink, options, progress, state);
     try {
       if (anew) StartAgain(bench, state);
+      if (std::exchange(state.lost_origin, false)) HomeAgain(bench, state, options);
       journal.BeginAttempt();
       if (bench.simulation) state.mounted.reset();
       way(sequencer);
@@ -332,6 +356,7 @@ void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay
       const int next = static_cast<int>(state.kept.size());
       NoteFailure(options.log, next, TimeOf(bench, state), fault);
       if (!options.log || !IsWorthAnotherAttempt(fault.kind()) || !attempts.AnotherAt(next)) throw;
+      state.lost_origin = fault.kind() == FaultKind::kRestarted && !bench.simulation;
     } catch (...) {  // whatever it is, nothing goes on moving
       StopMachine(bench);
       throw;

@@ -18,6 +18,7 @@ struct MachinePlan {
 struct MachineRunState {
   std::vector<Reading> kept;
   std::optional<int> mounted;  // set-up, on a real bench: a mounting outlives the fault that came after it
+  bool lost_origin = false;    // behind a restart of a real bench's controller
 };
 
 /// The steps that all runs of machines share: mount, go somewhere, go round, take readings.
@@ -87,6 +88,7 @@ class MachineSequencer {
   LatchedSamples Latched();
   void WaitUntilDue(int reading, Duration dwell);
   Reading ReadAtRest(std::vector<Stood>& stood);
+  void LookAtAxes(std::vector<Stood>& stood, double Stood::*when);
   void Keep(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
   Reading Joined(const Reading& planned, const Reading& sample) const;
   void RequireSame(const Reading& reading) const;
@@ -115,7 +117,8 @@ using MachineWay = std::function<void(MachineSequencer&)>;
 /// at a time.
 ///
 /// A fault of a device costs an attempt: the machine is stopped, what was taken is kept, and the way to the next
-/// reading is gone again. Stalls, limits, refusals and the operator end the run at once; it can be resumed.
+/// reading is gone again; behind a restart of a real bench's controller its origins are found first, if `options.may_home`
+/// and nothing is mounted on linear axes. Stalls, limits, refusals and the operator end the run at once; it can be resumed.
 /// @throws DeviceFault when no attempt is left or the fault is none to try again; the machine was told to stop.
 ///         InputError if a simulated bench does not make the readings again that are kept.
 void CarryOutPlan(MachineBench& bench, const MachinePlan& plan, const MachineWay& way, ReadingSink& sink,

@@ -30,7 +30,23 @@ void EnterPlace(Reading& reading, const Stood& stood, const char* when, double a
     reading.extra[fmt::format("{}_encoder_{}_{}", stood.axis, when, place.unit)] = PrintInUnit(at, place.to_SI);
 }
 
+void RequireOriginAboutReading(const std::string& axis, bool referenced) {
+  if (referenced) return;
+  throw DeviceFault(FaultKind::kRestarted, axis,
+                    "has lost its origin; where it stood while it was read nobody knows");
+}
+
 }  // namespace
+
+double StoodAt(const std::string& table, const TableState& state) {
+  RequireOriginAboutReading(table, state.referenced);
+  return state.encoder_rad;
+}
+
+double StoodAt(const MachineAxis& axis, const AxisState& state) {
+  RequireOriginAboutReading(axis.name, state.referenced);
+  return state.encoder;
+}
 
 double Stood::Off() const {
   return std::fmax(std::abs(before - sent), std::abs(after - sent));

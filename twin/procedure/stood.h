@@ -3,6 +3,8 @@
 #include <limits>
 #include <string>
 
+#include "twin/core/devices.h"
+#include "twin/core/machine.h"
 #include "twin/core/reading.h"
 
 namespace twinbench::procedure {
@@ -22,6 +24,11 @@ struct Stood {
 /// Adds what the encoder showed to the reading: columns AXIS_encoder_before_deg and AXIS_encoder_after_deg, or _mm. They are
 /// columns beside those of the bench: files without them are whole.
 void EnterInto(Reading& reading, const Stood& stood);
+
+/// Where the encoder of a table or axis that is looked at about a reading says it stands.
+/// @throws DeviceFault kRestarted if its controller has lost its origin: what was read meanwhile is no reading.
+double StoodAt(const std::string& table, const TableState& state);
+double StoodAt(const MachineAxis& axis, const AxisState& state);
 
 /// @throws DeviceFault kMoved if it stood further from its stop than its tolerance, before what was read or behind it.
 void RequireStood(const Stood& stood);

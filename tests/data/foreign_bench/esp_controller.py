@@ -9,9 +9,10 @@ import time
 from line_devices import Device
 
 COMMAND = re.compile(r"^(\d*)(\*IDN|[A-Z]{2})(\?|[-+0-9.eE,]*)$")
-NO_COMMAND, NO_AXIS, NO_PARAMETER, BEYOND_LOWER, BEYOND_UPPER = 6, 9, 38, 107, 106
+NO_COMMAND, NO_AXIS, NO_PARAMETER, BEYOND_LOWER, BEYOND_UPPER, MOTOR_OFF = 6, 9, 38, 107, 106, 113
 TEXTS = {0: "NO ERROR DETECTED", NO_COMMAND: "COMMAND DOES NOT EXIST", NO_AXIS: "AXIS NUMBER OUT OF RANGE",
-         NO_PARAMETER: "COMMAND PARAMETER MISSING", BEYOND_LOWER: "AXIS-1 BELOW ITS TRAVEL", BEYOND_UPPER: "AXIS-1 ABOVE ITS TRAVEL"}
+         NO_PARAMETER: "COMMAND PARAMETER MISSING", BEYOND_LOWER: "AXIS-1 BELOW ITS TRAVEL", BEYOND_UPPER: "AXIS-1 ABOVE ITS TRAVEL",
+         MOTOR_OFF: "AXIS-1 MOTOR NOT ENABLED"}
 IDENTITY = "ESP301 Version 3.0.1 foreign"
 
 
@@ -25,7 +26,8 @@ class Axis:
     def __init__(self):
         self.begin_deg = self.end_deg = 0.0
         self.begin_s, self.takes_s = time.monotonic(), 0.0
-        self.settles = True
+        self.settles = self.motor_on = True
+        self.origin_deg = 0.0  # from where it counts
 
     def place_deg(self):
         done = (time.monotonic() - self.begin_s) / self.takes_s if self.takes_s > 0.0 else 1.0
@@ -43,12 +45,22 @@ class Axis:
         self.begin_deg = self.end_deg = round(self.place_deg(), 6)
         self.takes_s, self.settles = 0.0, True
 
+    def lose_power(self):
+        self.stop()
+        self.origin_deg, self.motor_on = self.place_deg(), False
+
+    def find_origin(self):
+        self.origin_deg = 0.0
+        self.go(0.0)
+
     def is_done(self):
         return self.settles and time.monotonic() - self.begin_s >= self.takes_s + self.SETTLING_S
 
 
 class EspController(Device):
-    """Its events are moves. A fault of its own: `unsettled`, a move that ends where it should and is never called done."""
+    """Its events are moves. Faults of its own: `unsettled`, a move that ends where it should and is never called done; `restart`, it
+    is switched off and on as the move begins: motors are off, and it counts from where the axes stand.
+    """
 
     name = "controller"
     line_end = "\r\n"
@@ -85,7 +97,7 @@ class EspController(Device):
         if word in ("TB", "TE"):
             error = self.errors.pop(0) if self.errors else 0
             return f"{error}, {int(time.monotonic() * 1e3)}, {TEXTS[error]}" if word == "TB" else str(error)
-        numbers = {"TP": axis.place_deg, "PA": lambda: axis.end_deg, "SL": lambda: self.lower_deg,
+        numbers = {"TP": lambda: axis.place_deg() - axis.origin_deg, "PA": lambda: axis.end_deg - axis.origin_deg, "SL": lambda: self.lower_deg,
                    "SR": lambda: self.upper_deg}
         if word in numbers:
             return f"{numbers[word]():.6f}"
@@ -93,14 +105,16 @@ class EspController(Device):
             return chr(0x50 + sum(1 << k for k, each in enumerate(self.axes[:4]) if not each.is_done()))
         if word == "MD":
             return "1" if axis.is_done() else "0"
-        return {"SN": "7", "MO": "1", "ID": "FOREIGN-RV120"}.get(word) or self._refuse(NO_COMMAND)
+        return {"SN": "7", "MO": str(int(axis.motor_on)), "ID": "FOREIGN-RV120"}.get(word) or self._refuse(NO_COMMAND)
 
     def _do(self, axis, word, rest):
         if word == "OR":
-            axis.go(0.0)
+            axis.find_origin()
         elif word == "PA":
-            return self._move(axis, rest)
-        elif word not in ("SN", "MO"):
+            return self._move(axis, rest) if axis.motor_on else self._refuse(MOTOR_OFF)
+        elif word == "MO":
+            axis.motor_on = True
+        elif word != "SN":
             return self._refuse(NO_COMMAND)
         return None
 
@@ -111,10 +125,13 @@ class EspController(Device):
             return self._refuse(NO_PARAMETER)
         if not self.lower_deg <= to_deg <= self.upper_deg:
             return self._refuse(BEYOND_LOWER if to_deg < self.lower_deg else BEYOND_UPPER)
-        axis.go(to_deg)
+        axis.go(to_deg + axis.origin_deg)
         own = self.happen()
         if own == "unsettled":
             axis.settles = False
+        if own == "restart":
+            for each in self.axes:
+                each.lose_power()
         if own == "freeze":
             axis.takes_s *= 100.0  # it is on its way for long
         return None

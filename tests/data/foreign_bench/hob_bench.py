@@ -34,6 +34,7 @@ class TurningAxis:
     """Goes over from speed to speed in a straight line of time."""
 
     STOPPING_S = 0.05
+    origin_deg, motor_on = 0.0, True
 
     def __init__(self):
         self.begin_s, self.begin_deg, self.from_deg_s, self.to_deg_s, self.ramp_s = time.monotonic(), 0.0, 0.0, 0.0, 0.0

@@ -5,6 +5,7 @@
 
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/device_fault.h"
 #include "twin/core/stream.h"
 #include "twin/procedure/journal.h"
 #include "twin/procedure/quiet_bench.h"
@@ -65,6 +66,7 @@ class Sequencer {
   void NoteMounting(int setup, double clamp_rad, double reseat_rad);
   void GoLive();
   void RepeatCalls();
+  std::optional<DeviceFault> RepeatOnce();
   void ReturnToLastStop();
   void HomeIfLost(RotaryTable& table, const char* name);
 
