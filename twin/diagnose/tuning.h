@@ -54,6 +54,9 @@ inline constexpr double kPlausibleTop = 3.0;
 /// Families that explain so much of what the best does are moved to their best shape before they are compared: a
 /// grid is too coarse for a strong effect. No more than eight, for the time it takes.
 inline constexpr double kNearlyAsMuch = 0.6;
+/// Of what a family explains at its best shape, the most that the nearest point of its grid loses (of a wave a tenth).
+/// Those that would come first with it are moved too.
+inline constexpr double kLostBetween = 0.15;
 inline constexpr int kMostLeaders = 8;
 
 // --- noise ---

@@ -51,10 +51,14 @@ void RefineLeaders(const Problem& problem, const Deflation& others, const Projec
                    std::map<int, Eigen::VectorXd>& shapes) {
   const auto& families = problem.scanner.Families();
   std::vector<int> leaders;
-  const double least = tuning::kNearlyAsMuch * evidence.explained.col(0).maxCoeff();
+  const Eigen::VectorXd log_odds = evidence.log_bayes.col(0) + problem.log_priors;
+  const double least = tuning::kNearlyAsMuch * evidence.explained.col(0).maxCoeff(), best = log_odds.maxCoeff();
   for (int k = 0; k < std::ssize(families); ++k) {
     const Family& family = families[static_cast<std::size_t>(k)];
-    if (family.at && !family.shapes.empty() && evidence.explained(k, 0) >= least) leaders.push_back(k);
+    // What takes up noise as well explains far more than a wave that it follows.
+    const double may_gain = 0.5 * tuning::kLostBetween * evidence.explained(k, 0);
+    const bool leads = evidence.explained(k, 0) >= least || log_odds[k] + may_gain >= best;
+    if (family.at && !family.shapes.empty() && leads) leaders.push_back(k);
   }
   std::ranges::sort(leaders, [&](int a, int b) { return evidence.log_bayes(a, 0) > evidence.log_bayes(b, 0); });
   leaders.resize(std::min<std::size_t>(leaders.size(), tuning::kMostLeaders));
