@@ -114,6 +114,25 @@ TEST(TurntableDiagnosis, NamesWhatTheTurntableDoes) {
   ExpectNamed(late, "settling", "", "time_constant", 2.5);
 }
 
+// On arrival it is off by minutes of arc, of which the soonest reading shows an arc second: that is thought of, not those.
+TEST(TurntableDiagnosis, NamesASettlingThatIsNearlyOver) {
+  Wrong late;
+  late.settling_s = 0.6;
+  late.settling_rad = 300.0 * arcsec;
+  ExpectNamed(late, "settling", "", "time_constant", 0.6);
+}
+
+// A wander follows a faint wave and the noise as well. Between two frequencies of the grid the wave is told nevertheless.
+TEST(TurntableDiagnosis, NamesAFaintToneRatherThanAWander) {
+  for (const double period_s : {470.0, 610.0, 700.0}) {
+    SCOPED_TRACE(period_s);
+    Wrong tone;
+    tone.tone_rad[0] = 0.07 * arcsec;
+    tone.tone_s = period_s;
+    ExpectNamed(tone, "tone", "x", "frequency", 1.0 / period_s);
+  }
+}
+
 TEST(TurntableDiagnosis, NamesTeethThatSeatDifferentlyAndReadingsThatAreSpoilt) {
   Wrong seating, spoilt;
   seating.seating_rad = 0.15 * arcsec;
