@@ -13,5 +13,5 @@ add_custom_target(api
 if(TWINBENCH_TESTS)  # some 3 s of one core
   add_test(NAME api COMMAND ${CMAKE_COMMAND} -DDOXYGEN=${DOXYGEN} -DCONFIGURATION=${CMAKE_BINARY_DIR}/api/Doxyfile
     -DPAGES=${CMAKE_BINARY_DIR}/api -P ${PROJECT_SOURCE_DIR}/cmake/api_check.cmake)
-  set_tests_properties(api PROPERTIES LABELS "fast;api" TIMEOUT 300)
+  set_tests_properties(api PROPERTIES LABELS "fast;api" TIMEOUT 300 PROCESSORS 2)
 endif()

@@ -46,11 +46,12 @@ function(twinbench_precompile target)
   endif()
 endfunction()
 
-# twinbench_test(<name> SOURCES a_test.cc ... ROOMS room ... [LIBRARIES ...] [SHARDS n] [SLOW] [ENVIRONMENT a=b ...])
+# twinbench_test(<name> SOURCES a_test.cc ... ROOMS room ... [LIBRARIES ...] [SHARDS n] [SLOW] [WAITS] [ENVIRONMENT a=b ...])
 #
 # One test program a room. ctest runs it in one process, or in SHARDS processes <name>.1, <name>.2 ... side by side.
+# SLOW, WAITS, ENVIRONMENT: of twinbench_entry.
 function(twinbench_test name)
-  cmake_parse_arguments(TEST "SLOW" "SHARDS" "SOURCES;ROOMS;LIBRARIES;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(TEST "SLOW;WAITS" "SHARDS" "SOURCES;ROOMS;LIBRARIES;ENVIRONMENT" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_compile_definitions(test_${name} PRIVATE
     TWINBENCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TWINBENCH_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
@@ -62,31 +63,45 @@ function(twinbench_test name)
     twinbench_precompile(test_${name} <gmock/gmock.h>)
   endif()
 
-  set(slow)
-  if(TEST_SLOW)
-    set(slow SLOW)
-  endif()
+  set(flags)
+  foreach(flag SLOW WAITS)
+    if(TEST_${flag})
+      list(APPEND flags ${flag})
+    endif()
+  endforeach()
   if(NOT TEST_SHARDS)
-    twinbench_entry(${name} ${slow} COMMAND test_${name} ENVIRONMENT ${TEST_ENVIRONMENT})
+    twinbench_entry(${name} ${flags} COMMAND test_${name} ENVIRONMENT ${TEST_ENVIRONMENT})
     return()
   endif()
   foreach(shard RANGE 1 ${TEST_SHARDS})
     math(EXPR index "${shard} - 1")
-    twinbench_entry(${name}.${shard} ${slow} COMMAND test_${name}
+    twinbench_entry(${name}.${shard} ${flags} COMMAND test_${name}
       ENVIRONMENT ${TEST_ENVIRONMENT} GTEST_TOTAL_SHARDS=${TEST_SHARDS} GTEST_SHARD_INDEX=${index})
   endforeach()
 endfunction()
 
-# twinbench_entry(<name> [SLOW] COMMAND program arguments ... [ENVIRONMENT a=b ...])
+# twinbench_entry(<name> [SLOW] [WAITS] COMMAND program arguments ... [ENVIRONMENT a=b ...])
 #
-# One process of ctest. SLOW: above some 20 s; `ctest -L fast` leaves it out. The time limit is for a process that hangs.
+# One process of ctest. SLOW: above some 20 s; begun before the others, so that none is left alone at the end, and left out by
+# `ctest -L fast`. WAITS: sleeps for most of its time (held clocks, watchdogs, servers), so it runs beside those that compute:
+# it takes one of ctest's places and they two, and of 2 n + 1 places (tools/test) n compute while one waits. The time limit is
+# for a process that hangs.
 function(twinbench_entry name)
-  cmake_parse_arguments(ENTRY "SLOW" "" "COMMAND;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(ENTRY "SLOW;WAITS" "" "COMMAND;ENVIRONMENT" ${ARGN})
   add_test(NAME ${name} COMMAND ${ENTRY_COMMAND})
+  set(label fast)
+  set(limit_s 600)
+  set(cost 0)
+  set(places PROCESSORS 2)
   if(ENTRY_SLOW)
-    set_tests_properties(${name} PROPERTIES LABELS slow TIMEOUT 1800)
-  else()
-    set_tests_properties(${name} PROPERTIES LABELS fast TIMEOUT 600)
+    set(label slow)
+    set(limit_s 1800)
+    set(cost 100)
   endif()
+  if(ENTRY_WAITS)
+    set(cost 200)
+    set(places PROCESSORS 1 RESOURCE_LOCK waiting)
+  endif()
+  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT ${limit_s} COST ${cost} ${places})
   set_tests_properties(${name} PROPERTIES ENVIRONMENT "${ENTRY_ENVIRONMENT}")
 endfunction()
