@@ -276,6 +276,11 @@ Between BestBetween(const Hypothesis& from, const Size& size, double end, std::p
   return between;
 }
 
+/// No reading has narrowed it yet: where it stands says nothing of where it belongs.
+bool IsUnread(const Size& size) {
+  return size.u >= size.plausible;
+}
+
 /// A bound that is not far may be where a size belongs: a state one way or the other, a gap that is crossed at
 /// once. Slopes do not lead there. When something happened has no such place: before the first reading it is not seen.
 void TryEnds(const std::vector<Size>& sizes, std::span<const TakenRun> runs, const Means& means,
@@ -290,7 +295,8 @@ void TryEnds(const std::vector<Size>& sizes, std::span<const TakenRun> runs, con
       Hypothesis moved = Moved(hypothesis, {size}, Eigen::VectorXd::Constant(1, steps));
       Left now = LeftOf(moved, runs, means);
       if (!(now.chi2 < left.chi2)) continue;
-      Between between = BestBetween(hypothesis, size, end, {std::move(moved), std::move(now)}, runs, means);
+      Between between{{std::move(moved), std::move(now)}};
+      if (IsUnread(size)) between = BestBetween(hypothesis, size, end, std::move(between.best), runs, means);
       std::tie(hypothesis, left) = std::move(between.best);
       // Slopes of what begins there are those of steps that are small beside its size.
       double& u = hypothesis.causes[size.cause].finding.u.at(size.name);
