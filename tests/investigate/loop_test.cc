@@ -98,6 +98,10 @@ TEST(Investigate, MakesARunThatCanBeDiagnosedWhereTheFirstCannot) {
   EXPECT_EQ(found.steps.front().believed.front().first, "nothing");
   EXPECT_THAT(found.steps[1].reason, testing::HasSubstr("the runs so far cannot be diagnosed: "));
   EXPECT_EQ(found.belief.Best().fit.hypothesis.Name(), "psd_roll psd_a");
+  laboratory.confirm = [](const Step&, const std::vector<Advice>&) { return false; };
+  const Investigation declined = Investigate(believed, options, means, laboratory);
+  EXPECT_EQ(declined.told, Told::kTied) << "nothing was looked for, so nothing is not what was found";
+  EXPECT_EQ(declined.ended, Ended::kDeclined);
 }
 
 TEST(Investigate, RefusesAGoalThatAStandardPutsOutOfReachBeforeAnythingIsMeasured) {

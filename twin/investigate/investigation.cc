@@ -43,6 +43,7 @@ class Loop {
     result_.told = ToldBy(result_.belief, kMostlyUnlisted);
     if (result_.told == Told::kTied && result_.belief.Best().fit.hypothesis.IsNothing())
       result_.told = Told::kNothing;  // suspicions are no findings
+    if (!WasAnyDiagnosed()) result_.told = Told::kTied;  // nor is nothing where nothing could be looked for
     return std::move(result_);
   }
 
