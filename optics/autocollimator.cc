@@ -6,7 +6,7 @@
 #include <string>
 
 #include "optics/collimator_pupil.h"
-#include "optics/window.h"
+#include "optics/returned_beam.h"
 
 namespace twinbench::optics {
 namespace {
@@ -88,48 +88,30 @@ AutocollimatorOptics::AutocollimatorOptics(const AutocollimatorParameters& param
 
 void AutocollimatorOptics::AddFixture(const TriangleMesh& mesh, const Eigen::Isometry3d& X_LF) {
   scene_.AddMesh(mesh, parameters_.X_LA.inverse() * X_LF);
+  has_fixture_ = true;
 }
 
-/// Turns those rays back that met the mirror's face. The others go on as they were: away from the objective.
-void AutocollimatorOptics::ReflectFromMirror() {
-  const Surface& mirror = scene_.surfaces()[kMirror];
-  returning_ = outgoing_;
-  for (std::size_t i = 0; i < outgoing_.size(); ++i) {
-    if (hits_.surface[i] != kMirror) continue;
-    const Eigen::Vector3d normal = Normal(mirror, hits_.x_m[i], hits_.y_m[i]);
-    const Eigen::Vector3d direction = outgoing_.At(i).direction;
-    if (direction.dot(normal) >= 0.0) continue;
-    returning_.Set(i, {Point(mirror, hits_.x_m[i], hits_.y_m[i]), Reflect(direction, normal)});
+void AutocollimatorOptics::Intersect(const RayBatch& rays) {
+  if (parameters_.fidelity == Fidelity::kTraced) {
+    scene_.Intersect(rays, hits_);
+  } else if (has_fixture_) {
+    scene_.IntersectHybrid(rays, hits_);
+  } else {
+    scene_.IntersectAnalytic(rays, hits_);
   }
-}
-
-/// Where a ray that came back through the objective meets the camera's plane, before the roll.
-Eigen::Vector2d AutocollimatorOptics::ImagePoint(std::size_t ray) const {
-  const AutocollimatorParameters& p = parameters_;
-  const Eigen::Vector3d d = returning_.At(ray).direction;
-  const Eigen::Vector2d slope = d.head<2>() / -d.z();
-  const Eigen::Vector2d at(hits_.x_m[ray], hits_.y_m[ray]);
-  const Eigen::Vector2d u = (p.focal_length_m + p.defocus_m) * slope - p.defocus_m / p.focal_length_m * at;
-  const double enlarged = 1.0 + p.distortion_per_rad2 * u.squaredNorm() / (p.focal_length_m * p.focal_length_m);
-  return enlarged * Eigen::Vector2d(-u.x(), u.y());  // x_A points to the left
 }
 
 AutocollimatorImage AutocollimatorOptics::ReadCamera() const {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  double returned = 0.0;
-  for (std::size_t i = 0; i < hits_.surface.size(); ++i) {
-    if (hits_.surface[i] != kObjective) continue;
-    const double r_m = std::hypot(hits_.x_m[i], hits_.y_m[i]);
-    const double share = ShareInside(parameters_.aperture_radius_m, parameters_.pupil_rings, r_m);
-    sum += share * ImagePoint(i);
-    returned += share;
-  }
+  const AutocollimatorParameters& p = parameters_;
+  const ImagingLens lens{p.focal_length_m, p.defocus_m, p.distortion_per_rad2,
+                         EdgeOfDisc(p.aperture_radius_m, p.pupil_rings)};
+  const CameraSums sums = SumOnCamera(lens, kObjective, returning_, hits_);
   AutocollimatorImage image;
-  image.returned_fraction = returned / static_cast<double>(outgoing_.size());
-  if (!(returned > 0.0) || image.returned_fraction < parameters_.low_light_fraction) return image;
-  const Eigen::Vector2d reading = Reading(parameters_, sum / returned);
+  image.returned_fraction = sums.light / static_cast<double>(outgoing_.size());
+  if (!(sums.light > 0.0) || image.returned_fraction < p.low_light_fraction) return image;
+  const Eigen::Vector2d reading = Reading(p, Eigen::Vector2d(sums.x_m, sums.y_m) / sums.light);
   image.status = AutocollimatorStatus::kOutOfRange;
-  if (reading.cwiseAbs().maxCoeff() > parameters_.half_field_rad) return image;
+  if (reading.cwiseAbs().maxCoeff() > p.half_field_rad) return image;
   image.status = AutocollimatorStatus::kOk;
   image.x_rad = reading.x();
   image.y_rad = reading.y();
@@ -139,10 +121,10 @@ AutocollimatorImage AutocollimatorOptics::ReadCamera() const {
 AutocollimatorImage AutocollimatorOptics::Look(const Eigen::Isometry3d& X_LM) {
   Require(IsPose(X_LM), "X_LM must be a right-handed rotation and a finite translation");
   scene_.SetSurfacePose(kMirror, parameters_.X_LA.inverse() * X_LM * X_MS_);
-  scene_.Commit();
-  scene_.Intersect(outgoing_, hits_);
-  ReflectFromMirror();
-  scene_.Intersect(returning_, hits_);
+  if (parameters_.fidelity == Fidelity::kTraced || has_fixture_) scene_.Commit();
+  Intersect(outgoing_);
+  ReflectFrom(MakeFrame(scene_.surfaces()[kMirror]), kMirror, outgoing_, hits_, returning_);
+  Intersect(returning_);
   return ReadCamera();
 }
 

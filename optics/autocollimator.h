@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "optics/fidelity.h"
 #include "optics/scene.h"
 
 /// A dual-axis electronic autocollimator and the mirror it looks at, ray by ray.
@@ -13,6 +14,7 @@
 namespace twinbench::optics {
 
 struct AutocollimatorParameters {
+  Fidelity fidelity = Fidelity::kTraced;  // the same numbers; closed, Embree is asked about fixtures only
   Eigen::Isometry3d X_LA = Eigen::Isometry3d::Identity();
   double focal_length_m = 0.3;          // of the objective
   double nominal_focal_length_m = 0.3;  // what readings are divided by; a difference is an error of scale
@@ -67,13 +69,13 @@ class AutocollimatorOptics {
   AutocollimatorImage Look(const Eigen::Isometry3d& X_LM);
 
  private:
-  void ReflectFromMirror();
-  Eigen::Vector2d ImagePoint(std::size_t ray) const;
+  void Intersect(const RayBatch& rays);
   AutocollimatorImage ReadCamera() const;
 
   AutocollimatorParameters parameters_;
   Eigen::Isometry3d X_MS_;
   Scene scene_;  // in frame A
+  bool has_fixture_ = false;
   RayBatch outgoing_;
   RayBatch returning_;
   HitBatch hits_;

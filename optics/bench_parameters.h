@@ -6,14 +6,12 @@
 #include <vector>
 
 #include "optics/beam.h"
+#include "optics/fidelity.h"
 #include "optics/ghosts.h"
 #include "optics/mesh.h"
 
 /// What the optics of the rotary bench are made of.
 namespace twinbench::optics {
-
-/// How light is carried: by Embree from surface to surface, or by the formula of its one way.
-enum class Fidelity { kTraced, kClosed };
 
 /// The laser at one moment. Angles are the whole pointing error: yaw about z_L, then pitch upwards.
 struct SourceState {

@@ -1,6 +1,5 @@
 #include "optics/collimator_pupil.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -14,11 +13,6 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi * (2.0 - std::numbers::phi);
 /// Of ring i out of `rings` in a disc of radius one: half of the ring's area is inside.
 double RingRadius(int i, int rings) {
   return std::sqrt(0.5 * (i * i + (i - 1) * (i - 1))) / rings;
-}
-
-/// Share of a disc's area that is not farther than `depth` from its edge, for a radius of one.
-double AreaOfRim(double depth) {
-  return depth * (2.0 - depth);
 }
 
 }  // namespace
@@ -38,10 +32,8 @@ std::vector<Eigen::Vector2d> EqualAreaDisc(double radius_m, int rings) {
   return points;
 }
 
-double ShareInside(double radius_m, int rings, double r_m) {
-  const double width = 1.0 / rings;
-  const double outside = std::clamp(r_m / radius_m - RingRadius(rings, rings), 0.0, width);
-  return 1.0 - AreaOfRim(outside) / AreaOfRim(width);
+PupilEdge EdgeOfDisc(double radius_m, int rings) {
+  return {radius_m * RingRadius(rings, rings), radius_m / rings, 1.0 / radius_m};
 }
 
 double Reach(double radius_m, int rings) {

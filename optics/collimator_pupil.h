@@ -16,12 +16,22 @@ namespace twinbench::optics {
 /// weights are equal for the sake of hard edges across the beam: a rule of higher order would gain nothing there.
 std::vector<Eigen::Vector2d> EqualAreaDisc(double radius_m, int rings);
 
-/// How much of the piece around a point of EqualAreaDisc lies inside the disc when the point has come to the
-/// distance `r_m` from the centre: one up to the outermost ring, then falling to nothing at Reach.
+/// How much of the piece around a point of EqualAreaDisc lies inside the disc when the point has come to another
+/// distance from the centre: one up to the outermost ring, then falling to nothing at Reach.
 ///
 /// So a beam that comes back a little aside loses its light smoothly, to first order as much as a full disc does;
 /// what it loses counts at the outermost ring instead of the edge, 1 / (2 rings) of the radius too far in.
-double ShareInside(double radius_m, int rings, double r_m);
+struct PupilEdge {
+  double outermost_m, width_m;  // radius of the outermost ring, and of the piece around it
+  double per_m;                 // one over the disc's radius
+
+  [[gnu::always_inline]] inline double ShareInside(double r_m) const {
+    const double beyond_m = r_m - outermost_m, outside_m = beyond_m < 0.0 ? 0.0 : beyond_m;
+    const double depth = per_m * (outside_m < width_m ? outside_m : width_m), whole = per_m * width_m;
+    return 1.0 - depth * (2.0 - depth) / (whole * (2.0 - whole));
+  }
+};
+PupilEdge EdgeOfDisc(double radius_m, int rings);
 double Reach(double radius_m, int rings);
 
 }  // namespace twinbench::optics

@@ -351,6 +351,38 @@ TEST(AutocollimatorOptics, NamesWhatIsWrongWithItsParameters) {
   }
 }
 
+/// Readings of the same instrument, traced and closed.
+void ExpectSameBits(AutocollimatorParameters p, const Surface& mirror, bool is_half_covered) {
+  p.defocus_m = 1e-3;
+  p.distortion_per_rad2 = 2.0;
+  p.interpolation_error_px = 0.01;
+  AutocollimatorOptics traced(p, mirror);
+  p.fidelity = Fidelity::kClosed;
+  AutocollimatorOptics closed(p, mirror);
+  if (is_half_covered) {
+    CoverRightHalf(traced);
+    CoverRightHalf(closed);
+  }
+  for (const double yaw : {-700.0, -400.0, -31.7, 0.0, 1e-3, 12.3, 400.0}) {
+    for (const double shift_m : {0.0, 2e-3, 25e-3, 50e-3}) {  // the beam falls on the mirror's edge, and beside it
+      const Isometry3d X_LM = Pose(yaw * kArcsec, 0.3 * yaw * kArcsec, {0.0, shift_m, 1e-3});
+      const AutocollimatorImage a = traced.Look(X_LM), b = closed.Look(X_LM);
+      EXPECT_EQ(a.status, b.status) << yaw << ' ' << shift_m;
+      EXPECT_EQ(a.returned_fraction, b.returned_fraction) << yaw << ' ' << shift_m;
+      if (a.status != AutocollimatorStatus::kOk) continue;
+      EXPECT_EQ(a.x_rad, b.x_rad) << yaw << ' ' << shift_m;
+      EXPECT_EQ(a.y_rad, b.y_rad) << yaw << ' ' << shift_m;
+    }
+  }
+}
+
+TEST(AutocollimatorOptics, ClosedGivesTheSameBitsAsTraced) {
+  for (const bool is_half_covered : {false, true}) {
+    ExpectSameBits(ExampleInstrument(), Mirror(), is_half_covered);
+    ExpectSameBits(ExampleInstrument(), Mirror(-kSag_m), is_half_covered);
+  }
+}
+
 TEST(AutocollimatorOptics, NamesWhatIsWrongWithTheMirrorOrItsPose) {
   EXPECT_THAT([] { AutocollimatorOptics instrument(ExampleInstrument(), Surface{}); },
               testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("aperture")));

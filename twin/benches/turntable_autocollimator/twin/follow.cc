@@ -91,7 +91,7 @@ class TurntableFollow : public PointwiseFollow<TurntableExtra> {
  public:
   TurntableFollow(const Scenario& stated, const std::vector<Reading>& its_record)
       : PointwiseFollow(WithFreeTables(Foreseeable(stated, its_record)), its_record, TurntablePoints()),
-        path_(std::make_unique<MirrorPath>(scenario(), kFieldShare)),
+        path_(std::make_unique<MirrorPath>(scenario(), kFieldShare, optics::Fidelity::kClosed)),
         course_(FollowCourse(record(), path_->actual())) {}
 
   std::vector<std::string> Unfixed() const override { return course_.unfixed; }

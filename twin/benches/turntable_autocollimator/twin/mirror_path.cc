@@ -22,10 +22,11 @@ Pose AutocollimatorPose(double distance_m) {
   return X_LA;
 }
 
-optics::AutocollimatorOptics OpticsOf(const Scenario& actual, double field_share) {
+optics::AutocollimatorOptics OpticsOf(const Scenario& actual, double field_share, optics::Fidelity fidelity) {
   const CollimatorSettings& c = TurntableOf(actual).collimator;
   const double range_rad = TurntableOf(actual).autocollimator.range_rad;
   optics::AutocollimatorParameters p;
+  p.fidelity = fidelity;
   p.X_LA = AutocollimatorPose(c.distance_m);
   p.nominal_focal_length_m = c.focal_length_m;
   p.focal_length_m = c.focal_length_m * (1.0 + TurntableOf(actual).autocollimator.gain_error);
@@ -68,11 +69,11 @@ void SilenceTurntable(TurntableSettings& own) {
 
 }  // namespace
 
-MirrorPath::MirrorPath(const Scenario& nominal, double field_share)
+MirrorPath::MirrorPath(const Scenario& nominal, double field_share, optics::Fidelity fidelity)
     : effects_(TurntableEffectsOf(nominal)),
       actual_(ActualBenchOf(nominal, effects_, SilenceTurntable)),
       stand_(actual_),
-      optics_(OpticsOf(actual_, field_share)),
+      optics_(OpticsOf(actual_, field_share, fidelity)),
       empirical_x_(actual_.empiricals, "x"),
       empirical_y_(actual_.empiricals, "y") {}
 

@@ -26,7 +26,8 @@ class MirrorPath {
  public:
   /// @param field_share  Of the stated range in which there is a reading: 1, but for who must not lose one at its
   ///                     edge.
-  explicit MirrorPath(const Scenario& nominal, double field_share = 1.0);
+  explicit MirrorPath(const Scenario& nominal, double field_share = 1.0,
+                      optics::Fidelity fidelity = optics::Fidelity::kTraced);
 
   /// The bench as it is, with every effect on its constants.
   const Scenario& actual() const { return actual_; }
