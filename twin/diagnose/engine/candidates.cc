@@ -201,6 +201,25 @@ void Candidates::AddStep(const Showing& showing, const std::string& parameter, c
   };
 }
 
+void Candidates::AddSettling(const Showing& showing, double soonest_s, const SeriesAt& at) {
+  constexpr double kShortest = 0.125, kLongest_s = 30.0;  // of soonest_s: e^-8 is left; slower is a drift
+  const std::vector<double> times_s = Ratios(kShortest * soonest_s, std::max(kLongest_s, soonest_s), 14);
+  const auto grown = [soonest_s](double tau_s) { return std::exp(soonest_s / tau_s); };
+  Family& family = AddOver(showing, {"amplitude"}, {catalogue_.ShapeOf(showing.effect, "time_constant", times_s)},
+                           [at, grown](const Eigen::VectorXd& tau_s) -> Eigen::MatrixXd {
+                             return grown(tau_s[0]) * at(tau_s);
+                           });
+  family.parameters = [catalogue = catalogue_, effect = showing.effect, soonest_s, grown](
+                          const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
+    const double tau_s = shape[0], scale = grown(tau_s);
+    const Eigen::Vector2d slope(scale, -x[0] * scale * soonest_s / (tau_s * tau_s));
+    const bool has_shape = cov.rows() > 1;
+    const double variance = has_shape ? slope.dot(cov.topLeftCorner<2, 2>() * slope) : scale * scale * cov(0, 0);
+    return std::vector{catalogue.Estimate(effect, "amplitude", scale * x[0], std::sqrt(variance)),
+                       catalogue.Estimate(effect, "time_constant", tau_s, DeviationAt(cov, x.size()))};
+  };
+}
+
 void Candidates::AddTone(const Showing& showing, const TimeSeries& series, bool sine) {
   if (!series.tones) return;
   const auto columns = static_cast<std::size_t>(series.tones->series(0).cols() * showing.pattern.cols());

@@ -82,6 +82,12 @@ class Candidates {
   void AddDrift(const Showing& showing, const std::string& rate, const Eigen::VectorXd& time_s);
   /// A step of size `parameter` at any reading; nothing if there is no room.
   void AddStep(const Showing& showing, const std::string& parameter, const TimeSeries& series);
+  /// What a body still has to go after a move: `at` times "amplitude" on arrival, at a "time_constant".
+  ///
+  /// Sizes are thought of as what is left at the soonest reading: with a short time constant that is little of what the
+  /// catalogue's amplitude, on arrival, may be.
+  /// @param soonest_s  From arrival to the first reading that any stop has.
+  void AddSettling(const Showing& showing, double soonest_s, const SeriesAt& at);
   /// "amplitude" cos(2 pi "frequency" t + "phase"), with a size and phase of its own in each stretch; nothing if
   /// there is no room. @param sine  The catalogue counts the phase of a sine.
   void AddTone(const Showing& showing, const TimeSeries& series, bool sine = false);

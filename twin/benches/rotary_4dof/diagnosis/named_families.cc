@@ -208,12 +208,14 @@ void AddTravel(Responses& responses, double settle_s, Candidates& named) {
             DirectionSignal(s));
   named.Add(AtPoint("backlash", "reference", responses, "reference.yaw", 1.0).showing, {"half_width"},
             DirectionSignal(s));
-  if (s.dwell_s.array().isFinite().any())
-    named.AddOver(AtPoint("settling", "", responses, "target.yaw", -1.0).showing, {"amplitude"},
-                  {named.catalogue().ShapeOf("settling", "time_constant", Ratios(0.3, 4.0, 8))},
-                  [s, settle_s](const Eigen::VectorXd& tau_s) -> Eigen::MatrixXd {
-                    return SettlingSignal(s, settle_s, tau_s[0]);
-                  });
+  const auto waits_s = s.dwell_s.array();
+  if (waits_s.isFinite().any()) {
+    const double soonest_s = settle_s + waits_s.isFinite().select(waits_s, 1e9).minCoeff();
+    named.AddSettling(AtPoint("settling", "", responses, "target.yaw", -1.0).showing, std::max(soonest_s, 0.1),
+                      [s, settle_s](const Eigen::VectorXd& tau_s) -> Eigen::MatrixXd {
+                        return SettlingSignal(s, settle_s, tau_s[0]);
+                      });
+  }
   AddHalfFrequency(responses, named);
 }
 

@@ -95,26 +95,12 @@ void AddTime(const Context& context, int axis, const TimeSeries& series, Candida
   named.AddTone(OnAxis("tone", axis), series);
 }
 
-/// Sizes are thought of as what is left at the soonest reading: with a short time constant that is little of what the
-/// catalogue's amplitude, on arrival, may be.
 void AddSettling(const Context& context, Candidates& named) {
   const auto arrived_s = context->since_arrival_s.array();
   const double soonest_s = std::max(arrived_s.isFinite().select(arrived_s, 1e9).minCoeff(), 0.1);
-  const std::vector<double> times_s = Ratios(soonest_s / 8.0, std::max(30.0, soonest_s), 14);
-  Family& family = named.AddOver(OfBody("settling"), {"amplitude"},
-                                 {named.catalogue().ShapeOf("settling", "time_constant", times_s)},
-                                 [context, soonest_s](const Eigen::VectorXd& tau_s) -> Eigen::MatrixXd {
-                                   return std::exp(soonest_s / tau_s[0]) * SettlingSignal(*context, tau_s[0]);
-                                 });
-  family.parameters = [catalogue = named.catalogue(), soonest_s](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
-                                                                 const Eigen::MatrixXd& cov) {
-    const double tau_s = shape[0], grown = std::exp(soonest_s / tau_s);
-    const Eigen::Vector2d slope(grown, -x[0] * grown * soonest_s / (tau_s * tau_s));
-    const bool has_shape = cov.rows() > 1;
-    const double variance = has_shape ? slope.dot(cov.topLeftCorner<2, 2>() * slope) : grown * grown * cov(0, 0);
-    return std::vector{catalogue.Estimate("settling", "amplitude", grown * x[0], std::sqrt(variance)),
-                       catalogue.Estimate("settling", "time_constant", tau_s, DeviationAt(cov, x.size()))};
-  };
+  named.AddSettling(OfBody("settling"), soonest_s, [context](const Eigen::VectorXd& tau_s) -> Eigen::MatrixXd {
+    return SettlingSignal(*context, tau_s[0]);
+  });
 }
 
 void AddBody(const Context& context, Candidates& named) {
