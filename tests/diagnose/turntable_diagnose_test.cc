@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "tests/diagnose/turntable_bench.h"
 #include "tests/diagnose/told.h"
@@ -112,6 +115,32 @@ TEST(TurntableDiagnosis, NamesWhatTheTurntableDoes) {
   late.settling_rad = 2.0 * arcsec;
   late.settling_s = 2.5;
   ExpectNamed(late, "settling", "", "time_constant", 2.5);
+}
+
+/// Every cause once, with a probability and sizes.
+void ExpectComplete(const std::vector<Cause>& suspects) {
+  std::set<std::pair<std::string, std::string>> keys;
+  double sum = 0.0;
+  for (const Cause& suspect : suspects) {
+    EXPECT_TRUE(keys.insert({suspect.effect, suspect.where}).second) << suspect.effect;
+    EXPECT_GE(suspect.probability, 0.0) << suspect.effect;
+    EXPECT_FALSE(suspect.parameters.empty()) << suspect.effect;
+    sum += suspect.probability;
+  }
+  EXPECT_LE(sum, 1.0 + 1e-9);
+  EXPECT_EQ(keys.count({"autocollimator_drift", "x"}) + keys.count({"autocollimator_drift", "y"}), 2u);
+}
+
+TEST(TurntableDiagnosis, SaysHowLargeEveryCauseWouldBeAlone) {
+  Wrong gap;
+  gap.backlash_rad = 0.5 * arcsec;
+  const std::vector<Cause> suspects = DiagnosisOf(CarefulScenario(), gap).suspects;
+  ExpectComplete(suspects);
+  ASSERT_EQ(suspects.front().effect, "backlash");
+  const ParameterEstimate& width = ParameterOf(suspects.front(), "width");
+  EXPECT_NEAR(width.value, 0.5 * arcsec, 4.0 * width.u);
+  EXPECT_GT(suspects.front().log_evidence, 20.0);
+  ExpectComplete(DiagnosisOf(CarefulScenario(), Wrong{}).suspects);
 }
 
 // On arrival it is off by minutes of arc, of which the soonest reading shows an arc second: that is thought of, not those.

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "twin/benches/names.h"
+#include "twin/core/units.h"
 #include "twin/investigate/hypothesis.h"
 
 namespace twinbench::investigate {
@@ -51,6 +52,22 @@ TEST(LessLikely, ThatTheAnswerListsIsNotListedTwice) {
   diagnose::DiagnosisRun found = DriftFound();
   found.diagnosis.causes.push_back(Named("mount_creep", 0.4));
   EXPECT_EQ(WithLessLikely(found).diagnosis.causes.size(), 2u);
+}
+
+TEST(LessLikely, IsAsLargeAsItWouldBeAlone) {
+  diagnose::DiagnosisRun found = DriftFound();
+  Cause creep = Named("mount_creep", 0.0);
+  creep.parameters = {{"amplitude", "arcsec", units::arcsec, 0.7 * units::arcsec, 0.1 * units::arcsec, -1.0, 1.0},
+                      {"time_constant", "s", 1.0, 300.0, 100.0, 1.0, 1e5}};
+  found.suspects = {Named("autocollimator_drift", 0.0), creep};
+  const Supposed supposed = LeftOpen(WithLessLikely(found), Turntable())[1].hypothesis.causes.front();
+  EXPECT_DOUBLE_EQ(supposed.parameters.at("amplitude"), 0.7 * units::arcsec);
+  EXPECT_DOUBLE_EQ(supposed.finding.u.at("amplitude"), 0.1 * units::arcsec);
+  EXPECT_DOUBLE_EQ(supposed.parameters.at("time_constant"), 300.0);
+  const std::vector<Weighed> each = EachAlone(found, Turntable(), 0);
+  ASSERT_EQ(each.size(), 2u);
+  EXPECT_EQ(each[1].hypothesis.Name(), "mount_creep y");
+  EXPECT_DOUBLE_EQ(each[1].hypothesis.causes.front().parameters.at("time_constant"), 300.0);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 #include "twin/core/effect_catalogue.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/accepted_columns.h"
+#include "twin/diagnose/engine/alone.h"
 #include "twin/diagnose/engine/posterior.h"
-#include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/isolability.h"
 #include "twin/diagnose/recurrence.h"
 #include "twin/diagnose/redundancy.h"
@@ -121,24 +121,6 @@ Cause UnfittedCause(const CauseKey& key, double probability) {
   return cause;
 }
 
-/// @return named causes by their evidence alone, most probable first, none of them likely.
-std::vector<Cause> SuspectsOf(const Analysis& analysis) {
-  constexpr std::size_t kMostSuspects = 8;
-  const std::vector<Family>& families = analysis.scanner->Families();
-  const Eigen::VectorXd logs = LogPriors(families) + analysis.found.alone.log_bayes;
-  const double all = tuning::kPriorNone + logs.array().exp().sum();
-  std::map<CauseKey, double> probability;
-  for (std::size_t k = 0; k < families.size(); ++k) {
-    if (families[k].kind == Kind::kNamed)
-      probability[{families[k].effect, families[k].where}] += std::exp(logs[static_cast<Eigen::Index>(k)]) / all;
-  }
-  std::vector<Cause> suspects;
-  for (const auto& [key, p] : probability) suspects.push_back(UnfittedCause(key, p));
-  std::ranges::stable_sort(suspects, std::ranges::greater{}, &Cause::probability);
-  if (suspects.size() > kMostSuspects) suspects.resize(kMostSuspects);
-  return suspects;
-}
-
 /// @return of every place that has a name, the names that the answer leaves out.
 std::vector<Cause> LessLikelyOf(const Analysis& analysis) {
   constexpr double kLeast = 0.01;
@@ -225,7 +207,9 @@ DiagnosisRun Conclude(const LinearRun& run, const Analysis& analysis, const std:
   result.noise = analysis.noise;
   result.accepted = AcceptedOf(analysis);
   AcceptRecurrent(analysis, result);
-  if (result.diagnosis.verdict == Verdict::kNone) result.suspects = SuspectsOf(analysis);
+  if (!analysis.design_only)
+    result.suspects =
+        CausesAlone(run, analysis.noise, *analysis.projector, *analysis.scanner, analysis.found.alone);
   result.less_likely = LessLikelyOf(analysis);
   AddDetectability(run, analysis, words, result.diagnosis);
   if (analysis.design_only) result.isolability = std::make_shared<const Isolability>(IsolabilityOf(run, analysis));

@@ -49,8 +49,8 @@ struct DiagnosisRun {
   NoiseModel noise;
   std::vector<Accepted> accepted;  // named causes and empirical terms, in order of acceptance
   double structure_p = kNaN;       // alarm_p without what single far values add to it
-  /// Nothing was found: the named causes that would come first, with what probability they have against nothing. They
-  /// are no part of the answer; a further run may be planned by them.
+  /// Every named cause as if it were the only one, with its sizes, by its evidence alone against nothing; most probable
+  /// first. They are no part of the answer; further runs are planned by them, and what is told is held against them.
   std::vector<Cause> suspects;
   /// Something was found: the named causes that are too unlikely for the answer to list, from a hundredth on. Each is
   /// indistinguishable from the first cause of its place.

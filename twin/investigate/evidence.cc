@@ -28,24 +28,6 @@ void Normalise(Belief& belief) {
   });
 }
 
-/// Members of a tie that were told without sizes, as they are found where the others are struck.
-diagnose::DiagnosisRun WithSizes(diagnose::DiagnosisRun found, const TakenRun& run, const Means& means) {
-  std::vector<diagnose::Cause>& causes = found.diagnosis.causes;
-  for (diagnose::Cause& cause : causes) {
-    if (!cause.parameters.empty()) continue;
-    std::vector<std::string> struck;
-    for (const diagnose::Cause& other : causes) {
-      if (other.effect != cause.effect) struck.push_back(other.effect);
-    }
-    const diagnose::DiagnosisRun alone = means.diagnose(run.readings, run.scenario, struck);
-    const auto same = std::ranges::find_if(alone.diagnosis.causes, [&cause](const diagnose::Cause& other) {
-      return other.effect == cause.effect && other.where == cause.where;
-    });
-    if (same != alone.diagnosis.causes.end()) cause.parameters = same->parameters;
-  }
-  return found;
-}
-
 /// Named causes share what is left when the most of `unlisted` has gone to signals without a name.
 void AddUnnamed(std::vector<Weighed>& open, Belief& belief, const TakenRun& first, const Means& means) {
   constexpr double kAsSignals = 0.9;
@@ -108,7 +90,7 @@ Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& r
   const std::span<const TakenRun> diagnosed = std::span(runs).first(1);
   const bool is_none = found.diagnosis.verdict == diagnose::Verdict::kNone;
   belief.unlisted = is_none ? 0.0 : std::clamp(found.diagnosis.unknown.probability, 0.0, 1.0);
-  std::vector<Weighed> open = LeftOpen(WithSizes(WithLessLikely(found), runs.front(), means), runs.front().scenario, runs.front().number);
+  std::vector<Weighed> open = LeftOpen(WithLessLikely(found), runs.front().scenario, runs.front().number);
   AddUnnamed(open, belief, runs.front(), means);
   for (const Weighed& weighed : open) {
     Open fitted{FitJointly(weighed.hypothesis, diagnosed, means)};

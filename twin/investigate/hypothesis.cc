@@ -62,22 +62,35 @@ EffectSettings Sized(const Cause& cause, const std::string& bench) {
   return effect;
 }
 
-/// @param run  That it was found in.
-Supposed Suppose(const Cause& cause, const std::string& bench, int run) {
-  Supposed supposed{Sized(cause, bench)};
-  if (HappensOnce(supposed)) supposed.happened_in = run;
-  return supposed;
-}
+/// What readings leave open.
+struct Finding {
+  const diagnose::DiagnosisRun& found;
+  const std::string& bench;
+  int run;  // that was diagnosed
+
+  /// Causes that the diagnosis did not fit are as large as they would be alone.
+  Supposed Suppose(Cause cause) const {
+    if (cause.parameters.empty()) {
+      const auto alone = std::ranges::find_if(found.suspects, [&cause](const Cause& suspect) {
+        return suspect.effect == cause.effect && suspect.where == cause.where;
+      });
+      if (alone != found.suspects.end()) cause.parameters = alone->parameters;
+    }
+    Supposed supposed{Sized(cause, bench)};
+    if (HappensOnce(supposed)) supposed.happened_in = run;
+    return supposed;
+  }
+};
 
 /// Each of `open` with each cause of the group.
-std::vector<Weighed> Times(const std::vector<Weighed>& open, const std::vector<Cause>& causes,
-                           const diagnose::CauseGroup& group, const std::string& bench, int run) {
+std::vector<Weighed> Times(const std::vector<Weighed>& open, const diagnose::CauseGroup& group, const Finding& finding) {
+  const std::vector<Cause>& causes = finding.found.diagnosis.causes;
   std::vector<Weighed> product;
   const double sum = Sum(causes, group);
   for (const Weighed& one : open) {
     for (const std::size_t k : group) {
       Weighed more = one;
-      more.hypothesis.causes.push_back(Suppose(causes[k], bench, run));
+      more.hypothesis.causes.push_back(finding.Suppose(causes[k]));
       more.probability *= causes[k].probability / sum;
       product.push_back(std::move(more));
     }
@@ -86,14 +99,14 @@ std::vector<Weighed> Times(const std::vector<Weighed>& open, const std::vector<C
 }
 
 /// Nothing was found: each suspect alone beside nothing.
-std::vector<Weighed> NothingOrSuspects(const diagnose::DiagnosisRun& found, const std::string& bench, int run) {
+std::vector<Weighed> NothingOrSuspects(const Finding& finding) {
   constexpr double kWorthASuspicion = 0.01;
   std::vector<Weighed> open(1);
   open.front().probability = 1.0;
-  for (const Cause& suspect : found.suspects) {
+  for (const Cause& suspect : finding.found.suspects) {
     if (suspect.probability < kWorthASuspicion) continue;
     Weighed one;
-    one.hypothesis.causes.push_back(Suppose(suspect, bench, run));
+    one.hypothesis.causes.push_back(finding.Suppose(suspect));
     one.probability = suspect.probability;
     open.front().probability -= suspect.probability;
     open.push_back(std::move(one));
@@ -166,15 +179,25 @@ diagnose::DiagnosisRun WithLessLikely(diagnose::DiagnosisRun found) {
 
 std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run) {
   const std::vector<Cause>& causes = found.diagnosis.causes;
-  if (found.diagnosis.verdict == diagnose::Verdict::kNone) return NothingOrSuspects(found, scenario.bench, run);
+  const Finding finding{found, scenario.bench, run};
+  if (found.diagnosis.verdict == diagnose::Verdict::kNone) return NothingOrSuspects(finding);
   std::vector<Weighed> open(1);
   open.front().probability = 1.0;
   open.front().hypothesis.besides = SignalsOf(found, scenario);
   for (const diagnose::CauseGroup& group : diagnose::GroupsOf(causes)) {
-    if (Sum(causes, group) > 0.0) open = Times(open, causes, group, scenario.bench, run);
+    if (Sum(causes, group) > 0.0) open = Times(open, group, finding);
   }
   KeepTheMostProbable(open);
   return open;
+}
+
+std::vector<Weighed> EachAlone(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run) {
+  std::vector<Weighed> each;
+  for (const Cause& suspect : found.suspects) {
+    each.push_back({.probability = suspect.probability});
+    each.back().hypothesis.causes.push_back(Finding{found, scenario.bench, run}.Suppose(suspect));
+  }
+  return each;
 }
 
 Hypothesis Unnamed(const diagnose::DiagnosisRun& struck, const Scenario& scenario) {

@@ -54,6 +54,10 @@ diagnose::DiagnosisRun WithLessLikely(diagnose::DiagnosisRun found);
 /// @param run  Which of the investigation's was diagnosed, from 0 on.
 std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run = 0);
 
+/// Every cause of the catalogue as the only one, with the sizes that these readings give it.
+/// @param run  Which of the investigation's was diagnosed, from 0 on.
+std::vector<Weighed> EachAlone(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run);
+
 /// What the diagnosis says of the same readings when every effect that it names is struck: the signals that it
 /// would write instead, with sizes that are free. No causes if there are none that predict another run.
 Hypothesis Unnamed(const diagnose::DiagnosisRun& struck, const Scenario& scenario);

@@ -286,6 +286,7 @@ class Loop {
       Update(belief, runs_, means_);
       Compare();
       DoubtAName();
+      AskOthers();
     } else {
       std::rotate(runs_.begin(), runs_.end() - 1, runs_.end());
       Begin();
@@ -302,11 +303,34 @@ class Loop {
     if (!best.IsNamed() || std::ranges::find(told_by_diagnosis_, best.Name()) != told_by_diagnosis_.end()) return;
     told_by_diagnosis_.push_back(best.Name());
     const TakenRun& run = runs_.back();
-    std::string refusal;
-    if (const auto alone = DiagnosisOf(WithThoseLike(run, best), run.scenario, refusal))
+    if (const auto& alone = LastAlone(best))
       TakeIn(belief, LeftOpen(WithLessLikely(*alone), run.scenario, run.number), runs_, means_,
              [this](const Hypothesis& other) { return AsMany(other); });
     NamedByFits(belief);
+  }
+
+  /// A name that comes first has every other cause of the catalogue held against all runs, once: one that a diagnosis of
+  /// few runs found too unlikely to carry on may be what all of them together say.
+  void AskOthers() {
+    Belief& belief = result_.belief;
+    const Hypothesis best = belief.Best().fit.hypothesis;
+    if (!best.IsNamed() || best.causes.size() > 1) return;
+    if (std::ranges::find(held_against_others_, best.Name()) != held_against_others_.end()) return;
+    held_against_others_.push_back(best.Name());
+    const TakenRun& run = runs_.back();
+    const auto& alone = LastAlone(best);
+    if (!alone) return;
+    for (const Weighed& other : EachAlone(*alone, run.scenario, run.number))
+      TakeIn(belief, {other}, runs_, means_, [this](const Hypothesis& one) { return AsMany(one); });
+  }
+
+  /// Diagnosis of the last run, and all like it, beside the scenario as it stands. None where it cannot be diagnosed.
+  const std::optional<diagnose::DiagnosisRun>& LastAlone(const Hypothesis& best) {
+    const bool is_mean = std::ranges::none_of(best.causes, HappensOnce);
+    if (alone_.runs == runs_.size() && alone_.is_mean == is_mean) return alone_.found;
+    std::string refusal;
+    alone_ = {runs_.size(), is_mean, DiagnosisOf(WithThoseLike(runs_.back(), best), runs_.back().scenario, refusal)};
+    return alone_.found;
   }
 
   /// The last run, and all like it together, beside the best hypothesis: they agree, or they bring up more.
@@ -328,7 +352,8 @@ class Loop {
     for (Weighed& one : more) one.hypothesis = Together(best, one.hypothesis);
     bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
     if (agrees) return;
-    const diagnose::DiagnosisRun alone = best.IsNothing() ? found : means_.diagnose(readings, run.scenario, {});
+    if (best.IsNothing()) alone_ = {runs_.size(), true, found};
+    const diagnose::DiagnosisRun alone = LastAlone(best).value_or(found);
     const std::vector<Weighed> others =  // instead of the best; beside nothing that was just asked
         LeftOpen(WithLessLikely(alone), run.scenario, run.number);
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
@@ -374,7 +399,13 @@ class Loop {
   std::optional<Plans> plans_;  // once they are needed: each is a run of the twin
   std::vector<TakenRun> runs_;
   std::string not_diagnosed_;     // why none of the runs so far could be
-  std::vector<std::string> told_by_diagnosis_;  // names whose rivals and doubles a diagnosis was asked for
+  std::vector<std::string> told_by_diagnosis_;    // names whose rivals and doubles a diagnosis was asked for
+  std::vector<std::string> held_against_others_;  // of the whole catalogue
+  struct {
+    std::size_t runs = 0;
+    bool is_mean = false;
+    std::optional<diagnose::DiagnosisRun> found;
+  } alone_;  // LastAlone
   Investigation result_;
 };
 

@@ -13,23 +13,6 @@ CauseKey KeyOf(const Family& family) {
   return {family.effect, family.where};
 }
 
-/// The amplitudes and shapes themselves.
-std::vector<ParameterEstimate> PlainParameters(const Family& family, const Term& term) {
-  std::vector<ParameterEstimate> parameters;
-  for (std::size_t k = 0; k < family.amplitudes.size(); ++k) {
-    const Amplitude& a = family.amplitudes[k];
-    const auto at = static_cast<Eigen::Index>(k);
-    const double u = std::sqrt(term.cov(at, at));
-    parameters.push_back({a.name, a.unit, a.to_SI, term.amplitudes[at], u, a.lower, a.upper});
-  }
-  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
-    const Shape& s = family.shapes[k];
-    const double value = term.shape[static_cast<Eigen::Index>(k)], u = ShapeDeviation(family, k, term.cov);
-    parameters.push_back({s.name, s.unit, s.to_SI, value, u, s.lower, s.upper});
-  }
-  return parameters;
-}
-
 double ListedShareOf(const std::vector<Family>& families, const CauseKey& key) {
   const auto family = std::ranges::find(families, key, KeyOf);
   return family == families.end() ? tuning::kListed : family->listed;
@@ -45,8 +28,7 @@ Cause CauseOf(const Term& term, const std::vector<Family>& families, const Share
   cause.probability = std::min(probability, 1.0) * ListedShareOf(families, key);  // sums of many shares round
   cause.log_evidence = term.statistic;
   if (KeyOf(family) != key) return cause;
-  cause.parameters =
-      family.parameters ? family.parameters(term.shape, term.amplitudes, term.cov) : PlainParameters(family, term);
+  cause.parameters = ParametersOf(family, term.shape, term.amplitudes, term.cov);
   cause.rho = std::sqrt(std::max(0.0, term.explained));
   return cause;
 }
@@ -141,6 +123,23 @@ void AddRivals(const SearchResult& found, const std::vector<Family>& families, s
 }
 
 }  // namespace
+
+std::vector<ParameterEstimate> ParametersOf(const Family& family, const Eigen::VectorXd& shape,
+                                            const Eigen::VectorXd& amplitudes, const Eigen::MatrixXd& cov) {
+  if (family.parameters) return family.parameters(shape, amplitudes, cov);
+  std::vector<ParameterEstimate> parameters;
+  for (std::size_t k = 0; k < family.amplitudes.size(); ++k) {
+    const Amplitude& a = family.amplitudes[k];
+    const auto at = static_cast<Eigen::Index>(k);
+    parameters.push_back({a.name, a.unit, a.to_SI, amplitudes[at], std::sqrt(cov(at, at)), a.lower, a.upper});
+  }
+  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
+    const Shape& s = family.shapes[k];
+    const double u = ShapeDeviation(family, k, cov);
+    parameters.push_back({s.name, s.unit, s.to_SI, shape[static_cast<Eigen::Index>(k)], u, s.lower, s.upper});
+  }
+  return parameters;
+}
 
 Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families) {
   const Term& term = found.terms[k];

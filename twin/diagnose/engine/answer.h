@@ -16,6 +16,11 @@ struct Answer {
   double weight = 0.0;        // power that nothing else explains
 };
 
+/// The catalogue's parameters of a fitted family.
+/// @param cov  Of the amplitudes, and of the shape after them as far as it goes.
+std::vector<ParameterEstimate> ParametersOf(const Family& family, const Eigen::VectorXd& shape,
+                                            const Eigen::VectorXd& amplitudes, const Eigen::MatrixXd& cov);
+
 /// @param k  Which of the terms.
 Answer AnswerOf(const SearchResult& found, std::size_t k, const std::vector<Family>& families);
 
