@@ -51,7 +51,7 @@ void ExpectNamed(const Wrong& wrong, const std::string& effect, const std::strin
   ASSERT_TRUE(cause) << effect << " at " << where << "\n" << test::Told(run);
   EXPECT_LE(cause->probability, 0.97);
   const ParameterEstimate& p = ParameterOf(*cause, parameter);
-  EXPECT_NEAR(p.value, value, 3.0 * p.u) << effect << " at " << where;
+  EXPECT_NEAR(p.value, value, 3.0 * p.u) << effect << " at " << where << "\n" << test::Told(run);
   EXPECT_LT(p.u, 0.3 * std::abs(value)) << effect << " at " << where;
   EXPECT_GT(run.diagnosis.gain.folds, run.accepted.empty() ? -1 : 0);
 }

@@ -57,6 +57,20 @@ class JointFits : public testing::Test {
   }
 };
 
+// What a diagnosis looks for up to some bound is called something else beyond it: no run may lead there.
+TEST_F(JointFits, KeepACauseWhereTheDiagnosisCallsItSo) {
+  const std::vector<TakenRun> runs =
+      RunsWith("[[effect]]\nname = \"drift\"\nrate_deg_per_h = 2.0\n", 2);
+  Hypothesis slow = Of("drift");
+  Supposed& drift = slow.causes.front();
+  const double rate = 2.0 * kDeg / units::hour;
+  drift.within["rate"] = {0.0, 0.25 * rate};
+  const JointFit bounded = FitJointly(slow, runs, means_), free = Fit("drift", runs);
+  EXPECT_LE(bounded.hypothesis.causes.front().parameters.at("rate"), 0.25 * rate);
+  EXPECT_GT(free.hypothesis.causes.front().parameters.at("rate"), 0.5 * rate);
+  EXPECT_LT(bounded.log_evidence, free.log_evidence);
+}
+
 TEST_F(JointFits, FindAWaveWhereverItBegins) {
   for (const double phase_deg : {20.0, 120.0, 200.0, 300.0}) {
     const auto runs = RunsWith(

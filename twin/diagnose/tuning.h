@@ -54,9 +54,10 @@ inline constexpr double kPlausibleTop = 3.0;
 /// Families that explain so much of what the best does are moved to their best shape before they are compared: a
 /// grid is too coarse for a strong effect. No more than eight, for the time it takes.
 inline constexpr double kNearlyAsMuch = 0.6;
-/// Of what a family explains at its best shape, the most that the nearest point of its grid loses (of a wave a tenth).
+/// Of what a family explains at its best shape, the most that the nearest point of its grid loses: of a wave between
+/// two frequencies that are 0.6 cycles of the run apart, 1 - sinc^2(0.3).
 /// Those that would come first with it are moved too.
-inline constexpr double kLostBetween = 0.15;
+inline constexpr double kLostBetween = 0.27;
 inline constexpr int kMostLeaders = 8;
 
 // --- noise ---

@@ -78,6 +78,9 @@ struct Finding {
     }
     Supposed supposed{Sized(cause, bench)};
     if (HappensOnce(supposed)) supposed.happened_in = run;
+    for (const diagnose::ParameterEstimate& p : cause.parameters) {
+      if (p.lower < p.upper) supposed.within[p.name] = {p.lower, p.upper};
+    }
     return supposed;
   }
 };
@@ -194,7 +197,7 @@ std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenari
 std::vector<Weighed> EachAlone(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run) {
   std::vector<Weighed> each;
   for (const Cause& suspect : found.suspects) {
-    each.push_back({.probability = suspect.probability});
+    each.push_back({{}, suspect.probability});
     each.back().hypothesis.causes.push_back(Finding{found, scenario.bench, run}.Suppose(suspect));
   }
   return each;

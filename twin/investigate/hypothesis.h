@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "twin/core/effect_catalogue.h"
@@ -16,6 +18,9 @@ inline constexpr const char* kPhase = "phase";
 /// are behind it.
 struct Supposed : EffectSettings {
   int happened_in = 0;  // run, from 0 on
+  /// Where the diagnosis that brought it up calls it so, by parameter [SI]: a creep that is slower than it looks for is a
+  /// drift. Without: where the catalogue says.
+  std::map<std::string, std::pair<double, double>> within = {};
 };
 
 /// One way in which the scenario may be wrong: all causes at work together. None: it is right.

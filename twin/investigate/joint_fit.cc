@@ -33,7 +33,10 @@ std::vector<Size> SizesOf(const Hypothesis& hypothesis, const std::string& bench
     for (const EffectParameter& p : entry.parameters) {
       const auto u = hypothesis.causes[k].finding.u.find(p.name);
       if (u == hypothesis.causes[k].finding.u.end() || !(u->second > 0.0)) continue;
-      sizes.push_back({k, p.name, u->second, p.lower_SI, p.upper_SI, ThoughtOf(p, entry)});
+      const auto within = hypothesis.causes[k].within.find(p.name);
+      const bool is_bounded = within != hypothesis.causes[k].within.end();
+      const auto [lower, upper] = is_bounded ? within->second : std::pair(p.lower_SI, p.upper_SI);
+      sizes.push_back({k, p.name, u->second, std::max(lower, p.lower_SI), std::min(upper, p.upper_SI), ThoughtOf(p, entry)});
     }
   }
   return sizes;
