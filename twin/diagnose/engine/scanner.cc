@@ -1,12 +1,12 @@
 #include "twin/diagnose/engine/scanner.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -215,7 +215,7 @@ std::vector<Scanner::Fit> Scanner::FitEach(int family, int first, int last, cons
       gram = f.map.transpose() * gram * f.map;
       product = f.map.transpose() * product;
     }
-    const Eigen::VectorXd amplitudes = gram.completeOrthogonalDecomposition().solve(product);
+    const Eigen::VectorXd amplitudes = SolveShortest(gram, product);
     fits.push_back({amplitudes, product.dot(amplitudes)});
   }
   return fits;
