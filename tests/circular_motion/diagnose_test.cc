@@ -5,6 +5,7 @@
 
 #include "tests/circular_motion/circle_run.h"
 #include "tests/circular_motion/oracle.h"
+#include "tests/support/thresholds.h"
 #include "twin/benches/circular_motion/bench.h"
 #include "twin/benches/circular_motion/twin/factory.h"
 #include "twin/diagnose/by_twin.h"
@@ -21,6 +22,7 @@ Scenario Believed() {
 diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {
   diagnose::DiagnoseOptions options;
   options.null_runs = 200;  // enough for a threshold
+  options.cache_folder = test::ThresholdsFolder();
   return Diagnose(readings, believed, options).diagnosis;
 }
 

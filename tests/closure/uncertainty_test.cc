@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
 
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench {
 namespace {
@@ -45,13 +45,13 @@ std::pair<double, int> ChiSquared(const Eigen::VectorXd& error, const Eigen::Mat
   // Angles and lengths are brought to one scale before ranks are counted.
   const Eigen::VectorXd sd = cov.diagonal().cwiseSqrt();
   const Eigen::MatrixXd correlation = sd.cwiseInverse().asDiagonal() * cov * sd.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
-  const Eigen::VectorXd scores = solver.eigenvectors().transpose() * error.cwiseQuotient(sd);
+  const auto [values, vectors] = EigenOfSymmetric(correlation);
+  const Eigen::VectorXd scores = vectors.transpose() * error.cwiseQuotient(sd);
   double sum = 0.0;
   int rank = 0;
   for (Eigen::Index k = 0; k < scores.size(); ++k) {
-    if (solver.eigenvalues()[k] < 1e-9 * solver.eigenvalues().maxCoeff()) continue;
-    sum += scores[k] * scores[k] / solver.eigenvalues()[k];
+    if (values[k] < 1e-9 * values.maxCoeff()) continue;
+    sum += scores[k] * scores[k] / values[k];
     ++rank;
   }
   return {sum, rank};

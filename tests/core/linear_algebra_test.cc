@@ -42,7 +42,12 @@ TEST(LinearAlgebra, OfManySolutionsItGivesTheShortest) {
   EXPECT_EQ(ranked.rank, 2);
   EXPECT_LT((a * ranked.x - a.col(2)).norm(), kRounding);
   // (1, 1, 0) and (0, 0, 1) both do; off the null vector (1, 1, -1) they are (1, 1, 2) / 3.
-  EXPECT_LT((ranked.x - Eigen::Vector3d(1.0, 1.0, 2.0) / 3.0).norm(), kRounding);
+  const VectorXd shortest = Eigen::Vector3d(1.0, 1.0, 2.0) / 3.0;
+  EXPECT_LT((ranked.x - shortest).norm(), kRounding);
+  const VectorXd right = a.col(2);
+  EXPECT_LT((SolveShortest(a, right) - shortest).norm(), kRounding);
+  EXPECT_LT((SolveShortest(a, MatrixXd(right)) - shortest).norm(), kRounding);
+  EXPECT_LT((GeneralInverseOf(a) * right - shortest).norm(), kRounding);
 }
 
 TEST(LinearAlgebra, FindsWhatAMatrixDoesNotSee) {

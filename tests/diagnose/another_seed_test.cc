@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/angle_benches.h"
+#include "tests/support/thresholds.h"
 #include "twin/benches/registry.h"
 #include "twin/core/signal_effect.h"
 #include "twin/diagnose/engine/scanner.h"
@@ -44,6 +45,7 @@ double LeftOf(const std::vector<Reading>& readings, const Scenario& believed) {
 DiagnosisRun Found(const std::vector<Reading>& readings, const Scenario& believed) {
   DiagnoseOptions options;
   options.null_runs = 100;
+  options.cache_folder = test::ThresholdsFolder();
   return Diagnose(readings, believed, options);
 }
 

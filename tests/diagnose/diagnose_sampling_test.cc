@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "tests/support/thresholds.h"
 #include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
@@ -66,6 +67,7 @@ std::set<std::string> NamedIn(const Sampling& sampling, Error error_deg) {
   EncoderOf(scenario).encoder_procedure.kind = "sweep";
   DiagnoseOptions options;
   options.null_runs = 100;  // what is found here is far above any threshold
+  options.cache_folder = test::ThresholdsFolder();
   const Diagnosis d = Diagnose(ReadAs(sampling, error_deg), scenario, options).diagnosis;
   EXPECT_NE(d.verdict, Verdict::kUnknown) << sampling.name << ": " << d.unknown.signature;
   std::set<std::string> named;

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/core/linear_algebra.h"
 
 /// Fits single families to noise-free runs of the twin: what each leaves of the effect that it is made for.
 namespace twinbench::diagnose::test {
@@ -25,7 +26,7 @@ inline Fit FitAt(const Family& family, int g, const LinearRun& run) {
   const Eigen::MatrixXd columns = family.ColumnsAt(g), offsets = run.nuisance.jacobian.toDense();
   Eigen::MatrixXd all(columns.rows(), columns.cols() + offsets.cols());
   all << columns, offsets;
-  const Eigen::VectorXd x = all.completeOrthogonalDecomposition().solve(run.residual);
+  const Eigen::VectorXd x = SolveShortest(all, run.residual);
   return {g, x.head(columns.cols()), (run.residual - all * x).norm() / run.residual.norm()};
 }
 

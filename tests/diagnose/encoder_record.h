@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/thresholds.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 #include "twin/benches/registry.h"
@@ -80,6 +81,7 @@ struct Answer {
 inline Answer Ask(const Record& record) {
   DiagnoseOptions options;
   options.null_runs = 100;  // of what is far beyond any threshold
+  options.cache_folder = test::ThresholdsFolder();
   Answer answer{Diagnose(record.readings, record.Believed(), options), {}};
   answer.again = Diagnose(record.readings, Extend(record.Believed(), answer.run, "test"), options).diagnosis;
   return answer;

@@ -7,6 +7,7 @@
 #include "tests/diagnose/ring_run.h"
 #include "twin/benches/rotary_4dof/diagnosis/change_of_tables.h"
 #include "twin/benches/rotary_4dof/estimators/design.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/accepted_columns.h"
 #include "twin/diagnose/folds.h"
 
@@ -71,7 +72,7 @@ double DenseHeldOutSquares(const LinearRun& run, int pass) {
   }
   const Eigen::MatrixXd J = run.nuisance.jacobian;
   const Eigen::MatrixXd J_train = J(train, Eigen::all);
-  const Eigen::VectorXd x = J_train.completeOrthogonalDecomposition().solve(Eigen::VectorXd(run.residual(train)));
+  const Eigen::VectorXd x = SolveShortest(J_train, Eigen::VectorXd(run.residual(train)));
   return (run.residual(held) - J(held, Eigen::all) * x).squaredNorm();
 }
 

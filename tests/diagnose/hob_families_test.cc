@@ -4,6 +4,7 @@
 #include "tests/diagnose/hob_chain.h"
 #include "tests/diagnose/hob_twin_run.h"
 #include "twin/benches/hob_transmission/diagnosis/families.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 
 /// Each named family against noise-free readings that were made without it (tests/diagnose/hob_chain.cc).
@@ -71,7 +72,7 @@ TEST_P(HobFamily, FitsWhatIndependentFormulasMakeOfItsCause) {
   // What is left without the cause: the free orders, to rounding and the second order of the errors.
   const Eigen::MatrixXd free = hob.run.nuisance.jacobian.toDense();
   const Eigen::VectorXd signal =
-      hob.run.residual - free * free.completeOrthogonalDecomposition().solve(hob.run.residual);
+      hob.run.residual - free * SolveShortest(free, hob.run.residual);
   const auto [family, fit] = BestOf(families, trial.cause.name, trial.cause.where, hob.run);
   EXPECT_LT(fit.left * hob.run.residual.norm(), trial.left * signal.norm());
   std::map<std::string, double> found = ParametersOf(*family, fit);

@@ -8,6 +8,7 @@
 #include "tests/diagnose/hob_twin_run.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
@@ -30,7 +31,7 @@ HobChain Quiet() {
 /// Rms that the free unknowns leave.
 double Left_rad(const LinearRun& run) {
   const Eigen::MatrixXd free = run.nuisance.jacobian.toDense();
-  const Eigen::VectorXd left = run.residual - free * free.completeOrthogonalDecomposition().solve(run.residual);
+  const Eigen::VectorXd left = run.residual - free * SolveShortest(free, run.residual);
   return left.norm() / std::sqrt(static_cast<double>(left.size()));
 }
 

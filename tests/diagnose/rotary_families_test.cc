@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +9,7 @@
 #include "twin/benches/rotary_4dof/diagnosis/rotary_case.h"
 #include "twin/benches/rotary_4dof/twin/factory.h"
 #include "twin/core/effect_catalogue.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/noise_model.h"
 #include "twin/diagnose/engine/projector.h"
 
@@ -56,7 +57,7 @@ Match BestMatch(const std::string& effect, const std::string& where) {
     if (family.kind != Kind::kNamed || family.effect != effect || family.where != where) continue;
     for (int g = 0; g < family.grid; ++g) {
       const Eigen::MatrixXd S = projector.Apply(noise.Whiten(run, family.ColumnsAt(g)));
-      const Eigen::VectorXd x = S.completeOrthogonalDecomposition().solve(y.col(0));
+      const Eigen::VectorXd x = SolveShortest(S, Eigen::VectorXd(y.col(0)));
       const double cosine2 = (S * x).squaredNorm() / y.squaredNorm();
       if (cosine2 > best.cosine2) best = {cosine2, x};
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "tests/freeform/freeform_run.h"
+#include "tests/support/thresholds.h"
 #include "twin/diagnose/diagnose.h"
 
 // Runs of an implementation that shares nothing with the twin, each with one hidden effect or none.
@@ -17,6 +18,7 @@ std::string CasePath(const std::string& number, const std::string& file) {
 diagnose::Diagnosis DiagnosisOfCase(const std::string& number) {
   diagnose::DiagnoseOptions options;
   options.null_runs = 200;  // enough for a threshold
+  options.cache_folder = test::ThresholdsFolder();
   const std::vector<Reading> readings = ReadReadingsCsv(CasePath(number, "readings.csv"), kFreeformBench);
   return benches::freeform::Diagnose(readings, FreeformScenario(), options).diagnosis;
 }

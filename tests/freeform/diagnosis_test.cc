@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/freeform/freeform_run.h"
+#include "tests/support/thresholds.h"
 #include "twin/diagnose/diagnose.h"
 
 namespace twinbench::freeform_test {
@@ -13,6 +14,7 @@ diagnose::Diagnosis DiagnosisOf(const std::string& hidden) {
   const std::vector<Reading> readings = RunOf(FreeformScenario(kShorter + hidden));
   diagnose::DiagnoseOptions options;
   options.null_runs = 200;  // enough for a threshold
+  options.cache_folder = test::ThresholdsFolder();
   return benches::freeform::Diagnose(readings, FreeformScenario(kShorter), options).diagnosis;
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/support/angle_benches.h"
+#include "tests/support/thresholds.h"
 #include "twin/benches/registry.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/diagnose/diagnose.h"
@@ -29,6 +30,7 @@ void Try(Scenario scenario, const std::string& what, int seeds, Alarms& alarms) 
     scenario.seed = first + static_cast<std::uint64_t>(k);
     diagnose::DiagnoseOptions options;
     options.null_runs = kNullRuns;
+    options.cache_folder = ThresholdsFolder();
     ++alarms.runs;
     std::string raised;
     try {

@@ -1,8 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "tests/separate/bench.h"
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate {
 namespace {
@@ -22,11 +21,11 @@ struct Whitened {
 
 Whitened Whiten(const Eigen::MatrixXd& cov) {
   // Lengths in 0.1 m, as angles: the covariance has blocks of rad^2 and m^2.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(cov);
-  const double least = 1e-6 * eigen.eigenvalues().maxCoeff();
-  const auto kept = (eigen.eigenvalues().array() > least).count();
-  const Eigen::VectorXd inverse_root = eigen.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse();
-  return {inverse_root.asDiagonal() * eigen.eigenvectors().rightCols(kept).transpose()};
+  const auto [values, vectors] = EigenOfSymmetric(cov);
+  const double least = 1e-6 * values.maxCoeff();
+  const auto kept = (values.array() > least).count();
+  const Eigen::VectorXd inverse_root = values.tail(kept).cwiseSqrt().cwiseInverse();
+  return {inverse_root.asDiagonal() * vectors.rightCols(kept).transpose()};
 }
 
 Eigen::VectorXd Stacked(const TableEstimate& estimate) {

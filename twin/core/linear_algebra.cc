@@ -17,6 +17,18 @@ RankedSolution SolveRanked(const MatrixXd& a, const MatrixXd& b, double threshol
   return {svd.solve(b), svd.rank()};
 }
 
+VectorXd SolveShortest(const MatrixXd& a, const VectorXd& b) {
+  return a.completeOrthogonalDecomposition().solve(b);
+}
+
+MatrixXd SolveShortest(const MatrixXd& a, const MatrixXd& b) {
+  return a.completeOrthogonalDecomposition().solve(b);
+}
+
+MatrixXd GeneralInverseOf(const MatrixXd& a) {
+  return a.completeOrthogonalDecomposition().pseudoInverse();
+}
+
 MatrixXd NullSpaceOf(const MatrixXd& a, double threshold) {
   // Square the matrix up with zero rows, so that V is complete without asking for more.
   MatrixXd square = MatrixXd::Zero(std::max(a.rows(), a.cols()), a.cols());

@@ -18,6 +18,13 @@ struct RankedSolution {
 /// @param threshold  Singular values below this part of the largest are zero.
 RankedSolution SolveRanked(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double threshold);
 
+/// Least squares by a complete orthogonal decomposition: the same, quicker, with rank decided by pivots to rounding.
+Eigen::VectorXd SolveShortest(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+Eigen::MatrixXd SolveShortest(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
+/// Moore-Penrose inverse by the same decomposition: it takes b to SolveShortest(a, b).
+Eigen::MatrixXd GeneralInverseOf(const Eigen::MatrixXd& a);
+
 /// Orthonormal columns that span the directions x with a x = 0.
 /// @param threshold  Singular values up to this part of the largest are zero.
 Eigen::MatrixXd NullSpaceOf(const Eigen::MatrixXd& a, double threshold);

@@ -1,12 +1,13 @@
 #include "twin/separate/error_motion.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/separate/widest_range.h"
 
 namespace twinbench::separate {
@@ -32,7 +33,7 @@ class Plot {
   Plot(const Eigen::VectorXd& angle_rad, PlotCentre centre)
       : is_axial_(centre == PlotCentre::kPolarChart),
         basis_(CircleBasis(angle_rad)),
-        fit_(basis_.completeOrthogonalDecomposition().pseudoInverse()) {}
+        fit_(GeneralInverseOf(basis_)) {}
 
   bool IsAxial() const { return is_axial_; }
   /// The contours about the centre.

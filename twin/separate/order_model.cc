@@ -1,6 +1,5 @@
 #include "twin/separate/order_model.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -91,11 +90,9 @@ Eigen::MatrixXd HeadCovariance(int order, const Positions& positions, Complex ps
 }
 
 double NoiseFactorOf(const Eigen::MatrixXcd& x) {
-  const Eigen::JacobiSVD<Eigen::MatrixXcd> svd(x, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& s = svd.singularValues();
-  if (x.rows() < x.cols() || s.minCoeff() < kRank * s.maxCoeff()) return std::numeric_limits<double>::infinity();
-  const Eigen::MatrixXd scaled = (svd.matrixV() * s.cwiseInverse().asDiagonal()).cwiseAbs2();
-  return std::sqrt(scaled.rowwise().sum().head(x.cols() - 1).maxCoeff());
+  const auto [inverse, rank] = SolveRanked(RealBlocks(x), Eigen::MatrixXd::Identity(2 * x.rows(), 2 * x.rows()), kRank);
+  if (rank < 2 * x.cols()) return std::numeric_limits<double>::infinity();
+  return std::sqrt(inverse.topRows(2 * (x.cols() - 1)).rowwise().squaredNorm().maxCoeff());
 }
 
 }  // namespace twinbench::separate::harmonics

@@ -1,10 +1,11 @@
 #include "twin/benches/turntable_autocollimator/error_motion_results.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "twin/benches/turntable_autocollimator/estimators/shift_fit.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 
 namespace twinbench::benches::turntable {
@@ -42,7 +43,7 @@ Eigen::VectorXd WithoutLean(const StopGrid& grid, const Eigen::VectorXd& y_rad) 
       circle.row(r) << 1.0, std::cos(angle_rad), std::sin(angle_rad);
     }
     const Eigen::VectorXd own = y_rad(rows);
-    rest_rad(rows) = own - circle * circle.colPivHouseholderQr().solve(own);
+    rest_rad(rows) = own - circle * SolveLeastSquares(circle, own);
   }
   return rest_rad;
 }

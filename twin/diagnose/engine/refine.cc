@@ -2,9 +2,11 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -52,7 +54,7 @@ Explained Explain(const Eigen::MatrixXd& white, const Projector& projector, cons
   Explained e;
   e.projected = others.Apply(projector.Apply(white));
   const Eigen::VectorXd products = white.transpose() * data;
-  e.amplitudes = (white.transpose() * e.projected).completeOrthogonalDecomposition().solve(products);
+  e.amplitudes = SolveShortest(white.transpose() * e.projected, products);
   e.power = products.dot(e.amplitudes);
   return e;
 }

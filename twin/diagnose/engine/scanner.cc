@@ -1,12 +1,12 @@
 #include "twin/diagnose/engine/scanner.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -14,7 +14,6 @@ namespace {
 
 constexpr Eigen::Index kMostKeptValues = 40'000'000;  // of signatures: 320 MB
 constexpr double kAbsorbed = 1e-10;  // share of a signature's power below which only priors and rounding are left
-constexpr double kDependent = 1e-4;  // share of a signature's power that must survive projection
 
 Eigen::VectorXd PriorSds(const Family& family) {
   Eigen::VectorXd sd(std::ssize(family.amplitudes));
@@ -43,12 +42,12 @@ struct Spectrum {
   RunsByRow c2;        // p x runs
 };
 
-template <class Eigenvectors>
-Spectrum Along(const Eigenvectors& eigen, const RunsByRow& products, double raw) {
+template <class Values, class Vectors>
+Spectrum Along(const Values& values, const Vectors& vectors, const RunsByRow& products, double raw) {
   Spectrum s;
-  s.d2 = eigen.eigenvalues().array().max(0.0);
+  s.d2 = values.array().max(0.0);
   const double least = std::max(1e-10 * s.d2.maxCoeff(), kAbsorbed * raw);
-  s.c2 = eigen.eigenvectors().transpose().lazyProduct(products);
+  s.c2 = vectors.transpose().lazyProduct(products);
   s.c2 = s.c2.array().square();
   for (Eigen::Index i = 0; i < s.d2.size(); ++i) {
     if (s.d2[i] > least) {
@@ -66,50 +65,19 @@ Spectrum Along(const Eigenvectors& eigen, const RunsByRow& products, double raw)
 /// @param raw       Trace of S'S: less than a 1e-10 of it is no signal any more.
 Spectrum SpectrumOf(const Eigen::MatrixXd& gram, const RunsByRow& products, double raw) {
   // Most signatures are one column or a wave, and there are thousands of them.
-  if (gram.rows() == 1)
-    return Along(Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 1, 1>>(gram), products, raw);
-  if (gram.rows() == 2) return Along(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(gram), products, raw);
-  return Along(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram), products, raw);
+  if (gram.rows() == 1) return Along(gram.diagonal(), Eigen::Matrix<double, 1, 1>(1.0), products, raw);
+  if (gram.rows() == 2) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(gram);
+    return Along(eigen.eigenvalues(), eigen.eigenvectors(), products, raw);
+  }
+  const auto [values, vectors] = EigenOfSymmetric(gram);
+  return Along(values, vectors, products, raw);
 }
 
 }  // namespace
 
 double PseudoDegrees(const LinearRun& run) {
   return run.sigma_stated ? tuning::kPseudoDegrees : tuning::kPseudoEstimated;
-}
-
-Deflation::Deflation(const Projector& projector, const Eigen::MatrixXd& columns) {
-  if (columns.cols() == 0) return;
-  const Eigen::MatrixXd projected = projector.Apply(columns);
-  const Eigen::MatrixXd gram = columns.transpose() * projected;
-  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
-  const auto kept = static_cast<int>((eigen.eigenvalues().array() > kDependent).count());
-  const Eigen::MatrixXd transform = scale.asDiagonal() * eigen.eigenvectors().rightCols(kept) *
-                                    eigen.eigenvalues().tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
-  basis_ = projected * transform;
-  dual_ = columns * transform;
-  solve_ = transform * dual_.transpose();
-  covariance_ = transform * transform.transpose();
-}
-
-Eigen::MatrixXd Deflation::Apply(const Eigen::MatrixXd& projected) const {
-  if (Rank() == 0) return projected;
-  return projected - basis_ * (dual_.transpose() * projected);
-}
-
-Projected Project(const Projector& projector, const Deflation& deflation, const Eigen::MatrixXd& white) {
-  Projected data;
-  data.rows = deflation.Apply(projector.Apply(white));
-  data.power = white.cwiseProduct(data.rows).colwise().sum();
-  return data;
-}
-
-Misfit FreeMisfit(const LinearRun& run) {
-  const NoiseModel noise{run.sigma, 0.0};
-  const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
-  const Eigen::MatrixXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual));
-  return {Project(projector, {}, white).power[0], projector.DegreesOfFreedom()};
 }
 
 Scanner::Scanner(const LinearRun& run, const NoiseModel& noise, const Projector& projector,
@@ -215,7 +183,7 @@ std::vector<Scanner::Fit> Scanner::FitEach(int family, int first, int last, cons
       gram = f.map.transpose() * gram * f.map;
       product = f.map.transpose() * product;
     }
-    const Eigen::VectorXd amplitudes = gram.completeOrthogonalDecomposition().solve(product);
+    const Eigen::VectorXd amplitudes = SolveShortest(gram, product);
     fits.push_back({amplitudes, product.dot(amplitudes)});
   }
   return fits;

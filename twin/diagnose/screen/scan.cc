@@ -1,11 +1,11 @@
 #include "twin/diagnose/screen/scan.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unsupported/Eigen/KroneckerProduct>
 
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/screen/circumstances.h"
 
 namespace twinbench::diagnose::screen {
@@ -15,11 +15,9 @@ namespace {
 Eigen::MatrixXd SurvivingRoot(const Fit& fit) {
   constexpr double kSurvives = 1e-3;
   const Eigen::VectorXd scale = (fit.before.array() > 0.0).select(fit.before.array().rsqrt(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * fit.information *
-                                                             scale.asDiagonal());
-  const auto dof = (eigen.eigenvalues().array() > kSurvives).count();
-  return scale.asDiagonal() * eigen.eigenvectors().rightCols(dof) *
-         eigen.eigenvalues().tail(dof).cwiseSqrt().cwiseInverse().asDiagonal();
+  const auto [values, vectors] = EigenOfSymmetric(scale.asDiagonal() * fit.information * scale.asDiagonal());
+  const auto dof = (values.array() > kSurvives).count();
+  return scale.asDiagonal() * vectors.rightCols(dof) * values.tail(dof).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 void Solve(Fit& fit) {

@@ -1,12 +1,13 @@
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "twin/benches/encoder_comparison/diagnosis/family_parts.h"
 #include "twin/core/distributions.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/tuning.h"
 #include "twin/model/signals.h"
@@ -36,12 +37,12 @@ std::vector<double> Spacings_rad(const SignalContext& c) {
 /// How much of what is left, in units of noise, columns explain that the free unknowns cannot.
 double ExplainedBy(const EncoderRun& encoder, const Eigen::MatrixXd& columns) {
   const Eigen::MatrixXd free = encoder.run.nuisance.jacobian.toDense();
-  const auto without = [fit = free.completeOrthogonalDecomposition(), &free](const Eigen::MatrixXd& rows) {
-    return Eigen::MatrixXd(rows - free * fit.solve(rows));
+  const auto without = [&free](const Eigen::MatrixXd& rows) {
+    return Eigen::MatrixXd(rows - free * SolveShortest(free, rows));
   };
   const Eigen::MatrixXd own = without(columns);
   const Eigen::VectorXd left = without(encoder.run.residual);
-  return (own * own.completeOrthogonalDecomposition().solve(left)).squaredNorm() /
+  return (own * SolveShortest(own, left)).squaredNorm() /
          std::pow(encoder.run.sigma.mean(), 2);
 }
 

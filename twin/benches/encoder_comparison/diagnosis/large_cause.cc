@@ -6,6 +6,7 @@
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/benches/encoder_comparison/format.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/answer.h"
 #include "twin/diagnose/engine/refine.h"
@@ -46,7 +47,7 @@ Cause CauseFrom(const Family& family, int grid_point, const Eigen::VectorXd& row
   const Eigen::VectorXd shape = family.ShapeAt(grid_point);
   const double left = (y.col(0) - fit.projected * fit.amplitudes).squaredNorm() / projector.DegreesOfFreedom();
   Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(normal.cols() + shape.size(), normal.cols() + shape.size());
-  cov.topLeftCorner(normal.cols(), normal.cols()) = left * normal.completeOrthogonalDecomposition().pseudoInverse();
+  cov.topLeftCorner(normal.cols(), normal.cols()) = left * GeneralInverseOf(normal);
   for (std::size_t k = 0; k < family.shapes.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     const Range cell = Around(family.shapes[k], shape[at]);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/model/signals.h"
 
@@ -56,7 +57,7 @@ class Period {
     for (int order = 1; order <= 4; ++order) columns.middleCols(2 * order - 2, 2) = model::Wave(order * phase_);
     columns.col(8) = way_;
     columns -= free_ * (free_.transpose() * columns);
-    return (error_ - columns * columns.completeOrthogonalDecomposition().solve(error_)).squaredNorm();
+    return (error_ - columns * SolveShortest(columns, error_)).squaredNorm();
   }
 
  private:
@@ -100,9 +101,7 @@ Start Improved(const Period& period, const Faults& start, const std::vector<Eige
   constexpr int kSteps = 6, kHalvings = 4;
   Start best{start, period.Left(start).squaredNorm()};
   for (int step = 0; step < kSteps; ++step) {
-    const Eigen::VectorXd by = SlopesAt(period, best.at, free)
-                                   .completeOrthogonalDecomposition()
-                                   .solve(Eigen::VectorXd(period.Left(best.at)));
+    const Eigen::VectorXd by = SolveShortest(SlopesAt(period, best.at, free), period.Left(best.at));
     Faults way = Faults::Zero();
     for (std::size_t k = 0; k < free.size(); ++k) way[free[k]] = by[static_cast<Eigen::Index>(k)];
     Start next{best.at, best.left};

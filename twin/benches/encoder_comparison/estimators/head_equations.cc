@@ -1,9 +1,9 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/estimators/head_fit.h"
 #include "twin/core/errors.h"
+#include "twin/core/linear_algebra.h"
 
 namespace twinbench::separate::encoder {
 namespace {
@@ -88,14 +88,14 @@ void HeadEquations::AddPoint(double angle_rad, int setup, double value_rad) {
 
 HeadSolution HeadEquations::Solve() {
   Gather();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(normal_);
-  Require(eigen.info() == Eigen::Success, "a symmetric matrix has eigenvalues");
-  const double least = kUndetermined * eigen.eigenvalues().tail(1).value();
-  const Eigen::ArrayXd inverse = eigen.eigenvalues().unaryExpr([least](double value) {
+  const auto [values, vectors] = EigenOfSymmetric(normal_);
+  Require(values.allFinite(), "a symmetric matrix has eigenvalues");
+  const double least = kUndetermined * values.tail(1).value();
+  const Eigen::ArrayXd inverse = values.unaryExpr([least](double value) {
     return value > least ? 1.0 / value : 0.0;
   });
   HeadSolution solution;
-  solution.cofactor = eigen.eigenvectors() * inverse.matrix().asDiagonal() * eigen.eigenvectors().transpose();
+  solution.cofactor = vectors * inverse.matrix().asDiagonal() * vectors.transpose();
   solution.x = solution.cofactor * right_;
   solution.rest_rad2 = std::max(0.0, squares_rad2_ - solution.x.dot(right_));
   solution.dof = count_ - freed_ - static_cast<double>((inverse > 0.0).count());

@@ -1,12 +1,13 @@
 #include "twin/benches/hob_transmission/diagnosis/harmonic_table.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
 
 #include "twin/benches/hob_transmission/settings.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/diagnose/engine/candidates.h"
 #include "twin/model/signals.h"
 
@@ -57,7 +58,7 @@ std::vector<Harmonic> HarmonicTable(const HobRun& hob, const NoiseModel& noise) 
     X.row(i) /= noise.sigma[row];
     y[i] = hob.run.residual[row] / noise.sigma[row];
   }
-  const Eigen::MatrixXd inverse = (X.transpose() * X).completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = GeneralInverseOf(X.transpose() * X);
   const Eigen::VectorXd x = inverse * (X.transpose() * y);
   const double scale2 = (y - X * x).squaredNorm() / std::max<double>(1.0, static_cast<double>(X.rows() - X.cols()));
   std::vector<Harmonic> table;

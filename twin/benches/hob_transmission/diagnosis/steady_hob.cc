@@ -1,10 +1,11 @@
 #include "twin/benches/hob_transmission/diagnosis/steady_hob.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <map>
 #include <set>
 
 #include "twin/benches/hob_transmission/settings.h"
+#include "twin/core/linear_algebra.h"
 #include "twin/model/signals.h"
 
 namespace twinbench::diagnose::hob {
@@ -59,7 +60,7 @@ Eigen::VectorXd SteadyHob_rad(const SignalContext& c) {
     const Eigen::VectorXd own_rad = m_rad(mounting.samples);
     const Eigen::MatrixXd normal = basis.transpose() * basis;
     const Eigen::VectorXd centred_rad = own_rad.array() - own_rad.mean();
-    const Eigen::VectorXd x = normal.completeOrthogonalDecomposition().solve(basis.transpose() * centred_rad);
+    const Eigen::VectorXd x = SolveShortest(normal, Eigen::VectorXd(basis.transpose() * centred_rad));
     const Eigen::VectorXd fit_rad = (basis * x).array() + own_rad.mean();
     steady_rad(mounting.samples) = (c.table_rad(mounting.samples) - fit_rad) / ratio;
   }
