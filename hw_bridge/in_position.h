@@ -11,10 +11,11 @@ namespace twinbench::hw {
 /// was if that is less.
 /// @param name  Of a table or axis of the file; others are left alone.
 /// @param u_rad  Standard uncertainty of a result at one of its stops.
+/// @param less   What of the scenario claims less, for the message.
 /// @throws InputError with file and line where the file allows more than that.
-void TieToClaim(BenchFile& file, const std::string& name, double u_rad);
+void TieToClaim(BenchFile& file, const std::string& name, double u_rad, const std::string& less);
 /// @param axes  Of the bench, in the order of the file.
 /// @param u     Of a linear axis [m].
-void TieToClaim(MachineFile& file, const std::vector<MachineAxis>& axes, const std::string& name, double u);
+void TieToClaim(MachineFile& file, const std::vector<MachineAxis>& axes, const std::string& name, double u, const std::string& less);
 
 }  // namespace twinbench::hw

@@ -1,25 +1,39 @@
 #include "hw_bridge/program/stops.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "twin/core/bench_format.h"
 #include "twin/core/csv.h"
 #include "twin/core/errors.h"
 #include "twin/core/nearest_key.h"
+#include "twin/core/reading_column.h"
 
 namespace twinbench::hw {
 namespace {
 
 constexpr const char* kReading = "reading";
+const Quantity kStamp{"stamp_s"};  // of a line that passed
+
+/// The plan comes from a twin: what that measured of the circumstances is none of a real bench.
+std::vector<Reading> WithoutMeasured(std::vector<Reading> planned) {
+  for (Reading& reading : planned) {
+    reading.temperature_degC = kNaN;
+    reading.extra.clear();  // encoders of axes at rest
+    if (std::isfinite(kStamp(std::as_const(reading)))) kStamp(reading) = kNaN;
+  }
+  return planned;
+}
 
 CsvTable TableOf(const std::vector<Reading>& readings, const std::string& bench) {
   std::stringstream text;
-  WriteReadingsCsv(readings, bench, text);
+  WriteReadingsCsv(WithoutMeasured(readings), bench, text);
   return ParseCsv(text, "the planned readings");
 }
 
@@ -29,6 +43,15 @@ std::set<std::string> ShownColumns(const std::string& bench) {
     if (column.IsShown()) shown.insert(column.name);
   }
   return shown;
+}
+
+/// What a program may add of axes at rest.
+std::set<std::string> EncoderColumns(const std::vector<Reading>& planned) {
+  std::set<std::string> names;
+  for (const Reading& reading : planned) {
+    for (const auto& [name, text] : reading.extra) names.insert(name);
+  }
+  return names;
 }
 
 void PrintLine(std::ostream& out, const std::vector<std::string>& fields) {
@@ -85,6 +108,9 @@ ReadStops ReadStopsBack(const std::string& path, const std::vector<Reading>& pla
   const CsvTable written = ReadCsv(path), stops = TableOf(planned, bench);
   std::vector<std::string> columns = stops.columns;
   if (!stops.Column(kStatusColumn)) columns.push_back(kStatusColumn);
+  for (const std::string& encoder : EncoderColumns(planned)) {
+    if (written.Column(encoder)) columns.push_back(encoder);
+  }
   RequireKnown(written, columns);
   const std::set<std::string> shown = ShownColumns(bench);
   const std::map<std::string, const CsvTable::Row*> rows = RowsByStop(written);

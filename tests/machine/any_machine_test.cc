@@ -172,7 +172,7 @@ std::vector<AnyMachine> AllSent() {
 }
 
 std::vector<AnyMachine> AllTurning() {
-  std::vector<AnyMachine> machines = Twins({{"Hob", ShortHob}});
+  std::vector<AnyMachine> machines = Twins({{"Hob", ShortHob}, {"Sweep", ShortSweep}});
   machines.push_back(PythonMachineThatTurns());
   return machines;
 }
@@ -180,6 +180,7 @@ std::vector<AnyMachine> AllTurning() {
 INSTANTIATE_TEST_SUITE_P(Sent, AnyMachineContract, ::testing::ValuesIn(AllSent()), NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Turning, AnyMachineContract, ::testing::ValuesIn(AllTurning()), NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Sent, SentContract, ::testing::ValuesIn(AllSent()), NameOfMachine);
+INSTANTIATE_TEST_SUITE_P(BothWays, SentContract, ::testing::ValuesIn(Twins({{"Sweep", ShortSweep}})), NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Turning, TurningContract, ::testing::ValuesIn(AllTurning()), NameOfMachine);
 
 }  // namespace

@@ -111,6 +111,28 @@ name = "drift"
                        "short_stops.toml", "");
 }
 
+/// Two mountings of a device that is read late and drifts, in motion there and back at two speeds: 2 * 2 * (8 + 11) = 76
+/// readings.
+inline Scenario ShortSweep() {
+  return ParseScenario(R"(bench = "encoder_comparison"
+seed = 6
+[device]
+graduation_arcsec = 3.0
+[encoder_procedure]
+kind = "sweep"
+turns = 0.25
+passes = [1, -1]
+speeds_deg_s = [36.0, 18.0]
+interval_s = 0.8
+mounting_deg = [0.0, 180.0]
+[[effect]]
+name = "latency"
+[[effect]]
+name = "drift"
+)",
+                       "short_sweep.toml", "");
+}
+
 /// Two places of the head, a turn there and back at one speed, and stops for the interferometer: 2 * 2 * 12 + 2 * 8 = 64
 /// readings.
 inline Scenario ShortHob() {

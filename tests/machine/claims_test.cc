@@ -90,6 +90,12 @@ TEST(Claims, OfFiveAxesAreWhatTheTwinsReadingsSay) {
     const double u = 1.0 / std::sqrt(2.0 * information / static_cast<double>(plan.size()));
     EXPECT_NEAR(claims[axis].u / u, 1.0, 1e-3) << claims[axis].axis;
   }
+  // What the message of a refused bench file says is so: the claim grows with the stated noise.
+  Scenario scattering = scenario;
+  FreeformOf(scattering).qpd.noise_V *= 4.0;
+  FreeformOf(scattering).ccd.noise_px *= 4.0;
+  EXPECT_NEAR(ClaimsOf(scattering)[0].u / claims[0].u, 4.0, 1e-9);
+  EXPECT_THAT(claims[0].less, HasSubstr("qpd.noise_mV"));
   EXPECT_LT(claims[0].u, 1e-6) << "fractions of a um";
   EXPECT_LT(claims[3].u, 5.0 * units::arcsec);
 }
@@ -118,18 +124,18 @@ TEST(InPosition, IsTheClaimUnlessTheFileAsksForLess) {
   const std::vector<MachineAxis> axes = {{"turntable", true}};
   hw::MachineFile file = hw::ParseMachineFile(kTurntableFile, "bench.toml", axes);
   EXPECT_TRUE(std::isinf(file.axes[0].in_position));
-  hw::TieToClaim(file, axes, "shaft", 0.1 * units::arcsec);
+  hw::TieToClaim(file, axes, "shaft", 0.1 * units::arcsec, "");
   EXPECT_TRUE(std::isinf(file.axes[0].in_position)) << "another axis";
-  hw::TieToClaim(file, axes, "turntable", 0.1 * units::arcsec);
+  hw::TieToClaim(file, axes, "turntable", 0.1 * units::arcsec, "");
   EXPECT_EQ(file.axes[0].in_position, 0.1 * units::arcsec);
   std::string text = kTurntableFile;
   text.replace(text.find("lower_deg = -30.0"), 17, "in_position_arcsec = 0.04");
   file = hw::ParseMachineFile(text, "bench.toml", axes);
-  hw::TieToClaim(file, axes, "turntable", 0.1 * units::arcsec);
+  hw::TieToClaim(file, axes, "turntable", 0.1 * units::arcsec, "");
   EXPECT_DOUBLE_EQ(file.axes[0].in_position, 0.04 * units::arcsec);
-  EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "turntable", 0.03 * units::arcsec); }),
+  EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "turntable", 0.03 * units::arcsec, "a larger key"); }),
               testing::AllOf(HasSubstr("bench.toml:5"), HasSubstr("in_position_arcsec is 0.04"), HasSubstr("certain to 0.03 arcsec"),
-                             HasSubstr("at most 0.03")));
+                             HasSubstr("at most 0.03"), HasSubstr("claims less: a larger key")));
 }
 
 TEST(InPosition, OfALinearAxisIsToldInMicrometres) {
@@ -137,9 +143,9 @@ TEST(InPosition, OfALinearAxisIsToldInMicrometres) {
   std::string text = kTurntableFile;
   text.replace(text.find("[axis_turntable]\nlower_deg = -30.0"), 34, "[axis_x]\nin_position_um = 0.3");
   hw::MachineFile file = hw::ParseMachineFile(text, "bench.toml", axes);
-  hw::TieToClaim(file, axes, "x", 0.4 * units::um);
+  hw::TieToClaim(file, axes, "x", 0.4 * units::um, "");
   EXPECT_DOUBLE_EQ(file.axes[0].in_position, 0.3 * units::um);
-  EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "x", 0.2 * units::um); }),
+  EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "x", 0.2 * units::um, ""); }),
               testing::AllOf(HasSubstr("axis_x.in_position_um is 0.3"), HasSubstr("certain to 0.2 um")));
 }
 

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,7 +99,7 @@ TEST_P(DrivenContract, EveryDeviceSchedulesEvents) {
   for (const char* device : {"axes", "fixture"}) EXPECT_GT(scheduled.at(device), 0U) << device;
 }
 
-constexpr ShortBench kDriven[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}, {"Stops", ShortStops}};
+constexpr ShortBench kDriven[] = {{"Circles", ShortCircles}, {"Freeform", ShortFreeform}, {"Stops", ShortStops}, {"Sweep", ShortSweep}};
 constexpr ShortBench kSentByItself[] = {{"Turntable", ShortTurntable}, {"Polygon", ShortPolygon}};
 constexpr ShortBench kTurning[] = {{"Hob", ShortHob}};
 INSTANTIATE_TEST_SUITE_P(Driven, MachineContract, ::testing::ValuesIn(kDriven), NameOf);
@@ -117,14 +118,73 @@ TEST(TurningAxis, IsNoneOfAMachineThatIsSent) {
   EXPECT_THROW(twin->Devices().machine.StartTurning(0, 1.0, std::chrono::seconds(1)), DeviceFault);
 }
 
-TEST(Comparison, InMotionCannotBeDriven) {
+TEST(Comparison, ACoastingSpindleIsRefusedWithWhatCanBeDoneInstead) {
   Scenario scenario = ShortStops();
-  EncoderOf(scenario).encoder_procedure.kind = "sweep";
-  EXPECT_THROW(BenchOf(scenario).make_devices(scenario), InputError);
+  EncoderOf(scenario).encoder_procedure.kind = "coast";
+  try {
+    BenchOf(scenario).make_devices(scenario);
+    FAIL() << "it was not refused";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("no command lets go of the spindle's drive"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("kind = \"program\""));
+  }
 }
 
-TEST(Comparison, SeveralHeadsAreReadOnATwinOnly) {
-  Scenario scenario = ShortStops();
+/// A shaft that was left behind somewhere goes its pass again from where that begins, and takes what is missing.
+TEST(Comparison, ARealSweepIsGoneAgainFromItsBeginning) {
+  const Scenario scenario = ShortSweep();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  bench.simulation = nullptr;
+  MemoryLog log;
+  procedure::MachineOptions options;
+  options.log = &log;
+  options.stop_requested = [&] { return log.readings.size() == 5; };
+  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, options), DeviceFault);
+  bench.machine.StartMove({1.0}, 0.0);
+  bench.clock.Wait(std::chrono::minutes(5));
+  options = {};
+  options.log = &log;
+  options.kept = log.readings;
+  BenchOf(scenario).drive(bench, scenario, log, {}, options);
+  const std::vector<Reading> planned = DrivenInProcess(scenario);
+  ASSERT_EQ(log.readings.size(), planned.size());
+  for (std::size_t k = 0; k < planned.size(); ++k) {
+    EXPECT_NEAR(log.readings[k].reference_rad, planned[k].reference_rad, 1e-6) << k;
+    EXPECT_TRUE(std::isnan(log.readings[k].velocity_rad_s)) << "of a real shaft it is not known";
+  }
+}
+
+/// What answers more slowly than the interval is none to sweep with.
+TEST(Comparison, ASweepWhoseReadingsComeLateIsNoRun) {
+  Scenario scenario = ShortSweep();
+  const auto twin = BenchOf(scenario).make_devices(scenario);
+  MachineBench bench = twin->Devices();
+  struct Slow : InstrumentSet {
+    explicit Slow(const MachineBench& its_bench) : bench(its_bench) {}
+    Reading Read() override {
+      const Reading shown = bench.instruments.Read();
+      bench.clock.Wait(std::chrono::milliseconds(850));
+      return shown;
+    }
+    void Arm(int, int) override {}
+    LatchedSamples Latched() override { return {}; }
+    MachineBench bench;
+  } slow(bench);
+  MachineBench late{bench.clock, bench.machine, slow, bench.fixture, nullptr};
+  MemoryLog log;
+  try {
+    BenchOf(scenario).drive(late, scenario, log, {}, {});
+    FAIL() << "it was not noticed";
+  } catch (const DeviceFault& fault) {
+    EXPECT_EQ(fault.kind(), FaultKind::kOverrun) << fault.what();
+  }
+}
+
+class SeveralHeads : public ::testing::TestWithParam<Scenario (*)()> {};
+
+TEST_P(SeveralHeads, AreReadOnATwinOnly) {
+  Scenario scenario = GetParam()();
   EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 1.0};
   const std::vector<Reading> driven = DrivenInProcess(scenario);
   EXPECT_EQ(TextOf(driven, scenario), TextOf(ReadingsByRecord(scenario), scenario));
@@ -134,6 +194,8 @@ TEST(Comparison, SeveralHeadsAreReadOnATwinOnly) {
   MemoryLog log;
   EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, {}), DeviceFault);
 }
+
+INSTANTIATE_TEST_SUITE_P(Comparison, SeveralHeads, ::testing::Values(ShortStops, ShortSweep));
 
 /// Somebody who turns the multi-tooth table by hand is not asked to while the turntable moves.
 TEST(MultitoothByHand, IsTurnedOnceTheTurntableStands) {

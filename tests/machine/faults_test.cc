@@ -69,7 +69,7 @@ TEST_P(FaultsOfEveryBench, CostOneAttemptAndNoBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Benches, FaultsOfEveryBench,
-                         ::testing::Values(ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortHob));
+                         ::testing::Values(ShortFreeform, ShortTurntable, ShortPolygon, ShortStops, ShortSweep, ShortHob));
 
 /// The wait before a reading at rest and the reading itself are the last that is asked before the looks about it.
 TEST(MachineFaults, ARestartAboutAReadingAtRestCostsAnAttemptAndLeavesNoCellEmpty) {
@@ -330,6 +330,13 @@ TEST(MachineFaults, AnInstrumentsOwnClockGoesIntoNoReading) {
 
 TEST(MachineFaults, AMachineThatFreezesInMidMoveIsStalled) {
   ExpectStopped("machine,stall", "stalled", "on its way");
+}
+
+TEST(MachineFaults, AShaftThatFreezesInASweepIsStalled) {
+  Failing bench(ShortSweep);
+  const MachineRun run = bench.Run({{0, "machine,stall"}});
+  EXPECT_EQ(run.stopped_by, "stalled") << run.said;
+  EXPECT_THAT(run.said, HasSubstr("should turn, and stands at"));
 }
 
 TEST(MachineFaults, ALimitSwitchEndsTheRun) {

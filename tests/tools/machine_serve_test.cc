@@ -50,6 +50,18 @@ passes = [1, -1]
 mounting_deg = [0.0, 180.0]
 )";
 
+constexpr const char* kSweep = R"(bench = "encoder_comparison"
+seed = 5
+[device]
+graduation_arcsec = 3.0
+[encoder_procedure]
+kind = "sweep"
+turns = 10.0
+speeds_deg_s = [36.0, 24.0]
+passes = [1, -1]
+interval_s = 1.5
+)";
+
 constexpr const char* kHob = R"(bench = "hob_transmission"
 seed = 3
 [hob_procedure]
@@ -253,7 +265,8 @@ std::string NameOfMachine(const ::testing::TestParamInfo<Machine>& machine) {
   return machine.param.name;
 }
 INSTANTIATE_TEST_SUITE_P(Machines, EveryBench, ::testing::ValuesIn(kMachines), NameOfMachine);
-INSTANTIATE_TEST_SUITE_P(Others, EveryBench, ::testing::Values(kFreeformMachine, Machine{"Rotary", kRotary, "", ""}),
+INSTANTIATE_TEST_SUITE_P(Others, EveryBench, ::testing::Values(kFreeformMachine, Machine{"Rotary", kRotary, "", ""},
+                                           Machine{"Sweep", kSweep, "shaft", kNarrow_deg}),
                          NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Machines, ServedMachineProgram, ::testing::ValuesIn(kMachines), NameOfMachine);
 

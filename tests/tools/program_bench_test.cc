@@ -1,9 +1,12 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
+#include "twin/core/reading_column.h"
+#include "twin/core/run_record.h"
 
 namespace twinbench::test {
 namespace {
@@ -42,6 +45,41 @@ TEST_F(ProgramBench, IsMeasuredAndDiagnosedLikeAnyOther) {
   for (const auto& cause : json.at("causes")) effects.push_back(cause.at("effect"));
   EXPECT_THAT(effects, testing::Contains("eccentricity")) << json.dump(1);
   EXPECT_EQ(json.at("readings"), 144);  // 36 stops, two turns, both ways
+}
+
+/// A program gets the plan only, and what it did not measure is not filled in from the twin that made the plan.
+TEST_F(ProgramBench, NothingMeasuredComesFromTheTwin) {
+  Write("rotary.toml", kSmall);
+  Write("keep.py",
+        "import shutil, sys\nshutil.copy(sys.argv[1], 'plan.csv')\n"
+        "lines = open(sys.argv[1]).read().splitlines()\nat = lines[0].split(',').index('reading')\n"
+        "with open(sys.argv[2], 'w') as out:\n"
+        "    print('reading,' + sys.argv[3], file=out)\n"
+        "    for k, line in enumerate(lines[1:]):\n"
+        "        print(line.split(',')[at] + ',0.25' * len(sys.argv[3].split(',')), file=out)\n");
+  const auto measured_by = [&](const std::string& scenario, const std::string& columns, const std::string& run) {
+    Write("bench.toml", "kind = \"program\"\ncommand = [\"python3\", \"keep.py\", \"{stops}\", \"{readings}\", \"" + columns + "\"]\n");
+    Call({"measure", scenario, "--bench", "bench.toml", "-o", run});
+    return RunRecord::Open(At(run))->Readings();
+  };
+  const std::string volts = "psd_a_x_V,psd_a_y_V,psd_b_x_V,psd_b_y_V";
+  for (const Reading& reading : measured_by("rotary.toml", volts, "rotary")) {
+    EXPECT_TRUE(std::isnan(reading.temperature_degC));
+    EXPECT_TRUE(reading.extra.empty()) << "encoders that nobody looked at";
+  }
+  EXPECT_THAT(Read("plan.csv"), testing::Not(HasSubstr("encoder")));
+  for (const Reading& reading : measured_by("rotary.toml", volts + ",temperature_degC,target_encoder_after_deg", "looked")) {
+    EXPECT_EQ(reading.temperature_degC, 0.25);
+    EXPECT_EQ(reading.extra.at("target_encoder_after_deg"), "0.25");
+  }
+
+  Write("coast.toml",
+        "bench = \"encoder_comparison\"\n[encoder_procedure]\nkind = \"coast\"\nturns = 2.0\nstamps_per_turn = 8\npasses = [1, -1]\n");
+  const Quantity stamp_s{"stamp_s"};
+  for (const Reading& reading : measured_by("coast.toml", "measured_deg", "unstamped"))
+    EXPECT_TRUE(std::isnan(stamp_s(reading)));
+  for (const Reading& reading : measured_by("coast.toml", "measured_deg,stamp_s", "stamped"))
+    EXPECT_EQ(stamp_s(reading), 0.25);
 }
 
 TEST_F(ProgramBench, StopsWithoutRowsAreSaid) {

@@ -133,7 +133,7 @@ void Measure(const MeasureOptions& o, LivePage& page, JsonAnswer& answer) {
   if (BenchOf(scenario).drive) return MeasureMachine(o, scenario, page, answer);
   hw::BenchFile file = hw::LoadBenchFile(o.bench);
   if (file.kind == "hardware") {
-    for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, claim.axis, claim.u);
+    for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, claim.axis, claim.u, claim.less);
   }
   const procedure::Options options = Carefulness(file, o.allow_homing);
   if (o.rehearse_only) return answer.Write(RehearsalJson(RehearseFirst(scenario, options, file)));

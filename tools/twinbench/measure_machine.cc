@@ -145,7 +145,7 @@ void MeasureMachine(const MeasureOptions& o, const Scenario& scenario, LivePage&
   const MachineParts parts = PartsOf(scenario);
   hw::MachineFile file = hw::LoadMachineFile(o.bench, parts.axes);
   if (file.kind == "hardware") {
-    for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, parts.axes, claim.axis, claim.u);
+    for (const Claim& claim : ClaimsOf(scenario)) hw::TieToClaim(file, parts.axes, claim.axis, claim.u, claim.less);
   }
   if (o.rehearse_only)
     return answer.Write(RehearsalJson(RehearseMachineFirst(scenario, parts.axes, OpenAnyMachine(file, scenario, parts, {})->Limits()), parts.axes));

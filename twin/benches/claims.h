@@ -11,6 +11,7 @@ namespace twinbench {
 struct Claim {
   std::string axis;  // "target", "reference", "turntable", "shaft", "x" to "b" of the five-axis machine
   double u = 0.0;    // standard uncertainty of a result at one stop [rad], of a linear axis [m]
+  std::string less;  // what of the scenario claims less: for an axis that does not settle to so little
 };
 
 /// What the results of a scenario claim of its axes, from the noise of a reading that it states and how often it goes to each

@@ -99,7 +99,7 @@ std::vector<ReadingColumn> InstrumentColumns(const std::vector<ReadingColumn>& c
 class InstrumentSet {
  public:
   virtual ~InstrumentSet() = default;
-  /// Reads the resting machine now.
+  /// What they show now.
   virtual Reading Read() = 0;
   /// Shows what Read would, on the way to a reading: where something is brought to zero by what it shows. A simulated
   /// set takes it for none of its readings.

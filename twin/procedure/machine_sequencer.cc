@@ -153,11 +153,42 @@ LatchedSamples MachineSequencer::Latched() {
   return latched;
 }
 
-void MachineSequencer::Turn(std::size_t axis, double speed_rad_s, Duration ramp) {
+void MachineSequencer::StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) {
   HearOperator(options_);
   RequireMayTurn(bench_, options_);
   bench_.machine.StartTurning(axis, speed_rad_s, ramp);
+}
+
+void MachineSequencer::Turn(std::size_t axis, double speed_rad_s, Duration ramp) {
+  StartTurning(axis, speed_rad_s, ramp);
   WaitFor(bench_, ramp, options_);
+}
+
+void MachineSequencer::TakeInMotion(int reading, Time due, Duration late, const std::function<void(Reading&)>& enter) {
+  PauseUntil(due);
+  const Time asked = Now();
+  const Reading sample = bench_.instruments.Read();
+  const Time now = Now();
+  RequireTimely(sample, asked, now);
+  if (now > due + late)
+    throw DeviceFault(FaultKind::kOverrun, "instruments",
+                      fmt::format("a reading in motion came {:.3g} s late: they answer more slowly than they are asked",
+                                  ToSeconds(now - due)));
+  RequireTurned(reading, RequireMayTurn(bench_, options_)[0].encoder);
+  Keep(reading, sample, enter);
+}
+
+/// Against the way that is planned since the reading before.
+void MachineSequencer::RequireTurned(int reading, double now_rad) {
+  constexpr double kShare = 0.1, kNoWay_rad = 1e-6;
+  const auto planned_rad = [this](int k) { return plan()[static_cast<std::size_t>(k)].reference_rad; };
+  if (turned_ && turned_->first + 1 == reading) {
+    const double way_rad = std::abs(planned_rad(reading) - planned_rad(reading - 1));
+    if (way_rad > kNoWay_rad && std::abs(now_rad - turned_->second) < kShare * way_rad)
+      throw DeviceFault(FaultKind::kStalled, axes()[0].name,
+                        fmt::format("should turn, and stands at {:.6f} deg", now_rad / units::deg));
+  }
+  turned_ = {reading, now_rad};
 }
 
 void MachineSequencer::Collect(int first, int end, int lines, Duration poll) {

@@ -33,6 +33,7 @@ class MachineSequencer {
   const std::vector<Reading>& plan() const { return plan_.readings; }
   const std::vector<MachineAxis>& axes() const { return bench_.machine.Axes(); }
   bool IsSimulated() const { return bench_.simulation != nullptr; }
+  Time Now() const { return bench_.clock.Now(); }
   /// Where the axes stand, by their encoders.
   std::vector<double> Where();
 
@@ -50,6 +51,7 @@ class MachineSequencer {
   void Mount(int setup, const std::string& what);
   /// Lets time pass.
   void Pause(Duration duration);
+  void PauseUntil(Time when) { Pause(when - Now()); }
   /// What a hand needs passes on a simulated bench; on a real one it takes the time that it takes.
   void LetHandsWork(Duration duration);
   /// Waits until the bench has rested so long since the last reading that was due before `reading`.
@@ -64,7 +66,9 @@ class MachineSequencer {
   void Go(const Arc& arc);
   /// Goes round; the arc's triggers take the readings [first, end).
   void Sweep(const Arc& arc, int first, int end);
-  /// Lets an axis go over to a speed, and waits until it has.
+  /// Lets an axis go over to a speed; returns at once.
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp);
+  /// The same, and waits until it has.
   void Turn(std::size_t axis, double speed_rad_s, Duration ramp);
   /// Takes the readings [first, end) from the instruments' memory, one at every so many lines of the encoder that they
   /// count, while an axis turns.
@@ -74,6 +78,11 @@ class MachineSequencer {
   /// Takes a reading when it is due, and so long behind the end of the last move that nothing settles any more.
   /// @param enter  What the way knows by now and the plan did not.
   void TakeAtRest(int reading, Duration dwell, const std::function<void(Reading&)>& enter = {});
+  /// Takes a reading at an instant while an axis turns, which is looked at behind it.
+  /// @param late  Behind `due`: what the bench may be.
+  /// @throws DeviceFault kOverrun for a bench that is later; kStalled for an axis that has not gone a tenth of the way since
+  ///         the reading before; kLimit, kRestarted, kRefused as RequireMayTurn.
+  void TakeInMotion(int reading, Time due, Duration late, const std::function<void(Reading&)>& enter = {});
   /// What the instruments show on the way to a reading.
   Reading Look();
 
@@ -89,6 +98,7 @@ class MachineSequencer {
   void WaitUntilDue(int reading, Duration dwell);
   Reading ReadAtRest(std::vector<Stood>& stood);
   void LookAtAxes(std::vector<Stood>& stood, double Stood::*when);
+  void RequireTurned(int reading, double now_rad);
   void Keep(int reading, const Reading& sample, const std::function<void(Reading&)>& enter = {});
   Reading Joined(const Reading& planned, const Reading& sample) const;
   void RequireSame(const Reading& reading) const;
@@ -103,6 +113,7 @@ class MachineSequencer {
   MachineRunState& state_;
   std::vector<Reading> taken_;  // not yet kept
   Time armed_{};                // when the instruments last were
+  std::optional<std::pair<int, double>> turned_;  // last reading in motion, and where its axis then was
 };
 
 /// For a bench of one axis that turns.

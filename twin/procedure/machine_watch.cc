@@ -169,7 +169,7 @@ void RequireMayGo(MachineBench& bench, const std::vector<double>& to, const Mach
   }
 }
 
-void RequireMayTurn(MachineBench& bench, const MachineOptions& options) {
+std::vector<AxisState> RequireMayTurn(MachineBench& bench, const MachineOptions& options) {
   const std::vector<AxisState> states = bench.machine.State();
   for (std::size_t k = 0; k < states.size(); ++k) {
     const MachineAxis& axis = bench.machine.Axes()[k];
@@ -181,6 +181,7 @@ void RequireMayTurn(MachineBench& bench, const MachineOptions& options) {
                         fmt::format("has come to {}, outside the soft limits {} to {}", Place(axis, states[k].encoder),
                                     Place(axis, limits.lower), Place(axis, limits.upper)));
   }
+  return states;
 }
 
 void Watch(MachineBench& bench, double takes_s, const MachineOptions& options, const std::function<void()>& look) {

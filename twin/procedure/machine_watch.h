@@ -26,8 +26,9 @@ void WaitFor(MachineBench& bench, Duration duration, const MachineOptions& optio
 void RequireMayGo(MachineBench& bench, const std::vector<double>& to, const MachineOptions& options);
 
 /// Whatever speaks against going on with what turns.
+/// @return what was looked at, one entry an axis.
 /// @throws DeviceFault kLimit for an axis on a limit switch or outside its soft limits, kRestarted, kRefused as above.
-void RequireMayTurn(MachineBench& bench, const MachineOptions& options);
+std::vector<AxisState> RequireMayTurn(MachineBench& bench, const MachineOptions& options);
 
 /// Returns when the path that was begun has ended with every axis in position.
 /// @param takes_s   What the path should take.

@@ -81,8 +81,9 @@ std::vector<ListSource> SourcesOf(const QuantityList& group) {
   }
   const double u = RootMeanSquare(group, [](const Budget& b) { return b.u; });
   std::vector<ListSource> by_size;
-  for (const auto& [name, source] : sources) {
-    const double size = RootMeanSquare(group, [&](const Budget& b) { return OfSource(b, name); });
+  for (const auto& named : sources) {
+    const Source* source = named.second;
+    const double size = RootMeanSquare(group, [&](const Budget& b) { return OfSource(b, source->name); });
     by_size.push_back({source, size, u > 0.0 ? size * size / (u * u) : 0.0});
   }
   std::ranges::sort(by_size, std::greater<>(), &ListSource::u);

@@ -16,7 +16,7 @@ namespace twinbench::sim {
 namespace {
 
 constexpr double kTraverse_m_s = 0.2;
-constexpr Duration kHoming = std::chrono::seconds(10);
+constexpr Duration kHoming = std::chrono::seconds(10), kBrake = std::chrono::seconds(1);
 
 Duration MoveTime(const std::vector<double>& from, const std::vector<double>& to, double feed_m_s,
                   const std::vector<MachineAxis>& axes, double traverse_rad_s) {
@@ -71,6 +71,13 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
     kernel->axes.Now([&] { BeginArc(arc, from); });
   }
 
+  void StartTurning(std::size_t axis, double speed_rad_s, Duration ramp) override {
+    if (!physics->TurnsOn()) return MachineController::StartTurning(axis, speed_rad_s, ramp);
+    if (!std::isfinite(speed_rad_s) || ramp <= Duration(0))
+      throw DeviceFault(FaultKind::kRefused, Axes()[0].name, "no speed, or no time to go over to it");
+    kernel->axes.Now([&] { TurnTo(speed_rad_s, ramp); });
+  }
+
   bool Settles(Duration within) override {
     kernel->axes.RunUntil(std::min(Now() + within, std::max(Now(), path.End())), [] {});
     return Now() >= path.End();
@@ -90,7 +97,10 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
   }
 
   void Stop() override {
-    kernel->axes.Now([this] { BeginPath(DrivenPath::Resting(path.At(Now()), Now()), feed_m_s, direction); });
+    kernel->axes.Now([this] {
+      if (path.TurningSpeed_rad_s(Now()) != 0.0) return TurnTo(0.0, kBrake);
+      BeginPath(DrivenPath::Resting(path.At(Now()), Now()), feed_m_s, direction);
+    });
   }
 
   void Home() override {
@@ -103,7 +113,7 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
     Reading shown;
     kernel->instruments.Now([&] {
       const double now_feed_m_s = Now() < path.End() ? feed_m_s : 0.0;
-      shown = Show({next_sample, Now(), setup, direction, now_feed_m_s, path.At(Now())});
+      shown = Show({next_sample, Now(), setup, direction, now_feed_m_s, path.At(Now()), path.TurningSpeed_rad_s(Now())});
     });
     return shown;
   }
@@ -145,6 +155,12 @@ struct DrivenMachine::Parts : Clock, MachineController, InstrumentSet, MachineFi
     path = std::move(next);
     feed_m_s = its_feed_m_s;
     direction = its_direction;
+  }
+
+  void TurnTo(double speed_rad_s, Duration ramp) {
+    const DrivenPath next =
+        DrivenPath::Turning(path.At(Now())[0], path.TurningSpeed_rad_s(Now()), speed_rad_s, Now(), ramp);
+    BeginPath(next, 0.0, speed_rad_s < 0.0 ? -1 : 1);
   }
 
   Reading Show(const DrivenInstant& at) {

@@ -19,6 +19,7 @@ struct DrivenInstant {
   int direction = 1;              // of the path: -1 clockwise on an arc
   double feed_m_s = 0.0;          // 0: at rest
   std::vector<double> commanded;  // one coordinate an axis
+  double turning_rad_s = 0.0;     // of an axis that turns on and on
 };
 
 /// What stands on a driven machine: a bench's physics.
@@ -33,6 +34,8 @@ class DrivenPhysics {
   virtual std::vector<double> Start() const = 0;
   /// Of its rotary axes.
   virtual double Traverse_rad_s() const { return 0.5; }
+  /// Whether it has one axis that turns on and on, also beyond its travel.
+  virtual bool TurnsOn() const { return false; }
   /// When the plan of the bench's scenario takes just this sample, whatever time the instant says; nothing if it
   /// takes another one or none.
   virtual std::optional<Time> Planned(const DrivenInstant& at) const = 0;

@@ -29,6 +29,33 @@ DrivenPath DrivenPath::Circular(std::vector<double> from, const Arc& arc, std::v
   return path;
 }
 
+DrivenPath DrivenPath::Turning(double from_rad, double from_speed_rad_s, double speed_rad_s, Time begin, Duration ramp) {
+  DrivenPath path;
+  path.turn_ = {from_rad, from_speed_rad_s, speed_rad_s, begin, ToSeconds(ramp)};
+  const bool ends = speed_rad_s == 0.0;
+  path.to_ = {ends ? Turned_rad(*path.turn_, begin + ramp) : kNaN};
+  path.knots_ = {{ends ? begin + ramp : Time::max(), 1.0}};
+  return path;
+}
+
+double DrivenPath::Turned_rad(const Turn& turn, Time now) {
+  const double since_s = ToSeconds(now - turn.begin), in_ramp_s = std::clamp(since_s, 0.0, turn.ramp_s);
+  const double gained_rad_s = turn.speed_rad_s - turn.from_speed_rad_s;
+  const double of_ramp_rad = turn.from_speed_rad_s * in_ramp_s + 0.5 * gained_rad_s / turn.ramp_s * in_ramp_s * in_ramp_s;
+  return turn.from_rad + of_ramp_rad + turn.speed_rad_s * (since_s - in_ramp_s);
+}
+
+double DrivenPath::TurningSpeed_rad_s(Time now) const {
+  if (!turn_) return 0.0;
+  const double share = std::clamp(ToSeconds(now - turn_->begin) / turn_->ramp_s, 0.0, 1.0);
+  return turn_->from_speed_rad_s + share * (turn_->speed_rad_s - turn_->from_speed_rad_s);
+}
+
+std::vector<double> DrivenPath::At(Time now) const {
+  if (turn_ && now < End()) return {Turned_rad(*turn_, now)};
+  return AtShare(Share(now));
+}
+
 std::vector<double> DrivenPath::AtShare(double share) const {
   if (share >= 1.0) return to_;
   if (arc_) return OnArc(share);

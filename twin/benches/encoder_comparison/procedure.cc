@@ -108,7 +108,7 @@ class Schedule {
     const int count = static_cast<int>(std::ceil((pass.Motion_s() + s_.rest_s) / s_.interval_s));
     for (int k = 0; k < count; ++k) {
       const double t_s = k * s_.interval_s;
-      const double velocity_rad_s = direction * pass.Speed_rad_s(t_s);
+      const double velocity_rad_s = direction * pass.Speed_rad_s(t_s) + 0.0;  // at rest without a sign
       Add(mounting, velocity_rad_s == 0.0 ? 0 : direction, k, shaft_rad_ + direction * pass.Travel_rad(t_s),
           velocity_rad_s, time_s_ + t_s);
     }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kSameAngle_rad = 1e-9;
 constexpr Duration kSameTime{2};     // both are rounded
+constexpr double kRounded_s = 1e-7;  // of all times of a run's sweeps together
 constexpr int kBesideThePlan = -1;   // a pass
 constexpr double kSlowest_rad_s = 30.0 * units::deg;
 
@@ -46,11 +47,13 @@ class ShaftPhysics : public DrivenPhysics {
     return speed_rad_s;
   }
 
+  bool TurnsOn() const override { return settings().encoder_procedure.kind == "sweep"; }
+
   std::optional<Time> Planned(const DrivenInstant& at) const override {
     if (at.sample >= static_cast<int>(plan_.size())) return std::nullopt;
     const Reading& planned = plan_[static_cast<std::size_t>(at.sample)];
     const bool same = planned.setup / Heads() == at.setup &&
-                      std::abs(planned.reference_rad - at.commanded[0]) < kSameAngle_rad;
+                      std::abs(planned.reference_rad - at.commanded[0]) < SameAngle_rad();
     return same ? std::optional(planned.time) : std::nullopt;
   }
 
@@ -69,6 +72,10 @@ class ShaftPhysics : public DrivenPhysics {
   const EncoderSettings& settings() const { return EncoderOf(scenario_); }
   int Heads() const { return static_cast<int>(settings().encoder_procedure.heads_rad.size()); }
 
+  double SameAngle_rad() const {
+    return TurnsOn() ? kSameAngle_rad + kRounded_s * std::ranges::max(settings().encoder_procedure.speeds_rad_s) : kSameAngle_rad;
+  }
+
   /// By the first head, come from below.
   Reading Beside(const DrivenInstant& at) const {
     Reading r;
@@ -77,7 +84,7 @@ class ShaftPhysics : public DrivenPhysics {
     r.setup = at.setup * Heads();
     r.pass = kBesideThePlan;
     r.reference_rad = at.commanded[0];
-    r.velocity_rad_s = 0.0;
+    r.velocity_rad_s = at.turning_rad_s;
     return r;
   }
 

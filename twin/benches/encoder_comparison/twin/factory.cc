@@ -17,7 +17,8 @@ class Twin : public BenchTwin {
  public:
   explicit Twin(const Scenario& scenario) : scenario_(scenario), twin_(scenario) {}
   nlohmann::json Truth() const override { return twin_.Truth(); }
-  /// Stops are driven to as on a bench of devices; in motion the device is a function of its schedule's times.
+  /// Stops are driven to as on a bench of devices; in motion the device is a function of its schedule's times, which
+  /// driven sweeps come to as well.
   void CarryOut(RunRecord& record, const procedure::ProgressCallback& progress) override {
     if (EncoderOf(scenario_).encoder_procedure.kind != "stops")
       return procedure::CarryOut(twin_, scenario_, record, progress);
@@ -38,7 +39,7 @@ std::unique_ptr<BenchTwin> MakeTwin(const Scenario& scenario) {
 }
 
 std::unique_ptr<MachineDevices> MakeDevices(const Scenario& scenario) {
-  procedure::RequireStops(scenario);
+  procedure::RequireDriven(scenario);
   return std::make_unique<sim::DrivenMachine>(sim::MakeShaftPhysics(scenario));
 }
 
