@@ -61,13 +61,14 @@ class JointFits : public testing::Test {
 TEST_F(JointFits, KeepACauseWhereTheDiagnosisCallsItSo) {
   const std::vector<TakenRun> runs =
       RunsWith("[[effect]]\nname = \"drift\"\nrate_deg_per_h = 2.0\n", 2);
-  Hypothesis slow = Of("drift");
-  Supposed& drift = slow.causes.front();
   const double rate = 2.0 * kDeg / units::hour;
-  drift.within["rate"] = {0.0, 0.25 * rate};
-  const JointFit bounded = FitJointly(slow, runs, means_), free = Fit("drift", runs);
-  EXPECT_LE(bounded.hypothesis.causes.front().parameters.at("rate"), 0.25 * rate);
+  Hypothesis steady = Of("drift"), slow;
+  steady.causes.front().finding.u = {{"rate", 0.1 * rate}};
+  slow = steady;
+  slow.causes.front().within["rate"] = {0.0, 0.25 * rate};
+  const JointFit free = FitJointly(steady, runs, means_), bounded = FitJointly(slow, runs, means_);
   EXPECT_GT(free.hypothesis.causes.front().parameters.at("rate"), 0.5 * rate);
+  EXPECT_LE(bounded.hypothesis.causes.front().parameters.at("rate"), 0.25 * rate);
   EXPECT_LT(bounded.log_evidence, free.log_evidence);
 }
 
