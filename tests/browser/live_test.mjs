@@ -179,7 +179,7 @@ test("an investigation shows its step and what is believed", async () => {
   assert.match(await page.locator("#step").innerText(), /^Step 1: /);
   await page.locator("#pause").click();
   await page.locator("#causes tbody tr").first().waitFor({ timeout: 120000 }); // a diagnosis on a busy machine
-  assert.equal(await page.locator("#believed").innerText(), "Believed after step 1");
+  assert.match(await page.locator("#believed").innerText(), /^Believed after step [1-9]\d*$/); // the first few are soon made
   const probabilities = await page.locator("#causes td:nth-child(2)").allInnerTexts();
   assert.ok(probabilities.every((text) => /^(< 0\.1|\d+\.\d) %$/.test(text)), probabilities.join());
   assert.equal(await inquiry.ended, 0, inquiry.err);
