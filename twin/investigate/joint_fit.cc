@@ -26,6 +26,12 @@ struct Size {
   double plausible;     // SI
 };
 
+/// A frequency is sought everywhere between its bounds: a normal distribution that is nowhere denser than an even one there.
+double ThoughtWithin(const EffectParameter& parameter, const EffectEntry& entry, double lower, double upper) {
+  if (parameter.name == "frequency") return (upper - lower) / std::sqrt(2.0 * units::kPi);
+  return ThoughtOf(parameter, entry);
+}
+
 std::vector<Size> SizesOf(const Hypothesis& hypothesis, const std::string& bench) {
   std::vector<Size> sizes;
   for (std::size_t k = 0; k < hypothesis.causes.size(); ++k) {
@@ -36,7 +42,8 @@ std::vector<Size> SizesOf(const Hypothesis& hypothesis, const std::string& bench
       const auto within = hypothesis.causes[k].within.find(p.name);
       const bool is_bounded = within != hypothesis.causes[k].within.end();
       const auto [lower, upper] = is_bounded ? within->second : std::pair(p.lower_SI, p.upper_SI);
-      sizes.push_back({k, p.name, u->second, std::max(lower, p.lower_SI), std::min(upper, p.upper_SI), ThoughtOf(p, entry)});
+      const double thought = is_bounded ? ThoughtWithin(p, entry, lower, upper) : ThoughtOf(p, entry);
+      sizes.push_back({k, p.name, u->second, std::max(lower, p.lower_SI), std::min(upper, p.upper_SI), thought});
     }
   }
   return sizes;

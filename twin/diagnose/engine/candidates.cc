@@ -231,13 +231,16 @@ void Candidates::AddTone(const Showing& showing, const TimeSeries& series, bool 
   family.at = [series, pattern = showing.pattern, rows = rows_](const Eigen::VectorXd& frequency_Hz) {
     return AsRows(series.ToneAt(frequency_Hz[0]), pattern, rows);
   };
-  family.parameters = [catalogue = catalogue_, effect = showing.effect, sine](
-                          const Eigen::VectorXd& shape, const Eigen::VectorXd& x, const Eigen::MatrixXd& cov) {
+  family.parameters = [catalogue = catalogue_, effect = showing.effect, sine, lower = frequency.lower,
+                       upper = frequency.upper](const Eigen::VectorXd& shape, const Eigen::VectorXd& x,
+                                                const Eigen::MatrixXd& cov) {
     const Polar polar = MeanOfStretches(x, cov);
+    ParameterEstimate told_Hz = catalogue.Estimate(effect, "frequency", shape[0], DeviationAt(cov, x.size()));
+    told_Hz.lower = lower;
+    told_Hz.upper = upper;
     const double phase_rad = Wrapped(polar.phase_rad + (sine ? 0.25 * units::turn : 0.0));
     return std::vector{catalogue.Estimate(effect, "amplitude", polar.size, polar.u_size),
-                       catalogue.Estimate(effect, "frequency", shape[0], DeviationAt(cov, x.size())),
-                       catalogue.Estimate(effect, "phase", phase_rad, polar.u_phase_rad)};
+                       told_Hz, catalogue.Estimate(effect, "phase", phase_rad, polar.u_phase_rad)};
   };
 }
 
