@@ -151,20 +151,25 @@ function startInquiry(name) {
 }
 const tell = (address, wish) => fetch(`${address.origin}/${wish}${address.search}`, { method: "POST" }).then((answer) => answer.status);
 
-test("a pause changes no bit of a twin's run", async () => {
-  write("held.toml", kSmallRun);
-  const run = start("run", "held.toml", "-o", "held", "--web", "0");
-  const address = new URL(await addressOf(run));
-  assert.equal(await tell(address, "pause"), 202);
+/** Once a run is under way and waits. */
+async function isPaused(address) {
   const told = (await fetch(`${address.origin}/events${address.search}`)).body.pipeThrough(new TextDecoderStream()).getReader();
   for (let text = ""; !text.includes('"state":"paused"'); ) {
     const { value, done } = await told.read();
     assert.ok(!done, `it ended without a pause: ${text}`);
     text += value;
   }
+  await told.cancel();
+}
+
+test("a pause changes no bit of a twin's run", async () => {
+  write("held.toml", kSmallRun);
+  const run = start("run", "held.toml", "-o", "held", "--web", "0");
+  const address = new URL(await addressOf(run));
+  assert.equal(await tell(address, "pause"), 202);
+  await isPaused(address);
   assert.equal(await tell(address, "resume"), 202);
   assert.equal(await run.ended, 0, run.err);
-  await told.cancel();
   twinbench("run", "held.toml", "-o", "unheld");
   const readings = (name) => twinbench("export", name);
   assert.equal(readings("held"), readings("unheld"));
@@ -190,7 +195,10 @@ test("an investigation shows its step and what is believed", async () => {
 
 test("a stop passes to the run of an investigation that is under way", async () => {
   const inquiry = startInquiry("stopped");
-  assert.equal(await tell(new URL(await addressOf(inquiry)), "stop"), 202);
+  const address = new URL(await addressOf(inquiry));
+  assert.equal(await tell(address, "pause"), 202);
+  await isPaused(address);
+  assert.equal(await tell(address, "stop"), 202);
   assert.equal(await inquiry.ended, 1);
   assert.match(inquiry.err, /stopped by the operator behind reading \d+ of 96/);
 });
