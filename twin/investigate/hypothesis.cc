@@ -195,10 +195,11 @@ std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenari
 }
 
 std::vector<Weighed> EachAlone(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run) {
+  const Finding finding{found, scenario.bench, run};
   std::vector<Weighed> each;
   for (const Cause& suspect : found.suspects) {
     each.push_back({{}, suspect.probability});
-    each.back().hypothesis.causes.push_back(Finding{found, scenario.bench, run}.Suppose(suspect));
+    each.back().hypothesis.causes.push_back(finding.Suppose(suspect));
   }
   return each;
 }

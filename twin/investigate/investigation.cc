@@ -295,13 +295,19 @@ class Loop {
     Note(std::move(step), before);
   }
 
+  /// Notes a name. @return whether it was not there.
+  static bool IsNew(const std::string& name, std::vector<std::string>& noted) {
+    if (std::ranges::find(noted, name) != noted.end()) return false;
+    noted.push_back(name);
+    return true;
+  }
+
   /// A name that fits of all runs brought up and no diagnosis: what else would look like it is asked for, and some of it
   /// the catalogue lacks. That run says nothing against doubles of its own.
   void DoubtAName() {
     Belief& belief = result_.belief;
     const Hypothesis best = belief.Best().fit.hypothesis;
-    if (!best.IsNamed() || std::ranges::find(told_by_diagnosis_, best.Name()) != told_by_diagnosis_.end()) return;
-    told_by_diagnosis_.push_back(best.Name());
+    if (!best.IsNamed() || !IsNew(best.Name(), told_by_diagnosis_)) return;
     const TakenRun& run = runs_.back();
     if (const auto& alone = LastAlone(best))
       TakeIn(belief, LeftOpen(WithLessLikely(*alone), run.scenario, run.number), runs_, means_,
@@ -314,9 +320,7 @@ class Loop {
   void AskOthers() {
     Belief& belief = result_.belief;
     const Hypothesis best = belief.Best().fit.hypothesis;
-    if (!best.IsNamed() || best.causes.size() > 1) return;
-    if (std::ranges::find(held_against_others_, best.Name()) != held_against_others_.end()) return;
-    held_against_others_.push_back(best.Name());
+    if (!best.IsNamed() || best.causes.size() > 1 || !IsNew(best.Name(), held_against_others_)) return;
     const TakenRun& run = runs_.back();
     const auto& alone = LastAlone(best);
     if (!alone) return;
@@ -353,7 +357,8 @@ class Loop {
     bool is_new = TakeIn(belief, more, runs_, means_, [&best](const Hypothesis&) { return best; });
     if (agrees) return;
     if (best.IsNothing()) alone_ = {runs_.size(), true, found};
-    const diagnose::DiagnosisRun alone = LastAlone(best).value_or(found);
+    const auto& last = LastAlone(best);
+    const diagnose::DiagnosisRun& alone = last ? *last : found;
     const std::vector<Weighed> others =  // instead of the best; beside nothing that was just asked
         LeftOpen(WithLessLikely(alone), run.scenario, run.number);
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
