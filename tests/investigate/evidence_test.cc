@@ -83,5 +83,16 @@ TEST_F(Evidence, OfFitsAloneLeavesRoomForWhatTheCatalogueLacks) {
   EXPECT_NEAR(belief.unlisted, 0.03, 1e-12);
 }
 
+// Runs of one plan take each other's place - they are diagnosed together -, those of several plans count each.
+TEST(Overtones, OfSeveralPlansCountTogetherAndUnseenOnesNotAtAll) {
+  const double unseen = ProbabilityOfNoSine({{{}, 0.0}});
+  EXPECT_GT(unseen, 0.1);
+  EXPECT_LT(unseen, 0.5);
+  EXPECT_NEAR(ProbabilityOfNoSine({{{"a=1"}, 0.02}, {{"a=2"}, 0.0}}), 0.02, 1e-12);
+  EXPECT_LT(ProbabilityOfNoSine({{{"a=1"}, 0.02}, {{"a=2"}, 0.02}}), 0.005);
+  EXPECT_NEAR(ProbabilityOfNoSine({{{"a=1"}, unseen}, {{"a=2"}, 0.9}}), 0.9, 1e-12);
+  EXPECT_GT(ProbabilityOfNoSine({{{"a=1"}, 1.0}, {{"a=2"}, 0.02}}), 0.99);
+}
+
 }  // namespace
 }  // namespace twinbench::investigate

@@ -203,6 +203,7 @@ DiagnosisRun Conclude(const LinearRun& run, const Analysis& analysis, const std:
   RefuseWithoutRedundancy(run, analysis.redundancy);
   result.diagnosis = DiagnosisOf(run, analysis, first);
   result.structure_p = analysis.null.PValue(analysis.found.first_statistic);
+  result.overtones = analysis.found.overtones;
   result.run = run;
   result.noise = analysis.noise;
   result.accepted = AcceptedOf(analysis);

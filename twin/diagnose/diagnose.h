@@ -49,6 +49,7 @@ struct DiagnosisRun {
   NoiseModel noise;
   std::vector<Accepted> accepted;  // named causes and empirical terms, in order of acceptance
   double structure_p = kNaN;       // alarm_p without what single far values add to it
+  double overtones = 0.0;          // probability that a wave it names repeats and is no sine
   /// Every named cause as if it were the only one, with its sizes, by its evidence alone against nothing; most probable
   /// first. They are no part of the answer; further runs are planned by them, and what is told is held against them.
   std::vector<Cause> suspects;

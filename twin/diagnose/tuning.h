@@ -20,8 +20,9 @@ inline constexpr std::array<double, 3> kPriorScales = {0.25, 1.0, 4.0};
 inline constexpr double kPseudoDegrees = 20.0, kPseudoEstimated = 2.0;
 /// Weight of a shape without a name that a cause of the catalogue has exactly: less likely to be something else.
 inline constexpr double kSameShape = 0.2;
-/// Odds, before its overtones are looked at, that what shows a wave in time repeats so and is no sine.
-inline constexpr double kNoSine = 0.1;
+/// Odds, before its overtones are looked at, that what shows a wave in time repeats so and is no sine: what swings freely
+/// or is stirred by a rotor is one; pumps, valves, compressors and thermostats switch.
+inline constexpr double kNoSine = 0.25;
 
 // --- what is claimed ---
 

@@ -165,6 +165,16 @@ void NamedByFits(Belief& belief) {
   Disagreed(belief, 1.0 - diagnose::tuning::kListed);
 }
 
+double ProbabilityOfNoSine(const Overtones& overtones) {
+  constexpr double kCertain = 1.0 - 1e-9;
+  double odds = diagnose::tuning::kNoSine;
+  for (const auto& [plan, probability] : overtones) {
+    const double p = std::min(probability, kCertain);
+    if (p > 0.0) odds *= p / (1.0 - p) / diagnose::tuning::kNoSine;
+  }
+  return odds / (1.0 + odds);
+}
+
 void Disagreed(Belief& belief, double unknown) {
   belief.unlisted = std::max(belief.unlisted, std::clamp(unknown, 0.0, 1.0));
   Normalise(belief);

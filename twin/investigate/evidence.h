@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "twin/investigate/joint_fit.h"
@@ -58,5 +60,13 @@ void Disagreed(Belief& belief, double unknown);
 /// The best hypothesis came up in fits of all runs together, before any diagnosis named it: of what looks exactly like
 /// it, the share that no diagnosis would call it either (tuning::kListed) is what the catalogue lacks.
 void NamedByFits(Belief& belief);
+
+/// What diagnoses say of overtones (DiagnosisRun::overtones), by how the diagnosed runs were asked to differ from the
+/// scenario's own; 0: no wave was found.
+using Overtones = std::map<std::vector<std::string>, double>;
+
+/// Probability that a named wave repeats and is no sine, all plans together: one that does not show its overtones - free
+/// unknowns take them up, or there is no wave to be seen - leaves it as it was.
+double ProbabilityOfNoSine(const Overtones& overtones);
 
 }  // namespace twinbench::investigate

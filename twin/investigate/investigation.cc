@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "twin/core/errors.h"
 #include "twin/core/happened_once.h"
@@ -75,7 +78,7 @@ class Loop {
   }
 
   bool IsNothingFound() const {
-    return result_.belief.Best().fit.hypothesis.IsNothing() && result_.belief.unlisted < kMostlyUnlisted;
+    return result_.belief.Best().fit.hypothesis.IsNothing() && !IsMostlyUnlisted();
   }
 
   /// Nothing is found, and a cause of the size that is asked for could still hide in the noise.
@@ -138,6 +141,7 @@ class Loop {
         DiagnosisOf(runs_.front().readings, runs_.front().scenario, not_diagnosed_);
     if (!found) found.emplace().diagnosis.verdict = diagnose::Verdict::kNone;
     result_.belief = Begun(*found, runs_, means_);
+    overtones_[runs_.front().asked.sets] = found->overtones;
     if (found->diagnosis.verdict != diagnose::Verdict::kNone) NoteTold();
   }
 
@@ -216,10 +220,16 @@ class Loop {
   }
 
   /// Something is there and nothing open says what any run would show of it: the shortest run of a kind that was not
-  /// made yet, to be diagnosed for itself.
-  std::vector<Advice>::const_iterator Exploring(const std::vector<Advice>& advice) const {
+  /// made yet, to be diagnosed for itself. Or a cause stands alone, but for what the catalogue lacks: there the two
+  /// differ, and another such run is made as long as they help.
+  std::vector<Advice>::const_iterator Exploring(const std::vector<Advice>& advice) {
+    constexpr double kHelps = 0.8;
     auto shortest = advice.end();
-    if (AreCausesTold() || result_.belief.unlisted < kMostlyUnlisted) return shortest;
+    if (AreCausesTold() || !(IsMostlyUnlisted() || IsOnlyUnlistedLeft())) return shortest;
+    if (!IsMostlyUnlisted()) {
+      if (result_.belief.unlisted > kHelps * unlisted_before_) return shortest;
+      unlisted_before_ = result_.belief.unlisted;
+    }
     for (auto a = advice.begin(); a != advice.end(); ++a) {
       const bool is_new = a->run.is_of_another_kind && std::ranges::none_of(runs_, [a](const TakenRun& run) {
         return run.asked.sets == a->run.sets;
@@ -227,6 +237,13 @@ class Loop {
       if (is_new && (shortest == advice.end() || a->minutes < shortest->minutes)) shortest = a;
     }
     return shortest;
+  }
+
+  bool IsMostlyUnlisted() const { return result_.belief.unlisted >= kMostlyUnlisted; }
+
+  bool IsOnlyUnlistedLeft() const {
+    const Belief& belief = result_.belief;
+    return belief.Best().fit.hypothesis.IsNamed() && belief.unlisted > 1.0 - options_.conclusive && !HasRival(belief);
   }
 
   /// The first run once more, where its noise may hide what is looked for.
@@ -270,6 +287,10 @@ class Loop {
 
   /// For a run that no open hypothesis asks for.
   std::string ReasonToLook() const {
+    if (IsOnlyUnlistedLeft())
+      return fmt::format("nothing else in the catalogue explains it as {} does: the shortest run of a kind that was not made yet, where "
+                         "what no catalogue lists would differ",
+                         result_.belief.Best().fit.hypothesis.Name());
     if (!MayBeFaint()) return "nothing open says what this is: the shortest run of a kind that was not made yet";
     return fmt::format(
         "nothing found so far: {} such runs together show what is {:.3g} standard deviations strong in one, this is number {}",
@@ -287,6 +308,7 @@ class Loop {
       Compare();
       DoubtAName();
       AskOthers();
+      DoubtAWave();
     } else {
       std::rotate(runs_.begin(), runs_.end() - 1, runs_.end());
       Begin();
@@ -326,6 +348,16 @@ class Loop {
     if (!alone) return;
     for (const Weighed& other : EachAlone(*alone, run.scenario, run.number))
       TakeIn(belief, {other}, runs_, means_, [this](const Hypothesis& one) { return AsMany(one); });
+  }
+
+  /// That a wave fits all runs alike says nothing of its form: what repeats and is no sine does so too. The last run, and
+  /// all like it, are asked for overtones; what other plans' runs said of them counts as well.
+  void DoubtAWave() {
+    const Hypothesis best = result_.belief.Best().fit.hypothesis;
+    const auto is_wave = [](const Supposed& cause) { return cause.parameters.contains("frequency"); };
+    if (!best.IsNamed() || std::ranges::none_of(best.causes, is_wave)) return;
+    if (const auto& alone = LastAlone(best)) overtones_[runs_.back().asked.sets] = alone->overtones;
+    Disagreed(result_.belief, ProbabilityOfNoSine(overtones_));
   }
 
   /// Diagnosis of the last run, and all like it, beside the scenario as it stands. None where it cannot be diagnosed.
@@ -411,6 +443,8 @@ class Loop {
     bool is_mean = false;
     std::optional<diagnose::DiagnosisRun> found;
   } alone_;  // LastAlone
+  Overtones overtones_;
+  double unlisted_before_ = std::numeric_limits<double>::infinity();  // the last run that was made for it alone
   Investigation result_;
 };
 

@@ -1,9 +1,16 @@
 #include "twin/diagnose/engine/overtones.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
+#include <functional>
+#include <utility>
+#include <vector>
 
+#include "twin/core/linear_algebra.h"
+#include "twin/core/units.h"
 #include "twin/diagnose/engine/base.h"
 #include "twin/diagnose/engine/refine.h"
 #include "twin/diagnose/tuning.h"
@@ -12,7 +19,6 @@ namespace twinbench::diagnose {
 namespace {
 
 constexpr int kHighest = 5;
-constexpr double kEnough = 500.0;  // of what overtones explain: no doubt is left, and nothing overflows
 
 bool IsNamedWave(const Family& family) {
   return family.kind == Kind::kNamed && family.at && family.shapes.size() == 1 &&
@@ -20,21 +26,127 @@ bool IsNamedWave(const Family& family) {
 }
 
 /// Rows x columns of the wave at 2, 3, ... times its frequency.
-Eigen::MatrixXd Overtones(const Family& family, const Eigen::VectorXd& frequency_Hz) {
-  Eigen::MatrixXd all = family.at(2.0 * frequency_Hz);
-  for (int n = 3; n <= kHighest; ++n) all = HStack(all, family.at(n * frequency_Hz));
+Eigen::MatrixXd Overtones(const Family& family, const Eigen::VectorXd& frequency) {
+  Eigen::MatrixXd all = family.at(2.0 * frequency);
+  for (int n = 3; n <= kHighest; ++n) all = HStack(all, family.at(n * frequency));
   return all;
 }
 
-/// @param fundamental, overtones  What they explain, in units of the noise, and in how many columns.
-double BayesFactor(double fundamental, double overtones, double columns) {
-  constexpr std::array kStrengths = {1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0};  // a square wave has 1/3, 1/5; a sawtooth 1/2, 1/3, ...
-  double sum = 0.0;
-  for (const double strength : kStrengths) {
-    const double d2 = 0.5 * strength * strength * fundamental;  // half of it in the cosine, half in the sine
-    sum += std::exp(0.5 * (overtones * d2 / (1.0 + d2) - columns * std::log1p(d2)));
+/// Overtones 2, 3, ... of a cosine of size 1 that begins at its crest, as cosine + i sine.
+using Waveform = std::array<std::complex<double>, kHighest - 1>;
+
+/// On for a share of the time, its middle at the crest.
+Waveform Rectangle(double duty) {
+  Waveform rectangle;
+  for (int n = 2; n <= kHighest; ++n)
+    rectangle[static_cast<std::size_t>(n - 2)] = std::sin(n * units::kPi * duty) / (n * std::sin(units::kPi * duty));
+  return rectangle;
+}
+
+/// Slow one way and back at once: sin(t) + sin(2 t) / 2 + ..., whose fundamental has its crest a quarter of a turn on.
+/// @param way  1 or -1.
+Waveform SawTooth(double way) {
+  Waveform saw;
+  for (int n = 2; n <= kHighest; ++n) {
+    const double turned = 0.5 * units::kPi * (n - 1);
+    saw[static_cast<std::size_t>(n - 2)] = std::polar(1.0 / n, way * turned);
   }
-  return sum / kStrengths.size();
+  return saw;
+}
+
+std::vector<Waveform> LockedWaveforms() {
+  std::vector<Waveform> waveforms = {SawTooth(1.0), SawTooth(-1.0)};
+  for (int tenths = 1; tenths <= 9; ++tenths) waveforms.push_back(Rectangle(0.1 * tenths));
+  return waveforms;
+}
+
+/// Coefficients of the overtones that a waveform has beside its fundamental.
+/// @param fundamental  Cosine and sine of each stretch.
+Eigen::VectorXd Following(const Waveform& waveform, const Eigen::VectorXd& fundamental) {
+  Eigen::VectorXd overtones(fundamental.size() * std::ssize(waveform));
+  for (std::size_t n = 0; n < waveform.size(); ++n) {
+    for (Eigen::Index k = 0; k < fundamental.size(); k += 2) {
+      const std::complex<double> crest(fundamental[k], fundamental[k + 1]);
+      const std::complex<double> overtone =
+          std::abs(crest) * waveform[n] * std::polar(1.0, (static_cast<double>(n) + 2.0) * std::arg(crest));
+      overtones.segment<2>(static_cast<Eigen::Index>(n) * fundamental.size() + k) << overtone.real(), overtone.imag();
+    }
+  }
+  return overtones;
+}
+
+/// R with R R' = cov, which may lack rank and has quantities of any unit.
+Eigen::MatrixXd RootOf(const Eigen::MatrixXd& cov) {
+  const Eigen::VectorXd u = cov.diagonal().cwiseSqrt();
+  const Eigen::VectorXd unit = u.unaryExpr([](double one) { return one > 0.0 ? 1.0 / one : 0.0; });
+  const auto [values, vectors] = EigenOfSymmetric(unit.asDiagonal() * cov * unit.asDiagonal());
+  return u.asDiagonal() * vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+/// Log Bayes factor of "mean + spread * N(0, 1)" in white data against nothing.
+double LogBayesFactor(const Eigen::VectorXd& data, const Eigen::VectorXd& mean, const Eigen::MatrixXd& spread) {
+  const Eigen::VectorXd off = data - mean, along = spread.transpose() * off;
+  const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(spread.cols(), spread.cols()) +
+                                          spread.transpose() * spread);
+  const double chi2 = off.squaredNorm() - along.dot(inner.solve(along));
+  return 0.5 * (data.squaredNorm() - chi2) - inner.matrixLLT().diagonal().array().log().sum();
+}
+
+/// One wave, what the readings leave beside all terms, and how overtones would show there: all white, in units of the noise.
+class Wave {
+ public:
+  Wave(const Family& family, const Term& term, Eigen::VectorXd left, std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> shown)
+      : family_(family), term_(term), left_(std::move(left)), shown_(std::move(shown)),
+        overtones_(shown_(Overtones(family, term.shape))) {}
+
+  /// As the fundamental says, give or take what is not known of it.
+  double LogBayesFactorLocked(const Waveform& waveform) const {
+    const Eigen::VectorXd mean = overtones_ * Following(waveform, term_.amplitudes);
+    return LogBayesFactor(left_, mean, SlopesOf(waveform, mean) * RootOf(term_.cov));
+  }
+
+  /// Of any phase. @param strength  Of the fundamental's size.
+  double LogBayesFactorFree(double strength) const {
+    const double stretches = 0.5 * static_cast<double>(term_.amplitudes.size());
+    const double size = strength * term_.amplitudes.norm() / std::sqrt(2.0 * stretches);  // half of it each way
+    return LogBayesFactor(left_, Eigen::VectorXd::Zero(left_.size()), size * overtones_);
+  }
+
+ private:
+  /// Of what is shown, by cosines, sines and frequency of the fundamental: rows x amplitudes and one.
+  Eigen::MatrixXd SlopesOf(const Waveform& waveform, const Eigen::VectorXd& mean) const {
+    Eigen::MatrixXd slopes(mean.size(), term_.cov.cols());
+    const Eigen::VectorXd steps = (0.1 * term_.cov.diagonal().cwiseSqrt()).cwiseMax(1e-300);
+    const Eigen::Index sizes = term_.amplitudes.size();
+    for (Eigen::Index k = 0; k < sizes; ++k) {
+      const Eigen::VectorXd moved = term_.amplitudes + steps[k] * Eigen::VectorXd::Unit(sizes, k);
+      slopes.col(k) = (overtones_ * Following(waveform, moved) - mean) / steps[k];
+    }
+    const Eigen::VectorXd moved = Eigen::VectorXd::Constant(1, term_.shape[0] + steps[sizes]);
+    slopes.col(sizes) = (shown_(Overtones(family_, moved)) * Following(waveform, term_.amplitudes) - mean) / steps[sizes];
+    return slopes;
+  }
+
+  const Family& family_;
+  const Term& term_;
+  Eigen::VectorXd left_;
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> shown_;
+  Eigen::MatrixXd overtones_;
+};
+
+/// Log of the mean of their exponentials.
+double LogMean(const std::vector<double>& logs) {
+  const double most = std::ranges::max(logs);
+  double sum = 0.0;
+  for (const double one : logs) sum += std::exp(one - most);
+  return most + std::log(sum / static_cast<double>(logs.size()));
+}
+
+double LogBayesFactor(const Wave& wave) {
+  std::vector<double> locked, free;
+  for (const Waveform& waveform : LockedWaveforms()) locked.push_back(wave.LogBayesFactorLocked(waveform));
+  for (const double strength : {1.0 / 6.0, 1.0 / 3.0, 2.0 / 3.0}) free.push_back(wave.LogBayesFactorFree(strength));
+  return LogMean({LogMean(locked), LogMean(free)});
 }
 
 }  // namespace
@@ -48,18 +160,17 @@ double ProbabilityOfOvertones(const LinearRun& run, const NoiseModel& noise, con
                               const std::vector<Term>& terms, const Eigen::MatrixXd& columns) {
   const Deflation others(projector, columns);
   const Projected left = Project(projector, others, white);
-  const double per_degree =
-      std::max(1.0, left.power[0] / (projector.DegreesOfFreedom() - static_cast<double>(others.Rank())));
+  const double degrees = projector.DegreesOfFreedom() - static_cast<double>(others.Rank());
+  const double noise_left = std::sqrt(std::max(1.0, left.power[0] / degrees));
+  const auto shown = [&](const Eigen::MatrixXd& signatures) {
+    return Eigen::MatrixXd(others.Apply(projector.Apply(noise.Whiten(run, signatures))) / noise_left);
+  };
   double most = 0.0;
   for (const Term& term : terms) {
     const Family& family = families[static_cast<std::size_t>(term.family)];
     if (!IsNamedWave(family)) continue;
-    const Eigen::MatrixXd overtones = noise.Whiten(run, Overtones(family, term.shape));
-    const double explained = Explain(overtones, projector, others, left.rows.col(0)).power;
-    const double odds =
-        tuning::kNoSine * BayesFactor(term.explained / per_degree, std::min(explained / per_degree, kEnough),
-                                      static_cast<double>(overtones.cols()));
-    most = std::max(most, odds / (1.0 + odds));
+    const Wave wave(family, term, left.rows.col(0) / noise_left, shown);
+    most = std::max(most, 1.0 / (1.0 + std::exp(-LogBayesFactor(wave)) / tuning::kNoSine));
   }
   return most;
 }
