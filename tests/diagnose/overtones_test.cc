@@ -49,5 +49,11 @@ TEST(Overtones, WhatSwitchesIsNoTone) {
   }
 }
 
+// Fainter by a third: the first of these is told by where a rectangle has its overtones only.
+TEST(Overtones, WhatSwitchesFaintlyIsNoToneEither) {
+  for (const std::uint64_t seed : {32u, 33u, 34u})
+    EXPECT_GT(DiagnosisWith(Switching, 0.2 * arcsec, seed).unknown.probability, 0.7) << seed;
+}
+
 }  // namespace
 }  // namespace twinbench::diagnose::turntable
