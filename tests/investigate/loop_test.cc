@@ -44,6 +44,20 @@ TEST(Investigate, EndsWithItsBudget) {
   EXPECT_EQ(judged.investigation.ended, Ended::kBudget);
 }
 
+// A wander may look like a slip in one run, and goes on in the next.
+TEST(Investigate, SeesWhetherASlipHappensAgain) {
+  const hidden::SignatureScale scale(hidden::Design::kTurntable, "");
+  InvestigationOptions options;
+  options.budget_min = 600.0;
+  options.conclusive = 0.9;
+  const Judged judged = InvestigateHidden({"slip", "x", hidden::Design::kTurntable}, 7, 15.0, scale, options);
+  const std::vector<Step>& steps = judged.investigation.steps;
+  EXPECT_EQ(steps.front().believed.front().first, "slip x");
+  ASSERT_GT(steps.size(), 1u);
+  EXPECT_THAT(steps[1].reason, testing::HasSubstr("slip x happened in the last run: whether it does so again"));
+  EXPECT_EQ(judged.investigation.belief.Best().fit.hypothesis.Name(), "slip x") << judged.answer;
+}
+
 TEST(Investigate, LooksAgainWhereOneRunMayHideACause) {
   const std::vector<hidden::UnlistedCause> causes = hidden::UnlistedCausesOf("encoder_comparison");
   const auto line = std::ranges::find(causes, "non-integer line", &hidden::UnlistedCause::name);

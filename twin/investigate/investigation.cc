@@ -72,7 +72,7 @@ class Loop {
   bool AreCausesTold() const { return ToldBy(result_.belief, options_.conclusive) != Told::kTied; }
 
   bool IsDone() {
-    if (!WasAnyDiagnosed() || !AreCausesTold() || !result_.IsGoalMet() || MayBeFaint()) return false;
+    if (!WasAnyDiagnosed() || !AreCausesTold() || !result_.IsGoalMet() || MayBeFaint() || MayHappenAgain()) return false;
     result_.ended = Ended::kTold;
     return true;
   }
@@ -84,6 +84,14 @@ class Loop {
   /// Nothing is found, and a cause of the size that is asked for could still hide in the noise.
   bool MayBeFaint() const {
     return IsNothingFound() && RunsLikeFirst() < RunsToShowFaint();
+  }
+
+  /// What happened in the last run has happened once if another one does not show it again: a wander may look so too.
+  bool MayHappenAgain() const {
+    const Hypothesis& best = result_.belief.Best().fit.hypothesis;
+    return best.IsNamed() && std::ranges::any_of(best.causes, [this](const Supposed& cause) {
+      return HappensOnce(cause) && cause.happened_in == runs_.back().number;
+    });
   }
 
   /// Runs of the plan that was diagnosed first; mostly the scenario's own.
@@ -246,9 +254,9 @@ class Loop {
     return belief.Best().fit.hypothesis.IsNamed() && belief.unlisted > 1.0 - options_.conclusive && !HasRival(belief);
   }
 
-  /// The first run once more, where its noise may hide what is looked for.
+  /// The first run once more, where its noise may hide what is looked for, or something may happen again.
   std::vector<Advice>::const_iterator LookingCloser(const std::vector<Advice>& advice) const {
-    if (!MayBeFaint()) return advice.end();
+    if (!MayBeFaint() && !(AreCausesTold() && MayHappenAgain())) return advice.end();
     return std::ranges::find_if(advice, [this](const Advice& a) { return IsLikeFirst(a.run); });
   }
 
@@ -287,10 +295,13 @@ class Loop {
 
   /// For a run that no open hypothesis asks for.
   std::string ReasonToLook() const {
+    const std::string name = result_.belief.Best().fit.hypothesis.Name();
+    if (AreCausesTold() && MayHappenAgain())
+      return fmt::format("{} happened in the last run: whether it does so again", name);
     if (IsOnlyUnlistedLeft())
-      return fmt::format("nothing else in the catalogue explains it as {} does: the shortest run of a kind that was not made yet, where "
-                         "what no catalogue lists would differ",
-                         result_.belief.Best().fit.hypothesis.Name());
+      return fmt::format("nothing else in the catalogue explains it as {} does: the shortest run of a kind that was not "
+                         "made yet, where what no catalogue lists would differ",
+                         name);
     if (!MayBeFaint()) return "nothing open says what this is: the shortest run of a kind that was not made yet";
     return fmt::format(
         "nothing found so far: {} such runs together show what is {:.3g} standard deviations strong in one, this is number {}",

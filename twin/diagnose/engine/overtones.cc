@@ -92,10 +92,14 @@ double LogBayesFactor(const Eigen::VectorXd& data, const Eigen::VectorXd& mean, 
   return 0.5 * (data.squaredNorm() - chi2) - inner.matrixLLT().diagonal().array().log().sum();
 }
 
-/// One wave, what the readings leave beside all terms, and how overtones would show there: all white, in units of the noise.
+/// One wave, what the readings leave beside all terms, and how overtones would show there: all white, in units of the
+/// noise.
 class Wave {
  public:
-  Wave(const Family& family, const Term& term, Eigen::VectorXd left, std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> shown)
+  using Show = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
+
+  /// @param shown  Whitens signatures and takes out what terms and free unknowns have of them.
+  Wave(const Family& family, const Term& term, Eigen::VectorXd left, Show shown)
       : family_(family), term_(term), left_(std::move(left)), shown_(std::move(shown)),
         overtones_(shown_(Overtones(family, term.shape))) {}
 
@@ -130,7 +134,7 @@ class Wave {
   const Family& family_;
   const Term& term_;
   Eigen::VectorXd left_;
-  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> shown_;
+  Show shown_;
   Eigen::MatrixXd overtones_;
 };
 
