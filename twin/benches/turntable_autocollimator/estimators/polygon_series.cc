@@ -15,8 +15,8 @@ std::vector<double> DistinctAngles(const std::vector<FaceReading>& readings) {
     angles_rad.push_back(rest_rad > units::turn - kSame_rad ? 0.0 : rest_rad);
   }
   std::ranges::sort(angles_rad);
-  const auto same = std::ranges::unique(angles_rad, [](double a, double b) { return b - a < kSame_rad; });
-  angles_rad.erase(same.begin(), same.end());
+  const auto is_same = [](double a, double b) { return b - a < kSame_rad; };
+  angles_rad.erase(std::unique(angles_rad.begin(), angles_rad.end(), is_same), angles_rad.end());
   return angles_rad;
 }
 
