@@ -12,7 +12,7 @@
 #include "twin/core/linear_algebra.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/engine/base.h"
-#include "twin/diagnose/engine/refine.h"
+#include "twin/diagnose/engine/prior.h"
 #include "twin/diagnose/tuning.h"
 
 namespace twinbench::diagnose {
@@ -96,54 +96,52 @@ double LogBayesFactor(const Eigen::VectorXd& data, const Eigen::VectorXd& mean, 
 /// noise.
 class Wave {
  public:
-  using Show = std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>;
-
   /// @param shown  Whitens signatures and takes out what terms and free unknowns have of them.
-  Wave(const Family& family, const Term& term, Eigen::VectorXd left, Show shown)
-      : family_(family), term_(term), left_(std::move(left)), shown_(std::move(shown)),
-        overtones_(shown_(Overtones(family, term.shape))) {}
+  Wave(const Family& family, const Term& term, Eigen::VectorXd left,
+       const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& shown)
+      : amplitudes_(term.amplitudes),
+        root_(RootOf(term.cov)),
+        steps_((0.1 * term.cov.diagonal().cwiseSqrt()).cwiseMax(1e-300)),
+        left_(std::move(left)),
+        overtones_(shown(Overtones(family, term.shape))),
+        overtones_beside_(shown(Overtones(family, term.shape.array() + steps_[amplitudes_.size()]))) {}
 
   /// As the fundamental says, give or take what is not known of it.
   double LogBayesFactorLocked(const Waveform& waveform) const {
-    const Eigen::VectorXd mean = overtones_ * Following(waveform, term_.amplitudes);
-    return LogBayesFactor(left_, mean, SlopesOf(waveform, mean) * RootOf(term_.cov));
+    const Eigen::VectorXd mean = overtones_ * Following(waveform, amplitudes_);
+    return LogBayesFactor(left_, mean, SlopesOf(waveform, mean) * root_);
   }
 
   /// Of any phase. @param strength  Of the fundamental's size.
   double LogBayesFactorFree(double strength) const {
-    const double stretches = 0.5 * static_cast<double>(term_.amplitudes.size());
-    const double size = strength * term_.amplitudes.norm() / std::sqrt(2.0 * stretches);  // half of it each way
+    const double stretches = 0.5 * static_cast<double>(amplitudes_.size());
+    const double size = strength * amplitudes_.norm() / std::sqrt(2.0 * stretches);  // half of it each way
     return LogBayesFactor(left_, Eigen::VectorXd::Zero(left_.size()), size * overtones_);
   }
 
  private:
   /// Of what is shown, by cosines, sines and frequency of the fundamental: rows x amplitudes and one.
   Eigen::MatrixXd SlopesOf(const Waveform& waveform, const Eigen::VectorXd& mean) const {
-    Eigen::MatrixXd slopes(mean.size(), term_.cov.cols());
-    const Eigen::VectorXd steps = (0.1 * term_.cov.diagonal().cwiseSqrt()).cwiseMax(1e-300);
-    const Eigen::Index sizes = term_.amplitudes.size();
+    Eigen::MatrixXd slopes(mean.size(), steps_.size());
+    const Eigen::Index sizes = amplitudes_.size();
     for (Eigen::Index k = 0; k < sizes; ++k) {
-      const Eigen::VectorXd moved = term_.amplitudes + steps[k] * Eigen::VectorXd::Unit(sizes, k);
-      slopes.col(k) = (overtones_ * Following(waveform, moved) - mean) / steps[k];
+      const Eigen::VectorXd moved = amplitudes_ + steps_[k] * Eigen::VectorXd::Unit(sizes, k);
+      slopes.col(k) = (overtones_ * Following(waveform, moved) - mean) / steps_[k];
     }
-    const Eigen::VectorXd moved = Eigen::VectorXd::Constant(1, term_.shape[0] + steps[sizes]);
-    slopes.col(sizes) = (shown_(Overtones(family_, moved)) * Following(waveform, term_.amplitudes) - mean) / steps[sizes];
+    slopes.col(sizes) = (overtones_beside_ * Following(waveform, amplitudes_) - mean) / steps_[sizes];
     return slopes;
   }
 
-  const Family& family_;
-  const Term& term_;
+  Eigen::VectorXd amplitudes_;
+  Eigen::MatrixXd root_;   // of the covariance of amplitudes and frequency
+  Eigen::VectorXd steps_;  // of the same, for slopes
   Eigen::VectorXd left_;
-  Show shown_;
-  Eigen::MatrixXd overtones_;
+  Eigen::MatrixXd overtones_, overtones_beside_;  // the latter at the frequency's step
 };
 
 /// Log of the mean of their exponentials.
 double LogMean(const std::vector<double>& logs) {
-  const double most = std::ranges::max(logs);
-  double sum = 0.0;
-  for (const double one : logs) sum += std::exp(one - most);
-  return most + std::log(sum / static_cast<double>(logs.size()));
+  return LogSum(Eigen::Map<const Eigen::VectorXd>(logs.data(), std::ssize(logs))) - std::log(logs.size());
 }
 
 double LogBayesFactor(const Wave& wave) {
