@@ -56,6 +56,7 @@ TEST(Investigate, SeesWhetherASlipHappensAgain) {
   ASSERT_GT(steps.size(), 1u);
   EXPECT_THAT(steps[1].reason, testing::HasSubstr("slip x happened in the last run: whether it does so again"));
   EXPECT_EQ(judged.investigation.belief.Best().fit.hypothesis.Name(), "slip x") << judged.answer;
+  EXPECT_GT(judged.probability, 0.9) << judged.answer;  // another run says no more of when it happened
 }
 
 TEST(Investigate, LooksAgainWhereOneRunMayHideACause) {

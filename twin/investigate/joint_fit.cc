@@ -62,9 +62,10 @@ Hypothesis Moved(Hypothesis hypothesis, const std::vector<Size>& sizes, const Ei
   return hypothesis;
 }
 
-/// Change of what is left of one run for one u of a size.
+/// Change of what is left of one run for one u of a size. What happens at one reading jumps there: it has none.
 Eigen::VectorXd SlopeOf(const Hypothesis& hypothesis, const Size& size, const Eigen::VectorXd& left,
                         const TakenRun& run, const Means& means) {
+  if (size.name == kHappenedAt) return Eigen::VectorXd::Zero(left.size());
   constexpr double kStep = 0.25;  // of u; away from the nearer bound
   const double value = ValueOf(hypothesis, size);
   const double step = size.upper - value > value - size.lower ? kStep : -kStep;
@@ -178,8 +179,8 @@ double FollowedBy(const Left& left, const Normal& normal, const Eigen::VectorXd&
   return left.chi2 - gradient.dot(CovarianceOf(normal.matrix, breadth) * gradient);
 }
 
-/// What the readings leave of a size near a bound.
-struct NearBound {
+/// What the readings leave of a size whose slopes do not say it.
+struct Summed {
   double log_share = 0.0;  // of what was thought of it before
   double u = 0.0;          // root mean square of the distance from its fit, in units of u
 };
@@ -187,7 +188,7 @@ struct NearBound {
 /// Slopes say little of a size near a bound: a gap that is crossed at once looks the same up to the distance of two
 /// readings, and like nothing beyond. So its likelihood is summed over distances, the other sizes following it by
 /// their slopes, against half a normal distribution of its breadth.
-NearBound SummedFrom(const Hypothesis& at, const Size& size, double breadth, double chi2,
+Summed SummedFrom(const Hypothesis& at, const Size& size, double breadth, double chi2,
                      const std::function<double(const Hypothesis&)>& chi2_of, double rows) {
   constexpr int kHalvings = 7;
   constexpr double kFarthest = 3.0, kGone = 12.0;  // of breadth; of log likelihood
@@ -214,6 +215,36 @@ NearBound SummedFrom(const Hypothesis& at, const Size& size, double breadth, dou
   }
   mass = std::max(mass, thought * std::exp(-kGone));
   return {std::log(mass / thought), std::sqrt(squares / mass)};
+}
+
+/// What happens at one reading may have done so at any of its run, each as likely as the others beforehand: the
+/// likelihood is summed over them, by trapezoids of doubling width, the other sizes following by their slopes.
+Summed SummedOverReadings(const Hypothesis& at, const Size& size, double chi2,
+                          const std::function<double(const Hypothesis&)>& chi2_of, double rows, double readings) {
+  constexpr double kGone = 12.0;  // of log likelihood
+  constexpr double kWithinOne = 1.0 / 12.0;  // variance: between two readings it may have been anywhere
+  const double best = LogLikelihood(chi2, rows), value = ValueOf(at, size);
+  double sum = 1.0, squares = kWithinOne;
+  for (const double sign : {-1.0, 1.0}) {
+    const double room = sign < 0.0 ? value : readings - value;
+    double before = 0.0, last = 1.0;
+    for (double off = 1.0; off <= room && last > std::exp(-kGone); off *= 2.0) {
+      const Hypothesis moved = Moved(at, {size}, Eigen::VectorXd::Constant(1, sign * off / size.u));
+      const double likelihood = std::exp(std::min(0.0, LogLikelihood(chi2_of(moved), rows) - best));
+      const double between = 0.5 * (off - before - 1.0);  // readings on either half of the trapezoid
+      sum += between * last + (between + 1.0) * likelihood;
+      squares += between * last * before * before + (between + 1.0) * likelihood * off * off;
+      before = off;
+      last = likelihood;
+    }
+  }
+  return {std::log(sum / std::max(1.0, readings)), std::sqrt(squares / sum) / size.u};
+}
+
+/// Of the run in which the cause happened.
+double ReadingsIn(const Supposed& cause, std::span<const TakenRun> runs) {
+  const auto run = std::ranges::find(runs, cause.happened_in, &TakenRun::number);
+  return run == runs.end() ? 1.0 : static_cast<double>(run->readings.size());
 }
 
 /// The whole step, or as much less as the twin bends.
@@ -370,11 +401,19 @@ void StateCertainty(const std::vector<Size>& sizes, Normal normal, std::span<con
   const auto chi2_of = [&](const Hypothesis& moved) {
     return FollowedBy(LeftOf(moved, runs, means), normal, breadth, runs);
   };
+  const auto take_in = [&](Eigen::Index k, const Summed& summed) {
+    fit.log_evidence += summed.log_share;
+    cov(k, k) = summed.u * summed.u;
+  };
   for (const Eigen::Index k : near) {
     const Size& size = sizes[static_cast<std::size_t>(k)];
-    const NearBound left_of = SummedFrom(fit.hypothesis, size, breadth[k], fit.chi2, chi2_of, Rows(runs));
-    fit.log_evidence += left_of.log_share;
-    cov(k, k) = left_of.u * left_of.u;
+    take_in(k, SummedFrom(fit.hypothesis, size, breadth[k], fit.chi2, chi2_of, Rows(runs)));
+  }
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    if (sizes[k].name != kHappenedAt) continue;
+    const double readings = ReadingsIn(fit.hypothesis.causes[sizes[k].cause], runs);
+    take_in(static_cast<Eigen::Index>(k),
+            SummedOverReadings(fit.hypothesis, sizes[k], fit.chi2, chi2_of, Rows(runs), readings));
   }
   StateUncertainties(cov, sizes, fit);
 }
