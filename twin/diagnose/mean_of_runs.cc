@@ -22,10 +22,6 @@ bool IsTimed(const std::vector<Reading>& readings) {
   return std::ranges::any_of(readings, [&stamp](const Reading& r) { return std::isfinite(stamp(r)); });
 }
 
-bool AreOfOnePlan(const std::vector<Reading>& a, const std::vector<Reading>& b) {
-  return std::ranges::equal(a, b, IsSameStop) && !IsTimed(a) && !IsTimed(b);
-}
-
 /// How much more than in `from`: an angle that is shown within a turn may be a turn off.
 double Difference(double value, double from, bool is_angle) {
   const double more = value - from;
@@ -62,6 +58,10 @@ double RepeatedByRounding(double noise) {
 }
 
 }  // namespace
+
+bool AreOfOnePlan(const std::vector<Reading>& a, const std::vector<Reading>& b) {
+  return std::ranges::equal(a, b, IsSameStop) && !IsTimed(a) && !IsTimed(b);
+}
 
 std::optional<std::vector<Reading>> MeanOfRuns(const std::vector<const std::vector<Reading>*>& runs,
                                                const BenchFormat& format) {

@@ -18,6 +18,9 @@ namespace twinbench::diagnose {
 std::optional<std::vector<Reading>> MeanOfRuns(const std::vector<const std::vector<Reading>*>& runs,
                                                const BenchFormat& format);
 
+/// Whether reading by reading they are of the same stops, and no lines that were timed on their way.
+bool AreOfOnePlan(const std::vector<Reading>& a, const std::vector<Reading>& b);
+
 /// Of how many runs it is the mean; 1 unless MeanOfRuns made it.
 int RunsIn(const std::vector<Reading>& readings);
 

@@ -138,6 +138,7 @@ std::vector<Advice> Plans::For(const Belief& belief, const Certainty* goal, cons
         });
     Advice one{planned.run.asked, planned.run.minutes, OfCauses_bit(belief, planned.run, is_another, means_), 0.0,
                kNaN};
+    one.worth = WorthOf(planned.run, taken.front());
     if (goal && !goal->IsMet()) {
       one.u_goal = goal->With(planned.results);
       if (std::isfinite(goal->u())) one.of_goal_bit = std::max(0.0, std::log2(goal->u() / one.u_goal));

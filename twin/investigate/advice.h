@@ -15,6 +15,7 @@ struct Advice {
   double of_causes_bit = 0.0;  // about which hypothesis is true
   double of_goal_bit = 0.0;    // log2 of the goal's uncertainty before over after; 0 without a goal that is open
   double u_goal = 0.0;         // afterwards; NaN if it tells nothing of it
+  double worth = 0.0;          // WorthOf: in runs like the first
 
   double PerMinute() const { return (of_causes_bit + of_goal_bit) / minutes; }
 };

@@ -12,7 +12,7 @@ namespace twinbench::investigate {
 /// @throws InputError if they are of different benches, or the hidden bench cannot be asked for that.
 Scenario HiddenRun(const Scenario& hidden, const Scenario& believed, const plan::NextRun& run, int repeat);
 
-/// Only the procedure differs: nobody has to change the bench or its room for it.
+/// Only the procedure differs, or how many scans make a reading: nobody has to change the bench or its room for it.
 bool IsProcedureAlone(const plan::NextRun& run);
 
 }  // namespace twinbench::investigate

@@ -83,7 +83,7 @@ class Loop {
 
   /// Nothing is found, and a cause of the size that is asked for could still hide in the noise.
   bool MayBeFaint() const {
-    return IsNothingFound() && RunsLikeFirst() < RunsToShowFaint();
+    return IsNothingFound() && WorthSoFar() < RunsToShowFaint();
   }
 
   /// What happened in the last run has happened once if another one does not show it again: a wander may look so too.
@@ -94,9 +94,11 @@ class Loop {
     });
   }
 
-  /// Runs of the plan that was diagnosed first; mostly the scenario's own.
-  int RunsLikeFirst() const {
-    return static_cast<int>(std::ranges::count_if(runs_, [this](const TakenRun& run) { return IsLikeFirst(run.asked); }));
+  /// In runs of the plan that was diagnosed first; mostly the scenario's own.
+  double WorthSoFar() const {
+    double worth = 0.0;
+    for (const TakenRun& run : runs_) worth += WorthOf(run, runs_.front());
+    return worth;
   }
 
   bool IsLikeFirst(const plan::NextRun& run) const { return run.sets == runs_.front().asked.sets; }
@@ -104,9 +106,7 @@ class Loop {
   double Faint() const { return options_.faint.value_or(options_.goal ? 0.0 : kUsuallyFaint); }
 
   /// So many in the mean have the noise in which the cause stands out.
-  int RunsToShowFaint() const {
-    return Faint() > 0.0 ? static_cast<int>(std::ceil(std::pow(kStandsOut / Faint(), 2))) : 1;
-  }
+  double RunsToShowFaint() const { return Faint() > 0.0 ? std::pow(kStandsOut / Faint(), 2) : 1.0; }
 
   /// Makes the run and adds it to what is known.
   void Take(Step& step, const Scenario& scenario) {
@@ -254,9 +254,14 @@ class Loop {
     return belief.Best().fit.hypothesis.IsNamed() && belief.unlisted > 1.0 - options_.conclusive && !HasRival(belief);
   }
 
-  /// The first run once more, where its noise may hide what is looked for, or something may happen again.
+  /// Where noise may hide what is looked for: what makes it less soonest. Where something may happen again: the first run
+  /// once more.
   std::vector<Advice>::const_iterator LookingCloser(const std::vector<Advice>& advice) const {
-    if (!MayBeFaint() && !(AreCausesTold() && MayHappenAgain())) return advice.end();
+    if (MayBeFaint()) {
+      const auto most = std::ranges::max_element(advice, {}, [](const Advice& a) { return a.worth / a.minutes; });
+      return most != advice.end() && most->worth > 0.0 ? most : advice.end();
+    }
+    if (!AreCausesTold() || !MayHappenAgain()) return advice.end();
     return std::ranges::find_if(advice, [this](const Advice& a) { return IsLikeFirst(a.run); });
   }
 
@@ -273,7 +278,7 @@ class Loop {
   bool IsAnyLeftOut(double left_min) const {
     const double all_min = std::numeric_limits<double>::infinity();
     for (const Advice& a : plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, all_min)) {
-      if (a.minutes > left_min && (IsUseful(a) || (MayBeFaint() && IsLikeFirst(a.run)))) return true;
+      if (a.minutes > left_min && (IsUseful(a) || (MayBeFaint() && a.worth > 0.0))) return true;
     }
     return false;
   }
@@ -304,8 +309,9 @@ class Loop {
                          name);
     if (!MayBeFaint()) return "nothing open says what this is: the shortest run of a kind that was not made yet";
     return fmt::format(
-        "nothing found so far: {} such runs together show what is {:.3g} standard deviations strong in one, this is number {}",
-        RunsToShowFaint(), Faint(), RunsLikeFirst() + 1);
+        "nothing found so far: {:.3g} runs like the first together show what is {:.3g} standard deviations strong in one, {:.3g} "
+        "are there, and nothing else makes the noise less so soon",
+        RunsToShowFaint(), Faint(), WorthSoFar());
   }
 
   void TakeAndWeigh(Step step) {

@@ -5,6 +5,7 @@
 
 #include "twin/core/errors.h"
 #include "twin/diagnose/in_frame.h"
+#include "twin/diagnose/mean_of_runs.h"
 
 namespace twinbench::investigate {
 
@@ -62,6 +63,13 @@ Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const 
   } catch (const InputError&) {
     return run.left;
   }
+}
+
+double WorthOf(const TakenRun& run, const TakenRun& first) {
+  if (run.asked.sets == first.asked.sets) return 1.0;
+  if (run.asked.is_of_another_kind || run.linear.Rows() != first.linear.Rows()) return 0.0;
+  if (!diagnose::AreOfOnePlan(run.readings, first.readings)) return 0.0;
+  return run.linear.sigma.array().square().inverse().sum() / first.linear.sigma.array().square().inverse().sum();
 }
 
 Eigen::MatrixXd Product(const TakenRun& run, const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
