@@ -62,19 +62,34 @@ EffectSettings Sized(const Cause& cause, const std::string& bench) {
   return effect;
 }
 
+const Cause* FindIn(const std::vector<Cause>& causes, const std::string& effect, const std::string& where) {
+  const auto at = std::ranges::find_if(causes, [&](const Cause& c) { return c.effect == effect && c.where == where; });
+  return at == causes.end() ? nullptr : &*at;
+}
+
+/// Those of the same name and unit become as `from` has them.
+void ShareParameters(const std::vector<diagnose::ParameterEstimate>& from, std::vector<diagnose::ParameterEstimate>& to) {
+  for (diagnose::ParameterEstimate& p : to) {
+    const auto same = std::ranges::find(from, p.name, &diagnose::ParameterEstimate::name);
+    if (same != from.end() && same->unit == p.unit) p = *same;
+  }
+}
+
 /// What readings leave open.
 struct Finding {
   const diagnose::DiagnosisRun& found;
   const std::string& bench;
   int run;  // that was diagnosed
 
-  /// Causes that the diagnosis did not fit are as large as they would be alone.
+  /// Causes that the diagnosis did not fit are as large as they would be alone. Beside what was taken out first, for it is
+  /// large, that says little: what they have in common with the one that was fitted for them - an order - is as there.
   Supposed Suppose(Cause cause) const {
     if (cause.parameters.empty()) {
-      const auto alone = std::ranges::find_if(found.suspects, [&cause](const Cause& suspect) {
-        return suspect.effect == cause.effect && suspect.where == cause.where;
-      });
-      if (alone != found.suspects.end()) cause.parameters = alone->parameters;
+      if (const Cause* alone = FindIn(found.suspects, cause.effect, cause.where)) cause.parameters = alone->parameters;
+      for (const diagnose::Rival& rival : cause.indistinguishable_from) {
+        const Cause* fitted = FindIn(found.diagnosis.causes, rival.effect, rival.where);
+        if (fitted && !fitted->parameters.empty()) ShareParameters(fitted->parameters, cause.parameters);
+      }
     }
     Supposed supposed{Sized(cause, bench)};
     if (HappensOnce(supposed)) supposed.happened_in = run;
