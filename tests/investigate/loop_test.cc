@@ -158,6 +158,18 @@ TEST(NextRuns, AreRunsThatTheirBenchCanMake) {
   }
 }
 
+// A run that the bench's own diagnosis refuses is none.
+TEST(NextRuns, LeaveSomethingToFindCausesBy) {
+  for (const hidden::Design design : {hidden::Design::kRotary, hidden::Design::kTurntable, hidden::Design::kSweep}) {
+    const Scenario scenario = hidden::Believed(design);
+    const Means means = tools::MeansOf(BenchOf(scenario), [](const plan::NextRun&) { return true; });
+    for (const plan::NextRun& run : means.next_runs(scenario)) {
+      const Scenario other = Altered(scenario, run.sets);
+      EXPECT_NO_THROW(means.against(means.twin(other), other)) << scenario.bench << " " << run.name;
+    }
+  }
+}
+
 TEST(Repeat, IsAnotherRunOfTheSameBench) {
   Scenario scenario = hidden::Drawn(hidden::Design::kRotary, 5);
   const auto target_at = [&](int repeat) {

@@ -137,6 +137,26 @@ std::vector<Cause> LessLikelyOf(const Analysis& analysis) {
   return less_likely;
 }
 
+/// Of an answer that is one thing without a name.
+/// @param suspects  With the sizes that they have alone.
+std::vector<Cause> UnsizedOf(const Analysis& analysis, const std::vector<Cause>& suspects) {
+  constexpr double kLeast = 0.01;
+  std::vector<Cause> unsized;
+  if (analysis.found.terms.size() != 1 || analysis.found.terms.front().log_with_unsized.size() == 0) return unsized;
+  Term term = analysis.found.terms.front();
+  const auto& families = analysis.scanner->Families();
+  Posterior before = PosteriorOf(term, families);
+  term.log_posterior = term.log_with_unsized;
+  for (const auto& [key, p] : PosteriorOf(term, families).named) {
+    const auto alone = std::ranges::find_if(
+        suspects, [&key](const Cause& c) { return CauseKey(c.effect, c.where) == key; });
+    if (p < before.named[key] + kLeast || alone == suspects.end()) continue;
+    unsized.push_back(*alone);
+    unsized.back().probability = p;
+  }
+  return unsized;
+}
+
 /// What the rows that recur show, for a scenario that repeats it at these readings.
 void AcceptRecurrent(const Analysis& analysis, DiagnosisRun& result) {
   for (const NoiseCause& repair : analysis.repairs) {
@@ -212,6 +232,7 @@ DiagnosisRun Conclude(const LinearRun& run, const Analysis& analysis, const std:
     result.suspects =
         CausesAlone(run, analysis.noise, *analysis.projector, *analysis.scanner, analysis.found.alone);
   result.less_likely = LessLikelyOf(analysis);
+  result.unsized = UnsizedOf(analysis, result.suspects);
   AddDetectability(run, analysis, words, result.diagnosis);
   if (analysis.design_only) result.isolability = std::make_shared<const Isolability>(IsolabilityOf(run, analysis));
   AddNextMeasurements(words, result.diagnosis.causes);

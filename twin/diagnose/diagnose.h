@@ -56,6 +56,10 @@ struct DiagnosisRun {
   /// Something was found: the named causes that are too unlikely for the answer to list, from a hundredth on. Each is
   /// indistinguishable from the first cause of its place.
   std::vector<Cause> less_likely;
+  /// Instead of what has no name: named causes that explain it as well, but whose size and shape stand for each other - a
+  /// tilt with a lag - so that these readings do not show that they are there. With the probability that they had if
+  /// that were no matter.
+  std::vector<Cause> unsized;
   std::shared_ptr<const Isolability> isolability;  // null unless `design_only` was asked for
 };
 

@@ -50,7 +50,7 @@ unknown::Design DesignOf(const Compared& c, const TwinComparison& comparison, co
   design.units = run.units;
   constexpr double kPlausibleNoise = 3.0;
   design.plausible = std::max(comparison.plausible, kPlausibleNoise * run.sigma.mean());
-  if (NamesTonesOfChannels(comparison)) design.named = {"tone"};
+  if (NamesTonesOfChannels(comparison)) design.named = {{"tone", "tone"}};
   if (run.IsMixed()) {
     design.plausible = kPlausibleNoise;
     design.scale = run.sigma.reshaped(run.Channels(), run.schedule.Readings()).rowwise().mean();

@@ -88,8 +88,7 @@ std::vector<double> Belief::Probabilities() const {
 Belief Begun(const diagnose::DiagnosisRun& found, const std::vector<TakenRun>& runs, const Means& means) {
   Belief belief;
   const std::span<const TakenRun> diagnosed = std::span(runs).first(1);
-  const bool is_none = found.diagnosis.verdict == diagnose::Verdict::kNone;
-  belief.unlisted = is_none ? 0.0 : std::clamp(found.diagnosis.unknown.probability, 0.0, 1.0);
+  belief.unlisted = UnlistedBy(found);
   std::vector<Weighed> open = LeftOpen(WithLessLikely(found), runs.front().scenario, runs.front().number);
   AddUnnamed(open, belief, runs.front(), means);
   for (const Weighed& weighed : open) {

@@ -132,6 +132,26 @@ std::vector<Weighed> NothingOrSuspects(const Finding& finding) {
   return open;
 }
 
+double SumOf(const std::vector<Cause>& causes) {
+  double sum = 0.0;
+  for (const Cause& cause : causes) sum += cause.probability;
+  return sum;
+}
+
+/// What was found has no name, or one of these that further runs may show the size of.
+std::vector<Weighed> NothingOrUnsized(const Finding& finding) {
+  const diagnose::DiagnosisRun& found = finding.found;
+  std::vector<Weighed> open(1);
+  open.front().probability = std::max(0.0, 1.0 - found.diagnosis.unknown.probability);
+  for (const Cause& cause : found.unsized) {
+    Weighed one;
+    one.hypothesis.causes.push_back(finding.Suppose(cause));
+    one.probability = cause.probability;
+    open.push_back(std::move(one));
+  }
+  return open;
+}
+
 void KeepTheMostProbable(std::vector<Weighed>& open) {
   std::ranges::stable_sort(open, std::ranges::greater{}, &Weighed::probability);
   if (open.size() > kMost) open.resize(kMost);
@@ -195,10 +215,20 @@ diagnose::DiagnosisRun WithLessLikely(diagnose::DiagnosisRun found) {
   return found;
 }
 
+double UnlistedBy(const diagnose::DiagnosisRun& found) {
+  if (found.diagnosis.verdict == diagnose::Verdict::kNone) return 0.0;
+  return std::clamp(found.diagnosis.unknown.probability, 0.0, 1.0) * (1.0 - SumOf(found.unsized));
+}
+
 std::vector<Weighed> LeftOpen(const diagnose::DiagnosisRun& found, const Scenario& scenario, int run) {
   const std::vector<Cause>& causes = found.diagnosis.causes;
   const Finding finding{found, scenario.bench, run};
   if (found.diagnosis.verdict == diagnose::Verdict::kNone) return NothingOrSuspects(finding);
+  if (causes.empty() && !found.unsized.empty()) {
+    std::vector<Weighed> open = NothingOrUnsized(finding);
+    KeepTheMostProbable(open);
+    return open;
+  }
   std::vector<Weighed> open(1);
   open.front().probability = 1.0;
   open.front().hypothesis.besides = SignalsOf(found, scenario);

@@ -54,6 +54,9 @@ struct Weighed {
 /// further run may find them likely.
 diagnose::DiagnosisRun WithLessLikely(diagnose::DiagnosisRun found);
 
+/// How probable the diagnosis finds it that something is there that no catalogue lists.
+double UnlistedBy(const diagnose::DiagnosisRun& found);
+
 /// What a diagnosis leaves open: of causes that it cannot tell apart one each, of causes that are at work together
 /// all; the most probable dozen. A diagnosis that found nothing leaves "nothing".
 /// @param run  Which of the investigation's was diagnosed, from 0 on.

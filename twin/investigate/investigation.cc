@@ -412,9 +412,9 @@ class Loop {
         LeftOpen(WithLessLikely(alone), run.scenario, run.number);
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
     // Several causes together are a coincidence that one without a name does not need.
-    if (belief.Best().fit.hypothesis.causes.size() > 1) Disagreed(belief, alone.diagnosis.unknown.probability);
+    if (belief.Best().fit.hypothesis.causes.size() > 1) Disagreed(belief, UnlistedBy(alone));
     if (!is_new || found.diagnosis.verdict == diagnose::Verdict::kUnknown)
-      Disagreed(belief, found.diagnosis.unknown.probability);
+      Disagreed(belief, UnlistedBy(found));
   }
 
   /// The mean of the runs of its plan: it shows smaller causes than any of them. What happened once did so in one of

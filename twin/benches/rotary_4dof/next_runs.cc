@@ -36,22 +36,11 @@ NextRun LongerReadings(const RotarySettings& own) {
           plan::kSameKind};
 }
 
-std::vector<NextRun> OfTheSweeps(const RotarySettings& own) {
-  return {{"sweeps",
-           "the target swept in yaw and in tilt beside the autocollimator",
-           {"procedure.phases=[\"calibration\"]", "procedure.sweep_points=25"},
-           plan::kSameKind},
-          {"wide-sweeps",
-           "the same sweeps as wide as the PSDs allow",
-           {"procedure.phases=[\"calibration\"]", "procedure.sweep_points=25",
-            fmt::format("procedure.sweep_arcsec={:.6g}", WideSweep_arcsec(own))},
-           plan::kOtherKind},
-          {"farther-sweeps",
-           "the sweeps with both PSDs half as far again",
-           {"procedure.phases=[\"calibration\"]", "procedure.sweep_points=25",
-            fmt::format("psd_a.distance_mm={}", 1.5 * own.psd_a.distance_m / units::mm),
-            fmt::format("psd_b.distance_mm={}", 1.5 * own.psd_b.distance_m / units::mm)},
-           plan::kOtherKind}};
+/// Two set-ups of the circle, forth and back: the least that leaves something to find causes by.
+std::vector<std::string> TwoSetups(const RotarySettings& own, std::vector<std::string> more) {
+  more.insert(more.begin(), {"procedure.phases=[\"calibration\", \"full_circle\"]", Shifts(own.procedure.positions, 2),
+                             "procedure.passes=[1, -1]"});
+  return more;
 }
 
 std::vector<NextRun> OfTheCircle(const RotarySettings& own) {
@@ -61,9 +50,7 @@ std::vector<NextRun> OfTheCircle(const RotarySettings& own) {
                                 "two set-ups of the circle with dwells from 0.5 to 20 s",
                                 {circle, Shifts(n, 2), "procedure.dwell_s=[0.5, 2, 8, 20]"},
                                 plan::kOtherKind},
-                               {"two-shifts",
-                                "two set-ups of the circle, forth and back",
-                                {circle, Shifts(n, 2), "procedure.passes=[1, -1]"},
+                               {"two-shifts", "two set-ups of the circle, forth and back", TwoSetups(own, {}),
                                 plan::kSameKind},
                                {"other-shifts",
                                 "four set-ups at the shifts that tell most",
@@ -78,29 +65,35 @@ std::vector<NextRun> OfTheCircle(const RotarySettings& own) {
   return runs;
 }
 
+std::vector<NextRun> OfTheSweeps(const RotarySettings& own) {
+  const std::string points = "procedure.sweep_points=25";
+  return {{"sweeps", "finer sweeps in yaw and in tilt beside the autocollimator, then two set-ups", TwoSetups(own, {points}),
+           plan::kSameKind},
+          {"wide-sweeps", "the same with sweeps as wide as the PSDs allow",
+           TwoSetups(own, {points, fmt::format("procedure.sweep_arcsec={:.6g}", WideSweep_arcsec(own))}), plan::kOtherKind},
+          {"farther", "the same with both PSDs half as far again",
+           TwoSetups(own, {points, fmt::format("psd_a.distance_mm={}", 1.5 * own.psd_a.distance_m / units::mm),
+                           fmt::format("psd_b.distance_mm={}", 1.5 * own.psd_b.distance_m / units::mm)}),
+           plan::kOtherKind}};
+}
+
+std::vector<NextRun> InAnotherRoom(const Scenario& scenario, const RotarySettings& own) {
+  constexpr double kWarmer_K = 2.0;
+  const double warm_degC = scenario.environment.temperature_degC + kWarmer_K;
+  return {{"warming", "two set-ups while the room warms by 2 K an hour",
+           TwoSetups(own, {fmt::format("environment.drift_K_h={}", kWarmer_K)}), plan::kOtherKind},
+          {"warm", "finer sweeps and two set-ups in a room that is 2 K warmer",
+           TwoSetups(own, {"procedure.sweep_points=25", fmt::format("environment.temperature_degC={}", warm_degC)}),
+           plan::kOtherKind}};
+}
+
 }  // namespace
 
 std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
   const RotarySettings& own = RotaryOf(scenario);
-  const double warm_degC = scenario.environment.temperature_degC + 2.0;
   std::vector<NextRun> runs = {LongerReadings(own)};
-  for (NextRun& run : OfTheSweeps(own)) runs.push_back(std::move(run));
-  for (NextRun& run : OfTheCircle(own)) runs.push_back(std::move(run));
-  runs.push_back({"idle",
-                  "half an hour at rest, nothing moved nor mounted",
-                  {"procedure.phases=[\"calibration\", \"stability\"]", "procedure.stability_s=1800",
-                   "procedure.stability_interval_s=20"},
-                  plan::kOtherKind});
-  runs.push_back({"warming",
-                  "an hour at rest while the room warms by 2 K",
-                  {"procedure.phases=[\"calibration\", \"stability\"]", "procedure.stability_s=3600",
-                   "procedure.stability_interval_s=30", "environment.drift_K_h=2"},
-                  plan::kOtherKind});
-  runs.push_back({"warm",
-                  "the sweeps in a room that is 2 K warmer",
-                  {"procedure.phases=[\"calibration\"]", "procedure.sweep_points=25",
-                   fmt::format("environment.temperature_degC={}", warm_degC)},
-                  plan::kOtherKind});
+  for (const std::vector<NextRun>& more : {OfTheCircle(own), OfTheSweeps(own), InAnotherRoom(scenario, own)})
+    runs.insert(runs.end(), more.begin(), more.end());
   return runs;
 }
 

@@ -50,6 +50,7 @@ struct Product {
 struct Family {
   Kind kind = Kind::kNamed;
   std::string effect, where;  // unknown: name of the shape and what it shows on
+  std::string same_as;        // unknown: the effect that has just this shape where it shows on the same; empty: none
   std::string group;          // families of one group share one prior mass: the effect, or the sort of unknown
   double prior_weight = 1.0;  // within the group
   /// Share of what looks exactly so that is this cause, and nothing that no catalogue of ours lists: less than

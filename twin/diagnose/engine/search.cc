@@ -100,10 +100,28 @@ bool IsThere(const Problem& problem, const Deflation& others, const Projected& d
   return with - without > tuning::kHeadline * tuning::kHeadline * noise;
 }
 
+/// A shape without a name that a cause of the catalogue has exactly is no better than that cause but by chance: by the
+/// grids that the two are sought on. It is as much less likely than the cause as what looks so and is not listed.
+void HoldBehindTheSame(const std::vector<Family>& families, Eigen::VectorXd& logs) {
+  const double behind = std::log((1.0 - tuning::kListed) / tuning::kListed);
+  for (int k = 0; k < std::ssize(families); ++k) {
+    const Family& unnamed = families[static_cast<std::size_t>(k)];
+    if (unnamed.same_as.empty()) continue;
+    double most = kNever;
+    for (int other = 0; other < std::ssize(families); ++other) {
+      const Family& family = families[static_cast<std::size_t>(other)];
+      if (family.kind == Kind::kNamed && family.effect == unnamed.same_as && family.where == unnamed.where)
+        most = std::max(most, logs[other]);
+    }
+    if (most > kNever) logs[k] = std::min(logs[k], most + behind);
+  }
+}
+
 /// log of the posterior of each family and, last, of nothing.
 Eigen::VectorXd LogPosterior(const Problem& problem, const Evidence& evidence) {
   Eigen::VectorXd logs(evidence.log_bayes.rows() + 1);
   logs << evidence.log_bayes.col(0) + problem.log_priors, std::log(tuning::kPriorNone);
+  HoldBehindTheSame(problem.scanner.Families(), logs);
   logs.array() -= LogSum(logs);
   return logs;
 }
@@ -147,11 +165,11 @@ Term TakeBest(const Problem& problem, const Deflation& others, Evidence& evidenc
     log_bayes = as_scanned[term.family] = kNever;
     term.statistic = statistic();
   }
+  if (of_unknown_size.empty()) return term;
   // Beside another name it is a rival: that its size and its shape stand for each other does not tell the two apart.
   const bool is_named = problem.scanner.Families()[static_cast<std::size_t>(term.family)].kind == Kind::kNamed;
-  if (of_unknown_size.empty() || !is_named) return term;
   for (const auto& [family, log_bayes] : of_unknown_size) evidence.log_bayes(family, 0) = log_bayes;
-  term.log_posterior = LogPosterior(problem, evidence);
+  (is_named ? term.log_posterior : term.log_with_unsized) = LogPosterior(problem, evidence);
   return term;
 }
 

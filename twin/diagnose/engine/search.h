@@ -14,6 +14,9 @@ struct Term {
   Eigen::VectorXd shape;          // refined; empty without shapes
   Eigen::MatrixXd columns;        // signature at that shape: rows x amplitudes, not whitened
   Eigen::VectorXd log_posterior;  // of every family in this place, the others accepted; last: none
+  /// The same with the named families whose size is not known, for it and their shape stand for each other: they come
+  /// behind what has no name. Empty: none does.
+  Eigen::VectorXd log_with_unsized = {};
   double statistic = 0.0;         // alarm statistic in this place, the others accepted
   double explained = 0.0;         // of the whitened power, beyond what the other terms explain
   Eigen::VectorXd amplitudes;     // fitted together with those of the other terms, SI

@@ -70,7 +70,10 @@ Family& Collector::New(const std::string& sort, const std::string& where, const 
   family.kind = Kind::kUnknown;
   family.effect = family.group = sort;
   family.where = where;
-  family.prior_weight = design_->named.contains(sort) ? tuning::kSameShape : 1.0;
+  if (const auto named = design_->named.find(sort); named != design_->named.end()) {
+    family.prior_weight = tuning::kSameShape;
+    family.same_as = named->second;
+  }
   const bool is_mixed = !design_->units.empty();
   if (is_mixed && channel < 0) {
     family.describe = [on, words](int g, const Eigen::VectorXd&) { return fmt::format("{}, on {}", words(g), on); };

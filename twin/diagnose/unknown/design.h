@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -56,7 +56,7 @@ struct Design {
   double plausible = 0.0;          // rms of a structure nobody thought of, SI, or times `scale`
   double plausible_share = 0.0;    // the same of what is shown
   bool may_be_touched = false;     // something may act for a while and go away again
-  std::set<std::string> named;     // sorts that a cause of the catalogue has exactly
+  std::map<std::string, std::string> named;  // sorts that the catalogue has exactly; the effect, if it is just one, by place
   ToRows rows;
 
   double ScaleOf(Eigen::Index channel) const { return scale.size() > 0 ? scale[channel] : 1.0; }

@@ -45,7 +45,7 @@ std::vector<Family> UnknownFamilies(const EncoderRun& encoder, const TimeSeries&
   design.to_SI = encoder.run.to_SI;
   design.plausible = plausible_rad;
   design.may_be_touched = true;
-  design.named = {"harmonic", "direction offset", "transition", "step", "trend"};
+  design.named = {{"harmonic", ""}, {"direction offset", ""}, {"transition", ""}, {"step", "slip"}, {"trend", ""}};
   std::vector<Family> families = unknown::Families(design);
   std::ranges::move(GrowingSpeeds(c, design), std::back_inserter(families));
   std::ranges::move(LostCountFamilies(c, design), std::back_inserter(families));

@@ -43,8 +43,8 @@ std::vector<Family> UnknownFamilies(const HobRun& hob, const Common& common, dou
   design.unit = hob.run.unit;
   design.to_SI = hob.run.to_SI;
   design.plausible = plausible_rad;
-  design.named = {"ring harmonic", "hob harmonic", "direction offset", "transition", "speed", "trend",
-                  "step",          "tone"};
+  design.named = {{"ring harmonic", ""}, {"hob harmonic", ""}, {"direction offset", ""}, {"transition", ""},
+                  {"speed", ""},         {"trend", ""},        {"step", "slip"},         {"tone", "tone"}};
   design.rows = MeansOf(common.context);
   return unknown::Families(design);
 }

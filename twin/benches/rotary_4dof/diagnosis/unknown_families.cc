@@ -69,7 +69,7 @@ std::vector<Family> UnknownFamilies(const RotaryRun& rotary, double reference_de
   design.to_SI = rotary.run.to_SI;
   design.plausible = kPlausible_m;
   design.plausible_share = kPlausibleShare;
-  design.named = {"tone", "step", "direction offset", "trend", "restart", "temperature"};
+  design.named = {{"tone", "tone"}, {"step", "slip"}, {"direction offset", ""}, {"trend", ""}, {"restart", ""}, {"temperature", ""}};
   return unknown::Families(design);
 }
 

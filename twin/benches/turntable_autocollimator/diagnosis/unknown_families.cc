@@ -54,7 +54,8 @@ std::vector<Family> UnknownFamilies(const TurntableRun& turntable, const TimeSer
   design.to_SI = turntable.run.to_SI;
   design.plausible = kPlausible_rad;
   design.plausible_share = kPlausibleShare;
-  design.named = {"direction offset", "trend", "tone", "step", "linear map", "reading fringes", "restart"};
+  design.named = {{"direction offset", ""}, {"trend", ""},   {"tone", "tone"},  {"step", "slip"},
+                  {"linear map", ""},       {"restart", ""}, {"reading fringes", "autocollimator_periodic"}};
   return unknown::Families(design);
 }
 
