@@ -70,5 +70,44 @@ TEST(LessLikely, IsAsLargeAsItWouldBeAlone) {
   EXPECT_DOUBLE_EQ(each[1].hypothesis.causes.front().parameters.at("time_constant"), 300.0);
 }
 
+diagnose::ParameterEstimate Order(double order) {
+  return {"order", "1", 1.0, order, 0.0, 1.0, 1e5};
+}
+
+// What was large was taken out first: alone, its rival would be something that the rest of the readings suggests.
+TEST(Rival, OfALargeCauseBeginsWithTheOrderThatWasFitted) {
+  diagnose::DiagnosisRun found;
+  found.diagnosis.verdict = diagnose::Verdict::kNamed;
+  Cause periodic = Named("periodic", 0.5), fault = Named("reference_fault", 0.5);
+  periodic.where = fault.where = "";
+  periodic.parameters = {Order(4.0)};
+  fault.indistinguishable_from = {{"periodic", ""}};
+  periodic.indistinguishable_from = {{"reference_fault", ""}};
+  found.diagnosis.causes = {periodic, fault};
+  Cause alone = fault;
+  alone.parameters = {Order(19.0)};
+  found.suspects = {alone};
+  Scenario scenario;
+  scenario.bench = kEncoderBench;
+  const std::vector<Weighed> open = LeftOpen(found, scenario);
+  ASSERT_EQ(open.size(), 2u);
+  for (const Weighed& one : open) EXPECT_EQ(one.hypothesis.causes.front().parameters.at("order"), 4.0) << one.hypothesis.Name();
+}
+
+// A tilt with a lag: size and lag stand for each other, and the answer is "no name".
+TEST(Unsized, StaysOpenBesideWhatHasNoName) {
+  diagnose::DiagnosisRun found;
+  found.diagnosis.verdict = diagnose::Verdict::kUnknown;
+  found.diagnosis.unknown.probability = 0.9;
+  EXPECT_DOUBLE_EQ(UnlistedBy(found), 0.9);
+  found.unsized = {Named("mount_creep", 0.7)};
+  EXPECT_NEAR(UnlistedBy(found), 0.9 * 0.3, 1e-12);
+  const std::vector<Weighed> open = LeftOpen(found, Turntable());
+  ASSERT_EQ(open.size(), 2u);
+  EXPECT_EQ(open[0].hypothesis.Name(), "mount_creep y");
+  EXPECT_TRUE(open[1].hypothesis.IsNothing());
+  EXPECT_NEAR(open[0].probability / open[1].probability, 0.7 / 0.1, 1e-9);
+}
+
 }  // namespace
 }  // namespace twinbench::investigate

@@ -89,6 +89,27 @@ TEST(Investigate, OneThatFindsNothingSaysSo) {
   EXPECT_EQ(found.steps.size(), 7u);  // (5 / 2)^2: of what two standard deviations in one run are
 }
 
+// Noise hides it in a run, and not in one with longer readings.
+TEST(Investigate, MakesReadingsLongerWhereNothingIsFound) {
+  const Judged judged = Hidden(hidden::Design::kRotary, "tone", "yaw", 2.8);
+  const std::vector<Step>& steps = judged.investigation.steps;
+  EXPECT_EQ(steps.front().believed.front().first, "nothing");
+  ASSERT_GT(steps.size(), 1u);
+  EXPECT_EQ(steps[1].run.name, "longer-readings") << steps[1].reason;
+  EXPECT_EQ(judged.investigation.belief.Best().fit.hypothesis.Name(), "tone yaw") << judged.answer;
+}
+
+// The same wave without a name is sought on fewer periods: that is no evidence for it.
+TEST(Investigate, NamesARippleOfAnyPeriod) {
+  const hidden::SignatureScale scale(hidden::Design::kTurntable, "");
+  InvestigationOptions options;
+  options.budget_min = 600.0;
+  const Judged judged =
+      InvestigateHidden({"autocollimator_periodic", "y", hidden::Design::kTurntable}, 28001, 15.2, scale, options);
+  EXPECT_EQ(judged.investigation.steps.front().believed.front().first, "autocollimator_periodic y") << judged.answer;
+  EXPECT_EQ(judged.result, Result::kRight) << judged.answer;
+}
+
 // Two set-ups of one pass leave nothing to find causes by. One that does comes next; both count.
 TEST(Investigate, MakesARunThatCanBeDiagnosedWhereTheFirstCannot) {
   Scenario believed = hidden::Believed(hidden::Design::kRotary);
