@@ -39,6 +39,8 @@ const std::vector<test::OwnKey>& Keys() {
         {"mirror.flatness_nm", {"mirror.flatness_nm=6000"}},
         {"mirror.radius_mm", {"mirror.radius_mm=300"}},
         {"autocollimator.noise_arcsec", {"autocollimator.noise_arcsec=2"}},
+        {"autocollimator.frames", {"autocollimator.frames=16"}},
+        {"autocollimator.frame_s", {"autocollimator.frame_s=2", "autocollimator.frames=5", "environment.drift_K_h=2", kWarm}},
         {"autocollimator.range_arcsec",
          {"autocollimator.range_arcsec=1000", "autocollimator.error_at_edge_arcsec=50"}},
         {"autocollimator.gain_error", {"autocollimator.gain_error=0.1"}},

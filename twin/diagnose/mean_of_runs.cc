@@ -46,17 +46,6 @@ void Average(const std::vector<const std::vector<Reading>*>& runs, std::size_t a
   }
 }
 
-/// Variance over all places of what rounding leaves in the mean of many readings, in squares of its step: 1/12 without
-/// noise. Its error at a place is a saw-tooth, whose waves the noise dims.
-/// @param noise  Standard deviation, in steps.
-double RepeatedByRounding(double noise) {
-  constexpr int kWaves = 100;
-  double sum = 0.0;
-  for (int k = 1; k <= kWaves; ++k)
-    sum += std::exp(-std::pow(2.0 * units::kPi * k * noise, 2)) / (2.0 * std::pow(units::kPi * k, 2));
-  return sum;
-}
-
 }  // namespace
 
 bool AreOfOnePlan(const std::vector<Reading>& a, const std::vector<Reading>& b) {
@@ -83,6 +72,14 @@ std::optional<std::vector<Reading>> MeanOfRuns(const std::vector<const std::vect
 int RunsIn(const std::vector<Reading>& readings) {
   const double runs = readings.empty() ? kNaN : kRuns(readings.front());
   return std::isfinite(runs) ? static_cast<int>(runs) : 1;
+}
+
+double RepeatedByRounding(double noise) {
+  constexpr int kWaves = 100;
+  double sum = 0.0;
+  for (int k = 1; k <= kWaves; ++k)
+    sum += std::exp(-std::pow(2.0 * units::kPi * k * noise, 2)) / (2.0 * std::pow(units::kPi * k, 2));
+  return sum;
 }
 
 void ScaleToMean(const std::vector<Reading>& used, LinearRun& run) {

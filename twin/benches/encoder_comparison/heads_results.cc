@@ -158,7 +158,7 @@ report::Evaluation EvaluateHeads(const Scenario& scenario, const std::vector<Rea
                                  Estimator estimator) {
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
   const SeveralHeads heads = Calibrated(scenario, readings, estimator);
-  const DeviceSettings& device = EncoderOf(scenario).device;
+  const DeviceSettings device = DeviceOfMeans(EncoderOf(scenario));
   report::Evaluation evaluation{
       ToJson(comparison), {}, heads.not_separated, Summary(comparison, CoarseUnit(device))};
   evaluation.results["estimator"] = EstimatorName(estimator);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/bench.h"
@@ -48,6 +49,17 @@ plan::ShiftDesign MountingsDesign(const EncoderProcedureSettings& p) {
   return design;
 }
 
+/// At every stop, as far as it is long enough: nobody repeats hours where seconds do.
+void AddLongerReadings(const EncoderProcedureSettings& p, std::vector<NextRun>& runs) {
+  constexpr int kTimes = 16;
+  const int most = static_cast<int>(p.stop_interval_s / p.read_s), count = std::min(kTimes * p.readings_per_stop, most);
+  if (p.kind != "stops" || count <= p.readings_per_stop) return;
+  runs.push_back({"longer-readings",
+                  fmt::format("the same stops, each the mean of {} readings", count),
+                  {fmt::format("encoder_procedure.readings_per_stop={}", count)},
+                  plan::kSameKind});
+}
+
 }  // namespace
 
 plan::ShiftDesign ShiftsOf(const Scenario& scenario) {
@@ -60,7 +72,7 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
   const EncoderProcedureSettings& p = EncoderOf(scenario).encoder_procedure;
   const double speed = p.speeds_rad_s.empty() ? 30.0 : p.speeds_rad_s.front() / units::deg;
   const std::string finer = fmt::format("encoder_procedure.stops_per_turn={}", 2 * p.stops + 1);
-  return {
+  std::vector<NextRun> runs = {
       {"at-rest", "stops at rest, forth and back", {kStops, kForthAndBack}, plan::kOtherKind},
       {"finer",
        "more than twice as many stops, no whole multiple, forth and back",
@@ -86,6 +98,8 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
        "the stops three times as long",
        {kStops, kForthAndBack, fmt::format("encoder_procedure.stop_interval_s={:.6g}", 3.0 * p.stop_interval_s)},
        plan::kSameKind}};
+  AddLongerReadings(p, runs);
+  return runs;
 }
 
 }  // namespace twinbench::benches::encoder

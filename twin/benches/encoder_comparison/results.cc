@@ -169,7 +169,7 @@ report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>
   if (separate::encoder::HaveStamps(readings)) return EvaluateCoast(scenario, readings, estimator);
   const measure::AngleComparison comparison = measure::CompareAngles(readings);
   const DeviceError device = separate::encoder::SeparateDevice(readings);
-  const DeviceSettings& device_settings = EncoderOf(scenario).device;
+  const DeviceSettings device_settings = DeviceOfMeans(EncoderOf(scenario));
   report::Evaluation evaluation{
       ToJson(comparison), {}, device.not_separated, Summary(comparison, CoarseUnit(device_settings))};
   evaluation.summary += SummaryOf(device, FineUnit(device_settings));

@@ -41,6 +41,15 @@ NextRun OffCentre(const TurntableProcedureSettings& p) {
           plan::kOtherKind};
 }
 
+/// Nobody repeats hours where seconds do.
+NextRun LongerReadings(const CollimatorSettings& c) {
+  constexpr int kTimes = 16;
+  return {"longer-readings",
+          fmt::format("the same stops, each reading the mean of {} frames", kTimes * c.frames),
+          {fmt::format("autocollimator.frames={}", kTimes * c.frames)},
+          plan::kSameKind};
+}
+
 /// Circles with a polygon: there is nothing to sweep it against, and no teeth to shift.
 std::vector<NextRun> PolygonRuns(const Scenario& scenario) {
   const TurntableProcedureSettings& p = TurntableOf(scenario).turntable_procedure;
@@ -74,7 +83,8 @@ std::vector<NextRun> PolygonRuns(const Scenario& scenario) {
        "the circle in a room that is 2 K warmer",
        {fmt::format("environment.temperature_degC={}", scenario.environment.temperature_degC + 2.0)},
        plan::kOtherKind},
-      {"warming", "the circle while the room warms by 2 K an hour", {"environment.drift_K_h=2"}, plan::kOtherKind}};
+      {"warming", "the circle while the room warms by 2 K an hour", {"environment.drift_K_h=2"}, plan::kOtherKind},
+      LongerReadings(TurntableOf(scenario).collimator)};
 }
 
 }  // namespace
@@ -124,7 +134,8 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
           {"warming",
            "the circle while the room warms by 2 K an hour",
            {kCirclePhase, "environment.drift_K_h=2"},
-           plan::kOtherKind}};
+           plan::kOtherKind},
+          LongerReadings(own.collimator)};
 }
 
 }  // namespace twinbench::benches::turntable

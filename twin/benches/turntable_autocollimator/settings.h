@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "twin/core/scenario.h"
+#include "twin/core/time.h"
 
 /// What a scenario of the bench turntable_autocollimator says beside the errors of its two tables. Defaults: the
 /// instruments of Guo et al. (2014); what that paper does not state is assumed.
@@ -48,6 +50,11 @@ struct CollimatorSettings {  // [autocollimator], beside its noise, range and ga
   double x_per_kelvin_rad = 0.0;        // zero, against environment.reference_degC
   double y_per_kelvin_rad = 0.0;
   double deadband_rad = 0.05 * units::arcsec;  // of the servo that nulls it: x up to this counts as zero
+  int frames = 1;         // of the camera, whose mean is one reading: its noise is less by their root
+  double frame_s = 0.05;  // from one to the next
+
+  /// From the first frame of a reading to its middle, which its time is.
+  Duration HalfReading() const { return FromSeconds(0.5 * (frames - 1) * frame_s); }
 };
 
 /// Lists with one entry a set-up; one entry alone holds for all of them.
@@ -96,6 +103,8 @@ struct TurntableSettings {
   TurntableEncoderSettings encoder;
   TurntableProcedureSettings turntable_procedure;
 
+  /// Of one reading.
+  double ReadingNoise_rad() const { return autocollimator.noise_rad / std::sqrt(collimator.frames); }
   bool HasPolygon() const { return polygon.faces > 0; }
   /// Places, a turn, to which what stands on the turntable turns its mirror: teeth or faces.
   int Seats() const { return HasPolygon() ? polygon.faces : multitooth.teeth; }

@@ -86,18 +86,23 @@ Eigen::VectorXd RelativeNoise(const std::vector<Reading>& used) {
   return (usual / Eigen::Map<const Eigen::ArrayXd>(samples.data(), std::ssize(samples))).sqrt();
 }
 
-/// Readings that are rounded err by no less than that, and all by the arithmetic of many turns.
-void SetNoise(LinearRun& run, const DeviceSettings& device, const std::vector<Reading>& used) {
+/// Readings that are rounded err by no less than that, and all by the arithmetic of many turns. Where one is the mean of
+/// several, only what rounding repeats in all of them is left of it.
+void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Reading>& used) {
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;
-  run.rounding = std::max(device.resolution_rad, RunsIn(used) * CommonStep(shown_rad));
+  const double step_rad = std::max(bench.device.resolution_rad, RunsIn(used) * CommonStep(shown_rad));
   constexpr double kArithmetic_rad = 1e-12;  // where nothing else says what the noise is
-  const double rounded_rad = run.rounding / std::sqrt(12.0);
-  run.sigma_stated = device.noise_known && device.noise_rad > 0.0;
+  run.sigma_stated = bench.device.noise_known && bench.device.noise_rad > 0.0;
   const Eigen::VectorXd relative = RelativeNoise(used);
+  const double count = bench.encoder_procedure.readings_per_stop;
   const double noise_rad = run.sigma_stated
-                               ? device.noise_rad
+                               ? DeviceOfMeans(bench).noise_rad
                                : std::max(EstimateNoise_rad(run.schedule, run.residual, relative), kArithmetic_rad);
+  const double of_one = std::sqrt(count) * noise_rad / step_rad, all = step_rad * step_rad / 12.0;
+  const double repeated = count > 1.0 && step_rad > 0.0 ? step_rad * step_rad * RepeatedByRounding(of_one) : all;
+  run.rounding = std::sqrt(12.0 * repeated);
+  const double rounded_rad = std::sqrt(repeated + (all - repeated) / count);
   const auto and_rounding = [=](double own_rad) { return std::hypot(own_rad, rounded_rad); };
   run.sigma = relative * noise_rad;
   run.sigma = run.sigma_stated ? run.sigma.unaryExpr(and_rounding).eval() : run.sigma.cwiseMax(rounded_rad).eval();
@@ -157,7 +162,7 @@ EncoderRun BuildRun(const std::vector<Reading>& readings, const Scenario& scenar
   run.residual -= SetUpMeans(encoder.setups, run.residual);
   encoder.context =
       ContextOf(run.schedule, run.schedule.reference_rad + encoder.offset_rad, EncoderOf(scenario).device);
-  SetNoise(run, EncoderOf(scenario).device, used);
+  SetNoise(run, EncoderOf(scenario), used);
   return encoder;
 }
 

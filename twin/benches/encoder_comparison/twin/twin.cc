@@ -23,19 +23,32 @@ AngleMoment MomentOf(const Reading& reading, double run_up_rad) {
           reading.reference_rad, velocity_rad_s, reading.direction * run_up_rad};
 }
 
-double Noise(const Scenario& scenario, int reading) {
+double Quantised(double angle_rad, double step_rad) {
+  return step_rad > 0.0 ? step_rad * std::round(angle_rad / step_rad) : angle_rad;
+}
+
+/// Mean of what the device shows at a stop, each time with other noise and in its own steps.
+double ReadDevice_rad(const Scenario& scenario, int reading, double angle_rad) {
+  const DeviceSettings& device = EncoderOf(scenario).device;
+  const auto count = static_cast<std::uint64_t>(EncoderOf(scenario).encoder_procedure.readings_per_stop);
   Stream stream(scenario.RunSeed(), "device.noise");
-  stream.Seek(static_cast<std::uint64_t>(reading));
-  return EncoderOf(scenario).device.noise_rad * stream.Normal();
+  stream.Seek(static_cast<std::uint64_t>(reading) * count);
+  double sum_rad = 0.0;
+  for (std::uint64_t k = 0; k < count; ++k)
+    sum_rad += Quantised(angle_rad + device.noise_rad * stream.Normal(), device.resolution_rad);
+  return sum_rad / static_cast<double>(count);
 }
 
 /// Of what the reference shows at one instant, whatever the count of heads that are read then.
 double ReferenceNoise(const Scenario& scenario, int reading) {
   const EncoderProcedureSettings& procedure = EncoderOf(scenario).encoder_procedure;
   if (procedure.reference_noise_rad == 0.0) return 0.0;
+  const auto count = static_cast<std::uint64_t>(procedure.readings_per_stop);
   Stream stream(scenario.RunSeed(), "reference.noise");
-  stream.Seek(static_cast<std::uint64_t>(reading) / procedure.heads_rad.size());
-  return procedure.reference_noise_rad * stream.Normal();
+  stream.Seek(static_cast<std::uint64_t>(reading) / procedure.heads_rad.size() * count);
+  double noise_rad = 0.0;
+  for (std::uint64_t k = 0; k < count; ++k) noise_rad += stream.Normal();
+  return procedure.reference_noise_rad * noise_rad / static_cast<double>(count);
 }
 
 /// A function of the angle at every degree, its mean taken out.
@@ -49,10 +62,6 @@ nlohmann::json CurveOf(Error error_rad) {
   }
   values -= values.mean();
   return {{"position_deg", positions_deg}, {"ez_arcsec", values}};
-}
-
-double Quantised(double angle_rad, double step_rad) {
-  return step_rad > 0.0 ? step_rad * std::round(angle_rad / step_rad) : angle_rad;
 }
 
 }  // namespace
@@ -158,8 +167,7 @@ void EncoderTwin::Take(Reading& reading) {
   reading.measured_rad = Shown_rad(moment);
   if (scenario_.noise_free) return;
   reading.reference_rad += ReferenceNoise(scenario_, reading.reading);
-  reading.measured_rad = Quantised(reading.measured_rad + Noise(scenario_, reading.reading),
-                                   EncoderOf(scenario_).device.resolution_rad);
+  reading.measured_rad = ReadDevice_rad(scenario_, reading.reading, reading.measured_rad);
 }
 
 nlohmann::json EncoderTwin::Truth() const {

@@ -139,7 +139,7 @@ Scenario BeforeAdding(Scenario scenario) {
 /// Standard uncertainty of each row: everything that is drawn anew at a stop, as the twin shows it.
 Eigen::VectorXd Sigma_rad(const Followed& twin, const Eigen::MatrixXd& body_rad, const Scenario& scenario) {
   constexpr std::array<const char*, kComponents> kNames = {"ex", "ey", "ez", "dx", "dy", "dz"};
-  const double noise_rad = TurntableOf(scenario).autocollimator.noise_rad;
+  const double noise_rad = TurntableOf(scenario).ReadingNoise_rad();
   Eigen::MatrixXd variance = Eigen::MatrixXd::Constant(body_rad.rows(), kAxes, noise_rad * noise_rad);
   const auto add = [&](const std::string& point, double sd) {
     if (sd > 0.0) variance += (sd * OrZero(twin.Slope(point, AtPoints(body_rad)))).cwiseAbs2();

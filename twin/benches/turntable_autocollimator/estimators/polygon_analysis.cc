@@ -14,7 +14,7 @@ std::vector<StatedScatter> StatedOf(const TurntableSettings& own) {
   constexpr std::size_t kEz = static_cast<std::size_t>(Component::kEz);
   std::vector<StatedScatter> stated = {{"encoder.noise_arcsec", own.encoder.noise_rad},
                                        {"encoder.step_arcsec", own.encoder.step_rad / std::sqrt(12.0)},
-                                       {"autocollimator.noise_arcsec", own.autocollimator.noise_rad},
+                                       {"autocollimator.noise_arcsec", own.ReadingNoise_rad()},
                                        {"turntable.repeatability.ez_arcsec", own.turntable.repeatability_sd[kEz]}};
   std::erase_if(stated, [](const StatedScatter& s) { return s.u_rad == 0.0; });
   return stated;

@@ -47,7 +47,7 @@ class CourseMaker {
     if (remounted) Mount(r);
     if (stop.known) GoTo(r, remounted || IsNewPass(record_[i - 1], r));
     const double dwell_s = std::isfinite(r.dwell_s) ? r.dwell_s : 0.0;
-    queue_.RunUntil(queue_.Now() + FromSeconds(dwell_s));
+    queue_.RunUntil(queue_.Now() + FromSeconds(dwell_s) + TurntableOf(actual_).collimator.HalfReading());
     if (remounted) mounted_ = r.time - (queue_.Now() - mounted_here_);
     stop.moment = {r.time,  mounted_,  r.time - (queue_.Now() - axes_.LastArrival()),
                    r.setup, r.reading, axes_.Direction(Axis::kTarget)};

@@ -54,6 +54,7 @@ struct TurntableTwin::Impl : Clock, MachineController, InstrumentSet, MachineFix
   // Instruments
   Reading Read() override {
     Reading sample = Sample(world->Look());
+    sample.time = world->ReadAt();
     sample.temperature_degC = world->environment().Measure_degC(Now());
     return sample;
   }

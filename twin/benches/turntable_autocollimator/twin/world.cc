@@ -80,17 +80,26 @@ void TurntableWorld::SeatFace() {
   if (TurntableOf(actual()).HasPolygon()) path_.stand().SeatFace(axes_.Look().target_rad);
 }
 
-AutocollimatorReading TurntableWorld::Shown(Stream& noise) {
+AutocollimatorReading TurntableWorld::Shown(Stream& noise, double noise_rad) {
   SeatFace();
   const TurntableMoment moment = Moment(next_reading_);
   return path_.Look(moment, axes_.Look(), environment_.AboveReference_K(moment.now),
-                    Noise_rad(noise, TurntableOf(actual()).autocollimator.noise_rad));
+                    Noise_rad(noise, noise_rad));
 }
 
+/// The mean of its frames is what is seen in the middle of them.
 AutocollimatorReading TurntableWorld::Look() {
-  const AutocollimatorReading shown = Shown(noise_);
+  const Duration half = TurntableOf(actual()).collimator.HalfReading();
+  queue_.RunUntil(queue_.Now() + half);
+  read_at_ = queue_.Now();
+  const AutocollimatorReading shown = Shown(noise_, TurntableOf(actual()).ReadingNoise_rad());
+  queue_.RunUntil(queue_.Now() + half);
   ++next_reading_;
   return shown;
+}
+
+AutocollimatorReading TurntableWorld::LookOnTheWay() {
+  return Shown(null_noise_, TurntableOf(actual()).autocollimator.noise_rad);
 }
 
 }  // namespace twinbench::sim

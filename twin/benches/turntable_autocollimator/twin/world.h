@@ -25,16 +25,17 @@ class TurntableWorld {
   /// Lets the time pass that it takes.
   void IndexTo(int tooth);
   void Mount(int setup);
-  /// What the autocollimator shows for the next reading.
+  /// What the autocollimator shows for the next reading; lets the time pass that its frames take.
   AutocollimatorReading Look();
-  /// What it shows on the way there.
-  AutocollimatorReading LookOnTheWay() { return Shown(null_noise_); }
+  Time ReadAt() const { return read_at_; }
+  /// What one frame shows on the way there.
+  AutocollimatorReading LookOnTheWay();
 
  private:
   TurntableMoment Moment(int reading);
   void SeatFace();
   double EncoderNoise_rad();
-  AutocollimatorReading Shown(Stream& noise);
+  AutocollimatorReading Shown(Stream& noise, double noise_rad);
 
   EventQueue queue_;
   MirrorPath path_;
@@ -43,7 +44,7 @@ class TurntableWorld {
   Stream noise_, null_noise_, encoder_noise_;
   double encoder_noise_rad_ = 0.0;  // of the next reading
   int encoder_noises_ = 0;          // drawn so far
-  Time mounted_{};
+  Time mounted_{}, read_at_{};
   int setup_ = 0;
   int next_reading_ = 0;
 };
