@@ -86,7 +86,7 @@ TEST(Investigate, OneThatFindsNothingSaysSo) {
   options.budget_min = 600.0;
   const Investigation found = Investigate(believed, options, means, laboratory);
   EXPECT_EQ(found.told, Told::kNothing);
-  EXPECT_EQ(found.steps.size(), 7u);  // (5 / 2)^2: of what two standard deviations in one run are
+  EXPECT_EQ(found.steps.size(), 2u);  // one of 16 readings a stop is more than (5 / 2)^2 like the first
 }
 
 // Noise hides it in a run, and not in one with longer readings.

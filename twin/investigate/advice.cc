@@ -12,6 +12,7 @@
 #include "twin/core/errors.h"
 #include "twin/core/units.h"
 #include "twin/investigate/expected_information.h"
+#include "twin/investigate/free_sizes.h"
 
 namespace twinbench::investigate {
 namespace {

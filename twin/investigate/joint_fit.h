@@ -28,8 +28,4 @@ JointFit FitJointly(const Hypothesis& hypothesis, std::span<const TakenRun> runs
 /// Of what the hypothesis leaves of all these runs with the sizes that it has.
 double Chi2Of(const Hypothesis& hypothesis, std::span<const TakenRun> runs, const Means& means);
 
-/// One run's change of `LeftBy` for one u of each size: rows x sizes.
-Eigen::MatrixXd SlopesOf(const Hypothesis& hypothesis, const Eigen::VectorXd& left, const TakenRun& run,
-                         const Means& means);
-
 }  // namespace twinbench::investigate
