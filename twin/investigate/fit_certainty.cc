@@ -69,35 +69,52 @@ struct Summed {
   double u = 0.0;          // root mean square of the distance from its fit, in units of u
 };
 
+/// Distances from a bound at which the likelihood of a size is looked at, ascending: ever finer towards the bound, for
+/// nobody knows the scale of what begins there, and about the fit, which may be a peak between two of them.
+/// @param off   Of the fit from the bound, in units of u.
+/// @param wide  The fit's standard uncertainty by its slope; 0: it has none.
+std::vector<double> Distances(double farthest, double off, double wide) {
+  constexpr int kHalvings = 7;
+  std::vector<double> distances = {0.0};
+  for (int halving = kHalvings; halving >= 0; --halving) distances.push_back(std::ldexp(farthest, -halving));
+  for (const double by : {-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0}) {
+    const double distance = off + by * wide;
+    if (distance > 0.0 && distance < farthest) distances.push_back(distance);
+  }
+  std::ranges::sort(distances);
+  const auto repeated = std::ranges::unique(distances);
+  distances.erase(repeated.begin(), repeated.end());
+  return distances;
+}
+
 /// Slopes say little of a size near a bound: a gap that is crossed at once looks the same up to the distance of two
 /// readings, and like nothing beyond. So its likelihood is summed over distances, the other sizes following it by
 /// their slopes, against half a normal distribution of its breadth.
-Summed SummedFrom(const Hypothesis& at, const Size& size, double breadth, double chi2,
-                     const std::function<double(const Hypothesis&)>& chi2_of, double rows) {
-  constexpr int kHalvings = 7;
+/// @param wide  As Distances has it.
+Summed SummedFrom(const Hypothesis& at, const Size& size, double breadth, double wide, double chi2,
+                  const std::function<double(const Hypothesis&)>& chi2_of, double rows) {
   constexpr double kFarthest = 3.0, kGone = 12.0;  // of breadth; of log likelihood
   const double bound = BoundOf(at, size), room = (size.upper - size.lower) / size.u;
   const double from = (bound - ValueOf(at, size)) / size.u, sign = bound == size.lower ? 1.0 : -1.0;
-  const double best = LogLikelihood(chi2, rows);
+  const double off = std::abs(from), best = LogLikelihood(chi2, rows);
   const auto likelihood_at = [&](double distance) {
     const Hypothesis moved = Moved(at, {size}, Eigen::VectorXd::Constant(1, from + sign * distance));
     return std::exp(std::min(0.0, LogLikelihood(chi2_of(moved), rows) - best));
   };
-  const auto squared_off = [&](double distance) { return std::pow(from + sign * distance, 2); };
-  const double farthest = std::min(room, kFarthest * breadth);
+  const std::vector<double> distances = Distances(std::min(room, kFarthest * breadth), off, wide);
   double before = 0.0, mass = 0.0, thought = 0.0, squares = 0.0, last = likelihood_at(0.0);
-  for (int halving = kHalvings; halving >= 0; --halving) {
-    const double distance = std::ldexp(farthest, -halving);
-    const double likelihood = distance > std::abs(from) && last < std::exp(-kGone) ? 0.0 : likelihood_at(distance);
+  for (std::size_t k = 1; k < distances.size(); ++k) {
+    const double distance = distances[k];
+    const double likelihood = distance > off && last < std::exp(-kGone) ? 0.0 : likelihood_at(distance);
     const double prior_before = std::exp(-0.5 * std::pow(before / breadth, 2)),
                  prior = std::exp(-0.5 * std::pow(distance / breadth, 2)), step = 0.5 * (distance - before);
     thought += step * (prior_before + prior);
     mass += step * (prior_before * last + prior * likelihood);
-    squares += step * (squared_off(before) * prior_before * last + squared_off(distance) * prior * likelihood);
+    squares += step * (std::pow(before - off, 2) * prior_before * last + std::pow(distance - off, 2) * prior * likelihood);
     before = distance;
     last = likelihood;
   }
-  mass = std::max(mass, thought * std::exp(-kGone));
+  if (!(mass > 0.0)) return {-kGone, 0.0};
   return {std::log(mass / thought), std::sqrt(squares / mass)};
 }
 
@@ -145,6 +162,7 @@ void StateCertainty(const std::vector<Size>& sizes, Normal normal, std::span<con
                     const Means& means, JointFit& fit) {
   const Eigen::VectorXd breadth = Breadth(fit.hypothesis, sizes);
   const std::vector<Eigen::Index> near = NearBounds(fit.hypothesis, sizes, CovarianceOf(normal.matrix, breadth));
+  const Eigen::VectorXd curvature = normal.matrix.diagonal();
   Strike(near, normal);
   Eigen::MatrixXd cov = CovarianceOf(normal.matrix, breadth);
   fit.log_evidence = LogLikelihood(fit.chi2, Rows(runs)) + LogShareLeft(normal.matrix, breadth);
@@ -153,11 +171,12 @@ void StateCertainty(const std::vector<Size>& sizes, Normal normal, std::span<con
   };
   const auto take_in = [&](Eigen::Index k, const Summed& summed) {
     fit.log_evidence += summed.log_share;
-    cov(k, k) = summed.u * summed.u;
+    if (summed.u > 0.0) cov(k, k) = summed.u * summed.u;
   };
   for (const Eigen::Index k : near) {
     const Size& size = sizes[static_cast<std::size_t>(k)];
-    take_in(k, SummedFrom(fit.hypothesis, size, breadth[k], fit.chi2, chi2_of, Rows(runs)));
+    const double wide = curvature[k] > 0.0 ? 1.0 / std::sqrt(curvature[k]) : 0.0;
+    take_in(k, SummedFrom(fit.hypothesis, size, breadth[k], wide, fit.chi2, chi2_of, Rows(runs)));
   }
   for (std::size_t k = 0; k < sizes.size(); ++k) {
     if (sizes[k].name != kHappenedAt) continue;

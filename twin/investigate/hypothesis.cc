@@ -75,20 +75,28 @@ void ShareParameters(const std::vector<diagnose::ParameterEstimate>& from, std::
   }
 }
 
+/// Its fit alone shows most of what the other's does.
+bool IsAsStrong(const Cause& alone, const Cause& other) {
+  constexpr double kMost = 0.7;
+  return alone.rho > kMost * other.rho;
+}
+
 /// What readings leave open.
 struct Finding {
   const diagnose::DiagnosisRun& found;
   const std::string& bench;
   int run;  // that was diagnosed
 
-  /// Causes that the diagnosis did not fit are as large as they would be alone. Beside what was taken out first, for it is
-  /// large, that says little: what they have in common with the one that was fitted for them - an order - is as there.
+  /// Causes that the diagnosis did not fit are as large as they would be alone. Where that says little, for most of it was
+  /// taken out first as another one's, what they have in common with that one - an order - is as there.
   Supposed Suppose(Cause cause) const {
     if (cause.parameters.empty()) {
-      if (const Cause* alone = FindIn(found.suspects, cause.effect, cause.where)) cause.parameters = alone->parameters;
+      const Cause* alone = FindIn(found.suspects, cause.effect, cause.where);
+      if (alone) cause.parameters = alone->parameters;
       for (const diagnose::Rival& rival : cause.indistinguishable_from) {
         const Cause* fitted = FindIn(found.diagnosis.causes, rival.effect, rival.where);
-        if (fitted && !fitted->parameters.empty()) ShareParameters(fitted->parameters, cause.parameters);
+        if (!fitted || fitted->parameters.empty() || (alone && IsAsStrong(*alone, *fitted))) continue;
+        ShareParameters(fitted->parameters, cause.parameters);
       }
     }
     Supposed supposed{Sized(cause, bench)};

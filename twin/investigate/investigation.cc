@@ -72,7 +72,7 @@ class Loop {
   bool AreCausesTold() const { return ToldBy(result_.belief, options_.conclusive) != Told::kTied; }
 
   bool IsDone() {
-    if (!WasAnyDiagnosed() || !AreCausesTold() || !result_.IsGoalMet() || MayBeFaint() || MayHappenAgain()) return false;
+    if (!WasAnyDiagnosed() || !AreCausesTold() || !result_.IsGoalMet() || MayBeFaint() || ShouldRepeat()) return false;
     result_.ended = Ended::kTold;
     return true;
   }
@@ -94,14 +94,23 @@ class Loop {
     });
   }
 
+  /// The first run showed nothing, and the last one brought the name up: chance, or another thing that looks like it there,
+  /// would not do so twice.
+  bool IsNewsOfOneRun() const {
+    const Hypothesis& best = result_.belief.Best().fit.hypothesis;
+    if (!best.IsNamed() || result_.steps.size() < 2) return false;
+    const auto came_first = [](const Step& step) { return step.believed.front().first; };
+    return came_first(result_.steps.front()) == Hypothesis{}.Name() && came_first(*(result_.steps.end() - 2)) != best.Name();
+  }
+
+  bool ShouldRepeat() const { return MayHappenAgain() || IsNewsOfOneRun(); }
+
   /// In runs of the plan that was diagnosed first; mostly the scenario's own.
   double WorthSoFar() const {
     double worth = 0.0;
     for (const TakenRun& run : runs_) worth += WorthOf(run, runs_.front());
     return worth;
   }
-
-  bool IsLikeFirst(const plan::NextRun& run) const { return run.sets == runs_.front().asked.sets; }
 
   double Faint() const { return options_.faint.value_or(options_.goal ? 0.0 : kUsuallyFaint); }
 
@@ -255,14 +264,15 @@ class Loop {
   }
 
   /// Where noise may hide what is looked for: what makes it less soonest. Where something may happen again: the first run
-  /// once more.
+  /// once more, or the one that brought it up.
   std::vector<Advice>::const_iterator LookingCloser(const std::vector<Advice>& advice) const {
     if (MayBeFaint()) {
       const auto most = std::ranges::max_element(advice, {}, [](const Advice& a) { return a.worth / a.minutes; });
       return most != advice.end() && most->worth > 0.0 ? most : advice.end();
     }
-    if (!AreCausesTold() || !MayHappenAgain()) return advice.end();
-    return std::ranges::find_if(advice, [this](const Advice& a) { return IsLikeFirst(a.run); });
+    if (!AreCausesTold() || !ShouldRepeat()) return advice.end();
+    const TakenRun& once_more = MayHappenAgain() ? runs_.front() : runs_.back();
+    return std::ranges::find_if(advice, [&once_more](const Advice& a) { return a.run.sets == once_more.asked.sets; });
   }
 
   bool End(Ended ended) {
@@ -303,6 +313,8 @@ class Loop {
     const std::string name = result_.belief.Best().fit.hypothesis.Name();
     if (AreCausesTold() && MayHappenAgain())
       return fmt::format("{} happened in the last run: whether it does so again", name);
+    if (AreCausesTold() && IsNewsOfOneRun())
+      return fmt::format("only the last run brought {} up: whether it does so again", name);
     if (IsOnlyUnlistedLeft())
       return fmt::format("nothing else in the catalogue explains it as {} does: the shortest run of a kind that was not "
                          "made yet, where what no catalogue lists would differ",

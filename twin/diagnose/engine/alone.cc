@@ -29,6 +29,7 @@ double Resolution(const Shape& shape, double value) {
 struct Fitted {
   Eigen::VectorXd shape, amplitudes;
   Eigen::MatrixXd cov;  // of the amplitudes, and of the shape after them
+  double rho = 0.0;     // length of the signature, in units of noise
 };
 
 Fitted FittedAt(int grid_point, const Family& family, const LinearRun& run, const NoiseModel& noise,
@@ -40,9 +41,12 @@ Fitted FittedAt(int grid_point, const Family& family, const LinearRun& run, cons
     scale[k] = kWidestPrior * family.amplitudes[static_cast<std::size_t>(k)].prior_sd;
   const Eigen::MatrixXd white = noise.Whiten(run, family.ColumnsAt(grid_point)) * scale.asDiagonal();
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(amplitudes, amplitudes);
-  const Eigen::LDLT<Eigen::MatrixXd> normal(white.transpose() * projector.Apply(white) + one);
-  Fitted fitted{family.ShapeAt(grid_point), scale.asDiagonal() * normal.solve(white.transpose() * projected),
-                Eigen::MatrixXd::Zero(amplitudes + shapes, amplitudes + shapes)};
+  const Eigen::MatrixXd gram = white.transpose() * projector.Apply(white);
+  const Eigen::LDLT<Eigen::MatrixXd> normal(gram + one);
+  const Eigen::VectorXd sizes = normal.solve(white.transpose() * projected);
+  Fitted fitted{family.ShapeAt(grid_point), scale.asDiagonal() * sizes,
+                Eigen::MatrixXd::Zero(amplitudes + shapes, amplitudes + shapes),
+                std::sqrt(std::max(0.0, sizes.dot(gram * sizes)))};
   fitted.cov.topLeftCorner(amplitudes, amplitudes) = scale.asDiagonal() * normal.solve(one) * scale.asDiagonal();
   for (Eigen::Index k = 0; k < shapes; ++k) {
     const Shape& shape = family.shapes[static_cast<std::size_t>(k)];
@@ -85,6 +89,7 @@ std::vector<Cause> CausesAlone(const LinearRun& run, const NoiseModel& noise, co
     cause.where = family.where;
     cause.probability = std::exp(weight - all);
     cause.log_evidence = weight - LogSum(log_priors(own));
+    cause.rho = fitted.rho;
     cause.parameters = ParametersOf(family, fitted.shape, fitted.amplitudes, fitted.cov);
     causes.push_back(std::move(cause));
   }
