@@ -103,6 +103,25 @@ TEST(TurntablePolygon, StatesTheBiasOfClosureByMeans) {
   EXPECT_LT(MeanSquaredScore(run, "turntable"), 2.5) << "10 degrees of freedom";
 }
 
+TEST(TurntablePolygon, SaysWhatItsUncertaintyIsMadeOf) {
+  const Scenario uneven = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0, 57.6, 129.6, 150, 171]"});
+  const test::BenchRun run = test::RunTurntable(uneven);
+  for (const Estimator estimator : {Estimator::kRigorous, Estimator::kPublished}) {
+    const nlohmann::json results = benches::turntable::Evaluate(uneven, run.readings, estimator).results;
+    for (const char* curve : {"turntable", "polygon"}) {
+      const nlohmann::json& parts = results.at("separation").at(curve).at("u_parts");
+      EXPECT_EQ(parts.contains("model"), estimator == Estimator::kPublished) << "what closure by means is wrong by";
+      double shares = 0.0;
+      for (const auto& part : parts) shares += part.at(7).get<double>();
+      EXPECT_NEAR(shares, 1.0, 1e-9) << curve;
+      EXPECT_GT(parts.at("noise").at(7).get<double>(), parts.at("quantisation").at(7).get<double>());
+    }
+    double of_order = 0.0;
+    for (const auto& share : results.at("model").at("terms").at(1).at("u_parts")) of_order += share.get<double>();
+    EXPECT_NEAR(of_order, 1.0, 1e-9);
+  }
+}
+
 TEST(TurntablePolygon, SaysWhyOneClampingIsNotEnough) {
   const Scenario one = PolygonScenario({"turntable_procedure.polygon_offsets_deg=[0]"});
   const report::Evaluation evaluation =

@@ -77,8 +77,8 @@ void ShareParameters(const std::vector<diagnose::ParameterEstimate>& from, std::
 
 /// Its fit alone shows most of what the other's does.
 bool IsAsStrong(const Cause& alone, const Cause& other) {
-  constexpr double kMost = 0.7;
-  return alone.rho > kMost * other.rho;
+  constexpr double kNearlyAll = 0.7;
+  return alone.rho > kNearlyAll * other.rho;
 }
 
 /// What readings leave open.

@@ -446,13 +446,16 @@ class Loop {
                         [this](const TakenRun& run) { return run.asked.sets == runs_.back().asked.sets; });
   }
 
-  /// An open hypothesis of so many causes, the most probable before; else the best there is.
+  /// The most probable one that is open of so many causes, with names if it has them; else the best there is. What comes up
+  /// anew is weighed by its evidence against that one's: the weights of others may stand for fits that are no good.
   Hypothesis AsMany(const Hypothesis& hypothesis) const {
     const Open* most = nullptr;
     for (const Open& open : result_.belief.open) {
       const Hypothesis& other = open.fit.hypothesis;
       if (other.causes.size() != hypothesis.causes.size()) continue;
-      if (!most || other.log_prior > most->fit.hypothesis.log_prior) most = &open;
+      const bool is_better = !most || (other.IsNamed() == hypothesis.IsNamed() &&
+                                       most->fit.hypothesis.IsNamed() != hypothesis.IsNamed());
+      if (is_better) most = &open;
     }
     return most ? most->fit.hypothesis : result_.belief.Best().fit.hypothesis;
   }

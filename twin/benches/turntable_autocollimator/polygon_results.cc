@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "twin/core/units.h"
 #include "twin/report/curve_score.h"
 #include "twin/report/json_units.h"
+#include "twin/report/uncertainty_parts.h"
 
 namespace twinbench::benches::turntable {
 namespace {
@@ -40,10 +42,51 @@ nlohmann::json HiddenJson(const std::vector<HiddenOrder>& hidden) {
   return json;
 }
 
-nlohmann::json ClosureJson(const PolygonClosure& c) {
+/// Shares that sources have of the scatter of a reading. What none is stated for is repeatability.
+std::vector<std::pair<std::string, double>> SharesOfReading(const PolygonAnalysis& a) {
+  const double seen_rad2 = std::pow(a.closure->noise.scale * a.closure->noise.u_rad, 2);
+  const double all_rad2 = std::max(seen_rad2, std::pow(a.Stated_rad(), 2));
+  std::vector<std::pair<std::string, double>> shares = {{"noise", 0.0}, {"quantisation", 0.0}, {"repeatability", 0.0}};
+  double left = 1.0;
+  for (const auto& s : a.stated) {
+    const double share = all_rad2 > 0.0 ? s.u_rad * s.u_rad / all_rad2 : 0.0;
+    std::ranges::find(shares, s.part, &std::pair<std::string, double>::first)->second += share;
+    left -= share;
+  }
+  shares.back().second += std::max(0.0, left);
+  return shares;
+}
+
+/// @param scatter_rad2  What the readings' scatter makes of the variances; the rest is the published closure's own.
+nlohmann::json PartsOf(const Eigen::VectorXd& variance_rad2, const Eigen::VectorXd& scatter_rad2, const PolygonAnalysis& a) {
+  const auto list = [](const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); };
+  std::vector<report::VariancePart> parts = {{"model", list(variance_rad2 - scatter_rad2)}};
+  for (const auto& [part, share] : SharesOfReading(a)) parts.push_back({part, list(share * scatter_rad2)});
+  return report::PartsJson(list(variance_rad2), parts);
+}
+
+/// The error's orders: both coefficients of each together.
+nlohmann::json ModelJson(const PolygonAnalysis& a) {
+  nlohmann::json json = ToJson(a.closure->encoder);
+  for (std::size_t k = 0; k < json["terms"].size(); ++k) {
+    const Eigen::Index at = 2 * a.closure->encoder.terms[k].order - 1;
+    const double variance = a.closure->encoder.cov_rad2.diagonal().segment<2>(at).sum();
+    const double scatter = variance > 0.0 ? a.coefficients_rad2.segment<2>(at).sum() / variance : 1.0;
+    std::vector<std::pair<std::string, double>> shares = {{"model", 1.0 - scatter}};
+    for (const auto& [part, share] : SharesOfReading(a)) shares.emplace_back(part, share * scatter);
+    json["terms"][k]["u_parts"] = report::PartsJson(shares);
+  }
+  return json;
+}
+
+nlohmann::json ClosureJson(const PolygonAnalysis& a) {
+  const PolygonClosure& c = *a.closure;
+  nlohmann::json turntable = ToJson(c.turntable);
+  turntable["u_parts"] = PartsOf(c.turntable.cov_rad2.diagonal(), a.turntable_rad2, a);
   nlohmann::json polygon = ToJson(c.polygon);
   polygon["face"] = c.face;
-  return {{"turntable", ToJson(c.turntable)},
+  polygon["u_parts"] = PartsOf(c.polygon.cov_rad2.diagonal(), a.polygon_rad2, a);
+  return {{"turntable", turntable},
           {"polygon", polygon},
           {"not_separable", HiddenJson(c.hidden)},
           {"residual_rms", {{"x_arcsec", report::Arcsec(c.residual_rms_rad)}}},
@@ -73,8 +116,8 @@ nlohmann::json PolygonJson(const PolygonAnalysis& a) {
                          {"clampings", a.clampings}};
   if (!a.not_separated.empty()) json["not_separated"] = a.not_separated;
   if (!a.closure) return json;
-  json["separation"] = ClosureJson(*a.closure);
-  json["model"] = ToJson(a.closure->encoder);
+  json["separation"] = ClosureJson(a);
+  json["model"] = ModelJson(a);
   json["reading"] = ReadingJson(a);
   json["expanded_k2"] = {{"turntable_arcsec", report::Arcsec(2.0 * RootMeanSquareU_rad(a.closure->turntable))},
                          {"polygon_arcsec", report::Arcsec(2.0 * RootMeanSquareU_rad(a.closure->polygon))}};
@@ -128,7 +171,7 @@ std::string PolygonSummary(const PolygonAnalysis& a) {
 report::Evaluation EvaluatePolygon(const Scenario& scenario, const std::vector<Reading>& readings,
                                    Estimator estimator) {
   const PolygonAnalysis a = separate::turntable::AnalysePolygon(readings, scenario, estimator);
-  const nlohmann::json separation = a.closure ? ClosureJson(*a.closure) : nlohmann::json();
+  const nlohmann::json separation = a.closure ? ClosureJson(a) : nlohmann::json();
   return {PolygonJson(a), separation, a.not_separated, PolygonSummary(a)};
 }
 

@@ -12,10 +12,10 @@ namespace {
 
 std::vector<StatedScatter> StatedOf(const TurntableSettings& own) {
   constexpr std::size_t kEz = static_cast<std::size_t>(Component::kEz);
-  std::vector<StatedScatter> stated = {{"encoder.noise_arcsec", own.encoder.noise_rad},
-                                       {"encoder.step_arcsec", own.encoder.step_rad / std::sqrt(12.0)},
-                                       {"autocollimator.noise_arcsec", own.ReadingNoise_rad()},
-                                       {"turntable.repeatability.ez_arcsec", own.turntable.repeatability_sd[kEz]}};
+  std::vector<StatedScatter> stated = {{"encoder.noise_arcsec", "noise", own.encoder.noise_rad},
+                                       {"encoder.step_arcsec", "quantisation", own.encoder.step_rad / std::sqrt(12.0)},
+                                       {"autocollimator.noise_arcsec", "noise", own.ReadingNoise_rad()},
+                                       {"turntable.repeatability.ez_arcsec", "repeatability", own.turntable.repeatability_sd[kEz]}};
   std::erase_if(stated, [](const StatedScatter& s) { return s.u_rad == 0.0; });
   return stated;
 }
@@ -33,10 +33,17 @@ void AddBias(const HarmonicModel& rigorous, HarmonicModel& published) {
   }
 }
 
+void NoteScatter(const PolygonClosure& closure, PolygonAnalysis& analysis) {
+  analysis.turntable_rad2 = closure.turntable.cov_rad2.diagonal();
+  analysis.polygon_rad2 = closure.polygon.cov_rad2.diagonal();
+  analysis.coefficients_rad2 = closure.encoder.cov_rad2.diagonal();
+}
+
 /// The published estimate of the rigorous one's readings; what both differ by is in its uncertainties.
 void TakePublished(const std::vector<FaceReading>& faces, const TurntableSettings& own, PolygonAnalysis& analysis) {
   PolygonClosure published = ClosePolygonByMeans(faces, own.polygon.faces, own.turntable_procedure.highest_order);
   const PolygonClosure& rigorous = *analysis.closure;
+  NoteScatter(published, analysis);
   analysis.method_bias_rad = ClosureBias_rad(published.turntable, rigorous.turntable);
   AddBias(rigorous.encoder, published.encoder);
   published.turntable = CurveAt(published.encoder, published.turntable.position_rad);
@@ -79,6 +86,7 @@ PolygonAnalysis AnalysePolygon(const std::vector<Reading>& readings, const Scena
         "other offsets, would tell them apart";
     return analysis;
   }
+  NoteScatter(rigorous, analysis);
   analysis.closure = std::move(rigorous);
   if (estimator == Estimator::kPublished) TakePublished(faces, own, analysis);
   return analysis;

@@ -13,6 +13,7 @@ namespace twinbench::separate::turntable {
 /// What a scenario states that scatters a reading, as a standard deviation.
 struct StatedScatter {
   std::string source;  // "encoder.noise_arcsec"
+  std::string part;    // of a budget: "noise", "quantisation", "repeatability"
   double u_rad = 0.0;
 };
 
@@ -23,6 +24,9 @@ struct PolygonAnalysis {
   std::optional<PolygonClosure> closure;
   double method_bias_rad = 0.0;  // published: difference from the rigorous curve, rms; part of the uncertainties
   std::vector<StatedScatter> stated;
+  // Variances that the scatter of the readings makes, without that difference: of the curves, and of the coefficients of
+  // `encoder`.
+  Eigen::VectorXd turntable_rad2, polygon_rad2, coefficients_rad2;
   std::string not_separated;  // why there is no closure
 
   double Stated_rad() const;  // of all sources together
