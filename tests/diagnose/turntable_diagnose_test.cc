@@ -9,6 +9,7 @@
 
 #include "tests/diagnose/turntable_bench.h"
 #include "tests/diagnose/told.h"
+#include "tests/support/angle_benches.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/diagnose/diagnose.h"
@@ -54,6 +55,21 @@ void ExpectNamed(const Wrong& wrong, const std::string& effect, const std::strin
   EXPECT_NEAR(p.value, value, 3.0 * p.u) << effect << " at " << where << "\n" << test::Told(run);
   EXPECT_LT(p.u, 0.3 * std::abs(value)) << effect << " at " << where;
   EXPECT_GT(run.diagnosis.gain.folds, run.accepted.empty() ? -1 : 0);
+}
+
+// Two slips, up and down again, would explain it as well.
+TEST(TurntableDiagnosis, TakesASingleDisturbedReadingForNoSlips) {
+  Scenario sweep = CarefulScenario();
+  TurntableOf(sweep).turntable_procedure.phases = {"calibration"};
+  TurntableOf(sweep).turntable_procedure.sweep_points = 41;
+  for (const std::size_t disturbed : {2u, 20u, 38u}) {
+    std::vector<Reading> readings = twinbench::test::RunTurntable(sweep).readings;
+    readings[disturbed].autocollimator_tilt_rad += 17.0 * TurntableOf(sweep).autocollimator.noise_rad;
+    DiagnoseOptions options;
+    options.cache_folder = testing::TempDir() + "turntable_null";
+    const DiagnosisRun run = Diagnose(readings, sweep, options);
+    EXPECT_TRUE(OnlyCause(run, "outliers")) << disturbed << ": " << test::Told(run);
+  }
 }
 
 TEST(TurntableDiagnosis, NamesEveryFaultOfTheInstrument) {

@@ -22,6 +22,8 @@ namespace {
 constexpr double kWorthMeasuring_bit = 0.05;  // of causes
 constexpr double kWorthRefining_bit = 0.005;  // of the goal
 constexpr double kMostlyUnlisted = 0.5;
+constexpr double kMostlyOutliers = 0.5;
+const char* const kOutliers = "outliers";  // in every catalogue
 constexpr double kUsuallyFaint = 2.0;
 constexpr double kStandsOut = 5.0;  // noise standard deviations: such a cause is mostly found among all the others
 /// Of the best: a named rival that is more probable is still in question. Looking again and again until one is past
@@ -157,9 +159,37 @@ class Loop {
     std::optional<diagnose::DiagnosisRun> found =
         DiagnosisOf(runs_.front().readings, runs_.front().scenario, not_diagnosed_);
     if (!found) found.emplace().diagnosis.verdict = diagnose::Verdict::kNone;
+    if (HoldsOutliers(*found)) StrikeOutliers(found->noise, runs_.front());
     result_.belief = Begun(*found, runs_, means_);
     overtones_[runs_.front().asked.sets] = found->overtones;
     if (found->diagnosis.verdict != diagnose::Verdict::kNone) NoteTold();
+  }
+
+  static bool HoldsOutliers(const diagnose::DiagnosisRun& found) {
+    return std::ranges::any_of(found.diagnosis.causes, [](const diagnose::Cause& cause) {
+      return cause.effect == kOutliers && cause.probability > kMostlyOutliers;
+    });
+  }
+
+  static Hypothesis OutliersIn(Hypothesis hypothesis) {
+    std::erase_if(hypothesis.causes, [](const Supposed& cause) { return cause.name != kOutliers; });
+    return hypothesis;
+  }
+
+  /// Instead of the best. Where readings were struck as outliers they are in no fit, and stay beside whatever is left.
+  static std::vector<Weighed> InsteadOf(const Hypothesis& best, std::vector<Weighed> others) {
+    const Hypothesis outliers = OutliersIn(best);
+    if (outliers.causes.empty()) return others;
+    for (Weighed& other : others) other.hypothesis = Together(outliers, other.hypothesis);
+    return others;
+  }
+
+  /// Single disturbed readings are others in every run, and no size of any cause: each run's own diagnosis says which.
+  void StrikeOutliersOfLast() {
+    if (OutliersIn(result_.belief.Best().fit.hypothesis).causes.empty()) return;
+    std::string refusal;
+    const auto found = DiagnosisOf(runs_.back().readings, runs_.back().scenario, refusal);
+    if (found && HoldsOutliers(*found)) StrikeOutliers(found->noise, runs_.back());
   }
 
   /// All that is open came from a diagnosis.
@@ -333,6 +363,7 @@ class Loop {
     sets.push_back(fmt::format("repeat={}", scenario_.repeat + step.number - 1));
     Take(step, Altered(scenario_, sets));
     if (WasAnyDiagnosed()) {
+      StrikeOutliersOfLast();
       Update(belief, runs_, means_);
       Compare();
       DoubtAName();
@@ -361,7 +392,7 @@ class Loop {
     if (!best.IsNamed() || !IsNew(best.Name(), told_by_diagnosis_)) return;
     const TakenRun& run = runs_.back();
     if (const auto& alone = LastAlone(best))
-      TakeIn(belief, LeftOpen(WithLessLikely(*alone), run.scenario, run.number), runs_, means_,
+      TakeIn(belief, InsteadOf(best, LeftOpen(WithLessLikely(*alone), run.scenario, run.number)), runs_, means_,
              [this](const Hypothesis& other) { return AsMany(other); });
     NamedByFits(belief);
   }
@@ -375,7 +406,7 @@ class Loop {
     const TakenRun& run = runs_.back();
     const auto& alone = LastAlone(best);
     if (!alone) return;
-    for (const Weighed& other : EachAlone(*alone, run.scenario, run.number))
+    for (const Weighed& other : InsteadOf(best, EachAlone(*alone, run.scenario, run.number)))
       TakeIn(belief, {other}, runs_, means_, [this](const Hypothesis& one) { return AsMany(one); });
   }
 
@@ -421,7 +452,7 @@ class Loop {
     const auto& last = LastAlone(best);
     const diagnose::DiagnosisRun& alone = last ? *last : found;
     const std::vector<Weighed> others =  // instead of the best; beside nothing that was just asked
-        LeftOpen(WithLessLikely(alone), run.scenario, run.number);
+        InsteadOf(best, LeftOpen(WithLessLikely(alone), run.scenario, run.number));
     is_new = TakeIn(belief, others, runs_, means_, [this](const Hypothesis& other) { return AsMany(other); }) || is_new;
     // Several causes together are a coincidence that one without a name does not need.
     if (belief.Best().fit.hypothesis.causes.size() > 1) Disagreed(belief, UnlistedBy(alone));

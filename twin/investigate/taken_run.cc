@@ -8,6 +8,17 @@
 #include "twin/diagnose/mean_of_runs.h"
 
 namespace twinbench::investigate {
+namespace {
+
+/// By the run's noise as it stands.
+void Whiten(TakenRun& run) {
+  run.projector = std::make_shared<diagnose::Projector>(run.noise.Whiten(run.linear, run.linear.nuisance.jacobian),
+                                                        run.linear.nuisance);
+  const Eigen::MatrixXd residual = run.linear.residual;
+  run.left = run.noise.Whiten(run.linear, residual);
+}
+
+}  // namespace
 
 TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vector<Reading> readings,
                  const Means& means, int number) {
@@ -20,11 +31,17 @@ TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vect
   if (!run.readings.empty()) run.minutes = std::max(kShortest_min, ToSeconds(run.readings.back().time) / 60.0);
   run.linear = means.against(run.readings, scenario);
   run.noise.sigma = run.linear.sigma;
-  run.projector = std::make_shared<diagnose::Projector>(run.noise.Whiten(run.linear, run.linear.nuisance.jacobian),
-                                                        run.linear.nuisance);
-  const Eigen::MatrixXd residual = run.linear.residual;
-  run.left = run.noise.Whiten(run.linear, residual);
+  Whiten(run);
   return run;
+}
+
+void StrikeOutliers(const diagnose::NoiseModel& found, TakenRun& run) {
+  if (found.sigma.size() != run.noise.sigma.size()) return;
+  constexpr double kFar = 100.0;  // heavy tails and channels noisier than stated are less so
+  const auto is_struck = found.sigma.array() > kFar * run.noise.sigma.array();
+  if (!is_struck.any()) return;
+  run.noise.sigma = is_struck.select(found.sigma, run.noise.sigma).eval();
+  Whiten(run);
 }
 
 namespace {

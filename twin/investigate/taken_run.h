@@ -33,6 +33,9 @@ struct TakenRun {
 TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vector<Reading> readings,
                  const Means& means, int number = kToCome);
 
+/// Takes the weight from rows that a diagnosis of the run holds for single disturbed ones: no fit is to follow them.
+void StrikeOutliers(const diagnose::NoiseModel& found, TakenRun& run);
+
 /// What the hypothesis leaves of the run's readings, white, in the run's own frame. Where it cannot be followed, or
 /// shows other readings, it explains nothing.
 Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const Means& means);
