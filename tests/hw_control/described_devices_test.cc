@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "hw_bridge/control/instrument_box.h"
@@ -42,8 +43,8 @@ FakeController::Reply Elcomat(const std::string& line, const std::string& state)
 }
 
 TEST(Elcomat, ShowsAbsoluteAndRelativeAnglesAndNothingInAnotherState) {
-  std::string state = "003";
-  FakeController device([&](const std::string& line) { return Elcomat(line, state); },
+  std::atomic<const char*> state = "003";  // the instrument answers on a thread of its own
+  FakeController device([&](const std::string& line) { return Elcomat(line, state.load()); },
                         FakeController::Wire::kPseudoTerminal);
   Spoken absolute(device, ReadyDialogueNamed("elcomat"));
   DescribedAutocollimator collimator(absolute.Line(), absolute.words);
