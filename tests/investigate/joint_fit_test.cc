@@ -100,6 +100,19 @@ TEST_F(JointFits, WeighACauseThatContainsAnotherByTheRoomThatIsLeftToIt) {
   EXPECT_NEAR(FitJointly(gradual.hypothesis, runs, means_).log_evidence, gradual.log_evidence, 1.0);
 }
 
+// A warming up in seconds is a peak between all the distances from its bound that are looked at. It was missed, its
+// uncertainty became none, and in the next fit it was no size any more that costs anything.
+TEST_F(JointFits, KeepWhatASizeCostsFromFitToFit) {
+  const auto runs = RunsWith("[[effect]]\nname = \"drift\"\nrate_deg_per_h = 0.5\nwarm_up_s = 60.0\n", 1);
+  JointFit fit = Fit("drift", runs);
+  const double first = fit.log_evidence;
+  for (int again = 0; again < 3; ++again) {
+    fit = FitJointly(fit.hypothesis, runs, means_);
+    for (const auto& [size, u] : fit.hypothesis.causes.front().finding.u) EXPECT_GT(u, 0.0) << size;
+    EXPECT_NEAR(fit.log_evidence, first, 2.0) << again;
+  }
+}
+
 // At nine tenths and a half of the amplitude most stops are cut, at the whole none is: one that cuts a few stops by
 // three noise standard deviations lies in between, and no slope leads there from either.
 TEST_F(JointFits, FindAClippingThatFewStopsAreNear) {

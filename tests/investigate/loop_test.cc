@@ -110,6 +110,27 @@ TEST(Investigate, NamesARippleOfAnyPeriod) {
   EXPECT_EQ(judged.result, Result::kRight) << judged.answer;
 }
 
+// Which readings they meet no hypothesis says: a fit that followed them would be one to them.
+TEST(Investigate, GoesOnBesideSingleDisturbedReadings) {
+  const hidden::SignatureScale scale(hidden::Design::kTurntable, "");
+  InvestigationOptions options;
+  options.budget_min = 2000.0;
+  const Judged judged =
+      InvestigateHidden({"outliers", "", hidden::Design::kTurntable}, 51006, 4.5, scale, options, Wish{"turntable.ez_arcsec", 2.0});
+  EXPECT_EQ(judged.investigation.belief.Best().fit.hypothesis.Name(), "outliers") << judged.answer;
+  EXPECT_TRUE(judged.investigation.IsGoalMet());
+}
+
+// The orders of one are counted in lines, those of the other in turns.
+TEST(Investigate, LeavesEachOfATieItsOwnOrder) {
+  const hidden::SignatureScale scale(hidden::Design::kSweepAllKnown, "");
+  InvestigationOptions options;
+  options.budget_min = 600.0;
+  const Judged judged = InvestigateHidden({"interpolation", "", hidden::Design::kSweepAllKnown}, 28021, 10.7, scale, options);
+  EXPECT_EQ(judged.result, Result::kRightTie) << judged.answer;
+  EXPECT_GT(judged.probability, 0.3) << judged.answer;
+}
+
 // Two set-ups of one pass leave nothing to find causes by. One that does comes next; both count.
 TEST(Investigate, MakesARunThatCanBeDiagnosedWhereTheFirstCannot) {
   Scenario believed = hidden::Believed(hidden::Design::kRotary);
