@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "tests/diagnose/turntable_bench.h"
 #include "tests/diagnose/told.h"
+#include "tests/diagnose/turntable_bench.h"
 #include "tests/support/angle_benches.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/turntable_autocollimator/settings.h"

@@ -115,8 +115,8 @@ TEST(Investigate, GoesOnBesideSingleDisturbedReadings) {
   const hidden::SignatureScale scale(hidden::Design::kTurntable, "");
   InvestigationOptions options;
   options.budget_min = 2000.0;
-  const Judged judged =
-      InvestigateHidden({"outliers", "", hidden::Design::kTurntable}, 51006, 4.5, scale, options, Wish{"turntable.ez_arcsec", 2.0});
+  const Judged judged = InvestigateHidden({"outliers", "", hidden::Design::kTurntable}, 51006, 4.5, scale, options,
+                                          Wish{"turntable.ez_arcsec", 2.0});
   EXPECT_EQ(judged.investigation.belief.Best().fit.hypothesis.Name(), "outliers") << judged.answer;
   EXPECT_TRUE(judged.investigation.IsGoalMet());
 }
@@ -126,7 +126,8 @@ TEST(Investigate, LeavesEachOfATieItsOwnOrder) {
   const hidden::SignatureScale scale(hidden::Design::kSweepAllKnown, "");
   InvestigationOptions options;
   options.budget_min = 600.0;
-  const Judged judged = InvestigateHidden({"interpolation", "", hidden::Design::kSweepAllKnown}, 28021, 10.7, scale, options);
+  const Judged judged =
+      InvestigateHidden({"interpolation", "", hidden::Design::kSweepAllKnown}, 28021, 10.7, scale, options);
   EXPECT_EQ(judged.result, Result::kRightTie) << judged.answer;
   EXPECT_GT(judged.probability, 0.3) << judged.answer;
 }

@@ -30,14 +30,16 @@ std::vector<OwnKey> EncoderChanges() {
           Change("encoder_procedure.remount_s", "60.0", {"encoder_procedure.mounting_deg=[0.0, 120.0]"}),
           Change("encoder_procedure.stops_per_turn", "48"),
           Change("encoder_procedure.stop_interval_s", "9.0"),
-          Change("encoder_procedure.readings_per_stop", "16", {"device.noise_known=true", "device.resolution_deg=0.0005"}),
+          Change("encoder_procedure.readings_per_stop", "16",
+                 {"device.noise_known=true", "device.resolution_deg=0.0005"}),
           Change("encoder_procedure.read_s", "0.01", {"encoder_procedure.readings_per_stop=16"}),
           Change("encoder_procedure.speeds_deg_s", "[20.0]", sweep),
           Change("encoder_procedure.ramp_s", "1.5", sweep),
           Change("encoder_procedure.rest_s", "5.0", sweep),
           Change("encoder_procedure.interval_s", "0.15", sweep),
           Change("encoder_procedure.heads_deg", "[0.0, 90.0, 217.0]"),
-          Change("encoder_procedure.reference_noise_arcsec", "5.0", {"encoder_procedure.heads_deg=[0.0, 90.0, 217.0]"})};
+          Change("encoder_procedure.reference_noise_arcsec", "5.0",
+                 {"encoder_procedure.heads_deg=[0.0, 90.0, 217.0]"})};
 }
 
 /// A coast is read by the times of lines; the readings are compared as the mean angle errors of each pass.

@@ -38,15 +38,17 @@ std::vector<Claim> OfAComparison(const EncoderSettings& s) {
   if (p.kind != "stops") return {};
   const double readings = std::max(1.0, static_cast<double>(p.passes.size()) * p.turns);
   return {{"shaft", DeviceOfMeans(s).noise_rad / std::sqrt(readings),
-           "device.noise_deg as repeated readings of a stop scatter, with device.noise_known = true: the results' u grows with it"}};
+           "device.noise_deg as repeated readings of a stop scatter, with device.noise_known = true: the results' "
+           "u grows with it"}};
 }
 
 std::vector<Claim> OfATurntable(const TurntableSettings& s) {
   if (s.HasPolygon()) return {};  // its encoder is read, not relied on
   const TurntableProcedureSettings& p = s.turntable_procedure;
   const double readings = static_cast<double>(p.passes.size()) * p.SetUps();
-  return {{"turntable", std::hypot(s.multitooth.u_tooth_rad, s.ReadingNoise_rad() / std::sqrt(readings)),
-           "multitooth.u_tooth_arcsec with what the turntable leaves added in squares: the results' u grows with it"}};
+  return {
+      {"turntable", std::hypot(s.multitooth.u_tooth_rad, s.ReadingNoise_rad() / std::sqrt(readings)),
+       "multitooth.u_tooth_arcsec with what the turntable leaves added in squares: the results' u grows with it"}};
 }
 
 std::vector<Claim> OfFiveAxes(const Scenario& scenario) {

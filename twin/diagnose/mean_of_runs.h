@@ -24,15 +24,15 @@ bool AreOfOnePlan(const std::vector<Reading>& a, const std::vector<Reading>& b);
 /// Of how many runs it is the mean; 1 unless MeanOfRuns made it.
 int RunsIn(const std::vector<Reading>& readings);
 
-/// Variance over all places of what rounding leaves in the mean of many readings, in squares of its step: 1/12 without
-/// noise. Its error at a place is a saw-tooth, whose waves the noise dims: sum over k of (1 / pi k)^2 / 2 exp(-(2 pi k
-/// noise)^2) (Widrow & Kollar, Quantization Noise, 2008, 5).
+/// Variance over all places of what rounding leaves in the mean of many readings, in squares of its step: 1/12
+/// without noise. Its error at a place is a saw-tooth, whose waves the noise dims: sum over k of (1 / pi k)^2 / 2
+/// exp(-(2 pi k noise)^2) (Widrow & Kollar, Quantization Noise, 2008, 5).
 /// @param noise  Standard deviation, in steps.
 double RepeatedByRounding(double noise);
 
 /// Stated uncertainties become those of the mean. Where noise is smaller than the step of rounding, every run is
-/// rounded alike, and of the variance step^2 / 12 a part repeats and stays (RepeatedByRounding). Uncertainties that were
-/// estimated come from the mean itself.
+/// rounded alike, and of the variance step^2 / 12 a part repeats and stays (RepeatedByRounding). Uncertainties that
+/// were estimated come from the mean itself.
 void ScaleToMean(const std::vector<Reading>& used, LinearRun& run);
 
 }  // namespace twinbench::diagnose

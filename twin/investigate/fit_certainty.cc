@@ -69,8 +69,8 @@ struct Summed {
   double u = 0.0;          // root mean square of the distance from its fit, in units of u
 };
 
-/// Distances from a bound at which the likelihood of a size is looked at, ascending: ever finer towards the bound, for
-/// nobody knows the scale of what begins there, and about the fit, which may be a peak between two of them.
+/// Distances from a bound at which the likelihood of a size is looked at, ascending: ever finer towards the bound,
+/// for nobody knows the scale of what begins there, and about the fit, which may be a peak between two of them.
 /// @param off   Of the fit from the bound, in units of u.
 /// @param wide  The fit's standard uncertainty by its slope; 0: it has none.
 std::vector<double> Distances(double farthest, double off, double wide) {
@@ -110,7 +110,8 @@ Summed SummedFrom(const Hypothesis& at, const Size& size, double breadth, double
                  prior = std::exp(-0.5 * std::pow(distance / breadth, 2)), step = 0.5 * (distance - before);
     thought += step * (prior_before + prior);
     mass += step * (prior_before * last + prior * likelihood);
-    squares += step * (std::pow(before - off, 2) * prior_before * last + std::pow(distance - off, 2) * prior * likelihood);
+    squares +=
+        step * (std::pow(before - off, 2) * prior_before * last + std::pow(distance - off, 2) * prior * likelihood);
     before = distance;
     last = likelihood;
   }
@@ -122,7 +123,7 @@ Summed SummedFrom(const Hypothesis& at, const Size& size, double breadth, double
 /// likelihood is summed over them, by trapezoids of doubling width, the other sizes following by their slopes.
 Summed SummedOverReadings(const Hypothesis& at, const Size& size, double chi2,
                           const std::function<double(const Hypothesis&)>& chi2_of, double rows, double readings) {
-  constexpr double kGone = 12.0;  // of log likelihood
+  constexpr double kGone = 12.0;             // of log likelihood
   constexpr double kWithinOne = 1.0 / 12.0;  // variance: between two readings it may have been anywhere
   const double best = LogLikelihood(chi2, rows), value = ValueOf(at, size);
   double sum = 1.0, squares = kWithinOne;

@@ -12,7 +12,8 @@
 namespace twinbench::investigate {
 namespace {
 
-/// A frequency is sought everywhere between its bounds: a normal distribution that is nowhere denser than an even one there.
+/// A frequency is sought everywhere between its bounds: a normal distribution that is nowhere denser than an even
+/// one there.
 double ThoughtWithin(const EffectParameter& parameter, const EffectEntry& entry, double lower, double upper) {
   if (parameter.name == "frequency") return (upper - lower) / std::sqrt(2.0 * units::kPi);
   return ThoughtOf(parameter, entry);
@@ -83,8 +84,8 @@ Left LeftOf(const Hypothesis& hypothesis, std::span<const TakenRun> runs, const 
   return left;
 }
 
-Normal NormalOf(const Hypothesis& hypothesis, const Left& left, std::span<const TakenRun> runs,
-                const Means& means, Eigen::Index sizes) {
+Normal NormalOf(const Hypothesis& hypothesis, const Left& left, std::span<const TakenRun> runs, const Means& means,
+                Eigen::Index sizes) {
   Normal normal{Eigen::MatrixXd::Zero(sizes, sizes), Eigen::VectorXd::Zero(sizes), {}};
   for (std::size_t k = 0; k < runs.size(); ++k) {
     normal.slopes.push_back(SlopesOf(hypothesis, left.of[k], runs[k], means));

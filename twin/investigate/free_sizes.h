@@ -54,8 +54,8 @@ struct Normal {
   std::vector<Eigen::MatrixXd> slopes;  // of each run
 };
 
-Normal NormalOf(const Hypothesis& hypothesis, const Left& left, std::span<const TakenRun> runs,
-                const Means& means, Eigen::Index sizes);
+Normal NormalOf(const Hypothesis& hypothesis, const Left& left, std::span<const TakenRun> runs, const Means& means,
+                Eigen::Index sizes);
 
 /// Of what was thought of the sizes before, in units of u.
 Eigen::VectorXd Breadth(const Hypothesis& hypothesis, const std::vector<Size>& sizes);

@@ -87,8 +87,8 @@ struct Finding {
   const std::string& bench;
   int run;  // that was diagnosed
 
-  /// Causes that the diagnosis did not fit are as large as they would be alone. Where that says little, for most of it was
-  /// taken out first as another one's, what they have in common with that one - an order - is as there.
+  /// Causes that the diagnosis did not fit are as large as they would be alone. Where that says little, for most of
+  /// it was taken out first as another one's, what they have in common with that one - an order - is as there.
   Supposed Suppose(Cause cause) const {
     if (cause.parameters.empty()) {
       const Cause* alone = FindIn(found.suspects, cause.effect, cause.where);

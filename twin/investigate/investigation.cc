@@ -74,7 +74,8 @@ class Loop {
   bool AreCausesTold() const { return ToldBy(result_.belief, options_.conclusive) != Told::kTied; }
 
   bool IsDone() {
-    if (!WasAnyDiagnosed() || !AreCausesTold() || !result_.IsGoalMet() || MayBeFaint() || ShouldRepeat()) return false;
+    if (!WasAnyDiagnosed() || !AreCausesTold() || !result_.IsGoalMet() || MayBeFaint() || ShouldRepeat())
+      return false;
     result_.ended = Ended::kTold;
     return true;
   }
@@ -96,13 +97,14 @@ class Loop {
     });
   }
 
-  /// The first run showed nothing, and the last one brought the name up: chance, or another thing that looks like it there,
-  /// would not do so twice.
+  /// The first run showed nothing, and the last one brought the name up: chance, or another thing that looks like
+  /// it there, would not do so twice.
   bool IsNewsOfOneRun() const {
     const Hypothesis& best = result_.belief.Best().fit.hypothesis;
     if (!best.IsNamed() || result_.steps.size() < 2) return false;
     const auto came_first = [](const Step& step) { return step.believed.front().first; };
-    return came_first(result_.steps.front()) == Hypothesis{}.Name() && came_first(*(result_.steps.end() - 2)) != best.Name();
+    return came_first(result_.steps.front()) == Hypothesis{}.Name() &&
+           came_first(*(result_.steps.end() - 2)) != best.Name();
   }
 
   bool ShouldRepeat() const { return MayHappenAgain() || IsNewsOfOneRun(); }
@@ -176,7 +178,8 @@ class Loop {
     return hypothesis;
   }
 
-  /// Instead of the best. Where readings were struck as outliers they are in no fit, and stay beside whatever is left.
+  /// Instead of the best. Where readings were struck as outliers they are in no fit, and stay beside whatever is
+  /// left.
   static std::vector<Weighed> InsteadOf(const Hypothesis& best, std::vector<Weighed> others) {
     const Hypothesis outliers = OutliersIn(best);
     if (outliers.causes.empty()) return others;
@@ -184,7 +187,8 @@ class Loop {
     return others;
   }
 
-  /// Single disturbed readings are others in every run, and no size of any cause: each run's own diagnosis says which.
+  /// Single disturbed readings are others in every run, and no size of any cause: each run's own diagnosis says
+  /// which.
   void StrikeOutliersOfLast() {
     if (OutliersIn(result_.belief.Best().fit.hypothesis).causes.empty()) return;
     std::string refusal;
@@ -293,8 +297,8 @@ class Loop {
     return belief.Best().fit.hypothesis.IsNamed() && belief.unlisted > 1.0 - options_.conclusive && !HasRival(belief);
   }
 
-  /// Where noise may hide what is looked for: what makes it less soonest. Where something may happen again: the first run
-  /// once more, or the one that brought it up.
+  /// Where noise may hide what is looked for: what makes it less soonest. Where something may happen again: the
+  /// first run once more, or the one that brought it up.
   std::vector<Advice>::const_iterator LookingCloser(const std::vector<Advice>& advice) const {
     if (MayBeFaint()) {
       const auto most = std::ranges::max_element(advice, {}, [](const Advice& a) { return a.worth / a.minutes; });
@@ -302,7 +306,8 @@ class Loop {
     }
     if (!AreCausesTold() || !ShouldRepeat()) return advice.end();
     const TakenRun& once_more = MayHappenAgain() ? runs_.front() : runs_.back();
-    return std::ranges::find_if(advice, [&once_more](const Advice& a) { return a.run.sets == once_more.asked.sets; });
+    return std::ranges::find_if(advice,
+                                [&once_more](const Advice& a) { return a.run.sets == once_more.asked.sets; });
   }
 
   bool End(Ended ended) {
@@ -477,8 +482,9 @@ class Loop {
                         [this](const TakenRun& run) { return run.asked.sets == runs_.back().asked.sets; });
   }
 
-  /// The most probable one that is open of so many causes, with names if it has them; else the best there is. What comes up
-  /// anew is weighed by its evidence against that one's: the weights of others may stand for fits that are no good.
+  /// The most probable one that is open of so many causes, with names if it has them; else the best there is. What
+  /// comes up anew is weighed by its evidence against that one's: the weights of others may stand for fits that are
+  /// no good.
   Hypothesis AsMany(const Hypothesis& hypothesis) const {
     const Open* most = nullptr;
     for (const Open& open : result_.belief.open) {

@@ -33,7 +33,8 @@ struct TakenRun {
 TakenRun TakenOf(const plan::NextRun& asked, const Scenario& scenario, std::vector<Reading> readings,
                  const Means& means, int number = kToCome);
 
-/// Takes the weight from rows that a diagnosis of the run holds for single disturbed ones: no fit is to follow them.
+/// Takes the weight from rows that a diagnosis of the run holds for single disturbed ones: no fit is to follow
+/// them.
 void StrikeOutliers(const diagnose::NoiseModel& found, TakenRun& run);
 
 /// What the hypothesis leaves of the run's readings, white, in the run's own frame. Where it cannot be followed, or

@@ -52,7 +52,8 @@ plan::ShiftDesign MountingsDesign(const EncoderProcedureSettings& p) {
 /// At every stop, as far as it is long enough: nobody repeats hours where seconds do.
 void AddLongerReadings(const EncoderProcedureSettings& p, std::vector<NextRun>& runs) {
   constexpr int kTimes = 16;
-  const int most = static_cast<int>(p.stop_interval_s / p.read_s), count = std::min(kTimes * p.readings_per_stop, most);
+  const int most = static_cast<int>(p.stop_interval_s / p.read_s),
+            count = std::min(kTimes * p.readings_per_stop, most);
   if (p.kind != "stops" || count <= p.readings_per_stop) return;
   runs.push_back({"longer-readings",
                   fmt::format("the same stops, each the mean of {} readings", count),

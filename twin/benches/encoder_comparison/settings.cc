@@ -6,8 +6,8 @@
 
 #include "twin/benches/encoder_comparison/format.h"
 #include "twin/core/errors.h"
-#include "twin/core/scenario_together.h"
 #include "twin/core/scenario_text.h"
+#include "twin/core/scenario_together.h"
 #include "twin/core/schema_table.h"
 
 namespace twinbench::benches::encoder {
@@ -46,7 +46,8 @@ void AddEncoderProcedure(Keys& keys, EncoderProcedureSettings& s) {
         "of what the reference shows at one instant, the same for all heads");
   t.Add("stops_per_turn", kPure, {3, 100000}, &s.stops, "stops: evenly spaced");
   t.Add("stop_interval", kSecond, Positive(86400), &s.stop_interval_s, "stops: between readings");
-  t.Add("readings_per_stop", kPure, {1, 100000}, &s.readings_per_stop, "stops: at each of them; their mean is one reading");
+  t.Add("readings_per_stop", kPure, {1, 100000}, &s.readings_per_stop,
+        "stops: at each of them; their mean is one reading");
   t.Add("read", kSecond, Positive(3600), &s.read_s, "stops: that each of these takes");
   t.Add("speeds", {"deg_s", units::deg}, Positive(36000), &s.speeds_rad_s, "sweep: one after the other; coast: at the start");
   t.Add("ramp", kSecond, Positive(3600), &s.ramp_s, "sweep: to reach the speed and to stop");
@@ -67,7 +68,8 @@ void AddSpindle(Keys& keys, SpindleSettings& s) {
   t.Add("ripple_order", kPure, {1, 2000}, &s.ripple_order, "of the same");
 }
 
-/// @throws InputError if a stop is too short for its readings, or a mean of several is asked for where nothing stops.
+/// @throws InputError if a stop is too short for its readings, or a mean of several is asked for where nothing
+/// stops.
 void CheckReadingsOfAStop(const ScenarioText& text, const EncoderProcedureSettings& p) {
   if (p.readings_per_stop == 1) return;
   const auto refuse = [&](const std::string& problem, const std::string& expected) {
@@ -77,9 +79,10 @@ void CheckReadingsOfAStop(const ScenarioText& text, const EncoderProcedureSettin
     refuse(fmt::format("encoder_procedure.readings_per_stop is {} in a {}", p.readings_per_stop, p.kind),
            "1, or encoder_procedure.kind = \"stops\"");
   if (p.readings_per_stop * p.read_s > p.stop_interval_s)
-    refuse(fmt::format("{} readings of {:.4g} s take longer than the {:.4g} s of a stop", p.readings_per_stop, p.read_s,
-                       p.stop_interval_s),
-           fmt::format("at most {:.0f}, or a longer encoder_procedure.stop_interval_s", std::floor(p.stop_interval_s / p.read_s)));
+    refuse(fmt::format("{} readings of {:.4g} s take longer than the {:.4g} s of a stop", p.readings_per_stop,
+                       p.read_s, p.stop_interval_s),
+           fmt::format("at most {:.0f}, or a longer encoder_procedure.stop_interval_s",
+                       std::floor(p.stop_interval_s / p.read_s)));
 }
 
 /// @throws InputError if the spindle would stand still within a pass, or several heads are read.

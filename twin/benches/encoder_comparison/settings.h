@@ -38,8 +38,8 @@ struct EncoderProcedureSettings {            // [encoder_procedure]
   double reference_noise_rad = 0.0;          // of what the reference shows at one instant, the same for all heads
   int stops = 72;                            // stops: [encoder_procedure] stops_per_turn
   double stop_interval_s = 4.0;
-  int readings_per_stop = 1;  // stops: their mean is one reading
-  double read_s = 0.02;       // stops: that each of them takes
+  int readings_per_stop = 1;                                                  // stops: their mean is one reading
+  double read_s = 0.02;                                                       // stops: that each of them takes
   std::vector<double> speeds_rad_s = {36.0 * units::deg, 12.0 * units::deg};  // sweep
   double ramp_s = 0.6;       // at constant acceleration, up and down
   double rest_s = 2.0;       // behind every pass
@@ -65,7 +65,8 @@ struct EncoderSettings {
   SpindleSettings spindle;
 };
 
-/// The device as means of a stop's readings show it: noise and what steps add to it are less by the root of their count.
+/// The device as means of a stop's readings show it: noise and what steps add to it are less by the root of their
+/// count.
 inline DeviceSettings DeviceOfMeans(const EncoderSettings& s) {
   DeviceSettings device = s.device;
   device.noise_rad /= std::sqrt(s.encoder_procedure.readings_per_stop);

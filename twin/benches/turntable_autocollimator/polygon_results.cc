@@ -46,7 +46,8 @@ nlohmann::json HiddenJson(const std::vector<HiddenOrder>& hidden) {
 std::vector<std::pair<std::string, double>> SharesOfReading(const PolygonAnalysis& a) {
   const double seen_rad2 = std::pow(a.closure->noise.scale * a.closure->noise.u_rad, 2);
   const double all_rad2 = std::max(seen_rad2, std::pow(a.Stated_rad(), 2));
-  std::vector<std::pair<std::string, double>> shares = {{"noise", 0.0}, {"quantisation", 0.0}, {"repeatability", 0.0}};
+  std::vector<std::pair<std::string, double>> shares = {
+      {"noise", 0.0}, {"quantisation", 0.0}, {"repeatability", 0.0}};
   double left = 1.0;
   for (const auto& s : a.stated) {
     const double share = all_rad2 > 0.0 ? s.u_rad * s.u_rad / all_rad2 : 0.0;
@@ -58,7 +59,8 @@ std::vector<std::pair<std::string, double>> SharesOfReading(const PolygonAnalysi
 }
 
 /// @param scatter_rad2  What the readings' scatter makes of the variances; the rest is the published closure's own.
-nlohmann::json PartsOf(const Eigen::VectorXd& variance_rad2, const Eigen::VectorXd& scatter_rad2, const PolygonAnalysis& a) {
+nlohmann::json PartsOf(const Eigen::VectorXd& variance_rad2, const Eigen::VectorXd& scatter_rad2,
+                       const PolygonAnalysis& a) {
   const auto list = [](const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); };
   std::vector<report::VariancePart> parts = {{"model", list(variance_rad2 - scatter_rad2)}};
   for (const auto& [part, share] : SharesOfReading(a)) parts.push_back({part, list(share * scatter_rad2)});

@@ -155,7 +155,8 @@ nlohmann::json ResultsOf(const TurntableAnalysis& a, const Scenario& scenario) {
   }
   if (!a.pointwise.empty()) json["equation_5"] = ToJson(a.pointwise);
   if (!a.pointwise.empty() && a.separation)
-    json["equation_5"]["u_parts"] = PartsOfScatter(NoiseShare(*a.separation, TurntableOf(scenario).ReadingNoise_rad()));
+    json["equation_5"]["u_parts"] =
+        PartsOfScatter(NoiseShare(*a.separation, TurntableOf(scenario).ReadingNoise_rad()));
   if (a.model) json["model"] = ToJson(*a.model);
   if (a.check) json["verification"] = ToJson(*a.check);
   if (!a.not_separated.empty()) json["not_separated"] = a.not_separated;
@@ -194,7 +195,8 @@ std::string SummaryOf(const TurntableAnalysis& a) {
 
 void AddTilt(const TurntableAnalysis& a, const Scenario& scenario, report::Evaluation& evaluation) {
   const TurntableSettings& bench = TurntableOf(scenario);
-  const report::ErrorMotionTexts tilt = EvaluateTilt(a.stops, bench.turntable_procedure.positions, *a.separation, bench.ReadingNoise_rad());
+  const report::ErrorMotionTexts tilt =
+      EvaluateTilt(a.stops, bench.turntable_procedure.positions, *a.separation, bench.ReadingNoise_rad());
   if (!tilt.json.empty()) evaluation.results["iso230_7"] = tilt.json;
   evaluation.summary += tilt.text;
 }

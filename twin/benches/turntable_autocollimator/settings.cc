@@ -61,7 +61,8 @@ void AddCollimator(Keys& keys, CollimatorSettings& s) {
   t.Add("x_per_kelvin", kArcsec, Within(100), &s.x_per_kelvin_rad, "zero of x, against environment.reference_degC");
   t.Add("y_per_kelvin", kArcsec, Within(100), &s.y_per_kelvin_rad, "zero of y, likewise");
   t.Add("deadband", kArcsec, Positive(3600), &s.deadband_rad, "x that its servo takes for zero (polygon)");
-  t.Add("frames", kPure, {1, 100000}, &s.frames, "of its camera, whose mean is one reading; noise_arcsec is of one");
+  t.Add("frames", kPure, {1, 100000}, &s.frames,
+        "of its camera, whose mean is one reading; noise_arcsec is of one");
   t.Add("frame", kSecond, Positive(60), &s.frame_s, "from one of these to the next");
 }
 

@@ -61,7 +61,8 @@ const NoiseCause* NextRepair(const Analysis& analysis, const NoiseView& view) {
   }
   // One step up and another one down leave clean noise as well, and are a single disturbed value.
   const auto disturbed = std::ranges::find(view.before, NoiseCause::Kind::kOutliers, &NoiseCause::kind);
-  if (picked && disturbed != view.before.end() && disturbed->log_bayes > analysis.found.joint_evidence) return &*disturbed;
+  if (picked && disturbed != view.before.end() && disturbed->log_bayes > analysis.found.joint_evidence)
+    return &*disturbed;
   for (const NoiseCause& cause : view.after) {
     // Single disturbed values are an effect of their own; other faults of the noise matter only if something was
     // chosen.

@@ -86,8 +86,8 @@ Eigen::VectorXd RelativeNoise(const std::vector<Reading>& used) {
   return (usual / Eigen::Map<const Eigen::ArrayXd>(samples.data(), std::ssize(samples))).sqrt();
 }
 
-/// Readings that are rounded err by no less than that, and all by the arithmetic of many turns. Where one is the mean of
-/// several, only what rounding repeats in all of them is left of it.
+/// Readings that are rounded err by no less than that, and all by the arithmetic of many turns. Where one is the
+/// mean of several, only what rounding repeats in all of them is left of it.
 void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Reading>& used) {
   Eigen::VectorXd shown_rad(std::ssize(used));
   for (std::size_t i = 0; i < used.size(); ++i) shown_rad[static_cast<Eigen::Index>(i)] = used[i].measured_rad;

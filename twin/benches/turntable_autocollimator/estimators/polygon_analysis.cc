@@ -12,10 +12,11 @@ namespace {
 
 std::vector<StatedScatter> StatedOf(const TurntableSettings& own) {
   constexpr std::size_t kEz = static_cast<std::size_t>(Component::kEz);
-  std::vector<StatedScatter> stated = {{"encoder.noise_arcsec", "noise", own.encoder.noise_rad},
-                                       {"encoder.step_arcsec", "quantisation", own.encoder.step_rad / std::sqrt(12.0)},
-                                       {"autocollimator.noise_arcsec", "noise", own.ReadingNoise_rad()},
-                                       {"turntable.repeatability.ez_arcsec", "repeatability", own.turntable.repeatability_sd[kEz]}};
+  std::vector<StatedScatter> stated = {
+      {"encoder.noise_arcsec", "noise", own.encoder.noise_rad},
+      {"encoder.step_arcsec", "quantisation", own.encoder.step_rad / std::sqrt(12.0)},
+      {"autocollimator.noise_arcsec", "noise", own.ReadingNoise_rad()},
+      {"turntable.repeatability.ez_arcsec", "repeatability", own.turntable.repeatability_sd[kEz]}};
   std::erase_if(stated, [](const StatedScatter& s) { return s.u_rad == 0.0; });
   return stated;
 }

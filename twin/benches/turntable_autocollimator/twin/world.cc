@@ -83,8 +83,7 @@ void TurntableWorld::SeatFace() {
 AutocollimatorReading TurntableWorld::Shown(Stream& noise, double noise_rad) {
   SeatFace();
   const TurntableMoment moment = Moment(next_reading_);
-  return path_.Look(moment, axes_.Look(), environment_.AboveReference_K(moment.now),
-                    Noise_rad(noise, noise_rad));
+  return path_.Look(moment, axes_.Look(), environment_.AboveReference_K(moment.now), Noise_rad(noise, noise_rad));
 }
 
 /// The mean of its frames is what is seen in the middle of them.
