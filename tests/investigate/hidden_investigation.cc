@@ -85,6 +85,19 @@ const char* ResultName(Result result) {
   return "";
 }
 
+namespace {
+
+double MinutesToGoal(const Investigation& investigation) {
+  double minutes = 0.0;
+  for (const Step& step : investigation.steps) {
+    minutes += step.minutes;
+    if (step.u_goal <= investigation.goal->u) break;
+  }
+  return minutes;
+}
+
+}  // namespace
+
 Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
                         InvestigationOptions options, const std::optional<Wish>& wish) {
   const auto begin = std::chrono::steady_clock::now();
@@ -100,8 +113,11 @@ Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Meas
   const std::vector<Step>& steps = judged.investigation.steps;
   judged.tied_at_first = steps.front().believed.size() > 1 && steps.front().believed.front().second < options.conclusive;
   judged.probability = judged.investigation.belief.Best().probability;
-  if (wish && judged.investigation.IsGoalMet())
-    judged.minutes_ratio = judged.investigation.minutes / (steps.front().minutes * std::ceil(wish->times * wish->times));
+  if (wish && judged.investigation.IsGoalMet()) {
+    const double repeated_min = steps.front().minutes * std::ceil(wish->times * wish->times);
+    judged.to_wish_ratio = MinutesToGoal(judged.investigation) / repeated_min;
+    judged.minutes_ratio = judged.investigation.minutes / repeated_min;
+  }
   judged.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return judged;
 }

@@ -32,7 +32,7 @@ struct ScoreOptions {
 struct Counts {
   std::map<Result, int> of;
   int cases = 0, right = 0, tied = 0, tied_right = 0, sure_and_wrong = 0;
-  std::vector<double> minutes_ratios;
+  std::vector<double> to_wish_ratios, minutes_ratios;
 };
 
 void Count(const Judged& judged, Counts& counts) {
@@ -41,7 +41,10 @@ void Count(const Judged& judged, Counts& counts) {
   counts.right += judged.IsRight();
   counts.tied += judged.tied_at_first;
   counts.tied_right += judged.tied_at_first && judged.IsRight();
-  if (std::isfinite(judged.minutes_ratio)) counts.minutes_ratios.push_back(judged.minutes_ratio);
+  if (std::isfinite(judged.minutes_ratio)) {
+    counts.to_wish_ratios.push_back(judged.to_wish_ratio);
+    counts.minutes_ratios.push_back(judged.minutes_ratio);
+  }
   counts.sure_and_wrong += judged.result == Result::kWrong && judged.probability > 0.95;
 }
 
@@ -115,15 +118,19 @@ void PrintSteps(const Investigation& investigation) {
   }
 }
 
+double MedianOf(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
 void PrintSummary(const ScoreOptions& options, Counts counts) {
   fmt::print("{}: right {} of {}, of those tied after the first run {} of {}, wrong above 0.95: {}\n",
              options.program.empty() ? options.bench : options.program, counts.right, counts.cases, counts.tied_right,
              counts.tied, counts.sure_and_wrong);
   for (const auto& [result, count] : counts.of) fmt::print("  {} {}\n", ResultName(result), count);
   if (counts.minutes_ratios.empty()) return;
-  std::ranges::sort(counts.minutes_ratios);
-  fmt::print("  goal met in {} cases, median minutes over those of the first run repeated: {:.2f}\n",
-             counts.minutes_ratios.size(), counts.minutes_ratios[counts.minutes_ratios.size() / 2]);
+  fmt::print("  goal met in {} cases, median minutes over those of the first run repeated: {:.2f}, with the cause told {:.2f}\n",
+             counts.minutes_ratios.size(), MedianOf(counts.to_wish_ratios), MedianOf(counts.minutes_ratios));
 }
 
 void Score(const ScoreOptions& options) {

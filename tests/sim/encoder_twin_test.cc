@@ -93,6 +93,14 @@ TEST(EncoderTwin, ShowsTheMeanOfAStopsReadingsAndTheNoiseTeachesItBetweenItsStep
   EXPECT_NEAR(rms_rad / (EncoderOf(scenario).device.noise_rad * std::sqrt(13.0 / 12.0) / 4.0), 1.0, 0.12);
 }
 
+TEST(EncoderTwin, ReadsOnceAtATimeInMotion) {
+  Scenario scenario = EncoderScenario("sweep");
+  scenario.noise_free = false;
+  const auto once = RunEncoderTwin(scenario).readings;
+  EncoderOf(scenario).encoder_procedure.readings_per_stop = 16;
+  EXPECT_EQ(RunEncoderTwin(scenario).readings[77].measured_rad, once[77].measured_rad);
+}
+
 TEST(EncoderTwin, AddsAnEmpiricalSignalToTheReadingsItNames) {
   Scenario scenario = EncoderScenario();
   EmpiricalSettings signal;

@@ -316,7 +316,23 @@ class Loop {
   }
 
   bool IsUseful(const Advice& a) const {
-    return (!AreCausesTold() && a.of_causes_bit >= kWorthMeasuring_bit) || a.of_goal_bit >= kWorthRefining_bit;
+    const bool tells = !AreCausesTold() && a.of_causes_bit >= kWorthMeasuring_bit && !ArePromisesVain();
+    return tells || a.of_goal_bit >= kWorthRefining_bit;
+  }
+
+  /// Runs that were to tell causes apart did not. Two that are all but one within the other promise a little each time,
+  /// for ever.
+  bool ArePromisesVain() const {
+    constexpr std::ptrdiff_t kPatience = 6;  // runs
+    constexpr double kKept = 0.2;
+    if (std::ssize(result_.steps) <= kPatience) return false;
+    double expected_bit = 0.0, gained_bit = 0.0;
+    for (auto step = result_.steps.end() - kPatience; step != result_.steps.end(); ++step) {
+      if (step->expected_bit < kWorthMeasuring_bit) return false;
+      expected_bit += step->expected_bit;
+      gained_bit += step->gained_bit;
+    }
+    return gained_bit < kKept * expected_bit;
   }
 
   /// A run that would tell something takes longer than there is.

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/benches/encoder_comparison/format.h"
@@ -68,21 +69,14 @@ void AddSpindle(Keys& keys, SpindleSettings& s) {
   t.Add("ripple_order", kPure, {1, 2000}, &s.ripple_order, "of the same");
 }
 
-/// @throws InputError if a stop is too short for its readings, or a mean of several is asked for where nothing
-/// stops.
+/// @throws InputError if a stop is too short for its readings.
 void CheckReadingsOfAStop(const ScenarioText& text, const EncoderProcedureSettings& p) {
-  if (p.readings_per_stop == 1) return;
-  const auto refuse = [&](const std::string& problem, const std::string& expected) {
-    throw InputError(text.Where("encoder_procedure.readings_per_stop", text.name() + ":1"), problem, expected);
-  };
-  if (p.kind != "stops")
-    refuse(fmt::format("encoder_procedure.readings_per_stop is {} in a {}", p.readings_per_stop, p.kind),
-           "1, or encoder_procedure.kind = \"stops\"");
-  if (p.readings_per_stop * p.read_s > p.stop_interval_s)
-    refuse(fmt::format("{} readings of {:.4g} s take longer than the {:.4g} s of a stop", p.readings_per_stop,
-                       p.read_s, p.stop_interval_s),
-           fmt::format("at most {:.0f}, or a longer encoder_procedure.stop_interval_s",
-                       std::floor(p.stop_interval_s / p.read_s)));
+  if (p.ReadingsAtOnce() == 1 || p.readings_per_stop * p.read_s <= p.stop_interval_s) return;
+  throw InputError(text.Where("encoder_procedure.readings_per_stop", text.name() + ":1"),
+                   fmt::format("{} readings of {:.4g} s take longer than the {:.4g} s of a stop", p.readings_per_stop,
+                               p.read_s, p.stop_interval_s),
+                   fmt::format("at most {:.0f}, or a longer encoder_procedure.stop_interval_s",
+                               std::max(1.0, std::floor(p.stop_interval_s / p.read_s))));
 }
 
 /// @throws InputError if the spindle would stand still within a pass, or several heads are read.

@@ -45,6 +45,9 @@ struct EncoderProcedureSettings {            // [encoder_procedure]
   double rest_s = 2.0;       // behind every pass
   double interval_s = 0.08;  // between readings
   int stamps = 1024;         // coast: lines of a turn whose times are taken
+
+  /// Whose mean one reading is.
+  int ReadingsAtOnce() const { return kind == "stops" ? readings_per_stop : 1; }
 };
 
 /// A spindle without its drive: phi'' = - s (friction + viscous w + drag w^2 + ripple cos(order phi)) + torque cos(order
@@ -69,8 +72,8 @@ struct EncoderSettings {
 /// count.
 inline DeviceSettings DeviceOfMeans(const EncoderSettings& s) {
   DeviceSettings device = s.device;
-  device.noise_rad /= std::sqrt(s.encoder_procedure.readings_per_stop);
-  device.resolution_rad /= std::sqrt(s.encoder_procedure.readings_per_stop);
+  device.noise_rad /= std::sqrt(s.encoder_procedure.ReadingsAtOnce());
+  device.resolution_rad /= std::sqrt(s.encoder_procedure.ReadingsAtOnce());
   return device;
 }
 

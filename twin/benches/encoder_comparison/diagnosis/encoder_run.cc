@@ -95,7 +95,7 @@ void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Re
   constexpr double kArithmetic_rad = 1e-12;  // where nothing else says what the noise is
   run.sigma_stated = bench.device.noise_known && bench.device.noise_rad > 0.0;
   const Eigen::VectorXd relative = RelativeNoise(used);
-  const double count = bench.encoder_procedure.readings_per_stop;
+  const double count = bench.encoder_procedure.ReadingsAtOnce();
   const double noise_rad = run.sigma_stated
                                ? DeviceOfMeans(bench).noise_rad
                                : std::max(EstimateNoise_rad(run.schedule, run.residual, relative), kArithmetic_rad);

@@ -30,7 +30,7 @@ double Quantised(double angle_rad, double step_rad) {
 /// Mean of what the device shows at a stop, each time with other noise and in its own steps.
 double ReadDevice_rad(const Scenario& scenario, int reading, double angle_rad) {
   const DeviceSettings& device = EncoderOf(scenario).device;
-  const auto count = static_cast<std::uint64_t>(EncoderOf(scenario).encoder_procedure.readings_per_stop);
+  const auto count = static_cast<std::uint64_t>(EncoderOf(scenario).encoder_procedure.ReadingsAtOnce());
   Stream stream(scenario.RunSeed(), "device.noise");
   stream.Seek(static_cast<std::uint64_t>(reading) * count);
   double sum_rad = 0.0;
@@ -43,7 +43,7 @@ double ReadDevice_rad(const Scenario& scenario, int reading, double angle_rad) {
 double ReferenceNoise(const Scenario& scenario, int reading) {
   const EncoderProcedureSettings& procedure = EncoderOf(scenario).encoder_procedure;
   if (procedure.reference_noise_rad == 0.0) return 0.0;
-  const auto count = static_cast<std::uint64_t>(procedure.readings_per_stop);
+  const auto count = static_cast<std::uint64_t>(procedure.ReadingsAtOnce());
   Stream stream(scenario.RunSeed(), "reference.noise");
   stream.Seek(static_cast<std::uint64_t>(reading) / procedure.heads_rad.size() * count);
   double noise_rad = 0.0;
