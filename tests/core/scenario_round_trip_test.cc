@@ -246,6 +246,10 @@ void MakeWholeTeethAndLines(Scenario& s) {
   // A spindle that coasts must not stop; tests/own_scenario has its keys.
   if (s.bench == kEncoderBench && EncoderOf(s).encoder_procedure.kind == "coast")
     EncoderOf(s).encoder_procedure.kind = "sweep";
+  if (s.bench == kEncoderBench) {
+    EncoderProcedureSettings& p = EncoderOf(s).encoder_procedure;
+    p.read_s = 0.5 * p.stop_interval_s / p.readings_per_stop;  // they have to fit into a stop
+  }
   if (s.bench == kHobBench) HobOf(s).table_encoder.lines = 5 * HobOf(s).hob_procedure.samples_per_turn;
   // Bodies and the closed form of what they do exclude each other; tests/own_scenario has every key of either.
   if (s.bench == kCircularBench) CircularOf(s).mechanics.fidelity = "kinematic";

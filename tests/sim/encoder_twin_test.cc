@@ -6,6 +6,7 @@
 
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/settings.h"
+#include "twin/core/errors.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
 
 namespace twinbench {
@@ -91,6 +92,12 @@ TEST(EncoderTwin, ShowsTheMeanOfAStopsReadingsAndTheNoiseTeachesItBetweenItsStep
   const double rms_rad = std::sqrt(squares / static_cast<double>(readings.size()));
   // A step adds 1/12 of its square to that of one reading. 576 readings: 3 % of the deviation; four of these.
   EXPECT_NEAR(rms_rad / (EncoderOf(scenario).device.noise_rad * std::sqrt(13.0 / 12.0) / 4.0), 1.0, 0.12);
+}
+
+TEST(EncoderTwin, HasNoMoreReadingsAtAStopThanFitIntoIt) {
+  const std::string text = "bench = \"encoder_comparison\"\n[encoder_procedure]\nstop_interval_s = 4.0\nread_s = 0.5\n";
+  EXPECT_NO_THROW(ParseScenario(text + "readings_per_stop = 8\n", "s.toml", "."));
+  EXPECT_THROW(ParseScenario(text + "readings_per_stop = 9\n", "s.toml", "."), InputError);
 }
 
 TEST(EncoderTwin, ReadsOnceAtATimeInMotion) {
