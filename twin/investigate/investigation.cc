@@ -339,7 +339,8 @@ class Loop {
   bool IsAnyLeftOut(double left_min) const {
     const double all_min = std::numeric_limits<double>::infinity();
     for (const Advice& a : plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, all_min)) {
-      if (a.minutes > left_min && (IsUseful(a) || (MayBeFaint() && a.worth > 0.0))) return true;
+      const bool repeats = AreCausesTold() && ShouldRepeat();
+      if (a.minutes > left_min && (IsUseful(a) || repeats || (MayBeFaint() && a.worth > 0.0))) return true;
     }
     return false;
   }
