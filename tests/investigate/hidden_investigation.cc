@@ -63,6 +63,15 @@ std::string AnswerOf(const Belief& belief) {
   return text + fmt::format(" | unlisted {:.3f}", belief.unlisted);
 }
 
+double MinutesToGoal(const Investigation& investigation) {
+  double minutes = 0.0;
+  for (const Step& step : investigation.steps) {
+    minutes += step.minutes;
+    if (step.u_goal <= investigation.goal->u) break;
+  }
+  return minutes;
+}
+
 }  // namespace
 
 const char* ResultName(Result result) {
@@ -84,19 +93,6 @@ const char* ResultName(Result result) {
   }
   return "";
 }
-
-namespace {
-
-double MinutesToGoal(const Investigation& investigation) {
-  double minutes = 0.0;
-  for (const Step& step : investigation.steps) {
-    minutes += step.minutes;
-    if (step.u_goal <= investigation.goal->u) break;
-  }
-  return minutes;
-}
-
-}  // namespace
 
 Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
                         InvestigationOptions options, const std::optional<Wish>& wish) {

@@ -16,11 +16,11 @@ namespace twinbench::investigate {
 namespace {
 
 Judged Hidden(hidden::Design design, const std::string& effect, const std::string& where, double rho,
-              double budget_min = 600.0) {
+              double budget_min = 600.0, std::uint64_t seed = 7, const std::optional<Wish>& wish = {}) {
   const hidden::SignatureScale scale(design, "");
   InvestigationOptions options;
   options.budget_min = budget_min;
-  return InvestigateHidden({effect, where, design}, 7, rho, scale, options);
+  return InvestigateHidden({effect, where, design}, seed, rho, scale, options, wish);
 }
 
 TEST(Investigate, TellsACauseThatTheFirstRunDoesNotTellFromOthers) {
@@ -101,33 +101,22 @@ TEST(Investigate, MakesReadingsLongerWhereNothingIsFound) {
 
 // The same wave without a name is sought on fewer periods: that is no evidence for it.
 TEST(Investigate, NamesARippleOfAnyPeriod) {
-  const hidden::SignatureScale scale(hidden::Design::kTurntable, "");
-  InvestigationOptions options;
-  options.budget_min = 600.0;
-  const Judged judged =
-      InvestigateHidden({"autocollimator_periodic", "y", hidden::Design::kTurntable}, 28001, 15.2, scale, options);
+  const Judged judged = Hidden(hidden::Design::kTurntable, "autocollimator_periodic", "y", 15.2, 600.0, 28001);
   EXPECT_EQ(judged.investigation.steps.front().believed.front().first, "autocollimator_periodic y") << judged.answer;
   EXPECT_EQ(judged.result, Result::kRight) << judged.answer;
 }
 
 // Which readings they meet no hypothesis says: a fit that followed them would be one to them.
 TEST(Investigate, GoesOnBesideSingleDisturbedReadings) {
-  const hidden::SignatureScale scale(hidden::Design::kTurntable, "");
-  InvestigationOptions options;
-  options.budget_min = 2000.0;
-  const Judged judged = InvestigateHidden({"outliers", "", hidden::Design::kTurntable}, 51006, 4.5, scale, options,
-                                          Wish{"turntable.ez_arcsec", 2.0});
+  const Judged judged =
+      Hidden(hidden::Design::kTurntable, "outliers", "", 4.5, 2000.0, 51006, Wish{"turntable.ez_arcsec", 2.0});
   EXPECT_EQ(judged.investigation.belief.Best().fit.hypothesis.Name(), "outliers") << judged.answer;
   EXPECT_TRUE(judged.investigation.IsGoalMet());
 }
 
 // The orders of one are counted in lines, those of the other in turns.
 TEST(Investigate, LeavesEachOfATieItsOwnOrder) {
-  const hidden::SignatureScale scale(hidden::Design::kSweepAllKnown, "");
-  InvestigationOptions options;
-  options.budget_min = 600.0;
-  const Judged judged =
-      InvestigateHidden({"interpolation", "", hidden::Design::kSweepAllKnown}, 28021, 10.7, scale, options);
+  const Judged judged = Hidden(hidden::Design::kSweepAllKnown, "interpolation", "", 10.7, 600.0, 28021);
   EXPECT_EQ(judged.result, Result::kRightTie) << judged.answer;
   EXPECT_GT(judged.probability, 0.3) << judged.answer;
 }

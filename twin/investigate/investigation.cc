@@ -338,8 +338,8 @@ class Loop {
   /// A run that would tell something takes longer than there is.
   bool IsAnyLeftOut(double left_min) const {
     const double all_min = std::numeric_limits<double>::infinity();
+    const bool repeats = AreCausesTold() && ShouldRepeat();
     for (const Advice& a : plans_->For(result_.belief, certainty_ ? &*certainty_ : nullptr, runs_, all_min)) {
-      const bool repeats = AreCausesTold() && ShouldRepeat();
       if (a.minutes > left_min && (IsUseful(a) || repeats || (MayBeFaint() && a.worth > 0.0))) return true;
     }
     return false;
@@ -503,15 +503,14 @@ class Loop {
   /// comes up anew is weighed by its evidence against that one's: the weights of others may stand for fits that are
   /// no good.
   Hypothesis AsMany(const Hypothesis& hypothesis) const {
-    const Open* most = nullptr;
+    const Hypothesis* of_as_many = nullptr;
     for (const Open& open : result_.belief.open) {
       const Hypothesis& other = open.fit.hypothesis;
       if (other.causes.size() != hypothesis.causes.size()) continue;
-      const bool is_better = !most || (other.IsNamed() == hypothesis.IsNamed() &&
-                                       most->fit.hypothesis.IsNamed() != hypothesis.IsNamed());
-      if (is_better) most = &open;
+      if (other.IsNamed() == hypothesis.IsNamed()) return other;
+      if (!of_as_many) of_as_many = &other;
     }
-    return most ? most->fit.hypothesis : result_.belief.Best().fit.hypothesis;
+    return of_as_many ? *of_as_many : result_.belief.Best().fit.hypothesis;
   }
 
   const Scenario& scenario_;

@@ -70,12 +70,13 @@ nlohmann::json PartsOf(const Eigen::VectorXd& variance_rad2, const Eigen::Vector
 /// The error's orders: both coefficients of each together.
 nlohmann::json ModelJson(const PolygonAnalysis& a) {
   nlohmann::json json = ToJson(a.closure->encoder);
+  const auto of_reading = SharesOfReading(a);
   for (std::size_t k = 0; k < json["terms"].size(); ++k) {
     const Eigen::Index at = 2 * a.closure->encoder.terms[k].order - 1;
     const double variance = a.closure->encoder.cov_rad2.diagonal().segment<2>(at).sum();
     const double scatter = variance > 0.0 ? a.coefficients_rad2.segment<2>(at).sum() / variance : 1.0;
     std::vector<std::pair<std::string, double>> shares = {{"model", 1.0 - scatter}};
-    for (const auto& [part, share] : SharesOfReading(a)) shares.emplace_back(part, share * scatter);
+    for (const auto& [part, share] : of_reading) shares.emplace_back(part, share * scatter);
     json["terms"][k]["u_parts"] = report::PartsJson(shares);
   }
   return json;
