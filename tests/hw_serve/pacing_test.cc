@@ -136,7 +136,12 @@ TEST(Pacing, ScansThatASlowClientMissesAreCountedAndSeenInTheTimeStamps) {
   EXPECT_GT(missed, 4 * 62500);
   iiod.Send("READ psd-adc16 overruns\n");
   iiod.Line();
-  EXPECT_NEAR(static_cast<double>(std::stoll(iiod.Line())), static_cast<double>(missed), 1.0);  // both are rounded
+  const std::int64_t counted = std::stoll(iiod.Line());
+  // More than the server keeps: what it missed until it was asked, on a busy machine again, lies before their end.
+  const Scans later = adc.Read(80000);
+  const std::int64_t missed_later = (later.stamps_ns.back() - before.stamps_ns.back()) / 16000 - 100 - 80000;
+  EXPECT_GE(counted, missed - 1);  // both are rounded
+  EXPECT_LE(counted, missed_later + 1);
 }
 
 TEST(Pacing, TwoClientsOfTheConverterSeeTheSameScans) {

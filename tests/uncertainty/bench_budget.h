@@ -6,14 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/twin_run.h"
+#include "tests/support/angle_benches.h"
 #include "twin/benches/registry.h"
 #include "twin/core/estimator.h"
-#include "twin/core/run_record.h"
-#include "twin/procedure/options.h"
 #include "twin/report/evaluation.h"
 #include "twin/uncertainty/budget.h"
-
 
 /// Runs of any bench, small enough for a test, and their budgets.
 namespace twinbench::test {
@@ -43,12 +40,6 @@ inline Scenario Small(const SmallBench& bench, const std::vector<std::string>& m
   std::vector<std::string> overrides = bench.overrides;
   overrides.insert(overrides.end(), more.begin(), more.end());
   return LoadScenario(ScenarioPath(bench.file), overrides);
-}
-
-inline std::vector<Reading> ReadingsOf(const Scenario& scenario) {
-  const auto record = RunRecord::CreateInMemory({"", "twin", scenario.seed, "", scenario.bench});
-  BenchOf(scenario).make_twin(scenario)->CarryOut(*record, [](const procedure::Progress&) {});
-  return record->Readings();
 }
 
 inline std::vector<uncertainty::Quantity> QuantitiesFrom(const Scenario& scenario, const std::vector<Reading>& readings,

@@ -149,7 +149,7 @@ std::vector<Cause> UnsizedOf(const Analysis& analysis, const std::vector<Cause>&
   term.log_posterior = term.log_with_unsized;
   for (const auto& [key, p] : PosteriorOf(term, families).named) {
     const auto alone = std::ranges::find_if(
-        suspects, [&key](const Cause& c) { return CauseKey(c.effect, c.where) == key; });
+        suspects, [&name = key](const Cause& c) { return CauseKey(c.effect, c.where) == name; });
     if (p < before.named[key] + kLeast || alone == suspects.end()) continue;
     unsized.push_back(*alone);
     unsized.back().probability = p;

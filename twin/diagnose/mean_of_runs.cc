@@ -82,14 +82,19 @@ double RepeatedByRounding(double noise) {
   return sum;
 }
 
+RoundingInMean RoundingOf(double step, double noise, double count) {
+  const double of_one = step * step / 12.0;
+  const double repeated = count > 1.0 && step > 0.0 ? step * step * RepeatedByRounding(noise / step) : of_one;
+  return {repeated, repeated + (of_one - repeated) / count};
+}
+
 void ScaleToMean(const std::vector<Reading>& used, LinearRun& run) {
   const int runs = RunsIn(used);
   if (runs == 1 || !run.sigma_stated) return;
   const double step = run.rounding;
   run.sigma = run.sigma.unaryExpr([=](double sigma) {
     const double noise = std::sqrt(std::max(sigma * sigma - step * step / 12.0, 0.0));
-    const double repeats = step > 0.0 ? step * step * RepeatedByRounding(noise / step) : 0.0;
-    return std::sqrt(repeats + (sigma * sigma - repeats) / runs);
+    return std::sqrt(noise * noise / runs + RoundingOf(step, noise, runs).all);
   });
 }
 

@@ -30,6 +30,14 @@ int RunsIn(const std::vector<Reading>& readings);
 /// @param noise  Standard deviation, in steps.
 double RepeatedByRounding(double noise);
 
+/// Variance by rounding in the mean of several readings of one place.
+struct RoundingInMean {
+  double repeated = 0.0;  // what is in each of them alike
+  double all = 0.0;       // that and what is left of the rest
+};
+/// @param noise  Standard deviation of one reading; like `step` in any unit, whose square the result has.
+RoundingInMean RoundingOf(double step, double noise, double count);
+
 /// Stated uncertainties become those of the mean. Where noise is smaller than the step of rounding, every run is
 /// rounded alike, and of the variance step^2 / 12 a part repeats and stays (RepeatedByRounding). Uncertainties that
 /// were estimated come from the mean itself.

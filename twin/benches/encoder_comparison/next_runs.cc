@@ -21,12 +21,13 @@ std::string Speeds(double first, double second) {
   return fmt::format("encoder_procedure.speeds_deg_s=[{:.6g}, {:.6g}]", first, second);
 }
 
-/// Heads on one ring, at whole degrees here: the ring's curve and what is read at one instant alike by all heads are two
-/// curves, and the heads' places shifts.
+/// Heads on one ring, at whole degrees here: the ring's curve and what is read at one instant alike by all heads
+/// are two curves, and the heads' places shifts.
 plan::ShiftDesign HeadsDesign(const std::vector<double>& heads_rad) {
   plan::ShiftDesign design;
   design.positions = 360;
-  for (const double head_rad : heads_rad) design.shifts.push_back(static_cast<int>(std::lround(head_rad / units::deg)));
+  for (const double head_rad : heads_rad)
+    design.shifts.push_back(static_cast<int>(std::lround(head_rad / units::deg)));
   design.sets = [](const std::vector<int>& heads_deg) {
     return std::vector{fmt::format("encoder_procedure.heads_deg=[{}]", fmt::join(heads_deg, ", "))};
   };
@@ -49,16 +50,21 @@ plan::ShiftDesign MountingsDesign(const EncoderProcedureSettings& p) {
   return design;
 }
 
-/// At every stop, as far as it is long enough: nobody repeats hours where seconds do.
+/// At every stop, as far as it is long enough.
 void AddLongerReadings(const EncoderProcedureSettings& p, std::vector<NextRun>& runs) {
-  constexpr int kTimes = 16;
   const int most = static_cast<int>(p.stop_interval_s / p.read_s),
-            count = std::min(kTimes * p.readings_per_stop, most);
-  if (p.kind != "stops" || count <= p.readings_per_stop) return;
-  runs.push_back({"longer-readings",
-                  fmt::format("the same stops, each the mean of {} readings", count),
-                  {fmt::format("encoder_procedure.readings_per_stop={}", count)},
-                  plan::kSameKind});
+            count = std::min(plan::kTimesTheReadings * p.readings_per_stop, most);
+  if (count <= p.readings_per_stop) return;
+  runs.push_back(plan::LongerReadings(fmt::format("the same stops, each the mean of {} readings", count),
+                                      "encoder_procedure.readings_per_stop", count));
+}
+
+/// In motion, as far as a reading's own time allows.
+void AddDenserReadings(const EncoderProcedureSettings& p, std::vector<NextRun>& runs) {
+  const double interval_s = std::max(p.read_s, p.interval_s / plan::kTimesTheReadings);
+  if (interval_s >= p.interval_s) return;
+  runs.push_back(plan::DenserReadings(fmt::format("the same motion, a reading every {:.3g} s", interval_s),
+                                      fmt::format("encoder_procedure.interval_s={:.9g}", interval_s)));
 }
 
 }  // namespace
@@ -99,7 +105,8 @@ std::vector<NextRun> NextRunsOf(const Scenario& scenario) {
        "the stops three times as long",
        {kStops, kForthAndBack, fmt::format("encoder_procedure.stop_interval_s={:.6g}", 3.0 * p.stop_interval_s)},
        plan::kSameKind}};
-  AddLongerReadings(p, runs);
+  if (p.kind == "stops") AddLongerReadings(p, runs);
+  if (p.kind == "sweep") AddDenserReadings(p, runs);
   return runs;
 }
 

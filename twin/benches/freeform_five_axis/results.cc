@@ -114,11 +114,25 @@ nlohmann::json VolumetricJson(const Unseen& unseen) {
 constexpr std::size_t kMapPoses = 100;
 constexpr std::array kMapKeys = {"dx_um", "dy_um", "dz_um"};
 
-/// The error of the tip at the first of the unseen poses, one by one, with its uncertainty. All of that is noise of
-/// quadrants and camera.
+/// Noise of quadrants and camera; of a published map what it is off by as well, for each of the first poses.
+nlohmann::json MapParts(const Unseen& unseen) {
+  if (!unseen.bias) return {{"noise", 1.0}};
+  nlohmann::json parts;
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    nlohmann::json& of = parts[kMapKeys[static_cast<std::size_t>(c)]];
+    for (std::size_t p = 0; p < std::min(kMapPoses, unseen.poses.size()); ++p) {
+      const double of_bias =
+          std::pow(unseen.bias->rms_um[c] / unseen.errors.u_um(c, static_cast<Eigen::Index>(p)), 2);
+      of["model"].push_back(of_bias);
+      of["noise"].push_back(1.0 - of_bias);
+    }
+  }
+  return parts;
+}
+
+/// The error of the tip at the first of the unseen poses, one by one, with its uncertainty.
 nlohmann::json MapJson(const Unseen& unseen) {
-  nlohmann::json map;
-  if (!unseen.bias) map["u_parts"] = {{"noise", 1.0}};
+  nlohmann::json map = {{"u_parts", MapParts(unseen)}};
   for (std::size_t p = 0; p < std::min(kMapPoses, unseen.poses.size()); ++p) {
     const auto& at = unseen.poses[p].at;
     const auto k = static_cast<Eigen::Index>(p);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "twin/benches/hob_transmission/bench.h"
@@ -9,12 +10,37 @@
 #include "twin/plan/shift_sets.h"
 
 namespace twinbench::benches::hob {
+namespace {
+
+/// Samples that the counter card's FIFO holds between two looks of the computer, at the fastest pass; half of it is
+/// for a look that comes late.
+double MostSamplesPerTurn(const HobSettings& own) {
+  constexpr double kOfTheFifo = 0.5;
+  const HobProcedureSettings& p = own.hob_procedure;
+  const double hob_rad_s = *std::max_element(p.hob_speeds_rad_s.begin(), p.hob_speeds_rad_s.end());
+  const double table_turns_s = hob_rad_s / units::turn * own.transmission.hob_starts / own.transmission.gear_teeth;
+  return kOfTheFifo * p.fifo_samples / (p.poll_s * table_turns_s);
+}
+
+/// More of the lines that the ring has, evenly spaced.
+void AddDenserReadings(const HobSettings& own, std::vector<plan::NextRun>& runs) {
+  const int now = own.hob_procedure.samples_per_turn, lines = own.table_encoder.lines;
+  const double most = std::min(plan::kTimesTheReadings * static_cast<double>(now), MostSamplesPerTurn(own));
+  int samples = lines;
+  for (int of = 1; samples > most || lines % of != 0; ++of) samples = lines / of;
+  if (samples <= now) return;
+  runs.push_back(plan::DenserReadings(fmt::format("the same motion, {} samples a turn", samples),
+                                      fmt::format("hob_procedure.samples_per_turn={}", samples)));
+}
+
+}  // namespace
 
 std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario) {
-  const HobProcedureSettings& p = HobOf(scenario).hob_procedure;
+  const HobSettings& own = HobOf(scenario);
+  const HobProcedureSettings& p = own.hob_procedure;
   const double speed_rev_min = p.hob_speeds_rad_s.front() * 60.0 / (2.0 * units::kPi);
   const std::string two_turns = "hob_procedure.turns=2";
-  return {
+  std::vector<plan::NextRun> runs = {
       {"three-heads",
        "ring and head at three places",
        {"hob_procedure.heads_deg=[0, 97, 213]", "hob_procedure.passes=[1, -1]", two_turns},
@@ -34,16 +60,19 @@ std::vector<plan::NextRun> NextRunsOf(const Scenario& scenario) {
        {fmt::format("hob_procedure.heads_deg=[{:.6g}]", p.heads_rad.front() / units::deg),
         "hob_procedure.passes=[1, -1]", two_turns},
        plan::kSameKind}};
+  AddDenserReadings(own, runs);
+  return runs;
 }
 
-/// The gears' error by the table's angle and the ring's by where it stands under the head: two curves, and the places of
-/// the head are shifts. Heads stand at whole degrees here.
+/// The gears' error by the table's angle and the ring's by where it stands under the head: two curves, and the
+/// places of the head are shifts. Heads stand at whole degrees here.
 plan::ShiftDesign ShiftsOf(const Scenario& scenario) {
   const HobProcedureSettings& p = HobOf(scenario).hob_procedure;
   plan::ShiftDesign design;
   if (p.heads_rad.size() < 2) return design;
   design.positions = 360;
-  for (const double head_rad : p.heads_rad) design.shifts.push_back(static_cast<int>(std::lround(head_rad / units::deg)));
+  for (const double head_rad : p.heads_rad)
+    design.shifts.push_back(static_cast<int>(std::lround(head_rad / units::deg)));
   design.sets = [](const std::vector<int>& heads_deg) {
     return std::vector{fmt::format("hob_procedure.heads_deg=[{}]", fmt::join(heads_deg, ", "))};
   };

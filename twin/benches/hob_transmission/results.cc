@@ -44,7 +44,7 @@ nlohmann::json ToJson(const HarmonicSeries& series) {
   return json;
 }
 
-nlohmann::json ToJson(const std::vector<OrderComparison>& comparisons) {
+nlohmann::json ToJson(const std::vector<OrderComparison>& comparisons, const ComparedParts& parts) {
   nlohmann::json json = nlohmann::json::array();
   for (const OrderComparison& c : comparisons) {
     json.push_back({{"order", c.order},
@@ -55,10 +55,13 @@ nlohmann::json ToJson(const std::vector<OrderComparison>& comparisons) {
                     {"u_amplitude_difference_arcsec", report::Arcsec(c.u_amplitude_difference_rad)},
                     {"phase_difference_rad", report::In(1.0, c.phase_difference_rad)},
                     {"u_phase_difference_rad", report::In(1.0, c.u_phase_difference_rad)},
-                    {"normalised_error", report::In(1.0, c.normalised_error)}});
+                    {"normalised_error", report::In(1.0, c.normalised_error)},
+                    {"u_parts", PartsOf(c, parts)}});
   }
   return json;
 }
+
+constexpr double kCountsNothing_rad2 = 0.0;
 
 /// Positions with turns, of one direction or (0) of both.
 std::vector<const PositionError*> UsedOf(const std::vector<PositionError>& positions, int direction) {
@@ -69,13 +72,23 @@ std::vector<const PositionError*> UsedOf(const std::vector<PositionError>& posit
   return used;
 }
 
+/// Of the first two heads, in the first direction of both.
+std::vector<const PositionError*> FirstTwoOf(const std::vector<PositionError>& positions) {
+  std::vector<const PositionError*> used = UsedOf(positions, 0);
+  std::erase_if(used, [first = used.front()->direction](const PositionError* p) { return p->direction != first; });
+  if (used.size() > 2) used.resize(2);
+  return used;
+}
+
 nlohmann::json ToJson(const DirectionResult& result, const HobAnalysis& a, const HobSettings& settings) {
   nlohmann::json json = ToJson(result.transmission);
   json["u_parts"] = PartsOf(UsedOf(a.positions, result.direction), StepVariance_rad2(settings, false), true);
   json["direction"] = result.direction;
   json["lines"] = result.lines;
-  if (!result.against_interferometer.empty())
-    json["against_interferometer"] = ToJson(result.against_interferometer);
+  if (result.against_interferometer.empty()) return json;
+  const nlohmann::json by_interferometer =
+      PartsOf(UsedOf(a.transmission_by_interferometer, result.direction), kCountsNothing_rad2, false);
+  json["against_interferometer"] = ToJson(result.against_interferometer, {json["u_parts"], by_interferometer});
   return json;
 }
 
@@ -104,7 +117,7 @@ nlohmann::json NotSeparable(const HobAnalysis& a) {
   return lost;
 }
 
-nlohmann::json TwoPositionsJson(const separate::hob::TwoPositions& two) {
+nlohmann::json TwoPositionsJson(const separate::hob::TwoPositions& two, const nlohmann::json& parts) {
   const auto order_1 = [](const Coefficient& c) {
     return nlohmann::json{{"amplitude_arcsec", report::Arcsec(Amplitude(c))},
                           {"u_amplitude_arcsec", report::Arcsec(AmplitudeUncertainty(c))},
@@ -113,7 +126,8 @@ nlohmann::json TwoPositionsJson(const separate::hob::TwoPositions& two) {
   };
   return {{"noise_factor", report::In(1.0, two.noise_factor)},
           {"table_encoder_order_1", order_1(two.encoder)},
-          {"transmission_order_1", order_1(two.transmission)}};
+          {"transmission_order_1", order_1(two.transmission)},
+          {"u_parts", PartsOfOrder(parts, 1)}};
 }
 
 /// rms of what the turns' fits left over, over all positions.
@@ -138,8 +152,26 @@ nlohmann::json SeparationJson(const HobAnalysis& a, const HobSettings& settings)
   json["table_encoder"]["u_parts"] = PartsOf(UsedOf(a.positions, 0), StepVariance_rad2(settings, false), true);
   for (const DirectionResult& direction : a.directions)
     json["transmission"].push_back(ToJson(direction, a, settings));
-  if (a.two_positions) json["two_positions"] = TwoPositionsJson(*a.two_positions);
+  if (a.two_positions)
+    json["two_positions"] = TwoPositionsJson(
+        *a.two_positions, PartsOf(FirstTwoOf(a.positions), StepVariance_rad2(settings, false), false));
   return json;
+}
+
+void AddInterferometer(const HobAnalysis& a, const HobSettings& settings, nlohmann::json& json) {
+  const auto parts_of = [&](const std::vector<PositionError>& positions, const HarmonicSeries& mean) {
+    return WithStandard(
+        PartsOf(UsedOf(positions, 0), StepVariance_rad2(settings, a.is_interferometer_at_rest), false), mean,
+        settings.interferometer.u_calibrator_rad);
+  };
+  const nlohmann::json of_heads = json["separation"]["table_encoder"]["u_parts"],
+                       of_all = parts_of(a.by_interferometer, a.encoder_by_interferometer);
+  json["table_encoder_by_interferometer"] = ToJson(a.encoder_by_interferometer);
+  json["table_encoder_by_interferometer"]["u_parts"] = of_all;
+  json["table_encoder_against_interferometer"] = ToJson(a.encoder_against_interferometer, {of_heads, of_all});
+  if (a.is_interferometer_at_rest) return;
+  json["table_encoder_against_one_place"] =
+      ToJson(a.encoder_against_one_place, {of_heads, parts_of(a.by_one_place, a.encoder_by_one_place)});
 }
 
 nlohmann::json ResultsOf(const HobAnalysis& a, const HobSettings& settings) {
@@ -152,13 +184,7 @@ nlohmann::json ResultsOf(const HobAnalysis& a, const HobSettings& settings) {
   json["separation"] = SeparationJson(a, settings);
   if (!a.encoder_by_interferometer.orders.empty()) {
     json["interferometer"] = a.is_interferometer_at_rest ? "at_rest" : "in_motion";
-    json["table_encoder_by_interferometer"] = ToJson(a.encoder_by_interferometer);
-    json["table_encoder_by_interferometer"]["u_parts"] =
-        WithStandard(PartsOf(UsedOf(a.by_interferometer, 0),
-                             StepVariance_rad2(settings, a.is_interferometer_at_rest), false),
-                     a.encoder_by_interferometer, settings.interferometer.u_calibrator_rad);
-    json["table_encoder_against_interferometer"] = ToJson(a.encoder_against_interferometer);
-    if (!a.is_interferometer_at_rest) json["table_encoder_against_one_place"] = ToJson(a.encoder_against_one_place);
+    AddInterferometer(a, settings, json);
   }
   return json;
 }
@@ -268,7 +294,8 @@ report::CurveScore CurveOf(const std::string& name, const HarmonicSeries& series
 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   const HobAnalysis analysis = AnalyseHob(readings, scenario, estimator);
-  const nlohmann::json separation = analysis.separation ? SeparationJson(analysis, HobOf(scenario)) : nlohmann::json();
+  const nlohmann::json separation =
+      analysis.separation ? SeparationJson(analysis, HobOf(scenario)) : nlohmann::json();
   return {ResultsOf(analysis, HobOf(scenario)), separation, analysis.not_separated, SummaryOf(analysis)};
 }
 

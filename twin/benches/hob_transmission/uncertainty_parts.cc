@@ -35,8 +35,7 @@ OfOrder Of(const PositionError& position, int order, double of_steps_rad2) {
   // White samples: 2 / N of their variance in either part of C.
   const double per_sample = 2.0 / position.samples;
   const bool within = position.scatter == separate::harmonics::ScatterSource::kWithinTurn;
-  const double white =
-      within ? scatter : std::min(scatter, per_sample * std::pow(position.residual_rms_rad, 2));
+  const double white = within ? scatter : std::min(scatter, per_sample * std::pow(position.residual_rms_rad, 2));
   parts.steps = std::min(white, per_sample * of_steps_rad2);
   parts.noise = white - parts.steps;
   parts.repeatability = scatter - white;
@@ -77,6 +76,29 @@ nlohmann::json PartsOf(const std::vector<const PositionError*>& positions, doubl
     second.variance.push_back(floors);
   }
   return report::PartsJson(total, {noise, steps, repeatability, drift, second});
+}
+
+nlohmann::json PartsOfOrder(const nlohmann::json& parts, int order) {
+  const auto k = static_cast<std::size_t>(order - 1);
+  nlohmann::json of_order = nlohmann::json::object();
+  for (const auto& [name, shares] : parts.items()) {
+    if (k < shares.size() && shares[k].is_number()) of_order[name] = shares[k];
+  }
+  return of_order;
+}
+
+nlohmann::json PartsOf(const separate::hob::OrderComparison& comparison, const ComparedParts& parts) {
+  const double estimated = comparison.estimated.cov.trace(), reference = comparison.reference.cov.trace(),
+               all = estimated + reference;
+  nlohmann::json shares = nlohmann::json::object();
+  const auto add = [&](const nlohmann::json& of_series, double weight) {
+    const nlohmann::json of_order = PartsOfOrder(of_series, comparison.order);
+    for (const auto& [name, share] : of_order.items())
+      shares[name] = shares.value(name, 0.0) + weight * share.get<double>();
+  };
+  add(parts.estimated, estimated / all);
+  add(parts.reference, reference / all);
+  return shares;
 }
 
 nlohmann::json WithStandard(nlohmann::json parts, const HarmonicSeries& series, double u_standard_rad) {

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include "twin/benches/hob_transmission/estimators/hob_bench.h"
 #include "twin/benches/hob_transmission/settings.h"
 
 namespace twinbench::benches::hob {
 
-/// Variance of a sample by the steps in which the rings count: that of the hob as it counts in the table's angle, and
-/// at rest, where no edge of the table's ring is waited for, that of the table as well [rad^2].
+/// Variance of a sample by the steps in which the rings count: that of the hob as it counts in the table's angle,
+/// and at rest, where no edge of the table's ring is waited for, that of the table as well [rad^2].
 double StepVariance_rad2(const HobSettings& settings, bool is_at_rest);
 
 /// `u_parts` of a series that is made of these positions, lists by order: noise of the samples about the fits of
@@ -19,6 +19,16 @@ nlohmann::json PartsOf(const std::vector<const separate::hob::PositionError*>& p
 
 /// The same of a series whose variance has that of a calibrator besides.
 /// @param parts  Without it.
-nlohmann::json WithStandard(nlohmann::json parts, const separate::hob::HarmonicSeries& series, double u_standard_rad);
+nlohmann::json WithStandard(nlohmann::json parts, const separate::hob::HarmonicSeries& series,
+                            double u_standard_rad);
+
+/// Of one order of two series that share nothing: of the difference of their amplitudes, or of their phases.
+struct ComparedParts {
+  nlohmann::json estimated, reference;  // PartsOf
+};
+nlohmann::json PartsOf(const separate::hob::OrderComparison& comparison, const ComparedParts& parts);
+
+/// One order of lists by order: numbers.
+nlohmann::json PartsOfOrder(const nlohmann::json& parts, int order);
 
 }  // namespace twinbench::benches::hob

@@ -27,13 +27,11 @@ double WideSweep_arcsec(const RotarySettings& own) {
   return std::min(kTimes * own.procedure.sweep_rad, widest_rad) / units::arcsec;
 }
 
-/// Scans cost next to no time beside the moves: with sixteen times as many their noise is a quarter.
+/// Scans cost next to no time beside the moves.
 NextRun LongerReadings(const RotarySettings& own) {
-  constexpr int kTimes = 16, kMost = 10'000'000;
-  return {"longer-readings",
-          "the same run, every reading the mean of sixteen times as many scans",
-          {fmt::format("adc.samples={}", std::min(kMost / kTimes, own.adc.samples) * kTimes)},
-          plan::kSameKind};
+  constexpr int kMost = 10'000'000;
+  return plan::LongerReadings("the same run, every reading the mean of sixteen times as many scans", "adc.samples",
+                              std::min(kMost / plan::kTimesTheReadings, own.adc.samples) * plan::kTimesTheReadings);
 }
 
 /// Two set-ups of the circle, forth and back: the least that leaves something to find causes by.

@@ -41,13 +41,10 @@ NextRun OffCentre(const TurntableProcedureSettings& p) {
           plan::kOtherKind};
 }
 
-/// Nobody repeats hours where seconds do.
 NextRun LongerReadings(const CollimatorSettings& c) {
-  constexpr int kTimes = 16;
-  return {"longer-readings",
-          fmt::format("the same stops, each reading the mean of {} frames", kTimes * c.frames),
-          {fmt::format("autocollimator.frames={}", kTimes * c.frames)},
-          plan::kSameKind};
+  const int frames = plan::kTimesTheReadings * c.frames;
+  return plan::LongerReadings(fmt::format("the same stops, each reading the mean of {} frames", frames),
+                              "autocollimator.frames", frames);
 }
 
 /// Circles with a polygon: there is nothing to sweep it against, and no teeth to shift.

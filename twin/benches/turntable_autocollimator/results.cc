@@ -30,6 +30,7 @@ using separate::turntable::PointStatus;
 using separate::turntable::PointwiseError;
 using separate::turntable::Roll;
 using separate::turntable::RollStatus;
+using separate::turntable::SourceVariances;
 using separate::turntable::TurntableAnalysis;
 // Besides those below.
 using turntable::CurveOf;
@@ -51,11 +52,32 @@ nlohmann::json PartsOf(const AngleSeries& series, const IndexingSeparation& s, d
   const auto list = [](const Eigen::VectorXd& variance) {
     return std::vector<double>(variance.begin(), variance.end());
   };
-  return report::PartsJson(list(series.cov_rad2.diagonal()),
-                           {{"noise", list(of_noise * series.of_readings_rad2)},
-                            {"repeatability", list((1.0 - of_noise) * series.of_readings_rad2)},
-                            {"roll", list(series.of_roll_rad2)},
-                            {"standard", list(series.of_teeth_rad2)}});
+  const Eigen::VectorXd all = series.cov_rad2.diagonal(), of_roll = series.sources->of_roll_rad.cwiseAbs2();
+  const auto& teeth = series.sources->of_teeth_rad2;
+  const Eigen::VectorXd of_teeth = teeth ? teeth->diagonal() : Eigen::VectorXd::Zero(all.size());
+  const Eigen::VectorXd of_readings = (all - of_roll - of_teeth).cwiseMax(0.0);
+  return report::PartsJson(list(all), {{"noise", list(of_noise * of_readings)},
+                                       {"repeatability", list((1.0 - of_noise) * of_readings)},
+                                       {"roll", list(of_roll)},
+                                       {"standard", list(of_teeth)}});
+}
+
+nlohmann::json PartsOf(const SourceVariances& v, double of_noise) {
+  const double all = v.readings + v.roll + v.teeth;
+  return report::PartsJson({{"noise", of_noise * v.readings / all},
+                            {"repeatability", (1.0 - of_noise) * v.readings / all},
+                            {"roll", v.roll / all},
+                            {"standard", v.teeth / all}});
+}
+
+/// Of its terms. A series of unknown uncertainty has that of its scatter about the model.
+nlohmann::json ModelJson(const HarmonicModel& model, double of_noise) {
+  nlohmann::json json = ToJson(model);
+  if (model.of_amplitudes_rad2.empty()) json["u_parts"] = PartsOfScatter(of_noise);
+  for (std::size_t k = 0; k < model.of_amplitudes_rad2.size(); ++k)
+    json["terms"][k]["u_parts"] = {{"amplitude_arcsec", PartsOf(model.of_amplitudes_rad2[k], of_noise)},
+                                   {"phase_deg", PartsOf(model.of_phases_rad2[k], of_noise)}};
+  return json;
 }
 
 nlohmann::json ToJson(const Roll& roll) {
@@ -154,10 +176,9 @@ nlohmann::json ResultsOf(const TurntableAnalysis& a, const Scenario& scenario) {
     json["before"] = ToJson(a.before);
   }
   if (!a.pointwise.empty()) json["equation_5"] = ToJson(a.pointwise);
-  if (!a.pointwise.empty() && a.separation)
-    json["equation_5"]["u_parts"] =
-        PartsOfScatter(NoiseShare(*a.separation, TurntableOf(scenario).ReadingNoise_rad()));
-  if (a.model) json["model"] = ToJson(*a.model);
+  const double of_noise = a.separation ? NoiseShare(*a.separation, TurntableOf(scenario).ReadingNoise_rad()) : 0.0;
+  if (!a.pointwise.empty() && a.separation) json["equation_5"]["u_parts"] = PartsOfScatter(of_noise);
+  if (a.model) json["model"] = ModelJson(*a.model, of_noise);
   if (a.check) json["verification"] = ToJson(*a.check);
   if (!a.not_separated.empty()) json["not_separated"] = a.not_separated;
   return json;
@@ -254,7 +275,8 @@ report::CurveScore CurveOf(const HarmonicModel& model, const ModelCheck& check, 
 report::Evaluation Evaluate(const Scenario& scenario, const std::vector<Reading>& readings, Estimator estimator) {
   if (TurntableOf(scenario).HasPolygon()) return EvaluatePolygon(scenario, readings, estimator);
   const TurntableAnalysis analysis = AnalyseTurntable(readings, scenario, estimator);
-  const nlohmann::json separation = analysis.separation ? SeparationJson(*analysis.separation, scenario) : nlohmann::json();
+  const nlohmann::json separation =
+      analysis.separation ? SeparationJson(*analysis.separation, scenario) : nlohmann::json();
   report::Evaluation evaluation{ResultsOf(analysis, scenario), separation, analysis.not_separated,
                                 SummaryOf(analysis)};
   if (analysis.separation) AddTilt(analysis, scenario, evaluation);
@@ -269,7 +291,8 @@ report::ScoredRun ScoreRun(const Scenario& scenario, const std::vector<Reading>&
   if (!analysis.separation) throw InputError("the run", analysis.not_separated, "a run with a full circle");
   const nlohmann::json& turntable = truth.at("turntable");
   const double dof = DofOf(*analysis.separation);
-  std::vector<report::CurveScore> curves = {WithDof(CurveOf("turntable", analysis.separation->turntable, turntable), dof)};
+  std::vector<report::CurveScore> curves = {
+      WithDof(CurveOf("turntable", analysis.separation->turntable, turntable), dof)};
   const AngleSeries& multitooth = analysis.separation->multitooth;
   if (!multitooth.position_rad.empty())
     curves.push_back(WithDof(CurveOf("multitooth", multitooth, truth.at("multitooth")), dof));

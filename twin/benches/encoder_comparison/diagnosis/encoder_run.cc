@@ -99,10 +99,9 @@ void SetNoise(LinearRun& run, const EncoderSettings& bench, const std::vector<Re
   const double noise_rad = run.sigma_stated
                                ? DeviceOfMeans(bench).noise_rad
                                : std::max(EstimateNoise_rad(run.schedule, run.residual, relative), kArithmetic_rad);
-  const double of_one = std::sqrt(count) * noise_rad / step_rad, all = step_rad * step_rad / 12.0;
-  const double repeated = count > 1.0 && step_rad > 0.0 ? step_rad * step_rad * RepeatedByRounding(of_one) : all;
-  run.rounding = std::sqrt(12.0 * repeated);
-  const double rounded_rad = std::sqrt(repeated + (all - repeated) / count);
+  const RoundingInMean rounding_rad2 = RoundingOf(step_rad, std::sqrt(count) * noise_rad, count);
+  run.rounding = std::sqrt(12.0 * rounding_rad2.repeated);
+  const double rounded_rad = std::sqrt(rounding_rad2.all);
   const auto and_rounding = [=](double own_rad) { return std::hypot(own_rad, rounded_rad); };
   run.sigma = relative * noise_rad;
   run.sigma = run.sigma_stated ? run.sigma.unaryExpr(and_rounding).eval() : run.sigma.cwiseMax(rounded_rad).eval();

@@ -69,7 +69,7 @@ HarmonicSeries WithCalibrator(HarmonicSeries series, double u_calibrator_rad) {
 
 void AddDirections(const std::vector<HobSample>& samples, const TransmissionOptions& options,
                    const std::vector<int>& orders, HobAnalysis& analysis) {
-  std::vector<PositionError> seen;
+  std::vector<PositionError>& seen = analysis.transmission_by_interferometer;
   if (HasInterferometer(samples)) seen = MeasurePositions(samples, options, Signal::kInterferometer);
   for (const int direction : analysis.separation->directions) {
     DirectionResult result;
@@ -93,8 +93,9 @@ void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions
       CompareEncoder(*analysis.separation, analysis.encoder_by_interferometer, orders);
   if (analysis.is_interferometer_at_rest) return;
   std::erase_if(seen, [first = samples.front().setup](const PositionError& p) { return p.setup != first; });
-  analysis.encoder_against_one_place =
-      CompareEncoder(*analysis.separation, WithCalibrator(EncoderByInterferometer(seen), u_calibrator_rad), orders);
+  analysis.encoder_by_one_place = WithCalibrator(EncoderByInterferometer(seen), u_calibrator_rad);
+  analysis.by_one_place = std::move(seen);
+  analysis.encoder_against_one_place = CompareEncoder(*analysis.separation, analysis.encoder_by_one_place, orders);
 }
 
 }  // namespace

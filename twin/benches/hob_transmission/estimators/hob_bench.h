@@ -31,12 +31,15 @@ struct HobAnalysis {
   std::optional<HeadSeparation> separation;   // rigorous
   std::optional<TwoPositions> two_positions;  // published: the first two heads, in the first direction of both
   std::vector<DirectionResult> directions;
-  HarmonicSeries encoder;                    // psi in the encoder's own angle; orders not seen are NaN
-  HarmonicSeries encoder_by_interferometer;  // empty without one
+  HarmonicSeries encoder;                        // psi in the encoder's own angle; orders not seen are NaN
+  HarmonicSeries encoder_by_interferometer;      // empty without one
   std::vector<PositionError> by_interferometer;  // what that is a mean of
+  std::vector<PositionError> transmission_by_interferometer;  // empty without one, and where it is read at rest
   std::vector<OrderComparison> encoder_against_interferometer;
   /// The same with the first place of the head alone, as published: errors of the interferometer that go with the
   /// table are in it, where the mean over the places turns them against each other.
+  HarmonicSeries encoder_by_one_place;
+  std::vector<PositionError> by_one_place;
   std::vector<OrderComparison> encoder_against_one_place;
   bool is_interferometer_at_rest = false;  // read from stop to stop, with one place of the head
   std::string not_separated;               // why there is no separation

@@ -51,14 +51,46 @@ Eigen::VectorXd LeftByOrders(const AngleSeries& series, int highest_order) {
     for (int k = 0; k <= highest_order; ++k) left[k] = rotated_rad.tail(n - 2 * k - 1).squaredNorm();
     return left;
   }
-  const Eigen::VectorXcd wave =
-      Fourier(static_cast<int>(n)).Forward(series.value_rad.cast<std::complex<double>>());
+  const Eigen::VectorXcd wave = Fourier(static_cast<int>(n)).Forward(series.value_rad.cast<std::complex<double>>());
   double sum = 0.0;
   for (Eigen::Index k = n / 2; k >= 0; --k) {
     if (k <= highest_order) left[k] = sum;
     sum += (2 * k == n ? 1.0 : 2.0) * std::norm(wave[k]) / static_cast<double>(n);
   }
   return left;
+}
+
+/// Derivatives of each term's amplitude and, behind all of them, of its phase times amplitude by the series.
+Eigen::MatrixXd Derivatives(const Eigen::VectorXd& coefficients_rad, const Eigen::MatrixXd& to_coefficients) {
+  const Eigen::Index terms = coefficients_rad.size() / 2;
+  Eigen::MatrixXd derivatives(to_coefficients.cols(), 2 * terms);
+  for (Eigen::Index k = 0; k < terms; ++k) {
+    const Eigen::Vector2d along = coefficients_rad.segment<2>(2 * k + 1).normalized(),
+                          across(along.y(), -along.x());
+    const auto by_series = to_coefficients.middleRows<2>(2 * k + 1).transpose();
+    derivatives.col(k) = by_series * along;
+    derivatives.col(terms + k) = by_series * across;
+  }
+  return derivatives;
+}
+
+SourceVariances SourcesOf(double variance, const SeriesSources& sources, const Eigen::VectorXd& derivative) {
+  SourceVariances of;
+  of.roll = std::pow(derivative.dot(sources.of_roll_rad), 2);
+  if (sources.of_teeth_rad2) of.teeth = derivative.dot(sources.of_teeth_rad2->Times(derivative).col(0));
+  of.readings = std::max(0.0, variance - of.roll - of.teeth);
+  return of;
+}
+
+void AddSources(const SeriesSources& sources, const Eigen::MatrixXd& derivatives, HarmonicModel& model) {
+  const Eigen::Index terms = std::ssize(model.terms);
+  for (Eigen::Index k = 0; k < terms; ++k) {
+    const HarmonicTerm& term = model.terms[static_cast<std::size_t>(k)];
+    const double u_across_rad = term.u_phase_rad * term.amplitude_rad;
+    model.of_amplitudes_rad2.push_back(
+        SourcesOf(term.u_amplitude_rad * term.u_amplitude_rad, sources, derivatives.col(k)));
+    model.of_phases_rad2.push_back(SourcesOf(u_across_rad * u_across_rad, sources, derivatives.col(terms + k)));
+  }
 }
 
 }  // namespace
@@ -104,12 +136,12 @@ HarmonicModel FitHarmonics(const AngleSeries& series, int highest_order) {
   model.cov_rad2 = to_coefficients * across_rad2;
   model.residual_rms_rad = std::sqrt(rest_rad.squaredNorm() / n);
   // Expected sum of squared residuals: trace of (1 - H) cov, with H = basis * to_coefficients.
-  const double expected_rad2 =
-      (cov_rad2.diagonal().sum() - basis.cwiseProduct(across_rad2).sum()) / left;
+  const double expected_rad2 = (cov_rad2.diagonal().sum() - basis.cwiseProduct(across_rad2).sum()) / left;
   model.u_unmodelled_rad = std::sqrt(std::max(0.0, mean_square_rad2 - expected_rad2));
   for (int k = 1; k <= highest_order; ++k)
     model.terms.push_back(
         TermOf(k, model.coefficients_rad.segment<2>(2 * k - 1), model.cov_rad2.block<2, 2>(2 * k - 1, 2 * k - 1)));
+  if (series.sources) AddSources(*series.sources, Derivatives(model.coefficients_rad, to_coefficients), model);
   return model;
 }
 

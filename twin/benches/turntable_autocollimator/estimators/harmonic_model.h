@@ -17,6 +17,11 @@ struct HarmonicTerm {
   double u_phase_rad = kNaN;  // first order: means little unless it is small
 };
 
+/// Variance of a number by what makes it uncertain.
+struct SourceVariances {
+  double readings = 0.0, roll = 0.0, teeth = 0.0;
+};
+
 struct CurvePoint {
   double value_rad = kNaN;
   double u_rad = kNaN;
@@ -28,6 +33,8 @@ struct HarmonicModel {
   Eigen::VectorXd coefficients_rad;  // constant, then cos and sin of each order
   Eigen::MatrixXd cov_rad2;
   std::vector<HarmonicTerm> terms;
+  std::vector<SourceVariances> of_amplitudes_rad2,
+      of_phases_rad2;              // one a term, phase times amplitude; empty: not known
   double residual_rms_rad = kNaN;  // at the positions
   double u_unmodelled_rad = 0.0;  // what the residuals have beyond the series' uncertainty, as a standard deviation
 
@@ -51,7 +58,8 @@ int MostHarmonics(int positions);
 HarmonicModel FitHarmonics(const AngleSeries& series, int highest_order);
 
 /// The highest order with the least corrected information criterion AICc (Hurvich and Tsai 1989), noise of unknown
-/// size assumed. The correction keeps it from using up all positions. Of a circle that lacks positions 200 at the most.
+/// size assumed. The correction keeps it from using up all positions. Of a circle that lacks positions 200 at the
+/// most.
 int ChooseHighestOrder(const AngleSeries& series);
 
 }  // namespace twinbench::separate::turntable

@@ -38,8 +38,8 @@ void JudgeNoise(const Eigen::VectorXd& residual_rad, double gamma_rad, IndexingS
       "the residuals are {:.2f} times what the noise explains: uncertainties are scaled", result.scale));
 }
 
-/// Covariance, by how many positions lie between, of what the turntable holds of the multi-tooth table: the part that
-/// looks alike at positions of the same remainder by the common steps, of a mean over the rows of teeth.
+/// Covariance, by how many positions lie between, of what the turntable holds of the multi-tooth table: the part
+/// that looks alike at positions of the same remainder by the common steps, of a mean over the rows of teeth.
 Eigen::VectorXd MultitoothLags(const StopGrid& grid, int common_steps, double u_multitooth_rad) {
   const double variance = u_multitooth_rad * u_multitooth_rad / static_cast<double>(grid.row_offset_rad.size());
   Eigen::VectorXd lags(grid.n);
@@ -87,17 +87,14 @@ AngleSeries MakeSeries(const ShiftFit& fit, const Eigen::VectorXd& unknowns, con
   series.position_rad = places.angle_rad;
   series.value_rad = unknowns(places.unknown);
   series.cov_rad2 = fit.Cofactor(places.unknown) * sources.of_reading_rad2;
-  series.of_readings_rad2 = series.cov_rad2.diagonal();
-  const Eigen::VectorXd of_roll_rad = sources.of_roll_rad(places.unknown);
-  series.cov_rad2.AddProduct(of_roll_rad);
-  series.of_roll_rad2 = of_roll_rad.cwiseAbs2();
-  series.of_teeth_rad2 = Eigen::VectorXd::Zero(series.value_rad.size());
+  series.sources = {sources.of_roll_rad(places.unknown)};
+  series.cov_rad2.AddProduct(series.sources->of_roll_rad);
   return series;
 }
 
 void AddTeeth(const CurveCovariance& of_teeth_rad2, AngleSeries& series) {
   series.cov_rad2.Add(of_teeth_rad2);
-  series.of_teeth_rad2 = of_teeth_rad2.diagonal();
+  series.sources->of_teeth_rad2 = of_teeth_rad2;
 }
 
 IndexingStatus StatusOf(const ShiftFit& fit, int n) {

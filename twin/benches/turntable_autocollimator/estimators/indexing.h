@@ -13,13 +13,18 @@
 /// Front door of the bench turntable_autocollimator: from readings to the indexing errors of both tables.
 namespace twinbench::separate::turntable {
 
+/// What the covariance of a series is the sum of, beside the scatter of the readings.
+struct SeriesSources {
+  Eigen::VectorXd of_roll_rad;                                  // change with one standard uncertainty of the roll
+  std::optional<CurveCovariance> of_teeth_rad2 = std::nullopt;  // of what stated teeth are counted into it
+};
+
 /// Values of one table where it was read, by its own angle, ascending in [0, 2 pi); zero mean.
 struct AngleSeries {
   std::vector<double> position_rad;
   Eigen::VectorXd value_rad;
   CurveCovariance cov_rad2;
-  // What its diagonal is made of; empty where that is not known:
-  Eigen::VectorXd of_readings_rad2 = {}, of_roll_rad2 = {}, of_teeth_rad2 = {};
+  std::optional<SeriesSources> sources = std::nullopt;  // not given: not known
 
   double U_rad(Eigen::Index i) const { return std::sqrt(cov_rad2(i, i)); }  // standard uncertainty
 };
