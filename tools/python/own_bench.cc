@@ -154,6 +154,8 @@ class Fixture : public twinbench::Fixture {
 }  // namespace own
 
 struct OwnRotaryBench::Devices {
+  explicit Devices(py::object all) : bench(std::move(all)) {}
+
   py::object bench;
   own::Clock clock{bench};
   own::Table target{bench, "target"}, reference{bench, "reference"};

@@ -82,8 +82,7 @@ std::vector<double> Distances(double farthest, double off, double wide) {
     if (distance > 0.0 && distance < farthest) distances.push_back(distance);
   }
   std::ranges::sort(distances);
-  const auto repeated = std::ranges::unique(distances);
-  distances.erase(repeated.begin(), repeated.end());
+  distances.erase(std::unique(distances.begin(), distances.end()), distances.end());
   return distances;
 }
 
