@@ -84,8 +84,8 @@ Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const 
 
 double WorthOf(const TakenRun& run, const TakenRun& first) {
   if (run.asked.sets == first.asked.sets) return 1.0;
-  if (run.asked.is_of_another_kind || run.linear.Rows() != first.linear.Rows()) return 0.0;
-  if (!diagnose::AreOfOnePlan(run.readings, first.readings)) return 0.0;
+  if (run.asked.is_of_another_kind) return 0.0;
+  if (!run.asked.is_denser && !diagnose::AreOfOnePlan(run.readings, first.readings)) return 0.0;
   return run.linear.sigma.array().square().inverse().sum() / first.linear.sigma.array().square().inverse().sum();
 }
 

@@ -19,6 +19,8 @@ struct NextRun {
   /// Under circumstances that the scenario's own run has not: speeds, dwells, temperature, distances. What looks
   /// like a known cause without being one need not do so there.
   bool is_of_another_kind = false;
+  /// The scenario's own motion, read at more places of it: what shows in one of the two shows in the other.
+  bool is_denser = false;
 };
 
 /// Of "longer-readings" and "denser": a quarter of the noise, where another run of the same time leaves 0.7 of it.
@@ -32,7 +34,7 @@ inline NextRun LongerReadings(std::string words, const std::string& key, int cou
 
 /// The same motion, read more often: `set` says how often.
 inline NextRun DenserReadings(std::string words, std::string set) {
-  return {"denser", std::move(words), {std::move(set)}, kSameKind};
+  return {"denser", std::move(words), {std::move(set)}, kSameKind, true};
 }
 
 }  // namespace twinbench::plan

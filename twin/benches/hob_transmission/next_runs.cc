@@ -26,8 +26,9 @@ double MostSamplesPerTurn(const HobSettings& own) {
 void AddDenserReadings(const HobSettings& own, std::vector<plan::NextRun>& runs) {
   const int now = own.hob_procedure.samples_per_turn, lines = own.table_encoder.lines;
   const double most = std::min(plan::kTimesTheReadings * static_cast<double>(now), MostSamplesPerTurn(own));
-  int samples = lines;
-  for (int of = 1; samples > most || lines % of != 0; ++of) samples = lines / of;
+  int every = 1;
+  while (lines % every != 0 || lines / every > most) ++every;
+  const int samples = lines / every;
   if (samples <= now) return;
   runs.push_back(plan::DenserReadings(fmt::format("the same motion, {} samples a turn", samples),
                                       fmt::format("hob_procedure.samples_per_turn={}", samples)));
