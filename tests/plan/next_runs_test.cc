@@ -1,5 +1,3 @@
-#include "twin/plan/next_run.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "tests/uncertainty/bench_budget.h"
 #include "twin/benches/registry.h"
+#include "twin/plan/next_run.h"
 
 namespace twinbench::plan {
 namespace {
@@ -47,16 +46,18 @@ TEST(NextRuns, OfASweepReadItAsOftenAsAReadingTakes) {
   EXPECT_EQ(runs.next.size(), 4 * runs.own.size()) << "every 0.02 s, not every 0.08 s";
   EXPECT_NEAR(ToSeconds(runs.next.back().time), ToSeconds(runs.own.back().time), 0.1);
   const std::string kind = "device.ez_arcsec";
-  EXPECT_NEAR(MeanVariance(runs.of_next, runs.next, kind) / MeanVariance(runs.scenario, runs.own, kind), 0.25, 0.03);
+  EXPECT_NEAR(MeanVariance(runs.of_next, runs.next, kind) / MeanVariance(runs.scenario, runs.own, kind), 0.25,
+              0.03);
 }
 
-/// 18000 lines, of which every third may be kept where the computer looks each 2 s, every fifteenth where it does each 10 s.
+/// 18000 lines, of which every third may be kept where the computer looks each 2 s, every fifteenth where it does
+/// each 10 s.
 TEST(NextRuns, OfATransmissionLeaveTheCounterTimeToBeEmptied) {
   for (const auto& [poll, times] : {std::pair{"2.0", 6000.0 / 720.0}, std::pair{"10.0", 1200.0 / 720.0}}) {
-    const Beside runs = RunsOf("hob_transmission.toml",
-                               {"mechanics.fidelity=kinematic", "hob_procedure.turns=1",
-                                std::string("hob_procedure.poll_s=") + poll},
-                               "denser");
+    const Beside runs = RunsOf(
+        "hob_transmission.toml",
+        {"mechanics.fidelity=kinematic", "hob_procedure.turns=1", std::string("hob_procedure.poll_s=") + poll},
+        "denser");
     const double count = static_cast<double>(runs.next.size());
     EXPECT_NEAR(count / static_cast<double>(runs.own.size()), times, 0.03 * times) << poll;
     EXPECT_TRUE(std::ranges::all_of(runs.next, [](const Reading& r) { return r.status == ReadingStatus::kOk; }));

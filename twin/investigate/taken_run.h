@@ -41,8 +41,9 @@ void StrikeOutliers(const diagnose::NoiseModel& found, TakenRun& run);
 /// shows other readings, it explains nothing.
 Eigen::VectorXd LeftBy(const Hypothesis& hypothesis, const TakenRun& run, const Means& means);
 
-/// How many runs like `first` it is worth for finding what is faint in one: how much less the noise of its readings is, at
-/// the same stops, or how many more of them there are in the same motion. 1 if it is such a run, 0 where the stops are others.
+/// How many runs like `first` it is worth for finding what is faint in one: how much less the noise of its readings
+/// is, at the same stops, or how many more of them there are in the same motion. 1 if it is such a run, 0 where the
+/// stops are others.
 double WorthOf(const TakenRun& run, const TakenRun& first);
 
 /// a' W b, W what is left when the free unknowns have taken their share.
