@@ -133,6 +133,36 @@ TEST(Parts, OfTheTeethAreTheStandards) {
   EXPECT_EQ(teeth->type, 'B');
 }
 
+/// Teeth and readings scatter alike from place to place: the orders of the model share as the curve does.
+TEST(Parts, OfAModelAreThoseOfItsCurve) {
+  const std::vector<Budget> budgets = BudgetsOf(
+      Small(SmallBenches()[1], {"turntable_procedure.positions=36", "multitooth.u_tooth_arcsec=0.1"}));
+  const double of_curve = ShareOf(budgets, "separation.turntable.ez_arcsec", "standard");
+  EXPECT_GT(of_curve, 0.2);
+  EXPECT_LT(of_curve, 0.8);
+  EXPECT_NEAR(ShareOf(budgets, "model.terms[].amplitude_arcsec", "standard"), of_curve, 0.1);
+  EXPECT_NEAR(ShareOf(budgets, "model.terms[].phase_deg", "standard"), of_curve, 0.1);
+}
+
+/// The published map's uncertainty holds what it is off by, which is more than its noise.
+TEST(Parts, OfAPublishedMapHoldWhatItIsOffBy) {
+  const Scenario scenario = Small(SmallBenches()[4]);
+  double largest = 0.0;
+  int of_map = 0;
+  for (const Quantity& q : test::QuantitiesFrom(scenario, test::ReadingsOf(scenario), Estimator::kPublished)) {
+    if (!KindOf(q.name).starts_with("error_map")) continue;
+    ++of_map;
+    double sum = 0.0;
+    for (const Part& part : q.parts) {
+      sum += part.share;
+      if (part.name == "model") largest = std::max(largest, part.share);
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-9) << q.name;
+  }
+  EXPECT_EQ(of_map, 300);
+  EXPECT_GT(largest, 0.5);
+}
+
 /// A machine that repeats to nothing leaves noise and quanta of the instruments.
 TEST(Parts, OfAMachineThatRepeatsAreNoiseAndQuanta) {
   const std::string kind = "errors.machine.squareness_arcsec";
