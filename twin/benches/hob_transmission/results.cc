@@ -72,14 +72,6 @@ std::vector<const PositionError*> UsedOf(const std::vector<PositionError>& posit
   return used;
 }
 
-/// Of the first two heads, in the first direction of both.
-std::vector<const PositionError*> FirstTwoOf(const std::vector<PositionError>& positions) {
-  std::vector<const PositionError*> used = UsedOf(positions, 0);
-  std::erase_if(used, [first = used.front()->direction](const PositionError* p) { return p->direction != first; });
-  if (used.size() > 2) used.resize(2);
-  return used;
-}
-
 nlohmann::json ToJson(const DirectionResult& result, const HobAnalysis& a, const HobSettings& settings) {
   nlohmann::json json = ToJson(result.transmission);
   json["u_parts"] = PartsOf(UsedOf(a.positions, result.direction), StepVariance_rad2(settings, false), true);
@@ -153,8 +145,8 @@ nlohmann::json SeparationJson(const HobAnalysis& a, const HobSettings& settings)
   for (const DirectionResult& direction : a.directions)
     json["transmission"].push_back(ToJson(direction, a, settings));
   if (a.two_positions)
-    json["two_positions"] = TwoPositionsJson(
-        *a.two_positions, PartsOf(FirstTwoOf(a.positions), StepVariance_rad2(settings, false), false));
+    json["two_positions"] = TwoPositionsJson(*a.two_positions, PartsOf(separate::hob::FirstTwoOf(a.positions),
+                                                                       StepVariance_rad2(settings, false), false));
   return json;
 }
 

@@ -23,16 +23,10 @@ bool HasTurns(const PositionError& position) {
   return position.status == PositionStatus::kOk;
 }
 
-/// The first two set-ups that have turns in one direction.
 std::optional<TwoPositions> Published(const std::vector<PositionError>& positions) {
-  for (const int direction : {1, -1}) {
-    std::vector<const PositionError*> found;
-    for (const PositionError& position : positions) {
-      if (position.direction == direction && HasTurns(position)) found.push_back(&position);
-    }
-    if (found.size() >= 2) return SeparateTwoPositions(*found[0], *found[1]);
-  }
-  return std::nullopt;
+  const std::vector<const PositionError*> two = FirstTwoOf(positions);
+  if (two.empty()) return std::nullopt;
+  return SeparateTwoPositions(*two[0], *two[1]);
 }
 
 /// Orders that mean something on this machine and that were fitted.
@@ -99,6 +93,17 @@ void AddEncoder(const std::vector<HobSample>& samples, const TransmissionOptions
 }
 
 }  // namespace
+
+std::vector<const PositionError*> FirstTwoOf(const std::vector<PositionError>& positions) {
+  for (const int direction : {1, -1}) {
+    std::vector<const PositionError*> found;
+    for (const PositionError& position : positions) {
+      if (position.direction == direction && HasTurns(position)) found.push_back(&position);
+    }
+    if (found.size() >= 2) return {found[0], found[1]};
+  }
+  return {};
+}
 
 std::vector<HobSample> SamplesOf(const std::vector<Reading>& readings) {
   std::vector<HobSample> samples;

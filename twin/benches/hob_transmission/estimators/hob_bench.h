@@ -45,6 +45,9 @@ struct HobAnalysis {
   std::string not_separated;               // why there is no separation
 };
 
+/// The first two set-ups that have turns in one direction, which `two_positions` is made of; empty without two.
+std::vector<const PositionError*> FirstTwoOf(const std::vector<PositionError>& positions);
+
 /// @throws InputError as MeasurePositions.
 /// Reference: Tan et al., equations 1 and 13 to 15 (published); SeparateHeads (rigorous).
 HobAnalysis AnalyseHob(const std::vector<Reading>& readings, const Scenario& scenario, Estimator estimator);
