@@ -37,6 +37,7 @@ struct ControlSettings {                     // [target], [reference], [autocoll
   std::string watchdog = "";                 // command that arms the controller's own; empty: it has none
   double timeout_s = 2.0;                    // of one answer
   int decimals = -1;                         // digits behind the point in commands; -1: all that matter
+  std::string connect_password = "EMC", enable_password = "EMCTOO";  // of linuxcncrsh
   std::string dialogue = "";                 // kind dialogue: a ready one, or a file
   DialogueWords words = {};                  // of instruments that are spoken to by one
 };

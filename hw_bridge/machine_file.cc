@@ -17,6 +17,7 @@ namespace {
 
 constexpr Unit kOne{}, kSeconds{"s"}, kMillimetresASecond{"mm_s", units::mm};
 constexpr double kFurthest = 1e6;
+constexpr int kMostJoints = 8;
 
 Bounds Above(double lower, double upper) {
   return {lower, upper, true};
@@ -88,8 +89,9 @@ class MachineFileCheck {
     if (file_.kind != "hardware") return RefuseDevices(places_, file_.kind, {"kind", "name", "record", "attempts"});
     CheckConnection("machine", file_.machine);
     if (file_.machine.kind.empty())
-      throw InputError(Where("machine"), "there is no [machine] with a kind", "kind = \"esp\"");
+      throw InputError(Where("machine"), "there is no [machine] with a kind", "kind = \"esp\" or \"linuxcnc\"");
     for (std::size_t k = 0; k < axes.size(); ++k) CheckAxis(axes[k], file_.axes[k]);
+    file_.machine.kind == "linuxcnc" ? CheckLinuxCnc(axes) : RefuseLinuxCnc(axes);
     CheckInstruments();
     CheckConnection("indexer", file_.indexer);
     if (file_.indexer.kind == "dialogue") RefuseWords("indexer", {"move", "done"});
@@ -116,6 +118,53 @@ class MachineFileCheck {
     throw InputError(Where(AxisTable(axis)),
                      fmt::format("the upper limit of axis {} is not above its lower", axis.name),
                      "a range to move in");
+  }
+
+  void CheckLinuxCnc(const std::vector<MachineAxis>& axes) const {
+    RefuseOf("machine.token", "linuxcncrsh has none", "connect_password and enable_password");
+    RefuseOf("machine.watchdog", "linuxcncrsh has none", "no watchdog");
+    if (file_.clock.kind != "host")
+      throw InputError(Where("clock.kind"),
+                       "the clock of a served twin beside a LinuxCNC machine, which goes in real time", "\"host\"");
+    for (const auto& [key, password] : {std::pair{"machine.connect_password", file_.machine.connect_password},
+                                        std::pair{"machine.enable_password", file_.machine.enable_password}}) {
+      if (password.empty() || password.find_first_of(" \t\r\n") != std::string::npos)
+        throw InputError(Where(key), fmt::format("{} is empty or has blanks", key),
+                         "one word, as linuxcncrsh was started with");
+    }
+    for (std::size_t k = 0; k < axes.size(); ++k) CheckLetter(axes, k);
+  }
+
+  void CheckLetter(const std::vector<MachineAxis>& axes, std::size_t k) const {
+    const std::string table = AxisTable(axes[k]), letter = LetterOf(file_, axes, k);
+    const std::string letters = axes[k].is_rotary ? "ABC" : "XYZ";
+    if (letter.size() != 1 || letters.find(letter) == std::string::npos)
+      throw InputError(Where(places_.contains(table + ".letter") ? table + ".letter" : table),
+                       fmt::format("axis {} has no letter at LinuxCNC", axes[k].name),
+                       fmt::format("{}.letter, {}, {} or {}", table, letters[0], letters[1], letters[2]));
+    for (std::size_t other = 0; other < k; ++other) {
+      const bool is_same = letter == LetterOf(file_, axes, other),
+                 shares_joint = file_.joints[k] == file_.joints[other];
+      if (is_same || shares_joint)
+        throw InputError(Where(table),
+                         fmt::format("axes {} and {} have the same {}", axes[other].name, axes[k].name,
+                                     is_same ? "letter" : "joint"),
+                         "one each");
+    }
+  }
+
+  /// What only LinuxCNC knows.
+  void RefuseLinuxCnc(const std::vector<MachineAxis>& axes) const {
+    const std::string what = fmt::format("kind = \"{}\" knows no such thing", file_.machine.kind),
+                      expected = "it with kind = \"linuxcnc\" only";
+    for (const char* key : {"machine.connect_password", "machine.enable_password"}) RefuseOf(key, what, expected);
+    for (const MachineAxis& axis : axes) {
+      for (const char* key : {".letter", ".joint"}) RefuseOf(AxisTable(axis) + key, what, expected);
+    }
+  }
+
+  void RefuseOf(const std::string& key, const std::string& what, const std::string& expected) const {
+    if (places_.contains(key)) throw InputError(Where(key), fmt::format("{}: {}", key, what), expected);
   }
 
   void CheckInstruments() const {
@@ -174,6 +223,12 @@ class MachineFileCheck {
 
 }  // namespace
 
+std::string LetterOf(const MachineFile& file, const std::vector<MachineAxis>& axes, std::size_t axis) {
+  std::string letter = file.letters[axis].empty() ? axes[axis].name : file.letters[axis];
+  for (char& c : letter) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return letter;
+}
+
 std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis>& axes) {
   std::vector<ScenarioKey> keys;
   file.indexer.words.move = ReadyDialogueNamed("served_indexer").move;  // unless the file says otherwise
@@ -183,13 +238,19 @@ std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis
   top.Text("record", &file.record, {}, "replay: folder of the recorded run, from the bench file's folder");
   top.Add("attempts", kOne, {1, 100}, &file.attempts, "at one reading, before the run stops");
   MachineKeys machine(keys, "machine");
-  machine.Connection(file.machine, {"esp"});
+  machine.Connection(file.machine, {"esp", "linuxcnc"});
+  machine.Text("connect_password", &file.machine.connect_password, {},
+               "linuxcnc: what linuxcncrsh was started with (--connectpw)");
+  machine.Text("enable_password", &file.machine.enable_password, {},
+               "linuxcnc: what linuxcncrsh was started with (--enablepw)");
   machine.Add("decimals", kOne, {-1, 15}, &file.machine.decimals,
               "behind the point of a number that the controller understands; -1: all that matter");
   machine.Add("traverse", kMillimetresASecond, Above(0.0, 1e4), &file.traverse_m_s, "feed of moves without a feed");
   machine.Add("stall", kSeconds, Above(0.0, 3600.0), &file.stall_s, "it may stand still so long during a move");
   machine.Add("move_timeout", kSeconds, Above(0.0, 36000.0), &file.move_timeout_s, "beyond what a path takes");
   file.axes.resize(axes.size());
+  file.letters.resize(axes.size());
+  file.joints.resize(axes.size());
   for (std::size_t k = 0; k < axes.size(); ++k) {
     MachineKeys t(keys, AxisTable(axes[k]));
     const Unit unit{axes[k].unit(), axes[k].to_SI()};
@@ -199,6 +260,11 @@ std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis
     t.Add("upper", unit, {-kFurthest, kFurthest}, &file.axes[k].upper,
           "soft limit; without it the controller's own");
     t.Add("in_position", fine, Above(0.0, 1e9), &file.axes[k].in_position, "encoder against command when settled");
+    t.Text("letter", &file.letters[k], {},
+           "linuxcnc: X, Y, Z, A, B or C, as programs name it; without it the axis's own name");
+    file.joints[k] = static_cast<int>(k);
+    t.Add("joint", kOne, {0, kMostJoints}, &file.joints[k],
+          "linuxcnc: that moves it; without it axes have joints 0, 1, ... in their order");
   }
   for (std::size_t k = 0; k < kMostInstruments; ++k) AddInstrument(keys, k, file.instruments[k]);
   AddIndexer(keys, file);

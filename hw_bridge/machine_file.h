@@ -24,16 +24,21 @@ struct MachineFile {
   std::string name;               // for the record
   std::string record;             // replay: folder of the run; as in the file, or absolute once loaded
   int attempts = 3;               // at one reading, before the run stops
-  ControlSettings machine;        // kind esp
+  ControlSettings machine;        // kind esp | linuxcnc
   double traverse_m_s = kTraverse_m_s;
   double stall_s = AxisLimits{}.stall_s, move_timeout_s = AxisLimits{}.move_timeout_s;
   std::vector<AxisLimits> axes;  // one an axis
+  std::vector<std::string> letters;  // one an axis: linuxcnc, as programs name it; empty: by its own name
+  std::vector<int> joints;           // one an axis: linuxcnc, which moves it
   std::array<InstrumentSettings, kMostInstruments> instruments;
   ControlSettings indexer{"none"};     // scpi | dialogue | console | none
   double indexer_timeout_s = 60.0;     // of one seating
   ControlSettings fixture{"console"};  // scpi | console
   ControlSettings clock{"host"};       // host | scpi
 };
+
+/// How a program of LinuxCNC names an axis: what the file says, or else the axis's own name.
+std::string LetterOf(const MachineFile& file, const std::vector<MachineAxis>& axes, std::size_t axis);
 
 /// Every key of the file format for a machine with these axes: [axis_x], ...
 std::vector<ScenarioKey> KeysOf(MachineFile& file, const std::vector<MachineAxis>& axes);

@@ -5,13 +5,14 @@
 #include <cstdio>
 #include <iostream>
 
+#include "hw_bridge/clock_notices.h"
 #include "hw_bridge/control/described_devices.h"
 #include "hw_bridge/control/esp_machine.h"
 #include "hw_bridge/control/host_clock.h"
+#include "hw_bridge/control/linuxcnc_machine.h"
 #include "hw_bridge/control/operator_devices.h"
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/served_clock.h"
-#include "hw_bridge/clock_notices.h"
 #include "hw_bridge/conversations.h"
 #include "twin/core/errors.h"
 
@@ -29,13 +30,13 @@ class OpenedMachine : public OpenMachine {
         instruments_(OpenInstruments(file, columns), *clock_),
         indexer_(OpenIndexer(file)),
         fixture_(OpenFixture(file.fixture)) {
-    machine_.HearStop(stop_asked);
+    machine_->HearStop(stop_asked);
   }
 
   MachineBench Devices() override {
-    return {*clock_, machine_, instruments_, *fixture_, simulation_.get(), indexer_.get()};
+    return {*clock_, *machine_, instruments_, *fixture_, simulation_.get(), indexer_.get()};
   }
-  std::vector<AxisLimits> Limits() const override { return machine_.limits(); }
+  std::vector<AxisLimits> Limits() const override { return machine_->limits(); }
 
   void HearClock(std::function<void(const std::string&)> listener) override { clock_notices_.listener = std::move(listener); }
 
@@ -57,13 +58,22 @@ class OpenedMachine : public OpenMachine {
     return clock;
   }
 
-  EspMachine OpenAxes(const MachineFile& file, const std::vector<MachineAxis>& axes) {
-    EspMachine machine(conversations_.LineOf("machine", file.machine), axes, file.axes,
-                       {.traverse_m_s = file.traverse_m_s,
-                        .polls_pass_time = file.clock.kind == "scpi",
-                        .decimals = file.machine.decimals});
-    machine.AgreeOnLimits();
+  std::unique_ptr<ControlledMachine> OpenAxes(const MachineFile& file, const std::vector<MachineAxis>& axes) {
+    const MachineManner manner = {.traverse_m_s = file.traverse_m_s,
+                                  .polls_pass_time = file.clock.kind == "scpi",
+                                  .decimals = file.machine.decimals};
+    auto machine = Machine(file, axes, manner);
+    machine->AgreeOnLimits();
     return machine;
+  }
+
+  std::unique_ptr<ControlledMachine> Machine(const MachineFile& file, const std::vector<MachineAxis>& axes,
+                                             const MachineManner& manner) {
+    DeviceLine line = conversations_.LineOf("machine", file.machine);
+    if (file.machine.kind != "linuxcnc") return std::make_unique<EspMachine>(line, axes, file.axes, manner);
+    std::vector<LinuxCncAxis> at;
+    for (std::size_t k = 0; k < axes.size(); ++k) at.push_back({LetterOf(file, axes, k)[0], file.joints[k]});
+    return std::make_unique<LinuxCncMachine>(line, axes, file.axes, at, file.machine.enable_password, manner);
   }
 
   std::vector<InstrumentBox> OpenInstruments(const MachineFile& file, const std::vector<ReadingColumn>& columns) {
@@ -96,7 +106,7 @@ class OpenedMachine : public OpenMachine {
   std::unique_ptr<Simulation> simulation_;
   ClockNotices clock_notices_;
   std::unique_ptr<Clock> clock_;
-  EspMachine machine_;
+  std::unique_ptr<ControlledMachine> machine_;
   InstrumentBoxes instruments_;
   std::unique_ptr<Indexer> indexer_;
   std::unique_ptr<MachineFixture> fixture_;

@@ -127,7 +127,7 @@ std::vector<ScenarioKey> DialogueWords::Keys() {
       TextKey("", "identify", &identify, "query that tells who it is; empty: it does not"),
       TextKey("line", "ends", &line.ends, "of a line that is sent", ends),
       TextKey("line", "answer_ends", &line.answer_ends, "of a line that comes; a CR before an LF counts to it",
-              ends),
+              {"LF", "CR", "CRLF", kAnyLineEnd}),
       TextKey("line", "answer_begins", &line.answer_begins, "what every answer begins with; taken off"),
       TextKey("line", "separator", &line.separator, "between the fields of an answer; blanks count once"),
       TextKey("errors", "ask", &errors.ask, "query behind a command; empty: there is none"),
@@ -180,7 +180,14 @@ DialogueWords LoadDialogue(const std::string& name_or_path, const std::string& f
   return ParseDialogue(text.str(), path);
 }
 
+LineWords WithAnyLineEnd() {
+  LineWords words;
+  words.answer_ends = kAnyLineEnd;
+  return words;
+}
+
 std::string EndOfLine(const std::string& name) {
+  if (name == kAnyLineEnd) return "";
   if (name == "CRLF") return "\r\n";
   return name == "CR" ? "\r" : "\n";
 }

@@ -9,14 +9,18 @@
 /// docs/hardware.md lists the keys; ready ones are built in from hw_bridge/dialogues.
 namespace twinbench::hw {
 
+inline constexpr const char* kAnyLineEnd = "any";
+
 /// What its lines look like.
 struct LineWords {
   std::string ends = "LF";         // of a line that is sent: LF, CR, CRLF
-  std::string answer_ends = "LF";  // of a line that comes; a CR before an LF counts to it
+  std::string answer_ends = "LF";  // of a line that comes, or "any"; a CR before an LF counts to it
   std::string answer_begins;       // every answer does; taken off
   std::string separator = ",";     // between fields; blanks count once
   bool operator==(const LineWords&) const = default;
 };
+/// Lines of whoever does not care how they end.
+LineWords WithAnyLineEnd();
 
 /// How it says that something went wrong.
 struct ErrorWords {
@@ -70,7 +74,7 @@ DialogueWords ReadyDialogueNamed(const std::string& name);
 /// @param where   Of the key that asks for it, for messages.
 DialogueWords LoadDialogue(const std::string& name_or_path, const std::string& folder, const std::string& where);
 
-/// The bytes of LF, CR or CRLF.
+/// The bytes of LF, CR or CRLF; none of "any".
 std::string EndOfLine(const std::string& name);
 
 /// What a number in this unit is in SI; 1 for "". @throws InputError at `where` for one that there is not.

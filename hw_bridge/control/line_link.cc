@@ -32,6 +32,8 @@ asio::error_code RunFor(asio::io_context& io, Duration patience, Start start, Ca
   return *result == asio::error::operation_aborted ? asio::error::timed_out : *result;
 }
 
+constexpr const char* kEnds = "\r\n";
+
 LinkResult Failure(const asio::error_code& error) {
   if (error == asio::error::timed_out) return {"", FaultKind::kTimeout, "no answer in time"};
   if (error == asio::error::not_found)
@@ -53,6 +55,7 @@ class StreamLink : public LineLink {
   }
 
   LinkResult ReadLine(Duration patience) override {
+    if (end_.empty()) return ReadAnyLine(patience);
     auto buffer = asio::dynamic_buffer(unread_, kLongestLine);
     const auto error = Run(patience, [&](auto done) { asio::async_read_until(stream_, buffer, end_, done); });
     const auto end = unread_.find(end_);
@@ -68,7 +71,13 @@ class StreamLink : public LineLink {
   bool HasUnread() override {
     int waiting = 0;
     ::ioctl(stream_.native_handle(), FIONREAD, &waiting);
-    return waiting > 0 || !unread_.empty();
+    if (!end_.empty()) return waiting > 0 || !unread_.empty();
+    std::string came(static_cast<std::size_t>(waiting), '\0');
+    asio::error_code error;
+    came.resize(waiting > 0 ? stream_.read_some(asio::buffer(came), error) : 0);
+    unread_ += came;
+    DropEnds();
+    return !unread_.empty();
   }
 
   void ReadAway(Duration quiet, Duration patience) override {
@@ -82,6 +91,27 @@ class StreamLink : public LineLink {
   }
 
  private:
+  void DropEnds() { unread_.erase(0, std::min(unread_.find_first_not_of(kEnds), unread_.size())); }
+
+  LinkResult ReadAnyLine(Duration patience) {
+    const HostClockPoint until = std::chrono::steady_clock::now() + patience;
+    asio::error_code error;
+    for (;;) {
+      DropEnds();
+      const auto end = unread_.find_first_of(kEnds);
+      if (end != std::string::npos) {
+        LinkResult result{unread_.substr(0, end), {}, ""};
+        unread_.erase(0, end);
+        return result;
+      }
+      if (error) return Describe(error);
+      auto buffer = asio::dynamic_buffer(unread_, kLongestLine);
+      const Duration left = std::max<Duration>(until - std::chrono::steady_clock::now(), Duration(0));
+      if (unread_.size() >= kLongestLine) return Failure(asio::error::not_found);
+      error = Run(left, [&](auto done) { asio::async_read(stream_, buffer, asio::transfer_at_least(1), done); });
+    }
+  }
+
   template <class Start>
   asio::error_code Run(Duration patience, Start start) {
     return RunFor(io_, patience, start, [this] {

@@ -27,9 +27,9 @@ class LineLink {
   virtual LinkResult Send(const std::string& text, Duration patience) = 0;
   /// A line counts only with its end: LF or CR LF, unless another was named.
   virtual LinkResult ReadLine(Duration patience) = 0;
-  /// @param end  Of every line that comes from here on.
+  /// @param end  Of every line that comes from here on; empty: any CR and LF, and blank lines count for nothing.
   virtual void EndLinesWith(const std::string& end) = 0;
-  /// Whether something has come that no ReadLine has taken.
+  /// Whether something has come that no ReadLine has taken, and that it would take.
   virtual bool HasUnread() = 0;
   /// Reads and forgets until nothing has come for `quiet`, or `patience` is over.
   virtual void ReadAway(Duration quiet, Duration patience) = 0;

@@ -51,6 +51,22 @@ TEST_P(DialogueOver, GivesTheLineThatAnswersWithoutItsEnd) {
   EXPECT_EQ(dialogue.identity(), kIdentity);
 }
 
+TEST_P(DialogueOver, TakesLinesOfAnyEndWhereTheyAreMixed) {
+  FakeController controller(
+      WithIdentity([](const std::string& line) {
+        return Reply{line == "SET" ? "SET ACK\n\r" : line == "GET" ? "GET 5\r\n\r\n" : "LAST\r"};
+      }),
+      GetParam());
+  Dialogue dialogue = DialogueWith(controller);
+  dialogue.Speak(WithAnyLineEnd());
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(Ask(dialogue, "SET"), "SET ACK");
+    EXPECT_EQ(Ask(dialogue, "GET"), "GET 5") << "what is left of an end is no answer that nobody asked for";
+    EXPECT_EQ(Ask(dialogue, "ELSE"), "LAST");
+  }
+  EXPECT_EQ(dialogue.openings(), 1);
+}
+
 TEST_P(DialogueOver, AnAnswerCountsOnlyWithItsEnd) {
   FakeController controller(WithIdentity([](const std::string&) { return Reply{"12.5"}; }), GetParam());
   Dialogue dialogue = DialogueWith(controller);

@@ -48,6 +48,37 @@ std::string Changed(const std::string& from, const std::string& to) {
   return text.replace(text.find(from), from.size(), to);
 }
 
+std::string OnLinuxCnc(const std::string& from = "", const std::string& to = "") {
+  std::string text = Changed("kind = \"esp\"\naddress = \"serial:/dev/ttyUSB0:19200\"",
+                             "kind = \"linuxcnc\"\naddress = \"tcp:mill.lab:5007\"");
+  return from.empty() ? text : text.replace(text.find(from), from.size(), to);
+}
+
+TEST(MachineFile, NamesTheAxesOfALinuxCncMachine) {
+  hw::MachineFile file = hw::ParseMachineFile(OnLinuxCnc(), "bench.toml", kAxes);
+  EXPECT_EQ(hw::LetterOf(file, kAxes, 0), "X") << "its own name, where LinuxCNC has such an axis";
+  EXPECT_EQ(file.joints, (std::vector<int>{0, 1}));
+  EXPECT_EQ(file.machine.enable_password, "EMCTOO");
+  file =
+      hw::ParseMachineFile(OnLinuxCnc("[axis_a]\n", "[axis_a]\nletter = \"c\"\njoint = 5\n"), "bench.toml", kAxes);
+  EXPECT_EQ(hw::LetterOf(file, kAxes, 1), "C");
+  EXPECT_EQ(file.joints[1], 5);
+}
+
+TEST(MachineFile, RefusesWhatALinuxCncMachineCannotBeOrOthersAreNot) {
+  EXPECT_THAT(Refusal(OnLinuxCnc("[axis_a]\n", "[axis_a]\nletter = \"Z\"\n")),
+              AllOf(HasSubstr("bench.toml:11"), HasSubstr("axis a has no letter"), HasSubstr("A, B or C")));
+  EXPECT_THAT(Refusal(OnLinuxCnc("[axis_a]\n", "[axis_a]\njoint = 0\n")),
+              HasSubstr("axes x and a have the same joint"));
+  EXPECT_THAT(Refusal(OnLinuxCnc("stall_s", "watchdog = \"XW\"\nstall_s")), HasSubstr("machine.watchdog"));
+  EXPECT_THAT(Refusal(OnLinuxCnc("stall_s", "enable_password = \"a b\"\nstall_s")), HasSubstr("one word"));
+  EXPECT_THAT(Refusal(OnLinuxCnc() + "[clock]\nkind = \"scpi\"\naddress = \"tcp:twin:5025\"\n"),
+              HasSubstr("goes in real time"));
+  EXPECT_THAT(Refusal(Changed("[axis_a]\n", "[axis_a]\nletter = \"A\"\n")), HasSubstr("kind = \"linuxcnc\" only"));
+  EXPECT_THAT(Refusal(Changed("stall_s", "connect_password = \"EMC\"\nstall_s")),
+              HasSubstr("kind = \"linuxcnc\" only"));
+}
+
 TEST(MachineFile, IsReadInTheUnitsOfItsKeys) {
   const hw::MachineFile file = hw::ParseMachineFile(kWhole, "bench.toml", kAxes);
   EXPECT_DOUBLE_EQ(file.axes[0].lower, -0.15);

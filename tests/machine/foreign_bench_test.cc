@@ -30,10 +30,19 @@ class ForeignBenchProgram : public Program {
       : program_(program), bench_file_(std::move(bench_file)) {
     Write("foreign.toml", scenario);
   }
+  /// What the bench's program is told besides its faults.
+  void BeSet(const std::string& setting) { settings_.push_back(setting); }
+  void Replace(const std::string& from, const std::string& to) {
+    const auto at = bench_file_.find(from);
+    if (at == std::string::npos) throw BenchError("the bench file has no " + from);
+    bench_file_.replace(at, from.size(), to);
+  }
 
   /// @param faults  The bench is troubled by them, as line_devices.py writes them.
   Outcome MeasureWith(const std::vector<std::string>& faults, int attempts = 5) {
-    const ForeignBench bench(program_, At(""), faults);
+    std::vector<std::string> words = faults;
+    words.insert(words.end(), settings_.begin(), settings_.end());
+    const ForeignBench bench(program_, At(""), words);
     hidden_ = bench.told();
     std::string text = bench_file_;
     if (const auto at = text.find("attempts = "); at != std::string::npos) text.erase(at, text.find('\n', at) + 1 - at);
@@ -87,6 +96,7 @@ class ForeignBenchProgram : public Program {
 
  private:
   std::string program_, bench_file_;
+  std::vector<std::string> settings_;
   nlohmann::json hidden_;
 };
 
@@ -156,6 +166,63 @@ TEST_F(ForeignTurntable, AControllerThatFreezesWhileTheTableTurnsIsToldSo) {
   ExpectStateUnknown(MeasureWith({"controller.freeze@9"}, 1));
   EXPECT_GT(Kept(), 0u);
   EXPECT_LT(Kept(), 8u) << "what was kept are ends of moves 1 to 8 at most, one of which was the run-up";
+}
+
+// --- the same turntable, as axis C of a machine that LinuxCNC runs ---
+
+class ForeignTurntableOnLinuxCnc : public ForeignTurntable {
+ protected:
+  ForeignTurntableOnLinuxCnc() {
+    Replace("kind = \"esp\"", "kind = \"linuxcnc\"");
+    Replace("identity = \"ESP301 Version 3\"", "identity = \"HELLO ACK EMCNETSVR\"");
+    Replace("[axis_turntable]", "[axis_turntable]\nletter = \"C\"");
+  }
+
+  /// @param joint  That moves axis C.
+  void BeControlledBy(const std::string& controller, int joint) {
+    BeSet("controller=" + controller);
+    Replace("letter = \"C\"", "letter = \"C\"\njoint = " + std::to_string(joint));
+  }
+
+  void ExpectMeasured(const Outcome& measured) {
+    ASSERT_EQ(measured.exit_code, 0) << measured.err;
+    EXPECT_EQ(Kept(), 36u);
+    const nlohmann::json separation = Separated();
+    ExpectRecovered(separation, "turntable");
+    ExpectRecovered(separation, "multitooth");
+  }
+};
+
+TEST_F(ForeignTurntableOnLinuxCnc, IsMeasuredThroughFaultsAndItsErrorsAreThoseItHides) {
+  BeControlledBy("linuxcnc", 2);
+  ExpectMeasured(
+      MeasureWith({"controller.mute@3", "controller.drop@9", "autocollimator.late@14", "indexer.drop@30"}));
+  std::map<std::string, int> failed = FailedAttemptsByFault();
+  EXPECT_GE(failed["timeout"], 2);
+  EXPECT_GE(failed["dropped"], 2);
+}
+
+TEST_F(ForeignTurntableOnLinuxCnc, AnEmergencyStopEndsTheRunWithTheTableAtRest) {
+  BeControlledBy("linuxcnc", 2);
+  const Outcome measured = MeasureWith({"controller.estop@9"});
+  EXPECT_NE(measured.exit_code, 0);
+  EXPECT_THAT(measured.err,
+              AllOf(HasSubstr("emergency stop is on"), HasSubstr("brought to rest"), HasSubstr("--resume")));
+  EXPECT_GT(Kept(), 0u);
+}
+
+TEST_F(ForeignTurntableOnLinuxCnc, AControllerThatFreezesWhileTheTableTurnsIsToldSo) {
+  BeControlledBy("linuxcnc", 2);
+  ExpectStateUnknown(MeasureWith({"controller.freeze@9"}, 1));
+}
+
+/// LinuxCNC itself, which is not written by us: tests/data/linuxcnc/README.md says how it is started.
+TEST_F(ForeignTurntableOnLinuxCnc, IsMeasuredOnTheRealProgram) {
+  const char* address = std::getenv("TWINBENCH_LINUXCNC");
+  if (!address) GTEST_SKIP() << "TWINBENCH_LINUXCNC=HOST:PORT names no linuxcncrsh (tests/data/linuxcnc/README.md)";
+  Replace("{controller}", address);
+  BeControlledBy(address, 0);
+  ExpectMeasured(MeasureWith({}));
 }
 
 // --- a hobbing machine ---

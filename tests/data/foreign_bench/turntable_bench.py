@@ -1,8 +1,9 @@
 """A turntable under test, a multi-tooth table with a mirror on it and an autocollimator, in closed form for small angles.
 
-usage: turntable_bench.py shown.json [device.kind@event ...]   (line_devices.py says which faults there are)
+usage: turntable_bench.py shown.json [controller=...] [device.kind@event ...]   (line_devices.py says which faults there are)
 
-Devices: `controller` (esp_controller.py), `autocollimator` (x and y in microradians and the light), `indexer` (turns the
+Devices: `controller` (esp_controller.py; with controller=linuxcnc axis C of linuxcnc_controller.py, with controller=HOST:PORT that of a LinuxCNC
+which runs there and is none of the bench's devices), `autocollimator` (x and y in microradians and the light), `indexer` (turns the
 multi-tooth table, and is also the hand that mounts it). Written to shown.json: their ports, and what is hidden in the tables.
 
 The turntable turns too far by T(phi), the multi-tooth table by R(tooth), and its axis leans by a tilt towards an azimuth on the
@@ -19,6 +20,7 @@ import sys
 import time
 
 from esp_controller import EspController
+from linuxcnc_controller import AxisElsewhere, LinuxCncController
 from line_devices import ScpiDevice, mounted, show
 
 ARCSEC_DEG = 1.0 / 3600.0
@@ -118,13 +120,26 @@ class Indexer(ScpiDevice):
         return True if word == "FIXT:CLE" else None
 
 
+def controlled(kind, script):
+    """Returns the devices that move the turntable, and its axis."""
+    if kind == "esp":
+        controller = EspController(script)
+        return [controller], controller.axes[0]
+    if kind == "linuxcnc":
+        controller = LinuxCncController(script)
+        return [controller], controller.axes[2]
+    return [], AxisElsewhere(kind)
+
+
 def main():
-    controller = EspController(sys.argv[2:])
-    stand = Stand(controller.axes[0])
+    kinds = [word.partition("=")[2] for word in sys.argv[2:] if word.startswith("controller=")] or ["esp"]
+    script = [word for word in sys.argv[2:] if "=" not in word]
+    controllers, axis = controlled(kinds[0], script)
+    stand = Stand(axis)
     positions = [k * 360.0 / POSITIONS for k in range(POSITIONS)]
     hidden = {"position_deg": positions, "turntable_arcsec": [turntable_arcsec(at) for at in positions],
               "multitooth_arcsec": [tooth_arcsec(k * TEETH // POSITIONS) for k in range(POSITIONS)], "roll_mrad": ROLL_MRAD}
-    show([controller, Autocollimator(sys.argv[2:], stand), Indexer(sys.argv[2:], stand)], hidden, sys.argv[1])
+    show([*controllers, Autocollimator(script, stand), Indexer(script, stand)], hidden, sys.argv[1])
 
 
 main()

@@ -1,0 +1,109 @@
+#include "hw_bridge/control/controlled_machine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "twin/core/number_text.h"
+
+namespace twinbench::hw {
+namespace {
+
+constexpr Duration kPollMachine = std::chrono::milliseconds(20);
+constexpr Duration kHomingLook = std::chrono::seconds(1);
+constexpr double kAllDigits = 1e-9;  // mm or deg: what decimal text may lose on its way
+
+}  // namespace
+
+ControlledMachine::ControlledMachine(DeviceLine line, std::vector<MachineAxis> axes, std::vector<AxisLimits> limits,
+                                     const MachineManner& manner)
+    : line_(std::move(line)), axes_(std::move(axes)), limits_(std::move(limits)), manner_(manner) {
+  Require(limits_.size() == axes_.size(), "limits are one entry an axis");
+}
+
+std::string ControlledMachine::Text(double value_SI, double to_SI) const {
+  return manner_.decimals < 0 ? PrintInUnit(value_SI, to_SI)
+                              : fmt::format("{:.{}f}", value_SI / to_SI, manner_.decimals);
+}
+
+double ControlledMachine::Understood(const MachineAxis& axis) const {
+  const double half_decimal = manner_.decimals < 0 ? 0.0 : 0.5 * std::pow(10.0, -manner_.decimals);
+  return (half_decimal + kAllDigits) * axis.to_SI();
+}
+
+std::string ControlledMachine::Place(std::size_t axis, double at) const {
+  return fmt::format("{:.6f} {}", at / axes_[axis].to_SI(), axes_[axis].unit());
+}
+
+void ControlledMachine::AgreeOnLimits() {
+  const std::vector<AxisLimits> travel = Travel();
+  for (std::size_t k = 0; k < axes_.size(); ++k) {
+    AxisLimits& ours = limits_[k];
+    if (std::isinf(ours.lower)) ours.lower = travel[k].lower;
+    if (std::isinf(ours.upper)) ours.upper = travel[k].upper;
+    const double slack = Understood(axes_[k]);
+    if (ours.lower >= travel[k].lower - slack && ours.upper <= travel[k].upper + slack) continue;
+    line_.Fail(FaultKind::kRefused, fmt::format("the controller allows axis {} {} to {}; the bench file {} to {}",
+                                                axes_[k].name, Place(k, travel[k].lower), Place(k, travel[k].upper),
+                                                Place(k, ours.lower), Place(k, ours.upper)));
+  }
+}
+
+void ControlledMachine::RequireWithinLimits(std::size_t axis, double to) {
+  const double slack = Understood(axes_[axis]);
+  if (to >= limits_[axis].lower - slack && to <= limits_[axis].upper + slack) return;
+  line_.Fail(FaultKind::kLimit,
+             fmt::format("a move of axis {} to {} was not sent: its limits are {} and {}", axes_[axis].name,
+                         Place(axis, to), Place(axis, limits_[axis].lower), Place(axis, limits_[axis].upper)));
+}
+
+void ControlledMachine::RequireCircleWithinLimits(const Arc& arc, double radius_m) {
+  for (const std::size_t k : {0, 1}) {
+    RequireWithinLimits(arc.axes[k], arc.centre_m[k] - radius_m);
+    RequireWithinLimits(arc.axes[k], arc.centre_m[k] + radius_m);
+  }
+}
+
+void ControlledMachine::RequireReady(const std::vector<AxisState>& states) {
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    if (!states[k].referenced)
+      line_.Fail(FaultKind::kRestarted,
+                 fmt::format("axis {} has lost its origin; its coordinates mean nothing", axes_[k].name));
+  }
+}
+
+bool ControlledMachine::Settles(Duration within) {
+  const auto end = std::chrono::steady_clock::now() + within;
+  while (!AskDone()) {
+    if (stop_asked_ && stop_asked_()) throw DeviceFault(FaultKind::kStopped, "operator", "the run was stopped");
+    const Duration left = end - std::chrono::steady_clock::now();
+    if (left <= Duration(0)) return false;
+    std::this_thread::sleep_for(std::min(left, kPollMachine));
+  }
+  return true;
+}
+
+void ControlledMachine::Home() {
+  SendHome();
+  double longest_s = 0.0, passed_s = 0.0;
+  for (const AxisLimits& limits : limits_) longest_s = std::max(longest_s, limits.move_timeout_s);
+  while (!FindsOrigin(kHomingLook)) {
+    passed_s += ToSeconds(kHomingLook);
+    if (passed_s >= longest_s)
+      StopAndFail(FaultKind::kNotInPosition, fmt::format("no origin found in {:.0f} s", passed_s));
+  }
+  RequireReady(State());
+}
+
+void ControlledMachine::StopAndFail(FaultKind kind, const std::string& why) {
+  try {
+    Stop();
+  } catch (const DeviceFault& fault) {
+    line_.Fail(kind, fmt::format("{}; it could not be stopped: {}", why, fault.what()));
+  }
+  line_.Fail(kind, why);
+}
+
+}  // namespace twinbench::hw

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <functional>
+
+#include "hw_bridge/control/device_line.h"
+#include "twin/core/machine.h"
+
+namespace twinbench::hw {
+
+/// How a machine is to be driven, whatever the language of its controller.
+struct MachineManner {
+  double traverse_m_s = 0.0;     // of moves that have no feed
+  bool polls_pass_time = false;  // the bench is a served twin with its clock held
+  int decimals = -1;             // digits behind the point of a number in a command; -1: all that matter
+};
+
+/// A machine behind a controller.
+///
+/// A move beyond the soft limits sends nothing. An axis that has lost its origin is not moved before Home, and its
+/// places are NaN: kRestarted.
+class ControlledMachine : public MachineController {
+ public:
+  /// @param limits  Of the bench file, one entry an axis; infinite: the controller's own.
+  ControlledMachine(DeviceLine line, std::vector<MachineAxis> axes, std::vector<AxisLimits> limits,
+                    const MachineManner& manner);
+
+  /// Takes over the controller's limits where the bench file gives none.
+  /// @throws DeviceFault kRefused if the controller allows less than the bench file.
+  void AgreeOnLimits();
+  const std::vector<AxisLimits>& limits() const { return limits_; }
+
+  /// From here on Settles on a bench of real time asks `stop_asked` every 20 ms, and ends with a DeviceFault
+  /// kStopped where it says so.
+  void HearStop(std::function<bool()> stop_asked) { stop_asked_ = std::move(stop_asked); }
+
+  const std::vector<MachineAxis>& Axes() const override { return axes_; }
+  /// In real time: looks every 20 ms whether it is done.
+  bool Settles(Duration within) override;
+  void Home() override;
+
+ protected:
+  DeviceLine& line() { return line_; }
+  const MachineManner& manner() const { return manner_; }
+
+  /// Of a place in a command.
+  std::string Text(double value_SI, double to_SI) const;
+  /// As far as a controller that was told all digits, or so many decimals, may be from what was meant.
+  double Understood(const MachineAxis& axis) const;
+  std::string Place(std::size_t axis, double at) const;
+  double Feed_m_s(double feed_m_s) const { return feed_m_s > 0.0 ? feed_m_s : manner_.traverse_m_s; }
+
+  void RequireWithinLimits(std::size_t axis, double to);
+  /// The circle on which two axes stand about its centre.
+  void RequireCircleWithinLimits(const Arc& arc, double radius_m);
+  void RequireReady(const std::vector<AxisState>& states);
+  /// Why it was stopped is what must be told, also when the machine cannot be reached any more.
+  [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why);
+
+ private:
+  virtual bool AskDone() = 0;
+  virtual void SendHome() = 0;
+  /// Lets at most `within` pass. @return true as soon as every axis has its origin again.
+  virtual bool FindsOrigin(Duration within) = 0;
+
+  DeviceLine line_;
+  std::vector<MachineAxis> axes_;
+  std::vector<AxisLimits> limits_;
+  MachineManner manner_;
+  std::function<bool()> stop_asked_;
+};
+
+}  // namespace twinbench::hw

@@ -1,0 +1,168 @@
+"""A machine of rotary axes A, B, C (joints 0, 1, 2) run by LinuxCNC, as its remote shell linuxcncrsh shows it; and a look at one that runs elsewhere.
+
+The words and the ends of lines are those of linuxcncrsh(1) and of what LinuxCNC 2.9 was seen to answer: `get` ends in CR LF, `set` in LF CR. A block
+that goes too far is acknowledged and complained about afterwards.
+"""
+import re
+import socket
+import socketserver
+import time
+
+from esp_controller import Axis
+from line_devices import Device
+
+WORD = re.compile(r"([ABCFXYZ])(\[[^ ]*\]|[-+0-9.]+)")
+LIMIT = re.compile(r"\[\[#<_ini\[axis_([abc])\](min|max)_limit>\+([0-9.]+)\]\*([0-9.]+)\]")
+PLACES = "XYZABC"
+
+
+class Conversation(socketserver.StreamRequestHandler):
+    """Echoes what it is told until it is told not to, and acknowledges nothing until it is told to."""
+
+    disable_nagle_algorithm = True
+
+    def handle(self):
+        self.echoes, self.acknowledges, self.greeted, self.enabled = True, False, False, False
+        try:
+            for line in self.rfile:
+                if not self.answer(line.decode("ascii", "replace").strip()):
+                    return
+        except OSError:
+            pass  # whoever asked has gone
+
+    def say(self, text):
+        self.wfile.write(text.encode())
+
+    def answer(self, line):
+        device, lock = self.server.device, self.server.lock
+        with lock:
+            if device.frozen:
+                return True
+            if self.echoes and self.greeted:
+                self.say(line + "\r\n")
+            said = self.obey(device, line)
+            trouble = device.take_due() if said else None
+        if trouble == "drop":
+            return False
+        if trouble != "mute" and not device.frozen:
+            self.say(said)
+        return True
+
+    def obey(self, device, line):
+        verb, _, rest = line.partition(" ")
+        if verb.lower() == "hello":
+            self.greeted = rest.split()[:1] == ["EMC"]
+            return "HELLO ACK EMCNETSVR 1.1\r\n" if self.greeted else "HELLO NAK\r\n"
+        if not self.greeted:
+            return ""
+        name, _, value = rest.partition(" ")
+        name = name.lower()
+        if verb.lower() == "get":
+            return f"{name.upper()} {device.tell(name)}\r\n"
+        done = self.set(device, name, value)
+        return f"SET {name.upper()} {'ACK' if done else 'NAK'}\n\r" if self.acknowledges or not done else ""
+
+    def set(self, device, name, value):
+        if name == "echo":
+            self.echoes = value == "on"
+        elif name == "verbose":
+            self.acknowledges = value == "on"
+        elif name == "enable":
+            self.enabled = value == "EMCTOO"
+            return self.enabled
+        elif name != "set_wait":
+            return self.enabled and device.do(name, value)
+        return True
+
+
+class LinuxCncController(Device):
+    """Its events are moves. A fault of its own: `estop`, somebody presses the emergency stop as the move begins."""
+
+    name = "controller"
+    conversation = Conversation
+
+    def __init__(self, script):
+        super().__init__(script)
+        self.axes = [Axis(), Axis(), Axis()]
+        self.lower_deg, self.upper_deg = -800.0, 800.0
+        self.mode, self.is_on, self.estop, self.homed, self.feed = "MANUAL", True, False, True, 0.0
+        self.errors = []
+
+    def tell(self, name):
+        places = [0.0, 0.0, 0.0] + [axis.place_deg() for axis in self.axes]
+        joints = {"joint_homed": "YES" if self.homed else "NO", "joint_limit": "OK", "joint_fault": "OK", "joint_type": "ANGULAR", "joint_units": "DEG"}
+        if name in joints:
+            return " ".join(3 * [joints[name]])
+        if name in ("abs_cmd_pos", "abs_act_pos"):
+            return " ".join(f"{place:.6f}" for place in places)
+        if name == "error":
+            return self.errors.pop(0) if self.errors else "OK"
+        moves = not all(axis.is_done() for axis in self.axes)
+        return {"machine": "ON" if self.is_on else "OFF", "estop": "ON" if self.estop else "OFF", "mode": self.mode,
+                "program_status": "RUNNING" if moves else "IDLE", "program_codes": f"G0 G17 G53 F{self.feed:.0f} S0"}[name]
+
+    def do(self, name, value):
+        if name == "mdi":
+            return self.is_on and self.mode == "MDI" and self.block(value)
+        if name == "mode":
+            self.mode = value.upper()
+            return self.is_on
+        if name == "abort":
+            for axis in self.axes:
+                axis.stop()
+            return True
+        if name == "machine":
+            self.is_on = value == "on" and not self.estop
+            return self.is_on
+        if name == "home":
+            for axis in self.axes:
+                axis.find_origin()
+            self.homed = True
+            return True
+        return False
+
+    def block(self, text):
+        places = {}
+        for letter, number in WORD.findall(text.upper()):
+            limit = LIMIT.fullmatch(number.lower())
+            if limit:
+                number = (self.lower_deg if limit[2] == "min" else self.upper_deg) + float(limit[3])
+                number *= float(limit[4])
+            if letter == "F":
+                self.feed = float(number)
+            else:
+                places[letter] = float(number)
+        for letter, place in places.items():
+            if not self.lower_deg <= place <= self.upper_deg:
+                self.errors.append(f"Linear move on line 0 would exceed {letter}'s {'positive' if place > 0.0 else 'negative'} limit")
+                return True
+        own = self.happen() if places else None
+        for letter, place in places.items():
+            self.axes["ABC".index(letter)].go(place)
+        if own == "freeze":
+            for axis in self.axes:
+                axis.takes_s *= 100.0  # it is on its way for long
+        if own == "estop":
+            self.estop, self.is_on = True, False
+            for axis in self.axes:
+                axis.stop()
+        return True
+
+
+class AxisElsewhere:
+    """An axis of a machine that LinuxCNC runs somewhere else: where it stands."""
+
+    def __init__(self, address, letter="C"):
+        host, _, port = address.rpartition(":")
+        self.line = socket.create_connection((host, int(port)), 5.0).makefile("rw", newline="\r\n")
+        self.place = PLACES.index(letter)
+        self.ask("hello EMC stand 1.0")
+        self.ask("set echo off")
+
+    def ask(self, line):
+        self.line.write(line + "\r\n")
+        self.line.flush()
+        return self.line.readline().split()
+
+    def place_deg(self):
+        return float(self.ask("get abs_act_pos")[1 + self.place])

@@ -1,0 +1,175 @@
+#include "hw_bridge/control/linuxcnc_machine.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <mutex>
+
+#include "tests/hw_control/fake_controller.h"
+#include "tests/hw_control/faults.h"
+
+namespace twinbench::hw {
+namespace {
+
+using test::FakeController;
+using test::KindOf;
+using test::TextOf;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+/// A machine of X (joint 0) and C (joint 2), which stands at once where it is sent. What is asked for is answered
+/// by `told`, and what it does with a block of a program is `obey`.
+struct LinuxCncModel {
+  std::mutex mutex;
+  std::map<std::string, std::string> told = {{"machine", "ON"},
+                                             {"estop", "OFF"},
+                                             {"mode", "MANUAL"},
+                                             {"program_status", "IDLE"},
+                                             {"error", "OK"},
+                                             {"joint_homed", "YES NO YES"},
+                                             {"joint_limit", "OK OK OK"},
+                                             {"joint_fault", "OK OK OK"},
+                                             {"joint_type", "LINEAR LINEAR ANGULAR"},
+                                             {"joint_units", "MM MM DEG"},
+                                             {"program_codes", "G0 F0 S0"},
+                                             {"abs_cmd_pos", "0 0 0 0 0 0"},
+                                             {"abs_act_pos", "0 0 0 0 0 0"}};
+  std::function<void(LinuxCncModel&, const std::string& block)> obey = [](LinuxCncModel&, const std::string&) {};
+  bool accepts = true;
+
+  FakeController::Reply operator()(const std::string& line) {
+    const std::lock_guard lock(mutex);
+    if (line.starts_with("hello "))
+      return {line == "hello EMC twinbench 1.0" ? "HELLO ACK MILL 1.1\r\n" : "HELLO NAK\r\n"};
+    if (line == "set echo off") return {line + "\r\n"};
+    const std::string name = line.substr(4, line.find(' ', 4) - 4);
+    std::string upper = name;
+    for (char& c : upper) c = static_cast<char>(std::toupper(c));
+    if (line.starts_with("get ")) return {upper + " " + told[name] + "\r\n"};
+    if (line == "set enable WRONG" || (name != "enable" && name != "verbose" && name != "set_wait" && !accepts))
+      return {"SET " + upper + " NAK\n\r"};
+    if (name == "mode") told["mode"] = line == "set mode mdi" ? "MDI" : "MANUAL";
+    if (name == "home") told["joint_homed"] = "YES YES YES";
+    if (name == "mdi") obey(*this, line.substr(8));
+    return {"SET " + upper + " ACK\n\r"};
+  }
+  void StandAt(const std::string& places) { told["abs_cmd_pos"] = told["abs_act_pos"] = places; }
+};
+
+class OnLinuxCnc : public testing::Test {
+ protected:
+  LinuxCncMachine Machine(const std::string& enable_password = "EMCTOO") {
+    dialogue_.Speak(WithAnyLineEnd());
+    AxisLimits limits;
+    limits.lower = -1.0;
+    limits.upper = 1.0;
+    return {DeviceLine(dialogue_, "machine", std::chrono::milliseconds(500)),
+            {{"x", false}, {"table", true}},
+            {limits, limits},
+            {{'X', 0}, {'C', 2}},
+            enable_password,
+            {.traverse_m_s = 0.01}};
+  }
+
+  LinuxCncModel model_;
+  FakeController controller_{[this](const std::string& line) { return model_(line); }};
+  Dialogue dialogue_{ParseAddress(controller_.Address()).value(), LinuxCncHello("EMC"), kLinuxCncIdentity};
+};
+
+TEST_F(OnLinuxCnc, AMoveIsABlockInMachineCoordinatesWithoutExponents) {
+  model_.obey = [](LinuxCncModel& model, const std::string&) { model.StandAt("0.012346 0 0 0 0 12.500000"); };
+  LinuxCncMachine machine = Machine();
+  machine.StartMove({1.23456e-5, 12.5 * units::deg}, 0.0);
+  EXPECT_TRUE(machine.Settles(std::chrono::seconds(2)));
+  EXPECT_THAT(controller_.Lines(), Contains("set mdi G90 G21 G94 G53 G1 F600.000000 X0.012345600 C12.500000000"));
+  const std::vector<AxisState> states = machine.State();
+  EXPECT_NEAR(states[0].encoder, 1.2346e-5, 1e-12);
+  EXPECT_NEAR(states[1].encoder, 12.5 * units::deg, 1e-12) << "the sixth place is C's";
+  EXPECT_TRUE(states[1].referenced) << "joint 1 is none of its axes";
+}
+
+TEST_F(OnLinuxCnc, LimitsAreReadAsAFeed) {
+  model_.obey = [](LinuxCncModel& model, const std::string& block) {
+    const double limit = block.find("AXIS_C") != std::string::npos ? 360.25 : -400.0;
+    model.told["program_codes"] = fmt::format("G0 G17 F{:.0f} S0", (limit + 1e6) * 1e6);
+  };
+  const std::vector<AxisLimits> travel = Machine().Travel();
+  EXPECT_NEAR(travel[0].lower, -0.4, 1e-12);
+  EXPECT_NEAR(travel[1].upper, 360.25 * units::deg, 1e-12);
+  EXPECT_THAT(controller_.Lines(), AllOf(Contains("set mdi G94 F[[#<_ini[AXIS_X]MIN_LIMIT>+1000000]*1000000]"),
+                                         Contains("set mdi G94 F[[#<_ini[AXIS_C]MAX_LIMIT>+1000000]*1000000]")));
+}
+
+TEST_F(OnLinuxCnc, ABlockThatIsComplainedAboutAfterwardsHasNotBeenCarriedOut) {
+  model_.obey = [](LinuxCncModel& model, const std::string&) {
+    model.told["error"] = "Linear move on line 0 would exceed X's positive limit";
+  };
+  LinuxCncMachine machine = Machine();
+  EXPECT_EQ(KindOf([&] {
+              machine.StartMove({0.5, 0.0}, 0.0), machine.Settles(std::chrono::seconds(2));
+            }),
+            FaultKind::kLimit);
+  model_.obey = [](LinuxCncModel& model, const std::string&) { model.told["error"] = "OK"; };
+  EXPECT_THAT(TextOf([&] {
+                machine.StartMove({0.5, 0.0}, 0.0), machine.Settles(std::chrono::seconds(2));
+              }),
+              AllOf(HasSubstr("axis x was sent to 500.000000 mm"), HasSubstr("ended at 0.000000 mm"),
+                    HasSubstr("does not say why")));
+  EXPECT_THAT(controller_.Lines(), Contains("set abort"));
+}
+
+TEST_F(OnLinuxCnc, AMoveThatGoesOnOrIsHeldIsNotDone) {
+  LinuxCncMachine machine = Machine();
+  model_.obey = [](LinuxCncModel& model, const std::string&) { model.told["program_status"] = "RUNNING"; };
+  machine.StartMove({0.5, 0.0}, 0.0);
+  EXPECT_FALSE(machine.Settles(std::chrono::milliseconds(100)));
+  EXPECT_TRUE(machine.State()[0].moving);
+}
+
+TEST_F(OnLinuxCnc, WithoutItsOriginAnAxisStandsNowhereAndIsHomedInManualMode) {
+  model_.told["joint_homed"] = "YES YES NO";
+  LinuxCncMachine machine = Machine();
+  EXPECT_TRUE(std::isnan(machine.State()[1].encoder));
+  EXPECT_FALSE(std::isnan(machine.State()[0].encoder));
+  EXPECT_EQ(KindOf([&] { machine.StartMove({0.0, 0.0}, 0.0); }), FaultKind::kRestarted);
+  EXPECT_THAT(TextOf([&] { machine.Travel(); }),
+              AllOf(HasSubstr("axis table is not homed"), HasSubstr("home it at the machine")));
+  machine.Home();
+  EXPECT_THAT(controller_.Lines(), AllOf(Contains("set mode manual"), Contains("set home -1")));
+  EXPECT_TRUE(machine.State()[1].referenced);
+}
+
+TEST_F(OnLinuxCnc, NeitherEmergencyStopNorPowerAreSwitchedForAMove) {
+  model_.told["estop"] = "ON";
+  model_.told["machine"] = "OFF";
+  LinuxCncMachine machine = Machine();
+  EXPECT_THAT(TextOf([&] { machine.StartMove({0.0, 0.0}, 0.0); }), HasSubstr("released by hand only"));
+  EXPECT_THAT(TextOf([&] { machine.Home(); }), HasSubstr("released by hand only"));
+  EXPECT_THAT(machine.State()[0].fault, HasSubstr("switched off"));
+  model_.accepts = false;
+  EXPECT_EQ(KindOf([&] { machine.Stop(); }), std::nullopt) << "it has been stopped";
+  model_.told["machine"] = "ON";
+  EXPECT_EQ(KindOf([&] { machine.Stop(); }), FaultKind::kRefused);
+  EXPECT_THAT(controller_.Lines(), testing::Not(Contains(HasSubstr("set estop"))));
+}
+
+TEST_F(OnLinuxCnc, WhatItIsNotIsRefusedAtTheFirstCall) {
+  EXPECT_THAT(TextOf([&] { Machine("WRONG").State(); }), HasSubstr("enable_password"));
+  model_.told["joint_units"] = "INCH MM DEG";
+  EXPECT_THAT(TextOf([&] { Machine().State(); }),
+              HasSubstr("joint 0, which should be axis x in mm, is LINEAR in INCH"));
+  dialogue_.Close();
+  Dialogue locked(ParseAddress(controller_.Address()).value(), LinuxCncHello("other"), kLinuxCncIdentity);
+  EXPECT_EQ(KindOf([&] { locked.Open("machine", std::chrono::milliseconds(300)); }), FaultKind::kIdentity);
+}
+
+TEST_F(OnLinuxCnc, CirclesAreRefused) {
+  EXPECT_THAT(TextOf([&] { Machine().StartArc({}); }), HasSubstr("no pulses at places of an arc"));
+}
+
+}  // namespace
+}  // namespace twinbench::hw
