@@ -41,7 +41,11 @@ endif()
 if(TWINBENCH_COMEDI)
   pkg_check_modules(Comedi IMPORTED_TARGET comedilib)
 endif()
-message(STATUS "twinbench A/D drivers: libiio ${Iio_VERSION}, comedilib ${Comedi_VERSION}")
+option(TWINBENCH_MODBUS "Instruments behind Modbus gateways through libmodbus, if it is installed" ON)
+if(TWINBENCH_MODBUS)
+  pkg_check_modules(Modbus IMPORTED_TARGET libmodbus)
+endif()
+message(STATUS "twinbench drivers: libiio ${Iio_VERSION}, comedilib ${Comedi_VERSION}, libmodbus ${Modbus_VERSION}")
 
 # The Python package is for Debian's Python, not for another one before it on the path: numpy and pandas are Debian's too.
 option(TWINBENCH_PYTHON "Build the Python package, if pybind11 is installed" ON)

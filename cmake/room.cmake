@@ -49,8 +49,8 @@ endfunction()
 # twinbench_test(<name> SOURCES a_test.cc ... ROOMS room ... [LIBRARIES ...] [SHARDS n] [SLOW] [WAITS] [ENVIRONMENT a=b ...])
 #
 # One test program a room. ctest runs it in one process, or in SHARDS processes <name>.1, <name>.2 ... side by side.
-# SLOW, WAITS, ENVIRONMENT: of twinbench_entry. What is not SLOW is compiled at -O1, in three quarters of the time. Those that
-# compute for long are not: of a template that a room has too, the linker takes the test's.
+# SLOW, WAITS, ENVIRONMENT: of twinbench_entry. What is not SLOW is compiled at -O1, in three quarters of the time, and what WAITS at -O0,
+# in half. Those that compute for long are not: of a template that a room has too, the linker takes the test's.
 function(twinbench_test name)
   cmake_parse_arguments(TEST "SLOW;WAITS" "SHARDS" "SOURCES;ROOMS;LIBRARIES;ENVIRONMENT" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
@@ -63,7 +63,9 @@ function(twinbench_test name)
   if(TEST_ROOMS)
     twinbench_precompile(test_${name} <gmock/gmock.h>)
   endif()
-  if(NOT TEST_SLOW)
+  if(TEST_WAITS)
+    target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O0>)
+  elseif(NOT TEST_SLOW)
     target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
 

@@ -44,7 +44,7 @@ bool Has(const DialogueWords& words, const Need& need) {
 }  // namespace
 
 bool HasConnection(const std::string& kind) {
-  return kind == "scpi" || kind == "esp" || kind == "linuxcnc" || kind == kDialogueKind;
+  return kind == "scpi" || kind == "esp" || kind == "linuxcnc" || kind == "modbus" || kind == kDialogueKind;
 }
 
 void TakeWords(const std::string& file, const KeyPlaces& places, const std::string& folder,

@@ -75,7 +75,11 @@ std::set<std::string> AddressesOf(const MachineFile& file) {
   if (file.kind != "hardware") return addresses;
   for (const ControlSettings* settings : {&file.machine, &file.indexer, &file.fixture, &file.clock})
     AddAddress(addresses, *settings);
-  for (const InstrumentSettings& instrument : file.instruments) AddAddress(addresses, instrument.connection);
+  for (const InstrumentSettings& instrument : file.instruments) {
+    AddAddress(addresses, instrument.connection);
+    if (instrument.connection.kind == "iio") addresses.insert(instrument.uri + " " + instrument.device);
+    if (instrument.connection.kind == "comedi") addresses.insert(instrument.device);
+  }
   return addresses;
 }
 

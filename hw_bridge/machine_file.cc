@@ -62,13 +62,18 @@ class MachineKeys {
 
 void AddInstrument(std::vector<ScenarioKey>& keys, std::size_t number, InstrumentSettings& s) {
   MachineKeys t(keys, InstrumentTable(number));
-  t.Described(s.connection, {"scpi", "dialogue", "none"});
+  t.Described(s.connection, {"scpi", "dialogue", "modbus", "iio", "comedi", "none"});
   t.Text("fields", &s.words.fields, {}, "of a sample, in order: columns, time_ns, status, ignored");
   t.Add("scale", kOne, {}, &s.words.scale, "field times this is in the column's unit, one a field; without it 1");
-  t.Text("read", &s.words.read, {}, "query that is answered by one sample");
+  t.Text(
+      "read", &s.words.read, {},
+      "query that is answered by one sample; of modbus, iio, comedi what is read, one a field with commas between");
   t.Text("look", &s.words.look, {}, "the same on the way to a reading, where something is nulled; empty: as read");
   t.Text("arm", &s.words.arm, {}, "command that lets it latch {samples}, at triggers or every {lines} lines; empty: it cannot");
   t.Text("fetch", &s.words.fetch, {}, "query that is answered by <samples>,<1: some are lost>,<the samples>");
+  t.Add("unit", kOne, {0, 255}, &s.unit, "modbus: of several devices behind one gateway");
+  t.Text("uri", &s.uri, {}, "iio: where the context is, as libiio takes it");
+  t.Text("device", &s.device, {}, "iio: name or id of the device; comedi: device file");
 }
 
 void AddIndexer(std::vector<ScenarioKey>& keys, MachineFile& file) {
@@ -176,6 +181,7 @@ class MachineFileCheck {
       if (s.connection.kind == "none") continue;
       any = true;
       const bool is_described = s.connection.kind == "dialogue";
+      s.IsNumbers() ? CheckNumbers(table, s) : RefuseNumbers(table);
       if (is_described) RefuseWords(table, {"read", "look", "arm", "fetch"});
       if (s.words.fields.empty() && !is_described)
         throw InputError(Where(table), fmt::format("{}.fields is missing", table), "the fields of its answer");
@@ -190,10 +196,37 @@ class MachineFileCheck {
 
   /// What stands in a dialogue stands there only.
   void RefuseWords(const std::string& table, const std::vector<std::string>& keys) const {
-    for (const std::string& key : keys) {
-      if (places_.contains(table + "." + key))
-        throw InputError(Where(table + "." + key), fmt::format("{}.{} beside a dialogue", table, key), "it in the dialogue");
-    }
+    for (const std::string& key : keys) RefuseOf(table + "." + key, "beside a dialogue", "it in the dialogue");
+  }
+
+  void CheckNumbers(const std::string& table, const InstrumentSettings& s) const {
+    const std::string& kind = s.connection.kind;
+    if (!HasNumberDriver(kind))
+      throw InputError(Where(table + ".kind"), fmt::format("this build was made without the driver \"{}\"", kind),
+                       "another kind");
+    for (const char* key : {"identity", "token", "watchdog", "look", "arm", "fetch"})
+      RefuseOf(table + "." + key, fmt::format("kind = \"{}\" is read, not spoken to", kind),
+               fmt::format("no {}", key));
+    const bool is_modbus = kind == "modbus";
+    if (!is_modbus) RefuseOf(table + ".unit", "of modbus only", "no unit");
+    if (kind != "iio") RefuseOf(table + ".uri", "of iio only", "no uri");
+    if (is_modbus) RefuseOf(table + ".device", "of iio and comedi only", "an address");
+    if (!is_modbus && s.device.empty())
+      throw InputError(Where(table), fmt::format("{}.device is missing", table), "what is read");
+    const NumberSettings numbers = s.Numbers();
+    if (!places_.contains(table + ".read") || numbers.items.size() != s.words.fields.size())
+      throw InputError(
+          Where(table + ".read"),
+          fmt::format("{} is read for {} fields", places_.contains(table + ".read") ? numbers.items.size() : 0,
+                      s.words.fields.size()),
+          "one a field: " + NumberItemForm(kind));
+    MakeNumberSource(numbers, table, Where(table + ".read"));  // which looks at every item
+  }
+
+  void RefuseNumbers(const std::string& table) const {
+    for (const char* key : {"unit", "uri", "device"})
+      RefuseOf(table + "." + key, "beside an instrument that is spoken to",
+               "kind = \"modbus\", \"iio\" or \"comedi\"");
   }
 
   /// Who shares an address shares a connection: one language, one identity.
@@ -222,6 +255,19 @@ class MachineFileCheck {
 };
 
 }  // namespace
+
+NumberSettings InstrumentSettings::Numbers() const {
+  NumberSettings numbers = {.kind = connection.kind,
+                            .address = connection.address,
+                            .unit = unit,
+                            .uri = uri,
+                            .device = device,
+                            .items = {},
+                            .timeout = FromSeconds(connection.timeout_s)};
+  std::istringstream in(words.read);
+  for (std::string item; std::getline(in >> std::ws, item, ',');) numbers.items.push_back(item);
+  return numbers;
+}
 
 std::string LetterOf(const MachineFile& file, const std::vector<MachineAxis>& axes, std::size_t axis) {
   std::string letter = file.letters[axis].empty() ? axes[axis].name : file.letters[axis];

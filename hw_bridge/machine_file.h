@@ -4,6 +4,7 @@
 
 #include "hw_bridge/bench_file.h"
 #include "hw_bridge/control/instrument_box.h"
+#include "hw_bridge/numbers/number_source.h"
 #include "twin/core/machine.h"
 
 /// bench.toml of a bench whose machine is driven. docs/hardware.md lists every key.
@@ -13,8 +14,17 @@ inline constexpr std::size_t kMostInstruments = 4;  // [instrument_1] to [instru
 inline constexpr double kTraverse_m_s = 1000.0 * units::mm / 60.0;
 
 struct InstrumentSettings {
-  ControlSettings connection{"none"};  // scpi | dialogue | none
+  ControlSettings connection{"none"};  // scpi | dialogue | modbus | iio | comedi | none
   InstrumentWords words;
+  int unit = 1;                        // modbus: of several behind one gateway
+  std::string uri = "local:", device;  // iio; iio and comedi
+
+  /// Whether it is numbers in a card or behind a gateway, which nobody speaks to in lines.
+  bool IsNumbers() const {
+    return connection.kind == "modbus" || connection.kind == "iio" || connection.kind == "comedi";
+  }
+  /// As they stand in `read`, apart by commas.
+  NumberSettings Numbers() const;
 };
 
 struct MachineFile {

@@ -14,6 +14,7 @@
 #include "hw_bridge/control/scpi_instruments.h"
 #include "hw_bridge/control/served_clock.h"
 #include "hw_bridge/conversations.h"
+#include "hw_bridge/numbers/number_instrument.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::hw {
@@ -43,6 +44,7 @@ class OpenedMachine : public OpenMachine {
   std::string Identity() const override {
     std::string text;
     for (const std::string& identity : conversations_.Identities()) text += (text.empty() ? "" : "; ") + identity;
+    text += cards_;
     return name_.empty() ? text : name_ + ": " + text;
   }
 
@@ -76,16 +78,33 @@ class OpenedMachine : public OpenMachine {
     return std::make_unique<LinuxCncMachine>(line, axes, file.axes, at, file.machine.enable_password, manner);
   }
 
-  std::vector<InstrumentBox> OpenInstruments(const MachineFile& file, const std::vector<ReadingColumn>& columns) {
-    std::vector<InstrumentBox> boxes;
+  std::vector<std::unique_ptr<Instrument>> OpenInstruments(const MachineFile& file,
+                                                           const std::vector<ReadingColumn>& columns) {
+    std::vector<std::unique_ptr<Instrument>> instruments;
     for (std::size_t k = 0; k < kMostInstruments; ++k) {
       const InstrumentSettings& s = file.instruments[k];
       if (s.connection.kind == "none") continue;
-      const bool is_described = s.connection.kind == "dialogue";
-      boxes.emplace_back(conversations_.LineOf(fmt::format("instrument_{}", k + 1), s.connection),
-                         is_described ? WithDialogue(s.words, s.connection.words, columns) : s.words, columns);
+      const std::string name = fmt::format("instrument_{}", k + 1);
+      instruments.push_back(s.IsNumbers() ? Numbers(s, name, columns) : Box(s, name, columns));
     }
-    return boxes;
+    return instruments;
+  }
+
+  std::unique_ptr<Instrument> Box(const InstrumentSettings& s, const std::string& name,
+                                  const std::vector<ReadingColumn>& columns) {
+    const bool is_described = s.connection.kind == "dialogue";
+    return std::make_unique<InstrumentBox>(
+        conversations_.LineOf(name, s.connection),
+        is_described ? WithDialogue(s.words, s.connection.words, columns) : s.words, columns);
+  }
+
+  std::unique_ptr<Instrument> Numbers(const InstrumentSettings& s, const std::string& name,
+                                      const std::vector<ReadingColumn>& columns) {
+    auto source = MakeNumberSource(s.Numbers(), name, s.words.where);
+    source->Read();  // one that is not there is told now
+    cards_ += "; " + source->Identity();
+    return std::make_unique<NumberInstrument>(std::move(source), s.words.fields, s.words.scale, columns,
+                                              s.words.where);
   }
 
   std::unique_ptr<Indexer> OpenIndexer(const MachineFile& file) {
@@ -100,14 +119,14 @@ class OpenedMachine : public OpenMachine {
     return std::make_unique<ScpiMachineFixture>(conversations_.LineOf("fixture", settings));
   }
 
-  std::string name_;
+  std::string name_, cards_;
   Conversations own_conversation_;  // the clock's
   Conversations conversations_;
   std::unique_ptr<Simulation> simulation_;
   ClockNotices clock_notices_;
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<ControlledMachine> machine_;
-  InstrumentBoxes instruments_;
+  Instruments instruments_;
   std::unique_ptr<Indexer> indexer_;
   std::unique_ptr<MachineFixture> fixture_;
 };

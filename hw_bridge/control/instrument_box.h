@@ -1,11 +1,8 @@
 #pragma once
 
-#include <deque>
-
 #include "hw_bridge/control/device_line.h"
 #include "hw_bridge/control/dialogue_words.h"
-#include "twin/core/machine.h"
-#include "twin/core/reading_column.h"
+#include "hw_bridge/control/instrument.h"
 
 namespace twinbench::hw {
 
@@ -37,61 +34,27 @@ struct InstrumentWords {
 InstrumentWords WithDialogue(const InstrumentWords& file, const DialogueWords& dialogue,
                              const std::vector<ReadingColumn>& columns);
 
-/// One instrument with some of the columns of a bench's readings.
-class InstrumentBox {
+/// An instrument that is spoken to in lines.
+class InstrumentBox : public Instrument {
  public:
   /// @param columns  Those of the bench that an instrument may fill.
   /// @throws InputError if a field is none of them.
   InstrumentBox(DeviceLine line, InstrumentWords words, const std::vector<ReadingColumn>& columns);
 
-  bool Latches() const { return !words_.arm.empty(); }
-  /// What it shows now.
-  Reading Read() { return Ask(words_.read); }
-  Reading Look() { return Ask(words_.look.empty() ? words_.read : words_.look); }
+  Reading Read() override { return Ask(words_.read); }
+  Reading Look() override { return Ask(words_.look.empty() ? words_.read : words_.look); }
+  bool Latches() const override { return !words_.arm.empty(); }
   /// @throws DeviceFault kRefused for lines where its words have no place for them.
-  void Arm(int samples, int lines);
-  /// Takes what was latched into `waiting`. @return false if some are lost.
-  bool Fetch();
-
-  /// Puts the numbers of a sample of this instrument into one of all.
-  void Merge(const Reading& sample, Reading& into) const;
-
-  std::deque<Reading> waiting;  // latched, in order
-  bool stamps = false;          // its samples say when they were taken
+  void Arm(int samples, int lines) override;
+  bool Fetch() override;
 
  private:
-  struct Field {
-    std::string name;
-    ReadingColumn column;  // without a name: none
-    double scale = 1.0;
-  };
   Reading Ask(const std::string& query);
   Reading Sample(const std::string& query, const std::vector<std::string>& texts, std::size_t from);
-  bool Put(const Field& field, const std::string& text, Reading& sample) const;
   std::vector<std::string> Fields(const std::string& query, const std::string& answer);
 
   DeviceLine line_;
   InstrumentWords words_;
-  std::vector<Field> fields_;
-};
-
-/// All instruments of a bench as one. A sample that none of them stamps has the time at which it was read.
-class InstrumentBoxes : public InstrumentSet {
- public:
-  InstrumentBoxes(std::vector<InstrumentBox> boxes, Clock& clock) : boxes_(std::move(boxes)), clock_(clock) {}
-  Reading Read() override;
-  Reading Look() override;
-  /// @throws DeviceFault kRefused if no instrument can latch.
-  void Arm(int samples, int lines) override;
-  LatchedSamples Latched() override;
-
- private:
-  Reading AllNow(Reading (InstrumentBox::*show)());
-  bool AllHaveOne() const;
-  Reading TakeOne(const std::vector<Reading>& now);
-
-  std::vector<InstrumentBox> boxes_;
-  Clock& clock_;
 };
 
 }  // namespace twinbench::hw

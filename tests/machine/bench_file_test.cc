@@ -79,6 +79,31 @@ TEST(MachineFile, RefusesWhatALinuxCncMachineCannotBeOrOthersAreNot) {
               HasSubstr("kind = \"linuxcnc\" only"));
 }
 
+std::string WithNumbers(const std::string& lines) {
+  const std::string instrument =
+      "kind = \"scpi\"\naddress = \"tcp:bar.lab:5025\"\nfields = [\"ignored\", \"bar_um\"]\nscale = [1.0, "
+      "1000.0]\nread = \"MEAS:LENG?\"\narm = \"\"\n";
+  return Changed(instrument, "fields = [\"ignored\", \"bar_um\"]\n" + lines);
+}
+
+TEST(MachineFile, ReadsRegistersAsOneItemAField) {
+  const std::string gateway = "kind = \"modbus\"\naddress = \"tcp:gateway.lab:502\"\n";
+  const hw::MachineFile file = hw::ParseMachineFile(
+      WithNumbers(gateway + "unit = 9\nread = \"input 4 int16, holding 65535 uint16\"\n"), "bench.toml", kAxes);
+  EXPECT_EQ(file.instruments[0].Numbers().unit, 9);
+  EXPECT_THAT(file.instruments[0].Numbers().items, testing::ElementsAre("input 4 int16", "holding 65535 uint16"));
+  EXPECT_THAT(Refusal(WithNumbers(gateway)), HasSubstr("0 is read for 2 fields"));
+  EXPECT_THAT(Refusal(WithNumbers(gateway + "read = \"input 4 int16\"\n")), HasSubstr("1 is read for 2 fields"));
+  EXPECT_THAT(
+      Refusal(WithNumbers(gateway + "read = \"input 4 int16, coil 3\"\n")),
+      AllOf(HasSubstr("bench.toml:17"), HasSubstr("\"coil 3\" is no register"), HasSubstr("holding 100 int32")));
+  EXPECT_THAT(Refusal(WithNumbers(gateway + "arm = \"INIT\"\nread = \"input 4 int16, input 5 int16\"\n")),
+              HasSubstr("is read, not spoken to"));
+  EXPECT_THAT(Refusal(WithNumbers("kind = \"comedi\"\nread = \"2 0, 2 1\"\n")),
+              HasSubstr("instrument_1.device is missing"));
+  EXPECT_THAT(Refusal(Changed("arm = \"\"", "unit = 3")), HasSubstr("beside an instrument that is spoken to"));
+}
+
 TEST(MachineFile, IsReadInTheUnitsOfItsKeys) {
   const hw::MachineFile file = hw::ParseMachineFile(kWhole, "bench.toml", kAxes);
   EXPECT_DOUBLE_EQ(file.axes[0].lower, -0.15);

@@ -19,8 +19,9 @@ using testing::HasSubstr;
 
 /// Of standard uncertainties. The noise of benches that are read at stops is the same in every run.
 constexpr double kCoverage = 3.0;
-/// Of a machine that turns on, when a path begins is a matter of the computer's time, and so is what is drawn: 14 values in every
-/// run, with 20 degrees of freedom or more; Student's t leaves 1 run in 10 000 outside.
+/// Of a machine that turns on, when a path begins is a matter of the computer's time, and so is what is drawn, as
+/// it is behind a gateway that is asked again: 14 values in every run, with 20 degrees of freedom or more;
+/// Student's t leaves 1 run in 10 000 outside.
 constexpr double kCoverageByChance = 6.0;
 
 /// `measure` of a scenario on a bench whose file has `{device}` where a device's address belongs.
@@ -30,6 +31,7 @@ class ForeignBenchProgram : public Program {
       : program_(program), bench_file_(std::move(bench_file)) {
     Write("foreign.toml", scenario);
   }
+  void BeRunBy(const char* python) { python_ = python; }
   /// What the bench's program is told besides its faults.
   void BeSet(const std::string& setting) { settings_.push_back(setting); }
   void Replace(const std::string& from, const std::string& to) {
@@ -42,16 +44,16 @@ class ForeignBenchProgram : public Program {
   Outcome MeasureWith(const std::vector<std::string>& faults, int attempts = 5) {
     std::vector<std::string> words = faults;
     words.insert(words.end(), settings_.begin(), settings_.end());
-    const ForeignBench bench(program_, At(""), words);
+    const ForeignBench bench(program_, At(""), words, python_);
     hidden_ = bench.told();
     std::string text = bench_file_;
     if (const auto at = text.find("attempts = "); at != std::string::npos) text.erase(at, text.find('\n', at) + 1 - at);
     text = "attempts = " + std::to_string(attempts) + "\n" + text;
     const auto fill = [&](const std::string& place, const std::string& device) {
-      for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
-        text.replace(at, place.size(), bench.Address(device));
+      if (text.find(place) != std::string::npos) Fill(text, place, bench.Address(device));
     };
     for (const auto& [device, port] : hidden_.at("ports").items()) fill("{" + device + "}", device);
+    if (hidden_.contains("gateway")) Fill(text, "{gateway}", "127.0.0.1:" + hidden_.at("gateway").dump());
     fill("{fixture}", "indexer");  // where no device of that name is a hand
     Write("bench.toml", text);
     return Call({"measure", "foreign.toml", "--bench", "bench.toml", "-o", "measured", "--allow-homing"});
@@ -95,7 +97,13 @@ class ForeignBenchProgram : public Program {
   const nlohmann::json& hidden() const { return hidden_; }
 
  private:
+  static void Fill(std::string& text, const std::string& place, const std::string& with) {
+    for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
+      text.replace(at, place.size(), with);
+  }
+
   std::string program_, bench_file_;
+  const char* python_ = kPlainPython;
   std::vector<std::string> settings_;
   nlohmann::json hidden_;
 };
@@ -223,6 +231,58 @@ TEST_F(ForeignTurntableOnLinuxCnc, IsMeasuredOnTheRealProgram) {
   Replace("{controller}", address);
   BeControlledBy(address, 0);
   ExpectMeasured(MeasureWith({}));
+}
+
+// --- a shaft with two encoders behind a gateway ---
+
+constexpr const char* kForeignShaft = R"(bench = "encoder_comparison"
+[encoder_procedure]
+turns = 1.0
+stops_per_turn = 12
+stop_interval_s = 0.1
+remount_s = 0.0
+passes = [1, -1]
+mounting_deg = [0.0, 90.0, 210.0]
+)";
+
+class ForeignShaft : public ForeignBenchProgram {
+ protected:
+  ForeignShaft() : ForeignBenchProgram("encoder_bench.py", kForeignShaft, Documented("shaft.toml")) {
+    BeRunBy(kDebianPython);
+  }
+
+  void ExpectRecovered(const nlohmann::json& harmonics, const std::string& what) const {
+    for (const auto& wave : hidden().at(what)) {
+      const auto& found = harmonics.at(what).at(wave.at("order").get<std::size_t>() - 1);
+      EXPECT_NEAR(found.at("amplitude_arcsec").get<double>(), wave.at("amplitude_arcsec").get<double>(),
+                  kCoverageByChance * found.at("u_amplitude_arcsec").get<double>())
+          << what << wave;
+      EXPECT_NEAR(found.at("phase_deg").get<double>(), wave.at("phase_deg").get<double>(),
+                  kCoverageByChance * found.at("u_phase_deg").get<double>())
+          << what << wave;
+      EXPECT_LT(found.at("u_amplitude_arcsec").get<double>(), 0.1);
+    }
+  }
+};
+
+TEST_F(ForeignShaft, IsMeasuredThroughAModbusGatewayOfOthers) {
+  const Outcome measured = MeasureWith({"gateway.late@9", "controller.mute@30"});
+  if (measured.err.find("without the driver") != std::string::npos) GTEST_SKIP() << measured.err;
+  ASSERT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_EQ(Kept(), 72u);
+  std::map<std::string, int> failed = FailedAttemptsByFault();
+  EXPECT_GE(failed["timeout"], 2) << "a late answer, and a mute controller";
+  const nlohmann::json harmonics = Separated().at("harmonics");
+  ExpectRecovered(harmonics, "device");
+  ExpectRecovered(harmonics, "reference");
+}
+
+TEST_F(ForeignShaft, AnExceptionOfTheGatewayEndsTheRunWithTheShaftAtRest) {
+  const Outcome measured = MeasureWith({"gateway.refuse@9"});
+  if (measured.err.find("without the driver") != std::string::npos) GTEST_SKIP() << measured.err;
+  EXPECT_EQ(measured.exit_code, 1);
+  EXPECT_THAT(measured.err, AllOf(HasSubstr("4 input registers from 20 were not read: Illegal data address"),
+                                  HasSubstr("unit 3"), HasSubstr("brought to rest")));
 }
 
 // --- a hobbing machine ---

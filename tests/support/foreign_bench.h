@@ -18,6 +18,9 @@
 
 namespace twinbench::test {
 
+/// Python with its own library; and Debian's, which alone has what Debian packages for it.
+inline constexpr const char *kPlainPython = "python3", *kDebianPython = "/usr/bin/python3";
+
 /// A bench of others: a program in Python under tests/data/foreign_bench/ that shares nothing with this one and is reached by TCP.
 /// It ends with this object, and with the test program, by the end of its stdin.
 class ForeignBench {
@@ -25,10 +28,11 @@ class ForeignBench {
   /// @param program  "turntable_bench.py".
   /// @param folder   Of what it tells.
   /// @param faults   "controller.mute@3" (tests/data/foreign_bench/line_devices.py).
-  ForeignBench(const std::string& program, const std::string& folder, const std::vector<std::string>& faults) {
+  ForeignBench(const std::string& program, const std::string& folder, const std::vector<std::string>& faults,
+               const std::string& python = kPlainPython) {
     const std::string told = folder + "/foreign.json";
     std::filesystem::remove(told);
-    std::vector<std::string> words = {"python3", "-B", TWINBENCH_TEST_DATA "/foreign_bench/" + program, told};
+    std::vector<std::string> words = {python, "-B", TWINBENCH_TEST_DATA "/foreign_bench/" + program, told};
     words.insert(words.end(), faults.begin(), faults.end());
     Spawn(words);
     constexpr auto kPause = std::chrono::milliseconds(20);
@@ -61,13 +65,13 @@ class ForeignBench {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-    const int failed = posix_spawnp(&id_, "python3", &actions, nullptr, argv.data(), environ);
+    const int failed = posix_spawnp(&id_, argv[0], &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[0]);
     stdin_ = ends[1];
     if (failed == 0) return;
     close(stdin_);
-    throw BenchError("python3 cannot be started");
+    throw BenchError(words[0] + " cannot be started");
   }
 
   pid_t id_ = 0;

@@ -12,7 +12,9 @@
 namespace twinbench::test {
 namespace {
 
-constexpr unsigned kSubdevices = 2, kAnalogue = 0, kDigital = 1;
+constexpr unsigned kSubdevices = 3, kAnalogue = 0, kDigital = 1, kCounter = 2;
+constexpr unsigned kCounterBits = 24;
+constexpr std::array<unsigned, 2> kCounts = {1234567, (1u << kCounterBits) - 42};  // the second has gone below zero
 constexpr unsigned kWanted = 1;  // of the ranges below; the samples are of this one
 constexpr unsigned kRanges = 3;
 
@@ -130,12 +132,18 @@ int Card::SubdeviceInfo(comedi_subdinfo* info) const {
   info[kDigital].maxdata = 1;
   info[kDigital].range_type = kDigital << 24 | 1;
   info[kDigital].insn_bits_support = COMEDI_SUPPORTED;
+  info[kCounter] = {};
+  info[kCounter].type = COMEDI_SUBD_COUNTER;
+  info[kCounter].n_chan = static_cast<unsigned>(kCounts.size());
+  info[kCounter].subd_flags = SDF_READABLE;
+  info[kCounter].maxdata = (1u << kCounterBits) - 1;
+  info[kCounter].range_type = kCounter << 24 | 1;
   return 0;
 }
 
 int Card::RangeInfo(const comedi_rangeinfo& info) const {
   auto* ranges = static_cast<comedi_krange*>(info.range_ptr);
-  if ((info.range_type >> 24 & 0xf) == kDigital) {
+  if ((info.range_type >> 24 & 0xf) != kAnalogue) {
     ranges[0] = {0, 1000000, UNIT_none};
     return 0;
   }
@@ -156,6 +164,11 @@ int Card::Instruct(const comedi_insn& instruction) {
     return 2;
   }
   const unsigned channel = CR_CHAN(instruction.chanspec);
+  if (instruction.subdev == kCounter && instruction.insn == INSN_READ && channel < kCounts.size() &&
+      instruction.n == 1) {
+    instruction.data[0] = kCounts[channel];
+    return 1;
+  }
   if (instruction.subdev != kAnalogue || instruction.insn != INSN_READ || channel >= kInputs) return -EINVAL;
   unsigned n = 0;
   MakeSampleSource()->Acquire(static_cast<int>(instruction.n), [&](std::span<const std::int16_t, kInputs> codes) {

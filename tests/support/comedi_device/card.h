@@ -10,7 +10,8 @@
 namespace twinbench::test {
 
 /// A multiplexed card as the kernel would show it: subdevice 0 has four analogue inputs that scan by themselves at
-/// one fixed rate, subdevice 1 three digital ones. Its timing and stages of COMEDI_CMDTEST are those of a PCI-1710.
+/// one fixed rate, subdevice 1 three digital ones, subdevice 2 two counters that stand still. Its timing and stages
+/// of COMEDI_CMDTEST are those of a PCI-1710.
 class Card {
  public:
   explicit Card(int descriptor);

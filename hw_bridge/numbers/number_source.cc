@@ -1,0 +1,54 @@
+#include "hw_bridge/numbers/number_source.h"
+
+#include <fmt/format.h>
+
+#include "twin/core/errors.h"
+#ifdef TWINBENCH_WITH_IIO
+#include "hw_bridge/numbers/iio_numbers.h"
+#endif
+#ifdef TWINBENCH_WITH_COMEDI
+#include "hw_bridge/numbers/comedi_numbers.h"
+#endif
+#ifdef TWINBENCH_WITH_MODBUS
+#include "hw_bridge/numbers/modbus_numbers.h"
+#endif
+
+namespace twinbench::hw {
+
+bool HasNumberDriver([[maybe_unused]] const std::string& kind) {
+#ifdef TWINBENCH_WITH_IIO
+  if (kind == "iio") return true;
+#endif
+#ifdef TWINBENCH_WITH_COMEDI
+  if (kind == "comedi") return true;
+#endif
+#ifdef TWINBENCH_WITH_MODBUS
+  if (kind == "modbus") return true;
+#endif
+  return false;
+}
+
+std::unique_ptr<NumberSource> MakeNumberSource(const NumberSettings& settings, const std::string& device,
+                                               const std::string& where) {
+#ifdef TWINBENCH_WITH_IIO
+  if (settings.kind == "iio") return MakeIioNumbers(settings, device, where);
+#endif
+#ifdef TWINBENCH_WITH_COMEDI
+  if (settings.kind == "comedi") return MakeComediNumbers(settings, device, where);
+#endif
+#ifdef TWINBENCH_WITH_MODBUS
+  if (settings.kind == "modbus") return MakeModbusNumbers(settings, device, where);
+#endif
+  throw InputError(where, fmt::format("this build was made without the driver \"{}\"", settings.kind),
+                   "another kind");
+}
+
+std::string NumberItemForm(const std::string& kind) {
+  if (kind == "modbus")
+    return "\"holding 100 int32\": holding or input, register, int16, uint16, int32, uint32 or float32; \"low\" "
+           "behind it where the low word comes first";
+  if (kind == "iio") return "\"count0 raw\": channel and attribute, or an attribute of the device";
+  return "\"5 0 signed\": subdevice and channel; \"signed\" where a counter goes below zero";
+}
+
+}  // namespace twinbench::hw

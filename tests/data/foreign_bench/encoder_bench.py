@@ -1,0 +1,99 @@
+"""A shaft with two encoders behind a Modbus gateway: a reference, and a device that is mounted at an angle, in closed form.
+
+usage: encoder_bench.py shown.json [device.kind@event ...]   (line_devices.py says which faults there are)
+
+Devices: `controller` (esp_controller.py), `hand` (which mounts), and `gateway`: Modbus by pymodbus, a program of others, unit 3. Its events are
+readings; its faults are `late`, and `refuse`, an exception instead of the registers. Input register 20: the reference, 21 and 20 being the high and
+the low word of millionths of a degree. Register 22: the device, a float of degrees, high word first.
+
+At the shaft's angle a the reference shows a + R(a); mounted at m the device shows d + D(d), d = a + m. Written to shown.json: the ports,
+and the waves of R and D.
+"""
+import asyncio
+import logging
+import math
+import random
+import struct
+import sys
+import threading
+import time
+
+from pymodbus.datastore import ModbusServerContext, ModbusSlaveContext
+from pymodbus.datastore.store import BaseModbusDataBlock
+from pymodbus.server.async_io import ModbusTcpServer
+
+from esp_controller import EspController
+from line_devices import LATE_S, Device, ScpiDevice, mounted, show
+
+FIRST, WORDS, UNIT = 20, 4, 3
+MOUNTING_DEG = (0.0, 90.0, 210.0)
+REFERENCE = ({"order": 1, "amplitude_arcsec": 1.5, "phase_deg": 40.0},)
+NOISE_ARCSEC = 0.1  # of the device; its float has steps of 0.1 arcsec
+DEVICE = ({"order": 1, "amplitude_arcsec": 6.0, "phase_deg": -70.0}, {"order": 2, "amplitude_arcsec": 3.0, "phase_deg": 15.0})
+
+
+def error_deg(waves, angle_deg):
+    return sum(wave["amplitude_arcsec"] * math.cos(math.radians(wave["order"] * angle_deg + wave["phase_deg"])) for wave in waves) / 3600.0
+
+
+class Hand(ScpiDevice):
+    name = "hand"
+    identity = "FOREIGN LABORATORY,HAND,1,1"
+    mounting_deg = 0.0
+
+    def do(self, word):
+        if (set_up := mounted(word)) is not None:
+            self.mounting_deg = MOUNTING_DEG[set_up]
+            return True
+        return True if word == "FIXT:CLE" else None
+
+
+class Registers(BaseModbusDataBlock):
+    """What both encoders show at the instant of a request."""
+
+    def __init__(self, axis, hand, gateway):
+        self.axis, self.hand, self.gateway = axis, hand, gateway
+        self.chance = random.Random(20)
+
+    def validate(self, address, count=1):
+        inside = FIRST <= address and address + count <= FIRST + WORDS
+        return inside and self.gateway.happen() != "refuse"
+
+    def getValues(self, address, count=1):
+        if self.gateway.take_due() == "late":
+            time.sleep(LATE_S)
+        shaft_deg = self.axis.place_deg()
+        reference = round((shaft_deg + error_deg(REFERENCE, shaft_deg)) * 1e6) & 0xFFFFFFFF
+        device_deg = shaft_deg + self.hand.mounting_deg
+        high, low = struct.unpack(">HH", struct.pack(">f", device_deg % 360.0 + error_deg(DEVICE, device_deg) + self.chance.gauss(0.0, NOISE_ARCSEC) / 3600.0))
+        words = [reference & 0xFFFF, reference >> 16, high, low]
+        return words[address - FIRST:address - FIRST + count]
+
+
+class Gateway(Device):
+    name = "gateway"
+
+
+def serve(context, port):
+    async def forever():
+        server = ModbusTcpServer(context, address=("127.0.0.1", 0))
+        running = asyncio.ensure_future(server.serve_forever())
+        await server.serving
+        port.append(server.server.sockets[0].getsockname()[1])
+        await running
+
+    asyncio.run(forever())
+
+
+def main():
+    logging.disable(logging.CRITICAL)
+    controller, hand, gateway = EspController(sys.argv[2:]), Hand(sys.argv[2:]), Gateway(sys.argv[2:])
+    unit = ModbusSlaveContext(ir=Registers(controller.axes[0], hand, gateway), zero_mode=True)
+    port = []
+    threading.Thread(target=serve, args=(ModbusServerContext({UNIT: unit}, single=False), port), daemon=True).start()
+    while not port:
+        time.sleep(0.01)
+    show([controller, hand], {"reference": REFERENCE, "device": DEVICE, "gateway": port[0]}, sys.argv[1])
+
+
+main()

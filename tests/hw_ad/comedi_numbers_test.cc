@@ -1,0 +1,62 @@
+#include "hw_bridge/numbers/comedi_numbers.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/hw_ad/backend_test.h"
+#include "tests/support/rotary_scenario.h"
+#include "twin/core/device_fault.h"
+#include "twin/core/errors.h"
+
+/// On libcomedi itself, with the preloaded card of comedi_source_test.cc, whose subdevice 2 has two counters.
+namespace twinbench::hw {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ComediNumbersTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::getenv("LD_PRELOAD") == nullptr) GTEST_SKIP() << "needs the preloaded card; ctest brings it";
+  }
+  void TearDown() override { unsetenv("TWINBENCH_COMEDI_TWIN"); }
+
+  std::vector<double> Read(const std::vector<std::string>& items) {
+    const std::string device = test::ComediSettings(served_).device;
+    return MakeComediNumbers({.kind = "comedi", .address = "", .device = device, .items = items}, "instrument_1",
+                             "bench.toml:7")
+        ->Read();
+  }
+
+  test::HeldTwin served_{test::RotaryScenario()};
+};
+
+TEST_F(ComediNumbersTest, CountersAreReadWithTheSignThatTheyAreSaidToHave) {
+  EXPECT_THAT(Read({"2 0", "2 1", "2 1 signed", "2 0 signed"}),
+              ElementsAre(1234567.0, 16777216.0 - 42.0, -42.0, 1234567.0));
+}
+
+TEST_F(ComediNumbersTest, WhatTheCardHasNotIsRefused) {
+  try {
+    Read({"2 2"});
+    FAIL();
+  } catch (const DeviceFault& fault) {
+    EXPECT_EQ(fault.kind(), FaultKind::kRefused);
+    EXPECT_THAT(fault.what(), HasSubstr("no channel 2 of subdevice 2"));
+  }
+}
+
+TEST_F(ComediNumbersTest, AnItemThatIsNoneIsToldWithItsLine) {
+  for (const char* item : {"2", "x 0", "2 0 unsigned", "2 0 signed more", "-1 0", ""}) {
+    try {
+      Read({item});
+      FAIL() << item;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("bench.toml:7"), HasSubstr("is no channel"))) << item;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::hw
