@@ -114,7 +114,7 @@ std::string Summary(const MachineRehearsal& r, const std::vector<MachineAxis>& a
       fmt::format("rehearsal on the twin: {} readings, {} h {:02} min\n", r.readings, minutes / 60, minutes % 60);
   for (std::size_t k = 0; k < axes.size(); ++k) {
     const bool limited = std::isfinite(limits[k].lower) && std::isfinite(limits[k].upper);
-    text += fmt::format("  axis {:<5}{:<34}{}\n", axes[k].name, FromTo(axes[k], r.travel[k]),
+    text += fmt::format("  axis {:<4} {:<34}{}\n", axes[k].name, FromTo(axes[k], r.travel[k]),
                         limited ? "limits " + FromTo(axes[k], limits[k]) : "no limits");
   }
   for (const std::string& problem : r.problems) text += "  PROBLEM: " + problem + "\n";
