@@ -24,6 +24,11 @@ std::size_t IndexOf(char letter) {
   return kLetters.find(letter);
 }
 
+/// @param errors  Of which a screen beside us may have taken all.
+std::string InWords(const std::string& errors) {
+  return errors.empty() ? "it does not say why" : errors;
+}
+
 MachineManner InDecimals(MachineManner manner) {
   if (manner.decimals < 0) manner.decimals = kDecimals;
   return manner;
@@ -87,10 +92,10 @@ bool LinuxCncMachine::IsSet(const std::string& what) {
 void LinuxCncMachine::Set(const std::string& what) {
   if (IsSet(what)) return;
   RequireOn();  // which is why, else
-  line().Fail(FaultKind::kRefused, fmt::format("\"set {}\" was refused: {}", what, Errors()));
+  line().Fail(FaultKind::kRefused, fmt::format("\"set {}\" was refused: {}", what, InWords(Errors())));
 }
 
-/// What it complains about, and has not told yet. A screen beside us may have taken it.
+/// What it complains about and has not told yet; empty: nothing.
 std::string LinuxCncMachine::Errors() {
   std::string all;
   for (int k = 0; k < kMostErrors; ++k) {
@@ -99,7 +104,7 @@ std::string LinuxCncMachine::Errors() {
     if (error == "OK") break;
     all += (all.empty() ? "" : "; ") + error;
   }
-  return all.empty() ? "it does not say why" : all;
+  return all;
 }
 
 /// After every opening. Commands are echoed and not acknowledged until it is told otherwise.
@@ -127,9 +132,13 @@ void LinuxCncMachine::RequireAxes() {
   }
 }
 
-void LinuxCncMachine::RequireOn() {
+void LinuxCncMachine::RequireReleased() {
   if (Get("estop") != "OFF")
     line().Fail(FaultKind::kRefused, "its emergency stop is on, and is released by hand only");
+}
+
+void LinuxCncMachine::RequireOn() {
+  RequireReleased();
   if (!IsOn()) line().Fail(FaultKind::kRefused, "it is switched off: switch it on at the machine");
 }
 
@@ -228,14 +237,14 @@ bool LinuxCncMachine::AskDone() {
   const std::vector<double> commanded = Places("get abs_cmd_pos", line().Ask("get abs_cmd_pos"));
   const std::size_t off = FurthestOff(commanded);
   if (off == commanded.size()) return true;
-  const std::string why = Errors();
+  const std::string errors = Errors();
   const bool may_not_have_begun = std::chrono::steady_clock::now() - sent_at_ < kBegins;
-  const bool is_limit = why.find("limit") != std::string::npos;
-  if (may_not_have_begun && why.starts_with("it does not")) return false;
+  if (errors.empty() && may_not_have_begun) return false;
   RequireOn();
+  const bool is_limit = errors.find("limit") != std::string::npos;
   StopAndFail(is_limit ? FaultKind::kLimit : FaultKind::kRefused,
               fmt::format("axis {} was sent to {} and its path ended at {}: {}", Axes()[off].name,
-                          Place(off, sent_[off]), Place(off, commanded[off]), why));
+                          Place(off, sent_[off]), Place(off, commanded[off]), InWords(errors)));
 }
 
 std::vector<AxisState> LinuxCncMachine::State() {
@@ -263,13 +272,13 @@ std::vector<AxisState> LinuxCncMachine::State() {
 void LinuxCncMachine::Stop() {
   Prepare();
   sent_.clear();
-  if (!IsSet("abort") && IsOn()) line().Fail(FaultKind::kRefused, "it refuses to abort: " + Errors());
+  if (!IsSet("abort") && IsOn()) line().Fail(FaultKind::kRefused, "it refuses to abort: " + InWords(Errors()));
 }
 
 void LinuxCncMachine::SendHome() {
   Prepare();
   sent_.clear();
-  if (Get("estop") != "OFF") RequireOn();
+  RequireReleased();
   if (!IsOn()) Set("machine on");
   Set("mode manual");
   Set("home -1");
