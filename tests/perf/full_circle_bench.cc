@@ -89,7 +89,7 @@ class Kernels {
   explicit Kernels(const Scenario& scenario)
       : scenario_(scenario), path_(scenario), noise_(scenario.seed, "noise"), others_(scenario.seed, "others") {
     sim::EventQueue queue;
-    const mechanics::StackState rest = sim::Axes(sim::StackOfBench(path_.actual()), queue).Look();
+    const mechanics::StackState rest = sim::Axes(sim::RotaryTableStack(path_.actual()), queue).Look();
     bearings_ = {rest.target_bearing, rest.reference_bearing};  // deflected by the weights that they carry
   }
 

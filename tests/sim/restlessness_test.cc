@@ -65,9 +65,9 @@ TEST(ShakenStack, SwaysAtRestAsItsAnswersAndTheSpectrumSay) {
     RotaryOf(s).mechanics.vibration_frequency_Hz = {10.0, 63.0};
     RotaryOf(s).mechanics.vibration_velocity_m_s = {20.0 * um, 5.0 * um};
     EventQueue queue;
-    Axes axes(StackOfBench(s), queue);
+    Axes axes(RotaryTableStack(s), queue);
     double expected = 0.0;  // mean square of the target's radial deflection along x
-    const mechanics::StackParameters stack = StackOf(StackOfBench(s));
+    const mechanics::StackParameters stack = StackOf(RotaryTableStack(s));
     const BaseVibration vibration(VibrationOf(RotaryOf(s).mechanics), s.seed);
     for (const BaseVibration::Line& line : vibration.lines()) {
       const auto response = mechanics::RespondToBase(stack, line.frequency_Hz);
@@ -93,7 +93,7 @@ TEST(ShakenStack, IsTheSameHoweverTimeIsCut) {
   std::vector<double> found_m;
   for (const int looks : {1, 13, 700}) {
     EventQueue queue;
-    Axes axes(StackOfBench(s), queue);
+    Axes axes(RotaryTableStack(s), queue);
     axes.StartMove(mechanics::Axis::kTarget, 0.1);
     for (int i = 1; i <= looks; ++i) {
       queue.RunUntil(Time{} + std::chrono::milliseconds(1500) * i / looks);
@@ -108,7 +108,7 @@ TEST(ShakenStack, IsTheSameHoweverTimeIsCut) {
 TEST(ShakenStack, TurnsWithTheReferencesBodyAndNotWithoutAPayload) {
   // The floor pushes along x of the laboratory; the reference's body has turned with the target by a quarter.
   Scenario s = Bodies("kinematic");
-  const mechanics::StackParameters stack = StackOf(StackOfBench(s));
+  const mechanics::StackParameters stack = StackOf(RotaryTableStack(s));
   ShakenStack shaken(stack, BaseVibration({{20.0, 50.0 * um}}, 3));
   mechanics::StackState straight, turned;
   turned.target_rad = 0.5 * units::kPi;
@@ -190,7 +190,7 @@ Ringing RingDown(const std::string& fidelity) {
   RotaryOf(s).reference.move_time_s = 0.02;
   RotaryOf(s).reference.speed_rad_s = 100.0;
   EventQueue queue;
-  Axes axes(StackOfBench(s), queue);
+  Axes axes(RotaryTableStack(s), queue);
   axes.StartMove(mechanics::Axis::kReference, 2.0 * units::deg);
   std::vector<double> tilt_rad;
   for (int i = 0; i < 400; ++i) {
@@ -208,7 +208,7 @@ TEST(Axes, BulletRingsDownAtTheFrequencyAndDampingOfTheLinearModel) {
   EXPECT_NEAR(bullet.frequency_Hz / linear.frequency_Hz, 1.0, 0.02);
   EXPECT_NEAR(bullet.damping_ratio / linear.damping_ratio, 1.0, 0.02);
   Scenario s = Bodies("linear");
-  mechanics::StackDynamics dynamics(StackOf(StackOfBench(s)));
+  mechanics::StackDynamics dynamics(StackOf(RotaryTableStack(s)));
   const double lowest_Hz = mechanics::LowestFrequency(dynamics) / (2.0 * units::kPi);
   EXPECT_NEAR(linear.frequency_Hz / lowest_Hz, 1.0, 0.1);  // which the payload lowers
   EXPECT_NEAR(linear.damping_ratio, 0.03, 0.02);           // half of each bearing's or more

@@ -147,7 +147,7 @@ void NameHidden(const MatrixXd& hidden, CircleFit& fit) {
     }
     fit.not_separable.push_back(words);
   }
-  for (Index k = 0; k < hidden.rows(); ++k) {
+  for (Index k = 0; hidden.cols() > 0 && k < hidden.rows(); ++k) {  // no row of nothing is asked for
     if (hidden.row(k).norm() >= kPart) fit.identified[static_cast<std::size_t>(k)] = false;
   }
 }

@@ -22,7 +22,7 @@ class RecordedDrives {
   explicit RecordedDrives(const Scenario& actual)
       : drives_{DriveOf(RotaryOf(actual).target), DriveOf(RotaryOf(actual).reference)},
         plant_(mechanics::MakePlant(mechanics::FidelityFromName(RotaryOf(actual).mechanics.fidelity),
-                                    StackOf(StackOfBench(actual)))) {}
+                                    StackOf(RotaryTableStack(actual)))) {}
 
   DrivenStop Take(const DriveStep& step) {
     GoTo(step.target_rad, step.reference_rad);

@@ -41,7 +41,7 @@ double ShortestWait_s(const RotarySettings& own, const std::vector<Reading>& rec
 /// bandwidth (ServoGains), or of the bearings' lowest mode, which has half of the stated damping or more.
 double SlowestDecay_1_s(const Scenario& scenario) {
   const MechanicsSettings& m = RotaryOf(scenario).mechanics;
-  mechanics::StackDynamics dynamics(StackOf(StackOfBench(scenario)));
+  mechanics::StackDynamics dynamics(StackOf(RotaryTableStack(scenario)));
   const double servo_1_s = 0.43 * 2.0 * units::kPi * std::min(m.servo_Hz[0], m.servo_Hz[1]);
   return std::min(servo_1_s, 0.5 * m.damping_ratio * mechanics::LowestFrequency(dynamics));
 }

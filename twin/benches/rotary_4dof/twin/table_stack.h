@@ -6,7 +6,7 @@
 namespace twinbench::sim {
 
 /// @param actual  Outlives what is returned.
-inline TableStack StackOfBench(const Scenario& actual) {
+inline TableStack RotaryTableStack(const Scenario& actual) {
   const RotarySettings& own = RotaryOf(actual);
   mechanics::ChainGeometry geometry;
   geometry.p_RG_m = own.grating.point_m;

@@ -15,7 +15,7 @@ World::World(const Scenario& nominal)
     : path_(nominal),
       environment_(actual().environment, actual().RunSeed()),
       air_(RotaryOf(actual()), actual().RunSeed()),
-      axes_(StackOfBench(actual()), queue_) {}
+      axes_(RotaryTableStack(actual()), queue_) {}
 
 void World::StartMove(Axis axis, double to_rad) {
   if (!axes_.StartMove(axis, to_rad)) return;

@@ -26,7 +26,7 @@ class CourseMaker {
       : record_(record),
         actual_(actual),
         room_(actual_.environment, actual_.RunSeed()),
-        axes_(StackOfBench(actual_), queue_),
+        axes_(TurntableStack(actual_), queue_),
         pitch_rad_(TurntableOf(actual_).Pitch_rad()) {}
 
   TurntableCourse Make() {

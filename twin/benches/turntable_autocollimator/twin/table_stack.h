@@ -6,7 +6,7 @@
 namespace twinbench::sim {
 
 /// @param actual  Outlives what is returned.
-inline TableStack StackOfBench(const Scenario& actual) {
+inline TableStack TurntableStack(const Scenario& actual) {
   const TurntableSettings& own = TurntableOf(actual);
   return {own.mechanics, own.turntable, own.multitooth_table};
 }

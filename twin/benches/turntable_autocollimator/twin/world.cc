@@ -26,7 +26,7 @@ Eigen::Vector2d Noise_rad(Stream& stream, double noise_rad) {
 TurntableWorld::TurntableWorld(const Scenario& nominal)
     : path_(nominal),
       environment_(actual().environment, actual().RunSeed()),
-      axes_(StackOfBench(actual()), queue_),
+      axes_(TurntableStack(actual()), queue_),
       noise_(actual().RunSeed(), "autocollimator.noise"),
       null_noise_(actual().RunSeed(), "autocollimator.null"),
       encoder_noise_(actual().RunSeed(), "encoder.noise") {}

@@ -1,0 +1,45 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+/// What two headers define inline by one name in one namespace is one thing to the linker, which takes either: no compiler says so, and it
+/// goes well as long as both are inlined.
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kProject = TWINBENCH_SOURCE_DIR;
+
+/// "twinbench::sim RotaryTableStack(const Scenario& actual)" and the headers that define it. Of a variable the type does not count.
+std::map<std::string, std::set<std::string>> DefinitionsInHeaders() {
+  const std::regex opens(R"(^namespace ([\w:]+) \{)"), function(R"(^inline [^=(]*?(\w+\([^)]*\)?))"),
+      variable(R"(^inline constexpr [^=({]*?(\w+)(\[\w*\])? ?[={])");
+  std::map<std::string, std::set<std::string>> found;
+  for (const char* top : {"optics", "mechanics", "twin", "hw_bridge", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kProject / top)) {
+      if (entry.path().extension() != ".h") continue;
+      std::ifstream in(entry.path());
+      std::string space;
+      std::smatch match;
+      for (std::string line; std::getline(in, line);) {
+        if (std::regex_search(line, match, opens)) space = match[1];
+        if (std::regex_search(line, match, variable) || std::regex_search(line, match, function))
+          found[space + " " + match[1].str()].insert(fs::relative(entry.path(), kProject).string());
+      }
+    }
+  }
+  return found;
+}
+
+TEST(OneDefinition, OfEveryNameThatHeadersDefineInline) {
+  const auto definitions = DefinitionsInHeaders();
+  EXPECT_GT(definitions.size(), 100u) << "they are found";
+  for (const auto& [name, headers] : definitions) EXPECT_EQ(headers.size(), 1u) << name << testing::PrintToString(headers);
+}
+
+}  // namespace
