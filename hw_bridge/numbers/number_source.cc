@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "hw_bridge/ad/ad_source.h"
 #include "twin/core/errors.h"
 #ifdef TWINBENCH_WITH_IIO
 #include "hw_bridge/numbers/iio_numbers.h"
@@ -15,17 +16,11 @@
 
 namespace twinbench::hw {
 
-bool HasNumberDriver([[maybe_unused]] const std::string& kind) {
-#ifdef TWINBENCH_WITH_IIO
-  if (kind == "iio") return true;
-#endif
-#ifdef TWINBENCH_WITH_COMEDI
-  if (kind == "comedi") return true;
-#endif
+bool HasNumberDriver(const std::string& kind) {
 #ifdef TWINBENCH_WITH_MODBUS
   if (kind == "modbus") return true;
 #endif
-  return false;
+  return HasAdDriver(kind);
 }
 
 std::unique_ptr<NumberSource> MakeNumberSource(const NumberSettings& settings, const std::string& device,
