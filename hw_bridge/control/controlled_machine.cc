@@ -59,13 +59,6 @@ void ControlledMachine::RequireWithinLimits(std::size_t axis, double to) {
                          Place(axis, to), Place(axis, limits_[axis].lower), Place(axis, limits_[axis].upper)));
 }
 
-void ControlledMachine::RequireCircleWithinLimits(const Arc& arc, double radius_m) {
-  for (const std::size_t k : {0, 1}) {
-    RequireWithinLimits(arc.axes[k], arc.centre_m[k] - radius_m);
-    RequireWithinLimits(arc.axes[k], arc.centre_m[k] + radius_m);
-  }
-}
-
 void ControlledMachine::RequireReady(const std::vector<AxisState>& states) {
   for (std::size_t k = 0; k < states.size(); ++k) {
     if (!states[k].referenced)

@@ -50,8 +50,6 @@ class ControlledMachine : public MachineController {
   double Feed_m_s(double feed_m_s) const { return feed_m_s > 0.0 ? feed_m_s : manner_.traverse_m_s; }
 
   void RequireWithinLimits(std::size_t axis, double to);
-  /// The circle on which two axes stand about its centre.
-  void RequireCircleWithinLimits(const Arc& arc, double radius_m);
   void RequireReady(const std::vector<AxisState>& states);
   /// Why it was stopped is what must be told, also when the machine cannot be reached any more.
   [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why);

@@ -86,7 +86,10 @@ void EspMachine::StartArc(const Arc& arc) {
   const std::vector<AxisState> states = State();
   RequireReady(states);
   const double radius_m = std::hypot(states[0].encoder - arc.centre_m[0], states[1].encoder - arc.centre_m[1]);
-  RequireCircleWithinLimits(arc, radius_m);
+  for (const std::size_t k : {0, 1}) {
+    RequireWithinLimits(k, arc.centre_m[k] - radius_m);
+    RequireWithinLimits(k, arc.centre_m[k] + radius_m);
+  }
   SetFeed(arc.feed_m_s);
   if (arc.triggers > 0)
     TellEsp(line(), fmt::format("1XT{},{},{}", arc.triggers, Text(arc.first_trigger_rad, units::deg),

@@ -13,9 +13,9 @@ namespace twinbench::hw {
 /// One instrument with some of the columns of a bench's readings, however its numbers come.
 class Instrument {
  public:
-  /// @param names    What its numbers are, in order: a column of readings.csv, or "time_ns" (bench time of the
-  /// sample), "status" (as in
-  ///                 readings.csv), "ignored".
+  /// @param names    What its numbers are, in order: a column of readings.csv, "time_ns" (bench time of the
+  /// sample),
+  ///                 "status" (as in readings.csv), or "ignored".
   /// @param scale    A number times this is in its column's unit; empty: all 1.
   /// @param columns  Those of the bench that an instrument may fill.
   /// @param where    Of the names, for messages.

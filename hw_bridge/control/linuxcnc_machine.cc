@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kDecimals = 9;     // of a number in a program, which knows no exponents
 constexpr double kShown = 1e-6;  // mm or deg: the last digit of a place that it tells
-constexpr double kLimitScale = 1e6,
-                 kLimitOffset = 1e6;  // of a limit that is told as a feed, which is whole and not negative
+// Of a limit that is told as a feed, which is whole and not negative.
+constexpr double kLimitScale = 1e6, kLimitOffset = 1e6;
 constexpr Duration kBegins = std::chrono::milliseconds(500), kHomePoll = std::chrono::milliseconds(50);
 constexpr int kMostErrors = 100;
 constexpr std::string_view kLetters = "XYZABC";  // in the order in which places are told
@@ -49,24 +49,18 @@ LinuxCncMachine::LinuxCncMachine(DeviceLine line, std::vector<MachineAxis> axes,
   Require(at_.size() == Axes().size(), "every axis is somewhere at the controller");
 }
 
-/// What follows the name of what was asked for: "get mode" is answered "MODE MDI".
-std::string LinuxCncMachine::Get(const std::string& what) {
-  const std::string query = "get " + what;
-  return Words(query, line().Ask(query), 1).front();
-}
-
-/// @param least  So many words must follow the first.
-std::vector<std::string> LinuxCncMachine::Words(const std::string& query, const std::string& answer,
-                                                std::size_t least) {
+/// Asks for something, and gives what follows its name: "get mode" is answered "MODE MDI".
+/// @param least  So many words must follow.
+std::vector<std::string> LinuxCncMachine::Words(const std::string& what, std::size_t least) {
+  const std::string query = "get " + what, answer = line().Ask(query);
   std::istringstream in(answer);
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
-  const std::string name = query.substr(query.find(' ') + 1);
   const bool is_answer =
-      words.size() > least && std::ranges::equal(words.front(), name, [](char a, char b) {
+      words.size() > least && std::ranges::equal(words.front(), what, [](char a, char b) {
         return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
       });
-  if (!is_answer) line().FailProtocol(query, answer, fmt::format("{} and {} words or more", name, least));
+  if (!is_answer) line().FailProtocol(query, answer, fmt::format("{} and {} words or more", what, least));
   words.erase(words.begin());
   return words;
 }
@@ -74,8 +68,7 @@ std::vector<std::string> LinuxCncMachine::Words(const std::string& query, const 
 /// Of each of our axes, what is told of its joint.
 std::vector<std::string> LinuxCncMachine::OfJoints(const std::string& what) {
   const auto furthest = std::ranges::max_element(at_, {}, &LinuxCncAxis::joint);
-  const std::string query = "get " + what;
-  const auto words = Words(query, line().Ask(query), static_cast<std::size_t>(furthest->joint) + 1);
+  const auto words = Words(what, static_cast<std::size_t>(furthest->joint) + 1);
   std::vector<std::string> ours;
   for (const LinuxCncAxis& axis : at_) ours.push_back(words[static_cast<std::size_t>(axis.joint)]);
   return ours;
@@ -174,12 +167,12 @@ std::vector<AxisLimits> LinuxCncMachine::Travel() {
 double LinuxCncMachine::Limit(std::size_t axis, const char* which) {
   Set(fmt::format("mdi G94 F[[#<_ini[AXIS_{}]{}>+{:.0f}]*{:.0f}]", at_[axis].letter, which, kLimitOffset,
                   kLimitScale));
-  const std::string query = "get program_codes", answer = line().Ask(query);
-  for (const std::string& word : Words(query, answer, 1)) {
-    const auto told = word.starts_with('F') ? ParseNumber(word.substr(1)) : std::nullopt;
+  const std::vector<std::string> codes = Words("program_codes", 1);
+  for (const std::string& code : codes) {
+    const auto told = code.starts_with('F') ? ParseNumber(code.substr(1)) : std::nullopt;
     if (told) return (*told / kLimitScale - kLimitOffset) * Axes()[axis].to_SI();
   }
-  line().FailProtocol(query, answer, "a feed, F");
+  line().FailProtocol("get program_codes", fmt::format("{}", fmt::join(codes, " ")), "a feed, F");
 }
 
 void LinuxCncMachine::StartMove(const std::vector<double>& to, double feed_m_s) {
@@ -204,12 +197,13 @@ void LinuxCncMachine::StartArc(const Arc&) {
               "instruments are latched");
 }
 
-std::vector<double> LinuxCncMachine::Places(const std::string& query, const std::string& answer) {
-  const std::vector<std::string> words = Words(query, answer, kLetters.size());
+std::vector<double> LinuxCncMachine::Places(const std::string& what) {
+  const std::vector<std::string> words = Words(what, kLetters.size());
   std::vector<double> places;
   for (std::size_t k = 0; k < at_.size(); ++k) {
-    const auto place = ParseInUnit(words[IndexOf(at_[k].letter)], Axes()[k].to_SI());
-    if (!place) line().FailProtocol(query, answer, "numbers");
+    const std::string& word = words[IndexOf(at_[k].letter)];
+    const auto place = ParseInUnit(word, Axes()[k].to_SI());
+    if (!place) line().FailProtocol("get " + what, word, "a number");
     places.push_back(*place);
   }
   return places;
@@ -234,7 +228,7 @@ bool LinuxCncMachine::AskDone() {
   Prepare();
   if (Get("program_status") != "IDLE") return false;
   if (sent_.empty()) return true;
-  const std::vector<double> commanded = Places("get abs_cmd_pos", line().Ask("get abs_cmd_pos"));
+  const std::vector<double> commanded = Places("abs_cmd_pos");
   const std::size_t off = FurthestOff(commanded);
   if (off == commanded.size()) return true;
   const std::string errors = Errors();
@@ -250,8 +244,8 @@ bool LinuxCncMachine::AskDone() {
 std::vector<AxisState> LinuxCncMachine::State() {
   Prepare();
   const bool is_on = IsOn(), moves = Get("program_status") == "RUNNING";
-  const std::vector<double> commanded = Places("get abs_cmd_pos", line().Ask("get abs_cmd_pos"));
-  const std::vector<double> encoder = Places("get abs_act_pos", line().Ask("get abs_act_pos"));
+  const std::vector<double> commanded = Places("abs_cmd_pos");
+  const std::vector<double> encoder = Places("abs_act_pos");
   const std::vector<std::string> homed = OfJoints("joint_homed"), limit = OfJoints("joint_limit"),
                                  fault = OfJoints("joint_fault");
   std::vector<AxisState> states(Axes().size());

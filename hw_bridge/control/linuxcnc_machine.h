@@ -46,8 +46,8 @@ class LinuxCncMachine : public ControlledMachine {
 
   void Prepare();
   void RequireAxes();
-  std::string Get(const std::string& what);
-  std::vector<std::string> Words(const std::string& what, const std::string& answer, std::size_t least);
+  std::vector<std::string> Words(const std::string& what, std::size_t least);
+  std::string Get(const std::string& what) { return Words(what, 1).front(); }
   std::vector<std::string> OfJoints(const std::string& what);
   void Set(const std::string& what);
   bool IsSet(const std::string& what);
@@ -57,7 +57,7 @@ class LinuxCncMachine : public ControlledMachine {
   void TakeCommands();
   double Limit(std::size_t axis, const char* which);
   std::string Errors();
-  std::vector<double> Places(const std::string& what, const std::string& answer);
+  std::vector<double> Places(const std::string& what);
   std::size_t FurthestOff(const std::vector<double>& commanded) const;
 
   std::vector<LinuxCncAxis> at_;

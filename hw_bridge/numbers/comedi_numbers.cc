@@ -35,19 +35,23 @@ class ComediNumbers : public NumberSource {
   }
 
   std::vector<double> Read() override {
-    if (!card_) card_ = OpenComedi(settings_.device);
+    Open();
     std::vector<double> numbers;
     for (const ComediItem& item : items_) numbers.push_back(NumberOf(item));
     return numbers;
   }
 
   std::string Identity() override {
-    if (!card_) card_ = OpenComedi(settings_.device);
+    Open();
     const char* board = comedi_get_board_name(card_.get());
     return fmt::format("comedi {} at {}", board ? board : "card", settings_.device);
   }
 
  private:
+  void Open() {
+    if (!card_) card_ = OpenComedi(settings_.device);
+  }
+
   double NumberOf(const ComediItem& item) {
     if (static_cast<int>(item.subdevice) >= comedi_get_n_subdevices(card_.get()) ||
         static_cast<int>(item.channel) >= comedi_get_n_channels(card_.get(), item.subdevice))

@@ -89,18 +89,18 @@ def mounted(word):
     return int(word.split()[1].split(",")[0]) if word.startswith("FIXT:MOUN ") else None
 
 
-class _Conversation(socketserver.StreamRequestHandler):
+class Conversation(socketserver.StreamRequestHandler):
     disable_nagle_algorithm = True  # else the second of several answers waits 40 ms for the first to be acknowledged
 
     def handle(self):
         try:
             for line in self.rfile:
-                if not self._answer(line.decode("ascii", "replace").strip()):
+                if not self.answer(line.decode("ascii", "replace").strip()):
                     return
         except OSError:
             pass  # whoever asked has gone
 
-    def _answer(self, line):
+    def answer(self, line):
         """Returns False where the connection shall end."""
         device, lock = self.server.device, self.server.lock
         for command in COMMANDS.findall(line):
@@ -126,7 +126,7 @@ class _Port(socketserver.ThreadingTCPServer):
     daemon_threads = True
 
     def __init__(self, device, lock):
-        super().__init__(("127.0.0.1", 0), getattr(device, "conversation", _Conversation))
+        super().__init__(("127.0.0.1", 0), getattr(device, "conversation", Conversation))
         self.device, self.lock = device, lock
 
 

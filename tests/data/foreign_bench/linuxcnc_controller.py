@@ -5,30 +5,22 @@ that goes too far is acknowledged and complained about afterwards.
 """
 import re
 import socket
-import socketserver
 import time
 
 from esp_controller import Axis
-from line_devices import Device
+from line_devices import Conversation, Device
 
 WORD = re.compile(r"([ABCFXYZ])(\[[^ ]*\]|[-+0-9.]+)")
 LIMIT = re.compile(r"\[\[#<_ini\[axis_([abc])\](min|max)_limit>\+([0-9.]+)\]\*([0-9.]+)\]")
 PLACES = "XYZABC"
 
 
-class Conversation(socketserver.StreamRequestHandler):
+class Shell(Conversation):
     """Echoes what it is told until it is told not to, and acknowledges nothing until it is told to."""
-
-    disable_nagle_algorithm = True
 
     def handle(self):
         self.echoes, self.acknowledges, self.greeted, self.enabled = True, False, False, False
-        try:
-            for line in self.rfile:
-                if not self.answer(line.decode("ascii", "replace").strip()):
-                    return
-        except OSError:
-            pass  # whoever asked has gone
+        super().handle()
 
     def say(self, text):
         self.wfile.write(text.encode())
@@ -79,7 +71,7 @@ class LinuxCncController(Device):
     """Its events are moves. A fault of its own: `estop`, somebody presses the emergency stop as the move begins."""
 
     name = "controller"
-    conversation = Conversation
+    conversation = Shell
 
     def __init__(self, script):
         super().__init__(script)
