@@ -48,8 +48,15 @@ bool Dialogue::IsExpected(const std::string& answer) const {
   return identity_known_ ? answer == identity_ : !answer.empty() && answer.starts_with(identity_);
 }
 
+/// Where an identity is asked for, what comes before it is told from it. Where none is, an answer that was missed
+/// may be as late again.
+void Dialogue::ReadOldAnswersAway(Duration patience) {
+  const bool may_be_missed = identity_query_.empty() && openings_ > 0;
+  may_be_missed ? link_->ReadAway(patience, 3 * patience) : link_->ReadAway(kQuiet, patience);
+}
+
 void Dialogue::Identify(const std::string& device, Duration patience) {
-  if (IsSerial()) link_->ReadAway(kQuiet, patience);
+  if (IsSerial()) ReadOldAnswersAway(patience);
   if (identity_query_.empty()) return;
   Send(device, identity_query_ + "\n", patience);
   const std::string answer = AwaitIdentity(device, patience);

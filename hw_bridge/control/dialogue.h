@@ -46,6 +46,7 @@ class Dialogue {
 
  private:
   void Connect(const std::string& device, Duration patience);
+  void ReadOldAnswersAway(Duration patience);
   void Identify(const std::string& device, Duration patience);
   void Introduce(const std::string& device, const std::string& introduction, Duration patience);
   std::string AwaitIdentity(const std::string& device, Duration patience);

@@ -4,6 +4,7 @@
 #include <modbus.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <numeric>
@@ -139,6 +140,23 @@ class ModbusNumbers : public NumberSource {
                                 static_cast<std::uint32_t>(timeout_us % 1000000));
     modbus_set_slave(line_.get(), settings_.unit);
     if (modbus_connect(line_.get()) != 0) Fail("cannot be reached");
+    if (in_doubt_) GetInStep();
+  }
+
+  /// Answers over a serial line have no number, so that one that comes too late is taken for that of the next
+  /// request, and every answer behind it for that of another. A device answers in turn: once it has answered
+  /// something that is not asked otherwise, be it by an exception, nothing is left to come.
+  void GetInStep() {
+    constexpr std::uint8_t kReadCoils = 0x01, kIsException = 0x80;
+    const std::uint8_t coil_0[] = {static_cast<std::uint8_t>(settings_.unit), kReadCoils, 0, 0, 0, 1};
+    std::array<std::uint8_t, MODBUS_RTU_MAX_ADU_LENGTH> answer{};
+    const bool is_sent =
+        modbus_flush(line_.get()) >= 0 && modbus_send_raw_request(line_.get(), coil_0, sizeof coil_0) > 0;
+    do {
+      if (!is_sent || modbus_receive_confirmation(line_.get(), answer.data()) < 2)
+        Fail("has not answered since: coil 0 is asked before its registers are again, for late answers to pass");
+    } while ((answer[1] & ~kIsException) != kReadCoils);
+    in_doubt_ = false;
   }
 
   std::vector<std::uint16_t> Ask(const Run& run) {
@@ -154,6 +172,7 @@ class ModbusNumbers : public NumberSource {
   [[noreturn]] void Fail(const std::string& what) {
     const int error = errno;
     line_.reset();
+    in_doubt_ = address_.kind == Address::Kind::kSerial;
     throw DeviceFault(
         KindOf(error), device_,
         fmt::format("{}: {} ({}, unit {})", what, modbus_strerror(error), settings_.address, settings_.unit));
@@ -165,6 +184,7 @@ class ModbusNumbers : public NumberSource {
   std::vector<Register> registers_;
   std::vector<Run> runs_;
   std::unique_ptr<modbus_t, ModbusCloser> line_;
+  bool in_doubt_ = false;  // answers to earlier requests may be under way
 };
 
 }  // namespace

@@ -90,6 +90,17 @@ TEST_P(DialogueOver, ALateAnswerIsNeverTakenForThatToTheNextQuery) {
   }
 }
 
+TEST(Dialogue, ALateAnswerIsWaitedForWhereNoIdentityTellsItFromTheNext) {
+  std::atomic<bool> is_late = true;
+  const auto handler = [&](const std::string& line) {
+    return line == "ROT1:ANGL?" ? Reply{"10.0\n", is_late.exchange(false) ? 450 : 0} : Reply{"20.0\n"};
+  };
+  FakeController controller(handler, Wire::kPseudoTerminal);
+  Dialogue dialogue(ParseAddress(controller.Address()).value(), "", "");
+  EXPECT_EQ(KindOf([&] { Ask(dialogue, "ROT1:ANGL?"); }), FaultKind::kTimeout);
+  EXPECT_EQ(Ask(dialogue, "ROT2:ANGL?"), "20.0");
+}
+
 // So late that it comes when the line has been quiet and the identity was asked for again.
 constexpr int kLate_ms = 450;
 

@@ -1,26 +1,28 @@
 """A shaft with two encoders behind a Modbus gateway: a reference, and a device that is mounted at an angle, in closed form.
 
-usage: encoder_bench.py shown.json [device.kind@event ...]   (line_devices.py says which faults there are)
+usage: encoder_bench.py shown.json [device.kind@event ...] [rtu]   (line_devices.py says which faults there are)
 
-Devices: `controller` (esp_controller.py), `hand` (which mounts), and `gateway`: Modbus by pymodbus, a program of others, unit 3. Its events are
-readings; its faults are `late`, and `refuse`, an exception instead of the registers. Input register 20: the reference, 21 and 20 being the high and
+Devices: `controller` (esp_controller.py), `hand` (which mounts), and `gateway`: Modbus by pymodbus, a program of others, unit 3, over TCP or,
+with `rtu`, over a serial line, where an answer has no number and a late one looks like the next. Its events are readings; its faults are `late`, and `refuse`, an exception instead of the registers. Input register 20: the reference, 21 and 20 being the high and
 the low word of millionths of a degree. Register 22: the device, a float of degrees, high word first.
 
 At the shaft's angle a the reference shows a + R(a); mounted at m the device shows d + D(d), d = a + m. Written to shown.json: the ports,
-and the waves of R and D.
+the gateway's address, and the waves of R and D.
 """
 import asyncio
 import logging
 import math
+import os
 import random
 import struct
 import sys
 import threading
 import time
+import tty
 
 from pymodbus.datastore import ModbusServerContext, ModbusSlaveContext
 from pymodbus.datastore.store import BaseModbusDataBlock
-from pymodbus.server.async_io import ModbusTcpServer
+from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
 
 from esp_controller import EspController
 from line_devices import LATE_S, Device, ScpiDevice, mounted, show
@@ -74,26 +76,43 @@ class Gateway(Device):
     name = "gateway"
 
 
-def serve(context, port):
-    async def forever():
-        server = ModbusTcpServer(context, address=("127.0.0.1", 0))
-        running = asyncio.ensure_future(server.serve_forever())
-        await server.serving
-        port.append(server.server.sockets[0].getsockname()[1])
-        await running
+async def serve_tcp(context, address):
+    server = ModbusTcpServer(context, address=("127.0.0.1", 0))
+    running = asyncio.ensure_future(server.serve_forever())
+    await server.serving
+    address.append(f"tcp:127.0.0.1:{server.server.sockets[0].getsockname()[1]}")
+    await running
 
-    asyncio.run(forever())
+
+def relay(source, sink):
+    while some := os.read(source, 4096):
+        os.write(sink, some)
+
+
+async def serve_rtu(context, address):
+    """A serial line is two pseudo terminals and whoever carries bytes between them."""
+    (near, near_file), (far, far_file) = os.openpty(), os.openpty()
+    for end in (near_file, far_file):
+        tty.setraw(end)
+    for source, sink in ((near, far), (far, near)):
+        threading.Thread(target=relay, args=(source, sink), daemon=True).start()
+    server = ModbusSerialServer(context, port=os.ttyname(far_file), baudrate=115200)
+    await server.start()
+    address.append(f"serial:{os.ttyname(near_file)}:115200:8E1")
+    await server.serve_forever()
 
 
 def main():
     logging.disable(logging.CRITICAL)
     controller, hand, gateway = EspController(sys.argv[2:]), Hand(sys.argv[2:]), Gateway(sys.argv[2:])
     unit = ModbusSlaveContext(ir=Registers(controller.axes[0], hand, gateway), zero_mode=True)
-    port = []
-    threading.Thread(target=serve, args=(ModbusServerContext({UNIT: unit}, single=False), port), daemon=True).start()
-    while not port:
+    serve = serve_rtu if "rtu" in sys.argv[2:] else serve_tcp
+    address = []
+    forever = serve(ModbusServerContext({UNIT: unit}, single=False), address)
+    threading.Thread(target=asyncio.run, args=(forever,), daemon=True).start()
+    while not address:
         time.sleep(0.01)
-    show([controller, hand], {"reference": REFERENCE, "device": DEVICE, "gateway": port[0]}, sys.argv[1])
+    show([controller, hand], {"reference": REFERENCE, "device": DEVICE, "gateway": address[0]}, sys.argv[1])
 
 
 main()
