@@ -296,6 +296,93 @@ TEST_F(ForeignShaft, AnExceptionOfTheGatewayEndsTheRunWithTheShaftAtRest) {
                                   HasSubstr("unit 3"), HasSubstr("brought to rest")));
 }
 
+// --- a five-axis machine ---
+
+constexpr const char* kForeignFiveAxes = R"(bench = "freeform_five_axis"
+[artefact]
+vertex_radius_mm = [60.0, 90.0]
+pitch_mm = 40.0
+cells = 2
+[qpd]
+noise_mV = 5.0
+[ccd]
+noise_px = 0.02
+[freeform_procedure]
+mounts = [ {}, { z_mm = 60.0, yaw_deg = 90.0 }, { x_mm = 5.0, y_mm = -8.0, z_mm = 120.0 } ]
+poses = 30
+interval_s = 0.01
+remount_s = 0.0
+)";
+
+class ForeignFiveAxes : public ForeignBenchProgram {
+ protected:
+  ForeignFiveAxes() : ForeignBenchProgram("five_axis_bench.py", kForeignFiveAxes, Documented("five_axes.toml")) {}
+
+  void BeOnLinuxCnc(const std::string& controller) {
+    BeSet("controller=" + controller);
+    Replace("kind = \"esp\"", "kind = \"linuxcnc\"");
+  }
+
+  /// What a separation says of one number, against the bench's own.
+  void ExpectNear(const nlohmann::json& value, const nlohmann::json& u, double hidden, const std::string& what) {
+    EXPECT_NEAR(value.get<double>(), hidden, kCoverageByChance * u.get<double>()) << what;
+    ++compared_;
+  }
+
+  void ExpectMeasured(const Outcome& measured) {
+    ASSERT_EQ(measured.exit_code, 0) << measured.err;
+    EXPECT_EQ(Kept(), 180u);
+    const nlohmann::json separation = Separated();
+    for (const auto& [name, error] : separation.at("errors").items()) {
+      const nlohmann::json truth = hidden().at("errors").value(name, nlohmann::json{0.0, 0.0, 0.0, 0.0});
+      for (std::size_t k = 0; k < truth.size(); ++k) {
+        if (error.at("identified")[k])
+          ExpectNear(error.at("coefficients")[k], error.at("u")[k], truth[k], name + std::to_string(k));
+      }
+    }
+    for (const auto& [name, error] : separation.at("squareness").items()) {
+      if (error.at("identified"))
+        ExpectNear(error.at("value"), error.at("u"), hidden().at("squareness").value(name, 0.0), name);
+    }
+    EXPECT_GT(compared_, 40);
+  }
+
+ private:
+  int compared_ = 0;
+};
+
+TEST_F(ForeignFiveAxes, AreMeasuredThroughFaultsAndTheirErrorsAreThoseTheyHide) {
+  ExpectMeasured(MeasureWith({"controller.mute@3", "controller.unsettled@9", "probe.late@14", "probe.drop@30"}));
+  std::map<std::string, int> failed = FailedAttemptsByFault();
+  EXPECT_GE(failed["timeout"], 2);
+  EXPECT_GE(failed["dropped"], 1);
+  EXPECT_GE(failed["not_in_position"], 1);
+}
+
+TEST_F(ForeignFiveAxes, AreMeasuredWhereLinuxCncRunsThem) {
+  BeOnLinuxCnc("linuxcnc");
+  ExpectMeasured(MeasureWith({"controller.mute@3", "controller.drop@9", "probe.late@14"}));
+}
+
+TEST_F(ForeignFiveAxes, AreNotSentHomeUnderAnArtefact) {
+  const Outcome measured = MeasureWith({"controller.restart@9"});
+  EXPECT_EQ(measured.exit_code, 1);
+  EXPECT_THAT(measured.err, AllOf(HasSubstr("lost its origin with an instrument mounted"), HasSubstr("--resume")));
+}
+
+TEST_F(ForeignFiveAxes, AControllerThatFreezesOnItsWayIsToldSo) {
+  ExpectStateUnknown(MeasureWith({"controller.freeze@9"}, 1));
+}
+
+TEST_F(ForeignFiveAxes, AreMeasuredOnTheRealProgram) {
+  const char* address = std::getenv("TWINBENCH_LINUXCNC_XYZAB");
+  if (!address)
+    GTEST_SKIP() << "TWINBENCH_LINUXCNC_XYZAB=HOST:PORT names no linuxcncrsh (tests/data/linuxcnc/README.md)";
+  Replace("{controller}", address);
+  BeOnLinuxCnc(address);
+  ExpectMeasured(MeasureWith({}));
+}
+
 // --- a hobbing machine ---
 
 constexpr const char* kForeignHob = R"(bench = "hob_transmission"

@@ -127,6 +127,7 @@ std::vector<OwnKey> ProcedureChanges() {
           Change("circular_procedure.rapid_mm_min", "5000.0"),
           Change("circular_procedure.directions", "[1]"),
           Change("circular_procedure.start_deg", "77.0"),
+          Change("circular_procedure.remount_s", "60.0"),
           Change("environment.temperature_degC", "22.0"),
           Change("environment.reference_degC", "19.0"),
           Change("environment.drift_K_h", "1.0"),

@@ -72,6 +72,8 @@ std::vector<OwnKey> ProcedureChanges() {
           Change("freeform_procedure.dither_um", "50.0"),
           Change("freeform_procedure.dither_deg", "0.02"),
           Change("freeform_procedure.path", "\"single\""),
+          Change("freeform_procedure.interval_s", "60.0"),
+          Change("freeform_procedure.remount_s", "60.0"),
           Change("environment.temperature_degC", "22.0"),
           Change("environment.reference_degC", "19.0"),
           Change("environment.drift_K_h", "1.0"),

@@ -64,7 +64,7 @@ class Registers(BaseModbusDataBlock):
     def getValues(self, address, count=1):
         if self.gateway.take_due() == "late":
             time.sleep(LATE_S)
-        shaft_deg = self.axis.place_deg()
+        shaft_deg = self.axis.place()
         reference = round((shaft_deg + error_deg(REFERENCE, shaft_deg)) * 1e6) & 0xFFFFFFFF
         device_deg = shaft_deg + self.hand.mounting_deg
         high, low = struct.unpack(">HH", struct.pack(">f", device_deg % 360.0 + error_deg(DEVICE, device_deg) + self.chance.gauss(0.0, NOISE_ARCSEC) / 3600.0))

@@ -1,6 +1,6 @@
-"""A motion controller of rotary axes that is spoken to in Newport's ESP commands, as docs/hardware.md needs them.
+"""A motion controller that is spoken to in Newport's ESP commands, as docs/hardware.md needs them.
 
-Angles are in degrees and in steps of a millionth of one. It knows no MS?, as the ESP301 does not.
+Places are in degrees, or in mm where an axis is linear, and in steps of a millionth. It knows no MS?, as the ESP301 does not.
 """
 import math
 import re
@@ -8,6 +8,7 @@ import time
 
 from line_devices import Device
 
+DEGREES, MILLIMETRES = "7", "2"
 COMMAND = re.compile(r"^(\d*)(\*IDN|[A-Z]{2})(\?|[-+0-9.eE,]*)$")
 NO_COMMAND, NO_AXIS, NO_PARAMETER, BEYOND_LOWER, BEYOND_UPPER, MOTOR_OFF = 6, 9, 38, 107, 106, 113
 TEXTS = {0: "NO ERROR DETECTED", NO_COMMAND: "COMMAND DOES NOT EXIST", NO_AXIS: "AXIS NUMBER OUT OF RANGE",
@@ -19,38 +20,39 @@ IDENTITY = "ESP301 Version 3.0.1 foreign"
 class Axis:
     """A servo that goes from rest to rest along half a cosine, at most at SPEED, and settles for a moment."""
 
-    SPEED_DEG_S = 5000.0
+    SPEED = 5000.0
     SHORTEST_S = 0.02
     SETTLING_S = 0.01
 
-    def __init__(self):
-        self.begin_deg = self.end_deg = 0.0
+    def __init__(self, unit=DEGREES):
+        self.unit = unit
+        self.begin = self.end = 0.0
         self.begin_s, self.takes_s = time.monotonic(), 0.0
         self.settles = self.motor_on = True
-        self.origin_deg = 0.0  # from where it counts
+        self.origin = 0.0  # from where it counts
 
-    def place_deg(self):
+    def place(self):
         done = (time.monotonic() - self.begin_s) / self.takes_s if self.takes_s > 0.0 else 1.0
         share = 0.5 - 0.5 * math.cos(math.pi * min(done, 1.0))
-        return self.begin_deg + (self.end_deg - self.begin_deg) * share
+        return self.begin + (self.end - self.begin) * share
 
-    def go(self, to_deg):
-        self.begin_deg, self.end_deg = self.place_deg(), to_deg
-        way_deg = abs(self.end_deg - self.begin_deg)
-        self.takes_s = max(self.SHORTEST_S, 0.5 * math.pi * way_deg / self.SPEED_DEG_S)  # fastest in the middle
+    def go(self, to):
+        self.begin, self.end = self.place(), to
+        way = abs(self.end - self.begin)
+        self.takes_s = max(self.SHORTEST_S, 0.5 * math.pi * way / self.SPEED)  # fastest in the middle
         self.begin_s = time.monotonic()
         self.settles = True
 
     def stop(self):
-        self.begin_deg = self.end_deg = round(self.place_deg(), 6)
+        self.begin = self.end = round(self.place(), 6)
         self.takes_s, self.settles = 0.0, True
 
     def lose_power(self):
         self.stop()
-        self.origin_deg, self.motor_on = self.place_deg(), False
+        self.origin, self.motor_on = self.place(), False
 
     def find_origin(self):
-        self.origin_deg = 0.0
+        self.origin = 0.0
         self.go(0.0)
 
     def is_done(self):
@@ -68,7 +70,8 @@ class EspController(Device):
     def __init__(self, script, axes=None):
         super().__init__(script)
         self.axes = axes or [Axis()]  # 1, 2, ...
-        self.lower_deg, self.upper_deg = -800.0, 800.0
+        self.group = []
+        self.lower, self.upper = -800.0, 800.0
         self.errors = []
 
     def obey(self, command):
@@ -97,41 +100,54 @@ class EspController(Device):
         if word in ("TB", "TE"):
             error = self.errors.pop(0) if self.errors else 0
             return f"{error}, {int(time.monotonic() * 1e3)}, {TEXTS[error]}" if word == "TB" else str(error)
-        numbers = {"TP": lambda: axis.place_deg() - axis.origin_deg, "PA": lambda: axis.end_deg - axis.origin_deg, "SL": lambda: self.lower_deg,
-                   "SR": lambda: self.upper_deg}
+        numbers = {"TP": lambda: axis.place() - axis.origin, "PA": lambda: axis.end - axis.origin, "SL": lambda: self.lower,
+                   "SR": lambda: self.upper}
         if word in numbers:
             return f"{numbers[word]():.6f}"
         if word == "TS":
             return chr(0x50 + sum(1 << k for k, each in enumerate(self.axes[:4]) if not each.is_done()))
         if word == "MD":
             return "1" if axis.is_done() else "0"
-        return {"SN": "7", "MO": str(int(axis.motor_on)), "ID": "FOREIGN-RV120"}.get(word) or self._refuse(NO_COMMAND)
+        return {"SN": axis.unit, "MO": str(int(axis.motor_on)), "ID": "FOREIGN-RV120"}.get(word) or self._refuse(NO_COMMAND)
 
     def _do(self, axis, word, rest):
         if word == "OR":
             axis.find_origin()
         elif word == "PA":
-            return self._move(axis, rest) if axis.motor_on else self._refuse(MOTOR_OFF)
+            return self._go([axis], rest.split(","))
         elif word == "MO":
             axis.motor_on = True
+        elif word == "HN":
+            self.group = [self.axes[int(number) - 1] for number in rest.split(",")]
+        elif word == "HL":
+            return self._go(self.group, rest.split(","))
+        elif word == "HV":
+            pass  # its axes are as fast as they are
         elif word != "SN":
             return self._refuse(NO_COMMAND)
         return None
 
-    def _move(self, axis, text):
+    def _go(self, axes, words):
+        """They arrive together."""
+        if not all(axis.motor_on for axis in axes):
+            return self._refuse(MOTOR_OFF)
         try:
-            to_deg = round(float(text), 6)
+            places = [round(float(word), 6) for word in words]
         except ValueError:
+            places = []
+        if len(places) != len(axes):
             return self._refuse(NO_PARAMETER)
-        if not self.lower_deg <= to_deg <= self.upper_deg:
-            return self._refuse(BEYOND_LOWER if to_deg < self.lower_deg else BEYOND_UPPER)
-        axis.go(to_deg + axis.origin_deg)
+        for to in places:
+            if not self.lower <= to <= self.upper:
+                return self._refuse(BEYOND_LOWER if to < self.lower else BEYOND_UPPER)
+        for axis, to in zip(axes, places):
+            axis.go(to + axis.origin)
+        takes_s = max(axis.takes_s for axis in axes)
         own = self.happen()
-        if own == "unsettled":
-            axis.settles = False
+        for axis in axes:
+            axis.takes_s = 100.0 * takes_s if own == "freeze" else takes_s  # then they are on their way for long
+            axis.settles = own != "unsettled"
         if own == "restart":
             for each in self.axes:
                 each.lose_power()
-        if own == "freeze":
-            axis.takes_s *= 100.0  # it is on its way for long
         return None

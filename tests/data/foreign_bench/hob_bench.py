@@ -13,7 +13,7 @@ import random
 import sys
 import time
 
-from esp_controller import EspController
+from esp_controller import DEGREES, EspController
 from line_devices import ScpiDevice, mounted, show
 
 ARCSEC_DEG = 1.0 / 3600.0
@@ -34,7 +34,7 @@ class TurningAxis:
     """Goes over from speed to speed in a straight line of time."""
 
     STOPPING_S = 0.05
-    origin_deg, motor_on = 0.0, True
+    unit, origin, motor_on = DEGREES, 0.0, True
 
     def __init__(self):
         self.begin_s, self.begin_deg, self.from_deg_s, self.to_deg_s, self.ramp_s = time.monotonic(), 0.0, 0.0, 0.0, 0.0
@@ -46,7 +46,7 @@ class TurningAxis:
         share = min(self._since_s() / self.ramp_s, 1.0) if self.ramp_s > 0.0 else 1.0
         return self.from_deg_s + (self.to_deg_s - self.from_deg_s) * share
 
-    def place_deg(self):
+    def place(self):
         since_s = self._since_s()
         ramped_s = min(since_s, self.ramp_s)
         gain = (self.to_deg_s - self.from_deg_s) / self.ramp_s if self.ramp_s > 0.0 else 0.0
@@ -54,7 +54,7 @@ class TurningAxis:
         return self.begin_deg + way_deg + self.to_deg_s * (since_s - ramped_s)
 
     def go_over(self, to_deg_s, ramp_s):
-        self.begin_deg, self.from_deg_s = self.place_deg(), self.speed_deg_s()
+        self.begin_deg, self.from_deg_s = self.place(), self.speed_deg_s()
         self.to_deg_s, self.ramp_s, self.begin_s = to_deg_s, ramp_s, time.monotonic()
 
     def stop(self):
@@ -64,8 +64,8 @@ class TurningAxis:
         return self.to_deg_s == 0.0 and self._since_s() >= self.ramp_s
 
     @property
-    def end_deg(self):
-        return self.place_deg()
+    def end(self):
+        return self.place()
 
 
 class HobController(EspController):
@@ -73,7 +73,7 @@ class HobController(EspController):
 
     def __init__(self, script):
         super().__init__(script, [TurningAxis()])
-        self.lower_deg, self.upper_deg = -1e6, 1e6
+        self.lower, self.upper = -1e6, 1e6
 
     def _do(self, axis, word, rest):
         if word != "XV":
@@ -125,7 +125,7 @@ class Counters(ScpiDevice):
         if word == "LATCHED?":
             return self._latched(self.happen() == "lost")
         if word == "NOW?":
-            return self._sample(self.chain.table_shown_deg(self.axis.place_deg()) * LINES / 360.0, self.axis.place_deg())
+            return self._sample(self.chain.table_shown_deg(self.axis.place()) * LINES / 360.0, self.axis.place())
         if word.startswith("LATCH "):
             self._arm(*(int(text) for text in word.split()[1].split(",")))
             return True
@@ -134,7 +134,7 @@ class Counters(ScpiDevice):
     def _arm(self, samples, every):
         self.wanted, self.every = samples, every
         self.direction = 1 if self.axis.speed_deg_s() >= 0.0 else -1
-        at = self.chain.table_shown_deg(self.axis.place_deg()) * LINES / 360.0 / every
+        at = self.chain.table_shown_deg(self.axis.place()) * LINES / 360.0 / every
         self.line = every * (math.floor(at) + 1 if self.direction > 0 else math.ceil(at) - 1)
 
     def _sample(self, line, hob_deg):
@@ -142,7 +142,7 @@ class Counters(ScpiDevice):
         return f"{line:.9g},{math.floor(shown_deg * HOB_COUNTS / 360.0)}"
 
     def _latched(self, lost):
-        at_deg, samples = self.axis.place_deg(), []
+        at_deg, samples = self.axis.place(), []
         while self.wanted > 0 and len(samples) < MOST_IN_A_LINE:
             hob_deg = self.chain.hob_deg(self.line * 360.0 / LINES)
             if self.direction * (at_deg - hob_deg) < 0.0:

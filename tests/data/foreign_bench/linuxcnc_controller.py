@@ -1,4 +1,4 @@
-"""A machine of rotary axes A, B, C (joints 0, 1, 2) run by LinuxCNC, as its remote shell linuxcncrsh shows it; and a look at one that runs elsewhere.
+"""A machine run by LinuxCNC, as its remote shell linuxcncrsh shows it, with a joint an axis; and a look at one that runs elsewhere.
 
 The words and the ends of lines are those of linuxcncrsh(1) and of what LinuxCNC 2.9 was seen to answer: `get` ends in CR LF, `set` in LF CR. A block
 that goes too far is acknowledged and complained about afterwards.
@@ -11,7 +11,7 @@ from esp_controller import Axis
 from line_devices import Conversation, Device
 
 WORD = re.compile(r"([ABCFXYZ])(\[[^ ]*\]|[-+0-9.]+)")
-LIMIT = re.compile(r"\[\[#<_ini\[axis_([abc])\](min|max)_limit>\+([0-9.]+)\]\*([0-9.]+)\]")
+LIMIT = re.compile(r"\[\[#<_ini\[axis_([abcxyz])\](min|max)_limit>\+([0-9.]+)\]\*([0-9.]+)\]")
 PLACES = "XYZABC"
 
 
@@ -73,20 +73,23 @@ class LinuxCncController(Device):
     name = "controller"
     conversation = Shell
 
-    def __init__(self, script):
+    def __init__(self, script, letters="ABC"):
         super().__init__(script)
-        self.axes = [Axis(), Axis(), Axis()]
-        self.lower_deg, self.upper_deg = -800.0, 800.0
+        self.letters = letters
+        self.axes = [Axis() for _ in letters]
+        self.lower, self.upper = -800.0, 800.0
         self.mode, self.is_on, self.estop, self.homed, self.feed = "MANUAL", True, False, True, 0.0
         self.errors = []
 
     def tell(self, name):
-        places = [0.0, 0.0, 0.0] + [axis.place_deg() for axis in self.axes]
-        joints = {"joint_homed": "YES" if self.homed else "NO", "joint_limit": "OK", "joint_fault": "OK", "joint_type": "ANGULAR", "joint_units": "DEG"}
+        rotary = [letter in "ABC" for letter in self.letters]
+        joints = {"joint_homed": ["YES" if self.homed else "NO"] * len(rotary), "joint_limit": ["OK"] * len(rotary), "joint_fault": ["OK"] * len(rotary),
+                  "joint_type": ["ANGULAR" if each else "LINEAR" for each in rotary], "joint_units": ["DEG" if each else "MM" for each in rotary]}
         if name in joints:
-            return " ".join(3 * [joints[name]])
+            return " ".join(joints[name])
         if name in ("abs_cmd_pos", "abs_act_pos"):
-            return " ".join(f"{place:.6f}" for place in places)
+            places = {letter: axis.place() for letter, axis in zip(self.letters, self.axes)}
+            return " ".join(f"{places.get(letter, 0.0):.6f}" for letter in PLACES)
         if name == "error":
             return self.errors.pop(0) if self.errors else "OK"
         moves = not all(axis.is_done() for axis in self.axes)
@@ -118,19 +121,19 @@ class LinuxCncController(Device):
         for letter, number in WORD.findall(text.upper()):
             limit = LIMIT.fullmatch(number.lower())
             if limit:
-                number = (self.lower_deg if limit[2] == "min" else self.upper_deg) + float(limit[3])
+                number = (self.lower if limit[2] == "min" else self.upper) + float(limit[3])
                 number *= float(limit[4])
             if letter == "F":
                 self.feed = float(number)
             else:
                 places[letter] = float(number)
         for letter, place in places.items():
-            if not self.lower_deg <= place <= self.upper_deg:
+            if not self.lower <= place <= self.upper:
                 self.errors.append(f"Linear move on line 0 would exceed {letter}'s {'positive' if place > 0.0 else 'negative'} limit")
                 return True
         own = self.happen() if places else None
         for letter, place in places.items():
-            self.axes["ABC".index(letter)].go(place)
+            self.axes[self.letters.index(letter)].go(place)
         if own == "freeze":
             for axis in self.axes:
                 axis.takes_s *= 100.0  # it is on its way for long
@@ -141,13 +144,13 @@ class LinuxCncController(Device):
         return True
 
 
-class AxisElsewhere:
-    """An axis of a machine that LinuxCNC runs somewhere else: where it stands."""
+class AxesElsewhere:
+    """Axes of a machine that LinuxCNC runs somewhere else: where they stand."""
 
-    def __init__(self, address, letter="C"):
+    def __init__(self, address, letters):
         host, _, port = address.rpartition(":")
         self.line = socket.create_connection((host, int(port)), 5.0).makefile("rw", newline="\r\n")
-        self.place = PLACES.index(letter)
+        self.letters = letters
         self.ask("hello EMC stand 1.0")
         self.ask("set echo off")
 
@@ -156,5 +159,6 @@ class AxisElsewhere:
         self.line.flush()
         return self.line.readline().split()
 
-    def place_deg(self):
-        return float(self.ask("get abs_act_pos")[1 + self.place])
+    def places(self):
+        told = self.ask("get abs_act_pos")[1:]
+        return [float(told[PLACES.index(letter)]) for letter in self.letters]

@@ -41,7 +41,7 @@ class Stack:
         self.axes, self.seat_arcsec = axes, 0.0
 
     def volts(self):
-        lower_deg, upper_deg = (axis.place_deg() for axis in self.axes)
+        lower_deg, upper_deg = (axis.place() for axis in self.axes)
         step_deg = 360.0 / POSITIONS
         left_deg = (lower_deg + upper_deg + 0.5 * step_deg) % step_deg - 0.5 * step_deg  # the hand turned whole steps back
         z = (wave(LOWER_Z, lower_deg) + wave(UPPER_Z, upper_deg) + self.seat_arcsec) * ARCSEC + math.radians(left_deg)
@@ -147,7 +147,7 @@ class Card(Device):
     def block(self, length):
         """Chance is that of this block at this place, whatever went wrong before."""
         lost = self.happen() == "gap"
-        place = (self.stack.seat_arcsec, *(round(axis.place_deg(), 3) for axis in self.stack.axes))
+        place = (self.stack.seat_arcsec, *(round(axis.place(), 3) for axis in self.stack.axes))
         self.blocks[place] = self.blocks.get(place, 0) + 1
         chance = random.Random(f"{place} {self.blocks[place]}")
         volts, begin_ns, scans = self.stack.volts(), time.monotonic_ns(), length // self.SCAN_BYTES

@@ -20,7 +20,7 @@ import sys
 import time
 
 from esp_controller import EspController
-from linuxcnc_controller import AxisElsewhere, LinuxCncController
+from linuxcnc_controller import AxesElsewhere, LinuxCncController
 from line_devices import ScpiDevice, mounted, show
 
 ARCSEC_DEG = 1.0 / 3600.0
@@ -45,8 +45,8 @@ def tooth_arcsec(tooth):
 class Stand:
     """What lies between the axis and the autocollimator."""
 
-    def __init__(self, axis):
-        self.axis = axis
+    def __init__(self, place):
+        self.place = place  # of the axis, in degrees
         self.set_up, self.tooth, self.seated_s = None, 0, 0.0
         self.seating_arcsec = 0.0
         self.seatings = {}  # by set-up and tooth: how often
@@ -66,7 +66,7 @@ class Stand:
 
     def normal_arcsec(self):
         tilt_arcsec, azimuth_deg, shift, upwards_arcsec = SET_UPS[self.set_up]
-        turned_deg = self.axis.place_deg()
+        turned_deg = self.place()
         left_deg = turned_deg + (self.tooth - shift) * 360.0 / TEETH
         left_deg -= 360.0 * round(left_deg / 360.0)
         about = left_deg / ARCSEC_DEG + turntable_arcsec(turned_deg) + tooth_arcsec(self.tooth) + self.seating_arcsec
@@ -121,21 +121,22 @@ class Indexer(ScpiDevice):
 
 
 def controlled(kind, script):
-    """Returns the devices that move the turntable, and its axis."""
+    """Returns the devices that move the turntable, and who tells where it is."""
     if kind == "esp":
         controller = EspController(script)
-        return [controller], controller.axes[0]
+        return [controller], controller.axes[0].place
     if kind == "linuxcnc":
         controller = LinuxCncController(script)
-        return [controller], controller.axes[2]
-    return [], AxisElsewhere(kind)
+        return [controller], controller.axes[2].place
+    elsewhere = AxesElsewhere(kind, "C")
+    return [], lambda: elsewhere.places()[0]
 
 
 def main():
     kinds = [word.partition("=")[2] for word in sys.argv[2:] if word.startswith("controller=")] or ["esp"]
     script = [word for word in sys.argv[2:] if "=" not in word]
-    controllers, axis = controlled(kinds[0], script)
-    stand = Stand(axis)
+    controllers, place = controlled(kinds[0], script)
+    stand = Stand(place)
     positions = [k * 360.0 / POSITIONS for k in range(POSITIONS)]
     hidden = {"position_deg": positions, "turntable_arcsec": [turntable_arcsec(at) for at in positions],
               "multitooth_arcsec": [tooth_arcsec(k * TEETH // POSITIONS) for k in range(POSITIONS)], "roll_mrad": ROLL_MRAD}

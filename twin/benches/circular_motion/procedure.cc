@@ -10,7 +10,6 @@ namespace {
 using namespace benches::circular;
 
 constexpr double kLeadIn_s = 60.0;  // half a circle at the feeds of such tests, or the way back to the start
-constexpr double kRemount_s = 900.0;
 
 /// Adds readings in time order.
 class Circles {
@@ -19,7 +18,7 @@ class Circles {
 
   std::vector<Reading> Make() {
     for (std::size_t setup = 0; setup < s_.setups.size(); ++setup) {
-      if (setup > 0) time_s_ += kRemount_s;
+      if (setup > 0) time_s_ += s_.remount_s;
       AddSetup(static_cast<int>(setup));
     }
     return readings_;

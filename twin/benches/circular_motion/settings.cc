@@ -160,6 +160,7 @@ void AddProcedure(Keys& keys, CircularProcedureSettings& s) {
   t.Add("rapid", kMm_min, Positive(1e6), &s.rapid_m_s, "from stop to stop");
   t.Add("directions", kPure, {-1, 1}, &s.directions, "1: counter-clockwise from above, -1: clockwise");
   t.Add("start", kDeg, Within(360), &s.start_rad, "where every pass begins");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
 }
 
 /// What bodies do by themselves must not be stated a second time in closed form.

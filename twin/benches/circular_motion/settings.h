@@ -125,6 +125,7 @@ struct CircularProcedureSettings {  // [circular_procedure]
   double rapid_m_s = 500.0 * units::mm / 60.0;  // from stop to stop
   std::vector<int> directions = {1, -1};
   double start_rad = 0.0;
+  double remount_s = 900.0;  // time a set-up takes
 };
 
 struct CircularSettings {

@@ -13,8 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kInterval_s = 6.0, kRemount_s = 900.0;
-
 struct Drawn {
   int i = 0, j = 0;
   double a_rad = 0.0, b_rad = 0.0, height_m = 0.0;
@@ -112,10 +110,10 @@ std::vector<Reading> FreeformSchedule(const Scenario& scenario) {
         for (std::size_t axis = 0; axis < 5; ++axis) kCommanded[axis](r) = pose.commanded[axis];
         kCellI(r) = pose.drawn.i;
         kCellJ(r) = pose.drawn.j;
-        time_s += kInterval_s;
+        time_s += p.interval_s;
       }
     }
-    time_s += kRemount_s;
+    time_s += p.remount_s;
   }
   return readings;
 }

@@ -92,6 +92,8 @@ void AddProcedure(Keys& keys, FreeformProcedureSettings& s) {
   t.Add("dither", kUm, UpTo(10000), &s.dither_m, "of X and Y at every pose, uniform to either side");
   t.Add("dither", kDeg, UpTo(10), &s.dither_rad, "likewise of A and B");
   t.Text("path", &s.path, {"joint", "single"}, "all axes together, or one after the other");
+  t.Add("interval", kSecond, Positive(600), &s.interval_s, "from reading to reading; longer where the way is");
+  t.Add("remount", kSecond, UpTo(1e7), &s.remount_s, "time that a set-up takes");
 }
 
 }  // namespace

@@ -96,6 +96,8 @@ struct FreeformProcedureSettings {  // [freeform_procedure]
   double dither_m = 30.0 * units::um;
   double dither_rad = 0.01 * units::deg;
   std::string path = "joint";  // joint | single: all axes together, or one after the other
+  double interval_s = 6.0;     // from reading to reading, or as long as the way to it takes
+  double remount_s = 900.0;    // time a set-up takes
 };
 
 struct FreeformSettings {

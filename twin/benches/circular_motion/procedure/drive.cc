@@ -17,7 +17,6 @@ constexpr double kLeadIn_rad = units::kPi;
 constexpr double kRunOut_rad = 5.0 * units::deg;  // behind the last point, to slow down in
 constexpr double kOnTheCircle_m = 0.5 * units::mm;
 constexpr double kThere_rad = 1e-6;
-constexpr Duration kRemount = std::chrono::minutes(15);
 
 /// The readings [first, end) of one way round.
 struct Pass {
@@ -73,7 +72,7 @@ class CircleDrive {
     if (sequencer_.HasMounted()) sequencer_.Clear();
     sequencer_.MoveTo({kCommandedX_m(At(reading)), kCommandedY_m(At(reading))});
     sequencer_.Mount(setup, InWords(settings));
-    if (setup > 0) sequencer_.Rest(reading, kRemount);
+    if (setup > 0) sequencer_.Rest(reading, FromSeconds(settings_.remount_s));
   }
 
   /// On the circle, in the direction of the pass to an angle; a whole turn is none.

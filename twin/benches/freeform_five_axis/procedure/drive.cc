@@ -12,8 +12,6 @@ namespace {
 
 using benches::freeform::kCommanded;
 
-constexpr Duration kBetweenMounts = std::chrono::minutes(15);
-
 std::string MountInWords(const MountSettings& mount) {
   return fmt::format("artefact at X {:.6g}, Y {:.6g}, Z {:.6g} mm, yaw {:.6g} deg", mount.x_m / units::mm,
                      mount.y_m / units::mm, mount.z_m / units::mm, mount.yaw_rad / units::deg);
@@ -42,7 +40,7 @@ void GoThroughPoses(MachineSequencer& sequencer, const FreeformProcedureSettings
     if (sequencer.NeedsMounting(planned.setup)) {
       sequencer.Clear();
       sequencer.Mount(planned.setup, MountInWords(settings.mounts[static_cast<std::size_t>(planned.setup)]));
-      if (planned.setup > 0) sequencer.Rest(k, kBetweenMounts);
+      if (planned.setup > 0) sequencer.Rest(k, FromSeconds(settings.remount_s));
     }
     sequencer.MoveTo(PlannedPlace(planned));
     sequencer.TakeAtRest(k, Duration(0));
