@@ -84,7 +84,8 @@ bool LinuxCncMachine::IsSet(const std::string& what) {
 
 void LinuxCncMachine::Set(const std::string& what) {
   if (IsSet(what)) return;
-  RequireOn();  // which is why, else
+  RequireObeyed();  // which is why, else
+  RequireOn();
   line().Fail(FaultKind::kRefused, fmt::format("\"set {}\" was refused: {}", what, InWords(Errors())));
 }
 
@@ -123,6 +124,12 @@ void LinuxCncMachine::RequireAxes() {
                 fmt::format("joint {}, which should be axis {} in {}, is {} in {}", at_[k].joint, Axes()[k].name,
                             Axes()[k].unit(), types[k], units[k]));
   }
+}
+
+/// It obeys one client, the one who said the password last.
+void LinuxCncMachine::RequireObeyed() {
+  if (Get("enable") != "ON")
+    line().Fail(FaultKind::kRefused, "somebody else commands it now: another program said the enable_password");
 }
 
 void LinuxCncMachine::RequireReleased() {
@@ -263,9 +270,11 @@ std::vector<AxisState> LinuxCncMachine::State() {
   return states;
 }
 
+/// Whoever commands it.
 void LinuxCncMachine::Stop() {
   Prepare();
   sent_.clear();
+  if (Get("enable") != "ON") IsSet("enable " + enable_password_);
   if (!IsSet("abort") && IsOn()) line().Fail(FaultKind::kRefused, "it refuses to abort: " + InWords(Errors()));
 }
 

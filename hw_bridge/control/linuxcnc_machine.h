@@ -52,6 +52,7 @@ class LinuxCncMachine : public ControlledMachine {
   void Set(const std::string& what);
   bool IsSet(const std::string& what);
   bool IsOn() { return Get("machine") == "ON"; }
+  void RequireObeyed();
   void RequireReleased();
   void RequireOn();
   void TakeCommands();

@@ -26,6 +26,7 @@ using testing::HasSubstr;
 struct LinuxCncModel {
   std::mutex mutex;
   std::map<std::string, std::string> told = {{"machine", "ON"},
+                                             {"enable", "ON"},
                                              {"estop", "OFF"},
                                              {"mode", "MANUAL"},
                                              {"program_status", "IDLE"},

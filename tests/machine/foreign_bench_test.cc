@@ -219,6 +219,14 @@ TEST_F(ForeignTurntableOnLinuxCnc, AnEmergencyStopEndsTheRunWithTheTableAtRest) 
   EXPECT_GT(Kept(), 0u);
 }
 
+TEST_F(ForeignTurntableOnLinuxCnc, IsBroughtToRestWhenAnotherProgramTakesTheCommand) {
+  BeControlledBy("linuxcnc", 2);
+  const Outcome measured = MeasureWith({"controller.taken@9"});
+  EXPECT_EQ(measured.exit_code, 1);
+  EXPECT_THAT(measured.err, AllOf(HasSubstr("somebody else commands it now"), HasSubstr("brought to rest"),
+                                  HasSubstr("--resume")));
+}
+
 TEST_F(ForeignTurntableOnLinuxCnc, AControllerThatFreezesWhileTheTableTurnsIsToldSo) {
   BeControlledBy("linuxcnc", 2);
   ExpectStateUnknown(MeasureWith({"controller.freeze@9"}, 1));

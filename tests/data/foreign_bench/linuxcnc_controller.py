@@ -19,7 +19,7 @@ class Shell(Conversation):
     """Echoes what it is told until it is told not to, and acknowledges nothing until it is told to."""
 
     def handle(self):
-        self.echoes, self.acknowledges, self.greeted, self.enabled = True, False, False, False
+        self.echoes, self.acknowledges, self.greeted = True, False, False
         super().handle()
 
     def say(self, text):
@@ -50,7 +50,8 @@ class Shell(Conversation):
         name, _, value = rest.partition(" ")
         name = name.lower()
         if verb.lower() == "get":
-            return f"{name.upper()} {device.tell(name)}\r\n"
+            told = ("ON" if device.obeyed is self else "OFF") if name == "enable" else device.tell(name)
+            return f"{name.upper()} {told}\r\n"
         done = self.set(device, name, value)
         return f"SET {name.upper()} {'ACK' if done else 'NAK'}\n\r" if self.acknowledges or not done else ""
 
@@ -60,15 +61,18 @@ class Shell(Conversation):
         elif name == "verbose":
             self.acknowledges = value == "on"
         elif name == "enable":
-            self.enabled = value == "EMCTOO"
-            return self.enabled
+            if value == "EMCTOO":
+                device.obeyed = self
+            return device.obeyed is self
         elif name != "set_wait":
-            return self.enabled and device.do(name, value)
+            return device.obeyed is self and device.do(name, value)
         return True
 
 
 class LinuxCncController(Device):
-    """Its events are moves. A fault of its own: `estop`, somebody presses the emergency stop as the move begins."""
+    """Its events are moves. Faults of its own: `estop`, somebody presses the emergency stop as the move begins; `taken`, another client says the
+    password, and this one is not obeyed any more.
+    """
 
     name = "controller"
     conversation = Shell
@@ -80,6 +84,7 @@ class LinuxCncController(Device):
         self.lower, self.upper = -800.0, 800.0
         self.mode, self.is_on, self.estop, self.homed, self.feed = "MANUAL", True, False, True, 0.0
         self.errors = []
+        self.obeyed = None  # the conversation that said the password last
 
     def tell(self, name):
         rotary = [letter in "ABC" for letter in self.letters]
@@ -137,6 +142,8 @@ class LinuxCncController(Device):
         if own == "freeze":
             for axis in self.axes:
                 axis.takes_s *= 100.0  # it is on its way for long
+        if own == "taken":
+            self.obeyed = None
         if own == "estop":
             self.estop, self.is_on = True, False
             for axis in self.axes:

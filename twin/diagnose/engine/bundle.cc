@@ -27,10 +27,11 @@ Unwhitened::Unwhitened(const LinearRun& run, const NoiseModel& noise, const Eige
     : rows_(noise.WhitenTransposed(run, white)), by_row_(rows_) {
   const Eigen::Index readings = run.schedule.Readings(), channels = run.Channels();
   if (channels == 1) return;
+  const bool is_empty = rows_.size() == 0;
   using Stride = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
   for (Eigen::Index c = 0; c < channels; ++c) {
-    channel_.emplace_back(Eigen::Map<const Eigen::MatrixXd, 0, Stride>(rows_.data() + c, readings, rows_.cols(),
-                                                                       Stride(rows_.rows(), channels)));
+    channel_.emplace_back(Eigen::Map<const Eigen::MatrixXd, 0, Stride>(
+        is_empty ? nullptr : rows_.data() + c, readings, rows_.cols(), Stride(rows_.rows(), channels)));
   }
 }
 
