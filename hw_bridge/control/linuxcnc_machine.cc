@@ -128,7 +128,7 @@ void LinuxCncMachine::RequireAxes() {
 
 /// It obeys one client, the one who said the password last.
 void LinuxCncMachine::RequireObeyed() {
-  if (Get("enable") != "ON")
+  if (!IsObeyed())
     line().Fail(FaultKind::kRefused, "somebody else commands it now: another program said the enable_password");
 }
 
@@ -270,11 +270,14 @@ std::vector<AxisState> LinuxCncMachine::State() {
   return states;
 }
 
-/// Whoever commands it.
+/// Whoever commands it; but whoever has taken the command keeps it, for an emergency stop say, where nothing moves.
 void LinuxCncMachine::Stop() {
   Prepare();
   sent_.clear();
-  if (Get("enable") != "ON") IsSet("enable " + enable_password_);
+  if (!IsObeyed()) {
+    if (Get("program_status") == "IDLE") return;
+    IsSet("enable " + enable_password_);
+  }
   if (!IsSet("abort") && IsOn()) line().Fail(FaultKind::kRefused, "it refuses to abort: " + InWords(Errors()));
 }
 

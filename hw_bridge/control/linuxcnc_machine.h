@@ -51,6 +51,7 @@ class LinuxCncMachine : public ControlledMachine {
   std::vector<std::string> OfJoints(const std::string& what);
   void Set(const std::string& what);
   bool IsSet(const std::string& what);
+  bool IsObeyed() { return Get("enable") == "ON"; }
   bool IsOn() { return Get("machine") == "ON"; }
   void RequireObeyed();
   void RequireReleased();

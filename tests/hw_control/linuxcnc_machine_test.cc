@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -156,6 +157,23 @@ TEST_F(OnLinuxCnc, NeitherEmergencyStopNorPowerAreSwitchedForAMove) {
   model_.told["machine"] = "ON";
   EXPECT_EQ(KindOf([&] { machine.Stop(); }), FaultKind::kRefused);
   EXPECT_THAT(controller_.Lines(), testing::Not(Contains(HasSubstr("set estop"))));
+}
+
+TEST_F(OnLinuxCnc, TheCommandIsTakenBackFromAnotherProgramToStopAMoveOnly) {
+  LinuxCncMachine machine = Machine();
+  machine.State();
+  const auto times_taken = [&] { return std::ranges::count(controller_.Lines(), "set enable EMCTOO"); };
+  ASSERT_EQ(times_taken(), 1);
+  model_.told["enable"] = "OFF";
+  model_.accepts = false;
+  EXPECT_THAT(TextOf([&] { machine.StartMove({0.0, 0.0}, 0.0); }), HasSubstr("somebody else commands it now"));
+  machine.Stop();
+  EXPECT_EQ(times_taken(), 1) << "nothing moves, and whoever has it may be about to press the emergency stop";
+  model_.told["program_status"] = "RUNNING";
+  model_.accepts = true;
+  machine.Stop();
+  EXPECT_EQ(times_taken(), 2);
+  EXPECT_EQ(controller_.Lines().back(), "set abort");
 }
 
 TEST_F(OnLinuxCnc, WhatItIsNotIsRefusedAtTheFirstCall) {
