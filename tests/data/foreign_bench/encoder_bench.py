@@ -25,7 +25,7 @@ from pymodbus.datastore.store import BaseModbusDataBlock
 from pymodbus.server.async_io import ModbusSerialServer, ModbusTcpServer
 
 from esp_controller import EspController
-from line_devices import LATE_S, Device, ScpiDevice, mounted, show
+from line_devices import LATE_S, Device, Hand, show
 
 FIRST, WORDS, UNIT = 20, 4, 3
 MOUNTING_DEG = (0.0, 90.0, 210.0)
@@ -36,18 +36,6 @@ DEVICE = ({"order": 1, "amplitude_arcsec": 6.0, "phase_deg": -70.0}, {"order": 2
 
 def error_deg(waves, angle_deg):
     return sum(wave["amplitude_arcsec"] * math.cos(math.radians(wave["order"] * angle_deg + wave["phase_deg"])) for wave in waves) / 3600.0
-
-
-class Hand(ScpiDevice):
-    name = "hand"
-    identity = "FOREIGN LABORATORY,HAND,1,1"
-    mounting_deg = 0.0
-
-    def do(self, word):
-        if (set_up := mounted(word)) is not None:
-            self.mounting_deg = MOUNTING_DEG[set_up]
-            return True
-        return True if word == "FIXT:CLE" else None
 
 
 class Registers(BaseModbusDataBlock):
@@ -66,7 +54,7 @@ class Registers(BaseModbusDataBlock):
             time.sleep(LATE_S)
         shaft_deg = self.axis.place()
         reference = round((shaft_deg + error_deg(REFERENCE, shaft_deg)) * 1e6) & 0xFFFFFFFF
-        device_deg = shaft_deg + self.hand.mounting_deg
+        device_deg = shaft_deg + MOUNTING_DEG[self.hand.set_up or 0]
         high, low = struct.unpack(">HH", struct.pack(">f", device_deg % 360.0 + error_deg(DEVICE, device_deg) + self.chance.gauss(0.0, NOISE_ARCSEC) / 3600.0))
         words = [reference & 0xFFFF, reference >> 16, high, low]
         return words[address - FIRST:address - FIRST + count]

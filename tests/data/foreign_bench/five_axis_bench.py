@@ -12,11 +12,9 @@ import math
 import random
 import sys
 
-from esp_controller import DEGREES, MILLIMETRES, Axis, EspController
-from linuxcnc_controller import AxesElsewhere, LinuxCncController
-from line_devices import ScpiDevice, mounted, show
+from linuxcnc_controller import controlled
+from line_devices import Hand, ScpiDevice, show
 
-UNITS = 3 * (MILLIMETRES,) + 2 * (DEGREES,)
 ARCSEC = math.pi / 180.0 / 3600.0
 PIVOT_MM, PITCH_MM, RADII_MM = 120.0, 40.0, (60.0, 90.0)
 LENS_MM, SPOT_MM, GAP_MM, SUM_V, NOISE_V = 50.0, 0.25, 0.02, 5.0, 0.005
@@ -138,18 +136,6 @@ def camera(way):
     return CENTRE_PX + IMAGE_MM * way * math.sin(ALPHA) / (OBJECT_MM * math.sin(beta) + way * math.sin(ALPHA + beta)) / PIXEL_MM
 
 
-class Hand(ScpiDevice):
-    name = "hand"
-    identity = "FOREIGN LABORATORY,HAND,1,1"
-    set_up = None
-
-    def do(self, word):
-        if (set_up := mounted(word)) is not None:
-            self.set_up = set_up
-            return True
-        return True if word == "FIXT:CLE" else None
-
-
 class Probe(ScpiDevice):
     name = "probe"
     identity = "FOREIGN OPTICS,SLOPE PROBE,3,1.0"
@@ -169,21 +155,9 @@ class Probe(ScpiDevice):
         return ",".join(f"{value + self.chance.gauss(0.0, u):.6f}" for value, u in zip(seen(self.places(), self.hand.set_up), noise))
 
 
-def controlled(kind, script):
-    """Returns the devices that move the machine, and who tells where its axes are."""
-    if kind == "esp":
-        controller = EspController(script, [Axis(unit) for unit in UNITS])
-        return [controller], lambda: [axis.place() for axis in controller.axes]
-    if kind == "linuxcnc":
-        controller = LinuxCncController(script, "XYZAB")
-        return [controller], lambda: [axis.place() for axis in controller.axes]
-    return [], AxesElsewhere(kind, "XYZAB").places
-
-
 def main():
-    kinds = [word.partition("=")[2] for word in sys.argv[2:] if word.startswith("controller=")] or ["esp"]
     script = [word for word in sys.argv[2:] if "=" not in word]
-    controllers, places = controlled(kinds[0], script)
+    controllers, places = controlled(sys.argv[2:], "XYZAB")
     hand = Hand(script)
     show([*controllers, hand, Probe(script, places, hand)], {"errors": ERRORS, "squareness": SQUARENESS}, sys.argv[1])
 

@@ -89,6 +89,20 @@ def mounted(word):
     return int(word.split()[1].split(",")[0]) if word.startswith("FIXT:MOUN ") else None
 
 
+class Hand(ScpiDevice):
+    """Whoever mounts what a set-up needs."""
+
+    name = "hand"
+    identity = "FOREIGN LABORATORY,HAND,1,1"
+    set_up = None
+
+    def do(self, word):
+        if (set_up := mounted(word)) is not None:
+            self.set_up = set_up
+            return True
+        return True if word == "FIXT:CLE" else None
+
+
 class Conversation(socketserver.StreamRequestHandler):
     disable_nagle_algorithm = True  # else the second of several answers waits 40 ms for the first to be acknowledged
 

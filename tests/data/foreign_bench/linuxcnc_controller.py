@@ -7,12 +7,12 @@ import re
 import socket
 import time
 
-from esp_controller import Axis
+from esp_controller import DEGREES, MILLIMETRES, Axis, EspController
 from line_devices import Conversation, Device
 
 WORD = re.compile(r"([ABCFXYZ])(\[[^ ]*\]|[-+0-9.]+)")
 LIMIT = re.compile(r"\[\[#<_ini\[axis_([abcxyz])\](min|max)_limit>\+([0-9.]+)\]\*([0-9.]+)\]")
-PLACES = "XYZABC"
+PLACES, ROTARY = "XYZABC", "ABC"
 
 
 class Shell(Conversation):
@@ -87,7 +87,7 @@ class LinuxCncController(Device):
         self.obeyed = None  # the conversation that said the password last
 
     def tell(self, name):
-        rotary = [letter in "ABC" for letter in self.letters]
+        rotary = [letter in ROTARY for letter in self.letters]
         joints = {"joint_homed": ["YES" if self.homed else "NO"] * len(rotary), "joint_limit": ["OK"] * len(rotary), "joint_fault": ["OK"] * len(rotary),
                   "joint_type": ["ANGULAR" if each else "LINEAR" for each in rotary], "joint_units": ["DEG" if each else "MM" for each in rotary]}
         if name in joints:
@@ -169,3 +169,22 @@ class AxesElsewhere:
     def places(self):
         told = self.ask("get abs_act_pos")[1:]
         return [float(told[PLACES.index(letter)]) for letter in self.letters]
+
+
+def controlled(words, letters, of_machine=None):
+    """What moves the axes of a bench: an ESP controller, with controller=linuxcnc a machine here, with controller=HOST:PORT one elsewhere.
+
+    words: of the command line, faults among them. of_machine: the letters of all axes of a LinuxCNC machine here. Returns the devices that the
+    bench shows, and who tells where the axes are.
+    """
+    kind = next((word.partition("=")[2] for word in words if word.startswith("controller=")), "esp")
+    script = [word for word in words if "=" not in word]
+    if kind == "esp":
+        controller = EspController(script, [Axis(DEGREES if letter in ROTARY else MILLIMETRES) for letter in letters])
+        axes = controller.axes
+    elif kind == "linuxcnc":
+        controller = LinuxCncController(script, of_machine or letters)
+        axes = [controller.axes[controller.letters.index(letter)] for letter in letters]
+    else:
+        return [], AxesElsewhere(kind, letters).places
+    return [controller], lambda: [axis.place() for axis in axes]

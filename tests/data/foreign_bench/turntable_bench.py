@@ -19,8 +19,7 @@ import random
 import sys
 import time
 
-from esp_controller import EspController
-from linuxcnc_controller import AxesElsewhere, LinuxCncController
+from linuxcnc_controller import controlled
 from line_devices import ScpiDevice, mounted, show
 
 ARCSEC_DEG = 1.0 / 3600.0
@@ -120,23 +119,10 @@ class Indexer(ScpiDevice):
         return True if word == "FIXT:CLE" else None
 
 
-def controlled(kind, script):
-    """Returns the devices that move the turntable, and who tells where it is."""
-    if kind == "esp":
-        controller = EspController(script)
-        return [controller], controller.axes[0].place
-    if kind == "linuxcnc":
-        controller = LinuxCncController(script)
-        return [controller], controller.axes[2].place
-    elsewhere = AxesElsewhere(kind, "C")
-    return [], lambda: elsewhere.places()[0]
-
-
 def main():
-    kinds = [word.partition("=")[2] for word in sys.argv[2:] if word.startswith("controller=")] or ["esp"]
     script = [word for word in sys.argv[2:] if "=" not in word]
-    controllers, place = controlled(kinds[0], script)
-    stand = Stand(place)
+    controllers, places = controlled(sys.argv[2:], "C", "ABC")
+    stand = Stand(lambda: places()[0])
     positions = [k * 360.0 / POSITIONS for k in range(POSITIONS)]
     hidden = {"position_deg": positions, "turntable_arcsec": [turntable_arcsec(at) for at in positions],
               "multitooth_arcsec": [tooth_arcsec(k * TEETH // POSITIONS) for k in range(POSITIONS)], "roll_mrad": ROLL_MRAD}
