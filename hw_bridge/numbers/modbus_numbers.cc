@@ -140,6 +140,7 @@ class ModbusNumbers : public NumberSource {
                                 static_cast<std::uint32_t>(timeout_us % 1000000));
     modbus_set_slave(line_.get(), settings_.unit);
     if (modbus_connect(line_.get()) != 0) Fail("cannot be reached");
+    modbus_flush(line_.get());  // of what a serial line still holds
     if (in_doubt_) GetInStep();
   }
 
@@ -150,8 +151,7 @@ class ModbusNumbers : public NumberSource {
     constexpr std::uint8_t kReadCoils = 0x01, kIsException = 0x80;
     const std::uint8_t coil_0[] = {static_cast<std::uint8_t>(settings_.unit), kReadCoils, 0, 0, 0, 1};
     std::array<std::uint8_t, MODBUS_RTU_MAX_ADU_LENGTH> answer{};
-    const bool is_sent =
-        modbus_flush(line_.get()) >= 0 && modbus_send_raw_request(line_.get(), coil_0, sizeof coil_0) > 0;
+    const bool is_sent = modbus_send_raw_request(line_.get(), coil_0, sizeof coil_0) > 0;
     do {
       if (!is_sent || modbus_receive_confirmation(line_.get(), answer.data()) < 2)
         Fail("has not answered since: coil 0 is asked before its registers are again, for late answers to pass");
