@@ -156,10 +156,10 @@ class Probe(ScpiDevice):
 
 
 def main():
-    script = [word for word in sys.argv[2:] if "=" not in word]
-    controllers, places = controlled(sys.argv[2:], "XYZAB")
-    hand = Hand(script)
-    show([*controllers, hand, Probe(script, places, hand)], {"errors": ERRORS, "squareness": SQUARENESS}, sys.argv[1])
+    words = sys.argv[2:]
+    controllers, places = controlled(words, "XYZAB")
+    hand = Hand(words)
+    show([*controllers, hand, Probe(words, places, hand)], {"errors": ERRORS, "squareness": SQUARENESS}, sys.argv[1])
 
 
 main()

@@ -14,7 +14,7 @@ import sys
 import time
 
 from esp_controller import DEGREES, EspController
-from line_devices import ScpiDevice, mounted, show
+from line_devices import Hand, show
 
 ARCSEC_DEG = 1.0 / 3600.0
 RATIO = 2.0 / 20.0  # starts of the hob over teeth of the gear
@@ -102,7 +102,7 @@ class Chain:
         return hob_deg
 
 
-class Counters(ScpiDevice):
+class Counters(Hand):
     """Its events are looks at the memory. A fault of its own: `lost`, a sample is gone and it says so."""
 
     name = "counters"
@@ -114,14 +114,12 @@ class Counters(ScpiDevice):
         self.chance = random.Random(44)
         self.wanted, self.every, self.line, self.direction = 0, 1, 0, 1
 
+    def mount(self, set_up):
+        self.chain.head_deg = HEADS_DEG[set_up]
+
     def do(self, word):
-        if (set_up := mounted(word)) is not None:
-            self.chain.head_deg = HEADS_DEG[set_up]
-            return True
-        if word == "FIXT:CLE":
-            return True
-        if self.chain.head_deg is None:
-            return None
+        if (done := super().do(word)) or self.chain.head_deg is None:
+            return done
         if word == "LATCHED?":
             return self._latched(self.happen() == "lost")
         if word == "NOW?":

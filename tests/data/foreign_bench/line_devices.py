@@ -96,9 +96,12 @@ class Hand(ScpiDevice):
     identity = "FOREIGN LABORATORY,HAND,1,1"
     set_up = None
 
+    def mount(self, set_up):
+        self.set_up = set_up
+
     def do(self, word):
         if (set_up := mounted(word)) is not None:
-            self.set_up = set_up
+            self.mount(set_up)
             return True
         return True if word == "FIXT:CLE" else None
 

@@ -20,7 +20,7 @@ import sys
 import time
 
 from linuxcnc_controller import controlled
-from line_devices import ScpiDevice, mounted, show
+from line_devices import Hand, ScpiDevice, show
 
 ARCSEC_DEG = 1.0 / 3600.0
 MICRORAD_ARCSEC = 1e-6 * 180.0 * 3600.0 / math.pi
@@ -100,7 +100,7 @@ class Autocollimator(ScpiDevice):
         return ",".join(f"{value / MICRORAD_ARCSEC:+.6E}" for value in shown) + ",0.83"
 
 
-class Indexer(ScpiDevice):
+class Indexer(Hand):
     """Its events are seatings."""
 
     name = "indexer"
@@ -113,20 +113,20 @@ class Indexer(ScpiDevice):
             self.happen()
             self.stand.seat(int(word.split()[1]))
             return True
-        if (set_up := mounted(word)) is not None:
-            self.stand.set_up = set_up
-            return True
-        return True if word == "FIXT:CLE" else None
+        return super().do(word)
+
+    def mount(self, set_up):
+        self.stand.set_up = set_up
 
 
 def main():
-    script = [word for word in sys.argv[2:] if "=" not in word]
-    controllers, places = controlled(sys.argv[2:], "C", "ABC")
+    words = sys.argv[2:]
+    controllers, places = controlled(words, "C", "ABC")
     stand = Stand(lambda: places()[0])
     positions = [k * 360.0 / POSITIONS for k in range(POSITIONS)]
     hidden = {"position_deg": positions, "turntable_arcsec": [turntable_arcsec(at) for at in positions],
               "multitooth_arcsec": [tooth_arcsec(k * TEETH // POSITIONS) for k in range(POSITIONS)], "roll_mrad": ROLL_MRAD}
-    show([*controllers, Autocollimator(script, stand), Indexer(script, stand)], hidden, sys.argv[1])
+    show([*controllers, Autocollimator(words, stand), Indexer(words, stand)], hidden, sys.argv[1])
 
 
 main()
