@@ -98,9 +98,10 @@ class OpenedBench : public OpenBench {
     std::unique_ptr<ControlledTable> table;
     DeviceLine line = conversations_.LineOf(name, s);
     if (s.kind == "esp") {
-      table = std::make_unique<EspTable>(std::move(line), s.axis, limits, s.decimals, clock_is_held);
+      table =
+          std::make_unique<EspTable>(std::move(line), s.axis, limits, CommandNumbers{s.decimals}, clock_is_held);
     } else {
-      table = std::make_unique<ScpiTable>(std::move(line), s.axis, limits, s.decimals);
+      table = std::make_unique<ScpiTable>(std::move(line), s.axis, limits, CommandNumbers{s.decimals});
     }
     table->AgreeOnLimits();
     return table;

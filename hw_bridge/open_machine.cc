@@ -63,7 +63,7 @@ class OpenedMachine : public OpenMachine {
   std::unique_ptr<ControlledMachine> OpenAxes(const MachineFile& file, const std::vector<MachineAxis>& axes) {
     const MachineManner manner = {.traverse_m_s = file.traverse_m_s,
                                   .polls_pass_time = file.clock.kind == "scpi",
-                                  .decimals = file.machine.decimals};
+                                  .numbers = {file.machine.decimals}};
     auto machine = Machine(file, axes, manner);
     machine->AgreeOnLimits();
     return machine;

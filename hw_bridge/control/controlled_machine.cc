@@ -6,14 +6,11 @@
 #include <cmath>
 #include <thread>
 
-#include "twin/core/number_text.h"
-
 namespace twinbench::hw {
 namespace {
 
 constexpr Duration kPollMachine = std::chrono::milliseconds(20);
 constexpr Duration kHomingLook = std::chrono::seconds(1);
-constexpr double kAllDigits = 1e-9;  // mm or deg: what decimal text may lose on its way
 
 }  // namespace
 
@@ -21,16 +18,6 @@ ControlledMachine::ControlledMachine(DeviceLine line, std::vector<MachineAxis> a
                                      const MachineManner& manner)
     : line_(std::move(line)), axes_(std::move(axes)), limits_(std::move(limits)), manner_(manner) {
   Require(limits_.size() == axes_.size(), "limits are one entry an axis");
-}
-
-std::string ControlledMachine::Text(double value_SI, double to_SI) const {
-  return manner_.decimals < 0 ? PrintInUnit(value_SI, to_SI)
-                              : fmt::format("{:.{}f}", value_SI / to_SI, manner_.decimals);
-}
-
-double ControlledMachine::Understood(const MachineAxis& axis) const {
-  const double half_decimal = manner_.decimals < 0 ? 0.0 : 0.5 * std::pow(10.0, -manner_.decimals);
-  return (half_decimal + kAllDigits) * axis.to_SI();
 }
 
 std::string ControlledMachine::Place(std::size_t axis, double at) const {
@@ -88,15 +75,6 @@ void ControlledMachine::Home() {
       StopAndFail(FaultKind::kNotInPosition, fmt::format("no origin found in {:.0f} s", passed_s));
   }
   RequireReady(State());
-}
-
-void ControlledMachine::StopAndFail(FaultKind kind, const std::string& why) {
-  try {
-    Stop();
-  } catch (const DeviceFault& fault) {
-    line_.Fail(kind, fmt::format("{}; it could not be stopped: {}", why, fault.what()));
-  }
-  line_.Fail(kind, why);
 }
 
 }  // namespace twinbench::hw

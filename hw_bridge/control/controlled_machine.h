@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "hw_bridge/control/command_numbers.h"
 #include "hw_bridge/control/device_line.h"
 #include "twin/core/machine.h"
 
@@ -11,7 +12,7 @@ namespace twinbench::hw {
 struct MachineManner {
   double traverse_m_s = 0.0;     // of moves that have no feed
   bool polls_pass_time = false;  // the bench is a served twin with its clock held
-  int decimals = -1;             // digits behind the point of a number in a command; -1: all that matter
+  CommandNumbers numbers;        // in commands
 };
 
 /// A machine behind a controller.
@@ -43,16 +44,16 @@ class ControlledMachine : public MachineController {
   const MachineManner& manner() const { return manner_; }
 
   /// Of a place in a command.
-  std::string Text(double value_SI, double to_SI) const;
-  /// As far as a controller that was told all digits, or so many decimals, may be from what was meant.
-  double Understood(const MachineAxis& axis) const;
+  std::string Text(double value_SI, double to_SI) const { return manner_.numbers.Text(value_SI, to_SI); }
+  double Understood(const MachineAxis& axis) const { return manner_.numbers.Understood(axis.to_SI()); }
   std::string Place(std::size_t axis, double at) const;
   double Feed_m_s(double feed_m_s) const { return feed_m_s > 0.0 ? feed_m_s : manner_.traverse_m_s; }
 
   void RequireWithinLimits(std::size_t axis, double to);
   void RequireReady(const std::vector<AxisState>& states);
-  /// Why it was stopped is what must be told, also when the machine cannot be reached any more.
-  [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why);
+  [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why) {
+    line_.StopAndFail([this] { Stop(); }, kind, why);
+  }
 
  private:
   virtual bool AskDone() = 0;

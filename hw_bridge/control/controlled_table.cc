@@ -12,29 +12,18 @@ namespace twinbench::hw {
 namespace {
 
 constexpr Duration kLook = std::chrono::seconds(1);  // between two looks at a table that finds its origin
-constexpr Duration kHears = std::chrono::milliseconds(50);  // a stop while a table moves; as long as a held poll of ESP
-constexpr double kAllDigits_deg = 1e-9;              // 4 microarcsec: what decimal text may lose on its way
-
-/// As far as a controller that was told all digits, or so many decimals, may be from what was meant.
-double Understood_rad(int decimals) {
-  const double half_decimal_deg = 0.5 * std::pow(10.0, -decimals);
-  return (decimals < 0 ? 0.0 : half_decimal_deg) * units::deg + kAllDigits_deg * units::deg;
-}
-
-std::string AngleText(double angle_rad, int decimals) {
-  if (decimals < 0) return PrintInUnit(angle_rad, units::deg);
-  return fmt::format("{:.{}f}", angle_rad / units::deg, decimals);
-}
+constexpr Duration kHears =
+    std::chrono::milliseconds(50);  // a stop while a table moves; as long as a held poll of ESP
 
 }  // namespace
 
-ControlledTable::ControlledTable(DeviceLine line, const TableLimits& limits, int decimals)
-    : line_(std::move(line)), limits_(limits), decimals_(decimals) {}
+ControlledTable::ControlledTable(DeviceLine line, const TableLimits& limits, CommandNumbers numbers)
+    : line_(std::move(line)), limits_(limits), numbers_(numbers) {}
 
 void ControlledTable::StartMove(double angle_rad) {
   RequireWithinLimits(angle_rad);
   RequireOrigin(State());
-  SendMove(AngleText(angle_rad, decimals_));
+  SendMove(numbers_.Text(angle_rad, units::deg));
   RequireUnderstood(angle_rad, State());
 }
 
@@ -53,10 +42,10 @@ void ControlledTable::RequireOrigin(const TableState& now) const {
 void ControlledTable::RequireUnderstood(double angle_rad, const TableState& now) {
   if (!now.referenced) StopAndFail(FaultKind::kRestarted, "the controller lost its origin as the move began");
   const double off_rad = std::abs(now.commanded_rad - angle_rad);
-  if (off_rad <= Understood_rad(decimals_)) return;
+  if (off_rad <= numbers_.Understood(units::deg)) return;
   StopAndFail(
       FaultKind::kRefused,
-      fmt::format("was told {} deg and understood {} deg, {:.4g} arcsec off", AngleText(angle_rad, decimals_),
+      fmt::format("was told {} deg and understood {} deg, {:.4g} arcsec off", numbers_.Text(angle_rad, units::deg),
                   PrintInUnit(now.commanded_rad, units::deg), off_rad / units::arcsec));
 }
 
@@ -100,22 +89,12 @@ void ControlledTable::AgreeOnLimits() {
   const double lower_rad = ReadLowerLimit_rad(), upper_rad = ReadUpperLimit_rad();
   if (std::isinf(limits_.lower_rad)) limits_.lower_rad = lower_rad;
   if (std::isinf(limits_.upper_rad)) limits_.upper_rad = upper_rad;
-  const double slack_rad = Understood_rad(decimals_);
+  const double slack_rad = numbers_.Understood(units::deg);
   if (limits_.lower_rad >= lower_rad - slack_rad && limits_.upper_rad <= upper_rad + slack_rad) return;
   line_.Fail(FaultKind::kRefused,
              fmt::format("the controller allows {:.6f} to {:.6f} deg; the bench file {:.6f} to {:.6f} deg",
                          lower_rad / units::deg, upper_rad / units::deg, limits_.lower_rad / units::deg,
                          limits_.upper_rad / units::deg));
-}
-
-/// Why it was stopped is what must be told, also when the table cannot be reached any more.
-void ControlledTable::StopAndFail(FaultKind kind, const std::string& why) {
-  try {
-    SendStop();
-  } catch (const DeviceFault& fault) {
-    line_.Fail(kind, fmt::format("{}; it could not be stopped: {}", why, fault.what()));
-  }
-  line_.Fail(kind, why);
 }
 
 }  // namespace twinbench::hw

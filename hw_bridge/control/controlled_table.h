@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "hw_bridge/control/command_numbers.h"
 #include "hw_bridge/control/device_line.h"
 #include "twin/core/devices.h"
 #include "twin/core/table_limits.h"
@@ -16,8 +17,8 @@ namespace twinbench::hw {
 /// kRestarted.
 class ControlledTable : public RotaryTable {
  public:
-  /// @param decimals  Digits behind the point of an angle [deg] in a command; -1: all that matter.
-  ControlledTable(DeviceLine line, const TableLimits& limits, int decimals);
+  /// @param numbers  Angles in commands.
+  ControlledTable(DeviceLine line, const TableLimits& limits, CommandNumbers numbers);
 
   void StartMove(double angle_rad) override;
   bool Settles(Duration within) override;
@@ -50,11 +51,13 @@ class ControlledTable : public RotaryTable {
   void RequireWithinLimits(double angle_rad) const;
   void RequireOrigin(const TableState& now) const;
   void RequireUnderstood(double angle_rad, const TableState& now);
-  [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why);
+  [[noreturn]] void StopAndFail(FaultKind kind, const std::string& why) {
+    line_.StopAndFail([this] { SendStop(); }, kind, why);
+  }
 
   DeviceLine line_;
   TableLimits limits_;
-  int decimals_;
+  CommandNumbers numbers_;
   std::function<bool()> stop_asked_;
 };
 

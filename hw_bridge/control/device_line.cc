@@ -33,6 +33,15 @@ void DeviceLine::Fail(FaultKind kind, const std::string& why) const {
   throw DeviceFault(kind, device_, fmt::format("{} ({})", why, dialogue_->address().Text()));
 }
 
+void DeviceLine::StopAndFail(const std::function<void()>& stop, FaultKind kind, const std::string& why) const {
+  try {
+    stop();
+  } catch (const DeviceFault& fault) {
+    Fail(kind, fmt::format("{}; it could not be stopped: {}", why, fault.what()));
+  }
+  Fail(kind, why);
+}
+
 void DeviceLine::FailProtocol(const std::string& query, const std::string& answer, const std::string& expected) {
   dialogue_->Close();
   Fail(FaultKind::kProtocol, fmt::format("\"{}\" is answered \"{}\"; expected {}", query, answer, expected));

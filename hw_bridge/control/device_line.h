@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ class DeviceLine {
   const std::string& identity() const { return dialogue_->identity(); }
 
   [[noreturn]] void Fail(FaultKind kind, const std::string& why) const;
+  /// Stops the device first. Why it was stopped is what is told, also when it cannot be reached any more.
+  [[noreturn]] void StopAndFail(const std::function<void()>& stop, FaultKind kind, const std::string& why) const;
   /// `answer` is none to `query`: whatever else comes on this connection cannot be trusted, so it is closed.
   [[noreturn]] void FailProtocol(const std::string& query, const std::string& answer, const std::string& expected);
 

@@ -17,8 +17,9 @@ constexpr int kReferencedBit = 1, kLowerBit = 2, kUpperBit = 4;
 
 }  // namespace
 
-EspTable::EspTable(DeviceLine line, int axis, const TableLimits& limits, int decimals, bool polls_pass_time)
-    : ControlledTable(std::move(line), limits, decimals), axis_(axis), polls_pass_time_(polls_pass_time) {}
+EspTable::EspTable(DeviceLine line, int axis, const TableLimits& limits, CommandNumbers numbers,
+                   bool polls_pass_time)
+    : ControlledTable(std::move(line), limits, numbers), axis_(axis), polls_pass_time_(polls_pass_time) {}
 
 std::string EspTable::Axis(const std::string& command) const {
   return std::to_string(axis_) + command;

@@ -16,7 +16,7 @@ inline constexpr Duration kEspHeldPoll = std::chrono::milliseconds(50);
 class EspTable : public ControlledTable {
  public:
   /// @param polls_pass_time  The bench is a served twin with its clock held.
-  EspTable(DeviceLine line, int axis, const TableLimits& limits, int decimals, bool polls_pass_time);
+  EspTable(DeviceLine line, int axis, const TableLimits& limits, CommandNumbers numbers, bool polls_pass_time);
 
  private:
   void SendMove(const std::string& angle_deg) override;

@@ -30,7 +30,7 @@ std::string InWords(const std::string& errors) {
 }
 
 MachineManner InDecimals(MachineManner manner) {
-  if (manner.decimals < 0) manner.decimals = kDecimals;
+  if (manner.numbers.decimals < 0) manner.numbers.decimals = kDecimals;
   return manner;
 }
 
@@ -107,8 +107,7 @@ void LinuxCncMachine::Prepare() {
   if (opening == prepared_opening_) return;
   line().Ask("set echo off");  // answered by its echo
   Set("verbose on");
-  if (!IsSet("enable " + enable_password_))
-    line().Fail(FaultKind::kRefused, "it refuses the enable_password of the bench file");
+  if (!TakesOver()) line().Fail(FaultKind::kRefused, "it refuses the enable_password of the bench file");
   Set("set_wait received");  // else nothing can be said to it while it moves
   RequireAxes();
   sent_.clear();
@@ -276,7 +275,7 @@ void LinuxCncMachine::Stop() {
   sent_.clear();
   if (!IsObeyed()) {
     if (Get("program_status") == "IDLE") return;
-    IsSet("enable " + enable_password_);
+    TakesOver();
   }
   if (!IsSet("abort") && IsOn()) line().Fail(FaultKind::kRefused, "it refuses to abort: " + InWords(Errors()));
 }

@@ -51,6 +51,8 @@ class LinuxCncMachine : public ControlledMachine {
   std::vector<std::string> OfJoints(const std::string& what);
   void Set(const std::string& what);
   bool IsSet(const std::string& what);
+  /// Says the password, by which it obeys us and nobody else. @return whether it is the right one.
+  bool TakesOver() { return IsSet("enable " + enable_password_); }
   bool IsObeyed() { return Get("enable") == "ON"; }
   bool IsOn() { return Get("machine") == "ON"; }
   void RequireObeyed();

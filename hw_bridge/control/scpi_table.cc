@@ -31,8 +31,8 @@ std::optional<TableState> ParseScpiState(const std::string& answer) {
                     flags[2] == 1,  flags[3],     (*fields)[6]};
 }
 
-ScpiTable::ScpiTable(DeviceLine line, int axis, const TableLimits& limits, int decimals)
-    : ControlledTable(std::move(line), limits, decimals), rotation_(fmt::format("ROT{}:", axis)) {}
+ScpiTable::ScpiTable(DeviceLine line, int axis, const TableLimits& limits, CommandNumbers numbers)
+    : ControlledTable(std::move(line), limits, numbers), rotation_(fmt::format("ROT{}:", axis)) {}
 
 void ScpiTable::SendMove(const std::string& angle_deg) {
   TellScpi(line(), rotation_ + "ANGL " + angle_deg);

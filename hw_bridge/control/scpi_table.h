@@ -7,7 +7,7 @@ namespace twinbench::hw {
 /// A table that speaks SCPI (docs/protocols.md): ROTation<axis>.
 class ScpiTable : public ControlledTable {
  public:
-  ScpiTable(DeviceLine line, int axis, const TableLimits& limits, int decimals = -1);
+  ScpiTable(DeviceLine line, int axis, const TableLimits& limits, CommandNumbers numbers = {});
 
  private:
   void SendMove(const std::string& angle_deg) override;

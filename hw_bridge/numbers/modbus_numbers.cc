@@ -124,6 +124,12 @@ class ModbusNumbers : public NumberSource {
   std::string Identity() override { return fmt::format("modbus unit {} at {}", settings_.unit, settings_.address); }
 
  private:
+  /// Whose answers may still be under way: of a program before this one, which may have been killed, or of this
+  /// one.
+  enum class Doubt { kNone, kOfOthers, kOwn };
+
+  bool IsSerial() const { return address_.kind == Address::Kind::kSerial; }
+
   modbus_t* NewLine() const {
     if (address_.kind == Address::Kind::kTcp)
       return modbus_new_tcp_pi(address_.place.c_str(), std::to_string(address_.number).c_str());
@@ -141,22 +147,25 @@ class ModbusNumbers : public NumberSource {
     modbus_set_slave(line_.get(), settings_.unit);
     if (modbus_connect(line_.get()) != 0) Fail("cannot be reached");
     modbus_flush(line_.get());  // of what a serial line still holds
-    if (in_doubt_) GetInStep();
+    if (doubt_ != Doubt::kNone) GetInStep();
   }
 
   /// Answers over a serial line have no number, so that one that comes too late is taken for that of the next
   /// request, and every answer behind it for that of another. A device answers in turn: once it has answered
-  /// something that is not asked otherwise, be it by an exception, nothing is left to come.
+  /// something that is not asked otherwise, be it by an exception, nothing is left to come. One that has never
+  /// failed may also say nothing at all.
   void GetInStep() {
     constexpr std::uint8_t kReadCoils = 0x01, kIsException = 0x80;
     const std::uint8_t coil_0[] = {static_cast<std::uint8_t>(settings_.unit), kReadCoils, 0, 0, 0, 1};
     std::array<std::uint8_t, MODBUS_RTU_MAX_ADU_LENGTH> answer{};
     const bool is_sent = modbus_send_raw_request(line_.get(), coil_0, sizeof coil_0) > 0;
     do {
-      if (!is_sent || modbus_receive_confirmation(line_.get(), answer.data()) < 2)
+      const bool is_answered = is_sent && modbus_receive_confirmation(line_.get(), answer.data()) >= 2;
+      if (is_sent && !is_answered && errno == ETIMEDOUT && doubt_ == Doubt::kOfOthers) break;
+      if (!is_answered)
         Fail("has not answered since: coil 0 is asked before its registers are again, for late answers to pass");
     } while ((answer[1] & ~kIsException) != kReadCoils);
-    in_doubt_ = false;
+    doubt_ = Doubt::kNone;
   }
 
   std::vector<std::uint16_t> Ask(const Run& run) {
@@ -172,7 +181,7 @@ class ModbusNumbers : public NumberSource {
   [[noreturn]] void Fail(const std::string& what) {
     const int error = errno;
     line_.reset();
-    in_doubt_ = address_.kind == Address::Kind::kSerial;
+    if (IsSerial()) doubt_ = Doubt::kOwn;
     throw DeviceFault(
         KindOf(error), device_,
         fmt::format("{}: {} ({}, unit {})", what, modbus_strerror(error), settings_.address, settings_.unit));
@@ -184,7 +193,7 @@ class ModbusNumbers : public NumberSource {
   std::vector<Register> registers_;
   std::vector<Run> runs_;
   std::unique_ptr<modbus_t, ModbusCloser> line_;
-  bool in_doubt_ = false;  // answers to earlier requests may be under way
+  Doubt doubt_ = IsSerial() ? Doubt::kOfOthers : Doubt::kNone;
 };
 
 }  // namespace

@@ -74,7 +74,7 @@ class EspMachineWithoutStatus : public testing::Test {
     return {DeviceLine(dialogue_, "machine", std::chrono::milliseconds(300)),
             {{"x"}, {"y"}},
             {AxisLimits{}, AxisLimits{}},
-            {.traverse_m_s = 0.01, .decimals = decimals}};
+            {.traverse_m_s = 0.01, .numbers = {decimals}}};
   }
   /// Switched off and on: it counts from where it stands.
   void Restart() {

@@ -135,7 +135,9 @@ class Driven {
 
  private:
   std::unique_ptr<RotaryTable> MakeTable(const std::string& name, int axis) {
-    if (esp_) return std::make_unique<EspTable>(DeviceLine(*esp_, name, kAmpleTime), axis, TableLimits{}, -1, true);
+    if (esp_)
+      return std::make_unique<EspTable>(DeviceLine(*esp_, name, kAmpleTime), axis, TableLimits{}, CommandNumbers{},
+                                        true);
     return std::make_unique<ScpiTable>(DeviceLine(scpi_, name, kAmpleTime), axis, TableLimits{});
   }
 

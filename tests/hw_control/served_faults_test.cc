@@ -32,7 +32,7 @@ class FaultyTable {
     if (language == "scpi")
       table_ = std::make_unique<ScpiTable>(line, 1, TableLimits{});
     else
-      table_ = std::make_unique<EspTable>(line, 1, TableLimits{}, -1, true);
+      table_ = std::make_unique<EspTable>(line, 1, TableLimits{}, CommandNumbers{}, true);
   }
 
   RotaryTable& table() { return *table_; }

@@ -113,8 +113,8 @@ struct EspModel {
 
 class ScpiTables : public testing::Test {
  protected:
-  ScpiTable Table(int axis, const TableLimits& limits = {}, int decimals = -1) {
-    return {DeviceLine(dialogue_, axis == 1 ? "target" : "reference", kTimeout), axis, limits, decimals};
+  ScpiTable Table(int axis, const TableLimits& limits = {}, CommandNumbers numbers = {}) {
+    return {DeviceLine(dialogue_, axis == 1 ? "target" : "reference", kTimeout), axis, limits, numbers};
   }
   ScpiModel model_;
   FakeController controller_{[this](const std::string& line) { return model_(line); }};
@@ -166,7 +166,7 @@ TEST_F(ScpiTables, AControllerThatUnderstoodAnotherAngleIsStoppedAndTheDifferenc
 }
 
 TEST_F(ScpiTables, AControllerWhoseDecimalsAreKnownIsToldNoMoreOfThem) {
-  ScpiTable table = Table(1, {}, 4);
+  ScpiTable table = Table(1, {}, {4});
   table.StartMove(30.123456 * units::deg);
   EXPECT_THAT(controller_.Lines(), Contains("ROT1:ANGL 30.1235"));
   EXPECT_NEAR(table.State().commanded_rad, 30.1235 * units::deg, 1e-15);
@@ -226,8 +226,8 @@ TEST(ScpiNumber, KnowsNotANumber) {
 class EspTables : public testing::Test {
  protected:
   EspTable Table(int axis, bool polls_pass_time = false) {
-    return {DeviceLine(dialogue_, axis == 1 ? "target" : "reference", kTimeout), axis, TableLimits{}, -1,
-            polls_pass_time};
+    return {DeviceLine(dialogue_, axis == 1 ? "target" : "reference", kTimeout), axis, TableLimits{},
+            CommandNumbers{}, polls_pass_time};
   }
   long Polls() const {
     const auto lines = controller_.Lines();
