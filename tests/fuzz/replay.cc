@@ -17,6 +17,7 @@
 
 #include "tests/fuzz/mutate.h"
 #include "tests/fuzz/target.h"
+#include "tests/support/sanitized.h"
 
 /// Feeds every target its seeds and inputs made of them, without a fuzzer: `fuzz [--seconds s] [--only target] [file ...]`.
 /// `fuzz --write DIR` writes the seeds into a folder a target, where libFuzzer begins.
@@ -27,13 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-#if defined(__has_feature)  // clang says it so, g++ by a macro
-constexpr bool kSanitized = __has_feature(address_sanitizer);
-#elif defined(__SANITIZE_ADDRESS__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
+using test::kSanitized;
+
 constexpr int kMost_s = kSanitized ? 20 : 2;                 // of processor time, for one input
 constexpr long kMost_KB = kSanitized ? 2'000'000 : 400'000;     // of memory, at any time
 constexpr std::size_t kLargestSeed = 1 << 18;

@@ -6,6 +6,7 @@
 
 #include "tests/machine/benches.h"
 #include "tests/support/machine_run.h"
+#include "tests/support/sanitized.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/core/sample_text.h"
 #include "twin/procedure/machine_watch.h"
@@ -15,6 +16,9 @@ namespace twinbench::test {
 namespace {
 
 using testing::HasSubstr;
+
+/// For an answer.
+constexpr const char* kForAnAnswer = kSanitized ? "timeout_s = 3.0\n" : "timeout_s = 0.5\n";
 
 struct Failing {
   explicit Failing(Scenario (*make)() = ShortCircles) : scenario(make()) {}
@@ -29,9 +33,9 @@ struct Failing {
     std::string file = served.BenchFile();
     for (auto at = file.find("kind = \"scpi\""); at != std::string::npos;
          at = file.find("kind = \"scpi\"", at + 20))
-      file.insert(at, "timeout_s = 0.5\n");
+      file.insert(at, kForAnAnswer);
     const auto machine = file.find("kind = \"esp\"");
-    file.insert(machine, "timeout_s = 0.5\n");
+    file.insert(machine, kForAnAnswer);
     return file;
   }
   MachineRun Run(std::map<int, std::string> faults, const std::vector<Reading>& kept = {}) {
