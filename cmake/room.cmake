@@ -8,12 +8,12 @@
 function(twinbench_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;KERNELS;ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   add_library(twinbench_${name} STATIC ${ROOM_SOURCES} ${ROOM_KERNELS})
-  set(at_O3 "$<$<CONFIG:Release>:-O3>")
+  set(kernel_options "$<$<CONFIG:Release>:-O3>")
   if(TWINBENCH_FUZZ)
-    set(at_O3 "-O3;-fno-sanitize=fuzzer-no-link")
+    set(kernel_options "-O3;-fno-sanitize=fuzzer-no-link")
   endif()
   set_source_files_properties(${ROOM_KERNELS} PROPERTIES
-    COMPILE_OPTIONS "${at_O3};-fno-sanitize=thread" SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+    COMPILE_OPTIONS "${kernel_options};-fno-sanitize=thread" SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
   target_include_directories(twinbench_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/twinbench>)
   target_compile_features(twinbench_${name} INTERFACE cxx_std_20)

@@ -21,7 +21,7 @@ using testing::ElementsAre;
 
 using Frame = std::vector<std::uint8_t>;
 
-constexpr std::uint8_t kUnit = 3, kReadCoils = 1, kReadHolding = 3, kException = 0x80, kIllegalFunction = 1;
+constexpr std::uint8_t kUnit = 3, kReadHolding = 3, kException = 0x80, kIllegalFunction = 1;
 
 /// MODBUS over Serial Line V1.02, 6.2.2: CRC-16, reflected 0x8005, low byte first.
 Frame Checked(Frame frame) {
