@@ -74,7 +74,7 @@ class OnLinuxCnc : public testing::Test {
             {limits, limits},
             {{'X', 0}, {'C', 2}},
             enable_password,
-            {.traverse_m_s = 0.01}};
+            {.traverse_m_s = 0.01, .numbers = {}}};
   }
 
   LinuxCncModel model_;
