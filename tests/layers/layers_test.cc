@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <regex>
@@ -11,9 +9,10 @@
 #include <utility>
 #include <vector>
 
-namespace {
+#include "tests/layers/source_files.h"
 
-namespace fs = std::filesystem;
+namespace twinbench {
+namespace {
 
 struct Include {
   std::string file, target;
@@ -100,19 +99,11 @@ std::string RoomOf(const std::string& path) {
 
 std::vector<Include> AllIncludes() {
   std::vector<Include> includes;
-  const fs::path root = TWINBENCH_SOURCE_DIR;
   const std::regex directive(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
-  for (const char* top : {"optics", "mechanics", "twin", "hw_bridge"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
-      const std::string extension = entry.path().extension();
-      if (extension != ".h" && extension != ".cc") continue;
-      std::ifstream in(entry.path());
-      std::smatch match;
-      for (std::string line; std::getline(in, line);) {
-        if (!std::regex_search(line, match, directive)) continue;
-        includes.push_back({fs::relative(entry.path(), root).string(), match[1]});
-      }
-    }
+  for (const std::string& file : FilesBelow({"optics", "mechanics", "twin", "hw_bridge"})) {
+    std::smatch match;
+    for (const std::string& line : LinesOf(file))
+      if (std::regex_search(line, match, directive)) includes.push_back({file, match[1]});
   }
   return includes;
 }
@@ -167,13 +158,11 @@ TEST(Layers, EmbreeAndBulletStayOutOfHeaders) {
 
 TEST(Layers, TheServerHasNoMeansToTouchFiles) {
   // No request of a client may read or write a file; what cannot open one cannot be made to.
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(TWINBENCH_SOURCE_DIR) / "hw_bridge/serve")) {
-    if (!entry.is_regular_file()) continue;
-    std::ifstream in(entry.path());
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+  for (const std::string& file : FilesBelow({"hw_bridge/serve"})) {
+    const std::string text = TextOf(file);
     for (const char* means :
          {"fstream", "filesystem", "fopen", "std::FILE", "popen", "system(", "dlopen", " ::open("})
-      EXPECT_EQ(text.find(means), std::string::npos) << entry.path() << " has " << means;
+      EXPECT_EQ(text.find(means), std::string::npos) << file << " has " << means;
   }
 }
 
@@ -196,3 +185,4 @@ TEST(Layers, FoldersFormNoCircle) {
 }
 
 }  // namespace
+}  // namespace twinbench

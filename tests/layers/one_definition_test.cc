@@ -1,36 +1,29 @@
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <set>
 #include <string>
 
+#include "tests/layers/source_files.h"
+
 /// What two headers define inline by one name in one namespace is one thing to the linker, which takes either: no compiler says so, and it
 /// goes well as long as both are inlined.
+namespace twinbench {
 namespace {
-
-namespace fs = std::filesystem;
-
-const fs::path kProject = TWINBENCH_SOURCE_DIR;
 
 /// "twinbench::sim RotaryTableStack(const Scenario& actual)" and the headers that define it. Of a variable the type does not count.
 std::map<std::string, std::set<std::string>> DefinitionsInHeaders() {
   const std::regex opens(R"(^namespace ([\w:]+) \{)"), function(R"(^inline [^=(]*?(\w+\([^)]*\)?))"),
       variable(R"(^inline constexpr [^=({]*?(\w+)(\[\w*\])? ?[={])");
   std::map<std::string, std::set<std::string>> found;
-  for (const char* top : {"optics", "mechanics", "twin", "hw_bridge", "tools"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(kProject / top)) {
-      if (entry.path().extension() != ".h") continue;
-      std::ifstream in(entry.path());
-      std::string space;
-      std::smatch match;
-      for (std::string line; std::getline(in, line);) {
-        if (std::regex_search(line, match, opens)) space = match[1];
-        if (std::regex_search(line, match, variable) || std::regex_search(line, match, function))
-          found[space + " " + match[1].str()].insert(fs::relative(entry.path(), kProject).string());
-      }
+  for (const std::string& header : FilesBelow(kCodeFolders, {".h"})) {
+    std::string space;
+    std::smatch match;
+    for (const std::string& line : LinesOf(header)) {
+      if (std::regex_search(line, match, opens)) space = match[1];
+      if (std::regex_search(line, match, variable) || std::regex_search(line, match, function))
+        found[space + " " + match[1].str()].insert(header);
     }
   }
   return found;
@@ -43,3 +36,4 @@ TEST(OneDefinition, OfEveryNameThatHeadersDefineInline) {
 }
 
 }  // namespace
+}  // namespace twinbench

@@ -120,6 +120,7 @@ TEST_F(JsonAnswers, OfABadInputNameFileLineAndKey) {
   Write("seed.toml", "bench = \"encoder_comparison\"\nseed = \"many\"\n");
   EXPECT_EQ(fault("check", {"seed.toml"}).at("key"), "seed");
   EXPECT_FALSE(fault("check", {"none.toml"}).contains("key"));
+  EXPECT_EQ(fault("check", {"not: 3: there.toml"}).at("file"), "not: 3: there.toml");
   EXPECT_EQ(fault("run", {"s.toml", "-o", "x", "--seed", "-1"}).at("key"), "--seed");
   EXPECT_EQ(fault("separate", {"bad.csv", "--scenario", "s.toml"}).at("line"), 2);
   EXPECT_EQ(fault("run", {"s.toml"}).at("kind"), "command_line");

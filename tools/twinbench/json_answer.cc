@@ -34,31 +34,6 @@ void WriteAll(int descriptor, const std::string& text) {
   }
 }
 
-/// Behind "file.toml:12" if there is such a place, for a file's name may have a colon itself; else at the first colon.
-std::size_t EndOfPlace(const std::string& text) {
-  static const std::regex line("[^\n]:[0-9]+: ");
-  std::smatch match;
-  const std::string first_words = text.substr(0, std::min(text.find("; expected "), text.size()));
-  if (std::regex_search(first_words, match, line)) return static_cast<std::size_t>(match.position() + match.length()) - 2;
-  return std::min(text.find(": "), text.size());
-}
-
-/// What InputError is made of: "where: what; expected ...".
-struct InputFault {
-  std::string where, what, expected;
-};
-
-InputFault PartsOf(const std::string& text) {
-  const std::size_t colon = EndOfPlace(text);
-  InputFault fault = {text.substr(0, colon), text.substr(std::min(colon + 2, text.size())), ""};
-  const std::string_view expects = "; expected ";
-  const std::size_t at = fault.what.find(expects);
-  if (at == std::string::npos) return fault;
-  fault.expected = fault.what.substr(at + expects.size());
-  fault.what.resize(at);
-  return fault;
-}
-
 /// Of a scenario, above its tables: "seed".
 bool IsTopKey(const std::string& word) {
   Scenario any;
@@ -152,8 +127,8 @@ void AnswerWith(CLI::App& command, const std::string& what, std::function<void(J
 nlohmann::json FailureJson(const std::exception& error) {
   const ExitCode code = ExitCodeOf(error);
   nlohmann::json json = Fault(KindOf(code), error.what(), code);
-  if (code == kBadInput) {
-    const InputFault fault = PartsOf(error.what());
+  if (const auto* input = dynamic_cast<const InputError*>(&error)) {
+    const InputFault& fault = input->fault();
     json["message"] = fault.what;
     json["expected"] = fault.expected;
     json["where"] = fault.where;

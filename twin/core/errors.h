@@ -1,18 +1,27 @@
 #pragma once
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
 namespace twinbench {
 
+/// What is wrong with somebody's input.
+struct InputFault {
+  std::string where;     // "file.toml:12", "readings.csv:7" or "--set"
+  std::string what;      // was found there
+  std::string expected;  // would have been right
+};
+
 /// Somebody's file or command line is wrong. `main` prints it and exits with code 2.
 class InputError : public std::runtime_error {
  public:
-  /// @param where     "file.toml:12", "readings.csv:7" or "--set".
-  /// @param what      What was found there.
-  /// @param expected  What would have been right.
-  InputError(const std::string& where, const std::string& what, const std::string& expected)
-      : std::runtime_error(where + ": " + what + "; expected " + expected) {}
+  InputError(const std::string& where, const std::string& what, const std::string& expected);
+
+  const InputFault& fault() const { return *fault_; }
+
+ private:
+  std::shared_ptr<const InputFault> fault_;  // for an exception is copied without another
 };
 
 /// The world failed: a device, a disk, a table that does not settle. `main` exits with code 1.
