@@ -12,8 +12,8 @@ namespace twinbench::hw {
 namespace {
 
 constexpr Duration kLook = std::chrono::seconds(1);  // between two looks at a table that finds its origin
-constexpr Duration kHears =
-    std::chrono::milliseconds(50);  // a stop while a table moves; as long as a held poll of ESP
+/// A stop is heard as often while a table moves; as long as a held poll of ESP.
+constexpr Duration kHears = std::chrono::milliseconds(50);
 
 }  // namespace
 

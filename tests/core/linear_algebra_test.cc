@@ -97,5 +97,15 @@ TEST(LinearAlgebra, KnowsTheEigenvaluesOfAVibratingChain) {
   EXPECT_LT((EigenvaluesOfSymmetric(a) - eigen.values).norm(), kRounding);
 }
 
+TEST(LinearAlgebra, FindsTheRootOfACovarianceOfAnyUnitsAndRank) {
+  // A length in metres, its double in nanometres, and what is known without doubt.
+  const MatrixXd along = (MatrixXd(3, 1) << 3.0, 6e9, 0.0).finished();
+  const MatrixXd cov = along * along.transpose(), root = CovarianceRootOf(cov), back = root * root.transpose();
+  EXPECT_NEAR(back(0, 0), 9.0, kRounding);
+  EXPECT_NEAR(back(0, 1) / 18e9, 1.0, kRounding);
+  EXPECT_NEAR(back(1, 1) / 36e18, 1.0, kRounding);
+  EXPECT_EQ(back.row(2).norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace twinbench

@@ -70,4 +70,8 @@ SymmetricEigen EigenOfSymmetric(const Eigen::MatrixXd& a);
 /// The same without the eigenvectors.
 Eigen::VectorXd EigenvaluesOfSymmetric(const Eigen::MatrixXd& a);
 
+/// R with R R^T = cov, for a covariance that may lack rank, may have quantities of any unit and eigenvalues that
+/// rounding has left below zero.
+Eigen::MatrixXd CovarianceRootOf(const Eigen::MatrixXd& cov);
+
 }  // namespace twinbench

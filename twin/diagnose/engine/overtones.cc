@@ -75,14 +75,6 @@ Eigen::VectorXd Following(const Waveform& waveform, const Eigen::VectorXd& funda
   return overtones;
 }
 
-/// R with R R' = cov, which may lack rank and has quantities of any unit.
-Eigen::MatrixXd RootOf(const Eigen::MatrixXd& cov) {
-  const Eigen::VectorXd u = cov.diagonal().cwiseSqrt();
-  const Eigen::VectorXd unit = u.unaryExpr([](double one) { return one > 0.0 ? 1.0 / one : 0.0; });
-  const auto [values, vectors] = EigenOfSymmetric(unit.asDiagonal() * cov * unit.asDiagonal());
-  return u.asDiagonal() * vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
 /// Log Bayes factor of "mean + spread * N(0, 1)" in white data against nothing.
 double LogBayesFactor(const Eigen::VectorXd& data, const Eigen::VectorXd& mean, const Eigen::MatrixXd& spread) {
   const Eigen::VectorXd off = data - mean, along = spread.transpose() * off;
@@ -100,7 +92,7 @@ class Wave {
   Wave(const Family& family, const Term& term, Eigen::VectorXd left,
        const std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)>& shown)
       : amplitudes_(term.amplitudes),
-        root_(RootOf(term.cov)),
+        root_(CovarianceRootOf(term.cov)),
         steps_((0.1 * term.cov.diagonal().cwiseSqrt()).cwiseMax(1e-300)),
         left_(std::move(left)),
         overtones_(shown(Overtones(family, term.shape))),

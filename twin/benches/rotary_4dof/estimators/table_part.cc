@@ -75,12 +75,6 @@ void FindLostValues(const Eigen::MatrixXd& extra_null, TablePart& part) {
   }
 }
 
-/// R with R R^T = cov; rounding may have left negative eigenvalues.
-Eigen::MatrixXd SquareRootOf(const Eigen::MatrixXd& cov) {
-  const auto [values, vectors] = EigenOfSymmetric(cov);
-  return vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
 /// All but the covariance; every position counts as usable.
 TablePart EmptyPart(const Design& design, Table table, const std::vector<NotSeparable>& lost) {
   TablePart part;
@@ -130,7 +124,7 @@ TableEstimate Prepare(const TablePart& part, const Systematic& systematic) {
   if (systematic.d_calibration.cols() > 0) {
     const Eigen::MatrixXd shift =
         UnitsOf(part).asDiagonal() * Without(part.removed, systematic.d_calibration(part.columns, Eigen::all));
-    estimate.cov_systematic.AddProduct(shift * SquareRootOf(systematic.cov_calibration));
+    estimate.cov_systematic.AddProduct(shift * CovarianceRootOf(systematic.cov_calibration));
   }
   estimate.value.position_rad = estimate.u.position_rad = part.position_rad;
   for (auto& column : estimate.value.value) column.assign(part.position_rad.size(), kNaN);
