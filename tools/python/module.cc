@@ -34,7 +34,6 @@ namespace twinbench::python {
 namespace {
 
 namespace py = pybind11;
-using NoLock = py::call_guard<py::gil_scoped_release>;
 
 /// Ctrl-C ends a long run.
 void Interrupted(const procedure::Progress& /*progress*/) {
@@ -221,7 +220,7 @@ void AddFunctions(py::module_& m) {
   m.def(
       "follow",
       [](const Scenario& scenario, const Readings& r) { return BenchOf(scenario).follow(scenario, r.readings); },
-      NoLock());
+      py::call_guard<py::gil_scoped_release>());
 }
 
 }  // namespace
