@@ -89,9 +89,9 @@ VectorXd EigenvaluesOfSymmetric(const MatrixXd& a) {
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
-Eigen::MatrixXd CovarianceRootOf(const Eigen::MatrixXd& cov) {
-  const Eigen::VectorXd u = cov.diagonal().cwiseSqrt();
-  const Eigen::VectorXd unit = u.unaryExpr([](double one) { return one > 0.0 ? 1.0 / one : 0.0; });
+MatrixXd CovarianceRootOf(const MatrixXd& cov) {
+  const VectorXd u = cov.diagonal().cwiseSqrt();
+  const VectorXd unit = u.unaryExpr([](double one) { return one > 0.0 ? 1.0 / one : 0.0; });
   const auto [values, vectors] = EigenOfSymmetric(unit.asDiagonal() * cov * unit.asDiagonal());
   return u.asDiagonal() * vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
