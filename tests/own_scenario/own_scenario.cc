@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cstdlib>
 #include <iostream>
 #include <set>
 
 #include "tests/support/angle_benches.h"
+#include "tests/support/night.h"
 #include "tests/support/thresholds.h"
 #include "twin/benches/registry.h"
 #include "twin/core/scenario_schema.h"
@@ -57,11 +57,11 @@ std::vector<std::string> Needed(const OwnKey& key) {
 
 /// Neighbours that need the same beside them are tried in one run.
 std::vector<std::vector<OwnKey>> Grouped(const std::vector<OwnKey>& keys) {
-  constexpr std::size_t kTogether = 4;
+  const std::size_t together = test::IsNight() ? 1 : 10;
   std::vector<std::vector<OwnKey>> groups;
   for (const OwnKey& key : keys) {
     if (key.settings.empty()) continue;
-    const bool joins = !groups.empty() && groups.back().size() < kTogether && !IsTriedAlone(key) &&
+    const bool joins = !groups.empty() && groups.back().size() < together && !IsTriedAlone(key) &&
                        !IsTriedAlone(groups.back().front()) && Needed(groups.back().front()) == Needed(key);
     if (!joins) groups.emplace_back();
     groups.back().push_back(key);
@@ -129,8 +129,7 @@ Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& 
 }
 
 int Seeds() {
-  const char* stated = std::getenv("OWN_SCENARIO_SEEDS");
-  return stated ? std::atoi(stated) : 1;
+  return ByNight(4, 1);
 }
 
 }  // namespace twinbench::test

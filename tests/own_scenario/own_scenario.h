@@ -36,7 +36,7 @@ Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_se
 /// The same for every effect of the bench's catalogue at its default size.
 Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings, int seeds);
 
-/// One, or as many as the environment's OWN_SCENARIO_SEEDS says.
+/// One, by night several.
 int Seeds();
 
 }  // namespace twinbench::test
