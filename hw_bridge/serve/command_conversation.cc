@@ -7,11 +7,6 @@
 #include "twin/core/secret_token.h"
 
 namespace twinbench::hw {
-namespace {
-
-constexpr auto kLate = std::chrono::seconds(3);
-
-}  // namespace
 
 CommandConversation::~CommandConversation() {
   served_.pace().Leave(this);
@@ -95,7 +90,7 @@ void CommandConversation::Prepare() {
   state_ = State::kReplying;
   reply_at_ = WallClock::now();
   if (served_.pace().Now() != line_began_) reply_at_ += served_.pace().Lag();
-  if (fault_ == Injected::kLate) reply_at_ += kLate;
+  if (fault_ == Injected::kLate) reply_at_ += served_.late;
 }
 
 Step CommandConversation::Reply() {

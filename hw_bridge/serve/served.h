@@ -43,6 +43,7 @@ class Served {
   std::string serial;  // made from bench, scenario and seed
   std::string token;   // whoever moves or spoils anything must have shown it; empty: anybody may
   Faults faults;
+  Duration late{};     // that an answer is by the fault of that name
   Watchdog watchdog;
 
  protected:

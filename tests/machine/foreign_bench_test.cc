@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "hw_bridge/numbers/number_source.h"
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 
 /// `measure` on benches that others have written, in real time: their controllers, instruments and physics.
@@ -26,7 +26,7 @@ constexpr double kCoverage = 3.0;
 constexpr double kCoverageByChance = 6.0;
 
 /// `measure` of a scenario on a bench whose file has `{device}` where a device's address belongs.
-class ForeignBenchProgram : public Program {
+class ForeignBenchProgram : public ProgramHere {
  protected:
   ForeignBenchProgram(const std::string& program, const std::string& scenario, std::string bench_file)
       : program_(program), bench_file_(std::move(bench_file)) {

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 #include "twin/core/stream.h"
 
@@ -83,11 +83,13 @@ struct Machine {
   const char *name, *scenario, *axis, *limits;
 };
 
-class ServedMachineProgram : public Program, public ::testing::WithParamInterface<Machine> {
+class ServedMachineProgram : public ProgramHere, public ::testing::WithParamInterface<Machine> {
  protected:
   ServedMachineProgram() {
-    Write("small.toml", GetParam().scenario);
-    Succeed({"run", "small.toml", "-o", "run"});
+    BeginWith(GetParam().name, [this] {
+      Write("small.toml", GetParam().scenario);
+      MakeRun("run");
+    });
     readings_ = ReadingsOf("run");
   }
 
@@ -242,7 +244,7 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
   EXPECT_EQ(ReadingsOf("own"), readings_);
 }
 
-TEST_F(Program, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
+TEST_F(ProgramHere, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
   Write("small.toml", kStops);
   Write("bench.toml", "kind = \"twin\"\n");
   Write("replay.toml", "kind = \"replay\"\nrecord = \"own\"\n");

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/reading_column.h"
 #include "twin/core/run_record.h"
 
@@ -15,7 +15,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /// A bench that is a program of the user's own, of closed-form physics.
-class ProgramBench : public Program {
+class ProgramBench : public ProgramHere {
  protected:
   ProgramBench() {
     Write("encoder.toml",

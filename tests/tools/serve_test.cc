@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 
 /// `twinbench serve` and `twinbench measure` as two programs that only share a network.
@@ -12,11 +12,13 @@ namespace {
 using std::chrono::milliseconds;
 using testing::HasSubstr;
 
-class Served : public Program {
+class Served : public ProgramHere {
  protected:
   Served() {
-    Write("small.toml", kSmall);
-    Succeed({"run", "small.toml", "-o", "run"});
+    BeginWith("served", [this] {
+      Write("small.toml", kSmall);
+      MakeRun("run");
+    });
     readings_ = ReadingsOf("run");
   }
 
