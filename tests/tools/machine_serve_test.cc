@@ -104,14 +104,6 @@ class ServedMachineProgram : public ProgramHere, public ::testing::WithParamInte
     EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
     return server;
   }
-  /// Whoever is gone shall not be waited for long.
-  void WaitBriefly() const {
-    std::string text = Read("bench.toml");
-    for (auto at = text.find("kind = \""); at != std::string::npos; at = text.find("kind = \"", at + 30)) {
-      if (at > 0 && text[at - 1] == '\n' && text[at - 2] == ']') text.insert(at, "timeout_s = 0.3\n");
-    }
-    Write("bench.toml", text);
-  }
   static std::vector<std::string> Measure(const std::string& name) {
     return {"measure", "small.toml", "--bench", "bench.toml", "-o", name, "--resume"};
   }
@@ -212,7 +204,7 @@ TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
 
 TEST_P(ServedMachineProgram, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
   auto server = Serve("1000");
-  WaitBriefly();
+  WaitBriefly("0.3");
   Process run(At(""), Measure("cut"));
   AwaitProgress(run);
   server->Kill();

@@ -60,6 +60,14 @@ class ProgramHere : public Program {
     return outcome;
   }
 
+  /// Whoever does not answer shall not be waited for long: every device of bench.toml, for so long.
+  void WaitBriefly(const std::string& for_s) const {
+    std::string text = Read("bench.toml");
+    for (auto at = text.find("]\nkind = \""); at != std::string::npos; at = text.find("]\nkind = \"", at + 2))
+      text.insert(at + 2, "timeout_s = " + for_s + "\n");
+    Write("bench.toml", text);
+  }
+
   /// What many tests begin with is made by the first of them; the others get a copy of the folder as it was then.
   /// @param name  Of a state of the folder, one in this program.
   void BeginWith(const std::string& name, const std::function<void()>& make) {

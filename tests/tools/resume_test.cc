@@ -46,13 +46,13 @@ class ResumedRun : public ProgramHere {
     while (run.Runs() && run.ProgressLines() < lines) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
-  /// Starts or takes up a run and kills it at a random moment, counted from its start or from its first readings,
-  /// of which a program that is slow to start would have none.
+  /// Starts or takes up a run and kills it: behind so many lines of its progress, of which a resumed one has one at its first reading and
+  /// one each tenth, or, of none, within its start; and a random moment later.
   /// @return whether it was killed before it was done.
-  bool KillOnce(const std::string& name, bool from_its_first_readings) {
+  bool KillOnce(const std::string& name, int lines) {
     Process run(At(""), Measure(name));
-    if (from_its_first_readings) Await(run, 1);
-    std::this_thread::sleep_for(std::uniform_real_distribution<>(0.0, 0.6)(random_) * duration_);
+    Await(run, lines);
+    std::this_thread::sleep_for(std::uniform_real_distribution<>(0.0, lines == 0 ? 0.6 : 0.1)(random_) * duration_);
     if (!run.Runs()) return false;
     run.Kill();
     return true;
@@ -70,7 +70,7 @@ class ResumedRun : public ProgramHere {
 /// More of them by hand: TWINBENCH_KILLS=500.
 int KillsWanted() {
   const char* wanted = std::getenv("TWINBENCH_KILLS");
-  return wanted ? std::atoi(wanted) : 40;
+  return wanted ? std::atoi(wanted) : 12;
 }
 
 TEST_F(ResumedRun, IsTheUndisturbedOneHoweverOftenItIsKilled) {
@@ -79,7 +79,7 @@ TEST_F(ResumedRun, IsTheUndisturbedOneHoweverOftenItIsKilled) {
   while (kills < KillsWanted()) {
     const std::string name = "killed" + std::to_string(runs++);
     std::size_t kept = 0;
-    while (KillOnce(name, kills % 2 == 1)) {
+    while (KillOnce(name, kills % 4)) {
       ++kills;
       const std::size_t now = Kept(name);
       ASSERT_GE(now, kept) << "what was kept once stays";
@@ -125,7 +125,7 @@ TEST_F(ResumedRun, AfterCtrlCGoesOnWhereItWasStopped) {
 }
 
 TEST_F(ResumedRun, OfAnotherScenarioIsRefused) {
-  KillOnce("killed", false);
+  KillOnce("killed", 0);
   auto words = Measure("undisturbed");
   words.insert(words.end(), {"--set", "procedure.positions=36"});
   const Outcome outcome = Call(words);
