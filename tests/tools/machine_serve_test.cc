@@ -131,7 +131,7 @@ TEST_P(EveryBench, MeasuresTheReadingsThatRunMakesBitForBit) {
 }
 
 TEST_P(EveryBench, AKilledMeasurementGoesOnToTheSameReadings) {
-  const auto server = Serve("1000");
+  const auto server = Serve("2000");
   Process run(At(""), Measure("killed"));
   AwaitProgress(run);
   ASSERT_TRUE(run.Runs()) << "it was too quick to be killed";
@@ -189,7 +189,7 @@ TEST_P(EveryBench, DISABLED_KilledAsOftenAsAskedItEndsWithTheSameReadings) {
 }
 
 TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
-  const auto server = Serve("1000");
+  const auto server = Serve("2000");
   {
     Process run(At(""), Measure("stopped"));
     AwaitProgress(run);
@@ -203,7 +203,7 @@ TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
 }
 
 TEST_P(ServedMachineProgram, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
-  auto server = Serve("1000");
+  auto server = Serve("2000");
   WaitBriefly("0.3");
   Process run(At(""), Measure("cut"));
   AwaitProgress(run);
