@@ -65,7 +65,7 @@ class KilledRun : public ProgramHere {
 TEST_F(KilledRun, HoldsAPrefixOfTheUndisturbedRunByteForByte) {
   int cut_short = 0;
   std::set<std::ptrdiff_t> lengths;
-  for (int moment = 0; moment < 14; ++moment) {
+  for (int moment = 0; moment < 10; ++moment) {
     const std::string name = "killed" + std::to_string(moment);
     KillAfterTenths(1 + moment % 7, name);
     const std::ptrdiff_t lines = ExpectPrefix(Succeed({"export", name}));
@@ -73,8 +73,8 @@ TEST_F(KilledRun, HoldsAPrefixOfTheUndisturbedRunByteForByte) {
     if (lines < std::count(readings_.begin(), readings_.end(), '\n')) ++cut_short;
   }
   // On a busy machine a kill may come late, but not most of them.
-  EXPECT_GE(cut_short, 8) << "the kills came too late to show anything";
-  EXPECT_GE(lengths.size(), 8u);
+  EXPECT_GE(cut_short, 6) << "the kills came too late to show anything";
+  EXPECT_GE(lengths.size(), 6u);
 }
 
 TEST_F(KilledRun, AtItsVeryStartHasNoRecordOrAGoodOne) {

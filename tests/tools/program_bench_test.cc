@@ -125,7 +125,9 @@ TEST_F(ProgramBench, ACommandMustSayWhereTheReadingsGo) {
 TEST_F(ProgramBench, IsInvestigated) {
   WriteBench("\"0\", \"0.01\"");
   const std::vector<std::string> arguments = {"investigate", "encoder.toml", "--bench", "bench.toml",
-                                              "--budget",    "3h",           "-o",      "inquiry"};
+                                              "--budget",    "3h",           "-o",      "inquiry",
+                                              "--set",       "encoder_procedure.stops_per_turn=18",
+                                              "--set",       "encoder_procedure.turns=1"};
   Succeed(arguments);
   const auto found = nlohmann::json::parse(Read("inquiry/investigation.json"));
   ASSERT_EQ(found.at("told"), "named") << found.dump(1);
