@@ -18,7 +18,7 @@ struct ScpiCommand;
 class Served {
  public:
   /// @param its_name  As *IDN? tells it: "rotary-bench".
-  Served(std::string its_name, const Scenario& scenario);
+  Served(std::string its_name, const Scenario& scenario, Wall wall = WallClock::now);
   virtual ~Served() = default;
 
   virtual PacedClock& pace() = 0;

@@ -120,6 +120,7 @@ class ServedMachineProgram : public ProgramHere, public ::testing::WithParamInte
 };
 
 using EveryBench = ServedMachineProgram;
+using MachineThatMoves = ServedMachineProgram;
 
 TEST_P(EveryBench, MeasuresTheReadingsThatRunMakesBitForBit) {
   const auto server = Serve("max", "pty");
@@ -188,7 +189,7 @@ TEST_P(EveryBench, DISABLED_KilledAsOftenAsAskedItEndsWithTheSameReadings) {
               GetParam().name, killed, without_record, killed_within, whole);
 }
 
-TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
+TEST_P(MachineThatMoves, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
   const auto server = Serve("2000");
   {
     Process run(At(""), Measure("stopped"));
@@ -202,7 +203,7 @@ TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
   EXPECT_EQ(ReadingsOf("stopped"), readings_);
 }
 
-TEST_P(ServedMachineProgram, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
+TEST_P(MachineThatMoves, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
   auto server = Serve("2000");
   WaitBriefly("0.3");
   Process run(At(""), Measure("cut"));
@@ -263,6 +264,7 @@ INSTANTIATE_TEST_SUITE_P(Others, EveryBench, ::testing::Values(kFreeformMachine,
                                            Machine{"Sweep", kSweep, "shaft", kNarrow_deg}),
                          NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Machines, ServedMachineProgram, ::testing::ValuesIn(kMachines), NameOfMachine);
+INSTANTIATE_TEST_SUITE_P(Machines, MachineThatMoves, ::testing::Values(kMachines[0], kMachines[3]), NameOfMachine);  // on paths; turning on
 
 }  // namespace
 }  // namespace twinbench::test
