@@ -147,7 +147,7 @@ TEST_F(Served, AKilledMeasurementGoesOnToTheSameReadings) {
 
 TEST_F(Served, APowerFailureOfTheServerIsGoneOnFromWithANewOne) {
   auto server = Serve({"--speed", "2000"});
-  WaitBriefly("0.2");
+  WaitBriefly("0.1");
   Process run(At(""), Measure("cut"));
   while (run.Runs() && run.ProgressLines() < 3) std::this_thread::sleep_for(milliseconds(5));
   server->Kill();
@@ -178,7 +178,7 @@ TEST_F(Served, EverySignalHoweverOftenStopsTheTablesAndTheRunCanBeResumed) {
 
 TEST_F(Served, AControllerThatFreezesLeavesTheStateUnknown) {
   const auto server = Serve({"--speed", "2000"});
-  WaitBriefly("0.2");
+  WaitBriefly("0.1");
   Process run(At(""), Measure("frozen"));
   while (run.Runs() && run.ProgressLines() < 3) std::this_thread::sleep_for(milliseconds(5));
   server->Signal(SIGSTOP);
@@ -217,7 +217,7 @@ TEST_F(Served, ABenchThatDoesNotAnswerIsNamed) {
   auto server = Serve();
   server->Signal(SIGTERM);
   EXPECT_EQ(server->Wait().exit_code, 0) << "asked to stop, it ends well";
-  WaitBriefly("0.2");
+  WaitBriefly("0.1");
   const Outcome outcome = Call(Measure("none"));
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("127.0.0.1"));
