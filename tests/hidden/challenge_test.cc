@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "tests/hidden/reduced.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/names.h"

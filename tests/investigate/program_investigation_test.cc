@@ -8,7 +8,7 @@ namespace twinbench::investigate {
 namespace {
 
 // Five of the score's seeds in a row: a scale, an ellipticity, a slip, a drift, an order of a half. More of them by
-// `investigate_score --program`.
+// tools/scores --set investigate.
 TEST(InvestigateAProgram, TellsWhatABenchHidesThatSharesNothingWithTheTwin) {
   const TemporaryFolder folder;
   constexpr std::uint64_t kFirst = 5, kLast = 9;

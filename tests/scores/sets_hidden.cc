@@ -1,0 +1,112 @@
+#include <filesystem>
+
+#include "tests/hidden/challenge.h"
+#include "tests/hidden/clean_cases.h"
+#include "tests/hidden/twin_cases.h"
+#include "tests/hidden/unlisted.h"
+#include "tests/hidden/written_file.h"
+#include "tests/scores/sets.h"
+#include "tests/support/twin_run.h"
+#include "twin/benches/names.h"
+#include "twin/benches/registry.h"
+#include "twin/core/errors.h"
+
+// Cases of tests/hidden: one run, what is hidden in it, and what the written file says of the same readings.
+namespace twinbench::scores {
+namespace {
+
+using hidden::Outcome;
+
+/// Whether an answer is right: as the suite has it, or as a set has it.
+using RightIf = bool (*)(const Outcome&);
+
+/// Of an effect that is struck from the catalogue nothing else is right than to say that it is unknown.
+bool IsUnknown(const Outcome& o) {
+  return o.verdict == diagnose::Verdict::kUnknown;
+}
+
+void Examine(const hidden::Case& made, RightIf is_right, const std::string& cache_folder, Row& row) {
+  diagnose::DiagnoseOptions options = made.options;
+  options.cache_folder = cache_folder;
+  row.hidden = InWords(made.hidden);
+  const diagnose::DiagnosisRun found = diagnose::Diagnose(made.readings, made.scenario, options);
+  const Outcome outcome = Judge(made.hidden, found.diagnosis);
+  row.answer = outcome.answer;
+  row.marks[kRight] = is_right(outcome);
+  row.marks[kSureWrong] = outcome.sure_wrong;
+  const bool is_written =
+      outcome.verdict != diagnose::Verdict::kNone && !made.hidden.IsClean() && options.excluded.empty();
+  if (!is_written) return;
+  const std::string again = hidden::Says(made.readings, hidden::WrittenFile(made.scenario, found), options);
+  row.marks[kSecondSilent] = again.empty();
+  if (!again.empty()) row.answer += "; again: " + again;
+}
+
+/// @param prefix  Of names, where a set has several sorts of cases.
+void AppendCases(const std::string& set, const std::string& bench, const std::string& prefix,
+                 const std::vector<hidden::Plan>& cases, const std::string& cache_folder, Plans& plans,
+                 RightIf is_right = hidden::IsRight) {
+  for (const hidden::Plan& one : cases) {
+    plans.push_back({set, bench, prefix + one.name,
+                     [=, make = one.make](Row& row) { Examine(make(), is_right, cache_folder, row); }});
+  }
+}
+
+/// Sooner and later than the ten minutes that both benches' scenarios believe.
+const std::vector<hidden::Clamped> kClamped = {{30.0, 60.0},  {30.0, 300.0},  {120.0, 60.0},   {120.0, 300.0},
+                                               {600.0, 60.0}, {3600.0, 60.0}, {3600.0, 600.0}, {7200.0, 300.0}};
+
+hidden::TwinOptions TwinOptionsOf(const Amount& amount, double rho_from, double rho_to) {
+  hidden::TwinOptions options;
+  options.magnitudes = options.seeds = amount.is_long ? 2 : 1;
+  options.first_seed = amount.first_seed;
+  options.rho_from = rho_from;
+  options.rho_to = rho_to;
+  options.cache_folder = amount.cache_folder;
+  return options;
+}
+
+}  // namespace
+
+Plans HiddenSet(const std::string& bench, const Amount& amount) {
+  // 5 to 30: in the standard set their middle, 12.
+  const hidden::TwinOptions options = TwinOptionsOf(amount, 5.0, 30.0);
+  Plans plans;
+  const auto append = [&](const std::string& prefix, const std::vector<hidden::Plan>& cases) {
+    AppendCases("hidden", bench, prefix, cases, amount.cache_folder, plans);
+  };
+  append("", SinglePlans(bench, options));
+  if (bench == kRotaryBench || bench == kTurntableBench)
+    append("clamped ", CreepPlans(bench, kClamped, TwinOptionsOf(amount, 20.0, 20.0)));
+  if (bench == kRotaryBench) append("pair ", hidden::PairPlans(amount.is_long ? 40 : 10, options));
+  return plans;
+}
+
+Plans ChallengeSet(const std::string& bench, const Amount& amount) {
+  Plans plans;
+  const std::string folder = test::DataPath(hidden::ChallengeSetOf(bench));
+  if (std::filesystem::is_directory(folder))
+    AppendCases("challenge", bench, "", hidden::ChallengePlans(folder, bench), amount.cache_folder, plans);
+  return plans;
+}
+
+Plans CleanSet(const std::string& bench, const Amount& amount) {
+  Plans plans;
+  const int count = (amount.is_long ? 8 : 2) * hidden::kNoises;
+  AppendCases("clean", bench, "", hidden::CleanPlans(bench, count, amount.first_seed), amount.cache_folder, plans);
+  return plans;
+}
+
+Plans UnlistedSet(const std::string& bench, const Amount& amount) {
+  const hidden::TwinOptions options = TwinOptionsOf(amount, 20.0, 20.0);
+  Plans plans;
+  AppendCases("unlisted", bench, "", UnlistedPlans(bench, options), amount.cache_folder, plans);
+  // Every design without an effect is calibrated for itself: a sample, unless there is a night.
+  const std::vector<hidden::Plan> struck = LeaveOneOutPlans(bench, options);
+  std::vector<hidden::Plan> some;
+  for (std::size_t k = 0; k < struck.size(); k += amount.is_long ? 3 : 10) some.push_back(struck[k]);
+  AppendCases("unlisted", bench, "struck ", some, amount.cache_folder, plans, IsUnknown);
+  return plans;
+}
+
+}  // namespace twinbench::scores
