@@ -9,6 +9,7 @@ was asked for, and what was measured on each kind of processor. Exit code 1 if a
 """
 
 import argparse
+import collections
 import csv
 import datetime
 import json
@@ -38,85 +39,73 @@ def figures_of(answer, program):
     """What a run of a benchmark says: "program benchmark counter" -> number, times in seconds of CPU time."""
     figures = {}
     for line in answer["benchmarks"]:
-        if line.get("error_occurred"):
-            continue  # not on this processor
-        name = f"{program} {line['name'].removesuffix('/iterations:1').removesuffix('/iterations:2')} "
-        figures[name + "cpu_s"] = line["cpu_time"] * SECONDS[line["time_unit"]]
-        figures |= {name + key: value for key, value in line.items() if isinstance(value, float) and key not in ("cpu_time", "real_time")}
+        if not line.get("error_occurred"):  # a kernel that this processor does not have
+            name = f"{program} {re.sub('/iterations:.*', '', line['name'])} "
+            counters = {key: value for key, value in line.items() if isinstance(value, float) and key not in ("cpu_time", "real_time")}
+            figures |= {name + key: value for key, value in counters.items()} | {name + "cpu_s": line["cpu_time"] * SECONDS[line["time_unit"]]}
     return figures
 
 
 def run_benchmark(build, program, names):
-    wanted = "^(" + "|".join(re.escape(name) for name in sorted(names)) + ")(/iterations:.)?$"
+    wanted = "^(" + "|".join(map(re.escape, names)) + ")(/iterations:.)?$"
     command = [build / "tests/perf" / program, f"--benchmark_filter={wanted}", "--benchmark_min_time=0.2", "--benchmark_format=json"]
     return figures_of(json.loads(subprocess.run(command, check=True, capture_output=True).stdout), program)
 
 
-def run_command(build, scenario):
+def run_scenario(build, scenario):
     """CPU time of `twinbench run` as a whole process."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    before = sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([build / "tools/twinbench", "run", ROOT / "scenarios" / scenario, "-o", folder + "/run"], check=True, capture_output=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return {f"twinbench {scenario} cpu_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}
+    return {f"twinbench {scenario} cpu_s": sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2]) - before}
 
 
 def measure(build, rows, rounds):
     """@return for every round what was measured in it."""
-    programs = {}
-    for row in rows:
-        for place in filter(None, (row["of"], row["over"])):
-            program, name, _ = place.split(" ")
-            programs.setdefault(program, set()).add(name)
+    programs = collections.defaultdict(dict)  # names in the order of the table
+    for place in [row[end] for row in rows for end in ("of", "over") if row[end]]:
+        program, name, _ = place.split(" ")
+        programs[program][name] = True
     measured = []
     for _ in range(rounds):
-        figures = {}
+        measured.append({})
         for program, names in programs.items():
-            if program == "twinbench":
-                for scenario in sorted(names):
-                    figures |= run_command(build, scenario)
-            else:
-                figures |= run_benchmark(build, program, names)
-        measured.append(figures)
+            parts = [run_scenario(build, name) for name in names] if program == "twinbench" else [run_benchmark(build, program, names)]
+            for part in parts:
+                measured[-1] |= part
     return measured
 
 
 def median_of(row, measured):
     """@return the ratio, or the figure where nothing is divided; None if this processor has no such kernel."""
-    values = [
-        figures[row["of"]] / (figures[row["over"]] if row["over"] else 1.0)
-        for figures in measured
-        if row["of"] in figures and (not row["over"] or row["over"] in figures)
-    ]
+    whole = [round_ for round_ in measured if all(row[end] in round_ for end in ("of", "over") if row[end])]
+    values = [figures[row["of"]] / (figures[row["over"]] if row["over"] else 1.0) for figures in whole]
     return statistics.median(values) if values else None
 
 
 def is_worse(better, now, committed):
-    if not better or now is None or not committed:
+    if not better or not committed:
         return False
     return now > committed * (1.0 + WORSE) if better == "lower" else now < committed * (1.0 - WORSE)
 
 
-def three_digits(value, counter=""):
-    if counter == "cpu_s":
-        unit, scale = next((u, s) for u, s in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)) if value >= s or u == "ns")
-        return f"{value / scale:.3g} {unit}"
-    return f"{value:.3g}" if value < 999.5 else f"{value:,.0f}".replace(",", " ")
+def in_digits(value, counter=""):
+    if counter != "cpu_s":
+        return f"{value:.3g}" if value < 999.5 else f"{value:,.0f}".replace(",", " ")
+    unit = next((unit for unit in ("s", "ms", "us") if value >= SECONDS[unit]), "ns")
+    return f"{value / SECONDS[unit]:.3g} {unit}"
 
 
 def table_of(rows, measured):
     """One group as docs/speed.md shows it: the ratio, and the two figures that it is made of."""
     lines = ["| | ratio | asked for | figures |", "|---|---|---|---|"]
     for row in rows:
-        ratio = median_of(row, measured)
-        if ratio is None:
+        value, is_ratio = median_of(row, measured), bool(row["better"])
+        if value is None:
             continue
-        parts = [row["of"], row["over"]] if row["over"] else [row["of"]]
-        shown = [three_digits(statistics.median([f[p] for f in measured]), p.split(" ")[2]) for p in parts]
-        is_ratio = bool(row["better"])
-        figures = " to ".join(shown) if row["over"] or not is_ratio else ""
-        bound = {"lower": "at most ", "higher": "at least ", "": ""}[row["better"]]
-        lines.append(f"| {row['what']} | {three_digits(ratio) if is_ratio else ''} | {bound + row['asked'] if row['asked'] else ''} | {figures} |")
+        ends = [row[end] for end in ("of", "over") if row[end] and (row["over"] or not is_ratio)]
+        figures = " to ".join(in_digits(statistics.median(round_[end] for round_ in measured), end.split(" ")[2]) for end in ends)
+        lines.append(f"| {row['what']} | {in_digits(value) if is_ratio else ''} | {row['asked']} | {figures} |")
     return "\n".join(lines) + "\n"
 
 
@@ -136,25 +125,20 @@ def conditions(kind, rounds):
             f"CPU time, medians of {rounds} rounds.\n")  # fmt: skip
 
 
-def report(rows, measured, kind):
-    """@return a table of what is compared, and what is worse."""
-    lines, worse = [f"Compared with the column {kind} of {TABLE.name}.\n", "| ratio | now | committed | |", "|---|---|---|---|"], []
-    for row in filter(lambda row: row["better"], rows):
-        now, committed = median_of(row, measured), float(row.get(kind) or 0.0)
-        if now is None:
-            continue
-        word = "nothing to compare with" if not committed else "WORSE" if is_worse(row["better"], now, committed) else ""
-        line = f"| {row['group']}: {row['what']} ({row['better']} is better) | {three_digits(now)} | {row.get(kind) or ''} | {word} |"
-        lines.append(line)
-        if word == "WORSE":
-            worse.append(line)
-    return "\n".join(lines) + "\n", worse
+def compare(rows, measured, kind):
+    """@return a table of what is compared, and the lines of it that are worse."""
+    lines = []
+    for row in rows:
+        now, committed = median_of(row, measured), float(row[kind] or 0.0)
+        if row["better"] and now is not None:
+            word = "WORSE" if is_worse(row["better"], now, committed) else "" if committed else "nothing to compare with"
+            lines.append(f"| {row['group']}: {row['what']} ({row['better']} is better) | {in_digits(now)} | {row[kind]} | {word} |")
+    return ["| ratio | now | committed | |", "|---|---|---|---|", *lines], [line for line in lines if "WORSE" in line]
 
 
 def accept(rows, measured, kind):
     for row in rows:
-        now = median_of(row, measured)
-        if row["better"] and now is not None:
+        if row["better"] and (now := median_of(row, measured)) is not None:
             row[kind] = f"{now:.3g}"
     with open(TABLE, "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
@@ -166,26 +150,23 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--only", default="", help="groups with this in their name; docs/speed.md keeps the others' tables")
     parser.add_argument("--accept", action="store_true", help="write what is measured into the committed table")
     parser.add_argument("--page", type=pathlib.Path, help="write the comparison here (Markdown)")
     how = parser.parse_args()
     with open(TABLE, newline="") as file:
-        every_row = list(csv.DictReader(file))
-    rows = [row for row in every_row if how.only in row["group"]]
+        rows = list(csv.DictReader(file))
     kind = kind_of_processor(pathlib.Path("/proc/cpuinfo").read_text())
     measured = measure(how.build, rows, how.rounds)
-    groups = dict.fromkeys(row["group"] for row in rows)
-    tables = {group: table_of([row for row in rows if row["group"] == group], measured) for group in groups}
+    tables = {group: table_of([row for row in rows if row["group"] == group], measured) for group in {row["group"] for row in rows}}
     PAGE.write_text(with_tables(PAGE.read_text(), tables | {"conditions": conditions(kind, how.rounds)}))
-    text, worse = report(rows, measured, kind)
+    lines, worse = compare(rows, measured, kind)
+    text = "\n".join([f"Compared with the column {kind} of {TABLE.name}.\n", *lines, ""])
     if how.accept:
-        accept(every_row, measured, kind)
+        accept(rows, measured, kind)
     if how.page:
         how.page.write_text(text)
     print(text)
-    for line in worse:
-        print(f"ratios: worse by more than {WORSE:.0%}: {line}", file=sys.stderr)
+    print(*(f"ratios: worse by more than {WORSE:.0%}: {line}" for line in worse), sep="\n", file=sys.stderr)
     return 1 if worse and not how.accept else 0
 
 

@@ -14,6 +14,7 @@ import collections
 import concurrent.futures
 import csv
 import json
+import math
 import os
 import pathlib
 import random
@@ -30,7 +31,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 KNOWN = ROOT / "tests/night/known_faults.csv"
 SILENT_s, LONG_s = 20.0, 30.0
 LARGEST = 1e9
-WEAK_CHI2 = 4.0
+WEAK_CHI2, FEW = 4.0, 8
 MEMORY_B = 6 << 30
 
 # Small runs, 0.1 to 0.3 s each, in which as many keys as possible count: name -> bench, scenario, what is smaller than there.
@@ -81,29 +82,24 @@ def too_large(results, path=""):
     if isinstance(results, (dict, list)):
         inner = results.items() if isinstance(results, dict) else enumerate(results)
         return next(filter(None, (too_large(one, f"{path}.{name}") for name, one in inner)), None)
-    is_wrong = isinstance(results, float) and not abs(results) <= LARGEST
-    return f"{path[1:]} = {results:g}" if is_wrong else None
+    return f"{path[1:]} = {results:g}" if isinstance(results, float) and not abs(results) <= LARGEST else None
 
 
 def wrong_in(text):
     """The first line with something that is no result."""
-    for line in INFINITE_BY_RIGHT.sub("", text).splitlines():
-        if NO_NUMBER.search(line) or any(abs(float(n)) > LARGEST for n in NUMBER.findall(line)):
-            return line.strip()
-    return None
+    lines = INFINITE_BY_RIGHT.sub("", text).splitlines()
+    return next((ln.strip() for ln in lines if NO_NUMBER.search(ln) or any(abs(float(n)) > LARGEST for n in NUMBER.findall(ln))), None)
 
 
 def fault_of(kind, code, said, results):
     """@return what is wrong with an answer to `run`, and where; None if nothing is."""
-    last = said.strip().splitlines()[-1:] or [""]
+    last = (said.strip().splitlines() or [""])[-1]
     if code == "silent":
-        return "silent", last[0]
-    if code == "long":
-        return None
-    if code not in (0, 1, 2, 3):
-        return "crash", f"ended by {code}: {last[0]}"
+        return "silent", last
+    if code not in (0, 1, 2, 3, "long"):
+        return "crash", f"ended by {code}: {last}"
     if code != 0:
-        return ("internal message", last[0]) if FOR_AUTHORS.search(last[0].removeprefix("twinbench: ")) else None
+        return ("internal message", last) if FOR_AUTHORS.search(last) else None
     if kind == "out":
         return "taken", "beyond what the schema allows"
     wrong = wrong_in(said) or too_large(results)
@@ -111,33 +107,35 @@ def fault_of(kind, code, said, results):
 
 
 def largest_chi2(score):
-    if isinstance(score, list):
-        return max(map(largest_chi2, score), default=0.0)
-    if not isinstance(score, dict):
-        return 0.0
-    own = score.get("mean_chi2")
-    return max([own if isinstance(own, (int, float)) else 0.0] + [largest_chi2(v) for name, v in score.items() if name != "values"])
+    """The largest mean (error/u)^2; quantities of few values count together under the first word of their names."""
+    squares = collections.defaultdict(list)
+    for name, of in score.get("values", {}).items():
+        errors = [(value - truth, u) for value, truth, u in zip(of["value"], of["truth"], of["u"]) if None not in (value, truth, u)]
+        group = name if len(errors) >= FEW else name.split(".")[0]
+        squares[group] += [(error / u) ** 2 if u else math.inf for error, u in errors if u or error]
+    return max((sum(own) / len(own) for own in squares.values() if own), default=0.0)
+
+
+def json_of(path):
+    return json.loads(path.read_text()) if path.exists() else {}
 
 
 def walk_one(twinbench, case):
     base, key, value, kind = case
     _, scenario, sets = BASES[base]
-    sets = [s for s in sets if not s.startswith(key + "=")] + [f"{key}={value}"]
-    row = {"base": base, "key": key, "value": value, "kind": kind}
-    with tempfile.TemporaryDirectory() as folder:
-        run, said = f"{folder}/run", pathlib.Path(folder, "said.txt")
-        begin = time.monotonic()
-        row["code"] = spoken([twinbench, "run", ROOT / "scenarios" / scenario, "-o", run, *(w for s in sets for w in ("--set", s))], said)
+    sets = [word for one in sets if not one.startswith(key + "=") for word in ("--set", one)] + ["--set", f"{key}={value}"]
+    row, begin = {"base": base, "key": key, "value": value, "kind": kind}, time.monotonic()
+    with tempfile.TemporaryDirectory() as name:
+        folder, said = pathlib.Path(name), pathlib.Path(name, "said.txt")
+        row["code"] = spoken([twinbench, "run", ROOT / "scenarios" / scenario, "-o", folder / "run", *sets], said)
         row["seconds"] = round(time.monotonic() - begin, 2)
-        text = said.read_text(errors="replace")
-        written = pathlib.Path(run, "results.json")
-        fault = fault_of(kind, row["code"], text, json.loads(written.read_text()) if written.exists() else None)
+        fault = fault_of(kind, row["code"], said.read_text(errors="replace"), json_of(folder / "run/results.json"))
+        if row["code"] == 1:
+            row["said"] = said.read_text(errors="replace").strip().splitlines()[-1]
         if row["code"] == 0 and not fault:
-            code = spoken([twinbench, "score", run, "--json", f"{folder}/score.json"], said)
-            fault = fault_of("in", code, said.read_text(errors="replace"), None) if code != 0 else None
-            row["chi2"] = largest_chi2(json.loads(pathlib.Path(folder, "score.json").read_text())) if code == 0 else None
-        elif row["code"] == 1:
-            row["said"] = text.strip().splitlines()[-1]
+            code = spoken([twinbench, "score", folder / "run", "--json", folder / "score.json"], said)
+            fault = fault_of("in", code, said.read_text(errors="replace"), {}) if code != 0 else None
+            row["chi2"] = largest_chi2(json_of(folder / "score.json"))
     return row | ({"fault": fault[0], "detail": fault[1]} if fault else {})
 
 
@@ -153,36 +151,35 @@ def of_case(row):
     return row["base"], row["key"], row["value"]
 
 
+def in_words(row):
+    return f"* {row['base']}: `{row['key']} = {row['value'][:80]}`: {row['fault']}: {row['detail'][:160]}"
+
+
+def is_weak(row):
+    return row.get("chi2", 0.0) > WEAK_CHI2
+
+
 def compare(rows, known):
     """@return a line a bench, and the faults of those that have more than are known of the same cases."""
-    lines, more = ["| bench | cases | faults | known | weak | long |", "|---|---|---|---|---|---|"], []
-    by_bench = collections.defaultdict(list)
-    for row in rows:
-        by_bench[BASES[row["base"]][0]].append(row)
-    known = {of_case(row) for row in known}
-    for bench, of_bench in by_bench.items():
-        faults = [row for row in of_bench if "fault" in row]
-        before = sum(of_case(row) in known for row in of_bench)
-        weak = sum((row.get("chi2") or 0.0) > WEAK_CHI2 for row in of_bench)
-        lines.append(f"| {bench} | {len(of_bench)} | {len(faults)} | {before} | {weak} | {sum(r['code'] == 'long' for r in of_bench)} |")
+    known, more, lines = {of_case(row) for row in known}, [], ["| bench | cases | faults | known | weak | long |", "|---|---|---|---|---|---|"]
+    for bench in sorted({BASES[row["base"]][0] for row in rows}):
+        own = [row for row in rows if BASES[row["base"]][0] == bench]
+        faults, before = [row for row in own if "fault" in row], sum(of_case(row) in known for row in own)
+        lines.append(f"| {bench} | {len(own)} | {len(faults)} | {before} | {sum(map(is_weak, own))} | {sum(r['code'] == 'long' for r in own)} |")
         if len(faults) > before:
             more += [row for row in faults if of_case(row) not in known]
     return lines, more
 
 
-def in_words(row):
-    return f"* {row['base']}: `{row['key']} = {row['value'][:80]}`: {row['fault']}: {row['detail'][:160]}"
-
-
 def page_of(rows, known):
     lines, more = compare(rows, known)
-    faults, weak = [r for r in rows if "fault" in r], [r for r in rows if (r.get("chi2") or 0.0) > WEAK_CHI2]
-    kinds = collections.Counter(row["fault"] for row in faults)
-    lines += ["", "Faults: " + (", ".join(f"{kind} {n}" for kind, n in kinds.most_common()) or "none"), "", *map(in_words, faults[:40])]
+    faults, worst = [row for row in rows if "fault" in row], sorted(filter(is_weak, rows), key=lambda row: -row["chi2"])[:10]
     mended = {of_case(row) for row in known} & {of_case(row) for row in rows if "fault" not in row}
-    lines += ["", f"Known and right now, so that {KNOWN.name} can lose them: {len(mended)}"] + [f"* {' '.join(one)[:160]}" for one in sorted(mended)]
-    worst = sorted(weak, key=lambda row: -row["chi2"])[:10]
-    lines += ["", "Furthest from the truth, mean (error/u)^2:"] + [f"* {r['base']}: `{r['key']} = {r['value'][:80]}`: {r['chi2']:.3g}" for r in worst]
+    kinds = collections.Counter(row["fault"] for row in faults).most_common()
+    lines += ["", "Faults: " + (", ".join(f"{kind} {n}" for kind, n in kinds) or "none") + "; not known:", "", *map(in_words, more[:40])]
+    lines += ["", f"Known and right now, to be taken out of {KNOWN.name}: {len(mended)}", "", *(f"* `{' '.join(one)[:160]}`" for one in sorted(mended))]
+    lines += ["", "Furthest from the truth, mean (error/u)^2:", ""]
+    lines += [f"* {row['base']}: `{row['key']} = {row['value'][:80]}`: {row['chi2']:.3g}" for row in worst]
     return "\n".join(lines) + "\n", more
 
 
@@ -203,31 +200,29 @@ def main():
     parser.add_argument("--key", default="", help="a regular expression")
     parser.add_argument("--share", type=float, default=1.0, help="of all cases, drawn by --seed")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--seconds", type=float, default=1e9, help="begin no case after these")
+    parser.add_argument("--seconds", type=float, default=math.inf, help="begin no case after these")
     parser.add_argument("--threads", type=int, default=os.cpu_count())
-    parser.add_argument("-o", dest="out", type=pathlib.Path, help="one JSON line a case")
-    parser.add_argument("--page", type=pathlib.Path, help="write the summary here (Markdown)")
+    parser.add_argument("-o", dest="out", type=pathlib.Path, default=pathlib.Path(os.devnull), help="one JSON line a case")
+    parser.add_argument("--page", type=pathlib.Path, default=pathlib.Path(os.devnull), help="write the summary here (Markdown)")
     parser.add_argument("--accept", action="store_true", help="write known_faults.csv")
     how = parser.parse_args()
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY_B, MEMORY_B))  # of every run
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     schema = json.loads(subprocess.run([how.twinbench, "schema"], check=True, capture_output=True).stdout)
-    cases, until = chosen(schema, how), time.monotonic() + how.seconds
-    with concurrent.futures.ThreadPoolExecutor(how.threads) as pool:
-        walked = pool.map(lambda case: walk_one(how.twinbench, case) if time.monotonic() < until else None, cases)
-        rows = [row for row in walked if row]
+    cases, until, rows = chosen(schema, how), time.monotonic() + how.seconds, []
+    with concurrent.futures.ThreadPoolExecutor(how.threads) as pool, open(how.out, "w", buffering=1) as out:
+        for row in pool.map(lambda case: walk_one(how.twinbench, case) if time.monotonic() < until else None, cases):
+            if row:
+                rows.append(row)
+                out.write(json.dumps(row) + "\n")
     with open(KNOWN, newline="") as file:
         known = list(csv.DictReader(file))
-    if how.out:
-        how.out.write_text("".join(json.dumps(row) + "\n" for row in rows))
     text, more = page_of(rows, known)
+    text = f"{len(rows)} of {len(cases)} cases\n\n{text}"
+    how.page.write_text(text)
+    print(text, *(f"schema_walk: not known: {in_words(row)}" for row in more), sep="\n")
     if how.accept:
         accept(rows, known)
-    if how.page:
-        how.page.write_text(text)
-    print(f"{len(rows)} of {len(cases)} cases\n\n{text}")
-    for row in more:
-        print(f"schema_walk: not known: {in_words(row)}", file=sys.stderr)
     return 1 if more and not how.accept else 0
 
 

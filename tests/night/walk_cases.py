@@ -3,9 +3,6 @@
 import json
 import math
 
-TINY = 1e-300
-SMALLEST = 5e-324
-
 
 def keys_of(table, path=()):
     """Every key of a bench's schema with what is said of it."""
@@ -14,72 +11,50 @@ def keys_of(table, path=()):
     return [found for name, inner in table["properties"].items() for found in keys_of(inner, (*path, name))]
 
 
-def bounds_of(number):
-    """The first and the last value that are allowed."""
+def numbers_of(number):
+    """At the first and the last value that are allowed, beyond them, at 0, tiny, huge and between."""
     is_whole = number["type"] == "integer"
+
+    def text(value):
+        return str(value) if is_whole else repr(float(value))
+
+    def beside(bound, up):
+        return int(bound) + (1 if up else -1) if is_whole else math.nextafter(bound, math.inf if up else -math.inf)
+
     low, high = number.get("minimum", -math.inf), number.get("maximum", math.inf)
     if "exclusiveMinimum" in number:
-        above = number["exclusiveMinimum"]
-        low = above + 1 if is_whole else math.nextafter(above, math.inf)
+        low = beside(number["exclusiveMinimum"], up=True)
     if "exclusiveMaximum" in number:
-        below = number["exclusiveMaximum"]
-        high = below - 1 if is_whole else math.nextafter(below, -math.inf)
-    return low, high
-
-
-def text_of(number, is_whole):
-    return str(int(number)) if is_whole else repr(float(number))
-
-
-def numbers_within(number):
-    is_whole, (low, high) = number["type"] == "integer", bounds_of(number)
-    wanted = [low, high, 0.0, TINY, -TINY, 1e-9, 1e300, -1e300, low + 1.0, low + 2.0, 1e3]
-    if high > 0.0:
-        wanted += [math.sqrt(max(low, 1e-6)) * math.sqrt(min(high, 1e12)), 0.3 * high]
-    if is_whole:
-        wanted = [math.floor(x) for x in wanted if math.isfinite(x) and (x == 0.0 or abs(x) >= 1.0)]
-    else:
-        wanted = [x for x in wanted if x not in (low + 1.0, low + 2.0, 1e3)] + [low, high]
-    return list(dict.fromkeys(text_of(x, is_whole) for x in wanted if low <= x <= high and math.isfinite(x)))
-
-
-def numbers_beyond(number):
-    is_whole, (low, high) = number["type"] == "integer", bounds_of(number)
-    values = ["nan", "inf", "-inf"] + (["1.5"] if is_whole else [])
-    if math.isfinite(low):
-        values.append(text_of(low - 1 if is_whole else math.nextafter(low, -math.inf), is_whole))
-    if math.isfinite(high):
-        values.append(text_of(high + 1 if is_whole else math.nextafter(high, math.inf), is_whole))
-    return values
+        high = beside(number["exclusiveMaximum"], up=False)
+    within = [low, high, 0, 1, 0.3 * high, math.sqrt(max(low, 1e-6) * max(min(high, 1e12), 0.0))]
+    within += [low + 1, low + 2, 1000] if is_whole else [1e-300, -1e-300, 1e-9, 1e300, -1e300]
+    within = [math.floor(x) if is_whole else x for x in within if math.isfinite(x)]
+    beyond = [beside(low, up=False)] * math.isfinite(low) + [beside(high, up=True)] * math.isfinite(high)
+    values = [(text(x), "in") for x in within if low <= x <= high] + [(text(x), "out") for x in beyond]
+    return values + [(word, "out") for word in ["nan", "inf", "-inf", '"1"', "true"] + ["1.5"] * is_whole]
 
 
 def values_of(what):
-    """(value, kind) of one key; what has no type of its own here (content of files) has none."""
+    """(value, kind) of one key; none of what is the content of a file."""
     kind = what.get("type")
     if "enum" in what:
         return [(json.dumps(one), "in") for one in what["enum"]] + [('"neither"', "out"), ("7", "out")]
     if kind in ("number", "integer"):
-        return [(v, "in") for v in numbers_within(what)] + [(v, "out") for v in [*numbers_beyond(what), '"1"', "true"]]
+        return list(dict.fromkeys(numbers_of(what)))
     if kind == "boolean":
         return [("true", "in"), ("false", "in"), ("1", "out"), ('"yes"', "out")]
     if kind == "string":
         return [(v, "any") for v in ('""', '"/dev/null"', '"/"', '"/nowhere/none"')] + [("1", "out")]
-    if kind == "array":
-        return arrays_of(what)
-    return []
+    return arrays_of(what["items"], what.get("minItems")) if kind == "array" else []
 
 
-def arrays_of(what):
-    of, count = what["items"], what.get("minItems")
+def arrays_of(of, count):
+    """As many as are asked for, or one and three; of tables, one with one key."""
     if of.get("type") == "object":
-        inner = [(name, v, kind) for name, one in of.get("properties", {}).items() for v, kind in values_of(one)]
-        return [(f"[{{{name} = {v}}}]", kind) for name, v, kind in inner]
-    lengths = [count] if count else [1, 3]
-    cases = [("[" + ", ".join([v] * n) + "]", kind) for v, kind in values_of(of) for n in lengths]
-    if count:
-        first = values_of(of)[0][0]
-        return [*cases, ("[" + ", ".join([first] * (count + 1)) + "]", "out"), ("[]", "out")]
-    return [*cases, ("[]", "any")]
+        return [(f"[{{{name} = {v}}}]", kind) for name, one in of.get("properties", {}).items() for v, kind in values_of(one)]
+    cases = [("[" + ", ".join([v] * n) + "]", kind) for v, kind in values_of(of) for n in ([count] if count else [1, 3])]
+    one_more = ", ".join([values_of(of)[0][0]] * ((count or 0) + 1))
+    return cases + ([(f"[{one_more}]", "out"), ("[]", "out")] if count else [("[]", "any")])
 
 
 def cases_of(schema, bench):
