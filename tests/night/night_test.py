@@ -16,7 +16,7 @@ BROKEN = WALKED | {"fault": "crash", "detail": "ended by -11"}
 class Ratios(unittest.TestCase):
     def test_fail_when_worse_by_more_than_15_percent_in_their_own_direction(self):
         for better, now, expected in (("lower", 1.14, False), ("lower", 1.16, True), ("lower", 0.5, False),
-                                      ("higher", 0.86, False), ("higher", 0.84, True), ("higher", 2.0, False), ("", 9.0, False)):  # fmt: skip
+                                      ("higher", 0.86, False), ("higher", 0.84, True), ("higher", 2.0, False), ("", 0.1, False)):  # fmt: skip
             self.assertEqual(ratios.is_worse(better, now, 1.0), expected, (better, now))
 
     def test_are_formed_within_a_round_before_their_median_is_taken(self):
@@ -26,13 +26,20 @@ class Ratios(unittest.TestCase):
         self.assertEqual(ratios.median_of(row, [*rounds[:2], {"p a cpu_s": 1.0, "p b cpu_s": 1.0}]), 2.0)  # 2 / 1 of medians too
         self.assertIsNone(ratios.median_of(row, [{"p b cpu_s": 1.0}]))
 
+    def test_are_told_row_by_row_beside_the_committed_ones(self):
+        rows = [{"group": "Light", "what": what, "better": "lower", "of": "p a x", "over": "", "avx2": committed}
+                for what, committed in (("same", "3.0"), ("worse", "2.0"), ("new", ""))]  # fmt: skip
+        lines, worse = ratios.compare(rows, [{"p a x": 3.0}], "avx2")
+        self.assertEqual((len(lines), [line.split(" ")[2] for line in worse]), (2 + 3, ["worse"]))
+        self.assertIn("nothing to compare with", lines[-1])
+
     def test_come_from_what_a_benchmark_prints_with_times_in_seconds(self):
         line = {"name": "Circle/bullet/iterations:2", "cpu_time": 3.0, "real_time": 9.0, "time_unit": "ms", "rate": 7.0}
         self.assertEqual(ratios.figures_of({"benchmarks": [line, {"name": "x", "error_occurred": True}]}, "p"),
                          {"p Circle/bullet cpu_s": 0.003, "p Circle/bullet rate": 7.0})  # fmt: skip
 
     def test_replace_a_page_between_its_markers_only(self):
-        page = "a\n<!-- measured: Light -->\nold\n<!-- end -->\nb\n"
+        page = "a\n<!-- measured: Light -->\nold\n<!-- end -->\nb\n<!-- measured: Runs -->\nc\n<!-- end -->\n"
         self.assertEqual(ratios.with_tables(page, {"Light": "new\n"}), page.replace("old", "new"))
         self.assertRaises(SystemExit, ratios.with_tables, page, {"Heat": "new\n"})
 
