@@ -28,9 +28,9 @@ class Ratios(unittest.TestCase):
 
     def test_are_told_row_by_row_beside_the_committed_ones(self):
         rows = [{"group": "Light", "what": what, "better": "lower", "of": "p a x", "over": "", "avx2": committed}
-                for what, committed in (("same", "3.0"), ("worse", "2.0"), ("new", ""))]  # fmt: skip
+                for what, committed in (("same", "3.0"), ("slower", "2.0"), ("new", ""))]  # fmt: skip
         lines, worse = ratios.compare(rows, [{"p a x": 3.0}], "avx2")
-        self.assertEqual((len(lines), [line.split(" ")[2] for line in worse]), (2 + 3, ["worse"]))
+        self.assertEqual((len(lines), [line.split(" ")[2] for line in worse]), (2 + 3, ["slower"]))
         self.assertIn("nothing to compare with", lines[-1])
 
     def test_come_from_what_a_benchmark_prints_with_times_in_seconds(self):
@@ -68,6 +68,9 @@ class Walk(unittest.TestCase):
             ("in", 134, "terminate\n", None, "crash"),
             ("in", "silent", "", None, "silent"),
             ("in", "long", "1 of 100 readings\n", None, None),
+            ("in", 1, "twinbench: target: not in position after 121 s\n", None, None),
+            ("in", 1, "twinbench: motion profile: the duration must be positive\n", None, "internal message"),
+            ("in", 2, "twinbench: --set a.b=1: must be above c\n", None, None),
             ("in", 1, "twinbench: vector::_M_range_check\n", None, "internal message"),
         ):
             fault = schema_walk.fault_of(kind, code, said, results)

@@ -56,6 +56,7 @@ NO_NUMBER = re.compile(r"(?<![\w.])[-+]?(nan|inf)(?!\w)")
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.])")
 INFINITE_BY_RIGHT = re.compile(r"\binf( degrees of freedom|\s+[\d.]+ %)")  # degrees of freedom, and their column in a budget
 FOR_AUTHORS = re.compile(r"std::|bad_alloc|basic_string|vector::|json\.exception|Eigen|[Aa]ssert|terminate called|_M_|\.cc:\d|^stod|^stoi")
+PRECONDITION = re.compile(r"\b(must|cannot) (not )?be\b")  # of a function; what a user may not do is refused with code 2
 
 
 def spoken(command, said):
@@ -99,7 +100,8 @@ def fault_of(kind, code, said, results):
     if code not in (0, 1, 2, 3, "long"):
         return "crash", f"ended by {code}: {last}"
     if code != 0:
-        return ("internal message", last) if FOR_AUTHORS.search(last) else None
+        is_own = FOR_AUTHORS.search(last) or (code == 1 and PRECONDITION.search(last))
+        return ("internal message", last) if is_own else None
     if kind == "out":
         return "taken", "beyond what the schema allows"
     wrong = wrong_in(said) or too_large(results)
