@@ -90,6 +90,8 @@ def is_worse(better, now, committed):
 
 
 def in_digits(value, counter=""):
+    if value is None:
+        return ""
     if counter != "cpu_s":
         return f"{value:.3g}" if value < 999.5 else f"{value:,.0f}".replace(",", " ")
     unit = next((unit for unit in ("s", "ms", "us") if value >= SECONDS[unit]), "ns")
@@ -104,7 +106,7 @@ def table_of(rows, measured):
         if value is None:
             continue
         ends = [row[end] for end in ("of", "over") if row[end] and (row["over"] or not is_ratio)]
-        figures = " to ".join(in_digits(statistics.median(round_[end] for round_ in measured), end.split(" ")[2]) for end in ends)
+        figures = " to ".join(in_digits(statistics.median(round_[end] for round_ in measured if end in round_), end.split(" ")[2]) for end in ends)
         lines.append(f"| {row['what']} | {in_digits(value) if is_ratio else ''} | {row['asked']} | {figures} |")
     return "\n".join(lines) + "\n"
 
@@ -130,10 +132,10 @@ def compare(rows, measured, kind):
     lines = []
     for row in rows:
         now, committed = median_of(row, measured), float(row[kind] or 0.0)
-        if row["better"] and now is not None:
-            word = "WORSE" if is_worse(row["better"], now, committed) else "" if committed else "nothing to compare with"
+        if row["better"] and (committed or now is not None):  # what this kind never had is not missed
+            word = "GONE" if now is None else "WORSE" if is_worse(row["better"], now, committed) else "" if committed else "nothing to compare with"
             lines.append(f"| {row['group']}: {row['what']} ({row['better']} is better) | {in_digits(now)} | {row[kind]} | {word} |")
-    return ["| ratio | now | committed | |", "|---|---|---|---|", *lines], [line for line in lines if "WORSE" in line]
+    return ["| ratio | now | committed | |", "|---|---|---|---|", *lines], [line for line in lines if line.endswith(("WORSE |", "GONE |"))]
 
 
 def accept(rows, measured, kind):
@@ -166,7 +168,7 @@ def main():
     if how.page:
         how.page.write_text(text)
     print(text)
-    print(*(f"ratios: worse by more than {WORSE:.0%}: {line}" for line in worse), sep="\n", file=sys.stderr)
+    print(*(f"ratios: worse by more than {WORSE:.0%}, or gone: {line}" for line in worse), sep="\n", file=sys.stderr)
     return 1 if worse and not how.accept else 0
 
 
