@@ -92,6 +92,8 @@ def is_worse(better, now, committed):
 def in_digits(value, counter=""):
     if value is None:
         return ""
+    if value >= 1e6:
+        return f"{value / 1e6:.0f} M"
     if counter != "cpu_s":
         return f"{value:.3g}" if value < 999.5 else f"{value:,.0f}".replace(",", " ")
     unit = next((unit for unit in ("s", "ms", "us") if value >= SECONDS[unit]), "ns")
