@@ -14,6 +14,7 @@ endif()
 pkg_check_modules(Bullet REQUIRED IMPORTED_TARGET bullet-float64)
 # OpenEXR by pkg-config: the CMake files of Debian 12 ask for Python parts of Imath that the package does not bring.
 pkg_check_modules(OpenEXR REQUIRED IMPORTED_TARGET OpenEXR)
+set_property(TARGET PkgConfig::OpenEXR PROPERTY INTERFACE_COMPILE_OPTIONS)  # -pthread: precompiled headers would have to have it too
 pkg_check_modules(SQLite REQUIRED IMPORTED_TARGET sqlite3)
 pkg_check_modules(Tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 find_package(pugixml REQUIRED)

@@ -1,12 +1,33 @@
-# twinbench_room(<name> SOURCES a.cc ... [KERNELS b.cc ...] [ROOMS upstream ...] [LIBRARIES public ...]
+# twinbench_headers(<name> [OPTIONS ...] [HEADERS ...]): what nearly every source includes, read once for all targets that are
+# compiled with the same options. Its definitions must be those of all of them.
+function(twinbench_headers name)
+  cmake_parse_arguments(HEADERS "" "" "OPTIONS;HEADERS" ${ARGN})
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/${name}.cc CONTENT "")
+  add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/${name}.cc)
+  target_compile_options(${name} PRIVATE ${HEADERS_OPTIONS})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
+  target_precompile_headers(${name} PRIVATE
+    <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <set> <span> <sstream> <string> <variant> <vector>
+    <Eigen/Cholesky> <Eigen/Geometry> <fmt/format.h> <nlohmann/json.hpp> ${HEADERS_HEADERS})
+endfunction()
+get_target_property(fmt_definitions fmt::fmt INTERFACE_COMPILE_DEFINITIONS)
+add_compile_definitions(${fmt_definitions})
+
+# Optimised for a run; and where no loop sets a pace, in four fifths of the time.
+set(TWINBENCH_UNHURRIED $<$<CONFIG:Release>:-O1>)
+twinbench_headers(twinbench_headers_room)
+twinbench_headers(twinbench_headers_unhurried OPTIONS ${TWINBENCH_UNHURRIED})
+
+# twinbench_room(<name> [UNHURRIED] SOURCES a.cc ... [KERNELS b.cc ...] [ROOMS upstream ...] [LIBRARIES public ...]
 #                [PRIVATE_LIBRARIES ...])
 #
 # One folder, one static library. ROOMS are the rooms it may include; tests/layers checks that the includes agree.
 # KERNELS are sources whose loops set the pace of a run: compiled at -O3, each by itself. The thread sanitizer does not look into
 # them: which of a function's clones is taken is decided before it is up, and calling it then is a crash. libFuzzer does not
-# count their branches, which tell it nothing.
+# count their branches, which tell it nothing. UNHURRIED: no loop here sets a pace.
 function(twinbench_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;KERNELS;ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "UNHURRIED" "" "SOURCES;KERNELS;ROOMS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   add_library(twinbench_${name} STATIC ${ROOM_SOURCES} ${ROOM_KERNELS})
   set(kernel_options "$<$<CONFIG:Release>:-O3>")
   if(TWINBENCH_FUZZ)
@@ -23,7 +44,17 @@ function(twinbench_room name)
     target_link_libraries(twinbench_${name} PUBLIC twinbench_${room})
   endforeach()
   target_link_libraries(twinbench_${name} PUBLIC ${ROOM_LIBRARIES} PRIVATE ${ROOM_PRIVATE_LIBRARIES})
-  twinbench_precompile(twinbench_${name})
+  if(ROOM_UNHURRIED)
+    twinbench_unhurried(twinbench_${name})
+  else()
+    target_precompile_headers(twinbench_${name} REUSE_FROM twinbench_headers_room)
+  endif()
+endfunction()
+
+# twinbench_unhurried(<target>): of a target that is no room.
+function(twinbench_unhurried target)
+  target_compile_options(${target} PRIVATE ${TWINBENCH_UNHURRIED})
+  target_precompile_headers(${target} REUSE_FROM twinbench_headers_unhurried)
 endfunction()
 
 # twinbench_bench(<name> TEXT ... PROCEDURE ... TWIN ... SOURCES ...)
@@ -42,39 +73,17 @@ function(twinbench_bench name)
     LIBRARIES nlohmann_json::nlohmann_json PRIVATE_LIBRARIES fmt::fmt Ceres::ceres)
 endfunction()
 
-# twinbench_precompile(<target> [headers ...]): what nearly every source of the target includes, where the sources are
-# compiled one by one.
-function(twinbench_precompile target)
-  if(NOT TWINBENCH_UNITY)
-    target_precompile_headers(${target} PRIVATE
-      <algorithm> <cmath> <functional> <map> <memory> <optional> <string> <vector> <Eigen/Geometry> ${ARGN})
-  endif()
-endfunction()
-
-# twinbench_test(<name> SOURCES a_test.cc ... ROOMS room ... [LIBRARIES ...] [SHARDS n] [SLOW] [WAITS] [ENVIRONMENT a=b ...])
+# twinbench_test(<name> SOURCES a_test.cc ... [LIBRARIES ...] [SHARDS n] [SLOW] [WAITS] [ENVIRONMENT a=b ...])
 #
-# One test program a room. ctest runs it in one process, or in SHARDS processes <name>.1, <name>.2 ... side by side.
-# SLOW, WAITS, ENVIRONMENT: of twinbench_entry. What is not SLOW is compiled at -O1, in three quarters of the time, and what WAITS at -O0,
-# in half. Those that compute for long are not: of a template that a room has too, the linker takes the test's.
+# One test program a room, of the whole program as tests/CMakeLists.txt puts it together. ctest runs it in one process, or in SHARDS
+# processes <name>.1, <name>.2 ... side by side. SLOW, WAITS, ENVIRONMENT: of twinbench_entry.
 function(twinbench_test name)
-  cmake_parse_arguments(TEST "SLOW;WAITS" "SHARDS" "SOURCES;ROOMS;LIBRARIES;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(TEST "SLOW;WAITS" "SHARDS" "SOURCES;LIBRARIES;ENVIRONMENT" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
-  target_compile_definitions(test_${name} PRIVATE
-    TWINBENCH_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TWINBENCH_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
-  foreach(room IN LISTS TEST_ROOMS)
-    target_link_libraries(test_${name} PRIVATE twinbench_${room})
-  endforeach()
-  target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
-  if(TEST_ROOMS)
-    twinbench_precompile(test_${name} <gmock/gmock.h>)
-  endif()
+  target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gtest_main)
+  twinbench_test_target(test_${name})
   if(NOT TEST_SLOW)
     add_dependencies(fast_tests test_${name})
-  endif()
-  if(TEST_WAITS)
-    target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O0>)
-  elseif(NOT TEST_SLOW)
-    target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
 
   set(flags)
@@ -92,6 +101,15 @@ function(twinbench_test name)
     twinbench_entry(${name}.${shard} ${flags} COMMAND test_${name}
       ENVIRONMENT ${TEST_ENVIRONMENT} GTEST_TOTAL_SHARDS=${TEST_SHARDS} GTEST_SHARD_INDEX=${index})
   endforeach()
+endfunction()
+
+# twinbench_test_target(<target>): a program or library of tests that uses the whole program. Not optimised: of a template that it has
+# and the program too, each keeps its own.
+function(twinbench_test_target target)
+  target_link_libraries(${target} PUBLIC twinbench_whole GTest::gmock)
+  target_compile_options(${target} PRIVATE ${TWINBENCH_OF_TESTS})
+  target_precompile_headers(${target} REUSE_FROM twinbench_headers_of_tests)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
 endfunction()
 
 # twinbench_entry(<name> [SLOW] [WAITS] COMMAND program arguments ... [ENVIRONMENT a=b ...])

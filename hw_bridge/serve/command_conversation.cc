@@ -7,11 +7,6 @@
 #include "twin/core/secret_token.h"
 
 namespace twinbench::hw {
-namespace {
-
-constexpr auto kLate = std::chrono::seconds(3);
-
-}  // namespace
 
 CommandConversation::~CommandConversation() {
   served_.pace().Leave(this);
@@ -93,13 +88,13 @@ void CommandConversation::Asks(const std::string& device) {
 
 void CommandConversation::Prepare() {
   state_ = State::kReplying;
-  reply_at_ = WallClock::now();
+  reply_at_ = served_.pace().OnTheWall();
   if (served_.pace().Now() != line_began_) reply_at_ += served_.pace().Lag();
-  if (fault_ == Injected::kLate) reply_at_ += kLate;
+  if (fault_ == Injected::kLate) reply_at_ += served_.late;
 }
 
 Step CommandConversation::Reply() {
-  if (const auto now = WallClock::now(); now < reply_at_) return Step::Wait(reply_at_ - now);
+  if (const auto now = served_.pace().OnTheWall(); now < reply_at_) return Step::Wait(reply_at_ - now);
   state_ = State::kIdle;
   std::string text = Join(answers_);
   answers_.clear();

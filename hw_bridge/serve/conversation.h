@@ -11,6 +11,8 @@
 namespace twinbench::hw {
 
 using WallClock = std::chrono::steady_clock;
+/// What it shows; a test has a wall of its own.
+using Wall = std::function<WallClock::time_point()>;
 
 /// What a conversation wants done before it is asked again.
 struct Step {

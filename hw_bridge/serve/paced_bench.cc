@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace twinbench::hw {
 namespace {
@@ -16,8 +17,8 @@ int BlockScans(const AdcSettings& adc, double speed) {
 
 }  // namespace
 
-PacedBench::PacedBench(RotaryBench bench, const AdcSettings& adc, double speed)
-    : PacedClock(bench.clock, bench.simulation, speed),
+PacedBench::PacedBench(RotaryBench bench, const AdcSettings& adc, double speed, Wall wall)
+    : PacedClock(bench.clock, bench.simulation, speed, std::move(wall)),
       bench_(bench),
       stream_(bench.adc, bench.clock, adc, BlockScans(adc, std::isfinite(speed) ? speed : 1.0)) {}
 

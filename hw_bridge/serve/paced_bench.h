@@ -8,7 +8,7 @@ namespace twinbench::hw {
 /// The paced clock of a rotary bench, whose converter runs on by itself as long as somebody reads it.
 class PacedBench : public PacedClock {
  public:
-  PacedBench(RotaryBench bench, const AdcSettings& adc, double speed);
+  PacedBench(RotaryBench bench, const AdcSettings& adc, double speed, Wall wall = WallClock::now);
 
   RotaryBench& bench() { return bench_; }
   ScanStream& stream() { return stream_; }

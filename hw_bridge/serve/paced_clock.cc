@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace twinbench::hw {
 namespace {
@@ -13,15 +14,15 @@ constexpr Time kEnd{std::chrono::seconds(1'000'000'000)};
 
 }  // namespace
 
-PacedClock::PacedClock(Clock& clock, Simulation* simulation, double speed)
-    : clock_(clock), simulation_(simulation), speed_(speed) {}
+PacedClock::PacedClock(Clock& clock, Simulation* simulation, double speed, Wall wall)
+    : clock_(clock), simulation_(simulation), speed_(speed), wall_(std::move(wall)) {}
 
 bool PacedClock::Timeless() const {
   return std::isinf(speed_) || !unpaced_.empty();
 }
 
 void PacedClock::CatchUp() {
-  const auto now = WallClock::now();
+  const auto now = OnTheWall();
   if (Timeless()) {
     due_ = now;
   } else if (Held()) {
@@ -48,14 +49,14 @@ bool PacedClock::Hold(const void* who, bool hold) {
   CatchUp();
   holder_ = hold ? who : nullptr;
   ForgetAhead();
-  if (!Held()) due_ = WallClock::now();
+  if (!Held()) due_ = OnTheWall();
   return true;
 }
 
 void PacedClock::SetPaced(const void* who, bool paced) {
   CatchUp();
   paced ? void(unpaced_.erase(who)) : void(unpaced_.insert(who));
-  due_ = WallClock::now();
+  due_ = OnTheWall();
 }
 
 /// Nobody has to wait for what a client that has gone has taken.
@@ -67,7 +68,7 @@ void PacedClock::Leave(const void* who) {
 void PacedClock::Restart() {
   simulation_->Restart();
   ForgetAhead();
-  due_ = WallClock::now();
+  due_ = OnTheWall();
 }
 
 void PacedClock::Spend(const std::function<void()>& call) {
@@ -78,7 +79,7 @@ void PacedClock::Spend(const std::function<void()>& call) {
 }
 
 WallClock::duration PacedClock::Lag() const {
-  return Timeless() ? WallClock::duration::zero() : std::max(due_ - WallClock::now(), WallClock::duration::zero());
+  return Timeless() ? WallClock::duration::zero() : std::max(due_ - OnTheWall(), WallClock::duration::zero());
 }
 
 Poll PacedClock::Settle(const Settles& settles, Duration within) {

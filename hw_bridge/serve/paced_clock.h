@@ -18,11 +18,12 @@ class PacedClock {
  public:
   /// @param simulation  Of the bench; not null.
   /// @param speed       Bench seconds a wall second; infinity: as fast as it goes.
-  PacedClock(Clock& clock, Simulation* simulation, double speed);
+  PacedClock(Clock& clock, Simulation* simulation, double speed, Wall wall = WallClock::now);
   virtual ~PacedClock() = default;
 
   Time Now() const { return clock_.Now(); }
   double speed() const { return speed_; }
+  WallClock::time_point OnTheWall() const { return wall_(); }
 
   /// Running: brings the bench to where the wall clock is. Called before every look at the bench.
   void CatchUp();
@@ -67,7 +68,8 @@ class PacedClock {
   Clock& clock_;
   Simulation* simulation_;
   double speed_;
-  WallClock::time_point due_ = WallClock::now();
+  Wall wall_;
+  WallClock::time_point due_ = wall_();
   const void* holder_ = nullptr;
   std::set<const void*> unpaced_;
 };

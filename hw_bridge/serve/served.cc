@@ -19,8 +19,8 @@ std::string SerialOf(const Scenario& scenario) {
 
 }  // namespace
 
-Served::Served(std::string its_name, const Scenario& scenario)
-    : name(std::move(its_name)), serial(SerialOf(scenario)), own_run_(scenario.repeat) {}
+Served::Served(std::string its_name, const Scenario& scenario, Wall wall)
+    : name(std::move(its_name)), serial(SerialOf(scenario)), watchdog(std::move(wall)), own_run_(scenario.repeat) {}
 
 void Served::BeRun(std::optional<int> run, Simulation& simulation) const {
   if (auto* runs = dynamic_cast<NumberedRuns*>(&simulation)) return runs->BeRun(run.value_or(own_run_));

@@ -18,7 +18,7 @@ struct ScpiCommand;
 class Served {
  public:
   /// @param its_name  As *IDN? tells it: "rotary-bench".
-  Served(std::string its_name, const Scenario& scenario);
+  Served(std::string its_name, const Scenario& scenario, Wall wall = WallClock::now);
   virtual ~Served() = default;
 
   virtual PacedClock& pace() = 0;
@@ -43,6 +43,7 @@ class Served {
   std::string serial;  // made from bench, scenario and seed
   std::string token;   // whoever moves or spoils anything must have shown it; empty: anybody may
   Faults faults;
+  Duration late{};     // that an answer is by the fault of that name
   Watchdog watchdog;
 
  protected:

@@ -5,9 +5,10 @@
 
 namespace twinbench::hw {
 
-ServedBench::ServedBench(RotaryBench bench, const Scenario& scenario, const AdcSettings& its_adc, double speed)
-    : Served("rotary-bench", scenario),
-      paced(bench, its_adc, speed),
+ServedBench::ServedBench(RotaryBench bench, const Scenario& scenario, const AdcSettings& its_adc, double speed,
+                         const Wall& wall)
+    : Served("rotary-bench", scenario, wall),
+      paced(bench, its_adc, speed, wall),
       target(bench.target, bench.clock, faults, "target"),
       reference(bench.reference, bench.clock, faults, "reference"),
       adc(its_adc) {}

@@ -8,7 +8,7 @@ namespace twinbench::hw {
 
 /// A rotary bench, served.
 struct ServedBench : Served {
-  ServedBench(RotaryBench bench, const Scenario& scenario, const AdcSettings& its_adc, double speed);
+  ServedBench(RotaryBench bench, const Scenario& scenario, const AdcSettings& its_adc, double speed, const Wall& wall = WallClock::now);
 
   RotaryBench& bench() { return paced.bench(); }
   PacedClock& pace() override { return paced; }

@@ -56,6 +56,7 @@ struct Server::Impl {
   template <class Esp, class Kind>
   void Listen(Kind& served) {
     served.token = options.token;
+    served.late = options.late;
     Guard(served);
     scpi.emplace(Maker<ScpiConversation>(served), options.scpi_port, *this);
     esp.emplace(Maker<Esp>(served), options.esp_port, *this);

@@ -23,6 +23,7 @@ struct ServeOptions {
   int max_connections = 32;                         // of one protocol
   Duration idle_limit = std::chrono::minutes(30);   // a client that says nothing
   Duration write_limit = std::chrono::seconds(20);  // a client that takes nothing
+  Duration late = std::chrono::seconds(3);          // that an answer is where a client asked for the fault "late"
 };
 
 /// Whether only programs of this computer reach a server at this address.

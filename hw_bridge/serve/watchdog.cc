@@ -10,7 +10,7 @@ void Watchdog::Arm(const void* who, WallClock::duration patience) {
   } else {
     armed_.erase(who);
   }
-  heard_ = WallClock::now();
+  heard_ = wall_();
   told_ = false;
 }
 
@@ -21,14 +21,14 @@ WallClock::duration Watchdog::PatienceOf(const void* who) const {
 
 void Watchdog::Hear(const void* who) {
   if (!armed_.contains(who)) return;
-  heard_ = WallClock::now();
+  heard_ = wall_();
   told_ = false;
 }
 
 bool Watchdog::IsMissingThem() {
   if (armed_.empty() || told_) return false;
   const auto shortest = std::ranges::min_element(armed_, {}, [](const auto& client) { return client.second; })->second;
-  told_ = WallClock::now() - heard_ > shortest;
+  told_ = wall_() - heard_ > shortest;
   return told_;
 }
 

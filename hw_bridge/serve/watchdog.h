@@ -11,6 +11,7 @@ namespace twinbench::hw {
 /// and now to the other.
 class Watchdog {
  public:
+  explicit Watchdog(Wall wall = WallClock::now) : wall_(std::move(wall)) {}
   /// @param who  Any address that identifies a client. @param patience  Zero: no more.
   void Arm(const void* who, WallClock::duration patience);
   WallClock::duration PatienceOf(const void* who) const;
@@ -23,7 +24,8 @@ class Watchdog {
 
  private:
   std::map<const void*, WallClock::duration> armed_;
-  WallClock::time_point heard_ = WallClock::now();
+  Wall wall_;
+  WallClock::time_point heard_ = wall_();
   bool told_ = false;
 };
 

@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
         TriedAgain{"RestartedEsp", "reference,restart", {"restarted"}, "esp"},
         TriedAgain{"LostStepOfEsp", "target,lost_step", {"not_in_position"}, "esp"},
         TriedAgain{"MuteSerialLine", "target,mute", {"timeout"}, "pty"},
-        // Behind 3 s of silence on a line that cannot be opened anew, the next question is late too.
+        // Behind that silence on a line that cannot be opened anew, the next question is late too.
         TriedAgain{"LateOnASerialLine", "target,late", {"timeout"}, "pty", 2},
         TriedAgain{"HalfAnAnswerOnASerialLine", "target,partial", {"timeout", "dropped", "protocol"}, "pty"}),
     [](const auto& row) { return row.param.name; });
@@ -239,9 +239,6 @@ TEST_P(FaultPendingAtAResume, IsNotTakenForARecordThatDoesNotFit) {
   ASSERT_EQ(run.stopped_by, "limit") << run.said;
   RunOptions pending;
   pending.faults[0] = GetParam();  // of this program: before anything is asked
-  pending.alter = [](hw::BenchFile& file) {  // who is mute is not waited for long
-    for (hw::ControlSettings* device : {&file.target, &file.reference}) device->timeout_s = 0.5;
-  };
   const ServedRun resumed = RunServed(served, scenario, pending, &run);
   if (std::string(GetParam()) == "adc,float") {
     EXPECT_EQ(resumed.stopped_by, "signal_lost");

@@ -7,6 +7,7 @@
 
 #include "tests/diagnose/hob_chain.h"
 #include "tests/diagnose/told.h"
+#include "tests/support/night.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
@@ -132,10 +133,10 @@ TEST(HobDiagnosis, ProposesTheMeasurementThatSplitsATie) {
   EXPECT_NE(run.diagnosis.causes[0].next_measurement.find("interferometer"), std::string::npos);
 }
 
-// 40 runs at a rate of 0.5 %: two or more in 2 % of cases.
+// 40 runs at a rate of 0.5 %: two or more in 2 % of cases; 12 at a rate of 30 %: fewer than two in 9 %.
 TEST(HobDiagnosis, RaisesHardlyAnyAlarmOnCleanRuns) {
   int alarms = 0;
-  for (std::uint64_t seed = 100; seed < 140; ++seed) {
+  for (std::uint64_t seed = 100; seed < 100 + static_cast<std::uint64_t>(twinbench::test::ByNight(40, 12)); ++seed) {
     HobChain chain = Short();
     chain.seed = seed;
     alarms += DiagnosisOf(chain).diagnosis.verdict != Verdict::kNone;

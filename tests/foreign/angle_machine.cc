@@ -109,7 +109,6 @@ Machine MakeAngleInOrder(std::uint64_t seed, bool in_motion, const NoiseShape& n
   }
   Truth truth;
   truth.kind = "in order";
-  truth.stress = noise.name;
   return Finished(truth, m);
 }
 

@@ -9,9 +9,7 @@ namespace {
 
 AngleFault SpeedBias(Dice& dice, const Track&) {
   const double sign = dice.Sign(), power = dice.Sign() > 0.0 ? 1.0 : 2.0;
-  Truth truth = Unlisted();
-  truth.never_wrong = true;
-  return Linear(truth, [=](const Instant& at) { return sign * std::pow(std::abs(at.speed_deg_s) / 30.0, power); });
+  return Linear(Unlisted(), [=](const Instant& at) { return sign * std::pow(std::abs(at.speed_deg_s) / 30.0, power); });
 }
 
 /// The device's clock runs at another rate: an age of the reading that grows. It is here for the way in which it

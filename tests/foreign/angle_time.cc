@@ -13,9 +13,7 @@ double Rest(double t_s, double over_s) {
 
 AngleFault WarmUp(Dice& dice, const Track& example) {
   const double over_s = Duration_s(example) * dice.Between(0.06, 0.35);
-  Truth truth = Unlisted({"drift"});
-  truth.never_wrong = true;
-  return Linear(truth, [=](const Instant& at) { return Rest(at.t_s, over_s); });
+  return Linear(Unlisted({"drift"}), [=](const Instant& at) { return Rest(at.t_s, over_s); });
 }
 
 /// A part that heats quickly and one that follows bend against each other.
@@ -30,7 +28,6 @@ AngleFault Touch(Dice& dice, const Track& example) {
   const double duration_s = Duration_s(example), from_s = duration_s * dice.Between(0.15, 0.8);
   const double over_s = duration_s * dice.Between(0.006, 0.03), sign = dice.Sign();
   Truth truth = Unlisted({"outliers"});
-  truth.never_wrong = true;
   truth.repeats = false;
   return Linear(truth, [=](const Instant& at) {
     const double x = (at.t_s - from_s) / over_s;

@@ -1,6 +1,7 @@
 #include "tests/foreign/answer.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace twinbench::foreign {
 namespace {
@@ -22,12 +23,6 @@ bool IsHonest(const Cause& cause, const Truth& truth) {
   return IsAmong(cause.effect, cause.where, truth.honest) ||
          std::ranges::any_of(truth.listed,
                              [&](const Names& names) { return IsAmong(cause.effect, cause.where, names); });
-}
-
-bool IsThere(const Cause& cause, const Truth& truth) {
-  return IsAmong(cause.effect, cause.where, truth.honest) ||
-         std::ranges::any_of(truth.listed,
-                             [&](const Names& names) { return IsNamed(cause.effect, cause.where, names.front()); });
 }
 
 bool Speaks(const Diagnosis& d, const Names& names) {
@@ -56,14 +51,6 @@ int MissingIn(const Diagnosis& d, const Truth& truth) {
   return std::max(0, missing - UnknownParts(d));
 }
 
-std::vector<hidden::Stated> StatedOf(const Diagnosis& d, const Truth& truth) {
-  std::vector<hidden::Stated> stated;
-  if (d.verdict == Verdict::kUnknown) stated.push_back({d.unknown.probability, truth.unlisted > 0});
-  if (d.verdict != Verdict::kNamed && d.verdict != Verdict::kTie) return stated;
-  for (const Cause& cause : d.causes) stated.push_back({cause.probability, IsThere(cause, truth)});
-  return stated;
-}
-
 void FindWrong(const Diagnosis& d, const Truth& truth, Answer& answer) {
   if (d.verdict != Verdict::kNamed && d.verdict != Verdict::kTie) return;
   for (const Cause& cause : d.causes) {
@@ -77,21 +64,32 @@ void FindWrong(const Diagnosis& d, const Truth& truth, Answer& answer) {
 }  // namespace
 
 Answer Judge(const Truth& truth, const Diagnosis& diagnosis) {
-  hidden::Hidden hidden;
-  for (const Names& names : truth.listed) hidden.causes.push_back({names.front(), "", {}});
-  if (truth.unlisted > 0) hidden.unlisted = truth.kind;
   Answer answer;
   answer.truth = truth;
-  answer.outcome = hidden::Judge(hidden, diagnosis);
-  answer.outcome.stated = StatedOf(diagnosis, truth);
+  answer.words = hidden::Judge({}, diagnosis).answer;
   answer.alarm = diagnosis.verdict != Verdict::kNone;
+  answer.is_tie = diagnosis.verdict == Verdict::kTie;
   FindWrong(diagnosis, truth, answer);
   answer.missing = MissingIn(diagnosis, truth);
-  const diagnose::Gain& gain = diagnosis.gain;
-  answer.stated_gain = gain.another_run;
-  answer.stated_interval = gain.interval95;
-  if (gain.another_run != gain.fraction_removed) answer.stated_interval = {gain.another_run, gain.another_run};
+  answer.stated_gain = diagnosis.gain.another_run;
   return answer;
+}
+
+bool IsNamedWrongly(const Answer& a) {
+  constexpr double kMoreLikelyThanNot = 0.5;
+  if (a.wrong.empty()) return false;
+  return a.is_tie ? !a.named_near : a.wrong_at >= kMoreLikelyThanNot;
+}
+
+bool IsRight(const Answer& a) {
+  if (!a.alarm) return a.truth.IsClean() || a.truth.only_noise;
+  return !a.truth.IsClean() && a.missing == 0 && !IsNamedWrongly(a);
+}
+
+std::optional<bool> IsGainRight(const Answer& a) {
+  constexpr double kTolerance = 0.05;  // what a user would call the same share
+  if (!std::isfinite(a.stated_gain) || !std::isfinite(a.file_gain)) return {};
+  return std::abs(a.stated_gain - a.file_gain) <= kTolerance;
 }
 
 }  // namespace twinbench::foreign

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,33 +13,48 @@ namespace twinbench::foreign {
 struct Answer {
   std::string set, name;
   Truth truth;
-  hidden::Outcome outcome;  // answer in words, stated probabilities with what is so, seconds
-  bool alarm = false;
+  std::string words;  // the answer
+  bool alarm = false, is_tie = false;
   std::string wrong;        // the surest name that neither is there nor near; empty: none
   double wrong_at = 0.0;    // its probability
   bool named_near = false;  // a name that is there or near is in the answer
   int missing = 0;          // causes that are neither named, nor among what could be meant, nor said to be unknown
 
-  bool was_extended = false;  // a scenario was written
-  std::string second;         // what the second diagnosis says of the same readings; empty: nothing
+  // Where a scenario was written: what diagnoses with it say of the same readings and of those of another run;
+  // empty words: nothing. The second is not asked of faults that another run does not repeat.
+  std::optional<std::string> second, second_run;
   double stated_gain = kNaN, file_gain = kNaN;  // on another run, without tables of the first one
-  std::array<double, 2> stated_interval = {kNaN, kNaN};
 };
 
 /// @param diagnosis  Of the machine's first run.
 Answer Judge(const Truth& truth, const diagnose::Diagnosis& diagnosis);
 
 /// Diagnoses a run of the machine, writes the extended scenario, reads it, diagnoses the same readings with it, and
-/// holds it against another run.
-Answer Examine(const Plan& plan, const std::string& cache_folder);
+/// holds it against another run. With `runs_again` that other run, noise and all, is diagnosed with it too.
+Answer Examine(const Plan& plan, const std::string& cache_folder, bool runs_again);
 
 /// Share of what the faults add to the readings of another run that the scenario explains; noise is not on them.
 /// 0 for a scenario that cannot be applied to them.
 double GainOn(const Machine& machine, const Scenario& extended);
 
-/// Was this answer wrong at this probability or more?
-inline bool IsWrongAt(const Answer& a, double probability) {
-  return !a.wrong.empty() && a.wrong_at >= probability;
+// Which machine it was.
+inline bool HasSeveral(const Truth& truth) {
+  return std::ssize(truth.listed) + truth.unlisted > 1;
 }
+
+/// A name that is not there at any probability above one half, or a tie without one that is near.
+bool IsNamedWrongly(const Answer& a);
+
+/// A name that is neither there nor near, stated as sure.
+inline bool IsSurelyWrong(const Answer& a) {
+  return !a.wrong.empty() && a.wrong_at >= hidden::kSure;
+}
+
+/// A machine in order is answered with nothing; everything else is found or said to be there, and nothing named
+/// wrongly.
+bool IsRight(const Answer& a);
+
+/// The stated gain is that of the file on another run; nothing if either is not asked.
+std::optional<bool> IsGainRight(const Answer& a);
 
 }  // namespace twinbench::foreign

@@ -32,14 +32,7 @@ TEST(ForeignJudge, TakesANearNameForNoErrorAndAnotherForOne) {
   EXPECT_TRUE(Judge(WarmUp(), Naming("drift", 0.97)).wrong.empty());
   const Answer wrong = Judge(WarmUp(), Naming("hysteresis", 0.97));
   EXPECT_EQ(wrong.wrong, "hysteresis");
-  EXPECT_TRUE(IsWrongAt(wrong, 0.9));
-}
-
-TEST(ForeignJudge, CountsAProbabilityAsTrueOnlyOfWhatIsThere) {
-  EXPECT_TRUE(Judge(WarmUp(), Naming("drift", 0.97)).outcome.stated.at(0).is_so);
-  Truth truth;
-  truth.listed = {{"ellipticity", "quadrature_error"}};
-  EXPECT_FALSE(Judge(truth, Naming("quadrature_error", 0.5)).outcome.stated.at(0).is_so);
+  EXPECT_TRUE(IsSurelyWrong(wrong) && !IsRight(wrong));
 }
 
 TEST(ForeignJudge, MissesWhatIsNeitherNamedNorSaidToBeUnknown) {

@@ -1,18 +1,13 @@
-#include <chrono>
-
 #include "tests/foreign/answer.h"
+#include "tests/hidden/written_file.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/registry.h"
 #include "twin/core/errors.h"
 #include "twin/core/estimator.h"
 #include "twin/diagnose/engine/scanner.h"
-#include "twin/diagnose/extend.h"
 
 namespace twinbench::foreign {
 namespace {
-
-constexpr Run kFirst{1};
-constexpr Run kAnother{2, false, true};
 
 /// The run as the bench sees it, and without faults in place of its noise the noise that the bench believes in:
 /// three fits of one run are compared, so that its size cancels.
@@ -27,63 +22,55 @@ double LeftOf(const std::vector<Reading>& readings, const Scenario& scenario) {
   return diagnose::FreeMisfit(LinearOf(readings, scenario)).power;
 }
 
-/// What the second diagnosis has to say; empty if nothing.
-std::string Again(const std::vector<Reading>& readings, const Scenario& extended,
-                  const diagnose::DiagnoseOptions& options) {
-  const diagnose::Diagnosis again = diagnose::Diagnose(readings, extended, options).diagnosis;
-  return again.verdict == diagnose::Verdict::kNone ? "" : hidden::Judge({}, again).answer;
-}
-
-/// By way of the file's text, as a user has it.
 void HoldToTheFile(const Machine& machine, const std::vector<Reading>& readings,
-                   const diagnose::DiagnosisRun& found, const diagnose::DiagnoseOptions& options, Answer& answer) {
-  answer.was_extended = true;
+                   const diagnose::DiagnosisRun& found, const diagnose::DiagnoseOptions& options, bool runs_again,
+                   Answer& answer) {
   try {
-    const std::string text = diagnose::ExtendedToml(machine.believed, found, "foreign case");
-    Scenario extended = ParseScenario(text, "extended.toml", ".");
-    answer.second = Again(readings, extended, options);
+    Scenario extended = hidden::WrittenFile(machine.believed, found);
+    answer.second = hidden::Says(readings, extended, options);
+    if (!machine.truth.repeats) return;
+    if (runs_again)
+      answer.second_run = hidden::Says(machine.readings(kAnother), machine.in_another_run(extended), options);
     std::erase_if(extended.empiricals, [](const EmpiricalSettings& table) { return table.by == "time"; });
-    if (machine.truth.repeats && std::isfinite(answer.stated_gain)) answer.file_gain = GainOn(machine, extended);
+    if (std::isfinite(answer.stated_gain)) answer.file_gain = GainOn(machine, extended);
   } catch (const InputError& refusal) {
     answer.second = std::string("refused: ") + refusal.what();
-  }
-}
-
-void Diagnose(const Machine& machine, const std::string& cache_folder, Answer& answer) {
-  const std::vector<Reading> readings = machine.readings(kFirst);
-  diagnose::DiagnoseOptions options;
-  options.cache_folder = cache_folder;
-  answer.truth = machine.truth;
-  try {
-    const diagnose::DiagnosisRun found = diagnose::Diagnose(readings, machine.believed, options);
-    answer = Judge(machine.truth, found.diagnosis);
-    if (answer.alarm && !machine.truth.IsClean()) HoldToTheFile(machine, readings, found, options, answer);
-  } catch (const InputError& refusal) {
-    answer.outcome.answer = std::string("refused: ") + refusal.what();
-    answer.missing = static_cast<int>(std::ssize(machine.truth.listed)) + machine.truth.unlisted;
   }
 }
 
 }  // namespace
 
 double GainOn(const Machine& machine, const Scenario& extended) {
-  const std::vector<Reading> with = machine.readings(kAnother);
+  const std::vector<Reading> with = machine.readings(kAnotherWithoutNoise);
   const std::vector<Reading> without = machine.readings({kAnother.seed, false, false});
+  const Scenario believed = machine.in_another_run(machine.believed);
   try {
-    const double before = LeftOf(with, machine.believed), floor = LeftOf(without, machine.believed);
-    return (before - LeftOf(with, extended)) / (before - floor);
+    const double before = LeftOf(with, believed), floor = LeftOf(without, believed);
+    return (before - LeftOf(with, machine.in_another_run(extended))) / (before - floor);
   } catch (const InputError&) {
     return 0.0;
   }
 }
 
-Answer Examine(const Plan& plan, const std::string& cache_folder) {
-  const auto begin = std::chrono::steady_clock::now();
+Answer Examine(const Plan& plan, const std::string& cache_folder, bool runs_again) {
+  const Machine machine = plan.make();
+  const std::vector<Reading> readings = machine.readings(kFirst);
+  diagnose::DiagnoseOptions options;
+  options.cache_folder = cache_folder;
   Answer answer;
-  Diagnose(plan.make(), cache_folder, answer);
-  answer.set = answer.outcome.set = plan.set;
-  answer.name = answer.outcome.name = plan.name;
-  answer.outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  answer.truth = machine.truth;
+  try {
+    const diagnose::DiagnosisRun found = diagnose::Diagnose(readings, machine.believed, options);
+    answer = Judge(machine.truth, found.diagnosis);
+    if (answer.alarm && !machine.truth.IsClean())
+      HoldToTheFile(machine, readings, found, options, runs_again, answer);
+  } catch (const InputError& refusal) {
+    answer.words = std::string("refused: ") + refusal.what();
+    answer.missing = static_cast<int>(std::ssize(machine.truth.listed)) + machine.truth.unlisted;
+    answer.alarm = true;
+  }
+  answer.set = plan.set;
+  answer.name = plan.name;
   return answer;
 }
 

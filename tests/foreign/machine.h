@@ -19,13 +19,11 @@ using Names = std::vector<std::string>;
 struct Truth {
   std::string kind;  // "warm-up"; of several "eccentricity + warm-up"
   std::vector<Names> listed =
-      {};                    // causes of the catalogue: its name first, then those that no reading tells from it
-  int unlisted = 0;          // causes that the catalogue lacks
-  Names honest = {};         // further names that are near enough: "drift" of a warm-up
-  std::string stress = {};   // of a run with nothing wrong: what is unusual in it
-  bool only_noise = false;   // the noise is unusual and nothing else: silence is right as well
-  bool never_wrong = false;  // of the kinds that the score lists on their own
-  bool repeats = true;       // another run of the machine shows the same
+      {};                   // causes of the catalogue: its name first, then those that no reading tells from it
+  int unlisted = 0;         // causes that the catalogue lacks
+  Names honest = {};        // further names that are near enough: "drift" of a warm-up
+  bool only_noise = false;  // the noise is unusual and nothing else: silence is right as well
+  bool repeats = true;      // another run of the machine shows the same
 
   bool IsClean() const { return listed.empty() && unlisted == 0; }
 };
@@ -37,10 +35,15 @@ struct Run {
   bool faults = true;  // false: the same machine in order
 };
 
+inline constexpr Run kFirst{1};
+inline constexpr Run kAnother{2};
+inline constexpr Run kAnotherWithoutNoise{2, false, true};
+
 struct Machine {
   Truth truth;
   Scenario believed;
   std::function<std::vector<Reading>(const Run&)> readings;
+  std::function<Scenario(Scenario)> in_another_run = [](Scenario scenario) { return scenario; };  // its schedule
 };
 
 /// A machine before it is made.
@@ -49,11 +52,10 @@ struct Plan {
   std::function<Machine()> make;
 };
 
-/// Puts the faults of a machine together. Only of a single one it is asked that it never be named wrongly.
+/// Puts the faults of a machine together.
 inline void Append(const Truth& more, Truth& truth) {
   const bool is_first = truth.kind.empty();
   truth.only_noise = is_first && more.only_noise;
-  truth.never_wrong = is_first && more.never_wrong;
   truth.kind += (is_first ? "" : " + ") + more.kind;
   truth.listed.insert(truth.listed.end(), more.listed.begin(), more.listed.end());
   truth.honest.insert(truth.honest.end(), more.honest.begin(), more.honest.end());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "tests/foreign/machine.h"
@@ -18,8 +19,9 @@ std::vector<Plan> SeveralPlans(int count, std::uint64_t first_seed);
 /// rotary bench.
 std::vector<Plan> CleanPlans(int count, std::uint64_t first_seed);
 
-/// Causes of the catalogue on the benches that have no foreign generator, `each` on every bench, by their twins:
-/// they measure what is written of a cause, not how well it is found.
-std::vector<Plan> TwinPlans(int each, std::uint64_t first_seed, const std::string& cache_folder);
+/// Causes of the catalogue by a bench's twin, spread over its effects and places. Their other run is one of the
+/// same bench on another day: these measure what is written of a cause, not how well it is found.
+std::vector<Plan> TwinPlans(const std::string& bench, int count, std::uint64_t first_seed,
+                            const std::string& cache_folder);
 
 }  // namespace twinbench::foreign

@@ -158,7 +158,6 @@ Machine MakeStandInOrder(std::uint64_t seed, const NoiseShape& noise, int positi
   if (positions < 12) design.shifts = {0, 1, 3, positions - 2};
   Truth truth;
   truth.kind = "in order";
-  truth.stress = noise.name;
   return Finished(truth, Drawn(seed, design, noise));
 }
 

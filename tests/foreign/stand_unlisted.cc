@@ -20,9 +20,7 @@ double Rest(double t_s, double over_s) {
 
 StandFault BothDistances(Dice& dice, const StandRun&) {
   const double sign = dice.Sign();
-  Truth truth = Unlisted({"psd_distance", "stray_light", "background"});
-  truth.never_wrong = true;
-  StandFault fault{truth};
+  StandFault fault{Unlisted({"psd_distance", "stray_light", "background"})};
   fault.of_body = [sign](const StandRun&, double size, std::vector<Disturbed>& all) {
     for (Disturbed& at : all) {
       at.light.distance_a_m += sign * size;
@@ -35,9 +33,7 @@ StandFault BothDistances(Dice& dice, const StandRun&) {
 
 StandFault WarmUp(Dice& dice, const StandRun& example) {
   const double over_s = Duration_s(example) * dice.Between(0.1, 0.35);
-  Truth truth = Unlisted({"laser_drift pitch"});
-  truth.never_wrong = true;
-  return Shining(truth, &Light::laser_pitch_rad, [=](const StandStop& at) { return Rest(at.t_s, over_s); });
+  return Shining(Unlisted({"laser_drift pitch"}), &Light::laser_pitch_rad, [=](const StandStop& at) { return Rest(at.t_s, over_s); });
 }
 
 StandFault ThermalBend(Dice& dice, const StandRun& example) {
@@ -49,7 +45,6 @@ StandFault ThermalBend(Dice& dice, const StandRun& example) {
 StandFault Touch(Dice& dice, const StandRun& example) {
   const double from_s = Duration_s(example) * dice.Between(0.2, 0.8), over_s = dice.Between(15.0, 60.0);
   Truth truth = Unlisted({"outliers"});
-  truth.never_wrong = true;
   truth.repeats = false;
   return Moving(truth, &Disturbed::ex_rad, [=](const StandStop& at) {
     const double x = (at.t_s - from_s) / over_s;

@@ -1,13 +1,15 @@
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <map>
 #include <memory>
 
+#include "tests/foreign/dice.h"
 #include "tests/foreign/plans.h"
+#include "tests/hidden/alike.h"
+#include "tests/hidden/another_run.h"
 #include "tests/hidden/effect_size.h"
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_case.h"
-#include "twin/benches/names.h"
+#include "twin/core/happened_once.h"
 
 namespace twinbench::foreign {
 namespace {
@@ -15,54 +17,59 @@ namespace {
 using hidden::Placement;
 using hidden::SignatureScale;
 
-/// Effects that another run shows otherwise.
-bool IsRandom(const std::string& effect) {
-  return effect == "outliers" || effect == "multitooth_seating";
+/// Effects that another run shows again.
+bool Repeats(const Placement& at, const std::string& bench) {
+  const bool is_random = at.effect == "outliers" || at.effect == "multitooth_seating";
+  const auto happens_once = [](const EffectParameter& p) { return p.name == kHappenedAt; };
+  return !is_random && hidden::HasSize(at.effect, at.where, bench) &&
+         std::ranges::none_of(FindEffect(at.effect, bench)->parameters, happens_once);
 }
 
 std::vector<Placement> RepeatingPlacements(const std::string& bench) {
-  std::vector<Placement> kept;
-  for (const Placement& at : hidden::Placements(bench)) {
-    if (!IsRandom(at.effect) && hidden::HasSize(at.effect, at.where, bench)) kept.push_back(at);
-  }
-  return kept;
+  std::vector<Placement> placements = hidden::Placements(bench);
+  std::erase_if(placements, [&](const Placement& at) { return !Repeats(at, bench); });
+  return placements;
 }
 
-/// The machine of a twin: the second run has other tables, another room and other dwells.
-Machine MakeTwinMachine(const Placement& at, std::uint64_t seed, const SignatureScale& scale) {
-  constexpr double kRho = 60.0;
-  const hidden::Case made = hidden::MakeTwinCase(at.design, seed, {{at.effect, at.where, kRho}}, scale);
-  std::vector<EffectSettings> effects;
-  for (const hidden::Part& part : made.hidden.causes)
-    effects.push_back({part.effect, part.where, part.parameters, ""});
+Truth TruthOf(const Placement& at, const std::vector<std::string>& alike) {
   Truth truth;
   truth.kind = at.effect + (at.where.empty() ? "" : " " + at.where);
-  truth.listed = {{at.effect}};
-  truth.listed.front().insert(truth.listed.front().end(), made.hidden.alike.begin(), made.hidden.alike.end());
-  const auto readings = [=, first = made.readings](const Run& run) {
-    if (run.noise) return first;
-    return hidden::NoiseFree(hidden::Drawn(at.design, seed + run.seed),
-                             run.faults ? effects : std::vector<EffectSettings>{});
+  truth.listed = {Names{truth.kind}};
+  for (const std::string& effect : alike) {
+    if (effect != at.effect) truth.listed.front().push_back(effect);
+  }
+  return truth;
+}
+
+/// The machine of a twin, whose other run is on another day.
+Machine MakeTwinMachine(const Placement& at, std::uint64_t seed, const SignatureScale& scale) {
+  const double rho = Dice(seed, "size").Sized(15.0, 60.0);
+  const Scenario actual = hidden::HiddenBench(at.design, seed, {{at.effect, at.where, rho}}, scale);
+  const Truth truth = TruthOf(at, hidden::AlikeOf(actual.effects.front(), hidden::Drawn(at.design, seed), scale));
+  const auto readings = [actual](const Run& run) {
+    Scenario asked = run.seed == kFirst.seed ? actual : hidden::OnAnotherDay(actual);
+    asked.noise_free = !run.noise;
+    if (!run.faults) asked.effects.clear();
+    return hidden::TakeReadings(asked);
   };
-  return {truth, made.scenario, readings};
+  return {truth, hidden::Believed(at.design), readings, hidden::WithOtherSchedule};
 }
 
 }  // namespace
 
-std::vector<Plan> TwinPlans(int each, std::uint64_t first_seed, const std::string& cache_folder) {
+std::vector<Plan> TwinPlans(const std::string& bench, int count, std::uint64_t first_seed,
+                            const std::string& cache_folder) {
+  const std::vector<Placement> places = RepeatingPlacements(bench);
+  std::map<hidden::Design, std::shared_ptr<const SignatureScale>> scales;
   std::vector<Plan> plans;
   std::uint64_t seed = 3000000 + first_seed;
-  for (const char* bench : {kTurntableBench, kHobBench, kCircularBench, kFreeformBench}) {
-    const std::vector<Placement> places = RepeatingPlacements(bench);
-    std::map<hidden::Design, std::shared_ptr<const SignatureScale>> scales;
-    for (const Placement& at : places)
-      scales.try_emplace(at.design, std::make_shared<const SignatureScale>(at.design, cache_folder));
-    for (int k = 0; k < each; ++k) {
-      const Placement at = places[static_cast<std::size_t>(k) * places.size() / static_cast<std::size_t>(each)];
-      seed += 10;
-      plans.push_back({std::string("twins ") + bench, hidden::CaseName(at, seed),
-                       [at, seed, scale = scales.at(at.design)] { return MakeTwinMachine(at, seed, *scale); }});
-    }
+  for (int k = 0; k < count; ++k) {
+    const Placement at = places[static_cast<std::size_t>(k) * places.size() / static_cast<std::size_t>(count)];
+    auto& scale = scales[at.design];
+    if (!scale) scale = std::make_shared<const SignatureScale>(at.design, cache_folder);
+    seed += 10;
+    plans.push_back({"twins " + bench, hidden::CaseName(at, seed),
+                     [at, seed, scale = scale] { return MakeTwinMachine(at, seed, *scale); }});
   }
   return plans;
 }

@@ -17,7 +17,6 @@ using diagnose::Cause;
 using diagnose::Diagnosis;
 using diagnose::Verdict;
 
-constexpr double kConfident = 0.9;
 constexpr int kLargestTie = 3;
 
 bool Matches(const Cause& cause, const Part& part) {
@@ -88,22 +87,10 @@ bool Names(const Diagnosis& d) {
   return d.verdict == Verdict::kNamed || d.verdict == Verdict::kTie;
 }
 
-void AddStated(const Diagnosis& d, Outcome& outcome) {
-  if (Names(d)) {
-    for (const Cause& cause : d.causes)
-      outcome.stated.push_back({cause.probability, IsThere(cause, outcome.hidden)});
-  }
-  if (d.verdict == Verdict::kUnknown)
-    outcome.stated.push_back({d.unknown.probability, !outcome.hidden.unlisted.empty()});
-}
-
-void AddConfidence(const Diagnosis& d, Outcome& outcome) {
-  if (!Names(d)) return;
-  for (const Cause& cause : d.causes) {
-    if (cause.probability < kConfident || IsThere(cause, outcome.hidden)) continue;
-    outcome.confident_wrong = true;
-    outcome.confident_alike = IsAlike(cause, outcome.hidden);
-  }
+bool IsSurelyWrong(const Hidden& hidden, const Diagnosis& d) {
+  return Names(d) && std::ranges::any_of(d.causes, [&](const Cause& cause) {
+    return cause.probability >= kSure && !IsThere(cause, hidden) && !IsAlike(cause, hidden);
+  });
 }
 
 void AddParameters(const Diagnosis& d, Outcome& outcome) {
@@ -129,12 +116,6 @@ std::string AnswerOf(const Diagnosis& d) {
   if (d.verdict == Verdict::kUnknown)
     text += fmt::format(" {:.2f}: {}", d.unknown.probability, d.unknown.signature);
   return text;
-}
-
-double TopProbability(const Diagnosis& d) {
-  double top = d.verdict == Verdict::kUnknown ? d.unknown.probability : 0.0;
-  for (const Cause& cause : d.causes) top = std::max(top, cause.probability);
-  return top;
 }
 
 }  // namespace
@@ -188,14 +169,8 @@ Outcome Judge(const Hidden& hidden, const Diagnosis& diagnosis) {
   outcome.grade = GradeOf(hidden, diagnosis);
   outcome.verdict = diagnosis.verdict;
   outcome.answer = AnswerOf(diagnosis);
-  outcome.members = static_cast<int>(std::ssize(diagnosis.causes));
-  outcome.probability = TopProbability(diagnosis);
-  outcome.alarm_p = diagnosis.alarm_p;
   outcome.gain = diagnosis.gain.fraction_removed;
-  outcome.gain_interval95 = diagnosis.gain.interval95;
-  if (!diagnosis.causes.empty()) outcome.rho = diagnosis.causes.front().rho;
-  AddStated(diagnosis, outcome);
-  AddConfidence(diagnosis, outcome);
+  outcome.sure_wrong = IsSurelyWrong(hidden, diagnosis);
   AddParameters(diagnosis, outcome);
   return outcome;
 }

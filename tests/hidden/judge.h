@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -25,12 +24,6 @@ enum class Grade {
 };
 const char* GradeName(Grade grade);
 
-/// A probability that was stated, and whether what it was stated of is so.
-struct Stated {
-  double probability = kNaN;
-  bool is_so = false;
-};
-
 /// A parameter of a cause that was named rightly, against its truth.
 struct ParameterCheck {
   std::string name;
@@ -40,25 +33,20 @@ struct ParameterCheck {
   bool Covers() const;  // truth within 1.96 standard uncertainties
 };
 
+inline constexpr double kSure = 0.8;  // a name is stated as good as certain from here on
+
 /// One diagnosis against what was hidden.
 struct Outcome {
   std::string set, name;
   Hidden hidden;
   Grade grade = Grade::kRefused;
   diagnose::Verdict verdict = diagnose::Verdict::kNone;
-  std::string answer;        // causes with their probabilities and signature of the unknown, in words
-  int members = 0;           // causes in the answer
-  double probability = 0.0;  // of the most probable cause or the unknown
-  double alarm_p = kNaN, rho = kNaN;
+  std::string answer;  // causes with their probabilities and signature of the unknown, in words
   double gain = kNaN;  // share of the removable variance of held-out readings
-  std::array<double, 2> gain_interval95 = {kNaN, kNaN};
-  bool confident_wrong = false;  // a name that is not there, stated at 0.9 or more
-  bool confident_alike = false;  // ... but these readings cannot tell it from the truth
-  std::vector<Stated> stated;
+  bool sure_wrong =
+      false;  // stated as sure: a name that is not there and that these readings can tell from what is
   std::vector<ParameterCheck> parameters;
-  double seconds = 0.0;
 
-  bool Detected() const { return verdict != diagnose::Verdict::kNone; }
   bool RightOrTie() const { return grade == Grade::kRight || grade == Grade::kTie; }
 };
 

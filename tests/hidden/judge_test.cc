@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/hidden/score_table.h"
+#include "tests/hidden/share.h"
 
 // The marks themselves: a score is worth what its marks are.
 namespace twinbench::hidden {
@@ -55,12 +55,14 @@ TEST(Judge, ATieCountsUpToThreeMembers) {
             Grade::kLargeTie);
 }
 
-TEST(Judge, WrongNamesAreConfidentFromNineTenths) {
-  const Hidden hidden = Listed("psd_distance", "psd_a");
-  EXPECT_TRUE(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "all"}}, 0.9)).confident_wrong);
-  EXPECT_FALSE(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "all"}}, 0.89)).confident_wrong);
-  EXPECT_FALSE(Judge(hidden, Answer(Verdict::kNamed, {{"psd_distance", "psd_a"}}, 0.97)).confident_wrong);
-  EXPECT_TRUE(Judge({}, Answer(Verdict::kNamed, {{"tone", "all"}})).confident_wrong);
+TEST(Judge, WrongNamesAreSureFromEightTenthsUnlessNothingTellsThemFromTheTruth) {
+  Hidden hidden = Listed("psd_distance", "psd_a");
+  EXPECT_TRUE(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "all"}}, 0.8)).sure_wrong);
+  EXPECT_FALSE(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "all"}}, 0.79)).sure_wrong);
+  EXPECT_FALSE(Judge(hidden, Answer(Verdict::kNamed, {{"psd_distance", "psd_a"}}, 0.97)).sure_wrong);
+  EXPECT_TRUE(Judge({}, Answer(Verdict::kNamed, {{"tone", "all"}})).sure_wrong);
+  hidden.alike = {"psd_distance", "tone"};
+  EXPECT_FALSE(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "all"}}, 0.9)).sure_wrong);
 }
 
 TEST(Judge, AnUnknownNeedsItsLockAndExactlyItsChannels) {
@@ -95,23 +97,6 @@ TEST(Judge, PhasesAreComparedModuloAFullTurn) {
   EXPECT_TRUE(Judge(hidden, d).parameters.at(0).Covers());
   d.causes[0].parameters[0].u = 0.05;
   EXPECT_FALSE(Judge(hidden, d).parameters.at(0).Covers());
-}
-
-/// An answer whose cause removes `fraction` of the removable variance, within the interval.
-Outcome WithGain(double fraction, double lower, double upper) {
-  Diagnosis d = Answer(Verdict::kNamed, {{"tone", "all"}});
-  d.gain.fraction_removed = fraction;
-  d.gain.interval95 = {lower, upper};
-  Outcome outcome = Judge(Listed("tone"), d);
-  outcome.set = "twin";
-  return outcome;
-}
-
-TEST(Score, AGainReachesNineTenthsUnlessItsIntervalLiesBelow) {
-  const std::string table =
-      ScoreTable({WithGain(0.97, 0.95, 1.0), WithGain(0.8, 0.5, 1.1), WithGain(0.6, 0.4, 0.8)});
-  // Mean 0.79, scatter 0.185 / sqrt(3).
-  EXPECT_THAT(table, testing::HasSubstr("| twin | 3 | 2/3 = 66.7 % (9.4 to 99.2) | 1 | 0.790 +- 0.107 |"));
 }
 
 TEST(Share, HasTheIntervalOfClopperAndPearson) {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tests/hidden/score_table.h"
-
 namespace twinbench::hidden {
 namespace {
 
@@ -29,23 +27,12 @@ const std::string& CacheFolder() {
   return path;
 }
 
-std::vector<Outcome> RunReduced(const std::vector<Plan>& plans) {
-  return RunCases(plans, {1, CacheFolder(), {}});
+std::vector<Outcome> RunReduced(const std::vector<Plan>& plans, int threads) {
+  return RunCases(plans, {threads, CacheFolder()});
 }
 
 int CountOf(const std::vector<Outcome>& outcomes, bool (*test)(const Outcome&)) {
   return static_cast<int>(std::ranges::count_if(outcomes, test));
-}
-
-::testing::AssertionResult IsNotBelow(int count, std::size_t of, double rate) {
-  const double chance = ProbabilityOfAtMost(count, static_cast<int>(of), rate);
-  if (of > 0 && chance > 0.01) return ::testing::AssertionSuccess();
-  return ::testing::AssertionFailure() << count << " of " << of << ", and at a rate of " << rate
-                                       << " so few have a probability of " << chance;
-}
-
-::testing::AssertionResult IsNotAbove(int count, std::size_t of, double rate) {
-  return IsNotBelow(static_cast<int>(of) - count, of, 1.0 - rate);
 }
 
 std::string Others(const std::vector<Outcome>& outcomes, bool (*right)(const Outcome&)) {

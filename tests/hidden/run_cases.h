@@ -7,14 +7,16 @@
 
 namespace twinbench::hidden {
 
+/// Does work(0) to work(count - 1), so many at a time.
+void InParallel(std::size_t count, int threads, const std::function<void(std::size_t)>& work);
+
 struct RunOptions {
   int threads = 2;
-  std::string cache_folder;                                                  // of calibrated thresholds
-  std::function<void(int done, int planned, const Outcome& last)> progress;  // called by one thread at a time
+  std::string cache_folder;  // of calibrated thresholds
 };
 
 /// Makes, diagnoses and judges every case; the outcomes are in the order of the plans and do not depend on the
-/// number of threads, their times apart.
+/// number of threads.
 std::vector<Outcome> RunCases(const std::vector<Plan>& plans, const RunOptions& options);
 
 /// One case, in this thread. An InputError is the outcome kRefused.

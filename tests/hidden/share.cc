@@ -20,7 +20,7 @@ double SolveAtMost(int count, int of, double level) {
 double ProbabilityOfAtMost(int count, int of, double p) {
   if (p <= 0.0) return 1.0;
   if (p >= 1.0) return count >= of ? 1.0 : 0.0;
-  double sum = 0.0;
+  double sum = 0.0;  // of no k at all: count may be -1
   for (int k = 0; k <= count; ++k) {
     const double choose = std::lgamma(of + 1.0) - std::lgamma(k + 1.0) - std::lgamma(of - k + 1.0);
     sum += std::exp(choose + k * std::log(p) + (of - k) * std::log1p(-p));

@@ -12,7 +12,8 @@ std::vector<EffectSettings> DrawEffects(const std::vector<Wanted>& wanted, const
   Stream stream(drawn.seed, "hidden.effect");
   std::vector<EffectSettings> effects;
   for (const Wanted& w : wanted) {
-    const EffectSettings effect = DrawEffect(w.effect, w.where, drawn, stream);
+    EffectSettings effect = DrawEffect(w.effect, w.where, drawn, stream);
+    for (const auto& [name, value] : w.parameters) effect.parameters.at(name) = value;
     effects.push_back(HasSize(w.effect, w.where, drawn.bench) ? SizedTo(w.rho, effect, drawn, scale) : effect);
   }
   return effects;
@@ -28,15 +29,16 @@ Hidden TruthOf(const std::vector<EffectSettings>& effects) {
 }  // namespace
 
 Scenario HiddenBench(Design design, std::uint64_t seed, const std::vector<Wanted>& wanted,
-                     const SignatureScale& scale) {
+                     const SignatureScale& scale, const Otherwise& otherwise) {
   Scenario actual = Drawn(design, seed);
+  if (otherwise) otherwise(actual);
   actual.effects = DrawEffects(wanted, actual, scale);
   return actual;
 }
 
-Case MakeTwinCase(Design design, std::uint64_t seed, const std::vector<Wanted>& wanted,
-                  const SignatureScale& scale) {
-  const Scenario actual = HiddenBench(design, seed, wanted, scale);
+Case MakeTwinCase(Design design, std::uint64_t seed, const std::vector<Wanted>& wanted, const SignatureScale& scale,
+                  const Otherwise& otherwise) {
+  const Scenario actual = HiddenBench(design, seed, wanted, scale, otherwise);
   Case made;
   made.scenario = Believed(design);
   made.readings = TakeReadings(actual);

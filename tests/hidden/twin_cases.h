@@ -24,6 +24,15 @@ struct TwinOptions {
 /// One effect at a time: every name, every place; on the angle bench at stops and in motion.
 std::vector<Plan> SinglePlans(const std::string& bench, const TwinOptions& options);
 
+/// When the clamp closed, before the first reading of each set-up, and the creep's time constant.
+struct Clamped {
+  double before_s, time_constant_s;
+};
+/// mount_creep at every place, in each of these ways.
+/// @param bench  That has it: rotary_4dof, turntable_autocollimator.
+std::vector<Plan> CreepPlans(const std::string& bench, const std::vector<Clamped>& ways,
+                             const TwinOptions& options);
+
 /// Two different effects of the rotary bench at once, rho of each between 10 and `rho_to`.
 std::vector<Plan> PairPlans(int count, const TwinOptions& options);
 

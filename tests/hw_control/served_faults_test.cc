@@ -17,7 +17,7 @@ namespace {
 using test::KindOf;
 using test::ServedTwin;
 
-constexpr Duration kBeyondFaults = std::chrono::milliseconds(500);
+constexpr Duration kBeyondFaults = std::chrono::milliseconds(300);
 
 /// The target of a served twin whose clock is held, and how to spoil it.
 class FaultyTable {

@@ -220,7 +220,7 @@ TEST_F(RealClients, TheDistributionsIiodAnswersTheSameToTheSameCommands) {
 
 TEST_F(RealClients, IioStresstestFindsNoFault) {
   SKIP_WITHOUT("iio_stresstest");
-  const std::string text = Output("timeout -s INT 4 iio_stresstest -u " + iiod + " -t 3 psd-adc16");
+  const std::string text = Output("timeout -s INT 2 iio_stresstest -u " + iiod + " -t 1 psd-adc16");
   EXPECT_THAT(text.substr(0, 1000),
               testing::Not(testing::AnyOf(HasSubstr("ERROR"), HasSubstr("Unable"), HasSubstr("Usage"))));
   EXPECT_THAT(text, HasSubstr("over 1 s     :       0"));

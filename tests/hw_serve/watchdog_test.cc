@@ -6,6 +6,7 @@
 
 #include "hw_bridge/bench_file.h"
 #include "tests/hw_serve/serving.h"
+#include "tests/hw_serve/virtual_bench.h"
 
 /// What becomes of tables that move when whoever moved them is gone. The twin runs in real time; a move of 100 deg takes it four seconds.
 namespace twinbench::test {
@@ -13,7 +14,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-bool Moves(TcpClient& looker) {
+template <class Client>
+bool Moves(Client& looker) {
   return looker.Ask("ROT1:STAT?").find(",1,0,1,0,") != std::string::npos;
 }
 
@@ -31,14 +33,37 @@ class Missed : public testing::Test {
 
 TEST_F(Missed, AClientThatArmedItAndIsGoneStopsWhatMoves) {
   for (const bool armed : {false, true}) {
-    auto mover = std::make_unique<TcpClient>(served_.at().scpi_port);
-    mover->Ask(armed ? "SYST:WATC 100;WATC?" : "SYST:WATC?");
-    mover->Send("ROT1:ANGL 100\n");
-    mover->Ask("ROT1:ANGL:COMM?");
-    mover.reset();
-    EXPECT_EQ(IsStopped(looker_), armed);
-    looker_.Ask("ROT1:STOP;:ROT1:ANGL 0;SETT? 10");
+    VirtualBench bench(1.0);
+    VirtualScpi looker(bench);
+    {
+      VirtualScpi mover(bench);
+      mover.Ask(armed ? "SYST:WATC 100;WATC?" : "SYST:WATC?");
+      mover.Say("ROT1:ANGL 100\n");
+      bench.Pass(milliseconds(500));
+      EXPECT_TRUE(Moves(looker));
+    }
+    bench.Pass(milliseconds(500));
+    EXPECT_EQ(Moves(looker), !armed);
   }
+}
+
+TEST_F(Missed, WhoeverTalksOrWaitsForAnAnswerIsThere) {
+  VirtualBench bench(1.0);
+  VirtualEsp mover(bench);
+  VirtualScpi other(bench), looker(bench);
+  mover.Ask("XW0.3;1PA100;TE?");
+  other.Say("SYST:WATC 0.3\n");
+  EXPECT_EQ(other.Ask("ROT1:SETT? 0.8"), "0") << "its answer comes after 0.8 s";
+  EXPECT_TRUE(Moves(looker));
+  for (int k = 0; k < 8; ++k) {
+    bench.Pass(milliseconds(50));
+    mover.Ask("1TP?");
+  }
+  EXPECT_TRUE(Moves(looker));
+  mover.Say("XW0\n");
+  other.Say("SYST:WATC 0\n");
+  bench.Pass(milliseconds(500));
+  EXPECT_TRUE(Moves(looker)) << "nobody is missed any more";
 }
 
 TEST_F(Missed, OneThatFallsSilentToo) {
@@ -46,23 +71,6 @@ TEST_F(Missed, OneThatFallsSilentToo) {
   EXPECT_EQ(mover.Ask("XW0.3;1PA100;TE?"), "0");
   EXPECT_TRUE(Moves(looker_));
   EXPECT_TRUE(IsStopped(looker_));
-}
-
-TEST_F(Missed, WhoeverTalksOrWaitsForAnAnswerIsThere) {
-  TcpClient mover(served_.at().esp_port), other(served_.at().scpi_port);
-  mover.Ask("XW0.3;1PA100;TE?");
-  other.Send("SYST:WATC 0.3\n");
-  EXPECT_EQ(other.Ask("ROT1:SETT? 0.8"), "0") << "its answer comes after 0.8 s";
-  EXPECT_TRUE(Moves(looker_));
-  for (int k = 0; k < 8; ++k) {
-    std::this_thread::sleep_for(milliseconds(50));
-    mover.Ask("1TP?");
-  }
-  EXPECT_TRUE(Moves(looker_));
-  mover.Send("XW0\n");
-  other.Send("SYST:WATC 0\n");
-  std::this_thread::sleep_for(milliseconds(500));
-  EXPECT_TRUE(Moves(looker_)) << "nobody is missed any more";
 }
 
 TEST_F(Missed, ABenchFileArmsItWhereItIsServed) {
@@ -74,7 +82,7 @@ TEST_F(Missed, ABenchFileArmsItWhereItIsServed) {
     EXPECT_TRUE(Moves(looker_)) << tables;
     bench.reset();  // as the system does when the program is killed
     EXPECT_TRUE(IsStopped(looker_)) << tables;
-    looker_.Ask("ROT1:ANGL 0;SETT? 10");
+    looker_.Ask("SIM:REST;*OPC?");
   }
 }
 

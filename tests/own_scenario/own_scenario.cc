@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cstdlib>
-#include <iostream>
 #include <set>
 
 #include "tests/support/angle_benches.h"
-#include "tests/support/thresholds.h"
+#include "tests/support/night.h"
 #include "twin/benches/registry.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/diagnose/diagnose.h"
@@ -23,28 +21,6 @@ std::string CauseOf(const diagnose::Diagnosis& d) {
   return fmt::format("{} {} {:.2f}", d.causes.front().effect, d.causes.front().where, d.causes.front().probability);
 }
 
-/// Runs the twin and asks what is wrong.
-void Try(Scenario scenario, const std::string& what, int seeds, Alarms& alarms) {
-  const std::uint64_t first = scenario.seed;
-  for (int k = 0; k < seeds; ++k) {
-    scenario.seed = first + static_cast<std::uint64_t>(k);
-    diagnose::DiagnoseOptions options;
-    options.null_runs = kNullRuns;
-    options.cache_folder = ThresholdsFolder();
-    ++alarms.runs;
-    std::string raised;
-    try {
-      const diagnose::Diagnosis d = diagnose::Diagnose(ReadingsOf(scenario), scenario, options).diagnosis;
-      if (d.verdict != diagnose::Verdict::kNone) raised = CauseOf(d);
-    } catch (const std::exception& error) {
-      raised = error.what();
-    }
-    if (raised.empty()) continue;
-    alarms.raised.push_back(fmt::format("{} (seed {}): {}", what, scenario.seed, raised));
-    std::cout << alarms.raised.back() << std::endl;
-  }
-}
-
 /// A flag or a word may switch off what other keys say.
 bool IsTriedAlone(const OwnKey& key) {
   const std::string value = key.settings.back().substr(key.settings.back().find('=') + 1);
@@ -57,11 +33,11 @@ std::vector<std::string> Needed(const OwnKey& key) {
 
 /// Neighbours that need the same beside them are tried in one run.
 std::vector<std::vector<OwnKey>> Grouped(const std::vector<OwnKey>& keys) {
-  constexpr std::size_t kTogether = 4;
+  const std::size_t together = IsNight() ? 1 : 10;
   std::vector<std::vector<OwnKey>> groups;
   for (const OwnKey& key : keys) {
     if (key.settings.empty()) continue;
-    const bool joins = !groups.empty() && groups.back().size() < kTogether && !IsTriedAlone(key) &&
+    const bool joins = !groups.empty() && groups.back().size() < together && !IsTriedAlone(key) &&
                        !IsTriedAlone(groups.back().front()) && Needed(groups.back().front()) == Needed(key);
     if (!joins) groups.emplace_back();
     groups.back().push_back(key);
@@ -69,19 +45,12 @@ std::vector<std::vector<OwnKey>> Grouped(const std::vector<OwnKey>& keys) {
   return groups;
 }
 
-Alarms AlarmsTogether(const std::string& base, std::vector<std::string> settings, const std::vector<OwnKey>& keys,
-                      int seeds) {
-  std::vector<std::string> stated;
+OwnRun RunTogether(const OwnBench& bench, const std::vector<OwnKey>& keys) {
+  std::vector<std::string> stated, settings = bench.base;
   for (const OwnKey& key : keys) stated.insert(stated.end(), key.settings.begin(), key.settings.end());
   settings.insert(settings.end(), stated.begin(), stated.end());
-  Alarms alarms;
-  Try(LoadScenario(base, settings), fmt::format("{}", fmt::join(stated, " ")), seeds, alarms);
-  return alarms;
-}
-
-void Add(const Alarms& more, Alarms& alarms) {
-  alarms.runs += more.runs;
-  alarms.raised.insert(alarms.raised.end(), more.raised.begin(), more.raised.end());
+  return {fmt::format("{}", fmt::join(stated, " ")), LoadScenario(ScenarioPath(bench.scenario), settings),
+          static_cast<int>(keys.size())};
 }
 
 }  // namespace
@@ -102,35 +71,39 @@ std::vector<std::string> Forgotten(const std::string& bench, const std::vector<O
   return forgotten;
 }
 
-std::string Alarms::InWords() const {
-  return fmt::format("{} of {} runs:\n{}", raised.size(), runs, fmt::join(raised, "\n"));
+const std::vector<OwnBench>& OwnBenches() {
+  static const std::vector<OwnBench> benches = {own_rotary::Bench(), own_encoder::Bench(),  own_turntable::Bench(),
+                                                own_hob::Bench(),    own_circular::Bench(), own_freeform::Bench()};
+  return benches;
 }
 
-Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_settings,
-                const std::vector<OwnKey>& keys, int seeds) {
-  Alarms alarms;
-  for (const std::vector<OwnKey>& group : Grouped(keys)) {
-    Add(AlarmsTogether(base, base_settings, group, seeds), alarms);
-    alarms.runs += static_cast<int>(group.size() - 1) * seeds;
-  }
-  return alarms;
+std::vector<OwnRun> KeyRuns(const OwnBench& bench) {
+  std::vector<OwnRun> runs;
+  for (const std::vector<OwnKey>& group : Grouped(bench.keys)) runs.push_back(RunTogether(bench, group));
+  return runs;
 }
 
-Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings, int seeds) {
-  Alarms alarms;
-  const Scenario plain = LoadScenario(base, base_settings);
+std::vector<OwnRun> EffectRuns(const OwnBench& bench) {
+  const Scenario plain = LoadScenario(ScenarioPath(bench.scenario), bench.effects_base);
+  std::vector<OwnRun> runs;
   for (const EffectEntry& entry : EffectCatalogue(plain.bench)) {
     if (entry.name == "outliers") continue;  // which readings they meet, nobody can foresee
-    Scenario scenario = plain;
-    scenario.effects = {PlainEffect(entry)};
-    Try(scenario, entry.name, seeds, alarms);
+    runs.push_back({entry.name, plain});
+    runs.back().scenario.effects = {PlainEffect(entry)};
   }
-  return alarms;
+  return runs;
 }
 
-int Seeds() {
-  const char* stated = std::getenv("OWN_SCENARIO_SEEDS");
-  return stated ? std::atoi(stated) : 1;
+std::string AlarmOf(const OwnRun& run, const std::string& cache_folder) {
+  diagnose::DiagnoseOptions options;
+  options.null_runs = kNullRuns;
+  options.cache_folder = cache_folder;
+  try {
+    const diagnose::Diagnosis d = diagnose::Diagnose(ReadingsOf(run.scenario), run.scenario, options).diagnosis;
+    return d.verdict == diagnose::Verdict::kNone ? "" : CauseOf(d);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
 }
 
 }  // namespace twinbench::test

@@ -21,22 +21,46 @@ OwnKey Change(const std::string& key, const std::string& value, std::vector<std:
 /// Keys of the bench's schema that are in no entry, and keys of entries that are in no schema.
 std::vector<std::string> Forgotten(const std::string& bench, const std::vector<OwnKey>& keys);
 
-struct Alarms {
-  int runs = 0;
-  std::vector<std::string> raised;  // key = value: cause, for each
-  std::string InWords() const;
+/// A bench with its keys, and what a run of each has besides.
+struct OwnBench {
+  std::string name, scenario;     // in scenarios/
+  std::vector<std::string> base;  // settings that every run has
+  std::vector<OwnKey> keys;
+  std::vector<std::string> effects_base;  // ... and those with an effect
+  int effects_an_alarm = 20;              // an alarm in so many of its effects is not too much
 };
+const std::vector<OwnBench>& OwnBenches();
 
-/// Neighbours in the list share a run where they can; every key counts as one.
-/// @param base    Scenario and settings that every run has.
-/// @param seeds   How many of each.
-Alarms AlarmsOf(const std::string& base, const std::vector<std::string>& base_settings,
-                const std::vector<OwnKey>& keys, int seeds);
+/// A run to be made and diagnosed with its own scenario.
+struct OwnRun {
+  std::string what;  // the settings or the effect
+  Scenario scenario;
+  int keys = 1;  // neighbours in the list share a run where they can
+};
+std::vector<OwnRun> KeyRuns(const OwnBench& bench);
+/// Every effect of the catalogue at its default size.
+std::vector<OwnRun> EffectRuns(const OwnBench& bench);
 
-/// The same for every effect of the bench's catalogue at its default size.
-Alarms AlarmsOfEffects(const std::string& base, const std::vector<std::string>& base_settings, int seeds);
-
-/// One, or as many as the environment's OWN_SCENARIO_SEEDS says.
-int Seeds();
+/// What the diagnosis has to say; empty if nothing.
+std::string AlarmOf(const OwnRun& run, const std::string& cache_folder);
 
 }  // namespace twinbench::test
+
+namespace twinbench::own_rotary {
+test::OwnBench Bench();
+}
+namespace twinbench::own_encoder {
+test::OwnBench Bench();
+}
+namespace twinbench::own_turntable {
+test::OwnBench Bench();
+}
+namespace twinbench::own_hob {
+test::OwnBench Bench();
+}
+namespace twinbench::own_circular {
+test::OwnBench Bench();
+}
+namespace twinbench::own_freeform {
+test::OwnBench Bench();
+}

@@ -8,6 +8,7 @@
 
 #include "tests/separate/index_spectrum.h"
 #include "tests/support/angle_benches.h"
+#include "tests/support/night.h"
 #include "twin/model/follow.h"
 
 // A compensation that the twins are commanded by, and what another measurement then shows.
@@ -73,8 +74,8 @@ TEST(TurntableSpectrum, IsLeftWithWhatWasPredictedOverManySeeds) {
   Scenario scenario = Spectrum();
   int off = 0, worse = 0, silent = 0;
   double lowest = 1.0, highest = 1.0, before = 0.0, after = 0.0;
-  constexpr int kSeeds = 60;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
+  const int seeds = test::ByNight(60, 10);
+  for (int seed = 1; seed <= seeds; ++seed) {
     scenario.seed = static_cast<std::uint64_t>(seed);
     TurntableOf(scenario).turntable.harmonics = Drawn(scenario.seed);
     const IndexErrors first = Measured(scenario);
@@ -84,8 +85,8 @@ TEST(TurntableSpectrum, IsLeftWithWhatWasPredictedOverManySeeds) {
     worse += !check.IsBetter();
     lowest = std::min(lowest, check.Ratio());
     highest = std::max(highest, check.Ratio());
-    before += check.before_rms_rad / arcsec / kSeeds;
-    after += check.remeasured_rms_rad / arcsec / kSeeds;
+    before += check.before_rms_rad / arcsec / seeds;
+    after += check.remeasured_rms_rad / arcsec / seeds;
     // Whole degrees tell orders below 160 apart.
     const auto is_high = [](const HarmonicSettings& h) { return h.order >= 160.0; };
     silent += std::ranges::any_of(TurntableOf(scenario).turntable.harmonics, is_high) && !compensation.IsAliased();
@@ -138,8 +139,8 @@ TEST(HobDriveOrders, AreLeftWithWhatWasPredictedOverManySeeds) {
   Scenario scenario = DriveOrders();
   int off = 0, worse = 0;
   double lowest = 1.0, highest = 1.0, before = 0.0, after = 0.0;
-  constexpr int kSeeds = 8;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
+  const int seeds = test::ByNight(8, 2);
+  for (int seed = 1; seed <= seeds; ++seed) {
     scenario.seed = static_cast<std::uint64_t>(seed);
     HobOf(scenario).transmission.harmonics = Drawn(scenario.seed);
     const IndexErrors first = Measured(scenario);
@@ -150,8 +151,8 @@ TEST(HobDriveOrders, AreLeftWithWhatWasPredictedOverManySeeds) {
     worse += !check.IsBetter();
     lowest = std::min(lowest, check.Ratio());
     highest = std::max(highest, check.Ratio());
-    before += check.before_rms_rad / arcsec / kSeeds;
-    after += check.remeasured_rms_rad / arcsec / kSeeds;
+    before += check.before_rms_rad / arcsec / seeds;
+    after += check.remeasured_rms_rad / arcsec / seeds;
   }
   const std::string figures =
       fmt::format("before {:.2f}, after {:.2f} arcsec rms on average; predicted / measured again {:.2f} to {:.2f}",

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/sim/quiet_scenario.h"
+#include "tests/support/night.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 #include "twin/core/units.h"
 
@@ -45,6 +46,10 @@ TEST_P(Means, ScatterAsTheSpectrumSays) {
 
 INSTANTIATE_TEST_SUITE_P(FromATenthToFourPeriodsOfTheCorner, Means, testing::Values(0.0, 0.1, 1.0, 4.0));
 
+int Blocks() {
+  return test::ByNight(1500, 400);
+}
+
 /// Mean of squares of the means of blocks of so many scans on one channel, minutes apart.
 double SquareOfMeans_V2(int scans, int channel) {
   Scenario scenario = Quiet();
@@ -53,10 +58,10 @@ double SquareOfMeans_V2(int scans, int channel) {
   RotaryOf(scenario).optics.wander_rad = 100e-6;
   RotaryOf(scenario).optics.wander_corner_Hz = 200.0;
   Twin twin(scenario);
-  constexpr int kBlocks = 1500;
+  const int blocks = Blocks();
   double squares_V2 = 0.0;
-  for (int k = 0; k < kBlocks; ++k) {
-    squares_V2 += std::pow(twin.Bench().adc.Acquire(scans, false).channel[channel].mean_V, 2) / kBlocks;
+  for (int k = 0; k < blocks; ++k) {
+    squares_V2 += std::pow(twin.Bench().adc.Acquire(scans, false).channel[channel].mean_V, 2) / blocks;
     twin.Bench().clock.Wait(FromSeconds(17.3));
   }
   return squares_V2;
@@ -68,7 +73,7 @@ TEST(BeamWander, GrowsWithTheWayAndIsLeftInBlockMeansAsItsSpectrumSays) {
   const double by_laser_m = 100e-6 * std::sqrt(way_m) * (way_m + arm_m),
                by_arm_m = 100e-6 * std::sqrt(arm_m) * arm_m;
   const double single_V2 = std::pow(2000.0 * std::hypot(by_laser_m, by_arm_m), 2);
-  const double tolerance = 5.0 * std::sqrt(2.0 / 1500.0) * 1.3;  // neighbours are not quite independent
+  const double tolerance = 5.0 * std::sqrt(2.0 / Blocks()) * 1.3;  // neighbours are not quite independent
   EXPECT_NEAR(SquareOfMeans_V2(1, 1) / single_V2, 1.0, tolerance);
   const double block_s = 1250 * 16e-6;  // four periods of the corner
   EXPECT_NEAR(SquareOfMeans_V2(1250, 3) / single_V2 / VarianceOfMean(200.0 * block_s), 1.0, tolerance);

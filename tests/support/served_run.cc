@@ -70,10 +70,10 @@ hw::BenchFile BenchFileOf(const ServedTwin& served, const RunOptions& options) {
   hw::BenchFile file =
       hw::ParseBenchFile(hw::WriteServedBenchFile(served.at(), options.tables), "served.toml", "/");
   if (options.converter == "comedi") UseComedi(served, file.adc);
-  file.adc.timeout_s = 1.5;
+  file.adc.timeout_s = kForAnAnswer_s;
   for (hw::ControlSettings* device : {&file.target, &file.reference, &file.autocollimator, &file.thermometer,
                                       &file.goniometer, &file.fixture, &file.clock})
-    device->timeout_s = 1.5;
+    device->timeout_s = kForAnAnswer_s;
   if (options.alter) options.alter(file);
   return file;
 }

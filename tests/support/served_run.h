@@ -35,7 +35,7 @@ struct RunOptions {
 /// Why comedi cannot be tried here; empty if it can.
 std::string MissingComedi();
 
-/// The bench file that reaches a served twin; every answer is awaited for a second and a half.
+/// The bench file that reaches a served twin; every answer is awaited for kForAnAnswer_s.
 hw::BenchFile BenchFileOf(const ServedTwin& served, const RunOptions& options);
 
 /// A run from its beginning, or going on behind what `before` has kept.

@@ -7,16 +7,21 @@
 #include "hw_bridge/open_bench.h"
 #include "hw_bridge/serve/server.h"
 #include "tests/support/rotary_scenario.h"
+#include "tests/support/sanitized.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::test {
+
+/// An answer is awaited for so long: many times what a busy machine needs. One that comes late is twice as late.
+inline constexpr double kForAnAnswer_s = kSanitized ? 1.5 : 0.5;
 
 /// On free ports of this machine.
 inline hw::ServeOptions OnFreePorts(double speed = std::numeric_limits<double>::infinity()) {
   hw::ServeOptions options;
   options.iiod_port = options.scpi_port = options.esp_port = 0;
   options.speed = speed;
+  options.late = FromSeconds(2.0 * kForAnAnswer_s);
   return options;
 }
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 
 // The commands on the turntable with autocollimator and on the hobbing machine.
 namespace twinbench::test {
@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class AngleBenches : public Program {
+class AngleBenches : public ProgramHere {
  protected:
   AngleBenches() {
     Write("turntable.toml",

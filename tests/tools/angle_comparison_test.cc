@@ -7,7 +7,7 @@
 #include <sstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 
 namespace twinbench::test {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class AngleComparison : public Program {
+class AngleComparison : public ProgramHere {
  protected:
   AngleComparison() {
     Write("angle.toml",

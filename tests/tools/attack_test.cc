@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 
 /// What somebody tried who wanted to see it break, or mistyped.
@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 using testing::HasSubstr;
 
-class Attack : public Program {
+class Attack : public ProgramHere {
  protected:
   Attack() { Write("small.toml", kSmall); }
 

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 
 namespace twinbench::test {
 namespace {
@@ -9,7 +9,7 @@ using testing::HasSubstr;
 using testing::MatchesRegex;
 
 /// Every mistake: code 2, nothing on stdout, one line, nothing new or changed in the folder.
-class BadInput : public Program {
+class BadInput : public ProgramHere {
  protected:
   BadInput() { Write("small.toml", kSmall); }
 
@@ -98,7 +98,7 @@ TEST_F(BadInput, OfACommandNamesTheCommands) {
 class BadReadings : public BadInput {
  protected:
   BadReadings() {
-    MakeRun("run");
+    BeginWith("bad readings", [this] { MakeRun("run"); });
     readings_ = ReadingsOf("run");
   }
   std::string RefusalOfReadings(const std::string& text) {

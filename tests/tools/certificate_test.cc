@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 
 namespace twinbench::test {
 namespace {
@@ -19,15 +19,17 @@ std::string SchemaFor(const std::string& version) {
 <xs:attribute name="schemaVersion" fixed=")" + version + R"("/></xs:complexType></xs:element></xs:schema>)";
 }
 
-class CertificateCommand : public Program {
+class CertificateCommand : public ProgramHere {
  protected:
   CertificateCommand() {
-    Write("small.toml", kSmall);
-    MakeRun("run");
-    Succeed({"certificate", "--template", "-o", "empty.toml"});
-    std::string text = std::regex_replace(Read("empty.toml"), std::regex("country = \"\""), "country = \"DE\"");
-    text = std::regex_replace(text, std::regex("(begin|end) = \"\""), "$1 = \"2026-02-28\"");
-    Write("laboratory.toml", std::regex_replace(text, std::regex("\"\"(  # [^\n]*; needed)"), "\"something\"$1"));
+    BeginWith("certificate", [this] {
+      Write("small.toml", kSmall);
+      MakeRun("run");
+      Succeed({"certificate", "--template", "-o", "empty.toml"});
+      std::string text = std::regex_replace(Read("empty.toml"), std::regex("country = \"\""), "country = \"DE\"");
+      text = std::regex_replace(text, std::regex("(begin|end) = \"\""), "$1 = \"2026-02-28\"");
+      Write("laboratory.toml", std::regex_replace(text, std::regex("\"\"(  # [^\n]*; needed)"), "\"something\"$1"));
+    });
   }
 };
 

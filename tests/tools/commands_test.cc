@@ -2,7 +2,7 @@
 
 #include <regex>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/bench_format.h"
 #include "twin/core/scenario.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class Commands : public Program {};
+class Commands : public ProgramHere {};
 
 TEST_F(Commands, ANewScenarioSaysWhatTheDefaultsSay) {
   for (const std::string& bench : BenchNames()) {

@@ -4,7 +4,7 @@
 #include <thread>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::test {
@@ -15,12 +15,15 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// The small scenario as believed, and a run of it on a bench with a gain error of 1 % on PSD A x.
-class Diagnose : public Program {
+class Diagnose : public ProgramHere {
  protected:
   Diagnose() {
-    Write("small.toml", kSmall);
-    MakeRun("run", {"--set", "effect=[{name=\"psd_gain\", where=\"psd_a_x\", gain_error=0.01}]"});
-    Succeed({"export", "run", "--readings", "readings.csv"});
+    BeginWith("diagnose", [this] {
+      Write("small.toml", kSmall);
+      MakeRun("run", {"--set", "effect=[{name=\"psd_gain\", where=\"psd_a_x\", gain_error=0.01}]"});
+      Succeed({"export", "run", "--readings", "readings.csv"});
+      Succeed(Arguments({}));  // fills the cache
+    });
   }
   std::vector<std::string> Arguments(const std::vector<std::string>& more) const {
     std::vector<std::string> all = {"diagnose", "readings.csv", "--scenario", "small.toml", "--cache", "cache"};

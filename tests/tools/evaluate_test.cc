@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 
 namespace twinbench::test {
 namespace {
@@ -16,12 +16,14 @@ std::vector<std::string> KeysOf(const nlohmann::json& json) {
 }
 
 /// A run in the folder `run`, its readings in `readings.csv`.
-class Evaluate : public Program {
+class Evaluate : public ProgramHere {
  protected:
   Evaluate() {
-    Write("small.toml", kSmall);
-    MakeRun("run");
-    Succeed({"export", "run", "--readings", "readings.csv"});
+    BeginWith("evaluate", [this] {
+      Write("small.toml", kSmall);
+      MakeRun("run");
+      Succeed({"export", "run", "--readings", "readings.csv"});
+    });
   }
 };
 

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 
 /// Every command answers to programs: one JSON document on stdout, whether it could do what it was asked or not.
 namespace twinbench::test {
@@ -51,17 +51,19 @@ std::vector<Called> AllCalls() {
   };
 }
 
-class JsonAnswers : public Program {
+class JsonAnswers : public ProgramHere {
  protected:
   JsonAnswers() {
-    Write("s.toml", kStops);
-    Write("small.toml", kSmall);
-    Write("bad.toml", std::string(kStops) + "stop_per_turn = 3\n");
-    Write("bad.csv", "these,are,no\nreadings\n");
-    Write("study.toml", "scenario = \"s.toml\"\ntrials = 2\n");
-    Write("bench.toml", "kind = \"twin\"\n");
-    Succeed({"run", "s.toml", "-o", "made"});
-    Succeed({"export", "made", "--readings", "readings.csv"});
+    BeginWith("json", [this] {
+      Write("s.toml", kStops);
+      Write("small.toml", kSmall);
+      Write("bad.toml", std::string(kStops) + "stop_per_turn = 3\n");
+      Write("bad.csv", "these,are,no\nreadings\n");
+      Write("study.toml", "scenario = \"s.toml\"\ntrials = 2\n");
+      Write("bench.toml", "kind = \"twin\"\n");
+      Succeed({"run", "s.toml", "-o", "made"});
+      Succeed({"export", "made", "--readings", "readings.csv"});
+    });
   }
   Outcome Answer(const std::string& command, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), command);

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 #include "twin/core/stream.h"
 
@@ -83,11 +83,13 @@ struct Machine {
   const char *name, *scenario, *axis, *limits;
 };
 
-class ServedMachineProgram : public Program, public ::testing::WithParamInterface<Machine> {
+class ServedMachineProgram : public ProgramHere, public ::testing::WithParamInterface<Machine> {
  protected:
   ServedMachineProgram() {
-    Write("small.toml", GetParam().scenario);
-    Succeed({"run", "small.toml", "-o", "run"});
+    BeginWith(GetParam().name, [this] {
+      Write("small.toml", GetParam().scenario);
+      MakeRun("run");
+    });
     readings_ = ReadingsOf("run");
   }
 
@@ -101,14 +103,6 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
     for (int k = 0; k < 500 && !Exists("bench.toml"); ++k) std::this_thread::sleep_for(milliseconds(20));
     EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
     return server;
-  }
-  /// Whoever is gone shall not be waited for long.
-  void WaitBriefly() const {
-    std::string text = Read("bench.toml");
-    for (auto at = text.find("kind = \""); at != std::string::npos; at = text.find("kind = \"", at + 30)) {
-      if (at > 0 && text[at - 1] == '\n' && text[at - 2] == ']') text.insert(at, "timeout_s = 0.3\n");
-    }
-    Write("bench.toml", text);
   }
   static std::vector<std::string> Measure(const std::string& name) {
     return {"measure", "small.toml", "--bench", "bench.toml", "-o", name, "--resume"};
@@ -126,6 +120,7 @@ class ServedMachineProgram : public Program, public ::testing::WithParamInterfac
 };
 
 using EveryBench = ServedMachineProgram;
+using MachineThatMoves = ServedMachineProgram;
 
 TEST_P(EveryBench, MeasuresTheReadingsThatRunMakesBitForBit) {
   const auto server = Serve("max", "pty");
@@ -137,7 +132,7 @@ TEST_P(EveryBench, MeasuresTheReadingsThatRunMakesBitForBit) {
 }
 
 TEST_P(EveryBench, AKilledMeasurementGoesOnToTheSameReadings) {
-  const auto server = Serve("1000");
+  const auto server = Serve("2000");
   Process run(At(""), Measure("killed"));
   AwaitProgress(run);
   ASSERT_TRUE(run.Runs()) << "it was too quick to be killed";
@@ -194,8 +189,8 @@ TEST_P(EveryBench, DISABLED_KilledAsOftenAsAskedItEndsWithTheSameReadings) {
               GetParam().name, killed, without_record, killed_within, whole);
 }
 
-TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
-  const auto server = Serve("1000");
+TEST_P(MachineThatMoves, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
+  const auto server = Serve("2000");
   {
     Process run(At(""), Measure("stopped"));
     AwaitProgress(run);
@@ -208,9 +203,9 @@ TEST_P(ServedMachineProgram, CtrlCStopsTheAxesAndTheRunCanBeResumed) {
   EXPECT_EQ(ReadingsOf("stopped"), readings_);
 }
 
-TEST_P(ServedMachineProgram, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
-  auto server = Serve("1000");
-  WaitBriefly();
+TEST_P(MachineThatMoves, AServerThatDiesIsToldAndGoneOnFromWithANewOne) {
+  auto server = Serve("2000");
+  WaitBriefly("0.3");
   Process run(At(""), Measure("cut"));
   AwaitProgress(run);
   server->Kill();
@@ -242,7 +237,7 @@ TEST_P(ServedMachineProgram, ItsOwnTwinIsABenchToo) {
   EXPECT_EQ(ReadingsOf("own"), readings_);
 }
 
-TEST_F(Program, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
+TEST_F(ProgramHere, ARecordingOfAMachineIsAskedWhatItWasAskedOnly) {
   Write("small.toml", kStops);
   Write("bench.toml", "kind = \"twin\"\n");
   Write("replay.toml", "kind = \"replay\"\nrecord = \"own\"\n");
@@ -269,6 +264,7 @@ INSTANTIATE_TEST_SUITE_P(Others, EveryBench, ::testing::Values(kFreeformMachine,
                                            Machine{"Sweep", kSweep, "shaft", kNarrow_deg}),
                          NameOfMachine);
 INSTANTIATE_TEST_SUITE_P(Machines, ServedMachineProgram, ::testing::ValuesIn(kMachines), NameOfMachine);
+INSTANTIATE_TEST_SUITE_P(Machines, MachineThatMoves, ::testing::Values(kMachines[0], kMachines[3]), NameOfMachine);  // on paths; turning on
 
 }  // namespace
 }  // namespace twinbench::test

@@ -91,7 +91,7 @@ class Program : public ::testing::Test {
  protected:
   Program() { std::filesystem::create_directory(folder_); }
 
-  Outcome Call(const std::vector<std::string>& arguments) { return Process(folder_, arguments).Wait(); }
+  virtual Outcome Call(const std::vector<std::string>& arguments) { return Process(folder_, arguments).Wait(); }
 
   /// Calls what must succeed. @return what it printed to stdout.
   std::string Succeed(const std::vector<std::string>& arguments) {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/reading_column.h"
 #include "twin/core/run_record.h"
 
@@ -15,7 +15,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 /// A bench that is a program of the user's own, of closed-form physics.
-class ProgramBench : public Program {
+class ProgramBench : public ProgramHere {
  protected:
   ProgramBench() {
     Write("encoder.toml",
@@ -125,7 +125,9 @@ TEST_F(ProgramBench, ACommandMustSayWhereTheReadingsGo) {
 TEST_F(ProgramBench, IsInvestigated) {
   WriteBench("\"0\", \"0.01\"");
   const std::vector<std::string> arguments = {"investigate", "encoder.toml", "--bench", "bench.toml",
-                                              "--budget",    "3h",           "-o",      "inquiry"};
+                                              "--budget",    "3h",           "-o",      "inquiry",
+                                              "--set",       "encoder_procedure.stops_per_turn=18",
+                                              "--set",       "encoder_procedure.turns=1"};
   Succeed(arguments);
   const auto found = nlohmann::json::parse(Read("inquiry/investigation.json"));
   ASSERT_EQ(found.at("told"), "named") << found.dump(1);

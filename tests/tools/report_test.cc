@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "tools/web/bundle.h"
 
 namespace twinbench::test {
@@ -9,11 +9,13 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class ReportCommand : public Program {
+class ReportCommand : public ProgramHere {
  protected:
   ReportCommand() {
-    Write("small.toml", kSmall);
-    MakeRun("run");
+    BeginWith("report", [this] {
+      Write("small.toml", kSmall);
+      MakeRun("run");
+    });
   }
 };
 

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 
 namespace twinbench::test {
@@ -11,7 +11,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-class Run : public Program {
+class Run : public ProgramHere {
  protected:
   Run() { Write("small.toml", kSmall); }
 };

@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "tests/tools/program.h"
+#include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
 
 /// `twinbench serve` and `twinbench measure` as two programs that only share a network.
@@ -12,11 +12,13 @@ namespace {
 using std::chrono::milliseconds;
 using testing::HasSubstr;
 
-class Served : public Program {
+class Served : public ProgramHere {
  protected:
   Served() {
-    Write("small.toml", kSmall);
-    Succeed({"run", "small.toml", "-o", "run"});
+    BeginWith("served", [this] {
+      Write("small.toml", kSmall);
+      MakeRun("run");
+    });
     readings_ = ReadingsOf("run");
   }
 
@@ -145,6 +147,7 @@ TEST_F(Served, AKilledMeasurementGoesOnToTheSameReadings) {
 
 TEST_F(Served, APowerFailureOfTheServerIsGoneOnFromWithANewOne) {
   auto server = Serve({"--speed", "2000"});
+  WaitBriefly("0.1");
   Process run(At(""), Measure("cut"));
   while (run.Runs() && run.ProgressLines() < 3) std::this_thread::sleep_for(milliseconds(5));
   server->Kill();
@@ -175,10 +178,7 @@ TEST_F(Served, EverySignalHoweverOftenStopsTheTablesAndTheRunCanBeResumed) {
 
 TEST_F(Served, AControllerThatFreezesLeavesTheStateUnknown) {
   const auto server = Serve({"--speed", "2000"});
-  std::string file = Read("bench.toml");
-  for (auto at = file.find("kind = \"scpi\""); at != std::string::npos; at = file.find("kind = \"scpi\"", at + 20))
-    file.insert(at, "timeout_s = 0.2\n");
-  Write("bench.toml", file);
+  WaitBriefly("0.1");
   Process run(At(""), Measure("frozen"));
   while (run.Runs() && run.ProgressLines() < 3) std::this_thread::sleep_for(milliseconds(5));
   server->Signal(SIGSTOP);
@@ -217,6 +217,7 @@ TEST_F(Served, ABenchThatDoesNotAnswerIsNamed) {
   auto server = Serve();
   server->Signal(SIGTERM);
   EXPECT_EQ(server->Wait().exit_code, 0) << "asked to stop, it ends well";
+  WaitBriefly("0.1");
   const Outcome outcome = Call(Measure("none"));
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("127.0.0.1"));

@@ -20,9 +20,9 @@ IDENTITY = "ESP301 Version 3.0.1 foreign"
 class Axis:
     """A servo that goes from rest to rest along half a cosine, at most at SPEED, and settles for a moment."""
 
-    SPEED = 5000.0
-    SHORTEST_S = 0.02
-    SETTLING_S = 0.01
+    SPEED = 20000.0
+    SHORTEST_S = 0.01
+    SETTLING_S = 0.005
 
     def __init__(self, unit=DEGREES):
         self.unit = unit

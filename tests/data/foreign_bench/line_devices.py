@@ -19,7 +19,7 @@ import sys
 import threading
 import time
 
-LATE_S = 1.2
+LATE_S = 0.7
 WIRE_FAULTS = ("mute", "late", "drop")
 COMMANDS = re.compile(r'(?:[^;"]|"[^"]*")+')  # of a line; a semicolon in quotes is none
 

@@ -1,8 +1,4 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/own_scenario/own_scenario.h"
-#include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 
 namespace twinbench::own_rotary {
@@ -225,19 +221,10 @@ const std::vector<OwnKey>& Keys() {
 const std::vector<std::string> kBase = {"procedure.positions=24", "procedure.shifts=[0, 1, 5, 8]",
                                         "adc.every_sample=false", "mechanics.fidelity=kinematic"};
 
-TEST(RotaryOwnScenario, NoKeyIsForgotten) {
-  EXPECT_THAT(test::Forgotten(kRotaryBench, Keys()), testing::IsEmpty());
-}
-
-TEST(RotaryOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms = test::AlarmsOf(test::ScenarioPath("rotary_4dof.toml"), kBase, Keys(), test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
-}
-
-TEST(RotaryOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms = test::AlarmsOfEffects(test::ScenarioPath("rotary_4dof.toml"), kBase, test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
-}
-
 }  // namespace
+
+test::OwnBench Bench() {
+  return {kRotaryBench, "rotary_4dof.toml", kBase, Keys(), kBase, 20};
+}
+
 }  // namespace twinbench::own_rotary

@@ -1,8 +1,4 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/own_scenario/own_scenario.h"
-#include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 
 namespace twinbench::own_encoder {
@@ -73,21 +69,10 @@ const std::vector<OwnKey>& Keys() {
 
 const std::vector<std::string> kBase = {};
 
-TEST(EncoderOwnScenario, NoKeyIsForgotten) {
-  EXPECT_THAT(test::Forgotten(kEncoderBench, Keys()), testing::IsEmpty());
-}
-
-TEST(EncoderOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms =
-      test::AlarmsOf(test::ScenarioPath("encoder_comparison.toml"), kBase, Keys(), test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
-}
-
-TEST(EncoderOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms = test::AlarmsOfEffects(test::ScenarioPath("encoder_comparison.toml"),
-                                                    {"device.lines_per_turn=30", "device.teeth=22"}, test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
-}
-
 }  // namespace
+
+test::OwnBench Bench() {
+  return {kEncoderBench, "encoder_comparison.toml", kBase, Keys(), {"device.lines_per_turn=30", "device.teeth=22"}, 20};
+}
+
 }  // namespace twinbench::own_encoder

@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/own_scenario/own_scenario.h"
 #include "twin/benches/names.h"
 
@@ -140,23 +137,10 @@ const std::vector<test::OwnKey>& Keys() {
   return keys;
 }
 
-std::string ScenarioFile() {
-  return std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/turntable_autocollimator.toml";
-}
-
-TEST(TurntableOwnScenario, NoKeyIsForgotten) {
-  EXPECT_THAT(test::Forgotten(kTurntableBench, Keys()), testing::IsEmpty());
-}
-
-TEST(TurntableOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms = test::AlarmsOf(ScenarioFile(), Base(), Keys(), test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
-}
-
-TEST(TurntableOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms = test::AlarmsOfEffects(ScenarioFile(), Base(), test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
-}
-
 }  // namespace
+
+test::OwnBench Bench() {
+  return {kTurntableBench, "turntable_autocollimator.toml", Base(), Keys(), Base(), 50};
+}
+
 }  // namespace twinbench::own_turntable

@@ -1,8 +1,4 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/own_scenario/own_scenario.h"
-#include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 
 namespace twinbench::own_freeform {
@@ -102,21 +98,10 @@ const std::vector<OwnKey>& Keys() {
 
 const std::vector<std::string> kBase = {"freeform_procedure.poses=32"};
 
-TEST(FreeformOwnScenario, NoKeyIsForgotten) {
-  EXPECT_THAT(test::Forgotten(kFreeformBench, Keys()), testing::IsEmpty());
-}
-
-TEST(FreeformOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms =
-      test::AlarmsOf(test::ScenarioPath("freeform_five_axis.toml"), kBase, Keys(), test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
-}
-
-TEST(FreeformOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms =
-      test::AlarmsOfEffects(test::ScenarioPath("freeform_five_axis.toml"), kBase, test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
-}
-
 }  // namespace
+
+test::OwnBench Bench() {
+  return {kFreeformBench, "freeform_five_axis.toml", kBase, Keys(), kBase, 20};
+}
+
 }  // namespace twinbench::own_freeform

@@ -1,8 +1,4 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/own_scenario/own_scenario.h"
-#include "tests/support/twin_run.h"
 #include "twin/benches/names.h"
 
 namespace twinbench::own_circular {
@@ -155,21 +151,10 @@ const std::vector<OwnKey>& Keys() {
 
 const std::vector<std::string> kBase = {"circular_procedure.points=24", "circular_procedure.stops=8"};
 
-TEST(CircularOwnScenario, NoKeyIsForgotten) {
-  EXPECT_THAT(test::Forgotten(kCircularBench, Keys()), testing::IsEmpty());
-}
-
-TEST(CircularOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms =
-      test::AlarmsOf(test::ScenarioPath("circular_machining_centre.toml"), kBase, Keys(), test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
-}
-
-TEST(CircularOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms =
-      test::AlarmsOfEffects(test::ScenarioPath("circular_machining_centre.toml"), kBase, test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 20) << alarms.InWords();
-}
-
 }  // namespace
+
+test::OwnBench Bench() {
+  return {kCircularBench, "circular_machining_centre.toml", kBase, Keys(), kBase, 20};
+}
+
 }  // namespace twinbench::own_circular

@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/own_scenario/own_scenario.h"
 #include "twin/benches/names.h"
 
@@ -92,23 +89,10 @@ const std::vector<test::OwnKey>& Keys() {
   return keys;
 }
 
-std::string ScenarioFile() {
-  return std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/hob_transmission.toml";
-}
-
-TEST(HobOwnScenario, NoKeyIsForgotten) {
-  EXPECT_THAT(test::Forgotten(kHobBench, Keys()), testing::IsEmpty());
-}
-
-TEST(HobOwnScenario, RaisesNoAlarm) {
-  const test::Alarms alarms = test::AlarmsOf(ScenarioFile(), Base(), Keys(), test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
-}
-
-TEST(HobOwnScenario, KnowsItsEffects) {
-  const test::Alarms alarms = test::AlarmsOfEffects(ScenarioFile(), Base(), test::Seeds());
-  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
-}
-
 }  // namespace
+
+test::OwnBench Bench() {
+  return {kHobBench, "hob_transmission.toml", Base(), Keys(), Base(), 50};
+}
+
 }  // namespace twinbench::own_hob

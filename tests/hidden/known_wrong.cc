@@ -1,0 +1,125 @@
+#include "tests/hidden/known_wrong.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "tests/hidden/share.h"
+#include "twin/core/errors.h"
+
+namespace twinbench::hidden {
+namespace {
+
+const std::string kPath = TWINBENCH_TEST_DATA "/known_wrong.txt";
+
+std::string Key(const std::string& set, const std::string& name) {
+  return set + " | " + name;
+}
+
+std::string Trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+KnownWrong EntryOf(const std::string& line, const std::string& place) {
+  std::istringstream in(line);
+  KnownWrong entry;
+  std::getline(in, entry.set, '|');
+  std::getline(in, entry.name, '|');
+  std::getline(in, entry.why);
+  for (std::string* part : {&entry.set, &entry.name, &entry.why}) *part = Trimmed(*part);
+  if (entry.why.empty()) throw InputError(place, "is \"" + line + "\"", "set | case | why it is wrong");
+  return entry;
+}
+
+std::string InLines(const std::string& title, const std::vector<std::string>& cases) {
+  std::string text = cases.empty() ? "" : "\n" + title;
+  for (const std::string& one : cases) text += "\n  " + one;
+  return text;
+}
+
+}  // namespace
+
+std::vector<Answered> AnsweredOf(const std::vector<Outcome>& outcomes) {
+  std::vector<Answered> answered;
+  for (const Outcome& o : outcomes) {
+    answered.push_back({o.set, o.name, IsRight(o),
+                        fmt::format("hides {} (rho {:.0f}): {}", InWords(o.hidden), o.hidden.rho, o.answer)});
+  }
+  return answered;
+}
+
+std::vector<KnownWrong> ParseKnownWrong(const std::string& text, const std::string& path) {
+  std::istringstream in(text);
+  std::vector<KnownWrong> known;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (!line.empty() && line.front() != '#') known.push_back(EntryOf(line, fmt::format("{}:{}", path, number)));
+  }
+  return known;
+}
+
+const std::vector<KnownWrong>& KnownWrongCases() {
+  static const std::vector<KnownWrong> known = [] {
+    std::ifstream in(kPath);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return ParseKnownWrong(text.str(), kPath);
+  }();
+  return known;
+}
+
+::testing::AssertionResult WrongOnlyWhereKnown(const std::vector<Answered>& answered,
+                                               const std::vector<KnownWrong>& known) {
+  std::set<std::string> sets, expected;
+  for (const Answered& a : answered) sets.insert(a.set);
+  for (const KnownWrong& k : known) {
+    if (sets.contains(k.set)) expected.insert(Key(k.set, k.name));
+  }
+  std::vector<std::string> lost, won;
+  for (const Answered& a : answered) {
+    const bool is_known = expected.erase(Key(a.set, a.name)) > 0;
+    if (a.is_right == is_known) (is_known ? won : lost).push_back(Key(a.set, a.name) + " " + a.words);
+  }
+  if (lost.empty() && won.empty() && expected.empty()) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << InLines("wrong, and no known one:", lost)
+                                       << InLines("right now: take them out of tests/data/known_wrong.txt", won)
+                                       << InLines("no case any more: take them out of tests/data/known_wrong.txt",
+                                                  {expected.begin(), expected.end()});
+}
+
+int FewestOf(int of, double caught) {
+  constexpr double kPower = 0.9;
+  int fewest = 0;
+  while (fewest <= of && ProbabilityOfAtMost(fewest - 1, of, caught) < kPower) ++fewest;
+  return fewest;
+}
+
+::testing::AssertionResult IsPooledRate(int count, std::size_t of, double claimed, double caught) {
+  constexpr double kFalseFailures = 0.02;
+  const int cases = static_cast<int>(of), fewest = FewestOf(cases, caught);
+  const double fails_anyway = ProbabilityOfAtMost(fewest - 1, cases, claimed);
+  if (fails_anyway > kFalseFailures) {
+    return ::testing::AssertionFailure() << fmt::format("{} cases do not tell {} from {}: {} of {} would fail", of,
+                                                        claimed, caught, fails_anyway, claimed);
+  }
+  if (count >= fewest) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << count << " of " << of << ", at least " << fewest << " where " << claimed
+                                       << " is claimed";
+}
+
+::testing::AssertionResult IsShareOf(int count, std::size_t of, double claimed) {
+  constexpr double kEachSide = 0.005;
+  const int cases = static_cast<int>(of);
+  const double so_few = ProbabilityOfAtMost(count, cases, claimed),
+               so_many = 1.0 - ProbabilityOfAtMost(count - 1, cases, claimed);
+  if (of > 0 && so_few > kEachSide && so_many > kEachSide) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << count << " of " << of << " where " << claimed
+                                       << " is claimed: so few have a probability of " << so_few << ", so many of "
+                                       << so_many;
+}
+
+}  // namespace twinbench::hidden

@@ -1,0 +1,62 @@
+#include "tests/own_scenario/own_scenario.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "tests/support/night.h"
+#include "tests/support/thresholds.h"
+
+namespace twinbench::test {
+namespace {
+
+struct Alarms {
+  int runs = 0;                     // every key counts as one
+  std::vector<std::string> raised;  // key = value: cause, for each
+  std::string InWords() const {
+    return fmt::format("{} of {} runs:\n{}", raised.size(), runs, fmt::join(raised, "\n"));
+  }
+};
+
+int Seeds() {
+  return ByNight(4, 1);
+}
+
+Alarms AlarmsOf(const std::vector<OwnRun>& runs) {
+  Alarms alarms;
+  for (OwnRun run : runs) {
+    alarms.runs += run.keys * Seeds();
+    for (int k = 0; k < Seeds(); ++k, ++run.scenario.seed) {
+      const std::string raised = AlarmOf(run, ThresholdsFolder());
+      if (raised.empty()) continue;
+      alarms.raised.push_back(fmt::format("{} (seed {}): {}", run.what, run.scenario.seed, raised));
+      std::cout << alarms.raised.back() << std::endl;
+    }
+  }
+  return alarms;
+}
+
+class OwnScenario : public ::testing::TestWithParam<OwnBench> {};
+
+TEST_P(OwnScenario, NoKeyIsForgotten) {
+  EXPECT_THAT(Forgotten(GetParam().name, GetParam().keys), testing::IsEmpty());
+}
+
+TEST_P(OwnScenario, RaisesNoAlarm) {
+  const Alarms alarms = AlarmsOf(KeyRuns(GetParam()));
+  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / 50) << alarms.InWords();
+}
+
+TEST_P(OwnScenario, KnowsItsEffects) {
+  const Alarms alarms = AlarmsOf(EffectRuns(GetParam()));
+  EXPECT_LE(std::ssize(alarms.raised), alarms.runs / GetParam().effects_an_alarm) << alarms.InWords();
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryBench, OwnScenario, ::testing::ValuesIn(OwnBenches()),
+                         [](const auto& of) { return of.param.name; });
+
+}  // namespace
+}  // namespace twinbench::test

@@ -1,0 +1,155 @@
+#include "tools/twinbench/program.h"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include "tools/twinbench/commands.h"
+#include "tools/twinbench/exit_code.h"
+#include "tools/twinbench/json_answer.h"
+#include "tools/twinbench/terminal.h"
+#include "twin/core/errors.h"
+#include "twin/core/nearest_key.h"
+
+namespace twinbench::tools {
+namespace {
+
+constexpr const char* kAbout =
+    "A virtual test bench for precision rotary tables: a scenario file goes in, the virtual bench carries out the\n"
+    "measurement, and the same pipeline that evaluates a real bench returns the errors of both tables.";
+
+constexpr const char* kExamples =
+    "A first session:\n"
+    "  twinbench run scenarios/rotary_4dof.toml -o runs/first     carry out, measure, separate\n"
+    "  twinbench score runs/first                                 compare with the truth\n"
+    "  twinbench report runs/first                                a page of plots and tables that opens offline\n"
+    "  twinbench diagnose runs/first                              does the scenario describe the bench?\n"
+    "  twinbench export runs/first --readings readings.csv        hand the readings to somebody else\n"
+    "  twinbench separate readings.csv --scenario scenarios/rotary_4dof.toml --json - --estimator published\n"
+    "\n"
+    "The same scenario many times:\n"
+    "  twinbench campaign study.toml -o study.sqlite              trials in parallel, one table, a summary\n"
+    "\n"
+    "With a bench, or with the twin shown as one:\n"
+    "  twinbench serve scenarios/rotary_4dof.toml --speed max --write-bench bench.toml\n"
+    "  twinbench measure scenarios/rotary_4dof.toml --bench bench.toml --rehearse -o runs/monday\n"
+    "\n"
+    "  twinbench help scenario     every key of a scenario file with unit, default and bounds\n"
+    "  twinbench help effects      every error that can be hidden in the bench\n"
+    "  twinbench help bench        every key of a bench file\n"
+    "  twinbench help map          every key of a map for importing recordings, and the ready maps\n"
+    "\n"
+    "Exit codes: 0 done, 1 the bench, the disk or the network failed, 2 a file or an option is wrong, 3 something was told\n"
+    "to stop and nobody knows whether it stands.";
+
+std::string Names(const std::vector<const CLI::App*>& commands) {
+  std::string text;
+  for (const CLI::App* command : commands) text += (text.empty() ? "" : ", ") + command->get_name();
+  return text;
+}
+
+/// The first word that a command does not take, with what comes nearest.
+std::string NotTaken(const CLI::App& command, const std::string& word) {
+  if (!word.starts_with("-"))
+    return fmt::format("there is no place for \"{}\": an option takes one value, and is given again for another",
+                       ForTerminal(word));
+  std::vector<std::string> options;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  return fmt::format("there is no option {}; the nearest is {}", ForTerminal(word),
+                     Nearest(word.substr(0, word.find('=')), options));
+}
+
+std::string InWords(const CLI::App& command, const CLI::Error& error) {
+  const std::vector<std::string> left = command.remaining();
+  const bool is_extra = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !left.empty();
+  return is_extra ? NotTaken(command, left.front()) : error.what();
+}
+
+/// A wrong command line in one line, like any other bad input.
+std::string Complaint(const CLI::App* app, const CLI::Error& error) {
+  const std::vector<CLI::App*> chosen = app->get_subcommands();
+  if (chosen.empty()) {
+    const std::vector<std::string> words = app->remaining();
+    return fmt::format("twinbench: {}; expected one of {}\n",
+                       words.empty() ? "there is no command" : "unknown command " + words.front(),
+                       Names(app->get_subcommands([](const CLI::App*) { return true; })));
+  }
+  const std::string command = "twinbench " + chosen.front()->get_name();
+  return fmt::format("{}: {}; expected what {} --help lists\n", command, InWords(*chosen.front(), error), command);
+}
+
+/// Without "twinbench: " before it and the end of the line behind.
+std::string InOneLine(std::string complaint) {
+  while (complaint.ends_with('\n')) complaint.pop_back();
+  constexpr std::string_view kName = "twinbench: ";
+  return complaint.starts_with(kName) ? complaint.substr(kName.size()) : complaint;
+}
+
+/// What was printed may be an answer that somebody keeps.
+/// @throws BenchError if some of it went nowhere: a full disk, a pipe that was closed.
+void RequireAllSaid() {
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout)
+    throw BenchError("not all of the answer could be written to stdout");
+}
+
+int Obey(int argc, char** argv) {
+  CLI::App app(kAbout, "twinbench");
+  app.footer(kExamples);
+  app.set_version_flag("--version", std::string(TWINBENCH_VERSION));
+  app.require_subcommand(1);
+  app.failure_message(Complaint);
+  for (const auto add : {AddRun, AddCampaign, AddMeasure, AddServe, AddExport, AddImport, AddSeparate,
+                         AddCompensate, AddUncertainty, AddBudget, AddPlan, AddInvestigate, AddDiagnose, AddReport, AddCertificate, AddScore, AddNew,
+                         AddCheck, AddList, AddExplain, AddHelp, AddSchema, AddCompletion})
+    add(app);
+  try {
+    app.parse(argc, argv);
+    RequireAllSaid();
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    const bool is_wrong = app.exit(error) != 0;
+    if (is_wrong && AsksJsonOnStdout(argc, argv)) JsonAnswer("-").Write(WrongCommandLineJson(InOneLine(Complaint(&app, error))));
+    return is_wrong ? kBadInput : kDone;
+  }
+}
+
+/// Matrices of some megabytes come and go all the time; giving each back to the system costs a fifth of a long
+/// diagnosis in page faults.
+void KeepFreedMemory() {
+#ifdef __GLIBC__
+  constexpr int kLarge = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, kLarge);
+  mallopt(M_TRIM_THRESHOLD, kLarge);
+#endif
+}
+
+/// Says it even where nobody can read it any more: a closed session must not turn one failure into another.
+int Failed(const std::exception& error) {
+  const std::string text = FailureText(error);
+  const bool is_red = MayColour(stderr);
+  std::fputs((is_red ? "\033[31m" + text + "\033[0m\n" : text + "\n").c_str(), stderr);
+  return ExitCodeOf(error);
+}
+
+}  // namespace
+
+int Main(int argc, char** argv) {
+  KeepFreedMemory();
+  try {
+    return Obey(argc, argv);
+  } catch (const std::exception& error) {
+    return Failed(error);
+  }
+}
+
+}  // namespace twinbench::tools
