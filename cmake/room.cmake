@@ -73,15 +73,20 @@ function(twinbench_bench name)
     LIBRARIES nlohmann_json::nlohmann_json PRIVATE_LIBRARIES fmt::fmt Ceres::ceres)
 endfunction()
 
-# twinbench_test(<name> SOURCES a_test.cc ... [LIBRARIES ...] [SHARDS n] [SLOW] [WAITS] [ENVIRONMENT a=b ...])
+# twinbench_test(<name> SOURCES a_test.cc ... [LIBRARIES ...] [SHARDS n] [COMPUTES] [SLOW] [WAITS] [ENVIRONMENT a=b ...])
 #
 # One test program a room, of the whole program as tests/CMakeLists.txt puts it together. ctest runs it in one process, or in SHARDS
-# processes <name>.1, <name>.2 ... side by side. SLOW, WAITS, ENVIRONMENT: of twinbench_entry.
+# processes <name>.1, <name>.2 ... side by side. COMPUTES: works for seconds itself, and so is optimised after all. SLOW, WAITS,
+# ENVIRONMENT: of twinbench_entry.
 function(twinbench_test name)
-  cmake_parse_arguments(TEST "SLOW;WAITS" "SHARDS" "SOURCES;LIBRARIES;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(TEST "COMPUTES;SLOW;WAITS" "SHARDS" "SOURCES;LIBRARIES;ENVIRONMENT" ${ARGN})
   add_executable(test_${name} ${TEST_SOURCES})
   target_link_libraries(test_${name} PRIVATE ${TEST_LIBRARIES} GTest::gtest_main)
   twinbench_test_target(test_${name})
+  if(TEST_COMPUTES)
+    target_compile_options(test_${name} PRIVATE ${TWINBENCH_UNHURRIED})
+    set_target_properties(test_${name} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+  endif()
   if(NOT TEST_SLOW)
     add_dependencies(fast_tests test_${name})
   endif()

@@ -8,6 +8,7 @@
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/core/stream.h"
+#include "twin/diagnose/engine/noise_model.h"
 
 // Sums of series that are never written out, against those of the series.
 namespace twinbench::diagnose::encoder {

@@ -7,9 +7,11 @@
 #include "tests/core/input_error.h"
 #include "tests/hidden/unlisted.h"
 #include "tests/investigate/hidden_investigation.h"
+#include "tests/support/twin_run.h"
 #include "tools/twinbench/bench_means.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
+#include "twin/core/bench_format.h"
 #include "twin/investigate/hidden_run.h"
 
 namespace twinbench::investigate {
@@ -178,6 +180,13 @@ TEST(HiddenRun, MovesWhatTheRunMovesAndLeavesWhatIsWrong) {
   EXPECT_EQ(made.repeat, 3);
   EXPECT_EQ(made.seed, hidden.seed);
   EXPECT_FALSE(IsProcedureAlone(warm));
+}
+
+TEST(HiddenRun, IsMadeOnEveryBench) {
+  for (const std::string& bench : BenchNames()) {
+    const Scenario believed = LoadScenario(test::ScenarioPath(bench + ".toml"));
+    EXPECT_EQ(WriteScenario(HiddenRun(believed, believed, {}, believed.repeat)), WriteScenario(believed)) << bench;
+  }
 }
 
 TEST(NextRuns, AreRunsThatTheirBenchCanMake) {

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "tests/support/angle_benches.h"
-#include "tests/support/night.h"
 #include "twin/benches/registry.h"
 #include "twin/core/scenario_schema.h"
 #include "twin/diagnose/diagnose.h"
@@ -33,8 +32,7 @@ std::vector<std::string> Needed(const OwnKey& key) {
 }
 
 /// Neighbours that need the same beside them are tried in one run.
-std::vector<std::vector<OwnKey>> Grouped(const std::vector<OwnKey>& keys) {
-  const std::size_t together = IsNight() ? 1 : 10;
+std::vector<std::vector<OwnKey>> Grouped(const std::vector<OwnKey>& keys, std::size_t together) {
   std::vector<std::vector<OwnKey>> groups;
   for (const OwnKey& key : keys) {
     if (key.settings.empty()) continue;
@@ -78,9 +76,9 @@ const std::vector<OwnBench>& OwnBenches() {
   return benches;
 }
 
-std::vector<OwnRun> KeyRuns(const OwnBench& bench) {
+std::vector<OwnRun> KeyRuns(const OwnBench& bench, std::size_t together) {
   std::vector<OwnRun> runs;
-  for (const std::vector<OwnKey>& group : Grouped(bench.keys)) runs.push_back(RunTogether(bench, group));
+  for (const std::vector<OwnKey>& group : Grouped(bench.keys, together)) runs.push_back(RunTogether(bench, group));
   return runs;
 }
 

@@ -37,7 +37,8 @@ struct OwnRun {
   Scenario scenario;
   int keys = 1;  // neighbours in the list share a run where they can
 };
-std::vector<OwnRun> KeyRuns(const OwnBench& bench);
+/// @param together  So many neighbours at the most share a run.
+std::vector<OwnRun> KeyRuns(const OwnBench& bench, std::size_t together);
 /// Every effect of the catalogue at its default size.
 std::vector<OwnRun> EffectRuns(const OwnBench& bench);
 

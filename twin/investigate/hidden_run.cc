@@ -31,7 +31,11 @@ std::vector<std::string> ProcedureOf(const Scenario& scenario) {
     if (!table.ends_with(kProcedure) || line.starts_with("[") || line.starts_with("#") ||
         equals == std::string::npos)
       continue;
-    sets.push_back(table + "." + line.substr(0, equals) + "=" + line.substr(equals + 3));
+    std::string value = line.substr(equals + 3);
+    if (value == "[") {  // of tables, one a line
+      for (std::string entry; value.back() != ']' && std::getline(text, entry);) value += entry;
+    }
+    sets.push_back(table + "." + line.substr(0, equals) + "=" + value);
   }
   return sets;
 }
