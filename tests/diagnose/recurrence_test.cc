@@ -57,6 +57,10 @@ TEST(Recurrence, AtOneAngleIsSaid) {
               HasSubstr("at 42 deg, locked to reference angle"));
 }
 
+TEST(Recurrence, OnBothSidesOfZeroIsAtOneAngle) {
+  EXPECT_THAT(RecurrenceOf({59, 179, 180, 299, 300, 420}, EightTurns()), HasSubstr("at 354 deg, locked to reference angle"));
+}
+
 TEST(Recurrence, AtOneShownValueIsSaid) {
   // The same crest in other periods: other angles.
   EXPECT_THAT(RecurrenceOf({27, 75, 123 + 60 * 2, 171 + 60, 219 + 60 * 3, 3 + 60 * 7}, EightTurns()),
