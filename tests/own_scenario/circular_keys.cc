@@ -133,20 +133,17 @@ std::vector<OwnKey> ProcedureChanges() {
           Change("environment.sensor_noise_mK", "5.0")};
 }
 
-const std::vector<OwnKey>& Keys() {
-  static const std::vector<OwnKey> keys = [] {
-    std::vector<OwnKey> all = {
-        {"bench", {}, "another bench"},
-        {"title", {}, "words"},
-        {"seed", {}, "every run has its own"},
-        {"repeat", {"repeat=3"}},
-        {"noise_free", {"noise_free=true"}},
-        {"environment.temperature_file", {}, "read by another test of the room's temperature"}};
-    for (const auto& part : {MachineChanges(), BodyChanges(), InstrumentChanges(), ProcedureChanges()})
-      all.insert(all.end(), part.begin(), part.end());
-    return all;
-  }();
-  return keys;
+std::vector<OwnKey> Keys() {
+  std::vector<OwnKey> all = {
+      {"bench", {}, "another bench"},
+      {"title", {}, "words"},
+      {"seed", {}, "every run has its own"},
+      {"repeat", {"repeat=3"}},
+      {"noise_free", {"noise_free=true"}},
+      {"environment.temperature_file", {}, "read by another test of the room's temperature"}};
+  for (const auto& part : {MachineChanges(), BodyChanges(), InstrumentChanges(), ProcedureChanges()})
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
 const std::vector<std::string> kBase = {"circular_procedure.points=24", "circular_procedure.stops=8"};

@@ -50,21 +50,18 @@ std::vector<OwnKey> CoastChanges() {
           Change("spindle.drag_per_turn", "1e-5", coast)};
 }
 
-const std::vector<OwnKey>& Keys() {
-  static const std::vector<OwnKey> keys = [] {
-    std::vector<OwnKey> all = EncoderChanges();
-    for (const OwnKey& key : CoastChanges()) all.push_back(key);
-    for (const char* key : {"device.graduation_arcsec", "device.graduation_fall", "device.graduation_orders"})
-      all.push_back({key, {}, "the ring's errors are drawn: a diagnosis finds them, no scenario says which they are"});
-    for (const char* key : {"spindle.torque_deg_s2", "spindle.torque_order", "spindle.ripple_deg_s2", "spindle.ripple_order"})
-      all.push_back({key, {}, "not followed yet: in the mean turns that are compared, what they move the shaft by counts as the ring's"});
-    all.push_back({"bench", {}, "another bench"});
-    all.push_back({"title", {}, "words"});
-    all.push_back({"seed", {}, "every run has its own"});
-    all.push_back({"repeat", {"repeat=3"}});
-    return all;
-  }();
-  return keys;
+std::vector<OwnKey> Keys() {
+  std::vector<OwnKey> all = EncoderChanges();
+  for (const OwnKey& key : CoastChanges()) all.push_back(key);
+  for (const char* key : {"device.graduation_arcsec", "device.graduation_fall", "device.graduation_orders"})
+    all.push_back({key, {}, "the ring's errors are drawn: a diagnosis finds them, no scenario says which they are"});
+  for (const char* key : {"spindle.torque_deg_s2", "spindle.torque_order", "spindle.ripple_deg_s2", "spindle.ripple_order"})
+    all.push_back({key, {}, "not followed yet: in the mean turns that are compared, what they move the shaft by counts as the ring's"});
+  all.push_back({"bench", {}, "another bench"});
+  all.push_back({"title", {}, "words"});
+  all.push_back({"seed", {}, "every run has its own"});
+  all.push_back({"repeat", {"repeat=3"}});
+  return all;
 }
 
 const std::vector<std::string> kBase = {};

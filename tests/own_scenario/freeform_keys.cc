@@ -79,21 +79,18 @@ std::vector<OwnKey> ProcedureChanges() {
           Change("environment.sensor_noise_mK", "5.0")};
 }
 
-const std::vector<OwnKey>& Keys() {
-  static const std::vector<OwnKey> keys = [] {
-    std::vector<OwnKey> all = {
-        {"bench", {}, "another bench"},
-        {"title", {}, "words"},
-        {"seed", {}, "every run has its own"},
-        {"repeat", {"repeat=3"}},
-        {"noise_free", {"noise_free=true"}},
-        {"artefact.form_error", {}, "a picture of heights, in the tests of the bench"},
-        {"environment.temperature_file", {}, "read by another test of the room's temperature"}};
-    for (const auto& part : {MachineChanges(), ProbeChanges(), ProcedureChanges()})
-      all.insert(all.end(), part.begin(), part.end());
-    return all;
-  }();
-  return keys;
+std::vector<OwnKey> Keys() {
+  std::vector<OwnKey> all = {
+      {"bench", {}, "another bench"},
+      {"title", {}, "words"},
+      {"seed", {}, "every run has its own"},
+      {"repeat", {"repeat=3"}},
+      {"noise_free", {"noise_free=true"}},
+      {"artefact.form_error", {}, "a picture of heights, in the tests of the bench"},
+      {"environment.temperature_file", {}, "read by another test of the room's temperature"}};
+  for (const auto& part : {MachineChanges(), ProbeChanges(), ProcedureChanges()})
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
 const std::vector<std::string> kBase = {"freeform_procedure.poses=32"};

@@ -192,7 +192,7 @@ std::vector<OwnKey> RotaryChanges() {
   return keys;
 }
 
-std::vector<OwnKey> RotaryKeys() {
+std::vector<OwnKey> Keys() {
   std::vector<OwnKey> keys = RotaryChanges();
   const std::vector<OwnKey> left_out = {{"bench", {}, "another bench"},
                                         {"title", {}, "words"},
@@ -209,11 +209,6 @@ std::vector<OwnKey> RotaryKeys() {
                                         {"adc.fifo_samples", {}, "a FIFO that runs full ends the run"},
                                         {"adc.drain_rate_kHz", {}, "matters only to a FIFO that runs full"}};
   keys.insert(keys.end(), left_out.begin(), left_out.end());
-  return keys;
-}
-
-const std::vector<OwnKey>& Keys() {
-  static const std::vector<OwnKey> keys = RotaryKeys();
   return keys;
 }
 
