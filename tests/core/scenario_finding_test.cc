@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/core/input_error.h"
+#include "tests/core/refusals.h"
 #include "twin/core/reading.h"
 #include "twin/core/scenario.h"
 
@@ -40,12 +41,10 @@ TEST(ScenarioFinding, IsNotNeeded) {
 }
 
 TEST(ScenarioFinding, RefusesWhatCannotBe) {
-  const auto error = [](const std::string& line) {
-    return FindingError("[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n" + line);
-  };
-  EXPECT_THAT(error("u_roll_mrad = -1\n"), HasSubstr("s.toml:5: psd_roll: u_roll_mrad is -1"));
-  EXPECT_THAT(error("probability = 1.5\n"), HasSubstr("s.toml:5: psd_roll: probability is 1.5"));
-  EXPECT_THAT(error("u_gain_error = 1\n"), HasSubstr("the effect psd_roll has no u_gain_error"));
+  const std::string roll = "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\n";
+  ExpectRefused(
+      "s.toml", FindingError,
+      {{5, roll + "u_roll_mrad = -1\n"}, {5, roll + "probability = 1.5\n"}, {5, roll + "u_gain_error = 1\n"}});
 }
 
 constexpr const char* kEmpirical =
@@ -69,22 +68,17 @@ TEST(ScenarioEmpirical, IsTabulatedByTime) {
 }
 
 TEST(ScenarioEmpirical, RefusesATableThatDoesNotFit) {
-  const auto error = [](const std::string& lines) { return FindingError("[[empirical]]\n" + lines); };
-  EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 2]\nvalue_um = [1.0]\n"),
-              HasSubstr("s.toml:2: the empirical signal has 2 readings and 1 values"));
-  EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 1]\nvalue_um = [1.0, 2.0]\n"),
-              HasSubstr("names a reading twice"));
-  EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1]\nvalue_deg = [1.0]\n"),
-              HasSubstr("values of another kind of channel; expected value_um"));
-  EXPECT_THAT(error("channel = \"angle\"\nreading = [1]\nvalue_deg = [1.0]\n"),
-              HasSubstr("expected a channel of the bench rotary_4dof"));
-  const std::string by_time = "channel = \"psd_a_x\"\nby = \"time\"\n";
-  EXPECT_THAT(error(by_time + "time_s = [2, 1]\nvalue_um = [1.0, 2.0]\n"), HasSubstr("do not ascend"));
-  EXPECT_THAT(error(by_time + "time_s = [2]\nvalue_um = [1.0, 2.0]\n"), HasSubstr("has 1 times and 2 values"));
-  EXPECT_THAT(error(by_time + "time_s = [2]\nreading = [1]\nvalue_um = [1.0]\n"), HasSubstr("names readings"));
-  EXPECT_THAT(error("channel = \"psd_a_x\"\nreading = [1, 2]\ntime_s = [1]\nvalue_um = [1, 2]\n"),
-              HasSubstr("has 2 readings and 1 times"));
-  EXPECT_THAT(error("chanel = \"psd_a_x\"\n"), HasSubstr("empirical.chanel"));
+  const std::string x = "[[empirical]]\nchannel = \"psd_a_x\"\n", by_time = x + "by = \"time\"\n";
+  ExpectRefused("s.toml", FindingError,
+                {{2, x + "reading = [1, 2]\nvalue_um = [1.0]\n"},
+                 {2, x + "reading = [1, 1]\nvalue_um = [1.0, 2.0]\n"},
+                 {2, x + "reading = [1]\nvalue_deg = [1.0]\n"},
+                 {2, "[[empirical]]\nchannel = \"angle\"\nreading = [1]\nvalue_deg = [1.0]\n"},
+                 {2, by_time + "time_s = [2, 1]\nvalue_um = [1.0, 2.0]\n"},
+                 {2, by_time + "time_s = [2]\nvalue_um = [1.0, 2.0]\n"},
+                 {2, by_time + "time_s = [2]\nreading = [1]\nvalue_um = [1.0]\n"},
+                 {2, x + "reading = [1, 2]\ntime_s = [1]\nvalue_um = [1, 2]\n"},
+                 {3, "[[empirical]]\nchanel = \"psd_a_x\"\n"}});
 }
 
 TEST(ScenarioEmpirical, StandsInTheHelp) {

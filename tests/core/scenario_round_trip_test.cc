@@ -290,8 +290,9 @@ TEST(WriteScenario, OfTheDefaultsIsReadBackAndReadsWell) {
   defaults.bench = kRotaryBench;
   const std::string text = WriteScenario(defaults);
   EXPECT_THAT(text,
-              testing::StartsWith("bench = \"rotary_4dof\"\ntitle = \"\"\nseed = 1\nrepeat = 0\nnoise_free = false\n\n[laser]\n"
-                                  "wavelength_nm = 650.0\npower_mW = 5.0\n"));
+              testing::StartsWith(
+                  "bench = \"rotary_4dof\"\ntitle = \"\"\nseed = 1\nrepeat = 0\nnoise_free = false\n\n[laser]\n"
+                  "wavelength_nm = 650.0\npower_mW = 5.0\n"));
   EXPECT_THAT(text, testing::HasSubstr("sweep_arcsec = 300.0\n"));
   ExpectSameBits(ParseScenario(text, "resolved.toml", "."), defaults);
   EXPECT_EQ(WriteScenario(ParseScenario(text, "resolved.toml", ".")), text);
