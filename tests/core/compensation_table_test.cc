@@ -1,6 +1,5 @@
 #include "twin/core/compensation_table.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
@@ -18,22 +17,15 @@ CompensationTable ThreeEntries() {
 
 constexpr double kExact_rad = 1e-12 * arcsec;  // rounding of degrees
 
-TEST(CompensationTable, IsStraightBetweenEntriesAndClosesTheTurn) {
+TEST(CompensationTable, IsStraightBetweenEntriesClosesTheTurnIsTheSameInEachAndAddedToTheAngle) {
   const CompensationTable table = ThreeEntries();
   EXPECT_NEAR(table.At(10.0 * deg), 1.0 * arcsec, kExact_rad);
   EXPECT_NEAR(table.At(55.0 * deg), -0.5 * arcsec, kExact_rad);
   EXPECT_NEAR(table.At(355.0 * deg), 2.5 * arcsec, kExact_rad);  // half-way from 340 to 370 deg
   EXPECT_NEAR(table.At(0.0), 2.0 * arcsec, kExact_rad);
-}
-
-TEST(CompensationTable, IsTheSameInEveryTurn) {
-  const CompensationTable table = ThreeEntries();
   for (const double turn_deg : {-720.0, -360.0, 360.0, 3600.0})
     EXPECT_NEAR(table.At((turn_deg + 55.0) * deg), table.At(55.0 * deg), 1e-9 * arcsec);
-}
-
-TEST(CompensationTable, IsAddedToTheAngle) {
-  EXPECT_NEAR(CommandedAngle_rad(ThreeEntries(), 370.0 * deg), 370.0 * deg + 1.0 * arcsec, 1e-9 * arcsec);
+  EXPECT_NEAR(CommandedAngle_rad(table, 370.0 * deg), 370.0 * deg + 1.0 * arcsec, 1e-9 * arcsec);
   EXPECT_EQ(CommandedAngle_rad(std::nullopt, 1.25), 1.25);
 }
 

@@ -19,23 +19,17 @@ std::string TableError(const std::string& text) {
   return MessageOf([&] { ParseTable(text); });
 }
 
-TEST(Csv, SkipsCommentsAndCountsTheirLines) {
+TEST(Csv, SkipsCommentsCountsTheirLinesAndTakesFilesOfOtherSystemsAndEmptyFields) {
   const CsvTable table = ParseTable("# made by hand\na,b\n\n# a comment\n1,2\n");
   ASSERT_EQ(table.rows.size(), 1u);
   EXPECT_EQ(table.WhereHeader(), "t.csv:2");
   EXPECT_EQ(table.Where(table.rows[0]), "t.csv:5");
-}
-
-TEST(Csv, TakesFilesOfOtherSystems) {
-  const CsvTable table = ParseTable(
+  const CsvTable foreign = ParseTable(
       "\xEF\xBB\xBF"
       "a,b\r\n 1 ,2\r\n");
-  EXPECT_EQ(table.columns, (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ(table.rows[0].fields, (std::vector<std::string>{"1", "2"}));
-}
-
-TEST(Csv, KeepsEmptyFieldsAlsoTheLast) {
-  EXPECT_EQ(ParseTable("a,b,c\n,,\n").rows[0].fields, (std::vector<std::string>{"", "", ""}));
+  EXPECT_EQ(foreign.columns, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(foreign.rows[0].fields, (std::vector<std::string>{"1", "2"}));
+  EXPECT_EQ(ParseTable("a,b,c\n,,\n").rows[0].fields, (std::vector<std::string>{"", "", ""})) << "also the last";
 }
 
 TEST(Csv, ReadsWhatItQuotes) {

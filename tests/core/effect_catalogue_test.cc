@@ -2,7 +2,6 @@
 
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
@@ -27,7 +26,7 @@ TEST(EffectCatalogue, HasTheEffectsOfItsBenchOnly) {
   EXPECT_THROW(EffectCatalogue("lathe"), InputError);
 }
 
-TEST(EffectCatalogue, SaysWhereAnEffectCanAct) {
+TEST(EffectCatalogue, SaysWhereAnEffectCanActAndWithWhichParameters) {
   EXPECT_THAT(FindEffect("psd_gain", kRotaryBench)->places,
               ElementsAre("psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"));
   EXPECT_THAT(FindEffect("laser_drift", kRotaryBench)->places, ElementsAre("yaw", "pitch"));
@@ -35,6 +34,10 @@ TEST(EffectCatalogue, SaysWhereAnEffectCanAct) {
   EXPECT_TRUE(FindEffect("wavelength_offset", kRotaryBench)->places.empty());
   EXPECT_EQ(FindEffect("backlash", kRotaryBench)->default_place, "target");
   EXPECT_EQ(FindEffect("no_such_effect", kRotaryBench), nullptr);
+  const auto& parameters = FindEffect("slip", kRotaryBench)->parameters;
+  EXPECT_TRUE(parameters[0].BelongsTo("yaw"));
+  EXPECT_FALSE(parameters[0].BelongsTo("lateral"));
+  EXPECT_TRUE(parameters[2].BelongsTo("lateral"));
 }
 
 class EveryBench : public testing::TestWithParam<std::string> {};
@@ -63,13 +66,6 @@ TEST(EffectCatalogue, GivesKeysTheirUnitAndValuesInSI) {
   const EffectParameter& drift = FindEffect("laser_drift", kRotaryBench)->parameters.front();
   EXPECT_EQ(drift.Key(), "drift_urad_per_h");
   EXPECT_DOUBLE_EQ(drift.default_SI, 20e-6 / 3600.0);
-}
-
-TEST(EffectCatalogue, KnowsWhichParameterBelongsToAPlace) {
-  const auto& parameters = FindEffect("slip", kRotaryBench)->parameters;
-  EXPECT_TRUE(parameters[0].BelongsTo("yaw"));
-  EXPECT_FALSE(parameters[0].BelongsTo("lateral"));
-  EXPECT_TRUE(parameters[2].BelongsTo("lateral"));
 }
 
 }  // namespace

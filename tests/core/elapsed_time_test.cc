@@ -1,11 +1,9 @@
 #include "twin/core/elapsed_time.h"
 
-#include <gmock/gmock.h>
+#include "tests/support/kept_text.h"
 
 namespace twinbench {
 namespace {
-
-using testing::HasSubstr;
 
 const ClockMark kBegin{"a-b-c", 1000.0, 1.7e9};
 
@@ -16,14 +14,14 @@ TEST(ElapsedTime, GoesByTheTimeSinceTheMachineWasStartedHoweverTheDaysClockIsSet
   for (const double set_s : {86400.0, -86400.0, 2.0}) {
     const Elapsed jumped = Between(kBegin, {"a-b-c", 1060.25, 1.7e9 + 60.25 + set_s});
     EXPECT_EQ(jumped.time, FromSeconds(60.25));
-    EXPECT_THAT(jumped.note, HasSubstr(set_s > 0.0 ? "set by +" : "set by -"));
+    EXPECT_KEPT(jumped.note);
   }
 }
 
 TEST(ElapsedTime, GoesByUtcBehindARestartAndSaysSo) {
   const Elapsed restarted = Between(kBegin, {"d-e-f", 12.0, 1.7e9 + 600.5});
   EXPECT_EQ(restarted.time, FromSeconds(600.5));
-  EXPECT_THAT(restarted.note, HasSubstr("started anew"));
+  EXPECT_KEPT(restarted.note);
 }
 
 TEST(ElapsedTime, KeepsAMarkAsText) {

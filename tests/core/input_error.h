@@ -21,13 +21,14 @@ inline std::string MessageOf(const std::function<void()>& action) {
   return "(no InputError was thrown)";
 }
 
-/// Where nobody waits for a disk, if there is such a place and TMPDIR names no other: a record is flushed behind every reading. What that
-/// is worth when the power goes, tests/power_cut asks.
+/// Where nobody waits for a disk, if there is such a place and TMPDIR names no other: a record is flushed behind
+/// every reading. What that is worth when the power goes, tests/power_cut asks.
 inline std::filesystem::path PlaceForFiles() {
   constexpr const char* kMemory = "/dev/shm";
   constexpr std::uintmax_t kEnough = 1'000'000'000;
   std::error_code none;
-  const bool is_roomy = !std::getenv("TMPDIR") && std::filesystem::space(kMemory, none).available > kEnough && !none;
+  const bool is_roomy =
+      !std::getenv("TMPDIR") && std::filesystem::space(kMemory, none).available > kEnough && !none;
   return is_roomy ? kMemory : std::filesystem::temp_directory_path();
 }
 

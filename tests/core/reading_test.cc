@@ -1,7 +1,6 @@
 #include "twin/core/reading.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>

@@ -1,7 +1,6 @@
 #include "twin/core/scenario.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
 #include "tests/core/refusals.h"
@@ -382,6 +381,7 @@ TEST(ScenarioHelp, HasEveryKeyWithUnitDefaultBoundsAndMeaning) {
   EXPECT_THAT(help, HasSubstr("\n[target.random]\nex_arcsec = 0\n"));
   EXPECT_THAT(help, HasSubstr("name = \"psd_roll\"\nwhere\n    \"psd_a\" or \"psd_b\"\nroll_mrad = 5\n"));
   EXPECT_THAT(help, HasSubstr("shifts = [0, 1, 7, 11]\n"));
+  EXPECT_THAT(help, HasSubstr("[[empirical]]"));
   EXPECT_THAT(help, HasSubstr("box_mm = [20, 20, 20]\n    edges of a box, centred on its position; a list of 3, "));
 }
 

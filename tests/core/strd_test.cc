@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Linear, Strd,
 
 constexpr double kAllSingularValues = 1e-17;
 
-TEST_P(Strd, HasTheCertifiedCoefficients) {
+TEST_P(Strd, HasTheCertifiedCoefficientsAndStandardDeviations) {
   const Dataset set = ReadDataset(GetParam().name);
   const MatrixXd& X = set.design;
   const MatrixXd from_observed = PseudoInverseOf(X).topRows(X.cols());
@@ -129,13 +129,8 @@ TEST_P(Strd, HasTheCertifiedCoefficients) {
             GetParam().by_singular_values);
   EXPECT_GE(DigitsOf(from_observed * set.observed, set.coefficient), GetParam().by_pseudo_inverse);
   EXPECT_GE(DigitsOf(normal.x, set.coefficient), GetParam().by_normal_matrix);
-}
-
-TEST_P(Strd, HasTheCertifiedStandardDeviations) {
-  const Dataset set = ReadDataset(GetParam().name);
-  const MatrixXd from_observed = PseudoInverseOf(set.design).topRows(set.design.cols());
   EXPECT_GE(DigitsOf(DeviationsOf(set, from_observed), set.deviation), GetParam().by_pseudo_inverse);
-  const VectorXd left = set.observed - set.design * (from_observed * set.observed);
+  const VectorXd left = set.observed - X * (from_observed * set.observed);
   const double residual = std::sqrt(left.squaredNorm() / static_cast<double>(left.size() - set.coefficient.size()));
   EXPECT_GE(DigitsOf(VectorXd::Constant(1, residual), VectorXd::Constant(1, set.residual)),
             GetParam().by_pseudo_inverse);

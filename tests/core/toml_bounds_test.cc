@@ -14,12 +14,7 @@ std::string Repeated(const std::string& text, int times) {
 }
 
 std::string BoundsError(const std::string& text) {
-  try {
-    RequireModestKeys(text, "a.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no InputError";
+  return MessageOf([&] { RequireModestKeys(text, "a.toml"); });
 }
 
 TEST(TomlBounds, RefuseKeysOfManyPartsHoweverTheyAreWritten) {
