@@ -5,22 +5,28 @@
 
 #include "mechanics/base_response.h"
 #include "mechanics/drive_loads.h"
-#include "mechanics/plant.h"
 #include "mechanics/servo.h"
-#include "tests/mechanics/test_units.h"
+#include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {
 namespace {
 
-constexpr std::array<Fidelity, 3> kEveryFidelity = {Fidelity::kKinematic, Fidelity::kLinear, Fidelity::kBullet};
-constexpr std::array<Fidelity, 2> kWithBodies = {Fidelity::kLinear, Fidelity::kBullet};
+/// Sent there and at rest.
+std::unique_ptr<Plant> Sent(Fidelity fidelity, const StackParameters& p, Axis axis, double to_rad) {
+  auto plant = MakePlant(fidelity, p);
+  plant->StartMove(axis, to_rad, 0.6);
+  plant->AdvanceUntilSettled(5.0);
+  plant->Advance(1.0);
+  EXPECT_TRUE(plant->Settled()) << static_cast<int>(fidelity);
+  return plant;
+}
 
 TEST(DriveLoads, CablesLeaveAFollowingErrorOfTheirSlopeByTheIntegralGain) {
   StackParameters p;
   p.table[0].cable = {0.5, 0.3, 40.0 * kDegree};
   const double inertia_kg_m2 = SpinInertia(p)(0, 0);
   const double integral_Nm_rad_s = ServoGains::For(inertia_kg_m2, p.table[0].servo_Hz).integral_Nm_rad_s;
-  for (const Fidelity fidelity : kWithBodies) {
+  for (const Fidelity fidelity : kBodies) {
     const auto plant = MakePlant(fidelity, p);
     plant->StartMove(Axis::kTarget, 30.0 * kDegree, 20.0);
     plant->Advance(10.0);  // at 15 deg and full speed
@@ -71,7 +77,7 @@ TEST(DriveLoads, UnbalancePullsAtEveryCoordinateThatMovesIt) {
 TEST(DriveLoads, UnbalanceDeflectsTheBearingWithTheSquareOfTheSpeed) {
   StackParameters p;
   p.table[0].unbalance = {0.06, 0.5};
-  for (const Fidelity fidelity : kEveryFidelity) {
+  for (const Fidelity fidelity : kAll) {
     for (const double duration_s : {4.0, 8.0}) {
       const auto plant = MakePlant(fidelity, p);
       plant->StartMove(Axis::kTarget, 2.0 * kPi, duration_s);
@@ -92,14 +98,10 @@ TEST(Scale, ItsSubdivisionErrorMakesTheRotorStandWrongByItself) {
   StackParameters p;
   p.table[0].scale.subdivision_rad = 0.5 * kArcsec;
   const double period_rad = 2.0 * kPi / p.table[0].scale.periods;
-  for (const Fidelity fidelity : kEveryFidelity) {
+  for (const Fidelity fidelity : kAll) {
     for (const double share : {0.0, 0.25, 0.6}) {
-      const auto plant = MakePlant(fidelity, p);
       const double to_rad = (1000.0 + share) * period_rad;
-      plant->StartMove(Axis::kTarget, to_rad, 0.6);
-      plant->AdvanceUntilSettled(5.0);
-      plant->Advance(1.0);
-      ASSERT_TRUE(plant->Settled());
+      const auto plant = Sent(fidelity, p, Axis::kTarget, to_rad);
       const double wrong_rad = plant->State().target_rad - to_rad;
       // It stands at a with a + s sin(N a) = command.
       EXPECT_NEAR(wrong_rad, -0.5 * kArcsec * std::sin(2.0 * kPi * share + p.table[0].scale.periods * wrong_rad),
@@ -113,16 +115,11 @@ TEST(Scale, ItsSubdivisionErrorMakesTheRotorStandWrongByItself) {
 TEST(Scale, LeavesTheRotorFreeWithinHalfAStepOfItsResolution) {
   StackParameters p;
   p.table[1].scale.resolution_rad = 0.2 * kArcsec;
-  for (const Fidelity fidelity : kWithBodies) {
+  for (const Fidelity fidelity : kBodies) {
     double furthest_rad = 0.0;
     for (int i = 1; i <= 5; ++i) {
-      const auto plant = MakePlant(fidelity, p);
       const double to_rad = 50000 * i * p.table[1].scale.resolution_rad;
-      plant->StartMove(Axis::kReference, to_rad, 0.6);
-      plant->AdvanceUntilSettled(5.0);
-      plant->Advance(1.0);
-      ASSERT_TRUE(plant->Settled()) << static_cast<int>(fidelity);
-      const StackState s = plant->State();
+      const StackState s = Sent(fidelity, p, Axis::kReference, to_rad)->State();
       EXPECT_NEAR(s.reference_encoder_rad, to_rad, 1e-12);
       EXPECT_LE(std::abs(s.reference_rad - to_rad), 0.1 * kArcsec + 1e-12);
       furthest_rad = std::max(furthest_rad, std::abs(s.reference_rad - to_rad));
@@ -151,7 +148,7 @@ double LargestSpeed(double static_ratio, Fidelity fidelity) {
 }
 
 TEST(LuGreFriction, SticksAndSlipsOnASlowWayWhereBreakawayExceedsCoulomb) {
-  for (const Fidelity fidelity : kWithBodies) {
+  for (const Fidelity fidelity : kBodies) {
     // A friction that falls with the speed by more than the controller damps makes it stick and slip; a constant
     // one does not.
     EXPECT_GT(LargestSpeed(1.5, fidelity), 3.0) << static_cast<int>(fidelity);

@@ -32,8 +32,8 @@ double Line(const SignalState& state, int order) {
   return std::abs(sum);
 }
 
-TEST(EncoderSignal, OffsetsErrOncePerLineAndTheOthersTwice) {
-  SignalState offset, ratio, quadrature;
+TEST(EncoderSignal, OffsetsErrOncePerLineClippingFourTimesAndTheOthersTwice) {
+  SignalState offset, ratio, quadrature, clipped;
   offset.offset_sin = ratio.ratio = quadrature.quadrature_rad = 1e-3;
   // Heydemann, first order: offset, ratio / 2 and quadrature / 2; the square of a thousandth is left out.
   EXPECT_NEAR(Line(offset, 1), 1e-3, 2e-6);
@@ -41,10 +41,6 @@ TEST(EncoderSignal, OffsetsErrOncePerLineAndTheOthersTwice) {
   EXPECT_NEAR(Line(quadrature, 2), 0.5e-3, 2e-6);
   EXPECT_LT(Line(offset, 2), 2e-6);
   EXPECT_LT(Line(ratio, 1), 1e-12);
-}
-
-TEST(EncoderSignal, ClippedSignalsErrFourTimesALine) {
-  SignalState clipped;
   clipped.clip_level = 0.9;
   EXPECT_GT(Line(clipped, 4), 0.01);
   for (const int order : {1, 2, 3}) EXPECT_LT(Line(clipped, order), 1e-3) << order;

@@ -6,7 +6,7 @@
 #include <complex>
 
 #include "mechanics/feed_course.h"
-#include "tests/mechanics/test_units.h"
+#include "tests/mechanics/plant_runs.h"
 
 // Expected values are the closed forms of feed_parameters.h and the formulas that a machine tool's circles are
 // described with.
@@ -18,7 +18,6 @@ using Complex = std::complex<double>;
 constexpr double kCircle_m = 0.11023;
 constexpr double kSlow_m_s = 40e-3 / 60.0, kFast_m_s = 1.0 / 60.0;
 constexpr double kNm = 1e-9, kUm = 1e-6;
-constexpr Fidelity kBodies[] = {Fidelity::kLinear, Fidelity::kBullet};
 
 FeedDriveParameters FreeDrive() {
   FeedDriveParameters p;
@@ -46,22 +45,6 @@ Complex DriveResponse(const FeedDriveParameters& p, double rate_rad_s) {
 
 double Off_m(const FeedDrive& drive, CircleAxis axis = CircleAxis::kX) {
   return drive.State().slide_m - drive.motion().At(axis, drive.time_s()).m;
-}
-
-TEST(FeedDrive, LagsBySpeedOverTheGain) {
-  for (const Fidelity fidelity : kBodies) {
-    for (const double feed_forward : {0.0, 0.95}) {
-      FeedDriveParameters p = FreeDrive();
-      p.feed_forward = feed_forward;
-      FeedDrive drive(fidelity, p, CircleAxis::kX);
-      drive.Begin(CircleAt(kFast_m_s));
-      while (drive.motion().Angle_rad(drive.time_s()) < 0.5 * kPi) drive.Step(1e3);
-      const FeedState s = drive.State();
-      // Fastest, downwards: acceleration does not show. Within half a degree: of the speed 4e-5 is lost.
-      EXPECT_NEAR(Off_m(drive) / (kFast_m_s * p.Lag_s()), 1.0, 1e-3) << feed_forward;
-      EXPECT_LT(s.slide_m_s, 0.0);
-    }
-  }
 }
 
 TEST(FeedDrive, IsTheLaggedCircleOfTheClosedFormWhereItIsIdeal) {
@@ -106,12 +89,13 @@ TEST(FeedDrive, FollowsByItsTransferFunction) {
   }
 }
 
+void GoTo(FeedDrive& drive, double time_s) {
+  while (drive.time_s() < time_s) drive.Step(time_s);
+}
+
 /// Radius of the path where the command is at an angle.
 double RadiusAt(FeedDrive& x, FeedDrive& y, double angle_rad) {
-  for (FeedDrive* drive : {&x, &y}) {
-    const double time_s = (angle_rad + 0.25 * kPi) / drive->motion().rate_rad_s();
-    while (drive->time_s() < time_s) drive->Step(time_s);
-  }
+  for (FeedDrive* drive : {&x, &y}) GoTo(*drive, (angle_rad + 0.25 * kPi) / drive->motion().rate_rad_s());
   return std::hypot(x.State().slide_m, y.State().slide_m);
 }
 
@@ -149,7 +133,7 @@ TEST(FeedDrive, ReversalOfFrictionMakesTheSpikeOfTheClosedForm) {
   double largest_m = 0.0;
   while (drive.time_s() < turned_s + 0.1) {
     drive.Step(turned_s + 0.1);
-    while (free.time_s() < drive.time_s()) free.Step(drive.time_s());
+    GoTo(free, drive.time_s());
     const double f = p.position_gain_1_s * (drive.time_s() - turned_s);
     const double spike_m = Off_m(drive) - Off_m(free);
     largest_m = std::max(largest_m, spike_m);
@@ -284,8 +268,7 @@ TEST(FeedDrive, LinearModelAndBodiesAgree) {
   bullet.Begin(circle);
   double worst_m = 0.0, largest_m = 0.0;
   for (double until_s = 0.0; until_s < 10.0; until_s += 0.01) {
-    while (linear.time_s() < until_s) linear.Step(until_s);
-    while (bullet.time_s() < until_s) bullet.Step(until_s);
+    for (FeedDrive* drive : {&linear, &bullet}) GoTo(*drive, until_s);
     worst_m = std::max(worst_m, std::abs(linear.State().slide_m - bullet.State().slide_m));
     largest_m = std::max(largest_m, std::abs(Off_m(bullet)));
   }
@@ -320,20 +303,20 @@ TEST(FeedCourse, TellsPlacesBetweenItsKnots) {
 }
 
 TEST(FeedDrive, RefusesWhatItCannotBe) {
-  FeedDriveParameters floating = FreeDrive();
-  floating.play_m = 1e-6;
-  EXPECT_THROW(FeedDrive(Fidelity::kBullet, floating, CircleAxis::kX), std::invalid_argument);
-  FeedDriveParameters playing = RubbingDrive();
-  playing.play_m = 1e-6;
-  EXPECT_THROW(FeedDrive(Fidelity::kLinear, playing, CircleAxis::kX), std::invalid_argument);
-  EXPECT_THROW(FeedDrive(Fidelity::kKinematic, RubbingDrive(), CircleAxis::kX), std::invalid_argument);
-  FeedDriveParameters nervous = RubbingDrive();
+  FeedDriveParameters floating = FreeDrive(), playing = RubbingDrive(), nervous = RubbingDrive(),
+                      unstable = nervous;
+  floating.play_m = playing.play_m = 1e-6;
   nervous.velocity_gain_1_s = 2000.0;  // one a period
-  EXPECT_THROW(FeedDrive(Fidelity::kBullet, nervous, CircleAxis::kX), std::invalid_argument);
-  nervous.velocity_gain_1_s = 300.0;
-  nervous.position_gain_1_s = 2000.0;  // by Routh's condition a (Kv + 1/T) must exceed Kv / T
-  nervous.integral_time_s = 1e-3;
-  EXPECT_THROW(FeedDrive(Fidelity::kBullet, nervous, CircleAxis::kX), std::invalid_argument);
+  unstable.velocity_gain_1_s = 300.0;
+  unstable.position_gain_1_s = 2000.0;  // by Routh's condition a (Kv + 1/T) must exceed Kv / T
+  unstable.integral_time_s = 1e-3;
+  const std::pair<Fidelity, FeedDriveParameters> cases[] = {{Fidelity::kBullet, floating},
+                                                            {Fidelity::kLinear, playing},
+                                                            {Fidelity::kKinematic, RubbingDrive()},
+                                                            {Fidelity::kBullet, nervous},
+                                                            {Fidelity::kBullet, unstable}};
+  for (const auto& [fidelity, p] : cases)
+    EXPECT_THROW(FeedDrive(fidelity, p, CircleAxis::kX), std::invalid_argument);
 }
 
 }  // namespace

@@ -26,6 +26,12 @@ Complex Line(GearTrain& train, double f_Hz, double time_s,
   return sum;
 }
 
+/// The same of the transmission error [arcsec], at constant speed.
+Complex ErrorLine_arcsec(const GearTrainParameters& p, double hob_speed_rad_s, double f_Hz, double time_s) {
+  const auto train = Steady(Fidelity::kBullet, p, hob_speed_rad_s);
+  return Line(*train, f_Hz, time_s, [&](const GearTrainState& s) { return TransmissionError_rad(p, s) / kArcsec; });
+}
+
 /// H of PositionLoop's header.
 Complex ServoResponse(const DriveParameters& drive, double f_Hz) {
   const double w = 2.0 * kPi * drive.servo_Hz;
@@ -49,9 +55,7 @@ TEST(GearTrain, ServoPassesErrorsOfTheMachinesEncoderByItsTransferFunction) {
       p.motor.inertia_kg_m2 = 10.0;  // 4000 times the table's at the motor: the table's reaction does not count
       p.servo_period_s = 0.1e-3;
       p.errors.hob_encoder = {{f_Hz, 10.0 * kArcsec, 0.0}};  // at one turn of the hob a second
-      const auto train = Steady(Fidelity::kBullet, p, 2.0 * kPi);
-      const Complex line =
-          Line(*train, f_Hz, 2.0, [&](const GearTrainState& s) { return TransmissionError_rad(p, s) / kArcsec; });
+      const Complex line = ErrorLine_arcsec(p, 2.0 * kPi, f_Hz, 2.0);
       // The hob's angle is 2 pi (t - ramp / 2): whole turns behind t.
       const Complex expected = 10.0 * ServoResponse(p.motor, f_Hz) * Torsion(p, f_Hz);
       const double held = 2.0 * kPi * f_Hz * p.servo_period_s;  // commands are held for a period: as if later by it
@@ -78,9 +82,7 @@ TEST(GearTrain, MotorGivesWayToTheTable) {
     p.motor.servo_Hz = 2.0;
     p.servo_period_s = 0.1e-3;
     p.errors.worm = {{1.0, 2.0 * kArcsec, 0.0}};
-    const auto train = Steady(Fidelity::kBullet, p, 2.0 * kPi * f_Hz / p.WormRatio() / p.ratio);
-    const Complex line =
-        Line(*train, f_Hz, 1.0, [&](const GearTrainState& s) { return TransmissionError_rad(p, s) / kArcsec; });
+    const Complex line = ErrorLine_arcsec(p, 2.0 * kPi * f_Hz / p.WormRatio() / p.ratio, f_Hz, 1.0);
     const Complex expected = 2.0 * TableOverGears(p, f_Hz);
     // A step of 0.1 ms puts the torsion's frequency off by some 1e-4 and the damper's speed 0.05 ms early.
     EXPECT_LT(std::abs(line - expected), 5e-3 * std::abs(expected)) << f_Hz;
@@ -94,10 +96,7 @@ TEST(GearTrain, TorsionRaisesErrorsOfTheGearsTowardsItsResonance) {
     p.motor.inertia_kg_m2 = 1000.0;
     p.step_s = 0.05e-3;
     p.errors.worm = {{1.0, 2.0 * kArcsec, 0.0}};
-    const double table_Hz = f_Hz / p.WormRatio();
-    const auto train = Steady(Fidelity::kBullet, p, 2.0 * kPi * table_Hz / p.ratio);
-    const Complex line =
-        Line(*train, f_Hz, 1.0, [&](const GearTrainState& s) { return TransmissionError_rad(p, s) / kArcsec; });
+    const Complex line = ErrorLine_arcsec(p, 2.0 * kPi * f_Hz / p.WormRatio() / p.ratio, f_Hz, 1.0);
     // The leapfrog takes the damper's speed half a step early, as if the table had damping x h / 2 = 0.015 kg m^2
     // less: 8e-4 of its inertia, 4 times as much in the gain at 70 Hz. The worm's angle is 2 pi f (t - ramp / 2),
     // whole turns.

@@ -26,12 +26,14 @@ TEST(StaticDeflection, FollowsTheFirstOrderFormula) {
   EXPECT_NEAR(q[8], -1.5 * 9.81 / 120e6, 1e-12);
 }
 
-TEST(StaticDeflection, LeansTowardsThePayload) {
+TEST(StaticDeflection, LeansTowardsThePayloadAndIsExactlyZeroForAStackThatIsOnlyItself) {
   StackParameters p = EccentricStack();
   p.payload.azimuth_rad = 0.5 * kPi;  // on +y: weight turns about +x, top comes down towards +y
   const Vector12 q = StaticDeflection(p, 0.0, 0.0);
   EXPECT_LT(q[3], 0.0);
   EXPECT_NEAR(q[4], 0.0, 1e-18);
+  EXPECT_TRUE(SagIsConstant(StackParameters{}));
+  EXPECT_EQ(StaticDeflection({}, 0.0, 0.0).cwiseAbs().maxCoeff(), 0.0);
 }
 
 TEST(StaticDeflection, CounterRotationKeepsTheTiltAndASingleTableTurnsIt) {
@@ -57,13 +59,6 @@ TEST(StaticDeflection, CounterRotationKeepsTheTiltAndASingleTableTurnsIt) {
   EXPECT_LT(counter, 6e-4 * kArcsec);
   // Half a turn of the reference swings the tilt from one side to the other: twice 0.202 + 0.486 arcsec.
   EXPECT_NEAR(single / kArcsec, 2.0 * (0.2023 + 0.4856), 2e-3);
-}
-
-TEST(StaticDeflection, IsExactlyZeroForAStackThatIsOnlyItself) {
-  StackParameters p;
-  EXPECT_TRUE(SagIsConstant(p));
-  const Vector12 q = StaticDeflection(p, 0.0, 0.0);
-  EXPECT_EQ(q.cwiseAbs().maxCoeff(), 0.0);
 }
 
 TEST(WeightGradient, IsTheSlopeOfTheWeightsEnergyInTheChain) {

@@ -50,18 +50,15 @@ TEST(LuGreFriction, IsStableForStepsFarLongerThanItsBristles) {
   EXPECT_NEAR(friction.Torque(-1.0, 0.1), 0.5, 1e-9);
 }
 
-TEST(Backlash, KeepsTheRotorUntilTheGapIsCrossed) {
+TEST(Backlash, KeepsTheRotorUntilTheGapIsCrossedAndOfZeroWidthIsTheEncoder) {
   Backlash play(2e-5);
   EXPECT_DOUBLE_EQ(play.Follow(1.0), 1.0 - 1e-5);
   EXPECT_DOUBLE_EQ(play.Follow(1.0 - 1.5e-5), 1.0 - 1e-5);  // within the gap
   EXPECT_DOUBLE_EQ(play.Follow(0.5), 0.5 + 1e-5);
-  EXPECT_DOUBLE_EQ(play.Follow(1.0), 1.0 - 1e-5);
-}
-
-TEST(Backlash, OfZeroWidthIsTheEncoder) {
   Backlash none(0.0);
   EXPECT_EQ(none.Follow(0.123), 0.123);
   EXPECT_FALSE(none.active());
+  EXPECT_DOUBLE_EQ(play.Follow(1.0), 1.0 - 1e-5);
 }
 
 }  // namespace
