@@ -28,28 +28,21 @@ TEST(GaussHermite, IntegratesPolynomialsOfTheNormalDistribution) {
   }
 }
 
-TEST(GaussianBundle, HasTheMomentsOfTheBeam) {
+TEST(GaussianBundle, HasTheMomentsOfTheBeamAndSpreadsAsItDoes) {
   const BeamNodes nodes = GaussianBundle(0.5e-3, 1e-3, 3);
   EXPECT_EQ(nodes.size(), 81u);
   EXPECT_NEAR(Average(nodes, [](const BeamNode&) { return 1.0; }), 1.0, 1e-14);
   EXPECT_NEAR(Average(nodes, [](const BeamNode& n) { return n.x_m * n.x_m; }), 0.0625e-6, 1e-20);
   EXPECT_NEAR(Average(nodes, [](const BeamNode& n) { return n.slope_y * n.slope_y; }), 0.25e-6, 1e-20);
   EXPECT_NEAR(Average(nodes, [](const BeamNode& n) { return n.x_m * n.slope_x; }), 0.0, 1e-20);
-}
-
-TEST(GaussianBundle, SpreadsAsAGaussianBeamDoes) {
-  // w(z)^2 = w0^2 + (divergence z)^2.
-  const BeamNodes nodes = GaussianBundle(0.5e-3, 1e-3, 2);
-  double variance = 0.0;
-  for (const BeamNode& node : nodes) variance += node.weight * std::pow(node.x_m + 2.0 * node.slope_x, 2);
+  // w(z)^2 = w0^2 + (divergence z)^2, 2 m away.
+  const double variance = Average(GaussianBundle(0.5e-3, 1e-3, 2),
+                                  [](const BeamNode& n) { return std::pow(n.x_m + 2.0 * n.slope_x, 2); });
   EXPECT_NEAR(2.0 * std::sqrt(variance), std::hypot(0.5e-3, 2e-3), 1e-15);
-}
-
-TEST(DenseBundle, ConvergesToTheSameMoments) {
-  const BeamNodes nodes = DenseBundle(0.5e-3, 1e-3, 24);
-  EXPECT_NEAR(Average(nodes, [](const BeamNode& n) { return n.x_m; }), 0.0, 1e-15);
-  EXPECT_NEAR(Average(nodes, [](const BeamNode& n) { return n.x_m * n.x_m; }), 0.0625e-6, 0.002e-6);  // slices: 3 %
-  EXPECT_NEAR(Average(nodes, [](const BeamNode& n) { return n.slope_x * n.slope_x; }), 0.25e-6, 1e-18);
+  const BeamNodes dense = DenseBundle(0.5e-3, 1e-3, 24);
+  EXPECT_NEAR(Average(dense, [](const BeamNode& n) { return n.x_m; }), 0.0, 1e-15);
+  EXPECT_NEAR(Average(dense, [](const BeamNode& n) { return n.x_m * n.x_m; }), 0.0625e-6, 0.002e-6);  // slices: 3 %
+  EXPECT_NEAR(Average(dense, [](const BeamNode& n) { return n.slope_x * n.slope_x; }), 0.25e-6, 1e-18);
 }
 
 IrradianceMap Slope() {

@@ -51,24 +51,15 @@ class FormedGrating : public testing::TestWithParam<Fidelity> {
 };
 
 // A slope g of the height along x turns the normal by -g: each order follows by g (1 + 1 / cos) of its distance.
-TEST_P(FormedGrating, ASphereTurnsBothOrdersAlike) {
-  GratingForm form = Plain();
-  form.sphere_m = 200e-9;
-  const double slope = 2.0 * 200e-9 * 2e-3 / std::pow(12.5e-3, 2),
-               u_m = -kDistance_m * slope * (1.0 + 1.0 / kCosine);
-  Expect(form, 2e-3, 0.0, {u_m, 0.0, u_m, 0.0});
-  const double v_m = -kDistance_m * slope * (1.0 + kCosine);
-  Expect(form, 0.0, 2e-3, {0.0, v_m, 0.0, v_m});
-}
-
-TEST_P(FormedGrating, AstigmatismTurnsTheOtherWayAlongTheGrooves) {
-  GratingForm form = Plain();
-  form.astigmatism_m = 200e-9;
-  const double slope = 2.0 * 200e-9 * 2e-3 / std::pow(12.5e-3, 2),
-               u_m = -kDistance_m * slope * (1.0 + 1.0 / kCosine);
-  Expect(form, 2e-3, 0.0, {u_m, 0.0, u_m, 0.0});
-  const double v_m = kDistance_m * slope * (1.0 + kCosine);
-  Expect(form, 0.0, 2e-3, {0.0, v_m, 0.0, v_m});
+TEST_P(FormedGrating, ASphereTurnsBothOrdersAlikeAndAstigmatismTheOtherWayAlongTheGrooves) {
+  const double slope = 2.0 * 200e-9 * 2e-3 / std::pow(12.5e-3, 2);
+  const double u_m = -kDistance_m * slope * (1.0 + 1.0 / kCosine), v_m = -kDistance_m * slope * (1.0 + kCosine);
+  GratingForm sphere = Plain(), astigmatic = Plain();
+  sphere.sphere_m = astigmatic.astigmatism_m = 200e-9;
+  Expect(sphere, 2e-3, 0.0, {u_m, 0.0, u_m, 0.0});
+  Expect(sphere, 0.0, 2e-3, {0.0, v_m, 0.0, v_m});
+  Expect(astigmatic, 2e-3, 0.0, {u_m, 0.0, u_m, 0.0});
+  Expect(astigmatic, 0.0, 2e-3, {0.0, -v_m, 0.0, -v_m});
 }
 
 // sin(theta) = wavelength x lines: grooves further apart by the share e turn the orders inwards by e tan(theta).

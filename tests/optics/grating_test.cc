@@ -121,61 +121,39 @@ TEST(Diffract, AgreesWithLensDesignNumbersInTransmission) {
   EXPECT_LT((through(field(2, 8)) - Vector3d(0.0345602649, 0.0216899611, 0.9991672201)).norm(), 1e-10);
 }
 
-TEST(Diffract, KeepsTheComponentAlongTheGroovesAndTheLength) {
-  std::mt19937_64 random(1);
+TEST(Diffract, SendsPositiveOrdersTowardsAcrossWhicheverWayTheNormalPoints) {
+  for (const Vector3d& normal : {Vector3d(Vector3d::UnitY()), Vector3d(-Vector3d::UnitY())}) {
+    const OrderDirection out = Diffract({0, -1, 0}, normal, Vector3d::UnitX(), 0.39);
+    EXPECT_NEAR(out.direction.x(), 0.39, 1e-16);
+    EXPECT_NEAR(out.direction.y(), std::sqrt(1 - 0.39 * 0.39), 2e-16);
+  }
+}
+
+TEST(Diffract, KeepsTheComponentAlongTheGroovesMirrorsTurnsAndIsReciprocalFromAnyDirection) {
+  std::mt19937_64 random(2);
+  int met = 0;
   for (int i = 0; i < 1000; ++i) {
     const Case c = RandomCase(random);
-    const OrderDirection out = Diffract(c.d, c.normal, c.across, 0.3);
-    if (out.status != OrderStatus::kOk) continue;
+    const auto mirror = [&](const Vector3d& v) { return Vector3d(v - 2.0 * v.dot(c.across) * c.across); };
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.1 * i, RandomUnit(random)).toRotationMatrix();
+    const OrderDirection out = Diffract(c.d, c.normal, c.across, 0.39);
+    const OrderDirection minus = Diffract(mirror(c.d), c.normal, c.across, -0.39);
+    const OrderDirection turned = Diffract(turn * c.d, turn * c.normal, turn * c.across, 0.39);
+    ASSERT_EQ(minus.status, out.status);
+    if (out.status != OrderStatus::kOk || turned.status != OrderStatus::kOk) continue;
+    ++met;
+    const double steep = out.direction.dot(c.normal);  // sqrt(q) near grazing
+    EXPECT_GT(steep, 0.0);
     EXPECT_NEAR(out.direction.dot(c.along), c.d.dot(c.along), 4e-16);  // a few roundings of numbers below one
     EXPECT_NEAR(out.direction.norm(), 1.0, 1e-15);
-    EXPECT_GT(out.direction.dot(c.normal), 0.0);
-  }
-}
-
-TEST(Diffract, SendsPositiveOrdersTowardsAcross) {
-  const OrderDirection out = Diffract({0, -1, 0}, Vector3d::UnitY(), Vector3d::UnitX(), 0.39);
-  EXPECT_NEAR(out.direction.x(), 0.39, 1e-16);
-  EXPECT_NEAR(out.direction.y(), std::sqrt(1 - 0.39 * 0.39), 2e-16);
-}
-
-TEST(Diffract, MirrorsOrderMAndMinusM) {
-  std::mt19937_64 random(2);
-  for (int i = 0; i < 1000; ++i) {
-    const Case c = RandomCase(random);
-    const Vector3d mirrored = c.d - 2.0 * c.d.dot(c.across) * c.across;
-    const OrderDirection plus = Diffract(c.d, c.normal, c.across, 0.39);
-    const OrderDirection minus = Diffract(mirrored, c.normal, c.across, -0.39);
-    ASSERT_EQ(plus.status, minus.status);
-    if (plus.status != OrderStatus::kOk) continue;
-    const Vector3d back = minus.direction - 2.0 * minus.direction.dot(c.across) * c.across;
-    EXPECT_LT((plus.direction - back).norm(), 2e-15 / plus.direction.dot(c.normal));  // sqrt(q) near grazing
-  }
-}
-
-TEST(Diffract, IsReciprocal) {
-  std::mt19937_64 random(3);
-  for (int i = 0; i < 1000; ++i) {
-    const Case c = RandomCase(random);
-    const OrderDirection out = Diffract(c.d, c.normal, c.across, 0.39);
-    if (out.status != OrderStatus::kOk) continue;
+    EXPECT_LT((out.direction - mirror(minus.direction)).norm(), 2e-15 / steep);
+    EXPECT_LT((turn * out.direction - turned.direction).norm(), 1e-14 / steep);
     // Light sent back along the order returns along the incident ray, in the same order.
     const OrderDirection back = Diffract(-out.direction, c.normal, c.across, 0.39);
     ASSERT_EQ(back.status, OrderStatus::kOk);
     EXPECT_LT((back.direction + c.d).norm(), 4e-15 / std::abs(c.d.dot(c.normal)));
   }
-}
-
-TEST(Diffract, TurnsWithTheGrating) {
-  std::mt19937_64 random(4);
-  for (int i = 0; i < 1000; ++i) {
-    const Case c = RandomCase(random);
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.1 * i, RandomUnit(random)).toRotationMatrix();
-    const OrderDirection out = Diffract(c.d, c.normal, c.across, 0.39);
-    const OrderDirection turned = Diffract(turn * c.d, turn * c.normal, turn * c.across, 0.39);
-    if (out.status != OrderStatus::kOk || turned.status != OrderStatus::kOk) continue;
-    EXPECT_LT((turn * out.direction - turned.direction).norm(), 1e-14 / out.direction.dot(c.normal));
-  }
+  EXPECT_GT(met, 500);
 }
 
 TEST(Diffract, CallsAnOrderBeyondGrazingEvanescent) {
@@ -184,13 +162,6 @@ TEST(Diffract, CallsAnOrderBeyondGrazingEvanescent) {
   const OrderDirection third = Diffract({0, -1, 0}, Vector3d::UnitY(), Vector3d::UnitX(), 3 * 0.39);
   EXPECT_EQ(third.status, OrderStatus::kEvanescent);
   EXPECT_TRUE(std::isnan(third.direction.x()));
-}
-
-TEST(Diffract, DoesNotCareWhichWayTheNormalPoints) {
-  const Vector3d d = Vector3d(0.1, -1, 0.2).normalized();
-  const OrderDirection a = Diffract(d, Vector3d::UnitY(), Vector3d::UnitX(), 0.39);
-  const OrderDirection b = Diffract(d, -Vector3d::UnitY(), Vector3d::UnitX(), 0.39);
-  EXPECT_EQ(a.direction, b.direction);
 }
 
 Grating ExampleGrating() {

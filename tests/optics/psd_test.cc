@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "tests/optics/example_bench.h"
 
@@ -45,23 +46,18 @@ TEST(Truncate, HasTheTextbookShiftsOfASpotNearAnEdge) {
   }
 }
 
-TEST(Truncate, AgreesWithNumericalIntegration) {
-  for (const double u : {0.0, 4.2e-3, 5.0e-3, 5.4e-3, -4.8e-3}) {
-    const Spot spot = Gaussian(u, 0.3e-3, 0.4e-3);
+TEST(Truncate, AgreesWithNumericalIntegrationAlsoOfAnInclinedEllipseOverOneEdge) {
+  Spot inclined = Gaussian(4.8e-3, 0.0, 0.3e-3);
+  inclined.cov_m2 << 9e-8, 3e-8, 3e-8, 5e-8;
+  std::vector<Spot> spots = {inclined};
+  for (const double u : {0.0, 4.2e-3, 5.0e-3, 5.4e-3, -4.8e-3}) spots.push_back(Gaussian(u, 0.3e-3, 0.4e-3));
+  for (const Spot& spot : spots) {
     const Spot exact = Integrate(spot, 0.01, 0.01), cut = Truncate(spot, 0.01, 0.01);
     // Midpoint rule, h = 7 um, sigma = 0.4 mm: h^2 / (24 sigma^2) = 1e-5 of a millimetre, of the power likewise.
     EXPECT_NEAR(cut.u_m, exact.u_m, 2e-8);
     EXPECT_NEAR(cut.v_m, exact.v_m, 2e-8);
     EXPECT_NEAR(cut.power_W, exact.power_W, 1e-5);
   }
-}
-
-TEST(Truncate, IsExactForAnInclinedEllipseOverOneEdge) {
-  Spot spot = Gaussian(4.8e-3, 0.0, 0.3e-3);
-  spot.cov_m2 << 9e-8, 3e-8, 3e-8, 5e-8;
-  const Spot exact = Integrate(spot, 0.01, 0.01), cut = Truncate(spot, 0.01, 0.01);
-  EXPECT_NEAR(cut.u_m, exact.u_m, 2e-8);
-  EXPECT_NEAR(cut.v_m, exact.v_m, 2e-8);
 }
 
 TEST(Respond, CallsASpotOverTheEdgeClippedAndOneBesideMissed) {
@@ -78,37 +74,29 @@ TEST(Respond, CallsASpotOverTheEdgeClippedAndOneBesideMissed) {
   EXPECT_TRUE(std::isnan(Respond(psd, {&dark, 1}).u_m));
 }
 
-TEST(Respond, StretchesByTheCubeOfTheDistance) {
-  PsdParameters psd = ExamplePsd();
-  psd.cubic_per_m2 = 100.0;
-  const PsdSignal signal = RespondToPoint(psd, 3e-3, 4e-3, 1.0);
-  EXPECT_NEAR(signal.u_m, 3e-3 * (1.0 + 100.0 * 25e-6), 1e-17);
-  EXPECT_NEAR(signal.v_m, 4e-3 * (1.0 + 100.0 * 25e-6), 1e-17);
-}
-
-TEST(Respond, StrayLightPullsToTheCentreAndAddsPower) {
-  PsdParameters psd = ExamplePsd();
-  psd.stray_fraction = 0.02;
+TEST(Respond, StretchesByTheCubeOfTheDistanceAndStrayLightPullsToTheCentreAndAddsPower) {
+  PsdParameters cubic = ExamplePsd(), stray = cubic;
+  cubic.cubic_per_m2 = 100.0;
+  stray.stray_fraction = 0.02;
+  const PsdSignal stretched = RespondToPoint(cubic, 3e-3, 4e-3, 1.0);
+  EXPECT_NEAR(stretched.u_m, 3e-3 * (1.0 + 100.0 * 25e-6), 1e-17);
+  EXPECT_NEAR(stretched.v_m, 4e-3 * (1.0 + 100.0 * 25e-6), 1e-17);
   const Spot spot = Gaussian(1e-3, -2e-3, 0.1e-3);
-  const PsdSignal signal = Respond(psd, {&spot, 1});
-  EXPECT_NEAR(signal.u_m, 1e-3 / 1.02, 1e-17);
-  EXPECT_NEAR(signal.v_m, -2e-3 / 1.02, 1e-17);
-  EXPECT_NEAR(signal.power_W, 1.02, 1e-15);
+  const PsdSignal pulled = Respond(stray, {&spot, 1});
+  EXPECT_NEAR(pulled.u_m, 1e-3 / 1.02, 1e-17);
+  EXPECT_NEAR(pulled.v_m, -2e-3 / 1.02, 1e-17);
+  EXPECT_NEAR(pulled.power_W, 1.02, 1e-15);
 }
 
-TEST(Respond, WeighsPatchesWithTheirPower) {
+TEST(Respond, WeighsPatchesWithTheirPowerAndTakesAPointAsAPatch) {
   const Spot spots[] = {{.u_m = 1e-3, .v_m = 0.0, .power_W = 3.0}, {.u_m = -1e-3, .v_m = 2e-3, .power_W = 1.0}};
   const PsdSignal signal = Respond(ExamplePsd(), spots);
   EXPECT_NEAR(signal.u_m, 0.5e-3, 1e-18);
   EXPECT_NEAR(signal.v_m, 0.5e-3, 1e-18);
-}
-
-TEST(Respond, PointAndPatchAgree) {
   PsdParameters psd = ExamplePsd();
   psd.cubic_per_m2 = 50.0;
   psd.stray_fraction = 0.01;
-  const Spot spot{.u_m = 2e-3, .v_m = 1e-3, .power_W = 0.5};
-  const PsdSignal a = RespondToPoint(psd, 2e-3, 1e-3, 0.5), b = Respond(psd, {&spot, 1});
+  const PsdSignal a = RespondToPoint(psd, 1e-3, 0.0, 3.0), b = Respond(psd, {spots, 1});
   EXPECT_EQ(a.u_m, b.u_m);
   EXPECT_EQ(a.power_W, b.power_W);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -103,15 +104,12 @@ void ExpectEveryPathAgrees(const Scene& scene, const RayBatch& rays, int least_h
   ExpectSame(hybrid, analytic);
 }
 
-TEST(Scene, EmbreeAndAnalyticPathsAgreeInRandomScenes) {
+TEST(Scene, EmbreeAndAnalyticPathsAgreeInRandomScenesAndAtApertureEdges) {
   for (const int surfaces : {1, 3, 5, 8, 20}) {
     Dice dice(static_cast<unsigned>(surfaces));
     const Scene scene = RandomScene(dice, surfaces);
     ExpectEveryPathAgrees(scene, RaysAt(dice, scene, 5003), 50);
   }
-}
-
-TEST(Scene, EmbreeAndAnalyticPathsAgreeAtApertureEdges) {
   for (const double miss_m : {10e-6, 0.1e-6, 1e-9}) {
     Dice dice(7);
     const Scene scene = RandomScene(dice, 12);
@@ -203,14 +201,13 @@ TEST(Scene, PathsAgreeWithMeshesInTheScene) {
   for (int i = 0; i < 4; ++i) scene.AddMesh(BoxMesh({-0.02, -0.03, -0.01}, {0.02, 0.03, 0.01}), dice.Pose(0.2));
   scene.Commit();
   const RayBatch rays = RaysAt(dice, scene, 5000);
-  HitBatch embree, analytic;
-  scene.Intersect(rays, embree);
-  scene.IntersectAnalytic(rays, analytic);
-  EXPECT_GT(std::count(embree.surface.begin(), embree.surface.end(), kFixture), 100);
+  HitBatch hits;
+  scene.Intersect(rays, hits);
+  EXPECT_GT(std::count(hits.surface.begin(), hits.surface.end(), kFixture), 100);
   ExpectEveryPathAgrees(scene, rays, 500);
 }
 
-TEST(Scene, ANewPoseIsAsGoodAsANewScene) {
+TEST(Scene, ANewPoseIsAsGoodAsANewSceneAndAScatteredOrderChangesNothing) {
   Dice dice(12);
   Scene moved = RandomScene(dice, 9);
   Scene fresh;
@@ -228,30 +225,47 @@ TEST(Scene, ANewPoseIsAsGoodAsANewScene) {
   fresh.Intersect(rays, b);
   EXPECT_EQ(a.surface, b.surface);
   EXPECT_EQ(a.t_m, b.t_m);
+  moved.Intersect(rays, a, RayOrder::kScattered);
+  EXPECT_EQ(a.surface, b.surface);
   ExpectEveryPathAgrees(moved, rays, 500);
 }
 
-TEST(Scene, ScatteredOrderChangesNothingButSpeed) {
-  Dice dice(13);
-  const Scene scene = RandomScene(dice, 8);
-  const RayBatch rays = RaysAt(dice, scene, 2000);
-  HitBatch a, b;
-  scene.Intersect(rays, a, RayOrder::kCoherent);
-  scene.Intersect(rays, b, RayOrder::kScattered);
-  EXPECT_EQ(a.surface, b.surface);
+/// Every ray of a batch has the bits that it has alone: no contraction, one formula. @return how many met a
+/// fixture.
+int ExpectBitsOfOneRay(const RayBatch& rays, const HitBatch& hits,
+                       const std::function<NearestHit(const Ray&)>& alone) {
+  int fixtures = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const NearestHit one = alone(rays.At(i));
+    EXPECT_EQ(one.index, hits.surface[i]) << "ray " << i;
+    fixtures += one.index == kFixture;
+    if (one.index < 0 || one.index != hits.surface[i]) continue;
+    EXPECT_EQ(one.hit.t_m, hits.t_m[i]) << "ray " << i;
+    EXPECT_EQ(one.hit.x_m, hits.x_m[i]) << "ray " << i;
+    EXPECT_EQ(one.hit.y_m, hits.y_m[i]) << "ray " << i;
+  }
+  return fixtures;
+}
+
+std::function<NearestHit(const Ray&)> NearestOf(const Scene& scene) {
+  return [&scene](const Ray& ray) { return Nearest(scene.surfaces(), ray, Scene::t_min_m); };
 }
 
 TEST(Scene, OneRayAndManyRaysGiveTheSameBits) {
   Dice dice(14);
-  const Scene scene = RandomScene(dice, 8);
-  const RayBatch rays = RaysAt(dice, scene, 1000);
+  Scene scene = RandomScene(dice, 12);
   HitBatch hits;
-  scene.IntersectAnalytic(rays, hits);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const NearestHit one = Nearest(scene.surfaces(), rays.At(i), Scene::t_min_m);
-    ASSERT_EQ(one.index, hits.surface[i]);
-    EXPECT_EQ(one.hit.t_m, hits.t_m[i]);  // no contraction, one formula: equal, not near
+  const RayBatch without = RaysAt(dice, scene, 1000);
+  scene.IntersectAnalytic(without, hits);
+  ExpectBitsOfOneRay(without, hits, NearestOf(scene));
+  scene.AddMesh(BoxMesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}), dice.Pose(0.1));
+  scene.Commit();
+  int fixtures = 0;
+  for (const RayBatch& rays : {RaysAt(dice, scene, 2000), RaysAtEdges(dice, scene, 2000, 1e-7)}) {
+    scene.Intersect(rays, hits);
+    fixtures += ExpectBitsOfOneRay(rays, hits, [&](const Ray& ray) { return scene.First(ray); });
   }
+  EXPECT_GT(fixtures, 50);
 }
 
 /// Planes that stand apart, as a bench has them: beams on them take the path that settles many packets at once.
@@ -290,14 +304,7 @@ TEST(Scene, BeamsOntoPlanesApartHaveTheBitsOfOneRay) {
   const RayBatch rays = BeamsOnto(dice, scene, 7 * 800 + 5);
   HitBatch hits;
   scene.Intersect(rays, hits);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const NearestHit one = Nearest(scene.surfaces(), rays.At(i), Scene::t_min_m);
-    ASSERT_EQ(one.index, hits.surface[i]) << "ray " << i;
-    ASSERT_EQ(one.hit.t_m, hits.t_m[i]);  // vector code without contraction against scalar: equal, not near
-    if (one.index < 0) continue;
-    ASSERT_EQ(one.hit.x_m, hits.x_m[i]);
-    ASSERT_EQ(one.hit.y_m, hits.y_m[i]);
-  }
+  ExpectBitsOfOneRay(rays, hits, NearestOf(scene));
   EXPECT_GT(std::count(hits.surface.begin(), hits.surface.end(), kNothing), 20);  // some passed the edges
 }
 
@@ -307,18 +314,10 @@ TEST(Scene, BeamsThatChangeThePlaneWithinAPacketHaveTheBitsOfOneRay) {
   for (const std::size_t length : {3u, 5u, 21u, 37u}) {  // of one beam; packets have 8 or 16 rays
     const RayBatch beams = BeamsOnto(dice, scene, 7 * static_cast<int>(length));
     RayBatch rays;
-    for (int turn = 0; turn < 20; ++turn) {
-      for (std::size_t i = 0; i < beams.size(); ++i) rays.Add(beams.At(i));
-    }
+    for (std::size_t i = 0; i < 20 * beams.size(); ++i) rays.Add(beams.At(i % beams.size()));
     HitBatch hits;
     scene.Intersect(rays, hits);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const NearestHit one = Nearest(scene.surfaces(), rays.At(i), Scene::t_min_m);
-      ASSERT_EQ(one.index, hits.surface[i]) << "beams of " << length << ", ray " << i;
-      ASSERT_EQ(one.hit.t_m, hits.t_m[i]);
-      if (one.index < 0) continue;
-      ASSERT_EQ(one.hit.y_m, hits.y_m[i]);
-    }
+    ExpectBitsOfOneRay(rays, hits, NearestOf(scene));
   }
 }
 
@@ -341,11 +340,10 @@ TEST(Scene, ABeamSeesTheFixtureThatCutsIntoIt) {
   scene.AddMesh(BoxMesh({0.1, -0.002, -0.002}, {0.11, 0.1, 0.1}), Isometry3d::Identity());
   scene.Commit();
   const RayBatch rays = BeamsOnto(dice, scene, 4000);
-  HitBatch embree, analytic;
-  scene.Intersect(rays, embree);
-  scene.IntersectAnalytic(rays, analytic);
-  ExpectSame(embree, analytic);
-  EXPECT_GT(std::count(embree.surface.begin(), embree.surface.end(), kFixture), 100);
+  HitBatch hits;
+  scene.Intersect(rays, hits);
+  ExpectEveryPathAgrees(scene, rays, 100);
+  EXPECT_GT(std::count(hits.surface.begin(), hits.surface.end(), kFixture), 100);
 }
 
 TEST(Scene, NoNaNRayHoldsUpItsPacket) {
@@ -405,45 +403,20 @@ TEST_P(SceneOnOldProcessors, GivesTheSameBits) {
 }
 INSTANTIATE_TEST_SUITE_P(MaxIsa, SceneOnOldProcessors, testing::Values("max_isa=avx2", "max_isa=sse4.2"));
 
-TEST(Scene, AnEmptySceneIsDark) {
-  Scene scene;
-  scene.Commit();
-  RayBatch rays;
-  rays.Add({});
-  HitBatch hits;
-  scene.Intersect(rays, hits);
-  EXPECT_EQ(hits.surface[0], kNothing);
-}
-
 TEST(Scene, RefusesABrokenMesh) {
   Scene scene;
   EXPECT_THROW(scene.AddMesh({{{0, 0, 0}}, {{0, 1, 2}}}, Isometry3d::Identity()), std::invalid_argument);
 }
 
-TEST(Scene, FindsForOneRayTheBitsThatItFindsForMany) {
-  Dice dice(11);
-  Scene scene = RandomScene(dice, 12);
-  scene.AddMesh(BoxMesh({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}), dice.Pose(0.1));
-  scene.Commit();
-  int fixtures = 0;
-  for (const RayBatch& rays : {RaysAt(dice, scene, 2000), RaysAtEdges(dice, scene, 2000, 1e-7)}) {
-    HitBatch hits;
-    scene.Intersect(rays, hits);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const NearestHit first = scene.First(rays.At(i));
-      ASSERT_EQ(first.index, hits.surface[i]) << i;
-      fixtures += first.index == kFixture;
-      if (first.index < 0) continue;
-      EXPECT_EQ(first.hit.t_m, hits.t_m[i]);
-      EXPECT_EQ(first.hit.x_m, hits.x_m[i]);
-      EXPECT_EQ(first.hit.y_m, hits.y_m[i]);
-    }
-  }
-  EXPECT_GT(fixtures, 50);
-}
-
-TEST(Scene, MeetsNothingWithARayThatIsNotFinite) {
+TEST(Scene, MeetsNothingWhereItIsEmptyOrWithARayThatIsNotFinite) {
   Dice dice(12);
+  Scene empty;
+  empty.Commit();
+  RayBatch rays;
+  rays.Add({});
+  HitBatch hits;
+  empty.Intersect(rays, hits);
+  EXPECT_EQ(hits.surface[0], kNothing);
   const Scene scene = RandomScene(dice, 4);
   EXPECT_EQ(scene.First({Vector3d::Zero(), Vector3d::Constant(std::nan(""))}).index, kNothing);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "optics/quadrant_detector.h"
@@ -42,13 +43,21 @@ ProbedSurface Mirror(double slope_x, double slope_y) {
   };
 }
 
+/// Heights that change along x only, from the middle.
+HeightMap MapAlongX(int width, int height, double pitch_m, const std::function<double(double x_m)>& height_um) {
+  HeightMap map{width, height, pitch_m, {}};
+  for (int i = 0; i < width * height; ++i)
+    map.height_um.push_back(static_cast<float>(height_um((i % width - width / 2) * pitch_m)));
+  return map;
+}
+
 double PowerOf(const ProbeView& view, int returns) {
   double power = 0.0;
   for (const ProbePatch& p : view.patches) power += p.returns == returns ? p.power : 0.0;
   return power;
 }
 
-TEST(SlopeProbe, ReadsTwiceTheSlopeOfAMirror) {
+TEST(SlopeProbe, ReadsTwiceTheSlopeOfAMirrorAndOfOneTooFarTurnedNoLight) {
   const SlopeProbe probe({.lens_m = kLens_m});
   const double x = 0.004, y = -0.007;
   const ProbeView view = probe.Look(Mirror(x, y));
@@ -58,13 +67,9 @@ TEST(SlopeProbe, ReadsTwiceTheSlopeOfAMirror) {
   EXPECT_NEAR(view.patches[0].v_m, -2.0 * kLens_m * y / flat, 1e-16);
   // Plate and splitter see light that is askew in x and y turned by half the product of its slopes.
   EXPECT_NEAR(view.patches[0].power, 1.0, 4.0 * std::pow(4.0 * x * y / 2.0, 2));
-}
-
-TEST(SlopeProbe, ShowsAMirrorThatIsTooFarTurnedNoLight) {
-  const SlopeProbe probe({.lens_m = kLens_m});
-  const ProbeView view = probe.Look(Mirror(0.1, 0.0));
-  EXPECT_TRUE(view.is_met);
-  EXPECT_TRUE(view.patches.empty());
+  const ProbeView away = probe.Look(Mirror(0.1, 0.0));
+  EXPECT_TRUE(away.is_met);
+  EXPECT_TRUE(away.patches.empty());
 }
 
 TEST(SlopeProbe, LosesToTheLaserWhatThePlateDoesNotTurn) {
@@ -140,11 +145,7 @@ TEST(SlopeProbe, AveragesHeightsOverTheBeam) {
   // A wave of heights h cos(k x): a beam of 1/e^2 radius w sees its slope less by exp(-k^2 w^2 / 8).
   constexpr double kWaist_m = 0.4e-3, kLength_m = 3e-3, kHeight_um = 0.1;
   const double k = 2.0 * std::numbers::pi / kLength_m;
-  HeightMap map{481, 81, 0.05e-3, {}};
-  for (int row = 0; row < map.height; ++row) {
-    for (int column = 0; column < map.width; ++column)
-      map.height_um.push_back(static_cast<float>(kHeight_um * std::cos(k * (column - 240) * map.pitch_m)));
-  }
+  const HeightMap map = MapAlongX(481, 81, 0.05e-3, [=](double x_m) { return kHeight_um * std::cos(k * x_m); });
   const FormedSurface flat(Paraboloid(Eigen::Isometry3d::Identity(), 500.0, 0.01));
   const SlopeProbe probe({.lens_m = kLens_m, .beam_radius_m = kWaist_m});
   const double x_m = 0.25 * kLength_m;  // where the wave is steepest
@@ -161,11 +162,7 @@ TEST(SlopeProbe, AveragesHeightsOverTheBeam) {
 TEST(FormedSurface, MeetsTheHeightsOnItsForm) {
   // A tilted plane of heights on a bowl: where and how steep is algebra.
   constexpr double kRadius_m = 0.04, kTilt = 2e-4;
-  HeightMap map{201, 201, 0.1e-3, {}};
-  for (int row = 0; row < map.height; ++row) {
-    for (int column = 0; column < map.width; ++column)
-      map.height_um.push_back(static_cast<float>(1e6 * kTilt * (column - 100) * map.pitch_m));
-  }
+  const HeightMap map = MapAlongX(201, 201, 0.1e-3, [](double x_m) { return 1e6 * kTilt * x_m; });
   const FormedSurface bowl(Paraboloid(Eigen::Isometry3d::Identity(), 0.5 * kRadius_m, 0.01));
   RayBatch rays;
   rays.Add({{0.002, -0.001, 0.03}, Vector3d(0.05, 0.02, -1.0).normalized()});
@@ -198,7 +195,7 @@ TEST(Triangulation, DoesNotSeeWhatLiesBehindIt) {
   EXPECT_THROW(Triangulation({.object_m = 0.02, .image_m = 0.05, .alpha_rad = 2.0}), std::invalid_argument);
 }
 
-TEST(QuadrantDetector, SharesAGaussianSpotByItsErrorFunction) {
+TEST(QuadrantDetector, SharesAGaussianSpotByItsErrorFunctionAndTakesAPointWhereItIs) {
   constexpr double kRadius_m = 0.25e-3, kGap_m = 0.02e-3;
   Spot spot{.u_m = 0.08e-3, .v_m = -0.03e-3, .power_W = 2.0};
   spot.cov_m2 = 0.25 * kRadius_m * kRadius_m * Eigen::Matrix2d::Identity();
@@ -209,12 +206,9 @@ TEST(QuadrantDetector, SharesAGaussianSpotByItsErrorFunction) {
   EXPECT_NEAR(q.pp, 2.0 * side(spot.u_m) * side(spot.v_m), 1e-15);
   EXPECT_NEAR(q.mm, 2.0 * side(-spot.u_m) * side(-spot.v_m), 1e-15);
   EXPECT_LT(q.Sum(), 2.0);  // the gap takes some
-}
-
-TEST(QuadrantDetector, TakesAPointWhereItIs) {
-  const QuadrantPowers q = OnQuadrants({.u_m = 1e-4, .v_m = -1e-4, .power_W = 1.0}, 1e-5);
-  EXPECT_EQ(q.pm, 1.0);
-  EXPECT_EQ(q.Sum(), 1.0);
+  const QuadrantPowers point = OnQuadrants({.u_m = 1e-4, .v_m = -1e-4, .power_W = 1.0}, 1e-5);
+  EXPECT_EQ(point.pm, 1.0);
+  EXPECT_EQ(point.Sum(), 1.0);
 }
 
 TEST(QuadrantDetector, KnowsASpotWhoseAxesLieAskew) {

@@ -11,28 +11,18 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-TEST(Meet, LandsOnThePlaneInItsOwnCoordinates) {
-  Isometry3d X_WS = Isometry3d::Identity();
-  X_WS.translation() = Vector3d(0.1, 0.2, 0.3);
+TEST(Meet, LandsOnThePlaneInItsOwnCoordinatesAndDecidesTheApertureInDouble) {
+  const Isometry3d X_WS(Eigen::Translation3d(0.1, 0.2, 0.3));
   const SurfaceHit hit = Meet(RectangularPlane(X_WS, 0.02, 0.04), {{0.105, 0.185, 0.5}, {0, 0, -1}}, 0.0);
   EXPECT_NEAR(hit.t_m, 0.2, 1e-16);
   EXPECT_NEAR(hit.x_m, 0.005, 1e-16);
   EXPECT_NEAR(hit.y_m, -0.015, 1e-16);
-}
-
-TEST(Meet, DecidesTheApertureInDouble) {
   const Surface plane = RectangularPlane(Isometry3d::Identity(), 0.02, 0.02);
-  const auto meets = [&](double x) { return std::isfinite(Meet(plane, {{x, 0, 1}, {0, 0, -1}}, 0.0).t_m); };
-  EXPECT_TRUE(meets(0.01));
-  EXPECT_TRUE(meets(0.01 - 1e-15));
-  EXPECT_FALSE(meets(0.01 + 1e-15));
-}
-
-TEST(Meet, IgnoresWhatIsBehindOrParallel) {
-  const Surface plane = CircularPlane(Isometry3d::Identity(), 1.0);
-  EXPECT_TRUE(std::isinf(Meet(plane, {{0, 0, 1}, {0, 0, 1}}, 0.0).t_m));
-  EXPECT_TRUE(std::isinf(Meet(plane, {{0, 0, 1}, {1, 0, 0}}, 0.0).t_m));
-  EXPECT_TRUE(std::isinf(Meet(plane, {{0, 0, 0}, {1, 0, 0}}, 0.0).t_m));
+  const auto meets = [&](const Ray& ray) { return std::isfinite(Meet(plane, ray, 0.0).t_m); };
+  for (const double x : {0.01, 0.01 - 1e-15}) EXPECT_TRUE(meets({{x, 0, 1}, {0, 0, -1}}));
+  EXPECT_FALSE(meets({{0.01 + 1e-15, 0, 1}, {0, 0, -1}}));
+  EXPECT_FALSE(meets({{0, 0, 1}, {0, 0, 1}})) << "it is behind";
+  for (const double z : {0.0, 1.0}) EXPECT_FALSE(meets({{0, 0, z}, {1, 0, 0}})) << "parallel";
 }
 
 TEST(Meet, TakesTheVertexSideOfASphere) {
