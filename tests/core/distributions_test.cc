@@ -21,11 +21,8 @@ TEST(ChiSquaredExceedance, IsAnExponentialForTwoDegreesOfFreedomAndRightBetweenW
   EXPECT_LT(ChiSquaredExceedance(5.0, 2.5), ChiSquaredExceedance(5.0, 3.0));
 }
 
-TEST(ChiSquaredExceedance, KnowsNothingWithoutDegreesOfFreedom) {
+TEST(ChiSquaredExceedance, IsCertainForNothingInThousandsOfDegreesOfFreedomAndKnowsNothingWithoutAny) {
   EXPECT_TRUE(std::isnan(ChiSquaredExceedance(5.0, 0.0)));
-}
-
-TEST(ChiSquaredExceedance, IsCertainForNothingInThousandsOfDegreesOfFreedom) {
   for (const double chi2 : {0.0, 1e-20, 1.0}) EXPECT_EQ(ChiSquaredExceedance(chi2, 10000.0), 1.0) << chi2;
   EXPECT_NEAR(ChiSquaredExceedance(10000.0, 10000.0), 0.5, 0.003);  // skewed by 2 / (3 sqrt(2 pi dof))
 }

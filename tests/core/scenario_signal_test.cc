@@ -16,7 +16,7 @@ std::string Refusal(const std::string& block) {
   return MessageOf([&] { Parse("rotary_4dof", block); });
 }
 
-TEST(ScenarioSignal, IsReadInSI) {
+TEST(ScenarioSignal, IsReadInSIWithAnAmplitudeOfItsBenchsKind) {
   const EffectSettings signal = Parse("rotary_4dof",
                                       "point = \"psd_b_y\"\nsignal = \"harmonic\"\nby = \"target\"\n"
                                       "times = \"temperature\"\norder = 3\namplitude_um = 1.5\nphase_deg = 40\n"
@@ -29,15 +29,11 @@ TEST(ScenarioSignal, IsReadInSI) {
   EXPECT_DOUBLE_EQ(signal.parameters.at("amplitude"), 1.5 * units::um);
   EXPECT_DOUBLE_EQ(signal.parameters.at("phase"), 40.0 * units::deg);
   EXPECT_EQ(signal.parameters.at("per"), 0.5);
-}
-
-TEST(ScenarioSignal, HasAnAmplitudeOfItsBenchsKind) {
-  const EffectSettings signal =
-      Parse("encoder_comparison",
-            "point = \"angle\"\nsignal = \"constant\"\ntimes = \"velocity\"\namplitude_arcsec = 2\n")
-          .effects.at(0);
-  EXPECT_DOUBLE_EQ(signal.parameters.at("amplitude"), 2.0 * units::arcsec);
-  EXPECT_DOUBLE_EQ(signal.parameters.at("per"), 1.0 * units::deg);
+  const std::string constant =
+      "point = \"angle\"\nsignal = \"constant\"\ntimes = \"velocity\"\namplitude_arcsec = 2\n";
+  const EffectSettings of_angles = Parse("encoder_comparison", constant).effects.at(0);
+  EXPECT_DOUBLE_EQ(of_angles.parameters.at("amplitude"), 2.0 * units::arcsec);
+  EXPECT_DOUBLE_EQ(of_angles.parameters.at("per"), 1.0 * units::deg);
 }
 
 TEST(ScenarioSignal, IsWrittenAsItIsRead) {

@@ -15,7 +15,8 @@ Scenario Parsed(const std::string& text, const std::vector<std::string>& overrid
   return ParseScenario("bench = \"rotary_4dof\"\n" + text, "s.toml", "", overrides);
 }
 
-TEST(ScenarioUncertainty, IsReadInTheUnitOfItsKey) {
+TEST(ScenarioUncertainty, IsReadInTheUnitOfItsKeyAlsoOnTheCommandLine) {
+  EXPECT_DOUBLE_EQ(Parsed("", {"psd_a.u_distance_mm=0.1"}).uncertainties.at(0).u, 0.1 * units::mm);
   const Scenario s = Parsed(
       "[laser]\nu_wavelength_nm = 0.01\n[psd_a]\nu_distance_mm = { half_width = 0.3, distribution = \"uniform\" "
       "}\n");
@@ -40,10 +41,6 @@ TEST(ScenarioUncertainty, ComesBackFromTheFileThatIsWritten) {
     EXPECT_EQ(again.uncertainties[i].dof, s.uncertainties[i].dof);
     EXPECT_EQ(again.uncertainties[i].distribution, s.uncertainties[i].distribution);
   }
-}
-
-TEST(ScenarioUncertainty, MayBeSetOnTheCommandLine) {
-  EXPECT_DOUBLE_EQ(Parsed("", {"psd_a.u_distance_mm=0.1"}).uncertainties.at(0).u, 0.1 * units::mm);
 }
 
 TEST(ScenarioUncertainty, WhatCannotBeIsRefusedWithWhatIsExpected) {
