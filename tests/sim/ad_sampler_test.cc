@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -45,43 +46,29 @@ AdInput Rich(double noise_V) {
   return input;
 }
 
-TEST(TakeBlock, TurnsALevelIntoTheNearestCode) {
-  const AdBlock block = Take(Levels(1.23456, -7.654321, 0.0, 9.9), {.n_samples = 10});
-  const std::array<double, 4> level_V = {1.23456, -7.654321, 0.0, 9.9};
-  for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_EQ(block.channel[k].mean_V, std::round(level_V[k] / kLsb_V) * kLsb_V);
-    EXPECT_EQ(block.channel[k].std_V, 0.0);
-    EXPECT_EQ(block.channel[k].min_V, block.channel[k].mean_V);
-    EXPECT_EQ(block.channel[k].max_V, block.channel[k].mean_V);
-  }
-  EXPECT_EQ(block.status, ReadingStatus::kOk);
-}
-
-TEST(TakeBlock, IsMidTreadWithTiesToEven) {
-  const AdInput input = Levels(0.5 * kLsb_V, 1.5 * kLsb_V, -0.5 * kLsb_V, -1.51 * kLsb_V);
-  const AdBlock block = Take(input, {.n_samples = 1, .keep_raw = true});
-  EXPECT_EQ(block.raw, (std::vector<std::int16_t>{0, 2, 0, -2}));
-}
-
-TEST(TakeBlock, HasCodesAsWideAsItsBits) {
-  AdcSettings adc;
-  adc.bits = 12;
-  adc.range_V = 5.0;
-  EXPECT_EQ(LsbOf(adc), 10.0 / 4096.0);
-  const AdBlock block = Take(Levels(1.0, 4.99, -6.0, 0.0), {.n_samples = 2, .keep_raw = true}, 0, adc);
-  EXPECT_EQ(block.raw, (std::vector<std::int16_t>{410, 2044, -2048, 0, 410, 2044, -2048, 0}));
-}
-
-TEST(TakeBlock, AddsNoiseOfTheStatedDeviation) {
-  constexpr int kN = 100000;
-  const AdBlock block = Take(Levels(1.0, -2.0, 3.0, -4.0, 6e-3), {.n_samples = kN});
-  const double expected_V = std::hypot(6e-3, kLsb_V / std::sqrt(12.0));
-  const std::array<double, 4> level_V = {1.0, -2.0, 3.0, -4.0};
-  for (std::size_t k = 0; k < 4; ++k) {
-    EXPECT_NEAR(block.channel[k].mean_V, level_V[k], 4.0 * expected_V / std::sqrt(kN));
-    EXPECT_NEAR(block.channel[k].std_V, expected_V, 4.0 * expected_V / std::sqrt(2.0 * kN));
-    EXPECT_NEAR(block.channel[k].max_V - level_V[k], 4.4 * 6e-3, 1.0 * 6e-3);  // extreme of 1e5: 4.4 +- 0.25 sigma
-    EXPECT_NEAR(level_V[k] - block.channel[k].min_V, 4.4 * 6e-3, 1.0 * 6e-3);
+TEST(TakeBlock, TurnsALevelIntoTheNearestCodeWithTiesToEven) {
+  AdcSettings coarse;
+  coarse.bits = 12;
+  coarse.range_V = 5.0;
+  EXPECT_EQ(LsbOf(coarse), 10.0 / 4096.0);
+  using Numbers = std::array<double, 4>;
+  const std::tuple<AdcSettings, Numbers, std::vector<std::int16_t>> cases[] = {
+      {kAdc, {1.23456, -7.654321, 0.0, 9.9}, {4045, -25082, 0, 32440}},
+      {kAdc, {0.5 * kLsb_V, 1.5 * kLsb_V, -0.5 * kLsb_V, -1.51 * kLsb_V}, {0, 2, 0, -2}},
+      {coarse, {1.0, 4.99, -6.0, 0.0}, {410, 2044, -2048, 0}}};
+  for (const auto& [adc, level_V, codes] : cases) {
+    const AdBlock block =
+        Take(Levels(level_V[0], level_V[1], level_V[2], level_V[3]), {.n_samples = 2, .keep_raw = true}, 0, adc);
+    std::vector<std::int16_t> twice = codes;
+    twice.insert(twice.end(), codes.begin(), codes.end());
+    EXPECT_EQ(block.raw, twice);
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (block.saturated[k]) continue;
+      EXPECT_EQ(block.channel[k].mean_V, codes[k] * LsbOf(adc));
+      EXPECT_EQ(block.channel[k].std_V, 0.0);
+      EXPECT_EQ(block.channel[k].min_V, block.channel[k].mean_V);
+      EXPECT_EQ(block.channel[k].max_V, block.channel[k].mean_V);
+    }
   }
 }
 
@@ -143,7 +130,7 @@ TEST(TakeBlock, FollowsItsEquationsSampleBySample) {
   EXPECT_LE(n_different, 8);
 }
 
-TEST(TakeBlock, FlagsAChannelThatReachesAnEndCode) {
+TEST(TakeBlock, FlagsAChannelThatReachesAnEndCodeAlsoWithoutNoise) {
   const AdBlock block = Take(Levels(9.99, -20.0, 50.0, 1.0, 6e-3), {.n_samples = 1000, .keep_raw = true});
   EXPECT_EQ(block.status, ReadingStatus::kSaturated);
   EXPECT_EQ(block.saturated, (std::array<bool, 4>{true, true, true, false}));
@@ -153,12 +140,9 @@ TEST(TakeBlock, FlagsAChannelThatReachesAnEndCode) {
   EXPECT_EQ(block.channel[1].min_V, -10.0);
   EXPECT_EQ(block.raw[2], 32767);
   EXPECT_FALSE(std::isnan(block.channel[3].mean_V));
-}
-
-TEST(TakeBlock, FlagsSaturationWithoutNoiseToo) {
-  const AdBlock block = Take(Levels(9.9999, 9.99, -9.9999, 0.0), {.n_samples = 4, .noise_free = true});
-  EXPECT_EQ(block.saturated, (std::array<bool, 4>{true, false, true, false}));
-  EXPECT_EQ(block.status, ReadingStatus::kSaturated);
+  const AdBlock quiet = Take(Levels(9.9999, 9.99, -9.9999, 0.0), {.n_samples = 4, .noise_free = true});
+  EXPECT_EQ(quiet.saturated, (std::array<bool, 4>{true, false, true, false}));
+  EXPECT_EQ(quiet.status, ReadingStatus::kSaturated);
 }
 
 TEST(TakeBlock, GivesExactLevelsWithoutNoise) {
@@ -172,21 +156,16 @@ TEST(TakeBlock, GivesExactLevelsWithoutNoise) {
   EXPECT_EQ(Take(input, {.n_samples = 5, .noise_free = true}).channel[2].mean_V, 0.1 + 0.25 * -2.3);
 }
 
-TEST(TakeBlock, SamplesTheChannelsOneAfterTheOther) {
-  AdInput input = Levels(0.0, 0.0, 0.0, 0.0);
-  for (ChannelInput& c : input.channel) c.slope_V_s = 100.0;
-  const AdBlock block = Take(input, {.n_samples = 101, .noise_free = true});
+TEST(TakeBlock, SamplesTheChannelsOneAfterTheOtherAndTheFirstReceivesFromTheScanBefore) {
+  AdInput rising = Levels(0.0, 0.0, 0.0, 0.0), stepping = rising;
+  for (ChannelInput& c : rising.channel) c.slope_V_s = 100.0;
+  const AdBlock block = Take(rising, {.n_samples = 101, .noise_free = true});
   // Middle scan at 50 * 16 us, channel k 4 us later than channel k - 1.
-  for (std::size_t k = 0; k < 4; ++k) {
+  for (std::size_t k = 0; k < 4; ++k)
     EXPECT_NEAR(block.channel[k].mean_V, 100.0 * (50 * 16e-6 + static_cast<double>(k) * 4e-6), 1e-15);
-  }
-}
-
-TEST(TakeBlock, LetsTheFirstChannelReceiveFromTheScanBefore) {
-  AdInput input = Levels(0.0, 0.0, 0.0, 0.0);
-  input.channel[0].crosstalk = 0.5;
-  input.channel[3].extra_V = [](double t) { return t < 0.0 ? 1.0 : 0.0; };
-  EXPECT_DOUBLE_EQ(Take(input, {.n_samples = 10, .noise_free = true}).channel[0].mean_V, 0.5 / 10);
+  stepping.channel[0].crosstalk = 0.5;
+  stepping.channel[3].extra_V = [](double t) { return t < 0.0 ? 1.0 : 0.0; };
+  EXPECT_DOUBLE_EQ(Take(stepping, {.n_samples = 10, .noise_free = true}).channel[0].mean_V, 0.5 / 10);
 }
 
 TEST(TakeBlock, AveragesTheHumAsTheClosedFormSays) {
@@ -267,53 +246,46 @@ bool SameBits(const AdBlock& a, const AdBlock& b) {
   bool same = a.raw == b.raw && a.saturated == b.saturated;
   for (std::size_t k = 0; k < 4; ++k) {
     const ChannelBlock &x = a.channel[k], &y = b.channel[k];
-    same = same && SameNumber(x.mean_V, y.mean_V) && SameNumber(x.std_V, y.std_V) &&
-           SameNumber(x.min_V, y.min_V) && SameNumber(x.max_V, y.max_V);
+    same = same && SameNumber(x.mean_V, y.mean_V) && SameNumber(x.std_V, y.std_V) && SameNumber(x.min_V, y.min_V) &&
+           SameNumber(x.max_V, y.max_V);
   }
   return same;
 }
 
-TEST(TakeBlock, HasTheSameBitsOnEveryInstructionSet) {
-  for (const int n : {2, 3, 4, 63, 256, 1001}) {
-    AdInput input = Rich(6e-3);
-    input.channel[1].step_V = 2e-3;
-    input.channel[1].step_threshold_V = -1.98;
-    std::vector<AdBlock> blocks;
-    for (const Simd simd : kAllSimd) {
-      if (!SimdRuns(simd)) continue;
-      Stream noise(1, "bits");
-      noise.UseSimd(simd);
-      blocks.push_back(TakeBlock(kAdc, input, {.n_samples = n, .keep_raw = true}, noise));
-    }
-    for (const AdBlock& block : blocks) EXPECT_TRUE(SameBits(block, blocks.front())) << n;
-  }
-}
-
-TEST(TakeBlock, RepeatsItselfAndDoesNotDependOnKeepingRawCodes) {
-  AdBlock with_raw = Take(Rich(6e-3), {.n_samples = 500, .keep_raw = true}, 3);
-  EXPECT_TRUE(SameBits(with_raw, Take(Rich(6e-3), {.n_samples = 500, .keep_raw = true}, 3)));
-  EXPECT_FALSE(SameBits(with_raw, Take(Rich(6e-3), {.n_samples = 500, .keep_raw = true}, 4)));
-  with_raw.raw.clear();
-  EXPECT_TRUE(SameBits(with_raw, Take(Rich(6e-3), {.n_samples = 500}, 3)));
-}
-
-/// Noise from less than a code to thousands, whose squares need more than 32 bits, and blocks that clip.
-TEST(TakeBlock, CountsTheSameCodesWithoutKeepingThem) {
+/// Noise from less than a code to thousands, whose squares need more than 32 bits, blocks that clip, and a step.
+TEST(TakeBlock, CountsTheSameCodesOnEveryInstructionSetWithoutKeepingThemToo) {
+  AdInput stepped = Rich(6e-3);
+  stepped.channel[1].step_V = 2e-3;
+  stepped.channel[1].step_threshold_V = -1.98;
+  std::vector<AdInput> inputs = {stepped};
   for (const double noise_V : {1e-4, 6e-3, 0.3, 1.5, 5.0}) {
-    for (const bool is_plain : {true, false}) {
-      const AdInput input = is_plain ? Levels(1.0, -2.0, 3.0, -4.0, noise_V) : Rich(noise_V);
-      for (const int n : {1, 3, 4, 255, 260, 1000}) {
-        AdBlock with_raw = Take(input, {.n_samples = n, .keep_raw = true});
-        with_raw.raw.clear();
-        for (const Simd simd : kAllSimd) {
-          if (!SimdRuns(simd)) continue;
+    inputs.push_back(Levels(1.0, -2.0, 3.0, -4.0, noise_V));
+    inputs.push_back(Rich(noise_V));
+  }
+  for (const AdInput& input : inputs) {
+    for (const int n : {1, 2, 3, 4, 63, 255, 256, 260, 1001}) {
+      const AdBlock first = Take(input, {.n_samples = n, .keep_raw = true});
+      for (const Simd simd : kAllSimd) {
+        if (!SimdRuns(simd)) continue;
+        for (const bool keep_raw : {true, false}) {
           Stream noise(42, "adc.noise");
           noise.UseSimd(simd);
-          EXPECT_TRUE(SameBits(with_raw, TakeBlock(kAdc, input, {.n_samples = n}, noise))) << noise_V << " " << n;
+          AdBlock block = TakeBlock(kAdc, input, {.n_samples = n, .keep_raw = keep_raw}, noise);
+          EXPECT_EQ(block.raw.empty(), !keep_raw);
+          if (!keep_raw) block.raw = first.raw;
+          EXPECT_TRUE(SameBits(block, first)) << input.channel[0].noise_V << " V, " << n;
         }
       }
     }
   }
+}
+
+TEST(TakeBlock, RepeatsItselfAndIsAnotherForAnotherReading) {
+  const auto take = [](std::uint64_t reading) {
+    return Take(Rich(6e-3), {.n_samples = 500, .keep_raw = true}, reading);
+  };
+  EXPECT_TRUE(SameBits(take(3), take(3)));
+  EXPECT_FALSE(SameBits(take(3), take(4)));
 }
 
 TEST(TakeBlock, UsesOneStreamBlockAScanAndOneInFront) {
@@ -330,8 +302,8 @@ TEST(TakeBlock, DrawsEverySampleWhereItMust) {
   EXPECT_FALSE(drew_every_sample(smooth));
   EXPECT_TRUE(drew_every_sample(smooth, true));
   EXPECT_TRUE(drew_every_sample(Levels(1.0, 2.0, 3.0, 4.0, 0.49 * kLsb_V)));
-  EXPECT_TRUE(
-      Take(smooth, {.n_samples = 60, .every_sample = false}).drew_every_sample);  // mean's lattice too coarse
+  const AdRequest few{.n_samples = 60, .every_sample = false};
+  EXPECT_TRUE(Take(smooth, few).drew_every_sample) << "mean's lattice too coarse";
   EXPECT_FALSE(drew_every_sample(Levels(9.94, -9.94, 0.0, 0.0, 6e-3)));
   EXPECT_TRUE(drew_every_sample(Levels(9.96, 0.0, 0.0, 0.0, 6e-3)));  // less than 8 sigma from the end code
   EXPECT_TRUE(drew_every_sample(Levels(-9.96, 0.0, 0.0, 0.0, 6e-3)));
@@ -376,31 +348,21 @@ double TwoSampleStatistic(std::vector<double> a, std::vector<double> b) {
   return distance * std::sqrt(0.5 * n);
 }
 
-double MeanOf(const std::vector<double>& x) {
+/// Mean of the powers of what is left beside `middle`.
+double CentralMoment(const std::vector<double>& x, int power, double middle) {
   double sum = 0.0;
-  for (const double v : x) sum += v;
-  return sum / static_cast<double>(x.size());
-}
-
-double DeviationOf(const std::vector<double>& x) {
-  const double mean = MeanOf(x);
-  double sum = 0.0;
-  for (const double v : x) sum += (v - mean) * (v - mean);
-  return std::sqrt(sum / static_cast<double>(x.size() - 1));
-}
-
-double KurtosisOf(const std::vector<double>& x) {
-  const double mean = MeanOf(x), sd = DeviationOf(x);
-  double sum = 0.0;
-  for (const double v : x) sum += std::pow((v - mean) / sd, 4);
+  for (const double v : x) sum += std::pow(v - middle, power);
   return sum / static_cast<double>(x.size());
 }
 
 void ExpectSameMoments(const std::vector<double>& a, const std::vector<double>& b) {
-  const double sd = DeviationOf(a), root = std::sqrt(2.0 / static_cast<double>(a.size()));
-  EXPECT_NEAR(MeanOf(a), MeanOf(b), 4.0 * sd * root);  // standard deviation of a difference of two means
+  const double mean_a = CentralMoment(a, 1, 0.0), mean_b = CentralMoment(b, 1, 0.0),
+               variance = CentralMoment(a, 2, mean_a);
+  const double sd = std::sqrt(variance), root = std::sqrt(2.0 / static_cast<double>(a.size()));
+  EXPECT_NEAR(mean_a, mean_b, 4.0 * sd * root);  // standard deviation of a difference of two means
   // ... of two deviations: the kurtosis is 3 for means, but 3.9 for the deviations of blocks of two samples.
-  EXPECT_NEAR(DeviationOf(b) / sd, 1.0, 4.0 * root * std::sqrt((KurtosisOf(a) - 1.0) / 4.0));
+  const double kurtosis = CentralMoment(a, 4, mean_a) / (variance * variance);
+  EXPECT_NEAR(std::sqrt(CentralMoment(b, 2, mean_b)) / sd, 1.0, 4.0 * root * std::sqrt((kurtosis - 1.0) / 4.0));
 }
 
 void ExpectSameDistribution(const std::vector<double>& a, const std::vector<double>& b) {
@@ -442,21 +404,19 @@ TEST(TakeBlock, CorrelatesNeighboursThroughCrosstalkInBothWaysOfDrawing) {
 }
 
 TEST(TakeBlock, RefusesWhatMakesNoSense) {
-  const AdInput good = Levels(1.0, 1.0, 1.0, 1.0);
-  EXPECT_THROW(Take(good, {.n_samples = 0}), std::logic_error);
-  EXPECT_THROW(Take(AdInput{}, {.n_samples = 1}), std::logic_error);  // levels still NaN
-  AdInput negative = good;
-  negative.channel[1].noise_V = -1.0;
-  EXPECT_THROW(Take(negative, {.n_samples = 1}), std::logic_error);
-  AdInput hooked = good;
-  hooked.channel[1].extra_V = [](double t) { return std::log(t - 1.0); };
-  EXPECT_THROW(Take(hooked, {.n_samples = 1}), std::logic_error);
-  AdcSettings adc;
-  adc.bits = 17;
-  EXPECT_THROW(Take(good, {.n_samples = 1}, 0, adc), std::logic_error);
-  adc = {};
-  adc.rate_Hz = 0.0;
-  EXPECT_THROW(Take(good, {.n_samples = 1}, 0, adc), std::logic_error);
+  const auto refused = [](const std::function<void(AdInput&, AdcSettings&, AdRequest&)>& change) {
+    AdInput input = Levels(1.0, 1.0, 1.0, 1.0);
+    AdcSettings adc;
+    AdRequest request{.n_samples = 1};
+    change(input, adc, request);
+    EXPECT_THROW(Take(input, request, 0, adc), std::logic_error);
+  };
+  refused([](auto&, auto&, auto& request) { request.n_samples = 0; });
+  refused([](auto& input, auto&, auto&) { input = {}; });  // levels are NaN
+  refused([](auto& input, auto&, auto&) { input.channel[1].noise_V = -1.0; });
+  refused([](auto& input, auto&, auto&) { input.channel[1].extra_V = [](double t) { return std::log(t - 1.0); }; });
+  refused([](auto&, auto& adc, auto&) { adc.bits = 17; });
+  refused([](auto&, auto& adc, auto&) { adc.rate_Hz = 0.0; });
 }
 
 TEST(AdBlock, BecomesAnAcquisition) {

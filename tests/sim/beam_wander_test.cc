@@ -52,9 +52,7 @@ int Blocks() {
 
 /// Mean of squares of the means of blocks of so many scans on one channel, minutes apart.
 double SquareOfMeans_V2(int scans, int channel) {
-  Scenario scenario = Quiet();
-  scenario.noise_free = false;
-  RotaryOf(scenario).amplifier.noise_V = 0.0;
+  Scenario scenario = OnlyTheLightsNoise();
   RotaryOf(scenario).optics.wander_rad = 100e-6;
   RotaryOf(scenario).optics.wander_corner_Hz = 200.0;
   Twin twin(scenario);

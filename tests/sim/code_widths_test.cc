@@ -1,21 +1,20 @@
 #include "twin/sim/code_widths.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
 
 #include "tests/core/input_error.h"
-#include "tests/sim/follow_key.h"
+#include "tests/core/refusals.h"
+#include "tests/support/small_scenario.h"
+#include "tests/support/twin_run.h"
+#include "twin/benches/rotary_4dof/twin/follow.h"
 #include "twin/sim/ad_sampler.h"
 #include "twin/sim/code_width_table.h"
 
 namespace twinbench::sim {
 namespace {
-
-using testing::HasSubstr;
 
 const AdcSettings kConverter;  // 16 bits, +-10 V
 constexpr double kCode_V = 20.0 / 65536.0;
@@ -34,7 +33,10 @@ std::map<int, int> CodeDensity(const CodeWidths& widths) {
   return hits;
 }
 
-TEST(CodeWidths, AreTheCodeDensityOfARamp) {
+TEST(CodeWidths, AreTheCodeDensityOfARampAndAllOneWhereNoneAreStated) {
+  EXPECT_TRUE(CodeWidths(0.0, 16, 7).AreEqual());
+  std::map<int, int> equal = CodeDensity(CodeWidths(0.0, 16, 7));
+  for (int code = 1; code < kRampCodes; ++code) EXPECT_NEAR(equal[code], kAHit, 1.01) << code;
   const CodeWidths widths(0.3, 16, 7);
   std::map<int, int> hits = CodeDensity(widths);
   double squares = 0.0, sum = 0.0;
@@ -46,14 +48,6 @@ TEST(CodeWidths, AreTheCodeDensityOfARamp) {
   }
   EXPECT_NEAR(std::sqrt(squares), 0.3, 0.03);  // of 400 widths, neighbours of which share an edge: 4 %
   EXPECT_LT(std::abs(sum), 1.0);               // no integral non-linearity beyond two edges
-}
-
-TEST(CodeWidths, AreAllOneWhereNoneAreStated) {
-  EXPECT_TRUE(CodeWidths(0.0, 16, 7).AreEqual());
-  for (const auto& [code, hits] : CodeDensity(CodeWidths(0.0, 16, 7))) {
-    if (code <= 0 || code >= kRampCodes) continue;
-    EXPECT_NEAR(hits, kAHit, 1.01) << code;
-  }
 }
 
 TEST(CodeWidths, ShiftTheMeanOfANoisyLevelAsTheirEdgesSay) {
@@ -112,37 +106,24 @@ TEST(CodeWidths, AsMeasuredGiveEachVoltageItsCode) {
   }
 }
 
-std::string WidthsFile(const std::string& text) {
-  const std::string path = testing::TempDir() + "widths.csv";
-  std::ofstream(path) << text;
-  return path;
-}
-
-TEST(CodeWidths, AreReadFromATableOfWidthsOrOfTheirExcess) {
+TEST(CodeWidths, AreReadFromATableOfWidthsOrOfTheirExcessAndSayWhatIsWrongWithIt) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& text) { return ReadExcessWidths_lsb(folder.Write("w.csv", text), 6); };
   const std::map<std::int32_t, double> expected = {{-32, 0.25}, {3, -1.0}};
-  EXPECT_EQ(ReadExcessWidths_lsb(WidthsFile("code,width\n-32,1.25\n3,0\n"), 6), expected);
-  EXPECT_EQ(ReadExcessWidths_lsb(WidthsFile("# measured\ncode,dnl_lsb\n-32,0.25\n3,-1\n"), 6), expected);
-}
-
-TEST(CodeWidths, SayWhatIsWrongWithTheirTable) {
-  const auto message = [](const std::string& text) {
-    return MessageOf([&] { ReadExcessWidths_lsb(WidthsFile(text), 6); });
-  };
-  EXPECT_THAT(message("code,width\n1,1\n32,1\n"),
-              testing::AllOf(HasSubstr("widths.csv:3"), HasSubstr("from -32 to 31")));
-  EXPECT_THAT(message("code,width\n1.5,1\n"), HasSubstr("whole number"));
-  EXPECT_THAT(message("code,width\n2,1\n1,1\n"), testing::AllOf(HasSubstr("widths.csv:3"), HasSubstr("order")));
-  EXPECT_THAT(message("code,width\n2,-0.1\n"), HasSubstr("0 or more"));
-  EXPECT_THAT(message("code,dnl_lsb\n2,-1.1\n"), HasSubstr("0 or more"));
-  EXPECT_THAT(message("code,width,dnl_lsb\n2,1,0\n"), HasSubstr("twice"));
-  EXPECT_THAT(message("code,size\n2,1\n"), HasSubstr("code and width"));
-  EXPECT_THAT(message("codes,width\n2,1\n"), HasSubstr("code is missing"));
-  EXPECT_THAT(message("code,width\n"), HasSubstr("no rows"));
-  EXPECT_THAT(MessageOf([] {
-                ParseScenario("bench = \"rotary_4dof\"\n[adc]\ndnl_lsb = 0.1\ndnl_file = \"a.csv\"\n", "a.toml",
-                              "");
-              }),
-              HasSubstr("adc.dnl_file"));
+  EXPECT_EQ(read("code,width\n-32,1.25\n3,0\n"), expected);
+  EXPECT_EQ(read("# measured\ncode,dnl_lsb\n-32,0.25\n3,-1\n"), expected);
+  ExpectRefused(folder.File("w.csv"), [&](const auto& text) { return MessageOf([&] { read(text); }); },
+                {{3, "code,width\n1,1\n32,1\n"},
+                 {2, "code,width\n1.5,1\n"},
+                 {3, "code,width\n2,1\n1,1\n"},
+                 {2, "code,width\n2,-0.1\n"},
+                 {2, "code,dnl_lsb\n2,-1.1\n"},
+                 {1, "code,width,dnl_lsb\n2,1,0\n"},
+                 {1, "code,size\n2,1\n"},
+                 {1, "codes,width\n2,1\n"}});
+  EXPECT_KEPT(MessageOf([&] { read("code,width\n"); }));
+  const std::string both = "bench = \"rotary_4dof\"\n[adc]\ndnl_lsb = 0.1\ndnl_file = \"a.csv\"\n";
+  EXPECT_KEPT(MessageOf([&] { ParseScenario(both, "a.toml", ""); }));
 }
 
 /// Root mean square of what the twin that follows the record leaves [V].
@@ -168,29 +149,26 @@ Scenario WithLittleNoise() {
   return scenario;
 }
 
-TEST(CodeWidths, AreFollowed) {
-  Scenario scenario = WithLittleNoise();
-  RotarySettings& own = RotaryOf(scenario);
-  own.chain.dnl_lsb = 0.4;
-  const test::TwinRun run = test::RunTwin(scenario);
-  EXPECT_LT(Left_V(scenario, run.readings), 3e-6);
-  RotaryOf(scenario).chain.dnl_lsb = 0.0;
-  EXPECT_GT(Left_V(scenario, run.readings), 10e-6);
-}
-
-// Every second code is 0.91 LSB too wide and the next 0.89 too narrow: beside the steps a gain of 0.99.
-TEST(CodeWidths, AreFollowedAsMeasured) {
+// Random widths, and as measured: every second code is 0.91 LSB too wide and the next 0.89 too narrow: beside the
+// steps a gain of 0.99.
+TEST(CodeWidths, AreFollowedAlsoAsMeasured) {
+  const TemporaryFolder folder;
   std::string table = "code,dnl_lsb\n";
   for (int code = -32768; code < 32768; ++code)
     table += std::to_string(code) + (code % 2 == 0 ? ",0.91\n" : ",-0.89\n");
-  Scenario scenario = WithLittleNoise();
-  RotarySettings& own = RotaryOf(scenario);
-  own.psd_a.bandwidth_Hz = own.psd_b.bandwidth_Hz = 1.0;  // the light's own noise blurs steps, too
-  own.chain.dnl_file = WidthsFile(table);
-  const test::TwinRun run = test::RunTwin(scenario);
-  EXPECT_LT(Left_V(scenario, run.readings), 3e-6);
-  RotaryOf(scenario).chain.dnl_file.clear();
-  EXPECT_GT(Left_V(scenario, run.readings), 30e-6);
+  Scenario random = WithLittleNoise(), measured = random;
+  RotaryOf(random).chain.dnl_lsb = 0.4;
+  RotaryOf(measured).psd_a.bandwidth_Hz = RotaryOf(measured).psd_b.bandwidth_Hz =
+      1.0;  // light's noise blurs steps, too
+  RotaryOf(measured).chain.dnl_file = folder.Write("widths.csv", table);
+  for (const auto& [scenario, without_V] : {std::pair(random, 10e-6), {measured, 30e-6}}) {
+    const test::TwinRun run = test::RunTwin(scenario);
+    EXPECT_LT(Left_V(scenario, run.readings), 3e-6);
+    Scenario even = scenario;
+    RotaryOf(even).chain.dnl_lsb = 0.0;
+    RotaryOf(even).chain.dnl_file.clear();
+    EXPECT_GT(Left_V(even, run.readings), without_V);
+  }
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <set>
 
 #include "tests/core/input_error.h"
 #include "tests/sim/encoder_run.h"
+#include "tests/support/kept_text.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
 
@@ -21,17 +21,6 @@ constexpr double kTiny_rad = 1e-11;  // rounding of angles of some turns
 
 double Error_rad(const Reading& reading) {
   return reading.measured_rad - reading.reference_rad;
-}
-
-TEST(EncoderEffects, AllOfTheCatalogueActOnTheReadings) {
-  Scenario scenario = EncoderScenario("sweep");
-  EncoderOf(scenario).device.lines = 90;
-  for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
-    double largest_rad = 0.0;
-    for (const Reading& r : ReadingsWith(scenario, EncoderEffect(entry.name)))
-      largest_rad = std::max(largest_rad, std::abs(Error_rad(r)));
-    EXPECT_GT(largest_rad, 1e-4 * deg) << entry.name;
-  }
 }
 
 TEST(EncoderEffects, HarmonicsFollowTheAngleOfTheDevicesScale) {
@@ -57,8 +46,7 @@ TEST(EncoderEffects, HarmonicsFollowTheAngleOfTheDevicesScale) {
 }
 
 TEST(EncoderEffects, InterpolationNeedsTheLinesOfTheScale) {
-  EXPECT_EQ(MessageOf([] { ReadingsWith(EncoderScenario(), EncoderEffect("interpolation")); }),
-            ": the effect interpolation needs the lines of the scale; expected device.lines_per_turn above 0");
+  EXPECT_KEPT(MessageOf([] { ReadingsWith(EncoderScenario(), EncoderEffect("interpolation")); }));
 }
 
 TEST(EncoderEffects, AFaultyReferenceIsLockedToItsOwnAngle) {
@@ -89,24 +77,18 @@ double WorstMisfit_rad(const EffectSettings& effect, int periods, Expected expec
   return worst_rad;
 }
 
-TEST(EncoderEffects, SignalOffsetRepeatsOnceAPeriod) {
-  const auto effect = EncoderEffect("signal_offset", {{"offset_sin", 1e-4}, {"offset_cos", 3e-4}});
+TEST(EncoderEffects, SignalsErrByTheirOffsetsOncePerPeriodAndByMismatchAndQuadratureTwice) {
+  const auto offset = EncoderEffect("signal_offset", {{"offset_sin", 1e-4}, {"offset_cos", 3e-4}});
   for (const int periods : {1, 10}) {
-    EXPECT_LT(WorstMisfit_rad(effect, periods, [](double p) { return 1e-4 * std::cos(p) - 3e-4 * std::sin(p); }),
+    EXPECT_LT(WorstMisfit_rad(offset, periods, [](double p) { return 1e-4 * std::cos(p) - 3e-4 * std::sin(p); }),
               1e-7);  // the square of the offsets
   }
-}
-
-TEST(EncoderEffects, AmplitudeMismatchIsASineOfTwicePerPeriod) {
-  const auto effect = EncoderEffect("amplitude_mismatch", {{"ratio", 1e-3}});
   // (1 + r) sin against cos: r sin cos = r/2 sin 2p.
-  EXPECT_LT(WorstMisfit_rad(effect, 1, [](double p) { return 0.5e-3 * std::sin(2.0 * p); }), 1e-6);
-}
-
-TEST(EncoderEffects, QuadratureErrorIsACosineOfTwicePerPeriodAndAnOffset) {
-  const auto effect = EncoderEffect("quadrature_error", {{"angle", 1e-3}});
+  const auto mismatch = EncoderEffect("amplitude_mismatch", {{"ratio", 1e-3}});
+  EXPECT_LT(WorstMisfit_rad(mismatch, 1, [](double p) { return 0.5e-3 * std::sin(2.0 * p); }), 1e-6);
   // sin(p + q) = sin + q cos: q cos^2 = q/2 (1 + cos 2p).
-  EXPECT_LT(WorstMisfit_rad(effect, 1, [](double p) { return 0.5e-3 * (1.0 + std::cos(2.0 * p)); }), 1e-6);
+  const auto quadrature = EncoderEffect("quadrature_error", {{"angle", 1e-3}});
+  EXPECT_LT(WorstMisfit_rad(quadrature, 1, [](double p) { return 0.5e-3 * (1.0 + std::cos(2.0 * p)); }), 1e-6);
 }
 
 TEST(EncoderEffects, ClippingActsOnlyWhereASignalExceedsTheLevel) {
@@ -140,10 +122,10 @@ TEST(EncoderEffects, LatencyIsTheWayThatTheShaftWentMeanwhile) {
 }
 
 TEST(EncoderEffects, BacklashAtStopsIsHalfTheGapBehindTheMotion) {
-  for (const Reading& r : ReadingsWith(EncoderScenario(), EncoderEffect("backlash", {{"width", 0.02}})))
-    EXPECT_NEAR(Error_rad(r), -r.direction * 0.01, kTiny_rad);
-  for (const Reading& r : ReadingsWith(EncoderScenario(), EncoderEffect("backlash", {{"width", -0.02}})))
-    EXPECT_NEAR(Error_rad(r), r.direction * 0.01, kTiny_rad);
+  for (const double width : {0.02, -0.02}) {
+    for (const Reading& r : ReadingsWith(EncoderScenario(), EncoderEffect("backlash", {{"width", width}})))
+      EXPECT_NEAR(Error_rad(r), -0.5 * r.direction * width, kTiny_rad);
+  }
 }
 
 TEST(EncoderEffects, BacklashInASweepIsCrossedOverItsWidthOfTravel) {
@@ -173,15 +155,7 @@ TEST(EncoderEffects, BacklashBeginsWhereItIsSaidAndIsCrossedOverTheWayThatIsStat
   }
 }
 
-TEST(EncoderEffects, HysteresisBeginsWithTheStateThatIsStated) {
-  Scenario scenario = EncoderScenario("sweep");
-  EncoderOf(scenario).encoder_procedure.passes = {1};
-  const auto readings = ReadingsWith(
-      scenario, EncoderEffect("hysteresis", {{"lag", 0.01}, {"settles_over", 20.0 * deg}, {"start", -1.0}}));
-  EXPECT_NEAR(Error_rad(readings.front()), 0.01, kTiny_rad);
-}
-
-TEST(EncoderEffects, HysteresisSettlesExponentiallyWithTravelAfterAReversal) {
+TEST(EncoderEffects, HysteresisBeginsAsStatedAndSettlesExponentiallyWithTravelAfterAReversal) {
   Scenario scenario = EncoderScenario("sweep");
   EncoderOf(scenario).encoder_procedure.passes = {1, -1};
   const auto readings =
@@ -196,30 +170,23 @@ TEST(EncoderEffects, HysteresisSettlesExponentiallyWithTravelAfterAReversal) {
     const double left = std::exp(-(turned_at_rad - r.reference_rad) / (20.0 * deg));
     EXPECT_NEAR(Error_rad(r), 0.01 * (1.0 - 2.0 * left), kTiny_rad);  // 37 settling ways forth: exp(-37) is left
   }
+  const auto stated = EncoderEffect("hysteresis", {{"lag", 0.01}, {"settles_over", 20.0 * deg}, {"start", -1.0}});
+  EXPECT_NEAR(Error_rad(ReadingsWith(scenario, stated).front()), 0.01, kTiny_rad);
 }
 
-TEST(EncoderEffects, ScaleGrowsWithTheTurns) {
-  for (const Reading& r : ReadingsWith(EncoderScenario(), EncoderEffect("scale", {{"ratio", 1e-4}})))
-    EXPECT_NEAR(Error_rad(r), 1e-4 * r.reference_rad, kTiny_rad);
-}
-
-// --- time and single readings ---
-
-TEST(EncoderEffects, DriftIsLinearWithAQuadraticShare) {
-  const double rate_rad_s = 1e-6;
-  for (const Reading& r :
-       ReadingsWith(EncoderScenario(), EncoderEffect("drift", {{"rate", rate_rad_s}, {"curvature", 0.5}}))) {
-    const double t_s = ToSeconds(r.time);
-    EXPECT_NEAR(Error_rad(r), rate_rad_s * t_s * (1.0 + 0.5 * (1.0 - t_s / 3600.0)), kTiny_rad);
-  }
-}
-
-TEST(EncoderEffects, AWarmUpSettles) {
-  const double rate_rad_s = 1e-6, warm_up_s = 600.0;
-  for (const Reading& r :
-       ReadingsWith(EncoderScenario(), EncoderEffect("drift", {{"rate", rate_rad_s}, {"warm_up", warm_up_s}}))) {
-    const double final_rad = rate_rad_s * warm_up_s;
-    EXPECT_NEAR(Error_rad(r), final_rad * (1.0 - std::exp(-ToSeconds(r.time) / warm_up_s)), kTiny_rad);
+TEST(EncoderEffects, ScaleGrowsWithTheTurnsDriftIsLinearWithAQuadraticShareAWarmUpSettlesAndASlipIsAStep) {
+  using Expected = double (*)(const Reading& r, double time_s);
+  const std::pair<EffectSettings, Expected> effects[] = {
+      {EncoderEffect("scale", {{"ratio", 1e-4}}), [](const Reading& r, double) { return 1e-4 * r.reference_rad; }},
+      {EncoderEffect("drift", {{"rate", 1e-6}, {"curvature", 0.5}}),
+       [](const Reading&, double t) { return 1e-6 * t * (1.0 + 0.5 * (1.0 - t / 3600.0)); }},
+      {EncoderEffect("drift", {{"rate", 1e-6}, {"warm_up", 600.0}}),
+       [](const Reading&, double t) { return 600e-6 * (1.0 - std::exp(-t / 600.0)); }},
+      {EncoderEffect("slip", {{"step", 0.01}, {"at_reading", 200.0}}),
+       [](const Reading& r, double) { return r.reading < 200 ? 0.0 : 0.01; }}};
+  for (const auto& [effect, expected] : effects) {
+    for (const Reading& r : ReadingsWith(EncoderScenario(), effect))
+      EXPECT_NEAR(Error_rad(r), expected(r, ToSeconds(r.time)), kTiny_rad) << effect.name;
   }
 }
 
@@ -229,12 +196,6 @@ TEST(EncoderEffects, SignalsThatBeginLaterErrLater) {
   };
   const auto here = clipped(0.0), later = clipped(5.0 * deg);  // the distance of two stops
   for (std::size_t i = 1; i < 144; ++i) EXPECT_NEAR(Error_rad(later[i]), Error_rad(here[i - 1]), kTiny_rad);
-}
-
-TEST(EncoderEffects, SlipIsAStepAtItsReading) {
-  for (const Reading& r :
-       ReadingsWith(EncoderScenario(), EncoderEffect("slip", {{"step", 0.01}, {"at_reading", 200.0}})))
-    EXPECT_NEAR(Error_rad(r), r.reading < 200 ? 0.0 : 0.01, kTiny_rad);
 }
 
 TEST(EncoderEffects, OutliersHitTheirShareOfTheReadings) {

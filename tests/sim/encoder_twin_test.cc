@@ -6,8 +6,8 @@
 
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/settings.h"
-#include "twin/core/errors.h"
 #include "twin/benches/encoder_comparison/twin/twin.h"
+#include "twin/core/errors.h"
 
 namespace twinbench {
 namespace {
@@ -61,9 +61,14 @@ TEST(EncoderTwin, WithoutNoiseAndEffectsShowsTheReferencesAngle) {
   }
 }
 
-TEST(EncoderTwin, DrawsTheNoiseOfAReadingFromItsNumberAlone) {
-  Scenario scenario = EncoderScenario();
+Scenario Noisy(const std::string& kind = "stops") {
+  Scenario scenario = EncoderScenario(kind);
   scenario.noise_free = false;
+  return scenario;
+}
+
+TEST(EncoderTwin, DrawsTheNoiseOfAReadingFromItsNumberAlone) {
+  Scenario scenario = Noisy();
   const auto all = RunEncoderTwin(scenario).readings;
   sim::EncoderTwin twin(scenario);
   Reading alone = procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure)[77];
@@ -72,8 +77,7 @@ TEST(EncoderTwin, DrawsTheNoiseOfAReadingFromItsNumberAlone) {
 }
 
 TEST(EncoderTwin, ReadsInStepsOfItsResolution) {
-  Scenario scenario = EncoderScenario();
-  scenario.noise_free = false;
+  Scenario scenario = Noisy();
   EncoderOf(scenario).device.resolution_rad = 0.1 * deg;
   for (const Reading& r : RunEncoderTwin(scenario).readings) {
     const double steps = r.measured_rad / EncoderOf(scenario).device.resolution_rad;
@@ -81,9 +85,8 @@ TEST(EncoderTwin, ReadsInStepsOfItsResolution) {
   }
 }
 
-TEST(EncoderTwin, ShowsTheMeanOfAStopsReadingsAndTheNoiseTeachesItBetweenItsSteps) {
-  Scenario scenario = EncoderScenario();
-  scenario.noise_free = false;
+TEST(EncoderTwin, ShowsTheMeanOfAStopsReadingsWhereNoiseTeachesItBetweenItsStepsAndReadsOnceInMotion) {
+  Scenario scenario = Noisy();
   EncoderOf(scenario).device.resolution_rad = EncoderOf(scenario).device.noise_rad;
   EncoderOf(scenario).encoder_procedure.readings_per_stop = 16;
   double squares = 0.0;
@@ -92,20 +95,17 @@ TEST(EncoderTwin, ShowsTheMeanOfAStopsReadingsAndTheNoiseTeachesItBetweenItsStep
   const double rms_rad = std::sqrt(squares / static_cast<double>(readings.size()));
   // A step adds 1/12 of its square to that of one reading. 576 readings: 3 % of the deviation; four of these.
   EXPECT_NEAR(rms_rad / (EncoderOf(scenario).device.noise_rad * std::sqrt(13.0 / 12.0) / 4.0), 1.0, 0.12);
+  Scenario sweep = Noisy("sweep");
+  const auto once = RunEncoderTwin(sweep).readings;
+  EncoderOf(sweep).encoder_procedure.readings_per_stop = 16;
+  EXPECT_EQ(RunEncoderTwin(sweep).readings[77].measured_rad, once[77].measured_rad);
 }
 
 TEST(EncoderTwin, HasNoMoreReadingsAtAStopThanFitIntoIt) {
-  const std::string text = "bench = \"encoder_comparison\"\n[encoder_procedure]\nstop_interval_s = 4.0\nread_s = 0.5\n";
+  const std::string text =
+      "bench = \"encoder_comparison\"\n[encoder_procedure]\nstop_interval_s = 4.0\nread_s = 0.5\n";
   EXPECT_NO_THROW(ParseScenario(text + "readings_per_stop = 8\n", "s.toml", "."));
   EXPECT_THROW(ParseScenario(text + "readings_per_stop = 9\n", "s.toml", "."), InputError);
-}
-
-TEST(EncoderTwin, ReadsOnceAtATimeInMotion) {
-  Scenario scenario = EncoderScenario("sweep");
-  scenario.noise_free = false;
-  const auto once = RunEncoderTwin(scenario).readings;
-  EncoderOf(scenario).encoder_procedure.readings_per_stop = 16;
-  EXPECT_EQ(RunEncoderTwin(scenario).readings[77].measured_rad, once[77].measured_rad);
 }
 
 TEST(EncoderTwin, AddsAnEmpiricalSignalToTheReadingsItNames) {
@@ -146,8 +146,7 @@ TEST(EncoderTwin, ReadsItsRingWithSeveralHeadsAtOneInstant) {
 }
 
 TEST(EncoderTwin, HasOneNoiseOfTheReferenceForAllHeadsOfAnInstant) {
-  Scenario scenario = EncoderScenario();
-  scenario.noise_free = false;
+  Scenario scenario = Noisy();
   EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 90.0 * deg, 100.0 * deg};
   EncoderOf(scenario).encoder_procedure.reference_noise_rad = 1.0 * deg;
   const auto readings = RunEncoderTwin(scenario).readings;

@@ -18,25 +18,7 @@ Time AtNs(std::int64_t ns) {
   return Time(Duration(ns));
 }
 
-TEST(EventQueue, RunsEventsInTheOrderOfTheirTime) {
-  EventQueue queue;
-  std::vector<std::int64_t> seen;
-  for (const std::int64_t ns : {30, 10, 20})
-    queue.At(AtNs(ns), [&] { seen.push_back(queue.Now().time_since_epoch().count()); });
-  while (queue.RunOne()) continue;
-  EXPECT_EQ(seen, (std::vector<std::int64_t>{10, 20, 30}));
-}
-
-TEST(EventQueue, KeepsTheOrderOfAdditionAtEqualTimes) {
-  EventQueue queue;
-  std::vector<int> seen;
-  for (int i = 0; i < 1000; ++i) queue.At(AtNs(5), [&seen, i] { seen.push_back(i); });
-  queue.RunUntil(AtNs(5));
-  ASSERT_EQ(seen.size(), 1000u);
-  for (int i = 0; i < 1000; ++i) ASSERT_EQ(seen[static_cast<std::size_t>(i)], i);
-}
-
-TEST(EventQueue, RunsAnEventThatIsAddedForNowAfterThoseThatWait) {
+TEST(EventQueue, RunsAnEventThatIsAddedForNowAfterThoseThatWaitAlsoFromInsideAnEvent) {
   EventQueue queue;
   std::string seen;
   queue.At(AtNs(5), [&] {
@@ -44,21 +26,29 @@ TEST(EventQueue, RunsAnEventThatIsAddedForNowAfterThoseThatWait) {
     queue.After(Duration(0), [&] { seen += 'c'; });
   });
   queue.At(AtNs(5), [&] { seen += 'b'; });
-  queue.RunUntil(AtNs(5));
-  EXPECT_EQ(seen, "abc");
+  queue.At(AtNs(6), [&] {
+    seen += 'd';
+    queue.RunUntil(AtNs(20));
+    seen += 'f';
+  });
+  queue.At(AtNs(15), [&] { seen += 'e'; });
+  queue.RunUntil(AtNs(10));
+  EXPECT_EQ(seen, "abcdef");
+  EXPECT_EQ(queue.Now(), AtNs(20));  // never back to 10
 }
 
-TEST(EventQueue, StopsTheClockWhereItIsTold) {
+TEST(EventQueue, RunsUntilItIsToldOrAConditionFailsOrNothingIsLeft) {
   EventQueue queue;
   int n = 0;
-  queue.At(AtNs(10), [&] { ++n; });
-  queue.At(AtNs(11), [&] { ++n; });
-  queue.RunUntil(AtNs(10));
-  EXPECT_EQ(n, 1);
-  EXPECT_EQ(queue.Now(), AtNs(10));
+  for (int i = 1; i <= 5; ++i) queue.At(AtNs(i), [&] { ++n; });
+  EXPECT_TRUE(queue.RunWhile([&] { return n < 3; }));
+  EXPECT_EQ(queue.Now(), AtNs(3));
+  queue.RunUntil(AtNs(4));
+  EXPECT_EQ(n, 4);
   EXPECT_EQ(queue.Pending(), 1u);
+  EXPECT_FALSE(queue.RunWhile([&] { return n < 9; }));
+  EXPECT_EQ(n, 5);
   queue.RunUntil(AtNs(1000));
-  EXPECT_EQ(n, 2);
   EXPECT_EQ(queue.Now(), AtNs(1000));
 }
 
@@ -72,33 +62,12 @@ TEST(EventQueue, RefusesThePast) {
   EXPECT_EQ(queue.Pending(), 0u);
 }
 
-TEST(EventQueue, DoesNotRunACancelledEvent) {
+TEST(EventQueue, CannotCancelTheEventThatIsRunningAndStandsStillWhenAllAreCancelled) {
   EventQueue queue;
-  int n = 0;
-  const EventId id = queue.At(AtNs(10), [&] { ++n; });
-  EXPECT_TRUE(queue.Cancel(id));
-  EXPECT_EQ(queue.Pending(), 0u);
-  EXPECT_FALSE(queue.Cancel(id));
-  EXPECT_FALSE(queue.RunOne());
-  EXPECT_EQ(n, 0);
-  EXPECT_EQ(queue.Now(), AtNs(0));
-}
-
-TEST(EventQueue, DoesNotMistakeANewEventForAnOldOneInTheSameSlot) {
-  EventQueue queue;
-  int n = 0;
-  const EventId old_id = queue.At(AtNs(10), [] {});
-  queue.RunOne();
-  const EventId new_id = queue.At(AtNs(20), [&] { ++n; });
-  ASSERT_EQ(old_id.slot, new_id.slot);
-  EXPECT_FALSE(queue.Cancel(old_id));
   EXPECT_FALSE(queue.Cancel(EventId{}));
-  queue.RunOne();
-  EXPECT_EQ(n, 1);
-}
-
-TEST(EventQueue, CannotCancelTheEventThatIsRunning) {
-  EventQueue queue;
+  EXPECT_TRUE(queue.Cancel(queue.At(AtNs(10), [] {})));
+  EXPECT_FALSE(queue.RunOne());
+  EXPECT_EQ(queue.Now(), AtNs(0));
   EventId id;
   bool cancelled = true;
   id = queue.At(AtNs(1), [&] { cancelled = queue.Cancel(id); });
@@ -118,30 +87,6 @@ TEST(EventQueue, GoesOnAfterAnExceptionInACallback) {
   EXPECT_EQ(n, 1);
 }
 
-TEST(EventQueue, RunsUntilAConditionFailsOrNothingIsLeft) {
-  EventQueue queue;
-  int n = 0;
-  for (int i = 1; i <= 5; ++i) queue.At(AtNs(i), [&] { ++n; });
-  EXPECT_TRUE(queue.RunWhile([&] { return n < 3; }));
-  EXPECT_EQ(queue.Now(), AtNs(3));
-  EXPECT_FALSE(queue.RunWhile([&] { return n < 9; }));
-  EXPECT_EQ(n, 5);
-}
-
-TEST(EventQueue, MayBeRunFromInsideAnEvent) {
-  EventQueue queue;
-  std::string seen;
-  queue.At(AtNs(1), [&] {
-    seen += 'a';
-    queue.RunUntil(AtNs(20));
-    seen += 'c';
-  });
-  queue.At(AtNs(15), [&] { seen += 'b'; });
-  queue.RunUntil(AtNs(10));
-  EXPECT_EQ(seen, "abc");
-  EXPECT_EQ(queue.Now(), AtNs(20));  // never back to 10
-}
-
 TEST(EventQueue, DestroysCapturesWhenTheyAreNoLongerNeeded) {
   const auto token = std::make_shared<int>(0);
   {
@@ -158,7 +103,7 @@ TEST(EventQueue, DestroysCapturesWhenTheyAreNoLongerNeeded) {
   EXPECT_EQ(token.use_count(), 1);
 }
 
-TEST(EventQueue, TakesMoveOnlyAndLargeCaptures) {
+TEST(Callback, KeepsSmallCapturesInsideAndTakesMoveOnlyAndLargeOnes) {
   EventQueue queue;
   int sum = 0;
   std::array<int, 100> large{};
@@ -167,13 +112,8 @@ TEST(EventQueue, TakesMoveOnlyAndLargeCaptures) {
   queue.After(Duration(1), [&sum, large] { sum += large[99]; });
   queue.RunUntil(AtNs(1));
   EXPECT_EQ(sum, 12);
-}
-
-TEST(Callback, KeepsSmallCapturesInside) {
-  const std::array<char, Callback::kInside> small{};
-  const std::array<char, Callback::kInside + 1> large{};
-  const auto f = [small] { static_cast<void>(small); };
-  const auto g = [large] { static_cast<void>(large); };
+  const auto f = [fits = std::array<char, Callback::kInside>{}] { static_cast<void>(fits); };
+  const auto g = [fits_not = std::array<char, Callback::kInside + 1>{}] { static_cast<void>(fits_not); };
   EXPECT_TRUE(Callback::FitsInside<decltype(f)>());
   EXPECT_FALSE(Callback::FitsInside<decltype(g)>());
 }
@@ -203,7 +143,7 @@ class EventQueueModel {
   std::map<int, Events::iterator> place_;
 };
 
-TEST(EventQueue, BehavesLikeASortedListInARandomLife) {
+TEST(EventQueue, BehavesLikeASortedListInARandomLifeAlsoAtEqualTimesAndForOldEvents) {
   Stream random(2025, "event_queue.life");
   EventQueue queue;
   EventQueueModel model;

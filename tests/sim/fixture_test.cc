@@ -1,14 +1,11 @@
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
+#include "tests/core/input_error.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/errors.h"
 
 namespace twinbench::sim {
 namespace {
@@ -97,33 +94,16 @@ TEST(Fixture, ThatRidesOnTheGratingTurnsWithIt) {
 }
 
 TEST(Fixture, OfAMeshFileStandsInTheLightLikeABox) {
+  const TemporaryFolder folder;
   FixtureSettings mesh;
   mesh.name = "plate";
-  mesh.mesh_file = testing::TempDir() + "twinbench_plate.stl";
   mesh.position_m = BeforePsdA();
-  std::ofstream(mesh.mesh_file) << "solid\nfacet normal 0 1 0\nouter loop\nvertex -5 0 -5\nvertex 5 0 -5\n"
-                                   "vertex 0 0 5\nendloop\nendfacet\nendsolid\n";
+  mesh.mesh_file = folder.Write("plate.stl",
+                                "solid\nfacet normal 0 1 0\nouter loop\nvertex -5 0 -5\nvertex 5 0 -5\n"
+                                "vertex 0 0 5\nendloop\nendfacet\nendsolid\n");
   EXPECT_EQ(ReadWith({mesh}).status, ReadingStatus::kNoLight);
   mesh.mesh_unit_m = 1.0 * units::um;  // 10 um wide: the chief ray, 0.1 mm beside, passes
   EXPECT_EQ(ReadWith({mesh}).status, ReadingStatus::kOk);
-  std::filesystem::remove(mesh.mesh_file);
-}
-
-TEST(Fixture, WithoutAReadableMeshIsAnInputErrorAtItsLine) {
-  Scenario scenario = test::RotaryScenario();
-  FixtureSettings mesh;
-  mesh.name = "housing";
-  mesh.mesh_file = "/nowhere/housing.stl";
-  mesh.location = "bench.toml:7";
-  scenario.fixtures = {mesh};
-  try {
-    Twin twin(scenario);
-    FAIL() << "a mesh that is not there was read";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "bench.toml:7: fixture.mesh_file: /nowhere/housing.stl: cannot be opened; expected an STL file, "
-                 "binary or text");
-  }
 }
 
 }  // namespace

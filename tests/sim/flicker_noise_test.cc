@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/support/night.h"
+
 namespace twinbench::sim {
 namespace {
 
@@ -28,7 +30,9 @@ double AllanVariance(double tau_s, int seeds) {
 
 TEST(FlickerNoise, HasTheSameAllanVarianceOverSecondsAndMinutes) {
   const double expected = 2.0 * std::log(2.0) / std::log(10.0);
-  for (const double tau_s : {1.0, 10.0, 60.0}) EXPECT_NEAR(AllanVariance(tau_s, 200), expected, 0.12 * expected);
+  const int seeds = test::ByNight(200, 50);
+  for (const double tau_s : {1.0, 10.0, 60.0})  // four standard deviations, of some correlated pairs
+    EXPECT_NEAR(AllanVariance(tau_s, seeds), expected, 0.12 * std::sqrt(200.0 / seeds) * expected);
 }
 
 TEST(FlickerNoise, IsNothingIfNotAskedFor) {

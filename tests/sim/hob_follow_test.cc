@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "tests/support/changed_scenario.h"
 #include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/hob_transmission/twin/follow.h"
 
@@ -74,11 +75,8 @@ constexpr double kSame_arcsec = 1e-4;
 /// wind-up decay.
 constexpr double kTurned_arcsec = 5e-4;
 
-TEST(HobFollow, SaysWhatTheRunShowed) {
+TEST(HobFollow, SaysWhatTheRunShowedAndKnowsEveryEffectOfTheCatalogue) {
   EXPECT_LT(Off_arcsec(Machine()), kSame_arcsec);
-}
-
-TEST(HobFollow, KnowsEveryEffectOfTheCatalogue) {
   for (const EffectEntry& entry : EffectCatalogue(kHobBench)) {
     if (entry.name == "outliers") continue;  // nobody can foresee them
     Scenario s = WithoutFreeOrders();
@@ -88,40 +86,24 @@ TEST(HobFollow, KnowsEveryEffectOfTheCatalogue) {
 }
 
 TEST(HobFollow, KnowsTheKeysOfTheScenario) {
-  const std::vector<std::pair<const char*, void (*)(Scenario&)>> changes = {
-      {"lag", [](Scenario& s) { HobOf(s).transmission.feed_forward = 0.9; }},
-      {"backlash", [](Scenario& s) { HobOf(s).transmission.backlash_rad = 20.0 * arcsec; }},
-      {"friction", [](Scenario& s) { HobOf(s).transmission.friction_Nm = 100.0; }},
-      {"reference mark", [](Scenario& s) { HobOf(s).hob_procedure.encoder_zero = "reference_mark"; }},
-      {"no interferometer", [](Scenario& s) { HobOf(s).interferometer.used = false; }},
-      {"interferometer at rest",
-       [](Scenario& s) {
-         HobOf(s).interferometer.stops = 12;
-         HobOf(s).interferometer.misalignment_rad = 0.1;
-         HobOf(s).transmission.friction_Nm = 100.0;
-         HobOf(s).transmission.backlash_rad = 20.0 * arcsec;
-       }},
-      {"tilted ring",
-       [](Scenario& s) {
-         HobOf(s).table_encoder.tilt_rad = 200.0 * arcsec;
-         HobOf(s).table_encoder.head_height_m = 10e-3;
-       }},
-      {"oval ring", [](Scenario& s) { HobOf(s).hob_encoder.ellipticity_m = 5e-6; }},
-      {"hob's ring aside", [](Scenario& s) { HobOf(s).hob_encoder.eccentricity_m = 20e-6; }},
-      {"graduation",
-       [](Scenario& s) {
-         HobOf(s).table_encoder.graduation = {{Component::kEz, 6.0, 3.0 * arcsec, 1.0}};
-       }},
-      {"a line that is not free", [](Scenario& s) { HobOf(s).transmission.free_orders = 2; }},
-      {"two speeds", [](Scenario& s) {
-         HobOf(s).hob_procedure.hob_speeds_rad_s = {5.0, 3.0};
-         HobOf(s).transmission.feed_forward = 0.95;
-         s.effects = {{"hysteresis", "", {{"lag", 4.0 * arcsec}, {"settles_over", 5.0 * deg}}, "", {}}};
-       }}};
-  for (const auto& [name, change] : changes) {
-    Scenario s = WithoutFreeOrders();
-    change(s);
-    EXPECT_LT(Off_arcsec(s), s.effects.empty() ? kSame_arcsec : kTurned_arcsec) << name;
+  const std::vector<std::vector<std::string>> changes = {
+      {"transmission.feed_forward=0.9"},
+      {"transmission.backlash_arcsec=20"},
+      {"transmission.friction_Nm=100"},
+      {"hob_procedure.encoder_zero=reference_mark"},
+      {"interferometer.used=false"},
+      {"interferometer.stops=12", "interferometer.misalignment_mrad=100", "transmission.friction_Nm=100",
+       "transmission.backlash_arcsec=20"},
+      {"table_encoder.tilt_arcsec=200", "table_encoder.head_height_mm=10"},
+      {"hob_encoder.ellipticity_um=5"},
+      {"hob_encoder.eccentricity_um=20"},
+      {"table_encoder.graduation=[{ order = 6, amplitude_arcsec = 3, phase_deg = 57 }]"},
+      {"transmission.free_orders=2"},
+      {"hob_procedure.hob_speeds_rev_min=[48, 29]", "transmission.feed_forward=0.95",
+       "effect=[{ name = \"hysteresis\", lag_arcsec = 4, settles_over_deg = 5 }]"}};
+  for (const auto& keys : changes) {
+    const Scenario s = test::Changed(WithoutFreeOrders(), keys);
+    EXPECT_LT(Off_arcsec(s), s.effects.empty() ? kSame_arcsec : kTurned_arcsec) << keys[0];
   }
 }
 

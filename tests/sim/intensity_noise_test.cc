@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "tests/sim/follow_key.h"
 #include "tests/sim/quiet_scenario.h"
 #include "twin/benches/rotary_4dof/twin/psd_noise.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
@@ -17,9 +16,8 @@ constexpr double kShare = kCurrent_A / (kCurrent_A + kBackground_A);
 
 /// Both spots 1.6 mm above the middle.
 Scenario Lifted(bool noise_free = true) {
-  Scenario scenario = Quiet();
+  Scenario scenario = OnlyTheLightsNoise();
   scenario.noise_free = noise_free;
-  RotaryOf(scenario).amplifier.noise_V = 0.0;
   RotaryOf(scenario).laser.pitch_rad = kPitch_rad;
   return scenario;
 }
@@ -41,15 +39,6 @@ TEST(IntensityNoise, CancelsWithoutABackground) {
     EXPECT_EQ(noisy.channel[c].mean_V, quiet.channel[c].mean_V) << c;
     EXPECT_EQ(noisy.channel[c].std_V, quiet.channel[c].std_V) << c;
   }
-}
-
-TEST(IntensityNoise, ABackgroundDrawsTheSpotToTheMiddle) {
-  Scenario scenario = Lifted();
-  const Acquisition dark = LongBlock(scenario);
-  LetRoomLightIn(scenario);
-  const Acquisition lit = LongBlock(scenario);
-  for (const std::size_t c : {1u, 3u})
-    EXPECT_NEAR(lit.channel[c].mean_V / dark.channel[c].mean_V, kShare, 1e-6) << c;
 }
 
 TEST(IntensityNoise, ShowsThroughABackground) {
@@ -81,31 +70,6 @@ TEST(IntensityNoise, IsCommonToBothDetectorsBehindALowPass) {
   const double correlation = products * lsb_V * lsb_V / (block.channel[1].std_V * block.channel[3].std_V);
   // Two conversions apart: exp(-8 us x 2 pi x 2 kHz).
   EXPECT_NEAR(correlation, std::exp(-8e-6 * units::turn * 2000.0), 0.02);
-}
-
-TEST(IntensityNoise, APowerThatDriftsMovesTheSpotThroughABackgroundOnly) {
-  Scenario scenario = Lifted();
-  RotaryOf(scenario).laser.power_drift_per_s = -0.3 / units::hour;
-  const auto after_an_hour_V = [](const Scenario& s) {
-    Twin twin(s);
-    const double before_V = twin.Bench().adc.Acquire(100, false).channel[1].mean_V;
-    twin.Bench().clock.Wait(std::chrono::hours(1));
-    return std::pair(before_V, twin.Bench().adc.Acquire(100, false).channel[1].mean_V);
-  };
-  const auto [dark_before_V, dark_after_V] = after_an_hour_V(scenario);
-  EXPECT_NEAR(dark_after_V, dark_before_V, 1e-12);
-  LetRoomLightIn(scenario);
-  const auto [before_V, after_V] = after_an_hour_V(scenario);
-  const double left_A = 0.7 * kCurrent_A;
-  EXPECT_NEAR(after_V / before_V, left_A / (left_A + kBackground_A) / kShare, 1e-6);
-}
-
-TEST(IntensityNoise, IsFollowedAsFarAsItDrifts) {
-  Scenario scenario = test::SmallNoiseFree();
-  RotaryOf(scenario).laser.pitch_rad = kPitch_rad;
-  LetRoomLightIn(scenario);
-  ExpectFollowed(
-      scenario, [](RotarySettings& s) { s.laser.power_drift_per_s = -0.3 / units::hour; }, 5e-6, 5e-3);
 }
 
 }  // namespace

@@ -18,13 +18,10 @@ PsdSettings ShotNoiseOnly() {
 }
 
 // (L / 2) sqrt(2 q B / I) in the centre: 1 mW x 0.45 A/W = 0.45 mA, 100 kHz, 10 mm.
-TEST(PsdNoise, IsTheShotNoiseOfTheLight) {
+TEST(PsdNoise, IsTheShotNoiseOfTheLightAndThatOfDarkCurrentAndResistanceFallsAsTheLight) {
   const double expected_m = 5e-3 * std::sqrt(2.0 * 1.602176634e-19 * 100e3 / 0.45e-3);
   EXPECT_NEAR(PsdNoise_m(ShotNoiseOnly(), 1e-3, 10e-3, 0.0), expected_m, 1e-6 * expected_m);
   EXPECT_NEAR(PsdNoise_m(ShotNoiseOnly(), 1e-3, 10e-3, 4e-3), 0.6 * expected_m, 1e-6 * expected_m);
-}
-
-TEST(PsdNoise, OfDarkCurrentAndResistanceFallsAsTheLight) {
   PsdSettings psd = ShotNoiseOnly();
   psd.dark_current_A = 1.0;
   EXPECT_NEAR(PsdNoise_m(psd, 1e-9, 10e-3, 0.0) / PsdNoise_m(psd, 4e-9, 10e-3, 0.0), 4.0, 1e-3);
@@ -37,9 +34,7 @@ TEST(PsdNoise, OfDarkCurrentAndResistanceFallsAsTheLight) {
 
 /// Root mean square over channels of a block's deviation, nothing being noisy but the light.
 double Scatter_V(double power_W) {
-  Scenario scenario = Quiet();
-  scenario.noise_free = false;
-  RotaryOf(scenario).amplifier.noise_V = 0.0;
+  Scenario scenario = OnlyTheLightsNoise();
   RotaryOf(scenario).laser.power_W = power_W;
   for (PsdSettings* psd : {&RotaryOf(scenario).psd_a, &RotaryOf(scenario).psd_b}) {
     psd->dark_current_A = 0.0;

@@ -10,4 +10,11 @@ inline Scenario Quiet() {
   return scenario;
 }
 
+/// With noise, but none of the amplifier.
+inline Scenario OnlyTheLightsNoise() {
+  Scenario scenario = test::RotaryScenario();
+  RotaryOf(scenario).amplifier.noise_V = 0.0;
+  return scenario;
+}
+
 }  // namespace twinbench::sim

@@ -2,6 +2,7 @@
 
 #include "optics/irradiance.h"
 #include "tests/support/angle_benches.h"
+#include "tests/support/changed_scenario.h"
 #include "tests/support/small_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/benches/rotary_4dof/twin/follow.h"
@@ -53,30 +54,30 @@ double Apart_m(const test::TwinRun& run) {
 
 /// A bench of which nothing is at its ideal value.
 Scenario RichBench() {
-  Scenario s = test::SmallNoiseFree();
-  RotaryOf(s).target.harmonics = {{Component::kEz, 1, 20.0 * arcsec, 0.3},
-                                  {Component::kDy, 2, 3.0 * units::um, 1.0}};
-  RotaryOf(s).reference.harmonics = {{Component::kEx, 1, 10.0 * arcsec, 0.1},
-                                     {Component::kDx, 1, 2.0 * units::um, 0.0}};
-  RotaryOf(s).centring_m = {4e-6, -3e-6};
-  RotaryOf(s).mount_tilt_rad = {15.0 * arcsec, -10.0 * arcsec};
-  RotaryOf(s).target.half_frequency_tilt_rad = 1.0 * arcsec;
-  RotaryOf(s).target.backlash_rad = 2.0 * arcsec;
-  RotaryOf(s).laser.position_m.x() = 0.5 * units::mm;
-  RotaryOf(s).laser.yaw_rad = 50e-6;
-  RotaryOf(s).laser.pointing_yaw_per_kelvin_rad = 20e-6;
-  RotaryOf(s).laser.wavelength_per_kelvin_m = 0.1 * units::nm;
-  RotaryOf(s).psd_a.tilt_u_rad = 0.02;
-  RotaryOf(s).psd_b.tilt_v_rad = 0.03;
-  RotaryOf(s).amplifier.hum_V = 0.02;
-  RotaryOf(s).amplifier.offset_V = {0.01, -0.02, 0.03, 0.005};
-  RotaryOf(s).autocollimator.gain_error = 0.002;
-  s.environment.drift_K_h = 0.4;
-  s.environment.swing_K = 0.2;
-  RotaryOf(s).mechanics.payload_mass_kg = 5.0;
-  RotaryOf(s).mechanics.payload_radius_m = 0.05;
-  RotaryOf(s).procedure.dwell_s = {0.5, 1.0, 4.0};
-  return s;
+  return test::Changed(
+      test::SmallNoiseFree(),
+      {"target.harmonics=[{ component = \"ez\", order = 1, amplitude_arcsec = 20, phase_deg = 17 }, "
+       "{ component = \"dy\", order = 2, amplitude_um = 3, phase_deg = 57 }]",
+       "reference.harmonics=[{ component = \"ex\", order = 1, amplitude_arcsec = 10, phase_deg = 6 }, "
+       "{ component = \"dx\", order = 1, amplitude_um = 2 }]",
+       "reference.centring_um=[4, -3]",
+       "reference.mount_tilt_arcsec=[15, -10]",
+       "target.half_frequency_tilt_arcsec=1",
+       "target.backlash_arcsec=2",
+       "laser.position_mm=[0.5, 200, 0]",
+       "laser.yaw_mrad=0.05",
+       "laser.pointing_yaw_per_kelvin_urad=20",
+       "laser.wavelength_per_kelvin_nm=0.1",
+       "psd_a.tilt_u_mrad=20",
+       "psd_b.tilt_v_mrad=30",
+       "amplifier.hum_mV=20",
+       "amplifier.offset_mV=[10, -20, 30, 5]",
+       "autocollimator.gain_error=0.002",
+       "environment.drift_K_h=0.4",
+       "environment.swing_mK=200",
+       "mechanics.payload_mass_kg=5",
+       "mechanics.payload_radius_mm=50",
+       "procedure.dwell_s=[0.5, 1, 4]"});
 }
 
 // What is left is rounding in the chain and Newton's last step at the autocollimator.
@@ -89,21 +90,12 @@ TEST(RotaryFollow, SaysWhatThePlainTwinShows) {
   EXPECT_LT(Apart_m(test::RunTwin(test::SmallNoiseFree())), kRounding_m);
 }
 
-TEST(RotaryFollow, SaysWhatARichTwinShows) {
-  EXPECT_LT(Apart_m(test::RunTwin(RichBench())), kBesideTheStop_m);
-}
-
-TEST(RotaryFollow, SaysWhatAReclampedTwinShows) {
-  Scenario s = RichBench();
-  RotaryOf(s).procedure.clamping = "reclamp";
-  EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
-}
-
-TEST(RotaryFollow, SeesThroughAWedgedWindow) {
-  Scenario s = RichBench();
-  RotaryOf(s).psd_a.window = true;
-  RotaryOf(s).psd_a.window_wedge_rad = 0.010;
-  EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
+TEST(RotaryFollow, SaysWhatARichTwinShowsReclampedAndThroughAWedgedWindowToo) {
+  Scenario reclamped = RichBench(), wedged = RichBench();
+  RotaryOf(reclamped).procedure.clamping = "reclamp";
+  RotaryOf(wedged).psd_a.window = true;
+  RotaryOf(wedged).psd_a.window_wedge_rad = 0.010;
+  for (const Scenario& s : {RichBench(), reclamped, wedged}) EXPECT_LT(Apart_m(test::RunTwin(s)), kBesideTheStop_m);
 }
 
 /// A lopsided beam as a camera would have seen it.
@@ -134,28 +126,23 @@ TEST(RotaryFollow, SaysWhatAMeasuredBeamShowsToANanometre) {
   EXPECT_LT(Apart_m(run), 1e-9);
 }
 
-TEST(RotaryFollow, KnowsTheDynamicsOfTheLinearStack) {
-  Scenario s = RichBench();
-  RotaryOf(s).mechanics.fidelity = "linear";
+TEST(RotaryFollow, KnowsTheDynamicsOfTheLinearStackAndItsFriction) {
+  Scenario rich = RichBench(), rubbing = test::SmallNoiseFree();
+  RotaryOf(rich).mechanics.fidelity = RotaryOf(rubbing).mechanics.fidelity = "linear";
+  RotaryOf(rubbing).mechanics.friction_Nm = {0.2, 0.1};
   // The record says when a reading was taken, not for how long the servo had rung.
-  EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
+  for (const Scenario& s : {rich, rubbing}) EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
 }
 
 TEST(RotaryFollow, SaysWhatBodiesByBulletShow) {
   Scenario s = RichBench();
   RotaryOf(s).mechanics.fidelity = "bullet";
+  RotaryOf(s).procedure.positions = 6;
   EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
   RotaryOf(s).target.backlash_rad = RotaryOf(s).reference.backlash_rad = 0.0;
   RotaryOf(s).mechanics.cable_stiffness_Nm_rad = {0.3, 0.2};
   RotaryOf(s).mechanics.encoder_subdivision_rad = {0.3 * units::arcsec, 0.2 * units::arcsec};
   EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-10);
-}
-
-TEST(RotaryFollow, KnowsFrictionByTheLinearModel) {
-  Scenario s = test::SmallNoiseFree();
-  RotaryOf(s).mechanics.fidelity = "linear";
-  RotaryOf(s).mechanics.friction_Nm = {0.2, 0.1};
-  EXPECT_LT(Apart_m(test::RunTwin(s)), 1e-9);
 }
 
 class RotaryFollowEffect : public testing::TestWithParam<EffectEntry> {};
@@ -210,15 +197,17 @@ TEST(RotaryFollow, HasTheSlopesOfTheClosedForms) {
                               kVolts_per_metre);
   };
   const double yaw = l1_m * (1.0 + 1.0 / cosine), tilt = l1_m * (1.0 + cosine), pitch = lever_m + l1_m;
-  EXPECT_NEAR(slope("mount.ez")[0] / yaw, -1.0, 1e-6);
-  EXPECT_NEAR(slope("mount.ez")[2] / yaw, -1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.tilt")[1] / tilt, 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.tilt")[3] / tilt, 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.roll")[1] / (-l1_m * sine), 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.roll")[3] / (l1_m * sine), 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.lateral")[0] / -sine, 1.0, 1e-6);
-  EXPECT_NEAR(slope("grating.lateral")[2] / sine, 1.0, 1e-6);
-  EXPECT_NEAR(slope("laser.pitch")[1] / pitch, 1.0, 1e-6);
+  const std::tuple<const char*, int, double> expected[] = {{"mount.ez", 0, -yaw},
+                                                           {"mount.ez", 2, -yaw},
+                                                           {"grating.tilt", 1, tilt},
+                                                           {"grating.tilt", 3, tilt},
+                                                           {"grating.roll", 1, -l1_m * sine},
+                                                           {"grating.roll", 3, l1_m * sine},
+                                                           {"grating.lateral", 0, -sine},
+                                                           {"grating.lateral", 2, sine},
+                                                           {"laser.pitch", 1, pitch}};
+  for (const auto& [point, channel, value] : expected)
+    EXPECT_NEAR(slope(point)[channel] / value, 1.0, 1e-6) << point;
   EXPECT_NEAR(slope("psd_b_y")[3], 1.0, 1e-9);
   // Target and grating differ by the height of the spot and by where the axes stand.
   EXPECT_NEAR(slope("target.ez")[0] / slope("grating.yaw")[0], 1.0, 1e-3);

@@ -2,11 +2,8 @@
 
 #include <cmath>
 
-#include "optics/height_map.h"
-#include "tests/sim/follow_key.h"
 #include "tests/sim/quiet_scenario.h"
 #include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/errors.h"
 
 namespace twinbench::sim {
 namespace {
@@ -20,24 +17,6 @@ TEST(Ruling, ShowsWhereABeamMeetsTheGratingBesideItsMiddle) {
   const double cosine = std::sqrt(1.0 - 0.39 * 0.39), turned_rad = 2.0 * 50e-6 * 0.39 / cosine;
   // The spot lies 2 mm cos aside on its detector: the way to it is as long, seen from there.
   EXPECT_NEAR(after_V - before_V, -2000.0 * 0.12 * turned_rad, 0.02 * 2000.0 * 0.12 * turned_rad);
-}
-
-TEST(Ruling, IsFollowedAsAnEccentricTableMovesTheBeamOverTheGrating) {
-  Scenario scenario = test::SmallNoiseFree();
-  RotaryOf(scenario).centring_m = {1e-3, 0.5e-3};
-  ExpectFollowed(
-      scenario,
-      [](RotarySettings& s) {
-        s.grating.ruling_chirp_per_m = 50e-6 / units::mm;
-        s.grating.sphere_m = 100e-9;
-      },
-      2e-6, 1e-3);
-}
-
-TEST(Ruling, SaysWhatIsWrongWithAMap) {
-  Scenario scenario = Quiet();
-  RotaryOf(scenario).grating.ruling_file = "no_such_map.exr";
-  EXPECT_THROW(Twin{scenario}, InputError);
 }
 
 }  // namespace

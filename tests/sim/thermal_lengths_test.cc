@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "tests/sim/quiet_scenario.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -27,28 +28,36 @@ std::array<double, kChannels> Spots_m(const Scenario& scenario) {
   return spots_m;
 }
 
-TEST(ThermalLengths, APostThatGrowsLowersTheSpot) {
-  Scenario scenario = Warm();
-  RotaryOf(scenario).psd_b.post_growth_m_K = 2e-6;
-  const auto spots_m = Spots_m(scenario);
-  EXPECT_NEAR(spots_m[3], -2e-6 * kWarmer_K, 1e-12);
-  EXPECT_NEAR(spots_m[1], 0.0, 1e-12);
-}
-
-TEST(ThermalLengths, ALaserThatGrowsLiftsBothSpots) {
-  Scenario scenario = Warm();
-  RotaryOf(scenario).laser.post_growth_m_K = 2e-6;
-  for (const int c : {1, 3}) EXPECT_NEAR(Spots_m(scenario)[c], 2e-6 * kWarmer_K, 1e-11) << c;
-}
-
-// sin(theta) = wavelength x lines: grooves further apart by the share e turn the orders inwards by e tan(theta).
-TEST(ThermalLengths, AGratingThatGrowsTurnsTheOrdersInwards) {
-  Scenario scenario = Warm();
-  RotaryOf(scenario).grating.expansion_per_K = 10e-6;
-  const double turned_rad = 10e-6 * kWarmer_K * 0.39 / std::sqrt(1.0 - 0.39 * 0.39);
-  const auto spots_m = Spots_m(scenario);
-  EXPECT_NEAR(spots_m[0], -0.12 * turned_rad, 1e-3 * 0.12 * turned_rad);
-  EXPECT_NEAR(spots_m[2], 0.12 * turned_rad, 1e-3 * 0.12 * turned_rad);
+TEST(ThermalLengths, PostLaserGratingAndDiodeMoveTheSpotsAsTheyWarm) {
+  const double cosine = std::sqrt(1.0 - 0.39 * 0.39);
+  // sin(theta) = wavelength x lines: grooves further apart by the share e turn the orders inwards by e tan(theta).
+  const double inwards_m = 0.12 * 10e-6 * kWarmer_K * 0.39 / cosine,
+               apart_m = 0.12 * 600e3 * 0.01e-9 * kWarmer_K / cosine;
+  const double post_m = 2e-6 * kWarmer_K;
+  const std::tuple<const char*, std::function<void(RotarySettings&)>, std::array<double, kChannels>, double>
+      growing[] = {{"a post lowers the spot",
+                    [](auto& s) { s.psd_b.post_growth_m_K = 2e-6; },
+                    {0.0, 0.0, 0.0, -post_m},
+                    1e-12},
+                   {"the laser's lifts both",
+                    [](auto& s) { s.laser.post_growth_m_K = 2e-6; },
+                    {0.0, post_m, 0.0, post_m},
+                    1e-11},
+                   {"a grating turns the orders inwards",
+                    [](auto& s) { s.grating.expansion_per_K = 10e-6; },
+                    {-inwards_m, 0.0, inwards_m, 0.0},
+                    1e-3 * inwards_m},
+                   {"a longer wave turns them apart",
+                    [](auto& s) { s.laser.wavelength_per_kelvin_m = 0.01 * units::nm; },
+                    {apart_m, 0.0, -apart_m, 0.0},
+                    1e-3 * apart_m}};
+  for (const auto& [claim, change, expected_m, within_m] : growing) {
+    Scenario scenario = Warm();
+    change(RotaryOf(scenario));
+    const auto spots_m = Spots_m(scenario);
+    for (std::size_t c = 0; c < kChannels; ++c)
+      EXPECT_NEAR(spots_m[c], expected_m[c], within_m) << claim << " " << c;
+  }
 }
 
 // Behind the grating a beam with the pitch p climbs by p over the distance.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/support/angle_benches.h"
+#include "tests/support/changed_scenario.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/benches/turntable_autocollimator/twin/follow.h"
 #include "twin/sim/table_motion.h"
@@ -87,11 +88,8 @@ double TurntableOff_arcsec(const Scenario& scenario) {
 
 constexpr double kSameTurntable_arcsec = 1e-6;
 
-TEST(TurntableFollow, SaysWhatTheRunShowed) {
+TEST(TurntableFollow, SaysWhatTheRunShowedAndKnowsEveryEffectOfTheCatalogue) {
   EXPECT_LT(TurntableOff_arcsec(Careful()), kSameTurntable_arcsec);
-}
-
-TEST(TurntableFollow, KnowsEveryEffectOfTheCatalogue) {
   for (const EffectEntry& entry : EffectCatalogue(kTurntableBench)) {
     if (entry.name == "outliers") continue;  // nobody can foresee them
     Scenario s = Careful();
@@ -102,51 +100,29 @@ TEST(TurntableFollow, KnowsEveryEffectOfTheCatalogue) {
 }
 
 TEST(TurntableFollow, KnowsTheKeysOfTheScenario) {
-  const std::vector<std::pair<const char*, void (*)(Scenario&)>> changes = {
-      {"backlash", [](Scenario& s) { TurntableOf(s).turntable.backlash_rad = 3.0 * arcsec; }},
-      {"half frequency", [](Scenario& s) { TurntableOf(s).turntable.half_frequency_tilt_rad = 2.0 * arcsec; }},
-      {"flatness", [](Scenario& s) { TurntableOf(s).mirror.flatness_m = 5e-6; }},
-      {"eccentricities",
-       [](Scenario& s) {
-         TurntableOf(s).turntable_procedure.eccentricities_m = {1e-3, 3e-3};
-       }},
-      {"mirror radius", [](Scenario& s) { TurntableOf(s).mirror.radius_m = 0.2; }},
-      {"aperture", [](Scenario& s) { TurntableOf(s).collimator.aperture_m = 70e-3; }},
-      {"small mirror", [](Scenario& s) { TurntableOf(s).mirror.width_m = 20e-3; }},
-      {"gain error", [](Scenario& s) { TurntableOf(s).autocollimator.gain_error = 0.01; }},
-      {"distortion", [](Scenario& s) { TurntableOf(s).collimator.error_at_edge_rad = 5.0 * arcsec; }},
-      {"pixels", [](Scenario& s) { TurntableOf(s).collimator.interpolation_error_px = 0.1; }},
-      {"zero with temperature",
-       [](Scenario& s) {
-         TurntableOf(s).collimator.x_per_kelvin_rad = 2.0 * arcsec;
-         s.environment.swing_K = 0.5;
-         s.environment.swing_period_s = 1000.0;
-       }},
-      {"steep tilts",
-       [](Scenario& s) {
-         TurntableOf(s).turntable_procedure.tilts_rad = {200.0 * arcsec, -250.0 * arcsec};
-       }},
-      {"no run-up",
-       [](Scenario& s) {
-         TurntableOf(s).turntable_procedure.run_up_steps = 0.0;
-         s.effects = {{"backlash", "", {{"width", 2.0 * arcsec}}, "", {}}};
-       }},
-      {"slow turntable",
-       [](Scenario& s) {
-         TurntableOf(s).turntable.move_time_s = 6.0;
-         s.effects = {{"settling", "", {{"amplitude", 2.0 * arcsec}, {"time_constant", 1.0}}, "", {}}};
-       }},
-      {"linear drives", [](Scenario& s) { TurntableOf(s).mechanics.fidelity = "linear"; }},
-      {"teeth", [](Scenario& s) { TurntableOf(s).multitooth.teeth = 720; }},
-      {"order of phases", [](Scenario& s) {
-         TurntableOf(s).turntable_procedure.phases = {"verification", "full_circle", "calibration"};
-         s.effects = {{"mount_creep", "x", {{"amplitude", 2.0 * arcsec}, {"time_constant", 60.0}}, "", {}}};
-       }}};
-  for (const auto& [name, change] : changes) {
-    Scenario s = Careful();
-    change(s);
-    EXPECT_LT(TurntableOff_arcsec(s), kSameTurntable_arcsec) << name;
-  }
+  const std::string settling = "effect=[{ name = \"settling\", amplitude_arcsec = 2, time_constant_s = 1 }]";
+  const std::string creep =
+      "effect=[{ name = \"mount_creep\", where = \"x\", amplitude_arcsec = 2, time_constant_s = 60 }]";
+  const std::vector<std::vector<std::string>> changes = {
+      {"turntable.backlash_arcsec=3"},
+      {"turntable.half_frequency_tilt_arcsec=2"},
+      {"mirror.flatness_nm=5000"},
+      {"turntable_procedure.eccentricities_um=[1000, 3000]"},
+      {"mirror.radius_mm=200"},
+      {"autocollimator.aperture_mm=70"},
+      {"mirror.width_mm=20"},
+      {"autocollimator.gain_error=0.01"},
+      {"autocollimator.error_at_edge_arcsec=5"},
+      {"autocollimator.interpolation_error_px=0.1"},
+      {"autocollimator.x_per_kelvin_arcsec=2", "environment.swing_mK=500", "environment.swing_period_s=1000"},
+      {"turntable_procedure.tilts_arcsec=[200, -250]"},
+      {"turntable_procedure.run_up_steps=0", "effect=[{ name = \"backlash\", width_arcsec = 2 }]"},
+      {"turntable.move_time_s=6", settling},
+      {"mechanics.fidelity=linear"},
+      {"multitooth.teeth=720"},
+      {"turntable_procedure.phases=[\"verification\", \"full_circle\", \"calibration\"]", creep}};
+  for (const auto& keys : changes)
+    EXPECT_LT(TurntableOff_arcsec(test::Changed(Careful(), keys)), kSameTurntable_arcsec) << keys[0];
 }
 
 // Settled means within a hundredth of an arcsecond.
