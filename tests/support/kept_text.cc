@@ -106,7 +106,7 @@ class OfTest : public testing::EmptyTestEventListener {
 }  // namespace
 
 testing::AssertionResult IsKept(const std::string& text) {
-  static const std::regex folder("[^\\s'\"]*twinbench_test_\\w{6}"), source(TWINBENCH_SOURCE_DIR);
+  static const std::regex folder("[^\\s'\"(]*twinbench_test_\\w{6}"), source(TWINBENCH_SOURCE_DIR);
   return OfTest::Running().Hear(std::regex_replace(std::regex_replace(text, folder, "<folder>"), source, "<source>"));
 }
 
