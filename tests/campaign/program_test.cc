@@ -11,8 +11,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr;
 
 constexpr const char* kVaried = R"(trials = 40
 sampling = "latin_hypercube"

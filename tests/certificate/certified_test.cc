@@ -10,8 +10,7 @@
 namespace twinbench::certificate {
 namespace {
 
-using benches::CertifiedPartsOf;
-using nlohmann::json;
+using benches::CertifiedPartsOf, nlohmann::json;
 
 Certified Take(const std::string& bench, const json& results) {
   return TakeCertified(results, CertifiedPartsOf(bench, "run"));

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <regex>
 
-#include "twin/core/errors.h"
+#include "tests/core/input_error.h"
+#include "tests/support/kept_text.h"
 
 namespace twinbench::certificate {
 namespace {
@@ -26,20 +27,11 @@ std::string With(const std::string& from, const std::string& to) {
 }
 
 std::string Complaint(const std::string& text) {
-  try {
-    ReadLaboratory(text, "laboratory.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return MessageOf([&] { ReadLaboratory(text, "laboratory.toml"); });
 }
 
 TEST(Laboratory, TheTemplateNamesAllThatIsMissingAtOnce) {
-  const std::string complaint = Complaint(LaboratoryTemplate());
-  for (const char* key : {"certificate.identifier", "certificate.country", "certificate.begin", "laboratory.name", "laboratory.city", "person.name",
-                          "customer.name", "customer.country", "item.name", "item.serial"})
-    EXPECT_NE(complaint.find(key), std::string::npos) << key << " in " << complaint;
-  EXPECT_EQ(complaint.find("item.model"), std::string::npos) << complaint;
+  EXPECT_KEPT(Complaint(LaboratoryTemplate()));
 }
 
 TEST(Laboratory, AFilledTemplateIsRead) {
@@ -51,17 +43,17 @@ TEST(Laboratory, AFilledTemplateIsRead) {
   EXPECT_FALSE(laboratory.simulated);
 }
 
-TEST(Laboratory, SaysWhereADayOrACountryIsNone) {
-  EXPECT_EQ(Complaint(With("begin = \"2026-02-28\"", "begin = \"2026-02-29\"")),
-            "laboratory.toml:7: certificate.begin is \"2026-02-29\"; expected a day as YYYY-MM-DD");
-  EXPECT_NE(Complaint(With("end = \"2026-02-28\"", "end = \"28.2.2026\"")).find("certificate.end is"), std::string::npos);
-  EXPECT_NE(Complaint(With("end = \"2026-02-28\"", "end = \"2026-02-27\"")).find("ends before it begins"), std::string::npos);
-  EXPECT_NE(Complaint(With("country = \"DE\"", "country = \"Germany\"")).find("laboratory.toml:5: certificate.country is"), std::string::npos);
-}
-
-TEST(Laboratory, RefusesATemperatureWithoutUncertaintyAndKeysNobodyKnows) {
-  EXPECT_NE(Complaint(With("# temperature_degC", "temperature_degC")).find("a temperature without its uncertainty"), std::string::npos);
-  EXPECT_NE(Complaint(With("serial =", "seriel =")).find("seriel"), std::string::npos);
+TEST(Laboratory, SaysWhereADayACountryATemperatureOrAKeyIsNone) {
+  const std::pair<const char*, const char*> cases[] = {{"begin = \"2026-02-28\"", "begin = \"2026-02-29\""},
+                                                       {"end = \"2026-02-28\"", "end = \"28.2.2026\""},
+                                                       {"end = \"2026-02-28\"", "end = \"2026-02-27\""},
+                                                       {"country = \"DE\"", "country = \"Germany\""},
+                                                       {"# temperature_degC", "temperature_degC"},
+                                                       {"serial =", "seriel ="}};
+  for (const auto& [from, to] : cases) {
+    EXPECT_EQ(Complaint(With(from, to)).rfind("laboratory.toml:", 0), 0u) << to;
+    EXPECT_KEPT(Complaint(With(from, to)));
+  }
 }
 
 }  // namespace

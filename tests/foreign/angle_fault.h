@@ -37,10 +37,15 @@ std::vector<AngleKind> AngleLockedKinds();
 std::vector<AngleKind> MotionKinds();
 std::vector<AngleKind> NoiseKinds();
 
+/// One value a reading, in their order.
+template <class Of>
+Eigen::VectorXd Along(const Track& track, Of of) {
+  Eigen::VectorXd shown(std::ssize(track));
+  for (std::size_t i = 0; i < track.size(); ++i) shown[static_cast<Eigen::Index>(i)] = of(track[i]);
+  return shown;
+}
+
 /// size * shape of each reading.
 AngleFault Linear(Truth truth, std::function<double(const Instant&)> shape);
-/// One that the catalogue lacks.
-Truth Unlisted(Names honest = {});
-Truth Listed(Names names);
 
 }  // namespace twinbench::foreign

@@ -32,13 +32,10 @@ AngleFault Periodic(Dice& dice, const Track&) {
 /// A device dragged behind by a gap that is crossed in full.
 Eigen::VectorXd Play(const Track& track, double width_deg) {
   double middle_deg = track.front().angle_deg;
-  Eigen::VectorXd shown(std::ssize(track));
-  for (std::size_t i = 0; i < track.size(); ++i) {
-    const double at_deg = track[i].angle_deg;
-    middle_deg = std::clamp(middle_deg, at_deg - 0.5 * width_deg, at_deg + 0.5 * width_deg);
-    shown[static_cast<Eigen::Index>(i)] = middle_deg - at_deg;
-  }
-  return shown;
+  return Along(track, [&](const Instant& at) {
+    middle_deg = std::clamp(middle_deg, at.angle_deg - 0.5 * width_deg, at.angle_deg + 0.5 * width_deg);
+    return middle_deg - at.angle_deg;
+  });
 }
 
 AngleFault Backlash(Dice&, const Track&) {
@@ -82,14 +79,10 @@ AngleFault Clipping(Dice& dice, const Track&) {
     const double s = std::clamp(std::sin(phase), -level, level), c = std::clamp(std::cos(phase), -level, level);
     return std::remainder(std::atan2(s, c) - phase, 2.0 * M_PI) / kDegree;
   };
-  AngleFault fault{Listed({"signal_clipping"}), {}, 1e-4, 0.29};
-  fault.shown_deg = [error](const Track& track, double size) {
-    Eigen::VectorXd shown(std::ssize(track));
-    for (std::size_t i = 0; i < track.size(); ++i)
-      shown[static_cast<Eigen::Index>(i)] = error(track[i], 1.0 - size);
-    return shown;
+  const auto shown_deg = [error](const Track& track, double size) {
+    return Along(track, [&](const Instant& at) { return error(at, 1.0 - size); });
   };
-  return fault;
+  return {Listed({"signal_clipping"}), shown_deg, 1e-4, 0.29};
 }
 
 }  // namespace

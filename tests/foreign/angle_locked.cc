@@ -57,14 +57,10 @@ double ErrorOfSignals_deg(double phase, double sine, double cosine) {
 
 AngleFault OfSignals(Truth truth, double largest, std::function<double(double phase, double size)> error_deg,
                      double zero) {
-  AngleFault fault{std::move(truth), {}, 1e-4, largest};
-  fault.shown_deg = [=, error_deg = std::move(error_deg)](const Track& track, double size) {
-    Eigen::VectorXd shown(std::ssize(track));
-    for (std::size_t i = 0; i < track.size(); ++i)
-      shown[static_cast<Eigen::Index>(i)] = error_deg(track[i].angle_deg * kDegree - zero, size);
-    return shown;
+  const auto shown_deg = [=, error_deg = std::move(error_deg)](const Track& track, double size) {
+    return Along(track, [&](const Instant& at) { return error_deg(at.angle_deg * kDegree - zero, size); });
   };
-  return fault;
+  return {std::move(truth), shown_deg, 1e-4, largest};
 }
 
 /// One of the two signals saturates, softly, on one side.
@@ -89,16 +85,13 @@ AngleFault MissingCode(Dice& dice, const Track&) {
 /// Once a turn the device does not move for `size` degrees, and then catches up.
 AngleFault DeadZone(Dice& dice, const Track&) {
   const double middle_deg = dice.Between(0.0, 360.0);
-  AngleFault fault{Unlisted(), {}, 1e-4, 60.0};
-  fault.shown_deg = [middle_deg](const Track& track, double size) {
-    Eigen::VectorXd shown(std::ssize(track));
-    for (std::size_t i = 0; i < track.size(); ++i) {
-      const double off_deg = std::remainder(track[i].angle_deg - middle_deg, 360.0);
-      shown[static_cast<Eigen::Index>(i)] = std::abs(off_deg) < 0.5 * size ? -off_deg : 0.0;
-    }
-    return shown;
+  const auto shown_deg = [middle_deg](const Track& track, double size) {
+    return Along(track, [&](const Instant& at) {
+      const double off_deg = std::remainder(at.angle_deg - middle_deg, 360.0);
+      return std::abs(off_deg) < 0.5 * size ? -off_deg : 0.0;
+    });
   };
-  return fault;
+  return {Unlisted(), shown_deg, 1e-4, 60.0};
 }
 
 /// A turn of the device is not quite 360 deg, and its zero puts that right.
@@ -113,20 +106,16 @@ AngleFault WrapError(Dice& dice, const Track&) {
 /// A spot on the scale where counts get lost, each time it is passed forward.
 AngleFault LostCounts(Dice& dice, const Track& example) {
   const double spot_deg = example.front().angle_deg + dice.Between(40.0, 300.0);
-  AngleFault fault{Unlisted({"slip", "scale"}), {}};
-  fault.shown_deg = [spot_deg](const Track& track, double size) {
-    Eigen::VectorXd shown(std::ssize(track));
-    double lost_deg = 0.0;
-    for (std::size_t i = 0; i < track.size(); ++i) {
-      if (i > 0) {
-        const double from = std::floor((track[i - 1].angle_deg - spot_deg) / 360.0);
-        lost_deg += size * std::max(0.0, std::floor((track[i].angle_deg - spot_deg) / 360.0) - from);
-      }
-      shown[static_cast<Eigen::Index>(i)] = -lost_deg;
-    }
-    return shown;
+  const auto turn = [spot_deg](const Instant& at) { return std::floor((at.angle_deg - spot_deg) / 360.0); };
+  const auto shown_deg = [turn](const Track& track, double size) {
+    double lost_deg = 0.0, last_turn = turn(track.front());
+    return Along(track, [&](const Instant& at) {
+      lost_deg += size * std::max(0.0, turn(at) - last_turn);
+      last_turn = turn(at);
+      return -lost_deg;
+    });
   };
-  return fault;
+  return {Unlisted({"slip", "scale"}), shown_deg};
 }
 
 }  // namespace

@@ -11,22 +11,17 @@ namespace {
 AngleFault Random(Truth truth, Dice& dice, std::function<Eigen::VectorXd(const Track& track, Dice& noise)> unit) {
   truth.repeats = false;
   const auto seed = static_cast<std::uint64_t>(dice.Whole(1, 1 << 30));
-  AngleFault fault{std::move(truth), {}};
-  fault.shown_deg = [seed, unit = std::move(unit)](const Track& track, double size) {
-    Dice noise(seed, "random fault");
-    return Eigen::VectorXd(size * unit(track, noise));
-  };
-  return fault;
+  return {std::move(truth), [seed, unit = std::move(unit)](const Track& track, double size) {
+            Dice noise(seed, "random fault");
+            return Eigen::VectorXd(size * unit(track, noise));
+          }};
 }
 
 AngleFault NoiseOfSpeed(Dice& dice, const Track&) {
   Truth truth = Unlisted({"outliers"});
   truth.only_noise = true;
   return Random(truth, dice, [](const Track& track, Dice& noise) {
-    Eigen::VectorXd shown(std::ssize(track));
-    for (std::size_t i = 0; i < track.size(); ++i)
-      shown[static_cast<Eigen::Index>(i)] = std::abs(track[i].speed_deg_s) / 30.0 * noise.Normal();
-    return shown;
+    return Along(track, [&](const Instant& at) { return std::abs(at.speed_deg_s) / 30.0 * noise.Normal(); });
   });
 }
 
@@ -34,20 +29,19 @@ AngleFault NoiseOfSpeed(Dice& dice, const Track&) {
 AngleFault Flicker(Dice& dice, const Track&) {
   return Random(Unlisted({"drift"}), dice, [](const Track& track, Dice& noise) {
     constexpr int kProcesses = 6;
-    Eigen::VectorXd state(kProcesses), shown(std::ssize(track));
+    Eigen::VectorXd state(kProcesses);
     for (double& s : state) s = noise.Normal();
     double last_s = track.front().t_s;
-    for (std::size_t i = 0; i < track.size(); ++i) {
+    return Along(track, [&](const Instant& at) {
       double over_s = Duration_s(track) / 300.0;
       for (double& s : state) {
-        const double keep = std::exp(-(track[i].t_s - last_s) / over_s);
+        const double keep = std::exp(-(at.t_s - last_s) / over_s);
         s = keep * s + std::sqrt(1.0 - keep * keep) * noise.Normal();
         over_s *= 3.0;
       }
-      last_s = track[i].t_s;
-      shown[static_cast<Eigen::Index>(i)] = state.sum();
-    }
-    return shown;
+      last_s = at.t_s;
+      return state.sum();
+    });
   });
 }
 

@@ -70,19 +70,15 @@ AngleFault TemperatureSquared(Dice& dice, const Track& example) {
 /// A body that follows the room with a lag turns with its temperature.
 AngleFault LaggedTemperature(Dice& dice, const Track& example) {
   const double lag_s = Duration_s(example) * dice.Between(0.05, 0.2);
-  AngleFault fault{Unlisted({"drift"}), {}};
-  fault.shown_deg = [lag_s](const Track& track, double size) {
-    Eigen::VectorXd shown(std::ssize(track));
-    double body_degC = track.front().temperature_degC, last_s = track.front().t_s;
-    for (std::size_t i = 0; i < track.size(); ++i) {
-      const double keep = Rest(track[i].t_s - last_s, lag_s);
-      body_degC = keep * body_degC + (1.0 - keep) * track[i].temperature_degC;
-      last_s = track[i].t_s;
-      shown[static_cast<Eigen::Index>(i)] = size * (body_degC - 20.0);
-    }
-    return shown;
-  };
-  return fault;
+  return {Unlisted({"drift"}), [lag_s](const Track& track, double size) {
+            double body_degC = track.front().temperature_degC, last_s = track.front().t_s;
+            return Along(track, [&](const Instant& at) {
+              const double keep = Rest(at.t_s - last_s, lag_s);
+              body_degC = keep * body_degC + (1.0 - keep) * at.temperature_degC;
+              last_s = at.t_s;
+              return size * (body_degC - 20.0);
+            });
+          }};
 }
 
 /// The scale's gain takes another value twice.

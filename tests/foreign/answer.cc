@@ -6,9 +6,7 @@
 namespace twinbench::foreign {
 namespace {
 
-using diagnose::Cause;
-using diagnose::Diagnosis;
-using diagnose::Verdict;
+using diagnose::Cause, diagnose::Diagnosis, diagnose::Verdict;
 
 bool IsNamed(const std::string& effect, const std::string& where, const std::string& name) {
   return name == effect || name == effect + " " + where;

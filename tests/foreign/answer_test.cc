@@ -8,8 +8,7 @@
 namespace twinbench::foreign {
 namespace {
 
-using diagnose::Diagnosis;
-using diagnose::Verdict;
+using diagnose::Diagnosis, diagnose::Verdict;
 
 Diagnosis Naming(const std::string& effect, double probability) {
   Diagnosis d;
@@ -21,10 +20,8 @@ Diagnosis Naming(const std::string& effect, double probability) {
 }
 
 Truth WarmUp() {
-  Truth truth;
+  Truth truth = Unlisted({"drift"});
   truth.kind = "warm-up";
-  truth.unlisted = 1;
-  truth.honest = {"drift"};
   return truth;
 }
 

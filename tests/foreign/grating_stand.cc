@@ -5,8 +5,7 @@
 namespace twinbench::foreign {
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
+using Eigen::Isometry3d, Eigen::Vector3d;
 
 constexpr double kLines_m = 600e3;
 constexpr double kNominalSine = 0.39;  // 650 nm at 600 lines/mm

@@ -52,6 +52,19 @@ struct Plan {
   std::function<Machine()> make;
 };
 
+/// One that the catalogue lacks.
+inline Truth Unlisted(Names honest = {}) {
+  Truth truth;
+  truth.unlisted = 1;
+  truth.honest = std::move(honest);
+  return truth;
+}
+inline Truth Listed(Names names) {
+  Truth truth;
+  truth.listed = {std::move(names)};
+  return truth;
+}
+
 /// Puts the faults of a machine together.
 inline void Append(const Truth& more, Truth& truth) {
   const bool is_first = truth.kind.empty();

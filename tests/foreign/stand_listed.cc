@@ -6,28 +6,19 @@
 namespace twinbench::foreign {
 namespace {
 
-Truth Listed(const std::string& name, const std::vector<std::string>& others = {}) {
-  Truth truth;
-  truth.listed = {{name}};
-  truth.listed.front().insert(truth.listed.front().end(), others.begin(), others.end());
-  return truth;
-}
-
 StandFault Gain(Dice& dice, const StandRun&) {
   const int channel = dice.Whole(0, 3);
   const double sign = dice.Sign();
-  return OnChannel(Listed("psd_gain " + ChannelName(channel)), channel,
+  return OnChannel(Listed({"psd_gain " + ChannelName(channel)}), channel,
                    [=](const StandStop&, double shown_m) { return sign * shown_m; });
 }
 
 /// What the channel scanned before it left behind.
 StandFault Crosstalk(Dice& dice, const StandRun&) {
   const int channel = dice.Whole(0, 3), before = (channel + 3) % 4;
-  StandFault fault{Listed("crosstalk " + ChannelName(channel))};
-  fault.of_electronics = [=](const StandRun&, double size, Eigen::MatrixX4d& shown_m) {
-    shown_m.col(channel) += size * (shown_m.col(before) - shown_m.col(channel));
-  };
-  return fault;
+  return {Listed({"crosstalk " + ChannelName(channel)}), {}, [=](const StandRun&, double size, Eigen::MatrixX4d& shown_m) {
+            shown_m.col(channel) += size * (shown_m.col(before) - shown_m.col(channel));
+          }};
 }
 
 /// Between two readings of a set-up: what happens while it is re-mounted is its own constant.
@@ -37,45 +28,43 @@ StandFault Slip(Dice& dice, const StandRun& example) {
     if (!at.calibration && (at.pass == 1 || at.pass == 2)) times_s.push_back(at.t_s);
   }
   const double from_s = dice.OneOf(times_s);
-  Truth truth = Listed("slip tilt");
+  Truth truth = Listed({"slip tilt"});
   truth.repeats = false;
   return Moving(truth, &Disturbed::ex_rad, [=](const StandStop& at) { return at.t_s < from_s ? 0.0 : 1.0; });
 }
 
 StandFault LaserDrift(Dice&, const StandRun&) {
-  return Shining(Listed("laser_drift pitch"), &Light::laser_pitch_rad, [](const StandStop& at) { return at.t_s; });
+  return Shining(Listed({"laser_drift pitch"}), &Light::laser_pitch_rad, [](const StandStop& at) { return at.t_s; });
 }
 
 StandFault Tone(Dice& dice, const StandRun& example) {
   const double frequency_Hz = dice.Between(40.0, 150.0) / Duration_s(example), phase = dice.Phase();
-  return Moving(Listed("tone tilt"), &Disturbed::ex_rad,
+  return Moving(Listed({"tone tilt"}), &Disturbed::ex_rad,
                 [=](const StandStop& at) { return std::cos(2.0 * M_PI * frequency_Hz * at.t_s + phase); });
 }
 
 /// Nothing tells which of two tables that turn together stays behind, until one is turned alone.
 StandFault Backlash(Dice& dice, const StandRun&) {
   const double sign = dice.Sign();
-  return Moving(Listed("backlash"), &Disturbed::ez_rad,
+  return Moving(Listed({"backlash"}), &Disturbed::ez_rad,
                 [=](const StandStop& at) { return at.calibration ? 0.0 : sign * at.direction; });
 }
 
 StandFault ThermalTilt(Dice& dice, const StandRun&) {
   const double lag_s = dice.Between(300.0, 1500.0);
-  StandFault fault{Listed("thermal_tilt tilt")};
-  fault.of_body = [=](const StandRun& run, double size, std::vector<Disturbed>& all) {
-    double body_degC = run.front().temperature_degC, last_s = run.front().t_s;
-    for (std::size_t i = 0; i < run.size(); ++i) {
-      const double keep = std::exp(-(run[i].t_s - last_s) / lag_s);
-      body_degC = keep * body_degC + (1.0 - keep) * run[i].temperature_degC;
-      last_s = run[i].t_s;
-      all[i].ex_rad += size * (body_degC - 20.0);
-    }
-  };
-  return fault;
+  return {Listed({"thermal_tilt tilt"}), [=](const StandRun& run, double size, std::vector<Disturbed>& all) {
+            double body_degC = run.front().temperature_degC, last_s = run.front().t_s;
+            for (std::size_t i = 0; i < run.size(); ++i) {
+              const double keep = std::exp(-(run[i].t_s - last_s) / lag_s);
+              body_degC = keep * body_degC + (1.0 - keep) * run[i].temperature_degC;
+              last_s = run[i].t_s;
+              all[i].ex_rad += size * (body_degC - 20.0);
+            }
+          }};
 }
 
 StandFault WavelengthOfTemperature(Dice&, const StandRun&) {
-  return Shining(Listed("wavelength_temperature"), &Light::wavelength_m,
+  return Shining(Listed({"wavelength_temperature"}), &Light::wavelength_m,
                  [](const StandStop& at) { return at.temperature_degC - 20.0; });
 }
 

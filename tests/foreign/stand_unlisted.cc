@@ -7,28 +7,19 @@
 namespace twinbench::foreign {
 namespace {
 
-Truth Unlisted(Names honest = {}) {
-  Truth truth;
-  truth.unlisted = 1;
-  truth.honest = std::move(honest);
-  return truth;
-}
-
 double Rest(double t_s, double over_s) {
   return std::exp(-t_s / over_s);
 }
 
 StandFault BothDistances(Dice& dice, const StandRun&) {
   const double sign = dice.Sign();
-  StandFault fault{Unlisted({"psd_distance", "stray_light", "background"})};
-  fault.of_body = [sign](const StandRun&, double size, std::vector<Disturbed>& all) {
+  const auto of_body = [sign](const StandRun&, double size, std::vector<Disturbed>& all) {
     for (Disturbed& at : all) {
       at.light.distance_a_m += sign * size;
       at.light.distance_b_m += sign * size;
     }
   };
-  fault.largest = 0.02;
-  return fault;
+  return {.truth = Unlisted({"psd_distance", "stray_light", "background"}), .of_body = of_body, .largest = 0.02};
 }
 
 StandFault WarmUp(Dice& dice, const StandRun& example) {
@@ -121,13 +112,10 @@ StandFault TemperatureSquared(Dice& dice, const StandRun& example) {
 StandFault MissingCodes(Dice& dice, const StandRun&) {
   const int channel = dice.Whole(0, 3);
   const double code_m = dice.Between(-20e-6, 20e-6);
-  StandFault fault{Unlisted({"adc_step " + ChannelName(channel)})};
-  fault.of_electronics = [=](const StandRun&, double size, Eigen::MatrixX4d& shown_m) {
+  const auto missing = [=](const StandRun&, double size, Eigen::MatrixX4d& shown_m) {
     for (double& value : shown_m.col(channel)) value = std::abs(value - code_m) < size ? code_m + size : value;
   };
-  fault.smallest = 1e-8;
-  fault.largest = 60e-6;
-  return fault;
+  return {Unlisted({"adc_step " + ChannelName(channel)}), {}, missing, 1e-8, 60e-6};
 }
 
 StandFault DriftThenRest(Dice& dice, const StandRun& example) {
@@ -154,12 +142,10 @@ StandFault NoiseOfSpot(Dice& dice, const StandRun&) {
   Truth truth = Unlisted({"outliers"});
   truth.only_noise = true;
   truth.repeats = false;
-  StandFault fault{truth};
-  fault.of_electronics = [=](const StandRun&, double size, Eigen::MatrixX4d& shown_m) {
-    Dice noise(seed, "noise of spot");
-    for (double& value : shown_m.col(channel)) value += size * std::abs(value) / 100e-6 * noise.Normal();
-  };
-  return fault;
+  return {truth, {}, [=](const StandRun&, double size, Eigen::MatrixX4d& shown_m) {
+            Dice noise(seed, "noise of spot");
+            for (double& value : shown_m.col(channel)) value += size * std::abs(value) / 100e-6 * noise.Normal();
+          }};
 }
 
 }  // namespace

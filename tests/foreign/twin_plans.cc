@@ -14,8 +14,7 @@
 namespace twinbench::foreign {
 namespace {
 
-using hidden::Placement;
-using hidden::SignatureScale;
+using hidden::Placement, hidden::SignatureScale;
 
 /// Effects that another run shows again.
 bool Repeats(const Placement& at, const std::string& bench) {

@@ -30,4 +30,13 @@ class FileOfBytes {
   int descriptor_;
 };
 
+/// An InputError is a right answer.
+template <class Read>
+void RefusingIsRight(Read read) {
+  try {
+    read();
+  } catch (const InputError&) {
+  }
+}
+
 }  // namespace twinbench::fuzz

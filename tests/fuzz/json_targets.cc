@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "tests/fuzz/file_of_bytes.h"
 #include "tests/fuzz/target.h"
 #include "twin/core/errors.h"
 #include "twin/report/certificate/laboratory.h"
@@ -18,9 +19,8 @@ namespace {
 template <class Show>
 void ShowPage(std::string_view bytes, Show show) {
   try {
-    report::PageJson(show(report::ParseModestJson(std::string(bytes), "fuzz")));
+    RefusingIsRight([&] { report::PageJson(show(report::ParseModestJson(std::string(bytes), "fuzz"))); });
   } catch (const nlohmann::json::exception&) {
-  } catch (const InputError&) {
   }
 }
 
@@ -49,10 +49,7 @@ void PageOfInvestigation(std::string_view bytes) {
 }
 
 void ReadLaboratoryFile(std::string_view bytes) {
-  try {
-    certificate::ReadLaboratory(std::string(bytes), "fuzz");
-  } catch (const InputError&) {
-  }
+  RefusingIsRight([&] { certificate::ReadLaboratory(std::string(bytes), "fuzz"); });
 }
 
 constexpr Target kJsonTargets[] = {

@@ -43,18 +43,14 @@ void ReadScenario(std::string_view bytes) {
 void ReadOverride(std::string_view bytes) {
   const auto end = bytes.find('\n');
   if (end == bytes.npos) return;
-  try {
+  RefusingIsRight([&] {
     ParseScenario(std::string(bytes.substr(end + 1)), kName, "/nowhere", {std::string(bytes.substr(0, end))});
-  } catch (const InputError&) {
-  }
+  });
 }
 
 void ReadReadings(std::string_view bytes) {
   std::istringstream in{std::string(bytes)};
-  try {
-    ParseReadingsCsv(in, kName);
-  } catch (const InputError&) {
-  }
+  RefusingIsRight([&] { ParseReadingsCsv(in, kName); });
 }
 
 /// A map and a recording, or a recording alone.
@@ -68,55 +64,33 @@ void ReadRecording(std::string_view bytes) {
   } catch (const InputError&) {
     return;
   }
-  try {
-    imports::Look({file.Path()}, map);
-  } catch (const InputError&) {
-  }
-  try {
-    imports::Import({file.Path()}, map);
-  } catch (const InputError&) {
-  }
+  RefusingIsRight([&] { imports::Look({file.Path()}, map); });
+  RefusingIsRight([&] { imports::Import({file.Path()}, map); });
 }
 
 void ReadErrorsMap(std::string_view bytes) {
   const FileOfBytes file(bytes);
-  try {
-    ReadTableErrors(file.Path());
-  } catch (const InputError&) {
-  }
-  try {
-    ReadCompensationTable(file.Path());
-  } catch (const InputError&) {
-  }
+  RefusingIsRight([&] { ReadTableErrors(file.Path()); });
+  RefusingIsRight([&] { ReadCompensationTable(file.Path()); });
 }
 
 void ReadBenchFile(std::string_view bytes) {
-  try {
-    hw::ParseBenchFile(std::string(bytes), kName, "/nowhere");
-  } catch (const InputError&) {
-  }
+  RefusingIsRight([&] { hw::ParseBenchFile(std::string(bytes), kName, "/nowhere"); });
 }
 
 void ReadMachineFile(std::string_view bytes) {
-  try {
-    hw::ParseMachineFile(std::string(bytes), kName, {{"x", false}, {"y", false}, {"a", true}});
-  } catch (const InputError&) {
-  }
+  RefusingIsRight([&] { hw::ParseMachineFile(std::string(bytes), kName, {{"x", false}, {"y", false}, {"a", true}}); });
 }
 
 void ReadDialogue(std::string_view bytes) {
-  try {
-    hw::ParseDialogue(std::string(bytes), kName);
-  } catch (const InputError&) {
-  }
+  RefusingIsRight([&] { hw::ParseDialogue(std::string(bytes), kName); });
 }
 
 void ReadProgramFile(std::string_view bytes) {
   const FileOfBytes file(bytes);
-  try {
+  RefusingIsRight([&] {
     if (hw::IsProgramFile(file.Path())) hw::LoadProgramFile(file.Path());
-  } catch (const InputError&) {
-  }
+  });
 }
 
 /// A line that a device answered, as every dialogue takes it.

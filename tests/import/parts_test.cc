@@ -4,6 +4,7 @@
 #include <map>
 
 #include "tests/core/input_error.h"
+#include "tests/support/kept_text.h"
 #include "twin/core/units.h"
 #include "twin/import/array.h"
 #include "twin/import/blocks.h"
@@ -18,7 +19,6 @@ namespace twinbench::imports {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 TEST(UnitNames, AreTakenOffHeadersHoweverTheyAreWritten) {
   for (const char* header : {"Angle [deg]", "Angle (deg)", "Angle / deg", "Angle [°]", "Angle (degrees)"}) {
@@ -136,13 +136,13 @@ TEST(Expression, FindsTheUnitInWhichATableGoesRoundOnce) {
     for (int i = 0; i < 1000; ++i) x.push_back(std::fmod(0.3 + 0.001 * i, 1.0) * turn);
     EXPECT_NEAR(Evaluate("turns(x)", x)[0], 0.3, 1e-12) << turn;
   }
-  EXPECT_THAT(MessageOf([] { Evaluate("turns(x)", {0.0, 1.0, 5.0, 123.0}); }), HasSubstr("one turn of no unit"));
+  EXPECT_KEPT(MessageOf([] { Evaluate("turns(x)", {0.0, 1.0, 5.0, 123.0}); }));
 }
 
 TEST(Expression, SaysWhereItCannotBeRead) {
   for (const char* text : {"x +", "(x", "x ** 2", "atan2(x)", "[x", "3 x"})
-    EXPECT_THAT(MessageOf([text] { Evaluate(text, {1.0}); }), HasSubstr("cannot be read")) << text;
-  EXPECT_THAT(MessageOf([] { Evaluate("side * 2", {1.0, 2.0, 3.0}); }), HasSubstr("holds words"));
+    EXPECT_KEPT(MessageOf([text] { Evaluate(text, {1.0}); }));
+  EXPECT_KEPT(MessageOf([] { Evaluate("side * 2", {1.0, 2.0, 3.0}); }));
 }
 
 std::vector<double> Clocked(std::size_t rows) {
@@ -260,10 +260,8 @@ TEST(Following, TellsUnitsAndSensesThatDoNotFit) {
     around.push_back(std::fmod(x.back(), units::turn));
   }
   EXPECT_NEAR(FollowingOf(x, around).gain, 1.0, 1e-9) << "a device that starts again follows all the same";
-  EXPECT_THAT(MeaningOfGain(FollowingOf(x, by_57).gain), HasSubstr("rad"));
-  EXPECT_THAT(MeaningOfGain(FollowingOf(x, against).gain), HasSubstr("opposite"));
-  EXPECT_THAT(MeaningOfGain(1000.0), HasSubstr("thousandths"));
-  EXPECT_THAT(MeaningOfGain(1.0 / 3600.0), HasSubstr("arcsec"));
+  for (const double gain : {FollowingOf(x, by_57).gain, FollowingOf(x, against).gain, 1000.0, 1.0 / 3600.0})
+    EXPECT_KEPT(MeaningOfGain(gain));
   EXPECT_EQ(MeaningOfGain(7.3), "");
 }
 

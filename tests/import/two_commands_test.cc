@@ -9,8 +9,7 @@
 namespace twinbench::test {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
+using testing::Contains, testing::HasSubstr;
 
 class TwoCommands : public Program {
  protected:

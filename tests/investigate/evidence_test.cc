@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/hidden/bench_runs.h"
-#include "tools/twinbench/bench_means.h"
+#include "tests/investigate/hidden_investigation.h"
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
@@ -55,7 +55,7 @@ class Evidence : public testing::Test {
   }
 
   const Scenario believed_ = hidden::Believed(hidden::Design::kTurntable);
-  Means means_ = tools::MeansOf(BenchOf(believed_), [](const plan::NextRun&) { return true; });
+  Means means_ = MeansOf(believed_);
   std::vector<TakenRun> runs_;
 };
 

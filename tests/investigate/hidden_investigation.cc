@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -75,29 +76,18 @@ double MinutesToGoal(const Investigation& investigation) {
 }  // namespace
 
 const char* ResultName(Result result) {
-  switch (result) {
-    case Result::kRight:
-      return "right";
-    case Result::kRightTie:
-      return "right tie";
-    case Result::kUnfinished:
-      return "unfinished";
-    case Result::kMissed:
-      return "missed";
-    case Result::kUnnamed:
-      return "unnamed";
-    case Result::kWrongTie:
-      return "wrong tie";
-    case Result::kWrong:
-      return "WRONG";
-  }
-  return "";
+  constexpr std::array kNames = {"right", "right tie", "unfinished", "missed", "unnamed", "wrong tie", "WRONG"};
+  return kNames.at(static_cast<std::size_t>(result));
+}
+
+Means MeansOf(const Scenario& believed) {
+  return tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
 }
 
 Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
                         InvestigationOptions options, const std::optional<Wish>& wish) {
   const auto begin = std::chrono::steady_clock::now();
-  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  const Means means = MeansOf(believed);
   if (wish) options.goal = GoalOf(*wish, believed, measure, means);
   Laboratory laboratory;
   laboratory.measure = measure;

@@ -53,6 +53,9 @@ struct Wish {
 
 using Measure = std::function<std::vector<Reading>(const Step&, const Scenario&)>;
 
+/// What an investigation of such a bench can do; all its next runs may be made.
+Means MeansOf(const Scenario& believed);
+
 /// @param measure  The bench. With a wish, its first run is asked for twice.
 Judged InvestigateBench(const Scenario& believed, const Truth& truth, const Measure& measure,
                         InvestigationOptions options, const std::optional<Wish>& wish = {});

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tools/twinbench/bench_means.h"
+#include "tests/investigate/hidden_investigation.h"
 #include "tools/twinbench/passing_run.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
@@ -41,7 +41,7 @@ Hypothesis Of(const std::string& name) {
 class JointFits : public testing::Test {
  protected:
   const Scenario believed_ = Small();
-  const Means means_ = tools::MeansOf(BenchOf(believed_), [](const plan::NextRun&) { return true; });
+  const Means means_ = MeansOf(believed_);
 
   std::vector<TakenRun> RunsWith(const std::string& effect, int runs) {
     std::vector<TakenRun> taken;

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/hidden/bench_runs.h"
-#include "tools/twinbench/bench_means.h"
+#include "tests/investigate/hidden_investigation.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
 #include "twin/investigate/taken_run.h"
@@ -21,7 +21,7 @@ class LeftByAnotherScenario : public testing::TestWithParam<Asked> {};
 
 TEST_P(LeftByAnotherScenario, IsWhatARunBuiltAnewLeaves) {
   const Scenario believed = hidden::Believed(GetParam().design);
-  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  const Means means = MeansOf(believed);
   TakenRun run = TakenOf({}, believed, hidden::TakeReadings(hidden::Drawn(GetParam().design, 5)), means, 0);
   ASSERT_TRUE(run.linear.left_by_another);
   Supposed cause;
@@ -40,7 +40,7 @@ TEST_P(LeftByAnotherScenario, IsWhatARunBuiltAnewLeaves) {
 // Mirrors turned out of an autocollimator's range would show nothing. Readings that were there speak against that.
 TEST(LeftByAScenario, ThatShowsNothingIsTheWhole) {
   const Scenario believed = hidden::Believed(hidden::Design::kTurntable);
-  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
+  const Means means = MeansOf(believed);
   const TakenRun run = TakenOf({}, believed, hidden::TakeReadings(believed), means, 0);
   Supposed cause;
   cause.name = "settling";

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -8,7 +7,6 @@
 #include "tests/hidden/unlisted.h"
 #include "tests/investigate/hidden_investigation.h"
 #include "tests/support/twin_run.h"
-#include "tools/twinbench/bench_means.h"
 #include "twin/benches/registry.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/bench_format.h"
@@ -17,12 +15,19 @@
 namespace twinbench::investigate {
 namespace {
 
+InvestigationOptions WithBudget(double budget_min) {
+  InvestigationOptions options;
+  options.budget_min = budget_min;
+  return options;
+}
+InvestigationOptions TenHours() {
+  return WithBudget(600.0);
+}
+
 Judged Hidden(hidden::Design design, const std::string& effect, const std::string& where, double rho,
               double budget_min = 600.0, std::uint64_t seed = 7, const std::optional<Wish>& wish = {}) {
   const hidden::SignatureScale scale(design, "");
-  InvestigationOptions options;
-  options.budget_min = budget_min;
-  return InvestigateHidden({effect, where, design}, seed, rho, scale, options, wish);
+  return InvestigateHidden({effect, where, design}, seed, rho, scale, WithBudget(budget_min), wish);
 }
 
 TEST(Investigate, TellsACauseThatTheFirstRunDoesNotTellFromOthers) {
@@ -49,8 +54,7 @@ TEST(Investigate, EndsWithItsBudget) {
 // A wander may look like a slip in one run, and goes on in the next.
 TEST(Investigate, SeesWhetherASlipHappensAgain) {
   const hidden::SignatureScale scale(hidden::Design::kTurntable, "");
-  InvestigationOptions options;
-  options.budget_min = 600.0;
+  InvestigationOptions options = TenHours();
   options.conclusive = 0.9;
   const Judged judged = InvestigateHidden({"slip", "x", hidden::Design::kTurntable}, 7, 15.0, scale, options);
   const std::vector<Step>& steps = judged.investigation.steps;
@@ -65,10 +69,8 @@ TEST(Investigate, LooksAgainWhereOneRunMayHideACause) {
   const std::vector<hidden::UnlistedCause> causes = hidden::UnlistedCausesOf("encoder_comparison");
   const auto line = std::ranges::find(causes, "non-integer line", &hidden::UnlistedCause::name);
   ASSERT_NE(line, causes.end());
-  InvestigationOptions options;
-  options.budget_min = 600.0;
   const hidden::SignatureScale scale(hidden::Design::kSweep, "");
-  const Judged judged = InvestigateUnlisted(hidden::Design::kSweep, *line, 7, 4.0, scale, options);
+  const Judged judged = InvestigateUnlisted(hidden::Design::kSweep, *line, 7, 4.0, scale, TenHours());
   const std::vector<Step>& steps = judged.investigation.steps;
   EXPECT_EQ(steps.front().believed.front().first, "nothing");
   EXPECT_EQ(judged.result, Result::kRight) << judged.answer;
@@ -76,17 +78,18 @@ TEST(Investigate, LooksAgainWhereOneRunMayHideACause) {
   EXPECT_THAT(steps[1].reason, testing::HasSubstr("nothing found so far: 6.25 runs like the first"));
 }
 
-TEST(Investigate, OneThatFindsNothingSaysSo) {
-  const hidden::SignatureScale scale(hidden::Design::kStops, "");
-  const Scenario believed = hidden::Believed(hidden::Design::kStops);
+/// Runs of the twin of `hidden`.
+Laboratory LaboratoryOf(const Scenario& hidden, const Scenario& believed) {
   Laboratory laboratory;
-  laboratory.measure = [&](const Step& step, const Scenario& asked) {
-    return hidden::TakeReadings(HiddenRun(believed, believed, step.run, asked.repeat));
+  laboratory.measure = [=](const Step& step, const Scenario& asked) {
+    return hidden::TakeReadings(HiddenRun(hidden, believed, step.run, asked.repeat));
   };
-  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
-  InvestigationOptions options;
-  options.budget_min = 600.0;
-  const Investigation found = Investigate(believed, options, means, laboratory);
+  return laboratory;
+}
+
+TEST(Investigate, OneThatFindsNothingSaysSo) {
+  const Scenario believed = hidden::Believed(hidden::Design::kStops);
+  const Investigation found = Investigate(believed, TenHours(), MeansOf(believed), LaboratoryOf(believed, believed));
   EXPECT_EQ(found.told, Told::kNothing);
   EXPECT_EQ(found.steps.size(), 2u);  // one of 16 readings a stop is more than (5 / 2)^2 like the first
 }
@@ -135,20 +138,15 @@ TEST(Investigate, MakesARunThatCanBeDiagnosedWhereTheFirstCannot) {
   roll.where = "psd_a";
   roll.parameters["roll"] = 5e-3;
   hidden.effects.push_back(roll);
-  Laboratory laboratory;
-  laboratory.measure = [&](const Step& step, const Scenario& asked) {
-    return hidden::TakeReadings(HiddenRun(hidden, believed, step.run, asked.repeat));
-  };
-  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
-  InvestigationOptions options;
-  options.budget_min = 600.0;
-  const Investigation found = Investigate(believed, options, means, laboratory);
+  Laboratory laboratory = LaboratoryOf(hidden, believed);
+  const Means means = MeansOf(believed);
+  const Investigation found = Investigate(believed, TenHours(), means, laboratory);
   ASSERT_GT(found.steps.size(), 1u);
   EXPECT_EQ(found.steps.front().believed.front().first, "nothing");
   EXPECT_THAT(found.steps[1].reason, testing::HasSubstr("the runs so far cannot be diagnosed: "));
   EXPECT_EQ(found.belief.Best().fit.hypothesis.Name(), "psd_roll psd_a");
   laboratory.confirm = [](const Step&, const std::vector<Advice>&) { return false; };
-  const Investigation declined = Investigate(believed, options, means, laboratory);
+  const Investigation declined = Investigate(believed, TenHours(), means, laboratory);
   EXPECT_EQ(declined.told, Told::kTied) << "nothing was looked for, so nothing is not what was found";
   EXPECT_EQ(declined.ended, Ended::kDeclined);
 }
@@ -160,10 +158,9 @@ TEST(Investigate, RefusesAGoalThatAStandardPutsOutOfReachBeforeAnythingIsMeasure
   laboratory.measure = [](const Step&, const Scenario&) -> std::vector<Reading> {
     throw std::logic_error("nothing shall be measured");
   };
-  const Means means = tools::MeansOf(BenchOf(believed), [](const plan::NextRun&) { return true; });
   InvestigationOptions options;
   options.goal = ParseGoal("turntable.ez 0.1arcsec");
-  const std::string message = MessageOf([&] { Investigate(believed, options, means, laboratory); });
+  const std::string message = MessageOf([&] { Investigate(believed, options, MeansOf(believed), laboratory); });
   EXPECT_THAT(message, testing::HasSubstr("cannot be reached"));
   EXPECT_THAT(message, testing::HasSubstr("autocollimator.gain_error"));
 }
@@ -190,9 +187,8 @@ TEST(HiddenRun, IsMadeOnEveryBench) {
 }
 
 TEST(NextRuns, AreRunsThatTheirBenchCanMake) {
-  for (const char* name : {"rotary_4dof", "encoder_comparison", "turntable_autocollimator", "hob_transmission",
-                           "circular_motion", "freeform_five_axis"}) {
-    const Scenario scenario = LoadScenario(std::string(TWINBENCH_SOURCE_DIR "/scenarios/") + name + ".toml");
+  for (const std::string& name : BenchNames()) {
+    const Scenario scenario = LoadScenario(test::ScenarioPath(name + ".toml"));
     const std::vector<plan::NextRun> runs = BenchOf(scenario).next_runs(scenario);
     EXPECT_GE(runs.size(), 4u) << name;
     for (const plan::NextRun& run : runs) EXPECT_NO_THROW(Altered(scenario, run.sets)) << name << " " << run.name;
@@ -203,7 +199,7 @@ TEST(NextRuns, AreRunsThatTheirBenchCanMake) {
 TEST(NextRuns, LeaveSomethingToFindCausesBy) {
   for (const hidden::Design design : {hidden::Design::kRotary, hidden::Design::kTurntable, hidden::Design::kSweep}) {
     const Scenario scenario = hidden::Believed(design);
-    const Means means = tools::MeansOf(BenchOf(scenario), [](const plan::NextRun&) { return true; });
+    const Means means = MeansOf(scenario);
     for (const plan::NextRun& run : means.next_runs(scenario)) {
       const Scenario other = Altered(scenario, run.sets);
       EXPECT_NO_THROW(means.against(means.twin(other), other)) << scenario.bench << " " << run.name;

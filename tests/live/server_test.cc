@@ -15,13 +15,8 @@
 namespace twinbench::live {
 namespace {
 
-using asio::ip::tcp;
-using std::chrono::duration;
-using std::chrono::milliseconds;
-using std::chrono::steady_clock;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using asio::ip::tcp, std::chrono::duration, std::chrono::milliseconds, std::chrono::steady_clock;
+using testing::HasSubstr, testing::Not, testing::StartsWith;
 
 constexpr const char* kMarkup =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'sha256-abc'\">page";

@@ -8,12 +8,13 @@
 
 /// Keys of each bench from tests/data/own_scenario/BENCH.txt, in the order in which runs are made. A line is one of
 ///
-///     machine.play_um=2 with A & B   a value that moves readings by far more than noise, behind what must be so
-///     for it machine.play_um=2 then A & B   the same in front of it machine.title: words           the reason why
-///     no value can matter $NAME: A & B                   settings that further lines have by this name every run:
-///     A & B               what all runs have every effect: A & B            what those with an effect have;
-///     without it the same each a, b                      the lines up to the next empty one, first with a for @
-///     and then with b
+///     machine.play_um=2 with A & B    a value that readings feel far above their noise, behind what must be so
+///     machine.play_um=2 then A & B    the same in front of it
+///     machine.title: words            the reason why no value can matter
+///     $NAME: A & B                    settings that further lines have by this name
+///     every run: A & B                what all runs have
+///     every effect: A & B             what those with an effect have; without this line the same
+///     each a, b                       the lines up to the next empty one, first with a for @ and then with b
 namespace twinbench::test {
 namespace {
 

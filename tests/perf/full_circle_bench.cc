@@ -3,7 +3,7 @@
 // One test is the paper's: 2 set-ups x 36 positions x 4 channels x 1000 samples through procedure, event queue,
 // devices, chain, light and A/D, readings kept in memory; building the twin is part of it. The counter
 // `tests_per_s` is per second of CPU time, `of_goal` the ratio to what the project asks for. Light by the closed
-// form but where the name says traced. `to_kernels` is the time of a test over that of its random numbers, poses and
+// form. `to_kernels` is the time of a test over that of its random numbers, poses and
 // light alone.
 //
 //   build/tests/perf/bench_full_circle --benchmark_counters_tabular=true
@@ -11,10 +11,10 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <span>
 #include <vector>
 
+#include "tests/perf/timing.h"
 #include "tests/support/rotary_scenario.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -27,6 +27,8 @@
 namespace twinbench {
 namespace {
 
+using perf::Median, perf::Seconds;
+
 class CountingSink : public ReadingSink {
  public:
   void Append(const Reading& reading, const Acquisition& /*block*/) override {
@@ -35,10 +37,10 @@ class CountingSink : public ReadingSink {
   int valid = 0;
 };
 
-Scenario PaperTest(const std::string& fidelity, bool every_sample, const std::string& light) {
+Scenario PaperTest(const std::string& fidelity, bool every_sample) {
   Scenario scenario = test::RotaryScenario();
   RotaryOf(scenario).mechanics.fidelity = fidelity;
-  RotaryOf(scenario).optics.fidelity = light;
+  RotaryOf(scenario).optics.fidelity = "closed";
   RotaryOf(scenario).adc.samples = 1000;
   RotaryOf(scenario).adc.every_sample = every_sample;
   RotaryOf(scenario).procedure.phases = {"full_circle"};
@@ -50,35 +52,25 @@ Scenario PaperTest(const std::string& fidelity, bool every_sample, const std::st
   return scenario;
 }
 
-void CarryOutFullCircles(benchmark::State& state, const std::string& fidelity, bool every_sample, double goal,
-                         const std::string& light = "closed") {
-  Scenario scenario = PaperTest(fidelity, every_sample, light);
+int ValidReadings(const Scenario& scenario) {
+  sim::Twin twin(scenario);
+  RotaryBench bench = twin.Bench();
+  CountingSink sink;
+  procedure::CarryOut(bench, scenario, sink);
+  return sink.valid;
+}
+
+void CarryOutFullCircles(benchmark::State& state, const std::string& fidelity, bool every_sample, double goal) {
+  Scenario scenario = PaperTest(fidelity, every_sample);
   int valid = 0;
   for (auto _ : state) {
     ++scenario.seed;
-    sim::Twin twin(scenario);
-    RotaryBench bench = twin.Bench();
-    CountingSink sink;
-    procedure::CarryOut(bench, scenario, sink);
-    valid += sink.valid;
+    valid += ValidReadings(scenario);
   }
   if (valid != 72 * state.iterations()) state.SkipWithError("a reading is not valid");
   const double tests = static_cast<double>(state.iterations());
   state.counters["tests_per_s"] = benchmark::Counter(tests, benchmark::Counter::kIsRate);
   state.counters["of_goal"] = benchmark::Counter(tests / goal, benchmark::Counter::kIsRate);
-}
-
-/// Time that this process computed, whoever else keeps the machine busy.
-double Seconds() {
-  timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// What a full-circle test cannot do without, alone: as many random numbers as it draws, as many poses of the grating
@@ -149,17 +141,13 @@ class Kernels {
 
 double SecondsOfRun(const Scenario& scenario) {
   const double start = Seconds();
-  sim::Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
-  CountingSink sink;
-  procedure::CarryOut(bench, scenario, sink);
-  benchmark::DoNotOptimize(sink.valid);
+  benchmark::DoNotOptimize(ValidReadings(scenario));
   return Seconds() - start;
 }
 
 /// A whole full-circle test against its kernels alone, by turns; the counter is the median of the rounds' ratios.
 void FullCircleAgainstItsKernels(benchmark::State& state, bool every_sample) {
-  Scenario scenario = PaperTest("kinematic", every_sample, "closed");
+  Scenario scenario = PaperTest("kinematic", every_sample);
   Kernels kernels(scenario);
   std::vector<double> ratio, whole_s, kernels_s;
   for (auto _ : state) {
@@ -193,8 +181,6 @@ void RunTracedAgainstClosed(benchmark::State& state) {
 BENCHMARK(RunTracedAgainstClosed)->Unit(benchmark::kMillisecond);
 
 BENCHMARK_CAPTURE(CarryOutFullCircles, kinematic_every_sample, "kinematic", true, 600.0)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(CarryOutFullCircles, kinematic_every_sample_traced, "kinematic", true, 600.0, "traced")
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(CarryOutFullCircles, kinematic_sufficient_statistics, "kinematic", false, 10000.0)
     ->Unit(benchmark::kMillisecond);

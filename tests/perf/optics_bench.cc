@@ -12,19 +12,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "optics/bench.h"
+#include "tests/perf/timing.h"
 
 namespace twinbench::optics {
 namespace {
 
-using Eigen::Isometry3d;
-using Eigen::Vector3d;
+using Eigen::Isometry3d, Eigen::Vector3d, perf::Median, perf::Seconds;
 
 constexpr std::size_t kRays = 1 << 14;
 
@@ -137,19 +136,6 @@ void TraceBare(RTCScene scene, std::vector<Packet>& packets) {
   }
 }
 
-/// Time that this process computed, whoever else keeps the machine busy.
-double Seconds() {
-  timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Bare and exact by turns; each round gives a ratio to the better of the two bare packets, and the median of them
 /// forgets the rounds that were disturbed.
 void ExactAgainstBareEmbree(benchmark::State& state, const std::string& embree_options) {
@@ -182,15 +168,6 @@ void ExactAgainstBareEmbree(benchmark::State& state, const std::string& embree_o
 BENCHMARK_CAPTURE(ExactAgainstBareEmbree, native, "")->Args({5, 0})->Args({20, 0})->Args({8, 100000});
 BENCHMARK_CAPTURE(ExactAgainstBareEmbree, avx2, "max_isa=avx2")->Args({5, 0})->Args({20, 0})->Args({8, 100000});
 
-void AnalyticNearest(benchmark::State& state) {
-  const Scene scene = MakeScene(static_cast<int>(state.range(0)), 0);
-  const RayBatch rays = Beams(scene);
-  HitBatch hits;
-  for (auto _ : state) scene.IntersectAnalytic(rays, hits);
-  state.SetItemsProcessed(static_cast<std::int64_t>(kRays) * state.iterations());
-}
-BENCHMARK(AnalyticNearest)->Arg(5)->Arg(8)->Arg(20);
-
 RotaryOpticsParameters Bench(BeamKind beam) {
   RotaryOpticsParameters p;
   p.nominal_wavelength_m = 650e-9;
@@ -202,21 +179,6 @@ RotaryOpticsParameters Bench(BeamKind beam) {
   p.beam = {.kind = beam, .radius_m = 0.5e-3, .divergence_rad = 0.5e-3, .profile = {}};
   return p;
 }
-
-void FixedSequence(benchmark::State& state) {
-  const RotaryOptics optics(Bench(BeamKind::kChiefRay));
-  const Frame grating = MakeFrame(RectangularPlane(SurfacePoseOfGrating(Isometry3d::Identity()), 0.025, 0.025));
-  const Frame plane = MakeFrame(RectangularPlane(optics.X_LA(), 0.01, 0.01));
-  RayBatch rays;
-  for (std::size_t i = 0; i < 1024; ++i) rays.Add({{1e-6 * static_cast<double>(i), 0.2, 0.0}, {0, -1, 0}});
-  std::vector<double> u(1024), v(1024);
-  for (auto _ : state) {
-    TraceSequence(grating, 0.39, plane, rays, u.data(), v.data());
-    benchmark::DoNotOptimize(u.data());
-  }
-  state.SetItemsProcessed(1024 * state.iterations());
-}
-BENCHMARK(FixedSequence);
 
 /// Traced and closed by turns: one reading of both orders.
 void TracedAgainstClosed(benchmark::State& state, RotaryOpticsParameters parameters) {

@@ -51,12 +51,6 @@ void BM_FillNormals(benchmark::State& state, Simd simd) {
   CountPerSecond(state, "normals", kNormals);
 }
 
-void BM_StreamNormal(benchmark::State& state) {
-  Stream stream(1, "bench");
-  for (auto _ : state) benchmark::DoNotOptimize(stream.Normal());
-  CountPerSecond(state, "normals", 1.0);
-}
-
 /// An event that adds its successor after a random delay.
 struct Ping {
   EventQueue* queue;
@@ -72,19 +66,6 @@ void BM_Events(benchmark::State& state) {
   for (std::int64_t i = 0; i < state.range(0); ++i)
     queue.After(Duration(i), Ping{&queue, static_cast<std::uint64_t>(i) * 77777u});
   for (auto _ : state) queue.RunOne();
-  CountPerSecond(state, "events", 1.0);
-}
-
-/// A timeout that never strikes: added and cancelled around every event.
-void BM_EventsWithTimeout(benchmark::State& state) {
-  EventQueue queue;
-  for (std::int64_t i = 0; i < state.range(0); ++i)
-    queue.After(Duration(i), Ping{&queue, static_cast<std::uint64_t>(i) * 77777u});
-  for (auto _ : state) {
-    const EventId timeout = queue.After(std::chrono::seconds(1), [] {});
-    queue.RunOne();
-    queue.Cancel(timeout);
-  }
   CountPerSecond(state, "events", 1.0);
 }
 
@@ -120,15 +101,6 @@ void BM_Block(benchmark::State& state, const AdInput& input, Simd simd) {
   CountPerSecond(state, "samples", kSamples * kChannels);
 }
 
-void BM_BlockDirect(benchmark::State& state, const AdInput& input) {
-  Stream noise(1, "bench");
-  const AdcSettings adc;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(TakeBlock(adc, input, {.n_samples = kSamples, .every_sample = false}, noise));
-  }
-  CountPerSecond(state, "channel_blocks", kChannels);
-}
-
 void BM_FullCircle(benchmark::State& state, bool every_sample) {
   Stream noise(1, "bench");
   const AdcSettings adc;
@@ -153,14 +125,10 @@ void RegisterVariant(Simd simd) {
 
 void RegisterAll() {
   benchmark::RegisterBenchmark("Normals/mt19937_and_std_normal_distribution", BM_StandardNormals);
-  benchmark::RegisterBenchmark("Normals/Stream_Normal_double", BM_StreamNormal);
   for (const Simd simd : kAllSimd) RegisterVariant(simd);
-  benchmark::RegisterBenchmark("Block/direct/level", BM_BlockDirect, Voltages());
-  benchmark::RegisterBenchmark("Block/direct/hum_crosstalk_step", BM_BlockDirect, VoltagesWithHumAndCrosstalk());
   benchmark::RegisterBenchmark("FullCircle/every_sample", BM_FullCircle, true);
   benchmark::RegisterBenchmark("FullCircle/direct", BM_FullCircle, false);
-  benchmark::RegisterBenchmark("Events/pending", BM_Events)->Arg(1)->Arg(1000)->Arg(100000);
-  benchmark::RegisterBenchmark("Events/pending_with_timeout", BM_EventsWithTimeout)->Arg(1)->Arg(1000);
+  benchmark::RegisterBenchmark("Events/pending", BM_Events)->Arg(1)->Arg(1000);
 }
 
 }  // namespace

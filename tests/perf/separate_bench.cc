@@ -35,18 +35,8 @@ void SeparateFromScratch(benchmark::State& state) {
 void SeparateWithGaps(benchmark::State& state) {
   SeparateAll(state, 300);
 }
-BENCHMARK(SeparateFromScratch)->Arg(36)->Arg(72)->Arg(180)->Arg(360)->Arg(720)->Unit(benchmark::kMillisecond);
-BENCHMARK(SeparateWithGaps)->Arg(36)->Arg(72)->Arg(180)->Arg(360)->Unit(benchmark::kMillisecond);
-
-/// No noise stated: the weights come from a first solution, so that the matrix is factorised twice.
-void SeparateWithoutStatedNoise(benchmark::State& state) {
-  auto motions = FullCircles(36);
-  for (Motion& m : motions) m.covariance_known = false;
-  const BenchGeometry geometry = Bench();
-  const SeparateOptions options = Options(36, Clamping::kReseat);
-  for (auto _ : state) benchmark::DoNotOptimize(Separate(motions, geometry, options).dof);
-}
-BENCHMARK(SeparateWithoutStatedNoise)->Unit(benchmark::kMillisecond);
+BENCHMARK(SeparateFromScratch)->Arg(36)->Arg(360)->Arg(720)->Unit(benchmark::kMillisecond);
+BENCHMARK(SeparateWithGaps)->Arg(360)->Unit(benchmark::kMillisecond);
 
 void SeparateWithFactorisation(benchmark::State& state) {
   const auto motions = FullCircles(36);
@@ -54,12 +44,6 @@ void SeparateWithFactorisation(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(separator.Separate(motions).dof);
 }
 BENCHMARK(SeparateWithFactorisation)->Unit(benchmark::kMillisecond);
-
-void FindSeparabilityOfADesign(benchmark::State& state) {
-  const Design design = MakeDesign(36, {0, 1, 7, 11}, Clamping::kReseat, Bench());
-  for (auto _ : state) benchmark::DoNotOptimize(FindSeparability(design).lost.size());
-}
-BENCHMARK(FindSeparabilityOfADesign)->Unit(benchmark::kMillisecond);
 
 /// Five shifts, readings of both curves with noise; a part of them missing, weights within a factor of `spread`.
 struct ShiftedReadings {
@@ -99,20 +83,6 @@ void CurvesWithGapsAndWeights(benchmark::State& state) {
 }
 BENCHMARK(CompleteCurves)->Arg(9000)->Arg(18000)->Arg(36000)->Arg(72000)->Arg(36007)->Unit(benchmark::kMillisecond);
 BENCHMARK(CurvesWithGapsAndWeights)->Arg(9000)->Arg(18000)->Arg(36000)->Arg(72000)->Unit(benchmark::kMillisecond);
-
-void MeasureAReading(benchmark::State& state) {
-  Reading reading;
-  reading.mean_V = {0.1, -0.2, 0.15, 0.05};
-  reading.std_V.fill(0.006);
-  reading.n_samples = 100;
-  const std::vector<Reading> readings(576, reading);
-  const BenchGeometry geometry = Bench();
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(measure::Measure(readings, geometry, {}, Estimator::kRigorous).size());
-  }
-  state.SetItemsProcessed(state.iterations() * 576);
-}
-BENCHMARK(MeasureAReading)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -1,20 +1,16 @@
 #include "twin/report/controller_tables.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <sstream>
 
 #include "tests/core/input_error.h"
+#include "tests/support/kept_text.h"
 #include "twin/core/units.h"
 #include "twin/report/compensation_text.h"
 
 namespace twinbench::report {
 namespace {
 
-using testing::HasSubstr;
-using units::arcsec, units::deg;
+using testing::HasSubstr, units::arcsec, units::deg;
 
 CompensationTable Quarters() {
   return {{0.0, 90.0 * deg, 180.0 * deg, 270.0 * deg}, {3.6 * arcsec, -7.2 * arcsec, 0.0, 1.8 * arcsec}};
@@ -31,35 +27,11 @@ TEST(ControllerTable, GivesLinuxCncTheActualPositions) {
 }
 
 TEST(ControllerTable, GivesTwinCatAdditiveValuesOverAModuloTurn) {
-  const std::string text = ControllerTable("twincat", Quarters(), "C", {"of a turntable"});
-  EXPECT_THAT(text, HasSubstr("// of a turntable\n"));
-  EXPECT_THAT(text, HasSubstr("ARRAY[1..5] OF ST_PositionCompensationTableElement"));
-  EXPECT_THAT(text, HasSubstr("(Position := 90.000000000, Compensation := -0.002000000),\n"));
-  EXPECT_THAT(text, HasSubstr("(Position := 360.000000000, Compensation := 0.001000000)];\n"));
-  EXPECT_THAT(text, HasSubstr("NoOfTableElements := 5"));
-  EXPECT_THAT(text, HasSubstr("Modulo := TRUE"));
+  EXPECT_KEPT(ControllerTable("twincat", Quarters(), "C", {"of a turntable"}));
 }
 
 TEST(ControllerTable, GivesHeidenhainItsColumns) {
-  std::istringstream lines(ControllerTable("heidenhain", Quarters(), "B", {}));
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_EQ(line, "BEGIN B.COM");
-  std::getline(lines, line);
-  std::istringstream header(line);
-  std::string nr, axispos, backlash, axis;
-  header >> nr >> axispos >> backlash >> axis;
-  EXPECT_EQ(nr + axispos + backlash + axis, "NRAXISPOSBACKLASHB");
-  std::getline(lines, line);
-  std::getline(lines, line);
-  std::istringstream second(line);
-  int number = 0;
-  double position_deg = 0.0, backlash_deg = 1.0, correction_deg = 0.0;
-  second >> number >> position_deg >> backlash_deg >> correction_deg;
-  EXPECT_EQ(number, 1);
-  EXPECT_EQ(position_deg, 90.0);
-  EXPECT_EQ(backlash_deg, 0.0);
-  EXPECT_EQ(correction_deg, -0.002);
+  EXPECT_KEPT(ControllerTable("heidenhain", Quarters(), "B", {}));
 }
 
 TEST(ControllerTable, StartsAtZeroWhereTheTableDoesNot) {
@@ -73,13 +45,13 @@ TEST(ControllerTable, RefusesMoreEntriesThanTheControllerTakes) {
     table.position_rad.push_back(i * deg);
     table.correction_rad.push_back(0.0);
   }
-  EXPECT_THAT(MessageOf([&] { ControllerTable("linuxcnc", table, "C", {}); }), HasSubstr("--points 255"));
-  EXPECT_THAT(MessageOf([&] { ControllerTable("heidenhain", table, "C", {}); }), HasSubstr("257 entries"));
+  for (const char* form : {"linuxcnc", "heidenhain"})
+    EXPECT_KEPT(MessageOf([&] { ControllerTable(form, table, "C", {}); }));
   EXPECT_NO_THROW(ControllerTable("twincat", table, "C", {}));
 }
 
 TEST(ControllerTable, NamesTheFormsThereAre) {
-  EXPECT_THAT(MessageOf([] { ControllerFormNamed("fanuc"); }), HasSubstr("plain, linuxcnc, twincat, heidenhain"));
+  EXPECT_KEPT(MessageOf([] { ControllerFormNamed("fanuc"); }));
 }
 
 TEST(OrderRanges, JoinsNeighbours) {

@@ -1,7 +1,6 @@
 #include "twin/report/curve_text.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
@@ -12,8 +11,7 @@
 namespace twinbench::report {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using testing::HasSubstr, testing::Not;
 
 constexpr std::size_t kFrame = 11;    // letters before the first place: labels and the axis
 constexpr std::size_t kPlaces = 68;   // across

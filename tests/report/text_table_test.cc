@@ -1,7 +1,6 @@
 #include "twin/report/text_table.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/report/page_lines.h"
 

@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/diagnose/found_causes.h"
+#include "tests/support/kept_text.h"
 
 namespace twinbench::report {
 namespace {
 
-using diagnose::Cause;
-using diagnose::Diagnosis;
-using diagnose::Verdict;
+using diagnose::Cause, diagnose::Diagnosis, diagnose::Verdict;
 
 Diagnosis Of(Verdict verdict, const std::vector<Cause>& causes) {
   Diagnosis d;
@@ -32,35 +31,26 @@ Cause Without(const std::string& effect, double probability, const std::vector<s
 }
 
 TEST(VerdictLine, NamesACauseWithItsFirstParameter) {
-  EXPECT_EQ(VerdictLine(Of(Verdict::kNamed, {Backlash()}), "run.csv"),
-            "Named: backlash, width 0.01200 +- 0.00030 deg (97 %) in 720 readings of run.csv");
+  EXPECT_KEPT(VerdictLine(Of(Verdict::kNamed, {Backlash()}), "run.csv"));
 }
 
-TEST(VerdictLine, OfATieListsItsMembersOnce) {
-  EXPECT_EQ(VerdictLine(Of(Verdict::kTie, {Without("a", 0.48, {"b"}), Without("b", 0.48, {"a"})}), "run.csv"),
-            "Tie: a or b (48 % each) in 720 readings of run.csv");
-  EXPECT_EQ(VerdictLine(Of(Verdict::kTie, {Without("a", 0.6, {"b", "c"}), Without("b", 0.3, {"a", "c"}),
-                                           Without("c", 0.1, {"a", "b"}), Backlash()}),
-                        "run.csv"),
-            "Tie: a (60 %), b (30 %) or c (10 %); backlash, width 0.01200 +- 0.00030 deg (97 %) in run.csv");
-}
-
-TEST(VerdictLine, LeavesTheReadingsOutBeforeAName) {
+TEST(VerdictLine, OfATieListsItsMembersOnceAndLeavesTheReadingsOutBeforeAName) {
+  EXPECT_KEPT(VerdictLine(Of(Verdict::kTie, {Without("a", 0.48, {"b"}), Without("b", 0.48, {"a"})}), "run.csv"));
+  const std::vector<Cause> three = {Without("a", 0.6, {"b", "c"}), Without("b", 0.3, {"a", "c"}),
+                                    Without("c", 0.1, {"a", "b"}), Backlash()};
+  EXPECT_KEPT(VerdictLine(Of(Verdict::kTie, three), "run.csv"));
   const std::string a(30, 'a'), b(30, 'b');
-  EXPECT_EQ(VerdictLine(Of(Verdict::kTie, {Without(a, 0.48, {b}), Without(b, 0.48, {a})}), "run.csv"),
-            "Tie: " + a + " or " + b + " (48 % each) in run.csv");
+  EXPECT_KEPT(VerdictLine(Of(Verdict::kTie, {Without(a, 0.48, {b}), Without(b, 0.48, {a})}), "run.csv"));
 }
 
 TEST(VerdictLine, SaysWhatIsUnknownOrThatNothingWasFound) {
   Diagnosis d = Of(Verdict::kUnknown, {});
   d.unknown.probability = 0.97;
-  EXPECT_EQ(VerdictLine(d, "run.csv"),
-            "Unknown: structure that no cause of the catalogue explains (97 %) in 720 readings of run.csv");
+  EXPECT_KEPT(VerdictLine(d, "run.csv"));
   d.verdict = Verdict::kNone;
-  EXPECT_EQ(VerdictLine(d, "run.csv"), "Agrees: nothing found in 720 readings of run.csv");
+  EXPECT_KEPT(VerdictLine(d, "run.csv"));
   d.alarm_p = 0.4;
-  EXPECT_EQ(VerdictLine(d, "a/rather/long/way/to/the/folder/"),
-            "Agrees: nothing found in 720 readings of folder (p = 0.4)");
+  EXPECT_KEPT(VerdictLine(d, "a/rather/long/way/to/the/folder/"));
 }
 
 TEST(VerdictLine, IsOneLineHoweverManyCausesThereAre) {

@@ -9,8 +9,7 @@
 namespace twinbench::campaign {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::Pair;
+using testing::ElementsAre, testing::Pair;
 
 constexpr const char* kStudy = R"(scenario_text = '''
 bench = "encoder_comparison"

@@ -12,12 +12,8 @@
 namespace twinbench::report {
 namespace {
 
-using nlohmann::json;
-using ::testing::DoubleNear;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Pointwise;
+using nlohmann::json, testing::DoubleNear, testing::AllOf, testing::ElementsAre, testing::HasSubstr;
+using testing::Pointwise;
 
 const json kResults = json::parse(R"({
   "separation": {"table": {"position_deg": [0, 90, 180], "ez_arcsec": [1.5, null, -2.5], "u_ez_arcsec": [0.1, 0.2, 0.3],

@@ -4,12 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/report_page/blocks.h"
+
 namespace twinbench::report {
 namespace {
 
-using nlohmann::json;
-using ::testing::Contains;
-using ::testing::ElementsAre;
+using nlohmann::json, testing::Contains, testing::ElementsAre;
 
 const json kDiagnosis = json::parse(R"({
   "verdict": "tie", "alarm_p": 0.0004,
@@ -26,11 +26,9 @@ const json kDiagnosis = json::parse(R"({
             "maps": {"a": {"position": [0, 1, 2], "setup": [3], "before": [[1, null, 3]], "after": [[0, 0, 0]]}}}})");
 
 template <class Block>
-const Block& BlockIn(const std::vector<PageSection>& sections, const std::string& title) {
-  for (const PageSection& section : sections) {
-    for (const PageBlock& block : section.blocks) {
-      if (const auto* found = std::get_if<Block>(&block); found && found->title == title) return *found;
-    }
+Block BlockIn(const std::vector<PageSection>& sections, const std::string& title) {
+  for (const Block& block : test::BlocksOf<Block>(sections)) {
+    if (block.title == title) return block;
   }
   throw std::runtime_error("no block " + title);
 }

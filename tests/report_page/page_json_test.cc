@@ -8,9 +8,7 @@
 namespace twinbench::report {
 namespace {
 
-using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using nlohmann::json, testing::HasSubstr, testing::Not;
 
 constexpr const char* kMarkup = "<title><!--TITLE--></title><script type=\"application/json\"><!--DATA--></script>";
 constexpr const char* kEvil = "</script><script>alert(1)</script><!--<script>&\"'";

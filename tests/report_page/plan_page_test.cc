@@ -4,14 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/report_page/blocks.h"
 #include "twin/report/page/investigation_page.h"
 
 namespace twinbench::report {
 namespace {
 
-using nlohmann::json;
-using ::testing::Contains;
-using ::testing::ElementsAre;
+using nlohmann::json, testing::Contains, testing::ElementsAre;
 
 const json kPlan = json::parse(R"({
   "runs": [
@@ -27,19 +26,8 @@ const json kPlan = json::parse(R"({
   "ties": [{"present": {"effect": "a", "where": "x"}, "blamed": {"effect": "b", "where": ""}, "told_from": 0.002, "unit": "1"}],
   "never_told_apart": [[{"effect": "c", "where": ""}, {"effect": "d", "where": "y"}]], "detectable": [], "invisible": []})");
 
-template <class Block>
-std::vector<Block> PlannedBlocks(const Page& page) {
-  std::vector<Block> found;
-  for (const PageSection& section : page.sections) {
-    for (const PageBlock& block : section.blocks) {
-      if (const auto* one = std::get_if<Block>(&block)) found.push_back(*one);
-    }
-  }
-  return found;
-}
-
 TEST(PlanPage, ComparesTheRunsOrderByOrder) {
-  const std::vector<Figure> figures = PlannedBlocks<Figure>(PlanPage({}, kPlan));
+  const std::vector<Figure> figures = test::BlocksOf<Figure>(PlanPage({}, kPlan).sections);
   ASSERT_EQ(figures.size(), 2u);
   EXPECT_EQ(figures[0].title, "u of target ez");
   ASSERT_EQ(figures[0].series.size(), 2u);
@@ -52,7 +40,7 @@ TEST(PlanPage, SaysWhichRunToMakeAndWhatMayBeMistaken) {
   const Page page = PlanPage({}, kPlan);
   EXPECT_EQ(page.verdict, "Tells most for its time: two more set-ups.");
   std::vector<std::vector<std::string>> rows;
-  for (const PageTable& table : PlannedBlocks<PageTable>(page)) rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  for (const PageTable& table : test::BlocksOf<PageTable>(page.sections)) rows.insert(rows.end(), table.rows.begin(), table.rows.end());
   EXPECT_THAT(rows, Contains(ElementsAre("a at x", "b", "0.002", "1")));
   EXPECT_THAT(rows, Contains(ElementsAre("c, d at y")));
   EXPECT_THAT(rows, Contains(ElementsAre("target ez", "arcsec", "0.05", "0.1")));
@@ -68,7 +56,7 @@ TEST(InvestigationPage, ShowsProbabilitiesOverTheRuns) {
                "unlisted": 0.02, "believed": [{"name": "a", "probability": 0.8}, {"name": "b", "probability": 0.18}]}]})");
   const Page page = InvestigationPage({}, investigation);
   EXPECT_EQ(page.verdict, "Nothing more can be told: a 80 %, b 18 %");
-  const std::vector<Figure> figures = PlannedBlocks<Figure>(page);
+  const std::vector<Figure> figures = test::BlocksOf<Figure>(page.sections);
   ASSERT_EQ(figures.size(), 3u);
   EXPECT_THAT(figures[0].series[0].y, ElementsAre(0.5, 0.8));
   EXPECT_EQ(figures[0].series[2].name, "not in the catalogue");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "tests/report_page/blocks.h"
 #include "twin/report/page/volumetric.h"
 
 namespace twinbench::report {
@@ -27,10 +28,7 @@ std::vector<Reading> TwoSetups() {
 
 TEST(ReadingsSection, ATrackIsThePlacesOfASpotSetUpBySetUp) {
   const PageSection section = ReadingsSection(TwoSetups(), "rotary_4dof");
-  std::vector<Figure> tracks;
-  for (const PageBlock& block : section.blocks) {
-    if (const auto* figure = std::get_if<Figure>(&block)) tracks.push_back(*figure);
-  }
+  const std::vector<Figure> tracks = test::BlocksOf<Figure>({section});
   ASSERT_EQ(tracks.size(), 2u);
   EXPECT_EQ(tracks[0].title, "Track on psd a");
   EXPECT_EQ(tracks[0].y.unit, "V");

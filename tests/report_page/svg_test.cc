@@ -8,8 +8,7 @@
 namespace twinbench::report {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
+using testing::HasSubstr, testing::Not;
 
 std::size_t CountOf(const std::string& text, const std::string& what) {
   std::size_t n = 0;

@@ -9,9 +9,7 @@
 namespace twinbench::report {
 namespace {
 
-using nlohmann::json;
-using ::testing::Contains;
-using ::testing::ElementsAre;
+using nlohmann::json, testing::Contains, testing::ElementsAre;
 
 const json kEvaluated = json::parse(R"({
   "calibration": {"roll_mrad": {"psd_a": {"value": 0.0612, "u": 0.1892}}},

@@ -11,10 +11,7 @@
 namespace twinbench {
 namespace {
 
-using separate::hob::HobAnalysis;
-using separate::hob::OrderStatus;
-using separate::turntable::TurntableAnalysis;
-using units::arcsec;
+using separate::hob::HobAnalysis, separate::hob::OrderStatus, separate::turntable::TurntableAnalysis, units::arcsec;
 
 test::BenchRun Turntable(const std::string& file, const std::vector<std::string>& overrides = {}) {
   return test::RunTurntable(LoadScenario(test::ScenarioPath(file), overrides));

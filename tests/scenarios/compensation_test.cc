@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -15,13 +14,8 @@
 namespace twinbench {
 namespace {
 
-using separate::Compensation;
-using separate::CompensationCheck;
-using separate::IndexErrors;
-using separate::LineFate;
-using separate::RootMeanSquare;
-using testing::ElementsAre;
-using units::arcsec, units::deg;
+using separate::Compensation, separate::CompensationCheck, separate::IndexErrors, separate::LineFate;
+using separate::RootMeanSquare, testing::ElementsAre, units::arcsec, units::deg;
 
 IndexErrors Measured(const Scenario& scenario) {
   return BenchOf(scenario).index_errors(scenario, test::ReadingsOf(scenario));

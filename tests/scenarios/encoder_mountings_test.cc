@@ -10,9 +10,7 @@
 namespace twinbench {
 namespace {
 
-using separate::encoder::DeviceError;
-using separate::harmonics::Amplitude;
-using units::arcsec;
+using separate::encoder::DeviceError, separate::harmonics::Amplitude, units::arcsec;
 
 struct Compared {
   DeviceError found;

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -16,9 +15,7 @@
 namespace twinbench {
 namespace {
 
-using separate::turntable::AngleSeries;
-using separate::turntable::PolygonAnalysis;
-using units::arcsec;
+using separate::turntable::AngleSeries, separate::turntable::PolygonAnalysis, units::arcsec;
 
 const std::string kFewClampings = "turntable_procedure.polygon_offsets_deg=[0, 57.6, 129.6, 273.6]";
 

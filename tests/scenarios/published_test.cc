@@ -11,10 +11,7 @@
 namespace twinbench {
 namespace {
 
-using benches::rotary::Analysis;
-using benches::rotary::ComponentScore;
-using separate::ComponentBias;
-using separate::MethodStatus;
+using benches::rotary::Analysis, benches::rotary::ComponentScore, separate::ComponentBias, separate::MethodStatus;
 
 struct PublishedResult {
   Analysis analysis;

@@ -15,8 +15,7 @@
 namespace twinbench {
 namespace {
 
-using separate::Separation;
-using separate::Table;
+using separate::Separation, separate::Table;
 
 std::vector<std::string> ScenarioNames() {
   std::vector<std::string> names;

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "twin/report/page/figure.h"
+
+namespace twinbench::report::test {
+
+/// All blocks of one kind, in their order.
+template <class Block>
+std::vector<Block> BlocksOf(const std::vector<PageSection>& sections) {
+  std::vector<Block> found;
+  for (const PageSection& section : sections) {
+    for (const PageBlock& block : section.blocks) {
+      if (const auto* one = std::get_if<Block>(&block)) found.push_back(*one);
+    }
+  }
+  return found;
+}
+
+}  // namespace twinbench::report::test
