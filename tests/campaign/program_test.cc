@@ -13,6 +13,8 @@ namespace {
 
 using testing::AllOf, testing::HasSubstr;
 
+const std::string kMpirun = TWINBENCH_MPIRUN;
+
 constexpr const char* kVaried = R"(trials = 40
 sampling = "latin_hypercube"
 [[vary]]
@@ -53,6 +55,14 @@ class CampaignProgram : public Program {
     return text;
   }
 
+  /// @return the exit code.
+  int OnRanks(const std::string& ranks, const std::string& name) const {
+    const std::string program = std::string(TWINBENCH_PROGRAM) + " campaign study.toml -o " + name;
+    const std::string command =
+        "cd '" + At("") + "' && timeout 300 '" + kMpirun + "' -n " + ranks + " " + program + " > mpi.out 2> mpi.err";
+    return WEXITSTATUS(std::system(command.c_str()));
+  }
+
   std::string Ask(const std::string& name, const char* sql) const {
     return SqliteDatabase(At(name), SQLITE_OPEN_READWRITE).Ask(sql);
   }
@@ -70,25 +80,19 @@ TEST_F(CampaignProgram, MakesTheSameTableOnAnyNumberOfThreads) {
 }
 
 TEST_F(CampaignProgram, MakesTheSameTableOnTwoRanks) {
-  const std::string mpirun = TWINBENCH_MPIRUN;
-  if (mpirun.empty()) GTEST_SKIP() << "this build has no MPI";
+  if (kMpirun.empty()) GTEST_SKIP() << "this build has no MPI";
   MakeTable("alone.sqlite", {"--threads", "1"});
   for (const char* ranks : {"2", "3"}) {
     const std::string name = std::string("ranks") + ranks + ".sqlite";
-    const std::string command = "cd '" + At("") + "' && '" + mpirun + "' -n " + ranks + " " + TWINBENCH_PROGRAM +
-                                " campaign study.toml -o " + name + " > mpi.out 2> mpi.err";
-    ASSERT_EQ(std::system(command.c_str()), 0) << Read("mpi.err");
+    ASSERT_EQ(OnRanks(ranks, name), 0) << Read("mpi.err");
     EXPECT_EQ(Dump("alone.sqlite"), Dump(name));
   }
 }
 
 TEST_F(CampaignProgram, SaysOnceWhatIsWrongToAllRanks) {
-  const std::string mpirun = TWINBENCH_MPIRUN;
-  if (mpirun.empty()) GTEST_SKIP() << "this build has no MPI";
+  if (kMpirun.empty()) GTEST_SKIP() << "this build has no MPI";
   Write("study.toml", campaign::StudyOf("trails = 4\n"));
-  const std::string command = "cd '" + At("") + "' && timeout 60 '" + mpirun + "' -n 2 " + TWINBENCH_PROGRAM +
-                              " campaign study.toml -o t.sqlite > mpi.out 2> mpi.err";
-  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2) << Read("mpi.err");
+  EXPECT_EQ(OnRanks("2", "t.sqlite"), 2) << Read("mpi.err");
   const std::string said = Read("mpi.err"), once = "study.toml:12: ";
   EXPECT_EQ(said.find(once), said.rfind(once));
   EXPECT_NE(said.find(once), std::string::npos);

@@ -41,16 +41,12 @@ TEST(Summary, CountsByTheCoverageFactorOfEachResult) {
 
 TEST(Summary, TakesTheNumbersOfAListTogetherEachAboutItsOwnMean) {
   Summary summary;
-  summary.Add(
-      {0,
-       "",
-       "",
-       {{"c[0]", 1.0, 1.0, kNaN}, {"c[1]", 101.0, 1.0, kNaN}, {"s[0]", 0.0, 1.0, 2.0}, {"s[1]", 0.0, 1.0, -4.0}}});
-  summary.Add(
-      {1,
-       "",
-       "",
-       {{"c[0]", 3.0, 1.0, kNaN}, {"c[1]", 103.0, 1.0, kNaN}, {"s[0]", 0.0, 1.0, 4.0}, {"s[1]", 0.0, 1.0, -2.0}}});
+  const auto add = [&](int trial, double c0, double c1, double s0, double s1) {
+    summary.Add({trial, "", "", {{"c[0]", c0, 1.0, kNaN}, {"c[1]", c1, 1.0, kNaN},
+                                 {"s[0]", 0.0, 1.0, s0}, {"s[1]", 0.0, 1.0, s1}}});
+  };
+  add(0, 1.0, 101.0, 2.0, -4.0);
+  add(1, 3.0, 103.0, 4.0, -2.0);
   const ResultSummary c = summary.Results().at("c[]");
   EXPECT_EQ(c.count, 4);
   EXPECT_DOUBLE_EQ(c.mean, 52.0);

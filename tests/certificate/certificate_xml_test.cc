@@ -52,19 +52,17 @@ std::string ChildrenOf(const pugi::xml_document& document, const std::string& pa
   return names;
 }
 
-std::vector<double> NumbersIn(const pugi::xml_document& document, const char* xpath) {
-  const pugi::xpath_node found = document.select_node(xpath);
-  EXPECT_TRUE(found) << xpath;
-  std::istringstream text(found.node().text().get());
-  std::vector<double> numbers;
-  for (std::string word; text >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-  return numbers;
-}
-
 std::string TextAt(const pugi::xml_document& document, const char* xpath) {
   const pugi::xpath_node found = document.select_node(xpath);
   EXPECT_TRUE(found) << xpath;
   return found.node().text().get();
+}
+
+std::vector<double> NumbersIn(const pugi::xml_document& document, const char* xpath) {
+  std::istringstream text(TextAt(document, xpath));
+  std::vector<double> numbers;
+  for (std::string word; text >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
+  return numbers;
 }
 
 /// The sequences of dcc.xsd 3.3.0 and SI_Format.xsd 2.2, of which an element may be missing where it need not be there.

@@ -44,12 +44,10 @@ TEST(Laboratory, AFilledTemplateIsRead) {
 }
 
 TEST(Laboratory, SaysWhereADayACountryATemperatureOrAKeyIsNone) {
-  const std::pair<const char*, const char*> cases[] = {{"begin = \"2026-02-28\"", "begin = \"2026-02-29\""},
-                                                       {"end = \"2026-02-28\"", "end = \"28.2.2026\""},
-                                                       {"end = \"2026-02-28\"", "end = \"2026-02-27\""},
-                                                       {"country = \"DE\"", "country = \"Germany\""},
-                                                       {"# temperature_degC", "temperature_degC"},
-                                                       {"serial =", "seriel ="}};
+  const std::pair<const char*, const char*> cases[] = {
+      {"begin = \"2026-02-28\"", "begin = \"2026-02-29\""}, {"end = \"2026-02-28\"", "end = \"28.2.2026\""},
+      {"end = \"2026-02-28\"", "end = \"2026-02-27\""},     {"country = \"DE\"", "country = \"Germany\""},
+      {"# temperature_degC", "temperature_degC"},           {"serial =", "seriel ="}};
   for (const auto& [from, to] : cases) {
     EXPECT_EQ(Complaint(With(from, to)).rfind("laboratory.toml:", 0), 0u) << to;
     EXPECT_KEPT(Complaint(With(from, to)));

@@ -121,16 +121,13 @@ AngleFault LostCounts(Dice& dice, const Track& example) {
 }  // namespace
 
 std::vector<AngleKind> AngleLockedKinds() {
-  return {{"eccentricity jump", Where::kBoth, EccentricityJump},
-          {"order that appears", Where::kBoth, OrderThatAppears},
-          {"modulated order", Where::kBoth, ModulatedOrder},
-          {"slipping belt", Where::kBoth, SlippingBelt},
-          {"one-sided mesh", Where::kBoth, OneSidedMesh},
-          {"one channel saturates", Where::kBoth, OneChannelSaturates},
-          {"missing code", Where::kBoth, MissingCode},
-          {"dead zone", Where::kMotion, DeadZone},
-          {"wrap error", Where::kBoth, WrapError},
-          {"lost counts", Where::kBoth, LostCounts}};
+  return {
+      {"eccentricity jump", Where::kBoth, EccentricityJump},
+      {"order that appears", Where::kBoth, OrderThatAppears}, {"modulated order", Where::kBoth, ModulatedOrder},
+      {"slipping belt", Where::kBoth, SlippingBelt}, {"one-sided mesh", Where::kBoth, OneSidedMesh},
+      {"one channel saturates", Where::kBoth, OneChannelSaturates}, {"missing code", Where::kBoth, MissingCode},
+      {"dead zone", Where::kMotion, DeadZone}, {"wrap error", Where::kBoth, WrapError},
+      {"lost counts", Where::kBoth, LostCounts}};
 }
 
 }  // namespace twinbench::foreign

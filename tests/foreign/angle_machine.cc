@@ -107,9 +107,7 @@ Machine MakeAngleInOrder(std::uint64_t seed, bool in_motion, const NoiseShape& n
     m.design.stops_per_turn = stops_per_turn;
     m.design.turns = 1.0;
   }
-  Truth truth;
-  truth.kind = "in order";
-  return Finished(truth, m);
+  return Finished({.kind = "in order"}, m);
 }
 
 }  // namespace twinbench::foreign

@@ -59,12 +59,11 @@ AngleFault SpeedResonance(Dice& dice, const Track& example) {
 }  // namespace
 
 std::vector<AngleKind> MotionKinds() {
-  return {{"speed bias", Where::kMotion, SpeedBias},
-          {"clock rate", Where::kMotion, ClockRate},
-          {"stick-slip", Where::kBoth, StickSlip},
-          {"remembered reversal", Where::kBoth, RememberedReversal},
-          {"relaxes behind reversals", Where::kBoth, RelaxesBehindReversals},
-          {"speed resonance", Where::kMotion, SpeedResonance}};
+  return {
+      {"speed bias", Where::kMotion, SpeedBias}, {"clock rate", Where::kMotion, ClockRate},
+      {"stick-slip", Where::kBoth, StickSlip}, {"remembered reversal", Where::kBoth, RememberedReversal},
+      {"relaxes behind reversals", Where::kBoth, RelaxesBehindReversals},
+      {"speed resonance", Where::kMotion, SpeedResonance}};
 }
 
 }  // namespace twinbench::foreign

@@ -64,9 +64,9 @@ AngleFault HeldReadings(Dice& dice, const Track&) {
 }  // namespace
 
 std::vector<AngleKind> NoiseKinds() {
-  return {{"noise of speed", Where::kMotion, NoiseOfSpeed},
-          {"1/f noise", Where::kBoth, Flicker},
-          {"held readings", Where::kMotion, HeldReadings}};
+  return {
+      {"noise of speed", Where::kMotion, NoiseOfSpeed}, {"1/f noise", Where::kBoth, Flicker},
+      {"held readings", Where::kMotion, HeldReadings}};
 }
 
 }  // namespace twinbench::foreign

@@ -93,15 +93,12 @@ AngleFault GainSteps(Dice& dice, const Track& example) {
 }  // namespace
 
 std::vector<AngleKind> TimeKinds() {
-  return {{"warm-up", Where::kBoth, WarmUp},
-          {"thermal bend", Where::kBoth, ThermalBend},
-          {"touch", Where::kBoth, Touch},
-          {"drift then rest", Where::kBoth, DriftThenRest},
-          {"beat of two tones", Where::kBoth, Beat},
-          {"chirp", Where::kBoth, Chirp},
-          {"temperature squared", Where::kStops, TemperatureSquared},
-          {"lagged temperature", Where::kStops, LaggedTemperature},
-          {"gain steps", Where::kBoth, GainSteps}};
+  return {
+      {"warm-up", Where::kBoth, WarmUp}, {"thermal bend", Where::kBoth, ThermalBend},
+      {"touch", Where::kBoth, Touch}, {"drift then rest", Where::kBoth, DriftThenRest},
+      {"beat of two tones", Where::kBoth, Beat}, {"chirp", Where::kBoth, Chirp},
+      {"temperature squared", Where::kStops, TemperatureSquared},
+      {"lagged temperature", Where::kStops, LaggedTemperature}, {"gain steps", Where::kBoth, GainSteps}};
 }
 
 }  // namespace twinbench::foreign

@@ -44,19 +44,12 @@ TEST(GratingStand, ShinesWhereTheIndependentPosesSay) {
   ASSERT_GT(rows.size(), 100U);
   for (const Row& row : rows) {
     const auto angle = [&](const char* name) { return std::stod(row.at(name)) * units::deg; };
-    const Spots spots = ShineOn(GratingOn({angle("target_deg"),
-                                           angle("reference_deg"),
-                                           angle("shift_deg"),
-                                           row.at("mode") == "reseat",
-                                           ErrorOf(row, "target"),
-                                           ErrorOf(row, "reference"),
-                                           {}}),
-                                {});
-    constexpr double kTolerance_um = 1e-5;
-    EXPECT_NEAR(spots.u_a_m / units::um, std::stod(row.at("psd_a_u_um")), kTolerance_um);
-    EXPECT_NEAR(spots.v_a_m / units::um, std::stod(row.at("psd_a_v_um")), kTolerance_um);
-    EXPECT_NEAR(spots.u_b_m / units::um, std::stod(row.at("psd_b_u_um")), kTolerance_um);
-    EXPECT_NEAR(spots.v_b_m / units::um, std::stod(row.at("psd_b_v_um")), kTolerance_um);
+    const Stacking stacking{angle("target_deg"), angle("reference_deg"), angle("shift_deg"),
+                            row.at("mode") == "reseat", ErrorOf(row, "target"), ErrorOf(row, "reference"), {}};
+    const Spots spots = ShineOn(GratingOn(stacking), {});
+    for (const auto& [at_m, column] : {std::pair{spots.u_a_m, "psd_a_u_um"}, {spots.v_a_m, "psd_a_v_um"},
+                                       {spots.u_b_m, "psd_b_u_um"}, {spots.v_b_m, "psd_b_v_um"}})
+      EXPECT_NEAR(at_m / units::um, std::stod(row.at(column)), 1e-5) << column;
   }
 }
 

@@ -16,9 +16,10 @@ StandFault Gain(Dice& dice, const StandRun&) {
 /// What the channel scanned before it left behind.
 StandFault Crosstalk(Dice& dice, const StandRun&) {
   const int channel = dice.Whole(0, 3), before = (channel + 3) % 4;
-  return {Listed({"crosstalk " + ChannelName(channel)}), {}, [=](const StandRun&, double size, Eigen::MatrixX4d& shown_m) {
-            shown_m.col(channel) += size * (shown_m.col(before) - shown_m.col(channel));
-          }};
+  const auto of_before = [=](const StandRun&, double size, Eigen::MatrixX4d& shown_m) {
+    shown_m.col(channel) += size * (shown_m.col(before) - shown_m.col(channel));
+  };
+  return {Listed({"crosstalk " + ChannelName(channel)}), {}, of_before};
 }
 
 /// Between two readings of a set-up: what happens while it is re-mounted is its own constant.
@@ -34,7 +35,8 @@ StandFault Slip(Dice& dice, const StandRun& example) {
 }
 
 StandFault LaserDrift(Dice&, const StandRun&) {
-  return Shining(Listed({"laser_drift pitch"}), &Light::laser_pitch_rad, [](const StandStop& at) { return at.t_s; });
+  return Shining(Listed({"laser_drift pitch"}), &Light::laser_pitch_rad,
+                 [](const StandStop& at) { return at.t_s; });
 }
 
 StandFault Tone(Dice& dice, const StandRun& example) {
@@ -71,14 +73,10 @@ StandFault WavelengthOfTemperature(Dice&, const StandRun&) {
 }  // namespace
 
 const std::vector<StandKind>& ListedStandKinds() {
-  static const std::vector<StandKind> kinds = {{"psd_gain", Gain},
-                                               {"crosstalk", Crosstalk},
-                                               {"slip", Slip},
-                                               {"laser_drift", LaserDrift},
-                                               {"tone", Tone},
-                                               {"backlash", Backlash},
-                                               {"thermal_tilt", ThermalTilt},
-                                               {"wavelength_temperature", WavelengthOfTemperature}};
+  static const std::vector<StandKind> kinds = {
+      {"psd_gain", Gain}, {"crosstalk", Crosstalk}, {"slip", Slip}, {"laser_drift", LaserDrift}, {"tone", Tone},
+      {"backlash", Backlash}, {"thermal_tilt", ThermalTilt},
+      {"wavelength_temperature", WavelengthOfTemperature}};
   return kinds;
 }
 

@@ -156,9 +156,7 @@ Machine MakeStandInOrder(std::uint64_t seed, const NoiseShape& noise, int positi
   StandDesign design;
   design.positions = positions;
   if (positions < 12) design.shifts = {0, 1, 3, positions - 2};
-  Truth truth;
-  truth.kind = "in order";
-  return Finished(truth, Drawn(seed, design, noise));
+  return Finished({.kind = "in order"}, Drawn(seed, design, noise));
 }
 
 }  // namespace twinbench::foreign

@@ -151,21 +151,13 @@ StandFault NoiseOfSpot(Dice& dice, const StandRun&) {
 }  // namespace
 
 const std::vector<StandKind>& UnlistedStandKinds() {
-  static const std::vector<StandKind> kinds = {{"both distances", BothDistances},
-                                               {"laser warm-up", WarmUp},
-                                               {"thermal bend", ThermalBend},
-                                               {"touch", Touch},
-                                               {"one channel saturates", OneChannelSaturates},
-                                               {"gain steps", GainSteps},
-                                               {"stick-slip", StickSlip},
-                                               {"beat of two tones", Beat},
-                                               {"chirp", Chirp},
-                                               {"order that appears", OrderThatAppears},
-                                               {"temperature squared", TemperatureSquared},
-                                               {"missing codes", MissingCodes},
-                                               {"drift then rest", DriftThenRest},
-                                               {"remembered reversal", RememberedReversal},
-                                               {"noise of spot", NoiseOfSpot}};
+  static const std::vector<StandKind> kinds = {
+      {"both distances", BothDistances}, {"laser warm-up", WarmUp}, {"thermal bend", ThermalBend},
+      {"touch", Touch}, {"one channel saturates", OneChannelSaturates}, {"gain steps", GainSteps},
+      {"stick-slip", StickSlip}, {"beat of two tones", Beat}, {"chirp", Chirp},
+      {"order that appears", OrderThatAppears}, {"temperature squared", TemperatureSquared},
+      {"missing codes", MissingCodes}, {"drift then rest", DriftThenRest},
+      {"remembered reversal", RememberedReversal}, {"noise of spot", NoiseOfSpot}};
   return kinds;
 }
 

@@ -41,24 +41,16 @@ Scenario ScenarioOf(const char* bench) {
   return scenario;
 }
 
-const Scenario& OfRotary() {
-  static const Scenario scenario = ScenarioOf(kRotaryBench);
-  return scenario;
-}
-
-const Scenario& OfMachine() {
-  static const Scenario scenario = ScenarioOf(kCircularBench);
-  return scenario;
-}
+const Scenario kOfRotary = ScenarioOf(kRotaryBench), kOfMachine = ScenarioOf(kCircularBench);
 
 struct ServedRotary {
   PlainRotary rotary;
-  hw::ServedBench served{rotary.Bench(), OfRotary(), AdcSettings{}, kTimeless};
+  hw::ServedBench served{rotary.Bench(), kOfRotary, AdcSettings{}, kTimeless};
 };
 
 struct ServedPlainMachine {
   PlainMachine machine;
-  hw::ServedMachine served{machine.Bench(), InstrumentColumns(FormatOf(kCircularBench).columns), OfMachine(), kTimeless};
+  hw::ServedMachine served{machine.Bench(), InstrumentColumns(FormatOf(kCircularBench).columns), kOfMachine, kTimeless};
 };
 
 template <class Speaks, class Shown>

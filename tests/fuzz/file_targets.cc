@@ -87,12 +87,6 @@ std::string Word(std::string text) {
   return text;
 }
 
-std::string Contents(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 std::vector<std::string> MakeExr() {
   optics::IrradianceMap map;
   map.name = "psd_a.p1";

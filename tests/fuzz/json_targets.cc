@@ -53,10 +53,8 @@ void ReadLaboratoryFile(std::string_view bytes) {
 }
 
 constexpr Target kJsonTargets[] = {
-    {"page_of_diagnosis", PageOfDiagnosis, ""},
-    {"page_of_results", PageOfResults, ""},
-    {"page_of_plan", PageOfPlan, ""},
-    {"page_of_investigation", PageOfInvestigation, ""},
+    {"page_of_diagnosis", PageOfDiagnosis, ""}, {"page_of_results", PageOfResults, ""},
+    {"page_of_plan", PageOfPlan, ""},           {"page_of_investigation", PageOfInvestigation, ""},
     {"laboratory", ReadLaboratoryFile, ""},
 };
 

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/fuzz/file_of_bytes.h"
 #include "tests/fuzz/mutate.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/sanitized.h"
@@ -92,12 +93,6 @@ bool Read(const Target& target, std::string input) {
   return false;
 }
 
-std::string Contents(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 void AddSeeds(const fs::path& place, std::vector<std::string>& seeds) {
   std::vector<fs::path> files;
   if (fs::is_directory(place)) {
@@ -168,15 +163,11 @@ Wanted Parse(int argc, char** argv) {
   Wanted wanted;
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
-    if (word == "--seconds" && k + 1 < argc) {
-      wanted.seconds = std::stod(argv[++k]);
-    } else if (word == "--only" && k + 1 < argc) {
-      wanted.only = argv[++k];
-    } else if (word == "--write" && k + 1 < argc) {
-      wanted.write_to = argv[++k];
-    } else {
-      wanted.files.push_back(word);
-    }
+    const bool has_next = k + 1 < argc;
+    if (word == "--seconds" && has_next) wanted.seconds = std::stod(argv[++k]);
+    else if (word == "--only" && has_next) wanted.only = argv[++k];
+    else if (word == "--write" && has_next) wanted.write_to = argv[++k];
+    else wanted.files.push_back(word);
   }
   return wanted;
 }

@@ -104,16 +104,11 @@ void ReadAnswer(std::string_view bytes) {
 }
 
 constexpr Target kTextTargets[] = {
-    {"scenario", ReadScenario, "scenarios"},
-    {"override", ReadOverride, ""},
-    {"readings", ReadReadings, ""},
-    {"recording", ReadRecording, ""},
-    {"errors_map", ReadErrorsMap, ""},
-    {"bench_file", ReadBenchFile, ""},
-    {"machine_file", ReadMachineFile, ""},
-    {"dialogue", ReadDialogue, "hw_bridge/dialogues"},
-    {"program_file", ReadProgramFile, ""},
-    {"answer", ReadAnswer, ""},
+    {"scenario", ReadScenario, "scenarios"}, {"override", ReadOverride, ""},
+    {"readings", ReadReadings, ""},          {"recording", ReadRecording, ""},
+    {"errors_map", ReadErrorsMap, ""},       {"bench_file", ReadBenchFile, ""},
+    {"machine_file", ReadMachineFile, ""},   {"dialogue", ReadDialogue, "hw_bridge/dialogues"},
+    {"program_file", ReadProgramFile, ""},   {"answer", ReadAnswer, ""},
 };
 
 }  // namespace

@@ -93,9 +93,7 @@ TEST_F(Importing, TakesTheTwoColumnsOfAFileWithoutNamesInTheirOrderAndSaysSo) {
   for (int i = 0; i < 60; ++i) text += fmt::format("{} {}\n", 6 * i, 6 * i + 0.01);
   const Imported imported = Take(text);
   EXPECT_EQ(imported.readings.size(), 60u);
-  EXPECT_THAT(imported.story, HasSubstr("the first column that is left"));
-  EXPECT_THAT(imported.story, HasSubstr("its unit is not said and taken as deg"));
-  EXPECT_THAT(imported.story, HasSubstr("taken as stops"));
+  EXPECT_KEPT(imported.story);
 }
 
 TEST_F(Importing, UnwrapsAndSaysIt) {

@@ -36,25 +36,11 @@ TEST(UnitNames, AreTakenOffHeadersHoweverTheyAreWritten) {
 
 /// By what they are defined as, in full: nothing here is the program's.
 TEST(UnitNames, AreTheirDefinitionsInSI) {
-  const std::map<std::string, double> in_SI = {{"deg", 0.017453292519943295},
-                                               {"mrad", 1e-3},
-                                               {"urad", 1e-6},
-                                               {"arcsec", 4.8481368110953599e-6},
-                                               {"arcmin", 2.908882086657216e-4},
-                                               {"mdeg", 1.7453292519943295e-5},
-                                               {"gon", 0.015707963267948967},
-                                               {"turn", 6.2831853071795865},
-                                               {"mm", 1e-3},
-                                               {"um", 1e-6},
-                                               {"nm", 1e-9},
-                                               {"inch", 0.0254},
-                                               {"ms", 1e-3},
-                                               {"us", 1e-6},
-                                               {"ns", 1e-9},
-                                               {"min", 60.0},
-                                               {"h", 3600.0},
-                                               {"mV", 1e-3},
-                                               {"rad", 1.0}};
+  const std::map<std::string, double> in_SI = {
+      {"deg", 0.017453292519943295}, {"mrad", 1e-3}, {"urad", 1e-6}, {"arcsec", 4.8481368110953599e-6},
+      {"arcmin", 2.908882086657216e-4}, {"mdeg", 1.7453292519943295e-5}, {"gon", 0.015707963267948967},
+      {"turn", 6.2831853071795865}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}, {"inch", 0.0254}, {"ms", 1e-3},
+      {"us", 1e-6}, {"ns", 1e-9}, {"min", 60.0}, {"h", 3600.0}, {"mV", 1e-3}, {"rad", 1.0}};
   for (const auto& [name, SI] : in_SI) EXPECT_NEAR(UnitNamed(name)->to_SI / SI, 1.0, 1e-15) << name;
 }
 

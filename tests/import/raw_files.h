@@ -102,11 +102,9 @@ inline std::string GuideLog(const std::function<double(double)>& error_arcsec, i
         error_arcsec(angle_deg) * Cosine(1.0, kDec_deg, 0.0) / kScale - taken_out_px + seeing(random);
     const int pulse_ms = std::abs(raw_px) > 0.2 ? static_cast<int>(700.0 * std::abs(raw_px) / kRate) : 0;
     taken_out_px += (raw_px > 0.0 ? 1.0 : -1.0) * pulse_ms / 1000.0 * kRate;
+    const char* way = pulse_ms == 0 ? "" : raw_px > 0.0 ? "W" : "E";
     text += fmt::format("{},{:.3f},\"Mount\",{:.3f},0.100,{:.3f},0.050,{:.3f},0.000,{},{},0,,,,1713,28.59,0\n", k,
-                        time_s, raw_px, raw_px, 0.7 * raw_px, pulse_ms,
-                        pulse_ms == 0  ? ""
-                        : raw_px > 0.0 ? "W"
-                                       : "E");
+                        time_s, raw_px, raw_px, 0.7 * raw_px, pulse_ms, way);
   }
   return text + "Guiding Ends at 2022-01-15 22:42:46\n\nLog Summary: calcnt:1 gcnt:1 gdur:19 gacnt:2\n";
 }

@@ -57,14 +57,11 @@ TEST(Goal, RunsAddUpByTheirInverseVariances) {
 uncertainty::Budget Budget(int place, double standard, double rounding) {
   uncertainty::Budget budget;
   budget.quantity.name = "separation.target.ez_arcsec[" + std::to_string(place) + "]";
-  budget.sources.resize(3);
-  budget.sources[0].name = "noise";
-  budget.sources[0].type = 'A';
-  budget.sources[0].u = 0.5;
-  budget.sources[1].name = "autocollimator.gain_error";
-  budget.sources[1].u = standard;
-  budget.sources[2].name = "quantisation";
-  budget.sources[2].u = rounding;
+  for (const auto& [name, u] : {std::pair{"noise", 0.5}, {"autocollimator.gain_error", standard}, {"quantisation", rounding}}) {
+    budget.sources.emplace_back().name = name;
+    budget.sources.back().u = u;
+  }
+  budget.sources.front().type = 'A';
   return budget;
 }
 

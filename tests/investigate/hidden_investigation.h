@@ -12,7 +12,7 @@
 #include "twin/core/units.h"
 #include "twin/investigate/investigation.h"
 
-/// Investigations of twins with something hidden, without a disk.
+/// Investigations of benches with something hidden: of twins without a disk, and of a program of others.
 namespace twinbench::investigate {
 
 enum class Result {
@@ -68,5 +68,10 @@ Judged InvestigateHidden(const hidden::Placement& at, std::uint64_t seed, double
 /// A signal that the catalogue has no name for, the same one in every run.
 Judged InvestigateUnlisted(hidden::Design design, const hidden::UnlistedCause& cause, std::uint64_t seed, double rho,
                            const hidden::SignatureScale& scale, const InvestigationOptions& options);
+
+/// An encoder that a program measures (tests/data/program/acquire_hidden.py), which shares nothing with the twin.
+/// @param script  The program's path.
+/// @param folder  Where its files go.
+Judged InvestigateProgram(const std::string& script, std::uint64_t seed, const std::string& folder);
 
 }  // namespace twinbench::investigate

@@ -59,8 +59,7 @@ class JointFits : public testing::Test {
 
 // What a diagnosis looks for up to some bound is called something else beyond it: no run may lead there.
 TEST_F(JointFits, KeepACauseWhereTheDiagnosisCallsItSo) {
-  const std::vector<TakenRun> runs =
-      RunsWith("[[effect]]\nname = \"drift\"\nrate_deg_per_h = 2.0\n", 2);
+  const std::vector<TakenRun> runs = RunsWith("[[effect]]\nname = \"drift\"\nrate_deg_per_h = 2.0\n", 2);
   const double rate = 2.0 * kDeg / units::hour;
   Hypothesis steady = Of("drift"), slow;
   steady.causes.front().finding.u = {{"rate", 0.1 * rate}};
@@ -121,8 +120,7 @@ TEST_F(JointFits, KeepWhatASizeCostsFromFitToFit) {
 // three noise standard deviations lies in between, and no slope leads there from either.
 TEST_F(JointFits, FindAClippingThatFewStopsAreNear) {
   constexpr double kLevel = 0.9975;
-  const auto runs =
-      RunsWith(fmt::format("[[effect]]\nname = \"signal_clipping\"\nlevel = {}\n", kLevel), 2);
+  const auto runs = RunsWith(fmt::format("[[effect]]\nname = \"signal_clipping\"\nlevel = {}\n", kLevel), 2);
   const JointFit clipped = Fit("signal_clipping", runs);
   EXPECT_NEAR(clipped.hypothesis.causes.front().parameters.at("level"), kLevel, 0.001);
   EXPECT_LT(clipped.chi2, 200.0);  // of 2 x 72 readings

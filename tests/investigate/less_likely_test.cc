@@ -28,14 +28,15 @@ diagnose::DiagnosisRun DriftFound() {
   return found;
 }
 
-Scenario Turntable() {
+Scenario PlainOf(const char* bench) {
   Scenario scenario;
-  scenario.bench = kTurntableBench;
+  scenario.bench = bench;
   return scenario;
 }
+const Scenario kTurntable = PlainOf(kTurntableBench);
 
 TEST(LessLikely, IsOpenBesideWhatTheAnswerNames) {
-  const std::vector<Weighed> open = LeftOpen(WithLessLikely(DriftFound()), Turntable());
+  const std::vector<Weighed> open = LeftOpen(WithLessLikely(DriftFound()), kTurntable);
   ASSERT_EQ(open.size(), 2u);
   EXPECT_EQ(open[0].hypothesis.Name(), "autocollimator_drift y");
   EXPECT_EQ(open[1].hypothesis.Name(), "mount_creep y");
@@ -60,11 +61,11 @@ TEST(LessLikely, IsAsLargeAsItWouldBeAlone) {
   creep.parameters = {{"amplitude", "arcsec", units::arcsec, 0.7 * units::arcsec, 0.1 * units::arcsec, -1.0, 1.0},
                       {"time_constant", "s", 1.0, 300.0, 100.0, 1.0, 1e5}};
   found.suspects = {Named("autocollimator_drift", 0.0), creep};
-  const Supposed supposed = LeftOpen(WithLessLikely(found), Turntable())[1].hypothesis.causes.front();
+  const Supposed supposed = LeftOpen(WithLessLikely(found), kTurntable)[1].hypothesis.causes.front();
   EXPECT_DOUBLE_EQ(supposed.parameters.at("amplitude"), 0.7 * units::arcsec);
   EXPECT_DOUBLE_EQ(supposed.finding.u.at("amplitude"), 0.1 * units::arcsec);
   EXPECT_DOUBLE_EQ(supposed.parameters.at("time_constant"), 300.0);
-  const std::vector<Weighed> each = EachAlone(found, Turntable(), 0);
+  const std::vector<Weighed> each = EachAlone(found, kTurntable, 0);
   ASSERT_EQ(each.size(), 2u);
   EXPECT_EQ(each[1].hypothesis.Name(), "mount_creep y");
   EXPECT_DOUBLE_EQ(each[1].hypothesis.causes.front().parameters.at("time_constant"), 300.0);
@@ -87,9 +88,7 @@ TEST(Rival, OfALargeCauseBeginsWithTheOrderThatWasFitted) {
   Cause alone = fault;
   alone.parameters = {Order(19.0)};
   found.suspects = {alone};
-  Scenario scenario;
-  scenario.bench = kEncoderBench;
-  const std::vector<Weighed> open = LeftOpen(found, scenario);
+  const std::vector<Weighed> open = LeftOpen(found, PlainOf(kEncoderBench));
   ASSERT_EQ(open.size(), 2u);
   for (const Weighed& one : open) EXPECT_EQ(one.hypothesis.causes.front().parameters.at("order"), 4.0) << one.hypothesis.Name();
 }
@@ -102,7 +101,7 @@ TEST(Unsized, StaysOpenBesideWhatHasNoName) {
   EXPECT_DOUBLE_EQ(UnlistedBy(found), 0.9);
   found.unsized = {Named("mount_creep", 0.7)};
   EXPECT_NEAR(UnlistedBy(found), 0.9 * 0.3, 1e-12);
-  const std::vector<Weighed> open = LeftOpen(found, Turntable());
+  const std::vector<Weighed> open = LeftOpen(found, kTurntable);
   ASSERT_EQ(open.size(), 2u);
   EXPECT_EQ(open[0].hypothesis.Name(), "mount_creep y");
   EXPECT_TRUE(open[1].hypothesis.IsNothing());

@@ -1,4 +1,4 @@
-#include "tests/investigate/program_investigation.h"
+#include "tests/investigate/hidden_investigation.h"
 
 #include <gtest/gtest.h>
 

@@ -26,7 +26,7 @@ void AddClonesOf(const std::string& source, std::vector<Clone>& clones) {
     ++number;
     if (line == "namespace {") is_internal = true;
     if (line == "}  // namespace") is_internal = false;
-    if (std::regex_search(line, match, cloned))
+    if (line.find("target_clones") != line.npos && std::regex_search(line, match, cloned))
       clones.push_back({source + ":" + std::to_string(number), match[1], is_internal});
   }
 }

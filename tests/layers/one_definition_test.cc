@@ -21,6 +21,7 @@ std::map<std::string, std::set<std::string>> DefinitionsInHeaders() {
     std::string space;
     std::smatch match;
     for (const std::string& line : LinesOf(header)) {
+      if (!line.starts_with("inline ") && !line.starts_with("namespace ")) continue;
       if (std::regex_search(line, match, opens)) space = match[1];
       if (std::regex_search(line, match, variable) || std::regex_search(line, match, function))
         found[space + " " + match[1].str()].insert(header);

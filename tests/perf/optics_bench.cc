@@ -139,8 +139,7 @@ void TraceBare(RTCScene scene, std::vector<Packet>& packets) {
 /// Bare and exact by turns; each round gives a ratio to the better of the two bare packets, and the median of them
 /// forgets the rounds that were disturbed.
 void ExactAgainstBareEmbree(benchmark::State& state, const std::string& embree_options) {
-  const Scene scene =
-      MakeScene(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), embree_options);
+  const Scene scene = MakeScene(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)), embree_options);
   const RayBatch rays = Beams(scene);
   auto packets8 = Packets<8, RTCRayHit8>(rays);
   auto packets16 = Packets<16, RTCRayHit16>(rays);

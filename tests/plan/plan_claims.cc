@@ -41,9 +41,8 @@ bool IsForetold(const Isolability& foretold, const EffectSettings& truth, const 
 const diagnose::CauseGroup& GroupOf(const std::vector<diagnose::CauseGroup>& groups,
                                     const std::vector<diagnose::Cause>& causes, const EffectSettings& truth) {
   for (const diagnose::CauseGroup& group : groups) {
-    if (std::ranges::any_of(group, [&](std::size_t k) {
-          return causes[k].effect == truth.name && causes[k].where == truth.where;
-        }))
+    if (std::ranges::any_of(
+            group, [&](std::size_t k) { return causes[k].effect == truth.name && causes[k].where == truth.where; }))
       return group;
   }
   return groups.front();

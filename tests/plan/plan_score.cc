@@ -72,9 +72,5 @@ int main(int argc, char** argv) {
   app.add_option("--runs", options.runs);
   app.add_option("--first-seed", options.first_seed);
   CLI11_PARSE(app, argc, argv);
-  if (options.sizes_of.empty()) {
-    twinbench::plan::ScoreTies(options);
-  } else {
-    twinbench::plan::ScoreSizes(options);
-  }
+  options.sizes_of.empty() ? twinbench::plan::ScoreTies(options) : twinbench::plan::ScoreSizes(options);
 }

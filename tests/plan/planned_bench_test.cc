@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/plan/plan_claims.h"
+#include "tests/support/twin_run.h"
 #include "tools/twinbench/passing_run.h"
 #include "tools/twinbench/plan_advice.h"
 #include "tools/twinbench/planned_run.h"
@@ -150,8 +151,7 @@ TEST(IsolabilityOf, IsThatOfTheRunThatTellsLeast) {
 
 /// Four heads at equal division lose every fourth order, and the twin says so; the four that tell most lose none.
 TEST(ShiftDesignOf, TakesHeadsForShifts) {
-  const std::string folder = std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/";
-  const Scenario scenario = LoadScenario(folder + "encoder_heads.toml", {});
+  const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_heads.toml"));
   const plan::ShiftDesign design = ShiftDesignOf(scenario).value();
   EXPECT_EQ(plan::Judged(design.positions, design.shifts).lost.front(), 4);
   const plan::ShiftSet best = plan::BestShifts(design.positions, 4);
@@ -165,10 +165,9 @@ TEST(ShiftDesignOf, TakesHeadsForShifts) {
 }
 
 TEST(ShiftDesignOf, IsOfMountingsAndOfPlacesOfAHeadWhereThereAreSeveral) {
-  const std::string folder = std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/";
-  EXPECT_FALSE(ShiftDesignOf(LoadScenario(folder + "encoder_comparison.toml", {})).has_value());
+  EXPECT_FALSE(ShiftDesignOf(LoadScenario(test::ScenarioPath("encoder_comparison.toml"))).has_value());
   for (const char* file : {"encoder_mountings.toml", "hob_transmission.toml"}) {
-    const Scenario scenario = LoadScenario(folder + file, {});
+    const Scenario scenario = LoadScenario(test::ScenarioPath(file));
     const plan::ShiftDesign design = ShiftDesignOf(scenario).value();
     ASSERT_GT(design.shifts.size(), 1u) << file;
     const Scenario other = Altered(scenario, design.sets({0, 3, 7}));
@@ -229,7 +228,7 @@ TEST(BestShifts, FourBeatTwoThatAreTakenTwiceOnTheTwin) {
 
 /// Those of an encoder come from the noise of one run, which is known to some per cent.
 TEST(CheckSizes, OfAnEncoderAreWhatManyRunsOfTheTwinSay) {
-  const Scenario scenario = LoadScenario(std::string(TWINBENCH_SOURCE_DIR) + "/scenarios/encoder_comparison.toml", {});
+  const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_comparison.toml"));
   const std::vector<plan::SizeCheck> checks = plan::CheckSizes(scenario, 200);
   EXPECT_GE(checks.size(), 8u);
   for (const plan::SizeCheck& check : checks) EXPECT_NEAR(check.ratio, 1.0, 0.25) << check.cause;

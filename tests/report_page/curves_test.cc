@@ -30,9 +30,7 @@ TEST(CurveFigures, HoldTheNumbersOfResultsWithTheirUncertaintyAndItsCoverage) {
   ASSERT_EQ(figures[0].series.size(), 1u);
   const FigureSeries& curve = figures[0].series[0];
   EXPECT_THAT(curve.x, ElementsAre(0, 90, 180));
-  EXPECT_EQ(curve.y[0], 1.5);
-  EXPECT_TRUE(std::isnan(curve.y[1]));
-  EXPECT_EQ(curve.y[2], -2.5);
+  EXPECT_THAT(curve.y, ElementsAre(1.5, testing::IsNan(), -2.5));
   EXPECT_THAT(curve.u, ElementsAre(0.1, 0.2, 0.3));
   EXPECT_EQ(curve.k, 2.25);
 }
@@ -44,9 +42,7 @@ TEST(CurveFigures, ShowTruthOnlyWhereTheScoreHasIt) {
   const FigureSeries& truth = figures[0].series[1];
   EXPECT_EQ(truth.role, SeriesRole::kTruth);
   EXPECT_EQ(truth.name, "truth");
-  EXPECT_EQ(truth.y[0], 1.25);
-  EXPECT_TRUE(std::isnan(truth.y[1]));  // what was not scored has none
-  EXPECT_EQ(truth.y[2], -2.75);
+  EXPECT_THAT(truth.y, ElementsAre(1.25, testing::IsNan(), -2.75));  // what was not scored has none
 }
 
 TEST(CurveFigures, BeginWithTheTurnOfWhatIsUnderTest) {

@@ -8,7 +8,6 @@
 #include "twin/benches/turntable_autocollimator/bench.h"
 #include "twin/benches/turntable_autocollimator/estimators/polygon_analysis.h"
 #include "twin/diagnose/diagnosis.h"
-#include "twin/plan/next_run.h"
 #include "twin/separate/compensation.h"
 
 // The answer that the scenario of the polygon promises, and what the other commands make of such a run.
@@ -54,9 +53,6 @@ TEST(TurntablePolygon, KnowsTheEncodersCurveToFourThousandthsOfAnArcsecond) {
     encoder += MeanSquaredScore(run, "turntable") / kSeeds;
     faces += MeanSquaredScore(run, "polygon") / kSeeds;
   }
-  RecordProperty("figures",
-                 fmt::format("U (k = 2) {:.5f} arcsec, reading {:.5f}, (error/u)^2 encoder {:.3f}, faces {:.3f}",
-                             expanded, reading, encoder, faces));
   // 0.0297 arcsec stated, of which the encoder's step is no normal scatter but nearly so; 1200 degrees of freedom a
   // run.
   EXPECT_NEAR(reading, 0.0297, 0.0004);
@@ -149,12 +145,6 @@ TEST(TurntablePolygon, CompensatesTheEncoder) {
   // Of the same kind of readings, four in a mean: 0.015 arcsec.
   EXPECT_NEAR(check.remeasured_rms_rad / arcsec, 0.015, 0.002);
   EXPECT_NEAR(check.Ratio(), 1.0, 0.15);
-}
-
-TEST(TurntablePolygon, OffersRunsThatItsScenarioAllows) {
-  const Scenario scenario = PolygonScenario();
-  for (const plan::NextRun& next : benches::turntable::NextRunsOf(scenario))
-    EXPECT_NO_THROW(PolygonScenario(next.sets)) << next.name;
 }
 
 TEST(TurntablePolygon, IsDiagnosed) {

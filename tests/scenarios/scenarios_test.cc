@@ -10,6 +10,7 @@
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/rotary_4dof/estimators/stability.h"
 #include "twin/benches/rotary_4dof/estimators/verification.h"
+#include "twin/plan/next_run.h"
 
 // Every file in scenarios/ opens with a question and the answer expected; here the answers are checked.
 namespace twinbench {
@@ -39,7 +40,7 @@ TEST_P(EveryScenario, OpensWithItsQuestionAndTheAnswerExpected) {
 TEST_P(EveryScenario, RunsWithEveryReadingValid) {
   const Scenario scenario = LoadScenario(test::ScenarioPath(GetParam()));
   const std::vector<Reading> readings = test::ReadingsOf(scenario);
-  EXPECT_EQ(static_cast<int>(readings.size()), test::PlannedReadings(scenario));
+  EXPECT_EQ(static_cast<int>(readings.size()), BenchOf(scenario).planned_readings(scenario));
   for (const Reading& reading : readings) EXPECT_EQ(reading.status, ReadingStatus::kOk) << reading.reading;
 }
 
@@ -47,6 +48,12 @@ TEST_P(EveryScenario, ReadsTheSameFromItsResolvedForm) {
   const Scenario scenario = LoadScenario(test::ScenarioPath(GetParam()));
   const std::string resolved = WriteScenario(scenario);
   EXPECT_EQ(WriteScenario(ParseScenario(resolved, "resolved", "")), resolved);
+}
+
+TEST_P(EveryScenario, AllowsTheRunsThatItsBenchOffersNext) {
+  const Scenario scenario = LoadScenario(test::ScenarioPath(GetParam()));
+  for (const plan::NextRun& next : BenchOf(scenario).next_runs(scenario))
+    EXPECT_NO_THROW(LoadScenario(test::ScenarioPath(GetParam()), next.sets)) << next.name;
 }
 
 INSTANTIATE_TEST_SUITE_P(InFolder, EveryScenario, ::testing::ValuesIn(ScenarioNames()), [](const auto& param_info) {

@@ -8,16 +8,12 @@ namespace {
 using testing::ElementsAre, testing::HasSubstr, testing::IsEmpty;
 
 // Closed form: twice the tail of a binomial with one half. 2 (1 + 10) / 2^10, 2 / 2^6, 2 (1 + 5) / 2^5.
-TEST(McNemar, IsTwiceTheBinomialTail) {
+TEST(McNemar, IsTwiceTheBinomialTailAndOneIfNothingChangedOrAsMuchEitherWay) {
   EXPECT_NEAR(McNemar(1, 9), 22.0 / 1024.0, 1e-12);
   EXPECT_NEAR(McNemar(9, 1), 22.0 / 1024.0, 1e-12);
   EXPECT_NEAR(McNemar(0, 6), 2.0 / 64.0, 1e-12);
   EXPECT_NEAR(McNemar(1, 4), 12.0 / 32.0, 1e-12);
-}
-
-TEST(McNemar, IsOneIfNothingChangedOrAsMuchEitherWay) {
-  EXPECT_DOUBLE_EQ(McNemar(0, 0), 1.0);
-  EXPECT_DOUBLE_EQ(McNemar(3, 3), 1.0);
+  for (const int either_way : {0, 3}) EXPECT_DOUBLE_EQ(McNemar(either_way, either_way), 1.0);
 }
 
 /// `count` cases of a bench with one mark.

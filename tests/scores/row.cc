@@ -35,13 +35,9 @@ std::vector<std::string> FieldsOf(const std::string& line) {
   std::vector<std::string> fields(1);
   bool is_quoted = false;
   for (const char c : line) {
-    if (c == '"') {
-      is_quoted = !is_quoted;
-    } else if (c == ',' && !is_quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
+    if (c == '"') is_quoted = !is_quoted;
+    else if (c == ',' && !is_quoted) fields.emplace_back();
+    else fields.back() += c;
   }
   return fields;
 }

@@ -107,8 +107,7 @@ std::string SetsInWords() {
   for (const Set& set : Sets()) text += fmt::format("  {:<14} {}\n", set.name, set.words);
   return text +
          "\nExit code: 0; 1 if with --since a mark of all cases together has become worse at p <= 0.05; 2 if a "
-         "file "
-         "cannot be read or written.";
+         "file cannot be read or written.";
 }
 
 std::vector<std::string> SetNames() {

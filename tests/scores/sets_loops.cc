@@ -7,7 +7,6 @@
 
 #include "tests/hidden/unlisted.h"
 #include "tests/investigate/hidden_investigation.h"
-#include "tests/investigate/program_investigation.h"
 #include "tests/own_scenario/own_scenario.h"
 #include "tests/scores/sets.h"
 #include "tests/support/twin_run.h"

@@ -83,14 +83,4 @@ inline std::vector<Reading> ReadingsOf(const Scenario& scenario) {
   return ReadingsByRecord(scenario);
 }
 
-inline int PlannedReadings(const Scenario& scenario) {
-  if (scenario.bench == kEncoderBench)
-    return static_cast<int>(procedure::AngleSchedule(EncoderOf(scenario).encoder_procedure).size());
-  if (scenario.bench == kTurntableBench)
-    return procedure::PlannedReadings(TurntableOf(scenario).turntable_procedure);
-  if (scenario.bench == kHobBench) return procedure::PlannedReadings(HobOf(scenario));
-  if (scenario.bench != kRotaryBench) return BenchOf(scenario).planned_readings(scenario);
-  return procedure::PlannedReadings(RotaryOf(scenario).procedure);
-}
-
 }  // namespace twinbench::test

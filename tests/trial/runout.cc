@@ -215,14 +215,6 @@ diagnose::DiagnosisRun Diagnose(const std::vector<Reading>& readings, const Scen
   return diagnose::DiagnoseByTwin(readings, scenario, options, Comparison(scenario));
 }
 
-diagnose::LinearRun Linear(const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
-  return diagnose::CompareWithTwin(readings, scenario, Comparison(scenario));
-}
-
-int PlannedReadings(const Scenario& scenario) {
-  return static_cast<int>(Schedule(scenario).size());
-}
-
 }  // namespace
 
 const std::vector<const BenchFormat*>& BenchFormats() {
@@ -235,11 +227,13 @@ const std::vector<const Bench*>& Benches() {
       .format = &Format(),
       .make_twin = [](const Scenario& s) -> std::unique_ptr<BenchTwin> { return std::make_unique<Twin>(s); },
       .follow = FollowRecord,
-      .planned_readings = PlannedReadings,
+      .planned_readings = [](const Scenario& s) { return static_cast<int>(Schedule(s).size()); },
       .evaluate = Evaluate,
       .score = Score,
       .diagnose = Diagnose,
-      .linear_run = Linear};
+      .linear_run = [](const std::vector<Reading>& readings, const Scenario& scenario, Estimator) {
+        return diagnose::CompareWithTwin(readings, scenario, Comparison(scenario));
+      }};
   static const std::vector<const Bench*> benches = {&bench};
   return benches;  // constant
 }

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
-#include <set>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/tools/program.h"
 
