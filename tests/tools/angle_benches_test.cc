@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
-
 #include "tests/tools/program_here.h"
 
 // The commands on the turntable with autocollimator and on the hobbing machine.
@@ -64,8 +61,8 @@ TEST_F(AngleBenches, TurntableTakesErrorsFromAFile) {
            "multitooth.tooth_rms_arcsec=0"});
   const auto ez = Results("a").at("separation").at("turntable").at("ez_arcsec");
   EXPECT_NEAR(ez.at(3).get<double>() - ez.at(9).get<double>(), 20.0, 0.01);
-  EXPECT_THAT(Call({"run", "turntable.toml", "-o", "b", "--errors", "target=t.csv"}).err,
-              HasSubstr("names no table; expected turntable=FILE.csv or multitooth=FILE.csv"));
+  ExpectRefused({"run", "turntable.toml", "-o", "b", "--errors", "target=t.csv"},
+                "turntable=FILE.csv or multitooth=FILE.csv");
 }
 
 TEST_F(AngleBenches, HobbingMachineIsSeparatedAndScored) {

@@ -17,14 +17,6 @@ class Attack : public ProgramHere {
  protected:
   Attack() { Write("small.toml", kSmall); }
 
-  /// @return what it complains about; the folder must be as it was.
-  std::string Refusal(const std::vector<std::string>& arguments) {
-    const auto before = Snapshot();
-    const Outcome outcome = Call(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
-    EXPECT_TRUE(before == Snapshot()) << "the folder has changed";
-    return outcome.err;
-  }
   int ExitOfShell(const std::string& command) const {
     return WEXITSTATUS(
         std::system(("cd " + At("") + " && " TWINBENCH_PROGRAM " " + command + " 2> /dev/null").c_str()));
@@ -38,50 +30,41 @@ class Attack : public ProgramHere {
 
 TEST_F(Attack, KeysWithoutEndAreRefusedInEveryFile) {
   Write("bad.toml", kSmall + Dotted(100000) + "\n");
-  EXPECT_THAT(Refusal({"run", "bad.toml", "-o", "out"}), HasSubstr(": a key of 100001 parts; expected at most 64"));
+  ExpectRefused({"run", "bad.toml", "-o", "out"}, "bad.toml:");
   Write("bench.toml", "kind = \"twin\"\n" + std::string(200000, 'k') + "= 1\n");
-  EXPECT_THAT(Refusal({"measure", "small.toml", "--bench", "bench.toml", "-o", "out"}),
-              HasSubstr("bench.toml:2: a key of 200000 letters"));
+  ExpectRefused({"measure", "small.toml", "--bench", "bench.toml", "-o", "out"}, "bench.toml:2: ");
   EXPECT_THAT(Refusal({"run", "small.toml", "-o", "out", "--set", Dotted(1000)}), HasSubstr("a key of 1001 parts"));
 }
 
 TEST_F(Attack, AWatchWithoutEndIsRefusedAndNotCountedWrongly) {
-  EXPECT_THAT(Refusal({"run", "small.toml", "-o", "out", "--set", "procedure.stability_s=1e8", "--set",
-                       "procedure.stability_interval_s=0.01"}),
-              HasSubstr("1e+08 s of stability every 0.01 s are 1e+10 readings"));
+  ExpectRefused({"run", "small.toml", "-o", "out", "--set", "procedure.stability_s=1e8", "--set",
+                 "procedure.stability_interval_s=0.01"},
+                " are 1e+10 readings");
 }
 
-TEST_F(Attack, ARunOverwritesNoFileOfTheUser) {
+TEST_F(Attack, AnOutputIsNoFileOfTheUserNoInputAndNoRecord) {
   Write("scenario.toml", kSmall);
-  EXPECT_THAT(Refusal({"run", "scenario.toml", "-o", "."}), HasSubstr("scenario.toml: the file is there already"));
   Write("bench.toml", "kind = \"twin\"\n");
-  EXPECT_THAT(Refusal({"measure", "small.toml", "--bench", "bench.toml", "-o", "."}),
-              HasSubstr("scenario.toml: the file is there already"));
-}
-
-TEST_F(Attack, AnOutputIsNoInputAndNoRecord) {
+  ExpectRefused({"run", "scenario.toml", "-o", "."}, "scenario.toml: ");
+  ExpectRefused({"measure", "small.toml", "--bench", "bench.toml", "-o", "."}, "scenario.toml: ");
   MakeRun("run");
-  EXPECT_THAT(Refusal({"export", "run", "--readings", "run/record.sqlite"}), HasSubstr("this is a record"));
   Succeed({"export", "run", "--readings", "readings.csv"});
+  ExpectRefused({"export", "run", "--readings", "run/record.sqlite"});
+  ExpectRefused({"export", "run", "--readings", "run"});
   for (const char* output : {"small.toml", "readings.csv", "./small.toml"})
-    EXPECT_THAT(Refusal({"separate", "readings.csv", "--scenario", "small.toml", "--json", output}),
-                HasSubstr("reads this file and would overwrite it"));
-  EXPECT_THAT(Refusal({"diagnose", "readings.csv", "--scenario", "small.toml", "-o", "small.toml"}),
-              HasSubstr("reads this file"));
-  EXPECT_THAT(Refusal({"export", "run", "--readings", "run"}), HasSubstr("this is a folder"));
+    ExpectRefused({"separate", "readings.csv", "--scenario", "small.toml", "--json", output});
+  ExpectRefused({"diagnose", "readings.csv", "--scenario", "small.toml", "-o", "small.toml"});
 }
 
 TEST_F(Attack, WhatIsThereStaysUnlessForceIsSaid) {
   MakeRun("run");
   Write("notes.txt", "three weeks of work");
-  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-           {"export", "run", "--readings", "notes.txt"},
-           {"new", "rotary_4dof", "-o", "notes.txt"},
-           {"plan", "small.toml", "-o", "notes.txt"},
-           {"certificate", "--template", "-o", "notes.txt"},
-           {"serve", "small.toml", "--write-bench", "notes.txt"}})
-    EXPECT_THAT(Refusal(command), HasSubstr("notes.txt: the file is there already; expected a name that is not taken, or --force"))
-        << command.front();
+  const std::vector<std::string> commands[] = {{"export", "run", "--readings", "notes.txt"},
+                                               {"new", "rotary_4dof", "-o", "notes.txt"},
+                                               {"plan", "small.toml", "-o", "notes.txt"},
+                                               {"certificate", "--template", "-o", "notes.txt"},
+                                               {"serve", "small.toml", "--write-bench", "notes.txt"}};
+  for (const std::vector<std::string>& command : commands) ExpectRefused(command, "notes.txt: ");
   Succeed({"export", "run", "--readings", "notes.txt", "--force"});
   EXPECT_EQ(Read("notes.txt"), ReadingsOf("run"));
   Write("place", "");  // made by somebody who wanted a name of his own
@@ -91,23 +74,21 @@ TEST_F(Attack, WhatIsThereStaysUnlessForceIsSaid) {
 TEST_F(Attack, OnlyARunOfTheTwinIsMadeAgain) {
   MakeRun("run");
   const std::string before = ReadingsOf("run");
-  EXPECT_THAT(Refusal({"run", "small.toml", "-o", "run", "--seed", "6"}), HasSubstr("--force to make the twin's run again"));
+  ExpectRefused({"run", "small.toml", "-o", "run", "--seed", "6"}, "--force");
   Succeed({"run", "small.toml", "-o", "run", "--seed", "6", "--force"});
   EXPECT_NE(ReadingsOf("run"), before);
   Succeed({"export", "run", "--readings", "readings.csv"});
   Succeed({"import", "readings.csv", "--scenario", "small.toml", "-o", "imported"});
-  EXPECT_THAT(Refusal({"run", "small.toml", "-o", "imported", "--force"}), HasSubstr("cannot be made again; --force is not for it"));
+  ExpectRefused({"run", "small.toml", "-o", "imported", "--force"});
   Write("scenario.toml", kSmall);
-  EXPECT_THAT(Refusal({"run", "scenario.toml", "-o", ".", "--force"}), HasSubstr("reads this file and would overwrite it"));
+  ExpectRefused({"run", "scenario.toml", "-o", ".", "--force"});
 }
 
 TEST_F(Attack, ADiskThatIsFullIsNoSuccess) {
   MakeRun("run");
-  EXPECT_EQ(ExitOfShell("export run > /dev/full"), 1);
-  EXPECT_EQ(ExitOfShell("export run --readings /dev/full"), 1);
-  EXPECT_EQ(ExitOfShell("separate run > /dev/full"), 1);
-  EXPECT_EQ(ExitOfShell("separate run --json /dev/full"), 1);
-  EXPECT_EQ(ExitOfShell("score run > /dev/full"), 1);
+  for (const char* command :
+       {"export run > ", "export run --readings ", "separate run > ", "separate run --json ", "score run > "})
+    EXPECT_EQ(ExitOfShell(command + std::string("/dev/full")), 1) << command;
   EXPECT_EQ(ExitOfShell("score run > /dev/null"), 0);
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
@@ -119,11 +100,9 @@ TEST_F(Attack, ResumeNamesTheRunThatIsNotThere) {
   };
   const Outcome anew = Call(measure("tuesday"));
   EXPECT_EQ(anew.exit_code, 0);
-  EXPECT_THAT(anew.out, HasSubstr("there is no run in tuesday to resume; a new one begins"));
+  EXPECT_KEPT(anew.out.substr(0, anew.out.find('\n')));
   RunRecord::Create(At("monday"), {"test", "twin", 5, "", "rotary_4dof"});  // begun, and ended before its first reading
-  EXPECT_EQ(Refusal(measure("mondya")),
-            "twinbench: --resume: there is no run in mondya; expected the folder of a run that was begun, perhaps "
-            "monday; without --resume a new one is\n");
+  ExpectRefused(measure("mondya"), "--resume: there is no run in mondya");
 }
 
 TEST_F(Attack, WhoFollowsARunThatWasKilledIsTold) {

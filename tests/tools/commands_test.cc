@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-
 #include <regex>
 
 #include "tests/tools/program_here.h"
@@ -21,8 +19,8 @@ TEST_F(Commands, ANewScenarioSaysWhatTheDefaultsSay) {
     EXPECT_EQ(WriteScenario(LoadScenario(At(bench + ".toml"))),
               WriteScenario(ParseScenario("bench = \"" + bench + "\"\n", "defaults", "", {})));
   }
-  EXPECT_EQ(Call({"new", "rotary_4dof", "-o", "rotary_4dof.toml"}).exit_code, 2) << "it is there already";
-  EXPECT_THAT(Call({"new", "rotary_4dog"}).err, HasSubstr("rotary_4dof"));
+  ExpectRefused({"new", "rotary_4dof", "-o", "rotary_4dof.toml"});
+  ExpectRefused({"new", "rotary_4dog"});
 }
 
 TEST_F(Commands, EveryKeyOfANewScenarioIsReadWhenItsHashIsTakenAway) {
@@ -45,9 +43,7 @@ TEST_F(Commands, EveryKeyOfANewScenarioIsReadWhenItsHashIsTakenAway) {
 
 TEST_F(Commands, AScenarioThatCannotBeIsNotFine) {
   Write("bad.toml", "bench = \"rotary_4dof\"\n[laser]\nwavelength_nm = \"red\"\n");
-  const Outcome outcome = Call({"check", "bad.toml"});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("bad.toml:3"));
+  ExpectRefused({"check", "bad.toml"}, "bad.toml:3: ");
   Write("small.toml", kSmall);
   EXPECT_EQ(Json({"check", "small.toml", "--json", "-"}).at("readings"), 124);
 }
@@ -68,9 +64,7 @@ TEST_F(Commands, AnEffectIsExplainedWithWhatItDoes) {
   EXPECT_THAT(roll, HasSubstr("roll_mrad = 5 "));
   EXPECT_THAT(roll, HasSubstr("what it adds to psd_a_"));
   EXPECT_THAT(Succeed({"explain", "eccentricity", "--bench", "encoder_comparison"}), HasSubstr("deg"));
-  const Outcome unknown = Call({"explain", "psd_rol"});
-  EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("the nearest is psd_roll"));
+  ExpectRefused({"explain", "psd_rol"});
 }
 
 TEST_F(Commands, WhatIsExplainedIsThereForProgramsToo) {
@@ -85,21 +79,16 @@ TEST_F(Commands, WhatIsExplainedIsThereForProgramsToo) {
   EXPECT_NO_THROW(ParseScenario("bench = \"encoder_comparison\"\n", "usual", "", {told.at("set").get<std::string>()}));
 }
 
-TEST_F(Commands, ACampaignIsSummedUpForProgramsToo) {
+TEST_F(Commands, ACampaignIsSummedUpForProgramsTooAndShowsResultsThatThereAreAndOnAPageOnly) {
   Write("small.toml", "bench = \"encoder_comparison\"\n[encoder_procedure]\nturns = 1\nstops_per_turn = 12\npasses = [1, -1]\n");
   Write("study.toml", "scenario = \"small.toml\"\ntrials = 3\n");
+  ExpectRefused({"campaign", "study.toml", "-o", "t.sqlite", "--show", "reversal.mean_arcsec"}, "--web PORT");
   const nlohmann::json summary = Json({"campaign", "study.toml", "-o", "t.sqlite", "--json", "-"});
   EXPECT_EQ(summary.at("trials"), 3);
   EXPECT_TRUE(summary.at("lost").empty());
   EXPECT_EQ(summary.at("results").at("means.both.ez_arcsec[]").at("count"), 3 * 12);
-}
-
-TEST_F(Commands, ACampaignShowsResultsThatThereAreAndOnAPageOnly) {
-  Write("small.toml", "bench = \"encoder_comparison\"\n[encoder_procedure]\nturns = 1\nstops_per_turn = 12\npasses = [1, -1]\n");
-  Write("study.toml", "scenario = \"small.toml\"\ntrials = 3\n");
-  EXPECT_THAT(Call({"campaign", "study.toml", "-o", "t.sqlite", "--show", "reversal.mean_arcsec"}).err, HasSubstr("expected --web PORT"));
-  EXPECT_FALSE(Exists("t.sqlite"));
-  const Outcome unknown = Call({"campaign", "study.toml", "-o", "t.sqlite", "--web", "0", "--show", "reversal.mean_arcsek"});
+  const Outcome unknown =
+      Call({"campaign", "study.toml", "-o", "u.sqlite", "--web", "0", "--show", "reversal.mean_arcsek"});
   if (unknown.err.find("built without pages") != std::string::npos) GTEST_SKIP() << "no pages in this build";
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("the nearest is reversal.mean_arcsec"));
@@ -111,6 +100,19 @@ TEST_F(Commands, TheSchemaKnowsTheKeysOfEveryBench) {
   const auto& rotary = schema.at("oneOf").at(0).at("properties");
   EXPECT_EQ(rotary.at("laser").at("properties").at("wavelength_nm").at("minimum"), 200.0);
   EXPECT_EQ(rotary.at("target").at("properties").at("random").at("type"), "object");
+}
+
+TEST_F(Commands, HelpExplainsKeysEffectsExitCodesAndWhatABenchFileHas) {
+  const std::pair<std::vector<std::string>, std::vector<const char*>> cases[] = {
+      {{"help", "scenario"}, {"[[fixture]]"}},
+      {{"help", "effects"}, {"psd_gain"}},
+      {{"--help"}, {"Exit codes"}},
+      {{"help", "bench"}, {"[adc]", "[goniometer]", "in_position_arcsec", "timeout_s", "attempts = 3"}},
+      {{"help", "dialogue"}, {"elcomat ", "answer_ends = \"LF\"", "[tilt]"}}};
+  for (const auto& [command, words] : cases) {
+    const std::string text = Succeed(command);
+    for (const char* word : words) EXPECT_THAT(text, HasSubstr(word));
+  }
 }
 
 TEST_F(Commands, BashCompletesCommandsAndOptions) {

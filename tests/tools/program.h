@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/core/input_error.h"
@@ -67,6 +69,11 @@ class Process {
   std::ptrdiff_t ProgressLines() const {
     const std::string text = Contents(err_);
     return std::count(text.begin(), text.end(), '\n');
+  }
+
+  /// Waits for so many of them, or its end.
+  void Await(int lines) {
+    while (Runs() && ProgressLines() < lines) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 
   void Kill() {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <functional>
 #include <iostream>
 
+#include "tests/support/kept_text.h"
 #include "tests/tools/program.h"
 #include "tools/twinbench/program.h"
 
@@ -58,6 +60,24 @@ class ProgramHere : public Program {
     outcome.out = Contents(out);
     outcome.err = Contents(err);
     return outcome;
+  }
+
+  /// Calls what is bad input: code 2, nothing on stdout, one line that says what is expected, the folder as it was.
+  std::string Refusal(const std::vector<std::string>& arguments) {
+    const auto before = Snapshot();
+    Outcome outcome = Call(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_THAT(outcome.err, testing::HasSubstr("; expected "));
+    EXPECT_TRUE(before == Snapshot()) << "the folder has changed";
+    return outcome.err.substr(0, outcome.err.find('\n'));
+  }
+  /// @param place  In what is said, which is kept.
+  void ExpectRefused(const std::vector<std::string>& arguments, const std::string& place = "") {
+    const std::string refusal = Refusal(arguments);
+    EXPECT_THAT(refusal, testing::HasSubstr(place));
+    EXPECT_KEPT(refusal);
   }
 
   /// Whoever does not answer shall not be waited for long: every device of bench.toml, for so long.

@@ -1,10 +1,6 @@
-#include <gmock/gmock.h>
-
-#include <chrono>
 #include <cstdlib>
 #include <random>
 #include <set>
-#include <thread>
 
 #include "tests/tools/program_here.h"
 #include "twin/core/run_record.h"
@@ -42,16 +38,12 @@ class ResumedRun : public ProgramHere {
     return words;
   }
 
-  static void Await(Process& run, int lines) {
-    while (run.Runs() && run.ProgressLines() < lines) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-
   /// Starts or takes up a run and kills it: behind so many lines of its progress, of which a resumed one has one at its first reading and
   /// one each tenth, or, of none, within its start; and a random moment later.
   /// @return whether it was killed before it was done.
   bool KillOnce(const std::string& name, int lines) {
     Process run(At(""), Measure(name));
-    Await(run, lines);
+    run.Await(lines);
     std::this_thread::sleep_for(std::uniform_real_distribution<>(0.0, lines == 0 ? 0.6 : 0.1)(random_) * duration_);
     if (!run.Runs()) return false;
     run.Kill();
@@ -95,7 +87,7 @@ TEST_F(ResumedRun, IsTheUndisturbedOneHoweverOftenItIsKilled) {
 
 TEST_F(ResumedRun, CountsAnAttemptAtTheReadingThatWasUnderWay) {
   Process run(At(""), Measure("killed"));
-  Await(run, 4);
+  run.Await(4);
   run.Kill();
   const auto kept = static_cast<int>(Kept("killed"));
   ASSERT_GT(kept, 0);
@@ -111,7 +103,7 @@ TEST_F(ResumedRun, CountsAnAttemptAtTheReadingThatWasUnderWay) {
 TEST_F(ResumedRun, AfterCtrlCGoesOnWhereItWasStopped) {
   {
     Process run(At(""), Measure("stopped"));
-    Await(run, 4);
+    run.Await(4);
     run.Signal(SIGINT);
     const Outcome outcome = run.Wait();
     EXPECT_EQ(outcome.exit_code, 1);
@@ -124,19 +116,17 @@ TEST_F(ResumedRun, AfterCtrlCGoesOnWhereItWasStopped) {
   EXPECT_EQ(ReadingsOf("stopped"), readings_);
 }
 
-TEST_F(ResumedRun, OfAnotherScenarioIsRefused) {
-  KillOnce("killed", 0);
+TEST_F(ResumedRun, OfAnotherScenarioOrWithoutResumeIsRefusedAndTheFolderNotTouched) {
   auto words = Measure("undisturbed");
+  ExpectRefused({words.begin(), words.end() - 1});
   words.insert(words.end(), {"--set", "procedure.positions=36"});
-  const Outcome outcome = Call(words);
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, testing::HasSubstr("another scenario"));
+  ExpectRefused(words);
   EXPECT_EQ(ReadingsOf("undisturbed"), readings_);
 }
 
 TEST_F(ResumedRun, IsNeverWrittenByTwo) {
   Process first(At(""), Measure("shared"));
-  Await(first, 1);
+  first.Await(1);
   const Outcome second = Call(Measure("shared"));
   if (first.Runs()) {
     EXPECT_EQ(second.exit_code, 2);
@@ -144,13 +134,6 @@ TEST_F(ResumedRun, IsNeverWrittenByTwo) {
   }
   first.Wait();
   EXPECT_EQ(ReadingsOf("shared"), readings_);
-}
-
-TEST_F(ResumedRun, WithoutResumeAFolderThatHoldsARunIsNotTouched) {
-  auto words = Measure("undisturbed");
-  words.pop_back();
-  EXPECT_EQ(Call(words).exit_code, 2);
-  EXPECT_EQ(ReadingsOf("undisturbed"), readings_);
 }
 
 TEST_F(ResumedRun, PlaysARecordingBackToTheSameReadings) {

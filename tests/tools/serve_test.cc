@@ -1,39 +1,16 @@
-#include <gmock/gmock.h>
-
-#include <thread>
-
-#include "tests/tools/program_here.h"
+#include "tests/tools/served_program.h"
 #include "twin/core/run_record.h"
 
-/// `twinbench serve` and `twinbench measure` as two programs that only share a network.
+/// What only the rotary bench's server and measurement do; machine_serve_test.cc has what every bench's do.
 namespace twinbench::test {
 namespace {
 
-using std::chrono::milliseconds;
 using testing::HasSubstr;
+using testing::Not;
 
-class Served : public ProgramHere {
+class Served : public ServedProgram {
  protected:
-  Served() {
-    BeginWith("served", [this] {
-      Write("small.toml", kSmall);
-      MakeRun("run");
-    });
-    readings_ = ReadingsOf("run");
-  }
-
-  /// Starts a server and waits until it has said where it is.
-  std::unique_ptr<Process> Serve(const std::vector<std::string>& options = {"--speed", "max"},
-                                 const std::string& scenario = "small.toml") {
-    std::vector<std::string> words = {"serve",      scenario, "--iiod-port",   "0",         "--scpi-port", "0",
-                                      "--esp-port", "0",      "--write-bench", "bench.toml"};
-    words.insert(words.end(), options.begin(), options.end());
-    std::filesystem::remove(At("bench.toml"));
-    auto server = std::make_unique<Process>(At(""), words, "server");
-    for (int k = 0; k < 500 && !Exists("bench.toml"); ++k) std::this_thread::sleep_for(milliseconds(20));
-    EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
-    return server;
-  }
+  Served() : ServedProgram("served", kSmall) {}
 
   /// A SCPI command to the server of bench.toml, by somebody who is none of our programs.
   void Say(const std::string& command) {
@@ -43,26 +20,31 @@ class Served : public ProgramHere {
     Write("say.sh", "exec 3<>/dev/tcp/127.0.0.1/" + port + "; echo '" + command + ";*OPC?' >&3; read -r done <&3\n");
     ASSERT_EQ(std::system(("bash " + At("say.sh")).c_str()), 0);
   }
-
-  /// Goes on where there is a run.
-  std::vector<std::string> Measure(const std::string& name) const {
-    std::vector<std::string> words = {"measure", "small.toml", "--bench", "bench.toml", "-o", name};
-    if (Exists(name)) words.push_back("--resume");
-    return words;
+  /// @return what is said; nothing was begun.
+  std::string ExpectRehearsalStops(const std::vector<std::string>& options, const std::string& said) {
+    std::vector<std::string> words = Measure("stopped");
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = Call(words);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr(said));
+    EXPECT_FALSE(Exists("stopped"));
+    return outcome.err;
   }
-
-  std::string readings_;
 };
 
-TEST_F(Served, MeasuresTheReadingsThatRunMakesBitForBit) {
+TEST_F(Served, MeasuresTheReadingsThatRunMakesBitForBitKeepsTheRawCountsAndSaysWhoAnswered) {
   for (const char* tables : {"scpi", "esp", "pty"}) {
     const bool asks_token = std::string(tables) != "scpi";
     const auto server = Serve({"--speed", "max", "--tables", tables, asks_token ? "--token" : "--no-token"});
     EXPECT_EQ(Read("bench.toml").find("token = ") != std::string::npos, asks_token);
     Succeed(Measure(tables));
-    EXPECT_EQ(ReadingsOf(tables), readings_) << tables;
-    EXPECT_EQ(Read(std::string(tables) + "/results.json"), Read("run/results.json"));
-    EXPECT_FALSE(Exists(std::string(tables) + "/truth.json")) << "nobody at a real bench knows the truth";
+    ExpectAsRun(tables);
+    const auto record = RunRecord::Open(At(tables));
+    EXPECT_EQ(record->RawBlocks().size(), record->Readings().size());
+    EXPECT_THAT(record->provenance().source,
+                testing::AllOf(HasSubstr("twinbench,rotary-bench"), HasSubstr("psd-adc16")));
+    EXPECT_THAT(record->Events(),
+                testing::Contains(testing::Field(&RecordedEvent::text, HasSubstr("62500 scans/s"))));
   }
 }
 
@@ -96,9 +78,7 @@ TEST_F(Served, MeasuresWhatRunMakesWithACompensationAndTheCheckHolds) {
   EXPECT_LT(check["remeasured_rms_arcsec"], 2.0);
   EXPECT_NEAR(check["ratio"], 1.0, 4.0 * double{check["u_ratio"]});
 
-  const Outcome bare = Call({"compensate", "before", "--check", "before"});
-  EXPECT_EQ(bare.exit_code, 2);
-  EXPECT_THAT(bare.err, HasSubstr("not measured with this compensation"));
+  ExpectRefused({"compensate", "before", "--check", "before"});
 }
 
 // Over IIOD and SCPI: a cause that the first run leaves open is told by the second, which has noise of its own.
@@ -120,36 +100,27 @@ TEST_F(Served, IsInvestigated) {
   EXPECT_EQ(ReadingsOf("inquiry/02-" + std::string(second.at("run"))), ReadingsOf("same"));
 }
 
-TEST_F(Served, KeepsTheRawCountsAndSaysWhoAnswered) {
-  const auto server = Serve();
-  Succeed(Measure("measured"));
-  const auto record = RunRecord::Open(At("measured"));
-  EXPECT_EQ(record->RawBlocks().size(), record->Readings().size());
-  EXPECT_THAT(record->provenance().source, HasSubstr("twinbench,rotary-bench"));
-  EXPECT_THAT(record->provenance().source, HasSubstr("psd-adc16"));
-  const auto events = record->Events();
-  EXPECT_THAT(events, testing::Contains(testing::Field(&RecordedEvent::text, HasSubstr("62500 scans/s"))));
-}
-
 TEST_F(Served, AKilledMeasurementGoesOnToTheSameReadings) {
   const auto server = Serve();
   int kills = 0;
   for (int k = 0; k < 4; ++k) {
     const std::string name = "killed" + std::to_string(k);
     Process run(At(""), Measure(name));
-    while (run.Runs() && run.ProgressLines() < 1 + 2 * k) std::this_thread::sleep_for(milliseconds(1));
+    run.Await(1 + 2 * k);
     if (run.Runs()) ++kills, run.Kill();
     Succeed(Measure(name));
-    EXPECT_EQ(ReadingsOf(name), readings_);
+    ExpectAsRun(name);
   }
   EXPECT_GE(kills, 2);
+  Replay("killed0", "played");
+  ExpectAsRun("played");
 }
 
 TEST_F(Served, APowerFailureOfTheServerIsGoneOnFromWithANewOne) {
   auto server = Serve({"--speed", "2000"});
   WaitBriefly("0.1");
   Process run(At(""), Measure("cut"));
-  while (run.Runs() && run.ProgressLines() < 3) std::this_thread::sleep_for(milliseconds(5));
+  run.Await(3);
   server->Kill();
   const Outcome outcome = run.Wait();
   EXPECT_EQ(outcome.exit_code, 3) << "nobody can say what the tables do";
@@ -165,7 +136,7 @@ TEST_F(Served, EverySignalHoweverOftenStopsTheTablesAndTheRunCanBeResumed) {
   const auto server = Serve({"--speed", "2000"});
   for (const int signal : {SIGINT, SIGTERM, SIGQUIT, SIGHUP}) {
     Process run(At(""), Measure("stopped"));
-    while (run.Runs() && run.ProgressLines() < 2) std::this_thread::sleep_for(milliseconds(5));
+    run.Await(2);
     for (int k = 0; k < 3; ++k) run.Signal(signal);
     const Outcome outcome = run.Wait();
     EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
@@ -180,13 +151,13 @@ TEST_F(Served, AControllerThatFreezesLeavesTheStateUnknown) {
   const auto server = Serve({"--speed", "2000"});
   WaitBriefly("0.1");
   Process run(At(""), Measure("frozen"));
-  while (run.Runs() && run.ProgressLines() < 3) std::this_thread::sleep_for(milliseconds(5));
+  run.Await(3);
   server->Signal(SIGSTOP);
   run.Signal(SIGINT);
   const Outcome outcome = run.Wait();
   EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("STATE UNKNOWN - USE THE EMERGENCY STOP"));
-  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("brought to rest")));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("brought to rest")));
   server->Signal(SIGCONT);
   Succeed(Measure("frozen"));
   EXPECT_EQ(ReadingsOf("frozen"), readings_);
@@ -195,7 +166,7 @@ TEST_F(Served, AControllerThatFreezesLeavesTheStateUnknown) {
 TEST_F(Served, ASecondOwnerIsRefusedAndTheFirstUndisturbed) {
   const auto server = Serve({"--speed", "2000"});
   Process first(At(""), Measure("first"), "first");
-  while (first.Runs() && first.ProgressLines() < 2) std::this_thread::sleep_for(milliseconds(5));
+  first.Await(2);
   for (int k = 0; k < 3; ++k) {
     const Outcome second = Call(Measure("second"));
     EXPECT_EQ(second.exit_code, 1);
@@ -226,53 +197,31 @@ TEST_F(Served, ABenchThatDoesNotAnswerIsNamed) {
 
 TEST_F(Served, ARehearsalComesBeforeAnyMotion) {
   Write("bench.toml", "kind = \"twin\"\n");
-  const Outcome fine = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"});
+  const std::vector<std::string> only = {"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only"};
+  const Outcome fine = Call(only);
   EXPECT_EQ(fine.exit_code, 0) << fine.err;
   EXPECT_THAT(fine.err, HasSubstr("124 readings"));
   EXPECT_THAT(fine.err, HasSubstr("a word lost by the card might not show"));
-  const Outcome apart = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse-only", "--set",
-                              "amplifier.offset_mV=[-1500, -500, 500, 1500]"});
-  EXPECT_THAT(apart.err, testing::Not(HasSubstr("a word lost by the card")));
-  const Outcome off = Call(
-      {"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "off", "--set", "psd_a.width_mm=0.2"});
-  EXPECT_EQ(off.exit_code, 1);
-  EXPECT_THAT(off.err, HasSubstr("PROBLEM"));
-  EXPECT_FALSE(Exists("off"));
+  std::vector<std::string> apart = only;
+  apart.insert(apart.end(), {"--set", "amplifier.offset_mV=[-1500, -500, 500, 1500]"});
+  EXPECT_THAT(Call(apart).err, Not(HasSubstr("a word lost by the card")));
+  ExpectRehearsalStops({"--rehearse", "--set", "psd_a.width_mm=0.2"}, "PROBLEM");
   const auto server = Serve();
-  Write("narrow.toml", Read("bench.toml") + "\n");
   std::string text = Read("bench.toml");
   text.replace(text.find("axis = 1"), 8, "axis = 1\nlower_deg = -10.0\nupper_deg = 200.0");
   Write("bench.toml", text);
-  const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", "--rehearse", "-o", "narrow"});
-  EXPECT_EQ(narrow.exit_code, 1);
-  EXPECT_THAT(narrow.err, HasSubstr("target would travel"));
-  EXPECT_FALSE(Exists("narrow"));
+  ExpectRehearsalStops({"--rehearse"}, "target would travel");
 }
 
 TEST_F(Served, ARehearsalAsksTheControllersForTheirLimits) {
   const auto server = Serve();
   Say("ROT1:LIM:UPP 100");
-  for (const char* how : {"--rehearse", "--rehearse-only"}) {
-    const Outcome narrow = Call({"measure", "small.toml", "--bench", "bench.toml", how, "-o", "narrow"});
-    EXPECT_EQ(narrow.exit_code, 1) << narrow.err;
-    EXPECT_THAT(narrow.err, HasSubstr(" to 100 deg"));
-    EXPECT_THAT(narrow.err, HasSubstr("target would travel"));
-    EXPECT_FALSE(Exists("narrow"));
-  }
-}
-
-TEST_F(Served, TheKeysOfABenchFileAreExplained) {
-  const std::string text = Succeed({"help", "bench"});
-  for (const char* key : {"[adc]", "[goniometer]", "in_position_arcsec", "timeout_s", "attempts = 3"})
-    EXPECT_THAT(text, HasSubstr(key));
-  const std::string dialogue = Succeed({"help", "dialogue"});
-  for (const char* key : {"elcomat ", "answer_ends = \"LF\"", "[tilt]"}) EXPECT_THAT(dialogue, HasSubstr(key));
+  for (const char* how : {"--rehearse", "--rehearse-only"})
+    EXPECT_THAT(ExpectRehearsalStops({how}, " to 100 deg"), HasSubstr("target would travel"));
 }
 
 TEST_F(Served, WithoutNoiseItIsRefusedForThereAreNoCounts) {
-  const Outcome outcome = Call({"serve", "small.toml", "--set", "noise_free=true"});
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("noise"));
+  ExpectRefused({"serve", "small.toml", "--set", "noise_free=true"});
 }
 
 TEST_F(Served, ATakenPortIsNamed) {

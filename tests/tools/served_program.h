@@ -1,0 +1,53 @@
+#pragma once
+
+#include "tests/tools/program_here.h"
+
+namespace twinbench::test {
+
+/// `twinbench serve` and `twinbench measure` as two programs that only share a network.
+class ServedProgram : public ProgramHere {
+ protected:
+  /// @param name  Of the scenario, which is small.toml and carried out by `run` into the folder of that name.
+  ServedProgram(const std::string& name, const std::string& scenario) {
+    BeginWith(name, [&] {
+      Write("small.toml", scenario);
+      MakeRun("run");
+    });
+    readings_ = ReadingsOf("run");
+  }
+
+  /// Starts a server and waits until it has said where it is.
+  std::unique_ptr<Process> Serve(const std::vector<std::string>& options = {"--speed", "max"},
+                                 const std::string& scenario = "small.toml") {
+    std::vector<std::string> words = {"serve",      scenario, "--iiod-port",   "0",         "--scpi-port", "0",
+                                      "--esp-port", "0",      "--write-bench", "bench.toml"};
+    words.insert(words.end(), options.begin(), options.end());
+    std::filesystem::remove(At("bench.toml"));
+    auto server = std::make_unique<Process>(At(""), words, "server");
+    for (int k = 0; k < 500 && !Exists("bench.toml"); ++k)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_TRUE(Exists("bench.toml")) << "the server did not come up";
+    return server;
+  }
+
+  /// Goes on where there is a run.
+  std::vector<std::string> Measure(const std::string& name) const {
+    std::vector<std::string> words = {"measure", "small.toml", "--bench", "bench.toml", "-o", name};
+    if (Exists(name)) words.push_back("--resume");
+    return words;
+  }
+  void Replay(const std::string& record, const std::string& name) {
+    Write("replay.toml", "kind = \"replay\"\nrecord = \"" + record + "\"\n");
+    Succeed({"measure", "small.toml", "--bench", "replay.toml", "-o", name});
+  }
+  /// What `run` makes, and nobody at a real bench knows the truth.
+  void ExpectAsRun(const std::string& name) {
+    EXPECT_EQ(ReadingsOf(name), readings_) << name;
+    EXPECT_EQ(Read(name + "/results.json"), Read("run/results.json"));
+    EXPECT_FALSE(Exists(name + "/truth.json"));
+  }
+
+  std::string readings_;
+};
+
+}  // namespace twinbench::test
