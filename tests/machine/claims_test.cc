@@ -7,6 +7,7 @@
 
 #include "hw_bridge/in_position.h"
 #include "tests/core/input_error.h"
+#include "tests/support/kept_text.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/procedure.h"
 #include "twin/benches/freeform_five_axis/twin/twin.h"
@@ -133,9 +134,7 @@ TEST(InPosition, IsTheClaimUnlessTheFileAsksForLess) {
   file = hw::ParseMachineFile(text, "bench.toml", axes);
   hw::TieToClaim(file, axes, "turntable", 0.1 * units::arcsec, "");
   EXPECT_DOUBLE_EQ(file.axes[0].in_position, 0.04 * units::arcsec);
-  EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "turntable", 0.03 * units::arcsec, "a larger key"); }),
-              testing::AllOf(HasSubstr("bench.toml:5"), HasSubstr("in_position_arcsec is 0.04"), HasSubstr("certain to 0.03 arcsec"),
-                             HasSubstr("at most 0.03"), HasSubstr("claims less: a larger key")));
+  EXPECT_KEPT(MessageOf([&] { hw::TieToClaim(file, axes, "turntable", 0.03 * units::arcsec, "a larger key"); }));
 }
 
 TEST(InPosition, OfALinearAxisIsToldInMicrometres) {
@@ -145,8 +144,7 @@ TEST(InPosition, OfALinearAxisIsToldInMicrometres) {
   hw::MachineFile file = hw::ParseMachineFile(text, "bench.toml", axes);
   hw::TieToClaim(file, axes, "x", 0.4 * units::um, "");
   EXPECT_DOUBLE_EQ(file.axes[0].in_position, 0.3 * units::um);
-  EXPECT_THAT(MessageOf([&] { hw::TieToClaim(file, axes, "x", 0.2 * units::um, ""); }),
-              testing::AllOf(HasSubstr("axis_x.in_position_um is 0.3"), HasSubstr("certain to 0.2 um")));
+  EXPECT_KEPT(MessageOf([&] { hw::TieToClaim(file, axes, "x", 0.2 * units::um, ""); }));
 }
 
 }  // namespace

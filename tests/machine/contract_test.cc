@@ -3,8 +3,11 @@
 
 #include <cmath>
 
+#include "tests/core/input_error.h"
 #include "tests/machine/benches.h"
+#include "tests/machine/driven_twin.h"
 #include "tests/support/angle_benches.h"
+#include "tests/support/kept_text.h"
 #include "tests/support/machine_run.h"
 #include "twin/benches/circular_motion/columns.h"
 #include "twin/benches/circular_motion/twin/driven.h"
@@ -31,34 +34,21 @@ class MachineContract : public ::testing::TestWithParam<ShortBench> {
   const std::vector<Reading> in_process_ = DrivenInProcess(scenario_);
 };
 
-TEST_P(MachineContract, TakesEveryPlannedReadingWhenItIsDue) {
-  ASSERT_EQ(static_cast<int>(in_process_.size()), BenchOf(scenario_).planned_readings(scenario_));
-  for (std::size_t k = 0; k < in_process_.size(); ++k) EXPECT_EQ(in_process_[k].reading, static_cast<int>(k));
-}
-
-TEST_P(MachineContract, GivesTheSameBitsThroughTheNetwork) {
+TEST_P(MachineContract, GivesTheSameBitsThroughTheNetworkAndWritesDownWhatItAskedOfTheDevices) {
   const ServedMachineTwin served(scenario_);
   for (const char* machine : {"esp", "pty"}) {
     const MachineRun run = RunServedMachine(served, scenario_, served.BenchFile(machine));
     EXPECT_EQ(run.stopped_by, "") << run.said;
     EXPECT_EQ(TextOf(run.log.readings, scenario_), TextOf(in_process_, scenario_)) << machine;
     EXPECT_TRUE(run.log.attempts.empty());
+    for (const char* device : {"machine", "instruments"})
+      EXPECT_GT(std::ranges::count(run.log.calls, device, &DeviceCall::device), 0) << device;
+    EXPECT_EQ(run.log.events.size(), 2u) << "two set-ups were mounted";
   }
 }
 
 TEST_P(MachineContract, IsWhatRunCarriesOut) {
   EXPECT_EQ(TextOf(ReadingsByRecord(scenario_), scenario_), TextOf(in_process_, scenario_));
-}
-
-TEST_P(MachineContract, WritesDownWhatItAskedOfTheDevices) {
-  const ServedMachineTwin served(scenario_);
-  const MachineRun run = RunServedMachine(served, scenario_, served.BenchFile());
-  const auto asked = [&](const std::string& device) {
-    return std::ranges::count(run.log.calls, device, &DeviceCall::device);
-  };
-  EXPECT_GT(asked("machine"), 0);
-  EXPECT_GT(asked("instruments"), 0);
-  EXPECT_EQ(run.log.events.size(), 2u) << "two set-ups were mounted";
 }
 
 TEST_P(MachineContract, AResumedRunMakesTheSameReadings) {
@@ -90,12 +80,10 @@ TEST_P(MachineContract, RunsInRealTimeAsWithoutAny) {
 using DrivenContract = MachineContract;
 
 TEST_P(DrivenContract, EveryDeviceSchedulesEvents) {
-  const auto twin = BenchOf(scenario_).make_devices(scenario_);
-  MachineBench bench = twin->Devices();
-  MemoryLog log;
-  BenchOf(scenario_).drive(bench, scenario_, log, {}, {});
-  const auto& scheduled = dynamic_cast<const sim::DrivenMachine&>(*twin).Scheduled();
-  EXPECT_GE(scheduled.at("instruments"), log.readings.size());
+  DrivenTwin twin(scenario_);
+  twin.Drive();
+  const auto& scheduled = dynamic_cast<const sim::DrivenMachine&>(*twin.devices).Scheduled();
+  EXPECT_GE(scheduled.at("instruments"), twin.log.readings.size());
   for (const char* device : {"axes", "fixture"}) EXPECT_GT(scheduled.at(device), 0U) << device;
 }
 
@@ -107,59 +95,39 @@ INSTANTIATE_TEST_SUITE_P(SentByItself, MachineContract, ::testing::ValuesIn(kSen
 INSTANTIATE_TEST_SUITE_P(Turning, MachineContract, ::testing::ValuesIn(kTurning), NameOf);
 INSTANTIATE_TEST_SUITE_P(Driven, DrivenContract, ::testing::ValuesIn(kDriven), NameOf);
 
-TEST(TurningAxis, CannotBeSentAnywhereOnTheTwin) {
-  const auto twin = BenchOf(ShortHob()).make_devices(ShortHob());
-  EXPECT_THROW(twin->Devices().machine.StartMove({1.0}, 0.0), DeviceFault);
-}
-
-TEST(TurningAxis, IsNoneOfAMachineThatIsSent) {
-  const Scenario scenario = ShortStops();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  EXPECT_THROW(twin->Devices().machine.StartTurning(0, 1.0, std::chrono::seconds(1)), DeviceFault);
+TEST(TurningAxis, CannotBeSentAnywhereOnTheTwinAndIsNoneOfAMachineThatIsSent) {
+  EXPECT_THROW(DrivenTwin(ShortHob()).bench.machine.StartMove({1.0}, 0.0), DeviceFault);
+  EXPECT_THROW(DrivenTwin(ShortStops()).bench.machine.StartTurning(0, 1.0, std::chrono::seconds(1)), DeviceFault);
 }
 
 TEST(Comparison, ACoastingSpindleIsRefusedWithWhatCanBeDoneInstead) {
   Scenario scenario = ShortStops();
   EncoderOf(scenario).encoder_procedure.kind = "coast";
-  try {
-    BenchOf(scenario).make_devices(scenario);
-    FAIL() << "it was not refused";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("no command lets go of the spindle's drive"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("kind = \"program\""));
-  }
+  EXPECT_KEPT(MessageOf([&] { BenchOf(scenario).make_devices(scenario); }));
 }
 
 /// A shaft that was left behind somewhere goes its pass again from where that begins, and takes what is missing.
 TEST(Comparison, ARealSweepIsGoneAgainFromItsBeginning) {
-  const Scenario scenario = ShortSweep();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
-  bench.simulation = nullptr;
-  MemoryLog log;
-  procedure::MachineOptions options;
-  options.log = &log;
-  options.stop_requested = [&] { return log.readings.size() == 5; };
-  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, options), DeviceFault);
-  bench.machine.StartMove({1.0}, 0.0);
-  bench.clock.Wait(std::chrono::minutes(5));
-  options = {};
-  options.log = &log;
-  options.kept = log.readings;
-  BenchOf(scenario).drive(bench, scenario, log, {}, options);
-  const std::vector<Reading> planned = DrivenInProcess(scenario);
-  ASSERT_EQ(log.readings.size(), planned.size());
+  DrivenTwin twin(ShortSweep());
+  twin.bench.simulation = nullptr;
+  twin.options.stop_requested = [&] { return twin.log.readings.size() == 5; };
+  EXPECT_EQ(twin.Fault(), "stopped");
+  twin.bench.machine.StartMove({1.0}, 0.0);
+  twin.bench.clock.Wait(std::chrono::minutes(5));
+  twin.options.stop_requested = {};
+  twin.options.kept = twin.log.readings;
+  twin.Drive();
+  const std::vector<Reading> planned = DrivenInProcess(twin.scenario);
+  ASSERT_EQ(twin.log.readings.size(), planned.size());
   for (std::size_t k = 0; k < planned.size(); ++k) {
-    EXPECT_NEAR(log.readings[k].reference_rad, planned[k].reference_rad, 1e-6) << k;
-    EXPECT_TRUE(std::isnan(log.readings[k].velocity_rad_s)) << "of a real shaft it is not known";
+    EXPECT_NEAR(twin.log.readings[k].reference_rad, planned[k].reference_rad, 1e-6) << k;
+    EXPECT_TRUE(std::isnan(twin.log.readings[k].velocity_rad_s)) << "of a real shaft it is not known";
   }
 }
 
 /// What answers more slowly than the interval is none to sweep with.
 TEST(Comparison, ASweepWhoseReadingsComeLateIsNoRun) {
-  Scenario scenario = ShortSweep();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
+  DrivenTwin twin(ShortSweep());
   struct Slow : InstrumentSet {
     explicit Slow(const MachineBench& its_bench) : bench(its_bench) {}
     Reading Read() override {
@@ -170,15 +138,9 @@ TEST(Comparison, ASweepWhoseReadingsComeLateIsNoRun) {
     void Arm(int, int) override {}
     LatchedSamples Latched() override { return {}; }
     MachineBench bench;
-  } slow(bench);
-  MachineBench late{bench.clock, bench.machine, slow, bench.fixture, nullptr};
-  MemoryLog log;
-  try {
-    BenchOf(scenario).drive(late, scenario, log, {}, {});
-    FAIL() << "it was not noticed";
-  } catch (const DeviceFault& fault) {
-    EXPECT_EQ(fault.kind(), FaultKind::kOverrun) << fault.what();
-  }
+  } slow(twin.bench);
+  MachineBench late{twin.bench.clock, twin.bench.machine, slow, twin.bench.fixture, nullptr};
+  EXPECT_EQ(twin.FaultOn(late), "overrun");
 }
 
 class SeveralHeads : public ::testing::TestWithParam<Scenario (*)()> {};
@@ -186,22 +148,17 @@ class SeveralHeads : public ::testing::TestWithParam<Scenario (*)()> {};
 TEST_P(SeveralHeads, AreReadOnATwinOnly) {
   Scenario scenario = GetParam()();
   EncoderOf(scenario).encoder_procedure.heads_rad = {0.0, 1.0};
-  const std::vector<Reading> driven = DrivenInProcess(scenario);
-  EXPECT_EQ(TextOf(driven, scenario), TextOf(ReadingsByRecord(scenario), scenario));
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
-  bench.simulation = nullptr;
-  MemoryLog log;
-  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, {}), DeviceFault);
+  EXPECT_EQ(TextOf(DrivenInProcess(scenario), scenario), TextOf(ReadingsByRecord(scenario), scenario));
+  DrivenTwin twin(scenario);
+  twin.bench.simulation = nullptr;
+  EXPECT_NE(twin.Fault(), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Comparison, SeveralHeads, ::testing::Values(ShortStops, ShortSweep));
 
 /// Somebody who turns the multi-tooth table by hand is not asked to while the turntable moves.
-TEST(MultitoothByHand, IsTurnedOnceTheTurntableStands) {
-  const Scenario scenario = ShortTurntable();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
+TEST(MultitoothByHand, IsTurnedOnceTheTurntableStandsAndWithoutAnIndexerIsRefused) {
+  DrivenTwin twin(ShortTurntable());
   struct Hands : Indexer {
     Hands(MachineBench& its_bench) : bench(its_bench), inner(*its_bench.indexer) {}
     void IndexTo(int tooth, double angle_rad) override {
@@ -215,20 +172,12 @@ TEST(MultitoothByHand, IsTurnedOnceTheTurntableStands) {
     MachineBench& bench;
     Indexer& inner;
     int times = 0;
-  } hands(bench);
-  bench.indexer = &hands;
-  MemoryLog log;
-  BenchOf(scenario).drive(bench, scenario, log, {}, {});
+  } hands(twin.bench);
+  twin.bench.indexer = &hands;
+  twin.Drive();
   EXPECT_EQ(hands.times, 33) << "a stop each";
-}
-
-TEST(MultitoothByHand, WithoutAnIndexerIsRefused) {
-  const Scenario scenario = ShortTurntable();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
-  bench.indexer = nullptr;
-  MemoryLog log;
-  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, {}), DeviceFault);
+  twin.bench.indexer = nullptr;
+  EXPECT_NE(twin.Fault(), "") << "there is nobody who turns it";
 }
 
 /// Off the plan everything is computed anew from what was taken before; on it the plan's own course is used. Both

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/machine/benches.h"
+#include "tests/machine/driven_twin.h"
 #include "tests/support/machine_run.h"
 #include "tests/support/sanitized.h"
 #include "twin/benches/hob_transmission/settings.h"
@@ -34,9 +35,7 @@ struct Failing {
     for (auto at = file.find("kind = \"scpi\""); at != std::string::npos;
          at = file.find("kind = \"scpi\"", at + 20))
       file.insert(at, kForAnAnswer);
-    const auto machine = file.find("kind = \"esp\"");
-    file.insert(machine, kForAnAnswer);
-    return file;
+    return file.insert(file.find("kind = \"esp\""), kForAnAnswer);
   }
   MachineRun Run(std::map<int, std::string> faults, const std::vector<Reading>& kept = {}) {
     return RunServedMachine(served, scenario, BenchFile(), std::move(faults), kept);
@@ -51,13 +50,11 @@ struct Failing {
 
 TEST(MachineFaults, ThatPassCostOneAttemptAndNoBit) {
   Failing bench;
-  bench.ExpectGoneOn(bench.Run({{32, "machine,mute"}}), "timeout");
-  bench.ExpectGoneOn(bench.Run({{32, "machine,disconnect"}}), "dropped");
-  bench.ExpectGoneOn(bench.Run({{32, "machine,partial"}}), "timeout");
-  bench.ExpectGoneOn(bench.Run({{32, "machine,not_in_position"}}), "not_in_position");
-  bench.ExpectGoneOn(bench.Run({{32, "machine,restart"}}), "restarted");
-  bench.ExpectGoneOn(bench.Run({{32, "instruments,mute"}}), "timeout");
-  bench.ExpectGoneOn(bench.Run({{32, "instruments,gap"}}), "overrun");
+  const std::pair<const char*, const char*> cases[] = {
+      {"machine,mute", "timeout"}, {"machine,disconnect", "dropped"}, {"machine,partial", "timeout"},
+      {"machine,not_in_position", "not_in_position"}, {"machine,restart", "restarted"},
+      {"instruments,mute", "timeout"}, {"instruments,gap", "overrun"}};
+  for (const auto& [trouble, fault] : cases) bench.ExpectGoneOn(bench.Run({{32, trouble}}), fault);
 }
 
 /// Faults of connections and controllers, wherever they meet a bench.
@@ -92,9 +89,8 @@ TEST(MachineFaults, ARestartAboutAReadingAtRestCostsAnAttemptAndLeavesNoCellEmpt
 
 /// A twin that does not say it is one, whose controller restarts once, in the reading number `restarts_in`.
 struct Restarting {
-  Restarting(const Scenario& its_scenario, int restarts_in)
-      : scenario(its_scenario),
-        twin(BenchOf(scenario).make_devices(scenario)),
+  Restarting(const Scenario& scenario, int restarts_in)
+      : twin(scenario),
         troubled(Unsimulated(), InstrumentColumns(FormatOf(scenario.bench).columns), {},
                  [this, restarts_in](const std::string& device, const std::string& request, std::string& answer) {
                    if (request == "read" && ++reads == restarts_in) is_lost = true;
@@ -113,27 +109,17 @@ struct Restarting {
     }
     return StatesText(states);
   }
-  MachineBench Unsimulated() {
-    const MachineBench inner = twin->Devices();
+  MachineBench Unsimulated() const {
+    const MachineBench& inner = twin.bench;
     return {inner.clock, inner.machine, inner.instruments, inner.fixture, nullptr, inner.indexer};
   }
-  MachineRun Run(bool may_home) {
-    MachineRun run;
-    procedure::MachineOptions options;
-    options.log = &run.log;
-    options.may_home = may_home;
+  std::string Fault(bool may_home) {
+    twin.options.may_home = may_home;
     MachineBench bench = troubled.Bench();
-    try {
-      BenchOf(scenario).drive(bench, scenario, run.log, {}, options);
-    } catch (const DeviceFault& fault) {
-      run.stopped_by = FaultName(fault.kind());
-      run.said = fault.what();
-    }
-    return run;
+    return twin.FaultOn(bench);
   }
 
-  Scenario scenario;
-  std::unique_ptr<MachineDevices> twin;
+  DrivenTwin twin;
   TroubledMachine troubled;
   int reads = 0, homes = 0;
   bool is_lost = false;
@@ -141,63 +127,44 @@ struct Restarting {
 
 TEST(MachineFaults, ARealTurntableFindsItsOriginAgainIfItMay) {
   Restarting bench(ShortTurntable(), 8);
-  const MachineRun run = bench.Run(true);
-  EXPECT_EQ(run.stopped_by, "") << run.said;
+  EXPECT_EQ(bench.Fault(true), "") << bench.twin.said;
   EXPECT_EQ(bench.homes, 1);
-  EXPECT_EQ(std::ssize(run.log.readings), BenchOf(bench.scenario).planned_readings(bench.scenario));
-  for (const Reading& reading : run.log.readings) EXPECT_EQ(reading.extra.size(), 2u) << reading.reading;
-  ASSERT_EQ(run.log.attempts.size(), 1u);
-  EXPECT_EQ(run.log.attempts[0].fault, "restarted");
-  EXPECT_EQ(run.log.attempts[0].reading, 7);
+  const MemoryLog& log = bench.twin.log;
+  EXPECT_EQ(std::ssize(log.readings), BenchOf(bench.twin.scenario).planned_readings(bench.twin.scenario));
+  for (const Reading& reading : log.readings) EXPECT_EQ(reading.extra.size(), 2u) << reading.reading;
+  ASSERT_EQ(log.attempts.size(), 1u);
+  EXPECT_EQ(log.attempts[0].fault, "restarted");
+  EXPECT_EQ(log.attempts[0].reading, 7);
 
   Restarting forbidden(ShortTurntable(), 8);
-  const MachineRun stopped = forbidden.Run(false);
-  EXPECT_EQ(stopped.stopped_by, "refused");
-  EXPECT_THAT(stopped.said, HasSubstr("--allow-homing"));
+  EXPECT_EQ(forbidden.Fault(false), "refused");
+  EXPECT_THAT(forbidden.twin.said, HasSubstr("--allow-homing"));
   EXPECT_EQ(forbidden.homes, 0);
-  EXPECT_EQ(stopped.log.readings.size(), 7u);
+  EXPECT_EQ(forbidden.twin.log.readings.size(), 7u);
 }
 
 TEST(MachineFaults, ARealMachineIsNotHomedWithAnInstrumentMounted) {
   Restarting bench(ShortCircles(), 2);
-  const MachineRun run = bench.Run(true);
-  EXPECT_EQ(run.stopped_by, "refused");
-  EXPECT_THAT(run.said, HasSubstr("with an instrument mounted: take it off"));
+  EXPECT_EQ(bench.Fault(true), "refused");
+  EXPECT_THAT(bench.twin.said, HasSubstr("with an instrument mounted: take it off"));
   EXPECT_EQ(bench.homes, 0);
 }
 
 TEST(MachineFaults, ASpindleThatTurnsBeyondItsLimitsIsStopped) {
-  const Scenario scenario = ShortHob();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
-  MemoryLog log;
-  procedure::MachineOptions options;
-  options.log = &log;
-  options.axes = {AxisLimits{.lower = -1.0, .upper = 100.0}};
-  try {
-    BenchOf(scenario).drive(bench, scenario, log, {}, options);
-    FAIL() << "a turn of the table takes more";
-  } catch (const DeviceFault& fault) {
-    EXPECT_EQ(fault.kind(), FaultKind::kLimit);
-  }
-  EXPECT_FALSE(bench.machine.State()[0].moving);
-  EXPECT_FALSE(log.readings.empty()) << "what was taken before is kept";
+  DrivenTwin twin(ShortHob());
+  twin.options.axes = {AxisLimits{.lower = -1.0, .upper = 100.0}};
+  EXPECT_EQ(twin.Fault(), "limit") << "a turn of the table takes more";
+  EXPECT_FALSE(twin.bench.machine.State()[0].moving);
+  EXPECT_FALSE(twin.log.readings.empty()) << "what was taken before is kept";
 }
 
 TEST(MachineFaults, CountersThatNobodyEmptiesInTimeEndARun) {
   Scenario scenario = ShortHob();
   HobOf(scenario).hob_procedure.fifo_samples = 2;
   HobOf(scenario).hob_procedure.poll_s = 60.0;
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
-  MemoryLog log;
-  try {
-    BenchOf(scenario).drive(bench, scenario, log, {}, {});
-    FAIL() << "two places are not enough";
-  } catch (const DeviceFault& fault) {
-    EXPECT_EQ(fault.kind(), FaultKind::kOverrun);
-  }
-  EXPECT_EQ(log.readings.size(), 2u) << "those behind them are lost, those before are not";
+  DrivenTwin twin(scenario);
+  EXPECT_EQ(twin.Fault(), "overrun");
+  EXPECT_EQ(twin.log.readings.size(), 2u) << "those behind them are lost, those before are not";
 }
 
 /// What ends a run keeps what was taken, and the run can be gone on with.
@@ -236,9 +203,7 @@ TEST(MachineFaults, ThatWaitAtAResumeAreNotTakenForARecordThatDoesNotFit) {
 class Pushed : InstrumentSet, MachineController {
  public:
   Pushed(MachineBench inner, std::size_t axis, double by) : inner_(inner), axis_(axis), by_(by) {}
-  MachineBench Bench() {
-    return {inner_.clock, *this, *this, inner_.fixture, inner_.simulation, inner_.indexer};
-  }
+  MachineBench Bench() { return {inner_.clock, *this, *this, inner_.fixture, inner_.simulation, inner_.indexer}; }
   int times = 1;               // to go
   Duration stamped_late_by{};  // by a clock of the instruments' own
 
@@ -283,23 +248,18 @@ class Pushed : InstrumentSet, MachineController {
 };
 
 TEST(MachineFaults, AnAxisThatLeavesItsStopWhileItIsReadCostsAnAttempt) {
-  const Scenario scenario = ShortFreeform();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
   for (const double by_um : {0.9, 1.1}) {
-    Pushed pushed(twin->Devices(), 1, by_um * 1e-6);
+    DrivenTwin twin(ShortFreeform());
+    Pushed pushed(twin.bench, 1, by_um * 1e-6);
     MachineBench bench = pushed.Bench();
-    bench.simulation->Restart();
-    MemoryLog log;
-    procedure::MachineOptions options;
-    options.log = &log;
-    options.axes.assign(5, AxisLimits{.in_position = 1e-6});
-    BenchOf(scenario).drive(bench, scenario, log, {}, options);
-    ASSERT_EQ(log.attempts.size(), by_um > 1.0 ? 1u : 0u);
+    twin.options.axes.assign(5, AxisLimits{.in_position = 1e-6});
+    twin.DriveOn(bench);
+    ASSERT_EQ(twin.log.attempts.size(), by_um > 1.0 ? 1u : 0u);
     if (by_um > 1.0) {
-      EXPECT_EQ(log.attempts[0].fault, "moved");
-      EXPECT_THAT(log.attempts[0].text, HasSubstr("y: does not stand at its stop"));
+      EXPECT_EQ(twin.log.attempts[0].fault, "moved");
+      EXPECT_THAT(twin.log.attempts[0].text, HasSubstr("y: does not stand at its stop"));
     } else {
-      const auto& extra = log.readings[0].extra;
+      const auto& extra = twin.log.readings[0].extra;
       EXPECT_NEAR(std::stod(extra.at("y_encoder_after_mm")) - std::stod(extra.at("y_encoder_before_mm")), 0.9e-3, 1e-9);
       EXPECT_EQ(extra.size(), 10u) << "five axes, before and after; " << extra.begin()->first;
     }
@@ -309,31 +269,24 @@ TEST(MachineFaults, AnAxisThatLeavesItsStopWhileItIsReadCostsAnAttempt) {
 /// At rest (the first readings of the freeform bench) and in motion (those of the circles).
 TEST(MachineFaults, AnInstrumentsOwnClockGoesIntoNoReading) {
   for (Scenario (*make)() : {ShortFreeform, ShortCircles}) {
-    const Scenario scenario = make();
-    const auto twin = BenchOf(scenario).make_devices(scenario);
     for (const Duration late_by : {Duration(std::chrono::milliseconds(90)), Duration(std::chrono::hours(1)), -Duration(std::chrono::hours(1))}) {
-      Pushed late(twin->Devices(), 0, 0.0);
+      DrivenTwin twin(make());
+      Pushed late(twin.bench, 0, 0.0);
       late.stamped_late_by = late_by;
       MachineBench bench = late.Bench();
-      bench.simulation->Restart();
-      MemoryLog log;
-      procedure::MachineOptions options;
-      options.log = &log;
-      const auto drive = [&] { BenchOf(scenario).drive(bench, scenario, log, {}, options); };
-      if (std::chrono::abs(late_by) < std::chrono::seconds(1)) {
-        EXPECT_NO_THROW(drive()) << "what a connection takes";
-        continue;
-      }
-      EXPECT_THROW(drive(), DeviceFault);
-      EXPECT_TRUE(log.readings.empty());
-      ASSERT_EQ(log.attempts.size(), 3u);
-      EXPECT_EQ(log.attempts[0].fault, "clock");
+      const bool is_what_a_connection_takes = std::chrono::abs(late_by) < std::chrono::seconds(1);
+      EXPECT_EQ(twin.FaultOn(bench), is_what_a_connection_takes ? "" : "clock");
+      if (is_what_a_connection_takes) continue;
+      EXPECT_TRUE(twin.log.readings.empty());
+      ASSERT_EQ(twin.log.attempts.size(), 3u);
+      EXPECT_EQ(twin.log.attempts[0].fault, "clock");
     }
   }
 }
 
-TEST(MachineFaults, AMachineThatFreezesInMidMoveIsStalled) {
+TEST(MachineFaults, AMachineThatFreezesInMidMoveAndALimitSwitchEndTheRun) {
   ExpectStopped("machine,stall", "stalled", "on its way");
+  ExpectStopped("machine,limit", "limit", "limit switch");
 }
 
 TEST(MachineFaults, AShaftThatFreezesInASweepIsStalled) {
@@ -343,15 +296,11 @@ TEST(MachineFaults, AShaftThatFreezesInASweepIsStalled) {
   EXPECT_THAT(run.said, HasSubstr("should turn, and stands at"));
 }
 
-TEST(MachineFaults, ALimitSwitchEndsTheRun) {
-  ExpectStopped("machine,limit", "limit", "limit switch");
-}
-
 TEST(MachineFaults, AStopIsReadBack) {
   Failing bench;
   const std::vector<MachineAxis> axes = {{"x"}, {"y"}};
-  const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench.BenchFile(), "served.toml", axes),
-                                              axes, InstrumentColumns(FormatOf(kCircularBench).columns));
+  const auto opened = hw::OpenMachineHardware(hw::ParseMachineFile(bench.BenchFile(), "served.toml", axes), axes,
+                                              InstrumentColumns(FormatOf(kCircularBench).columns));
   MachineBench devices = opened->Devices();
   devices.simulation->Restart();
   devices.machine.StartMove({0.0, 0.0}, 1e-3);
@@ -391,19 +340,14 @@ TEST(MachineFaults, AStopIsHeardAtOnceInRealTime) {
 }
 
 TEST(MachineFaults, AnOperatorWhoSaysStopIsHeardInTheMiddleOfASweep) {
-  const Scenario scenario = ShortCircles();
-  const auto twin = BenchOf(scenario).make_devices(scenario);
-  MachineBench bench = twin->Devices();
-  MemoryLog log;
-  procedure::MachineOptions options;
-  options.log = &log;
+  DrivenTwin twin(ShortCircles());
   int asked = 0;
-  options.stop_requested = [&] { return ++asked > 40; };
-  EXPECT_THROW(BenchOf(scenario).drive(bench, scenario, log, {}, options), DeviceFault);
-  for (const AxisState& axis : bench.machine.State()) EXPECT_FALSE(axis.moving);
-  ASSERT_EQ(log.attempts.size(), 1u);
-  EXPECT_EQ(log.attempts[0].fault, "stopped");
-  EXPECT_LT(log.readings.size(), 64u);
+  twin.options.stop_requested = [&] { return ++asked > 40; };
+  EXPECT_EQ(twin.Fault(), "stopped");
+  for (const AxisState& axis : twin.bench.machine.State()) EXPECT_FALSE(axis.moving);
+  ASSERT_EQ(twin.log.attempts.size(), 1u);
+  EXPECT_EQ(twin.log.attempts[0].fault, "stopped");
+  EXPECT_LT(twin.log.readings.size(), 64u);
 }
 
 }  // namespace
