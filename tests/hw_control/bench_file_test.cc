@@ -1,14 +1,13 @@
 #include "hw_bridge/bench_file.h"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "twin/core/errors.h"
+#include "tests/core/input_error.h"
+#include "tests/support/kept_text.h"
 
 namespace twinbench::hw {
 namespace {
@@ -20,16 +19,6 @@ const ServedAddresses kAddresses = {"127.0.0.1", 30431, 5025, 5026, "/dev/pts/7"
 
 BenchFile Parse(const std::string& text) {
   return ParseBenchFile(text, "bench.toml", "/benches");
-}
-
-/// What the refusal of a text says; empty if it is taken.
-std::string Refusal(const std::string& text) {
-  try {
-    Parse(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
 }
 
 std::string ServedText() {
@@ -64,18 +53,19 @@ TEST(BenchFile, OfAServedTwinReadsBackAsItsAddresses) {
 }
 
 TEST(BenchFile, OfAServedTwinDrivesItsTablesAsAsked) {
-  const BenchFile esp = Parse(WriteServedBenchFile(kAddresses, "esp"));
-  EXPECT_EQ(esp.target.kind + " " + esp.target.address, "esp tcp:127.0.0.1:5026");
-  const BenchFile pty = Parse(WriteServedBenchFile(kAddresses, "pty"));
-  EXPECT_EQ(pty.reference.kind + " " + pty.reference.address, "esp serial:/dev/pts/7");
+  for (const auto& [tables, address] :
+       {std::pair{"esp", "esp tcp:127.0.0.1:5026"}, std::pair{"pty", "esp serial:/dev/pts/7"}}) {
+    const BenchFile file = Parse(WriteServedBenchFile(kAddresses, tables));
+    for (const ControlSettings* table : {&file.target, &file.reference})
+      EXPECT_EQ(table->kind + " " + table->address, address);
+  }
 }
 
 TEST(BenchFile, IsReadFromDisk) {
-  const std::string path = testing::TempDir() + "bench_file_test." + std::to_string(::getpid()) + ".toml";
-  std::ofstream(path) << ServedText();
+  const TemporaryFolder folder;
+  const std::string path = folder.Write("bench.toml", ServedText());
   EXPECT_EQ(LoadBenchFile(path).path, path);
-  std::filesystem::remove(path);
-  EXPECT_THROW(LoadBenchFile(path), InputError);
+  EXPECT_THROW(LoadBenchFile(folder.File("none.toml")), InputError);
 }
 
 TEST(BenchFile, TakesUnitsFromItsKeys) {
@@ -114,46 +104,42 @@ std::string LineOf(const std::string& text, const std::string& marker) {
 }
 
 struct Wrong {
-  std::string text, line, what;  // which line is named, by something that stands there
+  std::string text, line;  // which line is named, by something that stands there
 };
-void PrintTo(const Wrong& wrong, std::ostream* out) {
-  *out << wrong.what;
-}
 
-class WrongBenchFile : public testing::TestWithParam<Wrong> {};
-INSTANTIATE_TEST_SUITE_P(
-    Texts, WrongBenchFile,
-    testing::Values(
-        Wrong{"kind = \"hardware\"", "kind", "there is no [adc]"}, Wrong{"kind = 3 4", "kind", "TOML"},
-        Wrong{"atempts = 2", "atempts", "the nearest is attempts"},
-        Wrong{"[traget]\naxis = 1", "[traget]", "the nearest is target"},
-        Wrong{"kind = \"twin\"\n\n[adc]\nkind = \"iio\"", "[adc]", "adc in a bench of kind \"twin\""},
-        Wrong{"kind = \"replay\"", "kind", "without a record"},
-        Wrong{"record = \"x\"", "record", "a record in a bench of another kind"},
-        Wrong{"attempts = 0", "attempts", "from 1 to 100"},
-        Wrong{With("target", "lower = 1"), "lower", "target.lower_deg"},
-        Wrong{With("target", "lower_rad = 1"), "lower_rad", "target.lower_deg"},
-        Wrong{With("target", "adress = \"tcp:a:1\""), "adress", "target.address"},
-        Wrong{With("target", "lower_deg = 10\nupper_deg = 10"), "upper_deg", "not above lower_deg"},
-        Wrong{With("target", "in_position_arcsec = 0"), "in_position", "above 0"},
-        Wrong{With("thermometer", "color = 1"), "color", "thermometer.color"},
-        Wrong{With("adc", "timeout_s = \"2\""), "timeout_s", "adc.timeout_s is \"2\""},
-        Wrong{With("adc", "subdevice = 1"), "subdevice", "adc.subdevice with kind = \"iio\""},
-        Wrong{Replaced(ServedText(), "\"voltage1\"", "\"voltage0\""), "channels", "names 3 inputs"},
-        Wrong{Replaced(ServedText(), "kind = \"iio\"", "kind = \"nidaq\""), "nidaq", "\"iio\" or \"comedi\""},
-        Wrong{Replaced(ServedText(), "\"tcp:127.0.0.1:5025", "\"127.0.0.1:5025"), "\"127.0.0.1:5025",
-              "tcp:HOST:PORT"},
-        Wrong{Replaced(ServedText(), "axis = 2", "axis = 1 # same"), "# same", "the same axis"},
-        Wrong{Replaced(ServedText(),
-                       "[reference]\nkind = \"scpi\"\naddress =", "[reference]\nkind = \"esp\"\naddress  ="),
-              "address  =", "reference shares the address of target"},
-        Wrong{Replaced(ServedText(), "[clock]\nkind = \"scpi\"\naddress =", "[clock]\nkind = \"host\"\naddress  ="),
-              "address  =", "clock.address with kind = \"host\""}));
-
-TEST_P(WrongBenchFile, IsRefusedWithPlaceAndWhatWouldBeRight) {
-  const Wrong& wrong = GetParam();
-  EXPECT_THAT(Refusal(wrong.text), AllOf(HasSubstr(LineOf(wrong.text, wrong.line)), HasSubstr(wrong.what)))
-      << wrong.text;
+TEST(BenchFile, ThatIsWrongIsRefusedWithPlaceAndWhatWouldBeRight) {
+  const std::string served = ServedText();
+  const Wrong files[] = {
+      {"kind = \"hardware\"", "kind"},
+      {"atempts = 2", "atempts"},
+      {"[traget]\naxis = 1", "[traget]"},
+      {"kind = \"twin\"\n\n[adc]\nkind = \"iio\"", "[adc]"},
+      {"kind = \"replay\"", "kind"},
+      {"record = \"x\"", "record"},
+      {"attempts = 0", "attempts"},
+      {With("target", "lower = 1"), "lower"},
+      {With("target", "lower_rad = 1"), "lower_rad"},
+      {With("target", "adress = \"tcp:a:1\""), "adress"},
+      {With("target", "lower_deg = 10\nupper_deg = 10"), "upper_deg"},
+      {With("target", "in_position_arcsec = 0"), "in_position"},
+      {With("thermometer", "color = 1"), "color"},
+      {With("adc", "timeout_s = \"2\""), "timeout_s"},
+      {With("adc", "subdevice = 1"), "subdevice"},
+      {Replaced(served, "\"voltage1\"", "\"voltage0\""), "channels"},
+      {Replaced(served, "kind = \"iio\"", "kind = \"nidaq\""), "nidaq"},
+      {Replaced(served, "\"tcp:127.0.0.1:5025", "\"127.0.0.1:5025"), "\"127.0.0.1:5025"},
+      {Replaced(served, "axis = 2", "axis = 1 # same"), "# same"},
+      {Replaced(served, "[reference]\nkind = \"scpi\"\naddress =", "[reference]\nkind = \"esp\"\naddress  ="),
+       "address  ="},
+      {Replaced(served, "[clock]\nkind = \"scpi\"\naddress =", "[clock]\nkind = \"host\"\naddress  ="),
+       "address  ="},
+  };
+  for (const auto& [text, line] : files) {
+    const std::string refusal = MessageOf([&] { Parse(text); });
+    EXPECT_THAT(refusal, HasSubstr(LineOf(text, line))) << text;
+    EXPECT_KEPT(refusal);
+  }
+  EXPECT_THAT(MessageOf([] { Parse("kind = 3 4"); }), AllOf(HasSubstr("bench.toml:1:"), HasSubstr("TOML")));
 }
 
 TEST(BenchFile, EveryKeyStandsInTheDocumentation) {

@@ -8,22 +8,19 @@
 
 #include "hw_bridge/bench_file.h"
 #include "tests/core/input_error.h"
+#include "tests/support/kept_text.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::hw {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
+using testing::StartsWith;
 
-/// What is wrong with a dialogue.
-std::string WhatIsWrongWith(const std::string& text) {
-  try {
-    ParseDialogue(text, "my.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing";
+/// What is wrong with a text is kept, and where in `file` it is; line 0: in the text as a whole.
+void ExpectRefused(const std::string& message, const std::string& file, int line) {
+  EXPECT_THAT(message, StartsWith(file + (line > 0 ? ":" + std::to_string(line) + ": " : ":")));
+  EXPECT_KEPT(message);
 }
 
 constexpr const char* kWhole = R"(title = "autocollimator of the cellar"
@@ -43,23 +40,20 @@ TEST(DialogueWords, AWholeOneIsTakenAsItStands) {
 
 TEST(DialogueWords, WhatIsWrongIsToldWithFileLineAndTheNearestRightThing) {
   const std::string whole = kWhole;
-  EXPECT_THAT(WhatIsWrongWith(whole + "unitts = 3\n"),
-              AllOf(HasSubstr("my.toml:6"), HasSubstr("nearest is read.units")));
-  EXPECT_THAT(WhatIsWrongWith("[raed]\nask = \"A?\"\n"), AllOf(HasSubstr("my.toml:1"), HasSubstr("read")));
-  EXPECT_THAT(WhatIsWrongWith("[read]\nask = \"A?\"\nfields = [\"x\"]\nunits = [\"arcsecs\"]\n"),
-              AllOf(HasSubstr("my.toml:4"), HasSubstr("\"arcsecs\" is no unit; expected \"arcsec\"")));
-  EXPECT_THAT(WhatIsWrongWith("[read]\nask = \"A?\"\nfields = [\"x\", \"y\"]\nvalid = [\"4\"]\n"),
-              AllOf(HasSubstr("my.toml:4"), HasSubstr("1 entries for 2 fields")));
-  EXPECT_THAT(WhatIsWrongWith("[read]\nfields = [\"x\"]\n"),
-              AllOf(HasSubstr("my.toml:1"), HasSubstr("only one of ask and fields")));
-  EXPECT_THAT(WhatIsWrongWith("[move]\ncommand = \"GOTO {toth}\"\n"),
-              AllOf(HasSubstr("my.toml:2"), HasSubstr("no place {toth}"), HasSubstr("expected {tooth}")));
-  EXPECT_THAT(WhatIsWrongWith(whole + "[latch]\narm = \"ARM {samples}\"\n"),
-              HasSubstr("only one of arm and fetch"));
-  EXPECT_THAT(WhatIsWrongWith(whole + "[line]\nends = \"LFCR\"\n"),
-              AllOf(HasSubstr("my.toml:7"), HasSubstr("\"CRLF\"")));
-  EXPECT_THAT(WhatIsWrongWith(whole + "[line]\nseparator = \"\"\n"), HasSubstr("my.toml:7"));
-  EXPECT_THAT(WhatIsWrongWith("title = \"mute\"\n"), HasSubstr("nothing that can be asked"));
+  const std::pair<int, std::string> cases[] = {
+      {6, whole + "unitts = 3\n"},
+      {1, "[raed]\nask = \"A?\"\n"},
+      {4, "[read]\nask = \"A?\"\nfields = [\"x\"]\nunits = [\"arcsecs\"]\n"},
+      {4, "[read]\nask = \"A?\"\nfields = [\"x\", \"y\"]\nvalid = [\"4\"]\n"},
+      {1, "[read]\nfields = [\"x\"]\n"},
+      {2, "[move]\ncommand = \"GOTO {toth}\"\n"},
+      {0, whole + "[latch]\narm = \"ARM {samples}\"\n"},
+      {7, whole + "[line]\nends = \"LFCR\"\n"},
+      {7, whole + "[line]\nseparator = \"\"\n"},
+      {0, "title = \"mute\"\n"},
+  };
+  for (const auto& [line, text] : cases)
+    ExpectRefused(MessageOf([&] { ParseDialogue(text, "my.toml"); }), "my.toml", line);
 }
 
 /// Each is tried against its counterpart: the served ones in served_bits_test.cc and tests/machine, the others in
@@ -97,49 +91,38 @@ TEST(DialogueWords, UnitsOfOneKindAreToldInEachOther) {
   EXPECT_THROW(ScaleToColumn("deg", "bar_um", "here"), InputError);
 }
 
-/// The bench file of a turntable with what its instrument is said.
-std::string WhatIsWrongWithTable(const std::string& table, const std::string& folder = "") {
+/// A bench file with a table of an instrument, which begins in line 11.
+void ParseWithTable(const std::string& table, const std::string& folder) {
   const std::string file =
       "[adc]\nkind = \"iio\"\ndevice = \"d\"\nchannels = [\"a\", \"b\", \"c\", \"d\"]\n"
       "[target]\nkind = \"esp\"\naddress = \"tcp:a:1\"\n"
       "[reference]\nkind = \"esp\"\naddress = \"tcp:b:1\"\n";
-  try {
-    ParseBenchFile(file + table, "bench.toml", folder);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "nothing";
+  ParseBenchFile(file + table, "bench.toml", folder);
 }
 
 TEST(BenchFileWithDialogue, FindsAReadyOneAndAFileBesideTheBenchFile) {
   const TemporaryFolder folder;
-  std::ofstream(folder.File("my.toml")) << kWhole;
-  const std::string address = "address = \"serial:/dev/ttyUSB0:9600:7E2\"\n";
-  EXPECT_EQ(WhatIsWrongWithTable("[autocollimator]\nkind = \"dialogue\"\ndialogue = \"elcomat\"\n" + address),
-            "nothing");
-  EXPECT_EQ(WhatIsWrongWithTable("[autocollimator]\nkind = \"dialogue\"\ndialogue = \"my.toml\"\n" + address,
-                                 folder.path()),
-            "nothing");
+  folder.Write("my.toml", kWhole);
+  for (const char* dialogue : {"elcomat", "my.toml"})
+    EXPECT_NO_THROW(ParseWithTable(
+        "[autocollimator]\nkind = \"dialogue\"\naddress = \"serial:/dev/ttyUSB0:9600:7E2\"\ndialogue = \"" +
+            std::string(dialogue) + "\"\n",
+        folder.path()));
 }
 
 TEST(BenchFileWithDialogue, SaysWhichKeyIsWrongAndWhatWouldBeRight) {
   const std::string begin = "[autocollimator]\naddress = \"tcp:c:1\"\nkind = \"dialogue\"\n";
-  EXPECT_THAT(WhatIsWrongWithTable(begin),
-              AllOf(HasSubstr("bench.toml:11"), HasSubstr("autocollimator.dialogue is missing")));
-  EXPECT_THAT(
-      WhatIsWrongWithTable(begin + "dialogue = \"elcomatt\"\n"),
-      AllOf(HasSubstr("bench.toml:14"), HasSubstr("no ready dialogue \"elcomatt\""), HasSubstr("elcomat,")));
-  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"mine.toml\"\n", "/nowhere"),
-              HasSubstr("/nowhere/mine.toml cannot be read"));
-  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"heidenhain_nd287\"\n"),
-              HasSubstr("fields \"x\" and \"y\""));
-  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"elcomat\"\nidentity = \"ELCOMAT\"\n"),
-              HasSubstr("does not tell who it is"));
-  EXPECT_THAT(WhatIsWrongWithTable(begin + "dialogue = \"elcomat\"\ntoken = \"abc\"\n"),
-              HasSubstr("autocollimator.token"));
-  EXPECT_THAT(
-      WhatIsWrongWithTable("[thermometer]\nkind = \"scpi\"\naddress = \"tcp:c:1\"\ndialogue = \"elcomat\"\n"),
-      HasSubstr("expected kind = \"dialogue\""));
+  const std::pair<int, std::string> cases[] = {
+      {11, begin},
+      {14, begin + "dialogue = \"elcomatt\"\n"},
+      {14, begin + "dialogue = \"mine.toml\"\n"},
+      {14, begin + "dialogue = \"heidenhain_nd287\"\n"},
+      {15, begin + "dialogue = \"elcomat\"\nidentity = \"ELCOMAT\"\n"},
+      {15, begin + "dialogue = \"elcomat\"\ntoken = \"abc\"\n"},
+      {14, "[thermometer]\nkind = \"scpi\"\naddress = \"tcp:c:1\"\ndialogue = \"elcomat\"\n"},
+  };
+  for (const auto& [line, table] : cases)
+    ExpectRefused(MessageOf([&] { ParseWithTable(table, "/nowhere"); }), "bench.toml", line);
 }
 
 }  // namespace

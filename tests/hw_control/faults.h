@@ -30,6 +30,13 @@ std::string TextOf(Call call) {
   return {};
 }
 
+/// The same without the address of the device at its end, which is another in every run.
+template <class Call>
+std::string TextWithoutAddress(Call call) {
+  const std::string text = TextOf(call);
+  return text.substr(0, text.rfind(" (tcp:"));
+}
+
 }  // namespace twinbench::test
 
 namespace twinbench {

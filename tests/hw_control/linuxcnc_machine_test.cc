@@ -11,13 +11,14 @@
 
 #include "tests/hw_control/fake_controller.h"
 #include "tests/hw_control/faults.h"
+#include "tests/support/kept_text.h"
 
 namespace twinbench::hw {
 namespace {
 
 using test::FakeController;
 using test::KindOf;
-using test::TextOf;
+using test::TextWithoutAddress;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
@@ -26,20 +27,11 @@ using testing::HasSubstr;
 /// by `told`, and what it does with a block of a program is `obey`.
 struct LinuxCncModel {
   std::mutex mutex;
-  std::map<std::string, std::string> told = {{"machine", "ON"},
-                                             {"enable", "ON"},
-                                             {"estop", "OFF"},
-                                             {"mode", "MANUAL"},
-                                             {"program_status", "IDLE"},
-                                             {"error", "OK"},
-                                             {"joint_homed", "YES NO YES"},
-                                             {"joint_limit", "OK OK OK"},
-                                             {"joint_fault", "OK OK OK"},
-                                             {"joint_type", "LINEAR LINEAR ANGULAR"},
-                                             {"joint_units", "MM MM DEG"},
-                                             {"program_codes", "G0 F0 S0"},
-                                             {"abs_cmd_pos", "0 0 0 0 0 0"},
-                                             {"abs_act_pos", "0 0 0 0 0 0"}};
+  std::map<std::string, std::string> told = {
+      {"machine", "ON"}, {"enable", "ON"}, {"estop", "OFF"}, {"mode", "MANUAL"}, {"program_status", "IDLE"},
+      {"error", "OK"}, {"joint_homed", "YES NO YES"}, {"joint_limit", "OK OK OK"}, {"joint_fault", "OK OK OK"},
+      {"joint_type", "LINEAR LINEAR ANGULAR"}, {"joint_units", "MM MM DEG"}, {"program_codes", "G0 F0 S0"},
+      {"abs_cmd_pos", "0 0 0 0 0 0"}, {"abs_act_pos", "0 0 0 0 0 0"}};
   std::function<void(LinuxCncModel&, const std::string& block)> obey = [](LinuxCncModel&, const std::string&) {};
   bool accepts = true;
 
@@ -66,9 +58,7 @@ class OnLinuxCnc : public testing::Test {
  protected:
   LinuxCncMachine Machine(const std::string& enable_password = "EMCTOO") {
     dialogue_.Speak(WithAnyLineEnd());
-    AxisLimits limits;
-    limits.lower = -1.0;
-    limits.upper = 1.0;
+    const AxisLimits limits{.lower = -1.0, .upper = 1.0};
     return {DeviceLine(dialogue_, "machine", std::chrono::milliseconds(500)),
             {{"x", false}, {"table", true}},
             {limits, limits},
@@ -111,16 +101,10 @@ TEST_F(OnLinuxCnc, ABlockThatIsComplainedAboutAfterwardsHasNotBeenCarriedOut) {
     model.told["error"] = "Linear move on line 0 would exceed X's positive limit";
   };
   LinuxCncMachine machine = Machine();
-  EXPECT_EQ(KindOf([&] {
-              machine.StartMove({0.5, 0.0}, 0.0), machine.Settles(std::chrono::seconds(2));
-            }),
-            FaultKind::kLimit);
+  const auto move = [&] { machine.StartMove({0.5, 0.0}, 0.0), machine.Settles(std::chrono::seconds(2)); };
+  EXPECT_EQ(KindOf(move), FaultKind::kLimit);
   model_.obey = [](LinuxCncModel& model, const std::string&) { model.told["error"] = "OK"; };
-  EXPECT_THAT(TextOf([&] {
-                machine.StartMove({0.5, 0.0}, 0.0), machine.Settles(std::chrono::seconds(2));
-              }),
-              AllOf(HasSubstr("axis x was sent to 500.000000 mm"), HasSubstr("ended at 0.000000 mm"),
-                    HasSubstr("does not say why")));
+  EXPECT_KEPT(TextWithoutAddress(move));
   EXPECT_THAT(controller_.Lines(), Contains("set abort"));
 }
 
@@ -138,8 +122,7 @@ TEST_F(OnLinuxCnc, WithoutItsOriginAnAxisStandsNowhereAndIsHomedInManualMode) {
   EXPECT_TRUE(std::isnan(machine.State()[1].encoder));
   EXPECT_FALSE(std::isnan(machine.State()[0].encoder));
   EXPECT_EQ(KindOf([&] { machine.StartMove({0.0, 0.0}, 0.0); }), FaultKind::kRestarted);
-  EXPECT_THAT(TextOf([&] { machine.Travel(); }),
-              AllOf(HasSubstr("axis table is not homed"), HasSubstr("home it at the machine")));
+  EXPECT_KEPT(TextWithoutAddress([&] { machine.Travel(); }));
   machine.Home();
   EXPECT_THAT(controller_.Lines(), AllOf(Contains("set mode manual"), Contains("set home -1")));
   EXPECT_TRUE(machine.State()[1].referenced);
@@ -149,9 +132,9 @@ TEST_F(OnLinuxCnc, NeitherEmergencyStopNorPowerAreSwitchedForAMove) {
   model_.told["estop"] = "ON";
   model_.told["machine"] = "OFF";
   LinuxCncMachine machine = Machine();
-  EXPECT_THAT(TextOf([&] { machine.StartMove({0.0, 0.0}, 0.0); }), HasSubstr("released by hand only"));
-  EXPECT_THAT(TextOf([&] { machine.Home(); }), HasSubstr("released by hand only"));
-  EXPECT_THAT(machine.State()[0].fault, HasSubstr("switched off"));
+  EXPECT_KEPT(TextWithoutAddress([&] { machine.StartMove({0.0, 0.0}, 0.0); }));
+  EXPECT_KEPT(TextWithoutAddress([&] { machine.Home(); }));
+  EXPECT_KEPT(machine.State()[0].fault);
   model_.accepts = false;
   EXPECT_EQ(KindOf([&] { machine.Stop(); }), std::nullopt) << "it has been stopped";
   model_.told["machine"] = "ON";
@@ -166,7 +149,7 @@ TEST_F(OnLinuxCnc, TheCommandIsTakenBackFromAnotherProgramToStopAMoveOnly) {
   ASSERT_EQ(times_taken(), 1);
   model_.told["enable"] = "OFF";
   model_.accepts = false;
-  EXPECT_THAT(TextOf([&] { machine.StartMove({0.0, 0.0}, 0.0); }), HasSubstr("somebody else commands it now"));
+  EXPECT_KEPT(TextWithoutAddress([&] { machine.StartMove({0.0, 0.0}, 0.0); }));
   machine.Stop();
   EXPECT_EQ(times_taken(), 1) << "nothing moves, and whoever has it may be about to press the emergency stop";
   model_.told["program_status"] = "RUNNING";
@@ -176,18 +159,14 @@ TEST_F(OnLinuxCnc, TheCommandIsTakenBackFromAnotherProgramToStopAMoveOnly) {
   EXPECT_EQ(controller_.Lines().back(), "set abort");
 }
 
-TEST_F(OnLinuxCnc, WhatItIsNotIsRefusedAtTheFirstCall) {
-  EXPECT_THAT(TextOf([&] { Machine("WRONG").State(); }), HasSubstr("enable_password"));
+TEST_F(OnLinuxCnc, WhatItIsNotIsRefusedAtTheFirstCallAndSoAreCircles) {
+  EXPECT_KEPT(TextWithoutAddress([&] { Machine().StartArc({}); }));
+  EXPECT_KEPT(TextWithoutAddress([&] { Machine("WRONG").State(); }));
   model_.told["joint_units"] = "INCH MM DEG";
-  EXPECT_THAT(TextOf([&] { Machine().State(); }),
-              HasSubstr("joint 0, which should be axis x in mm, is LINEAR in INCH"));
+  EXPECT_KEPT(TextWithoutAddress([&] { Machine().State(); }));
   dialogue_.Close();
   Dialogue locked(ParseAddress(controller_.Address()).value(), LinuxCncHello("other"), kLinuxCncIdentity);
   EXPECT_EQ(KindOf([&] { locked.Open("machine", std::chrono::milliseconds(300)); }), FaultKind::kIdentity);
-}
-
-TEST_F(OnLinuxCnc, CirclesAreRefused) {
-  EXPECT_THAT(TextOf([&] { Machine().StartArc({}); }), HasSubstr("no pulses at places of an arc"));
 }
 
 }  // namespace

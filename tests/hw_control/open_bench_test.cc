@@ -7,7 +7,6 @@
 #include "tests/hw_control/faults.h"
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/served_twin.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
 
 namespace twinbench::hw {
 namespace {
@@ -24,16 +23,6 @@ Scenario Noisy() {
   Scenario scenario = test::RotaryScenario();
   scenario.environment.drift_K_h = 1.0;
   return scenario;
-}
-
-/// A stop as the procedure makes it: both tables move, settle, dwell, and a block is taken.
-Acquisition TakeAt(RotaryBench bench, double angle_rad) {
-  bench.target.StartMove(angle_rad);
-  bench.reference.StartMove(-angle_rad);
-  bench.target.WaitSettled();
-  bench.reference.WaitSettled();
-  bench.clock.Wait(std::chrono::seconds(1));
-  return bench.adc.Acquire(100, true);
 }
 
 class OpenedBench : public testing::TestWithParam<const char*> {
@@ -61,25 +50,6 @@ TEST_P(OpenedBench, HearsAStopWithinATenthOfASecondWhileATableMoves) {
   EXPECT_TRUE(bench.target.State().moving) << "stopping is for whoever caught it";
 }
 
-TEST_P(OpenedBench, TakesTheBlocksThatTheTwinTakesInTheProgramItself) {
-  const Scenario scenario = Noisy();
-  ServedTwin served(scenario);
-  const auto opened = test::OpenHardware(FileOf(served, GetParam()), scenario);
-  const RotaryBench bench = opened->Bench();
-  bench.simulation->Restart();
-  sim::Twin twin(scenario);
-  for (const double angle_rad : {0.1, 0.2, -1.0 / 3.0}) {
-    const Acquisition got = TakeAt(bench, angle_rad), expected = TakeAt(twin.Bench(), angle_rad);
-    EXPECT_EQ(got.start, expected.start);
-    EXPECT_EQ(got.raw, expected.raw);
-    for (int c = 0; c < kChannels; ++c) {
-      EXPECT_EQ(got.channel[c].mean_V, expected.channel[c].mean_V);
-      EXPECT_EQ(got.channel[c].std_V, expected.channel[c].std_V);
-    }
-    EXPECT_EQ(bench.thermometer.Read_degC(), twin.Bench().thermometer.Read_degC());
-  }
-}
-
 TEST_P(OpenedBench, SaysWhoAnsweredTheSameAtEveryOpening) {
   ServedTwin served(Noisy());
   const BenchFile file = FileOf(served, GetParam());
@@ -89,20 +59,15 @@ TEST_P(OpenedBench, SaysWhoAnsweredTheSameAtEveryOpening) {
   EXPECT_EQ(test::OpenHardware(file, Noisy())->Identity(), identity);
 }
 
-TEST_P(OpenedBench, RefusesAnotherDeviceThanTheFileNames) {
+TEST_P(OpenedBench, RefusesAnotherDeviceThanTheFileNamesAndSoftLimitsThatTheControllerDoesNotAllow) {
   ServedTwin served(Noisy());
-  BenchFile file = FileOf(served, GetParam());
-  file.target.identity = file.reference.identity = "somebody else";
-  file.target.timeout_s = 0.3;  // on a serial line it might still answer
-  if (std::string(GetParam()) == "scpi") file.thermometer.identity = "somebody else";
-  EXPECT_EQ(KindOf([&] { test::OpenHardware(file, Noisy()); }), FaultKind::kIdentity);
-}
-
-TEST_P(OpenedBench, RefusesSoftLimitsThatTheControllerDoesNotAllow) {
-  ServedTwin served(Noisy());
-  BenchFile file = FileOf(served, GetParam());
-  file.target_limits.upper_rad = 1.1e4;  // the served one stops at 1e4
-  EXPECT_EQ(KindOf([&] { test::OpenHardware(file, Noisy()); }), FaultKind::kRefused);
+  BenchFile another = FileOf(served, GetParam()), wider = another;
+  another.target.identity = another.reference.identity = "somebody else";
+  another.target.timeout_s = 0.3;  // on a serial line it might still answer
+  if (std::string(GetParam()) == "scpi") another.thermometer.identity = "somebody else";
+  EXPECT_EQ(KindOf([&] { test::OpenHardware(another, Noisy()); }), FaultKind::kIdentity);
+  wider.target_limits.upper_rad = 1.1e4;  // the served one stops at 1e4
+  EXPECT_EQ(KindOf([&] { test::OpenHardware(wider, Noisy()); }), FaultKind::kRefused);
 }
 
 TEST(OpenBench, WithNobodyThereIsAFaultThatNamesTheDevice) {

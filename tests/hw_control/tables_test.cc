@@ -98,16 +98,12 @@ struct EspModel {
   }
 
   void Obey(AxisModel& a, const std::string& verb) {
-    if (verb == "MO")
-      a.motor_on = true;
-    else if (verb.starts_with("SN"))
-      unit = 7;
-    else if (verb.starts_with("PA") && !a.motor_on)
-      error = 113;
-    else if (verb.starts_with("PA"))
-      a.commanded_deg = a.encoder_deg = ParseNumber(verb.substr(2)).value();
-    else if (verb != "OR" && verb != "ST")
-      error = 6;
+    const bool is_move = verb.starts_with("PA"), is_unit = verb.starts_with("SN");
+    if (verb == "MO") a.motor_on = true;
+    if (is_unit) unit = 7;
+    if (is_move && !a.motor_on) error = 113;
+    if (is_move && a.motor_on) a.commanded_deg = a.encoder_deg = ParseNumber(verb.substr(2)).value();
+    if (!is_move && !is_unit && verb != "MO" && verb != "OR" && verb != "ST") error = 6;
   }
 };
 
@@ -121,37 +117,37 @@ class ScpiTables : public testing::Test {
   Dialogue dialogue_{ParseAddress(controller_.Address()).value(), kScpiIdentity, "maker"};
 };
 
-TEST_F(ScpiTables, TwoAxesOfOneControllerShareOneConnectionAndKeepTheirAngles) {
-  ScpiTable target = Table(1), reference = Table(2);
+/// Of one controller.
+template <class Table>
+void ExpectTwoAxesKeepTheirAngles(Table target, Table reference) {
   target.StartMove(0.5);
   reference.StartMove(-0.25);
   EXPECT_TRUE(target.Settles(kSecond));
   EXPECT_NEAR(target.State().encoder_rad, 0.5, 1e-15);  // 17 digits of text: at most one rounding off
   EXPECT_NEAR(reference.State().encoder_rad, -0.25, 1e-15);
+}
+
+TEST_F(ScpiTables, TwoAxesOfOneControllerShareOneConnectionAndKeepTheirAngles) {
+  ExpectTwoAxesKeepTheirAngles(Table(1), Table(2));
   EXPECT_EQ(controller_.Connections(), 1);
 }
 
 TEST_F(ScpiTables, ASoftLimitRefusesBeforeAnythingIsSent) {
   ScpiTable table = Table(1, {.lower_rad = -1.0, .upper_rad = 1.0});
-  for (const double beyond_rad : {1.0000001, -1.0000001, kNaN}) {
+  for (const double beyond_rad : {1.0000001, -1.0000001, kNaN})
     EXPECT_EQ(KindOf([&] { table.StartMove(beyond_rad); }), FaultKind::kLimit);
-  }
   EXPECT_EQ(controller_.Connections(), 0);
   table.StartMove(1.0);  // the limit itself is allowed
   EXPECT_THAT(controller_.Lines(), Contains(StartsWith("ROT1:ANGL ")));
 }
 
-TEST_F(ScpiTables, TheControllersOwnLimitsHoldWhereTheFileGivesNone) {
-  ScpiTable table = Table(1);
-  table.AgreeOnLimits();
-  EXPECT_EQ(KindOf([&] { table.StartMove(200.1 * units::deg); }), FaultKind::kLimit);
+TEST_F(ScpiTables, TheControllersOwnLimitsHoldWhereTheFileGivesNoneAndItMayNotAllowMore) {
+  ScpiTable none = Table(1), narrower = Table(1, {.lower_rad = -3.0, .upper_rad = 3.0});
+  ScpiTable wider = Table(1, {.lower_rad = -3.0, .upper_rad = 201.0 * units::deg});
+  none.AgreeOnLimits();
+  EXPECT_EQ(KindOf([&] { none.StartMove(200.1 * units::deg); }), FaultKind::kLimit);
   EXPECT_THAT(controller_.Lines(), Not(Contains(HasSubstr("ANGL"))));
-}
-
-TEST_F(ScpiTables, AFileThatAllowsMoreThanTheControllerIsRefused) {
-  ScpiTable table = Table(1, {.lower_rad = -3.0, .upper_rad = 201.0 * units::deg});
-  EXPECT_EQ(KindOf([&] { table.AgreeOnLimits(); }), FaultKind::kRefused);
-  ScpiTable narrower = Table(1, {.lower_rad = -3.0, .upper_rad = 3.0});
+  EXPECT_EQ(KindOf([&] { wider.AgreeOnLimits(); }), FaultKind::kRefused);
   EXPECT_EQ(KindOf([&] { narrower.AgreeOnLimits(); }), std::nullopt);
 }
 
@@ -239,11 +235,7 @@ class EspTables : public testing::Test {
 };
 
 TEST_F(EspTables, TwoAxesOfOneControllerShareOneConnectionAndKeepTheirAngles) {
-  EspTable target = Table(1), reference = Table(2);
-  target.StartMove(0.5);
-  reference.StartMove(-0.25);
-  EXPECT_NEAR(target.State().encoder_rad, 0.5, 1e-15);
-  EXPECT_NEAR(reference.State().encoder_rad, -0.25, 1e-15);
+  ExpectTwoAxesKeepTheirAngles(Table(1), Table(2));
   EXPECT_EQ(controller_.Connections(), 1);
 }
 
