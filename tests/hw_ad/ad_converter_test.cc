@@ -9,6 +9,7 @@
 #include "tests/hw_ad/blocks.h"
 #include "tests/hw_ad/same_block.h"
 #include "tests/hw_ad/scripted_source.h"
+#include "tests/support/kept_text.h"
 #include "twin/core/device_fault.h"
 #include "twin/core/errors.h"
 
@@ -20,6 +21,13 @@ using test::kNoise_V;
 using test::ScriptedSource;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+
+AdSettings Settings(const std::string& kind) {
+  AdSettings settings;
+  settings.kind = kind;
+  settings.channels = {"a", "b", "c", "d"};
+  return settings;
+}
 
 class AdConverterTest : public ::testing::Test {
  protected:
@@ -45,12 +53,7 @@ class AdConverterTest : public ::testing::Test {
     return FaultKind::kDisk;  // none
   }
 
-  AdSettings settings_ = [] {
-    AdSettings settings;
-    settings.kind = "iio";
-    settings.channels = {"a", "b", "c", "d"};
-    return settings;
-  }();
+  AdSettings settings_ = Settings("iio");
   AdcSettings adc_;
   ScriptedSource::Script script_;
   test::StandingClock clock_;
@@ -127,7 +130,7 @@ TEST_F(AdConverterTest, FaultsACardWhoseClockJumps) {
   EXPECT_THROW(converter->Acquire(100, false), DeviceFault);
 }
 
-TEST_F(AdConverterTest, CountsScansByTheCardsClockWithThoseBetweenTheBlocks) {
+TEST_F(AdConverterTest, CountsScansByTheCardsClockWithThoseBetweenTheBlocksAndThoseTakenIfItStampsNone) {
   auto converter = Make();
   script_.block.raw = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
   script_.block.stamp.device_ns = 5'000'000'000;
@@ -135,13 +138,10 @@ TEST_F(AdConverterTest, CountsScansByTheCardsClockWithThoseBetweenTheBlocks) {
   clock_.Wait(std::chrono::seconds(2));
   script_.block.stamp.device_ns = 7'000'000'000;
   EXPECT_EQ(converter->Acquire(100, false).stamp.first_scan, 125000);  // 2 s of 62 500 scans/s
-}
-
-TEST_F(AdConverterTest, CountsTheScansThatWereTakenIfTheCardStampsNone) {
-  auto converter = Make();
-  script_.block.raw = test::RawBlock(test::FourLevels(kNoise_V), 100, 1);
-  EXPECT_EQ(converter->Acquire(100, false).stamp.first_scan, 0);
-  EXPECT_EQ(converter->Acquire(100, false).stamp.first_scan, 100);
+  script_.block.stamp = {};
+  auto unstamped = Make();
+  EXPECT_EQ(unstamped->Acquire(100, false).stamp.first_scan, 0);
+  EXPECT_EQ(unstamped->Acquire(100, false).stamp.first_scan, 100);
 }
 
 TEST_F(AdConverterTest, DescribesEveryChannelForTheRecord) {
@@ -150,32 +150,30 @@ TEST_F(AdConverterTest, DescribesEveryChannelForTheRecord) {
   EXPECT_THAT(lines[2], AllOf(HasSubstr("c: +-10 V"), HasSubstr("ground"), HasSubstr("0, 1"))) << lines[2];
 }
 
-TEST_F(AdConverterTest, RefusesAnotherRateNamingBoth) {
+TEST_F(AdConverterTest, RefusesAnotherRateResolutionRangeOrZeroNamingBoth) {
   script_.rate_Hz = 62.4e3;
-  const DeviceFault fault = Refusal();
-  EXPECT_EQ(fault.kind(), FaultKind::kRefused);
-  EXPECT_THAT(fault.what(), AllOf(HasSubstr("62400"), HasSubstr("62500")));
+  EXPECT_EQ(Refusal().kind(), FaultKind::kRefused);
+  EXPECT_KEPT(Refusal().what());
   settings_.rate_tolerance = 2e-3;
   EXPECT_EQ(Make()->Actual().actual.scan_rate_Hz, 62.4e3) << "within the tolerance: taken, and told";
-}
-
-TEST_F(AdConverterTest, RefusesAnotherResolutionRangeOrZeroNamingBoth) {
+  script_.rate_Hz.reset();
   script_.bits = 12;
-  EXPECT_THAT(Refusal().what(), AllOf(HasSubstr("12 bits"), HasSubstr("16 bits")));
+  EXPECT_KEPT(Refusal().what());
   script_.bits = 16;
   script_.range_V = 5.0;
-  EXPECT_THAT(Refusal().what(), AllOf(HasSubstr("+-5 V"), HasSubstr("+-10 V")));
+  EXPECT_KEPT(Refusal().what());
   script_.range_V.reset();
   script_.zero_V = 0.1;
-  EXPECT_THAT(Refusal().what(), HasSubstr("0.1 V"));
+  EXPECT_KEPT(Refusal().what());
 }
 
 TEST_F(AdConverterTest, RefusesAnotherCardOrOneThatDoesNotSay) {
   settings_.serial = "S2";
-  EXPECT_EQ(Refusal().kind(), FaultKind::kIdentity);
-  EXPECT_THAT(Refusal().what(), AllOf(HasSubstr("S1"), HasSubstr("S2")));
-  script_.serial = "";
-  EXPECT_EQ(Refusal().kind(), FaultKind::kIdentity);
+  for (const char* serial : {"S1", ""}) {
+    script_.serial = serial;
+    EXPECT_EQ(Refusal().kind(), FaultKind::kIdentity);
+    EXPECT_KEPT(Refusal().what());
+  }
   script_.serial = "S2";
   EXPECT_THAT(Make()->Identity(), HasSubstr("S2"));
 }
@@ -190,11 +188,8 @@ TEST_F(AdConverterTest, MeasuresWithTheCalibrationOfTheCard) {
 }
 
 TEST(MakeAdConverter, RefusesABackendThatThereIsNot) {
-  AdSettings settings;
-  settings.kind = "telepathy";
-  settings.channels = {"a", "b", "c", "d"};
   test::StandingClock clock;
-  EXPECT_THROW(MakeAdConverter(settings, {}, clock), InputError);
+  EXPECT_THROW(MakeAdConverter(Settings("telepathy"), {}, clock), InputError);
 }
 
 }  // namespace

@@ -2,25 +2,25 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <string>
 
 #include "hw_bridge/ad/ad_converter.h"
 #include "tests/hw_ad/held_twin.h"
 #include "tests/hw_ad/same_block.h"
-#include "twin/core/device_fault.h"
+#include "tests/hw_control/faults.h"
+#include "tests/support/rotary_scenario.h"
+#include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench::test {
 
 /// The kind of fault that a call ends in; "none".
 template <class Call>
 std::string FaultIn(const Call& call) {
-  try {
-    call();
-  } catch (const DeviceFault& fault) {
-    return FaultName(fault.kind());
-  }
-  return "none";
+  const std::optional<FaultKind> kind = KindOf(call);
+  return kind ? FaultName(*kind) : "none";
 }
 
 inline hw::AdSettings IioSettings(const HeldTwin& served) {
@@ -45,15 +45,74 @@ inline hw::AdSettings ComediSettings(const HeldTwin& served) {
   return settings;
 }
 
-/// The same acquisitions, at the same bench times, on a twin in this process and through a backend.
-inline void ExpectTheTwinsOwnBlocks(AdConverter& card, HeldTwin& served, const Scenario& scenario) {
-  sim::Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
-  for (const int scans : {100, 1, 2, 1000, 20000}) {
-    ExpectSameBlock(card.Acquire(scans, true), bench.adc.Acquire(scans, true));
-    bench.clock.Wait(std::chrono::milliseconds(1234));
-    served.Wait(std::chrono::milliseconds(1234));
-  }
+inline double SecondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+/// Fault kind as it is injected into the served twin and as it is told.
+struct Struck {
+  const char *injected, *fault;
+};
+
+/// A served twin whose converter is opened through a backend.
+struct ServedCard {
+  explicit ServedCard(hw::AdSettings (*settings_of)(const HeldTwin&),
+                      const Scenario& its_scenario = RotaryScenario())
+      : scenario(its_scenario), served(scenario), settings(settings_of(served)) {}
+
+  std::unique_ptr<hw::AdFrontEnd> Open() const { return OpenWith(settings); }
+  std::unique_ptr<hw::AdFrontEnd> OpenWith(const hw::AdSettings& other) const {
+    return hw::MakeAdConverter(other, RotaryOf(scenario).adc, served, RotaryOf(scenario).amplifier.noise_V);
+  }
+
+  /// The same acquisitions, at the same bench times, on a twin in this process.
+  void ExpectTheTwinsOwnBlocks() {
+    const auto card = Open();
+    sim::Twin twin(scenario);
+    RotaryBench bench = twin.Bench();
+    for (const int scans : {100, 1, 2, 1000, 20000}) {
+      ExpectSameBlock(card->Acquire(scans, true), bench.adc.Acquire(scans, true));
+      bench.clock.Wait(std::chrono::milliseconds(1234));
+      served.Wait(std::chrono::milliseconds(1234));
+    }
+  }
+
+  /// Beside its PSDs: 13 mm on ones that reach 5 mm.
+  void ExpectTheLightIsLostAsTheTwinLosesIt(AdConverter& card) {
+    served.Ask("GON:MOVE 10800,0;*OPC?");
+    sim::Twin twin(scenario);
+    twin.Bench().goniometer.MoveTo(3.0 * units::deg, 0.0);
+    EXPECT_EQ(card.Acquire(100, true).status, twin.Bench().adc.Acquire(100, true).status);
+  }
+
+  /// A fault has its name in time, and the blocks behind it are as good as any: of the second, the clocks too.
+  void ExpectNamedAndTheNextBlocksWhole(const Struck& struck) {
+    const auto card = Open();
+    served.Ask("GON:MOVE 150,80;*OPC?");
+    card->Acquire(100, true);
+    for (int round = 0; round < 2; ++round) {
+      served.Inject(struck.injected);
+      const auto start = std::chrono::steady_clock::now();
+      EXPECT_EQ(FaultIn([&] { card->Acquire(200, true); }), struck.fault);
+      EXPECT_LT(SecondsSince(start), 1.0) << "our deadline is 0.5 s; libiio's would be 5 or 10 s";
+      for (int k = 0; k < 2; ++k) {
+        const Acquisition after = card->Acquire(200, true);
+        EXPECT_EQ(after.status, ReadingStatus::kOk);
+        EXPECT_EQ(after.raw.size(), 800u);
+      }
+    }
+  }
+
+  /// The fault in which opening it and a block end with settings that were changed.
+  std::string FaultWith(const std::function<void(hw::AdSettings&)>& change) const {
+    hw::AdSettings changed = settings;
+    change(changed);
+    return FaultIn([&] { OpenWith(changed)->Acquire(10, true); });
+  }
+
+  Scenario scenario;
+  HeldTwin served;
+  hw::AdSettings settings;
+};
 
 }  // namespace twinbench::test

@@ -1,11 +1,6 @@
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <poll.h>
-#include <unistd.h>
 
 #include "tests/hw_serve/serving.h"
-#include "twin/core/number_text.h"
 
 namespace twinbench::test {
 namespace {
@@ -22,11 +17,6 @@ TEST_F(Esp, AMoveIsOrderedWaitedForAndReadBackOnOneLine) {
   EXPECT_EQ(esp.Ask("1PA?"), "10.25");
   EXPECT_EQ(esp.Ask("1DP?"), "10.25");
   EXPECT_EQ(esp.Ask("2TP?"), "0");
-}
-
-TEST_F(Esp, ATableGoesToTheBitsOfTheAngleThatWasSent) {
-  const double angle_rad = 0.1 + 1.0 / 3.0;
-  EXPECT_EQ(ParseInUnit(esp.Ask("2PA" + PrintInUnit(angle_rad, units::deg) + ";2WS;2TP"), units::deg), angle_rad);
 }
 
 TEST_F(Esp, MotionDoneIsInPosition) {
@@ -71,22 +61,6 @@ TEST_F(Esp, IdentityIsThatOfTheBench) {
   const std::string serial = scpi.Ask("*IDN?").substr(23, 16);
   EXPECT_THAT(esp.Ask("VE?"), testing::AllOf(testing::StartsWith("ESP301"), testing::HasSubstr(serial)));
   EXPECT_THAT(esp.Ask("1ID?"), testing::HasSubstr(serial));
-}
-
-TEST_F(Esp, ThePseudoTerminalSpeaksTheSame) {
-  const int line = open(served.at().pty.c_str(), O_RDWR | O_NOCTTY);
-  ASSERT_GE(line, 0);
-  const std::string text = "1PA7.5;1WS;1TP\r";
-  ASSERT_EQ(write(line, text.data(), text.size()), static_cast<ssize_t>(text.size()));
-  std::string answer;
-  for (pollfd wait{line, POLLIN, 0}; answer.find('\n') == std::string::npos && poll(&wait, 1, 5000) > 0;) {
-    char bytes[64];
-    const ssize_t n = read(line, bytes, sizeof bytes);
-    if (n <= 0) break;
-    answer.append(bytes, static_cast<std::size_t>(n));
-  }
-  close(line);
-  EXPECT_EQ(answer, "7.5\r\n");
 }
 
 }  // namespace

@@ -30,6 +30,12 @@ class OnDemand : public testing::Test {
     Demand("adc," + fault);
     return adc.Read(kScans);
   }
+  /// @return how many bytes of a block are announced; its mask is taken.
+  static std::string Begin(TcpClient& iiod) {
+    std::string bytes = iiod.Ask("READBUF psd-adc16 6400");
+    iiod.Line();
+    return bytes;
+  }
   std::int16_t Of(const Scans& scans, int scan, int channel) const { return scans.raw[scan * kChannels + channel]; }
 
   ServedTwin served{OnFreePorts(kAtOnce)};
@@ -99,9 +105,8 @@ TEST_F(OnDemand, AStuckChannelHasNoNoise) {
 
 TEST_F(OnDemand, HumIsATenthOfAVoltOnAllChannels) {
   const Scans scans = Spoilt("hum");
-  for (int k = 0; k < kScans * kChannels; ++k) {
+  for (int k = 0; k < kScans * kChannels; ++k)
     EXPECT_LE(std::abs(scans.raw[k] - clean.raw[k]), 328);  // 0.1 V of 32768 codes per 10 V
-  }
   // After 5 ms, a quarter of a period, it is at its crest: scan 312.5.
   EXPECT_NEAR(Of(scans, 312, 0) - Of(clean, 312, 0), 328, 1);
 }
@@ -113,47 +118,34 @@ TEST_F(OnDemand, ASlipTurnsTheChannelsFromTheMiddleOn) {
   EXPECT_TRUE(std::equal(clean.raw.begin() + middle + 1, clean.raw.end(), scans.raw.begin() + middle));
 }
 
-TEST_F(OnDemand, AClockThatSteppedIsASecondOff) {
+TEST_F(OnDemand, AClockThatSteppedIsASecondOffAndOneThatRunsFastIsAheadByItsShare) {
   Demand("clock,step");
   EXPECT_EQ(adc.Read(kScans).stamps_ns[7], clean.stamps_ns[7] + 1'000'000'000);
-}
-
-TEST_F(OnDemand, AClockThatRunsFastIsAheadByItsShare) {
+  Again();
   scpi.Ask("CLOC:WAIT? 1000000000");
   Demand("clock,ppm");
   EXPECT_EQ(adc.Read(kScans).stamps_ns[0], 1'000'050'000);
 }
 
-TEST_F(OnDemand, ADroppedBlockEndsInTheMiddle) {
-  Demand("adc,drop");
-  TcpClient& iiod = adc.socket();
-  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 6400"), "6400");
-  iiod.Line();
-  iiod.Bytes(3200);
-  EXPECT_TRUE(iiod.Ends());
-}
-
-TEST_F(OnDemand, AStalledBlockNeverGoesOn) {
-  Demand("adc,stall");
-  TcpClient& iiod = adc.socket();
-  iiod.Ask("READBUF psd-adc16 6400");
-  iiod.Line();
-  iiod.Bytes(3200);
-  EXPECT_TRUE(iiod.Silent(std::chrono::milliseconds(200)));
+TEST_F(OnDemand, ADroppedBlockEndsInTheMiddleAndAStalledOneNeverGoesOn) {
+  for (const std::string fault : {"stall", "drop"}) {
+    Demand("adc," + fault);
+    BufferClient client(served.at().iiod_port, kScans);
+    EXPECT_EQ(Begin(client.socket()), "6400");
+    client.socket().Bytes(3200);
+    EXPECT_TRUE(fault == "stall" ? client.socket().Silent(std::chrono::milliseconds(200)) : client.socket().Ends())
+        << fault;
+  }
 }
 
 TEST_F(OnDemand, AShortBlockIsHalfAndThenNothing) {
   TcpClient& iiod = adc.socket();
-  Demand("adc,short");
-  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 6400"), "3200");
-  iiod.Line();
-  iiod.Bytes(3200);
-  EXPECT_EQ(iiod.Line(), "0");
-  Demand("adc,error");
-  EXPECT_EQ(iiod.Ask("READBUF psd-adc16 6400"), "3200");
-  iiod.Line();
-  iiod.Bytes(3200);
-  EXPECT_EQ(iiod.Line(), "-5");
+  for (const auto& [fault, rest] : {std::pair{"adc,short", "0"}, std::pair{"adc,error", "-5"}}) {
+    Demand(fault);
+    EXPECT_EQ(Begin(iiod), "3200");
+    iiod.Bytes(3200);
+    EXPECT_EQ(iiod.Line(), rest);
+  }
   EXPECT_EQ(iiod.Ask("CLOSE psd-adc16"), "0");  // the connection is in step
 }
 
@@ -196,17 +188,14 @@ TEST_F(OnDemand, ADisconnectTakesThePlaceOfAnAnswer) {
   EXPECT_TRUE(esp.Ends());
 }
 
-TEST_F(OnDemand, ARestartedControllerShowsZeroAndHasNoOriginUntilItIsHomed) {
+TEST_F(OnDemand, ARestartedControllerShowsZeroAndHasNoOriginUntilItIsHomedOrTheBenchStartedAgain) {
   scpi.Ask("ROT1:ANGL 40;SETT? 60");
   Demand("target,restart");
   EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,0,0,\"\"");
   EXPECT_EQ(scpi.Ask("ROT1:HOME;SETT? 60;ANGL?"), "1;40");
   EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "40,40,0,1,1,0,\"\"");
-}
-
-TEST_F(OnDemand, ABenchThatIsStartedAgainHasSufferedNothing) {
   Demand("controller,restart");
-  scpi.Ask("ROT1:STAT?");
+  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,0,0,\"\"");
   Again();
   EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,1,0,\"\"");
 }

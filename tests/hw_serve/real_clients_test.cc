@@ -1,21 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <signal.h>
-#include <spawn.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
-#include <cstring>
 
+#include "tests/core/input_error.h"
+#include "tests/hw_control/fake_controller.h"
 #include "tests/hw_serve/serving.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/core/number_text.h"
-
-extern char** environ;
 
 /// Programs that nobody here wrote, as they are installed. Those that are not are skipped.
 namespace twinbench::test {
@@ -60,35 +53,15 @@ std::string RawStream(int scans) {
   return bytes;
 }
 
-int FreePort() {
-  const int probe = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  bind(probe, reinterpret_cast<sockaddr*>(&address), size);
-  getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size);
-  close(probe);
-  return ntohs(address.sin_port);
-}
-
 /// The distribution's iiod, showing on its own port what the served twin shows.
 class Reserving {
  public:
-  explicit Reserving(int twin_port) : port_(FreePort()) {
-    const std::string uri = Uri(twin_port), port = std::to_string(port_);
-    const char* arguments[] = {"iiod", "-u", uri.c_str(), "-p", port.c_str(), nullptr};
-    posix_spawn_file_actions_t quiet;
-    posix_spawn_file_actions_init(&quiet);
-    posix_spawn_file_actions_addopen(&quiet, 2, "/dev/null", 1, 0);
-    posix_spawnp(&process_, "iiod", &quiet, nullptr, const_cast<char**>(arguments), environ);
-    posix_spawn_file_actions_destroy(&quiet);
+  explicit Reserving(int twin_port) : port_(ReservedPort().Port()) {
+    const std::string command = "iiod -u " + Uri(twin_port) + " -p " + std::to_string(port_);
+    process_ = std::stoi(Output("sh -c '" + command + " > /dev/null 2>&1 & echo $!'"));
     for (int attempt = 0; attempt < 100 && !Answers(); ++attempt) usleep(50'000);
   }
-  ~Reserving() {
-    kill(process_, SIGKILL);
-    waitpid(process_, nullptr, 0);
-  }
+  ~Reserving() { kill(process_, SIGKILL); }
   int port() const { return port_; }
 
  private:
@@ -131,27 +104,22 @@ TEST_F(RealClients, IioAttrReadsWritesAndIsRefused) {
   EXPECT_EQ(TcpClient(served.at().scpi_port).Ask("SIM:FAUL?"), "\"adc,stuck,2\"");
 }
 
-TEST_F(RealClients, IioReaddevGetsTheBytesOfTheConverter) {
+TEST_F(RealClients, IioReaddevGetsTheBytesOfTheConverterAndTheChannelsThatItAsksFor) {
   SKIP_WITHOUT("iio_readdev");
-  constexpr int kScans = 40960;
-  EXPECT_TRUE(Output("iio_readdev -u " + iiod + " -b 1024 -s 40960 psd-adc16") == RawStream(kScans));
-}
-
-TEST_F(RealClients, IioReaddevGetsTheChannelsThatItAsksFor) {
-  SKIP_WITHOUT("iio_readdev");
-  const std::string all = RawStream(1000);
+  EXPECT_TRUE(Output("iio_readdev -u " + iiod + " -b 1024 -s 40960 psd-adc16") == RawStream(40960));
+  ServedTwin another(OnFreePorts(kAtOnce));
+  const std::string all = RawStream(1000), other = Uri(another.at().iiod_port);
   std::string wanted;
   for (std::size_t at = 0; at < all.size(); at += BufferClient::kScanBytes)
     wanted += all.substr(at + 2, 2) + all.substr(at + 6, 2);
-  EXPECT_TRUE(Output("iio_readdev -u " + iiod + " -b 100 -s 1000 psd-adc16 voltage1 voltage3") == wanted);
+  EXPECT_TRUE(Output("iio_readdev -u " + other + " -b 100 -s 1000 psd-adc16 voltage1 voltage3") == wanted);
 }
 
 TEST_F(RealClients, TheDistributionsIiodServesTheSameBytesOn) {
   SKIP_WITHOUT("iiod");
   SKIP_WITHOUT("iio_readdev");
   const Reserving through(served.at().iiod_port);
-  constexpr int kScans = 40960;
-  EXPECT_TRUE(Output("iio_readdev -u " + Uri(through.port()) + " -b 1024 -s 40960 psd-adc16") == RawStream(kScans));
+  EXPECT_TRUE(Output("iio_readdev -u " + Uri(through.port()) + " -b 1024 -s 40960 psd-adc16") == RawStream(40960));
 }
 
 /// Answers until the one to a VERSION that follows each command.
@@ -169,52 +137,21 @@ TEST_F(RealClients, TheDistributionsIiodAnswersTheSameToTheSameCommands) {
   SKIP_WITHOUT("iiod");
   const Reserving through(served.at().iiod_port);
   TcpClient own(served.at().iiod_port), other(through.port());
-  const char* commands[] = {"ZPRINT\n",
-                            "BINARY\n",
-                            "NONSENSE\n",
-                            "\r\n",
-                            "TIMEOUT 2500\r\n",
-                            "timeout 2500\n",
-                            "TIMEOUT\n",
-                            "READ psd-adc16 serial\r\n",
-                            "read psd-adc16 serial\n",
-                            "READ psd-adc16 nothing\n",
-                            "READ nothing serial\n",
-                            "READ psd-adc16 INPUT voltage0 scale\n",
-                            "READ psd-adc16 INPUT voltage9 scale\n",
-                            "READ psd-adc16 INPUT voltage0 nothing\n",
-                            "READ psd-adc16 DEBUG fault\n",
-                            "READ psd-adc16 DEBUG nothing\n",
-                            "READ psd-adc16 BUFFER nothing\n",
-                            "READ rotary-target\n",
-                            "READ psd-adc16 INPUT voltage0\n",
-                            "WRITE psd-adc16 serial 4\r\nmine",
-                            "WRITE psd-adc16 sampling_frequency 5\r\n62500",
-                            "WRITE psd-adc16 sampling_frequency 3\r\n1e9",
-                            "WRITE psd-adc16 nothing 2\r\nab",
-                            "WRITE psd-adc16 DEBUG fault 4\r\nmute",
-                            "OPEN psd-adc16 100 1f\n",
-                            "OPEN psd-adc16 100 00000000\n",
-                            "OPEN psd-adc16 0 0000001f\n",
-                            "OPEN rotary-target 100 00000001\n",
-                            "OPEN nothing 1 00000001\n",
-                            "OPEN psd-adc16 100\n",
-                            "READBUF psd-adc16 1600\n",
-                            "READBUF psd-adc16\n",
-                            "WRITEBUF psd-adc16 1600\n",
-                            "CLOSE psd-adc16\n",
-                            "CLOSE nothing\n",
-                            "SET psd-adc16 BUFFERS_COUNT 4\n",
-                            "SET nothing BUFFERS_COUNT 4\n",
-                            "SET psd-adc16 BUFFERS_COUNT 0\n",
-                            "SET psd-adc16 OTHER 4\n",
-                            "GETTRIG psd-adc16\n",
-                            "GETTRIG rotary-target\n",
-                            "GETTRIG nothing\n",
-                            "SETTRIG psd-adc16 scan-clock\n",
-                            "SETTRIG psd-adc16 trigger0\n",
-                            "SETTRIG psd-adc16 nothing\n",
-                            "SETTRIG psd-adc16\n"};
+  const char* commands[] = {
+      "ZPRINT\n", "BINARY\n", "NONSENSE\n", "\r\n", "TIMEOUT 2500\r\n", "timeout 2500\n", "TIMEOUT\n",
+      "READ psd-adc16 serial\r\n", "read psd-adc16 serial\n", "READ psd-adc16 nothing\n", "READ nothing serial\n",
+      "READ psd-adc16 INPUT voltage0 scale\n", "READ psd-adc16 INPUT voltage9 scale\n",
+      "READ psd-adc16 INPUT voltage0 nothing\n", "READ psd-adc16 DEBUG fault\n", "READ psd-adc16 DEBUG nothing\n",
+      "READ psd-adc16 BUFFER nothing\n", "READ rotary-target\n", "READ psd-adc16 INPUT voltage0\n",
+      "WRITE psd-adc16 serial 4\r\nmine", "WRITE psd-adc16 sampling_frequency 5\r\n62500",
+      "WRITE psd-adc16 sampling_frequency 3\r\n1e9", "WRITE psd-adc16 nothing 2\r\nab",
+      "WRITE psd-adc16 DEBUG fault 4\r\nmute", "OPEN psd-adc16 100 1f\n", "OPEN psd-adc16 100 00000000\n",
+      "OPEN psd-adc16 0 0000001f\n", "OPEN rotary-target 100 00000001\n", "OPEN nothing 1 00000001\n",
+      "OPEN psd-adc16 100\n", "READBUF psd-adc16 1600\n", "READBUF psd-adc16\n", "WRITEBUF psd-adc16 1600\n",
+      "CLOSE psd-adc16\n", "CLOSE nothing\n", "SET psd-adc16 BUFFERS_COUNT 4\n", "SET nothing BUFFERS_COUNT 4\n",
+      "SET psd-adc16 BUFFERS_COUNT 0\n", "SET psd-adc16 OTHER 4\n", "GETTRIG psd-adc16\n",
+      "GETTRIG rotary-target\n", "GETTRIG nothing\n", "SETTRIG psd-adc16 scan-clock\n",
+      "SETTRIG psd-adc16 trigger0\n", "SETTRIG psd-adc16 nothing\n", "SETTRIG psd-adc16\n"};
   for (const char* command : commands) EXPECT_EQ(Answers(own, command), Answers(other, command)) << command;
 }
 
@@ -235,13 +172,8 @@ TEST_F(RealClients, LxiAsksOverARawSocket) {
 }
 
 std::string Python(const std::string& module, const std::string& script) {
-  const std::string path = testing::TempDir() + "twinbench_" + module + ".py";
-  FILE* file = fopen(path.c_str(), "w");
-  fputs(script.c_str(), file);
-  fclose(file);
-  const std::string output = Output("/usr/bin/python3 -W ignore " + path);
-  std::remove(path.c_str());
-  return output;
+  const TemporaryFolder folder;
+  return Output("/usr/bin/python3 -W ignore " + folder.Write("asks_" + module + ".py", script));
 }
 
 bool HasModule(const std::string& module) {
@@ -250,38 +182,34 @@ bool HasModule(const std::string& module) {
 
 TEST_F(RealClients, PyvisaAsksOverARawSocket) {
   if (!HasModule("pyvisa_py")) GTEST_SKIP() << "pyvisa-py is not installed";
-  const std::string text = Python("pyvisa",
-                                  "import pyvisa\n"
-                                  "r = pyvisa.ResourceManager('@py').open_resource('TCPIP0::127.0.0.1::" +
-                                      scpi_port +
-                                      "::SOCKET', read_termination='\\n', write_termination='\\n')\n"
-                                      "print(r.query('*IDN?')[:22])\n"
-                                      "print(r.query_ascii_values('ROT1:ANGL 5;SETT? 60;ANGL?', separator=';'))\n"
-                                      "r.write('ROT1:ANGL 1e9')\n"
-                                      "print(r.query('SYST:ERR?'))\n");
+  const std::string text = Python(
+      "pyvisa",
+      "import pyvisa\nr = pyvisa.ResourceManager('@py').open_resource('TCPIP0::127.0.0.1::" + scpi_port +
+          "::SOCKET', read_termination='\\n', write_termination='\\n')\n"
+          "print(r.query('*IDN?')[:22])\nprint(r.query_ascii_values('ROT1:ANGL 5;SETT? 60;ANGL?', separator=';'))\n"
+          "r.write('ROT1:ANGL 1e9')\nprint(r.query('SYST:ERR?'))\n");
   EXPECT_EQ(text, "twinbench,rotary-bench\n[1.0, 5.0]\n-222,\"Data out of range;soft limit\"\n");
 }
 
 /// Drives both axes through PyMeasure's own driver of the ESP300.
 std::string PyMeasure(const std::string& resource) {
-  return Python("pymeasure",
-                "from pymeasure.instruments.newport import ESP300\n"
-                "e = ESP300('" +
-                    resource +
-                    "', visa_library='@py', read_termination='\\r\\n', write_termination='\\r')\n"
-                    "e.clear_errors()\n"
-                    "e.x.enable(); e.x.units = 'degree'\n"
-                    "print(e.x.enabled, e.x.units)\n"
-                    "e.x.position = 30.123456\n"
-                    "e.x.wait_for_stop()\n"
-                    "print(e.x.position, e.y.position)\n"
-                    "e.x.right_limit = 45\n"
-                    "e.x.position = 46\n"
-                    "print([str(x) for x in e.errors], e.x.right_limit)\n"
-                    "e.x.define_position(0); e.phi.enable()\n"
-                    "print([x.error for x in e.errors])\n"
-                    "e.shutdown()\n"
-                    "print(e.x.enabled, e.id[:6])\n");
+  return Python("pymeasure", "from pymeasure.instruments.newport import ESP300\ne = ESP300('" + resource +
+                                 "', visa_library='@py', read_termination='\\r\\n', write_termination='\\r')\n" +
+                                 R"(
+e.clear_errors()
+e.x.enable(); e.x.units = 'degree'
+print(e.x.enabled, e.x.units)
+e.x.position = 30.123456
+e.x.wait_for_stop()
+print(e.x.position, e.y.position)
+e.x.right_limit = 45
+e.x.position = 46
+print([str(x) for x in e.errors], e.x.right_limit)
+e.x.define_position(0); e.phi.enable()
+print([x.error for x in e.errors])
+e.shutdown()
+print(e.x.enabled, e.id[:6])
+)");
 }
 
 // Of 30.123456 deg that driver sends six digits: what the table has is what the encoder says.
@@ -292,14 +220,11 @@ constexpr const char* kPyMeasure =
     "['27', '9']\n"
     "False ESP301\n";
 
-TEST_F(RealClients, PyMeasuresDriverMovesTheTablesOverTcp) {
+TEST_F(RealClients, PyMeasuresDriverMovesTheTablesOverTcpAndOverASerialLine) {
   if (!HasModule("pymeasure")) GTEST_SKIP() << "PyMeasure is not installed";
   EXPECT_EQ(PyMeasure("TCPIP0::127.0.0.1::" + std::to_string(served.at().esp_port) + "::SOCKET"), kPyMeasure);
-}
-
-TEST_F(RealClients, PyMeasuresDriverMovesTheTablesOverASerialLine) {
-  if (!HasModule("pymeasure")) GTEST_SKIP() << "PyMeasure is not installed";
-  EXPECT_EQ(PyMeasure("ASRL" + served.at().pty + "::INSTR"), kPyMeasure);
+  const ServedTwin another{OnFreePorts(kAtOnce)};
+  EXPECT_EQ(PyMeasure("ASRL" + another.at().pty + "::INSTR"), kPyMeasure);
 }
 
 }  // namespace

@@ -19,9 +19,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
+hw::ServeOptions For(int clients, double speed) {
+  hw::ServeOptions options = OnFreePorts(speed);
+  options.max_connections = clients;
+  return options;
+}
 hw::ServeOptions Strict() {
-  hw::ServeOptions options = OnFreePorts(kAtOnce);
-  options.max_connections = 4;
+  hw::ServeOptions options = For(4, kAtOnce);
   options.idle_limit = milliseconds(400);
   options.write_limit = milliseconds(400);
   return options;
@@ -34,7 +38,7 @@ void ExpectAlive(const ServedTwin& served) {
   EXPECT_EQ(TcpClient(served.at().esp_port).Ask("TE?"), "0");
 }
 
-TEST(Robustness, ALineThatIsTooLongIsAnErrorAndTheEnd) {
+TEST(Robustness, ALineOrAPayloadThatIsTooLongIsAnErrorAndTheEnd) {
   ServedTwin served(OnFreePorts(kAtOnce));
   for (const int port : {served.at().iiod_port, served.at().scpi_port, served.at().esp_port}) {
     for (const char* end : {"", "\n"}) {
@@ -46,11 +50,6 @@ TEST(Robustness, ALineThatIsTooLongIsAnErrorAndTheEnd) {
   TcpClient scpi(served.at().scpi_port);
   scpi.Send(std::string(100'000, 'A'));
   EXPECT_EQ(scpi.Line(), "-363,\"Input buffer overrun\"");
-  ExpectAlive(served);
-}
-
-TEST(Robustness, APayloadThatIsTooLongIsAnErrorAndTheEnd) {
-  ServedTwin served(OnFreePorts(kAtOnce));
   TcpClient iiod(served.at().iiod_port);
   EXPECT_EQ(iiod.Ask("WRITE psd-adc16 serial 500000000"), "-7");
   EXPECT_TRUE(iiod.Ends());
@@ -73,46 +72,11 @@ TEST(Robustness, RandomBytesHarmNobody) {
 
 TEST(Robustness, RandomWordsOfTheProtocolsHarmNobody) {
   ServedTwin served(OnFreePorts(kAtOnce));
-  const std::vector<std::string> words = {"OPEN",
-                                          "READBUF",
-                                          "CLOSE",
-                                          "READ",
-                                          "WRITE",
-                                          "SET",
-                                          "PRINT",
-                                          "psd-adc16",
-                                          "rotary-target",
-                                          "trigger0",
-                                          "DEBUG",
-                                          "INPUT",
-                                          "BUFFER",
-                                          "fault",
-                                          "voltage0",
-                                          "scale",
-                                          "0",
-                                          "-1",
-                                          "100",
-                                          "1600",
-                                          "\n",
-                                          "\r\n",
-                                          "\n",
-                                          "\n",
-                                          "0000001f",
-                                          "ffffffff",
-                                          "BUFFERS_COUNT",
-                                          "99999999999999999999",
-                                          "1PA",
-                                          "1e308",
-                                          "ROT1:ANGL",
-                                          "ROT2:SETT?",
-                                          "ROT1:LIM:UPP",
-                                          "CLOC:HOLD ON",
-                                          "SIM:REST",
-                                          "SIM:FAUL target,limit",
-                                          "1WS",
-                                          "2OR",
-                                          ";",
-                                          ","};
+  const std::vector<std::string> words = {
+      "OPEN", "READBUF", "CLOSE", "READ", "WRITE", "SET", "PRINT", "psd-adc16", "rotary-target", "trigger0",
+      "DEBUG", "INPUT", "BUFFER", "fault", "voltage0", "scale", "0", "-1", "100", "1600", "\n", "\r\n", "\n", "\n",
+      "0000001f", "ffffffff", "BUFFERS_COUNT", "99999999999999999999", "1PA", "1e308", "ROT1:ANGL", "ROT2:SETT?",
+      "ROT1:LIM:UPP", "CLOC:HOLD ON", "SIM:REST", "SIM:FAUL target,limit", "1WS", "2OR", ";", ","};
   std::mt19937 random(7);
   for (int round = 0; round < 150; ++round) {
     std::string text;
@@ -150,9 +114,7 @@ TEST(Robustness, AClientThatTakesNothingIsLeftAndDelaysNobody) {
 }
 
 TEST(Robustness, WhenAllPlacesAreTakenOneThatHasNeverSpokenGivesWay) {
-  hw::ServeOptions options = OnFreePorts(kAtOnce);
-  options.max_connections = 3;
-  ServedTwin served(options);
+  ServedTwin served(For(3, kAtOnce));
   TcpClient first(served.at().scpi_port), second(served.at().scpi_port), third(served.at().scpi_port);
   for (TcpClient* client : {&first, &third}) client->Ask("*OPC?");
   TcpClient fourth(served.at().scpi_port);
@@ -174,9 +136,7 @@ TEST(Robustness, AnythingOfTheWebEndsTheConnectionBeforeItsBody) {
 }
 
 TEST(Robustness, AClientThatIsBeingServedKeepsItsPlace) {
-  hw::ServeOptions options = OnFreePorts(1.0);
-  options.max_connections = 1;
-  ServedTwin served(options);
+  ServedTwin served(For(1, 1.0));
   TcpClient waiting(served.at().scpi_port);
   waiting.Send("ROT1:ANGL 45;SETT? 60\n");  // two seconds; nobody waits for a place longer than one
   std::this_thread::sleep_for(milliseconds(100));
@@ -186,9 +146,7 @@ TEST(Robustness, AClientThatIsBeingServedKeepsItsPlace) {
 }
 
 TEST(Robustness, AClientThatFindsAllPlacesTakenWaitsForOne) {
-  hw::ServeOptions options = OnFreePorts(1.0);
-  options.max_connections = 1;
-  ServedTwin served(options);
+  ServedTwin served(For(1, 1.0));
   auto waiting = std::make_unique<TcpClient>(served.at().scpi_port);
   waiting->Send("ROT1:ANGL 100;SETT? 60\n");
   std::this_thread::sleep_for(milliseconds(100));
@@ -249,21 +207,6 @@ TEST(Robustness, AServerThatNobodyReadsFromStaysSmall) {
     scpi.Ask("CLOC:NOW?");
   }
   EXPECT_LT(heap() - before, 3e6);  // a second of scans with their stamps is 1 MB
-}
-
-TEST(Robustness, APortThatIsTakenIsAnErrorOfTheBench) {
-  ServedTwin served(OnFreePorts(1.0));
-  hw::ServeOptions options = OnFreePorts(1.0);
-  options.scpi_port = served.at().scpi_port;
-  sim::Twin twin{test::RotaryScenario()};
-  EXPECT_THROW(hw::Server(twin.Bench(), test::RotaryScenario(), AdcSettings{}, options), BenchError);
-}
-
-TEST(Robustness, ABenchWithoutCountsCannotBeServed) {
-  Scenario scenario = test::RotaryScenario();
-  scenario.noise_free = true;
-  sim::Twin twin(scenario);
-  EXPECT_THROW(hw::Server(twin.Bench(), scenario, RotaryOf(scenario).adc, OnFreePorts(1.0)), InputError);
 }
 
 }  // namespace

@@ -1,12 +1,7 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
 
 #include "tests/hw_serve/serving.h"
 #include "tests/support/rotary_scenario.h"
-#include "twin/benches/rotary_4dof/settings.h"
-#include "twin/core/number_text.h"
 
 namespace twinbench::test {
 namespace {
@@ -31,15 +26,6 @@ TEST_F(Scpi, TheBenchNamesItselfBySerialNumberOfItsScenario) {
   EXPECT_NE(TcpClient(second.at().scpi_port).Ask("*IDN?"), name);
 }
 
-TEST_F(Scpi, ATableGoesToTheBitsOfTheAngleThatWasSent) {
-  // An awkward number: no short decimal names it in degrees.
-  const double angle_rad = 0.1 + 1.0 / 3.0;
-  scpi.Send("ROT2:ANGL " + PrintInUnit(angle_rad, units::deg) + "\n");
-  EXPECT_EQ(scpi.Ask("ROT2:SETT? 60"), "1");
-  EXPECT_EQ(ParseInUnit(scpi.Ask("ROT2:ANGL:COMM?"), units::deg), angle_rad);
-  EXPECT_EQ(ParseInUnit(scpi.Ask("ROTation2:ANGLe?"), units::deg), angle_rad);
-}
-
 TEST_F(Scpi, OneClientHoldsTheClock) {
   EXPECT_EQ(scpi.Ask("CLOC:HOLD ON;*OPC?"), "1");
   {
@@ -59,10 +45,6 @@ TEST_F(Scpi, OneLineOfQueriesHasOneLineOfAnswers) {
   EXPECT_EQ(scpi.Ask("ROT1:LIM:LOW -10;UPP 20; :ROT1:LIM:LOW?;UPP?"), "-10;20");
   EXPECT_THAT(scpi.Ask("ROT2:ANGL?;*IDN?"), StartsWith("0;twinbench,"));
   EXPECT_THAT(Error(), StartsWith("0,"));
-}
-
-TEST_F(Scpi, TheStateOfATableIsOneAnswer) {
-  EXPECT_EQ(scpi.Ask("ROT1:STAT?"), "0,0,0,1,1,0,\"\"");
 }
 
 TEST_F(Scpi, AMoveBeyondASoftLimitIsRefusedAndTheTableStays) {
@@ -99,31 +81,10 @@ TEST_F(Scpi, TheEventRegisterTellsCommandFromExecutionErrors) {
   EXPECT_EQ(scpi.Ask("*STB?"), "0");
 }
 
-TEST_F(Scpi, TheGoniometerMovesWhatTheAutocollimatorSees) {
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).autocollimator.noise_rad = 0.0;
-  ServedTwin quiet(OnFreePorts(kAtOnce), scenario);
-  TcpClient client(quiet.at().scpi_port);
-  const std::string shown = client.Ask("GON:MOVE 120,-60;:AUT:READ?");
-  EXPECT_NEAR(std::stod(shown), 120.0, 1e-6);
-  EXPECT_NEAR(std::stod(shown.substr(shown.find(',') + 1)), -60.0, 1e-6);
-  EXPECT_EQ(client.Ask("GON:MOVE 2000,0;:AUT:READ?").substr(0, 7), "9.91E37");
-}
-
 TEST_F(Scpi, TimePassesByAsMuchAsIsAskedFor) {
   const long long before = scpi.AskNumber("CLOC:NOW?");
   EXPECT_EQ(scpi.AskNumber("CLOC:WAIT? 123456789"), before + 123456789);
   EXPECT_EQ(scpi.AskNumber("SIM:REST;CLOC:NOW?"), 0);
-}
-
-TEST_F(Scpi, StopBringsATableToRestOnItsWay) {
-  scpi.Send("CLOC:HOLD ON;ROT1:ANGL 90\n");
-  EXPECT_EQ(scpi.Ask("ROT1:SETT? 1"), "0");
-  scpi.Send("ABOR\n");
-  EXPECT_EQ(scpi.Ask("ROT1:SETT? 10"), "1");
-  const double angle_deg = std::stod(scpi.Ask("ROT1:ANGL?"));
-  EXPECT_GT(angle_deg, 1.0);
-  EXPECT_LT(angle_deg, 89.0);
 }
 
 }  // namespace
