@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <ostream>
 
 #include "hw_bridge/ad/block_checks.h"
 #include "hw_bridge/ad/lost_word.h"
 #include "hw_bridge/ad/negotiation.h"
+#include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
 #include "twin/benches/rotary_4dof/procedure/procedure.h"
 #include "twin/benches/rotary_4dof/settings.h"
@@ -20,13 +22,31 @@ namespace {
 
 using testing::HasSubstr;
 
+/// A served bench and what it gives where nothing is wrong with it.
+struct Struck {
+  explicit Struck(const Scenario& its_scenario = RestlessBench()) : scenario(its_scenario) {}
+  /// @param faults  By how many readings are kept then.
+  ServedRun Run(const std::map<int, std::string>& faults, const ServedRun* before = nullptr) {
+    options.faults = faults;
+    return RunServed(served, scenario, options, before);
+  }
+  ServedRun Run() { return RunServed(served, scenario, options); }
+  void ExpectCarriedOutUndisturbed(const ServedRun& run) const {
+    EXPECT_EQ(run.stopped_by, "") << run.said;
+    EXPECT_EQ(run.Readings(), InProcess(scenario));
+  }
+
+  Scenario scenario;
+  const ServedTwin served{scenario};
+  RunOptions options;
+};
+
 constexpr int kAt = 14;  // readings kept when the fault strikes: in the middle of the first full circle
 
 // --- what is tried again ---
 
 struct TriedAgain {
-  const char* name;
-  const char* injected;
+  const char *name, *injected;
   std::vector<std::string> noticed_as;  // any of these is the right name
   const char* tables = "scpi";
   std::size_t attempts = 1;
@@ -36,14 +56,10 @@ struct TriedAgain {
 class FaultThatIsTriedAgain : public ::testing::TestWithParam<TriedAgain> {};
 
 TEST_P(FaultThatIsTriedAgain, CostsOneAttemptAndNoBit) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.tables = GetParam().tables;
-  options.faults[kAt] = GetParam().injected;
-  const ServedRun run = RunServed(served, scenario, options);
-  EXPECT_EQ(run.stopped_by, "") << run.said;
-  EXPECT_EQ(run.Readings(), InProcess(scenario));
+  Struck bench;
+  bench.options.tables = GetParam().tables;
+  const ServedRun run = bench.Run({{kAt, GetParam().injected}});
+  bench.ExpectCarriedOutUndisturbed(run);
   ASSERT_FALSE(run.log.attempts.empty()) << "the log shows it";
   EXPECT_LE(run.log.attempts.size(), GetParam().attempts);
   EXPECT_EQ(run.log.attempts[0].reading, kAt);
@@ -80,33 +96,24 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& row) { return row.param.name; });
 
 TEST(FaultMatrix, AtTheVeryFirstReadingTheRunBeginsAgain) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.faults[0] = "adc,drop";
-  const ServedRun run = RunServed(served, scenario, options);
-  EXPECT_EQ(run.Readings(), InProcess(scenario)) << run.said;
+  Struck bench;
+  const ServedRun run = bench.Run({{0, "adc,drop"}});
+  bench.ExpectCarriedOutUndisturbed(run);
   EXPECT_EQ(run.log.attempts.size(), 1u);
 }
 
 TEST(FaultMatrix, AFaultThatStaysUsesUpTheAttemptsAndTheRunCanBeResumed) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.faults[kAt] = "adc,gap,3";
-  const ServedRun run = RunServed(served, scenario, options);
+  Struck bench;
+  const ServedRun run = bench.Run({{kAt, "adc,gap,3"}});
   EXPECT_EQ(run.stopped_by, "gap");
   EXPECT_EQ(run.log.attempts.size(), 3u);
   ASSERT_EQ(run.log.readings.size(), static_cast<std::size_t>(kAt));
-  const ServedRun resumed = RunServed(served, scenario, {}, &run);
-  EXPECT_EQ(resumed.Readings(), InProcess(scenario)) << resumed.said;
+  bench.ExpectCarriedOutUndisturbed(bench.Run({}, &run));
 }
 
 /// A controller that restarts while nothing moves is met by the next look at its encoder: that before the block or that behind it.
 struct RestartedAboutABlock {
-  const char* tables;
-  const char* table;
-  const char* when;  // the last device that is asked before it
+  const char *tables, *table, *when;  // the last device that is asked before it
   friend void PrintTo(const RestartedAboutABlock& row, std::ostream* out) {
     *out << row.tables << "_" << row.table << "_" << row.when;
   }
@@ -115,19 +122,16 @@ struct RestartedAboutABlock {
 class RestartAboutABlock : public ::testing::TestWithParam<RestartedAboutABlock> {};
 
 TEST_P(RestartAboutABlock, CostsOneAttemptAndLeavesNoCellEmpty) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.tables = GetParam().tables;
+  Struck bench;
+  bench.options.tables = GetParam().tables;
   bool struck = false;
-  options.before_call = [&](const std::string& device, const std::string&, int kept) {
+  bench.options.before_call = [&](const std::string& device, const std::string&, int kept) {
     if (struck || kept != kAt || device != GetParam().when) return;
     struck = true;
-    Inject(served, std::string(GetParam().table) + ",restart");
+    Inject(bench.served, std::string(GetParam().table) + ",restart");
   };
-  const ServedRun run = RunServed(served, scenario, options);
-  EXPECT_EQ(run.stopped_by, "") << run.said;
-  EXPECT_EQ(run.Readings(), InProcess(scenario));
+  const ServedRun run = bench.Run();
+  bench.ExpectCarriedOutUndisturbed(run);
   ASSERT_EQ(run.log.attempts.size(), 1u);
   EXPECT_EQ(run.log.attempts[0].reading, kAt);
   EXPECT_EQ(run.log.attempts[0].fault, "restarted");
@@ -165,16 +169,13 @@ Scenario WithLevels(const std::array<double, kChannels>& levels_V) {
 }
 
 TEST(FaultMatrix, AWordIsLostUnseenWhereTheLevelsAreAlikeAndShiftsNoMeanByMoreThanSaid) {
-  const Scenario scenario = WithLevels({0.0, 0.004, 0.008, 0.004});  // noise: 0.006 V a sample
-  const AdcSettings& adc = RotaryOf(scenario).adc;
-  const ServedTwin served(scenario);
-  const ServedRun undisturbed = RunServed(served, scenario);
+  Struck bench(WithLevels({0.0, 0.004, 0.008, 0.004}));  // noise: 0.006 V a sample
+  const AdcSettings& adc = RotaryOf(bench.scenario).adc;
+  const ServedRun undisturbed = bench.Run();
   const Reading& whole = undisturbed.log.readings.at(kAt);
   const hw::LostWord word = Foretold(whole, adc);
   ASSERT_FALSE(word.shows);
-  RunOptions options;
-  options.faults[kAt] = "adc,slip";
-  const ServedRun run = RunServed(served, scenario, options);
+  const ServedRun run = bench.Run({{kAt, "adc,slip"}});
   EXPECT_TRUE(run.log.attempts.empty());
   const Reading& hit = run.log.readings.at(kAt);
   for (std::size_t c = 0; c < kChannels; ++c) {
@@ -185,39 +186,34 @@ TEST(FaultMatrix, AWordIsLostUnseenWhereTheLevelsAreAlikeAndShiftsNoMeanByMoreTh
 }
 
 TEST(FaultMatrix, AWordIsNeverLostUnseenWhereOffsetsKeepTheLevelsApart) {
-  const Scenario scenario = WithLevels({-1.5, -0.5, 0.5, 1.5});
-  const ServedTwin served(scenario);
-  RunOptions options;
-  for (int at = 0; at < 36; at += 5) options.faults[at] = "adc,slip";
-  const ServedRun run = RunServed(served, scenario, options);
-  EXPECT_EQ(run.log.attempts.size(), options.faults.size());
-  EXPECT_EQ(run.Readings(), InProcess(scenario));
-  for (const Reading& reading : run.log.readings) EXPECT_TRUE(Foretold(reading, RotaryOf(scenario).adc).shows);
+  Struck bench(WithLevels({-1.5, -0.5, 0.5, 1.5}));
+  std::map<int, std::string> faults;
+  for (int at = 0; at < 36; at += 5) faults[at] = "adc,slip";
+  const ServedRun run = bench.Run(faults);
+  EXPECT_EQ(run.log.attempts.size(), faults.size());
+  EXPECT_EQ(run.Readings(), InProcess(bench.scenario));
+  for (const Reading& reading : run.log.readings)
+    EXPECT_TRUE(Foretold(reading, RotaryOf(bench.scenario).adc).shows);
 }
 
 // --- what ends the run until a hand has helped ---
 
 struct NeedsAHand {
-  const char* name;
-  const char* injected;
-  const char* stopped_by;
+  const char *name, *injected, *stopped_by;
   friend void PrintTo(const NeedsAHand& row, std::ostream* out) { *out << row.name; }
 };
 
 class FaultThatNeedsAHand : public ::testing::TestWithParam<NeedsAHand> {};
 
 TEST_P(FaultThatNeedsAHand, StopsTheRunWhichGoesOnAfterwards) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.faults[kAt] = GetParam().injected;
-  options.alter = [](hw::BenchFile& file) { file.target_limits.stall_s = 3.0; };
-  const ServedRun run = RunServed(served, scenario, options);
+  Struck bench;
+  bench.options.alter = [](hw::BenchFile& file) { file.target_limits.stall_s = 3.0; };
+  const ServedRun run = bench.Run({{kAt, GetParam().injected}});
   EXPECT_EQ(run.stopped_by, GetParam().stopped_by) << run.said;
   EXPECT_EQ(run.log.readings.size(), static_cast<std::size_t>(kAt));
   EXPECT_EQ(run.log.attempts.size(), 1u);
-  const ServedRun resumed = RunServed(served, scenario, {}, &run);
-  EXPECT_EQ(resumed.Readings(), InProcess(scenario)) << resumed.said;
+  bench.options = {};
+  bench.ExpectCarriedOutUndisturbed(bench.Run({}, &run));
 }
 
 INSTANTIATE_TEST_SUITE_P(Matrix, FaultThatNeedsAHand,
@@ -231,22 +227,16 @@ INSTANTIATE_TEST_SUITE_P(Matrix, FaultThatNeedsAHand,
 class FaultPendingAtAResume : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(FaultPendingAtAResume, IsNotTakenForARecordThatDoesNotFit) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.faults[kAt] = "target,limit";  // ends the run
-  const ServedRun run = RunServed(served, scenario, options);
+  Struck bench;
+  const ServedRun run = bench.Run({{kAt, "target,limit"}});  // ends the run
   ASSERT_EQ(run.stopped_by, "limit") << run.said;
-  RunOptions pending;
-  pending.faults[0] = GetParam();  // of this program: before anything is asked
-  const ServedRun resumed = RunServed(served, scenario, pending, &run);
+  const ServedRun resumed = bench.Run({{0, GetParam()}}, &run);  // of this program: before anything is asked
   if (std::string(GetParam()) == "adc,float") {
     EXPECT_EQ(resumed.stopped_by, "signal_lost");
     EXPECT_THAT(resumed.said, HasSubstr("check the cable"));
     return;
   }
-  EXPECT_EQ(resumed.stopped_by, "") << resumed.said;
-  EXPECT_EQ(resumed.Readings(), InProcess(scenario));
+  bench.ExpectCarriedOutUndisturbed(resumed);
   ASSERT_GT(resumed.log.attempts.size(), run.log.attempts.size()) << "and what it cost is written down";
   EXPECT_EQ(resumed.log.attempts.back().reading, kAt);
 }
@@ -258,54 +248,30 @@ INSTANTIATE_TEST_SUITE_P(Matrix, FaultPendingAtAResume,
                                            "reference,not_in_position", "target,limit", "reference,stall"));
 
 TEST(FaultMatrix, AFaultThatStrikesAtEveryAttemptOfAResumeSaysWhatToDo) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.faults[kAt] = "target,limit";
-  const ServedRun run = RunServed(served, scenario, options);
-  RunOptions pending;
-  pending.faults[0] = "adc,no_light,3";
-  try {
-    RunServed(served, scenario, pending, &run);
-    FAIL() << "three attempts, three faults";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("as before, in 3 attempts"));
-    EXPECT_THAT(error.what(), HasSubstr("look at the bench and go on with --resume"));
-  }
+  Struck bench;
+  const ServedRun run = bench.Run({{kAt, "target,limit"}});
+  const std::string said = MessageOf([&] { bench.Run({{0, "adc,no_light,3"}}, &run); });
+  EXPECT_THAT(said, HasSubstr("as before, in 3 attempts"));
+  EXPECT_THAT(said, HasSubstr("look at the bench and go on with --resume"));
 }
 
 // --- what is measured all the same ---
 
-TEST(FaultMatrix, ASaturatedBlockIsFlaggedAndNeverAveraged) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.faults[kAt] = "adc,saturate";
-  const ServedRun run = RunServed(served, scenario, options);
-  EXPECT_EQ(run.stopped_by, "") << run.said;
-  const Reading& hit = run.log.readings.at(kAt);
-  EXPECT_EQ(hit.status, ReadingStatus::kSaturated);
-  for (const double mean_V : hit.mean_V) EXPECT_TRUE(std::isnan(mean_V));
-  EXPECT_EQ(run.log.readings.at(kAt + 1).status, ReadingStatus::kOk);
-}
-
-TEST(FaultMatrix, ABlockedBeamIsNoPosition) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.faults[kAt] = "adc,no_light";
-  const ServedRun run = RunServed(served, scenario, options);
-  const Reading& hit = run.log.readings.at(kAt);
-  EXPECT_EQ(hit.status, ReadingStatus::kNoLight);
-  for (const double mean_V : hit.mean_V) EXPECT_TRUE(std::isnan(mean_V));
+TEST(FaultMatrix, ASaturatedBlockAndABlockedBeamAreFlaggedAndNeverAveraged) {
+  Struck bench;
+  for (const auto& [fault, status] :
+       {std::pair{"adc,saturate", ReadingStatus::kSaturated}, std::pair{"adc,no_light", ReadingStatus::kNoLight}}) {
+    const ServedRun run = bench.Run({{kAt, fault}});
+    EXPECT_EQ(run.stopped_by, "") << run.said;
+    const Reading& hit = run.log.readings.at(kAt);
+    EXPECT_EQ(hit.status, status);
+    for (const double mean_V : hit.mean_V) EXPECT_TRUE(std::isnan(mean_V));
+    EXPECT_EQ(run.log.readings.at(kAt + 1).status, ReadingStatus::kOk);
+  }
 }
 
 TEST(FaultMatrix, HumIsMeasuredAllTheSame) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.faults[kAt] = "adc,hum";
-  const ServedRun run = RunServed(served, scenario, options);
+  const ServedRun run = Struck().Run({{kAt, "adc,hum"}});
   EXPECT_EQ(run.stopped_by, "") << run.said;
   EXPECT_EQ(run.log.readings.at(kAt).status, ReadingStatus::kOk);
   EXPECT_TRUE(run.log.attempts.empty());
@@ -314,46 +280,12 @@ TEST(FaultMatrix, HumIsMeasuredAllTheSame) {
 // --- what is refused before anything moves ---
 
 TEST(FaultMatrix, ATravelBeyondTheSoftLimitsIsRefusedBeforeTheMove) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.alter = [](hw::BenchFile& file) { file.target_limits.upper_rad = 200.0 * units::deg; };
-  const ServedRun run = RunServed(served, scenario, options);
+  Struck bench;
+  bench.options.alter = [](hw::BenchFile& file) { file.target_limits.upper_rad = 200.0 * units::deg; };
+  const ServedRun run = bench.Run();
   EXPECT_EQ(run.stopped_by, "limit");
   EXPECT_THAT(run.said, HasSubstr("240"));
   EXPECT_GT(run.log.readings.size(), 12u) << "up to there it was allowed";
-}
-
-TEST(FaultMatrix, ACardWithAnotherRateIsRefusedAndBothAreNamed) {
-  Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RotaryOf(scenario).adc.rate_Hz = 100e3;
-  const ServedRun run = RunServed(served, scenario);
-  EXPECT_EQ(run.stopped_by, "refused");
-  EXPECT_THAT(run.said, HasSubstr("62500"));
-  EXPECT_THAT(run.said, HasSubstr("25000"));
-}
-
-TEST(FaultMatrix, ACardWithAnotherSerialNumberIsRefused) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.alter = [](hw::BenchFile& file) { file.adc.serial = "1716-0042"; };
-  const ServedRun run = RunServed(served, scenario, options);
-  EXPECT_EQ(run.stopped_by, "identity");
-  EXPECT_THAT(run.said, HasSubstr("1716-0042"));
-}
-
-TEST(FaultMatrix, AnotherControllerAtTheAddressIsRefused) {
-  const Scenario scenario = RestlessBench();
-  const ServedTwin served(scenario);
-  RunOptions options;
-  options.alter = [](hw::BenchFile& file) {
-    for (hw::ControlSettings* device :
-         {&file.target, &file.reference, &file.autocollimator, &file.thermometer, &file.goniometer, &file.fixture})
-      device->identity = "SmarAct";
-  };
-  EXPECT_EQ(RunServed(served, scenario, options).stopped_by, "identity");
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include "hw_bridge/open_bench.h"
 #include "hw_bridge/replay/replay_bench.h"
-#include "tests/contract/python_backend.h"
 #include "tests/contract/rotary_bench.h"
 #include "tests/core/input_error.h"
 #include "tests/support/served_run.h"

@@ -1,4 +1,4 @@
-#include "tests/contract/python_backend.h"
+#include "tests/contract/rotary_bench.h"
 
 #ifdef TWINBENCH_PYTHON_TESTS
 #include <pybind11/embed.h>

@@ -33,5 +33,7 @@ struct BenchBackend {
 
 /// The twin at its three fidelities, served twins reached as real benches are, and recordings.
 std::vector<BenchBackend> Backends();
+/// The bench of tests/python/closed_form_bench.py, driven through the package that users have.
+BenchBackend PythonBackend();
 
 }  // namespace twinbench::test

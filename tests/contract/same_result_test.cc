@@ -2,21 +2,15 @@
 
 #include <ostream>
 
-#include "hw_bridge/replay/replay_bench.h"
-#include "tests/core/input_error.h"
 #include "tests/support/served_run.h"
-#include "twin/benches/names.h"
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/run_record.h"
 
 /// Same scenario, same seed, same result, whatever the bench is reached by.
 namespace twinbench::test {
 namespace {
 
 struct Way {
-  const char* converter;
-  const char* tables;
+  const char *converter, *tables;
   friend void PrintTo(const Way& way, std::ostream* out) { *out << way.converter << ' ' << way.tables; }
 };
 
@@ -64,27 +58,6 @@ INSTANTIATE_TEST_SUITE_P(Backends, SameResult,
                                            Way{"comedi", "scpi"}),
                          [](const auto& way) { return std::string(way.param.converter) + "_" + way.param.tables; });
 
-TEST(SameResult, OfARecording) {
-  const Scenario scenario = RestlessBench();
-  const TemporaryFolder folder;
-  {
-    sim::Twin twin(scenario);
-    RotaryBench bench = twin.Bench();
-    const auto record = RunRecord::Create(folder.path(), {"test", "twin", scenario.seed, "", kRotaryBench});
-    procedure::Options options;
-    options.log = record.get();
-    procedure::CarryOut(bench, scenario, *record, {}, options);
-    record->Finish();
-  }
-  hw::ReplayBench replay(folder.path());
-  RotaryBench bench = replay.Bench();
-  MemoryLog log;
-  procedure::Options options;
-  options.log = &log;  // waits are sliced for the operator wherever a run is written down
-  procedure::CarryOut(bench, scenario, log, {}, options);
-  EXPECT_EQ(TextOf(log.readings), InProcess(scenario));
-}
-
 TEST(SameResult, AFullFifoOfTheCardCostsOneAttemptAndNoBit) {
   if (!MissingComedi().empty()) GTEST_SKIP() << MissingComedi();
   const Scenario scenario = RestlessBench();
@@ -96,16 +69,6 @@ TEST(SameResult, AFullFifoOfTheCardCostsOneAttemptAndNoBit) {
   EXPECT_EQ(run.Readings(), InProcess(scenario)) << run.said;
   ASSERT_EQ(run.log.attempts.size(), 1u);
   EXPECT_EQ(run.log.attempts[0].fault, "overrun");
-}
-
-TEST(SameResult, InRealTimeAsWithoutAnyTime) {
-  // 25 readings, two minutes of bench time; at 200 times real time the pacing waits for every step.
-  Scenario scenario = RestlessBench();
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
-  const ServedTwin served(scenario, 200.0);
-  const ServedRun run = RunServed(served, scenario);
-  EXPECT_EQ(run.stopped_by, "") << run.said;
-  EXPECT_EQ(run.Readings(), InProcess(scenario));
 }
 
 TEST(SameResult, WithReadingsThatHaveNoNumbers) {

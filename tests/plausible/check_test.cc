@@ -2,15 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/core/input_error.h"
+#include "tests/support/kept_text.h"
 #include "twin/core/units.h"
 
 namespace twinbench::plausible {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -37,63 +38,45 @@ Scenario Angles() {
 }
 
 std::string Lines(const std::vector<Reading>& readings, const Scenario& scenario = Angles()) {
-  return InLines(Check(readings, scenario));
+  const std::string lines = InLines(Check(readings, scenario));
+  return lines.substr(0, lines.find_last_not_of('\n') + 1);
 }
 
 TEST(Plausible, SaysNothingOfGoodReadings) {
   EXPECT_THAT(Lines(Readings()), IsEmpty());
 }
 
-TEST(Plausible, NamesADeadChannel) {
+constexpr double k9_rad = 9.0 * units::deg;
+
+/// What was done to a reading of them all.
+using Change = void (*)(Reading&);
+std::vector<Reading> Changed(Change change) {
   std::vector<Reading> readings = Readings();
-  for (Reading& r : readings) r.measured_rad = 0.0;
-  EXPECT_THAT(Lines(readings), HasSubstr("cannot be: measured_deg = 0 in all 200 readings"));
-  EXPECT_THAT(MessageOf([&] { RefuseFatal(Check(readings, Angles()), "run"); }),
-              HasSubstr("run: measured_deg = 0"));
+  std::ranges::for_each(readings, change);
+  return readings;
 }
 
-TEST(Plausible, DoubtsAChannelThatWasStuckForAWhile) {
-  std::vector<Reading> readings = Readings();
-  for (int i = 60; i < 95; ++i) readings[i].measured_rad = readings[60].measured_rad;
-  EXPECT_THAT(Lines(readings), HasSubstr("doubtful: measured_deg stands still"));
-  EXPECT_THAT(Lines(readings), HasSubstr("for 35 readings, up to reading 94"));
-}
+TEST(Plausible, SaysWhatIsWrongWithReadings) {
+  const Change changes[] = {
+      [](Reading& r) { r.measured_rad = 0.0; },        // a dead channel
+      [](Reading& r) { r.position = 0; },              // all the same
+      [](Reading& r) { r.direction = -r.direction; },  // which the angles contradict
+      [](Reading& r) { r.measured_rad = std::round(r.measured_rad / k9_rad) * k9_rad; },  // coarse steps
+      [](Reading& r) { r.time = Time{}; },                                                // a clock that stands
+      [](Reading& r) { r.reference_rad *= r.reading == 150 ? 1e15 : 1.0; },  // where nothing turns to in a second
+  };
+  for (const Change change : changes) EXPECT_KEPT(Lines(Changed(change)));
+  EXPECT_KEPT(
+      MessageOf([] { RefuseFatal(Check(Changed([](Reading& r) { r.measured_rad = 0.0; }), Angles()), "run"); }));
+  const auto at_60_000_a_minute = [](Reading& r) { r.reference_rad = r.reading * 1000.0 * units::turn; };
+  EXPECT_THAT(Lines(Changed(at_60_000_a_minute)), testing::Not(HasSubstr("turns from where it was")));
 
-TEST(Plausible, RefusesPositionsThatAreAllTheSame) {
-  std::vector<Reading> readings = Readings();
-  for (Reading& r : readings) r.position = 0;
-  EXPECT_THAT(Lines(readings), HasSubstr("cannot be: 198 of 200 readings have the position of another one"));
-}
-
-TEST(Plausible, RefusesAnAngleThatNothingTurnsToInTheTime) {
-  std::vector<Reading> readings = Readings();
-  readings[150].reference_rad = 1e17 * units::deg;
-  EXPECT_THAT(Lines(readings), HasSubstr("cannot be: reference_deg is 2.78e+14 turns from where it was 1 s before, in reading 150"));
-  for (Reading& r : readings) r.reference_rad = r.reading * 1000.0 * units::turn;  // 60 000 turns a minute
-  EXPECT_THAT(Lines(readings), testing::Not(HasSubstr("turns from where it was")));
-}
-
-TEST(Plausible, DoubtsDirectionsThatTheAnglesContradict) {
-  std::vector<Reading> readings = Readings();
-  for (Reading& r : readings) r.direction = -r.direction;
-  EXPECT_THAT(Lines(readings), HasSubstr("go against the direction"));
-}
-
-TEST(Plausible, SaysWhenAResolutionIsCoarse) {
-  std::vector<Reading> readings = Readings();
-  for (Reading& r : readings) r.measured_rad = std::round(r.measured_rad / (9.0 * units::deg)) * 9.0 * units::deg;
-  EXPECT_THAT(Lines(readings), HasSubstr("steps of 9"));
-}
-
-TEST(Plausible, RefusesTooFewReadings) {
-  EXPECT_THAT(Lines({}), HasSubstr("cannot be: there are 0 readings"));
-  EXPECT_THAT(Lines(Readings(2)), HasSubstr("there are only 2 readings"));
-}
-
-TEST(Plausible, SaysThatAClockStands) {
-  std::vector<Reading> readings = Readings();
-  for (Reading& r : readings) r.time = Time{};
-  EXPECT_THAT(Lines(readings), HasSubstr("the same time"));
+  std::vector<Reading> stuck = Readings();
+  for (int i = 60; i < 95; ++i) stuck[i].measured_rad = stuck[60].measured_rad;
+  EXPECT_THAT(Lines(stuck), HasSubstr("doubtful: measured_deg stands still"));
+  EXPECT_THAT(Lines(stuck), HasSubstr("for 35 readings, up to reading 94"));
+  EXPECT_KEPT(Lines({}));
+  EXPECT_KEPT(Lines(Readings(2)));
 }
 
 /// Four detector channels about a volt.
@@ -116,19 +99,14 @@ TEST(Plausible, RefusesVoltsThatTheCardCannotGive) {
   EXPECT_THAT(Lines(Voltages(), scenario), IsEmpty());
   std::vector<Reading> one = Voltages(), in_mV = Voltages();
   one[7].mean_V[1] = 1e308;
-  EXPECT_THAT(Lines(one, scenario),
-              HasSubstr("cannot be: 1 values of psd_a_y_V are outside the converter's range of 10, reading 7"));
+  EXPECT_KEPT(Lines(one, scenario));
   for (Reading& r : in_mV) r.mean_V[0] *= 1000.0;
   EXPECT_THAT(Lines(in_mV, scenario), HasSubstr("is it in mV?"));
 }
 
 TEST(Plausible, PutsWhatCannotBeFirst) {
-  std::vector<Reading> readings = Readings();
-  for (Reading& r : readings) {
-    r.direction = -r.direction;
-    r.position = 0;
-  }
-  const std::vector<Finding> findings = Check(readings, Angles());
+  const auto both = Changed([](Reading& r) { r.direction = -r.direction, r.position = 0; });
+  const std::vector<Finding> findings = Check(both, Angles());
   ASSERT_EQ(findings.size(), 2u);
   EXPECT_TRUE(findings[0].fatal);
   EXPECT_FALSE(findings[1].fatal);

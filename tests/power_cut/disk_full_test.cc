@@ -13,9 +13,8 @@ class FullDisk : public Program {
  protected:
   FullDisk() {
     Write("own.toml", "kind = \"twin\"\n");
-    Write("raw.toml",
-          "bench = \"rotary_4dof\"\n[mechanics]\nfidelity = \"kinematic\"\n[adc]\nsamples = "
-          "1000\n[procedure]\nkeep_raw = true\n");
+    Write("raw.toml", "bench = \"rotary_4dof\"\nmechanics.fidelity = \"kinematic\"\nadc.samples = 1000\n"
+                      "procedure.keep_raw = true\n");
     Succeed(Measure("undisturbed"));
   }
   /// Goes on where there is a run.
@@ -32,9 +31,8 @@ class FullDisk : public Program {
     setenv("TWINBENCH_DISK_TELLS", tells ? "1" : "0", 1);
     setenv("LD_PRELOAD", POWER_CUT_DISK, 1);
     const Outcome outcome = Call(Measure(name));
-    for (const char* name_of :
-         {"LD_PRELOAD", "TWINBENCH_DISK_ROOT", "TWINBENCH_DISK_ROOM_B", "TWINBENCH_DISK_TELLS"})
-      unsetenv(name_of);
+    for (const char* set : {"LD_PRELOAD", "TWINBENCH_DISK_ROOT", "TWINBENCH_DISK_ROOM_B", "TWINBENCH_DISK_TELLS"})
+      unsetenv(set);
     return outcome;
   }
 

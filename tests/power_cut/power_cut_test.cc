@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "tests/core/input_error.h"
 #include "tests/power_cut/numbered.h"
@@ -18,12 +17,12 @@ constexpr int kReadings = 250;
 /// Runs the writer with every change of its files written down.
 std::vector<FileChange> ChangesOfAWriter(const std::string& how) {
   const TemporaryFolder folder;
-  const std::string command = "TWINBENCH_DISK_ROOT=" + folder.File("run") +
-                              " TWINBENCH_DISK_LOG=" + folder.File("log") +
-                              " LD_PRELOAD=" POWER_CUT_DISK " " POWER_CUT_WRITER " " + folder.File("run") + " " +
+  const std::string run = folder.File("run"), log = folder.File("log");
+  const std::string command = "TWINBENCH_DISK_ROOT=" + run + " TWINBENCH_DISK_LOG=" + log +
+                              " LD_PRELOAD=" POWER_CUT_DISK " " POWER_CUT_WRITER " " + run + " " +
                               std::to_string(kReadings) + how;
   if (std::system(command.c_str()) != 0) throw BenchError("the writer failed: " + command);
-  return ReadWriteLog(folder.File("log"));
+  return ReadWriteLog(log);
 }
 
 /// Of the writer that waits for the disk, once for all tests here.
@@ -33,9 +32,8 @@ const std::vector<FileChange>& WritersChanges() {
 }
 
 int SyncsOfTheLog(const std::vector<FileChange>& changes) {
-  return static_cast<int>(std::ranges::count_if(changes, [](const FileChange& change) {
-    return change.what == 's' && change.path.ends_with("-wal");
-  }));
+  return static_cast<int>(std::ranges::count_if(
+      changes, [](const FileChange& change) { return change.what == 's' && change.path.ends_with("-wal"); }));
 }
 
 std::string NameOf(const std::string& path) {
@@ -45,8 +43,7 @@ std::string NameOf(const std::string& path) {
 /// Lays a disk's files into a folder; the shared memory of the log does not outlive a power cut.
 void LayOut(const std::map<std::string, std::string>& files, const TemporaryFolder& folder) {
   for (const auto& [path, content] : files) {
-    if (path.ends_with("-shm") || NameOf(path) == "acknowledged") continue;
-    std::ofstream(folder.File(NameOf(path)), std::ios::binary) << content;
+    if (!path.ends_with("-shm") && NameOf(path) != "acknowledged") folder.Write(NameOf(path), content);
   }
 }
 
@@ -124,21 +121,16 @@ TEST_P(PowerCut, OfARunThatSparesTheDiskLosesItsLatestReadingsAndNoneOnceItIsFin
 
 INSTANTIATE_TEST_SUITE_P(Disk, PowerCut,
                          ::testing::Values(ForgetfulDisk::Left::kPrefix, ForgetfulDisk::Left::kTornSubset),
-                         [](const auto& instance) {
-                           return instance.param == ForgetfulDisk::Left::kPrefix ? "KeepsAPrefix"
-                                                                                 : "KeepsATornSubset";
+                         [](const auto& left) {
+                           return left.param == ForgetfulDisk::Left::kPrefix ? "KeepsAPrefix" : "KeepsATornSubset";
                          });
 
 TEST(ForgetfulDisk, KeepsWhatWasSyncedAndForgetsTheRest) {
   // Guards the tests above: a disk that keeps everything would pass them.
   ForgetfulDisk disk;
-  for (const FileChange& change : std::vector<FileChange>{{'c', "/d/f", 0, ""},
-                                                          {'w', "/d/f", 0, "kept"},
-                                                          {'s', "/d/f", 0, ""},
-                                                          {'s', "/d", 0, ""},
-                                                          {'w', "/d/f", 0, "lost"},
-                                                          {'c', "/d/g", 0, ""}})
-    disk.Apply(change);
+  const FileChange changes[] = {{'c', "/d/f", 0, ""}, {'w', "/d/f", 0, "kept"}, {'s', "/d/f", 0, ""},
+                                {'s', "/d", 0, ""},   {'w', "/d/f", 0, "lost"}, {'c', "/d/g", 0, ""}};
+  for (const FileChange& change : changes) disk.Apply(change);
   std::mt19937_64 random(1);
   int old_content = 0, second_file = 0;
   for (int k = 0; k < 200; ++k) {
