@@ -54,11 +54,6 @@ OwnRun RunTogether(const OwnBench& bench, const std::vector<OwnKey>& keys) {
 
 }  // namespace
 
-OwnKey Change(const std::string& key, const std::string& value, std::vector<std::string> with) {
-  with.push_back(key + "=" + value);
-  return {key, std::move(with)};
-}
-
 std::vector<std::string> Forgotten(const std::string& bench, const std::vector<OwnKey>& keys) {
   std::set<std::string> in_schema, listed;
   Scenario scenario;

@@ -15,9 +15,6 @@ struct OwnKey {
   std::string reason = {};
 };
 
-/// A key with a value that readings feel, and what else must be so that they do.
-OwnKey Change(const std::string& key, const std::string& value, std::vector<std::string> with = {});
-
 /// Keys of the bench's schema that are in no entry, and keys of entries that are in no schema.
 std::vector<std::string> Forgotten(const std::string& bench, const std::vector<OwnKey>& keys);
 
