@@ -78,9 +78,14 @@ class LogBench : public Clock,
   std::vector<std::size_t> raw_sizes;
 };
 
-Scenario FullCircleOnly(int positions, std::vector<int> shifts, std::vector<int> passes) {
+Scenario With(const std::vector<std::string>& phases) {
   Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
+  RotaryOf(scenario).procedure.phases = phases;
+  return scenario;
+}
+
+Scenario FullCircleOnly(int positions, std::vector<int> shifts, std::vector<int> passes) {
+  Scenario scenario = With({"full_circle"});
   RotaryOf(scenario).procedure.positions = positions;
   RotaryOf(scenario).procedure.shifts = std::move(shifts);
   RotaryOf(scenario).procedure.passes = std::move(passes);
@@ -140,8 +145,7 @@ TEST(FullCircle, ReclampTurnsTheGratingAndReseatTurnsTheBody) {
 
 TEST(Calibration, SweepsYawThenTiltThereAndBack) {
   LogBench log;
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).procedure.phases = {"calibration"};
+  Scenario scenario = With({"calibration"});
   RotaryOf(scenario).procedure.sweep_points = 3;
   const auto readings = CarryOutOn(log, scenario);
   std::vector<double> yaw_arcsec, tilt_arcsec;
@@ -155,8 +159,7 @@ TEST(Calibration, SweepsYawThenTiltThereAndBack) {
 
 TEST(Verification, UsesAnglesTheCalibrationDidNotUse) {
   LogBench log;
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).procedure.phases = {"calibration", "verification"};
+  Scenario scenario = With({"calibration", "verification"});
   std::vector<double> used;
   for (const Reading& r : CarryOutOn(log, scenario)) {
     if (r.phase == Phase::kCalibration) used.push_back(r.autocollimator_yaw_rad);
@@ -167,8 +170,7 @@ TEST(Verification, UsesAnglesTheCalibrationDidNotUse) {
 
 TEST(Stability, ReadsTheRestingBenchAtItsInterval) {
   LogBench log;
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).procedure.phases = {"stability"};
+  Scenario scenario = With({"stability"});
   RotaryOf(scenario).procedure.stability_s = 60.0;
   RotaryOf(scenario).procedure.stability_interval_s = 10.0;
   const auto readings = CarryOutOn(log, scenario);
@@ -187,8 +189,7 @@ TEST(CarryOut, AnInvalidBlockBecomesAReadingWithAReasonAndNoNumbers) {
 
 TEST(CarryOut, PlansAsManyReadingsAsItMakes) {
   LogBench log;
-  Scenario scenario = test::RotaryScenario();
-  RotaryOf(scenario).procedure.phases = {"calibration", "stability", "verification", "full_circle"};
+  Scenario scenario = With({"calibration", "stability", "verification", "full_circle"});
   EXPECT_EQ(static_cast<int>(CarryOutOn(log, scenario).size()), PlannedReadings(RotaryOf(scenario).procedure));
 }
 

@@ -1,15 +1,9 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <set>
 
-#include "tests/support/memory_log.h"
-#include "tests/support/restless_bench.h"
-#include "tests/support/troubled_bench.h"
-#include "twin/benches/rotary_4dof/procedure/procedure.h"
+#include "tests/procedure/troubled_run.h"
 #include "twin/benches/rotary_4dof/settings.h"
-#include "twin/benches/rotary_4dof/twin/twin.h"
-#include "twin/core/device_fault.h"
 
 /// Faults, stops and resumed runs on the twin: whatever happens on the way, the readings are those of a run
 /// without.
@@ -18,36 +12,27 @@ namespace {
 
 using test::MemoryLog;
 using test::TextOf;
-using test::TroubledBench;
 
-std::vector<Reading> Undisturbed(const Scenario& scenario) {
-  sim::Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
+std::vector<Reading> Undisturbed(const Scenario& scenario = test::RestlessBench()) {
   MemoryLog log;
-  CarryOut(bench, scenario, log);
+  EXPECT_EQ(EndOnTwin(log, {.is_written_down = false}, scenario), "none");
   return log.readings;
 }
 
 TEST(Recovery, AFaultAtAnyCallCostsAnAttemptAndChangesNoBit) {
-  const Scenario scenario = test::RestlessBench();
-  const std::string undisturbed = TextOf(Undisturbed(scenario));
+  const std::string undisturbed = TextOf(Undisturbed());
   const std::vector<FaultKind> kinds = {FaultKind::kTimeout, FaultKind::kDropped, FaultKind::kGap,
                                         FaultKind::kNotInPosition, FaultKind::kRestarted};
   int calls_in_all = 1000000;
   for (int at = 0, k = 0; at < calls_in_all; at += 7, ++k) {
-    sim::Twin twin(scenario);
     int calls = 0;
     bool failed = false;
-    TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
-      if (calls++ != at || failed) return;
-      failed = true;
-      throw DeviceFault(kinds[static_cast<std::size_t>(k) % kinds.size()], device, "as asked for");
-    });
-    RotaryBench bench = troubled.Bench();
+    const auto is_now = [&](const std::string&, const std::string&) {
+      if (calls++ != at || failed) return false;
+      return failed = true;
+    };
     MemoryLog log;
-    Options options;
-    options.log = &log;
-    CarryOut(bench, scenario, log, {}, options);
+    ASSERT_EQ(EndOnTwin(log, {.before = FailsIf(is_now, kinds[static_cast<std::size_t>(k) % kinds.size()])}), "none");
     if (k == 0) calls_in_all = calls;
     ASSERT_EQ(TextOf(log.readings), undisturbed) << "fault at call " << at;
     ASSERT_EQ(log.attempts.size(), failed ? 1u : 0u);
@@ -57,19 +42,13 @@ TEST(Recovery, AFaultAtAnyCallCostsAnAttemptAndChangesNoBit) {
 
 TEST(Recovery, TheCallsThatAreKeptAreThoseOfARunWithoutFaults) {
   // They restore a simulated bench after the next fault, and play the run back.
-  const Scenario scenario = test::RestlessBench();
-  const auto calls_with_faults_at = [&](const std::set<int>& faults) {
-    sim::Twin twin(scenario);
+  const auto calls_with_faults_at = [](const std::set<int>& faults) {
     int calls = 0;
-    TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
-      if (faults.contains(calls++)) throw DeviceFault(FaultKind::kTimeout, device, "as asked for");
-    });
-    RotaryBench bench = troubled.Bench();
+    const auto is_now = [&](const std::string&, const std::string&) { return faults.contains(calls++); };
     MemoryLog log;
-    Options options;
-    options.log = &log;
-    options.attempts = 10;
-    CarryOut(bench, scenario, log, {}, options);
+    Course course{.before = FailsIf(is_now, FaultKind::kTimeout)};
+    course.options.attempts = 10;
+    EXPECT_EQ(EndOnTwin(log, course), "none");
     EXPECT_EQ(log.attempts.size(), faults.size());
     return log.calls;
   };
@@ -82,25 +61,15 @@ TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
     Scenario scenario = test::RestlessBench();
     RotaryOf(scenario).mechanics.fidelity = fidelity;
     const std::vector<Reading> undisturbed = Undisturbed(scenario);
-    for (const std::size_t kept :
-         {std::size_t{1}, std::size_t{11}, std::size_t{12}, std::size_t{13}, undisturbed.size() - 1}) {
+    for (const std::size_t kept : {std::size_t{1}, std::size_t{11}, std::size_t{12}, std::size_t{13}, undisturbed.size() - 1}) {
       MemoryLog log;
-      {
-        sim::Twin twin(scenario);
-        RotaryBench bench = twin.Bench();
-        Options options;
-        options.log = &log;
-        options.stop_requested = [&] { return log.readings.size() >= kept; };
-        EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
-        ASSERT_EQ(log.readings.size(), kept);
-      }
-      sim::Twin twin(scenario);
-      RotaryBench bench = twin.Bench();
-      Options options;
-      options.log = &log;
-      options.readings_done = static_cast<int>(kept);
-      options.calls_done = log.calls;
-      CarryOut(bench, scenario, log, {}, options);
+      Course stopped, taken_up;
+      stopped.options.stop_requested = [&] { return log.readings.size() >= kept; };
+      EXPECT_NE(EndOnTwin(log, stopped, scenario), "none");
+      ASSERT_EQ(log.readings.size(), kept);
+      taken_up.options.readings_done = static_cast<int>(kept);
+      taken_up.options.calls_done = log.calls;
+      EXPECT_EQ(EndOnTwin(log, taken_up, scenario), "none");
       EXPECT_EQ(TextOf(log.readings), TextOf(undisturbed)) << fidelity << ", taken up behind " << kept;
     }
   }
@@ -109,35 +78,22 @@ TEST(Recovery, ARunThatIsTakenUpByAnotherProgramIsTheUndisturbedOne) {
 TEST(Recovery, ARecordOfAnotherSeedIsNotContinued) {
   Scenario scenario = test::RestlessBench();
   MemoryLog log;
-  {
-    sim::Twin twin(scenario);
-    RotaryBench bench = twin.Bench();
-    Options options;
-    options.log = &log;
-    CarryOut(bench, scenario, log, {}, options);
-  }
+  EndOnTwin(log, {}, scenario);
   scenario.seed = 12;
-  sim::Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
-  Options options;
-  options.readings_done = 5;
-  options.calls_done = log.calls;
-  EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), InputError);
+  Course taken_up;
+  taken_up.options.readings_done = 5;
+  taken_up.options.calls_done = log.calls;
+  EXPECT_THROW(EndOnTwin(log, taken_up, scenario), InputError);
 }
 
 TEST(Recovery, AttemptsAreCountedForEachReadingAndEnd) {
-  const Scenario scenario = test::RestlessBench();
-  sim::Twin twin(scenario);
   MemoryLog log;
-  TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
-    if (device == "adc" && log.readings.size() == 4)
-      throw DeviceFault(FaultKind::kGap, "adc", "3 scans are missing");
-  });
-  RotaryBench bench = troubled.Bench();
-  Options options;
-  options.log = &log;
-  options.attempts = 3;
-  EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
+  const auto is_fifth = [&](const std::string& device, const std::string&) {
+    return device == "adc" && log.readings.size() == 4;
+  };
+  Course course{.before = FailsIf(is_fifth, FaultKind::kGap)};
+  course.options.attempts = 3;
+  EXPECT_EQ(EndOnTwin(log, course), "gap of adc");
   EXPECT_EQ(log.readings.size(), 4u);
   ASSERT_EQ(log.attempts.size(), 3u);
   EXPECT_EQ(log.attempts[2].attempt, 3);
@@ -146,15 +102,11 @@ TEST(Recovery, AttemptsAreCountedForEachReadingAndEnd) {
 }
 
 TEST(Recovery, ARunThatNobodyWritesDownEndsWithItsFirstFault) {
-  const Scenario scenario = test::RestlessBench();
-  sim::Twin twin(scenario);
   int blocks = 0;
-  TroubledBench troubled(twin.Bench(), [&](const std::string& device, const std::string&, CallAnswer&) {
-    if (device == "adc" && ++blocks == 5) throw DeviceFault(FaultKind::kGap, "adc", "3 scans are missing");
-  });
-  RotaryBench bench = troubled.Bench();
+  const auto is_fifth = [&](const std::string& device, const std::string&) { return device == "adc" && ++blocks == 5; };
   MemoryLog log;
-  EXPECT_THROW(CarryOut(bench, scenario, log), DeviceFault) << "there are no calls to come back by";
+  EXPECT_EQ(EndOnTwin(log, {.before = FailsIf(is_fifth, FaultKind::kGap), .is_written_down = false}), "gap of adc")
+      << "there are no calls to come back by";
   EXPECT_EQ(log.readings.size(), 4u);
 }
 
@@ -162,94 +114,68 @@ TEST(Recovery, WhatNeedsAHandStopsTheTablesAtOnce) {
   for (const FaultKind kind :
        {FaultKind::kStalled, FaultKind::kFollowing, FaultKind::kLimit, FaultKind::kImplausible,
         FaultKind::kSignalLost, FaultKind::kStopped, FaultKind::kIdentity}) {
-    const Scenario scenario = test::RestlessBench();
-    sim::Twin twin(scenario);
     int stops = 0;
-    TroubledBench troubled(twin.Bench(), [&](const std::string&, const std::string& request, CallAnswer&) {
-      if (request == "stop") ++stops;
-      if (request.starts_with("acquire")) throw DeviceFault(kind, "bench", "as asked for");
-    });
-    RotaryBench bench = troubled.Bench();
+    const auto is_block = [&](const std::string&, const std::string& request) {
+      stops += request == "stop";
+      return request.starts_with("acquire");
+    };
     MemoryLog log;
-    Options options;
-    options.log = &log;
-    EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault) << FaultName(kind);
+    EXPECT_EQ(EndOnTwin(log, {.before = FailsIf(is_block, kind)}), std::string(FaultName(kind)) + " of adc");
     EXPECT_EQ(stops, 2) << FaultName(kind);
     EXPECT_EQ(log.attempts.size(), 1u) << FaultName(kind);
   }
 }
 
 TEST(Recovery, WhateverIsThrownTheTablesAreStopped) {
-  const Scenario scenario = test::RestlessBench();
-  sim::Twin twin(scenario);
   int stops = 0;
-  TroubledBench troubled(twin.Bench(), [&](const std::string&, const std::string& request, CallAnswer&) {
-    if (request == "stop") ++stops;
+  const auto throws = [&](const std::string&, const std::string& request, CallAnswer&) {
+    stops += request == "stop";
     if (request.starts_with("acquire")) throw std::runtime_error("something else");
-  });
-  RotaryBench bench = troubled.Bench();
+  };
   MemoryLog log;
-  EXPECT_THROW(CarryOut(bench, scenario, log), std::runtime_error);
+  EXPECT_THROW(EndOnTwin(log, {.before = throws, .is_written_down = false}), std::runtime_error);
   EXPECT_EQ(stops, 2);
 }
 
 TEST(Recovery, AnImplausibleRoomOrAJumpOfTheSpotStopsTheRun) {
-  const Scenario scenario = test::RestlessBench();
-  const auto fault_of = [&](const TroubledBench::Trouble& after, const Options& options) {
-    sim::Twin twin(scenario);
-    TroubledBench troubled(twin.Bench(), {}, after);
-    RotaryBench bench = troubled.Bench();
+  const auto fault_of = [](const test::TroubledBench::Trouble& after) {
     MemoryLog log;
-    try {
-      CarryOut(bench, scenario, log, {}, options);
-    } catch (const DeviceFault& fault) {
-      return std::string(FaultName(fault.kind())) + " of " + fault.device();
-    }
-    return std::string("none");
+    Course course{.after = after, .is_written_down = false};
+    course.options.hottest_degC = 60.0;
+    course.options.jump_V = 0.5;
+    return EndOnTwin(log, course);
   };
-  Options options;
-  options.hottest_degC = 60.0;
-  options.jump_V = 0.5;
-  EXPECT_EQ(fault_of({}, options), "none");
+  EXPECT_EQ(fault_of({}), "none");
   const auto hot = [](const std::string& device, const std::string&, CallAnswer& answer) {
     if (device == "thermometer") answer.text = "850";
   };
-  EXPECT_EQ(fault_of(hot, options), "implausible of thermometer");
+  EXPECT_EQ(fault_of(hot), "implausible of thermometer");
   int blocks = 0;
   const auto slipped = [&](const std::string& device, const std::string&, CallAnswer& answer) {
     if (device == "adc" && ++blocks > 20) answer.block.channel[2].mean_V += 0.6;
   };
-  EXPECT_EQ(fault_of(slipped, options), "implausible of psd_b_x");
+  EXPECT_EQ(fault_of(slipped), "implausible of psd_b_x");
 }
 
 TEST(Recovery, AFifoThatIsTooSmallEndsTheRunInsteadOfLosingEveryReading) {
   Scenario scenario = test::RestlessBench();
   RotaryOf(scenario).adc.fifo_samples = 64;
   RotaryOf(scenario).adc.drain_rate_Hz = 100e3;  // slower than the converter
-  sim::Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
   MemoryLog log;
-  Options options;
-  options.log = &log;
-  EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
+  EXPECT_NE(EndOnTwin(log, {}, scenario), "none");
   EXPECT_TRUE(log.readings.empty());
   ASSERT_EQ(log.attempts.size(), 3u);
   EXPECT_EQ(log.attempts[2].fault, "overrun");
 }
 
 TEST(Recovery, ABlockFromAnotherTimeIsTakenAgain) {
-  const Scenario scenario = test::RestlessBench();
-  sim::Twin twin(scenario);
   int blocks = 0;
-  TroubledBench troubled(twin.Bench(), {}, [&](const std::string& device, const std::string&, CallAnswer& answer) {
+  const auto late = [&](const std::string& device, const std::string&, CallAnswer& answer) {
     if (device == "adc" && ++blocks == 9) answer.block.start += std::chrono::seconds(1);
-  });
-  RotaryBench bench = troubled.Bench();
+  };
   MemoryLog log;
-  Options options;
-  options.log = &log;
-  CarryOut(bench, scenario, log, {}, options);
-  EXPECT_EQ(TextOf(log.readings), TextOf(Undisturbed(scenario)));
+  EXPECT_EQ(EndOnTwin(log, {.after = late}), "none");
+  EXPECT_EQ(TextOf(log.readings), TextOf(Undisturbed()));
   ASSERT_EQ(log.attempts.size(), 1u);
   EXPECT_EQ(log.attempts[0].fault, "clock");
 }
@@ -257,13 +183,12 @@ TEST(Recovery, ABlockFromAnotherTimeIsTakenAgain) {
 TEST(Recovery, TheOperatorIsHeardWhileAMountingComesToRest) {
   const Scenario scenario = test::RestlessBench();  // remount_s is 60 s
   sim::Twin twin(scenario);
-  RotaryBench bench = twin.Bench();
+  const auto now = [&] { return twin.Bench().clock.Now(); };
   MemoryLog log;
-  Options options;
-  options.log = &log;
-  options.stop_requested = [&] { return bench.clock.Now() > Time(std::chrono::seconds(20)); };
-  EXPECT_THROW(CarryOut(bench, scenario, log, {}, options), DeviceFault);
-  EXPECT_LT(bench.clock.Now(), Time(std::chrono::seconds(30)));
+  Course course;
+  course.options.stop_requested = [&] { return now() > Time(std::chrono::seconds(20)); };
+  EXPECT_NE(EndOn(twin.Bench(), scenario, log, course), "none");
+  EXPECT_LT(now(), Time(std::chrono::seconds(30)));
 }
 
 }  // namespace
