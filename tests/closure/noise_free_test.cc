@@ -4,36 +4,18 @@
 #include <complex>
 
 #include "tests/support/rotary_scenario.h"
+#include "tests/support/separated_table.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/rotary_4dof/settings.h"
 
 namespace twinbench {
 namespace {
 
-using separate::Separation;
-using separate::Table;
-
-/// Root mean square of estimate - truth over the positions, what cannot be separated left out of both.
-double RmsError(const Separation& separation, Table table, const TableErrors& truth, Component c) {
-  const TableErrors separable = separate::RemoveNotSeparable(truth, table, separation.not_separable);
-  const auto& estimate = table == Table::kTarget ? separation.target : separation.reference;
-  double sum = 0.0;
-  for (std::size_t k = 0; k < separable[c].size(); ++k) sum += std::pow(estimate.value[c][k] - separable[c][k], 2);
-  return std::sqrt(sum / static_cast<double>(separable[c].size()));
-}
-
 void ExpectErrorsReturn(const test::TwinRun& run, double angle_rad, double length_m) {
-  const Separation separation = test::Evaluate(run);
-  for (const Table table : {Table::kTarget, Table::kReference}) {
-    const bool is_target = table == Table::kTarget;
-    const auto& estimate = is_target ? separation.target : separation.reference;
-    EXPECT_GE(estimate.components.size(), 4u) << "ex, ey, ez and dy are read";
-    for (const Component c : estimate.components) {
-      const double limit = IsAngle(c) ? angle_rad : length_m;
-      const TableErrors& truth = is_target ? run.truth.target : run.truth.reference;
-      EXPECT_LT(RmsError(separation, table, truth, c), limit)
-          << separate::TableName(table) << " " << kComponentNames[static_cast<std::size_t>(c)];
-    }
+  for (const test::SeparatedTable& t : test::BothTables(test::Evaluate(run), run.truth)) {
+    EXPECT_GE(t.estimate.components.size(), 4u) << "ex, ey, ez and dy are read";
+    for (const Component c : t.estimate.components)
+      EXPECT_LT(t.RmsError(c), IsAngle(c) ? angle_rad : length_m) << t.Name(c);
   }
 }
 
@@ -50,20 +32,16 @@ Scenario RandomTables(const std::string& clamping, std::uint64_t seed) {
 
 class NoiseFree : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
 
-TEST_P(NoiseFree, TheRigorousEstimatorReturnsTheInjectedErrors) {
-  const Scenario scenario =
-      RandomTables(std::get<0>(GetParam()), static_cast<std::uint64_t>(std::get<1>(GetParam())));
+TEST_P(NoiseFree, TheRigorousEstimatorReturnsTheInjectedErrorsAlsoBehindRealisticMountings) {
+  const auto [clamping, seed] = GetParam();
+  Scenario scenario = RandomTables(clamping, static_cast<std::uint64_t>(seed));
   // The issue of this project: 0.02 arcsec and 0.02 um rms. Second-order terms alone would be 0.001 arcsec.
-  ExpectErrorsReturn(test::RunTwin(scenario), 0.02 * units::arcsec, 0.02 * units::um);
-}
-
-TEST_P(NoiseFree, ErrorsReturnAlsoBehindRealisticMountings) {
-  Scenario scenario = RandomTables(std::get<0>(GetParam()), static_cast<std::uint64_t>(std::get<1>(GetParam())));
-  // Not random from reading to reading, so noise_free does not take it: the mounting of the body, 30 arcsec and 20
-  // um.
+  const double limit_rad = 0.02 * units::arcsec, limit_m = 0.02 * units::um;
+  ExpectErrorsReturn(test::RunTwin(scenario), limit_rad, limit_m);
+  // Not random from reading to reading, so noise_free does not take it: the mounting of the body.
   RotaryOf(scenario).mount_tilt_rad = {30.0 * units::arcsec, -20.0 * units::arcsec};
   RotaryOf(scenario).centring_m = {20.0 * units::um, -15.0 * units::um};
-  ExpectErrorsReturn(test::RunTwin(scenario), 0.02 * units::arcsec, 0.02 * units::um);
+  ExpectErrorsReturn(test::RunTwin(scenario), limit_rad, limit_m);
 }
 
 INSTANTIATE_TEST_SUITE_P(ClampingsAndSeeds, NoiseFree,
@@ -84,7 +62,7 @@ double PublishedError(int k) {
   RotaryOf(scenario).reference.harmonics = {{Component::kEx, m, amplitude, 0.0},
                                             {Component::kEy, m, amplitude, -0.5 * units::kPi}};
   const test::TwinRun run = test::RunTwin(scenario);
-  const Separation separation = test::Evaluate(run, Estimator::kPublished);
+  const separate::Separation separation = test::Evaluate(run, Estimator::kPublished);
   // The target has no wobble at all: what the equations report for it is their error.
   double sum = 0.0;
   const auto& value = separation.target.value;

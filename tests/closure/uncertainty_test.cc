@@ -4,15 +4,13 @@
 #include <complex>
 
 #include "tests/support/rotary_scenario.h"
+#include "tests/support/separated_table.h"
 #include "tests/support/twin_run.h"
 #include "twin/benches/rotary_4dof/settings.h"
 #include "twin/core/linear_algebra.h"
 
 namespace twinbench {
 namespace {
-
-using separate::Separation;
-using separate::Table;
 
 constexpr int kSeeds = 200;
 
@@ -65,14 +63,10 @@ TEST_P(Scatter, MatchesTheStatedUncertaintyOver200Seeds) {
     Scenario scenario = NoisyScenario(GetParam());
     scenario.seed = static_cast<std::uint64_t>(seed);
     const test::TwinRun run = test::RunTwin(scenario);
-    const Separation s = test::Evaluate(run);
-    for (const bool target : {true, false}) {
-      const auto& estimate = target ? s.target : s.reference;
-      const TableErrors truth =
-          separate::RemoveNotSeparable(target ? run.truth.target : run.truth.reference,
-                                       target ? Table::kTarget : Table::kReference, s.not_separable);
-      const Eigen::VectorXd error = Stack(estimate.value, estimate.components) - Stack(truth, estimate.components);
-      const auto [sum, rank] = ChiSquared(error, estimate.cov.ToDense());
+    for (const test::SeparatedTable& t : test::BothTables(test::Evaluate(run), run.truth)) {
+      const std::vector<Component>& components = t.estimate.components;
+      const Eigen::VectorXd error = Stack(t.estimate.value, components) - Stack(t.truth, components);
+      const auto [sum, rank] = ChiSquared(error, t.estimate.cov.ToDense());
       chi2 += sum;
       dof += rank;
     }
@@ -111,7 +105,7 @@ TEST(IndexError, ScattersByHarmonicAsTheVarianceFormulaSays) {
     const auto motions =
         measure::Measure(run.readings, measure::NominalGeometry(scenario), {}, Estimator::kRigorous);
     variance += motions[0].cov(0, 0) / kRuns;
-    const Separation s = test::Evaluate(run);
+    const separate::Separation s = test::Evaluate(run);
     for (int k = 1; k < n / 2; ++k)
       power[static_cast<std::size_t>(k)] += Power(s.target.value[Component::kEz], k) / kRuns;
   }
