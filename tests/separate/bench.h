@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "tests/support/rotary_scenario.h"
+#include "tests/support/separated_table.h"
 #include "twin/benches/rotary_4dof/estimators/measure.h"
+#include "twin/benches/rotary_4dof/estimators/residuals.h"
 #include "twin/benches/rotary_4dof/estimators/separator.h"
 #include "twin/core/reading.h"
 #include "twin/core/stream.h"
@@ -115,18 +117,6 @@ inline void FillExact(std::vector<Motion>& motions, const Truth& truth, const La
   }
 }
 
-/// rms of a - b over the positions where both are finite; NaN if there are none.
-inline double RmsDifference(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  int count = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (!std::isfinite(a[i]) || !std::isfinite(b[i])) continue;
-    sum += (a[i] - b[i]) * (a[i] - b[i]);
-    ++count;
-  }
-  return std::sqrt(sum / count);
-}
-
 /// The entries of one table that contain a component.
 inline std::vector<NotSeparable> LossesOf(const std::vector<NotSeparable>& lost, Table table, Component component) {
   std::vector<NotSeparable> found;
@@ -147,6 +137,48 @@ inline std::vector<int> LostOrders(const std::vector<NotSeparable>& lost, Table 
   }
   std::sort(orders.begin(), orders.end());
   return orders;
+}
+
+/// Full circles that read what the exact chain makes of tables of random errors.
+struct ExactCircles {
+  Truth truth;
+  std::vector<Motion> motions;
+};
+
+inline ExactCircles ReadExactly(int n, const std::vector<int>& shifts, Clamping clamping, int passes = 1,
+                                const BenchGeometry& geometry = Bench()) {
+  Stream stream(11, "test.truth");
+  ExactCircles c{RandomTruth(n, stream), EmptyMotions(n, shifts, passes, ReadingCovariance())};
+  FillExact(c.motions, c.truth, Layouts(n, clamping), geometry);
+  return c;
+}
+
+/// The readings' stops and their weights.
+struct WeightedStops {
+  Layout layout;
+  Weights weights;
+  std::vector<StopModel> models;
+
+  Eigen::MatrixXd Null() const { return NullSpace(layout.design, FindSeparability(layout.design).orders); }
+  /// As one matrix.
+  Eigen::MatrixXd Normal() const {
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(layout.design.Unknowns(), layout.design.Unknowns());
+    for (std::size_t k = 0; k < models.size(); ++k) {
+      const StopModel& m = models[k];
+      const std::vector<int> columns(m.column.begin(), m.column.begin() + m.columns);
+      const Eigen::MatrixXd d = m.d.leftCols(m.columns);
+      normal(columns, columns) += d.transpose() * weights.cells[k].weight * d;
+    }
+    return normal;
+  }
+};
+
+inline WeightedStops Weigh(const std::vector<Motion>& motions, const LayoutOptions& options,
+                           const Vector4& scale = Vector4::Ones()) {
+  WeightedStops stops{FindLayout(motions, Bench(), options), {}, {}};
+  stops.weights = CollectWeights(motions, stops.layout, Bench(), scale);
+  for (const Cell& cell : stops.weights.cells) stops.models.push_back(ModelStop(stops.layout.design, cell.setup, cell.target));
+  return stops;
 }
 
 inline Design MakeDesign(int n, const std::vector<int>& shifts, Clamping clamping, const BenchGeometry& geometry) {

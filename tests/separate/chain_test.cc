@@ -100,12 +100,5 @@ TEST(ModelStop, IsTheDerivativeOfTheExactChain) {
   }
 }
 
-TEST(MotionOf, ReturnsTheAnglesAndTheShiftOfAMount) {
-  PoseErrors errors;
-  errors.mount << 1e-4, -2e-4, 3e-4, 0.0, 5e-5, 0.0;
-  const Vector4 motion = MotionOf(GratingPose({0, 0, 0, 0}, errors, Bench()));
-  EXPECT_LT((motion - Vector4(3e-4, 1e-4, -2e-4, 5e-5)).cwiseAbs().maxCoeff(), 1e-15);  // rounding
-}
-
 }  // namespace
 }  // namespace twinbench::separate

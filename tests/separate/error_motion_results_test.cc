@@ -61,10 +61,8 @@ struct Evaluated {
 
 /// @param scatter_rad  That the first pass shows more of ex everywhere, and the second less.
 Evaluated Evaluate(double scatter_rad) {
-  Stream stream(11, "test.truth");
-  Evaluated e{RandomTruth(kPositions, stream), {}, {}};
-  std::vector<Motion> motions = EmptyMotions(kPositions, {0, 1, 7, 11}, 2, ReadingCovariance());
-  FillExact(motions, e.truth, Layouts(kPositions, Clamping::kReclamp), Bench());
+  auto [truth, motions] = ReadExactly(kPositions, {0, 1, 7, 11}, Clamping::kReclamp, 2);
+  Evaluated e{truth, {}, {}};
   for (Motion& m : motions) m.ex_rad += m.pass % 2 == 0 ? scatter_rad : -scatter_rad;
   e.separation = Separate(motions, Bench(), Options(kPositions, Clamping::kReclamp));
   e.json = EvaluateErrorMotions(e.separation, motions).json;
@@ -92,10 +90,7 @@ TEST(ErrorMotions, SynchronousOnesAreThoseOfTheTrueCurves) {
 // Two set-ups of one pass leave something to judge one of the tilts by and nothing the other: no scatter of a direction
 // that turns through both.
 TEST(ErrorMotions, OfTwoSetUpsOfOnePassAreSynchronousOnly) {
-  Stream stream(11, "test.truth");
-  const Truth truth = RandomTruth(kPositions, stream);
-  std::vector<Motion> motions = EmptyMotions(kPositions, {0, 1}, 1, ReadingCovariance());
-  FillExact(motions, truth, Layouts(kPositions, Clamping::kReseat), Bench());
+  const auto motions = ReadExactly(kPositions, {0, 1}, Clamping::kReseat).motions;
   const Separation separation = Separate(motions, Bench(), Options(kPositions, Clamping::kReseat));
   const nlohmann::json json = EvaluateErrorMotions(separation, motions).json;
   const auto turning = std::ranges::find_if(json, [](const nlohmann::json& one) {

@@ -2,7 +2,6 @@
 
 #include "tests/separate/bench.h"
 #include "twin/benches/rotary_4dof/estimators/prediction.h"
-#include "twin/benches/rotary_4dof/estimators/residuals.h"
 
 namespace twinbench::separate {
 namespace {
@@ -10,58 +9,27 @@ namespace {
 class NoNoiseStated : public testing::TestWithParam<Clamping> {};
 INSTANTIATE_TEST_SUITE_P(BothWays, NoNoiseStated, testing::Values(Clamping::kReclamp, Clamping::kReseat));
 
-struct ExactCircles {
-  Truth truth;
-  std::vector<Motion> motions;
-};
-
-/// Exact readings that state no noise, of tables that move in all six components.
-ExactCircles ExactRun(int n, const std::vector<int>& shifts, Clamping clamping) {
-  Stream stream(31, "test.truth");
-  ExactCircles run{RandomTruth(n, stream), EmptyMotions(n, shifts, 2, Matrix4::Constant(kNaN))};
-  FillExact(run.motions, run.truth, Layouts(n, clamping), Bench());
-  for (Motion& m : run.motions) m.covariance_known = false;
-  return run;
-}
-
-/// rms of (estimate - truth) over rms of the stated uncertainty.
-double ErrorOverU(const TableEstimate& estimate, Table table, const TableErrors& truth,
-                  const std::vector<NotSeparable>& lost, Component c) {
-  const TableErrors visible = RemoveNotSeparable(truth, table, lost);
-  const std::vector<double> zero(visible[c].size(), 0.0);
-  return RmsDifference(estimate.value[c], visible[c]) / RmsDifference(estimate.u[c], zero);
-}
-
-TEST_P(NoNoiseStated, LosesNoPositionThoughTheResidualsAreNothing) {
-  const ExactCircles run = ExactRun(36, {0, 1, 7, 11}, GetParam());
-  const Separation found = Separate(run.motions, Bench(), Options(36, GetParam()));
-  for (const TableEstimate* table : {&found.target, &found.reference}) {
-    for (const Component c : table->components) {
-      for (const double v : table->value[c]) EXPECT_TRUE(std::isfinite(v));
-    }
+TEST_P(NoNoiseStated, LosesNoPositionAndStatesAnUncertaintyOfTheSizeOfTheSecondOrderTerms) {
+  // Of tables that move in all six components.
+  ExactCircles run = ReadExactly(36, {0, 1, 7, 11}, GetParam(), 2);
+  for (Motion& m : run.motions) {
+    m.covariance_known = false;
+    m.cov.setConstant(kNaN);
   }
-  EXPECT_EQ(found.notes.size(), 1u) << "that the noise is not known, and nothing else";
-}
-
-TEST_P(NoNoiseStated, StatesAnUncertaintyOfTheSizeOfTheSecondOrderTerms) {
-  const ExactCircles run = ExactRun(36, {0, 1, 7, 11}, GetParam());
   const Separation found = Separate(run.motions, Bench(), Options(36, GetParam()));
-  for (const Table table : {Table::kTarget, Table::kReference}) {
-    const TableEstimate& estimate = table == Table::kTarget ? found.target : found.reference;
-    const TableErrors& truth = table == Table::kTarget ? run.truth.target : run.truth.reference;
-    for (const Component c : estimate.components) {
-      const double ratio = ErrorOverU(estimate, table, truth, found.not_separable, c);
+  EXPECT_EQ(found.notes.size(), 1u) << "that the noise is not known, and nothing else";
+  for (const test::SeparatedTable& t : test::BothTables(found, run.truth)) {
+    for (const Component c : t.estimate.components) {
+      for (const double v : t.estimate.value[c]) EXPECT_TRUE(std::isfinite(v));
       // A measure of size that knows nothing of the terms' pattern: a factor of three. Index errors have none.
-      EXPECT_LT(ratio, 3.0) << TableName(table) << ' ' << kComponentNames[static_cast<std::size_t>(c)];
-      EXPECT_GT(ratio, 0.02) << TableName(table) << ' ' << kComponentNames[static_cast<std::size_t>(c)];
+      EXPECT_LT(t.ErrorOverU(c), 3.0) << t.Name(c);
+      EXPECT_GT(t.ErrorOverU(c), 0.02) << t.Name(c);
     }
   }
 }
 
 TEST(SecondOrder, IsNothingBesideRealNoise) {
-  Stream stream(32, "test.truth");
-  auto motions = EmptyMotions(36, {0, 1, 7, 11}, 4, ReadingCovariance());
-  FillExact(motions, RandomTruth(36, stream), Layouts(36, Clamping::kReseat), Bench());
+  const auto motions = ReadExactly(36, {0, 1, 7, 11}, Clamping::kReseat, 4).motions;
   const Separation found = Separate(motions, Bench(), Options(36, Clamping::kReseat));
   for (const Component c : found.target.components) {
     const auto block = std::find(found.target.components.begin(), found.target.components.end(), c);
@@ -87,13 +55,10 @@ TEST(UnreadSecondOrder, IsTheSquareOfTheAnglesAndTheirProductsWithLengths) {
 TEST(InvertNormal, FindsTheSameRankWhateverTheWeightsOfTheMotions) {
   const auto motions = EmptyMotions(36, {0, 1, 7, 11}, 1, ReadingCovariance());
   for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
-    const Layout layout = FindLayout(motions, Bench(), Layouts(36, clamping));
-    const Eigen::MatrixXd null = NullSpace(layout.design, FindSeparability(layout.design).orders);
     for (const Vector4& scale : {Vector4(1, 1, 1, 1), Vector4(1, 1e-4, 1e-4, 1), Vector4(1e-4, 1, 1, 1e-4)}) {
-      const Weights weights = CollectWeights(motions, layout, Bench(), scale);
-      std::vector<StopModel> models;
-      for (const Cell& cell : weights.cells) models.push_back(ModelStop(layout.design, cell.setup, cell.target));
-      EXPECT_EQ(InvertNormal(layout.design, weights.cells, models, null).extra_null.cols(), 0) << scale.transpose();
+      const WeightedStops stops = Weigh(motions, Layouts(36, clamping), scale);
+      EXPECT_EQ(InvertNormal(stops.layout.design, stops.weights.cells, stops.models, stops.Null()).extra_null.cols(), 0)
+          << scale.transpose();
     }
   }
 }
@@ -101,18 +66,9 @@ TEST(InvertNormal, FindsTheSameRankWhateverTheWeightsOfTheMotions) {
 TEST(InvertNormal, InvertsWhatTheReadingsDetermine) {
   auto motions = EmptyMotions(12, {0, 1, 4}, 1, ReadingCovariance());
   motions[5].status = motions[17].status = ReadingStatus::kMissing;
-  const Layout layout = FindLayout(motions, Bench(), Layouts(12, Clamping::kReclamp));
-  const Weights weights = CollectWeights(motions, layout, Bench(), Vector4::Ones());
-  std::vector<StopModel> models;
-  for (const Cell& cell : weights.cells) models.push_back(ModelStop(layout.design, cell.setup, cell.target));
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(layout.design.Unknowns(), layout.design.Unknowns());
-  for (std::size_t k = 0; k < models.size(); ++k) {
-    const std::vector<int> columns(models[k].column.begin(), models[k].column.begin() + models[k].columns);
-    const Eigen::MatrixXd d = models[k].d.leftCols(models[k].columns);
-    normal(columns, columns) += d.transpose() * weights.cells[k].weight * d;
-  }
-  const Eigen::MatrixXd null = NullSpace(layout.design, FindSeparability(layout.design).orders);
-  const Eigen::MatrixXd inverse = InvertNormal(layout.design, weights.cells, models, null).inverse;
+  const WeightedStops stops = Weigh(motions, Layouts(12, Clamping::kReclamp));
+  const Eigen::MatrixXd normal = stops.Normal(), null = stops.Null();
+  const Eigen::MatrixXd inverse = InvertNormal(stops.layout.design, stops.weights.cells, stops.models, null).inverse;
   // N G N = N is the definition; 1e-16 times the condition of these designs, 1e3.
   EXPECT_LT((normal * inverse * normal - normal).cwiseAbs().maxCoeff(), 1e-11 * normal.maxCoeff());
 }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/bench.h"
-#include "twin/benches/rotary_4dof/estimators/residuals.h"
 #include "twin/benches/rotary_4dof/estimators/table_part.h"
 
 namespace twinbench::separate {
@@ -11,10 +10,8 @@ namespace {
 
 /// One design of complete circles, inverted as one matrix and order by order.
 struct BothInverses {
-  Layout layout;
+  WeightedStops stops;
   Separability separability;
-  Weights weights;
-  std::vector<StopModel> models;
   NormalInverse whole;
   std::optional<OrderInverse> by_order;
 };
@@ -30,16 +27,11 @@ BothInverses InvertBothWays(int n, const std::vector<int>& shifts, const LayoutO
     if (m.setup == 1) m.cov = 2.0 * correlated;
   }
   for (const std::size_t i : missing) motions[i].status = ReadingStatus::kMissing;
-  BothInverses both;
-  both.layout = FindLayout(motions, Bench(), options);
-  both.separability = FindSeparability(both.layout.design);
-  both.weights = CollectWeights(motions, both.layout, Bench(), Vector4::Ones());
-  for (const Cell& cell : both.weights.cells) {
-    both.models.push_back(ModelStop(both.layout.design, cell.setup, cell.target));
-  }
-  const Eigen::MatrixXd null = NullSpace(both.layout.design, both.separability.orders);
-  both.whole = InvertNormal(both.layout.design, both.weights.cells, both.models, null);
-  both.by_order = OrderInverse::Of(both.layout.design, both.separability.orders, both.weights.cells);
+  BothInverses both{Weigh(motions, options), {}, {}, {}};
+  const auto& [layout, weights, models] = both.stops;
+  both.separability = FindSeparability(layout.design);
+  both.whole = InvertNormal(layout.design, weights.cells, models, both.stops.Null());
+  both.by_order = OrderInverse::Of(layout.design, both.separability.orders, weights.cells);
   return both;
 }
 
@@ -65,35 +57,28 @@ std::vector<Circles> CircleDesigns() {
           {36, {0, 1, 7, 11}, Layouts(36, Clamping::kReseat)}};
 }
 
-TEST(OrderInverse, IsTheInverseOfTheWholeMatrix) {
+void ExpectSameCovarianceAndDegreesOfFreedom(const BothInverses& both) {
+  const Vector4 dof = DegreesOfFreedom(both.stops.weights, both.stops.models, both.whole);
+  EXPECT_LT((DegreesOfFreedom(both.stops.weights, both.stops.models, *both.by_order) - dof).norm(), 1e-8);
+  for (const Table table : {Table::kTarget, Table::kReference}) {
+    const TablePart whole = MakeTablePart(both.stops.layout.design, table, both.separability.lost, both.whole);
+    const TablePart by_order = MakeTablePart(both.stops.layout.design, table, both.separability.lost, *both.by_order);
+    ASSERT_EQ(whole.columns, by_order.columns);
+    EXPECT_EQ(by_order.usable, whole.usable);
+    EXPECT_LT(Difference(by_order.cov.ToDense(), whole.cov.ToDense()), 1e-9) << TableName(table);
+  }
+}
+
+TEST(OrderInverse, IsTheInverseOfTheWholeMatrixAndGivesTheSameCovarianceAndDegreesOfFreedom) {
   for (const Circles& c : CircleDesigns()) {
+    SCOPED_TRACE(testing::Message() << c.n << ' ' << c.shifts.size());
     const BothInverses both = InvertBothWays(c.n, c.shifts, c.options);
     ASSERT_TRUE(both.by_order.has_value());
     const Eigen::Index unknowns = both.whole.inverse.rows();
     const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(unknowns, unknowns);
     // 1e-16 times the condition of these designs, up to 1e5; the same choices where no reading decides.
-    EXPECT_LT(Difference(*both.by_order * unit, both.whole.inverse), 1e-9) << c.n << ' ' << c.shifts.size();
-  }
-}
-
-TEST(OrderInverse, GivesTheSameCovarianceToBothTables) {
-  for (const Circles& c : CircleDesigns()) {
-    const BothInverses both = InvertBothWays(c.n, c.shifts, c.options);
-    for (const Table table : {Table::kTarget, Table::kReference}) {
-      const TablePart whole = MakeTablePart(both.layout.design, table, both.separability.lost, both.whole);
-      const TablePart by_order = MakeTablePart(both.layout.design, table, both.separability.lost, *both.by_order);
-      ASSERT_EQ(whole.columns, by_order.columns);
-      EXPECT_EQ(by_order.usable, whole.usable);
-      EXPECT_LT(Difference(by_order.cov.ToDense(), whole.cov.ToDense()), 1e-9) << c.n << ' ' << TableName(table);
-    }
-  }
-}
-
-TEST(OrderInverse, LeavesTheSameDegreesOfFreedom) {
-  for (const Circles& c : CircleDesigns()) {
-    const BothInverses both = InvertBothWays(c.n, c.shifts, c.options);
-    const Vector4 whole = DegreesOfFreedom(both.weights, both.models, both.whole);
-    EXPECT_LT((DegreesOfFreedom(both.weights, both.models, *both.by_order) - whole).norm(), 1e-8) << c.n;
+    EXPECT_LT(Difference(*both.by_order * unit, both.whole.inverse), 1e-9);
+    ExpectSameCovarianceAndDegreesOfFreedom(both);
   }
 }
 
@@ -103,58 +88,26 @@ TEST(OrderInverse, TakesOutWhatIsMissing) {
   const BothInverses both = InvertBothWays(12, {0, 1, 4}, Layouts(12, Clamping::kReseat), {5, 7, 19, 27});
   ASSERT_TRUE(both.by_order.has_value());
   EXPECT_EQ(both.by_order->Missing().cols(), 12);
-  const Vector4 dof = DegreesOfFreedom(both.weights, both.models, both.whole);
-  EXPECT_LT((DegreesOfFreedom(both.weights, both.models, *both.by_order) - dof).norm(), 1e-8);
-  for (const Table table : {Table::kTarget, Table::kReference}) {
-    const TablePart whole = MakeTablePart(both.layout.design, table, both.separability.lost, both.whole);
-    const TablePart by_order = MakeTablePart(both.layout.design, table, both.separability.lost, *both.by_order);
-    EXPECT_EQ(by_order.usable, whole.usable);
-    EXPECT_LT(Difference(by_order.cov.ToDense(), whole.cov.ToDense()), 1e-9) << TableName(table);
-  }
+  ExpectSameCovarianceAndDegreesOfFreedom(both);
 }
 
 TEST(OrderInverse, InvertsWhatTheReadingsThatAreLeftDetermine) {
   const BothInverses both = InvertBothWays(12, {0, 1, 4}, Layouts(12, Clamping::kReclamp), {5, 7, 19, 27});
   ASSERT_TRUE(both.by_order.has_value());
-  const Eigen::Index unknowns = both.whole.inverse.rows();
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  for (std::size_t k = 0; k < both.models.size(); ++k) {
-    const StopModel& m = both.models[k];
-    const std::vector<int> columns(m.column.begin(), m.column.begin() + m.columns);
-    const Eigen::MatrixXd d = m.d.leftCols(m.columns);
-    normal(columns, columns) += d.transpose() * both.weights.cells[k].weight * d;
-  }
+  const Eigen::MatrixXd normal = both.stops.Normal();
   // N G N = N is the definition.
   EXPECT_LT(Difference(normal * (*both.by_order * normal), normal), 1e-9);
 }
 
-TEST(OrderInverse, IsNoneWhereWhatIsMissingLeavesSomethingOpen) {
+TEST(OrderInverse, IsNoneWhereMuchIsMissingOrLeavesSomethingOpen) {
+  const auto is_there = [](const std::vector<int>& shifts, const std::vector<std::size_t>& missing) {
+    return InvertBothWays(12, shifts, Layouts(12, Clamping::kReseat), missing).by_order.has_value();
+  };
   // Two set-ups close one ring of links; a stop that nobody visits opens it, one that is visited once less does
   // not.
-  EXPECT_FALSE(InvertBothWays(12, {0, 1}, Layouts(12, Clamping::kReseat), {4, 16}).by_order.has_value());
-  EXPECT_TRUE(InvertBothWays(12, {0, 1}, Layouts(12, Clamping::kReseat), {4}).by_order.has_value());
-}
-
-TEST(OrderInverse, IsNoneWhereMuchIsMissing) {
-  EXPECT_FALSE(InvertBothWays(12, {0, 1, 4}, Layouts(12, Clamping::kReseat), {0, 12, 1, 13, 26, 38, 30, 42, 55, 67})
-                   .by_order.has_value());
-}
-
-TEST(CurveCovariance, HoldsLagsProductsAndVariances) {
-  Eigen::MatrixXd lags(3, 4);  // two curves at three positions
-  lags << 4.0, 0.5, 0.5, 6.0,  //
-      1.0, 0.2, 0.3, 2.0,      //
-      1.0, 0.3, 0.2, 2.0;
-  CurveCovariance cov = CurveCovariance::Circulant(lags, 2) * 4.0;
-  EXPECT_EQ(cov(0, 1), 4.0);
-  EXPECT_EQ(cov(1, 5), 4.0 * 0.2);  // curve 0 at 1, curve 1 at 2
-  EXPECT_EQ(cov(5, 1), cov(1, 5));
-  cov.AddProduct(Eigen::VectorXd::LinSpaced(6, 1.0, 6.0));
-  cov.AddVariance(2, 7.0);
-  EXPECT_EQ(cov(2, 2), 16.0 + 9.0 + 7.0);
-  EXPECT_EQ((cov * 4.0)(0, 1), 4.0 * (4.0 + 2.0));
-  EXPECT_EQ(cov.diagonal(), cov.ToDense().diagonal());
-  EXPECT_EQ(cov.ToDense(), cov.ToDense().transpose());
+  EXPECT_FALSE(is_there({0, 1}, {4, 16}));
+  EXPECT_TRUE(is_there({0, 1}, {4}));
+  EXPECT_FALSE(is_there({0, 1, 4}, {0, 12, 1, 13, 26, 38, 30, 42, 55, 67}));
 }
 
 }  // namespace

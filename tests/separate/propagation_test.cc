@@ -1,13 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <complex>
-
 #include "tests/separate/bench.h"
+#include "tests/separate/shift_formulas.h"
+#include "twin/benches/rotary_4dof/estimators/harmonic_u.h"
 
 namespace twinbench::separate {
 namespace {
-
-using Complex = std::complex<double>;
 
 constexpr double kSigma_rad = 1e-6;
 
@@ -16,7 +14,7 @@ Matrix4 EqualNoise() {
   return kSigma_rad * kSigma_rad * Matrix4::Identity();
 }
 
-TableEstimate TargetOf(int n, const std::vector<int>& shifts, Clamping clamping, const BenchGeometry& geometry) {
+TableEstimate TargetOf(int n, const std::vector<int>& shifts, Clamping clamping, const BenchGeometry& geometry = Bench()) {
   const auto motions = EmptyMotions(n, shifts, 1, EqualNoise());
   return Separator(motions, geometry, Options(n, clamping)).Separate(motions).target;
 }
@@ -27,50 +25,26 @@ Eigen::MatrixXd BlockOf(const TableEstimate& estimate, Component component, int 
   return estimate.cov.ToDense().block(first, first, n, n);
 }
 
-double Gain(const Eigen::MatrixXd& cov) {
-  return std::sqrt(cov.trace() / static_cast<double>(cov.rows())) / kSigma_rad;
-}
-
-/// Variance of the k-th Fourier coefficient (1/n) sum x_i e^{-2 pi j k i / n}.
-double HarmonicVariance(const Eigen::MatrixXd& cov, int k) {
-  const auto n = static_cast<int>(cov.rows());
-  Eigen::VectorXcd f(n);
-  for (int i = 0; i < n; ++i) f[i] = std::polar(1.0 / n, 2 * units::kPi * k * i / n);
-  return (f.adjoint() * cov.cast<Complex>() * f)(0, 0).real();
-}
-
-/// Formula (V) of docs/theory.md 2.
-double ClosedForm(int n, const std::vector<int>& shifts, int k) {
-  Complex a = 0.0;
-  for (const int s : shifts) a += std::polar(1.0, 2 * units::kPi * k * s / n);
-  const auto p = static_cast<double>(shifts.size());
-  return kSigma_rad * kSigma_rad / n * p / (p * p - std::norm(a));
-}
-
-TEST(Separator, PropagatesTheNoiseOfEzAsTheClosedFormSays) {
-  for (const auto& shifts : std::vector<std::vector<int>>{{0, 1}, {0, 1, 7, 11}}) {
-    const Eigen::MatrixXd cov = BlockOf(TargetOf(36, shifts, Clamping::kReclamp, Bench()), Component::kEz, 36);
-    for (int k = 1; k < 36; ++k) {
-      EXPECT_NEAR(HarmonicVariance(cov, k) / ClosedForm(36, shifts, k), 1.0, 1e-6) << k;  // asked for by the task
-    }
-    EXPECT_LT(HarmonicVariance(cov, 0), 1e-12 * ClosedForm(36, shifts, 1));  // zero mean
-  }
-}
-
 struct GainCase {
   int n;
   std::vector<int> shifts;
-  double gain;
+  double gain;  // of the shift tables
 };
 
-TEST(Separator, HasTheNoiseGainsOfTheShiftTables) {
+TEST(Separator, PropagatesTheNoiseOfEzAsTheClosedFormAndTheShiftTablesSay) {
   const std::vector<GainCase> cases = {{12, {0, 1}, 1.409},        {36, {0, 1}, 2.449},
                                        {72, {0, 1}, 3.464},        {12, {0, 1, 4}, 0.674},
                                        {12, {0, 1, 4, 6}, 0.531},  {36, {0, 1, 6}, 0.781},
                                        {36, {0, 1, 7, 11}, 0.579}, {36, {0, 1, 9, 11, 15}, 0.491}};
-  for (const GainCase& c : cases) {
-    const TableEstimate target = TargetOf(c.n, c.shifts, Clamping::kReseat, Bench());
-    EXPECT_NEAR(Gain(BlockOf(target, Component::kEz, c.n)), c.gain, 6e-4) << c.n;  // three printed digits
+  for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
+    for (const GainCase& c : cases) {
+      const Eigen::MatrixXd cov = BlockOf(TargetOf(c.n, c.shifts, clamping), Component::kEz, c.n);
+      const auto variance = [&](int k) { return HarmonicVariance(cov, k) / (kSigma_rad * kSigma_rad); };
+      for (int k = 1; k < c.n; ++k)
+        EXPECT_NEAR(variance(k) / ShiftVariance(c.n, c.shifts, k), 1.0, 1e-6) << k;  // asked for by the task
+      EXPECT_LT(variance(0), 1e-12 * ShiftVariance(c.n, c.shifts, 1));               // zero mean
+      EXPECT_NEAR(RootMeanGain(cov, kSigma_rad), c.gain, 6e-4) << c.n;               // three printed digits
+    }
   }
 }
 
@@ -88,9 +62,23 @@ TEST(Separator, HasTheNoiseGainsOfOneRadialComponent) {
       {12, {0, 1, 4}, Clamping::kReseat, 0.60}, {36, {0, 1, 9}, Clamping::kReclamp, 1.46},
       {36, {0, 1, 2}, Clamping::kReclamp, 7.0}, {36, {0, 1, 4, 12}, Clamping::kReclamp, 0.69}};
   for (const RadialCase& c : cases) {
-    const TableEstimate target = TargetOf(c.n, c.shifts, c.clamping, FlatBench());
-    EXPECT_NEAR(Gain(BlockOf(target, Component::kDy, c.n)), c.gain, c.gain > 2 ? 0.06 : 0.006) << c.n;
+    const Eigen::MatrixXd cov = BlockOf(TargetOf(c.n, c.shifts, c.clamping, FlatBench()), Component::kDy, c.n);
+    EXPECT_NEAR(RootMeanGain(cov, kSigma_rad), c.gain, c.gain > 2 ? 0.06 : 0.006) << c.n;
   }
+}
+
+TEST(HarmonicUncertainties, AreThoseOfTheClosedFormOfTheShifts) {
+  const std::vector<double> u = HarmonicUncertainties(TargetOf(12, {0, 1, 4}, Clamping::kReseat), Component::kEz);
+  ASSERT_EQ(u.size(), 6u);
+  for (int k = 1; k < 6; ++k) {
+    const double expected = kSigma_rad * std::sqrt(2.0 * ShiftVariance(12, std::vector{0, 1, 4}, k));
+    EXPECT_NEAR(u[static_cast<std::size_t>(k) - 1], expected, 1e-3 * expected) << k;
+  }
+}
+
+TEST(HarmonicUncertainties, OfAComponentThatIsNotDeterminedAreNotKnown) {
+  for (const double u : HarmonicUncertainties(TargetOf(12, {0, 1}, Clamping::kReclamp), Component::kDy))
+    EXPECT_TRUE(std::isnan(u));
 }
 
 TEST(Separator, UsesTheRankForItsDegreesOfFreedom) {
@@ -104,9 +92,7 @@ TEST(Separator, UsesTheRankForItsDegreesOfFreedom) {
 }
 
 TEST(Separator, CarriesTheCalibrationIntoASystematicPart) {
-  Stream stream(3, "test.truth");
-  auto motions = EmptyMotions(12, {0, 1, 4}, 1, EqualNoise());
-  FillExact(motions, RandomTruth(12, stream), Layouts(12, Clamping::kReseat), Bench());
+  auto motions = ReadExactly(12, {0, 1, 4}, Clamping::kReseat).motions;
   for (Motion& m : motions) m.d_calibration.col(0) = -m.Values();  // one gain that scales all four motions
   SeparateOptions options = Options(12, Clamping::kReseat);
   options.cov_calibration(0, 0) = 0.01 * 0.01;

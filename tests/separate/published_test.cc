@@ -75,17 +75,12 @@ TEST(SeparatePublished, IsRightAfterReseating) {
 }
 
 TEST(SeparatePublished, AgreesWithTheTruthOfAScalarWorld) {
-  Stream stream(4, "test.truth");
-  const Truth truth = RandomTruth(36, stream);
-  auto motions = EmptyMotions(36, {0, 1}, 2, ReadingCovariance());
-  FillExact(motions, truth, Layouts(36, Clamping::kReseat), FlatBench());
-  const Separation found = SeparatePublished(motions, FlatBench(), Layouts(36, Clamping::kReseat));
-  const TableErrors target = RemoveNotSeparable(truth.target, Table::kTarget, found.not_separable);
-  const TableErrors reference = RemoveNotSeparable(truth.reference, Table::kReference, found.not_separable);
-  for (const Component c : {Component::kEx, Component::kEy, Component::kEz}) {
+  const ExactCircles c = ReadExactly(36, {0, 1}, Clamping::kReseat, 2, FlatBench());
+  const Separation found = SeparatePublished(c.motions, FlatBench(), Layouts(36, Clamping::kReseat));
+  for (const test::SeparatedTable& t : test::BothTables(found, c.truth)) {
     // Second order of 5 arcsec wobble, amplified by up to n / pi: 1e-3 arcsec; the limit leaves a factor of 20.
-    EXPECT_LT(RmsDifference(found.target.value[c], target[c]), 0.02 * units::arcsec);
-    EXPECT_LT(RmsDifference(found.reference.value[c], reference[c]), 0.02 * units::arcsec);
+    for (const Component k : {Component::kEx, Component::kEy, Component::kEz})
+      EXPECT_LT(t.RmsError(k), 0.02 * units::arcsec) << t.Name(k);
   }
 }
 

@@ -1,10 +1,11 @@
+#include "twin/separate/curve_covariance.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
-#include "twin/separate/curve_covariance.h"
 
 namespace twinbench::separate {
 namespace {
@@ -45,6 +46,23 @@ TEST(CurveCovarianceOrderSums, AreTheDoubleSumsOverThePositions) {
       }
     }
   }
+}
+
+TEST(CurveCovariance, HoldsLagsProductsAndVariances) {
+  Eigen::MatrixXd lags(3, 4);  // two curves at three positions
+  lags << 4.0, 0.5, 0.5, 6.0,  //
+      1.0, 0.2, 0.3, 2.0,      //
+      1.0, 0.3, 0.2, 2.0;
+  CurveCovariance cov = CurveCovariance::Circulant(lags, 2) * 4.0;
+  EXPECT_EQ(cov(0, 1), 4.0);
+  EXPECT_EQ(cov(1, 5), 4.0 * 0.2);  // curve 0 at 1, curve 1 at 2
+  EXPECT_EQ(cov(5, 1), cov(1, 5));
+  cov.AddProduct(Eigen::VectorXd::LinSpaced(6, 1.0, 6.0));
+  cov.AddVariance(2, 7.0);
+  EXPECT_EQ(cov(2, 2), 16.0 + 9.0 + 7.0);
+  EXPECT_EQ((cov * 4.0)(0, 1), 4.0 * (4.0 + 2.0));
+  EXPECT_EQ(cov.diagonal(), cov.ToDense().diagonal());
+  EXPECT_EQ(cov.ToDense(), cov.ToDense().transpose());
 }
 
 }  // namespace
