@@ -82,6 +82,11 @@ inline SpectrumBench DrawBench(std::mt19937_64& random, int gears) {
   return bench;
 }
 
+/// Without teeth, with just these lines.
+inline SpectrumBench BenchWith(const std::vector<SpectrumLine>& lines, double noise_rad) {
+  return {lines, std::vector<double>(360, 0.0), noise_rad};
+}
+
 /// 72 positions in two set-ups, there and back.
 inline ReadingPlan EvenPositions() {
   ReadingPlan plan{{}, {0, 0, 1, 1}};

@@ -1,27 +1,20 @@
 #include "twin/separate/line_search.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
 #include "tests/separate/index_spectrum.h"
+#include "tests/support/kept_text.h"
 
 namespace twinbench::separate {
 namespace {
 
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
 using units::arcsec;
 
 std::vector<int> OrdersOf(const LineFit& fit) {
   std::vector<int> orders;
   for (const IndexLine& line : fit.lines) orders.push_back(line.order);
   return orders;
-}
-
-SpectrumBench BenchWith(const std::vector<SpectrumLine>& lines, double noise_rad) {
-  return {lines, std::vector<double>(360, 0.0), noise_rad};
 }
 
 TEST(FindLines, FindsKnownLinesAndTheirPhasesWithoutNoise) {
@@ -41,8 +34,7 @@ TEST(FindLines, FindsNothingInNoise) {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     std::mt19937_64 random(seed);
-    found +=
-        static_cast<int>(std::ssize(FindLines(BenchWith({}, 0.3 * arcsec).Read({EvenPositions()}, random)).lines));
+    found += static_cast<int>(FindLines(BenchWith({}, 0.3 * arcsec).Read({EvenPositions()}, random)).lines.size());
   }
   // Odds of 20 : 1 for a line and a prior that makes lines rare: one in a hundred spectra is expected at most.
   EXPECT_LE(found, 3);
@@ -100,7 +92,7 @@ TEST(FindLines, StatesAnUncertaintyThatMatchesItsScatter) {
 
 TEST(FindLines, RefusesFewPlaces) {
   IndexErrors errors = MeansByPlace({{0, 0.0, 1.0}, {0, 1.0, 2.0}});
-  EXPECT_THAT(MessageOf([&] { FindLines(errors); }), HasSubstr("at least 8"));
+  EXPECT_KEPT(MessageOf([&] { FindLines(errors); }));
 }
 
 }  // namespace
