@@ -2,10 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <complex>
 #include <utility>
 
+#include "tests/separate/shift_formulas.h"
 #include "tests/separate/turntable_run.h"
+#include "tests/support/kept_text.h"
 #include "twin/benches/turntable_autocollimator/estimators/indexing.h"
 #include "twin/benches/turntable_autocollimator/estimators/lost_harmonics.h"
 #include "twin/core/errors.h"
@@ -15,7 +16,8 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using Complex = std::complex<double>;
+
+const std::vector<int> kFourOf36 = {0, 1, 7, 11}, kFourOf72 = {0, 3, 5, 19};
 
 /// Seats at these shifts [steps of 360 deg / n], tilts of 60, 80, 100 ... arcsec in several directions.
 std::vector<Seat> Seats(int n, const std::vector<int>& shifts) {
@@ -27,9 +29,14 @@ std::vector<Seat> Seats(int n, const std::vector<int>& shifts) {
   return seats;
 }
 
-IndexingOptions Options(double u_rad, double gamma_rad = 0.0) {
+IndexingOptions NoiseOf(double u_rad) {
   IndexingOptions options;
   options.noise = Stated(u_rad);
+  return options;
+}
+
+IndexingOptions Options(double u_rad, double gamma_rad = 0.0) {
+  IndexingOptions options = NoiseOf(u_rad);
   options.roll = Roll{RollStatus::kGiven, gamma_rad, 0.0};
   return options;
 }
@@ -53,11 +60,8 @@ Eigen::VectorXd TrueTeeth(const TrueBench& bench, const AngleSeries& series) {
 
 TEST(SeparateIndexing, FindsBothTablesExactlyWithoutNoise) {
   for (const int n : {36, 72}) {
-    Stream stream(1, "test.turntable");
-    const TrueBench bench = PublishedBench(0.0, stream);
-    IndexingOptions options;
-    options.noise = Stated(0.0);
-    const auto found = SeparateIndexing(ReadCircles(bench, Seats(n, {0, 1, 7, 11}), n, stream), options);
+    const auto [bench, stops] = ReadPublished(1, 0.0, Seats(n, kFourOf36), n);
+    const auto found = SeparateIndexing(stops, NoiseOf(0.0));
     EXPECT_EQ(found.status, IndexingStatus::kSeparated);
     EXPECT_TRUE(found.lost_harmonics.empty());
     EXPECT_NEAR(found.roll.gamma_rad, 0.6 * deg, 1e-12);  // rounding, here and below
@@ -67,43 +71,24 @@ TEST(SeparateIndexing, FindsBothTablesExactlyWithoutNoise) {
 }
 
 double Gain(int n, const std::vector<int>& shifts) {
-  Stream stream(2, "test.turntable");
-  const auto stops = ReadCircles({}, Seats(n, shifts), n, stream);
-  const auto found = SeparateIndexing(stops, Options(1e-6));
+  const auto found = SeparateIndexing(ReadIdeal(Seats(n, shifts), n), Options(1e-6));
   EXPECT_NEAR(found.multitooth.cov_rad2.diagonal().sum() / found.turntable.cov_rad2.diagonal().sum(), 1.0, 1e-9);
-  return std::sqrt(found.turntable.cov_rad2.diagonal().sum() / n) / 1e-6;
+  return RootMeanGain(found.turntable.cov_rad2.ToDense(), 1e-6);
 }
 
 TEST(SeparateIndexing, HasTheNoiseGainsOfTheShiftTables) {
-  EXPECT_NEAR(Gain(36, {0, 1}), std::sqrt((36.0 * 36 - 1) / (6 * 36)), 1e-9);  // closed form
-  EXPECT_NEAR(Gain(72, {0, 1}), std::sqrt((72.0 * 72 - 1) / (6 * 72)), 1e-9);
-  EXPECT_NEAR(Gain(36, {0, 1, 6}), 0.781, 6e-4);  // three printed digits, here and below
-  EXPECT_NEAR(Gain(36, {0, 1, 7, 11}), 0.579, 6e-4);
-  EXPECT_NEAR(Gain(36, {0, 1, 9, 11, 15}), 0.491, 6e-4);
-  EXPECT_NEAR(Gain(36, {0, 1, 4, 10, 15, 17}), 0.436, 6e-4);
-  EXPECT_NEAR(Gain(72, {0, 1, 9}), 0.840, 6e-4);
-  EXPECT_NEAR(Gain(72, {0, 3, 5, 19}), 0.599, 6e-4);
-  EXPECT_NEAR(Gain(72, {0, 1, 12, 17, 26}), 0.503, 6e-4);
-  EXPECT_NEAR(Gain(72, {0, 1, 4, 12, 25, 31}), 0.445, 6e-4);
-}
-
-/// Formula (V) of docs/theory.md 2, for readings of variance 1.
-double ClosedForm(int n, const std::vector<int>& shifts, int k) {
-  Complex a = 0.0;
-  for (const int s : shifts) a += std::polar(1.0, 2 * units::kPi * k * s / n);
-  const auto p = static_cast<double>(shifts.size());
-  return p / (p * p - std::norm(a)) / n;
+  for (const int n : {36, 72}) EXPECT_NEAR(Gain(n, {0, 1}), std::sqrt((n * n - 1.0) / (6 * n)), 1e-9);  // closed form
+  const std::tuple<int, std::vector<int>, double> printed[] = {
+      {36, {0, 1, 6}, 0.781}, {36, kFourOf36, 0.579}, {36, {0, 1, 9, 11, 15}, 0.491},  {36, {0, 1, 4, 10, 15, 17}, 0.436},
+      {72, {0, 1, 9}, 0.840}, {72, kFourOf72, 0.599}, {72, {0, 1, 12, 17, 26}, 0.503}, {72, {0, 1, 4, 12, 25, 31}, 0.445}};
+  for (const auto& [n, shifts, gain] : printed) EXPECT_NEAR(Gain(n, shifts), gain, 6e-4);  // three digits
 }
 
 TEST(SeparateIndexing, PropagatesTheNoiseOfEveryHarmonicAsTheClosedFormSays) {
-  const std::vector<int> shifts = {0, 1, 7, 11};
-  Stream stream(3, "test.turntable");
-  const auto found = SeparateIndexing(ReadCircles({}, Seats(36, shifts), 36, stream), Options(1e-6));
+  const auto found = SeparateIndexing(ReadIdeal(Seats(36, kFourOf36), 36), Options(1e-6));
   for (int k = 1; k < 36; ++k) {
-    Eigen::VectorXcd f(36);
-    for (int i = 0; i < 36; ++i) f[i] = std::polar(1.0 / 36, 2 * units::kPi * k * i / 36);
-    const double variance = (f.adjoint() * found.turntable.cov_rad2.ToDense().cast<Complex>() * f)(0, 0).real() / 1e-12;
-    EXPECT_NEAR(variance / ClosedForm(36, shifts, k), 1.0, 1e-9) << k;  // rounding
+    const double variance = HarmonicVariance(found.turntable.cov_rad2.ToDense(), k) / 1e-12;
+    EXPECT_NEAR(variance / ShiftVariance(36, kFourOf36, k), 1.0, 1e-9) << k;  // rounding
   }
 }
 
@@ -120,7 +105,7 @@ TEST(LostHarmonics, AreTheMultiplesThatAllShiftsShare) {
 
 /// Amplitude of order k in a series of n values.
 double Amplitude(const Eigen::VectorXd& values, int k) {
-  Complex sum = 0.0;
+  std::complex<double> sum = 0.0;
   const auto n = static_cast<double>(values.size());
   for (Eigen::Index i = 0; i < values.size(); ++i)
     sum += values[i] * std::polar(1.0, -2 * units::kPi * k * static_cast<double>(i) / n);
@@ -143,16 +128,13 @@ TEST(SeparateIndexing, CountsExactlyTheLostHarmonicsOfTheTeethAsTheTurntables) {
 }
 
 TEST(SeparateIndexing, ReturnsTheSumForOneShiftAndSaysSo) {
-  Stream stream(5, "test.turntable");
-  const TrueBench bench = PublishedBench(0.0, stream);
-  IndexingOptions options;
-  options.noise = Stated(0.2 * arcsec);
-  const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream), options);
+  const auto [bench, stops] = ReadPublished(5, 0.0);
+  const auto found = SeparateIndexing(stops, NoiseOf(0.2 * arcsec));
   EXPECT_EQ(found.status, IndexingStatus::kSumOnly);
   EXPECT_EQ(found.lost_harmonics.size(), 36u);
   EXPECT_TRUE(found.multitooth.position_rad.empty());
   ASSERT_EQ(found.notes.size(), 1u);
-  EXPECT_THAT(found.notes[0], HasSubstr("do not separate"));
+  EXPECT_KEPT(found.notes[0]);
   Eigen::VectorXd sum(72);
   for (int i = 0; i < 72; ++i) sum[i] = bench.Index(5.0 * i, 0.0);
   // The noise stated is not there: 8e-6 of the roll is taken off, 3e-5 * 0.0105 of 100 arcsec.
@@ -160,18 +142,15 @@ TEST(SeparateIndexing, ReturnsTheSumForOneShiftAndSaysSo) {
 }
 
 TEST(SeparateIndexing, AddsTheTeethToTheUncertaintyOfASum) {
-  Stream stream(6, "test.turntable");
   IndexingOptions options = Options(0.2 * arcsec);
   options.u_multitooth_rad = 0.3 * arcsec;
-  const auto one = SeparateIndexing(ReadCircles({}, Seats(72, {0}), 72, stream), options);
+  const auto turntable_with = [&](const std::vector<int>& shifts) {
+    return SeparateIndexing(ReadIdeal(Seats(72, shifts), 72), options).turntable;
+  };
   // Both are independent from position to position, their mean is taken away.
-  EXPECT_NEAR(one.turntable.U_rad(5) / arcsec, std::sqrt((0.04 + 0.09) * 71 / 72), 1e-9);
-  const auto none = SeparateIndexing(ReadCircles({}, Seats(72, {0, 1, 9}), 72, stream), options);
-  EXPECT_NEAR(none.turntable.U_rad(5) / arcsec, 0.2 * 0.840, 2e-4);  // separated: no part of the teeth's
-  const auto half = SeparateIndexing(ReadCircles({}, Seats(72, {0, 36}), 72, stream), options);
-  Eigen::VectorXcd f(72);
-  for (int i = 0; i < 72; ++i) f[i] = std::polar(1.0 / 72, 2 * units::kPi * 2 * i / 72);
-  const double order_2 = (f.adjoint() * half.turntable.cov_rad2.ToDense().cast<Complex>() * f)(0, 0).real();
+  EXPECT_NEAR(turntable_with({0}).U_rad(5) / arcsec, std::sqrt((0.04 + 0.09) * 71 / 72), 1e-9);
+  EXPECT_NEAR(turntable_with({0, 1, 9}).U_rad(5) / arcsec, 0.2 * 0.840, 2e-4);  // separated: no part of the teeth's
+  const double order_2 = HarmonicVariance(turntable_with({0, 36}).cov_rad2.ToDense(), 2);
   EXPECT_NEAR(order_2 / (arcsec * arcsec), (0.04 / 2 + 0.09) / 72, 1e-9);  // mean of two readings, and the teeth
 }
 
@@ -204,11 +183,8 @@ TEST(SeparateIndexing, StatesUncertaintiesThatMatchItsScatter) {
   constexpr int kRuns = 60;
   double turntable = 0.0, multitooth = 0.0, residual = 0.0;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-    Stream stream(seed, "test.turntable");
-    const TrueBench bench = PublishedBench(0.5 * arcsec, stream);
-    IndexingOptions options;
-    options.noise = Stated(0.5 * arcsec);
-    const auto found = SeparateIndexing(ReadCircles(bench, Seats(72, {0, 3, 5, 19}), 72, stream), options);
+    const auto [bench, stops] = ReadPublished(seed, 0.5 * arcsec, Seats(72, kFourOf72));
+    const auto found = SeparateIndexing(stops, NoiseOf(0.5 * arcsec));
     turntable += ChiSquared(found.turntable, TrueTurntable(bench, 72)) / kRuns;
     multitooth += ChiSquared(found.multitooth, TrueTeeth(bench, found.multitooth)) / kRuns;
     residual += found.chi2 / kRuns;
@@ -225,11 +201,10 @@ TEST(SeparateIndexing, StatesTheUncertaintyOfASumWithTheTeethInIt) {
   constexpr int kRuns = 60;
   double chi2 = 0.0;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-    Stream stream(seed, "test.turntable");
-    const TrueBench bench = PublishedBench(0.2 * arcsec, stream);
     IndexingOptions options;
     options.u_multitooth_rad = 0.3 * arcsec;  // noise from the repeats of two passes
-    const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream, 2), options);
+    const auto [bench, stops] = ReadPublished(seed, 0.2 * arcsec, TwoTilts(), 72, 2);
+    const auto found = SeparateIndexing(stops, options);
     EXPECT_NEAR(found.noise.u_x_rad, 0.2 * arcsec, 5 * 0.2 * arcsec / std::sqrt(2 * 144));
     EXPECT_EQ(found.noise.dof, 144);
     chi2 += ChiSquared(found.turntable, TrueTurntable(bench, 72)) / kRuns;
@@ -238,32 +213,26 @@ TEST(SeparateIndexing, StatesTheUncertaintyOfASumWithTheTeethInIt) {
 }
 
 TEST(SeparateIndexing, TakesTheNoiseFromTheResidualsIfNothingWasReadTwice) {
-  Stream stream(8, "test.turntable");
-  const TrueBench bench = PublishedBench(0.4 * arcsec, stream);
-  const auto found = SeparateIndexing(ReadCircles(bench, TwoTilts(), 72, stream));
+  const auto found = SeparateIndexing(ReadPublished(8, 0.4 * arcsec).stops);
   EXPECT_EQ(found.noise.dof, 70);  // 144 readings, 71 + 2 constants + the roll
   EXPECT_NEAR(found.noise.u_x_rad, 0.4 * arcsec, 4 * 0.4 * arcsec / std::sqrt(2 * 70));
   EXPECT_TRUE(std::isnan(found.chi2));
 }
 
 TEST(SeparateIndexing, ScalesANoiseThatIsStatedTooSmall) {
-  Stream stream(9, "test.turntable");
-  const TrueBench bench = PublishedBench(0.4 * arcsec, stream);
-  IndexingOptions options;
-  options.noise = Stated(0.2 * arcsec);
-  const auto found = SeparateIndexing(ReadCircles(bench, Seats(72, {0, 3, 5, 19}), 72, stream), options);
+  const auto found_with = [](double u_rad) {
+    return SeparateIndexing(ReadPublished(9, 0.4 * arcsec, Seats(72, kFourOf72)).stops, NoiseOf(u_rad));
+  };
+  const auto found = found_with(0.2 * arcsec);
   EXPECT_NEAR(found.scale, 2.0, 4 * 2.0 / std::sqrt(2 * 141));
   EXPECT_THAT(found.notes, ElementsAre(HasSubstr("scaled")));
-  options.noise = Stated(0.2 * found.scale * arcsec);
-  const auto right = SeparateIndexing(ReadCircles(bench, Seats(72, {0, 3, 5, 19}), 72, stream), options);
-  EXPECT_NEAR(found.turntable.U_rad(0) / right.turntable.U_rad(0), 1.0, 0.01);  // the tilts are read anew
+  const auto right = found_with(0.2 * found.scale * arcsec);
+  EXPECT_NEAR(found.turntable.U_rad(0) / right.turntable.U_rad(0), 1.0, 0.01);
   EXPECT_NEAR(found.roll.u_gamma_rad / right.roll.u_gamma_rad, 1.0, 0.01);
 }
 
 TEST(SeparateIndexing, BearsMissingStopsWhereTheOthersAreEnough) {
-  Stream stream(10, "test.turntable");
-  const TrueBench bench = PublishedBench(0.0, stream);
-  auto four = ReadCircles(bench, Seats(36, {0, 1, 7, 11}), 36, stream);
+  auto [bench, four] = ReadPublished(10, 0.0, Seats(36, kFourOf36), 36);
   four[3].x_rad = four[80].y_rad = kNaN;
   const auto found = SeparateIndexing(four, Options(1e-6, 0.6 * deg));
   EXPECT_EQ(found.status, IndexingStatus::kSeparated);
@@ -274,9 +243,8 @@ TEST(SeparateIndexing, BearsMissingStopsWhereTheOthersAreEnough) {
 
 TEST(SeparateIndexing, SaysWhenMissingStopsLoseMoreThanTheShifts) {
   // Two shifts have one reading more than unknowns but for the constants: without any one stop a ramp is free.
-  Stream stream(11, "test.turntable");
   for (const int n : {12, 36}) {
-    auto two = ReadCircles({}, Seats(n, {0, 1}), n, stream);
+    auto two = ReadIdeal(Seats(n, {0, 1}), n);
     IndexingOptions options = Options(1e-6);
     options.positions = n;
     EXPECT_EQ(SeparateIndexing(two, options).status, IndexingStatus::kSeparated);
@@ -292,9 +260,7 @@ TEST(SeparateIndexing, SaysWhenMissingStopsLoseMoreThanTheShifts) {
 }
 
 TEST(SeparateIndexing, LeavesOutPositionsThatWereNeverRead) {
-  Stream stream(12, "test.turntable");
-  const TrueBench bench = PublishedBench(0.0, stream);
-  auto stops = ReadCircles(bench, TwoTilts(), 72, stream);
+  std::vector<TurntableStop> stops = ReadPublished(12, 0.0).stops;
   stops[10].x_rad = stops[82].x_rad = kNaN;
   const auto found = SeparateIndexing(stops, Options(1e-6, 0.6 * deg));
   ASSERT_EQ(found.turntable.position_rad.size(), 71u);
@@ -303,18 +269,16 @@ TEST(SeparateIndexing, LeavesOutPositionsThatWereNeverRead) {
 }
 
 TEST(SeparateIndexing, TellsWhatAnUnknownRollCouldDo) {
-  Stream stream(13, "test.turntable");
-  const auto found = SeparateIndexing(ReadCircles({}, {{0, 100 * arcsec, 0.4}}, 72, stream));
+  const auto found = SeparateIndexing(ReadIdeal({{0, 100 * arcsec, 0.4}}, 72));
   EXPECT_EQ(found.roll.status, RollStatus::kTiltsAlike);
   ASSERT_EQ(found.notes.size(), 2u);
   EXPECT_THAT(found.notes[1], HasSubstr("up to 1.74"));  // 100 arcsec * pi / 180 = 1.745, at most at a position
 }
 
 TEST(SeparateIndexing, CarriesTheUncertaintyOfAGivenRoll) {
-  Stream stream(15, "test.turntable");
   IndexingOptions options = Options(0.0);
   options.roll->u_gamma_rad = 0.1 * deg;
-  const auto found = SeparateIndexing(ReadCircles({}, {{0, 100 * arcsec, 0.0}}, 72, stream), options);
+  const auto found = SeparateIndexing(ReadIdeal({{0, 100 * arcsec, 0.0}}, 72), options);
   for (const int i : {0, 5, 30}) {
     const double u_rad = 0.1 * deg * 100 * arcsec * std::abs(std::cos(5.0 * i * deg));
     EXPECT_NEAR(found.turntable.U_rad(i), u_rad, 1e-15);  // rounding
@@ -322,15 +286,15 @@ TEST(SeparateIndexing, CarriesTheUncertaintyOfAGivenRoll) {
 }
 
 TEST(SeparateIndexing, RefusesAnglesThatContradictEachOther) {
-  Stream stream(14, "test.turntable");
-  auto stops = ReadCircles({}, TwoTilts(), 36, stream);
-  stops[40].multitooth_rad += 10 * deg;
-  EXPECT_THROW(SeparateIndexing(stops), InputError);
-  stops[40].multitooth_rad = kNaN;
-  EXPECT_THROW(SeparateIndexing(stops), InputError);
-  stops = ReadCircles({}, TwoTilts(), 36, stream);
-  stops[40].turntable_rad += 1 * deg;
+  const std::vector<TurntableStop> right = ReadIdeal(TwoTilts(), 36);
   const IndexingOptions of_36{.positions = 36};
+  auto stops = right;
+  for (const double tooth_rad : {right[40].multitooth_rad + 10 * deg, kNaN}) {
+    stops[40].multitooth_rad = tooth_rad;
+    EXPECT_THROW(SeparateIndexing(stops), InputError);
+  }
+  stops = right;
+  stops[40].turntable_rad += 1 * deg;
   EXPECT_THROW(SeparateIndexing(stops, of_36), InputError);
   EXPECT_THROW(SeparateIndexing(stops), InputError);
   stops[40].setup = 7;  // a set-up of its own, off the grid

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/turntable_run.h"
+#include "tests/support/angle_benches.h"
 #include "twin/benches/turntable_autocollimator/estimators/model_check.h"
 
 namespace twinbench::separate::turntable {
@@ -94,6 +95,37 @@ TEST(CheckModel, NeedsRepeatsWithTheNoisiestAutocollimator) {
   const Outcome four_times = TakeModelOut(0.5 * arcsec, 4, 100);
   EXPECT_EQ(four_times.within_2, 100);
   EXPECT_NEAR(four_times.over_expected, 1.0, 0.05);  // as above
+}
+
+/// Errors of 150 arcsec, so that an autocollimator that bends by 20 arcsec at 410 shows.
+constexpr const char* kScenario = R"(bench = "turntable_autocollimator"
+seed = 6
+[turntable]
+harmonics = [{ order = 1, amplitude_arcsec = 150.0, phase_deg = 40.0 }]
+[turntable.random]
+ez_arcsec = 0.0
+[multitooth]
+tooth_rms_arcsec = 0.0
+[autocollimator]
+noise_arcsec = 0.001
+[turntable_procedure]
+phases = ["full_circle"]
+positions = 12
+)";
+
+Eigen::VectorXd Separated_arcsec(const std::vector<std::string>& overrides) {
+  const Scenario scenario = ParseScenario(kScenario, "test", "", overrides);
+  return AnalyseTurntable(test::RunTurntable(scenario).readings, scenario, Estimator::kRigorous).separation->turntable.value_rad /
+         units::arcsec;
+}
+
+TEST(CollimatorScale, IsTakenOutAsTheScenarioSaysIt) {
+  const Eigen::VectorXd plain = Separated_arcsec({});
+  ASSERT_NEAR(plain.maxCoeff(), 150.0, 5.0);
+  for (const char* key : {"autocollimator.gain_error=0.02", "autocollimator.error_at_edge_arcsec=20"}) {
+    SCOPED_TRACE(key);
+    EXPECT_LT((Separated_arcsec({key}) - plain).cwiseAbs().maxCoeff(), 0.01);
+  }
 }
 
 }  // namespace

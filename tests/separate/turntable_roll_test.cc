@@ -13,18 +13,16 @@ namespace {
 constexpr int kRuns = 200;
 
 TEST(EstimateRoll, FindsTheRollExactlyWithoutNoise) {
-  Stream stream(1, "test.turntable");
-  const TrueBench bench = PublishedBench(0.0, stream);
-  const Roll roll = EstimateRoll(ReadCircles(bench, TwoTilts(), 72, stream), Stated(0.2 * arcsec));
+  const auto stops = ReadPublished(1, 0.0).stops;
+  const Roll roll = EstimateRoll(stops, Stated(0.2 * arcsec));
   EXPECT_EQ(roll.status, RollStatus::kOk);
   // The stated noise, which is not there, is taken off sum(dy^2): (0.2 / 70)^2 of the slope.
   EXPECT_NEAR(roll.gamma_rad, 0.6 * deg, 3e-5 * 0.6 * deg);
-  EXPECT_NEAR(EstimateRoll(ReadCircles(bench, TwoTilts(), 72, stream), Stated(0.0)).gamma_rad, 0.6 * deg, 1e-12);
+  EXPECT_NEAR(EstimateRoll(stops, Stated(0.0)).gamma_rad, 0.6 * deg, 1e-12);
 }
 
 TEST(EstimateRoll, IsTheSlopeOfTheDifferencesOfTwoTilts) {
-  Stream stream(2, "test.turntable");
-  const auto stops = ReadCircles(PublishedBench(0.5 * arcsec, stream), TwoTilts(), 72, stream);
+  const auto stops = ReadPublished(2, 0.5 * arcsec).stops;
   double sx = 0.0, sy = 0.0, sxy = 0.0, syy = 0.0;
   for (std::size_t i = 0; i < 72; ++i) {
     const double dx = stops[i + 72].x_rad - stops[i].x_rad, dy = stops[i + 72].y_rad - stops[i].y_rad;
@@ -42,10 +40,8 @@ TEST(EstimateRoll, IsTheSlopeOfTheDifferencesOfTwoTilts) {
 double MeanSquaredPull(double u_rad, const std::vector<Seat>& seats, int n, bool stated) {
   double sum = 0.0;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-    Stream stream(seed, "test.turntable");
-    const TrueBench bench = PublishedBench(u_rad, stream);
-    const Roll roll = EstimateRoll(ReadCircles(bench, seats, n, stream, stated ? 1 : 2),
-                                   stated ? Stated(u_rad) : AutocollimatorNoise{});
+    const auto stops = ReadPublished(seed, u_rad, seats, n, stated ? 1 : 2).stops;
+    const Roll roll = EstimateRoll(stops, stated ? Stated(u_rad) : AutocollimatorNoise{});
     EXPECT_EQ(roll.status, RollStatus::kOk);
     sum += std::pow((roll.gamma_rad - 0.6 * deg) / roll.u_gamma_rad, 2) / kRuns;
   }
@@ -77,31 +73,29 @@ TEST(EstimateRoll, IsNotPulledToZeroByTheNoiseOfY) {
 }
 
 TEST(EstimateRoll, SaysWhenTheTiltsAreTooMuchAlike) {
-  Stream stream(3, "test.turntable");
-  const TrueBench bench = PublishedBench(0.5 * arcsec, stream);
-  const std::vector<Seat> alike = {{0, 60 * arcsec, 0.4}, {0, 60 * arcsec, 0.4}};
-  EXPECT_EQ(EstimateRoll(ReadCircles(bench, alike, 72, stream), Stated(0.5 * arcsec)).status,
-            RollStatus::kTiltsAlike);
-  EXPECT_EQ(EstimateRoll(ReadCircles(bench, alike, 72, stream)).status,
-            RollStatus::kTiltsAlike);  // noise not known
-  EXPECT_EQ(EstimateRoll(ReadCircles(bench, {alike[0]}, 72, stream)).status, RollStatus::kTiltsAlike);
-  EXPECT_EQ(EstimateRoll(ReadCircles(bench, {alike[0]}, 72, stream, 4)).status, RollStatus::kTiltsAlike);
+  const Seat one{0, 60 * arcsec, 0.4};
+  const auto status_of = [](const std::vector<Seat>& seats, int passes, const AutocollimatorNoise& noise) {
+    return EstimateRoll(ReadPublished(3, 0.5 * arcsec, seats, 72, passes).stops, noise).status;
+  };
+  EXPECT_EQ(status_of({one, one}, 1, Stated(0.5 * arcsec)), RollStatus::kTiltsAlike);
+  EXPECT_EQ(status_of({one, one}, 1, {}), RollStatus::kTiltsAlike);  // noise not known
+  for (const int passes : {1, 4}) EXPECT_EQ(status_of({one}, passes, {}), RollStatus::kTiltsAlike);
 }
 
 TEST(EstimateRoll, NeedsAThirdSetUpIfTheShiftsDiffer) {
   // Two shifts: a tilt that turns once with each table is order 1 of turntable and multi-tooth table.
-  Stream stream(4, "test.turntable");
-  const TrueBench bench = PublishedBench(0.5 * arcsec, stream);
-  const std::vector<Seat> two = {{0, 60 * arcsec, 0.4}, {5, 100 * arcsec, 2.1}};
-  EXPECT_EQ(EstimateRoll(ReadCircles(bench, two, 72, stream), Stated(0.5 * arcsec)).status,
-            RollStatus::kTiltsAlike);
-  EXPECT_TRUE(std::isnan(EstimateRoll(ReadCircles(bench, two, 72, stream)).gamma_rad));
+  const auto stops = ReadPublished(4, 0.5 * arcsec, {{0, 60 * arcsec, 0.4}, {5, 100 * arcsec, 2.1}}).stops;
+  EXPECT_EQ(EstimateRoll(stops, Stated(0.5 * arcsec)).status, RollStatus::kTiltsAlike);
+  EXPECT_TRUE(std::isnan(EstimateRoll(stops).gamma_rad));
+}
+
+std::vector<PointwiseError> SolvedOfTwoTilts(const std::vector<TurntableStop>& stops, double u_rad = 0.2 * arcsec) {
+  return SolveEquation5(stops, 0, 1, Stated(u_rad));
 }
 
 TEST(SolveEquation5, IsExactAwayFromItsPolesWithoutNoise) {
-  Stream stream(5, "test.turntable");
-  const TrueBench bench = PublishedBench(0.0, stream);
-  const auto points = SolveEquation5(ReadCircles(bench, TwoTilts(), 72, stream), 0, 1, Stated(0.0));
+  const auto [bench, stops] = ReadPublished(5, 0.0);
+  const auto points = SolvedOfTwoTilts(stops, 0.0);
   ASSERT_EQ(points.size(), 72u);
   EXPECT_EQ(points[0].value_rad, 0.0);
   for (int i = 1; i < 72; ++i) {
@@ -114,9 +108,7 @@ TEST(SolveEquation5, IsExactAwayFromItsPolesWithoutNoise) {
 /// y of two tilts b cos(phi - a), each from its start: their difference is A (cos(phi - f) - cos f), zero at 0 and
 /// 2 f.
 TEST(SolveEquation5, SaysWhereItsPolesAre) {
-  Stream stream(6, "test.turntable");
-  const TrueBench bench = PublishedBench(0.2 * arcsec, stream);
-  const auto points = SolveEquation5(ReadCircles(bench, TwoTilts(), 72, stream), 0, 1, Stated(0.2 * arcsec));
+  const auto points = SolvedOfTwoTilts(ReadPublished(6, 0.2 * arcsec).stops);
   const double f = std::atan2(100 * std::sin(2.1) - 60 * std::sin(0.4), 100 * std::cos(2.1) - 60 * std::cos(0.4));
   const auto nearest = static_cast<std::size_t>(std::lround(2.0 * f / (5.0 * deg)) + 72) % 72;
   EXPECT_EQ(points[nearest].status, PointStatus::kNearPole);
@@ -125,22 +117,19 @@ TEST(SolveEquation5, SaysWhereItsPolesAre) {
 }
 
 TEST(SolveEquation5, CallsEveryPositionAPoleIfTheTiltsAreAlike) {
-  Stream stream(8, "test.turntable");
-  const TrueBench bench = PublishedBench(0.2 * arcsec, stream);
   const auto is_ok = [](const PointwiseError& point) { return point.status == PointStatus::kOk; };
   for (const double tilt_rad : {0.0, 60 * arcsec}) {
-    const std::vector<Seat> alike = {{0, tilt_rad, 0.4}, {0, tilt_rad, 0.4}};
-    const auto points = SolveEquation5(ReadCircles(bench, alike, 72, stream), 0, 1, Stated(0.2 * arcsec));
+    const Seat seat{0, tilt_rad, 0.4};
+    const auto points = SolvedOfTwoTilts(ReadPublished(8, 0.2 * arcsec, {seat, seat}).stops);
     // A difference exceeds 3 standard uncertainties in 0.3 % of the cases; the start's noise is common.
     EXPECT_LE(std::count_if(points.begin(), points.end(), is_ok), 3);
   }
 }
 
 TEST(SolveEquation5, LeavesOutPositionsThatOneSetUpDidNotRead) {
-  Stream stream(9, "test.turntable");
-  auto stops = ReadCircles(PublishedBench(0.2 * arcsec, stream), TwoTilts(), 72, stream);
+  auto stops = ReadPublished(9, 0.2 * arcsec).stops;
   stops[0].x_rad = stops[100].y_rad = kNaN;
-  const auto points = SolveEquation5(stops, 0, 1, Stated(0.2 * arcsec));
+  const auto points = SolvedOfTwoTilts(stops);
   EXPECT_EQ(points[0].status, PointStatus::kMissing);
   EXPECT_EQ(points[28].status, PointStatus::kMissing);
   EXPECT_TRUE(std::isnan(points[28].value_rad));
@@ -152,10 +141,8 @@ TEST(SolveEquation5, StatesAnUncertaintyThatMatchesItsScatterAwayFromPoles) {
   double sum = 0.0;
   int count = 0;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-    Stream stream(seed, "test.turntable");
-    const TrueBench bench = PublishedBench(0.2 * arcsec, stream);
-    for (const PointwiseError& point :
-         SolveEquation5(ReadCircles(bench, TwoTilts(), 72, stream), 0, 1, Stated(0.2 * arcsec))) {
+    const auto [bench, stops] = ReadPublished(seed, 0.2 * arcsec);
+    for (const PointwiseError& point : SolvedOfTwoTilts(stops)) {
       if (point.status != PointStatus::kOk || point.u_rad == 0.0) continue;
       const double truth = bench.Index(point.turntable_rad / deg, 0.0) - bench.Index(0.0, 0.0);
       sum += std::pow((point.value_rad - truth) / point.u_rad, 2);
@@ -167,8 +154,7 @@ TEST(SolveEquation5, StatesAnUncertaintyThatMatchesItsScatterAwayFromPoles) {
 }
 
 TEST(SolveEquation5, RefusesSetUpsOfDifferentShift) {
-  Stream stream(7, "test.turntable");
-  const auto stops = ReadCircles({}, {{0, 60 * arcsec, 0.4}, {5, 100 * arcsec, 2.1}}, 72, stream);
+  const auto stops = ReadIdeal({{0, 60 * arcsec, 0.4}, {5, 100 * arcsec, 2.1}}, 72);
   EXPECT_THROW(SolveEquation5(stops, 0, 1, Stated(0.2 * arcsec)), InputError);
   EXPECT_THROW(SolveEquation5(stops, 0, 8, Stated(0.2 * arcsec)), InputError);
 }
@@ -185,10 +171,8 @@ double Median(std::vector<double> values) {
 TEST(SolveEquation5, IsFarWorseAtItsPolesThanTheGlobalRoll) {
   std::vector<double> worst_5, worst_global, rms_5(72, 0.0), rms_global(72, 0.0);
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
-    Stream stream(seed, "test.turntable");
-    const TrueBench bench = PublishedBench(0.2 * arcsec, stream);
-    const auto stops = ReadCircles(bench, TwoTilts(), 72, stream);
-    const auto points = SolveEquation5(stops, 0, 1, Stated(0.2 * arcsec));
+    const auto [bench, stops] = ReadPublished(seed, 0.2 * arcsec);
+    const auto points = SolvedOfTwoTilts(stops);
     const AngleSeries global = SeparateIndexing(stops).turntable;
     double mean_rad = 0.0;
     for (int i = 0; i < 72; ++i) mean_rad += bench.Index(5.0 * i, 0.0) / 72;

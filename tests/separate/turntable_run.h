@@ -107,6 +107,24 @@ inline std::vector<Seat> TwoTilts() {
   return {{0.0, 60.0 * arcsec, 0.4}, {0.0, 100.0 * arcsec, 2.1}};
 }
 
+/// Circles read with the published instruments.
+struct PublishedCircles {
+  TrueBench bench;
+  std::vector<TurntableStop> stops;
+};
+inline PublishedCircles ReadPublished(std::uint64_t seed, double u_rad, const std::vector<Seat>& seats = TwoTilts(),
+                                      int n = 72, int passes = 1) {
+  Stream stream(seed, "test.turntable");
+  const TrueBench bench = PublishedBench(u_rad, stream);
+  return {bench, ReadCircles(bench, seats, n, stream, passes)};
+}
+
+/// Circles without any error, noise or roll.
+inline std::vector<TurntableStop> ReadIdeal(const std::vector<Seat>& seats, int n) {
+  Stream none(1, "test.turntable");
+  return ReadCircles({}, seats, n, none);
+}
+
 inline AutocollimatorNoise Stated(double u_rad) {
   return {u_rad, u_rad, 0};
 }
