@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "twin/core/csv.h"
+#include "tests/measure/positioning.h"
 #include "twin/core/stream.h"
 #include "twin/core/units.h"
 
@@ -16,12 +16,6 @@ namespace {
 
 using Targets = std::vector<PositioningTarget>;
 using enum AxisValue;
-
-/// A target of two runs a side: means m, standard deviations s (two runs m -+ s / sqrt(2) have just that).
-PositioningTarget TwoRuns(double mean_forward, double s_forward, double mean_backward, double s_backward) {
-  const double f = s_forward / std::sqrt(2.0), b = s_backward / std::sqrt(2.0);
-  return {0.0, {mean_forward - f, mean_forward + f}, {mean_backward - b, mean_backward + b}};
-}
 
 constexpr double kScatter = 0.3;
 
@@ -82,27 +76,17 @@ TEST(EvaluatePositioning, TakesTheLargestOfThreeForTheBidirectionalRepeatability
   EXPECT_NEAR(p.targets[1].repeatability.value, 4.4, 1e-13);
 }
 
-/// Measured figures of a linear axis with what its report prints; source and licence in the file. Its R, 6.29e-5,
-/// is the larger of R+ and R-, not of the R_i, and its E, 2.46e-5, is less than its own E- = 3.30e-5, which cannot
+/// The report's R, 6.29e-5, is the larger of R+ and R-, not of the R_i, and its E, 2.46e-5, is less than its own E- = 3.30e-5, which cannot
 /// be: both are wrong. R_5 = 6.882e-5 stands in the report's own column of R_i.
 TEST(EvaluatePositioning, GivesThePublishedFiguresOfALinearAxis) {
-  const CsvTable table = ReadCsv(TWINBENCH_TEST_DATA "/iso230_2/linear_axis.csv");
-  std::map<double, PositioningTarget> by_target;
-  for (const CsvTable::Row& row : table.rows) {
-    const double target_mm = CsvNumber(table, row, 0, 1.0), actual_mm = CsvNumber(table, row, 3, 1.0);
-    PositioningTarget& target = by_target[target_mm];
-    (row.fields[1] == "1" ? target.forward : target.backward).push_back(actual_mm - target_mm);
-  }
-  Targets test;
-  for (const auto& [position, target] : by_target) test.push_back(target);
+  const Targets test = PublishedLinearAxis();
   ASSERT_EQ(test.size(), 5u);
   const auto p = EvaluatePositioning(test);
   const std::map<AxisValue, double> published_mm = {
       {kB, 1.22e-5},  {kMeanB, 5.4e-6},      {kRForward, 5.033e-5},  {kRBackward, 6.290e-5},
       {kR, 6.882e-5}, {kEForward, 2.46e-5},  {kEBackward, 3.30e-5},  {kE, 3.68e-5},
       {kM, 2.77e-5},  {kAForward, 6.428e-5}, {kABackward, 8.881e-5}, {kA, 8.881e-5}};
-  for (const auto& [value, expected] :
-       published_mm)  // half a unit of the last digit printed, 1e-8 mm, and rounding
+  for (const auto& [value, expected] : published_mm)  // half a unit of the last digit printed, 1e-8 mm, and rounding
     EXPECT_NEAR(p[value].value, expected, 0.51e-8) << kAxisValueNames[static_cast<std::size_t>(value)];
   const std::vector<double> repeatability_mm = {3.517e-5, 3.772e-5, 4.17e-5, 4.871e-5, 6.882e-5};
   for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(p.targets[i].repeatability.value, repeatability_mm[i], 0.51e-8);
@@ -142,14 +126,8 @@ TEST(EvaluatePositioning, ExchangesPlusAndMinusWithTheDirections) {
   const auto p = EvaluatePositioning(test);
   for (PositioningTarget& target : test) std::swap(target.forward, target.backward);
   const auto turned = EvaluatePositioning(test);
-  const std::vector<std::pair<AxisValue, AxisValue>> partners = {{kB, kB},
-                                                                 {kR, kR},
-                                                                 {kE, kE},
-                                                                 {kM, kM},
-                                                                 {kA, kA},
-                                                                 {kRForward, kRBackward},
-                                                                 {kEForward, kEBackward},
-                                                                 {kAForward, kABackward}};
+  const std::pair<AxisValue, AxisValue> partners[] = {
+      {kB, kB}, {kR, kR}, {kE, kE}, {kM, kM}, {kA, kA}, {kRForward, kRBackward}, {kEForward, kEBackward}, {kAForward, kABackward}};
   for (const auto& [a, b] : partners) {
     EXPECT_DOUBLE_EQ(turned[a].value, p[b].value);
     EXPECT_DOUBLE_EQ(turned[b].value, p[a].value);
@@ -203,13 +181,10 @@ TEST(EvaluatePositioning, TakesWhateverRunsATargetHas) {
   ExpectNotAvailable(q, {kB, kMeanB, kRBackward, kR, kEBackward, kE, kM, kABackward, kA});
 }
 
-TEST(EvaluatePositioning, SaysNothingOfAnAxisWithoutTargets) {
+TEST(EvaluatePositioning, SaysNothingOfAnAxisWithoutTargetsAndRefusesADeviationThatIsNone) {
   const auto p = EvaluatePositioning({});
   EXPECT_TRUE(p.targets.empty());
   for (const ScatteredValue& v : p.axis) EXPECT_TRUE(std::isnan(v.value));
-}
-
-TEST(EvaluatePositioning, RefusesADeviationThatIsNone) {
   EXPECT_THROW(EvaluatePositioning({{0.0, {1.0, kNaN}, {}}}), std::logic_error);
 }
 
@@ -296,7 +271,7 @@ Repeated RepeatTests() {
   return r;
 }
 
-TEST(EvaluatePositioning, StatesAnUncertaintyThatMatchesTheScatterOfWholeTests) {
+TEST(EvaluatePositioning, StatesUncertaintyAndBiasOfTheScatterOfWholeTests) {
   const Repeated r = RepeatTests();
   const auto expect = [&](std::vector<AxisValue> values, double least, double most) {
     for (const AxisValue value : values) {
@@ -310,10 +285,6 @@ TEST(EvaluatePositioning, StatesAnUncertaintyThatMatchesTheScatterOfWholeTests) 
   // Where eight targets compete u is larger, as the header says; it must never be much smaller.
   expect({kB, kAForward, kABackward, kA}, 0.86, 1.5);
   expect({kRForward, kRBackward, kR}, 0.86, 2.0);
-}
-
-TEST(EvaluatePositioning, NamesABiasOfTheRightSignAndNotTooMuchOfIt) {
-  const Repeated r = RepeatTests();
   const std::map<AxisValue, double> truth = {
       {kB, 1.0}, {kRForward, 4.0 * kScatter}, {kRBackward, 6.0 * kScatter}, {kR, 5.0 * kScatter + 1.0}};
   for (const auto& [value, true_value] : truth) {

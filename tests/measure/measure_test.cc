@@ -10,6 +10,42 @@
 namespace twinbench::measure {
 namespace {
 
+constexpr double kL1_m = 0.120;
+const double kTheta = std::asin(0.39);
+
+TEST(PredictSpots, AreAtTheCentresForANominalGrating) {
+  EXPECT_LT(PredictSpots(Vector4::Zero(), Bench()).norm(), 1e-16);  // rounding of 0.12 m
+}
+
+TEST(SpotJacobian, HasTheClosedFormSensitivitiesOfAPerpendicularPsd) {
+  const Matrix4 d = SpotJacobian(Vector4::Zero(), Bench());
+  const double c = std::cos(kTheta), s = std::sin(kTheta);
+  Matrix4 expected;                            // rows a_u, a_v, b_u, b_v; columns ez, ex, ey, dy
+  expected << -kL1_m * (1 + 1 / c), 0, 0, -s,  //
+      0, kL1_m * (1 + c), -kL1_m * s, 0,       //
+      -kL1_m * (1 + 1 / c), 0, 0, s,           //
+      0, kL1_m * (1 + c), kL1_m * s, 0;
+  // Central differences of step 1e-5: third derivatives give 1e-10 of the length.
+  EXPECT_LT((d - expected).cwiseAbs().maxCoeff(), 1e-10);
+  EXPECT_NEAR(1 + 1 / c, 2.0860, 5e-5);  // the published digits
+}
+
+TEST(SolveMotion, FindsTheMotionThatMadeTheSpots) {
+  const Vector4 motion(900 * units::arcsec, -700 * units::arcsec, 1100 * units::arcsec, -230 * units::um);
+  const MotionFit fit = SolveMotion(PredictSpots(motion, Bench()), Bench());
+  ASSERT_TRUE(fit.converged);
+  EXPECT_LT((fit.motion - motion).cwiseAbs().maxCoeff(), 1e-13);  // the stopping rule
+}
+
+TEST(SolveMotion, SaysSoWhenNoMotionGivesTheSpots) {
+  EXPECT_FALSE(SolveMotion(Vector4::Constant(1e3), Bench()).converged);
+}
+
+TEST(PredictSpots, IsNaNWhenTheOrderIsEvanescent) {
+  // Turned by 45 degrees, sin(45) + 0.39 > 1: order +1 or -1 cannot leave the grating.
+  EXPECT_FALSE(PredictSpots(Vector4(units::kPi / 4.0, 0, 0, 0), Bench()).allFinite());
+}
+
 const Vector4 kMotion(20 * units::arcsec, -15 * units::arcsec, 30 * units::arcsec, 4 * units::um);
 
 Reading OneReading(double noise_m = 0.3e-6) {
@@ -18,8 +54,12 @@ Reading OneReading(double noise_m = 0.3e-6) {
   return ReadingOf(PredictSpots(kMotion, Bench()), d, nullptr);
 }
 
+Motion Measured(const Reading& reading, const Calibration& calibration = {}) {
+  return Measure({reading}, Bench(), calibration, Estimator::kRigorous).at(0);
+}
+
 TEST(Measure, ReturnsTheMotionThatMadeTheReading) {
-  const Motion m = Measure({OneReading()}, Bench(), {}, Estimator::kRigorous).at(0);
+  const Motion m = Measured(OneReading());
   EXPECT_EQ(m.status, ReadingStatus::kOk);
   EXPECT_LT((m.Values() - kMotion).cwiseAbs().maxCoeff(), 1e-13);  // the stopping rule of the solution
 }
@@ -47,8 +87,7 @@ TEST(Measure, StatesACovarianceThatMatchesTheScatter) {
   Stream noise(1, "test.measure");
   double sum = 0.0;
   for (int run = 0; run < kRuns; ++run) {
-    const Reading r = ReadingOf(PredictSpots(kMotion, Bench()), d, &noise);
-    const Motion m = Measure({r}, Bench(), {}, Estimator::kRigorous).at(0);
+    const Motion m = Measured(ReadingOf(PredictSpots(kMotion, Bench()), d, &noise));
     const Vector4 error = m.Values() - kMotion;
     sum += error.dot(m.cov.inverse() * error);
   }
@@ -74,14 +113,14 @@ TEST(SpotVariances, CountTheStepOfTheConverterOnlyWhenNoiseDoesNotDitherIt) {
 }
 
 TEST(Measure, KeepsTheCalibrationsUncertaintyApartFromTheNoise) {
-  const Motion m = Measure({OneReading()}, Bench(), {}, Estimator::kRigorous).at(0);
+  const Motion m = Measured(OneReading());
   // Prior of 2 % on both x gains: u(ez) = ez 2 % / sqrt 2 and the same again for each part; rolls add the tilts.
   const double u_gains_rad = 0.02 / std::sqrt(2.0) * 20 * units::arcsec;
   EXPECT_GT(std::sqrt(m.cov_systematic(0, 0)), 0.9 * u_gains_rad);
   EXPECT_LT(std::sqrt(m.cov_systematic(0, 0)), 2.0 * u_gains_rad);
   Calibration sure;
   sure.cov.setZero();
-  const Motion exact = Measure({OneReading()}, Bench(), sure, Estimator::kRigorous).at(0);
+  const Motion exact = Measured(OneReading(), sure);
   EXPECT_EQ(exact.cov_systematic, Matrix4::Zero());
   EXPECT_EQ(exact.cov, m.cov);
 }

@@ -12,23 +12,24 @@ namespace {
 const Vector4 kStep(2 * units::arcsec, -1 * units::arcsec, 3 * units::arcsec, 0.5 * units::um);
 const Vector4 kNoise(0.3 * units::arcsec, 0.2 * units::arcsec, 0.9 * units::arcsec, 0.1 * units::um);
 
-/// A motion of `factor` steps at `time_s`, read with `kNoise`.
-Motion Resting(double factor, double time_s) {
+Motion At(double time_s, ReadingStatus status) {
   Motion m;
   m.phase = Phase::kStability;
-  m.status = ReadingStatus::kOk;
+  m.status = status;
   m.time = Time(FromSeconds(time_s));
+  return m;
+}
+
+/// A motion of `factor` steps at `time_s`, read with `kNoise`.
+Motion Resting(double factor, double time_s) {
+  Motion m = At(time_s, ReadingStatus::kOk);
   m.SetValues(factor * kStep);
   m.cov = kNoise.cwiseAbs2().asDiagonal();
   return m;
 }
 
 Motion Lost(double time_s) {
-  Motion m;
-  m.phase = Phase::kStability;
-  m.status = ReadingStatus::kNoLight;
-  m.time = Time(FromSeconds(time_s));
-  return m;
+  return At(time_s, ReadingStatus::kNoLight);
 }
 
 void ExpectRelative(const Vector4& found, const Vector4& expected) {

@@ -5,18 +5,12 @@
 #include <cmath>
 #include <map>
 
-#include "twin/core/csv.h"
+#include "tests/measure/positioning.h"
 
 namespace twinbench::measure {
 namespace {
 
 using enum VdiValue;
-
-/// Two runs a side: means m, standard deviations s (two runs m -+ s / sqrt(2) have just that).
-PositioningTarget VdiTwoRuns(double mean_forward, double s_forward, double mean_backward, double s_backward) {
-  const double f = s_forward / std::sqrt(2.0), b = s_backward / std::sqrt(2.0);
-  return {0.0, {mean_forward - f, mean_forward + f}, {mean_backward - b, mean_backward + b}};
-}
 
 VdiPositioning Evaluated(const std::vector<PositioningTarget>& targets) {
   return EvaluateVdi3441(EvaluatePositioning(targets, {.replicas = 0}).targets);
@@ -24,7 +18,7 @@ VdiPositioning Evaluated(const std::vector<PositioningTarget>& targets) {
 
 TEST(EvaluateVdi3441, GivesTheDefinitionsOnFiguresFoundByHand) {
   // Means 7 and -2, reversals 6 and 6, scatters 6 (1 + 2) / 2 = 9 and 6 (3 + 1) / 2 = 12.
-  const VdiPositioning p = Evaluated({VdiTwoRuns(10.0, 1.0, 4.0, 2.0), VdiTwoRuns(-5.0, 3.0, 1.0, 1.0)});
+  const VdiPositioning p = Evaluated({TwoRuns(10.0, 1.0, 4.0, 2.0), TwoRuns(-5.0, 3.0, 1.0, 1.0)});
   const std::map<VdiValue, double> by_hand = {{kP, 25.5},  // 7 + (6 + 9) / 2 - (-2 - (6 + 12) / 2)
                                               {kPs, 12.0},  {kMeanPs, 10.5}, {kPa, 9.0}, {kU, 6.0}, {kMeanU, 6.0}};
   for (const auto& [value, expected] : by_hand) EXPECT_NEAR(p[value].value, expected, 1e-13) << kVdiValueNames[static_cast<std::size_t>(value)];
@@ -46,18 +40,9 @@ TEST(EvaluateVdi3441, StatesTheScatterOfOneTargetAsItsDistributionHasIt) {
   EXPECT_NEAR(p[kP].u, std::hypot(u_scatter, u_reversal), 0.08 * u_scatter);
 }
 
-/// The published figures of a linear axis (source and licence in the file): what ISO 230-2 calls M and B are Pa and U here.
+/// What ISO 230-2 calls M and B are Pa and U here.
 TEST(EvaluateVdi3441, SharesDeviationAndReversalWithIso230OnAPublishedTest) {
-  const CsvTable table = ReadCsv(TWINBENCH_TEST_DATA "/iso230_2/linear_axis.csv");
-  std::map<double, PositioningTarget> by_target;
-  for (const CsvTable::Row& row : table.rows) {
-    const double target_mm = CsvNumber(table, row, 0, 1.0), actual_mm = CsvNumber(table, row, 3, 1.0);
-    PositioningTarget& target = by_target[target_mm];
-    (row.fields[1] == "1" ? target.forward : target.backward).push_back(actual_mm - target_mm);
-  }
-  std::vector<PositioningTarget> test;
-  for (const auto& [position, target] : by_target) test.push_back(target);
-  const VdiPositioning p = Evaluated(test);
+  const VdiPositioning p = Evaluated(PublishedLinearAxis());
   EXPECT_NEAR(p[kPa].value, 2.77e-5, 0.51e-8);  // half a unit of the last digit printed
   EXPECT_NEAR(p[kU].value, 1.22e-5, 0.51e-7);
   EXPECT_GE(p[kP].value, p[kPa].value);

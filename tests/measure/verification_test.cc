@@ -72,15 +72,12 @@ TEST(SummariseVerification, LeavesOutWhatHasNoTwoSides) {
   EXPECT_EQ(v.rms_yaw_rad, Summarise(ThreeStops()).rms_yaw_rad);
 }
 
-TEST(SummariseVerification, HasNoNumbersWithFewerThanTwoReadings) {
+TEST(SummariseVerification, HasNoNumbersWithFewerThanTwoReadingsAndRefusesThoseOfOtherMotions) {
   Record record;
   Add(record, 0.0, {0.0, 0.0});
   const Verification v = Summarise(record);
   EXPECT_EQ(v.readings, 1);
   EXPECT_TRUE(std::isnan(v.rms_yaw_rad) && std::isnan(v.max_tilt_rad) && std::isnan(v.u_yaw_rad));
-}
-
-TEST(SummariseVerification, RefusesReadingsThatAreNotThoseOfTheMotions) {
   EXPECT_THROW(SummariseVerification(ThreeStops().motions, {}, 1.0), std::logic_error);
 }
 
