@@ -2,30 +2,18 @@
 #include <gtest/gtest.h>
 
 #include "tests/freeform/freeform_run.h"
-#include "tests/support/thresholds.h"
-#include "twin/diagnose/diagnose.h"
 
 namespace twinbench::freeform_test {
 namespace {
 
 constexpr const char* kShorter = "[freeform_procedure]\nposes = 60\n";  // for the time it takes
 
-diagnose::Diagnosis DiagnosisOf(const std::string& hidden) {
-  const std::vector<Reading> readings = RunOf(FreeformScenario(kShorter + hidden));
-  diagnose::DiagnoseOptions options;
-  options.null_runs = 200;  // enough for a threshold
-  options.cache_folder = test::ThresholdsFolder();
-  return benches::freeform::Diagnose(readings, FreeformScenario(kShorter), options).diagnosis;
-}
-
-std::vector<std::string> NamesOf(const diagnose::Diagnosis& diagnosis) {
-  std::vector<std::string> names;
-  for (const diagnose::Cause& cause : diagnosis.causes) names.push_back(cause.effect);
-  return names;
+diagnose::Diagnosis DiagnosisWith(const std::string& hidden) {
+  return DiagnosisOf(RunOf(FreeformScenario(kShorter + hidden)), FreeformScenario(kShorter));
 }
 
 TEST(FreeformDiagnosis, FindsNothingInARunThatHasNothing) {
-  EXPECT_EQ(DiagnosisOf("").verdict, diagnose::Verdict::kNone);
+  EXPECT_EQ(DiagnosisWith("").verdict, diagnose::Verdict::kNone);
 }
 
 struct Hidden {
@@ -36,8 +24,7 @@ class FreeformDiagnosis : public testing::TestWithParam<Hidden> {};
 
 TEST_P(FreeformDiagnosis, NamesTheCauseThatTheTwinHas) {
   const Hidden& hidden = GetParam();
-  const diagnose::Diagnosis diagnosis =
-      DiagnosisOf("[[effect]]\nname = \"" + hidden.name + "\"\n" + hidden.more + "\n");
+  const diagnose::Diagnosis diagnosis = DiagnosisWith("[[effect]]\nname = \"" + hidden.name + "\"\n" + hidden.more + "\n");
   ASSERT_NE(diagnosis.verdict, diagnose::Verdict::kNone);
   EXPECT_THAT(NamesOf(diagnosis), testing::Contains(hidden.name));
 }
@@ -54,8 +41,7 @@ INSTANTIATE_TEST_SUITE_P(
 /// Set-ups are a quarter of an hour apart: what the spindle did in between counts.
 TEST(FreeformDiagnosis, SizesGrowthThatLagsBehindTheTemperature) {
   const std::string warm = "[environment]\nswing_mK = 700.0\nswing_period_s = 7000.0\n";
-  const diagnose::Diagnosis diagnosis = DiagnosisOf(
-      "[[effect]]\nname = \"thermal_growth\"\nwhere = \"y\"\ngrowth_um_K = 4.0\nlag_s = 500.0\n" + warm);
+  const diagnose::Diagnosis diagnosis = DiagnosisWith("[[effect]]\nname = \"thermal_growth\"\nwhere = \"y\"\ngrowth_um_K = 4.0\nlag_s = 500.0\n" + warm);
   ASSERT_THAT(NamesOf(diagnosis), testing::ElementsAre("thermal_growth"));
   for (const auto& [name, truth] : {std::pair{"growth", 4e-6}, std::pair{"lag", 500.0}}) {
     const auto& all = diagnosis.causes.front().parameters;
@@ -65,6 +51,31 @@ TEST(FreeformDiagnosis, SizesGrowthThatLagsBehindTheTemperature) {
     EXPECT_LT(found->u, 0.3 * truth);
   }
 }
+
+std::string CasePath(const std::string& number, const std::string& file) {
+  return TWINBENCH_TEST_DATA "/challenge_freeform/" + number + "/" + file;
+}
+
+/// Runs of an implementation that shares nothing with the twin, each with one hidden effect or none.
+class FreeformChallenge : public testing::TestWithParam<std::string> {};
+
+TEST_P(FreeformChallenge, IsAnsweredRightly) {
+  using enum diagnose::Verdict;
+  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(CasePath(GetParam(), "truth.json")));
+  const std::string effect = truth.at("effect");
+  const diagnose::Diagnosis diagnosis =
+      DiagnosisOf(ReadReadingsCsv(CasePath(GetParam(), "readings.csv"), kFreeformBench), FreeformScenario());
+  if (effect == "none" || effect == "unknown") {
+    EXPECT_EQ(diagnosis.verdict, effect == "none" ? kNone : kUnknown);
+    return;
+  }
+  EXPECT_THAT(NamesOf(diagnosis), testing::Contains(effect));
+  EXPECT_THAT(NamesOf(diagnosis), testing::IsSubsetOf(truth.at("alike").get<std::vector<std::string>>()));
+  EXPECT_THAT(diagnosis.verdict, testing::AnyOf(kNamed, kTie));
+}
+
+INSTANTIATE_TEST_SUITE_P(Freeform, FreeformChallenge, testing::Values("002", "007", "012", "016", "017"),
+                         [](const testing::TestParamInfo<std::string>& test) { return "Case" + test.param; });
 
 }  // namespace
 }  // namespace twinbench::freeform_test

@@ -1,8 +1,14 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
+#include "optics/height_map.h"
+#include "tests/support/thresholds.h"
 #include "twin/benches/freeform_five_axis/bench.h"
 #include "twin/benches/freeform_five_axis/columns.h"
 #include "twin/benches/freeform_five_axis/procedure.h"
@@ -12,6 +18,7 @@
 #include "twin/benches/names.h"
 #include "twin/core/csv.h"
 #include "twin/core/stream.h"
+#include "twin/diagnose/diagnose.h"
 
 /// Runs of the bench freeform_five_axis, live ones and those of an independent implementation.
 namespace twinbench::freeform_test {
@@ -26,8 +33,12 @@ inline std::string OraclePath(const std::string& name) {
   return TWINBENCH_TEST_DATA "/oracle/freeform_" + name;
 }
 
-inline nlohmann::json OracleTruth() {
-  return nlohmann::json::parse(std::ifstream(OraclePath("truth.json"))).at("machine");
+inline std::vector<Reading> OracleRun() {
+  return ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
+}
+
+inline sim::ArtefactCell CellAt(const Reading& r) {
+  return {static_cast<int>(kCellI(r)), static_cast<int>(kCellJ(r))};
 }
 
 inline double UnitOfError(std::size_t error) {
@@ -35,7 +46,7 @@ inline double UnitOfError(std::size_t error) {
 }
 
 inline sim::DrawnBench OracleBench() {
-  const nlohmann::json truth = OracleTruth();
+  const nlohmann::json truth = nlohmann::json::parse(std::ifstream(OraclePath("truth.json"))).at("machine");
   sim::DrawnBench bench;
   for (std::size_t axis = 0; axis < kMachineAxes; ++axis) {
     for (std::size_t error = 0; error < kBodyErrors; ++error) {
@@ -86,6 +97,33 @@ inline std::vector<Reading> RunOf(const Scenario& scenario, const sim::DrawnBenc
 
 inline std::vector<Reading> RunOf(const Scenario& scenario) {
   return RunOf(scenario, sim::Draw(scenario));
+}
+
+/// Heights 1 mm apart, in a file that goes with the tests' other files. Cubic interpolation between pixels nearly hits tilts and waves.
+/// @param height_um  By x_m and y_m.
+inline std::string WriteHeights(const std::string& name, const std::function<double(double, double)>& height_um) {
+  optics::HeightMap map{241, 241, 1.0 * units::mm, {}};
+  for (int row = 0; row < map.height; ++row) {
+    for (int column = 0; column < map.width; ++column)
+      map.height_um.push_back(static_cast<float>(height_um((column - 120) * map.pitch_m, (120 - row) * map.pitch_m)));
+  }
+  const std::string path = std::filesystem::path(testing::TempDir()) / name;
+  optics::WriteHeightMap(path, map);
+  return path;
+}
+
+/// The diagnosis with thresholds from as many runs as are enough for one.
+inline diagnose::Diagnosis DiagnosisOf(const std::vector<Reading>& readings, const Scenario& believed) {
+  diagnose::DiagnoseOptions options;
+  options.null_runs = 200;
+  options.cache_folder = test::ThresholdsFolder();
+  return benches::freeform::Diagnose(readings, believed, options).diagnosis;
+}
+
+inline std::vector<std::string> NamesOf(const diagnose::Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const diagnose::Cause& cause : diagnosis.causes) names.push_back(cause.effect);
+  return names;
 }
 
 }  // namespace twinbench::freeform_test

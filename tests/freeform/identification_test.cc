@@ -13,12 +13,10 @@ using namespace benches::freeform::estimators;
 /// The oracle's machine as unknowns of a run of four set-ups.
 Eigen::VectorXd UnknownsOf(const sim::DrawnBench& bench) {
   Eigen::VectorXd x(MountingAt(static_cast<int>(bench.mountings.size()), 0));
-  for (int axis = 0; axis < kMachineAxes; ++axis) {
-    for (int error = 0; error < kBodyErrors; ++error) {
-      for (int term = 0; term < kCubicTerms; ++term)
-        x[CubicAt(axis, error, term)] =
-            bench.machine.errors[static_cast<std::size_t>(axis)][static_cast<std::size_t>(error)]
-                                [static_cast<std::size_t>(term)];
+  for (std::size_t axis = 0; axis < kMachineAxes; ++axis) {
+    for (std::size_t error = 0; error < kBodyErrors; ++error) {
+      for (std::size_t term = 0; term < kCubicTerms; ++term)
+        x[CubicAt(static_cast<int>(axis), static_cast<int>(error), static_cast<int>(term))] = bench.machine.errors[axis][error][term];
     }
   }
   for (int k = 0; k < kSquarenesses; ++k)
@@ -34,7 +32,7 @@ Eigen::VectorXd UnknownsOf(const sim::DrawnBench& bench) {
 TEST(FreeformEstimator, PredictsWhatTheTwinShows) {
   // Written down twice, one by equations and one by rays: to what tracing leaves in a double.
   const FreeformSettings settings;
-  const std::vector<Reading> readings = ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
+  const std::vector<Reading> readings = OracleRun();
   const Eigen::VectorXd x = UnknownsOf(OracleBench());
   sim::FreeformTwin twin(FreeformScenario(), OracleBench());
   const std::vector<PoseRead> poses = PosesOf(readings, settings);
@@ -63,7 +61,7 @@ TEST(FreeformEstimator, Finds114Of151UnknownsOnTheStandardPath) {
 
 TEST(FreeformEstimator, LeavesNothingOfTheOraclesRunAndPredictsItsUnseenPoses) {
   const FreeformSettings settings;
-  const std::vector<Reading> readings = ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
+  const std::vector<Reading> readings = OracleRun();
   const Identification found = Identify(settings, PosesOf(readings, settings));
   EXPECT_TRUE(found.converged);
   const CsvTable table = ReadCsv(OraclePath("unseen.csv"));

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 
-#include "optics/height_map.h"
 #include "optics/scene.h"
 #include "tests/freeform/freeform_run.h"
 #include "twin/core/errors.h"
@@ -32,7 +30,7 @@ struct Beam {
 Beam BeamOf(const Reading& r, const sim::DrawnBench& bench, const FreeformSettings& settings) {
   constexpr double kBack_m = 0.002;  // the ray starts over the surface, wherever the tip is
   const Pose X_FT = ToolOverArtefact(r, bench, settings);
-  const sim::ArtefactCell cell{static_cast<int>(kCellI(r)), static_cast<int>(kCellJ(r))};
+  const sim::ArtefactCell cell = CellAt(r);
   const Vector3 vertex_F(cell.i * settings.artefact.pitch_m, cell.j * settings.artefact.pitch_m, 0.0);
   Beam beam{{}, sim::Look(settings.artefact, cell, X_FT), X_FT.linear()};
   beam.start_m = std::min(0.0, beam.spot.distance_m) - kBack_m;
@@ -44,7 +42,7 @@ Beam BeamOf(const Reading& r, const sim::DrawnBench& bench, const FreeformSettin
 TEST(FreeformOptics, TheTracedSceneAgreesWithTheClosedFormToANanometre) {
   const FreeformSettings settings;
   const sim::DrawnBench bench = OracleBench();
-  const std::vector<Reading> readings = ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
+  const std::vector<Reading> readings = OracleRun();
   for (const int parity : {0, 1}) {
     const optics::Scene scene = SceneOfCell(settings.artefact.vertex_radius_m[static_cast<std::size_t>(parity)]);
     std::vector<Beam> beams;
@@ -71,22 +69,9 @@ TEST(FreeformOptics, TheTracedSceneAgreesWithTheClosedFormToANanometre) {
   }
 }
 
-/// Heights of a tilt and of a wave, which cubic interpolation between pixels hits nearly.
-optics::HeightMap MapOf(double (*height_um)(double x_m, double y_m)) {
-  optics::HeightMap map{241, 241, 1.0 * units::mm, {}};
-  for (int row = 0; row < map.height; ++row) {
-    for (int column = 0; column < map.width; ++column)
-      map.height_um.push_back(
-          static_cast<float>(height_um((column - 120) * map.pitch_m, (120 - row) * map.pitch_m)));
-  }
-  return map;
-}
-
 TEST(FreeformOptics, HeightsComeBackFromTheirFile) {
   const auto tilted = [](double x_m, double y_m) { return 20.0 * x_m - 50.0 * y_m + 1.0; };
-  const std::string path = std::filesystem::path(testing::TempDir()) / "form.exr";
-  optics::WriteHeightMap(path, MapOf(tilted));
-  const optics::HeightMap map = optics::ReadHeightMap(path);
+  const optics::HeightMap map = optics::ReadHeightMap(WriteHeights("form.exr", tilted));
   for (const auto& [x_m, y_m] : {std::pair{0.0, 0.0}, std::pair{0.0123, -0.0456}, std::pair{-0.1, 0.1}}) {
     const optics::HeightAt at = optics::Interpolate(map, x_m, y_m);
     EXPECT_NEAR(at.height_m / units::um, tilted(x_m, y_m), 1e-5);  // floats in the file
@@ -96,17 +81,13 @@ TEST(FreeformOptics, HeightsComeBackFromTheirFile) {
 }
 
 /// What the scenario with a map shows, without noise and errors, on the course of its procedure.
-std::vector<Reading> ShownWith(const std::string& file, const std::string& more = "") {
-  return RunOf(FreeformScenario("noise_free = true\n[artefact]\nmounting_um = 0.0\n" +
-                                (file.empty() ? "" : "form_error = \"" + file + "\"\n") +
-                                "[freeform_procedure]\nposes = 30\n" + more),
-               {});
+std::vector<Reading> ShownWith(const std::string& file) {
+  const std::string artefact = "[artefact]\nmounting_um = 0.0\nform_error = \"" + file + "\"\n";
+  return RunOf(FreeformScenario("noise_free = true\n" + artefact + "[freeform_procedure]\nposes = 30\n"), {});
 }
 
 TEST(FreeformOptics, AnArrayThatIsHigherAllOverIsAMountingThatIsHigher) {
-  const std::string path = std::filesystem::path(testing::TempDir()) / "high.exr";
-  optics::WriteHeightMap(path, MapOf([](double, double) { return 5.0; }));
-  const std::vector<Reading> high = ShownWith(path);
+  const std::vector<Reading> high = ShownWith(WriteHeights("high.exr", [](double, double) { return 5.0; }));
   const Scenario scenario = FreeformScenario("noise_free = true\n[freeform_procedure]\nposes = 30\n");
   sim::DrawnBench lifted;
   lifted.mountings.assign(4, {0.0, 0.0, 5.0 * units::um, 0.0, 0.0, 0.0});
@@ -118,15 +99,11 @@ TEST(FreeformOptics, AnArrayThatIsHigherAllOverIsAMountingThatIsHigher) {
 }
 
 TEST(FreeformOptics, AFormErrorThatTheScenarioHasIsNoSurprise) {
-  const std::string path = std::filesystem::path(testing::TempDir()) / "wave.exr";
-  optics::WriteHeightMap(path,
-                         MapOf([](double x_m, double y_m) { return std::sin(60.0 * x_m) * std::cos(40.0 * y_m); }));
+  const std::string path =
+      WriteHeights("wave.exr", [](double x_m, double y_m) { return std::sin(60.0 * x_m) * std::cos(40.0 * y_m); });
   const std::string more = "[artefact]\nform_error = \"" + path + "\"\n[freeform_procedure]\nposes = 50\n";
-  const std::vector<Reading> readings = RunOf(FreeformScenario(more));
-  diagnose::DiagnoseOptions options;
-  options.null_runs = 200;
-  EXPECT_EQ(benches::freeform::Diagnose(readings, FreeformScenario(more), options).diagnosis.verdict,
-            diagnose::Verdict::kNone);
+  const Scenario scenario = FreeformScenario(more);
+  EXPECT_EQ(DiagnosisOf(RunOf(scenario), scenario).verdict, diagnose::Verdict::kNone);
 }
 
 TEST(FreeformOptics, AMapThatIsNotThereIsAnError) {

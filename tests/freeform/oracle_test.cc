@@ -56,34 +56,16 @@ TEST(Freeform, MovesTheTipByAllErrorsTogetherAsTheOracleDoes) {
   }
 }
 
-TEST(Freeform, ReadsThePosesOfTheOracleAsItDoes) {
-  Scenario scenario = FreeformScenario();
-  sim::FreeformTwin twin(scenario, OracleBench());
-  const std::vector<Reading> readings = ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
-  ASSERT_EQ(readings.size(), 480u);
-  for (const Reading& r : readings) {
-    const sim::ProbeSignals shown = twin.Show(r, 0.0);
-    constexpr double kMicrovolt = 1e-6, kMicropixel = 1e-6;
-    EXPECT_NEAR(shown.qpd_x_V, kQpdX_V(r), kMicrovolt);
-    EXPECT_NEAR(shown.qpd_y_V, kQpdY_V(r), kMicrovolt);
-    EXPECT_NEAR(shown.qpd_sum_V, kQpdSum_V(r), kMicrovolt);
-    EXPECT_NEAR(shown.ccd_px, kCcd_px(r), kMicropixel);
-  }
-}
-
 TEST(Freeform, MeetsTheSurfaceAndIsReflectedAsTheOracleIs) {
   const CsvTable table = ReadCsv(OraclePath("spot.csv"));
-  const std::vector<Reading> readings = ReadReadingsCsv(OraclePath("run.csv"), kFreeformBench);
+  const std::vector<Reading> readings = OracleRun();
   const sim::DrawnBench bench = OracleBench();
   const FreeformSettings settings;
   ASSERT_EQ(table.rows.size(), 96u);
   for (const CsvTable::Row& row : table.rows) {
     const Reading& r = readings[static_cast<std::size_t>(CsvNumber(table, row, 0, 1.0))];
-    const sim::ProbeSpot spot =
-        sim::Look(settings.artefact, {static_cast<int>(kCellI(r)), static_cast<int>(kCellJ(r))},
-                  ToolOverArtefact(r, bench, settings));
-    const Vector3 reflected(CsvNumber(table, row, 2, 1.0), CsvNumber(table, row, 3, 1.0),
-                            CsvNumber(table, row, 4, 1.0));
+    const sim::ProbeSpot spot = sim::Look(settings.artefact, CellAt(r), ToolOverArtefact(r, bench, settings));
+    const Vector3 reflected(CsvNumber(table, row, 2, 1.0), CsvNumber(table, row, 3, 1.0), CsvNumber(table, row, 4, 1.0));
     EXPECT_LT((spot.reflected_T - reflected).norm(), 1e-12);  // the oracle's last digit
     EXPECT_NEAR(spot.distance_m, CsvNumber(table, row, 5, units::um), kNanometre);
     EXPECT_NEAR(spot.hit_F.x(), CsvNumber(table, row, 6, units::mm), kNanometre);
