@@ -11,7 +11,7 @@
 namespace twinbench::uncertainty {
 namespace {
 
-using test::FourInputs, test::Input, test::InputKeys;
+using test::Computing, test::FourInputs, test::Input, test::InputKeys;
 
 /// GUM and trials of every quantity.
 struct Both {
@@ -28,10 +28,7 @@ struct Both {
 };
 
 Both BothOf(const Scenario& scenario, const Evaluate& evaluate, int trials) {
-  MonteCarloOptions options;
-  options.most_trials = trials;
-  options.digits = 3;
-  return {Budgets(scenario, evaluate), Propagate(scenario, evaluate, options)};
+  return {Budgets(scenario, evaluate), Propagate(scenario, evaluate, test::Trials(trials))};
 }
 
 TEST(Agreement, HasTheToleranceOfTheSupplement) {
@@ -43,22 +40,22 @@ TEST(Agreement, HasTheToleranceOfTheSupplement) {
 /// A sum of normal inputs, and one that repeats to few degrees of freedom.
 TEST(Agreement, IsThereForWhatIsLinear) {
   const Scenario scenario = FourInputs({{InputKeys()[0], 1e-3}, {InputKeys()[1], 2e-3}});
-  const auto sum = [](const Scenario& s) {
-    return std::vector<Quantity>{{"y", 1e3 * (Input(s, 0) + Input(s, 1)), 2.0}};
-  };
+  const auto sum = Computing("y", [](const Scenario& s) { return 1e3 * (Input(s, 0) + Input(s, 1)); }, 2.0);
   const Agreement agreement = BothOf(scenario, sum, 4000).Of("y");
   EXPECT_EQ(agreement.verdict, Verdict::kAgree) << agreement.d_low << " " << agreement.d_high;
 }
 
-/// y = x^2 about 0: u is right, the interval is not.
+/// y = x^2 about 0 has no first order at all: u is right by the second, the interval is not. With x standard normal y is chi-squared of one
+/// degree of freedom: all of it lies above zero, and the shortest 95 % interval is not the symmetric one.
 TEST(Agreement, IsNotThereForASquare) {
   const Scenario scenario = FourInputs({{InputKeys()[0], 1e-3}});
-  const auto square = [](const Scenario& s) {
-    return std::vector<Quantity>{{"y", std::pow(1e3 * Input(s, 0), 2), 0.0}};
-  };
-  const Both both = BothOf(scenario, square, 4000);
-  EXPECT_NEAR(both.BudgetOf("y").u, std::sqrt(2.0), 1e-6);
-  EXPECT_NEAR(both.SpreadOf("y").sd, std::sqrt(2.0), 0.15);
+  const Both both = BothOf(scenario, Computing("y", test::SquareOfFirst), 8000);
+  EXPECT_NEAR(both.BudgetOf("y").u, std::sqrt(2.0), 1e-9);
+  const Spread& spread = both.SpreadOf("y");
+  EXPECT_NEAR(spread.sd, std::sqrt(2.0), 0.15);
+  EXPECT_NEAR(spread.shortest[0], 0.0, 0.01);
+  EXPECT_NEAR(spread.shortest[1], 3.84, 0.15);
+  EXPECT_NEAR(spread.symmetric[1], 5.02, 0.25);
   EXPECT_EQ(both.Of("y").verdict, Verdict::kDiffer);
   EXPECT_NEAR(both.Of("y").d_low, 1.96 * std::sqrt(2.0), 0.01) << "no trial lies below zero";
 }

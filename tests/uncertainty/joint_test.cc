@@ -58,10 +58,7 @@ TEST(Propagate, DrawsJointsTogether) {
     for (int i = 0; i < 4; ++i) all.push_back({"a[" + std::to_string(i) + "]", 1e3 * Input(s, 0), std::sqrt(0.75)});
     return all;
   };
-  MonteCarloOptions options;
-  options.most_trials = 4000;
-  options.digits = 3;
-  options.joints = {{"a", {"a[0]", "a[1]", "a[2]", "a[3]"}, OfDeviations()}};
+  const MonteCarloOptions options = test::Trials(4000, {{"a", {"a[0]", "a[1]", "a[2]", "a[3]"}, OfDeviations()}});
   const JointSpread spread = Propagate(scenario, evaluate, options).together.at(0);
   const Eigen::MatrixXd expected = OfDeviations() + Eigen::MatrixXd::Constant(4, 4, 1.0);
   // A variance of 4000 trials is known to sqrt(2 / 4000) = 2.2 %.
@@ -77,10 +74,7 @@ TEST(Propagate, FindsTheBandOfAllAtOnce) {
   const auto evaluate = [](const Scenario&) {
     return std::vector<Quantity>{{"a", 0.0, 1.0}, {"b", 0.0, 1.0}, {"c", 0.0, 1.0}, {"d", 0.0, 1.0}};
   };
-  MonteCarloOptions options;
-  options.most_trials = 4000;
-  options.digits = 3;
-  options.joints = {{"all", {"a", "b", "c", "d"}, Eigen::Matrix4d::Identity()}};
+  const MonteCarloOptions options = test::Trials(4000, {{"all", {"a", "b", "c", "d"}, Eigen::Matrix4d::Identity()}});
   EXPECT_NEAR(Propagate(FourInputs({}), evaluate, options).together.at(0).region.rectangle_k, 2.49, 0.12);
 }
 
@@ -90,10 +84,7 @@ TEST(Propagate, DrawsJointsOfFewDegreesOfFreedom) {
   const auto evaluate = [](const Scenario&) {
     return std::vector<Quantity>{{"a", 0.0, 1.0, 8.0}, {"b", 0.0, 1.0, 8.0}};
   };
-  MonteCarloOptions options;
-  options.most_trials = 4000;
-  options.digits = 3;
-  options.joints = {{"ab", {"a", "b"}, Eigen::Matrix2d::Identity()}};
+  const MonteCarloOptions options = test::Trials(4000, {{"ab", {"a", "b"}, Eigen::Matrix2d::Identity()}});
   const Eigen::MatrixXd cov = Propagate(FourInputs({}), evaluate, options).together.at(0).joint.cov;
   EXPECT_NEAR(cov(0, 0), 8.0 / 6.0, 0.15);
   EXPECT_NEAR(cov(0, 1), 0.0, 0.1);

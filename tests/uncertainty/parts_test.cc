@@ -56,33 +56,28 @@ INSTANTIATE_TEST_SUITE_P(Parts, OfEveryBench, testing::ValuesIn(SmallBenches()),
   return of.param.file.substr(0, of.param.file.find('.'));
 });
 
+/// Of what the steps and the noise leave in a list.
+double ShareOfSteps(const std::vector<Budget>& budgets, const std::string& kind) {
+  const double steps = ShareOf(budgets, kind, "quantisation");
+  return steps / (steps + ShareOf(budgets, kind, "noise"));
+}
+
 /// A converter of 12 bits over +-10 V has steps of 4.9 mV; noise of 6 mV spreads over them, and the step's share of
 /// what a sample scatters by is LSB^2 / 12 of noise^2 + LSB^2 / 12.
 TEST(Parts, OfAConverterAreTheStepsOverTwelve) {
   const double lsb = 20.0 / 4096.0, share = lsb * lsb / 12.0 / (36e-6 + lsb * lsb / 12.0);
   const Scenario scenario = Small(SmallBenches()[0], {"adc.bits=12", "amplifier.noise_mV=6.0", "adc.every_sample=true"});
-  const std::vector<Budget> budgets = BudgetsOf(scenario);
-  const double steps = ShareOf(budgets, "separation.target.ez_arcsec", "quantisation"),
-               noise = ShareOf(budgets, "separation.target.ez_arcsec", "noise");
-  EXPECT_NEAR(steps / (steps + noise), share, 0.15 * share) << "other noise than the amplifier's is small";
+  EXPECT_NEAR(ShareOfSteps(BudgetsOf(scenario), "separation.target.ez_arcsec"), share, 0.15 * share)
+      << "other noise than the amplifier's is small";
 }
 
-/// Noise as large as a step dithers it: a thirteenth of what a reading scatters by is the step's.
-TEST(Parts, OfAnEncoderAreItsStepsOverTwelve) {
-  const double share = (1.0 / 12.0) / (1.0 + 1.0 / 12.0);
-  const Scenario scenario = Small(SmallBenches()[5], {"device.resolution_deg=0.002", "device.noise_deg=0.002"});
-  const std::vector<Budget> budgets = BudgetsOf(scenario);
-  const double steps = ShareOf(budgets, "device.ez_arcsec", "quantisation"),
-               noise = ShareOf(budgets, "device.ez_arcsec", "noise");
-  EXPECT_NEAR(steps / (steps + noise), share, 0.35 * share) << "noise is what is left of 144 residuals";
-}
-
-/// Means by angle scatter by the same: noise of a step's size, a thirteenth of it the step's; what passes differ by is repeatability.
-TEST(Parts, OfMeansAreThoseOfTheirReadings) {
+/// Noise as large as a step dithers it: a thirteenth of what a reading scatters by is the step's, and of means by angle; what passes differ by
+/// is repeatability.
+TEST(Parts, OfAnEncoderAndOfItsMeansAreItsStepsOverTwelve) {
   const std::vector<std::string> coarse = {"device.resolution_deg=0.002", "device.noise_deg=0.002"};
   const std::vector<Budget> budgets = BudgetsOf(Small(SmallBenches()[5], coarse));
-  const double steps = ShareOf(budgets, "means.both.ez_arcsec", "quantisation"), noise = ShareOf(budgets, "means.both.ez_arcsec", "noise");
-  EXPECT_NEAR(steps / (steps + noise), 1.0 / 13.0, 0.35 / 13.0);
+  for (const char* kind : {"device.ez_arcsec", "means.both.ez_arcsec"})
+    EXPECT_NEAR(ShareOfSteps(budgets, kind), 1.0 / 13.0, 0.35 / 13.0) << "noise is what is left of 144 residuals";
   const double in_reversal = ShareOf(budgets, "reversal.mean_arcsec", "quantisation");
   EXPECT_GT(in_reversal, 0.0);
   EXPECT_LE(in_reversal, 1.35 / 13.0);
@@ -97,15 +92,13 @@ TEST(Parts, OfGainsKnowTheAutocollimator) {
   EXPECT_GT(loud, 0.5);
 }
 
-/// Equal-division averaging with a head 5 deg off equal division errs by far more than its readings scatter.
-TEST(Parts, OfPublishedHeadsHoldWhatTheirEquationsAreWrongBy) {
-  const Scenario scenario = LoadScenario(test::ScenarioPath("encoder_heads.toml"),
-                                         {"encoder_procedure.heads_deg=[0.0, 95.0, 180.0, 270.0]", "encoder_procedure.stops_per_turn=72"});
+/// What the published equations are wrong by, in the lists that begin so: the largest share, and how many numbers have one.
+std::pair<double, int> LargestOfModel(const Scenario& scenario, const std::vector<std::string>& lists) {
   double largest = 0.0;
-  int of_ring = 0;
+  int count = 0;
   for (const Quantity& q : test::QuantitiesFrom(scenario, test::ReadingsOf(scenario), Estimator::kPublished)) {
-    if (!KindOf(q.name).starts_with("device") && !KindOf(q.name).starts_with("harmonics")) continue;
-    ++of_ring;
+    if (std::ranges::none_of(lists, [&](const std::string& list) { return KindOf(q.name).starts_with(list); })) continue;
+    ++count;
     double sum = 0.0;
     for (const Part& part : q.parts) {
       sum += part.share;
@@ -113,8 +106,20 @@ TEST(Parts, OfPublishedHeadsHoldWhatTheirEquationsAreWrongBy) {
     }
     EXPECT_NEAR(sum, 1.0, 0.01) << q.name;
   }
+  return {largest, count};
+}
+
+/// Equal-division averaging with a head 5 deg off equal division errs by far more than its readings scatter; and the
+/// published map's uncertainty holds what it is off by, which is more than its noise.
+TEST(Parts, OfPublishedHeadsAndMapsHoldWhatTheirEquationsAreWrongBy) {
+  const Scenario heads = LoadScenario(test::ScenarioPath("encoder_heads.toml"),
+                                      {"encoder_procedure.heads_deg=[0.0, 95.0, 180.0, 270.0]", "encoder_procedure.stops_per_turn=72"});
+  const auto [of_heads, of_ring] = LargestOfModel(heads, {"device", "harmonics"});
   EXPECT_GT(of_ring, 360);
-  EXPECT_GT(largest, 0.9);
+  EXPECT_GT(of_heads, 0.9);
+  const auto [of_map, points] = LargestOfModel(Small(SmallBenches()[4]), {"error_map"});
+  EXPECT_EQ(points, 300);
+  EXPECT_GT(of_map, 0.5);
 }
 
 /// Seating of 0.3 arcsec beside 0.1 arcsec of the autocollimator is nine tenths of the scatter.
@@ -148,25 +153,6 @@ TEST(Parts, OfAModelAreThoseOfItsCurve) {
   EXPECT_LT(of_curve, 0.8);
   EXPECT_NEAR(ShareOf(budgets, "model.terms[].amplitude_arcsec", "standard"), of_curve, 0.1);
   EXPECT_NEAR(ShareOf(budgets, "model.terms[].phase_deg", "standard"), of_curve, 0.1);
-}
-
-/// The published map's uncertainty holds what it is off by, which is more than its noise.
-TEST(Parts, OfAPublishedMapHoldWhatItIsOffBy) {
-  const Scenario scenario = Small(SmallBenches()[4]);
-  double largest = 0.0;
-  int of_map = 0;
-  for (const Quantity& q : test::QuantitiesFrom(scenario, test::ReadingsOf(scenario), Estimator::kPublished)) {
-    if (!KindOf(q.name).starts_with("error_map")) continue;
-    ++of_map;
-    double sum = 0.0;
-    for (const Part& part : q.parts) {
-      sum += part.share;
-      if (part.name == "model") largest = std::max(largest, part.share);
-    }
-    EXPECT_NEAR(sum, 1.0, 1e-9) << q.name;
-  }
-  EXPECT_EQ(of_map, 300);
-  EXPECT_GT(largest, 0.5);
 }
 
 /// A machine that repeats to nothing leaves noise and quanta of the instruments.

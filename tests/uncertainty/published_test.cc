@@ -12,23 +12,16 @@ namespace {
 
 using test::Small, test::SmallBenches;
 
-nlohmann::json TruthOf(const Scenario& scenario, std::vector<Reading>& readings) {
-  const auto twin = BenchOf(scenario).make_twin(scenario);
-  const auto record = RunRecord::CreateInMemory({"", "twin", scenario.seed, "", scenario.bench});
-  twin->CarryOut(*record, [](const procedure::Progress&) {});
-  readings = record->Readings();
-  return twin->Truth();
-}
-
 /// (error / u)^2 of each list of the score, mean over its values and the seeds. What is invalid is not scored.
 std::map<std::string, double> MeanSquares(std::size_t bench, int seeds) {
   std::map<std::string, std::pair<double, int>> sums;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Scenario scenario = Small(SmallBenches()[bench], {"seed=" + std::to_string(seed)});
-    std::vector<Reading> readings;
-    const nlohmann::json truth = TruthOf(scenario, readings);
-    for (const report::ScoredValue& v :
-         BenchOf(scenario).score(scenario, readings, truth, Estimator::kPublished).values) {
+    const auto twin = BenchOf(scenario).make_twin(scenario);
+    const auto record = RunRecord::CreateInMemory({"", "twin", scenario.seed, "", scenario.bench});
+    twin->CarryOut(*record, [](const procedure::Progress&) {});
+    const auto score = BenchOf(scenario).score(scenario, record->Readings(), twin->Truth(), Estimator::kPublished);
+    for (const report::ScoredValue& v : score.values) {
       EXPECT_GT(v.u, 0.0) << v.name;
       auto& [sum, count] = sums[KindOf(v.name)];
       sum += std::pow((v.value - v.truth) / v.u, 2);
@@ -69,8 +62,7 @@ TEST(PublishedOfOtherBenches, HoldsForTheMapOfTheTip) {
 /// Both tilts alike at a position: the equation divides by nearly nothing. The number stays, its u does not.
 TEST(PublishedOfOtherBenches, HasNoUncertaintyNearAPole) {
   const Scenario scenario = Small(SmallBenches()[1]);
-  std::vector<Reading> readings;
-  TruthOf(scenario, readings);
+  const std::vector<Reading> readings = test::ReadingsOf(scenario);
   const nlohmann::json results = BenchOf(scenario).evaluate(scenario, readings, Estimator::kPublished).results;
   const nlohmann::json& points = results.at("equation_5");
   int near = 0;
@@ -86,8 +78,7 @@ TEST(PublishedOfOtherBenches, HasNoUncertaintyNearAPole) {
 /// The patent's equations know no pivot: they are named, and coefficients of theirs are no results.
 TEST(PublishedOfOtherBenches, NamesWhatTheEquationsOfThePatentMiss) {
   const Scenario scenario = Small(SmallBenches()[4]);
-  std::vector<Reading> readings;
-  TruthOf(scenario, readings);
+  const std::vector<Reading> readings = test::ReadingsOf(scenario);
   const report::Evaluation published = BenchOf(scenario).evaluate(scenario, readings, Estimator::kPublished);
   EXPECT_EQ(published.results.at("method_bias").at("dx_um").at("status"), "biased");
   EXPECT_FALSE(published.results.contains("squareness"));
