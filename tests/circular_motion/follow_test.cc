@@ -1,4 +1,3 @@
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,10 +72,8 @@ Eigen::VectorXd BySetup(const std::vector<Reading>& record, const std::vector<do
 }
 
 TEST(CircularFollow, FollowsARunOfAnIndependentImplementation) {
-  const std::vector<Reading> record =
-      WithAngles(ReadReadingsCsv(OraclePath("circular_run.csv"), "circular_motion"));
-  nlohmann::json truth;
-  std::ifstream(OraclePath("circular_run_truth.json")) >> truth;
+  const std::vector<Reading> record = WithAngles(test::OracleCircles());
+  const nlohmann::json truth = test::OracleCirclesTruth();
   QuietCircles quiet;
   for (const auto& [name, value] : truth["parameters"].items()) {
     if (value.is_number() && !name.starts_with("grid_rotation") && !name.starts_with("grid_offset"))
@@ -89,8 +86,7 @@ TEST(CircularFollow, FollowsARunOfAnIndependentImplementation) {
   const std::vector<model::Disturbance> mounted = {
       {"offset_x", um * BySetup(record, {p["offset_x_um"][0], p["offset_x_um"][1], x_um})},
       {"offset_y", um * BySetup(record, {p["offset_y_um"][0], p["offset_y_um"][1], y_um})},
-      {"rotation",
-       BySetup(record, {zero_deg[0].get<double>() * deg, zero_deg[1].get<double>() * deg, turn * arcsec})},
+      {"rotation", BySetup(record, {zero_deg[0].get<double>() * deg, zero_deg[1].get<double>() * deg, turn * arcsec})},
       // That implementation adds what a set-up draws of the length behind the transducer's gain.
       {"radial", -um * BySetup(record, {length_um[0], length_um[1], 0.0})}};
   const Eigen::MatrixXd shown_m = FollowRecord(quiet.Make(), record)->Predict(mounted);

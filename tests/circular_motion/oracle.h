@@ -18,6 +18,13 @@ inline std::string OraclePath(const std::string& name) {
   return std::string(TWINBENCH_TEST_DATA) + "/oracle/" + name;
 }
 
+inline std::vector<Reading> OracleCircles() {
+  return ReadReadingsCsv(OraclePath("circular_run.csv"), "circular_motion");
+}
+inline nlohmann::json OracleCirclesTruth() {
+  return nlohmann::json::parse(std::ifstream(OraclePath("circular_run_truth.json")));
+}
+
 /// A bench without any error, and one key after the other.
 class QuietCircles {
  public:
