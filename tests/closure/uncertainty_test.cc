@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 
 #include "tests/support/rotary_scenario.h"
 #include "tests/support/separated_table.h"
@@ -78,50 +77,6 @@ TEST_P(Scatter, MatchesTheStatedUncertaintyOver200Seeds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothClampings, Scatter, ::testing::Values("reclamp", "reseat"));
-
-/// |X_k|^2 of the DFT with 1/n in front.
-double Power(const std::vector<double>& x, int k) {
-  std::complex<double> sum = 0.0;
-  const double n = static_cast<double>(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i)
-    sum += x[i] * std::polar(1.0, -2.0 * units::kPi * k * static_cast<double>(i) / n);
-  return std::norm(sum / n);
-}
-
-TEST(IndexError, ScattersByHarmonicAsTheVarianceFormulaSays) {
-  Scenario scenario = test::RotaryScenario();
-  scenario.noise_free = false;
-  RotaryOf(scenario).procedure.phases = {"full_circle"};
-  RotaryOf(scenario).procedure.shifts = {0, 1, 7, 11};
-  RotaryOf(scenario).procedure.passes = {1};
-  RotaryOf(scenario).adc.every_sample = false;
-  const int n = RotaryOf(scenario).procedure.positions, p = 4;
-  constexpr int kRuns = 200;
-  std::vector<double> power(static_cast<std::size_t>(n / 2), 0.0);
-  double variance = 0.0;
-  for (int seed = 1; seed <= kRuns; ++seed) {
-    scenario.seed = static_cast<std::uint64_t>(seed);
-    const test::TwinRun run = test::RunTwin(scenario);
-    const auto motions =
-        measure::Measure(run.readings, measure::NominalGeometry(scenario), {}, Estimator::kRigorous);
-    variance += motions[0].cov(0, 0) / kRuns;
-    const separate::Separation s = test::Evaluate(run);
-    for (int k = 1; k < n / 2; ++k)
-      power[static_cast<std::size_t>(k)] += Power(s.target.value[Component::kEz], k) / kRuns;
-  }
-  double ratio = 0.0;
-  for (int k = 1; k < n / 2; ++k) {
-    std::complex<double> A = 0.0;
-    for (const int shift : RotaryOf(scenario).procedure.shifts)
-      A += std::polar(1.0, 2.0 * units::kPi * k * shift / n);
-    const double predicted = variance / n * p / (p * p - std::norm(A));
-    // A mean of 200 exponential variables: relative deviation 1 / sqrt(200) = 0.07; 4 of them.
-    EXPECT_NEAR(power[static_cast<std::size_t>(k)] / predicted, 1.0, 0.28) << "order " << k;
-    ratio += power[static_cast<std::size_t>(k)] / predicted / (n / 2 - 1);
-  }
-  // 17 orders of 200 runs: 0.017; 4 of them.
-  EXPECT_NEAR(ratio, 1.0, 0.07);
-}
 
 }  // namespace
 }  // namespace twinbench

@@ -2,72 +2,12 @@
 
 #include <cmath>
 
-#include "optics/scene.h"
 #include "tests/freeform/freeform_run.h"
 #include "twin/core/errors.h"
 
-// The probe's closed form against the traced scene, and heights that no formula gives.
+// Heights of the artefact that no formula gives.
 namespace twinbench::freeform_test {
 namespace {
-
-/// One cell, its vertex at the origin. The beam may meet it beyond the middle between two cells.
-optics::Scene SceneOfCell(double radius_m) {
-  constexpr double kAperture_m = 0.030;
-  optics::Scene scene;
-  scene.AddSurface(optics::Paraboloid(Pose::Identity(), 0.5 * radius_m, kAperture_m));
-  scene.Commit();
-  return scene;
-}
-
-/// A reading's beam in the frame of its cell, and what the closed form says of it.
-struct Beam {
-  optics::Ray ray;
-  sim::ProbeSpot spot;
-  Matrix3 R_FT;
-  double start_m = kNaN;  // of the ray, from the tip along the beam
-};
-
-Beam BeamOf(const Reading& r, const sim::DrawnBench& bench, const FreeformSettings& settings) {
-  constexpr double kBack_m = 0.002;  // the ray starts over the surface, wherever the tip is
-  const Pose X_FT = ToolOverArtefact(r, bench, settings);
-  const sim::ArtefactCell cell = CellAt(r);
-  const Vector3 vertex_F(cell.i * settings.artefact.pitch_m, cell.j * settings.artefact.pitch_m, 0.0);
-  Beam beam{{}, sim::Look(settings.artefact, cell, X_FT), X_FT.linear()};
-  beam.start_m = std::min(0.0, beam.spot.distance_m) - kBack_m;
-  beam.ray.direction = -X_FT.linear().col(2);
-  beam.ray.origin_m = X_FT.translation() - vertex_F + beam.start_m * beam.ray.direction;
-  return beam;
-}
-
-TEST(FreeformOptics, TheTracedSceneAgreesWithTheClosedFormToANanometre) {
-  const FreeformSettings settings;
-  const sim::DrawnBench bench = OracleBench();
-  const std::vector<Reading> readings = OracleRun();
-  for (const int parity : {0, 1}) {
-    const optics::Scene scene = SceneOfCell(settings.artefact.vertex_radius_m[static_cast<std::size_t>(parity)]);
-    std::vector<Beam> beams;
-    optics::RayBatch rays;
-    for (const Reading& r : readings) {
-      if (std::abs(static_cast<int>(kCellI(r) + kCellJ(r))) % 2 != parity) continue;
-      beams.push_back(BeamOf(r, bench, settings));
-      rays.Add(beams.back().ray);
-    }
-    ASSERT_GT(beams.size(), 100u);
-    optics::HitBatch hits;
-    hits.Resize(rays.size());
-    scene.Intersect(rays, hits, optics::RayOrder::kScattered);
-    for (std::size_t k = 0; k < beams.size(); ++k) {
-      const Beam& beam = beams[k];
-      ASSERT_EQ(hits.surface[k], 0) << k;
-      EXPECT_NEAR(hits.t_m[k] + beam.start_m, beam.spot.distance_m, 1e-9);
-      EXPECT_NEAR(hits.x_m[k], beam.spot.hit_F.x(), 1e-9);
-      EXPECT_NEAR(hits.y_m[k], beam.spot.hit_F.y(), 1e-9);
-      const Vector3 normal = optics::Normal(scene.surfaces().front(), hits.x_m[k], hits.y_m[k]);
-      const Vector3 d = beam.ray.direction, reflected = d - 2.0 * d.dot(normal) * normal;
-      EXPECT_LT((beam.R_FT.transpose() * reflected - beam.spot.reflected_T).norm(), 1e-10);
-    }
-  }
-}
 
 TEST(FreeformOptics, HeightsComeBackFromTheirFile) {
   const auto tilted = [](double x_m, double y_m) { return 20.0 * x_m - 50.0 * y_m + 1.0; };

@@ -35,46 +35,13 @@ TEST(FindSeparability, FindsVectorsThatChangeNoReading) {
   }
 }
 
-TEST(FindSeparability, LosesOnlyTheDefinitionalOrdersOfAGoodReclampSet) {
-  const auto lost = Lost(36, {0, 1, 7, 11}, Clamping::kReclamp);
-  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEx), ElementsAre(0, 1));
-  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEx),
-              ElementsAre(-1, 0));  // retrograde for the target
-  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEz), ElementsAre(0));
-  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEz), ElementsAre(0));
-  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDy), ElementsAre(0, 1));
-  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kDx), ElementsAre(-1, 0));
-}
-
-TEST(FindSeparability, LosesTheLateralMotionOfTheReferenceWhenItsBodyIsReseated) {
-  const auto lost = Lost(36, {0, 1, 7, 11}, Clamping::kReseat);
-  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kDx), ElementsAre(kAll));
-  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kDy), ElementsAre(0, 1));
-  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDy), ElementsAre(0, 1));
-  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEx), ElementsAre(0, 1));
-}
-
-TEST(FindSeparability, ListsWhatNobodyReads) {
-  const auto lost = Lost(36, {0, 1, 7, 11}, Clamping::kReclamp);
-  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDx), ElementsAre(kAll));
-  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kDz), ElementsAre(kAll));
-  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kDz), ElementsAre(kAll));
-}
-
-TEST(FindSeparability, LosesMultiplesOfTheOrderThatAllShiftsShare) {
-  // gcd(4, 12) = 4 steps: orders that repeat three times a turn look alike in all set-ups (section 2.2).
-  const auto lost = Lost(12, {0, 4, 8}, Clamping::kReseat);
-  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEz), ElementsAre(0, 3, 6));
-  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEz), ElementsAre(0, 3, 6));
-}
-
 std::vector<std::string> Texts(const std::vector<NotSeparable>& lost) {
   std::vector<std::string> texts;
   for (const NotSeparable& e : lost) texts.push_back(e.what);
   return texts;
 }
 
-TEST(FindSeparability, SaysItInWords) {
+TEST(FindSeparability, LosesTheDefinitionalOrdersWhatNobodyReadsAndTheLateralMotionOfAReseatedReference) {
   EXPECT_THAT(Texts(Lost(36, {0, 1, 7, 11}, Clamping::kReseat)),
               ElementsAre("target dx", "target dz", "reference dz", "reference dx", "target ex,ey order 0",
                           "target ex,ey order +1", "target ez order 0", "target dy order 0", "target dy order 1",
@@ -88,11 +55,12 @@ TEST(FindSeparability, SaysItInWords) {
   for (const NotSeparable& e : Lost(12, {0, 1, 4}, Clamping::kReclamp)) EXPECT_FALSE(e.why.empty());
 }
 
-TEST(FindSeparability, ListsSeveralOrdersOfOneReasonTogether) {
-  const auto texts = Texts(Lost(12, {0, 4, 8}, Clamping::kReseat));
-  EXPECT_THAT(texts, testing::Contains("target ez order 0"));
-  EXPECT_THAT(texts, testing::Contains("target ez orders 3, 6"));
-  EXPECT_THAT(texts, testing::Contains("target ex,ey orders +3, -3, +6"));
+TEST(FindSeparability, LosesMultiplesOfTheOrderThatAllShiftsShareAndListsThoseOfOneReasonTogether) {
+  // gcd(4, 12) = 4 steps: orders that repeat three times a turn look alike in all set-ups (section 2.2).
+  const auto lost = Lost(12, {0, 4, 8}, Clamping::kReseat);
+  EXPECT_THAT(LostOrders(lost, Table::kTarget, Component::kEz), ElementsAre(0, 3, 6));
+  EXPECT_THAT(LostOrders(lost, Table::kReference, Component::kEz), ElementsAre(0, 3, 6));
+  EXPECT_THAT(Texts(lost), testing::IsSupersetOf({"target ez order 0", "target ez orders 3, 6", "target ex,ey orders +3, -3, +6"}));
 }
 
 struct RankCase {

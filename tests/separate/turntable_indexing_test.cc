@@ -8,7 +8,6 @@
 #include "tests/separate/turntable_run.h"
 #include "tests/support/kept_text.h"
 #include "twin/benches/turntable_autocollimator/estimators/indexing.h"
-#include "twin/benches/turntable_autocollimator/estimators/lost_harmonics.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::separate::turntable {
@@ -90,17 +89,6 @@ TEST(SeparateIndexing, PropagatesTheNoiseOfEveryHarmonicAsTheClosedFormSays) {
     const double variance = HarmonicVariance(found.turntable.cov_rad2.ToDense(), k) / 1e-12;
     EXPECT_NEAR(variance / ShiftVariance(36, kFourOf36, k), 1.0, 1e-9) << k;  // rounding
   }
-}
-
-TEST(LostHarmonics, AreTheMultiplesThatAllShiftsShare) {
-  EXPECT_THAT(LostHarmonics(12, CommonSteps(12, {0, 6})), ElementsAre(2, 4, 6));
-  EXPECT_THAT(LostHarmonics(12, CommonSteps(12, {0, 4, 8})), ElementsAre(3, 6));
-  EXPECT_THAT(LostHarmonics(12, CommonSteps(12, {1, 5, 7})), ElementsAre(6));
-  EXPECT_THAT(LostHarmonics(12, CommonSteps(12, {3})), ElementsAre(1, 2, 3, 4, 5, 6));
-  EXPECT_TRUE(LostHarmonics(72, CommonSteps(72, {0, 3, 5, 19})).empty());
-  std::vector<int> even;
-  for (int k = 2; k <= 36; k += 2) even.push_back(k);
-  EXPECT_EQ(LostHarmonics(72, CommonSteps(72, {0, 36})), even);
 }
 
 /// Amplitude of order k in a series of n values.
