@@ -1,9 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/core/input_error.h"
 #include "tests/separate/hob_bench.h"
+#include "tests/support/kept_text.h"
 #include "twin/benches/hob_transmission/estimators/transmission_error.h"
-#include "twin/core/errors.h"
 
 namespace twinbench::separate::hob {
 namespace {
@@ -70,19 +71,16 @@ TEST(MeasurePositions, SkipsSamplesWithoutAngle) {
   EXPECT_EQ(positions.at(0).samples, 4 * 1440 - 524);  // 5 + 11 i < 5760
 }
 
-TEST(MeasurePositions, LeavesOutTurnsWithAWideGap) {
+TEST(MeasurePositions, LeavesOutTurnsWithAWideGapAndTheTurnThatWasNotFinished) {
   std::vector<HobSample> samples = Samples(Machine(), Heads({0.0}));
   samples.erase(samples.begin() + 1440 + 300, samples.begin() + 1440 + 400);  // 25 deg of the second turn
-  const auto positions = MeasurePositions(samples, OrdersUpTo(60));
-  EXPECT_EQ(positions.at(0).turns, 3);
-  EXPECT_EQ(positions.at(0).turns_left_out, 1);
-  ExpectOrders(positions.at(0), Machine(), 0.0, kSecondOrder_arcsec);
-}
-
-TEST(MeasurePositions, LeavesOutTheTurnThatWasNotFinished) {
-  const auto positions = MeasurePositions(Samples(Machine(), Heads({0.0}, 2.6)), OrdersUpTo(60));
-  EXPECT_EQ(positions.at(0).turns, 2);
-  EXPECT_EQ(positions.at(0).turns_left_out, 1);
+  const auto gap = MeasurePositions(samples, OrdersUpTo(60));
+  const auto unfinished = MeasurePositions(Samples(Machine(), Heads({0.0}, 2.6)), OrdersUpTo(60));
+  EXPECT_EQ(gap.at(0).turns, 3);
+  EXPECT_EQ(gap.at(0).turns_left_out, 1);
+  ExpectOrders(gap.at(0), Machine(), 0.0, kSecondOrder_arcsec);
+  EXPECT_EQ(unfinished.at(0).turns, 2);
+  EXPECT_EQ(unfinished.at(0).turns_left_out, 1);
   const auto none = MeasurePositions(Samples(Machine(), Heads({0.0}, 0.6)), OrdersUpTo(60));
   EXPECT_EQ(none.at(0).status, PositionStatus::kNoTurn);
 }
@@ -230,34 +228,19 @@ TEST(FindLines, RaisesFalseAlarmsAsOftenAsAsked) {
   EXPECT_NEAR(alarms, 40, 25);  // 0.2 x 200, standard deviation 6; orders at the ends have fewer neighbours
 }
 
-std::string Refusal(const std::vector<HobSample>& samples, const TransmissionOptions& options = {}) {
-  try {
-    MeasurePositions(samples, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(MeasurePositions, RefusesAnglesThatWrapAndWrongRatios) {
-  std::vector<HobSample> samples = Samples(Machine(), Heads({0.0}));
+TEST(MeasurePositions, RefusesAnglesThatWrapWrongRatiosHeadsThatMoveOrAreMissingAndADirectionThatIsNone) {
+  const std::vector<HobSample> right = Samples(Machine(), Heads({10.0}, 1.0));
+  std::vector<HobSample> wrapped = Samples(Machine(), Heads({0.0})), moved = right, missing = right;
+  for (HobSample& s : wrapped) s.table_encoder_rad = std::fmod(s.table_encoder_rad, kTestTurn_rad);
+  moved[7].head_rad += 1e-3;
+  missing[7].head_rad = kNaN;
   TransmissionOptions wrong;
   wrong.table_turns_per_hob_turn = 2.0 / 43.0;
-  EXPECT_THAT(Refusal(samples, wrong), testing::HasSubstr("the ratio that was geared"));
-  for (HobSample& s : samples) s.table_encoder_rad = std::fmod(s.table_encoder_rad, kTestTurn_rad);
-  EXPECT_THAT(Refusal(samples), testing::HasSubstr("unwrapped angles"));
-}
-
-TEST(MeasurePositions, RefusesAHeadThatMovesOrIsMissingAndADirectionThatIsNone) {
-  std::vector<HobSample> samples = Samples(Machine(), {{0, 10.0, 1, 0, 1}, {0, 11.0, -1, 1, 1}});
-  EXPECT_THAT(Refusal(samples), testing::HasSubstr("set-up 0: the head angle changes between passes"));
-  samples = Samples(Machine(), Heads({10.0}, 1.0));
-  samples[7].head_rad += 1e-3;
-  EXPECT_THAT(Refusal(samples), testing::HasSubstr("the head angle changes; expected one"));
-  samples[7].head_rad = kNaN;
-  EXPECT_THAT(Refusal(samples), testing::HasSubstr("the head angle is missing"));
-  samples = Samples(Machine(), {{0, 10.0, 0, 0, 1}});
-  EXPECT_THAT(Refusal(samples), testing::HasSubstr("direction is 0; expected +1 or -1"));
+  EXPECT_KEPT(MessageOf([&] { MeasurePositions(Samples(Machine(), Heads({0.0})), wrong); }));
+  const auto turned = Samples(Machine(), {{0, 10.0, 1, 0, 1}, {0, 11.0, -1, 1, 1}});
+  const auto aimless = Samples(Machine(), {{0, 10.0, 0, 0, 1}});
+  for (const std::vector<HobSample>& samples : {wrapped, turned, moved, missing, aimless})
+    EXPECT_KEPT(MessageOf([&] { MeasurePositions(samples, {}); }));
 }
 
 }  // namespace

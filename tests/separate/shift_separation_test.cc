@@ -42,6 +42,17 @@ MatrixXd NormalValues(Eigen::Index rows, Eigen::Index cols) {
   return values;
 }
 
+/// What two curves (columns) show at shifts.
+MatrixXd ReadingsOf(const MatrixXd& truth, const std::vector<int>& shifts) {
+  const Eigen::Index n = truth.rows();
+  MatrixXd values(n, std::ssize(shifts));
+  for (Eigen::Index j = 0; j < values.cols(); ++j) {
+    const int shift = shifts[static_cast<std::size_t>(j)];
+    for (Eigen::Index i = 0; i < n; ++i) values(i, j) = truth(i, 0) + truth((i + shift) % n, 1);
+  }
+  return values;
+}
+
 /// The same problem as one dense matrix, and what of its unknowns is estimable by its singular values: nothing here
 /// knows of harmonics, classes of stops or Fourier's transform.
 class Dense {
@@ -270,13 +281,10 @@ TEST(ShiftSeparation, ReturnsTwoCurvesOfThousandsOfStopsWithGaps) {
   const int n = 3600;
   const std::vector<int> shifts = {0, 1, 61, 411, 1203};
   const MatrixXd truth = NormalValues(n, 2);
-  MatrixXd values(n, 5), weight = WeightsOf({"many", n, shifts, Free::kConstant, 0.02, 1.0});
-  for (int j = 0; j < 5; ++j) {
-    for (int i = 0; i < n; ++i) {
-      values(i, j) = truth(i, 0) + truth((i + shifts[static_cast<std::size_t>(j)]) % n, 1) + 10.0 * j;
-      if (weight(i, j) == 0.0) values(i, j) = kNaN;
-    }
-  }
+  const MatrixXd weight = WeightsOf({"many", n, shifts, Free::kConstant, 0.02, 1.0});
+  MatrixXd values = ReadingsOf(truth, shifts);
+  for (int j = 0; j < 5; ++j)
+    values.col(j) = (weight.col(j).array() == 0.0).select(kNaN, values.col(j).array() + 10.0 * j);
   const ShiftSeparation separation(shifts, Free::kConstant, weight);
   const ShiftSolution found = separation.Solve(values);
   EXPECT_TRUE(found.convergence.converged);
@@ -291,12 +299,8 @@ TEST(ShiftSeparation, SolvesTwoSetUpsOfManyStopsToTheLastDigitsThatThereAre) {
   // harmonics.
   const int n = 18000;
   const MatrixXd truth = NormalValues(n, 2);
-  MatrixXd values(n, 2);
-  for (int i = 0; i < n; ++i) {
-    values(i, 0) = truth(i, 0) + truth(i, 1);
-    values(i, 1) = truth(i, 0) + truth((i + 1) % n, 1);
-  }
-  const ShiftSolution found = ShiftSeparation({0, 1}, Free::kConstant, MatrixXd::Ones(n, 2)).Solve(values);
+  const ShiftSeparation separation({0, 1}, Free::kConstant, MatrixXd::Ones(n, 2));
+  const ShiftSolution found = separation.Solve(ReadingsOf(truth, {0, 1}));
   EXPECT_TRUE(found.convergence.converged);
   EXPECT_LT((found.b.array() - truth.col(1).array() + truth.col(1).mean()).abs().maxCoeff(), 1e-11);
 }
@@ -315,12 +319,7 @@ TEST(ShiftSeparation, CallsNothingDeterminedThatDoublesCannotTell) {
   const Problem p{"wild_weights", 60, {0, 1, 7}, Free::kConstant, 0.0, 40.0};
   const ShiftSeparation separation(p.shifts, p.free, WeightsOf(p));
   const MatrixXd truth = NormalValues(60, 2);
-  MatrixXd values(60, 3);
-  for (int j = 0; j < 3; ++j) {
-    for (int i = 0; i < 60; ++i)
-      values(i, j) = truth(i, 0) + truth((i + p.shifts[static_cast<std::size_t>(j)]) % 60, 1);
-  }
-  const ShiftSolution found = separation.Solve(values);
+  const ShiftSolution found = separation.Solve(ReadingsOf(truth, p.shifts));
   double shown = 0.0, meant = 0.0;
   int count = 0;
   for (int i = 0; i < 60; ++i) {
