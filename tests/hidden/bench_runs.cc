@@ -116,10 +116,6 @@ std::vector<std::string> OverridesOf(Design design) {
   return {};
 }
 
-std::string ScenarioOf(Design design) {
-  return BenchOf(design) + ".toml";
-}
-
 void DrawTurntable(Stream& stream, Scenario& scenario) {
   TableSettings& turntable = TurntableOf(scenario).turntable;
   for (HarmonicSettings& h : turntable.harmonics) {
@@ -143,14 +139,12 @@ void DrawTransmission(Stream& stream, Scenario& scenario) {
 
 }  // namespace
 
-const std::string& BenchOf(Design design) {
-  static const std::string rotary = kRotaryBench, encoder = kEncoderBench, turntable = kTurntableBench,
-                           hob = kHobBench, circles = kCircularBench, freeform = kFreeformBench;
-  if (design == Design::kCircles) return circles;
-  if (design == Design::kFreeform) return freeform;
-  if (design == Design::kRotary) return rotary;
-  if (design == Design::kTurntable) return turntable;
-  return design == Design::kHob ? hob : encoder;
+const DesignNames& NamesOf(Design design) {
+  static const std::vector<DesignNames> names = {
+      {"rotary", kRotaryBench},  {"stops", kEncoderBench},    {"sweep", kEncoderBench},
+      {"stops+", kEncoderBench}, {"sweep+", kEncoderBench},   {"turntable", kTurntableBench},
+      {"hob", kHobBench},        {"circles", kCircularBench}, {"freeform", kFreeformBench}};
+  return names[static_cast<std::size_t>(design)];
 }
 
 double UniformIn(Stream& stream, double lower, double upper) {
@@ -162,7 +156,7 @@ double LogUniformIn(Stream& stream, double lower, double upper) {
 }
 
 Scenario Believed(Design design) {
-  Scenario scenario = LoadScenario(test::ScenarioPath(ScenarioOf(design)), OverridesOf(design));
+  Scenario scenario = LoadScenario(test::ScenarioPath(BenchOf(design) + ".toml"), OverridesOf(design));
   if (design == Design::kRotary) RotaryOf(scenario).adc.every_sample = false;
   if (design == Design::kSweep || design == Design::kSweepAllKnown)
     EncoderOf(scenario).encoder_procedure.kind = "sweep";

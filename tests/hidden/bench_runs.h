@@ -28,7 +28,13 @@ enum class Design {
   kCircles,    // circular_motion, two radii and the grid
   kFreeform    // freeform_five_axis, four mountings
 };
-const std::string& BenchOf(Design design);
+struct DesignNames {
+  std::string name, bench;
+};
+const DesignNames& NamesOf(Design design);
+inline const std::string& BenchOf(Design design) {
+  return NamesOf(design).bench;
+}
 
 /// What is believed of the bench.
 Scenario Believed(Design design);

@@ -25,24 +25,15 @@ struct NoiseShape {
   double stated = 1.0;  // stated / actual standard deviation
 };
 
-NoiseShape ShapeOf(Noise noise) {
-  switch (noise) {
-    case Noise::kGaussian:
-      return {"Gaussian"};
-    case Noise::kStudent5:
-      return {"Student t, 5 dof", true};
-    case Noise::kCorrelated2:
-      return {"AR(1) 0.2", false, 0.2};
-    case Noise::kCorrelated3:
-      return {"AR(1) 0.3", false, 0.3};
-    case Noise::kUnderstated:
-      return {"25 % larger than stated", false, 0.0, 1.0 / 1.25};
-    case Noise::kOverstated:
-      return {"25 % smaller than stated", false, 0.0, 1.0 / 0.75};
-    case Noise::kMixture:
-      return {"t5, AR(1) 0.2, 25 % larger than stated", true, 0.2, 1.0 / 1.25};
-  }
-  return {""};
+const NoiseShape& ShapeOf(Noise noise) {
+  static const std::vector<NoiseShape> shapes = {{"Gaussian"},
+                                                 {"Student t, 5 dof", true},
+                                                 {"AR(1) 0.2", false, 0.2},
+                                                 {"AR(1) 0.3", false, 0.3},
+                                                 {"25 % larger than stated", false, 0.0, 1.0 / 1.25},
+                                                 {"25 % smaller than stated", false, 0.0, 1.0 / 0.75},
+                                                 {"t5, AR(1) 0.2, 25 % larger than stated", true, 0.2, 1.0 / 1.25}};
+  return shapes[static_cast<std::size_t>(noise)];
 }
 
 /// A series of unit variance in the order of the readings.
@@ -159,10 +150,6 @@ Case MachineToolClean(const NoiseShape& shape, Scenario actual, Case clean, std:
 }
 
 }  // namespace
-
-const char* NoiseName(Noise noise) {
-  return ShapeOf(noise).name;
-}
 
 Case MakeClean(Design design, Noise noise, std::uint64_t seed) {
   const NoiseShape shape = ShapeOf(noise);

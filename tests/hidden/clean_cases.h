@@ -10,7 +10,6 @@ namespace twinbench::hidden {
 
 enum class Noise { kGaussian, kStudent5, kCorrelated2, kCorrelated3, kUnderstated, kOverstated, kMixture };
 inline constexpr int kNoises = 7;
-const char* NoiseName(Noise noise);
 
 /// `count` runs, the noises in turn. On the angle bench, where the noise is not stated but estimated, that of a
 /// wrong size is Gaussian noise of a device whose noise is stated.

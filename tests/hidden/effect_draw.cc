@@ -1,8 +1,5 @@
-#include "tests/hidden/effect_draw.h"
-
 #include <cmath>
 
-#include "tests/hidden/bench_runs.h"
 #include "tests/hidden/effect_size.h"
 #include "twin/benches/circular_motion/settings.h"
 #include "twin/benches/encoder_comparison/settings.h"

@@ -4,60 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "twin/benches/names.h"
 
 namespace twinbench::hidden {
 namespace {
-
-/// Of effects whose size goes by one name at every place.
-const std::map<std::string, std::string>& UsualSizes() {
-  static const std::map<std::string, std::string> sizes = {{"psd_gain", "gain_error"},
-                                                           {"psd_roll", "roll"},
-                                                           {"psd_nonlinearity", "cubic"},
-                                                           {"stray_light", "fraction"},
-                                                           {"background", "current"},
-                                                           {"psd_distance", "distance_error"},
-                                                           {"wavelength_offset", "wavelength_error"},
-                                                           {"grating_pitch", "pitch_error"},
-                                                           {"mode_hop", "wavelength_step"},
-                                                           {"incidence_offset", "incidence"},
-                                                           {"wavelength_temperature", "wavelength_per_kelvin"},
-                                                           {"laser_drift", "drift"},
-                                                           {"mount_creep", "amplitude"},
-                                                           {"thermal_tilt", "tilt_per_kelvin"},
-                                                           {"post_growth", "growth_per_kelvin"},
-                                                           {"settling", "amplitude"},
-                                                           {"tone", "amplitude"},
-                                                           {"bearing_half_frequency", "tilt"},
-                                                           {"adc_step", "step"},
-                                                           {"crosstalk", "fraction"},
-                                                           {"autocollimator_roll", "angle"},
-                                                           {"autocollimator_scale", "gain_error"},
-                                                           {"autocollimator_nonlinearity", "at_edge"},
-                                                           {"autocollimator_periodic", "amplitude"},
-                                                           {"autocollimator_drift", "rate"},
-                                                           {"autocollimator_temperature", "coefficient"},
-                                                           {"mirror_flatness", "sag"},
-                                                           {"hob_runout", "amplitude"},
-                                                           {"worm", "amplitude"},
-                                                           {"eccentricity", "amplitude"},
-                                                           {"ellipticity", "amplitude"},
-                                                           {"signal_offset", "offset_sin"},
-                                                           {"amplitude_mismatch", "ratio"},
-                                                           {"quadrature_error", "angle"},
-                                                           {"signal_clipping", "level"},
-                                                           {"interpolation", "amplitude"},
-                                                           {"latency", "delay"},
-                                                           {"clock_rate", "ratio"},
-                                                           {"hysteresis", "lag"},
-                                                           {"scale", "ratio"},
-                                                           {"drift", "rate"},
-                                                           {"periodic", "amplitude"},
-                                                           {"gear_mesh", "amplitude"},
-                                                           {"reference_fault", "amplitude"}};
-  return sizes;
-}
 
 /// Of benches whose catalogue begins with the size.
 bool SizeComesFirst(const std::string& bench) {
@@ -91,16 +43,14 @@ EffectSettings Scaled(EffectSettings effect, double factor, const std::string& b
 }  // namespace
 
 std::string SizeParameter(const std::string& effect, const std::string& where, const std::string& bench) {
-  if (effect == "outliers") return "";
-  if (SizeComesFirst(bench)) {
-    const std::vector<EffectParameter>& all = FindEffect(effect, bench)->parameters;
-    return std::ranges::find_if(all, [&](const EffectParameter& p) { return p.BelongsTo(where); })->name;
+  static const std::set<std::string> waves = {"order", "teeth", "frequency"};
+  static const std::set<std::string> none = {"outliers", "multitooth_seating", "grating_form",
+                                             "encoder_subdivision"};
+  if (none.contains(effect)) return "";
+  for (const EffectParameter& p : FindEffect(effect, bench)->parameters) {
+    if (p.BelongsTo(where) && !waves.contains(p.name)) return p.name;
   }
-  if (effect == "slip" && (where == "yaw" || where == "tilt")) return "angle";
-  if (effect == "slip") return where == "lateral" ? "shift" : "step";
-  if (effect == "backlash") return where.empty() ? "width" : "half_width";
-  const auto found = UsualSizes().find(effect);
-  return found == UsualSizes().end() ? "" : found->second;
+  return "";
 }
 
 bool HasSize(const std::string& effect, const std::string& where, const std::string& bench) {

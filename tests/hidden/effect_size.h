@@ -5,11 +5,20 @@
 
 #include "tests/hidden/bench_runs.h"
 #include "twin/core/effect_catalogue.h"
+#include "twin/core/stream.h"
 
 /// How large an effect is: the parameter that says so, and the length of its signature in units of noise.
 namespace twinbench::hidden {
 
-/// The parameter that an effect's signature grows with; empty if the effect has no size.
+/// An effect of the catalogue with a shape and a sign drawn at random. Its size is the plausible one of the
+/// catalogue; SizedTo brings it to what a case wants.
+///
+/// @param where  One of the effect's places; empty if it has none.
+EffectSettings DrawEffect(const std::string& name, const std::string& where, const Scenario& scenario,
+                          Stream& stream);
+
+/// The parameter that an effect's signature grows with, in the catalogue the first that is not of a wave; empty if
+/// it has no size.
 std::string SizeParameter(const std::string& effect, const std::string& where, const std::string& bench);
 
 /// Effects that leave a trace proportional to a size; the others (a swap, a frame) are there or not, or, as

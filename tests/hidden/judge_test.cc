@@ -3,14 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/core/input_error.h"
+#include "tests/hidden/known_wrong.h"
 #include "tests/hidden/share.h"
 
-// The marks themselves: a score is worth what its marks are.
 namespace twinbench::hidden {
 namespace {
 
 using diagnose::Diagnosis;
 using diagnose::Verdict;
+using testing::HasSubstr;
+
+// The marks themselves: a score is worth what its marks are.
 
 Hidden Listed(const std::string& effect, const std::string& where = "") {
   Hidden hidden;
@@ -39,30 +43,29 @@ Diagnosis AnswerUnknown(const std::string& signature) {
   return d;
 }
 
-TEST(Judge, ANameIsRightOnlyWithItsPlace) {
-  const Hidden hidden = Listed("psd_gain", "psd_a_x");
-  EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"psd_gain", "psd_a_x"}})).grade, Grade::kRight);
-  EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"psd_gain", "psd_a_y"}})).grade, Grade::kWrong);
-  EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"psd_gain", "psd_a_x"}, {"tone", "all"}})).grade,
-            Grade::kRightAndMore);
-  EXPECT_EQ(Judge(Listed("backlash"), Answer(Verdict::kNamed, {{"backlash", "target"}})).grade, Grade::kRight);
+Diagnosis Named(const std::vector<std::array<std::string, 2>>& causes, double probability = 0.95) {
+  return Answer(Verdict::kNamed, causes, probability);
 }
 
-TEST(Judge, ATieCountsUpToThreeMembers) {
-  const Hidden hidden = Listed("slip", "yaw");
-  EXPECT_EQ(Judge(hidden, Answer(Verdict::kTie, {{"tone", "yaw"}, {"slip", "yaw"}})).grade, Grade::kTie);
-  EXPECT_EQ(Judge(hidden, Answer(Verdict::kTie, {{"tone", "yaw"}, {"slip", "yaw"}, {"a", ""}, {"b", ""}})).grade,
+TEST(Judge, ANameIsRightOnlyWithItsPlaceAndATieCountsUpToThreeMembers) {
+  const Hidden gain = Listed("psd_gain", "psd_a_x"), slip = Listed("slip", "yaw");
+  EXPECT_EQ(Judge(gain, Named({{"psd_gain", "psd_a_x"}})).grade, Grade::kRight);
+  EXPECT_EQ(Judge(gain, Named({{"psd_gain", "psd_a_y"}})).grade, Grade::kWrong);
+  EXPECT_EQ(Judge(gain, Named({{"psd_gain", "psd_a_x"}, {"tone", "all"}})).grade, Grade::kRightAndMore);
+  EXPECT_EQ(Judge(Listed("backlash"), Named({{"backlash", "target"}})).grade, Grade::kRight);
+  EXPECT_EQ(Judge(slip, Answer(Verdict::kTie, {{"tone", "yaw"}, {"slip", "yaw"}})).grade, Grade::kTie);
+  EXPECT_EQ(Judge(slip, Answer(Verdict::kTie, {{"tone", "yaw"}, {"slip", "yaw"}, {"a", ""}, {"b", ""}})).grade,
             Grade::kLargeTie);
 }
 
 TEST(Judge, WrongNamesAreSureFromEightTenthsUnlessNothingTellsThemFromTheTruth) {
   Hidden hidden = Listed("psd_distance", "psd_a");
-  EXPECT_TRUE(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "all"}}, 0.8)).sure_wrong);
-  EXPECT_FALSE(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "all"}}, 0.79)).sure_wrong);
-  EXPECT_FALSE(Judge(hidden, Answer(Verdict::kNamed, {{"psd_distance", "psd_a"}}, 0.97)).sure_wrong);
-  EXPECT_TRUE(Judge({}, Answer(Verdict::kNamed, {{"tone", "all"}})).sure_wrong);
+  EXPECT_TRUE(Judge(hidden, Named({{"tone", "all"}}, 0.8)).sure_wrong);
+  EXPECT_FALSE(Judge(hidden, Named({{"tone", "all"}}, 0.79)).sure_wrong);
+  EXPECT_FALSE(Judge(hidden, Named({{"psd_distance", "psd_a"}}, 0.97)).sure_wrong);
+  EXPECT_TRUE(Judge({}, Named({{"tone", "all"}})).sure_wrong);
   hidden.alike = {"psd_distance", "tone"};
-  EXPECT_FALSE(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "all"}}, 0.9)).sure_wrong);
+  EXPECT_FALSE(Judge(hidden, Named({{"tone", "all"}}, 0.9)).sure_wrong);
 }
 
 TEST(Judge, AnUnknownNeedsItsLockAndExactlyItsChannels) {
@@ -70,33 +73,30 @@ TEST(Judge, AnUnknownNeedsItsLockAndExactlyItsChannels) {
   hidden.unlisted = "etalon";
   hidden.locks = {"spot"};
   hidden.channels = {"psd_b_x"};
-  EXPECT_EQ(Judge(hidden, AnswerUnknown("periodic, locked to spot, on psd_b_x")).grade, Grade::kUnknown);
-  EXPECT_EQ(Judge(hidden, AnswerUnknown("wander | periodic, locked to spot, on psd_b_x")).grade, Grade::kUnknown);
-  EXPECT_EQ(Judge(hidden, AnswerUnknown("periodic, locked to spot, on psd_b_y")).grade, Grade::kUnknownMisplaced);
-  EXPECT_EQ(
-      Judge(hidden, AnswerUnknown("periodic, locked to spot, on psd_b_y; or the same on psd_a_x, psd_b_x")).grade,
-      Grade::kUnknown);
-  EXPECT_EQ(Judge(hidden, AnswerUnknown("slow wander locked to time, on psd_b_x")).grade, Grade::kUnknownMisplaced);
-  EXPECT_EQ(Judge(hidden, Answer(Verdict::kNamed, {{"tone", "psd_b_x"}})).grade, Grade::kWrong);
+  const std::pair<const char*, Grade> signatures[] = {
+      {"periodic, locked to spot, on psd_b_x", Grade::kUnknown},
+      {"wander | periodic, locked to spot, on psd_b_x", Grade::kUnknown},
+      {"periodic, locked to spot, on psd_b_y", Grade::kUnknownMisplaced},
+      {"periodic, locked to spot, on psd_b_y; or the same on psd_a_x, psd_b_x", Grade::kUnknown},
+      {"slow wander locked to time, on psd_b_x", Grade::kUnknownMisplaced}};
+  for (const auto& [signature, grade] : signatures)
+    EXPECT_EQ(Judge(hidden, AnswerUnknown(signature)).grade, grade) << signature;
+  EXPECT_EQ(Judge(hidden, Named({{"tone", "psd_b_x"}})).grade, Grade::kWrong);
 }
 
-TEST(Judge, SizesAreComparedWithTheirTruth) {
-  Diagnosis d = Answer(Verdict::kNamed, {{"tone", "all"}});
-  d.causes[0].parameters = {{"size", "1", 1.0, 2.3, 0.1}};
-  EXPECT_FALSE(Judge(Listed("tone"), d).parameters.at(0).Covers());
-  d.causes[0].parameters[0].u = 0.2;
-  EXPECT_TRUE(Judge(Listed("tone"), d).parameters.at(0).Covers());
-}
-
-TEST(Judge, PhasesAreComparedModuloAFullTurn) {
-  Hidden hidden = Listed("tone");
-  hidden.causes[0].parameters = {{"phase", 0.05}};
-  Diagnosis d = Answer(Verdict::kNamed, {{"tone", "all"}});
-  d.causes[0].parameters = {{"phase", "deg", units::deg, 2.0 * units::kPi - 0.05, 0.06}};
-  EXPECT_NEAR(Judge(hidden, d).parameters.at(0).Error(), -0.1, 1e-12);
-  EXPECT_TRUE(Judge(hidden, d).parameters.at(0).Covers());
-  d.causes[0].parameters[0].u = 0.05;
-  EXPECT_FALSE(Judge(hidden, d).parameters.at(0).Covers());
+TEST(Judge, SizesAreComparedWithTheirTruthAndPhasesModuloAFullTurn) {
+  const auto compared = [](const std::string& name, double truth, double value, double u) {
+    Hidden hidden = Listed("tone");
+    hidden.causes[0].parameters = {{name, truth}};
+    Diagnosis d = Named({{"tone", "all"}});
+    d.causes[0].parameters = {{name, "1", 1.0, value, u}};
+    return Judge(hidden, d).parameters.at(0);
+  };
+  EXPECT_FALSE(compared("size", 2.0, 2.3, 0.1).Covers());
+  EXPECT_TRUE(compared("size", 2.0, 2.3, 0.2).Covers());
+  EXPECT_NEAR(compared("phase", 0.05, 2.0 * units::kPi - 0.05, 0.06).Error(), -0.1, 1e-12);
+  EXPECT_TRUE(compared("phase", 0.05, 2.0 * units::kPi - 0.05, 0.06).Covers());
+  EXPECT_FALSE(compared("phase", 0.05, 2.0 * units::kPi - 0.05, 0.05).Covers());
 }
 
 TEST(Share, HasTheIntervalOfClopperAndPearson) {
@@ -104,6 +104,60 @@ TEST(Share, HasTheIntervalOfClopperAndPearson) {
   EXPECT_NEAR((Share{0, 10}.Interval95()[1]), 1.0 - std::pow(0.025, 0.1), 1e-9);
   EXPECT_NEAR((Share{10, 10}.Interval95()[0]), std::pow(0.025, 0.1), 1e-9);
   EXPECT_NEAR(ProbabilityOfAtMost(1, 3, 0.5), 0.5, 1e-12);
+}
+
+// Whether the suite's own measures can fail.
+
+std::string SaidBy(const ::testing::AssertionResult& result) {
+  return result ? "" : result.message();
+}
+
+const std::vector<KnownWrong> kKnown = {{"twin", "b", "its tie has four members"}, {"other", "z", "not asked"}};
+
+TEST(WrongOnlyWhereKnown, HoldsIfExactlyTheListedOnesAreWrongAndWantsTheOthersOutOfTheList) {
+  const auto said_of = [](const std::vector<Answered>& answered) {
+    return SaidBy(WrongOnlyWhereKnown(answered, kKnown));
+  };
+  EXPECT_EQ(said_of({{"twin", "a", true, ""}, {"twin", "b", false, ""}}), "");
+  EXPECT_THAT(said_of({{"twin", "a", false, "hides x"}, {"twin", "b", false, ""}}),
+              HasSubstr("wrong, and no known one:\n  twin | a hides x"));
+  EXPECT_THAT(said_of({{"twin", "b", true, ""}}),
+              HasSubstr("take them out of tests/data/known_wrong.txt\n  twin | b"));
+  EXPECT_THAT(said_of({{"twin", "a", true, ""}}),
+              HasSubstr("no case any more: take them out of tests/data/known_wrong.txt\n  twin | b"));
+}
+
+TEST(KnownWrongCases, NeedTheirReason) {
+  EXPECT_EQ(ParseKnownWrong("# words\n\ntwin x | rotary:a:b:1 | a reason | more\n", "f").at(0).why,
+            "a reason | more");
+  EXPECT_THROW(ParseKnownWrong("twin x | rotary:a:b:1 |\n", "f"), InputError);
+  for (const KnownWrong& known : KnownWrongCases()) EXPECT_GT(known.why.size(), 20u) << known.name;
+}
+
+double ProbabilityToPass(int of, double true_rate, double caught) {
+  return 1.0 - ProbabilityOfAtMost(FewestOf(of, caught) - 1, of, true_rate);
+}
+
+// Of 117 effects: the binomial's figures, by hand 105 of 117.
+TEST(PooledRate, CatchesATrueEightyFivePercentWhereNinetyFiveAreClaimed) {
+  EXPECT_EQ(FewestOf(117, 0.85), 105);
+  EXPECT_LT(ProbabilityToPass(117, 0.85, 0.85), 0.1);
+  EXPECT_GT(ProbabilityToPass(117, 0.95, 0.85), 0.99);
+  EXPECT_TRUE(IsPooledRate(105, 117, 0.95, 0.85));
+  EXPECT_FALSE(IsPooledRate(104, 117, 0.95, 0.85));
+}
+
+TEST(PooledRate, RefusesTooFewCasesToTellOneRateFromTheOther) {
+  EXPECT_THAT(SaidBy(IsPooledRate(20, 20, 0.95, 0.85)), HasSubstr("20 cases do not tell 0.95 from 0.85"));
+  EXPECT_FALSE(IsPooledRate(0, 0, 0.95, 0.85));
+}
+
+// Of 100 at one half, P(X <= 36) = 0.0033 and P(X <= 37) = 0.0060.
+TEST(ClaimedShare, FailsOnBothSides) {
+  EXPECT_FALSE(IsShareOf(36, 100, 0.5));
+  EXPECT_TRUE(IsShareOf(37, 100, 0.5));
+  EXPECT_TRUE(IsShareOf(63, 100, 0.5));
+  EXPECT_FALSE(IsShareOf(64, 100, 0.5));
 }
 
 }  // namespace

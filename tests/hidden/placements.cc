@@ -35,30 +35,6 @@ std::vector<Design> DesignsFor(const std::string& effect, const std::string& ben
   return {Design::kStops, Design::kSweep};
 }
 
-const char* NameOf(Design design) {
-  switch (design) {
-    case Design::kRotary:
-      return "rotary";
-    case Design::kStops:
-      return "stops";
-    case Design::kSweep:
-      return "sweep";
-    case Design::kStopsAllKnown:
-      return "stops+";
-    case Design::kSweepAllKnown:
-      return "sweep+";
-    case Design::kTurntable:
-      return "turntable";
-    case Design::kHob:
-      return "hob";
-    case Design::kCircles:
-      return "circles";
-    case Design::kFreeform:
-      return "freeform";
-  }
-  return "";
-}
-
 }  // namespace
 
 std::vector<Placement> Placements(const std::string& bench) {
@@ -76,7 +52,7 @@ std::vector<Design> PlainDesigns(const std::string& bench) {
 }
 
 std::string CaseName(const Placement& placement, std::uint64_t seed) {
-  return fmt::format("{}:{}:{}:{}", NameOf(placement.design), placement.effect, placement.where, seed);
+  return fmt::format("{}:{}:{}:{}", NamesOf(placement.design).name, placement.effect, placement.where, seed);
 }
 
 }  // namespace twinbench::hidden

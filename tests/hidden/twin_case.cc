@@ -1,7 +1,6 @@
 #include "tests/hidden/twin_case.h"
 
 #include "tests/hidden/alike.h"
-#include "tests/hidden/effect_draw.h"
 #include "tests/hidden/effect_size.h"
 
 namespace twinbench::hidden {

@@ -1,5 +1,7 @@
 #include "tests/hidden/twin_cases.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <memory>
@@ -7,6 +9,9 @@
 #include "tests/hidden/effect_size.h"
 #include "tests/hidden/placements.h"
 #include "tests/hidden/twin_case.h"
+#include "twin/benches/names.h"
+#include "twin/benches/rotary_4dof/settings.h"
+#include "twin/benches/turntable_autocollimator/settings.h"
 
 namespace twinbench::hidden {
 namespace {
@@ -49,6 +54,35 @@ Case WithoutItsCause(Case made) {
   return made;
 }
 
+/// What a pair is drawn from.
+std::vector<Wanted> SizedEffects(const std::string& bench) {
+  std::vector<Wanted> effects;
+  for (const Placement& at : Placements(bench)) {
+    if (HasSize(at.effect, at.where, bench)) effects.push_back({at.effect, at.where});
+  }
+  return effects;
+}
+
+Wanted AnyOf(const std::vector<Wanted>& all, Stream& stream) {
+  return all[static_cast<std::size_t>(stream.Uniform() * static_cast<double>(all.size()))];
+}
+
+std::vector<Wanted> DrawPair(const std::vector<Wanted>& all, double rho_to, Stream& stream) {
+  Wanted a, b;
+  do {
+    a = AnyOf(all, stream);
+    b = AnyOf(all, stream);
+  } while (a.effect == b.effect);
+  a.rho = LogUniformIn(stream, 10.0, rho_to);
+  b.rho = LogUniformIn(stream, 10.0, rho_to);
+  return {a, b};
+}
+
+double& Remount_s(Scenario& scenario) {
+  return scenario.bench == kRotaryBench ? RotaryOf(scenario).procedure.remount_s
+                                        : TurntableOf(scenario).turntable_procedure.remount_s;
+}
+
 }  // namespace
 
 double TwinOptions::RhoOf(int k) const {
@@ -78,6 +112,39 @@ std::vector<Plan> LeaveOneOutPlans(const std::string& bench, const TwinOptions& 
       Plan plan = SinglePlan("leave-one-out", at, kRho, ++seed, scales.Of(at.design));
       plan.make = [make = std::move(plan.make)] { return WithoutItsCause(make()); };
       plans.push_back(std::move(plan));
+    }
+  }
+  return plans;
+}
+
+std::vector<Plan> PairPlans(int count, const TwinOptions& options) {
+  std::vector<Plan> plans;
+  const auto scale = std::make_shared<const SignatureScale>(Design::kRotary, options.cache_folder);
+  const std::vector<Wanted> all = SizedEffects(kRotaryBench);
+  Stream stream(options.first_seed, "hidden.pairs");
+  while (std::ssize(plans) < count) {
+    const std::vector<Wanted> pair = DrawPair(all, options.rho_to, stream);
+    const std::uint64_t seed = 100000 + options.first_seed + plans.size();
+    plans.push_back(
+        {"pairs", std::to_string(seed), [=] { return MakeTwinCase(Design::kRotary, seed, pair, *scale); }});
+  }
+  return plans;
+}
+
+std::vector<Plan> CreepPlans(const std::string& bench, const std::vector<Clamped>& ways,
+                             const TwinOptions& options) {
+  std::vector<Plan> plans;
+  std::uint64_t seed = 500000 + options.first_seed;
+  for (const Placement& at : Placements(bench)) {
+    if (at.effect != "mount_creep") continue;
+    const auto scale = std::make_shared<const SignatureScale>(at.design, options.cache_folder);
+    for (const Clamped& way : ways) {
+      ++seed;
+      const Wanted wanted{at.effect, at.where, options.RhoOf(0), {{"time_constant", way.time_constant_s}}};
+      const auto clamp = [way](Scenario& actual) { Remount_s(actual) = way.before_s; };
+      plans.push_back({"creep " + bench,
+                       fmt::format("{}:{:.0f}s:{:.0f}s", CaseName(at, seed), way.before_s, way.time_constant_s),
+                       [=] { return MakeTwinCase(at.design, seed, {wanted}, *scale, clamp); }});
     }
   }
   return plans;

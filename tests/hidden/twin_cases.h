@@ -28,7 +28,8 @@ std::vector<Plan> SinglePlans(const std::string& bench, const TwinOptions& optio
 struct Clamped {
   double before_s, time_constant_s;
 };
-/// mount_creep at every place, in each of these ways.
+/// mount_creep at every place, in each of these ways: the clamp closed sooner or later than the scenario believes,
+/// which says only how long a set-up takes as a rule.
 /// @param bench  That has it: rotary_4dof, turntable_autocollimator.
 std::vector<Plan> CreepPlans(const std::string& bench, const std::vector<Clamped>& ways,
                              const TwinOptions& options);

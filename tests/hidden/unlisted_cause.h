@@ -32,6 +32,10 @@ struct Draw {
 
   /// value(i) of each reading, in their order.
   using Value = std::function<double(std::size_t i)>;
+  using Angle = double Reading::*;
+  Value DirectionMap(Angle angle, int first_order, int last_order) const;  // direction times a wave
+  Value LineBetween(Angle angle, int first_order, int last_order) const;   // a wave whose order is no whole number
+  Value Wander(double from_min, double to_min) const;  // straight between random levels so many minutes apart
   Eigen::VectorXd Series(const Value& value) const;
   Eigen::VectorXd FullCircleSeries(const Value& value) const;  // 0 in the other phases
 };

@@ -34,24 +34,13 @@ UnlistedSignal SeatOfEachPass(const Draw& draw) {
 }
 
 UnlistedSignal CircleDirectionMap(const Draw& draw) {
-  const int order = draw.Whole(4, 8);
-  const double phase = draw.Phase();
-  const auto map = [&](std::size_t i) {
-    return draw.readings[i].direction * std::cos(order * draw.readings[i].target_rad + phase);
-  };
+  const Draw::Value map = draw.DirectionMap(&Reading::target_rad, 4, 8);
   return OnEither(draw, {"direction"}, draw.Series(map));
 }
 
-/// Something that is warm while a set-up lasts: straight between random levels some minutes apart.
+/// Something that is warm while a set-up lasts.
 UnlistedSignal CircleWander(const Draw& draw) {
-  const double minutes = UniformIn(draw.stream, 4.0, 9.0);
-  std::vector<double> levels;
-  for (int k = 0; k < 200; ++k) levels.push_back(draw.of_run.Normal());
-  const auto wander = [&](std::size_t i) {
-    const double at = 60.0 * draw.Hours(i) / minutes;
-    const auto k = static_cast<std::size_t>(at) % (levels.size() - 1);
-    return levels[k] + (at - std::floor(at)) * (levels[k + 1] - levels[k]);
-  };
+  const Draw::Value wander = draw.Wander(4.0, 9.0);
   return OnEither(draw, {"time", "pass"}, draw.Series(wander));
 }
 

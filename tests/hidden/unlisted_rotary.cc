@@ -50,12 +50,8 @@ UnlistedSignal Interharmonic(const Draw& draw) {
 }
 
 UnlistedSignal DirectionHarmonic(const Draw& draw) {
-  const int order = draw.Whole(1, 5);
-  const double phase = draw.Phase();
-  const auto wave = [&](std::size_t i) {
-    return draw.readings[i].direction * std::cos(order * draw.readings[i].target_rad + phase);
-  };
-  return OnPattern("roll", {"direction"}, draw.FullCircleSeries(wave));
+  const Draw::Value map = draw.DirectionMap(&Reading::target_rad, 1, 5);
+  return OnPattern("roll", {"direction"}, draw.FullCircleSeries(map));
 }
 
 UnlistedSignal Fringe(const Draw& draw) {

@@ -12,26 +12,13 @@ std::string AnyAxis(const Draw& draw) {
 
 UnlistedSignal TurntableDirectionMap(const Draw& draw) {
   const std::string axis = AnyAxis(draw);
-  const int order = draw.Whole(2, 5);
-  const double phase = draw.Phase();
-  const auto map = [&](std::size_t i) {
-    return draw.readings[i].direction * std::cos(order * draw.readings[i].target_rad + phase);
-  };
-  return OnAxis(axis, {"direction"}, draw.FullCircleSeries(map));
+  return OnAxis(axis, {"direction"}, draw.FullCircleSeries(draw.DirectionMap(&Reading::target_rad, 2, 5)));
 }
 
-/// Draughts that come and go: straight between random levels some minutes apart.
+/// Draughts that come and go.
 UnlistedSignal SlowWander(const Draw& draw) {
   const std::string axis = AnyAxis(draw);
-  const double minutes = UniformIn(draw.stream, 3.0, 8.0);
-  std::vector<double> levels;
-  for (int k = 0; k < 200; ++k) levels.push_back(draw.of_run.Normal());
-  const auto wander = [&](std::size_t i) {
-    const double at = 60.0 * draw.Hours(i) / minutes;
-    const auto k = static_cast<std::size_t>(at) % (levels.size() - 1);
-    return levels[k] + (at - std::floor(at)) * (levels[k + 1] - levels[k]);
-  };
-  return OnAxis(axis, {"time"}, draw.Series(wander));
+  return OnAxis(axis, {"time"}, draw.Series(draw.Wander(3.0, 8.0)));
 }
 
 /// Something that was leant against the stand for one pass.
