@@ -6,14 +6,9 @@
 #include <set>
 #include <string>
 
+#include "tests/diagnose/encoder_record.h"
 #include "tests/support/night.h"
-#include "tests/support/thresholds.h"
 #include "twin/benches/encoder_comparison/diagnosis/part_of_readings.h"
-#include "twin/benches/encoder_comparison/settings.h"
-#include "twin/benches/names.h"
-#include "twin/benches/registry.h"
-#include "twin/core/units.h"
-#include "twin/diagnose/diagnose.h"
 
 // One machine read in several ways: what is wrong with it does not hang on how often, or where, it was read.
 namespace twinbench::diagnose {
@@ -30,46 +25,35 @@ struct Sampling {
 
 /// Passes + - - + at 10 deg/s with white noise of 0.002 deg.
 template <class Error>
-std::vector<Reading> ReadAs(const Sampling& sampling, Error error_deg) {
+encoder::lab::Record ReadAs(const Sampling& sampling, Error error_deg) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise_deg(0.0, 0.002);
   std::uniform_real_distribution<double> beside(-0.5, 0.5);
   constexpr double kSpeed_deg_s = 10.0;
   const int in_pass = sampling.readings / 4;
   const double length_deg = 360.0 * sampling.turns, step_deg = length_deg / in_pass;
-  std::vector<Reading> readings;
+  encoder::lab::Record record;
   int pass = 0;
   for (const int direction : {1, -1, -1, 1}) {
     for (int k = 0; k < in_pass; ++k) {
       const double way_deg = (k + 0.5 + sampling.uneven * beside(random)) * step_deg;
-      Reading r;
-      r.reading = static_cast<int>(readings.size());
       const double time_s = (pass * (length_deg + 20.0) + way_deg) / kSpeed_deg_s;
       const double angle_deg = direction > 0 ? way_deg : length_deg - way_deg;
-      r.time = Time(FromSeconds(time_s));
-      r.pass = pass;
-      r.direction = direction;
-      r.position = k;
-      r.reference_rad = angle_deg * deg;
-      r.velocity_rad_s = direction * kSpeed_deg_s * deg;
-      r.measured_rad = (angle_deg + error_deg(angle_deg * deg, direction, time_s) + noise_deg(random)) * deg;
-      readings.push_back(r);
+      const double off_deg = error_deg(angle_deg * deg, direction, time_s) + noise_deg(random);
+      record.Add(time_s, angle_deg, angle_deg + off_deg, direction, pass);
+      record.readings.back().position = k;
+      record.readings.back().velocity_rad_s = direction * kSpeed_deg_s * deg;
     }
     ++pass;
   }
-  return readings;
+  return record;
 }
 
 /// Effects that are named, alone or in a tie.
 template <class Error>
 std::set<std::string> NamedIn(const Sampling& sampling, Error error_deg) {
-  Scenario scenario;
-  scenario.bench = kEncoderBench;
-  EncoderOf(scenario).encoder_procedure.kind = "sweep";
-  DiagnoseOptions options;
-  options.null_runs = 100;  // what is found here is far above any threshold
-  options.cache_folder = test::ThresholdsFolder();
-  const Diagnosis d = Diagnose(ReadAs(sampling, error_deg), scenario, options).diagnosis;
+  const encoder::lab::Record record = ReadAs(sampling, error_deg);
+  const Diagnosis d = Diagnosed(record, record.Believed()).diagnosis;
   EXPECT_NE(d.verdict, Verdict::kUnknown) << sampling.name << ": " << d.unknown.signature;
   std::set<std::string> named;
   for (const Cause& cause : d.causes) named.insert(cause.effect);
@@ -106,12 +90,14 @@ TEST(DiagnoseSampling, FaultsThatAreOneToFirstOrderAreTold) {
   const auto error_deg = [](double angle_rad, int, double) {
     return CutOff_deg(angle_rad) + 0.1 * std::cos(7.0 * angle_rad + 0.4);
   };
-  EXPECT_EQ(NamedIn({"many", 2000}, error_deg), (std::set<std::string>{"periodic", "signal_clipping", "signal_offset"}));
+  EXPECT_EQ(NamedIn({"many", 2000}, error_deg),
+            (std::set<std::string>{"periodic", "signal_clipping", "signal_offset"}));
 }
 
 TEST(DiagnoseSampling, APartOfTheReadingsHasNeighboursAndTurningPoints) {
   const auto none = [](double, int, double) { return 0.0; };
-  const std::vector<Reading> few = ReadAs({"few", 4000}, none), many = ReadAs({"many", 20000}, none);
+  const std::vector<Reading> few = ReadAs({"few", 4000}, none).readings,
+                             many = ReadAs({"many", 20000}, none).readings;
   EXPECT_EQ(encoder::PartOf(few).size(), few.size());
   const std::vector<Reading> part = encoder::PartOf(many);
   EXPECT_NEAR(static_cast<double>(part.size()), 4000.0, 4 * 16.0);  // a group more or less in each pass

@@ -6,49 +6,14 @@
 
 #include "tests/diagnose/encoder_record.h"
 
-// Instruments as they are found in laboratories, by closed forms that share nothing with the twin or the engine.
 namespace twinbench::diagnose::encoder {
 namespace {
 
 using namespace lab;
 
+// Instruments as they are found in laboratories, by closed forms that share nothing with the twin or the engine.
+
 constexpr double kRad = units::kPi / 180.0;
-
-/// Whole turns put back where the angle of two signals has none.
-double Near(double angle_deg, double of_deg) {
-  return angle_deg + 360.0 * std::round((of_deg - angle_deg) / 360.0);
-}
-
-struct Resolver {
-  double level, zero_deg, delay_s;
-
-  double Shows_deg(const Swing& swing, double t_s) const {
-    const double at_deg = swing.At(t_s - delay_s) - zero_deg, p = at_deg * kRad;
-    const double sine = std::clamp(std::sin(p), -level, level), cosine = std::clamp(std::cos(p), -level, level);
-    return zero_deg + Near(std::atan2(sine, cosine) / kRad, at_deg);
-  }
-};
-
-Record Resolved(const Resolver& resolver, unsigned seed) {
-  const Swing swing{900.0, 46.0};
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> noise_deg(0.0, 0.01);
-  Record record;
-  for (double t_s = 0.037; t_s < 69.0; t_s += 0.083)
-    record.Add(t_s, swing.At(t_s), resolver.Shows_deg(swing, t_s) + noise_deg(random), swing.Direction(t_s),
-               swing.Pass(t_s));
-  return record;
-}
-
-TEST(EncoderInstruments, AResolverThatIsClippedAndReadLateIsBoth) {
-  for (const double level : {0.45, 0.86}) {
-    const Answer answer = Ask(Resolved({.level = level, .zero_deg = 31.0, .delay_s = 0.023}, 7));
-    EXPECT_TRUE(answer.Names("signal_clipping") && answer.Names("latency")) << level << ": " << answer.Words();
-    EXPECT_NEAR(answer.Value("signal_clipping", "level"), level, 1e-3);
-    EXPECT_NEAR(answer.Value("latency", "delay"), 0.023, 2e-4);
-    EXPECT_EQ(answer.again.verdict, Verdict::kNone) << level << ": " << answer.Words();
-  }
-}
 
 /// A follower with play on a shaft that goes to and fro in even steps.
 Record Played(double width_deg, double step_deg, int turns_back, double first_share, unsigned seed) {
@@ -123,19 +88,14 @@ TEST(EncoderInstruments, AnErrorBeyondTheStepIsFoundInRoundedReadings) {
   EXPECT_NEAR(answer.Value("periodic", "amplitude"), 0.06, 0.004) << answer.Words();
 }
 
-TEST(EncoderInstruments, AMagneticEncoderMayHaveManyOrders) {
+TEST(EncoderInstruments, AMagneticEncoderMayHaveManyOrdersAndNoLineBetweenThem) {
   const Swing swing{720.0, 60.0};
-  std::mt19937_64 random(50);
-  std::normal_distribution<double> noise_deg(0.0, 0.02);
-  Record record;
-  for (double t_s = 0.011; t_s < 60.0; t_s += 0.05) {
+  const Answer answer = Ask(Swung(swing, 0.011, 60.0, 0.05, 0.02, 50, [&](double t_s) {
     const double a = swing.At(t_s) * kRad;
-    const double error_deg = 0.8 * std::cos(a + 1.0) + 0.35 * std::cos(2.0 * a) + 0.12 * std::cos(3.0 * a - 2.0) +
-                             0.21 * std::cos(4.0 * a + 0.4) + 0.08 * std::cos(50.0 * a + 0.2);
-    record.Add(t_s, swing.At(t_s), swing.At(t_s) + error_deg + noise_deg(random), swing.Direction(t_s),
-               swing.Pass(t_s));
-  }
-  const Answer answer = Ask(record);
+    return swing.At(t_s) + 0.8 * std::cos(a + 1.0) + 0.35 * std::cos(2.0 * a) + 0.12 * std::cos(3.0 * a - 2.0) +
+           0.21 * std::cos(4.0 * a + 0.4) + 0.08 * std::cos(50.0 * a + 0.2);
+  }));
+  EXPECT_NE(answer.run.diagnosis.verdict, Verdict::kUnknown) << answer.Words();
   std::vector<double> orders;
   for (const Cause& cause : answer.run.diagnosis.causes) {
     if (cause.effect != "periodic") continue;
@@ -146,6 +106,56 @@ TEST(EncoderInstruments, AMagneticEncoderMayHaveManyOrders) {
   for (const double order : {3.0, 4.0, 50.0}) EXPECT_EQ(std::ranges::count(orders, order), 1) << answer.Words();
   EXPECT_TRUE(answer.Find("eccentricity") && answer.Find("ellipticity")) << answer.Words();
   EXPECT_EQ(answer.again.verdict, Verdict::kNone) << answer.Words();
+}
+
+TEST(EncoderInstruments, OrdersThatTheReadingsDoNotTellApartGetNoSizes) {
+  Record record = Stops(0.002, 0.0, 3, [](double, double a_deg) { return 0.02 * std::cos(20.0 * a_deg * kRad); });
+  const auto sizes = [&] { return Diagnose(record.readings, record.Believed()).diagnosis.harmonics; };
+  EXPECT_FALSE(sizes().empty());
+  std::erase_if(record.readings, [](const Reading& r) { return r.reference_rad > 100.0 * kRad; });  // of a turn
+  EXPECT_TRUE(sizes().empty());
+}
+
+// Resolvers whose signals are cut off and have every other fault as well, by the closed form of what they show.
+
+struct FaultyResolver {
+  double level, zero_deg, offset_sin, offset_cos, mismatch, lead_deg;
+
+  double Shows_deg(double shaft_deg) const {
+    const double p = (shaft_deg - zero_deg) * kRad;
+    const double sine = (1.0 + mismatch) * std::sin(p + lead_deg * kRad) + offset_sin;
+    const double cosine = std::cos(p) + offset_cos;
+    const double shown_deg =
+        zero_deg + std::atan2(std::clamp(sine, -level, level), std::clamp(cosine, -level, level)) / kRad;
+    return shown_deg + 360.0 * std::round((shaft_deg - shown_deg) / 360.0);
+  }
+};
+
+TEST(EncoderResolver, ThatIsClippedAndReadLateIsBoth) {
+  const Swing swing{900.0, 46.0};
+  for (const double level : {0.45, 0.86}) {
+    const FaultyResolver resolver{level, 31.0, 0.0, 0.0, 0.0, 0.0};
+    ExpectFound(Ask(Swung(swing, 0.037, 69.0, 0.083, 0.01, 7,
+                          [&](double t_s) { return resolver.Shows_deg(swing.At(t_s - 0.023)); })),
+                {{"signal_clipping", "level", level, 2.5e-4}, {"latency", "delay", 0.023, 5e-5}});
+  }
+}
+
+TEST(EncoderResolver, ThatIsClippedHasAllItsOtherFaultsAtOnceToo) {
+  const Swing swing{1100.0, 52.0};
+  unsigned seed = 100;
+  for (const double level : {0.3, 0.5, 0.7, 0.95}) {
+    const FaultyResolver resolver{level, 23.0, 0.06, -0.045, 0.05, 3.0};
+    ExpectFound(Ask(Swung(swing, 0.029, 78.0, 0.081, 0.01, ++seed,
+                          [&](double t_s) { return resolver.Shows_deg(swing.At(t_s - 0.034)); })),
+                {{"signal_clipping", "level", level, 3e-3},
+                 {"signal_clipping", "zero", 23.0, 0.1},
+                 {"signal_offset", "offset_sin", 0.06, 3e-3},
+                 {"signal_offset", "offset_cos", -0.045, 3e-3},
+                 {"amplitude_mismatch", "ratio", 0.05, 3e-3},
+                 {"quadrature_error", "angle", 1e3 * 3.0 * kRad, 3.0},
+                 {"latency", "delay", 0.034, 1e-3}});
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -78,22 +79,58 @@ struct Answer {
   }
 };
 
-inline Answer Ask(const Record& record) {
+inline DiagnosisRun Diagnosed(const Record& record, const Scenario& believed) {
   DiagnoseOptions options;
   options.null_runs = 100;  // of what is far beyond any threshold
   options.cache_folder = test::ThresholdsFolder();
-  Answer answer{Diagnose(record.readings, record.Believed(), options), {}};
-  answer.again = Diagnose(record.readings, Extend(record.Believed(), answer.run, "test"), options).diagnosis;
+  return Diagnose(record.readings, believed, options);
+}
+
+inline Answer Ask(const Record& record) {
+  Answer answer{Diagnosed(record, record.Believed()), {}};
+  answer.again = Diagnosed(record, Extend(record.Believed(), answer.run, "test")).diagnosis;
   return answer;
+}
+
+/// What must be found, and how sharply for it to be worth something.
+struct Expected {
+  const char *effect, *parameter;
+  double value, sharp = 1e9;
+};
+
+/// Each is named, in its size; and the file that is written says it all.
+inline void ExpectFound(const Answer& answer, const std::vector<Expected>& all) {
+  SCOPED_TRACE(answer.Words());
+  for (const Expected& e : all) {
+    EXPECT_TRUE(answer.Names(e.effect)) << e.effect;
+    const double u = answer.Uncertainty(e.effect, e.parameter);
+    EXPECT_NEAR(answer.Value(e.effect, e.parameter), e.value, 4.0 * u) << e.effect;
+    EXPECT_LT(u, e.sharp) << e.effect;
+  }
+  EXPECT_EQ(answer.again.verdict, Verdict::kNone);
 }
 
 /// To and fro, as a hand wheel is turned: there and back over `range_deg` in `period_s`.
 struct Swing {
-  double range_deg, period_s;
-  double At(double t_s) const { return 0.5 * range_deg * (1.0 - std::cos(2.0 * units::kPi * t_s / period_s)); }
+  double range_deg, period_s, from_deg = 0.0;
+  double At(double t_s) const {
+    return from_deg + 0.5 * range_deg * (1.0 - std::cos(2.0 * units::kPi * t_s / period_s));
+  }
   int Direction(double t_s) const { return std::sin(2.0 * units::kPi * t_s / period_s) >= 0.0 ? 1 : -1; }
   int Pass(double t_s) const { return static_cast<int>(2.0 * t_s / period_s); }
 };
+
+/// Read every `every_s` from `first_s` on, with what the device shows at a time.
+template <class Shows>
+Record Swung(const Swing& swing, double first_s, double end_s, double every_s, double noise_deg, unsigned seed,
+             Shows shows_deg) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> noise(0.0, noise_deg);
+  Record record;
+  for (double t_s = first_s; t_s < end_s; t_s += every_s)
+    record.Add(t_s, swing.At(t_s), shows_deg(t_s) + noise(random), swing.Direction(t_s), swing.Pass(t_s));
+  return record;
+}
 
 /// Stops of 6 deg, two turns there and back twice; the error is a function of time and angle.
 template <class Error>

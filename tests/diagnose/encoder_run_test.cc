@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/core/input_error.h"
-#include "tests/diagnose/encoder_twin_run.h"
+#include "tests/diagnose/twin_runs.h"
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/settings.h"
 #include "twin/benches/names.h"
@@ -127,25 +127,6 @@ TEST(EncoderRun, TakesTheNoiseThatIsKnown) {
   const EncoderRun encoder = RunOf(RunEncoderTwin(scenario).readings, scenario);
   EXPECT_TRUE(encoder.run.sigma_stated);
   EXPECT_EQ(encoder.run.sigma[0], EncoderOf(scenario).device.noise_rad);
-}
-
-TEST(EncoderRun, KnowsTheEffectsOfItsScenario) {
-  for (const char* kind : {"stops", "sweep"}) {
-    Scenario scenario = EncoderScenario(kind);
-    EncoderOf(scenario).device.lines = 90;
-    EncoderOf(scenario).device.signal_zero_rad = 0.4;
-    for (const EffectEntry& entry : EffectCatalogue(kEncoderBench)) {
-      if (entry.name == "outliers") continue;
-      Scenario knowing = scenario;
-      knowing.effects.push_back(EncoderEffect(entry.name));
-      const auto readings = RunEncoderTwin(knowing).readings;
-      const double before = RunOf(readings, scenario).run.residual.norm();
-      const double after = RunOf(readings, knowing).run.residual.norm();
-      // The device's angle is taken from readings that have the effect in them: its own size enters again, times
-      // the order (90 for interpolation at 0.005 deg: 0.8 %; clipping of 0.03 rad, order 4).
-      EXPECT_LT(after, 0.05 * before + 1e-12) << entry.name << " " << kind;  // latency of stops is none
-    }
-  }
 }
 
 TEST(EncoderRun, DerivesVelocitiesOfASweepThatWereNotRecorded) {

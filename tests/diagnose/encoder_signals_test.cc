@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/diagnose/support/synthetic_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/signals.h"
 #include "twin/core/units.h"
 #include "twin/model/signals.h"
@@ -45,19 +46,11 @@ TEST(ClippingError, HasOrders4And8And12InRatiosThatFollowFromTheLevel) {
 }
 
 SignalContext Steps(const std::vector<double>& angle_deg, const std::vector<int>& direction) {
-  Schedule s;
   const auto n = std::ssize(angle_deg);
+  Schedule s = PlainSchedule(static_cast<int>(n));
   s.time_s = Eigen::VectorXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
   s.reference_rad = Eigen::Map<const Eigen::VectorXd>(angle_deg.data(), n) * deg;
-  s.velocity_rad_s = Eigen::VectorXd::Constant(n, kNaN);
-  for (int i = 0; i < n; ++i) {
-    s.reading.push_back(i);
-    s.setup.push_back(0);
-    s.pass.push_back(0);
-    s.direction.push_back(direction[static_cast<std::size_t>(i)]);
-    s.position.push_back(i);
-    s.phase.push_back(Phase::kFullCircle);
-  }
+  s.direction = direction;
   return ContextOf(s, s.reference_rad, {});
 }
 

@@ -2,9 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "tests/diagnose/encoder_fit.h"
-#include "tests/diagnose/encoder_twin_run.h"
+#include "tests/diagnose/twin_runs.h"
 #include "twin/benches/encoder_comparison/settings.h"
 
 // The generic families for what the catalogue has not.
@@ -12,7 +13,6 @@ namespace twinbench::diagnose::encoder {
 namespace {
 
 using test::EncoderScenario;
-using testing::HasSubstr;
 using units::deg;
 
 /// Readings of an ideal device with a signal on them, as a function of the reading [rad].
@@ -39,23 +39,44 @@ std::pair<double, std::string> BestOfSort(const EncoderRun& encoder, const std::
   return {left, words};
 }
 
-TEST(EncoderUnknown, FindsALineBetweenTheOrders) {
-  const EncoderRun encoder =
-      RunWith("stops", [](const Reading& r) { return 1e-4 * std::cos(4.508 * r.reference_rad); });
-  const auto [left, words] = BestOfSort(encoder, "line");
-  EXPECT_LT(left, 0.15);  // the next grid point is at most 0.025 away: 0.3 rad of phase at the ends of two turns
-  EXPECT_THAT(words,
-              testing::MatchesRegex("line at 4[.](49|50|51|52)[0-9] per turn locked to reference angle, .*deg"));
-}
+struct Structure {
+  const char *kind, *sort;
+  std::function<double(const Reading&)> signal;
+  double left;        // at most
+  const char* words;  // a regular expression
+};
 
-TEST(EncoderUnknown, FindsAMapThatChangesSignWithTheDirection) {
-  for (const char* kind : {"stops", "sweep"}) {
-    const EncoderRun encoder =
-        RunWith(kind, [](const Reading& r) { return 1e-4 * r.direction * std::sin(3.0 * r.reference_rad); });
-    const auto [left, words] = BestOfSort(encoder, "direction harmonic");
-    EXPECT_LT(left, 1e-6) << kind;
-    EXPECT_THAT(words, HasSubstr("direction times order 3 locked to reference angle, odd in direction, on angle, "
-                                 "amplitude 0.0057 deg"));
+TEST(EncoderUnknown, FindsLinesMapsTonesWanderPassesAndWhatGrowsWithTimeOrSpeed) {
+  const auto direction_map = [](const Reading& r) { return 1e-4 * r.direction * std::sin(3.0 * r.reference_rad); };
+  const auto tone = [](const Reading& r) { return 1e-4 * std::cos(2.0 * units::kPi * 0.0313 * ToSeconds(r.time)); };
+  const auto wander = [](const Reading& r) { return 1e-4 * std::cos(2.0 * units::kPi * r.reading / 575.0); };
+  const auto one_pass = [](const Reading& r) { return r.pass == 1 ? 1e-4 * std::cos(r.reference_rad) : 0.0; };
+  const auto growing = [](const Reading& r) { return 1e-7 * r.reading * std::cos(5.0 * r.reference_rad); };
+  const auto with_speed = [](const Reading& r) {
+    return 1e-4 * r.velocity_rad_s * std::sin(4.0 * r.reference_rad);
+  };
+  const char* map_words =
+      ".*direction times order 3 locked to reference angle, odd in direction, on angle, amplitude 0.0057 deg.*";
+  const Structure structures[] = {
+      // The next grid point is at most 0.025 away: 0.3 rad of phase at the ends of two turns.
+      {"stops", "line", [](const Reading& r) { return 1e-4 * std::cos(4.508 * r.reference_rad); }, 0.15,
+       "line at 4[.](49|50|51|52)[0-9] per turn locked to reference angle, .*deg"},
+      {"stops", "direction harmonic", direction_map, 1e-6, map_words},
+      {"sweep", "direction harmonic", direction_map, 1e-6, map_words},
+      // Up to a quarter of the resolution away; the engine refines it.
+      {"stops", "tone", tone, 0.5, ".*Hz locked to time.*"},
+      {"stops", "wander", wander, 0.01, ".*"},
+      {"stops", "pass", [](const Reading& r) { return r.pass == 2 ? 1e-4 : 0.0; }, 1e-6, ".*"},
+      {"stops", "pass harmonic", one_pass, 1e-6, ".*"},
+      {"stops", "growing harmonic", growing, 1e-6, ".*"},
+      {"sweep", "speed", [](const Reading& r) { return 1e-4 * std::abs(r.velocity_rad_s); }, 1e-6, ".*"},
+      {"sweep", "speed harmonic", with_speed, 1e-6, ".*"},
+      {"sweep", "harmonic", [](const Reading& r) { return 1e-4 * std::cos(7.0 * r.reference_rad); }, 1e-3,
+       ".*harmonic of order 7 locked to reference angle, same in both directions.*"}};
+  for (const Structure& structure : structures) {
+    const auto [left, words] = BestOfSort(RunWith(structure.kind, structure.signal), structure.sort);
+    EXPECT_LT(left, structure.left) << structure.kind << " " << structure.sort;
+    EXPECT_THAT(words, testing::MatchesRegex(structure.words));
   }
 }
 
@@ -71,50 +92,6 @@ TEST(EncoderUnknown, FindsAHysteresisAlsoWithoutItsName) {
     EXPECT_THAT(words, testing::MatchesRegex("offset locked to direction that is reached over .* deg behind each "
                                              "reversal, odd in direction, on angle, .*"));
   }
-}
-
-TEST(EncoderUnknown, FindsATone) {
-  const EncoderRun encoder = RunWith(
-      "stops", [](const Reading& r) { return 1e-4 * std::cos(2.0 * units::kPi * 0.0313 * ToSeconds(r.time)); });
-  const auto [left, words] = BestOfSort(encoder, "tone");
-  EXPECT_LT(left, 0.5);  // up to a quarter of the resolution away; the engine refines it
-  EXPECT_THAT(words, HasSubstr("Hz locked to time"));
-}
-
-TEST(EncoderUnknown, FindsWanderPassesAndErrorsThatGrowWithTimeOrSpeed) {
-  const auto left = [](const char* kind, const char* sort, auto signal) {
-    return BestOfSort(RunWith(kind, signal), sort).first;
-  };
-  EXPECT_LT(left("stops", "wander",
-                 [](const Reading& r) { return 1e-4 * std::cos(2.0 * units::kPi * r.reading / 575.0); }),
-            0.01);
-  EXPECT_LT(left("stops", "pass", [](const Reading& r) { return r.pass == 2 ? 1e-4 : 0.0; }), 1e-6);
-  EXPECT_LT(left("stops", "pass harmonic",
-                 [](const Reading& r) { return r.pass == 1 ? 1e-4 * std::cos(r.reference_rad) : 0.0; }),
-            1e-6);
-  EXPECT_LT(left("stops", "growing harmonic",
-                 [](const Reading& r) { return 1e-7 * r.reading * std::cos(5.0 * r.reference_rad); }),
-            1e-6);
-  EXPECT_LT(left("sweep", "speed", [](const Reading& r) { return 1e-4 * std::abs(r.velocity_rad_s); }), 1e-6);
-  EXPECT_LT(left("sweep", "speed harmonic",
-                 [](const Reading& r) { return 1e-4 * r.velocity_rad_s * std::sin(4.0 * r.reference_rad); }),
-            1e-6);
-}
-
-TEST(EncoderUnknown, HasTheSameShapesWhateverIsStruck) {
-  const EncoderRun encoder =
-      RunWith("sweep", [](const Reading& r) { return 1e-4 * std::cos(7.0 * r.reference_rad); });
-  const auto [left, words] = BestOfSort(encoder, "harmonic");
-  EXPECT_LT(left, 1e-3);
-  EXPECT_THAT(words, HasSubstr("harmonic of order 7 locked to reference angle, same in both directions"));
-  const auto whole = Families(encoder),
-             excluded = Families(encoder, {"backlash", "slip", "drift", "scale", "latency"});
-  for (const char* name : {"direction offset", "transition", "step", "trend", "speed", "harmonic"}) {
-    EXPECT_TRUE(test::HasFamily(whole, name)) << name;
-    EXPECT_TRUE(test::HasFamily(excluded, name)) << name;
-  }
-  for (const char* name : {"backlash", "slip", "drift", "scale", "latency"})
-    EXPECT_FALSE(test::HasFamily(excluded, name)) << name;
 }
 
 TEST(EncoderUnknown, CountsLessWhereACauseOfTheCatalogueHasTheSameShape) {

@@ -100,16 +100,6 @@ TEST(Extend, MovesAnImpossibleValueToItsBound) {
   EXPECT_EQ(Extend(SmallNoiseFree(), FoundGain(3.0), "").effects.at(0).parameters.at("gain_error"), 0.5);
 }
 
-TEST(Extend, IsRunByTheTwinWithTheEffectOn) {
-  const Scenario extended = Reload(ExtendedToml(SmallNoiseFree(), FoundGain(0.01), "r"));
-  const auto plain = RunTwin(SmallNoiseFree()).readings, with = RunTwin(extended).readings;
-  ASSERT_EQ(plain.size(), with.size());
-  for (std::size_t k = 0; k < plain.size(); ++k) {
-    EXPECT_NEAR(with[k].mean_V[0], 1.01 * plain[k].mean_V[0], 1e-12);
-    EXPECT_EQ(with[k].mean_V[1], plain[k].mean_V[1]);
-  }
-}
-
 TEST(Extend, TabulatesStructureWithoutANameAndTheTwinShowsIt) {
   const std::string toml = ExtendedToml(SmallNoiseFree(), FoundStructure({40, 41, 70}, 0.8e-6), "r\nx");
   EXPECT_THAT(toml, HasSubstr("# r x\n# added: empirical signal on psd_b_y: a bump on psd_b_y\n"));

@@ -8,7 +8,6 @@
 #include "tests/diagnose/hob_chain.h"
 #include "tests/diagnose/told.h"
 #include "tests/support/night.h"
-#include "twin/benches/hob_transmission/settings.h"
 #include "twin/benches/registry.h"
 #include "twin/core/units.h"
 #include "twin/diagnose/diagnose.h"
@@ -77,6 +76,9 @@ TEST_P(HiddenHobCause, IsNamedOrTiedWithWhatLooksTheSame) {
   EXPECT_TRUE(names.contains(own));
   for (const std::string& name : names) EXPECT_TRUE(name == own || trial.alike.contains(name)) << name;
   EXPECT_EQ(run.diagnosis.verdict, names.size() > 1 ? Verdict::kTie : Verdict::kNamed);
+  if (own == "hob_runout" && names.size() > 1) {  // what splits a tie
+    EXPECT_NE(run.diagnosis.causes[0].next_measurement.find("interferometer"), std::string::npos);
+  }
   for (const Cause& cause : run.diagnosis.causes) {
     if (NameOf(cause.effect, cause.where) != own) continue;
     for (const ParameterEstimate& p : cause.parameters) {
@@ -125,32 +127,16 @@ TEST(HobDiagnosis, TellsADelayFromAGapAtTwoSpeeds) {
   EXPECT_FALSE(NamesIn(DiagnosisOf(chain).diagnosis).contains("latency"));
 }
 
-TEST(HobDiagnosis, ProposesTheMeasurementThatSplitsATie) {
-  HobChain chain = Short();
-  chain.hidden = {{"hob_runout", "", {{"amplitude", 0.2 * arcsec}, {"phase", 1.0}}}};
-  const DiagnosisRun run = DiagnosisOf(chain);
-  ASSERT_EQ(run.diagnosis.verdict, Verdict::kTie);
-  EXPECT_NE(run.diagnosis.causes[0].next_measurement.find("interferometer"), std::string::npos);
-}
-
 // 40 runs at a rate of 0.5 %: two or more in 2 % of cases; 12 at a rate of 30 %: fewer than two in 9 %.
 TEST(HobDiagnosis, RaisesHardlyAnyAlarmOnCleanRuns) {
   int alarms = 0;
-  for (std::uint64_t seed = 100; seed < 100 + static_cast<std::uint64_t>(twinbench::test::ByNight(40, 12)); ++seed) {
+  for (std::uint64_t seed = 100; seed < 100 + static_cast<std::uint64_t>(twinbench::test::ByNight(40, 12));
+       ++seed) {
     HobChain chain = Short();
     chain.seed = seed;
     alarms += DiagnosisOf(chain).diagnosis.verdict != Verdict::kNone;
   }
   EXPECT_LE(alarms, 1);
-}
-
-TEST(HobDiagnosis, DoesNotReportAStatedEccentricity) {
-  HobChain chain = Short();
-  chain.hidden = {{"eccentricity", "table", {{"amplitude", 6.0 * arcsec}, {"phase", 40.0 * deg - 90.0 * deg}}}};
-  Scenario scenario = ScenarioOf(chain);
-  HobOf(scenario).table_encoder.eccentricity_m = 6.0 * arcsec * HobOf(scenario).table_encoder.radius_m;
-  HobOf(scenario).table_encoder.eccentricity_azimuth_rad = 40.0 * deg;
-  EXPECT_EQ(Diagnose(ReadingsOf(chain), scenario, Options()).diagnosis.verdict, Verdict::kNone);
 }
 
 TEST(HobDiagnosis, FindsStructureWithoutANameAsUnknown) {

@@ -47,20 +47,15 @@ TEST(MeanOfRuns, OfAnAngleAcrossTheTurnIsNoHalfTurnOff) {
   EXPECT_NEAR(std::remainder(mean[0].measured_rad, units::turn), 0.5e-3, 1e-12);
 }
 
-TEST(MeanOfRuns, LacksWhatOneOfThemLacks) {
+TEST(MeanOfRuns, LacksWhatOneOfThemLacksAndOfOtherStopsIsNone) {
   const Readings a = Stops(0.0);
-  Readings b = a;
-  b[3].status = ReadingStatus::kMissing;
-  EXPECT_EQ(MeanOfRuns({&a, &b}, Format()).value()[3].status, ReadingStatus::kMissing);
-  EXPECT_EQ(MeanOfRuns({&b, &a}, Format()).value()[3].status, ReadingStatus::kMissing);
-}
-
-TEST(MeanOfRuns, OfOtherStopsIsNone) {
-  const Readings a = Stops(0.0);
-  Readings b = a, shorter = a;
-  b[3].direction = -1;
+  Readings lacking = a, back = a, shorter = a;
+  lacking[3].status = ReadingStatus::kMissing;
+  EXPECT_EQ(MeanOfRuns({&a, &lacking}, Format()).value()[3].status, ReadingStatus::kMissing);
+  EXPECT_EQ(MeanOfRuns({&lacking, &a}, Format()).value()[3].status, ReadingStatus::kMissing);
+  back[3].direction = -1;
   shorter.pop_back();
-  EXPECT_FALSE(MeanOfRuns({&a, &b}, Format()));
+  EXPECT_FALSE(MeanOfRuns({&a, &back}, Format()));
   EXPECT_FALSE(MeanOfRuns({&a, &shorter}, Format()));
 }
 

@@ -4,8 +4,10 @@
 
 #include <cmath>
 
+#include "tests/diagnose/found_causes.h"
 #include "tests/diagnose/ring_run.h"
 #include "twin/core/stream.h"
+#include "twin/diagnose/stated_outliers.h"
 
 namespace twinbench::diagnose {
 namespace {
@@ -19,7 +21,7 @@ std::vector<NoiseCause> CausesOf(std::uint64_t seed, const Alter& alter) {
   LinearRun run = NoisyRing(seed);
   alter(run);
   const NoiseModel noise = WhiteNoise(run);
-  const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  const Projector projector = ProjectorOf(run, noise);
   const Eigen::VectorXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual));
   // Left out by the plain way: a row without weight.
   const auto without = [&](const std::vector<int>& left_out) {
@@ -73,6 +75,47 @@ TEST(FindNoiseCauses, TakesManyModeratelyFarValuesForTails) {
   });
   ASSERT_FALSE(causes.empty());
   EXPECT_EQ(causes.front().kind, NoiseCause::Kind::kTails);
+}
+
+/// A run of 1000 readings in which `fraction` of them was found far outside.
+DiagnosisRun FoundOutliers(double fraction, double size_m) {
+  Cause cause = test::FoundCause("outliers", "", {"fraction", "1", 1.0, fraction, 0.002, 0.0, 0.5});
+  cause.parameters.push_back({"size", "um", 1e-6, size_m, 1e-7, 0.0, 1.0});
+  DiagnosisRun run = test::NamedRun(cause);
+  run.diagnosis.readings = 1000;
+  run.diagnosis.alarm_p = 1e-9;
+  run.structure_p = 0.4;
+  return run;
+}
+
+Scenario Stating(double fraction, double size_m) {
+  Scenario scenario;
+  EffectSettings outliers;
+  outliers.name = "outliers";
+  outliers.parameters = {{"fraction", fraction}, {"size", size_m}};
+  scenario.effects = {outliers};
+  return scenario;
+}
+
+TEST(StatedOutliers, AreNoCause) {
+  DiagnosisRun run = FoundOutliers(0.012, 2e-6);
+  LeaveOutStatedOutliers(Stating(0.01, 2e-6), run);
+  EXPECT_TRUE(run.diagnosis.causes.empty());
+  EXPECT_EQ(run.diagnosis.verdict, Verdict::kNone);
+  EXPECT_EQ(run.diagnosis.alarm_p, 0.4);
+  EXPECT_EQ(run.diagnosis.noise.size(), 1u);
+}
+
+TEST(StatedOutliers, ThatAreMoreOrLargerOrWithoutAStatementAreStillOne) {
+  const std::pair<DiagnosisRun, Scenario> cases[] = {{FoundOutliers(0.03, 2e-6), Stating(0.01, 2e-6)},
+                                                     {FoundOutliers(0.01, 20e-6), Stating(0.01, 2e-6)},
+                                                     {FoundOutliers(0.01, 2e-6), Scenario{}}};
+  for (auto [run, scenario] : cases) {
+    LeaveOutStatedOutliers(scenario, run);
+    EXPECT_EQ(run.diagnosis.causes.size(), 1u);
+    EXPECT_EQ(run.diagnosis.alarm_p, 1e-9);
+    EXPECT_EQ(run.diagnosis.verdict, Verdict::kNamed);
+  }
 }
 
 }  // namespace

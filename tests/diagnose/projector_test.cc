@@ -4,20 +4,12 @@
 
 #include <Eigen/QR>
 
-#include "twin/core/stream.h"
+#include "tests/diagnose/support/synthetic_run.h"
 
 namespace twinbench::diagnose {
 namespace {
 
 constexpr int kBlocks = 7, kSize = 2, kCore = 9, kRows = 120;
-
-Eigen::MatrixXd RandomMatrix(const char* name, int rows, int columns) {
-  Stream stream(11, name);
-  Eigen::MatrixXd m(rows, columns);
-  for (int j = 0; j < columns; ++j)
-    for (int i = 0; i < rows; ++i) m(i, j) = stream.Normal();
-  return m;
-}
 
 /// Every row touches one local block and the whole core; two core columns are equal, so only the prior parts them.
 Nuisance ArrowNuisance() {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "tests/diagnose/support/synthetic_run.h"
 #include "twin/benches/names.h"
 #include "twin/core/stream.h"
 #include "twin/diagnose/diagnose.h"

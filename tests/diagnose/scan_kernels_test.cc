@@ -4,16 +4,13 @@
 
 #include <cmath>
 
+#include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/stream.h"
+#include "twin/diagnose/engine/bundle.h"
 #include "twin/diagnose/engine/vector_math.h"
 
 namespace twinbench::diagnose {
 namespace {
-
-Eigen::MatrixXd NormalMatrix(Eigen::Index rows, Eigen::Index columns) {
-  Stream stream(3, "scan_kernels");
-  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return stream.Normal(); });
-}
 
 TEST(ScanKernels, ExponentialIsThatOfTheMathematicsLibrary) {
   for (double x = -699.0; x <= 0.0; x += 0.0917) EXPECT_NEAR(ExpOfNegative(x) / std::exp(x), 1.0, 1e-14) << x;
@@ -31,14 +28,14 @@ TEST(ScanKernels, LogarithmIsThatOfTheMathematicsLibrary) {
 
 TEST(ScanKernels, ProductIsThatOfMatricesOfAnySize) {
   for (const Eigen::Index rows : {1, 7, 8, 9, 40}) {
-    const Eigen::MatrixXd A = NormalMatrix(rows, 5), B = NormalMatrix(rows, 11);
+    const Eigen::MatrixXd A = RandomMatrix("scan_kernels", rows, 5), B = RandomMatrix("scan_kernels", rows, 11);
     const Eigen::MatrixXd product = TransposedProduct(A, B), expected = A.transpose() * B;
     EXPECT_LT((product - expected).cwiseAbs().maxCoeff(), 1e-13) << rows;
   }
 }
 
 TEST(ScanKernels, ProductOfPartOfAMatrixReadsThatPartOnly) {
-  const Eigen::MatrixXd A = NormalMatrix(20, 6), B = NormalMatrix(13, 4);
+  const Eigen::MatrixXd A = RandomMatrix("scan_kernels", 20, 6), B = RandomMatrix("scan_kernels", 13, 4);
   const Eigen::MatrixXd product = TransposedProduct(A.block(2, 1, 13, 3), B);
   EXPECT_LT((product - A.block(2, 1, 13, 3).transpose() * B).cwiseAbs().maxCoeff(), 1e-13);
 }
@@ -55,7 +52,7 @@ TEST(ScanKernels, MeanOfExponentialsDoesNotOverflow) {
 }
 
 TEST(ScanKernels, LogBayesFactorIsItsFormula) {
-  const RunsByRow c2 = NormalMatrix(2, 9).array().square();
+  const RunsByRow c2 = RandomMatrix("scan_kernels", 2, 9).array().square();
   const Eigen::VectorXd weight{{0.4, 0.9}};
   const Eigen::ArrayXd power = Eigen::ArrayXd::LinSpaced(9, 0.5, 30.0);  // the first leave nothing
   Eigen::ArrayXd log_bayes;
@@ -64,6 +61,75 @@ TEST(ScanKernels, LogBayesFactorIsItsFormula) {
     const double left = 1.0 - (0.4 * c2(0, k) + 0.9 * c2(1, k)) / power[k];
     EXPECT_NEAR(log_bayes[k], -0.7 - 25.0 * std::log(std::max(left, 1e-12)), 1e-11) << k;
   }
+}
+
+constexpr int kGrid = 40, kSeries = 3;
+
+/// Correlated noise of unequal size.
+NoiseModel UnevenNoise(const LinearRun& run) {
+  NoiseModel noise{run.sigma, 0.3};
+  for (Eigen::Index k = 0; k < noise.sigma.size(); ++k) noise.sigma[k] *= 1.0 + 0.1 * static_cast<double>(k % 7);
+  return noise;
+}
+
+/// Three series on each of the four channels; a family of its own if `shared` is false.
+Family SomeFamily(const LinearRun& run, bool shared) {
+  const auto series = [n = run.schedule.Readings()](int g) { return RandomMatrix(std::to_string(g), n, kSeries); };
+  Family family;
+  const int columns = run.Channels() * kSeries;
+  family.amplitudes.assign(static_cast<std::size_t>(columns), {"amplitude", "um", 1e-6, 1e-6});
+  family.grid = kGrid;
+  const auto base = std::make_shared<Base>(Base{kGrid, run.Channels(), series});
+  if (shared) {
+    family.base = base;
+    family.map = Eigen::MatrixXd::Identity(columns, columns);
+  } else {
+    family.columns = [base](int g) { return base->Columns(g); };
+  }
+  return family;
+}
+
+/// @param kept  Values that may be kept.
+void ExpectProducts(bool shared, Eigen::Index kept) {
+  const LinearRun run = SyntheticRun({});
+  const NoiseModel noise = UnevenNoise(run);
+  const Projector projector = ProjectorOf(run, noise);
+  const std::vector<Family> families = {SomeFamily(run, shared)};
+  const Bundle bundle(run, noise, projector, families, {0}, kept);
+  const Eigen::MatrixXd white = RandomMatrix("white", run.Rows(), 2);
+  const Unwhitened Y(run, noise, white);
+  for (int g = 0; g < kGrid; ++g) {
+    const Eigen::MatrixXd S = noise.Whiten(run, families[0].ColumnsAt(g));
+    const Eigen::MatrixXd products =
+        bundle.Products(g / bundle.Step(), Y).middleRows((g % bundle.Step()) * bundle.Columns(), bundle.Columns());
+    // Some 1e8: deviations are 1e-7 m and signatures of order one.
+    EXPECT_LT((products - S.transpose() * white).norm(), 1e-12 * products.norm()) << g;
+    EXPECT_LT((bundle.Gram(g) - S.transpose() * projector.Apply(S)).norm(), 1e-9 * bundle.Raw(g).norm()) << g;
+  }
+}
+
+TEST(Bundle, MultipliesSeriesWithoutWritingThemOutOnEveryChannel) {
+  ExpectProducts(true, 1'000'000'000);
+}
+
+TEST(Bundle, MultipliesSignaturesOfAFamilyOfItsOwn) {
+  ExpectProducts(false, 1'000'000'000);
+}
+
+TEST(Bundle, MakesAgainWhatItMayNotKeep) {
+  ExpectProducts(true, 0);
+  ExpectProducts(true, 10'000);
+}
+
+TEST(Bundle, TakesNoMoreMemoryThanGranted) {
+  const LinearRun run = SyntheticRun({});
+  const NoiseModel noise = UnevenNoise(run);
+  const Projector projector = ProjectorOf(run, noise);
+  const std::vector<Family> families = {SomeFamily(run, true)};
+  Eigen::Index left = 10'000;
+  const Bundle bundle(run, noise, projector, families, {0}, left);
+  EXPECT_GE(left, 0);
+  EXPECT_LT(left, 10'000);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +8,9 @@
 
 namespace twinbench::diagnose {
 namespace {
+
+using testing::HasSubstr;
+using testing::Not;
 
 constexpr int kNulls = 60;
 
@@ -62,11 +66,9 @@ TEST(Screen, TellsLatencyFromBacklashOnAnAngleBenchInMotion) {
   // 20 us at 0.1 and 0.3 rad/s: 0.4 and 1.2 arcsec.
   AddEffect(run, Eigen::VectorXd::Ones(1), [&](int i) { return 20e-6 * velocity[i]; });
   const auto tests = ScreenAsStated(run, 200, 1);
-  const ScreenTest* speed = Find(tests, "direction: speed");
-  ASSERT_NE(speed, nullptr);
-  EXPECT_LT(speed->p, 0.01);
+  const ScreenTest speed = Loud(tests, "direction: speed", 0.01, "");
   // Amplitude at 0.3 rad/s; two speeds of 600 readings tell the slope to 1 / sqrt(1200) / (1/3) = 0.09 arcsec.
-  EXPECT_NEAR(speed->effect_rad / units::arcsec, 20e-6 * 0.3 / units::arcsec, 0.3);
+  EXPECT_NEAR(speed.effect_rad / units::arcsec, 20e-6 * 0.3 / units::arcsec, 0.3);
 }
 
 TEST(Screen, FindsTheEccentricityOfADeviceThatHasOnlyAReference) {
@@ -75,12 +77,9 @@ TEST(Screen, FindsTheEccentricityOfADeviceThatHasOnlyAReference) {
   const Eigen::VectorXd angle_rad = run.schedule.reference_rad;
   AddEffect(run, Eigen::VectorXd::Ones(1), [&](int i) { return 0.5 * units::arcsec * std::cos(angle_rad[i]); });
   const auto tests = ScreenAsStated(run, 200, 1);
-  const ScreenTest* harmonics = Find(tests, "harmonics: reference angle");
-  ASSERT_NE(harmonics, nullptr);
-  EXPECT_LT(harmonics->p, 0.01);
-  EXPECT_NE(harmonics->reading.find("order 1 "), std::string::npos) << harmonics->reading;
+  const ScreenTest harmonics = Loud(tests, "harmonics: reference angle", 0.01, "order 1 ");
   // 1200 readings of 1 arcsec: 0.04 arcsec, more where the sweeps cover the turn unevenly.
-  EXPECT_NEAR(harmonics->effect_rad / units::arcsec, 0.5, 0.2);
+  EXPECT_NEAR(harmonics.effect_rad / units::arcsec, 0.5, 0.2);
 }
 
 TEST(Screen, FindsAHalfTurnOverSeveralTurns) {
@@ -89,10 +88,59 @@ TEST(Screen, FindsAHalfTurnOverSeveralTurns) {
   const Eigen::VectorXd angle_rad = run.schedule.reference_rad;
   AddEffect(run, Eigen::VectorXd::Ones(1),
             [&](int i) { return 0.4 * units::arcsec * std::cos(0.42 * angle_rad[i]); });
-  const auto tests = ScreenAsStated(run, 200, 1);
-  const ScreenTest* half = Find(tests, "half turns: reference angle");
-  ASSERT_NE(half, nullptr);
-  EXPECT_LT(half->p, 0.01);
+  Loud(ScreenAsStated(run, 200, 1), "half turns: reference angle", 0.01, "");
+}
+
+ScreenTest WithP(const std::string& name, double p) {
+  ScreenTest test;
+  test.name = name;
+  test.p = p;
+  test.reading = "reading of " + name;
+  return test;
+}
+
+TEST(Loud, SharesTheFalseAlarmsAmongTheTests) {
+  // 0.01 shared by 4 tests: 0.0025.
+  const auto loud = Loud({WithP("a", 0.002), WithP("b", 0.003), WithP("c", 1e-9), WithP("d", 0.5)});
+  ASSERT_EQ(loud.size(), 2u);
+  EXPECT_EQ(loud[0].name, "c");
+  EXPECT_EQ(loud[1].name, "a");
+}
+
+TEST(ScreenInWords, TellsTheLoudTestsOrThatThereAreNone) {
+  EXPECT_THAT(ScreenInWords({WithP("a", 0.2), WithP("b", 1e-9)}),
+              testing::AllOf(HasSubstr("1 of 2 shows"), HasSubstr("reading of b"), Not(HasSubstr("reading of a"))));
+  EXPECT_THAT(ScreenInWords({WithP("a", 0.2), WithP("b", 0.1)}), HasSubstr("none of 2"));
+}
+
+TEST(Moderated, GivesSizesAsLengthAndAngle) {
+  ScreenTest test = WithP("a", 1e-9);
+  test.effect_m = 0.31 * units::um;
+  test.effect_rad = 0.32 * units::arcsec;
+  EXPECT_THAT(Moderated({test}).front().reading, HasSubstr("size 0.31 um (0.32 arcsec)"));
+  test.effect_m = kNaN;
+  EXPECT_THAT(Moderated({test}).front().reading, HasSubstr("size 0.32 arcsec"));
+  test.p = 0.2;
+  EXPECT_THAT(Moderated({test}).front().reading, HasSubstr("not beyond noise"));
+}
+
+TEST(Screen, SizesWhatItFindsInMicrometresAndArcseconds) {
+  LinearRun run = SyntheticRun({});
+  AddNoise(run, 1);
+  // 0.2 m a radian in yaw: 1 um on psd_a_x is as much as 5 urad or 1.03 arcsec of yaw.
+  AddEffect(run, Eigen::Vector4d(1, 0, 0, 0), [&](int i) { return i >= 70 ? 1.0 * units::um : 0.0; });
+  const ScreenTest step = Loud(ScreenAsStated(run, 100, 1), "time: step", 0.01, " um (");
+  EXPECT_NEAR(step.effect_rad / step.effect_m, 1.0 / 0.2, 1e-9);
+  EXPECT_THAT(step.reading, HasSubstr(" arcsec)"));
+}
+
+TEST(Screen, GivesNoLengthWhereReadingsAreAngles) {
+  LinearRun run = SyntheticSweep(400);
+  AddNoise(run, 1);
+  for (const ScreenTest& test : ScreenAsStated(run, 60, 1)) {
+    EXPECT_TRUE(std::isnan(test.effect_m)) << test.name;
+    EXPECT_THAT(test.reading, Not(HasSubstr(" um"))) << test.name;
+  }
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr double kUm = units::um;
 screen::VarianceComponents Fitted(const LinearRun& run, const std::vector<std::vector<int>>& sortings,
                                   int channel) {
   const NoiseModel noise{run.sigma, 0.0};
-  const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  const Projector projector = ProjectorOf(run, noise);
   return screen::FitVarianceComponents(screen::Simulate(run, noise, projector, 50, 1), sortings, channel);
 }
 

@@ -11,13 +11,6 @@
 namespace twinbench::diagnose {
 namespace {
 
-Eigen::VectorXd Normals(int count, std::uint64_t seed) {
-  Stream stream(seed, "test.spectrum");
-  Eigen::VectorXd values(count);
-  for (double& v : values) v = stream.Normal();
-  return values;
-}
-
 /// Uneven: steps between 1 and 3.
 Eigen::VectorXd Times_s(int count) {
   Stream stream(1, "test.times");
@@ -26,33 +19,30 @@ Eigen::VectorXd Times_s(int count) {
   return time_s;
 }
 
-TEST(Spectrum, AgreesWithSumsOverUnevenTimes) {
-  const Eigen::VectorXd time_s = Times_s(300);
-  Eigen::MatrixXd series(300, 2);
-  series << Normals(300, 2), Normals(300, 3);
-  const double step_Hz = 0.5 / (time_s[299] - time_s[0]);
-  const Eigen::MatrixXcd spectrum = screen::Spectrum(time_s, series, step_Hz, 250);
-  for (int k = 1; k <= 250; ++k) {
-    for (int j = 0; j < 2; ++j) {
+/// Against sums, to six digits of the largest possible one: root of readings times the norm.
+void ExpectSums(const Eigen::VectorXd& time_s, const Eigen::MatrixXd& series, double step_Hz, int count) {
+  const auto readings = static_cast<double>(time_s.size());
+  const Eigen::MatrixXcd spectrum = screen::Spectrum(time_s, series, step_Hz, count);
+  for (int k = 1; k <= count; ++k) {
+    for (Eigen::Index j = 0; j < series.cols(); ++j) {
       std::complex<double> sum = 0.0;
-      for (int i = 0; i < 300; ++i)
+      for (Eigen::Index i = 0; i < series.rows(); ++i)
         sum += series(i, j) * std::polar(1.0, -2.0 * units::kPi * k * step_Hz * (time_s[i] - time_s[0]));
-      // Six digits of the largest possible sum, root of readings times the norm: 300.
-      EXPECT_LT(std::abs(spectrum(k - 1, j) - sum), 300e-6) << k;
+      EXPECT_LT(std::abs(spectrum(k - 1, j) - sum), 1e-6 * readings) << k;
     }
   }
 }
 
+TEST(Spectrum, AgreesWithSumsOverUnevenTimes) {
+  const Eigen::VectorXd time_s = Times_s(300);
+  Eigen::MatrixXd series(300, 2);
+  series << RandomMatrix("test.spectrum 2", 300, 1), RandomMatrix("test.spectrum 3", 300, 1);
+  ExpectSums(time_s, series, 0.5 / (time_s[299] - time_s[0]), 250);
+}
+
 TEST(Spectrum, AgreesWhereTheStepsWrapAroundTheRun) {
-  const Eigen::VectorXd time_s = Times_s(50), series = Normals(50, 2);
-  const double step_Hz = 3.3 / (time_s[49] - time_s[0]);
-  const Eigen::MatrixXcd spectrum = screen::Spectrum(time_s, series, step_Hz, 4);
-  for (int k = 1; k <= 4; ++k) {
-    std::complex<double> sum = 0.0;
-    for (int i = 0; i < 50; ++i)
-      sum += series[i] * std::polar(1.0, -2.0 * units::kPi * k * step_Hz * (time_s[i] - time_s[0]));
-    EXPECT_LT(std::abs(spectrum(k - 1, 0) - sum), 50e-6) << k;
-  }
+  const Eigen::VectorXd time_s = Times_s(50);
+  ExpectSums(time_s, RandomMatrix("test.spectrum 2", 50, 1), 3.3 / (time_s[49] - time_s[0]), 4);
 }
 
 TEST(Tones, AreFoundAtAnyFrequencyOfALongRun) {
@@ -64,24 +54,20 @@ TEST(Tones, AreFoundAtAnyFrequencyOfALongRun) {
     AddNoise(run, 1);
     AddEffect(run, Eigen::Vector4d(0, 1, 0, 1),
               [&](int i) { return 0.12e-6 * std::cos(2.0 * units::kPi * time_s[i] / period_s); });
-    const auto tests = ScreenAsStated(run, 100, 1);
-    const ScreenTest* tone = Find(tests, "time: tone");
-    ASSERT_NE(tone, nullptr);
-    EXPECT_LT(tone->p, 0.01) << period_s;
-    EXPECT_NE(tone->reading.find("in tilt"), std::string::npos) << tone->reading;
-    const auto at = tone->reading.find("period ");
-    ASSERT_NE(at, std::string::npos) << tone->reading;
+    const ScreenTest tone = Loud(ScreenAsStated(run, 100, 1), "time: tone", 0.01, "in tilt");
+    const auto at = tone.reading.find("period ");
+    ASSERT_NE(at, std::string::npos) << tone.reading;
     // Steps of half a cycle over the run: the nearest is a quarter away, or two where noise decides between
     // neighbours.
     const double duration_s = time_s[time_s.size() - 1] - time_s[0];
-    EXPECT_NEAR(duration_s / std::stod(tone->reading.substr(at + 7)), duration_s / period_s, 0.8);
+    EXPECT_NEAR(duration_s / std::stod(tone.reading.substr(at + 7)), duration_s / period_s, 0.8);
     // Amplitude of 1152 readings on two channels: 0.3 um / sqrt(1152) = 0.009 um; a quarter cycle off takes 10 %.
-    EXPECT_NEAR(tone->effect_m, 0.12e-6, 0.04e-6);
+    EXPECT_NEAR(tone.effect_m, 0.12e-6, 0.04e-6);
   }
 }
 
 TEST(AllanVariance, OfWhiteNoiseFallsWithTheLengthThatIsAveraged) {
-  const Eigen::VectorXd white = Normals(64000, 5);
+  const Eigen::VectorXd white = RandomMatrix("test.spectrum 5", 64000, 1);
   for (int length : {1, 4, 16}) {
     // Relative standard deviation of 64000 / length differences: sqrt(3 length / 64000), at most 0.027.
     EXPECT_NEAR(screen::AllanVariance({white}, length) * length, 1.0, 0.1) << length;

@@ -4,7 +4,8 @@
 
 #include <set>
 
-#include "tests/diagnose/encoder_twin_run.h"
+#include "tests/diagnose/support/synthetic_run.h"
+#include "tests/diagnose/twin_runs.h"
 #include "tests/sim/encoder_run.h"
 #include "twin/benches/encoder_comparison/diagnosis/families.h"
 #include "twin/core/stream.h"
@@ -25,13 +26,6 @@ LinearRun SweepsOf(std::vector<Family>& families) {
       RunOf(twinbench::test::ReadingsWith(scenario, twinbench::test::EncoderEffect("periodic")), scenario);
   families = Families(encoder);
   return encoder.run;
-}
-
-Eigen::MatrixXd RandomMatrix(const std::string& name, Eigen::Index rows, Eigen::Index columns) {
-  Stream stream(7, name);
-  Eigen::MatrixXd m(rows, columns);
-  for (double& v : m.reshaped()) v = stream.Normal();
-  return m;
 }
 
 Eigen::MatrixXd Dense(const Tridiagonal& T) {

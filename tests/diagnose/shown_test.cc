@@ -65,24 +65,18 @@ TEST(ShownBy, LeavesTheShareOfWhatWasNotAccepted) {
 DiagnosisRun StopsWithPlay(double half_deg) {
   DiagnosisRun found;
   LinearRun& run = found.run;
-  Schedule& s = run.schedule;
-  std::vector<double> angle_deg, shown_deg;
-  for (const int direction : {1, -1}) {
-    for (int k = 0; k < 8; ++k) {
-      s.reading.push_back(s.Readings());
-      s.setup.push_back(0), s.pass.push_back(direction > 0 ? 0 : 1), s.position.push_back(k % 4);
-      s.direction.push_back(direction);
-      s.phase.push_back(Phase::kFullCircle);
-      angle_deg.push_back(90.0 * (direction > 0 ? k : 7 - k));
-      shown_deg.push_back(direction * half_deg);
-    }
+  Schedule& s = run.schedule = PlainSchedule(16);
+  run.residual.resize(16);
+  for (int i = 0; i < 16; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    s.pass[k] = i / 8;
+    s.direction[k] = i < 8 ? 1 : -1;
+    s.reference_rad[i] = 90.0 * units::deg * (i < 8 ? i : 15 - i);
+    run.residual[i] = s.direction[k] * half_deg * units::deg;
   }
-  s.reference_rad = units::deg * Eigen::Map<Eigen::VectorXd>(angle_deg.data(), std::ssize(angle_deg));
-  s.target_rad.setConstant(s.Readings(), kNaN);
   run.channels = {"angle"};
   run.unit = "deg";
   run.to_SI = units::deg;
-  run.residual = units::deg * Eigen::Map<Eigen::VectorXd>(shown_deg.data(), std::ssize(shown_deg));
   run.sigma = Eigen::VectorXd::Constant(s.Readings(), 1e-3 * units::deg);
   run.nuisance.jacobian.resize(s.Readings(), 1);
   for (int i = 0; i < s.Readings(); ++i) run.nuisance.jacobian.insert(i, 0) = 1.0;

@@ -34,7 +34,7 @@ struct Wrong {
   int slip_at = 100;
   double backlash_rad = 0.0, settling_rad = 0.0, settling_s = 1.0, seating_rad = 0.0;
   double spoilt = 0.0, spoilt_rad = 3.0 * arcsec;
-  std::function<Eigen::Vector2d(const Reading&)> other;  // anything else, rad of x and y
+  std::function<Eigen::Vector2d(const Reading&)> other = {};  // anything else, rad of x and y
 };
 
 /// 72 positions, two tilts, passes + and -, five dwells: what a careful user does.

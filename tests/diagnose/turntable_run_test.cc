@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/core/input_error.h"
+#include "tests/diagnose/support/synthetic_run.h"
 #include "tests/diagnose/turntable_bench.h"
-#include "tests/diagnose/turntable_twin_run.h"
+#include "tests/diagnose/twin_runs.h"
+#include "tests/support/kept_text.h"
 #include "twin/benches/registry.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/families.h"
 #include "twin/benches/turntable_autocollimator/settings.h"
 #include "twin/core/errors.h"
 #include "twin/diagnose/diagnose.h"
@@ -26,7 +30,7 @@ using units::deg;
 double LeftOver(const TurntableRun& turntable) {
   const LinearRun& run = turntable.run;
   const NoiseModel noise{run.sigma, 0.0};
-  const Projector projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance);
+  const Projector projector = ProjectorOf(run, noise);
   const Eigen::MatrixXd white = noise.Whiten(run, Eigen::MatrixXd(run.residual));
   return projector.Apply(white).cwiseAbs().maxCoeff();
 }
@@ -154,12 +158,40 @@ TEST(TurntableRun, IsRefusedWhereOnePassOfOneSetUpLeavesNothingToCompare) {
   Scenario scenario = PublishedScenario();
   TurntableOf(scenario).turntable_procedure.tilts_rad = {60 * arcsec};
   TurntableOf(scenario).turntable_procedure.tilt_azimuths_rad = {0.0};
-  try {
-    Diagnose(BenchReadings(scenario, {}, 4), scenario);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("1 set-up with 1 pass"),
-                                             testing::HasSubstr("turntable_procedure.passes = [1, -1]")));
+  const std::string refusal = MessageOf([&] { Diagnose(BenchReadings(scenario, {}, 4), scenario); });
+  EXPECT_THAT(refusal, testing::HasSubstr("turntable_procedure.passes = [1, -1]"));
+  EXPECT_KEPT(refusal);
+}
+
+/// Of readings of the independent bench, two eccentricities and teeth of two places.
+std::vector<Family> FamiliesOf(const std::function<void(Reading&)>& change = [](Reading&) {}) {
+  Scenario scenario = Quiet(CarefulScenario());
+  TurntableOf(scenario).turntable_procedure.shifts = {0, 25};
+  std::vector<Reading> readings = BenchReadings(scenario, {}, 3);
+  for (Reading& r : readings) change(r);
+  return Families(RunOf(readings, scenario));
+}
+
+TEST(TurntableFamilies, HaveTheCubeOfTheAngleRadiallyAndForEachAxis) {
+  std::vector<Eigen::VectorXd> columns;  // radially, then for each axis
+  for (const Family& family : FamiliesOf()) {
+    if (family.effect == "autocollimator_nonlinearity") columns.emplace_back(family.ColumnsAt(0).col(0));
+  }
+  ASSERT_EQ(columns.size(), 2u);
+  // The same where one axis is near zero: within (100 / 200)^2 of the largest value.
+  EXPECT_LT((columns[0] - columns[1]).cwiseAbs().maxCoeff(), 0.3 * columns[1].cwiseAbs().maxCoeff());
+}
+
+TEST(TurntableFamilies, LeaveOutWhatWasNotRecordedAndHaveShapesWithoutAName) {
+  std::vector<std::string> unknown;
+  for (const Family& family : FamiliesOf()) {
+    if (family.kind == Kind::kUnknown) unknown.push_back(family.effect + " on " + family.where);
+  }
+  EXPECT_THAT(unknown, testing::IsSupersetOf({"direction harmonic on x", "interaction on y", "wander on x, y",
+                                              "reading on x", "pass on y", "gain changes on y"}));
+  for (const Family& family : FamiliesOf([](Reading& r) { r.temperature_degC = r.dwell_s = kNaN; })) {
+    for (const char* effect : {"autocollimator_temperature", "temperature", "settling", "dwell"})
+      EXPECT_NE(family.effect, effect);
   }
 }
 

@@ -119,35 +119,28 @@ TEST(Watch, FindsAStepOfThreeDeviationsWithinTenReadings) {
   EXPECT_GE(found, 90);
 }
 
-TEST(Watch, SaysWhereAndHowLarge) {
+TEST(Watch, SaysWhereAndHowLargeAndByWhichPatternAllChannelsMoved) {
   const Alarm alarm = Watch(WithStep(5, 46, 10.0 * kRingSigma_m, false)).alarms.at(0);
   EXPECT_EQ(alarm.reading, 46);
   EXPECT_EQ(alarm.series, "a");
   EXPECT_NEAR(alarm.size, 10.0 * kRingSigma_m, 4.0 * alarm.u_size);
+  const WatchReport moved = Watch(WithStep(5, 46, 6.0 * kRingSigma_m, true));
+  ASSERT_EQ(moved.alarms.size(), 1u);  // one event, one alarm
+  EXPECT_EQ(moved.alarms[0].series, "both");
 }
 
-TEST(Watch, TellsAnOutlierFromALastingDeviationAndForgetsIt) {
-  LinearRun run = Clean(5);
-  run.residual[kRingChannels * 46] += 30.0 * kRingSigma_m;
-  const WatchReport report = Watch(run);
+TEST(Watch, TellsAnOutlierFromALastingDeviationForgetsItAndGoesOn) {
+  LinearRun once = Clean(5), then_a_step = WithStep(5, 46, 6.0 * kRingSigma_m, false);
+  once.residual[kRingChannels * 46] += 30.0 * kRingSigma_m;
+  const WatchReport report = Watch(once);
   ASSERT_EQ(report.alarms.size(), 1u);
   EXPECT_EQ(report.alarms[0].reading, 46);
   EXPECT_FALSE(report.alarms[0].lasting);
-}
-
-TEST(Watch, GoesOnAfterAnOutlier) {
-  LinearRun run = WithStep(5, 46, 6.0 * kRingSigma_m, false);
-  run.residual[kRingChannels * 30] += 30.0 * kRingSigma_m;
-  const WatchReport report = Watch(run);
-  ASSERT_EQ(report.alarms.size(), 2u);
-  EXPECT_EQ(report.alarms[0].reading, 30);
-  EXPECT_NEAR(report.alarms[1].reading, 46, 3);
-}
-
-TEST(Watch, NamesThePatternOfAMotionThatAllChannelsSee) {
-  const WatchReport report = Watch(WithStep(5, 46, 6.0 * kRingSigma_m, true));
-  ASSERT_EQ(report.alarms.size(), 1u);  // one event, one alarm
-  EXPECT_EQ(report.alarms[0].series, "both");
+  then_a_step.residual[kRingChannels * 30] += 30.0 * kRingSigma_m;
+  const WatchReport both = Watch(then_a_step);
+  ASSERT_EQ(both.alarms.size(), 2u);
+  EXPECT_EQ(both.alarms[0].reading, 30);
+  EXPECT_NEAR(both.alarms[1].reading, 46, 3);
 }
 
 TEST(Watch, DoesNotDependOnWhatComesLater) {

@@ -5,23 +5,18 @@
 #include <cmath>
 #include <complex>
 
-#include "twin/core/stream.h"
+#include "tests/diagnose/support/synthetic_run.h"
 #include "twin/core/units.h"
 
 namespace twinbench::model {
 namespace {
 
-Eigen::VectorXd RandomVector(const std::string& name, int size) {
-  Stream stream(5, name);
-  Eigen::VectorXd values(size);
-  for (double& v : values) v = stream.Normal();
-  return values;
-}
+using diagnose::RandomMatrix;
 
 /// Against a sine a reading a wave. Phases of some 1e4 rad have no more than 12 digits.
 void ExpectDirectSums(const Eigen::VectorXd& phase_rad, double first, double step, int count) {
   Eigen::MatrixXd y(phase_rad.size(), 2);
-  y << RandomVector("y", static_cast<int>(phase_rad.size())), Eigen::VectorXd::Ones(phase_rad.size());
+  y << RandomMatrix("y", phase_rad.size(), 1), Eigen::VectorXd::Ones(phase_rad.size());
   const Eigen::MatrixXcd sums = WaveSums(phase_rad, first, step, count).Of(y);
   ASSERT_EQ(sums.rows(), count);
   const Eigen::RowVectorXd sizes = y.cwiseAbs().colwise().sum();
@@ -43,13 +38,13 @@ TEST(WaveSums, AreThoseOfEvenPhases) {
 }
 
 TEST(WaveSums, AreThoseOfUnevenPhasesOfManyTurnsEitherWay) {
-  const Eigen::VectorXd phase_rad = 20.0 * RandomVector("phase", kReadings);
+  const Eigen::VectorXd phase_rad = 20.0 * RandomMatrix("phase", kReadings, 1);
   ExpectDirectSums(phase_rad, 0.3, 0.013, 1500);
   ExpectDirectSums(phase_rad, -40.0, 1.0, 81);
 }
 
 TEST(WaveSums, AreThoseOfPhasesThatLieTogether) {
-  Eigen::VectorXd phase_rad = 1e-6 * RandomVector("phase", kReadings);
+  Eigen::VectorXd phase_rad = 1e-6 * RandomMatrix("phase", kReadings, 1);
   phase_rad.tail(kReadings / 2).array() += units::turn;  // the end of the grid and its beginning are neighbours
   for (const int count : {3, 100}) ExpectDirectSums(phase_rad, 1.0, 1.0, count);
 }

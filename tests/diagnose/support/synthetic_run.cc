@@ -1,8 +1,11 @@
 #include "tests/diagnose/support/synthetic_run.h"
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cmath>
-#include <numbers>
+#include <numeric>
 
 #include "twin/benches/names.h"
 #include "twin/core/stream.h"
@@ -13,16 +16,6 @@ namespace {
 
 constexpr int kAxes = 4;
 constexpr double kWeak = 1e-3;  // prior deviation of free unknowns, m: thousands of times the noise
-
-void Resize(Schedule& s, int readings) {
-  const auto n = static_cast<std::size_t>(readings);
-  s.reading.resize(n), s.setup.assign(n, 0), s.pass.assign(n, 0), s.direction.assign(n, 1), s.position.assign(n, 0);
-  s.phase.assign(n, Phase::kFullCircle);
-  for (Eigen::VectorXd* v :
-       {&s.time_s, &s.dwell_s, &s.temperature_degC, &s.target_rad, &s.reference_rad, &s.velocity_rad_s}) {
-    v->setConstant(readings, kNaN);
-  }
-}
 
 struct Stop {
   int setup, pass, direction, position;
@@ -46,13 +39,11 @@ Schedule ScheduleOf(const SyntheticDesign& design) {
   constexpr std::array<double, 4> kDwells_s = {0.5, 1.0, 2.0, 4.0};
   const std::vector<Stop> stops = StopsOf(design);
   Stream stream(7, "synthetic.schedule");
-  Schedule s;
-  Resize(s, static_cast<int>(stops.size()));
+  Schedule s = PlainSchedule(static_cast<int>(stops.size()));
   const double step_rad = 2.0 * units::kPi / design.positions;
   for (std::size_t k = 0; k < stops.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     const auto [setup, pass, direction, position] = stops[k];
-    s.reading[k] = static_cast<int>(k);
     s.setup[k] = setup, s.pass[k] = pass, s.direction[k] = direction, s.position[k] = position;
     s.dwell_s[i] = kDwells_s[stream.Word() % 4];
     s.time_s[i] = (i > 0 ? s.time_s[i - 1] : 0.0) + 6.0 + s.dwell_s[i] + (k % 48 == 0 ? 120.0 : 0.0);
@@ -97,6 +88,19 @@ std::vector<Pattern> RotaryPatterns() {
 
 }  // namespace
 
+Schedule PlainSchedule(int readings) {
+  Schedule s;
+  const auto n = static_cast<std::size_t>(readings);
+  s.reading.resize(n), s.setup.assign(n, 0), s.pass.assign(n, 0), s.direction.assign(n, 1);
+  std::iota(s.reading.begin(), s.reading.end(), 0);
+  s.position = s.reading;
+  s.phase.assign(n, Phase::kFullCircle);
+  for (Eigen::VectorXd* v :
+       {&s.time_s, &s.dwell_s, &s.temperature_degC, &s.target_rad, &s.reference_rad, &s.velocity_rad_s})
+    v->setConstant(readings, kNaN);
+  return s;
+}
+
 LinearRun SyntheticRun(const SyntheticDesign& design) {
   LinearRun run;
   run.bench = kRotaryBench;
@@ -113,6 +117,17 @@ LinearRun SyntheticRun(const SyntheticDesign& design) {
   run.nuisance = NuisanceOf(design, run.schedule);
   run.patterns = RotaryPatterns();
   return run;
+}
+
+Eigen::MatrixXd RandomMatrix(const std::string& name, Eigen::Index rows, Eigen::Index columns) {
+  Stream stream(5, name);
+  Eigen::MatrixXd m(rows, columns);
+  for (double& v : m.reshaped()) v = stream.Normal();
+  return m;
+}
+
+Projector ProjectorOf(const LinearRun& run, const NoiseModel& noise) {
+  return {noise.Whiten(run, run.nuisance.jacobian), run.nuisance};
 }
 
 void AddNoise(LinearRun& run, std::uint64_t seed) {
@@ -134,13 +149,12 @@ void AddEffect(LinearRun& run, const Eigen::VectorXd& weight, const std::functio
 
 LinearRun SyntheticSweep(int readings) {
   LinearRun run;
-  Schedule& s = run.schedule;
-  Resize(s, readings);
+  Schedule& s = run.schedule = PlainSchedule(readings);
   const int sweep = readings / 4;
   for (int i = 0; i < readings; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const int which = std::min(3, i / sweep);
-    s.reading[k] = i, s.position[k] = i, s.pass[k] = which;
+    s.pass[k] = which;
     s.direction[k] = which % 2 == 0 ? 1 : -1;
     s.time_s[i] = 0.1 * i;
     s.velocity_rad_s[i] = s.direction[k] * (which < 2 ? 0.1 : 0.3);
@@ -160,7 +174,7 @@ LinearRun SyntheticSweep(int readings) {
 
 std::vector<ScreenTest> ScreenAsStated(const LinearRun& run, int null_runs, std::uint64_t seed) {
   const NoiseModel noise{run.sigma, 0.0};
-  return Screen(run, noise, Projector(noise.Whiten(run, run.nuisance.jacobian), run.nuisance), null_runs, seed);
+  return Screen(run, noise, ProjectorOf(run, noise), null_runs, seed);
 }
 
 const ScreenTest* Find(const std::vector<ScreenTest>& tests, const std::string& name) {
@@ -168,6 +182,17 @@ const ScreenTest* Find(const std::vector<ScreenTest>& tests, const std::string& 
     if (t.name == name) return &t;
   }
   return nullptr;
+}
+
+const ScreenTest& Loud(const std::vector<ScreenTest>& tests, const std::string& name, double p,
+                       const std::string& says) {
+  static const ScreenTest none;
+  const ScreenTest* const found = Find(tests, name);
+  EXPECT_NE(found, nullptr) << name;
+  if (!found) return none;
+  EXPECT_LT(found->p, p) << name;
+  EXPECT_THAT(found->reading, testing::HasSubstr(says));
+  return *found;
 }
 
 }  // namespace twinbench::diagnose

@@ -22,9 +22,15 @@ struct SyntheticDesign {
   bool free_tables = true;  // free functions of target and reference position, channel by channel
 };
 
+/// One pass of one set-up, all in order, times and angles not known.
+Schedule PlainSchedule(int readings);
+
 /// Four channels of two spots; nuisance: the free tables and a constant a set-up, channel by channel. The spots are
 /// spread over +-150 um, dwells over 0.5 to 4 s, the temperature wanders by 1 K. Residual zero.
 LinearRun SyntheticRun(const SyntheticDesign& design);
+
+/// Normal deviates.
+Eigen::MatrixXd RandomMatrix(const std::string& name, Eigen::Index rows, Eigen::Index columns);
 
 /// Adds white Gaussian noise of the stated deviations.
 void AddNoise(LinearRun& run, std::uint64_t seed);
@@ -38,6 +44,12 @@ LinearRun SyntheticSweep(int readings);
 
 /// The screen with the noise as stated.
 std::vector<ScreenTest> ScreenAsStated(const LinearRun& run, int null_runs, std::uint64_t seed);
+
+/// The test of that name, which must be there with a smaller p and with these words in its reading.
+const ScreenTest& Loud(const std::vector<ScreenTest>& tests, const std::string& name, double p,
+                       const std::string& says);
+
+Projector ProjectorOf(const LinearRun& run, const NoiseModel& noise);
 
 /// @return nullptr if the screen holds no test with that name.
 const ScreenTest* Find(const std::vector<ScreenTest>& tests, const std::string& name);

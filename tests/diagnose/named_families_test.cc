@@ -1,0 +1,330 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "tests/diagnose/twin_runs.h"
+#include "tests/sim/encoder_run.h"
+#include "tests/support/angle_benches.h"
+#include "twin/benches/encoder_comparison/diagnosis/families.h"
+#include "twin/benches/hob_transmission/diagnosis/families.h"
+#include "twin/benches/rotary_4dof/diagnosis/rotary_case.h"
+#include "twin/benches/rotary_4dof/twin/factory.h"
+#include "twin/benches/turntable_autocollimator/diagnosis/families.h"
+#include "twin/core/linear_algebra.h"
+#include "twin/diagnose/engine/noise_model.h"
+#include "twin/diagnose/engine/projector.h"
+
+// Each named family, where a cause shows times its course, against what the twin shows when the cause is at work:
+// two implementations that share no code. That the twins are right, benches of the tests' own say (hob_run_test.cc,
+// turntable_run_test.cc).
+namespace twinbench::diagnose::slopes {
+namespace {
+
+using Strings = std::vector<std::string>;
+using Values = std::map<std::string, double>;
+
+struct Design {
+  std::string name, bench;
+  Strings changes;
+  std::set<std::string> without;  // effects that such a run does not show, or that are no signature
+  double close = 0.01;            // share of a signature that second orders and rows of the run may leave
+};
+
+const std::vector<Design>& Designs() {
+  static const Strings sweep = {"encoder_procedure.kind=sweep",
+                                "encoder_procedure.mounting_deg=[0.0, 90.0]",
+                                "encoder_procedure.interval_s=0.16",
+                                "device.lines_per_turn=20",
+                                "device.teeth=44",
+                                "device.signal_periods=3",
+                                "device.signal_zero_deg=17",
+                                "device.signal_zero_known=true"};
+  static const Strings circles = {"turntable_procedure.phases=[\"calibration\", \"full_circle\"]",
+                                  "turntable_procedure.positions=36", "turntable_procedure.passes=[1, -1, -1, 1]",
+                                  "turntable_procedure.eccentricities_um=[50.0, 1500.0]",
+                                  "turntable_procedure.dwell_s=[0.5, 2.0, 5.0]"};
+  static const Strings two_speeds = {"mechanics.fidelity=kinematic", "interferometer.stops=0",
+                                     "hob_procedure.turns=1", "hob_procedure.hob_speeds_rev_min=[50.0, 25.0]"};
+  static const std::set<std::string> not_at_stops = {"outliers", "interpolation", "gear_mesh", "reference_fault",
+                                                     "latency",  "clock_rate",    "settling"};
+  static const std::vector<Design> designs = {
+      {"rotary", "rotary_4dof", {"mechanics.fidelity=kinematic"}, {"outliers", "convention", "reclamp_frame"}},
+      {"stops", "encoder_comparison", {}, not_at_stops, 1e-5},
+      {"sweep", "encoder_comparison", sweep, {"outliers", "settling"}, 1e-5},
+      {"turntable", "turntable_autocollimator", circles, {"outliers", "multitooth_seating"}, 1e-9},
+      {"hob", "hob_transmission", two_speeds, {"outliers"}}};
+  return designs;
+}
+
+/// Without noise and in a room that swings.
+Scenario ScenarioOf(const Design& design) {
+  Scenario scenario = LoadScenario(twinbench::test::ScenarioPath(design.bench + ".toml"), design.changes);
+  scenario.noise_free = true;
+  scenario.environment.swing_K = 0.4;
+  scenario.environment.swing_period_s = 4000.0;
+  return scenario;
+}
+
+/// A run with its candidates.
+struct Candidates {
+  LinearRun run;
+  std::vector<Family> families;
+  std::shared_ptr<const rotary::RotaryCase> rotary = nullptr;  // into which its families point
+};
+
+Candidates CandidatesOf(const Scenario& scenario, const std::vector<Reading>& readings,
+                        const Strings& struck = {}) {
+  const auto in = [&](const auto& bench_run) { return Candidates{bench_run.run, Families(bench_run, struck)}; };
+  if (scenario.bench == kEncoderBench) return in(encoder::RunOf(readings, scenario));
+  if (scenario.bench == kTurntableBench) return in(turntable::RunOf(readings, scenario));
+  if (scenario.bench == kHobBench) return in(hob::RunOf(readings, scenario));
+  const rotary::ForwardModel model{benches::rotary::FollowRecord};
+  const auto rotary = std::make_shared<const rotary::RotaryCase>(readings, scenario, model, struck);
+  return {rotary->Rotary().run, rotary->Families(), rotary};
+}
+
+const Candidates& CleanOf(const Design& design) {
+  static std::map<std::string, Candidates> clean;
+  const Scenario scenario = ScenarioOf(design);
+  if (!clean.contains(design.name))
+    clean[design.name] = CandidatesOf(scenario, twinbench::test::ReadingsOf(scenario));
+  return clean.at(design.name);
+}
+
+/// Sizes a tenth of the plausible ones, so that second orders are small, and other shapes than the catalogue's
+/// zeros.
+EffectSettings EffectAt(const EffectEntry& entry, const std::string& where) {
+  const Values set = {{"phase", 0.7}, {"curvature", 0.4}, {"start", 0.4}, {"at_voltage", 0.02}};
+  const std::set<std::string> shapes = {"order",     "teeth", "time_constant", "settles_over", "at_reading",
+                                        "frequency", "level", "zero",          "period",       "warm_up"};
+  EffectSettings effect{entry.name, where, {}, ""};
+  for (const EffectParameter& p : entry.parameters) {
+    const bool is_shape = shapes.contains(p.name) || (p.name == "lag" && entry.name == "thermal_tilt");
+    const double value = set.contains(p.name) ? set.at(p.name) : (is_shape ? 1.0 : 0.1) * p.default_SI;
+    if (p.BelongsTo(where)) effect.parameters[p.name] = value;
+  }
+  if (entry.name == "signal_offset") effect.parameters["offset_cos"] = -0.5 * effect.parameters.at("offset_sin");
+  return effect;
+}
+
+struct Slope {
+  const Design* design;
+  EffectSettings effect;
+};
+
+void PrintTo(const Slope& slope, std::ostream* out) {
+  *out << slope.design->name << " " << slope.effect.name << " " << slope.effect.where;
+}
+
+/// Every effect at every place, but forms of the grating and of the tables' encoders: they are the tables' errors,
+/// which are free (hidden/controls_test.cc).
+std::vector<Slope> Slopes() {
+  std::vector<Slope> slopes;
+  for (const Design& design : Designs()) {
+    for (const EffectEntry& entry : EffectCatalogue(design.bench)) {
+      if (design.without.contains(entry.name)) continue;
+      if (entry.name == "grating_form" || entry.name == "encoder_subdivision") continue;
+      for (const std::string& where : entry.places.empty() ? Strings{""} : entry.places)
+        slopes.push_back({&design, EffectAt(entry, where)});
+    }
+    if (design.bench != kEncoderBench) continue;
+    using twinbench::test::EncoderEffect;
+    slopes.push_back({&design, EncoderEffect("drift", {{"rate", 1e-8}, {"warm_up", 300.0}})});
+    slopes.push_back({&design, EncoderEffect("backlash", {{"width", 25.0 * units::deg}, {"start", 0.4}})});
+  }
+  return slopes;
+}
+
+/// What a family may leave at the effect's own shape (0: the design's), and at the nearest points of its grid.
+struct Limit {
+  double own = 0.0, grid = 0.02;
+};
+Limit LimitOf(const Slope& slope) {
+  static const std::map<std::string, Limit> limits = {
+      {"adc_step", {0.1, 0.7}},  // few readings are near the step
+      {"amplitude_mismatch", {3e-4}},
+      {"autocollimator_nonlinearity", {3e-4}},
+      {"autocollimator_periodic", {0.01, 0.35}},  // up to a quarter of a cycle over the range
+      {"autocollimator_roll", {3e-4}},
+      {"autocollimator_scale", {1e-4}},
+      {"backlash", {1e-9, 0.2}},  // gaps of the grid differ by a factor 1.3
+      {"clock_rate", {0.02}},
+      {"drift", {0.0, 0.08}},  // times by 1.36
+      {"hob amplitude_mismatch", {0.01}},
+      {"hob backlash", {0.01}},
+      {"hob hysteresis", {0.12, 0.12}},  // rows are means, and whether the table ran out over the ramp is open
+      {"hob quadrature_error", {0.01}},
+      {"hob signal_offset", {0.01}},
+      {"hysteresis", {0.0, 0.05}},  // ways by 1.37
+      {"latency", {3e-5}},          // in the ramps the speed changes meanwhile
+      {"mirror_flatness", {0.08, 0.08}},
+      {"quadrature_error", {3e-4}},
+      {"rotary backlash", {0.01}},
+      {"rotary mount_creep", {0.1, 0.1}},  // when a mounting ended no record says
+      {"settling", {0.02, 0.1}},
+      {"signal_clipping", {4e-4, 0.16}},  // depths by 1.65
+      {"signal_offset", {3e-4}},
+      {"slip", {0.0, 0.11}},
+      {"tone", {0.0, 0.35}},  // up to a quarter of a cycle over the run
+      {"turntable backlash", {0.02}}};
+  Limit limit;
+  for (const std::string& key : {slope.effect.name, slope.design->name + " " + slope.effect.name}) {
+    if (limits.contains(key)) limit = limits.at(key);
+  }
+  if (limit.own == 0.0) limit.own = slope.design->close;
+  return limit;
+}
+
+/// Least squares of a signature on columns, after projection.
+class Against {
+ public:
+  struct Fit {
+    double left = Amplitude::kInfinity;  // share of the signature
+    Eigen::VectorXd amplitudes, shape;
+  };
+
+  Against(const LinearRun& run, const Eigen::VectorXd& signature)
+      : run_(run), projector_(White(run.nuisance.jacobian).sparseView(), run.nuisance), y_(Projected(signature)) {}
+
+  Fit Of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& shape) const {
+    const Eigen::MatrixXd S = Projected(columns);
+    const Eigen::VectorXd x = SolveShortest(S, Eigen::VectorXd(y_.col(0)));
+    return {(y_.col(0) - S * x).norm() / y_.norm(), x, shape};
+  }
+
+ private:
+  Eigen::MatrixXd White(const Eigen::MatrixXd& rows) const {
+    return NoiseModel{run_.sigma, 0.0}.Whiten(run_, rows);
+  }
+  Eigen::MatrixXd Projected(const Eigen::MatrixXd& rows) const { return projector_.Apply(White(rows)); }
+
+  const LinearRun& run_;
+  Projector projector_;
+  Eigen::MatrixXd y_;
+};
+
+/// How far a grid point is from the effect's own shape, and that shape; what no catalogue names stays as it is.
+std::pair<double, Eigen::VectorXd> FromOwn(const Family& family, int grid_point, const Values& parameters) {
+  Eigen::VectorXd shape = family.ShapeAt(grid_point);
+  double distance = 0.0;
+  for (std::size_t k = 0; k < family.shapes.size(); ++k) {
+    const std::string& name = family.shapes[k].name;
+    const auto own = parameters.find(name == "crossed_over" ? "width" : name);  // a gap is crossed over its width
+    if (own == parameters.end()) continue;
+    double& value = shape[static_cast<Eigen::Index>(k)];
+    distance += std::abs(value - own->second) / (std::abs(own->second) + 1e-6);
+    value = own->second;
+  }
+  return {distance, shape};
+}
+
+struct Match {
+  const Family* family = nullptr;
+  Against::Fit own, grid;
+};
+
+Match MatchOf(const Family& family, const Values& parameters, const Against& against) {
+  double nearest = Amplitude::kInfinity;
+  for (int g = 0; g < family.grid; ++g) nearest = std::min(nearest, FromOwn(family, g, parameters).first);
+  Match best{&family, {}, {}};
+  for (int g = 0; g < family.grid; ++g) {
+    const auto [distance, shape] = FromOwn(family, g, parameters);
+    if (distance > 2.0 * nearest + 1e-9) continue;
+    const Against::Fit grid = against.Of(family.ColumnsAt(g), family.ShapeAt(g));
+    const Against::Fit own = family.at ? against.Of(family.at(shape), shape) : grid;
+    if (grid.left < best.grid.left) best.grid = grid;
+    if (own.left < best.own.left) best.own = own;
+  }
+  return best;
+}
+
+void ExpectParameters(const Match& match, const Values& truth, double within) {
+  const Eigen::VectorXd& x = match.own.amplitudes;
+  std::vector<ParameterEstimate> found;
+  for (Eigen::Index j = 0; j < x.size(); ++j)
+    found.push_back({match.family->amplitudes[static_cast<std::size_t>(j)].name, "", 1.0, x[j], 0.0});
+  if (match.family->parameters)
+    found = match.family->parameters(match.own.shape, x, Eigen::MatrixXd::Identity(x.size(), x.size()));
+  for (const ParameterEstimate& p : found) {
+    if (!truth.contains(p.name) || p.name == "crossed_over") continue;
+    const double off = p.value - truth.at(p.name),
+                 error = p.name == "phase" ? std::remainder(off, units::turn) : off;
+    EXPECT_LE(std::abs(error), within * std::max(std::abs(truth.at(p.name)), 1e-6)) << p.name << " " << p.value;
+  }
+}
+
+class NamedFamily : public testing::TestWithParam<Slope> {};
+
+TEST_P(NamedFamily, IsWhatTheTwinShowsOfItsEffectNearlySoOnItsGrid) {
+  const auto& [design, effect] = GetParam();
+  const Scenario stated = ScenarioOf(*design);
+  Scenario actual = stated;
+  actual.effects = {effect};
+  const std::vector<Reading> readings = twinbench::test::ReadingsOf(actual);
+  // Where there are two encoders, candidates are made of readings that have the effect in them.
+  const bool is_own = stated.bench == kEncoderBench || stated.bench == kHobBench;
+  const Candidates candidates = is_own ? CandidatesOf(stated, readings) : CleanOf(*design);
+  const LinearRun run =
+      is_own ? candidates.run : BenchOf(stated).linear_run(readings, stated, Estimator::kRigorous);
+  const Against against(candidates.run, is_own ? run.residual : run.observed - candidates.run.observed);
+  Match best;
+  for (const Family& family : candidates.families) {
+    if (family.kind != Kind::kNamed || family.effect != effect.name || family.where != effect.where) continue;
+    const Match match = MatchOf(family, effect.parameters, against);
+    if (match.own.left < best.own.left) best = match;
+  }
+  ASSERT_NE(best.family, nullptr);
+  const Limit limit = LimitOf(GetParam());
+  EXPECT_LT(best.own.left, limit.own);
+  EXPECT_LT(best.grid.left, std::max(limit.own, limit.grid));
+  ExpectParameters(best, effect.parameters, std::min(limit.own, 0.02));
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEveryBench, NamedFamily, testing::ValuesIn(Slopes()), [](const auto& of) {
+  const EffectSettings& effect = of.param.effect;
+  return fmt::format("{}_{}_{}_{}", of.param.design->name, effect.name, effect.where, of.index);
+});
+
+TEST(NamedFamilies, AreAllOfTheCatalogueThatTheRunCanShowWithGroupsOfTheirEffectsAndPriors) {
+  for (const Design& design : Designs()) {
+    std::set<std::string> named, expected;
+    for (const EffectEntry& entry : EffectCatalogue(design.bench)) {
+      if (!design.without.contains(entry.name)) expected.insert(entry.name);
+    }
+    for (const Family& family : CleanOf(design).families) {
+      if (family.kind != Kind::kNamed) continue;
+      named.insert(family.effect);
+      EXPECT_EQ(family.group, family.effect);
+      for (const Amplitude& a : family.amplitudes) EXPECT_GT(a.prior_sd, 0.0) << family.effect;
+      for (const Shape& s : family.shapes) EXPECT_EQ(std::ssize(s.value), family.grid) << family.effect;
+    }
+    EXPECT_EQ(named, expected) << design.name;
+  }
+}
+
+Strings UnknownOf(const Candidates& candidates) {
+  Strings names;
+  for (const Family& family : candidates.families) {
+    if (family.kind == Kind::kUnknown) names.push_back(family.effect + " on " + family.where);
+  }
+  return names;
+}
+
+TEST(UnknownFamilies, AreTheSameWhateverIsStruckWhichIsGone) {
+  const Strings struck = {"backlash", "slip", "drift", "scale", "latency", "tone", "autocollimator_roll"};
+  for (const Design& design : Designs()) {
+    const Scenario scenario = ScenarioOf(design);
+    const Candidates left = CandidatesOf(scenario, twinbench::test::ReadingsOf(scenario), struck);
+    EXPECT_EQ(UnknownOf(left), UnknownOf(CleanOf(design))) << design.name;
+    EXPECT_GT(UnknownOf(left).size(), 5u) << design.name;
+    for (const Family& family : left.families)
+      EXPECT_TRUE(family.kind == Kind::kUnknown || !std::ranges::count(struck, family.effect)) << family.effect;
+  }
+}
+
+}  // namespace
+}  // namespace twinbench::diagnose::slopes
