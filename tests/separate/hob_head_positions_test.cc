@@ -4,6 +4,7 @@
 #include "tests/separate/hob_bench.h"
 #include "twin/benches/hob_transmission/estimators/head_positions.h"
 #include "twin/core/distributions.h"
+#include "twin/separate/order_model.h"
 
 namespace twinbench::separate::hob {
 namespace {
@@ -55,6 +56,22 @@ TEST(FindVisibleOrders, JudgesByUncertaintyNotByAnExactZero) {
   };
   EXPECT_EQ(status(0.01), OrderStatus::kSeparated);
   EXPECT_EQ(status(0.1), OrderStatus::kSumOnly);
+}
+
+TEST(SecondOrder, IsTheRootMeanSquareOfAnErrorTimesThatOfItsSlope) {
+  const auto error_rad = [](double at_rad) { return 3e-5 * std::cos(at_rad) + 2e-6 * std::sin(7.0 * at_rad); };
+  const auto slope = [](double at_rad) { return -3e-5 * std::sin(at_rad) + 14e-6 * std::cos(7.0 * at_rad); };
+  PositionError position;
+  position.series.orders.resize(7, {.value = {0.0, 0.0}});
+  position.series.At(1).value = {3e-5, 0.0};
+  position.series.At(7).value = {0.0, -2e-6};
+  constexpr int kPoints = 64;  // all orders of the squares
+  double error2 = 0.0, slope2 = 0.0;
+  for (int k = 0; k < kPoints; ++k) {
+    error2 += std::pow(error_rad(k * units::turn / kPoints), 2) / kPoints;
+    slope2 += std::pow(slope(k * units::turn / kPoints), 2) / kPoints;
+  }
+  EXPECT_NEAR(harmonics::SecondOrder(position) / std::sqrt(error2 * slope2), 1.0, 1e-12);
 }
 
 /// All orders up to 60 in both, of some tenths of an arcsecond, on top of what the paper shows.
