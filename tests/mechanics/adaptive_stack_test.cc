@@ -89,7 +89,7 @@ TEST(AdaptiveStack, LooksIntoAPeriodWithoutAStair) {
 }
 
 TEST(AdaptiveStack, GivesTheSameBitsHoweverOftenItIsLookedAt) {
-  for (const Fidelity fidelity : kBodies) {
+  for (const Fidelity fidelity : kAll) {
     std::vector<std::array<double, 14>> found;
     for (const int pieces : {1, 7, 5000}) {
       const auto plant = MakePlant(fidelity, CrookedStack());

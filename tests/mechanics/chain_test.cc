@@ -9,40 +9,36 @@
 #include <vector>
 
 #include "tests/mechanics/test_units.h"
-#include "tests/support/csv_rows.h"
+#include "tests/support/oracle_poses.h"
 
 namespace twinbench::mechanics {
 namespace {
 
 using test::Number;
-using Row = test::CsvRow;
 
-PoseError ErrorOf(const Row& row, const std::string& table) {
-  const auto angle = [&](const char* name) { return Number(row, table + name) * kArcsec; };
-  const auto length = [&](const char* name) { return Number(row, table + name) * kMicrometre; };
-  return {angle("_ex_arcsec"), angle("_ey_arcsec"), angle("_ez_arcsec"),
-          length("_dx_um"),    length("_dy_um"),    length("_dz_um")};
+PoseError ErrorOf(const test::OracleError& e) {
+  return {e[0], e[1], e[2], e[3], e[4], e[5]};
 }
 
-/// A mounting by this shift, and the tables where the row has them.
-ChainState StateOf(const Row& row, ErrorFrame frame) {
+/// A mounting by this shift, and the tables at these angles.
+ChainState StateAt(double target_rad, double reference_rad, ErrorFrame frame) {
   ChainState state;
-  state.target_rad = Number(row, "target_deg") * kDegree;
-  state.reference_rad = Number(row, "reference_deg") * kDegree;
+  state.target_rad = target_rad;
+  state.reference_rad = reference_rad;
   state.reference_frame = frame;
   return state;
 }
-ChainGeometry Mounted(const std::string& mode, double shift_rad) {
+ChainGeometry Mounted(bool is_reclamped, double shift_rad) {
   ChainGeometry geometry;
-  (mode == "reclamp" ? geometry.clamp_rad : geometry.reseat_rad) = mode == "reclamp" ? shift_rad : -shift_rad;
+  (is_reclamped ? geometry.clamp_rad : geometry.reseat_rad) = is_reclamped ? shift_rad : -shift_rad;
   return geometry;
 }
 
-Pose OraclePose(const Row& row, ErrorFrame frame) {
-  ChainState state = StateOf(row, frame);
-  state.target_error = ErrorOf(row, "target");
-  state.reference_error = ErrorOf(row, "reference");
-  return Chain(Mounted(row.at("mode"), Number(row, "shift_deg") * kDegree)).GratingPose(state);
+Pose GratingAt(const test::OraclePose& pose, ErrorFrame frame) {
+  ChainState state = StateAt(pose.target_rad, pose.reference_rad, frame);
+  state.target_error = ErrorOf(pose.target);
+  state.reference_error = ErrorOf(pose.reference);
+  return Chain(Mounted(pose.is_reclamped, pose.shift_rad)).GratingPose(state);
 }
 
 /// Where an order meets its PSD: vector grating equation, then ray and plane. `side` is +1 for PSD A, -1 for B.
@@ -63,18 +59,18 @@ Eigen::Vector2d Spot(const Pose& X_LG, double side) {
   return {spot.dot(u), spot.z()};
 }
 
+/// On A and on B.
+Eigen::Vector4d Spots(const Pose& X_LG) {
+  return (Eigen::Vector4d() << Spot(X_LG, 1.0), Spot(X_LG, -1.0)).finished();
+}
+
 TEST(Chain, AgreesWithTheIndependentSpotsToANanometre) {
   int n_other = 0;
-  for (const Row& row : test::ReadCsvRows(TWINBENCH_TEST_DATA "/oracle/poses.csv")) {
-    const Pose X_LG = OraclePose(row, ErrorFrame::kBase);
-    const Eigen::Vector2d a = Spot(X_LG, 1.0) / kMicrometre;
-    const Eigen::Vector2d b = Spot(X_LG, -1.0) / kMicrometre;
-    // The file prints 1e-9 um; 1 nm is the agreement promised.
-    EXPECT_NEAR(a.x(), Number(row, "psd_a_u_um"), 1e-3);
-    EXPECT_NEAR(a.y(), Number(row, "psd_a_v_um"), 1e-3);
-    EXPECT_NEAR(b.x(), Number(row, "psd_b_u_um"), 1e-3);
-    EXPECT_NEAR(b.y(), Number(row, "psd_b_v_um"), 1e-3);
-    n_other += (Spot(OraclePose(row, ErrorFrame::kRotor), 1.0) / kMicrometre - a).norm() > 1e-3;
+  for (const test::OraclePose& pose : test::OraclePoses()) {
+    const Eigen::Vector4d spots_m = Spots(GratingAt(pose, ErrorFrame::kBase));
+    // The file prints 1e-15 m; 1 nm is the agreement promised.
+    EXPECT_LT((spots_m - Eigen::Map<const Eigen::Vector4d>(pose.spots_m.data())).cwiseAbs().maxCoeff(), 1e-9);
+    n_other += (Spots(GratingAt(pose, ErrorFrame::kRotor)) - spots_m).head<2>().norm() > 1e-9;
   }
   EXPECT_GT(n_other, 250);  // the other reading of the reference's frame would be seen in nearly every row
 }
@@ -102,16 +98,15 @@ double WorstOfFullCircle(const std::string& mode, ErrorFrame frame) {
   const std::vector<PoseError> target = Errors(truth.at("target"));
   const std::vector<PoseError> reference = Errors(truth.at("reference_rotor_frame"));
   double worst_um = 0.0;
-  for (const Row& row : test::ReadCsvRows(folder + mode + ".csv")) {
-    ChainState state = StateOf(row, frame);
+  for (const test::CsvRow& row : test::ReadCsvRows(folder + mode + ".csv")) {
+    ChainState state =
+        StateAt(Number(row, "target_deg") * kDegree, Number(row, "reference_deg") * kDegree, frame);
     state.target_error = target[Position(state.target_rad, target.size())];
     state.reference_error = reference[Position(-state.reference_rad, reference.size())];
-    const Pose X_LG = Chain(Mounted(mode, state.target_rad + state.reference_rad)).GratingPose(state);
-    Eigen::Vector4d spots;
-    spots << Spot(X_LG, 1.0), Spot(X_LG, -1.0);
+    const Pose X_LG = Chain(Mounted(mode == "reclamp", state.target_rad + state.reference_rad)).GratingPose(state);
     const Eigen::Vector4d volts(Number(row, "psd_a_x_V"), Number(row, "psd_a_y_V"), Number(row, "psd_b_x_V"),
                                 Number(row, "psd_b_y_V"));
-    worst_um = std::max(worst_um, (spots - volts / 2000.0).cwiseAbs().maxCoeff() / kMicrometre);
+    worst_um = std::max(worst_um, (Spots(X_LG) - volts / 2000.0).cwiseAbs().maxCoeff() / kMicrometre);
   }
   return worst_um;
 }

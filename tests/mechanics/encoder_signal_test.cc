@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <complex>
-#include <functional>
 #include <stdexcept>
 
 #include "tests/mechanics/test_units.h"
@@ -116,16 +115,10 @@ TEST(InterpolatedSignal, NextEdgeLiesAheadAndNoneIsLeftOut) {
 }
 
 TEST(InterpolatedSignal, RefusesSignalsThatDoNotGoRoundTheOrigin) {
-  const auto refused = [](const std::function<void(SignalState&)>& change) {
-    SignalState state;
-    change(state);
+  for (const SignalState& state : {SignalState{.ratio = -1.0}, SignalState{.quadrature_rad = 1.6},
+                                   SignalState{.offset_sin = 0.8}, SignalState{.offset_cos = std::nan("")},
+                                   SignalState{.clip_level = 0.0}})
     EXPECT_THROW(InterpolatedSignal(state, 100, 1), std::invalid_argument);
-  };
-  refused([](SignalState& s) { s.ratio = -1.0; });
-  refused([](SignalState& s) { s.quadrature_rad = 1.6; });
-  refused([](SignalState& s) { s.offset_sin = 0.8; });
-  refused([](SignalState& s) { s.offset_cos = std::nan(""); });
-  refused([](SignalState& s) { s.clip_level = 0.0; });
   EXPECT_THROW(InterpolatedSignal({}, 0, 1), std::invalid_argument);
   EXPECT_THROW(InterpolatedSignal({}, 100, 0), std::invalid_argument);
 }

@@ -38,9 +38,8 @@ TEST(ErrorMotion, SumsHarmonicsOfAnyOrderAndUnwrappedAngle) {
   EXPECT_EQ((PoseError{1, 2, 3, 4, 5, 6}.Array()[3]), 4);
   for (double angle : {0.0, 0.7, -2.1, 40.0, -63.2}) {
     std::array<double, kErrorComponents> expected{};
-    for (const Harmonic& h : harmonics) {
+    for (const Harmonic& h : harmonics)
       expected[static_cast<std::size_t>(h.component)] += h.amplitude * std::cos(h.order * angle + h.phase_rad);
-    }
     const auto found = motion.Evaluate(angle).Array();
     // 1e-5 times the rounding of an argument of 800 rad: 1e-5 x 1e-13
     for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(found[c], expected[c], 1e-17);
@@ -74,9 +73,8 @@ TEST(ErrorMotion, InterpolatesASmoothTableWithUnequalSteps) {
   }
   const ErrorMotion motion({}, table);
   double worst = 0.0;
-  for (int i = 0; i < 3600; ++i) {
+  for (int i = 0; i < 3600; ++i)
     worst = std::max(worst, std::abs(motion.Evaluate(0.1 * i * kDegree).ey_rad - std::sin(0.3 * i * kDegree)));
-  }
   // Cubic splines: 5/384 h^4 f'''' = 5/384 x (6 deg)^4 x 81 = 1.3e-4
   EXPECT_LT(worst, 1.3e-4);
   EXPECT_GT(worst, 1e-6);  // but it is an interpolation

@@ -283,8 +283,7 @@ TEST(FeedCourse, TellsPlacesBetweenItsKnots) {
   const CircleMotion circle = CircleAt(kFast_m_s, -0.3);
   const double rest_s = 0.3 / circle.rate_rad_s();
   const CircleMotion brakes = circle.RampTo(0.0, rest_s, 0.1);
-  const std::vector<FeedLeg> legs = {{circle, rest_s},
-                                     {brakes, rest_s + 0.1},
+  const std::vector<FeedLeg> legs = {{circle, rest_s}, {brakes, rest_s + 0.1},
                                      {{kCircle_m, brakes.Angle_rad(rest_s + 0.1), 0.0, 0.0}, rest_s + 3.0}};
   FeedDrive drive(Fidelity::kBullet, p, CircleAxis::kX), again(Fidelity::kBullet, p, CircleAxis::kX);
   drive.Begin(circle);
@@ -310,11 +309,9 @@ TEST(FeedDrive, RefusesWhatItCannotBe) {
   unstable.velocity_gain_1_s = 300.0;
   unstable.position_gain_1_s = 2000.0;  // by Routh's condition a (Kv + 1/T) must exceed Kv / T
   unstable.integral_time_s = 1e-3;
-  const std::pair<Fidelity, FeedDriveParameters> cases[] = {{Fidelity::kBullet, floating},
-                                                            {Fidelity::kLinear, playing},
-                                                            {Fidelity::kKinematic, RubbingDrive()},
-                                                            {Fidelity::kBullet, nervous},
-                                                            {Fidelity::kBullet, unstable}};
+  const std::pair<Fidelity, FeedDriveParameters> cases[] = {
+      {Fidelity::kBullet, floating}, {Fidelity::kLinear, playing}, {Fidelity::kKinematic, RubbingDrive()},
+      {Fidelity::kBullet, nervous}, {Fidelity::kBullet, unstable}};
   for (const auto& [fidelity, p] : cases)
     EXPECT_THROW(FeedDrive(fidelity, p, CircleAxis::kX), std::invalid_argument);
 }

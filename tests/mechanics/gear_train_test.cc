@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <stdexcept>
 #include <vector>
 
@@ -228,30 +227,24 @@ TEST(GearTrain, EveryAngleIsPassedOnceAndOnTime) {
 }
 
 TEST(GearTrain, RefusesWhatIsNoMachine) {
-  const auto refused = [](const std::function<void(GearTrainParameters&)>& change) {
-    GearTrainParameters p;
+  using P = GearTrainParameters;
+  using Change = void (*)(P&);
+  const Change changes[] = {
+      [](P& p) { p.ratio = 0.0; }, [](P& p) { p.ratio = std::nan(""); },
+      [](P& p) { p.worm_wheel_teeth = 0; }, [](P& p) { p.worm_starts = -1; },
+      [](P& p) { p.hob.inertia_kg_m2 = 0.0; }, [](P& p) { p.table_inertia_kg_m2 = -1.0; },
+      [](P& p) { p.motor.servo_Hz = 0.0; }, [](P& p) { p.motor.servo_Hz = 26.0; },  // with a period of 1 ms
+      [](P& p) { p.motor.feed_forward = 1.1; }, [](P& p) { p.backlash_rad = std::nan(""); },
+      [](P& p) { p.stiffness_Nm_rad = HUGE_VAL; }, [](P& p) { p.damping_ratio = -0.1; },
+      [](P& p) { p.friction.coulomb_Nm = -1.0; }, [](P& p) { p.friction.presliding_rad = 0.0; },
+      [](P& p) { p.servo_period_s = 0.0; }, [](P& p) { p.step_s = std::nan(""); },
+      [](P& p) { p.errors.worm = {{1.0, std::nan(""), 0.0}}; },
+      [](P& p) { p.errors.worm = {{1.0, 0.01, 0.0}}; }};  // 0.9 of the table's speed
+  for (const Change change : changes) {
+    P p;
     change(p);
-    EXPECT_THROW(MakeGearTrain(Fidelity::kKinematic, p), std::invalid_argument);
-    EXPECT_THROW(MakeGearTrain(Fidelity::kBullet, p), std::invalid_argument);
-  };
-  refused([](auto& p) { p.ratio = 0.0; });
-  refused([](auto& p) { p.ratio = std::nan(""); });
-  refused([](auto& p) { p.worm_wheel_teeth = 0; });
-  refused([](auto& p) { p.worm_starts = -1; });
-  refused([](auto& p) { p.hob.inertia_kg_m2 = 0.0; });
-  refused([](auto& p) { p.motor.servo_Hz = 0.0; });
-  refused([](auto& p) { p.motor.servo_Hz = 26.0; });  // with a period of 1 ms
-  refused([](auto& p) { p.motor.feed_forward = 1.1; });
-  refused([](auto& p) { p.table_inertia_kg_m2 = -1.0; });
-  refused([](auto& p) { p.stiffness_Nm_rad = HUGE_VAL; });
-  refused([](auto& p) { p.damping_ratio = -0.1; });
-  refused([](auto& p) { p.backlash_rad = std::nan(""); });
-  refused([](auto& p) { p.friction.coulomb_Nm = -1.0; });
-  refused([](auto& p) { p.friction.presliding_rad = 0.0; });
-  refused([](auto& p) { p.servo_period_s = 0.0; });
-  refused([](auto& p) { p.step_s = std::nan(""); });
-  refused([](auto& p) { p.errors.worm = {{1.0, std::nan(""), 0.0}}; });
-  refused([](auto& p) { p.errors.worm = {{1.0, 0.01, 0.0}}; });  // 0.9 of the table's speed
+    for (const Fidelity fidelity : kBoth) EXPECT_THROW(MakeGearTrain(fidelity, p), std::invalid_argument);
+  }
   EXPECT_THROW(MakeGearTrain(Fidelity::kLinear, {}), std::invalid_argument);
 }
 

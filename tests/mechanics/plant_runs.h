@@ -16,20 +16,8 @@ inline constexpr double kTenDegrees = 10.0 * kDegree;
 
 inline std::array<double, 14> Numbers(const StackState& s) {
   const BearingPose &t = s.target_bearing, &r = s.reference_bearing;
-  return {s.target_rad,
-          s.reference_rad,
-          s.target_encoder_rad,
-          s.reference_encoder_rad,  //
-          t.x_m,
-          t.y_m,
-          t.z_m,
-          t.rx_rad,
-          t.ry_rad,
-          r.x_m,
-          r.y_m,
-          r.z_m,
-          r.rx_rad,
-          r.ry_rad};
+  return {s.target_rad, s.reference_rad, s.target_encoder_rad, s.reference_encoder_rad,
+          t.x_m, t.y_m, t.z_m, t.rx_rad, t.ry_rad, r.x_m, r.y_m, r.z_m, r.rx_rad, r.ry_rad};
 }
 
 /// Largest difference of angles and tilts [rad] and of positions [m].

@@ -240,23 +240,6 @@ TEST(Plant, BacklashHoldsTheRotorBackByHalfTheGapInBothDirectionsAndEquallyByLin
   EXPECT_NEAR(linear->State().target_rad, bullet->State().target_rad, 1e-4 * kArcsec);  // as their yaw
 }
 
-TEST(Plant, GivesTheSameBitsInWhateverPiecesTimeIsTold) {
-  for (const Fidelity fidelity : kAll) {
-    std::vector<std::array<double, 14>> found;
-    for (const int pieces : {1, 9, 100}) {
-      const auto plant = MakePlant(fidelity, ReseatedStack());
-      for (int i = 1; i <= 2; ++i) {
-        StartCounterRotation(*plant, i, 0.3);
-        for (int k = 0; k < pieces; ++k) plant->Advance(0.9 / pieces);
-      }
-      EXPECT_TRUE(plant->Settled());
-      found.push_back(Numbers(plant->State()));
-    }
-    EXPECT_EQ(found[0], found[1]);
-    EXPECT_EQ(found[0], found[2]);
-  }
-}
-
 TEST(Plant, GivesTheSameBitsInTwoThreads) {
   const StackParameters p = ReseatedStack();
   const auto run = [&p](Fidelity fidelity, std::array<double, 14>& out) {

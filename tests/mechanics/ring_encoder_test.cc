@@ -189,28 +189,24 @@ TEST(RingEncoder, FindsTheShaftThatShowsAnAngle) {
 }
 
 TEST(RingEncoder, RefusesWhatIsNoRing) {
-  const auto refused = [](const std::function<void(Ring&, ReadingHead&)>& change) {
+  using R = Ring;
+  using H = ReadingHead;
+  using Change = void (*)(R&, H&);
+  const Change changes[] = {
+      [](R& r, H&) { r = {}; }, [](R& r, H&) { r.radius_m = 0.0; }, [](R& r, H&) { r.lines = 0; },
+      [](R& r, H&) { r.eccentricity_m.x() = 0.006; }, [](R& r, H&) { r.eccentricity_m.y() = std::nan(""); },
+      [](R& r, H&) { r.tilt_rad.x() = 0.2; }, [](R& r, H&) { r.ellipticity_m = -0.001; },
+      [](R& r, H&) { r.mounting_rad = std::nan(""); }, [](R& r, H&) { r.ellipticity_azimuth_rad = std::nan(""); },
+      [](R& r, H&) { r.graduation = {{1.0, std::nan(""), 0.0}}; },
+      [](R& r, H&) { r.graduation = {{18000.0, 1e-4, 0.0}}; },
+      [](R&, H& h) { h.azimuth_rad = std::nan(""); }, [](R&, H& h) { h.height_m = std::nan(""); },
+      [](R&, H& h) { h.tangential_m = 0.03; }, [](R& r, H& h) { r.tilt_rad.x() = 0.05, h.height_m = 0.2; }};
+  for (const Change change : changes) {
     Ring ring = GoodRing();
     ReadingHead head;
     change(ring, head);
     EXPECT_THROW(RingEncoder(ring, head), std::invalid_argument);
-  };
-  const double nan = std::nan("");
-  EXPECT_THROW(RingEncoder(Ring{}, {}), std::invalid_argument);
-  refused([](Ring& r, ReadingHead&) { r.radius_m = 0.0; });
-  refused([](Ring& r, ReadingHead&) { r.lines = 0; });
-  refused([](Ring& r, ReadingHead&) { r.eccentricity_m.x() = 0.006; });
-  refused([=](Ring& r, ReadingHead&) { r.eccentricity_m.y() = nan; });
-  refused([](Ring& r, ReadingHead&) { r.tilt_rad.x() = 0.2; });
-  refused([](Ring& r, ReadingHead&) { r.ellipticity_m = -0.001; });
-  refused([=](Ring& r, ReadingHead&) { r.mounting_rad = nan; });
-  refused([=](Ring& r, ReadingHead&) { r.ellipticity_azimuth_rad = nan; });
-  refused([=](Ring& r, ReadingHead&) { r.graduation = {{1.0, nan, 0.0}}; });
-  refused([](Ring& r, ReadingHead&) { r.graduation = {{18000.0, 1e-4, 0.0}}; });
-  refused([=](Ring&, ReadingHead& h) { h.azimuth_rad = nan; });
-  refused([=](Ring&, ReadingHead& h) { h.height_m = nan; });
-  refused([](Ring&, ReadingHead& h) { h.tangential_m = 0.03; });
-  refused([](Ring& r, ReadingHead& h) { r.tilt_rad.x() = 0.05, h.height_m = 0.2; });
+  }
 }
 
 }  // namespace
