@@ -70,7 +70,7 @@ Vector2d HalfTangents(double a, double b) {
   return Vector2d(std::sin(a) * std::cos(b), std::sin(b)) * std::cos(a) * std::cos(b) / back;
 }
 
-TEST(EqualAreaDisc, HasTheMomentsOfADisc) {
+TEST(EqualAreaDisc, HasTheMomentsOfADiscAndTheRightShareOnEachSideOfAChord) {
   const double r = 3.0;
   const auto points = EqualAreaDisc(r, 4);
   ASSERT_EQ(points.size(), 64u);
@@ -85,19 +85,16 @@ TEST(EqualAreaDisc, HasTheMomentsOfADisc) {
   EXPECT_LT(first.norm(), 1e-14);  // rounding
   EXPECT_LT((second - r * r / 4.0 * Eigen::Matrix2d::Identity()).norm(), 1e-13);
   EXPECT_NEAR(third, 0.0, 1e-13);
-}
-
-TEST(EqualAreaDisc, LeavesTheRightShareOnEachSideOfAChord) {
-  const auto points = EqualAreaDisc(1.0, 5);
+  const auto unit = EqualAreaDisc(1.0, 5);
   for (double q = -0.9; q < 0.95; q += 0.1) {
-    const auto left = std::count_if(points.begin(), points.end(), [q](const Vector2d& p) { return p.x() < q; });
+    const auto left = std::count_if(unit.begin(), unit.end(), [q](const Vector2d& p) { return p.x() < q; });
     const double share = 0.5 + (std::asin(q) + q * std::sqrt(1.0 - q * q)) / std::numbers::pi;
     // A hundred points, of which those within half a ring (0.1) of the chord fall on either side by chance.
     EXPECT_NEAR(static_cast<double>(left) / 100.0, share, 0.025) << q;
   }
 }
 
-TEST(AutocollimatorOptics, ReadsHalfTheTangentOfTheDeflectionByAFlatMirror) {
+TEST(AutocollimatorOptics, ReadsHalfTheTangentOfTheDeflectionByAFlatMirrorWhereverThatIsMoved) {
   AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   for (const double yaw : {-300.0, -1.0, 0.0, 0.01, 300.0}) {
     for (const double tilt : {-300.0, 0.0, 0.01, 120.0, 300.0}) {
@@ -106,16 +103,9 @@ TEST(AutocollimatorOptics, ReadsHalfTheTangentOfTheDeflectionByAFlatMirror) {
       EXPECT_LT((read - HalfTangents(a, b)).norm(), kRounding_rad) << yaw << " " << tilt;
     }
   }
-}
-
-TEST(AutocollimatorOptics, DoesNotSeeAFlatMirrorMove) {
-  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   const double a = 100.0 * kArcsec, b = -200.0 * kArcsec;
-  const Vector2d read = Angles(instrument.Look(Pose(a, b)));
-  for (const Vector3d& shift_mm :
-       {Vector3d(-200, 0, 0), Vector3d(1, 2, 3), Vector3d(0, 35, 0), Vector3d(0, 0, -35)}) {
-    EXPECT_LT((Angles(instrument.Look(Pose(a, b, 1e-3 * shift_mm))) - read).norm(), kRounding_rad);
-  }
+  for (const Vector3d& shift_mm : {Vector3d(-200, 0, 0), Vector3d(1, 2, 3), Vector3d(0, 35, 0), Vector3d(0, 0, -35)})
+    EXPECT_LT((Angles(instrument.Look(Pose(a, b, 1e-3 * shift_mm))) - HalfTangents(a, b)).norm(), kRounding_rad);
 }
 
 TEST(AutocollimatorOptics, IsAsGoodAnywhereInTheLaboratoryAndLooksAtASurfaceWhereverItSitsOnItsBody) {
@@ -268,50 +258,42 @@ TEST(AutocollimatorOptics, InterpolatesBetweenPixelsWithThePixelsPeriod) {
   }
 }
 
-TEST(AutocollimatorOptics, ReadsNothingBeyondItsField) {
+/// Looks at where there is nothing to read. @return how much of the light comes back.
+double ReturnedFromNothing(AutocollimatorOptics& instrument, const Isometry3d& X_LM, AutocollimatorStatus status) {
+  const AutocollimatorImage image = instrument.Look(X_LM);
+  EXPECT_EQ(image.status, status);
+  EXPECT_TRUE(std::isnan(image.x_rad) && std::isnan(image.y_rad));
+  return image.returned_fraction;
+}
+
+TEST(AutocollimatorOptics, ReadsNothingBeyondItsFieldWithoutLightOrBehindAFixture) {
   AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
   const double inside = 409.9 * kArcsec, outside = 410.1 * kArcsec;
   EXPECT_EQ(instrument.Look(Pose(inside, -inside)).status, AutocollimatorStatus::kOk);
-  for (const Isometry3d& X_LM :
-       {Pose(outside, 0.0), Pose(-outside, 0.0), Pose(0.0, outside), Pose(0.0, -outside)}) {
-    const AutocollimatorImage image = instrument.Look(X_LM);
-    EXPECT_EQ(image.status, AutocollimatorStatus::kOutOfRange);
-    EXPECT_TRUE(std::isnan(image.x_rad) && std::isnan(image.y_rad));
-    EXPECT_GT(image.returned_fraction, 0.9);
-  }
-}
-
-TEST(AutocollimatorOptics, ReadsNothingWithoutLightOrBehindAFixture) {
-  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
+  for (const Isometry3d& X_LM : {Pose(outside, 0.0), Pose(-outside, 0.0), Pose(0.0, outside), Pose(0.0, -outside)})
+    EXPECT_GT(ReturnedFromNothing(instrument, X_LM, AutocollimatorStatus::kOutOfRange), 0.9);
   const Isometry3d away = Pose(5.0 * kDegree, 0.0), back = Pose(std::numbers::pi, 0.0);
   const Isometry3d beside = Pose(0.0, 0.0, {0.0, 0.1, 0.0}), nearly_beside = Pose(0.0, 0.0, {0.0, 0.043, 0.0});
-  for (const Isometry3d& X_LM : {away, back, beside, nearly_beside}) {
-    const AutocollimatorImage image = instrument.Look(X_LM);
-    EXPECT_EQ(image.status, AutocollimatorStatus::kNoLight);
-    EXPECT_TRUE(std::isnan(image.x_rad) && std::isnan(image.y_rad));
-  }
-  EXPECT_EQ(instrument.Look(back).returned_fraction, 0.0);
+  for (const Isometry3d& X_LM : {away, beside}) ReturnedFromNothing(instrument, X_LM, AutocollimatorStatus::kNoLight);
+  EXPECT_EQ(ReturnedFromNothing(instrument, back, AutocollimatorStatus::kNoLight), 0.0);
   // A segment of 2 mm of 30 mm holds 2.9 % of the disc, which is less than 5 %.
-  EXPECT_GT(instrument.Look(nearly_beside).returned_fraction, 0.0);
+  EXPECT_GT(ReturnedFromNothing(instrument, nearly_beside, AutocollimatorStatus::kNoLight), 0.0);
   instrument.AddFixture(BoxMesh({-0.01, -0.02, -0.02}, {0.0, 0.02, 0.02}),
                         Isometry3d(Translation3d(-0.2, 0.05, 0.2)));
   EXPECT_EQ(instrument.Look(Pose(0.0, 0.0)).returned_fraction, 0.0);
 }
 
-TEST(AutocollimatorOptics, NamesWhatIsWrongWithItsParameters) {
+TEST(AutocollimatorOptics, NamesWhatIsWrongWithItsParametersTheMirrorOrItsPose) {
   using Change = std::function<void(AutocollimatorParameters&)>;
   using P = AutocollimatorParameters;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::pair<const char*, Change> cases[] = {
-      {"X_LA", [](P& p) { p.X_LA.linear() *= 1.1; }},
-      {"X_LA", [nan](P& p) { p.X_LA.translation().x() = nan; }},
-      {" focal_length_m", [](P& p) { p.focal_length_m = 0.0; }},
+      {"X_LA", [](P& p) { p.X_LA.linear() *= 1.1; }}, {"X_LA", [nan](P& p) { p.X_LA.translation().x() = nan; }},
+      {" focal_length_m", [](P& p) { p.focal_length_m = 0.0; }}, {"pupil_rings", [](P& p) { p.pupil_rings = 0; }},
       {"nominal_focal_length_m", [nan](P& p) { p.nominal_focal_length_m = nan; }},
       {"aperture_radius_m", [](P& p) { p.aperture_radius_m = -1e-3; }},
-      {"defocus_m", [](P& p) { p.defocus_m = 0.03; }},
+      {"defocus_m", [](P& p) { p.defocus_m = 0.03; }}, {"roll_rad", [nan](P& p) { p.roll_rad = nan; }},
       {"distortion_per_rad2", [nan](P& p) { p.distortion_per_rad2 = nan; }},
-      {"pupil_rings", [](P& p) { p.pupil_rings = 0; }},
-      {"roll_rad", [nan](P& p) { p.roll_rad = nan; }},
       {"pixel_pitch_m", [](P& p) { p.pixel_pitch_m = 0.0; }},
       {"interpolation_error_px", [](P& p) { p.interpolation_error_px = 0.2; }},
       {"half_field_rad", [nan](P& p) { p.half_field_rad = nan; }},
@@ -323,6 +305,13 @@ TEST(AutocollimatorOptics, NamesWhatIsWrongWithItsParameters) {
     EXPECT_THAT([&p] { AutocollimatorOptics instrument(p, Mirror()); },
                 testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr(name)));
   }
+  EXPECT_THAT([] { AutocollimatorOptics instrument(ExampleInstrument(), Surface{}); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("aperture")));
+  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
+  Isometry3d nowhere = Pose(0.0, 0.0);
+  nowhere.translation().z() = std::numeric_limits<double>::infinity();
+  EXPECT_THAT([&] { instrument.Look(nowhere); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("X_LM")));
 }
 
 /// Readings of the same instrument, traced and closed.
@@ -355,16 +344,6 @@ TEST(AutocollimatorOptics, ClosedGivesTheSameBitsAsTraced) {
     ExpectSameBits(ExampleInstrument(), Mirror(), is_half_covered);
     ExpectSameBits(ExampleInstrument(), Mirror(-kSag_m), is_half_covered);
   }
-}
-
-TEST(AutocollimatorOptics, NamesWhatIsWrongWithTheMirrorOrItsPose) {
-  EXPECT_THAT([] { AutocollimatorOptics instrument(ExampleInstrument(), Surface{}); },
-              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("aperture")));
-  AutocollimatorOptics instrument(ExampleInstrument(), Mirror());
-  Isometry3d nowhere = Pose(0.0, 0.0);
-  nowhere.translation().z() = std::numeric_limits<double>::infinity();
-  EXPECT_THAT([&] { instrument.Look(nowhere); },
-              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("X_LM")));
 }
 
 }  // namespace

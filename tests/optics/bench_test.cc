@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "tests/optics/example_bench.h"
-#include "tests/support/csv_rows.h"
+#include "tests/support/oracle_poses.h"
 
 namespace twinbench::optics {
 namespace {
@@ -16,55 +16,36 @@ using Eigen::Isometry3d;
 using Eigen::Translation3d;
 using Eigen::Vector3d;
 
-using test::Number;
-using Row = test::CsvRow;
-
-/// Rotations in rad and translations in m of one table, as the table's six error columns give them.
-struct Error {
-  Vector3d rotation, translation;
-};
-
-Error ErrorOf(const Row& row, const std::string& table) {
-  const auto at = [&](const char* name) { return Number(row, table + name); };
-  return {kArcsec * Vector3d(at("_ex_arcsec"), at("_ey_arcsec"), at("_ez_arcsec")),
-          1e-6 * Vector3d(at("_dx_um"), at("_dy_um"), at("_dz_um"))};
-}
-
 Isometry3d Rz(double angle) {
   return Isometry3d(AngleAxisd(angle, Vector3d::UnitZ()));
 }
 
-Isometry3d Pose(const Error& e) {
-  return Translation3d(e.translation) * AngleAxisd(e.rotation.z(), Vector3d::UnitZ()) *
-         AngleAxisd(e.rotation.y(), Vector3d::UnitY()) * AngleAxisd(e.rotation.x(), Vector3d::UnitX());
+Isometry3d Pose(const test::OracleError& e) {
+  return Translation3d(e[3], e[4], e[5]) * AngleAxisd(e[2], Vector3d::UnitZ()) *
+         AngleAxisd(e[1], Vector3d::UnitY()) * AngleAxisd(e[0], Vector3d::UnitX());
 }
 
-Isometry3d GratingPose(const Row& row) {
-  const auto angle = [&](const char* name) { return Number(row, name) * kDegree; };
-  const bool reclamp = row.at("mode") == "reclamp";
-  const double reference = angle("reference_deg"), shift = angle("shift_deg");
-  return Translation3d(0, -0.030, -0.130) * Pose(ErrorOf(row, "target")) * Rz(angle("target_deg")) *
-         Translation3d(0, 0, 0.080) * Rz(reclamp ? 0.0 : -shift) * Pose(ErrorOf(row, "reference")) * Rz(reference) *
-         Rz(reclamp ? -shift : 0.0) * Translation3d(0, 0.030, 0.050);
+Isometry3d GratingPose(const test::OraclePose& p) {
+  return Translation3d(0, -0.030, -0.130) * Pose(p.target) * Rz(p.target_rad) * Translation3d(0, 0, 0.080) *
+         Rz(p.is_reclamped ? 0.0 : -p.shift_rad) * Pose(p.reference) * Rz(p.reference_rad) *
+         Rz(p.is_reclamped ? -p.shift_rad : 0.0) * Translation3d(0, 0.030, 0.050);
 }
 
 TEST(RotaryOptics, AgreesWithTheIndependentOracleToOneNanometre) {
-  const std::vector<Row> rows = test::ReadCsvRows(std::string(TWINBENCH_TEST_DATA) + "/oracle/poses.csv");
-  ASSERT_EQ(rows.size(), 300u);
+  const std::vector<test::OraclePose> poses = test::OraclePoses();
+  ASSERT_EQ(poses.size(), 300u);
   for (const Fidelity fidelity : {Fidelity::kTraced, Fidelity::kClosed}) {
     RotaryOpticsParameters parameters = ExampleBench();
     parameters.fidelity = fidelity;
     const RotaryOptics optics(parameters);
-    for (const Row& row : rows) {
-      const PsdSignals signals = optics.Trace(GratingPose(row), ExampleSource());
-      ASSERT_EQ(signals.a.status, PsdStatus::kOk);
+    for (const test::OraclePose& pose : poses) {
+      const auto [a, b] = optics.Trace(GratingPose(pose), ExampleSource());
+      ASSERT_EQ(a.status, PsdStatus::kOk);
+      const std::array found_m{a.u_m, a.v_m, b.u_m, b.v_m};
       // Demanded is 1 nm; the table's nine decimals of a micrometre allow 1e-15 m, the sums behind them 1e-14 m.
-      EXPECT_NEAR(signals.a.u_m, Number(row, "psd_a_u_um") * 1e-6, 1e-13);
-      EXPECT_NEAR(signals.a.v_m, Number(row, "psd_a_v_um") * 1e-6, 1e-13);
-      EXPECT_NEAR(signals.b.u_m, Number(row, "psd_b_u_um") * 1e-6, 1e-13);
-      EXPECT_NEAR(signals.b.v_m, Number(row, "psd_b_v_um") * 1e-6, 1e-13);
+      for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(found_m[k], pose.spots_m[k], 1e-13) << k;
     }
-    EXPECT_EQ(optics.rays_traced(), fidelity == Fidelity::kTraced ? 4u * rows.size() : 0u);
+    EXPECT_EQ(optics.rays_traced(), fidelity == Fidelity::kTraced ? 4u * poses.size() : 0u);
   }
 }
 
@@ -95,7 +76,7 @@ TEST(RotaryOptics, RotatesTheReadingWithARolledDetectorAndStretchesUWithTiltAbou
     parameters.psd_a.tilt_v_rad = tilt_v_rad;
     return RotaryOptics(parameters).Trace(pose, ExampleSource()).a;
   };
-  const Isometry3d pose = Pose({{20 * kArcsec, -30 * kArcsec, 50 * kArcsec}, {1e-6, 2e-6, 3e-6}});
+  const Isometry3d pose = Pose({20 * kArcsec, -30 * kArcsec, 50 * kArcsec, 1e-6, 2e-6, 3e-6});
   const PsdSignal straight = seen(pose, 0.0, 0.0), rolled = seen(pose, 0.01, 0.0);
   EXPECT_NEAR(rolled.u_m, std::cos(0.01) * straight.u_m + std::sin(0.01) * straight.v_m, 1e-16);
   EXPECT_NEAR(rolled.v_m, -std::sin(0.01) * straight.u_m + std::cos(0.01) * straight.v_m, 1e-16);

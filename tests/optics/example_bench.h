@@ -27,12 +27,8 @@ inline RotaryOpticsParameters ExampleBench() {
   RotaryOpticsParameters p;
   p.nominal_wavelength_m = 650e-9;
   p.laser_position_m = {0.0, 0.2, 0.0};
-  p.grating = {.lines_per_m = 600e3,
-               .width_m = 25e-3,
-               .height_m = 25e-3,
-               .reflectance = 1.0,
-               .table = {{0.0, {-2, {0.1, 0.339, 0.1, 0.339, 0.1}}}},
-               .form = {}};
+  p.grating = {.lines_per_m = 600e3, .width_m = 25e-3, .height_m = 25e-3, .reflectance = 1.0,
+               .table = {{0.0, {-2, {0.1, 0.339, 0.1, 0.339, 0.1}}}}, .form = {}};
   p.psd_a = p.psd_b = ExamplePsd();
   return p;
 }

@@ -24,11 +24,8 @@ struct Set {
 
   std::vector<Deposit> Trace() const {
     const RotaryOptics optics(parameters);
-    const GhostBench bench{.X_LG = X_LG,
-                           .grating = &parameters.grating,
-                           .wavelength_m = 650e-9,
-                           .psd = {&parameters.psd_a, &parameters.psd_b},
-                           .X_LP = {optics.X_LA(), optics.X_LB()},
+    const GhostBench bench{.X_LG = X_LG, .grating = &parameters.grating, .wavelength_m = 650e-9,
+                           .psd = {&parameters.psd_a, &parameters.psd_b}, .X_LP = {optics.X_LA(), optics.X_LB()},
                            .blocked = {}};
     return TraceGhosts(bench, optics.ChiefRay(ExampleSource()), 1.0, options);
   }

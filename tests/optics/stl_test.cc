@@ -102,10 +102,8 @@ TEST_F(StlFile, ThatIsNoneOrCutOffOrHasABadLineIsNamedWithIt) {
     EXPECT_THAT(ErrorOf(bytes), testing::StartsWith(": "));
     EXPECT_KEPT(ErrorOf(bytes));
   }
-  const std::pair<int, std::string> vertices[] = {{4, "vertex 1 2\n"},
-                                                  {5, "vertex 1 2 3\nvertex 1 2 3mm\n"},
-                                                  {7, "vertex 1 2 3\nvertex 1 2 3\n"},
-                                                  {4, "color 1 2 3\n"}};
+  const std::pair<int, std::string> vertices[] = {{4, "vertex 1 2\n"}, {5, "vertex 1 2 3\nvertex 1 2 3mm\n"},
+                                                  {7, "vertex 1 2 3\nvertex 1 2 3\n"}, {4, "color 1 2 3\n"}};
   for (const auto& [line, lines] : vertices) {
     const std::string facet =
         "solid x\nfacet normal 0 0 1\nouter loop\n" + lines + "endloop\nendfacet\nendsolid x\n";
