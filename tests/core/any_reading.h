@@ -37,10 +37,9 @@ inline void ExpectSame(const Reading& a, const Reading& b) {
     return std::tie(r.reading, r.setup, r.pass, r.direction, r.position, r.phase, r.status, r.n_samples, r.extra);
   };
   const auto numbers = [](const Reading& r) {
-    std::vector<double> all = {r.target_rad,        r.reference_rad,          r.dwell_s,
-                               r.temperature_degC,  r.autocollimator_yaw_rad, r.autocollimator_tilt_rad,
-                               r.measured_rad,      r.velocity_rad_s,         r.head_rad,
-                               r.interferometer_rad};
+    std::vector<double> all = {
+        r.target_rad, r.reference_rad, r.dwell_s, r.temperature_degC, r.autocollimator_yaw_rad,
+        r.autocollimator_tilt_rad, r.measured_rad, r.velocity_rad_s, r.head_rad, r.interferometer_rad};
     all.insert(all.end(), r.mean_V.begin(), r.mean_V.end());
     all.insert(all.end(), r.std_V.begin(), r.std_V.end());
     return all;

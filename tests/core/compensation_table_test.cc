@@ -44,10 +44,8 @@ TEST(CompensationTable, RefusesWhatIsNoTurn) {
   ExpectRefused(
       folder.File("t.csv"),
       [&](const auto& text) { return MessageOf([&] { ReadCompensationTable(folder.Write("t.csv", text)); }); },
-      {{1, "position_deg,ez_arcsec\n0,1\n"},
-       {1, "position_deg,correction_arcsec\n0,1\n0,2\n"},
-       {1, "position_deg,correction_arcsec\n0,1\n360,2\n"},
-       {1, "position_deg,correction_arcsec\n"}});
+      {{1, "position_deg,ez_arcsec\n0,1\n"}, {1, "position_deg,correction_arcsec\n0,1\n0,2\n"},
+       {1, "position_deg,correction_arcsec\n0,1\n360,2\n"}, {1, "position_deg,correction_arcsec\n"}});
 }
 
 }  // namespace

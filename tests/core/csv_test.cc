@@ -24,9 +24,7 @@ TEST(Csv, SkipsCommentsCountsTheirLinesAndTakesFilesOfOtherSystemsAndEmptyFields
   ASSERT_EQ(table.rows.size(), 1u);
   EXPECT_EQ(table.WhereHeader(), "t.csv:2");
   EXPECT_EQ(table.Where(table.rows[0]), "t.csv:5");
-  const CsvTable foreign = ParseTable(
-      "\xEF\xBB\xBF"
-      "a,b\r\n 1 ,2\r\n");
+  const CsvTable foreign = ParseTable("\xEF\xBB\xBF" "a,b\r\n 1 ,2\r\n");
   EXPECT_EQ(foreign.columns, (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(foreign.rows[0].fields, (std::vector<std::string>{"1", "2"}));
   EXPECT_EQ(ParseTable("a,b,c\n,,\n").rows[0].fields, (std::vector<std::string>{"", "", ""})) << "also the last";

@@ -26,7 +26,7 @@ TEST(EffectCatalogue, HasTheEffectsOfItsBenchOnly) {
   EXPECT_THROW(EffectCatalogue("lathe"), InputError);
 }
 
-TEST(EffectCatalogue, SaysWhereAnEffectCanActAndWithWhichParameters) {
+TEST(EffectCatalogue, SaysWhereAnEffectCanActAndGivesKeysOfItsParametersTheirUnitAndValuesInSI) {
   EXPECT_THAT(FindEffect("psd_gain", kRotaryBench)->places,
               ElementsAre("psd_a_x", "psd_a_y", "psd_b_x", "psd_b_y"));
   EXPECT_THAT(FindEffect("laser_drift", kRotaryBench)->places, ElementsAre("yaw", "pitch"));
@@ -38,6 +38,13 @@ TEST(EffectCatalogue, SaysWhereAnEffectCanActAndWithWhichParameters) {
   EXPECT_TRUE(parameters[0].BelongsTo("yaw"));
   EXPECT_FALSE(parameters[0].BelongsTo("lateral"));
   EXPECT_TRUE(parameters[2].BelongsTo("lateral"));
+  const EffectParameter& roll = FindEffect("psd_roll", kRotaryBench)->parameters.front();
+  EXPECT_EQ(roll.Key(), "roll_mrad");
+  EXPECT_EQ(roll.default_SI, 5.0 * units::mrad);
+  EXPECT_EQ(FindEffect("psd_gain", kRotaryBench)->parameters.front().Key(), "gain_error");
+  const EffectParameter& drift = FindEffect("laser_drift", kRotaryBench)->parameters.front();
+  EXPECT_EQ(drift.Key(), "drift_urad_per_h");
+  EXPECT_DOUBLE_EQ(drift.default_SI, 20e-6 / 3600.0);
 }
 
 class EveryBench : public testing::TestWithParam<std::string> {};
@@ -57,16 +64,6 @@ TEST_P(EveryBench, HasDefaultsWithinBoundsAndPlacesThatExist) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EffectCatalogue, EveryBench, testing::ValuesIn(BenchNames()));
-
-TEST(EffectCatalogue, GivesKeysTheirUnitAndValuesInSI) {
-  const EffectParameter& roll = FindEffect("psd_roll", kRotaryBench)->parameters.front();
-  EXPECT_EQ(roll.Key(), "roll_mrad");
-  EXPECT_EQ(roll.default_SI, 5.0 * units::mrad);
-  EXPECT_EQ(FindEffect("psd_gain", kRotaryBench)->parameters.front().Key(), "gain_error");
-  const EffectParameter& drift = FindEffect("laser_drift", kRotaryBench)->parameters.front();
-  EXPECT_EQ(drift.Key(), "drift_urad_per_h");
-  EXPECT_DOUBLE_EQ(drift.default_SI, 20e-6 / 3600.0);
-}
 
 }  // namespace
 }  // namespace twinbench

@@ -167,16 +167,11 @@ TEST(ReadingColumns, MayHoldAQuantityWithoutAFieldOfItsOwn) {
 TEST(ReadingsCsv, NameLineColumnAndFaultOfABadFieldAndOfReadingsOutOfOrder) {
   const std::string good = "0,5,0,0,1,0,full_circle,0,0,1,2,3,4\n";
   ExpectRefused("r.csv", RowError,
-                {{2, "0,0,0,0,1,0,full_circle,0,0,1,x,3,4"},
-                 {2, "0,0,0,0,1,0,full_circle,,0,1,2,3,4"},
-                 {2, "0,0,0,0,1,0,full_circle,inf,0,1,2,3,4"},
-                 {2, "0,0,0,0,1,0,fullcircle,0,0,1,2,3,4"},
-                 {2, "0,0,0,0,2,0,full_circle,0,0,1,2,3,4"},
-                 {2, "-1,0,0,0,1,0,full_circle,0,0,1,2,3,4"},
-                 {2, "0,0,0.5,0,1,0,full_circle,0,0,1,2,3,4"},
-                 {2, "0,soon,0,0,1,0,full_circle,0,0,1,2,3,4"},
-                 {2, "0,1e10,0,0,1,0,full_circle,0,0,1,2,3,4"},
-                 {2, "0,0,0,0,1,0,full_circle,0,0,1,2,3"},
+                {{2, "0,0,0,0,1,0,full_circle,0,0,1,x,3,4"}, {2, "0,0,0,0,1,0,full_circle,,0,1,2,3,4"},
+                 {2, "0,0,0,0,1,0,full_circle,inf,0,1,2,3,4"}, {2, "0,0,0,0,1,0,fullcircle,0,0,1,2,3,4"},
+                 {2, "0,0,0,0,2,0,full_circle,0,0,1,2,3,4"}, {2, "-1,0,0,0,1,0,full_circle,0,0,1,2,3,4"},
+                 {2, "0,0,0.5,0,1,0,full_circle,0,0,1,2,3,4"}, {2, "0,soon,0,0,1,0,full_circle,0,0,1,2,3,4"},
+                 {2, "0,1e10,0,0,1,0,full_circle,0,0,1,2,3,4"}, {2, "0,0,0,0,1,0,full_circle,0,0,1,2,3"},
                  {3, good + "0,6,0,0,1,0,full_circle,0,0,1,2,3,4"},
                  {3, good + "1,4.5,0,0,1,0,full_circle,0,0,1,2,3,4"}});
   EXPECT_KEPT(MessageOf(

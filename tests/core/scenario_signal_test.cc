@@ -48,15 +48,10 @@ TEST(ScenarioSignal, IsWrittenAsItIsRead) {
 TEST(ScenarioSignal, IsRefusedWithWhatWasExpected) {
   const std::string tone = "point = \"psd_a_x\"\nsignal = \"tone\"\n";
   ExpectRefused("s.toml", Refusal,
-                {{2, "signal = \"tone\"\n"},
-                 {2, "point = \"psd_a_x\"\n"},
-                 {4, "point = \"psd_c_x\"\nsignal = \"tone\"\n"},
-                 {5, "point = \"psd_a_x\"\nsignal = \"wobble\"\n"},
-                 {2, "point = \"psd_a_x\"\nsignal = \"harmonic\"\n"},
-                 {2, tone + "by = \"target\"\n"},
-                 {6, tone + "order = 3\n"},
-                 {6, tone + "about_K = 3\n"},
-                 {6, tone + "where = \"psd_a\"\n"}});
+                {{2, "signal = \"tone\"\n"}, {2, "point = \"psd_a_x\"\n"},
+                 {4, "point = \"psd_c_x\"\nsignal = \"tone\"\n"}, {5, "point = \"psd_a_x\"\nsignal = \"wobble\"\n"},
+                 {2, "point = \"psd_a_x\"\nsignal = \"harmonic\"\n"}, {2, tone + "by = \"target\"\n"},
+                 {6, tone + "order = 3\n"}, {6, tone + "about_K = 3\n"}, {6, tone + "where = \"psd_a\"\n"}});
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ harmonics = [ { component = "ez", order = 1, amplitude_arcsec = 5.0, phase_deg =
   EXPECT_EQ(RotaryOf(s).target.harmonics[1].phase_rad, 0.0);
 }
 
-TEST(Scenario, TakesEffectsWithTheDefaultsOfTheCatalogue) {
+TEST(Scenario, TakesEffectsOfItsOwnBenchWithTheDefaultsOfTheCatalogue) {
   const Scenario s = Parse(R"([[effect]]
 name = "laser_drift"
 where = "pitch"
@@ -120,9 +120,12 @@ name = "tone"
   EXPECT_EQ(s.effects[1].where, "target");
   EXPECT_EQ(s.effects[1].parameters.at("half_width"), 1.0 * units::arcsec);
   EXPECT_EQ(s.effects[2].where, "all");
+  const Scenario other = ParseScenario(
+      "bench = \"encoder_comparison\"\n[[effect]]\nname = \"backlash\"\nwidth_deg = 0.5\n", "s.toml", ".", {});
+  EXPECT_EQ(other.effects.at(0).parameters.at("width"), 0.5 * units::deg) << "not half_width_arcsec";
 }
 
-TEST(Scenario, TakesTheErrorsOfATableFromItsFolder) {
+TEST(Scenario, TakesTheErrorsOfATableFromItsFolderOrInline) {
   const TemporaryFolder folder;
   folder.Write("t.csv", "position_deg,ez_arcsec\n0,1\n180,-1\n");
   const std::string path = folder.Write("s.toml", std::string(kBench) + "[target]\nerrors_file = \"t.csv\"\n");
@@ -131,13 +134,10 @@ TEST(Scenario, TakesTheErrorsOfATableFromItsFolder) {
   EXPECT_EQ((*RotaryOf(s).target.errors)[Component::kEz][1], -1.0 * units::arcsec);
   EXPECT_TRUE(RotaryOf(s).target.errors_file.empty());
   EXPECT_FALSE(RotaryOf(s).reference.errors.has_value());
-}
-
-TEST(Scenario, TakesTheErrorsOfATableInline) {
-  const Scenario s = Parse("[reference.errors]\nposition_deg = [0, 90]\ndx_um = [1, 2]\n");
-  EXPECT_EQ(RotaryOf(s).reference.errors->position_rad[1], 90.0 * units::deg);
-  EXPECT_EQ((*RotaryOf(s).reference.errors)[Component::kDx][1], 2.0 * units::um);
-  EXPECT_EQ((*RotaryOf(s).reference.errors)[Component::kEx], (std::vector<double>{0.0, 0.0}));
+  const Scenario told = Parse("[reference.errors]\nposition_deg = [0, 90]\ndx_um = [1, 2]\n");
+  EXPECT_EQ(RotaryOf(told).reference.errors->position_rad[1], 90.0 * units::deg);
+  EXPECT_EQ((*RotaryOf(told).reference.errors)[Component::kDx][1], 2.0 * units::um);
+  EXPECT_EQ((*RotaryOf(told).reference.errors)[Component::kEx], (std::vector<double>{0.0, 0.0}));
 }
 
 // --- overrides ---
@@ -150,7 +150,7 @@ TEST(ScenarioOverride, WinsOverTheFileAndOverEarlierOnes) {
   EXPECT_EQ(RotaryOf(s).laser.wavelength_m, 640.0 * units::nm);
 }
 
-TEST(ScenarioOverride, ReplacesListsAsAWhole) {
+TEST(ScenarioOverride, ReplacesListsAsAWholeAndNeedsNoQuotesForAWord) {
   const std::string text =
       "[target]\nharmonics = [{ component = \"ez\", order = 1, amplitude_arcsec = 5.0 }]\n"
       "[[effect]]\nname = \"settling\"\n";
@@ -158,9 +158,6 @@ TEST(ScenarioOverride, ReplacesListsAsAWhole) {
   EXPECT_TRUE(RotaryOf(Parse(text, {"target.harmonics=[]"})).target.harmonics.empty());
   EXPECT_TRUE(Parse(text, {"effect=[]"}).effects.empty());
   EXPECT_THAT(RotaryOf(Parse(text, {"procedure.shifts=[0, 5]"})).procedure.shifts, ElementsAre(0, 5));
-}
-
-TEST(ScenarioOverride, NeedsNoQuotesForAWord) {
   EXPECT_EQ(RotaryOf(Parse("", {"procedure.clamping=reclamp"})).procedure.clamping, "reclamp");
   EXPECT_EQ(RotaryOf(Parse("", {"procedure.clamping=\"reclamp\""})).procedure.clamping, "reclamp");
   EXPECT_EQ(RotaryOf(Parse("", {"mechanics.fidelity=linear"})).mechanics.fidelity, "linear");
@@ -172,13 +169,6 @@ TEST(ScenarioOverride, OfAnErrorsFileReplacesErrorsOfTheFile) {
   const std::string text = std::string(kBench) + "[target.errors]\nposition_deg = [0]\nez_arcsec = [1]\n";
   const Scenario s = ParseScenario(text, "s.toml", folder.path(), {"target.errors_file=t.csv"});
   EXPECT_EQ((*RotaryOf(s).target.errors)[Component::kEz][0], 3.0 * units::arcsec);
-}
-
-TEST(Scenario, TakesTheEffectsOfItsOwnBench) {
-  const Scenario s = ParseScenario(
-      "bench = \"encoder_comparison\"\n[[effect]]\nname = \"backlash\"\nwidth_deg = 0.5\n", "s.toml", ".", {});
-  EXPECT_EQ(s.effects.at(0).parameters.at("width"),
-            0.5 * units::deg);  // the rotary bench's has a half_width_arcsec
 }
 
 TEST(Scenario, OfTheTurntableNamesItsTablesByTheirOwnNames) {
@@ -216,10 +206,8 @@ TEST(ScenarioError, NamesTheBenchesThatThereAre) {
 }
 
 TEST(ScenarioError, NamesTheBenchThatAKeyBelongsTo) {
-  ExpectScenariosRefused({{2, "[laser]\nwavelength_nm = 650\n"},
-                          {2, "[[fixture]]\nname = \"plate\"\n"},
-                          {3, "[[effect]]\nname = \"psd_gain\"\n"},
-                          {3, "[device]\nnoise_dg = 0.1\n"},
+  ExpectScenariosRefused({{2, "[laser]\nwavelength_nm = 650\n"}, {2, "[[fixture]]\nname = \"plate\"\n"},
+                          {3, "[[effect]]\nname = \"psd_gain\"\n"}, {3, "[device]\nnoise_dg = 0.1\n"},
                           {3, "[encoder_procedure]\npasses = [1, 0]\n"}},
                          kEncoderBench);
   ExpectScenariosRefused({{2, "[device]\nnoise_deg = 0.1\n"}});
@@ -230,50 +218,37 @@ TEST(ScenarioError, GivesTheLineOfASyntaxError) {
   EXPECT_THAT(ErrorOf("seed = 1\nseed = 2\n"), StartsWith("s.toml:3: "));
 }
 
-TEST(ScenarioError, NamesTheNearestKnownKeyAlsoOfOneThatQuotesHide) {
-  ExpectScenariosRefused({{3, "[laser]\nwavelenght_nm = 650\n"},
-                          {2, "wavelength_nm = 650\n"},
+TEST(ScenarioError, NamesTheNearestKnownKeyAlsoOfOneThatQuotesHideAndTheRightUnit) {
+  ExpectScenariosRefused({{3, "[laser]\nwavelenght_nm = 650\n"}, {2, "wavelength_nm = 650\n"},
                           {2, "[lasr]\nwavelength_nm = 650\n"},
                           {2, "[xyz]\na = 1\n"},  // the nameless top is no table to be near to
-                          {2, "[target.seeting]\nez_arcsec = 1\n"},
-                          {2, "\"laser.wavelength_nm\" = 640\n"},
+                          {2, "[target.seeting]\nez_arcsec = 1\n"}, {2, "\"laser.wavelength_nm\" = 640\n"},
                           {2, "\"\" = 1\n"}});
-}
-
-TEST(ScenarioError, NamesTheRightUnitOfAKey) {
-  ExpectScenariosRefused({{3, "[laser]\nwavelength_m = 650e-9\n"},
-                          {3, "[laser]\nwavelength = 650\n"},
-                          {3, "[procedure]\nsweep_deg = 1\n"},
-                          {3, "[target.random]\ndx_arcsec = 1\n"}});
+  ExpectScenariosRefused({{3, "[laser]\nwavelength_m = 650e-9\n"}, {3, "[laser]\nwavelength = 650\n"},
+                          {3, "[procedure]\nsweep_deg = 1\n"}, {3, "[target.random]\ndx_arcsec = 1\n"}});
 }
 
 TEST(ScenarioError, NamesTypeBoundsLengthAndChoicesAsTheUserWritesThem) {
-  ExpectScenariosRefused({{3, "[laser]\nwavelength_nm = -5\n"},
-                          {3, "[laser]\nwavelength_nm = \"red\"\n"},
-                          {3, "[psd_a]\ndistance_mm = 0\n"},
-                          {3, "[psd_a]\ndistance_mm = [1]\n"},
-                          {2, "noise_free = 1\n"},
-                          {2, "title = 5\n"},
-                          {2, "seed = -1\n"},
-                          {3, "[procedure]\npositions = 36.0\n"},
-                          {3, "[psd_a]\nroll_mrad = nan\n"},
-                          {3, "[psd_a]\nroll_mrad = -inf\n"},
-                          {3, "[amplifier]\noffset_mV = [1, 2, 3]\n"},
+  ExpectScenariosRefused({{3, "[laser]\nwavelength_nm = -5\n"}, {3, "[laser]\nwavelength_nm = \"red\"\n"},
+                          {3, "[psd_a]\ndistance_mm = 0\n"}, {3, "[psd_a]\ndistance_mm = [1]\n"},
+                          {2, "noise_free = 1\n"}, {2, "title = 5\n"}, {2, "seed = -1\n"},
+                          {3, "[procedure]\npositions = 36.0\n"}, {3, "[psd_a]\nroll_mrad = nan\n"},
+                          {3, "[psd_a]\nroll_mrad = -inf\n"}, {3, "[amplifier]\noffset_mV = [1, 2, 3]\n"},
                           {3, "[procedure]\ndwell_s = []\n"},
                           {5, "[amplifier]\noffset_mV = [1,\n  2,\n  \"x\", 4]\n"},
-                          {3, "[procedure]\nclamping = \"glue\"\n"},
-                          {3, "[mechanics]\nfidelity = \"best\"\n"},
-                          {3, "[laser]\nbeam = \"ray\"\n"},
-                          {3, "[procedure]\nphases = [\"warmup\"]\n"}});
+                          {3, "[procedure]\nclamping = \"glue\"\n"}, {3, "[mechanics]\nfidelity = \"best\"\n"},
+                          {3, "[laser]\nbeam = \"ray\"\n"}, {3, "[procedure]\nphases = [\"warmup\"]\n"}});
 }
 
-TEST(ScenarioError, ChecksScanListShiftsAndPasses) {
+TEST(ScenarioError, ChecksScanListShiftsPassesAndInlineErrors) {
   ExpectScenariosRefused({{3, "[adc]\nscan_list = [\"psd_a_x\", \"psd_a_x\", \"psd_b_x\", \"psd_b_y\"]\n"},
-                          {3, "[procedure]\nshifts = [0, 36]\n"},
-                          {3, "[procedure]\nshifts = [0, 5, 5]\n"},
-                          {3, "[procedure]\nshifts = [0, -1]\n"},
-                          {3, "[procedure]\npasses = [1, 0]\n"},
+                          {3, "[procedure]\nshifts = [0, 36]\n"}, {3, "[procedure]\nshifts = [0, 5, 5]\n"},
+                          {3, "[procedure]\nshifts = [0, -1]\n"}, {3, "[procedure]\npasses = [1, 0]\n"},
                           {3, "[procedure]\npasses = [1, 2]\n"}});
+  ExpectScenariosRefused({{2, "[target.errors]\nez_arcsec = [1]\n"},
+                          {4, "[target.errors]\nposition_deg = [0, 1]\nez_arcsec = [1]\n"},
+                          {4, "[target.errors]\nposition_deg = [0]\nez_urad = [1]\n"},
+                          {3, "[target]\nerrors_file = \"t.csv\"\n[target.errors]\nposition_deg = [0]\n"}});
 }
 
 TEST(ScenarioError, ChecksHarmonics) {
@@ -284,28 +259,18 @@ TEST(ScenarioError, ChecksHarmonics) {
     ExpectScenariosRefused({{3, "[target]\nharmonics = [" + std::string(entry) + "]\n"}});
 }
 
-TEST(ScenarioError, ChecksInlineErrors) {
-  ExpectScenariosRefused({{2, "[target.errors]\nez_arcsec = [1]\n"},
-                          {4, "[target.errors]\nposition_deg = [0, 1]\nez_arcsec = [1]\n"},
-                          {4, "[target.errors]\nposition_deg = [0]\nez_urad = [1]\n"},
-                          {3, "[target]\nerrors_file = \"t.csv\"\n[target.errors]\nposition_deg = [0]\n"}});
-}
-
 TEST(ScenarioError, NamesFilesThatCannotBeRead) {
   const TemporaryFolder folder;
   ExpectRefused(
       "s.toml",
       [&](const auto& text) { return MessageOf([&] { ParseScenario(kBench + text, "s.toml", folder.path()); }); },
-      {{3, "[target]\nerrors_file = \"no_such.csv\"\n"},
-       {3, "[environment]\ntemperature_file = \"no_such.csv\"\n"},
-       {3, "[laser]\nbeam = \"profile\"\n"},
-       {2, "[[fixture]]\nname = \"plate\"\nmesh_file = \"none.stl\"\n"}});
+      {{3, "[target]\nerrors_file = \"no_such.csv\"\n"}, {3, "[environment]\ntemperature_file = \"no_such.csv\"\n"},
+       {3, "[laser]\nbeam = \"profile\"\n"}, {2, "[[fixture]]\nname = \"plate\"\nmesh_file = \"none.stl\"\n"}});
   EXPECT_KEPT(MessageOf([] { LoadScenario("no_such.toml"); }));
 }
 
 TEST(ScenarioEffectError, NamesTheNearestEffectAndWhatItHasAndChecksPlaceAndBounds) {
-  ExpectScenariosRefused({{3, "[[effect]]\nname = \"psd_gian\"\n"},
-                          {2, "[[effect]]\nwhere = \"yaw\"\n"},
+  ExpectScenariosRefused({{3, "[[effect]]\nname = \"psd_gian\"\n"}, {2, "[[effect]]\nwhere = \"yaw\"\n"},
                           {2, "[effect]\nname = \"tone\"\n"},
                           {5, "[[effect]]\nname = \"psd_roll\"\nwhere = \"psd_a\"\nroll_deg = 1\n"},
                           {5, "[[effect]]\nname = \"slip\"\nwhere = \"lateral\"\nangle_arcsec = 1\n"},
@@ -346,27 +311,22 @@ rides_on_grating = true
 }
 
 TEST(ScenarioFixtureError, SaysWhatIsWrongWithAFixture) {
-  ExpectScenariosRefused({{2, "[[fixture]]\nbox_mm = [1, 1, 1]\n"},
-                          {2, "[[fixture]]\nname = \"plate\"\n"},
+  ExpectScenariosRefused({{2, "[[fixture]]\nbox_mm = [1, 1, 1]\n"}, {2, "[[fixture]]\nname = \"plate\"\n"},
                           {2, "[[fixture]]\nname = \"plate\"\nbox_mm = [1, 1, 1]\nmesh_file = \"a.stl\"\n"},
                           {4, "[[fixture]]\nname = \"plate\"\nbox_mm = [1, 0, 1]\n"},
                           {4, "[[fixture]]\nname = \"plate\"\nbox_mm = [1, 1]\n"},
                           {4, "[[fixture]]\nname = \"plate\"\nbox_um = [1, 1, 1]\n"},
                           {4, "[[fixture]]\nname = \"plate\"\npositon_mm = [1, 1, 1]\n"},
-                          {2, "[fixture]\nname = \"plate\"\n"},
-                          {2, "fixture = [1]\n"}});
+                          {2, "[fixture]\nname = \"plate\"\n"}, {2, "fixture = [1]\n"}});
 }
 
-TEST(ScenarioError, WantsTurntablePositionsAWholeNumberOfTeethApartAndOneEntryASetUpOrOneForAll) {
+TEST(ScenarioError, WantsTurntablePositionsWholeTeethAndHobSamplesWholeLinesApartAndOneEntryASetUpOrOneForAll) {
   ExpectScenariosRefused({{3, "[turntable_procedure]\npositions = 50\n"},
                           {3, "[turntable_procedure]\nverification_positions = 300\n"},
                           {3, "[turntable_procedure]\nshifts_teeth = [360]\n"},
                           {4, "[turntable_procedure]\ntilts_arcsec = [60, 100, 30]\nshifts_teeth = [0, 5]\n"},
                           {3, "[turntable_procedure]\npasses = [1, 0]\n"}},
                          kTurntableBench);
-}
-
-TEST(ScenarioError, WantsWholeNumbersOfLinesBetweenSamplesOfTheHobbingMachine) {
   ExpectScenariosRefused(
       {{2, "hob_procedure.samples_per_turn = 700\n"},
        {2, "transmission.harmonics = [{ component = \"ex\", order = 1, amplitude_arcsec = 1 }]\n"}},

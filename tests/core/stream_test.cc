@@ -193,9 +193,8 @@ TEST(FillNormals, GivesIndependentNeighboursAndStreams) {
   const double bound = 4.0 / std::sqrt(static_cast<double>(kN));  // a correlation's sd is 1 / sqrt(n)
   EXPECT_NEAR(Correlation(a, b), 0.0, bound);
   EXPECT_NEAR(Correlation(a, c), 0.0, bound);
-  for (const int lag : {1, 2, 3, 4, 16, 64}) {
+  for (const int lag : {1, 2, 3, 4, 16, 64})
     EXPECT_NEAR(Correlation({a.begin(), a.end() - lag}, {a.begin() + lag, a.end()}), 0.0, bound) << "lag " << lag;
-  }
 }
 
 TEST(FillNormals, EqualsItselfCutIntoBlocks) {
