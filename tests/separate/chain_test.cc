@@ -2,41 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "tests/separate/bench.h"
+#include "tests/support/oracle_poses.h"
 #include "twin/benches/rotary_4dof/estimators/grating_model.h"
 
 namespace twinbench::separate {
 namespace {
-
-struct Row {
-  std::string mode;
-  std::vector<double> v;
-};
-
-std::vector<Row> OraclePoses() {
-  std::ifstream in(std::string(TWINBENCH_TEST_DATA) + "/oracle/poses.csv");
-  std::string line, field;
-  std::getline(in, line);
-  std::vector<Row> rows;
-  while (std::getline(in, line)) {
-    std::istringstream fields(line);
-    Row row;
-    std::getline(fields, row.mode, ',');
-    while (std::getline(fields, field, ',')) row.v.push_back(std::stod(field));
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-Vector6 PoseFrom(const double* v) {
-  Vector6 e;
-  e << v[0] * units::arcsec, v[1] * units::arcsec, v[2] * units::arcsec, v[3] * units::um, v[4] * units::um,
-      v[5] * units::um;
-  return e;
-}
 
 /// The oracle's poses give the reference's error in its base frame.
 Vector6 ToRotorFrame(Vector6 e, double reference_rad) {
@@ -46,25 +17,19 @@ Vector6 ToRotorFrame(Vector6 e, double reference_rad) {
   return e;
 }
 
-Stop StopFrom(const Row& row) {
-  const double shift_rad = row.v[2] * units::deg;
-  const bool reclamp = row.mode == "reclamp";
-  return {row.v[0] * units::deg, row.v[1] * units::deg, reclamp ? 0.0 : -shift_rad, reclamp ? shift_rad : 0.0};
-}
-
 TEST(GratingPose, PutsTheSpotsWhereTheIndependentOraclePutsThem) {
-  const auto rows = OraclePoses();
-  ASSERT_GE(rows.size(), 100u);
-  for (const Row& row : rows) {
+  const auto poses = test::OraclePoses();
+  ASSERT_GE(poses.size(), 100u);
+  for (const test::OraclePose& pose : poses) {
+    const bool reclamp = pose.is_reclamped;
+    const Stop stop{pose.target_rad, pose.reference_rad, reclamp ? 0.0 : -pose.shift_rad,
+                    reclamp ? pose.shift_rad : 0.0};
     PoseErrors errors;
-    errors.target = PoseFrom(&row.v[3]);
-    const Stop stop = StopFrom(row);
-    errors.reference = ToRotorFrame(PoseFrom(&row.v[9]), stop.reference_rad);
-    const Vector4 motion = MotionOf(GratingPose(stop, errors, Bench()));
-    const Vector4 spots_m = measure::PredictSpots(motion, Bench());
-    const Vector4 expected_m = units::um * Vector4(row.v[15], row.v[16], row.v[17], row.v[18]);
+    errors.target = Eigen::Map<const Vector6>(pose.target.data());
+    errors.reference = ToRotorFrame(Eigen::Map<const Vector6>(pose.reference.data()), stop.reference_rad);
+    const Vector4 spots_m = measure::PredictSpots(MotionOf(GratingPose(stop, errors, Bench())), Bench());
     // The oracle prints nine digits of a micrometre.
-    EXPECT_LT((spots_m - expected_m).cwiseAbs().maxCoeff(), 2e-15) << row.mode;
+    EXPECT_LT((spots_m - Eigen::Map<const Vector4>(pose.spots_m.data())).cwiseAbs().maxCoeff(), 2e-15) << reclamp;
   }
 }
 

@@ -1,7 +1,6 @@
 #include "twin/separate/compensation.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
 #include "tests/separate/index_spectrum.h"
@@ -120,20 +119,14 @@ Outcome Measure(const std::vector<ReadingPlan>& plans, int highest_told) {
   return outcome;
 }
 
-TEST(Compensate, PredictsWhatIsLeftAtEvenPositions) {
-  const Outcome o = Measure({EvenPositions()}, 36);
+TEST(Compensate, PredictsWhatIsLeftAtEvenPositionsAndWithReadingsBetweenAllOrHalfOfThem) {
+  const Outcome even = Measure({EvenPositions()}, 36);
   // Nothing there tells order 6 from 150: the prior does, which errs once in twenty.
-  EXPECT_LT(o.mistaken, o.compensated / 10);
-}
-
-TEST(Compensate, PredictsWhatIsLeftWithReadingsBetweenThePositions) {
+  EXPECT_LT(even.mistaken, even.compensated / 10);
   EXPECT_EQ(Measure({EvenPositions(), Between(1)}, 160).mistaken, 0);
-}
-
-TEST(Compensate, PredictsWhatIsLeftWithHalfOfThem) {
-  const Outcome o = Measure({EvenPositions(), Between(2)}, 160);
+  const Outcome half = Measure({EvenPositions(), Between(2)}, 160);
   // Three and more lines of orders 72 m +- k show as many others as well: these readings have three phases a step.
-  EXPECT_LT(o.mistaken, o.compensated / 50);
+  EXPECT_LT(half.mistaken, half.compensated / 50);
 }
 
 }  // namespace

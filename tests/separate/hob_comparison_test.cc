@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/separate/hob_bench.h"
 #include "twin/benches/hob_transmission/estimators/comparison.h"
@@ -10,9 +9,7 @@ namespace {
 HobMachine NoisyMachine() {
   return {.transmission = {{1, 10.0, -2.0}, {2, 1.0, 0.5}, {22, 2.0, -1.0}, {44, 0.8, 2.0}},
           .encoder = {{1, 5.8, 2.72}, {2, 0.4, 1.0}},
-          .noise_arcsec = 0.5,
-          .interferometer_noise_arcsec = 0.3,
-          .interferometer = true};
+          .noise_arcsec = 0.5, .interferometer_noise_arcsec = 0.3, .interferometer = true};
 }
 
 struct Results {

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/separate/hob_bench.h"
 #include "twin/benches/hob_transmission/estimators/head_positions.h"

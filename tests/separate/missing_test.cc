@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/separate/bench.h"
+#include "twin/benches/rotary_4dof/estimators/prediction.h"
 #include "twin/core/errors.h"
 
 namespace twinbench::separate {
@@ -78,6 +79,108 @@ TEST(Separator, KnowsWhichMotionsFitItsLayout) {
   Lose(c.motions[7], ReadingStatus::kOverrun);
   EXPECT_FALSE(separator.Fits(c.motions));
   EXPECT_THROW(separator.Separate(c.motions), std::logic_error);
+}
+
+class NoNoiseStated : public testing::TestWithParam<Clamping> {};
+INSTANTIATE_TEST_SUITE_P(BothWays, NoNoiseStated, testing::Values(Clamping::kReclamp, Clamping::kReseat));
+
+TEST_P(NoNoiseStated, LosesNoPositionAndStatesAnUncertaintyOfTheSizeOfTheSecondOrderTerms) {
+  // Of tables that move in all six components.
+  ExactCircles run = ReadExactly(36, {0, 1, 7, 11}, GetParam(), 2);
+  for (Motion& m : run.motions) {
+    m.covariance_known = false;
+    m.cov.setConstant(kNaN);
+  }
+  const Separation found = Separate(run.motions, Bench(), Options(36, GetParam()));
+  EXPECT_EQ(found.notes.size(), 1u) << "that the noise is not known, and nothing else";
+  for (const test::SeparatedTable& t : test::BothTables(found, run.truth)) {
+    for (const Component c : t.estimate.components) {
+      for (const double v : t.estimate.value[c]) EXPECT_TRUE(std::isfinite(v));
+      // A measure of size that knows nothing of the terms' pattern: a factor of three. Index errors have none.
+      EXPECT_LT(t.ErrorOverU(c), 3.0) << t.Name(c);
+      EXPECT_GT(t.ErrorOverU(c), 0.02) << t.Name(c);
+    }
+  }
+}
+
+TEST(SecondOrder, IsNothingBesideRealNoise) {
+  const auto motions = ReadExactly(36, {0, 1, 7, 11}, Clamping::kReseat, 4).motions;
+  const Separation found = Separate(motions, Bench(), Options(36, Clamping::kReseat));
+  for (const Component c : found.target.components) {
+    const auto block = std::find(found.target.components.begin(), found.target.components.end(), c);
+    const auto row = 36 * (block - found.target.components.begin());
+    // (5 arcsec)^2 = 6e-10 rad beside 0.3 um / 0.23 m / sqrt(4 passes) = 5e-7 rad: a millionth of the variance.
+    EXPECT_NEAR(found.target.u[c][0] / std::sqrt(found.target.cov(row, row)), 1.0, 1e-5);
+  }
+}
+
+TEST(UnreadSecondOrder, IsTheSquareOfTheAnglesAndTheirProductsWithLengths) {
+  const Design design = MakeDesign(12, {0, 1, 4}, Clamping::kReseat, Bench());
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(design.Unknowns());
+  for (int i = 0; i < 12; ++i) {
+    for (const Series s : {Series::kTargetEx, Series::kTargetEy, Series::kTargetEz}) x[design.Column(s, i)] = 2e-5;
+    for (const Series s : {Series::kTargetDy, Series::kRefDy}) x[design.Column(s, i)] = 3e-6 / kLengthUnit_m;
+  }
+  // Three of six angular series: a^2 = 2e-10 rad^2, l = 3 um, lever 0.130 m.
+  const Vector4 u = UnreadSecondOrder(design, x);
+  EXPECT_NEAR(u[0], 2e-10, 1e-20);  // rounding
+  EXPECT_NEAR(u[3], 0.130 * 2e-10 + std::sqrt(2e-10) * 3e-6, 1e-20);
+}
+
+TEST(InvertNormal, FindsTheSameRankWhateverTheWeightsOfTheMotions) {
+  const auto motions = EmptyMotions(36, {0, 1, 7, 11}, 1, ReadingCovariance());
+  for (const Clamping clamping : {Clamping::kReclamp, Clamping::kReseat}) {
+    for (const Vector4& scale : {Vector4(1, 1, 1, 1), Vector4(1, 1e-4, 1e-4, 1), Vector4(1e-4, 1, 1, 1e-4)}) {
+      const WeightedStops stops = Weigh(motions, Layouts(36, clamping), scale);
+      EXPECT_EQ(InvertNormal(stops.layout.design, stops.weights.cells, stops.models, stops.Null()).extra_null.cols(), 0)
+          << scale.transpose();
+    }
+  }
+}
+
+TEST(InvertNormal, InvertsWhatTheReadingsDetermine) {
+  auto motions = EmptyMotions(12, {0, 1, 4}, 1, ReadingCovariance());
+  motions[5].status = motions[17].status = ReadingStatus::kMissing;
+  const WeightedStops stops = Weigh(motions, Layouts(12, Clamping::kReclamp));
+  const Eigen::MatrixXd normal = stops.Normal(), null = stops.Null();
+  const Eigen::MatrixXd inverse = InvertNormal(stops.layout.design, stops.weights.cells, stops.models, null).inverse;
+  // N G N = N is the definition; 1e-16 times the condition of these designs, 1e3.
+  EXPECT_LT((normal * inverse * normal - normal).cwiseAbs().maxCoeff(), 1e-11 * normal.maxCoeff());
+}
+
+Separation WithScatter(const Vector4& ratio) {
+  Separation result;
+  result.dof_of.setConstant(100.0);
+  result.dof = 400;
+  result.chi2 = 100.0 * ratio.cwiseAbs2();
+  result.second_order.setZero();
+  return result;
+}
+
+TEST(AssumedNoiseScale, FollowsTheResidualsButNotBelowAHundredthOfTheLargest) {
+  EXPECT_LT((AssumedNoiseScale(WithScatter({0.5, 2, 1, 0.1}), Bench()) - Vector4(0.5, 2, 1, 0.1)).norm(), 1e-14);
+  EXPECT_LT((AssumedNoiseScale(WithScatter({1e-7, 2, 1, 1e-3}), Bench()) - Vector4(0.02, 2, 1, 0.02)).norm(),
+            1e-14);  // rounding
+}
+
+TEST(AssumedNoiseScale, IsNotBelowTheSecondOrder) {
+  Separation result = WithScatter(Vector4::Constant(1e-6));
+  const Vector4 assumed = AssumedCovariance(Bench()).diagonal().cwiseSqrt();
+  result.second_order = 0.01 * assumed;
+  EXPECT_LT((AssumedNoiseScale(result, Bench()) - Vector4::Constant(0.01)).norm(), 1e-14);
+}
+
+TEST(Rescale, IsTheSameWithAndWithoutFactorisingAgain) {
+  const auto motions = EmptyMotions(12, {0, 1, 4}, 2, ReadingCovariance());
+  Separator at_once(motions, Bench(), Options(12, Clamping::kReclamp)), in_steps = at_once;
+  at_once.Rescale(motions, Vector4::Constant(3.0));
+  in_steps.Rescale(motions, {2, 6, 3, 1});
+  in_steps.Rescale(motions, {1.5, 0.5, 1, 3});
+  const Separation a = at_once.Separate(motions), b = in_steps.Separate(motions);
+  EXPECT_EQ(a.scale, b.scale);
+  const Eigen::MatrixXd cov = a.target.cov.ToDense();
+  EXPECT_LT((cov - b.target.cov.ToDense()).cwiseAbs().maxCoeff(), 1e-10 * cov.maxCoeff());  // rounding
+  EXPECT_LT((a.dof_of - b.dof_of).norm(), 1e-8);
 }
 
 }  // namespace

@@ -49,12 +49,9 @@ struct Circles {
 std::vector<Circles> CircleDesigns() {
   LayoutOptions mixed = Layouts(15, Clamping::kReclamp);
   mixed.clamping_of_setup[2] = Clamping::kReseat;
-  return {{12, {0, 1, 4}, Layouts(12, Clamping::kReseat)},
-          {12, {0, 1, 4, 6}, Layouts(12, Clamping::kReclamp)},
-          {15, {0, 1, 4, 6}, mixed},
-          {12, {0, 1}, Layouts(12, Clamping::kReclamp)},
-          {12, {0, 2, 8}, Layouts(12, Clamping::kReseat)},
-          {36, {0, 1, 7, 11}, Layouts(36, Clamping::kReseat)}};
+  return {{12, {0, 1, 4}, Layouts(12, Clamping::kReseat)}, {12, {0, 1, 4, 6}, Layouts(12, Clamping::kReclamp)},
+          {15, {0, 1, 4, 6}, mixed}, {12, {0, 1}, Layouts(12, Clamping::kReclamp)},
+          {12, {0, 2, 8}, Layouts(12, Clamping::kReseat)}, {36, {0, 1, 7, 11}, Layouts(36, Clamping::kReseat)}};
 }
 
 void ExpectSameCovarianceAndDegreesOfFreedom(const BothInverses& both) {

@@ -1,7 +1,6 @@
 #include "twin/benches/turntable_autocollimator/estimators/polygon_closure.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/core/input_error.h"
 #include "tests/separate/nulled_polygon.h"
@@ -52,11 +51,14 @@ double WorstFace_arcsec(const PolygonClosure& closure, const NulledPolygon& trut
 
 constexpr double kExact_arcsec = 1e-8;
 
-TEST(ClosePolygon, FindsEncoderAndFacesExactlyWithoutNoise) {
-  for (const auto& offsets_deg : {EvenOffsets(25), std::vector<double>{0.0, 7.3, 101.0, 215.7}}) {
+TEST(ClosePolygon, FindsEncoderAndFacesExactlyWithoutNoiseAlsoWhereAHigherOrderIsHidden) {
+  const std::tuple<std::vector<double>, std::vector<int>, int> cases[] = {
+      {EvenOffsets(25), OrdersUpTo(20), 20}, {{0.0, 7.3, 101.0, 215.7}, OrdersUpTo(20), 20},
+      {EvenOffsets(25), {1, 2, 5, 24}, 6}};
+  for (const auto& [offsets_deg, orders, highest] : cases) {
     Stream truth(1, "truth"), noise(1, "noise");
-    const NulledPolygon polygon = AnyPolygon(24, offsets_deg, OrdersUpTo(20), truth);
-    const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, 20);
+    const NulledPolygon polygon = AnyPolygon(24, offsets_deg, orders, truth);
+    const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, highest);
     EXPECT_EQ(HiddenOf(closure), "");
     EXPECT_LT(WorstWave_arcsec(closure, polygon), kExact_arcsec);
     EXPECT_LT(WorstFace_arcsec(closure, polygon), kExact_arcsec);
@@ -88,14 +90,6 @@ TEST(ClosePolygon, NamesOrdersThatTheAnglesDoNotTellFromLowerOnes) {
   const PolygonClosure closure = ClosePolygon(AnyPolygon(8, EvenOffsets(3), {1}, truth).Read(noise), 8, 14);
   EXPECT_EQ(HiddenOf(closure), "3p 6p 8c 9p 12p 13l 14l");
   EXPECT_THAT(closure.notes, testing::Contains(HasSubstr("orders 13, 14 of the encoder look like lower orders")));
-}
-
-TEST(ClosePolygon, LeavesTheOtherOrdersAloneWhereOneIsHidden) {
-  Stream truth(2, "truth"), noise(2, "noise");
-  const NulledPolygon polygon = AnyPolygon(24, EvenOffsets(25), {1, 2, 5, 24}, truth);
-  const PolygonClosure closure = ClosePolygon(polygon.Read(noise), 24, 6);
-  EXPECT_LT(WorstWave_arcsec(closure, polygon), kExact_arcsec);
-  EXPECT_LT(WorstFace_arcsec(closure, polygon), kExact_arcsec);
 }
 
 // Waves of N even positions are orthogonal with squares of N / 2: each order adds 2 s^2 / N to the variance of the

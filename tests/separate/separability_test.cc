@@ -1,7 +1,6 @@
 #include "twin/benches/rotary_4dof/estimators/separability.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/separate/bench.h"
 

@@ -167,29 +167,23 @@ void ExpectTheDenseSolution(const Problem& p, const MatrixXd& weight) {
 }
 
 class AgainstDense : public testing::TestWithParam<Problem> {};
-INSTANTIATE_TEST_SUITE_P(Problems, AgainstDense,
-                         testing::Values(Problem{"even", 36, {0, 1, 7, 11}}, Problem{"two", 12, {0, 1}},
-                                         Problem{"nothing_free", 12, {0, 1, 4}, Free::kNothing},
-                                         Problem{"affine", 20, {0, 1, 4, 9}, Free::kAffine},
-                                         Problem{"affine_of_two", 12, {0, 5}, Free::kAffine},
-                                         Problem{"weights", 24, {0, 1, 7, 11}, Free::kConstant, 0.0, 3.0},
-                                         Problem{"gaps", 24, {0, 1, 7, 11}, Free::kConstant, 0.15},
-                                         Problem{
-                                             "gaps_and_weights", 30, {0, 1, 7, 11, 19}, Free::kConstant, 0.1, 2.0},
-                                         Problem{"affine_gaps", 25, {0, 1, 7, 11}, Free::kAffine, 0.1, 1.0},
-                                         Problem{"lost_harmonics", 24, {0, 4, 10, 14}, Free::kConstant, 0.1, 1.0},
-                                         Problem{"lost_and_affine", 24, {0, 4, 10, 14}, Free::kAffine},
-                                         Problem{"prime", 67, {3, -1, 75, 75}, Free::kConstant, 0.05, 1.0},
-                                         Problem{"no_shift", 9, {2, 2, 11}, Free::kConstant, 0.1, 1.0},
-                                         Problem{"rows", 15, {0, 1, 3, 4}, Free::kConstant, 0.0, 0.0, {0, 0, 1, 1}},
-                                         Problem{"rows_gaps",
-                                                 18,
-                                                 {0, 1, 7, 3, 5, 9},
-                                                 Free::kConstant,
-                                                 0.08,
-                                                 1.0,
-                                                 {0, 0, 0, 1, 2, 2}}),
-                         [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Problems, AgainstDense,
+    testing::Values(Problem{"even", 36, {0, 1, 7, 11}}, Problem{"two", 12, {0, 1}},
+                    Problem{"nothing_free", 12, {0, 1, 4}, Free::kNothing},
+                    Problem{"affine", 20, {0, 1, 4, 9}, Free::kAffine},
+                    Problem{"affine_of_two", 12, {0, 5}, Free::kAffine},
+                    Problem{"weights", 24, {0, 1, 7, 11}, Free::kConstant, 0.0, 3.0},
+                    Problem{"gaps", 24, {0, 1, 7, 11}, Free::kConstant, 0.15},
+                    Problem{"gaps_and_weights", 30, {0, 1, 7, 11, 19}, Free::kConstant, 0.1, 2.0},
+                    Problem{"affine_gaps", 25, {0, 1, 7, 11}, Free::kAffine, 0.1, 1.0},
+                    Problem{"lost_harmonics", 24, {0, 4, 10, 14}, Free::kConstant, 0.1, 1.0},
+                    Problem{"lost_and_affine", 24, {0, 4, 10, 14}, Free::kAffine},
+                    Problem{"prime", 67, {3, -1, 75, 75}, Free::kConstant, 0.05, 1.0},
+                    Problem{"no_shift", 9, {2, 2, 11}, Free::kConstant, 0.1, 1.0},
+                    Problem{"rows", 15, {0, 1, 3, 4}, Free::kConstant, 0.0, 0.0, {0, 0, 1, 1}},
+                    Problem{"rows_gaps", 18, {0, 1, 7, 3, 5, 9}, Free::kConstant, 0.08, 1.0, {0, 0, 0, 1, 2, 2}}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 TEST_P(AgainstDense, GivesTheSameCurvesResidualsAndDegreesOfFreedom) {
   ExpectTheDenseSolution(GetParam(), WeightsOf(GetParam()));

@@ -51,13 +51,14 @@ double Value(const nlohmann::json& json, const char* name) {
   return json.at(0).at("values").at(name).at("value_arcsec");
 }
 
-TEST(TurntableTilt, IsToldFromTheTeethAndFromHowTheirAxisLeans) {
+TEST(TurntableTilt, IsToldFromTheTeethFromHowTheirAxisLeansAndFromTheRollOfTheCrosshair) {
   const nlohmann::json tilt = TiltOf({});
   EXPECT_EQ(tilt.at(0).at("motion"), "tilt_fixed_x");
   EXPECT_NEAR(Value(tilt, "synchronous"), 2.0 * kHalf_arcsec, 1e-9);
   EXPECT_NEAR(Value(tilt, "asynchronous"), 0.0, 1e-9);
   EXPECT_NEAR(Value(tilt, "total"), 2.0 * kHalf_arcsec, 1e-9);
   EXPECT_EQ(tilt.at(0).at("missing").size(), 1u) << "it stood, and nothing else";
+  EXPECT_NEAR(Value(TiltOf({.roll_rad = 5e-3}), "synchronous"), 2.0 * kHalf_arcsec, 1e-9);
 }
 
 TEST(TurntableTilt, OfOneShiftHasTheTeethInItAndSaysSo) {
@@ -80,10 +81,6 @@ TEST(TurntableTilt, OfPassesThatLieApartIsAsynchronousMotion) {
   EXPECT_NEAR(Value(tilt, "synchronous"), 2.0 * kHalf_arcsec, 1e-9);
   EXPECT_NEAR(Value(tilt, "total"), 2.0 * kHalf_arcsec + Value(tilt, "asynchronous"), 1e-9);
   EXPECT_EQ(tilt.at(0).at("turns"), 8);
-}
-
-TEST(TurntableTilt, IsFreeOfTheRollOfTheCrosshair) {
-  EXPECT_NEAR(Value(TiltOf({.roll_rad = 5e-3}), "synchronous"), 2.0 * kHalf_arcsec, 1e-9);
 }
 
 TEST(ErrorMotionJson, OfAnAxialMotionHasFundamentalAndResidual) {

@@ -64,7 +64,7 @@ TEST(EstimateRoll, IsNotPulledToZeroByTheNoiseOfY) {
   EXPECT_NEAR(sum, std::tan(20.0 * deg), 0.012);
 }
 
-TEST(EstimateRoll, SaysWhenTheTiltsAreTooMuchAlike) {
+TEST(EstimateRoll, SaysWhenTheTiltsAreTooMuchAlikeAndNeedsAThirdSetUpIfTheShiftsDiffer) {
   const Seat one{0, 60 * arcsec, 0.4};
   const auto status_of = [](const std::vector<Seat>& seats, int passes, const AutocollimatorNoise& noise) {
     return EstimateRoll(ReadPublished(3, 0.5 * arcsec, seats, 72, passes).stops, noise).status;
@@ -72,9 +72,6 @@ TEST(EstimateRoll, SaysWhenTheTiltsAreTooMuchAlike) {
   EXPECT_EQ(status_of({one, one}, 1, Stated(0.5 * arcsec)), RollStatus::kTiltsAlike);
   EXPECT_EQ(status_of({one, one}, 1, {}), RollStatus::kTiltsAlike);  // noise not known
   for (const int passes : {1, 4}) EXPECT_EQ(status_of({one}, passes, {}), RollStatus::kTiltsAlike);
-}
-
-TEST(EstimateRoll, NeedsAThirdSetUpIfTheShiftsDiffer) {
   // Two shifts: a tilt that turns once with each table is order 1 of turntable and multi-tooth table.
   const auto stops = ReadPublished(4, 0.5 * arcsec, {{0, 60 * arcsec, 0.4}, {5, 100 * arcsec, 2.1}}).stops;
   EXPECT_EQ(EstimateRoll(stops, Stated(0.5 * arcsec)).status, RollStatus::kTiltsAlike);

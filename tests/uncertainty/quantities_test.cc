@@ -1,7 +1,6 @@
 #include "twin/uncertainty/quantities.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
