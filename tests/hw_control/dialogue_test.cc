@@ -223,15 +223,12 @@ TEST(NumberText, WithAnythingElseInItIsAProtocolFaultAndEndsTheConnection) {
   }
 }
 
-TEST(AddressText, GoesBothWays) {
+TEST(AddressText, GoesBothWaysAndIsRefusedIfItIsNone) {
   for (const char* text : {"tcp:localhost:5025", "tcp:[::1]:5026", "serial:/dev/ttyUSB0:9600", "serial:/dev/ttyUSB0:9600:7E2"})
     EXPECT_EQ(ParseAddress(text).value().Text(), text);
   EXPECT_EQ(ParseAddress("serial:/dev/ttyUSB0:9600:7E2").value().frame, "7E2");
   EXPECT_EQ(ParseAddress("serial:/dev/ttyUSB0:9600:8N1").value().Text(), "serial:/dev/ttyUSB0:9600") << "the usual frame";
   EXPECT_EQ(ParseAddress("serial:/dev/serial/by-path/pci-0000:00:14.0").value().number, kDefaultBaud);
-}
-
-TEST(AddressText, IsRefusedIfItIsNone) {
   for (const char* text : {"", "tcp:", "tcp:host", "tcp::5025", "tcp:host:0", "tcp:host:65536", "tcp:host:50x",
                            "serial:", "serial:ttyUSB0", "usb:1", "localhost:5025", "serial:/dev/ttyUSB0:7E2"})
     EXPECT_FALSE(ParseAddress(text)) << text;

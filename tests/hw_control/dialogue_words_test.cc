@@ -41,15 +41,11 @@ TEST(DialogueWords, AWholeOneIsTakenAsItStands) {
 TEST(DialogueWords, WhatIsWrongIsToldWithFileLineAndTheNearestRightThing) {
   const std::string whole = kWhole;
   const std::pair<int, std::string> cases[] = {
-      {6, whole + "unitts = 3\n"},
-      {1, "[raed]\nask = \"A?\"\n"},
+      {6, whole + "unitts = 3\n"}, {1, "[raed]\nask = \"A?\"\n"},
       {4, "[read]\nask = \"A?\"\nfields = [\"x\"]\nunits = [\"arcsecs\"]\n"},
-      {4, "[read]\nask = \"A?\"\nfields = [\"x\", \"y\"]\nvalid = [\"4\"]\n"},
-      {1, "[read]\nfields = [\"x\"]\n"},
-      {2, "[move]\ncommand = \"GOTO {toth}\"\n"},
-      {0, whole + "[latch]\narm = \"ARM {samples}\"\n"},
-      {7, whole + "[line]\nends = \"LFCR\"\n"},
-      {7, whole + "[line]\nseparator = \"\"\n"},
+      {4, "[read]\nask = \"A?\"\nfields = [\"x\", \"y\"]\nvalid = [\"4\"]\n"}, {1, "[read]\nfields = [\"x\"]\n"},
+      {2, "[move]\ncommand = \"GOTO {toth}\"\n"}, {0, whole + "[latch]\narm = \"ARM {samples}\"\n"},
+      {7, whole + "[line]\nends = \"LFCR\"\n"}, {7, whole + "[line]\nseparator = \"\"\n"},
       {0, "title = \"mute\"\n"},
   };
   for (const auto& [line, text] : cases)
@@ -113,9 +109,7 @@ TEST(BenchFileWithDialogue, FindsAReadyOneAndAFileBesideTheBenchFile) {
 TEST(BenchFileWithDialogue, SaysWhichKeyIsWrongAndWhatWouldBeRight) {
   const std::string begin = "[autocollimator]\naddress = \"tcp:c:1\"\nkind = \"dialogue\"\n";
   const std::pair<int, std::string> cases[] = {
-      {11, begin},
-      {14, begin + "dialogue = \"elcomatt\"\n"},
-      {14, begin + "dialogue = \"mine.toml\"\n"},
+      {11, begin}, {14, begin + "dialogue = \"elcomatt\"\n"}, {14, begin + "dialogue = \"mine.toml\"\n"},
       {14, begin + "dialogue = \"heidenhain_nd287\"\n"},
       {15, begin + "dialogue = \"elcomat\"\nidentity = \"ELCOMAT\"\n"},
       {15, begin + "dialogue = \"elcomat\"\ntoken = \"abc\"\n"},

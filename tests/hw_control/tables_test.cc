@@ -196,7 +196,7 @@ TEST_F(ScpiTables, AControllerThatRestartsAsTheMoveBeginsIsStopped) {
   EXPECT_THAT(controller_.Lines(), Contains("ROT1:STOP"));
 }
 
-TEST(ScpiState, IsReadWithTheQuotesAndCommasOfItsFault) {
+TEST(ScpiState, IsReadWithTheQuotesAndCommasOfItsFaultAndRefusedIfAnythingIsMissingOrStrange) {
   const auto state = ParseScpiState("180,90,1,0,1,-1,\"following error, axis 1\"");
   ASSERT_TRUE(state);
   EXPECT_DOUBLE_EQ(state->commanded_rad, units::kPi);
@@ -204,9 +204,6 @@ TEST(ScpiState, IsReadWithTheQuotesAndCommasOfItsFault) {
   EXPECT_TRUE(state->moving && !state->in_position && state->referenced);
   EXPECT_EQ(state->limit, -1);
   EXPECT_EQ(state->fault, "following error, axis 1");
-}
-
-TEST(ScpiState, IsRefusedIfAnythingIsMissingOrStrange) {
   for (const char* text :
        {"", "1", "1,1,0,1,1,0", "1,1,0,1,1,0,\"", "1,1,0,1,1,0,\"\",1", "1,,0,1,1,0,\"\"", "1x,1,0,1,1,0,\"\"",
         "1,1,2,1,1,0,\"\"", "1,1,0,-1,1,0,\"\"", "1,1,0,1,1,2,\"\"", "1,1,0,1,1,0.5,\"\""})

@@ -1,7 +1,6 @@
 #include "hw_bridge/watched_adc.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <atomic>
 #include <cmath>
