@@ -39,24 +39,18 @@ TEST_F(Esp, SoftLimitsRefuseWithTheErrorsOfTheirAxis) {
   EXPECT_EQ(esp.Ask("TE?"), "0");
 }
 
-TEST_F(Esp, MistakesHaveTheNumbersOfTheManual) {
+TEST_F(Esp, MistakesHaveTheNumbersOfTheManualAndAnErrorLineNumberTimeAndText) {
   const std::pair<const char*, const char*> mistakes[] = {
       {"1XX5", "6"},   {"1", "6"},     {"PA5", "37"},       {"1PA", "38"},     {"3PA1", "9"},    {"1PAeast", "101"},
       {"1SN2", "101"}, {"1DH0", "27"}, {"1MF;1PA5", "113"}, {"1MO;99TP", "9"}, {"\x01\x02", "6"}};
   for (const auto& [text, error] : mistakes) EXPECT_EQ(esp.Ask(std::string(text) + ";TE?"), error) << text;
-}
-
-TEST_F(Esp, AnErrorLineHasNumberTimeAndText) {
   EXPECT_THAT(esp.Ask("1PA1e9;TB?"), testing::MatchesRegex("106, [0-9]+, POSITIVE SOFTWARE LIMIT DETECTED"));
   EXPECT_THAT(esp.Ask("TB?"), testing::MatchesRegex("0, [0-9]+, NO ERROR DETECTED"));
 }
 
-TEST_F(Esp, TheUnitIsTheDegree) {
+TEST_F(Esp, TheUnitIsTheDegreeAndTheIdentityThatOfTheBench) {
   EXPECT_EQ(esp.Ask("1SN7;1SN?;TE?"), "7");
   EXPECT_EQ(esp.Line(), "0");
-}
-
-TEST_F(Esp, IdentityIsThatOfTheBench) {
   TcpClient scpi(served.at().scpi_port);
   const std::string serial = scpi.Ask("*IDN?").substr(23, 16);
   EXPECT_THAT(esp.Ask("VE?"), testing::AllOf(testing::StartsWith("ESP301"), testing::HasSubstr(serial)));

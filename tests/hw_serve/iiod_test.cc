@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 
@@ -32,9 +31,8 @@ class Iiod : public testing::Test {
 };
 
 TEST_F(Iiod, WhatItDoesNotKnowIsAnInvalidArgument) {
-  for (const char* text : {"ZPRINT", "BINARY", "NONSENSE", "READBUFF", "TIMEOUT", "TIMEOUT -5", "\x01\x02"}) {
+  for (const char* text : {"ZPRINT", "BINARY", "NONSENSE", "READBUFF", "TIMEOUT", "TIMEOUT -5", "\x01\x02"})
     EXPECT_EQ(iiod.Ask(text), "-22") << text;
-  }
   EXPECT_EQ(iiod.Ask("READ nothing serial"), "-19");
   EXPECT_EQ(iiod.Ask("READ psd-adc16 nothing"), "-2");
 }
@@ -107,9 +105,8 @@ TEST_F(Iiod, TheConverterHasTheTriggerOfItsScanClock) {
 }
 
 TEST_F(Iiod, ABufferOpensWithAMaskOfItsChannels) {
-  for (const char* mask : {"1f", "00000000", "0000003f", "000000010000001f", "0000001g"}) {
+  for (const char* mask : {"1f", "00000000", "0000003f", "000000010000001f", "0000001g"})
     EXPECT_EQ(iiod.Ask(std::string("OPEN psd-adc16 100 ") + mask), "-22") << mask;
-  }
   EXPECT_EQ(iiod.Ask("OPEN rotary-target 100 00000001"), "-22");
   EXPECT_EQ(iiod.Ask("OPEN psd-adc16 0 0000001f"), "-22");
   EXPECT_EQ(iiod.Ask("OPEN psd-adc16 2000000000 0000001f"), "-12");

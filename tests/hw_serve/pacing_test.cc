@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
@@ -93,9 +92,8 @@ TEST(Pacing, ScansOfARunningConverterFollowOneAnother) {
       const Scans next = adc.Read(2000);
       scans.stamps_ns.insert(scans.stamps_ns.end(), next.stamps_ns.begin(), next.stamps_ns.end());
     }
-    for (std::size_t s = 1; s < scans.stamps_ns.size(); ++s) {
+    for (std::size_t s = 1; s < scans.stamps_ns.size(); ++s)
       ASSERT_EQ(scans.stamps_ns[s] - scans.stamps_ns[s - 1], 16000) << s << " at speed " << speed;
-    }
   }
 }
 

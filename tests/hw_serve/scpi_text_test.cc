@@ -1,27 +1,23 @@
 #include "hw_bridge/serve/scpi_text.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace twinbench::hw {
 namespace {
 
 using testing::ElementsAre;
 
-TEST(ScpiText, AKeywordIsItsShortOrItsLongFormInAnyCase) {
+TEST(ScpiText, AKeywordIsItsShortOrItsLongFormInAnyCaseAndANumberBehindItIsOneIfItIsLeftOut) {
   for (const char* form : {"ANGL", "ANGLe", "angle", "Angl"}) EXPECT_EQ(MatchKeyword("ANGLe", form), 0) << form;
   for (const char* form : {"ANG", "ANGLES", "ANGL1", ""})
     EXPECT_EQ(MatchKeyword("ANGLe", form), std::nullopt) << form;
-}
-
-TEST(ScpiText, ANumberBehindAKeywordIsOneIfItIsLeftOut) {
   EXPECT_EQ(MatchKeyword("ROTation#", "rot"), 1);
   EXPECT_EQ(MatchKeyword("ROTation#", "ROTATION2"), 2);
   EXPECT_EQ(MatchKeyword("ROTation#", "ROT2x"), std::nullopt);
   EXPECT_EQ(MatchKeyword("ROTation#", "ROT99999999999999999999"), std::nullopt);
 }
 
-TEST(ScpiText, AUnitIsHeaderQuestionMarkAndParameters) {
+TEST(ScpiText, AUnitIsHeaderQuestionMarkAndParametersAndNoneWithoutAHeader) {
   const auto unit = ParseScpiUnit("SIM:FAUL adc , \"a,b\",3");
   ASSERT_TRUE(unit);
   EXPECT_THAT(unit->header, ElementsAre("SIM", "FAUL"));
@@ -29,12 +25,8 @@ TEST(ScpiText, AUnitIsHeaderQuestionMarkAndParameters) {
   EXPECT_FALSE(unit->query);
   EXPECT_TRUE(ParseScpiUnit("*IDN?")->query);
   EXPECT_TRUE(ParseScpiUnit(":ROT1:ANGL?")->rooted);
-}
-
-TEST(ScpiText, WhatIsNoHeaderIsNoUnit) {
-  for (const char* text : {"", "?", ":", "A::B", "ROT1:", "**IDN?", "R\x01T", "=", "ROT(1)"}) {
+  for (const char* text : {"", "?", ":", "A::B", "ROT1:", "**IDN?", "R\x01T", "=", "ROT(1)"})
     EXPECT_FALSE(ParseScpiUnit(text)) << text;
-  }
 }
 
 TEST(ScpiText, TheErrorQueueIsBoundedAndSaysWhenItOverflowed) {

@@ -56,12 +56,9 @@ TEST_F(Guarded, IiodReadsButNeitherMovesNorSpoils) {
   EXPECT_EQ(BufferClient(served_.at().iiod_port, 10).Read(10).raw.size(), 40u);
 }
 
-TEST_F(Guarded, WhoeverIsThereMayStopIt) {
+TEST_F(Guarded, WhoeverIsThereMayStopItAndATokenIsOfItsConnection) {
   EXPECT_EQ(scpi_.Ask("ROT1:STOP;:ABOR;*RST;*CLS;:SYST:ERR?"), "0,\"No error\"");
   EXPECT_EQ(esp_.Ask("1ST;ST;AB;TE?"), "0");
-}
-
-TEST_F(Guarded, ATokenIsOfItsConnection) {
   scpi_.Send("SYST:TOK \"4f2a9c\"\n");
   EXPECT_EQ(scpi_.Ask("SYST:TOK?"), "1");
   EXPECT_EQ(TcpClient(served_.at().scpi_port).Ask("SYST:TOK?"), "0");
