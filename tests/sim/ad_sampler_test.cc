@@ -217,8 +217,7 @@ TEST(TakeBlock, StepsWhereTheVoltagePassesTheThreshold) {
     for (ChannelInput& c : input.channel) c.noise_V = 1e-3;
     const AdBlock noisy = Take(input, {.n_samples = 10000, .every_sample = every_sample});
     EXPECT_NEAR(noisy.channel[2].mean_V, 1.5, 5e-5);  // five standard deviations of the mean
-    EXPECT_NEAR(noisy.channel[1].mean_V, 1.005,
-                3e-4);  // the threshold cuts channel 1's noise in halves, 5 mV +- 0.05 mV
+    EXPECT_NEAR(noisy.channel[1].mean_V, 1.005, 3e-4);  // the threshold cuts its noise in halves, 5 mV +- 0.05 mV
   }
 }
 
@@ -280,15 +279,12 @@ TEST(TakeBlock, CountsTheSameCodesOnEveryInstructionSetWithoutKeepingThemToo) {
   }
 }
 
-TEST(TakeBlock, RepeatsItselfAndIsAnotherForAnotherReading) {
+TEST(TakeBlock, RepeatsItselfIsAnotherForAnotherReadingAndUsesOneStreamBlockAScanAndOneInFront) {
   const auto take = [](std::uint64_t reading) {
     return Take(Rich(6e-3), {.n_samples = 500, .keep_raw = true}, reading);
   };
   EXPECT_TRUE(SameBits(take(3), take(3)));
   EXPECT_FALSE(SameBits(take(3), take(4)));
-}
-
-TEST(TakeBlock, UsesOneStreamBlockAScanAndOneInFront) {
   Stream noise(1, "count");
   TakeBlock(kAdc, Rich(6e-3), {.n_samples = 777}, noise);
   EXPECT_EQ(noise.NextBlock(), 778u);
@@ -369,7 +365,7 @@ void ExpectSameDistribution(const std::vector<double>& a, const std::vector<doub
   EXPECT_LT(TwoSampleStatistic(a, b), 1.95);  // exceeded with probability 1e-3
 }
 
-TEST(TakeBlock, DrawsDirectlyFromTheDistributionOfItsSamples) {
+TEST(TakeBlock, DrawsDirectlyFromTheDistributionOfItsSamplesAndTheirMomentsDownToHalfACodeOfNoise) {
   for (const int n : {2, 9, 60}) {
     SCOPED_TRACE(n);
     // 6 mV of noise against 5 mV of hum and 4 V/s: signal and noise share the deviation.
@@ -379,9 +375,6 @@ TEST(TakeBlock, DrawsDirectlyFromTheDistributionOfItsSamples) {
     ExpectSameDistribution(sampled.mean_V, direct.mean_V);
     ExpectSameDistribution(sampled.std_V, direct.std_V);
   }
-}
-
-TEST(TakeBlock, HasTheMomentsOfItsSamplesDownToHalfACodeOfNoise) {
   // Means of sampled codes lie on a lattice of LSB / n, here a fifth of their deviation: only moments are compared.
   const Population sampled = Draw(Rich(0.5 * kLsb_V), 100, true, 0);
   const Population direct = Draw(Rich(0.5 * kLsb_V), 100, false, 0);

@@ -92,12 +92,7 @@ TEST(CodeWidths, AsMeasuredGiveEachVoltageItsCode) {
   const CodeWidths widths(kFew_lsb, 6);
   std::vector<double> edge_lsb;  // below codes -31 .. 31
   for (int code = -31; code <= 31; ++code)
-    edge_lsb.push_back(code - 0.5 +
-                       (code <= -3  ? -0.5
-                        : code <= 0 ? 0.0
-                        : code <= 4 ? 0.25
-                        : code == 5 ? -0.75
-                                    : -1.5));
+    edge_lsb.push_back(code - 0.5 + (code <= -3 ? -0.5 : code <= 0 ? 0.0 : code <= 4 ? 0.25 : code == 5 ? -0.75 : -1.5));
   for (double x_lsb = -33.031; x_lsb < 33.0; x_lsb += 0.11) {
     const auto below = std::count_if(edge_lsb.begin(), edge_lsb.end(), [&](double edge) { return edge <= x_lsb; });
     const std::int32_t code = widths.CodeOf(7, static_cast<float>(x_lsb - 7.0));
@@ -113,14 +108,9 @@ TEST(CodeWidths, AreReadFromATableOfWidthsOrOfTheirExcessAndSayWhatIsWrongWithIt
   EXPECT_EQ(read("code,width\n-32,1.25\n3,0\n"), expected);
   EXPECT_EQ(read("# measured\ncode,dnl_lsb\n-32,0.25\n3,-1\n"), expected);
   ExpectRefused(folder.File("w.csv"), [&](const auto& text) { return MessageOf([&] { read(text); }); },
-                {{3, "code,width\n1,1\n32,1\n"},
-                 {2, "code,width\n1.5,1\n"},
-                 {3, "code,width\n2,1\n1,1\n"},
-                 {2, "code,width\n2,-0.1\n"},
-                 {2, "code,dnl_lsb\n2,-1.1\n"},
-                 {1, "code,width,dnl_lsb\n2,1,0\n"},
-                 {1, "code,size\n2,1\n"},
-                 {1, "codes,width\n2,1\n"}});
+                {{3, "code,width\n1,1\n32,1\n"}, {2, "code,width\n1.5,1\n"}, {3, "code,width\n2,1\n1,1\n"},
+                 {2, "code,width\n2,-0.1\n"}, {2, "code,dnl_lsb\n2,-1.1\n"}, {1, "code,width,dnl_lsb\n2,1,0\n"},
+                 {1, "code,size\n2,1\n"}, {1, "codes,width\n2,1\n"}});
   EXPECT_KEPT(MessageOf([&] { read("code,width\n"); }));
   const std::string both = "bench = \"rotary_4dof\"\n[adc]\ndnl_lsb = 0.1\ndnl_file = \"a.csv\"\n";
   EXPECT_KEPT(MessageOf([&] { ParseScenario(both, "a.toml", ""); }));
@@ -158,8 +148,8 @@ TEST(CodeWidths, AreFollowedAlsoAsMeasured) {
     table += std::to_string(code) + (code % 2 == 0 ? ",0.91\n" : ",-0.89\n");
   Scenario random = WithLittleNoise(), measured = random;
   RotaryOf(random).chain.dnl_lsb = 0.4;
-  RotaryOf(measured).psd_a.bandwidth_Hz = RotaryOf(measured).psd_b.bandwidth_Hz =
-      1.0;  // light's noise blurs steps, too
+  // Light's noise blurs steps, too.
+  RotaryOf(measured).psd_a.bandwidth_Hz = RotaryOf(measured).psd_b.bandwidth_Hz = 1.0;
   RotaryOf(measured).chain.dnl_file = folder.Write("widths.csv", table);
   for (const auto& [scenario, without_V] : {std::pair(random, 10e-6), {measured, 30e-6}}) {
     const test::TwinRun run = test::RunTwin(scenario);

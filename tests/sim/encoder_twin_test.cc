@@ -195,10 +195,8 @@ TEST(EncoderTwin, TellsWhatRepeatsWithTheAnglesOfDeviceAndReference) {
   scenario.effects = {test::EncoderEffect("eccentricity", {{"amplitude", 0.5 * deg}}),
                       test::EncoderEffect("reference_fault", {{"order", 3.0}, {"amplitude", 0.02 * deg}}),
                       test::EncoderEffect("signal_offset", {{"offset_sin", 0.0}, {"offset_cos", 0.01}}),
-                      test::EncoderEffect("drift"),
-                      test::EncoderEffect("outliers", {{"fraction", 0.5}}),
-                      test::EncoderEffect("slip", {{"at_reading", 0.0}}),
-                      test::EncoderEffect("backlash")};
+                      test::EncoderEffect("drift"), test::EncoderEffect("outliers", {{"fraction", 0.5}}),
+                      test::EncoderEffect("slip", {{"at_reading", 0.0}}), test::EncoderEffect("backlash")};
   EncoderOf(scenario).device.signal_periods = 4;
   const nlohmann::json truth = sim::EncoderTwin(scenario).Truth();
   // What is 1e-9 of 1800 arcsec is rounding.

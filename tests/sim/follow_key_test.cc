@@ -26,10 +26,8 @@ struct FollowedKey {
 };
 
 void AddTone(Scenario& s, double frequency_Hz, const std::string& signal = "") {
-  s.effects = {{signal.empty() ? "tone" : "signal",
-                signal.empty() ? "all" : signal,
-                {{"amplitude", 1e-6}, {"frequency", frequency_Hz}, {"phase", 0.4}},
-                "test"}};
+  s.effects = {{signal.empty() ? "tone" : "signal", signal.empty() ? "all" : signal,
+                {{"amplitude", 1e-6}, {"frequency", frequency_Hz}, {"phase", 0.4}}, "test"}};
   if (!signal.empty()) s.effects[0].signal = "tone";
   RotaryOf(s).adc.samples = kBlockScans;
 }
@@ -59,13 +57,8 @@ std::vector<FollowedKey> FollowedKeys(const TemporaryFolder& folder) {
   const auto nothing = [](Scenario&) {};
   const std::string inl = folder.Write("inl.csv", "voltage_V,error_mV\n-10,5\n0,0\n10,5\n");
   return {PassedTone(20, 100),
-          PassedTone(20, 1000),
-          PassedTone(137, 100),
-          PassedTone(137, 1000),
-          PassedTone(970, 100),
-          PassedTone(970, 1000),
-          PassedCreep(5),
-          PassedCreep(50),
+          PassedTone(20, 1000), PassedTone(137, 100), PassedTone(137, 1000), PassedTone(970, 100),
+          PassedTone(970, 1000), PassedCreep(5), PassedCreep(50),
           {"a low-pass behind a signal", [](Scenario& s) { AddTone(s, 137.0, "psd_b_y"); },
            [](RotarySettings& s) { s.chain.low_pass_Hz = 100.0; }, 3e-6, 50e-6},
           {"a converter that is not straight", nothing, [=](RotarySettings& s) { s.adc.inl_file = inl; }, 0.02e-3,
@@ -77,9 +70,7 @@ std::vector<FollowedKey> FollowedKeys(const TemporaryFolder& folder) {
            },
            2e-6, 2000.0 * 2e-6},
           {"a ruling that an eccentric table moves under the beam",
-           [](Scenario& s) {
-             RotaryOf(s).centring_m = {1e-3, 0.5e-3};
-           },
+           [](Scenario& s) { RotaryOf(s).centring_m = {1e-3, 0.5e-3}; },
            [](RotarySettings& s) {
              s.grating.ruling_chirp_per_m = 50e-6 / units::mm;
              s.grating.sphere_m = 100e-9;

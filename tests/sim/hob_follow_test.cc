@@ -87,15 +87,11 @@ TEST(HobFollow, SaysWhatTheRunShowedAndKnowsEveryEffectOfTheCatalogue) {
 
 TEST(HobFollow, KnowsTheKeysOfTheScenario) {
   const std::vector<std::vector<std::string>> changes = {
-      {"transmission.feed_forward=0.9"},
-      {"transmission.backlash_arcsec=20"},
-      {"transmission.friction_Nm=100"},
-      {"hob_procedure.encoder_zero=reference_mark"},
-      {"interferometer.used=false"},
+      {"transmission.feed_forward=0.9"}, {"transmission.backlash_arcsec=20"}, {"transmission.friction_Nm=100"},
+      {"hob_procedure.encoder_zero=reference_mark"}, {"interferometer.used=false"},
       {"interferometer.stops=12", "interferometer.misalignment_mrad=100", "transmission.friction_Nm=100",
        "transmission.backlash_arcsec=20"},
-      {"table_encoder.tilt_arcsec=200", "table_encoder.head_height_mm=10"},
-      {"hob_encoder.ellipticity_um=5"},
+      {"table_encoder.tilt_arcsec=200", "table_encoder.head_height_mm=10"}, {"hob_encoder.ellipticity_um=5"},
       {"hob_encoder.eccentricity_um=20"},
       {"table_encoder.graduation=[{ order = 6, amplitude_arcsec = 3, phase_deg = 57 }]"},
       {"transmission.free_orders=2"},

@@ -86,12 +86,9 @@ TEST(HobTwin, InterferometerSeesTheMachineAndHasErrorsOfItsOwn) {
   const double hours = ToSeconds(clean.time) / 3600.0, arm_m = HobOf(s).interferometer.arm_m;
   using Change = void (*)(InterferometerSettings&);
   const std::tuple<Change, double, double> changes[] = {
-      {[](auto& i) { i.misalignment_rad = 0.1; }, deviation_rad * std::cos(0.1),
-       1e-12},  // it sees the way along its beam
+      {[](auto& i) { i.misalignment_rad = 0.1; }, deviation_rad * std::cos(0.1), 1e-12},  // the way along its beam
       {[](auto& i) { i.arm_error_m = 0.01 * i.arm_m; }, deviation_rad * 1.01, 1e-12},  // a longer arm moves more
-      {[](auto& i) {
-         i.calibrator = {{Component::kEz, 2.0, 1.5 * arcsec, 0.7}};
-       },  // by an angle off by arcseconds
+      {[](auto& i) { i.calibrator = {{Component::kEz, 2.0, 1.5 * arcsec, 0.7}}; },  // by an angle off by arcseconds
        deviation_rad + 1.5 * arcsec * std::cos(2.0 * clean.measured_rad + 0.7), 1e-3 * arcsec},
       {[](auto& i) { i.dead_path_m = 0.3, i.index_drift_per_h = 6e-6; },  // in air that changes by 6 ppm an hour
        deviation_rad * (1.0 + 6e-6 * hours) + 0.3 / arm_m * 6e-6 * hours, 1e-12}};

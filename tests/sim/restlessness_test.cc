@@ -24,12 +24,8 @@ Scenario Bodies(const std::string& fidelity) {
 
 TEST(VibrationCriterion, HasThePublishedVelocities) {
   for (const auto& [name, velocity_um_s] : {std::pair{"VC-A", 50.0},
-                                            {"VC-B", 25.0},
-                                            {"VC-C", 12.5},
-                                            {"VC-D", 6.25},
-                                            {"VC-E", 3.12},
-                                            {"VC-F", 1.56},
-                                            {"VC-G", 0.78}}) {
+                                            {"VC-B", 25.0}, {"VC-C", 12.5}, {"VC-D", 6.25}, {"VC-E", 3.12},
+                                            {"VC-F", 1.56}, {"VC-G", 0.78}}) {
     for (const VibrationBand& band : VibrationCriterion(name)) {
       if (band.centre_Hz > 7.9) {
         EXPECT_DOUBLE_EQ(band.velocity_m_s, velocity_um_s * um) << name;

@@ -197,15 +197,12 @@ TEST(RotaryFollow, HasTheSlopesOfTheClosedForms) {
                               kVolts_per_metre);
   };
   const double yaw = l1_m * (1.0 + 1.0 / cosine), tilt = l1_m * (1.0 + cosine), pitch = lever_m + l1_m;
-  const std::tuple<const char*, int, double> expected[] = {{"mount.ez", 0, -yaw},
-                                                           {"mount.ez", 2, -yaw},
-                                                           {"grating.tilt", 1, tilt},
-                                                           {"grating.tilt", 3, tilt},
+  const std::tuple<const char*, int, double> expected[] = {{"mount.ez", 0, -yaw}, {"mount.ez", 2, -yaw},
+                                                           {"grating.tilt", 1, tilt}, {"grating.tilt", 3, tilt},
                                                            {"grating.roll", 1, -l1_m * sine},
                                                            {"grating.roll", 3, l1_m * sine},
                                                            {"grating.lateral", 0, -sine},
-                                                           {"grating.lateral", 2, sine},
-                                                           {"laser.pitch", 1, pitch}};
+                                                           {"grating.lateral", 2, sine}, {"laser.pitch", 1, pitch}};
   for (const auto& [point, channel, value] : expected)
     EXPECT_NEAR(slope(point)[channel] / value, 1.0, 1e-6) << point;
   EXPECT_NEAR(slope("psd_b_y")[3], 1.0, 1e-9);

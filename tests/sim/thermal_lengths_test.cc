@@ -35,22 +35,15 @@ TEST(ThermalLengths, PostLaserGratingAndDiodeMoveTheSpotsAsTheyWarm) {
                apart_m = 0.12 * 600e3 * 0.01e-9 * kWarmer_K / cosine;
   const double post_m = 2e-6 * kWarmer_K;
   const std::tuple<const char*, std::function<void(RotarySettings&)>, std::array<double, kChannels>, double>
-      growing[] = {{"a post lowers the spot",
-                    [](auto& s) { s.psd_b.post_growth_m_K = 2e-6; },
-                    {0.0, 0.0, 0.0, -post_m},
-                    1e-12},
-                   {"the laser's lifts both",
-                    [](auto& s) { s.laser.post_growth_m_K = 2e-6; },
-                    {0.0, post_m, 0.0, post_m},
-                    1e-11},
-                   {"a grating turns the orders inwards",
-                    [](auto& s) { s.grating.expansion_per_K = 10e-6; },
-                    {-inwards_m, 0.0, inwards_m, 0.0},
-                    1e-3 * inwards_m},
+      growing[] = {{"a post lowers the spot", [](auto& s) { s.psd_b.post_growth_m_K = 2e-6; },
+                    {0.0, 0.0, 0.0, -post_m}, 1e-12},
+                   {"the laser's lifts both", [](auto& s) { s.laser.post_growth_m_K = 2e-6; },
+                    {0.0, post_m, 0.0, post_m}, 1e-11},
+                   {"a grating turns the orders inwards", [](auto& s) { s.grating.expansion_per_K = 10e-6; },
+                    {-inwards_m, 0.0, inwards_m, 0.0}, 1e-3 * inwards_m},
                    {"a longer wave turns them apart",
                     [](auto& s) { s.laser.wavelength_per_kelvin_m = 0.01 * units::nm; },
-                    {apart_m, 0.0, -apart_m, 0.0},
-                    1e-3 * apart_m}};
+                    {apart_m, 0.0, -apart_m, 0.0}, 1e-3 * apart_m}};
   for (const auto& [claim, change, expected_m, within_m] : growing) {
     Scenario scenario = Warm();
     change(RotaryOf(scenario));
