@@ -12,12 +12,7 @@ namespace twinbench::mechanics {
 namespace {
 
 SignalState Faults() {
-  SignalState s;
-  s.offset_sin = 0.1;
-  s.offset_cos = -0.15;
-  s.ratio = 0.2;
-  s.quadrature_rad = 0.3;
-  return s;
+  return {.offset_sin = 0.1, .offset_cos = -0.15, .ratio = 0.2, .quadrature_rad = 0.3};
 }
 
 /// Amplitude of an order of the signals' period.

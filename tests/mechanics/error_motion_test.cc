@@ -46,7 +46,7 @@ TEST(ErrorMotion, SumsHarmonicsOfAnyOrderAndUnwrappedAngle) {
   }
 }
 
-TEST(ErrorMotion, MeetsTheTableExactlyAtItsAngles) {
+TEST(ErrorMotion, MeetsTheTableExactlyAtItsAnglesAlsoAtOneOrTwo) {
   ErrorTable table;
   std::mt19937_64 engine(7);
   std::uniform_real_distribution<double> uniform(-1e-5, 1e-5);
@@ -63,6 +63,14 @@ TEST(ErrorMotion, MeetsTheTableExactlyAtItsAngles) {
       for (std::size_t c : {1u, 3u, 5u}) EXPECT_EQ(e[c], 0.0);
     }
   }
+  ErrorTable one{{1.0}, {}};
+  one.value[5] = {3e-6};
+  // A constant; h^3 M terms cancel to rounding of 3e-6.
+  EXPECT_NEAR(ErrorMotion({}, one).Evaluate(2.5).dz_m, 3e-6, 1e-20);
+  ErrorTable two{{0.0, kPi}, {}};
+  two.value[5] = {1e-6, -1e-6};
+  EXPECT_NEAR(ErrorMotion({}, two).Evaluate(kPi).dz_m, -1e-6, 1e-20);
+  EXPECT_NEAR(ErrorMotion({}, two).Evaluate(0.5 * kPi).dz_m, 0.0, 1e-20);  // antisymmetric
 }
 
 TEST(ErrorMotion, InterpolatesASmoothTableWithUnequalSteps) {
@@ -78,17 +86,6 @@ TEST(ErrorMotion, InterpolatesASmoothTableWithUnequalSteps) {
   // Cubic splines: 5/384 h^4 f'''' = 5/384 x (6 deg)^4 x 81 = 1.3e-4
   EXPECT_LT(worst, 1.3e-4);
   EXPECT_GT(worst, 1e-6);  // but it is an interpolation
-}
-
-TEST(ErrorMotion, TakesOneAndTwoAngles) {
-  ErrorTable one{{1.0}, {}};
-  one.value[5] = {3e-6};
-  // A constant; h^3 M terms cancel to rounding of 3e-6.
-  EXPECT_NEAR(ErrorMotion({}, one).Evaluate(2.5).dz_m, 3e-6, 1e-20);
-  ErrorTable two{{0.0, kPi}, {}};
-  two.value[5] = {1e-6, -1e-6};
-  EXPECT_NEAR(ErrorMotion({}, two).Evaluate(kPi).dz_m, -1e-6, 1e-20);
-  EXPECT_NEAR(ErrorMotion({}, two).Evaluate(0.5 * kPi).dz_m, 0.0, 1e-20);  // antisymmetric
 }
 
 TEST(ErrorMotion, RefusesTablesThatMakeNoSense) {
@@ -112,7 +109,7 @@ TEST(ErrorMotion, HalfFrequencyMotionDiffersBetweenTurnsAndRepeatsAfterTwo) {
   EXPECT_NEAR(std::hypot(first.dx_m, first.dy_m), 0.3 * kMicrometre, 1e-20);
 }
 
-TEST(RandomHarmonics, HaveExactlyTheRmsAskedForAndFallAsOneOverOrder) {
+TEST(RandomHarmonics, HaveExactlyTheRmsAskedForFallAsOneOverOrderAndDoNotDependOnOtherComponents) {
   const std::array<double, kErrorComponents> rms = {2e-5, 1e-5, 0.0, 1e-6, 2e-6, 3e-7};
   const ErrorMotion motion(MakeRandomHarmonics(rms, 12, Normals(1)));
   std::array<double, kErrorComponents> square{};
@@ -135,9 +132,6 @@ TEST(RandomHarmonics, HaveExactlyTheRmsAskedForAndFallAsOneOverOrder) {
   // ratio towards 0.1; a factor of two either way tells it from white (1) and from 1/k^2 (1/256).
   EXPECT_GT(high / low, 0.05);
   EXPECT_LT(high / low, 0.2);
-}
-
-TEST(RandomHarmonics, OfOneComponentDoNotDependOnTheOthers) {
   const auto all = MakeRandomHarmonics({1e-5, 1e-5, 0, 0, 0, 1e-6}, 5, Normals(3));
   const auto one = MakeRandomHarmonics({0, 0, 0, 0, 0, 1e-6}, 5, Normals(3));
   EXPECT_EQ(one.back().amplitude, all.back().amplitude);

@@ -37,8 +37,7 @@ TEST(MoveResponse, ScaledAndAddedIsTheResponseToTheMove) {
   const LinearModel model(p);
   const MoveResponse response(p, model, 0.2, 0.1);
   LinearStack stack(p, model);
-  const double t = 10.0 * kDegree;
-  const double r = -7.0 * kDegree;
+  const double t = 10.0 * kDegree, r = -7.0 * kDegree;
   const MoveResponse::Shapes shapes = (MoveResponse::Shapes() << t, r, t * t, t * r, r * r).finished();
   Eigen::Vector2d peak = Eigen::Vector2d::Zero();
   for (int i = 0; i < response.size(); ++i) {
@@ -48,12 +47,10 @@ TEST(MoveResponse, ScaledAndAddedIsTheResponseToTheMove) {
     ASSERT_DOUBLE_EQ(row[SpinIndex(1)], response.At(i, shapes, SpinIndex(1)));
     PeriodCommand command;
     const double h = p.servo_period_s;
-    const QuinticProfile target(0.0, t, 0.2);
-    const QuinticProfile reference(0.0, r, 0.2);
+    const QuinticProfile target(0.0, t, 0.2), reference(0.0, r, 0.2);
     command.Set(0, target.At(i * h), target.At((i + 1) * h), h);
     command.Set(1, reference.At(i * h), reference.At((i + 1) * h), h);
-    const double vt = target.At((i + 0.5) * h).velocity_rad_s;
-    const double vr = reference.At((i + 0.5) * h).velocity_rad_s;
+    const double vt = target.At((i + 0.5) * h).velocity_rad_s, vr = reference.At((i + 0.5) * h).velocity_rad_s;
     command.speed_products << vt * vt, vt * vr, vr * vr;
     stack.Step(command);
     peak = peak.cwiseMax(stack.torque_Nm().cwiseAbs());

@@ -9,15 +9,14 @@
 #include <vector>
 
 #include "mechanics/sag.h"
+#include "tests/mechanics/eccentric_stack.h"
 #include "tests/mechanics/plant_runs.h"
 
 namespace twinbench::mechanics {
 namespace {
 
 StackParameters ReseatedStack() {
-  StackParameters p;
-  p.payload.mass_kg = 1.5;
-  p.payload.radius_m = 0.040;
+  StackParameters p = EccentricStack();
   p.payload.azimuth_rad = 0.6;
   p.geometry.reseat_rad = -0.7;
   return p;

@@ -7,15 +7,14 @@
 #include <stdexcept>
 
 #include "mechanics/sag.h"
+#include "tests/mechanics/eccentric_stack.h"
 #include "tests/mechanics/test_units.h"
 
 namespace twinbench::mechanics {
 namespace {
 
 StackParameters OffCentreStack() {
-  StackParameters p;
-  p.payload.mass_kg = 1.5;
-  p.payload.radius_m = 0.040;
+  StackParameters p = EccentricStack();
   p.payload.azimuth_rad = 0.4;
   p.geometry.centring_m = {20e-6, -10e-6};
   p.geometry.mount_tilt_rad = {2e-5, 1e-5};
