@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "hw_bridge/machine_file.h"
 #include "tests/core/input_error.h"
+#include "tests/core/refusals.h"
 #include "tests/machine/benches.h"
 #include "tests/support/kept_text.h"
 #include "tests/support/machine_run.h"
@@ -39,16 +39,9 @@ std::string Refusal(const std::string& text) {
   return MessageOf([&] { hw::ParseMachineFile(text, "bench.toml", kAxes); });
 }
 
-/// What is said is kept, and where it stands.
-struct Wrong {
-  int line;
-  std::string text;
-};
-void ExpectRefused(std::initializer_list<Wrong> files) {
-  for (const auto& [line, text] : files) {
-    EXPECT_THAT(Refusal(text), testing::StartsWith("bench.toml:" + std::to_string(line) + ": "));
-    EXPECT_KEPT(Refusal(text));
-  }
+/// At these lines of the bench file.
+void ExpectRefused(const std::vector<Refused>& files) {
+  twinbench::ExpectRefused("bench.toml", Refusal, files);
 }
 
 std::string Changed(const std::string& from, const std::string& to) {
@@ -96,8 +89,7 @@ TEST(MachineFile, ReadsRegistersAsOneItemAField) {
       WithNumbers(gateway + "unit = 9\nread = \"input 4 int16, holding 65535 uint16\"\n"), "bench.toml", kAxes);
   EXPECT_EQ(file.instruments[0].Numbers().unit, 9);
   EXPECT_THAT(file.instruments[0].Numbers().items, testing::ElementsAre("input 4 int16", "holding 65535 uint16"));
-  ExpectRefused({{13, WithNumbers(gateway)},
-                 {17, WithNumbers(gateway + "read = \"input 4 int16\"\n")},
+  ExpectRefused({{13, WithNumbers(gateway)}, {17, WithNumbers(gateway + "read = \"input 4 int16\"\n")},
                  {17, WithNumbers(gateway + "read = \"input 4 int16, coil 3\"\n")},
                  {17, WithNumbers(gateway + "arm = \"INIT\"\nread = \"input 4 int16, input 5 int16\"\n")},
                  {13, WithNumbers("kind = \"comedi\"\nread = \"2 0, 2 1\"\n")},
@@ -115,11 +107,9 @@ TEST(MachineFile, IsReadInTheUnitsOfItsKeys) {
 }
 
 TEST(MachineFile, WhatIsWrongIsToldWithItsLine) {
-  ExpectRefused({{6, Changed("lower_mm = -150.0", "lower_mm = 250.0")},
-                 {7, Changed("lower_mm", "lower_deg")},
+  ExpectRefused({{6, Changed("lower_mm = -150.0", "lower_mm = 250.0")}, {7, Changed("lower_mm", "lower_deg")},
                  {3, Changed("serial:/dev/ttyUSB0:19200", "ttyUSB0")},
-                 {17, Changed("scale = [1.0, 1000.0]", "scale = [1.0]")},
-                 {10, Changed("[axis_a]", "[axis_b]")},
+                 {17, Changed("scale = [1.0, 1000.0]", "scale = [1.0]")}, {10, Changed("[axis_a]", "[axis_b]")},
                  {15, Changed("[instrument_1]\nkind = \"scpi\"", "[instrument_1]\nkind = \"none\"")},
                  {2, "kind = \"twin\"\n[machine]\nkind = \"esp\"\n"}});
 }

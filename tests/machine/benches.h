@@ -11,26 +11,12 @@ namespace twinbench::test {
 inline Scenario ShortScenario(const std::string& name) {
   return LoadScenario(TWINBENCH_TEST_DATA "/machine/" + name + ".toml");
 }
-inline Scenario ShortCircles() {
-  return ShortScenario("short_circles");
-}
-inline Scenario ShortFreeform() {
-  return ShortScenario("short_freeform");
-}
-inline Scenario ShortTurntable() {
-  return ShortScenario("short_turntable");
-}
-inline Scenario ShortPolygon() {
-  return ShortScenario("short_polygon");
-}
-inline Scenario ShortStops() {
-  return ShortScenario("short_stops");
-}
-inline Scenario ShortSweep() {
-  return ShortScenario("short_sweep");
-}
-inline Scenario ShortHob() {
-  return ShortScenario("short_hob");
-}
+inline Scenario ShortCircles() { return ShortScenario("short_circles"); }
+inline Scenario ShortFreeform() { return ShortScenario("short_freeform"); }
+inline Scenario ShortTurntable() { return ShortScenario("short_turntable"); }
+inline Scenario ShortPolygon() { return ShortScenario("short_polygon"); }
+inline Scenario ShortStops() { return ShortScenario("short_stops"); }
+inline Scenario ShortSweep() { return ShortScenario("short_sweep"); }
+inline Scenario ShortHob() { return ShortScenario("short_hob"); }
 
 }  // namespace twinbench::test

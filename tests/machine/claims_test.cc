@@ -1,7 +1,6 @@
 #include "twin/benches/claims.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -192,11 +191,7 @@ TEST(DrivenCircles, ShowBesideThePlanWhatTheyShowOnIt) {
   double largest_m = 0.0, largest_rad = 0.0;
   for (int k = 0; k < run.Readings(); ++k) {
     const Reading planned = run.Take(k);
-    const sim::DrivenInstant at{k,
-                                planned.time + Duration(3),
-                                planned.setup,
-                                planned.direction,
-                                kFeed_m_s(planned),
+    const sim::DrivenInstant at{k, planned.time + Duration(3), planned.setup, planned.direction, kFeed_m_s(planned),
                                 {kCommandedX_m(planned), kCommandedY_m(planned)}};
     const Reading beside = physics->Show(at);
     EXPECT_EQ(beside.time, at.time) << "it was not taken for the planned one";

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "hw_bridge/replay/replay_bench.h"
 #include "hw_bridge/replay/replay_machine.h"
