@@ -69,16 +69,13 @@ TEST(Polarisation, APlateOfAQuarterWaveTurnsLightThatComesBackByARightAngle) {
   }
 }
 
-TEST(Polarisation, AMirrorKeepsFieldsAcrossTheirRays) {
+TEST(Polarisation, OnAMirrorStaysAcrossItsRayAndHasNoFieldAlongIt) {
   const Vector3d direction = Vector3d(0.1, 0.2, -1.0).normalized(), normal = Vector3d(0.3, -0.1, 1.0).normalized();
   const Vector3d reflected = direction - 2.0 * direction.dot(normal) * normal;
   const Field field = Retard({Vector3d::UnitX(), 0.7}, LinearField(direction, {1.0, 1.0, 0.0}, 1.0), direction);
   const Field out = OnMirror(field, normal);
   EXPECT_NEAR(std::abs(out.dot(reflected.cast<std::complex<double>>())), 0.0, kRounding);
   EXPECT_NEAR(out.squaredNorm(), 1.0, kRounding);
-}
-
-TEST(Polarisation, HasNoFieldAlongItsRay) {
   EXPECT_THROW(LinearField(kDown, Vector3d::UnitZ(), 1.0), std::invalid_argument);
 }
 

@@ -30,7 +30,7 @@ double LargestShift_um(double wedge_arcsec, double reflectance, double sigma_m) 
   return LargestShift_um(phase.second, reflectance, sigma_m);
 }
 
-TEST(Etalon, HasTheSizesOfTheDesignStudy) {
+TEST(Etalon, HasTheSizesOfTheDesignStudyAndOfAParallelWindowActsThroughTheWavefront) {
   // Two digits are given there, for two-beam interference; the higher reflections add about R = 4 %.
   EXPECT_NEAR(LargestShift_um(1, 0.042, 0.25e-3), 0.74, 0.04);
   EXPECT_NEAR(LargestShift_um(10, 0.042, 0.25e-3), 7.0, 0.3);
@@ -38,9 +38,6 @@ TEST(Etalon, HasTheSizesOfTheDesignStudy) {
   EXPECT_NEAR(LargestShift_um(10, 0.005, 0.25e-3), 0.83, 0.02);
   EXPECT_NEAR(LargestShift_um(10, 0.001, 0.25e-3), 0.17, 0.005);
   EXPECT_NEAR(LargestShift_um(60, 0.042, 0.5e-3), 0.02, 0.005);
-}
-
-TEST(Etalon, OfAParallelWindowActsThroughTheWavefront) {
   // Wavefront radius 5 m, window tilted by 1 deg: 0.23 um.
   const Vector3d d(std::sin(kDegree), 0.0, -std::cos(kDegree));
   const auto [phase, gradient] = EtalonPhase(Glass(), 650e-9, d, 0.0, Matrix2d::Identity() / 5.0);
