@@ -32,13 +32,10 @@ TEST(ParseInUnit, GivesTheProductThatTheSourceCodeGives) {
   EXPECT_EQ(ParseInUnit("650", units::nm), 650.0 * units::nm);
 }
 
-TEST(PrintInUnit, WritesWhatAPersonWouldWrite) {
+TEST(PrintInUnit, WritesWhatAPersonWouldWriteWithTheSignOfZeroAndRefusesWhatIsNotFinite) {
   EXPECT_EQ(PrintInUnit(650.0 * units::nm, units::nm), "650");
   EXPECT_EQ(PrintInUnit(0.02 * units::arcsec, units::arcsec), "0.02");
   EXPECT_EQ(PrintInUnit(-0.1, 1.0), "-0.1");
-}
-
-TEST(PrintInUnit, KeepsTheSignOfZeroAndRefusesWhatIsNotFinite) {
   const double zero = ParseInUnit(PrintInUnit(-0.0, units::mm), units::mm).value();
   EXPECT_TRUE(zero == 0.0 && std::signbit(zero));
   EXPECT_THROW(PrintInUnit(std::nan(""), 1.0), std::logic_error);

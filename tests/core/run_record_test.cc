@@ -148,20 +148,17 @@ TEST(RunRecord, CannotBeChangedAfterwards) {
   EXPECT_EQ(RunRecord::Open(folder.path())->Readings().size(), 1u);
 }
 
-TEST(RunRecord, SaysWhenTheDiskRefuses) {
+TEST(RunRecord, SaysWhenTheDiskRefusesAndIsMadeOverTheRestsOfACreationThatWasKilled) {
   const TemporaryFolder folder;
   folder.Write("file", "x");
   EXPECT_THROW(RunRecord::Create(folder.File("file"), AnyProvenance()),
                InputError);  // a wrong name, not a bad disk
   EXPECT_THROW(RunRecord::Create(folder.File("file/inside"), AnyProvenance()), BenchError);
-}
-
-TEST(RunRecord, IsMadeOverTheRestsOfACreationThatWasKilled) {
-  const TemporaryFolder folder;
-  folder.Write("record.sqlite.part", "half a file");
-  RunRecord::Create(folder.path(), AnyProvenance())->Finish();
-  EXPECT_TRUE(RunRecord::Open(folder.path())->finished());
-  EXPECT_FALSE(std::filesystem::exists(folder.File("record.sqlite.part")));
+  const TemporaryFolder rests;
+  rests.Write("record.sqlite.part", "half a file");
+  RunRecord::Create(rests.path(), AnyProvenance())->Finish();
+  EXPECT_TRUE(RunRecord::Open(rests.path())->finished());
+  EXPECT_FALSE(std::filesystem::exists(rests.File("record.sqlite.part")));
 }
 
 TEST(RunRecord, MustBeThereAndOfThisProgramAndVersionToBeOpenedAndIsNotMadeOverAnother) {

@@ -141,7 +141,7 @@ TEST(Stream, CanBeEnteredAtAnyBlockAlsoBeyondThirtyTwoBits) {
   EXPECT_FALSE(SameBits(Normals(jumped, 56), after));
 }
 
-TEST(Stream, UniformsFillTheUnitIntervalEvenly) {
+TEST(Stream, UniformsFillTheUnitIntervalEvenlyAndNormalsInDoublePassKolmogorov) {
   Stream stream(3, "uniform");
   std::array<int, 100> count{};
   for (int i = 0; i < 200000; ++i) ++count[static_cast<std::size_t>(stream.Uniform() * 100.0)];
@@ -149,12 +149,9 @@ TEST(Stream, UniformsFillTheUnitIntervalEvenly) {
   for (const int n : count) chi2 += (n - 2000.0) * (n - 2000.0) / 2000.0;
   // 99 degrees of freedom: mean 99, standard deviation 14.1; five of them either way.
   EXPECT_NEAR(chi2, 99.0, 70.0);
-}
-
-TEST(Stream, NormalsInDoublePassKolmogorov) {
-  Stream stream(4, "normal");
+  Stream normal(4, "normal");
   std::vector<double> values(100000);
-  for (double& v : values) v = stream.Normal();
+  for (double& v : values) v = normal.Normal();
   EXPECT_LT(KolmogorovStatistic(values, NormalDistribution), kRare);
 }
 
@@ -273,15 +270,11 @@ TEST(ChiSquared, HasItsMeanAndVariance) {
   }
 }
 
-TEST(ChiSquared, FollowsItsDistribution) {
+TEST(ChiSquared, FollowsItsDistributionAndRefusesDegreesThatAreNotPositive) {
   Stream stream(15, "chi2");
   std::vector<double> values(50000);
   for (double& v : values) v = stream.ChiSquared(2.0);
   EXPECT_LT(KolmogorovStatistic(values, [](double x) { return 1.0 - std::exp(-0.5 * x); }), kRare);
-}
-
-TEST(ChiSquared, RefusesDegreesThatAreNotPositive) {
-  Stream stream(1, "bad");
   for (const double degrees : {0.0, -1.0, std::nan("")}) EXPECT_THROW(stream.ChiSquared(degrees), std::logic_error);
 }
 

@@ -36,16 +36,13 @@ TEST(TableErrors, AreReadBackToTheSameBits) {
   EXPECT_EQ(read.value, errors.value);
 }
 
-TEST(TableErrors, NameLineAndFaultOfABadFile) {
+TEST(TableErrors, NameLineAndFaultOfABadFileAndAreNotWrittenWithColumnsOfUnequalLengthOrWhereTheDiskRefuses) {
   const TemporaryFolder folder;
   ExpectRefused(folder.File("t.csv"),
                 [&](const auto& text) { return MessageOf([&] { ReadTableErrors(folder.Write("t.csv", text)); }); },
                 {{1, "ex_arcsec\n1\n"}, {2, "#\nposition_deg,ex_urad\n1,2\n"},
                  {3, "position_deg,dx_um\n1,2\n2,abc\n"}, {2, "position_deg,dx_um\n1,nan\n"},
                  {2, "position_deg,dx_um\n1,\n"}, {1, "position_deg,dx_um\n"}});
-}
-
-TEST(TableErrors, CannotBeWrittenWithColumnsOfUnequalLengthOrWhereTheDiskRefuses) {
   TableErrors errors;
   EXPECT_THROW(WriteTableErrors(errors, "/no/such/folder/t.csv"), BenchError);
   errors.position_rad = {0.0};
